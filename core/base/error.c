@@ -1,0 +1,49 @@
+/* error.c - see error.h. */
+#include "base/error.h"
+
+#include <stdio.h>
+#include <string.h>
+
+tl_status tl_vfail(tl_error *error, tl_status status, const char *format, va_list args)
+{
+    if (error) {
+        error->status = status;
+        vsnprintf(error->text, sizeof error->text, format, args);
+    }
+    return status;
+}
+
+tl_status tl_fail(tl_error *error, tl_status status, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    tl_vfail(error, status, format, args);
+    va_end(args);
+    return status;
+}
+
+tl_status tl_fail_memory(tl_error *error)
+{
+    return tl_fail(error, TL_E_MEMORY, "%s", tl_status_text(TL_E_MEMORY));
+}
+
+tl_status tl_error_prefix(tl_error *error, const char *format, ...)
+{
+    char sentence[TL_ERROR_TEXT];
+    memcpy(sentence, error->text, sizeof sentence);
+    va_list args;
+    va_start(args, format);
+    int n = vsnprintf(error->text, sizeof error->text, format, args);
+    va_end(args);
+    if (n >= 0 && (size_t)n < sizeof error->text)
+        snprintf(error->text + n, sizeof error->text - (size_t)n, "%s", sentence);
+    return error->status;
+}
+
+const char *tl_status_text(tl_status status)
+{
+#define TL_STATUS_TEXT(name, text) text,
+    static const char *const texts[] = {TL_STATUS_LIST(TL_STATUS_TEXT)};
+#undef TL_STATUS_TEXT
+    return (unsigned)status < TL_STATUS_COUNT ? texts[status] : "unknown status";
+}

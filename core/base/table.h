@@ -1,0 +1,56 @@
+/* table.h - columns: a table of named, aligned arrays that grow together (structure of arrays).
+ *
+ * A table lives inside a struct whose members are the typed column pointers:
+ *
+ *     struct points { tl_table table; double *area; ... };
+ *     tl_table_init(&p->table, p);  TL_COLUMN(&p->table, p, area, TL_COLUMN_STATE);
+ *
+ * Every column has the table's capacity and is aligned to TL_ALIGN bytes; new rows are zero. */
+#ifndef TL_BASE_TABLE_H
+#define TL_BASE_TABLE_H
+
+#include <stdbool.h>
+#include <talus/plugin.h>
+
+#define TL_TABLE_COLUMNS 64
+
+enum { TL_COLUMN_STATE = 1 }; /* part of the mechanical state: hashed and saved */
+
+typedef struct tl_column {
+    const char *name;
+    size_t size;   /* bytes a row */
+    size_t offset; /* of the pointer in the owner struct */
+    unsigned flags;
+} tl_column;
+
+typedef struct tl_table {
+    void *owner;
+    size_t rows, capacity;
+    size_t column_count;
+    tl_column columns[TL_TABLE_COLUMNS];
+} tl_table;
+
+#define TL_COLUMN(table, owner, member, flags)                                                     \
+    tl_table_column((table), #member, sizeof *(owner)->member,                                     \
+                    (size_t)((char *)&(owner)->member - (char *)(owner)), (flags))
+
+void tl_table_init(tl_table *table, void *owner);
+/* Adds a column while the table is empty. */
+void tl_table_column(tl_table *table, const char *name, size_t size, size_t offset, unsigned flags);
+/* Makes room for `rows` rows; what is there stays. false when out of memory (nothing changed). */
+bool tl_table_reserve(tl_table *table, size_t rows);
+/* Sets the number of rows; new ones are zero. */
+bool tl_table_resize(tl_table *table, size_t rows);
+/* Keeps the rows for which keep[row] is not 0, in order. */
+void tl_table_keep(tl_table *table, const unsigned char *keep);
+/* Copies a row over another. */
+void tl_table_move(tl_table *table, size_t to, size_t from);
+void *tl_table_data(const tl_table *table, size_t column);
+/* Bytes held. */
+size_t tl_table_bytes(const tl_table *table);
+void tl_table_free(tl_table *table);
+
+/* Aligned memory for columns and scratch: zeroed, freed with free(). */
+void *tl_aligned_alloc(size_t bytes);
+
+#endif

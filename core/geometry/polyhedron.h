@@ -1,0 +1,115 @@
+/* polyhedron.h - convex polyhedra: building, checking, measuring.
+ *
+ * A polyhedron is closed and convex. Its faces are convex polygons given counter-clockwise from
+ * outside, each with the plane it was made with (never refitted) and the tag of the joint that
+ * made it (joint 0: none). It is immutable once made and lives in one allocation.
+ *
+ * Lengths: `size` of a polyhedron is the diagonal of its bounds; tolerances are relative to it. */
+#ifndef TL_GEOMETRY_POLYHEDRON_H
+#define TL_GEOMETRY_POLYHEDRON_H
+
+#include <stdbool.h>
+#include <talus/types.h>
+
+/* Vertices closer to a cutting plane than this times the size count as on it: 1e4 roundings, so
+ * that a vertex made by one cut is found on the same plane by the next. */
+#define TL_POLY_ON 1e-9
+/* A cut that would leave a side thinner than this times the size is refused. */
+#define TL_POLY_THIN 1e-5
+/* Most vertices and most faces of one polyhedron. */
+#define TL_POLY_MAX_VERTICES 4096
+#define TL_POLY_MAX_FACES 4096
+
+/* Edge from vertex a to b in the loop of face `left`; in that of face `right` it runs from b to a. */
+typedef struct tl_edge {
+    uint16_t a, b, left, right;
+} tl_edge;
+
+typedef struct tl_poly {
+    uint32_t vertex_count, face_count, edge_count;
+    double size;       /* diagonal of the bounds */
+    tl_vec3 *vertex;   /* [vertex_count] */
+    tl_plane *plane;   /* [face_count] outward unit normal and offset */
+    tl_tag *tag;       /* [face_count] */
+    uint32_t *start;   /* [face_count + 1] into loop */
+    tl_edge *edge;     /* [edge_count], a < b never assumed */
+    uint16_t *loop;    /* [2 edge_count] vertex indices */
+    uint16_t *star;    /* [2 edge_count] edges at each vertex, by vertex */
+    uint32_t *star_at; /* [vertex_count + 1] into star */
+} tl_poly;
+
+static inline uint32_t tl_poly_face_size(const tl_poly *p, uint32_t face)
+{
+    return p->start[face + 1] - p->start[face];
+}
+
+/* A polyhedron from faces: loops[start[f] .. start[f+1]) are indices into `vertices`. Derives edges
+ * and vertex stars. Fails (TL_E_GEOMETRY) when some edge does not belong to exactly two faces. */
+tl_status tl_poly_make(const tl_vec3 *vertices, size_t vertex_count, const tl_plane *planes,
+                       const tl_tag *tags, const uint32_t *start, const uint16_t *loops,
+                       size_t face_count, tl_poly **poly, tl_error *error);
+
+tl_status tl_poly_box(tl_vec3 min, tl_vec3 max, tl_poly **poly, tl_error *error);
+
+/* The convex hull of points. Points that lie on the hull within TL_POLY_ON times the extent but are
+ * not corners of it are left out; coplanar triangles become one face. Fails (TL_E_GEOMETRY) for fewer
+ * than four points, NaN, a flat or thinner than TL_POLY_THIN set, and for a point inside the hull of
+ * the others: the sentence names the point, counted from 1. */
+tl_status tl_poly_hull(const tl_vec3 *points, size_t count, tl_poly **poly, tl_error *error);
+
+void tl_poly_free(tl_poly *poly);
+
+/* A copy with every vertex x replaced by R x + t (R a rotation; NULL is the identity). */
+tl_status tl_poly_transformed(const tl_poly *poly, const tl_mat3 *rotation, tl_vec3 translation,
+                              tl_poly **copy, tl_error *error);
+
+/* Euler's formula, closed, convex and every vertex on its faces' planes within `tolerance` times the
+ * size, positive volume. */
+tl_status tl_poly_check(const tl_poly *poly, double tolerance, tl_error *error);
+
+/* Volume, centroid and inertia at density 1 about the centroid, exact up to rounding (sums over
+ * tetrahedra, taken about a vertex so that an offset costs no digits). */
+typedef struct tl_mass {
+    double volume;
+    tl_vec3 centroid;
+    tl_sym3 inertia;
+} tl_mass;
+
+tl_mass tl_poly_mass(const tl_poly *poly);
+
+tl_bounds tl_poly_bounds(const tl_poly *poly);
+double tl_poly_face_area(const tl_poly *poly, uint32_t face);
+tl_vec3 tl_poly_face_centroid(const tl_poly *poly, uint32_t face);
+double tl_poly_shortest_edge(const tl_poly *poly);
+/* Vertex farthest in a direction (the lowest index among equals). */
+uint32_t tl_poly_support(const tl_poly *poly, tl_vec3 direction);
+/* Within `tolerance` (a length) of the inside. */
+bool tl_poly_contains(const tl_poly *poly, tl_vec3 point, double tolerance);
+
+/* Eigenvalues (ascending in `moments`) and the rotation from principal axes to the given ones. The
+ * identity for a diagonal tensor's own axes up to their order. */
+void tl_principal_axes(tl_sym3 tensor, tl_vec3 *moments, tl_quat *axes);
+
+/* ---- cutting: cut.c ---- */
+
+typedef enum tl_cut_result {
+    TL_CUT_MISS,       /* the plane does not cross the polyhedron */
+    TL_CUT_MADE,       /* below and above are set */
+    TL_CUT_COINCIDENT, /* the plane falls on a face: `face` is set */
+    TL_CUT_REFUSED /* a side would be thinner than TL_POLY_THIN; `face` is set when the thin side
+                          lies along one face, else it is UINT32_MAX */
+} tl_cut_result;
+
+typedef struct tl_cut {
+    tl_cut_result result;
+    tl_poly *below, *above; /* normal . x < offset, > offset */
+    uint32_t face;
+} tl_cut;
+
+/* Cuts by a plane. Vertices are never moved; each crossed edge gets one new vertex, shared bit for bit
+ * by both sides; faces keep their planes; the cap gets the cutting plane and `tag`. TL_E_MEMORY is the
+ * only failure. */
+tl_status tl_poly_cut(const tl_poly *poly, tl_plane plane, tl_tag tag, tl_cut *cut,
+                      tl_error *error);
+
+#endif

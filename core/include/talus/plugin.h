@@ -1,0 +1,309 @@
+/* talus/plugin.h - the plugin interface: contact laws, dampings and generators as shared objects.
+ *
+ * A plugin is a shared object that exports one function,
+ *
+ *     const tl_plugin *tl_plugin_entry(uint32_t host_major, uint32_t host_minor);
+ *
+ * which returns a descriptor of pure data (or NULL to refuse the host). Scanning a plugin creates
+ * nothing. The descriptor lists *kinds*: laws, dampings and generators, each with its parameters
+ * (checked, defaulted and documented by the host from one table), its states (owned, carried over,
+ * saved and written by the host) and its operations.
+ *
+ * Growth: every struct begins with its `size` and every array carries a stride, so a newer host
+ * reads an older plugin. The major version must match; a minor version only appends.
+ *
+ * Threads: a function marked [main] runs on the main thread, one marked [worker] runs on several
+ * threads at once and must be a pure function of what it is given.
+ *
+ * Errors: a function returns TL_OK, or another status after putting one sentence (and the first
+ * bad index) into the report. The host adds plugin, joint, blocks, cycle and script line. */
+#ifndef TALUS_PLUGIN_H
+#define TALUS_PLUGIN_H
+
+#include <talus/types.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define TL_ABI_MAJOR 1u
+#define TL_ABI_MINOR 0u
+
+#if defined(__GNUC__)
+#define TL_PLUGIN_EXPORT __attribute__((visibility("default")))
+#define TL_PRINTF(fmt, first) __attribute__((format(printf, fmt, first)))
+#else
+#define TL_PLUGIN_EXPORT
+#define TL_PRINTF(fmt, first)
+#endif
+
+/* Number of double lanes to which batches are padded; columns are aligned to TL_ALIGN bytes. */
+#define TL_LANES 8u
+#define TL_ALIGN 64u
+
+/* ---------------------------------------------------------------- parameters ------------- */
+
+/* Type of a parameter, and the C member the host writes at `offset` of the params struct. */
+typedef enum tl_param_type {
+    TL_PARAM_REAL,   /* double; NaN when optional and not given */
+    TL_PARAM_INT,    /* int64_t */
+    TL_PARAM_BOOL,   /* int32_t, 0 or 1 */
+    TL_PARAM_ENUM,   /* int32_t, index into `choices` */
+    TL_PARAM_VEC3,   /* tl_vec3; NaN when optional and not given */
+    TL_PARAM_STRING, /* const char *; NULL when optional and not given; valid during the call */
+    TL_PARAM_POINTS  /* tl_points: a list of vectors; empty when optional and not given */
+} tl_param_type;
+
+typedef struct tl_points {
+    const tl_vec3 *at;
+    size_t count;
+} tl_points;
+
+enum {
+    TL_PARAM_REQUIRED = 1, /* must be given; `def` is not used */
+    TL_PARAM_OPTIONAL = 2, /* may be missing, and has no default */
+    TL_PARAM_MIN_OPEN = 4, /* value > min instead of >= */
+    TL_PARAM_MAX_OPEN = 8  /* value < max instead of <= */
+};
+
+/* One parameter. Reals and integers are checked against [min, max]; for a vec3 every component
+ * is. min = max = 0 means no range. NaN and infinity are always refused. */
+typedef struct tl_param {
+    uint32_t size; /* sizeof(tl_param) */
+    uint32_t type; /* tl_param_type */
+    const char *name;
+    const char *alias; /* second name, or NULL */
+    const char *unit;  /* "Pa/m", "deg", "" */
+    const char *doc;   /* one sentence */
+    size_t offset;     /* of the member in the params struct */
+    uint32_t flags;
+    double def[3]; /* default; reals, ints, bools and enums use def[0] */
+    double min, max;
+    const char *def_text;       /* default of a string */
+    const char *const *choices; /* of an enum: names, NULL terminated */
+} tl_param;
+
+/* Declares one row of a parameter table: TL_PARAM(struct type, member, "unit", "doc", .field = ...) */
+#define TL_PARAM(kind, owner, member, unit_, doc_, ...)                                            \
+    {                                                                                              \
+        .size = sizeof(tl_param), .type = (kind), .name = #member, .unit = (unit_), .doc = (doc_), \
+        .offset = offsetof(owner, member), __VA_ARGS__                                             \
+    }
+
+/* ---------------------------------------------------------------- states ----------------- */
+
+typedef enum tl_state_kind {
+    TL_STATE_SCALAR, /* one column */
+    TL_STATE_TANGENT /* three columns: a vector in the common plane, turned with it by the host */
+} tl_state_kind;
+
+/* What becomes of a state when the contact polygon changes. */
+typedef enum tl_state_transfer {
+    TL_TRANSFER_COPY,  /* intensive: taken from the nearest old point */
+    TL_TRANSFER_SPLIT, /* extensive: scaled with the area share */
+    TL_TRANSFER_RESET  /* back to the initial value */
+} tl_state_transfer;
+
+/* One state of a law (per contact point) or of a damping (per model). The host owns it. */
+typedef struct tl_state {
+    uint32_t size;
+    uint32_t kind;     /* tl_state_kind; a damping has scalars only */
+    uint32_t transfer; /* tl_state_transfer */
+    const char *name;
+    const char *unit;
+    const char *doc;
+    double initial;
+} tl_state;
+
+/* ---------------------------------------------------------------- reports ---------------- */
+
+typedef struct tl_report {
+    uint32_t size;
+    size_t first_bad; /* index into the batch, where that means something */
+    char text[256];
+} tl_report;
+
+/* ---------------------------------------------------------------- laws ------------------- */
+
+/* Flags of a contact point, set by the law. 0 is elastic. */
+enum {
+    TL_POINT_SLIPPING = 1, /* shear force at its limit in this step */
+    TL_POINT_OPEN = 2,     /* carries nothing */
+    TL_POINT_FAILED = 4    /* bond lost; stays set */
+};
+
+/* A run of contact points of one joint material. Every column has `count` entries, a multiple of
+ * TL_LANES, aligned to TL_ALIGN bytes, padded with inert lanes (area 0), so loops need no tail.
+ *
+ * Signs: the unit normal n points from block A to block B; forces are those on B. Normal force and
+ * closure are compression positive; closure is how far the walls have approached since the
+ * reference state. du is the motion of B relative to A during dt (1-4 of Hart, Cundall and Lemos
+ * 1988), closing is negative du_n. f_s comes in already turned into the new common plane and
+ * scaled to the new area (5). */
+typedef struct tl_law_batch {
+    uint32_t size;
+    uint32_t count;
+    double dt;               /* s */
+    const double *area;      /* m2 */
+    const double *closure;   /* m */
+    const double *f_n0;      /* N, normal force at closure 0 (in situ) */
+    const double *normal[3]; /* A to B */
+    const double *du_n;      /* m, along n */
+    const double *du_s[3];   /* m, in the common plane */
+    double *f_n;             /* in: last step's; out: N, compression positive */
+    double *f_s[3];          /* in/out: N, shear force on B */
+    double *const *state;    /* in/out: state columns in the order declared (3 for a tangent) */
+    uint32_t *flags;         /* in/out */
+    double *stored;          /* out, or NULL: elastic energy, J */
+    double *dissipated;      /* out, or NULL: energy turned to heat in this step, J */
+} tl_law_batch;
+
+/* Operations of a law. `create` and `destroy` may both be NULL: then `self` is the host's own copy
+ * of the params struct. */
+typedef struct tl_law_ops {
+    uint32_t size;
+    /* [main] */
+    tl_status (*create)(const void *params, void **self, tl_report *report);
+    /* [worker] */
+    tl_status (*update)(const void *self, const tl_law_batch *batch, tl_report *report);
+    /* [worker] upper bounds, Pa/m */
+    void (*stiffness)(const void *self, double *kn, double *ks);
+    /* [main] */
+    void (*destroy)(void *self);
+} tl_law_ops;
+
+/* ---------------------------------------------------------------- damping ---------------- */
+
+/* Sums over the free bodies, at the start of the damping phase of a step. */
+typedef struct tl_damping_totals {
+    uint32_t size;
+    double dt;           /* s */
+    double kinetic;      /* sum of (m v.v + I w.w) / 2, J */
+    double kinetic_rate; /* change of `kinetic` over the last step / dt, W */
+    double power_unit;   /* sum of (m v.v + I w.w), W per unit of alpha */
+} tl_damping_totals;
+
+/* A run of bodies. The host then applies (23): v <- (D1 v + (F + F_d)/m dt) D2 with
+ * D1 = 1 - alpha dt/2, D2 = 1/(1 + alpha dt/2), for velocities and angular velocities alike. */
+typedef struct tl_damping_batch {
+    uint32_t size;
+    uint32_t count;
+    double dt;
+    const double *velocity[3];         /* m/s, half a step ago */
+    const double *angular_velocity[3]; /* rad/s */
+    const double *force[3];            /* N, whole unbalanced force: contacts, weight, loads */
+    const double *moment[3];           /* N m, about the centroid */
+    const double *mass;                /* kg */
+    const double *inertia;             /* kg m2, mean principal moment */
+    double *damping_force[3];          /* out, preset to 0 */
+    double *damping_moment[3];         /* out, preset to 0 */
+    double *alpha;                     /* out, preset to 0: viscous coefficient, 1/s */
+    double *const *state;              /* the damping's states, one number each, read only here */
+} tl_damping_batch;
+
+typedef struct tl_damping_ops {
+    uint32_t size;
+    /* [main] */
+    tl_status (*create)(const void *params, void **self, tl_report *report);
+    /* [main] once a step before `update`: a controller adjusts its states. May be NULL. */
+    tl_status (*begin)(const void *self, const tl_damping_totals *totals, double *const *state,
+                       tl_report *report);
+    /* [worker] */
+    tl_status (*update)(const void *self, const tl_damping_batch *batch, tl_report *report);
+    /* [main] factor on the stable time step, (0, 1] */
+    double (*step_factor)(const void *self);
+    /* [main] */
+    void (*destroy)(void *self);
+} tl_damping_ops;
+
+/* ---------------------------------------------------------------- generators ------------- */
+
+/* What a generator may ask of the host. All works on a staging set that is committed when the
+ * generator returns TL_OK and dropped otherwise. Every function that returns a status has already
+ * written its sentence when it is not TL_OK: return that status at once. */
+typedef struct tl_host tl_host;
+
+typedef struct tl_block_info {
+    uint32_t size;
+    double volume;
+    tl_vec3 centroid;
+    tl_bounds bounds;
+    const char *group;
+    uint64_t lineage; /* key of the block's descent, for random draws */
+} tl_block_info;
+
+struct tl_host {
+    uint32_t size;
+    void *impl;
+    uint64_t seed; /* of the model */
+
+    /* Creates a block: the convex hull of `count` vertices. Refused with TL_E_GEOMETRY when they
+     * span no volume, or when one lies inside the hull of the others. density in kg/m3 > 0;
+     * group may be NULL. */
+    tl_status (*create_hull)(const tl_host *, const tl_vec3 *vertices, size_t count, double density,
+                             const char *group);
+    /* Creates a block: an axis-aligned box, min < max in every component. */
+    tl_status (*create_box)(const tl_host *, tl_vec3 min, tl_vec3 max, double density,
+                            const char *group);
+    /* Finds or creates the joint set `name` and gives its number. */
+    tl_status (*joint)(const tl_host *, const char *name, uint32_t *joint);
+    /* The number of the next plane of a joint set, from 1. */
+    uint32_t (*next_plane)(const tl_host *, uint32_t joint);
+    /* Cuts every visible block that the plane through `point` with unit `normal` crosses, each with
+     * probability `persistence` drawn from (seed, set, plane, block's lineage); body-wise for
+     * joined blocks. The new faces carry `tag`. */
+    tl_status (*cut)(const tl_host *, tl_vec3 normal, tl_vec3 point, tl_tag tag,
+                     double persistence);
+    /* The visible blocks of the staging set. */
+    size_t (*block_count)(const tl_host *);
+    void (*block_info)(const tl_host *, size_t index, tl_block_info *info);
+    /* Uniform in [0, 1), a pure function of (seed, joint set, plane, draw). */
+    double (*random)(const tl_host *, uint32_t joint, int64_t plane, uint32_t draw);
+    /* Shows progress in [0, 1]; not TL_OK when the user asked to stop. */
+    tl_status (*progress)(const tl_host *, double fraction);
+    /* A remark for the user. */
+    void (*log)(const tl_host *, const char *format, ...) TL_PRINTF(2, 3);
+    /* Puts a sentence into the error and returns `status`. */
+    tl_status (*fail)(const tl_host *, tl_status status, const char *format, ...) TL_PRINTF(3, 4);
+};
+
+typedef struct tl_generator_ops {
+    uint32_t size;
+    tl_status (*generate)(const tl_host *host, const void *params); /* [main] */
+} tl_generator_ops;
+
+/* ---------------------------------------------------------------- descriptors ------------ */
+
+typedef enum tl_kind_type { TL_KIND_LAW, TL_KIND_DAMPING, TL_KIND_GENERATOR } tl_kind_type;
+
+/* One law, damping or generator. `ops` points to tl_law_ops, tl_damping_ops or tl_generator_ops. */
+typedef struct tl_kind {
+    uint32_t size;
+    uint32_t type;    /* tl_kind_type */
+    const char *name; /* [a-z][a-z0-9_]*, unique among kinds of its type */
+    const char *doc;
+    size_t params_size;
+    const tl_param *params;
+    uint32_t param_count, param_stride;
+    const tl_state *states;
+    uint32_t state_count, state_stride;
+    const void *ops;
+} tl_kind;
+
+typedef struct tl_plugin {
+    uint32_t size;
+    uint32_t abi_major, abi_minor; /* TL_ABI_MAJOR, TL_ABI_MINOR of the headers it was built with */
+    const char *id;                /* unique, "talus.coulomb" */
+    const char *version;
+    const char *doc;
+    const char *licence;
+    const tl_kind *kinds;
+    uint32_t kind_count, kind_stride;
+} tl_plugin;
+
+typedef const tl_plugin *(*tl_plugin_entry_fn)(uint32_t host_major, uint32_t host_minor);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

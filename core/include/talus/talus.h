@@ -1,0 +1,323 @@
+/* talus/talus.h - the kernel's C interface: build a model, run it, ask it, write it.
+ *
+ * Conventions. Coordinates x east, y north, z up; any consistent units (SI in the examples).
+ * Stress tensors are tension positive, joint stresses and forces compression positive. Angles of
+ * planes in degrees, angular velocities in rad/s.
+ *
+ * Errors. A function that can fail returns a tl_status; the sentence is then in
+ * tl_model_error(model). A failed call leaves the model as it was. Functions are called from one
+ * thread per model. */
+#ifndef TALUS_TALUS_H
+#define TALUS_TALUS_H
+
+#include <stdbool.h>
+#include <talus/plugin.h>
+#include <talus/types.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define TL_API __attribute__((visibility("default")))
+
+#define TALUS_VERSION "0.1.0"
+
+typedef struct tl_model tl_model;
+
+/* ---------------------------------------------------------------- named values ----------- */
+
+/* A value as a script gives it, before it is checked against a tl_param table. */
+typedef enum tl_value_type {
+    TL_VALUE_NUMBER,  /* number; `integral` tells whether it is a whole number */
+    TL_VALUE_BOOL,    /* number is 0 or 1 */
+    TL_VALUE_STRING,  /* text */
+    TL_VALUE_NUMBERS, /* data: count numbers (a vector when count is 3) */
+    TL_VALUE_POINTS,  /* data: count rows of 3 numbers */
+    TL_VALUE_OTHER    /* text says what it is ("function", "list whose row 4 has 2 numbers") */
+} tl_value_type;
+
+typedef struct tl_value {
+    const char *key;
+    tl_value_type type;
+    double number;
+    const char *text;
+    const double *data;
+    size_t count;
+} tl_value;
+
+typedef struct tl_args {
+    const tl_value *values;
+    size_t count;
+} tl_args;
+
+/* Checks `args` against a table of parameters and fills the struct `out`: unknown keys (with the
+ * nearest known name), wrong types, values out of range, NaN and infinity, and missing required
+ * parameters are refused with a sentence that starts with `context` ("joint 'J1', law 'coulomb'").
+ * With `keep` true only the given parameters are written (a change of one property) and
+ * nothing is required. On failure `out` is unspecified. Strings and points stay the caller's. */
+TL_API tl_status tl_args_read(const tl_param *params, size_t count, size_t stride,
+                              const tl_args *args, bool keep, void *out, const char *context,
+                              tl_error *error);
+
+/* The parameter tables of the kernel's own functions ("model", "solve", "insitu", ...), for
+ * checking and for help. NULL when there is none of that name. */
+TL_API const tl_param *tl_function_params(const char *function, size_t *count, const char **doc);
+/* The names of those functions, NULL terminated, in the order of the reference. */
+TL_API const char *const *tl_function_names(void);
+
+/* ---------------------------------------------------------------- plugins ---------------- */
+
+/* Loads the plugins found in TALUS_PLUGIN_PATH, beside the library and in the installed place.
+ * Done once a process; later calls do nothing. Refused files are kept with their reasons. */
+TL_API void tl_plugins_load_default(void);
+/* Loads one shared object. */
+TL_API tl_status tl_plugin_load(const char *path, tl_error *error);
+/* The loaded kinds of one type, in the order loaded; index past the end gives NULL. */
+TL_API const tl_kind *tl_plugin_kind(tl_kind_type type, size_t index);
+/* The kind of that name, or NULL. */
+TL_API const tl_kind *tl_plugin_find(tl_kind_type type, const char *name);
+
+typedef struct tl_plugin_record {
+    const char *path;
+    const tl_plugin *plugin; /* NULL when refused */
+    const char *reason;      /* why it was refused, NULL when loaded */
+} tl_plugin_record;
+
+/* What was loaded and what was refused, in the order tried. */
+TL_API size_t tl_plugin_record_count(void);
+TL_API tl_plugin_record tl_plugin_record_at(size_t index);
+
+/* ---------------------------------------------------------------- model ------------------ */
+
+typedef enum tl_rotation_rule {
+    TL_ROTATION_EXACT, /* Euler's equations (19) in principal axes */
+    TL_ROTATION_PAPER /* one moment of inertia (20): 0.4 m r^2, r the mean centroid-vertex distance */
+} tl_rotation_rule;
+
+typedef struct tl_model_config {
+    tl_vec3 gravity;
+    int64_t seed;
+    int64_t threads;  /* 1 .. 256 */
+    int32_t rotation; /* tl_rotation_rule */
+    int32_t reuse_geometry;
+} tl_model_config;
+
+/* Remarks and warnings go to this function; NULL restores the default (standard error). */
+typedef void (*tl_log_fn)(void *user, const char *text);
+
+TL_API tl_status tl_model_create(const tl_model_config *config, tl_model **model, tl_error *error);
+TL_API void tl_model_destroy(tl_model *model);
+TL_API const tl_error *tl_model_error(const tl_model *model);
+TL_API void tl_model_log(tl_model *model, tl_log_fn log, void *user);
+
+TL_API tl_model_config tl_model_settings(const tl_model *model);
+TL_API tl_status tl_model_set_gravity(tl_model *model, tl_vec3 gravity);
+TL_API void tl_model_set_rotation(tl_model *model, tl_rotation_rule rule);
+TL_API void tl_model_set_reuse_geometry(tl_model *model, bool reuse);
+TL_API double tl_model_time(const tl_model *model);
+TL_API int64_t tl_model_cycles(const tl_model *model);
+
+typedef struct tl_generate_summary {
+    size_t before, after; /* blocks */
+    size_t cuts, refused; /* cuts made; cuts refused because a side would be too thin */
+    size_t coincident;    /* cuts that fell on an existing face */
+    double smallest_volume, smallest_edge, smallest_face; /* of the model after */
+    double volume_error; /* |volume after - volume before - volume created| / volume after */
+} tl_generate_summary;
+
+/* Runs a generator plugin on the visible blocks; commits its work whole or not at all. */
+TL_API tl_status tl_generate(tl_model *model, const char *generator, const tl_args *args,
+                             tl_generate_summary *summary);
+
+/* Sets the law of a joint: "*" every joint not named otherwise, "J1" a set, "J1:3" a plane of it.
+ * `law` NULL changes properties of the law the joint has now; forces stay continuous. */
+TL_API tl_status tl_joint_law(tl_model *model, const char *joint, const char *law,
+                              const tl_args *args);
+
+typedef struct tl_insitu {
+    tl_sym3 stress, gradient; /* tension positive, Pa and Pa/m over z */
+    tl_vec3 at;
+} tl_insitu;
+
+/* Puts the initial stress stress + gradient (z - at.z) on the face contacts that exist now. */
+TL_API tl_status tl_model_insitu(tl_model *model, const tl_insitu *insitu);
+
+/* Chooses the damping plugin; "none" is no damping. */
+TL_API tl_status tl_model_damping(tl_model *model, const char *damping, const tl_args *args);
+
+typedef enum tl_timestep_rule { TL_TIMESTEP_PAPER, TL_TIMESTEP_BODY } tl_timestep_rule;
+
+typedef struct tl_timestep {
+    double fraction; /* FRAC of (27), in (0, 1] */
+    int32_t rule;    /* tl_timestep_rule */
+    double dt;       /* fixed step, s; NaN: by the rule */
+} tl_timestep;
+
+TL_API tl_status tl_model_timestep(tl_model *model, const tl_timestep *timestep);
+/* The step the next cycle will use, s. */
+TL_API tl_status tl_model_dt(tl_model *model, double *dt);
+
+typedef struct tl_contact_area {
+    double fraction;   /* of the smaller block's mean face area; >= 0 */
+    double absolute;   /* m2; NaN: by the fraction. Given, it also serves edges of parallel faces */
+    const char *joint; /* NULL: every joint */
+} tl_contact_area;
+
+TL_API tl_status tl_model_contact_area(tl_model *model, const tl_contact_area *rule);
+
+/* Called between steps, on the caller's thread; not TL_OK ends the run after the step. */
+typedef tl_status (*tl_step_fn)(void *user, tl_model *model);
+
+typedef enum tl_solve_reason {
+    TL_SOLVE_RATIO,
+    TL_SOLVE_CYCLES,
+    TL_SOLVE_TIME,
+    TL_SOLVE_STOP,
+    TL_SOLVE_INTERRUPT
+} tl_solve_reason;
+
+typedef struct tl_solve {
+    double ratio;       /* ends when the unbalanced force ratio falls below; 0: never */
+    int64_t max_cycles; /* of this call */
+    double max_time;    /* s of this call; NaN: no limit */
+    int64_t every;      /* steps between calls of `progress` and `stop` */
+    tl_step_fn progress;
+    bool (*stop)(void *user, tl_model *model);
+    void *user;
+} tl_solve;
+
+typedef struct tl_solve_result {
+    tl_solve_reason reason;
+    double ratio, time, wall, max_velocity;
+    int64_t cycles;
+} tl_solve_result;
+
+TL_API const char *tl_solve_reason_name(tl_solve_reason reason);
+/* Runs exactly `cycles` steps (fewer only on an interrupt, an error or a callback's word). */
+TL_API tl_status tl_model_cycle(tl_model *model, int64_t cycles, tl_solve_result *result);
+/* Runs until a limit is met. */
+TL_API tl_status tl_model_solve(tl_model *model, const tl_solve *solve, tl_solve_result *result);
+/* Asks a running cycle or solve to end after the step; safe from a signal handler. */
+TL_API void tl_model_interrupt(tl_model *model);
+
+/* ---------------------------------------------------------------- blocks ----------------- */
+
+typedef struct tl_halfspace {
+    double dip, dip_direction;
+    tl_vec3 origin;
+} tl_halfspace;
+
+/* Which blocks; all that is set must hold. */
+typedef struct tl_block_filter {
+    tl_id id;          /* 0: any */
+    const char *group; /* NULL: any */
+    const char *joint; /* has a face of this joint ("J1" or "J1:3"); NULL: any */
+    const tl_vec3 *containing;
+    const tl_bounds *inside;           /* centroid in the box, boundary included */
+    const tl_halfspace *above, *below; /* centroid on that side, boundary included */
+    int fixed;                         /* -1 any, 0 no, 1 yes */
+    int hidden;                        /* -1 any, 0 visible ones, 1 hidden ones */
+} tl_block_filter;
+
+/* Ids of the blocks that pass, ascending. The list is the caller's, to be freed with free(). */
+TL_API tl_status tl_blocks_select(tl_model *model, const tl_block_filter *filter, tl_id **ids,
+                                  size_t *count);
+TL_API size_t tl_block_count(const tl_model *model);
+/* TL_OK when the block exists, else TL_E_STALE with a sentence. */
+TL_API tl_status tl_block_check(tl_model *model, tl_id block);
+
+typedef enum tl_field_kind {
+    TL_FIELD_SCALAR, /* 1 number */
+    TL_FIELD_COUNT,  /* 1 whole number */
+    TL_FIELD_BOOL,   /* 1 number, 0 or 1 */
+    TL_FIELD_VEC3,   /* 3 numbers */
+    TL_FIELD_QUAT,   /* 4 numbers w x y z */
+    TL_FIELD_SYM3,   /* 6 numbers xx yy zz xy yz zx */
+    TL_FIELD_TEXT,   /* text */
+    TL_FIELD_IDS     /* 2 whole numbers */
+} tl_field_kind;
+
+typedef struct tl_field {
+    const char *name;
+    tl_field_kind kind;
+    const char *unit;
+    const char *doc;
+} tl_field;
+
+typedef struct tl_field_value {
+    double number[6];
+    const char *text; /* valid until the model changes */
+} tl_field_value;
+
+/* The fields a block has, in the order of the reference; `*count` of them. */
+TL_API const tl_field *tl_block_fields(size_t *count);
+/* The value of field `index` (of tl_block_fields) of a block. */
+TL_API tl_status tl_block_field(tl_model *model, tl_id block, size_t index, tl_field_value *value);
+
+/* A block's shape in its present place. Arrays are freed with free(). `loops` holds the vertex
+ * indices (from 0) of each face, counter-clockwise from outside; face i starts at start[i] and ends
+ * before start[i + 1]. */
+typedef struct tl_block_mesh {
+    size_t vertex_count, face_count;
+    tl_vec3 *vertices;
+    uint32_t *start, *loops;
+    tl_tag *tags;
+    tl_vec3 *normals;
+} tl_block_mesh;
+
+TL_API tl_status tl_block_mesh_get(tl_model *model, tl_id block, tl_block_mesh *mesh);
+TL_API void tl_block_mesh_free(tl_block_mesh *mesh);
+/* Ids of the blocks it is in contact with, ascending; freed with free(). */
+TL_API tl_status tl_block_neighbours(tl_model *model, tl_id block, tl_id **ids, size_t *count);
+/* "J1:3" of a face's tag, "" for none; valid until the next call. */
+TL_API const char *tl_tag_name(tl_model *model, tl_tag tag);
+
+/* Verbs on sets of blocks (ids need not be ordered; a stale id fails the whole call). */
+TL_API tl_status tl_blocks_hide(tl_model *model, const tl_id *ids, size_t count, bool hidden);
+TL_API tl_status tl_blocks_delete(tl_model *model, const tl_id *ids, size_t count);
+
+enum { TL_FIX_X = 1, TL_FIX_Y = 2, TL_FIX_Z = 4, TL_FIX_ROTATION = 8, TL_FIX_ALL = 15 };
+
+/* Holds components of the motion of the blocks' bodies: their velocity becomes 0 and stays. */
+TL_API tl_status tl_blocks_fix(tl_model *model, const tl_id *ids, size_t count, unsigned what);
+TL_API tl_status tl_blocks_free(tl_model *model, const tl_id *ids, size_t count);
+TL_API tl_status tl_blocks_reset_displacement(tl_model *model, const tl_id *ids, size_t count);
+
+typedef struct tl_block_set {
+    double density;                     /* NaN: unchanged */
+    const char *group;                  /* NULL: unchanged */
+    tl_vec3 velocity, angular_velocity; /* NaN: unchanged */
+} tl_block_set;
+
+TL_API tl_status tl_blocks_set(tl_model *model, const tl_id *ids, size_t count,
+                               const tl_block_set *set);
+
+/* ---------------------------------------------------------------- contacts --------------- */
+
+typedef struct tl_contact_filter {
+    const char *joint;                  /* NULL: any */
+    const tl_id *between_a, *between_b; /* NULL: any; one block of each list, either way round */
+    size_t count_a, count_b;
+} tl_contact_filter;
+
+/* Ids of the contacts that pass, ascending; freed with free(). Detects contacts when the model has
+ * changed since the last step. */
+TL_API tl_status tl_contacts_select(tl_model *model, const tl_contact_filter *filter, tl_id **ids,
+                                    size_t *count);
+TL_API const tl_field *tl_contact_fields(size_t *count);
+TL_API tl_status tl_contact_field(tl_model *model, tl_id contact, size_t index,
+                                  tl_field_value *value);
+
+/* ---------------------------------------------------------------- output ----------------- */
+
+/* Writes the next frame of the series PREFIX: PREFIX_blocks_NNNNNN.vtk, _contacts_, _joints_, and
+ * PREFIX_{blocks,contacts,joints}.vtk.series. Folders are made as needed. */
+TL_API tl_status tl_write_vtk(tl_model *model, const char *prefix);
+
+/* 32 hexadecimal digits over the whole mechanical state: equal bits, equal text. */
+TL_API tl_status tl_state_hash(tl_model *model, char text[33]);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,175 @@
+/* talus/vmath.h - inline vector, matrix and quaternion mathematics on the types of types.h.
+ *
+ * Every function is pure and evaluates in one fixed order, so results are the same bits wherever
+ * they are computed (build with -ffp-contract=off). Names: tl_v3_* vectors, tl_m3_* matrices,
+ * tl_q_* quaternions. */
+#ifndef TALUS_VMATH_H
+#define TALUS_VMATH_H
+
+#include <math.h>
+#include <talus/types.h>
+
+#define TL_PI 3.14159265358979323846
+
+static inline tl_vec3 tl_v3(double x, double y, double z)
+{
+    return (tl_vec3){x, y, z};
+}
+
+static inline tl_vec3 tl_v3_add(tl_vec3 a, tl_vec3 b)
+{
+    return (tl_vec3){a.x + b.x, a.y + b.y, a.z + b.z};
+}
+
+static inline tl_vec3 tl_v3_sub(tl_vec3 a, tl_vec3 b)
+{
+    return (tl_vec3){a.x - b.x, a.y - b.y, a.z - b.z};
+}
+
+static inline tl_vec3 tl_v3_scale(double s, tl_vec3 a)
+{
+    return (tl_vec3){s * a.x, s * a.y, s * a.z};
+}
+
+/* a + s b */
+static inline tl_vec3 tl_v3_madd(tl_vec3 a, double s, tl_vec3 b)
+{
+    return (tl_vec3){a.x + s * b.x, a.y + s * b.y, a.z + s * b.z};
+}
+
+static inline tl_vec3 tl_v3_neg(tl_vec3 a)
+{
+    return (tl_vec3){-a.x, -a.y, -a.z};
+}
+
+static inline double tl_v3_dot(tl_vec3 a, tl_vec3 b)
+{
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+static inline tl_vec3 tl_v3_cross(tl_vec3 a, tl_vec3 b)
+{
+    return (tl_vec3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+static inline double tl_v3_norm2(tl_vec3 a)
+{
+    return tl_v3_dot(a, a);
+}
+
+static inline double tl_v3_norm(tl_vec3 a)
+{
+    return sqrt(tl_v3_dot(a, a));
+}
+
+/* a / |a|, or the zero vector when a is zero. */
+static inline tl_vec3 tl_v3_unit(tl_vec3 a)
+{
+    double n = tl_v3_norm(a);
+    return n > 0 ? tl_v3_scale(1 / n, a) : (tl_vec3){0, 0, 0};
+}
+
+static inline tl_vec3 tl_v3_min(tl_vec3 a, tl_vec3 b)
+{
+    return (tl_vec3){a.x < b.x ? a.x : b.x, a.y < b.y ? a.y : b.y, a.z < b.z ? a.z : b.z};
+}
+
+static inline tl_vec3 tl_v3_max(tl_vec3 a, tl_vec3 b)
+{
+    return (tl_vec3){a.x > b.x ? a.x : b.x, a.y > b.y ? a.y : b.y, a.z > b.z ? a.z : b.z};
+}
+
+static inline int tl_v3_finite(tl_vec3 a)
+{
+    return isfinite(a.x) && isfinite(a.y) && isfinite(a.z);
+}
+
+/* Some unit vector perpendicular to the unit vector n (the same one for the same n). */
+static inline tl_vec3 tl_v3_perpendicular(tl_vec3 n)
+{
+    double ax = fabs(n.x), ay = fabs(n.y), az = fabs(n.z);
+    tl_vec3 e = ax <= ay && ax <= az ? tl_v3(1, 0, 0) : ay <= az ? tl_v3(0, 1, 0) : tl_v3(0, 0, 1);
+    return tl_v3_unit(tl_v3_cross(n, e));
+}
+
+static inline tl_mat3 tl_m3_identity(void)
+{
+    return (tl_mat3){{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+}
+
+static inline tl_vec3 tl_m3_mul(const tl_mat3 *a, tl_vec3 v)
+{
+    return (tl_vec3){a->m[0][0] * v.x + a->m[0][1] * v.y + a->m[0][2] * v.z,
+                     a->m[1][0] * v.x + a->m[1][1] * v.y + a->m[1][2] * v.z,
+                     a->m[2][0] * v.x + a->m[2][1] * v.y + a->m[2][2] * v.z};
+}
+
+/* transpose(a) v */
+static inline tl_vec3 tl_m3_tmul(const tl_mat3 *a, tl_vec3 v)
+{
+    return (tl_vec3){a->m[0][0] * v.x + a->m[1][0] * v.y + a->m[2][0] * v.z,
+                     a->m[0][1] * v.x + a->m[1][1] * v.y + a->m[2][1] * v.z,
+                     a->m[0][2] * v.x + a->m[1][2] * v.y + a->m[2][2] * v.z};
+}
+
+static inline tl_vec3 tl_s3_mul(tl_sym3 a, tl_vec3 v)
+{
+    return (tl_vec3){a.xx * v.x + a.xy * v.y + a.zx * v.z, a.xy * v.x + a.yy * v.y + a.yz * v.z,
+                     a.zx * v.x + a.yz * v.y + a.zz * v.z};
+}
+
+static inline tl_quat tl_q_identity(void)
+{
+    return (tl_quat){1, 0, 0, 0};
+}
+
+static inline tl_quat tl_q_mul(tl_quat a, tl_quat b)
+{
+    return (tl_quat){a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z,
+                     a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y,
+                     a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x,
+                     a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w};
+}
+
+static inline tl_quat tl_q_conj(tl_quat a)
+{
+    return (tl_quat){a.w, -a.x, -a.y, -a.z};
+}
+
+static inline tl_quat tl_q_unit(tl_quat a)
+{
+    double s = 1 / sqrt(a.w * a.w + a.x * a.x + a.y * a.y + a.z * a.z);
+    return (tl_quat){s * a.w, s * a.x, s * a.y, s * a.z};
+}
+
+/* The rotation matrix of a unit quaternion: world = R local. Exactly the identity for (1,0,0,0). */
+static inline tl_mat3 tl_q_matrix(tl_quat q)
+{
+    double xx = q.x * q.x, yy = q.y * q.y, zz = q.z * q.z;
+    double xy = q.x * q.y, yz = q.y * q.z, zx = q.z * q.x;
+    double wx = q.w * q.x, wy = q.w * q.y, wz = q.w * q.z;
+    return (tl_mat3){{{1 - 2 * (yy + zz), 2 * (xy - wz), 2 * (zx + wy)},
+                      {2 * (xy + wz), 1 - 2 * (xx + zz), 2 * (yz - wx)},
+                      {2 * (zx - wy), 2 * (yz + wx), 1 - 2 * (xx + yy)}}};
+}
+
+static inline tl_vec3 tl_q_rotate(tl_quat q, tl_vec3 v)
+{
+    tl_vec3 u = {q.x, q.y, q.z};
+    tl_vec3 t = tl_v3_scale(2, tl_v3_cross(u, v));
+    return tl_v3_add(tl_v3_madd(v, q.w, t), tl_v3_cross(u, t));
+}
+
+/* The vector v turned by the rotation that takes unit vector a to unit vector b on the shortest
+ * way. For a = -b, where that way is not unique, v is returned unchanged. */
+static inline tl_vec3 tl_v3_turn(tl_vec3 v, tl_vec3 a, tl_vec3 b)
+{
+    tl_vec3 w = tl_v3_cross(a, b);
+    double c = 1 + tl_v3_dot(a, b);
+    if (!(c > 0))
+        return v;
+    tl_vec3 t = tl_v3_cross(w, v);
+    return tl_v3_add(tl_v3_add(v, t), tl_v3_scale(1 / c, tl_v3_cross(w, t)));
+}
+
+#endif

@@ -1,0 +1,135 @@
+/* bodies.c - rows of blocks and bodies, and what is derived from shapes: volume, mass, inertia.
+ *
+ * The paper's one moment of inertia (20) is printed without its coefficient: 0.4 m r^2, that of a
+ * ball, with r the mean distance from centroid to vertices, is Talus's reading. */
+#include "model/model.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define ROUND_COEFFICIENT 0.4
+
+bool tl_rows_reserve(tl_model *m, size_t count, tl_id next_id)
+{
+    if (!tl_table_reserve(&m->blocks.table, count) || !tl_table_reserve(&m->bodies.table, count))
+        return false;
+    uint32_t *members = realloc(m->members, (count + 1) * sizeof *members);
+    if (!members)
+        return false;
+    m->members = members;
+    uint32_t *row_of = realloc(m->row_of, ((size_t)next_id + 1) * sizeof *row_of);
+    if (!row_of)
+        return false;
+    m->row_of = row_of;
+    return true;
+}
+
+void tl_rows_refresh(tl_model *m)
+{
+    tl_blocks *blocks = &m->blocks;
+    tl_bodies *bodies = &m->bodies;
+    for (tl_id id = 0; id < m->next_id; id++)
+        m->row_of[id] = TL_NO_ROW;
+    for (uint32_t row = 0; row < blocks->table.rows; row++)
+        m->row_of[blocks->id[row]] = row;
+    for (uint32_t body = 0; body < bodies->table.rows; body++)
+        bodies->member_count[body] = 0;
+    for (uint32_t row = 0; row < blocks->table.rows; row++)
+        bodies->member_count[blocks->body[row]]++;
+    uint32_t start = 0;
+    for (uint32_t body = 0; body < bodies->table.rows; body++) {
+        bodies->member_start[body] = start;
+        start += bodies->member_count[body];
+        bodies->member_count[body] = 0;
+    }
+    for (uint32_t row = 0; row < blocks->table.rows; row++) {
+        uint32_t body = blocks->body[row];
+        m->members[bodies->member_start[body] + bodies->member_count[body]++] = row;
+    }
+    m->structure++;
+}
+
+void tl_rows_keep(tl_model *m, const unsigned char *keep)
+{
+    tl_blocks *blocks = &m->blocks;
+    tl_bodies *bodies = &m->bodies;
+    size_t body_count = bodies->table.rows;
+    /* The two lists written here are rebuilt by tl_rows_refresh: they serve as scratch until then. */
+    uint32_t *new_row = m->members;
+    for (size_t body = 0; body < body_count; body++)
+        bodies->member_count[body] = 0;
+    for (uint32_t row = 0; row < blocks->table.rows; row++) {
+        if (keep[row])
+            bodies->member_count[blocks->body[row]]++;
+        else
+            tl_poly_free(blocks->shape[row]);
+    }
+    uint32_t kept = 0;
+    for (size_t body = 0; body < body_count; body++)
+        new_row[body] = bodies->member_count[body] ? kept++ : TL_NO_ROW;
+    for (uint32_t row = 0; row < blocks->table.rows; row++)
+        blocks->body[row] = new_row[blocks->body[row]];
+    tl_table_keep(&blocks->table, keep);
+    for (uint32_t body = 0; body < body_count; body++)
+        if (new_row[body] != TL_NO_ROW && new_row[body] != body)
+            tl_table_move(&bodies->table, new_row[body], body);
+    bodies->table.rows = kept;
+    tl_rows_refresh(m);
+    for (uint32_t body = 0; body < kept; body++)
+        bodies->id[body] = blocks->id[m->members[bodies->member_start[body]]];
+}
+
+void tl_block_measure(tl_model *m, uint32_t row)
+{
+    tl_blocks *b = &m->blocks;
+    const tl_poly *shape = b->shape[row];
+    tl_mass mass = tl_poly_mass(shape);
+    b->volume[row] = mass.volume;
+    b->size[row] = cbrt(mass.volume);
+    double area = 0;
+    for (uint32_t face = 0; face < shape->face_count; face++)
+        area += tl_poly_face_area(shape, face);
+    b->mean_face[row] = area / shape->face_count;
+}
+
+/* inertia + mass (|d|^2 1 - d d) : the tensor about a point at distance d */
+static tl_sym3 about(tl_sym3 inertia, double mass, tl_vec3 d)
+{
+    double dd = tl_v3_norm2(d);
+    return (tl_sym3){inertia.xx + mass * (dd - d.x * d.x), inertia.yy + mass * (dd - d.y * d.y),
+                     inertia.zz + mass * (dd - d.z * d.z), inertia.xy - mass * d.x * d.y,
+                     inertia.yz - mass * d.y * d.z,        inertia.zx - mass * d.z * d.x};
+}
+
+static tl_sym3 sum_scaled(tl_sym3 a, double s, tl_sym3 b)
+{
+    return (tl_sym3){a.xx + s * b.xx, a.yy + s * b.yy, a.zz + s * b.zz,
+                     a.xy + s * b.xy, a.yz + s * b.yz, a.zx + s * b.zx};
+}
+
+void tl_body_measure(tl_model *m, uint32_t body)
+{
+    tl_bodies *b = &m->bodies;
+    const uint32_t *members = &m->members[b->member_start[body]];
+    tl_sym3 inertia = {0};
+    double mass = 0, distance = 0, radius = 0;
+    size_t vertices = 0;
+    for (uint32_t i = 0; i < b->member_count[body]; i++) {
+        const tl_poly *shape = m->blocks.shape[members[i]];
+        double density = m->blocks.density[members[i]];
+        tl_mass one = tl_poly_mass(shape);
+        mass += density * one.volume;
+        inertia = sum_scaled(inertia, density, about(one.inertia, one.volume, one.centroid));
+        for (uint32_t v = 0; v < shape->vertex_count; v++) {
+            double r = tl_v3_norm(shape->vertex[v]);
+            distance += r;
+            radius = r > radius ? r : radius;
+        }
+        vertices += shape->vertex_count;
+    }
+    double mean = distance / (double)vertices;
+    b->mass[body] = mass;
+    b->round[body] = ROUND_COEFFICIENT * mass * mean * mean;
+    b->radius[body] = radius;
+    tl_principal_axes(inertia, &b->moments[body], &b->axes[body]);
+}

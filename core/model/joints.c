@@ -1,0 +1,193 @@
+/* joints.c - names of groups and joint sets, and which rule holds for which joint. */
+#include "model/model.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+uint32_t tl_group_intern(tl_model *m, const char *name)
+{
+    for (size_t i = 0; i < m->group_count; i++)
+        if (strcmp(m->groups[i], name) == 0)
+            return (uint32_t)i;
+    char *copy = strdup(name);
+    char **groups = realloc(m->groups, (m->group_count + 1) * sizeof *groups);
+    if (groups)
+        m->groups = groups;
+    if (!copy || !groups) {
+        free(copy);
+        return UINT32_MAX;
+    }
+    m->groups[m->group_count] = copy;
+    return (uint32_t)m->group_count++;
+}
+
+uint32_t tl_joint_find(const tl_model *m, const char *name)
+{
+    for (size_t i = 0; i < m->joint_count; i++)
+        if (strcmp(m->joints[i].name, name) == 0)
+            return (uint32_t)i + 1;
+    return 0;
+}
+
+uint32_t tl_joint_intern(tl_model *m, const char *name)
+{
+    uint32_t found = tl_joint_find(m, name);
+    if (found)
+        return found;
+    char *copy = strdup(name);
+    tl_joint_set *joints = realloc(m->joints, (m->joint_count + 1) * sizeof *joints);
+    if (joints)
+        m->joints = joints;
+    if (!copy || !joints) {
+        free(copy);
+        return 0;
+    }
+    m->joints[m->joint_count++] = (tl_joint_set){copy, 0};
+    return (uint32_t)m->joint_count;
+}
+
+/* "unknown joint 'J9'; the model has 'J1', 'J2'" */
+static tl_status unknown_joint(tl_model *m, const char *text)
+{
+    if (m->joint_count == 0)
+        return tl_fail(&m->error, TL_E_NOT_FOUND,
+                       "unknown joint '%s': the model has no joints yet; generate them first, or "
+                       "use \"*\" for every contact",
+                       text);
+    const char **names = malloc((m->joint_count + 1) * sizeof *names);
+    if (!names)
+        return tl_fail_memory(&m->error);
+    for (size_t i = 0; i < m->joint_count; i++)
+        names[i] = m->joints[i].name;
+    names[m->joint_count] = NULL;
+    const char *nearest = tl_nearest_name(text, names, m->joint_count);
+    tl_fail(&m->error, TL_E_NOT_FOUND, "unknown joint '%s'; %s '%s' (or use \"*\" for every contact)",
+            text, nearest ? "did you mean" : "the first of the model's joints is",
+            nearest ? nearest : names[0]);
+    free(names);
+    return m->error.status;
+}
+
+/* The plane number after the colon: digits only, from 1; 0 when it is none. */
+static uint32_t plane_number(const char *digits)
+{
+    char *end;
+    if (*digits < '0' || *digits > '9')
+        return 0;
+    unsigned long number = strtoul(digits, &end, 10);
+    return *end == '\0' && number < UINT32_MAX ? (uint32_t)number : 0;
+}
+
+tl_status tl_joint_parse(tl_model *m, const char *text, tl_tag *tag)
+{
+    *tag = (tl_tag){0, 0};
+    if (strcmp(text, "*") == 0)
+        return TL_OK;
+    tag->joint = tl_joint_find(m, text);
+    if (tag->joint)
+        return TL_OK;
+    const char *colon = strrchr(text, ':');
+    if (!colon)
+        return unknown_joint(m, text);
+    char *name = strndup(text, (size_t)(colon - text));
+    if (!name)
+        return tl_fail_memory(&m->error);
+    tag->joint = tl_joint_find(m, name);
+    tl_status status = tag->joint ? TL_OK : unknown_joint(m, name);
+    free(name);
+    if (status != TL_OK)
+        return status;
+    tag->plane = plane_number(colon + 1);
+    uint32_t planes = m->joints[tag->joint - 1].planes;
+    if (tag->plane < 1 || tag->plane > planes)
+        return tl_fail(&m->error, TL_E_NOT_FOUND,
+                       "unknown plane '%s': joint '%s' has planes 1 to %u", text,
+                       m->joints[tag->joint - 1].name, planes);
+    return TL_OK;
+}
+
+bool tl_tag_matches(tl_tag pattern, tl_tag tag)
+{
+    return pattern.joint == 0 ||
+           (pattern.joint == tag.joint && (pattern.plane == 0 || pattern.plane == tag.plane));
+}
+
+/* How closely a matching pattern names its tag: plane before set before "*". */
+static int closeness(tl_tag pattern)
+{
+    return pattern.joint == 0 ? 0 : pattern.plane == 0 ? 1 : 2;
+}
+
+const tl_material *tl_material_of(const tl_model *m, tl_tag tag)
+{
+    const tl_material *best = NULL;
+    for (size_t i = 0; i < m->material_count; i++) {
+        const tl_material *one = &m->materials[i];
+        if (tl_tag_matches(one->tag, tag) && (!best || closeness(one->tag) > closeness(best->tag)))
+            best = one;
+    }
+    return best;
+}
+
+tl_area_rule tl_area_rule_of(const tl_model *m, tl_tag tag)
+{
+    tl_area_rule rule = m->area;
+    int best = 0;
+    for (size_t i = 0; i < m->area_count; i++)
+        if (tl_tag_matches(m->areas[i].tag, tag) && closeness(m->areas[i].tag) > best) {
+            best = closeness(m->areas[i].tag);
+            rule = m->areas[i].rule;
+        }
+    return rule;
+}
+
+void tl_material_clear(tl_material *material)
+{
+    if (!material->kind)
+        return;
+    const tl_law_ops *ops = material->kind->ops;
+    if (ops->destroy && material->self != material->params)
+        ops->destroy(material->self);
+    free(material->params);
+    *material = (tl_material){0};
+}
+
+const char *tl_tag_name(tl_model *m, tl_tag tag)
+{
+    static const char none[] = "";
+    if (tag.joint == 0)
+        return none;
+    snprintf(m->name, sizeof m->name, "%s:%u", m->joints[tag.joint - 1].name, tag.plane);
+    return m->name;
+}
+
+tl_status tl_model_contact_area(tl_model *m, const tl_contact_area *area)
+{
+    if (!(area->fraction >= 0) || !isfinite(area->fraction))
+        return tl_fail(&m->error, TL_E_ARGUMENT, "contact_area: fraction = %g must be >= 0",
+                       area->fraction);
+    if (!isnan(area->absolute) && !(area->absolute >= 0 && isfinite(area->absolute)))
+        return tl_fail(&m->error, TL_E_ARGUMENT, "contact_area: absolute = %g must be >= 0",
+                       area->absolute);
+    tl_joint_area entry = {.rule = {area->fraction, area->absolute}};
+    tl_status status = tl_joint_parse(m, area->joint ? area->joint : "*", &entry.tag);
+    if (status != TL_OK)
+        return status;
+    m->laws++;
+    if (entry.tag.joint == 0) {
+        m->area = entry.rule;
+        return TL_OK;
+    }
+    for (size_t i = 0; i < m->area_count; i++)
+        if (m->areas[i].tag.joint == entry.tag.joint && m->areas[i].tag.plane == entry.tag.plane) {
+            m->areas[i] = entry;
+            return TL_OK;
+        }
+    tl_joint_area *areas = realloc(m->areas, (m->area_count + 1) * sizeof *areas);
+    if (!areas)
+        return tl_fail_memory(&m->error);
+    m->areas = areas;
+    m->areas[m->area_count++] = entry;
+    return TL_OK;
+}

@@ -1,0 +1,238 @@
+/* model.c - life of a model, its settings, and the way from ids to rows. */
+#include "model/model.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static void blocks_init(tl_blocks *b)
+{
+    tl_table *t = &b->table;
+    tl_table_init(t, b);
+    TL_COLUMN(t, b, id, TL_COLUMN_STATE);
+    TL_COLUMN(t, b, body, TL_COLUMN_STATE);
+    TL_COLUMN(t, b, shape, 0);
+    TL_COLUMN(t, b, group, 0);
+    TL_COLUMN(t, b, density, TL_COLUMN_STATE);
+    TL_COLUMN(t, b, volume, TL_COLUMN_STATE);
+    TL_COLUMN(t, b, local, TL_COLUMN_STATE);
+    TL_COLUMN(t, b, base, 0);
+    TL_COLUMN(t, b, size, 0);
+    TL_COLUMN(t, b, mean_face, 0);
+    TL_COLUMN(t, b, lineage, 0);
+    TL_COLUMN(t, b, hidden, 0);
+}
+
+static void bodies_init(tl_bodies *b)
+{
+    tl_table *t = &b->table;
+    tl_table_init(t, b);
+    TL_COLUMN(t, b, id, TL_COLUMN_STATE);
+    TL_COLUMN(t, b, member_start, 0);
+    TL_COLUMN(t, b, member_count, 0);
+    TL_COLUMN(t, b, x_ref, TL_COLUMN_STATE);
+    TL_COLUMN(t, b, u, TL_COLUMN_STATE);
+    TL_COLUMN(t, b, q, TL_COLUMN_STATE);
+    TL_COLUMN(t, b, r, 0);
+    TL_COLUMN(t, b, v, TL_COLUMN_STATE);
+    TL_COLUMN(t, b, w, TL_COLUMN_STATE);
+    TL_COLUMN(t, b, mass, TL_COLUMN_STATE);
+    TL_COLUMN(t, b, moments, TL_COLUMN_STATE);
+    TL_COLUMN(t, b, axes, TL_COLUMN_STATE);
+    TL_COLUMN(t, b, round, 0);
+    TL_COLUMN(t, b, radius, 0);
+    TL_COLUMN(t, b, fixed, TL_COLUMN_STATE);
+    TL_COLUMN(t, b, force, TL_COLUMN_STATE);
+    TL_COLUMN(t, b, moment, TL_COLUMN_STATE);
+    TL_COLUMN(t, b, odometer, 0);
+}
+
+tl_status tl_model_create(const tl_model_config *config, tl_model **model, tl_error *error)
+{
+    *model = NULL;
+    if (config->threads < 1 || config->threads > TL_MAX_THREADS)
+        return tl_fail(error, TL_E_ARGUMENT, "model: threads = %lld is outside [1, %d]",
+                       (long long)config->threads, TL_MAX_THREADS);
+    if (!tl_v3_finite(config->gravity))
+        return tl_fail(error, TL_E_ARGUMENT, "model: gravity must be three finite numbers");
+    tl_model *m = calloc(1, sizeof *m);
+    tl_pool *pool = tl_pool_create((unsigned)config->threads);
+    if (!m || !pool) {
+        free(m);
+        tl_pool_destroy(pool);
+        return tl_fail_memory(error);
+    }
+    m->config = *config;
+    m->pool = pool;
+    m->next_id = 1;
+    m->area = (tl_area_rule){TL_AREA_FRACTION, NAN};
+    m->timestep = (tl_timestep){TL_TIMESTEP_FRACTION, TL_TIMESTEP_PAPER, NAN};
+    atomic_init(&m->interrupted, false);
+    blocks_init(&m->blocks);
+    bodies_init(&m->bodies);
+    *model = m;
+    return TL_OK;
+}
+
+void tl_model_destroy(tl_model *m)
+{
+    if (!m)
+        return;
+    if (m->detect)
+        m->detect_destroy(m->detect);
+    if (m->cycle)
+        m->cycle_destroy(m->cycle);
+    if (m->vtk)
+        m->vtk_destroy(m->vtk);
+    for (size_t i = 0; i < m->blocks.table.rows; i++)
+        tl_poly_free(m->blocks.shape[i]);
+    tl_table_free(&m->blocks.table);
+    tl_table_free(&m->bodies.table);
+    for (size_t i = 0; i < m->group_count; i++)
+        free(m->groups[i]);
+    for (size_t i = 0; i < m->joint_count; i++)
+        free(m->joints[i].name);
+    for (size_t i = 0; i < m->material_count; i++)
+        tl_material_clear(&m->materials[i]);
+    tl_damping_clear(m);
+    free(m->groups);
+    free(m->joints);
+    free(m->materials);
+    free(m->areas);
+    free(m->members);
+    free(m->row_of);
+    tl_pool_destroy(m->pool);
+    free(m);
+}
+
+void tl_damping_clear(tl_model *m)
+{
+    if (m->damping) {
+        const tl_damping_ops *ops = m->damping->ops;
+        if (ops->destroy && m->damping_self != m->damping_params)
+            ops->destroy(m->damping_self);
+    }
+    free(m->damping_params);
+    free(m->damping_state);
+    m->damping = NULL;
+    m->damping_params = m->damping_self = NULL;
+    m->damping_state = NULL;
+}
+
+const tl_error *tl_model_error(const tl_model *m)
+{
+    return &m->error;
+}
+
+void tl_model_log(tl_model *m, tl_log_fn log, void *user)
+{
+    m->log = log;
+    m->log_user = user;
+}
+
+void tl_model_say(tl_model *m, const char *format, ...)
+{
+    char text[TL_ERROR_TEXT];
+    va_list args;
+    va_start(args, format);
+    vsnprintf(text, sizeof text, format, args);
+    va_end(args);
+    if (m->log)
+        m->log(m->log_user, text);
+    else
+        fprintf(stderr, "talus: %s\n", text);
+}
+
+tl_status tl_model_may_change(tl_model *m, const char *what)
+{
+    if (m->running)
+        return tl_fail(&m->error, TL_E_STATE,
+                       "cannot %s while the model is running: end the run with a stop function and "
+                       "do it after",
+                       what);
+    return TL_OK;
+}
+
+tl_model_config tl_model_settings(const tl_model *m)
+{
+    return m->config;
+}
+
+tl_status tl_model_set_gravity(tl_model *m, tl_vec3 gravity)
+{
+    if (!tl_v3_finite(gravity))
+        return tl_fail(&m->error, TL_E_ARGUMENT,
+                       "gravity = {%g, %g, %g} must be three finite numbers", gravity.x, gravity.y,
+                       gravity.z);
+    m->config.gravity = gravity;
+    return TL_OK;
+}
+
+void tl_model_set_rotation(tl_model *m, tl_rotation_rule rule)
+{
+    m->config.rotation = rule;
+}
+
+void tl_model_set_reuse_geometry(tl_model *m, bool reuse)
+{
+    m->config.reuse_geometry = reuse;
+}
+
+double tl_model_time(const tl_model *m)
+{
+    return m->time;
+}
+
+int64_t tl_model_cycles(const tl_model *m)
+{
+    return m->cycles;
+}
+
+void tl_model_interrupt(tl_model *m)
+{
+    atomic_store(&m->interrupted, true);
+}
+
+/* ---------------------------------------------------------------- rows ------------------- */
+
+uint32_t tl_block_row_quiet(const tl_model *m, tl_id id)
+{
+    return id != TL_NO_ID && id < m->next_id ? m->row_of[id] : TL_NO_ROW;
+}
+
+uint32_t tl_block_row(tl_model *m, tl_id id)
+{
+    uint32_t row = tl_block_row_quiet(m, id);
+    if (row == TL_NO_ROW)
+        tl_fail(&m->error, TL_E_STALE, "block %u %s", id,
+                id != TL_NO_ID && id < m->next_id ? "no longer exists: it was cut or deleted"
+                                                  : "does not exist");
+    return row;
+}
+
+tl_status tl_block_check(tl_model *m, tl_id block)
+{
+    return tl_block_row(m, block) == TL_NO_ROW ? m->error.status : TL_OK;
+}
+
+size_t tl_block_count(const tl_model *m)
+{
+    return m->blocks.table.rows;
+}
+
+tl_vec3 tl_block_centroid(const tl_model *m, uint32_t row)
+{
+    return tl_model_point(m, m->blocks.body[row], m->blocks.local[row]);
+}
+
+tl_vec3 tl_block_point_displacement(const tl_model *m, uint32_t row, tl_vec3 local)
+{
+    uint32_t body = m->blocks.body[row];
+    tl_vec3 turned = tl_v3_sub(tl_m3_mul(&m->bodies.r[body], local), local);
+    return tl_v3_sub(tl_v3_add(m->bodies.u[body], turned), m->blocks.base[row]);
+}
+
+tl_vec3 tl_block_displacement(const tl_model *m, uint32_t row)
+{
+    return tl_block_point_displacement(m, row, m->blocks.local[row]);
+}

@@ -1,0 +1,256 @@
+/* model.h - what a model is made of, for the rooms to the right of it (detect, cycle, io).
+ *
+ * Blocks are shapes; bodies move. A body is one block or several joined ones. All kinematics lives in
+ * the bodies' columns: a block's shape is kept in its body's frame, whose origin is the body's
+ * centroid, so a point p of a shape is at
+ *
+ *     origin + x_ref + u + R p
+ *
+ * `origin` is a point of the model rounded to a coarse power of two, so that a model far from the
+ * coordinates' zero loses no digits; x_ref is the body's centroid when the body was made and u its
+ * displacement since, kept apart so that a step far below the rounding of x_ref still counts.
+ *
+ * Rows of blocks and bodies are in ascending order of id. Rows change when blocks are created, cut,
+ * joined or deleted; `structure` counts these changes. Ids never change and are never used again. */
+#ifndef TL_MODEL_MODEL_H
+#define TL_MODEL_MODEL_H
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "base/table.h"
+#include "geometry/polyhedron.h"
+
+#include <stdatomic.h>
+#include <talus/talus.h>
+#include <talus/vmath.h>
+
+#define TL_NO_ROW UINT32_MAX
+
+/* Default minimum area of edge and point contacts, as a share of the smaller block's mean face area
+ * (Hart, Cundall and Lemos 1988). */
+#define TL_AREA_FRACTION 0.01
+/* Default FRAC of (27). */
+#define TL_TIMESTEP_FRACTION 0.1
+
+typedef struct tl_blocks {
+    tl_table table;
+    tl_id *id;
+    uint32_t *body;    /* row of its body */
+    tl_poly **shape;   /* in the body's frame; owned */
+    uint32_t *group;   /* index into groups */
+    double *density;   /* kg/m3 */
+    double *volume;    /* m3 */
+    tl_vec3 *local;    /* centroid in the body's frame; zero for a body of one block */
+    tl_vec3 *base;     /* subtracted from the displacement (reset_displacement) */
+    double *size;      /* cube root of the volume: the length tolerances refer to */
+    double *mean_face; /* mean face area, m2 */
+    uint64_t *lineage; /* key of the block's descent, for random draws */
+    uint8_t *hidden;
+} tl_blocks;
+
+typedef struct tl_bodies {
+    tl_table table;
+    tl_id *id;              /* the lowest id of its blocks */
+    uint32_t *member_start; /* its blocks: model->members[member_start .. + member_count) */
+    uint32_t *member_count;
+    tl_vec3 *x_ref; /* centroid when made, relative to the origin */
+    tl_vec3 *u;     /* displacement since */
+    tl_quat *q;     /* rotation since */
+    tl_mat3 *r;     /* the same as a matrix, derived from q */
+    tl_vec3 *v;     /* velocity, half a step behind the position */
+    tl_vec3 *w;     /* angular velocity */
+    double *mass;
+    tl_vec3 *moments; /* principal moments of inertia */
+    tl_quat *axes;    /* from principal axes to the body's frame */
+    double *round;    /* the paper's one moment of inertia (20) */
+    double *radius;   /* farthest vertex from the centroid */
+    uint8_t *fixed;   /* TL_FIX_* */
+    tl_vec3 *force;   /* unbalanced: contacts, weight, loads */
+    tl_vec3 *moment;
+    double *odometer; /* sum of (|v| + |w| radius) dt: no vertex has moved farther */
+} tl_bodies;
+
+typedef struct tl_joint_set {
+    char *name;
+    uint32_t planes; /* number of planes so far */
+} tl_joint_set;
+
+/* The law of a joint: of "*" (joint 0), of a set (plane 0) or of one plane. */
+typedef struct tl_material {
+    tl_tag tag;
+    const tl_kind *kind;
+    void *params; /* the plugin's params struct */
+    void *self;   /* what its create made, or params */
+    double kn, ks;
+} tl_material;
+
+/* A rule for the minimum area of edge and point contacts. */
+typedef struct tl_area_rule {
+    double fraction;
+    double absolute; /* NaN: by the fraction */
+} tl_area_rule;
+
+typedef struct tl_joint_area {
+    tl_tag tag;
+    tl_area_rule rule;
+} tl_joint_area;
+
+struct tl_model {
+    tl_model_config config;
+    tl_error error;
+    tl_log_fn log;
+    void *log_user;
+    tl_pool *pool;
+
+    tl_vec3 origin;
+    bool origin_set;
+    tl_blocks blocks;
+    tl_bodies bodies;
+    uint32_t *members; /* block rows, body by body, ascending */
+    uint32_t *row_of;  /* [next_id] row of a block id, or TL_NO_ROW */
+    tl_id next_id;
+    uint64_t structure;   /* counts changes of the rows */
+    uint64_t constraints; /* counts changes of fixing, hiding or mass */
+
+    char name[256]; /* of the last tl_tag_name */
+    char **groups;
+    size_t group_count;
+    tl_joint_set *joints; /* joint number j is joints[j - 1] */
+    size_t joint_count;
+    uint64_t created; /* counts blocks made by generators, for their lineage */
+
+    tl_material *materials;
+    size_t material_count;
+    uint64_t laws; /* counts changes of the materials */
+    tl_area_rule area;
+    tl_joint_area *areas;
+    size_t area_count;
+
+    tl_timestep timestep;
+    const tl_kind *damping;
+    void *damping_params, *damping_self;
+    double *damping_state;
+
+    double time;
+    double dt; /* of the last step; 0 before the first */
+    int64_t cycles;
+    atomic_bool interrupted;
+    bool running; /* inside a callback: no blocks may be made or deleted */
+    bool warned_undamped;
+
+    struct tl_detect *detect; /* of the detect room */
+    void (*detect_destroy)(struct tl_detect *);
+    struct tl_cycle *cycle; /* of the cycle room */
+    void (*cycle_destroy)(struct tl_cycle *);
+    uint64_t vtk_frames; /* frames written; io keeps the list */
+    struct tl_vtk_series *vtk;
+    void (*vtk_destroy)(struct tl_vtk_series *);
+};
+
+/* Present place of a body's centroid, relative to the origin. */
+static inline tl_vec3 tl_body_place(const tl_bodies *b, uint32_t body)
+{
+    return tl_v3_add(b->x_ref[body], b->u[body]);
+}
+
+/* Present place of a point of a shape, in the user's coordinates. */
+static inline tl_vec3 tl_model_point(const tl_model *m, uint32_t body, tl_vec3 local)
+{
+    tl_vec3 x = tl_v3_add(tl_body_place(&m->bodies, body), tl_m3_mul(&m->bodies.r[body], local));
+    return tl_v3_add(m->origin, x);
+}
+
+/* Centroid and displacement of a block, in the user's coordinates. */
+tl_vec3 tl_block_centroid(const tl_model *m, uint32_t row);
+tl_vec3 tl_block_displacement(const tl_model *m, uint32_t row);
+/* Displacement of a point (in the body's frame) of a block since its creation or last reset. */
+tl_vec3 tl_block_point_displacement(const tl_model *m, uint32_t row, tl_vec3 local);
+
+/* Row of a block id, or TL_NO_ROW with a sentence in the model's error. */
+uint32_t tl_block_row(tl_model *m, tl_id id);
+/* Row of an id known to live, or TL_NO_ROW. */
+uint32_t tl_block_row_quiet(const tl_model *m, tl_id id);
+
+/* Takes the damping off. */
+void tl_damping_clear(tl_model *m);
+
+void tl_model_say(tl_model *m, const char *format, ...) TL_PRINTF(2, 3);
+/* Refuses with TL_E_STATE while a callback runs; `what` is "create blocks". */
+tl_status tl_model_may_change(tl_model *m, const char *what);
+
+/* ---- groups and joints: joints.c ---- */
+
+/* Index of a group's name, made when new; UINT32_MAX when out of memory. */
+uint32_t tl_group_intern(tl_model *m, const char *name);
+/* Number of a joint set, 0 when there is none of that name. */
+uint32_t tl_joint_find(const tl_model *m, const char *name);
+/* Finds or makes a joint set; 0 when out of memory. */
+uint32_t tl_joint_intern(tl_model *m, const char *name);
+/* Parses "*", "J1" or "J1:3"; fails with a sentence (nearest name) when the joint does not exist. */
+tl_status tl_joint_parse(tl_model *m, const char *text, tl_tag *tag);
+/* True when `pattern` ("*": 0,0; set: j,0; plane: j,p) covers `tag`. */
+bool tl_tag_matches(tl_tag pattern, tl_tag tag);
+/* The material that rules a contact of this tag, or NULL. */
+const tl_material *tl_material_of(const tl_model *m, tl_tag tag);
+tl_area_rule tl_area_rule_of(const tl_model *m, tl_tag tag);
+void tl_material_clear(tl_material *material);
+
+/* ---- staging: stage.c ---- */
+
+/* A block of the staging set: an untouched one of the model (source, shape not owned), the same with
+ * new tags (retagged), a child of one (source), or a new one (source TL_NO_ROW, shape in coordinates
+ * relative to the origin). Children's shapes are in the frame of their source's body. */
+typedef struct tl_stage_block {
+    tl_poly *shape;
+    tl_vec3 center; /* of a ball about the shape, in the shape's frame: the quick look of a cut */
+    double radius;
+    uint32_t source;
+    uint32_t group;
+    double density;
+    uint64_t lineage;
+    bool owned, retagged, hidden;
+} tl_stage_block;
+
+typedef struct tl_stage {
+    tl_model *model;
+    tl_stage_block *blocks;
+    size_t count, capacity;
+    tl_generate_summary summary;
+    double created_volume;
+    /* what to go back to when the stage is dropped */
+    size_t joint_count, group_count;
+    uint32_t *plane_count;
+    uint64_t created;
+    bool origin_set;
+} tl_stage;
+
+/* Begins a staging set with the model's blocks in it. */
+tl_status tl_stage_begin(tl_model *m, tl_stage *stage);
+/* Adds the convex hull of vertices, or a box, given in user coordinates. */
+tl_status tl_stage_add_hull(tl_stage *stage, const tl_vec3 *vertices, size_t count, double density,
+                            const char *group);
+tl_status tl_stage_add_box(tl_stage *stage, tl_vec3 min, tl_vec3 max, double density,
+                           const char *group);
+/* Cuts the visible blocks by a plane in user coordinates; see tl_host.cut. */
+tl_status tl_stage_cut(tl_stage *stage, tl_vec3 normal, tl_vec3 point, tl_tag tag,
+                       double persistence);
+/* Makes the staging set the model's blocks; on failure the model is as before. Ends the stage. */
+tl_status tl_stage_commit(tl_stage *stage);
+/* Drops the staging set, with the joints, planes and groups made since it was begun. */
+void tl_stage_drop(tl_stage *stage);
+
+/* ---- bodies: bodies.c ---- */
+
+/* Makes room for `count` blocks and as many bodies, and for the ids below `next_id`. */
+bool tl_rows_reserve(tl_model *m, size_t count, tl_id next_id);
+/* Derives the members of all bodies and the id-to-row table after rows have changed; the memory must
+ * have been reserved. Counts a change of structure. */
+void tl_rows_refresh(tl_model *m);
+/* Derives a block's volume, size, mean face and place from its shape. */
+void tl_block_measure(tl_model *m, uint32_t row);
+/* Derives a body's mass, inertia and radius from its blocks. */
+void tl_body_measure(tl_model *m, uint32_t body);
+/* Removes the blocks with keep[row] == 0, and bodies left without blocks. */
+void tl_rows_keep(tl_model *m, const unsigned char *keep);
+
+#endif

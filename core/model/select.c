@@ -1,0 +1,89 @@
+/* select.c - which blocks: the filters of a selection. Positions are the present ones and boundaries
+ * are included. */
+#include "model/model.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* A point this near a boundary, relative to the block's size, counts as on it: the rounding of a few
+ * operations on coordinates of the model. */
+#define BOUNDARY 1e-9
+
+static bool has_joint(const tl_poly *shape, tl_tag pattern)
+{
+    for (uint32_t f = 0; f < shape->face_count; f++)
+        if (shape->tag[f].joint != 0 && tl_tag_matches(pattern, shape->tag[f]))
+            return true;
+    return false;
+}
+
+static bool contains(const tl_model *m, uint32_t row, tl_vec3 point)
+{
+    uint32_t body = m->blocks.body[row];
+    tl_vec3 relative =
+        tl_v3_sub(tl_v3_sub(point, m->origin), tl_body_place(&m->bodies, body));
+    const tl_poly *shape = m->blocks.shape[row];
+    return tl_poly_contains(shape, tl_m3_tmul(&m->bodies.r[body], relative),
+                            BOUNDARY * shape->size);
+}
+
+/* Signed height of a point over a half-space's plane. */
+static double height(const tl_halfspace *plane, tl_vec3 point)
+{
+    return tl_v3_dot(tl_plane_normal(plane->dip, plane->dip_direction),
+                     tl_v3_sub(point, plane->origin));
+}
+
+static bool in_bounds(const tl_bounds *box, tl_vec3 p, double slack)
+{
+    return p.x >= box->min.x - slack && p.x <= box->max.x + slack && p.y >= box->min.y - slack &&
+           p.y <= box->max.y + slack && p.z >= box->min.z - slack && p.z <= box->max.z + slack;
+}
+
+static bool passes(const tl_model *m, const tl_block_filter *f, tl_tag joint, uint32_t row)
+{
+    const tl_blocks *b = &m->blocks;
+    if (f->id != TL_NO_ID && b->id[row] != f->id)
+        return false;
+    if (f->hidden >= 0 && (b->hidden[row] != 0) != (f->hidden != 0))
+        return false;
+    if (f->group && strcmp(m->groups[b->group[row]], f->group) != 0)
+        return false;
+    if (f->fixed >= 0 && (m->bodies.fixed[b->body[row]] == TL_FIX_ALL) != (f->fixed != 0))
+        return false;
+    if (f->joint && !has_joint(b->shape[row], joint))
+        return false;
+    if (f->inside || f->above || f->below) {
+        tl_vec3 c = tl_block_centroid(m, row);
+        double slack = BOUNDARY * b->shape[row]->size;
+        if (f->inside && !in_bounds(f->inside, c, slack))
+            return false;
+        if (f->above && height(f->above, c) < -slack)
+            return false;
+        if (f->below && height(f->below, c) > slack)
+            return false;
+    }
+    return !f->containing || contains(m, row, *f->containing);
+}
+
+tl_status tl_blocks_select(tl_model *m, const tl_block_filter *filter, tl_id **ids, size_t *count)
+{
+    *ids = NULL;
+    *count = 0;
+    tl_tag joint = {0, 0};
+    if (filter->joint) {
+        tl_status status = tl_joint_parse(m, filter->joint, &joint);
+        if (status != TL_OK)
+            return status;
+    }
+    tl_id *list = malloc((m->blocks.table.rows + 1) * sizeof *list);
+    if (!list)
+        return tl_fail_memory(&m->error);
+    size_t n = 0;
+    for (uint32_t row = 0; row < m->blocks.table.rows; row++)
+        if (passes(m, filter, joint, row))
+            list[n++] = m->blocks.id[row];
+    *ids = list;
+    *count = n;
+    return TL_OK;
+}

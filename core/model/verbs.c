@@ -1,0 +1,130 @@
+/* verbs.c - what can be done to a set of blocks. A stale id or a bad value fails the whole call before
+ * anything is changed. */
+#include "model/model.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static tl_status check_ids(tl_model *m, const tl_id *ids, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        if (tl_block_row(m, ids[i]) == TL_NO_ROW)
+            return m->error.status;
+    return TL_OK;
+}
+
+tl_status tl_blocks_hide(tl_model *m, const tl_id *ids, size_t count, bool hidden)
+{
+    tl_status status = check_ids(m, ids, count);
+    if (status != TL_OK)
+        return status;
+    for (size_t i = 0; i < count; i++)
+        m->blocks.hidden[m->row_of[ids[i]]] = hidden;
+    return TL_OK;
+}
+
+tl_status tl_blocks_delete(tl_model *m, const tl_id *ids, size_t count)
+{
+    tl_status status = tl_model_may_change(m, "delete blocks");
+    if (status == TL_OK)
+        status = check_ids(m, ids, count);
+    if (status != TL_OK || count == 0)
+        return status;
+    unsigned char *keep = malloc(m->blocks.table.rows);
+    if (!keep)
+        return tl_fail_memory(&m->error);
+    memset(keep, 1, m->blocks.table.rows);
+    for (size_t i = 0; i < count; i++)
+        keep[m->row_of[ids[i]]] = 0;
+    tl_rows_keep(m, keep);
+    free(keep);
+    return TL_OK;
+}
+
+tl_status tl_blocks_fix(tl_model *m, const tl_id *ids, size_t count, unsigned what)
+{
+    tl_status status = check_ids(m, ids, count);
+    if (status != TL_OK)
+        return status;
+    for (size_t i = 0; i < count; i++) {
+        uint32_t body = m->blocks.body[m->row_of[ids[i]]];
+        tl_vec3 *v = &m->bodies.v[body];
+        m->bodies.fixed[body] = (uint8_t)(m->bodies.fixed[body] | (what & TL_FIX_ALL));
+        v->x = what & TL_FIX_X ? 0 : v->x;
+        v->y = what & TL_FIX_Y ? 0 : v->y;
+        v->z = what & TL_FIX_Z ? 0 : v->z;
+        if (what & TL_FIX_ROTATION)
+            m->bodies.w[body] = tl_v3(0, 0, 0);
+    }
+    m->constraints++;
+    return TL_OK;
+}
+
+tl_status tl_blocks_free(tl_model *m, const tl_id *ids, size_t count)
+{
+    tl_status status = check_ids(m, ids, count);
+    if (status != TL_OK)
+        return status;
+    for (size_t i = 0; i < count; i++)
+        m->bodies.fixed[m->blocks.body[m->row_of[ids[i]]]] = 0;
+    m->constraints++;
+    return TL_OK;
+}
+
+tl_status tl_blocks_reset_displacement(tl_model *m, const tl_id *ids, size_t count)
+{
+    tl_status status = check_ids(m, ids, count);
+    if (status != TL_OK)
+        return status;
+    for (size_t i = 0; i < count; i++) {
+        uint32_t row = m->row_of[ids[i]];
+        m->blocks.base[row] = tl_v3(0, 0, 0);
+        m->blocks.base[row] = tl_block_displacement(m, row);
+    }
+    return TL_OK;
+}
+
+static bool given(tl_vec3 v)
+{
+    return !(isnan(v.x) && isnan(v.y) && isnan(v.z));
+}
+
+static tl_status check_set(tl_model *m, const tl_block_set *set)
+{
+    if (!isnan(set->density) && !(set->density > 0 && isfinite(set->density)))
+        return tl_fail(&m->error, TL_E_ARGUMENT, "set: density = %g kg/m3 must be > 0",
+                       set->density);
+    if (given(set->velocity) && !tl_v3_finite(set->velocity))
+        return tl_fail(&m->error, TL_E_ARGUMENT, "set: velocity must be three finite numbers");
+    if (given(set->angular_velocity) && !tl_v3_finite(set->angular_velocity))
+        return tl_fail(&m->error, TL_E_ARGUMENT,
+                       "set: angular_velocity must be three finite numbers");
+    return TL_OK;
+}
+
+tl_status tl_blocks_set(tl_model *m, const tl_id *ids, size_t count, const tl_block_set *set)
+{
+    tl_status status = check_ids(m, ids, count);
+    if (status == TL_OK)
+        status = check_set(m, set);
+    if (status != TL_OK)
+        return status;
+    uint32_t group = 0;
+    if (set->group && (group = tl_group_intern(m, set->group)) == UINT32_MAX)
+        return tl_fail_memory(&m->error);
+    for (size_t i = 0; i < count; i++) {
+        uint32_t row = m->row_of[ids[i]], body = m->blocks.body[row];
+        if (set->group)
+            m->blocks.group[row] = group;
+        if (!isnan(set->density)) {
+            m->blocks.density[row] = set->density;
+            tl_body_measure(m, body);
+        }
+        if (given(set->velocity))
+            m->bodies.v[body] = set->velocity;
+        if (given(set->angular_velocity))
+            m->bodies.w[body] = set->angular_velocity;
+    }
+    m->constraints++;
+    return TL_OK;
+}
