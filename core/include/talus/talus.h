@@ -59,6 +59,11 @@ TL_API tl_status tl_args_read(const tl_param *params, size_t count, size_t strid
                               const tl_args *args, bool keep, void *out, const char *context,
                               tl_error *error);
 
+/* The range of a parameter as text: "[0, 90)", "> 0", ">= 0"; "" when it has none. */
+TL_API void tl_param_range(const tl_param *param, char *text, size_t size);
+/* The name nearest to `word` (a typing error or the beginning of a name), or NULL when none is near. */
+TL_API const char *tl_nearest_name(const char *word, const char *const *names, size_t count);
+
 /* The parameter tables of the kernel's own functions ("model", "solve", "insitu", ...), for
  * checking and for help. NULL when there is none of that name. */
 TL_API const tl_param *tl_function_params(const char *function, size_t *count, const char **doc);

@@ -172,4 +172,43 @@ static inline tl_vec3 tl_v3_turn(tl_vec3 v, tl_vec3 a, tl_vec3 b)
     return tl_v3_add(tl_v3_add(v, t), tl_v3_scale(1 / c, tl_v3_cross(w, t)));
 }
 
+/* Sine of (degrees + 90 quarter), exact at multiples of 90 degrees: the angle is brought within 45
+ * degrees of a multiple of 90 first, which rounds nothing. */
+static inline double tl_sin_quarter(double degrees, int quarter)
+{
+    double r = fmod(degrees, 360);
+    double turns = floor((r + 45) / 90);
+    double x = (r - 90 * turns) * (TL_PI / 180);
+    switch (((int)turns + quarter) & 3) {
+    case 0:
+        return sin(x);
+    case 1:
+        return cos(x);
+    case 2:
+        return -sin(x);
+    default:
+        return -cos(x);
+    }
+}
+
+static inline double tl_sin_degrees(double degrees)
+{
+    return tl_sin_quarter(degrees, 0);
+}
+
+static inline double tl_cos_degrees(double degrees)
+{
+    return tl_sin_quarter(degrees, 1);
+}
+
+/* Upward unit normal of a plane of this dip (0-90 below horizontal) and dip direction (clockwise from
+ * north, +y), in degrees: (sin dip sin dd, sin dip cos dd, cos dip). Planes along the axes come out
+ * exactly so, and no component is -0. */
+static inline tl_vec3 tl_plane_normal(double dip, double dip_direction)
+{
+    double s = tl_sin_degrees(dip);
+    return (tl_vec3){s * tl_sin_degrees(dip_direction) + 0.0,
+                     s * tl_cos_degrees(dip_direction) + 0.0, tl_cos_degrees(dip) + 0.0};
+}
+
 #endif

@@ -1,0 +1,30 @@
+/* params.h - parameter tables: reading a script's values against them, ranges.
+ *
+ * tl_args_read and tl_param_range, which a front end needs too, are declared in talus.h. */
+#ifndef TL_BASE_PARAMS_H
+#define TL_BASE_PARAMS_H
+
+#include <stdbool.h>
+#include <talus/talus.h>
+
+/* Bytes of the longest texts tl_number_text and tl_param_range write. */
+#define TL_NUMBER_TEXT 32
+#define TL_RANGE_TEXT 96
+
+/* Row `index` of a table whose rows are `stride` bytes apart, copied into the host's own shape;
+ * members an older table does not have are zero. Stride 0 means sizeof(tl_param). */
+tl_param tl_param_row(const tl_param *params, size_t index, size_t stride);
+
+/* Bytes of the member a parameter of this type fills; 0 for an unknown type. */
+size_t tl_param_bytes(uint32_t type);
+
+/* True when the parameter has a range at all (min = max = 0 means none). */
+bool tl_param_ranged(const tl_param *param);
+
+/* True when `value` is finite and inside the range, open ends left out. */
+bool tl_param_in_range(const tl_param *param, double value);
+
+/* The shortest decimal text that reads back as the same double, from six digits on. */
+void tl_number_text(double value, char text[TL_NUMBER_TEXT]);
+
+#endif
