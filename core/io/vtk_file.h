@@ -1,0 +1,37 @@
+/* vtk_file.h - the pieces a legacy VTK file is made of.
+ *
+ * Numbers are written binary, most significant byte first. Errors stay on the stream; whoever
+ * closes it looks (output_file.h). */
+#ifndef TL_IO_VTK_FILE_H
+#define TL_IO_VTK_FILE_H
+
+#include "model/model.h"
+
+#include <stdio.h>
+
+#define TL_VTK_DOUBLE "double"
+#define TL_VTK_INT "int"
+#define TL_VTK_STRING "string"
+
+/* Type number of a cell whose faces are given as polygons. */
+#define TL_VTK_POLYHEDRON 42
+
+/* The five lines at the head of a file and the fields every file carries: TIME, CYCLE, and the
+ * names of groups and joints, so that the numbers in `group` and `joint` can be looked up. */
+void tl_vtk_header(FILE *file, const tl_model *m, const char *content, const char *dataset);
+
+/* "FIELD": `arrays` arrays follow, each begun by tl_vtk_array and ended by tl_vtk_line. */
+void tl_vtk_field(FILE *file, const char *name, size_t arrays);
+void tl_vtk_array(FILE *file, const char *name, size_t components, size_t tuples, const char *type);
+void tl_vtk_line(FILE *file);
+
+/* One number, vector or text of the array at hand. */
+void tl_vtk_int(FILE *file, int32_t value);
+void tl_vtk_double(FILE *file, double value);
+void tl_vtk_vec3(FILE *file, tl_vec3 value);
+void tl_vtk_string(FILE *file, const char *text);
+
+/* Legacy files count in 32 bits: TL_E_IO with a sentence when `count` numbers are too many. */
+tl_status tl_vtk_countable(size_t count, const char *content, tl_error *error);
+
+#endif

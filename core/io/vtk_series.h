@@ -1,0 +1,31 @@
+/* vtk_series.h - which frames a model has written under which prefix, and the .vtk.series index. */
+#ifndef TL_IO_VTK_SERIES_H
+#define TL_IO_VTK_SERIES_H
+
+#include "model/model.h"
+
+#include <stdio.h>
+
+/* The frames of one prefix. A model keeps a list of these; frame i was written at times[i]. */
+typedef struct tl_vtk_series {
+    struct tl_vtk_series *next;
+    char *prefix;
+    double *times;
+    size_t count, capacity;
+} tl_vtk_series;
+
+/* Finds or makes the series of a prefix, with room for one more frame; NULL when out of memory. */
+tl_vtk_series *tl_vtk_series_of(tl_model *m, const char *prefix);
+
+/* Name of a file of the series: PREFIX_CONTENT_NNNNNN.vtk, and of its index:
+ * PREFIX_CONTENT.vtk.series. The text is the caller's; NULL when out of memory. */
+char *tl_vtk_frame_name(const tl_vtk_series *series, const char *content, size_t frame);
+char *tl_vtk_index_name(const tl_vtk_series *series, const char *content);
+
+/* Writes the index with all frames so far and one more at `time`. false when out of memory. */
+bool tl_vtk_series_index(const tl_vtk_series *series, const char *content, double time, FILE *file);
+
+/* Notes that the frame is written. */
+void tl_vtk_series_add(tl_vtk_series *series, double time);
+
+#endif
