@@ -1,0 +1,232 @@
+"""Reads the frames tests/unit/test_vtk.c wrote back with VTK and checks what is in them.
+
+Usage: check_vtk.py FOLDER. FOLDER/expected.txt tells what the writer put in.
+"""
+import json
+import math
+import pathlib
+import sys
+
+import vtk
+
+VOLUME_TOLERANCE = 1e-6  # relative; the writer loses no digits, the sum here loses a few
+UNIT_TOLERANCE = 1e-12   # of unit vectors
+
+BLOCK_ARRAYS = {"block_id": 1, "group": 1, "body": 1, "volume": 1, "velocity": 3, "fixed": 1,
+                "hidden": 1, "density": 1}
+BLOCK_POINT_ARRAYS = {"displacement": 3, "explode": 3}
+CONTACT_ARRAYS = {"normal_force": 1, "shear_force": 3, "normal_stress": 1, "shear_stress": 1,
+                  "state": 1, "joint": 1, "plane": 1, "area": 1, "normal": 3, "gap": 1,
+                  "contact_id": 1, "block_a": 1, "block_b": 1}
+JOINT_ARRAYS = {"joint": 1, "plane": 1, "block_id": 1}
+
+checks = failures = 0
+
+
+def check(condition, sentence):
+    global checks, failures
+    checks += 1
+    if not condition:
+        failures += 1
+        print(f"check_vtk.py: {sentence}")
+    return condition
+
+
+def read(path, reader_class):
+    """A data set as a plain reader gives it: VTK reports errors as events, not as exceptions."""
+    errors = []
+    reader = reader_class()
+    reader.AddObserver("ErrorEvent", lambda *_: errors.append(1))
+    reader.SetFileName(str(path))
+    reader.Update()
+    check(not errors, f"{path.name}: the reader reports an error")
+    check("version 3.0" in path.open("rb").readline().decode(), f"{path.name}: header is not 3.0")
+    check(reader.GetFileType() == 2, f"{path.name}: not binary")
+    return reader.GetOutput()
+
+
+def check_arrays(name, attributes, wanted, tuples):
+    for array_name, components in wanted.items():
+        array = attributes.GetArray(array_name)
+        if check(array is not None, f"{name}: no array {array_name}"):
+            check(array.GetNumberOfComponents() == components,
+                  f"{name}: {array_name} has {array.GetNumberOfComponents()} components")
+            check(array.GetNumberOfTuples() == tuples,
+                  f"{name}: {array_name} has {array.GetNumberOfTuples()} of {tuples} values")
+            values = [array.GetComponent(i, k) for i in range(array.GetNumberOfTuples())
+                      for k in range(array.GetNumberOfComponents())]
+            check(all(map(math.isfinite, values)), f"{name}: {array_name} is not finite")
+
+
+def names_of(data, field):
+    array = data.GetFieldData().GetAbstractArray(field)
+    return [array.GetValue(i) for i in range(array.GetNumberOfValues())] if array else []
+
+
+def scalar(data, field):
+    return data.GetFieldData().GetArray(field).GetComponent(0, 0)
+
+
+def face_loops(data, cell):
+    """Vertex indices of each face, from the cell's face stream."""
+    stream = vtk.vtkIdList()
+    data.GetFaceStream(cell, stream)
+    ids = [stream.GetId(i) for i in range(stream.GetNumberOfIds())]
+    loops, at = [], 1
+    for _ in range(ids[0]):
+        loops.append(ids[at + 1:at + 1 + ids[at]])
+        at += 1 + ids[at]
+    return loops
+
+
+def enclosed_volume(data, loops):
+    """Divergence theorem: a sixth of the triple products over a fan of each face."""
+    origin = data.GetPoint(loops[0][0])
+    total = 0.0
+    for loop in loops:
+        a, *rest = [[p - o for p, o in zip(data.GetPoint(i), origin)] for i in loop]
+        for b, c in zip(rest, rest[1:]):
+            total += (a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2])
+                      + a[2] * (b[0] * c[1] - b[1] * c[0]))
+    return total / 6
+
+
+def check_cells(name, data):
+    """Every cell closed and facing outward, of the volume its array says, sharing no vertex."""
+    total, used = 0.0, set()
+    volumes = data.GetCellData().GetArray("volume")
+    for cell in range(data.GetNumberOfCells()):
+        check(data.GetCellType(cell) == vtk.VTK_POLYHEDRON, f"{name}: cell {cell} is no polyhedron")
+        loops = face_loops(data, cell)
+        edges = [edge for loop in loops for edge in zip(loop, loop[1:] + loop[:1])]
+        check(len(edges) == len(set(edges)) and all((b, a) in edges for a, b in edges),
+              f"{name}: cell {cell} is not closed")
+        vertices = {i for loop in loops for i in loop}
+        check(not vertices & used, f"{name}: cell {cell} shares vertices")
+        used |= vertices
+        said, found = volumes.GetValue(cell), enclosed_volume(data, loops)
+        check(abs(found - said) <= VOLUME_TOLERANCE * abs(said),
+              f"{name}: cell {cell} encloses {found}, its array says {said}")
+        total += found
+    check(len(used) == data.GetNumberOfPoints(), f"{name}: points that belong to no cell")
+    return total
+
+
+def check_blocks(path, expected):
+    data = read(path, vtk.vtkUnstructuredGridReader)
+    blocks = int(expected["blocks"])
+    check(data.GetNumberOfCells() == blocks,
+          f"{path.name}: {data.GetNumberOfCells()} cells, expected {blocks}")
+    check_arrays(path.name, data.GetCellData(), BLOCK_ARRAYS, blocks)
+    check_arrays(path.name, data.GetPointData(), BLOCK_POINT_ARRAYS, data.GetNumberOfPoints())
+    total = check_cells(path.name, data)
+    wanted = float(expected["volume"])
+    check(abs(total - wanted) <= VOLUME_TOLERANCE * wanted, f"{path.name}: volume {total}, not {wanted}")
+    groups = names_of(data, "group_names")
+    number = int(data.GetCellData().GetArray("group").GetValue(0))
+    check(number < len(groups) and groups[number] == expected["group"],
+          f"{path.name}: group {number} of {groups}")
+    check(data.GetPointData().GetVectors() is not None, f"{path.name}: no vectors to warp by")
+    return data
+
+
+def check_explode(name, data):
+    """Weighted by volume, the vectors away from the centre cancel; blocks apart differ."""
+    cells, explode = data.GetCellData(), data.GetPointData().GetArray("explode")
+    sums, vectors = [0.0] * 3, set()
+    for cell in range(data.GetNumberOfCells()):
+        ids = {i for loop in face_loops(data, cell) for i in loop}
+        own = {tuple(explode.GetTuple(i)) for i in ids}
+        check(len(own) == 1, f"{name}: explode differs within cell {cell}")
+        vectors |= own
+        volume = cells.GetArray("volume").GetValue(cell)
+        sums = [s + volume * e for s, e in zip(sums, own.pop())]
+    check(all(abs(s) < 1e-9 for s in sums), f"{name}: explode vectors sum to {sums}")
+    check(len(vectors) == data.GetNumberOfCells(), f"{name}: blocks explode together")
+
+
+def check_contacts(path, expected):
+    data = read(path, vtk.vtkPolyDataReader)
+    count = int(expected["contacts"])
+    check(data.GetNumberOfPoints() == data.GetNumberOfVerts() == count > 0,
+          f"{path.name}: {data.GetNumberOfPoints()} points, {data.GetNumberOfVerts()} vertices, "
+          f"expected {count}")
+    points = data.GetPointData()
+    check_arrays(path.name, points, CONTACT_ARRAYS, count)
+    names = names_of(data, "joint_names")
+    check(names == ["", "east", "north", "up", "oblique"], f"{path.name}: joint names {names}")
+    for i in range(count):
+        normal = points.GetArray("normal").GetTuple(i)
+        check(abs(math.hypot(*normal) - 1) < UNIT_TOLERANCE, f"{path.name}: normal {normal}")
+        check(points.GetArray("state").GetValue(i) in (0, 1, 2, 3), f"{path.name}: state")
+        check(0 <= points.GetArray("joint").GetValue(i) < len(names), f"{path.name}: joint")
+        check(points.GetArray("block_a").GetValue(i) < points.GetArray("block_b").GetValue(i),
+              f"{path.name}: contact {i} does not order its blocks")
+    joints = {int(points.GetArray("joint").GetValue(i)) for i in range(count)}
+    check(joints >= {1, 2, 3, 4}, f"{path.name}: contacts of joints {joints} only")
+
+
+def check_joints(path):
+    data = read(path, vtk.vtkPolyDataReader)
+    check(data.GetNumberOfPolys() > 0, f"{path.name}: no polygons")
+    check_arrays(path.name, data.GetCellData(), JOINT_ARRAYS, data.GetNumberOfPolys())
+    joints, corners = data.GetCellData().GetArray("joint"), vtk.vtkIdList()
+    check({int(joints.GetValue(i)) for i in range(data.GetNumberOfPolys())} == {1, 2, 3, 4},
+          f"{path.name}: not all joints have faces")
+    for cell in range(data.GetNumberOfCells()):
+        data.GetCellPoints(cell, corners)
+        check(corners.GetNumberOfIds() >= 3, f"{path.name}: polygon {cell} has no area")
+
+
+def check_series(folder, prefix, content, frames):
+    path = folder / f"{prefix}_{content}.vtk.series"
+    index = json.loads(path.read_text())
+    check(index["file-series-version"] == "1.0", f"{path.name}: version")
+    times = [f["time"] for f in index["files"]]
+    check(len(times) == frames, f"{path.name}: {len(times)} frames, expected {frames}")
+    check(times == sorted(times), f"{path.name}: times do not ascend")
+    for i, f in enumerate(index["files"]):
+        check(f["name"] == f"{prefix}_{content}_{i:06d}.vtk", f"{path.name}: names {f['name']}")
+        check((folder / f["name"]).exists(), f"{path.name}: {f['name']} does not exist")
+    return times
+
+
+def check_empty(folder):
+    blocks = read(folder / "empty_blocks_000000.vtk", vtk.vtkUnstructuredGridReader)
+    check(blocks.GetNumberOfCells() == 0 and blocks.GetNumberOfPoints() == 0, "empty: has blocks")
+    check(scalar(blocks, "TIME") == 0, "empty: no TIME")
+    for content in ("contacts", "joints"):
+        data = read(folder / f"empty_{content}_000000.vtk", vtk.vtkPolyDataReader)
+        check(data.GetNumberOfCells() == 0, f"empty: has {content}")
+
+
+def moved(data):
+    array = data.GetPointData().GetArray("displacement")
+    return max(abs(c) for i in range(array.GetNumberOfTuples()) for c in array.GetTuple(i))
+
+
+def main():
+    folder = pathlib.Path(sys.argv[1])
+    lines = (folder / "expected.txt").read_text().splitlines()
+    expected = dict(line.split(" ", 1) for line in lines)
+    times = check_series(folder, "run", "blocks", 2)
+    check(times[0] == 0 and times[1] > 0, f"times {times}")
+    check(check_series(folder, "run", "contacts", 2) == times, "contacts: other times")
+    check(check_series(folder, "run", "joints", 2) == times, "joints: other times")
+    frames = [check_blocks(folder / f"run_blocks_{i:06d}.vtk", expected) for i in range(2)]
+    for i, data in enumerate(frames):
+        check(scalar(data, "TIME") == times[i], f"frame {i}: TIME")
+        check_explode(f"frame {i}", data)
+        check_contacts(folder / f"run_contacts_{i:06d}.vtk", expected)
+        check_joints(folder / f"run_joints_{i:06d}.vtk")
+    check(moved(frames[0]) == 0, "frame 0: displaced")
+    check(moved(frames[1]) > 0, "frame 1: nothing has moved")
+    check_series(folder, 'quote"b', "blocks", 1)
+    check_series(folder / "new" / "folder", "a", "blocks", 2)
+    check_empty(folder)
+    print(f"check_vtk.py: {checks} checks, {failures} failed")
+    return 1 if failures else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,231 @@
+"""Checks the walls of the house: who may include whom, and what no source may contain.
+
+The rules are those of docs/architecture.md. Every rule is first shown to catch a bad sample made
+for it, so that a rule that has gone blind fails this test too.
+"""
+import pathlib
+import re
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+
+# Room of core -> rooms whose headers it may include (with quotes, relative to core/).
+ROOMS = {
+    "base": {"base"},
+    "geometry": {"base", "geometry"},
+    "model": {"base", "geometry", "model"},
+    "detect": {"base", "geometry", "model", "detect"},
+    "cycle": {"base", "geometry", "model", "detect", "cycle"},
+    "io": {"base", "geometry", "model", "detect", "cycle", "io"},
+    "plugin": {"base", "model", "plugin"},
+    "lua": {"lua"},
+}
+# Public header -> public headers it may include.
+PUBLIC = {
+    "types.h": set(),
+    "vmath.h": {"types.h"},
+    "plugin.h": {"types.h"},
+    "talus.h": {"types.h", "plugin.h"},
+}
+PLUGIN_HEADERS = {"talus/types.h", "talus/vmath.h", "talus/plugin.h"}
+# What a plugin may include besides: the headers of standard C.
+STANDARD_HEADERS = {
+    name + ".h"
+    for name in "assert complex ctype errno fenv float inttypes iso646 limits locale math setjmp "
+    "signal stdalign stdarg stdatomic stdbool stddef stdint stdio stdlib stdnoreturn string tgmath "
+    "threads time uchar wchar wctype".split()
+}
+LUA_HEADERS = {"lua.h", "lauxlib.h", "lualib.h", "luaconf.h", "lua.hpp"}
+KIND_FOLDERS = ("laws", "damping", "generators")
+# Kinds whose names are also words of the model (a joint is a thing, a field and a generator; a
+# contact's state may be elastic): only a look-up or comparison with them is a fault.
+WORDS_OF_THE_MODEL = {"joint", "elastic"}
+
+MAX_FILE_LINES = 600
+MAX_FUNCTION_LINES = 70
+# First folders of paths that exist on one machine only.
+MACHINE_FOLDERS = "data|home|media|mnt|opt|root|scratch|srv|tmp|var|work|Users"
+TEXT_SUFFIXES = {".c", ".h", ".lua", ".py", ".md", ".txt", ".json", ".sh", ".cmake", ""}
+UNREAD_FOLDERS = {"build", "out", ".git", ".cache", "__pycache__"}
+
+INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.M)
+COMMENT = re.compile(r'/\*.*?\*/|//[^\n]*|("(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])*\')', re.S)
+STRING = re.compile(r'"((?:\\.|[^"\\\n])*)"')
+MACHINE_PATH = re.compile(r"(?<![\w.*/:)\]}>?%-])/(?:" + MACHINE_FOLDERS + r")/[\w.]")
+UNFINISHED = re.compile(r"\b(?:TO" + r"DO|FIX" + r"ME|XX" + r"X)\b")
+
+
+def without_comments(text):
+    """Source text with comments blanked, lines and strings kept."""
+
+    def replace(match):
+        return match.group(1) or "\n" * match.group(0).count("\n")
+
+    return COMMENT.sub(replace, text)
+
+
+def includes(text):
+    return [(m.group(1) == '"', m.group(2)) for m in INCLUDE.finditer(text)]
+
+
+def check_core_includes(path, parts, text):
+    room = parts[1] if len(parts) > 2 else "main"
+    for quoted, name in includes(text):
+        if name in LUA_HEADERS and room not in ("lua", "main"):
+            yield f"includes {name}: only core/lua and core/main.c know Lua"
+        if quoted and room == "include":
+            yield f'includes "{name}": public headers include only <talus/...>'
+        elif quoted:
+            target = name.split("/")[0] if "/" in name else room
+            allowed = {"lua"} if room == "main" else ROOMS.get(room, set())
+            if target not in allowed and not (room == "main" and "/" not in name):
+                yield f'room {room} includes "{name}": it may know {sorted(allowed)}'
+        elif room == "include" and name.startswith("talus/"):
+            if name[len("talus/"):] not in PUBLIC.get(path.name, set()):
+                yield f"public header {path.name} includes <{name}>"
+
+
+def check_plugin_includes(path, text):
+    for quoted, name in includes(text):
+        if quoted and ("/" in name or not (path.parent / name).exists()):
+            yield f'a plugin includes "{name}", which is not of its own folder'
+        if not quoted and name not in PLUGIN_HEADERS | STANDARD_HEADERS:
+            yield f"a plugin includes <{name}>"
+
+
+def check_kind_names(text, kinds):
+    """Nothing in core names a law, a damping or a generator."""
+    for number, line in enumerate(without_comments(text).splitlines(), 1):
+        for literal in STRING.findall(line):
+            looks_up = "tl_plugin_find" in line or "->name" in line
+            if literal in kinds and (literal not in WORDS_OF_THE_MODEL or looks_up):
+                yield f'line {number}: core names the plugin kind "{literal}"'
+
+
+def check_lengths(path, text):
+    lines = text.splitlines()
+    if len(lines) > MAX_FILE_LINES:
+        yield f"{len(lines)} lines, more than {MAX_FILE_LINES}"
+    begin = None
+    for number, line in enumerate(lines if path.suffix == ".c" else [], 1):
+        if line == "{":
+            begin = number
+        elif line == "}" and begin is not None:
+            if number - begin - 1 > MAX_FUNCTION_LINES:
+                yield f"line {begin}: a function of {number - begin - 1} lines"
+            begin = None
+
+
+def check_words(text):
+    for number, line in enumerate(text.splitlines(), 1):
+        if UNFINISHED.search(line):
+            yield f"line {number}: unfinished work"
+        for match in MACHINE_PATH.finditer(line):
+            yield f"line {number}: a path of some machine: {match.group(0)}..."
+
+
+def source_files(root):
+    for path in sorted(root.rglob("*")):
+        parts = path.relative_to(root).parts
+        if path.is_file() and path.suffix in TEXT_SUFFIXES and not UNREAD_FOLDERS & set(parts):
+            if not parts[-1].startswith("."):
+                yield path, parts
+
+
+def kind_names(root):
+    return {p.name for kind in KIND_FOLDERS for p in (root / "plugins" / kind).glob("*") if p.is_dir()}
+
+
+def check_tree(root):
+    """All faults in the tree, as (file, sentence)."""
+    kinds = kind_names(root)
+    faults = []
+    for path, parts in source_files(root):
+        text = path.read_text(encoding="utf-8", errors="replace")
+        is_c = path.suffix in (".c", ".h")
+        found = [*check_words(text)]
+        # Documents may be long, sources may not.
+        found += check_lengths(path, text) if path.suffix not in (".md", ".json", ".txt", "") else []
+        if is_c and parts[0] == "core":
+            found += [*check_core_includes(path, parts, text), *check_kind_names(text, kinds)]
+        if is_c and parts[0] == "plugins" and len(parts) > 2 and parts[1] in KIND_FOLDERS:
+            found += check_plugin_includes(path, text)
+        faults += [("/".join(parts), fault) for fault in found]
+    return faults
+
+
+# One bad sample for each rule, and a part of the sentence it must bring about.
+BAD = [
+    ("core/base/a.c", '#include "model/model.h"\n', "room base includes"),
+    ("core/geometry/a.c", '#include "model/model.h"\n', "room geometry includes"),
+    ("core/model/a.c", '#include "detect/detect.h"\n', "room model includes"),
+    ("core/detect/a.c", '#include "cycle/cycle.h"\n', "room detect includes"),
+    ("core/cycle/a.c", '#include "io/vtk_file.h"\n', "room cycle includes"),
+    ("core/io/a.c", '#include "plugin/loader.h"\n', "room io includes"),
+    ("core/plugin/a.c", '#include "cycle/cycle.h"\n', "room plugin includes"),
+    ("core/lua/a.c", '#include "model/model.h"\n', "room lua includes"),
+    ("core/main.c", '#include "model/model.h"\n', "room main includes"),
+    ("core/io/b.c", "#include <lua.h>\n", "know Lua"),
+    ("core/include/talus/plugin.h", "#include <talus/talus.h>\n", "public header plugin.h"),
+    ("core/include/talus/talus.h", '#include "base/error.h"\n', "public headers include only"),
+    ("plugins/laws/springy/springy.c", "#include <talus/talus.h>\n", "a plugin includes <talus"),
+    ("plugins/laws/springy/b.c", "#include <unistd.h>\n", "a plugin includes <unistd.h>"),
+    ("plugins/laws/springy/c.c", '#include "model/model.h"\n', "not of its own folder"),
+    ("core/cycle/b.c", 'int x = strcmp(law, "springy"); /* "no" */\n', "core names"),
+    ("core/cycle/c.c", 'tl_plugin_find(TL_KIND_GENERATOR, "joint");\n', "core names"),
+    ("core/cycle/long.c", "\n" * (MAX_FILE_LINES + 1), f"more than {MAX_FILE_LINES}"),
+    ("core/cycle/d.c", "int f(void)\n{\n" + "    ;\n" * (MAX_FUNCTION_LINES + 1) + "}\n", "a function of"),
+    ("scripts/a.lua", "-- TO" + "DO\n", "unfinished work"),
+    ("docs/a.md", "see /home" + "/someone/notes.md\n", "path of some machine"),
+]
+GOOD = [
+    ("core/io/fine.c", '#include "io/vtk_file.h"\n#include "model/model.h"\n#include <talus/talus.h>\n'),
+    ("core/lua/fine.c", '#include "front.h"\n#include <lua.h>\n#include <talus/talus.h>\n'),
+    ("core/model/fine.c", 'int f = 0; /* "springy" is a law */ const char *s = "joint";\n'),
+    ("plugins/laws/springy/springy.c", "#include <math.h>\n#include <talus/plugin.h>\n"),
+    ("plugins/generators/joint/joint.c", "#include <talus/plugin.h>\n"),
+    ("docs/a.md", "kn in Pa/m, https://example.org/a/b, /usr/bin/python3, a/b/c\n"),
+]
+
+
+def write_tree(root, samples):
+    for name, text in samples:
+        path = root / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text, encoding="utf-8")
+
+
+def check_the_checks():
+    """Faults of this test itself: rules that miss their bad sample or refuse a good one."""
+    with tempfile.TemporaryDirectory() as folder:
+        root = pathlib.Path(folder)
+        write_tree(root, GOOD)
+        for name, sentence in check_tree(root):
+            yield f"a good sample is refused: {name}: {sentence}"
+    for name, text, expected in BAD:
+        with tempfile.TemporaryDirectory() as folder:
+            root = pathlib.Path(folder)
+            (root / "plugins/laws/springy").mkdir(parents=True)
+            (root / "plugins/generators/joint").mkdir(parents=True)
+            write_tree(root, [(name, text)])
+            if not any(expected in sentence for _, sentence in check_tree(root)):
+                yield f"the bad sample {name} passes: expected '{expected}'"
+
+
+def main():
+    blind = [*check_the_checks()]
+    for fault in blind:
+        print(f"test_layers.py: {fault}")
+    faults = check_tree(ROOT)
+    for name, sentence in faults:
+        print(f"{name}: {sentence}")
+    files = sum(1 for _ in source_files(ROOT))
+    if files == 0:
+        print(f"test_layers.py: no sources found under {ROOT}")
+    print(f"layers: {files} files, {len(BAD) + len(GOOD)} samples, {len(faults) + len(blind)} faults")
+    return 1 if faults or blind or files == 0 else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,230 @@
+/* test_vtk.c - writing frames: names, failures that leave nothing behind, and the files that
+ * tests/python/check_vtk.py reads back with VTK itself.
+ *
+ * The model: a box of 4 x 3 x 2 cut into 24 unit cubes by three joint sets, then once obliquely. */
+#include "check.h"
+
+#include <dirent.h>
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <talus/talus.h>
+#include <unistd.h>
+
+#define FOLDER TALUS_TEST_TMP "/vtk"
+
+static tl_value number(const char *key, double value)
+{
+    return (tl_value){.key = key, .type = TL_VALUE_NUMBER, .number = value};
+}
+
+static tl_value vector(const char *key, const double *data)
+{
+    return (tl_value){.key = key, .type = TL_VALUE_NUMBERS, .data = data, .count = 3};
+}
+
+static tl_value string(const char *key, const char *text)
+{
+    return (tl_value){.key = key, .type = TL_VALUE_STRING, .text = text};
+}
+
+static int generate(tl_model *m, const char *kind, const tl_value *values, size_t count)
+{
+    tl_generate_summary summary;
+    tl_args args = {values, count};
+    int ok = CHECK_INT(tl_generate(m, kind, &args, &summary), TL_OK);
+    if (!ok)
+        printf("  %s\n", tl_model_error(m)->text);
+    return ok;
+}
+
+static void add_box(tl_model *m, double x, double y, double z, const char *group)
+{
+    const double min[] = {0, 0, 0}, max[] = {x, y, z};
+    const tl_value values[] = {vector("min", min), vector("max", max), number("density", 2500),
+                               string("group", group)};
+    generate(m, "box", values, 4);
+}
+
+static void add_set(tl_model *m, const char *name, double dip, double direction, int planes,
+                    tl_vec3 origin)
+{
+    const double at[] = {origin.x, origin.y, origin.z};
+    const tl_value values[] = {
+        string("joint", name), number("dip", dip),       number("dip_direction", direction),
+        number("spacing", 1),  number("number", planes), vector("origin", at)};
+    generate(m, "jointset", values, 6);
+}
+
+static tl_model *empty_model(void)
+{
+    tl_model_config config = {.gravity = {0, 0, -10}, .seed = 1, .threads = 1, .reuse_geometry = 1};
+    tl_model *m = NULL;
+    tl_error error = {TL_OK, ""};
+    tl_plugins_load_default();
+    CHECK_INT(tl_model_create(&config, &m, &error), TL_OK);
+    return m;
+}
+
+/* The group's name is longer than 63 bytes: its length then takes two bytes in the file. */
+#define LONG_GROUP "a group whose name is much longer than the sixty-three bytes of a short text"
+
+static tl_model *cut_box(void)
+{
+    tl_model *m = empty_model();
+    add_box(m, 4, 3, 2, LONG_GROUP);
+    add_set(m, "east", 90, 90, 9, (tl_vec3){2, 0, 0});
+    add_set(m, "north", 90, 0, 9, (tl_vec3){0, 1, 0});
+    add_set(m, "up", 0, 0, 9, (tl_vec3){0, 0, 1});
+    const double origin[] = {2.3, 1.6, 0.9};
+    const tl_value values[] = {string("joint", "oblique"), number("dip", 50),
+                               number("dip_direction", 320), vector("origin", origin)};
+    generate(m, "joint", values, 4);
+    const tl_value law[] = {number("kn", 1e8), number("ks", 1e8)};
+    const tl_args args = {law, 2};
+    CHECK_INT(tl_joint_law(m, "*", "elastic", &args), TL_OK);
+    return m;
+}
+
+static int exists(const char *path)
+{
+    struct stat info;
+    return stat(path, &info) == 0;
+}
+
+/* Number of files of the folder whose names contain `part`, removing them when asked. */
+static int files_with(const char *part, int delete)
+{
+    int count = 0;
+    DIR *folder = opendir(FOLDER);
+    for (struct dirent *entry; folder && (entry = readdir(folder));)
+        if (strstr(entry->d_name, part)) {
+            char path[4096];
+            snprintf(path, sizeof path, "%s/%s", FOLDER, entry->d_name);
+            count++;
+            if (delete)
+                remove(path);
+        }
+    if (folder)
+        closedir(folder);
+    return count;
+}
+
+/* What the reader of the files is to find. */
+static void note_expected(tl_model *m)
+{
+    FILE *file = fopen(FOLDER "/expected.txt", "w");
+    tl_id *ids = NULL;
+    size_t contacts = 0;
+    CHECK_INT(tl_contacts_select(m, &(tl_contact_filter){0}, &ids, &contacts), TL_OK);
+    free(ids);
+    if (CHECK(file != NULL)) {
+        fprintf(file, "blocks %zu\ncontacts %zu\nvolume 24\ngroup %s\n", tl_block_count(m),
+                contacts, LONG_GROUP);
+        fclose(file);
+    }
+}
+
+TEST(two_frames_for_the_reader)
+{
+    tl_model *m = cut_box();
+    CHECK(tl_block_count(m) > 24);
+    CHECK_INT(tl_write_vtk(m, FOLDER "/run"), TL_OK);
+    tl_solve_result result;
+    CHECK_INT(tl_model_cycle(m, 20, &result), TL_OK);
+    CHECK_INT(tl_write_vtk(m, FOLDER "/run"), TL_OK);
+    CHECK_TEXT(tl_model_error(m)->text, "");
+    CHECK(exists(FOLDER "/run_blocks_000001.vtk"));
+    CHECK(exists(FOLDER "/run_contacts_000001.vtk"));
+    CHECK(exists(FOLDER "/run_joints_000001.vtk"));
+    note_expected(m);
+    tl_model_destroy(m);
+}
+
+TEST(an_empty_model_has_files_too)
+{
+    tl_model *m = empty_model();
+    CHECK_INT(tl_write_vtk(m, FOLDER "/empty"), TL_OK);
+    CHECK_INT(files_with("empty_", 0), 6);
+    tl_model_destroy(m);
+}
+
+TEST(prefixes_count_their_own_frames)
+{
+    tl_model *m = empty_model();
+    CHECK_INT(tl_write_vtk(m, FOLDER "/new/folder/a"), TL_OK);
+    CHECK_INT(tl_write_vtk(m, FOLDER "/quote\"b"), TL_OK);
+    CHECK_INT(tl_write_vtk(m, FOLDER "/new/folder/a"), TL_OK);
+    CHECK(exists(FOLDER "/new/folder/a_blocks_000001.vtk"));
+    CHECK(exists(FOLDER "/quote\"b_blocks_000000.vtk"));
+    CHECK(!exists(FOLDER "/quote\"b_blocks_000001.vtk"));
+    tl_model_destroy(m);
+}
+
+TEST(a_prefix_names_files)
+{
+    tl_model *m = empty_model();
+    CHECK_INT(tl_write_vtk(m, ""), TL_E_ARGUMENT);
+    CHECK_INT(tl_write_vtk(m, FOLDER "/"), TL_E_ARGUMENT);
+    CHECK_CONTAINS(tl_model_error(m)->text, "prefix");
+    tl_model_destroy(m);
+}
+
+TEST(a_file_is_no_folder)
+{
+    tl_model *m = empty_model();
+    FILE *file = fopen(FOLDER "/plain", "w");
+    if (CHECK(file != NULL))
+        fclose(file);
+    CHECK_INT(tl_write_vtk(m, FOLDER "/plain/run"), TL_E_IO);
+    CHECK_CONTAINS(tl_model_error(m)->text, FOLDER "/plain/run_blocks_000000.vtk");
+    CHECK_CONTAINS(tl_model_error(m)->text, "Not a directory");
+    tl_model_destroy(m);
+}
+
+/* One of the six places is taken: none of the others may appear, and the next try is frame 0. */
+TEST(a_failed_frame_leaves_nothing)
+{
+    tl_model *m = empty_model();
+    CHECK_INT(mkdir(FOLDER "/taken_joints.vtk.series", 0777), 0);
+    CHECK_INT(tl_write_vtk(m, FOLDER "/taken"), TL_E_IO);
+    CHECK_CONTAINS(tl_model_error(m)->text, "Is a directory");
+    CHECK_INT(files_with("taken_", 0), 1);
+    CHECK_INT(rmdir(FOLDER "/taken_joints.vtk.series"), 0);
+    CHECK_INT(tl_write_vtk(m, FOLDER "/taken"), TL_OK);
+    CHECK(exists(FOLDER "/taken_blocks_000000.vtk"));
+    CHECK_INT(files_with("taken_", 0), 6);
+    tl_model_destroy(m);
+}
+
+/* A limit on the size of files stands for a full disk. */
+TEST(a_full_disk_is_noticed)
+{
+    struct rlimit old, small;
+    tl_model *m = cut_box();
+    CHECK_INT(getrlimit(RLIMIT_FSIZE, &old), 0);
+    small = old;
+    small.rlim_cur = 2048;
+    signal(SIGXFSZ, SIG_IGN);
+    CHECK_INT(setrlimit(RLIMIT_FSIZE, &small), 0);
+    tl_status status = tl_write_vtk(m, FOLDER "/full");
+    CHECK_INT(setrlimit(RLIMIT_FSIZE, &old), 0);
+    CHECK_INT(status, TL_E_IO);
+    CHECK_CONTAINS(tl_model_error(m)->text, "full_blocks_000000.vtk");
+    CHECK_INT(files_with("full_", 0), 0);
+    CHECK_INT(files_with(".tmp", 0), 0);
+    tl_model_destroy(m);
+}
+
+static void clean_folder(void)
+{
+    mkdir(FOLDER, 0777);
+    rmdir(FOLDER "/taken_joints.vtk.series");
+    files_with("_", 1);
+    files_with(".txt", 1);
+    files_with("plain", 1);
+}
+
+TEST_MAIN(RUN(clean_folder), RUN(two_frames_for_the_reader), RUN(an_empty_model_has_files_too),
+          RUN(prefixes_count_their_own_frames), RUN(a_prefix_names_files), RUN(a_file_is_no_folder),
+          RUN(a_failed_frame_leaves_nothing), RUN(a_full_disk_is_noticed))
