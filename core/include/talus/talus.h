@@ -200,7 +200,7 @@ typedef struct tl_solve_result {
 TL_API const char *tl_solve_reason_name(tl_solve_reason reason);
 /* Runs exactly `cycles` steps (fewer only on an interrupt, an error or a callback's word). */
 TL_API tl_status tl_model_cycle(tl_model *model, int64_t cycles, tl_solve_result *result);
-/* Runs until a limit is met. */
+/* Runs until a limit is met. `*result` is up to date whenever a callback is called. */
 TL_API tl_status tl_model_solve(tl_model *model, const tl_solve *solve, tl_solve_result *result);
 /* Asks a running cycle or solve to end after the step; safe from a signal handler. */
 TL_API void tl_model_interrupt(tl_model *model);
