@@ -1,0 +1,68 @@
+/* viscous.c - damping "viscous": a constant coefficient alpha on velocities and angular velocities.
+ *
+ *     v' + alpha v = F / m,    w' + alpha w = M / I                              eqs (18), (20)
+ *
+ * Source: Hart, Cundall and Lemos, Int. J. Rock Mech. Min. Sci. 25 (1988) 117-125. The host integrates
+ * it by the central difference (23), whose bound on the time step does not depend on alpha. Critical for
+ * a mode of circular frequency omega: alpha = 2 omega. Terminal velocity under gravity: g / alpha. */
+#include <talus/plugin.h>
+
+#include <math.h>
+
+typedef struct params {
+    double alpha;
+} params;
+
+static const tl_param param_table[] = {
+    TL_PARAM(TL_PARAM_REAL, params, alpha, "1/s", "damping coefficient", .flags = TL_PARAM_REQUIRED,
+             .min = 0, .max = INFINITY),
+};
+
+static tl_status update(const void *self, const tl_damping_batch *batch, tl_report *report)
+{
+    (void)report;
+    const params *p = self;
+    for (uint32_t i = 0; i < batch->count; i++)
+        batch->alpha[i] = p->alpha;
+    return TL_OK;
+}
+
+static double step_factor(const void *self)
+{
+    (void)self;
+    return 1;
+}
+
+static const tl_damping_ops ops = {
+    .size = sizeof ops, .update = update, .step_factor = step_factor};
+
+static const tl_kind kind = {
+    .size = sizeof kind,
+    .type = TL_KIND_DAMPING,
+    .name = "viscous",
+    .doc = "Constant viscous damping of all velocities.",
+    .params_size = sizeof(params),
+    .params = param_table,
+    .param_count = sizeof param_table / sizeof *param_table,
+    .param_stride = sizeof *param_table,
+    .ops = &ops,
+};
+
+static const tl_plugin plugin = {
+    .size = sizeof plugin,
+    .abi_major = TL_ABI_MAJOR,
+    .abi_minor = TL_ABI_MINOR,
+    .id = "talus.viscous",
+    .version = "0.1.0",
+    .doc = "Viscous damping.",
+    .licence = "BSD-3-Clause",
+    .kinds = &kind,
+    .kind_count = 1,
+    .kind_stride = sizeof kind,
+};
+
+TL_PLUGIN_EXPORT const tl_plugin *tl_plugin_entry(uint32_t host_major, uint32_t host_minor)
+{
+    (void)host_minor;
+    return host_major == TL_ABI_MAJOR ? &plugin : NULL;
+}

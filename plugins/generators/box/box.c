@@ -1,0 +1,63 @@
+/* box.c - generator "box": one block, an axis-aligned box. */
+#include <talus/plugin.h>
+
+#include <math.h>
+
+typedef struct params {
+    tl_vec3 min, max;
+    double density;
+    const char *group;
+} params;
+
+static const tl_param param_table[] = {
+    TL_PARAM(TL_PARAM_VEC3, params, min, "m", "lowest corner", .flags = TL_PARAM_REQUIRED),
+    TL_PARAM(TL_PARAM_VEC3, params, max, "m", "highest corner", .flags = TL_PARAM_REQUIRED),
+    TL_PARAM(TL_PARAM_REAL, params, density, "kg/m3", "density of the block",
+             .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
+    TL_PARAM(TL_PARAM_STRING, params, group, "", "group of the block", .def_text = "rock"),
+};
+
+static tl_status generate(const tl_host *host, const void *given)
+{
+    const params *p = given;
+    const double low[3] = {p->min.x, p->min.y, p->min.z}, high[3] = {p->max.x, p->max.y, p->max.z};
+    static const char axis[3] = {'x', 'y', 'z'};
+    for (int k = 0; k < 3; k++)
+        if (!(low[k] < high[k]))
+            return host->fail(host, TL_E_ARGUMENT, "max.%c = %g m must be > min.%c = %g m", axis[k],
+                              high[k], axis[k], low[k]);
+    return host->create_box(host, p->min, p->max, p->density, p->group);
+}
+
+static const tl_generator_ops ops = {.size = sizeof ops, .generate = generate};
+
+static const tl_kind kind = {
+    .size = sizeof kind,
+    .type = TL_KIND_GENERATOR,
+    .name = "box",
+    .doc = "Creates one block, an axis-aligned box.",
+    .params_size = sizeof(params),
+    .params = param_table,
+    .param_count = sizeof param_table / sizeof *param_table,
+    .param_stride = sizeof *param_table,
+    .ops = &ops,
+};
+
+static const tl_plugin plugin = {
+    .size = sizeof plugin,
+    .abi_major = TL_ABI_MAJOR,
+    .abi_minor = TL_ABI_MINOR,
+    .id = "talus.box",
+    .version = "0.1.0",
+    .doc = "Box generator.",
+    .licence = "BSD-3-Clause",
+    .kinds = &kind,
+    .kind_count = 1,
+    .kind_stride = sizeof kind,
+};
+
+TL_PLUGIN_EXPORT const tl_plugin *tl_plugin_entry(uint32_t host_major, uint32_t host_minor)
+{
+    (void)host_minor;
+    return host_major == TL_ABI_MAJOR ? &plugin : NULL;
+}

@@ -1,0 +1,71 @@
+/* joint.c - generator "joint": one plane through a point that cuts the visible blocks.
+ *
+ * The plane's upward normal is (sin dip sin dd, sin dip cos dd, cos dip), dd clockwise from north. Each
+ * block in its path is cut with the probability `persistence`. The plane gets the next number of
+ * its joint set. */
+#include <talus/plugin.h>
+#include <talus/vmath.h>
+
+typedef struct params {
+    const char *joint;
+    double dip, dip_direction;
+    tl_vec3 origin;
+    double persistence;
+} params;
+
+static const tl_param param_table[] = {
+    TL_PARAM(TL_PARAM_STRING, params, joint, "", "name of the joint set the plane belongs to",
+             .flags = TL_PARAM_REQUIRED),
+    TL_PARAM(TL_PARAM_REAL, params, dip, "deg", "dip below horizontal",
+             .flags = TL_PARAM_REQUIRED, .min = 0, .max = 90),
+    TL_PARAM(TL_PARAM_REAL, params, dip_direction, "deg", "dip direction, clockwise from north (+y)",
+             .flags = TL_PARAM_REQUIRED, .min = 0, .max = 360),
+    TL_PARAM(TL_PARAM_VEC3, params, origin, "m", "point on the plane"),
+    TL_PARAM(TL_PARAM_REAL, params, persistence, "",
+             "probability that a block in the plane's path is cut", .def = {1}, .min = 0, .max = 1),
+};
+
+static tl_status generate(const tl_host *host, const void *given)
+{
+    const params *p = given;
+    tl_tag tag;
+    tl_status status = host->joint(host, p->joint, &tag.joint);
+    if (status != TL_OK)
+        return status;
+    tag.plane = host->next_plane(host, tag.joint);
+    tl_vec3 normal = tl_plane_normal(p->dip, p->dip_direction);
+    return host->cut(host, normal, p->origin, tag, p->persistence);
+}
+
+static const tl_generator_ops ops = {.size = sizeof ops, .generate = generate};
+
+static const tl_kind kind = {
+    .size = sizeof kind,
+    .type = TL_KIND_GENERATOR,
+    .name = "joint",
+    .doc = "Cuts the visible blocks by one plane.",
+    .params_size = sizeof(params),
+    .params = param_table,
+    .param_count = sizeof param_table / sizeof *param_table,
+    .param_stride = sizeof *param_table,
+    .ops = &ops,
+};
+
+static const tl_plugin plugin = {
+    .size = sizeof plugin,
+    .abi_major = TL_ABI_MAJOR,
+    .abi_minor = TL_ABI_MINOR,
+    .id = "talus.joint",
+    .version = "0.1.0",
+    .doc = "Joint generator.",
+    .licence = "BSD-3-Clause",
+    .kinds = &kind,
+    .kind_count = 1,
+    .kind_stride = sizeof kind,
+};
+
+TL_PLUGIN_EXPORT const tl_plugin *tl_plugin_entry(uint32_t host_major, uint32_t host_minor)
+{
+    (void)host_minor;
+    return host_major == TL_ABI_MAJOR ? &plugin : NULL;
+}

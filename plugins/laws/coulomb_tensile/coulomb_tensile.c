@@ -1,0 +1,235 @@
+/* coulomb_tensile.c - law "coulomb_tensile": a bonded Coulomb joint that breaks once and for all.
+ *
+ *     f_n = kn A closure + f_n0                     total, compression positive; after eq. (6)
+ *     f_t = f_s - ks A du_s                         eq. (7), on block B
+ *     fails when  f_n < -T A   or   |f_t| > max(0, c A + f_n tan(friction))       eq. (10)
+ *     f_n < -T A:  f_n = 0, f_s = 0, open
+ *     |f_t| > limit:  f_s = f_t limit / |f_t|       eq. (12), slipping
+ *
+ * T, c and the friction are those of the bond while it holds. At the first failure, in tension or
+ * in shear, the bond is lost for good: T, c and the friction drop to their residual values within that
+ * step (brittle), as 3DEC does. State `bond` is 1 while it holds, 0 when lost.
+ *
+ * Source: Hart, Cundall and Lemos, Int. J. Rock Mech. Min. Sci. 25 (1988) 117-125; the loss of the bond
+ * after the manual of 3DEC. A contact that is born open loses its bond in its first step.
+ *
+ * Energy turned to heat: as in the law "coulomb", and the energy of the tensile spring when a bond
+ * breaks in tension. */
+#include <talus/plugin.h>
+
+#include <math.h>
+#include <stdlib.h>
+
+#define DEGREE (3.14159265358979323846 / 180)
+/* Lanes worked on at a time: their flags stay in the nearest cache. */
+#define STRIDE 64u
+/* The bond is stored as 1 or 0; anything between is on neither side by rounding. */
+#define BOND_HOLDS 0.5
+
+typedef struct params {
+    double kn, ks, friction, cohesion, tension;
+    double residual_friction, residual_cohesion, residual_tension;
+} params;
+
+static const tl_param param_table[] = {
+    TL_PARAM(TL_PARAM_REAL, params, kn, "Pa/m", "normal stiffness of the joint",
+             .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
+    TL_PARAM(TL_PARAM_REAL, params, ks, "Pa/m", "shear stiffness of the joint",
+             .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
+    TL_PARAM(TL_PARAM_REAL, params, friction, "deg", "angle of friction",
+             .flags = TL_PARAM_MAX_OPEN, .min = 0, .max = 90),
+    TL_PARAM(TL_PARAM_REAL, params, cohesion, "Pa", "cohesion of the bond", .min = 0,
+             .max = INFINITY),
+    TL_PARAM(TL_PARAM_REAL, params, tension, "Pa", "tensile strength of the bond", .min = 0,
+             .max = INFINITY),
+    TL_PARAM(TL_PARAM_REAL, params, residual_friction, "deg",
+             "angle of friction after the bond is lost; not given: friction",
+             .flags = TL_PARAM_OPTIONAL | TL_PARAM_MAX_OPEN, .min = 0, .max = 90),
+    TL_PARAM(TL_PARAM_REAL, params, residual_cohesion, "Pa", "cohesion after the bond is lost",
+             .min = 0, .max = INFINITY),
+    TL_PARAM(TL_PARAM_REAL, params, residual_tension, "Pa",
+             "tensile strength after the bond is lost", .min = 0, .max = INFINITY),
+};
+
+static const tl_state state_table[] = {
+    {.size = sizeof(tl_state),
+     .kind = TL_STATE_SCALAR,
+     .transfer = TL_TRANSFER_COPY,
+     .name = "bond",
+     .unit = "",
+     .doc = "1 while the bond holds, 0 when it is lost",
+     .initial = 1},
+};
+
+/* Strength of a joint: with the bond, or without. */
+typedef struct strength {
+    double tangent, cohesion, tension;
+} strength;
+
+typedef struct bonded {
+    double kn, ks;
+    strength peak, residual;
+} bonded;
+
+static tl_status create(const void *given, void **self, tl_report *report)
+{
+    (void)report;
+    const params *p = given;
+    bonded *law = malloc(sizeof *law);
+    if (!law)
+        return TL_E_MEMORY;
+    double residual = isnan(p->residual_friction) ? p->friction : p->residual_friction;
+    *law = (bonded){
+        .kn = p->kn,
+        .ks = p->ks,
+        .peak = {tan(p->friction * DEGREE), p->cohesion, p->tension},
+        .residual = {tan(residual * DEGREE), p->residual_cohesion, p->residual_tension},
+    };
+    *self = law;
+    return TL_OK;
+}
+
+/* Elastic energy of both springs; 0 for a lane of no area. */
+static void store_energy(const bonded *law, const tl_law_batch *batch)
+{
+    const double *restrict area = batch->area, *restrict f_n = batch->f_n;
+    const double *restrict f_x = batch->f_s[0], *restrict f_y = batch->f_s[1];
+    const double *restrict f_z = batch->f_s[2];
+    double *restrict stored = batch->stored;
+    const double half_n = 0.5 / law->kn, half_s = 0.5 / law->ks;
+#pragma omp simd
+    for (uint32_t i = 0; i < batch->count; i++) {
+        double inverse = area[i] > 0 ? 1 / (area[i] > 0 ? area[i] : 1) : 0;
+        double shear2 = f_x[i] * f_x[i] + f_y[i] * f_y[i] + f_z[i] * f_z[i];
+        stored[i] = (half_n * f_n[i] * f_n[i] + half_s * shear2) * inverse;
+    }
+}
+
+/* The law itself, for up to STRIDE lanes from `begin`. `heat` is a constant at each call, so that the
+ * loop exists once with and once without the energy and neither has a branch in it. A NaN goes through
+ * all comparisons to the forces, where the host finds it. `mark` takes the flags as doubles: a loop
+ * over lanes of two widths is not vectorised for every machine. */
+static inline __attribute__((always_inline)) void move(const bonded *law, const tl_law_batch *batch,
+                                                       uint32_t begin, uint32_t lanes,
+                                                       double *restrict mark, const int heat)
+{
+    const double *restrict area = batch->area + begin, *restrict closure = batch->closure + begin;
+    const double *restrict f_n0 = batch->f_n0 + begin;
+    const double *restrict du_x = batch->du_s[0] + begin, *restrict du_y = batch->du_s[1] + begin;
+    const double *restrict du_z = batch->du_s[2] + begin;
+    double *restrict f_n = batch->f_n + begin, *restrict f_x = batch->f_s[0] + begin;
+    double *restrict f_y = batch->f_s[1] + begin, *restrict f_z = batch->f_s[2] + begin;
+    double *restrict bond = batch->state[0] + begin;
+    double *restrict dissipated = heat ? batch->dissipated + begin : NULL;
+    const double kn = law->kn, ks = law->ks;
+    const strength peak = law->peak, residual = law->residual;
+#pragma omp simd
+    for (uint32_t i = 0; i < lanes; i++) {
+        double stiffness = ks * area[i];
+        double total = kn * area[i] * closure[i] + f_n0[i];
+        double tx = f_x[i] - stiffness * du_x[i];
+        double ty = f_y[i] - stiffness * du_y[i];
+        double tz = f_z[i] - stiffness * du_z[i];
+        double trial = sqrt(tx * tx + ty * ty + tz * tz);
+
+        /* Does the bond hold this step? */
+        double bound = peak.cohesion * area[i] + total * peak.tangent;
+        double before = bond[i];
+        double after = trial > (bound < 0 ? 0 : bound) ? 0 : before;
+        after = total < -peak.tension * area[i] ? 0 : after;
+
+        /* The strength that is left. */
+        double tangent = after > BOND_HOLDS ? peak.tangent : residual.tangent;
+        double cohesion = after > BOND_HOLDS ? peak.cohesion : residual.cohesion;
+        double tension = after > BOND_HOLDS ? peak.tension : residual.tension;
+        double lowest = -tension * area[i];
+        double limit = cohesion * area[i] + total * tangent;
+        limit = limit < 0 ? 0 : limit;
+        limit = total < lowest ? 0 : limit;
+        double whole = trial > limit ? trial : 1;
+        double scale = trial > limit ? limit / whole : 1;
+        if (heat) {
+            double mean = 0.5 * ((f_x[i] * tx + f_y[i] * ty + f_z[i] * tz) / whole + limit);
+            double slip = (trial - limit) / (stiffness > 0 ? stiffness : 1);
+            double work = trial > limit ? mean * slip : 0;
+            work = work > 0 && stiffness > 0 ? work : 0;
+            /* A bond that snaps gives up its tensile spring. */
+            double spring = 0.5 * total * total / (area[i] > 0 ? kn * area[i] : 1);
+            spring = total < lowest && area[i] > 0 ? spring : 0;
+            dissipated[i] = work + (before > BOND_HOLDS ? spring : 0);
+        }
+        double flag = trial > limit ? TL_POINT_SLIPPING : 0;
+        flag = total < lowest ? TL_POINT_OPEN : flag;
+        mark[i] = after > BOND_HOLDS ? flag : flag + TL_POINT_FAILED;
+        f_n[i] = total < lowest ? 0 : total;
+        f_x[i] = scale * tx;
+        f_y[i] = scale * ty;
+        f_z[i] = scale * tz;
+        bond[i] = after;
+    }
+}
+
+static tl_status update(const void *self, const tl_law_batch *batch, tl_report *report)
+{
+    (void)report;
+    double mark[STRIDE];
+    for (uint32_t begin = 0; begin < batch->count; begin += STRIDE) {
+        uint32_t left = batch->count - begin, lanes = left < STRIDE ? left : STRIDE;
+        if (batch->dissipated)
+            move(self, batch, begin, lanes, mark, 1);
+        else
+            move(self, batch, begin, lanes, mark, 0);
+        for (uint32_t i = 0; i < lanes; i++)
+            batch->flags[begin + i] = (uint32_t)mark[i];
+    }
+    if (batch->stored)
+        store_energy(self, batch);
+    return TL_OK;
+}
+
+static void stiffness(const void *self, double *kn, double *ks)
+{
+    const bonded *law = self;
+    *kn = law->kn;
+    *ks = law->ks;
+}
+
+static const tl_law_ops ops = {.size = sizeof ops,
+                               .create = create,
+                               .update = update,
+                               .stiffness = stiffness,
+                               .destroy = free};
+
+static const tl_kind kind = {
+    .size = sizeof kind,
+    .type = TL_KIND_LAW,
+    .name = "coulomb_tensile",
+    .doc = "Coulomb friction with a bond that breaks in tension or shear and does not heal.",
+    .params_size = sizeof(params),
+    .params = param_table,
+    .param_count = sizeof param_table / sizeof *param_table,
+    .param_stride = sizeof *param_table,
+    .states = state_table,
+    .state_count = sizeof state_table / sizeof *state_table,
+    .state_stride = sizeof *state_table,
+    .ops = &ops,
+};
+
+static const tl_plugin plugin = {
+    .size = sizeof plugin,
+    .abi_major = TL_ABI_MAJOR,
+    .abi_minor = TL_ABI_MINOR,
+    .id = "talus.coulomb_tensile",
+    .version = "0.1.0",
+    .doc = "Coulomb joint law with a brittle bond.",
+    .licence = "BSD-3-Clause",
+    .kinds = &kind,
+    .kind_count = 1,
+    .kind_stride = sizeof kind,
+};
+
+TL_PLUGIN_EXPORT const tl_plugin *tl_plugin_entry(uint32_t host_major, uint32_t host_minor)
+{
+    (void)host_minor;
+    return host_major == TL_ABI_MAJOR ? &plugin : NULL;
+}
