@@ -9,7 +9,7 @@
  *             group     index into the field group_names
  *             body      id of its body
  *             volume    m3          density   kg/m3
- *             fixed     1 when its body is held in any way    hidden   1 when hidden
+ *             fixed     1 when its body is held whole         hidden    1 when hidden
  * Point data  displacement  m, since creation or the last reset
  *             explode       from the model's centre to the block's centroid, m: ParaView's Warp By
  *                           Vector with it moves the blocks apart
@@ -105,7 +105,7 @@ static void put_cell_data(const tl_model *m, FILE *file)
     tl_vtk_line(file);
     tl_vtk_array(file, "fixed", 1, rows, TL_VTK_INT);
     for (size_t row = 0; row < rows; row++)
-        tl_vtk_int(file, m->bodies.fixed[b->body[row]] != 0);
+        tl_vtk_int(file, m->bodies.fixed[b->body[row]] == TL_FIX_ALL);
     tl_vtk_line(file);
     tl_vtk_array(file, "hidden", 1, rows, TL_VTK_INT);
     for (size_t row = 0; row < rows; row++)

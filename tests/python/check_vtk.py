@@ -40,7 +40,7 @@ def read(path, reader_class):
     reader.SetFileName(str(path))
     reader.Update()
     check(not errors, f"{path.name}: the reader reports an error")
-    check("version 3.0" in path.open("rb").readline().decode(), f"{path.name}: header is not 3.0")
+    check("Version 3.0" in path.open("rb").readline().decode(), f"{path.name}: header is not 3.0")
     check(reader.GetFileType() == 2, f"{path.name}: not binary")
     return reader.GetOutput()
 
