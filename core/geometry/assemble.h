@@ -1,0 +1,23 @@
+/* assemble.h - the raw making of a polyhedron, for the files of this folder only. */
+#ifndef TL_GEOMETRY_ASSEMBLE_H
+#define TL_GEOMETRY_ASSEMBLE_H
+
+#include "base/error.h"
+#include "geometry/polyhedron.h"
+
+/* Euler's formula bounds the edges of a polyhedron within the limits on vertices and faces. */
+#define TL_POLY_MAX_EDGES (TL_POLY_MAX_VERTICES + TL_POLY_MAX_FACES - 2)
+
+/* One allocation with the counts set, its arrays laid out and nothing in them; NULL without memory. */
+tl_poly *tl_poly_allocate(uint32_t vertex_count, uint32_t face_count, uint32_t edge_count);
+
+/* Derives edges, stars and size from vertex, start and loop, which the caller has filled in with
+ * valid indices. TL_E_GEOMETRY when some edge does not belong to exactly two faces, one in each
+ * direction; the polyhedron then is fit only to be freed. */
+tl_status tl_poly_link(tl_poly *poly, tl_error *error);
+
+/* The plane of a face from its vertices: Newell's normal, and the offset midway between the extremes
+ * of normal . x, so that a face normal to an axis gets exactly that axis and its coordinate. */
+tl_plane tl_poly_fit_plane(const tl_vec3 *vertices, const uint16_t *loop, size_t count);
+
+#endif

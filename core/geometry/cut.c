@@ -1,0 +1,444 @@
+/* cut.c - cutting a convex polyhedron in two by a plane.
+ *
+ * Every vertex is put below (-1), on (0) or above (+1) the plane; this classification alone decides
+ * the topology of both children. Edges from -1 to +1 get one new vertex. A face with vertices on both
+ * sides is walked once and split into its part below and its part above; its cut from exit to entry
+ * is a half-edge of the cap, as is every edge that lies on the plane between a lower and an upper
+ * face. The cap's half-edges must chain into one cycle, and both children must satisfy Euler's
+ * formula, or the cut is refused; with vertices exact to rounding this does not happen.
+ *
+ * A new vertex is computed from its edge's end points in lexicographic order, so blocks on either side
+ * of a face, which list the edge in opposite directions, get the same bits. */
+#include "geometry/assemble.h"
+
+#include <float.h>
+#include <stdlib.h>
+#include <string.h>
+#include <talus/vmath.h>
+
+/* Distances to the plane are known to a few roundings of the coordinates: for a small block far from
+ * zero that, and not TL_POLY_ON times its size, is what "on the plane" can mean. */
+#define ROUNDINGS (16 * DBL_EPSILON)
+
+/* Scratch that fits on the stack: enough for about 80 vertices and 80 faces. */
+#define LOCAL_SCRATCH 16384
+
+#define NONE UINT16_MAX
+
+/* One child while it is made. */
+typedef struct child {
+    uint16_t *map;  /* [vertices + crossings] its vertex index, or NONE */
+    uint16_t *face; /* [faces + 1] end of each of its loops */
+    uint16_t *from; /* [faces] the parent's face of each of its own but the cap */
+    uint16_t *loop; /* the loops, in the parent's numbering */
+    uint32_t vertices, faces, loops;
+} child;
+
+typedef struct cutter {
+    const tl_poly *poly;
+    tl_plane plane;
+    tl_vec3 *point;    /* [crossings] */
+    double *distance;  /* [vertices] */
+    signed char *side; /* [vertices] */
+    uint16_t
+        *cap_next; /* [vertices + crossings] the cap's half-edges as seen from the lower child */
+    uint16_t *crossing; /* [edges] vertices + number of the crossing on this edge */
+    uint16_t *crossed;  /* [crossings] the edge of each */
+    uint32_t crossings;
+    uint32_t cap_edges;
+    child child[2]; /* below, above */
+} cutter;
+
+static size_t scratch_bytes(const tl_poly *p)
+{
+    size_t v = p->vertex_count, e = p->edge_count, f = p->face_count;
+    size_t per_child = (v + e) + (f + 1) + f + (2 * e + 2 * f + v + e);
+    return e * sizeof(tl_vec3) + v * sizeof(double) +
+           (v + e + 2 * e + 2 * per_child) * sizeof(uint16_t) + v;
+}
+
+static void lay_out(cutter *c, void *scratch)
+{
+    size_t v = c->poly->vertex_count, e = c->poly->edge_count, f = c->poly->face_count;
+    c->point = scratch;
+    c->distance = (double *)(c->point + e);
+    uint16_t *next = (uint16_t *)(c->distance + v);
+    c->cap_next = next, next += v + e;
+    c->crossing = next, next += e;
+    c->crossed = next, next += e;
+    for (int i = 0; i < 2; i++) {
+        c->child[i].map = next, next += v + e;
+        c->child[i].face = next, next += f + 1;
+        c->child[i].from = next, next += f;
+        c->child[i].loop = next, next += 2 * e + 2 * f + v + e;
+    }
+    c->side = (signed char *)next;
+}
+
+/* ---- classification ---- */
+
+/* Sets distances and sides; the extremes go into *low and *high. */
+static void classify(cutter *c, double *low, double *high)
+{
+    const tl_poly *p = c->poly;
+    double reach = fabs(c->plane.offset);
+    *low = INFINITY, *high = -INFINITY;
+    for (uint32_t v = 0; v < p->vertex_count; v++) {
+        tl_vec3 x = p->vertex[v];
+        double d = tl_v3_dot(c->plane.normal, x) - c->plane.offset;
+        c->distance[v] = d;
+        *low = d < *low ? d : *low;
+        *high = d > *high ? d : *high;
+        reach = fmax(reach, fabs(x.x) + fabs(x.y) + fabs(x.z));
+    }
+    double on = fmax(TL_POLY_ON * p->size, ROUNDINGS * reach);
+    for (uint32_t v = 0; v < p->vertex_count; v++)
+        c->side[v] = (signed char)((c->distance[v] > on) - (c->distance[v] < -on));
+}
+
+/* A vertex on the plane is a corner of the cap only when edges leave it to both sides; one that the
+ * plane merely brushes within the tolerance belongs to the side its edges are on. */
+static void settle_brushed(cutter *c)
+{
+    const tl_poly *p = c->poly;
+    for (uint32_t v = 0; v < p->vertex_count; v++) {
+        if (c->side[v] != 0)
+            continue;
+        bool below = false, above = false;
+        for (uint32_t i = p->star_at[v]; i < p->star_at[v + 1]; i++) {
+            tl_edge edge = p->edge[p->star[i]];
+            signed char other = c->side[edge.a == v ? edge.b : edge.a];
+            below = below || other < 0;
+            above = above || other > 0;
+        }
+        if (!(below && above))
+            c->side[v] = below || (!above && c->distance[v] < 0) ? -1 : 1;
+    }
+}
+
+/* The face whose vertices all lie within `reach` of the plane and which faces along `sign` times its
+ * normal (0: either way), the best aligned of them; UINT32_MAX without one. */
+static uint32_t face_along(const cutter *c, double reach, int sign)
+{
+    const tl_poly *p = c->poly;
+    uint32_t best = UINT32_MAX;
+    double best_cosine = 0;
+    for (uint32_t f = 0; f < p->face_count; f++) {
+        bool along = true;
+        for (uint32_t i = p->start[f]; along && i < p->start[f + 1]; i++)
+            along = fabs(c->distance[p->loop[i]]) <= reach;
+        double cosine = tl_v3_dot(p->plane[f].normal, c->plane.normal);
+        cosine = sign ? sign * cosine : fabs(cosine);
+        if (along && cosine > best_cosine) {
+            best = f;
+            best_cosine = cosine;
+        }
+    }
+    return best;
+}
+
+/* ---- new vertices ---- */
+
+static bool before(tl_vec3 a, tl_vec3 b)
+{
+    return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
+}
+
+/* Where edge number `e` meets the plane. The last step takes the rounding off the plane, which makes
+ * coordinates exact where the plane is normal to an axis. */
+static tl_vec3 crossing_point(const cutter *c, uint32_t e)
+{
+    tl_edge edge = c->poly->edge[e];
+    uint16_t from = edge.a, to = edge.b;
+    if (before(c->poly->vertex[to], c->poly->vertex[from])) {
+        from = edge.b;
+        to = edge.a;
+    }
+    tl_vec3 a = c->poly->vertex[from], b = c->poly->vertex[to];
+    double da = c->distance[from], db = c->distance[to];
+    tl_vec3 x = tl_v3_madd(a, da / (da - db), tl_v3_sub(b, a));
+    double off = tl_v3_dot(c->plane.normal, x) - c->plane.offset;
+    return tl_v3_madd(x, -off, c->plane.normal);
+}
+
+static void find_crossings(cutter *c)
+{
+    const tl_poly *p = c->poly;
+    c->crossings = 0;
+    for (uint32_t e = 0; e < p->edge_count; e++)
+        if (c->side[p->edge[e].a] * c->side[p->edge[e].b] < 0) {
+            c->crossing[e] = (uint16_t)(p->vertex_count + c->crossings);
+            c->crossed[c->crossings++] = (uint16_t)e;
+        }
+}
+
+/* The crossing on the edge between two neighbouring vertices. */
+static uint16_t crossing_between(const cutter *c, uint16_t a, uint16_t b)
+{
+    const tl_poly *p = c->poly;
+    for (uint32_t i = p->star_at[a]; i < p->star_at[a + 1]; i++) {
+        tl_edge edge = p->edge[p->star[i]];
+        if ((edge.a == a ? edge.b : edge.a) == b)
+            return c->crossing[p->star[i]];
+    }
+    return NONE;
+}
+
+/* ---- loops ---- */
+
+static void begin_face(child *ch, uint32_t face)
+{
+    ch->from[ch->faces] = (uint16_t)face;
+}
+
+static void put(child *ch, uint16_t vertex)
+{
+    ch->loop[ch->loops++] = vertex;
+}
+
+static void end_face(child *ch)
+{
+    ch->face[ch->faces++] = (uint16_t)ch->loops;
+}
+
+/* Notes the cap's half-edge from `a` to `b`; false when one leaves `a` already. */
+static bool add_cap_edge(cutter *c, uint16_t a, uint16_t b)
+{
+    if (c->cap_next[a] != NONE || a == b)
+        return false;
+    c->cap_next[a] = b;
+    c->cap_edges++;
+    return true;
+}
+
+/* Splits a face with vertices on both sides. Starting at a vertex above that is followed by the run of
+ * those below, its loop is: run below, exit, run above, entry. */
+static bool split_face(cutter *c, uint32_t face)
+{
+    const uint16_t *loop = c->poly->loop + c->poly->start[face];
+    uint32_t n = tl_poly_face_size(c->poly, face), first = 0, last = 0, i;
+    /* The run below: from `first`, the first -1 after a +1, to `last`, the last -1 before the next. */
+    uint32_t above = 0;
+    while (c->side[loop[above]] <= 0)
+        above++;
+    bool found = false;
+    for (i = above + 1; i < above + n; i++) {
+        int side = c->side[loop[i % n]];
+        if (side < 0) {
+            first = found ? first : i;
+            last = i;
+            found = true;
+        }
+    }
+    for (i = first; i <= last; i++)
+        if (c->side[loop[i % n]] > 0)
+            return false;
+    uint16_t head = loop[first % n], ahead = loop[(first - 1) % n];
+    uint16_t tail = loop[last % n], behind = loop[(last + 1) % n];
+    uint16_t entry = c->side[ahead] ? crossing_between(c, ahead, head) : ahead;
+    uint16_t leave = c->side[behind] ? crossing_between(c, tail, behind) : behind;
+    uint32_t up_first = c->side[behind] ? last + 1 : last + 2;
+    uint32_t up_last = (c->side[ahead] ? first - 1 : first - 2) + n;
+    if (up_last < up_first || c->side[loop[up_first % n]] <= 0 || c->side[loop[up_last % n]] <= 0)
+        return false;
+
+    child *low = &c->child[0], *high = &c->child[1];
+    begin_face(low, face);
+    put(low, entry);
+    for (i = first; i <= last; i++)
+        put(low, loop[i % n]);
+    put(low, leave);
+    end_face(low);
+    begin_face(high, face);
+    put(high, leave);
+    for (i = up_first; i <= up_last; i++)
+        put(high, loop[i % n]);
+    put(high, entry);
+    end_face(high);
+    /* The lower part runs leave -> entry along the cut, its cap the other way. */
+    return add_cap_edge(c, entry, leave);
+}
+
+/* -1 or +1 for a face wholly on one side, 0 for one to be split, 2 for one wholly on the plane. */
+static int face_side(const cutter *c, uint32_t face)
+{
+    bool below = false, above = false;
+    for (uint32_t i = c->poly->start[face]; i < c->poly->start[face + 1]; i++) {
+        below = below || c->side[c->poly->loop[i]] < 0;
+        above = above || c->side[c->poly->loop[i]] > 0;
+    }
+    return below && above ? 0 : below ? -1 : above ? 1 : 2;
+}
+
+/* Deals the faces out to the children. */
+static bool split_faces(cutter *c)
+{
+    const tl_poly *p = c->poly;
+    for (uint32_t f = 0; f < p->face_count; f++) {
+        int side = face_side(c, f);
+        if (side == 2 || (side == 0 && !split_face(c, f)))
+            return false;
+        if (side == 0)
+            continue;
+        child *ch = &c->child[side > 0];
+        begin_face(ch, f);
+        for (uint32_t i = p->start[f]; i < p->start[f + 1]; i++)
+            put(ch, p->loop[i]);
+        end_face(ch);
+    }
+    /* Edges on the plane between a face below and one above bound the cap. */
+    for (uint32_t e = 0; e < p->edge_count; e++) {
+        tl_edge edge = p->edge[e];
+        if (c->side[edge.a] != 0 || c->side[edge.b] != 0)
+            continue;
+        int left = face_side(c, edge.left), right = face_side(c, edge.right);
+        if (left * right == 0)
+            return false;
+        if (left < right && !add_cap_edge(c, edge.b, edge.a))
+            return false;
+        if (left > right && !add_cap_edge(c, edge.a, edge.b))
+            return false;
+    }
+    return true;
+}
+
+/* Chains the cap's half-edges and gives the loop to the lower child, and its reverse from the same
+ * vertex, so that both make the same fan of triangles, to the upper one. */
+static bool close_cap(cutter *c)
+{
+    uint32_t all = c->poly->vertex_count + c->crossings, v = 0, corners = 0;
+    while (v < all && c->cap_next[v] == NONE)
+        v++;
+    if (v == all || c->cap_edges < 3)
+        return false;
+    child *low = &c->child[0], *high = &c->child[1];
+    uint16_t first = (uint16_t)v, at = first;
+    do {
+        put(low, at);
+        at = c->cap_next[at];
+        corners++;
+    } while (at != first && at != NONE && corners < c->cap_edges);
+    if (at != first || corners != c->cap_edges)
+        return false;
+    put(high, first);
+    for (uint32_t i = 1; i < corners; i++)
+        put(high, low->loop[low->loops - i]);
+    end_face(low);
+    end_face(high);
+    return true;
+}
+
+/* ---- children ---- */
+
+/* Numbers the vertices of both children: the parent's in its order, then the new ones. */
+static void number_vertices(cutter *c)
+{
+    uint32_t n = c->poly->vertex_count;
+    for (int i = 0; i < 2; i++) {
+        child *ch = &c->child[i];
+        int other = i ? -1 : 1;
+        for (uint32_t v = 0; v < n; v++)
+            ch->map[v] = c->side[v] == other ? NONE : (uint16_t)ch->vertices++;
+        for (uint32_t k = 0; k < c->crossings; k++)
+            ch->map[n + k] = (uint16_t)ch->vertices++;
+    }
+}
+
+/* TL_E_GEOMETRY when the loops do not make a closed surface. */
+static tl_status make_child(const cutter *c, int which, tl_tag tag, tl_poly **result,
+                            tl_error *error)
+{
+    const child *ch = &c->child[which];
+    const tl_poly *parent = c->poly;
+    if (ch->vertices > TL_POLY_MAX_VERTICES || ch->faces > TL_POLY_MAX_FACES ||
+        ch->loops != 2 * (ch->vertices + ch->faces - 2))
+        return TL_E_GEOMETRY;
+    tl_poly *p = tl_poly_allocate(ch->vertices, ch->faces, ch->loops / 2);
+    if (!p)
+        return tl_fail_memory(error);
+    for (uint32_t v = 0; v < parent->vertex_count; v++)
+        if (ch->map[v] != NONE)
+            p->vertex[ch->map[v]] = parent->vertex[v];
+    memcpy(p->vertex + ch->vertices - c->crossings, c->point, c->crossings * sizeof *c->point);
+    uint32_t cap = ch->faces - 1;
+    p->start[0] = 0;
+    for (uint32_t f = 0; f < cap; f++) {
+        p->plane[f] = parent->plane[ch->from[f]];
+        p->tag[f] = parent->tag[ch->from[f]];
+        p->start[f + 1] = ch->face[f];
+    }
+    p->start[cap + 1] = ch->face[cap];
+    p->tag[cap] = tag;
+    p->plane[cap] =
+        which == 0 ? c->plane : (tl_plane){tl_v3_neg(c->plane.normal), -c->plane.offset};
+    for (uint32_t i = 0; i < ch->loops; i++)
+        p->loop[i] = ch->map[ch->loop[i]];
+    tl_status status = tl_poly_link(p, NULL);
+    if (status)
+        tl_poly_free(p);
+    else
+        *result = p;
+    return status == TL_E_MEMORY ? tl_fail_memory(error) : status;
+}
+
+static tl_status make_children(cutter *c, tl_tag tag, tl_cut *cut, tl_error *error)
+{
+    number_vertices(c);
+    for (uint32_t k = 0; k < c->crossings; k++)
+        c->point[k] = crossing_point(c, c->crossed[k]);
+    tl_status status = make_child(c, 0, tag, &cut->below, error);
+    if (!status)
+        status = make_child(c, 1, tag, &cut->above, error);
+    if (status) {
+        tl_poly_free(cut->below);
+        cut->below = NULL;
+    }
+    return status;
+}
+
+static tl_status cut_with(cutter *c, tl_tag tag, tl_cut *cut, tl_error *error)
+{
+    double low, high, thin = TL_POLY_THIN * c->poly->size;
+    classify(c, &low, &high);
+    bool below = false, above = false;
+    for (uint32_t v = 0; v < c->poly->vertex_count; v++) {
+        below = below || c->side[v] < 0;
+        above = above || c->side[v] > 0;
+    }
+    if (!below || !above) {
+        double on = below ? high : -low;
+        cut->face = face_along(c, fmax(TL_POLY_ON * c->poly->size, fabs(on)), below ? 1 : -1);
+        cut->result = cut->face == UINT32_MAX ? TL_CUT_MISS : TL_CUT_COINCIDENT;
+        return TL_OK;
+    }
+    if (fmin(high, -low) < thin) {
+        cut->face = face_along(c, thin, high < -low ? 1 : -1);
+        cut->result = TL_CUT_REFUSED;
+        return TL_OK;
+    }
+    settle_brushed(c);
+    find_crossings(c);
+    for (uint32_t v = 0; v < c->poly->vertex_count + c->crossings; v++)
+        c->cap_next[v] = NONE;
+    tl_status status = TL_E_GEOMETRY;
+    if (split_faces(c) && close_cap(c))
+        status = make_children(c, tag, cut, error);
+    cut->result = status ? TL_CUT_REFUSED : TL_CUT_MADE;
+    return status == TL_E_MEMORY ? status : TL_OK;
+}
+
+tl_status tl_poly_cut(const tl_poly *poly, tl_plane plane, tl_tag tag, tl_cut *cut, tl_error *error)
+{
+    *cut = (tl_cut){.result = TL_CUT_MISS, .face = UINT32_MAX};
+    _Alignas(double) unsigned char local[LOCAL_SCRATCH];
+    size_t bytes = scratch_bytes(poly);
+    void *scratch = bytes <= sizeof local ? local : malloc(bytes);
+    if (!scratch)
+        return tl_fail_memory(error);
+    cutter c = {.poly = poly, .plane = plane};
+    lay_out(&c, scratch);
+    tl_status status = cut_with(&c, tag, cut, error);
+    if (scratch != local)
+        free(scratch);
+    return status;
+}

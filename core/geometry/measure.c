@@ -1,0 +1,154 @@
+/* measure.c - what a polyhedron measures: mass properties, bounds, faces, support, containment.
+ *
+ * Volume integrals are sums over the tetrahedra from one vertex O to a fan of triangles (a, b, c) of
+ * every face. With D = a . (b x c) relative to O and s = a + b + c, a tetrahedron has
+ *     volume D / 6,   first moment D s / 24,   second moments D (s s' + a a' + b b' + c c') / 120,
+ * exact for any position (Tonon 2004, "Explicit exact formulas for the 3-D tetrahedron inertia
+ * tensor", eqs. 3-10). Second moments are moved to the centroid by the parallel axis theorem; about a
+ * vertex of the body that costs a factor of 4 in rounding at most, wherever the body stands.
+ * Products of inertia have the sign of the tensor: xy = -integral of x y. */
+#include "geometry/polyhedron.h"
+
+#include <talus/vmath.h>
+
+/* Integrals over a body: of 1, of x, and of x x' (xx, yy, zz, xy, yz, zx). */
+typedef struct moments {
+    double volume;
+    tl_vec3 first;
+    tl_sym3 second;
+} moments;
+
+/* Adds s v v' to the second moments. */
+static void add_square(tl_sym3 *m, double s, tl_vec3 v)
+{
+    m->xx += s * v.x * v.x;
+    m->yy += s * v.y * v.y;
+    m->zz += s * v.z * v.z;
+    m->xy += s * v.x * v.y;
+    m->yz += s * v.y * v.z;
+    m->zx += s * v.z * v.x;
+}
+
+/* Six times the volume, twenty-four times the first and 120 times the second moments. */
+static void add_tetrahedron(moments *m, tl_vec3 a, tl_vec3 b, tl_vec3 c)
+{
+    double det = tl_v3_dot(a, tl_v3_cross(b, c));
+    tl_vec3 sum = tl_v3_add(tl_v3_add(a, b), c);
+    m->volume += det;
+    m->first = tl_v3_madd(m->first, det, sum);
+    add_square(&m->second, det, sum);
+    add_square(&m->second, det, a);
+    add_square(&m->second, det, b);
+    add_square(&m->second, det, c);
+}
+
+tl_mass tl_poly_mass(const tl_poly *p)
+{
+    moments m = {0};
+    tl_vec3 origin = p->vertex[0];
+    for (uint32_t f = 0; f < p->face_count; f++) {
+        const uint16_t *loop = p->loop + p->start[f];
+        uint32_t n = tl_poly_face_size(p, f);
+        tl_vec3 a = tl_v3_sub(p->vertex[loop[0]], origin),
+                b = tl_v3_sub(p->vertex[loop[1]], origin);
+        for (uint32_t i = 2; i < n; i++) {
+            tl_vec3 c = tl_v3_sub(p->vertex[loop[i]], origin);
+            add_tetrahedron(&m, a, b, c);
+            b = c;
+        }
+    }
+    tl_mass mass = {.volume = m.volume / 6};
+    tl_vec3 arm =
+        tl_v3(m.first.x / (4 * m.volume), m.first.y / (4 * m.volume), m.first.z / (4 * m.volume));
+    mass.centroid = tl_v3_add(origin, arm);
+    /* Second moments about the centroid, then the inertia tensor from them. */
+    tl_sym3 s = m.second;
+    double v = mass.volume;
+    double xx = s.xx / 120 - v * arm.x * arm.x, yy = s.yy / 120 - v * arm.y * arm.y;
+    double zz = s.zz / 120 - v * arm.z * arm.z;
+    mass.inertia = (tl_sym3){.xx = yy + zz,
+                             .yy = zz + xx,
+                             .zz = xx + yy,
+                             .xy = v * arm.x * arm.y - s.xy / 120,
+                             .yz = v * arm.y * arm.z - s.yz / 120,
+                             .zx = v * arm.z * arm.x - s.zx / 120};
+    return mass;
+}
+
+tl_bounds tl_poly_bounds(const tl_poly *p)
+{
+    tl_bounds bounds = {p->vertex[0], p->vertex[0]};
+    for (uint32_t v = 1; v < p->vertex_count; v++) {
+        bounds.min = tl_v3_min(bounds.min, p->vertex[v]);
+        bounds.max = tl_v3_max(bounds.max, p->vertex[v]);
+    }
+    return bounds;
+}
+
+/* Twice the area of the fan triangle i of a face, signed by the face's normal. */
+static double fan_area2(const tl_poly *p, uint32_t face, uint32_t i)
+{
+    const uint16_t *loop = p->loop + p->start[face];
+    tl_vec3 base = p->vertex[loop[0]];
+    return tl_v3_dot(p->plane[face].normal, tl_v3_cross(tl_v3_sub(p->vertex[loop[i]], base),
+                                                        tl_v3_sub(p->vertex[loop[i + 1]], base)));
+}
+
+double tl_poly_face_area(const tl_poly *p, uint32_t face)
+{
+    double area2 = 0;
+    for (uint32_t i = 1; i + 1 < tl_poly_face_size(p, face); i++)
+        area2 += fan_area2(p, face, i);
+    return 0.5 * area2;
+}
+
+tl_vec3 tl_poly_face_centroid(const tl_poly *p, uint32_t face)
+{
+    const uint16_t *loop = p->loop + p->start[face];
+    uint32_t n = tl_poly_face_size(p, face);
+    tl_vec3 base = p->vertex[loop[0]], sum = {0, 0, 0};
+    double area2 = 0;
+    for (uint32_t i = 1; i + 1 < n; i++) {
+        double w = fan_area2(p, face, i);
+        tl_vec3 arm =
+            tl_v3_add(tl_v3_sub(p->vertex[loop[i]], base), tl_v3_sub(p->vertex[loop[i + 1]], base));
+        area2 += w;
+        sum = tl_v3_madd(sum, w, arm);
+    }
+    /* A face without area, such as a sliver may have, has its first vertex for a centroid. */
+    return area2 > 0 ? tl_v3_add(base, tl_v3(sum.x / (3 * area2), sum.y / (3 * area2),
+                                             sum.z / (3 * area2)))
+                     : base;
+}
+
+double tl_poly_shortest_edge(const tl_poly *p)
+{
+    double shortest2 = INFINITY;
+    for (uint32_t e = 0; e < p->edge_count; e++) {
+        tl_vec3 along = tl_v3_sub(p->vertex[p->edge[e].b], p->vertex[p->edge[e].a]);
+        shortest2 = fmin(shortest2, tl_v3_norm2(along));
+    }
+    return sqrt(shortest2);
+}
+
+uint32_t tl_poly_support(const tl_poly *p, tl_vec3 direction)
+{
+    uint32_t best = 0;
+    double farthest = tl_v3_dot(direction, p->vertex[0]);
+    for (uint32_t v = 1; v < p->vertex_count; v++) {
+        double reach = tl_v3_dot(direction, p->vertex[v]);
+        if (reach > farthest) {
+            farthest = reach;
+            best = v;
+        }
+    }
+    return best;
+}
+
+bool tl_poly_contains(const tl_poly *p, tl_vec3 point, double tolerance)
+{
+    for (uint32_t f = 0; f < p->face_count; f++)
+        if (!(tl_v3_dot(p->plane[f].normal, point) - p->plane[f].offset <= tolerance))
+            return false;
+    return true;
+}
