@@ -1,0 +1,385 @@
+/* block.c - what selections of blocks and blocks can do beyond what contacts can: filters, verbs,
+ * shape and neighbours. */
+#include "front.h"
+
+#include <math.h>
+#include <string.h>
+
+#define MESH_TYPE "talus.mesh"
+
+/* ---------------------------------------------------------------- shape ------------------ */
+
+static int mesh_collect(lua_State *L)
+{
+    tl_block_mesh *mesh = luaL_checkudata(L, 1, MESH_TYPE);
+    tl_block_mesh_free(mesh);
+    *mesh = (tl_block_mesh){0};
+    return 0;
+}
+
+/* Pushes an empty mesh that frees itself should an error be raised while it is in use. */
+static tl_block_mesh *mesh_push(lua_State *L)
+{
+    tl_block_mesh *mesh = lua_newuserdatauv(L, sizeof *mesh, 0);
+    *mesh = (tl_block_mesh){0};
+    if (luaL_newmetatable(L, MESH_TYPE)) {
+        lua_pushcfunction(L, mesh_collect);
+        lua_setfield(L, -2, "__gc");
+    }
+    lua_setmetatable(L, -2);
+    return mesh;
+}
+
+static void push_vertices(lua_State *L, const tl_block_mesh *mesh)
+{
+    lua_createtable(L, (int)mesh->vertex_count, 0);
+    for (size_t i = 0; i < mesh->vertex_count; i++) {
+        tl_lua_push_vec3(L, mesh->vertices[i]);
+        lua_rawseti(L, -2, (lua_Integer)i + 1);
+    }
+}
+
+static void push_faces(lua_State *L, tl_model *model, const tl_block_mesh *mesh)
+{
+    lua_createtable(L, (int)mesh->face_count, 0);
+    for (size_t face = 0; face < mesh->face_count; face++) {
+        lua_createtable(L, 0, 3);
+        lua_createtable(L, (int)(mesh->start[face + 1] - mesh->start[face]), 0);
+        for (uint32_t i = mesh->start[face]; i < mesh->start[face + 1]; i++) {
+            lua_pushinteger(L, (lua_Integer)mesh->loops[i] + 1);
+            lua_rawseti(L, -2, (lua_Integer)(i - mesh->start[face]) + 1);
+        }
+        lua_setfield(L, -2, "vertices");
+        tl_lua_push_vec3(L, mesh->normals[face]);
+        lua_setfield(L, -2, "normal");
+        const char *joint = tl_tag_name(model, mesh->tags[face]);
+        if (joint && joint[0]) {
+            lua_pushstring(L, joint);
+            lua_setfield(L, -2, "joint");
+        }
+        lua_rawseti(L, -2, (lua_Integer)face + 1);
+    }
+}
+
+/* A list of the blocks it touches; the model's userdata is at index 3. */
+static void push_neighbours(lua_State *L, tl_model *model, tl_id id)
+{
+    tl_lua_selection *found = tl_lua_selection_push(L, &tl_lua_block_kind, 3);
+    tl_lua_ok(L, model, tl_block_neighbours(model, id, &found->ids, &found->count));
+    lua_createtable(L, (int)found->count, 0);
+    for (size_t i = 0; i < found->count; i++) {
+        tl_lua_item_push(L, &tl_lua_block_kind, 3, found->ids[i]);
+        lua_rawseti(L, -2, (lua_Integer)i + 1);
+    }
+}
+
+static bool block_extra(lua_State *L, tl_model *model, tl_id id, const char *name)
+{
+    bool vertices = strcmp(name, "vertices") == 0;
+    if (strcmp(name, "neighbours") == 0) {
+        push_neighbours(L, model, id);
+        return true;
+    }
+    if (!vertices && strcmp(name, "faces") != 0)
+        return false;
+    tl_block_mesh *mesh = mesh_push(L);
+    tl_lua_ok(L, model, tl_block_mesh_get(model, id, mesh));
+    if (vertices)
+        push_vertices(L, mesh);
+    else
+        push_faces(L, model, mesh);
+    tl_block_mesh_free(mesh);
+    *mesh = (tl_block_mesh){0};
+    return true;
+}
+
+/* ---------------------------------------------------------------- filter ----------------- */
+
+typedef struct block_args {
+    int64_t id;
+    const char *group, *joint;
+    tl_vec3 containing;
+    int32_t fixed;
+} block_args;
+
+static const tl_param block_params[] = {
+    TL_PARAM(TL_PARAM_INT, block_args, id, "", "The block of this id.", .flags = TL_PARAM_OPTIONAL,
+             .min = 1.0, .max = 4294967295.0),
+    TL_PARAM(TL_PARAM_STRING, block_args, group, "", "Blocks of this group.",
+             .flags = TL_PARAM_OPTIONAL),
+    TL_PARAM(TL_PARAM_VEC3, block_args, containing, "m", "Blocks that contain this point.",
+             .flags = TL_PARAM_OPTIONAL),
+    TL_PARAM(TL_PARAM_STRING, block_args, joint, "", "Blocks with a face on this joint or plane.",
+             .flags = TL_PARAM_OPTIONAL),
+    TL_PARAM(TL_PARAM_BOOL, block_args, fixed, "", "Fixed blocks, or free ones.",
+             .flags = TL_PARAM_OPTIONAL),
+};
+
+static const tl_lua_key block_keys[] = {
+    {"inside", "{min = {x, y, z}, max = {x, y, z}}", "Blocks whose centroid is in this box."},
+    {"above", "{dip =, dip_direction =, origin = {x, y, z}}",
+     "Blocks whose centroid is above this plane."},
+    {"below", "{dip =, dip_direction =, origin = {x, y, z}}",
+     "Blocks whose centroid is below this plane."},
+    {"hidden", "true, false or \"any\"", "Hidden blocks, visible ones (the default), or both."},
+    {"where", "function(block)", "Blocks for which the function answers true."},
+    {NULL, NULL, NULL},
+};
+
+#define COUNT(table) (sizeof(table) / sizeof(table)[0])
+
+const tl_lua_spec tl_lua_blocks_spec = {"blocks", block_params, COUNT(block_params), block_keys};
+
+static const tl_param box_params[] = {
+    TL_PARAM(TL_PARAM_VEC3, tl_bounds, min, "m", "Lowest corner.", .flags = TL_PARAM_REQUIRED),
+    TL_PARAM(TL_PARAM_VEC3, tl_bounds, max, "m", "Highest corner.", .flags = TL_PARAM_REQUIRED),
+};
+
+static const tl_param halfspace_params[] = {
+    TL_PARAM(TL_PARAM_REAL, tl_halfspace, dip, "deg", "Angle below the horizontal.",
+             .flags = TL_PARAM_REQUIRED, .min = 0.0, .max = 90.0),
+    TL_PARAM(TL_PARAM_REAL, tl_halfspace, dip_direction, "deg", "Clockwise from north (+y).",
+             .flags = TL_PARAM_REQUIRED, .min = 0.0, .max = 360.0),
+    TL_PARAM(TL_PARAM_VEC3, tl_halfspace, origin, "m", "A point of the plane.",
+             .flags = TL_PARAM_REQUIRED),
+};
+
+/* Nested tables of the filter at index 2, read into storage that outlives the call of the kernel. */
+typedef struct block_nested {
+    tl_bounds inside;
+    tl_halfspace above, below;
+} block_nested;
+
+static const tl_halfspace *read_halfspace(lua_State *L, const char *key, tl_halfspace *out)
+{
+    if (lua_getfield(L, 2, key) == LUA_TNIL)
+        return NULL;
+    tl_lua_spec spec = {lua_pushfstring(L, "blocks, %s", key), halfspace_params,
+                        COUNT(halfspace_params), NULL};
+    tl_lua_read(L, -2, &spec, false, out);
+    return out;
+}
+
+static const tl_bounds *read_box(lua_State *L, tl_bounds *out)
+{
+    if (lua_getfield(L, 2, "inside") == LUA_TNIL)
+        return NULL;
+    tl_lua_spec spec = {"blocks, inside", box_params, COUNT(box_params), NULL};
+    tl_lua_read(L, -1, &spec, false, out);
+    if (out->min.x > out->max.x || out->min.y > out->max.y || out->min.z > out->max.z)
+        tl_lua_fail(L, "blocks, inside: every component of min must be at most that of max");
+    return out;
+}
+
+/* The filter's `hidden`: -1 any, 0 visible, 1 hidden ones. */
+static int read_hidden(lua_State *L)
+{
+    int type = lua_getfield(L, 2, "hidden");
+    if (type == LUA_TNIL)
+        return 0;
+    if (type == LUA_TBOOLEAN)
+        return lua_toboolean(L, -1);
+    if (type != LUA_TSTRING || strcmp(lua_tostring(L, -1), "any") != 0)
+        tl_lua_fail(L, "blocks: hidden must be true, false or \"any\", not %s",
+                    tl_lua_describe(L, -1));
+    return -1;
+}
+
+/* Reads the table at index 2; all it points to is in `args`, `nested` or on the stack. */
+static void read_filter(lua_State *L, block_args *args, block_nested *nested,
+                        tl_block_filter *filter)
+{
+    tl_lua_read(L, 2, &tl_lua_blocks_spec, true, args);
+    *filter = (tl_block_filter){
+        .id = (tl_id)args->id, .group = args->group, .joint = args->joint, .fixed = args->fixed};
+    if (!isnan(args->containing.x))
+        filter->containing = &args->containing;
+    if (!lua_istable(L, 2))
+        return;
+    filter->inside = read_box(L, &nested->inside);
+    filter->above = read_halfspace(L, "above", &nested->above);
+    filter->below = read_halfspace(L, "below", &nested->below);
+    filter->hidden = read_hidden(L);
+}
+
+int tl_lua_blocks(lua_State *L)
+{
+    tl_model *model = tl_lua_model_of(L, "blocks");
+    tl_lua_arity(L, 2, "blocks");
+    lua_settop(L, 2);
+    block_args args = {.containing = {NAN, NAN, NAN}, .fixed = -1};
+    block_nested nested;
+    tl_block_filter filter;
+    luaL_checkstack(L, 32, "too many values");
+    read_filter(L, &args, &nested, &filter);
+    int where = 0;
+    if (lua_istable(L, 2) && lua_getfield(L, 2, "where") != LUA_TNIL) {
+        where = lua_gettop(L);
+        if (lua_type(L, where) != LUA_TFUNCTION)
+            return tl_lua_fail(L, "blocks: where must be a function(block), not %s",
+                               tl_lua_describe(L, where));
+    }
+    tl_lua_selection *found = tl_lua_selection_push(L, &tl_lua_block_kind, 1);
+    tl_lua_ok(L, model, tl_blocks_select(model, &filter, &found->ids, &found->count));
+    if (where)
+        tl_lua_selection_filter(L, lua_gettop(L), where);
+    return 1;
+}
+
+/* ---------------------------------------------------------------- verbs ------------------ */
+
+static tl_lua_selection *self(lua_State *L, int most, const char *method)
+{
+    tl_lua_selection *blocks = tl_lua_selection_of(L, 1, &tl_lua_block_kind, method);
+    tl_lua_living(L, blocks->owner);
+    tl_lua_arity(L, most, method);
+    lua_settop(L, most);
+    return blocks;
+}
+
+/* Raises on failure; otherwise answers with the selection itself. */
+static int done(lua_State *L, const tl_lua_selection *blocks, tl_status status)
+{
+    tl_lua_ok(L, blocks->owner->model, status);
+    lua_settop(L, 1);
+    return 1;
+}
+
+static int blocks_hide(lua_State *L)
+{
+    tl_lua_selection *b = self(L, 1, "hide");
+    return done(L, b, tl_blocks_hide(b->owner->model, b->ids, b->count, true));
+}
+
+static int blocks_show(lua_State *L)
+{
+    tl_lua_selection *b = self(L, 1, "show");
+    return done(L, b, tl_blocks_hide(b->owner->model, b->ids, b->count, false));
+}
+
+static int blocks_delete(lua_State *L)
+{
+    tl_lua_selection *b = self(L, 1, "delete");
+    return done(L, b, tl_blocks_delete(b->owner->model, b->ids, b->count));
+}
+
+static int blocks_free(lua_State *L)
+{
+    tl_lua_selection *b = self(L, 1, "free");
+    return done(L, b, tl_blocks_free(b->owner->model, b->ids, b->count));
+}
+
+static int blocks_reset_displacement(lua_State *L)
+{
+    tl_lua_selection *b = self(L, 1, "reset_displacement");
+    return done(L, b, tl_blocks_reset_displacement(b->owner->model, b->ids, b->count));
+}
+
+typedef struct fix_args {
+    int32_t x, y, z, rotation;
+} fix_args;
+
+static const tl_param fix_params[] = {
+    TL_PARAM(TL_PARAM_BOOL, fix_args, x, "", "Hold the motion along x.", .def = {0.0}),
+    TL_PARAM(TL_PARAM_BOOL, fix_args, y, "", "Hold the motion along y.", .def = {0.0}),
+    TL_PARAM(TL_PARAM_BOOL, fix_args, z, "", "Hold the motion along z.", .def = {0.0}),
+    TL_PARAM(TL_PARAM_BOOL, fix_args, rotation, "", "Hold the rotation.", .def = {0.0}),
+};
+
+const tl_lua_spec tl_lua_fix_spec = {"fix", fix_params, COUNT(fix_params), NULL};
+
+static int blocks_fix(lua_State *L)
+{
+    tl_lua_selection *b = self(L, 2, "fix");
+    fix_args args;
+    tl_lua_read(L, 2, &tl_lua_fix_spec, false, &args);
+    unsigned what = (args.x ? TL_FIX_X : 0u) | (args.y ? TL_FIX_Y : 0u) | (args.z ? TL_FIX_Z : 0u) |
+                    (args.rotation ? TL_FIX_ROTATION : 0u);
+    lua_pushnil(L);
+    if (!lua_istable(L, 2) || !lua_next(L, 2))
+        what = TL_FIX_ALL;
+    else if (what == 0)
+        return tl_lua_fail(L, "fix: nothing is to be held; to let blocks go use selection:free()");
+    return done(L, b, tl_blocks_fix(b->owner->model, b->ids, b->count, what));
+}
+
+static const tl_param set_params[] = {
+    TL_PARAM(TL_PARAM_REAL, tl_block_set, density, "kg/m3", "Density.", .min = 0.0, .max = INFINITY,
+             .flags = TL_PARAM_OPTIONAL | TL_PARAM_MIN_OPEN | TL_PARAM_MAX_OPEN),
+    TL_PARAM(TL_PARAM_STRING, tl_block_set, group, "", "Name of the group.",
+             .flags = TL_PARAM_OPTIONAL),
+    TL_PARAM(TL_PARAM_VEC3, tl_block_set, velocity, "m/s", "Velocity of the centroid.",
+             .flags = TL_PARAM_OPTIONAL),
+    TL_PARAM(TL_PARAM_VEC3, tl_block_set, angular_velocity, "rad/s", "Angular velocity.",
+             .flags = TL_PARAM_OPTIONAL),
+};
+
+const tl_lua_spec tl_lua_set_spec = {"set", set_params, COUNT(set_params), NULL};
+
+static int blocks_set(lua_State *L)
+{
+    tl_lua_selection *b = self(L, 2, "set");
+    tl_block_set set;
+    tl_lua_read(L, 2, &tl_lua_set_spec, false, &set);
+    if (isnan(set.density) && !set.group && isnan(set.velocity.x) && isnan(set.angular_velocity.x))
+        return tl_lua_fail(L, "set: give density, group, velocity or angular_velocity");
+    return done(L, b, tl_blocks_set(b->owner->model, b->ids, b->count, &set));
+}
+
+/* Bounds over all vertices of the blocks in their present place. */
+static int blocks_bounds(lua_State *L)
+{
+    tl_lua_selection *b = self(L, 1, "bounds");
+    if (b->count == 0)
+        return tl_lua_fail(L, "bounds: the selection is empty");
+    tl_block_mesh *mesh = mesh_push(L);
+    tl_vec3 low = {INFINITY, INFINITY, INFINITY}, high = {-INFINITY, -INFINITY, -INFINITY};
+    for (size_t i = 0; i < b->count; i++) {
+        tl_lua_ok(L, b->owner->model, tl_block_mesh_get(b->owner->model, b->ids[i], mesh));
+        for (size_t k = 0; k < mesh->vertex_count; k++) {
+            tl_vec3 v = mesh->vertices[k];
+            low = (tl_vec3){fmin(low.x, v.x), fmin(low.y, v.y), fmin(low.z, v.z)};
+            high = (tl_vec3){fmax(high.x, v.x), fmax(high.y, v.y), fmax(high.z, v.z)};
+        }
+        tl_block_mesh_free(mesh);
+        *mesh = (tl_block_mesh){0};
+    }
+    lua_createtable(L, 0, 2);
+    tl_lua_push_vec3(L, low);
+    lua_setfield(L, -2, "min");
+    tl_lua_push_vec3(L, high);
+    lua_setfield(L, -2, "max");
+    return 1;
+}
+
+static const luaL_Reg block_verbs[] = {
+    {"hide", blocks_hide},
+    {"show", blocks_show},
+    {"delete", blocks_delete},
+    {"fix", blocks_fix},
+    {"free", blocks_free},
+    {"reset_displacement", blocks_reset_displacement},
+    {"set", blocks_set},
+    {"bounds", blocks_bounds},
+    {NULL, NULL},
+};
+
+static const tl_lua_key block_extra_keys[] = {
+    {"vertices", "list of {x, y, z}", "Vertices in their present place."},
+    {"faces", "list of {vertices =, normal =, joint =}",
+     "Faces: vertex numbers from 1, outward normal, name of the joint plane or nil."},
+    {"neighbours", "list of blocks", "Blocks it is in contact with."},
+    {NULL, NULL, NULL},
+};
+
+const tl_lua_kind tl_lua_block_kind = {
+    .item = "block",
+    .items = "blocks",
+    .item_type = "talus.block",
+    .selection_type = "talus.blocks",
+    .fields = tl_block_fields,
+    .field = tl_block_field,
+    .extra = block_extra,
+    .extra_keys = block_extra_keys,
+    .verbs = block_verbs,
+};

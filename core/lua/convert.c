@@ -1,0 +1,311 @@
+/* convert.c - from Lua values to the kernel's named values and back.
+ *
+ * The checks proper (names, types, ranges) are the kernel's tl_args_read, from one table per
+ * function or plugin; here values only get the form it reads. Every buffer is a Lua userdata that
+ * hangs on one anchor table, so an error raised on the way leaks nothing. */
+#include "front.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---------------------------------------------------------------- conversion to values --- */
+
+/* Hangs the value on the top of the stack on the anchor table and pops it. */
+static void hold(lua_State *L, int anchor)
+{
+    lua_rawseti(L, anchor, (lua_Integer)lua_rawlen(L, anchor) + 1);
+}
+
+static void convert_other(lua_State *L, int anchor, tl_value *value, const char *text)
+{
+    value->type = TL_VALUE_OTHER;
+    value->text = lua_pushstring(L, text);
+    hold(L, anchor);
+}
+
+/* Reads row `row` of the list at `index`: three numbers. false, with what it is instead in `value`. */
+static bool convert_row(lua_State *L, int index, int anchor, lua_Integer row, double *out,
+                        tl_value *value)
+{
+    lua_rawgeti(L, index, row);
+    const char *fault = NULL;
+    if (lua_type(L, -1) != LUA_TTABLE)
+        fault = lua_pushfstring(L, "list whose row %I is %s", row, tl_lua_describe(L, -1));
+    else if (lua_rawlen(L, -1) != 3)
+        fault = lua_pushfstring(L, "list whose row %I has %I numbers, not 3", row,
+                                (lua_Integer)lua_rawlen(L, -1));
+    for (int i = 0; i < 3 && !fault; i++) {
+        if (lua_rawgeti(L, -1, i + 1) != LUA_TNUMBER)
+            fault = lua_pushfstring(L, "list whose row %I has %s in place %d", row,
+                                    tl_lua_describe(L, -1), i + 1);
+        else {
+            out[i] = lua_tonumber(L, -1);
+            lua_pop(L, 1);
+        }
+    }
+    if (fault)
+        convert_other(L, anchor, value, fault);
+    return !fault;
+}
+
+/* Numbers in a list of them; false, with what it is instead in `value`. */
+static bool convert_number(lua_State *L, int index, int anchor, lua_Integer i, double *out,
+                           tl_value *value)
+{
+    if (lua_rawgeti(L, index, i) == LUA_TNUMBER) {
+        *out = lua_tonumber(L, -1);
+        return true;
+    }
+    const char *fault = lua_pushfstring(L, "list whose item %I is %s", i, tl_lua_describe(L, -1));
+    convert_other(L, anchor, value, fault);
+    return false;
+}
+
+/* "function", "talus.block": the type of a value that is neither number, text nor list. */
+static const char *type_name(lua_State *L, int index)
+{
+    if (luaL_getmetafield(L, index, "__name") == LUA_TSTRING)
+        return lua_tostring(L, -1);
+    return luaL_typename(L, index);
+}
+
+static void convert_list(lua_State *L, int index, int anchor, tl_value *value)
+{
+    size_t length = (size_t)lua_rawlen(L, index), pairs = 0;
+    for (lua_pushnil(L); lua_next(L, index); lua_pop(L, 1))
+        pairs++;
+    if (pairs != length) {
+        convert_other(L, anchor, value, "table with names or gaps");
+        return;
+    }
+    bool rows = lua_rawgeti(L, index, 1) == LUA_TTABLE;
+    lua_pop(L, 1);
+    size_t width = rows ? 3 : 1;
+    double *data = lua_newuserdatauv(L, length * width * sizeof *data, 0);
+    hold(L, anchor);
+    for (size_t i = 0; i < length; i++) {
+        int top = lua_gettop(L);
+        lua_Integer place = (lua_Integer)i + 1;
+        bool good = rows ? convert_row(L, index, anchor, place, data + 3 * i, value)
+                         : convert_number(L, index, anchor, place, data + i, value);
+        lua_settop(L, top);
+        if (!good)
+            return;
+    }
+    value->type = rows ? TL_VALUE_POINTS : TL_VALUE_NUMBERS;
+    value->data = data;
+    value->count = length;
+}
+
+static void convert(lua_State *L, int index, int anchor, tl_value *value)
+{
+    int top = lua_gettop(L);
+    size_t length;
+    switch (lua_type(L, index)) {
+    case LUA_TNUMBER:
+        value->type = TL_VALUE_NUMBER;
+        value->number = lua_tonumber(L, index);
+        break;
+    case LUA_TBOOLEAN:
+        value->type = TL_VALUE_BOOL;
+        value->number = lua_toboolean(L, index);
+        break;
+    case LUA_TSTRING:
+        value->type = TL_VALUE_STRING;
+        value->text = lua_tolstring(L, index, &length);
+        if (strlen(value->text) != length)
+            convert_other(L, anchor, value, "string with a zero byte");
+        break;
+    case LUA_TTABLE: convert_list(L, index, anchor, value); break;
+    default: convert_other(L, anchor, value, type_name(L, index));
+    }
+    lua_settop(L, top);
+}
+
+static int compare_keys(const void *a, const void *b)
+{
+    return strcmp(((const tl_value *)a)->key, ((const tl_value *)b)->key);
+}
+
+static bool is_listed(const tl_lua_key *keys, const char *name)
+{
+    for (; keys && keys->name; keys++)
+        if (strcmp(keys->name, name) == 0)
+            return true;
+    return false;
+}
+
+void tl_lua_args(lua_State *L, int index, const char *context, const tl_lua_key *skip,
+                 tl_args *args)
+{
+    index = lua_absindex(L, index);
+    luaL_checkstack(L, 16, "too many values");
+    lua_newtable(L);
+    int anchor = lua_gettop(L);
+    *args = (tl_args){0};
+    if (lua_isnoneornil(L, index))
+        return;
+    if (!lua_istable(L, index))
+        tl_lua_fail(L, "%s: the parameters must be a table, not %s", context,
+                    tl_lua_describe(L, index));
+    size_t pairs = 0;
+    for (lua_pushnil(L); lua_next(L, index); lua_pop(L, 1)) {
+        if (lua_type(L, -2) != LUA_TSTRING)
+            tl_lua_fail(L, "%s: parameters are given by name (name = value); %s has none", context,
+                        tl_lua_describe(L, -1));
+        pairs++;
+    }
+    tl_value *values = lua_newuserdatauv(L, pairs * sizeof *values, 0);
+    hold(L, anchor);
+    for (lua_pushnil(L); lua_next(L, index); lua_pop(L, 1)) {
+        const char *key = lua_tostring(L, -2);
+        if (is_listed(skip, key))
+            continue;
+        values[args->count] = (tl_value){.key = key};
+        convert(L, lua_gettop(L), anchor, &values[args->count]);
+        args->count++;
+    }
+    /* Lua's order of keys changes from run to run; of two mistakes the same is reported. */
+    qsort(values, args->count, sizeof *values, compare_keys);
+    args->values = values;
+}
+
+/* ---------------------------------------------------------------- checked reading -------- */
+
+tl_lua_spec tl_lua_spec_of(const char *function, const tl_lua_key *keys)
+{
+    tl_lua_spec spec = {.context = function, .keys = keys};
+    spec.params = tl_function_params(function, &spec.count, NULL);
+    return spec;
+}
+
+/* Refuses keys that neither the parameters nor the further keys of `spec` know. The kernel would
+ * too, but its hint could not name the further keys. */
+static void check_keys(lua_State *L, const tl_lua_spec *spec, const tl_args *args)
+{
+    tl_lua_names names = {0};
+    for (size_t i = 0; i < spec->count; i++) {
+        tl_lua_names_add(&names, spec->params[i].name);
+        if (spec->params[i].alias)
+            tl_lua_names_add(&names, spec->params[i].alias);
+    }
+    size_t own = names.count;
+    for (const tl_lua_key *key = spec->keys; key && key->name; key++)
+        tl_lua_names_add(&names, key->name);
+    for (size_t i = 0; i < args->count; i++) {
+        bool known = false;
+        for (size_t k = 0; k < own && !known; k++)
+            known = strcmp(names.at[k], args->values[i].key) == 0;
+        if (!known)
+            tl_lua_unknown(L, lua_pushfstring(L, "%s: unknown parameter", spec->context),
+                           args->values[i].key, &names);
+    }
+}
+
+void tl_lua_read(lua_State *L, int index, const tl_lua_spec *spec, bool keep, void *out)
+{
+    tl_args args;
+    tl_lua_args(L, index, spec->context, spec->keys, &args);
+    check_keys(L, spec, &args);
+    tl_error error;
+    if (tl_args_read(spec->params, spec->count, sizeof(tl_param), &args, keep, out, spec->context,
+                     &error) != TL_OK)
+        tl_lua_raise(L, &error);
+}
+
+void tl_lua_read_one(lua_State *L, int index, const tl_lua_spec *spec, const char *key, void *out)
+{
+    index = lua_absindex(L, index);
+    lua_createtable(L, 0, 1);
+    if (!lua_isnoneornil(L, index)) {
+        lua_pushvalue(L, index);
+        lua_setfield(L, -2, key);
+    }
+    /* A single value is always wanted: one parameter, read as if the table had no other. */
+    size_t i = 0;
+    while (i + 1 < spec->count && strcmp(spec->params[i].name, key) != 0)
+        i++;
+    tl_param *param = lua_newuserdatauv(L, sizeof *param, 0);
+    *param = spec->params[i];
+    param->flags |= TL_PARAM_REQUIRED;
+    tl_lua_spec one = {.context = spec->context, .params = param, .count = 1};
+    tl_lua_read(L, -2, &one, false, out);
+}
+
+const char *tl_lua_text(lua_State *L, int index, const char *function, const char *what)
+{
+    size_t length = 0;
+    const char *text = lua_type(L, index) == LUA_TSTRING ? lua_tolstring(L, index, &length) : NULL;
+    if (!text || strlen(text) != length)
+        tl_lua_fail(L, "%s: %s must be a string, not %s", function, what,
+                    text ? "a string with a zero byte" : tl_lua_describe(L, index));
+    return text;
+}
+
+void tl_lua_arity(lua_State *L, int most, const char *function)
+{
+    if (lua_gettop(L) > most)
+        tl_lua_fail(L, "%s: %d argument%s too many; the first is %s", function,
+                    lua_gettop(L) - most, lua_gettop(L) - most == 1 ? "" : "s",
+                    tl_lua_describe(L, most + 1));
+}
+
+const char *tl_lua_describe(lua_State *L, int index)
+{
+    switch (lua_type(L, index)) {
+    case LUA_TNONE:
+    case LUA_TNIL: return "nil";
+    case LUA_TBOOLEAN: return lua_toboolean(L, index) ? "true" : "false";
+    case LUA_TNUMBER:
+        if (isnan(lua_tonumber(L, index)))
+            return "not a number (NaN)";
+        lua_pushvalue(L, index);
+        return lua_pushfstring(L, "the number %s", lua_tostring(L, -1));
+    case LUA_TSTRING: return lua_pushfstring(L, "the string '%s'", lua_tostring(L, index));
+    default: return lua_pushfstring(L, "a %s", type_name(L, lua_absindex(L, index)));
+    }
+}
+
+/* ---------------------------------------------------------------- back to Lua ------------ */
+
+void tl_lua_push_numbers(lua_State *L, const double *numbers, size_t count)
+{
+    lua_createtable(L, (int)count, 0);
+    for (size_t i = 0; i < count; i++) {
+        lua_pushnumber(L, numbers[i]);
+        lua_rawseti(L, -2, (lua_Integer)i + 1);
+    }
+}
+
+void tl_lua_push_vec3(lua_State *L, tl_vec3 v)
+{
+    tl_lua_push_numbers(L, (const double[]){v.x, v.y, v.z}, 3);
+}
+
+void tl_lua_push_field(lua_State *L, tl_field_kind kind, const tl_field_value *value)
+{
+    static const char *const components[] = {"xx", "yy", "zz", "xy", "yz", "zx"};
+    switch (kind) {
+    case TL_FIELD_SCALAR: lua_pushnumber(L, value->number[0]); break;
+    case TL_FIELD_COUNT: lua_pushinteger(L, (lua_Integer)value->number[0]); break;
+    case TL_FIELD_BOOL: lua_pushboolean(L, value->number[0] != 0.0); break;
+    case TL_FIELD_VEC3: tl_lua_push_numbers(L, value->number, 3); break;
+    case TL_FIELD_QUAT: tl_lua_push_numbers(L, value->number, 4); break;
+    case TL_FIELD_SYM3:
+        lua_createtable(L, 0, 6);
+        for (int i = 0; i < 6; i++) {
+            lua_pushnumber(L, value->number[i]);
+            lua_setfield(L, -2, components[i]);
+        }
+        break;
+    case TL_FIELD_TEXT: lua_pushstring(L, value->text); break;
+    case TL_FIELD_IDS:
+        lua_createtable(L, 2, 0);
+        for (int i = 0; i < 2; i++) {
+            lua_pushinteger(L, (lua_Integer)value->number[i]);
+            lua_rawseti(L, -2, i + 1);
+        }
+        break;
+    }
+}

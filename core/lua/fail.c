@@ -1,0 +1,69 @@
+/* fail.c - how the front end raises errors: "file:line: " of the script, then one sentence. */
+#include "front.h"
+
+#include <string.h>
+
+/* Pushes "file:line: " of the nearest Lua code up the stack, so that a call through pcall or a
+ * metamethod is placed too. */
+static void push_where(lua_State *L)
+{
+    lua_Debug record;
+    for (int level = 0; lua_getstack(L, level, &record); level++) {
+        lua_getinfo(L, "Sl", &record);
+        if (record.currentline > 0) {
+            lua_pushfstring(L, "%s:%d: ", record.short_src, record.currentline);
+            return;
+        }
+    }
+    lua_pushliteral(L, "");
+}
+
+int tl_lua_fail(lua_State *L, const char *format, ...)
+{
+    luaL_checkstack(L, 8, "too many values");
+    push_where(L);
+    va_list arguments;
+    va_start(arguments, format);
+    lua_pushvfstring(L, format, arguments);
+    va_end(arguments);
+    lua_concat(L, 2);
+    return lua_error(L);
+}
+
+int tl_lua_raise(lua_State *L, const tl_error *error)
+{
+    return tl_lua_fail(L, "%s", error->text);
+}
+
+void tl_lua_names_add(tl_lua_names *names, const char *name)
+{
+    if (names->count < TL_LUA_NAMES)
+        names->at[names->count++] = name;
+}
+
+void tl_lua_names_list(tl_lua_names *names, const char *const *list)
+{
+    for (; list && *list; list++)
+        tl_lua_names_add(names, *list);
+}
+
+void tl_lua_names_fields(tl_lua_names *names, const tl_field *fields, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        tl_lua_names_add(names, fields[i].name);
+}
+
+int tl_lua_unknown(lua_State *L, const char *what, const char *word, const tl_lua_names *names)
+{
+    const char *nearest = tl_nearest_name(word, names->at, names->count);
+    if (nearest)
+        return tl_lua_fail(L, "%s '%s'; did you mean '%s'?", what, word, nearest);
+    luaL_Buffer list;
+    luaL_buffinit(L, &list);
+    for (size_t i = 0; i < names->count; i++) {
+        luaL_addstring(&list, i ? ", " : "");
+        luaL_addstring(&list, names->at[i]);
+    }
+    luaL_pushresult(&list);
+    return tl_lua_fail(L, "%s '%s' (known: %s)", what, word, lua_tostring(L, -1));
+}

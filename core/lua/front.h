@@ -1,0 +1,193 @@
+/* front.h - what the parts of the Lua front end share.
+ *
+ * Objects. A model is a userdata that owns a tl_model. A block or a contact is an *item*: a userdata
+ * with the model's userdata as its user value (so the model outlives it) and an id. A selection is
+ * a userdata with a list of ids, likewise. Items of either type share one implementation, driven
+ * by a tl_lua_kind.
+ *
+ * Errors. Everything here may raise a Lua error, so nothing is held in a local variable that only
+ * C could free: memory that must survive a call is a userdata on the stack or owned by one. */
+#ifndef TL_LUA_FRONT_H
+#define TL_LUA_FRONT_H
+
+#include <lauxlib.h>
+#include <lua.h>
+#include <talus/talus.h>
+
+/* ---- what a state was asked to do by options or environment: module.c ---- */
+
+typedef struct tl_lua_options {
+    int64_t threads; /* default of talus.model; 0: not set */
+    bool quiet;      /* no status line, no remarks */
+} tl_lua_options;
+
+/* The options of a Lua state, made when first asked for; lives as long as the state. */
+tl_lua_options *tl_lua_options_of(lua_State *L);
+/* Opens the module `talus`. */
+TL_API int luaopen_talus(lua_State *L);
+
+/* ---- errors: fail.c ---- */
+
+/* Raises "file:line: " (of the nearest Lua code up the stack) and a formatted sentence; formats as
+ * of lua_pushfstring. The int is for `return tl_lua_fail(...)`. */
+int tl_lua_fail(lua_State *L, const char *format, ...);
+/* Raises the sentence of a failed kernel call. */
+int tl_lua_raise(lua_State *L, const tl_error *error);
+
+/* A list of known names, from which the nearest to a misspelt word is found. */
+#define TL_LUA_NAMES 128
+typedef struct tl_lua_names {
+    const char *at[TL_LUA_NAMES];
+    size_t count;
+} tl_lua_names;
+
+void tl_lua_names_add(tl_lua_names *names, const char *name);
+void tl_lua_names_list(tl_lua_names *names, const char *const *list);
+void tl_lua_names_fields(tl_lua_names *names, const tl_field *fields, size_t count);
+/* Raises "WHAT 'WORD' ...; did you mean 'NEAREST'?" or, when none is near, lists the known names. */
+int tl_lua_unknown(lua_State *L, const char *what, const char *word, const tl_lua_names *names);
+
+/* ---- conversion: convert.c ---- */
+
+/* A key of a table of arguments that a tl_param cannot express. */
+typedef struct tl_lua_key {
+    const char *name; /* NULL ends a list */
+    const char *type; /* "function(model)" */
+    const char *doc;
+} tl_lua_key;
+
+/* A table of arguments: what may stand in it, and how it is called in messages. */
+typedef struct tl_lua_spec {
+    const char *context; /* "solve" */
+    const tl_param *params;
+    size_t count;
+    const tl_lua_key *keys; /* further keys, left to the caller; NULL: none */
+} tl_lua_spec;
+
+/* The spec of a kernel function. */
+tl_lua_spec tl_lua_spec_of(const char *function, const tl_lua_key *keys);
+/* Converts the table at `index` (nil or none: empty) for the kernel, and pushes one value that
+ * must stay on the stack as long as `args` is used. Keys listed in `skip` are left out. */
+void tl_lua_args(lua_State *L, int index, const char *context, const tl_lua_key *skip,
+                 tl_args *args);
+/* Checks the table at `index` against `spec` and fills `out`; see tl_args_read. Pushes one value
+ * that must stay on the stack as long as strings in `out` are used. */
+void tl_lua_read(lua_State *L, int index, const tl_lua_spec *spec, bool keep, void *out);
+/* The same for one value at `index`, given the name `key`. */
+void tl_lua_read_one(lua_State *L, int index, const tl_lua_spec *spec, const char *key, void *out);
+
+/* Raises unless the argument is a string without a zero byte. */
+const char *tl_lua_text(lua_State *L, int index, const char *function, const char *what);
+/* Raises when more than `most` arguments were given (the object itself counted). */
+void tl_lua_arity(lua_State *L, int most, const char *function);
+/* "a number", "nil", "a selection of blocks": what the value at `index` is; may push a string. */
+const char *tl_lua_describe(lua_State *L, int index);
+
+void tl_lua_push_numbers(lua_State *L, const double *numbers, size_t count);
+void tl_lua_push_vec3(lua_State *L, tl_vec3 v);
+/* Pushes a field's value as Lua sees it. */
+void tl_lua_push_field(lua_State *L, tl_field_kind kind, const tl_field_value *value);
+
+/* ---- models: model.c ---- */
+
+typedef struct tl_lua_model {
+    tl_model *model;
+} tl_lua_model;
+
+/* Pushes the function talus.model and makes the metatable of models. */
+void tl_lua_model_open(lua_State *L);
+/* The model at index 1; raises, naming the method, when it is something else. */
+tl_model *tl_lua_model_of(lua_State *L, const char *method);
+/* The model of an item or a selection; raises when it was closed (as the Lua state ends). */
+tl_model *tl_lua_living(lua_State *L, const tl_lua_model *owner);
+/* Raises the model's error unless `status` is TL_OK. */
+void tl_lua_ok(lua_State *L, tl_model *model, tl_status status);
+
+extern const tl_lua_key tl_lua_insitu_keys[];
+
+/* ---- running: run.c ---- */
+
+extern const tl_lua_key tl_lua_solve_keys[];
+int tl_lua_cycle(lua_State *L);
+int tl_lua_solve(lua_State *L);
+/* Prints a remark of the kernel on standard error. */
+void tl_lua_log(void *user, const char *text);
+
+/* ---- items and selections: item.c, selection.c ---- */
+
+/* What differs between blocks and contacts. */
+typedef struct tl_lua_kind {
+    const char *item, *items;               /* "block", "blocks": words in messages */
+    const char *item_type, *selection_type; /* names of the metatables */
+    const tl_field *(*fields)(size_t *count);
+    tl_status (*field)(tl_model *model, tl_id id, size_t index, tl_field_value *value);
+    /* Pushes a field that `fields` cannot express; false when it has none of that name. The item is
+     * at index 1 and its model's userdata at index 3. */
+    bool (*extra)(lua_State *L, tl_model *model, tl_id id, const char *name);
+    const tl_lua_key *extra_keys;
+    const luaL_Reg *verbs; /* methods of selections beyond those both types have */
+} tl_lua_kind;
+
+typedef struct tl_lua_item {
+    const tl_lua_kind *kind;
+    tl_lua_model *owner;
+    tl_id id;
+} tl_lua_item;
+
+typedef struct tl_lua_selection {
+    const tl_lua_kind *kind;
+    tl_lua_model *owner;
+    tl_id *ids; /* from malloc */
+    size_t count;
+} tl_lua_selection;
+
+/* Makes the metatables of a kind's items and selections. */
+void tl_lua_item_open(lua_State *L, const tl_lua_kind *kind);
+void tl_lua_selection_open(lua_State *L, const tl_lua_kind *kind);
+/* Pushes an item; `model_index` is where the model's userdata is. */
+void tl_lua_item_push(lua_State *L, const tl_lua_kind *kind, int model_index, tl_id id);
+/* Pushes an empty selection, to be filled with a list that then belongs to it. */
+tl_lua_selection *tl_lua_selection_push(lua_State *L, const tl_lua_kind *kind, int model_index);
+/* The selection at `index`, raising when it is something else. */
+tl_lua_selection *tl_lua_selection_of(lua_State *L, int index, const tl_lua_kind *kind,
+                                      const char *method);
+/* Keeps those of the selection at `selection_index` for which the function at `function_index`
+ * answers true. */
+void tl_lua_selection_filter(lua_State *L, int selection_index, int function_index);
+
+/* ---- blocks and contacts: block.c, contact.c ---- */
+
+extern const tl_lua_kind tl_lua_block_kind, tl_lua_contact_kind;
+extern const tl_lua_spec tl_lua_blocks_spec, tl_lua_contacts_spec, tl_lua_fix_spec, tl_lua_set_spec;
+/* Methods of the model. */
+int tl_lua_blocks(lua_State *L);
+int tl_lua_contacts(lua_State *L);
+
+/* ---- help: help.c, topics.c ---- */
+
+/* One function in the help: how it is called, and where its parameters are declared. */
+typedef struct tl_lua_topic {
+    const char *name, *usage, *doc;
+    const char *function;     /* of the kernel, whose parameters it takes; or NULL */
+    const tl_lua_spec *spec;  /* of the front end; or NULL */
+    const tl_lua_key *keys;   /* further parameters; or NULL */
+    const tl_lua_kind *kind;  /* what a selection it gives is of; or NULL */
+    const tl_lua_key *verbs;  /* methods of what it gives; or NULL */
+    const tl_kind_type *type; /* plugins it takes by name; or NULL */
+} tl_lua_topic;
+
+/* All functions in the order of the reference; the last has no name. */
+extern const tl_lua_topic tl_lua_topics[];
+
+/* Prints help on a topic, or the overview for NULL; false when there is none of that name, with a
+ * sentence in `error`. */
+bool tl_lua_help(const char *topic, tl_error *error);
+/* Prints what plugins are loaded and what was refused. */
+void tl_lua_help_plugins(void);
+
+/* ---- undeclared globals: strict.c ---- */
+
+/* From now on reading a global that was never assigned raises. */
+void tl_lua_strict(lua_State *L);
+
+#endif

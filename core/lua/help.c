@@ -1,0 +1,275 @@
+/* help.c - `talus help` and `talus plugins`: printed from the tables that check what a script gives,
+ * so that the help cannot say otherwise than the check. */
+#include "front.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#define WIDTH 88
+#define NAME_COLUMNS 18
+
+/* Prints a text from column `indent` on, broken at spaces; the cursor is at column `at`. */
+static void print_wrapped(const char *text, int indent, int at)
+{
+    while (*text) {
+        int length = (int)strcspn(text, " ");
+        if (at > indent && at + length > WIDTH) {
+            putchar('\n');
+            at = 0;
+        }
+        at += printf("%*s%.*s", at < indent ? indent - at : 0, "", length, text);
+        text += length;
+        if (*text == ' ') {
+            text++;
+            at += *text && at < WIDTH ? printf(" ") : 0;
+        }
+    }
+    putchar('\n');
+}
+
+/* A name in its column, and a text beside it. */
+static void print_row(const char *name, const char *text)
+{
+    int at = printf("  %-*s", NAME_COLUMNS, name);
+    if (at > NAME_COLUMNS + 2) {
+        putchar('\n');
+        at = 0;
+    }
+    print_wrapped(text, NAME_COLUMNS + 2, at);
+}
+
+/* ---------------------------------------------------------------- parameters ------------- */
+
+static const tl_param *param_at(const tl_param *params, size_t stride, size_t i)
+{
+    return (const tl_param *)(const void *)((const char *)params + i * stride);
+}
+
+static void default_text(const tl_param *param, char *text, size_t size)
+{
+    const double *d = param->def;
+    if (param->flags & TL_PARAM_REQUIRED)
+        snprintf(text, size, "required");
+    else if (param->flags & TL_PARAM_OPTIONAL || param->type == TL_PARAM_POINTS)
+        snprintf(text, size, "may be left out");
+    else if (param->type == TL_PARAM_BOOL)
+        snprintf(text, size, "default %s", d[0] != 0.0 ? "true" : "false");
+    else if (param->type == TL_PARAM_ENUM)
+        snprintf(text, size, "default \"%s\"", param->choices[(int)d[0]]);
+    else if (param->type == TL_PARAM_VEC3)
+        snprintf(text, size, "default {%g, %g, %g}", d[0], d[1], d[2]);
+    else if (param->type == TL_PARAM_STRING)
+        snprintf(text, size, "default \"%s\"", param->def_text ? param->def_text : "");
+    else
+        snprintf(text, size, "default %.10g", d[0]);
+}
+
+/* "number, deg, in [0, 90), default 0", or the choices of an enum. */
+static void type_text(const tl_param *param, char *text, size_t size)
+{
+    static const char *const types[] = {"number", "whole number",   "true or false",  "one of",
+                                        "vector", "text in quotes", "list of vectors"};
+    char range[80] = "", given[120];
+    size_t n = (size_t)snprintf(text, size, "%s", types[param->type]);
+    for (size_t i = 0; param->type == TL_PARAM_ENUM && param->choices[i] && n < size; i++)
+        n += (size_t)snprintf(text + n, size - n, "%s \"%s\"", i ? "," : "", param->choices[i]);
+    tl_param_range(param, range, sizeof range);
+    default_text(param, given, sizeof given);
+    bool interval = range[0] == '[' || range[0] == '(';
+    if (n < size)
+        snprintf(text + n, size - n, "%s%s%s%s%s, %s", param->unit && param->unit[0] ? ", " : "",
+                 param->unit ? param->unit : "", range[0] ? ", " : "", interval ? "in " : "", range,
+                 given);
+}
+
+static void print_params(const tl_param *params, size_t count, size_t stride)
+{
+    for (size_t i = 0; i < count; i++) {
+        const tl_param *param = param_at(params, stride, i);
+        char name[80], text[400];
+        snprintf(name, sizeof name, "%s%s%s", param->name, param->alias ? ", " : "",
+                 param->alias ? param->alias : "");
+        type_text(param, text, sizeof text);
+        print_row(name, text);
+        print_wrapped(param->doc ? param->doc : "", NAME_COLUMNS + 2, 0);
+    }
+}
+
+static void print_keys(const tl_lua_key *keys)
+{
+    for (; keys && keys->name; keys++) {
+        print_row(keys->name, keys->type[0] ? keys->type : keys->doc);
+        if (keys->type[0])
+            print_wrapped(keys->doc, NAME_COLUMNS + 2, 0);
+    }
+}
+
+/* ---------------------------------------------------------------- functions -------------- */
+
+static const char *topic_doc(const tl_lua_topic *topic)
+{
+    const char *doc = topic->doc;
+    if (topic->function)
+        tl_function_params(topic->function, NULL, &doc);
+    return doc;
+}
+
+static void print_kinds(tl_kind_type type)
+{
+    const tl_kind *kind;
+    for (size_t i = 0; (kind = tl_plugin_kind(type, i)) != NULL; i++)
+        print_row(kind->name, kind->doc);
+}
+
+static void print_fields(const tl_lua_kind *kind)
+{
+    size_t count;
+    const tl_field *fields = kind->fields(&count);
+    printf("\nFields of a %s:\n", kind->item);
+    for (size_t i = 0; i < count; i++) {
+        char text[300];
+        bool unit = fields[i].unit && fields[i].unit[0];
+        snprintf(text, sizeof text, "%s%s%s%s", fields[i].doc, unit ? " (" : "",
+                 unit ? fields[i].unit : "", unit ? ")" : "");
+        print_row(fields[i].name, text);
+    }
+    print_keys(kind->extra_keys);
+}
+
+static const char *plugin_word(tl_kind_type type)
+{
+    static const char *const words[] = {"law", "damping", "generator"};
+    return words[type];
+}
+
+static void print_topic(const tl_lua_topic *topic)
+{
+    printf("%s\n", topic->usage);
+    print_wrapped(topic_doc(topic), 2, 0);
+    size_t count = topic->spec ? topic->spec->count : 0;
+    const tl_param *params = topic->spec ? topic->spec->params : NULL;
+    if (topic->function)
+        params = tl_function_params(topic->function, &count, NULL);
+    const tl_lua_key *keys = topic->spec ? topic->spec->keys : topic->keys;
+    if (count || keys)
+        puts("\nParameters:");
+    print_params(params, count, sizeof(tl_param));
+    print_keys(keys);
+    if (topic->kind)
+        print_fields(topic->kind);
+    if (topic->verbs) {
+        puts(topic->kind ? "\nMethods of the selection:" : "\nIt gives:");
+        print_keys(topic->verbs);
+    }
+    if (topic->type) {
+        printf("\nThe %ss loaded (talus help NAME tells their parameters):\n",
+               plugin_word(*topic->type));
+        print_kinds(*topic->type);
+    }
+}
+
+static void print_kind(const tl_kind *kind)
+{
+    printf("%s '%s'\n", plugin_word((tl_kind_type)kind->type), kind->name);
+    print_wrapped(kind->doc ? kind->doc : "", 2, 0);
+    if (kind->param_count)
+        puts("\nParameters:");
+    print_params(kind->params, kind->param_count, kind->param_stride);
+    if (kind->state_count)
+        puts(kind->type == TL_KIND_LAW ? "\nStates of a contact point:" : "\nStates:");
+    for (uint32_t i = 0; i < kind->state_count; i++) {
+        const char *at = (const char *)kind->states + i * (size_t)kind->state_stride;
+        const tl_state *state = (const tl_state *)(const void *)at;
+        print_row(state->name, state->doc ? state->doc : "");
+    }
+}
+
+static void print_overview(void)
+{
+    printf("Talus %s: three-dimensional distinct elements for jointed rock\n\n", TALUS_VERSION);
+    puts("  talus SCRIPT.lua [ARGUMENT...]   run a script\n"
+         "  talus                            type Lua line by line\n"
+         "  talus -e CHUNK                   run a piece of Lua\n"
+         "  talus help [TOPIC]               this page, a function, or a plugin\n"
+         "  talus plugins                    what is loaded, and what was refused and why\n"
+         "  talus --version                  version, plugin interface, compiler, build\n"
+         "\n"
+         "  --threads N      threads of a model that does not say itself\n"
+         "  --quiet          no status line and no remarks\n"
+         "  --plugin PATH    load one more plugin\n"
+         "  -v               show the calls that led to an error\n"
+         "\nFunctions:");
+    for (const tl_lua_topic *topic = tl_lua_topics; topic->name; topic++)
+        print_row(topic->name, topic_doc(topic));
+    for (int type = TL_KIND_LAW; type <= TL_KIND_GENERATOR; type++) {
+        static const char *const titles[] = {"Laws", "Dampings", "Generators"};
+        printf("\n%s:\n", titles[type]);
+        print_kinds((tl_kind_type)type);
+    }
+}
+
+/* ---------------------------------------------------------------- entry ------------------ */
+
+static bool unknown_topic(const char *word, tl_error *error)
+{
+    tl_lua_names names = {0};
+    for (const tl_lua_topic *topic = tl_lua_topics; topic->name; topic++)
+        tl_lua_names_add(&names, topic->name);
+    for (int type = TL_KIND_LAW; type <= TL_KIND_GENERATOR; type++) {
+        const tl_kind *kind;
+        for (size_t i = 0; (kind = tl_plugin_kind((tl_kind_type)type, i)) != NULL; i++)
+            tl_lua_names_add(&names, kind->name);
+    }
+    const char *nearest = tl_nearest_name(word, names.at, names.count);
+    error->status = TL_E_NOT_FOUND;
+    snprintf(error->text, sizeof error->text, "there is no help on '%s'; %s%s%s", word,
+             nearest ? "did you mean '" : "`talus help` lists all topics", nearest ? nearest : "",
+             nearest ? "'?" : "");
+    return false;
+}
+
+bool tl_lua_help(const char *word, tl_error *error)
+{
+    int found = 0;
+    if (!word) {
+        print_overview();
+        return true;
+    }
+    for (const tl_lua_topic *topic = tl_lua_topics; topic->name; topic++)
+        if (strcmp(topic->name, word) == 0 && ++found)
+            print_topic(topic);
+    for (int type = TL_KIND_LAW; type <= TL_KIND_GENERATOR; type++) {
+        const tl_kind *kind = tl_plugin_find((tl_kind_type)type, word);
+        if (kind && found++)
+            putchar('\n');
+        if (kind)
+            print_kind(kind);
+    }
+    return found || unknown_topic(word, error);
+}
+
+void tl_lua_help_plugins(void)
+{
+    size_t count = tl_plugin_record_count(), refused = 0;
+    for (size_t i = 0; i < count; i++) {
+        tl_plugin_record record = tl_plugin_record_at(i);
+        if (!record.plugin) {
+            refused++;
+            continue;
+        }
+        printf("%s %s  %s\n", record.plugin->id, record.plugin->version, record.path);
+        for (uint32_t k = 0; k < record.plugin->kind_count; k++) {
+            const char *at =
+                (const char *)record.plugin->kinds + k * (size_t)record.plugin->kind_stride;
+            const tl_kind *kind = (const tl_kind *)(const void *)at;
+            printf("    %s '%s'\n", plugin_word((tl_kind_type)kind->type), kind->name);
+        }
+    }
+    if (count == refused)
+        puts("No plugin is loaded; set TALUS_PLUGIN_PATH to the folder they are in.");
+    for (size_t i = 0; i < count && refused; i++) {
+        tl_plugin_record record = tl_plugin_record_at(i);
+        if (!record.plugin)
+            printf("refused: %s: %s\n", record.path, record.reason);
+    }
+}

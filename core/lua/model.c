@@ -1,0 +1,366 @@
+/* model.c - the model as a Lua object: talus.model, its fields and its short methods. */
+#include "front.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define MODEL_TYPE "talus.model"
+
+tl_model *tl_lua_model_of(lua_State *L, const char *method)
+{
+    tl_lua_model *object = luaL_testudata(L, 1, MODEL_TYPE);
+    if (!object)
+        tl_lua_fail(L, "%s: called on %s; write model:%s(...)", method, tl_lua_describe(L, 1),
+                    method);
+    return tl_lua_living(L, object);
+}
+
+tl_model *tl_lua_living(lua_State *L, const tl_lua_model *owner)
+{
+    if (!owner->model)
+        tl_lua_fail(L, "the model was closed");
+    return owner->model;
+}
+
+void tl_lua_ok(lua_State *L, tl_model *model, tl_status status)
+{
+    if (status != TL_OK)
+        tl_lua_raise(L, tl_model_error(model));
+}
+
+/* ---------------------------------------------------------------- life ------------------- */
+
+/* Default number of threads: of --threads, else of the environment, else 1. */
+static void default_threads(lua_State *L, int64_t *threads)
+{
+    const char *text = getenv("TALUS_THREADS");
+    tl_lua_options *options = tl_lua_options_of(L);
+    if (options->threads > 0)
+        *threads = options->threads;
+    else if (text && text[0]) {
+        char *end;
+        long number = strtol(text, &end, 10);
+        if (*end || number < 1 || number > 256)
+            tl_lua_fail(L,
+                        "the environment's TALUS_THREADS = '%s' is not a whole number in [1, 256]",
+                        text);
+        *threads = number;
+    }
+}
+
+static int model_create(lua_State *L)
+{
+    tl_lua_arity(L, 1, "talus.model");
+    lua_settop(L, 1);
+    tl_lua_spec spec = tl_lua_spec_of("model", NULL);
+    spec.context = "talus.model";
+    tl_model_config config;
+    tl_lua_read(L, 1, &spec, false, &config);
+    if (!lua_istable(L, 1) || lua_getfield(L, 1, "threads") == LUA_TNIL)
+        default_threads(L, &config.threads);
+    tl_lua_model *object = lua_newuserdatauv(L, sizeof *object, 0);
+    object->model = NULL;
+    luaL_setmetatable(L, MODEL_TYPE);
+    tl_error error;
+    if (tl_model_create(&config, &object->model, &error) != TL_OK)
+        return tl_lua_raise(L, &error);
+    tl_model_log(object->model, tl_lua_log, tl_lua_options_of(L));
+    return 1;
+}
+
+static int model_collect(lua_State *L)
+{
+    tl_lua_model *object = luaL_checkudata(L, 1, MODEL_TYPE);
+    tl_model_destroy(object->model);
+    object->model = NULL;
+    return 0;
+}
+
+static int model_text(lua_State *L)
+{
+    tl_model *model = tl_lua_model_of(L, "tostring");
+    lua_pushfstring(L, "model of %I blocks", (lua_Integer)tl_block_count(model));
+    return 1;
+}
+
+/* ---------------------------------------------------------------- methods ---------------- */
+
+static void push_summary(lua_State *L, const tl_generate_summary *summary)
+{
+    const struct {
+        const char *name;
+        size_t count;
+    } counts[] = {{"before", summary->before},
+                  {"after", summary->after},
+                  {"cuts", summary->cuts},
+                  {"refused", summary->refused},
+                  {"coincident", summary->coincident}};
+    const struct {
+        const char *name;
+        double number;
+    } numbers[] = {{"smallest_volume", summary->smallest_volume},
+                   {"smallest_edge", summary->smallest_edge},
+                   {"smallest_face", summary->smallest_face},
+                   {"volume_error", summary->volume_error}};
+    lua_createtable(L, 0, 9);
+    for (size_t i = 0; i < sizeof counts / sizeof counts[0]; i++) {
+        lua_pushinteger(L, (lua_Integer)counts[i].count);
+        lua_setfield(L, -2, counts[i].name);
+    }
+    for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++) {
+        lua_pushnumber(L, numbers[i].number);
+        lua_setfield(L, -2, numbers[i].name);
+    }
+}
+
+static int model_generate(lua_State *L)
+{
+    tl_model *model = tl_lua_model_of(L, "generate");
+    tl_lua_arity(L, 3, "generate");
+    lua_settop(L, 3);
+    const char *generator = tl_lua_text(L, 2, "generate", "the generator's name");
+    tl_args args;
+    tl_lua_args(L, 3, lua_pushfstring(L, "generate '%s'", generator), NULL, &args);
+    tl_generate_summary summary;
+    tl_lua_ok(L, model, tl_generate(model, generator, &args, &summary));
+    push_summary(L, &summary);
+    return 1;
+}
+
+static int model_joint(lua_State *L)
+{
+    tl_model *model = tl_lua_model_of(L, "joint");
+    tl_lua_arity(L, 4, "joint");
+    const char *joint = tl_lua_text(L, 2, "joint", "the joint's name");
+    const char *law = NULL;
+    int table = 3;
+    if (lua_gettop(L) >= 4 || lua_type(L, 3) == LUA_TSTRING) {
+        law = tl_lua_text(L, 3, "joint", "the law's name");
+        table = 4;
+    }
+    lua_settop(L, 4);
+    const char *context = lua_pushfstring(L, "joint '%s'", joint);
+    if (!law && !lua_istable(L, 3))
+        tl_lua_fail(L, "%s: give a law's name, or a table of properties to change, not %s", context,
+                    tl_lua_describe(L, 3));
+    tl_args args;
+    tl_lua_args(L, table, context, NULL, &args);
+    tl_lua_ok(L, model, tl_joint_law(model, joint, law, &args));
+    return 0;
+}
+
+static int model_damping(lua_State *L)
+{
+    tl_model *model = tl_lua_model_of(L, "damping");
+    tl_lua_arity(L, 3, "damping");
+    lua_settop(L, 3);
+    const char *damping = tl_lua_text(L, 2, "damping", "the damping's name");
+    tl_args args;
+    tl_lua_args(L, 3, lua_pushfstring(L, "damping '%s'", damping), NULL, &args);
+    tl_lua_ok(L, model, tl_model_damping(model, damping, &args));
+    return 0;
+}
+
+const tl_lua_key tl_lua_insitu_keys[] = {
+    {"stress", "{xx =, yy =, zz =, xy =, yz =, zx =}",
+     "Stress at the height of `at`, Pa, tension positive; components left out are 0."},
+    {"gradient", "{xx =, yy =, zz =, xy =, yz =, zx =}",
+     "Change of the stress with height z, Pa/m; components left out are 0."},
+    {NULL, NULL, NULL},
+};
+
+static int model_insitu(lua_State *L)
+{
+    tl_model *model = tl_lua_model_of(L, "insitu");
+    tl_lua_arity(L, 2, "insitu");
+    lua_settop(L, 2);
+    tl_insitu insitu = {0};
+    tl_lua_spec spec = tl_lua_spec_of("insitu", tl_lua_insitu_keys);
+    tl_lua_read(L, 2, &spec, false, &insitu);
+    if (!lua_istable(L, 2))
+        return tl_lua_fail(L, "insitu: give the parameters in a table");
+    tl_lua_spec tensor = tl_lua_spec_of("tensor", NULL);
+    bool stress = lua_getfield(L, 2, "stress") != LUA_TNIL;
+    tensor.context = "insitu, stress";
+    tl_lua_read(L, -1, &tensor, false, &insitu.stress);
+    bool gradient = lua_getfield(L, 2, "gradient") != LUA_TNIL;
+    tensor.context = "insitu, gradient";
+    tl_lua_read(L, -1, &tensor, false, &insitu.gradient);
+    if (!stress && !gradient)
+        return tl_lua_fail(L, "insitu: give stress = {xx = ...}, gradient = {zz = ...} or both");
+    tl_lua_ok(L, model, tl_model_insitu(model, &insitu));
+    return 0;
+}
+
+static int model_timestep(lua_State *L)
+{
+    tl_model *model = tl_lua_model_of(L, "timestep");
+    tl_lua_arity(L, 2, "timestep");
+    lua_settop(L, 2);
+    tl_timestep timestep;
+    tl_lua_spec spec = tl_lua_spec_of("timestep", NULL);
+    tl_lua_read(L, 2, &spec, false, &timestep);
+    tl_lua_ok(L, model, tl_model_timestep(model, &timestep));
+    return 0;
+}
+
+static int model_contact_area(lua_State *L)
+{
+    tl_model *model = tl_lua_model_of(L, "contact_area");
+    tl_lua_arity(L, 2, "contact_area");
+    lua_settop(L, 2);
+    tl_contact_area rule;
+    tl_lua_spec spec = tl_lua_spec_of("contact_area", NULL);
+    tl_lua_read(L, 2, &spec, false, &rule);
+    tl_lua_ok(L, model, tl_model_contact_area(model, &rule));
+    return 0;
+}
+
+static int model_write_vtk(lua_State *L)
+{
+    tl_model *model = tl_lua_model_of(L, "write_vtk");
+    tl_lua_arity(L, 2, "write_vtk");
+    tl_lua_ok(L, model, tl_write_vtk(model, tl_lua_text(L, 2, "write_vtk", "the prefix")));
+    return 0;
+}
+
+static int model_state_hash(lua_State *L)
+{
+    tl_model *model = tl_lua_model_of(L, "state_hash");
+    tl_lua_arity(L, 1, "state_hash");
+    char text[33];
+    tl_lua_ok(L, model, tl_state_hash(model, text));
+    lua_pushstring(L, text);
+    return 1;
+}
+
+static const luaL_Reg model_methods[] = {
+    {"generate", model_generate},
+    {"blocks", tl_lua_blocks},
+    {"contacts", tl_lua_contacts},
+    {"joint", model_joint},
+    {"insitu", model_insitu},
+    {"damping", model_damping},
+    {"timestep", model_timestep},
+    {"contact_area", model_contact_area},
+    {"cycle", tl_lua_cycle},
+    {"solve", tl_lua_solve},
+    {"write_vtk", model_write_vtk},
+    {"state_hash", model_state_hash},
+    {NULL, NULL},
+};
+
+/* ---------------------------------------------------------------- fields ----------------- */
+
+static const char *const model_fields[] = {
+    "gravity", "rotation", "reuse_geometry", "time", "cycles", "dt", "threads", "seed", NULL};
+
+static int unknown_field(lua_State *L, const char *what, const char *name)
+{
+    tl_lua_names names = {0};
+    tl_lua_names_list(&names, model_fields);
+    for (const luaL_Reg *method = model_methods; method->name; method++)
+        tl_lua_names_add(&names, method->name);
+    return tl_lua_unknown(L, what, name, &names);
+}
+
+/* The name of the choice that an enum parameter of talus.model has now. */
+static const char *choice_name(const char *param, int32_t choice)
+{
+    size_t count = 0;
+    const tl_param *params = tl_function_params("model", &count, NULL);
+    for (size_t i = 0; i < count; i++)
+        if (strcmp(params[i].name, param) == 0)
+            return params[i].choices[choice];
+    return NULL;
+}
+
+static bool push_setting(lua_State *L, tl_model *model, const char *name)
+{
+    tl_model_config config = tl_model_settings(model);
+    if (strcmp(name, "gravity") == 0)
+        tl_lua_push_vec3(L, config.gravity);
+    else if (strcmp(name, "rotation") == 0)
+        lua_pushstring(L, choice_name("rotation", config.rotation));
+    else if (strcmp(name, "reuse_geometry") == 0)
+        lua_pushboolean(L, config.reuse_geometry);
+    else if (strcmp(name, "threads") == 0)
+        lua_pushinteger(L, (lua_Integer)config.threads);
+    else if (strcmp(name, "seed") == 0)
+        lua_pushinteger(L, (lua_Integer)config.seed);
+    else
+        return false;
+    return true;
+}
+
+/* Upvalue 1 is the table of methods. */
+static int model_index(lua_State *L)
+{
+    tl_model *model = tl_lua_model_of(L, "index");
+    lua_pushvalue(L, 2);
+    if (lua_rawget(L, lua_upvalueindex(1)) != LUA_TNIL)
+        return 1;
+    if (lua_type(L, 2) != LUA_TSTRING)
+        return tl_lua_fail(L, "a model has no field %s", tl_lua_describe(L, 2));
+    const char *name = lua_tostring(L, 2);
+    if (push_setting(L, model, name))
+        return 1;
+    if (strcmp(name, "time") == 0)
+        lua_pushnumber(L, tl_model_time(model));
+    else if (strcmp(name, "cycles") == 0)
+        lua_pushinteger(L, (lua_Integer)tl_model_cycles(model));
+    else if (strcmp(name, "dt") == 0) {
+        double dt;
+        tl_lua_ok(L, model, tl_model_dt(model, &dt));
+        lua_pushnumber(L, dt);
+    } else
+        return unknown_field(L, "a model has no field", name);
+    return 1;
+}
+
+static int model_assign(lua_State *L)
+{
+    tl_model *model = tl_lua_model_of(L, "assignment");
+    if (lua_type(L, 2) != LUA_TSTRING)
+        return tl_lua_fail(L, "a model has no field %s", tl_lua_describe(L, 2));
+    const char *name = lua_tostring(L, 2);
+    tl_lua_spec spec = tl_lua_spec_of("model", NULL);
+    tl_model_config config = tl_model_settings(model);
+    if (strcmp(name, "gravity") == 0) {
+        tl_lua_read_one(L, 3, &spec, name, &config);
+        tl_lua_ok(L, model, tl_model_set_gravity(model, config.gravity));
+    } else if (strcmp(name, "rotation") == 0) {
+        tl_lua_read_one(L, 3, &spec, name, &config);
+        tl_model_set_rotation(model, (tl_rotation_rule)config.rotation);
+    } else if (strcmp(name, "reuse_geometry") == 0) {
+        tl_lua_read_one(L, 3, &spec, name, &config);
+        tl_model_set_reuse_geometry(model, config.reuse_geometry);
+    } else if (strcmp(name, "threads") == 0 || strcmp(name, "seed") == 0)
+        return tl_lua_fail(L, "model.%s is chosen when the model is made: talus.model{%s = ...}",
+                           name, name);
+    else if (strcmp(name, "time") == 0 || strcmp(name, "cycles") == 0 || strcmp(name, "dt") == 0)
+        return tl_lua_fail(L, "model.%s can only be read%s", name,
+                           strcmp(name, "dt") == 0 ? "; set it with model:timestep{dt = ...}" : "");
+    else
+        return unknown_field(L, "a model has no field to set", name);
+    return 0;
+}
+
+void tl_lua_model_open(lua_State *L)
+{
+    if (luaL_newmetatable(L, MODEL_TYPE)) {
+        luaL_newlib(L, model_methods);
+        lua_pushcclosure(L, model_index, 1);
+        lua_setfield(L, -2, "__index");
+        const luaL_Reg meta[] = {{"__newindex", model_assign},
+                                 {"__gc", model_collect},
+                                 {"__tostring", model_text},
+                                 {NULL, NULL}};
+        luaL_setfuncs(L, meta, 0);
+        lua_pushliteral(L, "a model");
+        lua_setfield(L, -2, "__metatable");
+    }
+    lua_pop(L, 1);
+    lua_pushcfunction(L, model_create);
+}

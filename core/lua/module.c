@@ -1,0 +1,48 @@
+/* module.c - the module `talus`: what require "talus" gives, in the program and in a stock Lua. */
+#include "front.h"
+
+#include <string.h>
+
+tl_lua_options *tl_lua_options_of(lua_State *L)
+{
+    /* Only the address is used: it is a key no one else can have. */
+    static const char key;
+    if (lua_rawgetp(L, LUA_REGISTRYINDEX, &key) == LUA_TNIL) {
+        tl_lua_options *fresh = lua_newuserdatauv(L, sizeof *fresh, 0);
+        *fresh = (tl_lua_options){0};
+        lua_rawsetp(L, LUA_REGISTRYINDEX, &key);
+        lua_pop(L, 1);
+        return fresh;
+    }
+    tl_lua_options *options = lua_touserdata(L, -1);
+    lua_pop(L, 1);
+    return options;
+}
+
+/* talus.help(topic): prints what `talus help TOPIC` prints. */
+static int module_help(lua_State *L)
+{
+    tl_lua_arity(L, 1, "talus.help");
+    const char *topic = lua_isnoneornil(L, 1) ? NULL : tl_lua_text(L, 1, "talus.help", "the topic");
+    tl_error error;
+    if (!tl_lua_help(topic, &error))
+        return tl_lua_raise(L, &error);
+    return 0;
+}
+
+int luaopen_talus(lua_State *L)
+{
+    tl_plugins_load_default();
+    tl_lua_item_open(L, &tl_lua_block_kind);
+    tl_lua_item_open(L, &tl_lua_contact_kind);
+    tl_lua_selection_open(L, &tl_lua_block_kind);
+    tl_lua_selection_open(L, &tl_lua_contact_kind);
+    lua_createtable(L, 0, 3);
+    tl_lua_model_open(L);
+    lua_setfield(L, -2, "model");
+    lua_pushcfunction(L, module_help);
+    lua_setfield(L, -2, "help");
+    lua_pushliteral(L, TALUS_VERSION);
+    lua_setfield(L, -2, "version");
+    return 1;
+}

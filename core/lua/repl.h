@@ -1,0 +1,17 @@
+/* repl.h - the program's way of running Lua: chunks with a handler for errors and for Ctrl-C, and
+ * the read-eval-print loop. Part of the program, not of the module. */
+#ifndef TL_LUA_REPL_H
+#define TL_LUA_REPL_H
+
+#include <lua.h>
+#include <stdbool.h>
+
+/* Calls the function below its `arguments` arguments. On an error prints "talus: " and the
+ * message on standard error, with `verbose` also the calls that led there, and gives false. */
+bool tl_repl_call(lua_State *L, int arguments, int results, bool verbose);
+/* Prints the message on the top of the stack as tl_repl_call does, and pops it. */
+void tl_repl_report(lua_State *L);
+/* Reads lines from the terminal, runs them and prints what they give, until the end of input. */
+void tl_repl_run(lua_State *L, bool verbose);
+
+#endif

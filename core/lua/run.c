@@ -1,0 +1,249 @@
+/* run.c - cycle and solve: callbacks into Lua, Ctrl-C, and the line that shows how a run goes.
+ *
+ * No Lua error may jump over the kernel's frames: callbacks run in protected calls, an error is kept
+ * on the stack, the run ends after the step, and only then is the error raised again, as it was. */
+#include "front.h"
+
+#include <signal.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <time.h>
+#include <unistd.h>
+
+/* The line is written anew at most so often, s. */
+#define SHOW_PERIOD 0.1
+/* Columns of the line; more would wrap on a terminal of 80. */
+#define SHOW_COLUMNS 79
+
+/* Places on the Lua stack during a run. */
+enum { AT_MODEL = 1, AT_ARGS, AT_ANCHOR, AT_STOP, AT_PROGRESS, AT_ERROR };
+
+typedef struct run {
+    lua_State *L;
+    tl_model *model;
+    struct run *outer; /* the run whose callback started this one, of another model */
+    volatile sig_atomic_t interrupted;
+    bool progress, failed, show;
+    double began, shown; /* s */
+    int64_t first_cycle;
+    tl_solve_result result;
+} run;
+
+static _Atomic(run *) current;
+static struct sigaction previous;
+
+void tl_lua_log(void *user, const char *text)
+{
+    const tl_lua_options *options = user;
+    if (!options->quiet)
+        fprintf(stderr, "%stalus: %s\n", isatty(STDERR_FILENO) ? "\r\033[K" : "", text);
+}
+
+/* ---------------------------------------------------------------- Ctrl-C ----------------- */
+
+/* The first Ctrl-C ends the run after the step; a second before that goes where it would have gone
+ * without us. */
+static void on_interrupt(int signal_number)
+{
+    run *r = atomic_load(&current);
+    if (r && !r->interrupted) {
+        r->interrupted = 1;
+        tl_model_interrupt(r->model);
+        return;
+    }
+    sigaction(SIGINT, &previous, NULL);
+    raise(signal_number);
+}
+
+static double now(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static void run_begin(run *r, lua_State *L, tl_model *model)
+{
+    *r = (run){.L = L, .model = model, .outer = atomic_load(&current)};
+    r->show = !tl_lua_options_of(L)->quiet && isatty(STDERR_FILENO);
+    r->began = r->shown = now();
+    r->first_cycle = tl_model_cycles(model);
+    if (!r->outer) {
+        struct sigaction action = {.sa_handler = on_interrupt};
+        sigemptyset(&action.sa_mask);
+        sigaction(SIGINT, NULL, &previous);
+        if (previous.sa_handler != SIG_IGN)
+            sigaction(SIGINT, &action, NULL);
+    }
+    atomic_store(&current, r);
+}
+
+static void run_end(run *r)
+{
+    atomic_store(&current, r->outer);
+    if (!r->outer)
+        sigaction(SIGINT, &previous, NULL);
+    if (r->show)
+        fputs("\r\033[K", stderr);
+}
+
+/* ---------------------------------------------------------------- showing ---------------- */
+
+static void show(run *r)
+{
+    double t = now(), dt;
+    if (!r->show || t - r->shown < SHOW_PERIOD || tl_model_dt(r->model, &dt) != TL_OK)
+        return;
+    r->shown = t;
+    int64_t cycles = tl_model_cycles(r->model);
+    char line[160];
+    snprintf(line, sizeof line,
+             "cycle %lld  time %.4g s  dt %.2g s  ratio %.1e  max velocity %.1e  %.0f cycles/s",
+             (long long)cycles, tl_model_time(r->model), dt, r->result.ratio,
+             r->result.max_velocity, (double)(cycles - r->first_cycle) / (t - r->began));
+    fprintf(stderr, "\r\033[K%.*s", SHOW_COLUMNS, line);
+    fflush(stderr);
+}
+
+static void push_result(lua_State *L, const tl_solve_result *result, const char *reason)
+{
+    lua_createtable(L, 0, 6);
+    if (reason) {
+        lua_pushstring(L, reason);
+        lua_setfield(L, -2, "reason");
+    }
+    lua_pushnumber(L, result->ratio);
+    lua_setfield(L, -2, "ratio");
+    lua_pushinteger(L, (lua_Integer)result->cycles);
+    lua_setfield(L, -2, "cycles");
+    lua_pushnumber(L, result->time);
+    lua_setfield(L, -2, "time");
+    lua_pushnumber(L, result->wall);
+    lua_setfield(L, -2, "wall");
+    lua_pushnumber(L, result->max_velocity);
+    lua_setfield(L, -2, "max_velocity");
+}
+
+/* ---------------------------------------------------------------- callbacks -------------- */
+
+/* Keeps the error on the top of the stack until the run has ended. */
+static void keep_error(run *r)
+{
+    lua_replace(r->L, AT_ERROR);
+    r->failed = true;
+}
+
+/* Runs protected: on_progress(model, result). Arguments: function, model, run. */
+static int call_progress(lua_State *L)
+{
+    const run *r = lua_touserdata(L, 3);
+    lua_settop(L, 2);
+    push_result(L, &r->result, NULL);
+    lua_call(L, 2, 0);
+    return 0;
+}
+
+static tl_status on_progress(void *user, tl_model *model)
+{
+    (void)model;
+    run *r = user;
+    lua_State *L = r->L;
+    if (r->failed)
+        return TL_E_CANCELLED;
+    show(r);
+    if (!r->progress)
+        return TL_OK;
+    lua_pushcfunction(L, call_progress);
+    lua_pushvalue(L, AT_PROGRESS);
+    lua_pushvalue(L, AT_MODEL);
+    lua_pushlightuserdata(L, r);
+    if (lua_pcall(L, 3, 0, 0) == LUA_OK)
+        return TL_OK;
+    keep_error(r);
+    return TL_E_CANCELLED;
+}
+
+static bool on_stop(void *user, tl_model *model)
+{
+    (void)model;
+    run *r = user;
+    lua_State *L = r->L;
+    if (r->failed)
+        return true;
+    lua_pushvalue(L, AT_STOP);
+    lua_pushvalue(L, AT_MODEL);
+    if (lua_pcall(L, 1, 1, 0) != LUA_OK) {
+        keep_error(r);
+        return true;
+    }
+    bool stop = lua_toboolean(L, -1);
+    lua_pop(L, 1);
+    return stop;
+}
+
+/* ---------------------------------------------------------------- solve and cycle -------- */
+
+const tl_lua_key tl_lua_solve_keys[] = {
+    {"stop", "function(model)", "Called every `every` steps; ends the run when it answers true."},
+    {"on_progress", "function(model, result)", "Called every `every` steps."},
+    {NULL, NULL, NULL},
+};
+
+/* Pushes the function of that key, or nil; true when there is one. */
+static bool push_callback(lua_State *L, const char *key)
+{
+    if (!lua_istable(L, AT_ARGS)) {
+        lua_pushnil(L);
+        return false;
+    }
+    int type = lua_getfield(L, AT_ARGS, key);
+    if (type != LUA_TNIL && type != LUA_TFUNCTION)
+        tl_lua_fail(L, "solve: %s must be a function, not %s", key, tl_lua_describe(L, -1));
+    return type == LUA_TFUNCTION;
+}
+
+static int finish(lua_State *L, run *r, tl_status status)
+{
+    run_end(r);
+    if (r->failed) {
+        lua_settop(L, AT_ERROR);
+        return lua_error(L);
+    }
+    tl_lua_ok(L, r->model, status);
+    push_result(L, &r->result, tl_solve_reason_name(r->result.reason));
+    return 1;
+}
+
+int tl_lua_solve(lua_State *L)
+{
+    tl_model *model = tl_lua_model_of(L, "solve");
+    tl_lua_arity(L, 2, "solve");
+    lua_settop(L, 2);
+    luaL_checkstack(L, LUA_MINSTACK, "too many values");
+    tl_solve solve = {0};
+    tl_lua_spec spec = tl_lua_spec_of("solve", tl_lua_solve_keys);
+    tl_lua_read(L, AT_ARGS, &spec, false, &solve);
+    lua_settop(L, AT_ANCHOR);
+    bool stop = push_callback(L, "stop"), progress = push_callback(L, "on_progress");
+    lua_pushnil(L);
+    run r;
+    run_begin(&r, L, model);
+    r.progress = progress;
+    solve.progress = on_progress;
+    solve.stop = stop ? on_stop : NULL;
+    solve.user = &r;
+    return finish(L, &r, tl_model_solve(model, &solve, &r.result));
+}
+
+int tl_lua_cycle(lua_State *L)
+{
+    tl_model *model = tl_lua_model_of(L, "cycle");
+    tl_lua_arity(L, 2, "cycle");
+    lua_settop(L, 2);
+    int64_t cycles;
+    tl_lua_spec spec = tl_lua_spec_of("cycle", NULL);
+    tl_lua_read_one(L, 2, &spec, "cycles", &cycles);
+    run r;
+    run_begin(&r, L, model);
+    return finish(L, &r, tl_model_cycle(model, cycles, &r.result));
+}

@@ -1,0 +1,237 @@
+/* selection.c - a list of blocks or contacts as a Lua object.
+ *
+ * A selection is a snapshot: ids in ascending order, taken when it was made. Sums run in that order,
+ * so they are the same bits every time. */
+#include "front.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+tl_lua_selection *tl_lua_selection_push(lua_State *L, const tl_lua_kind *kind, int model_index)
+{
+    model_index = lua_absindex(L, model_index);
+    tl_lua_selection *selection = lua_newuserdatauv(L, sizeof *selection, 1);
+    *selection = (tl_lua_selection){kind, lua_touserdata(L, model_index), NULL, 0};
+    lua_pushvalue(L, model_index);
+    lua_setiuservalue(L, -2, 1);
+    luaL_setmetatable(L, kind->selection_type);
+    return selection;
+}
+
+tl_lua_selection *tl_lua_selection_of(lua_State *L, int index, const tl_lua_kind *kind,
+                                      const char *method)
+{
+    tl_lua_selection *selection = luaL_testudata(L, index, kind->selection_type);
+    if (!selection)
+        tl_lua_fail(L, "%s: called on %s, not on a selection of %s; write selection:%s(...)",
+                    method, tl_lua_describe(L, index), kind->items, method);
+    return selection;
+}
+
+/* The selection at index 1 of a method both types have; upvalue 1 is the kind. */
+static tl_lua_selection *self(lua_State *L, const char *method)
+{
+    const tl_lua_kind *kind = lua_touserdata(L, lua_upvalueindex(1));
+    return tl_lua_selection_of(L, 1, kind, method);
+}
+
+static int selection_collect(lua_State *L)
+{
+    tl_lua_selection *selection = self(L, "collect");
+    free(selection->ids);
+    selection->ids = NULL;
+    selection->count = 0;
+    return 0;
+}
+
+static int selection_length(lua_State *L)
+{
+    lua_pushinteger(L, (lua_Integer)self(L, "#")->count);
+    return 1;
+}
+
+static int selection_text(lua_State *L)
+{
+    tl_lua_selection *selection = self(L, "tostring");
+    lua_pushfstring(L, "selection of %I %s", (lua_Integer)selection->count,
+                    selection->count == 1 ? selection->kind->item : selection->kind->items);
+    return 1;
+}
+
+/* ---------------------------------------------------------------- sums and extremes ------ */
+
+/* Index of the field named at stack index 2, which must be of numbers. */
+static size_t number_field(lua_State *L, const tl_lua_kind *kind, const char *method)
+{
+    size_t count;
+    const tl_field *fields = kind->fields(&count);
+    const char *name = tl_lua_text(L, 2, method, "the field's name");
+    tl_lua_arity(L, 2, method);
+    for (size_t i = 0; i < count; i++) {
+        if (strcmp(fields[i].name, name) != 0)
+            continue;
+        if (fields[i].kind > TL_FIELD_VEC3)
+            tl_lua_fail(L, "%s: the field '%s' of a %s is not a number", method, name, kind->item);
+        return i;
+    }
+    tl_lua_names names = {0};
+    tl_lua_names_fields(&names, fields, count);
+    tl_lua_unknown(L, lua_pushfstring(L, "%s: a %s has no field of numbers", method, kind->item),
+                   name, &names);
+    return 0;
+}
+
+static void field_value(lua_State *L, const tl_lua_selection *selection, size_t i, size_t field,
+                        tl_field_value *value)
+{
+    tl_model *model = tl_lua_living(L, selection->owner);
+    tl_lua_ok(L, model, selection->kind->field(model, selection->ids[i], field, value));
+}
+
+static int selection_sum(lua_State *L)
+{
+    tl_lua_selection *selection = self(L, "sum");
+    size_t field = number_field(L, selection->kind, "sum"), count;
+    tl_field_kind kind = selection->kind->fields(&count)[field].kind;
+    tl_field_value sum = {{0}, NULL}, value;
+    for (size_t i = 0; i < selection->count; i++) {
+        field_value(L, selection, i, field, &value);
+        for (int k = 0; k < (kind == TL_FIELD_VEC3 ? 3 : 1); k++)
+            sum.number[k] += value.number[k];
+    }
+    tl_lua_push_field(L, kind == TL_FIELD_BOOL ? TL_FIELD_COUNT : kind, &sum);
+    return 1;
+}
+
+/* The largest (sign 1) or smallest (sign -1) value of a field of single numbers. */
+static int extreme(lua_State *L, const char *method, double sign)
+{
+    tl_lua_selection *selection = self(L, method);
+    size_t field = number_field(L, selection->kind, method), count;
+    const tl_field *f = &selection->kind->fields(&count)[field];
+    if (f->kind == TL_FIELD_VEC3 || f->kind == TL_FIELD_BOOL)
+        tl_lua_fail(L, "%s: the field '%s' is %s; only single numbers are compared", method,
+                    f->name, f->kind == TL_FIELD_VEC3 ? "a vector" : "true or false");
+    if (selection->count == 0)
+        tl_lua_fail(L, "%s: the selection is empty, so '%s' has no value", method, f->name);
+    tl_field_value best, value;
+    field_value(L, selection, 0, field, &best);
+    for (size_t i = 1; i < selection->count; i++) {
+        field_value(L, selection, i, field, &value);
+        if (sign * value.number[0] > sign * best.number[0])
+            best = value;
+    }
+    tl_lua_push_field(L, f->kind, &best);
+    return 1;
+}
+
+static int selection_max(lua_State *L)
+{
+    return extreme(L, "max", 1.0);
+}
+
+static int selection_min(lua_State *L)
+{
+    return extreme(L, "min", -1.0);
+}
+
+/* ---------------------------------------------------------------- filter ----------------- */
+
+void tl_lua_selection_filter(lua_State *L, int selection_index, int function_index)
+{
+    tl_lua_selection *selection = lua_touserdata(L, selection_index);
+    lua_getiuservalue(L, selection_index, 1);
+    int model_index = lua_gettop(L);
+    size_t kept = 0;
+    for (size_t i = 0; i < selection->count; i++) {
+        tl_id id = selection->ids[i];
+        lua_pushvalue(L, function_index);
+        tl_lua_item_push(L, selection->kind, model_index, id);
+        lua_call(L, 1, 1);
+        if (lua_toboolean(L, -1))
+            selection->ids[kept++] = id;
+        lua_pop(L, 1);
+    }
+    selection->count = kept;
+    lua_pop(L, 1);
+}
+
+static int selection_where(lua_State *L)
+{
+    tl_lua_selection *selection = self(L, "where");
+    tl_lua_arity(L, 2, "where");
+    if (lua_type(L, 2) != LUA_TFUNCTION)
+        tl_lua_fail(L, "where: a function(%s) is expected, not %s", selection->kind->item,
+                    tl_lua_describe(L, 2));
+    lua_getiuservalue(L, 1, 1);
+    tl_lua_selection *copy = tl_lua_selection_push(L, selection->kind, 3);
+    copy->ids = malloc((selection->count + 1) * sizeof *copy->ids);
+    if (!copy->ids)
+        return tl_lua_fail(L, "where: out of memory");
+    memcpy(copy->ids, selection->ids, selection->count * sizeof *copy->ids);
+    copy->count = selection->count;
+    tl_lua_selection_filter(L, 4, 2);
+    return 1;
+}
+
+/* ---------------------------------------------------------------- index ------------------ */
+
+static const luaL_Reg methods[] = {
+    {"sum", selection_sum},     {"max", selection_max}, {"min", selection_min},
+    {"where", selection_where}, {NULL, NULL},
+};
+
+static int unknown_method(lua_State *L, const tl_lua_kind *kind, const char *name)
+{
+    tl_lua_names names = {0};
+    for (const luaL_Reg *method = methods; method->name; method++)
+        tl_lua_names_add(&names, method->name);
+    for (const luaL_Reg *verb = kind->verbs; verb->name; verb++)
+        tl_lua_names_add(&names, verb->name);
+    return tl_lua_unknown(L, lua_pushfstring(L, "a selection of %s has no method", kind->items),
+                          name, &names);
+}
+
+/* selection[i] and selection:method(). Upvalue 1 is the kind, upvalue 2 the table of methods. */
+static int selection_index(lua_State *L)
+{
+    tl_lua_selection *selection = self(L, "index");
+    if (lua_isinteger(L, 2)) {
+        lua_Integer i = lua_tointeger(L, 2);
+        if (i < 1 || (lua_Unsigned)i > selection->count)
+            return 0;
+        lua_getiuservalue(L, 1, 1);
+        tl_lua_item_push(L, selection->kind, 3, selection->ids[i - 1]);
+        return 1;
+    }
+    lua_pushvalue(L, 2);
+    if (lua_rawget(L, lua_upvalueindex(2)) != LUA_TNIL)
+        return 1;
+    if (lua_type(L, 2) != LUA_TSTRING)
+        return tl_lua_fail(L, "a selection is indexed by whole numbers from 1, not by %s",
+                           tl_lua_describe(L, 2));
+    return unknown_method(L, selection->kind, lua_tostring(L, 2));
+}
+
+static int selection_assign(lua_State *L)
+{
+    return tl_lua_fail(L, "a selection of %s cannot be assigned to",
+                       self(L, "assign")->kind->items);
+}
+
+void tl_lua_selection_open(lua_State *L, const tl_lua_kind *kind)
+{
+    if (luaL_newmetatable(L, kind->selection_type)) {
+        lua_pushlightuserdata(L, (void *)(uintptr_t)kind);
+        lua_newtable(L);
+        lua_pushvalue(L, -2);
+        luaL_setfuncs(L, methods, 1);
+        lua_pushvalue(L, -2);
+        luaL_setfuncs(L, kind->verbs, 1);
+        const luaL_Reg meta[] = {{"__index", selection_index}, {"__newindex", selection_assign},
+                                 {"__len", selection_length},  {"__tostring", selection_text},
+                                 {"__gc", selection_collect},  {NULL, NULL}};
+        luaL_setfuncs(L, meta, 2);
+    }
+    lua_pop(L, 1);
+}

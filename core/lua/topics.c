@@ -1,0 +1,114 @@
+/* topics.c - the functions of the Lua front end as the help shows them. Their parameters come from
+ * the tables that check them; only calls, methods and what they give are told here. */
+#include "front.h"
+
+static const tl_kind_type laws = TL_KIND_LAW, dampings = TL_KIND_DAMPING,
+                          generators = TL_KIND_GENERATOR;
+
+static const tl_lua_key block_verbs[] = {
+    {"#sel, sel[i], ipairs(sel)", "", "Number of blocks, the i-th one, all in order of id."},
+    {"sel:sum(field)", "", "Sum of a field of numbers; of a vector field a vector."},
+    {"sel:max(field), sel:min(field)", "", "Largest and smallest value of a field of numbers."},
+    {"sel:bounds()", "", "{min = {x, y, z}, max = {x, y, z}} over all vertices."},
+    {"sel:where(function(block) ... end)", "", "Those for which the function answers true."},
+    {"sel:hide(), sel:show()", "", "Hidden blocks are not cut and not selected unless asked for."},
+    {"sel:delete()", "", "Removes the blocks."},
+    {"sel:fix{x =, y =, z =, rotation =}", "",
+     "Holds components of the motion; all of it when nothing is named."},
+    {"sel:free()", "", "Lets fixed blocks go."},
+    {"sel:reset_displacement()", "", "Displacements count from now."},
+    {"sel:set{density =, group =, velocity =, angular_velocity =}", "", "Changes properties."},
+    {NULL, NULL, NULL},
+};
+
+static const tl_lua_key contact_verbs[] = {
+    {"#sel, sel[i], ipairs(sel)", "", "Number of contacts, the i-th one, all in order of id."},
+    {"sel:sum(field)", "", "Sum of a field of numbers; of a vector field a vector."},
+    {"sel:max(field), sel:min(field)", "", "Largest and smallest value of a field of numbers."},
+    {"sel:where(function(contact) ... end)", "", "Those for which the function answers true."},
+    {NULL, NULL, NULL},
+};
+
+static const tl_lua_key run_results[] = {
+    {"reason", "", "Why it ended: \"ratio\", \"cycles\", \"time\", \"stop\" or \"interrupt\"."},
+    {"ratio", "", "Mean unbalanced force over mean contact force."},
+    {"cycles, time", "", "Steps and simulated seconds of this call."},
+    {"wall", "", "Seconds it took."},
+    {"max_velocity", "", "Largest speed of a block, m/s."},
+    {NULL, NULL, NULL},
+};
+
+static const tl_lua_key model_members[] = {
+    {"model.gravity", "", "Acceleration of gravity {x, y, z}, m/s2; may be assigned."},
+    {"model.rotation", "", "\"exact\" or \"paper\"; may be assigned."},
+    {"model.reuse_geometry", "", "true or false; may be assigned."},
+    {"model.time, model.cycles", "", "Simulated time, s, and steps so far."},
+    {"model.dt", "", "The step the next cycle will use, s."},
+    {"model.threads, model.seed", "", "As given when it was made."},
+    {NULL, NULL, NULL},
+};
+
+static const tl_lua_key generate_results[] = {
+    {"before, after", "", "Number of blocks before and after."},
+    {"cuts, refused, coincident", "",
+     "Cuts made, refused because a side would be too thin, and fallen on an existing face."},
+    {"smallest_volume, smallest_edge, smallest_face", "", "Of the model after, m3, m and m2."},
+    {"volume_error", "", "Relative change of the volume that is not accounted for."},
+    {NULL, NULL, NULL},
+};
+
+const tl_lua_topic tl_lua_topics[] = {
+    {.name = "model",
+     .usage = "model = talus.model{gravity = {0, 0, -9.81}, ...}",
+     .function = "model",
+     .verbs = model_members},
+    {.name = "generate",
+     .usage = "summary = model:generate(\"GENERATOR\", {...})",
+     .doc = "Creates or cuts blocks; acts on visible blocks only, wholly or not at all.",
+     .type = &generators,
+     .verbs = generate_results},
+    {.name = "blocks",
+     .usage = "selection = model:blocks{...}",
+     .doc = "Selects blocks, visible ones unless asked otherwise; all conditions must hold.",
+     .spec = &tl_lua_blocks_spec,
+     .kind = &tl_lua_block_kind,
+     .verbs = block_verbs},
+    {.name = "contacts",
+     .usage = "selection = model:contacts{...}",
+     .doc = "Selects contacts; all conditions must hold.",
+     .spec = &tl_lua_contacts_spec,
+     .kind = &tl_lua_contact_kind,
+     .verbs = contact_verbs},
+    {.name = "joint",
+     .usage = "model:joint(\"J1\", \"LAW\", {...})  or  model:joint(\"J1\", {friction = 30})",
+     .doc =
+         "Sets the law of a joint set (\"J1\"), of one of its planes (\"J1:3\") or of every joint "
+         "not named otherwise (\"*\"); without a law's name it changes properties.",
+     .type = &laws},
+    {.name = "insitu",
+     .usage = "model:insitu{stress = {zz = -1e6}, gradient = {zz = 2e4}, at = {0, 0, 0}}",
+     .function = "insitu",
+     .keys = tl_lua_insitu_keys},
+    {.name = "damping",
+     .usage = "model:damping(\"DAMPING\", {...})",
+     .doc = "Chooses how motion is damped; \"none\" is no damping, and the default.",
+     .type = &dampings},
+    {.name = "timestep", .usage = "model:timestep{fraction = 0.1}", .function = "timestep"},
+    {.name = "contact_area",
+     .usage = "model:contact_area{fraction = 0.01}",
+     .function = "contact_area"},
+    {.name = "cycle",
+     .usage = "result = model:cycle(1000)",
+     .function = "cycle",
+     .verbs = run_results},
+    {.name = "solve",
+     .usage = "result = model:solve{ratio = 1e-5, ...}",
+     .function = "solve",
+     .keys = tl_lua_solve_keys,
+     .verbs = run_results},
+    {.name = "write_vtk", .usage = "model:write_vtk(\"out/run\")", .function = "write_vtk"},
+    {.name = "state_hash",
+     .usage = "text = model:state_hash()",
+     .doc = "A digest of the whole mechanical state: equal bits, equal text."},
+    {.name = NULL},
+};

@@ -1,0 +1,220 @@
+/* main.c - the program `talus`: options, sub-commands, and a Lua state to run scripts in. */
+#include "lua/front.h"
+#include "lua/repl.h"
+
+#include <errno.h>
+#include <lualib.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#ifndef TALUS_BUILD
+#define TALUS_BUILD "unknown build type"
+#endif
+
+typedef struct options {
+    tl_lua_options lua;
+    bool verbose;
+    const char *chunk; /* of -e */
+    int next;          /* first argument that is not an option */
+} options;
+
+static int fail(const char *sentence, const char *what)
+{
+    fprintf(stderr, "talus: ");
+    fprintf(stderr, sentence, what);
+    fputc('\n', stderr);
+    return EXIT_FAILURE;
+}
+
+static int print_version(void)
+{
+    printf("Talus %s\nplugin interface %u.%u\n%s\ncompiler: %s%s\nbuild: %s\n", TALUS_VERSION,
+           TL_ABI_MAJOR, TL_ABI_MINOR, LUA_RELEASE,
+#ifdef __clang__
+           "", __VERSION__,
+#else
+           "gcc ", __VERSION__,
+#endif
+           TALUS_BUILD);
+    return EXIT_SUCCESS;
+}
+
+/* ---------------------------------------------------------------- options ---------------- */
+
+static bool read_threads(const char *text, int64_t *threads)
+{
+    char *end;
+    errno = 0;
+    long number = strtol(text, &end, 10);
+    if (errno || end == text || *end || number < 1 || number > 256) {
+        fail("--threads: '%s' is not a whole number in [1, 256]", text);
+        return false;
+    }
+    *threads = number;
+    return true;
+}
+
+static bool load_plugin(const char *path)
+{
+    tl_error error;
+    tl_plugins_load_default();
+    if (tl_plugin_load(path, &error) == TL_OK)
+        return true;
+    fail("%s", error.text);
+    return false;
+}
+
+static bool unknown_option(const char *word)
+{
+    static const char *const known[] = {"--threads", "--quiet", "--plugin", "--version",
+                                        "--help",    "-v",      "-e"};
+    const char *nearest = tl_nearest_name(word, known, sizeof known / sizeof known[0]);
+    if (nearest)
+        fprintf(stderr, "talus: unknown option '%s'; did you mean '%s'?\n", word, nearest);
+    else
+        fail("unknown option '%s'; `talus help` lists them", word);
+    return false;
+}
+
+/* Reads the option at argv[o->next] and goes past it; false after a message. */
+static bool read_option(int argc, char **argv, options *o)
+{
+    const char *word = argv[o->next++];
+    bool takes_value =
+        strcmp(word, "--threads") == 0 || strcmp(word, "--plugin") == 0 || strcmp(word, "-e") == 0;
+    if (strcmp(word, "--quiet") == 0)
+        o->lua.quiet = true;
+    else if (strcmp(word, "-v") == 0)
+        o->verbose = true;
+    else if (!takes_value)
+        return unknown_option(word);
+    else if (o->next == argc) {
+        fail("the option %s needs a value", word);
+        return false;
+    } else if (strcmp(word, "--threads") == 0)
+        return read_threads(argv[o->next++], &o->lua.threads);
+    else if (strcmp(word, "--plugin") == 0)
+        return load_plugin(argv[o->next++]);
+    else
+        o->chunk = argv[o->next++];
+    return true;
+}
+
+/* ---------------------------------------------------------------- running ---------------- */
+
+/* The global `arg`: the script at 0, its arguments from 1, the program and options below 0. */
+static void set_arguments(lua_State *L, int argc, char **argv, int script)
+{
+    lua_createtable(L, argc - script, script + 1);
+    for (int i = 0; i < argc; i++) {
+        lua_pushstring(L, argv[i]);
+        lua_rawseti(L, -2, i - script);
+    }
+    lua_setglobal(L, "arg");
+}
+
+/* Calls the chunk on the top of the stack with argv[first ...]. */
+static bool run_chunk(lua_State *L, int load_status, int argc, char **argv, int first,
+                      const options *o)
+{
+    if (load_status != LUA_OK) {
+        tl_repl_report(L);
+        return false;
+    }
+    int count = first < argc ? argc - first : 0;
+    luaL_checkstack(L, count, "too many arguments");
+    for (int i = 0; i < count; i++)
+        lua_pushstring(L, argv[first + i]);
+    return tl_repl_call(L, count, 0, o->verbose);
+}
+
+static bool run_script(lua_State *L, int argc, char **argv, const options *o)
+{
+    const char *script = argv[o->next];
+    bool standard_input = strcmp(script, "-") == 0;
+    if (!standard_input && access(script, R_OK) != 0) {
+        fprintf(stderr, "talus: cannot read the script '%s': %s\n", script, strerror(errno));
+        return false;
+    }
+    int status = luaL_loadfile(L, standard_input ? NULL : script);
+    return run_chunk(L, status, argc, argv, o->next + 1, o);
+}
+
+/* Everything that may raise for want of memory, in a protected call. */
+static int prepare(lua_State *L)
+{
+    options *o = lua_touserdata(L, 1);
+    int argc = (int)lua_tointeger(L, 2);
+    char **argv = lua_touserdata(L, 3);
+    luaL_openlibs(L);
+    luaL_getsubtable(L, LUA_REGISTRYINDEX, LUA_PRELOAD_TABLE);
+    lua_pushcfunction(L, luaopen_talus);
+    lua_setfield(L, -2, "talus");
+    *tl_lua_options_of(L) = o->lua;
+    set_arguments(L, argc, argv, o->next < argc ? o->next : 0);
+    tl_lua_strict(L);
+    return 0;
+}
+
+static bool run(lua_State *L, int argc, char **argv, options *o)
+{
+    lua_pushcfunction(L, prepare);
+    lua_pushlightuserdata(L, o);
+    lua_pushinteger(L, argc);
+    lua_pushlightuserdata(L, argv);
+    if (!tl_repl_call(L, 3, 0, o->verbose))
+        return false;
+    if (o->chunk) {
+        int status = luaL_loadbuffer(L, o->chunk, strlen(o->chunk), "=(command line)");
+        return run_chunk(L, status, argc, argv, o->next, o);
+    }
+    if (o->next < argc)
+        return run_script(L, argc, argv, o);
+    if (!isatty(STDIN_FILENO))
+        return run_chunk(L, luaL_loadfile(L, NULL), argc, argv, argc, o);
+    /* At the prompt the module is at hand without require. */
+    if (luaL_dostring(L, "talus = require 'talus'") != LUA_OK) {
+        tl_repl_report(L);
+        return false;
+    }
+    printf("Talus %s. talus.help() tells what there is; Ctrl-D ends.\n", TALUS_VERSION);
+    tl_repl_run(L, o->verbose);
+    return true;
+}
+
+static int help(const char *topic)
+{
+    tl_error error;
+    tl_plugins_load_default();
+    return tl_lua_help(topic, &error) ? EXIT_SUCCESS : fail("%s", error.text);
+}
+
+int main(int argc, char **argv)
+{
+    options o = {.next = 1};
+    while (o.next < argc && argv[o.next][0] == '-' && argv[o.next][1]) {
+        const char *word = argv[o.next];
+        if (strcmp(word, "--version") == 0)
+            return print_version();
+        if (strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0)
+            return help(NULL);
+        if (!read_option(argc, argv, &o))
+            return EXIT_FAILURE;
+    }
+    const char *command = o.next < argc && !o.chunk ? argv[o.next] : "";
+    if (strcmp(command, "help") == 0)
+        return help(o.next + 1 < argc ? argv[o.next + 1] : NULL);
+    if (strcmp(command, "plugins") == 0) {
+        tl_plugins_load_default();
+        tl_lua_help_plugins();
+        return EXIT_SUCCESS;
+    }
+    lua_State *L = luaL_newstate();
+    if (!L)
+        return fail("%s", "not enough memory to start Lua");
+    bool good = run(L, argc, argv, &o);
+    lua_close(L);
+    return good ? EXIT_SUCCESS : EXIT_FAILURE;
+}

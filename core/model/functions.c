@@ -1,0 +1,155 @@
+/* functions.c - the parameters of the kernel's own functions, declared once: the check of what a
+ * script gives, the defaults and the help text all read these tables.
+ *
+ * A function whose arguments are positional ("cycle", "write_vtk") is listed with them as if they
+ * were named. What a table of parameters cannot express (functions, nested tables, lists of
+ * blocks) belongs to the front end, which adds it to the help. */
+#include "model/model.h"
+
+#include <math.h>
+#include <string.h>
+#include <talus/talus.h>
+
+/* Whole numbers up to 2^53 pass through a double unchanged. */
+#define LARGEST_WHOLE 9007199254740992.0
+
+typedef struct tl_cycle_args {
+    int64_t cycles;
+} tl_cycle_args;
+
+typedef struct tl_write_vtk_args {
+    const char *prefix;
+} tl_write_vtk_args;
+
+static const char *const rotation_names[] = {"exact", "paper", NULL};
+static const char *const timestep_names[] = {"paper", "body", NULL};
+
+static const tl_param model_params[] = {
+    TL_PARAM(TL_PARAM_VEC3, tl_model_config, gravity, "m/s2", "Acceleration of gravity.",
+             .def = {0.0, 0.0, -9.81}),
+    TL_PARAM(TL_PARAM_INT, tl_model_config, seed, "",
+             "Seed of every random draw: the same seed gives the same model.", .def = {1.0},
+             .min = 0.0, .max = LARGEST_WHOLE),
+    TL_PARAM(TL_PARAM_INT, tl_model_config, threads, "",
+             "Number of threads; results do not depend on it.", .def = {1.0}, .min = 1.0,
+             .max = 256.0),
+    TL_PARAM(TL_PARAM_ENUM, tl_model_config, rotation, "",
+             "How blocks turn: Euler's equations, or the paper's single moment of inertia.",
+             .def = {TL_ROTATION_EXACT}, .choices = rotation_names),
+    TL_PARAM(TL_PARAM_BOOL, tl_model_config, reuse_geometry, "",
+             "Whether a contact that hardly moved keeps its common plane and polygon.",
+             .def = {1.0}),
+};
+
+static const tl_param insitu_params[] = {
+    TL_PARAM(TL_PARAM_VEC3, tl_insitu, at, "m",
+             "Point at whose height the stress holds; the gradient counts from there.",
+             .def = {0.0, 0.0, 0.0}),
+};
+
+/* The components of insitu's two tensors, as members of a tl_sym3. */
+static const tl_param tensor_params[] = {
+    TL_PARAM(TL_PARAM_REAL, tl_sym3, xx, "Pa or Pa/m", "Normal component, tension positive.",
+             .def = {0.0}),
+    TL_PARAM(TL_PARAM_REAL, tl_sym3, yy, "Pa or Pa/m", "Normal component, tension positive.",
+             .def = {0.0}),
+    TL_PARAM(TL_PARAM_REAL, tl_sym3, zz, "Pa or Pa/m", "Normal component, tension positive.",
+             .def = {0.0}),
+    TL_PARAM(TL_PARAM_REAL, tl_sym3, xy, "Pa or Pa/m", "Shear component.", .def = {0.0}),
+    TL_PARAM(TL_PARAM_REAL, tl_sym3, yz, "Pa or Pa/m", "Shear component.", .def = {0.0}),
+    TL_PARAM(TL_PARAM_REAL, tl_sym3, zx, "Pa or Pa/m", "Shear component.", .def = {0.0}),
+};
+
+static const tl_param timestep_params[] = {
+    TL_PARAM(TL_PARAM_REAL, tl_timestep, fraction, "",
+             "Share of the critical step that is used, FRAC of (27).",
+             .def = {TL_TIMESTEP_FRACTION}, .min = 0.0, .max = 1.0, .flags = TL_PARAM_MIN_OPEN),
+    TL_PARAM(TL_PARAM_ENUM, tl_timestep, rule, "",
+             "Critical step from the lightest block and the stiffest contact (paper), or from "
+             "each body's own mass and stiffness (body).",
+             .def = {TL_TIMESTEP_PAPER}, .choices = timestep_names),
+    TL_PARAM(TL_PARAM_REAL, tl_timestep, dt, "s", "A fixed time step instead of the rule.",
+             .min = 0.0, .max = INFINITY,
+             .flags = TL_PARAM_OPTIONAL | TL_PARAM_MIN_OPEN | TL_PARAM_MAX_OPEN),
+};
+
+static const tl_param contact_area_params[] = {
+    TL_PARAM(TL_PARAM_REAL, tl_contact_area, fraction, "",
+             "Minimum area of edge and point contacts, as a share of the smaller block's mean "
+             "face area.",
+             .def = {TL_AREA_FRACTION}, .min = 0.0, .max = 1.0),
+    TL_PARAM(TL_PARAM_REAL, tl_contact_area, absolute, "m2",
+             "Minimum area in square metres instead of the share; serves parallel edges too.",
+             .min = 0.0, .max = INFINITY, .flags = TL_PARAM_OPTIONAL | TL_PARAM_MAX_OPEN),
+    TL_PARAM(TL_PARAM_STRING, tl_contact_area, joint, "",
+             "The joint (\"J1\") or plane (\"J1:3\") it applies to; every joint when left out.",
+             .flags = TL_PARAM_OPTIONAL),
+};
+
+static const tl_param cycle_params[] = {
+    TL_PARAM(TL_PARAM_INT, tl_cycle_args, cycles, "", "Number of steps to run.",
+             .flags = TL_PARAM_REQUIRED, .min = 0.0, .max = LARGEST_WHOLE),
+};
+
+static const tl_param solve_params[] = {
+    TL_PARAM(TL_PARAM_REAL, tl_solve, ratio, "",
+             "Ends when the unbalanced force ratio falls below this; 0 for never.", .def = {1e-5},
+             .min = 0.0, .max = 1.0),
+    TL_PARAM(TL_PARAM_INT, tl_solve, max_cycles, "", "Largest number of steps of this call.",
+             .def = {1000000.0}, .min = 0.0, .max = LARGEST_WHOLE),
+    TL_PARAM(TL_PARAM_REAL, tl_solve, max_time, "s", "Longest simulated time of this call.",
+             .min = 0.0, .max = INFINITY,
+             .flags = TL_PARAM_OPTIONAL | TL_PARAM_MIN_OPEN | TL_PARAM_MAX_OPEN),
+    TL_PARAM(TL_PARAM_INT, tl_solve, every, "", "Steps between calls of on_progress and stop.",
+             .def = {500.0}, .min = 1.0, .max = LARGEST_WHOLE),
+};
+
+static const tl_param write_vtk_params[] = {
+    TL_PARAM(TL_PARAM_STRING, tl_write_vtk_args, prefix, "",
+             "Folder and beginning of the files' names.", .flags = TL_PARAM_REQUIRED),
+};
+
+typedef struct tl_function {
+    const char *name, *doc;
+    const tl_param *params;
+    size_t count;
+} tl_function;
+
+#define PARAMS(table) table, sizeof(table) / sizeof(table)[0]
+
+static const tl_function functions[] = {
+    {"model", "Makes an empty model.", PARAMS(model_params)},
+    {"insitu", "Puts an initial stress on the face contacts that exist now, once.",
+     PARAMS(insitu_params)},
+    {"tensor", "A symmetric tensor by its components.", PARAMS(tensor_params)},
+    {"timestep", "Chooses how the time step is found.", PARAMS(timestep_params)},
+    {"contact_area", "Sets the minimum area of edge and point contacts.",
+     PARAMS(contact_area_params)},
+    {"cycle", "Runs a number of steps.", PARAMS(cycle_params)},
+    {"solve", "Runs until the forces balance or a limit is met.", PARAMS(solve_params)},
+    {"write_vtk", "Writes the next frame of a series of VTK files for ParaView.",
+     PARAMS(write_vtk_params)},
+};
+
+#define FUNCTION_COUNT (sizeof functions / sizeof functions[0])
+
+const tl_param *tl_function_params(const char *function, size_t *count, const char **doc)
+{
+    for (size_t i = 0; i < FUNCTION_COUNT; i++) {
+        if (strcmp(functions[i].name, function) != 0)
+            continue;
+        if (count)
+            *count = functions[i].count;
+        if (doc)
+            *doc = functions[i].doc;
+        return functions[i].params;
+    }
+    return NULL;
+}
+
+const char *const *tl_function_names(void)
+{
+    static const char *const names[] = {"model", "insitu", "tensor",    "timestep", "contact_area",
+                                        "cycle", "solve",  "write_vtk", NULL};
+    return names;
+}
