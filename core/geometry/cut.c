@@ -37,6 +37,7 @@ typedef struct child {
 typedef struct cutter {
     const tl_poly *poly;
     tl_plane plane;
+    double on;         /* vertices this close to the plane are on it */
     tl_vec3 *point;    /* [crossings] */
     double *distance;  /* [vertices] */
     signed char *side; /* [vertices] */
@@ -91,7 +92,7 @@ static void classify(cutter *c, double *low, double *high)
         *high = d > *high ? d : *high;
         reach = fmax(reach, fabs(x.x) + fabs(x.y) + fabs(x.z));
     }
-    double on = fmax(TL_POLY_ON * p->size, ROUNDINGS * reach);
+    double on = c->on = fmax(TL_POLY_ON * p->size, ROUNDINGS * reach);
     for (uint32_t v = 0; v < p->vertex_count; v++)
         c->side[v] = (signed char)((c->distance[v] > on) - (c->distance[v] < -on));
 }
@@ -117,7 +118,7 @@ static void settle_brushed(cutter *c)
 }
 
 /* The face whose vertices all lie within `reach` of the plane and which faces along `sign` times its
- * normal (0: either way), the best aligned of them; UINT32_MAX without one. */
+ * normal, the best aligned of them; UINT32_MAX without one. */
 static uint32_t face_along(const cutter *c, double reach, int sign)
 {
     const tl_poly *p = c->poly;
@@ -127,8 +128,7 @@ static uint32_t face_along(const cutter *c, double reach, int sign)
         bool along = true;
         for (uint32_t i = p->start[f]; along && i < p->start[f + 1]; i++)
             along = fabs(c->distance[p->loop[i]]) <= reach;
-        double cosine = tl_v3_dot(p->plane[f].normal, c->plane.normal);
-        cosine = sign ? sign * cosine : fabs(cosine);
+        double cosine = sign * tl_v3_dot(p->plane[f].normal, c->plane.normal);
         if (along && cosine > best_cosine) {
             best = f;
             best_cosine = cosine;
@@ -406,8 +406,7 @@ static tl_status cut_with(cutter *c, tl_tag tag, tl_cut *cut, tl_error *error)
         above = above || c->side[v] > 0;
     }
     if (!below || !above) {
-        double on = below ? high : -low;
-        cut->face = face_along(c, fmax(TL_POLY_ON * c->poly->size, fabs(on)), below ? 1 : -1);
+        cut->face = face_along(c, c->on, below ? 1 : -1);
         cut->result = cut->face == UINT32_MAX ? TL_CUT_MISS : TL_CUT_COINCIDENT;
         return TL_OK;
     }
