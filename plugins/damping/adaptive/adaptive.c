@@ -55,17 +55,16 @@ static const tl_state state_table[] = {
 static tl_status create(const void *given, void **self, tl_report *report)
 {
     const params *p = given;
+    if (p->minimum > p->maximum) {
+        snprintf(report->text, sizeof report->text, "minimum = %g 1/s must be <= maximum = %g 1/s",
+                 p->minimum, p->maximum);
+        return TL_E_ARGUMENT;
+    }
     params *copy = malloc(sizeof *copy);
     if (!copy)
         return TL_E_MEMORY;
     *copy = *p;
     *self = copy;
-    if (p->minimum > p->maximum) {
-        snprintf(report->text, sizeof report->text, "minimum = %g 1/s is above maximum = %g 1/s",
-                 p->minimum, p->maximum);
-        free(copy);
-        return TL_E_ARGUMENT;
-    }
     return TL_OK;
 }
 

@@ -20,7 +20,8 @@ static const tl_param param_table[] = {
              .flags = TL_PARAM_REQUIRED, .min = 0, .max = 90),
     TL_PARAM(TL_PARAM_REAL, params, dip_direction, "deg", "dip direction, clockwise from north (+y)",
              .flags = TL_PARAM_REQUIRED, .min = 0, .max = 360),
-    TL_PARAM(TL_PARAM_VEC3, params, origin, "m", "point on the plane"),
+    TL_PARAM(TL_PARAM_VEC3, params, origin, "m", "point on the plane",
+             .def = {0, 0, 0}),
     TL_PARAM(TL_PARAM_REAL, params, persistence, "",
              "probability that a block in the plane's path is cut", .def = {1}, .min = 0, .max = 1),
 };

@@ -41,8 +41,9 @@ static const tl_param param_table[] = {
              .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
     TL_PARAM(TL_PARAM_REAL, params, spacing_dev, "m",
              "largest deviation of the spacing; less than the spacing", .min = 0, .max = INFINITY),
-    TL_PARAM(TL_PARAM_INT, params, number, "", "number of planes", .def = {1}, .min = 1, .max = 1e6),
-    TL_PARAM(TL_PARAM_VEC3, params, origin, "m", "point the planes lie symmetrically about"),
+    TL_PARAM(TL_PARAM_INT, params, number, "", "number of planes", .def = {1}, .min = 1, .max = 1e4),
+    TL_PARAM(TL_PARAM_VEC3, params, origin, "m", "point the planes lie symmetrically about",
+             .def = {0, 0, 0}),
     TL_PARAM(TL_PARAM_REAL, params, persistence, "",
              "probability that a block in a plane's path is cut", .def = {1}, .min = 0, .max = 1),
 };

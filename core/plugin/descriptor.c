@@ -1,0 +1,400 @@
+/* descriptor.c - checks what a plugin says about itself, and copies it into the host's own shape.
+ *
+ * The copy is what makes growth harmless: the rest of the kernel indexes dense arrays of today's
+ * structs, whatever version of the headers the plugin was built with. A size that cannot belong to the
+ * version a plugin claims is refused, since everything behind it would be misread. */
+#include "plugin/registry.h"
+
+#include "base/names.h"
+#include "base/params.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* More rows than this in one array are a descriptor that was never initialised. */
+#define MOST_ROWS 4096
+
+/* Sizes of the structs in version 1.0 of the interface: no plugin can have smaller ones. */
+enum {
+    FIRST_PLUGIN_SIZE = sizeof(tl_plugin),
+    FIRST_KIND_SIZE = sizeof(tl_kind),
+    FIRST_PARAM_SIZE = sizeof(tl_param),
+    FIRST_STATE_SIZE = sizeof(tl_state),
+    FIRST_LAW_SIZE = sizeof(tl_law_ops),
+    FIRST_DAMPING_SIZE = sizeof(tl_damping_ops),
+    FIRST_GENERATOR_SIZE = sizeof(tl_generator_ops)
+};
+
+/* Room for the operations of any type of kind. */
+typedef union any_ops {
+    uint32_t size;
+    tl_law_ops law;
+    tl_damping_ops damping;
+    tl_generator_ops generator;
+} any_ops;
+
+/* A plugin's headers, as it states them. */
+typedef struct version {
+    uint32_t minor;
+    tl_error *error;
+} version;
+
+const char *tl_kind_type_name(uint32_t type)
+{
+    static const char *const names[] = {"law", "damping", "generator"};
+    return type < sizeof names / sizeof *names ? names[type] : "kind of unknown type";
+}
+
+static uint32_t size_of(const void *structure)
+{
+    uint32_t size;
+    memcpy(&size, structure, sizeof size);
+    return size;
+}
+
+/* A struct's size must fit the version: equal to ours at our minor, no smaller at a newer one, no
+ * larger at an older one. */
+static tl_status check_size(const version *v, const char *what, uint32_t size, size_t first,
+                            size_t ours)
+{
+    const uint32_t host_minor = TL_ABI_MINOR;
+    bool fits = size == ours;
+    if (v->minor < host_minor)
+        fits = size >= first && size <= ours;
+    else if (v->minor > host_minor)
+        fits = size >= ours;
+    if (fits)
+        return TL_OK;
+    return tl_fail(v->error, TL_E_PLUGIN, "%s has size %u, which is not that of ABI %u.%u (%zu here)",
+                   what, size, TL_ABI_MAJOR, v->minor, ours);
+}
+
+/* Copies `count` rows that are `stride` apart into a dense array of rows of `ours` bytes. */
+static tl_status copy_rows(const version *v, const char *what, const void *rows, uint32_t count,
+                           uint32_t stride, size_t first, size_t ours, void **copy)
+{
+    *copy = NULL;
+    if (count == 0)
+        return TL_OK;
+    if (!rows || count > MOST_ROWS)
+        return tl_fail(v->error, TL_E_PLUGIN, "%s: a list of %u rows %s", what, count,
+                       rows ? "is too long" : "is missing");
+    char *to = calloc(count, ours);
+    if (!to)
+        return tl_fail_memory(v->error);
+    for (uint32_t i = 0; i < count; i++) {
+        const char *row = (const char *)rows + (size_t)i * stride;
+        uint32_t size = size_of(row);
+        tl_status status = check_size(v, what, size, first, ours);
+        if (status == TL_OK && (stride < size || stride % sizeof(void *) != 0))
+            status = tl_fail(v->error, TL_E_PLUGIN, "%s: stride %u does not fit rows of %u bytes",
+                             what, stride, size);
+        if (status != TL_OK) {
+            free(to);
+            return status;
+        }
+        memcpy(to + i * ours, row, size < ours ? size : ours);
+    }
+    *copy = to;
+    return TL_OK;
+}
+
+/* ---------------------------------------------------------------- parameters ------------- */
+
+static bool same(const char *a, const char *b)
+{
+    return a && b && strcmp(a, b) == 0;
+}
+
+static bool names_clash(const tl_param *a, const tl_param *b)
+{
+    return same(a->name, b->name) || same(a->name, b->alias) || same(a->alias, b->name) ||
+           same(a->alias, b->alias);
+}
+
+static tl_status check_choices(const tl_param *p, tl_error *error)
+{
+    size_t count = 0;
+    while (p->choices && p->choices[count])
+        count++;
+    if (count == 0)
+        return tl_fail(error, TL_E_PLUGIN, "parameter '%s' is an enum without choices", p->name);
+    if (!(p->def[0] >= 0 && p->def[0] < (double)count))
+        return tl_fail(error, TL_E_PLUGIN, "parameter '%s': its default %g is none of %zu choices",
+                       p->name, p->def[0], count);
+    return TL_OK;
+}
+
+static tl_status check_default(const tl_param *p, tl_error *error)
+{
+    if (p->type == TL_PARAM_ENUM)
+        return check_choices(p, error);
+    bool numeric =
+        p->type == TL_PARAM_REAL || p->type == TL_PARAM_INT || p->type == TL_PARAM_VEC3;
+    if (!numeric || p->flags & (TL_PARAM_REQUIRED | TL_PARAM_OPTIONAL))
+        return isfinite(p->def[0]) ? TL_OK
+                                   : tl_fail(error, TL_E_PLUGIN,
+                                             "parameter '%s': its default is not finite", p->name);
+    for (int i = 0; i < (p->type == TL_PARAM_VEC3 ? 3 : 1); i++) {
+        char number[TL_NUMBER_TEXT], range[TL_RANGE_TEXT];
+        tl_number_text(p->def[i], number);
+        tl_param_range(p, range, sizeof range);
+        if (!tl_param_in_range(p, p->def[i]))
+            return tl_fail(error, TL_E_PLUGIN,
+                           "parameter '%s': its default %s is outside its own range %s", p->name,
+                           number, range[0] ? range : "of finite numbers");
+        if (p->type == TL_PARAM_INT && floor(p->def[i]) < p->def[i])
+            return tl_fail(error, TL_E_PLUGIN, "parameter '%s': its default %s is not whole",
+                           p->name, number);
+    }
+    return TL_OK;
+}
+
+static tl_status check_param(const tl_kind *kind, uint32_t index, tl_error *error)
+{
+    const tl_param *p = &kind->params[index];
+    size_t bytes = tl_param_bytes(p->type);
+    if (!tl_name_is_valid(p->name) || (p->alias && !tl_name_is_valid(p->alias)))
+        return tl_fail(error, TL_E_PLUGIN, "parameter %u has a bad name or alias ('%.60s')",
+                       index + 1, p->name ? p->name : "");
+    if (!p->unit || !p->doc)
+        return tl_fail(error, TL_E_PLUGIN, "parameter '%s' has no %s", p->name,
+                       p->doc ? "unit (\"\" for a pure number)" : "doc");
+    if (bytes == 0)
+        return tl_fail(error, TL_E_PLUGIN, "parameter '%s' has the unknown type %u", p->name,
+                       p->type);
+    if (p->offset > kind->params_size || bytes > kind->params_size - p->offset)
+        return tl_fail(error, TL_E_PLUGIN,
+                       "parameter '%s' lies at bytes %zu to %zu, outside its struct of %zu", p->name,
+                       p->offset, p->offset + bytes, kind->params_size);
+    if (isnan(p->min) || isnan(p->max) || p->min > p->max)
+        return tl_fail(error, TL_E_PLUGIN, "parameter '%s' has the empty range %g to %g", p->name,
+                       p->min, p->max);
+    if (p->flags & TL_PARAM_REQUIRED && p->flags & TL_PARAM_OPTIONAL)
+        return tl_fail(error, TL_E_PLUGIN, "parameter '%s' is both required and optional", p->name);
+    for (uint32_t i = 0; i < index; i++)
+        if (names_clash(p, &kind->params[i]))
+            return tl_fail(error, TL_E_PLUGIN, "parameters '%s' and '%s' share a name",
+                           kind->params[i].name, p->name);
+    return check_default(p, error);
+}
+
+/* ---------------------------------------------------------------- states and operations -- */
+
+static tl_status check_state(const tl_kind *kind, uint32_t index, tl_error *error)
+{
+    const tl_state *s = &kind->states[index];
+    if (!tl_name_is_valid(s->name))
+        return tl_fail(error, TL_E_PLUGIN, "state %u has a bad name ('%.60s')", index + 1,
+                       s->name ? s->name : "");
+    if (!s->unit || !s->doc)
+        return tl_fail(error, TL_E_PLUGIN, "state '%s' has no %s", s->name, s->doc ? "unit" : "doc");
+    if (s->kind > TL_STATE_TANGENT || s->transfer > TL_TRANSFER_RESET)
+        return tl_fail(error, TL_E_PLUGIN, "state '%s' has the unknown %s %u", s->name,
+                       s->kind > TL_STATE_TANGENT ? "kind" : "transfer",
+                       s->kind > TL_STATE_TANGENT ? s->kind : s->transfer);
+    if (kind->type == TL_KIND_DAMPING && s->kind != TL_STATE_SCALAR)
+        return tl_fail(error, TL_E_PLUGIN, "state '%s' of a damping must be a scalar", s->name);
+    if (!isfinite(s->initial))
+        return tl_fail(error, TL_E_PLUGIN, "state '%s': its initial value is not finite", s->name);
+    for (uint32_t i = 0; i < index; i++)
+        if (same(s->name, kind->states[i].name))
+            return tl_fail(error, TL_E_PLUGIN, "two states have the name '%s'", s->name);
+    return TL_OK;
+}
+
+static tl_status missing(tl_error *error, const char *name)
+{
+    return tl_fail(error, TL_E_PLUGIN, "its operation '%s' is missing", name);
+}
+
+/* create and destroy come together or not at all. */
+static tl_status check_pair(bool create, bool destroy, tl_error *error)
+{
+    return create == destroy ? TL_OK : missing(error, create ? "destroy" : "create");
+}
+
+static tl_status check_ops(uint32_t type, const any_ops *ops, tl_error *error)
+{
+    switch (type) {
+    case TL_KIND_LAW:
+        if (!ops->law.update || !ops->law.stiffness)
+            return missing(error, ops->law.update ? "stiffness" : "update");
+        return check_pair(ops->law.create != NULL, ops->law.destroy != NULL, error);
+    case TL_KIND_DAMPING:
+        if (!ops->damping.update || !ops->damping.step_factor)
+            return missing(error, ops->damping.update ? "step_factor" : "update");
+        return check_pair(ops->damping.create != NULL, ops->damping.destroy != NULL, error);
+    default:
+        return ops->generator.generate ? TL_OK : missing(error, "generate");
+    }
+}
+
+/* Copies the operations into a block of their own. */
+static tl_status copy_ops(const version *v, tl_kind *kind)
+{
+    static const size_t first[] = {FIRST_LAW_SIZE, FIRST_DAMPING_SIZE, FIRST_GENERATOR_SIZE};
+    static const size_t ours[] = {sizeof(tl_law_ops), sizeof(tl_damping_ops),
+                                  sizeof(tl_generator_ops)};
+    const void *given = kind->ops;
+    kind->ops = NULL;
+    if (!given)
+        return tl_fail(v->error, TL_E_PLUGIN, "it has no operations");
+    uint32_t size = size_of(given);
+    tl_status status = check_size(v, "ops", size, first[kind->type], ours[kind->type]);
+    if (status != TL_OK)
+        return status;
+    any_ops *ops = calloc(1, sizeof *ops);
+    if (!ops)
+        return tl_fail_memory(v->error);
+    memcpy(ops, given, size < ours[kind->type] ? size : ours[kind->type]);
+    kind->ops = ops;
+    return check_ops(kind->type, ops, v->error);
+}
+
+/* ---------------------------------------------------------------- kinds and plugins ------ */
+
+static tl_status check_rows(const tl_kind *kind, tl_error *error)
+{
+    for (uint32_t i = 0; i < kind->param_count; i++) {
+        tl_status status = check_param(kind, i, error);
+        if (status != TL_OK)
+            return status;
+    }
+    if (kind->type == TL_KIND_GENERATOR && kind->state_count > 0)
+        return tl_fail(error, TL_E_PLUGIN, "a generator has no states, this one declares %u",
+                       kind->state_count);
+    for (uint32_t i = 0; i < kind->state_count; i++) {
+        tl_status status = check_state(kind, i, error);
+        if (status != TL_OK)
+            return status;
+    }
+    return TL_OK;
+}
+
+/* Replaces the arrays and operations of a kind by copies in the host's shape. What cannot be copied
+ * is NULL afterwards, so that the kind can be freed in any case. */
+static tl_status copy_kind(const version *v, tl_kind *kind)
+{
+    const tl_param *params = kind->params;
+    const tl_state *states = kind->states;
+    void *own_params = NULL, *own_states = NULL;
+    tl_status status = copy_rows(v, "a parameter", params, kind->param_count, kind->param_stride,
+                                 FIRST_PARAM_SIZE, sizeof *params, &own_params);
+    if (status == TL_OK)
+        status = copy_rows(v, "a state", states, kind->state_count, kind->state_stride,
+                           FIRST_STATE_SIZE, sizeof *states, &own_states);
+    kind->params = own_params;
+    kind->states = own_states;
+    kind->param_stride = sizeof *params;
+    kind->state_stride = sizeof *states;
+    if (status == TL_OK)
+        return copy_ops(v, kind);
+    kind->ops = NULL;
+    return status;
+}
+
+static tl_status check_kind(const tl_plugin *plugin, uint32_t index, tl_error *error)
+{
+    const tl_kind *kind = &plugin->kinds[index];
+    if (kind->type > TL_KIND_GENERATOR)
+        return tl_fail(error, TL_E_PLUGIN, "kind %u has the unknown type %u", index + 1, kind->type);
+    if (!tl_name_is_valid(kind->name))
+        return tl_fail(error, TL_E_PLUGIN,
+                       "kind %u has the bad name '%.60s': small letters, digits and _ only",
+                       index + 1, kind->name ? kind->name : "");
+    if (!kind->doc)
+        return tl_fail(error, TL_E_PLUGIN, "%s '%s' has no doc", tl_kind_type_name(kind->type),
+                       kind->name);
+    for (uint32_t i = 0; i < index; i++)
+        if (plugin->kinds[i].type == kind->type && same(plugin->kinds[i].name, kind->name))
+            return tl_fail(error, TL_E_PLUGIN, "it holds two %ss named '%s'",
+                           tl_kind_type_name(kind->type), kind->name);
+    return TL_OK;
+}
+
+/* Reads the kinds one after the other. Those not yet read are cut off on failure. */
+static tl_status read_kinds(const version *v, tl_plugin *plugin, tl_kind *kinds)
+{
+    uint32_t count = plugin->kind_count;
+    for (uint32_t i = 0; i < count; i++) {
+        tl_kind *kind = &kinds[i];
+        plugin->kind_count = i;
+        tl_status status = check_kind(plugin, i, v->error);
+        if (status != TL_OK)
+            return status;
+        plugin->kind_count = i + 1;
+        status = copy_kind(v, kind);
+        if (status == TL_OK)
+            status = check_rows(kind, v->error);
+        if (status != TL_OK) {
+            if (status == TL_E_PLUGIN)
+                tl_error_prefix(v->error, "%s '%s': ", tl_kind_type_name(kind->type), kind->name);
+            return status;
+        }
+    }
+    return TL_OK;
+}
+
+static tl_status check_version(const tl_plugin *given, tl_error *error)
+{
+    if (given->size < offsetof(tl_plugin, abi_minor) + sizeof given->abi_minor)
+        return tl_fail(error, TL_E_PLUGIN, "its descriptor has size %u: not a Talus plugin",
+                       given->size);
+    if (given->abi_major != TL_ABI_MAJOR)
+        return tl_fail(error, TL_E_PLUGIN,
+                       "it was built for plugin ABI %u.%u, this Talus has %u.%u: build it anew "
+                       "against these headers",
+                       given->abi_major, given->abi_minor, TL_ABI_MAJOR, TL_ABI_MINOR);
+    return TL_OK;
+}
+
+tl_status tl_descriptor_read(const tl_plugin *given, tl_plugin **plugin, tl_error *error)
+{
+    *plugin = NULL;
+    tl_status status = check_version(given, error);
+    if (status != TL_OK)
+        return status;
+    version v = {given->abi_minor, error};
+    status = check_size(&v, "its descriptor", given->size, FIRST_PLUGIN_SIZE, sizeof *given);
+    if (status != TL_OK)
+        return status;
+    if (!given->id || !given->id[0] || !given->version || !given->doc || !given->licence)
+        return tl_fail(error, TL_E_PLUGIN, "its descriptor lacks an id, version, doc or licence");
+    if (given->kind_count == 0)
+        return tl_fail(error, TL_E_PLUGIN, "it holds no law, damping or generator");
+    void *kinds;
+    status = copy_rows(&v, "a kind", given->kinds, given->kind_count, given->kind_stride,
+                       FIRST_KIND_SIZE, sizeof(tl_kind), &kinds);
+    if (status != TL_OK)
+        return status;
+    tl_plugin *copy = malloc(sizeof *copy);
+    if (!copy) {
+        free(kinds);
+        return tl_fail_memory(error);
+    }
+    memcpy(copy, given, sizeof *copy);
+    copy->kinds = kinds;
+    copy->kind_stride = sizeof(tl_kind);
+    status = read_kinds(&v, copy, kinds);
+    if (status == TL_OK)
+        *plugin = copy;
+    else
+        tl_descriptor_free(copy);
+    return status;
+}
+
+void tl_descriptor_free(tl_plugin *plugin)
+{
+    if (!plugin)
+        return;
+    for (uint32_t i = 0; i < plugin->kind_count; i++) {
+        const tl_kind *kind = &plugin->kinds[i];
+        free((void *)(uintptr_t)kind->params);
+        free((void *)(uintptr_t)kind->states);
+        free((void *)(uintptr_t)kind->ops);
+    }
+    free((void *)(uintptr_t)plugin->kinds);
+    free(plugin);
+}

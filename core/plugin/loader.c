@@ -1,0 +1,200 @@
+/* loader.c - finds plugins on disk and opens them.
+ *
+ * Searched in this order, each folder once, the *.so files of a folder in the order of their names:
+ *
+ *     TALUS_PLUGIN_PATH                   folders separated by colons
+ *     HERE/plugins                        a build: HERE is the folder of the program or library
+ *     HERE/../lib/talus/plugins-MAJOR     installed bin/talus
+ *     HERE/../../talus/plugins-MAJOR      installed lib/lua/5.4/talus.so
+ *     HERE/talus/plugins-MAJOR            installed lib/libtalus.so
+ *
+ * The file that holds this function is asked for its place (dladdr), so that a moved install still
+ * works and a stock Lua that loads the module finds the module's plugins, not its own.
+ *
+ * A plugin of an id that is loaded already is refused, so the first found wins. */
+#define _GNU_SOURCE /* dladdr */
+#include "plugin/registry.h"
+
+#include <dirent.h>
+#include <dlfcn.h>
+#include <limits.h>
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#define ENTRY "tl_plugin_entry"
+/* Folders searched at most: a TALUS_PLUGIN_PATH longer than this is a mistake. */
+#define MOST_FOLDERS 64
+
+/* Folders that were searched, by identity, so that two names of one folder count once. */
+typedef struct searched {
+    dev_t device[MOST_FOLDERS];
+    ino_t inode[MOST_FOLDERS];
+    size_t count;
+} searched;
+
+/* ISO C has no conversion from an object pointer to a function; POSIX promises this one works. */
+static tl_plugin_entry_fn find_entry(void *handle)
+{
+    tl_plugin_entry_fn entry = NULL;
+    void *symbol = dlsym(handle, ENTRY);
+    memcpy(&entry, &symbol, sizeof entry);
+    return entry;
+}
+
+/* Asks an opened file for its descriptor and takes it into the registry. */
+static tl_status take_in(const char *path, void *handle, tl_error *error)
+{
+    tl_plugin_entry_fn entry = find_entry(handle);
+    if (!entry)
+        return tl_fail(error, TL_E_PLUGIN, "it does not export " ENTRY ": not a Talus plugin");
+    const tl_plugin *given = entry(TL_ABI_MAJOR, TL_ABI_MINOR);
+    if (!given)
+        return tl_fail(error, TL_E_PLUGIN, "it refuses this Talus (plugin ABI %u.%u)", TL_ABI_MAJOR,
+                       TL_ABI_MINOR);
+    tl_plugin *plugin;
+    tl_status status = tl_descriptor_read(given, &plugin, error);
+    if (status != TL_OK)
+        return status;
+    status = tl_registry_add(path, plugin, error);
+    if (status != TL_OK)
+        tl_descriptor_free(plugin);
+    return status;
+}
+
+static tl_status open_and_take_in(const char *path, tl_error *error)
+{
+    /* Without a slash dlopen would search the system's folders instead. */
+    char local[PATH_MAX];
+    int n = snprintf(local, sizeof local, "%s%s", strchr(path, '/') ? "" : "./", path);
+    if (n < 0 || (size_t)n >= sizeof local)
+        return tl_fail(error, TL_E_PLUGIN, "its path is too long");
+    void *handle = dlopen(local, RTLD_NOW | RTLD_LOCAL);
+    if (!handle) {
+        const char *reason = dlerror();
+        size_t length = strlen(local);
+        if (!reason)
+            reason = "no reason given";
+        /* The path is in the sentence already. */
+        if (strncmp(reason, local, length) == 0 && strncmp(reason + length, ": ", 2) == 0)
+            reason += length + 2;
+        return tl_fail(error, TL_E_PLUGIN, "it cannot be opened (%s)", reason);
+    }
+    tl_status status = take_in(path, handle, error);
+    if (status != TL_OK)
+        dlclose(handle);
+    return status;
+}
+
+tl_status tl_plugin_load(const char *path, tl_error *error)
+{
+    tl_error own = {TL_OK, ""};
+    tl_error *record = error ? error : &own;
+    tl_status status = open_and_take_in(path, record);
+    if (status != TL_OK) {
+        tl_registry_refused(path, record->text);
+        tl_error_prefix(record, "plugin %s: ", path);
+    }
+    return status;
+}
+
+/* ---------------------------------------------------------------- search ----------------- */
+
+static int is_plugin_file(const struct dirent *entry)
+{
+    size_t length = strlen(entry->d_name);
+    return length > 3 && strcmp(entry->d_name + length - 3, ".so") == 0;
+}
+
+/* By bytes, not by the user's language: the order decides which of two plugins wins. */
+static int by_name(const struct dirent **a, const struct dirent **b)
+{
+    return strcmp((*a)->d_name, (*b)->d_name);
+}
+
+/* True the first time an existing folder is seen. */
+static bool is_new_folder(searched *seen, const char *folder)
+{
+    struct stat info;
+    if (stat(folder, &info) != 0 || !S_ISDIR(info.st_mode) || seen->count == MOST_FOLDERS)
+        return false;
+    for (size_t i = 0; i < seen->count; i++)
+        if (seen->device[i] == info.st_dev && seen->inode[i] == info.st_ino)
+            return false;
+    seen->device[seen->count] = info.st_dev;
+    seen->inode[seen->count++] = info.st_ino;
+    return true;
+}
+
+static void load_folder(searched *seen, const char *folder)
+{
+    if (!is_new_folder(seen, folder))
+        return;
+    struct dirent **entries;
+    int count = scandir(folder, &entries, is_plugin_file, by_name);
+    for (int i = 0; i < count; i++) {
+        char path[PATH_MAX];
+        int n = snprintf(path, sizeof path, "%s/%s", folder, entries[i]->d_name);
+        /* A refusal is kept in the records; the search goes on. */
+        if (n > 0 && (size_t)n < sizeof path)
+            (void)tl_plugin_load(path, NULL);
+        free(entries[i]);
+    }
+    if (count >= 0)
+        free(entries);
+}
+
+static void load_path_list(searched *seen, const char *list)
+{
+    while (list && *list) {
+        size_t length = strcspn(list, ":");
+        char folder[PATH_MAX];
+        if (length > 0 && length < sizeof folder) {
+            memcpy(folder, list, length);
+            folder[length] = '\0';
+            load_folder(seen, folder);
+        }
+        list += length + (list[length] == ':');
+    }
+}
+
+/* The folder of the program or library this function is in. The name of the main program may be a bare
+ * word found through PATH; then the system knows where it is. */
+static bool own_folder(char folder[PATH_MAX])
+{
+    Dl_info info;
+    bool named = dladdr((void *)(uintptr_t)&own_folder, &info) != 0 && info.dli_fname &&
+                 strchr(info.dli_fname, '/') && realpath(info.dli_fname, folder);
+    if (!named && !realpath("/proc/self/exe", folder))
+        return false;
+    char *slash = strrchr(folder, '/');
+    if (!slash)
+        return false;
+    *slash = '\0';
+    return true;
+}
+
+static void load_everything(void)
+{
+    static const char *const installed[] = {"../lib/talus", "../../talus", "talus"};
+    searched seen = {.count = 0};
+    char here[PATH_MAX], folder[PATH_MAX + 64];
+    load_path_list(&seen, getenv("TALUS_PLUGIN_PATH"));
+    if (!own_folder(here))
+        return;
+    snprintf(folder, sizeof folder, "%s/plugins", here);
+    load_folder(&seen, folder);
+    for (size_t i = 0; i < sizeof installed / sizeof *installed; i++) {
+        snprintf(folder, sizeof folder, "%s/%s/plugins-%u", here, installed[i], TL_ABI_MAJOR);
+        load_folder(&seen, folder);
+    }
+}
+
+void tl_plugins_load_default(void)
+{
+    static pthread_once_t once = PTHREAD_ONCE_INIT;
+    pthread_once(&once, load_everything);
+}

@@ -1,0 +1,31 @@
+/* registry.h - the plugins of this process: what a descriptor must hold, and where it is kept.
+ *
+ * The registry is the one piece of global state in Talus. It only grows: a plugin that was accepted
+ * stays loaded to the end of the process, so pointers to kinds are valid for ever. */
+#ifndef TL_PLUGIN_REGISTRY_H
+#define TL_PLUGIN_REGISTRY_H
+
+#include "base/error.h"
+
+#include <talus/talus.h>
+
+/* ---- descriptor.c ---- */
+
+/* Checks a plugin's descriptor and copies it into the host's own shape: every struct at its full size,
+ * arrays dense, members the plugin's headers did not have yet zero. Texts and functions stay the
+ * plugin's. On failure nothing is left and the sentence says what is wrong. */
+tl_status tl_descriptor_read(const tl_plugin *given, tl_plugin **plugin, tl_error *error);
+void tl_descriptor_free(tl_plugin *plugin);
+
+/* "law", "damping" or "generator". */
+const char *tl_kind_type_name(uint32_t type);
+
+/* ---- registry.c ---- */
+
+/* Takes in a plugin that was read from `path`. Refused when its id, or one of its kinds, is there
+ * already; it then stays the caller's. */
+tl_status tl_registry_add(const char *path, tl_plugin *plugin, tl_error *error);
+/* Keeps a failed attempt and its reason for the list of records. */
+void tl_registry_refused(const char *path, const char *reason);
+
+#endif

@@ -1,0 +1,309 @@
+/* services.c - runs a generator plugin: reads its parameters, opens a staging set, lends it the host's
+ * services (tl_host of plugin.h) and commits what it made, whole or not at all.
+ *
+ * What a plugin passes in is checked here, once, so that the geometry below may rely on it. */
+#include "model/model.h"
+
+#include "base/names.h"
+#include "base/random.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A cutting plane's normal may miss unit length by this: a few roundings of its components. */
+#define UNIT_TOLERANCE 1e-9
+/* Longest name of a joint set or a group: it goes into messages and files. */
+#define LONGEST_NAME 63
+/* Keeps the draws of generators apart from those of other uses of the seed. */
+#define DRAW_DOMAIN 1
+
+/* What stands behind a tl_host while a generator runs. */
+typedef struct service {
+    tl_model *model;
+    tl_stage stage;
+    const char *generator;
+    /* the visible block looked at last and its row, so that a walk over all is not quadratic */
+    size_t last_index, last_row;
+    size_t last_count;
+} service;
+
+static service *service_of(const tl_host *host)
+{
+    return host->impl;
+}
+
+static tl_status fail(const tl_host *host, tl_status status, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    tl_vfail(&service_of(host)->model->error, status, format, args);
+    va_end(args);
+    return status;
+}
+
+static void say(const tl_host *host, const char *format, ...)
+{
+    char text[512];
+    va_list args;
+    va_start(args, format);
+    vsnprintf(text, sizeof text, format, args);
+    va_end(args);
+    tl_model_say(service_of(host)->model, "generator '%s': %s", service_of(host)->generator, text);
+}
+
+/* ---------------------------------------------------------------- blocks ----------------- */
+
+static tl_status check_block(const tl_host *host, double density, const char *group)
+{
+    if (!(density > 0) || !isfinite(density))
+        return fail(host, TL_E_ARGUMENT, "density = %g kg/m3 must be > 0", density);
+    if (group && strlen(group) > LONGEST_NAME)
+        return fail(host, TL_E_ARGUMENT, "group '%.20s...' is longer than %d letters", group,
+                    LONGEST_NAME);
+    return TL_OK;
+}
+
+static tl_status create_hull(const tl_host *host, const tl_vec3 *vertices, size_t count,
+                             double density, const char *group)
+{
+    tl_status status = check_block(host, density, group);
+    for (size_t i = 0; i < count && status == TL_OK; i++)
+        if (!tl_v3_finite(vertices[i]))
+            status = fail(host, TL_E_NUMERIC, "vertex %zu is not finite", i + 1);
+    if (status != TL_OK)
+        return status;
+    return tl_stage_add_hull(&service_of(host)->stage, vertices, count, density, group);
+}
+
+static tl_status create_box(const tl_host *host, tl_vec3 min, tl_vec3 max, double density,
+                            const char *group)
+{
+    tl_status status = check_block(host, density, group);
+    if (status != TL_OK)
+        return status;
+    if (!tl_v3_finite(min) || !tl_v3_finite(max))
+        return fail(host, TL_E_NUMERIC, "a corner of the box is not finite");
+    if (!(min.x < max.x && min.y < max.y && min.z < max.z))
+        return fail(host, TL_E_ARGUMENT,
+                    "the box from {%g, %g, %g} to {%g, %g, %g} has no volume: min must be < max",
+                    min.x, min.y, min.z, max.x, max.y, max.z);
+    return tl_stage_add_box(&service_of(host)->stage, min, max, density, group);
+}
+
+static size_t block_count(const tl_host *host)
+{
+    const tl_stage *stage = &service_of(host)->stage;
+    size_t count = 0;
+    for (size_t row = 0; row < stage->count; row++)
+        count += !stage->blocks[row].hidden;
+    return count;
+}
+
+/* Row of the visible block `index`; the stage's number of rows when there is none. Cuts keep the rows
+ * before them, so the place found last is good while the count of rows stands. */
+static size_t visible_row(service *s, size_t index)
+{
+    const tl_stage *stage = &s->stage;
+    bool resume = s->last_count == stage->count && index >= s->last_index;
+    size_t row = resume ? s->last_row : 0, at = resume ? s->last_index : 0;
+    for (; row < stage->count; row++) {
+        if (stage->blocks[row].hidden)
+            continue;
+        if (at == index)
+            break;
+        at++;
+    }
+    if (row < stage->count) {
+        s->last_count = stage->count;
+        s->last_index = index;
+        s->last_row = row;
+    }
+    return row;
+}
+
+/* A point of a staged block's shape in the user's coordinates. */
+static tl_vec3 user_point(const tl_model *m, const tl_stage_block *block, tl_vec3 local)
+{
+    if (block->source == TL_NO_ROW)
+        return tl_v3_add(m->origin, local);
+    return tl_model_point(m, m->blocks.body[block->source], local);
+}
+
+static void block_info(const tl_host *host, size_t index, tl_block_info *info)
+{
+    service *s = service_of(host);
+    tl_block_info full = {.size = info->size, .group = ""};
+    size_t row = visible_row(s, index);
+    if (row < s->stage.count) {
+        const tl_stage_block *block = &s->stage.blocks[row];
+        tl_mass mass = tl_poly_mass(block->shape);
+        full.volume = mass.volume;
+        full.centroid = user_point(s->model, block, mass.centroid);
+        full.bounds.min = full.bounds.max = user_point(s->model, block, block->shape->vertex[0]);
+        for (uint32_t i = 1; i < block->shape->vertex_count; i++) {
+            tl_vec3 p = user_point(s->model, block, block->shape->vertex[i]);
+            full.bounds.min = tl_v3_min(full.bounds.min, p);
+            full.bounds.max = tl_v3_max(full.bounds.max, p);
+        }
+        full.group = s->model->groups[block->group];
+        full.lineage = block->lineage;
+    }
+    memcpy(info, &full, info->size < sizeof full ? info->size : sizeof full);
+}
+
+/* ---------------------------------------------------------------- joints ----------------- */
+
+/* "J1:3" and "*" mean something else where a joint is named. */
+static bool is_joint_name(const char *name)
+{
+    size_t length = name ? strlen(name) : 0;
+    if (length == 0 || length > LONGEST_NAME)
+        return false;
+    for (const char *c = name; *c; c++)
+        if (*c == ':' || *c == '*' || (unsigned char)*c < ' ')
+            return false;
+    return true;
+}
+
+static tl_status joint(const tl_host *host, const char *name, uint32_t *number)
+{
+    if (!is_joint_name(name))
+        return fail(host, TL_E_ARGUMENT,
+                    "joint = '%.80s' is not a name: 1 to %d letters without ':' and '*'",
+                    name ? name : "", LONGEST_NAME);
+    *number = tl_joint_intern(service_of(host)->model, name);
+    return *number ? TL_OK : tl_fail_memory(&service_of(host)->model->error);
+}
+
+static bool joint_exists(const tl_host *host, uint32_t number)
+{
+    return number >= 1 && number <= service_of(host)->model->joint_count;
+}
+
+/* Takes the number, so that two planes never share one. */
+static uint32_t next_plane(const tl_host *host, uint32_t number)
+{
+    return joint_exists(host, number) ? ++service_of(host)->model->joints[number - 1].planes : 0;
+}
+
+static tl_status cut(const tl_host *host, tl_vec3 normal, tl_vec3 point, tl_tag tag,
+                     double persistence)
+{
+    service *s = service_of(host);
+    if (!joint_exists(host, tag.joint) || tag.plane < 1 ||
+        tag.plane > s->model->joints[tag.joint - 1].planes)
+        return fail(host, TL_E_PLUGIN, "it cuts by plane %u of joint %u, which it did not ask for",
+                    tag.plane, tag.joint);
+    double length = tl_v3_norm(normal);
+    if (!(fabs(length - 1) <= UNIT_TOLERANCE) || !tl_v3_finite(point))
+        return fail(host, TL_E_NUMERIC,
+                    "a cutting plane has the normal {%g, %g, %g}, which is not of unit length, or "
+                    "the point {%g, %g, %g}, which is not finite",
+                    normal.x, normal.y, normal.z, point.x, point.y, point.z);
+    if (!(persistence >= 0 && persistence <= 1))
+        return fail(host, TL_E_ARGUMENT, "persistence = %g is outside [0, 1]", persistence);
+    return tl_stage_cut(&s->stage, normal, point, tag, persistence);
+}
+
+static double draw_uniform(const tl_host *host, uint32_t number, int64_t plane, uint32_t draw)
+{
+    /* By the joint's name: its number depends on the order in which sets are made. */
+    uint64_t key = tl_key(DRAW_DOMAIN, host->seed);
+    if (joint_exists(host, number))
+        key = tl_key_text(key, service_of(host)->model->joints[number - 1].name);
+    return tl_uniform(tl_key(tl_key(key, (uint64_t)plane), draw));
+}
+
+static tl_status progress(const tl_host *host, double fraction)
+{
+    (void)fraction;
+    if (atomic_load(&service_of(host)->model->interrupted))
+        return fail(host, TL_E_CANCELLED, "%s", tl_status_text(TL_E_CANCELLED));
+    return TL_OK;
+}
+
+/* ---------------------------------------------------------------- tl_generate ------------ */
+
+static tl_status unknown_generator(tl_model *m, const char *name)
+{
+    size_t count = 0;
+    while (tl_plugin_kind(TL_KIND_GENERATOR, count))
+        count++;
+    const char **names = malloc((count + 1) * sizeof *names);
+    if (!names)
+        return tl_fail_memory(&m->error);
+    for (size_t i = 0; i < count; i++)
+        names[i] = tl_plugin_kind(TL_KIND_GENERATOR, i)->name;
+    if (count == 0)
+        tl_fail(&m->error, TL_E_NOT_FOUND,
+                "unknown generator '%.80s': no generator is loaded; TALUS_PLUGIN_PATH may name "
+                "the folder of the plugins",
+                name);
+    else
+        tl_fail_unknown(&m->error, TL_E_NOT_FOUND, "", "generator", name, names, count);
+    free(names);
+    return TL_E_NOT_FOUND;
+}
+
+/* Calls the plugin on an open staging set and closes the set. */
+static tl_status run(service *s, const tl_kind *kind, const void *params)
+{
+    tl_model *m = s->model;
+    const tl_generator_ops *ops = kind->ops;
+    tl_host host = {.size = sizeof host,
+                    .impl = s,
+                    .seed = (uint64_t)m->config.seed,
+                    .create_hull = create_hull,
+                    .create_box = create_box,
+                    .joint = joint,
+                    .next_plane = next_plane,
+                    .cut = cut,
+                    .block_count = block_count,
+                    .block_info = block_info,
+                    .random = draw_uniform,
+                    .progress = progress,
+                    .log = say,
+                    .fail = fail};
+    tl_status status = tl_stage_begin(m, &s->stage);
+    if (status != TL_OK)
+        return status;
+    m->error = (tl_error){TL_OK, ""};
+    status = ops->generate(&host, params);
+    if (status == TL_OK)
+        return tl_stage_commit(&s->stage);
+    tl_stage_drop(&s->stage);
+    if (m->error.text[0] == '\0')
+        return tl_fail(&m->error, status, "%s", tl_status_text(status));
+    m->error.status = status;
+    return status;
+}
+
+tl_status tl_generate(tl_model *m, const char *generator, const tl_args *args,
+                      tl_generate_summary *summary)
+{
+    tl_status status = tl_model_may_change(m, "create blocks");
+    if (status != TL_OK)
+        return status;
+    const tl_kind *kind = tl_plugin_find(TL_KIND_GENERATOR, generator);
+    if (!kind)
+        return unknown_generator(m, generator);
+    char context[TL_ERROR_TEXT / 4];
+    snprintf(context, sizeof context, "generator '%s'", kind->name);
+    void *params = calloc(1, kind->params_size + 1);
+    if (!params)
+        return tl_fail_memory(&m->error);
+    status = tl_args_read(kind->params, kind->param_count, kind->param_stride, args, false, params,
+                          context, &m->error);
+    if (status == TL_OK) {
+        service s = {.model = m, .generator = kind->name};
+        atomic_store(&m->interrupted, false);
+        status = run(&s, kind, params);
+        if (status != TL_OK)
+            tl_error_prefix(&m->error, "%s: ", context);
+        else if (summary)
+            *summary = s.stage.summary;
+    }
+    free(params);
+    return status;
+}
