@@ -90,7 +90,8 @@ static void classify(cutter *c, double *low, double *high)
         c->distance[v] = d;
         *low = d < *low ? d : *low;
         *high = d > *high ? d : *high;
-        reach = fmax(reach, fabs(x.x) + fabs(x.y) + fabs(x.z));
+        double far = fabs(x.x) + fabs(x.y) + fabs(x.z);
+        reach = far > reach ? far : reach;
     }
     double on = c->on = fmax(TL_POLY_ON * p->size, ROUNDINGS * reach);
     for (uint32_t v = 0; v < p->vertex_count; v++)
@@ -211,52 +212,72 @@ static bool add_cap_edge(cutter *c, uint16_t a, uint16_t b)
     return true;
 }
 
-/* Splits a face with vertices on both sides. Starting at a vertex above that is followed by the run of
- * those below, its loop is: run below, exit, run above, entry. */
-static bool split_face(cutter *c, uint32_t face)
+/* The vertices of a face below the plane: places [first, last] in its loop taken twice, with first in
+ * the first round. */
+typedef struct run {
+    uint32_t first, last;
+} run;
+
+/* false when a vertex above the plane is among them, so that they are not one run. */
+static bool find_run_below(const cutter *c, const uint16_t *loop, uint32_t n, run *below)
 {
-    const uint16_t *loop = c->poly->loop + c->poly->start[face];
-    uint32_t n = tl_poly_face_size(c->poly, face), first = 0, last = 0, i;
-    /* The run below: from `first`, the first -1 after a +1, to `last`, the last -1 before the next. */
     uint32_t above = 0;
     while (c->side[loop[above]] <= 0)
         above++;
-    bool found = false;
-    for (i = above + 1; i < above + n; i++) {
-        int side = c->side[loop[i % n]];
-        if (side < 0) {
-            first = found ? first : i;
+    /* From one above around to itself: the first and the last one below. */
+    uint32_t first = UINT32_MAX, last = 0;
+    for (uint32_t i = 1; i < n; i++) {
+        uint32_t at = above + i < n ? above + i : above + i - n;
+        if (c->side[loop[at]] < 0) {
+            first = first == UINT32_MAX ? i : first;
             last = i;
-            found = true;
         }
     }
-    for (i = first; i <= last; i++)
-        if (c->side[loop[i % n]] > 0)
+    below->first = above + first < n ? above + first : above + first - n;
+    below->last = below->first + (last - first);
+    for (uint32_t i = below->first; i <= below->last; i++)
+        if (c->side[loop[i < n ? i : i - n]] > 0)
             return false;
-    uint16_t head = loop[first % n], ahead = loop[(first - 1) % n];
-    uint16_t tail = loop[last % n], behind = loop[(last + 1) % n];
-    uint16_t entry = c->side[ahead] ? crossing_between(c, ahead, head) : ahead;
-    uint16_t leave = c->side[behind] ? crossing_between(c, tail, behind) : behind;
-    uint32_t up_first = c->side[behind] ? last + 1 : last + 2;
-    uint32_t up_last = (c->side[ahead] ? first - 1 : first - 2) + n;
-    if (up_last < up_first || c->side[loop[up_first % n]] <= 0 || c->side[loop[up_last % n]] <= 0)
+    return true;
+}
+
+/* Splits a face with vertices on both sides. Its loop is: the run below, the way out through the
+ * plane, the run above, the way in. */
+static bool split_face(cutter *c, uint32_t face)
+{
+    const uint16_t *loop = c->poly->loop + c->poly->start[face];
+    uint32_t n = tl_poly_face_size(c->poly, face);
+    run below;
+    if (!find_run_below(c, loop, n, &below))
+        return false;
+    uint32_t next = below.last + 1, previous = below.first + n - 1;
+    uint16_t head = loop[below.first], tail = loop[below.last < n ? below.last : below.last - n];
+    uint16_t ahead = loop[previous < n ? previous : previous - n];
+    uint16_t behind = loop[next < n ? next : next - n];
+    uint16_t in = c->side[ahead] ? crossing_between(c, ahead, head) : ahead;
+    uint16_t out = c->side[behind] ? crossing_between(c, tail, behind) : behind;
+    /* The run above lies between, without the vertices on the plane that serve as ways in and out. */
+    run above = {c->side[behind] ? next : next + 1, c->side[ahead] ? previous : previous - 1};
+    if (above.last < above.first ||
+        c->side[loop[above.first < n ? above.first : above.first - n]] <= 0 ||
+        c->side[loop[above.last < n ? above.last : above.last - n]] <= 0)
         return false;
 
     child *low = &c->child[0], *high = &c->child[1];
     begin_face(low, face);
-    put(low, entry);
-    for (i = first; i <= last; i++)
-        put(low, loop[i % n]);
-    put(low, leave);
+    put(low, in);
+    for (uint32_t i = below.first; i <= below.last; i++)
+        put(low, loop[i < n ? i : i - n]);
+    put(low, out);
     end_face(low);
     begin_face(high, face);
-    put(high, leave);
-    for (i = up_first; i <= up_last; i++)
-        put(high, loop[i % n]);
-    put(high, entry);
+    put(high, out);
+    for (uint32_t i = above.first; i <= above.last; i++)
+        put(high, loop[i < n ? i : i - n]);
+    put(high, in);
     end_face(high);
-    /* The lower part runs leave -> entry along the cut, its cap the other way. */
-    return add_cap_edge(c, entry, leave);
+    /* The lower part runs out -> in along the cut, its cap the other way. */
+    return add_cap_edge(c, in, out);
 }
 
 /* -1 or +1 for a face wholly on one side, 0 for one to be split, 2 for one wholly on the plane. */
@@ -406,7 +427,8 @@ static tl_status cut_with(cutter *c, tl_tag tag, tl_cut *cut, tl_error *error)
         above = above || c->side[v] > 0;
     }
     if (!below || !above) {
-        cut->face = face_along(c, c->on, below ? 1 : -1);
+        if ((below ? high : -low) >= -c->on)
+            cut->face = face_along(c, c->on, below ? 1 : -1);
         cut->result = cut->face == UINT32_MAX ? TL_CUT_MISS : TL_CUT_COINCIDENT;
         return TL_OK;
     }

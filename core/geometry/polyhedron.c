@@ -83,25 +83,43 @@ static int find_half_edge(const tl_poly *p, half_edges half, uint16_t a, uint16_
     return count;
 }
 
+/* The sentence for the first half-edge that has no partner or a rival. */
+static tl_status report_unpaired(const tl_poly *p, half_edges half, tl_error *error)
+{
+    uint32_t half_count = 2 * p->edge_count;
+    for (uint32_t h = 0; error && h < half_count; h++) {
+        uint16_t a = p->loop[h], b = p->loop[half.next[h]], found;
+        int forth = find_half_edge(p, half, a, b, &found),
+            back = find_half_edge(p, half, b, a, &found);
+        if (a != b && forth == 1 && back == 1)
+            continue;
+        return tl_fail(
+            error, TL_E_GEOMETRY,
+            "the edge from vertex %d to vertex %d belongs to %d face%s, not to two that "
+            "run along it in opposite directions: give every face counter-clockwise from "
+            "outside and leave no hole",
+            a + 1, b + 1, forth + back, forth + back == 1 ? "" : "s");
+    }
+    return TL_E_GEOMETRY;
+}
+
+/* Finds the edges from their half-edges that run to the higher vertex. When every one of them has one
+ * partner and there are half as many as half-edges, no other can be without. */
 static tl_status pair_half_edges(tl_poly *p, half_edges half, tl_error *error)
 {
     uint32_t half_count = 2 * p->edge_count, edges = 0;
     for (uint32_t h = 0; h < half_count; h++) {
-        uint16_t a = p->loop[h], b = p->loop[half.next[h]], forth = 0, back = 0;
-        int forths = find_half_edge(p, half, a, b, &forth);
-        int backs = find_half_edge(p, half, b, a, &back);
-        if (a == b || forths != 1 || backs != 1)
-            return tl_fail(
-                error, TL_E_GEOMETRY,
-                "the edge from vertex %d to vertex %d belongs to %d face%s, not to two that "
-                "run along it in opposite directions: give every face counter-clockwise from "
-                "outside and leave no hole",
-                a + 1, b + 1, forths + backs, forths + backs == 1 ? "" : "s");
-        if (a > b)
+        uint16_t a = p->loop[h], b = p->loop[half.next[h]], forth, back;
+        if (a >= b)
             continue;
+        if (edges == p->edge_count || find_half_edge(p, half, a, b, &forth) != 1 ||
+            find_half_edge(p, half, b, a, &back) != 1)
+            return report_unpaired(p, half, error);
         p->edge[edges] = (tl_edge){a, b, half.face[h], half.face[back]};
         half.edge[h] = half.edge[back] = (uint16_t)edges++;
     }
+    if (edges != p->edge_count)
+        return report_unpaired(p, half, error);
     for (uint32_t i = 0; i < half_count; i++)
         p->star[i] = half.edge[p->star[i]];
     return TL_OK;
