@@ -41,9 +41,12 @@ static int generate(tl_model *m, const char *kind, const tl_value *values, size_
 static void add_box(tl_model *m, double x, double y, double z, const char *group)
 {
     const double min[] = {0, 0, 0}, max[] = {x, y, z};
-    const tl_value values[] = {vector("min", min), vector("max", max), number("density", 2500),
-                               string("group", group)};
-    generate(m, "box", values, 4);
+    const tl_value values[] = {vector("min", min), vector("max", max), number("density", 2500)};
+    generate(m, "box", values, 3);
+    const tl_id first = 1;
+    const tl_vec3 unchanged = {NAN, NAN, NAN};
+    const tl_block_set set = {NAN, group, unchanged, unchanged};
+    CHECK_INT(tl_blocks_set(m, &first, 1, &set), TL_OK);
 }
 
 static void add_set(tl_model *m, const char *name, double dip, double direction, int planes,
