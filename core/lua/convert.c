@@ -24,6 +24,13 @@ static void convert_other(lua_State *L, int anchor, tl_value *value, const char 
     hold(L, anchor);
 }
 
+/* The number at `index`. The sign of a NaN depends on how it came about; it is not shown. */
+static double number_at(lua_State *L, int index)
+{
+    double number = lua_tonumber(L, index);
+    return isnan(number) ? NAN : number;
+}
+
 /* Reads row `row` of the list at `index`: three numbers. false, with what it is instead in `value`. */
 static bool convert_row(lua_State *L, int index, int anchor, lua_Integer row, double *out,
                         tl_value *value)
@@ -40,7 +47,7 @@ static bool convert_row(lua_State *L, int index, int anchor, lua_Integer row, do
             fault = lua_pushfstring(L, "list whose row %I has %s in place %d", row,
                                     tl_lua_describe(L, -1), i + 1);
         else {
-            out[i] = lua_tonumber(L, -1);
+            out[i] = number_at(L, -1);
             lua_pop(L, 1);
         }
     }
@@ -54,7 +61,7 @@ static bool convert_number(lua_State *L, int index, int anchor, lua_Integer i, d
                            tl_value *value)
 {
     if (lua_rawgeti(L, index, i) == LUA_TNUMBER) {
-        *out = lua_tonumber(L, -1);
+        *out = number_at(L, -1);
         return true;
     }
     const char *fault = lua_pushfstring(L, "list whose item %I is %s", i, tl_lua_describe(L, -1));
@@ -105,7 +112,7 @@ static void convert(lua_State *L, int index, int anchor, tl_value *value)
     switch (lua_type(L, index)) {
     case LUA_TNUMBER:
         value->type = TL_VALUE_NUMBER;
-        value->number = lua_tonumber(L, index);
+        value->number = number_at(L, index);
         break;
     case LUA_TBOOLEAN:
         value->type = TL_VALUE_BOOL;
@@ -245,10 +252,10 @@ const char *tl_lua_text(lua_State *L, int index, const char *function, const cha
 
 void tl_lua_arity(lua_State *L, int most, const char *function)
 {
-    if (lua_gettop(L) > most)
-        tl_lua_fail(L, "%s: %d argument%s too many; the first is %s", function,
-                    lua_gettop(L) - most, lua_gettop(L) - most == 1 ? "" : "s",
-                    tl_lua_describe(L, most + 1));
+    int extra = lua_gettop(L) - most;
+    if (extra > 0)
+        tl_lua_fail(L, "%s: %d argument%s too many; the first is %s", function, extra,
+                    extra == 1 ? "" : "s", tl_lua_describe(L, most + 1));
 }
 
 const char *tl_lua_describe(lua_State *L, int index)

@@ -172,7 +172,8 @@ typedef struct tl_lua_topic {
     const tl_lua_spec *spec;  /* of the front end; or NULL */
     const tl_lua_key *keys;   /* further parameters; or NULL */
     const tl_lua_kind *kind;  /* what a selection it gives is of; or NULL */
-    const tl_lua_key *verbs;  /* methods of what it gives; or NULL */
+    const char *title;        /* heading of `verbs` */
+    const tl_lua_key *verbs;  /* methods or fields of what it gives; or NULL */
     const tl_kind_type *type; /* plugins it takes by name; or NULL */
 } tl_lua_topic;
 

@@ -11,18 +11,18 @@
 /* Prints a text from column `indent` on, broken at spaces; the cursor is at column `at`. */
 static void print_wrapped(const char *text, int indent, int at)
 {
+    bool first = true;
     while (*text) {
         int length = (int)strcspn(text, " ");
-        if (at > indent && at + length > WIDTH) {
+        if (!first && at + 1 + length > WIDTH) {
             putchar('\n');
             at = 0;
+            first = true;
         }
-        at += printf("%*s%.*s", at < indent ? indent - at : 0, "", length, text);
-        text += length;
-        if (*text == ' ') {
-            text++;
-            at += *text && at < WIDTH ? printf(" ") : 0;
-        }
+        int gap = first ? indent - at : 1;
+        at += printf("%*s%.*s", gap > 0 ? gap : 0, "", length, text);
+        text += length + (text[length] == ' ');
+        first = false;
     }
     putchar('\n');
 }
@@ -158,7 +158,7 @@ static void print_topic(const tl_lua_topic *topic)
     if (topic->kind)
         print_fields(topic->kind);
     if (topic->verbs) {
-        puts(topic->kind ? "\nMethods of the selection:" : "\nIt gives:");
+        printf("\n%s:\n", topic->title);
         print_keys(topic->verbs);
     }
     if (topic->type) {

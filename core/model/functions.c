@@ -10,9 +10,6 @@
 #include <string.h>
 #include <talus/talus.h>
 
-/* Whole numbers up to 2^53 pass through a double unchanged. */
-#define LARGEST_WHOLE 9007199254740992.0
-
 typedef struct tl_cycle_args {
     int64_t cycles;
 } tl_cycle_args;
@@ -29,7 +26,7 @@ static const tl_param model_params[] = {
              .def = {0.0, 0.0, -9.81}),
     TL_PARAM(TL_PARAM_INT, tl_model_config, seed, "",
              "Seed of every random draw: the same seed gives the same model.", .def = {1.0},
-             .min = 0.0, .max = LARGEST_WHOLE),
+             .min = 0.0, .max = INFINITY, .flags = TL_PARAM_MAX_OPEN),
     TL_PARAM(TL_PARAM_INT, tl_model_config, threads, "",
              "Number of threads; results do not depend on it.", .def = {1.0}, .min = 1.0,
              .max = 256.0),
@@ -88,7 +85,7 @@ static const tl_param contact_area_params[] = {
 
 static const tl_param cycle_params[] = {
     TL_PARAM(TL_PARAM_INT, tl_cycle_args, cycles, "", "Number of steps to run.",
-             .flags = TL_PARAM_REQUIRED, .min = 0.0, .max = LARGEST_WHOLE),
+             .flags = TL_PARAM_REQUIRED | TL_PARAM_MAX_OPEN, .min = 0.0, .max = INFINITY),
 };
 
 static const tl_param solve_params[] = {
@@ -96,12 +93,12 @@ static const tl_param solve_params[] = {
              "Ends when the unbalanced force ratio falls below this; 0 for never.", .def = {1e-5},
              .min = 0.0, .max = 1.0),
     TL_PARAM(TL_PARAM_INT, tl_solve, max_cycles, "", "Largest number of steps of this call.",
-             .def = {1000000.0}, .min = 0.0, .max = LARGEST_WHOLE),
+             .def = {1000000.0}, .min = 0.0, .max = INFINITY, .flags = TL_PARAM_MAX_OPEN),
     TL_PARAM(TL_PARAM_REAL, tl_solve, max_time, "s", "Longest simulated time of this call.",
              .min = 0.0, .max = INFINITY,
              .flags = TL_PARAM_OPTIONAL | TL_PARAM_MIN_OPEN | TL_PARAM_MAX_OPEN),
     TL_PARAM(TL_PARAM_INT, tl_solve, every, "", "Steps between calls of on_progress and stop.",
-             .def = {500.0}, .min = 1.0, .max = LARGEST_WHOLE),
+             .def = {500.0}, .min = 1.0, .max = INFINITY, .flags = TL_PARAM_MAX_OPEN),
 };
 
 static const tl_param write_vtk_params[] = {
