@@ -39,21 +39,14 @@ tl_param tl_param_row(const tl_param *params, size_t index, size_t stride)
 size_t tl_param_bytes(uint32_t type)
 {
     switch (type) {
-    case TL_PARAM_REAL:
-        return sizeof(double);
-    case TL_PARAM_INT:
-        return sizeof(int64_t);
+    case TL_PARAM_REAL: return sizeof(double);
+    case TL_PARAM_INT: return sizeof(int64_t);
     case TL_PARAM_BOOL:
-    case TL_PARAM_ENUM:
-        return sizeof(int32_t);
-    case TL_PARAM_VEC3:
-        return sizeof(tl_vec3);
-    case TL_PARAM_STRING:
-        return sizeof(const char *);
-    case TL_PARAM_POINTS:
-        return sizeof(tl_points);
-    default:
-        return 0;
+    case TL_PARAM_ENUM: return sizeof(int32_t);
+    case TL_PARAM_VEC3: return sizeof(tl_vec3);
+    case TL_PARAM_STRING: return sizeof(const char *);
+    case TL_PARAM_POINTS: return sizeof(tl_points);
+    default: return 0;
     }
 }
 
@@ -119,12 +112,8 @@ static void describe_value(const tl_value *value, char *text, size_t size)
         tl_number_text(value->number, number);
         snprintf(text, size, "the number %s", number);
         break;
-    case TL_VALUE_BOOL:
-        snprintf(text, size, "%s", value->number > 0 ? "true" : "false");
-        break;
-    case TL_VALUE_STRING:
-        snprintf(text, size, "the string '%.60s'", value->text);
-        break;
+    case TL_VALUE_BOOL: snprintf(text, size, "%s", value->number > 0 ? "true" : "false"); break;
+    case TL_VALUE_STRING: snprintf(text, size, "the string '%.60s'", value->text); break;
     case TL_VALUE_NUMBERS:
         snprintf(text, size, "a list of %zu number%s", value->count, value->count == 1 ? "" : "s");
         break;
@@ -164,7 +153,8 @@ static tl_status check_number(const reader *r, const char *part, double value)
                    space, unit, verb, range);
 }
 
-static tl_status check_point(const reader *r, const char *part, const char *joiner, const double *at)
+static tl_status check_point(const reader *r, const char *part, const char *joiner,
+                             const double *at)
 {
     static const char component[3] = {'x', 'y', 'z'};
     for (int i = 0; i < 3; i++) {
@@ -225,8 +215,8 @@ static tl_status read_enum(const reader *r, void *to)
     }
     char context[200];
     snprintf(context, sizeof context, "%.190s%s", shown(r->context), colon(r->context));
-    return tl_fail_unknown(r->error, TL_E_ARGUMENT, context, r->param.name, r->value->text, r->param.choices,
-                           count);
+    return tl_fail_unknown(r->error, TL_E_ARGUMENT, context, r->param.name, r->value->text,
+                           r->param.choices, count);
 }
 
 static tl_status read_vec3(const reader *r, void *to)
@@ -269,20 +259,13 @@ static tl_status read_points(const reader *r, void *to)
 static tl_status read_value(const reader *r, void *to)
 {
     switch (r->param.type) {
-    case TL_PARAM_REAL:
-        return read_real(r, to);
-    case TL_PARAM_INT:
-        return read_int(r, to);
-    case TL_PARAM_BOOL:
-        return read_bool(r, to);
-    case TL_PARAM_ENUM:
-        return read_enum(r, to);
-    case TL_PARAM_VEC3:
-        return read_vec3(r, to);
-    case TL_PARAM_STRING:
-        return read_string(r, to);
-    case TL_PARAM_POINTS:
-        return read_points(r, to);
+    case TL_PARAM_REAL: return read_real(r, to);
+    case TL_PARAM_INT: return read_int(r, to);
+    case TL_PARAM_BOOL: return read_bool(r, to);
+    case TL_PARAM_ENUM: return read_enum(r, to);
+    case TL_PARAM_VEC3: return read_vec3(r, to);
+    case TL_PARAM_STRING: return read_string(r, to);
+    case TL_PARAM_POINTS: return read_points(r, to);
     default:
         return tl_fail(r->error, TL_E_PLUGIN, "%s%sparameter '%s' has the unknown type %u",
                        shown(r->context), colon(r->context), r->param.name, r->param.type);
@@ -295,29 +278,18 @@ static void write_default(const tl_param *param, void *to)
     double real = none ? NAN : param->def[0];
     int64_t whole = (int64_t)param->def[0];
     int32_t small = (int32_t)param->def[0];
-    tl_vec3 v = {none ? NAN : param->def[0], none ? NAN : param->def[1], none ? NAN : param->def[2]};
+    tl_vec3 v = {none ? NAN : param->def[0], none ? NAN : param->def[1],
+                 none ? NAN : param->def[2]};
     const char *text = none ? NULL : param->def_text;
     tl_points points = {NULL, 0};
     switch (param->type) {
-    case TL_PARAM_REAL:
-        memcpy(to, &real, sizeof real);
-        break;
-    case TL_PARAM_INT:
-        memcpy(to, &whole, sizeof whole);
-        break;
+    case TL_PARAM_REAL: memcpy(to, &real, sizeof real); break;
+    case TL_PARAM_INT: memcpy(to, &whole, sizeof whole); break;
     case TL_PARAM_BOOL:
-    case TL_PARAM_ENUM:
-        memcpy(to, &small, sizeof small);
-        break;
-    case TL_PARAM_VEC3:
-        memcpy(to, &v, sizeof v);
-        break;
-    case TL_PARAM_STRING:
-        memcpy(to, &text, sizeof text);
-        break;
-    default:
-        memcpy(to, &points, sizeof points);
-        break;
+    case TL_PARAM_ENUM: memcpy(to, &small, sizeof small); break;
+    case TL_PARAM_VEC3: memcpy(to, &v, sizeof v); break;
+    case TL_PARAM_STRING: memcpy(to, &text, sizeof text); break;
+    default: memcpy(to, &points, sizeof points); break;
     }
 }
 
@@ -377,8 +349,8 @@ static tl_status check_required(const tl_param *param, const tl_args *args, cons
         if (answers_to(param, args->values[i].key))
             return TL_OK;
     const char *unit = param->unit ? param->unit : "";
-    return tl_fail(error, TL_E_ARGUMENT, "%s%sparameter '%s' is missing%s%s%s%s%.160s", shown(context),
-                   colon(context), param->name, unit[0] ? ", in " : "", unit,
+    return tl_fail(error, TL_E_ARGUMENT, "%s%sparameter '%s' is missing%s%s%s%s%.160s",
+                   shown(context), colon(context), param->name, unit[0] ? ", in " : "", unit,
                    param->doc ? " (" : "", param->doc ? param->doc : "", param->doc ? ")" : "");
 }
 

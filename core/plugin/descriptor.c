@@ -66,8 +66,9 @@ static tl_status check_size(const version *v, const char *what, uint32_t size, s
         fits = size >= ours;
     if (fits)
         return TL_OK;
-    return tl_fail(v->error, TL_E_PLUGIN, "%s has size %u, which is not that of ABI %u.%u (%zu here)",
-                   what, size, TL_ABI_MAJOR, v->minor, ours);
+    return tl_fail(v->error, TL_E_PLUGIN,
+                   "%s has size %u, which is not that of ABI %u.%u (%zu here)", what, size,
+                   TL_ABI_MAJOR, v->minor, ours);
 }
 
 /* Copies `count` rows that are `stride` apart into a dense array of rows of `ours` bytes. */
@@ -130,8 +131,7 @@ static tl_status check_default(const tl_param *p, tl_error *error)
 {
     if (p->type == TL_PARAM_ENUM)
         return check_choices(p, error);
-    bool numeric =
-        p->type == TL_PARAM_REAL || p->type == TL_PARAM_INT || p->type == TL_PARAM_VEC3;
+    bool numeric = p->type == TL_PARAM_REAL || p->type == TL_PARAM_INT || p->type == TL_PARAM_VEC3;
     if (!numeric || p->flags & (TL_PARAM_REQUIRED | TL_PARAM_OPTIONAL))
         return isfinite(p->def[0]) ? TL_OK
                                    : tl_fail(error, TL_E_PLUGIN,
@@ -166,8 +166,8 @@ static tl_status check_param(const tl_kind *kind, uint32_t index, tl_error *erro
                        p->type);
     if (p->offset > kind->params_size || bytes > kind->params_size - p->offset)
         return tl_fail(error, TL_E_PLUGIN,
-                       "parameter '%s' lies at bytes %zu to %zu, outside its struct of %zu", p->name,
-                       p->offset, p->offset + bytes, kind->params_size);
+                       "parameter '%s' lies at bytes %zu to %zu, outside its struct of %zu",
+                       p->name, p->offset, p->offset + bytes, kind->params_size);
     if (isnan(p->min) || isnan(p->max) || p->min > p->max)
         return tl_fail(error, TL_E_PLUGIN, "parameter '%s' has the empty range %g to %g", p->name,
                        p->min, p->max);
@@ -189,7 +189,8 @@ static tl_status check_state(const tl_kind *kind, uint32_t index, tl_error *erro
         return tl_fail(error, TL_E_PLUGIN, "state %u has a bad name ('%.60s')", index + 1,
                        s->name ? s->name : "");
     if (!s->unit || !s->doc)
-        return tl_fail(error, TL_E_PLUGIN, "state '%s' has no %s", s->name, s->doc ? "unit" : "doc");
+        return tl_fail(error, TL_E_PLUGIN, "state '%s' has no %s", s->name,
+                       s->doc ? "unit" : "doc");
     if (s->kind > TL_STATE_TANGENT || s->transfer > TL_TRANSFER_RESET)
         return tl_fail(error, TL_E_PLUGIN, "state '%s' has the unknown %s %u", s->name,
                        s->kind > TL_STATE_TANGENT ? "kind" : "transfer",
@@ -226,8 +227,7 @@ static tl_status check_ops(uint32_t type, const any_ops *ops, tl_error *error)
         if (!ops->damping.update || !ops->damping.step_factor)
             return missing(error, ops->damping.update ? "step_factor" : "update");
         return check_pair(ops->damping.create != NULL, ops->damping.destroy != NULL, error);
-    default:
-        return ops->generator.generate ? TL_OK : missing(error, "generate");
+    default: return ops->generator.generate ? TL_OK : missing(error, "generate");
     }
 }
 
@@ -299,7 +299,8 @@ static tl_status check_kind(const tl_plugin *plugin, uint32_t index, tl_error *e
 {
     const tl_kind *kind = &plugin->kinds[index];
     if (kind->type > TL_KIND_GENERATOR)
-        return tl_fail(error, TL_E_PLUGIN, "kind %u has the unknown type %u", index + 1, kind->type);
+        return tl_fail(error, TL_E_PLUGIN, "kind %u has the unknown type %u", index + 1,
+                       kind->type);
     if (!tl_name_is_valid(kind->name))
         return tl_fail(error, TL_E_PLUGIN,
                        "kind %u has the bad name '%.60s': small letters, digits and _ only",

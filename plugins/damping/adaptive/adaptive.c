@@ -123,7 +123,8 @@ static const tl_kind kind = {
     .size = sizeof kind,
     .type = TL_KIND_DAMPING,
     .name = "adaptive",
-    .doc = "Viscous damping that follows the rate of kinetic energy; vanishes at rest and in steady motion.",
+    .doc = "Viscous damping that follows the rate of kinetic energy; vanishes at rest and in "
+           "steady motion.",
     .params_size = sizeof(params),
     .params = param_table,
     .param_count = sizeof param_table / sizeof *param_table,

@@ -40,7 +40,8 @@ static tl_status update(const void *self, const tl_damping_batch *batch, tl_repo
     (void)report;
     const params *p = self;
     for (int k = 0; k < 3; k++) {
-        oppose(p->alpha, batch->count, batch->velocity[k], batch->force[k], batch->damping_force[k]);
+        oppose(p->alpha, batch->count, batch->velocity[k], batch->force[k],
+               batch->damping_force[k]);
         oppose(p->alpha, batch->count, batch->angular_velocity[k], batch->moment[k],
                batch->damping_moment[k]);
     }

@@ -16,12 +16,12 @@ typedef struct params {
 static const tl_param param_table[] = {
     TL_PARAM(TL_PARAM_STRING, params, joint, "", "name of the joint set the plane belongs to",
              .flags = TL_PARAM_REQUIRED),
-    TL_PARAM(TL_PARAM_REAL, params, dip, "deg", "dip below horizontal",
-             .flags = TL_PARAM_REQUIRED, .min = 0, .max = 90),
-    TL_PARAM(TL_PARAM_REAL, params, dip_direction, "deg", "dip direction, clockwise from north (+y)",
-             .flags = TL_PARAM_REQUIRED, .min = 0, .max = 360),
-    TL_PARAM(TL_PARAM_VEC3, params, origin, "m", "point on the plane",
-             .def = {0, 0, 0}),
+    TL_PARAM(TL_PARAM_REAL, params, dip, "deg", "dip below horizontal", .flags = TL_PARAM_REQUIRED,
+             .min = 0, .max = 90),
+    TL_PARAM(TL_PARAM_REAL, params, dip_direction, "deg",
+             "dip direction, clockwise from north (+y)", .flags = TL_PARAM_REQUIRED, .min = 0,
+             .max = 360),
+    TL_PARAM(TL_PARAM_VEC3, params, origin, "m", "point on the plane", .def = {0, 0, 0}),
     TL_PARAM(TL_PARAM_REAL, params, persistence, "",
              "probability that a block in the plane's path is cut", .def = {1}, .min = 0, .max = 1),
 };

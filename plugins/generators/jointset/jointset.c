@@ -41,7 +41,8 @@ static const tl_param param_table[] = {
              .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
     TL_PARAM(TL_PARAM_REAL, params, spacing_dev, "m",
              "largest deviation of the spacing; less than the spacing", .min = 0, .max = INFINITY),
-    TL_PARAM(TL_PARAM_INT, params, number, "", "number of planes", .def = {1}, .min = 1, .max = 1e4),
+    TL_PARAM(TL_PARAM_INT, params, number, "", "number of planes", .def = {1}, .min = 1,
+             .max = 1e4),
     TL_PARAM(TL_PARAM_VEC3, params, origin, "m", "point the planes lie symmetrically about",
              .def = {0, 0, 0}),
     TL_PARAM(TL_PARAM_REAL, params, persistence, "",
@@ -81,7 +82,8 @@ static tl_status cut_plane(const draws *d, const params *p, tl_vec3 mean, int64_
 {
     tl_tag tag = {d->joint, d->first + (uint32_t)index};
     double dip = p->dip + p->dip_dev * deviation(d, index, DRAW_DIP);
-    double direction = p->dip_direction + p->dip_direction_dev * deviation(d, index, DRAW_DIRECTION);
+    double direction =
+        p->dip_direction + p->dip_direction_dev * deviation(d, index, DRAW_DIRECTION);
     tl_vec3 point = tl_v3_madd(p->origin, offset_of(d, p, index), mean);
     return d->host->cut(d->host, tl_plane_normal(dip, direction), point, tag, p->persistence);
 }

@@ -20,6 +20,9 @@
 #define DEGREE (3.14159265358979323846 / 180)
 /* Lanes worked on at a time: their flags stay in the nearest cache. */
 #define STRIDE 64u
+/* Scaling a force down to its limit leaves it within 2 roundings of it; without this margin a point at
+ * rest would be scaled down by a rounding in every step. */
+#define ROUNDING 1e-15
 
 typedef struct params {
     double kn, ks, friction, cohesion;
@@ -32,8 +35,8 @@ static const tl_param param_table[] = {
              .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
     TL_PARAM(TL_PARAM_REAL, params, friction, "deg", "angle of friction",
              .flags = TL_PARAM_MAX_OPEN, .min = 0, .max = 90),
-    TL_PARAM(TL_PARAM_REAL, params, cohesion, "Pa", "shear strength at zero normal stress", .min = 0,
-             .max = INFINITY),
+    TL_PARAM(TL_PARAM_REAL, params, cohesion, "Pa", "shear strength at zero normal stress",
+             .min = 0, .max = INFINITY),
 };
 
 typedef struct coulomb {
@@ -72,9 +75,10 @@ static void store_energy(const coulomb *law, const tl_law_batch *batch)
  * loop exists once with and once without the energy and neither has a branch in it. A NaN goes through
  * all comparisons to the forces, where the host finds it. `mark` takes the flags as doubles: a loop
  * over lanes of two widths is not vectorised for every machine. */
-static inline __attribute__((always_inline)) void move(const coulomb *law, const tl_law_batch *batch,
-                                                       uint32_t begin, uint32_t lanes,
-                                                       double *restrict mark, const int heat)
+static inline __attribute__((always_inline)) void move(const coulomb *law,
+                                                       const tl_law_batch *batch, uint32_t begin,
+                                                       uint32_t lanes, double *restrict mark,
+                                                       const int heat)
 {
     const double *restrict area = batch->area + begin, *restrict closure = batch->closure + begin;
     const double *restrict f_n0 = batch->f_n0 + begin;
@@ -94,15 +98,16 @@ static inline __attribute__((always_inline)) void move(const coulomb *law, const
         double tz = f_z[i] - stiffness * du_z[i];
         double trial = sqrt(tx * tx + ty * ty + tz * tz);
         double limit = total < 0 ? 0 : cohesion * area[i] + normal * tangent;
-        double whole = trial > limit ? trial : 1;
-        double scale = trial > limit ? limit / whole : 1;
+        double most = limit * (1 + ROUNDING);
+        double whole = trial > most ? trial : 1;
+        double scale = trial > most ? limit / whole : 1;
         if (heat) {
             double mean = 0.5 * ((f_x[i] * tx + f_y[i] * ty + f_z[i] * tz) / whole + limit);
             double slip = (trial - limit) / (stiffness > 0 ? stiffness : 1);
-            double work = trial > limit ? mean * slip : 0;
+            double work = trial > most ? mean * slip : 0;
             dissipated[i] = work > 0 && stiffness > 0 ? work : 0;
         }
-        double flag = trial > limit ? TL_POINT_SLIPPING : 0;
+        double flag = trial > most ? TL_POINT_SLIPPING : 0;
         mark[i] = total < 0 ? TL_POINT_OPEN : flag;
         f_n[i] = normal;
         f_x[i] = scale * tx;

@@ -23,6 +23,9 @@
 #define DEGREE (3.14159265358979323846 / 180)
 /* Lanes worked on at a time: their flags stay in the nearest cache. */
 #define STRIDE 64u
+/* Scaling a force down to its limit leaves it within 2 roundings of it; without this margin a point at
+ * rest would be scaled down by a rounding in every step. */
+#define ROUNDING 1e-15
 /* The bond is stored as 1 or 0; anything between is on neither side by rounding. */
 #define BOND_HOLDS 0.5
 
@@ -146,19 +149,20 @@ static inline __attribute__((always_inline)) void move(const bonded *law, const 
         double limit = cohesion * area[i] + total * tangent;
         limit = limit < 0 ? 0 : limit;
         limit = total < lowest ? 0 : limit;
-        double whole = trial > limit ? trial : 1;
-        double scale = trial > limit ? limit / whole : 1;
+        double most = limit * (1 + ROUNDING);
+        double whole = trial > most ? trial : 1;
+        double scale = trial > most ? limit / whole : 1;
         if (heat) {
             double mean = 0.5 * ((f_x[i] * tx + f_y[i] * ty + f_z[i] * tz) / whole + limit);
             double slip = (trial - limit) / (stiffness > 0 ? stiffness : 1);
-            double work = trial > limit ? mean * slip : 0;
+            double work = trial > most ? mean * slip : 0;
             work = work > 0 && stiffness > 0 ? work : 0;
             /* A bond that snaps gives up its tensile spring. */
             double spring = 0.5 * total * total / (area[i] > 0 ? kn * area[i] : 1);
             spring = total < lowest && area[i] > 0 ? spring : 0;
             dissipated[i] = work + (before > BOND_HOLDS ? spring : 0);
         }
-        double flag = trial > limit ? TL_POINT_SLIPPING : 0;
+        double flag = trial > most ? TL_POINT_SLIPPING : 0;
         flag = total < lowest ? TL_POINT_OPEN : flag;
         mark[i] = after > BOND_HOLDS ? flag : flag + TL_POINT_FAILED;
         f_n[i] = total < lowest ? 0 : total;
