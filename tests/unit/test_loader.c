@@ -1,0 +1,133 @@
+/* test_loader.c - what the loader takes and what it refuses, each refusal with its path and reason. */
+#include "base/error.h"
+#include "check.h"
+
+#include <talus/talus.h>
+
+static const char bad_folder[] = TALUS_BAD_PLUGIN_DIR;
+static const char good_folder[] = TALUS_TEST_PLUGIN_DIR;
+
+/* The record of a path, the last one when it was tried several times. */
+static tl_plugin_record record_of(const char *path)
+{
+    tl_plugin_record found = {NULL, NULL, NULL};
+    for (size_t i = 0; i < tl_plugin_record_count(); i++) {
+        tl_plugin_record r = tl_plugin_record_at(i);
+        if (strcmp(r.path, path) == 0)
+            found = r;
+    }
+    return found;
+}
+
+/* Loading `name` fails; sentence and record contain `reason`, the sentence the path too. */
+static void refused(const char *folder, const char *name, const char *reason)
+{
+    char path[1024];
+    snprintf(path, sizeof path, "%s/%s.so", folder, name);
+    size_t before = tl_plugin_record_count();
+    tl_error error = {TL_OK, ""};
+    CHECK_INT(tl_plugin_load(path, &error), TL_E_PLUGIN);
+    CHECK_INT(error.status, TL_E_PLUGIN);
+    CHECK_CONTAINS(error.text, path);
+    CHECK_CONTAINS(error.text, reason);
+    CHECK_INT(tl_plugin_record_count(), before + 1);
+    tl_plugin_record r = record_of(path);
+    CHECK(r.plugin == NULL);
+    CHECK_CONTAINS(r.reason, reason);
+}
+
+TEST(default_search_finds_every_plugin_once_in_order)
+{
+    static const char *const laws[] = {"coulomb", "coulomb_tensile", "elastic"};
+    static const char *const dampings[] = {"adaptive", "local", "none", "viscous"};
+    static const char *const generators[] = {"box", "joint", "jointset", "polyhedron"};
+    for (size_t i = 0; i < 3; i++)
+        CHECK_TEXT(tl_plugin_kind(TL_KIND_LAW, i)->name, laws[i]);
+    for (size_t i = 0; i < 4; i++) {
+        CHECK_TEXT(tl_plugin_kind(TL_KIND_DAMPING, i)->name, dampings[i]);
+        CHECK_TEXT(tl_plugin_kind(TL_KIND_GENERATOR, i)->name, generators[i]);
+    }
+    CHECK(tl_plugin_kind(TL_KIND_LAW, 3) == NULL);
+    CHECK(tl_plugin_find(TL_KIND_LAW, "box") == NULL);
+    CHECK(tl_plugin_find(TL_KIND_GENERATOR, "box") == tl_plugin_kind(TL_KIND_GENERATOR, 0));
+    CHECK_INT(tl_plugin_record_count(), 11);
+    for (size_t i = 0; i < tl_plugin_record_count(); i++) {
+        tl_plugin_record r = tl_plugin_record_at(i);
+        CHECK(r.plugin && !r.reason);
+        CHECK(strncmp(r.path, good_folder, strlen(good_folder)) == 0);
+    }
+    tl_plugins_load_default();
+    CHECK_INT(tl_plugin_record_count(), 11);
+    CHECK(tl_plugin_record_at(11).path == NULL);
+}
+
+TEST(a_search_for_nothing_is_no_error)
+{
+    CHECK(tl_plugin_find(TL_KIND_DAMPING, "") == NULL);
+    tl_error error = {TL_OK, ""};
+    CHECK_INT(tl_plugin_load("no/such/file.so", &error), TL_E_PLUGIN);
+    CHECK_CONTAINS(error.text, "plugin no/such/file.so: it cannot be opened (");
+}
+
+TEST(broken_plugins_are_refused_with_the_reason)
+{
+    refused(bad_folder, "wrong_major", "it was built for plugin ABI 2.0, this Talus has 1.0");
+    refused(bad_folder, "newer_minor", "law 'newer_minor': ops has size");
+    refused(bad_folder, "no_entry", "it does not export tl_plugin_entry");
+    refused(bad_folder, "refuses", "it refuses this Talus (plugin ABI 1.0)");
+    refused(bad_folder, "duplicate_id", "plugin 'talus.coulomb' is already loaded from ");
+    refused(bad_folder, "name_clash",
+            "law 'coulomb' is already provided by plugin 'talus.coulomb' from ");
+    refused(bad_folder, "bad_default",
+            "law 'bad_default': parameter 'value': its default 2 is outside its own range [0, 2)");
+    refused(bad_folder, "missing_ops", "law 'missing_ops': its operation 'stiffness' is missing");
+    refused(bad_folder, "bad_name", "kind 1 has the bad name 'Bad Name'");
+    refused(bad_folder, "outside", "law 'outside': parameter 'value' lies at bytes 0 to 8");
+    refused(bad_folder, "no_unit", "law 'no_unit': parameter 'value' has no unit");
+    refused(bad_folder, "twice", "law 'twice': parameters 'value' and 'value' share a name");
+    refused(bad_folder, "snapped", "its descriptor has size 0: not a Talus plugin");
+}
+
+TEST(the_same_file_again_is_a_duplicate)
+{
+    refused(good_folder, "elastic", "plugin 'talus.elastic' is already loaded from ");
+    CHECK(tl_plugin_find(TL_KIND_LAW, "elastic") != NULL);
+}
+
+TEST(a_text_file_is_refused)
+{
+    char path[1024];
+    snprintf(path, sizeof path, "%s/text.so", TALUS_TEST_TMP);
+    FILE *file = fopen(path, "w");
+    CHECK(file != NULL);
+    fputs("This is not a shared object.\n", file);
+    fclose(file);
+    refused(TALUS_TEST_TMP, "text", "it cannot be opened (");
+    CHECK(strstr(record_of(path).reason, path) == NULL);
+    remove(path);
+}
+
+TEST(refusals_leave_the_kinds_as_they_were)
+{
+    CHECK(tl_plugin_kind(TL_KIND_LAW, 3) == NULL);
+    CHECK(tl_plugin_kind(TL_KIND_DAMPING, 4) == NULL);
+    CHECK(tl_plugin_kind(TL_KIND_GENERATOR, 4) == NULL);
+}
+
+int main(void)
+{
+    /* A folder given twice, a file in place of a folder and an empty entry do no harm. */
+    char search[4096];
+    snprintf(search, sizeof search, ":%s::%s/:/dev/null:%s/no_such_folder:", good_folder,
+             good_folder, good_folder);
+    setenv("TALUS_PLUGIN_PATH", search, 1);
+    tl_plugins_load_default();
+    RUN(default_search_finds_every_plugin_once_in_order);
+    RUN(a_search_for_nothing_is_no_error);
+    RUN(broken_plugins_are_refused_with_the_reason);
+    RUN(the_same_file_again_is_a_duplicate);
+    RUN(a_text_file_is_refused);
+    RUN(refusals_leave_the_kinds_as_they_were);
+    printf("%s: %d checks, %d failed\n", __FILE__, check_count, check_failed);
+    return check_failed != 0;
+}
