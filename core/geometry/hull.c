@@ -93,8 +93,9 @@ static tl_status place_on_grid(builder *b, tl_error *error)
         high = tl_v3_max(high, b->point[i]);
     }
     tl_vec3 sides = tl_v3_sub(high, low);
+    double longest = fmax(sides.x, fmax(sides.y, sides.z));
     b->extent = tl_v3_norm(sides);
-    if (b->extent == 0)
+    if (longest == 0)
         return tl_fail(error, TL_E_GEOMETRY, "the %u vertices are one and the same point",
                        h->count);
     /* Fifth powers of lengths occur in moments of inertia. */
@@ -102,9 +103,9 @@ static tl_status place_on_grid(builder *b, tl_error *error)
     if (!isnormal(fifth))
         return tl_fail(error, TL_E_GEOMETRY,
                        "the vertices are %g apart, which cannot be computed with: use other units",
-                       b->extent);
+                       longest);
     int exponent;
-    (void)frexp(fmax(sides.x, fmax(sides.y, sides.z)), &exponent);
+    (void)frexp(longest, &exponent);
     b->unit = ldexp(1, TL_HULL_BITS - exponent);
     for (uint32_t i = 0; i < h->count; i++) {
         tl_vec3 x = tl_v3_scale(b->unit, tl_v3_sub(b->point[i], low));

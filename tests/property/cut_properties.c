@@ -59,7 +59,7 @@ typedef enum kind {
     PARALLEL, /* along a face, at any depth */
     GRID,     /* normal to an axis, at a multiple of 1/64 of the first block's side */
     TILTED,   /* nearly along a face: cuts of this kind leave faces that almost coincide */
-    TOUCHING  /* a vertex off the plane by about the tolerance, whose cap is off its plane by that much */
+    TOUCHING /* a vertex off the plane by about the tolerance, whose cap is off its plane by that much */
 } kind;
 
 static tl_plane random_plane(const tl_poly *p, kind which)
@@ -68,8 +68,7 @@ static tl_plane random_plane(const tl_poly *p, kind which)
     tl_plane face = p->plane[pick(p->face_count)];
     tl_edge edge = p->edge[pick(p->edge_count)];
     switch (which) {
-    case VERTEX:
-        return plane_through(direction(), a);
+    case VERTEX: return plane_through(direction(), a);
     case EDGE: {
         tl_vec3 along = tl_v3_sub(p->vertex[edge.b], p->vertex[edge.a]);
         tl_vec3 n = tl_v3_cross(along, tl_v3_sub(inside, p->vertex[edge.a]));
@@ -80,8 +79,7 @@ static tl_plane random_plane(const tl_poly *p, kind which)
         tl_vec3 n = tl_v3_unit(tl_v3_cross(tl_v3_sub(b, a), tl_v3_sub(c, a)));
         return tl_v3_norm(n) > 0 ? plane_through(n, a) : plane_through(direction(), a);
     }
-    case PARALLEL:
-        return plane_through(pick(2) ? face.normal : tl_v3_neg(face.normal), inside);
+    case PARALLEL: return plane_through(pick(2) ? face.normal : tl_v3_neg(face.normal), inside);
     case TILTED: {
         double tilt = pow(10, uniform(-12, -2));
         return plane_through(tl_v3_unit(tl_v3_madd(face.normal, tilt, direction())), inside);
@@ -96,8 +94,7 @@ static tl_plane random_plane(const tl_poly *p, kind which)
         plane.offset += TL_POLY_ON * p->size * uniform(-2, 2);
         return plane;
     }
-    case ANY:
-        break;
+    case ANY: break;
     }
     return plane_through(direction(), inside);
 }
@@ -198,8 +195,8 @@ static void cut_at_random(tl_vec3 offset, int cuts, kind last, double warp, tall
             uint32_t which = pick(count);
             tl_plane plane = random_plane(live[which], (kind)pick(last + 1u));
             double size = live[which]->size, surface = 6 * size * size;
-            double tolerance = VOLUME_TOLERANCE * tl_poly_mass(live[which]).volume +
-                               (rounding + warp) * surface;
+            double tolerance =
+                VOLUME_TOLERANCE * tl_poly_mass(live[which]).volume + (rounding + warp) * surface;
             tl_cut cut;
             if (!cut_and_check(live[which], plane, tolerance, &cut, t))
                 continue;
@@ -217,8 +214,8 @@ static void cut_at_random(tl_vec3 offset, int cuts, kind last, double warp, tall
 
 static void report(const char *name, const tally *t)
 {
-    printf("    %s: %d cuts, %d made, %d missed, %d coincident, %d too thin, volume to %.1e\n", name,
-           t->cuts, t->made, t->missed, t->coincident, t->refused, t->worst);
+    printf("    %s: %d cuts, %d made, %d missed, %d coincident, %d too thin, volume to %.1e\n",
+           name, t->cuts, t->made, t->missed, t->coincident, t->refused, t->worst);
 }
 
 TEST(random_cuts_near_zero)
