@@ -68,6 +68,9 @@ bool tl_param_in_range(const tl_param *param, double value)
 
 void tl_number_text(double value, char text[TL_NUMBER_TEXT])
 {
+    /* The sign of a NaN, which some systems print, says nothing to a user. */
+    if (isnan(value))
+        value = (double)NAN;
     for (int digits = 6; digits <= 17; digits++) {
         snprintf(text, TL_NUMBER_TEXT, "%.*g", digits, value);
         double back = strtod(text, NULL);
