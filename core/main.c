@@ -158,6 +158,14 @@ static int prepare(lua_State *L)
     return 0;
 }
 
+/* What is typed at the prompt or after -e has the module at hand without require; a script has not,
+ * for it should run in a stock Lua too. */
+static bool give_module(lua_State *L, const options *o)
+{
+    int status = luaL_loadstring(L, "talus = require 'talus'");
+    return status == LUA_OK && tl_repl_call(L, 0, 0, o->verbose);
+}
+
 static bool run(lua_State *L, int argc, char **argv, options *o)
 {
     lua_pushcfunction(L, prepare);
@@ -168,17 +176,14 @@ static bool run(lua_State *L, int argc, char **argv, options *o)
         return false;
     if (o->chunk) {
         int status = luaL_loadbuffer(L, o->chunk, strlen(o->chunk), "=(command line)");
-        return run_chunk(L, status, argc, argv, o->next, o);
+        return give_module(L, o) && run_chunk(L, status, argc, argv, o->next, o);
     }
     if (o->next < argc)
         return run_script(L, argc, argv, o);
     if (!isatty(STDIN_FILENO))
         return run_chunk(L, luaL_loadfile(L, NULL), argc, argv, argc, o);
-    /* At the prompt the module is at hand without require. */
-    if (luaL_dostring(L, "talus = require 'talus'") != LUA_OK) {
-        tl_repl_report(L);
+    if (!give_module(L, o))
         return false;
-    }
     printf("Talus %s. talus.help() tells what there is; Ctrl-D ends.\n", TALUS_VERSION);
     tl_repl_run(L, o->verbose);
     return true;

@@ -15,9 +15,10 @@ static lua_State *interrupted_state;
 
 static void raise_interrupt(lua_State *L, lua_Debug *record)
 {
-    (void)record;
     lua_sethook(L, NULL, 0, 0);
-    luaL_error(L, "stopped by Ctrl-C");
+    lua_getinfo(L, "Sl", record);
+    lua_pushfstring(L, "%s:%d: stopped by Ctrl-C", record->short_src, record->currentline);
+    lua_error(L);
 }
 
 /* Outside a run of the kernel, Ctrl-C raises an error at the next Lua instruction; once more and

@@ -98,7 +98,7 @@ static void show(run *r)
     int64_t cycles = tl_model_cycles(r->model);
     char line[160];
     snprintf(line, sizeof line,
-             "cycle %lld  time %.4g s  dt %.2g s  ratio %.1e  max velocity %.1e  %.0f cycles/s",
+             "cycle %lld  t %.4g s  dt %.2g s  ratio %.1e  velocity %.1e  %.0f/s",
              (long long)cycles, tl_model_time(r->model), dt, r->result.ratio,
              r->result.max_velocity, (double)(cycles - r->first_cycle) / (t - r->began));
     fprintf(stderr, "\r\033[K%.*s", SHOW_COLUMNS, line);

@@ -1,0 +1,127 @@
+-- program only
+-- The program `talus` from outside: exit status, one sentence on standard error, help, options.
+local check = require "check"
+
+local program = os.getenv("TALUS_PROGRAM") or arg[-1]
+local folder = os.getenv("TALUS_TEST_TMP") or "/tmp"
+
+local function write(name, text)
+    local path = folder .. "/" .. name
+    local file = assert(io.open(path, "w"))
+    file:write(text)
+    file:close()
+    return path
+end
+
+-- Runs the program; gives exit status, standard output, standard error.
+local function run(arguments, input)
+    local errors = folder .. "/program_errors.txt"
+    local pipe = assert(io.popen(string.format("'%s' %s 2>'%s' <%s", program, arguments, errors,
+        input or "/dev/null")))
+    local output = pipe:read("a")
+    local _, _, status = pipe:close()
+    local file = assert(io.open(errors))
+    local text = file:read("a")
+    file:close()
+    return status, output, text
+end
+
+local function contains(text, part)
+    check.holds(text:find(part, 1, true), "'" .. part .. "' in: " .. text)
+end
+
+-- One sentence of one line on standard error, and exit status 1.
+local function refused(arguments, part)
+    local status, _, errors = run(arguments)
+    check.equal(status, 1)
+    contains(errors, part)
+    check.holds(errors:match("^talus: [^\n]+\n$"), "one line that begins with talus: " .. errors)
+end
+
+-- Scripts.
+local script = write("program_good.lua", [[
+print(arg[0]:match("[^/]+$"), arg[1], arg[2], ...)
+print(require "talus" == require "talus", require("talus").model{}.threads)
+]])
+local status, output, errors = run(script .. " one 'two words'")
+check.equal(status, 0)
+check.equal(output, "program_good.lua\tone\ttwo words\tone\ttwo words\ntrue\t1\n")
+check.equal(errors, "")
+contains(select(2, run("--threads 2 " .. script)), "true\t2")
+
+script = write("program_bad.lua", [[
+local talus = require "talus"
+local model = talus.model {}
+model:generate("box", { min = { 0, 0, 0 }, max = { 1, 1, 1 }, density = 0 })
+]])
+refused(script, "program_bad.lua:3: generator 'box': density = 0 kg/m3 must be > 0")
+refused(write("program_syntax.lua", "local x = = 3\n"), "program_syntax.lua:1: unexpected symbol")
+refused(write("program_global.lua", "local friction = 30\nprint(frction)\n"),
+    "program_global.lua:2: the variable 'frction' is not declared; did you mean 'friction'?")
+refused(write("program_table.lua", "error({})\n"), "an error that is a table")
+status, _, errors = run("-v " .. script)
+check.equal(status, 1)
+contains(errors, "program_bad.lua:3: generator 'box'")
+contains(errors, "stack traceback")
+refused(folder .. "/no_such_script.lua", "no_such_script.lua")
+
+-- Assigning declares, even nil; reading through rawget never raises.
+status = run(write("program_declared.lua", [[
+flag = nil
+assert(flag == nil)
+value = 3
+assert(value == 3 and rawget(_G, "unknown") == nil)
+]]))
+check.equal(status, 0)
+
+-- Chunks and standard input.
+status, output = run("-e 'print(talus.version)'")
+check.equal(status, 0)
+check.holds(output:match("^%d+%.%d+%.%d+\n$"), "a version")
+refused("-e 'x.y = 3'", "(command line):1: the variable 'x' is not declared")
+check.equal(select(2, run("", write("program_input.lua", "print(1 + 1)\n"))), "2\n")
+
+-- Options.
+refused("--threds 2 x.lua", "unknown option '--threds'; did you mean '--threads'?")
+refused("--threads 0 x.lua", "--threads: '0' is not a whole number in [1, 256]")
+refused("--threads", "--threads needs a value")
+refused("--plugin " .. folder .. "/no_such_plugin.so -e 'x = 1'", "no_such_plugin.so")
+check.equal(run("--quiet -e 'x = 1'"), 0)
+
+-- Plugins that must be refused, with path and reason.
+local bad = os.getenv("TALUS_BAD_PLUGIN_DIR")
+if bad then
+    local list = io.popen("ls '" .. bad .. "'/*.so 2>/dev/null")
+    for path in list:lines() do
+        refused("--plugin '" .. path .. "' -e 'x = 1'", path)
+    end
+    list:close()
+end
+
+-- Help, version, plugins.
+status, output = run("--version")
+check.equal(status, 0)
+contains(output, "Talus ")
+contains(output, "plugin interface ")
+contains(output, "compiler: ")
+contains(output, "build: ")
+status, output = run("help")
+check.equal(status, 0)
+for _, word in ipairs { "talus plugins", "--threads", "generate", "solve", "coulomb", "adaptive", "jointset" } do
+    contains(output, word)
+end
+status, output = run("help solve")
+check.equal(status, 0)
+contains(output, "default 1e-05")
+contains(output, "on_progress")
+status, output = run("help joint") -- a function and a generator
+contains(output, "model:joint(")
+contains(output, "generator 'joint'")
+contains(output, "in [0, 90]")
+contains(select(2, run("help coulomb")), "in [0, 90)")
+contains(select(2, run("help blocks")), "kinetic_energy")
+refused("help solv", "there is no help on 'solv'; did you mean 'solve'?")
+status, output = run("plugins")
+check.equal(status, 0)
+contains(output, "law 'coulomb'")
+contains(output, "coulomb.so")
