@@ -5,8 +5,14 @@
 #include "base/error.h"
 #include "geometry/polyhedron.h"
 
+#include <float.h>
+
 /* Euler's formula bounds the edges of a polyhedron within the limits on vertices and faces. */
 #define TL_POLY_MAX_EDGES (TL_POLY_MAX_VERTICES + TL_POLY_MAX_FACES - 2)
+
+/* Distances are known to a few roundings of the coordinates: for a small block far from zero that, and
+ * not TL_POLY_ON times its size, is the least distance that means anything. */
+#define TL_POLY_ROUNDINGS (16 * DBL_EPSILON)
 
 /* One allocation with the counts set, its arrays laid out and nothing in them; NULL without memory. */
 tl_poly *tl_poly_allocate(uint32_t vertex_count, uint32_t face_count, uint32_t edge_count);

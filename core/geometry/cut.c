@@ -11,14 +11,9 @@
  * of a face, which list the edge in opposite directions, get the same bits. */
 #include "geometry/assemble.h"
 
-#include <float.h>
 #include <stdlib.h>
 #include <string.h>
 #include <talus/vmath.h>
-
-/* Distances to the plane are known to a few roundings of the coordinates: for a small block far from
- * zero that, and not TL_POLY_ON times its size, is what "on the plane" can mean. */
-#define ROUNDINGS (16 * DBL_EPSILON)
 
 /* Scratch that fits on the stack: enough for about 80 vertices and 80 faces. */
 #define LOCAL_SCRATCH 16384
@@ -93,7 +88,7 @@ static void classify(cutter *c, double *low, double *high)
         double far = fabs(x.x) + fabs(x.y) + fabs(x.z);
         reach = far > reach ? far : reach;
     }
-    double on = c->on = fmax(TL_POLY_ON * p->size, ROUNDINGS * reach);
+    double on = c->on = fmax(TL_POLY_ON * p->size, TL_POLY_ROUNDINGS * reach);
     for (uint32_t v = 0; v < p->vertex_count; v++)
         c->side[v] = (signed char)((c->distance[v] > on) - (c->distance[v] < -on));
 }

@@ -18,7 +18,9 @@
 
 typedef struct builder {
     const tl_vec3 *point;
-    double extent, unit; /* diagonal of the bounds; grid units per length */
+    double extent;    /* diagonal of the bounds */
+    double tolerance; /* lengths that do not count */
+    double unit;      /* grid units per length */
     tl_hull hull;
     uint32_t face_count;
     uint32_t *sectors; /* [count] faces that meet in a point */
@@ -104,6 +106,13 @@ static tl_status place_on_grid(builder *b, tl_error *error)
         return tl_fail(error, TL_E_GEOMETRY,
                        "the vertices are %g apart, which cannot be computed with: use other units",
                        longest);
+    double reach = fmax(tl_v3_norm(low), tl_v3_norm(high));
+    b->tolerance = fmax(TL_POLY_ON * b->extent, TL_POLY_ROUNDINGS * reach);
+    if (b->tolerance > TL_POLY_THIN * b->extent)
+        return tl_fail(error, TL_E_GEOMETRY,
+                       "vertices %g apart with coordinates of %g lose their digits: move the model "
+                       "nearer to the origin",
+                       longest, reach);
     int exponent;
     (void)frexp(longest, &exponent);
     b->unit = ldexp(1, TL_HULL_BITS - exponent);
@@ -113,7 +122,7 @@ static tl_status place_on_grid(builder *b, tl_error *error)
         h->grid[i][1] = llround(x.y);
         h->grid[i][2] = llround(x.z);
     }
-    double same = TL_POLY_ON * b->extent;
+    double same = b->tolerance;
     for (uint32_t i = 0; i < h->count; i++)
         for (uint32_t j = 0; j < i && !h->duplicate[i]; j++)
             h->duplicate[i] =
@@ -124,7 +133,7 @@ static tl_status place_on_grid(builder *b, tl_error *error)
 static tl_status flat(const builder *b, double thickness, tl_error *error)
 {
     /* A plane through three points leaves a height of rounding over it: that is none. */
-    if (thickness < TL_POLY_ON * b->extent)
+    if (thickness < b->tolerance)
         thickness = 0;
     return tl_fail(
         error, TL_E_GEOMETRY,
@@ -215,7 +224,7 @@ static bool joins(const builder *b, const tl_hull_triangle *seed, const tl_hull_
         const int64_t *x = h->grid[t->vertex[i]];
         double height = n[0] * (double)(x[0] - a[0]) + n[1] * (double)(x[1] - a[1]) +
                         n[2] * (double)(x[2] - a[2]);
-        if (fabs(height) > TL_POLY_ON * b->extent * b->unit * length)
+        if (fabs(height) > b->tolerance * b->unit * length)
             return false;
     }
     return n[0] * m[0] + n[1] * m[1] + n[2] * m[2] > 0;
@@ -449,7 +458,7 @@ static tl_status check_hull(const builder *b, const tl_poly *p, tl_error *error)
         double depth = INFINITY;
         for (uint32_t f = 0; f < p->face_count; f++)
             depth = fmin(depth, p->plane[f].offset - tl_v3_dot(p->plane[f].normal, b->point[i]));
-        if (depth > TL_POLY_ON * b->extent)
+        if (depth > b->tolerance)
             return tl_fail(
                 error, TL_E_GEOMETRY,
                 "vertex %u lies %.3g inside the hull of the others; a block must be convex: "

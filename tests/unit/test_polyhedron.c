@@ -84,6 +84,7 @@ TEST(make_refuses_what_is_not_closed)
     static const uint16_t twice[12] = {0, 2, 1, 0, 2, 1, 0, 3, 2, 1, 2, 3};
     static const uint16_t loopy[12] = {0, 0, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3};
     static const uint16_t unknown[12] = {0, 2, 4, 0, 1, 3, 0, 3, 2, 1, 2, 3};
+    static const uint16_t thirteen[13] = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3, 1};
     static const uint32_t ragged[5] = {0, 2, 6, 9, 12}, longer[5] = {0, 3, 6, 9, 13};
     tl_vec3 bad[4] = {corners[0], corners[1], {0, NAN, 0}, corners[3]};
     expect_failure(corners, 4, starts, reversed, 4,
@@ -92,7 +93,7 @@ TEST(make_refuses_what_is_not_closed)
     expect_failure(corners, 4, starts, loopy, 4, "the edge from vertex 1 to vertex 1");
     expect_failure(corners, 4, starts, unknown, 4, "face 1 names vertex 5 of 4");
     expect_failure(corners, 4, ragged, loops, 4, "face 1 needs three vertices");
-    expect_failure(corners, 4, longer, loops, 4, "vertices + faces - edges must be 2");
+    expect_failure(corners, 4, longer, thirteen, 4, "vertices + faces - edges must be 2");
     expect_failure(corners, 3, starts, loops, 4, "a polyhedron of 3 vertices");
     expect_failure(corners, 4, starts, loops, 3, "a polyhedron of 3 faces");
     expect_failure(bad, 4, starts, loops, 4, "vertex 3 has a coordinate that is not finite");
