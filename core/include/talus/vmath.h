@@ -180,14 +180,10 @@ static inline double tl_sin_quarter(double degrees, int quarter)
     double turns = floor((r + 45) / 90);
     double x = (r - 90 * turns) * (TL_PI / 180);
     switch (((int)turns + quarter) & 3) {
-    case 0:
-        return sin(x);
-    case 1:
-        return cos(x);
-    case 2:
-        return -sin(x);
-    default:
-        return -cos(x);
+    case 0: return sin(x);
+    case 1: return cos(x);
+    case 2: return -sin(x);
+    default: return -cos(x);
     }
 }
 
