@@ -9,6 +9,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Letters of a wrong string that a message repeats. */
+#define LONGEST_SHOWN 60
+
 /* ---------------------------------------------------------------- conversion to values --- */
 
 /* Hangs the value on the top of the stack on the anchor table and pops it. */
@@ -260,6 +263,8 @@ void tl_lua_arity(lua_State *L, int most, const char *function)
 
 const char *tl_lua_describe(lua_State *L, int index)
 {
+    const char *text;
+    size_t length;
     switch (lua_type(L, index)) {
     case LUA_TNONE:
     case LUA_TNIL: return "nil";
@@ -269,7 +274,11 @@ const char *tl_lua_describe(lua_State *L, int index)
             return "not a number (NaN)";
         lua_pushvalue(L, index);
         return lua_pushfstring(L, "the number %s", lua_tostring(L, -1));
-    case LUA_TSTRING: return lua_pushfstring(L, "the string '%s'", lua_tostring(L, index));
+    case LUA_TSTRING:
+        text = lua_tolstring(L, index, &length);
+        lua_pushlstring(L, text, length < LONGEST_SHOWN ? length : LONGEST_SHOWN);
+        return lua_pushfstring(L, "the string '%s%s'", lua_tostring(L, -1),
+                               length > LONGEST_SHOWN ? "..." : "");
     default: return lua_pushfstring(L, "a %s", type_name(L, lua_absindex(L, index)));
     }
 }

@@ -133,24 +133,55 @@ static int read_chunk(lua_State *L)
     }
 }
 
-/* Prints the values from stack index `first` up. */
-static void print_values(lua_State *L, int first)
+/* Prints the value at `index` as it would be written in a script, tables by their address. */
+static void print_value(lua_State *L, int index)
 {
-    int count = lua_gettop(L) - first + 1;
-    if (count <= 0)
-        return;
-    for (int i = first; i < first + count; i++) {
-        printf("%s%s", i > first ? "\t" : "", luaL_tolstring(L, i, NULL));
+    const char *quote = lua_type(L, index) == LUA_TSTRING ? "\"" : "";
+    printf("%s%s%s", quote, luaL_tolstring(L, index, NULL), quote);
+    lua_pop(L, 1);
+}
+
+/* Prints a plain table one level deep, its list first: {1.0, 2.0, reason = "ratio"}. */
+static void print_table(lua_State *L, int table)
+{
+    lua_Integer length = (lua_Integer)lua_rawlen(L, table);
+    const char *separator = "";
+    putchar('{');
+    for (lua_Integer i = 1; i <= length; i++, separator = ", ") {
+        fputs(separator, stdout);
+        lua_rawgeti(L, table, i);
+        print_value(L, lua_gettop(L));
         lua_pop(L, 1);
+    }
+    for (lua_pushnil(L); lua_next(L, table); lua_pop(L, 1)) {
+        int key = lua_gettop(L) - 1;
+        if (lua_isinteger(L, key) && lua_tointeger(L, key) >= 1 && lua_tointeger(L, key) <= length)
+            continue;
+        printf("%s%s = ", separator, luaL_tolstring(L, key, NULL));
+        lua_pop(L, 1);
+        print_value(L, key + 1);
+        separator = ", ";
+    }
+    putchar('}');
+}
+
+/* Prints all its arguments on a line; called protected, because a __tostring may raise. */
+static int print_all(lua_State *L)
+{
+    int count = lua_gettop(L);
+    luaL_checkstack(L, LUA_MINSTACK, "too many values");
+    for (int i = 1; i <= count; i++) {
+        fputs(i > 1 ? "\t" : "", stdout);
+        if (lua_istable(L, i) && !lua_getmetatable(L, i))
+            print_table(L, i);
+        else {
+            lua_settop(L, count);
+            printf("%s", luaL_tolstring(L, i, NULL));
+            lua_pop(L, 1);
+        }
     }
     putchar('\n');
     fflush(stdout);
-}
-
-/* Protected, because a __tostring may raise. */
-static int print_all(lua_State *L)
-{
-    print_values(L, 1);
     return 0;
 }
 
