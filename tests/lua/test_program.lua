@@ -14,10 +14,10 @@ local function write(name, text)
 end
 
 -- Runs the program; gives exit status, standard output, standard error.
-local function run(arguments, input)
+local function run(arguments, input, environment)
     local errors = folder .. "/program_errors.txt"
-    local pipe = assert(io.popen(string.format("'%s' %s 2>'%s' <%s", program, arguments, errors,
-        input or "/dev/null")))
+    local pipe = assert(io.popen(string.format("%s '%s' %s 2>'%s' <%s", environment or "", program,
+        arguments, errors, input or "/dev/null")))
     local output = pipe:read("a")
     local _, _, status = pipe:close()
     local file = assert(io.open(errors))
@@ -48,6 +48,11 @@ check.equal(status, 0)
 check.equal(output, "program_good.lua\tone\ttwo words\tone\ttwo words\ntrue\t1\n")
 check.equal(errors, "")
 contains(select(2, run("--threads 2 " .. script)), "true\t2")
+contains(select(2, run(script, nil, "TALUS_THREADS=3")), "true\t3")
+contains(select(2, run("--threads 2 " .. script, nil, "TALUS_THREADS=3")), "true\t2")
+status, output, errors = run(script, nil, "TALUS_THREADS=many")
+check.equal(status, 1)
+contains(errors, "program_good.lua:2: the environment's TALUS_THREADS = 'many'")
 
 script = write("program_bad.lua", [[
 local talus = require "talus"
