@@ -61,8 +61,10 @@ static tl_status create(const void *given, void **self, tl_report *report)
         return TL_E_ARGUMENT;
     }
     params *copy = malloc(sizeof *copy);
-    if (!copy)
+    if (!copy) {
+        snprintf(report->text, sizeof report->text, "out of memory");
         return TL_E_MEMORY;
+    }
     *copy = *p;
     *self = copy;
     return TL_OK;

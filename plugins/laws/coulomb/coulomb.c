@@ -15,6 +15,7 @@
 #include <talus/plugin.h>
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 #define DEGREE (3.14159265358979323846 / 180)
@@ -45,11 +46,12 @@ typedef struct coulomb {
 
 static tl_status create(const void *given, void **self, tl_report *report)
 {
-    (void)report;
     const params *p = given;
     coulomb *law = malloc(sizeof *law);
-    if (!law)
+    if (!law) {
+        snprintf(report->text, sizeof report->text, "out of memory");
         return TL_E_MEMORY;
+    }
     *law = (coulomb){p->kn, p->ks, tan(p->friction * DEGREE), p->cohesion};
     *self = law;
     return TL_OK;

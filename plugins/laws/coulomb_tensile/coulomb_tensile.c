@@ -18,6 +18,7 @@
 #include <talus/plugin.h>
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 #define DEGREE (3.14159265358979323846 / 180)
@@ -76,11 +77,12 @@ typedef struct bonded {
 
 static tl_status create(const void *given, void **self, tl_report *report)
 {
-    (void)report;
     const params *p = given;
     bonded *law = malloc(sizeof *law);
-    if (!law)
+    if (!law) {
+        snprintf(report->text, sizeof report->text, "out of memory");
         return TL_E_MEMORY;
+    }
     double residual = isnan(p->residual_friction) ? p->friction : p->residual_friction;
     *law = (bonded){
         .kn = p->kn,
