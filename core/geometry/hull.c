@@ -5,8 +5,10 @@
  * by 10^3, so neither shows. Triangles within TL_POLY_ON times the extent of one plane then become one
  * face, the largest first, so that a sliver between two faces joins one of them. A vertex left with
  * fewer than three faces lies on a face or an edge and is dropped. Coordinates are never moved; planes
- * are fitted to the coordinates given. Every loop starts at its lowest vertex and the faces are in
- * the order of their loops, so the result depends on the points alone. */
+ * are fitted to the coordinates given. Should noise as large as the tolerance leave faces that are no
+ * convex polygons, triangles are merged anew with a wider one, up to TL_POLY_THIN. Every loop starts at
+ * its lowest vertex and the faces are in the order of their loops, so that the result depends on the
+ * points alone. */
 #include "geometry/assemble.h"
 #include "geometry/triangulate.h"
 
@@ -15,6 +17,12 @@
 #include <talus/vmath.h>
 
 #define NO_FACE UINT32_MAX
+
+/* Faces fitted to vertices within the tolerance leave others this many tolerances off at most. */
+#define SOUND 4
+/* When noise about as large as the tolerance makes the border of two nearly coplanar faces zigzag, so
+ * that they are no convex polygons, a tolerance this much wider takes it in. */
+#define WIDER 8
 
 typedef struct builder {
     const tl_vec3 *point;
@@ -468,6 +476,29 @@ static tl_status check_hull(const builder *b, const tl_poly *p, tl_error *error)
     return TL_OK;
 }
 
+/* The polyhedron of the triangles merged with the present tolerance. *poly stays NULL when the faces are
+ * not convex polygons. */
+static tl_status merge(builder *b, tl_poly **poly, tl_error *error)
+{
+    b->face_count = b->vertex_count = 0;
+    if (!group_triangles(b))
+        return tl_fail_memory(error);
+    if (!trace_faces(b))
+        return TL_OK;
+    if (b->face_count > TL_POLY_MAX_FACES)
+        return tl_fail(error, TL_E_GEOMETRY, "the %u vertices make %u faces: one block can have %d",
+                       b->hull.count, b->face_count, TL_POLY_MAX_FACES);
+    number_corners(b);
+    tl_poly *p = NULL;
+    tl_status status = assemble(b, &p, error);
+    if (!status && tl_poly_check(p, SOUND * b->tolerance / p->size, NULL) == TL_OK) {
+        *poly = p;
+        return TL_OK;
+    }
+    tl_poly_free(p);
+    return status == TL_E_MEMORY ? status : TL_OK;
+}
+
 static tl_status build(builder *b, tl_poly **poly, tl_error *error)
 {
     uint32_t corner[4];
@@ -477,19 +508,20 @@ static tl_status build(builder *b, tl_poly **poly, tl_error *error)
     if (status)
         return status;
     tl_hull_triangulate(&b->hull, corner);
-    if (!group_triangles(b))
-        return tl_fail_memory(error);
-    if (!trace_faces(b))
+    tl_poly *p = NULL;
+    for (; !p && b->tolerance <= TL_POLY_THIN * b->extent; b->tolerance *= WIDER) {
+        status = merge(b, &p, error);
+        if (status)
+            return status;
+    }
+    if (!p)
         return tl_fail(
             error, TL_E_GEOMETRY,
-            "the %u vertices do not make a block with flat faces: vertices closer together "
-            "than %.3g or faces that almost coincide must be left out",
+            "the %u vertices do not make a block with flat faces: leave out vertices "
+            "closer together than %.3g, or nearer than that to a face they do not belong to",
             b->hull.count, TL_POLY_THIN * b->extent);
-    number_corners(b);
-    tl_poly *p = NULL;
-    status = assemble(b, &p, error);
-    if (!status)
-        status = check_hull(b, p, error);
+    b->tolerance /= WIDER; /* what the loop stepped past */
+    status = check_hull(b, p, error);
     if (status)
         tl_poly_free(p);
     else

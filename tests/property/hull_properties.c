@@ -229,4 +229,56 @@ TEST(lattice_points)
     CHECK(made > 3000 && named > 1000);
 }
 
-TEST_MAIN(RUN(points_on_an_ellipsoid), RUN(rotated_bricks), RUN(rotated_drums), RUN(lattice_points))
+/* Boxes, wedges and tetrahedra, thick or thin, with points strewn along their edges and diagonals, some
+ * of them 1e-8 from a corner, and noise about as large as the tolerance: the worst input for merging.
+ * Either the set is too flat, or what comes out is sound; small faces of such noise have ill-defined
+ * planes, which sets the tolerance. */
+TEST(noise_as_large_as_the_tolerance)
+{
+    int made = 0, flat = 0;
+    for (int i = 0; i < 20000; i++) {
+        tl_vec3 base[8], x[40];
+        size_t corners = i % 3 == 0 ? 8 : i % 3 == 1 ? 6 : 4;
+        double thickness = pow(10, uniform(-4, 0)), noise = pow(10, uniform(-13, -6));
+        for (size_t k = 0; k < corners; k++) {
+            double u = (double)(k & 1), v = (double)(k >> 1 & 1);
+            if (corners == 8)
+                base[k] = tl_v3(u, v, thickness * (double)(k >> 2));
+            else if (corners == 6)
+                base[k] = k < 4 ? tl_v3(u, v, 0) : tl_v3(0, u, thickness);
+            else
+                base[k] = tl_v3(uniform(-1, 1), uniform(-1, 1), thickness * uniform(-1, 1));
+        }
+        size_t n = corners + (size_t)uniform(0, 30);
+        tl_mat3 r = random_rotation();
+        for (size_t k = 0; k < n; k++) {
+            tl_vec3 a = base[k < corners ? k : (size_t)uniform(0, (double)corners)];
+            tl_vec3 b = k < corners ? a : base[(size_t)uniform(0, (double)corners)];
+            double along = check_random(&seed) < 0.3 ? uniform(0, 1e-8) : uniform(0, 1);
+            tl_vec3 jitter = {uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)};
+            x[k] = tl_m3_mul(&r, tl_v3_madd(tl_v3_madd(a, along, tl_v3_sub(b, a)), noise, jitter));
+        }
+        tl_poly *p = NULL;
+        while (tl_poly_hull(x, n, &p, &error)) {
+            const char *at = strstr(error.text, "vertex ");
+            if (!at || !strstr(error.text, "inside the hull"))
+                break;
+            x[strtoul(at + 7, NULL, 10) - 1] = x[n - 1];
+            n--;
+        }
+        if (!p) {
+            CHECK_CONTAINS(error.text, "lie in one plane");
+            flat++;
+            continue;
+        }
+        made++;
+        CHECK_INT(tl_poly_check(p, 1e-6, &error), TL_OK);
+        for (size_t k = 0; k < n; k++)
+            CHECK(tl_poly_contains(p, x[k], 1e-6));
+        tl_poly_free(p);
+    }
+    CHECK(made > 15000 && flat < 1000);
+}
+
+TEST_MAIN(RUN(points_on_an_ellipsoid), RUN(rotated_bricks), RUN(rotated_drums), RUN(lattice_points),
+          RUN(noise_as_large_as_the_tolerance))

@@ -218,8 +218,31 @@ TEST(numbers_that_cannot_be_computed_with_are_refused)
     expect_refusal(p, TL_POLY_MAX_VERTICES + 1, "4097 vertices: one block can have 4096 at most");
 }
 
+/* Points spread over a sphere make twice as many triangles, which is the limit that is met first. */
+TEST(many_vertices)
+{
+    static tl_vec3 points[TL_POLY_MAX_VERTICES];
+    for (uint32_t count = 2048; count <= 4096; count += 2048) {
+        /* A spiral from pole to pole. */
+        for (uint32_t i = 0; i < count; i++) {
+            double z = 1 - (2 * i + 1.0) / count, r = sqrt(1 - z * z), angle = 2.4 * i;
+            points[i] = tl_v3(r * cos(angle), r * sin(angle), z);
+        }
+        if (count == 4096) {
+            expect_refusal(points, count,
+                           "the 4096 vertices make 8188 faces: one block can have 4096");
+            break;
+        }
+        tl_poly *p = hull_of(points, count);
+        expect_counts(p, count, 3 * count - 6, 2 * count - 4);
+        CHECK_INT(tl_poly_check(p, 1e-15, &error), TL_OK);
+        CHECK_NEAR(tl_poly_mass(p).volume, 4 * TL_PI / 3, 0.02);
+        tl_poly_free(p);
+    }
+}
+
 TEST_MAIN(RUN(cube_has_six_exact_faces), RUN(points_on_faces_and_edges_are_left_out),
           RUN(repeated_vertices_count_once), RUN(noise_on_the_corners), RUN(drums),
-          RUN(tetrahedron), RUN(thin_plate_far_from_zero), RUN(point_inside_is_named),
-          RUN(flat_and_degenerate_points_are_refused),
+          RUN(tetrahedron), RUN(many_vertices), RUN(thin_plate_far_from_zero),
+          RUN(point_inside_is_named), RUN(flat_and_degenerate_points_are_refused),
           RUN(numbers_that_cannot_be_computed_with_are_refused))
