@@ -132,6 +132,16 @@ static int vertices_kept(const tl_poly *parent, const tl_poly *low, const tl_pol
     return 1;
 }
 
+/* Cut again by the same plane, a child only finds its cap there. */
+static int finds_cap_again(const tl_poly *child, tl_plane plane)
+{
+    tl_cut again;
+    tl_error error;
+    if (tl_poly_cut(child, plane, (tl_tag){1, 1}, &again, &error))
+        return 0;
+    return again.result == TL_CUT_COINCIDENT && again.face == child->face_count - 1;
+}
+
 typedef struct tally {
     int cuts, made, refused, coincident, missed;
     double worst;
@@ -139,6 +149,9 @@ typedef struct tally {
 
 /* Deviation from planarity and convexity allowed in lengths of the first block. */
 static double shape_tolerance;
+
+/* Whether planes may pass vertices by about the tolerance. */
+static int warped;
 
 /* Cuts one block and checks what comes of it. true when made. */
 static int cut_and_check(const tl_poly *p, tl_plane plane, double tolerance, tl_cut *cut, tally *t)
@@ -171,6 +184,7 @@ static int cut_and_check(const tl_poly *p, tl_plane plane, double tolerance, tl_
         sum += tl_poly_mass(child[i]).volume;
         tl_tag tag = child[i]->tag[child[i]->face_count - 1];
         CHECK(tag.joint == 3 && tag.plane == 7);
+        CHECK(warped || finds_cap_again(child[i], plane));
     }
     CHECK(caps_match(child[0], child[1]));
     CHECK(vertices_kept(p, child[0], child[1]));
@@ -191,6 +205,7 @@ static void cut_at_random(tl_vec3 offset, int cuts, kind last, double warp, tall
         uint32_t count = 0;
         CHECK_INT(tl_poly_box(offset, corner, &live[count++], &error), TL_OK);
         shape_tolerance = TL_POLY_ON * live[0]->size + 16 * rounding;
+        warped = warp > 0;
         for (int i = 0; i < 200 && t->cuts < cuts; i++) {
             uint32_t which = pick(count);
             tl_plane plane = random_plane(live[which], (kind)pick(last + 1u));
