@@ -170,7 +170,7 @@ tl_status tl_model_set_gravity(tl_model *m, tl_vec3 gravity)
 
 void tl_model_set_rotation(tl_model *m, tl_rotation_rule rule)
 {
-    m->config.rotation = rule;
+    m->config.rotation = (int32_t)rule;
 }
 
 void tl_model_set_reuse_geometry(tl_model *m, bool reuse)

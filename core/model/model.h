@@ -82,6 +82,7 @@ typedef struct tl_material {
     void *params; /* the plugin's params struct */
     void *self;   /* what its create made, or params */
     double kn, ks;
+    uint32_t tangents; /* bit k: states k, k + 1, k + 2 are a vector in the common plane */
 } tl_material;
 
 /* A rule for the minimum area of edge and point contacts. */
@@ -142,8 +143,7 @@ struct tl_model {
     void (*detect_destroy)(struct tl_detect *);
     struct tl_cycle *cycle; /* of the cycle room */
     void (*cycle_destroy)(struct tl_cycle *);
-    uint64_t vtk_frames; /* frames written; io keeps the list */
-    struct tl_vtk_series *vtk;
+    struct tl_vtk_series *vtk; /* of the io room: the frames written so far */
     void (*vtk_destroy)(struct tl_vtk_series *);
 };
 
@@ -151,6 +151,14 @@ struct tl_model {
 static inline tl_vec3 tl_body_place(const tl_bodies *b, uint32_t body)
 {
     return tl_v3_add(b->x_ref[body], b->u[body]);
+}
+
+/* From body a's centroid to body b's. The references are subtracted first, so that a small relative
+ * displacement keeps its digits. */
+static inline tl_vec3 tl_body_apart(const tl_bodies *bodies, uint32_t a, uint32_t b)
+{
+    return tl_v3_add(tl_v3_sub(bodies->x_ref[b], bodies->x_ref[a]),
+                     tl_v3_sub(bodies->u[b], bodies->u[a]));
 }
 
 /* Present place of a point of a shape, in the user's coordinates. */
@@ -170,6 +178,9 @@ tl_vec3 tl_block_point_displacement(const tl_model *m, uint32_t row, tl_vec3 loc
 uint32_t tl_block_row(tl_model *m, tl_id id);
 /* Row of an id known to live, or TL_NO_ROW. */
 uint32_t tl_block_row_quiet(const tl_model *m, tl_id id);
+
+/* TL_E_NOT_FOUND: "unknown law 'coulom'; did you mean ...": kinds.c. */
+tl_status tl_unknown_kind(tl_model *m, tl_kind_type type, const char *name);
 
 /* Takes the damping off. */
 void tl_damping_clear(tl_model *m);

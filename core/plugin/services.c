@@ -225,27 +225,6 @@ static tl_status progress(const tl_host *host, double fraction)
 
 /* ---------------------------------------------------------------- tl_generate ------------ */
 
-static tl_status unknown_generator(tl_model *m, const char *name)
-{
-    size_t count = 0;
-    while (tl_plugin_kind(TL_KIND_GENERATOR, count))
-        count++;
-    const char **names = malloc((count + 1) * sizeof *names);
-    if (!names)
-        return tl_fail_memory(&m->error);
-    for (size_t i = 0; i < count; i++)
-        names[i] = tl_plugin_kind(TL_KIND_GENERATOR, i)->name;
-    if (count == 0)
-        tl_fail(&m->error, TL_E_NOT_FOUND,
-                "unknown generator '%.80s': no generator is loaded; TALUS_PLUGIN_PATH may name "
-                "the folder of the plugins",
-                name);
-    else
-        tl_fail_unknown(&m->error, TL_E_NOT_FOUND, "", "generator", name, names, count);
-    free(names);
-    return TL_E_NOT_FOUND;
-}
-
 /* Calls the plugin on an open staging set and closes the set. */
 static tl_status run(service *s, const tl_kind *kind, const void *params)
 {
@@ -287,7 +266,7 @@ tl_status tl_generate(tl_model *m, const char *generator, const tl_args *args,
         return status;
     const tl_kind *kind = tl_plugin_find(TL_KIND_GENERATOR, generator);
     if (!kind)
-        return unknown_generator(m, generator);
+        return tl_unknown_kind(m, TL_KIND_GENERATOR, generator);
     char context[TL_ERROR_TEXT / 4];
     snprintf(context, sizeof context, "generator '%s'", kind->name);
     void *params = calloc(1, kind->params_size + 1);

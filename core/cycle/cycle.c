@@ -1,0 +1,92 @@
+/* cycle.c - one step, top to bottom.
+ *
+ * Explicit central differences (Hart, Cundall and Lemos 1988, 18-26). Positions, and so gaps and forces,
+ * live at whole steps, velocities half-way between. A step turns positions into contact forces, forces
+ * into velocities, velocities into positions:
+ *
+ *     detect   which blocks touch, where, how far they overlap            core/detect
+ *     laws     contact forces, by the joints' law plugins                 laws.c
+ *     gather   each body adds its contacts in a fixed order, its weight   gather.c
+ *     damping  a damping plugin's forces and coefficients                 damping.c
+ *     move     velocities and places one step on                          motion.c
+ *
+ * Everything computed in parallel is either a pure function of one contact or one body, or a sum made
+ * in fixed chunks, so the bits do not depend on the number of threads. */
+#include "cycle/cycle_room.h"
+
+#include <stdlib.h>
+
+static void cycle_destroy(struct tl_cycle *cycle)
+{
+    pthread_mutex_destroy(&cycle->failure_lock);
+    tl_table_free(&cycle->table);
+    free(cycle->chunk_sums);
+    free(cycle);
+}
+
+static void add_columns(struct tl_cycle *c)
+{
+    tl_table *t = &c->table;
+    tl_table_init(t, c);
+    TL_COLUMN(t, c, contact_force, 0);
+    for (int k = 0; k < 3; k++) {
+        TL_COLUMN(t, c, velocity[k], 0);
+        TL_COLUMN(t, c, angular_velocity[k], 0);
+        TL_COLUMN(t, c, force[k], 0);
+        TL_COLUMN(t, c, moment[k], 0);
+        TL_COLUMN(t, c, damping_force[k], 0);
+        TL_COLUMN(t, c, damping_moment[k], 0);
+    }
+    TL_COLUMN(t, c, mass, 0);
+    TL_COLUMN(t, c, inertia, 0);
+    TL_COLUMN(t, c, alpha, 0);
+}
+
+tl_status tl_cycle_prepare(tl_model *m)
+{
+    if (!m->cycle) {
+        if (!(m->cycle = calloc(1, sizeof *m->cycle)))
+            return tl_fail_memory(&m->error);
+        m->cycle_destroy = cycle_destroy;
+        pthread_mutex_init(&m->cycle->failure_lock, NULL);
+        add_columns(m->cycle);
+    }
+    struct tl_cycle *c = m->cycle;
+    size_t bodies = m->bodies.table.rows, chunks = bodies / TL_BODY_CHUNK + 1;
+    if (chunks > c->chunk_room) {
+        tl_sums *sums = realloc(c->chunk_sums, chunks * sizeof *sums);
+        if (!sums)
+            return tl_fail_memory(&m->error);
+        c->chunk_sums = sums;
+        c->chunk_room = chunks;
+    }
+    /* whole lanes: the damping plugins' loops run to a multiple of TL_LANES */
+    return tl_table_resize(&c->table, (bodies + TL_LANES - 1) / TL_LANES * TL_LANES)
+               ? TL_OK
+               : tl_fail_memory(&m->error);
+}
+
+tl_status tl_step(tl_model *m)
+{
+    double dt;
+    tl_status status = tl_cycle_prepare(m);
+    if (status == TL_OK)
+        status = tl_detect_update(m);
+    if (status == TL_OK)
+        status = tl_laws_check(m);
+    if (status == TL_OK)
+        status = tl_laws_apply(m);
+    if (status != TL_OK)
+        return status;
+    tl_gather(m);
+    status = tl_timestep_choose(m, &dt);
+    if (status == TL_OK)
+        status = tl_damping_apply(m, dt);
+    if (status != TL_OK)
+        return status;
+    tl_move(m, dt);
+    m->dt = dt;
+    m->time += dt;
+    m->cycles++;
+    return TL_OK;
+}

@@ -1,0 +1,63 @@
+/* cycle_room.h - the phases of a step, and what they keep between them. cycle.c puts them in order. */
+#ifndef TL_CYCLE_CYCLE_ROOM_H
+#define TL_CYCLE_CYCLE_ROOM_H
+
+#include "detect/detect.h"
+
+#include <pthread.h>
+
+/* Rows and points a worker takes at a time. */
+#define TL_BODY_CHUNK 256
+#define TL_POINT_CHUNK 512
+
+/* Sums over the free bodies, made per chunk and added in chunk order. */
+typedef struct tl_sums {
+    double unbalanced;    /* sum of |unbalanced force| */
+    double contact_force; /* sum over bodies of the sum of |contact forces| */
+    double weight;
+    double kinetic;    /* sum of (m v.v + w.I w) / 2 */
+    double max_speed2; /* largest v.v */
+    double smallest_mass;
+    double largest_face; /* of the free blocks: for the step without contacts */
+} tl_sums;
+
+struct tl_cycle {
+    tl_table table;
+    /* per body, as the damping plugins see them */
+    double *contact_force; /* sum of |contact forces| */
+    double *velocity[3], *angular_velocity[3], *force[3], *moment[3];
+    double *mass, *inertia;
+    double *damping_force[3], *damping_moment[3], *alpha;
+    tl_sums *chunk_sums;
+    size_t chunk_room;
+    tl_sums sums;
+    double kinetic_before; /* of the last step, for its rate */
+    double dt;             /* the step in use */
+    /* the first failure of a parallel phase, by chunk, and the point it came from */
+    pthread_mutex_t failure_lock;
+    tl_error failure;
+    size_t failure_chunk, failure_point;
+};
+
+/* One step of the model; a failure leaves places and velocities as they were. */
+tl_status tl_step(tl_model *m);
+
+/* Makes room for the model's bodies. */
+tl_status tl_cycle_prepare(tl_model *m);
+/* Notes a failure in a parallel phase; that of the lowest chunk counts. */
+void tl_cycle_failed(tl_model *m, size_t chunk, tl_status status, size_t point, const char *text);
+/* Calls the laws on their runs of contact points and sums forces per contact. */
+tl_status tl_laws_apply(tl_model *m);
+/* Each body gathers its contacts in fixed order, and its weight; sums for the convergence measures. */
+void tl_gather(tl_model *m);
+/* The unbalanced force ratio of the last gather. */
+double tl_unbalanced_ratio(const tl_model *m);
+/* The step to take, s. */
+tl_status tl_timestep_choose(tl_model *m, double *dt);
+tl_status tl_damping_apply(tl_model *m, double dt);
+/* Velocities, places and rotations one step on. */
+void tl_move(tl_model *m, double dt);
+/* Every contact has a law, or a sentence that names one that has not. */
+tl_status tl_laws_check(tl_model *m);
+
+#endif

@@ -1,0 +1,136 @@
+/* damping.c - the damping plugin: chosen by name, called on batches of bodies.
+ *
+ * The plugin's states are numbers of the model, kept here and given to it; the kinetic energy and its
+ * rate are sums made by gather.c. */
+#include "cycle/cycle_room.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+tl_status tl_model_damping(tl_model *m, const char *damping, const tl_args *args)
+{
+    const tl_kind *kind = tl_plugin_find(TL_KIND_DAMPING, damping);
+    if (!kind)
+        return tl_unknown_kind(m, TL_KIND_DAMPING, damping);
+    const tl_damping_ops *ops = kind->ops;
+    void *params = calloc(1, kind->params_size + 1), *self = params;
+    double *state = calloc(kind->state_count + 1u, sizeof *state);
+    if (!params || !state) {
+        free(params);
+        free(state);
+        return tl_fail_memory(&m->error);
+    }
+    char context[64];
+    snprintf(context, sizeof context, "damping '%.40s'", damping);
+    tl_report report = {.size = sizeof report};
+    tl_status status = tl_args_read(kind->params, kind->param_count, kind->param_stride, args, false,
+                                    params, context, &m->error);
+    if (status == TL_OK && ops->create) {
+        status = ops->create(params, &self, &report);
+        if (status != TL_OK)
+            tl_fail(&m->error, status, "%s: %s", context, report.text);
+    }
+    if (status != TL_OK) {
+        free(params);
+        free(state);
+        return status;
+    }
+    for (uint32_t k = 0; k < kind->state_count; k++)
+        state[k] = tl_kind_state(kind, k)->initial;
+    tl_damping_clear(m);
+    m->damping = kind;
+    m->damping_params = params;
+    m->damping_self = self;
+    m->damping_state = state;
+    if (m->cycle)
+        m->cycle->dt = 0; /* the stable step depends on the damping */
+    return TL_OK;
+}
+
+static void put(double *const column[3], size_t i, tl_vec3 v)
+{
+    column[0][i] = v.x;
+    column[1][i] = v.y;
+    column[2][i] = v.z;
+}
+
+typedef struct damping_job {
+    tl_model *m;
+    double dt;
+    double **state;
+} damping_job;
+
+static void damp_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
+{
+    (void)thread;
+    const damping_job *job = user;
+    tl_model *m = job->m;
+    struct tl_cycle *c = m->cycle;
+    const tl_bodies *b = &m->bodies;
+    const tl_vec3 zero = {0, 0, 0};
+    for (size_t i = begin; i < end; i++) {
+        bool real = i < b->table.rows;
+        tl_vec3 moments = real ? b->moments[i] : zero;
+        put(c->velocity, i, real ? b->v[i] : zero);
+        put(c->angular_velocity, i, real ? b->w[i] : zero);
+        put(c->force, i, real ? b->force[i] : zero);
+        put(c->moment, i, real ? b->moment[i] : zero);
+        put(c->damping_force, i, zero);
+        put(c->damping_moment, i, zero);
+        c->alpha[i] = 0;
+        c->mass[i] = real ? b->mass[i] : 1;
+        c->inertia[i] = real ? (moments.x + moments.y + moments.z) / 3 : 1;
+    }
+    tl_damping_batch batch = {.size = sizeof batch,
+                              .count = (uint32_t)(end - begin),
+                              .dt = job->dt,
+                              .mass = c->mass + begin,
+                              .inertia = c->inertia + begin,
+                              .alpha = c->alpha + begin,
+                              .state = job->state};
+    for (int k = 0; k < 3; k++) {
+        batch.velocity[k] = c->velocity[k] + begin;
+        batch.angular_velocity[k] = c->angular_velocity[k] + begin;
+        batch.force[k] = c->force[k] + begin;
+        batch.moment[k] = c->moment[k] + begin;
+        batch.damping_force[k] = c->damping_force[k] + begin;
+        batch.damping_moment[k] = c->damping_moment[k] + begin;
+    }
+    const tl_damping_ops *ops = m->damping->ops;
+    tl_report report = {.size = sizeof report};
+    tl_status status = ops->update(m->damping_self, &batch, &report);
+    if (status != TL_OK)
+        tl_cycle_failed(m, chunk, status, 0, report.text);
+}
+
+tl_status tl_damping_apply(tl_model *m, double dt)
+{
+    struct tl_cycle *c = m->cycle;
+    double kinetic = c->sums.kinetic;
+    tl_damping_totals totals = {.size = sizeof totals,
+                                .dt = dt,
+                                .kinetic = kinetic,
+                                .kinetic_rate = (kinetic - c->kinetic_before) / dt,
+                                .power_unit = 2 * kinetic};
+    c->kinetic_before = kinetic;
+    if (!m->damping)
+        return TL_OK;
+    const tl_damping_ops *ops = m->damping->ops;
+    double *state[TL_STATE_COLUMNS];
+    for (uint32_t k = 0; k < m->damping->state_count && k < TL_STATE_COLUMNS; k++)
+        state[k] = &m->damping_state[k];
+    tl_report report = {.size = sizeof report};
+    tl_status status = ops->begin ? ops->begin(m->damping_self, &totals, state, &report) : TL_OK;
+    if (status == TL_OK) {
+        damping_job job = {m, dt, state};
+        tl_parallel_for(m->pool, c->table.rows, TL_BODY_CHUNK, damp_range, &job);
+        status = c->failure.status;
+    } else {
+        tl_fail(&c->failure, status, "%s", report.text);
+    }
+    if (status == TL_OK)
+        return TL_OK;
+    c->failure.status = TL_OK;
+    return tl_fail(&m->error, status, "cycle %lld, damping '%s': %s", (long long)m->cycles + 1,
+                   m->damping->name, c->failure.text);
+}

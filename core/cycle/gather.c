@@ -1,0 +1,101 @@
+/* gather.c - forces on bodies: each adds its blocks' contacts in order of the partner's id (13-17 of
+ * Hart, Cundall and Lemos 1988), and its weight. Components that are held carry no unbalanced force. */
+#include "cycle/cycle_room.h"
+
+static tl_vec3 free_part(tl_vec3 v, unsigned fixed)
+{
+    return tl_v3(fixed & TL_FIX_X ? 0 : v.x, fixed & TL_FIX_Y ? 0 : v.y, fixed & TL_FIX_Z ? 0 : v.z);
+}
+
+static void gather_body(tl_model *m, uint32_t body)
+{
+    const tl_detect *d = m->detect;
+    const tl_contacts *c = &d->contacts;
+    tl_bodies *b = &m->bodies;
+    tl_vec3 force = tl_v3_scale(b->mass[body], m->config.gravity), moment = {0, 0, 0};
+    double contact_force = 0;
+    for (uint32_t k = 0; k < b->member_count[body]; k++) {
+        uint32_t row = m->members[b->member_start[body] + k];
+        for (uint32_t e = d->by_block_start[row]; e < d->by_block_start[row + 1]; e++) {
+            uint32_t i = d->by_block[e];
+            bool is_b = c->b[i] == row;
+            force = tl_v3_madd(force, is_b ? 1 : -1, c->force[i]);
+            moment = tl_v3_add(moment, is_b ? c->moment_b[i] : c->moment_a[i]);
+            contact_force += tl_v3_norm(c->force[i]);
+        }
+    }
+    b->force[body] = free_part(force, b->fixed[body]);
+    b->moment[body] = b->fixed[body] & TL_FIX_ROTATION ? tl_v3(0, 0, 0) : moment;
+    m->cycle->contact_force[body] = contact_force;
+}
+
+static double largest_face(const tl_model *m, uint32_t body)
+{
+    double largest = 0;
+    for (uint32_t k = 0; k < m->bodies.member_count[body]; k++) {
+        const tl_poly *shape = m->blocks.shape[m->members[m->bodies.member_start[body] + k]];
+        for (uint32_t f = 0; f < shape->face_count; f++)
+            largest = fmax(largest, tl_poly_face_area(shape, f));
+    }
+    return largest;
+}
+
+/* Twice the rotational energy. */
+static double spin_energy2(const tl_model *m, uint32_t body)
+{
+    const tl_bodies *b = &m->bodies;
+    tl_vec3 w = tl_q_rotate(tl_q_conj(tl_q_mul(b->q[body], b->axes[body])), b->w[body]);
+    if (m->config.rotation == TL_ROTATION_PAPER)
+        return b->round[body] * tl_v3_norm2(w);
+    tl_vec3 i = b->moments[body];
+    return i.x * w.x * w.x + i.y * w.y * w.y + i.z * w.z * w.z;
+}
+
+static void gather_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
+{
+    (void)thread;
+    tl_model *m = user;
+    tl_bodies *b = &m->bodies;
+    tl_sums sums = {.smallest_mass = INFINITY};
+    bool contacts = m->detect->contacts.table.rows > 0;
+    for (uint32_t body = (uint32_t)begin; body < end; body++) {
+        gather_body(m, body);
+        if (b->fixed[body] == TL_FIX_ALL)
+            continue;
+        double v2 = tl_v3_norm2(b->v[body]);
+        sums.unbalanced += tl_v3_norm(b->force[body]);
+        sums.contact_force += m->cycle->contact_force[body];
+        sums.weight += b->mass[body] * tl_v3_norm(m->config.gravity);
+        sums.kinetic += 0.5 * (b->mass[body] * v2 + spin_energy2(m, body));
+        sums.max_speed2 = fmax(sums.max_speed2, v2);
+        sums.smallest_mass = fmin(sums.smallest_mass, b->mass[body]);
+        if (!contacts)
+            sums.largest_face = fmax(sums.largest_face, largest_face(m, body));
+    }
+    m->cycle->chunk_sums[chunk] = sums;
+}
+
+void tl_gather(tl_model *m)
+{
+    struct tl_cycle *c = m->cycle;
+    size_t bodies = m->bodies.table.rows;
+    tl_parallel_for(m->pool, bodies, TL_BODY_CHUNK, gather_range, m);
+    c->sums = (tl_sums){.smallest_mass = INFINITY};
+    for (size_t chunk = 0; chunk * TL_BODY_CHUNK < bodies; chunk++) {
+        const tl_sums *s = &c->chunk_sums[chunk];
+        c->sums.unbalanced += s->unbalanced;
+        c->sums.contact_force += s->contact_force;
+        c->sums.weight += s->weight;
+        c->sums.kinetic += s->kinetic;
+        c->sums.max_speed2 = fmax(c->sums.max_speed2, s->max_speed2);
+        c->sums.smallest_mass = fmin(c->sums.smallest_mass, s->smallest_mass);
+        c->sums.largest_face = fmax(c->sums.largest_face, s->largest_face);
+    }
+}
+
+double tl_unbalanced_ratio(const tl_model *m)
+{
+    const tl_sums *s = &m->cycle->sums;
+    double against = s->contact_force > 0 ? s->contact_force : s->weight;
+    return against > 0 ? s->unbalanced / against : 0;
+}

@@ -1,0 +1,123 @@
+/* insitu.c - initial stress: tractions sigma n on the face patches that exist now.
+ *
+ * sigma(z) = stress + gradient (z - at.z), tension positive. A point of area a and normal n (A to B) gets
+ * f_n = -(n . sigma n) a and f_s = -(sigma n - (n . sigma n) n) a on B, and its closure counts from now.
+ * Edge and point contacts begin without force, and so do contacts made later. */
+#include "cycle/cycle_room.h"
+
+/* A traction below this share of the largest stress given is none. */
+#define NO_TRACTION 1e-9
+/* A face of which less than this share is covered by contacts counts as an outer face. */
+#define COVERED 0.01
+
+static tl_sym3 stress_at(const tl_insitu *s, double z)
+{
+    double h = z - s->at.z;
+    return (tl_sym3){s->stress.xx + h * s->gradient.xx, s->stress.yy + h * s->gradient.yy,
+                     s->stress.zz + h * s->gradient.zz, s->stress.xy + h * s->gradient.xy,
+                     s->stress.yz + h * s->gradient.yz, s->stress.zx + h * s->gradient.zx};
+}
+
+static void load_point(tl_model *m, const tl_insitu *s, size_t i, tl_vec3 foot)
+{
+    tl_points_table *p = &m->detect->points;
+    tl_vec3 n = {p->normal[0][i], p->normal[1][i], p->normal[2][i]};
+    double z = m->origin.z + foot.z + p->arm[i].z;
+    tl_vec3 traction = tl_s3_mul(stress_at(s, z), n);
+    double normal = tl_v3_dot(n, traction);
+    tl_vec3 shear = tl_v3_madd(traction, -normal, n);
+    p->reference[i] += p->closure[i];
+    p->closure[i] = 0;
+    p->f_n0[i] = p->f_n[i] = -normal * p->area[i];
+    p->f_s[0][i] = -shear.x * p->area[i];
+    p->f_s[1][i] = -shear.y * p->area[i];
+    p->f_s[2][i] = -shear.z * p->area[i];
+    p->flags[i] = 0;
+}
+
+static void load_contact(tl_model *m, const tl_insitu *s, uint32_t c)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    tl_vec3 foot = tl_body_place(&m->bodies, m->blocks.body[contacts->a[c]]);
+    for (uint32_t k = 0; k < contacts->facet_count[c]; k++) {
+        const tl_facet *f = &contacts->facet[contacts->facet_start[c] + k];
+        if (f->kind != TL_FACET_PATCH)
+            continue;
+        size_t begin = contacts->point_start[c] + f->begin;
+        for (size_t i = begin; i < begin + f->count; i++)
+            load_point(m, s, i, foot);
+    }
+}
+
+/* Area of a block's face that is covered by contact patches. */
+static double covered_area(const tl_model *m, uint32_t row, uint32_t face)
+{
+    const tl_detect *d = m->detect;
+    const tl_contacts *c = &d->contacts;
+    double area = 0;
+    for (uint32_t e = d->by_block_start[row]; e < d->by_block_start[row + 1]; e++) {
+        uint32_t i = d->by_block[e];
+        for (uint32_t k = 0; k < c->facet_count[i]; k++) {
+            const tl_facet *f = &c->facet[c->facet_start[i] + k];
+            if (f->kind != TL_FACET_PATCH || (c->a[i] == row ? f->ia : f->ib) != face)
+                continue;
+            for (uint32_t p = 0; p < f->count; p++)
+                area += d->points.area[c->point_start[i] + f->begin + p];
+        }
+    }
+    return area;
+}
+
+/* Says how many blocks that can move have an outer face on which the stress would act: nothing holds it
+ * there. */
+static void warn_outer_faces(tl_model *m, const tl_insitu *s)
+{
+    size_t blocks = 0;
+    tl_id first = TL_NO_ID;
+    tl_sym3 t = s->stress;
+    double most = fmax(fmax(fabs(t.xx), fabs(t.yy)), fmax(fabs(t.zz), fabs(t.xy)));
+    most = fmax(most, fmax(fabs(t.yz), fabs(t.zx)));
+    for (uint32_t row = 0; row < m->blocks.table.rows; row++) {
+        uint32_t body = m->blocks.body[row];
+        const tl_poly *shape = m->blocks.shape[row];
+        bool outer = false;
+        for (uint32_t f = 0; f < shape->face_count && !outer; f++) {
+            if (m->bodies.fixed[body] == TL_FIX_ALL)
+                break;
+            tl_vec3 n = tl_m3_mul(&m->bodies.r[body], shape->plane[f].normal);
+            double z = tl_model_point(m, body, tl_poly_face_centroid(shape, f)).z;
+            outer = tl_v3_norm(tl_s3_mul(stress_at(s, z), n)) > NO_TRACTION * most &&
+                    covered_area(m, row, f) < COVERED * tl_poly_face_area(shape, f);
+        }
+        blocks += outer;
+        if (outer && first == TL_NO_ID)
+            first = m->blocks.id[row];
+    }
+    if (blocks)
+        tl_model_say(m,
+                     "insitu: %zu block%s that can move (first: block %u) %s an outer face on which "
+                     "the stress does not act; fix the blocks around the region of interest",
+                     blocks, blocks == 1 ? "" : "s", first, blocks == 1 ? "has" : "have");
+}
+
+static bool finite_tensor(tl_sym3 t)
+{
+    return isfinite(t.xx) && isfinite(t.yy) && isfinite(t.zz) && isfinite(t.xy) &&
+           isfinite(t.yz) && isfinite(t.zx);
+}
+
+tl_status tl_model_insitu(tl_model *m, const tl_insitu *insitu)
+{
+    if (!finite_tensor(insitu->stress) || !finite_tensor(insitu->gradient) ||
+        !tl_v3_finite(insitu->at))
+        return tl_fail(&m->error, TL_E_ARGUMENT,
+                       "insitu: stress, gradient and at must be finite numbers");
+    tl_status status = tl_detect_refresh(m);
+    if (status != TL_OK)
+        return status;
+    const tl_contacts *c = &m->detect->contacts;
+    for (uint32_t i = 0; i < c->table.rows; i++)
+        load_contact(m, insitu, i);
+    warn_outer_faces(m, insitu);
+    return TL_OK;
+}

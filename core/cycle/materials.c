@@ -1,0 +1,157 @@
+/* materials.c - setting the law of a joint.
+ *
+ * A new law, kn or ks leaves the forces of its contacts as they are: the present normal force becomes
+ * the initial one at the present closure. A point that is open keeps the gap at which it closes. */
+#include "cycle/cycle_room.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Makes a material from a law and arguments; with `from`, properties not given are taken from it. */
+static tl_status make_material(tl_model *m, tl_tag tag, const char *joint, const tl_kind *kind,
+                               const tl_args *args, const tl_material *from, tl_material *out)
+{
+    const tl_law_ops *ops = kind->ops;
+    *out = (tl_material){.tag = tag, .kind = kind};
+    out->params = calloc(1, kind->params_size + 1);
+    if (!out->params)
+        return tl_fail_memory(&m->error);
+    if (from)
+        memcpy(out->params, from->params, kind->params_size);
+    char context[TL_ERROR_TEXT / 2];
+    snprintf(context, sizeof context, "joint '%.80s', law '%.40s'", joint, kind->name);
+    tl_report report = {.size = sizeof report};
+    tl_status status = tl_args_read(kind->params, kind->param_count, kind->param_stride, args,
+                                    from != NULL, out->params, context, &m->error);
+    out->self = out->params;
+    if (status == TL_OK && ops->create) {
+        status = ops->create(out->params, &out->self, &report);
+        if (status != TL_OK)
+            tl_fail(&m->error, status, "%s: %s", context, report.text);
+    }
+    if (status != TL_OK) {
+        free(out->params);
+        *out = (tl_material){0};
+        return status;
+    }
+    ops->stiffness(out->self, &out->kn, &out->ks);
+    uint32_t column = 0;
+    for (uint32_t k = 0; k < kind->state_count; k++) {
+        bool tangent = tl_kind_state(kind, k)->kind == TL_STATE_TANGENT;
+        out->tangents |= tangent ? 1u << column : 0;
+        column += tangent ? 3 : 1;
+    }
+    return TL_OK;
+}
+
+static void rebase_point(tl_points_table *p, size_t i, double old_kn)
+{
+    if (p->area[i] <= 0)
+        return;
+    if (p->flags[i] & TL_POINT_OPEN) {
+        if (p->f_n0[i] != 0)
+            p->reference[i] -= p->f_n0[i] / (old_kn * p->area[i]);
+        p->f_n0[i] = 0;
+        return;
+    }
+    p->reference[i] += p->closure[i];
+    p->closure[i] = 0;
+    p->f_n0[i] = p->f_n[i];
+}
+
+/* Keeps the forces of the contacts that come under another stiffness or law. */
+static void rebase(tl_model *m, const tl_material *material)
+{
+    tl_detect *d = m->detect;
+    for (uint32_t c = 0; d && c < d->contacts.table.rows; c++) {
+        uint32_t old = d->contacts.material[c];
+        if (old == TL_NO_ROW || !tl_tag_matches(material->tag, d->contacts.tag[c]))
+            continue;
+        const tl_material *before = &m->materials[old];
+        const tl_material *ruling = tl_material_of(m, d->contacts.tag[c]);
+        /* a law set for a plane of the joint goes before one set for the whole */
+        if (ruling->tag.joint > 0 && material->tag.joint == 0)
+            continue;
+        if (ruling->tag.plane > 0 && material->tag.plane == 0)
+            continue;
+        if (before->kind == material->kind && before->kn == material->kn &&
+            before->ks == material->ks)
+            continue;
+        for (uint32_t i = 0; i < d->contacts.point_count[c]; i++)
+            rebase_point(&d->points, d->contacts.point_start[c] + i, before->kn);
+    }
+}
+
+/* Points whose law changes its kind under the same material begin with the new law's states. */
+static void reset_states(tl_model *m, uint32_t material, const tl_kind *kind)
+{
+    tl_detect *d = m->detect;
+    for (uint32_t c = 0; d && c < d->contacts.table.rows; c++) {
+        if (d->contacts.material[c] != material)
+            continue;
+        size_t begin = d->contacts.point_start[c];
+        for (size_t i = begin; i < begin + d->contacts.point_count[c]; i++) {
+            d->points.flags[i] = 0;
+            tl_point_initial_state(&d->points, i, kind);
+        }
+    }
+}
+
+static tl_material *exact_material(tl_model *m, tl_tag tag)
+{
+    for (size_t i = 0; i < m->material_count; i++)
+        if (m->materials[i].tag.joint == tag.joint && m->materials[i].tag.plane == tag.plane)
+            return &m->materials[i];
+    return NULL;
+}
+
+tl_status tl_joint_law(tl_model *m, const char *joint, const char *law, const tl_args *args)
+{
+    tl_tag tag;
+    tl_status status = tl_joint_parse(m, joint, &tag);
+    if (status != TL_OK)
+        return status;
+    const tl_material *ruling = tl_material_of(m, tag);
+    const tl_kind *kind = law ? tl_plugin_find(TL_KIND_LAW, law) : ruling ? ruling->kind : NULL;
+    if (law && !kind)
+        return tl_unknown_kind(m, TL_KIND_LAW, law);
+    if (!kind)
+        return tl_fail(&m->error, TL_E_STATE,
+                       "joint '%s' has no law yet: name one, as in model:joint(\"%s\", LAW, {...})",
+                       joint, joint);
+    uint32_t columns = 0;
+    for (uint32_t k = 0; k < kind->state_count; k++)
+        columns += tl_kind_state(kind, k)->kind == TL_STATE_TANGENT ? 3 : 1;
+    if (columns > TL_STATE_COLUMNS)
+        return tl_fail(&m->error, TL_E_PLUGIN,
+                       "law '%s' has %u state columns; a law may have %d at the most", kind->name,
+                       columns, TL_STATE_COLUMNS);
+    tl_material fresh;
+    status = make_material(m, tag, joint, kind, args, law ? NULL : ruling, &fresh);
+    if (status != TL_OK)
+        return status;
+    tl_material *place = exact_material(m, tag);
+    if (!place) {
+        tl_material *materials =
+            realloc(m->materials, (m->material_count + 1) * sizeof *materials);
+        if (!materials) {
+            tl_material_clear(&fresh);
+            return tl_fail_memory(&m->error);
+        }
+        m->materials = materials;
+    }
+    rebase(m, &fresh);
+    if (place) {
+        if (place->kind != fresh.kind)
+            reset_states(m, (uint32_t)(place - m->materials), fresh.kind);
+        tl_material_clear(place);
+        *place = fresh;
+    } else {
+        m->materials[m->material_count++] = fresh;
+    }
+    m->laws++;
+    if (m->cycle)
+        m->cycle->dt = 0;
+    return TL_OK;
+}

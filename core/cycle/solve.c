@@ -1,0 +1,114 @@
+/* solve.c - many steps: until a limit is met, the user interrupts, or a callback says so. */
+#include "cycle/cycle_room.h"
+
+#include <time.h>
+
+static const char *const reason_names[] = {[TL_SOLVE_RATIO] = "ratio",
+                                           [TL_SOLVE_CYCLES] = "cycles",
+                                           [TL_SOLVE_TIME] = "time",
+                                           [TL_SOLVE_STOP] = "stop",
+                                           [TL_SOLVE_INTERRUPT] = "interrupt"};
+
+const char *tl_solve_reason_name(tl_solve_reason reason)
+{
+    return reason_names[reason];
+}
+
+static double wall_clock(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+typedef struct progress {
+    const tl_solve *solve;
+    tl_solve_result *result;
+    int64_t cycles_0;
+    double time_0, wall_0;
+} progress;
+
+static void measure(const tl_model *m, const progress *p)
+{
+    tl_solve_result *r = p->result;
+    r->ratio = tl_unbalanced_ratio(m);
+    r->max_velocity = sqrt(m->cycle->sums.max_speed2);
+    r->cycles = m->cycles - p->cycles_0;
+    r->time = m->time;
+    r->wall = wall_clock() - p->wall_0;
+}
+
+/* Calls the user's functions; true when one of them ends the run. */
+static bool call_back(tl_model *m, const progress *p, tl_status *status)
+{
+    const tl_solve *s = p->solve;
+    bool stop = false;
+    m->running = true;
+    if (s->progress)
+        *status = s->progress(s->user, m);
+    if (*status == TL_OK && s->stop)
+        stop = s->stop(s->user, m);
+    m->running = false;
+    p->result->reason = TL_SOLVE_STOP;
+    return stop || *status != TL_OK;
+}
+
+/* True when the run is over; sets the reason. */
+static bool ended(tl_model *m, const progress *p, tl_status *status)
+{
+    const tl_solve *s = p->solve;
+    int64_t done = m->cycles - p->cycles_0;
+    tl_solve_reason *reason = &p->result->reason;
+    if ((s->progress || s->stop) && s->every > 0 && done % s->every == 0 &&
+        call_back(m, p, status))
+        return true;
+    if (atomic_load(&m->interrupted))
+        *reason = TL_SOLVE_INTERRUPT;
+    else if (s->ratio > 0 && tl_unbalanced_ratio(m) < s->ratio)
+        *reason = TL_SOLVE_RATIO;
+    else if (done >= s->max_cycles)
+        *reason = TL_SOLVE_CYCLES;
+    else if (m->time - p->time_0 >= s->max_time)
+        *reason = TL_SOLVE_TIME;
+    else
+        return false;
+    return true;
+}
+
+static tl_status run(tl_model *m, const tl_solve *solve, tl_solve_result *result)
+{
+    *result = (tl_solve_result){.reason = TL_SOLVE_CYCLES, .time = m->time};
+    if (m->running)
+        return tl_fail(&m->error, TL_E_STATE,
+                       "cycle and solve cannot be called from a function that a run has called");
+    progress p = {solve, result, m->cycles, m->time, wall_clock()};
+    atomic_store(&m->interrupted, false);
+    tl_status status = TL_OK;
+    while (result->cycles < solve->max_cycles) {
+        status = tl_step(m);
+        if (status != TL_OK)
+            return status;
+        measure(m, &p);
+        if (ended(m, &p, &status))
+            break;
+    }
+    return status;
+}
+
+tl_status tl_model_solve(tl_model *m, const tl_solve *solve, tl_solve_result *result)
+{
+    if (!m->damping && !m->warned_undamped) {
+        m->warned_undamped = true;
+        tl_model_say(m, "solve: the model has no damping and may never come to rest; "
+                        "model:damping(\"local\") or another one helps");
+    }
+    return run(m, solve, result);
+}
+
+tl_status tl_model_cycle(tl_model *m, int64_t cycles, tl_solve_result *result)
+{
+    if (cycles < 0)
+        return tl_fail(&m->error, TL_E_ARGUMENT, "cycle: %lld must be >= 0", (long long)cycles);
+    const tl_solve plain = {.max_cycles = cycles, .max_time = NAN};
+    return run(m, &plain, result);
+}

@@ -1,0 +1,47 @@
+/* state_hash.c - a digest of everything that decides how the model goes on. */
+#include "cycle/cycle_room.h"
+
+#include "base/hash.h"
+
+static void hash_table(tl_hash *hash, const tl_table *table)
+{
+    for (size_t i = 0; i < table->column_count; i++)
+        if (table->columns[i].flags & TL_COLUMN_STATE)
+            tl_hash_bytes(hash, tl_table_data(table, i), table->rows * table->columns[i].size);
+}
+
+static void hash_shape(tl_hash *hash, const tl_poly *p)
+{
+    tl_hash_bytes(hash, p->vertex, p->vertex_count * sizeof *p->vertex);
+    tl_hash_bytes(hash, p->plane, p->face_count * sizeof *p->plane);
+    tl_hash_bytes(hash, p->tag, p->face_count * sizeof *p->tag);
+    tl_hash_bytes(hash, p->loop, p->start[p->face_count] * sizeof *p->loop);
+}
+
+tl_status tl_state_hash(tl_model *m, char text[33])
+{
+    tl_status status = tl_detect_refresh(m);
+    if (status != TL_OK)
+        return status;
+    tl_hash hash = tl_hash_start();
+    const double clock[] = {m->time, m->dt, m->origin.x, m->origin.y, m->origin.z,
+                            m->config.gravity.x, m->config.gravity.y, m->config.gravity.z};
+    tl_hash_bytes(&hash, clock, sizeof clock);
+    tl_hash_word(&hash, (uint64_t)m->cycles);
+    hash_table(&hash, &m->blocks.table);
+    hash_table(&hash, &m->bodies.table);
+    for (size_t row = 0; row < m->blocks.table.rows; row++)
+        hash_shape(&hash, m->blocks.shape[row]);
+    hash_table(&hash, &m->detect->contacts.table);
+    hash_table(&hash, &m->detect->points.table);
+    for (size_t i = 0; i < m->material_count; i++) {
+        tl_hash_word(&hash, (uint64_t)m->materials[i].tag.joint << 32 | m->materials[i].tag.plane);
+        tl_hash_bytes(&hash, &m->materials[i].kn, sizeof(double));
+        tl_hash_bytes(&hash, &m->materials[i].ks, sizeof(double));
+    }
+    if (m->damping)
+        tl_hash_bytes(&hash, m->damping_state,
+                      m->damping->state_count * sizeof *m->damping_state);
+    tl_hash_text(&hash, text);
+    return TL_OK;
+}

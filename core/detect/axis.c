@@ -1,0 +1,302 @@
+/* axis.c - the exact common plane: the axis n that maximises s(n) = min over B of n.b - max over A of
+ * n.a, over A's faces, B's faces and the edge pairs whose arcs cross on the Gauss map.
+ *
+ * The sign of s is then exact: positive when the blocks are apart, else minus the least overlap.
+ * For blocks that are apart and nearest by parallel edges or by vertices, s is a lower bound of the
+ * distance, which is what the caller needs.
+ *
+ * Edge rule: arcs (a1, a2) and (-b1, -b2) cross when b1 and b2 lie on different sides of edge A's
+ * plane, a1 and a2 on different sides of edge B's, and both arcs in the same hemisphere. With e_a
+ * running along its left face's loop, a1 x a2 is parallel to e_a, so all tests are products of edges
+ * with normals. */
+#include "detect/detect.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* A face is preferred to an edge pair whose s is larger by no more than this times the size: the
+ * rounding of s, so that flush faces are never taken for crossing edges. */
+#define FACE_PREFERENCE 1e-12
+/* The old axis is kept while the new one is better by no more than this share of |s|. */
+#define HYSTERESIS 0.05
+/* sin of the angle between edges below which they have no common normal of their own. */
+#define PARALLEL 1e-12
+/* cos of the angle within which two axes count as the same one when the margin to the next best is
+ * measured: two flush faces give the same common plane twice. */
+#define ALIKE 0.999
+/* How far outside its feature a support point may project, relative to the size, before the axis
+ * counts as lost: rounding. */
+#define INSIDE 1e-9
+
+static bool room_for(void *slot, size_t *room, size_t need, size_t size)
+{
+    void *data;
+    memcpy(&data, slot, sizeof data);
+    if (need <= *room)
+        return true;
+    data = realloc(data, (need + need / 2) * size);
+    if (!data)
+        return false;
+    memcpy(slot, &data, sizeof data);
+    *room = need + need / 2;
+    return true;
+}
+
+bool tl_pair_place(tl_pair_view *view, tl_narrow *room)
+{
+    const tl_poly *a = view->a, *b = view->b;
+    size_t dots = (size_t)a->edge_count * b->face_count + (size_t)b->edge_count * a->face_count;
+    if (!room_for(&room->vertex_b, &room->vertex_room, b->vertex_count, sizeof(tl_vec3)) ||
+        !room_for(&room->normal_b, &room->normal_room, b->face_count, sizeof(tl_vec3)) ||
+        !room_for(&room->dots, &room->dot_room, dots, sizeof(double)))
+        return false;
+    view->vertex_b = room->vertex_b;
+    view->normal_b = room->normal_b;
+    for (uint32_t i = 0; i < b->vertex_count; i++)
+        view->vertex_b[i] = tl_v3_add(tl_m3_mul(&view->turn, b->vertex[i]), view->shift);
+    for (uint32_t i = 0; i < b->face_count; i++)
+        view->normal_b[i] = tl_m3_mul(&view->turn, b->plane[i].normal);
+    return true;
+}
+
+/* min over the points of n . x */
+static double lowest(const tl_vec3 *x, uint32_t count, tl_vec3 n)
+{
+    double low = tl_v3_dot(n, x[0]);
+    for (uint32_t i = 1; i < count; i++) {
+        double s = tl_v3_dot(n, x[i]);
+        low = s < low ? s : low;
+    }
+    return low;
+}
+
+/* The same, given up (any value below `floor`) as soon as it is below `floor`. */
+static double lowest_above(const tl_vec3 *x, uint32_t count, tl_vec3 n, double floor)
+{
+    double low = tl_v3_dot(n, x[0]);
+    for (uint32_t i = 1; i < count && low >= floor; i++) {
+        double s = tl_v3_dot(n, x[i]);
+        low = s < low ? s : low;
+    }
+    return low;
+}
+
+static double full_support(const tl_pair_view *view, tl_vec3 n)
+{
+    return lowest(view->vertex_b, view->b->vertex_count, n) +
+           lowest(view->a->vertex, view->a->vertex_count, tl_v3_neg(n));
+}
+
+static double offset_b(const tl_pair_view *view, uint32_t face)
+{
+    return view->b->plane[face].offset + tl_v3_dot(view->normal_b[face], view->shift);
+}
+
+static void offer(tl_axis *best, const tl_axis *one)
+{
+    bool alike = tl_v3_dot(best->n, one->n) > ALIKE;
+    if (one->s > best->s) {
+        double second = alike ? best->second : best->s;
+        *best = *one;
+        best->second = second;
+    } else if (one->s > best->second && !alike) {
+        best->second = one->s;
+    }
+}
+
+static void search_faces(const tl_pair_view *view, tl_axis *best)
+{
+    for (uint32_t f = 0; f < view->a->face_count; f++) {
+        tl_plane plane = view->a->plane[f];
+        double s = lowest_above(view->vertex_b, view->b->vertex_count, plane.normal,
+                                best->second + plane.offset) -
+                   plane.offset;
+        tl_axis one = {TL_AXIS_FACE_A, (uint16_t)f, 0, plane.normal, s, 0};
+        offer(best, &one);
+    }
+    for (uint32_t f = 0; f < view->b->face_count; f++) {
+        double offset = offset_b(view, f);
+        double s = lowest_above(view->a->vertex, view->a->vertex_count, view->normal_b[f],
+                                best->second + offset) -
+                   offset;
+        tl_axis one = {TL_AXIS_FACE_B, 0, (uint16_t)f, tl_v3_neg(view->normal_b[f]), s, 0};
+        offer(best, &one);
+    }
+}
+
+bool tl_edge_normal(tl_vec3 edge_a, tl_vec3 edge_b, tl_vec3 outward, tl_vec3 *n)
+{
+    tl_vec3 a = tl_v3_unit(edge_a), b = tl_v3_unit(edge_b);
+    tl_vec3 c = tl_v3_cross(a, b);
+    double length = tl_v3_norm(c);
+    if (!(length > PARALLEL))
+        return false;
+    c = tl_v3_scale(1 / length, c);
+    /* The cross product of nearly parallel edges has a component along them: take it out. */
+    for (int pass = 0; pass < 2; pass++) {
+        c = tl_v3_madd(c, -tl_v3_dot(c, a), a);
+        c = tl_v3_madd(c, -tl_v3_dot(c, b), b);
+        c = tl_v3_unit(c);
+    }
+    *n = tl_v3_dot(c, outward) < 0 ? tl_v3_neg(c) : c;
+    return true;
+}
+
+static tl_vec3 edge_a_direction(const tl_pair_view *view, uint32_t edge)
+{
+    const tl_edge *e = &view->a->edge[edge];
+    return tl_v3_sub(view->a->vertex[e->b], view->a->vertex[e->a]);
+}
+
+static tl_vec3 edge_b_direction(const tl_pair_view *view, uint32_t edge)
+{
+    const tl_edge *e = &view->b->edge[edge];
+    return tl_v3_sub(view->vertex_b[e->b], view->vertex_b[e->a]);
+}
+
+/* n and s of an edge pair. s is measured between the nearest of the edges' ends, so that what is left
+ * of an error in n is multiplied by a short distance. */
+static bool edge_axis(const tl_pair_view *view, uint32_t ia, uint32_t ib, tl_axis *axis)
+{
+    const tl_edge *ea = &view->a->edge[ia], *eb = &view->b->edge[ib];
+    tl_vec3 outward =
+        tl_v3_add(view->a->plane[ea->left].normal, view->a->plane[ea->right].normal);
+    tl_vec3 n;
+    if (!tl_edge_normal(edge_a_direction(view, ia), edge_b_direction(view, ib), outward, &n))
+        return false;
+    tl_vec3 a[2] = {view->a->vertex[ea->a], view->a->vertex[ea->b]};
+    tl_vec3 b[2] = {view->vertex_b[eb->a], view->vertex_b[eb->b]};
+    tl_vec3 gap = tl_v3_sub(b[0], a[0]);
+    for (int k = 1; k < 4; k++) {
+        tl_vec3 d = tl_v3_sub(b[k & 1], a[k >> 1]);
+        gap = tl_v3_norm2(d) < tl_v3_norm2(gap) ? d : gap;
+    }
+    *axis = (tl_axis){TL_AXIS_EDGES, (uint16_t)ia, (uint16_t)ib, n, tl_v3_dot(n, gap), 0};
+    return true;
+}
+
+static void search_edges(const tl_pair_view *view, tl_narrow *room, tl_axis *best)
+{
+    const tl_poly *a = view->a, *b = view->b;
+    double *ab = room->dots; /* [edge of A][face of B] */
+    double *ba = room->dots + (size_t)a->edge_count * b->face_count;
+    for (uint32_t i = 0; i < a->edge_count; i++) {
+        tl_vec3 e = edge_a_direction(view, i);
+        for (uint32_t f = 0; f < b->face_count; f++)
+            ab[(size_t)i * b->face_count + f] = tl_v3_dot(e, view->normal_b[f]);
+    }
+    for (uint32_t j = 0; j < b->edge_count; j++) {
+        tl_vec3 e = edge_b_direction(view, j);
+        for (uint32_t f = 0; f < a->face_count; f++)
+            ba[(size_t)j * a->face_count + f] = tl_v3_dot(e, a->plane[f].normal);
+    }
+    for (uint32_t i = 0; i < a->edge_count; i++) {
+        const tl_edge *ea = &a->edge[i];
+        const double *row = ab + (size_t)i * b->face_count;
+        for (uint32_t j = 0; j < b->edge_count; j++) {
+            const tl_edge *eb = &b->edge[j];
+            const double *column = ba + (size_t)j * a->face_count;
+            double b1 = row[eb->left], b2 = row[eb->right];
+            double a1 = column[ea->left], a2 = column[ea->right];
+            tl_axis one;
+            if (b1 * b2 < 0 && a1 * a2 < 0 && b1 * a2 < 0 && edge_axis(view, i, j, &one))
+                offer(best, &one);
+        }
+    }
+}
+
+tl_axis tl_axis_search(const tl_pair_view *view, tl_narrow *room, const tl_axis *previous)
+{
+    tl_axis face = {.s = -INFINITY, .second = -INFINITY};
+    search_faces(view, &face);
+    tl_axis best = face;
+    search_edges(view, room, &best);
+    if (best.kind == TL_AXIS_EDGES) {
+        /* an edge axis counts by its full support, and only when it beats the faces clearly */
+        best.s = full_support(view, best.n);
+        if (best.s <= face.s + FACE_PREFERENCE * view->size) {
+            double second = fmax(face.second, best.s < face.s ? best.s : face.second);
+            best = face;
+            best.second = second;
+        }
+    }
+    if (previous) {
+        tl_axis kept = *previous;
+        if (tl_axis_follow(view, &kept) && !(kept.kind == best.kind && kept.ia == best.ia &&
+                                             kept.ib == best.ib) &&
+            best.s - kept.s <= HYSTERESIS * fabs(best.s) && kept.s < 0) {
+            kept.second = best.s;
+            best = kept;
+        }
+    }
+    return best;
+}
+
+/* A vertex of the lower-dimensional side lies over the face. */
+static bool over_face(const tl_poly *p, uint32_t face, tl_vec3 x, double slack)
+{
+    tl_vec3 n = p->plane[face].normal;
+    uint32_t start = p->start[face], count = tl_poly_face_size(p, face);
+    for (uint32_t i = 0; i < count; i++) {
+        tl_vec3 c = p->vertex[p->loop[start + i]];
+        tl_vec3 d = p->vertex[p->loop[start + (i + 1) % count]];
+        tl_vec3 inward = tl_v3_unit(tl_v3_cross(n, tl_v3_sub(d, c)));
+        if (tl_v3_dot(inward, tl_v3_sub(x, c)) < -slack)
+            return false;
+    }
+    return true;
+}
+
+/* The lines of both edges come nearest within the edges. */
+static bool edges_meet(const tl_pair_view *view, const tl_axis *axis)
+{
+    tl_vec3 u = edge_a_direction(view, axis->ia), v = edge_b_direction(view, axis->ib);
+    tl_vec3 w = tl_v3_sub(view->vertex_b[view->b->edge[axis->ib].a],
+                          view->a->vertex[view->a->edge[axis->ia].a]);
+    double uu = tl_v3_dot(u, u), uv = tl_v3_dot(u, v), vv = tl_v3_dot(v, v);
+    double wu = tl_v3_dot(w, u), wv = tl_v3_dot(w, v), det = uu * vv - uv * uv;
+    if (!(det > 0))
+        return false;
+    double s = (wu * vv - wv * uv) / det, t = (wu * uv - wv * uu) / det;
+    double slack_s = INSIDE * view->size / sqrt(uu), slack_t = INSIDE * view->size / sqrt(vv);
+    return s >= -slack_s && s <= 1 + slack_s && t >= -slack_t && t <= 1 + slack_t;
+}
+
+static bool arcs_cross(const tl_pair_view *view, const tl_axis *axis)
+{
+    const tl_edge *ea = &view->a->edge[axis->ia], *eb = &view->b->edge[axis->ib];
+    tl_vec3 u = edge_a_direction(view, axis->ia), v = edge_b_direction(view, axis->ib);
+    double b1 = tl_v3_dot(u, view->normal_b[eb->left]);
+    double b2 = tl_v3_dot(u, view->normal_b[eb->right]);
+    double a1 = tl_v3_dot(v, view->a->plane[ea->left].normal);
+    double a2 = tl_v3_dot(v, view->a->plane[ea->right].normal);
+    return b1 * b2 < 0 && a1 * a2 < 0 && b1 * a2 < 0;
+}
+
+bool tl_axis_follow(const tl_pair_view *view, tl_axis *axis)
+{
+    double slack = INSIDE * view->size;
+    if (axis->kind == TL_AXIS_EDGES) {
+        tl_axis now;
+        if (!arcs_cross(view, axis) || !edge_axis(view, axis->ia, axis->ib, &now) ||
+            !edges_meet(view, axis))
+            return false;
+        axis->n = now.n;
+        axis->s = full_support(view, now.n);
+        return true;
+    }
+    if (axis->kind == TL_AXIS_FACE_A) {
+        axis->n = view->a->plane[axis->ia].normal;
+        axis->s = full_support(view, axis->n);
+        uint32_t low = 0;
+        for (uint32_t i = 1; i < view->b->vertex_count; i++)
+            if (tl_v3_dot(axis->n, view->vertex_b[i]) < tl_v3_dot(axis->n, view->vertex_b[low]))
+                low = i;
+        return over_face(view->a, axis->ia, view->vertex_b[low], slack);
+    }
+    axis->n = tl_v3_neg(view->normal_b[axis->ib]);
+    axis->s = full_support(view, axis->n);
+    uint32_t top = tl_poly_support(view->a, axis->n);
+    tl_vec3 x = tl_m3_tmul(&view->turn, tl_v3_sub(view->a->vertex[top], view->shift));
+    return over_face(view->b, axis->ib, x, slack);
+}

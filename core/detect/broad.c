@@ -1,0 +1,333 @@
+/* broad.c - the broad phase: a uniform grid that turns bounds into candidate pairs.
+ *
+ * Cells are 1.5 times the median extent. A block is entered in every cell its bounds overlap; two
+ * blocks that share several cells are reported once, from the cell that holds the low corner of their
+ * common bounds. Blocks larger than LARGE_CELLS cells are not entered: they look through the cells
+ * they overlap. Bounds are grown by `reach`, so the list holds until some body has moved that far. */
+#include "detect/detect.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define CELL_EXTENTS 1.5  /* cell size over the median extent */
+#define LARGE_CELLS 6     /* cells along one axis from which a block is large */
+#define SKIN_EXTENTS 0.1  /* skin over the median extent */
+#define CELLS_PER_BLOCK 8 /* most cells a block, so that a scattered model needs no huge grid */
+
+struct tl_broad {
+    tl_bounds *bounds; /* [blocks] grown */
+    size_t block_room;
+    double *extent;
+    uint32_t *large;
+    size_t large_count;
+    uint32_t *cell_start, *entries;
+    size_t cell_room, entry_room;
+    tl_pair *next; /* the list being made */
+    size_t next_room;
+    tl_vec3 low;
+    double cell;
+    uint32_t n[3];
+};
+
+typedef struct cell_range {
+    uint32_t lo[3], hi[3];
+} cell_range;
+
+void tl_broad_destroy(struct tl_broad *broad)
+{
+    if (!broad)
+        return;
+    free(broad->bounds);
+    free(broad->extent);
+    free(broad->large);
+    free(broad->cell_start);
+    free(broad->entries);
+    free(broad->next);
+    free(broad);
+}
+
+static bool grow(void *slot, size_t *room, size_t need, size_t size)
+{
+    if (need <= *room)
+        return true;
+    size_t fresh = need + need / 2 + 16;
+    void *data;
+    memcpy(&data, slot, sizeof data);
+    data = realloc(data, fresh * size);
+    if (!data)
+        return false;
+    memcpy(slot, &data, sizeof data);
+    *room = fresh;
+    return true;
+}
+
+static bool reserve_blocks(struct tl_broad *g, size_t count)
+{
+    size_t a = g->block_room, b = a, c = a;
+    if (!grow(&g->bounds, &a, count, sizeof *g->bounds) ||
+        !grow(&g->extent, &b, count, sizeof *g->extent) ||
+        !grow(&g->large, &c, count, sizeof *g->large))
+        return false;
+    g->block_room = a;
+    return true;
+}
+
+static tl_bounds block_bounds(const tl_model *m, uint32_t row)
+{
+    const tl_poly *shape = m->blocks.shape[row];
+    uint32_t body = m->blocks.body[row];
+    const tl_mat3 *r = &m->bodies.r[body];
+    tl_vec3 x = tl_m3_mul(r, shape->vertex[0]);
+    tl_bounds b = {x, x};
+    for (uint32_t i = 1; i < shape->vertex_count; i++) {
+        x = tl_m3_mul(r, shape->vertex[i]);
+        b.min = tl_v3_min(b.min, x);
+        b.max = tl_v3_max(b.max, x);
+    }
+    tl_vec3 place = tl_body_place(&m->bodies, body);
+    return (tl_bounds){tl_v3_add(b.min, place), tl_v3_add(b.max, place)};
+}
+
+static int compare_double(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static double longest(tl_bounds b)
+{
+    tl_vec3 d = tl_v3_sub(b.max, b.min);
+    return fmax(d.x, fmax(d.y, d.z));
+}
+
+static cell_range range_of(const struct tl_broad *g, const tl_bounds *b)
+{
+    const double lo[3] = {b->min.x - g->low.x, b->min.y - g->low.y, b->min.z - g->low.z};
+    const double hi[3] = {b->max.x - g->low.x, b->max.y - g->low.y, b->max.z - g->low.z};
+    cell_range r;
+    for (int k = 0; k < 3; k++) {
+        double top = g->n[k] - 1.0;
+        r.lo[k] = (uint32_t)fmin(fmax(floor(lo[k] / g->cell), 0), top);
+        r.hi[k] = (uint32_t)fmin(fmax(floor(hi[k] / g->cell), 0), top);
+    }
+    return r;
+}
+
+static bool is_large(const cell_range *r)
+{
+    return r->hi[0] - r->lo[0] >= LARGE_CELLS || r->hi[1] - r->lo[1] >= LARGE_CELLS ||
+           r->hi[2] - r->lo[2] >= LARGE_CELLS;
+}
+
+static size_t cell_index(const struct tl_broad *g, uint32_t x, uint32_t y, uint32_t z)
+{
+    return ((size_t)z * g->n[1] + y) * g->n[0] + x;
+}
+
+/* Chooses cell size and counts, and measures the grown bounds. */
+static tl_status measure(tl_model *m, struct tl_broad *g)
+{
+    size_t count = m->blocks.table.rows;
+    if (!reserve_blocks(g, count + 1))
+        return tl_fail_memory(&m->error);
+    tl_bounds all = {{0, 0, 0}, {0, 0, 0}};
+    double tolerance = 0;
+    for (uint32_t row = 0; row < count; row++) {
+        tl_bounds b = g->bounds[row] = block_bounds(m, row);
+        g->extent[row] = longest(b);
+        all.min = row ? tl_v3_min(all.min, b.min) : b.min;
+        all.max = row ? tl_v3_max(all.max, b.max) : b.max;
+        tolerance = fmax(tolerance, m->blocks.size[row]);
+    }
+    qsort(g->extent, count, sizeof *g->extent, compare_double);
+    double median = count ? g->extent[count / 2] : 1;
+    tolerance *= TL_CONTACT_TOLERANCE * TL_CONTACT_RELEASE;
+    m->detect->reach = 0.5 * SKIN_EXTENTS * median;
+    double growth = m->detect->reach + tolerance;
+    tl_vec3 skin = {growth, growth, growth};
+    for (uint32_t row = 0; row < count; row++) {
+        g->bounds[row].min = tl_v3_sub(g->bounds[row].min, skin);
+        g->bounds[row].max = tl_v3_add(g->bounds[row].max, skin);
+    }
+    g->low = tl_v3_sub(all.min, skin);
+    tl_vec3 span = tl_v3_sub(tl_v3_add(all.max, skin), g->low);
+    g->cell = CELL_EXTENTS * median;
+    double most = (double)CELLS_PER_BLOCK * (double)count + 64;
+    for (;; g->cell *= 1.25) {
+        double nx = floor(span.x / g->cell) + 1, ny = floor(span.y / g->cell) + 1;
+        double nz = floor(span.z / g->cell) + 1;
+        if (nx * ny * nz > most)
+            continue;
+        g->n[0] = (uint32_t)nx;
+        g->n[1] = (uint32_t)ny;
+        g->n[2] = (uint32_t)nz;
+        return TL_OK;
+    }
+}
+
+/* Enters the blocks that are not large into their cells (a counting sort; rows ascend in a cell). */
+static tl_status fill(tl_model *m, struct tl_broad *g)
+{
+    size_t cells = (size_t)g->n[0] * g->n[1] * g->n[2], total = 0;
+    if (!grow(&g->cell_start, &g->cell_room, cells + 2, sizeof *g->cell_start))
+        return tl_fail_memory(&m->error);
+    memset(g->cell_start, 0, (cells + 2) * sizeof *g->cell_start);
+    uint32_t *start = g->cell_start + 1; /* shifted: filling moves each start to its end */
+    g->large_count = 0;
+    for (int pass = 0; pass < 2; pass++) {
+        for (uint32_t row = 0; row < m->blocks.table.rows; row++) {
+            cell_range r = range_of(g, &g->bounds[row]);
+            if (is_large(&r)) {
+                if (pass == 0)
+                    g->large[g->large_count++] = row;
+                continue;
+            }
+            for (uint32_t z = r.lo[2]; z <= r.hi[2]; z++)
+                for (uint32_t y = r.lo[1]; y <= r.hi[1]; y++)
+                    for (uint32_t x = r.lo[0]; x <= r.hi[0]; x++) {
+                        size_t cell = cell_index(g, x, y, z);
+                        if (pass == 0)
+                            start[cell]++;
+                        else
+                            g->entries[start[cell]++] = row;
+                    }
+        }
+        if (pass == 1)
+            break;
+        for (size_t cell = 0; cell < cells; cell++) {
+            uint32_t here = start[cell];
+            start[cell] = (uint32_t)total;
+            total += here;
+        }
+        if (!grow(&g->entries, &g->entry_room, total + 1, sizeof *g->entries))
+            return tl_fail_memory(&m->error);
+    }
+    return TL_OK; /* now entries of cell c are [cell_start[c], cell_start[c + 1]) */
+}
+
+static bool overlap(const tl_bounds *a, const tl_bounds *b)
+{
+    return a->min.x <= b->max.x && b->min.x <= a->max.x && a->min.y <= b->max.y &&
+           b->min.y <= a->max.y && a->min.z <= b->max.z && b->min.z <= a->max.z;
+}
+
+static bool push(struct tl_broad *g, size_t *count, uint32_t a, uint32_t b)
+{
+    if (!grow(&g->next, &g->next_room, *count + 1, sizeof *g->next))
+        return false;
+    g->next[(*count)++] = (tl_pair){.a = a, .b = b, .wake = -1, .contact = TL_NO_ROW};
+    return true;
+}
+
+/* Pairs of `row` with blocks entered in the cells its bounds overlap; large blocks take every one,
+ * others only rows above their own. */
+static bool pairs_of(const tl_model *m, struct tl_broad *g, uint32_t row, bool large, size_t *count)
+{
+    const tl_bounds *mine = &g->bounds[row];
+    cell_range r = range_of(g, mine);
+    for (uint32_t z = r.lo[2]; z <= r.hi[2]; z++)
+        for (uint32_t y = r.lo[1]; y <= r.hi[1]; y++)
+            for (uint32_t x = r.lo[0]; x <= r.hi[0]; x++) {
+                size_t cell = cell_index(g, x, y, z);
+                for (uint32_t e = g->cell_start[cell]; e < g->cell_start[cell + 1]; e++) {
+                    uint32_t other = g->entries[e];
+                    if ((!large && other <= row) || !overlap(mine, &g->bounds[other]) ||
+                        m->blocks.body[row] == m->blocks.body[other])
+                        continue;
+                    cell_range q = range_of(g, &g->bounds[other]);
+                    if (x != (q.lo[0] > r.lo[0] ? q.lo[0] : r.lo[0]) ||
+                        y != (q.lo[1] > r.lo[1] ? q.lo[1] : r.lo[1]) ||
+                        z != (q.lo[2] > r.lo[2] ? q.lo[2] : r.lo[2]))
+                        continue;
+                    if (!push(g, count, row < other ? row : other, row < other ? other : row))
+                        return false;
+                }
+            }
+    return true;
+}
+
+static int compare_pair(const void *a, const void *b)
+{
+    const tl_pair *x = a, *y = b;
+    return x->a != y->a ? (x->a > y->a) - (x->a < y->a) : (x->b > y->b) - (x->b < y->b);
+}
+
+/* Lists the candidate pairs, sorted. */
+static tl_status list_pairs(tl_model *m, struct tl_broad *g, size_t *count)
+{
+    *count = 0;
+    bool room = true;
+    for (uint32_t row = 0; row < m->blocks.table.rows && room; row++) {
+        cell_range r = range_of(g, &g->bounds[row]);
+        if (!is_large(&r))
+            room = pairs_of(m, g, row, false, count);
+    }
+    for (size_t i = 0; i < g->large_count && room; i++) {
+        room = pairs_of(m, g, g->large[i], true, count);
+        for (size_t j = i + 1; j < g->large_count && room; j++) {
+            uint32_t a = g->large[i], b = g->large[j];
+            if (overlap(&g->bounds[a], &g->bounds[b]) && m->blocks.body[a] != m->blocks.body[b])
+                room = push(g, count, a, b);
+        }
+    }
+    if (!room)
+        return tl_fail_memory(&m->error);
+    if (*count > 1)
+        qsort(g->next, *count, sizeof *g->next, compare_pair);
+    return TL_OK;
+}
+
+/* Merges the old list into the new one: what was known of a pair stays, and a pair with a contact
+ * stays whatever its bounds say. */
+static tl_status merge(tl_model *m, struct tl_broad *g, size_t fresh)
+{
+    tl_detect *d = m->detect;
+    size_t count = fresh;
+    for (size_t i = 0, j = 0; i < d->pair_count; i++) {
+        const tl_pair *old = &d->pairs[i];
+        while (j < fresh && compare_pair(&g->next[j], old) < 0)
+            j++;
+        if (j < fresh && compare_pair(&g->next[j], old) == 0) {
+            g->next[j] = *old;
+        } else if (old->contact != TL_NO_ROW) {
+            if (!push(g, &count, old->a, old->b))
+                return tl_fail_memory(&m->error);
+            g->next[count - 1] = *old;
+        }
+    }
+    if (count > fresh)
+        qsort(g->next, count, sizeof *g->next, compare_pair);
+    tl_pair *list = d->pairs;
+    size_t room = d->pair_room;
+    d->pairs = g->next;
+    d->pair_room = g->next_room;
+    d->pair_count = count;
+    g->next = list;
+    g->next_room = room;
+    for (uint32_t i = 0; i < count; i++)
+        if (d->pairs[i].contact != TL_NO_ROW)
+            d->contacts.pair[d->pairs[i].contact] = i;
+    return TL_OK;
+}
+
+tl_status tl_broad_update(tl_model *m)
+{
+    tl_detect *d = m->detect;
+    if (!d->broad && !(d->broad = calloc(1, sizeof *d->broad)))
+        return tl_fail_memory(&m->error);
+    size_t fresh;
+    tl_status status = measure(m, d->broad);
+    if (status == TL_OK)
+        status = fill(m, d->broad);
+    if (status == TL_OK)
+        status = list_pairs(m, d->broad, &fresh);
+    if (status == TL_OK)
+        status = merge(m, d->broad, fresh);
+    if (status != TL_OK)
+        return status;
+    size_t bodies = m->bodies.table.rows;
+    if (!grow(&d->odometer_0, &d->body_room, bodies + 1, sizeof *d->odometer_0))
+        return tl_fail_memory(&m->error);
+    memcpy(d->odometer_0, m->bodies.odometer, bodies * sizeof *d->odometer_0);
+    return TL_OK;
+}

@@ -1,0 +1,411 @@
+/* contacts.c - the tables of contacts and contact points, and how they are laid out.
+ *
+ * Contacts are sorted by material, then by blocks; the points of a material are one run of columns, so
+ * a law is called on the columns themselves. A contact has room for a few points more than it needs;
+ * what it does not use are inert lanes (area 0). */
+#include "detect/detect.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Room for points is a multiple of this. */
+#define POINT_ROUND 4
+
+void tl_contacts_init(tl_contacts *c, tl_points_table *p)
+{
+    tl_table *t = &c->table;
+    tl_table_init(t, c);
+    TL_COLUMN(t, c, id, TL_COLUMN_STATE);
+    TL_COLUMN(t, c, a, 0);
+    TL_COLUMN(t, c, b, 0);
+    TL_COLUMN(t, c, id_a, TL_COLUMN_STATE);
+    TL_COLUMN(t, c, id_b, TL_COLUMN_STATE);
+    TL_COLUMN(t, c, pair, 0);
+    TL_COLUMN(t, c, tag, TL_COLUMN_STATE);
+    TL_COLUMN(t, c, material, TL_COLUMN_STATE);
+    TL_COLUMN(t, c, axis, 0);
+    TL_COLUMN(t, c, searched, 0);
+    TL_COLUMN(t, c, margin, 0);
+    TL_COLUMN(t, c, built, 0);
+    TL_COLUMN(t, c, facet_start, 0);
+    TL_COLUMN(t, c, facet_count, 0);
+    TL_COLUMN(t, c, facet_room, 0);
+    TL_COLUMN(t, c, point_start, 0);
+    TL_COLUMN(t, c, point_count, TL_COLUMN_STATE);
+    TL_COLUMN(t, c, point_room, 0);
+    TL_COLUMN(t, c, normal, 0);
+    TL_COLUMN(t, c, point, 0);
+    TL_COLUMN(t, c, area, 0);
+    TL_COLUMN(t, c, gap, 0);
+    TL_COLUMN(t, c, force, 0);
+    TL_COLUMN(t, c, moment_a, 0);
+    TL_COLUMN(t, c, moment_b, 0);
+    TL_COLUMN(t, c, want_points, 0);
+    TL_COLUMN(t, c, want_facets, 0);
+    TL_COLUMN(t, c, fate, 0);
+
+    t = &p->table;
+    tl_table_init(t, p);
+    TL_COLUMN(t, p, p, TL_COLUMN_STATE);
+    TL_COLUMN(t, p, rest, TL_COLUMN_STATE);
+    TL_COLUMN(t, p, key, 0);
+    TL_COLUMN(t, p, arm, 0);
+    TL_COLUMN(t, p, area, TL_COLUMN_STATE);
+    TL_COLUMN(t, p, reference, TL_COLUMN_STATE);
+    TL_COLUMN(t, p, closure, TL_COLUMN_STATE);
+    TL_COLUMN(t, p, f_n0, TL_COLUMN_STATE);
+    TL_COLUMN(t, p, du_n, 0);
+    TL_COLUMN(t, p, f_n, TL_COLUMN_STATE);
+    TL_COLUMN(t, p, flags, TL_COLUMN_STATE);
+    TL_COLUMN(t, p, stored, 0);
+    TL_COLUMN(t, p, dissipated, 0);
+    for (int k = 0; k < 3; k++) {
+        TL_COLUMN(t, p, normal[k], TL_COLUMN_STATE);
+        TL_COLUMN(t, p, du_s[k], 0);
+        TL_COLUMN(t, p, f_s[k], TL_COLUMN_STATE);
+    }
+    for (int k = 0; k < TL_STATE_COLUMNS; k++)
+        TL_COLUMN(t, p, state[k], TL_COLUMN_STATE);
+}
+
+/* ---------------------------------------------------------------- points ----------------- */
+
+const tl_state *tl_kind_state(const tl_kind *kind, uint32_t k)
+{
+    return (const tl_state *)(const void *)((const char *)kind->states +
+                                            (size_t)k * kind->state_stride);
+}
+
+static uint32_t state_width(const tl_state *state)
+{
+    return state->kind == TL_STATE_TANGENT ? 3 : 1;
+}
+
+void tl_point_clear(tl_points_table *p, size_t i)
+{
+    p->area[i] = p->rest[i] = p->reference[i] = p->closure[i] = 0;
+    p->f_n0[i] = p->f_n[i] = p->du_n[i] = p->stored[i] = p->dissipated[i] = 0;
+    p->flags[i] = p->key[i] = 0;
+    p->p[i] = p->arm[i] = tl_v3(0, 0, 0);
+    for (int k = 0; k < 3; k++)
+        p->normal[k][i] = p->du_s[k][i] = p->f_s[k][i] = 0;
+    for (int k = 0; k < TL_STATE_COLUMNS; k++)
+        p->state[k][i] = 0;
+}
+
+void tl_point_initial_state(tl_points_table *p, size_t i, const tl_kind *kind)
+{
+    for (int k = 0; k < TL_STATE_COLUMNS; k++)
+        p->state[k][i] = 0;
+    uint32_t column = 0;
+    for (uint32_t k = 0; kind && k < kind->state_count; k++) {
+        const tl_state *state = tl_kind_state(kind, k);
+        if (state->kind == TL_STATE_SCALAR)
+            p->state[column][i] = state->initial;
+        column += state_width(state);
+    }
+}
+
+/* Scales the split states to the new area; with `reset` false, states to be reset are kept. */
+static void take_state(tl_points_table *p, size_t i, const tl_kind *kind, const double *old,
+                       double old_area, bool reset)
+{
+    uint32_t column = 0;
+    for (uint32_t k = 0; kind && k < kind->state_count; k++) {
+        const tl_state *state = tl_kind_state(kind, k);
+        uint32_t width = state_width(state);
+        double scale = 1;
+        if (state->transfer == TL_TRANSFER_SPLIT)
+            scale = old_area > 0 ? p->area[i] / old_area : 0;
+        if (state->transfer != TL_TRANSFER_RESET || !reset)
+            for (uint32_t w = 0; w < width; w++)
+                p->state[column + w][i] = scale * old[column + w];
+        column += width;
+    }
+}
+
+void tl_point_take_state(tl_points_table *p, size_t i, const tl_kind *kind, const double *old,
+                         double old_area)
+{
+    take_state(p, i, kind, old, old_area, true);
+}
+
+void tl_point_keep_state(tl_points_table *p, size_t i, const tl_kind *kind, const double *old,
+                         double old_area)
+{
+    take_state(p, i, kind, old, old_area, false);
+}
+
+/* ---------------------------------------------------------------- contacts --------------- */
+
+uint32_t tl_material_row(const tl_model *m, tl_tag tag)
+{
+    const tl_material *material = tl_material_of(m, tag);
+    return material ? (uint32_t)(material - m->materials) : TL_NO_ROW;
+}
+
+tl_pair_view tl_pair_view_of(const tl_model *m, uint32_t a, uint32_t b)
+{
+    const tl_blocks *blocks = &m->blocks;
+    const tl_bodies *bodies = &m->bodies;
+    uint32_t body_a = blocks->body[a], body_b = blocks->body[b];
+    tl_pair_view view = {.a = blocks->shape[a], .b = blocks->shape[b]};
+    const tl_mat3 *ra = &bodies->r[body_a], *rb = &bodies->r[body_b];
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            view.turn.m[i][j] = ra->m[0][i] * rb->m[0][j] + ra->m[1][i] * rb->m[1][j] +
+                                ra->m[2][i] * rb->m[2][j];
+    view.shift = tl_m3_tmul(ra, tl_body_apart(bodies, body_a, body_b));
+    view.size = fmin(blocks->size[a], blocks->size[b]);
+    view.mean_face = fmin(blocks->mean_face[a], blocks->mean_face[b]);
+    return view;
+}
+
+bool tl_contact_append(tl_model *m, uint32_t pair, const tl_axis *axis, tl_tag tag,
+                       size_t want_points, size_t want_facets)
+{
+    tl_detect *d = m->detect;
+    tl_contacts *c = &d->contacts;
+    uint32_t row = (uint32_t)c->table.rows;
+    if (!tl_table_resize(&c->table, row + 1u))
+        return false;
+    tl_pair *p = &d->pairs[pair];
+    c->id[row] = ++d->next_contact;
+    c->a[row] = p->a;
+    c->b[row] = p->b;
+    c->id_a[row] = m->blocks.id[p->a];
+    c->id_b[row] = m->blocks.id[p->b];
+    c->pair[row] = pair;
+    c->tag[row] = tag;
+    c->material[row] = tl_material_row(m, tag);
+    c->axis[row] = *axis;
+    c->searched[row] = c->built[row] = tl_pair_odometer(m, p->a, p->b);
+    c->want_points[row] = (uint32_t)want_points;
+    c->want_facets[row] = (uint32_t)want_facets;
+    c->fate[row] = TL_FATE_GROW;
+    p->contact = row;
+    return true;
+}
+
+typedef struct place {
+    uint32_t material, a, b, row;
+} place;
+
+static int compare_place(const void *x, const void *y)
+{
+    const place *p = x, *q = y;
+    if (p->material != q->material)
+        return p->material < q->material ? -1 : 1;
+    if (p->a != q->a)
+        return p->a < q->a ? -1 : 1;
+    return (p->b > q->b) - (p->b < q->b);
+}
+
+/* Living contacts in their new order. */
+static place *sorted(const tl_contacts *c, size_t *count)
+{
+    place *list = malloc((c->table.rows + 1) * sizeof *list);
+    *count = 0;
+    for (uint32_t row = 0; list && row < c->table.rows; row++)
+        if (c->fate[row] != TL_FATE_DIE)
+            list[(*count)++] = (place){c->material[row], c->a[row], c->b[row], row};
+    if (list && *count > 1)
+        qsort(list, *count, sizeof *list, compare_place);
+    return list;
+}
+
+static uint32_t rounded(uint32_t value, uint32_t step)
+{
+    return (value + step - 1) / step * step;
+}
+
+static bool add_run(tl_detect *d, uint32_t material, size_t begin)
+{
+    if (d->run_count == d->run_room) {
+        size_t room = d->run_room ? 2 * d->run_room : 8;
+        tl_run *runs = realloc(d->runs, room * sizeof *runs);
+        if (!runs)
+            return false;
+        d->runs = runs;
+        d->run_room = room;
+    }
+    d->runs[d->run_count++] = (tl_run){material, begin, begin};
+    return true;
+}
+
+/* Copies a contact and its points and facets into the spare tables. */
+static void copy_contact(tl_detect *d, uint32_t from, uint32_t to, uint32_t point_start,
+                         uint32_t facet_start)
+{
+    tl_contacts *c = &d->contacts, *fresh = &d->spare;
+    for (size_t k = 0; k < c->table.column_count; k++) {
+        size_t size = c->table.columns[k].size;
+        memcpy((char *)tl_table_data(&fresh->table, k) + to * size,
+               (const char *)tl_table_data(&c->table, k) + from * size, size);
+    }
+    fresh->point_start[to] = point_start;
+    fresh->facet_start[to] = facet_start;
+    for (size_t k = 0; k < d->points.table.column_count; k++) {
+        size_t size = d->points.table.columns[k].size;
+        memcpy((char *)tl_table_data(&d->spare_points.table, k) + point_start * size,
+               (const char *)tl_table_data(&d->points.table, k) + c->point_start[from] * size,
+               c->point_count[from] * size);
+    }
+    if (c->facet_count[from])
+        memcpy(&fresh->facet[facet_start], &c->facet[c->facet_start[from]],
+               c->facet_count[from] * sizeof *c->facet);
+}
+
+static void swap_tables(tl_detect *d)
+{
+    tl_contacts contacts = d->contacts;
+    d->contacts = d->spare;
+    d->spare = contacts;
+    tl_points_table points = d->points;
+    d->points = d->spare_points;
+    d->spare_points = points;
+    d->contacts.table.owner = &d->contacts;
+    d->spare.table.owner = &d->spare;
+    d->points.table.owner = &d->points;
+    d->spare_points.table.owner = &d->spare_points;
+}
+
+/* Lists the contacts of each block, ascending by partner: the pairs are sorted, so every block meets
+ * its lower partners before its higher ones, each in order. */
+static bool index_by_block(tl_model *m)
+{
+    tl_detect *d = m->detect;
+    size_t blocks = m->blocks.table.rows, contacts = d->contacts.table.rows;
+    if (blocks + 2 > d->by_start_room) {
+        uint32_t *start = realloc(d->by_block_start, 2 * (blocks + 2) * sizeof *start);
+        if (!start)
+            return false;
+        d->by_block_start = start;
+        d->by_start_room = 2 * (blocks + 2);
+    }
+    if (2 * contacts + 1 > d->by_block_room) {
+        uint32_t *list = realloc(d->by_block, 2 * (2 * contacts + 1) * sizeof *list);
+        if (!list)
+            return false;
+        d->by_block = list;
+        d->by_block_room = 2 * (2 * contacts + 1);
+    }
+    memset(d->by_block_start, 0, (blocks + 2) * sizeof *d->by_block_start);
+    uint32_t *start = d->by_block_start + 1; /* filling moves each start to its end */
+    for (size_t c = 0; c < contacts; c++) {
+        start[d->contacts.a[c] + 1]++;
+        start[d->contacts.b[c] + 1]++;
+    }
+    for (size_t row = 0; row < blocks; row++)
+        start[row + 1] += start[row];
+    for (size_t i = 0; i < d->pair_count; i++) {
+        const tl_pair *p = &d->pairs[i];
+        if (p->contact == TL_NO_ROW)
+            continue;
+        d->by_block[start[p->a]++] = p->contact;
+        d->by_block[start[p->b]++] = p->contact;
+    }
+    return true;
+}
+
+tl_status tl_contacts_repack(tl_model *m)
+{
+    tl_detect *d = m->detect;
+    tl_contacts *c = &d->contacts, *fresh = &d->spare;
+    size_t count, points = 0, facets = 0;
+    place *list = sorted(c, &count);
+    if (!list)
+        return tl_fail_memory(&m->error);
+    for (size_t i = 0; i < count; i++) {
+        uint32_t row = list[i].row;
+        if (c->fate[row] == TL_FATE_GROW) {
+            c->point_room[row] = rounded(c->want_points[row] + 1, POINT_ROUND);
+            c->facet_room[row] = c->want_facets[row];
+        }
+        if (i == 0 || list[i].material != list[i - 1].material)
+            points = (points + TL_LANES - 1) / TL_LANES * TL_LANES;
+        points += c->point_room[row];
+        facets += c->facet_room[row];
+    }
+    points = (points + TL_LANES - 1) / TL_LANES * TL_LANES;
+    tl_facet *facet = fresh->facet;
+    if (facets > fresh->facet_capacity) {
+        facet = realloc(fresh->facet, (facets + facets / 2) * sizeof *facet);
+        if (facet) {
+            fresh->facet = facet;
+            fresh->facet_capacity = facets + facets / 2;
+        }
+    }
+    fresh->table.rows = 0;
+    d->spare_points.table.rows = 0;
+    if ((facets && !facet) || !tl_table_resize(&fresh->table, count) ||
+        !tl_table_resize(&d->spare_points.table, points)) {
+        free(list);
+        return tl_fail_memory(&m->error);
+    }
+    d->run_count = 0;
+    size_t point_at = 0, facet_at = 0;
+    bool room = true;
+    for (uint32_t i = 0; i < count && room; i++) {
+        uint32_t row = list[i].row;
+        if (i == 0 || list[i].material != list[i - 1].material) {
+            point_at = (point_at + TL_LANES - 1) / TL_LANES * TL_LANES;
+            room = add_run(d, list[i].material, point_at);
+        }
+        if (!room)
+            break;
+        copy_contact(d, row, i, (uint32_t)point_at, (uint32_t)facet_at);
+        d->pairs[c->pair[row]].contact = i;
+        point_at += c->point_room[row];
+        facet_at += c->facet_room[row];
+        d->runs[d->run_count - 1].end = (point_at + TL_LANES - 1) / TL_LANES * TL_LANES;
+    }
+    free(list);
+    fresh->facet_total = facets;
+    swap_tables(d);
+    d->by_id_fresh = false;
+    return room && index_by_block(m) ? TL_OK : tl_fail_memory(&m->error);
+}
+
+static int compare_id(const void *x, const void *y)
+{
+    const uint32_t *a = x, *b = y; /* id, row */
+    return (a[0] > b[0]) - (a[0] < b[0]);
+}
+
+/* Makes the list of rows by id: pairs of (id, row). */
+static bool index_by_id(tl_detect *d)
+{
+    size_t count = d->contacts.table.rows;
+    if (2 * count + 2 > d->by_id_room) {
+        uint32_t *list = realloc(d->by_id, (2 * count + 2) * sizeof *list);
+        if (!list)
+            return false;
+        d->by_id = list;
+        d->by_id_room = 2 * count + 2;
+    }
+    for (uint32_t row = 0; row < count; row++) {
+        d->by_id[2 * row] = d->contacts.id[row];
+        d->by_id[2 * row + 1] = row;
+    }
+    if (count > 1)
+        qsort(d->by_id, count, 2 * sizeof *d->by_id, compare_id);
+    d->by_id_fresh = true;
+    return true;
+}
+
+uint32_t tl_contact_row(tl_detect *d, tl_id id)
+{
+    if (!d->by_id_fresh && !index_by_id(d))
+        return TL_NO_ROW;
+    size_t low = 0, high = d->contacts.table.rows;
+    while (low < high) {
+        size_t middle = (low + high) / 2;
+        if (d->by_id[2 * middle] < id)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < d->contacts.table.rows && d->by_id[2 * low] == id ? d->by_id[2 * low + 1]
+                                                                     : TL_NO_ROW;
+}

@@ -1,0 +1,266 @@
+/* detect.h - contact detection: from block shapes and body places to contacts with contact points.
+ *
+ * A *pair* is two blocks whose inflated bounds overlap (broad.c). A pair near enough is a *contact*: it
+ * has an *axis* (axis.c: the common plane's normal, exact), and *facets* (manifold.c): face-face
+ * patches, or the point share of vertices and edges, each with *contact points* that have an area
+ * share. Contacts persist: while nothing has moved more than a margin, only the gaps are computed
+ * anew (follow.c).
+ *
+ * Frames: narrow-phase geometry is done in the frame of block A's body, where B's body is given by a
+ * rotation and a translation; A is the block with the lower id. Normals point from A to B. Gap is
+ * positive between separate walls; overlap is -gap. */
+#ifndef TL_DETECT_DETECT_H
+#define TL_DETECT_DETECT_H
+
+#include "model/model.h"
+
+/* When a pair becomes a contact, and when a contact ends, relative to the smaller block's size. */
+#define TL_CONTACT_TOLERANCE 1e-3
+#define TL_CONTACT_RELEASE 1.5
+
+/* Most scalar state columns a law may have. */
+#define TL_STATE_COLUMNS 8
+
+/* Two blocks in the frame of A's body. */
+typedef struct tl_pair_view {
+    const tl_poly *a, *b;
+    tl_mat3 turn;  /* from B's frame to A's */
+    tl_vec3 shift; /* B's origin in A's frame */
+    double size;   /* of the smaller block */
+    double mean_face; /* smaller of the two mean face areas */
+    tl_vec3 *vertex_b; /* B's vertices and face normals in A's frame: filled by tl_pair_place */
+    tl_vec3 *normal_b;
+} tl_pair_view;
+
+typedef enum tl_axis_kind { TL_AXIS_FACE_A, TL_AXIS_FACE_B, TL_AXIS_EDGES } tl_axis_kind;
+
+/* The separating or least penetrating axis of a pair. */
+typedef struct tl_axis {
+    uint32_t kind;   /* tl_axis_kind */
+    uint16_t ia, ib; /* face of A or of B, or edge of A and edge of B */
+    tl_vec3 n;       /* unit, A to B, in A's frame */
+    double s;        /* min over B - max over A of n . x: the gap, negative when overlapping */
+    double second;   /* the next best axis's s */
+} tl_axis;
+
+typedef enum tl_facet_kind {
+    TL_FACET_PATCH,  /* face on face */
+    TL_FACET_FACE_A, /* vertices of B on a face of A */
+    TL_FACET_FACE_B, /* vertices of A on a face of B */
+    TL_FACET_EDGES   /* an edge of A across an edge of B */
+} tl_facet_kind;
+
+/* Contact points that share a normal and a way to compute their gaps. */
+typedef struct tl_facet {
+    uint8_t kind;
+    uint16_t ia, ib;       /* faces, or edges */
+    uint16_t begin, count; /* of its points, within the contact */
+    tl_vec3 na, nb;        /* outward normals of the faces, or edge directions; own frames */
+    double offset;         /* of the face a point is measured against */
+    tl_vec3 pa, pb;        /* edges: a point on each, own frames */
+    tl_vec3 side;          /* edges: n when made, A's frame */
+} tl_facet;
+
+/* A contact point as the geometry gives it. `p` is fixed to A for patches, faces of B and edges, and
+ * to B for faces of A. `rest` is what the point's own wall adds to the gap (patches). */
+typedef struct tl_contact_point {
+    tl_vec3 p;
+    double rest;
+    double area;
+    uint32_t key; /* of the features that made it */
+} tl_contact_point;
+
+/* The contact points of one pair, as one geometric evaluation finds them. */
+typedef struct tl_manifold {
+    tl_facet *facets;
+    tl_contact_point *points;
+    size_t facet_count, facet_room, point_count, point_room;
+    double patch_area;
+    bool failed;   /* out of memory */
+    bool grounded; /* the axis is locally optimal: its features meet */
+} tl_manifold;
+
+/* Per-thread room for the narrow phase. */
+typedef struct tl_narrow {
+    tl_vec3 *vertex_b, *normal_b;
+    double *dots;
+    size_t vertex_room, normal_room, dot_room;
+    struct tl_polygon *polygon; /* patch.c */
+    tl_manifold manifold;
+    struct tl_old_point *old; /* transfer.c */
+    double *value;
+    size_t old_room;
+} tl_narrow;
+
+/* How the point share of a pair is measured. */
+typedef struct tl_share_rule {
+    double minimum;   /* area, m2 */
+    bool unconditional; /* also for edges of parallel faces */
+    double reach;     /* patches with every gap beyond this are left out */
+} tl_share_rule;
+
+typedef struct tl_pair {
+    uint32_t a, b; /* block rows, a < b */
+    double wake;   /* sum of the odometers at which to look again */
+    uint32_t contact; /* row, or TL_NO_ROW */
+    bool found;    /* looked at in this step and near enough */
+} tl_pair;
+
+typedef struct tl_contacts {
+    tl_table table;
+    tl_id *id;
+    uint32_t *a, *b;   /* block rows */
+    tl_id *id_a, *id_b;
+    uint32_t *pair;    /* index of its pair */
+    tl_tag *tag;
+    uint32_t *material; /* index of the model's materials, or TL_NO_ROW */
+    tl_axis *axis;
+    double *searched; /* sum of odometers at the last full search */
+    double *margin;   /* how far it may run before the next */
+    double *built;    /* sum of odometers when the facets were made */
+    uint32_t *facet_start, *facet_count, *facet_room;
+    uint32_t *point_start, *point_count, *point_room;
+    tl_vec3 *normal, *point; /* area-weighted; point in coordinates relative to the origin */
+    double *area, *gap;      /* gap: the smallest of its points */
+    tl_vec3 *force;          /* on B */
+    tl_vec3 *moment_a, *moment_b; /* of the forces on A and on B, about their bodies' centroids */
+    uint32_t *want_points, *want_facets; /* of a contact that must grow */
+    uint8_t *fate;           /* what the parallel phase leaves to the serial one: TL_FATE_* */
+    /* facets */
+    tl_facet *facet;
+    size_t facet_total, facet_capacity;
+} tl_contacts;
+
+enum { TL_FATE_KEEP, TL_FATE_GROW, TL_FATE_DIE, TL_FATE_MATERIAL, TL_FATE_MEMORY };
+
+typedef struct tl_points_table {
+    tl_table table;
+    tl_vec3 *p;
+    double *rest;
+    uint32_t *key;
+    tl_vec3 *arm;       /* from A's body's centroid to the point, axes of the model */
+    double *normal[3];
+    double *area;
+    double *reference;  /* overlap at closure 0 */
+    double *closure;
+    double *f_n0;
+    double *du_n, *du_s[3];
+    double *f_n, *f_s[3];
+    uint32_t *flags;
+    double *state[TL_STATE_COLUMNS];
+    double *stored, *dissipated;
+} tl_points_table;
+
+/* Run of points of one material. */
+typedef struct tl_run {
+    uint32_t material;
+    size_t begin, end; /* multiples of TL_LANES */
+} tl_run;
+
+typedef struct tl_detect {
+    tl_pair *pairs;
+    size_t pair_count, pair_room;
+    bool rows_changed;  /* since contacts were laid out */
+    double reach;       /* half the skin of the broad phase */
+    double *odometer_0; /* of each body, when the broad phase was made */
+    size_t body_room;
+    uint64_t structure, laws; /* of the model, when last seen */
+    tl_contacts contacts, spare;
+    tl_points_table points, spare_points;
+    tl_run *runs;
+    size_t run_count, run_room;
+    uint32_t *by_block, *by_block_start; /* contacts of each block, ascending by partner */
+    size_t by_block_room, by_start_room;
+    uint32_t *by_id; /* contact rows by ascending id; made when asked for */
+    size_t by_id_room;
+    bool by_id_fresh;
+    tl_id next_contact;
+    tl_narrow *narrow; /* [threads] */
+    unsigned threads;
+    struct tl_broad *broad;
+} tl_detect;
+
+/* Brings pairs, contacts and gaps up to the present places of the bodies: the first half of a step. */
+tl_status tl_detect_update(tl_model *m);
+/* Finds the contacts of a model whose blocks or laws have changed since the last step, for queries and
+ * settings between steps. Contacts that stand are not touched, so asking never changes a result. */
+tl_status tl_detect_refresh(tl_model *m);
+
+/* ---- broad.c ---- */
+tl_status tl_broad_update(tl_model *m);
+void tl_broad_destroy(struct tl_broad *broad);
+
+/* ---- look.c: libccd's first look ---- */
+/* False when the blocks, each grown by `reach` / 2, are certainly apart. */
+bool tl_look_near(const tl_pair_view *view, double reach);
+
+/* ---- axis.c ---- */
+/* Fills vertex_b and normal_b of the view. */
+bool tl_pair_place(tl_pair_view *view, tl_narrow *room);
+/* The exact common plane's axis. `previous` (or NULL) is preferred when nearly as good. */
+tl_axis tl_axis_search(const tl_pair_view *view, tl_narrow *room, const tl_axis *previous);
+/* n and s of the same features in the present place; false when the features no longer define it. */
+bool tl_axis_follow(const tl_pair_view *view, tl_axis *axis);
+/* Unit direction perpendicular to both edges, within `outward`'s half-space; false when parallel. */
+bool tl_edge_normal(tl_vec3 edge_a, tl_vec3 edge_b, tl_vec3 outward, tl_vec3 *n);
+
+/* ---- manifold.c ---- */
+/* Facets and points of a pair whose axis is known, into room->manifold. */
+void tl_manifold_build(const tl_pair_view *view, const tl_axis *axis, const tl_share_rule *rule,
+                       tl_narrow *room);
+bool tl_manifold_add_point(tl_manifold *m, tl_vec3 p, double rest, double area, uint32_t key);
+/* The joint of the touching faces. */
+tl_tag tl_touching_tag(const tl_pair_view *view, tl_vec3 n);
+
+/* ---- patch.c ---- */
+/* Adds the patch of face `fa` of A on face `fb` of B, with areas scaled by `weight`; returns its
+ * scaled area (0 when they do not overlap). */
+double tl_patch_add(const tl_pair_view *view, uint32_t fa, uint32_t fb, double weight,
+                    const tl_share_rule *rule, tl_narrow *room);
+/* The part [*t0, *t1] of the segment from p to q over a face (polygon of `count` corners in a plane of
+ * normal n, any side), as shares of its length; false when none is. */
+bool tl_segment_over_face(tl_vec3 p, tl_vec3 q, const tl_vec3 *corners, size_t count, tl_vec3 n,
+                          double slack, double *t0, double *t1);
+void tl_polygon_free(struct tl_polygon *polygon);
+
+/* ---- follow.c ---- */
+/* Gaps, normals, relative motion of every point of a contact in the present place; turns shear forces
+ * with the common plane. dt is that of the last step (0: places only). */
+void tl_contact_follow(tl_model *m, uint32_t contact, double dt);
+
+/* ---- transfer.c ---- */
+/* Puts the manifold's points in the place of the contact's, carrying over state so that total force
+ * and moment follow the area; the points fit into the contact's room. */
+bool tl_contact_transfer(tl_model *m, uint32_t contact, tl_narrow *room);
+
+/* ---- contacts.c ---- */
+void tl_contacts_init(tl_contacts *contacts, tl_points_table *points);
+/* Adds a contact of a pair, without points, wanting room for some; false when out of memory. */
+bool tl_contact_append(tl_model *m, uint32_t pair, const tl_axis *axis, tl_tag tag,
+                       size_t want_points, size_t want_facets);
+/* Lays contacts and points out anew: without those of fate TL_FATE_DIE, sorted by material and blocks,
+ * each with the room it wants. */
+tl_status tl_contacts_repack(tl_model *m);
+/* Index of the material that rules a tag, or TL_NO_ROW. */
+uint32_t tl_material_row(const tl_model *m, tl_tag tag);
+/* View of two blocks, and the odometers of their bodies, summed. */
+tl_pair_view tl_pair_view_of(const tl_model *m, uint32_t a, uint32_t b);
+static inline double tl_pair_odometer(const tl_model *m, uint32_t a, uint32_t b)
+{
+    return m->bodies.odometer[m->blocks.body[a]] + m->bodies.odometer[m->blocks.body[b]];
+}
+/* Row of the contact of an id, or TL_NO_ROW. */
+uint32_t tl_contact_row(tl_detect *d, tl_id id);
+/* A point without force, area or place: an inert lane. */
+void tl_point_clear(tl_points_table *p, size_t point);
+/* The law's states of a point, at their initial values, or taken from an old point of some area. */
+void tl_point_initial_state(tl_points_table *p, size_t point, const tl_kind *kind);
+void tl_point_take_state(tl_points_table *p, size_t point, const tl_kind *kind, const double *old,
+                         double old_area);
+/* The same for a point that keeps its place: what is reset on a change of polygon stays. */
+void tl_point_keep_state(tl_points_table *p, size_t point, const tl_kind *kind, const double *old,
+                         double old_area);
+/* State descriptor k of a kind. */
+const tl_state *tl_kind_state(const tl_kind *kind, uint32_t k);
+
+#endif

@@ -1,0 +1,169 @@
+/* follow.c - what a step does with every contact whose facets stand: gaps, normals and relative motion
+ * of its points in the present place.
+ *
+ * The gap comes from the planes of the faces (or the normal of two edges), carried with their bodies,
+ * never from the axis. Shear forces are turned with the common plane, exactly from the old normal to
+ * the new and by the bodies' mean spin about it; (5) of Hart, Cundall and Lemos (1988) is the first
+ * order of this. */
+#include "detect/detect.h"
+
+/* Two bodies as a facet sees them: axes of the model, A's centroid as zero. */
+typedef struct sight {
+    const tl_mat3 *ra, *rb;
+    tl_vec3 d; /* from A's centroid to B's */
+    tl_vec3 va, wa, vb, wb;
+    double dt;
+} sight;
+
+/* The facet's normal, and the plane a point's gap is measured to. */
+typedef struct facing {
+    tl_vec3 n;      /* A to B */
+    tl_vec3 normal; /* outward, of the plane */
+    double offset;
+    tl_vec3 foot; /* edges: a point of A's edge */
+    double gap;   /* edges: the gap of every point */
+} facing;
+
+static facing facet_facing(const tl_facet *f, const sight *s)
+{
+    facing out = {0};
+    switch (f->kind) {
+    case TL_FACET_PATCH: {
+        tl_vec3 na = tl_m3_mul(s->ra, f->na);
+        out.normal = tl_m3_mul(s->rb, f->nb);
+        out.offset = f->offset + tl_v3_dot(out.normal, s->d);
+        out.n = tl_v3_unit(tl_v3_sub(na, out.normal));
+        break;
+    }
+    case TL_FACET_FACE_A:
+        out.n = out.normal = tl_m3_mul(s->ra, f->na);
+        out.offset = f->offset;
+        break;
+    case TL_FACET_FACE_B:
+        out.normal = tl_m3_mul(s->rb, f->nb);
+        out.offset = f->offset + tl_v3_dot(out.normal, s->d);
+        out.n = tl_v3_neg(out.normal);
+        break;
+    default: {
+        tl_vec3 foot_a = tl_m3_mul(s->ra, f->pa);
+        tl_vec3 foot_b = tl_v3_add(tl_m3_mul(s->rb, f->pb), s->d);
+        /* the side was settled when the facet was made: na x nb, turned outward, is n */
+        if (!tl_edge_normal(tl_m3_mul(s->ra, f->na), tl_m3_mul(s->rb, f->nb),
+                            tl_m3_mul(s->ra, f->side), &out.n))
+            out.n = tl_m3_mul(s->ra, f->side);
+        out.gap = tl_v3_dot(out.n, tl_v3_sub(foot_b, foot_a));
+        break;
+    }
+    }
+    return out;
+}
+
+/* v turned from the plane of normal `from` to that of `to`, and by `spin` about `to`. */
+static tl_vec3 carry(tl_vec3 v, tl_vec3 from, tl_vec3 to, double spin)
+{
+    v = tl_v3_turn(v, from, to);
+    if (spin != 0) {
+        /* exact for the tangent half angle: no trigonometry, no growth */
+        double h = 0.5 * spin, c = (1 - h * h) / (1 + h * h), t = 2 * h / (1 + h * h);
+        v = tl_v3_add(tl_v3_scale(c, v), tl_v3_scale(t, tl_v3_cross(to, v)));
+    }
+    return tl_v3_madd(v, -tl_v3_dot(v, to), to);
+}
+
+static tl_vec3 load(double *const column[3], size_t i)
+{
+    return tl_v3(column[0][i], column[1][i], column[2][i]);
+}
+
+static void store(double *const column[3], size_t i, tl_vec3 v)
+{
+    column[0][i] = v.x;
+    column[1][i] = v.y;
+    column[2][i] = v.z;
+}
+
+/* Turns the shear force and the tangent states of a point into the plane of `n`. */
+static void turn_vectors(tl_points_table *p, size_t i, tl_vec3 n, double spin, uint32_t tangents)
+{
+    tl_vec3 old = load(p->normal, i);
+    if (tl_v3_norm2(old) > 0) {
+        store(p->f_s, i, carry(load(p->f_s, i), old, n, spin));
+        for (uint32_t k = 0; k + 2 < TL_STATE_COLUMNS && tangents; k++, tangents >>= 1)
+            if (tangents & 1)
+                store(&p->state[k], i, carry(load(&p->state[k], i), old, n, spin));
+    }
+    store(p->normal, i, n);
+}
+
+/* How a body's point, now at `arm` from the centroid, has moved in the last dt: the arm in the middle of
+ * the step makes this exact to third order, so a rolling contact gathers no slip. */
+static tl_vec3 motion(tl_vec3 v, tl_vec3 w, tl_vec3 arm, double dt)
+{
+    tl_vec3 middle = tl_v3_madd(arm, -0.5 * dt, tl_v3_cross(w, arm));
+    return tl_v3_scale(dt, tl_v3_add(v, tl_v3_cross(w, middle)));
+}
+
+static void follow_facet(tl_points_table *p, const tl_facet *f, size_t begin, const sight *s,
+                         uint32_t tangents)
+{
+    facing to = facet_facing(f, s);
+    double spin = 0.5 * s->dt * tl_v3_dot(tl_v3_add(s->wa, s->wb), to.n);
+    for (size_t i = begin; i < begin + f->count; i++) {
+        tl_vec3 x = f->kind == TL_FACET_FACE_A
+                        ? tl_v3_add(tl_m3_mul(s->rb, p->p[i]), s->d)
+                        : tl_m3_mul(s->ra, p->p[i]);
+        double gap = f->kind == TL_FACET_EDGES
+                         ? to.gap
+                         : p->rest[i] + tl_v3_dot(to.normal, x) - to.offset;
+        tl_vec3 du = tl_v3_sub(motion(s->vb, s->wb, tl_v3_sub(x, s->d), s->dt),
+                               motion(s->va, s->wa, x, s->dt));
+        double du_n = tl_v3_dot(du, to.n);
+        turn_vectors(p, i, to.n, spin, tangents);
+        p->arm[i] = x;
+        p->closure[i] = -gap - p->reference[i];
+        p->du_n[i] = du_n;
+        store(p->du_s, i, tl_v3_madd(du, -du_n, to.n));
+    }
+}
+
+/* The contact's own normal, point, area and gap, from its points. */
+static void summarize(tl_model *m, uint32_t c)
+{
+    tl_contacts *contacts = &m->detect->contacts;
+    tl_points_table *p = &m->detect->points;
+    size_t begin = contacts->point_start[c], end = begin + contacts->point_count[c];
+    tl_vec3 n = {0, 0, 0}, x = {0, 0, 0};
+    double area = 0, gap = INFINITY;
+    for (size_t i = begin; i < end; i++) {
+        double a = p->area[i], overlap = p->closure[i] + p->reference[i];
+        n = tl_v3_madd(n, a, load(p->normal, i));
+        x = tl_v3_madd(x, a, p->arm[i]);
+        area += a;
+        gap = -overlap < gap ? -overlap : gap;
+    }
+    contacts->area[c] = area;
+    contacts->gap[c] = gap;
+    if (area > 0) {
+        uint32_t body = m->blocks.body[contacts->a[c]];
+        contacts->normal[c] = tl_v3_unit(n);
+        contacts->point[c] =
+            tl_v3_add(tl_body_place(&m->bodies, body), tl_v3_scale(1 / area, x));
+    }
+}
+
+void tl_contact_follow(tl_model *m, uint32_t c, double dt)
+{
+    tl_contacts *contacts = &m->detect->contacts;
+    const tl_bodies *b = &m->bodies;
+    uint32_t body_a = m->blocks.body[contacts->a[c]], body_b = m->blocks.body[contacts->b[c]];
+    sight s = {&b->r[body_a], &b->r[body_b], tl_body_apart(b, body_a, body_b),
+               b->v[body_a],  b->w[body_a],  b->v[body_b],
+               b->w[body_b],  dt};
+    uint32_t material = contacts->material[c];
+    uint32_t tangents = material == TL_NO_ROW ? 0 : m->materials[material].tangents;
+    const tl_facet *facets = &contacts->facet[contacts->facet_start[c]];
+    for (uint32_t k = 0; k < contacts->facet_count[c]; k++)
+        follow_facet(&m->detect->points, &facets[k], contacts->point_start[c] + facets[k].begin, &s,
+                     tangents);
+    summarize(m, c);
+}

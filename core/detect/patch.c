@@ -1,0 +1,374 @@
+/* patch.c - face on face: the contact polygon and its contact points.
+ *
+ * The two faces are projected along the bisector of their normals into the bisecting plane, where one
+ * clips the other (Sutherland and Hodgman 1974). Contact points lie at the polygon's corners, middles
+ * of edges and area centroid; with a_i the area of the fan triangle of edge i about the centroid, a
+ * corner has the area (a_{i-1} + a_i)/12, a middle a_i/3, the centroid half of all. These weights
+ * integrate any linear gap, and its moments, exactly.
+ *
+ * Corners with a turning angle below STRAIGHT are left out. Between STRAIGHT and CORNER the points are
+ * a mixture of those with and without the corner, so that a corner that comes or goes while blocks
+ * wobble does not change the force. */
+#include "detect/detect.h"
+
+#include "base/random.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Turning angles, rad, below which a corner is none, and from which it is a full one. */
+#define STRAIGHT 1e-4
+#define CORNER 2e-3
+/* Corners nearer to each other than this times the size are one: far below any length that matters,
+ * far above rounding. */
+#define MERGE 1e-7
+/* A polygon thinner than this times the size has no area worth a point: faces that only touch along an
+ * edge. */
+#define THIN 1e-9
+/* Longest run of blended corners that is mixed; longer runs belong to round outlines. */
+#define BLEND_RUN 3
+
+typedef struct point2 {
+    double x, y;
+} point2;
+
+typedef struct corner {
+    point2 at;
+    uint32_t key;  /* of the features that made it */
+    uint32_t edge; /* source of the edge that leaves it */
+    double share;  /* of the corner in the mixture: 0 .. 1 */
+    double fan;    /* area of the fan triangle of the edge that leaves it */
+} corner;
+
+/* Room for one clipping. */
+struct tl_polygon {
+    corner *now, *next;
+    point2 *clip;
+    size_t room, clip_room;
+};
+
+/* Edges of A's face are 0, 1, ..., those of B's face EDGE_B, EDGE_B + 1, ... */
+enum { EDGE_B = 1 << 16 };
+/* What a point is; with the features that made it, this gives its key. */
+enum { POINT_A, POINT_B, POINT_CROSSING, POINT_MIDDLE, POINT_CENTROID };
+
+static uint32_t key_of(uint64_t kind, uint32_t one, uint32_t other)
+{
+    return (uint32_t)tl_key(tl_key(kind, one), other);
+}
+
+void tl_polygon_free(struct tl_polygon *polygon)
+{
+    if (!polygon)
+        return;
+    free(polygon->now);
+    free(polygon->next);
+    free(polygon->clip);
+    free(polygon);
+}
+
+static struct tl_polygon *polygon_room(tl_narrow *room, size_t corners, size_t clip)
+{
+    if (!room->polygon && !(room->polygon = calloc(1, sizeof *room->polygon)))
+        return NULL;
+    struct tl_polygon *p = room->polygon;
+    if (corners > p->room) {
+        free(p->now);
+        free(p->next);
+        p->now = malloc(2 * corners * sizeof *p->now);
+        p->next = malloc(2 * corners * sizeof *p->next);
+        p->room = p->now && p->next ? 2 * corners : 0;
+    }
+    if (clip > p->clip_room) {
+        free(p->clip);
+        p->clip = malloc(2 * clip * sizeof *p->clip);
+        p->clip_room = p->clip ? 2 * clip : 0;
+    }
+    return corners <= p->room && clip <= p->clip_room ? p : NULL;
+}
+
+/* The plane of the patch: origin, two directions in it, its normal (A to B). */
+typedef struct frame2 {
+    tl_vec3 o, t1, t2, n;
+} frame2;
+
+static point2 project(const frame2 *f, tl_vec3 x)
+{
+    tl_vec3 d = tl_v3_sub(x, f->o);
+    return (point2){tl_v3_dot(d, f->t1), tl_v3_dot(d, f->t2)};
+}
+
+static double cross2(point2 o, point2 a, point2 b)
+{
+    return (a.x - o.x) * (b.y - o.y) - (a.y - o.y) * (b.x - o.x);
+}
+
+static double distance2(point2 a, point2 b)
+{
+    double x = a.x - b.x, y = a.y - b.y;
+    return sqrt(x * x + y * y);
+}
+
+/* What the corner is where edges `one` and `other` meet at `cut`. A meeting of two neighbouring edges
+ * of B is B's own vertex. */
+static corner meet(uint32_t one, uint32_t other, point2 cut, const point2 *clip, uint32_t count)
+{
+    corner c = {.at = cut, .edge = other};
+    if (one >= EDGE_B && other >= EDGE_B) {
+        uint32_t i = one - EDGE_B, j = other - EDGE_B;
+        if ((i + 1) % count == j || (j + 1) % count == i) {
+            uint32_t v = (i + 1) % count == j ? j : i;
+            c.at = clip[v];
+            c.key = key_of(POINT_B, v, 0);
+            return c;
+        }
+    }
+    c.key = one < other ? key_of(POINT_CROSSING, one, other) : key_of(POINT_CROSSING, other, one);
+    return c;
+}
+
+/* Keeps what lies left of the line from clip[j] to clip[j + 1]; returns the number of corners. */
+static size_t clip_by(struct tl_polygon *p, size_t count, uint32_t j, uint32_t clip_count)
+{
+    point2 o = p->clip[j], q = p->clip[(j + 1) % clip_count];
+    size_t kept = 0;
+    for (size_t i = 0; i < count; i++) {
+        const corner *here = &p->now[i], *after = &p->now[i + 1 == count ? 0 : i + 1];
+        double h = cross2(o, q, here->at), a = cross2(o, q, after->at);
+        if (h >= 0)
+            p->next[kept++] = *here;
+        if ((h > 0 && a < 0) || (h < 0 && a > 0) || (h == 0 && a < 0)) {
+            double t = h / (h - a);
+            point2 cut = {here->at.x + t * (after->at.x - here->at.x),
+                          here->at.y + t * (after->at.y - here->at.y)};
+            corner c = meet(here->edge, EDGE_B + j, cut, p->clip, clip_count);
+            if (h == 0) { /* the line passes through the corner: it only changes its edge */
+                p->next[kept - 1].edge = EDGE_B + j;
+                continue;
+            }
+            c.edge = h > 0 ? EDGE_B + j : here->edge;
+            p->next[kept++] = c;
+        }
+    }
+    corner *swap = p->now;
+    p->now = p->next;
+    p->next = swap;
+    return kept;
+}
+
+static size_t merge_near(struct tl_polygon *p, size_t count, double near)
+{
+    size_t kept = 0;
+    for (size_t i = 0; i < count; i++)
+        if (kept == 0 || distance2(p->now[i].at, p->now[kept - 1].at) > near)
+            p->now[kept++] = p->now[i];
+        else
+            p->now[kept - 1].edge = p->now[i].edge;
+    while (kept > 1 && distance2(p->now[kept - 1].at, p->now[0].at) <= near)
+        kept--;
+    return kept;
+}
+
+/* Area and area centroid, taken about a corner. */
+static double area_of(const corner *c, size_t count, point2 *centroid)
+{
+    double area = 0, x = 0, y = 0;
+    for (size_t i = 1; i + 1 < count; i++) {
+        double a = 0.5 * cross2(c[0].at, c[i].at, c[i + 1].at);
+        area += a;
+        x += a * ((c[i].at.x - c[0].at.x) + (c[i + 1].at.x - c[0].at.x)) / 3;
+        y += a * ((c[i].at.y - c[0].at.y) + (c[i + 1].at.y - c[0].at.y)) / 3;
+    }
+    if (area > 0)
+        *centroid = (point2){c[0].at.x + x / area, c[0].at.y + y / area};
+    return area;
+}
+
+static double smooth(double x)
+{
+    return x <= 0 ? 0 : x >= 1 ? 1 : x * x * (3 - 2 * x);
+}
+
+/* Gives each corner its share by its turning angle and each edge its fan area; drops corners of share
+ * 0, whose fan area goes to the edge before. Returns the number of corners. */
+static size_t weigh_corners(corner *c, size_t count, point2 centroid)
+{
+    size_t blended = 0, solid = 0, kept = 0;
+    for (size_t i = 0; i < count; i++) {
+        point2 before = c[i ? i - 1 : count - 1].at, here = c[i].at, after = c[(i + 1) % count].at;
+        double u = distance2(before, here), v = distance2(here, after);
+        double turn = asin(fmin(1, fmax(-1, cross2(before, here, after) / (u * v))));
+        double ahead = (here.x - before.x) * (after.x - here.x) +
+                       (here.y - before.y) * (after.y - here.y);
+        turn = ahead < 0 ? TL_PI - turn : turn;
+        c[i].share = smooth((turn - STRAIGHT) / (CORNER - STRAIGHT));
+        c[i].fan = 0.5 * fmax(0, cross2(centroid, here, after));
+        blended += c[i].share < 1;
+        solid += c[i].share >= 1;
+    }
+    if (solid < 3 || blended > 2 * solid)
+        for (size_t i = 0; i < count; i++)
+            c[i].share = 1; /* a round outline: its small turns are no wobble */
+    size_t first = 0;
+    while (c[first].share < 1)
+        first++;
+    if (first) { /* begin at a full corner, so that what is dropped has one before it */
+        for (size_t turns = 0; turns < first; turns++) {
+            corner head = c[0];
+            memmove(c, c + 1, (count - 1) * sizeof *c);
+            c[count - 1] = head;
+        }
+    }
+    for (size_t i = 0; i < count; i++)
+        if (c[i].share > 0)
+            c[kept++] = c[i];
+        else
+            c[kept - 1].fan += c[i].fan;
+    return kept;
+}
+
+/* Everything a point needs to become one. */
+typedef struct patch {
+    const tl_pair_view *view;
+    frame2 frame;
+    tl_plane a, b; /* in A's frame */
+    double weight;
+    uint32_t faces; /* key of the two faces */
+    tl_manifold *manifold;
+} patch;
+
+static bool add_point(const patch *p, point2 at, double area, uint32_t key)
+{
+    tl_vec3 x = tl_v3_madd(tl_v3_madd(p->frame.o, at.x, p->frame.t1), at.y, p->frame.t2);
+    double rest = tl_v3_dot(p->a.normal, x) - p->a.offset;
+    return tl_manifold_add_point(p->manifold, x, rest, p->weight * area,
+                                 (uint32_t)tl_key(p->faces, key));
+}
+
+/* Adds corners and middles: for every two corners that may follow each other in the mixture, the rule
+ * of their edge, times the chance that they do. */
+static bool add_edges(const patch *p, corner *c, size_t count, double *corner_area)
+{
+    memset(corner_area, 0, count * sizeof *corner_area);
+    for (size_t i = 0; i < count; i++) {
+        double chance = c[i].share, fan = 0;
+        for (size_t step = 1; step <= count && chance > 0; step++) {
+            size_t j = (i + step) % count;
+            fan += c[(i + step - 1) % count].fan;
+            double share = step > BLEND_RUN ? 1 : c[j].share;
+            double area = chance * share * fan;
+            if (area > 0) {
+                point2 middle = {0.5 * (c[i].at.x + c[j].at.x), 0.5 * (c[i].at.y + c[j].at.y)};
+                if (!add_point(p, middle, area / 3, key_of(POINT_MIDDLE, c[i].key, c[j].key)))
+                    return false;
+                corner_area[i] += area / 12;
+                corner_area[j] += area / 12;
+            }
+            chance *= 1 - share;
+        }
+    }
+    for (size_t i = 0; i < count; i++)
+        if (!add_point(p, c[i].at, corner_area[i], c[i].key))
+            return false;
+    return true;
+}
+
+/* Loads both outlines, counter-clockwise seen against the patch normal, and clips. */
+static size_t clip_faces(const tl_pair_view *view, uint32_t fa, uint32_t fb, const frame2 *frame,
+                         struct tl_polygon *p)
+{
+    const tl_poly *a = view->a, *b = view->b;
+    uint32_t na = tl_poly_face_size(a, fa), nb = tl_poly_face_size(b, fb);
+    for (uint32_t i = 0; i < na; i++) {
+        uint16_t v = a->loop[a->start[fa] + i];
+        p->now[i] = (corner){.at = project(frame, a->vertex[v]), .key = key_of(POINT_A, v, 0), .edge = i};
+    }
+    for (uint32_t i = 0; i < nb; i++)
+        p->clip[i] = project(frame, view->vertex_b[b->loop[b->start[fb] + nb - 1 - i]]);
+    size_t count = na;
+    for (uint32_t j = 0; j < nb && count; j++)
+        count = clip_by(p, count, j, nb);
+    return count;
+}
+
+double tl_patch_add(const tl_pair_view *view, uint32_t fa, uint32_t fb, double weight,
+                    const tl_share_rule *rule, tl_narrow *room)
+{
+    const tl_poly *a = view->a, *b = view->b;
+    size_t most = (size_t)tl_poly_face_size(a, fa) + tl_poly_face_size(b, fb) + 4;
+    struct tl_polygon *p = polygon_room(room, most, tl_poly_face_size(b, fb));
+    tl_manifold *m = &room->manifold;
+    if (!p) {
+        m->failed = true;
+        return 0;
+    }
+    patch one = {.view = view,
+                 .weight = weight,
+                 .faces = key_of(0, fa, fb),
+                 .manifold = m,
+                 .a = a->plane[fa]};
+    one.b.normal = view->normal_b[fb];
+    one.b.offset = b->plane[fb].offset + tl_v3_dot(one.b.normal, view->shift);
+    frame2 *f = &one.frame;
+    f->n = tl_v3_unit(tl_v3_sub(one.a.normal, one.b.normal));
+    f->o = a->vertex[a->loop[a->start[fa]]];
+    f->t1 = tl_v3_perpendicular(f->n);
+    f->t2 = tl_v3_cross(f->n, f->t1);
+
+    double size = fmax(a->size, b->size);
+    size_t count = merge_near(p, clip_faces(view, fa, fb, f, p), MERGE * view->size);
+    point2 centroid = {0, 0};
+    double area = count >= 3 ? area_of(p->now, count, &centroid) : 0;
+    if (!(area > THIN * size * view->size))
+        return 0;
+
+    /* into the middle between the two faces, at the centroid */
+    tl_vec3 x = tl_v3_madd(tl_v3_madd(f->o, centroid.x, f->t1), centroid.y, f->t2);
+    double up = tl_v3_dot(one.b.normal, x) - one.b.offset, down = tl_v3_dot(one.a.normal, x) - one.a.offset;
+    double slope = tl_v3_dot(f->n, one.a.normal);
+    f->o = tl_v3_madd(f->o, 0.5 * (up - down) / slope, f->n);
+
+    size_t begin = m->point_count;
+    count = weigh_corners(p->now, count, centroid);
+    double *corner_area = (double *)(void *)p->next; /* the clipping is over: its room is free */
+    if (!add_edges(&one, p->now, count, corner_area) ||
+        !add_point(&one, centroid, 0.5 * area, key_of(POINT_CENTROID, 0, 0)))
+        return 0;
+    double nearest = INFINITY;
+    for (size_t i = begin; i < m->point_count; i++)
+        nearest = fmin(nearest, m->points[i].rest +
+                                    tl_v3_dot(one.b.normal, m->points[i].p) - one.b.offset);
+    if (nearest > rule->reach) {
+        m->point_count = begin;
+        return 0;
+    }
+    m->facets[m->facet_count++] = (tl_facet){.kind = TL_FACET_PATCH,
+                                             .ia = (uint16_t)fa,
+                                             .ib = (uint16_t)fb,
+                                             .begin = (uint16_t)begin,
+                                             .count = (uint16_t)(m->point_count - begin),
+                                             .na = one.a.normal,
+                                             .nb = b->plane[fb].normal,
+                                             .offset = b->plane[fb].offset};
+    return weight * area;
+}
+
+bool tl_segment_over_face(tl_vec3 p, tl_vec3 q, const tl_vec3 *corners, size_t count, tl_vec3 n,
+                          double slack, double *t0, double *t1)
+{
+    *t0 = 0;
+    *t1 = 1;
+    for (size_t i = 0; i < count; i++) {
+        tl_vec3 c = corners[i], d = corners[i + 1 == count ? 0 : i + 1];
+        tl_vec3 inward = tl_v3_unit(tl_v3_cross(n, tl_v3_sub(d, c)));
+        double hp = tl_v3_dot(inward, tl_v3_sub(p, c)) + slack;
+        double hq = tl_v3_dot(inward, tl_v3_sub(q, c)) + slack;
+        if (hp < 0 && hq < 0)
+            return false;
+        if (hp < 0)
+            *t0 = fmax(*t0, hp / (hp - hq));
+        else if (hq < 0)
+            *t1 = fmin(*t1, hp / (hp - hq));
+    }
+    return *t0 <= *t1;
+}

@@ -1,0 +1,281 @@
+/* transfer.c - new contact points in the place of old ones, when the contact polygon has changed.
+ *
+ * Each new point takes over the stresses of the old point of the same key, or else of the nearest.
+ * Then the fields are corrected so that their totals follow the area: where the area and its centroid
+ * stay the same, total shear force, its moment about the normal, and total initial normal force with
+ * both its moments are kept exactly. Moments are taken about the centroids of the areas, so a uniform
+ * stress stays uniform when the area changes. */
+#include "detect/detect.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* A polygon whose moments of area are nearer to singular than this gets no linear correction: its points
+ * lie on a line. */
+#define SINGULAR 1e-12
+
+/* Fields that are scalars per point: initial normal stress, reference overlap. */
+enum { FIELD_N0, FIELD_REFERENCE, FIELD_COUNT };
+
+struct tl_old_point {
+    tl_vec3 arm, normal, shear; /* shear stress */
+    double area, f_n;           /* f_n: normal stress */
+    double field[FIELD_COUNT];
+    double state[TL_STATE_COLUMNS];
+    uint32_t key, flags;
+};
+
+typedef struct tl_old_point old_point;
+
+static tl_vec3 load(double *const column[3], size_t i)
+{
+    return tl_v3(column[0][i], column[1][i], column[2][i]);
+}
+
+/* Makes room for `count` old points and as many values. */
+static bool reserve(tl_narrow *room, size_t count)
+{
+    if (count <= room->old_room)
+        return true;
+    old_point *old = realloc(room->old, 2 * count * sizeof *old);
+    if (old)
+        room->old = old;
+    double *value = realloc(room->value, 2 * count * sizeof *value);
+    if (value)
+        room->value = value;
+    if (!old || !value)
+        return false;
+    room->old_room = 2 * count;
+    return true;
+}
+
+static void read_old(const tl_points_table *p, size_t begin, size_t count, tl_narrow *room)
+{
+    for (size_t k = 0; k < count; k++) {
+        size_t i = begin + k;
+        double per_area = p->area[i] > 0 ? 1 / p->area[i] : 0;
+        old_point *o = &room->old[k];
+        o->arm = p->arm[i];
+        o->normal = load(p->normal, i);
+        o->shear = tl_v3_scale(per_area, load(p->f_s, i));
+        o->area = p->area[i];
+        o->f_n = per_area * p->f_n[i];
+        o->field[FIELD_N0] = per_area * p->f_n0[i];
+        o->field[FIELD_REFERENCE] = p->reference[i];
+        for (int s = 0; s < TL_STATE_COLUMNS; s++)
+            o->state[s] = p->state[s][i];
+        o->key = p->key[i];
+        o->flags = p->flags[i];
+    }
+}
+
+/* The old point of the same key, or the nearest. */
+static const old_point *match(const old_point *old, size_t count, uint32_t key, tl_vec3 arm)
+{
+    const old_point *best = &old[0];
+    for (size_t k = 0; k < count; k++) {
+        if (old[k].key == key)
+            return &old[k];
+        if (tl_v3_norm2(tl_v3_sub(old[k].arm, arm)) < tl_v3_norm2(tl_v3_sub(best->arm, arm)))
+            best = &old[k];
+    }
+    return best;
+}
+
+/* Totals of a set of points: area, its centroid, and of a field and of shear over it. */
+typedef struct totals {
+    double area;
+    tl_vec3 centre, normal;
+    tl_vec3 shear;  /* force */
+    double torsion; /* moment of the shear about the normal through the centre */
+} totals;
+
+static void add_area(totals *t, double area, tl_vec3 arm, tl_vec3 normal)
+{
+    t->area += area;
+    t->centre = tl_v3_madd(t->centre, area, arm);
+    t->normal = tl_v3_madd(t->normal, area, normal);
+}
+
+static void close_area(totals *t)
+{
+    if (t->area > 0)
+        t->centre = tl_v3_scale(1 / t->area, t->centre);
+    t->normal = tl_v3_unit(t->normal);
+}
+
+/* Adds a uniform traction and a twist so that shear force and torsion become `want`'s. */
+static void correct_shear(tl_points_table *p, size_t begin, size_t count, const totals *now,
+                          const totals *want)
+{
+    tl_vec3 n = now->normal;
+    tl_vec3 force = want->shear;
+    double torsion = want->torsion, polar = 0;
+    for (size_t i = begin; i < begin + count; i++) {
+        tl_vec3 arm = tl_v3_sub(p->arm[i], now->centre), f = load(p->f_s, i);
+        tl_vec3 across = tl_v3_cross(n, arm);
+        force = tl_v3_sub(force, f);
+        torsion -= tl_v3_dot(across, f);
+        polar += p->area[i] * tl_v3_norm2(across);
+    }
+    force = tl_v3_madd(force, -tl_v3_dot(force, n), n);
+    double twist = polar > 0 ? torsion / polar : 0;
+    for (size_t i = begin; i < begin + count; i++) {
+        tl_vec3 across = tl_v3_cross(n, tl_v3_sub(p->arm[i], now->centre));
+        tl_vec3 add = tl_v3_madd(tl_v3_scale(p->area[i] / now->area, force), p->area[i] * twist,
+                                 across);
+        p->f_s[0][i] += add.x;
+        p->f_s[1][i] += add.y;
+        p->f_s[2][i] += add.z;
+    }
+}
+
+/* Integral of a field over the points' areas, and its moments along two directions. */
+typedef struct moments {
+    double sum, along1, along2;
+} moments;
+
+/* Adds a linear correction to a field (one value a point) so that its sum and moments become
+ * `want`. */
+static void correct_field(const tl_points_table *p, double *value, size_t begin, size_t count,
+                          const totals *now, moments want)
+{
+    tl_vec3 t1 = tl_v3_perpendicular(now->normal), t2 = tl_v3_cross(now->normal, t1);
+    double i11 = 0, i12 = 0, i22 = 0;
+    for (size_t k = 0; k < count; k++) {
+        tl_vec3 arm = tl_v3_sub(p->arm[begin + k], now->centre);
+        double a = p->area[begin + k], x = tl_v3_dot(arm, t1), y = tl_v3_dot(arm, t2);
+        want.sum -= a * value[k];
+        want.along1 -= a * value[k] * x;
+        want.along2 -= a * value[k] * y;
+        i11 += a * x * x;
+        i12 += a * x * y;
+        i22 += a * y * y;
+    }
+    double det = i11 * i22 - i12 * i12;
+    double g1 = 0, g2 = 0;
+    if (det > SINGULAR * i11 * i22) {
+        g1 = (want.along1 * i22 - want.along2 * i12) / det;
+        g2 = (want.along2 * i11 - want.along1 * i12) / det;
+    }
+    for (size_t k = 0; k < count; k++) {
+        tl_vec3 arm = tl_v3_sub(p->arm[begin + k], now->centre);
+        value[k] += want.sum / now->area + g1 * tl_v3_dot(arm, t1) + g2 * tl_v3_dot(arm, t2);
+    }
+}
+
+static moments field_moments(const old_point *old, size_t count, int field, const totals *t,
+                             tl_vec3 normal)
+{
+    tl_vec3 t1 = tl_v3_perpendicular(normal), t2 = tl_v3_cross(normal, t1);
+    moments out = {0, 0, 0};
+    for (size_t k = 0; k < count; k++) {
+        tl_vec3 arm = tl_v3_sub(old[k].arm, t->centre);
+        double v = old[k].area * old[k].field[field];
+        out.sum += v;
+        out.along1 += v * tl_v3_dot(arm, t1);
+        out.along2 += v * tl_v3_dot(arm, t2);
+    }
+    return out;
+}
+
+/* Writes the points of the manifold, with what they take over from the old ones. */
+static void write_points(tl_model *m, uint32_t c, const tl_manifold *g, const old_point *old,
+                         size_t old_count)
+{
+    tl_contacts *contacts = &m->detect->contacts;
+    tl_points_table *p = &m->detect->points;
+    uint32_t material = contacts->material[c];
+    const tl_kind *kind = material == TL_NO_ROW ? NULL : m->materials[material].kind;
+    size_t begin = contacts->point_start[c];
+    for (size_t k = 0; k < g->point_count; k++) {
+        size_t i = begin + k;
+        const tl_contact_point *point = &g->points[k];
+        p->p[i] = point->p;
+        p->rest[i] = point->rest;
+        p->area[i] = point->area;
+        p->key[i] = point->key;
+        p->f_n[i] = p->f_n0[i] = p->reference[i] = 0;
+        for (int s = 0; s < 3; s++)
+            p->f_s[s][i] = p->normal[s][i] = 0;
+        p->flags[i] = 0;
+        tl_point_initial_state(p, i, kind);
+    }
+    /* positions and normals in the present place */
+    tl_contact_follow(m, c, 0);
+    for (size_t k = 0; k < g->point_count && old_count; k++) {
+        size_t i = begin + k;
+        const old_point *o = match(old, old_count, p->key[i], p->arm[i]);
+        tl_vec3 n = load(p->normal, i);
+        tl_vec3 f = tl_v3_scale(p->area[i], tl_v3_turn(o->shear, o->normal, n));
+        f = tl_v3_madd(f, -tl_v3_dot(f, n), n);
+        p->f_s[0][i] = f.x;
+        p->f_s[1][i] = f.y;
+        p->f_s[2][i] = f.z;
+        p->f_n[i] = o->f_n * p->area[i];
+        p->f_n0[i] = o->field[FIELD_N0] * p->area[i];
+        p->reference[i] = o->field[FIELD_REFERENCE];
+        p->flags[i] = o->flags;
+        tl_point_take_state(p, i, kind, o->state, o->area);
+    }
+}
+
+bool tl_contact_transfer(tl_model *m, uint32_t c, tl_narrow *room)
+{
+    tl_contacts *contacts = &m->detect->contacts;
+    tl_points_table *p = &m->detect->points;
+    const tl_manifold *g = &room->manifold;
+    size_t begin = contacts->point_start[c], old_count = contacts->point_count[c];
+    if (!reserve(room, old_count > g->point_count ? old_count : g->point_count))
+        return false;
+    read_old(p, begin, old_count, room);
+    const old_point *old = room->old;
+    totals before = {0};
+    for (size_t k = 0; k < old_count; k++)
+        add_area(&before, old[k].area, old[k].arm, old[k].normal);
+    close_area(&before);
+    for (size_t k = 0; k < old_count; k++) {
+        tl_vec3 f = tl_v3_scale(old[k].area, old[k].shear);
+        tl_vec3 arm = tl_v3_sub(old[k].arm, before.centre);
+        before.shear = tl_v3_add(before.shear, f);
+        before.torsion += tl_v3_dot(before.normal, tl_v3_cross(arm, f));
+    }
+
+    tl_facet *facets = &contacts->facet[contacts->facet_start[c]];
+    memcpy(facets, g->facets, g->facet_count * sizeof *facets);
+    contacts->facet_count[c] = (uint32_t)g->facet_count;
+    contacts->point_count[c] = (uint32_t)g->point_count;
+    for (size_t i = begin + g->point_count; i < begin + contacts->point_room[c]; i++)
+        tl_point_clear(p, i);
+    write_points(m, c, g, old, old_count);
+    if (old_count == 0 || g->point_count == 0 || !(before.area > 0))
+        return true;
+
+    totals now = {0};
+    for (size_t i = begin; i < begin + g->point_count; i++)
+        add_area(&now, p->area[i], p->arm[i], load(p->normal, i));
+    close_area(&now);
+    double follow = now.area / before.area;
+    totals want = {.shear = tl_v3_scale(follow, tl_v3_turn(before.shear, before.normal, now.normal))};
+    want.torsion = follow * before.torsion;
+    correct_shear(p, begin, g->point_count, &now, &want);
+    double *value = room->value;
+    for (int field = 0; field < FIELD_COUNT; field++) {
+        moments keep = field_moments(old, old_count, field, &before, now.normal);
+        keep.sum *= follow;
+        keep.along1 *= follow;
+        keep.along2 *= follow;
+        for (size_t k = 0; k < g->point_count; k++)
+            value[k] = field == FIELD_REFERENCE
+                           ? p->reference[begin + k]
+                           : p->f_n0[begin + k] / p->area[begin + k];
+        correct_field(p, value, begin, g->point_count, &now, keep);
+        for (size_t k = 0; k < g->point_count; k++) {
+            if (field == FIELD_REFERENCE)
+                p->reference[begin + k] = value[k];
+            else
+                p->f_n0[begin + k] = value[k] * p->area[begin + k];
+        }
+    }
+    return true;
+}
