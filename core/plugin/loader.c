@@ -181,7 +181,7 @@ static void load_everything(void)
 {
     static const char *const installed[] = {"../lib/talus", "../../talus", "talus"};
     searched seen = {.count = 0};
-    char here[PATH_MAX], folder[PATH_MAX + 64];
+    char here[PATH_MAX], folder[PATH_MAX + 64], plain[PATH_MAX];
     load_path_list(&seen, getenv("TALUS_PLUGIN_PATH"));
     if (!own_folder(here))
         return;
@@ -189,7 +189,9 @@ static void load_everything(void)
     load_folder(&seen, folder);
     for (size_t i = 0; i < sizeof installed / sizeof *installed; i++) {
         snprintf(folder, sizeof folder, "%s/%s/plugins-%u", here, installed[i], TL_ABI_MAJOR);
-        load_folder(&seen, folder);
+        /* Without the "..", as a user would write it. */
+        if (realpath(folder, plain))
+            load_folder(&seen, plain);
     }
 }
 
