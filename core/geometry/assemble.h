@@ -10,11 +10,11 @@
 /* Euler's formula bounds the edges of a polyhedron within the limits on vertices and faces. */
 #define TL_POLY_MAX_EDGES (TL_POLY_MAX_VERTICES + TL_POLY_MAX_FACES - 2)
 
-/* Distances are known to a few roundings of the coordinates: for a small block far from zero that, and
- * not TL_POLY_ON times its size, is the least distance that means anything. */
+/* Distances are known to a few roundings of the coordinates: for a small block far from zero that,
+ * and not TL_POLY_ON times its size, is the least distance that means anything. */
 #define TL_POLY_ROUNDINGS (16 * DBL_EPSILON)
 
-/* One allocation with the counts set, its arrays laid out and nothing in them; NULL without memory. */
+/* One allocation with the counts set and its arrays laid out but empty; NULL without memory. */
 tl_poly *tl_poly_allocate(uint32_t vertex_count, uint32_t face_count, uint32_t edge_count);
 
 /* Derives edges, stars and size from vertex, start and loop, which the caller has filled in with
@@ -22,8 +22,9 @@ tl_poly *tl_poly_allocate(uint32_t vertex_count, uint32_t face_count, uint32_t e
  * direction; the polyhedron then is fit only to be freed. */
 tl_status tl_poly_link(tl_poly *poly, tl_error *error);
 
-/* The plane of a face from its vertices: Newell's normal, and the offset midway between the extremes
- * of normal . x, so that a face normal to an axis gets exactly that axis and its coordinate. */
+/* The plane of a face from its vertices: Newell's normal, and the offset midway between the
+ * extremes of normal . x, so that a face normal to an axis gets exactly that axis and its
+ * coordinate. */
 tl_plane tl_poly_fit_plane(const tl_vec3 *vertices, const uint16_t *loop, size_t count);
 
 #endif

@@ -1,14 +1,14 @@
 /* cut.c - cutting a convex polyhedron in two by a plane.
  *
  * Every vertex is put below (-1), on (0) or above (+1) the plane; this classification alone decides
- * the topology of both children. Edges from -1 to +1 get one new vertex. A face with vertices on both
- * sides is walked once and split into its part below and its part above; its cut from exit to entry
- * is a half-edge of the cap, as is every edge that lies on the plane between a lower and an upper
- * face. The cap's half-edges must chain into one cycle, and both children must satisfy Euler's
- * formula, or the cut is refused; with vertices exact to rounding this does not happen.
+ * the topology of both children. Edges from -1 to +1 get one new vertex. A face with vertices on
+ * both sides is walked once and split into its part below and its part above; its cut from exit to
+ * entry is a half-edge of the cap, as is every edge that lies on the plane between a lower and an
+ * upper face. The cap's half-edges must chain into one cycle, and both children must satisfy
+ * Euler's formula, or the cut is refused; with vertices exact to rounding this does not happen.
  *
- * A new vertex is computed from its edge's end points in lexicographic order, so blocks on either side
- * of a face, which list the edge in opposite directions, get the same bits. */
+ * A new vertex is computed from its edge's end points in lexicographic order, so blocks on either
+ * side of a face, which list the edge in opposite directions, get the same bits. */
 #include "geometry/assemble.h"
 
 #include <stdlib.h>
@@ -113,8 +113,8 @@ static void settle_brushed(cutter *c)
     }
 }
 
-/* The face whose vertices all lie within `reach` of the plane and which faces along `sign` times its
- * normal, the best aligned of them; UINT32_MAX without one. */
+/* The face whose vertices all lie within `reach` of the plane and which faces along `sign` times
+ * its normal, the best aligned of them; UINT32_MAX without one. */
 static uint32_t face_along(const cutter *c, double reach, int sign)
 {
     const tl_poly *p = c->poly;
@@ -140,8 +140,8 @@ static bool before(tl_vec3 a, tl_vec3 b)
     return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
 }
 
-/* Where edge number `e` meets the plane. The last step takes the rounding off the plane, which makes
- * coordinates exact where the plane is normal to an axis. */
+/* Where edge number `e` meets the plane. The last step takes the rounding off the plane, which
+ * makes coordinates exact where the plane is normal to an axis. */
 static tl_vec3 crossing_point(const cutter *c, uint32_t e)
 {
     tl_edge edge = c->poly->edge[e];
@@ -207,8 +207,8 @@ static bool add_cap_edge(cutter *c, uint16_t a, uint16_t b)
     return true;
 }
 
-/* The vertices of a face below the plane: places [first, last] in its loop taken twice, with first in
- * the first round. */
+/* The vertices of a face below the plane: places [first, last] in its loop taken twice, with first
+ * in the first round. */
 typedef struct run {
     uint32_t first, last;
 } run;
@@ -251,7 +251,7 @@ static bool split_face(cutter *c, uint32_t face)
     uint16_t behind = loop[next < n ? next : next - n];
     uint16_t in = c->side[ahead] ? crossing_between(c, ahead, head) : ahead;
     uint16_t out = c->side[behind] ? crossing_between(c, tail, behind) : behind;
-    /* The run above lies between, without the vertices on the plane that serve as ways in and out. */
+    /* The run above lies between, without vertices on the plane that serve as ways in and out. */
     run above = {c->side[behind] ? next : next + 1, c->side[ahead] ? previous : previous - 1};
     if (above.last < above.first ||
         c->side[loop[above.first < n ? above.first : above.first - n]] <= 0 ||

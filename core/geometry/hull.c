@@ -1,14 +1,14 @@
 /* hull.c - the convex hull of points as a polyhedron.
  *
- * The points are put on a grid of 2^-40 of their extent and triangulate.c makes the exact hull of the
- * grid points. The grid is finer than TL_POLY_ON by 10^3 and coarser than the rounding of coordinates
- * by 10^3, so neither shows. Triangles within TL_POLY_ON times the extent of one plane then become one
- * face, the largest first, so that a sliver between two faces joins one of them. A vertex left with
- * fewer than three faces lies on a face or an edge and is dropped. Coordinates are never moved; planes
- * are fitted to the coordinates given. Should noise as large as the tolerance leave faces that are no
- * convex polygons, triangles are merged anew with a wider one, up to TL_POLY_THIN. Every loop starts at
- * its lowest vertex and the faces are in the order of their loops, so that the result depends on the
- * points alone. */
+ * The points are put on a grid of 2^-40 of their extent and triangulate.c makes the exact hull of
+ * the grid points. The grid is finer than TL_POLY_ON by 10^3 and coarser than the rounding of
+ * coordinates by 10^3, so neither shows. Triangles within TL_POLY_ON times the extent of one plane
+ * then become one face, the largest first, so that a sliver between two faces joins one of them. A
+ * vertex left with fewer than three faces lies on a face or an edge and is dropped. Coordinates are
+ * never moved; planes are fitted to the coordinates given. Should noise as large as the tolerance
+ * leave faces that are no convex polygons, triangles are merged anew with a wider one, up to
+ * TL_POLY_THIN. Every loop starts at its lowest vertex and the faces are in the order of their
+ * loops, so that the result depends on the points alone. */
 #include "geometry/assemble.h"
 #include "geometry/triangulate.h"
 
@@ -20,8 +20,8 @@
 
 /* Faces fitted to vertices within the tolerance leave others this many tolerances off at most. */
 #define SOUND 4
-/* When noise about as large as the tolerance makes the border of two nearly coplanar faces zigzag, so
- * that they are no convex polygons, a tolerance this much wider takes it in. */
+/* When noise about as large as the tolerance makes the border of two nearly coplanar faces zigzag,
+ * so that they are no convex polygons, a tolerance this much wider takes it in. */
 #define WIDER 8
 
 typedef struct builder {
@@ -150,7 +150,7 @@ static tl_status flat(const builder *b, double thickness, tl_error *error)
         b->hull.count, thickness, TL_POLY_THIN * b->extent, b->extent);
 }
 
-/* Four points far from each other: the first, the farthest from it, from their line, their plane. */
+/* Four points far apart: the first, the farthest from it, from their line, from their plane. */
 static tl_status choose_corners(const builder *b, uint32_t corner[4], tl_error *error)
 {
     const tl_vec3 *x = b->point;
@@ -400,8 +400,8 @@ static void number_corners(builder *b)
     }
 }
 
-/* Two different faces share at most two vertices, which they list in opposite order, so loops differ
- * in their first three. */
+/* Two different faces share at most two vertices, which they list in opposite order, so loops
+ * differ in their first three. */
 static uint64_t loop_key(const uint16_t *loop)
 {
     return ((uint64_t)loop[0] << 32) | ((uint64_t)loop[1] << 16) | loop[2];
@@ -476,8 +476,8 @@ static tl_status check_hull(const builder *b, const tl_poly *p, tl_error *error)
     return TL_OK;
 }
 
-/* The polyhedron of the triangles merged with the present tolerance. *poly stays NULL when the faces are
- * not convex polygons. */
+/* The polyhedron of the triangles merged with the present tolerance. *poly stays NULL when the
+ * faces are not convex polygons. */
 static tl_status merge(builder *b, tl_poly **poly, tl_error *error)
 {
     b->face_count = b->vertex_count = 0;

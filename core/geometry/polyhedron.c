@@ -14,7 +14,7 @@
  * jointed rock have 12 to 60. */
 #define LOCAL_HALF_EDGES 172
 
-/* Deviation from length 1 that still counts as a unit normal: 1e6 roundings, far below any effect. */
+/* Deviation from length 1 that still counts as a unit normal: 1e6 roundings, without effect. */
 #define UNIT_TOLERANCE 1e-10
 
 tl_poly *tl_poly_allocate(uint32_t vertex_count, uint32_t face_count, uint32_t edge_count)
@@ -103,8 +103,8 @@ static tl_status report_unpaired(const tl_poly *p, half_edges half, tl_error *er
     return TL_E_GEOMETRY;
 }
 
-/* Finds the edges from their half-edges that run to the higher vertex. When every one of them has one
- * partner and there are half as many as half-edges, no other can be without. */
+/* Finds the edges from their half-edges that run to the higher vertex. When every one of them has
+ * one partner and there are half as many as half-edges, no other can be without. */
 static tl_status pair_half_edges(tl_poly *p, half_edges half, tl_error *error)
 {
     uint32_t half_count = 2 * p->edge_count, edges = 0;

@@ -14,7 +14,7 @@
 /* Convergence is quadratic: four sweeps do for any 3 x 3 matrix, the rest is a guard. */
 #define MAX_SWEEPS 32
 
-/* Turns rows and columns p and q of `a` so that a[p][q] vanishes, and the columns of `r` with them. */
+/* Turns rows and columns p and q of `a` so that a[p][q] vanishes, and columns of `r` with them. */
 static void rotate(tl_mat3 *a, tl_mat3 *r, int p, int q)
 {
     double theta = (a->m[q][q] - a->m[p][p]) / (2 * a->m[p][q]);

@@ -6,8 +6,8 @@
 #include <float.h>
 #include <talus/vmath.h>
 
-/* Cuts move no volume but rounding's: of the sums, and of the coordinates (coarse far from zero) times
- * the surface. */
+/* Cuts move no volume but rounding's: of the sums, and of the coordinates (coarse far from zero)
+ * times the surface. */
 #define VOLUME_TOLERANCE 1e-11
 
 enum { LIVE = 96 }; /* blocks kept of one parent */
@@ -59,7 +59,7 @@ typedef enum kind {
     PARALLEL, /* along a face, at any depth */
     GRID,     /* normal to an axis, at a multiple of 1/64 of the first block's side */
     TILTED,   /* nearly along a face: cuts of this kind leave faces that almost coincide */
-    TOUCHING /* a vertex off the plane by about the tolerance, whose cap is off its plane by that much */
+    TOUCHING  /* passes a vertex by about the tolerance: the cap is off its plane by that much */
 } kind;
 
 static tl_plane random_plane(const tl_poly *p, kind which)

@@ -185,9 +185,9 @@ TEST(rotated_drums)
     }
 }
 
-/* Points of a coarse lattice, so that nearly all are coplanar or collinear with others. Points inside
- * are refused by name; without them the hull stands, and moving every point by noise of any size
- * leaves a sound hull or a refusal. */
+/* Points of a coarse lattice, so that nearly all are coplanar or collinear with others. Points
+ * inside are refused by name; without them the hull stands, and moving every point by noise of any
+ * size leaves a sound hull or a refusal. */
 TEST(lattice_points)
 {
     int made = 0, named = 0;
@@ -229,10 +229,10 @@ TEST(lattice_points)
     CHECK(made > 3000 && named > 1000);
 }
 
-/* Boxes, wedges and tetrahedra, thick or thin, with points strewn along their edges and diagonals, some
- * of them 1e-8 from a corner, and noise about as large as the tolerance: the worst input for merging.
- * Either the set is too flat, or what comes out is sound; small faces of such noise have ill-defined
- * planes, which sets the tolerance. */
+/* Boxes, wedges and tetrahedra, thick or thin, with points strewn along their edges and diagonals,
+ * some of them 1e-8 from a corner, and noise about as large as the tolerance: the worst input for
+ * merging. Either the set is too flat, or what comes out is sound; small faces of such noise have
+ * ill-defined planes, which sets the tolerance. */
 TEST(noise_as_large_as_the_tolerance)
 {
     int made = 0, flat = 0;

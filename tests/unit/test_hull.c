@@ -218,7 +218,7 @@ TEST(numbers_that_cannot_be_computed_with_are_refused)
     expect_refusal(p, TL_POLY_MAX_VERTICES + 1, "4097 vertices: one block can have 4096 at most");
 }
 
-/* Points spread over a sphere make twice as many triangles, which is the limit that is met first. */
+/* Points spread over a sphere make twice as many triangles: that limit is met first. */
 TEST(many_vertices)
 {
     static tl_vec3 points[TL_POLY_MAX_VERTICES];
