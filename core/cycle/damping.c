@@ -23,8 +23,8 @@ tl_status tl_model_damping(tl_model *m, const char *damping, const tl_args *args
     char context[64];
     snprintf(context, sizeof context, "damping '%.40s'", damping);
     tl_report report = {.size = sizeof report};
-    tl_status status = tl_args_read(kind->params, kind->param_count, kind->param_stride, args, false,
-                                    params, context, &m->error);
+    tl_status status = tl_args_read(kind->params, kind->param_count, kind->param_stride, args,
+                                    false, params, context, &m->error);
     if (status == TL_OK && ops->create) {
         status = ops->create(params, &self, &report);
         if (status != TL_OK)

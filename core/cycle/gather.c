@@ -4,7 +4,8 @@
 
 static tl_vec3 free_part(tl_vec3 v, unsigned fixed)
 {
-    return tl_v3(fixed & TL_FIX_X ? 0 : v.x, fixed & TL_FIX_Y ? 0 : v.y, fixed & TL_FIX_Z ? 0 : v.z);
+    return tl_v3(fixed & TL_FIX_X ? 0 : v.x, fixed & TL_FIX_Y ? 0 : v.y,
+                 fixed & TL_FIX_Z ? 0 : v.z);
 }
 
 static void gather_body(tl_model *m, uint32_t body)

@@ -94,16 +94,17 @@ static void warn_outer_faces(tl_model *m, const tl_insitu *s)
             first = m->blocks.id[row];
     }
     if (blocks)
-        tl_model_say(m,
-                     "insitu: %zu block%s that can move (first: block %u) %s an outer face on which "
-                     "the stress does not act; fix the blocks around the region of interest",
-                     blocks, blocks == 1 ? "" : "s", first, blocks == 1 ? "has" : "have");
+        tl_model_say(
+            m,
+            "insitu: %zu block%s that can move (first: block %u) %s an outer face on which "
+            "the stress does not act; fix the blocks around the region of interest",
+            blocks, blocks == 1 ? "" : "s", first, blocks == 1 ? "has" : "have");
 }
 
 static bool finite_tensor(tl_sym3 t)
 {
-    return isfinite(t.xx) && isfinite(t.yy) && isfinite(t.zz) && isfinite(t.xy) &&
-           isfinite(t.yz) && isfinite(t.zx);
+    return isfinite(t.xx) && isfinite(t.yy) && isfinite(t.zz) && isfinite(t.xy) && isfinite(t.yz) &&
+           isfinite(t.zx);
 }
 
 tl_status tl_model_insitu(tl_model *m, const tl_insitu *insitu)

@@ -76,8 +76,8 @@ static void sum_contact(tl_model *m, uint32_t c)
         force = tl_v3_add(force, f);
         moment = tl_v3_add(moment, tl_v3_cross(p->arm[i], f));
     }
-    tl_vec3 apart = tl_body_apart(&m->bodies, m->blocks.body[contacts->a[c]],
-                                  m->blocks.body[contacts->b[c]]);
+    tl_vec3 apart =
+        tl_body_apart(&m->bodies, m->blocks.body[contacts->a[c]], m->blocks.body[contacts->b[c]]);
     contacts->force[c] = force;
     contacts->moment_a[c] = tl_v3_neg(moment);
     contacts->moment_b[c] = tl_v3_sub(moment, tl_v3_cross(apart, force));
@@ -120,8 +120,7 @@ static tl_status report_failure(tl_model *m)
     uint32_t material = m->detect->contacts.material[c];
     name_contact(m, c, name, sizeof name);
     tl_fail(&m->error, cycle->failure.status, "cycle %lld, law '%s', %s: %s",
-            (long long)m->cycles + 1, m->materials[material].kind->name, name,
-            cycle->failure.text);
+            (long long)m->cycles + 1, m->materials[material].kind->name, name, cycle->failure.text);
     cycle->failure.status = TL_OK;
     return m->error.status;
 }
@@ -150,7 +149,8 @@ tl_status tl_laws_check(tl_model *m)
         char name[320];
         name_contact(m, contact_of_point(&d->contacts, d->runs[r].begin), name, sizeof name);
         return tl_fail(&m->error, TL_E_STATE,
-                       "%s has no law: set one with model:joint(\"*\", ...) or for that joint", name);
+                       "%s has no law: set one with model:joint(\"*\", ...) or for that joint",
+                       name);
     }
     return TL_OK;
 }

@@ -133,8 +133,7 @@ tl_status tl_joint_law(tl_model *m, const char *joint, const char *law, const tl
         return status;
     tl_material *place = exact_material(m, tag);
     if (!place) {
-        tl_material *materials =
-            realloc(m->materials, (m->material_count + 1) * sizeof *materials);
+        tl_material *materials = realloc(m->materials, (m->material_count + 1) * sizeof *materials);
         if (!materials) {
             tl_material_clear(&fresh);
             return tl_fail_memory(&m->error);

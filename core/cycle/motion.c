@@ -50,7 +50,8 @@ static void split_turn(int axis, double dt, const double moments[3], double l[3]
     l[2] = turned.z;
 }
 
-static void rotate_exact(tl_bodies *b, uint32_t i, tl_vec3 moment, const move_job *job, double alpha)
+static void rotate_exact(tl_bodies *b, uint32_t i, tl_vec3 moment, const move_job *job,
+                         double alpha)
 {
     const double moments[3] = {b->moments[i].x, b->moments[i].y, b->moments[i].z};
     double d1 = 1 - 0.5 * alpha * job->kick, d2 = 1 / (1 + 0.5 * alpha * job->kick);
@@ -73,11 +74,12 @@ static void rotate_exact(tl_bodies *b, uint32_t i, tl_vec3 moment, const move_jo
     b->w[i] = tl_q_rotate(tl_q_mul(b->q[i], b->axes[i]), spin);
 }
 
-static void rotate_paper(tl_bodies *b, uint32_t i, tl_vec3 moment, const move_job *job, double alpha)
+static void rotate_paper(tl_bodies *b, uint32_t i, tl_vec3 moment, const move_job *job,
+                         double alpha)
 {
     double d1 = 1 - 0.5 * alpha * job->kick, d2 = 1 / (1 + 0.5 * alpha * job->kick);
-    b->w[i] = tl_v3_scale(
-        d2, tl_v3_madd(tl_v3_scale(d1, b->w[i]), job->kick / b->round[i], moment));
+    b->w[i] =
+        tl_v3_scale(d2, tl_v3_madd(tl_v3_scale(d1, b->w[i]), job->kick / b->round[i], moment));
     b->q[i] = tl_q_unit(tl_q_mul(turn_by(tl_v3_scale(job->drift, b->w[i])), b->q[i]));
 }
 
@@ -92,15 +94,15 @@ static void move_body(const move_job *job, uint32_t i)
     tl_vec3 force = b->force[i], moment = b->moment[i];
     double alpha = 0;
     if (m->damping) {
-        force = tl_v3_add(force, tl_v3(c->damping_force[0][i], c->damping_force[1][i],
-                                       c->damping_force[2][i]));
+        force = tl_v3_add(
+            force, tl_v3(c->damping_force[0][i], c->damping_force[1][i], c->damping_force[2][i]));
         moment = tl_v3_add(moment, tl_v3(c->damping_moment[0][i], c->damping_moment[1][i],
                                          c->damping_moment[2][i]));
         alpha = c->alpha[i];
     }
     double d1 = 1 - 0.5 * alpha * job->kick, d2 = 1 / (1 + 0.5 * alpha * job->kick);
-    tl_vec3 v = tl_v3_scale(
-        d2, tl_v3_madd(tl_v3_scale(d1, b->v[i]), job->kick / b->mass[i], force));
+    tl_vec3 v =
+        tl_v3_scale(d2, tl_v3_madd(tl_v3_scale(d1, b->v[i]), job->kick / b->mass[i], force));
     b->v[i] = tl_v3(fixed & TL_FIX_X ? b->v[i].x : v.x, fixed & TL_FIX_Y ? b->v[i].y : v.y,
                     fixed & TL_FIX_Z ? b->v[i].z : v.z);
     b->u[i] = tl_v3_madd(b->u[i], job->drift, b->v[i]);
@@ -111,8 +113,7 @@ static void move_body(const move_job *job, uint32_t i)
             rotate_exact(b, i, moment, job, alpha);
         b->r[i] = tl_q_matrix(b->q[i]);
     }
-    b->odometer[i] +=
-        (tl_v3_norm(b->v[i]) + tl_v3_norm(b->w[i]) * b->radius[i]) * job->drift;
+    b->odometer[i] += (tl_v3_norm(b->v[i]) + tl_v3_norm(b->w[i]) * b->radius[i]) * job->drift;
 }
 
 static void move_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)

@@ -59,8 +59,7 @@ static bool ended(tl_model *m, const progress *p, tl_status *status)
     const tl_solve *s = p->solve;
     int64_t done = m->cycles - p->cycles_0;
     tl_solve_reason *reason = &p->result->reason;
-    if ((s->progress || s->stop) && s->every > 0 && done % s->every == 0 &&
-        call_back(m, p, status))
+    if ((s->progress || s->stop) && s->every > 0 && done % s->every == 0 && call_back(m, p, status))
         return true;
     if (atomic_load(&m->interrupted))
         *reason = TL_SOLVE_INTERRUPT;

@@ -24,8 +24,14 @@ tl_status tl_state_hash(tl_model *m, char text[33])
     if (status != TL_OK)
         return status;
     tl_hash hash = tl_hash_start();
-    const double clock[] = {m->time, m->dt, m->origin.x, m->origin.y, m->origin.z,
-                            m->config.gravity.x, m->config.gravity.y, m->config.gravity.z};
+    const double clock[] = {m->time,
+                            m->dt,
+                            m->origin.x,
+                            m->origin.y,
+                            m->origin.z,
+                            m->config.gravity.x,
+                            m->config.gravity.y,
+                            m->config.gravity.z};
     tl_hash_bytes(&hash, clock, sizeof clock);
     tl_hash_word(&hash, (uint64_t)m->cycles);
     hash_table(&hash, &m->blocks.table);
@@ -40,8 +46,7 @@ tl_status tl_state_hash(tl_model *m, char text[33])
         tl_hash_bytes(&hash, &m->materials[i].ks, sizeof(double));
     }
     if (m->damping)
-        tl_hash_bytes(&hash, m->damping_state,
-                      m->damping->state_count * sizeof *m->damping_state);
+        tl_hash_bytes(&hash, m->damping_state, m->damping->state_count * sizeof *m->damping_state);
     tl_hash_text(&hash, text);
     return TL_OK;
 }

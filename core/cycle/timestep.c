@@ -79,7 +79,7 @@ static double body_rule(const tl_model *m)
         if (k_r2 > 0 && !(b->fixed[body] & TL_FIX_ROTATION)) {
             tl_vec3 i = b->moments[body];
             double inertia = m->config.rotation == TL_ROTATION_PAPER ? b->round[body]
-                                                                      : fmin(i.x, fmin(i.y, i.z));
+                                                                     : fmin(i.x, fmin(i.y, i.z));
             least = fmin(least, inertia / (2 * k_r2));
         }
     }
@@ -108,9 +108,10 @@ tl_status tl_timestep_choose(tl_model *m, double *dt)
     double least = m->timestep.rule == TL_TIMESTEP_BODY ? body_rule(m) : paper_rule(m);
     double fresh = m->timestep.fraction * damping_factor(m) * 2 * sqrt(least);
     if (!isfinite(fresh) || !(fresh > 0))
-        return tl_fail(&m->error, TL_E_STATE,
-                       "no time step follows from the model: no law says how stiff a contact is; set "
-                       "a law with model:joint(\"*\", ...) or a step with model:timestep{ dt = ... }");
+        return tl_fail(
+            &m->error, TL_E_STATE,
+            "no time step follows from the model: no law says how stiff a contact is; set "
+            "a law with model:joint(\"*\", ...) or a step with model:timestep{ dt = ... }");
     if (!(c->dt > 0) || fresh < c->dt || fresh > STEP_GROWTH * c->dt)
         c->dt = fresh;
     *dt = c->dt;

@@ -159,8 +159,7 @@ static tl_vec3 edge_b_direction(const tl_pair_view *view, uint32_t edge)
 static bool edge_axis(const tl_pair_view *view, uint32_t ia, uint32_t ib, tl_axis *axis)
 {
     const tl_edge *ea = &view->a->edge[ia], *eb = &view->b->edge[ib];
-    tl_vec3 outward =
-        tl_v3_add(view->a->plane[ea->left].normal, view->a->plane[ea->right].normal);
+    tl_vec3 outward = tl_v3_add(view->a->plane[ea->left].normal, view->a->plane[ea->right].normal);
     tl_vec3 n;
     if (!tl_edge_normal(edge_a_direction(view, ia), edge_b_direction(view, ib), outward, &n))
         return false;
@@ -222,8 +221,8 @@ tl_axis tl_axis_search(const tl_pair_view *view, tl_narrow *room, const tl_axis 
     }
     if (previous) {
         tl_axis kept = *previous;
-        if (tl_axis_follow(view, &kept) && !(kept.kind == best.kind && kept.ia == best.ia &&
-                                             kept.ib == best.ib) &&
+        if (tl_axis_follow(view, &kept) &&
+            !(kept.kind == best.kind && kept.ia == best.ia && kept.ib == best.ib) &&
             best.s - kept.s <= HYSTERESIS * fabs(best.s) && kept.s < 0) {
             kept.second = best.s;
             best = kept;

@@ -153,8 +153,8 @@ tl_pair_view tl_pair_view_of(const tl_model *m, uint32_t a, uint32_t b)
     const tl_mat3 *ra = &bodies->r[body_a], *rb = &bodies->r[body_b];
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
-            view.turn.m[i][j] = ra->m[0][i] * rb->m[0][j] + ra->m[1][i] * rb->m[1][j] +
-                                ra->m[2][i] * rb->m[2][j];
+            view.turn.m[i][j] =
+                ra->m[0][i] * rb->m[0][j] + ra->m[1][i] * rb->m[1][j] + ra->m[2][i] * rb->m[2][j];
     view.shift = tl_m3_tmul(ra, tl_body_apart(bodies, body_a, body_b));
     view.size = fmin(blocks->size[a], blocks->size[b]);
     view.mean_face = fmin(blocks->mean_face[a], blocks->mean_face[b]);
@@ -407,5 +407,5 @@ uint32_t tl_contact_row(tl_detect *d, tl_id id)
             high = middle;
     }
     return low < d->contacts.table.rows && d->by_id[2 * low] == id ? d->by_id[2 * low + 1]
-                                                                     : TL_NO_ROW;
+                                                                   : TL_NO_ROW;
 }

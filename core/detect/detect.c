@@ -128,7 +128,8 @@ static bool left_skin(const tl_model *m)
 /* ---------------------------------------------------------------- geometry --------------- */
 
 /* The rule of the point share for a pair of a joint; pairs in tension keep all their points. */
-static tl_share_rule share_rule(const tl_model *m, const tl_pair_view *view, tl_tag tag, bool tension)
+static tl_share_rule share_rule(const tl_model *m, const tl_pair_view *view, tl_tag tag,
+                                bool tension)
 {
     tl_area_rule rule = tl_area_rule_of(m, tag);
     double tolerance = TL_CONTACT_TOLERANCE * TL_CONTACT_RELEASE * view->size;
@@ -236,8 +237,8 @@ static bool rebuild(tl_model *m, uint32_t c, tl_narrow *room, bool tension)
     tl_axis axis = contacts->axis[c];
     if (!tl_pair_place(&view, room))
         return false;
-    bool search = !m->config.reuse_geometry ||
-                  odometer - contacts->searched[c] > contacts->margin[c];
+    bool search =
+        !m->config.reuse_geometry || odometer - contacts->searched[c] > contacts->margin[c];
     for (;; search = true) {
         bool followed = !search && tl_axis_follow(&view, &axis);
         if (search) {

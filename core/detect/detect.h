@@ -24,10 +24,10 @@
 /* Two blocks in the frame of A's body. */
 typedef struct tl_pair_view {
     const tl_poly *a, *b;
-    tl_mat3 turn;  /* from B's frame to A's */
-    tl_vec3 shift; /* B's origin in A's frame */
-    double size;   /* of the smaller block */
-    double mean_face; /* smaller of the two mean face areas */
+    tl_mat3 turn;      /* from B's frame to A's */
+    tl_vec3 shift;     /* B's origin in A's frame */
+    double size;       /* of the smaller block */
+    double mean_face;  /* smaller of the two mean face areas */
     tl_vec3 *vertex_b; /* B's vertices and face normals in A's frame: filled by tl_pair_place */
     tl_vec3 *normal_b;
 } tl_pair_view;
@@ -94,24 +94,24 @@ typedef struct tl_narrow {
 
 /* How the point share of a pair is measured. */
 typedef struct tl_share_rule {
-    double minimum;   /* area, m2 */
+    double minimum;     /* area, m2 */
     bool unconditional; /* also for edges of parallel faces */
-    double reach;     /* patches with every gap beyond this are left out */
+    double reach;       /* patches with every gap beyond this are left out */
 } tl_share_rule;
 
 typedef struct tl_pair {
-    uint32_t a, b; /* block rows, a < b */
-    double wake;   /* sum of the odometers at which to look again */
+    uint32_t a, b;    /* block rows, a < b */
+    double wake;      /* sum of the odometers at which to look again */
     uint32_t contact; /* row, or TL_NO_ROW */
-    bool found;    /* looked at in this step and near enough */
+    bool found;       /* looked at in this step and near enough */
 } tl_pair;
 
 typedef struct tl_contacts {
     tl_table table;
     tl_id *id;
-    uint32_t *a, *b;   /* block rows */
+    uint32_t *a, *b; /* block rows */
     tl_id *id_a, *id_b;
-    uint32_t *pair;    /* index of its pair */
+    uint32_t *pair; /* index of its pair */
     tl_tag *tag;
     uint32_t *material; /* index of the model's materials, or TL_NO_ROW */
     tl_axis *axis;
@@ -120,12 +120,12 @@ typedef struct tl_contacts {
     double *built;    /* sum of odometers when the facets were made */
     uint32_t *facet_start, *facet_count, *facet_room;
     uint32_t *point_start, *point_count, *point_room;
-    tl_vec3 *normal, *point; /* area-weighted; point in coordinates relative to the origin */
-    double *area, *gap;      /* gap: the smallest of its points */
-    tl_vec3 *force;          /* on B */
+    tl_vec3 *normal, *point;      /* area-weighted; point in coordinates relative to the origin */
+    double *area, *gap;           /* gap: the smallest of its points */
+    tl_vec3 *force;               /* on B */
     tl_vec3 *moment_a, *moment_b; /* of the forces on A and on B, about their bodies' centroids */
     uint32_t *want_points, *want_facets; /* of a contact that must grow */
-    uint8_t *fate;           /* what the parallel phase leaves to the serial one: TL_FATE_* */
+    uint8_t *fate; /* what the parallel phase leaves to the serial one: TL_FATE_* */
     /* facets */
     tl_facet *facet;
     size_t facet_total, facet_capacity;
@@ -138,10 +138,10 @@ typedef struct tl_points_table {
     tl_vec3 *p;
     double *rest;
     uint32_t *key;
-    tl_vec3 *arm;       /* from A's body's centroid to the point, axes of the model */
+    tl_vec3 *arm; /* from A's body's centroid to the point, axes of the model */
     double *normal[3];
     double *area;
-    double *reference;  /* overlap at closure 0 */
+    double *reference; /* overlap at closure 0 */
     double *closure;
     double *f_n0;
     double *du_n, *du_s[3];

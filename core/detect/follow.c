@@ -109,12 +109,10 @@ static void follow_facet(tl_points_table *p, const tl_facet *f, size_t begin, co
     facing to = facet_facing(f, s);
     double spin = 0.5 * s->dt * tl_v3_dot(tl_v3_add(s->wa, s->wb), to.n);
     for (size_t i = begin; i < begin + f->count; i++) {
-        tl_vec3 x = f->kind == TL_FACET_FACE_A
-                        ? tl_v3_add(tl_m3_mul(s->rb, p->p[i]), s->d)
-                        : tl_m3_mul(s->ra, p->p[i]);
-        double gap = f->kind == TL_FACET_EDGES
-                         ? to.gap
-                         : p->rest[i] + tl_v3_dot(to.normal, x) - to.offset;
+        tl_vec3 x = f->kind == TL_FACET_FACE_A ? tl_v3_add(tl_m3_mul(s->rb, p->p[i]), s->d)
+                                               : tl_m3_mul(s->ra, p->p[i]);
+        double gap =
+            f->kind == TL_FACET_EDGES ? to.gap : p->rest[i] + tl_v3_dot(to.normal, x) - to.offset;
         tl_vec3 du = tl_v3_sub(motion(s->vb, s->wb, tl_v3_sub(x, s->d), s->dt),
                                motion(s->va, s->wa, x, s->dt));
         double du_n = tl_v3_dot(du, to.n);
@@ -146,8 +144,7 @@ static void summarize(tl_model *m, uint32_t c)
     if (area > 0) {
         uint32_t body = m->blocks.body[contacts->a[c]];
         contacts->normal[c] = tl_v3_unit(n);
-        contacts->point[c] =
-            tl_v3_add(tl_body_place(&m->bodies, body), tl_v3_scale(1 / area, x));
+        contacts->point[c] = tl_v3_add(tl_body_place(&m->bodies, body), tl_v3_scale(1 / area, x));
     }
 }
 
@@ -156,9 +153,14 @@ void tl_contact_follow(tl_model *m, uint32_t c, double dt)
     tl_contacts *contacts = &m->detect->contacts;
     const tl_bodies *b = &m->bodies;
     uint32_t body_a = m->blocks.body[contacts->a[c]], body_b = m->blocks.body[contacts->b[c]];
-    sight s = {&b->r[body_a], &b->r[body_b], tl_body_apart(b, body_a, body_b),
-               b->v[body_a],  b->w[body_a],  b->v[body_b],
-               b->w[body_b],  dt};
+    sight s = {&b->r[body_a],
+               &b->r[body_b],
+               tl_body_apart(b, body_a, body_b),
+               b->v[body_a],
+               b->w[body_a],
+               b->v[body_b],
+               b->w[body_b],
+               dt};
     uint32_t material = contacts->material[c];
     uint32_t tangents = material == TL_NO_ROW ? 0 : m->materials[material].tangents;
     const tl_facet *facets = &contacts->facet[contacts->facet_start[c]];

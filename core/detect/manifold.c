@@ -103,11 +103,11 @@ static double add_patches(const tl_pair_view *view, tl_vec3 n, const tl_share_ru
 
 /* A face of one block and the other block resting on it by vertices; all in A's frame. */
 typedef struct resting {
-    const tl_poly *standing;  /* whose vertices rest */
-    const tl_vec3 *vertex;    /* of `standing` */
-    const tl_vec3 *corners;   /* of the face */
+    const tl_poly *standing; /* whose vertices rest */
+    const tl_vec3 *vertex;   /* of `standing` */
+    const tl_vec3 *corners;  /* of the face */
     size_t corner_count;
-    tl_vec3 up;      /* the face's outward normal */
+    tl_vec3 up; /* the face's outward normal */
     double slack;
 } resting;
 
@@ -197,8 +197,7 @@ static bool share_of_face(const tl_pair_view *view, const tl_axis *axis, tl_narr
     bool met = over || m->point_count > begin;
     if (!met) { /* nothing is over the face: the axis is not the one; the nearest vertex stands in */
         uint32_t low = lowest_vertex(&r);
-        add_resting(view, b_stands, m, r.vertex[low], 1,
-                    (uint32_t)tl_key(b_stands ? 1 : 2, low));
+        add_resting(view, b_stands, m, r.vertex[low], 1, (uint32_t)tl_key(b_stands ? 1 : 2, low));
     }
     if (corners != few)
         free(corners);
@@ -229,10 +228,8 @@ static void share_of_edges(const tl_pair_view *view, const tl_axis *axis, tl_nar
     if (parallel < 1)
         tl_manifold_add_point(m, tl_v3_madd(a, crossing, u), 0, 1 - parallel, (uint32_t)key);
     if (parallel > 0) {
-        tl_manifold_add_point(m, tl_v3_madd(a, lo, u), 0, 0.5 * parallel,
-                              (uint32_t)tl_key(key, 1));
-        tl_manifold_add_point(m, tl_v3_madd(a, hi, u), 0, 0.5 * parallel,
-                              (uint32_t)tl_key(key, 2));
+        tl_manifold_add_point(m, tl_v3_madd(a, lo, u), 0, 0.5 * parallel, (uint32_t)tl_key(key, 1));
+        tl_manifold_add_point(m, tl_v3_madd(a, hi, u), 0, 0.5 * parallel, (uint32_t)tl_key(key, 2));
     }
     add_facet(m,
               (tl_facet){.kind = TL_FACET_EDGES,
@@ -269,7 +266,8 @@ void tl_manifold_build(const tl_pair_view *view, const tl_axis *axis, const tl_s
     double share = rule->minimum - m->patch_area;
     if (!rule->unconditional)
         share *= 1 - flush;
-    if (m->failed || !(share > 0) || axis->s > rule->reach || !reserve_facets(m, m->facet_count + 2))
+    if (m->failed || !(share > 0) || axis->s > rule->reach ||
+        !reserve_facets(m, m->facet_count + 2))
         return;
     size_t begin = m->point_count;
     if (axis->kind == TL_AXIS_EDGES)

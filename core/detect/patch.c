@@ -198,8 +198,8 @@ static size_t weigh_corners(corner *c, size_t count, point2 centroid)
         point2 before = c[i ? i - 1 : count - 1].at, here = c[i].at, after = c[(i + 1) % count].at;
         double u = distance2(before, here), v = distance2(here, after);
         double turn = asin(fmin(1, fmax(-1, cross2(before, here, after) / (u * v))));
-        double ahead = (here.x - before.x) * (after.x - here.x) +
-                       (here.y - before.y) * (after.y - here.y);
+        double ahead =
+            (here.x - before.x) * (after.x - here.x) + (here.y - before.y) * (after.y - here.y);
         turn = ahead < 0 ? TL_PI - turn : turn;
         c[i].share = smooth((turn - STRAIGHT) / (CORNER - STRAIGHT));
         c[i].fan = 0.5 * fmax(0, cross2(centroid, here, after));
@@ -281,7 +281,8 @@ static size_t clip_faces(const tl_pair_view *view, uint32_t fa, uint32_t fb, con
     uint32_t na = tl_poly_face_size(a, fa), nb = tl_poly_face_size(b, fb);
     for (uint32_t i = 0; i < na; i++) {
         uint16_t v = a->loop[a->start[fa] + i];
-        p->now[i] = (corner){.at = project(frame, a->vertex[v]), .key = key_of(POINT_A, v, 0), .edge = i};
+        p->now[i] =
+            (corner){.at = project(frame, a->vertex[v]), .key = key_of(POINT_A, v, 0), .edge = i};
     }
     for (uint32_t i = 0; i < nb; i++)
         p->clip[i] = project(frame, view->vertex_b[b->loop[b->start[fb] + nb - 1 - i]]);
@@ -324,7 +325,8 @@ double tl_patch_add(const tl_pair_view *view, uint32_t fa, uint32_t fb, double w
 
     /* into the middle between the two faces, at the centroid */
     tl_vec3 x = tl_v3_madd(tl_v3_madd(f->o, centroid.x, f->t1), centroid.y, f->t2);
-    double up = tl_v3_dot(one.b.normal, x) - one.b.offset, down = tl_v3_dot(one.a.normal, x) - one.a.offset;
+    double up = tl_v3_dot(one.b.normal, x) - one.b.offset,
+           down = tl_v3_dot(one.a.normal, x) - one.a.offset;
     double slope = tl_v3_dot(f->n, one.a.normal);
     f->o = tl_v3_madd(f->o, 0.5 * (up - down) / slope, f->n);
 
@@ -336,8 +338,8 @@ double tl_patch_add(const tl_pair_view *view, uint32_t fa, uint32_t fb, double w
         return 0;
     double nearest = INFINITY;
     for (size_t i = begin; i < m->point_count; i++)
-        nearest = fmin(nearest, m->points[i].rest +
-                                    tl_v3_dot(one.b.normal, m->points[i].p) - one.b.offset);
+        nearest = fmin(nearest,
+                       m->points[i].rest + tl_v3_dot(one.b.normal, m->points[i].p) - one.b.offset);
     if (nearest > rule->reach) {
         m->point_count = begin;
         return 0;

@@ -122,8 +122,8 @@ static void correct_shear(tl_points_table *p, size_t begin, size_t count, const 
     double twist = polar > 0 ? torsion / polar : 0;
     for (size_t i = begin; i < begin + count; i++) {
         tl_vec3 across = tl_v3_cross(n, tl_v3_sub(p->arm[i], now->centre));
-        tl_vec3 add = tl_v3_madd(tl_v3_scale(p->area[i] / now->area, force), p->area[i] * twist,
-                                 across);
+        tl_vec3 add =
+            tl_v3_madd(tl_v3_scale(p->area[i] / now->area, force), p->area[i] * twist, across);
         p->f_s[0][i] += add.x;
         p->f_s[1][i] += add.y;
         p->f_s[2][i] += add.z;
@@ -256,7 +256,8 @@ bool tl_contact_transfer(tl_model *m, uint32_t c, tl_narrow *room)
         add_area(&now, p->area[i], p->arm[i], load(p->normal, i));
     close_area(&now);
     double follow = now.area / before.area;
-    totals want = {.shear = tl_v3_scale(follow, tl_v3_turn(before.shear, before.normal, now.normal))};
+    totals want = {.shear =
+                       tl_v3_scale(follow, tl_v3_turn(before.shear, before.normal, now.normal))};
     want.torsion = follow * before.torsion;
     correct_shear(p, begin, g->point_count, &now, &want);
     double *value = room->value;
@@ -266,9 +267,8 @@ bool tl_contact_transfer(tl_model *m, uint32_t c, tl_narrow *room)
         keep.along1 *= follow;
         keep.along2 *= follow;
         for (size_t k = 0; k < g->point_count; k++)
-            value[k] = field == FIELD_REFERENCE
-                           ? p->reference[begin + k]
-                           : p->f_n0[begin + k] / p->area[begin + k];
+            value[k] = field == FIELD_REFERENCE ? p->reference[begin + k]
+                                                : p->f_n0[begin + k] / p->area[begin + k];
         correct_field(p, value, begin, g->point_count, &now, keep);
         for (size_t k = 0; k < g->point_count; k++) {
             if (field == FIELD_REFERENCE)

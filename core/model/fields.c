@@ -71,8 +71,8 @@ static tl_sym3 turned(tl_sym3 t, const tl_mat3 *r)
 
 static tl_sym3 block_inertia(const tl_model *m, uint32_t row)
 {
-    tl_sym3 t = turned(tl_poly_mass(m->blocks.shape[row]).inertia,
-                       &m->bodies.r[m->blocks.body[row]]);
+    tl_sym3 t =
+        turned(tl_poly_mass(m->blocks.shape[row]).inertia, &m->bodies.r[m->blocks.body[row]]);
     double d = m->blocks.density[row];
     return (tl_sym3){d * t.xx, d * t.yy, d * t.zz, d * t.xy, d * t.yz, d * t.zx};
 }

@@ -62,8 +62,9 @@ static tl_status unknown_joint(tl_model *m, const char *text)
         names[i] = m->joints[i].name;
     names[m->joint_count] = NULL;
     const char *nearest = tl_nearest_name(text, names, m->joint_count);
-    tl_fail(&m->error, TL_E_NOT_FOUND, "unknown joint '%s'; %s '%s' (or use \"*\" for every contact)",
-            text, nearest ? "did you mean" : "the first of the model's joints is",
+    tl_fail(&m->error, TL_E_NOT_FOUND,
+            "unknown joint '%s'; %s '%s' (or use \"*\" for every contact)", text,
+            nearest ? "did you mean" : "the first of the model's joints is",
             nearest ? nearest : names[0]);
     free(names);
     return m->error.status;

@@ -14,10 +14,11 @@ tl_status tl_unknown_kind(tl_model *m, tl_kind_type type, const char *name)
     while (tl_plugin_kind(type, count))
         count++;
     if (count == 0)
-        return tl_fail(&m->error, TL_E_NOT_FOUND,
-                       "unknown %s '%.80s': no %s is loaded; TALUS_PLUGIN_PATH may name the folder of "
-                       "the plugins",
-                       type_names[type], name, type_names[type]);
+        return tl_fail(
+            &m->error, TL_E_NOT_FOUND,
+            "unknown %s '%.80s': no %s is loaded; TALUS_PLUGIN_PATH may name the folder of "
+            "the plugins",
+            type_names[type], name, type_names[type]);
     const char **names = malloc(count * sizeof *names);
     if (!names)
         return tl_fail_memory(&m->error);

@@ -20,8 +20,7 @@ static bool has_joint(const tl_poly *shape, tl_tag pattern)
 static bool contains(const tl_model *m, uint32_t row, tl_vec3 point)
 {
     uint32_t body = m->blocks.body[row];
-    tl_vec3 relative =
-        tl_v3_sub(tl_v3_sub(point, m->origin), tl_body_place(&m->bodies, body));
+    tl_vec3 relative = tl_v3_sub(tl_v3_sub(point, m->origin), tl_body_place(&m->bodies, body));
     const tl_poly *shape = m->blocks.shape[row];
     return tl_poly_contains(shape, tl_m3_tmul(&m->bodies.r[body], relative),
                             BOUNDARY * shape->size);
