@@ -18,7 +18,6 @@ typedef struct tl_sums {
     double kinetic;    /* sum of (m v.v + w.I w) / 2 */
     double max_speed2; /* largest v.v */
     double smallest_mass;
-    double largest_face; /* of the free blocks: for the step without contacts */
 } tl_sums;
 
 struct tl_cycle {

@@ -30,17 +30,6 @@ static void gather_body(tl_model *m, uint32_t body)
     m->cycle->contact_force[body] = contact_force;
 }
 
-static double largest_face(const tl_model *m, uint32_t body)
-{
-    double largest = 0;
-    for (uint32_t k = 0; k < m->bodies.member_count[body]; k++) {
-        const tl_poly *shape = m->blocks.shape[m->members[m->bodies.member_start[body] + k]];
-        for (uint32_t f = 0; f < shape->face_count; f++)
-            largest = fmax(largest, tl_poly_face_area(shape, f));
-    }
-    return largest;
-}
-
 /* Twice the rotational energy. */
 static double spin_energy2(const tl_model *m, uint32_t body)
 {
@@ -58,7 +47,6 @@ static void gather_range(void *user, size_t begin, size_t end, size_t chunk, uns
     tl_model *m = user;
     tl_bodies *b = &m->bodies;
     tl_sums sums = {.smallest_mass = INFINITY};
-    bool contacts = m->detect->contacts.table.rows > 0;
     for (uint32_t body = (uint32_t)begin; body < end; body++) {
         gather_body(m, body);
         if (b->fixed[body] == TL_FIX_ALL)
@@ -70,8 +58,6 @@ static void gather_range(void *user, size_t begin, size_t end, size_t chunk, uns
         sums.kinetic += 0.5 * (b->mass[body] * v2 + spin_energy2(m, body));
         sums.max_speed2 = fmax(sums.max_speed2, v2);
         sums.smallest_mass = fmin(sums.smallest_mass, b->mass[body]);
-        if (!contacts)
-            sums.largest_face = fmax(sums.largest_face, largest_face(m, body));
     }
     m->cycle->chunk_sums[chunk] = sums;
 }
@@ -90,7 +76,6 @@ void tl_gather(tl_model *m)
         c->sums.kinetic += s->kinetic;
         c->sums.max_speed2 = fmax(c->sums.max_speed2, s->max_speed2);
         c->sums.smallest_mass = fmin(c->sums.smallest_mass, s->smallest_mass);
-        c->sums.largest_face = fmax(c->sums.largest_face, s->largest_face);
     }
 }
 

@@ -4,7 +4,8 @@
  * "body":  the least over bodies of FRAC 2 (M / (2 K))^1/2 for translation, with K the sum over the
  *          body's contacts, and for rotation, with I the smallest moment of inertia and K r^2 summed over
  *          contact points.
- * Without contacts, the stiffest law on the largest face of a free block stands in for K. */
+ * Where no free body is in contact, the stiffest law on the largest face of a free block stands in for
+ * K. */
 #include "cycle/cycle_room.h"
 
 /* The step in use is kept while the rule gives one between it and this many times it: a step that
@@ -25,6 +26,21 @@ static double stiffest_law(const tl_model *m)
     return k;
 }
 
+static double largest_free_face(const tl_model *m)
+{
+    double largest = 0;
+    for (uint32_t body = 0; body < m->bodies.table.rows; body++) {
+        if (m->bodies.fixed[body] == TL_FIX_ALL)
+            continue;
+        for (uint32_t k = 0; k < m->bodies.member_count[body]; k++) {
+            const tl_poly *shape = m->blocks.shape[m->members[m->bodies.member_start[body] + k]];
+            for (uint32_t f = 0; f < shape->face_count; f++)
+                largest = fmax(largest, tl_poly_face_area(shape, f));
+        }
+    }
+    return largest;
+}
+
 /* M_min / (2 K_max) */
 static double paper_rule(const tl_model *m)
 {
@@ -34,7 +50,7 @@ static double paper_rule(const tl_model *m)
         if (c->material[i] != TL_NO_ROW)
             k = fmax(k, law_stiffness(m, c->material[i]) * c->area[i]);
     if (!(k > 0))
-        k = stiffest_law(m) * m->cycle->sums.largest_face;
+        k = stiffest_law(m) * largest_free_face(m);
     return m->cycle->sums.smallest_mass / (2 * k);
 }
 
@@ -66,14 +82,12 @@ static void body_stiffness(const tl_model *m, uint32_t body, double *k, double *
 static double body_rule(const tl_model *m)
 {
     const tl_bodies *b = &m->bodies;
-    double least = INFINITY, free_k = stiffest_law(m) * m->cycle->sums.largest_face;
+    double least = INFINITY;
     for (uint32_t body = 0; body < b->table.rows; body++) {
         if (b->fixed[body] == TL_FIX_ALL)
             continue;
         double k, k_r2;
         body_stiffness(m, body, &k, &k_r2);
-        if (!(k > 0) && m->detect->contacts.table.rows == 0)
-            k = free_k;
         if (k > 0)
             least = fmin(least, b->mass[body] / (2 * k));
         if (k_r2 > 0 && !(b->fixed[body] & TL_FIX_ROTATION)) {
@@ -83,6 +97,9 @@ static double body_rule(const tl_model *m)
             least = fmin(least, inertia / (2 * k_r2));
         }
     }
+    /* No moving body touches another, though fixed ones may touch each other. */
+    if (!isfinite(least))
+        least = m->cycle->sums.smallest_mass / (2 * stiffest_law(m) * largest_free_face(m));
     return least;
 }
 
