@@ -14,6 +14,8 @@
 #define SHOW_PERIOD 0.1
 /* Columns of the line; more would wrap on a terminal of 80. */
 #define SHOW_COLUMNS 79
+/* While the line is shown `cycle` runs in pieces of so many steps, and writes it between them. */
+#define PIECE 10
 
 /* Places on the Lua stack during a run. */
 enum { AT_MODEL = 1, AT_ARGS, AT_ANCHOR, AT_STOP, AT_PROGRESS, AT_ERROR };
@@ -26,6 +28,8 @@ typedef struct run {
     bool progress, failed, show;
     double began, shown; /* s */
     int64_t first_cycle;
+    int64_t shown_cycle; /* when the line was last written */
+    double shown_time;
     tl_solve_result result;
 } run;
 
@@ -67,7 +71,8 @@ static void run_begin(run *r, lua_State *L, tl_model *model)
     *r = (run){.L = L, .model = model, .outer = atomic_load(&current)};
     r->show = !tl_lua_options_of(L)->quiet && isatty(STDERR_FILENO);
     r->began = r->shown = now();
-    r->first_cycle = tl_model_cycles(model);
+    r->first_cycle = r->shown_cycle = tl_model_cycles(model);
+    r->shown_time = tl_model_time(model);
     if (!r->outer) {
         struct sigaction action = {.sa_handler = on_interrupt};
         sigemptyset(&action.sa_mask);
@@ -89,20 +94,24 @@ static void run_end(run *r)
 
 /* ---------------------------------------------------------------- showing ---------------- */
 
+/* Writes the line anew when it is time to. It asks nothing that could make the kernel compute: a run
+ * gives the same with it and without. So dt is the mean step since the last time. */
 static void show(run *r)
 {
-    double t = now(), dt;
-    if (!r->show || t - r->shown < SHOW_PERIOD || tl_model_dt(r->model, &dt) != TL_OK)
+    double t = now(), time = tl_model_time(r->model);
+    int64_t cycle = tl_model_cycles(r->model), steps = cycle - r->shown_cycle;
+    if (!r->show || t - r->shown < SHOW_PERIOD || steps == 0)
         return;
-    r->shown = t;
-    int64_t cycles = tl_model_cycles(r->model);
     char line[160];
     snprintf(line, sizeof line,
-             "cycle %lld  t %.4g s  dt %.2g s  ratio %.1e  velocity %.1e  %.0f/s",
-             (long long)cycles, tl_model_time(r->model), dt, r->result.ratio,
-             r->result.max_velocity, (double)(cycles - r->first_cycle) / (t - r->began));
+             "cycle %lld  t %.4g s  dt %.2g s  ratio %.1e  velocity %.1e  %.0f/s", (long long)cycle,
+             time, (time - r->shown_time) / (double)steps, r->result.ratio, r->result.max_velocity,
+             (double)(cycle - r->first_cycle) / (t - r->began));
     fprintf(stderr, "\r\033[K%.*s", SHOW_COLUMNS, line);
     fflush(stderr);
+    r->shown = t;
+    r->shown_cycle = cycle;
+    r->shown_time = time;
 }
 
 static void push_result(lua_State *L, const tl_solve_result *result, const char *reason)
@@ -235,6 +244,25 @@ int tl_lua_solve(lua_State *L)
     return finish(L, &r, tl_model_solve(model, &solve, &r.result));
 }
 
+/* tl_model_cycle, with the line written now and then. */
+static tl_status cycle_showing(run *r, int64_t cycles)
+{
+    tl_status status = TL_OK;
+    int64_t done = 0;
+    do {
+        int64_t piece = cycles - done < PIECE ? cycles - done : PIECE;
+        status = tl_model_cycle(r->model, piece, &r->result);
+        done += r->result.cycles;
+        /* Ctrl-C between two pieces would be forgotten as the next begins. */
+        if (r->interrupted)
+            r->result.reason = TL_SOLVE_INTERRUPT;
+        show(r);
+    } while (status == TL_OK && r->result.reason == TL_SOLVE_CYCLES && done < cycles);
+    r->result.cycles = done;
+    r->result.wall = now() - r->began;
+    return status;
+}
+
 int tl_lua_cycle(lua_State *L)
 {
     tl_model *model = tl_lua_model_of(L, "cycle");
@@ -245,5 +273,6 @@ int tl_lua_cycle(lua_State *L)
     tl_lua_read_one(L, 2, &spec, "cycles", &cycles);
     run r;
     run_begin(&r, L, model);
-    return finish(L, &r, tl_model_cycle(model, cycles, &r.result));
+    return finish(L, &r,
+                  r.show ? cycle_showing(&r, cycles) : tl_model_cycle(model, cycles, &r.result));
 }

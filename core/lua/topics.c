@@ -32,7 +32,8 @@ static const tl_lua_key contact_verbs[] = {
 static const tl_lua_key run_results[] = {
     {"reason", "", "Why it ended: \"ratio\", \"cycles\", \"time\", \"stop\" or \"interrupt\"."},
     {"ratio", "", "Mean unbalanced force over mean contact force."},
-    {"cycles, time", "", "Steps and simulated seconds of this call."},
+    {"cycles", "", "Steps of this call."},
+    {"time", "", "The model's time at the end, s."},
     {"wall", "", "Seconds it took."},
     {"max_velocity", "", "Largest speed of a block, m/s."},
     {NULL, NULL, NULL},

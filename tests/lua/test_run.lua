@@ -95,7 +95,7 @@ model:solve { ratio = 0, max_cycles = 1, every = 1, stop = function(m)
 end }
 check.equal(#refusals, 3)
 for _, message in ipairs(refusals) do
-    check.holds(message:find("callback", 1, true) or message:find("running", 1, true),
+    check.holds(message:find("running", 1, true) or message:find("a run has called", 1, true),
         "refused because of the callback, not: " .. message)
 end
 check.equal(#model:blocks(), 2)
@@ -178,3 +178,11 @@ local first = digest(1)
 check.holds(first:match("^%x+$") and #first == 32, "32 hexadecimal digits")
 check.equal(digest(1), first)
 check.equal(digest(2), first)
+
+-- Asking does not change the answer, nor does running in pieces.
+local asked = ready(1)
+for _ = 1, 20 do
+    asked:cycle(10)
+    check.holds(asked.dt > 0 and #asked:contacts() == 1 and asked:contacts():sum("area") > 0, "answers")
+end
+check.equal(asked:state_hash(), first)
