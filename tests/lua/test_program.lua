@@ -93,14 +93,32 @@ refused("--threads", "--threads needs a value")
 refused("--plugin " .. folder .. "/no_such_plugin.so -e 'x = 1'", "no_such_plugin.so")
 check.equal(run("--quiet -e 'x = 1'"), 0)
 
--- Plugins that must be refused, with path and reason.
+-- Plugins that must be refused, with path and reason; one of them is of another major version. The one
+-- called half_way loads, and fails when it is used.
 local bad = os.getenv("TALUS_BAD_PLUGIN_DIR")
 if bad then
-    local list = io.popen("ls '" .. bad .. "'/*.so 2>/dev/null")
+    local reasons = { wrong_major = "ABI 2.0", no_entry = "tl_plugin_entry", missing_ops = "stiffness" }
+    local refusals = 0
+    local list = io.popen("ls '" .. bad .. "'/*.so")
     for path in list:lines() do
-        refused("--plugin '" .. path .. "' -e 'x = 1'", path)
+        local name = path:match("([%w_]+)%.so$")
+        if name ~= "half_way" then
+            refused("--plugin '" .. path .. "' -e 'x = 1'", path)
+            refused("--plugin '" .. path .. "' -e 'x = 1'", reasons[name] or path)
+            refusals = refusals + 1
+        end
     end
     list:close()
+    check.holds(refusals >= 3, "plugins to refuse")
+    script = write("program_half_way.lua", [[
+local model = require("talus").model {}
+model:generate("box", { min = { 0, 0, 0 }, max = { 1, 1, 1 }, density = 1000 })
+local before = model:state_hash()
+local good, message = pcall(function() model:generate("half_way") end)
+assert(not good and #model:blocks() == 1 and model:state_hash() == before)
+error(message, 0)
+]])
+    refused("--plugin '" .. bad .. "/half_way.so' " .. script, "program_half_way.lua:4: generator 'half_way'")
 end
 
 -- Help, version, plugins.
