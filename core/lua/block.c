@@ -103,26 +103,26 @@ typedef struct block_args {
 } block_args;
 
 static const tl_param block_params[] = {
-    TL_PARAM(TL_PARAM_INT, block_args, id, "", "The block of this id.", .flags = TL_PARAM_OPTIONAL,
+    TL_PARAM(TL_PARAM_INT, block_args, id, "", "the block of this id", .flags = TL_PARAM_OPTIONAL,
              .min = 1.0, .max = 4294967295.0),
-    TL_PARAM(TL_PARAM_STRING, block_args, group, "", "Blocks of this group.",
+    TL_PARAM(TL_PARAM_STRING, block_args, group, "", "blocks of this group",
              .flags = TL_PARAM_OPTIONAL),
-    TL_PARAM(TL_PARAM_VEC3, block_args, containing, "m", "Blocks that contain this point.",
+    TL_PARAM(TL_PARAM_VEC3, block_args, containing, "m", "blocks that contain this point",
              .flags = TL_PARAM_OPTIONAL),
-    TL_PARAM(TL_PARAM_STRING, block_args, joint, "", "Blocks with a face on this joint or plane.",
+    TL_PARAM(TL_PARAM_STRING, block_args, joint, "", "blocks with a face on this joint or plane",
              .flags = TL_PARAM_OPTIONAL),
-    TL_PARAM(TL_PARAM_BOOL, block_args, fixed, "", "Fixed blocks, or free ones.",
+    TL_PARAM(TL_PARAM_BOOL, block_args, fixed, "", "fixed blocks, or free ones",
              .flags = TL_PARAM_OPTIONAL),
 };
 
 static const tl_lua_key block_keys[] = {
-    {"inside", "{min = {x, y, z}, max = {x, y, z}}", "Blocks whose centroid is in this box."},
+    {"inside", "{min = {x, y, z}, max = {x, y, z}}", "blocks whose centroid is in this box"},
     {"above", "{dip =, dip_direction =, origin = {x, y, z}}",
-     "Blocks whose centroid is above this plane."},
+     "blocks whose centroid is above this plane"},
     {"below", "{dip =, dip_direction =, origin = {x, y, z}}",
-     "Blocks whose centroid is below this plane."},
-    {"hidden", "true, false or \"any\"", "Hidden blocks, visible ones (the default), or both."},
-    {"where", "function(block)", "Blocks for which the function answers true."},
+     "blocks whose centroid is below this plane"},
+    {"hidden", "true, false or \"any\"", "hidden blocks, visible ones (the default), or both"},
+    {"where", "function(block)", "blocks for which the function answers true"},
     {NULL, NULL, NULL},
 };
 
@@ -131,16 +131,16 @@ static const tl_lua_key block_keys[] = {
 const tl_lua_spec tl_lua_blocks_spec = {"blocks", block_params, COUNT(block_params), block_keys};
 
 static const tl_param box_params[] = {
-    TL_PARAM(TL_PARAM_VEC3, tl_bounds, min, "m", "Lowest corner.", .flags = TL_PARAM_REQUIRED),
-    TL_PARAM(TL_PARAM_VEC3, tl_bounds, max, "m", "Highest corner.", .flags = TL_PARAM_REQUIRED),
+    TL_PARAM(TL_PARAM_VEC3, tl_bounds, min, "m", "lowest corner", .flags = TL_PARAM_REQUIRED),
+    TL_PARAM(TL_PARAM_VEC3, tl_bounds, max, "m", "highest corner", .flags = TL_PARAM_REQUIRED),
 };
 
 static const tl_param halfspace_params[] = {
-    TL_PARAM(TL_PARAM_REAL, tl_halfspace, dip, "deg", "Angle below the horizontal.",
+    TL_PARAM(TL_PARAM_REAL, tl_halfspace, dip, "deg", "angle below the horizontal",
              .flags = TL_PARAM_REQUIRED, .min = 0.0, .max = 90.0),
-    TL_PARAM(TL_PARAM_REAL, tl_halfspace, dip_direction, "deg", "Clockwise from north (+y).",
+    TL_PARAM(TL_PARAM_REAL, tl_halfspace, dip_direction, "deg", "clockwise from north (+y)",
              .flags = TL_PARAM_REQUIRED, .min = 0.0, .max = 360.0),
-    TL_PARAM(TL_PARAM_VEC3, tl_halfspace, origin, "m", "A point of the plane.",
+    TL_PARAM(TL_PARAM_VEC3, tl_halfspace, origin, "m", "a point of the plane",
              .flags = TL_PARAM_REQUIRED),
 };
 
@@ -280,10 +280,10 @@ typedef struct fix_args {
 } fix_args;
 
 static const tl_param fix_params[] = {
-    TL_PARAM(TL_PARAM_BOOL, fix_args, x, "", "Hold the motion along x.", .def = {0.0}),
-    TL_PARAM(TL_PARAM_BOOL, fix_args, y, "", "Hold the motion along y.", .def = {0.0}),
-    TL_PARAM(TL_PARAM_BOOL, fix_args, z, "", "Hold the motion along z.", .def = {0.0}),
-    TL_PARAM(TL_PARAM_BOOL, fix_args, rotation, "", "Hold the rotation.", .def = {0.0}),
+    TL_PARAM(TL_PARAM_BOOL, fix_args, x, "", "hold the motion along x", .def = {0.0}),
+    TL_PARAM(TL_PARAM_BOOL, fix_args, y, "", "hold the motion along y", .def = {0.0}),
+    TL_PARAM(TL_PARAM_BOOL, fix_args, z, "", "hold the motion along z", .def = {0.0}),
+    TL_PARAM(TL_PARAM_BOOL, fix_args, rotation, "", "hold the rotation", .def = {0.0}),
 };
 
 const tl_lua_spec tl_lua_fix_spec = {"fix", fix_params, COUNT(fix_params), NULL};
@@ -304,13 +304,13 @@ static int blocks_fix(lua_State *L)
 }
 
 static const tl_param set_params[] = {
-    TL_PARAM(TL_PARAM_REAL, tl_block_set, density, "kg/m3", "Density.", .min = 0.0, .max = INFINITY,
+    TL_PARAM(TL_PARAM_REAL, tl_block_set, density, "kg/m3", "density", .min = 0.0, .max = INFINITY,
              .flags = TL_PARAM_OPTIONAL | TL_PARAM_MIN_OPEN | TL_PARAM_MAX_OPEN),
-    TL_PARAM(TL_PARAM_STRING, tl_block_set, group, "", "Name of the group.",
+    TL_PARAM(TL_PARAM_STRING, tl_block_set, group, "", "name of the group",
              .flags = TL_PARAM_OPTIONAL),
-    TL_PARAM(TL_PARAM_VEC3, tl_block_set, velocity, "m/s", "Velocity of the centroid.",
+    TL_PARAM(TL_PARAM_VEC3, tl_block_set, velocity, "m/s", "velocity of the centroid",
              .flags = TL_PARAM_OPTIONAL),
-    TL_PARAM(TL_PARAM_VEC3, tl_block_set, angular_velocity, "rad/s", "Angular velocity.",
+    TL_PARAM(TL_PARAM_VEC3, tl_block_set, angular_velocity, "rad/s", "angular velocity",
              .flags = TL_PARAM_OPTIONAL),
 };
 
@@ -365,10 +365,10 @@ static const luaL_Reg block_verbs[] = {
 };
 
 static const tl_lua_key block_extra_keys[] = {
-    {"vertices", "list of {x, y, z}", "Vertices in their present place."},
+    {"vertices", "list of {x, y, z}", "vertices in their present place"},
     {"faces", "list of {vertices =, normal =, joint =}",
-     "Faces: vertex numbers from 1, outward normal, name of the joint plane or nil."},
-    {"neighbours", "list of blocks", "Blocks it is in contact with."},
+     "faces: vertex numbers from 1, outward normal, name of the joint plane or nil"},
+    {"neighbours", "list of blocks", "blocks it is in contact with"},
     {NULL, NULL, NULL},
 };
 

@@ -8,14 +8,14 @@ typedef struct contact_args {
 } contact_args;
 
 static const tl_param contact_params[] = {
-    TL_PARAM(TL_PARAM_STRING, contact_args, joint, "", "Contacts on this joint or plane.",
+    TL_PARAM(TL_PARAM_STRING, contact_args, joint, "", "contacts on this joint or plane",
              .flags = TL_PARAM_OPTIONAL),
 };
 
 static const tl_lua_key contact_keys[] = {
     {"between", "{selection, selection}",
-     "Contacts of a block of the first with one of the second; a single block serves too."},
-    {"where", "function(contact)", "Contacts for which the function answers true."},
+     "contacts of a block of the first with one of the second; a single block serves too"},
+    {"where", "function(contact)", "contacts for which the function answers true"},
     {NULL, NULL, NULL},
 };
 

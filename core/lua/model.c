@@ -164,9 +164,9 @@ static int model_damping(lua_State *L)
 
 const tl_lua_key tl_lua_insitu_keys[] = {
     {"stress", "{xx =, yy =, zz =, xy =, yz =, zx =}",
-     "Stress at the height of `at`, Pa, tension positive; components left out are 0."},
+     "stress at the height of `at`, Pa, tension positive; components left out are 0"},
     {"gradient", "{xx =, yy =, zz =, xy =, yz =, zx =}",
-     "Change of the stress with height z, Pa/m; components left out are 0."},
+     "change of the stress with height z, Pa/m; components left out are 0"},
     {NULL, NULL, NULL},
 };
 

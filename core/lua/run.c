@@ -193,8 +193,8 @@ static bool on_stop(void *user, tl_model *model)
 /* ---------------------------------------------------------------- solve and cycle -------- */
 
 const tl_lua_key tl_lua_solve_keys[] = {
-    {"stop", "function(model)", "Called every `every` steps; ends the run when it answers true."},
-    {"on_progress", "function(model, result)", "Called every `every` steps."},
+    {"stop", "function(model)", "called every `every` steps; ends the run when it answers true"},
+    {"on_progress", "function(model, result)", "called every `every` steps"},
     {NULL, NULL, NULL},
 };
 

@@ -6,55 +6,55 @@ static const tl_kind_type laws = TL_KIND_LAW, dampings = TL_KIND_DAMPING,
                           generators = TL_KIND_GENERATOR;
 
 static const tl_lua_key block_verbs[] = {
-    {"#sel, sel[i], ipairs(sel)", "", "Number of blocks, the i-th one, all in order of id."},
-    {"sel:sum(field)", "", "Sum of a field of numbers; of a vector field a vector."},
-    {"sel:max(field), sel:min(field)", "", "Largest and smallest value of a field of numbers."},
-    {"sel:bounds()", "", "{min = {x, y, z}, max = {x, y, z}} over all vertices."},
-    {"sel:where(function(block) ... end)", "", "Those for which the function answers true."},
-    {"sel:hide(), sel:show()", "", "Hidden blocks are not cut and not selected unless asked for."},
-    {"sel:delete()", "", "Removes the blocks."},
+    {"#sel, sel[i], ipairs(sel)", "", "number of blocks, the i-th one, all in order of id"},
+    {"sel:sum(field)", "", "sum of a field of numbers; of a vector field a vector"},
+    {"sel:max(field), sel:min(field)", "", "largest and smallest value of a field of numbers"},
+    {"sel:bounds()", "", "{min = {x, y, z}, max = {x, y, z}} over all vertices"},
+    {"sel:where(function(block) ... end)", "", "those for which the function answers true"},
+    {"sel:hide(), sel:show()", "", "hidden blocks are not cut and not selected unless asked for"},
+    {"sel:delete()", "", "removes the blocks"},
     {"sel:fix{x =, y =, z =, rotation =}", "",
-     "Holds components of the motion; all of it when nothing is named."},
-    {"sel:free()", "", "Lets fixed blocks go."},
-    {"sel:reset_displacement()", "", "Displacements count from now."},
-    {"sel:set{density =, group =, velocity =, angular_velocity =}", "", "Changes properties."},
+     "holds components of the motion; all of it when nothing is named"},
+    {"sel:free()", "", "lets fixed blocks go"},
+    {"sel:reset_displacement()", "", "displacements count from now"},
+    {"sel:set{density =, group =, velocity =, angular_velocity =}", "", "changes properties"},
     {NULL, NULL, NULL},
 };
 
 static const tl_lua_key contact_verbs[] = {
-    {"#sel, sel[i], ipairs(sel)", "", "Number of contacts, the i-th one, all in order of id."},
-    {"sel:sum(field)", "", "Sum of a field of numbers; of a vector field a vector."},
-    {"sel:max(field), sel:min(field)", "", "Largest and smallest value of a field of numbers."},
-    {"sel:where(function(contact) ... end)", "", "Those for which the function answers true."},
+    {"#sel, sel[i], ipairs(sel)", "", "number of contacts, the i-th one, all in order of id"},
+    {"sel:sum(field)", "", "sum of a field of numbers; of a vector field a vector"},
+    {"sel:max(field), sel:min(field)", "", "largest and smallest value of a field of numbers"},
+    {"sel:where(function(contact) ... end)", "", "those for which the function answers true"},
     {NULL, NULL, NULL},
 };
 
 static const tl_lua_key run_results[] = {
-    {"reason", "", "Why it ended: \"ratio\", \"cycles\", \"time\", \"stop\" or \"interrupt\"."},
-    {"ratio", "", "Mean unbalanced force over mean contact force."},
-    {"cycles", "", "Steps of this call."},
-    {"time", "", "The model's time at the end, s."},
-    {"wall", "", "Seconds it took."},
-    {"max_velocity", "", "Largest speed of a block, m/s."},
+    {"reason", "", "why it ended: \"ratio\", \"cycles\", \"time\", \"stop\" or \"interrupt\""},
+    {"ratio", "", "mean unbalanced force over mean contact force"},
+    {"cycles", "", "steps of this call"},
+    {"time", "", "the model's time at the end, s"},
+    {"wall", "", "seconds it took"},
+    {"max_velocity", "", "largest speed of a block, m/s"},
     {NULL, NULL, NULL},
 };
 
 static const tl_lua_key model_members[] = {
-    {"model.gravity", "", "Acceleration of gravity {x, y, z}, m/s2; may be assigned."},
-    {"model.rotation", "", "\"exact\" or \"paper\"; may be assigned."},
-    {"model.reuse_geometry", "", "true or false; may be assigned."},
-    {"model.time, model.cycles", "", "Simulated time, s, and steps so far."},
-    {"model.dt", "", "The step the next cycle will use, s."},
-    {"model.threads, model.seed", "", "As given when it was made."},
+    {"model.gravity", "", "acceleration of gravity {x, y, z}, m/s2; may be assigned"},
+    {"model.rotation", "", "\"exact\" or \"paper\"; may be assigned"},
+    {"model.reuse_geometry", "", "true or false; may be assigned"},
+    {"model.time, model.cycles", "", "simulated time, s, and steps so far"},
+    {"model.dt", "", "the step the next cycle will use, s"},
+    {"model.threads, model.seed", "", "as given when it was made"},
     {NULL, NULL, NULL},
 };
 
 static const tl_lua_key generate_results[] = {
-    {"before, after", "", "Number of blocks before and after."},
+    {"before, after", "", "number of blocks before and after"},
     {"cuts, refused, coincident", "",
-     "Cuts made, refused because a side would be too thin, and fallen on an existing face."},
-    {"smallest_volume, smallest_edge, smallest_face", "", "Of the model after, m3, m and m2."},
-    {"volume_error", "", "Relative change of the volume that is not accounted for."},
+     "cuts made, refused because a side would be too thin, and fallen on an existing face"},
+    {"smallest_volume, smallest_edge, smallest_face", "", "of the model after, m3, m and m2"},
+    {"volume_error", "", "relative change of the volume that is not accounted for"},
     {NULL, NULL, NULL},
 };
 

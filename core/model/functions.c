@@ -22,88 +22,88 @@ static const char *const rotation_names[] = {"exact", "paper", NULL};
 static const char *const timestep_names[] = {"paper", "body", NULL};
 
 static const tl_param model_params[] = {
-    TL_PARAM(TL_PARAM_VEC3, tl_model_config, gravity, "m/s2", "Acceleration of gravity.",
+    TL_PARAM(TL_PARAM_VEC3, tl_model_config, gravity, "m/s2", "acceleration of gravity",
              .def = {0.0, 0.0, -9.81}),
     TL_PARAM(TL_PARAM_INT, tl_model_config, seed, "",
-             "Seed of every random draw: the same seed gives the same model.", .def = {1.0},
+             "seed of every random draw: the same seed gives the same model", .def = {1.0},
              .min = 0.0, .max = INFINITY, .flags = TL_PARAM_MAX_OPEN),
     TL_PARAM(TL_PARAM_INT, tl_model_config, threads, "",
-             "Number of threads; results do not depend on it.", .def = {1.0}, .min = 1.0,
+             "number of threads; results do not depend on it", .def = {1.0}, .min = 1.0,
              .max = 256.0),
     TL_PARAM(TL_PARAM_ENUM, tl_model_config, rotation, "",
-             "How blocks turn: Euler's equations, or the paper's single moment of inertia.",
+             "how blocks turn: Euler's equations, or the paper's single moment of inertia",
              .def = {TL_ROTATION_EXACT}, .choices = rotation_names),
     TL_PARAM(TL_PARAM_BOOL, tl_model_config, reuse_geometry, "",
-             "Whether a contact that hardly moved keeps its common plane and polygon.",
+             "whether a contact that hardly moved keeps its common plane and polygon",
              .def = {1.0}),
 };
 
 static const tl_param insitu_params[] = {
     TL_PARAM(TL_PARAM_VEC3, tl_insitu, at, "m",
-             "Point at whose height the stress holds; the gradient counts from there.",
+             "point at whose height the stress holds; the gradient counts from there",
              .def = {0.0, 0.0, 0.0}),
 };
 
 /* The components of insitu's two tensors, as members of a tl_sym3. */
 static const tl_param tensor_params[] = {
-    TL_PARAM(TL_PARAM_REAL, tl_sym3, xx, "Pa or Pa/m", "Normal component, tension positive.",
+    TL_PARAM(TL_PARAM_REAL, tl_sym3, xx, "Pa or Pa/m", "normal component, tension positive",
              .def = {0.0}),
-    TL_PARAM(TL_PARAM_REAL, tl_sym3, yy, "Pa or Pa/m", "Normal component, tension positive.",
+    TL_PARAM(TL_PARAM_REAL, tl_sym3, yy, "Pa or Pa/m", "normal component, tension positive",
              .def = {0.0}),
-    TL_PARAM(TL_PARAM_REAL, tl_sym3, zz, "Pa or Pa/m", "Normal component, tension positive.",
+    TL_PARAM(TL_PARAM_REAL, tl_sym3, zz, "Pa or Pa/m", "normal component, tension positive",
              .def = {0.0}),
-    TL_PARAM(TL_PARAM_REAL, tl_sym3, xy, "Pa or Pa/m", "Shear component.", .def = {0.0}),
-    TL_PARAM(TL_PARAM_REAL, tl_sym3, yz, "Pa or Pa/m", "Shear component.", .def = {0.0}),
-    TL_PARAM(TL_PARAM_REAL, tl_sym3, zx, "Pa or Pa/m", "Shear component.", .def = {0.0}),
+    TL_PARAM(TL_PARAM_REAL, tl_sym3, xy, "Pa or Pa/m", "shear component", .def = {0.0}),
+    TL_PARAM(TL_PARAM_REAL, tl_sym3, yz, "Pa or Pa/m", "shear component", .def = {0.0}),
+    TL_PARAM(TL_PARAM_REAL, tl_sym3, zx, "Pa or Pa/m", "shear component", .def = {0.0}),
 };
 
 static const tl_param timestep_params[] = {
     TL_PARAM(TL_PARAM_REAL, tl_timestep, fraction, "",
-             "Share of the critical step that is used, FRAC of (27).",
-             .def = {TL_TIMESTEP_FRACTION}, .min = 0.0, .max = 1.0, .flags = TL_PARAM_MIN_OPEN),
+             "share of the critical step that is used, FRAC of (27)", .def = {TL_TIMESTEP_FRACTION},
+             .min = 0.0, .max = 1.0, .flags = TL_PARAM_MIN_OPEN),
     TL_PARAM(TL_PARAM_ENUM, tl_timestep, rule, "",
-             "Critical step from the lightest block and the stiffest contact (paper), or from "
-             "each body's own mass and stiffness (body).",
+             "critical step from the lightest block and the stiffest contact (paper), or from "
+             "each body's own mass and stiffness (body)",
              .def = {TL_TIMESTEP_PAPER}, .choices = timestep_names),
-    TL_PARAM(TL_PARAM_REAL, tl_timestep, dt, "s", "A fixed time step instead of the rule.",
+    TL_PARAM(TL_PARAM_REAL, tl_timestep, dt, "s", "a fixed time step instead of the rule",
              .min = 0.0, .max = INFINITY,
              .flags = TL_PARAM_OPTIONAL | TL_PARAM_MIN_OPEN | TL_PARAM_MAX_OPEN),
 };
 
 static const tl_param contact_area_params[] = {
     TL_PARAM(TL_PARAM_REAL, tl_contact_area, fraction, "",
-             "Minimum area of edge and point contacts, as a share of the smaller block's mean "
-             "face area.",
+             "minimum area of edge and point contacts, as a share of the smaller block's mean "
+             "face area",
              .def = {TL_AREA_FRACTION}, .min = 0.0, .max = 1.0),
     TL_PARAM(TL_PARAM_REAL, tl_contact_area, absolute, "m2",
-             "Minimum area in square metres instead of the share; serves parallel edges too.",
+             "minimum area in square metres instead of the share; serves parallel edges too",
              .min = 0.0, .max = INFINITY, .flags = TL_PARAM_OPTIONAL | TL_PARAM_MAX_OPEN),
     TL_PARAM(TL_PARAM_STRING, tl_contact_area, joint, "",
-             "The joint (\"J1\") or plane (\"J1:3\") it applies to; every joint when left out.",
+             "the joint (\"J1\") or plane (\"J1:3\") it applies to; every joint when left out",
              .flags = TL_PARAM_OPTIONAL),
 };
 
 static const tl_param cycle_params[] = {
-    TL_PARAM(TL_PARAM_INT, tl_cycle_args, cycles, "", "Number of steps to run.",
+    TL_PARAM(TL_PARAM_INT, tl_cycle_args, cycles, "", "number of steps to run",
              .flags = TL_PARAM_REQUIRED | TL_PARAM_MAX_OPEN, .min = 0.0, .max = INFINITY),
 };
 
 static const tl_param solve_params[] = {
     TL_PARAM(TL_PARAM_REAL, tl_solve, ratio, "",
-             "Ends when the unbalanced force ratio falls below this; 0 for never.", .def = {1e-5},
+             "ends when the unbalanced force ratio falls below this; 0 for never", .def = {1e-5},
              .min = 0.0, .max = 1.0),
-    TL_PARAM(TL_PARAM_INT, tl_solve, max_cycles, "", "Largest number of steps of this call.",
+    TL_PARAM(TL_PARAM_INT, tl_solve, max_cycles, "", "largest number of steps of this call",
              .def = {1000000.0}, .min = 0.0, .max = INFINITY, .flags = TL_PARAM_MAX_OPEN),
-    TL_PARAM(TL_PARAM_REAL, tl_solve, max_time, "s", "Longest simulated time of this call.",
+    TL_PARAM(TL_PARAM_REAL, tl_solve, max_time, "s", "longest simulated time of this call",
              .min = 0.0, .max = INFINITY,
              .flags = TL_PARAM_OPTIONAL | TL_PARAM_MIN_OPEN | TL_PARAM_MAX_OPEN),
-    TL_PARAM(TL_PARAM_INT, tl_solve, every, "", "Steps between calls of on_progress and stop.",
+    TL_PARAM(TL_PARAM_INT, tl_solve, every, "", "steps between calls of on_progress and stop",
              .def = {500.0}, .min = 1.0, .max = INFINITY, .flags = TL_PARAM_MAX_OPEN),
 };
 
 static const tl_param write_vtk_params[] = {
     TL_PARAM(TL_PARAM_STRING, tl_write_vtk_args, prefix, "",
-             "Folder and beginning of the files' names.", .flags = TL_PARAM_REQUIRED),
+             "folder and beginning of the files' names", .flags = TL_PARAM_REQUIRED),
 };
 
 typedef struct tl_function {
