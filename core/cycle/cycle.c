@@ -21,6 +21,8 @@ static void cycle_destroy(struct tl_cycle *cycle)
     pthread_mutex_destroy(&cycle->failure_lock);
     tl_table_free(&cycle->table);
     free(cycle->chunk_sums);
+    free(cycle->chunk_ledger);
+    free(cycle->ledger);
     free(cycle);
 }
 
@@ -37,6 +39,11 @@ static void add_columns(struct tl_cycle *c)
         TL_COLUMN(t, c, damping_force[k], 0);
         TL_COLUMN(t, c, damping_moment[k], 0);
     }
+    TL_COLUMN(t, c, reaction_force, 0);
+    TL_COLUMN(t, c, reaction_moment, 0);
+    TL_COLUMN(t, c, v_before, 0);
+    TL_COLUMN(t, c, spin_before, 0);
+    TL_COLUMN(t, c, attitude, 0);
     TL_COLUMN(t, c, mass, 0);
     TL_COLUMN(t, c, inertia, 0);
     TL_COLUMN(t, c, alpha, 0);
@@ -58,6 +65,9 @@ tl_status tl_cycle_prepare(tl_model *m)
         if (!sums)
             return tl_fail_memory(&m->error);
         c->chunk_sums = sums;
+        tl_status status = tl_energy_prepare(m, chunks);
+        if (status != TL_OK)
+            return status;
         c->chunk_room = chunks;
     }
     /* whole lanes: the damping plugins' loops run to a multiple of TL_LANES */
@@ -84,7 +94,11 @@ tl_status tl_step(tl_model *m)
         status = tl_damping_apply(m, dt);
     if (status != TL_OK)
         return status;
-    tl_move(m, dt);
+    tl_energy_before(m);
+    if (!tl_move(m, dt))
+        return tl_fail(&m->error, TL_E_CANCELLED, "cycle %lld: a drive's function failed",
+                       (long long)m->cycles + 1);
+    tl_energy_after(m, m->dt, dt);
     m->dt = dt;
     m->time += dt;
     m->cycles++;

@@ -27,11 +27,16 @@ struct tl_cycle {
     double *velocity[3], *angular_velocity[3], *force[3], *moment[3];
     double *mass, *inertia;
     double *damping_force[3], *damping_moment[3], *alpha;
+    /* per body, for the energy ledger and for driven bodies */
+    tl_vec3 *reaction_force, *reaction_moment; /* of the contacts alone */
+    tl_vec3 *v_before, *spin_before;           /* velocity and angular momentum before the kick */
+    tl_quat *attitude;                         /* of the principal axes, at the forces' time */
     tl_sums *chunk_sums;
     size_t chunk_room;
     tl_sums sums;
-    double kinetic_before; /* of the last step, for its rate */
-    double dt;             /* the step in use */
+    struct tl_ledger *chunk_ledger, *ledger; /* energy.c */
+    double kinetic_before;                   /* of the last step, for its rate */
+    double dt;                               /* the step in use */
     /* the first failure of a parallel phase, by chunk, and the point it came from */
     pthread_mutex_t failure_lock;
     tl_error failure;
@@ -54,8 +59,14 @@ double tl_unbalanced_ratio(const tl_model *m);
 /* The step to take, s. */
 tl_status tl_timestep_choose(tl_model *m, double *dt);
 tl_status tl_damping_apply(tl_model *m, double dt);
-/* Velocities, places and rotations one step on. */
-void tl_move(tl_model *m, double dt);
+/* Velocities, places and rotations one step on; false when a user's drive function ends the run. */
+bool tl_move(tl_model *m, double dt);
+/* The energy ledger: what the bodies had before the move, and the work done in it. */
+tl_status tl_energy_prepare(tl_model *m, size_t chunks);
+void tl_energy_before(tl_model *m);
+void tl_energy_after(tl_model *m, double dt_before, double dt_after);
+/* Angular momentum of a body, axes of the model. */
+tl_vec3 tl_body_spin(const tl_model *m, uint32_t body);
 /* Every contact has a law, or a sentence that names one that has not. */
 tl_status tl_laws_check(tl_model *m);
 

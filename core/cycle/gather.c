@@ -1,5 +1,5 @@
 /* gather.c - forces on bodies: each adds its blocks' contacts in order of the partner's id (13-17 of
- * Hart, Cundall and Lemos 1988), and its weight. Components that are held carry no unbalanced force. */
+ * Hart, Cundall and Lemos 1988), its weight and its load. Components that are held carry no unbalanced force. */
 #include "cycle/cycle_room.h"
 
 static tl_vec3 free_part(tl_vec3 v, unsigned fixed)
@@ -13,7 +13,7 @@ static void gather_body(tl_model *m, uint32_t body)
     const tl_detect *d = m->detect;
     const tl_contacts *c = &d->contacts;
     tl_bodies *b = &m->bodies;
-    tl_vec3 force = tl_v3_scale(b->mass[body], m->config.gravity), moment = {0, 0, 0};
+    tl_vec3 force = {0, 0, 0}, moment = {0, 0, 0};
     double contact_force = 0;
     for (uint32_t k = 0; k < b->member_count[body]; k++) {
         uint32_t row = m->members[b->member_start[body] + k];
@@ -25,6 +25,12 @@ static void gather_body(tl_model *m, uint32_t body)
             contact_force += tl_v3_norm(c->force[i]);
         }
     }
+    m->cycle->reaction_force[body] = force;
+    m->cycle->reaction_moment[body] = moment;
+    tl_vec3 arm = tl_m3_mul(&b->r[body], b->load_arm[body]);
+    force = tl_v3_add(tl_v3_madd(force, b->mass[body], m->config.gravity), b->load_force[body]);
+    moment =
+        tl_v3_add(moment, tl_v3_add(b->load_moment[body], tl_v3_cross(arm, b->load_force[body])));
     b->force[body] = free_part(force, b->fixed[body]);
     b->moment[body] = b->fixed[body] & TL_FIX_ROTATION ? tl_v3(0, 0, 0) : moment;
     m->cycle->contact_force[body] = contact_force;

@@ -83,12 +83,34 @@ static void rotate_paper(tl_bodies *b, uint32_t i, tl_vec3 moment, const move_jo
     b->q[i] = tl_q_unit(tl_q_mul(turn_by(tl_v3_scale(job->drift, b->w[i])), b->q[i]));
 }
 
+static void count_motion(tl_bodies *b, uint32_t i, double dt)
+{
+    b->odometer[i] += (tl_v3_norm(b->v[i]) + tl_v3_norm(b->w[i]) * b->radius[i]) * dt;
+}
+
+/* A driven body moves as it is told. */
+static void drive_body(const move_job *job, uint32_t i)
+{
+    tl_bodies *b = &job->m->bodies;
+    const tl_drive_record *drive = &job->m->drives[b->drive[i] - 1];
+    b->v[i] = drive->velocity;
+    b->w[i] = drive->angular_velocity;
+    b->u[i] = tl_v3_madd(b->u[i], job->drift, b->v[i]);
+    b->q[i] = tl_q_unit(tl_q_mul(turn_by(tl_v3_scale(job->drift, b->w[i])), b->q[i]));
+    b->r[i] = tl_q_matrix(b->q[i]);
+    count_motion(b, i, job->drift);
+}
+
 static void move_body(const move_job *job, uint32_t i)
 {
     tl_model *m = job->m;
     tl_bodies *b = &m->bodies;
     const struct tl_cycle *c = m->cycle;
     unsigned fixed = b->fixed[i];
+    if (b->drive[i]) {
+        drive_body(job, i);
+        return;
+    }
     if (fixed == TL_FIX_ALL)
         return;
     tl_vec3 force = b->force[i], moment = b->moment[i];
@@ -113,7 +135,7 @@ static void move_body(const move_job *job, uint32_t i)
             rotate_exact(b, i, moment, job, alpha);
         b->r[i] = tl_q_matrix(b->q[i]);
     }
-    b->odometer[i] += (tl_v3_norm(b->v[i]) + tl_v3_norm(b->w[i]) * b->radius[i]) * job->drift;
+    count_motion(b, i, job->drift);
 }
 
 static void move_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
@@ -124,8 +146,11 @@ static void move_range(void *user, size_t begin, size_t end, size_t chunk, unsig
         move_body(user, (uint32_t)i);
 }
 
-void tl_move(tl_model *m, double dt)
+bool tl_move(tl_model *m, double dt)
 {
     move_job job = {m, 0.5 * (m->dt + dt), dt};
+    if (!tl_drives_evaluate(m, m->time + 0.5 * dt))
+        return false;
     tl_parallel_for(m->pool, m->bodies.table.rows, TL_BODY_CHUNK, move_range, &job);
+    return true;
 }

@@ -56,34 +56,6 @@ const tl_field *tl_block_fields(size_t *count)
     return fields;
 }
 
-/* R I R^T */
-static tl_sym3 turned(tl_sym3 t, const tl_mat3 *r)
-{
-    tl_vec3 row[3];
-    for (int i = 0; i < 3; i++)
-        row[i] = tl_s3_mul(t, tl_v3(r->m[i][0], r->m[i][1], r->m[i][2]));
-    tl_vec3 x = {r->m[0][0], r->m[0][1], r->m[0][2]};
-    tl_vec3 y = {r->m[1][0], r->m[1][1], r->m[1][2]};
-    tl_vec3 z = {r->m[2][0], r->m[2][1], r->m[2][2]};
-    return (tl_sym3){tl_v3_dot(x, row[0]), tl_v3_dot(y, row[1]), tl_v3_dot(z, row[2]),
-                     tl_v3_dot(x, row[1]), tl_v3_dot(y, row[2]), tl_v3_dot(z, row[0])};
-}
-
-static tl_sym3 block_inertia(const tl_model *m, uint32_t row)
-{
-    tl_sym3 t =
-        turned(tl_poly_mass(m->blocks.shape[row]).inertia, &m->bodies.r[m->blocks.body[row]]);
-    double d = m->blocks.density[row];
-    return (tl_sym3){d * t.xx, d * t.yy, d * t.zz, d * t.xy, d * t.yz, d * t.zx};
-}
-
-static tl_vec3 block_velocity(const tl_model *m, uint32_t row)
-{
-    uint32_t body = m->blocks.body[row];
-    tl_vec3 arm = tl_m3_mul(&m->bodies.r[body], m->blocks.local[row]);
-    return tl_v3_add(m->bodies.v[body], tl_v3_cross(m->bodies.w[body], arm));
-}
-
 static void put_vector(tl_field_value *value, tl_vec3 v)
 {
     value->number[0] = v.x;
@@ -101,8 +73,8 @@ static double kinetic_energy(const tl_model *m, uint32_t row)
 {
     tl_vec3 w = m->bodies.w[m->blocks.body[row]];
     double mass = m->blocks.density[row] * m->blocks.volume[row];
-    return 0.5 * mass * tl_v3_norm2(block_velocity(m, row)) +
-           0.5 * tl_v3_dot(w, tl_s3_mul(block_inertia(m, row), w));
+    return 0.5 * mass * tl_v3_norm2(tl_block_velocity(m, row)) +
+           0.5 * tl_v3_dot(w, tl_s3_mul(tl_block_inertia(m, row), w));
 }
 
 tl_status tl_block_field(tl_model *m, tl_id block, size_t index, tl_field_value *value)
@@ -121,7 +93,7 @@ tl_status tl_block_field(tl_model *m, tl_id block, size_t index, tl_field_value 
     case F_DENSITY: value->number[0] = b->density[row]; break;
     case F_VOLUME: value->number[0] = b->volume[row]; break;
     case F_MASS: value->number[0] = b->density[row] * b->volume[row]; break;
-    case F_INERTIA: put_tensor(value, block_inertia(m, row)); break;
+    case F_INERTIA: put_tensor(value, tl_block_inertia(m, row)); break;
     case F_CENTROID: put_vector(value, tl_block_centroid(m, row)); break;
     case F_DISPLACEMENT: put_vector(value, tl_block_displacement(m, row)); break;
     case F_ROTATION: {
@@ -130,14 +102,14 @@ tl_status tl_block_field(tl_model *m, tl_id block, size_t index, tl_field_value 
         memcpy(value->number, n, sizeof n);
         break;
     }
-    case F_VELOCITY: put_vector(value, block_velocity(m, row)); break;
+    case F_VELOCITY: put_vector(value, tl_block_velocity(m, row)); break;
     case F_ANGULAR_VELOCITY: put_vector(value, bodies->w[body]); break;
     case F_FORCE: put_vector(value, bodies->force[body]); break;
     case F_MOMENT: put_vector(value, bodies->moment[body]); break;
     case F_FIXED: value->number[0] = bodies->fixed[body] == TL_FIX_ALL; break;
     case F_HIDDEN: value->number[0] = b->hidden[row] != 0; break;
     case F_BODY: value->number[0] = bodies->id[body]; break;
-    case F_SPEED: value->number[0] = tl_v3_norm(block_velocity(m, row)); break;
+    case F_SPEED: value->number[0] = tl_v3_norm(tl_block_velocity(m, row)); break;
     case F_KINETIC_ENERGY: value->number[0] = kinetic_energy(m, row); break;
     default: break;
     }

@@ -44,6 +44,10 @@ static void bodies_init(tl_bodies *b)
     TL_COLUMN(t, b, fixed, TL_COLUMN_STATE);
     TL_COLUMN(t, b, force, TL_COLUMN_STATE);
     TL_COLUMN(t, b, moment, TL_COLUMN_STATE);
+    TL_COLUMN(t, b, load_force, TL_COLUMN_STATE);
+    TL_COLUMN(t, b, load_moment, TL_COLUMN_STATE);
+    TL_COLUMN(t, b, load_arm, TL_COLUMN_STATE);
+    TL_COLUMN(t, b, drive, 0);
     TL_COLUMN(t, b, odometer, 0);
 }
 
@@ -95,6 +99,7 @@ void tl_model_destroy(tl_model *m)
     for (size_t i = 0; i < m->material_count; i++)
         tl_material_clear(&m->materials[i]);
     tl_damping_clear(m);
+    tl_drives_clear(m);
     free(m->groups);
     free(m->joints);
     free(m->materials);

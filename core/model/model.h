@@ -67,6 +67,9 @@ typedef struct tl_bodies {
     uint8_t *fixed;   /* TL_FIX_* */
     tl_vec3 *force;   /* unbalanced: contacts, weight, loads */
     tl_vec3 *moment;
+    tl_vec3 *load_force, *load_moment; /* of the user's, axes of the model */
+    tl_vec3 *load_arm;                 /* where the load acts, body's frame */
+    uint32_t *drive;                   /* index into drives + 1, or 0 */
     double *odometer; /* sum of (|v| + |w| radius) dt: no vertex has moved farther */
 } tl_bodies;
 
@@ -84,6 +87,13 @@ typedef struct tl_material {
     double kn, ks;
     uint32_t tangents; /* bit k: states k, k + 1, k + 2 are a vector in the common plane */
 } tl_material;
+
+/* A prescribed motion, shared by the bodies of one call. */
+typedef struct tl_drive_record {
+    tl_drive drive;
+    tl_vec3 velocity, angular_velocity; /* in the step being made */
+    size_t bodies;                      /* that follow it; 0: free for use again */
+} tl_drive_record;
 
 /* A rule for the minimum area of edge and point contacts. */
 typedef struct tl_area_rule {
@@ -126,6 +136,9 @@ struct tl_model {
     tl_area_rule area;
     tl_joint_area *areas;
     size_t area_count;
+
+    tl_drive_record *drives;
+    size_t drive_count;
 
     tl_timestep timestep;
     const tl_kind *damping;
@@ -263,5 +276,25 @@ void tl_block_measure(tl_model *m, uint32_t row);
 void tl_body_measure(tl_model *m, uint32_t body);
 /* Removes the blocks with keep[row] == 0, and bodies left without blocks. */
 void tl_rows_keep(tl_model *m, const unsigned char *keep);
+
+/* ---- regroup.c ---- */
+
+/* Makes the bodies anew: blocks of the same group[row] (the row of the group's lowest block) are one
+ * body. Bodies that stay as they are are not touched; others get the mass, momentum and angular
+ * momentum of their parts. TL_E_MEMORY leaves the model as it was. */
+tl_status tl_bodies_regroup(tl_model *m, const uint32_t *group);
+/* group[row] of the bodies as they are. */
+void tl_bodies_groups(const tl_model *m, uint32_t *group);
+/* A block's inertia about its centroid, in the axes of the model. */
+tl_sym3 tl_block_inertia(const tl_model *m, uint32_t row);
+tl_vec3 tl_block_velocity(const tl_model *m, uint32_t row);
+
+/* ---- loads.c ---- */
+
+/* Evaluates all drives at time t; false when a user's function ends the run. */
+bool tl_drives_evaluate(tl_model *m, double t);
+/* Lets a body go from its drive. */
+void tl_drive_leave(tl_model *m, uint32_t body);
+void tl_drives_clear(tl_model *m);
 
 #endif

@@ -49,6 +49,7 @@ tl_status tl_blocks_fix(tl_model *m, const tl_id *ids, size_t count, unsigned wh
     for (size_t i = 0; i < count; i++) {
         uint32_t body = m->blocks.body[m->row_of[ids[i]]];
         tl_vec3 *v = &m->bodies.v[body];
+        tl_drive_leave(m, body);
         m->bodies.fixed[body] = (uint8_t)(m->bodies.fixed[body] | (what & TL_FIX_ALL));
         v->x = what & TL_FIX_X ? 0 : v->x;
         v->y = what & TL_FIX_Y ? 0 : v->y;
@@ -65,8 +66,11 @@ tl_status tl_blocks_free(tl_model *m, const tl_id *ids, size_t count)
     tl_status status = check_ids(m, ids, count);
     if (status != TL_OK)
         return status;
-    for (size_t i = 0; i < count; i++)
-        m->bodies.fixed[m->blocks.body[m->row_of[ids[i]]]] = 0;
+    for (size_t i = 0; i < count; i++) {
+        uint32_t body = m->blocks.body[m->row_of[ids[i]]];
+        tl_drive_leave(m, body);
+        m->bodies.fixed[body] = 0;
+    }
     m->constraints++;
     return TL_OK;
 }

@@ -297,6 +297,54 @@ typedef struct tl_block_set {
 TL_API tl_status tl_blocks_set(tl_model *model, const tl_id *ids, size_t count,
                                const tl_block_set *set);
 
+/* Makes one rigid body of the blocks and of all blocks joined to them before. Mass, momentum and angular
+ * momentum are those of the parts together; contacts between the parts end. Fixed parts must agree. */
+TL_API tl_status tl_blocks_join(tl_model *model, const tl_id *ids, size_t count);
+/* Makes a body of its own of each block; each goes on with the velocity it had as a part. */
+TL_API tl_status tl_blocks_unjoin(tl_model *model, const tl_id *ids, size_t count);
+
+typedef struct tl_load {
+    tl_vec3 force;  /* N */
+    tl_vec3 moment; /* N m */
+    tl_vec3
+        at; /* where the force acts: a point that goes with the body; NaN: the body's centroid */
+} tl_load;
+
+/* Puts a load on the body of each block, in the place of the one it had; zero takes it off. */
+TL_API tl_status tl_blocks_load(tl_model *model, const tl_id *ids, size_t count,
+                                const tl_load *load);
+
+/* Velocity of a drive at time t, s; false ends the run after the step. */
+typedef bool (*tl_drive_fn)(void *user, double t, tl_vec3 *velocity);
+
+typedef struct tl_drive {
+    tl_vec3 velocity, angular_velocity;           /* constant parts; all zero where not given */
+    tl_drive_fn velocity_at, angular_velocity_at; /* in their place, or NULL */
+    void *user;
+    void (*release)(void *user); /* called when the drive ends, or NULL */
+} tl_drive;
+
+/* Prescribes the motion of the blocks' bodies, in the place of any fixing; free ends it. A function is
+ * called on the caller's thread, once a step for all bodies of the call, at the middle of the step. */
+TL_API tl_status tl_blocks_drive(tl_model *model, const tl_id *ids, size_t count,
+                                 const tl_drive *drive);
+
+/* ---------------------------------------------------------------- energy ----------------- */
+
+/* Energy of the bodies that are free to move, J, all at one time and counted from the first step. */
+typedef struct tl_energy {
+    double kinetic;
+    double potential; /* minus the work of gravity */
+    double stored;    /* elastic, in contacts */
+    double friction;  /* turned to heat by slip */
+    double damping;   /* taken out by the damping */
+    double external;  /* work of loads and of driven bodies */
+    double balance;   /* error of the sum, relative to the largest change of a term */
+} tl_energy;
+
+/* The ledger, as of the last force evaluation. */
+TL_API tl_status tl_model_energy(tl_model *model, tl_energy *energy);
+
 /* ---------------------------------------------------------------- contacts --------------- */
 
 typedef struct tl_contact_filter {
