@@ -1,0 +1,32 @@
+-- Free fall: exact at whole steps; a falling block beside others that touch still has a time step.
+local talus = require "talus"
+local figures = require "check_figures"
+local reference = require("reference").freefall
+
+local model = talus.model { gravity = { 0, 0, -reference.g } }
+model:generate("box", { min = { 0, 0, 0 }, max = { 1, 2, 3 }, density = 2000 })
+model:timestep { dt = reference.dt }
+model:cycle(reference.steps)
+local block = model:blocks()[1]
+figures.near("time", model.time, reference.dt * reference.steps, 1e-10)
+figures.near("drop", -block.displacement[3], reference.drop, 1e-10)
+figures.near("centroid", block.centroid[3], 1.5 - reference.drop, 1e-10)
+figures.near("sideways", math.abs(block.displacement[1]) + math.abs(block.displacement[2]), 0, 0)
+figures.near("turn", 1 - block.rotation[1], 0, 0)
+
+-- Two held blocks touch, a third falls past them.
+for _, rule in ipairs { "paper", "body" } do
+    model = talus.model { gravity = { 0, 0, -10 } }
+    model:generate("box", { min = { 0, 0, 0 }, max = { 1, 1, 1 }, density = 2000, group = "held" })
+    model:generate("box", { min = { 1, 0, 0 }, max = { 2, 1, 1 }, density = 2000, group = "held" })
+    model:generate("box", { min = { 5, 0, 0 }, max = { 6, 1, 1 }, density = 2000, group = "falls" })
+    model:blocks { group = "held" }:fix()
+    model:joint("*", "coulomb", { kn = 1e7, ks = 1e7, friction = 30 })
+    model:timestep { rule = rule }
+    model:cycle(200)
+    figures.equal(rule .. " contacts", #model:contacts(), 1)
+    figures.between(rule .. " step", model.dt, 1e-6, 1e-2)
+    figures.relative(rule .. " drop", -model:blocks { group = "falls" }[1].displacement[3],
+        5 * model.time ^ 2, 1e-12)
+end
+figures.finish()

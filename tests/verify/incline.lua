@@ -1,0 +1,38 @@
+-- A cube on an inclined plane: sticks or slides, its acceleration, and how far it coasts.
+local figures = require "check_figures"
+local reference = require "reference"
+local incline = require "examples.incline"
+
+local ACCELERATION = 0.001 -- relative
+local COASTING = 0.001     -- relative
+
+local function check(theta, mu, sticks, acceleration)
+    local r = incline.run { theta = theta, mu = mu }
+    local name = string.format("dip %g, friction %.5f", theta, mu)
+    figures.equal(name .. " sticks", r.sticks, sticks)
+    if sticks then
+        -- Elastic shear of the springs alone, 1e-8 m, and its ringing.
+        figures.between(name .. " moves", math.abs(r.slip), 0, 1e-8)
+    else
+        figures.relative(name .. " acceleration", r.acceleration, acceleration, ACCELERATION)
+    end
+end
+
+for _, row in ipairs(reference.incline) do
+    check(row.theta, row.mu, row.sticks, row.acceleration)
+end
+
+-- A thousandth of friction above and below the threshold.
+for _, theta in ipairs { 10, 20, 30, 40 } do
+    local threshold = math.tan(math.rad(theta))
+    check(theta, threshold + 0.001, true)
+    check(theta, threshold - 0.001, false, 10 * math.cos(math.rad(theta)) * 0.001)
+end
+
+for _, row in ipairs(reference.coast) do
+    local r = incline.coast { v0 = row.v0, mu = row.mu }
+    local name = string.format("at %g m/s, friction %g", row.v0, row.mu)
+    figures.relative(name .. " stops at", r.distance, row.distance, COASTING)
+    figures.relative(name .. " stops after", r.time, row.time, COASTING)
+end
+figures.finish()

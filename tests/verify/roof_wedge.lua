@@ -1,0 +1,47 @@
+-- The roof wedge: friction at failure for every row, geometry, settlement and stresses of the first.
+local figures = require "check_figures"
+local reference = require("reference").roof_wedge
+local roof = require "examples.roof_wedge"
+
+local FRICTION = 0.005   -- relative, in the friction coefficient at failure
+local STRESS = 1e-3      -- relative; the faces shrink as the wedge moves down, by some 1e-3 of their size
+local GEOMETRY = 1e-12
+
+for i, row in ipairs(reference.table) do
+    local case = roof.cases[i]
+    for _, key in ipairs { "kn", "ks", "sigma", "dip", "height" } do
+        figures.equal(string.format("row %d %s", i, key), case[key], row[key])
+    end
+    local r = roof.run(case)
+    figures.relative(string.format("row %d friction", i), r.mu, row.mu, FRICTION)
+    -- The closed form is of small displacements: it errs by about settlement / height.
+    figures.relative(string.format("row %d settlement", i), r.settlement, row.settlement,
+        1e-4 + 2 * row.settlement / case.height)
+end
+figures.equal("rows", #reference.table, #roof.cases)
+
+local E2 = reference.E2
+local r = roof.run(roof.cases[1])
+figures.equal("blocks", r.blocks, E2.blocks)
+figures.relative("volume", r.volume, E2.volume, GEOMETRY)
+figures.relative("settlement", r.settlement, E2.settlement, STRESS)
+for _, which in ipairs { "min", "max" } do
+    figures.relative("normal stress, " .. which, r.stresses["normal_" .. which], E2.normal_stress, STRESS)
+    figures.relative("shear stress, " .. which, r.stresses["shear_" .. which], E2.shear_stress, STRESS)
+end
+
+-- Before the weight acts, the faces carry the initial stress as given.
+local model, wedge = roof.build(roof.cases[1])
+for k = 1, 3 do
+    figures.near("centroid " .. k, wedge[1].centroid[k], E2.centroid[k], GEOMETRY)
+end
+local rock = model:blocks { fixed = true }
+for _, joint in ipairs { "J1", "J2", "J3" } do
+    local faces = model:contacts { joint = joint, between = { wedge, rock } }
+    figures.relative(joint .. " area", faces:sum "area", E2.face_area, 1e-10)
+    figures.relative(joint .. " initial normal stress", faces:sum "normal_force" / faces:sum "area",
+        E2.initial_normal_stress, 1e-10)
+    figures.relative(joint .. " initial shear stress", faces:max "shear_stress",
+        E2.initial_shear_stress, 1e-10)
+end
+figures.finish()
