@@ -47,6 +47,7 @@ static void add_columns(struct tl_cycle *c)
     TL_COLUMN(t, c, mass, 0);
     TL_COLUMN(t, c, inertia, 0);
     TL_COLUMN(t, c, alpha, 0);
+    TL_COLUMN(t, c, scale, 0);
 }
 
 tl_status tl_cycle_prepare(tl_model *m)

@@ -14,6 +14,9 @@
 typedef struct tl_sums {
     double unbalanced;    /* sum of |unbalanced force| */
     double contact_force; /* sum over bodies of the sum of |contact forces| */
+    double largest;       /* largest |unbalanced force| */
+    double local;  /* largest |unbalanced force| over the body's own contact forces or weight */
+    size_t bodies; /* that are free */
     double weight;
     double kinetic;    /* sum of (m v.v + w.I w) / 2 */
     double max_speed2; /* largest v.v */
@@ -26,6 +29,7 @@ struct tl_cycle {
     double *contact_force; /* sum of |contact forces| */
     double *velocity[3], *angular_velocity[3], *force[3], *moment[3];
     double *mass, *inertia;
+    double *scale; /* of the inertia: 1 without mass scaling */
     double *damping_force[3], *damping_moment[3], *alpha;
     /* per body, for the energy ledger and for driven bodies */
     tl_vec3 *reaction_force, *reaction_moment; /* of the contacts alone */
@@ -37,6 +41,8 @@ struct tl_cycle {
     struct tl_ledger *chunk_ledger, *ledger; /* energy.c */
     double kinetic_before;                   /* of the last step, for its rate */
     double dt;                               /* the step in use */
+    uint64_t scaled_for; /* version of the contacts for which the inertia was scaled; 0: none */
+    double scaled_step;  /* M/(2K) of the bodies after scaling */
     /* the first failure of a parallel phase, by chunk, and the point it came from */
     pthread_mutex_t failure_lock;
     tl_error failure;
@@ -54,8 +60,15 @@ void tl_cycle_failed(tl_model *m, size_t chunk, tl_status status, size_t point, 
 tl_status tl_laws_apply(tl_model *m);
 /* Each body gathers its contacts in fixed order, and its weight; sums for the convergence measures. */
 void tl_gather(tl_model *m);
-/* The unbalanced force ratio of the last gather. */
-double tl_unbalanced_ratio(const tl_model *m);
+/* An unbalanced force ratio of the last gather. */
+double tl_unbalanced_ratio(const tl_model *m, tl_ratio_measure measure);
+
+/* Watches for steady failure: watch.c. */
+typedef struct tl_watch tl_watch;
+tl_watch *tl_watch_begin(const tl_model *m);
+/* After each step; gives the id of the block that fails steadily, or 0. */
+tl_id tl_watch_step(tl_watch *watch, const tl_model *m);
+void tl_watch_end(tl_watch *watch);
 /* The step to take, s. */
 tl_status tl_timestep_choose(tl_model *m, double *dt);
 tl_status tl_damping_apply(tl_model *m, double dt);

@@ -58,9 +58,16 @@ static void gather_range(void *user, size_t begin, size_t end, size_t chunk, uns
         if (b->fixed[body] == TL_FIX_ALL)
             continue;
         double v2 = tl_v3_norm2(b->v[body]);
-        sums.unbalanced += tl_v3_norm(b->force[body]);
-        sums.contact_force += m->cycle->contact_force[body];
-        sums.weight += b->mass[body] * tl_v3_norm(m->config.gravity);
+        double unbalanced = tl_v3_norm(b->force[body]);
+        double contact = m->cycle->contact_force[body];
+        double weight = b->mass[body] * tl_v3_norm(m->config.gravity);
+        double against = contact > 0 ? contact : weight;
+        sums.unbalanced += unbalanced;
+        sums.contact_force += contact;
+        sums.weight += weight;
+        sums.largest = fmax(sums.largest, unbalanced);
+        sums.local = fmax(sums.local, against > 0 ? unbalanced / against : 0);
+        sums.bodies++;
         sums.kinetic += 0.5 * (b->mass[body] * v2 + spin_energy2(m, body));
         sums.max_speed2 = fmax(sums.max_speed2, v2);
         sums.smallest_mass = fmin(sums.smallest_mass, b->mass[body]);
@@ -79,15 +86,22 @@ void tl_gather(tl_model *m)
         c->sums.unbalanced += s->unbalanced;
         c->sums.contact_force += s->contact_force;
         c->sums.weight += s->weight;
+        c->sums.largest = fmax(c->sums.largest, s->largest);
+        c->sums.local = fmax(c->sums.local, s->local);
+        c->sums.bodies += s->bodies;
         c->sums.kinetic += s->kinetic;
         c->sums.max_speed2 = fmax(c->sums.max_speed2, s->max_speed2);
         c->sums.smallest_mass = fmin(c->sums.smallest_mass, s->smallest_mass);
     }
 }
 
-double tl_unbalanced_ratio(const tl_model *m)
+double tl_unbalanced_ratio(const tl_model *m, tl_ratio_measure measure)
 {
     const tl_sums *s = &m->cycle->sums;
+    if (measure == TL_RATIO_LOCAL)
+        return s->local;
     double against = s->contact_force > 0 ? s->contact_force : s->weight;
-    return against > 0 ? s->unbalanced / against : 0;
+    double unbalanced =
+        measure == TL_RATIO_MAXIMUM ? s->largest * (double)s->bodies : s->unbalanced;
+    return against > 0 ? unbalanced / against : 0;
 }

@@ -122,6 +122,9 @@ static void move_body(const move_job *job, uint32_t i)
                                          c->damping_moment[2][i]));
         alpha = c->alpha[i];
     }
+    /* mass scaling: less motion for the same force */
+    force = tl_v3_scale(1 / c->scale[i], force);
+    moment = tl_v3_scale(1 / c->scale[i], moment);
     double d1 = 1 - 0.5 * alpha * job->kick, d2 = 1 / (1 + 0.5 * alpha * job->kick);
     tl_vec3 v =
         tl_v3_scale(d2, tl_v3_madd(tl_v3_scale(d1, b->v[i]), job->kick / b->mass[i], force));

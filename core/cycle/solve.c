@@ -3,11 +3,11 @@
 
 #include <time.h>
 
-static const char *const reason_names[] = {[TL_SOLVE_RATIO] = "ratio",
-                                           [TL_SOLVE_CYCLES] = "cycles",
-                                           [TL_SOLVE_TIME] = "time",
-                                           [TL_SOLVE_STOP] = "stop",
-                                           [TL_SOLVE_INTERRUPT] = "interrupt"};
+static const char *const reason_names[] = {
+    [TL_SOLVE_RATIO] = "ratio",         [TL_SOLVE_CYCLES] = "cycles",
+    [TL_SOLVE_TIME] = "time",           [TL_SOLVE_STOP] = "stop",
+    [TL_SOLVE_INTERRUPT] = "interrupt", [TL_SOLVE_VELOCITY] = "velocity",
+    [TL_SOLVE_FAILURE] = "failure"};
 
 const char *tl_solve_reason_name(tl_solve_reason reason)
 {
@@ -31,7 +31,9 @@ typedef struct progress {
 static void measure(const tl_model *m, const progress *p)
 {
     tl_solve_result *r = p->result;
-    r->ratio = tl_unbalanced_ratio(m);
+    r->ratio = tl_unbalanced_ratio(m, TL_RATIO_AVERAGE);
+    r->ratio_maximum = tl_unbalanced_ratio(m, TL_RATIO_MAXIMUM);
+    r->ratio_local = tl_unbalanced_ratio(m, TL_RATIO_LOCAL);
     r->max_velocity = sqrt(m->cycle->sums.max_speed2);
     r->cycles = m->cycles - p->cycles_0;
     r->time = m->time;
@@ -63,8 +65,12 @@ static bool ended(tl_model *m, const progress *p, tl_status *status)
         return true;
     if (atomic_load(&m->interrupted))
         *reason = TL_SOLVE_INTERRUPT;
-    else if (s->ratio > 0 && tl_unbalanced_ratio(m) < s->ratio)
+    else if (s->ratio > 0 && tl_unbalanced_ratio(m, (tl_ratio_measure)s->measure) < s->ratio)
         *reason = TL_SOLVE_RATIO;
+    else if (p->result->max_velocity < s->velocity)
+        *reason = TL_SOLVE_VELOCITY;
+    else if (s->stop_at_failure && p->result->failing)
+        *reason = TL_SOLVE_FAILURE;
     else if (done >= s->max_cycles)
         *reason = TL_SOLVE_CYCLES;
     else if (m->time - p->time_0 >= s->max_time)
@@ -74,6 +80,16 @@ static bool ended(tl_model *m, const progress *p, tl_status *status)
     return true;
 }
 
+static void say_failure(tl_model *m, const tl_solve_result *r)
+{
+    uint32_t row = tl_block_row_quiet(m, r->failing);
+    double speed = row == TL_NO_ROW ? 0 : tl_v3_norm(tl_block_velocity(m, row));
+    tl_model_say(m,
+                 "solve: the model fails: block %u moves on at %.3g m/s without slowing down while "
+                 "the unbalanced force ratio stays at %.3g",
+                 r->failing, speed, r->ratio);
+}
+
 static tl_status run(tl_model *m, const tl_solve *solve, tl_solve_result *result)
 {
     *result = (tl_solve_result){.reason = TL_SOLVE_CYCLES, .time = m->time};
@@ -81,16 +97,23 @@ static tl_status run(tl_model *m, const tl_solve *solve, tl_solve_result *result
         return tl_fail(&m->error, TL_E_STATE,
                        "cycle and solve cannot be called from a function that a run has called");
     progress p = {solve, result, m->cycles, m->time, wall_clock()};
+    tl_watch *watch = NULL;
+    if (solve->ratio > 0 && !(watch = tl_watch_begin(m)))
+        return tl_fail_memory(&m->error);
     atomic_store(&m->interrupted, false);
     tl_status status = TL_OK;
     while (result->cycles < solve->max_cycles) {
         status = tl_step(m);
         if (status != TL_OK)
-            return status;
+            break;
         measure(m, &p);
+        result->failing = watch ? tl_watch_step(watch, m) : TL_NO_ID;
         if (ended(m, &p, &status))
             break;
     }
+    tl_watch_end(watch);
+    if (status == TL_OK && result->failing)
+        say_failure(m, result);
     return status;
 }
 
@@ -108,6 +131,6 @@ tl_status tl_model_cycle(tl_model *m, int64_t cycles, tl_solve_result *result)
 {
     if (cycles < 0)
         return tl_fail(&m->error, TL_E_ARGUMENT, "cycle: %lld must be >= 0", (long long)cycles);
-    const tl_solve plain = {.max_cycles = cycles, .max_time = NAN};
+    const tl_solve plain = {.max_cycles = cycles, .max_time = NAN, .velocity = NAN};
     return run(m, &plain, result);
 }

@@ -4,6 +4,7 @@
  * "body":  the least over bodies of FRAC 2 (M / (2 K))^1/2 for translation, with K the sum over the
  *          body's contacts, and for rotation, with I the smallest moment of inertia and K r^2 summed over
  *          contact points.
+ * Mass scaling gives every free body the M/(2K) and I/(2 K r^2) of the one that has the most.
  * Where no free body is in contact, the stiffest law on the largest face of a free block stands in for
  * K. */
 #include "cycle/cycle_room.h"
@@ -11,6 +12,10 @@
 /* The step in use is kept while the rule gives one between it and this many times it: a step that
  * changes all the time would cost accuracy. */
 #define STEP_GROWTH 1.1
+
+/* Steps after which mass scaling looks at the bodies' stiffness again even when no contact has come or
+ * gone: areas may have grown. */
+#define LOOK_EVERY 64
 
 static double law_stiffness(const tl_model *m, uint32_t material)
 {
@@ -41,17 +46,44 @@ static double largest_free_face(const tl_model *m)
     return largest;
 }
 
-/* M_min / (2 K_max) */
-static double paper_rule(const tl_model *m)
+/* M or I over 2 K of the body, or of the smallest mass and the stiffest contact, that controls the step. */
+typedef struct bound {
+    double least;
+    uint32_t body;    /* row, or TL_NO_ROW */
+    uint32_t contact; /* row of the contact, or TL_NO_ROW */
+    double stiffness;
+} bound;
+
+static bool is_free(const tl_model *m, uint32_t body)
+{
+    return m->bodies.fixed[body] != TL_FIX_ALL;
+}
+
+/* M_min / (2 K_max), with K_max over the contacts of free bodies. */
+static bound paper_rule(const tl_model *m)
 {
     const tl_contacts *c = &m->detect->contacts;
-    double k = 0;
-    for (uint32_t i = 0; i < c->table.rows; i++)
-        if (c->material[i] != TL_NO_ROW)
-            k = fmax(k, law_stiffness(m, c->material[i]) * c->area[i]);
-    if (!(k > 0))
-        k = stiffest_law(m) * largest_free_face(m);
-    return m->cycle->sums.smallest_mass / (2 * k);
+    bound out = {.body = TL_NO_ROW, .contact = TL_NO_ROW};
+    for (uint32_t i = 0; i < c->table.rows; i++) {
+        if (c->material[i] == TL_NO_ROW ||
+            (!is_free(m, m->blocks.body[c->a[i]]) && !is_free(m, m->blocks.body[c->b[i]])))
+            continue;
+        double k = law_stiffness(m, c->material[i]) * c->area[i];
+        if (k > out.stiffness) {
+            out.stiffness = k;
+            out.contact = i;
+        }
+    }
+    if (out.contact == TL_NO_ROW)
+        out.stiffness = stiffest_law(m) * largest_free_face(m);
+    double mass = INFINITY;
+    for (uint32_t body = 0; body < m->bodies.table.rows; body++)
+        if (is_free(m, body) && m->bodies.mass[body] < mass) {
+            mass = m->bodies.mass[body];
+            out.body = body;
+        }
+    out.least = mass / (2 * out.stiffness);
+    return out;
 }
 
 /* Sums of K and K r^2 over the contact points of a body. */
@@ -79,28 +111,71 @@ static void body_stiffness(const tl_model *m, uint32_t body, double *k, double *
     }
 }
 
-static double body_rule(const tl_model *m)
+/* The lesser of M/(2K) and I/(2 K r^2) of a free body; infinite without contacts. */
+static double body_bound(const tl_model *m, uint32_t body, double *stiffness)
 {
     const tl_bodies *b = &m->bodies;
-    double least = INFINITY;
+    double k_r2, least = INFINITY;
+    body_stiffness(m, body, stiffness, &k_r2);
+    if (*stiffness > 0)
+        least = b->mass[body] / (2 * *stiffness);
+    if (k_r2 > 0 && !(b->fixed[body] & TL_FIX_ROTATION)) {
+        tl_vec3 i = b->moments[body];
+        double inertia =
+            m->config.rotation == TL_ROTATION_PAPER ? b->round[body] : fmin(i.x, fmin(i.y, i.z));
+        least = fmin(least, inertia / (2 * k_r2));
+    }
+    return least;
+}
+
+static bound body_rule(const tl_model *m)
+{
+    bound out = {INFINITY, TL_NO_ROW, TL_NO_ROW, 0};
+    for (uint32_t body = 0; body < m->bodies.table.rows; body++) {
+        double k = 0, least = is_free(m, body) ? body_bound(m, body, &k) : INFINITY;
+        if (least < out.least)
+            out = (bound){least, body, TL_NO_ROW, k};
+    }
+    return out.body == TL_NO_ROW ? paper_rule(m) : out; /* no moving body touches another */
+}
+
+/* Scales the inertia of the free bodies up to the bound of the one that needs it least. */
+static bound scale_inertia(tl_model *m)
+{
+    struct tl_cycle *c = m->cycle;
+    const tl_bodies *b = &m->bodies;
+    uint64_t version = 1 + m->detect->changes + (uint64_t)m->cycles / LOOK_EVERY + m->constraints +
+                       m->laws + m->structure;
+    bound out = {c->scaled_step, TL_NO_ROW, TL_NO_ROW, 0};
+    if (version == c->scaled_for)
+        return out;
+    double most = 0;
     for (uint32_t body = 0; body < b->table.rows; body++) {
-        if (b->fixed[body] == TL_FIX_ALL)
-            continue;
-        double k, k_r2;
-        body_stiffness(m, body, &k, &k_r2);
-        if (k > 0)
-            least = fmin(least, b->mass[body] / (2 * k));
-        if (k_r2 > 0 && !(b->fixed[body] & TL_FIX_ROTATION)) {
-            tl_vec3 i = b->moments[body];
-            double inertia = m->config.rotation == TL_ROTATION_PAPER ? b->round[body]
-                                                                     : fmin(i.x, fmin(i.y, i.z));
-            least = fmin(least, inertia / (2 * k_r2));
+        double k = 0, least = is_free(m, body) ? body_bound(m, body, &k) : INFINITY;
+        c->scale[body] = least; /* for the second pass */
+        if (isfinite(least) && least > most) {
+            most = least;
+            out = (bound){least, body, TL_NO_ROW, k};
         }
     }
-    /* No moving body touches another, though fixed ones may touch each other. */
-    if (!isfinite(least))
-        least = m->cycle->sums.smallest_mass / (2 * stiffest_law(m) * largest_free_face(m));
-    return least;
+    if (!(most > 0))
+        out = paper_rule(m);
+    for (uint32_t body = 0; body < b->table.rows; body++)
+        c->scale[body] = isfinite(c->scale[body]) ? most / c->scale[body] : 1;
+    c->scaled_for = version;
+    c->scaled_step = out.least;
+    return out;
+}
+
+static bound controlling(tl_model *m)
+{
+    struct tl_cycle *c = m->cycle;
+    if (m->mass_scaling)
+        return scale_inertia(m);
+    for (size_t body = 0; body < c->table.rows; body++)
+        c->scale[body] = 1;
+    c->scaled_for = 0;
+    return m->timestep.rule == TL_TIMESTEP_BODY ? body_rule(m) : paper_rule(m);
 }
 
 static double damping_factor(const tl_model *m)
@@ -111,9 +186,10 @@ static double damping_factor(const tl_model *m)
     return ops->step_factor ? ops->step_factor(m->damping_self) : 1;
 }
 
-tl_status tl_timestep_choose(tl_model *m, double *dt)
+static tl_status choose(tl_model *m, double *dt, bound *by)
 {
     struct tl_cycle *c = m->cycle;
+    *by = controlling(m);
     if (!isnan(m->timestep.dt)) {
         *dt = c->dt = m->timestep.dt;
         return TL_OK;
@@ -122,8 +198,7 @@ tl_status tl_timestep_choose(tl_model *m, double *dt)
         *dt = c->dt > 0 ? c->dt : 1;
         return TL_OK;
     }
-    double least = m->timestep.rule == TL_TIMESTEP_BODY ? body_rule(m) : paper_rule(m);
-    double fresh = m->timestep.fraction * damping_factor(m) * 2 * sqrt(least);
+    double fresh = m->timestep.fraction * damping_factor(m) * 2 * sqrt(by->least);
     if (!isfinite(fresh) || !(fresh > 0))
         return tl_fail(
             &m->error, TL_E_STATE,
@@ -133,6 +208,12 @@ tl_status tl_timestep_choose(tl_model *m, double *dt)
         c->dt = fresh;
     *dt = c->dt;
     return TL_OK;
+}
+
+tl_status tl_timestep_choose(tl_model *m, double *dt)
+{
+    bound by;
+    return choose(m, dt, &by);
 }
 
 tl_status tl_model_timestep(tl_model *m, const tl_timestep *timestep)
@@ -148,8 +229,23 @@ tl_status tl_model_timestep(tl_model *m, const tl_timestep *timestep)
     return TL_OK;
 }
 
-tl_status tl_model_dt(tl_model *m, double *dt)
+tl_status tl_model_mass_scaling(tl_model *m, bool on)
 {
+    m->mass_scaling = on;
+    m->constraints++;
+    if (m->cycle)
+        m->cycle->dt = 0;
+    return TL_OK;
+}
+
+bool tl_model_mass_scaled(const tl_model *m)
+{
+    return m->mass_scaling;
+}
+
+tl_status tl_model_timestep_report(tl_model *m, tl_timestep_report *report)
+{
+    *report = (tl_timestep_report){0};
     tl_status status = tl_cycle_prepare(m);
     if (status == TL_OK)
         status = tl_detect_refresh(m);
@@ -157,8 +253,33 @@ tl_status tl_model_dt(tl_model *m, double *dt)
         return status;
     if (m->cycles == 0)
         tl_gather(m);
-    double in_use = m->cycle->dt;
-    status = tl_timestep_choose(m, dt);
-    m->cycle->dt = in_use;
+    struct tl_cycle *c = m->cycle;
+    double in_use = c->dt, scaled_step = c->scaled_step;
+    uint64_t scaled_for = c->scaled_for;
+    c->scaled_for = 0; /* look anew, so that the body can be named */
+    bound by;
+    status = choose(m, &report->dt, &by);
+    c->dt = in_use;
+    c->scaled_for = scaled_for;
+    c->scaled_step = scaled_step;
+    if (status != TL_OK || by.body == TL_NO_ROW)
+        return status;
+    report->block = m->bodies.id[by.body];
+    report->mass = m->bodies.mass[by.body];
+    report->stiffness = by.stiffness;
+    if (by.contact != TL_NO_ROW) {
+        /* the paper's rule joins the smallest mass and the stiffest contact, wherever they are */
+        const tl_contacts *contacts = &m->detect->contacts;
+        bool a_free = is_free(m, m->blocks.body[contacts->a[by.contact]]);
+        report->partner = a_free ? contacts->id_a[by.contact] : contacts->id_b[by.contact];
+    }
+    return TL_OK;
+}
+
+tl_status tl_model_dt(tl_model *m, double *dt)
+{
+    tl_timestep_report report;
+    tl_status status = tl_model_timestep_report(m, &report);
+    *dt = report.dt;
     return status;
 }

@@ -409,6 +409,7 @@ static tl_status settle(tl_model *m, bool follow)
     }
     if (changed == 0 && !d->rows_changed)
         return TL_OK;
+    d->changes++;
     status = tl_contacts_repack(m);
     d->rows_changed = status != TL_OK;
     for (uint32_t row = 0; row < c->table.rows && status == TL_OK; row++) {

@@ -160,6 +160,7 @@ typedef struct tl_run {
 typedef struct tl_detect {
     tl_pair *pairs;
     size_t pair_count, pair_room;
+    uint64_t changes; /* counts births, deaths and growth of contacts */
     bool rows_changed;  /* since contacts were laid out */
     double reach;       /* half the skin of the broad phase */
     double *odometer_0; /* of each body, when the broad phase was made */

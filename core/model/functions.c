@@ -88,10 +88,21 @@ static const tl_param cycle_params[] = {
              .flags = TL_PARAM_REQUIRED | TL_PARAM_MAX_OPEN, .min = 0.0, .max = INFINITY),
 };
 
+static const char *const ratio_measures[] = {[TL_RATIO_AVERAGE] = "average",
+                                             [TL_RATIO_MAXIMUM] = "maximum",
+                                             [TL_RATIO_LOCAL] = "local",
+                                             NULL};
+
 static const tl_param solve_params[] = {
     TL_PARAM(TL_PARAM_REAL, tl_solve, ratio, "",
              "ends when the unbalanced force ratio falls below this; 0 for never", .def = {1e-5},
              .min = 0.0, .max = 1.0),
+    TL_PARAM(TL_PARAM_ENUM, tl_solve, measure, "", "which unbalanced force ratio ends the run",
+             .choices = ratio_measures),
+    TL_PARAM(TL_PARAM_REAL, tl_solve, velocity, "m/s", "ends when no block is faster than this",
+             .flags = TL_PARAM_OPTIONAL, .min = 0.0, .max = INFINITY),
+    TL_PARAM(TL_PARAM_BOOL, tl_solve, stop_at_failure, "",
+             "ends when some block is seen to fail steadily", .def = {0.0}),
     TL_PARAM(TL_PARAM_INT, tl_solve, max_cycles, "", "largest number of steps of this call",
              .def = {1000000.0}, .min = 0.0, .max = INFINITY, .flags = TL_PARAM_MAX_OPEN),
     TL_PARAM(TL_PARAM_REAL, tl_solve, max_time, "s", "longest simulated time of this call",

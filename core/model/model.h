@@ -151,6 +151,7 @@ struct tl_model {
     atomic_bool interrupted;
     bool running; /* inside a callback: no blocks may be made or deleted */
     bool warned_undamped;
+    bool mass_scaling;
 
     struct tl_detect *detect; /* of the detect room */
     void (*detect_destroy)(struct tl_detect *);

@@ -162,6 +162,21 @@ TL_API tl_status tl_model_timestep(tl_model *model, const tl_timestep *timestep)
 /* The step the next cycle will use, s. */
 TL_API tl_status tl_model_dt(tl_model *model, double *dt);
 
+/* Where the step comes from. */
+typedef struct tl_timestep_report {
+    double dt;
+    tl_id block, partner; /* the block that controls it, and the block of the contact; 0: none */
+    double mass,
+        stiffness; /* of the block's body, kg; of the contact or of all its contacts, N/m */
+} tl_timestep_report;
+
+TL_API tl_status tl_model_timestep_report(tl_model *model, tl_timestep_report *report);
+
+/* Scales the inertia (not the weight) of every free body up to that of the one with the longest stable
+ * step, for finding equilibria: paths, times and velocities then mean nothing. */
+TL_API tl_status tl_model_mass_scaling(tl_model *model, bool on);
+TL_API bool tl_model_mass_scaled(const tl_model *model);
+
 typedef struct tl_contact_area {
     double fraction;   /* of the smaller block's mean face area; >= 0 */
     double absolute;   /* m2; NaN: by the fraction. Given, it also serves edges of parallel faces */
@@ -178,14 +193,26 @@ typedef enum tl_solve_reason {
     TL_SOLVE_CYCLES,
     TL_SOLVE_TIME,
     TL_SOLVE_STOP,
-    TL_SOLVE_INTERRUPT
+    TL_SOLVE_INTERRUPT,
+    TL_SOLVE_VELOCITY,
+    TL_SOLVE_FAILURE
 } tl_solve_reason;
 
+/* Which unbalanced force ratio ends a solve. */
+typedef enum tl_ratio_measure {
+    TL_RATIO_AVERAGE, /* mean unbalanced force over mean sum of contact forces, of the free bodies */
+    TL_RATIO_MAXIMUM, /* largest unbalanced force over mean sum of contact forces */
+    TL_RATIO_LOCAL    /* largest ratio of a body's unbalanced force to its own contact forces */
+} tl_ratio_measure;
+
 typedef struct tl_solve {
-    double ratio;       /* ends when the unbalanced force ratio falls below; 0: never */
-    int64_t max_cycles; /* of this call */
-    double max_time;    /* s of this call; NaN: no limit */
-    int64_t every;      /* steps between calls of `progress` and `stop` */
+    double ratio;            /* ends when the unbalanced force ratio falls below; 0: never */
+    int32_t measure;         /* tl_ratio_measure */
+    double velocity;         /* ends when no body is faster, m/s; NaN: no limit */
+    int32_t stop_at_failure; /* ends when a steady failure is seen */
+    int64_t max_cycles;      /* of this call */
+    double max_time;         /* s of this call; NaN: no limit */
+    int64_t every;           /* steps between calls of `progress` and `stop` */
     tl_step_fn progress;
     bool (*stop)(void *user, tl_model *model);
     void *user;
@@ -193,8 +220,12 @@ typedef struct tl_solve {
 
 typedef struct tl_solve_result {
     tl_solve_reason reason;
-    double ratio, time, wall, max_velocity;
+    double ratio, time, wall, max_velocity; /* ratio: the average one */
+    double ratio_maximum, ratio_local;
     int64_t cycles;
+    /* Steady failure: over three windows of steps some block has moved on in one direction, each time
+     * at least as far as before, while the ratio stayed. 0: none seen. */
+    tl_id failing;
 } tl_solve_result;
 
 TL_API const char *tl_solve_reason_name(tl_solve_reason reason);
