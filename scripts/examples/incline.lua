@@ -1,4 +1,5 @@
--- incline.lua - a cube on an inclined plane: does it stick or slip, how fast, and how far does it coast?
+-- incline.lua - a cube on an inclined plane: does it stick or slip, how fast, and how far does it
+-- coast?
 --
 --     build/release/talus scripts/examples/incline.lua
 --
@@ -11,8 +12,9 @@ local talus = require "talus"
 local incline = {}
 
 local GRAVITY, DENSITY = 10, 2000
--- Very stiff springs: the cube stands on its front edge more than on its rear, and springs that yield by d
--- at the mean would turn it by about d / 1 m and so falsify the inclination. Here d is 1e-8 m.
+-- Very stiff springs: the cube stands on its front edge more than on its rear, and springs that
+-- yield by d at the mean would turn it by about d / 1 m and so falsify the inclination. Here d is
+-- 1e-8 m.
 local STIFFNESS = 2e12
 local AT_REST = 1e-8       -- unbalanced force ratio that counts as equilibrium
 
@@ -45,10 +47,13 @@ end
 -- A cube of 1 m at rest on a level plane that presses it with g cos(theta) only.
 local function build(theta, mu)
     local model = talus.model { gravity = { 0, 0, -GRAVITY * math.cos(theta) } }
-    model:generate("box", { min = { -2, -2, -1 }, max = { 4, 3, 0 }, density = DENSITY, group = "plane" })
-    model:generate("box", { min = { 0, 0, 0 }, max = { 1, 1, 1 }, density = DENSITY, group = "cube" })
+    model:generate("box", { min = { -2, -2, -1 }, max = { 4, 3, 0 }, density = DENSITY,
+        group = "plane" })
+    model:generate("box", { min = { 0, 0, 0 }, max = { 1, 1, 1 }, density = DENSITY,
+        group = "cube" })
     model:blocks { group = "plane" }:fix()
-    model:joint("*", "coulomb", { kn = STIFFNESS, ks = STIFFNESS, friction = math.deg(math.atan(mu)) })
+    model:joint("*", "coulomb", { kn = STIFFNESS, ks = STIFFNESS,
+        friction = math.deg(math.atan(mu)) })
     model:timestep { rule = "body", fraction = 0.5 }
     model:damping "local"
     model:solve { ratio = AT_REST }
@@ -60,8 +65,8 @@ function incline.run(case)
     local theta = math.rad(case.theta)
     local model, cube = build(theta, case.mu)
     model.gravity = { GRAVITY * math.sin(theta), 0, -GRAVITY * math.cos(theta) }
-    -- Local damping brakes an accelerated block but leaves the forces at which it is steady: after these
-    -- steps the cube is at rest, or slides without rocking.
+    -- Local damping brakes an accelerated block but leaves the forces at which it is steady: after
+    -- these steps the cube is at rest, or slides without rocking.
     local settled = model:solve { ratio = AT_REST, max_cycles = 3000 }
     cube:reset_displacement()
     model:damping "none"
@@ -72,7 +77,8 @@ function incline.run(case)
     local gained, time = cube[1].velocity[1] - before, model.time - begin
     return {
         sticks = settled.reason == "ratio", acceleration = gained / time,
-        slip = cube[1].displacement[1], expected = incline.closed_form(case), model = model, cube = cube,
+        slip = cube[1].displacement[1], expected = incline.closed_form(case), model = model,
+            cube = cube,
     }
 end
 
@@ -91,7 +97,8 @@ function incline.coast(case)
     assert(run.reason == "stop", "the cube does not stop")
     return {
         distance = cube[1].displacement[1], time = model.time - begin,
-        expected = { distance = case.v0 ^ 2 / (2 * case.mu * GRAVITY), time = case.v0 / (case.mu * GRAVITY) },
+        expected = { distance = case.v0 ^ 2 / (2 * case.mu * GRAVITY),
+            time = case.v0 / (case.mu * GRAVITY) },
     }
 end
 
@@ -113,7 +120,8 @@ function incline.main()
     print("  speed    friction   stops after expected, obtained    at expected, obtained")
     for _, case in ipairs(incline.coasting) do
         local r = incline.coast(case)
-        print(string.format("%4.1f m/s    %.1f            %.5f s  %.5f s       %.5f m  %.5f m   (%+.3f %%)",
+        print(string.format("%4.1f m/s    %.1f            %.5f s  %.5f s       %.5f m  %.5f m"
+            .. "   (%+.3f %%)",
             case.v0, case.mu, r.expected.time, r.time, r.expected.distance, r.distance,
             100 * (r.distance / r.expected.distance - 1)))
     end

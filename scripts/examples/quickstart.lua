@@ -2,9 +2,9 @@
 --
 --     build/release/talus scripts/examples/quickstart.lua [FOLDER]
 --
--- Axes: x east, y north, z up. Angles in degrees, everything else in SI units.
--- The example is the first one of Hart, Cundall and Lemos, Int. J. Rock Mech. Min. Sci. 25 (1988) 117-125;
--- wedge.lua solves more of its kind and explains the closed form, E. Hoek and J. Bray's.
+-- Axes: x east, y north, z up. Angles in degrees, everything else in SI units. The example is the
+-- first one of Hart, Cundall and Lemos, Int. J. Rock Mech. Min. Sci. 25 (1988) 117-125; wedge.lua
+-- solves more of its kind and explains the closed form, E. Hoek and J. Bray's.
 local talus = require "talus"
 
 local folder = arg[1] or "out/quickstart"
@@ -14,7 +14,7 @@ local function degrees(coefficient)
     return math.deg(math.atan(coefficient))
 end
 
-print "A wedge of rock on two joints, dipping 40 deg to the south-east and 60 deg to the south-west."
+print "A wedge of rock on two joints that dip 40 deg to the south-east and 60 to the south-west."
 
 -- 1. Rock: a box, cut by both joints. What lies above both is the wedge.
 local model = talus.model { gravity = { 0, 0, -10 } }
@@ -54,7 +54,8 @@ local function holds(friction)
         model:joint(joint, { friction = degrees(friction) })
     end
     wedge:reset_displacement()
-    local run = model:solve { ratio = 1e-6, every = 50, stop = function() return slip() > SLIDING end }
+    local run = model:solve { ratio = 1e-6, every = 50,
+        stop = function() return slip() > SLIDING end }
     return run.reason == "ratio", run
 end
 
@@ -84,11 +85,12 @@ until not still
 local failure = 0.5 * (friction + last)
 print(string.format([[
 
-It slides at a friction coefficient of %.3f; the closed form says %.3f (%+.1f %%). That lets the wedge
-move straight only; ours also turns a little as it settles, which costs about a hundredth.
+It slides at a friction coefficient of %.3f; the closed form says %.3f (%+.1f %%). The closed form
+lets it move straight only; here it also turns a little as it settles, which costs a hundredth.
 ]], failure, CLOSED_FORM, 100 * (failure / CLOSED_FORM - 1)))
 
--- 5. The slide itself, at three quarters of that friction and without damping: a picture every 0.05 s.
+-- 5. The slide itself, at three quarters of that friction and without damping: a picture every 0.05
+-- s.
 model:damping "none"
 wedge:set { velocity = { 0, 0, 0 }, angular_velocity = { 0, 0, 0 } }
 wedge:reset_displacement()
@@ -102,8 +104,8 @@ for picture = 1, PICTURES do
     model:solve { ratio = 0, max_time = begin + picture * INTERVAL - model.time }
     model:write_vtk(folder .. "/wedge")
 end
-print(string.format("Let go at a friction of %.3f, it slides %.2f m in %.1f s: %d pictures written to %s.",
+print(string.format("Let go at a friction of %.3f, it slides %.2f m in %.1f s: %d pictures in %s.",
     0.75 * failure, slip(), model.time - begin, PICTURES + 1, folder))
 print(string.format([[
 To see it: paraview %s/wedge_blocks.vtk.series   (then press Apply and Play;
-colour by "group" or "velocity"; the _contacts and _joints series beside it load the same way)]], folder))
+colour by "group" or "velocity"; the _contacts and _joints series open the same way)]], folder))

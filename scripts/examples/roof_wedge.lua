@@ -2,9 +2,10 @@
 --
 --     build/release/talus scripts/examples/roof_wedge.lua
 --
--- Three equal joints through one point above the roof z = 0 cut a pyramid of height h. The rock around it is
--- held; a horizontal stress sigma clamps the pyramid. Its weight makes it settle by d, which unloads the
--- joints' normal springs and loads their shear springs. Then the friction is lowered until it drops.
+-- Three equal joints through one point above the roof z = 0 cut a pyramid of height h. The rock
+-- around it is held; a horizontal stress sigma clamps the pyramid. Its weight makes it settle by d,
+-- which unloads the joints' normal springs and loads their shear springs. Then the friction is
+-- lowered until it drops.
 --
 -- Closed form, per unit of face area, with s = sin(dip), c = cos(dip):
 --     initial stress      N0 = sigma s^2,  S0 = sigma s c  (acting up on the wedge)
@@ -12,8 +13,9 @@
 --     settlement          d = (rho g h / 3) c / (ks s^2 + kn c^2)
 --     final stress        N = N0 - kn d c,  S = S0 + ks d s
 --     friction at failure mu = S / N
--- This is example 2 of Hart, Cundall and Lemos, Int. J. Rock Mech. Min. Sci. 25 (1988) 117-125, after
--- R. Goodman, G.-h. Shi and W. Boyle (1982), and the same for other joints, stresses and sizes.
+-- This is example 2 of Hart, Cundall and Lemos, Int. J. Rock Mech. Min. Sci. 25 (1988) 117-125,
+-- after R. Goodman, G.-h. Shi and W. Boyle (1982), and the same for other joints, stresses and
+-- sizes.
 local talus = require "talus"
 
 local roof = {}
@@ -37,7 +39,7 @@ roof.cases = {
 local DENSITY, GRAVITY = 2000, 10              -- kg/m3, m/s2
 local DIP_DIRECTIONS = { 30, 150, 270 }        -- degrees
 local CONSOLIDATION = 10                       -- friction coefficient to settle under
-local FIRST, STEP = 2, 0.999                   -- friction starts here and is lowered by 0.1 % a time
+local FIRST, STEP = 2, 0.999                   -- friction starts here, lowered by 0.1 % a time
 local AT_REST = 1e-7                           -- unbalanced force ratio that counts as equilibrium
 local DROPPING = 0.02                          -- of the height, in one step of friction
 
@@ -56,7 +58,8 @@ local function face_stresses(model, wedge)
     local result = { normal_min = math.huge, normal_max = 0, shear_min = math.huge, shear_max = 0 }
     for i = 1, #DIP_DIRECTIONS do
         local face = model:contacts { joint = "J" .. i, between = { wedge, rock } }
-        -- Stress over the whole face: the neighbours across an edge share it once the wedge has moved.
+        -- Stress over the whole face: the neighbours across an edge share it once the wedge has
+        -- moved.
         local area, shear = face:sum "area", face:sum "shear_force"
         local normal_stress = face:sum "normal_force" / area
         local shear_stress = math.sqrt(shear[1] ^ 2 + shear[2] ^ 2 + shear[3] ^ 2) / area
@@ -74,9 +77,11 @@ function roof.build(case, options)
     local h = case.height
     local apex = { 0, 0, h }
     local model = talus.model { gravity = { 0, 0, -GRAVITY }, threads = options.threads }
-    model:generate("box", { min = { -4 * h, -4 * h, 0 }, max = { 4 * h, 4 * h, 2 * h }, density = DENSITY })
+    model:generate("box", { min = { -4 * h, -4 * h, 0 }, max = { 4 * h, 4 * h, 2 * h },
+        density = DENSITY })
     for i, direction in ipairs(DIP_DIRECTIONS) do
-        model:generate("joint", { joint = "J" .. i, dip = case.dip, dip_direction = direction, origin = apex })
+        model:generate("joint", { joint = "J" .. i, dip = case.dip, dip_direction = direction,
+            origin = apex })
     end
     local wedge = model:blocks { containing = { 0, 0, h / 10 } }
     model:blocks():fix()
@@ -127,10 +132,12 @@ end
 
 function roof.main()
     print("Roof wedge: friction coefficient at which it drops, and its settlement before\n")
-    print("    kn      ks   sigma  dip  height    mu expected  obtained    error   settlement expected, obtained")
+    print("    kn      ks   sigma  dip  height    mu expected  obtained    error   settlement: "
+        .. "expected, obtained")
     for _, case in ipairs(roof.cases) do
         local r = roof.run(case)
-        print(string.format("%6.0e  %6.0e  %6.0e  %3d  %4.1f m       %8.5f  %8.5f  %+5.2f %%     %10.4e  %10.4e m",
+        print(string.format("%6.0e  %6.0e  %6.0e  %3d  %4.1f m       %8.5f  %8.5f  %+5.2f %%"
+            .. "     %10.4e  %10.4e m",
             case.kn, case.ks, case.sigma, case.dip, case.height, r.expected.mu, r.mu, 100 * r.error,
             r.expected.settlement, r.settlement))
     end

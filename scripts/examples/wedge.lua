@@ -2,29 +2,34 @@
 --
 --     build/release/talus scripts/examples/wedge.lua
 --
--- A box of rock is cut by two joints, A and B, through one point of its top. The block above both is the
--- wedge; the other three are held. Consolidated under a friction no joint has, it is at rest. Then the
--- friction is lowered, a little at a time, until the wedge no longer finds equilibrium.
+-- A box of rock is cut by two joints, A and B, through one point of its top. The block above both
+-- is the wedge; the other three are held. Consolidated under a friction no joint has, it is at
+-- rest. Then the friction is lowered, a little at a time, until the wedge no longer finds
+-- equilibrium.
 --
--- What it must do is known in closed form. Let n_A, n_B be the upward normals of the planes, and W = 1 the
--- weight. The wedge slides
---   on plane A alone   when the line of steepest descent of A leads away from B; failure at mu = tan(dip A);
+-- What it must do is known in closed form. Let n_A, n_B be the upward normals of the planes, and W
+-- = 1 the weight. The wedge slides
+--   on plane A alone   when its line of steepest descent leads away from B; failure at
+--                      mu = tan(dip A);
 --   on both            when neither does so; its direction s is the line both planes share, and the
---                      forces follow from  N_A n_A + N_B n_B - T s = z  (upwards):  T = sin(plunge of s),
+--                      forces follow from  N_A n_A + N_B n_B - T s = z  (upwards):
+--                      T = sin(plunge of s),
 --                      failure at  mu_A N_A + mu_B N_B = T.
--- (E. Hoek and J. Bray, Rock Slope Engineering; R. Goodman and G.-h. Shi, Block Theory. The first case is
--- example 1 of Hart, Cundall and Lemos, Int. J. Rock Mech. Min. Sci. 25 (1988) 117-125.)
+-- (E. Hoek and J. Bray, Rock Slope Engineering; R. Goodman and G.-h. Shi, Block Theory. The first
+-- case is example 1 of Hart, Cundall and Lemos, Int. J. Rock Mech. Min. Sci. 25 (1988) 117-125.)
 --
--- The closed form lets the wedge move straight only. A real one also turns a little as it settles, which
--- locks some shear across the direction of sliding into the joints and leaves less friction to hold it.
--- The stiffer the joints are in shear, the more: E1.run1 has the paper's ks = kn and fails 1 % early; the
--- others have ks = kn / 5 (with ks = kn the unequal frictions of W6 cost 2.3 %, the largest of all).
+-- The closed form lets the wedge move straight only. A real one also turns a little as it settles,
+-- which locks some shear across the direction of sliding into the joints and leaves less friction
+-- to hold it. The stiffer the joints are in shear, the more: E1.run1 has the paper's ks = kn and
+-- fails 1 % early; the others have ks = kn / 5 (with ks = kn the unequal frictions of W6 cost 2.3
+-- %, the largest of all).
 local talus = require "talus"
 
 local wedge = {}
 
--- Joints as {dip, dip direction} in degrees; `ks` in Pa/m. `friction` is the pair of friction coefficients
--- whose proportion is kept while they are lowered; without it, both planes have the same.
+-- Joints as {dip, dip direction} in degrees; `ks` in Pa/m. `friction` is the pair of friction
+-- coefficients whose proportion is kept while they are lowered; without it, both planes have the
+-- same.
 wedge.cases = {
     { name = "E1.run1", A = { 40, 130 }, B = { 60, 220 }, ks = 1e7 },
     { name = "W1", A = { 30, 130 }, B = { 60, 220 } },
@@ -38,12 +43,12 @@ wedge.cases = {
 }
 
 local DENSITY, GRAVITY = 2000, 10        -- kg/m3, m/s2
-local KN, KS = 1e7, 2e6                  -- Pa/m, stiffness of the joints unless a case says otherwise
+local KN, KS = 1e7, 2e6                  -- Pa/m, of the joints, unless a case says otherwise
 local APEX = { 0, 0.5, 1 }               -- where both joints meet the top of the box
 local CONSOLIDATION = 10                 -- friction coefficient to settle under
-local FIRST, STEP = 3, 0.998             -- the friction scale starts here and is lowered by 0.2 % a time
+local FIRST, STEP = 3, 0.998             -- the friction scale starts here, lowered by 0.2 % a time
 local AT_REST = 1e-6                     -- unbalanced force ratio that counts as equilibrium
-local SLIDING = 0.05                     -- m in one step: some 50 times what the joints' springs yield
+local SLIDING = 0.05                     -- m in one step: many times what the joints' springs yield
 
 -- ---------------------------------------------------------------- vectors of the closed form
 
@@ -67,16 +72,18 @@ end
 
 local function upward_normal(plane)
     local dip, direction = math.rad(plane[1]), math.rad(plane[2])
-    return { math.sin(dip) * math.sin(direction), math.sin(dip) * math.cos(direction), math.cos(dip) }
+    local level = math.sin(dip)
+    return { level * math.sin(direction), level * math.cos(direction), math.cos(dip) }
 end
 
 local function steepest_descent(plane)
     local dip, direction = math.rad(plane[1]), math.rad(plane[2])
-    return { math.cos(dip) * math.sin(direction), math.cos(dip) * math.cos(direction), -math.sin(dip) }
+    local level = math.cos(dip)
+    return { level * math.sin(direction), level * math.cos(direction), -math.sin(dip) }
 end
 
--- Mode of sliding ("A", "B" or "A and B"), its direction, the normal forces over the weight, and the scale
--- of the friction coefficients at failure.
+-- Mode of sliding ("A", "B" or "A and B"), its direction, the normal forces over the weight, and
+-- the scale of the friction coefficients at failure.
 function wedge.closed_form(case)
     local mu = case.friction or { 1, 1 }
     local n = { upward_normal(case.A), upward_normal(case.B) }
@@ -93,7 +100,8 @@ function wedge.closed_form(case)
     if s[3] > 0 then
         s = { -s[1], -s[2], -s[3] }
     end
-    -- N_A n_A + N_B n_B - T s = z: the product with a vector normal to two of them leaves the third.
+    -- N_A n_A + N_B n_B - T s = z: the product with a vector normal to two of them leaves the
+    -- third.
     local z = { 0, 0, 1 }
     local a, b = cross(n[2], s), cross(s, n[1])
     local normal = { dot(z, a) / dot(n[1], a), dot(z, b) / dot(n[2], b) }
@@ -107,13 +115,17 @@ local function degrees(coefficient)
     return math.deg(math.atan(coefficient))
 end
 
--- The four blocks at rest under high friction. Gives the model and the wedge, a selection of one block.
+-- The four blocks at rest under high friction. Gives the model and the wedge, a selection of one
+-- block.
 function wedge.build(case, options)
     options = options or {}
     local model = talus.model { gravity = { 0, 0, -GRAVITY }, threads = options.threads }
     model:generate("box", { min = { -2, -1, -1 }, max = { 2, 1, 1 }, density = DENSITY })
-    model:generate("joint", { joint = "A", dip = case.A[1], dip_direction = case.A[2], origin = APEX })
-    model:generate("joint", { joint = "B", dip = case.B[1], dip_direction = case.B[2], origin = APEX })
+    for _, joint in ipairs { "A", "B" } do
+        local dip, direction = case[joint][1], case[joint][2]
+        model:generate("joint", { joint = joint, dip = dip, dip_direction = direction,
+            origin = APEX })
+    end
 
     local above_A = { dip = case.A[1], dip_direction = case.A[2], origin = APEX }
     local n, top = upward_normal(case.B), APEX
@@ -128,7 +140,8 @@ function wedge.build(case, options)
     for _, joint in ipairs { "A", "B" } do
         model:joint(joint, "coulomb", { kn = KN, ks = case.ks or KS, friction = friction })
     end
-    -- The wedge's bottom edge touches the block under both planes; the closed form has no force there.
+    -- The wedge's bottom edge touches the block under both planes; the closed form has no force
+    -- there.
     model:contact_area { fraction = 0 }
     model:damping "local"
     -- One block alone: half the largest stable step is safe, and five times as fast as the default.
@@ -145,8 +158,8 @@ local function load_share(model, block, joint)
     return contacts:sum "normal_force" / (block[1].mass * GRAVITY)
 end
 
--- Sets the friction coefficients and waits for equilibrium: true, or false when the wedge slides, with the
--- mean of the normal forces on A and B on the way.
+-- Sets the friction coefficients and waits for equilibrium: true, or false when the wedge slides,
+-- with the mean of the normal forces on A and B on the way.
 function wedge.holds(model, block, mu_A, mu_B)
     model:joint("A", { friction = degrees(mu_A) })
     model:joint("B", { friction = degrees(mu_B) })
@@ -162,9 +175,10 @@ function wedge.holds(model, block, mu_A, mu_B)
     return run.reason == "ratio", { sum[1] / looks, sum[2] / looks }
 end
 
--- Lowers the friction, all history kept, until the wedge slides. Gives what was expected and what happened:
--- the scale of friction between the last that held and the first that did not, the planes that carry the
--- wedge as it slides, its direction, and the angle between that and the expected one.
+-- Lowers the friction, all history kept, until the wedge slides. Gives what was expected and what
+-- happened: the scale of friction between the last that held and the first that did not, the planes
+-- that carry the wedge as it slides, its direction, and the angle between that and the expected
+-- one.
 function wedge.run(case, options)
     local expected = wedge.closed_form(case)
     local model, block = wedge.build(case, options)
@@ -186,8 +200,9 @@ function wedge.run(case, options)
     }
 end
 
--- The quantity a case is known by: with equal frictions the coefficient itself; otherwise the factor of
--- safety of the given frictions, that is by how much they may be divided before the wedge slides.
+-- The quantity a case is known by: with equal frictions the coefficient itself; otherwise the
+-- factor of safety of the given frictions, that is by how much they may be divided before the wedge
+-- slides.
 function wedge.quantity(case, scale)
     if case.friction then
         return "FS", 1 / scale
@@ -197,12 +212,14 @@ end
 
 function wedge.main()
     print("Wedges on two planes: friction (mu) or factor of safety (FS) at which they slide\n")
-    print("case         plane A   plane B         expected  obtained   error   slides on          off line")
+    print("case         plane A   plane B         expected  obtained   error   slides on"
+        .. "          off line")
     for _, case in ipairs(wedge.cases) do
         local r = wedge.run(case)
         local name, obtained = wedge.quantity(case, r.obtained)
         local _, expected = wedge.quantity(case, r.expected.scale)
-        print(string.format("%-11s  %d/%03d    %d/%03d     %-4s %8.4f  %8.4f  %+5.2f %%  %-7s (%s)  %6.2f deg",
+        print(string.format("%-11s  %d/%03d    %d/%03d     %-4s %8.4f  %8.4f  %+5.2f %%"
+            .. "  %-7s (%s)  %6.2f deg",
             case.name, case.A[1], case.A[2], case.B[1], case.B[2], name, expected, obtained,
             100 * (obtained / expected - 1), r.mode,
             r.mode == r.expected.mode and "right" or "WRONG", r.off_direction))

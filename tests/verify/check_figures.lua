@@ -1,5 +1,6 @@
--- check_figures.lua - how the verification tests compare: every figure is printed with what was expected
--- and how far it may be off, the test goes on after a failure, and finish() ends it with status 1.
+-- check_figures.lua - how the verification tests compare: every figure is printed with what was
+-- expected and how far it may be off, the test goes on after a failure, and finish() ends it with
+-- status 1.
 local figures = { failed = 0, checked = 0 }
 
 local function judge(good, text)
@@ -23,7 +24,8 @@ end
 -- |obtained / expected - 1| <= tolerance.
 function figures.relative(what, obtained, expected, tolerance)
     judge(math.abs(obtained - expected) <= tolerance * math.abs(expected),
-        string.format("%s: %.8g, expected %.8g (off %+.2e of it, may be %g)", what, obtained, expected,
+        string.format("%s: %.8g, expected %.8g (off %+.2e of it, may be %g)", what, obtained,
+            expected,
             obtained / expected - 1, tolerance))
 end
 

@@ -1,4 +1,5 @@
 -- Free fall: exact at whole steps; a falling block beside others that touch still has a time step.
+package.path = "tests/verify/?.lua;scripts/?.lua;" .. package.path -- run in the source root
 local talus = require "talus"
 local figures = require "check_figures"
 local reference = require("reference").freefall

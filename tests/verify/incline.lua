@@ -1,4 +1,5 @@
 -- A cube on an inclined plane: sticks or slides, its acceleration, and how far it coasts.
+package.path = "tests/verify/?.lua;scripts/?.lua;" .. package.path -- run in the source root
 local figures = require "check_figures"
 local reference = require "reference"
 local incline = require "examples.incline"

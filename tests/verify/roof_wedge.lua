@@ -1,10 +1,12 @@
--- The roof wedge: friction at failure for every row, geometry, settlement and stresses of the first.
+-- The roof wedge: friction at failure for every row, geometry, settlement and stresses of the
+-- first.
+package.path = "tests/verify/?.lua;scripts/?.lua;" .. package.path -- run in the source root
 local figures = require "check_figures"
 local reference = require("reference").roof_wedge
 local roof = require "examples.roof_wedge"
 
 local FRICTION = 0.005   -- relative, in the friction coefficient at failure
-local STRESS = 1e-3      -- relative; the faces shrink as the wedge moves down, by some 1e-3 of their size
+local STRESS = 1e-3      -- relative; the faces shrink as the wedge settles, by some 1e-3
 local GEOMETRY = 1e-12
 
 for i, row in ipairs(reference.table) do
@@ -26,8 +28,10 @@ figures.equal("blocks", r.blocks, E2.blocks)
 figures.relative("volume", r.volume, E2.volume, GEOMETRY)
 figures.relative("settlement", r.settlement, E2.settlement, STRESS)
 for _, which in ipairs { "min", "max" } do
-    figures.relative("normal stress, " .. which, r.stresses["normal_" .. which], E2.normal_stress, STRESS)
-    figures.relative("shear stress, " .. which, r.stresses["shear_" .. which], E2.shear_stress, STRESS)
+    figures.relative("normal stress, " .. which, r.stresses["normal_" .. which], E2.normal_stress,
+        STRESS)
+    figures.relative("shear stress, " .. which, r.stresses["shear_" .. which], E2.shear_stress,
+        STRESS)
 end
 
 -- Before the weight acts, the faces carry the initial stress as given.

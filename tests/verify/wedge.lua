@@ -1,10 +1,11 @@
 -- Wedges on two planes: friction at failure, planes that carry, direction of sliding.
+package.path = "tests/verify/?.lua;scripts/?.lua;" .. package.path -- run in the source root
 local figures = require "check_figures"
 local reference = require("reference").wedge
 local wedge = require "examples.wedge"
 
--- The wedge settles with a small turn that the closed form leaves out: 1 % for E1.run1 with ks = kn by an
--- independent relaxation of the same block as well, less with softer shear springs.
+-- The wedge settles with a small turn that the closed form leaves out: 1 % for E1.run1 with ks = kn
+-- by an independent relaxation of the same block as well, less with softer shear springs.
 local TOLERANCE = 0.02
 -- The first centimetres of sliding go along the line or plane, but for the turn of the block.
 local OFF_DIRECTION = 1.5 -- degrees
