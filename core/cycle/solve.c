@@ -112,7 +112,8 @@ static tl_status run(tl_model *m, const tl_solve *solve, tl_solve_result *result
             break;
     }
     tl_watch_end(watch);
-    if (status == TL_OK && result->failing)
+    /* a stop function has its own reason */
+    if (status == TL_OK && result->failing && result->reason != TL_SOLVE_STOP)
         say_failure(m, result);
     return status;
 }
