@@ -74,26 +74,59 @@ static void add_facet(tl_manifold *m, tl_facet facet, size_t begin)
 
 /* ---------------------------------------------------------------- patches ---------------- */
 
-/* Adds all patches; returns how flush the most parallel faces are: 1 parallel, 0 tilted. */
-static double add_patches(const tl_pair_view *view, tl_vec3 n, const tl_share_rule *rule,
+/* Distances of a face's corners from a plane: the least and the largest. */
+static void spread(const tl_poly *p, uint32_t face, const tl_vec3 *vertex, tl_vec3 n, double offset,
+                   double *low, double *high)
+{
+    *low = INFINITY;
+    *high = -INFINITY;
+    for (uint32_t i = p->start[face]; i < p->start[face + 1]; i++) {
+        double h = tl_v3_dot(n, vertex[p->loop[i]]) - offset;
+        *low = fmin(*low, h);
+        *high = fmax(*high, h);
+    }
+}
+
+/* Two nearly parallel faces that lie nearly in one plane, be it side by side. Of blocks that rest on
+ * each other elsewhere, faces can be parallel without having to do with each other. */
+static bool level(const tl_pair_view *view, uint32_t fa, uint32_t fb, double near)
+{
+    tl_vec3 nb = view->normal_b[fb];
+    double offset_b = view->b->plane[fb].offset + tl_v3_dot(nb, view->shift), low, high;
+    spread(view->a, fa, view->a->vertex, nb, offset_b, &low, &high);
+    if (low > near || high < -near)
+        return false;
+    spread(view->b, fb, view->vertex_b, view->a->plane[fa].normal, view->a->plane[fa].offset, &low,
+           &high);
+    return low <= near && high >= -near;
+}
+
+/* Adds all patches; returns how flush the most parallel faces are that meet, by area or side by side: 1
+ * parallel, 0 tilted. */
+static double add_patches(const tl_pair_view *view, const tl_axis *axis, const tl_share_rule *rule,
                           tl_narrow *room)
 {
     const double facing = cos(TILT_NONE * TL_PI / 180);
+    const double near = TL_CONTACT_TOLERANCE * TL_CONTACT_RELEASE * view->size + 2 * fabs(axis->s);
     tl_manifold *m = &room->manifold;
+    tl_vec3 n = axis->n;
     double flush = 0;
     for (uint32_t i = 0; i < view->a->face_count; i++) {
         tl_vec3 na = view->a->plane[i].normal;
-        if (tl_v3_dot(na, n) < facing)
+        if (view->a->covered[i] || tl_v3_dot(na, n) < facing)
             continue;
         for (uint32_t j = 0; j < view->b->face_count; j++) {
             tl_vec3 nb = view->normal_b[j];
-            if (-tl_v3_dot(nb, n) < facing || -tl_v3_dot(na, nb) < facing)
+            if (view->b->covered[j] || -tl_v3_dot(nb, n) < facing || -tl_v3_dot(na, nb) < facing)
                 continue;
-            double sine = tl_v3_norm(tl_v3_cross(na, nb));
+            double sine = tl_v3_norm(tl_v3_cross(na, nb)), area = 0;
             double weight = fade(sine, TILT_FULL, TILT_NONE);
-            flush = fmax(flush, fade(sine, FLUSH_NONE, FLUSH_FULL));
             if (weight > 0 && reserve_facets(m, m->facet_count + 2))
-                m->patch_area += tl_patch_add(view, i, j, weight, rule, room);
+                area = tl_patch_add(view, i, j, weight, rule, room);
+            m->patch_area += area;
+            double parallel = fade(sine, FLUSH_NONE, FLUSH_FULL);
+            if (parallel > flush && (area > 0 || level(view, i, j, near)))
+                flush = parallel;
         }
     }
     return flush;
@@ -205,39 +238,73 @@ static bool share_of_face(const tl_pair_view *view, const tl_axis *axis, tl_narr
     return met;
 }
 
+/* A line of an edge in A's frame, and where its ends lie along a direction. */
+typedef struct line {
+    tl_vec3 from, along;
+    double start, end;
+} line;
+
+static tl_vec3 line_at(const line *l, double t)
+{
+    return tl_v3_madd(l->from, (t - l->start) / (l->end - l->start), l->along);
+}
+
+static tl_vec3 between(tl_vec3 p, tl_vec3 q)
+{
+    return tl_v3_scale(0.5, tl_v3_add(p, q));
+}
+
+/* Where the lines of two edges come nearest, within the edges: half-way between them. */
+static tl_vec3 crossing_point(const line *a, const line *b)
+{
+    tl_vec3 u = a->along, v = b->along, w = tl_v3_sub(b->from, a->from);
+    double uu = tl_v3_norm2(u), vv = tl_v3_norm2(v), uv = tl_v3_dot(u, v);
+    double det = uu * vv - uv * uv, wu = tl_v3_dot(w, u), wv = tl_v3_dot(w, v);
+    double s = det > 0 ? (wu * vv - wv * uv) / det : 0.5;
+    double t = det > 0 ? (wu * uv - wv * uu) / det : 0.5;
+    return between(tl_v3_madd(a->from, fmin(1, fmax(0, s)), u),
+                   tl_v3_madd(b->from, fmin(1, fmax(0, t)), v));
+}
+
 /* The point share of two crossing edges: where they cross and, as far as they are nearly parallel, the
- * ends of their common stretch. */
+ * ends of their common stretch, measured along their bisector so that neither block is preferred. */
 static void share_of_edges(const tl_pair_view *view, const tl_axis *axis, tl_narrow *room)
 {
     tl_manifold *m = &room->manifold;
     const tl_edge *ea = &view->a->edge[axis->ia], *eb = &view->b->edge[axis->ib];
-    tl_vec3 a = view->a->vertex[ea->a], u = tl_v3_sub(view->a->vertex[ea->b], a);
-    tl_vec3 b = view->vertex_b[eb->a], v = tl_v3_sub(view->vertex_b[eb->b], b);
-    tl_vec3 w = tl_v3_sub(b, a);
-    double uu = tl_v3_norm2(u), vv = tl_v3_norm2(v), uv = tl_v3_dot(u, v);
-    double det = uu * vv - uv * uv;
-    double wu = tl_v3_dot(w, u), wv = tl_v3_dot(w, v);
-    double crossing = det > 0 ? (wu * vv - wv * uv) / det : 0.5;
-    crossing = fmin(1, fmax(0, crossing));
-    double parallel = fade(sqrt(fmax(0, det) / (uu * vv)), TILT_FULL, TILT_NONE);
-    /* B's ends on A's edge */
-    double t0 = wu / uu, t1 = (wu + uv) / uu;
-    double lo = fmin(1, fmax(0, fmin(t0, t1))), hi = fmin(1, fmax(0, fmax(t0, t1)));
+    line a = {.from = view->a->vertex[ea->a]}, b = {.from = view->vertex_b[eb->a]};
+    a.along = tl_v3_sub(view->a->vertex[ea->b], a.from);
+    b.along = tl_v3_sub(view->vertex_b[eb->b], b.from);
+    tl_vec3 u = tl_v3_unit(a.along), v = tl_v3_unit(b.along);
+    double same = tl_v3_dot(u, v) < 0 ? -1 : 1, sine = tl_v3_norm(tl_v3_cross(u, v));
+    double parallel = fade(sine, TILT_FULL, TILT_NONE);
     size_t begin = m->point_count;
     uint64_t key = tl_key(tl_key(3, axis->ia), axis->ib);
     if (parallel < 1)
-        tl_manifold_add_point(m, tl_v3_madd(a, crossing, u), 0, 1 - parallel, (uint32_t)key);
+        tl_manifold_add_point(m, crossing_point(&a, &b), 0, 1 - parallel, (uint32_t)key);
     if (parallel > 0) {
-        tl_manifold_add_point(m, tl_v3_madd(a, lo, u), 0, 0.5 * parallel, (uint32_t)tl_key(key, 1));
-        tl_manifold_add_point(m, tl_v3_madd(a, hi, u), 0, 0.5 * parallel, (uint32_t)tl_key(key, 2));
+        tl_vec3 d = tl_v3_unit(tl_v3_madd(u, same, v)), apart = tl_v3_sub(b.from, a.from);
+        a.start = 0;
+        a.end = tl_v3_dot(d, a.along);
+        b.start = tl_v3_dot(d, apart);
+        b.end = b.start + tl_v3_dot(d, b.along);
+        double low = fmax(a.start, fmin(b.start, b.end));
+        double high = fmin(a.end, fmax(b.start, b.end));
+        if (low > high)
+            low = high = 0.5 * (low + high);
+        for (int end = 0; end < 2; end++) {
+            double t = end ? high : low;
+            tl_manifold_add_point(m, between(line_at(&a, t), line_at(&b, t)), 0, 0.5 * parallel,
+                                  (uint32_t)tl_key(key, end ? 2 : 1));
+        }
     }
     add_facet(m,
               (tl_facet){.kind = TL_FACET_EDGES,
                          .ia = axis->ia,
                          .ib = axis->ib,
-                         .na = u,
+                         .na = a.along,
                          .nb = tl_v3_sub(view->b->vertex[eb->b], view->b->vertex[eb->a]),
-                         .pa = a,
+                         .pa = a.from,
                          .side = axis->n,
                          .pb = view->b->vertex[eb->a]},
               begin);
@@ -261,7 +328,7 @@ void tl_manifold_build(const tl_pair_view *view, const tl_axis *axis, const tl_s
     m->patch_area = 0;
     m->failed = false;
     m->grounded = true;
-    double flush = add_patches(view, axis->n, rule, room);
+    double flush = add_patches(view, axis, rule, room);
     m->grounded = m->patch_area > 0;
     double share = rule->minimum - m->patch_area;
     if (!rule->unconditional)
@@ -279,16 +346,26 @@ void tl_manifold_build(const tl_pair_view *view, const tl_axis *axis, const tl_s
 
 /* ---------------------------------------------------------------- joint ------------------ */
 
-/* The face whose outward normal is nearest a direction, and the cosine between them. */
-static uint32_t facing(const tl_poly *p, const tl_vec3 *normals, size_t stride, tl_vec3 direction,
-                       double *cosine)
+/* The face whose outward normal is nearest a direction, among those that reach to within `slack` of the
+ * block's end in that direction, and the cosine between them. A face can be nearer still and lie
+ * elsewhere. */
+static uint32_t touching_face(const tl_poly *p, const tl_vec3 *vertex, const tl_vec3 *normals,
+                              size_t stride, tl_vec3 direction, double slack, double *cosine)
 {
+    double end = -INFINITY;
+    for (uint32_t i = 0; i < p->vertex_count; i++)
+        end = fmax(end, tl_v3_dot(direction, vertex[i]));
     uint32_t best = 0;
     *cosine = -2;
     for (uint32_t i = 0; i < p->face_count; i++) {
         tl_vec3 n = *(const tl_vec3 *)(const void *)((const char *)normals + i * stride);
         double c = tl_v3_dot(n, direction);
-        if (c > *cosine) {
+        if (c <= *cosine)
+            continue;
+        bool touches = false;
+        for (uint32_t k = p->start[i]; k < p->start[i + 1] && !touches; k++)
+            touches = tl_v3_dot(direction, vertex[p->loop[k]]) >= end - slack;
+        if (touches) {
             *cosine = c;
             best = i;
         }
@@ -296,11 +373,23 @@ static uint32_t facing(const tl_poly *p, const tl_vec3 *normals, size_t stride, 
     return best;
 }
 
+static bool has_joint(const tl_poly *p)
+{
+    for (uint32_t i = 0; i < p->face_count; i++)
+        if (p->tag[i].joint)
+            return true;
+    return false;
+}
+
 tl_tag tl_touching_tag(const tl_pair_view *view, tl_vec3 n)
 {
-    double ca, cb;
-    uint32_t fa = facing(view->a, &view->a->plane[0].normal, sizeof(tl_plane), n, &ca);
-    uint32_t fb = facing(view->b, view->normal_b, sizeof(tl_vec3), tl_v3_neg(n), &cb);
+    if (!has_joint(view->a) && !has_joint(view->b))
+        return (tl_tag){0, 0};
+    double ca, cb, slack = TL_CONTACT_TOLERANCE * view->size;
+    uint32_t fa = touching_face(view->a, view->a->vertex, &view->a->plane[0].normal,
+                                sizeof(tl_plane), n, slack, &ca);
+    uint32_t fb = touching_face(view->b, view->vertex_b, view->normal_b, sizeof(tl_vec3),
+                                tl_v3_neg(n), slack, &cb);
     tl_tag a = view->a->tag[fa], b = view->b->tag[fb];
     if (a.joint == 0 || b.joint == 0)
         return a.joint == 0 ? b : a;
