@@ -214,12 +214,12 @@ static scene_pair make_pair(int class, uint64_t *seed, double *scale)
         tl_vec3 ridge = tl_v3(0, scene_between(seed, 0.3, 1), scene_between(seed, 0.3, 1));
         const tl_vec3 *v = a->vertex;
         double y = fabs(v[0].y), z = fabs(v[0].z);
-        tl_quat on_edge = tl_q_mul(turn_to(up, ridge),
-                                   tl_q_mul(scene_turn(up, cross),
-                                            scene_turn(tl_v3(1, 0, 0),
-                                                       scene_between(seed, 0.5, 1.07))));
-        tl_vec3 shift = tl_v3_madd(tl_v3(scene_between(seed, -0.3, 0.3), y, z), 1.2,
-                                   tl_v3_unit(ridge));
+        tl_quat on_edge =
+            tl_q_mul(turn_to(up, ridge),
+                     tl_q_mul(scene_turn(up, cross),
+                              scene_turn(tl_v3(1, 0, 0), scene_between(seed, 0.5, 1.07))));
+        tl_vec3 shift =
+            tl_v3_madd(tl_v3(scene_between(seed, -0.3, 0.3), y, z), 1.2, tl_v3_unit(ridge));
         return scene_pair_of(a, some_box(seed), on_edge, shift);
     }
     case SLIVERS: {
@@ -234,8 +234,8 @@ static scene_pair make_pair(int class, uint64_t *seed, double *scale)
         tl_poly_free(a);
         tl_vec3 place = {scene_between(seed, -450, 450), scene_between(seed, -450, 450), 502};
         tl_poly *big = scene_box_shape(1000, 1000, 1000);
-        tl_poly *small = check_random(seed) < 0.5 ? some_box(seed)
-                                                  : scene_random_hull(seed, 9, tl_v3(1, 1, 1));
+        tl_poly *small =
+            check_random(seed) < 0.5 ? some_box(seed) : scene_random_hull(seed, 9, tl_v3(1, 1, 1));
         return scene_pair_of(big, small, check_random(seed) < 0.3 ? none : scene_any_turn(seed),
                              place);
     }
@@ -327,9 +327,9 @@ static double distance(const tl_pair_view *view)
     double best = INFINITY;
     for (uint32_t i = 0; i < a->edge_count; i++)
         for (uint32_t j = 0; j < b->edge_count; j++)
-            best = fmin(best,
-                        segment_distance(a->vertex[a->edge[i].a], a->vertex[a->edge[i].b],
-                                         view->vertex_b[b->edge[j].a], view->vertex_b[b->edge[j].b]));
+            best = fmin(best, segment_distance(a->vertex[a->edge[i].a], a->vertex[a->edge[i].b],
+                                               view->vertex_b[b->edge[j].a],
+                                               view->vertex_b[b->edge[j].b]));
     for (uint32_t f = 0; f < a->face_count; f++)
         for (uint32_t i = 0; i < b->vertex_count; i++)
             best = fmin(best, over_face_distance(a, f, view->vertex_b[i]));
@@ -427,7 +427,7 @@ TEST(search_agrees_with_brute_force)
 {
     for (int class = 0; class < CLASS_COUNT; class ++) {
         tally t = {0};
-        uint64_t seed = 1000 + (uint64_t)class;
+        uint64_t seed = 1000 + (uint64_t) class;
         for (int i = 0; i < class_pairs[class]; i += 6) {
             double scale;
             scene_pair p = make_pair(class, &seed, &scale);
@@ -503,7 +503,7 @@ static int judge(const tl_pair_view *view)
 TEST(libccd_agrees_on_touching)
 {
     for (int class = 0; class < CLASS_COUNT; class ++) {
-        uint64_t seed = 77 + (uint64_t)class;
+        uint64_t seed = 77 + (uint64_t) class;
         int wrong = 0;
         for (int i = 0; i < 300; i++) {
             double scale;

@@ -69,8 +69,8 @@ static moments common_moments(const flat *a, size_t na, const flat *b, size_t nb
             double h = side_of(r, s, p), k = side_of(r, s, q);
             double u = side_of(p, q, r), v = side_of(p, q, s);
             if (h * k < 0 && u * v < 0)
-                all[count++] = (flat){p.x + h / (h - k) * (q.x - p.x),
-                                      p.y + h / (h - k) * (q.y - p.y)};
+                all[count++] =
+                    (flat){p.x + h / (h - k) * (q.x - p.x), p.y + h / (h - k) * (q.y - p.y)};
         }
     if (count < 3)
         return (moments){0};
@@ -181,8 +181,8 @@ TEST(drums_of_many_sides_keep_their_area)
         double whole = polygon_moments(a, sides).area;
         moments found = point_moments(m);
         /* nearly coincident, the reference is all of the face; corners nearer than 1e-7 are merged */
-        moments want = fmax(twist, x) > 1e-6 ? common_moments(a, sides, b, sides)
-                                             : polygon_moments(a, sides);
+        moments want =
+            fmax(twist, x) > 1e-6 ? common_moments(a, sides, b, sides) : polygon_moments(a, sides);
         CHECK_NEAR(found.area, want.area, 4e-6 * whole);
         CHECK_NEAR(found.xx, want.xx, 1e-3 * whole);
         CHECK_NEAR(found.yy, want.yy, 1e-3 * whole);
@@ -302,10 +302,10 @@ static void wobble(tl_model *m, double tilt, tl_vec3 lift, double *jump, double 
         last = start;
         for (double w = 1e-10; w < 1.2e-2; w *= 1.03) {
             load now = at_wobble(m, tilt, sign * w, lift);
-            double step = fmax(scene_apart(now.force, last.force),
-                               scene_apart(now.moment, last.moment));
-            double all = fmax(scene_apart(now.force, start.force),
-                              scene_apart(now.moment, start.moment));
+            double step =
+                fmax(scene_apart(now.force, last.force), scene_apart(now.moment, last.moment));
+            double all =
+                fmax(scene_apart(now.force, start.force), scene_apart(now.moment, start.moment));
             *jump = fmax(*jump, step / force);
             *most = fmax(*most, all / force);
             last = now;
@@ -377,12 +377,12 @@ TEST(drums_wobble_without_jumps)
 
 TEST(faces_that_share_only_an_edge_have_no_points)
 {
-    static const double shifts[][3] = {
-        {1, 0, 1}, {1, 1, 1}, {1, 0.3, 1}, {1 - 1e-11, 0, 1}, {1, 0, 1 - 1e-11}, {1 - 1e-12, 1, 1}};
+    static const double shifts[][3] = {{1, 0, 1},         {1, 1, 1},         {1, 0.3, 1},
+                                       {1 - 1e-11, 0, 1}, {1, 0, 1 - 1e-11}, {1 - 1e-12, 1, 1}};
     for (size_t i = 0; i < sizeof shifts / sizeof *shifts; i++) {
-        scene_pair p = scene_pair_of(scene_box_shape(1, 1, 1), scene_box_shape(1, 1, 1),
-                                     tl_q_identity(),
-                                     tl_v3(shifts[i][0], shifts[i][1], shifts[i][2]));
+        scene_pair p =
+            scene_pair_of(scene_box_shape(1, 1, 1), scene_box_shape(1, 1, 1), tl_q_identity(),
+                          tl_v3(shifts[i][0], shifts[i][1], shifts[i][2]));
         tl_pair_view *view = scene_place(&p);
         tl_axis axis = tl_axis_search(view, &p.room, NULL);
         tl_share_rule rule = {.minimum = 0.01, .reach = 1.5e-3};

@@ -1,0 +1,582 @@
+/* test_regressions.c - mistakes that contact detection has been seen to make elsewhere, each as a test:
+ * nearly parallel edges, flush but disjoint faces, the face that is not touched, line contacts that are
+ * too soft, faces half a degree apart, ties, tiny steps in large coordinates; then swaps, motions and
+ * offsets of the whole model, sizes that differ, sliding off, corners of eight blocks, torsion. */
+#include "contact_scene.h"
+
+#define KN 1e9
+#define OVERLAP 1e-4
+/* Minimum area of a unit cube's contacts: 1 % of its mean face. */
+#define UNIT_MINIMUM 0.01
+
+static const tl_quat none = {1, 0, 0, 0};
+
+static double contact_area(const tl_model *m, uint32_t a, uint32_t b)
+{
+    uint32_t c = scene_contact(m, a, b);
+    return c == TL_NO_ROW ? 0 : m->detect->contacts.area[c];
+}
+
+/* ---------------------------------------------------------------- 1 ---------------------- */
+
+/* Two boxes, each on an edge, crossing at angles down to 1e-9 rad: in contact, with the minimum area,
+ * and never lost while one slides along the other. */
+TEST(nearly_parallel_edges_stay_in_contact)
+{
+    for (double angle = 1e-9; angle < 2; angle *= 10) {
+        tl_model *m = scene_model(1);
+        /* no face of one is parallel to a face of the other */
+        double lean = 25 * TL_PI / 180, half = 0.5 * (cos(lean) + sin(lean));
+        tl_quat turn = scene_turn(tl_v3(0, 0, 1), angle);
+        tl_vec3 edge = {0, 0.5 * (sin(lean) - cos(lean)), -half};
+        tl_vec3 place = tl_v3_sub(tl_v3(0, 0, sqrt(0.5) - OVERLAP), tl_q_rotate(turn, edge));
+        scene_block(m, scene_box_shape(1, 1, 1), scene_turn(tl_v3(1, 0, 0), TL_PI / 4),
+                    tl_v3(0, 0, 0));
+        scene_block(m, scene_box_shape(1, 1, 1), tl_q_mul(turn, scene_turn(tl_v3(1, 0, 0), lean)),
+                    place);
+        scene_law(m, "coulomb", KN, KN, 30);
+        for (int i = 0; i < 200; i++) {
+            scene_move(m, 1, tl_v3(1e-3, 0, 0), tl_v3(0, 0, 0));
+            scene_forces(m);
+            double area = contact_area(m, 0, 1);
+            if (!CHECK_REL(area, UNIT_MINIMUM, 1e-9))
+                break;
+            /* for edges within 1e-4 of parallel the nearest way out is sideways over the edges */
+            if (angle > 1e-2)
+                CHECK_NEAR(scene_force(m, 0, 1).z, KN * area * OVERLAP, 1e-6 * KN * area * OVERLAP);
+        }
+        tl_model_destroy(m);
+    }
+}
+
+/* ---------------------------------------------------------------- 2 ---------------------- */
+
+/* A's top is level, with a slope of 14 degrees beside it; B is level too and rests with its lower edge on
+ * the slope, beside the top. That A's top is parallel to B's bottom means nothing: they do not meet. */
+TEST(parallel_faces_that_do_not_meet_leave_the_point_share)
+{
+    for (double strip = 0.02; strip < 0.2; strip *= 1.5) {
+        double t = tan(14 * TL_PI / 180);
+        tl_vec3 a[] = {{-1, -1, -1}, {2, -1, -1}, {2, 1, -1}, {-1, 1, -1},     {-1, -1, 0},
+                       {0, -1, 0},   {0, 1, 0},   {-1, 1, 0}, {2, -1, -2 * t}, {2, 1, -2 * t}};
+        tl_model *m = scene_model(1);
+        scene_block(m, scene_hull_shape(a, 10), none, tl_v3(0, 0, 0));
+        /* B's lower left edge at x = 0.5, just below the slope there */
+        tl_vec3 lift = {1, 0, 0.5 - 0.5 * t - OVERLAP};
+        scene_block(m, scene_box_shape(1, strip, 1), none, lift);
+        scene_law(m, "coulomb", KN, KN, 30);
+        scene_forces(m);
+        const tl_blocks *b = &m->blocks;
+        double minimum = 0.01 * fmin(b->mean_face[0], b->mean_face[1]);
+        CHECK(contact_area(m, 0, 1) >= minimum * (1 - 1e-9));
+        tl_model_destroy(m);
+    }
+}
+
+/* ---------------------------------------------------------------- 3 ---------------------- */
+
+static uint32_t cut(tl_model *m, const char *joint, tl_vec3 normal, tl_vec3 point, bool keep_below)
+{
+    tl_stage stage;
+    scene_ok(m, tl_stage_begin(m, &stage));
+    uint32_t number = tl_joint_intern(m, joint);
+    tl_tag tag = {number, ++m->joints[number - 1].planes};
+    scene_ok(m, tl_stage_cut(&stage, tl_v3_unit(normal), point, tag, 1));
+    scene_ok(m, tl_stage_commit(&stage));
+    /* the part on the wrong side goes */
+    for (uint32_t row = 0; row < m->blocks.table.rows; row++) {
+        double side = tl_v3_dot(normal, tl_v3_sub(tl_block_centroid(m, row), point));
+        if ((side > 0) == keep_below) {
+            tl_id id = m->blocks.id[row];
+            scene_ok(m, tl_blocks_delete(m, &id, 1));
+            break;
+        }
+    }
+    return number;
+}
+
+/* A vertex whose own faces are steep, and a nearly level face of a joint that lies higher: the level one
+ * is the nearest to the contact's normal, but it does not touch. */
+TEST(joint_is_that_of_a_face_that_touches)
+{
+    tl_model *m = scene_model(1);
+    scene_box(m, tl_v3(-2, -2, -3), tl_v3(2, 2, 1));
+    /* a thin wedge down to the ridge through the tip (0, 0, -2), tilted along it */
+    tl_vec3 tip = {0, 0, -2};
+    cut(m, "steep1", tl_v3(0.9, 0.06, -0.44), tip, true);
+    cut(m, "steep2", tl_v3(-0.9, 0.06, -0.44), tip, true);
+    cut(m, "steep3", tl_v3(0, -0.9, -0.44), tip, true);
+    /* the level face takes the far end of the ridge off, not the tip */
+    uint32_t level = cut(m, "level", tl_v3(0, 0.25, -1), tl_v3(0, 0.5, -1.932), true);
+    CHECK_INT(m->blocks.table.rows, 1);
+    scene_box(m, tl_v3(-4, -4, -4), tl_v3(4, 4, -2 + OVERLAP));
+    scene_law(m, "coulomb", KN, KN, 30);
+    scene_forces(m);
+    uint32_t c = scene_contact(m, 0, 1);
+    if (CHECK(c != TL_NO_ROW)) {
+        const tl_tag tag = m->detect->contacts.tag[c];
+        CHECK(tag.joint != 0);
+        CHECK(tag.joint != level);
+    }
+    tl_model_destroy(m);
+}
+
+/* ---------------------------------------------------------------- 4 ---------------------- */
+
+/* A cube on its edge, tilted by 30 degrees: the minimum area, at both ends of the edge. */
+TEST(edge_on_face_has_the_minimum_area)
+{
+    for (double degrees = 16; degrees < 75; degrees += 4.5) {
+        double a = degrees * TL_PI / 180;
+        tl_model *m = scene_model(1);
+        scene_box(m, tl_v3(-2, -2, -1), tl_v3(2, 2, 0));
+        double height = 0.5 * (sin(a) + cos(a)) - OVERLAP;
+        scene_block(m, scene_box_shape(1, 1, 1), scene_turn(tl_v3(1, 0, 0), a),
+                    tl_v3(0.1, 0.2, height));
+        scene_law(m, "coulomb", KN, KN, 30);
+        scene_forces(m);
+        uint32_t c = scene_contact(m, 0, 1);
+        if (CHECK(c != TL_NO_ROW)) {
+            CHECK_REL(m->detect->contacts.area[c], UNIT_MINIMUM, 1e-12);
+            CHECK_REL(scene_force(m, 0, 1).z, KN * UNIT_MINIMUM * OVERLAP, 1e-9);
+            /* the force acts in the middle of the edge, and resists turning about it both ways */
+            CHECK_NEAR(m->detect->contacts.point[c].x + m->origin.x, 0.1, 1e-9);
+            CHECK(m->detect->contacts.point_count[c] >= 2);
+        }
+        tl_model_destroy(m);
+    }
+}
+
+TEST(vertex_on_face_has_the_minimum_area)
+{
+    tl_model *m = scene_model(1);
+    scene_box(m, tl_v3(-2, -2, -1), tl_v3(2, 2, 0));
+    tl_vec3 d = tl_v3_unit(tl_v3(1, 1, 1)), down = {0, 0, -1};
+    tl_vec3 axis = tl_v3_cross(d, down);
+    tl_quat q = scene_turn(axis, acos(tl_v3_dot(d, down)));
+    scene_block(m, scene_box_shape(1, 1, 1), q, tl_v3(0.3, 0.2, sqrt(0.75) - OVERLAP));
+    scene_law(m, "coulomb", KN, KN, 30);
+    scene_forces(m);
+    CHECK_REL(contact_area(m, 0, 1), UNIT_MINIMUM, 1e-12);
+    CHECK_REL(scene_force(m, 0, 1).z, KN * UNIT_MINIMUM * OVERLAP, 1e-8);
+    tl_model_destroy(m);
+}
+
+/* ---------------------------------------------------------------- 5 ---------------------- */
+
+/* A plate rocks on a roof of two faces half a degree apart: the force is the sum over both, and has no
+ * jump where the plate changes from one to the other. */
+TEST(faces_half_a_degree_apart_share_the_force)
+{
+    double t = tan(0.25 * TL_PI / 180);
+    tl_vec3 roof[] = {{-1, -1, -t}, {0, -1, 0},   {1, -1, -t}, {-1, 1, -t}, {0, 1, 0},
+                      {1, 1, -t},   {-1, -1, -1}, {1, -1, -1}, {-1, 1, -1}, {1, 1, -1}};
+    for (int reuse = 0; reuse < 2; reuse++) {
+        tl_model *m = scene_model(1);
+        m->config.reuse_geometry = reuse;
+        scene_block(m, scene_hull_shape(roof, 10), none, tl_v3(0, 0, 0));
+        scene_block(m, scene_box_shape(1.6, 1.6, 1), none, tl_v3(0.05, 0, 0.5 - 5e-4));
+        scene_law(m, "coulomb", KN, KN, 30);
+        tl_vec3 last = {0, 0, 0}, arm = {0.05, 0, 0.5};
+        double worst = 0, most = 0;
+        for (int i = -400; i <= 400; i++) {
+            tl_quat q = scene_turn(tl_v3(0, 1, 0), i / 400.0 * 0.5 * TL_PI / 180);
+            scene_put(m, 1, tl_v3_sub(tl_q_rotate(q, arm), arm), q);
+            scene_forces(m);
+            tl_vec3 force = scene_force(m, 0, 1);
+            CHECK(force.z > 0);
+            if (i > -400)
+                worst = fmax(worst, scene_apart(force, last));
+            most = fmax(most, force.z);
+            last = force;
+        }
+        CHECK(worst <= 0.03 * most);
+        tl_model_destroy(m);
+    }
+}
+
+/* ---------------------------------------------------------------- 6 ---------------------- */
+
+/* Cubes that touch along an edge and slide along it: two axes are equally good for ever, and the axis
+ * is searched again only after a share of the overlap. */
+TEST(ties_do_not_trigger_the_full_search_every_step)
+{
+    tl_model *m = scene_model(1);
+    scene_box(m, tl_v3(0, 0, 0), tl_v3(1, 1, 1));
+    scene_box(m, tl_v3(1 - OVERLAP, 1 - OVERLAP, 0), tl_v3(2, 2, 1));
+    scene_law(m, "elastic", KN, KN, -1);
+    tl_contact_area area = {.fraction = 0.01, .absolute = 0.01};
+    scene_ok(m, tl_model_contact_area(m, &area));
+    scene_forces(m);
+    CHECK_INT(m->detect->contacts.table.rows, 1);
+    int searches = 0;
+    double last = m->detect->contacts.searched[0], step = 2e-6;
+    for (int i = 0; i < 1000; i++) {
+        scene_move(m, 1, tl_v3(0, 0, step), tl_v3(0, 0, 0));
+        scene_forces(m);
+        searches += m->detect->contacts.searched[0] > last;
+        last = m->detect->contacts.searched[0];
+    }
+    /* one in a quarter of the overlap, and one of the first */
+    CHECK(searches <= 1000 * step / (0.25 * OVERLAP) + 2);
+    tl_model_destroy(m);
+}
+
+/* The same without area of their own: the pair is not looked at in every step. */
+TEST(touching_without_area_is_not_looked_at_every_step)
+{
+    tl_model *m = scene_model(1);
+    scene_box(m, tl_v3(0, 0, 0), tl_v3(1, 1, 1));
+    scene_box(m, tl_v3(1, 1, 0), tl_v3(2, 2, 1));
+    scene_law(m, "elastic", KN, KN, -1);
+    scene_forces(m);
+    CHECK_INT(m->detect->contacts.table.rows, 0);
+    if (CHECK_INT(m->detect->pair_count, 1)) {
+        int looks = 0;
+        double last = m->detect->pairs[0].wake;
+        for (int i = 0; i < 1000; i++) {
+            scene_move(m, 1, tl_v3(0, 0, 1e-7), tl_v3(0, 0, 0));
+            scene_forces(m);
+            looks += m->detect->pairs[0].wake != last;
+            last = m->detect->pairs[0].wake;
+        }
+        CHECK(looks <= 12);
+    }
+    tl_model_destroy(m);
+}
+
+/* ---------------------------------------------------------------- 7 ---------------------- */
+
+/* Blocks at coordinates of 1e3, one approaching the other by 1e-12 a step: after 2000 steps the gap has
+ * closed by 2e-9, though a step is below the rounding of the coordinates. */
+TEST(tiny_steps_in_large_coordinates_add_up)
+{
+    tl_model *m = scene_model(1);
+    scene_box(m, tl_v3(0, 0, 0), tl_v3(1, 1, 1)); /* the origin is here */
+    scene_box(m, tl_v3(1000, 1000, 1000), tl_v3(1001, 1001, 1001));
+    scene_box(m, tl_v3(1000, 1000, 1001), tl_v3(1001, 1001, 1002));
+    scene_law(m, "elastic", KN, KN, -1);
+    tl_id id = m->blocks.id[1];
+    scene_ok(m, tl_blocks_fix(m, &id, 1, TL_FIX_ALL));
+    for (int i = 0; i < 2000; i++) {
+        scene_move(m, 2, tl_v3(0, 0, -1e-12), tl_v3(0, 0, 0));
+        scene_forces(m);
+    }
+    double force = scene_force(m, 1, 2).z;
+    CHECK_REL(force, KN * 2e-9, 1e-6);
+    CHECK_REL(m->bodies.u[2].z, -2e-9, 1e-12);
+    tl_model_destroy(m);
+}
+
+/* ---------------------------------------------------------------- swaps and motions ------ */
+
+/* A random pair that overlaps a little, made in either order, and placed by a rotation. */
+static tl_model *random_pair(uint64_t seed, bool swapped, tl_quat turn, tl_vec3 shift)
+{
+    tl_model *m = scene_model(1);
+    scene_pair p;
+    int kind = (int)(3 * check_random(&seed));
+    if (kind == 0) {
+        p = scene_pair_of(scene_box_shape(1, 1.2, 1), scene_random_hull(&seed, 10, tl_v3(1, 1, 1)),
+                          scene_any_turn(&seed), tl_v3_scale(1.7, scene_direction(&seed)));
+    } else if (kind == 1) {
+        p = scene_pair_of(
+            scene_box_shape(1, 1.2, 1), scene_box_shape(0.8, 1, 1.1),
+            scene_turn(tl_v3(0.1, 0.2, 1), scene_between(&seed, 0, 7)),
+            tl_v3(scene_between(&seed, -0.5, 0.5), scene_between(&seed, -0.5, 0.5), 1.5));
+    } else {
+        p = scene_pair_of(scene_random_hull(&seed, 12, tl_v3(1, 1, 1)),
+                          scene_random_hull(&seed, 12, tl_v3(1, 1, 0.6)), scene_any_turn(&seed),
+                          tl_v3_scale(1.9, scene_direction(&seed)));
+    }
+    for (int pass = 0; pass < 4; pass++) {
+        tl_axis axis = tl_axis_search(scene_place(&p), &p.room, NULL);
+        p.shift = tl_v3_madd(p.shift, -OVERLAP - axis.s, axis.n);
+    }
+    tl_quat second = tl_q_mul(turn, p.turn);
+    tl_vec3 there = tl_v3_add(shift, tl_q_rotate(turn, p.shift));
+    if (swapped) {
+        scene_block(m, p.b, second, there);
+        scene_block(m, p.a, turn, shift);
+    } else {
+        scene_block(m, p.a, turn, shift);
+        scene_block(m, p.b, second, there);
+    }
+    scene_room_free(&p.room);
+    scene_law(m, "coulomb", KN, KN, 30);
+    scene_forces(m);
+    return m;
+}
+
+/* Coordinates are rounded to 1e-16, overlaps are 1e-4: forces agree to some 1e-12 times the number of
+ * operations. */
+#define SAME_FORCE 1e-9
+
+TEST(order_of_the_blocks_does_not_matter)
+{
+    for (uint64_t seed = 1; seed <= 300; seed++) {
+        tl_model *m = random_pair(seed, false, none, tl_v3(0, 0, 0));
+        tl_model *s = random_pair(seed, true, none, tl_v3(0, 0, 0));
+        tl_vec3 f = scene_force(m, 0, 1), g = scene_force(s, 0, 1);
+        CHECK(tl_v3_norm(f) > 0);
+        if (!CHECK(scene_apart(f, tl_v3_neg(g)) <= SAME_FORCE * tl_v3_norm(f)))
+            printf("  seed %d: %g %g %g and %g %g %g\n", (int)seed, f.x, f.y, f.z, g.x, g.y, g.z);
+        if (scene_contact(m, 0, 1) != TL_NO_ROW && scene_contact(s, 0, 1) != TL_NO_ROW) {
+            CHECK_REL(contact_area(s, 0, 1), contact_area(m, 0, 1), SAME_FORCE);
+            tl_vec3 moment = m->detect->contacts.moment_a[0];
+            if (!CHECK(scene_apart(moment, s->detect->contacts.moment_b[0]) <=
+                       SAME_FORCE * tl_v3_norm(f)))
+                printf("  seed %d: by %g, kinds %u %u, facets %u\n", (int)seed,
+                       scene_apart(moment, s->detect->contacts.moment_b[0]) / tl_v3_norm(f),
+                       m->detect->contacts.axis[0].kind, s->detect->contacts.axis[0].kind,
+                       m->detect->contacts.facet[0].kind);
+        }
+        tl_model_destroy(m);
+        tl_model_destroy(s);
+    }
+}
+
+TEST(motion_of_the_whole_model_turns_the_forces)
+{
+    uint64_t random = 4;
+    for (uint64_t seed = 1; seed <= 300; seed++) {
+        tl_quat q = scene_any_turn(&random);
+        tl_vec3 shift = tl_v3_scale(10, scene_direction(&random));
+        tl_model *m = random_pair(seed, false, none, tl_v3(0, 0, 0));
+        tl_model *s = random_pair(seed, false, q, shift);
+        tl_vec3 f = tl_q_rotate(q, scene_force(m, 0, 1)), g = scene_force(s, 0, 1);
+        if (!CHECK(scene_apart(f, g) <= SAME_FORCE * tl_v3_norm(f)))
+            printf("  seed %d: %g %g %g and %g %g %g\n", (int)seed, f.x, f.y, f.z, g.x, g.y, g.z);
+        tl_model_destroy(m);
+        tl_model_destroy(s);
+    }
+}
+
+/* The same by moving the bodies of one model, instead of making another. */
+TEST(bodies_moved_together_keep_their_forces)
+{
+    uint64_t random = 6;
+    for (uint64_t seed = 1; seed <= 100; seed++) {
+        tl_model *m = random_pair(seed, false, none, tl_v3(0, 0, 0));
+        tl_vec3 f = scene_force(m, 0, 1), apart = tl_body_apart(&m->bodies, 0, 1);
+        for (int i = 0; i < 5; i++) {
+            tl_quat q = scene_any_turn(&random);
+            tl_vec3 u = tl_v3_scale(3, scene_direction(&random));
+            scene_put(m, 0, u, q);
+            scene_put(m, 1, tl_v3_add(u, tl_v3_sub(tl_q_rotate(q, apart), apart)), q);
+            scene_forces(m);
+            tl_vec3 g = scene_force(m, 0, 1), want = tl_q_rotate(q, f);
+            CHECK(scene_apart(g, want) <= SAME_FORCE * tl_v3_norm(f));
+        }
+        tl_model_destroy(m);
+    }
+}
+
+/* Coordinates are multiples of 2^-13, which are exact at 1e6 too: so is everything computed. */
+TEST(offset_of_a_million_changes_nothing)
+{
+    double overlap = 0x1p-13;
+    tl_vec3 forces[3];
+    const tl_vec3 offsets[3] = {{0, 0, 0}, {1e6, -1e6, 1e6}, {0, 0, 1e6}};
+    for (int i = 0; i < 3; i++) {
+        tl_model *m = scene_model(1);
+        tl_vec3 o = offsets[i];
+        scene_box(m, o, tl_v3_add(o, tl_v3(1, 1, 1)));
+        scene_box(m, tl_v3_add(o, tl_v3(0.25, 0.5, 1 - overlap)),
+                  tl_v3_add(o, tl_v3(1.25, 1.5, 2 - overlap)));
+        scene_law(m, "elastic", KN, KN, -1);
+        scene_forces(m);
+        forces[i] = scene_force(m, 0, 1);
+        CHECK_REL(forces[i].z, KN * 0.75 * 0.5 * overlap, 1e-12);
+        CHECK(scene_apart(forces[i], forces[0]) <= 1e-9 * forces[0].z);
+        tl_model_destroy(m);
+    }
+    /* one model that reaches from 0 to 1e6 */
+    tl_model *m = scene_model(1);
+    tl_vec3 o = {1e6, 1e6, -1e6};
+    scene_box(m, tl_v3(0, 0, 0), tl_v3(1, 1, 1));
+    scene_box(m, o, tl_v3_add(o, tl_v3(1, 1, 1)));
+    scene_box(m, tl_v3_add(o, tl_v3(0.25, 0.5, 1 - overlap)),
+              tl_v3_add(o, tl_v3(1.25, 1.5, 2 - overlap)));
+    scene_law(m, "elastic", KN, KN, -1);
+    scene_forces(m);
+    CHECK(scene_apart(scene_force(m, 1, 2), forces[0]) <= 1e-9 * forces[0].z);
+    tl_model_destroy(m);
+}
+
+/* ---------------------------------------------------------------- sizes, sliding --------- */
+
+TEST(small_block_on_a_huge_one)
+{
+    for (int order = 0; order < 2; order++)
+        for (double x = -499; x < 500; x += 99.9) {
+            tl_model *m = scene_model(1);
+            if (order)
+                scene_box(m, tl_v3(x, 3, -OVERLAP), tl_v3(x + 1, 4, 1 - OVERLAP));
+            scene_box(m, tl_v3(-500, -500, -1000), tl_v3(500.5, 500, 0));
+            if (!order)
+                scene_box(m, tl_v3(x, 3, -OVERLAP), tl_v3(x + 1, 4, 1 - OVERLAP));
+            scene_law(m, "coulomb", KN, KN, 30);
+            scene_forces(m);
+            CHECK_REL(fabs(scene_force(m, 0, 1).z), KN * OVERLAP, 1e-8);
+            CHECK_REL(contact_area(m, 0, 1), 1.0, 1e-9);
+            tl_model_destroy(m);
+            /* and on its corner: the small one's minimum area */
+            m = scene_model(1);
+            tl_vec3 d = tl_v3_unit(tl_v3(1, 1, 1)), down = {0, 0, -1};
+            tl_quat q = scene_turn(tl_v3_cross(d, down), acos(tl_v3_dot(d, down)));
+            scene_box(m, tl_v3(-500, -500, -1000), tl_v3(500.5, 500, 0));
+            scene_block(m, scene_box_shape(1, 1, 1), q, tl_v3(x, 0.2, sqrt(0.75) - OVERLAP));
+            scene_law(m, "coulomb", KN, KN, 30);
+            scene_forces(m);
+            CHECK_REL(contact_area(m, 0, 1), UNIT_MINIMUM, 1e-9);
+            tl_model_destroy(m);
+        }
+}
+
+/* B slides off A's edge: flush, or tilted so that it hands over to the point share. */
+static void slide_off(double tilt_degrees, tl_vec3 about, double allowed)
+{
+    tl_model *m = scene_model(1);
+    double a = tilt_degrees * TL_PI / 180;
+    tl_quat q = scene_turn(about, a);
+    scene_box(m, tl_v3(0, 0, 0), tl_v3(1, 1, 1));
+    /* B's lowest point OVERLAP below A's top */
+    tl_poly *box = scene_box_shape(1, 1, 1);
+    double low = 0;
+    for (uint32_t i = 0; i < box->vertex_count; i++)
+        low = fmin(low, tl_q_rotate(q, box->vertex[i]).z);
+    scene_block(m, box, q, tl_v3(0.5, 0.5, 1 - OVERLAP - low));
+    scene_law(m, "coulomb", KN, KN, 30);
+    double most = 0, jump = 0, step = 1e-3, start = 0, last = 0;
+    for (int i = 0; i < 1300; i++) {
+        scene_forces(m);
+        double force = tl_v3_norm(scene_force(m, 0, 1));
+        if (i == 0)
+            start = last = force;
+        jump = fmax(jump, fabs(force - last));
+        most = fmax(most, force);
+        last = force;
+        scene_move(m, 1, tl_v3(step, 0, 0), tl_v3(0, 0, 0));
+    }
+    CHECK(start > 0);
+    CHECK_NEAR(last, 0, 0);
+    CHECK(jump <= allowed * most);
+    if (getenv("TALUS_TEST_VERBOSE"))
+        printf("  tilt %g about %g %g: jump %.3g of %.3g\n", tilt_degrees, about.x, about.y, jump,
+               most);
+    tl_model_destroy(m);
+}
+
+TEST(sliding_off_an_edge_is_continuous)
+{
+    slide_off(0, tl_v3(1, 0, 0), 0.003); /* the area shrinks by 1/1000 a step */
+    slide_off(0.01, tl_v3(1, 0.2, 0), 0.02);
+    slide_off(0.01, tl_v3(0, 1, 0), 0.02);
+}
+
+/* ---------------------------------------------------------------- eight blocks ----------- */
+
+/* Eight cubes pressed together from all sides: neighbours by an edge or a corner carry next to
+ * nothing. */
+TEST(edges_and_corners_of_eight_blocks_carry_nothing)
+{
+    for (double overlap = 1e-6; overlap < 5e-4; overlap *= 10) {
+        tl_model *m = scene_model(1);
+        double s = 1 - overlap;
+        for (int i = 0; i < 8; i++) {
+            tl_vec3 low = {(i & 1) * s, (i >> 1 & 1) * s, (i >> 2) * s};
+            scene_box(m, low, tl_v3_add(low, tl_v3(1, 1, 1)));
+        }
+        scene_law(m, "coulomb", KN, KN, 30);
+        scene_forces(m);
+        double face = KN * overlap * (1 - overlap) * (1 - overlap);
+        for (uint32_t a = 0; a < 8; a++)
+            for (uint32_t b = a + 1; b < 8; b++) {
+                uint32_t bits = a ^ b, sides = (bits & 1) + (bits >> 1 & 1) + (bits >> 2);
+                double force = tl_v3_norm(scene_force(m, a, b));
+                if (sides == 1)
+                    CHECK_REL(force, KN * overlap, 3 * overlap + 1e-9);
+                else
+                    CHECK(force <= 1e-3 * face);
+            }
+        tl_model_destroy(m);
+    }
+}
+
+/* ---------------------------------------------------------------- torsion ---------------- */
+
+/* Spin about the normal of a unit square: moment ks J angle with J = 1/6, both about B and A. */
+TEST(spin_about_the_normal_is_resisted)
+{
+    tl_model *m = scene_model(1);
+    scene_box(m, tl_v3(0, 0, 0), tl_v3(1, 1, 1));
+    scene_box(m, tl_v3(0, 0, 1 - OVERLAP), tl_v3(1, 1, 2 - OVERLAP));
+    scene_law(m, "elastic", KN, 0.5 * KN, -1);
+    scene_forces(m);
+    double rate = 1e-5, total = 0;
+    m->dt = 1;
+    for (int i = 0; i < 20; i++) {
+        m->bodies.w[1] = tl_v3(0, 0, rate);
+        scene_move(m, 1, tl_v3(0, 0, 0), tl_v3(0, 0, rate));
+        scene_forces(m);
+        total += rate;
+        CHECK_REL(-m->detect->contacts.moment_b[0].z, 0.5 * KN * total / 6, 1e-3);
+        tl_vec3 force = scene_force(m, 0, 1);
+        CHECK_NEAR(force.x, 0, 1e-6 * force.z);
+        CHECK_NEAR(force.y, 0, 1e-6 * force.z);
+    }
+    tl_model_destroy(m);
+}
+
+/* Both blocks turn together by 90 degrees about any axis: the shear force turns with them. */
+TEST(shear_turns_with_the_blocks)
+{
+    const tl_vec3 axes[] = {{0, 0, 1}, {1, 0, 0}, {0.3, -0.5, 0.8}};
+    for (int k = 0; k < 3; k++) {
+        tl_model *m = scene_model(1);
+        scene_box(m, tl_v3(0, 0, 0), tl_v3(1, 1, 1));
+        scene_box(m, tl_v3(0, 0, 1 - OVERLAP), tl_v3(1, 1, 2 - OVERLAP));
+        scene_law(m, "elastic", KN, KN, -1);
+        scene_forces(m);
+        m->dt = 1;
+        m->bodies.v[1] = tl_v3(1e-6, 0, 0);
+        scene_move(m, 1, m->bodies.v[1], tl_v3(0, 0, 0));
+        scene_forces(m);
+        tl_vec3 before = scene_force(m, 0, 1);
+        CHECK_REL(before.x, -KN * 1e-6, 1e-3);
+        tl_vec3 axis = tl_v3_unit(axes[k]), apart = tl_body_apart(&m->bodies, 0, 1);
+        int steps = 5000;
+        double angle = TL_PI / 2 / steps;
+        tl_vec3 place = apart;
+        for (int i = 1; i <= steps; i++) {
+            tl_vec3 w = tl_v3_scale(angle, axis);
+            tl_vec3 next = tl_q_rotate(scene_turn(axis, i * angle), apart);
+            /* the midpoint's velocity is the one that a step has */
+            tl_vec3 v = tl_v3_sub(next, place);
+            m->bodies.w[0] = m->bodies.w[1] = w;
+            m->bodies.v[0] = tl_v3(0, 0, 0);
+            m->bodies.v[1] = v;
+            scene_move(m, 0, tl_v3(0, 0, 0), w);
+            scene_move(m, 1, v, w);
+            place = next;
+            scene_forces(m);
+        }
+        tl_vec3 want = tl_q_rotate(scene_turn(axis, TL_PI / 2), before);
+        CHECK(scene_apart(scene_force(m, 0, 1), want) <= 1e-3 * tl_v3_norm(before));
+        tl_model_destroy(m);
+    }
+}
+
+TEST_MAIN(RUN(nearly_parallel_edges_stay_in_contact),
+          RUN(parallel_faces_that_do_not_meet_leave_the_point_share),
+          RUN(joint_is_that_of_a_face_that_touches), RUN(edge_on_face_has_the_minimum_area),
+          RUN(vertex_on_face_has_the_minimum_area), RUN(faces_half_a_degree_apart_share_the_force),
+          RUN(ties_do_not_trigger_the_full_search_every_step),
+          RUN(touching_without_area_is_not_looked_at_every_step),
+          RUN(tiny_steps_in_large_coordinates_add_up), RUN(order_of_the_blocks_does_not_matter),
+          RUN(motion_of_the_whole_model_turns_the_forces),
+          RUN(bodies_moved_together_keep_their_forces), RUN(offset_of_a_million_changes_nothing),
+          RUN(small_block_on_a_huge_one), RUN(sliding_off_an_edge_is_continuous),
+          RUN(edges_and_corners_of_eight_blocks_carry_nothing),
+          RUN(spin_about_the_normal_is_resisted), RUN(shear_turns_with_the_blocks))
