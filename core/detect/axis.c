@@ -104,23 +104,63 @@ static void offer(tl_axis *best, const tl_axis *one)
     }
 }
 
+/* cos from which a direction counts as going into a seam. */
+#define INTO_SEAM 1e-6
+
+/* True when the part, at its farthest vertex in `outward`, goes on into another part of its body: there is
+ * no wall to meet in that direction. */
+static bool enters_seam(const tl_poly *p, const tl_vec3 *vertex, tl_vec3 outward,
+                        const tl_mat3 *turn)
+{
+    if (!p->seams)
+        return false;
+    uint32_t top = 0;
+    for (uint32_t i = 1; i < p->vertex_count; i++)
+        if (tl_v3_dot(outward, vertex[i]) > tl_v3_dot(outward, vertex[top]))
+            top = i;
+    for (uint32_t k = p->star_at[top]; k < p->star_at[top + 1]; k++) {
+        const tl_edge *e = &p->edge[p->star[k]];
+        const uint16_t faces[] = {e->left, e->right};
+        for (int i = 0; i < 2; i++) {
+            tl_vec3 n = p->plane[faces[i]].normal;
+            if (p->covered[faces[i]] &&
+                tl_v3_dot(outward, turn ? tl_m3_mul(turn, n) : n) > INTO_SEAM)
+                return true;
+        }
+    }
+    return false;
+}
+
+/* True when no wall of A faces n, or none of B faces -n. */
+static bool is_inside(const tl_pair_view *view, tl_vec3 n)
+{
+    return enters_seam(view->a, view->a->vertex, n, NULL) ||
+           enters_seam(view->b, view->vertex_b, tl_v3_neg(n), &view->turn);
+}
+
 static void search_faces(const tl_pair_view *view, tl_axis *best)
 {
     for (uint32_t f = 0; f < view->a->face_count; f++) {
+        if (view->a->covered[f])
+            continue;
         tl_plane plane = view->a->plane[f];
         double s = lowest_above(view->vertex_b, view->b->vertex_count, plane.normal,
                                 best->second + plane.offset) -
                    plane.offset;
         tl_axis one = {TL_AXIS_FACE_A, (uint16_t)f, 0, plane.normal, s, 0};
-        offer(best, &one);
+        if (s > best->second && !is_inside(view, one.n))
+            offer(best, &one);
     }
     for (uint32_t f = 0; f < view->b->face_count; f++) {
+        if (view->b->covered[f])
+            continue;
         double offset = offset_b(view, f);
         double s = lowest_above(view->a->vertex, view->a->vertex_count, view->normal_b[f],
                                 best->second + offset) -
                    offset;
         tl_axis one = {TL_AXIS_FACE_B, 0, (uint16_t)f, tl_v3_neg(view->normal_b[f]), s, 0};
-        offer(best, &one);
+        if (s > best->second && !is_inside(view, one.n))
+            offer(best, &one);
     }
 }
 
@@ -190,15 +230,20 @@ static void search_edges(const tl_pair_view *view, tl_narrow *room, tl_axis *bes
             ba[(size_t)j * a->face_count + f] = tl_v3_dot(e, a->plane[f].normal);
     }
     for (uint32_t i = 0; i < a->edge_count; i++) {
+        if (a->hidden[i])
+            continue;
         const tl_edge *ea = &a->edge[i];
         const double *row = ab + (size_t)i * b->face_count;
         for (uint32_t j = 0; j < b->edge_count; j++) {
+            if (b->hidden[j])
+                continue;
             const tl_edge *eb = &b->edge[j];
             const double *column = ba + (size_t)j * a->face_count;
             double b1 = row[eb->left], b2 = row[eb->right];
             double a1 = column[ea->left], a2 = column[ea->right];
             tl_axis one;
-            if (b1 * b2 < 0 && a1 * a2 < 0 && b1 * a2 < 0 && edge_axis(view, i, j, &one))
+            if (b1 * b2 < 0 && a1 * a2 < 0 && b1 * a2 < 0 && edge_axis(view, i, j, &one) &&
+                one.s > best->second && !is_inside(view, one.n))
                 offer(best, &one);
         }
     }
@@ -210,6 +255,11 @@ tl_axis tl_axis_search(const tl_pair_view *view, tl_narrow *room, const tl_axis 
     search_faces(view, &face);
     tl_axis best = face;
     search_edges(view, room, &best);
+    if (best.s ==
+        -INFINITY) { /* no wall of one meets a wall of the other: parts deep inside bodies */
+        best.s = view->size;
+        return best;
+    }
     if (best.kind == TL_AXIS_EDGES) {
         /* an edge axis counts by its full support, and only when it beats the faces clearly */
         best.s = full_support(view, best.n);

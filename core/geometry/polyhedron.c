@@ -23,7 +23,7 @@ tl_poly *tl_poly_allocate(uint32_t vertex_count, uint32_t face_count, uint32_t e
     tl_poly *p =
         malloc(sizeof *p + v * sizeof *p->vertex + f * (sizeof *p->plane + sizeof *p->tag) +
                (f + 1) * sizeof *p->start + (v + 1) * sizeof *p->star_at + e * sizeof *p->edge +
-               2 * e * (sizeof *p->loop + sizeof *p->star));
+               2 * e * (sizeof *p->loop + sizeof *p->star) + f + e);
     if (!p)
         return NULL;
     p->vertex_count = vertex_count;
@@ -38,6 +38,10 @@ tl_poly *tl_poly_allocate(uint32_t vertex_count, uint32_t face_count, uint32_t e
     p->edge = (tl_edge *)(p->star_at + v + 1);
     p->loop = (uint16_t *)(p->edge + e);
     p->star = p->loop + 2 * e;
+    p->covered = (uint8_t *)(p->star + 2 * e);
+    p->hidden = p->covered + f;
+    memset(p->covered, 0, f + e);
+    p->seams = false;
     return p;
 }
 
@@ -279,6 +283,9 @@ tl_status tl_poly_transformed(const tl_poly *poly, const tl_mat3 *rotation, tl_v
     memcpy(p->edge, poly->edge, p->edge_count * sizeof *p->edge);
     memcpy(p->loop, poly->loop, 2 * p->edge_count * sizeof *p->loop);
     memcpy(p->star, poly->star, 2 * p->edge_count * sizeof *p->star);
+    p->seams = poly->seams;
+    memcpy(p->covered, poly->covered, p->face_count);
+    memcpy(p->hidden, poly->hidden, p->edge_count);
     tl_bounds bounds = tl_poly_bounds(p);
     p->size = tl_v3_norm(tl_v3_sub(bounds.max, bounds.min));
     *copy = p;

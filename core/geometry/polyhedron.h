@@ -36,6 +36,10 @@ typedef struct tl_poly {
     uint16_t *loop;    /* [2 edge_count] vertex indices */
     uint16_t *star;    /* [2 edge_count] edges at each vertex, by vertex */
     uint32_t *star_at; /* [vertex_count + 1] into star */
+    /* Seams with the other parts of a body of several polyhedra (seam.c); 0 for a single one. */
+    bool seams;       /* some face is covered */
+    uint8_t *covered; /* [face_count] 1: the face lies on other parts */
+    uint8_t *hidden;  /* [edge_count] 1: the edge is no corner of the body */
 } tl_poly;
 
 static inline uint32_t tl_poly_face_size(const tl_poly *p, uint32_t face)
@@ -89,6 +93,10 @@ bool tl_poly_contains(const tl_poly *poly, tl_vec3 point, double tolerance);
 /* Eigenvalues (ascending in `moments`) and the rotation from principal axes to the given ones. The
  * identity for a diagonal tensor's own axes up to their order. */
 void tl_principal_axes(tl_sym3 tensor, tl_vec3 *moments, tl_quat *axes);
+
+/* Marks the seams of a body made of `count` parts given in one frame: faces that lie on other parts over
+ * their whole area, and edges of such faces where the body's surface goes on flat or turns inward. */
+tl_status tl_poly_mark_seams(tl_poly *const *parts, size_t count, tl_error *error);
 
 /* ---- cutting: cut.c ---- */
 

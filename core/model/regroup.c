@@ -99,6 +99,19 @@ static tl_status new_shape(tl_model *m, const parts *sum, uint32_t row, tl_poly 
                                shape, &m->error);
 }
 
+/* Marks the seams of a new body on the new shapes of its parts. */
+static tl_status mark_seams(tl_model *m, const uint32_t *rows, size_t count, tl_poly **shapes)
+{
+    tl_poly **polys = malloc(count * sizeof *polys);
+    if (!polys)
+        return tl_fail_memory(&m->error);
+    for (size_t i = 0; i < count; i++)
+        polys[i] = shapes[rows[i]];
+    tl_status status = tl_poly_mark_seams(polys, count, &m->error);
+    free(polys);
+    return status;
+}
+
 /* The inverse of a body's inertia applied to its angular momentum. */
 static tl_vec3 spin_velocity(const tl_bodies *b, uint32_t body, tl_vec3 spin)
 {
@@ -197,6 +210,8 @@ tl_status tl_bodies_regroup(tl_model *m, const uint32_t *group)
         r.parts[g] = sum_parts(m, &r.rows[r.start[g]], r.start[g + 1] - r.start[g]);
         for (uint32_t k = r.start[g]; k < r.start[g + 1] && status == TL_OK; k++)
             status = new_shape(m, &r.parts[g], r.rows[k], &r.shapes[r.rows[k]]);
+        if (status == TL_OK)
+            status = mark_seams(m, &r.rows[r.start[g]], r.start[g + 1] - r.start[g], r.shapes);
     }
     if (status != TL_OK) {
         regroup_free(&r, count);

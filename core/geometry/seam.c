@@ -1,0 +1,235 @@
+/* seam.c - a body made of several convex polyhedra: which of their faces and edges are inside it.
+ *
+ * A face is covered when faces of other parts, in the same plane and facing it, overlap all of its area.
+ * An edge of a covered face is hidden unless the surface turns outward there, from the edge's other face
+ * to a face of another part. Covered faces and hidden edges are no directions in which the body could
+ * part from another: a block that slides over a seam must not feel it. */
+#include "geometry/polyhedron.h"
+
+#include "base/error.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <talus/vmath.h>
+
+/* Parts fit when planes and corners agree within this times their size: joined blocks were cut by one
+ * plane, or were placed in contact by coordinates of six digits. */
+#define FIT 1e-6
+/* Share of a face's area that may stay uncovered. */
+#define UNCOVERED 1e-5
+
+typedef struct flat {
+    double x, y;
+} flat;
+
+typedef struct frame {
+    tl_vec3 o, t1, t2;
+} frame;
+
+static flat flatten(const frame *f, tl_vec3 x)
+{
+    tl_vec3 d = tl_v3_sub(x, f->o);
+    return (flat){tl_v3_dot(d, f->t1), tl_v3_dot(d, f->t2)};
+}
+
+static double turn(flat o, flat a, flat b)
+{
+    return (a.x - o.x) * (b.y - o.y) - (a.y - o.y) * (b.x - o.x);
+}
+
+/* Keeps what lies left of the line from o to q; returns the number of corners. */
+static size_t keep_left(const flat *in, size_t count, flat o, flat q, flat *out)
+{
+    size_t kept = 0;
+    for (size_t i = 0; i < count; i++) {
+        flat here = in[i], after = in[(i + 1) % count];
+        double h = turn(o, q, here), a = turn(o, q, after);
+        if (h >= 0)
+            out[kept++] = here;
+        if ((h > 0 && a < 0) || (h < 0 && a > 0)) {
+            double t = h / (h - a);
+            out[kept++] = (flat){here.x + t * (after.x - here.x), here.y + t * (after.y - here.y)};
+        }
+    }
+    return kept;
+}
+
+static double flat_area(const flat *c, size_t count)
+{
+    double area = 0;
+    for (size_t i = 1; i + 1 < count; i++)
+        area += 0.5 * turn(c[0], c[i], c[i + 1]);
+    return area;
+}
+
+/* Area common to face fa of a and face fb of b, which face each other in one plane. `room` holds twice
+ * as many corners as both faces have. */
+static double common_area(const tl_poly *a, uint32_t fa, const tl_poly *b, uint32_t fb, flat *room)
+{
+    uint32_t na = tl_poly_face_size(a, fa), nb = tl_poly_face_size(b, fb);
+    tl_vec3 n = a->plane[fa].normal;
+    frame f = {.o = a->vertex[a->loop[a->start[fa]]], .t1 = tl_v3_perpendicular(n)};
+    f.t2 = tl_v3_cross(n, f.t1);
+    flat *now = room, *next = room + na + nb;
+    size_t count = na;
+    for (uint32_t i = 0; i < na; i++)
+        now[i] = flatten(&f, a->vertex[a->loop[a->start[fa] + i]]);
+    for (uint32_t i = 0; i < nb && count; i++) {
+        /* b's loop runs the other way round as seen from a */
+        flat o = flatten(&f, b->vertex[b->loop[b->start[fb] + (i + 1) % nb]]);
+        flat q = flatten(&f, b->vertex[b->loop[b->start[fb] + i]]);
+        count = keep_left(now, count, o, q, next);
+        flat *swap = now;
+        now = next;
+        next = swap;
+    }
+    return flat_area(now, count);
+}
+
+static bool face_each_other(const tl_poly *a, uint32_t fa, const tl_poly *b, uint32_t fb)
+{
+    tl_plane p = a->plane[fa], q = b->plane[fb];
+    double size = fmin(a->size, b->size);
+    return tl_v3_norm(tl_v3_add(p.normal, q.normal)) < FIT &&
+           fabs(p.offset + q.offset) < FIT * size;
+}
+
+typedef struct part {
+    tl_poly *poly;
+    tl_bounds bounds;
+    double *open; /* [faces] area not covered yet */
+} part;
+
+static bool apart(const part *a, const part *b)
+{
+    double slack = FIT * fmax(a->poly->size, b->poly->size);
+    return a->bounds.min.x > b->bounds.max.x + slack || b->bounds.min.x > a->bounds.max.x + slack ||
+           a->bounds.min.y > b->bounds.max.y + slack || b->bounds.min.y > a->bounds.max.y + slack ||
+           a->bounds.min.z > b->bounds.max.z + slack || b->bounds.min.z > a->bounds.max.z + slack;
+}
+
+static bool cover(part *a, part *b)
+{
+    for (uint32_t i = 0; i < a->poly->face_count; i++)
+        for (uint32_t j = 0; j < b->poly->face_count; j++) {
+            if (!face_each_other(a->poly, i, b->poly, j))
+                continue;
+            size_t corners = tl_poly_face_size(a->poly, i) + tl_poly_face_size(b->poly, j);
+            flat *room = malloc(4 * corners * sizeof *room);
+            if (!room)
+                return false;
+            double area = common_area(a->poly, i, b->poly, j, room);
+            a->open[i] -= area;
+            b->open[j] -= area;
+            free(room);
+        }
+    return true;
+}
+
+static int compare_part(const void *x, const void *y)
+{
+    double a = ((const part *)x)->bounds.min.x, b = ((const part *)y)->bounds.min.x;
+    return (a > b) - (a < b);
+}
+
+/* Calls `visit` for every two parts whose bounds meet; parts are sorted by their low x. */
+static bool each_pair(part *parts, size_t count, bool (*visit)(part *, part *))
+{
+    for (size_t i = 0; i < count; i++)
+        for (size_t j = i + 1; j < count; j++) {
+            double slack = FIT * fmax(parts[i].poly->size, parts[j].poly->size);
+            if (parts[j].bounds.min.x > parts[i].bounds.max.x + slack)
+                break;
+            if (!apart(&parts[i], &parts[j]) && !visit(&parts[i], &parts[j]))
+                return false;
+        }
+    return true;
+}
+
+/* True when face g of b goes on outward from face f of a beyond the edge whose middle is x; `seam` is the
+ * covered face of a at the edge. */
+static bool turns_outward(const tl_poly *a, uint32_t f, uint32_t seam, const tl_poly *b, uint32_t g,
+                          tl_vec3 x)
+{
+    double slack = FIT * fmin(a->size, b->size);
+    tl_plane q = b->plane[g];
+    if (b->covered[g] || face_each_other(a, seam, b, g) ||
+        fabs(tl_v3_dot(q.normal, x) - q.offset) > slack)
+        return false;
+    uint32_t start = b->start[g], count = tl_poly_face_size(b, g);
+    for (uint32_t i = 0; i < count; i++) {
+        tl_vec3 c = b->vertex[b->loop[start + i]];
+        tl_vec3 along = tl_v3_sub(b->vertex[b->loop[start + (i + 1) % count]], c);
+        tl_vec3 inward = tl_v3_unit(tl_v3_cross(q.normal, along));
+        if (tl_v3_dot(inward, tl_v3_sub(x, c)) < -slack)
+            return false;
+    }
+    tl_plane p = a->plane[f];
+    return tl_v3_dot(p.normal, tl_poly_face_centroid(b, g)) - p.offset < -slack;
+}
+
+/* Shows the hidden edges of a again where the body turns outward over b. */
+static void show_edges(tl_poly *a, const tl_poly *b)
+{
+    for (uint32_t e = 0; e < a->edge_count; e++) {
+        const tl_edge *edge = &a->edge[e];
+        bool left = a->covered[edge->left], right = a->covered[edge->right];
+        if (left == right)
+            continue;
+        tl_vec3 x = tl_v3_scale(0.5, tl_v3_add(a->vertex[edge->a], a->vertex[edge->b]));
+        for (uint32_t g = 0; g < b->face_count && a->hidden[e]; g++)
+            a->hidden[e] = !turns_outward(a, left ? edge->right : edge->left,
+                                          left ? edge->left : edge->right, b, g, x);
+    }
+}
+
+static bool show(part *a, part *b)
+{
+    show_edges(a->poly, b->poly);
+    show_edges(b->poly, a->poly);
+    return true;
+}
+
+static void mark(part *p)
+{
+    tl_poly *poly = p->poly;
+    poly->seams = false;
+    for (uint32_t f = 0; f < poly->face_count; f++) {
+        poly->covered[f] = p->open[f] < UNCOVERED * tl_poly_face_area(poly, f);
+        poly->seams = poly->seams || poly->covered[f];
+    }
+    for (uint32_t e = 0; e < poly->edge_count; e++)
+        poly->hidden[e] = poly->covered[poly->edge[e].left] || poly->covered[poly->edge[e].right];
+}
+
+tl_status tl_poly_mark_seams(tl_poly *const *parts, size_t count, tl_error *error)
+{
+    size_t faces = 0;
+    for (size_t i = 0; i < count; i++) {
+        parts[i]->seams = false;
+        memset(parts[i]->covered, 0, parts[i]->face_count);
+        memset(parts[i]->hidden, 0, parts[i]->edge_count);
+        faces += parts[i]->face_count;
+    }
+    if (count < 2)
+        return TL_OK;
+    part *list = malloc(count * sizeof *list);
+    double *open = malloc(faces * sizeof *open);
+    bool done = list && open;
+    for (size_t i = 0, at = 0; done && i < count; at += parts[i]->face_count, i++) {
+        list[i] = (part){parts[i], tl_poly_bounds(parts[i]), open + at};
+        for (uint32_t f = 0; f < parts[i]->face_count; f++)
+            open[at + f] = tl_poly_face_area(parts[i], f);
+    }
+    if (done) {
+        qsort(list, count, sizeof *list, compare_part);
+        done = each_pair(list, count, cover);
+    }
+    for (size_t i = 0; done && i < count; i++)
+        mark(&list[i]);
+    if (done)
+        each_pair(list, count, show);
+    free(list);
+    free(open);
+    return done ? TL_OK : tl_fail_memory(error);
+}

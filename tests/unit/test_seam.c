@@ -1,0 +1,175 @@
+/* test_seam.c - seams inside bodies of several blocks: which faces and edges are marked, and that a block
+ * slides over a seam as over one piece. */
+#include "check.h"
+#include "geometry/polyhedron.h"
+
+#include <talus/talus.h>
+#include <talus/vmath.h>
+
+static tl_error error;
+
+static tl_poly *box(double x0, double x1, double z0, double z1)
+{
+    tl_poly *p = NULL;
+    CHECK_INT(tl_poly_box(tl_v3(x0, 0, z0), tl_v3(x1, 1, z1), &p, &error), TL_OK);
+    return p;
+}
+
+static unsigned covered(const tl_poly *p)
+{
+    unsigned n = 0;
+    for (uint32_t f = 0; f < p->face_count; f++)
+        n += p->covered[f];
+    return n;
+}
+
+static unsigned hidden(const tl_poly *p)
+{
+    unsigned n = 0;
+    for (uint32_t e = 0; e < p->edge_count; e++)
+        n += p->hidden[e];
+    return n;
+}
+
+TEST(equal_boxes_share_one_face_and_its_four_edges)
+{
+    tl_poly *parts[] = {box(0, 1, 0, 1), box(1, 2, 0, 1)};
+    CHECK_INT(tl_poly_mark_seams(parts, 2, &error), TL_OK);
+    for (int i = 0; i < 2; i++) {
+        CHECK_INT(covered(parts[i]), 1);
+        CHECK_INT(hidden(parts[i]), 4);
+        tl_poly_free(parts[i]);
+    }
+}
+
+TEST(a_step_covers_only_the_lower_box)
+{
+    /* the higher box's side is covered by half: it stays a side of the body */
+    tl_poly *parts[] = {box(0, 1, 0, 1), box(1, 2, 0, 2)};
+    CHECK_INT(tl_poly_mark_seams(parts, 2, &error), TL_OK);
+    CHECK_INT(covered(parts[0]), 1);
+    CHECK_INT(covered(parts[1]), 0);
+    CHECK_INT(hidden(parts[0]), 4);
+    CHECK_INT(hidden(parts[1]), 0);
+    for (int i = 0; i < 2; i++)
+        tl_poly_free(parts[i]);
+}
+
+TEST(two_boxes_cover_the_side_of_a_third)
+{
+    tl_poly *parts[] = {box(0, 1, 0, 2), box(1, 2, 0, 1), box(1, 2, 1, 2)};
+    CHECK_INT(tl_poly_mark_seams(parts, 3, &error), TL_OK);
+    CHECK_INT(covered(parts[0]), 1);
+    CHECK_INT(covered(parts[1]), 2);
+    CHECK_INT(covered(parts[2]), 2);
+    for (int i = 0; i < 3; i++)
+        tl_poly_free(parts[i]);
+}
+
+/* Two wedges back to back: their common edge at the top is a ridge of the body, the other three edges of
+ * the seam are not. */
+TEST(a_ridge_stays_an_edge)
+{
+    tl_poly *parts[2];
+    for (int i = 0; i < 2; i++) {
+        double x = i ? 1 : -1;
+        const tl_vec3 corners[] = {{0, 0, 0}, {0, 1, 0}, {x, 0, 0},
+                                   {x, 1, 0}, {0, 0, 1}, {0, 1, 1}};
+        CHECK_INT(tl_poly_hull(corners, 6, &parts[i], &error), TL_OK);
+    }
+    CHECK_INT(tl_poly_mark_seams(parts, 2, &error), TL_OK);
+    for (int i = 0; i < 2; i++) {
+        CHECK_INT(covered(parts[i]), 1);
+        CHECK_INT(hidden(parts[i]), 3);
+        for (uint32_t e = 0; e < parts[i]->edge_count; e++) {
+            const tl_edge *edge = &parts[i]->edge[e];
+            if (parts[i]->vertex[edge->a].z == 1 && parts[i]->vertex[edge->b].z == 1)
+                CHECK(!parts[i]->hidden[e]);
+        }
+        tl_poly_free(parts[i]);
+    }
+}
+
+/* ---------------------------------------------------------------- sliding ---------------- */
+
+static void make_box(tl_model *m, tl_vec3 min, tl_vec3 max)
+{
+    const tl_value values[] = {{.key = "min", .type = TL_VALUE_NUMBERS, .data = &min.x, .count = 3},
+                               {.key = "max", .type = TL_VALUE_NUMBERS, .data = &max.x, .count = 3},
+                               {.key = "density", .type = TL_VALUE_NUMBER, .number = 2000}};
+    const tl_args args = {values, 3};
+    if (!CHECK_INT(tl_generate(m, "box", &args, NULL), TL_OK))
+        printf("%s\n", tl_model_error(m)->text);
+}
+
+static double field(tl_model *m, tl_id block, const char *name, int component)
+{
+    size_t count;
+    const tl_field *fields = tl_block_fields(&count);
+    tl_field_value value = {{NAN}, NULL};
+    for (size_t i = 0; i < count; i++)
+        if (strcmp(fields[i].name, name) == 0)
+            tl_block_field(m, block, i, &value);
+    return value.number[component];
+}
+
+/* A smooth block that slides over two joined boxes, or over one of the same size: its velocity along the
+ * slide, and the largest change of it met on the way. */
+static double slide(int pieces, double *place)
+{
+    tl_model *m;
+    const tl_model_config config = {
+        .gravity = {0, 0, -10}, .seed = 1, .threads = 1, .reuse_geometry = 1};
+    CHECK_INT(tl_model_create(&config, &m, &error), TL_OK);
+    if (pieces == 2) {
+        make_box(m, tl_v3(0, 0, 0), tl_v3(2, 1, 1));
+        make_box(m, tl_v3(2, 0, 0), tl_v3(4, 1, 1));
+        const tl_id both[] = {1, 2};
+        CHECK_INT(tl_blocks_join(m, both, 2), TL_OK);
+    } else {
+        make_box(m, tl_v3(0, 0, 0), tl_v3(4, 1, 1));
+    }
+    tl_id slider = (tl_id)pieces + 1, base = 1;
+    make_box(m, tl_v3(0.9, 0.3, 1), tl_v3(1.5, 0.7, 1.3));
+    const tl_value law[] = {{.key = "kn", .type = TL_VALUE_NUMBER, .number = 1e7},
+                            {.key = "ks", .type = TL_VALUE_NUMBER, .number = 1e7},
+                            {.key = "friction", .type = TL_VALUE_NUMBER, .number = 0}};
+    const tl_args args = {law, 3};
+    CHECK_INT(tl_joint_law(m, "*", "coulomb", &args), TL_OK);
+    CHECK_INT(tl_blocks_fix(m, &base, 1, TL_FIX_ALL), TL_OK);
+    tl_block_set set = {
+        .density = NAN, .velocity = {0.5, 0, 0}, .angular_velocity = {NAN, NAN, NAN}};
+    CHECK_INT(tl_blocks_set(m, &slider, 1, &set), TL_OK);
+    double worst = 0;
+    tl_solve_result result;
+    const tl_timestep step = {0.1, TL_TIMESTEP_PAPER, 1e-3};
+    CHECK_INT(tl_model_timestep(m, &step), TL_OK);
+    for (int k = 0; k < 200; k++) {
+        CHECK_INT(tl_model_cycle(m, 10, &result), TL_OK);
+        worst = fmax(worst, fabs(field(m, slider, "velocity", 0) - 0.5));
+    }
+    *place = field(m, slider, "displacement", 0);
+    tl_model_destroy(m);
+    return worst;
+}
+
+TEST(a_block_slides_over_a_seam_as_over_one_piece)
+{
+    double one, two;
+    CHECK_NEAR(slide(1, &one), 0, 1e-9);
+    CHECK_NEAR(slide(2, &two), 0, 1e-9);
+    CHECK_NEAR(one, 1.0, 1e-3);
+    CHECK_NEAR(two, one, 1e-9);
+}
+
+int main(void)
+{
+    tl_plugins_load_default();
+    RUN(equal_boxes_share_one_face_and_its_four_edges);
+    RUN(a_step_covers_only_the_lower_box);
+    RUN(two_boxes_cover_the_side_of_a_third);
+    RUN(a_ridge_stays_an_edge);
+    RUN(a_block_slides_over_a_seam_as_over_one_piece);
+    printf("%s: %d checks, %d failed\n", __FILE__, check_count, check_failed);
+    return check_failed != 0;
+}
