@@ -228,10 +228,6 @@ static bool share_of_face(const tl_pair_view *view, const tl_axis *axis, tl_narr
     size_t begin = m->point_count;
     bool over = add_support(view, &r, b_stands, m);
     bool met = over || m->point_count > begin;
-    if (!met) { /* nothing is over the face: the axis is not the one; the nearest vertex stands in */
-        uint32_t low = lowest_vertex(&r);
-        add_resting(view, b_stands, m, r.vertex[low], 1, (uint32_t)tl_key(b_stands ? 1 : 2, low));
-    }
     if (corners != few)
         free(corners);
     add_facet(m, face_facet(view, axis, b_stands), begin);
@@ -360,7 +356,7 @@ static uint32_t touching_face(const tl_poly *p, const tl_vec3 *vertex, const tl_
     for (uint32_t i = 0; i < p->face_count; i++) {
         tl_vec3 n = *(const tl_vec3 *)(const void *)((const char *)normals + i * stride);
         double c = tl_v3_dot(n, direction);
-        if (c <= *cosine)
+        if (c <= *cosine || p->covered[i])
             continue;
         bool touches = false;
         for (uint32_t k = p->start[i]; k < p->start[i + 1] && !touches; k++)
