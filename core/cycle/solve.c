@@ -98,7 +98,7 @@ static tl_status run(tl_model *m, const tl_solve *solve, tl_solve_result *result
                        "cycle and solve cannot be called from a function that a run has called");
     progress p = {solve, result, m->cycles, m->time, wall_clock()};
     tl_watch *watch = NULL;
-    if (solve->ratio > 0 && !(watch = tl_watch_begin(m)))
+    if ((solve->ratio > 0 || solve->stop_at_failure) && !(watch = tl_watch_begin(m)))
         return tl_fail_memory(&m->error);
     atomic_store(&m->interrupted, false);
     tl_status status = TL_OK;

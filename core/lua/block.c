@@ -228,7 +228,7 @@ int tl_lua_blocks(lua_State *L)
 
 /* ---------------------------------------------------------------- verbs ------------------ */
 
-static tl_lua_selection *self(lua_State *L, int most, const char *method)
+tl_lua_selection *tl_lua_blocks_self(lua_State *L, int most, const char *method)
 {
     tl_lua_selection *blocks = tl_lua_selection_of(L, 1, &tl_lua_block_kind, method);
     tl_lua_living(L, blocks->owner);
@@ -237,42 +237,56 @@ static tl_lua_selection *self(lua_State *L, int most, const char *method)
     return blocks;
 }
 
-/* Raises on failure; otherwise answers with the selection itself. */
-static int done(lua_State *L, const tl_lua_selection *blocks, tl_status status)
+int tl_lua_blocks_done(lua_State *L, const tl_lua_selection *blocks, tl_status status)
 {
     tl_lua_ok(L, blocks->owner->model, status);
+    lua_getiuservalue(L, 1, 1);
+    tl_lua_drives_sweep(L, lua_gettop(L)); /* the verb may have ended a drive */
     lua_settop(L, 1);
     return 1;
 }
 
 static int blocks_hide(lua_State *L)
 {
-    tl_lua_selection *b = self(L, 1, "hide");
-    return done(L, b, tl_blocks_hide(b->owner->model, b->ids, b->count, true));
+    tl_lua_selection *b = tl_lua_blocks_self(L, 1, "hide");
+    return tl_lua_blocks_done(L, b, tl_blocks_hide(b->owner->model, b->ids, b->count, true));
 }
 
 static int blocks_show(lua_State *L)
 {
-    tl_lua_selection *b = self(L, 1, "show");
-    return done(L, b, tl_blocks_hide(b->owner->model, b->ids, b->count, false));
+    tl_lua_selection *b = tl_lua_blocks_self(L, 1, "show");
+    return tl_lua_blocks_done(L, b, tl_blocks_hide(b->owner->model, b->ids, b->count, false));
 }
 
 static int blocks_delete(lua_State *L)
 {
-    tl_lua_selection *b = self(L, 1, "delete");
-    return done(L, b, tl_blocks_delete(b->owner->model, b->ids, b->count));
+    tl_lua_selection *b = tl_lua_blocks_self(L, 1, "delete");
+    return tl_lua_blocks_done(L, b, tl_blocks_delete(b->owner->model, b->ids, b->count));
+}
+
+static int blocks_join(lua_State *L)
+{
+    tl_lua_selection *b = tl_lua_blocks_self(L, 1, "join");
+    return tl_lua_blocks_done(L, b, tl_blocks_join(b->owner->model, b->ids, b->count));
+}
+
+static int blocks_unjoin(lua_State *L)
+{
+    tl_lua_selection *b = tl_lua_blocks_self(L, 1, "unjoin");
+    return tl_lua_blocks_done(L, b, tl_blocks_unjoin(b->owner->model, b->ids, b->count));
 }
 
 static int blocks_free(lua_State *L)
 {
-    tl_lua_selection *b = self(L, 1, "free");
-    return done(L, b, tl_blocks_free(b->owner->model, b->ids, b->count));
+    tl_lua_selection *b = tl_lua_blocks_self(L, 1, "free");
+    return tl_lua_blocks_done(L, b, tl_blocks_free(b->owner->model, b->ids, b->count));
 }
 
 static int blocks_reset_displacement(lua_State *L)
 {
-    tl_lua_selection *b = self(L, 1, "reset_displacement");
-    return done(L, b, tl_blocks_reset_displacement(b->owner->model, b->ids, b->count));
+    tl_lua_selection *b = tl_lua_blocks_self(L, 1, "reset_displacement");
+    return tl_lua_blocks_done(L, b,
+                              tl_blocks_reset_displacement(b->owner->model, b->ids, b->count));
 }
 
 typedef struct fix_args {
@@ -290,7 +304,7 @@ const tl_lua_spec tl_lua_fix_spec = {"fix", fix_params, COUNT(fix_params), NULL}
 
 static int blocks_fix(lua_State *L)
 {
-    tl_lua_selection *b = self(L, 2, "fix");
+    tl_lua_selection *b = tl_lua_blocks_self(L, 2, "fix");
     fix_args args;
     tl_lua_read(L, 2, &tl_lua_fix_spec, false, &args);
     unsigned what = (args.x ? TL_FIX_X : 0u) | (args.y ? TL_FIX_Y : 0u) | (args.z ? TL_FIX_Z : 0u) |
@@ -300,7 +314,7 @@ static int blocks_fix(lua_State *L)
         what = TL_FIX_ALL;
     else if (what == 0)
         return tl_lua_fail(L, "fix: nothing is to be held; to let blocks go use selection:free()");
-    return done(L, b, tl_blocks_fix(b->owner->model, b->ids, b->count, what));
+    return tl_lua_blocks_done(L, b, tl_blocks_fix(b->owner->model, b->ids, b->count, what));
 }
 
 static const tl_param set_params[] = {
@@ -318,18 +332,18 @@ const tl_lua_spec tl_lua_set_spec = {"set", set_params, COUNT(set_params), NULL}
 
 static int blocks_set(lua_State *L)
 {
-    tl_lua_selection *b = self(L, 2, "set");
+    tl_lua_selection *b = tl_lua_blocks_self(L, 2, "set");
     tl_block_set set;
     tl_lua_read(L, 2, &tl_lua_set_spec, false, &set);
     if (isnan(set.density) && !set.group && isnan(set.velocity.x) && isnan(set.angular_velocity.x))
         return tl_lua_fail(L, "set: give density, group, velocity or angular_velocity");
-    return done(L, b, tl_blocks_set(b->owner->model, b->ids, b->count, &set));
+    return tl_lua_blocks_done(L, b, tl_blocks_set(b->owner->model, b->ids, b->count, &set));
 }
 
 /* Bounds over all vertices of the blocks in their present place. */
 static int blocks_bounds(lua_State *L)
 {
-    tl_lua_selection *b = self(L, 1, "bounds");
+    tl_lua_selection *b = tl_lua_blocks_self(L, 1, "bounds");
     if (b->count == 0)
         return tl_lua_fail(L, "bounds: the selection is empty");
     tl_block_mesh *mesh = mesh_push(L);
@@ -356,10 +370,14 @@ static const luaL_Reg block_verbs[] = {
     {"hide", blocks_hide},
     {"show", blocks_show},
     {"delete", blocks_delete},
+    {"join", blocks_join},
+    {"unjoin", blocks_unjoin},
     {"fix", blocks_fix},
     {"free", blocks_free},
     {"reset_displacement", blocks_reset_displacement},
     {"set", blocks_set},
+    {"load", tl_lua_blocks_load},
+    {"drive", tl_lua_blocks_drive},
     {"bounds", blocks_bounds},
     {NULL, NULL},
 };

@@ -107,9 +107,16 @@ extern const tl_lua_key tl_lua_insitu_keys[];
 
 /* ---- running: run.c ---- */
 
+/* Where a run keeps the model on the Lua stack. */
+#define TL_LUA_AT_MODEL 1
+
 extern const tl_lua_key tl_lua_solve_keys[];
 int tl_lua_cycle(lua_State *L);
 int tl_lua_solve(lua_State *L);
+/* The Lua state of the run whose step is being made. */
+lua_State *tl_lua_run_state(void);
+/* Pops the error on the top of its stack, to be raised again when the run has ended. */
+void tl_lua_run_keep_error(void);
 /* Prints a remark of the kernel on standard error. */
 void tl_lua_log(void *user, const char *text);
 
@@ -162,6 +169,19 @@ extern const tl_lua_spec tl_lua_blocks_spec, tl_lua_contacts_spec, tl_lua_fix_sp
 /* Methods of the model. */
 int tl_lua_blocks(lua_State *L);
 int tl_lua_contacts(lua_State *L);
+
+/* The selection of blocks at index 1, of a verb that takes `most` arguments with it. */
+tl_lua_selection *tl_lua_blocks_self(lua_State *L, int most, const char *method);
+/* Raises on failure; otherwise answers with the selection itself. */
+int tl_lua_blocks_done(lua_State *L, const tl_lua_selection *blocks, tl_status status);
+
+/* ---- loads and drives: action.c ---- */
+
+extern const tl_lua_key tl_lua_drive_keys[];
+int tl_lua_blocks_load(lua_State *L);
+int tl_lua_blocks_drive(lua_State *L);
+/* Lets go of the functions of drives that have ended. */
+void tl_lua_drives_sweep(lua_State *L, int model_index);
 
 /* ---- help: help.c, topics.c ---- */
 

@@ -2,6 +2,7 @@
 #include "front.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -59,8 +60,10 @@ static int model_create(lua_State *L)
     tl_lua_read(L, 1, &spec, false, &config);
     if (!lua_istable(L, 1) || lua_getfield(L, 1, "threads") == LUA_TNIL)
         default_threads(L, &config.threads);
-    tl_lua_model *object = lua_newuserdatauv(L, sizeof *object, 0);
+    tl_lua_model *object = lua_newuserdatauv(L, sizeof *object, 1);
     object->model = NULL;
+    lua_newtable(L); /* of the drives' functions: action.c */
+    lua_setiuservalue(L, -2, 1);
     luaL_setmetatable(L, MODEL_TYPE);
     tl_error error;
     if (tl_model_create(&config, &object->model, &error) != TL_OK)
@@ -193,16 +196,97 @@ static int model_insitu(lua_State *L)
     return 0;
 }
 
+/* Pushes a block's handle, or nil for none; the model's userdata is at index 1. */
+static void push_block(lua_State *L, tl_id id)
+{
+    if (id == TL_NO_ID)
+        lua_pushnil(L);
+    else
+        tl_lua_item_push(L, &tl_lua_block_kind, 1, id);
+}
+
+static const char *push_report_text(lua_State *L, const tl_timestep_report *r)
+{
+    char numbers[120];
+    snprintf(numbers, sizeof numbers, "dt = %.4g s, mass %.4g kg, stiffness %.4g N/m", r->dt,
+             r->mass, r->stiffness);
+    if (r->block == TL_NO_ID)
+        return lua_pushfstring(L, "no block controls the step: dt = %f s", r->dt);
+    if (r->partner == TL_NO_ID)
+        return lua_pushfstring(L, "block %I controls the step: %s", (lua_Integer)r->block, numbers);
+    return lua_pushfstring(L,
+                           "block %I controls the step, with the stiffest contact at block %I: %s",
+                           (lua_Integer)r->block, (lua_Integer)r->partner, numbers);
+}
+
+/* model:timestep(): where the step comes from. */
+static int push_timestep_report(lua_State *L, tl_model *model)
+{
+    tl_timestep_report report;
+    tl_lua_ok(L, model, tl_model_timestep_report(model, &report));
+    lua_createtable(L, 0, 6);
+    lua_pushnumber(L, report.dt);
+    lua_setfield(L, -2, "dt");
+    push_block(L, report.block);
+    lua_setfield(L, -2, "block");
+    push_block(L, report.partner);
+    lua_setfield(L, -2, "partner");
+    if (report.block != TL_NO_ID) {
+        lua_pushnumber(L, report.mass);
+        lua_setfield(L, -2, "mass");
+        lua_pushnumber(L, report.stiffness);
+        lua_setfield(L, -2, "stiffness");
+    }
+    push_report_text(L, &report);
+    lua_setfield(L, -2, "message");
+    return 1;
+}
+
 static int model_timestep(lua_State *L)
 {
     tl_model *model = tl_lua_model_of(L, "timestep");
     tl_lua_arity(L, 2, "timestep");
     lua_settop(L, 2);
+    if (lua_isnil(L, 2))
+        return push_timestep_report(L, model);
     tl_timestep timestep;
     tl_lua_spec spec = tl_lua_spec_of("timestep", NULL);
     tl_lua_read(L, 2, &spec, false, &timestep);
     tl_lua_ok(L, model, tl_model_timestep(model, &timestep));
     return 0;
+}
+
+static int model_mass_scaling(lua_State *L)
+{
+    tl_model *model = tl_lua_model_of(L, "mass_scaling");
+    tl_lua_arity(L, 2, "mass_scaling");
+    lua_settop(L, 2);
+    int32_t on;
+    tl_lua_spec spec = tl_lua_spec_of("mass_scaling", NULL);
+    tl_lua_read_one(L, 2, &spec, "on", &on);
+    tl_lua_ok(L, model, tl_model_mass_scaling(model, on != 0));
+    return 0;
+}
+
+static int model_energy(lua_State *L)
+{
+    tl_model *model = tl_lua_model_of(L, "energy");
+    tl_lua_arity(L, 1, "energy");
+    tl_energy energy;
+    tl_lua_ok(L, model, tl_model_energy(model, &energy));
+    const struct {
+        const char *name;
+        double number;
+    } terms[] = {{"kinetic", energy.kinetic}, {"potential", energy.potential},
+                 {"stored", energy.stored},   {"friction", energy.friction},
+                 {"damping", energy.damping}, {"external", energy.external},
+                 {"balance", energy.balance}};
+    lua_createtable(L, 0, 7);
+    for (size_t i = 0; i < sizeof terms / sizeof terms[0]; i++) {
+        lua_pushnumber(L, terms[i].number);
+        lua_setfield(L, -2, terms[i].name);
+    }
+    return 1;
 }
 
 static int model_contact_area(lua_State *L)
@@ -243,9 +327,11 @@ static const luaL_Reg model_methods[] = {
     {"insitu", model_insitu},
     {"damping", model_damping},
     {"timestep", model_timestep},
+    {"mass_scaling", model_mass_scaling},
     {"contact_area", model_contact_area},
     {"cycle", tl_lua_cycle},
     {"solve", tl_lua_solve},
+    {"energy", model_energy},
     {"write_vtk", model_write_vtk},
     {"state_hash", model_state_hash},
     {NULL, NULL},
@@ -254,7 +340,8 @@ static const luaL_Reg model_methods[] = {
 /* ---------------------------------------------------------------- fields ----------------- */
 
 static const char *const model_fields[] = {
-    "gravity", "rotation", "reuse_geometry", "time", "cycles", "dt", "threads", "seed", NULL};
+    "gravity", "rotation", "reuse_geometry", "mass_scaled", "time",
+    "cycles",  "dt",       "threads",        "seed",        NULL};
 
 static int unknown_field(lua_State *L, const char *what, const char *name)
 {
@@ -310,6 +397,8 @@ static int model_index(lua_State *L)
         lua_pushnumber(L, tl_model_time(model));
     else if (strcmp(name, "cycles") == 0)
         lua_pushinteger(L, (lua_Integer)tl_model_cycles(model));
+    else if (strcmp(name, "mass_scaled") == 0)
+        lua_pushboolean(L, tl_model_mass_scaled(model));
     else if (strcmp(name, "dt") == 0) {
         double dt;
         tl_lua_ok(L, model, tl_model_dt(model, &dt));
@@ -342,6 +431,9 @@ static int model_assign(lua_State *L)
     else if (strcmp(name, "time") == 0 || strcmp(name, "cycles") == 0 || strcmp(name, "dt") == 0)
         return tl_lua_fail(L, "model.%s can only be read%s", name,
                            strcmp(name, "dt") == 0 ? "; set it with model:timestep{dt = ...}" : "");
+    else if (strcmp(name, "mass_scaled") == 0)
+        return tl_lua_fail(L, "model.mass_scaled can only be read; set it with "
+                              "model:mass_scaling(true)");
     else
         return unknown_field(L, "a model has no field to set", name);
     return 0;

@@ -18,7 +18,7 @@
 #define PIECE 10
 
 /* Places on the Lua stack during a run. */
-enum { AT_MODEL = 1, AT_ARGS, AT_ANCHOR, AT_STOP, AT_PROGRESS, AT_ERROR };
+enum { AT_MODEL = TL_LUA_AT_MODEL, AT_ARGS, AT_ANCHOR, AT_STOP, AT_PROGRESS, AT_ERROR };
 
 typedef struct run {
     lua_State *L;
@@ -114,23 +114,35 @@ static void show(run *r)
     r->shown_time = time;
 }
 
-static void push_result(lua_State *L, const tl_solve_result *result, const char *reason)
+/* The model's userdata is at `model_index`. */
+static void push_result(lua_State *L, int model_index, const tl_solve_result *result,
+                        const char *reason)
 {
-    lua_createtable(L, 0, 6);
+    const struct {
+        const char *name;
+        double number;
+    } numbers[] = {{"ratio", result->ratio},
+                   {"ratio_maximum", result->ratio_maximum},
+                   {"ratio_local", result->ratio_local},
+                   {"time", result->time},
+                   {"wall", result->wall},
+                   {"max_velocity", result->max_velocity}};
+    model_index = lua_absindex(L, model_index);
+    lua_createtable(L, 0, 9);
     if (reason) {
         lua_pushstring(L, reason);
         lua_setfield(L, -2, "reason");
     }
-    lua_pushnumber(L, result->ratio);
-    lua_setfield(L, -2, "ratio");
     lua_pushinteger(L, (lua_Integer)result->cycles);
     lua_setfield(L, -2, "cycles");
-    lua_pushnumber(L, result->time);
-    lua_setfield(L, -2, "time");
-    lua_pushnumber(L, result->wall);
-    lua_setfield(L, -2, "wall");
-    lua_pushnumber(L, result->max_velocity);
-    lua_setfield(L, -2, "max_velocity");
+    for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++) {
+        lua_pushnumber(L, numbers[i].number);
+        lua_setfield(L, -2, numbers[i].name);
+    }
+    if (result->failing != TL_NO_ID) {
+        tl_lua_item_push(L, &tl_lua_block_kind, model_index, result->failing);
+        lua_setfield(L, -2, "failing");
+    }
 }
 
 /* ---------------------------------------------------------------- callbacks -------------- */
@@ -142,12 +154,22 @@ static void keep_error(run *r)
     r->failed = true;
 }
 
+lua_State *tl_lua_run_state(void)
+{
+    return atomic_load(&current)->L;
+}
+
+void tl_lua_run_keep_error(void)
+{
+    keep_error(atomic_load(&current));
+}
+
 /* Runs protected: on_progress(model, result). Arguments: function, model, run. */
 static int call_progress(lua_State *L)
 {
     const run *r = lua_touserdata(L, 3);
     lua_settop(L, 2);
-    push_result(L, &r->result, NULL);
+    push_result(L, 2, &r->result, NULL);
     lua_call(L, 2, 0);
     return 0;
 }
@@ -219,7 +241,7 @@ static int finish(lua_State *L, run *r, tl_status status)
         return lua_error(L);
     }
     tl_lua_ok(L, r->model, status);
-    push_result(L, &r->result, tl_solve_reason_name(r->result.reason));
+    push_result(L, AT_MODEL, &r->result, tl_solve_reason_name(r->result.reason));
     return 1;
 }
 
@@ -271,6 +293,7 @@ int tl_lua_cycle(lua_State *L)
     int64_t cycles;
     tl_lua_spec spec = tl_lua_spec_of("cycle", NULL);
     tl_lua_read_one(L, 2, &spec, "cycles", &cycles);
+    lua_settop(L, AT_ERROR);
     run r;
     run_begin(&r, L, model);
     return finish(L, &r,

@@ -13,9 +13,14 @@ static const tl_lua_key block_verbs[] = {
     {"sel:where(function(block) ... end)", "", "those for which the function answers true"},
     {"sel:hide(), sel:show()", "", "hidden blocks are not cut and not selected unless asked for"},
     {"sel:delete()", "", "removes the blocks"},
+    {"sel:join(), sel:unjoin()", "",
+     "makes one rigid body of the blocks and of what they were joined to; makes each a body of its "
+     "own. Momentum and angular momentum are kept"},
+    {"sel:load{...}", "", "a force and a moment: talus help load"},
+    {"sel:drive{...}", "", "a prescribed motion, until sel:free(): talus help drive"},
     {"sel:fix{x =, y =, z =, rotation =}", "",
      "holds components of the motion; all of it when nothing is named"},
-    {"sel:free()", "", "lets fixed blocks go"},
+    {"sel:free()", "", "lets fixed and driven blocks go"},
     {"sel:reset_displacement()", "", "displacements count from now"},
     {"sel:set{density =, group =, velocity =, angular_velocity =}", "", "changes properties"},
     {NULL, NULL, NULL},
@@ -30,8 +35,16 @@ static const tl_lua_key contact_verbs[] = {
 };
 
 static const tl_lua_key run_results[] = {
-    {"reason", "", "why it ended: \"ratio\", \"cycles\", \"time\", \"stop\" or \"interrupt\""},
+    {"reason", "",
+     "why it ended: \"ratio\", \"velocity\", \"failure\", \"cycles\", \"time\", \"stop\" or "
+     "\"interrupt\""},
     {"ratio", "", "mean unbalanced force over mean contact force"},
+    {"ratio_maximum", "", "largest unbalanced force over mean contact force"},
+    {"ratio_local", "", "largest unbalanced force of a block over its own contact force"},
+    {"failing", "",
+     "a block that fails steadily: it has moved on in one direction over three windows of steps, "
+     "each "
+     "time as far as before, while the ratio stayed; nil when none does"},
     {"cycles", "", "steps of this call"},
     {"time", "", "the model's time at the end, s"},
     {"wall", "", "seconds it took"},
@@ -44,8 +57,29 @@ static const tl_lua_key model_members[] = {
     {"model.rotation", "", "\"exact\" or \"paper\"; may be assigned"},
     {"model.reuse_geometry", "", "true or false; may be assigned"},
     {"model.time, model.cycles", "", "simulated time, s, and steps so far"},
+    {"model.mass_scaled", "", "whether mass scaling is on"},
     {"model.dt", "", "the step the next cycle will use, s"},
     {"model.threads, model.seed", "", "as given when it was made"},
+    {NULL, NULL, NULL},
+};
+
+static const tl_lua_key energy_terms[] = {
+    {"kinetic", "", "of motion, J"},
+    {"potential", "", "minus the work of gravity, J"},
+    {"stored", "", "elastic, in contacts, J"},
+    {"friction", "", "turned to heat by slip, J"},
+    {"damping", "", "taken out by the damping, J"},
+    {"external", "", "work of loads and of driven bodies, J"},
+    {"balance", "", "error of the sum over the largest change of a term"},
+    {NULL, NULL, NULL},
+};
+
+static const tl_lua_key timestep_results[] = {
+    {"dt", "", "the step the next cycle will use, s"},
+    {"block", "", "the block that controls it, or nil"},
+    {"partner", "", "the block at the stiffest contact, or nil"},
+    {"mass, stiffness", "", "of the block's body, kg; of the contact or of all its contacts, N/m"},
+    {"message", "", "the same in a sentence"},
     {NULL, NULL, NULL},
 };
 
@@ -98,7 +132,20 @@ const tl_lua_topic tl_lua_topics[] = {
      .usage = "model:damping(\"DAMPING\", {...})",
      .doc = "Chooses how motion is damped; \"none\" is no damping, and the default.",
      .type = &dampings},
-    {.name = "timestep", .usage = "model:timestep{fraction = 0.1}", .function = "timestep"},
+    {.name = "load",
+     .usage = "selection:load{force = {0, 0, -1e3}, at = {x, y, z}}",
+     .function = "load"},
+    {.name = "drive",
+     .usage = "selection:drive{velocity = function(t) return 0.1 * math.sin(t), 0, 0 end}",
+     .doc = "Prescribes the motion of the blocks' bodies, in the place of any fixing, until "
+            "selection:free().",
+     .keys = tl_lua_drive_keys},
+    {.name = "timestep",
+     .usage = "model:timestep{fraction = 0.1}  or  report = model:timestep()",
+     .function = "timestep",
+     .title = "Fields of the report",
+     .verbs = timestep_results},
+    {.name = "mass_scaling", .usage = "model:mass_scaling(true)", .function = "mass_scaling"},
     {.name = "contact_area",
      .usage = "model:contact_area{fraction = 0.01}",
      .function = "contact_area"},
@@ -113,6 +160,12 @@ const tl_lua_topic tl_lua_topics[] = {
      .keys = tl_lua_solve_keys,
      .title = "Fields of the result",
      .verbs = run_results},
+    {.name = "energy",
+     .usage = "energy = model:energy()",
+     .doc = "The energy of the bodies that are free to move, at the last force evaluation, counted "
+            "from the first step.",
+     .title = "Fields of the energy",
+     .verbs = energy_terms},
     {.name = "write_vtk", .usage = "model:write_vtk(\"out/run\")", .function = "write_vtk"},
     {.name = "state_hash",
      .usage = "text = model:state_hash()",

@@ -65,8 +65,11 @@ void tl_rows_keep(tl_model *m, const unsigned char *keep)
             tl_poly_free(blocks->shape[row]);
     }
     uint32_t kept = 0;
-    for (size_t body = 0; body < body_count; body++)
+    for (uint32_t body = 0; body < body_count; body++) {
         new_row[body] = bodies->member_count[body] ? kept++ : TL_NO_ROW;
+        if (new_row[body] == TL_NO_ROW)
+            tl_drive_leave(m, body);
+    }
     for (uint32_t row = 0; row < blocks->table.rows; row++)
         blocks->body[row] = new_row[blocks->body[row]];
     tl_table_keep(&blocks->table, keep);

@@ -14,6 +14,10 @@ typedef struct tl_cycle_args {
     int64_t cycles;
 } tl_cycle_args;
 
+typedef struct tl_mass_scaling_args {
+    int32_t on;
+} tl_mass_scaling_args;
+
 typedef struct tl_write_vtk_args {
     const char *prefix;
 } tl_write_vtk_args;
@@ -68,6 +72,21 @@ static const tl_param timestep_params[] = {
     TL_PARAM(TL_PARAM_REAL, tl_timestep, dt, "s", "a fixed time step instead of the rule",
              .min = 0.0, .max = INFINITY,
              .flags = TL_PARAM_OPTIONAL | TL_PARAM_MIN_OPEN | TL_PARAM_MAX_OPEN),
+};
+
+static const tl_param mass_scaling_params[] = {
+    TL_PARAM(TL_PARAM_BOOL, tl_mass_scaling_args, on, "", "whether the inertia is scaled",
+             .flags = TL_PARAM_REQUIRED),
+};
+
+static const tl_param load_params[] = {
+    TL_PARAM(TL_PARAM_VEC3, tl_load, force, "N", "force on the body of each block",
+             .def = {0.0, 0.0, 0.0}),
+    TL_PARAM(TL_PARAM_VEC3, tl_load, moment, "N m", "moment on the body of each block",
+             .def = {0.0, 0.0, 0.0}),
+    TL_PARAM(TL_PARAM_VEC3, tl_load, at, "m",
+             "point where the force acts, which goes with the body; its centroid when left out",
+             .flags = TL_PARAM_OPTIONAL),
 };
 
 static const tl_param contact_area_params[] = {
@@ -131,6 +150,15 @@ static const tl_function functions[] = {
      PARAMS(insitu_params)},
     {"tensor", "A symmetric tensor by its components.", PARAMS(tensor_params)},
     {"timestep", "Chooses how the time step is found.", PARAMS(timestep_params)},
+    {"mass_scaling",
+     "Scales the inertia, not the weight, of free bodies up to that of the one with the longest "
+     "stable step, for finding equilibria: times and velocities then mean nothing.",
+     PARAMS(mass_scaling_params)},
+    {"load",
+     "Puts a force and a moment, along the axes of the model, on the bodies of blocks, in the "
+     "place "
+     "of what they had; none at all takes the load off.",
+     PARAMS(load_params)},
     {"contact_area", "Sets the minimum area of edge and point contacts.",
      PARAMS(contact_area_params)},
     {"cycle", "Runs a number of steps.", PARAMS(cycle_params)},
@@ -157,7 +185,8 @@ const tl_param *tl_function_params(const char *function, size_t *count, const ch
 
 const char *const *tl_function_names(void)
 {
-    static const char *const names[] = {"model", "insitu", "tensor",    "timestep", "contact_area",
-                                        "cycle", "solve",  "write_vtk", NULL};
+    static const char *const names[] = {
+        "model", "insitu", "tensor",    "timestep", "mass_scaling", "load", "contact_area",
+        "cycle", "solve",  "write_vtk", NULL};
     return names;
 }

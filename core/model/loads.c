@@ -76,12 +76,23 @@ static tl_drive_record *new_record(tl_model *m)
     return &m->drives[m->drive_count++];
 }
 
+tl_status tl_drives_may_change(tl_model *m, const char *what)
+{
+    if (m->driving)
+        return tl_fail(&m->error, TL_E_STATE,
+                       "cannot %s from a drive's function; do it after the run", what);
+    return TL_OK;
+}
+
 tl_status tl_blocks_drive(tl_model *m, const tl_id *ids, size_t count, const tl_drive *drive)
 {
+    tl_status status = tl_drives_may_change(m, "drive blocks");
+    if (status != TL_OK)
+        return status;
     if (!tl_v3_finite(drive->velocity) || !tl_v3_finite(drive->angular_velocity))
         return tl_fail(&m->error, TL_E_ARGUMENT,
                        "drive: velocity and angular_velocity must be finite numbers");
-    tl_status status = check_blocks(m, ids, count);
+    status = check_blocks(m, ids, count);
     if (status != TL_OK)
         return status;
     if (count == 0) {
@@ -113,7 +124,7 @@ tl_status tl_blocks_drive(tl_model *m, const tl_id *ids, size_t count, const tl_
     return TL_OK;
 }
 
-bool tl_drives_evaluate(tl_model *m, double t)
+static bool evaluate(tl_model *m, double t)
 {
     for (size_t i = 0; i < m->drive_count; i++) {
         tl_drive_record *r = &m->drives[i];
@@ -125,4 +136,12 @@ bool tl_drives_evaluate(tl_model *m, double t)
             return false;
     }
     return true;
+}
+
+bool tl_drives_evaluate(tl_model *m, double t)
+{
+    m->running = m->driving = true;
+    bool told = evaluate(m, t);
+    m->running = m->driving = false;
+    return told;
 }

@@ -150,6 +150,7 @@ struct tl_model {
     int64_t cycles;
     atomic_bool interrupted;
     bool running; /* inside a callback: no blocks may be made or deleted */
+    bool driving; /* inside a drive's function: no drive may begin or end */
     bool warned_undamped;
     bool mass_scaling;
 
@@ -294,6 +295,8 @@ tl_vec3 tl_block_velocity(const tl_model *m, uint32_t row);
 
 /* Evaluates all drives at time t; false when a user's function ends the run. */
 bool tl_drives_evaluate(tl_model *m, double t);
+/* Refuses with TL_E_STATE while a drive's function runs; `what` is "fix blocks". */
+tl_status tl_drives_may_change(tl_model *m, const char *what);
 /* Lets a body go from its drive. */
 void tl_drive_leave(tl_model *m, uint32_t body);
 void tl_drives_clear(tl_model *m);

@@ -309,6 +309,9 @@ static void append(tl_model *m, const tl_stage_block *block)
     bodies->v[body] = tl_v3_add(bodies->v[from], tl_v3_cross(bodies->w[from], arm));
     bodies->w[body] = bodies->w[from];
     bodies->fixed[body] = bodies->fixed[from];
+    bodies->drive[body] = bodies->drive[from];
+    if (bodies->drive[body])
+        m->drives[bodies->drive[body] - 1].bodies++;
 }
 
 static void summarize(tl_stage *stage, double volume_before)

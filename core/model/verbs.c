@@ -43,7 +43,9 @@ tl_status tl_blocks_delete(tl_model *m, const tl_id *ids, size_t count)
 
 tl_status tl_blocks_fix(tl_model *m, const tl_id *ids, size_t count, unsigned what)
 {
-    tl_status status = check_ids(m, ids, count);
+    tl_status status = tl_drives_may_change(m, "fix blocks");
+    if (status == TL_OK)
+        status = check_ids(m, ids, count);
     if (status != TL_OK)
         return status;
     for (size_t i = 0; i < count; i++) {
@@ -63,7 +65,9 @@ tl_status tl_blocks_fix(tl_model *m, const tl_id *ids, size_t count, unsigned wh
 
 tl_status tl_blocks_free(tl_model *m, const tl_id *ids, size_t count)
 {
-    tl_status status = check_ids(m, ids, count);
+    tl_status status = tl_drives_may_change(m, "free blocks");
+    if (status == TL_OK)
+        status = check_ids(m, ids, count);
     if (status != TL_OK)
         return status;
     for (size_t i = 0; i < count; i++) {

@@ -1,0 +1,227 @@
+/* action.c - what acts on blocks from outside: selection:load{...} and selection:drive{...}.
+ *
+ * A drive given by functions of the script is kept as an *anchor*: a userdata in a table that is the
+ * user value of the model's userdata, with the functions as its own user values. So a function that
+ * refers to its model does not keep it alive, and the kernel's word that a drive has ended need not
+ * touch a Lua state: it marks the anchor, which goes with the next verb.
+ *
+ * The functions are called in a step, on the thread and in the frame of the run: in protected calls,
+ * whose error ends the run and is then raised as it was. */
+#include "front.h"
+
+#include <math.h>
+
+enum { VELOCITY = 1, ANGULAR_VELOCITY, FUNCTIONS = 2 };
+
+static const char *const key_names[] = {
+    [VELOCITY] = "velocity",
+    [ANGULAR_VELOCITY] = "angular_velocity",
+};
+
+typedef struct anchor {
+    bool ended;
+} anchor;
+
+const tl_lua_key tl_lua_drive_keys[] = {
+    {"velocity", "{x, y, z} or function(t)",
+     "velocity of the centroid, m/s; the function gives {x, y, z} or three numbers for a time t, "
+     "s: "
+     "the middle of each step. Zero when left out"},
+    {"angular_velocity", "{x, y, z} or function(t)", "angular velocity, rad/s, likewise"},
+    {NULL, NULL, NULL},
+};
+
+/* ---------------------------------------------------------------- anchors ---------------- */
+
+void tl_lua_drives_sweep(lua_State *L, int model_index)
+{
+    lua_getiuservalue(L, model_index, 1);
+    for (lua_pushnil(L); lua_next(L, -2);) {
+        const anchor *a = lua_touserdata(L, -1);
+        lua_pop(L, 1);
+        if (a->ended) {
+            lua_pushnil(L);
+            lua_rawsetp(L, -3, a);
+        }
+    }
+    lua_pop(L, 1);
+}
+
+/* Pushes a new anchor and hangs it on the model at `model_index`. */
+static anchor *anchor_push(lua_State *L, int model_index)
+{
+    anchor *a = lua_newuserdatauv(L, sizeof *a, FUNCTIONS);
+    a->ended = false;
+    lua_getiuservalue(L, model_index, 1);
+    lua_pushvalue(L, -2);
+    lua_rawsetp(L, -2, a);
+    lua_pop(L, 1);
+    return a;
+}
+
+static void on_release(void *user)
+{
+    anchor *a = user;
+    a->ended = true;
+}
+
+/* ---------------------------------------------------------------- in a step -------------- */
+
+typedef struct call {
+    anchor *anchor;
+    int key;
+    double t;
+    tl_vec3 velocity;
+} call;
+
+/* Raises at the place where the function at index 2 is defined. */
+static int bad_velocity(lua_State *L, const call *c, const char *what)
+{
+    lua_Debug record;
+    lua_pushvalue(L, 2);
+    lua_getinfo(L, ">S", &record);
+    const char *name = key_names[c->key];
+    if (record.linedefined <= 0)
+        return tl_lua_fail(L, "drive: %s(%f) must give three finite numbers, not %s", name, c->t,
+                           what);
+    lua_pushfstring(L, "%s:%d: drive: %s(%f) must give three finite numbers, not %s",
+                    record.short_src, record.linedefined, name, c->t, what);
+    return lua_error(L);
+}
+
+/* Three numbers from index `first` on. */
+static tl_vec3 read_velocity(lua_State *L, const call *c, int first)
+{
+    double v[3];
+    for (int k = 0; k < 3; k++) {
+        if (lua_type(L, first + k) != LUA_TNUMBER)
+            bad_velocity(L, c, tl_lua_describe(L, first + k));
+        v[k] = lua_tonumber(L, first + k);
+        if (!isfinite(v[k]))
+            bad_velocity(L, c, tl_lua_describe(L, first + k));
+    }
+    return (tl_vec3){v[0], v[1], v[2]};
+}
+
+/* Runs protected. Arguments: the call, the function. */
+static int call_function(lua_State *L)
+{
+    call *c = lua_touserdata(L, 1);
+    lua_pushvalue(L, 2);
+    lua_pushnumber(L, c->t);
+    lua_call(L, 1, LUA_MULTRET);
+    int given = lua_gettop(L) - 2;
+    luaL_checkstack(L, 16, "too many values");
+    if (given == 1 && lua_istable(L, 3)) {
+        if (lua_rawlen(L, 3) != 3)
+            bad_velocity(L, c, lua_pushfstring(L, "a list of %I", (lua_Integer)lua_rawlen(L, 3)));
+        for (int k = 1; k <= 3; k++)
+            lua_rawgeti(L, 3, k);
+        c->velocity = read_velocity(L, c, 4);
+    } else if (given == 3) {
+        c->velocity = read_velocity(L, c, 3);
+    } else {
+        bad_velocity(L, c,
+                     given == 1 ? tl_lua_describe(L, 3) : lua_pushfstring(L, "%d values", given));
+    }
+    return 0;
+}
+
+static bool evaluate(anchor *a, int key, double t, tl_vec3 *velocity)
+{
+    lua_State *L = tl_lua_run_state();
+    call c = {.anchor = a, .key = key, .t = t};
+    lua_pushcfunction(L, call_function);
+    lua_pushlightuserdata(L, &c);
+    lua_getiuservalue(L, TL_LUA_AT_MODEL, 1);
+    lua_rawgetp(L, -1, a);
+    lua_getiuservalue(L, -1, key);
+    lua_replace(L, -3);
+    lua_pop(L, 1);
+    if (lua_pcall(L, 2, 0, 0) != LUA_OK) {
+        tl_lua_run_keep_error();
+        return false;
+    }
+    *velocity = c.velocity;
+    return true;
+}
+
+static bool velocity_at(void *user, double t, tl_vec3 *velocity)
+{
+    return evaluate(user, VELOCITY, t, velocity);
+}
+
+static bool angular_velocity_at(void *user, double t, tl_vec3 *velocity)
+{
+    return evaluate(user, ANGULAR_VELOCITY, t, velocity);
+}
+
+/* ---------------------------------------------------------------- verbs ------------------ */
+
+int tl_lua_blocks_load(lua_State *L)
+{
+    tl_lua_selection *b = tl_lua_blocks_self(L, 2, "load");
+    tl_lua_spec spec = tl_lua_spec_of("load", NULL);
+    tl_load load;
+    tl_lua_read(L, 2, &spec, false, &load);
+    if (!lua_istable(L, 2))
+        return tl_lua_fail(L,
+                           "load: give force, moment and at in a table; load{} takes the load off");
+    return tl_lua_blocks_done(L, b, tl_blocks_load(b->owner->model, b->ids, b->count, &load));
+}
+
+/* Reads one of the two velocities of the table at index 2; true when it is given. A function goes to
+ * the anchor at the top of the stack. */
+static bool read_motion(lua_State *L, int key, tl_vec3 *constant, tl_drive_fn *function,
+                        tl_drive_fn ours)
+{
+    static const tl_param vectors[] = {
+        [VELOCITY] = TL_PARAM(TL_PARAM_VEC3, tl_drive, velocity, "m/s", "", .def = {0.0}),
+        [ANGULAR_VELOCITY] =
+            TL_PARAM(TL_PARAM_VEC3, tl_drive, angular_velocity, "rad/s", "", .def = {0.0}),
+    };
+    int type = lua_getfield(L, 2, key_names[key]);
+    if (type == LUA_TFUNCTION) {
+        lua_setiuservalue(L, -2, key);
+        *function = ours;
+        return true;
+    }
+    if (type != LUA_TNIL) {
+        int top = lua_gettop(L);
+        tl_drive read;
+        tl_lua_spec spec = {"drive", &vectors[key], 1, NULL};
+        if (type != LUA_TTABLE)
+            tl_lua_fail(L, "drive: %s must be a list of 3 numbers or a function(t), not %s",
+                        key_names[key], tl_lua_describe(L, -1));
+        tl_lua_read_one(L, top, &spec, key_names[key], &read);
+        *constant = key == VELOCITY ? read.velocity : read.angular_velocity;
+        lua_settop(L, top);
+    }
+    lua_pop(L, 1);
+    return type != LUA_TNIL;
+}
+
+int tl_lua_blocks_drive(lua_State *L)
+{
+    tl_lua_selection *b = tl_lua_blocks_self(L, 2, "drive");
+    tl_lua_spec spec = {"drive", NULL, 0, tl_lua_drive_keys};
+    tl_lua_read(L, 2, &spec, false, NULL);
+    lua_settop(L, 2);
+    lua_getiuservalue(L, 1, 1);
+    anchor *a = anchor_push(L, 3);
+    a->ended = true; /* until the kernel has taken it */
+    tl_drive drive = {.user = a, .release = on_release};
+    bool moves = false;
+    if (lua_istable(L, 2)) {
+        moves = read_motion(L, VELOCITY, &drive.velocity, &drive.velocity_at, velocity_at);
+        moves |= read_motion(L, ANGULAR_VELOCITY, &drive.angular_velocity,
+                             &drive.angular_velocity_at, angular_velocity_at);
+    }
+    if (!moves)
+        return tl_lua_fail(L, "drive: give velocity, angular_velocity or both; to hold blocks use "
+                              "selection:fix(), to let them go selection:free()");
+    tl_status status = tl_blocks_drive(b->owner->model, b->ids, b->count, &drive);
+    if (status == TL_OK && b->count > 0)
+        a->ended = false;
+    return tl_lua_blocks_done(L, b, status);
+}
