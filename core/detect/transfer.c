@@ -1,6 +1,8 @@
 /* transfer.c - new contact points in the place of old ones, when the contact polygon has changed.
  *
- * Each new point takes over the stresses of the old point of the same key, or else of the nearest.
+ * Each new point takes over the stresses of the old point of the same key, or else those of the plane
+ * fitted through the old points: the nearest one's would wear a stress that varies over the face down
+ * while corners come and go. A law's states are those of the same key or the nearest.
  * Then the fields are corrected so that their totals follow the area: where the area and its centroid
  * stay the same, total shear force, its moment about the normal, and total initial normal force with
  * both its moments are kept exactly. Moments are taken about the centroids of the areas, so a uniform
@@ -179,9 +181,79 @@ static moments field_moments(const old_point *old, size_t count, int field, cons
     return out;
 }
 
+/* ---------------------------------------------------------------- stress between points -- */
+
+/* What is fitted: shear stress, normal stress, and the scalar fields. */
+enum { FIT_SHEAR, FIT_NORMAL = 3, FIT_FIELDS, FIT_COUNT = FIT_FIELDS + FIELD_COUNT };
+
+/* Area-weighted plane through the old points' stresses, and their range, which bounds it. */
+typedef struct plane_fit {
+    bool made; /* false: the old points lie on a line */
+    tl_vec3 centre, t1, t2;
+    double mean[FIT_COUNT], along1[FIT_COUNT], along2[FIT_COUNT], low[FIT_COUNT], high[FIT_COUNT];
+} plane_fit;
+
+static void fit_values(const old_point *o, double *value)
+{
+    value[FIT_SHEAR] = o->shear.x;
+    value[FIT_SHEAR + 1] = o->shear.y;
+    value[FIT_SHEAR + 2] = o->shear.z;
+    value[FIT_NORMAL] = o->f_n;
+    for (int k = 0; k < FIELD_COUNT; k++)
+        value[FIT_FIELDS + k] = o->field[k];
+}
+
+static plane_fit fit_plane(const old_point *old, size_t count, const totals *t)
+{
+    plane_fit fit = {.centre = t->centre, .t1 = tl_v3_perpendicular(t->normal)};
+    fit.t2 = tl_v3_cross(t->normal, fit.t1);
+    double i11 = 0, i12 = 0, i22 = 0, value[FIT_COUNT];
+    for (int k = 0; k < FIT_COUNT; k++) {
+        fit.low[k] = INFINITY;
+        fit.high[k] = -INFINITY;
+    }
+    for (size_t i = 0; i < count; i++) {
+        tl_vec3 arm = tl_v3_sub(old[i].arm, t->centre);
+        double a = old[i].area / t->area, x = tl_v3_dot(arm, fit.t1), y = tl_v3_dot(arm, fit.t2);
+        i11 += a * x * x;
+        i12 += a * x * y;
+        i22 += a * y * y;
+        fit_values(&old[i], value);
+        for (int k = 0; k < FIT_COUNT; k++) {
+            fit.mean[k] += a * value[k];
+            fit.along1[k] += a * value[k] * x;
+            fit.along2[k] += a * value[k] * y;
+            fit.low[k] = fmin(fit.low[k], value[k]);
+            fit.high[k] = fmax(fit.high[k], value[k]);
+        }
+    }
+    double det = i11 * i22 - i12 * i12;
+    fit.made = det > SINGULAR * i11 * i22;
+    for (int k = 0; k < FIT_COUNT && fit.made; k++) {
+        double m1 = fit.along1[k], m2 = fit.along2[k];
+        fit.along1[k] = (m1 * i22 - m2 * i12) / det;
+        fit.along2[k] = (m2 * i11 - m1 * i12) / det;
+    }
+    return fit;
+}
+
+/* The old stresses at a place between the old points; those of `o` when there is no fit. */
+static void fitted(const plane_fit *fit, tl_vec3 arm, const old_point *o, double *value)
+{
+    fit_values(o, value);
+    if (!fit->made)
+        return;
+    tl_vec3 d = tl_v3_sub(arm, fit->centre);
+    double x = tl_v3_dot(d, fit->t1), y = tl_v3_dot(d, fit->t2);
+    for (int k = 0; k < FIT_COUNT; k++) {
+        double v = fit->mean[k] + x * fit->along1[k] + y * fit->along2[k];
+        value[k] = fmin(fit->high[k], fmax(fit->low[k], v));
+    }
+}
+
 /* Writes the points of the manifold, with what they take over from the old ones. */
 static void write_points(tl_model *m, uint32_t c, const tl_manifold *g, const old_point *old,
-                         size_t old_count)
+                         size_t old_count, const plane_fit *fit)
 {
     tl_contacts *contacts = &m->detect->contacts;
     tl_points_table *p = &m->detect->points;
@@ -206,15 +278,21 @@ static void write_points(tl_model *m, uint32_t c, const tl_manifold *g, const ol
     for (size_t k = 0; k < g->point_count && old_count; k++) {
         size_t i = begin + k;
         const old_point *o = match(old, old_count, p->key[i], p->arm[i]);
+        double value[FIT_COUNT];
+        if (o->key == p->key[i])
+            fit_values(o, value);
+        else
+            fitted(fit, p->arm[i], o, value);
         tl_vec3 n = load(p->normal, i);
-        tl_vec3 f = tl_v3_scale(p->area[i], tl_v3_turn(o->shear, o->normal, n));
+        tl_vec3 shear = {value[FIT_SHEAR], value[FIT_SHEAR + 1], value[FIT_SHEAR + 2]};
+        tl_vec3 f = tl_v3_scale(p->area[i], tl_v3_turn(shear, o->normal, n));
         f = tl_v3_madd(f, -tl_v3_dot(f, n), n);
         p->f_s[0][i] = f.x;
         p->f_s[1][i] = f.y;
         p->f_s[2][i] = f.z;
-        p->f_n[i] = o->f_n * p->area[i];
-        p->f_n0[i] = o->field[FIELD_N0] * p->area[i];
-        p->reference[i] = o->field[FIELD_REFERENCE];
+        p->f_n[i] = value[FIT_NORMAL] * p->area[i];
+        p->f_n0[i] = value[FIT_FIELDS + FIELD_N0] * p->area[i];
+        p->reference[i] = value[FIT_FIELDS + FIELD_REFERENCE];
         p->flags[i] = o->flags;
         tl_point_take_state(p, i, kind, o->state, o->area);
     }
@@ -247,7 +325,10 @@ bool tl_contact_transfer(tl_model *m, uint32_t c, tl_narrow *room)
     contacts->point_count[c] = (uint32_t)g->point_count;
     for (size_t i = begin + g->point_count; i < begin + contacts->point_room[c]; i++)
         tl_point_clear(p, i);
-    write_points(m, c, g, old, old_count);
+    plane_fit fit = {.made = false};
+    if (before.area > 0)
+        fit = fit_plane(old, old_count, &before);
+    write_points(m, c, g, old, old_count, &fit);
     if (old_count == 0 || g->point_count == 0 || !(before.area > 0))
         return true;
 
