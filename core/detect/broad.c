@@ -3,7 +3,9 @@
  * Cells are 1.5 times the median extent. A block is entered in every cell its bounds overlap; two
  * blocks that share several cells are reported once, from the cell that holds the low corner of their
  * common bounds. Blocks larger than LARGE_CELLS cells are not entered: they look through the cells
- * they overlap. Bounds are grown by `reach`, so the list holds until some body has moved that far. */
+ * they overlap. Bounds are grown by `reach`, so the list holds until some body has moved that far, and
+ * by half of the block's own contact tolerance: a pair's is that of its smaller block, so a huge block
+ * must not make the small ones neighbours of each other. */
 #include "detect/detect.h"
 
 #include <stdlib.h>
@@ -131,26 +133,26 @@ static tl_status measure(tl_model *m, struct tl_broad *g)
     if (!reserve_blocks(g, count + 1))
         return tl_fail_memory(&m->error);
     tl_bounds all = {{0, 0, 0}, {0, 0, 0}};
-    double tolerance = 0;
     for (uint32_t row = 0; row < count; row++) {
         tl_bounds b = g->bounds[row] = block_bounds(m, row);
         g->extent[row] = longest(b);
         all.min = row ? tl_v3_min(all.min, b.min) : b.min;
         all.max = row ? tl_v3_max(all.max, b.max) : b.max;
-        tolerance = fmax(tolerance, m->blocks.size[row]);
     }
     qsort(g->extent, count, sizeof *g->extent, compare_double);
     double median = count ? g->extent[count / 2] : 1;
-    tolerance *= TL_CONTACT_TOLERANCE * TL_CONTACT_RELEASE;
     m->detect->reach = 0.5 * SKIN_EXTENTS * median;
-    double growth = m->detect->reach + tolerance;
-    tl_vec3 skin = {growth, growth, growth};
     for (uint32_t row = 0; row < count; row++) {
+        double tolerance = TL_CONTACT_TOLERANCE * TL_CONTACT_RELEASE * m->blocks.size[row];
+        double growth = m->detect->reach + 0.5 * tolerance;
+        tl_vec3 skin = {growth, growth, growth};
         g->bounds[row].min = tl_v3_sub(g->bounds[row].min, skin);
         g->bounds[row].max = tl_v3_add(g->bounds[row].max, skin);
+        all.min = tl_v3_min(all.min, g->bounds[row].min);
+        all.max = tl_v3_max(all.max, g->bounds[row].max);
     }
-    g->low = tl_v3_sub(all.min, skin);
-    tl_vec3 span = tl_v3_sub(tl_v3_add(all.max, skin), g->low);
+    g->low = all.min;
+    tl_vec3 span = tl_v3_sub(all.max, all.min);
     g->cell = CELL_EXTENTS * median;
     double most = (double)CELLS_PER_BLOCK * (double)count + 64;
     for (;; g->cell *= 1.25) {
@@ -328,6 +330,7 @@ tl_status tl_broad_update(tl_model *m)
     size_t bodies = m->bodies.table.rows;
     if (!grow(&d->odometer_0, &d->body_room, bodies + 1, sizeof *d->odometer_0))
         return tl_fail_memory(&m->error);
-    memcpy(d->odometer_0, m->bodies.odometer, bodies * sizeof *d->odometer_0);
+    if (bodies)
+        memcpy(d->odometer_0, m->bodies.odometer, bodies * sizeof *d->odometer_0);
     return TL_OK;
 }
