@@ -245,7 +245,8 @@ static void copy_contact(tl_detect *d, uint32_t from, uint32_t to, uint32_t poin
     }
     fresh->point_start[to] = point_start;
     fresh->facet_start[to] = facet_start;
-    for (size_t k = 0; k < d->points.table.column_count; k++) {
+    size_t columns = c->point_count[from] ? d->points.table.column_count : 0;
+    for (size_t k = 0; k < columns; k++) {
         size_t size = d->points.table.columns[k].size;
         memcpy((char *)tl_table_data(&d->spare_points.table, k) + point_start * size,
                (const char *)tl_table_data(&d->points.table, k) + c->point_start[from] * size,
