@@ -70,7 +70,7 @@ static const tl_lua_key energy_terms[] = {
     {"friction", "", "turned to heat by slip, J"},
     {"damping", "", "taken out by the damping, J"},
     {"external", "", "work of loads and of driven bodies, J"},
-    {"balance", "", "error of the sum over the largest change of a term"},
+    {"balance", "", "error of the sum over the largest change of a term so far"},
     {NULL, NULL, NULL},
 };
 

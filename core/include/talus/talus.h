@@ -370,7 +370,7 @@ typedef struct tl_energy {
     double friction;  /* turned to heat by slip */
     double damping;   /* taken out by the damping */
     double external;  /* work of loads and of driven bodies */
-    double balance;   /* error of the sum, relative to the largest change of a term */
+    double balance;   /* error of the sum, relative to the largest change of a term so far */
 } tl_energy;
 
 /* The ledger, as of the last force evaluation. */
