@@ -4,9 +4,10 @@
 --         title = "Closure of the joints", x = "joint", y = "closure, m",
 --         log_y = false,                     -- a logarithmic y axis
 --         series = { { name = "expected", x = {...}, y = {...}, style = "line" },
---                    { name = "obtained", x = {...}, y = {...}, style = "points" } },
+--                    { name = "obtained", x = {...}, y = {...}, style = "points", colour = 1 } },
 --     }
 --
+-- A series has the colour of its place unless it names another.
 -- The same data give the same text: coordinates are rounded to a tenth of a pixel. Colours are those of
 -- Okabe and Ito, told apart by colour-blind readers too.
 local svg_plot = {}
@@ -190,12 +191,16 @@ local function draw_axes(out, frame, figure)
     end
 end
 
+local function colour_of(one, place)
+    return COLOURS[((one.colour or place) - 1) % #COLOURS + 1]
+end
+
 -- Below the axes, where it can hide no data: two columns.
 local function draw_legend(out, frame, series)
     for i, one in ipairs(series) do
         local x = frame.left + (i - 1) % 2 * (frame.right - frame.left) / 2
         local y = frame.bottom + BOTTOM + LEGEND_ROW * ((i - 1) // 2)
-        local colour = COLOURS[(i - 1) % #COLOURS + 1]
+        local colour = colour_of(one, i)
         if one.style == "points" then
             out[#out + 1] = circle_at(x + 14, y, colour)
         else
@@ -218,7 +223,7 @@ function svg_plot.draw(figure)
     }
     draw_axes(out, frame, figure)
     for i, one in ipairs(figure.series) do
-        draw_series(out, one, places_of(one, frame, figure.log_y), COLOURS[(i - 1) % #COLOURS + 1])
+        draw_series(out, one, places_of(one, frame, figure.log_y), colour_of(one, i))
     end
     draw_legend(out, frame, figure.series)
     out[#out + 1] = "</svg>\n"

@@ -125,7 +125,8 @@ local function check(name, sentence)
         for i, sample in ipairs(case.samples) do
             x[i], y[i] = sample.t, sample.w_body[k]
         end
-        series[3 + k] = { name = "rate " .. k .. ", expected", x = x, y = y, style = "points" }
+        series[3 + k] = { name = "rate " .. k .. ", expected", x = x, y = y, style = "points",
+            colour = k }
     end
     figures.plot { title = name .. ": angular velocity in the body", x = "time, s", y = "rate, rad/s",
         series = series }
