@@ -296,7 +296,8 @@ double tl_patch_add(const tl_pair_view *view, uint32_t fa, uint32_t fb, double w
                     const tl_share_rule *rule, tl_narrow *room)
 {
     const tl_poly *a = view->a, *b = view->b;
-    size_t most = (size_t)tl_poly_face_size(a, fa) + tl_poly_face_size(b, fb) + 4;
+    /* each clip adds a corner, or two where rounding makes it cross a straight run of corners twice */
+    size_t most = (size_t)tl_poly_face_size(a, fa) + 2 * (size_t)tl_poly_face_size(b, fb) + 4;
     struct tl_polygon *p = polygon_room(room, most, tl_poly_face_size(b, fb));
     tl_manifold *m = &room->manifold;
     if (!p) {
