@@ -475,6 +475,81 @@ TEST(sliding_off_an_edge_is_continuous)
     slide_off(0.01, tl_v3(0, 1, 0), 0.02);
 }
 
+/* B's low edge, along y, passes over A's edge: `side` 1 leads, -1 trails. The steps are a fiftieth of the
+ * overlap, for that is the length on which the contact changes over. The trailing edge changes from A's
+ * top to A's side; the old axis is kept for 5 % and for a motion of a quarter of the overlap. */
+static void pass_edge(double tilt_degrees, int side)
+{
+    tl_model *m = scene_model(1);
+    double a = tilt_degrees * TL_PI / 180, step = OVERLAP / 50;
+    double height = 0.5 * (cos(a) + sin(a)), ahead = 0.5 * (cos(a) - sin(a)) * side;
+    scene_box(m, tl_v3(0, 0, 0), tl_v3(1, 1, 1));
+    scene_block(m, scene_box_shape(1, 1, 1), scene_turn(tl_v3(0, side, 0), a),
+                tl_v3(1 - ahead - 2 * OVERLAP, 0.6, 1 + height - OVERLAP));
+    scene_law(m, "coulomb", KN, KN, 30);
+    double most = 0, jump = 0, last = 0;
+    for (int i = 0; i < 20000; i++) {
+        scene_forces(m);
+        double force = tl_v3_norm(scene_force(m, 0, 1));
+        if (i)
+            jump = fmax(jump, fabs(force - last));
+        most = fmax(most, force);
+        last = force;
+        if (force == 0)
+            break;
+        scene_move(m, 1, tl_v3(step, 0, 0), tl_v3(0, 0, 0));
+    }
+    CHECK(most > 0);
+    CHECK_NEAR(last, 0, 0);
+    CHECK(jump <= (side > 0 ? 0.07 : 0.3) * most);
+    if (getenv("TALUS_TEST_VERBOSE"))
+        printf("  edge tilted %g, side %d: jump %.3g of %.3g\n", tilt_degrees, side, jump, most);
+    tl_model_destroy(m);
+}
+
+TEST(edge_passing_over_an_edge_is_continuous)
+{
+    for (double tilt = 0.6; tilt < 30; tilt *= 1.5) {
+        pass_edge(tilt, 1);
+        pass_edge(tilt, -1);
+    }
+}
+
+/* A cube tips about its lower edge, from flat to standing on the edge: from a patch to the point share,
+ * without a jump. */
+TEST(tipping_from_face_to_edge_is_continuous)
+{
+    for (int reuse = 0; reuse < 2; reuse++) {
+        tl_model *m = scene_model(1);
+        m->config.reuse_geometry = reuse;
+        scene_box(m, tl_v3(-2, -2, -1), tl_v3(2, 2, 0));
+        scene_box(m, tl_v3(0, 0, -OVERLAP), tl_v3(1, 1, 1 - OVERLAP));
+        scene_law(m, "coulomb", KN, KN, 30);
+        double last = 0, worst = 0, at = 0;
+        for (int i = 0; i <= 22500; i++) {
+            double degrees = 0.002 * i;
+            tl_quat q = scene_turn(tl_v3(1, 0.05, 0), degrees * TL_PI / 180);
+            tl_vec3 arm = {0.5, 0.5, 0.5}; /* from the corner that stays */
+            scene_put(m, 1, tl_v3_sub(tl_q_rotate(q, arm), arm), q);
+            scene_forces(m);
+            double force = scene_force(m, 0, 1).z;
+            CHECK(force > 0);
+            /* while the patch opens a step of 0.002 degrees is much of the overlap: look beyond */
+            double standing = KN * UNIT_MINIMUM * OVERLAP;
+            double jump = fabs(force - last) / fmax(standing, fmax(force, last));
+            if (degrees > 0.2 && jump > worst) {
+                worst = jump;
+                at = degrees;
+            }
+            last = force;
+        }
+        CHECK(worst <= 0.05);
+        if (getenv("TALUS_TEST_VERBOSE"))
+            printf("  tipping: jump %.3g at %g degrees\n", worst, at);
+        tl_model_destroy(m);
+    }
+}
+
 /* ---------------------------------------------------------------- eight blocks ----------- */
 
 /* Eight cubes pressed together from all sides: neighbours by an edge or a corner carry next to
@@ -578,5 +653,7 @@ TEST_MAIN(RUN(nearly_parallel_edges_stay_in_contact),
           RUN(motion_of_the_whole_model_turns_the_forces),
           RUN(bodies_moved_together_keep_their_forces), RUN(offset_of_a_million_changes_nothing),
           RUN(small_block_on_a_huge_one), RUN(sliding_off_an_edge_is_continuous),
+          RUN(edge_passing_over_an_edge_is_continuous),
+          RUN(tipping_from_face_to_edge_is_continuous),
           RUN(edges_and_corners_of_eight_blocks_carry_nothing),
           RUN(spin_about_the_normal_is_resisted), RUN(shear_turns_with_the_blocks))
