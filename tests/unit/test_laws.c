@@ -8,6 +8,7 @@
 #define FRICTION 30.0
 #define COHESION 2e4
 #define TENSION 1e4
+#define DILATION 12.0
 
 #define NUMBER(name, value)                                                                        \
     {                                                                                              \
@@ -20,12 +21,23 @@ static const tl_value frictional[] = {NUMBER("kn", KN), NUMBER("ks", KS),
 static const tl_value bonded[] = {NUMBER("kn", KN), NUMBER("ks", KS), NUMBER("friction", FRICTION),
                                   NUMBER("cohesion", COHESION), NUMBER("tension", TENSION)};
 
-enum { LAWS = 3 };
+static const tl_value dilating[] = {NUMBER("kn", KN), NUMBER("ks", KS),
+                                    NUMBER("friction", FRICTION), NUMBER("cohesion", COHESION),
+                                    NUMBER("dilation", DILATION)};
+static const tl_value bonded_dilating[] = {
+    NUMBER("kn", KN),           NUMBER("ks", KS),
+    NUMBER("friction", 45),     NUMBER("residual_friction", FRICTION),
+    NUMBER("tension", TENSION), NUMBER("cohesion", COHESION),
+    NUMBER("dilation", 20),     NUMBER("dilation_limit", 2e-4)};
+
+enum { LAWS = 5 };
 
 static law open_number(int number)
 {
-    static const char *const names[LAWS] = {"elastic", "coulomb", "coulomb_tensile"};
-    const tl_args args[LAWS] = {{stiffnesses, 2}, {frictional, 4}, {bonded, 5}};
+    static const char *const names[LAWS] = {"elastic", "coulomb", "coulomb_tensile", "coulomb",
+                                            "coulomb_tensile"};
+    const tl_args args[LAWS] = {
+        {stiffnesses, 2}, {frictional, 4}, {bonded, 5}, {dilating, 5}, {bonded_dilating, 8}};
     return law_open(names[number], &args[number]);
 }
 
@@ -219,51 +231,141 @@ TEST(shear_work_is_stored_or_dissipated)
     }
 }
 
+enum { STEPS = 400, CYCLES = 5 };
+
+/* Closed paths of all lanes through the law, their shapes drawn from `seed`: the work of the walls and the
+ * most that was ever stored. */
+static void closed_cycles(const law *l, lanes *p, uint64_t *seed, double *work, double *peak)
+{
+    double amplitude[3][LANES], phase[3][LANES], last[3][LANES] = {{0}};
+    lanes_reset(l, p);
+    for (int i = 0; i < LANES; i++) {
+        p->area[i] = 1;
+        work[i] = peak[i] = 0;
+        for (int k = 0; k < 3; k++) {
+            amplitude[k][i] = (k == 0 ? 5e-5 : 3e-4) * check_random(seed);
+            phase[k][i] = 6.28 * check_random(seed);
+        }
+    }
+    law_step(l, p, 0, LANES, 1);
+    for (int step = 1; step <= CYCLES * STEPS; step++) {
+        double t = 6.283185307179586 * step / STEPS;
+        for (int i = 0; i < LANES; i++) {
+            double at[3];
+            for (int k = 0; k < 3; k++)
+                at[k] = amplitude[k][i] * (sin(t * (k + 1) + phase[k][i]) - sin(phase[k][i]));
+            p->du_n[i] = -(at[0] - last[0][i]);
+            p->closure[i] = at[0];
+            p->du_s[0][i] = at[1] - last[1][i];
+            p->du_s[1][i] = at[2] - last[2][i];
+            for (int k = 0; k < 3; k++)
+                last[k][i] = at[k];
+        }
+        lanes before = *p;
+        law_step(l, p, 0, LANES, 1);
+        for (int i = 0; i < LANES; i++) {
+            work[i] += work_of(&before, p, i);
+            peak[i] = fmax(peak[i], p->stored[i]);
+        }
+    }
+}
+
 /* Random closed paths of closing and shear, in small steps, over opening and slip: what comes out is
  * never more than was put in. */
 TEST(closed_cycles_make_no_energy)
 {
-    enum { STEPS = 400, CYCLES = 5 };
     for (int number = 0; number < LAWS; number++) {
         law l = open_number(number);
-        lanes p;
-        lanes_reset(&l, &p);
         uint64_t seed = 77;
-        double work[LANES] = {0}, peak[LANES] = {0};
-        double amplitude[3][LANES], phase[3][LANES];
-        for (int i = 0; i < LANES; i++) {
-            p.area[i] = 1;
-            for (int k = 0; k < 3; k++) {
-                amplitude[k][i] = (k == 0 ? 5e-5 : 3e-4) * check_random(&seed);
-                phase[k][i] = 6.28 * check_random(&seed);
-            }
+        for (int round = 0; round < 8; round++) {
+            lanes p;
+            double work[LANES], peak[LANES];
+            closed_cycles(&l, &p, &seed, work, peak);
+            /* Tolerance: opening falls between two steps, which misplaces 1/STEPS of the energy. */
+            for (int i = 0; i < LANES; i++)
+                CHECK(work[i] - p.stored[i] >= -(number == 0 ? 1e-9 : 2.0 / STEPS) * peak[i]);
         }
-        double last[3][LANES] = {{0}};
-        law_step(&l, &p, 0, LANES, 1);
-        for (int step = 1; step <= CYCLES * STEPS; step++) {
-            double t = 6.283185307179586 * step / STEPS;
-            for (int i = 0; i < LANES; i++) {
-                double at[3];
-                for (int k = 0; k < 3; k++)
-                    at[k] = amplitude[k][i] * (sin(t * (k + 1) + phase[k][i]) - sin(phase[k][i]));
-                p.du_n[i] = -(at[0] - last[0][i]);
-                p.closure[i] = at[0];
-                p.du_s[0][i] = at[1] - last[1][i];
-                p.du_s[1][i] = at[2] - last[2][i];
-                for (int k = 0; k < 3; k++)
-                    last[k][i] = at[k];
-            }
-            lanes before = p;
-            law_step(&l, &p, 0, LANES, 1);
-            for (int i = 0; i < LANES; i++) {
-                work[i] += work_of(&before, &p, i);
-                peak[i] = fmax(peak[i], p.stored[i]);
-            }
-        }
-        /* Tolerance: opening falls between two steps, which misplaces 1/STEPS of the energy. */
-        for (int i = 0; i < LANES; i++)
-            CHECK(work[i] - p.stored[i] >= -(number == 0 ? 1e-9 : 2.0 / STEPS) * peak[i]);
         law_close(&l);
+    }
+}
+
+/* Slip under constant closure opens the joint by tan(dilation) a unit, which presses it; the work that
+ * does not go into that is heat. */
+TEST(dilation_opens_and_presses_the_joint)
+{
+    const double rad = 3.14159265358979323846 / 180, area = 0.5, x0 = 1e-5;
+    law l = open_number(3);
+    lanes p;
+    lanes_reset(&l, &p);
+    p.area[0] = area;
+    p.closure[0] = x0;
+    law_step(&l, &p, 0, 8, 1);
+    double work = 0, heat = 0, slip = 0, start = p.stored[0];
+    for (int step = 0; step < 1000; step++) {
+        p.du_s[0][0] = 1e-6;
+        lanes before = p;
+        law_step(&l, &p, 0, 8, 1);
+        work += work_of(&before, &p, 0);
+        heat += p.dissipated[0];
+        /* du = elastic + plastic */
+        slip += 1e-6 + (p.f_s[0][0] - before.f_s[0][0]) / (KS * area);
+    }
+    CHECK_REL(p.state[0][0], slip * tan(DILATION * rad), 1e-12);
+    CHECK_REL(p.f_n[0], KN * area * (x0 + p.state[0][0]), 1e-14);
+    CHECK_REL(-p.f_s[0][0], limit_of(area, p.f_n[0]), 1e-14);
+    CHECK_REL(work, p.stored[0] - start + heat, 1e-12);
+    /* (c A + f_n (tan(friction) - tan(dilation))) slip, f_n growing linearly. Tolerance: the step in
+     * which slip begins. */
+    double mean = 0.5 * (KN * area * x0 + p.f_n[0]);
+    double split = tan(FRICTION * rad) - tan(DILATION * rad);
+    CHECK_REL(heat, (COHESION * area + mean * split) * slip, 2e-3);
+    /* Without shear, unloading goes back along the same line, down to opening, and up again. */
+    const double opening = p.state[0][0];
+    const double closures[] = {-0.5 * opening, -2 * opening, -0.9 * opening, x0};
+    p.du_s[0][0] = p.f_s[0][0] / (KS * area);
+    law_step(&l, &p, 0, 8, 1);
+    p.du_s[0][0] = 0;
+    for (int k = 0; k < 4; k++) {
+        p.closure[0] = closures[k];
+        law_step(&l, &p, 0, 8, 1);
+        CHECK_REL(p.f_n[0], fmax(0, KN * area * (closures[k] + opening)), 1e-14);
+        CHECK(p.state[0][0] == opening);
+    }
+    law_close(&l);
+}
+
+TEST(dilation_ends_at_its_limit_and_may_not_exceed_friction)
+{
+    const double rad = 3.14159265358979323846 / 180;
+    law l = open_number(4);
+    lanes p;
+    lanes_reset(&l, &p);
+    p.area[0] = 1;
+    p.closure[0] = 1e-4;
+    for (int step = 0; step < 100; step++) {
+        p.du_s[1][0] = step % 20 < 10 ? 1e-4 : -1e-4;
+        law_step(&l, &p, 0, 8, 1);
+        CHECK(p.dissipated[0] >= 0);
+    }
+    CHECK_REL(p.state[1][0], 2e-4 * tan(20 * rad), 1e-14);
+    law_close(&l);
+    const char *const names[] = {"coulomb", "coulomb_tensile"};
+    const tl_value steep[] = {NUMBER("kn", KN), NUMBER("ks", KS), NUMBER("friction", 10),
+                              NUMBER("dilation", 11)};
+    for (int k = 0; k < 2; k++) {
+        const tl_kind *kind = tl_plugin_find(TL_KIND_LAW, names[k]);
+        const tl_law_ops *ops = kind->ops;
+        double params[32];
+        void *self = NULL;
+        tl_error error = {TL_OK, ""};
+        tl_report report = {.size = sizeof report};
+        const tl_args args = {steep, 4};
+        CHECK_INT(tl_args_read(kind->params, kind->param_count, kind->param_stride, &args, false,
+                               params, names[k], &error),
+                  TL_OK);
+        CHECK_INT(ops->create(params, &self, &report), TL_E_ARGUMENT);
+        CHECK_TEXT(report.text,
+                   "dilation = 11 deg must be <= friction = 10 deg, or slip would make energy");
     }
 }
 
@@ -465,6 +567,8 @@ int main(void)
     RUN(nan_reaches_the_forces);
     RUN(shear_work_is_stored_or_dissipated);
     RUN(closed_cycles_make_no_energy);
+    RUN(dilation_opens_and_presses_the_joint);
+    RUN(dilation_ends_at_its_limit_and_may_not_exceed_friction);
     RUN(elastic_carries_tension_without_limit);
     RUN(coulomb_keeps_to_its_limit);
     RUN(friction_opposes_the_motion_of_b);

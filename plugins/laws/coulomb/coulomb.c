@@ -1,17 +1,30 @@
 /* coulomb.c - law "coulomb": elastic springs with a Coulomb limit on shear and no tensile strength.
  *
- *     f_n = kn A closure + f_n0                     total, compression positive; after eq. (6)
+ *     f_n = kn A (closure + opening) + f_n0         total, compression positive; after eq. (6)
  *     f_n < 0:  f_n = 0, f_s = 0, open
  *     f_t = f_s - ks A du_s                         eq. (7), on block B
  *     limit = c A + f_n tan(friction)               eq. (10)
  *     |f_t| > limit:  f_s = f_t limit / |f_t|       eq. (12), slipping
+ *     opening += tan(dilation) slip                 up to dilation_limit tan(dilation)
+ *
+ * A total closure: a point that has opened carries again only where its walls meet. State `opening`
+ * is how far slip has lifted the walls off each other; it stays, so unloading goes back along the
+ * same line. The limit is that of the pressure the slip itself adds, found in one step since all is
+ * linear: slip = (|f_t| - limit) / (ks A + kn A tan(dilation) tan(friction)).
  *
  * Source: Hart, Cundall and Lemos, Int. J. Rock Mech. Min. Sci. 25 (1988) 117-125. The cohesion stays
  * after slip, and comes back when an opened point closes; see coulomb_tensile for a bond that is lost.
  *
  * Energy turned to heat by slip: the plastic slip (|f_t| - |f_s|) / (ks A) along f_t times the mean of
  * the shear forces before and after in that direction. With the work of the mean force over du_s this
- * balances the change of stored energy exactly; for a reversal within one step it is taken as 0. */
+ * balances the change of stored energy exactly; for a reversal within one step it is taken as 0. Of
+ * the work of slip, the part f_n tan(dilation) slip lifts the walls against the pressure and is not
+ * heat: it is stored in the normal spring or given back to what presses. The rest,
+ * (c A + f_n (tan(friction) - tan(dilation))) slip, is heat, and never less than 0 because dilation
+ * above friction is refused.
+ *
+ * Limit: a change of kn or ks, and insitu, take the present force as the one at closure 0; they belong
+ * before slip has opened the joint. */
 #include <talus/plugin.h>
 
 #include <math.h>
@@ -26,7 +39,7 @@
 #define ROUNDING 1e-15
 
 typedef struct params {
-    double kn, ks, friction, cohesion;
+    double kn, ks, friction, cohesion, dilation, dilation_limit;
 } params;
 
 static const tl_param param_table[] = {
@@ -38,21 +51,51 @@ static const tl_param param_table[] = {
              .flags = TL_PARAM_MAX_OPEN, .min = 0, .max = 90),
     TL_PARAM(TL_PARAM_REAL, params, cohesion, "Pa", "shear strength at zero normal stress",
              .min = 0, .max = INFINITY),
+    TL_PARAM(TL_PARAM_REAL, params, dilation, "deg",
+             "angle of dilation: slip opens the joint; at most the friction",
+             .flags = TL_PARAM_MAX_OPEN, .min = 0, .max = 90),
+    TL_PARAM(TL_PARAM_REAL, params, dilation_limit, "m", "slip after which dilation ends",
+             .flags = TL_PARAM_OPTIONAL, .min = 0, .max = INFINITY),
+};
+
+static const tl_state state_table[] = {
+    {.size = sizeof(tl_state),
+     .kind = TL_STATE_SCALAR,
+     .transfer = TL_TRANSFER_COPY,
+     .name = "opening",
+     .unit = "m",
+     .doc = "how far slip has opened the joint",
+     .initial = 0},
 };
 
 typedef struct coulomb {
     double kn, ks, tangent, cohesion;
+    double dilation, most_opening; /* tangent; m */
 } coulomb;
 
 static tl_status create(const void *given, void **self, tl_report *report)
 {
     const params *p = given;
+    if (p->dilation > p->friction) {
+        snprintf(report->text, sizeof report->text,
+                 "dilation = %g deg must be <= friction = %g deg, or slip would make energy",
+                 p->dilation, p->friction);
+        return TL_E_ARGUMENT;
+    }
     coulomb *law = malloc(sizeof *law);
     if (!law) {
         snprintf(report->text, sizeof report->text, "out of memory");
         return TL_E_MEMORY;
     }
-    *law = (coulomb){p->kn, p->ks, tan(p->friction * DEGREE), p->cohesion};
+    *law = (coulomb){
+        .kn = p->kn,
+        .ks = p->ks,
+        .tangent = tan(p->friction * DEGREE),
+        .cohesion = p->cohesion,
+        .dilation = tan(p->dilation * DEGREE),
+        .most_opening =
+            isnan(p->dilation_limit) ? INFINITY : tan(p->dilation * DEGREE) * p->dilation_limit,
+    };
     *self = law;
     return TL_OK;
 }
@@ -73,14 +116,15 @@ static void store_energy(const coulomb *law, const tl_law_batch *batch)
     }
 }
 
-/* The law itself, for up to STRIDE lanes from `begin`. `heat` is a constant at each call, so that the
- * loop exists once with and once without the energy and neither has a branch in it. A NaN goes through
+/* The law itself, for up to STRIDE lanes from `begin`. `heat` and `dilates` are constants at each call,
+ * so that the loop exists once for each and none has a branch in it; without dilation the opening of
+ * slip in the past still counts. A NaN goes through
  * all comparisons to the forces, where the host finds it. `mark` takes the flags as doubles: a loop
  * over lanes of two widths is not vectorised for every machine. */
 static inline __attribute__((always_inline)) void move(const coulomb *law,
                                                        const tl_law_batch *batch, uint32_t begin,
                                                        uint32_t lanes, double *restrict mark,
-                                                       const int heat)
+                                                       const int heat, const int dilates)
 {
     const double *restrict area = batch->area + begin, *restrict closure = batch->closure + begin;
     const double *restrict f_n0 = batch->f_n0 + begin;
@@ -88,17 +132,31 @@ static inline __attribute__((always_inline)) void move(const coulomb *law,
     const double *restrict du_z = batch->du_s[2] + begin;
     double *restrict f_n = batch->f_n + begin, *restrict f_x = batch->f_s[0] + begin;
     double *restrict f_y = batch->f_s[1] + begin, *restrict f_z = batch->f_s[2] + begin;
+    double *restrict opening = batch->state[0] + begin;
     double *restrict dissipated = heat ? batch->dissipated + begin : NULL;
     const double kn = law->kn, ks = law->ks, tangent = law->tangent, cohesion = law->cohesion;
+    const double dilation = law->dilation, most_opening = law->most_opening;
 #pragma omp simd
     for (uint32_t i = 0; i < lanes; i++) {
-        double stiffness = ks * area[i];
-        double total = kn * area[i] * closure[i] + f_n0[i];
-        double normal = total < 0 ? 0 : total;
+        double stiffness = ks * area[i], opened = opening[i], lift = 0;
+        double total = kn * area[i] * (closure[i] + opened) + f_n0[i];
         double tx = f_x[i] - stiffness * du_x[i];
         double ty = f_y[i] - stiffness * du_y[i];
         double tz = f_z[i] - stiffness * du_z[i];
         double trial = sqrt(tx * tx + ty * ty + tz * tz);
+        if (dilates) {
+            double strength = cohesion * area[i] + total * tangent;
+            double yield = stiffness + kn * area[i] * dilation * tangent;
+            double grown = dilation * (trial - strength) / (yield > 0 ? yield : 1);
+            double room = most_opening > opened ? most_opening - opened : 0;
+            grown = grown < room ? grown : room;
+            grown = total < 0 ? 0 : grown;
+            lift = trial > strength * (1 + ROUNDING) && yield > 0 ? grown : 0;
+            opened = opened + lift;
+            opening[i] = opened;
+            total = kn * area[i] * (closure[i] + opened) + f_n0[i];
+        }
+        double normal = total < 0 ? 0 : total;
         double limit = total < 0 ? 0 : cohesion * area[i] + normal * tangent;
         double most = limit * (1 + ROUNDING);
         double whole = trial > most ? trial : 1;
@@ -107,6 +165,8 @@ static inline __attribute__((always_inline)) void move(const coulomb *law,
             double mean = 0.5 * ((f_x[i] * tx + f_y[i] * ty + f_z[i] * tz) / whole + limit);
             double slip = (trial - limit) / (stiffness > 0 ? stiffness : 1);
             double work = trial > most ? mean * slip : 0;
+            if (dilates)
+                work = work - 0.5 * (f_n[i] + normal) * lift;
             dissipated[i] = work > 0 && stiffness > 0 ? work : 0;
         }
         double flag = trial > most ? TL_POINT_SLIPPING : 0;
@@ -121,18 +181,23 @@ static inline __attribute__((always_inline)) void move(const coulomb *law,
 static tl_status update(const void *self, const tl_law_batch *batch, tl_report *report)
 {
     (void)report;
+    const coulomb *law = self;
     double mark[STRIDE];
     for (uint32_t begin = 0; begin < batch->count; begin += STRIDE) {
         uint32_t left = batch->count - begin, lanes = left < STRIDE ? left : STRIDE;
-        if (batch->dissipated)
-            move(self, batch, begin, lanes, mark, 1);
+        if (law->dilation > 0 && batch->dissipated)
+            move(law, batch, begin, lanes, mark, 1, 1);
+        else if (law->dilation > 0)
+            move(law, batch, begin, lanes, mark, 0, 1);
+        else if (batch->dissipated)
+            move(law, batch, begin, lanes, mark, 1, 0);
         else
-            move(self, batch, begin, lanes, mark, 0);
+            move(law, batch, begin, lanes, mark, 0, 0);
         for (uint32_t i = 0; i < lanes; i++)
             batch->flags[begin + i] = (uint32_t)mark[i];
     }
     if (batch->stored)
-        store_energy(self, batch);
+        store_energy(law, batch);
     return TL_OK;
 }
 
@@ -153,11 +218,14 @@ static const tl_kind kind = {
     .size = sizeof kind,
     .type = TL_KIND_LAW,
     .name = "coulomb",
-    .doc = "Coulomb friction with cohesion and no tensile strength.",
+    .doc = "Coulomb friction with cohesion and dilation, and no tensile strength.",
     .params_size = sizeof(params),
     .params = param_table,
     .param_count = sizeof param_table / sizeof *param_table,
     .param_stride = sizeof *param_table,
+    .states = state_table,
+    .state_count = sizeof state_table / sizeof *state_table,
+    .state_stride = sizeof *state_table,
     .ops = &ops,
 };
 

@@ -1,20 +1,26 @@
 /* coulomb_tensile.c - law "coulomb_tensile": a bonded Coulomb joint that breaks once and for all.
  *
- *     f_n = kn A closure + f_n0                     total, compression positive; after eq. (6)
+ *     f_n = kn A (closure + opening) + f_n0         total, compression positive; after eq. (6)
  *     f_t = f_s - ks A du_s                         eq. (7), on block B
  *     fails when  f_n < -T A   or   |f_t| > max(0, c A + f_n tan(friction))       eq. (10)
  *     f_n < -T A:  f_n = 0, f_s = 0, open
  *     |f_t| > limit:  f_s = f_t limit / |f_t|       eq. (12), slipping
+ *     opening += tan(dilation) slip                 up to dilation_limit tan(dilation)
  *
  * T, c and the friction are those of the bond while it holds. At the first failure, in tension or
  * in shear, the bond is lost for good: T, c and the friction drop to their residual values within that
- * step (brittle), as 3DEC does. State `bond` is 1 while it holds, 0 when lost.
+ * step (brittle), as 3DEC does. State `bond` is 1 while it holds, 0 when lost. Since the closure is a
+ * total one, a point that has opened carries again only where its walls meet. Dilation and its state
+ * `opening` are those of the law "coulomb"; under tension slip does not dilate.
  *
  * Source: Hart, Cundall and Lemos, Int. J. Rock Mech. Min. Sci. 25 (1988) 117-125; the loss of the bond
  * after the manual of 3DEC. A contact that is born open loses its bond in its first step.
  *
  * Energy turned to heat: as in the law "coulomb", and the energy of the tensile spring when a bond
- * breaks in tension. */
+ * breaks in tension. A tensile strength that is left after that neither takes nor makes energy over a
+ * closed cycle of opening: it lets go and takes hold again at the same gap.
+ *
+ * Limit: as for "coulomb", changes of kn and ks and insitu belong before slip has opened the joint. */
 #include <talus/plugin.h>
 
 #include <math.h>
@@ -33,6 +39,7 @@
 typedef struct params {
     double kn, ks, friction, cohesion, tension;
     double residual_friction, residual_cohesion, residual_tension;
+    double dilation, dilation_limit;
 } params;
 
 static const tl_param param_table[] = {
@@ -53,6 +60,11 @@ static const tl_param param_table[] = {
              .min = 0, .max = INFINITY),
     TL_PARAM(TL_PARAM_REAL, params, residual_tension, "Pa",
              "tensile strength after the bond is lost", .min = 0, .max = INFINITY),
+    TL_PARAM(TL_PARAM_REAL, params, dilation, "deg",
+             "angle of dilation: slip opens the joint; at most the friction, whole and residual",
+             .flags = TL_PARAM_MAX_OPEN, .min = 0, .max = 90),
+    TL_PARAM(TL_PARAM_REAL, params, dilation_limit, "m", "slip after which dilation ends",
+             .flags = TL_PARAM_OPTIONAL, .min = 0, .max = INFINITY),
 };
 
 static const tl_state state_table[] = {
@@ -63,6 +75,13 @@ static const tl_state state_table[] = {
      .unit = "",
      .doc = "1 while the bond holds, 0 when it is lost",
      .initial = 1},
+    {.size = sizeof(tl_state),
+     .kind = TL_STATE_SCALAR,
+     .transfer = TL_TRANSFER_COPY,
+     .name = "opening",
+     .unit = "m",
+     .doc = "how far slip has opened the joint",
+     .initial = 0},
 };
 
 /* Strength of a joint: with the bond, or without. */
@@ -73,22 +92,33 @@ typedef struct strength {
 typedef struct bonded {
     double kn, ks;
     strength peak, residual;
+    double dilation, most_opening; /* tangent; m */
 } bonded;
 
 static tl_status create(const void *given, void **self, tl_report *report)
 {
     const params *p = given;
+    double residual = isnan(p->residual_friction) ? p->friction : p->residual_friction;
+    double least = residual < p->friction ? residual : p->friction;
+    if (p->dilation > least) {
+        snprintf(report->text, sizeof report->text,
+                 "dilation = %g deg must be <= %s = %g deg, or slip would make energy", p->dilation,
+                 least < p->friction ? "residual_friction" : "friction", least);
+        return TL_E_ARGUMENT;
+    }
     bonded *law = malloc(sizeof *law);
     if (!law) {
         snprintf(report->text, sizeof report->text, "out of memory");
         return TL_E_MEMORY;
     }
-    double residual = isnan(p->residual_friction) ? p->friction : p->residual_friction;
     *law = (bonded){
         .kn = p->kn,
         .ks = p->ks,
         .peak = {tan(p->friction * DEGREE), p->cohesion, p->tension},
         .residual = {tan(residual * DEGREE), p->residual_cohesion, p->residual_tension},
+        .dilation = tan(p->dilation * DEGREE),
+        .most_opening =
+            isnan(p->dilation_limit) ? INFINITY : tan(p->dilation * DEGREE) * p->dilation_limit,
     };
     *self = law;
     return TL_OK;
@@ -110,13 +140,15 @@ static void store_energy(const bonded *law, const tl_law_batch *batch)
     }
 }
 
-/* The law itself, for up to STRIDE lanes from `begin`. `heat` is a constant at each call, so that the
- * loop exists once with and once without the energy and neither has a branch in it. A NaN goes through
+/* The law itself, for up to STRIDE lanes from `begin`. `heat` and `dilates` are constants at each call,
+ * so that the loop exists once for each and none has a branch in it; without dilation the opening of
+ * slip in the past still counts. A NaN goes through
  * all comparisons to the forces, where the host finds it. `mark` takes the flags as doubles: a loop
  * over lanes of two widths is not vectorised for every machine. */
 static inline __attribute__((always_inline)) void move(const bonded *law, const tl_law_batch *batch,
                                                        uint32_t begin, uint32_t lanes,
-                                                       double *restrict mark, const int heat)
+                                                       double *restrict mark, const int heat,
+                                                       const int dilates)
 {
     const double *restrict area = batch->area + begin, *restrict closure = batch->closure + begin;
     const double *restrict f_n0 = batch->f_n0 + begin;
@@ -124,14 +156,15 @@ static inline __attribute__((always_inline)) void move(const bonded *law, const 
     const double *restrict du_z = batch->du_s[2] + begin;
     double *restrict f_n = batch->f_n + begin, *restrict f_x = batch->f_s[0] + begin;
     double *restrict f_y = batch->f_s[1] + begin, *restrict f_z = batch->f_s[2] + begin;
-    double *restrict bond = batch->state[0] + begin;
+    double *restrict bond = batch->state[0] + begin, *restrict opening = batch->state[1] + begin;
     double *restrict dissipated = heat ? batch->dissipated + begin : NULL;
     const double kn = law->kn, ks = law->ks;
+    const double dilation = law->dilation, most_opening = law->most_opening;
     const strength peak = law->peak, residual = law->residual;
 #pragma omp simd
     for (uint32_t i = 0; i < lanes; i++) {
-        double stiffness = ks * area[i];
-        double total = kn * area[i] * closure[i] + f_n0[i];
+        double stiffness = ks * area[i], opened = opening[i], lift = 0;
+        double total = kn * area[i] * (closure[i] + opened) + f_n0[i];
         double tx = f_x[i] - stiffness * du_x[i];
         double ty = f_y[i] - stiffness * du_y[i];
         double tz = f_z[i] - stiffness * du_z[i];
@@ -147,6 +180,18 @@ static inline __attribute__((always_inline)) void move(const bonded *law, const 
         double tangent = after > BOND_HOLDS ? peak.tangent : residual.tangent;
         double cohesion = after > BOND_HOLDS ? peak.cohesion : residual.cohesion;
         double tension = after > BOND_HOLDS ? peak.tension : residual.tension;
+        if (dilates) {
+            double strong = cohesion * area[i] + total * tangent;
+            double yield = stiffness + kn * area[i] * dilation * tangent;
+            double grown = dilation * (trial - strong) / (yield > 0 ? yield : 1);
+            double room = most_opening > opened ? most_opening - opened : 0;
+            grown = grown < room ? grown : room;
+            grown = total < 0 ? 0 : grown;
+            lift = trial > strong * (1 + ROUNDING) && yield > 0 ? grown : 0;
+            opened = opened + lift;
+            opening[i] = opened;
+            total = kn * area[i] * (closure[i] + opened) + f_n0[i];
+        }
         double lowest = -tension * area[i];
         double limit = cohesion * area[i] + total * tangent;
         limit = limit < 0 ? 0 : limit;
@@ -158,6 +203,8 @@ static inline __attribute__((always_inline)) void move(const bonded *law, const 
             double mean = 0.5 * ((f_x[i] * tx + f_y[i] * ty + f_z[i] * tz) / whole + limit);
             double slip = (trial - limit) / (stiffness > 0 ? stiffness : 1);
             double work = trial > most ? mean * slip : 0;
+            if (dilates)
+                work = work - 0.5 * (f_n[i] + total) * lift;
             work = work > 0 && stiffness > 0 ? work : 0;
             /* A bond that snaps gives up its tensile spring. */
             double spring = 0.5 * total * total / (area[i] > 0 ? kn * area[i] : 1);
@@ -178,18 +225,23 @@ static inline __attribute__((always_inline)) void move(const bonded *law, const 
 static tl_status update(const void *self, const tl_law_batch *batch, tl_report *report)
 {
     (void)report;
+    const bonded *law = self;
     double mark[STRIDE];
     for (uint32_t begin = 0; begin < batch->count; begin += STRIDE) {
         uint32_t left = batch->count - begin, lanes = left < STRIDE ? left : STRIDE;
-        if (batch->dissipated)
-            move(self, batch, begin, lanes, mark, 1);
+        if (law->dilation > 0 && batch->dissipated)
+            move(law, batch, begin, lanes, mark, 1, 1);
+        else if (law->dilation > 0)
+            move(law, batch, begin, lanes, mark, 0, 1);
+        else if (batch->dissipated)
+            move(law, batch, begin, lanes, mark, 1, 0);
         else
-            move(self, batch, begin, lanes, mark, 0);
+            move(law, batch, begin, lanes, mark, 0, 0);
         for (uint32_t i = 0; i < lanes; i++)
             batch->flags[begin + i] = (uint32_t)mark[i];
     }
     if (batch->stored)
-        store_energy(self, batch);
+        store_energy(law, batch);
     return TL_OK;
 }
 
