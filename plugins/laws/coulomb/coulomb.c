@@ -151,7 +151,7 @@ static inline __attribute__((always_inline)) void move(const coulomb *law,
             double room = most_opening > opened ? most_opening - opened : 0;
             grown = grown < room ? grown : room;
             grown = total < 0 ? 0 : grown;
-            lift = trial > strength * (1 + ROUNDING) && yield > 0 ? grown : 0;
+            lift = trial > strength * (1 + ROUNDING) ? grown : 0;
             opened = opened + lift;
             opening[i] = opened;
             total = kn * area[i] * (closure[i] + opened) + f_n0[i];
@@ -167,7 +167,8 @@ static inline __attribute__((always_inline)) void move(const coulomb *law,
             double work = trial > most ? mean * slip : 0;
             if (dilates)
                 work = work - 0.5 * (f_n[i] + normal) * lift;
-            dissipated[i] = work > 0 && stiffness > 0 ? work : 0;
+            work = work > 0 ? work : 0;
+            dissipated[i] = stiffness > 0 ? work : 0;
         }
         double flag = trial > most ? TL_POINT_SLIPPING : 0;
         mark[i] = total < 0 ? TL_POINT_OPEN : flag;

@@ -187,7 +187,7 @@ static inline __attribute__((always_inline)) void move(const bonded *law, const 
             double room = most_opening > opened ? most_opening - opened : 0;
             grown = grown < room ? grown : room;
             grown = total < 0 ? 0 : grown;
-            lift = trial > strong * (1 + ROUNDING) && yield > 0 ? grown : 0;
+            lift = trial > strong * (1 + ROUNDING) ? grown : 0;
             opened = opened + lift;
             opening[i] = opened;
             total = kn * area[i] * (closure[i] + opened) + f_n0[i];
