@@ -60,7 +60,8 @@ static void gather_range(void *user, size_t begin, size_t end, size_t chunk, uns
         double v2 = tl_v3_norm2(b->v[body]);
         double unbalanced = tl_v3_norm(b->force[body]);
         double contact = m->cycle->contact_force[body];
-        double weight = b->mass[body] * tl_v3_norm(m->config.gravity);
+        double weight = b->mass[body] * tl_v3_norm(m->config.gravity) +
+                        tl_v3_norm(b->load_force[body]); /* a load weighs as much */
         double against = contact > 0 ? contact : weight;
         sums.unbalanced += unbalanced;
         sums.contact_force += contact;
