@@ -36,6 +36,8 @@ static void add_columns(struct tl_cycle *c)
         TL_COLUMN(t, c, angular_velocity[k], 0);
         TL_COLUMN(t, c, force[k], 0);
         TL_COLUMN(t, c, moment[k], 0);
+        TL_COLUMN(t, c, force_before[k], 0);
+        TL_COLUMN(t, c, moment_before[k], 0);
         TL_COLUMN(t, c, damping_force[k], 0);
         TL_COLUMN(t, c, damping_moment[k], 0);
     }

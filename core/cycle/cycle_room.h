@@ -28,6 +28,7 @@ struct tl_cycle {
     /* per body, as the damping plugins see them */
     double *contact_force; /* sum of |contact forces| */
     double *velocity[3], *angular_velocity[3], *force[3], *moment[3];
+    double *force_before[3], *moment_before[3];
     double *mass, *inertia;
     double *scale; /* of the inertia: 1 without mass scaling */
     double *damping_force[3], *damping_moment[3], *alpha;

@@ -1,6 +1,7 @@
 /* damping.c - the damping plugin: chosen by name, called on batches of bodies.
  *
- * The plugin's states are numbers of the model, kept here and given to it; the kinetic energy and its
+ * The plugin's states are numbers of the model, kept here and given to it, as are the forces of the step
+ * before, which a change of damping begins with those of the last step; the kinetic energy and its
  * rate are sums made by gather.c. */
 #include "cycle/cycle_room.h"
 
@@ -42,6 +43,10 @@ tl_status tl_model_damping(tl_model *m, const char *damping, const tl_args *args
     m->damping_params = params;
     m->damping_self = self;
     m->damping_state = state;
+    for (size_t i = 0; i < m->bodies.table.rows; i++) {
+        m->bodies.force_before[i] = m->bodies.force[i];
+        m->bodies.moment_before[i] = m->bodies.moment[i];
+    }
     if (m->cycle)
         m->cycle->dt = 0; /* the stable step depends on the damping */
     return TL_OK;
@@ -66,7 +71,7 @@ static void damp_range(void *user, size_t begin, size_t end, size_t chunk, unsig
     const damping_job *job = user;
     tl_model *m = job->m;
     struct tl_cycle *c = m->cycle;
-    const tl_bodies *b = &m->bodies;
+    tl_bodies *b = &m->bodies;
     const tl_vec3 zero = {0, 0, 0};
     for (size_t i = begin; i < end; i++) {
         bool real = i < b->table.rows;
@@ -75,6 +80,8 @@ static void damp_range(void *user, size_t begin, size_t end, size_t chunk, unsig
         put(c->angular_velocity, i, real ? b->w[i] : zero);
         put(c->force, i, real ? b->force[i] : zero);
         put(c->moment, i, real ? b->moment[i] : zero);
+        put(c->force_before, i, real ? b->force_before[i] : zero);
+        put(c->moment_before, i, real ? b->moment_before[i] : zero);
         put(c->damping_force, i, zero);
         put(c->damping_moment, i, zero);
         c->alpha[i] = 0;
@@ -93,6 +100,8 @@ static void damp_range(void *user, size_t begin, size_t end, size_t chunk, unsig
         batch.angular_velocity[k] = c->angular_velocity[k] + begin;
         batch.force[k] = c->force[k] + begin;
         batch.moment[k] = c->moment[k] + begin;
+        batch.force_before[k] = c->force_before[k] + begin;
+        batch.moment_before[k] = c->moment_before[k] + begin;
         batch.damping_force[k] = c->damping_force[k] + begin;
         batch.damping_moment[k] = c->damping_moment[k] + begin;
     }
@@ -101,6 +110,10 @@ static void damp_range(void *user, size_t begin, size_t end, size_t chunk, unsig
     tl_status status = ops->update(m->damping_self, &batch, &report);
     if (status != TL_OK)
         tl_cycle_failed(m, chunk, status, 0, report.text);
+    for (size_t i = begin; i < end && i < b->table.rows; i++) {
+        b->force_before[i] = b->force[i];
+        b->moment_before[i] = b->moment[i];
+    }
 }
 
 tl_status tl_damping_apply(tl_model *m, double dt)

@@ -36,6 +36,8 @@ static void bodies_init(tl_bodies *b)
     TL_COLUMN(t, b, r, 0);
     TL_COLUMN(t, b, v, TL_COLUMN_STATE);
     TL_COLUMN(t, b, w, TL_COLUMN_STATE);
+    TL_COLUMN(t, b, v_moved, TL_COLUMN_STATE);
+    TL_COLUMN(t, b, w_moved, TL_COLUMN_STATE);
     TL_COLUMN(t, b, mass, TL_COLUMN_STATE);
     TL_COLUMN(t, b, moments, TL_COLUMN_STATE);
     TL_COLUMN(t, b, axes, TL_COLUMN_STATE);
@@ -44,6 +46,8 @@ static void bodies_init(tl_bodies *b)
     TL_COLUMN(t, b, fixed, TL_COLUMN_STATE);
     TL_COLUMN(t, b, force, TL_COLUMN_STATE);
     TL_COLUMN(t, b, moment, TL_COLUMN_STATE);
+    TL_COLUMN(t, b, force_before, TL_COLUMN_STATE);
+    TL_COLUMN(t, b, moment_before, TL_COLUMN_STATE);
     TL_COLUMN(t, b, load_force, TL_COLUMN_STATE);
     TL_COLUMN(t, b, load_moment, TL_COLUMN_STATE);
     TL_COLUMN(t, b, load_arm, TL_COLUMN_STATE);

@@ -59,6 +59,8 @@ typedef struct tl_bodies {
     tl_mat3 *r;     /* the same as a matrix, derived from q */
     tl_vec3 *v;     /* velocity, half a step behind the position */
     tl_vec3 *w;     /* angular velocity */
+    tl_vec3 *v_moved; /* v and w of the last step's motion: since then they may have been set anew */
+    tl_vec3 *w_moved;
     double *mass;
     tl_vec3 *moments; /* principal moments of inertia */
     tl_quat *axes;    /* from principal axes to the body's frame */
@@ -67,6 +69,8 @@ typedef struct tl_bodies {
     uint8_t *fixed;   /* TL_FIX_* */
     tl_vec3 *force;   /* unbalanced: contacts, weight, loads */
     tl_vec3 *moment;
+    tl_vec3 *force_before; /* unbalanced, in the last damped step */
+    tl_vec3 *moment_before;
     tl_vec3 *load_force, *load_moment; /* of the user's, axes of the model */
     tl_vec3 *load_arm;                 /* where the load acts, body's frame */
     uint32_t *drive;                   /* index into drives + 1, or 0 */

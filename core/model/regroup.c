@@ -193,6 +193,7 @@ static void write_body(tl_model *m, const parts *sum, uint32_t body)
     tl_vec3 v = tl_v3_scale(1 / sum->mass, sum->momentum);
     b->v[body] = tl_v3(sum->fixed & TL_FIX_X ? 0 : v.x, sum->fixed & TL_FIX_Y ? 0 : v.y,
                        sum->fixed & TL_FIX_Z ? 0 : v.z);
+    b->force_before[body] = b->moment_before[body] = tl_v3(0, 0, 0);
     b->load_force[body] = b->load_moment[body] = b->load_arm[body] = tl_v3(0, 0, 0);
 }
 
@@ -253,6 +254,8 @@ tl_status tl_bodies_regroup(tl_model *m, const uint32_t *group)
         bodies->w[g] = r.parts[g].fixed & TL_FIX_ROTATION
                            ? tl_v3(0, 0, 0)
                            : spin_velocity(bodies, g, r.parts[g].spin);
+        bodies->v_moved[g] = bodies->v[g];
+        bodies->w_moved[g] = bodies->w[g];
         for (uint32_t k = r.start[g]; k < r.start[g + 1]; k++) {
             uint32_t row = r.rows[k];
             if (r.start[g + 1] - r.start[g] == 1)

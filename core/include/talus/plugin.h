@@ -27,7 +27,7 @@ extern "C" {
 #endif
 
 #define TL_ABI_MAJOR 1u
-#define TL_ABI_MINOR 0u
+#define TL_ABI_MINOR 1u
 
 #if defined(__GNUC__)
 #define TL_PLUGIN_EXPORT __attribute__((visibility("default")))
@@ -199,6 +199,9 @@ typedef struct tl_damping_batch {
     double *damping_moment[3];         /* out, preset to 0 */
     double *alpha;                     /* out, preset to 0: viscous coefficient, 1/s */
     double *const *state;              /* the damping's states, one number each, read only here */
+    /* since minor 1: force and moment of the step before, 0 on a new body */
+    const double *force_before[3];
+    const double *moment_before[3];
 } tl_damping_batch;
 
 typedef struct tl_damping_ops {

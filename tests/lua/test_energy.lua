@@ -1,0 +1,98 @@
+-- The energy ledger closes in every kind of motion, and its terms are what they are said to be.
+local talus = require "talus"
+local check = require "check"
+
+local G, K, DENSITY = 10, 1e8, 2000
+-- Of the largest term: what the scheme is asked for where omega dt <= 0.03.
+local BALANCE = 1e-3
+-- The normal of a contact halves the angle between two faces, so sliding at a tilt of the block by t misplaces
+-- t / 2 of the pressure's work. Where a horizontal force tilts the block on its joint the joint is stiff.
+local STIFF = 1e9
+
+local function block_on_floor(law, height, tilt, stiffness)
+    local k = stiffness or K
+    local dip = math.rad(tilt or 0)
+    local model = talus.model { gravity = { G * math.sin(dip), 0, -G * math.cos(dip) } }
+    model:generate("box", { min = { -5, -5, -1 }, max = { 5, 5, 0 }, density = DENSITY, group = "floor" })
+    model:generate("box", { min = { 0, 0, height }, max = { 1, 1, height + 1 }, density = DENSITY,
+        group = "block" })
+    model:blocks { group = "floor" }:fix()
+    law.kn, law.ks = k, k
+    model:joint("*", "coulomb", law)
+    model:timestep { dt = 0.03 / math.sqrt(k / DENSITY) } -- omega dt of a cube of 1 m on the joint
+    return model, model:blocks { group = "block" }
+end
+
+-- Runs and keeps an eye on the balance every ten steps; gives the largest.
+local function watch(model, cycles)
+    local worst = 0
+    for _ = 1, cycles // 10 do
+        model:cycle(10)
+        worst = math.max(worst, math.abs(model:energy().balance))
+    end
+    return worst
+end
+
+-- Nothing before the first step.
+local model, block = block_on_floor({}, 0.01)
+for _, value in pairs(model:energy()) do
+    check.equal(value, 0)
+end
+check.refused(model, function() model:energy(1) end, "1 argument too many")
+
+-- A bouncing block: fall, press, rebound; the sum of three terms stays.
+check.holds(watch(model, 3000) < BALANCE, "the balance of a bounce")
+local energy = model:energy()
+check.near(energy.friction, 0, 1e-9)
+check.near(energy.damping, 0, 0)
+check.near(energy.external, 0, 0)
+check.near(energy.kinetic + energy.potential + energy.stored, 0, BALANCE * 200)
+
+-- A sliding block: friction takes what gravity gives beyond the gain of speed, mu m g cos(dip) a metre.
+local dip, phi = 30, 20
+model, block = block_on_floor({ friction = phi }, 0, dip)
+check.holds(watch(model, 4000) < BALANCE, "the balance of sliding")
+energy = model:energy()
+local travel = block[1].displacement[1]
+check.holds(travel > 0.05, "it slides")
+local press = DENSITY * G * math.cos(math.rad(dip))
+-- Tolerance: the first press swings about its mean.
+check.near(energy.friction / (press * math.tan(math.rad(phi)) * travel), 1, 0.02)
+
+-- With dilation slip lifts the block, against the pressure, until its limit; the ledger still closes.
+local LIMIT, DILATION = 0.008, 5
+model, block = block_on_floor({ friction = phi, dilation = DILATION, dilation_limit = LIMIT }, 0, dip)
+model:damping("viscous", { alpha = 60 })
+check.holds(watch(model, 8000) < BALANCE, "the balance of a dilating slide")
+check.holds(block[1].displacement[1] > 2 * LIMIT, "it slides beyond the limit")
+-- It stands on its opened joint, pressed in by its weight. Tolerance: it still swings a little.
+check.near(block[1].displacement[3], LIMIT * math.tan(math.rad(DILATION)) - press / K, 1e-5)
+check.refused(model, function() model:joint("*", { dilation = 30 }) end, "must be <= friction = 20 deg")
+
+-- An oscillation under each damping: what is missing was taken out by it.
+for _, damping in ipairs { { "none" }, { "viscous", { alpha = 20 } }, { "local", { alpha = 0.3 } },
+    { "adaptive" }, { "combined", { alpha = 0.3 } } } do
+    model, block = block_on_floor({}, -1e-3)
+    model:damping(damping[1], damping[2])
+    check.holds(watch(model, 1000) < BALANCE, "the balance with damping " .. damping[1])
+    energy = model:energy()
+    check.holds(damping[1] == "none" and energy.damping == 0 or energy.damping > 0.01, damping[1])
+end
+
+-- Loads and drives do the external work.
+model, block = block_on_floor({ friction = 30 }, 0, 0, STIFF)
+block:load { force = { 1.5e4, 0, 0 } } -- slides, and does not tip
+check.holds(watch(model, 6000) < BALANCE, "the balance of a pushed block")
+check.near(model:energy().external, 1.5e4 * block[1].displacement[1], 1e-3 * model:energy().external)
+model, block = block_on_floor({ friction = 10 }, 0, 0, STIFF)
+model:blocks { group = "floor" }:drive { velocity = function(t) return 0.1 * math.sin(40 * t), 0, 0 end }
+check.holds(watch(model, 6000) < BALANCE, "the balance of a shaken block")
+check.holds(model:energy().friction > 10 and model:energy().external > 10, "work becomes heat")
+
+-- A spinning top in free space: all is kinetic.
+model = talus.model { gravity = { 0, 0, 0 } }
+model:generate("box", { min = { 0, 0, 0 }, max = { 1, 2, 3 }, density = DENSITY })
+model:joint("*", "coulomb", { kn = K, ks = K })
+model:blocks():set { angular_velocity = { 0.1, 3, 0.1 } }
+model:timestep { dt = 0.01 }
+check.holds(watch(model, 2000) < BALANCE, "the balance of a top")
