@@ -83,8 +83,11 @@ static void rotate_paper(tl_bodies *b, uint32_t i, tl_vec3 moment, const move_jo
     b->q[i] = tl_q_unit(tl_q_mul(turn_by(tl_v3_scale(job->drift, b->w[i])), b->q[i]));
 }
 
+/* Notes by what velocities the body has moved: the contacts' slip comes from them. */
 static void count_motion(tl_bodies *b, uint32_t i, double dt)
 {
+    b->v_moved[i] = b->v[i];
+    b->w_moved[i] = b->fixed[i] & TL_FIX_ROTATION && !b->drive[i] ? tl_v3(0, 0, 0) : b->w[i];
     b->odometer[i] += (tl_v3_norm(b->v[i]) + tl_v3_norm(b->w[i]) * b->radius[i]) * dt;
 }
 
@@ -111,8 +114,10 @@ static void move_body(const move_job *job, uint32_t i)
         drive_body(job, i);
         return;
     }
-    if (fixed == TL_FIX_ALL)
+    if (fixed == TL_FIX_ALL) {
+        b->v_moved[i] = b->w_moved[i] = tl_v3(0, 0, 0);
         return;
+    }
     tl_vec3 force = b->force[i], moment = b->moment[i];
     double alpha = 0;
     if (m->damping) {

@@ -156,10 +156,10 @@ void tl_contact_follow(tl_model *m, uint32_t c, double dt)
     sight s = {&b->r[body_a],
                &b->r[body_b],
                tl_body_apart(b, body_a, body_b),
-               b->v[body_a],
-               b->w[body_a],
-               b->v[body_b],
-               b->w[body_b],
+               b->v_moved[body_a],
+               b->w_moved[body_a],
+               b->v_moved[body_b],
+               b->w_moved[body_b],
                dt};
     uint32_t material = contacts->material[c];
     uint32_t tangents = material == TL_NO_ROW ? 0 : m->materials[material].tangents;

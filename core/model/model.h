@@ -61,6 +61,8 @@ typedef struct tl_bodies {
     tl_vec3 *w;     /* angular velocity */
     tl_vec3 *v_moved; /* v and w of the last step's motion: since then they may have been set anew */
     tl_vec3 *w_moved;
+    tl_vec3 *v_moved; /* v and w of the last step's motion: since then they may have been set anew */
+    tl_vec3 *w_moved;
     double *mass;
     tl_vec3 *moments; /* principal moments of inertia */
     tl_quat *axes;    /* from principal axes to the body's frame */

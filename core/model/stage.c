@@ -308,6 +308,9 @@ static void append(tl_model *m, const tl_stage_block *block)
     bodies->r[body] = bodies->r[from];
     bodies->v[body] = tl_v3_add(bodies->v[from], tl_v3_cross(bodies->w[from], arm));
     bodies->w[body] = bodies->w[from];
+    bodies->v_moved[body] =
+        tl_v3_add(bodies->v_moved[from], tl_v3_cross(bodies->w_moved[from], arm));
+    bodies->w_moved[body] = bodies->w_moved[from];
     bodies->fixed[body] = bodies->fixed[from];
     bodies->drive[body] = bodies->drive[from];
     if (bodies->drive[body])
