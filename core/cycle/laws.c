@@ -131,7 +131,8 @@ tl_status tl_laws_apply(tl_model *m)
     for (size_t r = 0; r < d->run_count; r++) {
         const tl_run *run = &d->runs[r];
         run_job job = {m, &m->materials[run->material], run->begin};
-        tl_parallel_for(m->pool, run->end - run->begin, TL_POINT_CHUNK, run_law, &job);
+        size_t points = (run->end - run->begin + TL_LANES - 1) / TL_LANES * TL_LANES;
+        tl_parallel_for(m->pool, points, TL_POINT_CHUNK, run_law, &job);
     }
     tl_status status = report_failure(m);
     if (status != TL_OK)
@@ -144,7 +145,7 @@ tl_status tl_laws_check(tl_model *m)
 {
     tl_detect *d = m->detect;
     for (size_t r = 0; r < d->run_count; r++) {
-        if (d->runs[r].material != TL_NO_ROW)
+        if (d->runs[r].material != TL_NO_ROW || d->runs[r].end == d->runs[r].begin)
             continue;
         char name[320];
         name_contact(m, contact_of_point(&d->contacts, d->runs[r].begin), name, sizeof name);

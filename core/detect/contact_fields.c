@@ -91,7 +91,7 @@ tl_status tl_contact_field(tl_model *m, tl_id contact, size_t index, tl_field_va
         return tl_fail(&m->error, TL_E_STALE, "contact %u no longer exists: its blocks have parted",
                        contact);
     *value = (tl_field_value){{0}, NULL};
-    double normal;
+    double normal, area = contacts->area[c];
     tl_vec3 shear;
     forces(d, c, &normal, &shear);
     switch (index) {
@@ -107,8 +107,8 @@ tl_status tl_contact_field(tl_model *m, tl_id contact, size_t index, tl_field_va
     case F_GAP: value->number[0] = contacts->gap[c]; break;
     case F_NORMAL_FORCE: value->number[0] = normal; break;
     case F_SHEAR_FORCE: put_vector(value, shear); break;
-    case F_NORMAL_STRESS: value->number[0] = normal / contacts->area[c]; break;
-    case F_SHEAR_STRESS: value->number[0] = tl_v3_norm(shear) / contacts->area[c]; break;
+    case F_NORMAL_STRESS: value->number[0] = area > 0 ? normal / area : 0; break;
+    case F_SHEAR_STRESS: value->number[0] = area > 0 ? tl_v3_norm(shear) / area : 0; break;
     case F_STATE: value->text = state_of(d, c); break;
     default: break;
     }
@@ -165,7 +165,8 @@ tl_status tl_contacts_select(tl_model *m, const tl_contact_filter *filter, tl_id
         status = tl_fail_memory(&m->error);
     size_t n = 0;
     for (uint32_t row = 0; status == TL_OK && row < c->table.rows; row++)
-        if (tl_tag_matches(joint, c->tag[row]) && is_between(ma, mb, c->a[row], c->b[row]))
+        if (c->point_count[row] && tl_tag_matches(joint, c->tag[row]) &&
+            is_between(ma, mb, c->a[row], c->b[row]))
             list[n++] = c->id[row];
     if (n > 1)
         qsort(list, n, sizeof *list, compare_id);
@@ -193,7 +194,8 @@ tl_status tl_block_neighbours(tl_model *m, tl_id block, tl_id **ids, size_t *cou
         return tl_fail_memory(&m->error);
     for (uint32_t e = begin; e < end; e++) {
         uint32_t c = d->by_block[e];
-        list[(*count)++] = d->contacts.a[c] == row ? d->contacts.id_b[c] : d->contacts.id_a[c];
+        if (d->contacts.point_count[c])
+            list[(*count)++] = d->contacts.a[c] == row ? d->contacts.id_b[c] : d->contacts.id_a[c];
     }
     *ids = list;
     return TL_OK;

@@ -1,8 +1,8 @@
 /* contacts.c - the tables of contacts and contact points, and how they are laid out.
  *
- * Contacts are sorted by material, then by blocks; the points of a material are one run of columns, so
- * a law is called on the columns themselves. A contact has room for a few points more than it needs;
- * what it does not use are inert lanes (area 0). */
+ * The points of a material are one run of columns, so a law is called on the columns themselves. A
+ * contact has room for a few points more than it needs, and a run for a few contacts more; what is not
+ * used are inert lanes (area 0). Laying out anew sorts the contacts by material and blocks. */
 #include "detect/detect.h"
 
 #include <stdlib.h>
@@ -10,6 +10,9 @@
 
 /* Room for points is a multiple of this. */
 #define POINT_ROUND 4
+/* A run has room for this share more points than it needs, and for some more at least. */
+#define RUN_SHARE 8
+#define RUN_LEAST 256
 
 void tl_contacts_init(tl_contacts *c, tl_points_table *p)
 {
@@ -229,7 +232,7 @@ static bool add_run(tl_detect *d, uint32_t material, size_t begin)
         d->runs = runs;
         d->run_room = room;
     }
-    d->runs[d->run_count++] = (tl_run){material, begin, begin};
+    d->runs[d->run_count++] = (tl_run){material, begin, begin, begin};
     return true;
 }
 
@@ -273,9 +276,10 @@ static void swap_tables(tl_detect *d)
 
 /* Lists the contacts of each block, ascending by partner: the pairs are sorted, so every block meets
  * its lower partners before its higher ones, each in order. */
-static bool index_by_block(tl_model *m)
+bool tl_contacts_index(tl_model *m)
 {
     tl_detect *d = m->detect;
+    d->by_id_fresh = false;
     size_t blocks = m->blocks.table.rows, contacts = d->contacts.table.rows;
     if (blocks + 2 > d->by_start_room) {
         uint32_t *start = realloc(d->by_block_start, 2 * (blocks + 2) * sizeof *start);
@@ -309,11 +313,46 @@ static bool index_by_block(tl_model *m)
     return true;
 }
 
+/* Where the runs of the sorted contacts begin and end, with their slack; *points is the sum. */
+static bool lay_runs(tl_detect *d, const place *list, size_t count, size_t *points)
+{
+    tl_contacts *c = &d->contacts;
+    d->run_count = 0;
+    *points = 0;
+    for (size_t i = 0; i < count;) {
+        uint32_t material = list[i].material;
+        if (!add_run(d, material, *points))
+            return false;
+        tl_run *run = &d->runs[d->run_count - 1];
+        for (; i < count && list[i].material == material; i++)
+            run->limit += c->point_room[list[i].row];
+        size_t used = run->limit - run->begin;
+        run->limit += used / RUN_SHARE > RUN_LEAST ? used / RUN_SHARE : RUN_LEAST;
+        run->limit = (run->limit + TL_RUN_ROUND - 1) / TL_RUN_ROUND * TL_RUN_ROUND;
+        *points = run->limit;
+    }
+    return true;
+}
+
+/* Room for the facets of all contacts and some more, in the spare list. */
+static bool lay_facets(tl_detect *d, size_t facets)
+{
+    size_t wanted = facets + facets / RUN_SHARE + RUN_LEAST;
+    if (wanted <= d->spare.facet_capacity)
+        return true;
+    tl_facet *facet = realloc(d->spare.facet, (wanted + wanted / 2) * sizeof *facet);
+    if (!facet)
+        return false;
+    d->spare.facet = facet;
+    d->spare.facet_capacity = wanted + wanted / 2;
+    return true;
+}
+
 tl_status tl_contacts_repack(tl_model *m)
 {
     tl_detect *d = m->detect;
     tl_contacts *c = &d->contacts, *fresh = &d->spare;
-    size_t count, points = 0, facets = 0;
+    size_t count, points, facets = 0;
     place *list = sorted(c, &count);
     if (!list)
         return tl_fail_memory(&m->error);
@@ -323,49 +362,86 @@ tl_status tl_contacts_repack(tl_model *m)
             c->point_room[row] = rounded(c->want_points[row] + 1, POINT_ROUND);
             c->facet_room[row] = c->want_facets[row];
         }
-        if (i == 0 || list[i].material != list[i - 1].material)
-            points = (points + TL_LANES - 1) / TL_LANES * TL_LANES;
-        points += c->point_room[row];
         facets += c->facet_room[row];
-    }
-    points = (points + TL_LANES - 1) / TL_LANES * TL_LANES;
-    tl_facet *facet = fresh->facet;
-    if (facets > fresh->facet_capacity) {
-        facet = realloc(fresh->facet, (facets + facets / 2) * sizeof *facet);
-        if (facet) {
-            fresh->facet = facet;
-            fresh->facet_capacity = facets + facets / 2;
-        }
     }
     fresh->table.rows = 0;
     d->spare_points.table.rows = 0;
-    if ((facets && !facet) || !tl_table_resize(&fresh->table, count) ||
+    if (!lay_runs(d, list, count, &points) || !lay_facets(d, facets) ||
+        !tl_table_resize(&fresh->table, count) ||
         !tl_table_resize(&d->spare_points.table, points)) {
         free(list);
         return tl_fail_memory(&m->error);
     }
-    d->run_count = 0;
-    size_t point_at = 0, facet_at = 0;
-    bool room = true;
-    for (uint32_t i = 0; i < count && room; i++) {
+    size_t facet_at = 0;
+    tl_run *run = d->runs;
+    for (uint32_t i = 0; i < count; i++) {
         uint32_t row = list[i].row;
-        if (i == 0 || list[i].material != list[i - 1].material) {
-            point_at = (point_at + TL_LANES - 1) / TL_LANES * TL_LANES;
-            room = add_run(d, list[i].material, point_at);
-        }
-        if (!room)
-            break;
-        copy_contact(d, row, i, (uint32_t)point_at, (uint32_t)facet_at);
+        if (i && list[i].material != list[i - 1].material)
+            run++;
+        copy_contact(d, row, i, (uint32_t)run->end, (uint32_t)facet_at);
         d->pairs[c->pair[row]].contact = i;
-        point_at += c->point_room[row];
+        run->end += c->point_room[row];
         facet_at += c->facet_room[row];
-        d->runs[d->run_count - 1].end = (point_at + TL_LANES - 1) / TL_LANES * TL_LANES;
     }
     free(list);
-    fresh->facet_total = facets;
+    fresh->facet_total = facet_at;
     swap_tables(d);
-    d->by_id_fresh = false;
-    return room && index_by_block(m) ? TL_OK : tl_fail_memory(&m->error);
+    return tl_contacts_index(m) ? TL_OK : tl_fail_memory(&m->error);
+}
+
+static tl_run *run_of(tl_detect *d, uint32_t material)
+{
+    for (size_t r = 0; r < d->run_count; r++)
+        if (d->runs[r].material == material)
+            return &d->runs[r];
+    return NULL;
+}
+
+static void clear_points(tl_detect *d, uint32_t contact)
+{
+    size_t begin = d->contacts.point_start[contact];
+    for (size_t i = begin; i < begin + d->contacts.point_room[contact]; i++)
+        tl_point_clear(&d->points, i);
+}
+
+bool tl_contact_place(tl_detect *d, uint32_t row)
+{
+    tl_contacts *c = &d->contacts;
+    tl_run *run = run_of(d, c->material[row]);
+    uint32_t points = rounded(c->want_points[row] + 1, POINT_ROUND), facets = c->want_facets[row];
+    if (!run || run->end + points > run->limit || c->facet_total + facets > c->facet_capacity)
+        return false;
+    size_t from = c->point_start[row], to = run->end;
+    for (size_t k = 0; k < d->points.table.column_count && c->point_count[row]; k++) {
+        size_t size = d->points.table.columns[k].size;
+        char *data = tl_table_data(&d->points.table, k);
+        memcpy(data + to * size, data + from * size, c->point_count[row] * size);
+    }
+    if (c->facet_count[row])
+        memcpy(&c->facet[c->facet_total], &c->facet[c->facet_start[row]],
+               c->facet_count[row] * sizeof *c->facet);
+    clear_points(d, row);
+    c->point_start[row] = (uint32_t)to;
+    c->point_room[row] = points;
+    c->facet_start[row] = (uint32_t)c->facet_total;
+    c->facet_room[row] = facets;
+    run->end += points;
+    c->facet_total += facets;
+    return true;
+}
+
+void tl_contact_remove(tl_detect *d, uint32_t row)
+{
+    tl_contacts *c = &d->contacts;
+    uint32_t last = (uint32_t)c->table.rows - 1;
+    clear_points(d, row);
+    if (c->pair[row] < d->pair_count && d->pairs[c->pair[row]].contact == row)
+        d->pairs[c->pair[row]].contact = TL_NO_ROW;
+    if (row != last) {
+        tl_table_move(&c->table, row, last);
+        d->pairs[c->pair[row]].contact = row;
+    }
+    c->table.rows = last;
 }
 
 static int compare_id(const void *x, const void *y)

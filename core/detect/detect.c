@@ -261,11 +261,11 @@ static bool rebuild(tl_model *m, uint32_t c, tl_narrow *room, bool tension)
             if (material != contacts->material[c])
                 contacts->fate[c] = TL_FATE_MATERIAL;
         }
-        double release = TL_CONTACT_TOLERANCE * TL_CONTACT_RELEASE * view.size;
-        if (room->manifold.point_count == 0 || (axis.s > release && !tension)) {
+        /* a pair that touches without area stays a contact, so that it need not be born again */
+        if (axis.s > TL_CONTACT_TOLERANCE * TL_CONTACT_RELEASE * view.size && !tension) {
             contacts->fate[c] = TL_FATE_DIE;
             m->detect->pairs[contacts->pair[c]].wake =
-                odometer + fmax(SILENT * view.size, axis.s - TL_CONTACT_TOLERANCE * view.size);
+                odometer + axis.s - TL_CONTACT_TOLERANCE * view.size;
         }
         return true;
     }
@@ -297,7 +297,8 @@ static void update_contact(tl_model *m, uint32_t c, tl_narrow *room)
         return;
     double odometer = tl_pair_odometer(m, contacts->a[c], contacts->b[c]);
     double size = fmin(m->blocks.size[contacts->a[c]], m->blocks.size[contacts->b[c]]);
-    bool reuse = m->config.reuse_geometry && odometer - contacts->built[c] <= REUSE * size;
+    double near = contacts->point_count[c] ? REUSE : SILENT;
+    bool reuse = m->config.reuse_geometry && odometer - contacts->built[c] <= near * size;
     if (!reuse) {
         bool tension = in_tension(m->detect, c);
         if (!rebuild(m, c, room, tension) ||
@@ -382,6 +383,46 @@ static void change_material(tl_model *m, uint32_t c)
     }
 }
 
+/* Takes out the dead and finds room for those that are new or have grown; false when there is none. Backward,
+ * for the last contact takes the row of one that goes. */
+static bool settle_rows(tl_model *m)
+{
+    tl_contacts *c = &m->detect->contacts;
+    bool room = true;
+    for (uint32_t row = (uint32_t)c->table.rows; row-- > 0;) {
+        if (c->fate[row] == TL_FATE_KEEP)
+            continue;
+        if (c->fate[row] == TL_FATE_DIE) {
+            tl_contact_remove(m->detect, row);
+            continue;
+        }
+        if (c->fate[row] == TL_FATE_MATERIAL) {
+            c->want_points[row] = c->point_room[row];
+            c->want_facets[row] = c->facet_room[row];
+        }
+        if (tl_material_row(m, c->tag[row]) != c->material[row])
+            change_material(m, row);
+        room = room && tl_contact_place(m->detect, row);
+    }
+    return room;
+}
+
+/* Builds the facets of the contacts that have been given their room. */
+static tl_status fill_contacts(tl_model *m, bool follow)
+{
+    tl_contacts *c = &m->detect->contacts;
+    for (uint32_t row = 0; row < c->table.rows; row++) {
+        if (c->fate[row] == TL_FATE_GROW) {
+            if (!fill_contact(m, row, &m->detect->narrow[0]))
+                return tl_fail_memory(&m->error);
+            if (follow)
+                tl_contact_follow(m, row, m->dt);
+        }
+        c->fate[row] = TL_FATE_KEEP;
+    }
+    return TL_OK;
+}
+
 /* Births, deaths, growth and changes of material, in the order of pairs. With `follow` the contacts that
  * had to wait for this get their gaps. */
 static tl_status settle(tl_model *m, bool follow)
@@ -396,34 +437,19 @@ static tl_status settle(tl_model *m, bool follow)
     if (status != TL_OK)
         return status;
     for (uint32_t row = 0; row < c->table.rows; row++) {
-        if (c->fate[row] == TL_FATE_KEEP)
-            continue;
         if (c->fate[row] == TL_FATE_MEMORY)
             return tl_fail_memory(&m->error);
-        changed++;
-        if (c->fate[row] == TL_FATE_DIE && c->pair[row] < d->pair_count &&
-            d->pairs[c->pair[row]].contact == row)
-            d->pairs[c->pair[row]].contact = TL_NO_ROW;
-        if (c->fate[row] != TL_FATE_DIE && tl_material_row(m, c->tag[row]) != c->material[row])
-            change_material(m, row);
+        changed += c->fate[row] != TL_FATE_KEEP;
     }
     if (changed == 0 && !d->rows_changed)
         return TL_OK;
     d->changes++;
-    status = tl_contacts_repack(m);
+    if (!settle_rows(m))
+        status = tl_contacts_repack(m);
+    else if (!tl_contacts_index(m))
+        status = tl_fail_memory(&m->error);
     d->rows_changed = status != TL_OK;
-    for (uint32_t row = 0; row < c->table.rows && status == TL_OK; row++) {
-        if (c->fate[row] != TL_FATE_GROW && c->fate[row] != TL_FATE_MATERIAL)
-            continue;
-        if (c->fate[row] == TL_FATE_GROW) {
-            if (!fill_contact(m, row, &d->narrow[0]))
-                return tl_fail_memory(&m->error);
-            if (follow)
-                tl_contact_follow(m, row, m->dt);
-        }
-        c->fate[row] = TL_FATE_KEEP;
-    }
-    return status;
+    return status == TL_OK ? fill_contacts(m, follow) : status;
 }
 
 /* Pairs and contacts after a change of rows or laws, and new contacts; those that stand are not

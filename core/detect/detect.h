@@ -151,11 +151,15 @@ typedef struct tl_points_table {
     double *stored, *dissipated;
 } tl_points_table;
 
-/* Run of points of one material. */
+/* Run of points of one material: used up to `end`, with room up to `limit`. `begin` is a multiple of
+ * TL_RUN_ROUND, so that every column is aligned there; what lies between `end` and the next multiple of
+ * TL_LANES are inert lanes. */
 typedef struct tl_run {
     uint32_t material;
-    size_t begin, end; /* multiples of TL_LANES */
+    size_t begin, end, limit;
 } tl_run;
+
+#define TL_RUN_ROUND (TL_ALIGN / sizeof(uint32_t))
 
 typedef struct tl_detect {
     tl_pair *pairs;
@@ -242,6 +246,13 @@ bool tl_contact_append(tl_model *m, uint32_t pair, const tl_axis *axis, tl_tag t
 /* Lays contacts and points out anew: without those of fate TL_FATE_DIE, sorted by material and blocks,
  * each with the room it wants. */
 tl_status tl_contacts_repack(tl_model *m);
+/* Moves a contact's points and facets to where there is the room it wants, in the run of its material;
+ * false when there is none: lay all out anew. */
+bool tl_contact_place(tl_detect *d, uint32_t contact);
+/* Takes a contact out; the last one gets its row. */
+void tl_contact_remove(tl_detect *d, uint32_t contact);
+/* Lists the contacts of each block; after contacts have come or gone. */
+bool tl_contacts_index(tl_model *m);
 /* Index of the material that rules a tag, or TL_NO_ROW. */
 uint32_t tl_material_row(const tl_model *m, tl_tag tag);
 /* View of two blocks, and the odometers of their bodies, summed. */

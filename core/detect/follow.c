@@ -4,15 +4,53 @@
  * The gap comes from the planes of the faces (or the normal of two edges), carried with their bodies,
  * never from the axis. Shear forces are turned with the common plane, exactly from the old normal to
  * the new and by the bodies' mean spin about it; (5) of Hart, Cundall and Lemos (1988) is the first
- * order of this. */
+ * order of this. Two bodies that turn as one make no slip, and their forces turn with them. */
 #include "detect/detect.h"
+
+/* Angles below which sine and cosine are taken from their series, whose next term is then below
+ * rounding. */
+#define SERIES_ANGLE 0.1
+
+/* A body's motion in the last step: a way and a turn. */
+typedef struct moving {
+    tl_vec3 way, turn;    /* turn: axis times angle */
+    double sine, versine; /* sin(angle) / angle, (1 - cos(angle)) / angle^2 */
+    tl_vec3 half;         /* axis times the tangent of half the angle */
+} moving;
+
+static moving moving_of(tl_vec3 v, tl_vec3 w, double dt)
+{
+    moving out = {.way = tl_v3_scale(dt, v), .turn = tl_v3_scale(dt, w)};
+    double a2 = tl_v3_norm2(out.turn), tangent; /* tan(angle / 2) / angle */
+    if (a2 < SERIES_ANGLE * SERIES_ANGLE) {
+        out.sine = 1 - a2 / 6 * (1 - a2 / 20 * (1 - a2 / 42 * (1 - a2 / 72)));
+        out.versine = 0.5 * (1 - a2 / 12 * (1 - a2 / 30 * (1 - a2 / 56 * (1 - a2 / 90))));
+        tangent = 0.5 + a2 * (1. / 24 + a2 * (1. / 240 + a2 * (17. / 40320 + a2 * 31. / 725760)));
+    } else {
+        double a = sqrt(a2);
+        out.sine = sin(a) / a;
+        out.versine = (1 - cos(a)) / a2;
+        tangent = tan(0.5 * a) / a;
+    }
+    out.half = tl_v3_scale(tangent, out.turn);
+    return out;
+}
+
+/* How a body's point, now at `arm` from the centroid, has moved: exact, so a rolling contact and one
+ * that is turned as a whole gather no slip. */
+static tl_vec3 motion(const moving *body, tl_vec3 arm)
+{
+    tl_vec3 across = tl_v3_cross(body->turn, arm);
+    tl_vec3 turned = tl_v3_madd(tl_v3_scale(body->sine, across), -body->versine,
+                                tl_v3_cross(body->turn, across));
+    return tl_v3_add(body->way, turned);
+}
 
 /* Two bodies as a facet sees them: axes of the model, A's centroid as zero. */
 typedef struct sight {
     const tl_mat3 *ra, *rb;
     tl_vec3 d; /* from A's centroid to B's */
-    tl_vec3 va, wa, vb, wb;
-    double dt;
+    moving a, b;
 } sight;
 
 /* The facet's normal, and the plane a point's gap is measured to. */
@@ -58,13 +96,13 @@ static facing facet_facing(const tl_facet *f, const sight *s)
     return out;
 }
 
-/* v turned from the plane of normal `from` to that of `to`, and by `spin` about `to`. */
-static tl_vec3 carry(tl_vec3 v, tl_vec3 from, tl_vec3 to, double spin)
+/* v turned from the plane of normal `from` to that of `to`, and about `to` by the angle whose half has
+ * the tangent `h`: no trigonometry, no growth. */
+static tl_vec3 carry(tl_vec3 v, tl_vec3 from, tl_vec3 to, double h)
 {
     v = tl_v3_turn(v, from, to);
-    if (spin != 0) {
-        /* exact for the tangent half angle: no trigonometry, no growth */
-        double h = 0.5 * spin, c = (1 - h * h) / (1 + h * h), t = 2 * h / (1 + h * h);
+    if (h != 0) {
+        double c = (1 - h * h) / (1 + h * h), t = 2 * h / (1 + h * h);
         v = tl_v3_add(tl_v3_scale(c, v), tl_v3_scale(t, tl_v3_cross(to, v)));
     }
     return tl_v3_madd(v, -tl_v3_dot(v, to), to);
@@ -82,41 +120,34 @@ static void store(double *const column[3], size_t i, tl_vec3 v)
     column[2][i] = v.z;
 }
 
-/* Turns the shear force and the tangent states of a point into the plane of `n`. */
-static void turn_vectors(tl_points_table *p, size_t i, tl_vec3 n, double spin, uint32_t tangents)
+/* Turns the shear force and the tangent states of a point into the plane of `n`; h as for carry. */
+static void turn_vectors(tl_points_table *p, size_t i, tl_vec3 n, double h, uint32_t tangents)
 {
     tl_vec3 old = load(p->normal, i);
     if (tl_v3_norm2(old) > 0) {
-        store(p->f_s, i, carry(load(p->f_s, i), old, n, spin));
+        store(p->f_s, i, carry(load(p->f_s, i), old, n, h));
         for (uint32_t k = 0; k + 2 < TL_STATE_COLUMNS && tangents; k++, tangents >>= 1)
             if (tangents & 1)
-                store(&p->state[k], i, carry(load(&p->state[k], i), old, n, spin));
+                store(&p->state[k], i, carry(load(&p->state[k], i), old, n, h));
     }
     store(p->normal, i, n);
-}
-
-/* How a body's point, now at `arm` from the centroid, has moved in the last dt: the arm in the middle of
- * the step makes this exact to third order, so a rolling contact gathers no slip. */
-static tl_vec3 motion(tl_vec3 v, tl_vec3 w, tl_vec3 arm, double dt)
-{
-    tl_vec3 middle = tl_v3_madd(arm, -0.5 * dt, tl_v3_cross(w, arm));
-    return tl_v3_scale(dt, tl_v3_add(v, tl_v3_cross(w, middle)));
 }
 
 static void follow_facet(tl_points_table *p, const tl_facet *f, size_t begin, const sight *s,
                          uint32_t tangents)
 {
     facing to = facet_facing(f, s);
-    double spin = 0.5 * s->dt * tl_v3_dot(tl_v3_add(s->wa, s->wb), to.n);
+    /* a turn is one that swings the old normal to the new, then one about it: of this the half angle has
+     * the tangent half . n */
+    double h = 0.5 * tl_v3_dot(tl_v3_add(s->a.half, s->b.half), to.n);
     for (size_t i = begin; i < begin + f->count; i++) {
         tl_vec3 x = f->kind == TL_FACET_FACE_A ? tl_v3_add(tl_m3_mul(s->rb, p->p[i]), s->d)
                                                : tl_m3_mul(s->ra, p->p[i]);
         double gap =
             f->kind == TL_FACET_EDGES ? to.gap : p->rest[i] + tl_v3_dot(to.normal, x) - to.offset;
-        tl_vec3 du = tl_v3_sub(motion(s->vb, s->wb, tl_v3_sub(x, s->d), s->dt),
-                               motion(s->va, s->wa, x, s->dt));
+        tl_vec3 du = tl_v3_sub(motion(&s->b, tl_v3_sub(x, s->d)), motion(&s->a, x));
         double du_n = tl_v3_dot(du, to.n);
-        turn_vectors(p, i, to.n, spin, tangents);
+        turn_vectors(p, i, to.n, h, tangents);
         p->arm[i] = x;
         p->closure[i] = -gap - p->reference[i];
         p->du_n[i] = du_n;
@@ -140,7 +171,7 @@ static void summarize(tl_model *m, uint32_t c)
         gap = -overlap < gap ? -overlap : gap;
     }
     contacts->area[c] = area;
-    contacts->gap[c] = gap;
+    contacts->gap[c] = end > begin ? gap : contacts->axis[c].s;
     if (area > 0) {
         uint32_t body = m->blocks.body[contacts->a[c]];
         contacts->normal[c] = tl_v3_unit(n);
@@ -156,11 +187,8 @@ void tl_contact_follow(tl_model *m, uint32_t c, double dt)
     sight s = {&b->r[body_a],
                &b->r[body_b],
                tl_body_apart(b, body_a, body_b),
-               b->v_moved[body_a],
-               b->w_moved[body_a],
-               b->v_moved[body_b],
-               b->w_moved[body_b],
-               dt};
+               moving_of(b->v_moved[body_a], b->w_moved[body_a], dt),
+               moving_of(b->v_moved[body_b], b->w_moved[body_b], dt)};
     uint32_t material = contacts->material[c];
     uint32_t tangents = material == TL_NO_ROW ? 0 : m->materials[material].tangents;
     const tl_facet *facets = &contacts->facet[contacts->facet_start[c]];
