@@ -3,10 +3,10 @@
  *     F_d = alpha/2 |F| (sign(dF/dt) - sign(v))     for each component of force and moment on its own
  *
  * F is the whole unbalanced force, dF its change since the step before; sign(0) is 0. In a free vibration
- * dF/dt and v have opposite signs and it is the damping "local"; where the velocity keeps its sign but F
- * swings about zero, as in uniform flow or steady sliding, the second part alone would brake for ever,
- * and the first makes up for it on average. So it suits what moves steadily, and damps a mode that does
- * by half. A body without velocity is left alone: there is nothing to damp.
+ * dF/dt and v have opposite signs, and it is the damping "local". About a steady motion the velocity
+ * keeps its sign: local damping then brakes the motion and leaves the vibration alone, while here dF/dt
+ * still tells the vibration's direction, so that is damped, and the drag is half. It suits slow flow,
+ * sliding and moving boundaries. A body without velocity is left alone: there is nothing to damp.
  *
  * Source: the combined damping of the distinct element codes of Itasca, after P. A. Cundall. The
  * effective stiffness rises by (1 + alpha) at the most, so the stable time step shrinks by
@@ -65,7 +65,8 @@ static const tl_kind kind = {
     .size = sizeof kind,
     .type = TL_KIND_DAMPING,
     .name = "combined",
-    .doc = "Local damping that does not brake steady motion; for statics with moving boundaries.",
+    .doc =
+        "Local damping that also damps vibration about a steady motion; for slow sliding and flow.",
     .params_size = sizeof(params),
     .params = param_table,
     .param_count = sizeof param_table / sizeof *param_table,
