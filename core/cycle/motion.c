@@ -50,6 +50,20 @@ static void split_turn(int axis, double dt, const double moments[3], double l[3]
     l[2] = turned.z;
 }
 
+/* The one turn a quaternion makes: axis times angle, the inverse of turn_by. */
+static tl_vec3 turn_of(tl_quat q)
+{
+    double s2 = q.x * q.x + q.y * q.y + q.z * q.z, k; /* k: angle / sine of its half */
+    if (s2 < SERIES_HALF_ANGLE * SERIES_HALF_ANGLE) {
+        k = 2 * (1 + s2 * (1. / 6 +
+                           s2 * (3. / 40 + s2 * (5. / 112 + s2 * (35. / 1152 + s2 * 63. / 2816)))));
+    } else {
+        double s = sqrt(s2);
+        k = 2 * atan2(s, q.w) / s;
+    }
+    return tl_v3(k * q.x, k * q.y, k * q.z);
+}
+
 static void rotate_exact(tl_bodies *b, uint32_t i, tl_vec3 moment, const move_job *job,
                          double alpha)
 {
@@ -71,7 +85,9 @@ static void rotate_exact(tl_bodies *b, uint32_t i, tl_vec3 moment, const move_jo
     tl_vec3 axis = tl_q_rotate(b->axes[i], tl_v3(made.x, made.y, made.z));
     b->q[i] = tl_q_unit(tl_q_mul(b->q[i], (tl_quat){made.w, axis.x, axis.y, axis.z}));
     tl_vec3 spin = {l[0] / moments[0], l[1] / moments[1], l[2] / moments[2]};
-    b->w[i] = tl_q_rotate(tl_q_mul(b->q[i], b->axes[i]), spin);
+    tl_quat forth = tl_q_mul(b->q[i], b->axes[i]);
+    b->w[i] = tl_q_rotate(forth, spin);
+    b->w_moved[i] = tl_q_rotate(forth, tl_v3_scale(1 / job->drift, turn_of(made)));
 }
 
 static void rotate_paper(tl_bodies *b, uint32_t i, tl_vec3 moment, const move_job *job,
@@ -81,13 +97,12 @@ static void rotate_paper(tl_bodies *b, uint32_t i, tl_vec3 moment, const move_jo
     b->w[i] =
         tl_v3_scale(d2, tl_v3_madd(tl_v3_scale(d1, b->w[i]), job->kick / b->round[i], moment));
     b->q[i] = tl_q_unit(tl_q_mul(turn_by(tl_v3_scale(job->drift, b->w[i])), b->q[i]));
+    b->w_moved[i] = b->w[i];
 }
 
-/* Notes by what velocities the body has moved: the contacts' slip comes from them. */
 static void count_motion(tl_bodies *b, uint32_t i, double dt)
 {
     b->v_moved[i] = b->v[i];
-    b->w_moved[i] = b->fixed[i] & TL_FIX_ROTATION && !b->drive[i] ? tl_v3(0, 0, 0) : b->w[i];
     b->odometer[i] += (tl_v3_norm(b->v[i]) + tl_v3_norm(b->w[i]) * b->radius[i]) * dt;
 }
 
@@ -97,7 +112,7 @@ static void drive_body(const move_job *job, uint32_t i)
     tl_bodies *b = &job->m->bodies;
     const tl_drive_record *drive = &job->m->drives[b->drive[i] - 1];
     b->v[i] = drive->velocity;
-    b->w[i] = drive->angular_velocity;
+    b->w[i] = b->w_moved[i] = drive->angular_velocity;
     b->u[i] = tl_v3_madd(b->u[i], job->drift, b->v[i]);
     b->q[i] = tl_q_unit(tl_q_mul(turn_by(tl_v3_scale(job->drift, b->w[i])), b->q[i]));
     b->r[i] = tl_q_matrix(b->q[i]);
@@ -136,6 +151,7 @@ static void move_body(const move_job *job, uint32_t i)
     b->v[i] = tl_v3(fixed & TL_FIX_X ? b->v[i].x : v.x, fixed & TL_FIX_Y ? b->v[i].y : v.y,
                     fixed & TL_FIX_Z ? b->v[i].z : v.z);
     b->u[i] = tl_v3_madd(b->u[i], job->drift, b->v[i]);
+    b->w_moved[i] = tl_v3(0, 0, 0);
     if (!(fixed & TL_FIX_ROTATION)) {
         if (m->config.rotation == TL_ROTATION_PAPER)
             rotate_paper(b, i, moment, job, alpha);

@@ -184,9 +184,7 @@ void tl_contact_follow(tl_model *m, uint32_t c, double dt)
     tl_contacts *contacts = &m->detect->contacts;
     const tl_bodies *b = &m->bodies;
     uint32_t body_a = m->blocks.body[contacts->a[c]], body_b = m->blocks.body[contacts->b[c]];
-    sight s = {&b->r[body_a],
-               &b->r[body_b],
-               tl_body_apart(b, body_a, body_b),
+    sight s = {&b->r[body_a], &b->r[body_b], tl_body_apart(b, body_a, body_b),
                moving_of(b->v_moved[body_a], b->w_moved[body_a], dt),
                moving_of(b->v_moved[body_b], b->w_moved[body_b], dt)};
     uint32_t material = contacts->material[c];

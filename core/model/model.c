@@ -38,8 +38,6 @@ static void bodies_init(tl_bodies *b)
     TL_COLUMN(t, b, w, TL_COLUMN_STATE);
     TL_COLUMN(t, b, v_moved, TL_COLUMN_STATE);
     TL_COLUMN(t, b, w_moved, TL_COLUMN_STATE);
-    TL_COLUMN(t, b, v_moved, TL_COLUMN_STATE);
-    TL_COLUMN(t, b, w_moved, TL_COLUMN_STATE);
     TL_COLUMN(t, b, mass, TL_COLUMN_STATE);
     TL_COLUMN(t, b, moments, TL_COLUMN_STATE);
     TL_COLUMN(t, b, axes, TL_COLUMN_STATE);

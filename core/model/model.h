@@ -53,16 +53,14 @@ typedef struct tl_bodies {
     tl_id *id;              /* the lowest id of its blocks */
     uint32_t *member_start; /* its blocks: model->members[member_start .. + member_count) */
     uint32_t *member_count;
-    tl_vec3 *x_ref; /* centroid when made, relative to the origin */
-    tl_vec3 *u;     /* displacement since */
-    tl_quat *q;     /* rotation since */
-    tl_mat3 *r;     /* the same as a matrix, derived from q */
-    tl_vec3 *v;     /* velocity, half a step behind the position */
-    tl_vec3 *w;     /* angular velocity */
-    tl_vec3 *v_moved; /* v and w of the last step's motion: since then they may have been set anew */
-    tl_vec3 *w_moved;
-    tl_vec3 *v_moved; /* v and w of the last step's motion: since then they may have been set anew */
-    tl_vec3 *w_moved;
+    tl_vec3 *x_ref;   /* centroid when made, relative to the origin */
+    tl_vec3 *u;       /* displacement since */
+    tl_quat *q;       /* rotation since */
+    tl_mat3 *r;       /* the same as a matrix, derived from q */
+    tl_vec3 *v;       /* velocity, half a step behind the position */
+    tl_vec3 *w;       /* angular velocity */
+    tl_vec3 *v_moved; /* of the last step's motion: since then v and w may have been set anew */
+    tl_vec3 *w_moved; /* the turn of the step over its duration: w is that at its end */
     double *mass;
     tl_vec3 *moments; /* principal moments of inertia */
     tl_quat *axes;    /* from principal axes to the body's frame */

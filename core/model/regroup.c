@@ -256,8 +256,6 @@ tl_status tl_bodies_regroup(tl_model *m, const uint32_t *group)
                            : spin_velocity(bodies, g, r.parts[g].spin);
         bodies->v_moved[g] = bodies->v[g];
         bodies->w_moved[g] = bodies->w[g];
-        bodies->v_moved[g] = bodies->v[g];
-        bodies->w_moved[g] = bodies->w[g];
         for (uint32_t k = r.start[g]; k < r.start[g + 1]; k++) {
             uint32_t row = r.rows[k];
             if (r.start[g + 1] - r.start[g] == 1)
