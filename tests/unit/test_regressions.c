@@ -592,7 +592,7 @@ TEST(spin_about_the_normal_is_resisted)
     double rate = 1e-5, total = 0;
     m->dt = 1;
     for (int i = 0; i < 20; i++) {
-        m->bodies.w[1] = tl_v3(0, 0, rate);
+        m->bodies.w_moved[1] = tl_v3(0, 0, rate);
         scene_move(m, 1, tl_v3(0, 0, 0), tl_v3(0, 0, rate));
         scene_forces(m);
         total += rate;
@@ -615,8 +615,8 @@ TEST(shear_turns_with_the_blocks)
         scene_law(m, "elastic", KN, KN, -1);
         scene_forces(m);
         m->dt = 1;
-        m->bodies.v[1] = tl_v3(1e-6, 0, 0);
-        scene_move(m, 1, m->bodies.v[1], tl_v3(0, 0, 0));
+        m->bodies.v_moved[1] = tl_v3(1e-6, 0, 0);
+        scene_move(m, 1, m->bodies.v_moved[1], tl_v3(0, 0, 0));
         scene_forces(m);
         tl_vec3 before = scene_force(m, 0, 1);
         CHECK_REL(before.x, -KN * 1e-6, 1e-3);
@@ -629,9 +629,9 @@ TEST(shear_turns_with_the_blocks)
             tl_vec3 next = tl_q_rotate(scene_turn(axis, i * angle), apart);
             /* the midpoint's velocity is the one that a step has */
             tl_vec3 v = tl_v3_sub(next, place);
-            m->bodies.w[0] = m->bodies.w[1] = w;
-            m->bodies.v[0] = tl_v3(0, 0, 0);
-            m->bodies.v[1] = v;
+            m->bodies.w_moved[0] = m->bodies.w_moved[1] = w;
+            m->bodies.v_moved[0] = tl_v3(0, 0, 0);
+            m->bodies.v_moved[1] = v;
             scene_move(m, 0, tl_v3(0, 0, 0), w);
             scene_move(m, 1, v, w);
             place = next;
