@@ -97,7 +97,7 @@ check.equal(run("--quiet -e 'x = 1'"), 0)
 -- called half_way loads, and fails when it is used.
 local bad = os.getenv("TALUS_BAD_PLUGIN_DIR")
 if bad then
-    local reasons = { wrong_major = "ABI 2.0", no_entry = "tl_plugin_entry", missing_ops = "stiffness" }
+    local reasons = { wrong_major = "ABI 2.1", no_entry = "tl_plugin_entry", missing_ops = "stiffness" }
     local refusals = 0
     local list = io.popen("ls '" .. bad .. "'/*.so")
     for path in list:lines() do

@@ -71,10 +71,10 @@ TEST(a_search_for_nothing_is_no_error)
 
 TEST(broken_plugins_are_refused_with_the_reason)
 {
-    refused(bad_folder, "wrong_major", "it was built for plugin ABI 2.0, this Talus has 1.0");
+    refused(bad_folder, "wrong_major", "it was built for plugin ABI 2.1, this Talus has 1.1");
     refused(bad_folder, "newer_minor", "law 'newer_minor': ops has size");
     refused(bad_folder, "no_entry", "it does not export tl_plugin_entry");
-    refused(bad_folder, "refuses", "it refuses this Talus (plugin ABI 1.0)");
+    refused(bad_folder, "refuses", "it refuses this Talus (plugin ABI 1.1)");
     refused(bad_folder, "duplicate_id", "plugin 'talus.coulomb' is already loaded from ");
     refused(bad_folder, "name_clash",
             "law 'coulomb' is already provided by plugin 'talus.coulomb' from ");
@@ -110,7 +110,7 @@ TEST(a_text_file_is_refused)
 TEST(refusals_leave_the_kinds_as_they_were)
 {
     CHECK(tl_plugin_kind(TL_KIND_LAW, 3) == NULL);
-    CHECK(tl_plugin_kind(TL_KIND_DAMPING, 4) == NULL);
+    CHECK(tl_plugin_kind(TL_KIND_DAMPING, 5) == NULL);
     CHECK(tl_plugin_kind(TL_KIND_GENERATOR, 4) == NULL);
 }
 
