@@ -579,6 +579,52 @@ TEST(edges_and_corners_of_eight_blocks_carry_nothing)
     }
 }
 
+/* A cube cut into eight, under isotropic stress: faces carry the stress on their area, nothing else carries
+ * anything, at once and after the whole has been squeezed by 1e-4 more. */
+TEST(eight_blocks_under_isotropic_stress)
+{
+    tl_model *m = scene_model(1);
+    scene_box(m, tl_v3(-1, -1, -1), tl_v3(1, 1, 1));
+    const tl_vec3 normals[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    for (int k = 0; k < 3; k++) {
+        tl_stage stage;
+        scene_ok(m, tl_stage_begin(m, &stage));
+        uint32_t number = tl_joint_intern(m, "J");
+        tl_tag tag = {number, ++m->joints[number - 1].planes};
+        scene_ok(m, tl_stage_cut(&stage, normals[k], tl_v3(0, 0, 0), tag, 1));
+        scene_ok(m, tl_stage_commit(&stage));
+    }
+    CHECK_INT(m->blocks.table.rows, 8);
+    scene_law(m, "coulomb", KN, KN, 30);
+    tl_insitu insitu = {.stress = {.xx = -1e6, .yy = -1e6, .zz = -1e6}};
+    scene_ok(m, tl_model_insitu(m, &insitu));
+    for (int pass = 0; pass < 2; pass++) {
+        scene_forces(m);
+        double face = 1e6 + (pass ? KN * OVERLAP : 0);
+        int faces = 0;
+        for (uint32_t a = 0; a < 8; a++) {
+            CHECK(tl_v3_norm(m->bodies.force[a]) <= 3 * 1.01 * face); /* three open sides */
+            for (uint32_t b = a + 1; b < 8; b++) {
+                tl_vec3 d = tl_v3_sub(tl_block_centroid(m, b), tl_block_centroid(m, a));
+                int sides = (fabs(d.x) > 0.5) + (fabs(d.y) > 0.5) + (fabs(d.z) > 0.5);
+                double force = tl_v3_norm(scene_force(m, a, b));
+                faces += sides == 1;
+                if (sides == 1)
+                    CHECK_REL(force, face, 5e-4);
+                else
+                    CHECK(force <= 1e-3 * face);
+            }
+        }
+        CHECK_INT(faces, 12);
+        for (uint32_t a = 0; a < 8; a++) {
+            tl_vec3 x = tl_block_centroid(m, a);
+            tl_vec3 in = {copysign(0.5, -x.x), copysign(0.5, -x.y), copysign(0.5, -x.z)};
+            scene_move(m, m->blocks.body[a], tl_v3_scale(OVERLAP, in), tl_v3(0, 0, 0));
+        }
+    }
+    tl_model_destroy(m);
+}
+
 /* ---------------------------------------------------------------- torsion ---------------- */
 
 /* Spin about the normal of a unit square: moment ks J angle with J = 1/6, both about B and A. */
@@ -656,4 +702,5 @@ TEST_MAIN(RUN(nearly_parallel_edges_stay_in_contact),
           RUN(edge_passing_over_an_edge_is_continuous),
           RUN(tipping_from_face_to_edge_is_continuous),
           RUN(edges_and_corners_of_eight_blocks_carry_nothing),
-          RUN(spin_about_the_normal_is_resisted), RUN(shear_turns_with_the_blocks))
+          RUN(eight_blocks_under_isotropic_stress), RUN(spin_about_the_normal_is_resisted),
+          RUN(shear_turns_with_the_blocks))
