@@ -60,9 +60,9 @@ end
 
 local function check(name)
     local case = reference[name]
-    figures.case(name, string.format("A cube of %g m falls flat from %g m on a fixed floor, without "
-        .. "damping, and rebounds; time, duration and depth of the contact, the speed that the height "
-        .. "of the rebound gives, and the balance of the energy ledger.", case.side,
+    figures.case(name, string.format("A cube of %g m falls flat from %g m on a fixed floor, "
+        .. "without damping, and rebounds; time, duration and depth of the contact, the speed "
+        .. "that the height of the rebound gives, and the balance of the energy ledger.", case.side,
         case.drop_height), case.source)
     for _, omega_dt in ipairs { 0.02, CALM, 0.1414 } do
         local dt = omega_dt / case.omega

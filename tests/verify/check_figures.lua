@@ -7,9 +7,9 @@
 --     figures.plot { title = ..., x = ..., y = ..., series = { { name =, x =, y =, style = } } }
 --     figures.finish()
 --
--- What is checked and plotted belongs to the case() before it; without one, to a case named after the
--- file. Where the environment names a folder in TALUS_VERIFY_DIR, finish() leaves the results there
--- for report.lua: NAME.lua, and the figures as CASE_1.svg, CASE_2.svg, ...
+-- What is checked and plotted belongs to the case() before it; without one, to a case named after
+-- the file. Where the environment names a folder in TALUS_VERIFY_DIR, finish() leaves the results
+-- there for report.lua: NAME.lua, and the figures as CASE_1.svg, CASE_2.svg, ...
 local figures = { failed = 0, checked = 0 }
 
 local cases = {}

@@ -2,10 +2,10 @@
 --
 --     talus tests/verify/report.lua RESULTS DOCS TEST.lua...
 --
--- RESULTS is the folder the tests wrote to (TALUS_VERIFY_DIR), DOCS the folder that gets verification.md
--- and verification/*.svg (it must exist), then come the tests that should have left results: one that
--- did not is reported as failed. Prints the figures that failed; exit status 1 when there are any. The
--- same results give the same text.
+-- RESULTS is the folder the tests wrote to (TALUS_VERIFY_DIR), DOCS the folder that gets
+-- verification.md and verification/*.svg (it must exist), then come the tests that should have left
+-- results: one that did not is reported as failed. Prints the figures that failed; exit status 1
+-- when there are any. The same results give the same text.
 local results, docs = arg[1], arg[2]
 
 -- A case with more figures shows those with the largest share of their tolerance.
@@ -97,8 +97,8 @@ local function check_row(check)
             off, may = off .. " rel", may .. " rel"
         end
     end
-    return string.format("| %s | %s | %s | %s | %s | %s |", cell(check.what), expected, obtained, off,
-        may, check.good and "pass" or "**FAIL**")
+    return string.format("| %s | %s | %s | %s | %s | %s |", cell(check.what), expected, obtained,
+        off, may, check.good and "pass" or "**FAIL**")
 end
 
 -- The rows to show, in the order of the test, and how many are left out.
@@ -153,10 +153,10 @@ end
 
 local function page(cases, checks, failed)
     local out = { "# Verification\n",
-        "Made by `./bootstrap verify` from the runs themselves; do not edit. Every case is a test in"
-        .. " `tests/verify`,",
-        "and what it obtains comes from a simulation. Errors are absolute, or relative (rel) to what is"
-        .. " expected.\n",
+        "Made by `./bootstrap verify` from the runs themselves; do not edit. Every case is a test "
+            .. "in `tests/verify`,",
+        "and what it obtains comes from a simulation. Errors are absolute, or relative (rel) to "
+            .. "what is expected.\n",
         string.format("%d cases, %d figures, %d failed.\n", #cases, checks, failed),
         "| case | figures | worst error / tolerance | |", "| --- | ---: | ---: | --- |" }
     for _, case in ipairs(cases) do

@@ -33,9 +33,11 @@ local function stress(model, joint)
     return #contacts > 0 and contacts:sum "normal_force" / contacts:sum "area" or 0
 end
 
-figures.case("S.series", "A block between two plates carries its weight, then the upper plate is driven down: "
-    .. "the stress in both joints, of different stiffness, and the way of the block.", case.source)
-local series, ends = {}, { name = "springs in series, at the end", x = {}, y = {}, style = "points" }
+figures.case("S.series", "A block between two plates carries its weight, then the upper plate is "
+    .. "driven down: the stress in both joints, of different stiffness, and the way of the block.",
+    case.source)
+local series, ends = {}, { name = "springs in series, at the end", x = {}, y = {},
+    style = "points" }
 for i, row in ipairs(case.rows) do
     local model, plate, block = build(row)
     local way, lower = {}, {}

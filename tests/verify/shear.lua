@@ -9,8 +9,8 @@ local AT_REST = 1e-10 -- unbalanced force ratio under the normal stress
 local STEPS = 400     -- between two points of the path
 local SHOWN = 10      -- points of the figure between two points of the path
 
--- The upper cube of 1 m lies within the lower block, so that their common area stays; a load holds the
--- normal stress. The lower block is driven, the upper one can only move up and down.
+-- The upper cube of 1 m lies within the lower block, so that their common area stays; a load holds
+-- the normal stress. The lower block is driven, the upper one can only move up and down.
 local function build(row)
     local model = talus.model { gravity = { 0, 0, 0 } }
     model:generate("box", { min = { -1, -1, -1 }, max = { 2, 2, 0 }, density = 2000,
@@ -57,12 +57,14 @@ local function check(row, number)
     end
     figures.near(name .. "shear stress across, Pa", contact.shear_force[2] / contact.area, 0,
         STRESS * row.peak)
-    figures.relative(name .. "normal stress at the end, Pa", contact.normal_stress, row.sigma, STRESS)
+    figures.relative(name .. "normal stress at the end, Pa", contact.normal_stress, row.sigma,
+        STRESS)
     return way, stress
 end
 
-figures.case("S.shear", "A cube pressed on a block by a constant load is sheared by driving the block, to and "
-    .. "fro: the shear stress along the path, for three sets of stiffness, stress and strength.",
+figures.case("S.shear", "A cube pressed on a block by a constant load is sheared by driving the "
+    .. "block, to and fro: the shear stress along the path, for three sets of stiffness, stress "
+    .. "and strength.",
     case.source)
 local series = {}
 for i, row in ipairs(case.rows) do

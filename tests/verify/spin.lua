@@ -18,16 +18,16 @@ local function spin_up(damped)
         model:damping("viscous", { alpha = case.alpha })
     end
     model:timestep { dt = case.dt }
-    -- Velocities live half-way between steps: set after the first step, w0 is that of t - dt / 2, and
-    -- each step that follows kicks over a whole dt.
+    -- Velocities live half-way between steps: set after the first step, w0 is that of t - dt / 2,
+    -- and each step that follows kicks over a whole dt.
     model:cycle(1)
     model:blocks():set { angular_velocity = case.w0 }
     return model, model:blocks()[1]
 end
 
-figures.case("D.spin.spherical", "A box spins by the paper's equation of rotation, with a single moment of "
-    .. "inertia: its angular velocity after 2 s of viscous damping, and without damping its attitude "
-    .. "and its shape.", case.source)
+figures.case("D.spin.spherical", "A box spins by the paper's equation of rotation, with a single "
+    .. "moment of inertia: its angular velocity after 2 s of viscous damping, and without damping "
+    .. "its attitude and its shape.", case.source)
 
 local model, block = spin_up(true)
 local time, speed = {}, {}
@@ -56,7 +56,8 @@ local sign = q[1] * math.cos(half) < 0 and -1 or 1 -- q and -q are the same atti
 figures.near("undamped: cos of half the angle", sign * q[1], math.cos(half), RATE)
 for k = 1, 3 do
     figures.near("undamped: axis " .. k, sign * q[k + 1] / math.sin(half), case.axis[k], 10 * RATE)
-    figures.relative("undamped: angular velocity " .. k, block.angular_velocity[k], case.w0[k], RATE)
+    figures.relative("undamped: angular velocity " .. k, block.angular_velocity[k], case.w0[k],
+        RATE)
 end
 
 -- Distances between all vertices, before and after.

@@ -11,9 +11,9 @@ local AT_REST = 1e-8 -- unbalanced force ratio: well below FORCE
 local function check(name)
     local case = reference[name]
     local side = case.side
-    figures.case(name, string.format("%d cubes of %g m are set on each other on a fixed base and come "
-        .. "to rest under their weight; force and closure of every joint and the settlement of the "
-        .. "top are compared.", case.n, side), case.source)
+    figures.case(name, string.format("%d cubes of %g m are set on each other on a fixed base and "
+        .. "come to rest under their weight; force and closure of every joint and the settlement "
+        .. "of the top are compared.", case.n, side), case.source)
     local model = talus.model { gravity = { 0, 0, -case.g } }
     model:generate("box", { min = { -side, -side, -side }, max = { 2 * side, 2 * side, 0 },
         density = case.rho, group = "base" })
@@ -38,7 +38,8 @@ local function check(name)
             CLOSURE)
         below = cube
     end
-    figures.relative("settlement of the top", -below[1].displacement[3], case.top_settlement, CLOSURE)
+    figures.relative("settlement of the top", -below[1].displacement[3], case.top_settlement,
+        CLOSURE)
     figures.plot { title = name .. ": force in the joints", x = "joint, 1 at the base",
         y = "normal force, N", series = {
             { name = "weight above", x = joints, y = case.joint_force, style = "line" },

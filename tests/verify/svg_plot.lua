@@ -7,9 +7,9 @@
 --                    { name = "obtained", x = {...}, y = {...}, style = "points", colour = 1 } },
 --     }
 --
--- A series has the colour of its place unless it names another.
--- The same data give the same text: coordinates are rounded to a tenth of a pixel. Colours are those of
--- Okabe and Ito, told apart by colour-blind readers too.
+-- A series has the colour of its place unless it names another. The same data give the same text:
+-- coordinates are rounded to a tenth of a pixel. Colours are those of Okabe and Ito, told apart by
+-- colour-blind readers too.
 local svg_plot = {}
 
 local WIDTH, HEIGHT = 640, 400
@@ -108,8 +108,8 @@ local function axis_of(series, key, log)
 end
 
 local function text_at(x, y, size, anchor, text, more)
-    return string.format('<text x="%.1f" y="%.1f" font-size="%d" text-anchor="%s"%s>%s</text>', x, y,
-        size, anchor, more or "", escape(text))
+    return string.format('<text x="%.1f" y="%.1f" font-size="%d" text-anchor="%s"%s>%s</text>', x,
+        y, size, anchor, more or "", escape(text))
 end
 
 local function line_at(x1, y1, x2, y2, colour, width)

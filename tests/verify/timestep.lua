@@ -1,5 +1,5 @@
--- The stable time step: equation (27), and for chains of blocks and a block held all around the step
--- at which a disturbance begins to grow.
+-- The stable time step: equation (27), and for chains of blocks and a block held all around the
+-- step at which a disturbance begins to grow.
 package.path = "tests/verify/?.lua;scripts/?.lua;" .. package.path -- run in the source root
 local talus = require "talus"
 local figures = require "check_figures"
@@ -63,8 +63,8 @@ local function held_on_faces(mass, stiffness)
     return model
 end
 
--- A cube that can only turn, held by a thin fixed pillar at each corner of each face; every pillar's
--- contact counts for a quarter of the face.
+-- A cube that can only turn, held by a thin fixed pillar at each corner of each face; every
+-- pillar's contact counts for a quarter of the face.
 local function held_at_corners(mass, stiffness)
     local model, law = empty(stiffness)
     local middle = cube(model, mass, { 0, 0, 0 }, "middle")
@@ -145,10 +145,10 @@ end
 -- ---------------------------------------------------------------- equation (27)
 
 local eq27 = reference["T.eq27"]
-figures.case("T.eq27", "The step the engine chooses by equation (27) for pairs of blocks of given mass and "
-    .. "stiffness; and the shares of it at which a disturbance of two free blocks, of a block on a "
-    .. "base, of a long chain, of a block held on all six faces and of one held at their corners begins "
-    .. "to grow.", eq27.source)
+figures.case("T.eq27", "The step the engine chooses by equation (27) for pairs of blocks of given "
+    .. "mass and stiffness; and the shares of it at which a disturbance of two free blocks, of a "
+    .. "block on a base, of a long chain, of a block held on all six faces and of one held at "
+    .. "their corners begins to grow.", eq27.source)
 
 -- Two free cubes, the second heavier, and the larger of kn and ks counts.
 for i, row in ipairs(eq27.rows) do
@@ -160,7 +160,8 @@ for i, row in ipairs(eq27.rows) do
         law[softer] = row.stiffness / 2
         model:joint("*", "coulomb", law)
         model:timestep { rule = "paper", fraction = row.fraction }
-        figures.relative(string.format("row %d, softer %s: step, s", i, softer), model.dt, row.dt, STEP)
+        figures.relative(string.format("row %d, softer %s: step, s", i, softer), model.dt, row.dt,
+            STEP)
     end
 end
 
@@ -183,16 +184,16 @@ end)
 check_flip("cube held at 24 corners, turning", limits.cube_rotation_corners * unit, function()
     return held_at_corners(MASS, STIFFNESS)
 end)
-check_flip("two free cubes, local damping", limits.two_free * unit / math.sqrt(1 + DAMPING), two_free,
-    true)
+check_flip("two free cubes, local damping", limits.two_free * unit / math.sqrt(1 + DAMPING),
+    two_free, true)
 
 plot_growth("T.eq27: two free cubes", limits.two_free * unit, two_free)
 
 -- ---------------------------------------------------------------- chain of three
 
 local three = reference["T.chain.3"]
-figures.case("T.chain.3", "Three equal cubes in a row, free or on a fixed base: a disturbance stays at "
-    .. "1 % below the critical step and grows at 1 % above it.", three.source)
+figures.case("T.chain.3", "Three equal cubes in a row, free or on a fixed base: a disturbance "
+    .. "stays at 1 % below the critical step and grows at 1 % above it.", three.source)
 local function three_free()
     return chain(3, false, three.mass, three.stiffness)
 end

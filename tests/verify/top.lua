@@ -69,8 +69,8 @@ local function check_samples(case)
         model:cycle(math.floor((sample.t - model.time) / dt + 0.5))
         local rate = state(case, block)
         for k = 1, 3 do
-            figures.near(string.format("t = %g s: rate %d in the body, rad/s", sample.t, k), rate[k],
-                sample.w_body[k], RATE * norm(case.w0))
+            figures.near(string.format("t = %g s: rate %d in the body, rad/s", sample.t, k),
+                rate[k], sample.w_body[k], RATE * norm(case.w0))
         end
         figures.near(string.format("t = %g s: attitude, rad off the expected", sample.t),
             angle_between(block.rotation, sample.rotation), 0, ATTITUDE)
@@ -97,8 +97,8 @@ local function check_conserved(case)
         momentum = math.max(momentum, norm(off) / norm(case.angular_momentum))
         if i == each then
             for k = 1, 3 do
-                figures.near(string.format("after one period: rate %d in the body, rad/s", k), rate[k],
-                    case.w0[k], RATE * norm(case.w0))
+                figures.near(string.format("after one period: rate %d in the body, rad/s", k),
+                    rate[k], case.w0[k], RATE * norm(case.w0))
             end
         end
         if i <= 2 * each then
@@ -109,7 +109,8 @@ local function check_conserved(case)
         end
     end
     figures.near("energy, largest drift over ten periods", energy, 0, CONSERVED)
-    figures.near("angular momentum in space, largest drift over ten periods", momentum, 0, CONSERVED)
+    figures.near("angular momentum in space, largest drift over ten periods", momentum, 0,
+        CONSERVED)
     return time, shown
 end
 
@@ -128,14 +129,14 @@ local function check(name, sentence)
         series[3 + k] = { name = "rate " .. k .. ", expected", x = x, y = y, style = "points",
             colour = k }
     end
-    figures.plot { title = name .. ": angular velocity in the body", x = "time, s", y = "rate, rad/s",
-        series = series }
+    figures.plot { title = name .. ": angular velocity in the body", x = "time, s",
+        y = "rate, rad/s", series = series }
 end
 
-check("D.top.intermediate", "A box of 1 x 2 x 3 m spins in free space about nearly its intermediate axis "
-    .. "and tumbles; its rates and attitude at five times, and energy and angular momentum over ten "
-    .. "periods.")
-check("D.top.major", "A box of 1 x 2 x 3 m spins in free space near its axis of largest inertia and "
-    .. "nutates; its rates and attitude at four times, and energy and angular momentum over ten "
-    .. "periods.")
+check("D.top.intermediate", "A box of 1 x 2 x 3 m spins in free space about nearly its "
+    .. "intermediate axis and tumbles; its rates and attitude at five times, and energy and "
+    .. "angular momentum over ten periods.")
+check("D.top.major", "A box of 1 x 2 x 3 m spins in free space near its axis of largest inertia "
+    .. "and nutates; its rates and attitude at four times, and energy and angular momentum over "
+    .. "ten periods.")
 figures.finish()
