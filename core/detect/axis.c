@@ -21,6 +21,9 @@
 #define HYSTERESIS 0.05
 /* sin of the angle between edges below which they have no common normal of their own. */
 #define PARALLEL 1e-12
+/* Squared sine of the angle between edges from which the quick look at their s is exact enough: the error
+ * of a cross product is 1e-16 over the sine. */
+#define CROSSING2 1e-6
 /* cos of the angle within which two axes count as the same one when the margin to the next best is
  * measured: two flush faces give the same common plane twice. */
 #define ALIKE 0.999
@@ -214,6 +217,23 @@ static bool edge_axis(const tl_pair_view *view, uint32_t ia, uint32_t ib, tl_axi
     return true;
 }
 
+/* False when the edges' s is certainly below `second`: most pairs that pass the Gauss map are, and this
+ * takes no root. Nearly parallel edges are left to edge_axis. */
+static bool may_matter(const tl_pair_view *view, uint32_t ia, uint32_t ib, double second)
+{
+    tl_vec3 u = edge_a_direction(view, ia), v = edge_b_direction(view, ib);
+    tl_vec3 c = tl_v3_cross(u, v);
+    double c2 = tl_v3_norm2(c);
+    if (!(second < 0) || !(c2 > CROSSING2 * tl_v3_norm2(u) * tl_v3_norm2(v)))
+        return true;
+    const tl_edge *ea = &view->a->edge[ia], *eb = &view->b->edge[ib];
+    tl_vec3 outward = tl_v3_add(view->a->plane[ea->left].normal, view->a->plane[ea->right].normal);
+    double t = tl_v3_dot(c, tl_v3_sub(view->vertex_b[eb->a], view->a->vertex[ea->a]));
+    t = tl_v3_dot(c, outward) < 0 ? -t : t;
+    double most = second - FACE_PREFERENCE * view->size; /* s = t / |c| */
+    return !(t < 0 && t * t > most * most * c2);
+}
+
 static void search_edges(const tl_pair_view *view, tl_narrow *room, tl_axis *best)
 {
     const tl_poly *a = view->a, *b = view->b;
@@ -242,8 +262,8 @@ static void search_edges(const tl_pair_view *view, tl_narrow *room, tl_axis *bes
             double b1 = row[eb->left], b2 = row[eb->right];
             double a1 = column[ea->left], a2 = column[ea->right];
             tl_axis one;
-            if (b1 * b2 < 0 && a1 * a2 < 0 && b1 * a2 < 0 && edge_axis(view, i, j, &one) &&
-                one.s > best->second && !is_inside(view, one.n))
+            if (b1 * b2 < 0 && a1 * a2 < 0 && b1 * a2 < 0 && may_matter(view, i, j, best->second) &&
+                edge_axis(view, i, j, &one) && one.s > best->second && !is_inside(view, one.n))
                 offer(best, &one);
         }
     }
