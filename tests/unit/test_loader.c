@@ -39,26 +39,26 @@ static void refused(const char *folder, const char *name, const char *reason)
 TEST(default_search_finds_every_plugin_once_in_order)
 {
     static const char *const laws[] = {"coulomb", "coulomb_tensile", "elastic"};
-    static const char *const dampings[] = {"adaptive", "local", "none", "viscous"};
+    static const char *const dampings[] = {"adaptive", "combined", "local", "none", "viscous"};
     static const char *const generators[] = {"box", "joint", "jointset", "polyhedron"};
     for (size_t i = 0; i < 3; i++)
         CHECK_TEXT(tl_plugin_kind(TL_KIND_LAW, i)->name, laws[i]);
-    for (size_t i = 0; i < 4; i++) {
+    for (size_t i = 0; i < 5; i++)
         CHECK_TEXT(tl_plugin_kind(TL_KIND_DAMPING, i)->name, dampings[i]);
+    for (size_t i = 0; i < 4; i++)
         CHECK_TEXT(tl_plugin_kind(TL_KIND_GENERATOR, i)->name, generators[i]);
-    }
     CHECK(tl_plugin_kind(TL_KIND_LAW, 3) == NULL);
     CHECK(tl_plugin_find(TL_KIND_LAW, "box") == NULL);
     CHECK(tl_plugin_find(TL_KIND_GENERATOR, "box") == tl_plugin_kind(TL_KIND_GENERATOR, 0));
-    CHECK_INT(tl_plugin_record_count(), 11);
+    CHECK_INT(tl_plugin_record_count(), 12);
     for (size_t i = 0; i < tl_plugin_record_count(); i++) {
         tl_plugin_record r = tl_plugin_record_at(i);
         CHECK(r.plugin && !r.reason);
         CHECK(strncmp(r.path, good_folder, strlen(good_folder)) == 0);
     }
     tl_plugins_load_default();
-    CHECK_INT(tl_plugin_record_count(), 11);
-    CHECK(tl_plugin_record_at(11).path == NULL);
+    CHECK_INT(tl_plugin_record_count(), 12);
+    CHECK(tl_plugin_record_at(12).path == NULL);
 }
 
 TEST(a_search_for_nothing_is_no_error)
