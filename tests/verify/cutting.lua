@@ -5,6 +5,9 @@ local talus = require "talus"
 local figures = require "check_figures"
 local reference = require("reference").ortho
 
+figures.case("C.ortho", "A unit cube is cut by three orthogonal joint sets: how many blocks of "
+    .. "which volume, and which plane bears which faces.", reference.source)
+
 local VOLUME, PLACE = 1e-12, 1e-12
 
 local model = talus.model {}

@@ -4,11 +4,22 @@ local talus = require "talus"
 local figures = require "check_figures"
 local reference = require("reference").freefall
 
+figures.case("D.freefall", "A block falls from rest for a second; and one falls past two held "
+    .. "blocks that touch, with the step of either rule: their way against g t^2 / 2.",
+    reference.source)
+
 local model = talus.model { gravity = { 0, 0, -reference.g } }
 model:generate("box", { min = { 0, 0, 0 }, max = { 1, 2, 3 }, density = 2000 })
 model:timestep { dt = reference.dt }
-model:cycle(reference.steps)
-local block = model:blocks()[1]
+local block, time, way = model:blocks()[1], {}, {}
+for i = 1, 50 do
+    model:cycle(reference.steps // 50)
+    time[i], way[i] = model.time, -block.displacement[3]
+end
+figures.plot { title = "D.freefall: way of the block", x = "time, s", y = "way, m", series = {
+    { name = "obtained", x = time, y = way },
+    { name = "expected", x = { reference.dt * reference.steps }, y = { reference.drop },
+        style = "points" } } }
 figures.near("time", model.time, reference.dt * reference.steps, 1e-10)
 figures.near("drop", -block.displacement[3], reference.drop, 1e-10)
 figures.near("centroid", block.centroid[3], 1.5 - reference.drop, 1e-10)

@@ -19,6 +19,9 @@ local function check(theta, mu, sticks, acceleration)
     end
 end
 
+figures.case("D.incline", "A cube rests on an incline, then the friction is given: it sticks, or "
+    .. "slides with an acceleration; also a thousandth of friction above and below the threshold.",
+    reference.incline.source)
 for _, row in ipairs(reference.incline) do
     check(row.theta, row.mu, row.sticks, row.acceleration)
 end
@@ -30,6 +33,8 @@ for _, theta in ipairs { 10, 20, 30, 40 } do
     check(theta, threshold - 0.001, false, 10 * math.cos(math.rad(theta)) * 0.001)
 end
 
+figures.case("D.coast", "A cube slides along a level plane at a given speed: where and when does "
+    .. "friction stop it?", reference.coast.source)
 for _, row in ipairs(reference.coast) do
     local r = incline.coast { v0 = row.v0, mu = row.mu }
     local name = string.format("at %g m/s, friction %g", row.v0, row.mu)

@@ -11,14 +11,18 @@ local TOLERANCE = 0.02
 local OFF_DIRECTION = 1.5 -- degrees
 local CLOSED_FORM = 1e-12 -- closed form here against closed form there
 
-local seen = 0
+local seen, closed_forms = 0, {}
 for _, case in ipairs(wedge.cases) do
     local expected = reference[case.name]
+    figures.case(case.name, "A wedge between two planes settles under high friction, which is "
+        .. "then lowered until it slides: the friction at failure, the planes it slides on, and "
+        .. "its direction.",
+        reference.source)
     local r = wedge.run(case)
     seen = seen + 1
     local name, obtained = wedge.quantity(case, r.obtained)
     local _, closed = wedge.quantity(case, r.expected.scale)
-    figures.relative(case.name .. " closed form", closed, expected[name], CLOSED_FORM)
+    closed_forms[seen] = { case.name .. " " .. name, closed, expected[name] }
     figures.relative(case.name .. " " .. name, obtained, expected[name], TOLERANCE)
     if case.name == "E1.run1" then
         figures.between(case.name .. " fails at", obtained, 0.645, 0.665)
@@ -34,5 +38,12 @@ for _, case in ipairs(wedge.cases) do
     local off = math.deg(math.acos(math.min(1, product / math.sqrt(length))))
     figures.between(case.name .. " degrees off its direction", off, 0, OFF_DIRECTION)
 end
+
+figures.case("wedge, closed forms",
+    "The closed forms that the example prints beside what it obtains.",
+    reference.source)
 figures.equal("cases", seen, 9)
+for _, closed in ipairs(closed_forms) do
+    figures.relative(closed[1], closed[2], closed[3], CLOSED_FORM)
+end
 figures.finish()
