@@ -44,6 +44,8 @@ static void add_columns(struct tl_cycle *c)
     TL_COLUMN(t, c, reaction_force, 0);
     TL_COLUMN(t, c, reaction_moment, 0);
     TL_COLUMN(t, c, v_before, 0);
+    TL_COLUMN(t, c, moved_before, 0);
+    TL_COLUMN(t, c, turned_before, 0);
     TL_COLUMN(t, c, spin_before, 0);
     TL_COLUMN(t, c, attitude, 0);
     TL_COLUMN(t, c, mass, 0);

@@ -35,6 +35,7 @@ struct tl_cycle {
     /* per body, for the energy ledger and for driven bodies */
     tl_vec3 *reaction_force, *reaction_moment; /* of the contacts alone */
     tl_vec3 *v_before, *spin_before;           /* velocity and angular momentum before the kick */
+    tl_vec3 *moved_before, *turned_before;     /* velocities of the last step's motion */
     tl_quat *attitude;                         /* of the principal axes, at the forces' time */
     tl_sums *chunk_sums;
     size_t chunk_room;

@@ -5,7 +5,10 @@
  * of a force over a step is the mean of its values at both ends times the motion. So each force's work is
  * booked in two halves: F_n.v- times half of the step before belongs to time n, F_n.v+ times half of the
  * step after belongs to what follows. Elastic energy and slip come from the laws with the same mean.
- * The error of the balance is of the second order in omega dt. */
+ * The error of the balance is of the second order in omega dt.
+ *
+ * Velocities may be set and bodies held, driven or freed between two steps: the kinetic energy this gives or
+ * takes counts as external work, and the work until then goes by the motion that was made. */
 #include "cycle/cycle_room.h"
 
 #include <stdlib.h>
@@ -17,10 +20,12 @@ struct tl_ledger {
     double until[WORK_COUNT]; /* work of this step's forces until now */
     double after[WORK_COUNT]; /* and in the half step that follows */
     double stored, friction;
+    double motion; /* kinetic energy between two kicks: before a step's, or after it */
     /* running sums, in the model's own ledger */
     double sum[WORK_COUNT];
     double start_kinetic, start_stored;
     double largest; /* change of a term so far */
+    double by_hand; /* kinetic energy given between steps */
     double first;   /* kinetic energy by which the scheme's sum is less in the first step */
     bool started;
     tl_energy energy;
@@ -57,33 +62,60 @@ tl_vec3 tl_body_spin(const tl_model *m, uint32_t body)
     return tl_q_rotate(attitude, tl_v3(i.x * w.x, i.y * w.y, i.z * w.z));
 }
 
+/* Kinetic energy of a body by its velocities half-way between two steps; driven and held ones have none. */
+static double motion_energy(const tl_model *m, uint32_t body)
+{
+    const tl_bodies *b = &m->bodies;
+    if (b->drive[body] || b->fixed[body] == TL_FIX_ALL)
+        return 0;
+    return 0.5 *
+           (b->mass[body] * tl_v3_norm2(b->v[body]) + tl_v3_dot(b->w[body], tl_body_spin(m, body)));
+}
+
 static void before_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
 {
-    (void)chunk;
     (void)thread;
     tl_model *m = user;
     struct tl_cycle *c = m->cycle;
+    struct tl_ledger l = {0};
     for (uint32_t i = (uint32_t)begin; i < end; i++) {
         c->v_before[i] = m->bodies.v[i];
+        c->moved_before[i] = m->bodies.v_moved[i];
+        c->turned_before[i] = m->bodies.w_moved[i];
         c->spin_before[i] = tl_body_spin(m, i);
         c->attitude[i] = tl_q_mul(m->bodies.q[i], m->bodies.axes[i]);
+        l.motion += motion_energy(m, i);
     }
+    c->chunk_ledger[chunk] = l;
+}
+
+static double sum_motion(const tl_model *m)
+{
+    double sum = 0;
+    for (size_t chunk = 0; chunk * TL_BODY_CHUNK < m->bodies.table.rows; chunk++)
+        sum += m->cycle->chunk_ledger[chunk].motion;
+    return sum;
 }
 
 void tl_energy_before(tl_model *m)
 {
+    struct tl_ledger *total = m->cycle->ledger;
     tl_parallel_for(m->pool, m->bodies.table.rows, TL_BODY_CHUNK, before_range, m);
+    /* the same sum as after the last step, so 0 when nobody touched it */
+    if (total->started)
+        total->by_hand += sum_motion(m) - total->motion;
 }
 
 /* Force and moment on a body, and its velocities on both sides of the kick. */
 typedef struct kick {
     tl_vec3 v0, w0, v1, w1;
-    double until, after; /* half of the step before and of the one after */
+    tl_vec3 moved, turned; /* velocities of the motion before it: v0 and w0 unless set since */
+    double until, after;   /* half of the step before and of the one after */
 } kick;
 
 static void book(struct tl_ledger *l, int work, const kick *k, tl_vec3 force, tl_vec3 moment)
 {
-    l->until[work] += k->until * (tl_v3_dot(force, k->v0) + tl_v3_dot(moment, k->w0));
+    l->until[work] += k->until * (tl_v3_dot(force, k->moved) + tl_v3_dot(moment, k->turned));
     l->after[work] += k->after * (tl_v3_dot(force, k->v1) + tl_v3_dot(moment, k->w1));
 }
 
@@ -111,6 +143,9 @@ static void book_free(const tl_model *m, uint32_t i, const kick *k, struct tl_le
         l->first += 0.5 * (mass * tl_v3_norm2(dv) + tl_v3_dot(dw, dspin));
     l->kinetic += 0.5 * mass * (tl_v3_norm2(v) - spread * tl_v3_norm2(dv)) +
                   0.5 * (tl_v3_dot(w, spin) - spread * tl_v3_dot(dw, dspin));
+    /* a velocity set since the last step meets this kick, too */
+    l->until[WORK_EXTERNAL] += share * mass * tl_v3_dot(tl_v3_sub(k->v0, k->moved), dv);
+    l->motion += motion_energy(m, i);
     book(l, WORK_GRAVITY, k, tl_v3_scale(mass, m->config.gravity), tl_v3(0, 0, 0));
     tl_vec3 arm = tl_m3_mul(&b->r[i], b->load_arm[i]);
     book(l, WORK_EXTERNAL, k, b->load_force[i],
@@ -143,8 +178,12 @@ static void after_range(void *user, size_t begin, size_t end, size_t chunk, unsi
                   .v1 = b->v[i],
                   .w0 = velocity_of(m, i, m->cycle->spin_before[i]),
                   .w1 = velocity_of(m, i, tl_body_spin(m, i)),
+                  .moved = m->cycle->moved_before[i],
+                  .turned = m->cycle->turned_before[i],
                   .until = 0.5 * job->until,
                   .after = 0.5 * job->after};
+        if (!b->drive[i])
+            k.turned = k.w0;
         if (b->drive[i])
             book_driven(m, i, &k, &l);
         else if (b->fixed[i] != TL_FIX_ALL)
@@ -183,7 +222,7 @@ static void close_ledger(struct tl_ledger *total, const struct tl_ledger *now)
     e->stored = now->stored;
     e->potential = -at[WORK_GRAVITY];
     e->damping = -at[WORK_DAMPING];
-    e->external = at[WORK_EXTERNAL];
+    e->external = at[WORK_EXTERNAL] + total->by_hand;
     e->friction = total->friction;
     double gain_kinetic = e->kinetic - total->start_kinetic;
     double gain_stored = e->stored - total->start_stored;
@@ -209,11 +248,13 @@ void tl_energy_after(tl_model *m, double dt_before, double dt_after)
         const struct tl_ledger *l = &c->chunk_ledger[chunk];
         now.kinetic += l->kinetic;
         now.first += l->first;
+        now.motion += l->motion;
         for (int w = 0; w < WORK_COUNT; w++) {
             now.until[w] += l->until[w];
             now.after[w] += l->after[w];
         }
     }
+    c->ledger->motion = now.motion;
     sum_points(m, &now);
     close_ledger(c->ledger, &now);
 }

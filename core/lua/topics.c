@@ -69,7 +69,7 @@ static const tl_lua_key energy_terms[] = {
     {"stored", "", "elastic, in contacts, J"},
     {"friction", "", "turned to heat by slip, J"},
     {"damping", "", "taken out by the damping, J"},
-    {"external", "", "work of loads and of driven bodies, J"},
+    {"external", "", "work of loads and driven bodies, and given by setting velocities, J"},
     {"balance", "", "error of the sum over the largest change of a term so far"},
     {NULL, NULL, NULL},
 };

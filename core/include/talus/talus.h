@@ -369,7 +369,7 @@ typedef struct tl_energy {
     double stored;    /* elastic, in contacts */
     double friction;  /* turned to heat by slip */
     double damping;   /* taken out by the damping */
-    double external;  /* work of loads and of driven bodies */
+    double external;  /* work of loads and driven bodies, and given by setting velocities */
     double balance;   /* error of the sum, relative to the largest change of a term so far */
 } tl_energy;
 
