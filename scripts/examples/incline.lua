@@ -45,7 +45,7 @@ function incline.closed_form(case)
 end
 
 -- A cube of 1 m at rest on a level plane that presses it with g cos(theta) only.
-local function build(theta, mu)
+local function build(theta, mu, fraction)
     local model = talus.model { gravity = { 0, 0, -GRAVITY * math.cos(theta) } }
     model:generate("box", { min = { -2, -2, -1 }, max = { 4, 3, 0 }, density = DENSITY,
         group = "plane" })
@@ -54,10 +54,10 @@ local function build(theta, mu)
     model:blocks { group = "plane" }:fix()
     model:joint("*", "coulomb", { kn = STIFFNESS, ks = STIFFNESS,
         friction = math.deg(math.atan(mu)) })
-    model:timestep { rule = "body", fraction = 0.5 }
+    model:timestep { rule = "body", fraction = fraction or 0.5 }
     model:damping "local"
     model:solve { ratio = AT_REST }
-    return model, model:blocks { group = "cube" }
+    return model, model:blocks { group = "cube" }, model:blocks { group = "plane" }
 end
 
 -- Inclines gravity and watches the cube: does it stick, and if not, its acceleration.
@@ -84,19 +84,23 @@ end
 
 -- Lets the cube go at a speed v0 along the level plane: where and when does it stop?
 function incline.coast(case)
-    local model, cube = build(0, case.mu)
-    -- Pulled along at v0 until it does not rock any more; the velocity of a fixed component stays.
-    cube:fix { x = true }:set { velocity = { case.v0, 0, 0 } }
+    local model, cube, plane = build(0, case.mu, case.fraction)
+    -- The plane is pulled along under the cube at v0 until the cube does not rock any more.
+    cube:fix { x = true }
+    plane:drive { velocity = { -case.v0, 0, 0 } }
     model:cycle(3000)
+    plane:fix()
     cube:free():reset_displacement()
+    cube:set { velocity = { case.v0, 0, 0 } }
     model:damping "none"
     local begin = model.time
-    local run = model:solve { ratio = 0, every = 1, max_time = 10, stop = function()
-        return cube[1].velocity[1] <= 0
-    end }
+    local run = model:solve { ratio = 0, every = 1, max_time = 10, max_cycles = 10000000,
+        stop = function()
+            return cube[1].velocity[1] <= 0
+        end }
     assert(run.reason == "stop", "the cube does not stop")
     return {
-        distance = cube[1].displacement[1], time = model.time - begin,
+        distance = cube[1].displacement[1], time = model.time - begin, model = model,
         expected = { distance = case.v0 ^ 2 / (2 * case.mu * GRAVITY),
             time = case.v0 / (case.mu * GRAVITY) },
     }

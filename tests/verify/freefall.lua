@@ -25,6 +25,7 @@ figures.near("drop", -block.displacement[3], reference.drop, 1e-10)
 figures.near("centroid", block.centroid[3], 1.5 - reference.drop, 1e-10)
 figures.near("sideways", math.abs(block.displacement[1]) + math.abs(block.displacement[2]), 0, 0)
 figures.near("turn", 1 - block.rotation[1], 0, 0)
+figures.near("energy balance", model:energy().balance, 0, 1e-12)
 
 -- Two held blocks touch, a third falls past them.
 for _, rule in ipairs { "paper", "body" } do

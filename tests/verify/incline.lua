@@ -5,6 +5,8 @@ local reference = require "reference"
 local incline = require "examples.incline"
 
 local ACCELERATION = 0.001 -- relative
+local FINE = 0.02          -- of the stable step: omega dt is 0.03
+local BALANCE = 1e-3       -- of the largest term of the energy ledger
 local COASTING = 0.001     -- relative
 
 local function check(theta, mu, sticks, acceleration)
@@ -40,5 +42,8 @@ for _, row in ipairs(reference.coast) do
     local name = string.format("at %g m/s, friction %g", row.v0, row.mu)
     figures.relative(name .. " stops at", r.distance, row.distance, COASTING)
     figures.relative(name .. " stops after", r.time, row.time, COASTING)
+    r = incline.coast { v0 = row.v0, mu = row.mu, fraction = FINE }
+    figures.near(name .. " energy balance at omega dt = 0.03", r.model:energy().balance, 0,
+        BALANCE)
 end
 figures.finish()

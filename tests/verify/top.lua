@@ -108,6 +108,7 @@ local function check_conserved(case)
             end
         end
     end
+    figures.near("energy balance", model:energy().balance, 0, CONSERVED)
     figures.near("energy, largest drift over ten periods", energy, 0, CONSERVED)
     figures.near("angular momentum in space, largest drift over ten periods", momentum, 0,
         CONSERVED)
