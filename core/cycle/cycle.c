@@ -81,6 +81,19 @@ tl_status tl_cycle_prepare(tl_model *m)
                : tl_fail_memory(&m->error);
 }
 
+/* Whether the velocities of this step are half a step behind the places: not when all is held and still, as
+ * if the model had not begun. */
+static bool has_begun(const tl_model *m)
+{
+    if (!m->cycle->all_held)
+        return true;
+    for (size_t i = 0; i < m->bodies.table.rows; i++)
+        if (m->bodies.drive[i] || tl_v3_norm2(m->bodies.v[i]) > 0 ||
+            tl_v3_norm2(m->bodies.w[i]) > 0)
+            return true;
+    return false;
+}
+
 tl_status tl_step(tl_model *m)
 {
     double dt;
@@ -90,22 +103,23 @@ tl_status tl_step(tl_model *m)
     if (status == TL_OK)
         status = tl_laws_check(m);
     if (status == TL_OK)
+        status = tl_timestep_choose(m, &dt);
+    if (status == TL_OK)
         status = tl_laws_apply(m);
     if (status != TL_OK)
         return status;
     tl_gather(m);
-    status = tl_timestep_choose(m, &dt);
-    if (status == TL_OK)
-        status = tl_damping_apply(m, dt);
+    status = tl_damping_apply(m, dt);
     if (status != TL_OK)
         return status;
     tl_energy_before(m);
-    if (!tl_move(m, dt))
-        return tl_fail(&m->error, TL_E_CANCELLED, "cycle %lld: a drive's function failed",
-                       (long long)m->cycles + 1);
+    bool driven = tl_move(m, dt);
     tl_energy_after(m, m->dt, dt);
-    m->dt = dt;
+    m->dt = has_begun(m) ? dt : 0;
     m->time += dt;
     m->cycles++;
+    if (!driven) /* the step is whole: bodies went on as they were driven before */
+        return tl_fail(&m->error, TL_E_CANCELLED, "cycle %lld: a drive's function failed",
+                       (long long)m->cycles);
     return TL_OK;
 }

@@ -20,7 +20,6 @@ typedef struct tl_sums {
     double weight;
     double kinetic;    /* sum of (m v.v + w.I w) / 2 */
     double max_speed2; /* largest v.v */
-    double smallest_mass;
 } tl_sums;
 
 struct tl_cycle {
@@ -43,6 +42,7 @@ struct tl_cycle {
     struct tl_ledger *chunk_ledger, *ledger; /* energy.c */
     double kinetic_before;                   /* of the last step, for its rate */
     double dt;                               /* the step in use */
+    bool all_held;                           /* no body can move */
     uint64_t scaled_for; /* version of the contacts for which the inertia was scaled; 0: none */
     double scaled_step;  /* M/(2K) of the bodies after scaling */
     /* the first failure of a parallel phase, by chunk, and the point it came from */
@@ -74,7 +74,8 @@ void tl_watch_end(tl_watch *watch);
 /* The step to take, s. */
 tl_status tl_timestep_choose(tl_model *m, double *dt);
 tl_status tl_damping_apply(tl_model *m, double dt);
-/* Velocities, places and rotations one step on; false when a user's drive function ends the run. */
+/* Velocities, places and rotations one step on; false when a user's drive function ends the run (bodies then
+ * go on as they were driven before). */
 bool tl_move(tl_model *m, double dt);
 /* The energy ledger: what the bodies had before the move, and the work done in it. */
 tl_status tl_energy_prepare(tl_model *m, size_t chunks);

@@ -13,6 +13,10 @@ tl_status tl_model_damping(tl_model *m, const char *damping, const tl_args *args
     const tl_kind *kind = tl_plugin_find(TL_KIND_DAMPING, damping);
     if (!kind)
         return tl_unknown_kind(m, TL_KIND_DAMPING, damping);
+    if (kind->state_count > TL_STATE_COLUMNS)
+        return tl_fail(&m->error, TL_E_PLUGIN,
+                       "damping '%s' has %u states; a damping may have %d at the most", kind->name,
+                       kind->state_count, TL_STATE_COLUMNS);
     const tl_damping_ops *ops = kind->ops;
     void *params = calloc(1, kind->params_size + 1), *self = params;
     double *state = calloc(kind->state_count + 1u, sizeof *state);

@@ -126,6 +126,21 @@ static void book_driven(const tl_model *m, uint32_t i, const kick *k, struct tl_
          tl_v3_neg(m->cycle->reaction_moment[i]));
 }
 
+/* The work of what holds some components of a body's motion at a velocity. */
+static void book_held(const tl_model *m, uint32_t i, const kick *k, struct tl_ledger *l)
+{
+    const tl_bodies *b = &m->bodies;
+    unsigned fixed = b->fixed[i];
+    tl_vec3 arm = tl_m3_mul(&b->r[i], b->load_arm[i]);
+    tl_vec3 force = tl_v3_add(
+        tl_v3_madd(m->cycle->reaction_force[i], b->mass[i], m->config.gravity), b->load_force[i]);
+    tl_vec3 moment = tl_v3_add(tl_v3_add(m->cycle->reaction_moment[i], b->load_moment[i]),
+                               tl_v3_cross(arm, b->load_force[i]));
+    force = tl_v3(fixed & TL_FIX_X ? -force.x : 0, fixed & TL_FIX_Y ? -force.y : 0,
+                  fixed & TL_FIX_Z ? -force.z : 0);
+    book(l, WORK_EXTERNAL, k, force, fixed & TL_FIX_ROTATION ? tl_v3_neg(moment) : tl_v3(0, 0, 0));
+}
+
 static void book_free(const tl_model *m, uint32_t i, const kick *k, struct tl_ledger *l)
 {
     const tl_bodies *b = &m->bodies;
@@ -150,6 +165,8 @@ static void book_free(const tl_model *m, uint32_t i, const kick *k, struct tl_le
     tl_vec3 arm = tl_m3_mul(&b->r[i], b->load_arm[i]);
     book(l, WORK_EXTERNAL, k, b->load_force[i],
          tl_v3_add(b->load_moment[i], tl_v3_cross(arm, b->load_force[i])));
+    if (b->fixed[i])
+        book_held(m, i, k, l);
     if (!m->damping)
         return;
     tl_vec3 force = {c->damping_force[0][i], c->damping_force[1][i], c->damping_force[2][i]};
@@ -184,9 +201,9 @@ static void after_range(void *user, size_t begin, size_t end, size_t chunk, unsi
                   .after = 0.5 * job->after};
         if (!b->drive[i])
             k.turned = k.w0;
-        if (b->drive[i])
+        if (b->fixed[i] == TL_FIX_ALL)
             book_driven(m, i, &k, &l);
-        else if (b->fixed[i] != TL_FIX_ALL)
+        else
             book_free(m, i, &k, &l);
     }
     m->cycle->chunk_ledger[chunk] = l;

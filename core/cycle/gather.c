@@ -52,7 +52,7 @@ static void gather_range(void *user, size_t begin, size_t end, size_t chunk, uns
     (void)thread;
     tl_model *m = user;
     tl_bodies *b = &m->bodies;
-    tl_sums sums = {.smallest_mass = INFINITY};
+    tl_sums sums = {0};
     for (uint32_t body = (uint32_t)begin; body < end; body++) {
         gather_body(m, body);
         if (b->fixed[body] == TL_FIX_ALL)
@@ -71,7 +71,6 @@ static void gather_range(void *user, size_t begin, size_t end, size_t chunk, uns
         sums.bodies++;
         sums.kinetic += 0.5 * (b->mass[body] * v2 + spin_energy2(m, body));
         sums.max_speed2 = fmax(sums.max_speed2, v2);
-        sums.smallest_mass = fmin(sums.smallest_mass, b->mass[body]);
     }
     m->cycle->chunk_sums[chunk] = sums;
 }
@@ -81,7 +80,7 @@ void tl_gather(tl_model *m)
     struct tl_cycle *c = m->cycle;
     size_t bodies = m->bodies.table.rows;
     tl_parallel_for(m->pool, bodies, TL_BODY_CHUNK, gather_range, m);
-    c->sums = (tl_sums){.smallest_mass = INFINITY};
+    c->sums = (tl_sums){0};
     for (size_t chunk = 0; chunk * TL_BODY_CHUNK < bodies; chunk++) {
         const tl_sums *s = &c->chunk_sums[chunk];
         c->sums.unbalanced += s->unbalanced;
@@ -92,7 +91,6 @@ void tl_gather(tl_model *m)
         c->sums.bodies += s->bodies;
         c->sums.kinetic += s->kinetic;
         c->sums.max_speed2 = fmax(c->sums.max_speed2, s->max_speed2);
-        c->sums.smallest_mass = fmin(c->sums.smallest_mass, s->smallest_mass);
     }
 }
 

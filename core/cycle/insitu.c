@@ -68,27 +68,34 @@ static double covered_area(const tl_model *m, uint32_t row, uint32_t face)
     return area;
 }
 
+/* Length of the traction on a block's face. */
+static double face_traction(const tl_model *m, const tl_insitu *s, uint32_t row, uint32_t face)
+{
+    uint32_t body = m->blocks.body[row];
+    const tl_poly *shape = m->blocks.shape[row];
+    tl_vec3 n = tl_m3_mul(&m->bodies.r[body], shape->plane[face].normal);
+    double z = tl_model_point(m, body, tl_poly_face_centroid(shape, face)).z;
+    return tl_v3_norm(tl_s3_mul(stress_at(s, z), n));
+}
+
 /* Says how many blocks that can move have an outer face on which the stress would act: nothing holds it
  * there. */
 static void warn_outer_faces(tl_model *m, const tl_insitu *s)
 {
     size_t blocks = 0;
     tl_id first = TL_NO_ID;
-    tl_sym3 t = s->stress;
-    double most = fmax(fmax(fabs(t.xx), fabs(t.yy)), fmax(fabs(t.zz), fabs(t.xy)));
-    most = fmax(most, fmax(fabs(t.yz), fabs(t.zx)));
+    double most = 0;
+    for (uint32_t row = 0; row < m->blocks.table.rows; row++)
+        for (uint32_t f = 0; f < m->blocks.shape[row]->face_count; f++)
+            most = fmax(most, face_traction(m, s, row, f));
     for (uint32_t row = 0; row < m->blocks.table.rows; row++) {
-        uint32_t body = m->blocks.body[row];
+        if (m->bodies.fixed[m->blocks.body[row]] == TL_FIX_ALL)
+            continue;
         const tl_poly *shape = m->blocks.shape[row];
         bool outer = false;
-        for (uint32_t f = 0; f < shape->face_count && !outer; f++) {
-            if (m->bodies.fixed[body] == TL_FIX_ALL)
-                break;
-            tl_vec3 n = tl_m3_mul(&m->bodies.r[body], shape->plane[f].normal);
-            double z = tl_model_point(m, body, tl_poly_face_centroid(shape, f)).z;
-            outer = tl_v3_norm(tl_s3_mul(stress_at(s, z), n)) > NO_TRACTION * most &&
+        for (uint32_t f = 0; f < shape->face_count && !outer; f++)
+            outer = !shape->covered[f] && face_traction(m, s, row, f) > NO_TRACTION * most &&
                     covered_area(m, row, f) < COVERED * tl_poly_face_area(shape, f);
-        }
         blocks += outer;
         if (outer && first == TL_NO_ID)
             first = m->blocks.id[row];

@@ -130,6 +130,8 @@ tl_status tl_laws_apply(tl_model *m)
     tl_detect *d = m->detect;
     for (size_t r = 0; r < d->run_count; r++) {
         const tl_run *run = &d->runs[r];
+        if (run->material == TL_NO_ROW)
+            continue;
         run_job job = {m, &m->materials[run->material], run->begin};
         size_t points = (run->end - run->begin + TL_LANES - 1) / TL_LANES * TL_LANES;
         tl_parallel_for(m->pool, points, TL_POINT_CHUNK, run_law, &job);
@@ -143,12 +145,12 @@ tl_status tl_laws_apply(tl_model *m)
 
 tl_status tl_laws_check(tl_model *m)
 {
-    tl_detect *d = m->detect;
-    for (size_t r = 0; r < d->run_count; r++) {
-        if (d->runs[r].material != TL_NO_ROW || d->runs[r].end == d->runs[r].begin)
+    const tl_contacts *c = &m->detect->contacts;
+    for (uint32_t i = 0; i < c->table.rows; i++) {
+        if (c->material[i] != TL_NO_ROW || c->point_count[i] == 0)
             continue;
         char name[320];
-        name_contact(m, contact_of_point(&d->contacts, d->runs[r].begin), name, sizeof name);
+        name_contact(m, i, name, sizeof name);
         return tl_fail(&m->error, TL_E_STATE,
                        "%s has no law: set one with model:joint(\"*\", ...) or for that joint",
                        name);

@@ -106,16 +106,26 @@ static void count_motion(tl_bodies *b, uint32_t i, double dt)
     b->odometer[i] += (tl_v3_norm(b->v[i]) + tl_v3_norm(b->w[i]) * b->radius[i]) * dt;
 }
 
-/* A driven body moves as it is told. */
-static void drive_body(const move_job *job, uint32_t i)
+static void turn_body(tl_bodies *b, uint32_t i, double dt)
+{
+    b->w_moved[i] = b->w[i];
+    if (tl_v3_norm2(b->w[i]) == 0)
+        return;
+    b->q[i] = tl_q_unit(tl_q_mul(turn_by(tl_v3_scale(dt, b->w[i])), b->q[i]));
+    b->r[i] = tl_q_matrix(b->q[i]);
+}
+
+/* A body held in every component goes on with the velocity it was given: none, or that of its drive. */
+static void carry_body(const move_job *job, uint32_t i)
 {
     tl_bodies *b = &job->m->bodies;
-    const tl_drive_record *drive = &job->m->drives[b->drive[i] - 1];
-    b->v[i] = drive->velocity;
-    b->w[i] = b->w_moved[i] = drive->angular_velocity;
+    if (b->drive[i]) {
+        const tl_drive_record *drive = &job->m->drives[b->drive[i] - 1];
+        b->v[i] = drive->velocity;
+        b->w[i] = drive->angular_velocity;
+    }
     b->u[i] = tl_v3_madd(b->u[i], job->drift, b->v[i]);
-    b->q[i] = tl_q_unit(tl_q_mul(turn_by(tl_v3_scale(job->drift, b->w[i])), b->q[i]));
-    b->r[i] = tl_q_matrix(b->q[i]);
+    turn_body(b, i, job->drift);
     count_motion(b, i, job->drift);
 }
 
@@ -125,12 +135,8 @@ static void move_body(const move_job *job, uint32_t i)
     tl_bodies *b = &m->bodies;
     const struct tl_cycle *c = m->cycle;
     unsigned fixed = b->fixed[i];
-    if (b->drive[i]) {
-        drive_body(job, i);
-        return;
-    }
     if (fixed == TL_FIX_ALL) {
-        b->v_moved[i] = b->w_moved[i] = tl_v3(0, 0, 0);
+        carry_body(job, i);
         return;
     }
     tl_vec3 force = b->force[i], moment = b->moment[i];
@@ -151,8 +157,9 @@ static void move_body(const move_job *job, uint32_t i)
     b->v[i] = tl_v3(fixed & TL_FIX_X ? b->v[i].x : v.x, fixed & TL_FIX_Y ? b->v[i].y : v.y,
                     fixed & TL_FIX_Z ? b->v[i].z : v.z);
     b->u[i] = tl_v3_madd(b->u[i], job->drift, b->v[i]);
-    b->w_moved[i] = tl_v3(0, 0, 0);
-    if (!(fixed & TL_FIX_ROTATION)) {
+    if (fixed & TL_FIX_ROTATION) {
+        turn_body(b, i, job->drift);
+    } else {
         if (m->config.rotation == TL_ROTATION_PAPER)
             rotate_paper(b, i, moment, job, alpha);
         else
@@ -173,8 +180,7 @@ static void move_range(void *user, size_t begin, size_t end, size_t chunk, unsig
 bool tl_move(tl_model *m, double dt)
 {
     move_job job = {m, 0.5 * (m->dt + dt), dt};
-    if (!tl_drives_evaluate(m, m->time + 0.5 * dt))
-        return false;
+    bool driven = tl_drives_evaluate(m, m->time + 0.5 * dt);
     tl_parallel_for(m->pool, m->bodies.table.rows, TL_BODY_CHUNK, move_range, &job);
-    return true;
+    return driven;
 }

@@ -67,7 +67,7 @@ static bool ended(tl_model *m, const progress *p, tl_status *status)
         *reason = TL_SOLVE_INTERRUPT;
     else if (s->ratio > 0 && tl_unbalanced_ratio(m, (tl_ratio_measure)s->measure) < s->ratio)
         *reason = TL_SOLVE_RATIO;
-    else if (p->result->max_velocity < s->velocity)
+    else if (done > 1 && p->result->max_velocity < s->velocity) /* from rest the first is zero */
         *reason = TL_SOLVE_VELOCITY;
     else if (s->stop_at_failure && p->result->failing)
         *reason = TL_SOLVE_FAILURE;

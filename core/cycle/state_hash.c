@@ -1,7 +1,11 @@
-/* state_hash.c - a digest of everything that decides how the model goes on. */
+/* state_hash.c - a digest of the mechanical state: places, velocities, forces and histories, shapes, laws,
+ * damping and settings. Left out is what asking may change (contact ids) and what only saves work
+ * (cached axes, the broad phase), for the results do not depend on it beyond the caches' margins. */
 #include "cycle/cycle_room.h"
 
 #include "base/hash.h"
+
+#include <string.h>
 
 static void hash_table(tl_hash *hash, const tl_table *table)
 {
@@ -42,9 +46,14 @@ tl_status tl_state_hash(tl_model *m, char text[33])
     hash_table(&hash, &m->detect->points.table);
     for (size_t i = 0; i < m->material_count; i++) {
         tl_hash_word(&hash, (uint64_t)m->materials[i].tag.joint << 32 | m->materials[i].tag.plane);
-        tl_hash_bytes(&hash, &m->materials[i].kn, sizeof(double));
-        tl_hash_bytes(&hash, &m->materials[i].ks, sizeof(double));
+        tl_hash_bytes(&hash, m->materials[i].kind->name, strlen(m->materials[i].kind->name));
+        tl_hash_bytes(&hash, m->materials[i].params, m->materials[i].kind->params_size);
     }
+    const double settings[] = {m->timestep.fraction, m->timestep.rule, m->area.fraction,
+                               m->config.rotation, m->mass_scaling};
+    tl_hash_bytes(&hash, settings, sizeof settings);
+    if (m->damping)
+        tl_hash_bytes(&hash, m->damping_params, m->damping->params_size);
     if (m->damping)
         tl_hash_bytes(&hash, m->damping_state, m->damping->state_count * sizeof *m->damping_state);
     tl_hash_text(&hash, text);

@@ -31,11 +31,25 @@ static double stiffest_law(const tl_model *m)
     return k;
 }
 
+/* Whether a body counts for the rules: one that can move or, where none can, any. */
+static bool counts(const tl_model *m, uint32_t body)
+{
+    return m->cycle->all_held || m->bodies.fixed[body] != TL_FIX_ALL;
+}
+
+static bool all_held(const tl_model *m)
+{
+    for (uint32_t body = 0; body < m->bodies.table.rows; body++)
+        if (m->bodies.fixed[body] != TL_FIX_ALL)
+            return false;
+    return true;
+}
+
 static double largest_free_face(const tl_model *m)
 {
     double largest = 0;
     for (uint32_t body = 0; body < m->bodies.table.rows; body++) {
-        if (m->bodies.fixed[body] == TL_FIX_ALL)
+        if (!counts(m, body))
             continue;
         for (uint32_t k = 0; k < m->bodies.member_count[body]; k++) {
             const tl_poly *shape = m->blocks.shape[m->members[m->bodies.member_start[body] + k]];
@@ -54,11 +68,6 @@ typedef struct bound {
     double stiffness;
 } bound;
 
-static bool is_free(const tl_model *m, uint32_t body)
-{
-    return m->bodies.fixed[body] != TL_FIX_ALL;
-}
-
 /* M_min / (2 K_max), with K_max over the contacts of free bodies. */
 static bound paper_rule(const tl_model *m)
 {
@@ -66,7 +75,7 @@ static bound paper_rule(const tl_model *m)
     bound out = {.body = TL_NO_ROW, .contact = TL_NO_ROW};
     for (uint32_t i = 0; i < c->table.rows; i++) {
         if (c->material[i] == TL_NO_ROW ||
-            (!is_free(m, m->blocks.body[c->a[i]]) && !is_free(m, m->blocks.body[c->b[i]])))
+            (!counts(m, m->blocks.body[c->a[i]]) && !counts(m, m->blocks.body[c->b[i]])))
             continue;
         double k = law_stiffness(m, c->material[i]) * c->area[i];
         if (k > out.stiffness) {
@@ -78,7 +87,7 @@ static bound paper_rule(const tl_model *m)
         out.stiffness = stiffest_law(m) * largest_free_face(m);
     double mass = INFINITY;
     for (uint32_t body = 0; body < m->bodies.table.rows; body++)
-        if (is_free(m, body) && m->bodies.mass[body] < mass) {
+        if (counts(m, body) && m->bodies.mass[body] < mass) {
             mass = m->bodies.mass[body];
             out.body = body;
         }
@@ -132,7 +141,7 @@ static bound body_rule(const tl_model *m)
 {
     bound out = {INFINITY, TL_NO_ROW, TL_NO_ROW, 0};
     for (uint32_t body = 0; body < m->bodies.table.rows; body++) {
-        double k = 0, least = is_free(m, body) ? body_bound(m, body, &k) : INFINITY;
+        double k = 0, least = counts(m, body) ? body_bound(m, body, &k) : INFINITY;
         if (least < out.least)
             out = (bound){least, body, TL_NO_ROW, k};
     }
@@ -151,7 +160,7 @@ static bound scale_inertia(tl_model *m)
         return out;
     double most = 0;
     for (uint32_t body = 0; body < b->table.rows; body++) {
-        double k = 0, least = is_free(m, body) ? body_bound(m, body, &k) : INFINITY;
+        double k = 0, least = counts(m, body) ? body_bound(m, body, &k) : INFINITY;
         c->scale[body] = least; /* for the second pass */
         if (isfinite(least) && least > most) {
             most = least;
@@ -170,6 +179,7 @@ static bound scale_inertia(tl_model *m)
 static bound controlling(tl_model *m)
 {
     struct tl_cycle *c = m->cycle;
+    c->all_held = all_held(m);
     if (m->mass_scaling)
         return scale_inertia(m);
     for (size_t body = 0; body < c->table.rows; body++)
@@ -186,19 +196,35 @@ static double damping_factor(const tl_model *m)
     return ops->step_factor ? ops->step_factor(m->damping_self) : 1;
 }
 
+/* A plugin's factor and stiffness are its word: refused when they cannot be. */
+static tl_status check_plugins(tl_model *m)
+{
+    double factor = damping_factor(m);
+    if (!(factor > 0 && factor <= 1))
+        return tl_fail(&m->error, TL_E_PLUGIN,
+                       "damping '%s' gives the step factor %g, which is outside (0, 1]",
+                       m->damping->name, factor);
+    for (size_t i = 0; i < m->material_count; i++)
+        if (!isfinite(law_stiffness(m, (uint32_t)i)))
+            return tl_fail(&m->error, TL_E_PLUGIN, "law '%s' gives a stiffness that is not finite",
+                           m->materials[i].kind->name);
+    return TL_OK;
+}
+
 static tl_status choose(tl_model *m, double *dt, bound *by)
 {
     struct tl_cycle *c = m->cycle;
+    tl_status status = check_plugins(m);
+    if (status != TL_OK)
+        return status;
     *by = controlling(m);
     if (!isnan(m->timestep.dt)) {
         *dt = c->dt = m->timestep.dt;
         return TL_OK;
     }
-    if (!isfinite(c->sums.smallest_mass)) { /* nothing moves: any step will do */
-        *dt = c->dt > 0 ? c->dt : 1;
-        return TL_OK;
-    }
     double fresh = m->timestep.fraction * damping_factor(m) * 2 * sqrt(by->least);
+    if (c->all_held && !(isfinite(fresh) && fresh > 0))
+        fresh = 1; /* nothing moves and nothing is stiff: any step will do */
     if (!isfinite(fresh) || !(fresh > 0))
         return tl_fail(
             &m->error, TL_E_STATE,
@@ -251,8 +277,6 @@ tl_status tl_model_timestep_report(tl_model *m, tl_timestep_report *report)
         status = tl_detect_refresh(m);
     if (status != TL_OK)
         return status;
-    if (m->cycles == 0)
-        tl_gather(m);
     struct tl_cycle *c = m->cycle;
     double in_use = c->dt, scaled_step = c->scaled_step;
     uint64_t scaled_for = c->scaled_for;
@@ -270,7 +294,7 @@ tl_status tl_model_timestep_report(tl_model *m, tl_timestep_report *report)
     if (by.contact != TL_NO_ROW) {
         /* the paper's rule joins the smallest mass and the stiffest contact, wherever they are */
         const tl_contacts *contacts = &m->detect->contacts;
-        bool a_free = is_free(m, m->blocks.body[contacts->a[by.contact]]);
+        bool a_free = counts(m, m->blocks.body[contacts->a[by.contact]]);
         report->partner = a_free ? contacts->id_a[by.contact] : contacts->id_b[by.contact];
     }
     return TL_OK;

@@ -24,7 +24,7 @@ enum {
 
 static const tl_field fields[F_COUNT] = {
     [F_ID] = {"id", TL_FIELD_COUNT, "", "number of the contact, never used again"},
-    [F_BLOCKS] = {"blocks", TL_FIELD_IDS, "", "ids of its two blocks, the lower first"},
+    [F_BLOCKS] = {"blocks", TL_FIELD_IDS, "", "its two blocks, the older first"},
     [F_JOINT] = {"joint", TL_FIELD_TEXT, "", "joint and plane (\"J1:3\"), or empty"},
     [F_AREA] = {"area", TL_FIELD_SCALAR, "m2", "sum of its points' areas"},
     [F_NORMAL] = {"normal", TL_FIELD_VEC3, "", "unit normal from the first block to the second"},
@@ -159,7 +159,7 @@ tl_status tl_contacts_select(tl_model *m, const tl_contact_filter *filter, tl_id
         ma = mark(m, filter->between_a, filter->count_a, &status);
     if (status == TL_OK && filter->between_b)
         mb = mark(m, filter->between_b, filter->count_b, &status);
-    const tl_contacts *c = &m->detect->contacts;
+    const tl_contacts *c = m->detect ? &m->detect->contacts : NULL;
     tl_id *list = NULL;
     if (status == TL_OK && !(list = malloc((c->table.rows + 1) * sizeof *list)))
         status = tl_fail_memory(&m->error);

@@ -18,7 +18,7 @@ void tl_contacts_init(tl_contacts *c, tl_points_table *p)
 {
     tl_table *t = &c->table;
     tl_table_init(t, c);
-    TL_COLUMN(t, c, id, TL_COLUMN_STATE);
+    TL_COLUMN(t, c, id, 0);
     TL_COLUMN(t, c, a, 0);
     TL_COLUMN(t, c, b, 0);
     TL_COLUMN(t, c, id_a, TL_COLUMN_STATE);

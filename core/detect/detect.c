@@ -20,6 +20,10 @@
  * share of its faces that may have come into contact unseen. */
 #define SILENT 1e-5
 
+/* Overlap of a new contact, relative to the smaller block's size, of which the user is told: blocks that
+ * were placed into each other, or that a step has thrown into each other. */
+#define DEEP 1e-2
+
 /* Rows a worker takes at a time. */
 #define PAIR_CHUNK 256
 #define CONTACT_CHUNK 64
@@ -329,6 +333,26 @@ static void update_range(void *user, size_t begin, size_t end, size_t chunk, uns
         update_contact(m, (uint32_t)c, &m->detect->narrow[thread]);
 }
 
+/* Bodies that were joined or parted have other frames than before: what contacts keep in them is made
+ * anew, before anything is computed from it. */
+static void reframe_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
+{
+    (void)chunk;
+    tl_model *m = user;
+    tl_contacts *contacts = &m->detect->contacts;
+    tl_narrow *room = &m->detect->narrow[thread];
+    for (uint32_t c = (uint32_t)begin; c < end; c++) {
+        if (contacts->fate[c] == TL_FATE_DIE)
+            continue;
+        contacts->searched[c] = -INFINITY;
+        if (!rebuild(m, c, room, in_tension(m->detect, c)) ||
+            (contacts->fate[c] != TL_FATE_DIE && !take_manifold(m, c, room)))
+            contacts->fate[c] = TL_FATE_MEMORY;
+        else if (contacts->fate[c] == TL_FATE_KEEP || contacts->fate[c] == TL_FATE_MATERIAL)
+            tl_contact_follow(m, c, 0);
+    }
+}
+
 /* Builds the facets of a contact that has just been given its room. */
 static bool fill_contact(tl_model *m, uint32_t c, tl_narrow *room)
 {
@@ -343,11 +367,18 @@ static bool fill_contact(tl_model *m, uint32_t c, tl_narrow *room)
     return !room->manifold.failed && tl_contact_transfer(m, c, room);
 }
 
+/* Pairs that overlap deeply when their contact is made. */
+typedef struct overlaps {
+    size_t count;
+    uint32_t pair; /* the first */
+} overlaps;
+
 /* Contacts of the pairs that have come near. */
 static tl_status give_birth(tl_model *m, size_t *born)
 {
     tl_detect *d = m->detect;
     tl_narrow *room = &d->narrow[0];
+    overlaps deep = {0, 0};
     *born = 0;
     for (uint32_t i = 0; i < d->pair_count; i++) {
         tl_pair *p = &d->pairs[i];
@@ -365,17 +396,29 @@ static tl_status give_birth(tl_model *m, size_t *born)
             return tl_fail_memory(&m->error);
         p->found = false;
         ++*born;
+        if (axis.s < -DEEP * view.size && deep.count++ == 0)
+            deep.pair = i;
     }
+    if (deep.count)
+        tl_model_say(
+            m,
+            "%zu pair%s of blocks (first: blocks %u and %u) overlap%s by more than %g of their "
+            "size when they come into contact: they will be pushed apart by that much",
+            deep.count, deep.count == 1 ? "" : "s", m->blocks.id[d->pairs[deep.pair].a],
+            m->blocks.id[d->pairs[deep.pair].b], deep.count == 1 ? "s" : "", DEEP);
     return TL_OK;
 }
 
-/* A contact that comes under another law begins with that law's states. */
+/* A contact that comes under another law begins with that law's states; under the same law with other
+ * properties it keeps them. */
 static void change_material(tl_model *m, uint32_t c)
 {
     tl_detect *d = m->detect;
-    uint32_t material = tl_material_row(m, d->contacts.tag[c]);
+    uint32_t old = d->contacts.material[c], material = tl_material_row(m, d->contacts.tag[c]);
     d->contacts.material[c] = material;
     const tl_kind *kind = material == TL_NO_ROW ? NULL : m->materials[material].kind;
+    if (old != TL_NO_ROW && m->materials[old].kind == kind)
+        return;
     size_t begin = d->contacts.point_start[c];
     for (size_t i = begin; i < begin + d->contacts.point_count[c]; i++) {
         d->points.flags[i] = 0;
@@ -464,6 +507,7 @@ static tl_status find_contacts(tl_model *m)
     if (rows) {
         d->rows_changed = true;
         find_rows(m);
+        tl_parallel_for(m->pool, d->contacts.table.rows, CONTACT_CHUNK, reframe_range, m);
     }
     if (d->laws != m->laws)
         find_materials(m);

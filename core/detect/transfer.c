@@ -12,6 +12,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Gap from which a new contact was made by walls coming near, relative to the smaller block's size: far
+ * above the rounding of blocks placed in contact, far below the contact tolerance. */
+#define APART 1e-6
+
 /* A polygon whose moments of area are nearer to singular than this gets no linear correction: its points
  * lie on a line. */
 #define SINGULAR 1e-12
@@ -275,6 +279,9 @@ static void write_points(tl_model *m, uint32_t c, const tl_manifold *g, const ol
     }
     /* positions and normals in the present place */
     tl_contact_follow(m, c, 0);
+    double size = fmin(m->blocks.size[contacts->a[c]], m->blocks.size[contacts->b[c]]);
+    for (size_t i = begin; i < begin + g->point_count && old_count == 0; i++)
+        p->flags[i] = p->closure[i] < -APART * size ? TL_POINT_APART : 0;
     for (size_t k = 0; k < g->point_count && old_count; k++) {
         size_t i = begin + k;
         const old_point *o = match(old, old_count, p->key[i], p->arm[i]);

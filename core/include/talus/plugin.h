@@ -129,7 +129,10 @@ typedef struct tl_report {
 enum {
     TL_POINT_SLIPPING = 1, /* shear force at its limit in this step */
     TL_POINT_OPEN = 2,     /* carries nothing */
-    TL_POINT_FAILED = 4    /* bond lost; stays set */
+    TL_POINT_FAILED = 4,   /* bond lost; stays set */
+    TL_POINT_APART =
+        8 /* set by the host on a point made while the walls were apart (since 1.1): they
+                              were never bonded. The law clears it, or keeps it until they meet */
 };
 
 /* A run of contact points of one joint material. Every column has `count` entries, a multiple of
@@ -143,7 +146,7 @@ enum {
 typedef struct tl_law_batch {
     uint32_t size;
     uint32_t count;
-    double dt;               /* s */
+    double dt;               /* s, of the motion; 0 in the first step of a run */
     const double *area;      /* m2 */
     const double *closure;   /* m */
     const double *f_n0;      /* N, normal force at closure 0 (in situ) */

@@ -14,7 +14,7 @@
  * `opening` are those of the law "coulomb"; under tension slip does not dilate.
  *
  * Source: Hart, Cundall and Lemos, Int. J. Rock Mech. Min. Sci. 25 (1988) 117-125; the loss of the bond
- * after the manual of 3DEC. A contact that is born open loses its bond in its first step.
+ * after the manual of 3DEC. Walls that come near each other from afar have no bond.
  *
  * Energy turned to heat: as in the law "coulomb", and the energy of the tensile spring when a bond
  * breaks in tension. A tensile strength that is left after that neither takes nor makes energy over a
@@ -229,6 +229,9 @@ static tl_status update(const void *self, const tl_law_batch *batch, tl_report *
     double mark[STRIDE];
     for (uint32_t begin = 0; begin < batch->count; begin += STRIDE) {
         uint32_t left = batch->count - begin, lanes = left < STRIDE ? left : STRIDE;
+        /* walls that came near from afar were never bonded */
+        for (uint32_t i = begin; i < begin + lanes; i++)
+            batch->state[0][i] = batch->flags[i] & TL_POINT_APART ? 0 : batch->state[0][i];
         if (law->dilation > 0 && batch->dissipated)
             move(law, batch, begin, lanes, mark, 1, 1);
         else if (law->dilation > 0)

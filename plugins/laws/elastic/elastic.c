@@ -49,14 +49,20 @@ static tl_status update(const void *self, const tl_law_batch *batch, tl_report *
     double *restrict f_y = batch->f_s[1], *restrict f_z = batch->f_s[2];
     uint32_t *restrict flags = batch->flags;
     const double kn = p->kn, ks = p->ks;
+    /* Walls that come near each other from afar do not pull before they have met. */
+    for (uint32_t i = 0; i < batch->count; i++)
+        if (flags[i])
+            flags[i] = flags[i] & TL_POINT_APART && kn * area[i] * closure[i] + f_n0[i] <= 0
+                           ? TL_POINT_APART | TL_POINT_OPEN
+                           : 0;
 #pragma omp simd
     for (uint32_t i = 0; i < batch->count; i++) {
-        double stiffness = ks * area[i];
-        f_n[i] = kn * area[i] * closure[i] + f_n0[i];
-        f_x[i] -= stiffness * du_x[i];
-        f_y[i] -= stiffness * du_y[i];
-        f_z[i] -= stiffness * du_z[i];
-        flags[i] = 0;
+        double stiffness = ks * area[i], total = kn * area[i] * closure[i] + f_n0[i];
+        double meet = flags[i] ? 0 : 1;
+        f_n[i] = meet * total;
+        f_x[i] = meet * (f_x[i] - stiffness * du_x[i]);
+        f_y[i] = meet * (f_y[i] - stiffness * du_y[i]);
+        f_z[i] = meet * (f_z[i] - stiffness * du_z[i]);
     }
     if (batch->stored)
         store_energy(p, batch);
