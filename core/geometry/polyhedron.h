@@ -98,6 +98,9 @@ void tl_principal_axes(tl_sym3 tensor, tl_vec3 *moments, tl_quat *axes);
  * their whole area, and edges of such faces where the body's surface goes on flat or turns inward. */
 tl_status tl_poly_mark_seams(tl_poly *const *parts, size_t count, tl_error *error);
 
+/* Which of the parts hang together over faces they share: label[i] is the lowest index of its group. */
+tl_status tl_poly_connected(tl_poly *const *parts, size_t count, uint32_t *label, tl_error *error);
+
 /* ---- cutting: cut.c ---- */
 
 typedef enum tl_cut_result {

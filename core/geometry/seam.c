@@ -98,6 +98,8 @@ typedef struct part {
     tl_poly *poly;
     tl_bounds bounds;
     double *open; /* [faces] area not covered yet */
+    uint32_t index;
+    struct part *group; /* towards the first part it hangs together with */
 } part;
 
 static bool apart(const part *a, const part *b)
@@ -108,6 +110,24 @@ static bool apart(const part *a, const part *b)
            a->bounds.min.z > b->bounds.max.z + slack || b->bounds.min.z > a->bounds.max.z + slack;
 }
 
+static part *root(part *p)
+{
+    while (p->group != p)
+        p = p->group;
+    return p;
+}
+
+/* One group of the two, named by the part that comes first. */
+static void unite(part *a, part *b)
+{
+    part *x = root(a), *y = root(b);
+    if (x->index < y->index)
+        y->group = x;
+    else
+        x->group = y;
+}
+
+/* Adds up what the parts cover of each other, and groups those that share an area. */
 static bool cover(part *a, part *b)
 {
     for (uint32_t i = 0; i < a->poly->face_count; i++)
@@ -121,6 +141,8 @@ static bool cover(part *a, part *b)
             double area = common_area(a->poly, i, b->poly, j, room);
             a->open[i] -= area;
             b->open[j] -= area;
+            if (area > UNCOVERED * tl_poly_face_area(a->poly, i))
+                unite(a, b);
             free(room);
         }
     return true;
@@ -202,34 +224,55 @@ static void mark(part *p)
         poly->hidden[e] = poly->covered[poly->edge[e].left] || poly->covered[poly->edge[e].right];
 }
 
+/* The parts in order of their low x, with all their faces open; NULL without memory. One allocation. */
+static part *list_parts(tl_poly *const *parts, size_t count)
+{
+    size_t faces = 0, at = 0;
+    for (size_t i = 0; i < count; i++)
+        faces += parts[i]->face_count;
+    part *list = malloc(count * sizeof *list + faces * sizeof(double));
+    if (!list)
+        return NULL;
+    double *open = (double *)(void *)(list + count);
+    for (size_t i = 0; i < count; at += parts[i]->face_count, i++) {
+        list[i] = (part){parts[i], tl_poly_bounds(parts[i]), open + at, (uint32_t)i, NULL};
+        for (uint32_t f = 0; f < parts[i]->face_count; f++)
+            open[at + f] = tl_poly_face_area(parts[i], f);
+    }
+    qsort(list, count, sizeof *list, compare_part);
+    for (size_t i = 0; i < count; i++)
+        list[i].group = &list[i];
+    return list;
+}
+
 tl_status tl_poly_mark_seams(tl_poly *const *parts, size_t count, tl_error *error)
 {
-    size_t faces = 0;
     for (size_t i = 0; i < count; i++) {
         parts[i]->seams = false;
         memset(parts[i]->covered, 0, parts[i]->face_count);
         memset(parts[i]->hidden, 0, parts[i]->edge_count);
-        faces += parts[i]->face_count;
     }
     if (count < 2)
         return TL_OK;
-    part *list = malloc(count * sizeof *list);
-    double *open = malloc(faces * sizeof *open);
-    bool done = list && open;
-    for (size_t i = 0, at = 0; done && i < count; at += parts[i]->face_count, i++) {
-        list[i] = (part){parts[i], tl_poly_bounds(parts[i]), open + at};
-        for (uint32_t f = 0; f < parts[i]->face_count; f++)
-            open[at + f] = tl_poly_face_area(parts[i], f);
-    }
-    if (done) {
-        qsort(list, count, sizeof *list, compare_part);
-        done = each_pair(list, count, cover);
-    }
+    part *list = list_parts(parts, count);
+    bool done = list && each_pair(list, count, cover);
     for (size_t i = 0; done && i < count; i++)
         mark(&list[i]);
     if (done)
         each_pair(list, count, show);
     free(list);
-    free(open);
     return done ? TL_OK : tl_fail_memory(error);
+}
+
+tl_status tl_poly_connected(tl_poly *const *parts, size_t count, uint32_t *label, tl_error *error)
+{
+    part *list = count ? list_parts(parts, count) : NULL;
+    if (count && (!list || !each_pair(list, count, cover))) {
+        free(list);
+        return tl_fail_memory(error);
+    }
+    for (size_t i = 0; i < count; i++)
+        label[list[i].index] = root(&list[i])->index;
+    free(list);
+    return TL_OK;
 }

@@ -52,6 +52,15 @@ void tl_drive_leave(tl_model *m, uint32_t body)
         release(&m->drives[index - 1]);
 }
 
+void tl_drives_recount(tl_model *m)
+{
+    for (size_t i = 0; i < m->drive_count; i++)
+        m->drives[i].bodies = 0;
+    for (size_t body = 0; body < m->bodies.table.rows; body++)
+        if (m->bodies.drive[body])
+            m->drives[m->bodies.drive[body] - 1].bodies++;
+}
+
 void tl_drives_clear(tl_model *m)
 {
     for (size_t i = 0; i < m->drive_count; i++)

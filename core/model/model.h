@@ -289,6 +289,11 @@ void tl_rows_keep(tl_model *m, const unsigned char *keep);
  * body. Bodies that stay as they are are not touched; others get the mass, momentum and angular
  * momentum of their parts. TL_E_MEMORY leaves the model as it was. */
 tl_status tl_bodies_regroup(tl_model *m, const uint32_t *group);
+/* Sets group[row] for the bodies that lose blocks (keep[row] is 0) or have lost some since they were
+ * measured: what is left of each falls into the groups that hang together over shared faces. */
+tl_status tl_bodies_fall_apart(tl_model *m, const unsigned char *keep, uint32_t *group);
+/* Makes bodies anew whose blocks were cut off or changed their mass. */
+tl_status tl_bodies_mend(tl_model *m);
 /* group[row] of the bodies as they are. */
 void tl_bodies_groups(const tl_model *m, uint32_t *group);
 /* A block's inertia about its centroid, in the axes of the model. */
@@ -304,5 +309,7 @@ tl_status tl_drives_may_change(tl_model *m, const char *what);
 /* Lets a body go from its drive. */
 void tl_drive_leave(tl_model *m, uint32_t body);
 void tl_drives_clear(tl_model *m);
+/* Counts the bodies of each drive again, after a driven body has fallen into several. */
+void tl_drives_recount(tl_model *m);
 
 #endif

@@ -8,6 +8,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Relative difference of mass from which a body has lost a block: far above rounding, far below any block
+ * that tolerances let exist. */
+#define WHOLE 1e-12
+
 /* R I R^T */
 static tl_sym3 turned(tl_sym3 t, const tl_mat3 *r)
 {
@@ -171,11 +175,22 @@ static bool list_groups(const tl_model *m, const uint32_t *group, regroup *r)
     return true;
 }
 
+/* Whether a body still consists of all the blocks it was measured with. */
+static bool is_whole(const tl_model *m, uint32_t body)
+{
+    double mass = 0;
+    for (uint32_t k = 0; k < m->bodies.member_count[body]; k++) {
+        uint32_t row = m->members[m->bodies.member_start[body] + k];
+        mass += m->blocks.density[row] * m->blocks.volume[row];
+    }
+    return fabs(mass - m->bodies.mass[body]) <= WHOLE * mass;
+}
+
 /* True when the group is a body already. */
 static bool stays(const tl_model *m, const regroup *r, size_t g)
 {
     uint32_t count = r->start[g + 1] - r->start[g], body = m->blocks.body[r->rows[r->start[g]]];
-    if (m->bodies.member_count[body] != count)
+    if (m->bodies.member_count[body] != count || !is_whole(m, body))
         return false;
     for (uint32_t k = r->start[g]; k < r->start[g + 1]; k++)
         if (m->blocks.body[r->rows[k]] != body)
@@ -264,9 +279,64 @@ tl_status tl_bodies_regroup(tl_model *m, const uint32_t *group)
             blocks->base[row] = tl_v3_sub(tl_block_displacement(m, row), r.displacement[row]);
         }
     }
+    tl_drives_recount(m);
     m->constraints++;
     regroup_free(&r, count);
     return TL_OK;
+}
+
+tl_status tl_bodies_fall_apart(tl_model *m, const unsigned char *keep, uint32_t *group)
+{
+    const tl_bodies *b = &m->bodies;
+    size_t blocks = m->blocks.table.rows;
+    tl_poly **polys = malloc((blocks + 1) * sizeof *polys);
+    uint32_t *rows = malloc((blocks + 1) * sizeof *rows);
+    uint32_t *label = malloc((blocks + 1) * sizeof *label);
+    tl_status status = polys && rows && label ? TL_OK : tl_fail_memory(&m->error);
+    for (uint32_t body = 0; body < b->table.rows && status == TL_OK; body++) {
+        uint32_t count = 0;
+        for (uint32_t k = 0; k < b->member_count[body]; k++) {
+            uint32_t row = m->members[b->member_start[body] + k];
+            if (keep[row]) {
+                polys[count] = m->blocks.shape[row];
+                rows[count++] = row;
+            } else {
+                group[row] = row;
+            }
+        }
+        if (count == 0 || (count == b->member_count[body] && is_whole(m, body)))
+            continue;
+        status = tl_poly_connected(polys, count, label, &m->error);
+        for (uint32_t k = 0; k < count && status == TL_OK; k++)
+            group[rows[k]] = rows[label[k]];
+    }
+    free(polys);
+    free(rows);
+    free(label);
+    return status;
+}
+
+tl_status tl_bodies_mend(tl_model *m)
+{
+    bool whole = true;
+    for (uint32_t body = 0; body < m->bodies.table.rows && whole; body++)
+        whole = is_whole(m, body);
+    if (whole)
+        return TL_OK;
+    size_t blocks = m->blocks.table.rows;
+    unsigned char *keep = malloc(blocks + 1);
+    uint32_t *group = malloc((blocks + 1) * sizeof *group);
+    tl_status status = keep && group ? TL_OK : tl_fail_memory(&m->error);
+    if (status == TL_OK) {
+        memset(keep, 1, blocks);
+        tl_bodies_groups(m, group);
+        status = tl_bodies_fall_apart(m, keep, group);
+    }
+    if (status == TL_OK)
+        status = tl_bodies_regroup(m, group);
+    free(keep);
+    free(group);
+    return status;
 }
 
 /* ---------------------------------------------------------------- verbs ------------------ */

@@ -350,7 +350,7 @@ tl_status tl_stage_commit(tl_stage *stage)
         tl_stage_drop(stage);
         return tl_fail_memory(&m->error);
     }
-    /* From here on nothing can fail. */
+    /* From here on nothing can fail but the parting of joined bodies that were cut. */
     double volume_before = 0;
     for (size_t row = 0; row < old; row++)
         volume_before += blocks->volume[row];
@@ -374,5 +374,5 @@ tl_status tl_stage_commit(tl_stage *stage)
     summarize(stage, volume_before);
     free(keep);
     stage_end(stage);
-    return TL_OK;
+    return tl_bodies_mend(m);
 }

@@ -31,14 +31,23 @@ tl_status tl_blocks_delete(tl_model *m, const tl_id *ids, size_t count)
     if (status != TL_OK || count == 0)
         return status;
     unsigned char *keep = malloc(m->blocks.table.rows);
-    if (!keep)
-        return tl_fail_memory(&m->error);
-    memset(keep, 1, m->blocks.table.rows);
-    for (size_t i = 0; i < count; i++)
-        keep[m->row_of[ids[i]]] = 0;
-    tl_rows_keep(m, keep);
+    uint32_t *group = malloc(m->blocks.table.rows * sizeof *group);
+    status = keep && group ? TL_OK : tl_fail_memory(&m->error);
+    if (status == TL_OK) {
+        memset(keep, 1, m->blocks.table.rows);
+        for (size_t i = 0; i < count; i++)
+            keep[m->row_of[ids[i]]] = 0;
+        /* what is left of joined bodies goes on as the groups that hang together */
+        tl_bodies_groups(m, group);
+        status = tl_bodies_fall_apart(m, keep, group);
+    }
+    if (status == TL_OK)
+        status = tl_bodies_regroup(m, group);
+    if (status == TL_OK)
+        tl_rows_keep(m, keep);
     free(keep);
-    return TL_OK;
+    free(group);
+    return status;
 }
 
 tl_status tl_blocks_fix(tl_model *m, const tl_id *ids, size_t count, unsigned what)
@@ -126,7 +135,8 @@ tl_status tl_blocks_set(tl_model *m, const tl_id *ids, size_t count, const tl_bl
             m->blocks.group[row] = group;
         if (!isnan(set->density)) {
             m->blocks.density[row] = set->density;
-            tl_body_measure(m, body);
+            if (m->bodies.member_count[body] == 1)
+                tl_body_measure(m, body);
         }
         if (given(set->velocity))
             m->bodies.v[body] = set->velocity;
@@ -134,5 +144,5 @@ tl_status tl_blocks_set(tl_model *m, const tl_id *ids, size_t count, const tl_bl
             m->bodies.w[body] = set->angular_velocity;
     }
     m->constraints++;
-    return TL_OK;
+    return tl_bodies_mend(m); /* a body of several blocks has another centroid now */
 }
