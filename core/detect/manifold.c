@@ -5,10 +5,12 @@
  * short of the minimum area (1 % of the smaller block's mean face, Hart, Cundall and Lemos 1988), the
  * rest is the *point share*: the vertices, or the edges, that the axis rests on. Blocks that meet in
  * an edge or a corner with their faces parallel get none, or eight blocks meeting in a corner would
- * have stiffness where they have no area; an absolute minimum area set by the user holds for them too. */
+ * have stiffness where they have no area; an absolute minimum area set by the user holds for them too
+ * (crease.c). */
 #include "detect/detect.h"
 
 #include "base/random.h"
+#include "detect/crease.h"
 
 #include <stdlib.h>
 
@@ -101,13 +103,25 @@ static bool level(const tl_pair_view *view, uint32_t fa, uint32_t fb, double nea
     return low <= near && high >= -near;
 }
 
+/* How far from each other features of touching blocks may lie and still meet. */
+static double reach_of(const tl_pair_view *view, const tl_axis *axis)
+{
+    return TL_CONTACT_TOLERANCE * TL_CONTACT_RELEASE * view->size + 2 * fabs(axis->s);
+}
+
+/* How flush two faces are, by the sine of the angle between them: 1 parallel, 0 tilted. */
+static double flushness(double sine)
+{
+    return fade(sine, FLUSH_NONE, FLUSH_FULL);
+}
+
 /* Adds all patches; returns how flush the most parallel faces are that meet, by area or side by side: 1
  * parallel, 0 tilted. */
 static double add_patches(const tl_pair_view *view, const tl_axis *axis, const tl_share_rule *rule,
                           tl_narrow *room)
 {
     const double facing = cos(TILT_NONE * TL_PI / 180);
-    const double near = TL_CONTACT_TOLERANCE * TL_CONTACT_RELEASE * view->size + 2 * fabs(axis->s);
+    const double near = reach_of(view, axis);
     tl_manifold *m = &room->manifold;
     tl_vec3 n = axis->n;
     double flush = 0;
@@ -124,7 +138,7 @@ static double add_patches(const tl_pair_view *view, const tl_axis *axis, const t
             if (weight > 0 && reserve_facets(m, m->facet_count + 2))
                 area = tl_patch_add(view, i, j, weight, rule, room);
             m->patch_area += area;
-            double parallel = fade(sine, FLUSH_NONE, FLUSH_FULL);
+            double parallel = flushness(sine);
             if (parallel > flush && (area > 0 || level(view, i, j, near)))
                 flush = parallel;
         }
@@ -330,9 +344,19 @@ void tl_manifold_build(const tl_pair_view *view, const tl_axis *axis, const tl_s
     if (!rule->unconditional)
         share *= 1 - flush;
     if (m->failed || !(share > 0) || axis->s > rule->reach ||
-        !reserve_facets(m, m->facet_count + 2))
+        !reserve_facets(m, m->facet_count + 3))
         return;
     size_t begin = m->point_count;
+    double crease =
+        rule->unconditional ? tl_crease_add(view, reach_of(view, axis), flushness, m) : 0;
+    if (crease > 0) {
+        scale_share(m, begin, crease * share);
+        m->grounded = true;
+        share *= 1 - crease;
+        begin = m->point_count;
+    }
+    if (!(share > 0))
+        return;
     if (axis->kind == TL_AXIS_EDGES)
         share_of_edges(view, axis, room);
     else
