@@ -41,6 +41,21 @@ void *tl_aligned_alloc(size_t bytes)
     return data;
 }
 
+bool tl_grow(void *slot, size_t *room, size_t need, size_t size)
+{
+    if (need <= *room)
+        return true;
+    size_t fresh = need + need / 2 + 16;
+    void *data;
+    memcpy(&data, slot, sizeof data);
+    data = realloc(data, fresh * size);
+    if (!data)
+        return false;
+    memcpy(slot, &data, sizeof data);
+    *room = fresh;
+    return true;
+}
+
 bool tl_table_reserve(tl_table *table, size_t rows)
 {
     if (rows <= table->capacity)
@@ -112,14 +127,6 @@ void tl_table_move(tl_table *table, size_t to, size_t from)
 void *tl_table_data(const tl_table *table, size_t column)
 {
     return get(table, &table->columns[column]);
-}
-
-size_t tl_table_bytes(const tl_table *table)
-{
-    size_t bytes = 0;
-    for (size_t i = 0; i < table->column_count; i++)
-        bytes += table->capacity * table->columns[i].size;
-    return bytes;
 }
 
 void tl_table_free(tl_table *table)

@@ -46,9 +46,11 @@ void tl_table_keep(tl_table *table, const unsigned char *keep);
 /* Copies a row over another. */
 void tl_table_move(tl_table *table, size_t to, size_t from);
 void *tl_table_data(const tl_table *table, size_t column);
-/* Bytes held. */
-size_t tl_table_bytes(const tl_table *table);
 void tl_table_free(tl_table *table);
+
+/* Makes room for `need` items of `size` bytes in the array whose pointer is at `slot`, with some to spare;
+ * what is there stays. false when out of memory (nothing changed). */
+bool tl_grow(void *slot, size_t *room, size_t need, size_t size);
 
 /* Aligned memory for columns and scratch: zeroed, freed with free(). */
 void *tl_aligned_alloc(size_t bytes);

@@ -56,13 +56,6 @@ tl_status tl_model_damping(tl_model *m, const char *damping, const tl_args *args
     return TL_OK;
 }
 
-static void put(double *const column[3], size_t i, tl_vec3 v)
-{
-    column[0][i] = v.x;
-    column[1][i] = v.y;
-    column[2][i] = v.z;
-}
-
 typedef struct damping_job {
     tl_model *m;
     double dt;
@@ -80,14 +73,14 @@ static void damp_range(void *user, size_t begin, size_t end, size_t chunk, unsig
     for (size_t i = begin; i < end; i++) {
         bool real = i < b->table.rows;
         tl_vec3 moments = real ? b->moments[i] : zero;
-        put(c->velocity, i, real ? b->v[i] : zero);
-        put(c->angular_velocity, i, real ? b->w[i] : zero);
-        put(c->force, i, real ? b->force[i] : zero);
-        put(c->moment, i, real ? b->moment[i] : zero);
-        put(c->force_before, i, real ? b->force_before[i] : zero);
-        put(c->moment_before, i, real ? b->moment_before[i] : zero);
-        put(c->damping_force, i, zero);
-        put(c->damping_moment, i, zero);
+        tl_columns_put(c->velocity, i, real ? b->v[i] : zero);
+        tl_columns_put(c->angular_velocity, i, real ? b->w[i] : zero);
+        tl_columns_put(c->force, i, real ? b->force[i] : zero);
+        tl_columns_put(c->moment, i, real ? b->moment[i] : zero);
+        tl_columns_put(c->force_before, i, real ? b->force_before[i] : zero);
+        tl_columns_put(c->moment_before, i, real ? b->moment_before[i] : zero);
+        tl_columns_put(c->damping_force, i, zero);
+        tl_columns_put(c->damping_moment, i, zero);
         c->alpha[i] = 0;
         c->mass[i] = real ? b->mass[i] : 1;
         c->inertia[i] = real ? (moments.x + moments.y + moments.z) / 3 : 1;

@@ -31,27 +31,13 @@
  * counts as lost: rounding. */
 #define INSIDE 1e-9
 
-static bool room_for(void *slot, size_t *room, size_t need, size_t size)
-{
-    void *data;
-    memcpy(&data, slot, sizeof data);
-    if (need <= *room)
-        return true;
-    data = realloc(data, (need + need / 2) * size);
-    if (!data)
-        return false;
-    memcpy(slot, &data, sizeof data);
-    *room = need + need / 2;
-    return true;
-}
-
 bool tl_pair_place(tl_pair_view *view, tl_narrow *room)
 {
     const tl_poly *a = view->a, *b = view->b;
     size_t dots = (size_t)a->edge_count * b->face_count + (size_t)b->edge_count * a->face_count;
-    if (!room_for(&room->vertex_b, &room->vertex_room, b->vertex_count, sizeof(tl_vec3)) ||
-        !room_for(&room->normal_b, &room->normal_room, b->face_count, sizeof(tl_vec3)) ||
-        !room_for(&room->dots, &room->dot_room, dots, sizeof(double)))
+    if (!tl_grow(&room->vertex_b, &room->vertex_room, b->vertex_count, sizeof(tl_vec3)) ||
+        !tl_grow(&room->normal_b, &room->normal_room, b->face_count, sizeof(tl_vec3)) ||
+        !tl_grow(&room->dots, &room->dot_room, dots, sizeof(double)))
         return false;
     view->vertex_b = room->vertex_b;
     view->normal_b = room->normal_b;

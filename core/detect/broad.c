@@ -48,27 +48,12 @@ void tl_broad_destroy(struct tl_broad *broad)
     free(broad);
 }
 
-static bool grow(void *slot, size_t *room, size_t need, size_t size)
-{
-    if (need <= *room)
-        return true;
-    size_t fresh = need + need / 2 + 16;
-    void *data;
-    memcpy(&data, slot, sizeof data);
-    data = realloc(data, fresh * size);
-    if (!data)
-        return false;
-    memcpy(slot, &data, sizeof data);
-    *room = fresh;
-    return true;
-}
-
 static bool reserve_blocks(struct tl_broad *g, size_t count)
 {
     size_t a = g->block_room, b = a, c = a;
-    if (!grow(&g->bounds, &a, count, sizeof *g->bounds) ||
-        !grow(&g->extent, &b, count, sizeof *g->extent) ||
-        !grow(&g->large, &c, count, sizeof *g->large))
+    if (!tl_grow(&g->bounds, &a, count, sizeof *g->bounds) ||
+        !tl_grow(&g->extent, &b, count, sizeof *g->extent) ||
+        !tl_grow(&g->large, &c, count, sizeof *g->large))
         return false;
     g->block_room = a;
     return true;
@@ -171,7 +156,7 @@ static tl_status measure(tl_model *m, struct tl_broad *g)
 static tl_status fill(tl_model *m, struct tl_broad *g)
 {
     size_t cells = (size_t)g->n[0] * g->n[1] * g->n[2], total = 0;
-    if (!grow(&g->cell_start, &g->cell_room, cells + 2, sizeof *g->cell_start))
+    if (!tl_grow(&g->cell_start, &g->cell_room, cells + 2, sizeof *g->cell_start))
         return tl_fail_memory(&m->error);
     memset(g->cell_start, 0, (cells + 2) * sizeof *g->cell_start);
     uint32_t *start = g->cell_start + 1; /* shifted: filling moves each start to its end */
@@ -201,7 +186,7 @@ static tl_status fill(tl_model *m, struct tl_broad *g)
             start[cell] = (uint32_t)total;
             total += here;
         }
-        if (!grow(&g->entries, &g->entry_room, total + 1, sizeof *g->entries))
+        if (!tl_grow(&g->entries, &g->entry_room, total + 1, sizeof *g->entries))
             return tl_fail_memory(&m->error);
     }
     return TL_OK; /* now entries of cell c are [cell_start[c], cell_start[c + 1]) */
@@ -215,7 +200,7 @@ static bool overlap(const tl_bounds *a, const tl_bounds *b)
 
 static bool push(struct tl_broad *g, size_t *count, uint32_t a, uint32_t b)
 {
-    if (!grow(&g->next, &g->next_room, *count + 1, sizeof *g->next))
+    if (!tl_grow(&g->next, &g->next_room, *count + 1, sizeof *g->next))
         return false;
     g->next[(*count)++] = (tl_pair){.a = a, .b = b, .wake = -1, .contact = TL_NO_ROW};
     return true;
@@ -328,7 +313,7 @@ tl_status tl_broad_update(tl_model *m)
     if (status != TL_OK)
         return status;
     size_t bodies = m->bodies.table.rows;
-    if (!grow(&d->odometer_0, &d->body_room, bodies + 1, sizeof *d->odometer_0))
+    if (!tl_grow(&d->odometer_0, &d->body_room, bodies + 1, sizeof *d->odometer_0))
         return tl_fail_memory(&m->error);
     if (bodies)
         memcpy(d->odometer_0, m->bodies.odometer, bodies * sizeof *d->odometer_0);

@@ -224,14 +224,8 @@ static uint32_t rounded(uint32_t value, uint32_t step)
 
 static bool add_run(tl_detect *d, uint32_t material, size_t begin)
 {
-    if (d->run_count == d->run_room) {
-        size_t room = d->run_room ? 2 * d->run_room : 8;
-        tl_run *runs = realloc(d->runs, room * sizeof *runs);
-        if (!runs)
-            return false;
-        d->runs = runs;
-        d->run_room = room;
-    }
+    if (!tl_grow(&d->runs, &d->run_room, d->run_count + 1, sizeof *d->runs))
+        return false;
     d->runs[d->run_count++] = (tl_run){material, begin, begin, begin};
     return true;
 }
@@ -281,20 +275,9 @@ bool tl_contacts_index(tl_model *m)
     tl_detect *d = m->detect;
     d->by_id_fresh = false;
     size_t blocks = m->blocks.table.rows, contacts = d->contacts.table.rows;
-    if (blocks + 2 > d->by_start_room) {
-        uint32_t *start = realloc(d->by_block_start, 2 * (blocks + 2) * sizeof *start);
-        if (!start)
-            return false;
-        d->by_block_start = start;
-        d->by_start_room = 2 * (blocks + 2);
-    }
-    if (2 * contacts + 1 > d->by_block_room) {
-        uint32_t *list = realloc(d->by_block, 2 * (2 * contacts + 1) * sizeof *list);
-        if (!list)
-            return false;
-        d->by_block = list;
-        d->by_block_room = 2 * (2 * contacts + 1);
-    }
+    if (!tl_grow(&d->by_block_start, &d->by_start_room, blocks + 2, sizeof *d->by_block_start) ||
+        !tl_grow(&d->by_block, &d->by_block_room, 2 * contacts + 1, sizeof *d->by_block))
+        return false;
     memset(d->by_block_start, 0, (blocks + 2) * sizeof *d->by_block_start);
     uint32_t *start = d->by_block_start + 1; /* filling moves each start to its end */
     for (size_t c = 0; c < contacts; c++) {
@@ -454,13 +437,8 @@ static int compare_id(const void *x, const void *y)
 static bool index_by_id(tl_detect *d)
 {
     size_t count = d->contacts.table.rows;
-    if (2 * count + 2 > d->by_id_room) {
-        uint32_t *list = realloc(d->by_id, (2 * count + 2) * sizeof *list);
-        if (!list)
-            return false;
-        d->by_id = list;
-        d->by_id_room = 2 * count + 2;
-    }
+    if (!tl_grow(&d->by_id, &d->by_id_room, 2 * count + 2, sizeof *d->by_id))
+        return false;
     for (uint32_t row = 0; row < count; row++) {
         d->by_id[2 * row] = d->contacts.id[row];
         d->by_id[2 * row + 1] = row;

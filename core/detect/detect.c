@@ -158,7 +158,7 @@ static void look_at(tl_model *m, tl_pair *p, tl_narrow *room)
         return;
     tl_pair_view view = tl_pair_view_of(m, p->a, p->b);
     if (!tl_pair_place(&view, room)) {
-        room->manifold.failed = true;
+        room->failed = true;
         return;
     }
     double tolerance = TL_CONTACT_TOLERANCE * view.size, reach = m->detect->reach;
@@ -173,6 +173,7 @@ static void look_at(tl_model *m, tl_pair *p, tl_narrow *room)
     }
     tl_share_rule rule = share_rule(m, &view, tl_touching_tag(&view, axis.n), false);
     tl_manifold_build(&view, &axis, &rule, room);
+    room->failed = room->failed || room->manifold.failed;
     p->found = room->manifold.point_count > 0;
     p->wake = odometer + SILENT * view.size;
 }
@@ -474,8 +475,10 @@ static tl_status settle(tl_model *m, bool follow)
     tl_contacts *c = &d->contacts;
     size_t changed;
     for (unsigned i = 0; i < d->threads; i++)
-        if (d->narrow[i].manifold.failed)
+        if (d->narrow[i].failed) {
+            d->narrow[i].failed = false;
             return tl_fail_memory(&m->error);
+        }
     tl_status status = give_birth(m, &changed);
     if (status != TL_OK)
         return status;

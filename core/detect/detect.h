@@ -76,8 +76,7 @@ typedef struct tl_manifold {
     tl_contact_point *points;
     size_t facet_count, facet_room, point_count, point_room;
     double patch_area;
-    bool failed;   /* out of memory */
-    bool grounded; /* the axis is locally optimal: its features meet */
+    bool failed; /* out of memory */
 } tl_manifold;
 
 /* Per-thread room for the narrow phase. */
@@ -87,6 +86,7 @@ typedef struct tl_narrow {
     size_t vertex_room, normal_room, dot_room;
     struct tl_polygon *polygon; /* patch.c */
     tl_manifold manifold;
+    bool failed;              /* out of memory, in a phase that cannot say so */
     struct tl_old_point *old; /* transfer.c */
     double *value;
     size_t old_room;
@@ -164,7 +164,7 @@ typedef struct tl_run {
 typedef struct tl_detect {
     tl_pair *pairs;
     size_t pair_count, pair_room;
-    uint64_t changes; /* counts births, deaths and growth of contacts */
+    uint64_t changes;   /* counts births, deaths and growth of contacts */
     bool rows_changed;  /* since contacts were laid out */
     double reach;       /* half the skin of the broad phase */
     double *odometer_0; /* of each body, when the broad phase was made */
@@ -184,6 +184,19 @@ typedef struct tl_detect {
     unsigned threads;
     struct tl_broad *broad;
 } tl_detect;
+
+/* Row i of a vector kept as three columns. */
+static inline tl_vec3 tl_columns_get(double *const column[3], size_t i)
+{
+    return tl_v3(column[0][i], column[1][i], column[2][i]);
+}
+
+static inline void tl_columns_put(double *const column[3], size_t i, tl_vec3 v)
+{
+    column[0][i] = v.x;
+    column[1][i] = v.y;
+    column[2][i] = v.z;
+}
 
 /* Brings pairs, contacts and gaps up to the present places of the bodies: the first half of a step. */
 tl_status tl_detect_update(tl_model *m);

@@ -108,29 +108,17 @@ static tl_vec3 carry(tl_vec3 v, tl_vec3 from, tl_vec3 to, double h)
     return tl_v3_madd(v, -tl_v3_dot(v, to), to);
 }
 
-static tl_vec3 load(double *const column[3], size_t i)
-{
-    return tl_v3(column[0][i], column[1][i], column[2][i]);
-}
-
-static void store(double *const column[3], size_t i, tl_vec3 v)
-{
-    column[0][i] = v.x;
-    column[1][i] = v.y;
-    column[2][i] = v.z;
-}
-
 /* Turns the shear force and the tangent states of a point into the plane of `n`; h as for carry. */
 static void turn_vectors(tl_points_table *p, size_t i, tl_vec3 n, double h, uint32_t tangents)
 {
-    tl_vec3 old = load(p->normal, i);
+    tl_vec3 old = tl_columns_get(p->normal, i);
     if (tl_v3_norm2(old) > 0) {
-        store(p->f_s, i, carry(load(p->f_s, i), old, n, h));
+        tl_columns_put(p->f_s, i, carry(tl_columns_get(p->f_s, i), old, n, h));
         for (uint32_t k = 0; k + 2 < TL_STATE_COLUMNS && tangents; k++, tangents >>= 1)
             if (tangents & 1)
-                store(&p->state[k], i, carry(load(&p->state[k], i), old, n, h));
+                tl_columns_put(&p->state[k], i, carry(tl_columns_get(&p->state[k], i), old, n, h));
     }
-    store(p->normal, i, n);
+    tl_columns_put(p->normal, i, n);
 }
 
 static void follow_facet(tl_points_table *p, const tl_facet *f, size_t begin, const sight *s,
@@ -151,7 +139,7 @@ static void follow_facet(tl_points_table *p, const tl_facet *f, size_t begin, co
         p->arm[i] = x;
         p->closure[i] = -gap - p->reference[i];
         p->du_n[i] = du_n;
-        store(p->du_s, i, tl_v3_madd(du, -du_n, to.n));
+        tl_columns_put(p->du_s, i, tl_v3_madd(du, -du_n, to.n));
     }
 }
 
@@ -165,7 +153,7 @@ static void summarize(tl_model *m, uint32_t c)
     double area = 0, gap = INFINITY;
     for (size_t i = begin; i < end; i++) {
         double a = p->area[i], overlap = p->closure[i] + p->reference[i];
-        n = tl_v3_madd(n, a, load(p->normal, i));
+        n = tl_v3_madd(n, a, tl_columns_get(p->normal, i));
         x = tl_v3_madd(x, a, p->arm[i]);
         area += a;
         gap = -overlap < gap ? -overlap : gap;

@@ -169,16 +169,16 @@ static uint32_t lowest_vertex(const resting *r)
 }
 
 /* Adds a point at x (A's frame) with area still relative to the others'. */
-static bool add_resting(const tl_pair_view *view, bool b_stands, tl_manifold *m, tl_vec3 x,
+static void add_resting(const tl_pair_view *view, bool b_stands, tl_manifold *m, tl_vec3 x,
                         double weight, uint32_t key)
 {
     tl_vec3 p = b_stands ? tl_m3_tmul(&view->turn, tl_v3_sub(x, view->shift)) : x;
-    return tl_manifold_add_point(m, p, 0, weight, key);
+    tl_manifold_add_point(m, p, 0, weight, key);
 }
 
 /* The points a block rests on: its lowest vertex and, as far as they lie nearly in the face, the other
- * ends of the edges there, all clipped to the face. Returns false when nothing is over the face. */
-static bool add_support(const tl_pair_view *view, const resting *r, bool b_stands, tl_manifold *m)
+ * ends of the edges there, all clipped to the face. */
+static void add_support(const tl_pair_view *view, const resting *r, bool b_stands, tl_manifold *m)
 {
     uint32_t low = lowest_vertex(r);
     const tl_poly *p = r->standing;
@@ -186,8 +186,8 @@ static bool add_support(const tl_pair_view *view, const resting *r, bool b_stand
     double t0, t1;
     bool over = tl_segment_over_face(x, x, r->corners, r->corner_count, r->up, r->slack, &t0, &t1);
     uint64_t side = b_stands ? 1 : 2;
-    if (over && !add_resting(view, b_stands, m, x, 1, (uint32_t)tl_key(side, low)))
-        return true;
+    if (over)
+        add_resting(view, b_stands, m, x, 1, (uint32_t)tl_key(side, low));
     for (uint32_t k = p->star_at[low]; k < p->star_at[low + 1]; k++) {
         const tl_edge *edge = &p->edge[p->star[k]];
         uint32_t other = edge->a == low ? edge->b : edge->a;
@@ -202,7 +202,6 @@ static bool add_support(const tl_pair_view *view, const resting *r, bool b_stand
         if (!over)
             add_resting(view, b_stands, m, tl_v3_madd(x, t0, d), weight, (uint32_t)tl_key(key, 2));
     }
-    return over;
 }
 
 static tl_facet face_facet(const tl_pair_view *view, const tl_axis *axis, bool b_stands)
@@ -218,7 +217,7 @@ static tl_facet face_facet(const tl_pair_view *view, const tl_axis *axis, bool b
 }
 
 /* The point share of an axis that is a face's normal. */
-static bool share_of_face(const tl_pair_view *view, const tl_axis *axis, tl_narrow *room)
+static void share_of_face(const tl_pair_view *view, const tl_axis *axis, tl_narrow *room)
 {
     bool b_stands = axis->kind == TL_AXIS_FACE_A;
     tl_manifold *m = &room->manifold;
@@ -229,7 +228,7 @@ static bool share_of_face(const tl_pair_view *view, const tl_axis *axis, tl_narr
     tl_vec3 few[64], *corners = count <= 64 ? few : malloc(count * sizeof *corners);
     if (!corners) {
         m->failed = true;
-        return false;
+        return;
     }
     for (uint32_t i = 0; i < count; i++)
         corners[i] = vertex[lying->loop[start + i]];
@@ -240,12 +239,10 @@ static bool share_of_face(const tl_pair_view *view, const tl_axis *axis, tl_narr
                  .up = b_stands ? axis->n : tl_v3_neg(axis->n),
                  .slack = BORDER * view->size};
     size_t begin = m->point_count;
-    bool over = add_support(view, &r, b_stands, m);
-    bool met = over || m->point_count > begin;
+    add_support(view, &r, b_stands, m);
     if (corners != few)
         free(corners);
     add_facet(m, face_facet(view, axis, b_stands), begin);
-    return met;
 }
 
 /* A line of an edge in A's frame, and where its ends lie along a direction. */
@@ -337,9 +334,7 @@ void tl_manifold_build(const tl_pair_view *view, const tl_axis *axis, const tl_s
     m->facet_count = m->point_count = 0;
     m->patch_area = 0;
     m->failed = false;
-    m->grounded = true;
     double flush = add_patches(view, axis, rule, room);
-    m->grounded = m->patch_area > 0;
     double share = rule->minimum - m->patch_area;
     if (!rule->unconditional)
         share *= 1 - flush;
@@ -351,7 +346,6 @@ void tl_manifold_build(const tl_pair_view *view, const tl_axis *axis, const tl_s
         rule->unconditional ? tl_crease_add(view, reach_of(view, axis), flushness, m) : 0;
     if (crease > 0) {
         scale_share(m, begin, crease * share);
-        m->grounded = true;
         share *= 1 - crease;
         begin = m->point_count;
     }
@@ -360,7 +354,7 @@ void tl_manifold_build(const tl_pair_view *view, const tl_axis *axis, const tl_s
     if (axis->kind == TL_AXIS_EDGES)
         share_of_edges(view, axis, room);
     else
-        m->grounded = share_of_face(view, axis, room) || m->grounded;
+        share_of_face(view, axis, room);
     scale_share(m, begin, share);
 }
 

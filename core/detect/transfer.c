@@ -33,11 +33,6 @@ struct tl_old_point {
 
 typedef struct tl_old_point old_point;
 
-static tl_vec3 load(double *const column[3], size_t i)
-{
-    return tl_v3(column[0][i], column[1][i], column[2][i]);
-}
-
 /* Makes room for `count` old points and as many values. */
 static bool reserve(tl_narrow *room, size_t count)
 {
@@ -62,8 +57,8 @@ static void read_old(const tl_points_table *p, size_t begin, size_t count, tl_na
         double per_area = p->area[i] > 0 ? 1 / p->area[i] : 0;
         old_point *o = &room->old[k];
         o->arm = p->arm[i];
-        o->normal = load(p->normal, i);
-        o->shear = tl_v3_scale(per_area, load(p->f_s, i));
+        o->normal = tl_columns_get(p->normal, i);
+        o->shear = tl_v3_scale(per_area, tl_columns_get(p->f_s, i));
         o->area = p->area[i];
         o->f_n = per_area * p->f_n[i];
         o->field[FIELD_N0] = per_area * p->f_n0[i];
@@ -118,7 +113,7 @@ static void correct_shear(tl_points_table *p, size_t begin, size_t count, const 
     tl_vec3 force = want->shear;
     double torsion = want->torsion, polar = 0;
     for (size_t i = begin; i < begin + count; i++) {
-        tl_vec3 arm = tl_v3_sub(p->arm[i], now->centre), f = load(p->f_s, i);
+        tl_vec3 arm = tl_v3_sub(p->arm[i], now->centre), f = tl_columns_get(p->f_s, i);
         tl_vec3 across = tl_v3_cross(n, arm);
         force = tl_v3_sub(force, f);
         torsion -= tl_v3_dot(across, f);
@@ -290,7 +285,7 @@ static void write_points(tl_model *m, uint32_t c, const tl_manifold *g, const ol
             fit_values(o, value);
         else
             fitted(fit, p->arm[i], o, value);
-        tl_vec3 n = load(p->normal, i);
+        tl_vec3 n = tl_columns_get(p->normal, i);
         tl_vec3 shear = {value[FIT_SHEAR], value[FIT_SHEAR + 1], value[FIT_SHEAR + 2]};
         tl_vec3 f = tl_v3_scale(p->area[i], tl_v3_turn(shear, o->normal, n));
         f = tl_v3_madd(f, -tl_v3_dot(f, n), n);
@@ -341,7 +336,7 @@ bool tl_contact_transfer(tl_model *m, uint32_t c, tl_narrow *room)
 
     totals now = {0};
     for (size_t i = begin; i < begin + g->point_count; i++)
-        add_area(&now, p->area[i], p->arm[i], load(p->normal, i));
+        add_area(&now, p->area[i], p->arm[i], tl_columns_get(p->normal, i));
     close_area(&now);
     double follow = now.area / before.area;
     totals want = {.shear =
