@@ -84,6 +84,8 @@ tl_mass tl_poly_mass(const tl_poly *poly);
 tl_bounds tl_poly_bounds(const tl_poly *poly);
 double tl_poly_face_area(const tl_poly *poly, uint32_t face);
 tl_vec3 tl_poly_face_centroid(const tl_poly *poly, uint32_t face);
+/* Distance of a point from a face, measured in the face's plane; 0 for a point over the face. */
+double tl_poly_face_distance(const tl_poly *poly, uint32_t face, tl_vec3 point);
 double tl_poly_shortest_edge(const tl_poly *poly);
 /* Vertex farthest in a direction (the lowest index among equals). */
 uint32_t tl_poly_support(const tl_poly *poly, tl_vec3 direction);

@@ -264,6 +264,10 @@ tl_status tl_stage_add_box(tl_stage *stage, tl_vec3 min, tl_vec3 max, double den
 /* Cuts the visible blocks by a plane in user coordinates; see tl_host.cut. */
 tl_status tl_stage_cut(tl_stage *stage, tl_vec3 normal, tl_vec3 point, tl_tag tag,
                        double persistence);
+/* The same by a disc of `radius` about `point`; adds the blocks in its path to *met; see
+ * tl_host.cut_disc. */
+tl_status tl_stage_cut_disc(tl_stage *stage, tl_vec3 normal, tl_vec3 point, double radius,
+                            tl_tag tag, double persistence, size_t *met);
 /* Makes the staging set the model's blocks; on failure the model is as before. Ends the stage. */
 tl_status tl_stage_commit(tl_stage *stage);
 /* Drops the staging set, with the joints, planes and groups made since it was begun. */

@@ -219,8 +219,51 @@ static tl_status replace(tl_stage *stage, size_t index, const tl_cut *cut, uint6
     return TL_OK;
 }
 
-tl_status tl_stage_cut(tl_stage *stage, tl_vec3 normal, tl_vec3 point, tl_tag tag,
-                       double persistence)
+/* A joint's plane, or disc, as it meets one staged block. */
+typedef struct crossing {
+    tl_plane plane; /* in the block's frame */
+    tl_vec3 center; /* of the disc */
+    double radius;  /* INFINITY: the whole plane */
+} crossing;
+
+static crossing crossing_in_frame(const tl_model *m, const tl_stage_block *block, tl_vec3 normal,
+                                  tl_vec3 point, double radius)
+{
+    crossing x = {plane_in_frame(m, block, normal, point), point, radius};
+    if (block->source != TL_NO_ROW && !isinf(radius)) {
+        uint32_t body = m->blocks.body[block->source];
+        tl_vec3 relative = tl_v3_sub(tl_v3_sub(point, m->bodies.x_ref[body]), m->bodies.u[body]);
+        x.center = tl_m3_tmul(&m->bodies.r[body], relative);
+    }
+    return x;
+}
+
+/* False when the ball about a block shows that the plane or disc passes it by. */
+static bool may_meet(const crossing *x, const tl_stage_block *block)
+{
+    double reach = block->radius * (1 + TL_POLY_ON);
+    if (fabs(tl_v3_dot(x->plane.normal, block->center) - x->plane.offset) > reach)
+        return false;
+    return isinf(x->radius) || tl_v3_norm(tl_v3_sub(block->center, x->center)) <= x->radius + reach;
+}
+
+/* Whether a block that the plane crosses is in the path of the disc: the disc reaches the section of the
+ * block with the plane, or the face that the plane falls on. */
+static bool in_path(const crossing *x, const tl_stage_block *block, const tl_cut *cut)
+{
+    if (cut->result == TL_CUT_MISS)
+        return false;
+    if (isinf(x->radius))
+        return true;
+    if (cut->result == TL_CUT_MADE) /* the cap is the last face */
+        return tl_poly_face_distance(cut->below, cut->below->face_count - 1, x->center) < x->radius;
+    /* a sliver without a face along the plane has no section to speak of: its ball decided */
+    return cut->face == UINT32_MAX ||
+           tl_poly_face_distance(block->shape, cut->face, x->center) < x->radius;
+}
+
+tl_status tl_stage_cut_disc(tl_stage *stage, tl_vec3 normal, tl_vec3 point, double radius,
+                            tl_tag tag, double persistence, size_t *met)
 {
     tl_model *m = stage->model;
     tl_vec3 local = tl_v3_sub(point, m->origin);
@@ -232,26 +275,24 @@ tl_status tl_stage_cut(tl_stage *stage, tl_vec3 normal, tl_vec3 point, tl_tag ta
         tl_stage_block *block = &stage->blocks[i];
         if (block->hidden)
             continue;
-        tl_plane plane = plane_in_frame(m, block, normal, local);
-        double distance = fabs(tl_v3_dot(plane.normal, block->center) - plane.offset);
-        if (distance > block->radius * (1 + TL_POLY_ON))
+        crossing x = crossing_in_frame(m, block, normal, local, radius);
+        if (!may_meet(&x, block))
             continue;
         tl_cut cut;
-        tl_status status = tl_poly_cut(block->shape, plane, tag, &cut, &m->error);
+        tl_status status = tl_poly_cut(block->shape, x.plane, tag, &cut, &m->error);
         if (status != TL_OK)
             return status;
+        bool path = in_path(&x, block, &cut);
+        *met += path;
         /* the draw belongs to a block that lies in the joint's path */
-        if (cut.result != TL_CUT_MISS && persistence < 1 &&
-            tl_uniform(tl_key(key, block->lineage)) >= persistence) {
-            if (cut.result == TL_CUT_MADE) {
-                tl_poly_free(cut.below);
-                tl_poly_free(cut.above);
-            }
+        if (!path || (persistence < 1 && tl_uniform(tl_key(key, block->lineage)) >= persistence)) {
+            tl_poly_free(cut.below);
+            tl_poly_free(cut.above);
             continue;
         }
         if (cut.result == TL_CUT_MADE)
             status = replace(stage, i, &cut, key);
-        else if (cut.result != TL_CUT_MISS && cut.face != UINT32_MAX)
+        else if (cut.face != UINT32_MAX)
             status = retag(stage, block, cut.face, tag);
         if (status != TL_OK)
             return status;
@@ -260,6 +301,13 @@ tl_status tl_stage_cut(tl_stage *stage, tl_vec3 normal, tl_vec3 point, tl_tag ta
     }
     stage->summary.coincident += coincident;
     return TL_OK;
+}
+
+tl_status tl_stage_cut(tl_stage *stage, tl_vec3 normal, tl_vec3 point, tl_tag tag,
+                       double persistence)
+{
+    size_t met = 0;
+    return tl_stage_cut_disc(stage, normal, point, (double)INFINITY, tag, persistence, &met);
 }
 
 /* ---------------------------------------------------------------- commit ----------------- */

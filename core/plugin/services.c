@@ -187,8 +187,8 @@ static uint32_t next_plane(const tl_host *host, uint32_t number)
     return joint_exists(host, number) ? ++service_of(host)->model->joints[number - 1].planes : 0;
 }
 
-static tl_status cut(const tl_host *host, tl_vec3 normal, tl_vec3 point, tl_tag tag,
-                     double persistence)
+static tl_status cut_disc(const tl_host *host, tl_vec3 normal, tl_vec3 point, double radius,
+                          tl_tag tag, double persistence, size_t *met)
 {
     service *s = service_of(host);
     if (!joint_exists(host, tag.joint) || tag.plane < 1 ||
@@ -203,7 +203,20 @@ static tl_status cut(const tl_host *host, tl_vec3 normal, tl_vec3 point, tl_tag 
                     normal.x, normal.y, normal.z, point.x, point.y, point.z);
     if (!(persistence >= 0 && persistence <= 1))
         return fail(host, TL_E_ARGUMENT, "persistence = %g is outside [0, 1]", persistence);
-    return tl_stage_cut(&s->stage, normal, point, tag, persistence);
+    if (!(radius > 0))
+        return fail(host, TL_E_ARGUMENT, "radius = %g m must be > 0", radius);
+    size_t blocks = 0;
+    tl_status status =
+        tl_stage_cut_disc(&s->stage, normal, point, radius, tag, persistence, &blocks);
+    if (met)
+        *met = blocks;
+    return status;
+}
+
+static tl_status cut(const tl_host *host, tl_vec3 normal, tl_vec3 point, tl_tag tag,
+                     double persistence)
+{
+    return cut_disc(host, normal, point, (double)INFINITY, tag, persistence, NULL);
 }
 
 static double draw_uniform(const tl_host *host, uint32_t number, int64_t plane, uint32_t draw)
@@ -243,7 +256,8 @@ static tl_status run(service *s, const tl_kind *kind, const void *params)
                     .random = draw_uniform,
                     .progress = progress,
                     .log = say,
-                    .fail = fail};
+                    .fail = fail,
+                    .cut_disc = cut_disc};
     tl_status status = tl_stage_begin(m, &s->stage);
     if (status != TL_OK)
         return status;

@@ -272,6 +272,12 @@ struct tl_host {
     void (*log)(const tl_host *, const char *format, ...) TL_PRINTF(2, 3);
     /* Puts a sentence into the error and returns `status`. */
     tl_status (*fail)(const tl_host *, tl_status status, const char *format, ...) TL_PRINTF(3, 4);
+    /* since minor 1: as `cut`, by a disc of `radius` about `point` (INFINITY: the whole plane). A block is
+     * in the disc's path when the disc reaches into the polygon in which the plane cuts the block, and
+     * is then cut through. `met`, which may be NULL, gets the number of blocks in the path, whether the
+     * draw had them cut or not. */
+    tl_status (*cut_disc)(const tl_host *, tl_vec3 normal, tl_vec3 point, double radius, tl_tag tag,
+                          double persistence, size_t *met);
 };
 
 typedef struct tl_generator_ops {
