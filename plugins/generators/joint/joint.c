@@ -10,7 +10,7 @@ typedef struct params {
     const char *joint;
     double dip, dip_direction;
     tl_vec3 origin;
-    double persistence;
+    double persistence, radius;
 } params;
 
 static const tl_param param_table[] = {
@@ -24,6 +24,11 @@ static const tl_param param_table[] = {
     TL_PARAM(TL_PARAM_VEC3, params, origin, "m", "point on the plane", .def = {0, 0, 0}),
     TL_PARAM(TL_PARAM_REAL, params, persistence, "",
              "probability that a block in the plane's path is cut", .def = {1}, .min = 0, .max = 1),
+    TL_PARAM(
+        TL_PARAM_REAL, params, radius, "m",
+        "of a disc about the origin in the place of the plane: a block is in its path when the "
+        "disc meets its section",
+        .flags = TL_PARAM_OPTIONAL | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
 };
 
 static tl_status generate(const tl_host *host, const void *given)
@@ -35,7 +40,12 @@ static tl_status generate(const tl_host *host, const void *given)
         return status;
     tag.plane = host->next_plane(host, tag.joint);
     tl_vec3 normal = tl_plane_normal(p->dip, p->dip_direction);
-    return host->cut(host, normal, p->origin, tag, p->persistence);
+    size_t met = 0;
+    status = host->cut_disc(host, normal, p->origin, p->radius > 0 ? p->radius : INFINITY, tag,
+                            p->persistence, &met);
+    if (status == TL_OK && met == 0)
+        host->log(host, "joint '%s': its plane meets no visible block", p->joint);
+    return status;
 }
 
 static const tl_generator_ops ops = {.size = sizeof ops, .generate = generate};

@@ -1,21 +1,29 @@
-/* jointset.c - generator "jointset": a set of nearly parallel planes, placed symmetrically about a
- * point, that cut the visible blocks.
+/* jointset.c - generator "jointset": a set of nearly parallel planes, or discs, placed symmetrically about
+ * a point, that cut the visible blocks.
  *
  * The planes are numbered from the lowest to the highest along the mean upward normal n. An odd number
  * has its middle plane through the origin, an even one its middle gap about it. Plane j passes through
- * origin + offset_j n with its own attitude:
+ * origin + offset_j n, about which its disc lies, with its own attitude:
  *
- *     dip = mean + deviation u1,  dip direction = mean + deviation u2       u uniform in [-1, 1)
+ *     dip = mean + deviation u1,  dip direction = mean + deviation u2
  *     gap between two planes = spacing + spacing_dev u3
+ *
+ * u is uniform in [-1, 1), or normal with standard deviation 1 cut off at NORMAL_LIMIT; a normal gap is cut
+ * off, on both sides alike, so that it stays positive. By "fisher" the pole of a plane is distributed
+ * about the mean pole with the concentration fisher_k, and gaps are uniform.
  *
  * A gap belongs to the plane on its far side from the middle; the middle gap of an even set to the
  * plane above. Draws are keyed by model seed, set and plane number (Hart, Cundall and Lemos, Int. J.
  * Rock Mech. Min. Sci. 25 (1988) 117-125, section on model generation, for the six parameters). */
-#include <talus/plugin.h>
+#include "draw.h"
+
 #include <talus/vmath.h>
 
-/* Draws of one plane. */
-enum { DRAW_DIP, DRAW_DIRECTION, DRAW_GAP };
+/* Normal deviations end here, in standard deviations, so that a rare draw cannot turn a plane over. */
+#define NORMAL_LIMIT 3.0
+
+enum { UNIFORM, NORMAL, FISHER };
+static const char *const distributions[] = {"uniform", "normal", "fisher", NULL};
 
 typedef struct params {
     const char *joint;
@@ -23,6 +31,8 @@ typedef struct params {
     int64_t number;
     tl_vec3 origin;
     double persistence;
+    int32_t distribution;
+    double fisher_k, radius;
 } params;
 
 static const tl_param param_table[] = {
@@ -30,35 +40,48 @@ static const tl_param param_table[] = {
              .flags = TL_PARAM_REQUIRED),
     TL_PARAM(TL_PARAM_REAL, params, dip, "deg", "mean dip below horizontal",
              .flags = TL_PARAM_REQUIRED, .min = 0, .max = 90),
-    TL_PARAM(TL_PARAM_REAL, params, dip_dev, "deg", "largest deviation of the dip", .min = 0,
-             .max = 90),
+    TL_PARAM(TL_PARAM_REAL, params, dip_dev, "deg",
+             "deviation of the dip: largest, or standard when normal", .min = 0, .max = 90),
     TL_PARAM(TL_PARAM_REAL, params, dip_direction, "deg",
              "mean dip direction, clockwise from north (+y)", .flags = TL_PARAM_REQUIRED, .min = 0,
              .max = 360),
-    TL_PARAM(TL_PARAM_REAL, params, dip_direction_dev, "deg",
-             "largest deviation of the dip direction", .min = 0, .max = 180),
+    TL_PARAM(TL_PARAM_REAL, params, dip_direction_dev, "deg", "deviation of the dip direction",
+             .min = 0, .max = 180),
     TL_PARAM(TL_PARAM_REAL, params, spacing, "m", "mean distance between planes",
              .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
     TL_PARAM(TL_PARAM_REAL, params, spacing_dev, "m",
-             "largest deviation of the spacing; less than the spacing", .min = 0, .max = INFINITY),
+             "deviation of the spacing; less than the spacing", .min = 0, .max = INFINITY),
     TL_PARAM(TL_PARAM_INT, params, number, "", "number of planes", .def = {1}, .min = 1,
              .max = 1e4),
     TL_PARAM(TL_PARAM_VEC3, params, origin, "m", "point the planes lie symmetrically about",
              .def = {0, 0, 0}),
     TL_PARAM(TL_PARAM_REAL, params, persistence, "",
              "probability that a block in a plane's path is cut", .def = {1}, .min = 0, .max = 1),
+    TL_PARAM(TL_PARAM_ENUM, params, distribution, "",
+             "of the deviations: uniform within them, normal with them as standard deviations, or "
+             "fisher about the mean pole",
+             .def = {UNIFORM}, .choices = distributions),
+    TL_PARAM(TL_PARAM_REAL, params, fisher_k, "", "concentration of the poles by fisher",
+             .flags = TL_PARAM_OPTIONAL | TL_PARAM_MIN_OPEN, .min = 0, .max = 1e9),
+    TL_PARAM(TL_PARAM_REAL, params, radius, "m",
+             "of discs in the place of planes: a block is in a disc's path when the disc meets its "
+             "section",
+             .flags = TL_PARAM_OPTIONAL | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
 };
 
-/* Where the draws of this call are found: planes of an earlier call of the same set come first. */
-typedef struct draws {
-    const tl_host *host;
-    uint32_t joint, first;
-} draws;
-
-/* Uniform in [-1, 1) for plane `index` (from 0) of this call. */
-static double deviation(const draws *d, int64_t index, uint32_t draw)
+/* Deviation of a plane's dip or dip direction, in units of the one given. */
+static double deviation(const draws *d, const params *p, int64_t index, uint32_t kind)
 {
-    return 2 * d->host->random(d->host, d->joint, d->first + index, draw) - 1;
+    return p->distribution == NORMAL ? draw_normal(d, index, kind, NORMAL_LIMIT)
+                                     : draw_even(d, index, kind);
+}
+
+/* Deviation of a gap, in units of spacing_dev. */
+static double gap_deviation(const draws *d, const params *p, int64_t index)
+{
+    if (p->distribution != NORMAL)
+        return draw_even(d, index, DRAW_GAP);
+    return draw_normal(d, index, DRAW_GAP, fmin(NORMAL_LIMIT, p->spacing / p->spacing_dev));
 }
 
 /* Distance of plane `index` from the origin along the mean normal. The mean part is a product, so a set
@@ -69,44 +92,82 @@ static double offset_of(const draws *d, const params *p, int64_t index)
     double mean = ((double)index - 0.5 * (double)(n - 1)) * p->spacing;
     if (!(p->spacing_dev > 0))
         return mean;
-    double sum = n % 2 == 0 ? 0.5 * deviation(d, middle, DRAW_GAP) : 0;
+    double sum = n % 2 == 0 ? 0.5 * gap_deviation(d, p, middle) : 0;
     int64_t low = n % 2 == 0 ? middle - 1 : middle;
     for (int64_t i = middle + 1; i <= index; i++)
-        sum += deviation(d, i, DRAW_GAP);
+        sum += gap_deviation(d, p, i);
     for (int64_t i = low - 1; i >= index; i--)
-        sum += deviation(d, i, DRAW_GAP);
+        sum += gap_deviation(d, p, i);
     return index >= middle ? mean + p->spacing_dev * sum : mean - p->spacing_dev * sum;
 }
 
-static tl_status cut_plane(const draws *d, const params *p, tl_vec3 mean, int64_t index)
+static tl_vec3 normal_of(const draws *d, const params *p, tl_vec3 mean, int64_t index)
+{
+    if (p->distribution == FISHER)
+        return draw_fisher(d, index, mean, p->fisher_k);
+    double dip = p->dip + p->dip_dev * deviation(d, p, index, DRAW_DIP);
+    double direction =
+        p->dip_direction + p->dip_direction_dev * deviation(d, p, index, DRAW_DIRECTION);
+    return tl_plane_normal(dip, direction);
+}
+
+static tl_status cut_plane(const draws *d, const params *p, tl_vec3 mean, int64_t index,
+                           size_t *met)
 {
     tl_tag tag = {d->joint, d->first + (uint32_t)index};
-    double dip = p->dip + p->dip_dev * deviation(d, index, DRAW_DIP);
-    double direction =
-        p->dip_direction + p->dip_direction_dev * deviation(d, index, DRAW_DIRECTION);
     tl_vec3 point = tl_v3_madd(p->origin, offset_of(d, p, index), mean);
-    return d->host->cut(d->host, tl_plane_normal(dip, direction), point, tag, p->persistence);
+    double radius = p->radius > 0 ? p->radius : INFINITY;
+    size_t blocks = 0;
+    tl_status status = d->host->cut_disc(d->host, normal_of(d, p, mean, index), point, radius, tag,
+                                         p->persistence, &blocks);
+    *met += blocks;
+    return status;
+}
+
+/* What the ranges of single parameters cannot tell. */
+static tl_status check(const tl_host *host, const params *p)
+{
+    if (!(p->spacing_dev < p->spacing))
+        return host->fail(host, TL_E_ARGUMENT, "spacing_dev = %g m must be < spacing = %g m",
+                          p->spacing_dev, p->spacing);
+    if (p->distribution == FISHER && !(p->fisher_k > 0))
+        return host->fail(host, TL_E_ARGUMENT,
+                          "distribution = 'fisher' needs fisher_k, the concentration of the poles "
+                          "(> 0; a large one means little scatter)");
+    if (p->distribution == FISHER && (p->dip_dev > 0 || p->dip_direction_dev > 0))
+        return host->fail(host, TL_E_ARGUMENT,
+                          "%s = %g deg does not go with distribution = 'fisher', whose scatter is "
+                          "fisher_k: leave it out",
+                          p->dip_dev > 0 ? "dip_dev" : "dip_direction_dev",
+                          p->dip_dev > 0 ? p->dip_dev : p->dip_direction_dev);
+    if (p->distribution != FISHER && p->fisher_k > 0)
+        return host->fail(host, TL_E_ARGUMENT,
+                          "fisher_k = %g goes with distribution = 'fisher' only", p->fisher_k);
+    return TL_OK;
 }
 
 static tl_status generate(const tl_host *host, const void *given)
 {
     const params *p = given;
-    if (!(p->spacing_dev < p->spacing))
-        return host->fail(host, TL_E_ARGUMENT, "spacing_dev = %g m must be < spacing = %g m",
-                          p->spacing_dev, p->spacing);
     draws d = {.host = host};
-    tl_status status = host->joint(host, p->joint, &d.joint);
+    tl_status status = check(host, p);
+    if (status == TL_OK)
+        status = host->joint(host, p->joint, &d.joint);
     if (status != TL_OK)
         return status;
     d.first = host->next_plane(host, d.joint);
     for (int64_t i = 1; i < p->number; i++)
         host->next_plane(host, d.joint);
     tl_vec3 mean = tl_plane_normal(p->dip, p->dip_direction);
+    size_t met = 0;
     for (int64_t i = 0; i < p->number && status == TL_OK; i++) {
-        status = cut_plane(&d, p, mean, i);
+        status = cut_plane(&d, p, mean, i, &met);
         if (status == TL_OK)
             status = host->progress(host, (double)(i + 1) / (double)p->number);
     }
+    if (status == TL_OK && met == 0)
+        host->log(host, "joint set '%s': none of its %lld plane%s meets a visible block", p->joint,
+                  (long long)p->number, p->number == 1 ? "" : "s");
     return status;
 }
 
