@@ -131,6 +131,28 @@ double tl_poly_shortest_edge(const tl_poly *p)
     return sqrt(shortest2);
 }
 
+double tl_poly_diameter(const tl_poly *p)
+{
+    double longest2 = 0;
+    for (uint32_t i = 0; i < p->vertex_count; i++)
+        for (uint32_t k = i + 1; k < p->vertex_count; k++)
+            longest2 = fmax(longest2, tl_v3_norm2(tl_v3_sub(p->vertex[k], p->vertex[i])));
+    return sqrt(longest2);
+}
+
+double tl_poly_thickness(const tl_poly *p)
+{
+    double thinnest = INFINITY;
+    for (uint32_t f = 0; f < p->face_count; f++) {
+        double deepest = 0;
+        tl_vec3 on = p->vertex[p->loop[p->start[f]]];
+        for (uint32_t v = 0; v < p->vertex_count; v++)
+            deepest = fmax(deepest, tl_v3_dot(p->plane[f].normal, tl_v3_sub(on, p->vertex[v])));
+        thinnest = fmin(thinnest, deepest);
+    }
+    return thinnest;
+}
+
 uint32_t tl_poly_support(const tl_poly *p, tl_vec3 direction)
 {
     uint32_t best = 0;

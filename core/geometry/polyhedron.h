@@ -87,6 +87,11 @@ tl_vec3 tl_poly_face_centroid(const tl_poly *poly, uint32_t face);
 /* Distance of a point from a face, measured in the face's plane; 0 for a point over the face. */
 double tl_poly_face_distance(const tl_poly *poly, uint32_t face, tl_vec3 point);
 double tl_poly_shortest_edge(const tl_poly *poly);
+/* Largest distance between two vertices. */
+double tl_poly_diameter(const tl_poly *poly);
+/* Smallest extent along the normal of a face. (Between two crossing edges it may be less, 0.87 of this
+ * in a regular tetrahedron; but what is thin is thin along a face.) */
+double tl_poly_thickness(const tl_poly *poly);
 /* Vertex farthest in a direction (the lowest index among equals). */
 uint32_t tl_poly_support(const tl_poly *poly, tl_vec3 direction);
 /* Within `tolerance` (a length) of the inside. */
@@ -100,8 +105,13 @@ void tl_principal_axes(tl_sym3 tensor, tl_vec3 *moments, tl_quat *axes);
  * their whole area, and edges of such faces where the body's surface goes on flat or turns inward. */
 tl_status tl_poly_mark_seams(tl_poly *const *parts, size_t count, tl_error *error);
 
-/* Which of the parts hang together over faces they share: label[i] is the lowest index of its group. */
-tl_status tl_poly_connected(tl_poly *const *parts, size_t count, uint32_t *label, tl_error *error);
+/* Whether faces of this tag keep parts apart that share them. */
+typedef bool (*tl_sever_fn)(const void *user, tl_tag tag);
+
+/* Which of the parts hang together over faces they share: label[i] is the lowest index of its group.
+ * Faces that `severs` (NULL: none does) do not count. */
+tl_status tl_poly_connected(tl_poly *const *parts, size_t count, tl_sever_fn severs,
+                            const void *user, uint32_t *label, tl_error *error);
 
 /* ---- cutting: cut.c ---- */
 

@@ -100,6 +100,8 @@ typedef struct part {
     double *open; /* [faces] area not covered yet */
     uint32_t index;
     struct part *group; /* towards the first part it hangs together with */
+    tl_sever_fn severs;
+    const void *user;
 } part;
 
 static bool apart(const part *a, const part *b)
@@ -127,6 +129,11 @@ static void unite(part *a, part *b)
         x->group = y;
 }
 
+static bool is_severed(const part *p, uint32_t face)
+{
+    return p->severs && p->severs(p->user, p->poly->tag[face]);
+}
+
 /* Adds up what the parts cover of each other, and groups those that share an area. */
 static bool cover(part *a, part *b)
 {
@@ -141,7 +148,8 @@ static bool cover(part *a, part *b)
             double area = common_area(a->poly, i, b->poly, j, room);
             a->open[i] -= area;
             b->open[j] -= area;
-            if (area > UNCOVERED * tl_poly_face_area(a->poly, i))
+            if (area > UNCOVERED * tl_poly_face_area(a->poly, i) && !is_severed(a, i) &&
+                !is_severed(b, j))
                 unite(a, b);
             free(room);
         }
@@ -235,7 +243,10 @@ static part *list_parts(tl_poly *const *parts, size_t count)
         return NULL;
     double *open = (double *)(void *)(list + count);
     for (size_t i = 0; i < count; at += parts[i]->face_count, i++) {
-        list[i] = (part){parts[i], tl_poly_bounds(parts[i]), open + at, (uint32_t)i, NULL};
+        list[i] = (part){.poly = parts[i],
+                         .bounds = tl_poly_bounds(parts[i]),
+                         .open = open + at,
+                         .index = (uint32_t)i};
         for (uint32_t f = 0; f < parts[i]->face_count; f++)
             open[at + f] = tl_poly_face_area(parts[i], f);
     }
@@ -264,9 +275,14 @@ tl_status tl_poly_mark_seams(tl_poly *const *parts, size_t count, tl_error *erro
     return done ? TL_OK : tl_fail_memory(error);
 }
 
-tl_status tl_poly_connected(tl_poly *const *parts, size_t count, uint32_t *label, tl_error *error)
+tl_status tl_poly_connected(tl_poly *const *parts, size_t count, tl_sever_fn severs,
+                            const void *user, uint32_t *label, tl_error *error)
 {
     part *list = count ? list_parts(parts, count) : NULL;
+    for (size_t i = 0; list && i < count; i++) {
+        list[i].severs = severs;
+        list[i].user = user;
+    }
     if (count && (!list || !each_pair(list, count, cover))) {
         free(list);
         return tl_fail_memory(error);

@@ -104,6 +104,7 @@ void tl_model_destroy(tl_model *m)
         tl_material_clear(&m->materials[i]);
     tl_damping_clear(m);
     tl_drives_clear(m);
+    free(m->record.list);
     free(m->groups);
     free(m->joints);
     free(m->materials);

@@ -110,6 +110,17 @@ typedef struct tl_joint_area {
     tl_area_rule rule;
 } tl_joint_area;
 
+/* What has been done to the blocks since the model was made, for its report. */
+typedef struct tl_cut_record {
+    size_t cuts, refused, coincident;
+    double created, deleted; /* volumes, m3 */
+    tl_refused_cut *list;
+    size_t listed;
+} tl_cut_record;
+
+/* Most refused cuts that are listed; more are only counted. */
+#define TL_REFUSED_LISTED 1000
+
 struct tl_model {
     tl_model_config config;
     tl_error error;
@@ -133,6 +144,7 @@ struct tl_model {
     tl_joint_set *joints; /* joint number j is joints[j - 1] */
     size_t joint_count;
     uint64_t created; /* counts blocks made by generators, for their lineage */
+    tl_cut_record record;
 
     tl_material *materials;
     size_t material_count;
@@ -238,15 +250,29 @@ typedef struct tl_stage_block {
     uint32_t group;
     double density;
     uint64_t lineage;
+    uint32_t body; /* blocks of one number are one body */
+    uint32_t
+        left; /* a body it was taken out of and that has not been looked at since, or TL_NO_ROW */
+    uint64_t draw; /* key of the body's draws: the least of its blocks' lineages */
     bool owned, retagged, hidden;
+    bool veiled; /* hidden by the generator, while it runs */
+    bool joined; /* its body may have other blocks */
+    bool torn;   /* its body has been cut since it was last known to hang together */
 } tl_stage_block;
 
 typedef struct tl_stage {
     tl_model *model;
     tl_stage_block *blocks;
     size_t count, capacity;
+    size_t *visible; /* [capacity] indices of the blocks that generators see, ascending */
+    size_t visible_count;
+    uint32_t next_body;
+    bool torn;     /* some block is */
+    bool regroups; /* bodies of several blocks are made or changed */
     tl_generate_summary summary;
-    double created_volume;
+    double created_volume;   /* less what was deleted */
+    tl_refused_cut *refused; /* `block` is an index into blocks until the commit */
+    size_t refused_listed;
     /* what to go back to when the stage is dropped */
     size_t joint_count, group_count;
     uint32_t *plane_count;
@@ -268,10 +294,35 @@ tl_status tl_stage_cut(tl_stage *stage, tl_vec3 normal, tl_vec3 point, tl_tag ta
  * tl_host.cut_disc. */
 tl_status tl_stage_cut_disc(tl_stage *stage, tl_vec3 normal, tl_vec3 point, double radius,
                             tl_tag tag, double persistence, size_t *met);
-/* Makes the staging set the model's blocks; on failure the model is as before. Ends the stage. */
+/* Cuts block `index` (of all staged) without a joint: both sides stay one body. `above` is the new
+ * block on the normal's side, or SIZE_MAX when the plane does not divide the block. */
+tl_status tl_stage_cut_block(tl_stage *stage, size_t index, tl_vec3 normal, tl_vec3 point,
+                             size_t *above);
+/* Whether the inside of block `index` meets the common inside of half spaces. */
+tl_status tl_stage_meets(tl_stage *stage, size_t index, const tl_half_space *spaces, size_t count,
+                         bool *meets);
+/* Makes the staging set the model's blocks (stage_commit.c); on failure the model is as before. Ends the stage. */
 tl_status tl_stage_commit(tl_stage *stage);
 /* Drops the staging set, with the joints, planes and groups made since it was begun. */
 void tl_stage_drop(tl_stage *stage);
+/* Frees the lists of a staging set whose shapes have gone to the model or are freed. */
+void tl_stage_end(tl_stage *stage);
+
+/* ---- bodies of staged blocks: stage_bodies.c ---- */
+
+/* Takes blocks out of their bodies: those that hang together over faces without a new joint are one
+ * body, and so is what is left. */
+void tl_stage_part(tl_stage *stage, const size_t *indices, size_t count);
+/* Makes one body of all the bodies the blocks are of. */
+void tl_stage_join(tl_stage *stage, const size_t *indices, size_t count);
+void tl_stage_delete(tl_stage *stage, size_t index);
+/* Makes the list of visible blocks anew. */
+void tl_stage_list_visible(tl_stage *stage);
+/* Gives every body that was torn the numbers of the parts it falls into. */
+tl_status tl_stage_settle(tl_stage *stage);
+/* group[row] of the rows whose blocks have the given ids, as tl_bodies_regroup wants it; `first` has room
+ * for stage->next_body numbers. */
+void tl_stage_groups(const tl_stage *stage, const tl_id *ids, uint32_t *first, uint32_t *group);
 
 /* ---- bodies: bodies.c ---- */
 

@@ -306,7 +306,7 @@ tl_status tl_bodies_fall_apart(tl_model *m, const unsigned char *keep, uint32_t 
         }
         if (count == 0 || (count == b->member_count[body] && is_whole(m, body)))
             continue;
-        status = tl_poly_connected(polys, count, label, &m->error);
+        status = tl_poly_connected(polys, count, NULL, NULL, label, &m->error);
         for (uint32_t k = 0; k < count && status == TL_OK; k++)
             group[rows[k]] = rows[label[k]];
     }

@@ -23,8 +23,14 @@ static bool stage_push(tl_stage *stage, const tl_stage_block *block)
         if (!blocks)
             return false;
         stage->blocks = blocks;
+        size_t *visible = realloc(stage->visible, capacity * sizeof *visible);
+        if (!visible)
+            return false;
+        stage->visible = visible;
         stage->capacity = capacity;
     }
+    if (!block->hidden && !block->veiled)
+        stage->visible[stage->visible_count++] = stage->count;
     stage->blocks[stage->count++] = *block;
     return true;
 }
@@ -45,12 +51,28 @@ static void set_ball(tl_stage_block *block)
     block->radius = sqrt(r2);
 }
 
+/* Gives the blocks of each body the key of its draws. */
+static void key_bodies(tl_stage *stage)
+{
+    const tl_bodies *b = &stage->model->bodies;
+    for (uint32_t body = 0; body < b->table.rows; body++) {
+        const uint32_t *rows = &stage->model->members[b->member_start[body]];
+        uint64_t least = stage->blocks[rows[0]].lineage;
+        for (uint32_t k = 1; k < b->member_count[body]; k++)
+            if (stage->blocks[rows[k]].lineage < least)
+                least = stage->blocks[rows[k]].lineage;
+        for (uint32_t k = 0; k < b->member_count[body]; k++)
+            stage->blocks[rows[k]].draw = least;
+    }
+}
+
 tl_status tl_stage_begin(tl_model *m, tl_stage *stage)
 {
     *stage = (tl_stage){.model = m,
                         .joint_count = m->joint_count,
                         .group_count = m->group_count,
                         .created = m->created,
+                        .next_body = (uint32_t)m->bodies.table.rows,
                         .origin_set = m->origin_set};
     const tl_blocks *b = &m->blocks;
     stage->summary.before = b->table.rows;
@@ -65,6 +87,10 @@ tl_status tl_stage_begin(tl_model *m, tl_stage *stage)
                                 .group = b->group[row],
                                 .density = b->density[row],
                                 .lineage = b->lineage[row],
+                                .draw = b->lineage[row],
+                                .body = b->body[row],
+                                .left = TL_NO_ROW,
+                                .joined = m->bodies.member_count[b->body[row]] > 1,
                                 .hidden = b->hidden[row] != 0};
         set_ball(&block);
         if (!stage_push(stage, &block)) {
@@ -72,16 +98,21 @@ tl_status tl_stage_begin(tl_model *m, tl_stage *stage)
             return tl_fail_memory(&m->error);
         }
     }
+    key_bodies(stage);
     return TL_OK;
 }
 
-static void stage_end(tl_stage *stage)
+void tl_stage_end(tl_stage *stage)
 {
     free(stage->blocks);
+    free(stage->visible);
     free(stage->plane_count);
+    free(stage->refused);
     stage->blocks = NULL;
+    stage->visible = NULL;
     stage->plane_count = NULL;
-    stage->count = stage->capacity = 0;
+    stage->refused = NULL;
+    stage->count = stage->capacity = stage->visible_count = 0;
 }
 
 void tl_stage_drop(tl_stage *stage)
@@ -101,7 +132,7 @@ void tl_stage_drop(tl_stage *stage)
         m->origin_set = false;
         m->origin = tl_v3(0, 0, 0);
     }
-    stage_end(stage);
+    tl_stage_end(stage);
 }
 
 /* Fixes the model's origin from the extent of the first block made. */
@@ -125,7 +156,9 @@ static tl_status add_shape(tl_stage *stage, tl_poly *shape, double density, cons
     tl_model *m = stage->model;
     tl_stage_block block = {.shape = shape, .source = TL_NO_ROW, .density = density, .owned = true};
     block.group = tl_group_intern(m, group ? group : "");
-    block.lineage = tl_key(0, ++m->created);
+    block.lineage = block.draw = tl_key(0, ++m->created);
+    block.body = stage->next_body++;
+    block.left = TL_NO_ROW;
     set_ball(&block);
     if (block.group == UINT32_MAX || !stage_push(stage, &block)) {
         tl_poly_free(shape);
@@ -193,11 +226,16 @@ static tl_status retag(tl_stage *stage, tl_stage_block *block, uint32_t face, tl
         block->owned = block->retagged = true;
     }
     block->shape->tag[face] = tag;
+    /* a joint on a face over which the body may hang together */
+    block->torn = block->joined;
+    stage->torn = stage->torn || block->joined;
+    stage->regroups = stage->regroups || block->joined;
     return TL_OK;
 }
 
-/* Puts the two sides of a cut in the place of block `index`. */
-static tl_status replace(tl_stage *stage, size_t index, const tl_cut *cut, uint64_t key)
+/* Puts the two sides of a cut in the place of block `index`. The sides of a single block are bodies of
+ * their own when a joint runs between them; what becomes of a body of several is found out later. */
+static tl_status replace(tl_stage *stage, size_t index, const tl_cut *cut, uint64_t key, bool joint)
 {
     tl_stage_block below = stage->blocks[index], above = below;
     if (below.owned)
@@ -208,6 +246,14 @@ static tl_status replace(tl_stage *stage, size_t index, const tl_cut *cut, uint6
     above.shape = cut->above;
     above.lineage = tl_key(tl_key(below.lineage, key), 1);
     below.lineage = tl_key(tl_key(below.lineage, key), 0);
+    if (joint && !below.joined) {
+        above.body = stage->next_body++;
+        below.draw = below.lineage;
+        above.draw = above.lineage;
+    } else {
+        below.joined = above.joined = below.torn = above.torn = true;
+        stage->torn = stage->regroups = true;
+    }
     set_ball(&below);
     set_ball(&above);
     stage->blocks[index] = below;
@@ -262,10 +308,38 @@ static bool in_path(const crossing *x, const tl_stage_block *block, const tl_cut
            tl_poly_face_distance(block->shape, cut->face, x->center) < x->radius;
 }
 
+/* Notes a cut that was refused, for the model's report; only so many are listed. */
+static void note_refused(tl_stage *stage, size_t index, tl_plane plane, const tl_refused_cut *cut)
+{
+    stage->summary.refused++;
+    size_t n = stage->refused_listed;
+    if (stage->model->record.listed + n >= TL_REFUSED_LISTED)
+        return;
+    if (!stage->refused)
+        stage->refused = malloc(TL_REFUSED_LISTED * sizeof *stage->refused);
+    if (!stage->refused)
+        return; /* without memory for the list, counting must do */
+    const tl_poly *p = stage->blocks[index].shape;
+    double low = INFINITY, high = -INFINITY;
+    for (uint32_t v = 0; v < p->vertex_count; v++) {
+        double d = tl_v3_dot(plane.normal, p->vertex[v]) - plane.offset;
+        low = fmin(low, d);
+        high = fmax(high, d);
+    }
+    stage->refused[n] = *cut;
+    stage->refused[n].block = (tl_id)index;
+    stage->refused[n].thickness = fmax(0, fmin(-low, high));
+    stage->refused[n].limit = TL_POLY_THIN * p->size;
+    stage->refused_listed++;
+}
+
 tl_status tl_stage_cut_disc(tl_stage *stage, tl_vec3 normal, tl_vec3 point, double radius,
                             tl_tag tag, double persistence, size_t *met)
 {
     tl_model *m = stage->model;
+    tl_status settled = tl_stage_settle(stage);
+    if (settled != TL_OK)
+        return settled;
     tl_vec3 local = tl_v3_sub(point, m->origin);
     uint64_t key = tl_key(
         tl_key_text(tl_key(0, (uint64_t)m->config.seed), m->joints[tag.joint - 1].name), tag.plane);
@@ -273,7 +347,7 @@ tl_status tl_stage_cut_disc(tl_stage *stage, tl_vec3 normal, tl_vec3 point, doub
     size_t count = stage->count; /* children of this cut are not cut by it again */
     for (size_t i = 0; i < count; i++) {
         tl_stage_block *block = &stage->blocks[i];
-        if (block->hidden)
+        if (block->hidden || block->veiled)
             continue;
         crossing x = crossing_in_frame(m, block, normal, local, radius);
         if (!may_meet(&x, block))
@@ -284,20 +358,22 @@ tl_status tl_stage_cut_disc(tl_stage *stage, tl_vec3 normal, tl_vec3 point, doub
             return status;
         bool path = in_path(&x, block, &cut);
         *met += path;
-        /* the draw belongs to a block that lies in the joint's path */
-        if (!path || (persistence < 1 && tl_uniform(tl_key(key, block->lineage)) >= persistence)) {
+        /* the draw belongs to a body that lies in the joint's path */
+        if (!path || (persistence < 1 && tl_uniform(tl_key(key, block->draw)) >= persistence)) {
             tl_poly_free(cut.below);
             tl_poly_free(cut.above);
             continue;
         }
         if (cut.result == TL_CUT_MADE)
-            status = replace(stage, i, &cut, key);
+            status = replace(stage, i, &cut, key, true);
         else if (cut.face != UINT32_MAX)
             status = retag(stage, block, cut.face, tag);
         if (status != TL_OK)
             return status;
         coincident = coincident || cut.result == TL_CUT_COINCIDENT;
-        stage->summary.refused += cut.result == TL_CUT_REFUSED;
+        if (cut.result == TL_CUT_REFUSED)
+            note_refused(stage, i, x.plane,
+                         &(tl_refused_cut){.joint = tag, .normal = normal, .point = point});
     }
     stage->summary.coincident += coincident;
     return TL_OK;
@@ -310,117 +386,60 @@ tl_status tl_stage_cut(tl_stage *stage, tl_vec3 normal, tl_vec3 point, tl_tag ta
     return tl_stage_cut_disc(stage, normal, point, (double)INFINITY, tag, persistence, &met);
 }
 
-/* ---------------------------------------------------------------- commit ----------------- */
-
-/* Moves a shape so that its centroid is the zero of its frame. Offsets follow from a vertex of the
- * face, which keeps the digits of a shape far from zero. */
-static void centre_shape(tl_poly *shape, tl_vec3 centroid)
-{
-    for (uint32_t i = 0; i < shape->vertex_count; i++)
-        shape->vertex[i] = tl_v3_sub(shape->vertex[i], centroid);
-    for (uint32_t f = 0; f < shape->face_count; f++)
-        shape->plane[f].offset =
-            tl_v3_dot(shape->plane[f].normal, shape->vertex[shape->loop[shape->start[f]]]);
-}
-
-/* Appends the row of a new block and of its body. A child moves on as its part of the source did. */
-static void append(tl_model *m, const tl_stage_block *block)
-{
-    tl_blocks *blocks = &m->blocks;
-    tl_bodies *bodies = &m->bodies;
-    uint32_t row = (uint32_t)blocks->table.rows, body = (uint32_t)bodies->table.rows;
-    tl_table_resize(&blocks->table, row + 1u);
-    tl_table_resize(&bodies->table, body + 1u);
-    tl_vec3 c = tl_poly_mass(block->shape).centroid;
-    centre_shape(block->shape, c);
-    blocks->id[row] = bodies->id[body] = m->next_id++;
-    blocks->body[row] = body;
-    blocks->shape[row] = block->shape;
-    blocks->group[row] = block->group;
-    blocks->density[row] = block->density;
-    blocks->lineage[row] = block->lineage;
-    blocks->hidden[row] = block->hidden;
-    tl_block_measure(m, row);
-    if (block->source == TL_NO_ROW) {
-        bodies->x_ref[body] = c;
-        bodies->q[body] = tl_q_identity();
-        bodies->r[body] = tl_m3_identity();
-        return;
-    }
-    uint32_t from = blocks->body[block->source];
-    tl_vec3 arm = tl_m3_mul(&bodies->r[from], c);
-    blocks->base[row] = blocks->base[block->source];
-    bodies->x_ref[body] = tl_v3_add(bodies->x_ref[from], c);
-    bodies->u[body] = tl_v3_add(bodies->u[from], tl_v3_sub(arm, c));
-    bodies->q[body] = bodies->q[from];
-    bodies->r[body] = bodies->r[from];
-    bodies->v[body] = tl_v3_add(bodies->v[from], tl_v3_cross(bodies->w[from], arm));
-    bodies->w[body] = bodies->w[from];
-    bodies->v_moved[body] =
-        tl_v3_add(bodies->v_moved[from], tl_v3_cross(bodies->w_moved[from], arm));
-    bodies->w_moved[body] = bodies->w_moved[from];
-    bodies->fixed[body] = bodies->fixed[from];
-    bodies->drive[body] = bodies->drive[from];
-    if (bodies->drive[body])
-        m->drives[bodies->drive[body] - 1].bodies++;
-}
-
-static void summarize(tl_stage *stage, double volume_before)
-{
-    const tl_blocks *b = &stage->model->blocks;
-    tl_generate_summary *s = &stage->summary;
-    s->after = b->table.rows;
-    s->smallest_volume = s->smallest_edge = s->smallest_face = s->after ? INFINITY : 0;
-    double volume = 0;
-    for (uint32_t row = 0; row < b->table.rows; row++) {
-        const tl_poly *shape = b->shape[row];
-        volume += b->volume[row];
-        s->smallest_volume = fmin(s->smallest_volume, b->volume[row]);
-        s->smallest_edge = fmin(s->smallest_edge, tl_poly_shortest_edge(shape));
-        for (uint32_t f = 0; f < shape->face_count; f++)
-            s->smallest_face = fmin(s->smallest_face, tl_poly_face_area(shape, f));
-    }
-    if (volume > 0)
-        s->volume_error = fabs(volume - volume_before - stage->created_volume) / volume;
-}
-
-tl_status tl_stage_commit(tl_stage *stage)
+tl_status tl_stage_cut_block(tl_stage *stage, size_t index, tl_vec3 normal, tl_vec3 point,
+                             size_t *above)
 {
     tl_model *m = stage->model;
-    tl_blocks *blocks = &m->blocks;
-    size_t old = blocks->table.rows, made = 0;
-    for (size_t i = 0; i < stage->count; i++)
-        made += stage->blocks[i].owned && !stage->blocks[i].retagged;
-    unsigned char *keep = calloc(old + made + 1, 1);
-    if (!keep || old + made >= TL_NO_ROW ||
-        !tl_rows_reserve(m, old + made, m->next_id + (tl_id)made)) {
-        free(keep);
-        tl_stage_drop(stage);
-        return tl_fail_memory(&m->error);
-    }
-    /* From here on nothing can fail but the parting of joined bodies that were cut. */
-    double volume_before = 0;
-    for (size_t row = 0; row < old; row++)
-        volume_before += blocks->volume[row];
-    memset(keep + old, 1, made);
-    for (size_t i = 0; i < stage->count; i++) {
-        tl_stage_block *block = &stage->blocks[i];
-        if (block->owned && !block->retagged) {
-            append(m, block);
+    tl_plane plane = plane_in_frame(m, &stage->blocks[index], normal, tl_v3_sub(point, m->origin));
+    tl_cut cut;
+    *above = SIZE_MAX;
+    tl_status status =
+        tl_poly_cut(stage->blocks[index].shape, plane, (tl_tag){0, 0}, &cut, &m->error);
+    if (status != TL_OK)
+        return status;
+    if (cut.result == TL_CUT_REFUSED)
+        note_refused(stage, index, plane,
+                     &(tl_refused_cut){.joint = {0, 0}, .normal = normal, .point = point});
+    if (cut.result != TL_CUT_MADE)
+        return TL_OK;
+    status = replace(stage, index, &cut, tl_key_text(0, "no joint"), false);
+    if (status == TL_OK)
+        *above = stage->count - 1;
+    return status;
+}
+
+tl_status tl_stage_meets(tl_stage *stage, size_t index, const tl_half_space *spaces, size_t count,
+                         bool *meets)
+{
+    tl_model *m = stage->model;
+    tl_stage_block rest = stage->blocks[index];
+    tl_status status = TL_OK;
+    bool owned = false; /* the rest is no longer the block's own shape */
+    *meets = true;
+    for (size_t i = 0; i < count && *meets && status == TL_OK; i++) {
+        tl_plane plane =
+            plane_in_frame(m, &rest, spaces[i].normal, tl_v3_sub(spaces[i].point, m->origin));
+        double distance = tl_v3_dot(plane.normal, rest.center) - plane.offset;
+        if (fabs(distance) >
+            rest.radius * (1 + TL_POLY_ON)) { /* the ball about the block decides */
+            *meets = distance < 0;
             continue;
         }
-        keep[block->source] = 1;
-        if (block->retagged) {
-            tl_poly_free(blocks->shape[block->source]);
-            blocks->shape[block->source] = block->shape;
+        tl_cut cut;
+        status = tl_poly_cut(rest.shape, plane, (tl_tag){0, 0}, &cut, &m->error);
+        if (status == TL_OK && cut.result == TL_CUT_MADE) {
+            tl_poly_free(cut.above);
+            if (owned)
+                tl_poly_free(rest.shape);
+            rest.shape = cut.below;
+            owned = true;
+        } else if (status == TL_OK) {
+            /* all but a sliver lies on one side */
+            tl_vec3 c = tl_poly_mass(rest.shape).centroid;
+            *meets = tl_v3_dot(plane.normal, c) < plane.offset;
         }
     }
-    tl_rows_keep(m, keep);
-    for (uint32_t body = 0; body < m->bodies.table.rows; body++)
-        if (m->bodies.mass[body] == 0)
-            tl_body_measure(m, body);
-    summarize(stage, volume_before);
-    free(keep);
-    stage_end(stage);
-    return tl_bodies_mend(m);
+    if (owned)
+        tl_poly_free(rest.shape);
+    return status;
 }

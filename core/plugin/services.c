@@ -23,9 +23,6 @@ typedef struct service {
     tl_model *model;
     tl_stage stage;
     const char *generator;
-    /* the visible block looked at last and its row, so that a walk over all is not quadratic */
-    size_t last_index, last_row;
-    size_t last_count;
 } service;
 
 static service *service_of(const tl_host *host)
@@ -54,14 +51,19 @@ static void say(const tl_host *host, const char *format, ...)
 
 /* ---------------------------------------------------------------- blocks ----------------- */
 
-static tl_status check_block(const tl_host *host, double density, const char *group)
+static tl_status check_group(const tl_host *host, const char *group)
 {
-    if (!(density > 0) || !isfinite(density))
-        return fail(host, TL_E_ARGUMENT, "density = %g kg/m3 must be > 0", density);
     if (group && strlen(group) > LONGEST_NAME)
         return fail(host, TL_E_ARGUMENT, "group '%.20s...' is longer than %d letters", group,
                     LONGEST_NAME);
     return TL_OK;
+}
+
+static tl_status check_block(const tl_host *host, double density, const char *group)
+{
+    if (!(density > 0) || !isfinite(density))
+        return fail(host, TL_E_ARGUMENT, "density = %g kg/m3 must be > 0", density);
+    return check_group(host, group);
 }
 
 static tl_status create_hull(const tl_host *host, const tl_vec3 *vertices, size_t count,
@@ -93,33 +95,7 @@ static tl_status create_box(const tl_host *host, tl_vec3 min, tl_vec3 max, doubl
 
 static size_t block_count(const tl_host *host)
 {
-    const tl_stage *stage = &service_of(host)->stage;
-    size_t count = 0;
-    for (size_t row = 0; row < stage->count; row++)
-        count += !stage->blocks[row].hidden;
-    return count;
-}
-
-/* Row of the visible block `index`; the stage's number of rows when there is none. Cuts keep the rows
- * before them, so the place found last is good while the count of rows stands. */
-static size_t visible_row(service *s, size_t index)
-{
-    const tl_stage *stage = &s->stage;
-    bool resume = s->last_count == stage->count && index >= s->last_index;
-    size_t row = resume ? s->last_row : 0, at = resume ? s->last_index : 0;
-    for (; row < stage->count; row++) {
-        if (stage->blocks[row].hidden)
-            continue;
-        if (at == index)
-            break;
-        at++;
-    }
-    if (row < stage->count) {
-        s->last_count = stage->count;
-        s->last_index = index;
-        s->last_row = row;
-    }
-    return row;
+    return service_of(host)->stage.visible_count;
 }
 
 /* A point of a staged block's shape in the user's coordinates. */
@@ -134,9 +110,8 @@ static void block_info(const tl_host *host, size_t index, tl_block_info *info)
 {
     service *s = service_of(host);
     tl_block_info full = {.size = info->size, .group = ""};
-    size_t row = visible_row(s, index);
-    if (row < s->stage.count) {
-        const tl_stage_block *block = &s->stage.blocks[row];
+    if (index < s->stage.visible_count) {
+        const tl_stage_block *block = &s->stage.blocks[s->stage.visible[index]];
         tl_mass mass = tl_poly_mass(block->shape);
         full.volume = mass.volume;
         full.centroid = user_point(s->model, block, mass.centroid);
@@ -148,8 +123,131 @@ static void block_info(const tl_host *host, size_t index, tl_block_info *info)
         }
         full.group = s->model->groups[block->group];
         full.lineage = block->lineage;
+        full.body = block->body;
     }
     memcpy(info, &full, info->size < sizeof full ? info->size : sizeof full);
+}
+
+/* ---------------------------------------------------------------- single blocks ---------- */
+
+static tl_status check_index(const tl_host *host, size_t index)
+{
+    size_t count = service_of(host)->stage.visible_count;
+    if (index < count)
+        return TL_OK;
+    return fail(host, TL_E_PLUGIN, "it asks for block %zu of %zu, counted from 0", index, count);
+}
+
+static tl_status check_plane(const tl_host *host, tl_vec3 normal, tl_vec3 point)
+{
+    double length = tl_v3_norm(normal);
+    if (fabs(length - 1) <= UNIT_TOLERANCE && tl_v3_finite(point))
+        return TL_OK;
+    return fail(host, TL_E_NUMERIC,
+                "a cutting plane has the normal {%g, %g, %g}, which is not of unit length, or "
+                "the point {%g, %g, %g}, which is not finite",
+                normal.x, normal.y, normal.z, point.x, point.y, point.z);
+}
+
+static tl_status meets(const tl_host *host, size_t index, const tl_half_space *spaces, size_t count,
+                       bool *does)
+{
+    tl_stage *stage = &service_of(host)->stage;
+    tl_status status = check_index(host, index);
+    for (size_t i = 0; i < count && status == TL_OK; i++)
+        status = check_plane(host, spaces[i].normal, spaces[i].point);
+    if (status != TL_OK)
+        return status;
+    return tl_stage_meets(stage, stage->visible[index], spaces, count, does);
+}
+
+static tl_status cut_block(const tl_host *host, size_t index, tl_vec3 normal, tl_vec3 point,
+                           size_t *above)
+{
+    tl_stage *stage = &service_of(host)->stage;
+    tl_status status = check_index(host, index);
+    if (status == TL_OK)
+        status = check_plane(host, normal, point);
+    if (status != TL_OK)
+        return status;
+    status = tl_stage_cut_block(stage, stage->visible[index], normal, point, above);
+    if (status == TL_OK && *above != SIZE_MAX)
+        *above = stage->visible_count - 1;
+    return status;
+}
+
+static tl_status set_group(const tl_host *host, size_t index, const char *group)
+{
+    service *s = service_of(host);
+    tl_status status = check_index(host, index);
+    if (status == TL_OK)
+        status = check_group(host, group);
+    if (status != TL_OK)
+        return status;
+    uint32_t number = tl_group_intern(s->model, group ? group : "");
+    if (number == UINT32_MAX)
+        return tl_fail_memory(&s->model->error);
+    s->stage.blocks[s->stage.visible[index]].group = number;
+    return TL_OK;
+}
+
+/* Calls `change` with the places in the stage of visible blocks. */
+static tl_status change_bodies(const tl_host *host, const size_t *indices, size_t count,
+                               void (*change)(tl_stage *, const size_t *, size_t))
+{
+    tl_stage *stage = &service_of(host)->stage;
+    tl_status status = TL_OK;
+    for (size_t i = 0; i < count && status == TL_OK; i++)
+        status = check_index(host, indices[i]);
+    if (status != TL_OK)
+        return status;
+    size_t *rows = malloc((count + 1) * sizeof *rows);
+    if (!rows)
+        return tl_fail_memory(&service_of(host)->model->error);
+    for (size_t i = 0; i < count; i++)
+        rows[i] = stage->visible[indices[i]];
+    change(stage, rows, count);
+    free(rows);
+    return TL_OK;
+}
+
+static tl_status part(const tl_host *host, const size_t *indices, size_t count)
+{
+    return change_bodies(host, indices, count, tl_stage_part);
+}
+
+static tl_status join(const tl_host *host, const size_t *indices, size_t count)
+{
+    return change_bodies(host, indices, count, tl_stage_join);
+}
+
+static tl_status remove_block(const tl_host *host, size_t index)
+{
+    tl_stage *stage = &service_of(host)->stage;
+    tl_status status = check_index(host, index);
+    if (status == TL_OK)
+        tl_stage_delete(stage, stage->visible[index]);
+    return status;
+}
+
+static tl_status hide(const tl_host *host, size_t index)
+{
+    tl_stage *stage = &service_of(host)->stage;
+    tl_status status = check_index(host, index);
+    if (status != TL_OK)
+        return status;
+    stage->blocks[stage->visible[index]].veiled = true;
+    tl_stage_list_visible(stage);
+    return TL_OK;
+}
+
+static tl_status show(const tl_host *host)
+{
+    tl_stage *stage = &service_of(host)->stage;
+    for (size_t i = 0; i < stage->count; i++)
+        stage->blocks[i].veiled = false;
+    tl_stage_list_visible(stage);
+    return TL_OK;
 }
 
 /* ---------------------------------------------------------------- joints ----------------- */
@@ -195,19 +293,15 @@ static tl_status cut_disc(const tl_host *host, tl_vec3 normal, tl_vec3 point, do
         tag.plane > s->model->joints[tag.joint - 1].planes)
         return fail(host, TL_E_PLUGIN, "it cuts by plane %u of joint %u, which it did not ask for",
                     tag.plane, tag.joint);
-    double length = tl_v3_norm(normal);
-    if (!(fabs(length - 1) <= UNIT_TOLERANCE) || !tl_v3_finite(point))
-        return fail(host, TL_E_NUMERIC,
-                    "a cutting plane has the normal {%g, %g, %g}, which is not of unit length, or "
-                    "the point {%g, %g, %g}, which is not finite",
-                    normal.x, normal.y, normal.z, point.x, point.y, point.z);
+    tl_status status = check_plane(host, normal, point);
+    if (status != TL_OK)
+        return status;
     if (!(persistence >= 0 && persistence <= 1))
         return fail(host, TL_E_ARGUMENT, "persistence = %g is outside [0, 1]", persistence);
     if (!(radius > 0))
         return fail(host, TL_E_ARGUMENT, "radius = %g m must be > 0", radius);
     size_t blocks = 0;
-    tl_status status =
-        tl_stage_cut_disc(&s->stage, normal, point, radius, tag, persistence, &blocks);
+    status = tl_stage_cut_disc(&s->stage, normal, point, radius, tag, persistence, &blocks);
     if (met)
         *met = blocks;
     return status;
@@ -257,7 +351,15 @@ static tl_status run(service *s, const tl_kind *kind, const void *params)
                     .progress = progress,
                     .log = say,
                     .fail = fail,
-                    .cut_disc = cut_disc};
+                    .cut_disc = cut_disc,
+                    .meets = meets,
+                    .cut_block = cut_block,
+                    .set_group = set_group,
+                    .part = part,
+                    .join = join,
+                    .remove = remove_block,
+                    .hide = hide,
+                    .show = show};
     tl_status status = tl_stage_begin(m, &s->stage);
     if (status != TL_OK)
         return status;

@@ -64,8 +64,54 @@ model = row(3)
 model:blocks():join()
 model:generate("joint", { joint = "J", dip = 90, dip_direction = 90, origin = { 1.5, 0, 0 } })
 check.equal(#model:blocks(), 4)
-check.equal(bodies(model), 4)
+check.equal(bodies(model), 2)
 check.near(model:blocks():sum("mass"), 6000, 1e-9)
+local west = model:blocks { where = function(b) return b.centroid[1] < 1.5 end }
+check.equal(#west, 2)
+check.equal(west[1].body, west[2].body)
+
+-- A joint along the face between two joined blocks parts them too.
+model = row(3)
+model:blocks():join()
+model:generate("joint", { joint = "J", dip = 90, dip_direction = 90, origin = { 2, 0, 0 } })
+check.equal(#model:blocks(), 3)
+check.equal(bodies(model), 2)
+
+-- Blocks joined across a joint stay so when another joint cuts them.
+model = talus.model {}
+model:generate("box", { min = { 0, 0, 0 }, max = { 2, 1, 1 }, density = 2000 })
+model:generate("joint", { joint = "J", dip = 90, dip_direction = 90, origin = { 1, 0, 0 } })
+model:blocks():join()
+model:generate("joint", { joint = "K", dip = 0, dip_direction = 0, origin = { 0, 0, 0.5 } })
+check.equal(#model:blocks(), 4)
+check.equal(bodies(model), 2)
+
+-- A plane through a body that hides a member leaves a crack: the body hangs together around it.
+model = talus.model {}
+model:generate("box", { min = { 0, 0, 0 }, max = { 2, 1, 1 }, density = 2000 })
+model:generate("box", { min = { 0, 0, 1 }, max = { 2, 1, 2 }, density = 2000 })
+model:blocks():join()
+model:blocks { id = 2 }:hide()
+model:generate("joint", { joint = "J", dip = 90, dip_direction = 90, origin = { 1, 0, 0 } })
+model:blocks { hidden = true }:show()
+check.equal(#model:blocks(), 3)
+check.equal(bodies(model), 1)
+
+-- Persistence is drawn once for a body and a plane: both members are cut, or none.
+local cut, whole = 0, 0
+for seed = 1, 40 do
+    model = talus.model { seed = seed }
+    model:generate("box", { min = { 0, 0, 0 }, max = { 1, 1, 1 }, density = 2000 })
+    model:generate("box", { min = { 1, 0, 0 }, max = { 2, 1, 1 }, density = 2000 })
+    model:blocks():join()
+    model:generate("joint",
+        { joint = "J", dip = 0, dip_direction = 0, origin = { 0, 0, 0.5 }, persistence = 0.5 })
+    check.equal(bodies(model), #model:blocks() / 2)
+    cut = cut + (#model:blocks() == 4 and 1 or 0)
+    whole = whole + (#model:blocks() == 2 and 1 or 0)
+end
+check.equal(cut + whole, 40)
+check.holds(cut > 8 and whole > 8, "both happen")
 
 -- Another density of one part moves the centroid of all.
 model = row(2)

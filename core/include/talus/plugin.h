@@ -20,6 +20,7 @@
 #ifndef TALUS_PLUGIN_H
 #define TALUS_PLUGIN_H
 
+#include <stdbool.h>
 #include <talus/types.h>
 
 #ifdef __cplusplus
@@ -45,11 +46,11 @@ extern "C" {
 
 /* Type of a parameter, and the C member the host writes at `offset` of the params struct. */
 typedef enum tl_param_type {
-    TL_PARAM_REAL,   /* double; NaN when optional and not given */
-    TL_PARAM_INT,    /* int64_t */
-    TL_PARAM_BOOL,   /* int32_t, 0 or 1 */
-    TL_PARAM_ENUM,   /* int32_t, index into `choices` */
-    TL_PARAM_VEC3,   /* tl_vec3; NaN when optional and not given */
+    TL_PARAM_REAL, /* double; NaN when optional and not given */
+    TL_PARAM_INT,  /* int64_t */
+    TL_PARAM_BOOL, /* int32_t, 0 or 1 */
+    TL_PARAM_ENUM, /* int32_t, index into `choices` */
+    TL_PARAM_VEC3, /* tl_vec3; NaN when optional and not given */
     /* of generators only: they are valid during the call */
     TL_PARAM_STRING, /* const char *; NULL when optional and not given */
     TL_PARAM_POINTS  /* tl_points: a list of vectors; empty when optional and not given */
@@ -237,7 +238,14 @@ typedef struct tl_block_info {
     tl_bounds bounds;
     const char *group;
     uint64_t lineage; /* key of the block's descent, for random draws */
+    /* since minor 1 */
+    uint32_t body; /* blocks of one number are one body; the number changes as bodies do */
 } tl_block_info;
+
+/* The points x with normal . (x - point) < 0; the normal is of unit length. */
+typedef struct tl_half_space {
+    tl_vec3 normal, point;
+} tl_half_space;
 
 struct tl_host {
     uint32_t size;
@@ -278,6 +286,29 @@ struct tl_host {
      * draw had them cut or not. */
     tl_status (*cut_disc)(const tl_host *, tl_vec3 normal, tl_vec3 point, double radius, tl_tag tag,
                           double persistence, size_t *met);
+
+    /* Single blocks. `index` counts the visible blocks as in block_info. Cuts keep indices: the side
+     * away from the normal stays at its index, the other becomes the last. `hide` and `remove` make
+     * one fewer of those after the index. */
+
+    /* Whether the block's inside meets the common inside of half spaces. */
+    tl_status (*meets)(const tl_host *, size_t index, const tl_half_space *spaces, size_t count,
+                       bool *meets);
+    /* Cuts one block without a joint: its new faces carry no tag and the two sides stay one body.
+     * *above is the index of the part on the normal's side, or SIZE_MAX when the plane does not divide
+     * the block or would leave a sliver. */
+    tl_status (*cut_block)(const tl_host *, size_t index, tl_vec3 normal, tl_vec3 point,
+                           size_t *above);
+    tl_status (*set_group)(const tl_host *, size_t index, const char *group);
+    /* Takes blocks out of their bodies: those among them that hang together are one body, and so are
+     * those left behind. Faces of joints cut by this generator part what shares them. */
+    tl_status (*part)(const tl_host *, const size_t *indices, size_t count);
+    /* Makes one body of blocks and all that is joined to them. */
+    tl_status (*join)(const tl_host *, const size_t *indices, size_t count);
+    tl_status (*remove)(const tl_host *, size_t index);
+    /* Hides a block from this generator's further cuts, until it ends or shows all it has hidden. */
+    tl_status (*hide)(const tl_host *, size_t index);
+    tl_status (*show)(const tl_host *);
 };
 
 typedef struct tl_generator_ops {

@@ -134,6 +134,63 @@ typedef struct tl_generate_summary {
 TL_API tl_status tl_generate(tl_model *model, const char *generator, const tl_args *args,
                              tl_generate_summary *summary);
 
+/* The extreme value of a measure over the blocks, and the block that has it; 0 without blocks. */
+typedef struct tl_extreme {
+    double value;
+    tl_id block;
+} tl_extreme;
+
+/* A cut that was not made because a side would have been thinner than `limit`. */
+typedef struct tl_refused_cut {
+    tl_tag joint;
+    tl_vec3 normal, point; /* of the plane; upward normal as given */
+    tl_id block; /* the block, or a piece of it when other planes of the call have cut it */
+    double thickness, limit; /* of the thinner side, m */
+} tl_refused_cut;
+
+/* Quality of the blocks as they are. The aspect of a block is its diameter (largest distance between
+ * two vertices) over its thickness (smallest extent along the normal of a face): 1.7 for a cube. */
+typedef struct tl_quality {
+    size_t blocks, bodies;
+    double volume;
+    double volume_error; /* |volume + deleted - created| / volume */
+    tl_extreme smallest_volume, smallest_edge, smallest_face, worst_aspect;
+    size_t cuts, refused, coincident;   /* since the model was made */
+    const tl_refused_cut *refused_cuts; /* the first ones; valid until the model changes */
+    size_t refused_listed;
+} tl_quality;
+
+TL_API tl_status tl_model_quality(tl_model *model, tl_quality *quality);
+
+typedef enum tl_filter_action {
+    TL_FILTER_REPORT,
+    TL_FILTER_DELETE,
+    TL_FILTER_JOIN
+} tl_filter_action;
+
+typedef struct tl_filter {
+    double volume, edge, aspect; /* smallest volume, m3, and edge, m; worst aspect; NaN: no limit */
+    int32_t action;              /* tl_filter_action */
+} tl_filter;
+
+/* A visible block beyond one of the limits. */
+typedef struct tl_sliver {
+    tl_id block;
+    double volume, edge, aspect;
+    bool small, short_edge, thin; /* which limits */
+    tl_id joined_to;              /* 0: not joined */
+} tl_sliver;
+
+typedef struct tl_filter_result {
+    tl_sliver *slivers; /* in the order of their ids; freed with free() */
+    size_t count, deleted, joined;
+    double volume; /* of all slivers, m3 */
+} tl_filter_result;
+
+/* Finds the slivers and deletes them, or joins each to the block it shares the largest face with. */
+TL_API tl_status tl_model_filter(tl_model *model, const tl_filter *filter,
+                                 tl_filter_result *result);
+
 /* Sets the law of a joint: "*" every joint not named otherwise, "J1" a set, "J1:3" a plane of it.
  * `law` NULL changes properties of the law the joint has now; forces stay continuous. */
 TL_API tl_status tl_joint_law(tl_model *model, const char *joint, const char *law,
@@ -392,7 +449,66 @@ TL_API const tl_field *tl_contact_fields(size_t *count);
 TL_API tl_status tl_contact_field(tl_model *model, tl_id contact, size_t index,
                                   tl_field_value *value);
 
+/* ---------------------------------------------------------------- keyblocks -------------- */
+
+/* Strength of a joint in the limit equilibrium of keyblocks. */
+typedef struct tl_joint_strength {
+    const char *joint; /* "J1:3", "J1" or "*": of several the closest counts */
+    double friction;   /* degrees, [0, 90); NaN: not given here */
+    double cohesion;   /* Pa, >= 0; NaN: not given here. 0 where nothing is given */
+} tl_joint_strength;
+
+typedef struct tl_keyblock_query {
+    tl_vec3 gravity; /* NaN: the model's */
+    const tl_joint_strength *strength;
+    size_t count;
+} tl_keyblock_query;
+
+typedef enum tl_keyblock_mode {
+    TL_KEYBLOCK_FALLING,        /* away from all its joints */
+    TL_KEYBLOCK_SLIDING,        /* on one face */
+    TL_KEYBLOCK_SLIDING_ON_TWO, /* along the line of two faces */
+    TL_KEYBLOCK_STABLE          /* removable, but pressed in by its weight */
+} tl_keyblock_mode;
+
+/* A face that a keyblock slides on. */
+typedef struct tl_keyblock_face {
+    tl_tag joint;
+    tl_vec3 normal;            /* outward */
+    double area, normal_force; /* m2; N, compression positive */
+} tl_keyblock_face;
+
+/* A body that can be moved out by a translation. */
+typedef struct tl_keyblock {
+    tl_id block; /* the oldest block of the body */
+    int32_t mode;
+    double volume, mass; /* of the body */
+    tl_vec3 force;       /* weight and load, N */
+    tl_vec3 direction;   /* of the motion, unit; zero when stable */
+    double driving;      /* force along it, N */
+    double safety;       /* factor of safety: 0 falling, infinite stable */
+    tl_keyblock_face faces[2];
+    size_t face_count;
+    size_t edge_start, edge_count; /* edges of its joint pyramid in tl_keyblocks.edges */
+} tl_keyblock;
+
+typedef struct tl_keyblocks {
+    tl_keyblock *blocks; /* in the order of their ids */
+    size_t count;
+    tl_vec3 *edges; /* unit vectors */
+    size_t edge_count;
+} tl_keyblocks;
+
+/* Finds the removable ones of the bodies that are neither held nor driven (Shi's theorem). */
+TL_API tl_status tl_model_keyblocks(tl_model *model, const tl_keyblock_query *query,
+                                    tl_keyblocks *keyblocks);
+TL_API void tl_keyblocks_free(tl_keyblocks *keyblocks);
+
 /* ---------------------------------------------------------------- output ----------------- */
+
+/* Writes the next frame of the section of all blocks by a plane: PREFIX_section_NNNNNN.vtk and its
+ * index. */
+TL_API tl_status tl_write_section(tl_model *model, const char *prefix, const tl_halfspace *plane);
 
 /* Writes the next frame of the series PREFIX: PREFIX_blocks_NNNNNN.vtk, _contacts_, _joints_, and
  * PREFIX_{blocks,contacts,joints}.vtk.series. Folders are made as needed. */
