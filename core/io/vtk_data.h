@@ -1,4 +1,4 @@
-/* vtk_data.h - the three files of a frame: what is in each is described at the head of its source.
+/* vtk_data.h - the files of a frame: what is in each is described at the head of its source.
  *
  * Each function writes one file to `file`. TL_OK says that the model could be asked for all of it;
  * whether the disk took it, the stream tells. */
@@ -12,5 +12,7 @@
 tl_status tl_vtk_blocks(tl_model *m, FILE *file);
 tl_status tl_vtk_contacts(tl_model *m, FILE *file);
 tl_status tl_vtk_joints(tl_model *m, FILE *file);
+/* The section of the blocks by the plane, relative to the model's origin. */
+tl_status tl_vtk_section(tl_model *m, tl_plane plane, FILE *file);
 
 #endif

@@ -32,10 +32,10 @@ static bool make_room(tl_vtk_series *series)
     return true;
 }
 
-tl_vtk_series *tl_vtk_series_of(tl_model *m, const char *prefix)
+tl_vtk_series *tl_vtk_series_of(tl_model *m, const char *prefix, const char *kind)
 {
     tl_vtk_series *series = m->vtk;
-    while (series && strcmp(series->prefix, prefix) != 0)
+    while (series && (strcmp(series->prefix, prefix) != 0 || strcmp(series->kind, kind) != 0))
         series = series->next;
     if (!series) {
         series = calloc(1, sizeof *series);
@@ -46,6 +46,7 @@ tl_vtk_series *tl_vtk_series_of(tl_model *m, const char *prefix)
             free(series);
             return NULL;
         }
+        series->kind = kind;
         series->next = m->vtk;
         m->vtk = series;
         m->vtk_destroy = series_destroy;

@@ -6,16 +6,18 @@
 
 #include <stdio.h>
 
-/* The frames of one prefix. A model keeps a list of these; frame i was written at times[i]. */
+/* The frames of one prefix and one kind of frame. A model keeps a list of these; frame i was written at times[i]. */
 typedef struct tl_vtk_series {
     struct tl_vtk_series *next;
     char *prefix;
+    const char *kind;
     double *times;
     size_t count, capacity;
 } tl_vtk_series;
 
-/* Finds or makes the series of a prefix, with room for one more frame; NULL when out of memory. */
-tl_vtk_series *tl_vtk_series_of(tl_model *m, const char *prefix);
+/* Finds or makes the series of a prefix and a kind of frame (a string that lives as long as the
+ * program), with room for one more frame; NULL when out of memory. */
+tl_vtk_series *tl_vtk_series_of(tl_model *m, const char *prefix, const char *kind);
 
 /* Name of a file of the series: PREFIX_CONTENT_NNNNNN.vtk, and of its index:
  * PREFIX_CONTENT.vtk.series. The text is the caller's; NULL when out of memory. */

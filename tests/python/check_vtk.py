@@ -19,6 +19,9 @@ CONTACT_ARRAYS = {"normal_force": 1, "shear_force": 3, "normal_stress": 1, "shea
                   "state": 1, "joint": 1, "plane": 1, "area": 1, "normal": 3, "gap": 1,
                   "contact_id": 1, "block_a": 1, "block_b": 1}
 JOINT_ARRAYS = {"joint": 1, "plane": 1, "block_id": 1}
+SECTION_ARRAYS = {"block_id": 1, "group": 1, "body": 1, "hidden": 1, "displacement": 3,
+                  "displacement_in_plane": 3}
+SECTION_POINT_ARRAYS = {"displacement": 3, "displacement_in_plane": 3}
 
 checks = failures = 0
 
@@ -178,6 +181,87 @@ def check_joints(path):
         check(corners.GetNumberOfIds() >= 3, f"{path.name}: polygon {cell} has no area")
 
 
+def polygon_area(data, cell, normal):
+    """Signed by the normal: polygons run counter-clockwise as seen from above the plane."""
+    corners = vtk.vtkIdList()
+    data.GetCellPoints(cell, corners)
+    points = [data.GetPoint(corners.GetId(i)) for i in range(corners.GetNumberOfIds())]
+    check(len(points) >= 3, f"polygon {cell} has {len(points)} corners")
+    total = 0.0
+    for b, c in zip(points[1:], points[2:]):
+        u, v = ([x - o for x, o in zip(p, points[0])] for p in (b, c))
+        total += normal[0] * (u[1] * v[2] - u[2] * v[1]) + normal[1] * (
+            u[2] * v[0] - u[0] * v[2]) + normal[2] * (u[0] * v[1] - u[1] * v[0])
+    return total / 2
+
+
+def check_section(path, dip, direction, area, tolerance=1e-12):
+    """Polygons in the plane that add up to the area; displacements in it have no part across."""
+    data = read(path, vtk.vtkPolyDataReader)
+    name = path.name
+    dip, direction = math.radians(dip), math.radians(direction)
+    normal = (math.sin(dip) * math.sin(direction), math.sin(dip) * math.cos(direction),
+              math.cos(dip))
+    check_arrays(name, data.GetCellData(), SECTION_ARRAYS, data.GetNumberOfPolys())
+    check_arrays(name, data.GetPointData(), SECTION_POINT_ARRAYS, data.GetNumberOfPoints())
+    areas = [polygon_area(data, i, normal) for i in range(data.GetNumberOfPolys())]
+    check(all(a > 0 for a in areas), f"{name}: polygons turned over")
+    check(abs(sum(areas) - area) <= tolerance * area, f"{name}: area {sum(areas)}, not {area}")
+    ids = {int(data.GetCellData().GetArray("block_id").GetValue(i)) for i in range(len(areas))}
+    check(len(ids) == len(areas), f"{name}: a block has more than one polygon")
+    heights = [sum(n * x for n, x in zip(normal, data.GetPoint(i)))
+               for i in range(data.GetNumberOfPoints())]
+    check(max(heights) - min(heights) < 1e-12, f"{name}: points off the plane")
+    for attributes in (data.GetPointData(), data.GetCellData()):
+        whole = attributes.GetArray("displacement")
+        flat = attributes.GetArray("displacement_in_plane")
+        for i in range(whole.GetNumberOfTuples()):
+            u, v = whole.GetTuple(i), flat.GetTuple(i)
+            across = sum(a * n for a, n in zip(u, normal))
+            check(all(abs(a - across * n - b) < 1e-15 for a, n, b in zip(u, normal, v)),
+                  f"{name}: displacement in the plane")
+    return data
+
+
+def check_sections(folder):
+    times = check_series(folder, "cut", "section", 2)
+    check(times[0] == 0 and times[1] > 0, f"sections: times {times}")
+    check_series(folder, "cut", "blocks", 1)
+    still = check_section(folder / "cut_section_000000.vtk", 90, 90, 6)
+    later = check_section(folder / "cut_section_000001.vtk", 90, 90, 6, tolerance=1e-6)
+    check(moved(still) == 0 and moved(later) > 0, "sections: displacements")
+    check_section(folder / "along_section_000000.vtk", 90, 90, 6)
+    # VTK keeps points in single precision
+    check_section(folder / "steep_section_000000.vtk", 50, 320, steep_area(), tolerance=1e-6)
+    for name in ("outside", "empty"):
+        data = read(folder / f"{name}_section_000000.vtk", vtk.vtkPolyDataReader)
+        check(data.GetNumberOfCells() == 0, f"{name}: has a section")
+
+
+def steep_area():
+    """Of the section of the whole box by the plane, by VTK itself."""
+    box, plane, cut = vtk.vtkCubeSource(), vtk.vtkPlane(), vtk.vtkCutter()
+    box.SetBounds(0, 4, 0, 3, 0, 2)
+    dip, direction = math.radians(50), math.radians(320)
+    plane.SetNormal(math.sin(dip) * math.sin(direction), math.sin(dip) * math.cos(direction),
+                    math.cos(dip))
+    plane.SetOrigin(2, 1.5, 1)
+    cut.SetInputConnection(box.GetOutputPort())
+    cut.SetCutFunction(plane)
+    cut.Update()
+    points = [cut.GetOutput().GetPoint(i) for i in range(cut.GetOutput().GetNumberOfPoints())]
+    n, o = plane.GetNormal(), plane.GetOrigin()
+    side = [n[1], -n[0], 0.0]
+    length = math.hypot(*side)
+    side = [s / length for s in side]
+    up = [n[1] * side[2] - n[2] * side[1], n[2] * side[0] - n[0] * side[2],
+          n[0] * side[1] - n[1] * side[0]]
+    flat = [(sum((x - c) * s for x, c, s in zip(p, o, side)),
+             sum((x - c) * s for x, c, s in zip(p, o, up))) for p in points]
+    flat.sort(key=lambda q: math.atan2(q[1], q[0]))
+    return abs(sum(a[0] * b[1] - a[1] * b[0] for a, b in zip(flat, flat[1:] + flat[:1]))) / 2
+
+
 def check_series(folder, prefix, content, frames):
     path = folder / f"{prefix}_{content}.vtk.series"
     index = json.loads(path.read_text())
@@ -224,6 +308,7 @@ def main():
     check_series(folder, 'quote"b', "blocks", 1)
     check_series(folder / "new" / "folder", "a", "blocks", 2)
     check_empty(folder)
+    check_sections(folder)
     print(f"check_vtk.py: {checks} checks, {failures} failed")
     return 1 if failures else 0
 

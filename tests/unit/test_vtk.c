@@ -144,11 +144,36 @@ TEST(two_frames_for_the_reader)
     tl_model_destroy(m);
 }
 
+/* Across blocks, along a joint's faces and outside the model. The series count for themselves. */
+TEST(sections_for_the_reader)
+{
+    tl_model *m = cut_box();
+    const tl_halfspace across = {90, 90, {1.5, 0, 0}}, along = {90, 90, {2, 0, 0}},
+                       steep = {50, 320, {2, 1.5, 1}}, outside = {0, 0, {0, 0, 5}};
+    CHECK_INT(tl_write_section(m, FOLDER "/cut", &across), TL_OK);
+    CHECK_INT(tl_write_section(m, FOLDER "/along", &along), TL_OK);
+    CHECK_INT(tl_write_section(m, FOLDER "/steep", &steep), TL_OK);
+    CHECK_INT(tl_write_section(m, FOLDER "/outside", &outside), TL_OK);
+    CHECK_INT(tl_write_vtk(m, FOLDER "/cut"), TL_OK);
+    tl_solve_result result;
+    CHECK_INT(tl_model_cycle(m, 20, &result), TL_OK);
+    CHECK_INT(tl_write_section(m, FOLDER "/cut", &across), TL_OK);
+    CHECK(exists(FOLDER "/cut_section_000001.vtk") && !exists(FOLDER "/cut_section_000002.vtk"));
+    const tl_halfspace wrong = {91, 0, {0, 0, 0}};
+    CHECK_INT(tl_write_section(m, FOLDER "/wrong", &wrong), TL_E_ARGUMENT);
+    CHECK(strstr(tl_model_error(m)->text, "dip = 91") != NULL);
+    CHECK_INT(tl_write_section(m, FOLDER "/", &across), TL_E_ARGUMENT);
+    CHECK_INT(files_with("wrong", 0), 0);
+    tl_model_destroy(m);
+}
+
 TEST(an_empty_model_has_files_too)
 {
     tl_model *m = empty_model();
     CHECK_INT(tl_write_vtk(m, FOLDER "/empty"), TL_OK);
-    CHECK_INT(files_with("empty_", 0), 6);
+    const tl_halfspace level = {0, 0, {0, 0, 0}};
+    CHECK_INT(tl_write_section(m, FOLDER "/empty", &level), TL_OK);
+    CHECK_INT(files_with("empty_", 0), 8);
     tl_model_destroy(m);
 }
 
@@ -228,6 +253,7 @@ static void clean_folder(void)
     files_with("plain", 1);
 }
 
-TEST_MAIN(RUN(clean_folder), RUN(two_frames_for_the_reader), RUN(an_empty_model_has_files_too),
-          RUN(prefixes_count_their_own_frames), RUN(a_prefix_names_files), RUN(a_file_is_no_folder),
-          RUN(a_failed_frame_leaves_nothing), RUN(a_full_disk_is_noticed))
+TEST_MAIN(RUN(clean_folder), RUN(two_frames_for_the_reader), RUN(sections_for_the_reader),
+          RUN(an_empty_model_has_files_too), RUN(prefixes_count_their_own_frames),
+          RUN(a_prefix_names_files), RUN(a_file_is_no_folder), RUN(a_failed_frame_leaves_nothing),
+          RUN(a_full_disk_is_noticed))
