@@ -43,8 +43,11 @@ tl_status tl_blocks_delete(tl_model *m, const tl_id *ids, size_t count)
     }
     if (status == TL_OK)
         status = tl_bodies_regroup(m, group);
-    if (status == TL_OK)
+    if (status == TL_OK) {
+        for (size_t row = 0; row < m->blocks.table.rows; row++)
+            m->record.deleted += keep[row] ? 0 : m->blocks.volume[row];
         tl_rows_keep(m, keep);
+    }
     free(keep);
     free(group);
     return status;

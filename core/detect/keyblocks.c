@@ -1,0 +1,332 @@
+/* keyblocks.c - block theory on the blocks as they are: which bodies can move out, how, and with what
+ * factor of safety (Goodman and Shi 1985; Shi's theorem; Warburton 1981 for the modes).
+ *
+ * With outward unit normals n_i of the faces in contact with other bodies, a body can be moved by a
+ * translation d when d . n_i <= 0 for all i. These d are its joint pyramid, a convex cone. The body is
+ * removable when the cone holds more than zero: a block that is convex and finite then has its free
+ * faces on the way out. A cone other than {0} holds an edge n_i x n_j or, when all normals are
+ * parallel, -n_1; so looking at these decides it.
+ *
+ * The active force r (weight and the load of the body) moves it along the direction in the cone that
+ * gains the most energy: the projection s of r on the cone,
+ *
+ *     r = s + sum N_i n_i,   N_i >= 0,   s . n_i <= 0,   N_i (s . n_i) = 0
+ *
+ * with no N_i (falling), one (sliding on a face) or two (sliding on two faces); s = 0 is stable
+ * whatever the friction. Factor of safety, with joints that do not dilate and no joint forces beyond
+ * those the active force brings about:
+ *
+ *     sum (N_i tan(friction_i) + cohesion_i A_i) / |s|
+ *
+ * Limits: translations only; each body alone, all others at rest; a body of several blocks is
+ * judged by its contact faces alone, which is exact only when it is convex. */
+#include "base/error.h"
+#include "detect/touching.h"
+
+#include <stdlib.h>
+
+/* Cosine within which a direction lies in a face, and within which two faces are parallel: far above
+ * rounding, and above the turns of blocks that settle on their joints. */
+#define ALONG 1e-6
+
+/* The faces of a body in contact that have one normal. */
+typedef struct constraint {
+    tl_vec3 normal;
+    double area;
+    double friction; /* sum of area times tan(friction) */
+    double cohesion; /* sum of area times cohesion, N */
+    tl_tag joint;    /* of the largest of them */
+    double largest;
+} constraint;
+
+typedef struct work {
+    tl_model *model;
+    const tl_keyblock_query *query;
+    tl_tag *strength; /* the parsed joints of the query */
+    tl_touches touches;
+    constraint *faces;
+    size_t count, room;
+    size_t block_room, edge_room;
+    tl_keyblocks *result;
+} work;
+
+/* ---------------------------------------------------------------- strength --------------- */
+
+/* How closely a joint of the query names a tag: 3 the plane, 2 the set, 1 every joint, 0 not. */
+static int closeness(tl_tag pattern, tl_tag tag)
+{
+    if (!tl_tag_matches(pattern, tag))
+        return 0;
+    return pattern.joint == 0 ? 1 : pattern.plane == 0 ? 2 : 3;
+}
+
+/* Friction and cohesion of a tag: each by the closest entry that gives it. */
+static tl_status strength_of(work *w, tl_tag tag, double *friction, double *cohesion)
+{
+    int friction_by = 0, cohesion_by = 0;
+    *friction = NAN;
+    *cohesion = 0;
+    for (size_t i = 0; i < w->query->count; i++) {
+        const tl_joint_strength *s = &w->query->strength[i];
+        int close = closeness(w->strength[i], tag);
+        if (close > friction_by && !isnan(s->friction)) {
+            friction_by = close;
+            *friction = s->friction;
+        }
+        if (close > cohesion_by && !isnan(s->cohesion)) {
+            cohesion_by = close;
+            *cohesion = s->cohesion;
+        }
+    }
+    if (friction_by == 0)
+        return tl_fail(&w->model->error, TL_E_ARGUMENT,
+                       "keyblocks: no friction is given for the faces of joint '%s'; give it, or "
+                       "one for '*'",
+                       tl_tag_name(w->model, tag));
+    return TL_OK;
+}
+
+static tl_status parse_strength(work *w)
+{
+    w->strength = malloc((w->query->count + 1) * sizeof *w->strength);
+    if (!w->strength)
+        return tl_fail_memory(&w->model->error);
+    tl_status status = TL_OK;
+    for (size_t i = 0; i < w->query->count && status == TL_OK; i++) {
+        const tl_joint_strength *s = &w->query->strength[i];
+        status = tl_joint_parse(w->model, s->joint, &w->strength[i]);
+        if (status == TL_OK && !isnan(s->friction) && !(s->friction >= 0 && s->friction < 90))
+            status = tl_fail(&w->model->error, TL_E_ARGUMENT,
+                             "keyblocks: joint '%s': friction = %g deg is outside [0, 90)",
+                             s->joint, s->friction);
+        if (status == TL_OK && !isnan(s->cohesion) && !(s->cohesion >= 0 && isfinite(s->cohesion)))
+            status = tl_fail(&w->model->error, TL_E_ARGUMENT,
+                             "keyblocks: joint '%s': cohesion = %g Pa must be >= 0", s->joint,
+                             s->cohesion);
+    }
+    return status;
+}
+
+/* ---------------------------------------------------------------- faces ------------------ */
+
+static tl_status add_face(work *w, const tl_touch *touch)
+{
+    double friction, cohesion;
+    tl_status status = strength_of(w, touch->joint, &friction, &cohesion);
+    if (status != TL_OK)
+        return status;
+    size_t i = 0;
+    while (i < w->count && !(tl_v3_norm(tl_v3_sub(w->faces[i].normal, touch->normal)) <= ALONG))
+        i++;
+    if (i == w->count) {
+        if (!tl_grow(&w->faces, &w->room, w->count + 1, sizeof *w->faces))
+            return tl_fail_memory(&w->model->error);
+        w->faces[w->count++] = (constraint){.normal = touch->normal};
+    }
+    constraint *face = &w->faces[i];
+    face->area += touch->area;
+    face->friction += touch->area * tl_sin_degrees(friction) / tl_cos_degrees(friction);
+    face->cohesion += touch->area * cohesion;
+    if (touch->area > face->largest) {
+        face->largest = touch->area;
+        face->joint = touch->joint;
+    }
+    return TL_OK;
+}
+
+/* The faces of a body in contact, by normal. */
+static tl_status gather_faces(work *w, uint32_t body)
+{
+    const tl_model *m = w->model;
+    w->touches.count = w->count = 0;
+    for (uint32_t k = 0; k < m->bodies.member_count[body]; k++)
+        if (!tl_touches_add(m, m->members[m->bodies.member_start[body] + k], &w->touches))
+            return tl_fail_memory(&w->model->error);
+    tl_status status = TL_OK;
+    for (size_t i = 0; i < w->touches.count && status == TL_OK; i++)
+        status = add_face(w, &w->touches.at[i]);
+    return status;
+}
+
+/* ---------------------------------------------------------------- pyramid ---------------- */
+
+/* Whether a motion along the unit vector d runs into no face, those on `d` by construction aside. */
+static bool is_free(const work *w, tl_vec3 d, size_t i, size_t j)
+{
+    for (size_t k = 0; k < w->count; k++)
+        if (k != i && k != j && tl_v3_dot(d, w->faces[k].normal) > ALONG)
+            return false;
+    return true;
+}
+
+static tl_status add_edge(work *w, size_t first, tl_vec3 d)
+{
+    tl_keyblocks *r = w->result;
+    for (size_t i = first; i < r->edge_count; i++)
+        if (tl_v3_norm(tl_v3_sub(r->edges[i], d)) <= ALONG)
+            return TL_OK;
+    if (!tl_grow(&r->edges, &w->edge_room, r->edge_count + 1, sizeof *r->edges))
+        return tl_fail_memory(&w->model->error);
+    r->edges[r->edge_count++] = d;
+    return TL_OK;
+}
+
+/* Lists the edges of the joint pyramid from `first` on; *empty tells that it holds only zero. */
+static tl_status find_pyramid(work *w, size_t first, bool *empty)
+{
+    for (size_t i = 0; i < w->count; i++)
+        for (size_t j = i + 1; j < w->count; j++) {
+            tl_vec3 line = tl_v3_cross(w->faces[i].normal, w->faces[j].normal);
+            if (tl_v3_norm(line) <= ALONG)
+                continue;
+            tl_vec3 d = tl_v3_unit(line);
+            for (int side = 0; side < 2; side++, d = tl_v3_neg(d)) {
+                tl_status status = is_free(w, d, i, j) ? add_edge(w, first, d) : TL_OK;
+                if (status != TL_OK)
+                    return status;
+            }
+        }
+    /* without edges: no face, one face, or faces that are all parallel */
+    bool parallel = true;
+    for (size_t i = 1; i < w->count; i++)
+        parallel =
+            parallel && tl_v3_norm(tl_v3_cross(w->faces[0].normal, w->faces[i].normal)) <= ALONG;
+    *empty = w->result->edge_count == first && !parallel;
+    return TL_OK;
+}
+
+/* ---------------------------------------------------------------- mode ------------------- */
+
+static void put_face(const work *w, tl_keyblock *block, size_t face, double normal_force)
+{
+    const constraint *c = &w->faces[face];
+    block->faces[block->face_count++] =
+        (tl_keyblock_face){c->joint, c->normal, c->area, normal_force};
+}
+
+/* Sets direction and factor of safety from the sliding force s and the faces put. */
+static void put_sliding(const work *w, tl_keyblock *block, tl_vec3 s, size_t i, size_t j)
+{
+    const size_t faces[2] = {i, j};
+    block->driving = tl_v3_norm(s);
+    block->direction = tl_v3_unit(s);
+    double held = 0;
+    for (size_t k = 0; k < block->face_count; k++) {
+        const constraint *c = &w->faces[faces[k]];
+        held += block->faces[k].normal_force * (c->friction / c->area) + c->cohesion;
+    }
+    block->safety = held / block->driving;
+}
+
+static bool slides_on_one(const work *w, tl_vec3 r, tl_keyblock *block)
+{
+    double size = tl_v3_norm(r);
+    for (size_t i = 0; i < w->count; i++) {
+        double normal_force = tl_v3_dot(r, w->faces[i].normal);
+        tl_vec3 s = tl_v3_madd(r, -normal_force, w->faces[i].normal);
+        if (!(normal_force > 0) || tl_v3_norm(s) <= ALONG * size ||
+            !is_free(w, tl_v3_unit(s), i, i))
+            continue;
+        block->mode = TL_KEYBLOCK_SLIDING;
+        put_face(w, block, i, normal_force);
+        put_sliding(w, block, s, i, i);
+        return true;
+    }
+    return false;
+}
+
+static bool slides_on_two(const work *w, tl_vec3 r, tl_keyblock *block)
+{
+    double size = tl_v3_norm(r);
+    for (size_t i = 0; i < w->count; i++)
+        for (size_t j = i + 1; j < w->count; j++) {
+            tl_vec3 ni = w->faces[i].normal, nj = w->faces[j].normal;
+            tl_vec3 line = tl_v3_cross(ni, nj);
+            double sine2 = tl_v3_norm2(line), cosine = tl_v3_dot(ni, nj);
+            if (sine2 <= ALONG * ALONG)
+                continue;
+            tl_vec3 s = tl_v3_scale(tl_v3_dot(r, line) / sine2, line);
+            double ri = tl_v3_dot(r, ni), rj = tl_v3_dot(r, nj);
+            double force_i = (ri - cosine * rj) / sine2, force_j = (rj - cosine * ri) / sine2;
+            if (!(force_i > 0 && force_j > 0) || tl_v3_norm(s) <= ALONG * size ||
+                !is_free(w, tl_v3_unit(s), i, j))
+                continue;
+            block->mode = TL_KEYBLOCK_SLIDING_ON_TWO;
+            put_face(w, block, i, force_i);
+            put_face(w, block, j, force_j);
+            put_sliding(w, block, s, i, j);
+            return true;
+        }
+    return false;
+}
+
+static void find_mode(const work *w, tl_vec3 r, tl_keyblock *block)
+{
+    block->mode = TL_KEYBLOCK_STABLE;
+    block->safety = INFINITY;
+    if (!(tl_v3_norm2(r) > 0))
+        return;
+    if (is_free(w, tl_v3_unit(r), SIZE_MAX, SIZE_MAX)) {
+        block->mode = TL_KEYBLOCK_FALLING;
+        put_sliding(w, block, r, SIZE_MAX, SIZE_MAX);
+        return;
+    }
+    if (!slides_on_one(w, r, block))
+        slides_on_two(w, r, block);
+}
+
+/* ---------------------------------------------------------------- all -------------------- */
+
+static tl_status look_at(work *w, uint32_t body)
+{
+    tl_model *m = w->model;
+    tl_keyblocks *result = w->result;
+    tl_status status = gather_faces(w, body);
+    size_t first = result->edge_count;
+    bool empty = true;
+    if (status == TL_OK)
+        status = find_pyramid(w, first, &empty);
+    if (status != TL_OK || empty)
+        return status;
+    if (!tl_grow(&result->blocks, &w->block_room, result->count + 1, sizeof *result->blocks))
+        return tl_fail_memory(&m->error);
+    uint32_t lowest = m->members[m->bodies.member_start[body]];
+    tl_keyblock block = {.block = m->blocks.id[lowest],
+                         .mass = m->bodies.mass[body],
+                         .edge_start = first,
+                         .edge_count = result->edge_count - first};
+    for (uint32_t k = 0; k < m->bodies.member_count[body]; k++)
+        block.volume += m->blocks.volume[m->members[m->bodies.member_start[body] + k]];
+    tl_vec3 gravity = w->query->gravity;
+    if (isnan(gravity.x))
+        gravity = m->config.gravity;
+    block.force = tl_v3_madd(m->bodies.load_force[body], block.mass, gravity);
+    find_mode(w, block.force, &block);
+    result->blocks[result->count++] = block;
+    return TL_OK;
+}
+
+void tl_keyblocks_free(tl_keyblocks *keyblocks)
+{
+    free(keyblocks->blocks);
+    free(keyblocks->edges);
+    *keyblocks = (tl_keyblocks){0};
+}
+
+tl_status tl_model_keyblocks(tl_model *m, const tl_keyblock_query *query, tl_keyblocks *result)
+{
+    *result = (tl_keyblocks){0};
+    work w = {.model = m, .query = query, .result = result};
+    tl_status status = tl_detect_refresh(m);
+    if (status == TL_OK)
+        status = parse_strength(&w);
+    for (uint32_t body = 0; body < m->bodies.table.rows && status == TL_OK; body++)
+        if (!m->bodies.fixed[body] && !m->bodies.drive[body])
+            status = look_at(&w, body);
+    free(w.strength);
+    free(w.touches.at);
+    free(w.faces);
+    if (status != TL_OK)
+        tl_keyblocks_free(result);
+    return status;
+}

@@ -1,0 +1,39 @@
+/* touching.c - the faces of blocks that lie on faces of others, as the contacts have found them: only
+ * patches count, for a corner or an edge on a face bounds no half-space of motion that its
+ * neighbours do not. */
+#include "detect/touching.h"
+
+static bool add(tl_touches *touches, const tl_touch *touch)
+{
+    if (!tl_grow(&touches->at, &touches->room, touches->count + 1, sizeof *touches->at))
+        return false;
+    touches->at[touches->count++] = *touch;
+    return true;
+}
+
+bool tl_touches_add(const tl_model *m, uint32_t row, tl_touches *touches)
+{
+    const tl_detect *d = m->detect;
+    const tl_contacts *c = &d->contacts;
+    const tl_poly *shape = m->blocks.shape[row];
+    const tl_mat3 *turn = &m->bodies.r[m->blocks.body[row]];
+    for (uint32_t e = d->by_block_start[row]; e < d->by_block_start[row + 1]; e++) {
+        uint32_t contact = d->by_block[e];
+        bool first = c->a[contact] == row;
+        for (uint32_t f = 0; f < c->facet_count[contact]; f++) {
+            const tl_facet *facet = &c->facet[c->facet_start[contact] + f];
+            if (facet->kind != TL_FACET_PATCH)
+                continue;
+            uint32_t face = first ? facet->ia : facet->ib;
+            tl_touch touch = {.other = first ? c->b[contact] : c->a[contact],
+                              .normal = tl_m3_mul(turn, shape->plane[face].normal),
+                              .joint = c->tag[contact]};
+            size_t begin = c->point_start[contact] + facet->begin;
+            for (size_t p = begin; p < begin + facet->count; p++)
+                touch.area += d->points.area[p];
+            if (touch.area > 0 && !add(touches, &touch))
+                return false;
+        }
+    }
+    return true;
+}
