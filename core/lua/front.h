@@ -90,6 +90,9 @@ void tl_lua_push_field(lua_State *L, tl_field_kind kind, const tl_field_value *v
 
 /* ---- models: model.c ---- */
 
+/* Name of the metatable of models. */
+#define TL_LUA_MODEL_TYPE "talus.model"
+
 typedef struct tl_lua_model {
     tl_model *model;
 } tl_lua_model;
@@ -103,7 +106,17 @@ tl_model *tl_lua_living(lua_State *L, const tl_lua_model *owner);
 /* Raises the model's error unless `status` is TL_OK. */
 void tl_lua_ok(lua_State *L, tl_model *model, tl_status status);
 
+/* Pushes the sentence that says which block controls the time step. */
+void tl_lua_push_timestep(lua_State *L, const tl_timestep_report *report);
+
 extern const tl_lua_key tl_lua_insitu_keys[];
+
+/* ---- quality of the blocks, keyblocks: quality.c ---- */
+
+extern const tl_lua_key tl_lua_keyblocks_keys[];
+int tl_lua_report(lua_State *L);
+int tl_lua_filter(lua_State *L);
+int tl_lua_keyblocks(lua_State *L);
 
 /* ---- running: run.c ---- */
 

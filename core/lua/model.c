@@ -6,11 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define MODEL_TYPE "talus.model"
-
 tl_model *tl_lua_model_of(lua_State *L, const char *method)
 {
-    tl_lua_model *object = luaL_testudata(L, 1, MODEL_TYPE);
+    tl_lua_model *object = luaL_testudata(L, 1, TL_LUA_MODEL_TYPE);
     if (!object)
         tl_lua_fail(L, "%s: called on %s; write model:%s(...)", method, tl_lua_describe(L, 1),
                     method);
@@ -64,7 +62,7 @@ static int model_create(lua_State *L)
     object->model = NULL;
     lua_newtable(L); /* of the drives' functions: action.c */
     lua_setiuservalue(L, -2, 1);
-    luaL_setmetatable(L, MODEL_TYPE);
+    luaL_setmetatable(L, TL_LUA_MODEL_TYPE);
     tl_error error;
     if (tl_model_create(&config, &object->model, &error) != TL_OK)
         return tl_lua_raise(L, &error);
@@ -74,7 +72,7 @@ static int model_create(lua_State *L)
 
 static int model_collect(lua_State *L)
 {
-    tl_lua_model *object = luaL_checkudata(L, 1, MODEL_TYPE);
+    tl_lua_model *object = luaL_checkudata(L, 1, TL_LUA_MODEL_TYPE);
     tl_model_destroy(object->model);
     object->model = NULL;
     return 0;
@@ -205,18 +203,18 @@ static void push_block(lua_State *L, tl_id id)
         tl_lua_item_push(L, &tl_lua_block_kind, 1, id);
 }
 
-static const char *push_report_text(lua_State *L, const tl_timestep_report *r)
+void tl_lua_push_timestep(lua_State *L, const tl_timestep_report *r)
 {
     char numbers[120];
     snprintf(numbers, sizeof numbers, "dt = %.4g s, mass %.4g kg, stiffness %.4g N/m", r->dt,
              r->mass, r->stiffness);
     if (r->block == TL_NO_ID)
-        return lua_pushfstring(L, "no block controls the step: dt = %f s", r->dt);
-    if (r->partner == TL_NO_ID)
-        return lua_pushfstring(L, "block %I controls the step: %s", (lua_Integer)r->block, numbers);
-    return lua_pushfstring(L,
-                           "block %I controls the step, with the stiffest contact at block %I: %s",
-                           (lua_Integer)r->block, (lua_Integer)r->partner, numbers);
+        lua_pushfstring(L, "no block controls the step: dt = %f s", r->dt);
+    else if (r->partner == TL_NO_ID)
+        lua_pushfstring(L, "block %I controls the step: %s", (lua_Integer)r->block, numbers);
+    else
+        lua_pushfstring(L, "block %I controls the step, with the stiffest contact at block %I: %s",
+                        (lua_Integer)r->block, (lua_Integer)r->partner, numbers);
 }
 
 /* model:timestep(): where the step comes from. */
@@ -237,7 +235,7 @@ static int push_timestep_report(lua_State *L, tl_model *model)
         lua_pushnumber(L, report.stiffness);
         lua_setfield(L, -2, "stiffness");
     }
-    push_report_text(L, &report);
+    tl_lua_push_timestep(L, &report);
     lua_setfield(L, -2, "message");
     return 1;
 }
@@ -309,6 +307,19 @@ static int model_write_vtk(lua_State *L)
     return 0;
 }
 
+static int model_write_section(lua_State *L)
+{
+    tl_model *model = tl_lua_model_of(L, "write_section");
+    tl_lua_arity(L, 3, "write_section");
+    lua_settop(L, 3);
+    const char *prefix = tl_lua_text(L, 2, "write_section", "the prefix");
+    tl_halfspace plane;
+    tl_lua_spec spec = tl_lua_spec_of("write_section", NULL);
+    tl_lua_read(L, 3, &spec, false, &plane);
+    tl_lua_ok(L, model, tl_write_section(model, prefix, &plane));
+    return 0;
+}
+
 static int model_state_hash(lua_State *L)
 {
     tl_model *model = tl_lua_model_of(L, "state_hash");
@@ -333,6 +344,9 @@ static const luaL_Reg model_methods[] = {
     {"solve", tl_lua_solve},
     {"energy", model_energy},
     {"write_vtk", model_write_vtk},
+    {"write_section", model_write_section},
+    {"filter", tl_lua_filter},
+    {"keyblocks", tl_lua_keyblocks},
     {"state_hash", model_state_hash},
     {NULL, NULL},
 };
@@ -441,7 +455,7 @@ static int model_assign(lua_State *L)
 
 void tl_lua_model_open(lua_State *L)
 {
-    if (luaL_newmetatable(L, MODEL_TYPE)) {
+    if (luaL_newmetatable(L, TL_LUA_MODEL_TYPE)) {
         luaL_newlib(L, model_methods);
         lua_pushcclosure(L, model_index, 1);
         lua_setfield(L, -2, "__index");

@@ -37,9 +37,11 @@ int luaopen_talus(lua_State *L)
     tl_lua_item_open(L, &tl_lua_contact_kind);
     tl_lua_selection_open(L, &tl_lua_block_kind);
     tl_lua_selection_open(L, &tl_lua_contact_kind);
-    lua_createtable(L, 0, 3);
+    lua_createtable(L, 0, 4);
     tl_lua_model_open(L);
     lua_setfield(L, -2, "model");
+    lua_pushcfunction(L, tl_lua_report);
+    lua_setfield(L, -2, "report");
     lua_pushcfunction(L, module_help);
     lua_setfield(L, -2, "help");
     lua_pushliteral(L, TALUS_VERSION);

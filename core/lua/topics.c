@@ -83,6 +83,52 @@ static const tl_lua_key timestep_results[] = {
     {NULL, NULL, NULL},
 };
 
+static const tl_lua_key report_results[] = {
+    {"blocks, bodies", "", "number of blocks, and of bodies they make"},
+    {"volume, volume_error", "",
+     "of all blocks, m3; and its relative difference from what was created less what was deleted"},
+    {"smallest_volume, smallest_edge, smallest_face", "",
+     "m3, m and m2; smallest_volume_block and so on are the blocks that have them"},
+    {"worst_aspect, worst_aspect_block", "",
+     "largest aspect of a block: its diameter (largest distance between two vertices) over its "
+     "thickness (smallest extent along the normal of a face); 1.73 for a cube"},
+    {"cuts, refused, coincident", "",
+     "cuts made, refused because a side would be too thin, and fallen on existing faces, since the "
+     "model was made"},
+    {"refused_cuts", "",
+     "list of the first 1000 refused cuts: {joint =, normal =, point =, block = (its number), "
+     "thickness =, limit =, reason =}"},
+    {"dt, timestep_block, timestep_message", "",
+     "the time step, s, the block that controls it, and the same in a sentence; when some contact "
+     "has no law yet, there is only the sentence"},
+    {NULL, NULL, NULL},
+};
+
+static const tl_lua_key filter_results[] = {
+    {"found, deleted, joined", "", "number of slivers, and what was done with them"},
+    {"volume", "", "of all slivers, m3"},
+    {"slivers", "",
+     "list of {block = (its number), volume =, edge =, aspect =, beyond = (the limits it is "
+     "beyond: "
+     "\"volume\", \"edge\", \"aspect\"), joined_to = (a block, or nil)}"},
+    {NULL, NULL, NULL},
+};
+
+static const tl_lua_key keyblock_results[] = {
+    {"block", "", "the block, the oldest one of a body of several"},
+    {"mode", "",
+     "\"falling\", \"sliding\" (on one face), \"sliding on two\", or \"stable\": removable, but "
+     "pressed in by its weight"},
+    {"safety", "", "factor of safety: 0 falling, math.huge stable"},
+    {"faces", "",
+     "the faces it slides on, none to two: {joint =, normal = (outward), area =, normal_force =}"},
+    {"direction, driving_force", "", "of the motion, and the force along it, N"},
+    {"force, mass, volume", "", "weight and load, N; of the body, kg and m3"},
+    {"pyramid", "",
+     "edges of the joint pyramid, unit vectors: it can move in all directions between them"},
+    {NULL, NULL, NULL},
+};
+
 static const tl_lua_key generate_results[] = {
     {"before, after", "", "number of blocks before and after"},
     {"cuts, refused, coincident", "",
@@ -166,7 +212,28 @@ const tl_lua_topic tl_lua_topics[] = {
             "from the first step.",
      .title = "Fields of the energy",
      .verbs = energy_terms},
+    {.name = "report",
+     .usage = "table = talus.report(model)",
+     .doc = "Tells how good the blocks are that cutting made, and prints it on a page (not with "
+            "--quiet).",
+     .title = "Fields of the report",
+     .verbs = report_results},
+    {.name = "filter",
+     .usage = "result = model:filter{volume = 1e-6, aspect = 100, action = \"join\"}",
+     .function = "filter",
+     .title = "Fields of the result",
+     .verbs = filter_results},
+    {.name = "keyblocks",
+     .usage = "list = model:keyblocks{friction = 35}",
+     .function = "keyblocks",
+     .keys = tl_lua_keyblocks_keys,
+     .title = "Fields of each keyblock",
+     .verbs = keyblock_results},
     {.name = "write_vtk", .usage = "model:write_vtk(\"out/run\")", .function = "write_vtk"},
+    {.name = "write_section",
+     .usage =
+         "model:write_section(\"out/cut\", {dip = 90, dip_direction = 90, origin = {0, 0, 0}})",
+     .function = "write_section"},
     {.name = "state_hash",
      .usage = "text = model:state_hash()",
      .doc = "A digest of the whole mechanical state: equal bits, equal text."},

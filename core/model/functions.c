@@ -22,6 +22,9 @@ typedef struct tl_write_vtk_args {
     const char *prefix;
 } tl_write_vtk_args;
 
+static const char *const filter_actions[] = {
+    [TL_FILTER_REPORT] = "report", [TL_FILTER_DELETE] = "delete", [TL_FILTER_JOIN] = "join", NULL};
+
 static const char *const rotation_names[] = {"exact", "paper", NULL};
 static const char *const timestep_names[] = {"paper", "body", NULL};
 
@@ -136,6 +139,39 @@ static const tl_param write_vtk_params[] = {
              "folder and beginning of the files' names", .flags = TL_PARAM_REQUIRED),
 };
 
+static const tl_param write_section_params[] = {
+    TL_PARAM(TL_PARAM_REAL, tl_halfspace, dip, "deg", "dip of the plane below horizontal",
+             .flags = TL_PARAM_REQUIRED, .min = 0.0, .max = 90.0),
+    TL_PARAM(TL_PARAM_REAL, tl_halfspace, dip_direction, "deg",
+             "its dip direction, clockwise from north (+y)", .def = {0.0}, .min = 0.0,
+             .max = 360.0),
+    TL_PARAM(TL_PARAM_VEC3, tl_halfspace, origin, "m", "a point on the plane",
+             .def = {0.0, 0.0, 0.0}),
+};
+
+static const tl_param filter_params[] = {
+    TL_PARAM(TL_PARAM_REAL, tl_filter, volume, "m3", "blocks smaller than this are slivers",
+             .min = 0.0, .max = INFINITY,
+             .flags = TL_PARAM_OPTIONAL | TL_PARAM_MIN_OPEN | TL_PARAM_MAX_OPEN),
+    TL_PARAM(TL_PARAM_REAL, tl_filter, edge, "m", "blocks with a shorter edge are slivers",
+             .min = 0.0, .max = INFINITY,
+             .flags = TL_PARAM_OPTIONAL | TL_PARAM_MIN_OPEN | TL_PARAM_MAX_OPEN),
+    TL_PARAM(TL_PARAM_REAL, tl_filter, aspect, "",
+             "blocks whose diameter is more than this times their thickness are slivers",
+             .min = 1.0, .max = INFINITY,
+             .flags = TL_PARAM_OPTIONAL | TL_PARAM_MIN_OPEN | TL_PARAM_MAX_OPEN),
+    TL_PARAM(TL_PARAM_ENUM, tl_filter, action, "",
+             "what is done with them: nothing; they are deleted; or each is joined to the block it "
+             "shares the largest face with",
+             .choices = filter_actions),
+};
+
+static const tl_param keyblocks_params[] = {
+    TL_PARAM(TL_PARAM_VEC3, tl_keyblock_query, gravity, "m/s2",
+             "acceleration that acts on the blocks; that of the model when left out",
+             .flags = TL_PARAM_OPTIONAL),
+};
+
 typedef struct tl_function {
     const char *name, *doc;
     const tl_param *params;
@@ -165,6 +201,19 @@ static const tl_function functions[] = {
     {"solve", "Runs until the forces balance or a limit is met.", PARAMS(solve_params)},
     {"write_vtk", "Writes the next frame of a series of VTK files for ParaView.",
      PARAMS(write_vtk_params)},
+    {"write_section",
+     "Writes the next frame of a section: the polygons in which a plane cuts the blocks, with "
+     "their "
+     "displacements.",
+     PARAMS(write_section_params)},
+    {"filter",
+     "Finds slivers, the visible blocks beyond the limits, and deletes them or joins them to "
+     "neighbours.",
+     PARAMS(filter_params)},
+    {"keyblocks",
+     "Finds the bodies that a translation can move out of the others (Shi's theorem), how they "
+     "move, and their factor of safety in limit equilibrium.",
+     PARAMS(keyblocks_params)},
 };
 
 #define FUNCTION_COUNT (sizeof functions / sizeof functions[0])
@@ -185,8 +234,9 @@ const tl_param *tl_function_params(const char *function, size_t *count, const ch
 
 const char *const *tl_function_names(void)
 {
-    static const char *const names[] = {
-        "model", "insitu", "tensor",    "timestep", "mass_scaling", "load", "contact_area",
-        "cycle", "solve",  "write_vtk", NULL};
+    static const char *const names[] = {"model",        "insitu",    "tensor",        "timestep",
+                                        "mass_scaling", "load",      "contact_area",  "cycle",
+                                        "solve",        "write_vtk", "write_section", "filter",
+                                        "keyblocks",    NULL};
     return names;
 }

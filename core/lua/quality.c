@@ -1,0 +1,355 @@
+/* quality.c - what cutting made and what may fall: talus.report(model), model:filter{...} and
+ * model:keyblocks{...}. */
+#include "front.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+/* Calls `push` (arguments: the model's userdata, `data`; one result) so that an error comes back here
+ * and the caller can free what `data` refers to before it goes on. */
+static int push_protected(lua_State *L, lua_CFunction push, void *data)
+{
+    lua_pushcfunction(L, push);
+    lua_pushvalue(L, 1);
+    lua_pushlightuserdata(L, data);
+    return lua_pcall(L, 2, 1, 0);
+}
+
+static void set_number(lua_State *L, const char *name, double number)
+{
+    lua_pushnumber(L, number);
+    lua_setfield(L, -2, name);
+}
+
+static void set_count(lua_State *L, const char *name, size_t count)
+{
+    lua_pushinteger(L, (lua_Integer)count);
+    lua_setfield(L, -2, name);
+}
+
+static void set_block(lua_State *L, const char *name, tl_id id)
+{
+    if (id == TL_NO_ID)
+        return;
+    tl_lua_item_push(L, &tl_lua_block_kind, 1, id);
+    lua_setfield(L, -2, name);
+}
+
+static void set_text(lua_State *L, const char *name, const char *text)
+{
+    lua_pushstring(L, text);
+    lua_setfield(L, -2, name);
+}
+
+static void set_vec3(lua_State *L, const char *name, tl_vec3 v)
+{
+    tl_lua_push_vec3(L, v);
+    lua_setfield(L, -2, name);
+}
+
+/* ---------------------------------------------------------------- report ----------------- */
+
+typedef struct extreme_name {
+    const char *field, *block_field, *label, *unit;
+    size_t offset;
+} extreme_name;
+
+static const extreme_name extremes[] = {
+    {"smallest_volume", "smallest_volume_block", "smallest volume", " m3",
+     offsetof(tl_quality, smallest_volume)},
+    {"smallest_edge", "smallest_edge_block", "smallest edge", " m",
+     offsetof(tl_quality, smallest_edge)},
+    {"smallest_face", "smallest_face_block", "smallest face", " m2",
+     offsetof(tl_quality, smallest_face)},
+    {"worst_aspect", "worst_aspect_block", "worst aspect", "", offsetof(tl_quality, worst_aspect)},
+};
+
+enum { EXTREMES = sizeof extremes / sizeof *extremes };
+
+static tl_extreme extreme_of(const tl_quality *q, const extreme_name *name)
+{
+    return *(const tl_extreme *)(const void *)((const char *)q + name->offset);
+}
+
+/* Pushes the sentence about a refused cut. */
+static void push_reason(lua_State *L, tl_model *model, const tl_refused_cut *cut)
+{
+    char text[240];
+    snprintf(text, sizeof text,
+             "joint '%s' does not cut block %u: a side would be %.3g m thick, less than the "
+             "limit of %.3g m",
+             tl_tag_name(model, cut->joint), cut->block, cut->thickness, cut->limit);
+    lua_pushstring(L, text);
+}
+
+static void set_refused_cuts(lua_State *L, tl_model *model, const tl_quality *q)
+{
+    lua_createtable(L, (int)q->refused_listed, 0);
+    for (size_t i = 0; i < q->refused_listed; i++) {
+        const tl_refused_cut *cut = &q->refused_cuts[i];
+        lua_createtable(L, 0, 7);
+        set_text(L, "joint", tl_tag_name(model, cut->joint));
+        set_count(L, "block", cut->block); /* a number: the block may be cut or deleted since */
+        set_vec3(L, "normal", cut->normal);
+        set_vec3(L, "point", cut->point);
+        set_number(L, "thickness", cut->thickness);
+        set_number(L, "limit", cut->limit);
+        push_reason(L, model, cut);
+        lua_setfield(L, -2, "reason");
+        lua_rawseti(L, -2, (lua_Integer)i + 1);
+    }
+    lua_setfield(L, -2, "refused_cuts");
+}
+
+/* The page, from the table of the report at the top of the stack. */
+static void print_page(lua_State *L, tl_model *model, const tl_quality *q)
+{
+    enum { SHOWN = 5 }; /* refused cuts of the page; the table has them all */
+    printf("%-18s%zu in %zu bodies\n", "blocks", q->blocks, q->bodies);
+    printf("%-18s%.10g m3, kept to %.1e\n", "volume", q->volume, q->volume_error);
+    for (size_t i = 0; i < EXTREMES; i++) {
+        tl_extreme e = extreme_of(q, &extremes[i]);
+        if (e.block != TL_NO_ID)
+            printf("%-18s%.4g%s, block %u\n", extremes[i].label, e.value, extremes[i].unit,
+                   e.block);
+    }
+    printf("%-18s%zu made, %zu refused, %zu on existing faces\n", "cuts", q->cuts, q->refused,
+           q->coincident);
+    for (size_t i = 0; i < q->refused_listed && i < SHOWN; i++) {
+        push_reason(L, model, &q->refused_cuts[i]);
+        printf("%-18s%s\n", i ? "" : "refused", lua_tostring(L, -1));
+        lua_pop(L, 1);
+    }
+    if (q->refused > SHOWN)
+        printf("%-18sand %zu more\n", "", q->refused - SHOWN);
+    lua_getfield(L, -1, "timestep_message");
+    printf("%-18s%s\n", "time step", lua_tostring(L, -1));
+    lua_pop(L, 1);
+}
+
+/* Without a law for some contact there is no time step to tell of; the report then says why. */
+static void set_timestep(lua_State *L, tl_model *model)
+{
+    tl_timestep_report step;
+    if (tl_model_timestep_report(model, &step) != TL_OK) {
+        set_text(L, "timestep_message", tl_model_error(model)->text);
+        return;
+    }
+    set_number(L, "dt", step.dt);
+    set_block(L, "timestep_block", step.block);
+    tl_lua_push_timestep(L, &step);
+    lua_setfield(L, -2, "timestep_message");
+}
+
+int tl_lua_report(lua_State *L)
+{
+    tl_lua_arity(L, 1, "talus.report");
+    if (!luaL_testudata(L, 1, TL_LUA_MODEL_TYPE))
+        return tl_lua_fail(L, "talus.report: give the model, not %s", tl_lua_describe(L, 1));
+    tl_model *model = tl_lua_model_of(L, "report");
+    tl_quality q;
+    tl_lua_ok(L, model, tl_model_quality(model, &q));
+    lua_createtable(L, 0, 20);
+    set_count(L, "blocks", q.blocks);
+    set_count(L, "bodies", q.bodies);
+    set_number(L, "volume", q.volume);
+    set_number(L, "volume_error", q.volume_error);
+    for (size_t i = 0; i < EXTREMES; i++) {
+        tl_extreme e = extreme_of(&q, &extremes[i]);
+        set_number(L, extremes[i].field, e.value);
+        set_block(L, extremes[i].block_field, e.block);
+    }
+    set_count(L, "cuts", q.cuts);
+    set_count(L, "refused", q.refused);
+    set_count(L, "coincident", q.coincident);
+    set_refused_cuts(L, model, &q);
+    set_timestep(L, model);
+    if (!tl_lua_options_of(L)->quiet)
+        print_page(L, model, &q);
+    return 1;
+}
+
+/* ---------------------------------------------------------------- filter ----------------- */
+
+static int push_filter(lua_State *L)
+{
+    const tl_filter_result *r = lua_touserdata(L, 2);
+    lua_createtable(L, 0, 5);
+    set_count(L, "found", r->count);
+    set_count(L, "deleted", r->deleted);
+    set_count(L, "joined", r->joined);
+    set_number(L, "volume", r->volume);
+    lua_createtable(L, (int)r->count, 0);
+    for (size_t i = 0; i < r->count; i++) {
+        const tl_sliver *s = &r->slivers[i];
+        lua_createtable(L, 0, 6);
+        set_count(L, "block", s->block); /* a number: it may have been deleted */
+        set_number(L, "volume", s->volume);
+        set_number(L, "edge", s->edge);
+        set_number(L, "aspect", s->aspect);
+        const char *which[] = {s->small ? "volume" : NULL, s->short_edge ? "edge" : NULL,
+                               s->thin ? "aspect" : NULL};
+        lua_createtable(L, 3, 0);
+        for (int k = 0; k < 3; k++)
+            if (which[k]) {
+                lua_pushstring(L, which[k]);
+                lua_rawseti(L, -2, (lua_Integer)lua_rawlen(L, -2) + 1);
+            }
+        lua_setfield(L, -2, "beyond");
+        set_block(L, "joined_to", s->joined_to);
+        lua_rawseti(L, -2, (lua_Integer)i + 1);
+    }
+    lua_setfield(L, -2, "slivers");
+    return 1;
+}
+
+int tl_lua_filter(lua_State *L)
+{
+    tl_model *model = tl_lua_model_of(L, "filter");
+    tl_lua_arity(L, 2, "filter");
+    lua_settop(L, 2);
+    tl_filter limits;
+    tl_lua_spec spec = tl_lua_spec_of("filter", NULL);
+    tl_lua_read(L, 2, &spec, false, &limits);
+    tl_filter_result result;
+    tl_lua_ok(L, model, tl_model_filter(model, &limits, &result));
+    int status = push_protected(L, push_filter, &result);
+    free(result.slivers);
+    return status == LUA_OK ? 1 : lua_error(L);
+}
+
+/* ---------------------------------------------------------------- keyblocks -------------- */
+
+const tl_lua_key tl_lua_keyblocks_keys[] = {
+    {"friction", "number or {JOINT = number}",
+     "friction angle of the joints, degrees, in [0, 90): one for all, or by joint: "
+     "{[\"*\"] = 35, J1 = 30, [\"J1:3\"] = 25}; the closest name counts"},
+    {"cohesion", "number or {JOINT = number}", "cohesion of the joints, Pa, likewise; default 0"},
+    {NULL, NULL, NULL},
+};
+
+/* Number of entries of the strength named `key` in the table at index 2. */
+static size_t count_strength(lua_State *L, const char *key)
+{
+    size_t count = 0;
+    int type = lua_getfield(L, 2, key);
+    if (type == LUA_TTABLE) {
+        for (lua_pushnil(L); lua_next(L, -2); lua_pop(L, 1))
+            count++;
+    } else if (type == LUA_TNUMBER) {
+        count = 1;
+    } else if (type != LUA_TNIL) {
+        tl_lua_fail(L, "keyblocks: %s must be a number or a table {JOINT = number}, not %s", key,
+                    tl_lua_describe(L, -1));
+    }
+    lua_pop(L, 1);
+    return count;
+}
+
+static tl_joint_strength read_strength(lua_State *L, const char *key, const char *joint)
+{
+    if (lua_type(L, -1) != LUA_TNUMBER)
+        tl_lua_fail(L, "keyblocks: %s of joint '%s' must be a number, not %s", key, joint,
+                    tl_lua_describe(L, -1));
+    double number = lua_tonumber(L, -1);
+    if (!isfinite(number))
+        tl_lua_fail(L, "keyblocks: %s of joint '%s' must be finite", key, joint);
+    bool friction = key[0] == 'f';
+    return (tl_joint_strength){joint, friction ? number : NAN, friction ? NAN : number};
+}
+
+/* Puts the entries of a strength behind those that are there. */
+static size_t fill_strength(lua_State *L, const char *key, tl_joint_strength *list, size_t count)
+{
+    int type = lua_getfield(L, 2, key);
+    if (type == LUA_TNUMBER)
+        list[count++] = read_strength(L, key, "*");
+    if (type == LUA_TTABLE)
+        for (lua_pushnil(L); lua_next(L, -2); lua_pop(L, 1)) {
+            if (lua_type(L, -2) != LUA_TSTRING)
+                tl_lua_fail(L, "keyblocks: %s: the joints are named by text, not by %s", key,
+                            tl_lua_describe(L, -2));
+            list[count] = read_strength(L, key, lua_tostring(L, -2));
+            count++;
+        }
+    lua_pop(L, 1);
+    return count;
+}
+
+typedef struct keyblocks_view {
+    tl_model *model;
+    const tl_keyblocks *all;
+} keyblocks_view;
+
+static void set_faces(lua_State *L, tl_model *model, const tl_keyblock *block)
+{
+    lua_createtable(L, (int)block->face_count, 0);
+    for (size_t k = 0; k < block->face_count; k++) {
+        const tl_keyblock_face *face = &block->faces[k];
+        lua_createtable(L, 0, 4);
+        set_text(L, "joint", tl_tag_name(model, face->joint));
+        set_vec3(L, "normal", face->normal);
+        set_number(L, "area", face->area);
+        set_number(L, "normal_force", face->normal_force);
+        lua_rawseti(L, -2, (lua_Integer)k + 1);
+    }
+    lua_setfield(L, -2, "faces");
+}
+
+static int push_keyblocks(lua_State *L)
+{
+    static const char *const modes[] = {[TL_KEYBLOCK_FALLING] = "falling",
+                                        [TL_KEYBLOCK_SLIDING] = "sliding",
+                                        [TL_KEYBLOCK_SLIDING_ON_TWO] = "sliding on two",
+                                        [TL_KEYBLOCK_STABLE] = "stable"};
+    const keyblocks_view *view = lua_touserdata(L, 2);
+    const tl_keyblocks *all = view->all;
+    lua_createtable(L, (int)all->count, 0);
+    for (size_t i = 0; i < all->count; i++) {
+        const tl_keyblock *block = &all->blocks[i];
+        lua_createtable(L, 0, 10);
+        set_block(L, "block", block->block);
+        set_text(L, "mode", modes[block->mode]);
+        set_number(L, "safety", block->safety);
+        set_number(L, "volume", block->volume);
+        set_number(L, "mass", block->mass);
+        set_vec3(L, "force", block->force);
+        set_number(L, "driving_force", block->driving);
+        if (block->mode != TL_KEYBLOCK_STABLE)
+            set_vec3(L, "direction", block->direction);
+        set_faces(L, view->model, block);
+        lua_createtable(L, (int)block->edge_count, 0);
+        for (size_t k = 0; k < block->edge_count; k++) {
+            tl_lua_push_vec3(L, all->edges[block->edge_start + k]);
+            lua_rawseti(L, -2, (lua_Integer)k + 1);
+        }
+        lua_setfield(L, -2, "pyramid");
+        lua_rawseti(L, -2, (lua_Integer)i + 1);
+    }
+    return 1;
+}
+
+int tl_lua_keyblocks(lua_State *L)
+{
+    tl_model *model = tl_lua_model_of(L, "keyblocks");
+    tl_lua_arity(L, 2, "keyblocks");
+    lua_settop(L, 2);
+    tl_keyblock_query query;
+    tl_lua_spec spec = tl_lua_spec_of("keyblocks", tl_lua_keyblocks_keys);
+    tl_lua_read(L, 2, &spec, false, &query);
+    if (!lua_istable(L, 2))
+        return tl_lua_fail(L, "keyblocks: give the parameters in a table: {friction = 35}");
+    size_t room = count_strength(L, "friction") + count_strength(L, "cohesion");
+    tl_joint_strength *list = lua_newuserdatauv(L, (room + 1) * sizeof *list, 0);
+    size_t count = fill_strength(L, "friction", list, 0);
+    count = fill_strength(L, "cohesion", list, count);
+    query.strength = list;
+    query.count = count;
+    tl_keyblocks all;
+    tl_lua_ok(L, model, tl_model_keyblocks(model, &query, &all));
+    keyblocks_view view = {model, &all};
+    int status = push_protected(L, push_keyblocks, &view);
+    tl_keyblocks_free(&all);
+    return status == LUA_OK ? 1 : lua_error(L);
+}

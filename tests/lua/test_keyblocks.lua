@@ -1,0 +1,130 @@
+-- Removable blocks: what is one and what is not, modes, strengths by joint, mistakes.
+local talus = require "talus"
+local check = require "check"
+
+-- Nine by nine by three unit cubes; all are held but those at `free`.
+local function grid(free)
+    local model = talus.model { gravity = { 0, 0, -10 } }
+    model:generate("box", { min = { 0, 0, 0 }, max = { 5, 5, 3 }, density = 2000 })
+    model:generate("jointset", { joint = "X", dip = 90, dip_direction = 90, spacing = 1, number = 4,
+        origin = { 2.5, 2.5, 1.5 } })
+    model:generate("jointset", { joint = "Y", dip = 90, dip_direction = 0, spacing = 1, number = 4,
+        origin = { 2.5, 2.5, 1.5 } })
+    model:generate("jointset", { joint = "Z", dip = 0, dip_direction = 0, spacing = 1, number = 2,
+        origin = { 2.5, 2.5, 1.5 } })
+    check.equal(#model:blocks(), 75)
+    model:blocks():fix()
+    for _, at in ipairs(free) do
+        model:blocks { containing = at }:free()
+    end
+    return model
+end
+
+-- In the floor, the roof, a wall, and within.
+local model = grid { { 2.5, 2.5, 2.5 }, { 2.5, 2.5, 0.5 }, { 0.5, 2.5, 1.5 }, { 2.5, 2.5, 1.5 } }
+local list = model:keyblocks { friction = 30 }
+check.equal(#list, 3)
+local by_mode = {}
+for _, key in ipairs(list) do
+    by_mode[key.mode] = key
+    check.near(key.volume, 1, 1e-12)
+    check.near(key.mass, 2000, 1e-9)
+    check.equal(#key.pyramid, 1)
+end
+check.near(by_mode.stable.pyramid[1], { 0, 0, 1 }, 1e-12)
+check.equal(by_mode.stable.safety, math.huge)
+check.equal(by_mode.stable.direction, nil)
+check.near(by_mode.falling.pyramid[1], { 0, 0, -1 }, 1e-12)
+check.equal(by_mode.falling.safety, 0)
+check.near(by_mode.falling.direction, { 0, 0, -1 }, 1e-12)
+check.equal(#by_mode.falling.faces, 0)
+
+-- The one in the wall may come out, but its weight does not make it.
+local stable = 0
+for _, key in ipairs(list) do
+    if key.block.centroid[1] < 1 then
+        check.near(key.pyramid[1], { -1, 0, 0 }, 1e-12)
+        stable = stable + 1
+        check.equal(key.mode, "stable")
+    end
+end
+check.equal(stable, 1)
+
+-- An earthquake pulls it out along its floor: N = m g, T = 0.5 m g.
+for _, key in ipairs(model:keyblocks { friction = 30, gravity = { -5, 0, -10 } }) do
+    if key.block.centroid[1] < 1 then
+        check.equal(key.mode, "sliding")
+        check.equal(key.faces[1].joint, "Z:1")
+        check.near(key.faces[1].area, 1, 1e-12)
+        check.near(key.faces[1].normal_force, 20000, 1e-6)
+        check.near(key.driving_force, 10000, 1e-6)
+        check.near(key.safety, math.tan(math.rad(30)) * 2, 1e-12)
+    end
+end
+-- A load does the same; cohesion on the floor joint alone, its plane before its set.
+model:blocks { containing = { 0.5, 2.5, 1.5 } }:load { force = { -10000, 0, 0 } }
+local function safety(parameters)
+    for _, key in ipairs(model:keyblocks(parameters)) do
+        if key.block.centroid[1] < 1 then
+            return key.safety
+        end
+    end
+end
+check.near(safety { friction = 30 }, math.tan(math.rad(30)) * 2, 1e-12)
+check.near(safety { friction = { ["*"] = 30, Z = 10, ["Z:1"] = 20 } }, math.tan(math.rad(20)) * 2,
+    1e-12)
+check.near(safety { friction = { ["*"] = 30, X = 10, ["Z:2"] = 20 }, cohesion = { Z = 5000, X = 1e9 } },
+    math.tan(math.rad(30)) * 2 + 0.5, 1e-12)
+
+-- What is in the way may go: then the block behind is removable too.
+model:blocks { containing = { 2.5, 2.5, 2.5 } }:delete()
+list = model:keyblocks { friction = 30 }
+check.equal(#list, 3)
+check.holds((function()
+    for _, key in ipairs(list) do
+        if math.abs(key.block.centroid[3] - 1.5) < 0.1 and key.block.centroid[1] > 1 then
+            return true
+        end
+    end
+end)(), "the block behind the deleted one is listed")
+
+-- Joined to one that is held fast, a block is no keyblock; two free ones joined are one.
+model = grid { { 2.5, 2.5, 0.5 }, { 2.5, 2.5, 1.5 } }
+check.equal(#model:keyblocks { friction = 30 }, 1)
+model:blocks { fixed = false }:join()
+list = model:keyblocks { friction = 30 }
+check.equal(#list, 1)
+check.near(list[1].volume, 2, 1e-12)
+check.equal(list[1].mode, "falling")
+
+-- A plug in the roof that widens upwards is tapered and stays; one that narrows upwards falls.
+local function plug(west, east)
+    local one = talus.model()
+    one:generate("box", { min = { 0, 0, 0 }, max = { 4, 4, 2 }, density = 2000 })
+    one:generate("joint", { joint = "A", dip = 60, dip_direction = west, origin = { 1.5, 2, 0 } })
+    one:generate("joint", { joint = "B", dip = 60, dip_direction = east, origin = { 2.5, 2, 0 } })
+    for joint, at in pairs { C = { 0, 0.5 }, D = { 90, 1 }, E = { 90, 3 } } do
+        one:generate("joint", { joint = joint, dip = at[1], dip_direction = 0,
+            origin = { 2, joint == "C" and 2 or at[2], 0.5 } })
+    end
+    one:blocks():fix()
+    one:blocks { containing = { 2, 2, 0.2 } }:free()
+    return one
+end
+check.equal(#plug(90, 270):keyblocks { friction = 0 }, 0)
+model = plug(270, 90)
+list = model:keyblocks { friction = 0 }
+check.equal(#list, 1)
+check.equal(list[1].mode, "falling")
+
+-- Asking changes nothing.
+check.refused(model, function() model:keyblocks {} end, "no friction is given for the faces")
+check.refused(model, function() model:keyblocks() end, "keyblocks: give the parameters in a table")
+check.refused(model, function() model:keyblocks { friction = { J = 3 } } end, "'J'")
+check.refused(model, function() model:keyblocks { friction = 90 } end, "outside [0, 90)")
+check.refused(model, function() model:keyblocks { friction = "30" } end, "must be a number or a table")
+check.refused(model, function() model:keyblocks { friction = { A = "x" } } end, "must be a number")
+check.refused(model, function() model:keyblocks { friction = { 30 } } end, "named by text")
+check.refused(model, function() model:keyblocks { friction = 30, cohesion = -1 } end,
+    "cohesion = -1")
+check.refused(model, function() model:keyblocks { frction = 30 } end, "friction")
