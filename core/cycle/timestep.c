@@ -1,10 +1,10 @@
 /* timestep.c - the stable time step.
  *
  * "paper": dt = FRAC 2 (M_min / (2 K_max))^1/2, K_max the largest max(kn, ks) A_c of a contact (27).
- * "body":  the least over bodies of FRAC 2 (M / (2 K))^1/2 for translation, with K the sum over the
- *          body's contacts, and for rotation, with I the smallest moment of inertia and K r^2 summed over
- *          contact points.
- * Mass scaling gives every free body the M/(2K) and I/(2 K r^2) of the one that has the most.
+ * "body":  the least over bodies of FRAC 2 (1 / (2 sum k (1/M + r^2/I)))^1/2, the sum over the body's
+ *          contact points of stiffness k at distance r from the centroid, I the smallest moment of inertia:
+ *          no motion of the body and its neighbours is faster, so FRAC 1 is stable.
+ * Mass scaling gives every free body the bound of the one that has the most.
  * Where no free body is in contact, the stiffest law on the largest face of a free block stands in for
  * K. */
 #include "cycle/cycle_room.h"
@@ -95,7 +95,7 @@ static bound paper_rule(const tl_model *m)
     return out;
 }
 
-/* Sums of K and K r^2 over the contact points of a body. */
+/* Sums of k and k r^2 over the contact points of a body. */
 static void body_stiffness(const tl_model *m, uint32_t body, double *k, double *k_r2)
 {
     const tl_detect *d = m->detect;
@@ -120,21 +120,19 @@ static void body_stiffness(const tl_model *m, uint32_t body, double *k, double *
     }
 }
 
-/* The lesser of M/(2K) and I/(2 K r^2) of a free body; infinite without contacts. */
+/* 1 / (2 sum k (1/M + r^2/I)) of a body; infinite without contacts. */
 static double body_bound(const tl_model *m, uint32_t body, double *stiffness)
 {
     const tl_bodies *b = &m->bodies;
-    double k_r2, least = INFINITY;
+    double k_r2;
     body_stiffness(m, body, stiffness, &k_r2);
-    if (*stiffness > 0)
-        least = b->mass[body] / (2 * *stiffness);
-    if (k_r2 > 0 && !(b->fixed[body] & TL_FIX_ROTATION)) {
+    double rate = *stiffness / b->mass[body];
+    if (!(b->fixed[body] & TL_FIX_ROTATION)) {
         tl_vec3 i = b->moments[body];
-        double inertia =
-            m->config.rotation == TL_ROTATION_PAPER ? b->round[body] : fmin(i.x, fmin(i.y, i.z));
-        least = fmin(least, inertia / (2 * k_r2));
+        rate += k_r2 / (m->config.rotation == TL_ROTATION_PAPER ? b->round[body]
+                                                                : fmin(i.x, fmin(i.y, i.z)));
     }
-    return least;
+    return 1 / (2 * rate);
 }
 
 static bound body_rule(const tl_model *m)

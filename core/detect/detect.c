@@ -140,6 +140,7 @@ static tl_share_rule share_rule(const tl_model *m, const tl_pair_view *view, tl_
     bool absolute = !isnan(rule.absolute);
     return (tl_share_rule){.minimum = absolute ? rule.absolute : rule.fraction * view->mean_face,
                            .unconditional = absolute,
+                           .corners = m->config.contact_points == TL_POINTS_CORNERS,
                            .reach = tension ? INFINITY : tolerance};
 }
 

@@ -96,6 +96,7 @@ typedef struct tl_narrow {
 typedef struct tl_share_rule {
     double minimum;     /* area, m2 */
     bool unconditional; /* also for edges of parallel faces */
+    bool corners;       /* points of patches at corners only */
     double reach;       /* patches with every gap beyond this are left out */
 } tl_share_rule;
 

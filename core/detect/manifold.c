@@ -29,6 +29,8 @@
 
 bool tl_manifold_add_point(tl_manifold *m, tl_vec3 p, double rest, double area, uint32_t key)
 {
+    if (!(area > 0)) /* a point without area carries nothing, and has no stress */
+        return true;
     if (m->point_count == m->point_room) {
         size_t room = m->point_room ? 2 * m->point_room : 64;
         tl_contact_point *points = realloc(m->points, room * sizeof *points);

@@ -354,8 +354,8 @@ static const luaL_Reg model_methods[] = {
 /* ---------------------------------------------------------------- fields ----------------- */
 
 static const char *const model_fields[] = {
-    "gravity", "rotation", "reuse_geometry", "mass_scaled", "time",
-    "cycles",  "dt",       "threads",        "seed",        NULL};
+    "gravity", "rotation", "reuse_geometry", "contact_points", "mass_scaled", "time",
+    "cycles",  "dt",       "threads",        "seed",           NULL};
 
 static int unknown_field(lua_State *L, const char *what, const char *name)
 {
@@ -384,6 +384,8 @@ static bool push_setting(lua_State *L, tl_model *model, const char *name)
         tl_lua_push_vec3(L, config.gravity);
     else if (strcmp(name, "rotation") == 0)
         lua_pushstring(L, choice_name("rotation", config.rotation));
+    else if (strcmp(name, "contact_points") == 0)
+        lua_pushstring(L, choice_name("contact_points", config.contact_points));
     else if (strcmp(name, "reuse_geometry") == 0)
         lua_pushboolean(L, config.reuse_geometry);
     else if (strcmp(name, "threads") == 0)
@@ -436,6 +438,9 @@ static int model_assign(lua_State *L)
     } else if (strcmp(name, "rotation") == 0) {
         tl_lua_read_one(L, 3, &spec, name, &config);
         tl_model_set_rotation(model, (tl_rotation_rule)config.rotation);
+    } else if (strcmp(name, "contact_points") == 0) {
+        tl_lua_read_one(L, 3, &spec, name, &config);
+        tl_model_set_contact_points(model, (tl_contact_points)config.contact_points);
     } else if (strcmp(name, "reuse_geometry") == 0) {
         tl_lua_read_one(L, 3, &spec, name, &config);
         tl_model_set_reuse_geometry(model, config.reuse_geometry);

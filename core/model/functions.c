@@ -25,6 +25,7 @@ typedef struct tl_write_vtk_args {
 static const char *const filter_actions[] = {
     [TL_FILTER_REPORT] = "report", [TL_FILTER_DELETE] = "delete", [TL_FILTER_JOIN] = "join", NULL};
 
+static const char *const point_names[] = {"consistent", "corners", NULL};
 static const char *const rotation_names[] = {"exact", "paper", NULL};
 static const char *const timestep_names[] = {"paper", "body", NULL};
 
@@ -43,6 +44,11 @@ static const tl_param model_params[] = {
     TL_PARAM(TL_PARAM_BOOL, tl_model_config, reuse_geometry, "",
              "whether a contact that hardly moved keeps its common plane and polygon",
              .def = {1.0}),
+    TL_PARAM(
+        TL_PARAM_ENUM, tl_model_config, contact_points, "",
+        "where the points of a face-face contact lie: also inside, exact for linear gaps, or at "
+        "the corners only",
+        .def = {TL_POINTS_CONSISTENT}, .choices = point_names),
 };
 
 static const tl_param insitu_params[] = {

@@ -188,6 +188,12 @@ void tl_model_set_reuse_geometry(tl_model *m, bool reuse)
     m->config.reuse_geometry = reuse;
 }
 
+void tl_model_set_contact_points(tl_model *m, tl_contact_points where)
+{
+    m->config.contact_points = (int32_t)where;
+    m->laws++; /* contacts are made anew */
+}
+
 double tl_model_time(const tl_model *m)
 {
     return m->time;

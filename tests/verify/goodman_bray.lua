@@ -18,7 +18,8 @@ local MOVED, TURNED = 0.05, 0.2  -- of the farthest column's way; of a column's 
 -- Each column on its own fixed base. u runs up along the base, w normal to it; the section lies in
 -- the x-z plane.
 local function build(case)
-    local model = talus.model { gravity = { 0, 0, -GRAVITY } }
+    -- Forces between toppling columns act at their corners: so the limit equilibrium has it.
+    local model = talus.model { gravity = { 0, 0, -GRAVITY }, contact_points = "corners" }
     local s, c = math.sin(math.rad(case.psi)), math.cos(math.rad(case.psi))
     local function prism(u0, u1, w0, w1, group)
         local vertices = {}

@@ -99,12 +99,20 @@ typedef enum tl_rotation_rule {
     TL_ROTATION_PAPER /* one moment of inertia (20): 0.4 m r^2, r the mean centroid-vertex distance */
 } tl_rotation_rule;
 
+/* Where the points of a face-face contact lie. */
+typedef enum tl_contact_points {
+    TL_POINTS_CONSISTENT, /* corners, middles of edges, centroid: every linear gap integrated exactly */
+    TL_POINTS_CORNERS /* corners only, as in programs whose contacts are vertices on faces: up to three
+                             times as stiff against turning */
+} tl_contact_points;
+
 typedef struct tl_model_config {
     tl_vec3 gravity;
     int64_t seed;
     int64_t threads;  /* 1 .. 256 */
     int32_t rotation; /* tl_rotation_rule */
     int32_t reuse_geometry;
+    int32_t contact_points; /* tl_contact_points */
 } tl_model_config;
 
 /* Remarks and warnings go to this function; NULL restores the default (standard error). */
@@ -119,6 +127,7 @@ TL_API tl_model_config tl_model_settings(const tl_model *model);
 TL_API tl_status tl_model_set_gravity(tl_model *model, tl_vec3 gravity);
 TL_API void tl_model_set_rotation(tl_model *model, tl_rotation_rule rule);
 TL_API void tl_model_set_reuse_geometry(tl_model *model, bool reuse);
+TL_API void tl_model_set_contact_points(tl_model *model, tl_contact_points where);
 TL_API double tl_model_time(const tl_model *model);
 TL_API int64_t tl_model_cycles(const tl_model *model);
 
