@@ -1,0 +1,404 @@
+/* tunnel.c - generator "tunnel": straight lines connect the corners of two end polygons; blocks in the way
+ * of the prism between them are cut along its surface.
+ *
+ * A block whose inside meets the prism is cut by the planes of the sides, in the order of face1's edges,
+ * then by the planes of the ends; each cut splits the part outside off. The cuts are no joints: parts of
+ * one block outside stay joined where they share a cut face. What is inside leaves the body of its block,
+ * gets the group, and can be excavated. A section that is not convex is divided into convex parts,
+ * which are carved one after the other; parts of one body inside stay joined too (Hart, Cundall and Lemos,
+ * Int. J. Rock Mech. Min. Sci. 25 (1988) 117-125, section on model generation).
+ *
+ * Limits: faces and sides must be plane, and the planes of the ends must not meet within the tunnel. */
+#include "section.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <talus/plugin.h>
+#include <talus/vmath.h>
+
+typedef struct params {
+    tl_points face1, face2;
+    const char *group;
+} params;
+
+static const tl_param param_table[] = {
+    TL_PARAM(TL_PARAM_POINTS, params, face1, "m", "corners of one end, in order around it",
+             .flags = TL_PARAM_REQUIRED),
+    TL_PARAM(TL_PARAM_POINTS, params, face2, "m",
+             "corners of the other end, in the order of those of face1 they are connected with",
+             .flags = TL_PARAM_REQUIRED),
+    TL_PARAM(TL_PARAM_STRING, params, group, "", "group of what lies inside", .def_text = "tunnel"),
+};
+
+/* The prism: for each convex part of the section the half spaces that hold it. */
+typedef struct prism {
+    const params *given;
+    double near;
+    outline ends[2];
+    division parts;
+    tl_half_space *spaces; /* those of part p from space[p] on */
+    size_t *space;         /* [parts + 1] */
+} prism;
+
+static void free_prism(prism *p)
+{
+    free(p->ends[0].at);
+    free(p->ends[1].at);
+    free(p->parts.corner);
+    free(p->parts.start);
+    free(p->spaces);
+    free(p->space);
+}
+
+static tl_status fail_memory(const tl_host *host)
+{
+    return host->fail(host, TL_E_MEMORY, "out of memory");
+}
+
+/* ---------------------------------------------------------------- checks ----------------- */
+
+/* Diagonal of the bounds of both ends. */
+static double size_of(const params *p)
+{
+    tl_vec3 min = p->face1.at[0], max = min;
+    for (size_t i = 0; i < p->face1.count; i++) {
+        min = tl_v3_min(min, tl_v3_min(p->face1.at[i], p->face2.at[i]));
+        max = tl_v3_max(max, tl_v3_max(p->face1.at[i], p->face2.at[i]));
+    }
+    return tl_v3_norm(tl_v3_sub(max, min));
+}
+
+static tl_status check_face(const tl_host *host, const tl_points *face, const char *name,
+                            double near, outline *made)
+{
+    for (size_t i = 0; i < face->count; i++)
+        for (size_t j = i + 1; j < face->count; j++)
+            if (tl_v3_norm(tl_v3_sub(face->at[i], face->at[j])) < near)
+                return host->fail(host, TL_E_GEOMETRY,
+                                  "%s has the same place {%g, %g, %g} as corners %zu and %zu", name,
+                                  face->at[i].x, face->at[i].y, face->at[i].z, i + 1, j + 1);
+    if (!outline_make(face->at, face->count, made))
+        return fail_memory(host);
+    size_t one, other, n = face->count;
+    double longest = 0;
+    for (size_t i = 0; i < n; i++)
+        longest = fmax(longest, tl_v3_norm(tl_v3_sub(face->at[i], made->middle)));
+    bool is_line = made->spread <= near * longest;
+    if (!is_line && made->bend > near)
+        return host->fail(host, TL_E_GEOMETRY,
+                          "%s is warped: a corner lies %g m off the plane that fits it, more than "
+                          "%g m; give corners in one plane",
+                          name, made->bend, near);
+    if (!is_line && outline_crosses(made, near, &one, &other))
+        return host->fail(
+            host, TL_E_GEOMETRY,
+            "%s crosses or touches itself: its edge from corner %zu to %zu meets that "
+            "from corner %zu to %zu",
+            name, one + 1, (one + 1) % n + 1, other + 1, (other + 1) % n + 1);
+    if (is_line || made->area <= near * longest)
+        return host->fail(host, TL_E_GEOMETRY, "%s has no area: %g m2", name, made->area);
+    return TL_OK;
+}
+
+/* The plane of the side between corners i and j of both ends. */
+static tl_status side_plane(const tl_host *host, const prism *p, size_t i, size_t j,
+                            tl_half_space *side)
+{
+    const tl_vec3 *a = p->given->face1.at, *b = p->given->face2.at;
+    tl_vec3 across = tl_v3_cross(tl_v3_sub(b[j], a[i]), tl_v3_sub(b[i], a[j]));
+    if (!(tl_v3_norm(across) > p->near * p->near))
+        return host->fail(host, TL_E_GEOMETRY,
+                          "the side between corners %zu and %zu has no area or "
+                          "crosses itself",
+                          i + 1, j + 1);
+    side->normal = tl_v3_unit(across);
+    side->point =
+        tl_v3_scale(0.25, tl_v3_add(tl_v3_sub(a[j], a[i]),
+                                    tl_v3_add(tl_v3_sub(b[i], a[i]), tl_v3_sub(b[j], a[i]))));
+    side->point = tl_v3_add(a[i], side->point);
+    double warp = fabs(tl_v3_dot(side->normal, tl_v3_sub(a[i], side->point)));
+    warp = fmax(warp, fabs(tl_v3_dot(side->normal, tl_v3_sub(a[j], side->point))));
+    if (warp > p->near)
+        return host->fail(host, TL_E_GEOMETRY,
+                          "the side between corners %zu and %zu is warped by %g m, more than %g m: "
+                          "the corners of face2 must be in the order of those of face1, and the "
+                          "sides plane%s",
+                          i + 1, j + 1, warp, p->near,
+                          p->parts.parts > 1 ? ", those between its convex parts too" : "");
+    return TL_OK;
+}
+
+/* How far a corner of a part sticks out of a half space (positive), at most; and the least. */
+static void reach(const prism *p, size_t part, const tl_half_space *space, double *least,
+                  double *most)
+{
+    *least = INFINITY;
+    *most = -INFINITY;
+    const tl_points *faces[2] = {&p->given->face1, &p->given->face2};
+    for (size_t k = p->parts.start[part]; k < p->parts.start[part + 1]; k++)
+        for (int f = 0; f < 2; f++) {
+            tl_vec3 d = tl_v3_sub(faces[f]->at[p->parts.corner[k]], space->point);
+            double out = tl_v3_dot(space->normal, d);
+            *least = fmin(*least, out);
+            *most = fmax(*most, out);
+        }
+}
+
+/* Turns a half space so that the part lies in it; false when it lies on both sides. */
+static bool face_outward(const prism *p, size_t part, tl_half_space *space)
+{
+    double least, most;
+    reach(p, part, space, &least, &most);
+    if (most > -least) {
+        space->normal = tl_v3_neg(space->normal);
+        reach(p, part, space, &least, &most);
+    }
+    return most <= 2 * p->near && least < -2 * p->near;
+}
+
+/* The half spaces of one part: its sides in order, then the two ends. */
+static tl_status bound_part(const tl_host *host, prism *p, size_t part)
+{
+    size_t from = p->parts.start[part], n = p->parts.start[part + 1] - from;
+    tl_half_space *spaces = p->spaces + p->space[part];
+    for (size_t k = 0; k < n; k++) {
+        size_t i = p->parts.corner[from + k], j = p->parts.corner[from + (k + 1) % n];
+        tl_status status = side_plane(host, p, i, j, &spaces[k]);
+        if (status != TL_OK)
+            return status;
+        if (!face_outward(p, part, &spaces[k]))
+            return host->fail(host, TL_E_GEOMETRY,
+                              "face1 and face2 do not fit: the side between corners %zu and %zu "
+                              "runs through the tunnel; give face2 the corners that correspond to "
+                              "those of face1, in their order",
+                              i + 1, j + 1);
+    }
+    for (size_t end = 0; end < 2; end++) {
+        spaces[n + end] = (tl_half_space){p->ends[end].normal, p->ends[end].middle};
+        if (!face_outward(p, part, &spaces[n + end]))
+            return host->fail(host, TL_E_GEOMETRY,
+                              "the plane of face%zu runs through the tunnel: the ends must lie "
+                              "apart, each on one side of the other",
+                              end + 1);
+    }
+    return TL_OK;
+}
+
+static tl_status make_prism(const tl_host *host, const params *given, prism *p)
+{
+    p->given = given;
+    size_t n = given->face1.count;
+    if (n < 3 || given->face2.count < 3)
+        return host->fail(host, TL_E_ARGUMENT, "%s has %zu corners; at least 3 are needed",
+                          n < 3 ? "face1" : "face2", n < 3 ? n : given->face2.count);
+    if (n != given->face2.count)
+        return host->fail(host, TL_E_ARGUMENT,
+                          "face1 has %zu corners and face2 %zu: lines connect them, so there must "
+                          "be as many",
+                          n, given->face2.count);
+    p->near = FIT * size_of(given);
+    double farthest = 0;
+    for (size_t i = 0; i < n; i++)
+        farthest = fmax(farthest, tl_v3_norm(tl_v3_sub(given->face1.at[i], given->face2.at[i])));
+    if (farthest <= p->near)
+        return host->fail(host, TL_E_GEOMETRY,
+                          "face1 and face2 are the same: the tunnel has no "
+                          "length");
+    tl_status status = check_face(host, &given->face1, "face1", p->near, &p->ends[0]);
+    if (status == TL_OK)
+        status = check_face(host, &given->face2, "face2", p->near, &p->ends[1]);
+    if (status != TL_OK)
+        return status;
+    if (!outline_divide(&p->ends[0], p->near, &p->parts))
+        return fail_memory(host);
+    size_t sides = p->parts.start[p->parts.parts];
+    p->spaces = malloc((sides + 2 * p->parts.parts) * sizeof *p->spaces);
+    p->space = malloc((p->parts.parts + 1) * sizeof *p->space);
+    if (!p->spaces || !p->space)
+        return fail_memory(host);
+    for (size_t part = 0; part <= p->parts.parts; part++)
+        p->space[part] = p->parts.start[part] + 2 * part;
+    for (size_t part = 0; part < p->parts.parts && status == TL_OK; part++)
+        status = bound_part(host, p, part);
+    return status;
+}
+
+/* ---------------------------------------------------------------- carving ---------------- */
+
+/* A piece inside and the body that its block was of. */
+typedef struct inner {
+    uint32_t body;
+    size_t index;
+} inner;
+
+typedef struct carving {
+    size_t *outer; /* pieces of the block in hand that may meet parts to come */
+    size_t outer_count, outer_room;
+    inner *inside;
+    size_t inside_count, inside_room;
+} carving;
+
+static bool add_outer(carving *c, size_t index)
+{
+    if (c->outer_count == c->outer_room) {
+        size_t room = c->outer_room ? 2 * c->outer_room : 64;
+        size_t *outer = realloc(c->outer, room * sizeof *outer);
+        if (!outer)
+            return false;
+        c->outer = outer;
+        c->outer_room = room;
+    }
+    c->outer[c->outer_count++] = index;
+    return true;
+}
+
+static bool add_inside(carving *c, uint32_t body, size_t index)
+{
+    if (c->inside_count == c->inside_room) {
+        size_t room = c->inside_room ? 2 * c->inside_room : 64;
+        inner *inside = realloc(c->inside, room * sizeof *inside);
+        if (!inside)
+            return false;
+        c->inside = inside;
+        c->inside_room = room;
+    }
+    c->inside[c->inside_count++] = (inner){body, index};
+    return true;
+}
+
+/* Splits off what of a piece lies outside a part. */
+static tl_status peel(const tl_host *host, const prism *p, size_t part, size_t index, carving *c)
+{
+    for (size_t k = p->space[part]; k < p->space[part + 1]; k++) {
+        size_t above;
+        tl_status status =
+            host->cut_block(host, index, p->spaces[k].normal, p->spaces[k].point, &above);
+        if (status != TL_OK)
+            return status;
+        if (above != SIZE_MAX && !add_outer(c, above))
+            return fail_memory(host);
+    }
+    return TL_OK;
+}
+
+/* Carves one block and the pieces it falls into. */
+static tl_status carve(const tl_host *host, const prism *p, size_t block, carving *c)
+{
+    tl_block_info info = {.size = sizeof info};
+    bool looked = false;
+    c->outer_count = 0;
+    if (!add_outer(c, block))
+        return fail_memory(host);
+    for (size_t part = 0; part < p->parts.parts; part++) {
+        size_t pieces = c->outer_count, kept = 0;
+        for (size_t i = 0; i < pieces; i++) {
+            size_t index = c->outer[i];
+            bool meets;
+            tl_status status = host->meets(host, index, p->spaces + p->space[part],
+                                           p->space[part + 1] - p->space[part], &meets);
+            if (status != TL_OK)
+                return status;
+            if (!meets) {
+                c->outer[kept++] = index;
+                continue;
+            }
+            if (!looked) /* before the first cut */
+                host->block_info(host, block, &info);
+            looked = true;
+            if (!add_inside(c, info.body, index))
+                return fail_memory(host);
+            status = peel(host, p, part, index, c);
+            if (status != TL_OK)
+                return status;
+        }
+        memmove(c->outer + kept, c->outer + pieces, (c->outer_count - pieces) * sizeof *c->outer);
+        c->outer_count -= pieces - kept;
+    }
+    return TL_OK;
+}
+
+static int compare_inner(const void *x, const void *y)
+{
+    const inner *a = x, *b = y;
+    if (a->body != b->body)
+        return a->body < b->body ? -1 : 1;
+    return (a->index > b->index) - (a->index < b->index);
+}
+
+/* Gives what is inside its group, and takes it out of the bodies outside. */
+static tl_status set_free(const tl_host *host, const char *group, carving *c)
+{
+    qsort(c->inside, c->inside_count, sizeof *c->inside, compare_inner);
+    for (size_t from = 0, to; from < c->inside_count; from = to) {
+        c->outer_count = 0;
+        for (to = from; to < c->inside_count && c->inside[to].body == c->inside[from].body; to++) {
+            tl_status status = host->set_group(host, c->inside[to].index, group);
+            if (status != TL_OK)
+                return status;
+            if (!add_outer(c, c->inside[to].index))
+                return fail_memory(host);
+        }
+        tl_status status = host->part(host, c->outer, c->outer_count);
+        if (status != TL_OK)
+            return status;
+    }
+    return TL_OK;
+}
+
+static tl_status generate(const tl_host *host, const void *given)
+{
+    prism p = {.near = 0};
+    carving c = {.outer = NULL};
+    tl_status status = make_prism(host, given, &p);
+    size_t blocks = host->block_count(host);
+    for (size_t i = 0; i < blocks && status == TL_OK; i++) {
+        status = carve(host, &p, i, &c);
+        if (status == TL_OK)
+            status = host->progress(host, (double)(i + 1) / (double)blocks);
+    }
+    if (status == TL_OK && c.inside_count == 0)
+        status = host->fail(host, TL_E_GEOMETRY,
+                            "the tunnel meets no visible block: it runs from {%g, %g, %g} to "
+                            "{%g, %g, %g}",
+                            p.ends[0].middle.x, p.ends[0].middle.y, p.ends[0].middle.z,
+                            p.ends[1].middle.x, p.ends[1].middle.y, p.ends[1].middle.z);
+    if (status == TL_OK)
+        status = set_free(host, p.given->group, &c);
+    free_prism(&p);
+    free(c.outer);
+    free(c.inside);
+    return status;
+}
+
+static const tl_generator_ops ops = {.size = sizeof ops, .generate = generate};
+
+static const tl_kind kind = {
+    .size = sizeof kind,
+    .type = TL_KIND_GENERATOR,
+    .name = "tunnel",
+    .doc = "Cuts the visible blocks in the way of a tunnel along its surface.",
+    .params_size = sizeof(params),
+    .params = param_table,
+    .param_count = sizeof param_table / sizeof *param_table,
+    .param_stride = sizeof *param_table,
+    .ops = &ops,
+};
+
+static const tl_plugin plugin = {
+    .size = sizeof plugin,
+    .abi_major = TL_ABI_MAJOR,
+    .abi_minor = TL_ABI_MINOR,
+    .id = "talus.tunnel",
+    .version = "0.1.0",
+    .doc = "Tunnel generator.",
+    .licence = "BSD-3-Clause",
+    .kinds = &kind,
+    .kind_count = 1,
+    .kind_stride = sizeof kind,
+};
+
+/* It needs the services for single blocks, which came with minor 1. */
+TL_PLUGIN_EXPORT const tl_plugin *tl_plugin_entry(uint32_t host_major, uint32_t host_minor)
+{
+    return host_major == TL_ABI_MAJOR && host_minor >= 1 ? &plugin : NULL;
+}
