@@ -42,6 +42,15 @@ static void add_tetrahedron(moments *m, tl_vec3 a, tl_vec3 b, tl_vec3 c)
     add_square(&m->second, det, c);
 }
 
+/* A face through the vertex O makes tetrahedra without volume: for a box half of all. */
+static bool has_first_vertex(const uint16_t *loop, uint32_t n)
+{
+    for (uint32_t i = 0; i < n; i++)
+        if (loop[i] == 0)
+            return true;
+    return false;
+}
+
 tl_mass tl_poly_mass(const tl_poly *p)
 {
     moments m = {0};
@@ -49,6 +58,8 @@ tl_mass tl_poly_mass(const tl_poly *p)
     for (uint32_t f = 0; f < p->face_count; f++) {
         const uint16_t *loop = p->loop + p->start[f];
         uint32_t n = tl_poly_face_size(p, f);
+        if (has_first_vertex(loop, n))
+            continue;
         tl_vec3 a = tl_v3_sub(p->vertex[loop[0]], origin),
                 b = tl_v3_sub(p->vertex[loop[1]], origin);
         for (uint32_t i = 2; i < n; i++) {

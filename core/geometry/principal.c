@@ -18,8 +18,9 @@
 static void rotate(tl_mat3 *a, tl_mat3 *r, int p, int q)
 {
     double theta = (a->m[q][q] - a->m[p][p]) / (2 * a->m[p][q]);
-    double t = copysign(1, theta) / (fabs(theta) + hypot(theta, 1));
-    double c = 1 / hypot(t, 1), s = t * c;
+    /* theta is at most 1e21 for the thinnest block, so its square does not overflow */
+    double t = copysign(1, theta) / (fabs(theta) + sqrt(theta * theta + 1));
+    double c = 1 / sqrt(t * t + 1), s = t * c;
     int k = 3 - p - q;
     a->m[p][p] -= t * a->m[p][q];
     a->m[q][q] += t * a->m[p][q];

@@ -82,13 +82,12 @@ void tl_rows_keep(tl_model *m, const unsigned char *keep)
         bodies->id[body] = blocks->id[m->members[bodies->member_start[body]]];
 }
 
-void tl_block_measure(tl_model *m, uint32_t row)
+void tl_block_measure(tl_model *m, uint32_t row, double volume)
 {
     tl_blocks *b = &m->blocks;
     const tl_poly *shape = b->shape[row];
-    tl_mass mass = tl_poly_mass(shape);
-    b->volume[row] = mass.volume;
-    b->size[row] = cbrt(mass.volume);
+    b->volume[row] = volume;
+    b->size[row] = cbrt(volume);
     double area = 0;
     for (uint32_t face = 0; face < shape->face_count; face++)
         area += tl_poly_face_area(shape, face);
@@ -110,29 +109,52 @@ static tl_sym3 sum_scaled(tl_sym3 a, double s, tl_sym3 b)
                      a.xy + s * b.xy, a.yz + s * b.yz, a.zx + s * b.zx};
 }
 
+/* What a body sums over its blocks. */
+typedef struct body_sum {
+    tl_sym3 inertia;
+    double mass, distance, radius;
+    size_t vertices;
+} body_sum;
+
+/* Adds a block, whose mass properties at density 1 are about the body's centroid. */
+static void add_block(body_sum *sum, const tl_poly *shape, double density, const tl_mass *one)
+{
+    sum->mass += density * one->volume;
+    sum->inertia =
+        sum_scaled(sum->inertia, density, about(one->inertia, one->volume, one->centroid));
+    for (uint32_t v = 0; v < shape->vertex_count; v++) {
+        double r = tl_v3_norm(shape->vertex[v]);
+        sum->distance += r;
+        sum->radius = r > sum->radius ? r : sum->radius;
+    }
+    sum->vertices += shape->vertex_count;
+}
+
+static void write_measures(tl_bodies *b, uint32_t body, const body_sum *sum)
+{
+    double mean = sum->distance / (double)sum->vertices;
+    b->mass[body] = sum->mass;
+    b->round[body] = ROUND_COEFFICIENT * sum->mass * mean * mean;
+    b->radius[body] = sum->radius;
+    tl_principal_axes(sum->inertia, &b->moments[body], &b->axes[body]);
+}
+
 void tl_body_measure(tl_model *m, uint32_t body)
 {
-    tl_bodies *b = &m->bodies;
-    const uint32_t *members = &m->members[b->member_start[body]];
-    tl_sym3 inertia = {0};
-    double mass = 0, distance = 0, radius = 0;
-    size_t vertices = 0;
-    for (uint32_t i = 0; i < b->member_count[body]; i++) {
+    const uint32_t *members = &m->members[m->bodies.member_start[body]];
+    body_sum sum = {0};
+    for (uint32_t i = 0; i < m->bodies.member_count[body]; i++) {
         const tl_poly *shape = m->blocks.shape[members[i]];
-        double density = m->blocks.density[members[i]];
         tl_mass one = tl_poly_mass(shape);
-        mass += density * one.volume;
-        inertia = sum_scaled(inertia, density, about(one.inertia, one.volume, one.centroid));
-        for (uint32_t v = 0; v < shape->vertex_count; v++) {
-            double r = tl_v3_norm(shape->vertex[v]);
-            distance += r;
-            radius = r > radius ? r : radius;
-        }
-        vertices += shape->vertex_count;
+        add_block(&sum, shape, m->blocks.density[members[i]], &one);
     }
-    double mean = distance / (double)vertices;
-    b->mass[body] = mass;
-    b->round[body] = ROUND_COEFFICIENT * mass * mean * mean;
-    b->radius[body] = radius;
-    tl_principal_axes(inertia, &b->moments[body], &b->axes[body]);
+    write_measures(&m->bodies, body, &sum);
+}
+
+void tl_body_measure_single(tl_model *m, uint32_t body, uint32_t row, tl_mass mass)
+{
+    body_sum sum = {0};
+    mass.centroid = tl_v3(0, 0, 0);
+    add_block(&sum, m->blocks.shape[row], m->blocks.density[row], &mass);
+    write_measures(&m->bodies, body, &sum);
 }

@@ -331,10 +331,12 @@ bool tl_rows_reserve(tl_model *m, size_t count, tl_id next_id);
 /* Derives the members of all bodies and the id-to-row table after rows have changed; the memory must
  * have been reserved. Counts a change of structure. */
 void tl_rows_refresh(tl_model *m);
-/* Derives a block's volume, size, mean face and place from its shape. */
-void tl_block_measure(tl_model *m, uint32_t row);
+/* Derives a block's size and mean face from its shape, whose volume is given. */
+void tl_block_measure(tl_model *m, uint32_t row, double volume);
 /* Derives a body's mass, inertia and radius from its blocks. */
 void tl_body_measure(tl_model *m, uint32_t body);
+/* The same for a body of one block, whose mass properties at density 1 are known. */
+void tl_body_measure_single(tl_model *m, uint32_t body, uint32_t row, tl_mass mass);
 /* Removes the blocks with keep[row] == 0, and bodies left without blocks. */
 void tl_rows_keep(tl_model *m, const unsigned char *keep);
 

@@ -25,7 +25,8 @@ static void append(tl_model *m, const tl_stage_block *block)
     uint32_t row = (uint32_t)blocks->table.rows, body = (uint32_t)bodies->table.rows;
     tl_table_resize(&blocks->table, row + 1u);
     tl_table_resize(&bodies->table, body + 1u);
-    tl_vec3 c = tl_poly_mass(block->shape).centroid;
+    tl_mass mass = tl_poly_mass(block->shape);
+    tl_vec3 c = mass.centroid;
     centre_shape(block->shape, c);
     blocks->id[row] = bodies->id[body] = m->next_id++;
     blocks->body[row] = body;
@@ -34,7 +35,8 @@ static void append(tl_model *m, const tl_stage_block *block)
     blocks->density[row] = block->density;
     blocks->lineage[row] = block->lineage;
     blocks->hidden[row] = block->hidden;
-    tl_block_measure(m, row);
+    tl_block_measure(m, row, mass.volume);
+    tl_body_measure_single(m, body, row, mass);
     if (block->source == TL_NO_ROW) {
         bodies->x_ref[body] = c;
         bodies->q[body] = tl_q_identity();
@@ -160,9 +162,6 @@ static void move_blocks(tl_stage *stage, commit_room *room)
         }
     }
     tl_rows_keep(m, room->keep);
-    for (uint32_t body = 0; body < m->bodies.table.rows; body++)
-        if (m->bodies.mass[body] == 0)
-            tl_body_measure(m, body);
 }
 
 tl_status tl_stage_commit(tl_stage *stage)
