@@ -1,4 +1,4 @@
-/* cut_properties.c - tens of thousands of seeded random cuts: whatever the plane, both children are
+/* cut_properties.c - 200,000 seeded random cuts: whatever the plane, both children are
  * closed, convex polyhedra that share their new vertices bit for bit and add up to the parent. */
 #include "check.h"
 #include "geometry/polyhedron.h"
@@ -236,7 +236,7 @@ static void report(const char *name, const tally *t)
 TEST(random_cuts_near_zero)
 {
     tally t = {0};
-    cut_at_random(tl_v3(0, 0, 0), 30000, GRID, 0, &t);
+    cut_at_random(tl_v3(0, 0, 0), 45000, GRID, 0, &t);
     report("near zero", &t);
     CHECK(t.made > t.cuts / 2 && t.coincident > 0);
 }
@@ -244,7 +244,7 @@ TEST(random_cuts_near_zero)
 TEST(random_cuts_far_from_zero)
 {
     tally t = {0};
-    cut_at_random(tl_v3(1e6, -1e6, 1e6), 30000, GRID, 0, &t);
+    cut_at_random(tl_v3(1e6, -1e6, 1e6), 45000, GRID, 0, &t);
     report("at 1e6", &t);
     CHECK(t.made > t.cuts / 2 && t.coincident > 0);
 }
@@ -252,8 +252,8 @@ TEST(random_cuts_far_from_zero)
 TEST(nearly_degenerate_cuts)
 {
     tally t = {0};
-    cut_at_random(tl_v3(0, 0, 0), 40000, TOUCHING, TL_POLY_ON, &t);
-    cut_at_random(tl_v3(1e6, -1e6, 1e6), 80000, TOUCHING, TL_POLY_ON, &t);
+    cut_at_random(tl_v3(0, 0, 0), 50000, TOUCHING, TL_POLY_ON, &t);
+    cut_at_random(tl_v3(1e6, -1e6, 1e6), 110000, TOUCHING, TL_POLY_ON, &t);
     report("nearly degenerate", &t);
     CHECK(t.made > t.cuts / 2 && t.coincident > 0 && t.refused > 0);
 }
