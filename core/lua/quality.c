@@ -225,7 +225,8 @@ const tl_lua_key tl_lua_keyblocks_keys[] = {
     {"friction", "number or {JOINT = number}",
      "friction angle of the joints, degrees, in [0, 90): one for all, or by joint: "
      "{[\"*\"] = 35, J1 = 30, [\"J1:3\"] = 25}; the closest name counts"},
-    {"cohesion", "number or {JOINT = number}", "cohesion of the joints, Pa, likewise; default 0"},
+    {"cohesion", "number or {JOINT = number}",
+     "cohesion of the joints, Pa, likewise; 0 where none is given"},
     {NULL, NULL, NULL},
 };
 

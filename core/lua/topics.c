@@ -97,8 +97,8 @@ static const tl_lua_key report_results[] = {
      "cuts made, refused because a side would be too thin, and fallen on existing faces, since the "
      "model was made"},
     {"refused_cuts", "",
-     "list of the first 1000 refused cuts: {joint =, normal =, point =, block = (its number), "
-     "thickness =, limit =, reason =}"},
+     "the first 1000 refused cuts, each a table: joint, normal and point of the plane, block (its "
+     "number), thickness and limit of the thinner side, and the reason as a sentence"},
     {"dt, timestep_block, timestep_message", "",
      "the time step, s, the block that controls it, and the same in a sentence; when some contact "
      "has no law yet, there is only the sentence"},
@@ -109,9 +109,8 @@ static const tl_lua_key filter_results[] = {
     {"found, deleted, joined", "", "number of slivers, and what was done with them"},
     {"volume", "", "of all slivers, m3"},
     {"slivers", "",
-     "list of {block = (its number), volume =, edge =, aspect =, beyond = (the limits it is "
-     "beyond: "
-     "\"volume\", \"edge\", \"aspect\"), joined_to = (a block, or nil)}"},
+     "each a table: block (its number), volume, edge, aspect, beyond (which limits: \"volume\", "
+     "\"edge\", \"aspect\") and joined_to (a block, or nil)"},
     {NULL, NULL, NULL},
 };
 

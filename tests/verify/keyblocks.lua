@@ -87,4 +87,37 @@ for i, edge in ipairs(list[1].pyramid) do
     local down = 1 / math.sqrt(corner[1] ^ 2 + 1)
     figures.near("edge " .. i .. " downwards", edge[3], -down, EXACT)
 end
+
+-- Three faults over a square tunnel: the wedge in the roof can only come down, on one fault.
+figures.case("keyblock E3", "A tunnel under three faults: the wedge in its roof, its mode and factor "
+    .. "of safety.", "Hart, Cundall and Lemos (1988), example 3; FS = mu / tan 65 for sliding on one "
+    .. "plane; volume by half-space clipping")
+model = talus.model { gravity = { 0, 0, -GRAVITY } }
+model:generate("box", { min = { -8, -8, -8 }, max = { 8, 8, 8 }, density = DENSITY })
+for i, fault in ipairs { { 50, 320 }, { 40, 230 }, { 65, 270 } } do
+    model:generate("joint", { joint = "F" .. i, dip = fault[1], dip_direction = fault[2],
+        origin = { 1.5, 0.5, 5 } })
+end
+local function face(y)
+    return { { -3, y, -3 }, { -3, y, 3 }, { 3, y, 3 }, { 3, y, -3 } }
+end
+model:generate("tunnel", { face1 = face(-8), face2 = face(8), group = "tunnel" })
+local hanging = model:blocks { containing = { 0.3, 0.14, 3.5 } }
+model:blocks():fix()
+hanging:free()
+figures.equal("keyblocks before the tunnel is excavated",
+    #model:keyblocks { friction = 30 }, 0)
+model:blocks { group = "tunnel" }:delete()
+list = model:keyblocks { friction = 30 }
+figures.equal("keyblocks", #list, 1)
+figures.equal("is the wedge", list[1].block.id, hanging[1].id)
+figures.relative("volume", list[1].volume, 2.6324706, 1e-7)
+figures.equal("mode", list[1].mode, "sliding")
+figures.equal("slides on", list[1].faces[1].joint, "F3:1")
+figures.relative("factor of safety", list[1].safety,
+    math.tan(math.rad(30)) / math.tan(math.rad(65)), EXACT)
+figures.equal("edges", #list[1].pyramid, 3)
+for i, edge in ipairs(list[1].pyramid) do
+    figures.between("edge " .. i .. " goes down", edge[3], -1, -0.1)
+end
 figures.finish()
