@@ -75,8 +75,8 @@ void tl_principal_axes(tl_sym3 tensor, tl_vec3 *moments, tl_quat *axes)
         turned = false;
         for (int p = 0; p < 2; p++)
             for (int q = p + 1; q < 3; q++) {
-                double mean = sqrt(fabs(a.m[p][p] * a.m[q][q]));
-                if (fabs(a.m[p][q]) > OFF_DIAGONAL * mean) {
+                double mean2 = fabs(a.m[p][p] * a.m[q][q]);
+                if (a.m[p][q] * a.m[p][q] > OFF_DIAGONAL * OFF_DIAGONAL * mean2) {
                     rotate(&a, &r, p, q);
                     turned = true;
                 }

@@ -76,10 +76,12 @@ static tl_extreme extreme_of(const tl_quality *q, const extreme_name *name)
 static void push_reason(lua_State *L, tl_model *model, const tl_refused_cut *cut)
 {
     char text[240];
+    const char *joint = tl_tag_name(model, cut->joint);
     snprintf(text, sizeof text,
-             "joint '%s' does not cut block %u: a side would be %.3g m thick, less than the "
-             "limit of %.3g m",
-             tl_tag_name(model, cut->joint), cut->block, cut->thickness, cut->limit);
+             "%s%s%s does not cut block %u: a side would be %.3g m thick, less than the limit of "
+             "%.3g m",
+             *joint ? "joint '" : "a plane without joint", joint, *joint ? "'" : "", cut->block,
+             cut->thickness, cut->limit);
     lua_pushstring(L, text);
 }
 

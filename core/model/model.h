@@ -244,8 +244,6 @@ void tl_material_clear(tl_material *material);
  * relative to the origin). Children's shapes are in the frame of their source's body. */
 typedef struct tl_stage_block {
     tl_poly *shape;
-    tl_vec3 center; /* of a ball about the shape, in the shape's frame: the quick look of a cut */
-    double radius;
     uint32_t source;
     uint32_t group;
     double density;
@@ -260,9 +258,17 @@ typedef struct tl_stage_block {
     bool torn;   /* its body has been cut since it was last known to hang together */
 } tl_stage_block;
 
+/* A ball about a staged block, relative to the model's origin: the quick look of a cut. Kept apart from
+ * the blocks, for a plane looks at all of them and cuts few. */
+typedef struct tl_stage_ball {
+    tl_vec3 center;
+    double radius;
+} tl_stage_ball;
+
 typedef struct tl_stage {
     tl_model *model;
     tl_stage_block *blocks;
+    tl_stage_ball *balls; /* [capacity] */
     size_t count, capacity;
     size_t *visible; /* [capacity] indices of the blocks that generators see, ascending */
     size_t visible_count;

@@ -8,12 +8,41 @@
 
 #include "base/random.h"
 
+#include <float.h>
 #include <stdlib.h>
 #include <string.h>
 
 /* The origin is rounded to a power of two of at least this many sizes of the first block, so models
  * near zero keep the origin zero, and subtracting it from coordinates is exact. */
 #define ORIGIN_SIZES 8.0
+/* A cut takes vertices this near, relative to the size, for being on its plane (TL_POLY_ON); and centres
+ * of balls are known to some roundings of the coordinates. */
+#define BALL_MARGIN (2 * TL_POLY_ON)
+#define BALL_ROUNDINGS (32 * DBL_EPSILON)
+
+/* A ball about a shape: the mean of its vertices and the farthest from it, with what a cut takes for
+ * touching and what rounds in between. */
+static tl_stage_ball ball_of(const tl_model *m, const tl_stage_block *block)
+{
+    const tl_poly *p = block->shape;
+    tl_vec3 sum = {0, 0, 0};
+    for (uint32_t i = 0; i < p->vertex_count; i++)
+        sum = tl_v3_add(sum, p->vertex[i]);
+    tl_vec3 center = tl_v3_scale(1.0 / p->vertex_count, sum);
+    double r2 = 0;
+    for (uint32_t i = 0; i < p->vertex_count; i++) {
+        double d2 = tl_v3_norm2(tl_v3_sub(p->vertex[i], center));
+        r2 = d2 > r2 ? d2 : r2;
+    }
+    tl_stage_ball ball = {center, sqrt(r2) * (1 + BALL_MARGIN)};
+    if (block->source != TL_NO_ROW) {
+        uint32_t body = m->blocks.body[block->source];
+        ball.center =
+            tl_v3_add(tl_body_place(&m->bodies, body), tl_m3_mul(&m->bodies.r[body], center));
+    }
+    ball.radius += BALL_ROUNDINGS * (tl_v3_norm(center) + tl_v3_norm(ball.center));
+    return ball;
+}
 
 static bool stage_push(tl_stage *stage, const tl_stage_block *block)
 {
@@ -23,6 +52,10 @@ static bool stage_push(tl_stage *stage, const tl_stage_block *block)
         if (!blocks)
             return false;
         stage->blocks = blocks;
+        tl_stage_ball *balls = realloc(stage->balls, capacity * sizeof *balls);
+        if (!balls)
+            return false;
+        stage->balls = balls;
         size_t *visible = realloc(stage->visible, capacity * sizeof *visible);
         if (!visible)
             return false;
@@ -31,24 +64,9 @@ static bool stage_push(tl_stage *stage, const tl_stage_block *block)
     }
     if (!block->hidden && !block->veiled)
         stage->visible[stage->visible_count++] = stage->count;
+    stage->balls[stage->count] = ball_of(stage->model, block);
     stage->blocks[stage->count++] = *block;
     return true;
-}
-
-/* A ball about a shape: the mean of its vertices and the farthest from it. */
-static void set_ball(tl_stage_block *block)
-{
-    const tl_poly *p = block->shape;
-    tl_vec3 sum = {0, 0, 0};
-    for (uint32_t i = 0; i < p->vertex_count; i++)
-        sum = tl_v3_add(sum, p->vertex[i]);
-    block->center = tl_v3_scale(1.0 / p->vertex_count, sum);
-    double r2 = 0;
-    for (uint32_t i = 0; i < p->vertex_count; i++) {
-        double d2 = tl_v3_norm2(tl_v3_sub(p->vertex[i], block->center));
-        r2 = d2 > r2 ? d2 : r2;
-    }
-    block->radius = sqrt(r2);
 }
 
 /* Gives the blocks of each body the key of its draws. */
@@ -92,7 +110,6 @@ tl_status tl_stage_begin(tl_model *m, tl_stage *stage)
                                 .left = TL_NO_ROW,
                                 .joined = m->bodies.member_count[b->body[row]] > 1,
                                 .hidden = b->hidden[row] != 0};
-        set_ball(&block);
         if (!stage_push(stage, &block)) {
             tl_stage_drop(stage);
             return tl_fail_memory(&m->error);
@@ -105,10 +122,12 @@ tl_status tl_stage_begin(tl_model *m, tl_stage *stage)
 void tl_stage_end(tl_stage *stage)
 {
     free(stage->blocks);
+    free(stage->balls);
     free(stage->visible);
     free(stage->plane_count);
     free(stage->refused);
     stage->blocks = NULL;
+    stage->balls = NULL;
     stage->visible = NULL;
     stage->plane_count = NULL;
     stage->refused = NULL;
@@ -159,7 +178,6 @@ static tl_status add_shape(tl_stage *stage, tl_poly *shape, double density, cons
     block.lineage = block.draw = tl_key(0, ++m->created);
     block.body = stage->next_body++;
     block.left = TL_NO_ROW;
-    set_ball(&block);
     if (block.group == UINT32_MAX || !stage_push(stage, &block)) {
         tl_poly_free(shape);
         return tl_fail_memory(&m->error);
@@ -254,9 +272,8 @@ static tl_status replace(tl_stage *stage, size_t index, const tl_cut *cut, uint6
         below.joined = above.joined = below.torn = above.torn = true;
         stage->torn = stage->regroups = true;
     }
-    set_ball(&below);
-    set_ball(&above);
     stage->blocks[index] = below;
+    stage->balls[index] = ball_of(stage->model, &below);
     if (!stage_push(stage, &above)) {
         tl_poly_free(above.shape);
         return tl_fail_memory(&stage->model->error);
@@ -284,13 +301,15 @@ static crossing crossing_in_frame(const tl_model *m, const tl_stage_block *block
     return x;
 }
 
-/* False when the ball about a block shows that the plane or disc passes it by. */
-static bool may_meet(const crossing *x, const tl_stage_block *block)
+/* False when the ball about a block shows that the plane or disc, relative to the model's origin, passes
+ * it by. */
+static bool may_meet(const crossing *x, tl_stage_ball ball)
 {
-    double reach = block->radius * (1 + TL_POLY_ON);
-    if (fabs(tl_v3_dot(x->plane.normal, block->center) - x->plane.offset) > reach)
+    double rounding = BALL_ROUNDINGS * fabs(x->plane.offset);
+    if (fabs(tl_v3_dot(x->plane.normal, ball.center) - x->plane.offset) > ball.radius + rounding)
         return false;
-    return isinf(x->radius) || tl_v3_norm(tl_v3_sub(block->center, x->center)) <= x->radius + reach;
+    return isinf(x->radius) ||
+           tl_v3_norm(tl_v3_sub(ball.center, x->center)) <= x->radius + ball.radius + rounding;
 }
 
 /* Whether a block that the plane crosses is in the path of the disc: the disc reaches the section of the
@@ -345,13 +364,14 @@ tl_status tl_stage_cut_disc(tl_stage *stage, tl_vec3 normal, tl_vec3 point, doub
         tl_key_text(tl_key(0, (uint64_t)m->config.seed), m->joints[tag.joint - 1].name), tag.plane);
     bool coincident = false;
     size_t count = stage->count; /* children of this cut are not cut by it again */
+    const crossing global = {{normal, tl_v3_dot(normal, local)}, local, radius};
     for (size_t i = 0; i < count; i++) {
+        if (!may_meet(&global, stage->balls[i]))
+            continue;
         tl_stage_block *block = &stage->blocks[i];
         if (block->hidden || block->veiled)
             continue;
         crossing x = crossing_in_frame(m, block, normal, local, radius);
-        if (!may_meet(&x, block))
-            continue;
         tl_cut cut;
         tl_status status = tl_poly_cut(block->shape, x.plane, tag, &cut, &m->error);
         if (status != TL_OK)
@@ -417,14 +437,14 @@ tl_status tl_stage_meets(tl_stage *stage, size_t index, const tl_half_space *spa
     bool owned = false; /* the rest is no longer the block's own shape */
     *meets = true;
     for (size_t i = 0; i < count && *meets && status == TL_OK; i++) {
-        tl_plane plane =
-            plane_in_frame(m, &rest, spaces[i].normal, tl_v3_sub(spaces[i].point, m->origin));
-        double distance = tl_v3_dot(plane.normal, rest.center) - plane.offset;
-        if (fabs(distance) >
-            rest.radius * (1 + TL_POLY_ON)) { /* the ball about the block decides */
+        tl_vec3 point = tl_v3_sub(spaces[i].point, m->origin);
+        tl_stage_ball ball = stage->balls[index]; /* about the whole block */
+        double distance = tl_v3_dot(spaces[i].normal, tl_v3_sub(ball.center, point));
+        if (fabs(distance) > ball.radius + BALL_ROUNDINGS * tl_v3_norm(point)) {
             *meets = distance < 0;
             continue;
         }
+        tl_plane plane = plane_in_frame(m, &rest, spaces[i].normal, point);
         tl_cut cut;
         status = tl_poly_cut(rest.shape, plane, (tl_tag){0, 0}, &cut, &m->error);
         if (status == TL_OK && cut.result == TL_CUT_MADE) {

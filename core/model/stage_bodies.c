@@ -235,6 +235,8 @@ void tl_stage_delete(tl_stage *stage, size_t index)
     stage->count--;
     memmove(&stage->blocks[index], &stage->blocks[index + 1],
             (stage->count - index) * sizeof *stage->blocks);
+    memmove(&stage->balls[index], &stage->balls[index + 1],
+            (stage->count - index) * sizeof *stage->balls);
     forget_refused(stage, index);
     if (gone.joined)
         tear(stage, gone.body);

@@ -17,14 +17,11 @@ static void centre_shape(tl_poly *shape, tl_vec3 centroid)
             tl_v3_dot(shape->plane[f].normal, shape->vertex[shape->loop[shape->start[f]]]);
 }
 
-/* Appends the row of a new block and of its body. A child moves on as its part of the source did. */
-static void append(tl_model *m, const tl_stage_block *block)
+/* Fills the rows of a new block and of its body. A child moves on as its part of the source did. */
+static void put(tl_model *m, const tl_stage_block *block, uint32_t row, uint32_t body)
 {
     tl_blocks *blocks = &m->blocks;
     tl_bodies *bodies = &m->bodies;
-    uint32_t row = (uint32_t)blocks->table.rows, body = (uint32_t)bodies->table.rows;
-    tl_table_resize(&blocks->table, row + 1u);
-    tl_table_resize(&bodies->table, body + 1u);
     tl_mass mass = tl_poly_mass(block->shape);
     tl_vec3 c = mass.centroid;
     centre_shape(block->shape, c);
@@ -142,14 +139,17 @@ static bool make_room(tl_stage *stage, size_t old, size_t made, commit_room *roo
 
 /* Moves the staged blocks into the model's rows, each as a body of its own, and drops what they
  * replace. */
-static void move_blocks(tl_stage *stage, commit_room *room)
+static void move_blocks(tl_stage *stage, size_t made, commit_room *room)
 {
     tl_model *m = stage->model;
     tl_blocks *blocks = &m->blocks;
+    uint32_t row = (uint32_t)blocks->table.rows, body = (uint32_t)m->bodies.table.rows;
+    tl_table_resize(&blocks->table, row + made);
+    tl_table_resize(&m->bodies.table, body + made);
     for (size_t i = 0; i < stage->count; i++) {
         tl_stage_block *block = &stage->blocks[i];
         if (block->owned && !block->retagged) {
-            append(m, block);
+            put(m, block, row++, body++);
             room->ids[i] = m->next_id - 1;
             continue;
         }
@@ -185,7 +185,7 @@ tl_status tl_stage_commit(tl_stage *stage)
     for (size_t row = 0; row < old; row++)
         volume_before += m->blocks.volume[row];
     memset(room.keep + old, 1, made);
-    move_blocks(stage, &room);
+    move_blocks(stage, made, &room);
     summarize(stage, volume_before);
     if (stage->regroups) {
         tl_stage_groups(stage, room.ids, room.first, room.group);
