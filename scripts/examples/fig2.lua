@@ -9,8 +9,9 @@
 --      2    45        70        0.5        0         15        0.5
 --      3    45        70        0.5        0         15        0.5
 --
--- As printed the third set falls on the second; a plane then cuts a block with probability 3/4. With 320
--- for its dip direction the sets make a jointed rock mass. Every draw comes from the model's seed.
+-- As printed the third set falls on the second; a plane then cuts a block with probability 3/4.
+-- With 320 for its dip direction the sets make a jointed rock mass. Every draw comes from the
+-- model's seed.
 local talus = require "talus"
 
 local fig2 = {}

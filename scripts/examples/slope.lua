@@ -3,18 +3,18 @@
 --
 --     build/release/talus scripts/examples/slope.lua [folder]
 --
--- Five foliation planes (76/270) rise from the toe of the slope to the rear, three fractures (12/270) lie
--- above each other; what is in front of the slope is excavated. Two discontinuities, 70/200 and 60/330,
--- meet in a line that plunges 42 degrees out of the slope: the four pieces above both slide along
--- it when the friction falls below that of the wedge,
+-- Five foliation planes (76/270) rise from the toe of the slope to the rear, three fractures
+-- (12/270) lie above each other; what is in front of the slope is excavated. Two discontinuities,
+-- 70/200 and 60/330, meet in a line that plunges 42 degrees out of the slope: the four pieces
+-- above both slide along it when the friction falls below that of the wedge,
 --
 --     27.14 degrees        (vector solution for a wedge, Hoek and Bray 1977)
 --
 -- while the rest of the slope rests on the fractures, which dip 12 degrees: without the two
--- discontinuities it slides at that friction. What lies below the lowest fracture or behind the last
--- foliation plane is held.
--- This is example 4 of Hart, Cundall and Lemos, Int. J. Rock Mech. Min. Sci. 25 (1988) 117-125; the paper
--- gives no dimensions, these are chosen to give its 49 blocks.
+-- discontinuities it slides at that friction. What lies below the lowest fracture or behind the
+-- last foliation plane is held. This is example 4 of Hart, Cundall and Lemos, Int. J. Rock Mech.
+-- Min. Sci. 25 (1988) 117-125; the paper gives no dimensions, these are chosen to give its 49
+-- blocks.
 local talus = require "talus"
 
 local slope = {}
@@ -65,7 +65,9 @@ function slope.build(friction, options)
     for _, block in ipairs(model:blocks { above = plane(fracture, 0) }) do
         above[block.id] = true
     end
-    model:blocks { above = plane(foliation, 0), where = function(b) return above[b.id] end }:delete()
+    model:blocks { above = plane(foliation, 0), where = function(block)
+        return above[block.id]
+    end }:delete()
     if not options.two_dimensional then
         for _, name in ipairs { "D1", "D2" } do
             local d = slope[name]
@@ -83,8 +85,8 @@ local function length(v)
     return math.sqrt(v[1] ^ 2 + v[2] ^ 2 + v[3] ^ 2)
 end
 
--- The free blocks that have moved by more than the failure's displacement, by volume; and the farthest
--- that one of the others has moved.
+-- The free blocks that have moved by more than the failure's displacement, by volume; and the
+-- farthest that one of the others has moved.
 function slope.moving(model)
     local volumes, still = {}, 0
     for _, block in ipairs(model:blocks { fixed = false }) do
@@ -167,8 +169,8 @@ function slope.main(folder)
     print(string.format("the wedge holds at %g degrees and slides at %s; expected 27.14", held,
         failed or "none"))
     held, failed = slope.bracket({ 14, 12.3, 11.7 }, { two_dimensional = true })
-    print(string.format("without D1 and D2 the slope holds at %g degrees and slides at %s; expected 12",
-        held, failed or "none"))
+    print(string.format("without D1 and D2 the slope holds at %g degrees and slides at %s; "
+        .. "expected 12", held, failed or "none"))
     slope.film(20, 20, folder .. "/slope")
     print(string.format("%s/slope_blocks.vtk.series shows the collapse at friction 20", folder))
 end

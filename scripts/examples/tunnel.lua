@@ -3,15 +3,15 @@
 --     build/release/talus scripts/examples/tunnel.lua [folder]
 --
 -- Three faults through one point above the roof (50/320, 40/230 and 65/270) divide a cube of rock
--- into eight blocks; a square tunnel is cut through them and excavated. Of the 21 pieces left, joined
--- into ten bodies, one wedge hangs in the roof: it can only slide along the fault 65/270. Its
--- acceleration is then, over that of gravity,
+-- into eight blocks; a square tunnel is cut through them and excavated. Of the 21 pieces left,
+-- joined into ten bodies, one wedge hangs in the roof: it can only slide along the fault 65/270.
+-- Its acceleration is then, over that of gravity,
 --
 --     a / g = sin 65 - mu cos 65
 --
--- and it slides while mu < tan 65. With nothing that clamps it, it also turns and falls off earlier,
--- above a friction of 38 degrees in a mixed motion, below in pure sliding.
--- This is example 3 of Hart, Cundall and Lemos, Int. J. Rock Mech. Min. Sci. 25 (1988) 117-125; the paper
+-- and it slides while mu < tan 65. With nothing that clamps it, it also turns and falls off
+-- earlier, above a friction of 38 degrees in a mixed motion, below in pure sliding. This is
+-- example 3 of Hart, Cundall and Lemos, Int. J. Rock Mech. Min. Sci. 25 (1988) 117-125; the paper
 -- gives the attitudes and the number of pieces, the dimensions are chosen to give that number.
 local talus = require "talus"
 
@@ -35,7 +35,8 @@ end
 
 -- Eight blocks, before the tunnel.
 function tunnel.rock(options)
-    local model = talus.model { gravity = { 0, 0, -GRAVITY }, threads = options and options.threads }
+    local model = talus.model { gravity = { 0, 0, -GRAVITY },
+        threads = options and options.threads }
     model:generate("box", { min = { -ROCK, -ROCK, -ROCK }, max = { ROCK, ROCK, ROCK },
         density = DENSITY, group = "rock" })
     for i, fault in ipairs(tunnel.faults) do
@@ -67,8 +68,8 @@ local function length(v)
     return math.sqrt(v[1] ^ 2 + v[2] ^ 2 + v[3] ^ 2)
 end
 
--- Lets the wedge go, without damping, until it has moved by `distance` or `patience` seconds are over.
--- Gives its mean acceleration over gravity, and the direction of its way.
+-- Lets the wedge go, without damping, until it has moved by `distance` or `patience` seconds are
+-- over. Gives its mean acceleration over gravity, and the direction of its way.
 function tunnel.drop(friction, distance, patience, options)
     local model, wedge = tunnel.build(friction, options)
     model:timestep { rule = "body", fraction = 0.2 }

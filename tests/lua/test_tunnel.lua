@@ -124,8 +124,8 @@ for _, corner in ipairs { { 2, 1 }, { 2.4, -0.5 }, { 2, -2 }, { 1, -2 }, { 1, -1
     { -1, -2 } } do
     horseshoe[#horseshoe + 1] = corner
 end
-local notched = { { -2, -2 }, { -2, 2 }, { -1, 2 }, { -1, 1 }, { 0, 1 }, { 0, 2 }, { 2, 2 }, { 2, 0 },
-    { 1, 0 }, { 1, -1 }, { 2, -1 }, { 2, -2 } }
+local notched = { { -2, -2 }, { -2, 2 }, { -1, 2 }, { -1, 1 }, { 0, 1 }, { 0, 2 }, { 2, 2 },
+    { 2, 0 }, { 1, 0 }, { 1, -1 }, { 2, -1 }, { 2, -2 } }
 local star = {}
 for i = 0, 9 do
     local r, angle = i % 2 == 0 and 3 or 1.2, math.rad(36 * i + 7)
@@ -166,10 +166,12 @@ local function refused(face1, face2, part)
     end, "generator 'tunnel': " .. part)
 end
 refused(face({ { 0, 0 }, { 1, 1 } }, -9), face({ { 0, 0 }, { 1, 1 } }, 9), "face1 has 2 corners")
-refused(face(square, -9), face({ { 0, 0 }, { 1, 1 }, { 2, 0 } }, 9), "face1 has 4 corners and face2 3")
+refused(face(square, -9), face({ { 0, 0 }, { 1, 1 }, { 2, 0 } }, 9),
+    "face1 has 4 corners and face2 3")
 refused(face(square, -9), face(square, -9), "face1 and face2 are the same")
 local bow = { { -1, -1 }, { 1, 1 }, { 1, -1 }, { -1, 1 } }
-refused(face(bow, -9), face(bow, 9), "face1 crosses or touches itself: its edge from corner 1 to 2 meets")
+refused(face(bow, -9), face(bow, 9),
+    "face1 crosses or touches itself: its edge from corner 1 to 2 meets")
 local folded = { { -1, -1 }, { 1, -1 }, { 0, -1 }, { 0, 1 } }
 refused(face(folded, -9), face(folded, 9), "face1 crosses or touches itself")
 local line = { { -1, -1 }, { 0, 0 }, { 1, 1 } }
@@ -182,7 +184,8 @@ refused(face(square, -9), bent, "face2 is warped")
 local turned = { square[2], square[3], square[4], square[1] }
 refused(face(square, -9), face(turned, 9), "the side between corners 1 and 2 is warped")
 local half_turn = { square[3], square[4], square[1], square[2] }
-refused(face(square, -9), face(half_turn, 9), "the side between corners 1 and 2 has no area or crosses itself")
+refused(face(square, -9), face(half_turn, 9),
+    "the side between corners 1 and 2 has no area or crosses itself")
 refused({ { -1, -9, -1 }, { -1, -9, 1 }, { 1, 9, 1 }, { 1, 9, -1 } },
     { { -1, 9, -1 }, { -1, 9, 1 }, { 1, -9, 1 }, { 1, -9, -1 } }, "")
 refused(face(square, -9, 0, 20), face(square, 9, 0, 20), "the tunnel meets no visible block")

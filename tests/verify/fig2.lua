@@ -1,5 +1,5 @@
--- The joint sets of Figure 2 in Hart, Cundall and Lemos (1988), without deviations: how many blocks of
--- which volumes, faces, edges and corners.
+-- The joint sets of Figure 2 in Hart, Cundall and Lemos (1988), without deviations: how many
+-- blocks of which volumes, faces, edges and corners.
 package.path = "tests/verify/?.lua;scripts/?.lua;" .. package.path -- run in the source root
 local figures = require "check_figures"
 local reference = require("reference_generation").figure_2

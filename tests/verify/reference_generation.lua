@@ -1,15 +1,15 @@
--- reference_generation.lua - what the tests of the model generator compare with: joint sets, a tunnel
--- under faults, and a jointed slope.
+-- reference_generation.lua - what the tests of the model generator compare with: joint sets, a
+-- tunnel under faults, and a jointed slope.
 --
 -- Computed independently of Talus by half-space clipping with exact mass properties; angles in
 -- degrees, x east, y north, z up, SI units. Each case names its source.
 local reference = {}
 
--- Bodies are the groups of pieces of one fault block that share a cut face; their volumes do not depend
--- on the order in which the tunnel's sides cut.
+-- Bodies are the groups of pieces of one fault block that share a cut face; their volumes do not
+-- depend on the order in which the tunnel's sides cut.
 reference.tunnel = {
-    source = "Hart, Cundall and Lemos (1988), example 3: attitudes and number of pieces; dimensions "
-        .. "chosen to give it; removability by Goodman and Shi (1985)",
+    source = "Hart, Cundall and Lemos (1988), example 3: attitudes and number of pieces; "
+        .. "dimensions chosen to give it; removability by Goodman and Shi (1985)",
     fault_blocks = 8, pieces = 21, excavated_pieces = 7, bodies = 10,
     excavated_volume = 576.0, kept_volume = 3520.0,
     wedge_volume = 2.632470613594412,
@@ -41,8 +41,8 @@ reference.tunnel = {
 }
 
 reference.slope = {
-    source = "Hart, Cundall and Lemos (1988), example 4: number of blocks; dimensions chosen to give it; "
-        .. "wedge by vectors (Hoek and Bray 1977)",
+    source = "Hart, Cundall and Lemos (1988), example 4: number of blocks; "
+        .. "dimensions chosen to give it; wedge by vectors (Hoek and Bray 1977)",
     blocks = 49, fixed = 22, contacts = 103, volume = 49483.90204821601,
     friction = 27.13562709662565, -- at which the wedge slides
     pieces = { 4.556278937665419, 32.70895200646342, 97.9269169669298, 183.873306588468 },
@@ -65,12 +65,12 @@ reference.slope = {
 }
 
 reference.figure_2 = {
-    source = "Hart, Cundall and Lemos (1988), table of Figure 2, without deviations and with persistence "
-        .. "1; the variant has 45/320 for the third set, which as printed falls on the second",
+    source = "Hart, Cundall and Lemos (1988), table of Figure 2, without deviations "
+        .. "and with persistence 1; the variant has 45/320 for the third set, which as printed falls on the second",
 }
 
 reference.figure_2["printed.cube2"] = {
-    low = -1, high = 1, third = 70, -- box from low to high in x, y and z; dip direction of the third set
+    low = -1, high = 1, third = 70, -- bounds in x, y, z; dip direction of set 3
     blocks = 70, faces = 422, vertices = 564, edges = 846,
     volumes = {
         0.0002465987895212996, 0.00024659878952130006, 0.0008963267972640014,
@@ -96,7 +96,7 @@ reference.figure_2["printed.cube2"] = {
 }
 
 reference.figure_2["printed.unit"] = {
-    low = 0, high = 1, third = 70, -- box from low to high in x, y and z; dip direction of the third set
+    low = 0, high = 1, third = 70, -- bounds in x, y, z; dip direction of set 3
     blocks = 21, faces = 126, vertices = 166, edges = 250,
     volumes = {
         2.5238429618768874e-07, 0.0008963267972640013, 0.0009535009659894881,
@@ -109,7 +109,7 @@ reference.figure_2["printed.unit"] = {
 }
 
 reference.figure_2["variant.cube2"] = {
-    low = -1, high = 1, third = 320, -- box from low to high in x, y and z; dip direction of the third set
+    low = -1, high = 1, third = 320, -- bounds in x, y, z; dip direction of set 3
     blocks = 256, faces = 1538, vertices = 2052, edges = 3078,
     volumes = {
         4.063399291826323e-09, 4.063399291826353e-09, 3.8667517525012876e-07,
@@ -185,7 +185,7 @@ reference.figure_2["variant.cube2"] = {
 }
 
 reference.figure_2["variant.unit"] = {
-    low = 0, high = 1, third = 320, -- box from low to high in x, y and z; dip direction of the third set
+    low = 0, high = 1, third = 320, -- bounds in x, y, z; dip direction of set 3
     blocks = 50, faces = 293, vertices = 381, edges = 574,
     volumes = {
         2.5238429618768874e-07, 4.823262790491288e-06, 0.00011991154847447977,

@@ -1,12 +1,12 @@
--- A jointed rock slope, after example 4 of Hart, Cundall and Lemos (1988): its blocks, the friction at
--- which a wedge slides out of it, and which blocks move.
+-- A jointed rock slope, after example 4 of Hart, Cundall and Lemos (1988): its blocks, the
+-- friction at which a wedge slides out of it, and which blocks move.
 package.path = "tests/verify/?.lua;scripts/?.lua;" .. package.path -- run in the source root
 local figures = require "check_figures"
 local reference = require("reference_generation").slope
 local slope = require "examples.slope"
 
-figures.case("E4", "Foliation, fractures and two discontinuities divide a slope into 49 blocks; four of them "
-    .. "slide together as a wedge", reference.source)
+figures.case("E4", "Foliation, fractures and two discontinuities divide a slope into 49 blocks; "
+    .. "four of them slide together as a wedge", reference.source)
 
 local VOLUME = 1e-9
 local STILL = 0.005 -- m, farthest that a block may move that takes no part

@@ -1,12 +1,12 @@
--- A square tunnel under three faults, after example 3 of Hart, Cundall and Lemos (1988): its pieces and
--- bodies, and how the wedge in the roof comes down.
+-- A square tunnel under three faults, after example 3 of Hart, Cundall and Lemos (1988): its
+-- pieces and bodies, and how the wedge in the roof comes down.
 package.path = "tests/verify/?.lua;scripts/?.lua;" .. package.path -- run in the source root
 local figures = require "check_figures"
 local reference = require("reference_generation").tunnel
 local tunnel = require "examples.tunnel"
 
-figures.case("E3", "A square tunnel is cut through eight fault blocks: 21 pieces, ten bodies, and a wedge "
-    .. "that slides out of the roof", reference.source)
+figures.case("E3", "A square tunnel is cut through eight fault blocks: 21 pieces, ten bodies, "
+    .. "and a wedge that slides out of the roof", reference.source)
 
 local VOLUME, PLACE = 1e-10, 1e-10
 local ACCELERATION = 0.02 -- relative: the joints give a little before they slide
