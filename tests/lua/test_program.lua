@@ -93,16 +93,17 @@ refused("--threads", "--threads needs a value")
 refused("--plugin " .. folder .. "/no_such_plugin.so -e 'x = 1'", "no_such_plugin.so")
 check.equal(run("--quiet -e 'x = 1'"), 0)
 
--- Plugins that must be refused, with path and reason; one of them is of another major version. The one
--- called half_way loads, and fails when it is used.
+-- Plugins that must be refused, with path and reason; one of them is of another major version. Those
+-- in `loads` load: half_way fails when it is used, single_blocks when it is told to.
 local bad = os.getenv("TALUS_BAD_PLUGIN_DIR")
 if bad then
     local reasons = { wrong_major = "ABI 2.1", no_entry = "tl_plugin_entry", missing_ops = "stiffness" }
+    local loads = { half_way = true, single_blocks = true }
     local refusals = 0
     local list = io.popen("ls '" .. bad .. "'/*.so")
     for path in list:lines() do
         local name = path:match("([%w_]+)%.so$")
-        if name ~= "half_way" then
+        if not loads[name] then
             refused("--plugin '" .. path .. "' -e 'x = 1'", path)
             refused("--plugin '" .. path .. "' -e 'x = 1'", reasons[name] or path)
             refusals = refusals + 1
