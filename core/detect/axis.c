@@ -95,6 +95,10 @@ static void offer(tl_axis *best, const tl_axis *one)
 
 /* cos from which a direction counts as going into a seam. */
 #define INTO_SEAM 1e-6
+/* Share of the size that blocks which press on each other never overlap by. */
+#define BESIDE 0.01
+/* Share of the gap at which a contact ends. */
+#define BEYOND_REACH 1.01
 
 /* True when the part, at its farthest vertex in `outward`, goes on into another part of its body: there is
  * no wall to meet in that direction. */
@@ -255,6 +259,32 @@ static void search_edges(const tl_pair_view *view, tl_narrow *room, tl_axis *bes
     }
 }
 
+/* Largest s along the faces that lie on other parts of the same body. */
+static double seam_separation(const tl_pair_view *view)
+{
+    double most = -INFINITY;
+    for (uint32_t f = 0; f < view->a->face_count; f++)
+        if (view->a->covered[f]) {
+            tl_plane plane = view->a->plane[f];
+            double low = lowest(view->vertex_b, view->b->vertex_count, plane.normal);
+            most = fmax(most, low - plane.offset);
+        }
+    for (uint32_t f = 0; f < view->b->face_count; f++)
+        if (view->b->covered[f]) {
+            double low = lowest(view->a->vertex, view->a->vertex_count, view->normal_b[f]);
+            most = fmax(most, low - offset_b(view, f));
+        }
+    return most;
+}
+
+/* Parts of bodies that seem to lie deep in each other because only a seam's face, which is no wall,
+ * separates them: what touches is what goes on beyond the seam. */
+static bool is_beside_seam(const tl_pair_view *view, double s)
+{
+    return s < -BESIDE * view->size && (view->a->seams || view->b->seams) &&
+           seam_separation(view) > -BESIDE * view->size;
+}
+
 tl_axis tl_axis_search(const tl_pair_view *view, tl_narrow *room, const tl_axis *previous)
 {
     tl_axis face = {.s = -INFINITY, .second = -INFINITY};
@@ -284,6 +314,9 @@ tl_axis tl_axis_search(const tl_pair_view *view, tl_narrow *room, const tl_axis 
             best = kept;
         }
     }
+    if (is_beside_seam(view,
+                       best.s)) /* just out of reach: it is looked at again after little motion */
+        best.s = BEYOND_REACH * TL_CONTACT_TOLERANCE * TL_CONTACT_RELEASE * view->size;
     return best;
 }
 
