@@ -307,6 +307,15 @@ static int model_write_vtk(lua_State *L)
     return 0;
 }
 
+static int model_write_blocks(lua_State *L)
+{
+    tl_model *model = tl_lua_model_of(L, "write_blocks");
+    tl_lua_arity(L, 2, "write_blocks");
+    tl_lua_ok(L, model,
+              tl_write_blocks(model, tl_lua_text(L, 2, "write_blocks", "the file's name")));
+    return 0;
+}
+
 static int model_write_section(lua_State *L)
 {
     tl_model *model = tl_lua_model_of(L, "write_section");
@@ -344,6 +353,7 @@ static const luaL_Reg model_methods[] = {
     {"solve", tl_lua_solve},
     {"energy", model_energy},
     {"write_vtk", model_write_vtk},
+    {"write_blocks", model_write_blocks},
     {"write_section", model_write_section},
     {"filter", tl_lua_filter},
     {"keyblocks", tl_lua_keyblocks},

@@ -234,6 +234,9 @@ const tl_lua_topic tl_lua_topics[] = {
      .usage =
          "model:write_section(\"out/cut\", {dip = 90, dip_direction = 90, origin = {0, 0, 0}})",
      .function = "write_section"},
+    {.name = "write_blocks",
+     .usage = "model:write_blocks(\"out/blocks.json\")",
+     .function = "write_blocks"},
     {.name = "state_hash",
      .usage = "text = model:state_hash()",
      .doc = "A digest of the whole mechanical state: equal bits, equal text."},

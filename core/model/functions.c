@@ -22,6 +22,10 @@ typedef struct tl_write_vtk_args {
     const char *prefix;
 } tl_write_vtk_args;
 
+typedef struct tl_write_blocks_args {
+    const char *path;
+} tl_write_blocks_args;
+
 static const char *const filter_actions[] = {
     [TL_FILTER_REPORT] = "report", [TL_FILTER_DELETE] = "delete", [TL_FILTER_JOIN] = "join", NULL};
 
@@ -145,6 +149,11 @@ static const tl_param write_vtk_params[] = {
              "folder and beginning of the files' names", .flags = TL_PARAM_REQUIRED),
 };
 
+static const tl_param write_blocks_params[] = {
+    TL_PARAM(TL_PARAM_STRING, tl_write_blocks_args, path, "", "name of the file",
+             .flags = TL_PARAM_REQUIRED),
+};
+
 static const tl_param write_section_params[] = {
     TL_PARAM(TL_PARAM_REAL, tl_halfspace, dip, "deg", "dip of the plane below horizontal",
              .flags = TL_PARAM_REQUIRED, .min = 0.0, .max = 90.0),
@@ -212,6 +221,8 @@ static const tl_function functions[] = {
      "their "
      "displacements.",
      PARAMS(write_section_params)},
+    {"write_blocks", "Writes all blocks as they stand into a JSON file.",
+     PARAMS(write_blocks_params)},
     {"filter",
      "Finds slivers, the visible blocks beyond the limits, and deletes them or joins them to "
      "neighbours.",
@@ -240,9 +251,9 @@ const tl_param *tl_function_params(const char *function, size_t *count, const ch
 
 const char *const *tl_function_names(void)
 {
-    static const char *const names[] = {"model",        "insitu",    "tensor",        "timestep",
-                                        "mass_scaling", "load",      "contact_area",  "cycle",
-                                        "solve",        "write_vtk", "write_section", "filter",
-                                        "keyblocks",    NULL};
+    static const char *const names[] = {
+        "model",         "insitu",       "tensor", "timestep",  "mass_scaling",
+        "load",          "contact_area", "cycle",  "solve",     "write_vtk",
+        "write_section", "write_blocks", "filter", "keyblocks", NULL};
     return names;
 }

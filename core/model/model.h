@@ -253,9 +253,11 @@ typedef struct tl_stage_block {
         left; /* a body it was taken out of and that has not been looked at since, or TL_NO_ROW */
     uint64_t draw; /* key of the body's draws: the least of its blocks' lineages */
     bool owned, retagged, hidden;
-    bool veiled; /* hidden by the generator, while it runs */
-    bool joined; /* its body may have other blocks */
-    bool torn;   /* its body has been cut since it was last known to hang together */
+    bool conceal;  /* to be hidden when committed */
+    uint8_t fixed; /* of a new block: what of its motion is held */
+    bool veiled;   /* hidden by the generator, while it runs */
+    bool joined;   /* its body may have other blocks */
+    bool torn;     /* its body has been cut since it was last known to hang together */
 } tl_stage_block;
 
 /* A ball about a staged block, relative to the model's origin: the quick look of a cut. Kept apart from
@@ -293,6 +295,8 @@ tl_status tl_stage_add_hull(tl_stage *stage, const tl_vec3 *vertices, size_t cou
                             const char *group);
 tl_status tl_stage_add_box(tl_stage *stage, tl_vec3 min, tl_vec3 max, double density,
                            const char *group);
+/* Adds a block given by its faces; see tl_host.create_block. */
+tl_status tl_stage_add_faces(tl_stage *stage, const tl_block_shape *given);
 /* Cuts the visible blocks by a plane in user coordinates; see tl_host.cut. */
 tl_status tl_stage_cut(tl_stage *stage, tl_vec3 normal, tl_vec3 point, tl_tag tag,
                        double persistence);

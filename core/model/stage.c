@@ -15,6 +15,9 @@
 /* The origin is rounded to a power of two of at least this many sizes of the first block, so models
  * near zero keep the origin zero, and subtracting it from coordinates is exact. */
 #define ORIGIN_SIZES 8.0
+/* Corners of faces that are given may miss the face's plane by this times the block's size: coordinates
+ * written with nine digits. */
+#define GIVEN_FACES 1e-8
 /* A cut takes vertices this near, relative to the size, for being on its plane (TL_POLY_ON); and centres
  * of balls are known to some roundings of the coordinates. */
 #define BALL_MARGIN (2 * TL_POLY_ON)
@@ -216,6 +219,71 @@ tl_status tl_stage_add_box(tl_stage *stage, tl_vec3 min, tl_vec3 max, double den
     tl_status status =
         tl_poly_box(tl_v3_sub(min, m->origin), tl_v3_sub(max, m->origin), &shape, &m->error);
     return status == TL_OK ? add_shape(stage, shape, density, group) : status;
+}
+
+/* The plane of a face, from the sum of its fan of triangles and its first corner. */
+static tl_plane face_plane(const tl_vec3 *vertex, const uint16_t *loop, size_t count)
+{
+    tl_vec3 zero = vertex[loop[0]], area = {0, 0, 0};
+    for (size_t i = 1; i + 1 < count; i++)
+        area = tl_v3_add(area, tl_v3_cross(tl_v3_sub(vertex[loop[i]], zero),
+                                           tl_v3_sub(vertex[loop[i + 1]], zero)));
+    tl_vec3 normal = tl_v3_unit(area);
+    return (tl_plane){normal, tl_v3_dot(normal, zero)};
+}
+
+/* Copies of what tl_poly_make takes, one allocation each. */
+typedef struct face_list {
+    tl_vec3 *vertex;
+    uint16_t *loop;
+    tl_plane *plane;
+} face_list;
+
+static tl_status make_faces(tl_model *m, const tl_block_shape *given, const face_list *l,
+                            tl_poly **shape)
+{
+    for (size_t i = 0; i < given->vertex_count; i++)
+        l->vertex[i] = tl_v3_sub(given->vertices[i], m->origin);
+    for (size_t i = 0; i < given->start[given->face_count]; i++)
+        l->loop[i] = (uint16_t)given->loops[i];
+    for (size_t f = 0; f < given->face_count; f++)
+        l->plane[f] =
+            face_plane(l->vertex, l->loop + given->start[f], given->start[f + 1] - given->start[f]);
+    tl_status status = tl_poly_make(l->vertex, given->vertex_count, l->plane, given->tags,
+                                    given->start, l->loop, given->face_count, shape, &m->error);
+    if (status == TL_OK) {
+        status = tl_poly_check(*shape, GIVEN_FACES, &m->error);
+        if (status != TL_OK)
+            tl_poly_free(*shape);
+    }
+    return status;
+}
+
+tl_status tl_stage_add_faces(tl_stage *stage, const tl_block_shape *given)
+{
+    tl_model *m = stage->model;
+    tl_vec3 min = given->vertices[0], max = min;
+    for (size_t i = 0; i < given->vertex_count; i++) {
+        min = tl_v3_min(min, given->vertices[i]);
+        max = tl_v3_max(max, given->vertices[i]);
+    }
+    set_origin(m, min, max);
+    face_list l = {malloc(given->vertex_count * sizeof *l.vertex),
+                   malloc(given->start[given->face_count] * sizeof *l.loop),
+                   malloc(given->face_count * sizeof *l.plane)};
+    tl_poly *shape = NULL;
+    tl_status status = l.vertex && l.loop && l.plane ? make_faces(m, given, &l, &shape)
+                                                     : tl_fail_memory(&m->error);
+    free(l.vertex);
+    free(l.loop);
+    free(l.plane);
+    if (status == TL_OK)
+        status = add_shape(stage, shape, given->density, given->group);
+    if (status != TL_OK)
+        return status;
+    stage->blocks[stage->count - 1].fixed = (uint8_t)given->fixed;
+    stage->blocks[stage->count - 1].conceal = given->hidden != 0;
+    return TL_OK;
 }
 
 /* ---------------------------------------------------------------- cutting ---------------- */

@@ -31,13 +31,14 @@ static void put(tl_model *m, const tl_stage_block *block, uint32_t row, uint32_t
     blocks->group[row] = block->group;
     blocks->density[row] = block->density;
     blocks->lineage[row] = block->lineage;
-    blocks->hidden[row] = block->hidden;
+    blocks->hidden[row] = block->hidden || block->conceal;
     tl_block_measure(m, row, mass.volume);
     tl_body_measure_single(m, body, row, mass);
     if (block->source == TL_NO_ROW) {
         bodies->x_ref[body] = c;
         bodies->q[body] = tl_q_identity();
         bodies->r[body] = tl_m3_identity();
+        bodies->fixed[body] = block->fixed;
         return;
     }
     uint32_t from = blocks->body[block->source];

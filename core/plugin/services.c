@@ -78,6 +78,53 @@ static tl_status create_hull(const tl_host *host, const tl_vec3 *vertices, size_
     return tl_stage_add_hull(&service_of(host)->stage, vertices, count, density, group);
 }
 
+static bool joint_exists(const tl_host *host, uint32_t number)
+{
+    return number >= 1 && number <= service_of(host)->model->joint_count;
+}
+
+/* Counts and indices of a block given by its faces: what the geometry below relies on. */
+static tl_status check_faces(const tl_host *host, const tl_block_shape *s)
+{
+    if (s->vertex_count < 4 || s->vertex_count > TL_POLY_MAX_VERTICES || s->face_count < 4 ||
+        s->face_count > TL_POLY_MAX_FACES)
+        return fail(host, TL_E_GEOMETRY,
+                    "a block of %zu vertices and %zu faces: it needs 4 to %d of each",
+                    s->vertex_count, s->face_count, TL_POLY_MAX_VERTICES);
+    for (size_t f = 0; f < s->face_count; f++) {
+        if (s->start[f + 1] < s->start[f] + 3 || s->start[f + 1] - s->start[f] > s->vertex_count)
+            return fail(host, TL_E_GEOMETRY, "face %zu does not have 3 to %zu corners", f + 1,
+                        s->vertex_count);
+        for (uint32_t i = s->start[f]; i < s->start[f + 1]; i++)
+            if (s->loops[i] >= s->vertex_count)
+                return fail(host, TL_E_GEOMETRY, "face %zu names vertex %u of %zu", f + 1,
+                            s->loops[i] + 1, s->vertex_count);
+        if (s->tags && s->tags[f].joint &&
+            (!joint_exists(host, s->tags[f].joint) || s->tags[f].plane < 1 ||
+             s->tags[f].plane > service_of(host)->model->joints[s->tags[f].joint - 1].planes))
+            return fail(host, TL_E_PLUGIN,
+                        "face %zu has plane %u of joint %u, which was not asked for", f + 1,
+                        s->tags[f].plane, s->tags[f].joint);
+    }
+    if (s->fixed > TL_FIX_ALL || s->start[0] != 0)
+        return fail(host, TL_E_PLUGIN, "a block's faces do not start at 0, or fixed = %u",
+                    s->fixed);
+    return TL_OK;
+}
+
+static tl_status create_block(const tl_host *host, const tl_block_shape *given)
+{
+    tl_block_shape shape = {0};
+    memcpy(&shape, given, given->size < sizeof shape ? given->size : sizeof shape);
+    tl_status status = check_block(host, shape.density, shape.group);
+    if (status == TL_OK)
+        status = check_faces(host, &shape);
+    for (size_t i = 0; i < shape.vertex_count && status == TL_OK; i++)
+        if (!tl_v3_finite(shape.vertices[i]))
+            status = fail(host, TL_E_NUMERIC, "vertex %zu is not finite", i + 1);
+    return status == TL_OK ? tl_stage_add_faces(&service_of(host)->stage, &shape) : status;
+}
+
 static tl_status create_box(const tl_host *host, tl_vec3 min, tl_vec3 max, double density,
                             const char *group)
 {
@@ -274,11 +321,6 @@ static tl_status joint(const tl_host *host, const char *name, uint32_t *number)
     return *number ? TL_OK : tl_fail_memory(&service_of(host)->model->error);
 }
 
-static bool joint_exists(const tl_host *host, uint32_t number)
-{
-    return number >= 1 && number <= service_of(host)->model->joint_count;
-}
-
 /* Takes the number, so that two planes never share one. */
 static uint32_t next_plane(const tl_host *host, uint32_t number)
 {
@@ -341,6 +383,7 @@ static tl_status run(service *s, const tl_kind *kind, const void *params)
                     .impl = s,
                     .seed = (uint64_t)m->config.seed,
                     .create_hull = create_hull,
+                    .create_block = create_block,
                     .create_box = create_box,
                     .joint = joint,
                     .next_plane = next_plane,

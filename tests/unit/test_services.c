@@ -303,7 +303,8 @@ TEST(mistakes_leave_the_model_as_it_was)
     tl_model *m = model_new(1);
     box(m, zero, one);
     cut_set(m, (set){"J", 0, 0, 0, 0, 0.5, 0, 1, 1, half});
-    refused(m, "boks", NULL, 0, "unknown generator 'boks'; did you mean 'box'? (known: box, ");
+    refused(m, "bix", NULL, 0,
+            "unknown generator 'bix'; did you mean 'box'? (known: blocks, box, ");
     tl_value upside[] = {vector("min", one), vector("max", zero), number("density", 1)};
     refused(m, "box", upside, 3, "generator 'box': max.x = 0 m must be > min.x = 1 m");
     tl_value weightless[] = {vector("min", zero), vector("max", one), number("density", 0)};

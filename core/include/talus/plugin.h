@@ -247,6 +247,21 @@ typedef struct tl_half_space {
     tl_vec3 normal, point;
 } tl_half_space;
 
+/* A block given by its faces, for create_block. Faces are counter-clockwise from outside, flat, and close
+ * a convex shape; face f has the corners loops[start[f]] .. loops[start[f + 1] - 1], counted from 0. */
+typedef struct tl_block_shape {
+    uint32_t size;
+    const tl_vec3 *vertices;
+    size_t vertex_count;
+    const uint32_t *start, *loops;
+    size_t face_count;
+    const tl_tag *tags; /* [face_count] planes asked for by `joint` and `next_plane`; 0: no joint */
+    double density;     /* kg/m3, > 0 */
+    const char *group;
+    uint32_t fixed;  /* held: 1 x, 2 y, 4 z, 8 rotation, added up */
+    uint32_t hidden; /* 1: hidden once the generator has ended */
+} tl_block_shape;
+
 struct tl_host {
     uint32_t size;
     void *impl;
@@ -309,6 +324,8 @@ struct tl_host {
     /* Hides a block from this generator's further cuts, until it ends or shows all it has hidden. */
     tl_status (*hide)(const tl_host *, size_t index);
     tl_status (*show)(const tl_host *);
+    /* Creates a block from its faces. Refused with TL_E_GEOMETRY when they do not close a convex shape. */
+    tl_status (*create_block)(const tl_host *, const tl_block_shape *shape);
 };
 
 typedef struct tl_generator_ops {

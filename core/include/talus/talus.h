@@ -523,6 +523,10 @@ TL_API tl_status tl_write_section(tl_model *model, const char *prefix, const tl_
  * PREFIX_{blocks,contacts,joints}.vtk.series. Folders are made as needed. */
 TL_API tl_status tl_write_vtk(tl_model *model, const char *prefix);
 
+/* Writes all blocks as they stand into a JSON file (docs/block_model.md), from which the generator of
+ * that format makes them again. */
+TL_API tl_status tl_write_blocks(tl_model *model, const char *path);
+
 /* 32 hexadecimal digits over the whole mechanical state: equal bits, equal text. */
 TL_API tl_status tl_state_hash(tl_model *model, char text[33]);
 
