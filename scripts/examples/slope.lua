@@ -29,8 +29,8 @@ slope.D2 = { dip = 60, dip_direction = 330, origin = { 38, 32, 16 } }
 local DENSITY, GRAVITY = 2000, 10 -- kg/m3, m/s2
 local STIFFNESS = 1e9             -- Pa/m, normal and shear
 local FAILED = 0.05               -- displacement that identifies the failure, m
-local AT_REST = 1e-5              -- unbalanced force ratio that counts as equilibrium
-local PATIENCE = 40000            -- cycles
+local AT_REST = 1e-4              -- unbalanced force ratio of equilibrium; a slide keeps it at 1e-3
+local PATIENCE = 100000           -- cycles
 
 -- The upward normal of a set, and the point `distance` from the toe along it.
 local function from_toe(set, distance)
