@@ -45,7 +45,8 @@ function fig2.build(low, high, options)
     return model, last
 end
 
--- The base is held, the rest may slide out.
+-- The base is held, the rest may slide out: `frames` pictures after the first, whole and in a
+-- section from west to east through the middle.
 function fig2.collapse(model, frames, name)
     model:blocks { where = function(block)
         for _, vertex in ipairs(block.vertices) do
@@ -58,12 +59,12 @@ function fig2.collapse(model, frames, name)
     model:joint("*", "coulomb", { kn = 1e8, ks = 1e8, friction = 15 })
     model:timestep { rule = "body", fraction = 0.2 }
     local interval = 0.02 -- s
-    model:write_vtk(name)
-    for frame = 1, frames do
-        repeat
+    for frame = 0, frames do
+        while model.time < frame * interval do
             model:cycle(20)
-        until model.time >= frame * interval
+        end
         model:write_vtk(name)
+        model:write_section(name, { dip = 90, dip_direction = 0 })
     end
 end
 
@@ -82,7 +83,8 @@ function fig2.main(folder)
     print(string.format("seed 1: %d blocks, volume kept to %.1e, the smallest %.2e m3",
         #model:blocks(), summary.volume_error, summary.smallest_volume))
     fig2.collapse(model, 20, folder .. "/fig2")
-    print(string.format("%s/fig2_blocks.vtk.series shows the collapse", folder))
+    print(string.format("%s/fig2_blocks.vtk.series shows the collapse,", folder))
+    print(string.format("%s/fig2_section.vtk.series a section from west to east", folder))
 end
 
 -- A test that says require "examples.fig2" wants the functions only.

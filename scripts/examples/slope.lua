@@ -26,6 +26,9 @@ slope.fracture = { dip = 12, dip_direction = 270, number = 3, spacing = 12 }
 slope.D1 = { dip = 70, dip_direction = 200, origin = { 26, 22, 15 } }
 slope.D2 = { dip = 60, dip_direction = 330, origin = { 38, 32, 16 } }
 
+-- Along the dip of foliation and fractures, through the wedge.
+slope.section = { dip = 90, dip_direction = 0, origin = { 0, 23, 0 } }
+
 local DENSITY, GRAVITY = 2000, 10 -- kg/m3, m/s2
 local STIFFNESS = 1e9             -- Pa/m, normal and shear
 local FAILED = 0.05               -- displacement that identifies the failure, m
@@ -143,17 +146,17 @@ function slope.bracket(frictions, options)
     return held
 end
 
--- The collapse in `frames` pictures, as files for ParaView.
+-- The collapse in `frames` pictures after the first, whole and in section, as files for ParaView.
 function slope.film(friction, frames, name)
     local model = slope.build(friction)
     model:timestep { rule = "body", fraction = 0.3 }
     local interval = 0.1 -- s
-    model:write_vtk(name)
-    for frame = 1, frames do
-        repeat
+    for frame = 0, frames do
+        while model.time < frame * interval do
             model:cycle(50)
-        until model.time >= frame * interval
+        end
         model:write_vtk(name)
+        model:write_section(name, slope.section)
     end
 end
 
@@ -172,7 +175,8 @@ function slope.main(folder)
     print(string.format("without D1 and D2 the slope holds at %g degrees and slides at %s; "
         .. "expected 12", held, failed or "none"))
     slope.film(20, 20, folder .. "/slope")
-    print(string.format("%s/slope_blocks.vtk.series shows the collapse at friction 20", folder))
+    print(string.format("%s/slope_blocks.vtk.series shows the collapse at friction 20,", folder))
+    print(string.format("%s/slope_section.vtk.series a section along the dip", folder))
 end
 
 -- A test that says require "examples.slope" wants the functions only.

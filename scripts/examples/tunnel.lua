@@ -21,6 +21,10 @@ tunnel.faults = { { 50, 320 }, { 40, 230 }, { 65, 270 } } -- dip, dip direction
 tunnel.apex = { 1.5, 0.5, 5 }                             -- where the faults meet
 tunnel.half = 3                                           -- half the width of the tunnel, m
 tunnel.slide = { 65, 270 }                                -- the fault the wedge slides on
+tunnel.inside = { 0.3, 0.14, 3.5 }                        -- a point of the wedge
+
+-- Across the tunnel, through the wedge.
+tunnel.section = { dip = 90, dip_direction = 0, origin = tunnel.inside }
 
 local ROCK = 8                      -- half the size of the cube, m
 local DENSITY, GRAVITY = 2000, 10   -- kg/m3, m/s2
@@ -57,7 +61,7 @@ end
 function tunnel.build(friction, options)
     local model = tunnel.cut(options)
     model:blocks { group = "tunnel" }:delete()
-    local wedge = model:blocks { containing = { 0.3, 0.14, 3.5 } }
+    local wedge = model:blocks { containing = tunnel.inside }
     model:blocks():fix()
     wedge:free():set { group = "wedge" }
     model:joint("*", "coulomb", { kn = STIFFNESS, ks = STIFFNESS, friction = friction })
@@ -95,23 +99,23 @@ function tunnel.identify(friction, options)
     return { model = model, wedge = wedge, failed = run.reason == "stop", run = run }
 end
 
--- The collapse in `frames` pictures, as files for ParaView.
+-- The collapse in `frames` pictures after the first, whole and in section, as files for ParaView.
 function tunnel.film(friction, frames, name)
     local model = tunnel.build(friction)
     model:timestep { rule = "body", fraction = 0.2 }
     local interval = 0.05 -- s
-    model:write_vtk(name)
-    for frame = 1, frames do
-        repeat
+    for frame = 0, frames do
+        while model.time < frame * interval do
             model:cycle(10)
-        until model.time >= frame * interval
+        end
         model:write_vtk(name)
+        model:write_section(name, tunnel.section)
     end
 end
 
 function tunnel.main(folder)
     local model = tunnel.cut()
-    local wedge = model:blocks { containing = { 0.3, 0.14, 3.5 } }
+    local wedge = model:blocks { containing = tunnel.inside }
     print(string.format("%d blocks: %d inside the tunnel, %g m3; wedge in the roof, %.7f m3",
         #model:blocks(), #model:blocks { group = "tunnel" },
         model:blocks { group = "tunnel" }:sum "volume", wedge[1].volume))
@@ -127,7 +131,8 @@ function tunnel.main(folder)
     r = tunnel.drop(45, 0.3, 5)
     print(string.format("friction 45: %s", r.fell and "the wedge comes down" or "the wedge holds"))
     tunnel.film(25, 20, folder .. "/tunnel")
-    print(string.format("%s/tunnel_blocks.vtk.series shows the collapse at friction 25", folder))
+    print(string.format("%s/tunnel_blocks.vtk.series shows the collapse at friction 25,", folder))
+    print(string.format("%s/tunnel_section.vtk.series a section across the tunnel", folder))
 end
 
 -- A test that says require "examples.tunnel" wants the functions only.
