@@ -13,6 +13,7 @@
 /* Sums over the free bodies, made per chunk and added in chunk order. */
 typedef struct tl_sums {
     double unbalanced;    /* sum of |unbalanced force| */
+    double turning;       /* sum of |unbalanced moment| over the body's radius */
     double contact_force; /* sum over bodies of the sum of |contact forces| */
     double largest;       /* largest |unbalanced force| */
     double local;  /* largest |unbalanced force| over the body's own contact forces or weight */
@@ -64,6 +65,8 @@ tl_status tl_laws_apply(tl_model *m);
 void tl_gather(tl_model *m);
 /* An unbalanced force ratio of the last gather. */
 double tl_unbalanced_ratio(const tl_model *m, tl_ratio_measure measure);
+/* The same of the moments, each over its body's radius: a block that spins up is not in equilibrium. */
+double tl_turning_ratio(const tl_model *m);
 
 /* Watches for steady failure: watch.c. */
 typedef struct tl_watch tl_watch;

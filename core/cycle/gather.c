@@ -64,6 +64,7 @@ static void gather_range(void *user, size_t begin, size_t end, size_t chunk, uns
                         tl_v3_norm(b->load_force[body]); /* a load weighs as much */
         double against = contact > 0 ? contact : weight;
         sums.unbalanced += unbalanced;
+        sums.turning += tl_v3_norm(b->moment[body]) / b->radius[body];
         sums.contact_force += contact;
         sums.weight += weight;
         sums.largest = fmax(sums.largest, unbalanced);
@@ -84,6 +85,7 @@ void tl_gather(tl_model *m)
     for (size_t chunk = 0; chunk * TL_BODY_CHUNK < bodies; chunk++) {
         const tl_sums *s = &c->chunk_sums[chunk];
         c->sums.unbalanced += s->unbalanced;
+        c->sums.turning += s->turning;
         c->sums.contact_force += s->contact_force;
         c->sums.weight += s->weight;
         c->sums.largest = fmax(c->sums.largest, s->largest);
@@ -103,4 +105,11 @@ double tl_unbalanced_ratio(const tl_model *m, tl_ratio_measure measure)
     double unbalanced =
         measure == TL_RATIO_MAXIMUM ? s->largest * (double)s->bodies : s->unbalanced;
     return against > 0 ? unbalanced / against : 0;
+}
+
+double tl_turning_ratio(const tl_model *m)
+{
+    const tl_sums *s = &m->cycle->sums;
+    double against = s->contact_force > 0 ? s->contact_force : s->weight;
+    return against > 0 ? s->turning / against : 0;
 }

@@ -65,7 +65,8 @@ static bool ended(tl_model *m, const progress *p, tl_status *status)
         return true;
     if (atomic_load(&m->interrupted))
         *reason = TL_SOLVE_INTERRUPT;
-    else if (s->ratio > 0 && tl_unbalanced_ratio(m, (tl_ratio_measure)s->measure) < s->ratio)
+    else if (s->ratio > 0 && tl_unbalanced_ratio(m, (tl_ratio_measure)s->measure) < s->ratio &&
+             tl_turning_ratio(m) < s->ratio)
         *reason = TL_SOLVE_RATIO;
     else if (done > 1 && p->result->max_velocity < s->velocity) /* from rest the first is zero */
         *reason = TL_SOLVE_VELOCITY;

@@ -242,9 +242,9 @@ tl_status tl_timestep_choose(tl_model *m, double *dt)
 
 tl_status tl_model_timestep(tl_model *m, const tl_timestep *timestep)
 {
-    if (!(timestep->fraction > 0 && timestep->fraction <= 1))
-        return tl_fail(&m->error, TL_E_ARGUMENT, "timestep: fraction = %g is outside (0, 1]",
-                       timestep->fraction);
+    if (!(timestep->fraction > 0 && timestep->fraction <= TL_FRACTION_MOST))
+        return tl_fail(&m->error, TL_E_ARGUMENT, "timestep: fraction = %g is outside (0, %g]",
+                       timestep->fraction, TL_FRACTION_MOST);
     if (!isnan(timestep->dt) && !(timestep->dt > 0 && isfinite(timestep->dt)))
         return tl_fail(&m->error, TL_E_ARGUMENT, "timestep: dt = %g s must be > 0", timestep->dt);
     m->timestep = *timestep;

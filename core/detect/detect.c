@@ -131,9 +131,10 @@ static bool left_skin(const tl_model *m)
 
 /* ---------------------------------------------------------------- geometry --------------- */
 
-/* The rule of the point share for a pair of a joint; pairs in tension keep all their points. */
+/* The rule of the point share for a pair of a joint; pairs that carry a force across a gap
+ * keep all their points. */
 static tl_share_rule share_rule(const tl_model *m, const tl_pair_view *view, tl_tag tag,
-                                bool tension)
+                                bool across)
 {
     tl_area_rule rule = tl_area_rule_of(m, tag);
     double tolerance = TL_CONTACT_TOLERANCE * TL_CONTACT_RELEASE * view->size;
@@ -141,7 +142,7 @@ static tl_share_rule share_rule(const tl_model *m, const tl_pair_view *view, tl_
     return (tl_share_rule){.minimum = absolute ? rule.absolute : rule.fraction * view->mean_face,
                            .unconditional = absolute,
                            .corners = m->config.contact_points == TL_POINTS_CORNERS,
-                           .reach = tension ? INFINITY : tolerance};
+                           .reach = across ? INFINITY : tolerance};
 }
 
 /* How far a pair may run before its axis is searched again. */
@@ -179,11 +180,14 @@ static void look_at(tl_model *m, tl_pair *p, tl_narrow *room)
     p->wake = odometer + SILENT * view.size;
 }
 
-static bool in_tension(const tl_detect *d, uint32_t c)
+/* Whether some point carries a force across a gap: a bond in tension, or an initial stress not yet relieved.
+ * Such a contact ends only with that force. */
+static bool carries_across(const tl_detect *d, uint32_t c)
 {
+    const tl_points_table *p = &d->points;
     size_t begin = d->contacts.point_start[c];
     for (size_t i = begin; i < begin + d->contacts.point_count[c]; i++)
-        if (d->points.f_n[i] < 0)
+        if (p->f_n[i] < 0 || (p->f_n[i] > 0 && p->closure[i] + p->reference[i] < 0))
             return true;
     return false;
 }
@@ -235,7 +239,7 @@ static void refit(tl_model *m, uint32_t c, const tl_manifold *g)
 }
 
 /* The contact's facets in the present place, by its axis followed or searched. false: out of memory. */
-static bool rebuild(tl_model *m, uint32_t c, tl_narrow *room, bool tension)
+static bool rebuild(tl_model *m, uint32_t c, tl_narrow *room, bool across)
 {
     tl_contacts *contacts = &m->detect->contacts;
     double odometer = tl_pair_odometer(m, contacts->a[c], contacts->b[c]);
@@ -253,7 +257,7 @@ static bool rebuild(tl_model *m, uint32_t c, tl_narrow *room, bool tension)
             contacts->margin[c] = axis_margin(&axis, view.size);
         }
         tl_tag tag = tl_touching_tag(&view, axis.n);
-        tl_share_rule rule = share_rule(m, &view, tag, tension);
+        tl_share_rule rule = share_rule(m, &view, tag, across);
         tl_manifold_build(&view, &axis, &rule, room);
         if (room->manifold.failed)
             return false;
@@ -268,7 +272,7 @@ static bool rebuild(tl_model *m, uint32_t c, tl_narrow *room, bool tension)
                 contacts->fate[c] = TL_FATE_MATERIAL;
         }
         /* a pair that touches without area stays a contact, so that it need not be born again */
-        if (axis.s > TL_CONTACT_TOLERANCE * TL_CONTACT_RELEASE * view.size && !tension) {
+        if (axis.s > TL_CONTACT_TOLERANCE * TL_CONTACT_RELEASE * view.size && !across) {
             contacts->fate[c] = TL_FATE_DIE;
             m->detect->pairs[contacts->pair[c]].wake =
                 odometer + axis.s - TL_CONTACT_TOLERANCE * view.size;
@@ -306,8 +310,8 @@ static void update_contact(tl_model *m, uint32_t c, tl_narrow *room)
     double near = contacts->point_count[c] ? REUSE : SILENT;
     bool reuse = m->config.reuse_geometry && odometer - contacts->built[c] <= near * size;
     if (!reuse) {
-        bool tension = in_tension(m->detect, c);
-        if (!rebuild(m, c, room, tension) ||
+        bool across = carries_across(m->detect, c);
+        if (!rebuild(m, c, room, across) ||
             (contacts->fate[c] != TL_FATE_DIE && !take_manifold(m, c, room))) {
             contacts->fate[c] = TL_FATE_MEMORY;
             return;
@@ -347,7 +351,7 @@ static void reframe_range(void *user, size_t begin, size_t end, size_t chunk, un
         if (contacts->fate[c] == TL_FATE_DIE)
             continue;
         contacts->searched[c] = -INFINITY;
-        if (!rebuild(m, c, room, in_tension(m->detect, c)) ||
+        if (!rebuild(m, c, room, carries_across(m->detect, c)) ||
             (contacts->fate[c] != TL_FATE_DIE && !take_manifold(m, c, room)))
             contacts->fate[c] = TL_FATE_MEMORY;
         else if (contacts->fate[c] == TL_FATE_KEEP || contacts->fate[c] == TL_FATE_MATERIAL)
@@ -364,7 +368,7 @@ static bool fill_contact(tl_model *m, uint32_t c, tl_narrow *room)
         return false;
     if (contacts->point_count[c] == 0)
         contacts->margin[c] = axis_margin(&contacts->axis[c], view.size);
-    tl_share_rule rule = share_rule(m, &view, contacts->tag[c], in_tension(m->detect, c));
+    tl_share_rule rule = share_rule(m, &view, contacts->tag[c], carries_across(m->detect, c));
     tl_manifold_build(&view, &contacts->axis[c], &rule, room);
     return !room->manifold.failed && tl_contact_transfer(m, c, room);
 }

@@ -20,7 +20,7 @@ static void blocks_init(tl_blocks *b)
     TL_COLUMN(t, b, size, 0);
     TL_COLUMN(t, b, mean_face, 0);
     TL_COLUMN(t, b, lineage, 0);
-    TL_COLUMN(t, b, hidden, 0);
+    TL_COLUMN(t, b, hidden, TL_COLUMN_STATE);
 }
 
 static void bodies_init(tl_bodies *b)

@@ -143,7 +143,6 @@ struct tl_model {
     size_t group_count;
     tl_joint_set *joints; /* joint number j is joints[j - 1] */
     size_t joint_count;
-    uint64_t created; /* counts blocks made by generators, for their lineage */
     tl_cut_record record;
 
     tl_material *materials;
@@ -284,7 +283,6 @@ typedef struct tl_stage {
     /* what to go back to when the stage is dropped */
     size_t joint_count, group_count;
     uint32_t *plane_count;
-    uint64_t created;
     bool origin_set;
 } tl_stage;
 

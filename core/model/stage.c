@@ -92,7 +92,6 @@ tl_status tl_stage_begin(tl_model *m, tl_stage *stage)
     *stage = (tl_stage){.model = m,
                         .joint_count = m->joint_count,
                         .group_count = m->group_count,
-                        .created = m->created,
                         .next_body = (uint32_t)m->bodies.table.rows,
                         .origin_set = m->origin_set};
     const tl_blocks *b = &m->blocks;
@@ -149,7 +148,6 @@ void tl_stage_drop(tl_stage *stage)
         m->joints[i].planes = stage->plane_count[i];
     while (m->group_count > stage->group_count)
         free(m->groups[--m->group_count]);
-    m->created = stage->created;
     if (!stage->origin_set) {
         m->origin_set = false;
         m->origin = tl_v3(0, 0, 0);
@@ -172,13 +170,29 @@ static void set_origin(tl_model *m, tl_vec3 min, tl_vec3 max)
                       unit * round(center.z / unit));
 }
 
+/* The key of a new block: of where its corners are, so that draws do not depend on what was made before. */
+static uint64_t shape_key(const tl_model *m, const tl_poly *shape)
+{
+    uint64_t key = 0;
+    for (uint32_t i = 0; i < shape->vertex_count; i++) {
+        tl_vec3 x = tl_v3_add(shape->vertex[i], m->origin);
+        const double place[3] = {x.x + 0.0, x.y + 0.0, x.z + 0.0}; /* no negative zeros */
+        for (int k = 0; k < 3; k++) {
+            uint64_t word;
+            memcpy(&word, &place[k], sizeof word);
+            key = tl_key(key, word);
+        }
+    }
+    return key;
+}
+
 /* Adds a shape in coordinates relative to the origin; the stage owns it from then on. */
 static tl_status add_shape(tl_stage *stage, tl_poly *shape, double density, const char *group)
 {
     tl_model *m = stage->model;
     tl_stage_block block = {.shape = shape, .source = TL_NO_ROW, .density = density, .owned = true};
     block.group = tl_group_intern(m, group ? group : "");
-    block.lineage = block.draw = tl_key(0, ++m->created);
+    block.lineage = block.draw = shape_key(m, shape);
     block.body = stage->next_body++;
     block.left = TL_NO_ROW;
     if (block.group == UINT32_MAX || !stage_push(stage, &block)) {

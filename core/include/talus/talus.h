@@ -218,10 +218,14 @@ TL_API tl_status tl_model_damping(tl_model *model, const char *damping, const tl
 
 typedef enum tl_timestep_rule { TL_TIMESTEP_PAPER, TL_TIMESTEP_BODY } tl_timestep_rule;
 
+/* Largest FRAC: twice what two free blocks bear; more is a slip of the pen. */
+#define TL_FRACTION_MOST 2.0
+
 typedef struct tl_timestep {
-    double fraction; /* FRAC of (27), in (0, 1] */
-    int32_t rule;    /* tl_timestep_rule */
-    double dt;       /* fixed step, s; NaN: by the rule */
+    double
+        fraction; /* FRAC of (27), in (0, TL_FRACTION_MOST]; what is stable depends on the rule */
+    int32_t rule; /* tl_timestep_rule */
+    double dt;    /* fixed step, s; NaN: by the rule */
 } tl_timestep;
 
 TL_API tl_status tl_model_timestep(tl_model *model, const tl_timestep *timestep);
@@ -272,7 +276,8 @@ typedef enum tl_ratio_measure {
 } tl_ratio_measure;
 
 typedef struct tl_solve {
-    double ratio;            /* ends when the unbalanced force ratio falls below; 0: never */
+    double ratio;            /* ends when the unbalanced force ratio falls below, and that of the
+                                moments, each over its body's radius, too; 0: never */
     int32_t measure;         /* tl_ratio_measure */
     double velocity;         /* ends when no body is faster, m/s; NaN: no limit */
     int32_t stop_at_failure; /* ends when a steady failure is seen */

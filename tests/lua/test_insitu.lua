@@ -1,0 +1,61 @@
+-- Initial stress: the contact lasts until its force is relieved, however far the walls have to part for it.
+local talus = require "talus"
+local check = require "check"
+
+local KN, STRESS, SPEED, DT = 1e7, 1e5, 1, 1e-4
+for _, law in ipairs { "elastic", "coulomb" } do
+    local model = talus.model { gravity = { 0, 0, 0 } }
+    model:generate("box", { min = { 0, 0, 0 }, max = { 1, 1, 2 }, density = 2000 })
+    model:generate("joint", { joint = "J", dip = 0, dip_direction = 0, origin = { 0, 0, 1 } })
+    model:joint("J", law, { kn = KN, ks = KN })
+    local plane = { dip = 0, dip_direction = 0, origin = { 0, 0, 1 } }
+    model:blocks { below = plane }:fix()
+    model:blocks { above = plane }:drive { velocity = { 0, 0, SPEED } }
+    model:insitu { stress = { zz = -STRESS } }
+    model:timestep { dt = DT }
+    -- The tolerance ends at 1.5e-3 m, the stress at 1e-2 m.
+    for _, opening in ipairs { 1e-3, 2e-3, 5e-3, 9.9e-3 } do
+        model:cycle(math.floor((opening / SPEED - model.time) / DT + 1.5))
+        local force = model:contacts():sum("normal_force")
+        check.near(force, STRESS - KN * (model.time - DT) * SPEED, 1e-6 * STRESS)
+    end
+    model:cycle(10)
+    if law == "coulomb" then
+        check.equal(#model:contacts(), 0)
+    else
+        check.holds(model:contacts():sum("normal_force") < 0, "an elastic joint goes on into tension")
+    end
+    check.near(model:energy().balance, 0, 1e-9)
+end
+
+-- A block that spins up under an unbalanced moment is not in equilibrium, whatever its forces are.
+local model = talus.model { gravity = { 0, 0, -10 } }
+model:generate("box", { min = { -2, -2, -1 }, max = { 2, 2, 0 }, density = 2000, group = "base" })
+model:generate("box", { min = { -0.5, -0.5, 0 }, max = { 0.5, 0.5, 1 }, density = 2000, group = "cube" })
+model:blocks { group = "base" }:fix()
+model:joint("*", "coulomb", { kn = 1e8, ks = 1e8, friction = 30 })
+model:damping "local"
+check.equal(model:solve { ratio = 1e-5 }.reason, "ratio")
+model:blocks { group = "cube" }:load { moment = { 0, 0, 2e4 } }
+check.equal(model:solve { ratio = 1e-5, max_cycles = 2000 }.reason, "cycles")
+
+-- What was made before does not change a joint set's draws.
+local function pieces(first)
+    local m = talus.model { seed = 11 }
+    if first then
+        m:generate("box", { min = { 50, 0, 0 }, max = { 51, 1, 1 }, density = 1 })
+        m:blocks():hide()
+    end
+    m:generate("box", { min = { 0, 0, 0 }, max = { 4, 4, 4 }, density = 1 })
+    m:generate("jointset", { joint = "A", dip = 30, dip_direction = 40, spacing = 0.5, number = 9,
+        origin = { 2, 2, 2 }, persistence = 0.5 })
+    m:generate("jointset", { joint = "B", dip = 70, dip_direction = 130, spacing = 0.5, number = 9,
+        origin = { 2, 2, 2 }, persistence = 0.5 })
+    local volumes = {}
+    for _, block in ipairs(m:blocks()) do
+        volumes[#volumes + 1] = string.format("%.9f", block.volume)
+    end
+    table.sort(volumes)
+    return table.concat(volumes, " ")
+end
+check.equal(pieces(true), pieces(false))
