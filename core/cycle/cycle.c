@@ -5,10 +5,12 @@
  * into velocities, velocities into positions:
  *
  *     detect   which blocks touch, where, how far they overlap            core/detect
+ *     step     how long it may be                                         timestep.c
  *     laws     contact forces, by the joints' law plugins                 laws.c
  *     gather   each body adds its contacts in a fixed order, its weight   gather.c
  *     damping  a damping plugin's forces and coefficients                 damping.c
  *     move     velocities and places one step on                          motion.c
+ *     energy   the work done on the way                                   energy.c
  *
  * Everything computed in parallel is either a pure function of one contact or one body, or a sum made
  * in fixed chunks, so the bits do not depend on the number of threads. */

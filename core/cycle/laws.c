@@ -145,8 +145,12 @@ tl_status tl_laws_apply(tl_model *m)
 
 tl_status tl_laws_check(tl_model *m)
 {
-    const tl_contacts *c = &m->detect->contacts;
-    for (uint32_t i = 0; i < c->table.rows; i++) {
+    const tl_detect *d = m->detect;
+    const tl_contacts *c = &d->contacts;
+    bool lawless = false; /* almost never: the contacts are then looked through for one to name */
+    for (size_t r = 0; r < d->run_count; r++)
+        lawless = lawless || d->runs[r].material == TL_NO_ROW;
+    for (uint32_t i = 0; lawless && i < c->table.rows; i++) {
         if (c->material[i] != TL_NO_ROW || c->point_count[i] == 0)
             continue;
         char name[320];

@@ -291,8 +291,8 @@ tl_axis tl_axis_search(const tl_pair_view *view, tl_narrow *room, const tl_axis 
     search_faces(view, &face);
     tl_axis best = face;
     search_edges(view, room, &best);
-    if (best.s ==
-        -INFINITY) { /* no wall of one meets a wall of the other: parts deep inside bodies */
+    if (!isfinite(best.s)) {
+        /* no wall of one meets a wall of the other: parts deep inside bodies */
         best.s = view->size;
         return best;
     }
@@ -314,8 +314,8 @@ tl_axis tl_axis_search(const tl_pair_view *view, tl_narrow *room, const tl_axis 
             best = kept;
         }
     }
-    if (is_beside_seam(view,
-                       best.s)) /* just out of reach: it is looked at again after little motion */
+    /* just out of reach, so that it is looked at again after little motion */
+    if (is_beside_seam(view, best.s))
         best.s = BEYOND_REACH * TL_CONTACT_TOLERANCE * TL_CONTACT_RELEASE * view->size;
     return best;
 }
