@@ -129,6 +129,14 @@ void *tl_table_data(const tl_table *table, size_t column)
     return get(table, &table->columns[column]);
 }
 
+size_t tl_table_bytes(const tl_table *table)
+{
+    size_t row = 0;
+    for (size_t i = 0; i < table->column_count; i++)
+        row += table->columns[i].size;
+    return row * table->capacity;
+}
+
 void tl_table_free(tl_table *table)
 {
     for (size_t i = 0; i < table->column_count; i++) {

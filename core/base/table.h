@@ -47,6 +47,8 @@ void tl_table_keep(tl_table *table, const unsigned char *keep);
 void tl_table_move(tl_table *table, size_t to, size_t from);
 void *tl_table_data(const tl_table *table, size_t column);
 void tl_table_free(tl_table *table);
+/* Bytes its columns take, spare rows included. */
+size_t tl_table_bytes(const tl_table *table);
 
 /* Makes room for `need` items of `size` bytes in the array whose pointer is at `slot`, with some to spare;
  * what is there stays. false when out of memory (nothing changed). */

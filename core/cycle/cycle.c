@@ -99,24 +99,33 @@ static bool has_begun(const tl_model *m)
 tl_status tl_step(tl_model *m)
 {
     double dt;
+    tl_step_begins(m);
     tl_status status = tl_cycle_prepare(m);
     if (status == TL_OK)
         status = tl_detect_update(m);
+    tl_phase_ends(m, TL_PHASE_DETECT);
     if (status == TL_OK)
         status = tl_laws_check(m);
     if (status == TL_OK)
         status = tl_timestep_choose(m, &dt);
+    tl_phase_ends(m, TL_PHASE_TIMESTEP);
     if (status == TL_OK)
         status = tl_laws_apply(m);
     if (status != TL_OK)
         return status;
+    tl_phase_ends(m, TL_PHASE_LAWS);
     tl_gather(m);
+    tl_phase_ends(m, TL_PHASE_GATHER);
     status = tl_damping_apply(m, dt);
     if (status != TL_OK)
         return status;
+    tl_phase_ends(m, TL_PHASE_DAMPING);
     tl_energy_before(m);
+    tl_phase_ends(m, TL_PHASE_ENERGY);
     bool driven = tl_move(m, dt);
+    tl_phase_ends(m, TL_PHASE_MOVE);
     tl_energy_after(m, m->dt, dt);
+    tl_phase_ends(m, TL_PHASE_ENERGY);
     m->dt = has_begun(m) ? dt : 0;
     m->time += dt;
     m->cycles++;

@@ -55,6 +55,20 @@ struct tl_cycle {
 /* One step of the model; a failure leaves places and velocities as they were. */
 tl_status tl_step(tl_model *m);
 
+/* Times a phase that ends now and began when the one before ended, or with the step: profile.c. */
+void tl_profile_step(tl_model *m);
+void tl_profile_phase(tl_model *m, tl_phase phase);
+static inline void tl_step_begins(tl_model *m)
+{
+    if (m->profiling)
+        tl_profile_step(m);
+}
+static inline void tl_phase_ends(tl_model *m, tl_phase phase)
+{
+    if (m->profiling)
+        tl_profile_phase(m, phase);
+}
+
 /* Makes room for the model's bodies. */
 tl_status tl_cycle_prepare(tl_model *m);
 /* Notes a failure in a parallel phase; that of the lowest chunk counts. */

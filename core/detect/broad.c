@@ -48,6 +48,15 @@ void tl_broad_destroy(struct tl_broad *broad)
     free(broad);
 }
 
+size_t tl_broad_bytes(const struct tl_broad *g)
+{
+    if (!g)
+        return 0;
+    return sizeof *g + g->block_room * (sizeof *g->bounds + sizeof *g->extent + sizeof *g->large) +
+           g->cell_room * sizeof *g->cell_start + g->entry_room * sizeof *g->entries +
+           g->next_room * sizeof *g->next;
+}
+
 static bool reserve_blocks(struct tl_broad *g, size_t count)
 {
     size_t a = g->block_room, b = a, c = a;

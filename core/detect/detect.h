@@ -205,9 +205,15 @@ tl_status tl_detect_update(tl_model *m);
  * settings between steps. Contacts that stand are not touched, so asking never changes a result. */
 tl_status tl_detect_refresh(tl_model *m);
 
+/* ---- memory.c ---- */
+/* Adds what the detection holds. */
+void tl_detect_memory(const tl_model *m, tl_memory *memory);
+
 /* ---- broad.c ---- */
 tl_status tl_broad_update(tl_model *m);
 void tl_broad_destroy(struct tl_broad *broad);
+/* Bytes it holds; `broad` may be NULL. */
+size_t tl_broad_bytes(const struct tl_broad *broad);
 
 /* ---- look.c: libccd's first look ---- */
 /* False when the blocks, each grown by `reach` / 2, are certainly apart. */

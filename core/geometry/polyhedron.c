@@ -17,13 +17,23 @@
 /* Deviation from length 1 that still counts as a unit normal: 1e6 roundings, without effect. */
 #define UNIT_TOLERANCE 1e-10
 
+static size_t allocation(size_t v, size_t f, size_t e)
+{
+    const tl_poly *p = NULL;
+    return sizeof *p + v * sizeof *p->vertex + f * (sizeof *p->plane + sizeof *p->tag) +
+           (f + 1) * sizeof *p->start + (v + 1) * sizeof *p->star_at + e * sizeof *p->edge +
+           2 * e * (sizeof *p->loop + sizeof *p->star) + f + e;
+}
+
+size_t tl_poly_bytes(const tl_poly *p)
+{
+    return allocation(p->vertex_count, p->face_count, p->edge_count);
+}
+
 tl_poly *tl_poly_allocate(uint32_t vertex_count, uint32_t face_count, uint32_t edge_count)
 {
     size_t v = vertex_count, f = face_count, e = edge_count;
-    tl_poly *p =
-        malloc(sizeof *p + v * sizeof *p->vertex + f * (sizeof *p->plane + sizeof *p->tag) +
-               (f + 1) * sizeof *p->start + (v + 1) * sizeof *p->star_at + e * sizeof *p->edge +
-               2 * e * (sizeof *p->loop + sizeof *p->star) + f + e);
+    tl_poly *p = malloc(allocation(v, f, e));
     if (!p)
         return NULL;
     p->vertex_count = vertex_count;

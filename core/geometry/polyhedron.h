@@ -62,6 +62,8 @@ tl_status tl_poly_box(tl_vec3 min, tl_vec3 max, tl_poly **poly, tl_error *error)
 tl_status tl_poly_hull(const tl_vec3 *points, size_t count, tl_poly **poly, tl_error *error);
 
 void tl_poly_free(tl_poly *poly);
+/* Bytes of its one allocation. */
+size_t tl_poly_bytes(const tl_poly *poly);
 
 /* A copy with every vertex x replaced by R x + t (R a rotation; NULL is the identity). */
 tl_status tl_poly_transformed(const tl_poly *poly, const tl_mat3 *rotation, tl_vec3 translation,

@@ -133,6 +133,12 @@ void tl_lua_run_keep_error(void);
 /* Prints a remark of the kernel on standard error. */
 void tl_lua_log(void *user, const char *text);
 
+/* ---- what a model costs: cost.c ---- */
+
+extern const tl_lua_key tl_lua_profile_fields[], tl_lua_memory_fields[];
+int tl_lua_profile(lua_State *L);
+int tl_lua_memory(lua_State *L);
+
 /* ---- items and selections: item.c, selection.c ---- */
 
 /* What differs between blocks and contacts. */

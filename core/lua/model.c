@@ -352,6 +352,8 @@ static const luaL_Reg model_methods[] = {
     {"cycle", tl_lua_cycle},
     {"solve", tl_lua_solve},
     {"energy", model_energy},
+    {"profile", tl_lua_profile},
+    {"memory", tl_lua_memory},
     {"write_vtk", model_write_vtk},
     {"write_blocks", model_write_blocks},
     {"write_section", model_write_section},

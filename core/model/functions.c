@@ -18,6 +18,10 @@ typedef struct tl_mass_scaling_args {
     int32_t on;
 } tl_mass_scaling_args;
 
+typedef struct tl_profile_args {
+    int32_t on;
+} tl_profile_args;
+
 typedef struct tl_write_vtk_args {
     const char *prefix;
 } tl_write_vtk_args;
@@ -90,6 +94,13 @@ static const tl_param timestep_params[] = {
 static const tl_param mass_scaling_params[] = {
     TL_PARAM(TL_PARAM_BOOL, tl_mass_scaling_args, on, "", "whether the inertia is scaled",
              .flags = TL_PARAM_REQUIRED),
+};
+
+static const tl_param profile_params[] = {
+    TL_PARAM(TL_PARAM_BOOL, tl_profile_args, on, "",
+             "begins to time the phases of each step, from zero, or ends it; left out, gives the "
+             "result so far",
+             .flags = TL_PARAM_OPTIONAL),
 };
 
 static const tl_param load_params[] = {
@@ -214,6 +225,8 @@ static const tl_function functions[] = {
      PARAMS(contact_area_params)},
     {"cycle", "Runs a number of steps.", PARAMS(cycle_params)},
     {"solve", "Runs until the forces balance or a limit is met.", PARAMS(solve_params)},
+    {"profile", "Times the phases of the steps, and tells what a step works on.",
+     PARAMS(profile_params)},
     {"write_vtk", "Writes the next frame of a series of VTK files for ParaView.",
      PARAMS(write_vtk_params)},
     {"write_section",
@@ -251,9 +264,9 @@ const tl_param *tl_function_params(const char *function, size_t *count, const ch
 
 const char *const *tl_function_names(void)
 {
-    static const char *const names[] = {
-        "model",         "insitu",       "tensor", "timestep",  "mass_scaling",
-        "load",          "contact_area", "cycle",  "solve",     "write_vtk",
-        "write_section", "write_blocks", "filter", "keyblocks", NULL};
+    static const char *const names[] = {"model",        "insitu",  "tensor",       "timestep",
+                                        "mass_scaling", "load",    "contact_area", "cycle",
+                                        "solve",        "profile", "write_vtk",    "write_section",
+                                        "write_blocks", "filter",  "keyblocks",    NULL};
     return names;
 }

@@ -169,6 +169,10 @@ struct tl_model {
     bool warned_undamped;
     bool mass_scaling;
 
+    bool profiling;
+    double phase_began; /* s, of the clock */
+    tl_profile profile; /* so far; the counts of contacts are made when asked for */
+
     struct tl_detect *detect; /* of the detect room */
     void (*detect_destroy)(struct tl_detect *);
     struct tl_cycle *cycle; /* of the cycle room */

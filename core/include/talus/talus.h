@@ -307,6 +307,63 @@ TL_API tl_status tl_model_solve(tl_model *model, const tl_solve *solve, tl_solve
 /* Asks a running cycle or solve to end after the step; safe from a signal handler. */
 TL_API void tl_model_interrupt(tl_model *model);
 
+/* ---------------------------------------------------------------- cost ------------------- */
+
+/* The phases of a step, in its order: name, what is done. */
+#define TL_PHASES(X)                                                                               \
+    X(DETECT, detect, "pairs and contacts up to date, gaps and motion of the contact points")      \
+    X(TIMESTEP, timestep, "the step to take")                                                      \
+    X(LAWS, laws, "contact forces, and their sums over each contact")                              \
+    X(GATHER, gather, "forces and moments of each body")                                           \
+    X(DAMPING, damping, "the damping's forces")                                                    \
+    X(MOVE, move, "velocities, places and rotations")                                              \
+    X(ENERGY, energy, "the ledger of energy")
+
+typedef enum tl_phase {
+#define TL_PHASE_ITEM(item, name, doc) TL_PHASE_##item,
+    TL_PHASES(TL_PHASE_ITEM)
+#undef TL_PHASE_ITEM
+        TL_PHASE_COUNT
+} tl_phase;
+
+/* What the steps since profiling began have cost, and what one step works on now. */
+typedef struct tl_profile {
+    double seconds[TL_PHASE_COUNT]; /* wall clock */
+    int64_t steps;
+    size_t pairs;    /* candidates of the broad phase */
+    size_t contacts; /* that exist */
+    size_t loaded;   /* that carry a force */
+    size_t points;   /* of the contacts */
+} tl_profile;
+
+/* Begins or ends timing the phases; beginning sets all to zero. Results do not depend on it. */
+TL_API void tl_model_profiling(tl_model *model, bool on);
+TL_API tl_profile tl_model_profile(const tl_model *model);
+
+/* What a model holds, in bytes, room for growth included. */
+#define TL_MEMORY(X)                                                                               \
+    X(blocks, "columns of the blocks")                                                             \
+    X(shapes, "polyhedra")                                                                         \
+    X(bodies, "columns of the bodies")                                                             \
+    X(step, "columns of the bodies that live through a step only")                                 \
+    X(broad, "grid and bounds of the broad phase")                                                 \
+    X(pairs, "candidate pairs")                                                                    \
+    X(contacts, "columns of the contacts")                                                         \
+    X(facets, "what the contacts remember of their faces, edges and vertices")                     \
+    X(points, "columns of the contact points")                                                     \
+    X(index, "lists of each block's contacts, and of contacts by number")                          \
+    X(spare, "second set of tables of contacts, facets and points")                                \
+    X(other, "rows by number, scratch of the threads, joints and laws")
+
+typedef struct tl_memory {
+#define TL_MEMORY_ITEM(name, doc) size_t name;
+    TL_MEMORY(TL_MEMORY_ITEM)
+#undef TL_MEMORY_ITEM
+    size_t total;
+} tl_memory;
+
+TL_API tl_memory tl_model_memory(const tl_model *model);
+
 /* ---------------------------------------------------------------- blocks ----------------- */
 
 typedef struct tl_halfspace {

@@ -1,0 +1,30 @@
+/* memory.c - what the detection holds, in bytes, by what it is for. Columns count with their spare rows, and
+ * so does the second set of tables that contacts are laid out in from time to time. */
+#include "detect/detect.h"
+
+static size_t narrow_bytes(const tl_narrow *n)
+{
+    return sizeof *n + n->vertex_room * sizeof *n->vertex_b + n->normal_room * sizeof *n->normal_b +
+           n->dot_room * sizeof *n->dots + n->manifold.facet_room * sizeof *n->manifold.facets +
+           n->manifold.point_room * sizeof *n->manifold.points;
+}
+
+void tl_detect_memory(const tl_model *m, tl_memory *memory)
+{
+    const tl_detect *d = m->detect;
+    if (!d)
+        return;
+    memory->pairs += d->pair_room * sizeof *d->pairs;
+    memory->contacts += tl_table_bytes(&d->contacts.table);
+    memory->facets += d->contacts.facet_capacity * sizeof *d->contacts.facet;
+    memory->points += tl_table_bytes(&d->points.table);
+    memory->spare += tl_table_bytes(&d->spare.table) + tl_table_bytes(&d->spare_points.table) +
+                     d->spare.facet_capacity * sizeof *d->spare.facet;
+    memory->broad += tl_broad_bytes(d->broad) + d->body_room * sizeof *d->odometer_0;
+    memory->index += d->by_block_room * sizeof *d->by_block +
+                     d->by_start_room * sizeof *d->by_block_start +
+                     d->by_id_room * sizeof *d->by_id;
+    memory->other += sizeof *d + d->run_room * sizeof *d->runs;
+    for (unsigned i = 0; i < d->threads; i++)
+        memory->other += narrow_bytes(&d->narrow[i]);
+}
