@@ -1,0 +1,174 @@
+-- bench.lua - what the workloads share: arguments, measuring, rows of CSV.
+--
+-- A *contact update* is one contact that carries a force, updated for one step, all its points together.
+-- One thread is timed by the processor time of the process, which other programs do not disturb; several
+-- are timed by the clock. The phases are timed by the clock always and take their shares of that time. Of
+-- several repetitions the median counts.
+local talus = require "talus"
+
+local bench = {}
+
+bench.PHASES = { "detect", "timestep", "laws", "gather", "damping", "move", "energy" }
+
+-- A repetition takes at least this long (s): thousands of ticks of os.clock.
+local LEAST = 0.2
+
+local COLUMNS = { "workload", "size", "blocks", "contacts", "face_contacts", "threads", "reuse",
+    "rate", "unit", "block_steps_per_s" }
+for _, phase in ipairs(bench.PHASES) do
+    COLUMNS[#COLUMNS + 1] = phase .. "_ns" -- a contact update
+end
+COLUMNS[#COLUMNS + 1] = "bytes_per_block"
+COLUMNS[#COLUMNS + 1] = "point_bytes_per_block"
+
+-- "key=value" arguments over the defaults; numbers stay numbers. An unknown key is refused.
+function bench.arguments(defaults)
+    local given = {}
+    for key, value in pairs(defaults) do
+        given[key] = value
+    end
+    for i = 1, #arg do
+        local key, value = arg[i]:match "^([%w_]+)=(.*)$"
+        assert(key and defaults[key] ~= nil, "unknown argument '" .. arg[i] .. "'")
+        given[key] = tonumber(value) or value
+    end
+    return given
+end
+
+-- A comma-separated list of numbers, which may have been given as one number.
+function bench.list(text)
+    local numbers = {}
+    for word in tostring(text):gmatch "[^,]+" do
+        numbers[#numbers + 1] = assert(tonumber(word), "not a number: " .. word)
+    end
+    return numbers
+end
+
+local function cell(value)
+    if math.type(value) == "float" then
+        return string.format("%.5g", value)
+    end
+    return value == nil and "" or tostring(value)
+end
+
+local headed = false
+local function print_row(row)
+    if not headed then
+        print(table.concat(COLUMNS, ","))
+        headed = true
+    end
+    local cells = {}
+    for i, column in ipairs(COLUMNS) do
+        cells[i] = cell(row[column])
+    end
+    print(table.concat(cells, ","))
+    io.stdout:flush()
+end
+
+-- A row with one figure.
+function bench.figure(row)
+    print_row(row)
+end
+
+local function median(numbers)
+    table.sort(numbers)
+    local n = #numbers
+    return (numbers[(n + 1) // 2] + numbers[n // 2 + 1]) / 2
+end
+
+-- Seconds that `steps` steps take, and the same by the clock.
+local function time(model, steps)
+    local began = os.clock()
+    local run = model:cycle(steps)
+    return model.threads == 1 and os.clock() - began or run.wall, run.wall
+end
+
+-- Measures a model that is ready, and prints a row: `name` has its workload, size and reuse;
+-- `options.reps` repetitions, of `options.steps` steps or as many as take long enough.
+function bench.measure(model, name, options)
+    model.reuse_geometry = name.reuse == "on"
+    local warm = time(model, options.warm or 5) / (options.warm or 5)
+    local steps = options.steps or math.max(1, math.ceil(LEAST / warm))
+    local seconds, phases = {}, {}
+    for i = 1, options.reps do
+        model:profile(true)
+        local taken, wall = time(model, steps)
+        seconds[i] = taken / steps
+        local cost = model:profile()
+        for _, phase in ipairs(bench.PHASES) do
+            phases[phase] = phases[phase] or {}
+            phases[phase][i] = cost.seconds[phase] / wall * seconds[i]
+        end
+    end
+    local cost, bytes, blocks = model:profile(), model:memory(), #model:blocks { fixed = false }
+    model:profile(false)
+    local step = median(seconds)
+    local row = { workload = name.workload, size = name.size, blocks = blocks,
+        contacts = cost.loaded, face_contacts = name.face_contacts, threads = model.threads,
+        reuse = name.reuse,
+        rate = cost.loaded / step, unit = "contacts/s", block_steps_per_s = blocks / step,
+        bytes_per_block = bytes.total / blocks,
+        point_bytes_per_block = bytes.points / blocks }
+    for _, phase in ipairs(bench.PHASES) do
+        row[phase .. "_ns"] = 1e9 * median(phases[phase]) / cost.loaded
+    end
+    print_row(row)
+    return cost
+end
+
+-- With and without reuse, in this order: what is reused is then as after a run.
+function bench.measure_both(model, name, options)
+    local cost
+    for _, reuse in ipairs { "on", "off" } do
+        name.reuse = reuse
+        cost = bench.measure(model, name, options)
+    end
+    return cost
+end
+
+-- ---------------------------------------------------------------- many boxes at once
+
+-- Faces of a box whose vertex numbers have bit 0 for x, bit 1 for y, bit 2 for z.
+local FACES = '[{"vertices":[0,4,6,2]},{"vertices":[1,3,7,5]},{"vertices":[0,1,5,4]},'
+    .. '{"vertices":[2,6,7,3]},{"vertices":[0,2,3,1]},{"vertices":[4,5,7,6]}]'
+
+-- Adds boxes { min, max, fixed = true or nil } in one call: a call for each would look at all
+-- that are there already every time.
+function bench.boxes(model, boxes, density)
+    local path = os.tmpname()
+    local file = assert(io.open(path, "w"))
+    file:write '{"format":"talus block model","version":1,"blocks":['
+    for i, box in ipairs(boxes) do
+        local corners = {}
+        for k = 0, 7 do
+            corners[k + 1] = string.format("[%.17g,%.17g,%.17g]",
+                k & 1 == 0 and box.min[1] or box.max[1], k & 2 == 0 and box.min[2] or box.max[2],
+                k & 4 == 0 and box.min[3] or box.max[3])
+        end
+        file:write(i > 1 and ",\n" or "", string.format(
+            '{"density":%.17g,%s"vertices":[%s],"faces":%s}', density,
+            box.fixed and '"fixed":["x","y","z","rotation"],' or "", table.concat(corners, ","),
+            FACES))
+    end
+    file:write "]}"
+    assert(file:close())
+    local ok, message = pcall(model.generate, model, "blocks", { file = path })
+    os.remove(path)
+    assert(ok, message)
+end
+
+-- Fixed plates one metre thick under and around the space from `min` to `max`, which they touch; they meet
+-- each other along edges only. The first is the base.
+function bench.plates(min, max)
+    local x0, y0, z0 = min[1], min[2], min[3]
+    local x1, y1, z1 = max[1], max[2], max[3]
+    return {
+        { min = { x0, y0, z0 - 1 }, max = { x1, y1, z0 }, fixed = true },
+        { min = { x0 - 1, y0, z0 }, max = { x0, y1, z1 }, fixed = true },
+        { min = { x1, y0, z0 }, max = { x1 + 1, y1, z1 }, fixed = true },
+        { min = { x0, y0 - 1, z0 }, max = { x1, y0, z1 }, fixed = true },
+        { min = { x0, y1, z0 }, max = { x1, y1 + 1, z1 }, fixed = true },
+    }
+end
+
+return bench

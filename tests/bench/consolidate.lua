@@ -1,0 +1,24 @@
+-- consolidate.lua - the rock of rock.lua from cut to equilibrium under gravity, timed end to end: fixed on base and
+-- sides, local damping, unbalanced force ratio 1e-5.
+--
+--     talus tests/bench/consolidate.lua blocks=1000
+package.path = (arg[0]:match "^(.*)/" or ".") .. "/?.lua;" .. package.path
+local bench = require "bench"
+local rock = require "rock"
+
+local RATIO, PATIENCE = 1e-5, 100000
+
+local given = bench.arguments { blocks = 1000 }
+local began = os.clock()
+local model = rock.build(given.blocks, 1)
+model:mass_scaling(true)
+local cut = os.clock()
+local run = model:solve { ratio = RATIO, max_cycles = PATIENCE }
+local done = os.clock()
+assert(run.reason == "ratio", "no equilibrium in " .. PATIENCE .. " steps: " .. run.ratio)
+local cost, blocks = model:profile(), #model:blocks { fixed = false }
+for _, figure in ipairs { { "cut", cut - began }, { run.cycles .. " steps", done - cut },
+    { "from cut to 1e-5", done - began } } do
+    bench.figure { workload = "consolidate", size = figure[1], blocks = blocks, contacts = cost.loaded,
+        threads = 1, reuse = "on", rate = figure[2], unit = "s" }
+end

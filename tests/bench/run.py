@@ -1,0 +1,254 @@
+#!/usr/bin/python3
+"""Runs the benchmarks, prints one table, keeps the figures as CSV, and renews docs/performance.md.
+
+    tests/bench/run.py [--quick] [--renew] [--build FOLDER] [NAME...]
+
+NAME is a job below (limit wall bond pile rock consolidate slope tunnel yade million cuts); without names
+all run. --quick takes smaller models. --renew writes docs/performance/MACHINE.csv and the tables of
+docs/performance.md from the figures of this run; --page writes the tables from the CSV files there are.
+
+A job is a program that prints rows of CSV after a line with the names of their columns (the first of which
+is "workload"); what else it prints is let through. A row has any of these:
+
+    workload, size            what was done
+    blocks, contacts          free blocks; contacts that carry a force
+    face_contacts             those of them over a face
+    threads, reuse            "on", "off" or nothing
+    rate, unit                the figure: contacts/s, s, GB/s, ...
+    block_steps_per_s         blocks times steps over seconds
+    detect_ns ... energy_ns   time of the phases, a contact update
+    bytes_per_block, point_bytes_per_block
+
+Other columns are kept in the CSV. A C program tests/bench/NAME.c is built as build/PRESET/bench/NAME."""
+
+import argparse
+import csv
+import datetime
+import os
+import pathlib
+import resource
+import shutil
+import subprocess
+import sys
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+BENCH = pathlib.Path("tests/bench")
+sys.path.insert(0, str(ROOT / BENCH))
+
+import table  # noqa: E402
+
+# Times a cold start is repeated.
+COLD = 5
+
+
+def machine():
+    """Model of the processor as the kernel names it, with family and model where the name says little."""
+    fields = {}
+    for line in pathlib.Path("/proc/cpuinfo").read_text().splitlines():
+        if not line.strip():
+            break
+        key, _, value = line.partition(":")
+        fields.setdefault(key.strip(), value.strip())
+    name = " ".join(fields.get("model name", "unknown processor").replace("(R)", "").replace("(TM)", "").split())
+    return f"{name}, family {fields.get('cpu family', '?')} model {fields.get('model', '?')}"
+
+
+def first_line(*command):
+    try:
+        return subprocess.run(command, capture_output=True, text=True, check=True).stdout.splitlines()[0]
+    except (OSError, subprocess.CalledProcessError, IndexError):
+        return "unknown"
+
+
+def parse(text):
+    """Rows of CSV among other lines."""
+    rows, names, rest = [], None, []
+    for line in text.splitlines():
+        cells = next(csv.reader([line]), [])
+        if cells and cells[0] == "workload":
+            names = cells
+        elif names and len(cells) == len(names):
+            rows.append(dict(zip(names, cells)))
+        else:
+            rest.append(line)
+    return rows, rest
+
+
+class Runner:
+    def __init__(self, build, out, quick):
+        self.build, self.out, self.quick = build, out, quick
+        self.talus = build / "talus"
+        self.rows = []
+
+    def run(self, *command, env=None, cold=1):
+        """One program's rows; a row without a figure gets the median time of the whole process."""
+        times = []
+        for _ in range(cold):
+            began = time.perf_counter()
+            done = subprocess.run([str(c) for c in command], cwd=ROOT, capture_output=True, text=True,
+                                  env={**os.environ, **(env or {})}, check=False)
+            times.append(time.perf_counter() - began)
+            if done.returncode != 0:
+                sys.exit(f"bench: {' '.join(map(str, command))} failed:\n{done.stderr[-2000:]}")
+        rows, rest = parse(done.stdout)
+        for line in rest if not rows else []:
+            print(f"    {line}")
+        for row in rows:
+            if not row.get("rate") and row.get("unit") == "s":
+                row["rate"] = f"{sorted(times)[len(times) // 2]:.4g}"
+            print("    " + table.line(row), flush=True)
+        self.rows += rows
+        return rows
+
+    def script(self, name, *arguments, cold=1):
+        return self.run(self.talus, "--quiet", BENCH / f"{name}.lua", *arguments, cold=cold)
+
+    def program(self, name, *arguments):
+        return self.run(self.build / "bench" / name, *arguments)
+
+
+# ---------------------------------------------------------------------- jobs
+
+
+def limit(r):
+    r.program("limit", *(["quick"] if r.quick else []))
+
+
+def wall(r):
+    if r.quick:
+        r.script("wall", "n=5,10", "threads=1,2", "reps=3")
+    else:
+        r.script("wall", "n=5,10,20", "threads=1,2")
+        r.script("wall", "n=46", "threads=1,2", "reps=3")
+
+
+def bond(r):
+    r.script("wall", "layout=bond", "n=10", "threads=1,2", f"reps={3 if r.quick else 5}")
+
+
+def pile_file(r):
+    """Settled once, kept for later runs."""
+    count = 100 if r.quick else 500
+    return count, r.out / f"pile_{count}.json"
+
+
+def pile(r):
+    count, path = pile_file(r)
+    r.script("pile", f"blocks={count}", f"write={path}", "threads=1,2", f"reps={3 if r.quick else 5}")
+
+
+def rock(r):
+    r.script("rock", f"blocks={'1000' if r.quick else '1000,10000,100000'}", "threads=1,2",
+             f"reps={3 if r.quick else 5}")
+    if not r.quick:
+        r.script("rock", "blocks=1000000", "threads=1,2", "reps=3")
+
+
+def consolidate(r):
+    r.script("consolidate", f"blocks={200 if r.quick else 1000}")
+
+
+def slope(r):
+    r.script("slope", cold=COLD)
+
+
+def tunnel(r):
+    r.script("tunnel", cold=COLD)
+
+
+def yade(r):
+    """The same blocks in Yade's polyhedra, where Debian's package is there."""
+    program = shutil.which("yade-double") or shutil.which("yade")
+    if not program:
+        print("    no yade here (Debian: apt-get install yade)")
+        return
+    count, path = pile_file(r)
+    cases = [("wall", 5, 10), ("bond", 10, 5)] if r.quick else [("wall", 5, 20), ("wall", 10, 5), ("wall", 20, 2),
+                                                                ("bond", 10, 10)]
+    for layout, n, steps in cases:
+        blocks = r.out / f"{layout}_{n}.json"
+        r.script("wall", f"layout={'bond' if layout == 'bond' else 'lattice'}", f"n={n}", f"write={blocks}")
+        r.run(program, "-n", "-x", "-j1", BENCH / "yade_blocks.py",
+              env={"BLOCKS": str(blocks), "WORKLOAD": f"yade {layout}", "SIZE": str(n ** 3), "STEPS": str(steps),
+                   "VERLET": "0.001" if layout == "bond" else "0.01", "OMP_NUM_THREADS": "1"})
+    if not path.exists():
+        r.script("pile", f"blocks={count}", f"write={path}", "reps=0")
+    r.run(program, "-n", "-x", "-j1", BENCH / "yade_blocks.py",
+          env={"BLOCKS": str(path), "WORKLOAD": "yade pile", "SIZE": str(count), "STEPS": "3" if r.quick else "10",
+               "KN": "1e8", "DT": "5e-4", "DAMPING": "0.8", "VERLET": "0.02", "OMP_NUM_THREADS": "1"})
+
+
+def million(r):
+    """Making a million blocks."""
+    if not r.quick:
+        r.script("rock_million")
+
+
+def cuts(r):
+    """Cutting, timed in C."""
+    if (ROOT / BENCH / "cuts.c").exists():
+        r.program("cuts", *(["quick"] if r.quick else []))
+
+
+JOBS = {job.__name__: job for job in (limit, wall, bond, pile, rock, consolidate, slope, tunnel, yade, million, cuts)}
+
+
+# ---------------------------------------------------------------------- figures
+
+
+def write_csv(path, rows, notes):
+    names = []
+    for row in rows:
+        names += [name for name in row if name not in names]
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with open(path, "w", newline="") as file:
+        for note in notes:
+            file.write(f"# {note}\n")
+        writer = csv.DictWriter(file, names, restval="", lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(rows)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--quick", action="store_true", help="smaller models, under two minutes")
+    parser.add_argument("--renew", action="store_true", help="write docs/performance/*.csv and the page's tables")
+    parser.add_argument("--page", action="store_true", help="write the page's tables from the CSV files; run nothing")
+    parser.add_argument("--build", default="build/release", help="folder of the build")
+    parser.add_argument("names", nargs="*", metavar="NAME", help=" ".join(JOBS))
+    given = parser.parse_args()
+    page = ROOT / "docs" / "performance.md"
+    if given.page:
+        return table.write_page(page)
+    unknown = [name for name in given.names if name not in JOBS]
+    if unknown:
+        sys.exit(f"bench: no job '{unknown[0]}'; there are {' '.join(JOBS)}")
+    if given.renew and (given.quick or given.names):
+        sys.exit("bench: --renew takes a whole run: without --quick and without names")
+    out = ROOT / "build" / "bench"
+    out.mkdir(parents=True, exist_ok=True)
+    runner = Runner(ROOT / given.build, out, given.quick)
+    name = machine()
+    now = datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%d")
+    memory = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") / 2 ** 30
+    notes = [name, f"{os.cpu_count()} processors, {memory:.0f} GiB, {first_line('cc', '--version')}",
+             f"{now}, load {os.getloadavg()[0]:.1f} at the start"]
+    print("\n".join(notes), flush=True)
+    for job in given.names or JOBS:
+        print(f"{job}:", flush=True)
+        JOBS[job](runner)
+    stamp = "quick" if given.quick else "full"
+    write_csv(out / f"{stamp}.csv", runner.rows, notes)
+    print()
+    print(table.text(runner.rows))
+    peak = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 2 ** 20
+    print(f"largest process {peak:.1f} GiB; figures in build/bench/{stamp}.csv")
+    if given.renew:
+        write_csv(page.parent / "performance" / f"{table.slug(name)}.csv", runner.rows, notes)
+        return table.write_page(page)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
