@@ -18,8 +18,12 @@ local COLUMNS = { "workload", "size", "blocks", "contacts", "face_contacts", "th
 for _, phase in ipairs(bench.PHASES) do
     COLUMNS[#COLUMNS + 1] = phase .. "_ns" -- a contact update
 end
-COLUMNS[#COLUMNS + 1] = "bytes_per_block"
-COLUMNS[#COLUMNS + 1] = "point_bytes_per_block"
+-- Bytes a free block, in all and by what they are for.
+local MEMORY = { "total", "blocks", "shapes", "bodies", "step", "broad", "pairs", "contacts", "facets",
+    "points", "index", "spare", "other" }
+for _, part in ipairs(MEMORY) do
+    COLUMNS[#COLUMNS + 1] = part .. "_bytes"
+end
 
 -- "key=value" arguments over the defaults; numbers stay numbers. An unknown key is refused.
 function bench.arguments(defaults)
@@ -106,9 +110,10 @@ function bench.measure(model, name, options)
     local row = { workload = name.workload, size = name.size, blocks = blocks,
         contacts = cost.loaded, face_contacts = name.face_contacts, threads = model.threads,
         reuse = name.reuse,
-        rate = cost.loaded / step, unit = "contacts/s", block_steps_per_s = blocks / step,
-        bytes_per_block = bytes.total / blocks,
-        point_bytes_per_block = bytes.points / blocks }
+        rate = cost.loaded / step, unit = "contacts/s", block_steps_per_s = blocks / step }
+    for _, part in ipairs(MEMORY) do
+        row[part .. "_bytes"] = bytes[part] / blocks
+    end
     for _, phase in ipairs(bench.PHASES) do
         row[phase .. "_ns"] = 1e9 * median(phases[phase]) / cost.loaded
     end

@@ -5,8 +5,8 @@
     tests/bench/instructions.py [--program build/release/talus] --renew    writes tests/bench/instructions.json
 
 callgrind counts a run of N steps and one of 2 N; the difference is N steps without what comes before and after
-them. The count is the same on every run and hardly depends on the machine; another compiler may give a few
-per cent. A fall of more than a tenth is told, so that the gain can be kept with --renew."""
+them. The count is the same on every run to a thousandth and hardly depends on the machine; another compiler may
+change it by a few per cent. A fall of more than a tenth is told, so that the gain can be kept with --renew."""
 
 import argparse
 import json

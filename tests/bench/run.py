@@ -17,7 +17,7 @@ is "workload"); what else it prints is let through. A row has any of these:
     rate, unit                the figure: contacts/s, s, GB/s, ...
     block_steps_per_s         blocks times steps over seconds
     detect_ns ... energy_ns   time of the phases, a contact update
-    bytes_per_block, point_bytes_per_block
+    total_bytes, blocks_bytes ... memory a block, in all and by what it is for (model:memory())
 
 Other columns are kept in the CSV. A C program tests/bench/NAME.c is built as build/PRESET/bench/NAME."""
 
@@ -38,6 +38,8 @@ sys.path.insert(0, str(ROOT / BENCH))
 
 import table  # noqa: E402
 
+# Share of the machine's memory that a model may need by what a smaller one takes a block.
+MOST_MEMORY = 0.8
 # Times a cold start is repeated.
 COLD = 5
 
@@ -142,7 +144,11 @@ def rock(r):
     r.script("rock", f"blocks={'1000' if r.quick else '1000,10000,100000'}", "threads=1,2",
              f"reps={3 if r.quick else 5}")
     if not r.quick:
-        r.script("rock", "blocks=1000000", "threads=1,2", "reps=3")
+        need = 1e6 * table.number(r.rows[-1], "total_bytes")
+        if need < MOST_MEMORY * os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"):
+            r.script("rock", "blocks=1000000", "threads=1,2", "reps=3")
+        else:
+            print(f"    a million blocks need some {need / 2 ** 30:.0f} GiB, more than this machine has")
 
 
 def consolidate(r):

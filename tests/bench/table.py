@@ -5,6 +5,8 @@ import pathlib
 import re
 
 PHASES = ("detect", "timestep", "laws", "gather", "damping", "move", "energy")
+MEMORY = ("total", "points", "contacts", "facets", "pairs", "broad", "index", "spare", "bodies", "step", "blocks",
+          "shapes", "other")
 # Contacts up to which the columns of a step fit into a cache of 1 or 2 MiB.
 IN_CACHE = 30000
 BEGIN, END = "<!-- Figures: begin. Written by tests/bench/run.py. -->", "<!-- Figures: end. -->"
@@ -72,8 +74,15 @@ def workload_table(rows):
         body.append([row["workload"], row.get("blocks", ""), row.get("contacts", ""), row.get("threads", ""),
                      row.get("reuse", ""), short(number(row, "rate")), short(number(row, "block_steps_per_s")),
                      percent(share(row, known)), *(short(number(row, f"{p}_ns")) for p in PHASES),
-                     short(number(row, "bytes_per_block"))])
+                     short(number(row, "total_bytes"))])
     return head, body
+
+
+def memory_table(rows):
+    """Bytes a block by what they are for."""
+    body = [[row["workload"], row["blocks"], *(short(number(row, f"{part}_bytes")) for part in MEMORY)]
+            for row in rows if row.get("reuse") == "on" and row["threads"] == "1" and row.get("total_bytes")]
+    return ["B/block", "blocks", *MEMORY], body
 
 
 def limit_table(rows):
@@ -107,7 +116,8 @@ def peer_table(rows):
 
 def text(rows):
     parts = []
-    for head, body in (limit_table(rows), workload_table(rows), figure_table(rows), peer_table(rows)):
+    for head, body in (limit_table(rows), workload_table(rows), memory_table(rows),
+                       figure_table(rows), peer_table(rows)):
         if not body:
             continue
         widths = [max(len(cells[i]) for cells in [head, *body]) for i in range(len(head))]
@@ -139,6 +149,7 @@ def section(path):
     for title, (head, body) in (
             ("What the machine could do:", limit_table(rows)),
             ("Contact updates; the phases in ns a contact update:", workload_table(rows)),
+            ("Memory, bytes a block, one thread:", memory_table(rows)),
             ("Times and rates of whole runs:", figure_table(rows)),
             ("The same blocks in Yade's polyhedra, one thread:", peer_table(rows))):
         if body:
