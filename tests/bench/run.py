@@ -19,7 +19,7 @@ is "workload"); what else it prints is let through. A row has any of these:
     detect_ns ... energy_ns   time of the phases, a contact update
     total_bytes, blocks_bytes ... memory a block, in all and by what it is for (model:memory())
 
-Other columns are kept in the CSV. A C program tests/bench/NAME.c is built as build/PRESET/bench/NAME."""
+Other columns are kept in the CSV. A C program tests/bench/NAME.c is built as build/PRESET/tests/bench/NAME."""
 
 import argparse
 import csv
@@ -38,8 +38,9 @@ sys.path.insert(0, str(ROOT / BENCH))
 
 import table  # noqa: E402
 
-# Share of the machine's memory that a model may need by what a smaller one takes a block.
-MOST_MEMORY = 0.8
+# Share of the machine's memory that a model may take, by what a smaller one takes a block: laying contacts out
+# anew needs them twice.
+MOST_MEMORY = 0.5
 # Times a cold start is repeated.
 COLD = 5
 
@@ -107,7 +108,7 @@ class Runner:
         return self.run(self.talus, "--quiet", BENCH / f"{name}.lua", *arguments, cold=cold)
 
     def program(self, name, *arguments):
-        return self.run(self.build / "bench" / name, *arguments)
+        return self.run(self.build / "tests" / "bench" / name, *arguments)
 
 
 # ---------------------------------------------------------------------- jobs
@@ -194,7 +195,7 @@ def million(r):
 def cuts(r):
     """Cutting, timed in C."""
     if (ROOT / BENCH / "cuts.c").exists():
-        r.program("cuts", *(["quick"] if r.quick else []))
+        r.program("cuts")
 
 
 JOBS = {job.__name__: job for job in (limit, wall, bond, pile, rock, consolidate, slope, tunnel, yade, million, cuts)}
