@@ -62,6 +62,18 @@ static void run_law(void *user, size_t begin, size_t end, size_t chunk, unsigned
                         report.text);
 }
 
+/* The couple on B by which the areas of a facet, where they depend on tilt, do work: what the springs
+ * gain or lose with their areas, the bodies lose or gain. Areas keep the points' stresses, so the energy
+ * stored in them is in proportion. */
+static tl_vec3 facet_couple(const tl_points_table *p, const tl_facet *f, size_t begin,
+                            const tl_mat3 *ra)
+{
+    double stored = 0;
+    for (size_t i = begin + f->begin; i < begin + f->begin + f->count; i++)
+        stored += p->stored[i];
+    return tl_v3_scale(stored, tl_m3_mul(ra, f->swing));
+}
+
 /* Sums of a contact's points: the force on B, and the moments about both bodies' centroids. */
 static void sum_contact(tl_model *m, uint32_t c)
 {
@@ -78,6 +90,11 @@ static void sum_contact(tl_model *m, uint32_t c)
     }
     tl_vec3 apart =
         tl_body_apart(&m->bodies, m->blocks.body[contacts->a[c]], m->blocks.body[contacts->b[c]]);
+    const tl_mat3 *ra = &m->bodies.r[m->blocks.body[contacts->a[c]]];
+    const tl_facet *facets = &contacts->facet[contacts->facet_start[c]];
+    for (uint32_t k = 0; k < contacts->facet_count[c]; k++)
+        if (tl_v3_norm2(facets[k].swing) > 0)
+            moment = tl_v3_add(moment, facet_couple(p, &facets[k], begin, ra));
     contacts->force[c] = force;
     contacts->moment_a[c] = tl_v3_neg(moment);
     contacts->moment_b[c] = tl_v3_sub(moment, tl_v3_cross(apart, force));

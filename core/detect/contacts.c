@@ -29,7 +29,7 @@ void tl_contacts_init(tl_contacts *c, tl_points_table *p)
     TL_COLUMN(t, c, axis, 0);
     TL_COLUMN(t, c, searched, 0);
     TL_COLUMN(t, c, margin, 0);
-    TL_COLUMN(t, c, built, 0);
+    TL_COLUMN(t, c, until, 0);
     TL_COLUMN(t, c, facet_start, 0);
     TL_COLUMN(t, c, facet_count, 0);
     TL_COLUMN(t, c, facet_room, 0);
@@ -51,6 +51,7 @@ void tl_contacts_init(tl_contacts *c, tl_points_table *p)
     tl_table_init(t, p);
     TL_COLUMN(t, p, p, TL_COLUMN_STATE);
     TL_COLUMN(t, p, rest, TL_COLUMN_STATE);
+    TL_COLUMN(t, p, lean, TL_COLUMN_STATE);
     TL_COLUMN(t, p, key, 0);
     TL_COLUMN(t, p, arm, 0);
     TL_COLUMN(t, p, area, TL_COLUMN_STATE);
@@ -86,7 +87,7 @@ static uint32_t state_width(const tl_state *state)
 
 void tl_point_clear(tl_points_table *p, size_t i)
 {
-    p->area[i] = p->rest[i] = p->reference[i] = p->closure[i] = 0;
+    p->area[i] = p->rest[i] = p->lean[i] = p->reference[i] = p->closure[i] = 0;
     p->f_n0[i] = p->f_n[i] = p->du_n[i] = p->stored[i] = p->dissipated[i] = 0;
     p->flags[i] = p->key[i] = 0;
     p->p[i] = p->arm[i] = tl_v3(0, 0, 0);
@@ -182,7 +183,7 @@ bool tl_contact_append(tl_model *m, uint32_t pair, const tl_axis *axis, tl_tag t
     c->tag[row] = tag;
     c->material[row] = tl_material_row(m, tag);
     c->axis[row] = *axis;
-    c->searched[row] = c->built[row] = tl_pair_odometer(m, p->a, p->b);
+    c->searched[row] = c->until[row] = tl_pair_odometer(m, p->a, p->b);
     c->want_points[row] = (uint32_t)want_points;
     c->want_facets[row] = (uint32_t)want_facets;
     c->fate[row] = TL_FATE_GROW;

@@ -102,10 +102,13 @@ double tl_crease_add(const tl_pair_view *view, double near, double (*flush)(doub
     size_t begin = m->point_count;
     uint64_t key = tl_key(tl_key(4, one.ia), one.ib);
     tl_vec3 ends[2] = {one.from, one.to};
-    for (uint32_t k = 0; k < 2; k++)
-        if (!tl_manifold_add_point(m, tl_m3_tmul(&view->turn, tl_v3_sub(ends[k], view->shift)), 0,
-                                   0.5, (uint32_t)tl_key(key, k + 1)))
+    for (uint32_t k = 0; k < 2; k++) {
+        tl_contact_point point = {.p = tl_m3_tmul(&view->turn, tl_v3_sub(ends[k], view->shift)),
+                                  .area = 0.5,
+                                  .key = (uint32_t)tl_key(key, k + 1)};
+        if (!tl_manifold_add_point(m, point))
             return 0;
+    }
     tl_vec3 foot = view->a->vertex[view->a->edge[one.ia].a];
     m->facets[m->facet_count++] = (tl_facet){.kind = TL_FACET_FACE_A,
                                              .ia = (uint16_t)one.ia,

@@ -12,6 +12,9 @@
 /* Motion within which facets and areas are reused, relative to the smaller block's size: areas are
  * then wrong by a few 1e-6 at most; gaps are exact all the same. */
 #define REUSE 1e-6
+/* A point of a tilted patch stays on A until the patch is made anew, wherever the feature that made it goes:
+ * the error of its gap is the motion times the tilt, and may be this share of the gap. */
+#define GAP_SHARE 1e-4
 /* The axis is searched anew after motion of half its lead over the next one, or this share of |s|, ... */
 #define AXIS_SHARE 0.25
 /* ... but at the latest after this times the size. */
@@ -114,7 +117,7 @@ static void find_materials(tl_model *m)
 {
     tl_contacts *c = &m->detect->contacts;
     for (uint32_t row = 0; row < c->table.rows; row++) {
-        c->built[row] = -INFINITY;
+        c->until[row] = -INFINITY;
         if (c->fate[row] == TL_FATE_KEEP && tl_material_row(m, c->tag[row]) != c->material[row])
             c->fate[row] = TL_FATE_MATERIAL;
     }
@@ -223,6 +226,7 @@ static void refit(tl_model *m, uint32_t c, const tl_manifold *g)
         double state[TL_STATE_COLUMNS];
         p->p[i] = g->points[k].p;
         p->rest[i] = g->points[k].rest;
+        p->lean[i] = g->points[k].lean;
         p->area[i] = g->points[k].area;
         if (scale == 1)
             continue;
@@ -264,7 +268,6 @@ static bool rebuild(tl_model *m, uint32_t c, tl_narrow *room, bool across)
         if (!search && !followed && !(room->manifold.patch_area > 0))
             continue; /* what touched has parted: look at all features */
         contacts->axis[c] = axis;
-        contacts->built[c] = odometer;
         if (tag.joint != contacts->tag[c].joint || tag.plane != contacts->tag[c].plane) {
             contacts->tag[c] = tag;
             uint32_t material = tl_material_row(m, tag);
@@ -300,22 +303,31 @@ static bool take_manifold(tl_model *m, uint32_t c, tl_narrow *room)
     return tl_contact_transfer(m, c, room);
 }
 
+/* How far a contact whose facets have just been made may move before they are made anew. */
+static void allow_reuse(tl_model *m, uint32_t c, double tilt)
+{
+    tl_contacts *contacts = &m->detect->contacts;
+    double size = fmin(m->blocks.size[contacts->a[c]], m->blocks.size[contacts->b[c]]);
+    double most = (contacts->point_count[c] ? REUSE : SILENT) * size;
+    if (tilt * most > GAP_SHARE * fabs(contacts->gap[c]))
+        most = GAP_SHARE * fabs(contacts->gap[c]) / tilt;
+    contacts->until[c] = tl_pair_odometer(m, contacts->a[c], contacts->b[c]) + most;
+}
+
 static void update_contact(tl_model *m, uint32_t c, tl_narrow *room)
 {
     tl_contacts *contacts = &m->detect->contacts;
     if (contacts->fate[c] == TL_FATE_DIE)
         return;
     double odometer = tl_pair_odometer(m, contacts->a[c], contacts->b[c]);
-    double size = fmin(m->blocks.size[contacts->a[c]], m->blocks.size[contacts->b[c]]);
-    double near = contacts->point_count[c] ? REUSE : SILENT;
-    bool reuse = m->config.reuse_geometry && odometer - contacts->built[c] <= near * size;
-    if (!reuse) {
+    if (!m->config.reuse_geometry || odometer > contacts->until[c]) {
         bool across = carries_across(m->detect, c);
         if (!rebuild(m, c, room, across) ||
             (contacts->fate[c] != TL_FATE_DIE && !take_manifold(m, c, room))) {
             contacts->fate[c] = TL_FATE_MEMORY;
             return;
         }
+        allow_reuse(m, c, room->manifold.tilt);
     }
     if (contacts->fate[c] == TL_FATE_KEEP || contacts->fate[c] == TL_FATE_MATERIAL)
         tl_contact_follow(m, c, m->dt);
@@ -370,7 +382,10 @@ static bool fill_contact(tl_model *m, uint32_t c, tl_narrow *room)
         contacts->margin[c] = axis_margin(&contacts->axis[c], view.size);
     tl_share_rule rule = share_rule(m, &view, contacts->tag[c], carries_across(m->detect, c));
     tl_manifold_build(&view, &contacts->axis[c], &rule, room);
-    return !room->manifold.failed && tl_contact_transfer(m, c, room);
+    if (room->manifold.failed || !tl_contact_transfer(m, c, room))
+        return false;
+    allow_reuse(m, c, room->manifold.tilt);
+    return true;
 }
 
 /* Pairs that overlap deeply when their contact is made. */

@@ -59,15 +59,19 @@ typedef struct tl_facet {
     double offset;         /* of the face a point is measured against */
     tl_vec3 pa, pb;        /* edges: a point on each, own frames */
     tl_vec3 side;          /* edges: n when made, A's frame */
+    tl_vec3 swing;         /* couple on B per energy stored in its points, A's frame, 1/rad */
 } tl_facet;
 
 /* A contact point as the geometry gives it. `p` is fixed to A for patches, faces of B and edges, and
- * to B for faces of A. `rest` is what the point's own wall adds to the gap (patches). */
+ * to B for faces of A. Patches: `rest` is what the point's own wall adds to the gap; `lean` tells along
+ * which normal the gap opens: -1 that of B's face, on which a vertex of A stands, 1 that of A's face, 0 half-way. */
 typedef struct tl_contact_point {
     tl_vec3 p;
     double rest;
+    double lean;
     double area;
-    uint32_t key; /* of the features that made it */
+    uint32_t key;  /* of the features that made it */
+    tl_vec3 swing; /* as a facet's: what its own area adds to it */
 } tl_contact_point;
 
 /* The contact points of one pair, as one geometric evaluation finds them. */
@@ -76,6 +80,7 @@ typedef struct tl_manifold {
     tl_contact_point *points;
     size_t facet_count, facet_room, point_count, point_room;
     double patch_area;
+    double tilt; /* sine of the angle between the faces of the most tilted patch */
     bool failed; /* out of memory */
 } tl_manifold;
 
@@ -118,7 +123,7 @@ typedef struct tl_contacts {
     tl_axis *axis;
     double *searched; /* sum of odometers at the last full search */
     double *margin;   /* how far it may run before the next */
-    double *built;    /* sum of odometers when the facets were made */
+    double *until;    /* sum of odometers up to which the facets may be reused */
     uint32_t *facet_start, *facet_count, *facet_room;
     uint32_t *point_start, *point_count, *point_room;
     tl_vec3 *normal, *point;      /* area-weighted; point in coordinates relative to the origin */
@@ -137,7 +142,7 @@ enum { TL_FATE_KEEP, TL_FATE_GROW, TL_FATE_DIE, TL_FATE_MATERIAL, TL_FATE_MEMORY
 typedef struct tl_points_table {
     tl_table table;
     tl_vec3 *p;
-    double *rest;
+    double *rest, *lean;
     uint32_t *key;
     tl_vec3 *arm; /* from A's body's centroid to the point, axes of the model */
     double *normal[3];
@@ -233,15 +238,15 @@ bool tl_edge_normal(tl_vec3 edge_a, tl_vec3 edge_b, tl_vec3 outward, tl_vec3 *n)
 /* Facets and points of a pair whose axis is known, into room->manifold. */
 void tl_manifold_build(const tl_pair_view *view, const tl_axis *axis, const tl_share_rule *rule,
                        tl_narrow *room);
-bool tl_manifold_add_point(tl_manifold *m, tl_vec3 p, double rest, double area, uint32_t key);
+bool tl_manifold_add_point(tl_manifold *m, tl_contact_point point);
 /* The joint of the touching faces. */
 tl_tag tl_touching_tag(const tl_pair_view *view, tl_vec3 n);
 
 /* ---- patch.c ---- */
-/* Adds the patch of face `fa` of A on face `fb` of B, with areas scaled by `weight`; returns its
- * scaled area (0 when they do not overlap). */
+/* Adds the patch of face `fa` of A on face `fb` of B, with areas scaled by `weight` and the facet's
+ * `swing`; returns its scaled area (0 when they do not overlap). */
 double tl_patch_add(const tl_pair_view *view, uint32_t fa, uint32_t fb, double weight,
-                    const tl_share_rule *rule, tl_narrow *room);
+                    tl_vec3 swing, const tl_share_rule *rule, tl_narrow *room);
 /* The part [*t0, *t1] of the segment from p to q over a face (polygon of `count` corners in a plane of
  * normal n, any side), as shares of its length; false when none is. */
 bool tl_segment_over_face(tl_vec3 p, tl_vec3 q, const tl_vec3 *corners, size_t count, tl_vec3 n,

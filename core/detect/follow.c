@@ -55,7 +55,9 @@ typedef struct sight {
 
 /* The facet's normal, and the plane a point's gap is measured to. */
 typedef struct facing {
-    tl_vec3 n;      /* A to B */
+    tl_vec3 n;      /* A to B; of a patch the mean of the faces' normals */
+    tl_vec3 lean;   /* patches: from n to the normal of A's face, and against it to that of B's */
+    double n2, l2;  /* squares of the lengths of both, which are perpendicular */
     tl_vec3 normal; /* outward, of the plane */
     double offset;
     tl_vec3 foot; /* edges: a point of A's edge */
@@ -70,7 +72,10 @@ static facing facet_facing(const tl_facet *f, const sight *s)
         tl_vec3 na = tl_m3_mul(s->ra, f->na);
         out.normal = tl_m3_mul(s->rb, f->nb);
         out.offset = f->offset + tl_v3_dot(out.normal, s->d);
-        out.n = tl_v3_unit(tl_v3_sub(na, out.normal));
+        out.n = tl_v3_scale(0.5, tl_v3_sub(na, out.normal));
+        out.lean = tl_v3_scale(0.5, tl_v3_add(na, out.normal));
+        out.n2 = tl_v3_norm2(out.n);
+        out.l2 = tl_v3_norm2(out.lean);
         break;
     }
     case TL_FACET_FACE_A:
@@ -94,6 +99,11 @@ static facing facet_facing(const tl_facet *f, const sight *s)
     }
     }
     return out;
+}
+
+static tl_vec3 point_normal(const facing *f, double lean)
+{
+    return tl_v3_scale(1 / sqrt(f->n2 + lean * lean * f->l2), tl_v3_madd(f->n, lean, f->lean));
 }
 
 /* v turned from the plane of normal `from` to that of `to`, and about `to` by the angle whose half has
@@ -125,21 +135,22 @@ static void follow_facet(tl_points_table *p, const tl_facet *f, size_t begin, co
                          uint32_t tangents)
 {
     facing to = facet_facing(f, s);
-    /* a turn is one that swings the old normal to the new, then one about it: of this the half angle has
-     * the tangent half . n */
-    double h = 0.5 * tl_v3_dot(tl_v3_add(s->a.half, s->b.half), to.n);
+    tl_vec3 half = tl_v3_scale(0.5, tl_v3_add(s->a.half, s->b.half));
     for (size_t i = begin; i < begin + f->count; i++) {
         tl_vec3 x = f->kind == TL_FACET_FACE_A ? tl_v3_add(tl_m3_mul(s->rb, p->p[i]), s->d)
                                                : tl_m3_mul(s->ra, p->p[i]);
         double gap =
             f->kind == TL_FACET_EDGES ? to.gap : p->rest[i] + tl_v3_dot(to.normal, x) - to.offset;
         tl_vec3 du = tl_v3_sub(motion(&s->b, tl_v3_sub(x, s->d)), motion(&s->a, x));
-        double du_n = tl_v3_dot(du, to.n);
-        turn_vectors(p, i, to.n, h, tangents);
+        tl_vec3 n = f->kind == TL_FACET_PATCH ? point_normal(&to, p->lean[i]) : to.n;
+        double du_n = tl_v3_dot(du, n);
+        /* a turn is one that swings the old normal to the new, then one about it: of this the half angle
+         * has the tangent half . n */
+        turn_vectors(p, i, n, tl_v3_dot(half, n), tangents);
         p->arm[i] = x;
         p->closure[i] = -gap - p->reference[i];
         p->du_n[i] = du_n;
-        tl_columns_put(p->du_s, i, tl_v3_madd(du, -du_n, to.n));
+        tl_columns_put(p->du_s, i, tl_v3_madd(du, -du_n, n));
     }
 }
 

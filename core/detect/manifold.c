@@ -27,9 +27,9 @@
 /* Normals whose cosines with the axis differ by less are equally near to it. */
 #define SAME_COSINE 1e-9
 
-bool tl_manifold_add_point(tl_manifold *m, tl_vec3 p, double rest, double area, uint32_t key)
+bool tl_manifold_add_point(tl_manifold *m, tl_contact_point point)
 {
-    if (!(area > 0)) /* a point without area carries nothing, and has no stress */
+    if (!(point.area > 0)) /* a point without area carries nothing, and has no stress */
         return true;
     if (m->point_count == m->point_room) {
         size_t room = m->point_room ? 2 * m->point_room : 64;
@@ -42,7 +42,7 @@ bool tl_manifold_add_point(tl_manifold *m, tl_vec3 p, double rest, double area, 
         m->points = points;
         m->point_room = room;
     }
-    m->points[m->point_count++] = (tl_contact_point){p, rest, area, key};
+    m->points[m->point_count++] = point;
     return true;
 }
 
@@ -66,6 +66,14 @@ static double fade(double sine, double full, double none)
     double degrees = asin(fmin(1, sine)) * (180 / TL_PI);
     double x = (none - degrees) / (none - full);
     return x <= 0 ? 0 : x >= 1 ? 1 : x * x * (3 - 2 * x);
+}
+
+/* Its derivative by the angle, 1/rad. */
+static double fade_slope(double sine, double full, double none)
+{
+    double degrees = asin(fmin(1, sine)) * (180 / TL_PI);
+    double x = (none - degrees) / (none - full);
+    return x <= 0 || x >= 1 ? 0 : -6 * x * (1 - x) * (180 / TL_PI) / (none - full);
 }
 
 static void add_facet(tl_manifold *m, tl_facet facet, size_t begin)
@@ -117,16 +125,29 @@ static double flushness(double sine)
     return fade(sine, FLUSH_NONE, FLUSH_FULL);
 }
 
-/* Adds all patches; returns how flush the most parallel faces are that meet, by area or side by side: 1
- * parallel, 0 tilted. */
-static double add_patches(const tl_pair_view *view, const tl_axis *axis, const tl_share_rule *rule,
-                          tl_narrow *room)
+/* Something that depends on the tilt of faces, and the couple on B that goes with it: its derivative
+ * against B's turn, per radian. */
+typedef struct tilted {
+    double value;
+    tl_vec3 swing;
+} tilted;
+
+/* All patches of a pair. */
+typedef struct patches {
+    tilted area;
+    double whole; /* area, were none of them faded */
+    tilted
+        flush; /* how flush the most parallel faces are that meet, by area or side by side: 1 .. 0 */
+} patches;
+
+static patches add_patches(const tl_pair_view *view, const tl_axis *axis, const tl_share_rule *rule,
+                           tl_narrow *room)
 {
     const double facing = cos(TILT_NONE * TL_PI / 180);
     const double near = reach_of(view, axis);
     tl_manifold *m = &room->manifold;
     tl_vec3 n = axis->n;
-    double flush = 0;
+    patches sum = {0};
     for (uint32_t i = 0; i < view->a->face_count; i++) {
         tl_vec3 na = view->a->plane[i].normal;
         if (view->a->covered[i] || tl_v3_dot(na, n) < facing)
@@ -135,17 +156,25 @@ static double add_patches(const tl_pair_view *view, const tl_axis *axis, const t
             tl_vec3 nb = view->normal_b[j];
             if (view->b->covered[j] || -tl_v3_dot(nb, n) < facing || -tl_v3_dot(na, nb) < facing)
                 continue;
-            double sine = tl_v3_norm(tl_v3_cross(na, nb)), area = 0;
+            tl_vec3 hinge = tl_v3_cross(na, nb); /* B turning about it lessens the tilt */
+            double sine = tl_v3_norm(hinge), area = 0;
             double weight = fade(sine, TILT_FULL, TILT_NONE);
+            tl_vec3 swing = tl_v3_scale(fade_slope(sine, TILT_FULL, TILT_NONE), tl_v3_unit(hinge));
             if (weight > 0 && reserve_facets(m, m->facet_count + 2))
-                area = tl_patch_add(view, i, j, weight, rule, room);
-            m->patch_area += area;
+                area = tl_patch_add(view, i, j, weight, tl_v3_scale(1 / weight, swing), rule, room);
+            if (area > 0) {
+                m->tilt = fmax(m->tilt, sine);
+                sum.area.value += area;
+                sum.area.swing = tl_v3_madd(sum.area.swing, area / weight, swing);
+                sum.whole += area / weight;
+            }
             double parallel = flushness(sine);
-            if (parallel > flush && (area > 0 || level(view, i, j, near)))
-                flush = parallel;
+            if (parallel > sum.flush.value && (area > 0 || level(view, i, j, near)))
+                sum.flush = (tilted){parallel, tl_v3_scale(fade_slope(sine, FLUSH_NONE, FLUSH_FULL),
+                                                           tl_v3_unit(hinge))};
         }
     }
-    return flush;
+    return sum;
 }
 
 /* ---------------------------------------------------------------- point share ------------ */
@@ -170,12 +199,26 @@ static uint32_t lowest_vertex(const resting *r)
     return low;
 }
 
-/* Adds a point at x (A's frame) with area still relative to the others'. */
+/* Adds a point at x (A's frame) with area still relative to the others'; `swing` per area. */
 static void add_resting(const tl_pair_view *view, bool b_stands, tl_manifold *m, tl_vec3 x,
-                        double weight, uint32_t key)
+                        tilted weight, uint64_t key)
 {
     tl_vec3 p = b_stands ? tl_m3_tmul(&view->turn, tl_v3_sub(x, view->shift)) : x;
-    tl_manifold_add_point(m, p, 0, weight, key);
+    tl_manifold_add_point(
+        m, (tl_contact_point){
+               .p = p, .area = weight.value, .swing = weight.swing, .key = (uint32_t)key});
+}
+
+/* How nearly the edge along d of the standing block lies in the face; `swing` per value. */
+static tilted lying(const resting *r, bool b_stands, tl_vec3 d)
+{
+    double sine = fmax(0, tl_v3_dot(r->up, d)) / tl_v3_norm(d);
+    tilted out = {.value = fade(sine, TILT_FULL, TILT_NONE)};
+    /* by B's turn, when B has the edge; when it has the face, the other way round */
+    double slope = (b_stands ? -1 : 1) * fade_slope(sine, TILT_FULL, TILT_NONE);
+    if (slope != 0)
+        out.swing = tl_v3_scale(slope / out.value, tl_v3_unit(tl_v3_cross(d, r->up)));
+    return out;
 }
 
 /* The points a block rests on: its lowest vertex and, as far as they lie nearly in the face, the other
@@ -189,20 +232,21 @@ static void add_support(const tl_pair_view *view, const resting *r, bool b_stand
     bool over = tl_segment_over_face(x, x, r->corners, r->corner_count, r->up, r->slack, &t0, &t1);
     uint64_t side = b_stands ? 1 : 2;
     if (over)
-        add_resting(view, b_stands, m, x, 1, (uint32_t)tl_key(side, low));
+        add_resting(view, b_stands, m, x, (tilted){.value = 1}, tl_key(side, low));
     for (uint32_t k = p->star_at[low]; k < p->star_at[low + 1]; k++) {
         const tl_edge *edge = &p->edge[p->star[k]];
         uint32_t other = edge->a == low ? edge->b : edge->a;
         tl_vec3 d = tl_v3_sub(r->vertex[other], x);
-        double weight = fade(fmax(0, tl_v3_dot(r->up, d)) / tl_v3_norm(d), TILT_FULL, TILT_NONE);
-        if (weight <= 0 || !tl_segment_over_face(x, r->vertex[other], r->corners, r->corner_count,
-                                                 r->up, r->slack, &t0, &t1))
+        tilted weight = lying(r, b_stands, d);
+        if (weight.value <= 0 || !tl_segment_over_face(x, r->vertex[other], r->corners,
+                                                       r->corner_count, r->up, r->slack, &t0, &t1))
             continue;
         uint64_t key = tl_key(tl_key(side, low), other + 1u);
-        add_resting(view, b_stands, m, tl_v3_madd(x, t1, d), over ? weight : weight * weight,
-                    (uint32_t)tl_key(key, 1));
+        tilted far =
+            over ? weight : (tilted){weight.value * weight.value, tl_v3_scale(2, weight.swing)};
+        add_resting(view, b_stands, m, tl_v3_madd(x, t1, d), far, tl_key(key, 1));
         if (!over)
-            add_resting(view, b_stands, m, tl_v3_madd(x, t0, d), weight, (uint32_t)tl_key(key, 2));
+            add_resting(view, b_stands, m, tl_v3_madd(x, t0, d), weight, tl_key(key, 2));
     }
 }
 
@@ -275,6 +319,12 @@ static tl_vec3 crossing_point(const line *a, const line *b)
                    tl_v3_madd(b->from, fmin(1, fmax(0, t)), v));
 }
 
+static void add_crossing(tl_manifold *m, tl_vec3 p, double weight, tl_vec3 swing, uint64_t key)
+{
+    tl_manifold_add_point(
+        m, (tl_contact_point){.p = p, .area = weight, .swing = swing, .key = (uint32_t)key});
+}
+
 /* The point share of two crossing edges: where they cross and, as far as they are nearly parallel, the
  * ends of their common stretch, measured along their bisector so that neither block is preferred. */
 static void share_of_edges(const tl_pair_view *view, const tl_axis *axis, tl_narrow *room)
@@ -287,10 +337,13 @@ static void share_of_edges(const tl_pair_view *view, const tl_axis *axis, tl_nar
     tl_vec3 u = tl_v3_unit(a.along), v = tl_v3_unit(b.along);
     double same = tl_v3_dot(u, v) < 0 ? -1 : 1, sine = tl_v3_norm(tl_v3_cross(u, v));
     double parallel = fade(sine, TILT_FULL, TILT_NONE);
+    tl_vec3 swing =
+        tl_v3_scale(-same * fade_slope(sine, TILT_FULL, TILT_NONE), tl_v3_unit(tl_v3_cross(u, v)));
     size_t begin = m->point_count;
     uint64_t key = tl_key(tl_key(3, axis->ia), axis->ib);
     if (parallel < 1)
-        tl_manifold_add_point(m, crossing_point(&a, &b), 0, 1 - parallel, (uint32_t)key);
+        add_crossing(m, crossing_point(&a, &b), 1 - parallel,
+                     tl_v3_scale(-1 / (1 - parallel), swing), key);
     if (parallel > 0) {
         tl_vec3 d = tl_v3_unit(tl_v3_madd(u, same, v)), apart = tl_v3_sub(b.from, a.from);
         a.start = 0;
@@ -303,8 +356,8 @@ static void share_of_edges(const tl_pair_view *view, const tl_axis *axis, tl_nar
             low = high = 0.5 * (low + high);
         for (int end = 0; end < 2; end++) {
             double t = end ? high : low;
-            tl_manifold_add_point(m, between(line_at(&a, t), line_at(&b, t)), 0, 0.5 * parallel,
-                                  (uint32_t)tl_key(key, end ? 2 : 1));
+            add_crossing(m, between(line_at(&a, t), line_at(&b, t)), 0.5 * parallel,
+                         tl_v3_scale(1 / parallel, swing), tl_key(key, end ? 2 : 1));
         }
     }
     add_facet(m,
@@ -317,6 +370,34 @@ static void share_of_edges(const tl_pair_view *view, const tl_axis *axis, tl_nar
                          .side = axis->n,
                          .pb = view->b->vertex[eb->a]},
               begin);
+}
+
+/* Couples of the share's points, whose facet is the last: `swing` for all, and what the points' parts of the
+ * share add to it, which takes a facet for each. */
+static void add_swings(tl_manifold *m, tl_vec3 swing)
+{
+    tl_facet *facet = &m->facets[m->facet_count - 1];
+    facet->swing = swing;
+    size_t begin = facet->begin, count = facet->count;
+    double area = 0, own = 0;
+    tl_vec3 sum = {0, 0, 0};
+    for (size_t i = begin; i < begin + count; i++) {
+        const tl_contact_point *p = &m->points[i];
+        sum = tl_v3_madd(sum, p->area, p->swing);
+        area += p->area;
+        own += tl_v3_norm2(p->swing);
+    }
+    if (own == 0 || !reserve_facets(m, m->facet_count + count))
+        return;
+    tl_facet whole = m->facets[--m->facet_count];
+    tl_vec3 mean = tl_v3_scale(1 / area, sum);
+    for (size_t i = begin; i < begin + count; i++) {
+        whole.begin = (uint16_t)i;
+        whole.count = 1;
+        m->facets[m->facet_count] = whole;
+        m->facets[m->facet_count++].swing =
+            tl_v3_add(whole.swing, tl_v3_sub(m->points[i].swing, mean));
+    }
 }
 
 /* Scales the areas of the points from `begin` on to the sum `area`. */
@@ -334,12 +415,18 @@ void tl_manifold_build(const tl_pair_view *view, const tl_axis *axis, const tl_s
 {
     tl_manifold *m = &room->manifold;
     m->facet_count = m->point_count = 0;
-    m->patch_area = 0;
+    m->tilt = 0;
     m->failed = false;
-    double flush = add_patches(view, axis, rule, room);
-    double share = rule->minimum - m->patch_area;
-    if (!rule->unconditional)
-        share *= 1 - flush;
+    patches sum = add_patches(view, axis, rule, room);
+    m->patch_area = sum.area.value;
+    /* what the patches' whole area falls short of the minimum, and what they have lost of it by tilt */
+    double enough = fmax(rule->minimum, sum.whole), missing = enough - sum.area.value;
+    double share = rule->minimum / enough * missing;
+    tl_vec3 swing = tl_v3_scale(-1 / missing, sum.area.swing);
+    if (!rule->unconditional) {
+        share *= 1 - sum.flush.value;
+        swing = tl_v3_madd(swing, -1 / (1 - sum.flush.value), sum.flush.swing);
+    }
     if (m->failed || !(share > 0) || axis->s > rule->reach ||
         !reserve_facets(m, m->facet_count + 3))
         return;
@@ -353,11 +440,14 @@ void tl_manifold_build(const tl_pair_view *view, const tl_axis *axis, const tl_s
     }
     if (!(share > 0))
         return;
+    size_t facets = m->facet_count;
     if (axis->kind == TL_AXIS_EDGES)
         share_of_edges(view, axis, room);
     else
         share_of_face(view, axis, room);
     scale_share(m, begin, share);
+    if (m->facet_count > facets)
+        add_swings(m, swing);
 }
 
 /* ---------------------------------------------------------------- joint ------------------ */

@@ -7,6 +7,12 @@
  * integrate any linear gap, and its moments, exactly. With points at the corners only, each takes half of
  * its two fan triangles: resultants are right, turning is up to three times too stiff.
  *
+ * The gap at a corner opens along the normal of the features that make it: of B's face where a vertex of A
+ * stands on it, of A's face where B's vertex does, of both edges where two cross (a point's *lean*);
+ * middles and centroid lie between their corners, in this too. With the bisector for all, a force would do
+ * work along a smooth tilted face. Areas are those on the faces, not in the bisecting plane, so
+ * that the area of a face that lies wholly on another does not change as it tilts.
+ *
  * Corners with a turning angle below STRAIGHT are left out. Between STRAIGHT and CORNER the points are
  * a mixture of those with and without the corner, so that a corner that comes or goes while blocks
  * wobble does not change the force. */
@@ -37,6 +43,7 @@ typedef struct corner {
     point2 at;
     uint32_t key;  /* of the features that made it */
     uint32_t edge; /* source of the edge that leaves it */
+    double lean;   /* of its gap's normal, see tl_contact_point */
     double share;  /* of the corner in the mixture: 0 .. 1 */
     double fan;    /* area of the fan triangle of the edge that leaves it */
 } corner;
@@ -46,6 +53,8 @@ struct tl_polygon {
     corner *now, *next;
     point2 *clip;
     size_t room, clip_room;
+    point2
+        rise; /* unit, in the patch's plane: across the line where the faces' planes meet, up A's */
 };
 
 /* Edges of A's face are 0, 1, ..., those of B's face EDGE_B, EDGE_B + 1, ... */
@@ -110,11 +119,28 @@ static double distance2(point2 a, point2 b)
     return sqrt(x * x + y * y);
 }
 
+static point2 from_to(point2 a, point2 b)
+{
+    return (point2){b.x - a.x, b.y - a.y};
+}
+
+/* How the normal of two crossing edges, a of A's face and b of B's, leans. With both measured from the
+ * line in which the faces' planes meet, by angles alpha and beta, it is nA (1 + l)/2 - nB (1 - l)/2 with
+ * l = -sin(alpha + beta) / sin(beta - alpha), and something along that line that is left out. An edge
+ * along it has the other face's normal. Bounded, for edges nearly along each other have no normal. */
+static double lean_of(point2 a, point2 b, point2 rise)
+{
+    double a_along = a.x * rise.y - a.y * rise.x, a_up = a.x * rise.x + a.y * rise.y;
+    double b_along = b.x * rise.y - b.y * rise.x, b_up = b.x * rise.x + b.y * rise.y;
+    double across = a_along * b_up - a_up * b_along, sum = a_along * b_up + a_up * b_along;
+    return fabs(sum) < fabs(across) ? -sum / across : (sum < 0) == (across < 0) ? -1 : 1;
+}
+
 /* What the corner is where edges `one` and `other` meet at `cut`. A meeting of two neighbouring edges
  * of B is B's own vertex. */
 static corner meet(uint32_t one, uint32_t other, point2 cut, const point2 *clip, uint32_t count)
 {
-    corner c = {.at = cut, .edge = other};
+    corner c = {.at = cut, .edge = other, .lean = 1};
     if (one >= EDGE_B && other >= EDGE_B) {
         uint32_t i = one - EDGE_B, j = other - EDGE_B;
         if ((i + 1) % count == j || (j + 1) % count == i) {
@@ -147,6 +173,8 @@ static size_t clip_by(struct tl_polygon *p, size_t count, uint32_t j, uint32_t c
                 p->next[kept - 1].edge = EDGE_B + j;
                 continue;
             }
+            if (here->edge < EDGE_B)
+                c.lean = lean_of(from_to(here->at, after->at), from_to(o, q), p->rise);
             c.edge = h > 0 ? EDGE_B + j : here->edge;
             p->next[kept++] = c;
         }
@@ -233,19 +261,22 @@ typedef struct patch {
     const tl_pair_view *view;
     frame2 frame;
     tl_plane a, b; /* in A's frame */
-    double weight;
+    double weight; /* from area in the plane of the patch to area of the points */
     double corner,
         middle;     /* of the fan triangle of an edge: the share of each end, and of its middle */
     uint32_t faces; /* key of the two faces */
     tl_manifold *manifold;
 } patch;
 
-static bool add_point(const patch *p, point2 at, double area, uint32_t key)
+static bool add_point(const patch *p, point2 at, double lean, double area, uint32_t key)
 {
     tl_vec3 x = tl_v3_madd(tl_v3_madd(p->frame.o, at.x, p->frame.t1), at.y, p->frame.t2);
-    double rest = tl_v3_dot(p->a.normal, x) - p->a.offset;
-    return tl_manifold_add_point(p->manifold, x, rest, p->weight * area,
-                                 (uint32_t)tl_key(p->faces, key));
+    return tl_manifold_add_point(p->manifold,
+                                 (tl_contact_point){.p = x,
+                                                    .rest = tl_v3_dot(p->a.normal, x) - p->a.offset,
+                                                    .lean = lean,
+                                                    .area = p->weight * area,
+                                                    .key = (uint32_t)tl_key(p->faces, key)});
 }
 
 /* Adds corners and middles: for every two corners that may follow each other in the mixture, the rule
@@ -262,7 +293,7 @@ static bool add_edges(const patch *p, corner *c, size_t count, double *corner_ar
             double area = chance * share * fan;
             if (area > 0) {
                 point2 middle = {0.5 * (c[i].at.x + c[j].at.x), 0.5 * (c[i].at.y + c[j].at.y)};
-                if (!add_point(p, middle, p->middle * area,
+                if (!add_point(p, middle, 0.5 * (c[i].lean + c[j].lean), p->middle * area,
                                key_of(POINT_MIDDLE, c[i].key, c[j].key)))
                     return false;
                 corner_area[i] += p->corner * area;
@@ -272,7 +303,7 @@ static bool add_edges(const patch *p, corner *c, size_t count, double *corner_ar
         }
     }
     for (size_t i = 0; i < count; i++)
-        if (!add_point(p, c[i].at, corner_area[i], c[i].key))
+        if (!add_point(p, c[i].at, c[i].lean, corner_area[i], c[i].key))
             return false;
     return true;
 }
@@ -285,8 +316,10 @@ static size_t clip_faces(const tl_pair_view *view, uint32_t fa, uint32_t fb, con
     uint32_t na = tl_poly_face_size(a, fa), nb = tl_poly_face_size(b, fb);
     for (uint32_t i = 0; i < na; i++) {
         uint16_t v = a->loop[a->start[fa] + i];
-        p->now[i] =
-            (corner){.at = project(frame, a->vertex[v]), .key = key_of(POINT_A, v, 0), .edge = i};
+        p->now[i] = (corner){.at = project(frame, a->vertex[v]),
+                             .key = key_of(POINT_A, v, 0),
+                             .edge = i,
+                             .lean = -1};
     }
     for (uint32_t i = 0; i < nb; i++)
         p->clip[i] = project(frame, view->vertex_b[b->loop[b->start[fb] + nb - 1 - i]]);
@@ -296,8 +329,26 @@ static size_t clip_faces(const tl_pair_view *view, uint32_t fa, uint32_t fb, con
     return count;
 }
 
+static point2 rise_of(const frame2 *f, tl_vec3 na, tl_vec3 nb)
+{
+    tl_vec3 up = tl_v3_unit(tl_v3_add(na, nb));
+    return (point2){tl_v3_dot(up, f->t1), tl_v3_dot(up, f->t2)};
+}
+
+/* Of the centroid, which is a mean of the corners by their fan triangles. */
+static double mean_lean(const corner *c, size_t count)
+{
+    double lean = 0, area = 0;
+    for (size_t i = 0; i < count; i++) {
+        double fans = c[i ? i - 1 : count - 1].fan + c[i].fan;
+        lean += fans * c[i].lean;
+        area += fans;
+    }
+    return lean / area;
+}
+
 double tl_patch_add(const tl_pair_view *view, uint32_t fa, uint32_t fb, double weight,
-                    const tl_share_rule *rule, tl_narrow *room)
+                    tl_vec3 swing, const tl_share_rule *rule, tl_narrow *room)
 {
     const tl_poly *a = view->a, *b = view->b;
     /* each clip adds a corner, or two where rounding makes it cross a straight run of corners twice */
@@ -309,7 +360,6 @@ double tl_patch_add(const tl_pair_view *view, uint32_t fa, uint32_t fb, double w
         return 0;
     }
     patch one = {.view = view,
-                 .weight = weight,
                  .corner = rule->corners ? 0.5 : 1. / 12,
                  .middle = rule->corners ? 0 : 1. / 3,
                  .faces = key_of(0, fa, fb),
@@ -322,6 +372,7 @@ double tl_patch_add(const tl_pair_view *view, uint32_t fa, uint32_t fb, double w
     f->o = a->vertex[a->loop[a->start[fa]]];
     f->t1 = tl_v3_perpendicular(f->n);
     f->t2 = tl_v3_cross(f->n, f->t1);
+    p->rise = rise_of(f, one.a.normal, one.b.normal);
 
     double size = fmax(a->size, b->size);
     size_t count = merge_near(p, clip_faces(view, fa, fb, f, p), MERGE * view->size);
@@ -335,14 +386,15 @@ double tl_patch_add(const tl_pair_view *view, uint32_t fa, uint32_t fb, double w
     double up = tl_v3_dot(one.b.normal, x) - one.b.offset,
            down = tl_v3_dot(one.a.normal, x) - one.a.offset;
     double slope = tl_v3_dot(f->n, one.a.normal);
+    one.weight = weight / slope;
     f->o = tl_v3_madd(f->o, 0.5 * (up - down) / slope, f->n);
 
     size_t begin = m->point_count;
     count = weigh_corners(p->now, count, centroid);
     double *corner_area = (double *)(void *)p->next; /* the clipping is over: its room is free */
     if (!add_edges(&one, p->now, count, corner_area) ||
-        !add_point(&one, centroid, (1 - 2 * one.corner - one.middle) * area,
-                   key_of(POINT_CENTROID, 0, 0)))
+        !add_point(&one, centroid, mean_lean(p->now, count),
+                   (1 - 2 * one.corner - one.middle) * area, key_of(POINT_CENTROID, 0, 0)))
         return 0;
     double nearest = INFINITY;
     for (size_t i = begin; i < m->point_count; i++)
@@ -359,8 +411,9 @@ double tl_patch_add(const tl_pair_view *view, uint32_t fa, uint32_t fb, double w
                                              .count = (uint16_t)(m->point_count - begin),
                                              .na = one.a.normal,
                                              .nb = b->plane[fb].normal,
-                                             .offset = b->plane[fb].offset};
-    return weight * area;
+                                             .offset = b->plane[fb].offset,
+                                             .swing = swing};
+    return one.weight * area;
 }
 
 bool tl_segment_over_face(tl_vec3 p, tl_vec3 q, const tl_vec3 *corners, size_t count, tl_vec3 n,

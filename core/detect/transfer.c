@@ -5,7 +5,7 @@
  * while corners come and go. A law's states are those of the same key or the nearest.
  * Then the fields are corrected so that their totals follow the area: where the area and its centroid
  * stay the same, total shear force, its moment about the normal, and total initial normal force with
- * both its moments are kept exactly. Moments are taken about the centroids of the areas, so a uniform
+ * both its moments are kept exactly, unless that took stresses beyond those there were. Moments are taken about the centroids of the areas, so a uniform
  * stress stays uniform when the area changes. */
 #include "detect/detect.h"
 
@@ -105,22 +105,31 @@ static void close_area(totals *t)
     t->normal = tl_v3_unit(t->normal);
 }
 
-/* Adds a uniform traction and a twist so that shear force and torsion become `want`'s. */
+/* `value`, but at most so large that times `reach` it makes `largest`. */
+static double bounded(double value, double reach, double largest)
+{
+    return fabs(value) * reach > largest ? copysign(largest / reach, value) : value;
+}
+
+/* Adds a uniform traction and a twist so that shear force and torsion become `want`'s. The twist adds no
+ * more than `largest`, a stress: points with hardly an area would need any stress to make up for the
+ * torsion, and keep it when their areas grow. */
 static void correct_shear(tl_points_table *p, size_t begin, size_t count, const totals *now,
-                          const totals *want)
+                          const totals *want, double largest)
 {
     tl_vec3 n = now->normal;
     tl_vec3 force = want->shear;
-    double torsion = want->torsion, polar = 0;
+    double torsion = want->torsion, polar = 0, reach = 0;
     for (size_t i = begin; i < begin + count; i++) {
         tl_vec3 arm = tl_v3_sub(p->arm[i], now->centre), f = tl_columns_get(p->f_s, i);
         tl_vec3 across = tl_v3_cross(n, arm);
         force = tl_v3_sub(force, f);
         torsion -= tl_v3_dot(across, f);
         polar += p->area[i] * tl_v3_norm2(across);
+        reach = fmax(reach, tl_v3_norm(across));
     }
     force = tl_v3_madd(force, -tl_v3_dot(force, n), n);
-    double twist = polar > 0 ? torsion / polar : 0;
+    double twist = polar > 0 ? bounded(torsion / polar, reach, largest) : 0;
     for (size_t i = begin; i < begin + count; i++) {
         tl_vec3 across = tl_v3_cross(n, tl_v3_sub(p->arm[i], now->centre));
         tl_vec3 add =
@@ -137,14 +146,15 @@ typedef struct moments {
 } moments;
 
 /* Adds a linear correction to a field (one value a point) so that its sum and moments become
- * `want`. */
+ * `want`; its slopes add no more than `largest`, for the reason given at correct_shear. */
 static void correct_field(const tl_points_table *p, double *value, size_t begin, size_t count,
-                          const totals *now, moments want)
+                          const totals *now, moments want, double largest)
 {
     tl_vec3 t1 = tl_v3_perpendicular(now->normal), t2 = tl_v3_cross(now->normal, t1);
-    double i11 = 0, i12 = 0, i22 = 0;
+    double i11 = 0, i12 = 0, i22 = 0, reach = 0;
     for (size_t k = 0; k < count; k++) {
         tl_vec3 arm = tl_v3_sub(p->arm[begin + k], now->centre);
+        reach = fmax(reach, tl_v3_norm(arm));
         double a = p->area[begin + k], x = tl_v3_dot(arm, t1), y = tl_v3_dot(arm, t2);
         want.sum -= a * value[k];
         want.along1 -= a * value[k] * x;
@@ -156,8 +166,8 @@ static void correct_field(const tl_points_table *p, double *value, size_t begin,
     double det = i11 * i22 - i12 * i12;
     double g1 = 0, g2 = 0;
     if (det > SINGULAR * i11 * i22) {
-        g1 = (want.along1 * i22 - want.along2 * i12) / det;
-        g2 = (want.along2 * i11 - want.along1 * i12) / det;
+        g1 = bounded((want.along1 * i22 - want.along2 * i12) / det, reach, largest);
+        g2 = bounded((want.along2 * i11 - want.along1 * i12) / det, reach, largest);
     }
     for (size_t k = 0; k < count; k++) {
         tl_vec3 arm = tl_v3_sub(p->arm[begin + k], now->centre);
@@ -264,6 +274,7 @@ static void write_points(tl_model *m, uint32_t c, const tl_manifold *g, const ol
         const tl_contact_point *point = &g->points[k];
         p->p[i] = point->p;
         p->rest[i] = point->rest;
+        p->lean[i] = point->lean;
         p->area[i] = point->area;
         p->key[i] = point->key;
         p->f_n[i] = p->f_n0[i] = p->reference[i] = 0;
@@ -342,17 +353,23 @@ bool tl_contact_transfer(tl_model *m, uint32_t c, tl_narrow *room)
     totals want = {.shear =
                        tl_v3_scale(follow, tl_v3_turn(before.shear, before.normal, now.normal))};
     want.torsion = follow * before.torsion;
-    correct_shear(p, begin, g->point_count, &now, &want);
+    double largest = 0;
+    for (size_t k = 0; k < old_count; k++)
+        largest = fmax(largest, tl_v3_norm(old[k].shear));
+    correct_shear(p, begin, g->point_count, &now, &want, largest);
     double *value = room->value;
     for (int field = 0; field < FIELD_COUNT; field++) {
         moments keep = field_moments(old, old_count, field, &before, now.normal);
+        largest = 0;
+        for (size_t k = 0; k < old_count; k++)
+            largest = fmax(largest, fabs(old[k].field[field]));
         keep.sum *= follow;
         keep.along1 *= follow;
         keep.along2 *= follow;
         for (size_t k = 0; k < g->point_count; k++)
             value[k] = field == FIELD_REFERENCE ? p->reference[begin + k]
                                                 : p->f_n0[begin + k] / p->area[begin + k];
-        correct_field(p, value, begin, g->point_count, &now, keep);
+        correct_field(p, value, begin, g->point_count, &now, keep, largest);
         for (size_t k = 0; k < g->point_count; k++) {
             if (field == FIELD_REFERENCE)
                 p->reference[begin + k] = value[k];
