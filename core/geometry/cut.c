@@ -20,6 +20,10 @@
 
 #define NONE UINT16_MAX
 
+/* A vertex this near the plane, relative to the farthest coordinate, is on it: a vertex made by a cut
+ * misses its planes by one to three roundings, and a distance is computed to as many. */
+#define ON_ROUNDINGS (8 * DBL_EPSILON)
+
 /* One child while it is made. */
 typedef struct child {
     uint16_t *map;  /* [vertices + crossings] its vertex index, or NONE */
@@ -32,7 +36,7 @@ typedef struct child {
 typedef struct cutter {
     const tl_poly *poly;
     tl_plane plane;
-    double on;         /* vertices this close to the plane are on it */
+    double reach;      /* the farthest coordinate that distances were computed from */
     tl_vec3 *point;    /* [crossings] */
     double *distance;  /* [vertices] */
     signed char *side; /* [vertices] */
@@ -73,11 +77,11 @@ static void lay_out(cutter *c, void *scratch)
 
 /* ---- classification ---- */
 
-/* Sets distances and sides; the extremes go into *low and *high. */
-static void classify(cutter *c, double *low, double *high)
+/* Sets the distances; the extremes go into *low and *high. */
+static void measure(cutter *c, double *low, double *high)
 {
     const tl_poly *p = c->poly;
-    double reach = fabs(c->plane.offset);
+    double reach = fmax(c->reach, fabs(c->plane.offset));
     *low = INFINITY, *high = -INFINITY;
     for (uint32_t v = 0; v < p->vertex_count; v++) {
         tl_vec3 x = p->vertex[v];
@@ -88,13 +92,20 @@ static void classify(cutter *c, double *low, double *high)
         double far = fabs(x.x) + fabs(x.y) + fabs(x.z);
         reach = far > reach ? far : reach;
     }
-    double on = c->on = fmax(TL_POLY_ON * p->size, TL_POLY_ROUNDINGS * reach);
-    for (uint32_t v = 0; v < p->vertex_count; v++)
+    c->reach = reach;
+}
+
+/* A vertex is on the plane only when rounding cannot tell on which side it is: it is not moved, so
+ * one farther off would bend the cap, and the next cut through that cap would lose as much volume. */
+static void classify(cutter *c)
+{
+    double on = ON_ROUNDINGS * c->reach;
+    for (uint32_t v = 0; v < c->poly->vertex_count; v++)
         c->side[v] = (signed char)((c->distance[v] > on) - (c->distance[v] < -on));
 }
 
 /* A vertex on the plane is a corner of the cap only when edges leave it to both sides; one that the
- * plane merely brushes within the tolerance belongs to the side its edges are on. */
+ * plane merely brushes within rounding belongs to the side its edges are on. */
 static void settle_brushed(cutter *c)
 {
     const tl_poly *p = c->poly;
@@ -415,23 +426,23 @@ static tl_status make_children(cutter *c, tl_tag tag, tl_cut *cut, tl_error *err
 static tl_status cut_with(cutter *c, tl_tag tag, tl_cut *cut, tl_error *error)
 {
     double low, high, thin = TL_POLY_THIN * c->poly->size;
-    classify(c, &low, &high);
-    bool below = false, above = false;
-    for (uint32_t v = 0; v < c->poly->vertex_count; v++) {
-        below = below || c->side[v] < 0;
-        above = above || c->side[v] > 0;
-    }
-    if (!below || !above) {
-        if ((below ? high : -low) >= -c->on)
-            cut->face = face_along(c, c->on, below ? 1 : -1);
+    measure(c, &low, &high);
+    double on = fmax(TL_POLY_ON * c->poly->size, TL_POLY_ROUNDINGS * c->reach);
+    if (!(fmin(high, -low) > on)) {
+        bool below = -low > high;
+        if ((below ? high : -low) >= -on)
+            cut->face = face_along(c, on, below ? 1 : -1);
         cut->result = cut->face == UINT32_MAX ? TL_CUT_MISS : TL_CUT_COINCIDENT;
         return TL_OK;
     }
-    if (fmin(high, -low) < thin) {
+    cut->thickness = fmin(high, -low);
+    cut->limit = thin;
+    if (cut->thickness < thin) {
         cut->face = face_along(c, thin, high < -low ? 1 : -1);
         cut->result = TL_CUT_REFUSED;
         return TL_OK;
     }
+    classify(c);
     settle_brushed(c);
     find_crossings(c);
     for (uint32_t v = 0; v < c->poly->vertex_count + c->crossings; v++)
@@ -443,7 +454,8 @@ static tl_status cut_with(cutter *c, tl_tag tag, tl_cut *cut, tl_error *error)
     return status == TL_E_MEMORY ? status : TL_OK;
 }
 
-tl_status tl_poly_cut(const tl_poly *poly, tl_plane plane, tl_tag tag, tl_cut *cut, tl_error *error)
+tl_status tl_poly_cut(const tl_poly *poly, tl_plane plane, double reach, tl_tag tag, tl_cut *cut,
+                      tl_error *error)
 {
     *cut = (tl_cut){.result = TL_CUT_MISS, .face = UINT32_MAX};
     _Alignas(double) unsigned char local[LOCAL_SCRATCH];
@@ -451,7 +463,7 @@ tl_status tl_poly_cut(const tl_poly *poly, tl_plane plane, tl_tag tag, tl_cut *c
     void *scratch = bytes <= sizeof local ? local : malloc(bytes);
     if (!scratch)
         return tl_fail_memory(error);
-    cutter c = {.poly = poly, .plane = plane};
+    cutter c = {.poly = poly, .plane = plane, .reach = reach};
     lay_out(&c, scratch);
     tl_status status = cut_with(&c, tag, cut, error);
     if (scratch != local)

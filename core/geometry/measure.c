@@ -6,6 +6,7 @@
  * exact for any position (Tonon 2004, "Explicit exact formulas for the 3-D tetrahedron inertia
  * tensor", eqs. 3-10). Second moments are moved to the centroid by the parallel axis theorem; about
  * a vertex of the body that costs a factor of 4 in rounding at most, wherever the body stands.
+ * The volume of a block that is flat or long compared with its size is summed anew with twice the digits.
  * Products of inertia have the sign of the tensor: xy = -integral of x y. */
 #include "geometry/polyhedron.h"
 
@@ -42,6 +43,58 @@ static void add_tetrahedron(moments *m, tl_vec3 a, tl_vec3 b, tl_vec3 c)
     add_square(&m->second, det, c);
 }
 
+/* ---- the volume of flat and long blocks ---- */
+
+/* Blocks of less than this times the cube of their size (a cube has 0.19): their volume is what is
+ * left of tetrahedra a thousand times and more as large, and those are summed with twice the digits. */
+#define SLENDER 1e-3
+
+/* A sum with what rounding has left out of it so far. */
+typedef struct long_sum {
+    double high, low;
+} long_sum;
+
+/* Adds a b c: products exact but for the last digits of `low`, the sum without loss (Ogita, Rump
+ * and Oishi 2005, "Accurate sum and dot product", algorithms 3.1, 3.5 and 5.3). */
+static void add_product(long_sum *s, double a, double b, double c)
+{
+    double bc = b * c, abc = a * bc;
+    double left = fma(a, bc, -abc) + a * fma(b, c, -bc);
+    double sum = s->high + abc, part = sum - s->high;
+    s->low += left + ((s->high - (sum - part)) + (abc - part));
+    s->high = sum;
+}
+
+/* A coordinate to subtract from all others without rounding: they are within half of it and twice it,
+ * or it is zero. */
+static double far_part(double coordinate, double size)
+{
+    return fabs(coordinate) >= 2 * size ? coordinate : 0;
+}
+
+static double long_volume(const tl_poly *p)
+{
+    long_sum six = {0, 0};
+    tl_vec3 o = p->vertex[0];
+    o = tl_v3(far_part(o.x, p->size), far_part(o.y, p->size), far_part(o.z, p->size));
+    for (uint32_t f = 0; f < p->face_count; f++) {
+        const uint16_t *loop = p->loop + p->start[f];
+        tl_vec3 a = tl_v3_sub(p->vertex[loop[0]], o);
+        for (uint32_t i = 1; i + 1 < tl_poly_face_size(p, f); i++) {
+            tl_vec3 b = tl_v3_sub(p->vertex[loop[i]], o), c = tl_v3_sub(p->vertex[loop[i + 1]], o);
+            add_product(&six, a.x, b.y, c.z);
+            add_product(&six, -a.x, b.z, c.y);
+            add_product(&six, a.y, b.z, c.x);
+            add_product(&six, -a.y, b.x, c.z);
+            add_product(&six, a.z, b.x, c.y);
+            add_product(&six, -a.z, b.y, c.x);
+        }
+    }
+    return (six.high + six.low) / 6;
+}
+
+/* ---- mass properties ---- */
+
 /* A face through the vertex O makes tetrahedra without volume: for a box half of all. */
 static bool has_first_vertex(const uint16_t *loop, uint32_t n)
 {
@@ -69,6 +122,8 @@ tl_mass tl_poly_mass(const tl_poly *p)
         }
     }
     tl_mass mass = {.volume = m.volume / 6};
+    if (mass.volume < SLENDER * p->size * p->size * p->size)
+        mass.volume = long_volume(p);
     tl_vec3 arm =
         tl_v3(m.first.x / (4 * m.volume), m.first.y / (4 * m.volume), m.first.z / (4 * m.volume));
     mass.centroid = tl_v3_add(origin, arm);

@@ -11,8 +11,8 @@
 #include <stdbool.h>
 #include <talus/types.h>
 
-/* Vertices closer to a cutting plane than this times the size count as on it: 1e4 roundings, so
- * that a vertex made by one cut is found on the same plane by the next. */
+/* A face whose vertices are all closer to a plane than this times the size lies on it. A block small
+ * in its model knows planes to fewer digits than its own vertices: this leaves it six orders. */
 #define TL_POLY_ON 1e-9
 /* A cut that would leave a side thinner than this times the size is refused. */
 #define TL_POLY_THIN 1e-5
@@ -122,19 +122,24 @@ typedef enum tl_cut_result {
     TL_CUT_MADE,       /* below and above are set */
     TL_CUT_COINCIDENT, /* the plane falls on a face: `face` is set */
     TL_CUT_REFUSED /* a side would be thinner than TL_POLY_THIN; `face` is set when the thin side
-                          lies along one face, else it is UINT32_MAX */
+                      lies along one face, else it is UINT32_MAX */
 } tl_cut_result;
 
 typedef struct tl_cut {
     tl_cut_result result;
     tl_poly *below, *above; /* normal . x < offset, > offset */
     uint32_t face;
+    /* When refused: of the thinner side along the plane's normal, and what is asked of it. */
+    double thickness, limit;
 } tl_cut;
 
 /* Cuts by a plane. Vertices are never moved; each crossed edge gets one new vertex, shared bit for bit
- * by both sides; faces keep their planes; the cap gets the cutting plane and `tag`. TL_E_MEMORY is the
- * only failure. */
-tl_status tl_poly_cut(const tl_poly *poly, tl_plane plane, tl_tag tag, tl_cut *cut,
+ * by both sides; faces keep their planes; the cap gets the cutting plane and `tag`. `reach` is the
+ * largest coordinate the plane's offset was computed from: a vertex within rounding of the plane is a
+ * corner of the cap as it is (0: nothing larger than the offset and the vertices themselves).
+ * The volume of both sides is that of the polyhedron to rounding, a few DBL_EPSILON of the farthest
+ * coordinate times the surface. TL_E_MEMORY is the only failure. */
+tl_status tl_poly_cut(const tl_poly *poly, tl_plane plane, double reach, tl_tag tag, tl_cut *cut,
                       tl_error *error);
 
 #endif

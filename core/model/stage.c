@@ -313,6 +313,15 @@ static tl_plane plane_in_frame(const tl_model *m, const tl_stage_block *block, t
     return (tl_plane){tl_m3_tmul(&m->bodies.r[body], normal), tl_v3_dot(normal, relative)};
 }
 
+/* The largest coordinate that plane_in_frame computes with. */
+static double plane_reach(const tl_model *m, const tl_stage_block *block, tl_vec3 point)
+{
+    double reach = tl_v3_norm(point);
+    if (block->source == TL_NO_ROW)
+        return reach;
+    return fmax(reach, tl_v3_norm(tl_body_place(&m->bodies, m->blocks.body[block->source])));
+}
+
 /* Gives a face a new tag; a shape of the model is copied first. */
 static tl_status retag(tl_stage *stage, tl_stage_block *block, uint32_t face, tl_tag tag)
 {
@@ -410,7 +419,8 @@ static bool in_path(const crossing *x, const tl_stage_block *block, const tl_cut
 }
 
 /* Notes a cut that was refused, for the model's report; only so many are listed. */
-static void note_refused(tl_stage *stage, size_t index, tl_plane plane, const tl_refused_cut *cut)
+static void note_refused(tl_stage *stage, size_t index, const tl_cut *cut, tl_tag joint,
+                         tl_vec3 normal, tl_vec3 point)
 {
     stage->summary.refused++;
     size_t n = stage->refused_listed;
@@ -420,17 +430,12 @@ static void note_refused(tl_stage *stage, size_t index, tl_plane plane, const tl
         stage->refused = malloc(TL_REFUSED_LISTED * sizeof *stage->refused);
     if (!stage->refused)
         return; /* without memory for the list, counting must do */
-    const tl_poly *p = stage->blocks[index].shape;
-    double low = INFINITY, high = -INFINITY;
-    for (uint32_t v = 0; v < p->vertex_count; v++) {
-        double d = tl_v3_dot(plane.normal, p->vertex[v]) - plane.offset;
-        low = fmin(low, d);
-        high = fmax(high, d);
-    }
-    stage->refused[n] = *cut;
-    stage->refused[n].block = (tl_id)index;
-    stage->refused[n].thickness = fmax(0, fmin(-low, high));
-    stage->refused[n].limit = TL_POLY_THIN * p->size;
+    stage->refused[n] = (tl_refused_cut){.joint = joint,
+                                         .normal = normal,
+                                         .point = point,
+                                         .block = (tl_id)index,
+                                         .thickness = cut->thickness,
+                                         .limit = cut->limit};
     stage->refused_listed++;
 }
 
@@ -455,7 +460,8 @@ tl_status tl_stage_cut_disc(tl_stage *stage, tl_vec3 normal, tl_vec3 point, doub
             continue;
         crossing x = crossing_in_frame(m, block, normal, local, radius);
         tl_cut cut;
-        tl_status status = tl_poly_cut(block->shape, x.plane, tag, &cut, &m->error);
+        tl_status status =
+            tl_poly_cut(block->shape, x.plane, plane_reach(m, block, local), tag, &cut, &m->error);
         if (status != TL_OK)
             return status;
         bool path = in_path(&x, block, &cut);
@@ -474,8 +480,7 @@ tl_status tl_stage_cut_disc(tl_stage *stage, tl_vec3 normal, tl_vec3 point, doub
             return status;
         coincident = coincident || cut.result == TL_CUT_COINCIDENT;
         if (cut.result == TL_CUT_REFUSED)
-            note_refused(stage, i, x.plane,
-                         &(tl_refused_cut){.joint = tag, .normal = normal, .point = point});
+            note_refused(stage, i, &cut, tag, normal, point);
     }
     stage->summary.coincident += coincident;
     return TL_OK;
@@ -492,16 +497,17 @@ tl_status tl_stage_cut_block(tl_stage *stage, size_t index, tl_vec3 normal, tl_v
                              size_t *above)
 {
     tl_model *m = stage->model;
-    tl_plane plane = plane_in_frame(m, &stage->blocks[index], normal, tl_v3_sub(point, m->origin));
+    const tl_stage_block *block = &stage->blocks[index];
+    tl_vec3 local = tl_v3_sub(point, m->origin);
+    tl_plane plane = plane_in_frame(m, block, normal, local);
     tl_cut cut;
     *above = SIZE_MAX;
-    tl_status status =
-        tl_poly_cut(stage->blocks[index].shape, plane, (tl_tag){0, 0}, &cut, &m->error);
+    tl_status status = tl_poly_cut(block->shape, plane, plane_reach(m, block, local),
+                                   (tl_tag){0, 0}, &cut, &m->error);
     if (status != TL_OK)
         return status;
     if (cut.result == TL_CUT_REFUSED)
-        note_refused(stage, index, plane,
-                     &(tl_refused_cut){.joint = {0, 0}, .normal = normal, .point = point});
+        note_refused(stage, index, &cut, (tl_tag){0, 0}, normal, point);
     if (cut.result != TL_CUT_MADE)
         return TL_OK;
     status = replace(stage, index, &cut, tl_key_text(0, "no joint"), false);
@@ -528,7 +534,8 @@ tl_status tl_stage_meets(tl_stage *stage, size_t index, const tl_half_space *spa
         }
         tl_plane plane = plane_in_frame(m, &rest, spaces[i].normal, point);
         tl_cut cut;
-        status = tl_poly_cut(rest.shape, plane, (tl_tag){0, 0}, &cut, &m->error);
+        status = tl_poly_cut(rest.shape, plane, plane_reach(m, &rest, point), (tl_tag){0, 0}, &cut,
+                             &m->error);
         if (status == TL_OK && cut.result == TL_CUT_MADE) {
             tl_poly_free(cut.above);
             if (owned)

@@ -18,7 +18,7 @@ static tl_cut cut_by(const tl_poly *p, tl_vec3 normal, tl_vec3 point)
 {
     tl_vec3 n = tl_v3_unit(normal);
     tl_cut cut;
-    CHECK_INT(tl_poly_cut(p, (tl_plane){n, tl_v3_dot(n, point)}, (tl_tag){2, 5}, &cut, &error),
+    CHECK_INT(tl_poly_cut(p, (tl_plane){n, tl_v3_dot(n, point)}, 0, (tl_tag){2, 5}, &cut, &error),
               TL_OK);
     CHECK((cut.result == TL_CUT_MADE) == (cut.below && cut.above));
     return cut;
@@ -109,7 +109,7 @@ TEST(planes_beside_and_touching_miss)
         CHECK(cut.face == UINT32_MAX);
     }
     tl_cut cut;
-    CHECK_INT(tl_poly_cut(p, (tl_plane){{NAN, 0, 0}, 0}, (tl_tag){1, 1}, &cut, &error), TL_OK);
+    CHECK_INT(tl_poly_cut(p, (tl_plane){{NAN, 0, 0}, 0}, 0, (tl_tag){1, 1}, &cut, &error), TL_OK);
     CHECK_INT(cut.result, TL_CUT_MISS);
     tl_poly_free(p);
 }
@@ -126,7 +126,7 @@ TEST(coincident_names_the_face)
                 if (flip)
                     plane = (tl_plane){tl_v3_neg(plane.normal), -plane.offset};
                 tl_cut cut;
-                CHECK_INT(tl_poly_cut(p, plane, (tl_tag){1, 1}, &cut, &error), TL_OK);
+                CHECK_INT(tl_poly_cut(p, plane, 0, (tl_tag){1, 1}, &cut, &error), TL_OK);
                 CHECK_INT(cut.result, TL_CUT_COINCIDENT);
                 CHECK_INT(cut.face, f);
             }
@@ -218,7 +218,7 @@ static int cut_all(tl_poly **blocks, int count, tl_plane plane)
     int before = count;
     for (int i = 0; i < before; i++) {
         tl_cut cut;
-        CHECK_INT(tl_poly_cut(blocks[i], plane, (tl_tag){1, 1}, &cut, &error), TL_OK);
+        CHECK_INT(tl_poly_cut(blocks[i], plane, 0, (tl_tag){1, 1}, &cut, &error), TL_OK);
         if (cut.result != TL_CUT_MADE)
             continue;
         tl_poly_free(blocks[i]);

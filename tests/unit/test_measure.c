@@ -88,6 +88,31 @@ TEST(mass_far_from_zero)
 }
 
 /* Products of inertia carry the minus sign of the tensor: turning the body turns the tensor. */
+/* A skew needle of integer corners: the edges have determinant n n - (n + 1)(n - 1) = 1, of products that
+ * do not fit into a double. */
+TEST(volume_of_a_needle_keeps_all_digits)
+{
+    const double n = 1073741824;
+    const tl_vec3 edge[3] = {{n, n + 1, 0}, {n - 1, n, 0}, {0, 0, 1}};
+    tl_poly *box = unit_box();
+    for (int far = 0; far < 2; far++) {
+        tl_vec3 x[8];
+        for (int i = 0; i < 8; i++) {
+            x[i] = tl_v3(far * 1e12, 0, far * -1e12);
+            for (int k = 0; k < 3; k++)
+                x[i] = i >> k & 1 ? tl_v3_add(x[i], edge[k]) : x[i];
+        }
+        tl_poly *p;
+        tl_error error;
+        if (!CHECK_INT(tl_poly_make(x, 8, box->plane, NULL, box->start, box->loop, 6, &p, &error),
+                       TL_OK))
+            continue;
+        CHECK_NEAR(tl_poly_mass(p).volume, 1, 1e-15);
+        tl_poly_free(p);
+    }
+    tl_poly_free(box);
+}
+
 TEST(inertia_turns_with_the_body)
 {
     tl_quat turn = tl_q_unit((tl_quat){0.7, 0.3, -0.5, 0.2});
@@ -166,6 +191,7 @@ TEST(contains_up_to_the_tolerance)
     tl_poly_free(p);
 }
 
-TEST_MAIN(RUN(mass_of_exact_cases), RUN(mass_far_from_zero), RUN(inertia_turns_with_the_body),
+TEST_MAIN(RUN(mass_of_exact_cases), RUN(mass_far_from_zero),
+          RUN(volume_of_a_needle_keeps_all_digits), RUN(inertia_turns_with_the_body),
           RUN(faces_and_edges), RUN(centroid_of_a_face_is_that_of_its_area),
           RUN(support_is_the_farthest_vertex_lowest_index_first), RUN(contains_up_to_the_tolerance))
