@@ -2,6 +2,7 @@
 #include "base/table.h"
 
 #include <assert.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -32,15 +33,6 @@ static void put(const tl_table *table, const tl_column *column, void *data)
     memcpy((char *)table->owner + column->offset, &data, sizeof data);
 }
 
-void *tl_aligned_alloc(size_t bytes)
-{
-    size_t rounded = (bytes + TL_ALIGN - 1) / TL_ALIGN * TL_ALIGN;
-    void *data = aligned_alloc(TL_ALIGN, rounded ? rounded : TL_ALIGN);
-    if (data)
-        memset(data, 0, rounded ? rounded : TL_ALIGN);
-    return data;
-}
-
 bool tl_grow(void *slot, size_t *room, size_t need, size_t size)
 {
     if (need <= *room)
@@ -56,29 +48,35 @@ bool tl_grow(void *slot, size_t *room, size_t need, size_t size)
     return true;
 }
 
+static size_t column_bytes(const tl_column *column, size_t capacity)
+{
+    return (capacity * column->size + TL_ALIGN - 1) / TL_ALIGN * TL_ALIGN;
+}
+
+/* All columns lie in one allocation that comes zeroed: what is not written to yet costs no memory. */
 bool tl_table_reserve(tl_table *table, size_t rows)
 {
     if (rows <= table->capacity)
         return true;
     size_t grown = table->capacity + table->capacity / 2;
     size_t capacity = ((rows > grown ? rows : grown) + ROW_ROUND - 1) / ROW_ROUND * ROW_ROUND;
-    void *fresh[TL_TABLE_COLUMNS];
+    size_t bytes = TL_ALIGN;
+    for (size_t i = 0; i < table->column_count; i++)
+        bytes += column_bytes(&table->columns[i], capacity);
+    char *memory = calloc(bytes, 1);
+    if (!memory)
+        return false;
+    char *at = memory + (TL_ALIGN - (uintptr_t)memory % TL_ALIGN) % TL_ALIGN;
     for (size_t i = 0; i < table->column_count; i++) {
-        fresh[i] = tl_aligned_alloc(capacity * table->columns[i].size);
-        if (!fresh[i]) {
-            while (i-- > 0)
-                free(fresh[i]);
-            return false;
-        }
+        if (table->rows)
+            memcpy(at, get(table, &table->columns[i]), table->rows * table->columns[i].size);
+        put(table, &table->columns[i], at);
+        at += column_bytes(&table->columns[i], capacity);
     }
-    for (size_t i = 0; i < table->column_count; i++) {
-        void *old = get(table, &table->columns[i]);
-        if (old)
-            memcpy(fresh[i], old, table->rows * table->columns[i].size);
-        free(old);
-        put(table, &table->columns[i], fresh[i]);
-    }
+    free(table->memory);
+    table->memory = memory;
     table->capacity = capacity;
+    table->used = table->rows;
     return true;
 }
 
@@ -86,33 +84,36 @@ bool tl_table_resize(tl_table *table, size_t rows)
 {
     if (!tl_table_reserve(table, rows))
         return false;
-    if (rows > table->rows)
-        for (size_t i = 0; i < table->column_count; i++) {
-            size_t size = table->columns[i].size;
-            memset((char *)get(table, &table->columns[i]) + table->rows * size, 0,
-                   (rows - table->rows) * size);
-        }
+    /* A vector loop may have run past the last row, up to the next multiple. */
+    size_t used = (table->used + ROW_ROUND - 1) / ROW_ROUND * ROW_ROUND;
+    size_t end = rows < used ? rows : used;
+    for (size_t i = 0; end > table->rows && i < table->column_count; i++) {
+        size_t size = table->columns[i].size;
+        memset((char *)get(table, &table->columns[i]) + table->rows * size, 0,
+               (end - table->rows) * size);
+    }
     table->rows = rows;
+    table->used = rows > table->used ? rows : table->used;
     return true;
 }
 
 void tl_table_keep(tl_table *table, const unsigned char *keep)
 {
     size_t kept = 0;
-    for (size_t i = 0; i < table->column_count; i++) {
-        size_t size = table->columns[i].size;
-        char *data = get(table, &table->columns[i]);
-        kept = 0;
-        for (size_t row = 0; row < table->rows; row++) {
-            if (!keep[row])
-                continue;
-            if (kept != row)
-                memcpy(data + kept * size, data + row * size, size);
-            kept++;
+    for (size_t row = 0; row < table->rows;) {
+        size_t end = row;
+        while (end < table->rows && keep[end])
+            end++;
+        for (size_t i = 0; kept != row && i < table->column_count; i++) {
+            size_t size = table->columns[i].size;
+            char *data = get(table, &table->columns[i]);
+            memmove(data + kept * size, data + row * size, (end - row) * size);
         }
+        kept += end - row;
+        for (row = end; row < table->rows && !keep[row];)
+            row++;
     }
-    if (table->column_count)
-        table->rows = kept;
+    table->rows = kept;
 }
 
 void tl_table_move(tl_table *table, size_t to, size_t from)
@@ -139,9 +140,9 @@ size_t tl_table_bytes(const tl_table *table)
 
 void tl_table_free(tl_table *table)
 {
-    for (size_t i = 0; i < table->column_count; i++) {
-        free(get(table, &table->columns[i]));
+    for (size_t i = 0; i < table->column_count; i++)
         put(table, &table->columns[i], NULL);
-    }
-    table->rows = table->capacity = 0;
+    free(table->memory);
+    table->memory = NULL;
+    table->rows = table->capacity = table->used = 0;
 }

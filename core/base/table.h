@@ -26,6 +26,8 @@ typedef struct tl_column {
 typedef struct tl_table {
     void *owner;
     size_t rows, capacity;
+    size_t used;  /* rows from here on have been zero since the memory was had */
+    void *memory; /* of all columns */
     size_t column_count;
     tl_column columns[TL_TABLE_COLUMNS];
 } tl_table;
@@ -53,8 +55,5 @@ size_t tl_table_bytes(const tl_table *table);
 /* Makes room for `need` items of `size` bytes in the array whose pointer is at `slot`, with some to spare;
  * what is there stays. false when out of memory (nothing changed). */
 bool tl_grow(void *slot, size_t *room, size_t need, size_t size);
-
-/* Aligned memory for columns and scratch: zeroed, freed with free(). */
-void *tl_aligned_alloc(size_t bytes);
 
 #endif

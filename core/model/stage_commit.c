@@ -4,7 +4,6 @@
 #include "model/model.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 /* Moves a shape so that its centroid is the zero of its frame. Offsets follow from a vertex of the
  * face, which keeps the digits of a shape far from zero. */
@@ -17,8 +16,35 @@ static void centre_shape(tl_poly *shape, tl_vec3 centroid)
             tl_v3_dot(shape->plane[f].normal, shape->vertex[shape->loop[shape->start[f]]]);
 }
 
+/* What the children of a block take over from it and from its body. */
+typedef struct source {
+    tl_vec3 base, x_ref, u, v, w, v_moved, w_moved;
+    tl_quat q;
+    tl_mat3 r;
+    uint32_t drive;
+    uint8_t fixed;
+} source;
+
+static source source_of(const tl_model *m, uint32_t row)
+{
+    const tl_bodies *b = &m->bodies;
+    uint32_t body = m->blocks.body[row];
+    return (source){.base = m->blocks.base[row],
+                    .x_ref = b->x_ref[body],
+                    .u = b->u[body],
+                    .v = b->v[body],
+                    .w = b->w[body],
+                    .v_moved = b->v_moved[body],
+                    .w_moved = b->w_moved[body],
+                    .q = b->q[body],
+                    .r = b->r[body],
+                    .drive = b->drive[body],
+                    .fixed = b->fixed[body]};
+}
+
 /* Fills the rows of a new block and of its body. A child moves on as its part of the source did. */
-static void put(tl_model *m, const tl_stage_block *block, uint32_t row, uint32_t body)
+static void put(tl_model *m, const tl_stage_block *block, const source *from, uint32_t row,
+                uint32_t body)
 {
     tl_blocks *blocks = &m->blocks;
     tl_bodies *bodies = &m->bodies;
@@ -34,29 +60,36 @@ static void put(tl_model *m, const tl_stage_block *block, uint32_t row, uint32_t
     blocks->hidden[row] = block->hidden || block->conceal;
     tl_block_measure(m, row, mass.volume);
     tl_body_measure_single(m, body, row, mass);
-    if (block->source == TL_NO_ROW) {
+    if (!from) {
         bodies->x_ref[body] = c;
         bodies->q[body] = tl_q_identity();
         bodies->r[body] = tl_m3_identity();
         bodies->fixed[body] = block->fixed;
         return;
     }
-    uint32_t from = blocks->body[block->source];
-    tl_vec3 arm = tl_m3_mul(&bodies->r[from], c);
-    blocks->base[row] = blocks->base[block->source];
-    bodies->x_ref[body] = tl_v3_add(bodies->x_ref[from], c);
-    bodies->u[body] = tl_v3_add(bodies->u[from], tl_v3_sub(arm, c));
-    bodies->q[body] = bodies->q[from];
-    bodies->r[body] = bodies->r[from];
-    bodies->v[body] = tl_v3_add(bodies->v[from], tl_v3_cross(bodies->w[from], arm));
-    bodies->w[body] = bodies->w[from];
-    bodies->v_moved[body] =
-        tl_v3_add(bodies->v_moved[from], tl_v3_cross(bodies->w_moved[from], arm));
-    bodies->w_moved[body] = bodies->w_moved[from];
-    bodies->fixed[body] = bodies->fixed[from];
-    bodies->drive[body] = bodies->drive[from];
-    if (bodies->drive[body])
-        m->drives[bodies->drive[body] - 1].bodies++;
+    tl_vec3 arm = tl_m3_mul(&from->r, c);
+    blocks->base[row] = from->base;
+    bodies->x_ref[body] = tl_v3_add(from->x_ref, c);
+    bodies->u[body] = tl_v3_add(from->u, tl_v3_sub(arm, c));
+    bodies->q[body] = from->q;
+    bodies->r[body] = from->r;
+    bodies->v[body] = tl_v3_add(from->v, tl_v3_cross(from->w, arm));
+    bodies->w[body] = from->w;
+    bodies->v_moved[body] = tl_v3_add(from->v_moved, tl_v3_cross(from->w_moved, arm));
+    bodies->w_moved[body] = from->w_moved;
+    bodies->fixed[body] = from->fixed;
+    bodies->drive[body] = from->drive;
+    if (from->drive)
+        m->drives[from->drive - 1].bodies++;
+}
+
+/* Takes a block into the smallest volume, edge and face of all. */
+static void note_extremes(tl_generate_summary *s, const tl_poly *shape, double volume)
+{
+    s->smallest_volume = fmin(s->smallest_volume, volume);
+    s->smallest_edge = fmin(s->smallest_edge, tl_poly_shortest_edge(shape));
+    for (uint32_t f = 0; f < shape->face_count; f++)
+        s->smallest_face = fmin(s->smallest_face, tl_poly_face_area(shape, f));
 }
 
 static void summarize(tl_stage *stage, double volume_before)
@@ -64,18 +97,19 @@ static void summarize(tl_stage *stage, double volume_before)
     const tl_blocks *b = &stage->model->blocks;
     tl_generate_summary *s = &stage->summary;
     s->after = b->table.rows;
-    s->smallest_volume = s->smallest_edge = s->smallest_face = s->after ? INFINITY : 0;
+    if (s->after == 0)
+        s->smallest_volume = s->smallest_edge = s->smallest_face = 0;
     double volume = 0;
-    for (uint32_t row = 0; row < b->table.rows; row++) {
-        const tl_poly *shape = b->shape[row];
+    for (uint32_t row = 0; row < b->table.rows; row++)
         volume += b->volume[row];
-        s->smallest_volume = fmin(s->smallest_volume, b->volume[row]);
-        s->smallest_edge = fmin(s->smallest_edge, tl_poly_shortest_edge(shape));
-        for (uint32_t f = 0; f < shape->face_count; f++)
-            s->smallest_face = fmin(s->smallest_face, tl_poly_face_area(shape, f));
-    }
     if (volume > 0)
         s->volume_error = fabs(volume - volume_before - stage->created_volume) / volume;
+}
+
+/* A block that the commit gives a new row, and not one of the model as it was or with other tags. */
+static bool is_made(const tl_stage_block *block)
+{
+    return block->owned && !block->retagged;
 }
 
 /* Adds what the stage did to the model's record. `first` is the id of the first block made; blocks of
@@ -100,7 +134,7 @@ static void keep_record(tl_stage *stage, tl_id first)
         return;
     for (size_t i = 0; i < stage->count; i++) {
         const tl_stage_block *block = &stage->blocks[i];
-        id[i] = block->owned && !block->retagged ? first++ : m->blocks.id[block->source];
+        id[i] = is_made(block) ? first++ : m->blocks.id[block->source];
     }
     for (size_t i = 0; i < stage->refused_listed; i++) {
         list[record->listed] = stage->refused[i];
@@ -111,58 +145,111 @@ static void keep_record(tl_stage *stage, tl_id first)
 
 /* What a commit needs before it changes anything. */
 typedef struct commit_room {
-    unsigned char *keep; /* [rows] */
-    tl_id *ids;          /* [staged blocks] their ids in the model */
-    uint32_t *first;     /* [staged bodies] */
-    uint32_t *group;     /* [rows] */
+    unsigned char *keep; /* [rows before] */
+    uint32_t *slot;      /* [rows before] of blocks that were cut: place in sources */
+    source *sources;     /* of the blocks that were cut */
+    size_t source_count;
+    tl_id *ids;      /* [staged blocks] their ids in the model */
+    uint32_t *first; /* [staged bodies] */
+    uint32_t *group; /* [rows] */
 } commit_room;
 
 static void free_room(commit_room *room)
 {
     free(room->keep);
+    free(room->slot);
+    free(room->sources);
     free(room->ids);
     free(room->first);
     free(room->group);
 }
 
+/* Finds the blocks that stay and those that were cut. */
+static bool sort_rows(const tl_stage *stage, size_t old, commit_room *room)
+{
+    room->keep = calloc(old + 1, 1);
+    room->slot = malloc((old + 1) * sizeof *room->slot);
+    if (!room->keep || !room->slot)
+        return false;
+    for (size_t row = 0; row < old; row++)
+        room->slot[row] = TL_NO_ROW;
+    for (size_t i = 0; i < stage->count; i++) {
+        const tl_stage_block *block = &stage->blocks[i];
+        if (block->source == TL_NO_ROW)
+            continue;
+        if (!is_made(block))
+            room->keep[block->source] = 1;
+        else if (room->slot[block->source] == TL_NO_ROW)
+            room->slot[block->source] = (uint32_t)room->source_count++;
+    }
+    room->sources = malloc((room->source_count + 1) * sizeof *room->sources);
+    return room->sources != NULL;
+}
+
 static bool make_room(tl_stage *stage, size_t old, size_t made, commit_room *room)
 {
-    *room = (commit_room){.keep = calloc(old + made + 1, 1),
-                          .ids = malloc((stage->count + 1) * sizeof *room->ids)};
+    room->ids = malloc((stage->count + 1) * sizeof *room->ids);
     if (stage->regroups) {
         room->first = malloc((stage->next_body + (size_t)1) * sizeof *room->first);
         room->group = malloc((old + made + 1) * sizeof *room->group);
     }
-    return room->keep && room->ids && (!stage->regroups || (room->first && room->group)) &&
-           old + made < TL_NO_ROW &&
+    return sort_rows(stage, old, room) && room->ids &&
+           (!stage->regroups || (room->first && room->group)) && old + made < TL_NO_ROW &&
            tl_rows_reserve(stage->model, old + made, stage->model->next_id + (tl_id)made);
 }
 
-/* Moves the staged blocks into the model's rows, each as a body of its own, and drops what they
- * replace. */
-static void move_blocks(tl_stage *stage, size_t made, commit_room *room)
+/* Writes what the stage changed of the blocks that stay, and drops those it replaces; what their
+ * children take over is kept aside. So new rows are written where they stay. */
+static void drop_replaced(tl_stage *stage, size_t old, commit_room *room)
 {
     tl_model *m = stage->model;
-    tl_blocks *blocks = &m->blocks;
-    uint32_t row = (uint32_t)blocks->table.rows, body = (uint32_t)m->bodies.table.rows;
-    tl_table_resize(&blocks->table, row + made);
-    tl_table_resize(&m->bodies.table, body + made);
     for (size_t i = 0; i < stage->count; i++) {
         tl_stage_block *block = &stage->blocks[i];
-        if (block->owned && !block->retagged) {
-            put(m, block, row++, body++);
-            room->ids[i] = m->next_id - 1;
+        if (is_made(block))
             continue;
-        }
-        room->keep[block->source] = 1;
-        room->ids[i] = blocks->id[block->source];
-        blocks->group[block->source] = block->group;
+        room->ids[i] = m->blocks.id[block->source];
+        m->blocks.group[block->source] = block->group;
         if (block->retagged) {
-            tl_poly_free(blocks->shape[block->source]);
-            blocks->shape[block->source] = block->shape;
+            tl_poly_free(m->blocks.shape[block->source]);
+            m->blocks.shape[block->source] = block->shape;
         }
     }
+    /* a drive goes on for the children though none of its bodies is left in between */
+    for (uint32_t row = 0; row < old; row++)
+        if (room->slot[row] != TL_NO_ROW) {
+            room->sources[room->slot[row]] = source_of(m, row);
+            uint32_t drive = m->bodies.drive[m->blocks.body[row]];
+            if (drive)
+                m->drives[drive - 1].bodies++;
+        }
     tl_rows_keep(m, room->keep);
+    tl_generate_summary *s = &stage->summary;
+    s->smallest_volume = s->smallest_edge = s->smallest_face = INFINITY;
+    for (uint32_t row = 0; row < m->blocks.table.rows; row++)
+        note_extremes(s, m->blocks.shape[row], m->blocks.volume[row]);
+}
+
+/* Adds the blocks that were made, each as a body of its own. */
+static void add_made(tl_stage *stage, size_t made, commit_room *room)
+{
+    tl_model *m = stage->model;
+    uint32_t row = (uint32_t)m->blocks.table.rows, body = (uint32_t)m->bodies.table.rows;
+    tl_table_resize(&m->blocks.table, row + made);
+    tl_table_resize(&m->bodies.table, body + made);
+    for (size_t i = 0; i < stage->count; i++) {
+        const tl_stage_block *block = &stage->blocks[i];
+        if (!is_made(block))
+            continue;
+        room->ids[i] = m->next_id;
+        const source *from =
+            block->source == TL_NO_ROW ? NULL : &room->sources[room->slot[block->source]];
+        put(m, block, from, row, body++);
+        note_extremes(&stage->summary, block->shape, m->blocks.volume[row++]);
+    }
+    for (size_t i = 0; i < room->source_count; i++)
+        if (room->sources[i].drive)
+            m->drives[room->sources[i].drive - 1].bodies--;
+    tl_rows_refresh(m);
 }
 
 tl_status tl_stage_commit(tl_stage *stage)
@@ -170,8 +257,8 @@ tl_status tl_stage_commit(tl_stage *stage)
     tl_model *m = stage->model;
     size_t old = m->blocks.table.rows, made = 0;
     for (size_t i = 0; i < stage->count; i++)
-        made += stage->blocks[i].owned && !stage->blocks[i].retagged;
-    commit_room room = {NULL, NULL, NULL, NULL};
+        made += is_made(&stage->blocks[i]);
+    commit_room room = {0};
     tl_status status = tl_stage_settle(stage);
     if (status == TL_OK && !make_room(stage, old, made, &room))
         status = tl_fail_memory(&m->error);
@@ -185,8 +272,8 @@ tl_status tl_stage_commit(tl_stage *stage)
     double volume_before = 0;
     for (size_t row = 0; row < old; row++)
         volume_before += m->blocks.volume[row];
-    memset(room.keep + old, 1, made);
-    move_blocks(stage, made, &room);
+    drop_replaced(stage, old, &room);
+    add_made(stage, made, &room);
     summarize(stage, volume_before);
     if (stage->regroups) {
         tl_stage_groups(stage, room.ids, room.first, room.group);

@@ -42,11 +42,13 @@ static double now(void)
 
 static void *columns(size_t bytes)
 {
-    void *data = tl_aligned_alloc(bytes);
+    size_t rounded = (bytes + TL_ALIGN - 1) / TL_ALIGN * TL_ALIGN;
+    void *data = aligned_alloc(TL_ALIGN, rounded);
     if (!data) {
         fprintf(stderr, "limit: no memory for %zu bytes\n", bytes);
         exit(1);
     }
+    memset(data, 0, rounded);
     return data;
 }
 
