@@ -192,7 +192,8 @@ double tl_poly_shortest_edge(const tl_poly *p)
     double shortest2 = INFINITY;
     for (uint32_t e = 0; e < p->edge_count; e++) {
         tl_vec3 along = tl_v3_sub(p->vertex[p->edge[e].b], p->vertex[p->edge[e].a]);
-        shortest2 = fmin(shortest2, tl_v3_norm2(along));
+        double length2 = tl_v3_norm2(along);
+        shortest2 = length2 < shortest2 ? length2 : shortest2;
     }
     return sqrt(shortest2);
 }

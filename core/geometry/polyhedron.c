@@ -55,14 +55,21 @@ tl_poly *tl_poly_allocate(uint32_t vertex_count, uint32_t face_count, uint32_t e
     return p;
 }
 
-/* A half-edge is known by its place in `loop`. */
+/* A half-edge is known by its place in `loop`; `star` lists them by their first vertex, for now. */
 typedef struct half_edges {
-    uint16_t *next; /* the half-edge after it in its face */
-    uint16_t *face;
-    uint16_t *edge; /* the edge it belongs to */
+    uint16_t *
+        end; /* [place in star] the vertex it runs to: neighbours in memory are searched together */
+    uint16_t *face; /* [half-edge] */
+    uint16_t *edge; /* [half-edge] the edge it belongs to */
 } half_edges;
 
-/* Groups half-edges by origin into star/star_at, and notes each one's face and successor. */
+/* The vertex that follows place h in the loop of a face. */
+static uint16_t after(const tl_poly *p, uint32_t face, uint32_t h)
+{
+    return p->loop[h + 1 < p->start[face + 1] ? h + 1 : p->start[face]];
+}
+
+/* Groups half-edges by origin into star/star_at, and notes each one's face and end. */
 static void group_half_edges(tl_poly *p, half_edges half)
 {
     uint32_t *at = p->star_at, half_count = 2 * p->edge_count;
@@ -71,14 +78,13 @@ static void group_half_edges(tl_poly *p, half_edges half)
         at[p->loop[h] + 1]++;
     for (uint32_t v = 0; v < p->vertex_count; v++)
         at[v + 1] += at[v];
-    for (uint32_t f = 0; f < p->face_count; f++) {
-        uint32_t begin = p->start[f], end = p->start[f + 1];
-        for (uint32_t h = begin; h < end; h++) {
+    for (uint32_t f = 0; f < p->face_count; f++)
+        for (uint32_t h = p->start[f]; h < p->start[f + 1]; h++) {
+            uint32_t place = at[p->loop[h]]++;
             half.face[h] = (uint16_t)f;
-            half.next[h] = (uint16_t)(h + 1 < end ? h + 1 : begin);
-            p->star[at[p->loop[h]]++] = (uint16_t)h;
+            half.end[place] = after(p, f, h);
+            p->star[place] = (uint16_t)h;
         }
-    }
     /* Filling moved every start to the next one's place. */
     memmove(at + 1, at, p->vertex_count * sizeof *at);
     at[0] = 0;
@@ -90,7 +96,7 @@ static int find_half_edge(const tl_poly *p, half_edges half, uint16_t a, uint16_
 {
     int count = 0;
     for (uint32_t i = p->star_at[a]; i < p->star_at[a + 1]; i++)
-        if (p->loop[half.next[p->star[i]]] == b) {
+        if (half.end[i] == b) {
             *found = p->star[i];
             count++;
         }
@@ -102,7 +108,7 @@ static tl_status report_unpaired(const tl_poly *p, half_edges half, tl_error *er
 {
     uint32_t half_count = 2 * p->edge_count;
     for (uint32_t h = 0; error && h < half_count; h++) {
-        uint16_t a = p->loop[h], b = p->loop[half.next[h]], found;
+        uint16_t a = p->loop[h], b = after(p, half.face[h], h), found;
         int forth = find_half_edge(p, half, a, b, &found),
             back = find_half_edge(p, half, b, a, &found);
         if (a != b && forth == 1 && back == 1)
@@ -123,7 +129,7 @@ static tl_status pair_half_edges(tl_poly *p, half_edges half, tl_error *error)
 {
     uint32_t half_count = 2 * p->edge_count, edges = 0;
     for (uint32_t h = 0; h < half_count; h++) {
-        uint16_t a = p->loop[h], b = p->loop[half.next[h]], forth, back;
+        uint16_t a = p->loop[h], b = after(p, half.face[h], h), forth, back;
         if (a >= b)
             continue;
         if (edges == p->edge_count || find_half_edge(p, half, a, b, &forth) != 1 ||

@@ -15,7 +15,7 @@
 #define MAX_SWEEPS 32
 
 /* Turns rows and columns p and q of `a` so that a[p][q] vanishes, and columns of `r` with them. */
-static void rotate(tl_mat3 *a, tl_mat3 *r, int p, int q)
+static inline void rotate(tl_mat3 *a, tl_mat3 *r, int p, int q)
 {
     double theta = (a->m[q][q] - a->m[p][p]) / (2 * a->m[p][q]);
     /* theta is at most 1e21 for the thinnest block, so its square does not overflow */
@@ -33,6 +33,16 @@ static void rotate(tl_mat3 *a, tl_mat3 *r, int p, int q)
         r->m[i][p] = c * ip - s * iq;
         r->m[i][q] = s * ip + c * iq;
     }
+}
+
+/* Rotates unless a[p][q] is rounding; whether it did. */
+static inline bool sweep_pair(tl_mat3 *a, tl_mat3 *r, int p, int q)
+{
+    double mean2 = fabs(a->m[p][p] * a->m[q][q]);
+    bool turn = a->m[p][q] * a->m[p][q] > OFF_DIAGONAL * OFF_DIAGONAL * mean2;
+    if (turn)
+        rotate(a, r, p, q);
+    return turn;
 }
 
 /* The unit quaternion of a rotation matrix, w >= 0, by its largest component (Shepperd 1978). */
@@ -72,15 +82,11 @@ void tl_principal_axes(tl_sym3 tensor, tl_vec3 *moments, tl_quat *axes)
     tl_mat3 r = tl_m3_identity();
     bool turned = true;
     for (int sweep = 0; sweep < MAX_SWEEPS && turned; sweep++) {
-        turned = false;
-        for (int p = 0; p < 2; p++)
-            for (int q = p + 1; q < 3; q++) {
-                double mean2 = fabs(a.m[p][p] * a.m[q][q]);
-                if (a.m[p][q] * a.m[p][q] > OFF_DIAGONAL * OFF_DIAGONAL * mean2) {
-                    rotate(&a, &r, p, q);
-                    turned = true;
-                }
-            }
+        /* with p and q known to the compiler the matrices stay in registers */
+        bool first = sweep_pair(&a, &r, 0, 1);
+        bool second = sweep_pair(&a, &r, 0, 2);
+        bool third = sweep_pair(&a, &r, 1, 2);
+        turned = first || second || third;
     }
     /* Ascending order; equal moments keep theirs. */
     int order[3] = {0, 1, 2};
