@@ -1,6 +1,6 @@
 /* cuts.c - how many cuts of a polyhedron one core makes in a second, for each kind of plane. Run as
  *
- *     build/release/tests/bench/cuts
+ *     ./bootstrap bench cuts
  *
  * Each kind cuts the same blocks, those that a box falls into when it is cut a few times at random; a
  * cut makes both children, and they are freed. Planes that miss or fall on a face are cheaper: the share
