@@ -22,7 +22,7 @@ local DT = 5e-4                        -- s
 -- Points and edges get a tenth of a face, not a hundredth: blocks that fall on corners would else dip in deep.
 local CORNER = 0.1
 local DAMPING = 0.5                    -- share of the force
-local STILL, PATIENCE = 5e-3, 40000    -- mean speed of a pile at rest, m/s; steps
+local STILL, PATIENCE = 2e-2, 40000    -- mean speed of a pile that has come down, m/s; steps
 local LOOK = 250                       -- steps between looks at it
 local RATIO, SETTLE = 1e-4, 2000       -- unbalanced force ratio, steps: until forces have come back from overlaps
 local REST_DAMPING = 0.8
