@@ -60,7 +60,8 @@ def main():
             remark = f"  MORE THAN {RISE:.2f}"
         elif ratio < 1 / RISE:
             remark = "  keep the gain: tests/bench/instructions.py --renew"
-        print(f"{name:16} {value:8} instructions a contact update, {ratio:.3f} of the committed {committed[name]}{remark}")
+        print(f"{name:16} {value:8} instructions a contact update, {ratio:.3f} of the committed "
+              f"{committed[name]}{remark}")
     return 1 if worse else 0
 
 

@@ -93,7 +93,8 @@ def limit_table(rows):
 
 def figure_table(rows):
     return (["workload", "what", "blocks", "threads", "figure", "unit"],
-            [[row["workload"], row.get("size", ""), row.get("blocks", ""), row.get("threads", ""), short(number(row, "rate"), 4), row["unit"]]
+            [[row["workload"], row.get("size", ""), row.get("blocks", ""), row.get("threads", ""),
+              short(number(row, "rate"), 4), row["unit"]]
              for row in rows if row.get("unit") != "contacts/s" and not row["workload"].startswith("limit ")])
 
 
