@@ -12,20 +12,20 @@ local bench = require "bench"
 
 local pile = {}
 
-local KN, KS, DENSITY = 1e8, 5e7, 2600 -- Pa/m, kg/m3
+local KN, KS, DENSITY = 1e9, 5e8, 2600 -- Pa/m, kg/m3
 local FRICTION = math.deg(0.6)
 local SEED = 7
 local APART = 1.05                     -- between centres at the start, m: blocks do not touch
 local FULL = 1.2                       -- blocks a cubic metre of the box, were it filled to its width
--- A fixed step, for that of a rule is long while blocks fly: 0.2 over the frequency of a block held by six faces.
+-- A fixed step, for that of a rule is long while blocks fly: half over the frequency of a block held by six faces.
 local DT = 5e-4                        -- s
 -- Points and edges get a tenth of a face, not a hundredth: blocks that fall on corners would else dip in deep.
 local CORNER = 0.1
-local DAMPING = 0.5                    -- share of the force
-local STILL, PATIENCE = 2e-2, 40000    -- mean speed of a pile that has come down, m/s; steps
+local DRAG, DOWN = 4, 0.1              -- 1/s: blocks sink at 2.5 m/s; mean speed when they are down, m/s
+local DAMPING = 0.7                    -- share of the force, from then on
+local STILL, PATIENCE = 5e-3, 40000    -- mean speed of a pile at rest, m/s; steps
 local LOOK = 250                       -- steps between looks at it
 local RATIO, SETTLE = 1e-4, 2000       -- unbalanced force ratio, steps: until forces have come back from overlaps
-local REST_DAMPING = 0.8
 
 local function gauss()
     return math.sqrt(-2 * math.log(1 - math.random())) * math.cos(2 * math.pi * math.random())
@@ -89,10 +89,16 @@ function pile.drop(count, path, threads)
     end
     laws(model)
     local pieces = model:blocks { group = "pile" }
-    repeat
-        model:cycle(LOOK)
-        assert(model.cycles < PATIENCE, "the pile does not come to rest")
-    until model.cycles > LOOK and pieces:sum "speed" / count < STILL
+    local function run_until(speed)
+        repeat
+            model:cycle(LOOK)
+            assert(model.cycles < PATIENCE, "the pile does not come to rest")
+        until model.cycles > LOOK and pieces:sum "speed" / count < speed
+    end
+    model:damping("viscous", { alpha = DRAG })
+    run_until(DOWN)
+    model:damping("local", { alpha = DAMPING })
+    run_until(STILL)
     assert(pieces:bounds().min[3] > -0.1, "a block has left the box")
     model:write_blocks(path)
     return model
@@ -116,7 +122,6 @@ function pile.main()
     end
     for _, threads in ipairs(given.reps > 0 and bench.list(given.threads) or {}) do
         local model = pile.load(path, threads)
-        model:damping("local", { alpha = REST_DAMPING })
         model:solve { ratio = RATIO, max_cycles = SETTLE }
         bench.measure_both(model, { workload = "pile", size = given.blocks }, { reps = given.reps })
     end
