@@ -152,7 +152,7 @@ def rock(r):
         if need < MOST_MEMORY * os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"):
             r.script("rock", "blocks=1000000", "threads=1,2", "reps=3")
         else:
-            print(f"    a million blocks need some {need / 2 ** 30:.0f} GiB, more than this machine has")
+            print(f"    a million blocks need some {need / 2 ** 30:.0f} GiB, more than half of what this machine has")
 
 
 def consolidate(r):
