@@ -247,11 +247,11 @@ def main():
     if given.quick:
         notes.append("smaller models (--quick)")
     print("\n".join(notes), flush=True)
+    stamp = "quick" if given.quick else "full"
     for job in given.names or JOBS:
         print(f"{job}:", flush=True)
         JOBS[job](runner)
-    stamp = "quick" if given.quick else "full"
-    write_csv(out / f"{stamp}.csv", runner.rows, notes)
+        write_csv(out / f"{stamp}.csv", runner.rows, notes)  # a later job may fail
     print()
     print(table.text(runner.rows))
     peak = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 2 ** 20
