@@ -269,4 +269,21 @@ SCENE_UNUSED static double scene_apart(tl_vec3 a, tl_vec3 b)
     return tl_v3_norm(tl_v3_sub(a, b));
 }
 
+/* The smallest gap of a contact's points when forces were last computed. */
+static inline double scene_gap(const tl_model *m, uint32_t contact)
+{
+    tl_vec3 normal, point;
+    double gap;
+    tl_contact_summary(m, contact, &normal, &point, &gap);
+    return gap;
+}
+
+/* From A's body's centroid to a point of contact 0, axes of the model, in the present place. */
+static inline tl_vec3 scene_arm(const tl_model *m, size_t point)
+{
+    const tl_point_lanes *lanes = &m->detect->lanes[0];
+    tl_contact_places(m, 0, lanes);
+    return tl_columns_get(lanes->arm, point - m->detect->contacts.point_start[0]);
+}
+
 #endif

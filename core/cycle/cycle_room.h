@@ -6,9 +6,8 @@
 
 #include <pthread.h>
 
-/* Rows and points a worker takes at a time. */
+/* Rows a worker takes at a time. */
 #define TL_BODY_CHUNK 256
-#define TL_POINT_CHUNK 512
 
 /* Sums over the free bodies, made per chunk and added in chunk order. */
 typedef struct tl_sums {
@@ -22,6 +21,11 @@ typedef struct tl_sums {
     double kinetic;    /* sum of (m v.v + w.I w) / 2 */
     double max_speed2; /* largest v.v */
 } tl_sums;
+
+/* Energy in the contact points of a page, and turned to heat in this step. */
+typedef struct tl_page_energy {
+    double stored, dissipated;
+} tl_page_energy;
 
 struct tl_cycle {
     tl_table table;
@@ -40,6 +44,8 @@ struct tl_cycle {
     tl_sums *chunk_sums;
     size_t chunk_room;
     tl_sums sums;
+    tl_page_energy *page_energy;
+    size_t page_room;
     struct tl_ledger *chunk_ledger, *ledger; /* energy.c */
     double kinetic_before;                   /* of the last step, for its rate */
     double dt;                               /* the step in use */

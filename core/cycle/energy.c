@@ -209,13 +209,16 @@ static void after_range(void *user, size_t begin, size_t end, size_t chunk, unsi
     m->cycle->chunk_ledger[chunk] = l;
 }
 
-/* Elastic energy and slip of the contact points, in fixed order. */
+/* Elastic energy and slip of the contact points, in the order of their pages. */
 static void sum_points(const tl_model *m, struct tl_ledger *l)
 {
-    const tl_points_table *p = &m->detect->points;
-    for (size_t i = 0; i < p->table.rows; i++) {
-        l->stored += p->stored[i];
-        l->friction += p->dissipated[i];
+    const tl_detect *d = m->detect;
+    for (size_t r = 0; r < d->run_count; r++) {
+        const tl_run *run = &d->runs[r];
+        for (size_t at = run->begin; at < run->end && run->material != TL_NO_ROW; at += TL_PAGE) {
+            l->stored += m->cycle->page_energy[at / TL_PAGE].stored;
+            l->friction += m->cycle->page_energy[at / TL_PAGE].dissipated;
+        }
     }
 }
 

@@ -18,11 +18,9 @@ static tl_sym3 stress_at(const tl_insitu *s, double z)
                      s->stress.yz + h * s->gradient.yz, s->stress.zx + h * s->gradient.zx};
 }
 
-static void load_point(tl_model *m, const tl_insitu *s, size_t i, tl_vec3 foot)
+static void load_point(tl_model *m, const tl_insitu *s, size_t i, tl_vec3 n, double z)
 {
     tl_points_table *p = &m->detect->points;
-    tl_vec3 n = {p->normal[0][i], p->normal[1][i], p->normal[2][i]};
-    double z = m->origin.z + foot.z + p->arm[i].z;
     tl_vec3 traction = tl_s3_mul(stress_at(s, z), n);
     double normal = tl_v3_dot(n, traction);
     tl_vec3 shear = tl_v3_madd(traction, -normal, n);
@@ -38,14 +36,16 @@ static void load_point(tl_model *m, const tl_insitu *s, size_t i, tl_vec3 foot)
 static void load_contact(tl_model *m, const tl_insitu *s, uint32_t c)
 {
     const tl_contacts *contacts = &m->detect->contacts;
-    tl_vec3 foot = tl_body_place(&m->bodies, m->blocks.body[contacts->a[c]]);
+    const tl_point_lanes *lanes = &m->detect->lanes[0];
+    double foot = m->origin.z + tl_body_place(&m->bodies, m->blocks.body[contacts->a[c]]).z;
+    tl_contact_places(m, c, lanes);
     for (uint32_t k = 0; k < contacts->facet_count[c]; k++) {
         const tl_facet *f = &contacts->facet[contacts->facet_start[c] + k];
         if (f->kind != TL_FACET_PATCH)
             continue;
-        size_t begin = contacts->point_start[c] + f->begin;
-        for (size_t i = begin; i < begin + f->count; i++)
-            load_point(m, s, i, foot);
+        for (size_t i = f->begin; i < f->begin + (size_t)f->count; i++)
+            load_point(m, s, contacts->point_start[c] + i, tl_columns_get(lanes->normal, i),
+                       foot + lanes->arm[2][i]);
     }
 }
 

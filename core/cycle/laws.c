@@ -1,14 +1,18 @@
-/* laws.c - contact forces: the laws' plugins called on runs of contact points, and the sum per contact.
+/* laws.c - contact forces: gaps and motion of contact points, the laws' plugins, and the sum per contact.
  *
- * A law gets up to TL_POINT_CHUNK points of one material at once, as the columns themselves. */
+ * A law gets the points of a page at once, all of one material, as the columns themselves; gaps and
+ * motion are in the thread's lanes, which stay in the nearest cache from one end to the other. */
 #include "cycle/cycle_room.h"
 
 #include <stdio.h>
 
+/* Pages a worker takes at a time. */
+#define PAGE_CHUNK 2
+
 typedef struct run_job {
     tl_model *m;
     const tl_material *material;
-    size_t begin;
+    const tl_run *run;
 } run_job;
 
 /* The blocks and joint of the contact that owns a point: "contact of blocks 3 and 7, joint J1:2". */
@@ -29,89 +33,152 @@ static uint32_t contact_of_point(const tl_contacts *contacts, size_t point)
     return 0;
 }
 
-static void run_law(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
+/* Calls the law on `count` points from `first`; false when it failed. */
+static bool call_law(const run_job *job, size_t first, size_t count, const tl_point_lanes *l)
 {
-    (void)thread;
-    const run_job *job = user;
-    tl_detect *d = job->m->detect;
-    tl_points_table *p = &d->points;
-    size_t at = job->begin + begin;
+    tl_points_table *p = &job->m->detect->points;
     double *state[TL_STATE_COLUMNS];
     for (int k = 0; k < TL_STATE_COLUMNS; k++)
-        state[k] = p->state[k] + at;
-    tl_law_batch batch = {.size = sizeof batch,
-                          .count = (uint32_t)(end - begin),
-                          .dt = job->m->dt,
-                          .area = p->area + at,
-                          .closure = p->closure + at,
-                          .f_n0 = p->f_n0 + at,
-                          .normal = {p->normal[0] + at, p->normal[1] + at, p->normal[2] + at},
-                          .du_n = p->du_n + at,
-                          .du_s = {p->du_s[0] + at, p->du_s[1] + at, p->du_s[2] + at},
-                          .f_n = p->f_n + at,
-                          .f_s = {p->f_s[0] + at, p->f_s[1] + at, p->f_s[2] + at},
-                          .state = state,
-                          .flags = p->flags + at,
-                          .stored = p->stored + at,
-                          .dissipated = p->dissipated + at};
+        state[k] = p->state[k] + first;
+    tl_law_batch batch = {
+        .size = sizeof batch,
+        .count = (uint32_t)count,
+        .dt = job->m->dt,
+        .area = p->area + first,
+        .closure = p->closure + first,
+        .f_n0 = p->f_n0 + first,
+        .normal = {l->normal[0], l->normal[1], l->normal[2]},
+        .du_n = l->du_n,
+        .du_s = {l->du_s[0], l->du_s[1], l->du_s[2]},
+        .f_n = p->f_n + first,
+        .f_s = {p->f_s[0] + first, p->f_s[1] + first, p->f_s[2] + first},
+        .state = state,
+        .flags = p->flags + first,
+        .stored = l->stored,
+        .dissipated = l->dissipated,
+    };
     const tl_law_ops *ops = job->material->kind->ops;
     tl_report report = {.size = sizeof report};
     tl_status status = ops->update(job->material->self, &batch, &report);
     if (status != TL_OK)
-        tl_cycle_failed(job->m, job->begin / TL_LANES + chunk, status, at + report.first_bad,
-                        report.text);
+        tl_cycle_failed(job->m, first, status, first + report.first_bad, report.text);
+    return status == TL_OK;
 }
 
 /* The couple on B by which the areas of a facet, where they depend on tilt, do work: what the springs
  * gain or lose with their areas, the bodies lose or gain. Areas keep the points' stresses, so the energy
  * stored in them is in proportion. */
-static tl_vec3 facet_couple(const tl_points_table *p, const tl_facet *f, size_t begin,
-                            const tl_mat3 *ra)
+static tl_vec3 facet_couple(const tl_facet *f, const double *stored_in, const tl_mat3 *ra)
 {
     double stored = 0;
-    for (size_t i = begin + f->begin; i < begin + f->begin + f->count; i++)
-        stored += p->stored[i];
+    for (size_t i = f->begin; i < f->begin + (size_t)f->count; i++)
+        stored += stored_in[i];
     return tl_v3_scale(stored, tl_m3_mul(ra, f->swing));
 }
 
-/* Sums of a contact's points: the force on B, and the moments about both bodies' centroids. */
-static void sum_contact(tl_model *m, uint32_t c)
+/* Force on B of a contact's points, and its moment about A's centroid. */
+typedef struct sums {
+    tl_vec3 force, moment;
+} sums;
+
+static double across(const double *lane)
+{
+    return (lane[0] + lane[1]) + (lane[2] + lane[3]);
+}
+
+/* Four sums side by side, added in the end: the same order for every width of the processor's vectors. Lanes
+ * past the last point are inert. */
+TL_VECTORIZED static sums sum_points(const tl_points_table *p, size_t begin, size_t count,
+                                     const tl_point_lanes *l, size_t lane)
+{
+    const double *f_n = p->f_n + begin, *f_x = p->f_s[0] + begin, *f_y = p->f_s[1] + begin;
+    const double *f_z = p->f_s[2] + begin, *n_x = l->normal[0] + lane, *n_y = l->normal[1] + lane;
+    const double *n_z = l->normal[2] + lane, *x = l->arm[0] + lane, *y = l->arm[1] + lane;
+    const double *z = l->arm[2] + lane;
+    double fx[TL_POINT_ROUND] = {0}, fy[TL_POINT_ROUND] = {0}, fz[TL_POINT_ROUND] = {0};
+    double mx[TL_POINT_ROUND] = {0}, my[TL_POINT_ROUND] = {0}, mz[TL_POINT_ROUND] = {0};
+    for (size_t i = 0; i < count; i += TL_POINT_ROUND)
+#pragma omp simd
+        for (size_t k = 0; k < TL_POINT_ROUND; k++) {
+            double gx = f_x[i + k] + f_n[i + k] * n_x[i + k];
+            double gy = f_y[i + k] + f_n[i + k] * n_y[i + k];
+            double gz = f_z[i + k] + f_n[i + k] * n_z[i + k];
+            fx[k] += gx;
+            fy[k] += gy;
+            fz[k] += gz;
+            mx[k] += y[i + k] * gz - z[i + k] * gy;
+            my[k] += z[i + k] * gx - x[i + k] * gz;
+            mz[k] += x[i + k] * gy - y[i + k] * gx;
+        }
+    return (sums){{across(fx), across(fy), across(fz)}, {across(mx), across(my), across(mz)}};
+}
+
+/* The sums of a contact, with the couples of its facets, about both bodies' centroids. Lane 0 is point
+ * `first`. */
+static void sum_contact(tl_model *m, uint32_t c, const tl_point_lanes *l, size_t first)
 {
     tl_contacts *contacts = &m->detect->contacts;
-    const tl_points_table *p = &m->detect->points;
-    tl_vec3 force = {0, 0, 0}, moment = {0, 0, 0};
-    size_t begin = contacts->point_start[c], end = begin + contacts->point_count[c];
-    for (size_t i = begin; i < end; i++) {
-        double f_n = p->f_n[i];
-        tl_vec3 f = {f_n * p->normal[0][i] + p->f_s[0][i], f_n * p->normal[1][i] + p->f_s[1][i],
-                     f_n * p->normal[2][i] + p->f_s[2][i]};
-        force = tl_v3_add(force, f);
-        moment = tl_v3_add(moment, tl_v3_cross(p->arm[i], f));
-    }
-    tl_vec3 apart =
-        tl_body_apart(&m->bodies, m->blocks.body[contacts->a[c]], m->blocks.body[contacts->b[c]]);
-    const tl_mat3 *ra = &m->bodies.r[m->blocks.body[contacts->a[c]]];
+    size_t begin = contacts->point_start[c];
+    sums sum = sum_points(&m->detect->points, begin, contacts->point_count[c], l, begin - first);
+    uint32_t a = m->blocks.body[contacts->a[c]], b = m->blocks.body[contacts->b[c]];
     const tl_facet *facets = &contacts->facet[contacts->facet_start[c]];
     for (uint32_t k = 0; k < contacts->facet_count[c]; k++)
         if (tl_v3_norm2(facets[k].swing) > 0)
-            moment = tl_v3_add(moment, facet_couple(p, &facets[k], begin, ra));
-    contacts->force[c] = force;
-    contacts->moment_a[c] = tl_v3_neg(moment);
-    contacts->moment_b[c] = tl_v3_sub(moment, tl_v3_cross(apart, force));
+            sum.moment = tl_v3_add(
+                sum.moment, facet_couple(&facets[k], l->stored + (begin - first), &m->bodies.r[a]));
+    contacts->force[c] = sum.force;
+    contacts->moment_a[c] = tl_v3_neg(sum.moment);
+    contacts->moment_b[c] =
+        tl_v3_sub(sum.moment, tl_v3_cross(tl_body_apart(&m->bodies, a, b), sum.force));
+    if (!tl_v3_finite(sum.force) || !tl_v3_finite(sum.moment))
+        tl_cycle_failed(m, begin, TL_E_NUMERIC, begin,
+                        "the force is not a finite number: is the time step too large, or a "
+                        "property out of proportion?");
 }
 
-static void sum_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
+/* Energy in the points of a page, and turned to heat there in this step. */
+TL_VECTORIZED static tl_page_energy page_energy(const tl_point_lanes *l, size_t count)
 {
-    (void)thread;
-    tl_model *m = user;
-    tl_contacts *contacts = &m->detect->contacts;
-    for (size_t c = begin; c < end; c++) {
-        sum_contact(m, (uint32_t)c);
-        if (!tl_v3_finite(contacts->force[c]) || !tl_v3_finite(contacts->moment_a[c]))
-            tl_cycle_failed(m, chunk, TL_E_NUMERIC, contacts->point_start[c],
-                            "the force is not a finite number: is the time step too large, or a "
-                            "property out of proportion?");
-    }
+    const double *stored = l->stored, *dissipated = l->dissipated;
+    double s[TL_LANES] = {0}, d[TL_LANES] = {0};
+    for (size_t i = 0; i < count; i += TL_LANES)
+#pragma omp simd
+        for (size_t k = 0; k < TL_LANES; k++) {
+            s[k] += stored[i + k];
+            d[k] += dissipated[i + k];
+        }
+    return (tl_page_energy){across(s) + across(s + 4), across(d) + across(d + 4)};
+}
+
+/* From the places of the bodies to the forces of the contacts on a page. */
+static void force_page(const run_job *job, size_t page, const tl_point_lanes *l)
+{
+    tl_model *m = job->m;
+    tl_points_table *p = &m->detect->points;
+    size_t first = page * TL_PAGE, end = first + TL_PAGE;
+    const uint32_t *owner = p->owner + first / TL_POINT_ROUND;
+    job->m->cycle->page_energy[page] = (tl_page_energy){0, 0};
+    if (*owner == TL_OWNED_BEFORE)
+        return;
+    while (end < job->run->end && p->owner[end / TL_POINT_ROUND] == TL_OWNED_BEFORE)
+        end += TL_PAGE;
+    end = end < job->run->end ? end : (job->run->end + TL_LANES - 1) / TL_LANES * TL_LANES;
+    size_t count = end - first, groups = (count + TL_POINT_ROUND - 1) / TL_POINT_ROUND;
+    tl_contacts_follow(m, first, count, l);
+    if (!call_law(job, first, count, l))
+        return;
+    for (size_t g = 0; g < groups; g++)
+        if (owner[g] < TL_OWNED_BEFORE)
+            sum_contact(m, owner[g], l, first);
+    m->cycle->page_energy[page] = page_energy(l, count);
+}
+
+static void force_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
+{
+    (void)chunk;
+    const run_job *job = user;
+    for (size_t page = begin; page < end; page++)
+        force_page(job, job->run->begin / TL_PAGE + page, &job->m->detect->lanes[thread]);
 }
 
 void tl_cycle_failed(tl_model *m, size_t chunk, tl_status status, size_t point, const char *text)
@@ -145,18 +212,19 @@ static tl_status report_failure(tl_model *m)
 tl_status tl_laws_apply(tl_model *m)
 {
     tl_detect *d = m->detect;
+    struct tl_cycle *cycle = m->cycle;
+    if (!tl_grow(&cycle->page_energy, &cycle->page_room, d->points.table.rows / TL_PAGE,
+                 sizeof *cycle->page_energy))
+        return tl_fail_memory(&m->error);
+    tl_follow_bodies(m);
     for (size_t r = 0; r < d->run_count; r++) {
         const tl_run *run = &d->runs[r];
         if (run->material == TL_NO_ROW)
             continue;
-        run_job job = {m, &m->materials[run->material], run->begin};
-        size_t points = (run->end - run->begin + TL_LANES - 1) / TL_LANES * TL_LANES;
-        tl_parallel_for(m->pool, points, TL_POINT_CHUNK, run_law, &job);
+        run_job job = {m, &m->materials[run->material], run};
+        size_t pages = (run->end - run->begin + TL_PAGE - 1) / TL_PAGE;
+        tl_parallel_for(m->pool, pages, PAGE_CHUNK, force_range, &job);
     }
-    tl_status status = report_failure(m);
-    if (status != TL_OK)
-        return status;
-    tl_parallel_for(m->pool, d->contacts.table.rows, TL_BODY_CHUNK, sum_range, m);
     return report_failure(m);
 }
 

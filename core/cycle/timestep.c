@@ -95,6 +95,30 @@ static bound paper_rule(const tl_model *m)
     return out;
 }
 
+/* Area of a facet's points, and that times their squared distance from a body's centroid. */
+typedef struct sums {
+    double area, area_r2;
+} sums;
+
+static sums facet_stiffness(const tl_model *m, uint32_t c, const tl_facet *f, bool of_b)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    const tl_points_table *p = &m->detect->points;
+    uint32_t a = m->blocks.body[contacts->a[c]], b = m->blocks.body[contacts->b[c]];
+    /* points are kept in one body's frame; the other's centroid in it */
+    bool in_b = f->kind == TL_FACET_FACE_A;
+    tl_vec3 apart = tl_body_apart(&m->bodies, in_b ? b : a, in_b ? a : b), centre = {0, 0, 0};
+    if (in_b != of_b)
+        centre = tl_m3_tmul(&m->bodies.r[in_b ? b : a], apart);
+    sums out = {0, 0};
+    size_t begin = contacts->point_start[c] + f->begin;
+    for (size_t i = begin; i < begin + f->count; i++) {
+        out.area += p->area[i];
+        out.area_r2 += p->area[i] * tl_v3_norm2(tl_v3_sub(tl_columns_get(p->p, i), centre));
+    }
+    return out;
+}
+
 /* Sums of k and k r^2 over the contact points of a body. */
 static void body_stiffness(const tl_model *m, uint32_t body, double *k, double *k_r2)
 {
@@ -108,13 +132,11 @@ static void body_stiffness(const tl_model *m, uint32_t body, double *k, double *
             if (c->material[i] == TL_NO_ROW)
                 continue;
             double stiffness = law_stiffness(m, c->material[i]);
-            tl_vec3 apart = {0, 0, 0};
-            if (c->b[i] == row)
-                apart = tl_body_apart(&m->bodies, m->blocks.body[c->a[i]], body);
-            for (uint32_t p = c->point_start[i]; p < c->point_start[i] + c->point_count[i]; p++) {
-                double one = stiffness * d->points.area[p];
-                *k += one;
-                *k_r2 += one * tl_v3_norm2(tl_v3_sub(d->points.arm[p], apart));
+            for (uint32_t f = 0; f < c->facet_count[i]; f++) {
+                const tl_facet *facet = &c->facet[c->facet_start[i] + f];
+                sums next = facet_stiffness(m, i, facet, c->b[i] == row);
+                *k += stiffness * next.area;
+                *k_r2 += stiffness * next.area_r2;
             }
         }
     }

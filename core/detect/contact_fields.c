@@ -91,9 +91,10 @@ tl_status tl_contact_field(tl_model *m, tl_id contact, size_t index, tl_field_va
         return tl_fail(&m->error, TL_E_STALE, "contact %u no longer exists: its blocks have parted",
                        contact);
     *value = (tl_field_value){{0}, NULL};
-    double normal, area = contacts->area[c];
-    tl_vec3 shear;
+    double normal, gap, area = contacts->area[c];
+    tl_vec3 shear, direction, point;
     forces(d, c, &normal, &shear);
+    tl_contact_summary(m, c, &direction, &point, &gap);
     switch (index) {
     case F_ID: value->number[0] = contact; break;
     case F_BLOCKS:
@@ -102,9 +103,9 @@ tl_status tl_contact_field(tl_model *m, tl_id contact, size_t index, tl_field_va
         break;
     case F_JOINT: value->text = tl_tag_name(m, contacts->tag[c]); break;
     case F_AREA: value->number[0] = contacts->area[c]; break;
-    case F_NORMAL: put_vector(value, contacts->normal[c]); break;
-    case F_POINT: put_vector(value, tl_v3_add(m->origin, contacts->point[c])); break;
-    case F_GAP: value->number[0] = contacts->gap[c]; break;
+    case F_NORMAL: put_vector(value, direction); break;
+    case F_POINT: put_vector(value, tl_v3_add(m->origin, point)); break;
+    case F_GAP: value->number[0] = gap; break;
     case F_NORMAL_FORCE: value->number[0] = normal; break;
     case F_SHEAR_FORCE: put_vector(value, shear); break;
     case F_NORMAL_STRESS: value->number[0] = area > 0 ? normal / area : 0; break;

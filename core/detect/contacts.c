@@ -8,8 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Room for points is a multiple of this. */
-#define POINT_ROUND 4
 /* A run has room for this share more points than it needs, and for some more at least. */
 #define RUN_SHARE 8
 #define RUN_LEAST 256
@@ -36,10 +34,7 @@ void tl_contacts_init(tl_contacts *c, tl_points_table *p)
     TL_COLUMN(t, c, point_start, 0);
     TL_COLUMN(t, c, point_count, TL_COLUMN_STATE);
     TL_COLUMN(t, c, point_room, 0);
-    TL_COLUMN(t, c, normal, 0);
-    TL_COLUMN(t, c, point, 0);
     TL_COLUMN(t, c, area, 0);
-    TL_COLUMN(t, c, gap, 0);
     TL_COLUMN(t, c, force, 0);
     TL_COLUMN(t, c, moment_a, 0);
     TL_COLUMN(t, c, moment_b, 0);
@@ -49,27 +44,35 @@ void tl_contacts_init(tl_contacts *c, tl_points_table *p)
 
     t = &p->table;
     tl_table_init(t, p);
-    TL_COLUMN(t, p, p, TL_COLUMN_STATE);
+    for (int k = 0; k < 3; k++)
+        TL_COLUMN(t, p, p[k], TL_COLUMN_STATE);
     TL_COLUMN(t, p, rest, TL_COLUMN_STATE);
     TL_COLUMN(t, p, lean, TL_COLUMN_STATE);
     TL_COLUMN(t, p, key, 0);
-    TL_COLUMN(t, p, arm, 0);
     TL_COLUMN(t, p, area, TL_COLUMN_STATE);
     TL_COLUMN(t, p, reference, TL_COLUMN_STATE);
     TL_COLUMN(t, p, closure, TL_COLUMN_STATE);
     TL_COLUMN(t, p, f_n0, TL_COLUMN_STATE);
-    TL_COLUMN(t, p, du_n, 0);
     TL_COLUMN(t, p, f_n, TL_COLUMN_STATE);
     TL_COLUMN(t, p, flags, TL_COLUMN_STATE);
-    TL_COLUMN(t, p, stored, 0);
-    TL_COLUMN(t, p, dissipated, 0);
-    for (int k = 0; k < 3; k++) {
-        TL_COLUMN(t, p, normal[k], TL_COLUMN_STATE);
-        TL_COLUMN(t, p, du_s[k], 0);
+    for (int k = 0; k < 3; k++)
         TL_COLUMN(t, p, f_s[k], TL_COLUMN_STATE);
-    }
     for (int k = 0; k < TL_STATE_COLUMNS; k++)
         TL_COLUMN(t, p, state[k], TL_COLUMN_STATE);
+}
+
+void tl_point_lanes_init(tl_point_lanes *l)
+{
+    tl_table *t = &l->table;
+    tl_table_init(t, l);
+    for (int k = 0; k < 3; k++) {
+        TL_COLUMN(t, l, arm[k], 0);
+        TL_COLUMN(t, l, normal[k], 0);
+        TL_COLUMN(t, l, du_s[k], 0);
+    }
+    TL_COLUMN(t, l, du_n, 0);
+    TL_COLUMN(t, l, stored, 0);
+    TL_COLUMN(t, l, dissipated, 0);
 }
 
 /* ---------------------------------------------------------------- points ----------------- */
@@ -88,11 +91,10 @@ static uint32_t state_width(const tl_state *state)
 void tl_point_clear(tl_points_table *p, size_t i)
 {
     p->area[i] = p->rest[i] = p->lean[i] = p->reference[i] = p->closure[i] = 0;
-    p->f_n0[i] = p->f_n[i] = p->du_n[i] = p->stored[i] = p->dissipated[i] = 0;
+    p->f_n0[i] = p->f_n[i] = 0;
     p->flags[i] = p->key[i] = 0;
-    p->p[i] = p->arm[i] = tl_v3(0, 0, 0);
     for (int k = 0; k < 3; k++)
-        p->normal[k][i] = p->du_s[k][i] = p->f_s[k][i] = 0;
+        p->p[k][i] = p->f_s[k][i] = 0;
     for (int k = 0; k < TL_STATE_COLUMNS; k++)
         p->state[k][i] = 0;
 }
@@ -218,9 +220,10 @@ static place *sorted(const tl_contacts *c, size_t *count)
     return list;
 }
 
-static uint32_t rounded(uint32_t value, uint32_t step)
+/* Room for points, with one to spare; a contact that touches without area needs none. */
+static uint32_t room_for(uint32_t points)
 {
-    return (value + step - 1) / step * step;
+    return points ? (points + TL_POINT_ROUND) / TL_POINT_ROUND * TL_POINT_ROUND : 0;
 }
 
 static bool add_run(tl_detect *d, uint32_t material, size_t begin)
@@ -297,6 +300,33 @@ bool tl_contacts_index(tl_model *m)
     return true;
 }
 
+static size_t whole_pages(size_t points)
+{
+    return (points + TL_PAGE - 1) / TL_PAGE * TL_PAGE;
+}
+
+/* Where `room` points begin that follow what is used up to `end`: within one page, or on pages of their own. */
+static size_t begin_after(size_t end, uint32_t room)
+{
+    return end % TL_PAGE + room > TL_PAGE ? whole_pages(end) : end;
+}
+
+/* Where points that begin there end, for what follows. */
+static size_t end_of(size_t begin, uint32_t room)
+{
+    return room > TL_PAGE ? whole_pages(begin + room) : begin + room;
+}
+
+/* Notes the contact whose points begin there; on pages it has for itself, that nothing else does. */
+static void own(tl_points_table *p, size_t begin, uint32_t room, uint32_t row)
+{
+    if (room)
+        p->owner[begin / TL_POINT_ROUND] = row;
+    for (size_t page = whole_pages(begin + 1); page < begin + room && room > TL_PAGE;
+         page += TL_PAGE)
+        p->owner[page / TL_POINT_ROUND] = row == TL_NO_ROW ? TL_NO_ROW : TL_OWNED_BEFORE;
+}
+
 /* Where the runs of the sorted contacts begin and end, with their slack; *points is the sum. */
 static bool lay_runs(tl_detect *d, const place *list, size_t count, size_t *points)
 {
@@ -309,10 +339,11 @@ static bool lay_runs(tl_detect *d, const place *list, size_t count, size_t *poin
             return false;
         tl_run *run = &d->runs[d->run_count - 1];
         for (; i < count && list[i].material == material; i++)
-            run->limit += c->point_room[list[i].row];
+            run->limit = end_of(begin_after(run->limit, c->point_room[list[i].row]),
+                                c->point_room[list[i].row]);
         size_t used = run->limit - run->begin;
         run->limit += used / RUN_SHARE > RUN_LEAST ? used / RUN_SHARE : RUN_LEAST;
-        run->limit = (run->limit + TL_RUN_ROUND - 1) / TL_RUN_ROUND * TL_RUN_ROUND;
+        run->limit = whole_pages(run->limit);
         *points = run->limit;
     }
     return true;
@@ -332,27 +363,65 @@ static bool lay_facets(tl_detect *d, size_t facets)
     return true;
 }
 
+/* Nobody owns points yet. */
+static bool lay_owners(tl_detect *d, size_t points)
+{
+    tl_points_table *p = &d->spare_points;
+    size_t groups = points / TL_POINT_ROUND;
+    if (!tl_grow(&p->owner, &p->owner_room, groups + 1, sizeof *p->owner))
+        return false;
+    for (size_t i = 0; i < groups; i++)
+        p->owner[i] = TL_NO_ROW;
+    return true;
+}
+
+/* Lanes for a page, or the pages of the largest contact, for every thread. */
+static bool make_lanes(tl_detect *d, size_t largest)
+{
+    size_t room = whole_pages(largest);
+    for (unsigned i = 0; i < d->threads; i++)
+        if (!tl_table_resize(&d->lanes[i].table, room))
+            return false;
+    d->lane_room = room > d->lane_room ? room : d->lane_room;
+    return true;
+}
+
+/* Contacts are laid out anew now and then only: the room they came from goes back. */
+static void free_spare(tl_detect *d)
+{
+    tl_table_free(&d->spare.table);
+    tl_table_free(&d->spare_points.table);
+    free(d->spare_points.owner);
+    d->spare_points.owner = NULL;
+    d->spare_points.owner_room = 0;
+    free(d->spare.facet);
+    d->spare.facet = NULL;
+    d->spare.facet_capacity = 0;
+}
+
 tl_status tl_contacts_repack(tl_model *m)
 {
     tl_detect *d = m->detect;
     tl_contacts *c = &d->contacts, *fresh = &d->spare;
-    size_t count, points, facets = 0;
+    size_t count, points, facets = 0, largest = TL_PAGE;
     place *list = sorted(c, &count);
     if (!list)
         return tl_fail_memory(&m->error);
     for (size_t i = 0; i < count; i++) {
         uint32_t row = list[i].row;
         if (c->fate[row] == TL_FATE_GROW) {
-            c->point_room[row] = rounded(c->want_points[row] + 1, POINT_ROUND);
+            c->point_room[row] = room_for(c->want_points[row]);
             c->facet_room[row] = c->want_facets[row];
         }
         facets += c->facet_room[row];
+        largest = c->point_room[row] > largest ? c->point_room[row] : largest;
     }
     fresh->table.rows = 0;
     d->spare_points.table.rows = 0;
     if (!lay_runs(d, list, count, &points) || !lay_facets(d, facets) ||
         !tl_table_resize(&fresh->table, count) ||
-        !tl_table_resize(&d->spare_points.table, points)) {
+        !tl_table_resize(&d->spare_points.table, points) || !lay_owners(d, points) ||
+        !make_lanes(d, largest)) {
         free(list);
         return tl_fail_memory(&m->error);
     }
@@ -362,14 +431,17 @@ tl_status tl_contacts_repack(tl_model *m)
         uint32_t row = list[i].row;
         if (i && list[i].material != list[i - 1].material)
             run++;
-        copy_contact(d, row, i, (uint32_t)run->end, (uint32_t)facet_at);
+        size_t at = begin_after(run->end, c->point_room[row]);
+        copy_contact(d, row, i, (uint32_t)at, (uint32_t)facet_at);
         d->pairs[c->pair[row]].contact = i;
-        run->end += c->point_room[row];
+        own(&d->spare_points, at, c->point_room[row], i);
+        run->end = end_of(at, c->point_room[row]);
         facet_at += c->facet_room[row];
     }
     free(list);
     fresh->facet_total = facet_at;
     swap_tables(d);
+    free_spare(d);
     return tl_contacts_index(m) ? TL_OK : tl_fail_memory(&m->error);
 }
 
@@ -384,6 +456,7 @@ static tl_run *run_of(tl_detect *d, uint32_t material)
 static void clear_points(tl_detect *d, uint32_t contact)
 {
     size_t begin = d->contacts.point_start[contact];
+    own(&d->points, begin, d->contacts.point_room[contact], TL_NO_ROW);
     for (size_t i = begin; i < begin + d->contacts.point_room[contact]; i++)
         tl_point_clear(&d->points, i);
 }
@@ -392,10 +465,11 @@ bool tl_contact_place(tl_detect *d, uint32_t row)
 {
     tl_contacts *c = &d->contacts;
     tl_run *run = run_of(d, c->material[row]);
-    uint32_t points = rounded(c->want_points[row] + 1, POINT_ROUND), facets = c->want_facets[row];
-    if (!run || run->end + points > run->limit || c->facet_total + facets > c->facet_capacity)
+    uint32_t points = room_for(c->want_points[row]), facets = c->want_facets[row];
+    size_t from = c->point_start[row], to = begin_after(run ? run->end : 0, points);
+    if (!run || points > d->lane_room || end_of(to, points) > run->limit ||
+        c->facet_total + facets > c->facet_capacity)
         return false;
-    size_t from = c->point_start[row], to = run->end;
     for (size_t k = 0; k < d->points.table.column_count && c->point_count[row]; k++) {
         size_t size = d->points.table.columns[k].size;
         char *data = tl_table_data(&d->points.table, k);
@@ -409,7 +483,8 @@ bool tl_contact_place(tl_detect *d, uint32_t row)
     c->point_room[row] = points;
     c->facet_start[row] = (uint32_t)c->facet_total;
     c->facet_room[row] = facets;
-    run->end += points;
+    run->end = end_of(to, points);
+    own(&d->points, to, points, row);
     c->facet_total += facets;
     return true;
 }
@@ -424,6 +499,7 @@ void tl_contact_remove(tl_detect *d, uint32_t row)
     if (row != last) {
         tl_table_move(&c->table, row, last);
         d->pairs[c->pair[row]].contact = row;
+        own(&d->points, c->point_start[row], c->point_room[row], row);
     }
     c->table.rows = last;
 }

@@ -50,9 +50,15 @@ static void detect_destroy(tl_detect *d)
     tl_table_free(&d->spare.table);
     tl_table_free(&d->points.table);
     tl_table_free(&d->spare_points.table);
-    for (unsigned i = 0; i < d->threads; i++)
+    for (unsigned i = 0; i < d->threads; i++) {
         narrow_free(&d->narrow[i]);
+        tl_table_free(&d->lanes[i].table);
+    }
     free(d->narrow);
+    free(d->lanes);
+    free(d->moving);
+    free(d->points.owner);
+    free(d->spare_points.owner);
     free(d->contacts.facet);
     free(d->spare.facet);
     free(d->pairs);
@@ -73,10 +79,15 @@ static tl_status ensure(tl_model *m)
         return tl_fail_memory(&m->error);
     d->threads = tl_pool_threads(m->pool);
     d->narrow = calloc(d->threads, sizeof *d->narrow);
-    if (!d->narrow) {
+    d->lanes = calloc(d->threads, sizeof *d->lanes);
+    if (!d->narrow || !d->lanes) {
+        free(d->narrow);
+        free(d->lanes);
         free(d);
         return tl_fail_memory(&m->error);
     }
+    for (unsigned i = 0; i < d->threads; i++)
+        tl_point_lanes_init(&d->lanes[i]);
     tl_contacts_init(&d->contacts, &d->points);
     tl_contacts_init(&d->spare, &d->spare_points);
     m->detect = d;
@@ -216,15 +227,20 @@ static void refit(tl_model *m, uint32_t c, const tl_manifold *g)
 {
     tl_detect *d = m->detect;
     tl_points_table *p = &d->points;
-    memcpy(&d->contacts.facet[d->contacts.facet_start[c]], g->facets,
-           g->facet_count * sizeof *g->facets);
+    tl_facet *facet = &d->contacts.facet[d->contacts.facet_start[c]];
+    for (size_t k = 0; k < g->facet_count; k++) {
+        tl_vec3 last = facet[k].last, last_lean = facet[k].last_lean;
+        facet[k] = g->facets[k];
+        facet[k].last = last;
+        facet[k].last_lean = last_lean;
+    }
     uint32_t material = d->contacts.material[c];
     const tl_kind *kind = material == TL_NO_ROW ? NULL : m->materials[material].kind;
     for (size_t k = 0; k < g->point_count; k++) {
         size_t i = d->contacts.point_start[c] + k;
         double old = p->area[i], scale = g->points[k].area / old;
         double state[TL_STATE_COLUMNS];
-        p->p[i] = g->points[k].p;
+        tl_columns_put(p->p, i, g->points[k].p);
         p->rest[i] = g->points[k].rest;
         p->lean[i] = g->points[k].lean;
         p->area[i] = g->points[k].area;
@@ -285,11 +301,14 @@ static bool rebuild(tl_model *m, uint32_t c, tl_narrow *room, bool across)
 }
 
 /* Puts the built manifold in the place of the contact's points, or asks for room. */
-static bool take_manifold(tl_model *m, uint32_t c, tl_narrow *room)
+static bool take_manifold(tl_model *m, uint32_t c, tl_narrow *room, const tl_point_lanes *lanes)
 {
     tl_detect *d = m->detect;
     tl_contacts *contacts = &d->contacts;
     const tl_manifold *g = &room->manifold;
+    contacts->area[c] = 0;
+    for (size_t k = 0; k < g->point_count; k++)
+        contacts->area[c] += g->points[k].area;
     if (same_topology(d, c, g)) {
         refit(m, c, g);
         return true;
@@ -300,7 +319,7 @@ static bool take_manifold(tl_model *m, uint32_t c, tl_narrow *room)
         contacts->fate[c] = TL_FATE_GROW;
         return true;
     }
-    return tl_contact_transfer(m, c, room);
+    return tl_contact_transfer(m, c, room, lanes);
 }
 
 /* How far a contact whose facets have just been made may move before they are made anew. */
@@ -309,12 +328,17 @@ static void allow_reuse(tl_model *m, uint32_t c, double tilt)
     tl_contacts *contacts = &m->detect->contacts;
     double size = fmin(m->blocks.size[contacts->a[c]], m->blocks.size[contacts->b[c]]);
     double most = (contacts->point_count[c] ? REUSE : SILENT) * size;
-    if (tilt * most > GAP_SHARE * fabs(contacts->gap[c]))
-        most = GAP_SHARE * fabs(contacts->gap[c]) / tilt;
+    if (tilt > 0) {
+        double gap = INFINITY;
+        for (size_t i = contacts->point_start[c];
+             i < contacts->point_start[c] + contacts->point_count[c]; i++)
+            gap = fmin(gap, -(m->detect->points.closure[i] + m->detect->points.reference[i]));
+        most = fmin(most, GAP_SHARE * fabs(gap) / tilt);
+    }
     contacts->until[c] = tl_pair_odometer(m, contacts->a[c], contacts->b[c]) + most;
 }
 
-static void update_contact(tl_model *m, uint32_t c, tl_narrow *room)
+static void update_contact(tl_model *m, uint32_t c, tl_narrow *room, const tl_point_lanes *lanes)
 {
     tl_contacts *contacts = &m->detect->contacts;
     if (contacts->fate[c] == TL_FATE_DIE)
@@ -323,14 +347,12 @@ static void update_contact(tl_model *m, uint32_t c, tl_narrow *room)
     if (!m->config.reuse_geometry || odometer > contacts->until[c]) {
         bool across = carries_across(m->detect, c);
         if (!rebuild(m, c, room, across) ||
-            (contacts->fate[c] != TL_FATE_DIE && !take_manifold(m, c, room))) {
+            (contacts->fate[c] != TL_FATE_DIE && !take_manifold(m, c, room, lanes))) {
             contacts->fate[c] = TL_FATE_MEMORY;
             return;
         }
         allow_reuse(m, c, room->manifold.tilt);
     }
-    if (contacts->fate[c] == TL_FATE_KEEP || contacts->fate[c] == TL_FATE_MATERIAL)
-        tl_contact_follow(m, c, m->dt);
 }
 
 /* ---------------------------------------------------------------- phases ----------------- */
@@ -348,7 +370,7 @@ static void update_range(void *user, size_t begin, size_t end, size_t chunk, uns
     (void)chunk;
     tl_model *m = user;
     for (size_t c = begin; c < end; c++)
-        update_contact(m, (uint32_t)c, &m->detect->narrow[thread]);
+        update_contact(m, (uint32_t)c, &m->detect->narrow[thread], &m->detect->lanes[thread]);
 }
 
 /* Bodies that were joined or parted have other frames than before: what contacts keep in them is made
@@ -363,11 +385,12 @@ static void reframe_range(void *user, size_t begin, size_t end, size_t chunk, un
         if (contacts->fate[c] == TL_FATE_DIE)
             continue;
         contacts->searched[c] = -INFINITY;
+        room->reframed = true;
         if (!rebuild(m, c, room, carries_across(m->detect, c)) ||
-            (contacts->fate[c] != TL_FATE_DIE && !take_manifold(m, c, room)))
+            (contacts->fate[c] != TL_FATE_DIE &&
+             !take_manifold(m, c, room, &m->detect->lanes[thread])))
             contacts->fate[c] = TL_FATE_MEMORY;
-        else if (contacts->fate[c] == TL_FATE_KEEP || contacts->fate[c] == TL_FATE_MATERIAL)
-            tl_contact_follow(m, c, 0);
+        room->reframed = false;
     }
 }
 
@@ -382,7 +405,10 @@ static bool fill_contact(tl_model *m, uint32_t c, tl_narrow *room)
         contacts->margin[c] = axis_margin(&contacts->axis[c], view.size);
     tl_share_rule rule = share_rule(m, &view, contacts->tag[c], carries_across(m->detect, c));
     tl_manifold_build(&view, &contacts->axis[c], &rule, room);
-    if (room->manifold.failed || !tl_contact_transfer(m, c, room))
+    contacts->area[c] = 0;
+    for (size_t k = 0; k < room->manifold.point_count; k++)
+        contacts->area[c] += room->manifold.points[k].area;
+    if (room->manifold.failed || !tl_contact_transfer(m, c, room, &m->detect->lanes[0]))
         return false;
     allow_reuse(m, c, room->manifold.tilt);
     return true;
@@ -472,24 +498,21 @@ static bool settle_rows(tl_model *m)
 }
 
 /* Builds the facets of the contacts that have been given their room. */
-static tl_status fill_contacts(tl_model *m, bool follow)
+static tl_status fill_contacts(tl_model *m)
 {
     tl_contacts *c = &m->detect->contacts;
     for (uint32_t row = 0; row < c->table.rows; row++) {
         if (c->fate[row] == TL_FATE_GROW) {
             if (!fill_contact(m, row, &m->detect->narrow[0]))
                 return tl_fail_memory(&m->error);
-            if (follow)
-                tl_contact_follow(m, row, m->dt);
         }
         c->fate[row] = TL_FATE_KEEP;
     }
     return TL_OK;
 }
 
-/* Births, deaths, growth and changes of material, in the order of pairs. With `follow` the contacts that
- * had to wait for this get their gaps. */
-static tl_status settle(tl_model *m, bool follow)
+/* Births, deaths, growth and changes of material, in the order of pairs. */
+static tl_status settle(tl_model *m)
 {
     tl_detect *d = m->detect;
     tl_contacts *c = &d->contacts;
@@ -515,7 +538,7 @@ static tl_status settle(tl_model *m, bool follow)
     else if (!tl_contacts_index(m))
         status = tl_fail_memory(&m->error);
     d->rows_changed = status != TL_OK;
-    return status == TL_OK ? fill_contacts(m, follow) : status;
+    return status == TL_OK ? fill_contacts(m) : status;
 }
 
 /* Pairs and contacts after a change of rows or laws, and new contacts; those that stand are not
@@ -550,7 +573,7 @@ tl_status tl_detect_refresh(tl_model *m)
     if (m->detect && m->detect->structure == m->structure && m->detect->laws == m->laws)
         return TL_OK;
     tl_status status = find_contacts(m);
-    return status == TL_OK ? settle(m, false) : status;
+    return status == TL_OK ? settle(m) : status;
 }
 
 tl_status tl_detect_update(tl_model *m)
@@ -559,5 +582,8 @@ tl_status tl_detect_update(tl_model *m)
     if (status != TL_OK)
         return status;
     tl_parallel_for(m->pool, m->detect->contacts.table.rows, CONTACT_CHUNK, update_range, m);
-    return settle(m, true);
+    if (!tl_grow(&m->detect->moving, &m->detect->moving_room, m->bodies.table.rows,
+                 sizeof *m->detect->moving))
+        return tl_fail_memory(&m->error);
+    return settle(m);
 }

@@ -60,6 +60,8 @@ typedef struct tl_facet {
     tl_vec3 pa, pb;        /* edges: a point on each, own frames */
     tl_vec3 side;          /* edges: n when made, A's frame */
     tl_vec3 swing;         /* couple on B per energy stored in its points, A's frame, 1/rad */
+    tl_vec3 last,
+        last_lean; /* normal when last followed, and how points' normals differ, model's axes */
 } tl_facet;
 
 /* A contact point as the geometry gives it. `p` is fixed to A for patches, faces of B and edges, and
@@ -92,6 +94,7 @@ typedef struct tl_narrow {
     struct tl_polygon *polygon; /* patch.c */
     tl_manifold manifold;
     bool failed;              /* out of memory, in a phase that cannot say so */
+    bool reframed;            /* the places of old points are in frames that are no more */
     struct tl_old_point *old; /* transfer.c */
     double *value;
     size_t old_room;
@@ -126,8 +129,7 @@ typedef struct tl_contacts {
     double *until;    /* sum of odometers up to which the facets may be reused */
     uint32_t *facet_start, *facet_count, *facet_room;
     uint32_t *point_start, *point_count, *point_room;
-    tl_vec3 *normal, *point;      /* area-weighted; point in coordinates relative to the origin */
-    double *area, *gap;           /* gap: the smallest of its points */
+    double *area;
     tl_vec3 *force;               /* on B */
     tl_vec3 *moment_a, *moment_b; /* of the forces on A and on B, about their bodies' centroids */
     uint32_t *want_points, *want_facets; /* of a contact that must grow */
@@ -141,31 +143,51 @@ enum { TL_FATE_KEEP, TL_FATE_GROW, TL_FATE_DIE, TL_FATE_MATERIAL, TL_FATE_MEMORY
 
 typedef struct tl_points_table {
     tl_table table;
-    tl_vec3 *p;
+    double *p[3];
     double *rest, *lean;
     uint32_t *key;
-    tl_vec3 *arm; /* from A's body's centroid to the point, axes of the model */
-    double *normal[3];
     double *area;
     double *reference; /* overlap at closure 0 */
     double *closure;
     double *f_n0;
-    double *du_n, *du_s[3];
     double *f_n, *f_s[3];
     uint32_t *flags;
     double *state[TL_STATE_COLUMNS];
-    double *stored, *dissipated;
+    uint32_t
+        *owner; /* for each TL_POINT_ROUND points: row of the contact whose points begin there */
+    size_t owner_room;
 } tl_points_table;
 
-/* Run of points of one material: used up to `end`, with room up to `limit`. `begin` is a multiple of
- * TL_RUN_ROUND, so that every column is aligned there; what lies between `end` and the next multiple of
- * TL_LANES are inert lanes. */
+/* What is known of points only while a step works on them. */
+typedef struct tl_point_lanes {
+    tl_table table;
+    double *arm[3]; /* from A's body's centroid to the point, axes of the model */
+    double *normal[3];
+    double *du_n, *du_s[3];
+    double *stored, *dissipated;
+} tl_point_lanes;
+
+/* A contact's room for points is a multiple of TL_POINT_ROUND and lies within one page of TL_PAGE points, so
+ * that a page is worked on as a whole while it is in the nearest cache: gaps, laws, sums. A contact of more
+ * points has pages of its own. */
+#define TL_POINT_ROUND 4
+#define TL_PAGE 256
+/* As an owner: the page belongs to a contact that begins before it. */
+#define TL_OWNED_BEFORE (UINT32_MAX - 1)
+
+/* Run of points of one material: whole pages, used up to `end`, with room up to `limit`. What lies beyond
+ * a contact's points are inert lanes. */
 typedef struct tl_run {
     uint32_t material;
     size_t begin, end, limit;
 } tl_run;
 
-#define TL_RUN_ROUND (TL_ALIGN / sizeof(uint32_t))
+/* Motion of a body in the last step, at an arm from its centroid: way + m arm; `half` is its turn as axis
+ * times the tangent of half the angle. */
+typedef struct tl_moving {
+    tl_vec3 way, half;
+    tl_mat3 m;
+} tl_moving;
 
 typedef struct tl_detect {
     tl_pair *pairs;
@@ -186,7 +208,11 @@ typedef struct tl_detect {
     size_t by_id_room;
     bool by_id_fresh;
     tl_id next_contact;
-    tl_narrow *narrow; /* [threads] */
+    tl_narrow *narrow;     /* [threads] */
+    tl_point_lanes *lanes; /* [threads]: a page, or the largest contact */
+    size_t lane_room;
+    tl_moving *moving;
+    size_t moving_room;
     unsigned threads;
     struct tl_broad *broad;
 } tl_detect;
@@ -254,17 +280,30 @@ bool tl_segment_over_face(tl_vec3 p, tl_vec3 q, const tl_vec3 *corners, size_t c
 void tl_polygon_free(struct tl_polygon *polygon);
 
 /* ---- follow.c ---- */
-/* Gaps, normals, relative motion of every point of a contact in the present place; turns shear forces
- * with the common plane. dt is that of the last step (0: places only). */
-void tl_contact_follow(tl_model *m, uint32_t contact, double dt);
+/* Notes how every body moved in the last step: before contacts are followed. */
+void tl_follow_bodies(tl_model *m);
+/* Gaps, normals and relative motion of the contacts whose points begin among `points` from `first` on, the
+ * first point's into lane 0; turns shear forces with the common plane. */
+void tl_contacts_follow(tl_model *m, size_t first, size_t points, const tl_point_lanes *lanes);
+/* Arms and normals of a contact's points in the present place, from lane 0 on; du_n gets their closures. */
+void tl_contact_places(const tl_model *m, uint32_t contact, const tl_point_lanes *lanes);
+/* The same for a contact whose points are new: closures are set, and forces turn from here. */
+void tl_contact_begin(tl_model *m, uint32_t contact, const tl_point_lanes *lanes);
+/* Area-weighted normal and point (coordinates relative to the origin), and the smallest gap. */
+void tl_contact_summary(const tl_model *m, uint32_t contact, tl_vec3 *normal, tl_vec3 *point,
+                        double *gap);
+/* Normal of a point that leans so when its contact was last followed; 0 when it never was. */
+tl_vec3 tl_facet_last_normal(const tl_facet *facet, double lean);
 
 /* ---- transfer.c ---- */
 /* Puts the manifold's points in the place of the contact's, carrying over state so that total force
  * and moment follow the area; the points fit into the contact's room. */
-bool tl_contact_transfer(tl_model *m, uint32_t contact, tl_narrow *room);
+bool tl_contact_transfer(tl_model *m, uint32_t contact, tl_narrow *room,
+                         const tl_point_lanes *lanes);
 
 /* ---- contacts.c ---- */
 void tl_contacts_init(tl_contacts *contacts, tl_points_table *points);
+void tl_point_lanes_init(tl_point_lanes *lanes);
 /* Adds a contact of a pair, without points, wanting room for some; false when out of memory. */
 bool tl_contact_append(tl_model *m, uint32_t pair, const tl_axis *axis, tl_tag tag,
                        size_t want_points, size_t want_facets);

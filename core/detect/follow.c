@@ -4,193 +4,448 @@
  * The gap comes from the planes of the faces (or the normal of two edges), carried with their bodies,
  * never from the axis. Shear forces are turned with the common plane, exactly from the old normal to
  * the new and by the bodies' mean spin about it; (5) of Hart, Cundall and Lemos (1988) is the first
- * order of this. Two bodies that turn as one make no slip, and their forces turn with them. */
+ * order of this. Two bodies that turn as one make no slip, and their forces turn with them.
+ *
+ * Everything that is the same for all points of a facet is brought into matrices first, so that what is
+ * left for a point are a few products, in loops over columns without a branch. Of tilted faces each point
+ * has a normal of its own. */
 #include "detect/detect.h"
 
 /* Angles below which sine and cosine are taken from their series, whose next term is then below
  * rounding. */
 #define SERIES_ANGLE 0.1
+/* Squared half sine of the tilt up to which all points of a patch have the bisector for their normal: 1e-5
+ * rad, a share of the force that no result shows. */
+#define FLUSH2 1e-10
 
-/* A body's motion in the last step: a way and a turn. */
-typedef struct moving {
-    tl_vec3 way, turn;    /* turn: axis times angle */
-    double sine, versine; /* sin(angle) / angle, (1 - cos(angle)) / angle^2 */
-    tl_vec3 half;         /* axis times the tangent of half the angle */
-} moving;
+/* ---------------------------------------------------------------- bodies ----------------- */
 
-static moving moving_of(tl_vec3 v, tl_vec3 w, double dt)
+/* A body's motion in the last step, as it acts on a point at `arm` from the centroid now: way + m arm.
+ * Exact, so a rolling contact and one that is turned as a whole gather no slip. */
+static tl_moving moving_of(tl_vec3 v, tl_vec3 w, double dt)
 {
-    moving out = {.way = tl_v3_scale(dt, v), .turn = tl_v3_scale(dt, w)};
-    double a2 = tl_v3_norm2(out.turn), tangent; /* tan(angle / 2) / angle */
+    tl_moving out = {.way = tl_v3_scale(dt, v)};
+    tl_vec3 t = tl_v3_scale(dt, w); /* axis times angle */
+    double a2 = tl_v3_norm2(t);
+    double sine, versine, tangent; /* sin a / a, (1 - cos a) / a^2, tan(a/2) / a */
     if (a2 < SERIES_ANGLE * SERIES_ANGLE) {
-        out.sine = 1 - a2 / 6 * (1 - a2 / 20 * (1 - a2 / 42 * (1 - a2 / 72)));
-        out.versine = 0.5 * (1 - a2 / 12 * (1 - a2 / 30 * (1 - a2 / 56 * (1 - a2 / 90))));
+        sine = 1 - a2 / 6 * (1 - a2 / 20 * (1 - a2 / 42 * (1 - a2 / 72)));
+        versine = 0.5 * (1 - a2 / 12 * (1 - a2 / 30 * (1 - a2 / 56 * (1 - a2 / 90))));
         tangent = 0.5 + a2 * (1. / 24 + a2 * (1. / 240 + a2 * (17. / 40320 + a2 * 31. / 725760)));
     } else {
         double a = sqrt(a2);
-        out.sine = sin(a) / a;
-        out.versine = (1 - cos(a)) / a2;
+        sine = sin(a) / a;
+        versine = (1 - cos(a)) / a2;
         tangent = tan(0.5 * a) / a;
     }
-    out.half = tl_v3_scale(tangent, out.turn);
+    out.half = tl_v3_scale(tangent, t);
+    /* sine [t] - versine [t]^2 */
+    double d = versine * a2;
+    out.m = (tl_mat3){{{d - versine * t.x * t.x, -versine * t.x * t.y - sine * t.z,
+                        -versine * t.x * t.z + sine * t.y},
+                       {-versine * t.y * t.x + sine * t.z, d - versine * t.y * t.y,
+                        -versine * t.y * t.z - sine * t.x},
+                       {-versine * t.z * t.x - sine * t.y, -versine * t.z * t.y + sine * t.x,
+                        d - versine * t.z * t.z}}};
     return out;
 }
 
-/* How a body's point, now at `arm` from the centroid, has moved: exact, so a rolling contact and one
- * that is turned as a whole gather no slip. */
-static tl_vec3 motion(const moving *body, tl_vec3 arm)
+static void moving_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
 {
-    tl_vec3 across = tl_v3_cross(body->turn, arm);
-    tl_vec3 turned = tl_v3_madd(tl_v3_scale(body->sine, across), -body->versine,
-                                tl_v3_cross(body->turn, across));
-    return tl_v3_add(body->way, turned);
+    (void)chunk;
+    (void)thread;
+    tl_model *m = user;
+    for (size_t i = begin; i < end; i++)
+        m->detect->moving[i] = moving_of(m->bodies.v_moved[i], m->bodies.w_moved[i], m->dt);
 }
 
-/* Two bodies as a facet sees them: axes of the model, A's centroid as zero. */
+void tl_follow_bodies(tl_model *m)
+{
+    enum { CHUNK = 256 };
+    tl_parallel_for(m->pool, m->bodies.table.rows, CHUNK, moving_range, m);
+}
+
+/* ---------------------------------------------------------------- facets ----------------- */
+
+/* Two bodies as a contact sees them: axes of the model, A's centroid as zero. */
 typedef struct sight {
     const tl_mat3 *ra, *rb;
     tl_vec3 d; /* from A's centroid to B's */
-    moving a, b;
 } sight;
 
-/* The facet's normal, and the plane a point's gap is measured to. */
+/* A facet in its present place: its normals, and the plane a point's gap is measured to. */
 typedef struct facing {
-    tl_vec3 n;      /* A to B; of a patch the mean of the faces' normals */
-    tl_vec3 lean;   /* patches: from n to the normal of A's face, and against it to that of B's */
-    double n2, l2;  /* squares of the lengths of both, which are perpendicular */
-    tl_vec3 normal; /* outward, of the plane */
-    double offset;
-    tl_vec3 foot; /* edges: a point of A's edge */
-    double gap;   /* edges: the gap of every point */
+    tl_vec3 n;        /* A to B, unit; of a patch the bisector's */
+    tl_vec3 mean;     /* patches: the mean of the faces' normals, along n ... */
+    tl_vec3 lean;     /* ... and from it to the normal of A's face, and against it to B's */
+    double mean2, l2; /* squares of their lengths */
+    bool tilted;      /* so that points have normals of their own */
+    tl_vec3 plane; /* outward normal of the plane; 0 for edges, whose gap is the same everywhere */
+    double offset; /* of the plane, or the gap negated */
+    tl_mat3 to;    /* from the frame of its points ... */
+    tl_vec3 from;  /* ... and that frame's origin */
 } facing;
 
-static facing facet_facing(const tl_facet *f, const sight *s)
+/* Fills what a patch needs. */
+static void face_patch(const tl_facet *f, const sight *s, facing *out)
 {
-    facing out = {0};
-    switch (f->kind) {
-    case TL_FACET_PATCH: {
-        tl_vec3 na = tl_m3_mul(s->ra, f->na);
-        out.normal = tl_m3_mul(s->rb, f->nb);
-        out.offset = f->offset + tl_v3_dot(out.normal, s->d);
-        out.n = tl_v3_scale(0.5, tl_v3_sub(na, out.normal));
-        out.lean = tl_v3_scale(0.5, tl_v3_add(na, out.normal));
-        out.n2 = tl_v3_norm2(out.n);
-        out.l2 = tl_v3_norm2(out.lean);
-        break;
-    }
-    case TL_FACET_FACE_A:
-        out.n = out.normal = tl_m3_mul(s->ra, f->na);
-        out.offset = f->offset;
-        break;
-    case TL_FACET_FACE_B:
-        out.normal = tl_m3_mul(s->rb, f->nb);
-        out.offset = f->offset + tl_v3_dot(out.normal, s->d);
-        out.n = tl_v3_neg(out.normal);
-        break;
-    default: {
-        tl_vec3 foot_a = tl_m3_mul(s->ra, f->pa);
-        tl_vec3 foot_b = tl_v3_add(tl_m3_mul(s->rb, f->pb), s->d);
-        /* the side was settled when the facet was made: na x nb, turned outward, is n */
-        if (!tl_edge_normal(tl_m3_mul(s->ra, f->na), tl_m3_mul(s->rb, f->nb),
-                            tl_m3_mul(s->ra, f->side), &out.n))
-            out.n = tl_m3_mul(s->ra, f->side);
-        out.gap = tl_v3_dot(out.n, tl_v3_sub(foot_b, foot_a));
-        break;
-    }
-    }
+    tl_vec3 na = tl_m3_mul(s->ra, f->na), nb = tl_m3_mul(s->rb, f->nb);
+    out->to = *s->ra;
+    out->from = tl_v3(0, 0, 0);
+    out->plane = nb;
+    out->offset = f->offset + tl_v3_dot(nb, s->d);
+    out->mean = tl_v3_scale(0.5, tl_v3_sub(na, nb));
+    out->lean = tl_v3_scale(0.5, tl_v3_add(na, nb));
+    out->mean2 = tl_v3_norm2(out->mean);
+    out->l2 = tl_v3_norm2(out->lean);
+    out->n = tl_v3_scale(1 / sqrt(out->mean2), out->mean);
+    out->tilted = out->l2 > FLUSH2;
+}
+
+/* Fills what vertices on a face of A, or of B, need. */
+static void face_vertices(const tl_facet *f, const sight *s, facing *out)
+{
+    bool on_a = f->kind == TL_FACET_FACE_A;
+    out->plane = on_a ? tl_m3_mul(s->ra, f->na) : tl_m3_mul(s->rb, f->nb);
+    out->offset = f->offset + (on_a ? 0 : tl_v3_dot(out->plane, s->d));
+    out->n = on_a ? out->plane : tl_v3_neg(out->plane);
+    out->to = on_a ? *s->rb : *s->ra;
+    out->from = on_a ? s->d : tl_v3(0, 0, 0);
+    out->tilted = false;
+}
+
+static void face_edges(const tl_facet *f, const sight *s, facing *out)
+{
+    tl_vec3 foot_a = tl_m3_mul(s->ra, f->pa);
+    tl_vec3 foot_b = tl_v3_add(tl_m3_mul(s->rb, f->pb), s->d);
+    /* the side was settled when the facet was made: na x nb, turned outward, is n */
+    if (!tl_edge_normal(tl_m3_mul(s->ra, f->na), tl_m3_mul(s->rb, f->nb), tl_m3_mul(s->ra, f->side),
+                        &out->n))
+        out->n = tl_m3_mul(s->ra, f->side);
+    out->plane = tl_v3(0, 0, 0);
+    out->offset = -tl_v3_dot(out->n, tl_v3_sub(foot_b, foot_a));
+    out->to = *s->ra;
+    out->from = tl_v3(0, 0, 0);
+    out->tilted = false;
+}
+
+static void face_facet(const tl_facet *f, const sight *s, facing *out)
+{
+    if (f->kind == TL_FACET_PATCH)
+        face_patch(f, s, out);
+    else if (f->kind == TL_FACET_EDGES)
+        face_edges(f, s, out);
+    else
+        face_vertices(f, s, out);
+}
+
+static sight sight_of(const tl_model *m, uint32_t c)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    uint32_t a = m->blocks.body[contacts->a[c]], b = m->blocks.body[contacts->b[c]];
+    return (sight){&m->bodies.r[a], &m->bodies.r[b], tl_body_apart(&m->bodies, a, b)};
+}
+
+/* To the bit what place_block made of the same mean and lean: a point that rests is not turned. */
+tl_vec3 tl_facet_last_normal(const tl_facet *f, double lean)
+{
+    double l2 = tl_v3_norm2(f->last_lean);
+    if (l2 == 0)
+        return f->last;
+    double inverse = 1 / sqrt(tl_v3_norm2(f->last) + lean * lean * l2);
+    return tl_v3_scale(inverse, tl_v3_madd(f->last, lean, f->last_lean));
+}
+
+static void note_normals(tl_facet *f, const facing *to)
+{
+    f->last = to->tilted ? to->mean : to->n;
+    f->last_lean = to->tilted ? to->lean : tl_v3(0, 0, 0);
+}
+
+/* ---------------------------------------------------------------- points ----------------- */
+
+/* Points worked on side by side: vectors of the processor, or two or four of an older one's. */
+enum { WIDE = 8, NARROW = 4 };
+
+/* Columns of points and lanes, row 0 of both the same point. */
+typedef struct columns {
+    const double *p[3], *rest, *lean, *reference;
+    double *closure, *f_s[3];
+    double *arm[3], *normal[3], *du_n, *du_s[3];
+} columns;
+
+static columns columns_at(const tl_points_table *p, size_t point, const tl_point_lanes *l)
+{
+    return (columns){
+        .p = {p->p[0] + point, p->p[1] + point, p->p[2] + point},
+        .rest = p->rest + point,
+        .lean = p->lean + point,
+        .reference = p->reference + point,
+        .closure = p->closure + point,
+        .f_s = {p->f_s[0] + point, p->f_s[1] + point, p->f_s[2] + point},
+        .arm = {l->arm[0], l->arm[1], l->arm[2]},
+        .normal = {l->normal[0], l->normal[1], l->normal[2]},
+        .du_n = l->du_n,
+        .du_s = {l->du_s[0], l->du_s[1], l->du_s[2]},
+    };
+}
+
+/* The motion of B against A in the last step at an arm from A's centroid: way + m arm; and the mean spin
+ * of both, as axis times the tangent of half its angle. */
+typedef struct slip {
+    tl_vec3 way, half;
+    tl_mat3 m;
+} slip;
+
+static slip slip_of(const tl_moving *a, const tl_moving *b, tl_vec3 d)
+{
+    slip out;
+    out.way = tl_v3_sub(tl_v3_sub(b->way, a->way), tl_m3_mul(&b->m, d));
+    out.half = tl_v3_scale(0.5, tl_v3_add(a->half, b->half));
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            out.m.m[i][j] = b->m.m[i][j] - a->m.m[i][j];
     return out;
 }
 
-static tl_vec3 point_normal(const facing *f, double lean)
+/* Arms, normals and closures of `width` points from row i: one of the two widths and kinds below. */
+static inline __attribute__((always_inline)) void place_block(const columns *c, size_t i,
+                                                              const uint32_t width, const facing *f,
+                                                              const bool tilted)
 {
-    return tl_v3_scale(1 / sqrt(f->n2 + lean * lean * f->l2), tl_v3_madd(f->n, lean, f->lean));
-}
-
-/* v turned from the plane of normal `from` to that of `to`, and about `to` by the angle whose half has
- * the tangent `h`: no trigonometry, no growth. */
-static tl_vec3 carry(tl_vec3 v, tl_vec3 from, tl_vec3 to, double h)
-{
-    v = tl_v3_turn(v, from, to);
-    if (h != 0) {
-        double c = (1 - h * h) / (1 + h * h), t = 2 * h / (1 + h * h);
-        v = tl_v3_add(tl_v3_scale(c, v), tl_v3_scale(t, tl_v3_cross(to, v)));
-    }
-    return tl_v3_madd(v, -tl_v3_dot(v, to), to);
-}
-
-/* Turns the shear force and the tangent states of a point into the plane of `n`; h as for carry. */
-static void turn_vectors(tl_points_table *p, size_t i, tl_vec3 n, double h, uint32_t tangents)
-{
-    tl_vec3 old = tl_columns_get(p->normal, i);
-    if (tl_v3_norm2(old) > 0) {
-        tl_columns_put(p->f_s, i, carry(tl_columns_get(p->f_s, i), old, n, h));
-        for (uint32_t k = 0; k + 2 < TL_STATE_COLUMNS && tangents; k++, tangents >>= 1)
-            if (tangents & 1)
-                tl_columns_put(&p->state[k], i, carry(tl_columns_get(&p->state[k], i), old, n, h));
-    }
-    tl_columns_put(p->normal, i, n);
-}
-
-static void follow_facet(tl_points_table *p, const tl_facet *f, size_t begin, const sight *s,
-                         uint32_t tangents)
-{
-    facing to = facet_facing(f, s);
-    tl_vec3 half = tl_v3_scale(0.5, tl_v3_add(s->a.half, s->b.half));
-    for (size_t i = begin; i < begin + f->count; i++) {
-        tl_vec3 x = f->kind == TL_FACET_FACE_A ? tl_v3_add(tl_m3_mul(s->rb, p->p[i]), s->d)
-                                               : tl_m3_mul(s->ra, p->p[i]);
-        double gap =
-            f->kind == TL_FACET_EDGES ? to.gap : p->rest[i] + tl_v3_dot(to.normal, x) - to.offset;
-        tl_vec3 du = tl_v3_sub(motion(&s->b, tl_v3_sub(x, s->d)), motion(&s->a, x));
-        tl_vec3 n = f->kind == TL_FACET_PATCH ? point_normal(&to, p->lean[i]) : to.n;
-        double du_n = tl_v3_dot(du, n);
-        /* a turn is one that swings the old normal to the new, then one about it: of this the half angle
-         * has the tangent half . n */
-        turn_vectors(p, i, n, tl_v3_dot(half, n), tangents);
-        p->arm[i] = x;
-        p->closure[i] = -gap - p->reference[i];
-        p->du_n[i] = du_n;
-        tl_columns_put(p->du_s, i, tl_v3_madd(du, -du_n, n));
+    const tl_mat3 *r = &f->to;
+#pragma omp simd
+    for (uint32_t k = 0; k < width; k++) {
+        double px = c->p[0][i + k], py = c->p[1][i + k], pz = c->p[2][i + k];
+        double x = (r->m[0][0] * px + r->m[0][1] * py + r->m[0][2] * pz) + f->from.x;
+        double y = (r->m[1][0] * px + r->m[1][1] * py + r->m[1][2] * pz) + f->from.y;
+        double z = (r->m[2][0] * px + r->m[2][1] * py + r->m[2][2] * pz) + f->from.z;
+        c->arm[0][i + k] = x;
+        c->arm[1][i + k] = y;
+        c->arm[2][i + k] = z;
+        c->closure[i + k] = (f->offset - c->rest[i + k]) -
+                            (f->plane.x * x + f->plane.y * y + f->plane.z * z) -
+                            c->reference[i + k];
+        double l = tilted ? c->lean[i + k] : 0;
+        double inverse = tilted ? 1 / sqrt(f->mean2 + l * l * f->l2) : 1;
+        c->normal[0][i + k] = tilted ? inverse * (f->mean.x + l * f->lean.x) : f->n.x;
+        c->normal[1][i + k] = tilted ? inverse * (f->mean.y + l * f->lean.y) : f->n.y;
+        c->normal[2][i + k] = tilted ? inverse * (f->mean.z + l * f->lean.z) : f->n.z;
     }
 }
 
-/* The contact's own normal, point, area and gap, from its points. */
-static void summarize(tl_model *m, uint32_t c)
+/* Relative motion of placed points, along their normals and across. */
+static inline __attribute__((always_inline)) void move_block(const columns *c, size_t i,
+                                                             const uint32_t width, const slip *s)
+{
+#pragma omp simd
+    for (uint32_t k = 0; k < width; k++) {
+        double ax = c->arm[0][i + k], ay = c->arm[1][i + k], az = c->arm[2][i + k];
+        double nx = c->normal[0][i + k], ny = c->normal[1][i + k], nz = c->normal[2][i + k];
+        double x = s->way.x + (s->m.m[0][0] * ax + s->m.m[0][1] * ay + s->m.m[0][2] * az);
+        double y = s->way.y + (s->m.m[1][0] * ax + s->m.m[1][1] * ay + s->m.m[1][2] * az);
+        double z = s->way.z + (s->m.m[2][0] * ax + s->m.m[2][1] * ay + s->m.m[2][2] * az);
+        double n = x * nx + y * ny + z * nz;
+        c->du_n[i + k] = n;
+        c->du_s[0][i + k] = x - n * nx;
+        c->du_s[1][i + k] = y - n * ny;
+        c->du_s[2][i + k] = z - n * nz;
+    }
+}
+
+/* Turns vectors of the old common plane into the new, whose normals all points share. A turn is axis times
+ * the tangent of half its angle: no trigonometry, no growth. */
+static inline __attribute__((always_inline)) void turn_block(double *const v[3], size_t i,
+                                                             const uint32_t width,
+                                                             const tl_mat3 *turn, tl_vec3 n)
+{
+#pragma omp simd
+    for (uint32_t k = 0; k < width; k++) {
+        double vx = v[0][i + k], vy = v[1][i + k], vz = v[2][i + k];
+        double x = turn->m[0][0] * vx + turn->m[0][1] * vy + turn->m[0][2] * vz;
+        double y = turn->m[1][0] * vx + turn->m[1][1] * vy + turn->m[1][2] * vz;
+        double z = turn->m[2][0] * vx + turn->m[2][1] * vy + turn->m[2][2] * vz;
+        double off = x * n.x + y * n.y + z * n.z;
+        v[0][i + k] = x - off * n.x;
+        v[1][i + k] = y - off * n.y;
+        v[2][i + k] = z - off * n.z;
+    }
+}
+
+/* The turn that swings the plane of normal `from` into that of `to`, then by twice the angle whose tangent
+ * is `twist` about it. */
+static tl_vec3 turn_between(tl_vec3 from, tl_vec3 to, double twist)
+{
+    double c = 1 + tl_v3_dot(from, to);
+    tl_vec3 swing = c > 0 ? tl_v3_scale(1 / c, tl_v3_cross(from, to)) : tl_v3(0, 0, 0);
+    /* swing is perpendicular to `to`: the product of the two half turns has no scalar part to divide by */
+    return tl_v3_madd(tl_v3_madd(swing, twist, to), twist, tl_v3_cross(to, swing));
+}
+
+static tl_mat3 matrix_of(tl_vec3 g)
+{
+    const double g2 = tl_v3_norm2(g), s = 2 / (1 + g2), d = 1 - s * g2;
+    const tl_vec3 h = tl_v3_scale(s, g);
+    return (tl_mat3){{{d + h.x * g.x, h.x * g.y - h.z, h.x * g.z + h.y},
+                      {h.y * g.x + h.z, d + h.y * g.y, h.y * g.z - h.x},
+                      {h.z * g.x - h.y, h.z * g.y + h.x, d + h.z * g.z}}};
+}
+
+/* Turns vectors of points that have normals of their own, one by one. */
+static void turn_tilted(const columns *c, double *const v[3], size_t begin, uint32_t count,
+                        const tl_facet *f, tl_vec3 half)
+{
+    for (size_t i = begin; i < begin + count; i++) {
+        tl_vec3 n = tl_columns_get(c->normal, i);
+        tl_vec3 by = turn_between(tl_facet_last_normal(f, c->lean[i]), n, tl_v3_dot(half, n));
+        if (tl_v3_norm2(by) == 0)
+            continue;
+        tl_mat3 turn = matrix_of(by);
+        tl_vec3 to = tl_m3_mul(&turn, tl_columns_get(v, i));
+        tl_columns_put(v, i, tl_v3_madd(to, -tl_v3_dot(to, n), n));
+    }
+}
+
+static inline __attribute__((always_inline)) void follow_block(const columns *c, size_t i,
+                                                               const uint32_t width,
+                                                               const facing *f, const bool tilted,
+                                                               const slip *moved,
+                                                               const tl_mat3 *turn)
+{
+    place_block(c, i, width, f, tilted);
+    move_block(c, i, width, moved);
+    if (turn)
+        turn_block(c->f_s, i, width, turn, f->n);
+}
+
+/* What the points of a facet do in a step, all but the turning of shear where `turn` is NULL. */
+TL_VECTORIZED static void follow_points(const columns *c, size_t i, size_t end, const facing *f,
+                                        const slip *moved, const tl_mat3 *turn)
+{
+    if (f->tilted) {
+        for (; i + NARROW <= end; i += NARROW)
+            follow_block(c, i, NARROW, f, true, moved, NULL);
+        for (; i < end; i++)
+            follow_block(c, i, 1, f, true, moved, NULL);
+        return;
+    }
+    for (; i + WIDE <= end; i += WIDE)
+        follow_block(c, i, WIDE, f, false, moved, turn);
+    for (; i + NARROW <= end; i += NARROW)
+        follow_block(c, i, NARROW, f, false, moved, turn);
+    for (; i < end; i++)
+        follow_block(c, i, 1, f, false, moved, turn);
+}
+
+/* ---------------------------------------------------------------- contacts --------------- */
+
+void tl_contact_places(const tl_model *m, uint32_t contact, const tl_point_lanes *l)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    columns c = columns_at(&m->detect->points, contacts->point_start[contact], l);
+    c.closure = c.du_n; /* that of the last step's forces stays */
+    sight s = sight_of(m, contact);
+    for (uint32_t k = 0; k < contacts->facet_count[contact]; k++) {
+        const tl_facet *f = &contacts->facet[contacts->facet_start[contact] + k];
+        facing to;
+        face_facet(f, &s, &to);
+        for (size_t i = f->begin; i < f->begin + (size_t)f->count; i++)
+            place_block(&c, i, 1, &to, to.tilted);
+    }
+}
+
+void tl_contact_begin(tl_model *m, uint32_t contact, const tl_point_lanes *l)
 {
     tl_contacts *contacts = &m->detect->contacts;
-    tl_points_table *p = &m->detect->points;
-    size_t begin = contacts->point_start[c], end = begin + contacts->point_count[c];
+    columns c = columns_at(&m->detect->points, contacts->point_start[contact], l);
+    sight s = sight_of(m, contact);
+    for (uint32_t k = 0; k < contacts->facet_count[contact]; k++) {
+        tl_facet *f = &contacts->facet[contacts->facet_start[contact] + k];
+        facing to;
+        face_facet(f, &s, &to);
+        for (size_t i = f->begin; i < f->begin + (size_t)f->count; i++)
+            place_block(&c, i, 1, &to, to.tilted);
+        note_normals(f, &to);
+    }
+}
+
+/* Turns the tangent states of a facet's points. */
+static void turn_states(tl_points_table *p, size_t first, const columns *c, size_t begin,
+                        const tl_facet *f, tl_vec3 half, uint32_t tangents)
+{
+    for (uint32_t k = 0; k + 2 < TL_STATE_COLUMNS; k++) {
+        double *v[3] = {p->state[k] + first, p->state[k + 1] + first, p->state[k + 2] + first};
+        if (tangents >> k & 1)
+            turn_tilted(c, v, begin, f->count, f, half);
+    }
+}
+
+static void follow_contact(tl_model *m, uint32_t contact, const columns *c, size_t first)
+{
+    tl_contacts *contacts = &m->detect->contacts;
+    uint32_t a = m->blocks.body[contacts->a[contact]], b = m->blocks.body[contacts->b[contact]];
+    sight s = {&m->bodies.r[a], &m->bodies.r[b], tl_body_apart(&m->bodies, a, b)};
+    slip moved = slip_of(&m->detect->moving[a], &m->detect->moving[b], s.d);
+    uint32_t tangents = m->materials[contacts->material[contact]].tangents;
+    uint32_t facets = contacts->facet_count[contact];
+    tl_facet *f = &contacts->facet[contacts->facet_start[contact]];
+    for (tl_facet *last = f + facets; f < last; f++) {
+        size_t begin = contacts->point_start[contact] - first + f->begin;
+        facing to;
+        face_facet(f, &s, &to);
+        /* a lone facet works on inert lanes up to a whole group: there is room for them */
+        size_t end = begin + f->count;
+        if (facets == 1)
+            end = begin + (f->count + TL_POINT_ROUND - 1u) / TL_POINT_ROUND * TL_POINT_ROUND;
+        bool uniform = !to.tilted && tl_v3_norm2(f->last_lean) == 0;
+        tl_vec3 by = {0, 0, 0};
+        if (uniform)
+            by = turn_between(f->last, to.n, tl_v3_dot(moved.half, to.n));
+        /* what has not turned stays as it is, to the bit */
+        bool turns = tl_v3_norm2(by) > 0;
+        tl_mat3 turn;
+        if (turns)
+            turn = matrix_of(by);
+        follow_points(c, begin, end, &to, &moved, turns ? &turn : NULL);
+        if (!uniform)
+            turn_tilted(c, c->f_s, begin, f->count, f, moved.half);
+        if (tangents)
+            turn_states(&m->detect->points, first, c, begin, f, moved.half, tangents);
+        note_normals(f, &to);
+    }
+}
+
+void tl_contacts_follow(tl_model *m, size_t first, size_t points, const tl_point_lanes *l)
+{
+    const uint32_t *owner = m->detect->points.owner + first / TL_POINT_ROUND;
+    columns c = columns_at(&m->detect->points, first, l);
+    for (size_t g = 0; g * TL_POINT_ROUND < points; g++)
+        if (owner[g] < TL_OWNED_BEFORE)
+            follow_contact(m, owner[g], &c, first);
+}
+
+void tl_contact_summary(const tl_model *m, uint32_t contact, tl_vec3 *normal, tl_vec3 *point,
+                        double *gap)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    const tl_points_table *p = &m->detect->points;
+    size_t start = contacts->point_start[contact];
+    uint32_t body = m->blocks.body[contacts->a[contact]];
+    sight s = sight_of(m, contact);
     tl_vec3 n = {0, 0, 0}, x = {0, 0, 0};
-    double area = 0, gap = INFINITY;
-    for (size_t i = begin; i < end; i++) {
-        double a = p->area[i], overlap = p->closure[i] + p->reference[i];
-        n = tl_v3_madd(n, a, tl_columns_get(p->normal, i));
-        x = tl_v3_madd(x, a, p->arm[i]);
-        area += a;
-        gap = -overlap < gap ? -overlap : gap;
+    double area = 0;
+    *gap = contacts->point_count[contact] ? INFINITY : contacts->axis[contact].s;
+    for (uint32_t k = 0; k < contacts->facet_count[contact]; k++) {
+        const tl_facet *f = &contacts->facet[contacts->facet_start[contact] + k];
+        bool on_b = f->kind == TL_FACET_FACE_A;
+        for (size_t i = start + f->begin; i < start + f->begin + f->count; i++) {
+            tl_vec3 at = tl_m3_mul(on_b ? s.rb : s.ra, tl_columns_get(p->p, i));
+            n = tl_v3_madd(n, p->area[i], tl_facet_last_normal(f, p->lean[i]));
+            x = tl_v3_madd(x, p->area[i], on_b ? tl_v3_add(at, s.d) : at);
+            area += p->area[i];
+            *gap = fmin(*gap, -(p->closure[i] + p->reference[i]));
+        }
     }
-    contacts->area[c] = area;
-    contacts->gap[c] = end > begin ? gap : contacts->axis[c].s;
-    if (area > 0) {
-        uint32_t body = m->blocks.body[contacts->a[c]];
-        contacts->normal[c] = tl_v3_unit(n);
-        contacts->point[c] = tl_v3_add(tl_body_place(&m->bodies, body), tl_v3_scale(1 / area, x));
-    }
-}
-
-void tl_contact_follow(tl_model *m, uint32_t c, double dt)
-{
-    tl_contacts *contacts = &m->detect->contacts;
-    const tl_bodies *b = &m->bodies;
-    uint32_t body_a = m->blocks.body[contacts->a[c]], body_b = m->blocks.body[contacts->b[c]];
-    sight s = {&b->r[body_a], &b->r[body_b], tl_body_apart(b, body_a, body_b),
-               moving_of(b->v_moved[body_a], b->w_moved[body_a], dt),
-               moving_of(b->v_moved[body_b], b->w_moved[body_b], dt)};
-    uint32_t material = contacts->material[c];
-    uint32_t tangents = material == TL_NO_ROW ? 0 : m->materials[material].tangents;
-    const tl_facet *facets = &contacts->facet[contacts->facet_start[c]];
-    for (uint32_t k = 0; k < contacts->facet_count[c]; k++)
-        follow_facet(&m->detect->points, &facets[k], contacts->point_start[c] + facets[k].begin, &s,
-                     tangents);
-    summarize(m, c);
+    *normal = tl_v3_unit(n);
+    *point = tl_v3_madd(tl_body_place(&m->bodies, body), area > 0 ? 1 / area : 0, x);
 }

@@ -50,14 +50,22 @@ static bool reserve(tl_narrow *room, size_t count)
     return true;
 }
 
-static void read_old(const tl_points_table *p, size_t begin, size_t count, tl_narrow *room)
+static void read_old(const tl_model *m, uint32_t c, tl_narrow *room, const tl_point_lanes *lanes)
 {
-    for (size_t k = 0; k < count; k++) {
-        size_t i = begin + k;
+    const tl_contacts *contacts = &m->detect->contacts;
+    const tl_points_table *p = &m->detect->points;
+    tl_contact_places(m, c, lanes);
+    for (uint32_t k = 0; k < contacts->facet_count[c]; k++) {
+        const tl_facet *f = &contacts->facet[contacts->facet_start[c] + k];
+        for (uint32_t j = f->begin; j < f->begin + (uint32_t)f->count; j++) {
+            room->old[j].arm = tl_columns_get(lanes->arm, j);
+            room->old[j].normal = tl_facet_last_normal(f, p->lean[contacts->point_start[c] + j]);
+        }
+    }
+    for (size_t k = 0; k < contacts->point_count[c]; k++) {
+        size_t i = contacts->point_start[c] + k;
         double per_area = p->area[i] > 0 ? 1 / p->area[i] : 0;
         old_point *o = &room->old[k];
-        o->arm = p->arm[i];
-        o->normal = tl_columns_get(p->normal, i);
         o->shear = tl_v3_scale(per_area, tl_columns_get(p->f_s, i));
         o->area = p->area[i];
         o->f_n = per_area * p->f_n[i];
@@ -114,14 +122,15 @@ static double bounded(double value, double reach, double largest)
 /* Adds a uniform traction and a twist so that shear force and torsion become `want`'s. The twist adds no
  * more than `largest`, a stress: points with hardly an area would need any stress to make up for the
  * torsion, and keep it when their areas grow. */
-static void correct_shear(tl_points_table *p, size_t begin, size_t count, const totals *now,
-                          const totals *want, double largest)
+static void correct_shear(tl_points_table *p, const tl_point_lanes *lanes, size_t begin,
+                          size_t count, const totals *now, const totals *want, double largest)
 {
     tl_vec3 n = now->normal;
     tl_vec3 force = want->shear;
     double torsion = want->torsion, polar = 0, reach = 0;
     for (size_t i = begin; i < begin + count; i++) {
-        tl_vec3 arm = tl_v3_sub(p->arm[i], now->centre), f = tl_columns_get(p->f_s, i);
+        tl_vec3 arm = tl_v3_sub(tl_columns_get(lanes->arm, i - begin), now->centre),
+                f = tl_columns_get(p->f_s, i);
         tl_vec3 across = tl_v3_cross(n, arm);
         force = tl_v3_sub(force, f);
         torsion -= tl_v3_dot(across, f);
@@ -131,7 +140,8 @@ static void correct_shear(tl_points_table *p, size_t begin, size_t count, const 
     force = tl_v3_madd(force, -tl_v3_dot(force, n), n);
     double twist = polar > 0 ? bounded(torsion / polar, reach, largest) : 0;
     for (size_t i = begin; i < begin + count; i++) {
-        tl_vec3 across = tl_v3_cross(n, tl_v3_sub(p->arm[i], now->centre));
+        tl_vec3 across =
+            tl_v3_cross(n, tl_v3_sub(tl_columns_get(lanes->arm, i - begin), now->centre));
         tl_vec3 add =
             tl_v3_madd(tl_v3_scale(p->area[i] / now->area, force), p->area[i] * twist, across);
         p->f_s[0][i] += add.x;
@@ -147,13 +157,14 @@ typedef struct moments {
 
 /* Adds a linear correction to a field (one value a point) so that its sum and moments become
  * `want`; its slopes add no more than `largest`, for the reason given at correct_shear. */
-static void correct_field(const tl_points_table *p, double *value, size_t begin, size_t count,
-                          const totals *now, moments want, double largest)
+static void correct_field(const tl_points_table *p, const tl_point_lanes *lanes, double *value,
+                          size_t begin, size_t count, const totals *now, moments want,
+                          double largest)
 {
     tl_vec3 t1 = tl_v3_perpendicular(now->normal), t2 = tl_v3_cross(now->normal, t1);
     double i11 = 0, i12 = 0, i22 = 0, reach = 0;
     for (size_t k = 0; k < count; k++) {
-        tl_vec3 arm = tl_v3_sub(p->arm[begin + k], now->centre);
+        tl_vec3 arm = tl_v3_sub(tl_columns_get(lanes->arm, k), now->centre);
         reach = fmax(reach, tl_v3_norm(arm));
         double a = p->area[begin + k], x = tl_v3_dot(arm, t1), y = tl_v3_dot(arm, t2);
         want.sum -= a * value[k];
@@ -170,7 +181,7 @@ static void correct_field(const tl_points_table *p, double *value, size_t begin,
         g2 = bounded((want.along2 * i11 - want.along1 * i12) / det, reach, largest);
     }
     for (size_t k = 0; k < count; k++) {
-        tl_vec3 arm = tl_v3_sub(p->arm[begin + k], now->centre);
+        tl_vec3 arm = tl_v3_sub(tl_columns_get(lanes->arm, k), now->centre);
         value[k] += want.sum / now->area + g1 * tl_v3_dot(arm, t1) + g2 * tl_v3_dot(arm, t2);
     }
 }
@@ -262,7 +273,7 @@ static void fitted(const plane_fit *fit, tl_vec3 arm, const old_point *o, double
 
 /* Writes the points of the manifold, with what they take over from the old ones. */
 static void write_points(tl_model *m, uint32_t c, const tl_manifold *g, const old_point *old,
-                         size_t old_count, const plane_fit *fit)
+                         size_t old_count, const plane_fit *fit, const tl_point_lanes *lanes)
 {
     tl_contacts *contacts = &m->detect->contacts;
     tl_points_table *p = &m->detect->points;
@@ -272,31 +283,32 @@ static void write_points(tl_model *m, uint32_t c, const tl_manifold *g, const ol
     for (size_t k = 0; k < g->point_count; k++) {
         size_t i = begin + k;
         const tl_contact_point *point = &g->points[k];
-        p->p[i] = point->p;
+        tl_columns_put(p->p, i, point->p);
         p->rest[i] = point->rest;
         p->lean[i] = point->lean;
         p->area[i] = point->area;
         p->key[i] = point->key;
         p->f_n[i] = p->f_n0[i] = p->reference[i] = 0;
         for (int s = 0; s < 3; s++)
-            p->f_s[s][i] = p->normal[s][i] = 0;
+            p->f_s[s][i] = 0;
         p->flags[i] = 0;
         tl_point_initial_state(p, i, kind);
     }
     /* positions and normals in the present place */
-    tl_contact_follow(m, c, 0);
+    tl_contact_begin(m, c, lanes);
     double size = fmin(m->blocks.size[contacts->a[c]], m->blocks.size[contacts->b[c]]);
     for (size_t i = begin; i < begin + g->point_count && old_count == 0; i++)
         p->flags[i] = p->closure[i] < -APART * size ? TL_POINT_APART : 0;
     for (size_t k = 0; k < g->point_count && old_count; k++) {
         size_t i = begin + k;
-        const old_point *o = match(old, old_count, p->key[i], p->arm[i]);
+        tl_vec3 arm = tl_columns_get(lanes->arm, k);
+        const old_point *o = match(old, old_count, p->key[i], arm);
         double value[FIT_COUNT];
         if (o->key == p->key[i])
             fit_values(o, value);
         else
-            fitted(fit, p->arm[i], o, value);
-        tl_vec3 n = tl_columns_get(p->normal, i);
+            fitted(fit, arm, o, value);
+        tl_vec3 n = tl_columns_get(lanes->normal, k);
         tl_vec3 shear = {value[FIT_SHEAR], value[FIT_SHEAR + 1], value[FIT_SHEAR + 2]};
         tl_vec3 f = tl_v3_scale(p->area[i], tl_v3_turn(shear, o->normal, n));
         f = tl_v3_madd(f, -tl_v3_dot(f, n), n);
@@ -311,7 +323,7 @@ static void write_points(tl_model *m, uint32_t c, const tl_manifold *g, const ol
     }
 }
 
-bool tl_contact_transfer(tl_model *m, uint32_t c, tl_narrow *room)
+bool tl_contact_transfer(tl_model *m, uint32_t c, tl_narrow *room, const tl_point_lanes *lanes)
 {
     tl_contacts *contacts = &m->detect->contacts;
     tl_points_table *p = &m->detect->points;
@@ -319,7 +331,7 @@ bool tl_contact_transfer(tl_model *m, uint32_t c, tl_narrow *room)
     size_t begin = contacts->point_start[c], old_count = contacts->point_count[c];
     if (!reserve(room, old_count > g->point_count ? old_count : g->point_count))
         return false;
-    read_old(p, begin, old_count, room);
+    read_old(m, c, room, lanes);
     const old_point *old = room->old;
     totals before = {0};
     for (size_t k = 0; k < old_count; k++)
@@ -339,29 +351,30 @@ bool tl_contact_transfer(tl_model *m, uint32_t c, tl_narrow *room)
     for (size_t i = begin + g->point_count; i < begin + contacts->point_room[c]; i++)
         tl_point_clear(p, i);
     plane_fit fit = {.made = false};
-    if (before.area > 0)
+    if (before.area > 0 && !room->reframed)
         fit = fit_plane(old, old_count, &before);
-    write_points(m, c, g, old, old_count, &fit);
+    write_points(m, c, g, old, old_count, &fit, lanes);
     if (old_count == 0 || g->point_count == 0 || !(before.area > 0))
         return true;
 
     totals now = {0};
     for (size_t i = begin; i < begin + g->point_count; i++)
-        add_area(&now, p->area[i], p->arm[i], tl_columns_get(p->normal, i));
+        add_area(&now, p->area[i], tl_columns_get(lanes->arm, i - begin),
+                 tl_columns_get(lanes->normal, i - begin));
     close_area(&now);
     double follow = now.area / before.area;
     totals want = {.shear =
                        tl_v3_scale(follow, tl_v3_turn(before.shear, before.normal, now.normal))};
     want.torsion = follow * before.torsion;
     double largest = 0;
-    for (size_t k = 0; k < old_count; k++)
+    for (size_t k = 0; k < old_count && !room->reframed; k++)
         largest = fmax(largest, tl_v3_norm(old[k].shear));
-    correct_shear(p, begin, g->point_count, &now, &want, largest);
+    correct_shear(p, lanes, begin, g->point_count, &now, &want, largest);
     double *value = room->value;
     for (int field = 0; field < FIELD_COUNT; field++) {
         moments keep = field_moments(old, old_count, field, &before, now.normal);
         largest = 0;
-        for (size_t k = 0; k < old_count; k++)
+        for (size_t k = 0; k < old_count && !room->reframed; k++)
             largest = fmax(largest, fabs(old[k].field[field]));
         keep.sum *= follow;
         keep.along1 *= follow;
@@ -369,7 +382,7 @@ bool tl_contact_transfer(tl_model *m, uint32_t c, tl_narrow *room)
         for (size_t k = 0; k < g->point_count; k++)
             value[k] = field == FIELD_REFERENCE ? p->reference[begin + k]
                                                 : p->f_n0[begin + k] / p->area[begin + k];
-        correct_field(p, value, begin, g->point_count, &now, keep, largest);
+        correct_field(p, lanes, value, begin, g->point_count, &now, keep, largest);
         for (size_t k = 0; k < g->point_count; k++) {
             if (field == FIELD_REFERENCE)
                 p->reference[begin + k] = value[k];

@@ -30,7 +30,7 @@ TEST(contact_is_born_before_touching_and_dies_after)
         if (fabs(gap - tolerance) > step)
             CHECK_INT(c != TL_NO_ROW, gap < tolerance);
         if (c != TL_NO_ROW) {
-            CHECK_NEAR(m->detect->contacts.gap[c], gap, 1e-12);
+            CHECK_NEAR(scene_gap(m, c), gap, 1e-12);
             double overlap = gap < 0 ? -gap : 0;
             CHECK_NEAR(scene_force(m, 0, 1).z, KN * overlap, 1e-3);
             born = 1;
@@ -179,7 +179,7 @@ TEST(contact_takes_the_joint_of_the_touching_faces)
     m = scene_model(1);
     scene_box(m, tl_v3(0, 0, 0), tl_v3(1, 1, 2));
     cut(m, "fault", tl_v3(0, 0, 1), tl_v3(0, 0, 1));
-    uint32_t top = tl_block_centroid(m, 0).z > 1 ? 0 : 1;
+    uint32_t top = tl_block_centroid(m, 0).z > 1 ? 0U : 1U;
     tl_id id = m->blocks.id[top];
     scene_ok(m, tl_blocks_delete(m, &id, 1));
     scene_box(m, tl_v3(0.2, 0.2, 1), tl_v3(0.8, 0.8, 2));
@@ -210,7 +210,7 @@ TEST(of_two_joints_the_older_one_rules)
         }
         CHECK_INT(count, 2);
         scene_ok(m, tl_blocks_delete(m, gone, count));
-        uint32_t upper = tl_block_centroid(m, 0).z > 3 ? 0 : 1;
+        uint32_t upper = tl_block_centroid(m, 0).z > 3 ? 0U : 1U;
         scene_put(m, m->blocks.body[upper], tl_v3(-5, 0, -3), tl_q_identity());
         scene_forces(m);
         CHECK_TEXT(joint_between(m, 0, 1), "older:1");
@@ -307,9 +307,10 @@ static double largest_force(const tl_model *m)
 
 /* What of a difference of forces is beyond what a motion of 1e-6 of the size (within which areas are
  * reused) may change the area: that times the polygon's perimeter, about 8 roots of its area. */
-static double beyond_reuse(const tl_contacts *c, uint32_t row, double difference)
+static double beyond_reuse(const tl_model *m, uint32_t row, double difference)
 {
-    return difference - PILE_KN * fabs(c->gap[row]) * 8 * sqrt(c->area[row]) * 1e-6;
+    double area = m->detect->contacts.area[row];
+    return difference - PILE_KN * fabs(scene_gap(m, row)) * 8 * sqrt(area) * 1e-6;
 }
 
 static bool same_axis(const tl_axis *a, const tl_axis *b)
@@ -348,10 +349,10 @@ TEST(reused_geometry_agrees_with_new_geometry)
             followed++;
             if (same_axis(&before[row], &c->axis[row])) {
                 kept++;
-                worst = fmax(worst, beyond_reuse(c, row, fabs(reused[row] - force)) / scale);
+                worst = fmax(worst, beyond_reuse(m, row, fabs(reused[row] - force)) / scale);
             }
             uint32_t other = scene_contact(fresh, c->a[row], c->b[row]);
-            if (c->gap[row] >= 0 || !CHECK(other != TL_NO_ROW))
+            if (scene_gap(m, row) >= 0 || !CHECK(other != TL_NO_ROW))
                 continue;
             compared++;
             const tl_axis *axis = &c->axis[row], *found = &fresh->detect->contacts.axis[other];
@@ -363,7 +364,7 @@ TEST(reused_geometry_agrees_with_new_geometry)
         }
         const tl_contacts *f = &fresh->detect->contacts;
         for (uint32_t row = 0; row < f->table.rows; row++)
-            if (f->gap[row] < 0)
+            if (scene_gap(fresh, row) < 0)
                 CHECK(scene_contact(m, f->a[row], f->b[row]) != TL_NO_ROW);
         tl_model_destroy(fresh);
     }

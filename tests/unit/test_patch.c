@@ -220,7 +220,7 @@ static void check_stiffness(tl_poly *a, tl_poly *b, double twist, double x, doub
     double area = 0;
     for (uint32_t i = 0; i < d->contacts.point_count[0]; i++) {
         double w = d->points.area[d->contacts.point_start[0] + i];
-        c = tl_v3_madd(c, w, d->points.arm[d->contacts.point_start[0] + i]);
+        c = tl_v3_madd(c, w, scene_arm(m, d->contacts.point_start[0] + i));
         area += w;
     }
     c = tl_v3_scale(1 / area, c);
@@ -230,7 +230,7 @@ static void check_stiffness(tl_poly *a, tl_poly *b, double twist, double x, doub
         double inertia = 0;
         for (uint32_t i = 0; i < d->contacts.point_count[0]; i++) {
             size_t at = d->contacts.point_start[0] + i;
-            double arm = tl_v3_dot(across, tl_v3_sub(d->points.arm[at], c));
+            double arm = tl_v3_dot(across, tl_v3_sub(scene_arm(m, at), c));
             inertia += d->points.area[at] * arm * arm;
         }
         /* turn B about an axis through the polygon's centroid, which therefore stays */

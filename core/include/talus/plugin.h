@@ -42,6 +42,23 @@ extern "C" {
 #define TL_LANES 8u
 #define TL_ALIGN 64u
 
+/* Before a function whose loops run over columns: compiled once more for processors with wider vectors, of
+ * which the program takes what it finds. Contraction of products is off, so all give the same bits. */
+#if defined(__SANITIZE_ADDRESS__)
+#define TL_VECTORIZED /* the choice is made before the sanitizer has started */
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define TL_VECTORIZED
+#endif
+#endif
+#ifndef TL_VECTORIZED
+#if defined(__x86_64__) && defined(__linux__) && defined(__GNUC__)
+#define TL_VECTORIZED __attribute__((target_clones("avx512f", "avx2", "default")))
+#else
+#define TL_VECTORIZED
+#endif
+#endif
+
 /* ---------------------------------------------------------------- parameters ------------- */
 
 /* Type of a parameter, and the C member the host writes at `offset` of the params struct. */

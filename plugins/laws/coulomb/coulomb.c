@@ -28,12 +28,13 @@
 #include <talus/plugin.h>
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 
 #define DEGREE (3.14159265358979323846 / 180)
-/* Lanes worked on at a time: their flags stay in the nearest cache. */
-#define STRIDE 64u
+/* Lanes worked on at a time: none of them slips, or all are looked at for slip. */
+#define STRIDE TL_LANES
 /* Scaling a force down to its limit leaves it within 2 roundings of it; without this margin a point at
  * rest would be scaled down by a rounding in every step. */
 #define ROUNDING 1e-15
@@ -101,19 +102,64 @@ static tl_status create(const void *given, void **self, tl_report *report)
 }
 
 /* Elastic energy of both springs; 0 for a lane of no area. */
-static void store_energy(const coulomb *law, const tl_law_batch *batch)
+static inline void store_energy(const coulomb *law, const tl_law_batch *batch, uint32_t begin,
+                                uint32_t lanes)
 {
-    const double *restrict area = batch->area, *restrict f_n = batch->f_n;
-    const double *restrict f_x = batch->f_s[0], *restrict f_y = batch->f_s[1];
-    const double *restrict f_z = batch->f_s[2];
-    double *restrict stored = batch->stored;
+    const double *restrict area = batch->area + begin, *restrict f_n = batch->f_n + begin;
+    const double *restrict f_x = batch->f_s[0] + begin, *restrict f_y = batch->f_s[1] + begin;
+    const double *restrict f_z = batch->f_s[2] + begin;
+    double *restrict stored = batch->stored + begin;
     const double half_n = 0.5 / law->kn, half_s = 0.5 / law->ks;
 #pragma omp simd
-    for (uint32_t i = 0; i < batch->count; i++) {
+    for (uint32_t i = 0; i < lanes; i++) {
         double inverse = area[i] > 0 ? 1 / (area[i] > 0 ? area[i] : 1) : 0;
         double shear2 = f_x[i] * f_x[i] + f_y[i] * f_y[i] + f_z[i] * f_z[i];
         stored[i] = (half_n * f_n[i] * f_n[i] + half_s * shear2) * inverse;
     }
+}
+
+/* The law where nothing slips, for TL_LANES lanes from `begin`: most of a rock mass at most times, and
+ * without its roots and divisions. false, and nothing done, when some lane slips; the results are those of
+ * `move` to the bit. */
+static inline __attribute__((always_inline)) bool stick(const coulomb *law,
+                                                        const tl_law_batch *batch, uint32_t begin)
+{
+    const double *restrict area = batch->area + begin, *restrict closure = batch->closure + begin;
+    const double *restrict f_n0 = batch->f_n0 + begin, *restrict opening = batch->state[0] + begin;
+    const double *restrict du_x = batch->du_s[0] + begin, *restrict du_y = batch->du_s[1] + begin;
+    const double *restrict du_z = batch->du_s[2] + begin;
+    double *restrict f_n = batch->f_n + begin, *restrict f_x = batch->f_s[0] + begin;
+    double *restrict f_y = batch->f_s[1] + begin, *restrict f_z = batch->f_s[2] + begin;
+    const double kn = law->kn, ks = law->ks, tangent = law->tangent, cohesion = law->cohesion;
+    double total[TL_LANES], tx[TL_LANES], ty[TL_LANES], tz[TL_LANES], beyond[TL_LANES];
+#pragma omp simd
+    for (uint32_t i = 0; i < TL_LANES; i++) {
+        double stiffness = ks * area[i];
+        total[i] = kn * area[i] * (closure[i] + opening[i]) + f_n0[i];
+        tx[i] = f_x[i] - stiffness * du_x[i];
+        ty[i] = f_y[i] - stiffness * du_y[i];
+        tz[i] = f_z[i] - stiffness * du_z[i];
+        double limit = total[i] < 0 ? 0 : cohesion * area[i] + total[i] * tangent;
+        double trial2 = tx[i] * tx[i] + ty[i] * ty[i] + tz[i] * tz[i];
+        beyond[i] = trial2 > limit * limit ? 1 : 0;
+    }
+    double any = 0;
+    for (uint32_t i = 0; i < TL_LANES; i++)
+        any += beyond[i];
+    if (any > 0)
+        return false;
+#pragma omp simd
+    for (uint32_t i = 0; i < TL_LANES; i++) {
+        f_n[i] = total[i] < 0 ? 0 : total[i];
+        f_x[i] = tx[i];
+        f_y[i] = ty[i];
+        f_z[i] = tz[i];
+    }
+    for (uint32_t i = 0; i < TL_LANES; i++)
+        batch->flags[begin + i] = total[i] < 0 ? TL_POINT_OPEN : 0;
+    for (uint32_t i = 0; i < TL_LANES && batch->dissipated; i++)
+        batch->dissipated[begin + i] = 0;
+    return true;
 }
 
 /* The law itself, for up to STRIDE lanes from `begin`. `heat` and `dilates` are constants at each call,
@@ -179,13 +225,16 @@ static inline __attribute__((always_inline)) void move(const coulomb *law,
     }
 }
 
-static tl_status update(const void *self, const tl_law_batch *batch, tl_report *report)
+TL_VECTORIZED static tl_status update(const void *self, const tl_law_batch *batch,
+                                      tl_report *report)
 {
     (void)report;
     const coulomb *law = self;
     double mark[STRIDE];
     for (uint32_t begin = 0; begin < batch->count; begin += STRIDE) {
         uint32_t left = batch->count - begin, lanes = left < STRIDE ? left : STRIDE;
+        if (lanes == TL_LANES && stick(law, batch, begin))
+            continue;
         if (law->dilation > 0 && batch->dissipated)
             move(law, batch, begin, lanes, mark, 1, 1);
         else if (law->dilation > 0)
@@ -198,7 +247,7 @@ static tl_status update(const void *self, const tl_law_batch *batch, tl_report *
             batch->flags[begin + i] = (uint32_t)mark[i];
     }
     if (batch->stored)
-        store_energy(law, batch);
+        store_energy(law, batch, 0, batch->count);
     return TL_OK;
 }
 

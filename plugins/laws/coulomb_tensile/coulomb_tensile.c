@@ -222,7 +222,8 @@ static inline __attribute__((always_inline)) void move(const bonded *law, const 
     }
 }
 
-static tl_status update(const void *self, const tl_law_batch *batch, tl_report *report)
+TL_VECTORIZED static tl_status update(const void *self, const tl_law_batch *batch,
+                                      tl_report *report)
 {
     (void)report;
     const bonded *law = self;

@@ -37,7 +37,8 @@ static void store_energy(const params *p, const tl_law_batch *batch)
     }
 }
 
-static tl_status update(const void *self, const tl_law_batch *batch, tl_report *report)
+TL_VECTORIZED static tl_status update(const void *self, const tl_law_batch *batch,
+                                      tl_report *report)
 {
     (void)report;
     const params *p = self;
