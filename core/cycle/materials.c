@@ -40,6 +40,7 @@ static tl_status make_material(tl_model *m, tl_tag tag, const char *joint, const
     for (uint32_t k = 0; k < kind->state_count; k++) {
         bool tangent = tl_kind_state(kind, k)->kind == TL_STATE_TANGENT;
         out->tangents |= tangent ? 1u << column : 0;
+        out->splits = out->splits || tl_kind_state(kind, k)->transfer == TL_TRANSFER_SPLIT;
         column += tangent ? 3 : 1;
     }
     return TL_OK;

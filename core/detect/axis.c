@@ -48,6 +48,22 @@ bool tl_pair_place(tl_pair_view *view, tl_narrow *room)
     return true;
 }
 
+bool tl_pair_place_face(tl_pair_view *view, uint32_t face, tl_narrow *room)
+{
+    const tl_poly *b = view->b;
+    if (!tl_grow(&room->vertex_b, &room->vertex_room, b->vertex_count, sizeof(tl_vec3)) ||
+        !tl_grow(&room->normal_b, &room->normal_room, b->face_count, sizeof(tl_vec3)))
+        return false;
+    view->vertex_b = room->vertex_b;
+    view->normal_b = room->normal_b;
+    for (uint32_t i = b->start[face]; i < b->start[face + 1]; i++) {
+        uint32_t v = b->loop[i];
+        view->vertex_b[v] = tl_v3_add(tl_m3_mul(&view->turn, b->vertex[v]), view->shift);
+    }
+    view->normal_b[face] = tl_m3_mul(&view->turn, b->plane[face].normal);
+    return true;
+}
+
 /* min over the points of n . x */
 static double lowest(const tl_vec3 *x, uint32_t count, tl_vec3 n)
 {

@@ -9,20 +9,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Motion within which facets and areas are reused, relative to the smaller block's size: areas are
- * then wrong by a few 1e-6 at most; gaps are exact all the same. */
-#define REUSE 1e-6
-/* A point of a tilted patch stays on A until the patch is made anew, wherever the feature that made it goes:
- * the error of its gap is the motion times the tilt, and may be this share of the gap. */
-#define GAP_SHARE 1e-4
-/* The axis is searched anew after motion of half its lead over the next one, or this share of |s|, ... */
-#define AXIS_SHARE 0.25
-/* ... but at the latest after this times the size. */
-#define AXIS_MOST 0.02
-/* Motion within which a pair that touches without area is not looked at again, relative to the size: the
- * share of its faces that may have come into contact unseen. */
-#define SILENT 1e-5
-
 /* Overlap of a new contact, relative to the smaller block's size, of which the user is told: blocks that
  * were placed into each other, or that a step has thrown into each other. */
 #define DEEP 1e-2
@@ -143,28 +129,7 @@ static bool left_skin(const tl_model *m)
     return false;
 }
 
-/* ---------------------------------------------------------------- geometry --------------- */
-
-/* The rule of the point share for a pair of a joint; pairs that carry a force across a gap
- * keep all their points. */
-static tl_share_rule share_rule(const tl_model *m, const tl_pair_view *view, tl_tag tag,
-                                bool across)
-{
-    tl_area_rule rule = tl_area_rule_of(m, tag);
-    double tolerance = TL_CONTACT_TOLERANCE * TL_CONTACT_RELEASE * view->size;
-    bool absolute = !isnan(rule.absolute);
-    return (tl_share_rule){.minimum = absolute ? rule.absolute : rule.fraction * view->mean_face,
-                           .unconditional = absolute,
-                           .corners = m->config.contact_points == TL_POINTS_CORNERS,
-                           .reach = across ? INFINITY : tolerance};
-}
-
-/* How far a pair may run before its axis is searched again. */
-static double axis_margin(const tl_axis *axis, double size)
-{
-    double lead = 0.5 * (axis->s - axis->second);
-    return fmin(fmax(lead, AXIS_SHARE * fabs(axis->s)), AXIS_MOST * size);
-}
+/* ---------------------------------------------------------------- pairs ------------------ */
 
 static void look_at(tl_model *m, tl_pair *p, tl_narrow *room)
 {
@@ -187,172 +152,11 @@ static void look_at(tl_model *m, tl_pair *p, tl_narrow *room)
         p->wake = odometer + (axis.s - tolerance);
         return;
     }
-    tl_share_rule rule = share_rule(m, &view, tl_touching_tag(&view, axis.n), false);
+    tl_share_rule rule = tl_share_rule_of(m, &view, tl_touching_tag(&view, axis.n), false);
     tl_manifold_build(&view, &axis, &rule, room);
     room->failed = room->failed || room->manifold.failed;
     p->found = room->manifold.point_count > 0;
-    p->wake = odometer + SILENT * view.size;
-}
-
-/* Whether some point carries a force across a gap: a bond in tension, or an initial stress not yet relieved.
- * Such a contact ends only with that force. */
-static bool carries_across(const tl_detect *d, uint32_t c)
-{
-    const tl_points_table *p = &d->points;
-    size_t begin = d->contacts.point_start[c];
-    for (size_t i = begin; i < begin + d->contacts.point_count[c]; i++)
-        if (p->f_n[i] < 0 || (p->f_n[i] > 0 && p->closure[i] + p->reference[i] < 0))
-            return true;
-    return false;
-}
-
-static bool same_topology(const tl_detect *d, uint32_t c, const tl_manifold *g)
-{
-    const tl_contacts *contacts = &d->contacts;
-    if (contacts->point_count[c] != g->point_count || contacts->facet_count[c] != g->facet_count)
-        return false;
-    for (size_t k = 0; k < g->facet_count; k++) {
-        const tl_facet *f = &contacts->facet[contacts->facet_start[c] + k], *h = &g->facets[k];
-        if (f->kind != h->kind || f->ia != h->ia || f->ib != h->ib || f->count != h->count)
-            return false;
-    }
-    for (size_t k = 0; k < g->point_count; k++)
-        if (d->points.key[contacts->point_start[c] + k] != g->points[k].key)
-            return false;
-    return true;
-}
-
-/* New places and areas of the same points: stresses stay, forces follow the area. */
-static void refit(tl_model *m, uint32_t c, const tl_manifold *g)
-{
-    tl_detect *d = m->detect;
-    tl_points_table *p = &d->points;
-    tl_facet *facet = &d->contacts.facet[d->contacts.facet_start[c]];
-    for (size_t k = 0; k < g->facet_count; k++) {
-        tl_vec3 last = facet[k].last, last_lean = facet[k].last_lean;
-        facet[k] = g->facets[k];
-        facet[k].last = last;
-        facet[k].last_lean = last_lean;
-    }
-    uint32_t material = d->contacts.material[c];
-    const tl_kind *kind = material == TL_NO_ROW ? NULL : m->materials[material].kind;
-    for (size_t k = 0; k < g->point_count; k++) {
-        size_t i = d->contacts.point_start[c] + k;
-        double old = p->area[i], scale = g->points[k].area / old;
-        double state[TL_STATE_COLUMNS];
-        tl_columns_put(p->p, i, g->points[k].p);
-        p->rest[i] = g->points[k].rest;
-        p->lean[i] = g->points[k].lean;
-        p->area[i] = g->points[k].area;
-        if (scale == 1)
-            continue;
-        p->f_n[i] *= scale;
-        p->f_n0[i] *= scale;
-        for (int s = 0; s < 3; s++)
-            p->f_s[s][i] *= scale;
-        if (kind && kind->state_count) {
-            for (int s = 0; s < TL_STATE_COLUMNS; s++)
-                state[s] = p->state[s][i];
-            tl_point_keep_state(p, i, kind, state, old);
-        }
-    }
-}
-
-/* The contact's facets in the present place, by its axis followed or searched. false: out of memory. */
-static bool rebuild(tl_model *m, uint32_t c, tl_narrow *room, bool across)
-{
-    tl_contacts *contacts = &m->detect->contacts;
-    double odometer = tl_pair_odometer(m, contacts->a[c], contacts->b[c]);
-    tl_pair_view view = tl_pair_view_of(m, contacts->a[c], contacts->b[c]);
-    tl_axis axis = contacts->axis[c];
-    if (!tl_pair_place(&view, room))
-        return false;
-    bool search =
-        !m->config.reuse_geometry || odometer - contacts->searched[c] > contacts->margin[c];
-    for (;; search = true) {
-        bool followed = !search && tl_axis_follow(&view, &axis);
-        if (search) {
-            axis = tl_axis_search(&view, room, &contacts->axis[c]);
-            contacts->searched[c] = odometer;
-            contacts->margin[c] = axis_margin(&axis, view.size);
-        }
-        tl_tag tag = tl_touching_tag(&view, axis.n);
-        tl_share_rule rule = share_rule(m, &view, tag, across);
-        tl_manifold_build(&view, &axis, &rule, room);
-        if (room->manifold.failed)
-            return false;
-        if (!search && !followed && !(room->manifold.patch_area > 0))
-            continue; /* what touched has parted: look at all features */
-        contacts->axis[c] = axis;
-        if (tag.joint != contacts->tag[c].joint || tag.plane != contacts->tag[c].plane) {
-            contacts->tag[c] = tag;
-            uint32_t material = tl_material_row(m, tag);
-            if (material != contacts->material[c])
-                contacts->fate[c] = TL_FATE_MATERIAL;
-        }
-        /* a pair that touches without area stays a contact, so that it need not be born again */
-        if (axis.s > TL_CONTACT_TOLERANCE * TL_CONTACT_RELEASE * view.size && !across) {
-            contacts->fate[c] = TL_FATE_DIE;
-            m->detect->pairs[contacts->pair[c]].wake =
-                odometer + axis.s - TL_CONTACT_TOLERANCE * view.size;
-        }
-        return true;
-    }
-}
-
-/* Puts the built manifold in the place of the contact's points, or asks for room. */
-static bool take_manifold(tl_model *m, uint32_t c, tl_narrow *room, const tl_point_lanes *lanes)
-{
-    tl_detect *d = m->detect;
-    tl_contacts *contacts = &d->contacts;
-    const tl_manifold *g = &room->manifold;
-    contacts->area[c] = 0;
-    for (size_t k = 0; k < g->point_count; k++)
-        contacts->area[c] += g->points[k].area;
-    if (same_topology(d, c, g)) {
-        refit(m, c, g);
-        return true;
-    }
-    if (g->point_count > contacts->point_room[c] || g->facet_count > contacts->facet_room[c]) {
-        contacts->want_points[c] = (uint32_t)g->point_count;
-        contacts->want_facets[c] = (uint32_t)g->facet_count;
-        contacts->fate[c] = TL_FATE_GROW;
-        return true;
-    }
-    return tl_contact_transfer(m, c, room, lanes);
-}
-
-/* How far a contact whose facets have just been made may move before they are made anew. */
-static void allow_reuse(tl_model *m, uint32_t c, double tilt)
-{
-    tl_contacts *contacts = &m->detect->contacts;
-    double size = fmin(m->blocks.size[contacts->a[c]], m->blocks.size[contacts->b[c]]);
-    double most = (contacts->point_count[c] ? REUSE : SILENT) * size;
-    if (tilt > 0) {
-        double gap = INFINITY;
-        for (size_t i = contacts->point_start[c];
-             i < contacts->point_start[c] + contacts->point_count[c]; i++)
-            gap = fmin(gap, -(m->detect->points.closure[i] + m->detect->points.reference[i]));
-        most = fmin(most, GAP_SHARE * fabs(gap) / tilt);
-    }
-    contacts->until[c] = tl_pair_odometer(m, contacts->a[c], contacts->b[c]) + most;
-}
-
-static void update_contact(tl_model *m, uint32_t c, tl_narrow *room, const tl_point_lanes *lanes)
-{
-    tl_contacts *contacts = &m->detect->contacts;
-    if (contacts->fate[c] == TL_FATE_DIE)
-        return;
-    double odometer = tl_pair_odometer(m, contacts->a[c], contacts->b[c]);
-    if (!m->config.reuse_geometry || odometer > contacts->until[c]) {
-        bool across = carries_across(m->detect, c);
-        if (!rebuild(m, c, room, across) ||
-            (contacts->fate[c] != TL_FATE_DIE && !take_manifold(m, c, room, lanes))) {
-            contacts->fate[c] = TL_FATE_MEMORY;
-            return;
-        }
-        allow_reuse(m, c, room->manifold.tilt);
-    }
+    p->wake = odometer + TL_SILENT * view.size;
 }
 
 /* ---------------------------------------------------------------- phases ----------------- */
@@ -370,7 +174,7 @@ static void update_range(void *user, size_t begin, size_t end, size_t chunk, uns
     (void)chunk;
     tl_model *m = user;
     for (size_t c = begin; c < end; c++)
-        update_contact(m, (uint32_t)c, &m->detect->narrow[thread], &m->detect->lanes[thread]);
+        tl_contact_update(m, (uint32_t)c, thread);
 }
 
 /* Bodies that were joined or parted have other frames than before: what contacts keep in them is made
@@ -379,39 +183,8 @@ static void reframe_range(void *user, size_t begin, size_t end, size_t chunk, un
 {
     (void)chunk;
     tl_model *m = user;
-    tl_contacts *contacts = &m->detect->contacts;
-    tl_narrow *room = &m->detect->narrow[thread];
-    for (uint32_t c = (uint32_t)begin; c < end; c++) {
-        if (contacts->fate[c] == TL_FATE_DIE)
-            continue;
-        contacts->searched[c] = -INFINITY;
-        room->reframed = true;
-        if (!rebuild(m, c, room, carries_across(m->detect, c)) ||
-            (contacts->fate[c] != TL_FATE_DIE &&
-             !take_manifold(m, c, room, &m->detect->lanes[thread])))
-            contacts->fate[c] = TL_FATE_MEMORY;
-        room->reframed = false;
-    }
-}
-
-/* Builds the facets of a contact that has just been given its room. */
-static bool fill_contact(tl_model *m, uint32_t c, tl_narrow *room)
-{
-    tl_contacts *contacts = &m->detect->contacts;
-    tl_pair_view view = tl_pair_view_of(m, contacts->a[c], contacts->b[c]);
-    if (!tl_pair_place(&view, room))
-        return false;
-    if (contacts->point_count[c] == 0)
-        contacts->margin[c] = axis_margin(&contacts->axis[c], view.size);
-    tl_share_rule rule = share_rule(m, &view, contacts->tag[c], carries_across(m->detect, c));
-    tl_manifold_build(&view, &contacts->axis[c], &rule, room);
-    contacts->area[c] = 0;
-    for (size_t k = 0; k < room->manifold.point_count; k++)
-        contacts->area[c] += room->manifold.points[k].area;
-    if (room->manifold.failed || !tl_contact_transfer(m, c, room, &m->detect->lanes[0]))
-        return false;
-    allow_reuse(m, c, room->manifold.tilt);
-    return true;
+    for (size_t c = begin; c < end; c++)
+        tl_contact_reframe(m, (uint32_t)c, thread);
 }
 
 /* Pairs that overlap deeply when their contact is made. */
@@ -436,7 +209,7 @@ static tl_status give_birth(tl_model *m, size_t *born)
             return tl_fail_memory(&m->error);
         tl_axis axis = tl_axis_search(&view, room, NULL);
         tl_tag tag = tl_touching_tag(&view, axis.n);
-        tl_share_rule rule = share_rule(m, &view, tag, false);
+        tl_share_rule rule = tl_share_rule_of(m, &view, tag, false);
         tl_manifold_build(&view, &axis, &rule, room);
         const tl_manifold *g = &room->manifold;
         if (g->failed || !tl_contact_append(m, i, &axis, tag, g->point_count, g->facet_count))
@@ -503,7 +276,7 @@ static tl_status fill_contacts(tl_model *m)
     tl_contacts *c = &m->detect->contacts;
     for (uint32_t row = 0; row < c->table.rows; row++) {
         if (c->fate[row] == TL_FATE_GROW) {
-            if (!fill_contact(m, row, &m->detect->narrow[0]))
+            if (!tl_contact_fill(m, row))
                 return tl_fail_memory(&m->error);
         }
         c->fate[row] = TL_FATE_KEEP;

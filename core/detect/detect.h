@@ -14,6 +14,14 @@
 
 #include "model/model.h"
 
+/* Motion within which a pair that touches without area is not looked at again, relative to the size: the
+ * share of its faces that may have come into contact unseen. */
+#define TL_SILENT 1e-5
+
+/* Half the sine of the tilt of two faces up to which all points of their patch have the bisector for their
+ * normal: a share of the force that no result shows. */
+#define TL_FLUSH 1e-5
+
 /* When a pair becomes a contact, and when a contact ends, relative to the smaller block's size. */
 #define TL_CONTACT_TOLERANCE 1e-3
 #define TL_CONTACT_RELEASE 1.5
@@ -83,6 +91,7 @@ typedef struct tl_manifold {
     size_t facet_count, facet_room, point_count, point_room;
     double patch_area;
     double tilt; /* sine of the angle between the faces of the most tilted patch */
+    bool lone;   /* no faces look at each other but one of each, nor will they soon */
     bool failed; /* out of memory */
 } tl_manifold;
 
@@ -133,6 +142,7 @@ typedef struct tl_contacts {
     tl_vec3 *force;               /* on B */
     tl_vec3 *moment_a, *moment_b; /* of the forces on A and on B, about their bodies' centroids */
     uint32_t *want_points, *want_facets; /* of a contact that must grow */
+    uint8_t *lone; /* its faces that look at each other are one of each block */
     uint8_t *fate; /* what the parallel phase leaves to the serial one: TL_FATE_* */
     /* facets */
     tl_facet *facet;
@@ -253,6 +263,8 @@ bool tl_look_near(const tl_pair_view *view, double reach);
 /* ---- axis.c ---- */
 /* Fills vertex_b and normal_b of the view. */
 bool tl_pair_place(tl_pair_view *view, tl_narrow *room);
+/* Fills them for one face of B only. */
+bool tl_pair_place_face(tl_pair_view *view, uint32_t face, tl_narrow *room);
 /* The exact common plane's axis. `previous` (or NULL) is preferred when nearly as good. */
 tl_axis tl_axis_search(const tl_pair_view *view, tl_narrow *room, const tl_axis *previous);
 /* n and s of the same features in the present place; false when the features no longer define it. */
@@ -265,6 +277,11 @@ bool tl_edge_normal(tl_vec3 edge_a, tl_vec3 edge_b, tl_vec3 outward, tl_vec3 *n)
 void tl_manifold_build(const tl_pair_view *view, const tl_axis *axis, const tl_share_rule *rule,
                        tl_narrow *room);
 bool tl_manifold_add_point(tl_manifold *m, tl_contact_point point);
+/* Makes room for `count` points more; false when out of memory. */
+bool tl_manifold_reserve(tl_manifold *m, size_t count);
+/* The same when two faces lie flush on each other and nothing else touches; false, when they do not. */
+bool tl_manifold_renew(const tl_pair_view *view, uint32_t fa, uint32_t fb,
+                       const tl_share_rule *rule, tl_narrow *room);
 /* The joint of the touching faces. */
 tl_tag tl_touching_tag(const tl_pair_view *view, tl_vec3 n);
 
@@ -294,6 +311,18 @@ void tl_contact_summary(const tl_model *m, uint32_t contact, tl_vec3 *normal, tl
                         double *gap);
 /* Normal of a point that leans so when its contact was last followed; 0 when it never was. */
 tl_vec3 tl_facet_last_normal(const tl_facet *facet, double lean);
+
+/* ---- update.c ---- */
+/* The rule of the point share for a pair of a joint; pairs that carry a force across a gap keep all
+ * their points. */
+tl_share_rule tl_share_rule_of(const tl_model *m, const tl_pair_view *view, tl_tag tag,
+                               bool across);
+/* Brings a contact's facets up to the present place, if they are stale; its fate tells what is left to do. */
+void tl_contact_update(tl_model *m, uint32_t contact, unsigned thread);
+/* The same for a contact of bodies that have other frames than when its facets were made. */
+void tl_contact_reframe(tl_model *m, uint32_t contact, unsigned thread);
+/* Builds the facets of a contact that has just been given its room; false when out of memory. */
+bool tl_contact_fill(tl_model *m, uint32_t contact);
 
 /* ---- transfer.c ---- */
 /* Puts the manifold's points in the place of the contact's, carrying over state so that total force

@@ -14,10 +14,6 @@
 /* Angles below which sine and cosine are taken from their series, whose next term is then below
  * rounding. */
 #define SERIES_ANGLE 0.1
-/* Squared half sine of the tilt up to which all points of a patch have the bisector for their normal: 1e-5
- * rad, a share of the force that no result shows. */
-#define FLUSH2 1e-10
-
 /* ---------------------------------------------------------------- bodies ----------------- */
 
 /* A body's motion in the last step, as it acts on a point at `arm` from the centroid now: way + m arm.
@@ -99,7 +95,7 @@ static void face_patch(const tl_facet *f, const sight *s, facing *out)
     out->mean2 = tl_v3_norm2(out->mean);
     out->l2 = tl_v3_norm2(out->lean);
     out->n = tl_v3_scale(1 / sqrt(out->mean2), out->mean);
-    out->tilted = out->l2 > FLUSH2;
+    out->tilted = out->l2 > TL_FLUSH * TL_FLUSH;
 }
 
 /* Fills what vertices on a face of A, or of B, need. */

@@ -18,6 +18,8 @@
  * contact, and from which not at all: degrees. */
 #define TILT_FULL 5.0
 #define TILT_NONE 15.0
+/* What faces may turn, degrees, before the axis is searched again at the latest (AXIS_MOST in update.c). */
+#define TURN_MOST 3.0
 /* Tilt of two faces below which their edges get no point share, and from which all of it: degrees.
  * Far above the rotations of blocks in a loaded assembly, below what is seen as an edge contact. */
 #define FLUSH_NONE 0.5
@@ -27,21 +29,27 @@
 /* Normals whose cosines with the axis differ by less are equally near to it. */
 #define SAME_COSINE 1e-9
 
+bool tl_manifold_reserve(tl_manifold *m, size_t count)
+{
+    if (m->point_count + count <= m->point_room)
+        return true;
+    size_t room = 2 * (m->point_count + count);
+    tl_contact_point *points = room > UINT16_MAX ? NULL : realloc(m->points, room * sizeof *points);
+    if (!points) {
+        m->failed = true;
+        return false;
+    }
+    m->points = points;
+    m->point_room = room;
+    return true;
+}
+
 bool tl_manifold_add_point(tl_manifold *m, tl_contact_point point)
 {
     if (!(point.area > 0)) /* a point without area carries nothing, and has no stress */
         return true;
-    if (m->point_count == m->point_room) {
-        size_t room = m->point_room ? 2 * m->point_room : 64;
-        tl_contact_point *points = realloc(m->points, room * sizeof *points);
-        if (!points || room > UINT16_MAX) {
-            m->points = points ? points : m->points;
-            m->failed = true;
-            return false;
-        }
-        m->points = points;
-        m->point_room = room;
-    }
+    if (!tl_manifold_reserve(m, 1))
+        return false;
     m->points[m->point_count++] = point;
     return true;
 }
@@ -143,14 +151,18 @@ typedef struct patches {
 static patches add_patches(const tl_pair_view *view, const tl_axis *axis, const tl_share_rule *rule,
                            tl_narrow *room)
 {
-    const double facing = cos(TILT_NONE * TL_PI / 180);
+    static const double facing = 0.96592582628906829; /* cos(TILT_NONE) */
+    static const double soon = 0.95105651629515357;   /* cos(TILT_NONE + TURN_MOST) */
+    uint32_t looking_a = 0, looking_b = 0;
     const double near = reach_of(view, axis);
     tl_manifold *m = &room->manifold;
     tl_vec3 n = axis->n;
     patches sum = {0};
     for (uint32_t i = 0; i < view->a->face_count; i++) {
         tl_vec3 na = view->a->plane[i].normal;
-        if (view->a->covered[i] || tl_v3_dot(na, n) < facing)
+        double towards = tl_v3_dot(na, n);
+        looking_a += towards >= soon;
+        if (view->a->covered[i] || towards < facing)
             continue;
         for (uint32_t j = 0; j < view->b->face_count; j++) {
             tl_vec3 nb = view->normal_b[j];
@@ -174,6 +186,9 @@ static patches add_patches(const tl_pair_view *view, const tl_axis *axis, const 
                                                            tl_v3_unit(hinge))};
         }
     }
+    for (uint32_t j = 0; j < view->b->face_count; j++)
+        looking_b += -tl_v3_dot(view->normal_b[j], n) >= soon;
+    m->lone = looking_a == 1 && looking_b == 1;
     return sum;
 }
 
@@ -448,6 +463,23 @@ void tl_manifold_build(const tl_pair_view *view, const tl_axis *axis, const tl_s
     scale_share(m, begin, share);
     if (m->facet_count > facets)
         add_swings(m, swing);
+}
+
+bool tl_manifold_renew(const tl_pair_view *view, uint32_t fa, uint32_t fb,
+                       const tl_share_rule *rule, tl_narrow *room)
+{
+    static const double flush2 = 7.6152421804e-5; /* square of sin(FLUSH_NONE) */
+    tl_manifold *m = &room->manifold;
+    double sine2 = tl_v3_norm2(tl_v3_cross(view->a->plane[fa].normal, view->normal_b[fb]));
+    if (rule->unconditional || sine2 > flush2)
+        return false;
+    m->facet_count = m->point_count = 0;
+    m->failed = false;
+    m->lone = true;
+    m->tilt = sqrt(sine2);
+    m->patch_area =
+        reserve_facets(m, 1) ? tl_patch_add(view, fa, fb, 1, tl_v3(0, 0, 0), rule, room) : 0;
+    return !m->failed && m->patch_area > 0;
 }
 
 /* ---------------------------------------------------------------- joint ------------------ */

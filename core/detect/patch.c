@@ -26,8 +26,9 @@
 /* Turning angles, rad, below which a corner is none, and from which it is a full one. */
 #define STRAIGHT 1e-4
 #define CORNER 2e-3
-/* Corners nearer to each other than this times the size are one: far below any length that matters,
- * far above rounding. */
+/* Corners nearer to each other than this times the size are one, and corners nearer to a line that clips lie on
+ * it: far below any length that matters, far above rounding. Edges along each other would otherwise cross
+ * here and there, and points come and go. */
 #define MERGE 1e-7
 /* A polygon thinner than this times the size has no area worth a point: faces that only touch along an
  * edge. */
@@ -44,6 +45,7 @@ typedef struct corner {
     uint32_t key;  /* of the features that made it */
     uint32_t edge; /* source of the edge that leaves it */
     double lean;   /* of its gap's normal, see tl_contact_point */
+    double height; /* over the line that cuts */
     double share;  /* of the corner in the mixture: 0 .. 1 */
     double fan;    /* area of the fan triangle of the edge that leaves it */
 } corner;
@@ -53,8 +55,9 @@ struct tl_polygon {
     corner *now, *next;
     point2 *clip;
     size_t room, clip_room;
-    point2
-        rise; /* unit, in the patch's plane: across the line where the faces' planes meet, up A's */
+    double snap2; /* square of the distance up to which a corner lies on a line */
+    /* unit, in the patch's plane: across the line where the faces' planes meet, up A's */
+    point2 rise;
 };
 
 /* Edges of A's face are 0, 1, ..., those of B's face EDGE_B, EDGE_B + 1, ... */
@@ -62,9 +65,13 @@ enum { EDGE_B = 1 << 16 };
 /* What a point is; with the features that made it, this gives its key. */
 enum { POINT_A, POINT_B, POINT_CROSSING, POINT_MIDDLE, POINT_CENTROID };
 
-static uint32_t key_of(uint64_t kind, uint32_t one, uint32_t other)
+/* Different features of one contact have different keys; a multiplication or two must do, for every point has
+ * one in every step. */
+static uint32_t key_of(uint32_t kind, uint32_t one, uint32_t other)
 {
-    return (uint32_t)tl_key(tl_key(kind, one), other);
+    uint64_t x = (kind + 1u) * UINT64_C(0x9e3779b97f4a7c15) + one;
+    x = (x ^ x >> 32) * UINT64_C(0xd6e8feb86659fd93) + other;
+    return (uint32_t)((x ^ x >> 32) * UINT64_C(0xd6e8feb86659fd93) >> 32);
 }
 
 void tl_polygon_free(struct tl_polygon *polygon)
@@ -113,10 +120,11 @@ static double cross2(point2 o, point2 a, point2 b)
     return (a.x - o.x) * (b.y - o.y) - (a.y - o.y) * (b.x - o.x);
 }
 
+/* Square of the distance. */
 static double distance2(point2 a, point2 b)
 {
     double x = a.x - b.x, y = a.y - b.y;
-    return sqrt(x * x + y * y);
+    return x * x + y * y;
 }
 
 static point2 from_to(point2 a, point2 b)
@@ -157,11 +165,19 @@ static corner meet(uint32_t one, uint32_t other, point2 cut, const point2 *clip,
 /* Keeps what lies left of the line from clip[j] to clip[j + 1]; returns the number of corners. */
 static size_t clip_by(struct tl_polygon *p, size_t count, uint32_t j, uint32_t clip_count)
 {
-    point2 o = p->clip[j], q = p->clip[(j + 1) % clip_count];
+    point2 o = p->clip[j], q = p->clip[j + 1 == clip_count ? 0 : j + 1];
+    double low = 0, on2 = p->snap2 * distance2(o, q);
+    for (size_t i = 0; i < count; i++) {
+        double h = cross2(o, q, p->now[i].at);
+        p->now[i].height = h * h > on2 ? h : 0;
+        low = p->now[i].height < low ? p->now[i].height : low;
+    }
+    if (low == 0)
+        return count; /* all of it: most lines cut nothing */
     size_t kept = 0;
     for (size_t i = 0; i < count; i++) {
         const corner *here = &p->now[i], *after = &p->now[i + 1 == count ? 0 : i + 1];
-        double h = cross2(o, q, here->at), a = cross2(o, q, after->at);
+        double h = here->height, a = after->height;
         if (h >= 0)
             p->next[kept++] = *here;
         if ((h > 0 && a < 0) || (h < 0 && a > 0) || (h == 0 && a < 0)) {
@@ -189,11 +205,11 @@ static size_t merge_near(struct tl_polygon *p, size_t count, double near)
 {
     size_t kept = 0;
     for (size_t i = 0; i < count; i++)
-        if (kept == 0 || distance2(p->now[i].at, p->now[kept - 1].at) > near)
+        if (kept == 0 || distance2(p->now[i].at, p->now[kept - 1].at) > near * near)
             p->now[kept++] = p->now[i];
         else
             p->now[kept - 1].edge = p->now[i].edge;
-    while (kept > 1 && distance2(p->now[kept - 1].at, p->now[0].at) <= near)
+    while (kept > 1 && distance2(p->now[kept - 1].at, p->now[0].at) <= near * near)
         kept--;
     return kept;
 }
@@ -218,23 +234,36 @@ static double smooth(double x)
     return x <= 0 ? 0 : x >= 1 ? 1 : x * x * (3 - 2 * x);
 }
 
+/* Share of a corner by its turning angle. */
+static double corner_share(point2 before, point2 here, point2 after)
+{
+    double uv = distance2(before, here) * distance2(here, after), s = cross2(before, here, after);
+    double ahead =
+        (here.x - before.x) * (after.x - here.x) + (here.y - before.y) * (after.y - here.y);
+    if (s > 0 &&
+        (ahead <= 0 || s * s >= CORNER * CORNER * uv)) /* the sine is less than the angle */
+        return 1;
+    double turn = asin(fmin(1, fmax(-1, s / sqrt(uv))));
+    turn = ahead < 0 ? TL_PI - turn : turn;
+    return smooth((turn - STRAIGHT) / (CORNER - STRAIGHT));
+}
+
 /* Gives each corner its share by its turning angle and each edge its fan area; drops corners of share
  * 0, whose fan area goes to the edge before. Returns the number of corners. */
 static size_t weigh_corners(corner *c, size_t count, point2 centroid)
 {
     size_t blended = 0, solid = 0, kept = 0;
     for (size_t i = 0; i < count; i++) {
-        point2 before = c[i ? i - 1 : count - 1].at, here = c[i].at, after = c[(i + 1) % count].at;
-        double u = distance2(before, here), v = distance2(here, after);
-        double turn = asin(fmin(1, fmax(-1, cross2(before, here, after) / (u * v))));
-        double ahead =
-            (here.x - before.x) * (after.x - here.x) + (here.y - before.y) * (after.y - here.y);
-        turn = ahead < 0 ? TL_PI - turn : turn;
-        c[i].share = smooth((turn - STRAIGHT) / (CORNER - STRAIGHT));
-        c[i].fan = 0.5 * fmax(0, cross2(centroid, here, after));
+        point2 before = c[i ? i - 1 : count - 1].at, here = c[i].at;
+        point2 after = c[i + 1 == count ? 0 : i + 1].at;
+        c[i].share = corner_share(before, here, after);
+        double fan = 0.5 * cross2(centroid, here, after);
+        c[i].fan = fan > 0 ? fan : 0;
         blended += c[i].share < 1;
         solid += c[i].share >= 1;
     }
+    if (blended == 0)
+        return count;
     if (solid < 3 || blended > 2 * solid)
         for (size_t i = 0; i < count; i++)
             c[i].share = 1; /* a round outline: its small turns are no wobble */
@@ -268,20 +297,37 @@ typedef struct patch {
     tl_manifold *manifold;
 } patch;
 
-static bool add_point(const patch *p, point2 at, double lean, double area, uint32_t key)
+/* Adds a point for which there is room; without area it would carry nothing, and have no stress. */
+static inline void add_point(const patch *p, point2 at, double lean, double area, uint32_t key)
 {
-    tl_vec3 x = tl_v3_madd(tl_v3_madd(p->frame.o, at.x, p->frame.t1), at.y, p->frame.t2);
-    return tl_manifold_add_point(p->manifold,
-                                 (tl_contact_point){.p = x,
-                                                    .rest = tl_v3_dot(p->a.normal, x) - p->a.offset,
-                                                    .lean = lean,
-                                                    .area = p->weight * area,
-                                                    .key = (uint32_t)tl_key(p->faces, key)});
+    tl_contact_point *point = &p->manifold->points[p->manifold->point_count];
+    point->p = tl_v3_madd(tl_v3_madd(p->frame.o, at.x, p->frame.t1), at.y, p->frame.t2);
+    point->rest = tl_v3_dot(p->a.normal, point->p) - p->a.offset;
+    point->lean = lean;
+    point->area = p->weight * area;
+    point->key = p->faces ^ key;
+    point->swing = tl_v3(0, 0, 0);
+    p->manifold->point_count += point->area > 0;
 }
 
-/* Adds corners and middles: for every two corners that may follow each other in the mixture, the rule
+/* Adds middles and corners when all corners are full. */
+static void add_full_edges(const patch *p, const corner *c, size_t count)
+{
+    for (size_t i = 0; i < count && p->middle > 0; i++) {
+        const corner *next = &c[i + 1 == count ? 0 : i + 1];
+        point2 middle = {0.5 * (c[i].at.x + next->at.x), 0.5 * (c[i].at.y + next->at.y)};
+        add_point(p, middle, 0.5 * (c[i].lean + next->lean), p->middle * c[i].fan,
+                  key_of(POINT_MIDDLE, c[i].key, next->key));
+    }
+    for (size_t i = 0; i < count; i++) {
+        double fans = c[i ? i - 1 : count - 1].fan + c[i].fan;
+        add_point(p, c[i].at, c[i].lean, p->corner * fans, c[i].key);
+    }
+}
+
+/* The same with a mixture: for every two corners that may follow each other in the mixture, the rule
  * of their edge, times the chance that they do. */
-static bool add_edges(const patch *p, corner *c, size_t count, double *corner_area)
+static void add_edges(const patch *p, corner *c, size_t count, double *corner_area)
 {
     memset(corner_area, 0, count * sizeof *corner_area);
     for (size_t i = 0; i < count; i++) {
@@ -293,9 +339,8 @@ static bool add_edges(const patch *p, corner *c, size_t count, double *corner_ar
             double area = chance * share * fan;
             if (area > 0) {
                 point2 middle = {0.5 * (c[i].at.x + c[j].at.x), 0.5 * (c[i].at.y + c[j].at.y)};
-                if (!add_point(p, middle, 0.5 * (c[i].lean + c[j].lean), p->middle * area,
-                               key_of(POINT_MIDDLE, c[i].key, c[j].key)))
-                    return false;
+                add_point(p, middle, 0.5 * (c[i].lean + c[j].lean), p->middle * area,
+                          key_of(POINT_MIDDLE, c[i].key, c[j].key));
                 corner_area[i] += p->corner * area;
                 corner_area[j] += p->corner * area;
             }
@@ -303,9 +348,7 @@ static bool add_edges(const patch *p, corner *c, size_t count, double *corner_ar
         }
     }
     for (size_t i = 0; i < count; i++)
-        if (!add_point(p, c[i].at, c[i].lean, corner_area[i], c[i].key))
-            return false;
-    return true;
+        add_point(p, c[i].at, c[i].lean, corner_area[i], c[i].key);
 }
 
 /* Loads both outlines, counter-clockwise seen against the patch normal, and clips. */
@@ -372,6 +415,7 @@ double tl_patch_add(const tl_pair_view *view, uint32_t fa, uint32_t fb, double w
     f->o = a->vertex[a->loop[a->start[fa]]];
     f->t1 = tl_v3_perpendicular(f->n);
     f->t2 = tl_v3_cross(f->n, f->t1);
+    p->snap2 = MERGE * MERGE * view->size * view->size;
     p->rise = rise_of(f, one.a.normal, one.b.normal);
 
     double size = fmax(a->size, b->size);
@@ -392,14 +436,23 @@ double tl_patch_add(const tl_pair_view *view, uint32_t fa, uint32_t fb, double w
     size_t begin = m->point_count;
     count = weigh_corners(p->now, count, centroid);
     double *corner_area = (double *)(void *)p->next; /* the clipping is over: its room is free */
-    if (!add_edges(&one, p->now, count, corner_area) ||
-        !add_point(&one, centroid, mean_lean(p->now, count),
-                   (1 - 2 * one.corner - one.middle) * area, key_of(POINT_CENTROID, 0, 0)))
+    bool full = true;
+    for (size_t i = 0; i < count; i++)
+        full = full && p->now[i].share >= 1;
+    /* a middle for every two corners that may follow each other, the corners, the centroid */
+    if (!tl_manifold_reserve(m, full ? 2 * count + 1 : (BLEND_RUN + 2) * count + 1))
         return 0;
+    if (full)
+        add_full_edges(&one, p->now, count);
+    else
+        add_edges(&one, p->now, count, corner_area);
+    add_point(&one, centroid, mean_lean(p->now, count), (1 - 2 * one.corner - one.middle) * area,
+              key_of(POINT_CENTROID, 0, 0));
     double nearest = INFINITY;
-    for (size_t i = begin; i < m->point_count; i++)
-        nearest = fmin(nearest,
-                       m->points[i].rest + tl_v3_dot(one.b.normal, m->points[i].p) - one.b.offset);
+    for (size_t i = begin; i < m->point_count; i++) {
+        double gap = m->points[i].rest + tl_v3_dot(one.b.normal, m->points[i].p) - one.b.offset;
+        nearest = gap < nearest ? gap : nearest;
+    }
     if (nearest > rule->reach) {
         m->point_count = begin;
         return 0;

@@ -1,0 +1,274 @@
+/* update.c - one contact brought up to the present place of its blocks: its axis, its facets and points.
+ *
+ * Most contacts are two faces on each other and stay so: while the axis is certain and no other faces look
+ * at each other, the patch alone is made anew (renew_patch). Otherwise everything is looked at that could
+ * touch (rebuild). */
+#include "detect/detect.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Motion within which facets and areas are reused, relative to the smaller block's size: areas are
+ * then wrong by a few 1e-6 at most; gaps are exact all the same. */
+#define REUSE 1e-6
+/* A point of a tilted patch stays on A until the patch is made anew, wherever the feature that made it goes:
+ * the error of its gap is the motion times the tilt, and may be this share of the gap. */
+#define GAP_SHARE 1e-4
+/* The axis is searched anew after motion of half its lead over the next one, or this share of |s|, ... */
+#define AXIS_SHARE 0.25
+/* ... but at the latest after this times the size. */
+#define AXIS_MOST 0.02
+
+tl_share_rule tl_share_rule_of(const tl_model *m, const tl_pair_view *view, tl_tag tag, bool across)
+{
+    tl_area_rule rule = tl_area_rule_of(m, tag);
+    double tolerance = TL_CONTACT_TOLERANCE * TL_CONTACT_RELEASE * view->size;
+    bool absolute = !isnan(rule.absolute);
+    return (tl_share_rule){.minimum = absolute ? rule.absolute : rule.fraction * view->mean_face,
+                           .unconditional = absolute,
+                           .corners = m->config.contact_points == TL_POINTS_CORNERS,
+                           .reach = across ? INFINITY : tolerance};
+}
+
+/* How far a pair may run before its axis is searched again. */
+static double axis_margin(const tl_axis *axis, double size)
+{
+    double lead = 0.5 * (axis->s - axis->second);
+    return fmin(fmax(lead, AXIS_SHARE * fabs(axis->s)), AXIS_MOST * size);
+}
+
+/* Whether some point carries a force across a gap: a bond in tension, or an initial stress not yet relieved.
+ * Such a contact ends only with that force. */
+static bool carries_across(const tl_detect *d, uint32_t c)
+{
+    const tl_points_table *p = &d->points;
+    size_t begin = d->contacts.point_start[c];
+    for (size_t i = begin; i < begin + d->contacts.point_count[c]; i++)
+        if (p->f_n[i] < 0 || (p->f_n[i] > 0 && p->closure[i] + p->reference[i] < 0))
+            return true;
+    return false;
+}
+
+static bool same_topology(const tl_detect *d, uint32_t c, const tl_manifold *g)
+{
+    const tl_contacts *contacts = &d->contacts;
+    if (contacts->point_count[c] != g->point_count || contacts->facet_count[c] != g->facet_count)
+        return false;
+    for (size_t k = 0; k < g->facet_count; k++) {
+        const tl_facet *f = &contacts->facet[contacts->facet_start[c] + k], *h = &g->facets[k];
+        if (f->kind != h->kind || f->ia != h->ia || f->ib != h->ib || f->count != h->count)
+            return false;
+    }
+    for (size_t k = 0; k < g->point_count; k++)
+        if (d->points.key[contacts->point_start[c] + k] != g->points[k].key)
+            return false;
+    return true;
+}
+
+/* New places and areas of the same points: stresses stay, forces follow the area. */
+static void refit(tl_model *m, uint32_t c, const tl_manifold *g)
+{
+    tl_detect *d = m->detect;
+    tl_points_table *p = &d->points;
+    tl_facet *facet = &d->contacts.facet[d->contacts.facet_start[c]];
+    for (size_t k = 0; k < g->facet_count; k++) {
+        tl_vec3 last = facet[k].last, last_lean = facet[k].last_lean;
+        facet[k] = g->facets[k];
+        facet[k].last = last;
+        facet[k].last_lean = last_lean;
+    }
+    uint32_t material = d->contacts.material[c];
+    const tl_kind *kind = NULL; /* of states that go with the area */
+    if (material != TL_NO_ROW && m->materials[material].splits)
+        kind = m->materials[material].kind;
+    for (size_t k = 0; k < g->point_count; k++) {
+        size_t i = d->contacts.point_start[c] + k;
+        double old = p->area[i], scale = g->points[k].area / old;
+        double state[TL_STATE_COLUMNS];
+        tl_columns_put(p->p, i, g->points[k].p);
+        p->rest[i] = g->points[k].rest;
+        p->lean[i] = g->points[k].lean;
+        p->area[i] = g->points[k].area;
+        if (scale == 1)
+            continue;
+        p->f_n[i] *= scale;
+        p->f_n0[i] *= scale;
+        for (int s = 0; s < 3; s++)
+            p->f_s[s][i] *= scale;
+        if (kind) {
+            for (int s = 0; s < TL_STATE_COLUMNS; s++)
+                state[s] = p->state[s][i];
+            tl_point_keep_state(p, i, kind, state, old);
+        }
+    }
+}
+
+/* The contact's facets in the present place, by its axis followed or searched. false: out of memory. */
+static bool rebuild(tl_model *m, uint32_t c, tl_narrow *room, bool across)
+{
+    tl_contacts *contacts = &m->detect->contacts;
+    double odometer = tl_pair_odometer(m, contacts->a[c], contacts->b[c]);
+    tl_pair_view view = tl_pair_view_of(m, contacts->a[c], contacts->b[c]);
+    tl_axis axis = contacts->axis[c];
+    if (!tl_pair_place(&view, room))
+        return false;
+    bool search = odometer - contacts->searched[c] > contacts->margin[c];
+    for (;; search = true) {
+        bool followed = !search && tl_axis_follow(&view, &axis);
+        if (search) {
+            axis = tl_axis_search(&view, room, &contacts->axis[c]);
+            contacts->searched[c] = odometer;
+            contacts->margin[c] = axis_margin(&axis, view.size);
+        }
+        tl_tag tag = tl_touching_tag(&view, axis.n);
+        tl_share_rule rule = tl_share_rule_of(m, &view, tag, across);
+        tl_manifold_build(&view, &axis, &rule, room);
+        if (room->manifold.failed)
+            return false;
+        if (!search && !followed && !(room->manifold.patch_area > 0))
+            continue; /* what touched has parted: look at all features */
+        contacts->axis[c] = axis;
+        if (tag.joint != contacts->tag[c].joint || tag.plane != contacts->tag[c].plane) {
+            contacts->tag[c] = tag;
+            uint32_t material = tl_material_row(m, tag);
+            if (material != contacts->material[c])
+                contacts->fate[c] = TL_FATE_MATERIAL;
+        }
+        /* a pair that touches without area stays a contact, so that it need not be born again */
+        if (axis.s > TL_CONTACT_TOLERANCE * TL_CONTACT_RELEASE * view.size && !across) {
+            contacts->fate[c] = TL_FATE_DIE;
+            m->detect->pairs[contacts->pair[c]].wake =
+                odometer + axis.s - TL_CONTACT_TOLERANCE * view.size;
+        }
+        return true;
+    }
+}
+
+static void note_manifold(tl_contacts *contacts, uint32_t c, const tl_manifold *g)
+{
+    double area = 0;
+    for (size_t k = 0; k < g->point_count; k++)
+        area += g->points[k].area;
+    contacts->area[c] = area;
+    contacts->lone[c] = g->lone;
+}
+
+/* Puts the built manifold in the place of the contact's points, or asks for room. */
+static bool take_manifold(tl_model *m, uint32_t c, tl_narrow *room, const tl_point_lanes *lanes)
+{
+    tl_detect *d = m->detect;
+    tl_contacts *contacts = &d->contacts;
+    const tl_manifold *g = &room->manifold;
+    note_manifold(contacts, c, g);
+    if (same_topology(d, c, g)) {
+        refit(m, c, g);
+        return true;
+    }
+    if (g->point_count > contacts->point_room[c] || g->facet_count > contacts->facet_room[c]) {
+        contacts->want_points[c] = (uint32_t)g->point_count;
+        contacts->want_facets[c] = (uint32_t)g->facet_count;
+        contacts->fate[c] = TL_FATE_GROW;
+        return true;
+    }
+    return tl_contact_transfer(m, c, room, lanes);
+}
+
+/* How far a contact whose facets have just been made may move before they are made anew. */
+static void allow_reuse(tl_model *m, uint32_t c, double tilt)
+{
+    tl_contacts *contacts = &m->detect->contacts;
+    double size = fmin(m->blocks.size[contacts->a[c]], m->blocks.size[contacts->b[c]]);
+    double most = (contacts->point_count[c] ? REUSE : TL_SILENT) * size;
+    double least = GAP_SHARE * fabs(contacts->axis[c].s);
+    if (tilt > TL_FLUSH && tilt * most > least)
+        most = least / tilt;
+    contacts->until[c] = tl_pair_odometer(m, contacts->a[c], contacts->b[c]) + most;
+}
+
+/* n and s of an axis that is the normal of one of a patch's two faces, by the other's corners; false when it
+ * is another. */
+static bool follow_face(const tl_pair_view *view, const tl_facet *f, tl_axis *axis)
+{
+    bool of_a = axis->kind == TL_AXIS_FACE_A && axis->ia == f->ia;
+    if (!of_a && !(axis->kind == TL_AXIS_FACE_B && axis->ib == f->ib))
+        return false;
+    const tl_poly *other = of_a ? view->b : view->a;
+    const tl_vec3 *vertex = of_a ? view->vertex_b : view->a->vertex;
+    uint32_t face = of_a ? f->ib : f->ia;
+    tl_vec3 up = of_a ? view->a->plane[f->ia].normal : view->normal_b[f->ib];
+    double low = INFINITY, offset = of_a
+                                        ? view->a->plane[f->ia].offset
+                                        : view->b->plane[f->ib].offset + tl_v3_dot(up, view->shift);
+    for (uint32_t i = other->start[face]; i < other->start[face + 1]; i++) {
+        double h = tl_v3_dot(up, vertex[other->loop[i]]);
+        low = h < low ? h : low;
+    }
+    axis->n = of_a ? up : tl_v3_neg(up);
+    axis->s = low - offset;
+    return true;
+}
+
+/* The one patch of a contact whose axis stands, made anew; false when that is not all there is to it. */
+static bool renew_patch(tl_model *m, uint32_t c, tl_narrow *room)
+{
+    tl_contacts *contacts = &m->detect->contacts;
+    const tl_facet *f = &contacts->facet[contacts->facet_start[c]];
+    if (!contacts->lone[c] || contacts->facet_count[c] != 1 || f->kind != TL_FACET_PATCH ||
+        tl_pair_odometer(m, contacts->a[c], contacts->b[c]) - contacts->searched[c] >
+            contacts->margin[c])
+        return false;
+    tl_pair_view view = tl_pair_view_of(m, contacts->a[c], contacts->b[c]);
+    tl_share_rule rule = tl_share_rule_of(m, &view, contacts->tag[c], false);
+    return tl_pair_place_face(&view, f->ib, room) && follow_face(&view, f, &contacts->axis[c]) &&
+           tl_manifold_renew(&view, f->ia, f->ib, &rule, room);
+}
+
+void tl_contact_update(tl_model *m, uint32_t c, unsigned thread)
+{
+    tl_contacts *contacts = &m->detect->contacts;
+    tl_narrow *room = &m->detect->narrow[thread];
+    if (contacts->fate[c] == TL_FATE_DIE ||
+        (m->config.reuse_geometry &&
+         tl_pair_odometer(m, contacts->a[c], contacts->b[c]) <= contacts->until[c]))
+        return;
+    if (!renew_patch(m, c, room) && !rebuild(m, c, room, carries_across(m->detect, c))) {
+        contacts->fate[c] = TL_FATE_MEMORY;
+        return;
+    }
+    if (contacts->fate[c] != TL_FATE_DIE && !take_manifold(m, c, room, &m->detect->lanes[thread]))
+        contacts->fate[c] = TL_FATE_MEMORY;
+    else
+        allow_reuse(m, c, room->manifold.tilt);
+}
+
+void tl_contact_reframe(tl_model *m, uint32_t c, unsigned thread)
+{
+    tl_contacts *contacts = &m->detect->contacts;
+    tl_narrow *room = &m->detect->narrow[thread];
+    if (contacts->fate[c] == TL_FATE_DIE)
+        return;
+    contacts->searched[c] = -INFINITY;
+    room->reframed = true;
+    if (!rebuild(m, c, room, carries_across(m->detect, c)) ||
+        (contacts->fate[c] != TL_FATE_DIE && !take_manifold(m, c, room, &m->detect->lanes[thread])))
+        contacts->fate[c] = TL_FATE_MEMORY;
+    room->reframed = false;
+}
+
+bool tl_contact_fill(tl_model *m, uint32_t c)
+{
+    tl_contacts *contacts = &m->detect->contacts;
+    tl_narrow *room = &m->detect->narrow[0];
+    tl_pair_view view = tl_pair_view_of(m, contacts->a[c], contacts->b[c]);
+    if (!tl_pair_place(&view, room))
+        return false;
+    if (contacts->point_count[c] == 0)
+        contacts->margin[c] = axis_margin(&contacts->axis[c], view.size);
+    tl_share_rule rule = tl_share_rule_of(m, &view, contacts->tag[c], carries_across(m->detect, c));
+    tl_manifold_build(&view, &contacts->axis[c], &rule, room);
+    note_manifold(contacts, c, &room->manifold);
+    if (room->manifold.failed || !tl_contact_transfer(m, c, room, &m->detect->lanes[0]))
+        return false;
+    allow_reuse(m, c, room->manifold.tilt);
+    return true;
+}
