@@ -9,8 +9,8 @@
  *     laws     contact forces, by the joints' law plugins                 laws.c
  *     gather   each body adds its contacts in a fixed order, its weight   gather.c
  *     damping  a damping plugin's forces and coefficients                 damping.c
- *     move     velocities and places one step on                          motion.c
- *     energy   the work done on the way                                   energy.c
+ *     move     velocities and places one step on, work done on bodies     motion.c
+ *     energy   the balance of the work                                    energy.c
  *
  * Everything computed in parallel is either a pure function of one contact or one body, or a sum made
  * in fixed chunks, so the bits do not depend on the number of threads. */
@@ -35,24 +35,11 @@ static void add_columns(struct tl_cycle *c)
     tl_table_init(t, c);
     TL_COLUMN(t, c, contact_force, 0);
     for (int k = 0; k < 3; k++) {
-        TL_COLUMN(t, c, velocity[k], 0);
-        TL_COLUMN(t, c, angular_velocity[k], 0);
-        TL_COLUMN(t, c, force[k], 0);
-        TL_COLUMN(t, c, moment[k], 0);
-        TL_COLUMN(t, c, force_before[k], 0);
-        TL_COLUMN(t, c, moment_before[k], 0);
         TL_COLUMN(t, c, damping_force[k], 0);
         TL_COLUMN(t, c, damping_moment[k], 0);
     }
     TL_COLUMN(t, c, reaction_force, 0);
     TL_COLUMN(t, c, reaction_moment, 0);
-    TL_COLUMN(t, c, v_before, 0);
-    TL_COLUMN(t, c, moved_before, 0);
-    TL_COLUMN(t, c, turned_before, 0);
-    TL_COLUMN(t, c, spin_before, 0);
-    TL_COLUMN(t, c, attitude, 0);
-    TL_COLUMN(t, c, mass, 0);
-    TL_COLUMN(t, c, inertia, 0);
     TL_COLUMN(t, c, alpha, 0);
     TL_COLUMN(t, c, scale, 0);
 }
@@ -121,11 +108,9 @@ tl_status tl_step(tl_model *m)
     if (status != TL_OK)
         return status;
     tl_phase_ends(m, TL_PHASE_DAMPING);
-    tl_energy_before(m);
-    tl_phase_ends(m, TL_PHASE_ENERGY);
     bool driven = tl_move(m, dt);
     tl_phase_ends(m, TL_PHASE_MOVE);
-    tl_energy_after(m, m->dt, dt);
+    tl_energy_close(m);
     tl_phase_ends(m, TL_PHASE_ENERGY);
     m->dt = has_begun(m) ? dt : 0;
     m->time += dt;

@@ -7,7 +7,7 @@
 #include <pthread.h>
 
 /* Rows a worker takes at a time. */
-#define TL_BODY_CHUNK 256
+#define TL_BODY_CHUNK 64
 
 /* Sums over the free bodies, made per chunk and added in chunk order. */
 typedef struct tl_sums {
@@ -18,7 +18,7 @@ typedef struct tl_sums {
     double local;  /* largest |unbalanced force| over the body's own contact forces or weight */
     size_t bodies; /* that are free */
     double weight;
-    double kinetic;    /* sum of (m v.v + w.I w) / 2 */
+    double kinetic;    /* sum of (m v.v + w.I w) / 2; made for a damping that asks for totals */
     double max_speed2; /* largest v.v */
 } tl_sums;
 
@@ -27,20 +27,101 @@ typedef struct tl_page_energy {
     double stored, dissipated;
 } tl_page_energy;
 
+/* Loops over a group of bodies are compiled for wider vectors, too, where the program can choose among them as it
+ * starts. None of the targets fuses multiplications with additions, so the bits are the same. */
+#if defined(__x86_64__) && defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__)
+#define TL_WIDE __attribute__((flatten, target_clones("avx512f", "avx2", "default")))
+#else
+#define TL_WIDE __attribute__((flatten))
+#endif
+/* What such a loop calls must be in it. */
+#define TL_INLINE static inline __attribute__((always_inline))
+
+/* What the rules of the time step ask of the bodies that count, as long as none comes, goes or is held. */
+struct tl_counted {
+    uint64_t version; /* of the bodies; 0: none */
+    double least_mass;
+    uint32_t lightest;   /* row, or TL_NO_ROW */
+    double largest_face; /* area; negative: not measured yet */
+};
+
+/* Vectors and quaternions of a group of bodies, component by component. */
+typedef struct tl_lanes3 {
+    double x[TL_LANES], y[TL_LANES], z[TL_LANES];
+} tl_lanes3;
+
+typedef struct tl_lanes4 {
+    double w[TL_LANES], x[TL_LANES], y[TL_LANES], z[TL_LANES];
+} tl_lanes4;
+
+static inline tl_vec3 tl_lanes3_get(const tl_lanes3 *from, size_t i)
+{
+    return (tl_vec3){from->x[i], from->y[i], from->z[i]};
+}
+
+static inline void tl_lanes3_put(tl_lanes3 *to, size_t i, tl_vec3 v)
+{
+    to->x[i] = v.x;
+    to->y[i] = v.y;
+    to->z[i] = v.z;
+}
+
+static inline tl_quat tl_lanes4_get(const tl_lanes4 *from, size_t i)
+{
+    return (tl_quat){from->w[i], from->x[i], from->y[i], from->z[i]};
+}
+
+static inline void tl_lanes4_put(tl_lanes4 *to, size_t i, tl_quat q)
+{
+    to->w[i] = q.w;
+    to->x[i] = q.x;
+    to->y[i] = q.y;
+    to->z[i] = q.z;
+}
+
+/* Bodies that can move, on their way through a step: the kick, which changes velocities, and the drift,
+ * which changes places. The lanes beyond `count` are inert. Spins and angular momenta are in principal axes
+ * at the forces' time, or where there is one moment of inertia in the model's: only their products count. */
+typedef struct tl_group {
+    uint32_t body[TL_LANES];
+    unsigned count;
+    tl_lanes4 q, axes;
+    tl_lanes3 moments;
+    double mass[TL_LANES], scale[TL_LANES], alpha[TL_LANES];
+    tl_lanes3 force, moment, damping_force, damping_moment;
+    tl_lanes3 moved;                               /* velocity of the last step's motion */
+    tl_lanes3 v0, w0, spin0, momentum0;            /* before the kick */
+    tl_lanes3 v1, w1, spin1, momentum1;            /* after it */
+    tl_lanes4 q2;                                  /* after the drift */
+    tl_lanes3 w2, turned;                          /* angular velocity, and that of the motion */
+    double turning0[TL_LANES], turning2[TL_LANES]; /* w.I w, before the kick and after the drift */
+    double radius[TL_LANES], speed[TL_LANES];      /* |v| + |w| radius: no vertex moves faster */
+    double reach[TL_LANES];                        /* of the turn: see turn.h */
+} tl_group;
+
+/* Energies of a chunk of bodies, summed lane by lane, lanes last. */
+typedef enum tl_work_kind {
+    TL_WORK_GRAVITY,
+    TL_WORK_DAMPING,
+    TL_WORK_EXTERNAL,
+    TL_WORK_COUNT
+} tl_work_kind;
+typedef struct tl_work {
+    double until, after; /* half of the step before and of the one after */
+    double kinetic[TL_LANES];
+    double first[TL_LANES]; /* by which the scheme's sum is less in the first step */
+    double motion0[TL_LANES], motion2[TL_LANES]; /* kinetic before the kick and after it */
+    double work_until[TL_WORK_COUNT][TL_LANES];  /* work of this step's forces until now */
+    double work_after[TL_WORK_COUNT][TL_LANES];  /* and in the half step that follows */
+} tl_work;
+
 struct tl_cycle {
     tl_table table;
-    /* per body, as the damping plugins see them */
+    /* per body */
     double *contact_force; /* sum of |contact forces| */
-    double *velocity[3], *angular_velocity[3], *force[3], *moment[3];
-    double *force_before[3], *moment_before[3];
-    double *mass, *inertia;
-    double *scale; /* of the inertia: 1 without mass scaling */
-    double *damping_force[3], *damping_moment[3], *alpha;
-    /* per body, for the energy ledger and for driven bodies */
-    tl_vec3 *reaction_force, *reaction_moment; /* of the contacts alone */
-    tl_vec3 *v_before, *spin_before;           /* velocity and angular momentum before the kick */
-    tl_vec3 *moved_before, *turned_before;     /* velocities of the last step's motion */
-    tl_quat *attitude;                         /* of the principal axes, at the forces' time */
+    double *scale;         /* of the inertia: 1 without mass scaling */
+    double *damping_force[3], *damping_moment[3], *alpha; /* what the damping plugin gave */
+    tl_vec3 *reaction_force, *reaction_moment; /* of the contacts, on bodies held in some way */
     tl_sums *chunk_sums;
     size_t chunk_room;
     tl_sums sums;
@@ -49,6 +130,7 @@ struct tl_cycle {
     struct tl_ledger *chunk_ledger, *ledger; /* energy.c */
     double kinetic_before;                   /* of the last step, for its rate */
     double dt;                               /* the step in use */
+    struct tl_counted counted;               /* timestep.c */
     bool all_held;                           /* no body can move */
     uint64_t scaled_for; /* version of the contacts for which the inertia was scaled; 0: none */
     double scaled_step;  /* M/(2K) of the bodies after scaling */
@@ -100,12 +182,14 @@ tl_status tl_damping_apply(tl_model *m, double dt);
 /* Velocities, places and rotations one step on; false when a user's drive function ends the run (bodies then
  * go on as they were driven before). */
 bool tl_move(tl_model *m, double dt);
-/* The energy ledger: what the bodies had before the move, and the work done in it. */
+/* The energy ledger: the move books what its bodies have and what is done to them, chunk by chunk, ... */
 tl_status tl_energy_prepare(tl_model *m, size_t chunks);
-void tl_energy_before(tl_model *m);
-void tl_energy_after(tl_model *m, double dt_before, double dt_after);
-/* Angular momentum of a body, axes of the model. */
-tl_vec3 tl_body_spin(const tl_model *m, uint32_t body);
+void tl_energy_book(const tl_model *m, const tl_group *g, tl_work *work);
+void tl_energy_book_held(const tl_model *m, uint32_t body, tl_vec3 moved, tl_vec3 turned,
+                         tl_work *work);
+void tl_energy_chunk(tl_model *m, size_t chunk, const tl_work *work);
+/* ... and the step closes it. */
+void tl_energy_close(tl_model *m);
 /* Every contact has a law, or a sentence that names one that has not. */
 tl_status tl_laws_check(tl_model *m);
 

@@ -7,6 +7,7 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 tl_status tl_model_damping(tl_model *m, const char *damping, const tl_args *args)
 {
@@ -62,6 +63,37 @@ typedef struct damping_job {
     double **state;
 } damping_job;
 
+/* Bodies as a damping plugin sees them: columns, whole lanes. */
+typedef struct seen {
+    _Alignas(TL_ALIGN) double velocity[3][TL_BODY_CHUNK];
+    double angular_velocity[3][TL_BODY_CHUNK];
+    double force[3][TL_BODY_CHUNK], moment[3][TL_BODY_CHUNK];
+    double force_before[3][TL_BODY_CHUNK], moment_before[3][TL_BODY_CHUNK];
+    double mass[TL_BODY_CHUNK], inertia[TL_BODY_CHUNK];
+} seen;
+
+static void put(double columns[3][TL_BODY_CHUNK], size_t i, tl_vec3 v)
+{
+    columns[0][i] = v.x;
+    columns[1][i] = v.y;
+    columns[2][i] = v.z;
+}
+
+static void look_at(seen *s, size_t i, const tl_bodies *b, size_t body)
+{
+    const tl_vec3 none = {0, 0, 0};
+    bool real = body < b->table.rows;
+    tl_vec3 moments = real ? b->moments[body] : tl_v3(1, 1, 1);
+    put(s->velocity, i, real ? b->v[body] : none);
+    put(s->angular_velocity, i, real ? b->w[body] : none);
+    put(s->force, i, real ? b->force[body] : none);
+    put(s->moment, i, real ? b->moment[body] : none);
+    put(s->force_before, i, real ? b->force_before[body] : none);
+    put(s->moment_before, i, real ? b->moment_before[body] : none);
+    s->mass[i] = real ? b->mass[body] : 1;
+    s->inertia[i] = (moments.x + moments.y + moments.z) / 3;
+}
+
 static void damp_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
 {
     (void)thread;
@@ -69,38 +101,28 @@ static void damp_range(void *user, size_t begin, size_t end, size_t chunk, unsig
     tl_model *m = job->m;
     struct tl_cycle *c = m->cycle;
     tl_bodies *b = &m->bodies;
-    const tl_vec3 zero = {0, 0, 0};
-    for (size_t i = begin; i < end; i++) {
-        bool real = i < b->table.rows;
-        tl_vec3 moments = real ? b->moments[i] : zero;
-        tl_columns_put(c->velocity, i, real ? b->v[i] : zero);
-        tl_columns_put(c->angular_velocity, i, real ? b->w[i] : zero);
-        tl_columns_put(c->force, i, real ? b->force[i] : zero);
-        tl_columns_put(c->moment, i, real ? b->moment[i] : zero);
-        tl_columns_put(c->force_before, i, real ? b->force_before[i] : zero);
-        tl_columns_put(c->moment_before, i, real ? b->moment_before[i] : zero);
-        tl_columns_put(c->damping_force, i, zero);
-        tl_columns_put(c->damping_moment, i, zero);
-        c->alpha[i] = 0;
-        c->mass[i] = real ? b->mass[i] : 1;
-        c->inertia[i] = real ? (moments.x + moments.y + moments.z) / 3 : 1;
-    }
+    seen s;
+    for (size_t i = begin; i < end; i++)
+        look_at(&s, i - begin, b, i);
     tl_damping_batch batch = {.size = sizeof batch,
                               .count = (uint32_t)(end - begin),
                               .dt = job->dt,
-                              .mass = c->mass + begin,
-                              .inertia = c->inertia + begin,
+                              .mass = s.mass,
+                              .inertia = s.inertia,
                               .alpha = c->alpha + begin,
                               .state = job->state};
+    memset(batch.alpha, 0, (end - begin) * sizeof *batch.alpha);
     for (int k = 0; k < 3; k++) {
-        batch.velocity[k] = c->velocity[k] + begin;
-        batch.angular_velocity[k] = c->angular_velocity[k] + begin;
-        batch.force[k] = c->force[k] + begin;
-        batch.moment[k] = c->moment[k] + begin;
-        batch.force_before[k] = c->force_before[k] + begin;
-        batch.moment_before[k] = c->moment_before[k] + begin;
+        batch.velocity[k] = s.velocity[k];
+        batch.angular_velocity[k] = s.angular_velocity[k];
+        batch.force[k] = s.force[k];
+        batch.moment[k] = s.moment[k];
+        batch.force_before[k] = s.force_before[k];
+        batch.moment_before[k] = s.moment_before[k];
         batch.damping_force[k] = c->damping_force[k] + begin;
         batch.damping_moment[k] = c->damping_moment[k] + begin;
+        memset(batch.damping_force[k], 0, (end - begin) * sizeof *batch.damping_force[k]);
+        memset(batch.damping_moment[k], 0, (end - begin) * sizeof *batch.damping_moment[k]);
     }
     const tl_damping_ops *ops = m->damping->ops;
     tl_report report = {.size = sizeof report};
@@ -122,7 +144,6 @@ tl_status tl_damping_apply(tl_model *m, double dt)
                                 .kinetic = kinetic,
                                 .kinetic_rate = (kinetic - c->kinetic_before) / dt,
                                 .power_unit = 2 * kinetic};
-    c->kinetic_before = kinetic;
     if (!m->damping)
         return TL_OK;
     const tl_damping_ops *ops = m->damping->ops;

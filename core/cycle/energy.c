@@ -8,21 +8,21 @@
  * The error of the balance is of the second order in omega dt.
  *
  * Velocities may be set and bodies held, driven or freed between two steps: the kinetic energy this gives or
- * takes counts as external work, and the work until then goes by the motion that was made. */
+ * takes counts as external work, and the work until then goes by the motion that was made.
+ *
+ * The move books its bodies group by group (motion.c), while all that is needed is at hand. */
 #include "cycle/cycle_room.h"
 
 #include <stdlib.h>
 
-enum { WORK_GRAVITY, WORK_DAMPING, WORK_EXTERNAL, WORK_COUNT };
-
 struct tl_ledger {
     double kinetic;
-    double until[WORK_COUNT]; /* work of this step's forces until now */
-    double after[WORK_COUNT]; /* and in the half step that follows */
+    double until[TL_WORK_COUNT]; /* work of this step's forces until now */
+    double after[TL_WORK_COUNT]; /* and in the half step that follows */
     double stored, friction;
-    double motion; /* kinetic energy between two kicks: before a step's, or after it */
+    double motion0, motion; /* kinetic energy between two kicks: before a step's, and after it */
     /* running sums, in the model's own ledger */
-    double sum[WORK_COUNT];
+    double sum[TL_WORK_COUNT];
     double start_kinetic, start_stored;
     double largest; /* change of a term so far */
     double by_hand; /* kinetic energy given between steps */
@@ -42,171 +42,132 @@ tl_status tl_energy_prepare(tl_model *m, size_t chunks)
     return list && c->ledger ? TL_OK : tl_fail_memory(&m->error);
 }
 
-/* Angular velocity from angular momentum in the attitude at the forces' time. */
-static tl_vec3 velocity_of(const tl_model *m, uint32_t body, tl_vec3 spin)
+/* What a force and a moment on a body do, each in the half step before and the one after. */
+TL_INLINE void book(tl_work *work, size_t i, int kind, const tl_group *g, tl_vec3 force,
+                    tl_vec3 moment)
 {
-    if (m->config.rotation == TL_ROTATION_PAPER)
-        return tl_v3_scale(1 / m->bodies.round[body], spin);
-    tl_quat attitude = m->cycle->attitude[body];
-    tl_vec3 l = tl_q_rotate(tl_q_conj(attitude), spin), i = m->bodies.moments[body];
-    return tl_q_rotate(attitude, tl_v3(l.x / i.x, l.y / i.y, l.z / i.z));
+    work->work_until[kind][i] += work->until * (tl_v3_dot(force, tl_lanes3_get(&g->moved, i)) +
+                                                tl_v3_dot(moment, tl_lanes3_get(&g->w0, i)));
+    work->work_after[kind][i] += work->after * (tl_v3_dot(force, tl_lanes3_get(&g->v1, i)) +
+                                                tl_v3_dot(moment, tl_lanes3_get(&g->w1, i)));
 }
 
-tl_vec3 tl_body_spin(const tl_model *m, uint32_t body)
+/* Kinetic energies. With v- and v+ the mean at the forces' time is v- + s (v+ - v-), s the share of the
+ * step before in both half steps; what two unequal halves spread about it is taken out. */
+TL_INLINE void book_kinetic(tl_work *work, size_t i, const tl_group *g, double share)
+{
+    double mass = g->mass[i], spread = share * (1 - share);
+    tl_vec3 v0 = tl_lanes3_get(&g->v0, i), v1 = tl_lanes3_get(&g->v1, i), dv = tl_v3_sub(v1, v0);
+    tl_vec3 w0 = tl_lanes3_get(&g->spin0, i), dw = tl_v3_sub(tl_lanes3_get(&g->spin1, i), w0);
+    tl_vec3 l0 = tl_lanes3_get(&g->momentum0, i);
+    tl_vec3 dl = tl_v3_sub(tl_lanes3_get(&g->momentum1, i), l0);
+    tl_vec3 v = tl_v3_madd(v0, share, dv), w = tl_v3_madd(w0, share, dw);
+    tl_vec3 l = tl_v3_madd(l0, share, dl);
+    double dv2 = mass * tl_v3_norm2(dv), dw2 = tl_v3_dot(dw, dl);
+    work->kinetic[i] += 0.5 * (mass * tl_v3_norm2(v) + tl_v3_dot(w, l) - spread * (dv2 + dw2));
+    /* The first kick from rest is half of one: what the whole one would have spread is missing from
+     * the sum ever after. */
+    work->first[i] += 0.5 * (dv2 + dw2);
+    work->motion0[i] += 0.5 * (mass * tl_v3_norm2(v0) + g->turning0[i]);
+    work->motion2[i] += 0.5 * (mass * tl_v3_norm2(v1) + g->turning2[i]);
+    /* a velocity set since the last step meets this kick, too */
+    tl_vec3 set = tl_v3_sub(v0, tl_lanes3_get(&g->moved, i));
+    work->work_until[TL_WORK_EXTERNAL][i] += share * mass * tl_v3_dot(set, dv);
+}
+
+/* (23) takes out alpha m (v- + v+) / 2 over the kick, besides what the damping's force does. */
+TL_INLINE void book_damping(tl_work *work, size_t i, const tl_group *g)
+{
+    double alpha = 0.5 * g->alpha[i];
+    tl_vec3 slowed = tl_v3_add(tl_lanes3_get(&g->v0, i), tl_lanes3_get(&g->v1, i));
+    tl_vec3 braked = tl_v3_add(tl_lanes3_get(&g->momentum0, i), tl_lanes3_get(&g->momentum1, i));
+    book(work, i, TL_WORK_DAMPING, g,
+         tl_v3_madd(tl_lanes3_get(&g->damping_force, i), -alpha * g->mass[i], slowed),
+         tl_lanes3_get(&g->damping_moment, i));
+    work->work_until[TL_WORK_DAMPING][i] -=
+        work->until * alpha * tl_v3_dot(braked, tl_lanes3_get(&g->spin0, i));
+    work->work_after[TL_WORK_DAMPING][i] -=
+        work->after * alpha * tl_v3_dot(braked, tl_lanes3_get(&g->spin1, i));
+}
+
+static tl_vec3 load_moment(const tl_bodies *b, uint32_t body)
+{
+    tl_vec3 arm = tl_m3_mul(&b->r[body], b->load_arm[body]);
+    return tl_v3_add(b->load_moment[body], tl_v3_cross(arm, b->load_force[body]));
+}
+
+/* The work of loads, and of what holds some components of a body's motion at a velocity. */
+static void book_load(tl_work *work, size_t i, const tl_group *g, const tl_model *m)
 {
     const tl_bodies *b = &m->bodies;
-    if (m->config.rotation == TL_ROTATION_PAPER)
-        return tl_v3_scale(b->round[body], b->w[body]);
-    tl_quat attitude = tl_q_mul(b->q[body], b->axes[body]);
-    tl_vec3 w = tl_q_rotate(tl_q_conj(attitude), b->w[body]), i = b->moments[body];
-    return tl_q_rotate(attitude, tl_v3(i.x * w.x, i.y * w.y, i.z * w.z));
+    uint32_t body = g->body[i];
+    unsigned fixed = b->fixed[body];
+    tl_vec3 force = b->load_force[body], moment = b->load_moment[body];
+    if (fixed == 0 && tl_v3_norm2(force) == 0 && tl_v3_norm2(moment) == 0)
+        return;
+    moment = load_moment(b, body);
+    book(work, i, TL_WORK_EXTERNAL, g, force, moment);
+    if (fixed == 0)
+        return;
+    force = tl_v3_add(tl_v3_madd(m->cycle->reaction_force[body], b->mass[body], m->config.gravity),
+                      force);
+    moment = tl_v3_add(m->cycle->reaction_moment[body], moment);
+    force = tl_v3(fixed & TL_FIX_X ? -force.x : 0, fixed & TL_FIX_Y ? -force.y : 0,
+                  fixed & TL_FIX_Z ? -force.z : 0);
+    book(work, i, TL_WORK_EXTERNAL, g, force,
+         fixed & TL_FIX_ROTATION ? tl_v3_neg(moment) : tl_v3(0, 0, 0));
 }
 
-/* Kinetic energy of a body by its velocities half-way between two steps; driven and held ones have none. */
-static double motion_energy(const tl_model *m, uint32_t body)
+TL_WIDE static void book_lanes(tl_work *restrict work, const tl_group *restrict g, tl_vec3 gravity,
+                               bool damped)
 {
-    const tl_bodies *b = &m->bodies;
-    if (b->drive[body] || b->fixed[body] == TL_FIX_ALL)
-        return 0;
-    return 0.5 *
-           (b->mass[body] * tl_v3_norm2(b->v[body]) + tl_v3_dot(b->w[body], tl_body_spin(m, body)));
-}
-
-static void before_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
-{
-    (void)thread;
-    tl_model *m = user;
-    struct tl_cycle *c = m->cycle;
-    struct tl_ledger l = {0};
-    for (uint32_t i = (uint32_t)begin; i < end; i++) {
-        c->v_before[i] = m->bodies.v[i];
-        c->moved_before[i] = m->bodies.v_moved[i];
-        c->turned_before[i] = m->bodies.w_moved[i];
-        c->spin_before[i] = tl_body_spin(m, i);
-        c->attitude[i] = tl_q_mul(m->bodies.q[i], m->bodies.axes[i]);
-        l.motion += motion_energy(m, i);
+    double share = work->until / (work->until + work->after);
+    for (size_t i = 0; i < TL_LANES; i++) {
+        book_kinetic(work, i, g, share);
+        book(work, i, TL_WORK_GRAVITY, g, tl_v3_scale(g->mass[i], gravity), tl_v3(0, 0, 0));
     }
-    c->chunk_ledger[chunk] = l;
+    for (size_t i = 0; damped && i < TL_LANES; i++)
+        book_damping(work, i, g);
 }
 
-static double sum_motion(const tl_model *m)
+void tl_energy_book(const tl_model *m, const tl_group *g, tl_work *work)
+{
+    book_lanes(work, g, m->config.gravity, m->damping != NULL);
+    for (size_t i = 0; i < g->count; i++)
+        book_load(work, i, g, m);
+}
+
+void tl_energy_book_held(const tl_model *m, uint32_t body, tl_vec3 moved, tl_vec3 turned,
+                         tl_work *work)
+{
+    const tl_bodies *b = &m->bodies;
+    /* what moves the body works against the contacts' reaction */
+    tl_vec3 force = m->cycle->reaction_force[body], moment = m->cycle->reaction_moment[body];
+    work->work_until[TL_WORK_EXTERNAL][0] -=
+        work->until * (tl_v3_dot(force, moved) + tl_v3_dot(moment, turned));
+    work->work_after[TL_WORK_EXTERNAL][0] -=
+        work->after * (tl_v3_dot(force, b->v[body]) + tl_v3_dot(moment, b->w[body]));
+}
+
+static double sum_lanes(const double lanes[TL_LANES])
 {
     double sum = 0;
-    for (size_t chunk = 0; chunk * TL_BODY_CHUNK < m->bodies.table.rows; chunk++)
-        sum += m->cycle->chunk_ledger[chunk].motion;
+    for (size_t i = 0; i < TL_LANES; i++)
+        sum += lanes[i];
     return sum;
 }
 
-void tl_energy_before(tl_model *m)
+void tl_energy_chunk(tl_model *m, size_t chunk, const tl_work *work)
 {
-    struct tl_ledger *total = m->cycle->ledger;
-    tl_parallel_for(m->pool, m->bodies.table.rows, TL_BODY_CHUNK, before_range, m);
-    /* the same sum as after the last step, so 0 when nobody touched it */
-    if (total->started)
-        total->by_hand += sum_motion(m) - total->motion;
-}
-
-/* Force and moment on a body, and its velocities on both sides of the kick. */
-typedef struct kick {
-    tl_vec3 v0, w0, v1, w1;
-    tl_vec3 moved, turned; /* velocities of the motion before it: v0 and w0 unless set since */
-    double until, after;   /* half of the step before and of the one after */
-} kick;
-
-static void book(struct tl_ledger *l, int work, const kick *k, tl_vec3 force, tl_vec3 moment)
-{
-    l->until[work] += k->until * (tl_v3_dot(force, k->moved) + tl_v3_dot(moment, k->turned));
-    l->after[work] += k->after * (tl_v3_dot(force, k->v1) + tl_v3_dot(moment, k->w1));
-}
-
-static void book_driven(const tl_model *m, uint32_t i, const kick *k, struct tl_ledger *l)
-{
-    /* what moves the body works against the contacts' reaction */
-    book(l, WORK_EXTERNAL, k, tl_v3_neg(m->cycle->reaction_force[i]),
-         tl_v3_neg(m->cycle->reaction_moment[i]));
-}
-
-/* The work of what holds some components of a body's motion at a velocity. */
-static void book_held(const tl_model *m, uint32_t i, const kick *k, struct tl_ledger *l)
-{
-    const tl_bodies *b = &m->bodies;
-    unsigned fixed = b->fixed[i];
-    tl_vec3 arm = tl_m3_mul(&b->r[i], b->load_arm[i]);
-    tl_vec3 force = tl_v3_add(
-        tl_v3_madd(m->cycle->reaction_force[i], b->mass[i], m->config.gravity), b->load_force[i]);
-    tl_vec3 moment = tl_v3_add(tl_v3_add(m->cycle->reaction_moment[i], b->load_moment[i]),
-                               tl_v3_cross(arm, b->load_force[i]));
-    force = tl_v3(fixed & TL_FIX_X ? -force.x : 0, fixed & TL_FIX_Y ? -force.y : 0,
-                  fixed & TL_FIX_Z ? -force.z : 0);
-    book(l, WORK_EXTERNAL, k, force, fixed & TL_FIX_ROTATION ? tl_v3_neg(moment) : tl_v3(0, 0, 0));
-}
-
-static void book_free(const tl_model *m, uint32_t i, const kick *k, struct tl_ledger *l)
-{
-    const tl_bodies *b = &m->bodies;
-    const struct tl_cycle *c = m->cycle;
-    double mass = b->mass[i], share = k->until / (k->until + k->after);
-    tl_vec3 spin0 = c->spin_before[i], spin1 = tl_body_spin(m, i);
-    tl_vec3 dv = tl_v3_sub(k->v1, k->v0), dw = tl_v3_sub(k->w1, k->w0);
-    tl_vec3 dspin = tl_v3_sub(spin1, spin0);
-    tl_vec3 v = tl_v3_madd(k->v0, share, dv), w = tl_v3_madd(k->w0, share, dw);
-    tl_vec3 spin = tl_v3_madd(spin0, share, dspin);
-    double spread = share * (1 - share);
-    /* The first kick from rest is half of one: what the whole one would have spread is missing from
-     * the sum ever after. */
-    if (k->until == 0)
-        l->first += 0.5 * (mass * tl_v3_norm2(dv) + tl_v3_dot(dw, dspin));
-    l->kinetic += 0.5 * mass * (tl_v3_norm2(v) - spread * tl_v3_norm2(dv)) +
-                  0.5 * (tl_v3_dot(w, spin) - spread * tl_v3_dot(dw, dspin));
-    /* a velocity set since the last step meets this kick, too */
-    l->until[WORK_EXTERNAL] += share * mass * tl_v3_dot(tl_v3_sub(k->v0, k->moved), dv);
-    l->motion += motion_energy(m, i);
-    book(l, WORK_GRAVITY, k, tl_v3_scale(mass, m->config.gravity), tl_v3(0, 0, 0));
-    tl_vec3 arm = tl_m3_mul(&b->r[i], b->load_arm[i]);
-    book(l, WORK_EXTERNAL, k, b->load_force[i],
-         tl_v3_add(b->load_moment[i], tl_v3_cross(arm, b->load_force[i])));
-    if (b->fixed[i])
-        book_held(m, i, k, l);
-    if (!m->damping)
-        return;
-    tl_vec3 force = {c->damping_force[0][i], c->damping_force[1][i], c->damping_force[2][i]};
-    tl_vec3 moment = {c->damping_moment[0][i], c->damping_moment[1][i], c->damping_moment[2][i]};
-    /* (23) takes out alpha m (v- + v+) / 2 over the kick */
-    double alpha = 0.5 * c->alpha[i];
-    force = tl_v3_madd(force, -alpha * mass, tl_v3_add(k->v0, k->v1));
-    moment = tl_v3_madd(moment, -alpha, tl_v3_add(spin0, spin1));
-    book(l, WORK_DAMPING, k, force, moment);
-}
-
-typedef struct ledger_job {
-    tl_model *m;
-    double until, after;
-} ledger_job;
-
-static void after_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
-{
-    (void)thread;
-    const ledger_job *job = user;
-    const tl_model *m = job->m;
-    const tl_bodies *b = &m->bodies;
-    struct tl_ledger l = {0};
-    for (uint32_t i = (uint32_t)begin; i < end; i++) {
-        kick k = {.v0 = m->cycle->v_before[i],
-                  .v1 = b->v[i],
-                  .w0 = velocity_of(m, i, m->cycle->spin_before[i]),
-                  .w1 = velocity_of(m, i, tl_body_spin(m, i)),
-                  .moved = m->cycle->moved_before[i],
-                  .turned = m->cycle->turned_before[i],
-                  .until = 0.5 * job->until,
-                  .after = 0.5 * job->after};
-        if (!b->drive[i])
-            k.turned = k.w0;
-        if (b->fixed[i] == TL_FIX_ALL)
-            book_driven(m, i, &k, &l);
-        else
-            book_free(m, i, &k, &l);
+    struct tl_ledger *l = &m->cycle->chunk_ledger[chunk];
+    l->kinetic = sum_lanes(work->kinetic);
+    l->first = work->until > 0 ? 0 : sum_lanes(work->first);
+    l->motion0 = sum_lanes(work->motion0);
+    l->motion = sum_lanes(work->motion2);
+    for (int w = 0; w < TL_WORK_COUNT; w++) {
+        l->until[w] = sum_lanes(work->work_until[w]);
+        l->after[w] = sum_lanes(work->work_after[w]);
     }
-    m->cycle->chunk_ledger[chunk] = l;
 }
 
 /* Elastic energy and slip of the contact points, in the order of their pages. */
@@ -232,17 +193,17 @@ static void close_ledger(struct tl_ledger *total, const struct tl_ledger *now)
         total->start_kinetic = now->kinetic - now->first;
         total->start_stored = now->stored;
     }
-    double at[WORK_COUNT];
-    for (int w = 0; w < WORK_COUNT; w++) {
+    double at[TL_WORK_COUNT];
+    for (int w = 0; w < TL_WORK_COUNT; w++) {
         at[w] = total->sum[w] + now->until[w];
         total->sum[w] = at[w] + now->after[w];
     }
     total->friction += now->friction;
     e->kinetic = now->kinetic;
     e->stored = now->stored;
-    e->potential = -at[WORK_GRAVITY];
-    e->damping = -at[WORK_DAMPING];
-    e->external = at[WORK_EXTERNAL] + total->by_hand;
+    e->potential = -at[TL_WORK_GRAVITY];
+    e->damping = -at[TL_WORK_DAMPING];
+    e->external = at[TL_WORK_EXTERNAL] + total->by_hand;
     e->friction = total->friction;
     double gain_kinetic = e->kinetic - total->start_kinetic;
     double gain_stored = e->stored - total->start_stored;
@@ -257,26 +218,28 @@ static void close_ledger(struct tl_ledger *total, const struct tl_ledger *now)
     e->balance = total->largest > 0 ? sum / total->largest : 0;
 }
 
-void tl_energy_after(tl_model *m, double dt_before, double dt_after)
+void tl_energy_close(tl_model *m)
 {
     struct tl_cycle *c = m->cycle;
-    size_t bodies = m->bodies.table.rows;
-    ledger_job job = {m, dt_before, dt_after};
-    tl_parallel_for(m->pool, bodies, TL_BODY_CHUNK, after_range, &job);
-    struct tl_ledger now = {0};
-    for (size_t chunk = 0; chunk * TL_BODY_CHUNK < bodies; chunk++) {
+    struct tl_ledger now = {0}, *total = c->ledger;
+    for (size_t chunk = 0; chunk * TL_BODY_CHUNK < m->bodies.table.rows; chunk++) {
         const struct tl_ledger *l = &c->chunk_ledger[chunk];
         now.kinetic += l->kinetic;
         now.first += l->first;
+        now.motion0 += l->motion0;
         now.motion += l->motion;
-        for (int w = 0; w < WORK_COUNT; w++) {
+        for (int w = 0; w < TL_WORK_COUNT; w++) {
             now.until[w] += l->until[w];
             now.after[w] += l->after[w];
         }
     }
-    c->ledger->motion = now.motion;
+    /* the same sum as after the last step, so 0 when nobody touched it */
+    if (total->started)
+        total->by_hand += now.motion0 - total->motion;
+    total->motion = now.motion;
+    c->kinetic_before = now.motion0;
     sum_points(m, &now);
-    close_ledger(c->ledger, &now);
+    close_ledger(total, &now);
 }
 
 tl_status tl_model_energy(tl_model *m, tl_energy *energy)

@@ -25,8 +25,10 @@ static void gather_body(tl_model *m, uint32_t body)
             contact_force += tl_v3_norm(c->force[i]);
         }
     }
-    m->cycle->reaction_force[body] = force;
-    m->cycle->reaction_moment[body] = moment;
+    if (b->fixed[body]) {
+        m->cycle->reaction_force[body] = force;
+        m->cycle->reaction_moment[body] = moment;
+    }
     tl_vec3 arm = tl_m3_mul(&b->r[body], b->load_arm[body]);
     force = tl_v3_add(tl_v3_madd(force, b->mass[body], m->config.gravity), b->load_force[body]);
     moment =
@@ -52,6 +54,8 @@ static void gather_range(void *user, size_t begin, size_t end, size_t chunk, uns
     (void)thread;
     tl_model *m = user;
     tl_bodies *b = &m->bodies;
+    bool totals = m->damping && ((const tl_damping_ops *)m->damping->ops)->begin;
+    double gravity = tl_v3_norm(m->config.gravity);
     tl_sums sums = {0};
     for (uint32_t body = (uint32_t)begin; body < end; body++) {
         gather_body(m, body);
@@ -60,8 +64,8 @@ static void gather_range(void *user, size_t begin, size_t end, size_t chunk, uns
         double v2 = tl_v3_norm2(b->v[body]);
         double unbalanced = tl_v3_norm(b->force[body]);
         double contact = m->cycle->contact_force[body];
-        double weight = b->mass[body] * tl_v3_norm(m->config.gravity) +
-                        tl_v3_norm(b->load_force[body]); /* a load weighs as much */
+        double weight =
+            b->mass[body] * gravity + tl_v3_norm(b->load_force[body]); /* a load weighs as much */
         double against = contact > 0 ? contact : weight;
         sums.unbalanced += unbalanced;
         sums.turning += tl_v3_norm(b->moment[body]) / b->radius[body];
@@ -70,7 +74,8 @@ static void gather_range(void *user, size_t begin, size_t end, size_t chunk, uns
         sums.largest = fmax(sums.largest, unbalanced);
         sums.local = fmax(sums.local, against > 0 ? unbalanced / against : 0);
         sums.bodies++;
-        sums.kinetic += 0.5 * (b->mass[body] * v2 + spin_energy2(m, body));
+        if (totals)
+            sums.kinetic += 0.5 * (b->mass[body] * v2 + spin_energy2(m, body));
         sums.max_speed2 = fmax(sums.max_speed2, v2);
     }
     m->cycle->chunk_sums[chunk] = sums;

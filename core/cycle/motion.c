@@ -5,176 +5,271 @@
  * Cundall and Lemos (1988): v <- (D1 v + F/m h) D2, D1 = 1 - alpha h/2, D2 = 1/(1 + alpha h/2).
  *
  * Rotation, exact: the kick acts on the angular momentum L; the drift is the free motion of a rigid body
- * with L constant in space, split into turns about the principal axes (Dullweber, Leimkuhler and
- * McLachlan 1997): time-reversible, keeps L to rounding and the energy without drift. The angular
- * velocity kept is that of L in the attitude at the end of the drift, so L is recovered from it.
+ * with L constant in space, split into turns about the principal axes (turn.h): time-reversible, keeps L to
+ * rounding and the energy without drift. The angular velocity kept is that of L in the attitude at the end
+ * of the drift, so L is recovered from it.
  * Rotation, paper: one moment of inertia, w <- (D1 w + M/I h) D2 (20), (23); the attitude turns exactly
- * about w. */
+ * about w.
+ *
+ * Free bodies go through a step in groups of TL_LANES: their columns are copied into lanes, one loop kicks and turns
+ * all of them, the energy ledger books what happened, and the lanes are copied back. Bodies held in some
+ * components, and all with the paper's rotation, get their rotation one by one; those held in every component
+ * are in no group and cost nothing as long as they stand. */
 #include "cycle/cycle_room.h"
+#include "cycle/turn.h"
 
 typedef struct move_job {
     tl_model *m;
     double kick, drift;
 } move_job;
 
-/* Half angles below which sine and cosine are taken from their series, whose next term is then below
- * rounding: the same bits with any mathematics library, and faster. */
-#define SERIES_HALF_ANGLE 0.05
-
-/* The quaternion of a turn: along `rotation`, by its length. */
-static tl_quat turn_by(tl_vec3 rotation)
+TL_INLINE tl_vec3 times(tl_vec3 a, tl_vec3 b)
 {
-    double h2 = 0.25 * tl_v3_norm2(rotation), c, s; /* s: sin(h) / h */
-    if (h2 < SERIES_HALF_ANGLE * SERIES_HALF_ANGLE) {
-        c = 1 - h2 / 2 * (1 - h2 / 12 * (1 - h2 / 30 * (1 - h2 / 56)));
-        s = 1 - h2 / 6 * (1 - h2 / 20 * (1 - h2 / 42 * (1 - h2 / 72)));
-    } else {
-        double h = sqrt(h2);
-        c = cos(h);
-        s = sin(h) / h;
+    return tl_v3(a.x * b.x, a.y * b.y, a.z * b.z);
+}
+
+/* The velocity by (23). */
+TL_INLINE void kick_lane(tl_group *g, size_t i, double kick)
+{
+    double d1 = 1 - 0.5 * g->alpha[i] * kick, d2 = 1 / (1 + 0.5 * g->alpha[i] * kick);
+    double per_mass =
+        kick / (g->mass[i] * g->scale[i]); /* mass scaling: less motion for the same force */
+    tl_vec3 force = tl_v3_add(tl_lanes3_get(&g->force, i), tl_lanes3_get(&g->damping_force, i));
+    tl_vec3 v = tl_v3_madd(tl_v3_scale(d1, tl_lanes3_get(&g->v0, i)), per_mass, force);
+    tl_lanes3_put(&g->v1, i, tl_v3_scale(d2, v));
+}
+
+TL_INLINE double speed_of(const tl_group *g, size_t i)
+{
+    return tl_v3_norm(tl_lanes3_get(&g->v1, i)) +
+           tl_v3_norm(tl_lanes3_get(&g->w2, i)) * g->radius[i];
+}
+
+/* The exact rotation of a body, kick and drift. */
+TL_INLINE void turn_lane(tl_group *g, size_t i, double kick, double drift, bool series)
+{
+    tl_quat q = tl_lanes4_get(&g->q, i), axes = tl_lanes4_get(&g->axes, i);
+    tl_vec3 moments = tl_lanes3_get(&g->moments, i);
+    double d1 = 1 - 0.5 * g->alpha[i] * kick, d2 = 1 / (1 + 0.5 * g->alpha[i] * kick);
+    double span = kick / g->scale[i];
+    tl_vec3 moment = tl_v3_add(tl_lanes3_get(&g->moment, i), tl_lanes3_get(&g->damping_moment, i));
+    /* to principal axes, where the kick acts */
+    tl_mat3 attitude = tl_q_matrix(tl_q_mul(q, axes));
+    tl_vec3 w = tl_m3_tmul(&attitude, tl_lanes3_get(&g->w0, i)), l0 = times(moments, w);
+    tl_vec3 turn = tl_m3_tmul(&attitude, moment);
+    tl_vec3 l1 = tl_v3_scale(d2, tl_v3_madd(tl_v3_scale(d1, l0), span, turn));
+    tl_vec3 per = {1 / moments.x, 1 / moments.y, 1 / moments.z};
+    tl_vec3 spin1 = times(per, l1);
+    tl_lanes3_put(&g->spin0, i, w);
+    tl_lanes3_put(&g->momentum0, i, l0);
+    tl_lanes3_put(&g->spin1, i, spin1);
+    tl_lanes3_put(&g->momentum1, i, l1);
+    tl_lanes3_put(&g->w1, i, tl_m3_mul(&attitude, spin1));
+    g->turning0[i] = tl_v3_dot(w, l0);
+    /* the drift, and the same turn in the body's frame: exactly none when nothing turned */
+    tl_free_turn free = tl_turn_freely(l1, per, drift, series);
+    tl_vec3 axis = tl_q_rotate(axes, tl_v3(free.made.x, free.made.y, free.made.z));
+    q = tl_q_trim(tl_q_mul(q, (tl_quat){free.made.w, axis.x, axis.y, axis.z}));
+    tl_lanes4_put(&g->q2, i, q);
+    attitude = tl_q_matrix(tl_q_mul(q, axes));
+    tl_vec3 l2 = free.momentum;
+    /* a division here, not `per`: its error would be the same in every step and add up */
+    tl_vec3 w2 = tl_m3_mul(&attitude, tl_v3(l2.x / moments.x, l2.y / moments.y, l2.z / moments.z));
+    tl_lanes3_put(&g->w2, i, w2);
+    tl_lanes3_put(&g->turned, i,
+                  tl_m3_mul(&attitude, tl_v3_scale(1 / drift, tl_turn_of(free.made, series))));
+    /* as the next step will find it, to the last bit */
+    w = tl_m3_tmul(&attitude, w2);
+    g->turning2[i] = tl_v3_dot(w, times(moments, w));
+    g->speed[i] = speed_of(g, i);
+    g->reach[i] = free.reach;
+}
+
+/* Kicks and turns a group of bodies by the exact rule. */
+TL_WIDE static void advance_lanes(tl_group *g, double kick, double drift)
+{
+    for (size_t i = 0; i < TL_LANES; i++)
+        kick_lane(g, i, kick);
+    for (size_t i = 0; i < TL_LANES; i++)
+        turn_lane(g, i, kick, drift, true);
+}
+
+/* What the ledger needs of a body's spin before the kick and after it, in the attitude before, and after the
+ * drift. The paper's rotation has one moment of inertia in all directions. */
+static void put_spins(tl_group *g, size_t i, bool paper)
+{
+    tl_vec3 moments = tl_lanes3_get(&g->moments, i),
+            spin[3] = {tl_lanes3_get(&g->w0, i), tl_lanes3_get(&g->w1, i),
+                       tl_lanes3_get(&g->w2, i)};
+    if (!paper) {
+        tl_quat axes = tl_lanes4_get(&g->axes, i);
+        tl_mat3 before = tl_q_matrix(tl_q_mul(tl_lanes4_get(&g->q, i), axes));
+        tl_mat3 after = tl_q_matrix(tl_q_mul(tl_lanes4_get(&g->q2, i), axes));
+        spin[0] = tl_m3_tmul(&before, spin[0]);
+        spin[1] = tl_m3_tmul(&before, spin[1]);
+        spin[2] = tl_m3_tmul(&after, spin[2]);
     }
-    return (tl_quat){c, 0.5 * s * rotation.x, 0.5 * s * rotation.y, 0.5 * s * rotation.z};
+    tl_lanes3_put(&g->spin0, i, spin[0]);
+    tl_lanes3_put(&g->momentum0, i, times(moments, spin[0]));
+    tl_lanes3_put(&g->spin1, i, spin[1]);
+    tl_lanes3_put(&g->momentum1, i, times(moments, spin[1]));
+    g->turning0[i] = tl_v3_dot(spin[0], times(moments, spin[0]));
+    g->turning2[i] = tl_v3_dot(spin[2], times(moments, spin[2]));
 }
 
-/* One turn of the splitting: about principal axis `axis` for time `dt`. Adds to the turn made so far and
- * turns the angular momentum in principal axes. */
-static void split_turn(int axis, double dt, const double moments[3], double l[3], tl_quat *made)
+/* A body that turns about its angular velocity: by the paper's rule or, when its rotation is held, as it did. */
+static void turn_about(tl_group *g, size_t i, const move_job *job, bool paper, bool held)
 {
-    double angle = dt * l[axis] / moments[axis];
-    tl_vec3 rotation = {axis == 0 ? angle : 0, axis == 1 ? angle : 0, axis == 2 ? angle : 0};
-    tl_quat turn = turn_by(rotation);
-    *made = tl_q_mul(*made, turn);
-    tl_vec3 turned = tl_q_rotate(tl_q_conj(turn), tl_v3(l[0], l[1], l[2]));
-    l[0] = turned.x;
-    l[1] = turned.y;
-    l[2] = turned.z;
-}
-
-/* The one turn a quaternion makes: axis times angle, the inverse of turn_by. */
-static tl_vec3 turn_of(tl_quat q)
-{
-    double s2 = q.x * q.x + q.y * q.y + q.z * q.z, k; /* k: angle / sine of its half */
-    if (s2 < SERIES_HALF_ANGLE * SERIES_HALF_ANGLE) {
-        k = 2 * (1 + s2 * (1. / 6 +
-                           s2 * (3. / 40 + s2 * (5. / 112 + s2 * (35. / 1152 + s2 * 63. / 2816)))));
-    } else {
-        double s = sqrt(s2);
-        k = 2 * atan2(s, q.w) / s;
+    tl_vec3 w = tl_lanes3_get(&g->w0, i);
+    if (!held) {
+        double span = 0.5 * g->alpha[i] * job->kick;
+        double per_moment = job->kick / (g->moments.x[i] * g->scale[i]);
+        tl_vec3 moment =
+            tl_v3_add(tl_lanes3_get(&g->moment, i), tl_lanes3_get(&g->damping_moment, i));
+        w = tl_v3_scale(1 / (1 + span), tl_v3_madd(tl_v3_scale(1 - span, w), per_moment, moment));
     }
-    return tl_v3(k * q.x, k * q.y, k * q.z);
+    tl_quat turn = tl_turn_by(tl_v3_scale(job->drift, w));
+    tl_lanes4_put(&g->q2, i, tl_q_trim(tl_q_mul(turn, tl_lanes4_get(&g->q, i))));
+    tl_lanes3_put(&g->w1, i, w);
+    tl_lanes3_put(&g->w2, i, w);
+    tl_lanes3_put(&g->turned, i, w);
+    g->speed[i] = speed_of(g, i);
+    put_spins(g, i, paper);
 }
 
-static void rotate_exact(tl_bodies *b, uint32_t i, tl_vec3 moment, const move_job *job,
-                         double alpha)
+/* The bodies of a group that the loop over its lanes does not do justice to. */
+static void mend_lanes(tl_group *g, const move_job *job)
 {
-    const double moments[3] = {b->moments[i].x, b->moments[i].y, b->moments[i].z};
-    double d1 = 1 - 0.5 * alpha * job->kick, d2 = 1 / (1 + 0.5 * alpha * job->kick);
-    tl_quat back = tl_q_conj(tl_q_mul(b->q[i], b->axes[i])); /* to principal axes */
-    tl_vec3 w = tl_q_rotate(back, b->w[i]);
-    tl_vec3 kick = tl_q_rotate(back, tl_v3_scale(job->kick, moment));
-    double l[3] = {(d1 * moments[0] * w.x + kick.x) * d2, (d1 * moments[1] * w.y + kick.y) * d2,
-                   (d1 * moments[2] * w.z + kick.z) * d2};
-    double half = 0.5 * job->drift;
-    tl_quat made = tl_q_identity();
-    split_turn(0, half, moments, l, &made);
-    split_turn(1, half, moments, l, &made);
-    split_turn(2, job->drift, moments, l, &made);
-    split_turn(1, half, moments, l, &made);
-    split_turn(0, half, moments, l, &made);
-    /* the same turn in the body's frame: exactly none when nothing turned */
-    tl_vec3 axis = tl_q_rotate(b->axes[i], tl_v3(made.x, made.y, made.z));
-    b->q[i] = tl_q_unit(tl_q_mul(b->q[i], (tl_quat){made.w, axis.x, axis.y, axis.z}));
-    tl_vec3 spin = {l[0] / moments[0], l[1] / moments[1], l[2] / moments[2]};
-    tl_quat forth = tl_q_mul(b->q[i], b->axes[i]);
-    b->w[i] = tl_q_rotate(forth, spin);
-    b->w_moved[i] = tl_q_rotate(forth, tl_v3_scale(1 / job->drift, turn_of(made)));
+    const tl_model *m = job->m;
+    const double limit = TL_SERIES_HALF_ANGLE * TL_SERIES_HALF_ANGLE;
+    bool paper = m->config.rotation == TL_ROTATION_PAPER;
+    for (size_t i = 0; i < g->count; i++) {
+        unsigned fixed = m->bodies.fixed[g->body[i]];
+        g->v1.x[i] = fixed & TL_FIX_X ? g->v0.x[i] : g->v1.x[i];
+        g->v1.y[i] = fixed & TL_FIX_Y ? g->v0.y[i] : g->v1.y[i];
+        g->v1.z[i] = fixed & TL_FIX_Z ? g->v0.z[i] : g->v1.z[i];
+        if (fixed)
+            g->speed[i] = speed_of(g, i);
+        if (paper || fixed & TL_FIX_ROTATION)
+            turn_about(g, i, job, paper, fixed & TL_FIX_ROTATION);
+        else if (!(g->reach[i] < limit))
+            turn_lane(g, i, job->kick, job->drift, false);
+    }
 }
 
-static void rotate_paper(tl_bodies *b, uint32_t i, tl_vec3 moment, const move_job *job,
-                         double alpha)
+static void load_body(tl_group *g, const tl_model *m, uint32_t body)
 {
-    double d1 = 1 - 0.5 * alpha * job->kick, d2 = 1 / (1 + 0.5 * alpha * job->kick);
-    b->w[i] =
-        tl_v3_scale(d2, tl_v3_madd(tl_v3_scale(d1, b->w[i]), job->kick / b->round[i], moment));
-    b->q[i] = tl_q_unit(tl_q_mul(turn_by(tl_v3_scale(job->drift, b->w[i])), b->q[i]));
-    b->w_moved[i] = b->w[i];
+    const tl_bodies *b = &m->bodies;
+    const struct tl_cycle *c = m->cycle;
+    size_t i = g->count++;
+    double round = b->round[body];
+    g->body[i] = body;
+    tl_lanes4_put(&g->q, i, b->q[body]);
+    tl_lanes4_put(&g->axes, i, b->axes[body]);
+    tl_lanes3_put(&g->moments, i,
+                  m->config.rotation == TL_ROTATION_PAPER ? tl_v3(round, round, round)
+                                                          : b->moments[body]);
+    tl_lanes3_put(&g->force, i, b->force[body]);
+    tl_lanes3_put(&g->moment, i, b->moment[body]);
+    tl_lanes3_put(&g->moved, i, b->v_moved[body]);
+    tl_lanes3_put(&g->v0, i, b->v[body]);
+    tl_lanes3_put(&g->w0, i, b->w[body]);
+    g->mass[i] = b->mass[body];
+    g->radius[i] = b->radius[body];
+    g->scale[i] = c->scale[body];
+    bool damped = m->damping != NULL;
+    const tl_vec3 none = {0, 0, 0};
+    tl_lanes3_put(&g->damping_force, i, damped ? tl_columns_get(c->damping_force, body) : none);
+    tl_lanes3_put(&g->damping_moment, i, damped ? tl_columns_get(c->damping_moment, body) : none);
+    g->alpha[i] = damped ? c->alpha[body] : 0;
 }
 
-static void count_motion(tl_bodies *b, uint32_t i, double dt)
+/* A lane without a body: one that rests, and to which nothing happens. */
+static void rest_lane(tl_group *g, size_t i)
 {
-    b->v_moved[i] = b->v[i];
-    b->odometer[i] += (tl_v3_norm(b->v[i]) + tl_v3_norm(b->w[i]) * b->radius[i]) * dt;
+    const tl_vec3 none = {0, 0, 0};
+    tl_lanes4_put(&g->q, i, tl_q_identity());
+    tl_lanes4_put(&g->axes, i, tl_q_identity());
+    tl_lanes3_put(&g->moments, i, tl_v3(1, 1, 1));
+    tl_lanes3 *const still[] = {
+        &g->force, &g->moment, &g->damping_force, &g->damping_moment, &g->moved, &g->v0, &g->w0};
+    for (size_t k = 0; k < sizeof still / sizeof *still; k++)
+        tl_lanes3_put(still[k], i, none);
+    g->mass[i] = g->scale[i] = g->radius[i] = 1;
+    g->alpha[i] = 0;
 }
 
-static void turn_body(tl_bodies *b, uint32_t i, double dt)
+static void store_body(const tl_group *g, size_t i, tl_bodies *b, double dt)
 {
-    b->w_moved[i] = b->w[i];
-    if (tl_v3_norm2(b->w[i]) == 0)
-        return;
-    b->q[i] = tl_q_unit(tl_q_mul(turn_by(tl_v3_scale(dt, b->w[i])), b->q[i]));
-    b->r[i] = tl_q_matrix(b->q[i]);
+    uint32_t body = g->body[i];
+    b->v[body] = tl_lanes3_get(&g->v1, i);
+    b->w[body] = tl_lanes3_get(&g->w2, i);
+    b->v_moved[body] = b->v[body];
+    b->w_moved[body] = tl_lanes3_get(&g->turned, i);
+    b->u[body] = tl_v3_madd(b->u[body], dt, b->v[body]);
+    b->q[body] = tl_lanes4_get(&g->q2, i);
+    b->r[body] = tl_q_matrix(b->q[body]);
+    b->odometer[body] += g->speed[i] * dt;
+}
+
+static void advance_group(tl_group *g, const move_job *job, tl_work *work)
+{
+    for (size_t i = g->count; i < TL_LANES; i++)
+        rest_lane(g, i);
+    advance_lanes(g, job->kick, job->drift);
+    mend_lanes(g, job);
+    tl_energy_book(job->m, g, work);
+    for (size_t i = 0; i < g->count; i++)
+        store_body(g, i, &job->m->bodies, job->drift);
+    g->count = 0;
+}
+
+static bool still(tl_vec3 v)
+{
+    return v.x == 0 && v.y == 0 && v.z == 0;
 }
 
 /* A body held in every component goes on with the velocity it was given: none, or that of its drive. */
-static void carry_body(const move_job *job, uint32_t i)
+static void carry_body(const move_job *job, uint32_t body, tl_work *work)
 {
     tl_bodies *b = &job->m->bodies;
-    if (b->drive[i]) {
-        const tl_drive_record *drive = &job->m->drives[b->drive[i] - 1];
-        b->v[i] = drive->velocity;
-        b->w[i] = drive->angular_velocity;
+    double dt = job->drift;
+    if (b->drive[body]) {
+        const tl_drive_record *drive = &job->m->drives[b->drive[body] - 1];
+        b->v[body] = drive->velocity;
+        b->w[body] = drive->angular_velocity;
     }
-    b->u[i] = tl_v3_madd(b->u[i], job->drift, b->v[i]);
-    turn_body(b, i, job->drift);
-    count_motion(b, i, job->drift);
-}
-
-static void move_body(const move_job *job, uint32_t i)
-{
-    tl_model *m = job->m;
-    tl_bodies *b = &m->bodies;
-    const struct tl_cycle *c = m->cycle;
-    unsigned fixed = b->fixed[i];
-    if (fixed == TL_FIX_ALL) {
-        carry_body(job, i);
+    tl_vec3 moved = b->v_moved[body], turned = b->w_moved[body];
+    if (still(b->v[body]) && still(b->w[body]) && still(moved) && still(turned))
         return;
-    }
-    tl_vec3 force = b->force[i], moment = b->moment[i];
-    double alpha = 0;
-    if (m->damping) {
-        force = tl_v3_add(
-            force, tl_v3(c->damping_force[0][i], c->damping_force[1][i], c->damping_force[2][i]));
-        moment = tl_v3_add(moment, tl_v3(c->damping_moment[0][i], c->damping_moment[1][i],
-                                         c->damping_moment[2][i]));
-        alpha = c->alpha[i];
-    }
-    /* mass scaling: less motion for the same force */
-    force = tl_v3_scale(1 / c->scale[i], force);
-    moment = tl_v3_scale(1 / c->scale[i], moment);
-    double d1 = 1 - 0.5 * alpha * job->kick, d2 = 1 / (1 + 0.5 * alpha * job->kick);
-    tl_vec3 v =
-        tl_v3_scale(d2, tl_v3_madd(tl_v3_scale(d1, b->v[i]), job->kick / b->mass[i], force));
-    b->v[i] = tl_v3(fixed & TL_FIX_X ? b->v[i].x : v.x, fixed & TL_FIX_Y ? b->v[i].y : v.y,
-                    fixed & TL_FIX_Z ? b->v[i].z : v.z);
-    b->u[i] = tl_v3_madd(b->u[i], job->drift, b->v[i]);
-    if (fixed & TL_FIX_ROTATION) {
-        turn_body(b, i, job->drift);
-    } else {
-        if (m->config.rotation == TL_ROTATION_PAPER)
-            rotate_paper(b, i, moment, job, alpha);
-        else
-            rotate_exact(b, i, moment, job, alpha);
-        b->r[i] = tl_q_matrix(b->q[i]);
-    }
-    count_motion(b, i, job->drift);
+    tl_energy_book_held(job->m, body, moved, turned, work);
+    b->u[body] = tl_v3_madd(b->u[body], dt, b->v[body]);
+    b->w_moved[body] = b->w[body];
+    b->q[body] = tl_q_trim(tl_q_mul(tl_turn_by(tl_v3_scale(dt, b->w[body])), b->q[body]));
+    b->r[body] = tl_q_matrix(b->q[body]);
+    b->v_moved[body] = b->v[body];
+    b->odometer[body] += dt * (tl_v3_norm(b->v[body]) + tl_v3_norm(b->w[body]) * b->radius[body]);
 }
 
 static void move_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
 {
-    (void)chunk;
     (void)thread;
-    for (size_t i = begin; i < end; i++)
-        move_body(user, (uint32_t)i);
+    const move_job *job = user;
+    tl_model *m = job->m;
+    tl_work work = {.until = 0.5 * m->dt, .after = 0.5 * job->drift};
+    tl_group group;
+    group.count = 0;
+    for (uint32_t body = (uint32_t)begin; body < end; body++) {
+        if (m->bodies.fixed[body] == TL_FIX_ALL)
+            carry_body(job, body, &work);
+        else
+            load_body(&group, m, body);
+        if (group.count == TL_LANES)
+            advance_group(&group, job, &work);
+    }
+    if (group.count > 0)
+        advance_group(&group, job, &work);
+    tl_energy_chunk(m, chunk, &work);
 }
 
 bool tl_move(tl_model *m, double dt)
