@@ -6,8 +6,9 @@
 
 #include <pthread.h>
 
-/* Rows a worker takes at a time. */
+/* Rows a worker takes at a time. Of contacts where there is little to do with each. */
 #define TL_BODY_CHUNK 64
+#define TL_CONTACT_CHUNK 1024
 
 /* Sums over the free bodies, made per chunk and added in chunk order. */
 typedef struct tl_sums {

@@ -20,7 +20,7 @@
 static double law_stiffness(const tl_model *m, uint32_t material)
 {
     const tl_material *law = &m->materials[material];
-    return fmax(law->kn, law->ks);
+    return law->kn > law->ks ? law->kn : law->ks;
 }
 
 static double stiffest_law(const tl_model *m)
@@ -37,17 +37,34 @@ static bool counts(const tl_model *m, uint32_t body)
     return m->cycle->all_held || m->bodies.fixed[body] != TL_FIX_ALL;
 }
 
-static bool all_held(const tl_model *m)
+/* What the rules ask of all bodies, looked up again when one has come, gone, been held or got another mass. */
+static void count_bodies(tl_model *m)
 {
-    for (uint32_t body = 0; body < m->bodies.table.rows; body++)
-        if (m->bodies.fixed[body] != TL_FIX_ALL)
-            return false;
-    return true;
+    struct tl_cycle *c = m->cycle;
+    struct tl_counted *to = &c->counted;
+    uint64_t version = 1 + m->structure + m->constraints;
+    if (to->version == version)
+        return;
+    const tl_bodies *b = &m->bodies;
+    *to = (struct tl_counted){version, INFINITY, TL_NO_ROW, -1};
+    c->all_held = true;
+    for (uint32_t body = 0; body < b->table.rows && c->all_held; body++)
+        c->all_held = b->fixed[body] == TL_FIX_ALL;
+    for (uint32_t body = 0; body < b->table.rows; body++) {
+        c->scale[body] = 1;
+        if (counts(m, body) && b->mass[body] < to->least_mass) {
+            to->least_mass = b->mass[body];
+            to->lightest = body;
+        }
+    }
+    c->scaled_for = 0;
 }
 
-static double largest_free_face(const tl_model *m)
+static double largest_free_face(tl_model *m)
 {
     double largest = 0;
+    if (m->cycle->counted.largest_face >= 0)
+        return m->cycle->counted.largest_face;
     for (uint32_t body = 0; body < m->bodies.table.rows; body++) {
         if (!counts(m, body))
             continue;
@@ -57,6 +74,7 @@ static double largest_free_face(const tl_model *m)
                 largest = fmax(largest, tl_poly_face_area(shape, f));
         }
     }
+    m->cycle->counted.largest_face = largest;
     return largest;
 }
 
@@ -68,30 +86,67 @@ typedef struct bound {
     double stiffness;
 } bound;
 
-/* M_min / (2 K_max), with K_max over the contacts of free bodies. */
-static bound paper_rule(const tl_model *m)
+/* The worst row of contacts or bodies that a thread has met, and how bad it is. Whoever met it, of several
+ * that are equally bad the first row counts: which thread took which rows makes no difference. */
+typedef struct worst {
+    double value, stiffness;
+    uint32_t row;
+} worst;
+
+typedef struct search {
+    tl_model *m;
+    bool keep; /* what is found of every row */
+    worst of[TL_MAX_THREADS];
+} search;
+
+static void keep_worst(worst *w, worst other)
 {
+    if (other.value > w->value || (other.value == w->value && other.row < w->row))
+        *w = other;
+}
+
+static worst find_worst(tl_model *m, size_t rows, size_t chunk, tl_range_fn range, bool keep)
+{
+    search s = {.m = m, .keep = keep};
+    unsigned threads = tl_pool_threads(m->pool);
+    for (unsigned t = 0; t < threads; t++)
+        s.of[t] = (worst){0, 0, TL_NO_ROW};
+    tl_parallel_for(m->pool, rows, chunk, range, &s);
+    for (unsigned t = 1; t < threads; t++)
+        keep_worst(&s.of[0], s.of[t]);
+    return s.of[0];
+}
+
+static void stiffest_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
+{
+    (void)chunk;
+    search *s = user;
+    const tl_model *m = s->m;
     const tl_contacts *c = &m->detect->contacts;
-    bound out = {.body = TL_NO_ROW, .contact = TL_NO_ROW};
-    for (uint32_t i = 0; i < c->table.rows; i++) {
-        if (c->material[i] == TL_NO_ROW ||
-            (!counts(m, m->blocks.body[c->a[i]]) && !counts(m, m->blocks.body[c->b[i]])))
+    worst found = {0, 0, TL_NO_ROW};
+    for (uint32_t i = (uint32_t)begin; i < end; i++) {
+        if (c->material[i] == TL_NO_ROW)
             continue;
         double k = law_stiffness(m, c->material[i]) * c->area[i];
-        if (k > out.stiffness) {
-            out.stiffness = k;
-            out.contact = i;
-        }
+        /* most are not stiffer: what is dearer to know is asked last */
+        if (k > found.value &&
+            (counts(m, m->blocks.body[c->a[i]]) || counts(m, m->blocks.body[c->b[i]])))
+            found = (worst){k, k, i};
     }
+    keep_worst(&s->of[thread], found);
+}
+
+/* M_min / (2 K_max), with K_max over the contacts of free bodies. */
+static bound paper_rule(tl_model *m)
+{
+    const struct tl_counted *counted = &m->cycle->counted;
+    worst stiffest =
+        find_worst(m, m->detect->contacts.table.rows, TL_CONTACT_CHUNK, stiffest_range, false);
+    bound out = {
+        .body = counted->lightest, .contact = stiffest.row, .stiffness = stiffest.stiffness};
     if (out.contact == TL_NO_ROW)
         out.stiffness = stiffest_law(m) * largest_free_face(m);
-    double mass = INFINITY;
-    for (uint32_t body = 0; body < m->bodies.table.rows; body++)
-        if (counts(m, body) && m->bodies.mass[body] < mass) {
-            mass = m->bodies.mass[body];
-            out.body = body;
-        }
-    out.least = mass / (2 * out.stiffness);
+    out.least = counted->least_mass / (2 * out.stiffness);
     return out;
 }
 
@@ -124,7 +179,7 @@ static void body_stiffness(const tl_model *m, uint32_t body, double *k, double *
 {
     const tl_detect *d = m->detect;
     const tl_contacts *c = &d->contacts;
-    *k = *k_r2 = 0;
+    double sum = 0, sum_r2 = 0;
     for (uint32_t j = 0; j < m->bodies.member_count[body]; j++) {
         uint32_t row = m->members[m->bodies.member_start[body] + j];
         for (uint32_t e = d->by_block_start[row]; e < d->by_block_start[row + 1]; e++) {
@@ -135,15 +190,17 @@ static void body_stiffness(const tl_model *m, uint32_t body, double *k, double *
             for (uint32_t f = 0; f < c->facet_count[i]; f++) {
                 const tl_facet *facet = &c->facet[c->facet_start[i] + f];
                 sums next = facet_stiffness(m, i, facet, c->b[i] == row);
-                *k += stiffness * next.area;
-                *k_r2 += stiffness * next.area_r2;
+                sum += stiffness * next.area;
+                sum_r2 += stiffness * next.area_r2;
             }
         }
     }
+    *k = sum;
+    *k_r2 = sum_r2;
 }
 
-/* 1 / (2 sum k (1/M + r^2/I)) of a body; infinite without contacts. */
-static double body_bound(const tl_model *m, uint32_t body, double *stiffness)
+/* sum k (1/M + r^2/I) of a body: 0 without contacts. */
+static double body_rate(const tl_model *m, uint32_t body, double *stiffness)
 {
     const tl_bodies *b = &m->bodies;
     double k_r2;
@@ -154,57 +211,75 @@ static double body_bound(const tl_model *m, uint32_t body, double *stiffness)
         rate += k_r2 / (m->config.rotation == TL_ROTATION_PAPER ? b->round[body]
                                                                 : fmin(i.x, fmin(i.y, i.z)));
     }
-    return 1 / (2 * rate);
+    return rate;
 }
 
-static bound body_rule(const tl_model *m)
+static void fastest_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
 {
-    bound out = {INFINITY, TL_NO_ROW, TL_NO_ROW, 0};
-    for (uint32_t body = 0; body < m->bodies.table.rows; body++) {
-        double k = 0, least = counts(m, body) ? body_bound(m, body, &k) : INFINITY;
-        if (least < out.least)
-            out = (bound){least, body, TL_NO_ROW, k};
+    (void)chunk;
+    search *s = user;
+    worst found = {0, 0, TL_NO_ROW};
+    for (uint32_t body = (uint32_t)begin; body < end; body++) {
+        double k = 0, rate = counts(s->m, body) ? body_rate(s->m, body, &k) : 0;
+        if (rate > found.value)
+            found = (worst){rate, k, body};
     }
-    return out.body == TL_NO_ROW ? paper_rule(m) : out; /* no moving body touches another */
+    keep_worst(&s->of[thread], found);
+}
+
+static bound body_rule(tl_model *m)
+{
+    worst fastest = find_worst(m, m->bodies.table.rows, TL_BODY_CHUNK, fastest_range, false);
+    if (fastest.row == TL_NO_ROW)
+        return paper_rule(m); /* no moving body touches another */
+    return (bound){1 / (2 * fastest.value), fastest.row, TL_NO_ROW, fastest.stiffness};
+}
+
+static void slowest_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
+{
+    (void)chunk;
+    search *s = user;
+    double *scale = s->m->cycle->scale;
+    worst found = {0, 0, TL_NO_ROW};
+    for (uint32_t body = (uint32_t)begin; body < end; body++) {
+        double k = 0, rate = counts(s->m, body) ? body_rate(s->m, body, &k) : 0;
+        if (rate > 0 && 1 / rate > found.value)
+            found = (worst){1 / rate, k, body};
+        if (s->keep)
+            scale[body] = rate;
+    }
+    keep_worst(&s->of[thread], found);
+}
+
+/* The bound of the body that needs mass scaling least. `keep`: leaves the rates of all in the column of scales. */
+static bound slowest_body(tl_model *m, bool keep)
+{
+    worst slowest = find_worst(m, m->bodies.table.rows, TL_BODY_CHUNK, slowest_range, keep);
+    if (slowest.row == TL_NO_ROW)
+        return paper_rule(m);
+    return (bound){0.5 * slowest.value, slowest.row, TL_NO_ROW, slowest.stiffness};
 }
 
 /* Scales the inertia of the free bodies up to the bound of the one that needs it least. */
-static bound scale_inertia(tl_model *m)
+static double scaled_step(tl_model *m)
 {
     struct tl_cycle *c = m->cycle;
-    const tl_bodies *b = &m->bodies;
     uint64_t version = 1 + m->detect->changes + (uint64_t)m->cycles / LOOK_EVERY + m->constraints +
                        m->laws + m->structure;
-    bound out = {c->scaled_step, TL_NO_ROW, TL_NO_ROW, 0};
     if (version == c->scaled_for)
-        return out;
-    double most = 0;
-    for (uint32_t body = 0; body < b->table.rows; body++) {
-        double k = 0, least = counts(m, body) ? body_bound(m, body, &k) : INFINITY;
-        c->scale[body] = least; /* for the second pass */
-        if (isfinite(least) && least > most) {
-            most = least;
-            out = (bound){least, body, TL_NO_ROW, k};
-        }
-    }
-    if (!(most > 0))
-        out = paper_rule(m);
-    for (uint32_t body = 0; body < b->table.rows; body++)
-        c->scale[body] = isfinite(c->scale[body]) ? most / c->scale[body] : 1;
+        return c->scaled_step;
+    bound slowest = slowest_body(m, true);
+    for (uint32_t body = 0; body < m->bodies.table.rows; body++)
+        c->scale[body] = c->scale[body] > 0 ? 2 * slowest.least * c->scale[body] : 1;
     c->scaled_for = version;
-    c->scaled_step = out.least;
-    return out;
+    c->scaled_step = slowest.least;
+    return c->scaled_step;
 }
 
 static bound controlling(tl_model *m)
 {
-    struct tl_cycle *c = m->cycle;
-    c->all_held = all_held(m);
     if (m->mass_scaling)
-        return scale_inertia(m);
-    for (size_t body = 0; body < c->table.rows; body++)
-        c->scale[body] = 1;
-    c->scaled_for = 0;
+        return slowest_body(m, false);
     return m->timestep.rule == TL_TIMESTEP_BODY ? body_rule(m) : paper_rule(m);
 }
 
@@ -231,18 +306,29 @@ static tl_status check_plugins(tl_model *m)
     return TL_OK;
 }
 
+/* The step. A report asks `by` what controls it, and leaves the scale of the inertia alone. */
 static tl_status choose(tl_model *m, double *dt, bound *by)
 {
     struct tl_cycle *c = m->cycle;
     tl_status status = check_plugins(m);
     if (status != TL_OK)
         return status;
-    *by = controlling(m);
-    if (!isnan(m->timestep.dt)) {
+    count_bodies(m);
+    bool given = !isnan(m->timestep.dt);
+    double least = 0;
+    if (by) {
+        *by = controlling(m);
+        least = by->least;
+    } else if (m->mass_scaling) {
+        least = scaled_step(m);
+    } else if (!given) {
+        least = controlling(m).least;
+    }
+    if (given) {
         *dt = c->dt = m->timestep.dt;
         return TL_OK;
     }
-    double fresh = m->timestep.fraction * damping_factor(m) * 2 * sqrt(by->least);
+    double fresh = m->timestep.fraction * damping_factor(m) * 2 * sqrt(least);
     if (c->all_held && !(isfinite(fresh) && fresh > 0))
         fresh = 1; /* nothing moves and nothing is stiff: any step will do */
     if (!isfinite(fresh) || !(fresh > 0))
@@ -258,8 +344,7 @@ static tl_status choose(tl_model *m, double *dt, bound *by)
 
 tl_status tl_timestep_choose(tl_model *m, double *dt)
 {
-    bound by;
-    return choose(m, dt, &by);
+    return choose(m, dt, NULL);
 }
 
 tl_status tl_model_timestep(tl_model *m, const tl_timestep *timestep)
@@ -298,14 +383,10 @@ tl_status tl_model_timestep_report(tl_model *m, tl_timestep_report *report)
     if (status != TL_OK)
         return status;
     struct tl_cycle *c = m->cycle;
-    double in_use = c->dt, scaled_step = c->scaled_step;
-    uint64_t scaled_for = c->scaled_for;
-    c->scaled_for = 0; /* look anew, so that the body can be named */
+    double in_use = c->dt;
     bound by;
     status = choose(m, &report->dt, &by);
     c->dt = in_use;
-    c->scaled_for = scaled_for;
-    c->scaled_step = scaled_step;
     if (status != TL_OK || by.body == TL_NO_ROW)
         return status;
     report->block = m->bodies.id[by.body];
