@@ -3,11 +3,12 @@
  * The loops of a step follow each other within microseconds, so none may cost a system call: threads that wait
  * spin for a while, and sleep only when nothing has come by then; whoever has something for a sleeper wakes it.
  *
- * A thread takes a chunk by counting down the ticket, which holds the number of the loop, too: one that
- * comes late, from a loop that is over, finds a ticket with nothing on it or takes a chunk of the new loop,
- * never one of the old. So a loop ends as soon as its chunks are done, whether or not all threads have
- * seen it: where there are more threads than processors, nobody waits for one that does not run. What
- * describes a loop does not change while a chunk of it is out. */
+ * Each thread has its part of the chunks, the same part of every loop, so that what it works on stays in its
+ * cache from loop to loop; when it is through it takes what others have left. A chunk is taken by counting
+ * down a ticket, which holds the number of the loop, too: a thread that comes late, from a loop that is over,
+ * finds nothing on it or takes a chunk of the new loop, never one of the old. So a loop ends as soon as its
+ * chunks are done, whether or not all threads have seen it: where there are more threads than processors,
+ * nobody waits for one that does not run. What describes a loop does not change while a chunk of it is out. */
 #include "base/parallel.h"
 
 #include <pthread.h>
@@ -29,6 +30,7 @@
 #define LOOP_UNIT ((uint64_t)1 << 32)
 
 struct worker {
+    _Alignas(APART) _Atomic uint64_t ticket; /* for the thread's part */
     tl_pool *pool;
     unsigned number;
     pthread_t thread;
@@ -36,17 +38,18 @@ struct worker {
 
 struct tl_pool {
     unsigned threads;
-    struct worker *workers;
+    struct worker *workers; /* the caller is number 0 */
     pthread_mutex_t lock;
     pthread_cond_t wake, done;
     atomic_uint sleepers;      /* workers that wait for `wake` */
     atomic_bool caller_sleeps; /* and the caller for `done` */
     atomic_bool ending;
     /* the loop; written while no chunk is out */
+    unsigned parts; /* among as many threads */
+    uint64_t loop;
     size_t count, chunk, chunks;
     tl_range_fn fn;
     void *user;
-    _Alignas(APART) _Atomic uint64_t ticket;
     _Alignas(APART) _Atomic size_t unfinished; /* chunks that are not done */
 };
 
@@ -60,18 +63,24 @@ static void relax(void)
 #endif
 }
 
-static bool has_chunks(tl_pool *pool)
+/* The first chunk of a thread's part. */
+static size_t part_begin(const tl_pool *pool, unsigned part)
 {
-    return atomic_load(&pool->ticket) & LEFT_MASK;
+    return pool->chunks * part / pool->parts;
 }
 
-/* Takes a chunk off the ticket; false when none is left. */
-static bool take_chunk(tl_pool *pool, size_t *chunk)
+static bool has_chunks(struct worker *of)
 {
-    uint64_t ticket = atomic_load(&pool->ticket);
+    return atomic_load(&of->ticket) & LEFT_MASK;
+}
+
+/* Takes a chunk of a thread's part; false when none is left. */
+static bool take_chunk(struct worker *of, size_t *chunk)
+{
+    uint64_t ticket = atomic_load(&of->ticket);
     while (ticket & LEFT_MASK)
-        if (atomic_compare_exchange_weak(&pool->ticket, &ticket, ticket - 1)) {
-            *chunk = pool->chunks - (size_t)(ticket & LEFT_MASK);
+        if (atomic_compare_exchange_weak(&of->ticket, &ticket, ticket - 1)) {
+            *chunk = part_begin(of->pool, of->number + 1) - (size_t)(ticket & LEFT_MASK);
             return true;
         }
     return false;
@@ -83,33 +92,33 @@ static void do_chunk(tl_pool *pool, size_t chunk, unsigned thread)
     pool->fn(pool->user, begin, end < pool->count ? end : pool->count, chunk, thread);
 }
 
-/* Works until no chunk is left; returns true when the last of the loop was done here. */
+/* Works until no chunk is left; returns true when the loop ended with what was done here. */
 static bool do_chunks(tl_pool *pool, unsigned thread)
 {
-    size_t chunk;
-    bool last = false;
-    while (take_chunk(pool, &chunk)) {
-        do_chunk(pool, chunk, thread);
-        last = atomic_fetch_sub(&pool->unfinished, 1) == 1;
+    size_t chunk, done = 0;
+    for (unsigned k = 0; k < pool->threads; k++) {
+        struct worker *of = &pool->workers[(thread + k) % pool->threads];
+        for (; take_chunk(of, &chunk); done++)
+            do_chunk(pool, chunk, thread);
     }
-    return last;
+    return done > 0 && atomic_fetch_sub(&pool->unfinished, done) == done;
 }
 
-/* Waits for a loop; false at the end of the pool. */
-static bool await_loop(tl_pool *pool)
+/* Waits for a loop with a part for this thread; false at the end of the pool. */
+static bool await_loop(tl_pool *pool, struct worker *self)
 {
     for (int look = 0; look < SPIN_LOOKS; look++) {
-        if (has_chunks(pool))
+        if (has_chunks(self))
             return true;
         if (atomic_load_explicit(&pool->ending, memory_order_relaxed))
             return false;
         relax();
     }
     pthread_mutex_lock(&pool->lock);
-    /* counted before the last look, as the caller looks for sleepers after it has made the ticket: one
+    /* counted before the last look, as the caller looks for sleepers after it has made the tickets: one
      * of the two sees the other */
     atomic_fetch_add(&pool->sleepers, 1);
-    while (!has_chunks(pool) && !atomic_load(&pool->ending))
+    while (!has_chunks(self) && !atomic_load(&pool->ending))
         pthread_cond_wait(&pool->wake, &pool->lock);
     atomic_fetch_sub(&pool->sleepers, 1);
     pthread_mutex_unlock(&pool->lock);
@@ -120,7 +129,7 @@ static void *work(void *argument)
 {
     struct worker *worker = argument;
     tl_pool *pool = worker->pool;
-    while (await_loop(pool)) {
+    while (await_loop(pool, worker)) {
         if (do_chunks(pool, worker->number) && atomic_load(&pool->caller_sleeps)) {
             pthread_mutex_lock(&pool->lock);
             pthread_cond_signal(&pool->done);
@@ -139,44 +148,47 @@ static void wake_sleepers(tl_pool *pool)
     pthread_mutex_unlock(&pool->lock);
 }
 
-tl_pool *tl_pool_create(unsigned threads)
+/* Ends a pool of which `started` threads run, the caller counted. */
+static void end_pool(tl_pool *pool, unsigned started)
 {
-    tl_pool *pool = aligned_alloc(APART, sizeof *pool);
-    struct worker *workers = calloc(threads, sizeof *workers);
-    if (!pool || !workers) {
-        free(pool);
-        free(workers);
-        return NULL;
-    }
-    *pool = (tl_pool){.workers = workers, .threads = 1};
-    pthread_mutex_init(&pool->lock, NULL);
-    pthread_cond_init(&pool->wake, NULL);
-    pthread_cond_init(&pool->done, NULL);
-    for (; pool->threads < threads; pool->threads++) {
-        struct worker *worker = &workers[pool->threads];
-        worker->pool = pool;
-        worker->number = pool->threads;
-        if (pthread_create(&worker->thread, NULL, work, worker) != 0) {
-            tl_pool_destroy(pool);
-            return NULL;
-        }
-    }
-    return pool;
-}
-
-void tl_pool_destroy(tl_pool *pool)
-{
-    if (!pool)
-        return;
     atomic_store(&pool->ending, true);
     wake_sleepers(pool);
-    for (unsigned i = 1; i < pool->threads; i++)
+    for (unsigned i = 1; i < started; i++)
         pthread_join(pool->workers[i].thread, NULL);
     pthread_mutex_destroy(&pool->lock);
     pthread_cond_destroy(&pool->wake);
     pthread_cond_destroy(&pool->done);
     free(pool->workers);
     free(pool);
+}
+
+tl_pool *tl_pool_create(unsigned threads)
+{
+    tl_pool *pool = aligned_alloc(APART, sizeof *pool);
+    struct worker *workers = aligned_alloc(APART, threads * sizeof *workers);
+    if (!pool || !workers) {
+        free(pool);
+        free(workers);
+        return NULL;
+    }
+    *pool = (tl_pool){.workers = workers, .threads = threads};
+    for (unsigned i = 0; i < threads; i++)
+        workers[i] = (struct worker){.pool = pool, .number = i};
+    pthread_mutex_init(&pool->lock, NULL);
+    pthread_cond_init(&pool->wake, NULL);
+    pthread_cond_init(&pool->done, NULL);
+    for (unsigned i = 1; i < threads; i++)
+        if (pthread_create(&workers[i].thread, NULL, work, &workers[i]) != 0) {
+            end_pool(pool, i);
+            return NULL;
+        }
+    return pool;
+}
+
+void tl_pool_destroy(tl_pool *pool)
+{
+    if (pool)
+        end_pool(pool, pool->threads);
 }
 
 unsigned tl_pool_threads(const tl_pool *pool)
@@ -214,9 +226,12 @@ void tl_parallel_for(tl_pool *pool, size_t count, size_t chunk, tl_range_fn fn, 
             do_chunk(pool, i, 0);
         return;
     }
+    pool->parts = pool->chunks < pool->threads ? (unsigned)pool->chunks : pool->threads;
+    pool->loop += LOOP_UNIT;
     atomic_store(&pool->unfinished, pool->chunks);
-    uint64_t loop = (atomic_load(&pool->ticket) & ~(uint64_t)LEFT_MASK) + LOOP_UNIT;
-    atomic_store(&pool->ticket, loop + pool->chunks);
+    for (unsigned i = 0; i < pool->parts; i++)
+        atomic_store(&pool->workers[i].ticket,
+                     pool->loop + part_begin(pool, i + 1) - part_begin(pool, i));
     wake_sleepers(pool);
     if (!do_chunks(pool, 0))
         await_chunks(pool);
