@@ -8,6 +8,18 @@ static tl_vec3 free_part(tl_vec3 v, unsigned fixed)
                  fixed & TL_FIX_Z ? 0 : v.z);
 }
 
+static bool is_loaded(const tl_bodies *b, uint32_t body)
+{
+    tl_vec3 f = b->load_force[body], l = b->load_moment[body];
+    return f.x != 0 || f.y != 0 || f.z != 0 || l.x != 0 || l.y != 0 || l.z != 0;
+}
+
+/* fmax, of which few compilers make one instruction. */
+static double larger(double a, double b)
+{
+    return a > b ? a : b;
+}
+
 static void gather_body(tl_model *m, uint32_t body)
 {
     const tl_detect *d = m->detect;
@@ -29,10 +41,13 @@ static void gather_body(tl_model *m, uint32_t body)
         m->cycle->reaction_force[body] = force;
         m->cycle->reaction_moment[body] = moment;
     }
-    tl_vec3 arm = tl_m3_mul(&b->r[body], b->load_arm[body]);
-    force = tl_v3_add(tl_v3_madd(force, b->mass[body], m->config.gravity), b->load_force[body]);
-    moment =
-        tl_v3_add(moment, tl_v3_add(b->load_moment[body], tl_v3_cross(arm, b->load_force[body])));
+    force = tl_v3_madd(force, b->mass[body], m->config.gravity);
+    if (is_loaded(b, body)) {
+        tl_vec3 arm = tl_m3_mul(&b->r[body], b->load_arm[body]);
+        force = tl_v3_add(force, b->load_force[body]);
+        moment = tl_v3_add(moment,
+                           tl_v3_add(b->load_moment[body], tl_v3_cross(arm, b->load_force[body])));
+    }
     b->force[body] = free_part(force, b->fixed[body]);
     b->moment[body] = b->fixed[body] & TL_FIX_ROTATION ? tl_v3(0, 0, 0) : moment;
     m->cycle->contact_force[body] = contact_force;
@@ -71,12 +86,12 @@ static void gather_range(void *user, size_t begin, size_t end, size_t chunk, uns
         sums.turning += tl_v3_norm(b->moment[body]) / b->radius[body];
         sums.contact_force += contact;
         sums.weight += weight;
-        sums.largest = fmax(sums.largest, unbalanced);
-        sums.local = fmax(sums.local, against > 0 ? unbalanced / against : 0);
+        sums.largest = larger(sums.largest, unbalanced);
+        sums.local = larger(sums.local, against > 0 ? unbalanced / against : 0);
         sums.bodies++;
         if (totals)
             sums.kinetic += 0.5 * (b->mass[body] * v2 + spin_energy2(m, body));
-        sums.max_speed2 = fmax(sums.max_speed2, v2);
+        sums.max_speed2 = larger(sums.max_speed2, v2);
     }
     m->cycle->chunk_sums[chunk] = sums;
 }
@@ -93,11 +108,11 @@ void tl_gather(tl_model *m)
         c->sums.turning += s->turning;
         c->sums.contact_force += s->contact_force;
         c->sums.weight += s->weight;
-        c->sums.largest = fmax(c->sums.largest, s->largest);
-        c->sums.local = fmax(c->sums.local, s->local);
+        c->sums.largest = larger(c->sums.largest, s->largest);
+        c->sums.local = larger(c->sums.local, s->local);
         c->sums.bodies += s->bodies;
         c->sums.kinetic += s->kinetic;
-        c->sums.max_speed2 = fmax(c->sums.max_speed2, s->max_speed2);
+        c->sums.max_speed2 = larger(c->sums.max_speed2, s->max_speed2);
     }
 }
 
