@@ -2,6 +2,7 @@
 #ifndef TL_CYCLE_CYCLE_ROOM_H
 #define TL_CYCLE_CYCLE_ROOM_H
 
+#include "base/lanes.h"
 #include "detect/detect.h"
 
 #include <pthread.h>
@@ -27,16 +28,6 @@ typedef struct tl_sums {
 typedef struct tl_page_energy {
     double stored, dissipated;
 } tl_page_energy;
-
-/* Loops over a group of bodies are compiled for wider vectors, too, where the program can choose among them as it
- * starts. None of the targets fuses multiplications with additions, so the bits are the same. */
-#if defined(__x86_64__) && defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__)
-#define TL_WIDE __attribute__((flatten, target_clones("avx512f", "avx2", "default")))
-#else
-#define TL_WIDE __attribute__((flatten))
-#endif
-/* What such a loop calls must be in it. */
-#define TL_INLINE static inline __attribute__((always_inline))
 
 /* What the rules of the time step ask of the bodies that count, as long as none comes, goes or is held. */
 struct tl_counted {

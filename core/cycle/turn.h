@@ -5,6 +5,8 @@
 #ifndef TL_CYCLE_TURN_H
 #define TL_CYCLE_TURN_H
 
+#include "base/lanes.h"
+
 #include <math.h>
 #include <stdbool.h>
 #include <talus/vmath.h>
@@ -18,19 +20,19 @@ typedef struct tl_half_turn {
     double c, s;
 } tl_half_turn;
 
-static inline double tl_cos_series(double h2)
+TL_INLINE double tl_cos_series(double h2)
 {
     return 1 - h2 * (1. / 2 - h2 * (1. / 24 - h2 * (1. / 720 - h2 * (1. / 40320))));
 }
 
 /* sin(h) / h */
-static inline double tl_sinc_series(double h2)
+TL_INLINE double tl_sinc_series(double h2)
 {
     return 1 - h2 * (1. / 6 - h2 * (1. / 120 - h2 * (1. / 5040 - h2 * (1. / 362880))));
 }
 
 /* From half the angle. */
-static inline tl_half_turn tl_half_turn_of(double h, bool series)
+TL_INLINE tl_half_turn tl_half_turn_of(double h, bool series)
 {
     if (series) {
         double h2 = h * h;
@@ -40,7 +42,7 @@ static inline tl_half_turn tl_half_turn_of(double h, bool series)
 }
 
 /* The quaternion of a turn: along `rotation`, by its length. */
-static inline tl_quat tl_turn_by(tl_vec3 rotation)
+TL_INLINE tl_quat tl_turn_by(tl_vec3 rotation)
 {
     double h2 = 0.25 * tl_v3_norm2(rotation), c, s; /* s: sin(h) / h */
     if (h2 < TL_SERIES_HALF_ANGLE * TL_SERIES_HALF_ANGLE) {
@@ -55,7 +57,7 @@ static inline tl_quat tl_turn_by(tl_vec3 rotation)
 }
 
 /* The one turn a quaternion makes: axis times angle, the inverse of tl_turn_by. */
-static inline tl_vec3 tl_turn_of(tl_quat q, bool series)
+TL_INLINE tl_vec3 tl_turn_of(tl_quat q, bool series)
 {
     double s2 = q.x * q.x + q.y * q.y + q.z * q.z, k; /* k: angle / sine of its half */
     if (series) {
@@ -69,7 +71,7 @@ static inline tl_vec3 tl_turn_of(tl_quat q, bool series)
 }
 
 /* A quaternion that is a unit but for rounding, made one: a step of Newton's, so 1 stays 1. */
-static inline tl_quat tl_q_trim(tl_quat q)
+TL_INLINE tl_quat tl_q_trim(tl_quat q)
 {
     double s = 1.5 - 0.5 * (q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
     return (tl_quat){s * q.w, s * q.x, s * q.y, s * q.z};
@@ -83,7 +85,7 @@ typedef struct tl_free_turn {
 } tl_free_turn;
 
 /* The vector's components p and q turned against the angle: seen from axes that turn with it. */
-static inline void tl_turn_back(tl_half_turn t, double *p, double *q)
+TL_INLINE void tl_turn_back(tl_half_turn t, double *p, double *q)
 {
     double sine = 2 * t.s * t.c, versine = 2 * t.s * t.s;
     double a = *p, b = *q;
@@ -93,7 +95,7 @@ static inline void tl_turn_back(tl_half_turn t, double *p, double *q)
 
 /* The free rotation for a time `dt`, split into turns about the principal axes x, y, z, y, x (Dullweber,
  * Leimkuhler and McLachlan 1997). `l`: angular momentum, `per`: 1 / moments of inertia. */
-static inline tl_free_turn tl_turn_freely(tl_vec3 l, tl_vec3 per, double dt, bool series)
+TL_INLINE tl_free_turn tl_turn_freely(tl_vec3 l, tl_vec3 per, double dt, bool series)
 {
     double quarter = 0.25 * dt;
     double h1 = quarter * per.x * l.x;
