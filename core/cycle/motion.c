@@ -28,6 +28,13 @@ TL_INLINE tl_vec3 times(tl_vec3 a, tl_vec3 b)
     return tl_v3(a.x * b.x, a.y * b.y, a.z * b.z);
 }
 
+/* From principal axes to the model's. Trimmed, since the rounding of `axes` is the same in every step and its
+ * stretch would add up. */
+TL_INLINE tl_mat3 attitude_of(tl_quat q, tl_quat axes)
+{
+    return tl_q_matrix(tl_q_trim(tl_q_mul(q, axes)));
+}
+
 /* The velocity by (23). */
 TL_INLINE void kick_lane(tl_group *g, size_t i, double kick)
 {
@@ -54,7 +61,7 @@ TL_INLINE void turn_lane(tl_group *g, size_t i, double kick, double drift, bool 
     double span = kick / g->scale[i];
     tl_vec3 moment = tl_v3_add(tl_lanes3_get(&g->moment, i), tl_lanes3_get(&g->damping_moment, i));
     /* to principal axes, where the kick acts */
-    tl_mat3 attitude = tl_q_matrix(tl_q_mul(q, axes));
+    tl_mat3 attitude = attitude_of(q, axes);
     tl_vec3 w = tl_m3_tmul(&attitude, tl_lanes3_get(&g->w0, i)), l0 = times(moments, w);
     tl_vec3 turn = tl_m3_tmul(&attitude, moment);
     tl_vec3 l1 = tl_v3_scale(d2, tl_v3_madd(tl_v3_scale(d1, l0), span, turn));
@@ -71,7 +78,7 @@ TL_INLINE void turn_lane(tl_group *g, size_t i, double kick, double drift, bool 
     tl_vec3 axis = tl_q_rotate(axes, tl_v3(free.made.x, free.made.y, free.made.z));
     q = tl_q_trim(tl_q_mul(q, (tl_quat){free.made.w, axis.x, axis.y, axis.z}));
     tl_lanes4_put(&g->q2, i, q);
-    attitude = tl_q_matrix(tl_q_mul(q, axes));
+    attitude = attitude_of(q, axes);
     tl_vec3 l2 = free.momentum;
     /* a division here, not `per`: its error would be the same in every step and add up */
     tl_vec3 w2 = tl_m3_mul(&attitude, tl_v3(l2.x / moments.x, l2.y / moments.y, l2.z / moments.z));
@@ -103,8 +110,8 @@ static void put_spins(tl_group *g, size_t i, bool paper)
                        tl_lanes3_get(&g->w2, i)};
     if (!paper) {
         tl_quat axes = tl_lanes4_get(&g->axes, i);
-        tl_mat3 before = tl_q_matrix(tl_q_mul(tl_lanes4_get(&g->q, i), axes));
-        tl_mat3 after = tl_q_matrix(tl_q_mul(tl_lanes4_get(&g->q2, i), axes));
+        tl_mat3 before = attitude_of(tl_lanes4_get(&g->q, i), axes);
+        tl_mat3 after = attitude_of(tl_lanes4_get(&g->q2, i), axes);
         spin[0] = tl_m3_tmul(&before, spin[0]);
         spin[1] = tl_m3_tmul(&before, spin[1]);
         spin[2] = tl_m3_tmul(&after, spin[2]);
