@@ -86,7 +86,7 @@ static double lowest_above(const tl_vec3 *x, uint32_t count, tl_vec3 n, double f
     return low;
 }
 
-static double full_support(const tl_pair_view *view, tl_vec3 n)
+double tl_axis_gap(const tl_pair_view *view, tl_vec3 n)
 {
     return lowest(view->vertex_b, view->b->vertex_count, n) +
            lowest(view->a->vertex, view->a->vertex_count, tl_v3_neg(n));
@@ -314,7 +314,7 @@ tl_axis tl_axis_search(const tl_pair_view *view, tl_narrow *room, const tl_axis 
     }
     if (best.kind == TL_AXIS_EDGES) {
         /* an edge axis counts by its full support, and only when it beats the faces clearly */
-        best.s = full_support(view, best.n);
+        best.s = tl_axis_gap(view, best.n);
         if (best.s <= face.s + FACE_PREFERENCE * view->size) {
             double second = fmax(face.second, best.s < face.s ? best.s : face.second);
             best = face;
@@ -386,12 +386,12 @@ bool tl_axis_follow(const tl_pair_view *view, tl_axis *axis)
             !edges_meet(view, axis))
             return false;
         axis->n = now.n;
-        axis->s = full_support(view, now.n);
+        axis->s = tl_axis_gap(view, now.n);
         return true;
     }
     if (axis->kind == TL_AXIS_FACE_A) {
         axis->n = view->a->plane[axis->ia].normal;
-        axis->s = full_support(view, axis->n);
+        axis->s = tl_axis_gap(view, axis->n);
         uint32_t low = 0;
         for (uint32_t i = 1; i < view->b->vertex_count; i++)
             if (tl_v3_dot(axis->n, view->vertex_b[i]) < tl_v3_dot(axis->n, view->vertex_b[low]))
@@ -399,7 +399,7 @@ bool tl_axis_follow(const tl_pair_view *view, tl_axis *axis)
         return over_face(view->a, axis->ia, view->vertex_b[low], slack);
     }
     axis->n = tl_v3_neg(view->normal_b[axis->ib]);
-    axis->s = full_support(view, axis->n);
+    axis->s = tl_axis_gap(view, axis->n);
     uint32_t top = tl_poly_support(view->a, axis->n);
     tl_vec3 x = tl_m3_tmul(&view->turn, tl_v3_sub(view->a->vertex[top], view->shift));
     return over_face(view->b, axis->ib, x, slack);

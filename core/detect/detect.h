@@ -265,6 +265,8 @@ bool tl_look_near(const tl_pair_view *view, double reach);
 bool tl_pair_place(tl_pair_view *view, tl_narrow *room);
 /* Fills them for one face of B only. */
 bool tl_pair_place_face(tl_pair_view *view, uint32_t face, tl_narrow *room);
+/* min over B - max over A of n . x: no direction's is above that of the pair's axis. */
+double tl_axis_gap(const tl_pair_view *view, tl_vec3 n);
 /* The exact common plane's axis. `previous` (or NULL) is preferred when nearly as good. */
 tl_axis tl_axis_search(const tl_pair_view *view, tl_narrow *room, const tl_axis *previous);
 /* n and s of the same features in the present place; false when the features no longer define it. */

@@ -14,7 +14,8 @@
 /* A point of a tilted patch stays on A until the patch is made anew, wherever the feature that made it goes:
  * the error of its gap is the motion times the tilt, and may be this share of the gap. */
 #define GAP_SHARE 1e-4
-/* The axis is searched anew after motion of half its lead over the next one, or this share of |s|, ... */
+/* The axis is searched anew after motion of half its lead over the next one, or this share of |s|, or what may
+ * go unseen, ... */
 #define AXIS_SHARE 0.25
 /* ... but at the latest after this times the size. */
 #define AXIS_MOST 0.02
@@ -34,7 +35,8 @@ tl_share_rule tl_share_rule_of(const tl_model *m, const tl_pair_view *view, tl_t
 static double axis_margin(const tl_axis *axis, double size)
 {
     double lead = 0.5 * (axis->s - axis->second);
-    return fmin(fmax(lead, AXIS_SHARE * fabs(axis->s)), AXIS_MOST * size);
+    double floor = fmax(TL_SILENT * size, AXIS_SHARE * fabs(axis->s));
+    return fmin(fmax(lead, floor), AXIS_MOST * size);
 }
 
 /* Whether some point carries a force across a gap: a bond in tension, or an initial stress not yet relieved.
@@ -223,6 +225,24 @@ static bool renew_patch(tl_model *m, uint32_t c, tl_narrow *room)
            tl_manifold_renew(&view, f->ia, f->ib, &rule, room);
 }
 
+/* Whether a contact without points still overlaps by no more than may go unseen: its old axis tells, for no
+ * direction has a gap above the true one. */
+static bool touches_still(tl_model *m, uint32_t c, tl_narrow *room)
+{
+    tl_contacts *contacts = &m->detect->contacts;
+    if (contacts->point_count[c])
+        return false;
+    tl_pair_view view = tl_pair_view_of(m, contacts->a[c], contacts->b[c]);
+    if (!tl_pair_place(&view, room))
+        return false;
+    double unseen = TL_SILENT * view.size, gap = tl_axis_gap(&view, contacts->axis[c].n);
+    if (gap < -unseen || gap > TL_CONTACT_TOLERANCE * view.size)
+        return false;
+    contacts->until[c] =
+        tl_pair_odometer(m, contacts->a[c], contacts->b[c]) + (gap > 0 ? gap + unseen : unseen);
+    return true;
+}
+
 void tl_contact_update(tl_model *m, uint32_t c, unsigned thread)
 {
     tl_contacts *contacts = &m->detect->contacts;
@@ -230,6 +250,8 @@ void tl_contact_update(tl_model *m, uint32_t c, unsigned thread)
     if (contacts->fate[c] == TL_FATE_DIE ||
         (m->config.reuse_geometry &&
          tl_pair_odometer(m, contacts->a[c], contacts->b[c]) <= contacts->until[c]))
+        return;
+    if (touches_still(m, c, room))
         return;
     if (!renew_patch(m, c, room) && !rebuild(m, c, room, carries_across(m->detect, c))) {
         contacts->fate[c] = TL_FATE_MEMORY;
