@@ -372,6 +372,29 @@ static size_t clip_faces(const tl_pair_view *view, uint32_t fa, uint32_t fb, con
     return count;
 }
 
+/* The plane of the patch, through a point of A's face. */
+static void lay_frame(patch *p, tl_vec3 through)
+{
+    frame2 *f = &p->frame;
+    f->n = tl_v3_unit(tl_v3_sub(p->a.normal, p->b.normal));
+    f->o = through;
+    f->t1 = tl_v3_perpendicular(f->n);
+    f->t2 = tl_v3_cross(f->n, f->t1);
+}
+
+/* Moves the plane of the patch into the middle between the two faces at the centroid; returns the cosine
+ * of its tilt against either. */
+static double move_between(patch *p, point2 centroid)
+{
+    frame2 *f = &p->frame;
+    tl_vec3 x = tl_v3_madd(tl_v3_madd(f->o, centroid.x, f->t1), centroid.y, f->t2);
+    double up = tl_v3_dot(p->b.normal, x) - p->b.offset;
+    double down = tl_v3_dot(p->a.normal, x) - p->a.offset;
+    double slope = tl_v3_dot(f->n, p->a.normal);
+    f->o = tl_v3_madd(f->o, 0.5 * (up - down) / slope, f->n);
+    return slope;
+}
+
 static point2 rise_of(const frame2 *f, tl_vec3 na, tl_vec3 nb)
 {
     tl_vec3 up = tl_v3_unit(tl_v3_add(na, nb));
@@ -410,29 +433,18 @@ double tl_patch_add(const tl_pair_view *view, uint32_t fa, uint32_t fb, double w
                  .a = a->plane[fa]};
     one.b.normal = view->normal_b[fb];
     one.b.offset = b->plane[fb].offset + tl_v3_dot(one.b.normal, view->shift);
-    frame2 *f = &one.frame;
-    f->n = tl_v3_unit(tl_v3_sub(one.a.normal, one.b.normal));
-    f->o = a->vertex[a->loop[a->start[fa]]];
-    f->t1 = tl_v3_perpendicular(f->n);
-    f->t2 = tl_v3_cross(f->n, f->t1);
+    lay_frame(&one, a->vertex[a->loop[a->start[fa]]]);
     p->snap2 = MERGE * MERGE * view->size * view->size;
-    p->rise = rise_of(f, one.a.normal, one.b.normal);
+    p->rise = rise_of(&one.frame, one.a.normal, one.b.normal);
 
     double size = fmax(a->size, b->size);
-    size_t count = merge_near(p, clip_faces(view, fa, fb, f, p), MERGE * view->size);
+    size_t count = merge_near(p, clip_faces(view, fa, fb, &one.frame, p), MERGE * view->size);
     point2 centroid = {0, 0};
     double area = count >= 3 ? area_of(p->now, count, &centroid) : 0;
     if (!(area > THIN * size * view->size))
         return 0;
 
-    /* into the middle between the two faces, at the centroid */
-    tl_vec3 x = tl_v3_madd(tl_v3_madd(f->o, centroid.x, f->t1), centroid.y, f->t2);
-    double up = tl_v3_dot(one.b.normal, x) - one.b.offset,
-           down = tl_v3_dot(one.a.normal, x) - one.a.offset;
-    double slope = tl_v3_dot(f->n, one.a.normal);
-    one.weight = weight / slope;
-    f->o = tl_v3_madd(f->o, 0.5 * (up - down) / slope, f->n);
-
+    one.weight = weight / move_between(&one, centroid);
     size_t begin = m->point_count;
     count = weigh_corners(p->now, count, centroid);
     double *corner_area = (double *)(void *)p->next; /* the clipping is over: its room is free */

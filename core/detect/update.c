@@ -14,9 +14,8 @@
 /* A point of a tilted patch stays on A until the patch is made anew, wherever the feature that made it goes:
  * the error of its gap is the motion times the tilt, and may be this share of the gap. */
 #define GAP_SHARE 1e-4
-/* The axis is searched anew after motion of half its lead over the next one, or this share of |s|, or what may
- * go unseen, ... */
-#define AXIS_SHARE 0.25
+/* The axis is searched anew after motion of half its lead over the next one, or this share of |s|, ... */
+#define AXIS_SHARE 0.05
 /* ... but at the latest after this times the size. */
 #define AXIS_MOST 0.02
 
@@ -35,8 +34,7 @@ tl_share_rule tl_share_rule_of(const tl_model *m, const tl_pair_view *view, tl_t
 static double axis_margin(const tl_axis *axis, double size)
 {
     double lead = 0.5 * (axis->s - axis->second);
-    double floor = fmax(TL_SILENT * size, AXIS_SHARE * fabs(axis->s));
-    return fmin(fmax(lead, floor), AXIS_MOST * size);
+    return fmin(fmax(lead, AXIS_SHARE * fabs(axis->s)), AXIS_MOST * size);
 }
 
 /* Whether some point carries a force across a gap: a bond in tension, or an initial stress not yet relieved.

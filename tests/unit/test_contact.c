@@ -356,7 +356,9 @@ TEST(reused_geometry_agrees_with_new_geometry)
                 continue;
             compared++;
             const tl_axis *axis = &c->axis[row], *found = &fresh->detect->contacts.axis[other];
-            CHECK(axis->s >= found->s - 0.0501 * fabs(found->s));
+            /* an axis is kept while it is worse by 5 %, and followed for 5 % of the overlap from there: both may
+             * have changed by as much */
+            CHECK(axis->s >= found->s - 0.1501 * fabs(found->s));
             if (!same_axis(axis, found))
                 continue;
             alike++;
