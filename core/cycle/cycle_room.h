@@ -2,7 +2,7 @@
 #ifndef TL_CYCLE_CYCLE_ROOM_H
 #define TL_CYCLE_CYCLE_ROOM_H
 
-#include "base/lanes.h"
+#include "base/inline.h"
 #include "detect/detect.h"
 
 #include <pthread.h>

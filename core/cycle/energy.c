@@ -118,8 +118,8 @@ static void book_load(tl_work *work, size_t i, const tl_group *g, const tl_model
          fixed & TL_FIX_ROTATION ? tl_v3_neg(moment) : tl_v3(0, 0, 0));
 }
 
-TL_WIDE static void book_lanes(tl_work *restrict work, const tl_group *restrict g, tl_vec3 gravity,
-                               bool damped)
+TL_VECTORIZED static void book_lanes(tl_work *restrict work, const tl_group *restrict g,
+                                     tl_vec3 gravity, bool damped)
 {
     double share = work->until / (work->until + work->after);
     for (size_t i = 0; i < TL_LANES; i++) {

@@ -93,7 +93,7 @@ TL_INLINE void turn_lane(tl_group *g, size_t i, double kick, double drift, bool 
 }
 
 /* Kicks and turns a group of bodies by the exact rule. */
-TL_WIDE static void advance_lanes(tl_group *g, double kick, double drift)
+TL_VECTORIZED static void advance_lanes(tl_group *g, double kick, double drift)
 {
     for (size_t i = 0; i < TL_LANES; i++)
         kick_lane(g, i, kick);

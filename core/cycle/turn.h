@@ -5,7 +5,7 @@
 #ifndef TL_CYCLE_TURN_H
 #define TL_CYCLE_TURN_H
 
-#include "base/lanes.h"
+#include "base/inline.h"
 
 #include <math.h>
 #include <stdbool.h>
