@@ -40,6 +40,7 @@ void tl_contacts_init(tl_contacts *c, tl_points_table *p)
     TL_COLUMN(t, c, moment_b, 0);
     TL_COLUMN(t, c, want_points, 0);
     TL_COLUMN(t, c, want_facets, 0);
+    TL_COLUMN(t, c, fresh, 0);
     TL_COLUMN(t, c, lone, 0);
     TL_COLUMN(t, c, fate, 0);
 

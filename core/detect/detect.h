@@ -90,7 +90,6 @@ typedef struct tl_manifold {
     tl_contact_point *points;
     size_t facet_count, facet_room, point_count, point_room;
     double patch_area;
-    double tilt; /* sine of the angle between the faces of the most tilted patch */
     bool lone;   /* no faces look at each other but one of each, nor will they soon */
     bool failed; /* out of memory */
 } tl_manifold;
@@ -142,6 +141,7 @@ typedef struct tl_contacts {
     tl_vec3 *force;               /* on B */
     tl_vec3 *moment_a, *moment_b; /* of the forces on A and on B, about their bodies' centroids */
     uint32_t *want_points, *want_facets; /* of a contact that must grow */
+    uint8_t *fresh;                      /* its points were placed in this step */
     uint8_t *lone; /* its faces that look at each other are one of each block */
     uint8_t *fate; /* what the parallel phase leaves to the serial one: TL_FATE_* */
     /* facets */

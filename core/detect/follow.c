@@ -165,8 +165,8 @@ enum { WIDE = 8, NARROW = 4 };
 
 /* Columns of points and lanes, row 0 of both the same point. */
 typedef struct columns {
-    const double *p[3], *rest, *lean, *reference;
-    double *closure, *f_s[3];
+    const double *lean, *reference;
+    double *p[3], *rest, *closure, *f_s[3];
     double *arm[3], *normal[3], *du_n, *du_s[3];
 } columns;
 
@@ -191,6 +191,8 @@ static columns columns_at(const tl_points_table *p, size_t point, const tl_point
 typedef struct slip {
     tl_vec3 way, half;
     tl_mat3 m;
+    double
+        carry; /* half, for points that were there before that motion; 0 for those placed since */
 } slip;
 
 static slip slip_of(const tl_moving *a, const tl_moving *b, tl_vec3 d)
@@ -287,50 +289,102 @@ static tl_mat3 matrix_of(tl_vec3 g)
                       {h.z * g.x - h.y, h.z * g.y + h.x, d + h.z * g.z}}};
 }
 
-/* Turns vectors of points that have normals of their own, one by one. */
-static void turn_tilted(const columns *c, double *const v[3], size_t begin, uint32_t count,
-                        const tl_facet *f, tl_vec3 half)
+/* Turns one vector of the old common plane of a point into its new one, where each point has a normal of its
+ * own. */
+static inline tl_vec3 turn_one(tl_vec3 v, tl_vec3 from, tl_vec3 n, tl_vec3 half)
 {
-    for (size_t i = begin; i < begin + count; i++) {
-        tl_vec3 n = tl_columns_get(c->normal, i);
-        tl_vec3 by = turn_between(tl_facet_last_normal(f, c->lean[i]), n, tl_v3_dot(half, n));
-        if (tl_v3_norm2(by) == 0)
-            continue;
-        tl_mat3 turn = matrix_of(by);
-        tl_vec3 to = tl_m3_mul(&turn, tl_columns_get(v, i));
-        tl_columns_put(v, i, tl_v3_madd(to, -tl_v3_dot(to, n), n));
+    tl_vec3 g = turn_between(from, n, tl_v3_dot(half, n));
+    double g2 = tl_v3_norm2(g);
+    tl_vec3 t = tl_v3_cross(g, v);
+    t = tl_v3_madd(v, 2 / (1 + g2), tl_v3_add(t, tl_v3_cross(g, t)));
+    /* what has not turned stays as it is, to the bit */
+    return tl_v3_madd(t, g2 > 0 ? -tl_v3_dot(t, n) : 0, n);
+}
+
+/* Points of a tilted patch. Its features move: a vertex of A with A (lean -1), one of B with B (lean 1), what
+ * lies between with both; so do the points until the patch is made anew, and the gap opens along the point's
+ * normal. */
+static inline __attribute__((always_inline)) void tilted_block(const columns *c, size_t i,
+                                                               const uint32_t width,
+                                                               const facing *f, const slip *s,
+                                                               tl_vec3 last, tl_vec3 last_lean)
+{
+    const double last2 = tl_v3_norm2(last), last_l2 = tl_v3_norm2(last_lean);
+    const tl_mat3 *r = &f->to;
+    const tl_vec3 na = tl_v3_add(f->mean, f->lean);
+#pragma omp simd
+    for (uint32_t k = 0; k < width; k++) {
+        size_t at = i + k;
+        double l = c->lean[at], share = s->carry * (1 + l);
+        tl_vec3 x = tl_m3_mul(r, tl_v3(c->p[0][at], c->p[1][at], c->p[2][at]));
+        tl_vec3 n =
+            tl_v3_scale(1 / sqrt(f->mean2 + l * l * f->l2), tl_v3_madd(f->mean, l, f->lean));
+        tl_vec3 du = tl_v3_add(s->way, tl_m3_mul(&s->m, x)), along = tl_m3_tmul(r, du);
+        double du_n = tl_v3_dot(du, n), old = 1 / sqrt(last2 + l * l * last_l2);
+        x = tl_v3_madd(x, share, du);
+        c->p[0][at] += share * along.x;
+        c->p[1][at] += share * along.y;
+        c->p[2][at] += share * along.z;
+        c->rest[at] += share * tl_v3_dot(na, du);
+        c->closure[at] = (f->offset - c->rest[at]) - tl_v3_dot(f->plane, x) - c->reference[at];
+        c->arm[0][at] = x.x;
+        c->arm[1][at] = x.y;
+        c->arm[2][at] = x.z;
+        c->normal[0][at] = n.x;
+        c->normal[1][at] = n.y;
+        c->normal[2][at] = n.z;
+        c->du_n[at] = du_n;
+        c->du_s[0][at] = du.x - du_n * n.x;
+        c->du_s[1][at] = du.y - du_n * n.y;
+        c->du_s[2][at] = du.z - du_n * n.z;
+        tl_vec3 from = tl_v3_scale(last_l2 > 0 ? old : 1, tl_v3_madd(last, l, last_lean));
+        tl_vec3 v = turn_one(tl_v3(c->f_s[0][at], c->f_s[1][at], c->f_s[2][at]), from, n, s->half);
+        c->f_s[0][at] = v.x;
+        c->f_s[1][at] = v.y;
+        c->f_s[2][at] = v.z;
     }
 }
 
-static inline __attribute__((always_inline)) void follow_block(const columns *c, size_t i,
-                                                               const uint32_t width,
-                                                               const facing *f, const bool tilted,
-                                                               const slip *moved,
-                                                               const tl_mat3 *turn)
+/* Turns vectors of points one by one. */
+static void turn_points(const columns *c, double *const v[3], size_t begin, uint32_t count,
+                        const tl_facet *f, tl_vec3 half)
 {
-    place_block(c, i, width, f, tilted);
+    for (size_t i = begin; i < begin + count; i++)
+        tl_columns_put(v, i,
+                       turn_one(tl_columns_get(v, i), tl_facet_last_normal(f, c->lean[i]),
+                                tl_columns_get(c->normal, i), half));
+}
+
+static inline __attribute__((always_inline)) void level_block(const columns *c, size_t i,
+                                                              const uint32_t width, const facing *f,
+                                                              const slip *moved,
+                                                              const tl_mat3 *turn)
+{
+    place_block(c, i, width, f, false);
     move_block(c, i, width, moved);
     if (turn)
         turn_block(c->f_s, i, width, turn, f->n);
 }
 
-/* What the points of a facet do in a step, all but the turning of shear where `turn` is NULL. */
-TL_VECTORIZED static void follow_points(const columns *c, size_t i, size_t end, const facing *f,
-                                        const slip *moved, const tl_mat3 *turn)
+/* What the points of a facet do in a step that all have one normal; shear stays where `turn` is NULL. */
+TL_VECTORIZED static void follow_level(const columns *c, size_t i, size_t end, const facing *f,
+                                       const slip *moved, const tl_mat3 *turn)
 {
-    if (f->tilted) {
-        for (; i + NARROW <= end; i += NARROW)
-            follow_block(c, i, NARROW, f, true, moved, NULL);
-        for (; i < end; i++)
-            follow_block(c, i, 1, f, true, moved, NULL);
-        return;
-    }
     for (; i + WIDE <= end; i += WIDE)
-        follow_block(c, i, WIDE, f, false, moved, turn);
+        level_block(c, i, WIDE, f, moved, turn);
     for (; i + NARROW <= end; i += NARROW)
-        follow_block(c, i, NARROW, f, false, moved, turn);
+        level_block(c, i, NARROW, f, moved, turn);
     for (; i < end; i++)
-        follow_block(c, i, 1, f, false, moved, turn);
+        level_block(c, i, 1, f, moved, turn);
+}
+
+TL_VECTORIZED static void follow_tilted(const columns *c, size_t i, size_t end, const facing *f,
+                                        const slip *moved, tl_vec3 last, tl_vec3 last_lean)
+{
+    for (; i + NARROW <= end; i += NARROW)
+        tilted_block(c, i, NARROW, f, moved, last, last_lean);
+    for (; i < end; i++)
+        tilted_block(c, i, 1, f, moved, last, last_lean);
 }
 
 /* ---------------------------------------------------------------- contacts --------------- */
@@ -372,7 +426,7 @@ static void turn_states(tl_points_table *p, size_t first, const columns *c, size
     for (uint32_t k = 0; k + 2 < TL_STATE_COLUMNS; k++) {
         double *v[3] = {p->state[k] + first, p->state[k + 1] + first, p->state[k + 2] + first};
         if (tangents >> k & 1)
-            turn_tilted(c, v, begin, f->count, f, half);
+            turn_points(c, v, begin, f->count, f, half);
     }
 }
 
@@ -382,6 +436,8 @@ static void follow_contact(tl_model *m, uint32_t contact, const columns *c, size
     uint32_t a = m->blocks.body[contacts->a[contact]], b = m->blocks.body[contacts->b[contact]];
     sight s = {&m->bodies.r[a], &m->bodies.r[b], tl_body_apart(&m->bodies, a, b)};
     slip moved = slip_of(&m->detect->moving[a], &m->detect->moving[b], s.d);
+    moved.carry = contacts->fresh[contact] ? 0 : 0.5;
+    contacts->fresh[contact] = false;
     uint32_t tangents = m->materials[contacts->material[contact]].tangents;
     uint32_t facets = contacts->facet_count[contact];
     tl_facet *f = &contacts->facet[contacts->facet_start[contact]];
@@ -393,18 +449,19 @@ static void follow_contact(tl_model *m, uint32_t contact, const columns *c, size
         size_t end = begin + f->count;
         if (facets == 1)
             end = begin + (f->count + TL_POINT_ROUND - 1u) / TL_POINT_ROUND * TL_POINT_ROUND;
-        bool uniform = !to.tilted && tl_v3_norm2(f->last_lean) == 0;
-        tl_vec3 by = {0, 0, 0};
-        if (uniform)
-            by = turn_between(f->last, to.n, tl_v3_dot(moved.half, to.n));
-        /* what has not turned stays as it is, to the bit */
-        bool turns = tl_v3_norm2(by) > 0;
-        tl_mat3 turn;
-        if (turns)
-            turn = matrix_of(by);
-        follow_points(c, begin, end, &to, &moved, turns ? &turn : NULL);
-        if (!uniform)
-            turn_tilted(c, c->f_s, begin, f->count, f, moved.half);
+        if (to.tilted) {
+            follow_tilted(c, begin, end, &to, &moved, f->last, f->last_lean);
+        } else if (tl_v3_norm2(f->last_lean) > 0) { /* tilted until now */
+            follow_level(c, begin, end, &to, &moved, NULL);
+            turn_points(c, c->f_s, begin, f->count, f, moved.half);
+        } else {
+            tl_vec3 by = turn_between(f->last, to.n, tl_v3_dot(moved.half, to.n));
+            bool turns = tl_v3_norm2(by) > 0; /* what has not turned stays as it is, to the bit */
+            tl_mat3 turn;
+            if (turns)
+                turn = matrix_of(by);
+            follow_level(c, begin, end, &to, &moved, turns ? &turn : NULL);
+        }
         if (tangents)
             turn_states(&m->detect->points, first, c, begin, f, moved.half, tangents);
         note_normals(f, &to);

@@ -175,7 +175,6 @@ static patches add_patches(const tl_pair_view *view, const tl_axis *axis, const 
             if (weight > 0 && reserve_facets(m, m->facet_count + 2))
                 area = tl_patch_add(view, i, j, weight, tl_v3_scale(1 / weight, swing), rule, room);
             if (area > 0) {
-                m->tilt = fmax(m->tilt, sine);
                 sum.area.value += area;
                 sum.area.swing = tl_v3_madd(sum.area.swing, area / weight, swing);
                 sum.whole += area / weight;
@@ -430,7 +429,6 @@ void tl_manifold_build(const tl_pair_view *view, const tl_axis *axis, const tl_s
 {
     tl_manifold *m = &room->manifold;
     m->facet_count = m->point_count = 0;
-    m->tilt = 0;
     m->failed = false;
     patches sum = add_patches(view, axis, rule, room);
     m->patch_area = sum.area.value;
@@ -476,7 +474,6 @@ bool tl_manifold_renew(const tl_pair_view *view, uint32_t fa, uint32_t fb,
     m->facet_count = m->point_count = 0;
     m->failed = false;
     m->lone = true;
-    m->tilt = sqrt(sine2);
     m->patch_area =
         reserve_facets(m, 1) ? tl_patch_add(view, fa, fb, 1, tl_v3(0, 0, 0), rule, room) : 0;
     return !m->failed && m->patch_area > 0;

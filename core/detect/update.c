@@ -11,9 +11,6 @@
 /* Motion within which facets and areas are reused, relative to the smaller block's size: areas are
  * then wrong by a few 1e-6 at most; gaps are exact all the same. */
 #define REUSE 1e-6
-/* A point of a tilted patch stays on A until the patch is made anew, wherever the feature that made it goes:
- * the error of its gap is the motion times the tilt, and may be this share of the gap. */
-#define GAP_SHARE 1e-4
 /* The axis is searched anew after motion of half its lead over the next one, or this share of |s|, ... */
 #define AXIS_SHARE 0.05
 /* ... but at the latest after this times the size. */
@@ -151,6 +148,7 @@ static void note_manifold(tl_contacts *contacts, uint32_t c, const tl_manifold *
         area += g->points[k].area;
     contacts->area[c] = area;
     contacts->lone[c] = g->lone;
+    contacts->fresh[c] = true;
 }
 
 /* Puts the built manifold in the place of the contact's points, or asks for room. */
@@ -174,14 +172,11 @@ static bool take_manifold(tl_model *m, uint32_t c, tl_narrow *room, const tl_poi
 }
 
 /* How far a contact whose facets have just been made may move before they are made anew. */
-static void allow_reuse(tl_model *m, uint32_t c, double tilt)
+static void allow_reuse(tl_model *m, uint32_t c)
 {
     tl_contacts *contacts = &m->detect->contacts;
     double size = fmin(m->blocks.size[contacts->a[c]], m->blocks.size[contacts->b[c]]);
     double most = (contacts->point_count[c] ? REUSE : TL_SILENT) * size;
-    double least = GAP_SHARE * fabs(contacts->axis[c].s);
-    if (tilt > TL_FLUSH && tilt * most > least)
-        most = least / tilt;
     contacts->until[c] = tl_pair_odometer(m, contacts->a[c], contacts->b[c]) + most;
 }
 
@@ -258,7 +253,7 @@ void tl_contact_update(tl_model *m, uint32_t c, unsigned thread)
     if (contacts->fate[c] != TL_FATE_DIE && !take_manifold(m, c, room, &m->detect->lanes[thread]))
         contacts->fate[c] = TL_FATE_MEMORY;
     else
-        allow_reuse(m, c, room->manifold.tilt);
+        allow_reuse(m, c);
 }
 
 void tl_contact_reframe(tl_model *m, uint32_t c, unsigned thread)
@@ -289,6 +284,6 @@ bool tl_contact_fill(tl_model *m, uint32_t c)
     note_manifold(contacts, c, &room->manifold);
     if (room->manifold.failed || !tl_contact_transfer(m, c, room, &m->detect->lanes[0]))
         return false;
-    allow_reuse(m, c, room->manifold.tilt);
+    allow_reuse(m, c);
     return true;
 }
