@@ -129,7 +129,7 @@ static inline void scene_room_free(tl_narrow *room)
     free(room->manifold.points);
     free(room->old);
     free(room->value);
-    tl_polygon_free(room->polygon);
+    tl_polygon_free(room->polygon, &room->patch);
 }
 
 SCENE_UNUSED static void scene_pair_free(scene_pair *p)

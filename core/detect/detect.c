@@ -26,7 +26,7 @@ static void narrow_free(tl_narrow *n)
     free(n->manifold.points);
     free(n->old);
     free(n->value);
-    tl_polygon_free(n->polygon);
+    tl_polygon_free(n->polygon, &n->patch);
 }
 
 static void detect_destroy(tl_detect *d)

@@ -94,12 +94,20 @@ typedef struct tl_manifold {
     bool failed; /* out of memory */
 } tl_manifold;
 
+/* The contact points of one patch, as columns: see tl_contact_point. */
+typedef struct tl_patch_points {
+    double *p[3], *rest, *lean, *area;
+    uint32_t *key;
+    size_t count, room;
+} tl_patch_points;
+
 /* Per-thread room for the narrow phase. */
 typedef struct tl_narrow {
     tl_vec3 *vertex_b, *normal_b;
     double *dots;
     size_t vertex_room, normal_room, dot_room;
     struct tl_polygon *polygon; /* patch.c */
+    tl_patch_points patch;
     tl_manifold manifold;
     bool failed;              /* out of memory, in a phase that cannot say so */
     bool reframed;            /* the places of old points are in frames that are no more */
@@ -281,13 +289,18 @@ void tl_manifold_build(const tl_pair_view *view, const tl_axis *axis, const tl_s
 bool tl_manifold_add_point(tl_manifold *m, tl_contact_point point);
 /* Makes room for `count` points more; false when out of memory. */
 bool tl_manifold_reserve(tl_manifold *m, size_t count);
-/* The same when two faces lie flush on each other and nothing else touches; false, when they do not. */
+/* Lays the patch of two faces that lie flush on each other, where nothing else touches; false, when they do
+ * not. */
 bool tl_manifold_renew(const tl_pair_view *view, uint32_t fa, uint32_t fb,
                        const tl_share_rule *rule, tl_narrow *room);
 /* The joint of the touching faces. */
 tl_tag tl_touching_tag(const tl_pair_view *view, tl_vec3 n);
 
 /* ---- patch.c ---- */
+/* The points of face `fa` of A on face `fb` of B, into room->patch, with areas scaled by `weight`; returns the
+ * scaled area (0 when they do not overlap). */
+double tl_patch_lay(const tl_pair_view *view, uint32_t fa, uint32_t fb, double weight,
+                    const tl_share_rule *rule, tl_narrow *room);
 /* Adds the patch of face `fa` of A on face `fb` of B, with areas scaled by `weight` and the facet's
  * `swing`; returns its scaled area (0 when they do not overlap). */
 double tl_patch_add(const tl_pair_view *view, uint32_t fa, uint32_t fb, double weight,
@@ -296,7 +309,7 @@ double tl_patch_add(const tl_pair_view *view, uint32_t fa, uint32_t fb, double w
  * normal n, any side), as shares of its length; false when none is. */
 bool tl_segment_over_face(tl_vec3 p, tl_vec3 q, const tl_vec3 *corners, size_t count, tl_vec3 n,
                           double slack, double *t0, double *t1);
-void tl_polygon_free(struct tl_polygon *polygon);
+void tl_polygon_free(struct tl_polygon *polygon, tl_patch_points *points);
 
 /* ---- follow.c ---- */
 /* Notes how every body moved in the last step: before contacts are followed. */

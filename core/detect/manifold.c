@@ -471,12 +471,8 @@ bool tl_manifold_renew(const tl_pair_view *view, uint32_t fa, uint32_t fb,
     double sine2 = tl_v3_norm2(tl_v3_cross(view->a->plane[fa].normal, view->normal_b[fb]));
     if (rule->unconditional || sine2 > flush2)
         return false;
-    m->facet_count = m->point_count = 0;
     m->failed = false;
-    m->lone = true;
-    m->patch_area =
-        reserve_facets(m, 1) ? tl_patch_add(view, fa, fb, 1, tl_v3(0, 0, 0), rule, room) : 0;
-    return !m->failed && m->patch_area > 0;
+    return tl_patch_lay(view, fa, fb, 1, rule, room) > 0;
 }
 
 /* ---------------------------------------------------------------- joint ------------------ */

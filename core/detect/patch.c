@@ -65,17 +65,23 @@ enum { EDGE_B = 1 << 16 };
 /* What a point is; with the features that made it, this gives its key. */
 enum { POINT_A, POINT_B, POINT_CROSSING, POINT_MIDDLE, POINT_CENTROID };
 
-/* Different features of one contact have different keys; a multiplication or two must do, for every point has
- * one in every step. */
+/* Different features of one contact have different keys: vertices the numbers of A, then those of B ... */
+static uint32_t vertex_key(uint32_t kind, uint32_t vertex)
+{
+    return kind == POINT_A ? vertex : vertex | 1u << 16;
+}
+
+/* ... and what two features make a mixture of theirs: a multiplication or two must do, for every point has a
+ * key in every step. */
 static uint32_t key_of(uint32_t kind, uint32_t one, uint32_t other)
 {
-    uint64_t x = (kind + 1u) * UINT64_C(0x9e3779b97f4a7c15) + one;
-    x = (x ^ x >> 32) * UINT64_C(0xd6e8feb86659fd93) + other;
+    uint64_t x = (kind + UINT64_C(0x9e3779b97f4a7c15) * one) ^ UINT64_C(0xd6e8feb86659fd93) * other;
     return (uint32_t)((x ^ x >> 32) * UINT64_C(0xd6e8feb86659fd93) >> 32);
 }
 
-void tl_polygon_free(struct tl_polygon *polygon)
+void tl_polygon_free(struct tl_polygon *polygon, tl_patch_points *points)
 {
+    free(points->p[0]);
     if (!polygon)
         return;
     free(polygon->now);
@@ -154,7 +160,7 @@ static corner meet(uint32_t one, uint32_t other, point2 cut, const point2 *clip,
         if ((i + 1) % count == j || (j + 1) % count == i) {
             uint32_t v = (i + 1) % count == j ? j : i;
             c.at = clip[v];
-            c.key = key_of(POINT_B, v, 0);
+            c.key = vertex_key(POINT_B, v);
             return c;
         }
     }
@@ -249,8 +255,8 @@ static double corner_share(point2 before, point2 here, point2 after)
 }
 
 /* Gives each corner its share by its turning angle and each edge its fan area; drops corners of share
- * 0, whose fan area goes to the edge before. Returns the number of corners. */
-static size_t weigh_corners(corner *c, size_t count, point2 centroid)
+ * 0, whose fan area goes to the edge before. Returns the number of corners, and whether all are full. */
+static size_t weigh_corners(corner *c, size_t count, point2 centroid, bool *full)
 {
     size_t blended = 0, solid = 0, kept = 0;
     for (size_t i = 0; i < count; i++) {
@@ -262,7 +268,8 @@ static size_t weigh_corners(corner *c, size_t count, point2 centroid)
         blended += c[i].share < 1;
         solid += c[i].share >= 1;
     }
-    if (blended == 0)
+    *full = blended == 0;
+    if (*full)
         return count;
     if (solid < 3 || blended > 2 * solid)
         for (size_t i = 0; i < count; i++)
@@ -287,27 +294,30 @@ static size_t weigh_corners(corner *c, size_t count, point2 centroid)
 
 /* Everything a point needs to become one. */
 typedef struct patch {
-    const tl_pair_view *view;
     frame2 frame;
-    tl_plane a, b; /* in A's frame */
-    double weight; /* from area in the plane of the patch to area of the points */
+    tl_plane a, b;               /* in A's frame */
+    double rest, rest_x, rest_y; /* distance from A's face over the plane of the patch */
+    double weight;               /* from area in the plane of the patch to area of the points */
     double corner,
-        middle;     /* of the fan triangle of an edge: the share of each end, and of its middle */
+        middle;     /* of the fan triangle of an edge: the share of each end, of its middle */
     uint32_t faces; /* key of the two faces */
-    tl_manifold *manifold;
+    tl_patch_points *out;
 } patch;
 
 /* Adds a point for which there is room; without area it would carry nothing, and have no stress. */
 static inline void add_point(const patch *p, point2 at, double lean, double area, uint32_t key)
 {
-    tl_contact_point *point = &p->manifold->points[p->manifold->point_count];
-    point->p = tl_v3_madd(tl_v3_madd(p->frame.o, at.x, p->frame.t1), at.y, p->frame.t2);
-    point->rest = tl_v3_dot(p->a.normal, point->p) - p->a.offset;
-    point->lean = lean;
-    point->area = p->weight * area;
-    point->key = p->faces ^ key;
-    point->swing = tl_v3(0, 0, 0);
-    p->manifold->point_count += point->area > 0;
+    const frame2 *f = &p->frame;
+    tl_patch_points *out = p->out;
+    size_t i = out->count;
+    out->p[0][i] = f->o.x + at.x * f->t1.x + at.y * f->t2.x;
+    out->p[1][i] = f->o.y + at.x * f->t1.y + at.y * f->t2.y;
+    out->p[2][i] = f->o.z + at.x * f->t1.z + at.y * f->t2.z;
+    out->rest[i] = p->rest + at.x * p->rest_x + at.y * p->rest_y;
+    out->lean[i] = lean;
+    out->area[i] = p->weight * area;
+    out->key[i] = p->faces ^ key;
+    out->count += p->weight * area > 0;
 }
 
 /* Adds middles and corners when all corners are full. */
@@ -360,7 +370,7 @@ static size_t clip_faces(const tl_pair_view *view, uint32_t fa, uint32_t fb, con
     for (uint32_t i = 0; i < na; i++) {
         uint16_t v = a->loop[a->start[fa] + i];
         p->now[i] = (corner){.at = project(frame, a->vertex[v]),
-                             .key = key_of(POINT_A, v, 0),
+                             .key = vertex_key(POINT_A, v),
                              .edge = i,
                              .lean = -1};
     }
@@ -382,8 +392,8 @@ static void lay_frame(patch *p, tl_vec3 through)
     f->t2 = tl_v3_cross(f->n, f->t1);
 }
 
-/* Moves the plane of the patch into the middle between the two faces at the centroid; returns the cosine
- * of its tilt against either. */
+/* Moves the plane of the patch into the middle between the two faces at the centroid, and notes how far A's
+ * face is from it; returns the cosine of its tilt against either. */
 static double move_between(patch *p, point2 centroid)
 {
     frame2 *f = &p->frame;
@@ -392,7 +402,45 @@ static double move_between(patch *p, point2 centroid)
     double down = tl_v3_dot(p->a.normal, x) - p->a.offset;
     double slope = tl_v3_dot(f->n, p->a.normal);
     f->o = tl_v3_madd(f->o, 0.5 * (up - down) / slope, f->n);
+    p->rest = tl_v3_dot(p->a.normal, f->o) - p->a.offset;
+    p->rest_x = tl_v3_dot(p->a.normal, f->t1);
+    p->rest_y = tl_v3_dot(p->a.normal, f->t2);
     return slope;
+}
+
+/* Makes room for `count` points. */
+static bool reserve(tl_patch_points *out, size_t count)
+{
+    if (count <= out->room)
+        return true;
+    size_t room = 2 * count;
+    double *block =
+        room > UINT16_MAX ? NULL : malloc(room * (6 * sizeof(double) + sizeof(uint32_t)));
+    if (!block)
+        return false;
+    free(out->p[0]);
+    for (int k = 0; k < 3; k++)
+        out->p[k] = block + (size_t)k * room;
+    out->rest = block + 3 * room;
+    out->lean = block + 4 * room;
+    out->area = block + 5 * room;
+    out->key = (uint32_t *)(void *)(block + 6 * room);
+    out->room = room;
+    return true;
+}
+
+/* Smallest gap: of a polygon, at a corner. */
+static double nearest_gap(const patch *p, const corner *c, size_t count)
+{
+    const frame2 *f = &p->frame;
+    double g = p->rest + tl_v3_dot(p->b.normal, f->o) - p->b.offset, nearest = INFINITY;
+    double x = p->rest_x + tl_v3_dot(p->b.normal, f->t1);
+    double y = p->rest_y + tl_v3_dot(p->b.normal, f->t2);
+    for (size_t i = 0; i < count; i++) {
+        double gap = g + c[i].at.x * x + c[i].at.y * y;
+        nearest = gap < nearest ? gap : nearest;
+    }
+    return nearest;
 }
 
 static point2 rise_of(const frame2 *f, tl_vec3 na, tl_vec3 nb)
@@ -413,23 +461,22 @@ static double mean_lean(const corner *c, size_t count)
     return lean / area;
 }
 
-double tl_patch_add(const tl_pair_view *view, uint32_t fa, uint32_t fb, double weight,
-                    tl_vec3 swing, const tl_share_rule *rule, tl_narrow *room)
+double tl_patch_lay(const tl_pair_view *view, uint32_t fa, uint32_t fb, double weight,
+                    const tl_share_rule *rule, tl_narrow *room)
 {
     const tl_poly *a = view->a, *b = view->b;
     /* each clip adds a corner, or two where rounding makes it cross a straight run of corners twice */
     size_t most = (size_t)tl_poly_face_size(a, fa) + 2 * (size_t)tl_poly_face_size(b, fb) + 4;
     struct tl_polygon *p = polygon_room(room, most, tl_poly_face_size(b, fb));
-    tl_manifold *m = &room->manifold;
+    room->patch.count = 0;
     if (!p) {
-        m->failed = true;
+        room->manifold.failed = true;
         return 0;
     }
-    patch one = {.view = view,
-                 .corner = rule->corners ? 0.5 : 1. / 12,
+    patch one = {.corner = rule->corners ? 0.5 : 1. / 12,
                  .middle = rule->corners ? 0 : 1. / 3,
                  .faces = key_of(0, fa, fb),
-                 .manifold = m,
+                 .out = &room->patch,
                  .a = a->plane[fa]};
     one.b.normal = view->normal_b[fb];
     one.b.offset = b->plane[fb].offset + tl_v3_dot(one.b.normal, view->shift);
@@ -443,42 +490,50 @@ double tl_patch_add(const tl_pair_view *view, uint32_t fa, uint32_t fb, double w
     double area = count >= 3 ? area_of(p->now, count, &centroid) : 0;
     if (!(area > THIN * size * view->size))
         return 0;
-
     one.weight = weight / move_between(&one, centroid);
-    size_t begin = m->point_count;
-    count = weigh_corners(p->now, count, centroid);
-    double *corner_area = (double *)(void *)p->next; /* the clipping is over: its room is free */
-    bool full = true;
-    for (size_t i = 0; i < count; i++)
-        full = full && p->now[i].share >= 1;
-    /* a middle for every two corners that may follow each other, the corners, the centroid */
-    if (!tl_manifold_reserve(m, full ? 2 * count + 1 : (BLEND_RUN + 2) * count + 1))
+    if (nearest_gap(&one, p->now, count) > rule->reach)
         return 0;
+    bool full;
+    count = weigh_corners(p->now, count, centroid, &full);
+    /* a middle for every two corners that may follow each other, the corners, the centroid */
+    if (!reserve(one.out, full ? 2 * count + 1 : (BLEND_RUN + 2) * count + 1)) {
+        room->manifold.failed = true;
+        return 0;
+    }
     if (full)
         add_full_edges(&one, p->now, count);
-    else
-        add_edges(&one, p->now, count, corner_area);
+    else /* the clipping is over: its room is free */
+        add_edges(&one, p->now, count, (double *)(void *)p->next);
     add_point(&one, centroid, mean_lean(p->now, count), (1 - 2 * one.corner - one.middle) * area,
               key_of(POINT_CENTROID, 0, 0));
-    double nearest = INFINITY;
-    for (size_t i = begin; i < m->point_count; i++) {
-        double gap = m->points[i].rest + tl_v3_dot(one.b.normal, m->points[i].p) - one.b.offset;
-        nearest = gap < nearest ? gap : nearest;
-    }
-    if (nearest > rule->reach) {
-        m->point_count = begin;
+    return one.weight * area;
+}
+
+double tl_patch_add(const tl_pair_view *view, uint32_t fa, uint32_t fb, double weight,
+                    tl_vec3 swing, const tl_share_rule *rule, tl_narrow *room)
+{
+    double area = tl_patch_lay(view, fa, fb, weight, rule, room);
+    tl_manifold *m = &room->manifold;
+    const tl_patch_points *from = &room->patch;
+    if (!(area > 0) || !tl_manifold_reserve(m, from->count))
         return 0;
-    }
+    tl_plane plane = view->b->plane[fb];
     m->facets[m->facet_count++] = (tl_facet){.kind = TL_FACET_PATCH,
                                              .ia = (uint16_t)fa,
                                              .ib = (uint16_t)fb,
-                                             .begin = (uint16_t)begin,
-                                             .count = (uint16_t)(m->point_count - begin),
-                                             .na = one.a.normal,
-                                             .nb = b->plane[fb].normal,
-                                             .offset = b->plane[fb].offset,
+                                             .begin = (uint16_t)m->point_count,
+                                             .count = (uint16_t)from->count,
+                                             .na = view->a->plane[fa].normal,
+                                             .nb = plane.normal,
+                                             .offset = plane.offset,
                                              .swing = swing};
-    return one.weight * area;
+    for (size_t i = 0; i < from->count; i++)
+        m->points[m->point_count++] = (tl_contact_point){.p = tl_columns_get(from->p, i),
+                                                         .rest = from->rest[i],
+                                                         .lean = from->lean[i],
+                                                         .area = from->area[i],
+                                                         .key = from->key[i]};
+    return area;
 }
 
 bool tl_segment_over_face(tl_vec3 p, tl_vec3 q, const tl_vec3 *corners, size_t count, tl_vec3 n,

@@ -203,19 +203,60 @@ static bool follow_face(const tl_pair_view *view, const tl_facet *f, tl_axis *ax
     return true;
 }
 
-/* The one patch of a contact whose axis stands, made anew; false when that is not all there is to it. */
+/* Puts a patch in the place of the contact's, which has the same points: stresses stay, forces follow the
+ * area. */
+TL_VECTORIZED static void refit_patch(tl_points_table *p, size_t begin, const tl_patch_points *g)
+{
+    for (int k = 0; k < 3; k++)
+        memcpy(p->p[k] + begin, g->p[k], g->count * sizeof(double));
+    memcpy(p->rest + begin, g->rest, g->count * sizeof(double));
+    memcpy(p->lean + begin, g->lean, g->count * sizeof(double));
+    double *restrict f_n = p->f_n + begin, *restrict f_n0 = p->f_n0 + begin;
+    double *restrict x = p->f_s[0] + begin, *restrict y = p->f_s[1] + begin;
+    double *restrict z = p->f_s[2] + begin, *restrict area = p->area + begin;
+    const double *restrict to = g->area;
+#pragma omp simd
+    for (size_t i = 0; i < g->count; i++) {
+        double scale = to[i] / area[i];
+        f_n[i] *= scale;
+        f_n0[i] *= scale;
+        x[i] *= scale;
+        y[i] *= scale;
+        z[i] *= scale;
+        area[i] = to[i];
+    }
+}
+
+/* The one patch of a contact whose axis stands, made anew where its points are the same; false when that is
+ * not all there is to it. */
 static bool renew_patch(tl_model *m, uint32_t c, tl_narrow *room)
 {
     tl_contacts *contacts = &m->detect->contacts;
+    tl_points_table *p = &m->detect->points;
     const tl_facet *f = &contacts->facet[contacts->facet_start[c]];
+    uint32_t material = contacts->material[c];
     if (!contacts->lone[c] || contacts->facet_count[c] != 1 || f->kind != TL_FACET_PATCH ||
+        material == TL_NO_ROW || m->materials[material].splits ||
         tl_pair_odometer(m, contacts->a[c], contacts->b[c]) - contacts->searched[c] >
             contacts->margin[c])
         return false;
     tl_pair_view view = tl_pair_view_of(m, contacts->a[c], contacts->b[c]);
     tl_share_rule rule = tl_share_rule_of(m, &view, contacts->tag[c], false);
-    return tl_pair_place_face(&view, f->ib, room) && follow_face(&view, f, &contacts->axis[c]) &&
-           tl_manifold_renew(&view, f->ia, f->ib, &rule, room);
+    if (!tl_pair_place_face(&view, f->ib, room) || !follow_face(&view, f, &contacts->axis[c]) ||
+        !tl_manifold_renew(&view, f->ia, f->ib, &rule, room))
+        return false;
+    const tl_patch_points *g = &room->patch;
+    size_t begin = contacts->point_start[c];
+    if (g->count != contacts->point_count[c] ||
+        memcmp(g->key, p->key + begin, g->count * sizeof *g->key) != 0)
+        return false;
+    refit_patch(p, begin, g);
+    double area = 0;
+    for (size_t i = 0; i < g->count; i++)
+        area += g->area[i];
+    contacts->area[c] = area;
+    contacts->fresh[c] = true;
+    return true;
 }
 
 /* Whether a contact without points still overlaps by no more than may go unseen: its old axis tells, for no
@@ -246,11 +287,12 @@ void tl_contact_update(tl_model *m, uint32_t c, unsigned thread)
         return;
     if (touches_still(m, c, room))
         return;
-    if (!renew_patch(m, c, room) && !rebuild(m, c, room, carries_across(m->detect, c))) {
-        contacts->fate[c] = TL_FATE_MEMORY;
+    if (renew_patch(m, c, room)) {
+        allow_reuse(m, c);
         return;
     }
-    if (contacts->fate[c] != TL_FATE_DIE && !take_manifold(m, c, room, &m->detect->lanes[thread]))
+    if (!rebuild(m, c, room, carries_across(m->detect, c)) ||
+        (contacts->fate[c] != TL_FATE_DIE && !take_manifold(m, c, room, &m->detect->lanes[thread])))
         contacts->fate[c] = TL_FATE_MEMORY;
     else
         allow_reuse(m, c);
