@@ -1,50 +1,17 @@
 -- Toppling of columns on a stepped base (Goodman and Bray, 1976): the friction angle at which the
 -- slope fails, lowered bit by bit with its history, and what each column then does.
 package.path = "tests/verify/?.lua;scripts/?.lua;" .. package.path -- run in the source root
-local talus = require "talus"
 local figures = require "check_figures"
 local statics = require "check_statics"
+local columns_of = require "check_columns"
 local reference = require("reference_dynamics").goodman_bray
 
-local GRAVITY = 10
-local STIFFNESS = 1e10           -- Pa/m, normal and shear: a column settles by 1e-4 m at the most
 local FIRST, STEP = 44, 0.1      -- friction angle to settle under, and how it is lowered, degrees
 local AT_REST = 1e-6             -- unbalanced force ratio that counts as equilibrium
 local MOVING = 0.02              -- m in one step of friction: many times what the springs yield
 local LEAST = 20                 -- degrees: no search below
 local TOLERANCE = 0.5            -- degrees
 local MOVED, TURNED = 0.05, 0.2  -- of the farthest column's way; of a column's own
-
--- Each column on its own fixed base. u runs up along the base, w normal to it; the section lies in
--- the x-z plane.
-local function build(case)
-    -- Forces between toppling columns act at their corners: so the limit equilibrium has it.
-    local model = talus.model { gravity = { 0, 0, -GRAVITY }, contact_points = "corners" }
-    local s, c = math.sin(math.rad(case.psi)), math.cos(math.rad(case.psi))
-    local function prism(u0, u1, w0, w1, group)
-        local vertices = {}
-        for _, u in ipairs { u0, u1 } do
-            for _, w in ipairs { w0, w1 } do
-                for _, y in ipairs { 0, case.thickness } do
-                    vertices[#vertices + 1] = { u * c - w * s, y, u * s + w * c }
-                end
-            end
-        end
-        model:generate("polyhedron", { vertices = vertices, group = group,
-            density = case.unit_weight / GRAVITY })
-    end
-    for i, height in ipairs(case.heights) do
-        local u0, u1, base = (i - 1) * case.dx, i * case.dx, (i - 1) * case.b
-        prism(u0, u1, -20, base, "base")
-        prism(u0, u1, base, base + height, "column " .. i)
-    end
-    model:blocks { group = "base" }:fix()
-    model:joint("*", "coulomb", { kn = STIFFNESS, ks = STIFFNESS, friction = FIRST })
-    model:damping "local"
-    model:timestep { rule = "body", fraction = 0.5 }
-    return model, model:blocks { fixed = false }
-end
-
 
 -- What a column did in the last step of friction: it topples when turning accounts for a good part of
 -- how far its middle went, it slides when it went as far without.
@@ -60,7 +27,8 @@ end
 for _, case in ipairs(reference) do
     figures.case(case.name, string.format("%d columns on a stepped base dipping %g degrees: friction angle "
         .. "at failure, and what each column then does", case.n, case.psi), reference.source)
-    local model, columns = build(case)
+    -- Forces between toppling columns act at their corners: so the limit equilibrium has it.
+    local model, columns = columns_of(case, "corners", FIRST)
     local friction = statics.search(FIRST, LEAST, STEP, STEP, function(angle)
         model:joint("*", { friction = angle })
         return (statics.stands(model, columns, { ratio = AT_REST, moving = MOVING }))
