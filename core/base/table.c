@@ -53,13 +53,10 @@ static size_t column_bytes(const tl_column *column, size_t capacity)
     return (capacity * column->size + TL_ALIGN - 1) / TL_ALIGN * TL_ALIGN;
 }
 
-/* All columns lie in one allocation that comes zeroed: what is not written to yet costs no memory. */
-bool tl_table_reserve(tl_table *table, size_t rows)
+/* Gives the table memory for `capacity` rows and takes its rows over, but for columns without any data. All
+ * columns lie in one allocation that comes zeroed: what is not written to yet costs no memory. */
+static bool allocate(tl_table *table, size_t capacity)
 {
-    if (rows <= table->capacity)
-        return true;
-    size_t grown = table->capacity + table->capacity / 2;
-    size_t capacity = ((rows > grown ? rows : grown) + ROW_ROUND - 1) / ROW_ROUND * ROW_ROUND;
     size_t bytes = TL_ALIGN;
     for (size_t i = 0; i < table->column_count; i++)
         bytes += column_bytes(&table->columns[i], capacity);
@@ -68,8 +65,9 @@ bool tl_table_reserve(tl_table *table, size_t rows)
         return false;
     char *at = memory + (TL_ALIGN - (uintptr_t)memory % TL_ALIGN) % TL_ALIGN;
     for (size_t i = 0; i < table->column_count; i++) {
-        if (table->rows)
-            memcpy(at, get(table, &table->columns[i]), table->rows * table->columns[i].size);
+        const void *old = get(table, &table->columns[i]);
+        if (table->rows && old)
+            memcpy(at, old, table->rows * table->columns[i].size);
         put(table, &table->columns[i], at);
         at += column_bytes(&table->columns[i], capacity);
     }
@@ -78,6 +76,26 @@ bool tl_table_reserve(tl_table *table, size_t rows)
     table->capacity = capacity;
     table->used = table->rows;
     return true;
+}
+
+bool tl_table_reserve(tl_table *table, size_t rows)
+{
+    if (rows <= table->capacity)
+        return true;
+    size_t grown = table->capacity + table->capacity / 2;
+    return allocate(table, ((rows > grown ? rows : grown) + ROW_ROUND - 1) / ROW_ROUND * ROW_ROUND);
+}
+
+bool tl_table_widen(tl_table *table, const char *name, size_t size, size_t offset, unsigned flags)
+{
+    assert(table->column_count < TL_TABLE_COLUMNS);
+    tl_column *column = &table->columns[table->column_count++];
+    *column = (tl_column){name, size, offset, flags};
+    put(table, column, NULL);
+    if (table->capacity == 0 || allocate(table, table->capacity))
+        return true;
+    table->column_count--;
+    return false;
 }
 
 bool tl_table_resize(tl_table *table, size_t rows)

@@ -33,12 +33,15 @@ typedef struct tl_table {
 } tl_table;
 
 #define TL_COLUMN(table, owner, member, flags)                                                     \
-    tl_table_column((table), #member, sizeof *(owner)->member,                                     \
-                    (size_t)((char *)&(owner)->member - (char *)(owner)), (flags))
+    tl_table_column((table), #member, sizeof *(owner)->member, TL_COLUMN_AT(owner, member), (flags))
+/* Where the pointer of a column is in its owner. */
+#define TL_COLUMN_AT(owner, member) (size_t)((char *)&(owner)->member - (char *)(owner))
 
 void tl_table_init(tl_table *table, void *owner);
 /* Adds a column while the table is empty. */
 void tl_table_column(tl_table *table, const char *name, size_t size, size_t offset, unsigned flags);
+/* Adds a column, of zeros, to a table that may have rows; false when out of memory (nothing changed). */
+bool tl_table_widen(tl_table *table, const char *name, size_t size, size_t offset, unsigned flags);
 /* Makes room for `rows` rows; what is there stays. false when out of memory (nothing changed). */
 bool tl_table_reserve(tl_table *table, size_t rows);
 /* Sets the number of rows; new ones are zero. */

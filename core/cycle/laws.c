@@ -37,8 +37,8 @@ static uint32_t contact_of_point(const tl_contacts *contacts, size_t point)
 static bool call_law(const run_job *job, size_t first, size_t count, const tl_point_lanes *l)
 {
     tl_points_table *p = &job->m->detect->points;
-    double *state[TL_STATE_COLUMNS];
-    for (int k = 0; k < TL_STATE_COLUMNS; k++)
+    double *state[TL_STATE_COLUMNS] = {NULL};
+    for (uint32_t k = 0; k < p->state_columns; k++)
         state[k] = p->state[k] + first;
     tl_law_batch batch = {
         .size = sizeof batch,

@@ -121,9 +121,7 @@ tl_status tl_joint_law(tl_model *m, const char *joint, const char *law, const tl
         return tl_fail(&m->error, TL_E_STATE,
                        "joint '%s' has no law yet: name one, as in model:joint(\"%s\", LAW, {...})",
                        joint, joint);
-    uint32_t columns = 0;
-    for (uint32_t k = 0; k < kind->state_count; k++)
-        columns += tl_kind_state(kind, k)->kind == TL_STATE_TANGENT ? 3 : 1;
+    uint32_t columns = tl_kind_state_columns(kind);
     if (columns > TL_STATE_COLUMNS)
         return tl_fail(&m->error, TL_E_PLUGIN,
                        "law '%s' has %u state columns; a law may have %d at the most", kind->name,
@@ -132,6 +130,11 @@ tl_status tl_joint_law(tl_model *m, const char *joint, const char *law, const tl
     status = make_material(m, tag, joint, kind, args, law ? NULL : ruling, &fresh);
     if (status != TL_OK)
         return status;
+    if (m->detect && (!tl_points_hold_states(&m->detect->points, columns) ||
+                      !tl_points_hold_states(&m->detect->spare_points, columns))) {
+        tl_material_clear(&fresh);
+        return tl_fail_memory(&m->error);
+    }
     tl_material *place = exact_material(m, tag);
     if (!place) {
         tl_material *materials = realloc(m->materials, (m->material_count + 1) * sizeof *materials);

@@ -59,8 +59,18 @@ void tl_contacts_init(tl_contacts *c, tl_points_table *p)
     TL_COLUMN(t, p, flags, TL_COLUMN_STATE);
     for (int k = 0; k < 3; k++)
         TL_COLUMN(t, p, f_s[k], TL_COLUMN_STATE);
-    for (int k = 0; k < TL_STATE_COLUMNS; k++)
-        TL_COLUMN(t, p, state[k], TL_COLUMN_STATE);
+    p->state_columns = 0;
+}
+
+bool tl_points_hold_states(tl_points_table *p, uint32_t columns)
+{
+    for (uint32_t k = p->state_columns; k < columns; k++) {
+        if (!tl_table_widen(&p->table, "state", sizeof *p->state[k], TL_COLUMN_AT(p, state[k]),
+                            TL_COLUMN_STATE))
+            return false;
+        p->state_columns++;
+    }
+    return true;
 }
 
 void tl_point_lanes_init(tl_point_lanes *l)
@@ -90,6 +100,14 @@ static uint32_t state_width(const tl_state *state)
     return state->kind == TL_STATE_TANGENT ? 3 : 1;
 }
 
+uint32_t tl_kind_state_columns(const tl_kind *kind)
+{
+    uint32_t columns = 0;
+    for (uint32_t k = 0; k < kind->state_count; k++)
+        columns += state_width(tl_kind_state(kind, k));
+    return columns;
+}
+
 void tl_point_clear(tl_points_table *p, size_t i)
 {
     p->area[i] = p->rest[i] = p->lean[i] = p->reference[i] = p->closure[i] = 0;
@@ -97,13 +115,13 @@ void tl_point_clear(tl_points_table *p, size_t i)
     p->flags[i] = p->key[i] = 0;
     for (int k = 0; k < 3; k++)
         p->p[k][i] = p->f_s[k][i] = 0;
-    for (int k = 0; k < TL_STATE_COLUMNS; k++)
+    for (uint32_t k = 0; k < p->state_columns; k++)
         p->state[k][i] = 0;
 }
 
 void tl_point_initial_state(tl_points_table *p, size_t i, const tl_kind *kind)
 {
-    for (int k = 0; k < TL_STATE_COLUMNS; k++)
+    for (uint32_t k = 0; k < p->state_columns; k++)
         p->state[k][i] = 0;
     uint32_t column = 0;
     for (uint32_t k = 0; kind && k < kind->state_count; k++) {

@@ -76,6 +76,16 @@ static tl_status ensure(tl_model *m)
         tl_point_lanes_init(&d->lanes[i]);
     tl_contacts_init(&d->contacts, &d->points);
     tl_contacts_init(&d->spare, &d->spare_points);
+    uint32_t columns = 0;
+    for (size_t i = 0; i < m->material_count; i++) {
+        uint32_t wanted = tl_kind_state_columns(m->materials[i].kind);
+        columns = wanted > columns ? wanted : columns;
+    }
+    if (!tl_points_hold_states(&d->points, columns) ||
+        !tl_points_hold_states(&d->spare_points, columns)) {
+        detect_destroy(d);
+        return tl_fail_memory(&m->error);
+    }
     m->detect = d;
     m->detect_destroy = detect_destroy;
     return TL_OK;

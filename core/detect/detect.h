@@ -170,7 +170,8 @@ typedef struct tl_points_table {
     double *f_n0;
     double *f_n, *f_s[3];
     uint32_t *flags;
-    double *state[TL_STATE_COLUMNS];
+    double *state[TL_STATE_COLUMNS]; /* as many as the laws need; the others are NULL */
+    uint32_t state_columns;
     uint32_t
         *owner; /* for each TL_POINT_ROUND points: row of the contact whose points begin there */
     size_t owner_room;
@@ -380,6 +381,11 @@ void tl_point_take_state(tl_points_table *p, size_t point, const tl_kind *kind, 
 /* The same for a point that keeps its place: what is reset on a change of polygon stays. */
 void tl_point_keep_state(tl_points_table *p, size_t point, const tl_kind *kind, const double *old,
                          double old_area);
+/* Columns of the states of a kind of law. */
+uint32_t tl_kind_state_columns(const tl_kind *kind);
+/* Makes sure that points have that many state columns; false when out of memory. Both tables of points need
+ * the same. */
+bool tl_points_hold_states(tl_points_table *points, uint32_t columns);
 /* State descriptor k of a kind. */
 const tl_state *tl_kind_state(const tl_kind *kind, uint32_t k);
 

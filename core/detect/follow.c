@@ -423,7 +423,7 @@ void tl_contact_begin(tl_model *m, uint32_t contact, const tl_point_lanes *l)
 static void turn_states(tl_points_table *p, size_t first, const columns *c, size_t begin,
                         const tl_facet *f, tl_vec3 half, uint32_t tangents)
 {
-    for (uint32_t k = 0; k + 2 < TL_STATE_COLUMNS; k++) {
+    for (uint32_t k = 0; k + 2 < p->state_columns; k++) {
         double *v[3] = {p->state[k] + first, p->state[k + 1] + first, p->state[k + 2] + first};
         if (tangents >> k & 1)
             turn_points(c, v, begin, f->count, f, half);

@@ -71,7 +71,7 @@ static void read_old(const tl_model *m, uint32_t c, tl_narrow *room, const tl_po
         o->f_n = per_area * p->f_n[i];
         o->field[FIELD_N0] = per_area * p->f_n0[i];
         o->field[FIELD_REFERENCE] = p->reference[i];
-        for (int s = 0; s < TL_STATE_COLUMNS; s++)
+        for (uint32_t s = 0; s < p->state_columns; s++)
             o->state[s] = p->state[s][i];
         o->key = p->key[i];
         o->flags = p->flags[i];

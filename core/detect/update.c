@@ -93,7 +93,7 @@ static void refit(tl_model *m, uint32_t c, const tl_manifold *g)
         for (int s = 0; s < 3; s++)
             p->f_s[s][i] *= scale;
         if (kind) {
-            for (int s = 0; s < TL_STATE_COLUMNS; s++)
+            for (uint32_t s = 0; s < p->state_columns; s++)
                 state[s] = p->state[s][i];
             tl_point_keep_state(p, i, kind, state, old);
         }

@@ -326,7 +326,8 @@ TEST(states_are_copied_split_or_reset)
     memset(&p, 0, sizeof p);
     memset(&contacts, 0, sizeof contacts);
     tl_contacts_init(&contacts, &p);
-    if (!CHECK(tl_table_resize(&p.table, 8)))
+    CHECK_INT(tl_kind_state_columns(&kind), 6);
+    if (!CHECK(tl_table_resize(&p.table, 8) && tl_points_hold_states(&p, 6)))
         return;
     tl_point_initial_state(&p, 0, &kind);
     const double initial[] = {1, 2, 0, 0, 0, 3};
