@@ -246,6 +246,20 @@ static uint32_t room_for(uint32_t points)
     return points ? (points + TL_POINT_ROUND) / TL_POINT_ROUND * TL_POINT_ROUND : 0;
 }
 
+/* Room a contact is to get. What it has now must fit, too, for it is read when the new takes its place: of a
+ * contact that grows in points the facets can become fewer, and the other way round. */
+static uint32_t wanted_points(const tl_contacts *c, uint32_t row)
+{
+    uint32_t want = c->want_points[row], have = c->point_count[row];
+    return room_for(want > have ? want : have);
+}
+
+static uint32_t wanted_facets(const tl_contacts *c, uint32_t row)
+{
+    uint32_t want = c->want_facets[row], have = c->facet_count[row];
+    return want > have ? want : have;
+}
+
 static bool add_run(tl_detect *d, uint32_t material, size_t begin)
 {
     if (!tl_grow(&d->runs, &d->run_room, d->run_count + 1, sizeof *d->runs))
@@ -430,8 +444,8 @@ tl_status tl_contacts_repack(tl_model *m)
     for (size_t i = 0; i < count; i++) {
         uint32_t row = list[i].row;
         if (c->fate[row] == TL_FATE_GROW) {
-            c->point_room[row] = room_for(c->want_points[row]);
-            c->facet_room[row] = c->want_facets[row];
+            c->point_room[row] = wanted_points(c, row);
+            c->facet_room[row] = wanted_facets(c, row);
         }
         facets += c->facet_room[row];
         largest = c->point_room[row] > largest ? c->point_room[row] : largest;
@@ -485,7 +499,7 @@ bool tl_contact_place(tl_detect *d, uint32_t row)
 {
     tl_contacts *c = &d->contacts;
     tl_run *run = run_of(d, c->material[row]);
-    uint32_t points = room_for(c->want_points[row]), facets = c->want_facets[row];
+    uint32_t points = wanted_points(c, row), facets = wanted_facets(c, row);
     size_t from = c->point_start[row], to = begin_after(run ? run->end : 0, points);
     if (!run || points > d->lane_room || end_of(to, points) > run->limit ||
         c->facet_total + facets > c->facet_capacity)

@@ -436,7 +436,33 @@ TEST(queries_between_changes_do_not_change_results)
     CHECK_TEXT(asked, quiet);
 }
 
-TEST_MAIN(RUN(contact_is_born_before_touching_and_dies_after), RUN(fast_block_is_found),
+/* Old points and facets are read when the new ones take their place. */
+TEST(growing_contacts_have_room_for_what_they_had)
+{
+    for (int grown = 0; grown < 4; grown++) {
+        tl_model *m = two_cubes("coulomb", -1e-4);
+        scene_forces(m);
+        tl_contacts *c = &m->detect->contacts;
+        uint32_t points = c->point_count[0], facets = c->facet_count[0];
+        CHECK(points > 1 && facets > 0);
+        bool in_facets = grown & 1;
+        c->fate[0] = TL_FATE_GROW;
+        c->want_points[0] = in_facets ? 1 : points + 8;
+        c->want_facets[0] = in_facets ? facets + 1 : 0;
+        if (grown & 2)
+            CHECK_INT(tl_contacts_repack(m), TL_OK);
+        else
+            CHECK(tl_contact_place(m->detect, 0));
+        CHECK(c->point_room[0] >= (in_facets ? points : points + 8));
+        CHECK_INT(c->facet_room[0], in_facets ? facets + 1 : facets);
+        CHECK_INT(c->point_count[0], points);
+        c->fate[0] = TL_FATE_KEEP;
+        tl_model_destroy(m);
+    }
+}
+
+TEST_MAIN(RUN(growing_contacts_have_room_for_what_they_had),
+          RUN(contact_is_born_before_touching_and_dies_after), RUN(fast_block_is_found),
           RUN(contact_in_tension_does_not_die), RUN(ids_stay_and_are_not_used_again),
           RUN(contacts_survive_changes_of_other_blocks),
           RUN(contact_takes_the_joint_of_the_touching_faces),
