@@ -252,7 +252,7 @@ static int compare_pair(const void *a, const void *b)
 static tl_status list_pairs(tl_model *m, struct tl_broad *g, size_t *count)
 {
     *count = 0;
-    bool room = true;
+    bool room = tl_grow(&g->next, &g->next_room, m->detect->pair_count, sizeof *g->next);
     for (uint32_t row = 0; row < m->blocks.table.rows && room; row++) {
         cell_range r = range_of(g, &g->bounds[row]);
         if (!is_large(&r))
@@ -273,8 +273,19 @@ static tl_status list_pairs(tl_model *m, struct tl_broad *g, size_t *count)
     return TL_OK;
 }
 
+/* Gives back the room that the list has to spare. */
+static void trim(struct tl_broad *g, size_t count)
+{
+    tl_pair *list = count ? realloc(g->next, count * sizeof *list) : NULL;
+    if (list) {
+        g->next = list;
+        g->next_room = count;
+    }
+}
+
 /* Merges the old list into the new one: what was known of a pair stays, and a pair with a contact
- * stays whatever its bounds say. */
+ * stays whatever its bounds say. The old list goes: a list lasts for many steps, and two would take as much
+ * memory as the shapes. */
 static tl_status merge(tl_model *m, struct tl_broad *g, size_t fresh)
 {
     tl_detect *d = m->detect;
@@ -293,13 +304,13 @@ static tl_status merge(tl_model *m, struct tl_broad *g, size_t fresh)
     }
     if (count > fresh)
         qsort(g->next, count, sizeof *g->next, compare_pair);
-    tl_pair *list = d->pairs;
-    size_t room = d->pair_room;
+    trim(g, count);
+    free(d->pairs);
     d->pairs = g->next;
     d->pair_room = g->next_room;
     d->pair_count = count;
-    g->next = list;
-    g->next_room = room;
+    g->next = NULL;
+    g->next_room = 0;
     for (uint32_t i = 0; i < count; i++)
         if (d->pairs[i].contact != TL_NO_ROW)
             d->contacts.pair[d->pairs[i].contact] = i;

@@ -8,9 +8,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A run has room for this share more points than it needs, and for some more at least. */
-#define RUN_SHARE 8
-#define RUN_LEAST 256
+/* Where contacts are laid out anew, there is room for a share more of them, of points of each run, and of facets
+ * than is needed, and for some more at least: 1 / SPARE_CALM first, and from then on twice the share each time
+ * that a layout did not last LAYOUT_LASTS steps, as of blocks that fall or slide, up to 1 / SPARE_BUSY, and
+ * half of it each time that it did. */
+#define SPARE_CALM 64
+#define SPARE_BUSY 8
+#define LAYOUT_LASTS 100
+#define SPARE_POINTS 256
+#define SPARE_ROWS 64
 
 void tl_contacts_init(tl_contacts *c, tl_points_table *p)
 {
@@ -361,6 +367,27 @@ static void own(tl_points_table *p, size_t begin, uint32_t room, uint32_t row)
         p->owner[page / TL_POINT_ROUND] = row == TL_NO_ROW ? TL_NO_ROW : TL_OWNED_BEFORE;
 }
 
+/* Before contacts are laid out anew. */
+static void choose_spare(tl_detect *d, int64_t cycles)
+{
+    size_t share = d->spare_share;
+    if (share == 0)
+        share = SPARE_CALM;
+    else if (cycles - d->laid_at >= LAYOUT_LASTS)
+        share = 2 * share < SPARE_CALM ? 2 * share : SPARE_CALM;
+    else
+        share = share / 2 > SPARE_BUSY ? share / 2 : SPARE_BUSY;
+    d->spare_share = share;
+    d->laid_at = cycles;
+}
+
+/* `need` and some to spare. */
+static size_t with_spare(const tl_detect *d, size_t need, size_t least)
+{
+    size_t more = need / d->spare_share;
+    return need + (more > least ? more : least);
+}
+
 /* Where the runs of the sorted contacts begin and end, with their slack; *points is the sum. */
 static bool lay_runs(tl_detect *d, const place *list, size_t count, size_t *points)
 {
@@ -375,9 +402,7 @@ static bool lay_runs(tl_detect *d, const place *list, size_t count, size_t *poin
         for (; i < count && list[i].material == material; i++)
             run->limit = end_of(begin_after(run->limit, c->point_room[list[i].row]),
                                 c->point_room[list[i].row]);
-        size_t used = run->limit - run->begin;
-        run->limit += used / RUN_SHARE > RUN_LEAST ? used / RUN_SHARE : RUN_LEAST;
-        run->limit = whole_pages(run->limit);
+        run->limit = whole_pages(run->begin + with_spare(d, run->limit - run->begin, SPARE_POINTS));
         *points = run->limit;
     }
     return true;
@@ -386,14 +411,12 @@ static bool lay_runs(tl_detect *d, const place *list, size_t count, size_t *poin
 /* Room for the facets of all contacts and some more, in the spare list. */
 static bool lay_facets(tl_detect *d, size_t facets)
 {
-    size_t wanted = facets + facets / RUN_SHARE + RUN_LEAST;
-    if (wanted <= d->spare.facet_capacity)
-        return true;
-    tl_facet *facet = realloc(d->spare.facet, (wanted + wanted / 2) * sizeof *facet);
+    size_t wanted = with_spare(d, facets, SPARE_ROWS);
+    tl_facet *facet = realloc(d->spare.facet, wanted * sizeof *facet);
     if (!facet)
         return false;
     d->spare.facet = facet;
-    d->spare.facet_capacity = wanted + wanted / 2;
+    d->spare.facet_capacity = wanted;
     return true;
 }
 
@@ -450,9 +473,11 @@ tl_status tl_contacts_repack(tl_model *m)
         facets += c->facet_room[row];
         largest = c->point_room[row] > largest ? c->point_room[row] : largest;
     }
+    choose_spare(d, m->cycles);
     fresh->table.rows = 0;
     d->spare_points.table.rows = 0;
     if (!lay_runs(d, list, count, &points) || !lay_facets(d, facets) ||
+        !tl_table_reserve(&fresh->table, with_spare(d, count, SPARE_ROWS)) ||
         !tl_table_resize(&fresh->table, count) ||
         !tl_table_resize(&d->spare_points.table, points) || !lay_owners(d, points) ||
         !make_lanes(d, largest)) {

@@ -219,6 +219,8 @@ typedef struct tl_detect {
     uint64_t structure, laws; /* of the model, when last seen */
     tl_contacts contacts, spare;
     tl_points_table points, spare_points;
+    int64_t laid_at;    /* steps made when contacts were laid out */
+    size_t spare_share; /* 1 / this of rows, points and facets were added to spare; 0: never yet */
     tl_run *runs;
     size_t run_count, run_room;
     uint32_t *by_block, *by_block_start; /* contacts of each block, ascending by partner */
