@@ -58,15 +58,14 @@ typedef enum tl_facet_kind {
     TL_FACET_EDGES   /* an edge of A across an edge of B */
 } tl_facet_kind;
 
-/* Contact points that share a normal and a way to compute their gaps. */
+/* Contact points that share a normal and a way to compute their gaps. Planes are kept here, for most facets
+ * have them and every step asks; edges are looked up in the shapes. */
 typedef struct tl_facet {
     uint8_t kind;
     uint16_t ia, ib;       /* faces, or edges */
     uint16_t begin, count; /* of its points, within the contact */
-    tl_vec3 na, nb;        /* outward normals of the faces, or edge directions; own frames */
+    tl_vec3 na, nb;        /* outward normals of the faces, own frames; edges: na is n when made */
     double offset;         /* of the face a point is measured against */
-    tl_vec3 pa, pb;        /* edges: a point on each, own frames */
-    tl_vec3 side;          /* edges: n when made, A's frame */
     tl_vec3 swing;         /* couple on B per energy stored in its points, A's frame, 1/rad */
     tl_vec3 last,
         last_lean; /* normal when last followed, and how points' normals differ, model's axes */

@@ -67,6 +67,8 @@ void tl_follow_bodies(tl_model *m)
 typedef struct sight {
     const tl_mat3 *ra, *rb;
     tl_vec3 d; /* from A's centroid to B's */
+    tl_poly *const *shapes;
+    uint32_t a, b; /* rows of the blocks */
 } sight;
 
 /* A facet in its present place: its normals, and the plane a point's gap is measured to. */
@@ -112,12 +114,17 @@ static void face_vertices(const tl_facet *f, const sight *s, facing *out)
 
 static void face_edges(const tl_facet *f, const sight *s, facing *out)
 {
-    tl_vec3 foot_a = tl_m3_mul(s->ra, f->pa);
-    tl_vec3 foot_b = tl_v3_add(tl_m3_mul(s->rb, f->pb), s->d);
-    /* the side was settled when the facet was made: na x nb, turned outward, is n */
-    if (!tl_edge_normal(tl_m3_mul(s->ra, f->na), tl_m3_mul(s->rb, f->nb), tl_m3_mul(s->ra, f->side),
-                        &out->n))
-        out->n = tl_m3_mul(s->ra, f->side);
+    const tl_poly *a = s->shapes[s->a], *b = s->shapes[s->b];
+    const tl_edge *ea = &a->edge[f->ia], *eb = &b->edge[f->ib];
+    tl_vec3 from_a = a->vertex[ea->a], from_b = b->vertex[eb->a];
+    tl_vec3 along_a = tl_m3_mul(s->ra, tl_v3_sub(a->vertex[ea->b], from_a));
+    tl_vec3 along_b = tl_m3_mul(s->rb, tl_v3_sub(b->vertex[eb->b], from_b));
+    tl_vec3 foot_a = tl_m3_mul(s->ra, from_a);
+    tl_vec3 foot_b = tl_v3_add(tl_m3_mul(s->rb, from_b), s->d);
+    /* the side was settled when the facet was made: along_a x along_b, turned outward, is n */
+    tl_vec3 side = tl_m3_mul(s->ra, f->na);
+    if (!tl_edge_normal(along_a, along_b, side, &out->n))
+        out->n = side;
     out->plane = tl_v3(0, 0, 0);
     out->offset = -tl_v3_dot(out->n, tl_v3_sub(foot_b, foot_a));
     out->to = *s->ra;
@@ -139,7 +146,12 @@ static sight sight_of(const tl_model *m, uint32_t c)
 {
     const tl_contacts *contacts = &m->detect->contacts;
     uint32_t a = m->blocks.body[contacts->a[c]], b = m->blocks.body[contacts->b[c]];
-    return (sight){&m->bodies.r[a], &m->bodies.r[b], tl_body_apart(&m->bodies, a, b)};
+    return (sight){.ra = &m->bodies.r[a],
+                   .rb = &m->bodies.r[b],
+                   .d = tl_body_apart(&m->bodies, a, b),
+                   .shapes = m->blocks.shape,
+                   .a = contacts->a[c],
+                   .b = contacts->b[c]};
 }
 
 /* To the bit what place_block made of the same mean and lean: a point that rests is not turned. */
@@ -434,7 +446,7 @@ static void follow_contact(tl_model *m, uint32_t contact, const columns *c, size
 {
     tl_contacts *contacts = &m->detect->contacts;
     uint32_t a = m->blocks.body[contacts->a[contact]], b = m->blocks.body[contacts->b[contact]];
-    sight s = {&m->bodies.r[a], &m->bodies.r[b], tl_body_apart(&m->bodies, a, b)};
+    sight s = sight_of(m, contact);
     slip moved = slip_of(&m->detect->moving[a], &m->detect->moving[b], s.d);
     moved.carry = contacts->fresh[contact] ? 0 : 0.5;
     contacts->fresh[contact] = false;

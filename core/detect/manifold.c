@@ -374,15 +374,7 @@ static void share_of_edges(const tl_pair_view *view, const tl_axis *axis, tl_nar
                          tl_v3_scale(1 / parallel, swing), tl_key(key, end ? 2 : 1));
         }
     }
-    add_facet(m,
-              (tl_facet){.kind = TL_FACET_EDGES,
-                         .ia = axis->ia,
-                         .ib = axis->ib,
-                         .na = a.along,
-                         .nb = tl_v3_sub(view->b->vertex[eb->b], view->b->vertex[eb->a]),
-                         .pa = a.from,
-                         .side = axis->n,
-                         .pb = view->b->vertex[eb->a]},
+    add_facet(m, (tl_facet){.kind = TL_FACET_EDGES, .ia = axis->ia, .ib = axis->ib, .na = axis->n},
               begin);
 }
 
