@@ -33,7 +33,7 @@ static void gather_body(tl_model *m, uint32_t body)
             uint32_t i = d->by_block[e];
             bool is_b = c->b[i] == row;
             force = tl_v3_madd(force, is_b ? 1 : -1, c->force[i]);
-            moment = tl_v3_add(moment, is_b ? c->moment_b[i] : c->moment_a[i]);
+            moment = tl_v3_add(moment, tl_contact_moment(m, i, is_b));
             contact_force += tl_v3_norm(c->force[i]);
         }
     }

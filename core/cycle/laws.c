@@ -120,16 +120,14 @@ static void sum_contact(tl_model *m, uint32_t c, const tl_point_lanes *l, size_t
     tl_contacts *contacts = &m->detect->contacts;
     size_t begin = contacts->point_start[c];
     sums sum = sum_points(&m->detect->points, begin, contacts->point_count[c], l, begin - first);
-    uint32_t a = m->blocks.body[contacts->a[c]], b = m->blocks.body[contacts->b[c]];
+    uint32_t a = m->blocks.body[contacts->a[c]];
     const tl_facet *facets = &contacts->facet[contacts->facet_start[c]];
     for (uint32_t k = 0; k < contacts->facet_count[c]; k++)
         if (tl_v3_norm2(facets[k].swing) > 0)
             sum.moment = tl_v3_add(
                 sum.moment, facet_couple(&facets[k], l->stored + (begin - first), &m->bodies.r[a]));
     contacts->force[c] = sum.force;
-    contacts->moment_a[c] = tl_v3_neg(sum.moment);
-    contacts->moment_b[c] =
-        tl_v3_sub(sum.moment, tl_v3_cross(tl_body_apart(&m->bodies, a, b), sum.force));
+    contacts->moment[c] = sum.moment;
     if (!tl_v3_finite(sum.force) || !tl_v3_finite(sum.moment))
         tl_cycle_failed(m, begin, TL_E_NUMERIC, begin,
                         "the force is not a finite number: is the time step too large, or a "

@@ -31,8 +31,7 @@ void tl_contacts_init(tl_contacts *c, tl_points_table *p)
     TL_COLUMN(t, c, tag, TL_COLUMN_STATE);
     TL_COLUMN(t, c, material, TL_COLUMN_STATE);
     TL_COLUMN(t, c, axis, 0);
-    TL_COLUMN(t, c, searched, 0);
-    TL_COLUMN(t, c, margin, 0);
+    TL_COLUMN(t, c, search, 0);
     TL_COLUMN(t, c, until, 0);
     TL_COLUMN(t, c, facet_start, 0);
     TL_COLUMN(t, c, facet_count, 0);
@@ -42,8 +41,7 @@ void tl_contacts_init(tl_contacts *c, tl_points_table *p)
     TL_COLUMN(t, c, point_room, 0);
     TL_COLUMN(t, c, area, 0);
     TL_COLUMN(t, c, force, 0);
-    TL_COLUMN(t, c, moment_a, 0);
-    TL_COLUMN(t, c, moment_b, 0);
+    TL_COLUMN(t, c, moment, 0);
     TL_COLUMN(t, c, want_points, 0);
     TL_COLUMN(t, c, want_facets, 0);
     TL_COLUMN(t, c, fresh, 0);
@@ -211,7 +209,8 @@ bool tl_contact_append(tl_model *m, uint32_t pair, const tl_axis *axis, tl_tag t
     c->tag[row] = tag;
     c->material[row] = tl_material_row(m, tag);
     c->axis[row] = *axis;
-    c->searched[row] = c->until[row] = tl_pair_odometer(m, p->a, p->b);
+    c->until[row] = tl_pair_odometer(m, p->a, p->b);
+    c->search[row] = -INFINITY; /* tl_contact_fill tells */
     c->want_points[row] = (uint32_t)want_points;
     c->want_facets[row] = (uint32_t)want_facets;
     c->fate[row] = TL_FATE_GROW;
@@ -367,7 +366,6 @@ static void own(tl_points_table *p, size_t begin, uint32_t room, uint32_t row)
         p->owner[page / TL_POINT_ROUND] = row == TL_NO_ROW ? TL_NO_ROW : TL_OWNED_BEFORE;
 }
 
-/* Before contacts are laid out anew. */
 static void choose_spare(tl_detect *d, int64_t cycles)
 {
     size_t share = d->spare_share;

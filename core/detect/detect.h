@@ -139,14 +139,13 @@ typedef struct tl_contacts {
     tl_tag *tag;
     uint32_t *material; /* index of the model's materials, or TL_NO_ROW */
     tl_axis *axis;
-    double *searched; /* sum of odometers at the last full search */
-    double *margin;   /* how far it may run before the next */
-    double *until;    /* sum of odometers up to which the facets may be reused */
+    double *search; /* sum of odometers up to which the axis need not be searched anew */
+    double *until;  /* sum of odometers up to which the facets may be reused */
     uint32_t *facet_start, *facet_count, *facet_room;
     uint32_t *point_start, *point_count, *point_room;
     double *area;
-    tl_vec3 *force;               /* on B */
-    tl_vec3 *moment_a, *moment_b; /* of the forces on A and on B, about their bodies' centroids */
+    tl_vec3 *force;                      /* on B */
+    tl_vec3 *moment;                     /* of the forces on B, about A's body's centroid */
     uint32_t *want_points, *want_facets; /* of a contact that must grow */
     uint8_t *fresh;                      /* its points were placed in this step */
     uint8_t *lone; /* its faces that look at each other are one of each block */
@@ -370,6 +369,16 @@ tl_pair_view tl_pair_view_of(const tl_model *m, uint32_t a, uint32_t b);
 static inline double tl_pair_odometer(const tl_model *m, uint32_t a, uint32_t b)
 {
     return m->bodies.odometer[m->blocks.body[a]] + m->bodies.odometer[m->blocks.body[b]];
+}
+/* Moment of a contact's forces on A, or on B, about that block's body's centroid. */
+static inline tl_vec3 tl_contact_moment(const tl_model *m, uint32_t contact, bool on_b)
+{
+    const tl_contacts *c = &m->detect->contacts;
+    if (!on_b)
+        return tl_v3_neg(c->moment[contact]);
+    tl_vec3 apart =
+        tl_body_apart(&m->bodies, m->blocks.body[c->a[contact]], m->blocks.body[c->b[contact]]);
+    return tl_v3_sub(c->moment[contact], tl_v3_cross(apart, c->force[contact]));
 }
 /* Row of the contact of an id, or TL_NO_ROW. */
 uint32_t tl_contact_row(tl_detect *d, tl_id id);

@@ -109,13 +109,12 @@ static bool rebuild(tl_model *m, uint32_t c, tl_narrow *room, bool across)
     tl_axis axis = contacts->axis[c];
     if (!tl_pair_place(&view, room))
         return false;
-    bool search = odometer - contacts->searched[c] > contacts->margin[c];
+    bool search = odometer > contacts->search[c];
     for (;; search = true) {
         bool followed = !search && tl_axis_follow(&view, &axis);
         if (search) {
             axis = tl_axis_search(&view, room, &contacts->axis[c]);
-            contacts->searched[c] = odometer;
-            contacts->margin[c] = axis_margin(&axis, view.size);
+            contacts->search[c] = odometer + axis_margin(&axis, view.size);
         }
         tl_tag tag = tl_touching_tag(&view, axis.n);
         tl_share_rule rule = tl_share_rule_of(m, &view, tag, across);
@@ -237,8 +236,7 @@ static bool renew_patch(tl_model *m, uint32_t c, tl_narrow *room)
     uint32_t material = contacts->material[c];
     if (!contacts->lone[c] || contacts->facet_count[c] != 1 || f->kind != TL_FACET_PATCH ||
         material == TL_NO_ROW || m->materials[material].splits ||
-        tl_pair_odometer(m, contacts->a[c], contacts->b[c]) - contacts->searched[c] >
-            contacts->margin[c])
+        tl_pair_odometer(m, contacts->a[c], contacts->b[c]) > contacts->search[c])
         return false;
     tl_pair_view view = tl_pair_view_of(m, contacts->a[c], contacts->b[c]);
     tl_share_rule rule = tl_share_rule_of(m, &view, contacts->tag[c], false);
@@ -304,7 +302,7 @@ void tl_contact_reframe(tl_model *m, uint32_t c, unsigned thread)
     tl_narrow *room = &m->detect->narrow[thread];
     if (contacts->fate[c] == TL_FATE_DIE)
         return;
-    contacts->searched[c] = -INFINITY;
+    contacts->search[c] = -INFINITY;
     room->reframed = true;
     if (!rebuild(m, c, room, carries_across(m->detect, c)) ||
         (contacts->fate[c] != TL_FATE_DIE && !take_manifold(m, c, room, &m->detect->lanes[thread])))
@@ -319,8 +317,9 @@ bool tl_contact_fill(tl_model *m, uint32_t c)
     tl_pair_view view = tl_pair_view_of(m, contacts->a[c], contacts->b[c]);
     if (!tl_pair_place(&view, room))
         return false;
-    if (contacts->point_count[c] == 0)
-        contacts->margin[c] = axis_margin(&contacts->axis[c], view.size);
+    if (contacts->search[c] == -INFINITY)
+        contacts->search[c] = tl_pair_odometer(m, contacts->a[c], contacts->b[c]) +
+                              axis_margin(&contacts->axis[c], view.size);
     tl_share_rule rule = tl_share_rule_of(m, &view, contacts->tag[c], carries_across(m->detect, c));
     tl_manifold_build(&view, &contacts->axis[c], &rule, room);
     note_manifold(contacts, c, &room->manifold);
