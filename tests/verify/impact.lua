@@ -8,8 +8,8 @@ local figures = require "check_figures"
 local SIDE, DENSITY, SPEED = 1, 2000, 2 -- m, kg/m3, m/s
 local STIFFNESS = 1e12                  -- Pa/m: on an edge it sinks in by some 1e-4 of its side
 local PHASE = 0.015                     -- omega dt of the cube on the whole of its base
-local TIME = 0.03                       -- s: of three impacts or more
-local SAMPLES = 300
+local TIME = 0.2                        -- s: through the impacts that follow
+local SAMPLE = 5e-5                     -- s between looks
 local IMPULSE, BALANCE = 0.01, 1e-3     -- the cube turns a little meanwhile; of the largest term
 
 -- Corners of the cube turned by `tilt` about y and `roll` about x, its lowest just over the floor.
@@ -51,8 +51,8 @@ local function fall(degrees, rolled)
     local mass, inertia = DENSITY * SIDE ^ 3, DENSITY * SIDE ^ 5 / 6
     local impulse = 2 * SPEED / (1 / mass + (x * x + y * y) / inertia)
     local left, touched, worst, time, kinetic, stored = nil, false, 0, {}, {}, {}
-    local stride = math.floor(TIME / model.dt / SAMPLES)
-    for _ = 1, SAMPLES do
+    local stride = math.floor(SAMPLE / model.dt)
+    while model.time < TIME do
         model:cycle(stride)
         local energy, cube = model:energy(), cubes[1]
         touched = touched or cube.force[3] > 0
