@@ -116,18 +116,10 @@ static void offer(tl_axis *best, const tl_axis *one)
 /* Share of the gap at which a contact ends. */
 #define BEYOND_REACH 1.01
 
-/* True when the part, at its farthest vertex in `outward`, goes on into another part of its body: there is
- * no wall to meet in that direction. */
-static bool enters_seam(const tl_poly *p, const tl_vec3 *vertex, tl_vec3 outward,
-                        const tl_mat3 *turn)
+/* True when the part, at one of its vertices, goes on in `outward` into another part of its body. */
+static bool goes_on(const tl_poly *p, uint32_t vertex, tl_vec3 outward, const tl_mat3 *turn)
 {
-    if (!p->seams)
-        return false;
-    uint32_t top = 0;
-    for (uint32_t i = 1; i < p->vertex_count; i++)
-        if (tl_v3_dot(outward, vertex[i]) > tl_v3_dot(outward, vertex[top]))
-            top = i;
-    for (uint32_t k = p->star_at[top]; k < p->star_at[top + 1]; k++) {
+    for (uint32_t k = p->star_at[vertex]; k < p->star_at[vertex + 1]; k++) {
         const tl_edge *e = &p->edge[p->star[k]];
         const uint16_t faces[] = {e->left, e->right};
         for (int i = 0; i < 2; i++) {
@@ -140,13 +132,36 @@ static bool enters_seam(const tl_poly *p, const tl_vec3 *vertex, tl_vec3 outward
     return false;
 }
 
-/* True when no wall of A faces n, or none of B faces -n. */
-static bool is_inside(const tl_pair_view *view, tl_vec3 n)
+/* True when the part goes on into another part of its body at every one of its farthest vertices in
+ * `outward`: there is no wall to meet in that direction. The vertices of a face that looks there are farthest
+ * all alike, and which of them is so by rounding says nothing. */
+static bool enters_seam(const tl_poly *p, const tl_vec3 *vertex, tl_vec3 outward,
+                        const tl_mat3 *turn)
 {
-    return enters_seam(view->a, view->a->vertex, n, NULL) ||
-           enters_seam(view->b, view->vertex_b, tl_v3_neg(n), &view->turn);
+    if (!p->seams)
+        return false;
+    double top = -INFINITY;
+    for (uint32_t i = 0; i < p->vertex_count; i++)
+        top = fmax(top, tl_v3_dot(outward, vertex[i]));
+    for (uint32_t i = 0; i < p->vertex_count; i++)
+        if (tl_v3_dot(outward, vertex[i]) >= top - INSIDE * p->size &&
+            !goes_on(p, i, outward, turn))
+            return false;
+    return true;
 }
 
+static bool a_is_inside(const tl_pair_view *view, tl_vec3 n)
+{
+    return enters_seam(view->a, view->a->vertex, n, NULL);
+}
+
+static bool b_is_inside(const tl_pair_view *view, tl_vec3 n)
+{
+    return enters_seam(view->b, view->vertex_b, tl_v3_neg(n), &view->turn);
+}
+
+/* A face of the body's surface is a wall itself: what may be missing is one of the other body that meets
+ * it. */
 static void search_faces(const tl_pair_view *view, tl_axis *best)
 {
     for (uint32_t f = 0; f < view->a->face_count; f++) {
@@ -157,7 +172,7 @@ static void search_faces(const tl_pair_view *view, tl_axis *best)
                                 best->second + plane.offset) -
                    plane.offset;
         tl_axis one = {TL_AXIS_FACE_A, (uint16_t)f, 0, plane.normal, s, 0};
-        if (s > best->second && !is_inside(view, one.n))
+        if (s > best->second && !b_is_inside(view, one.n))
             offer(best, &one);
     }
     for (uint32_t f = 0; f < view->b->face_count; f++) {
@@ -168,7 +183,7 @@ static void search_faces(const tl_pair_view *view, tl_axis *best)
                                 best->second + offset) -
                    offset;
         tl_axis one = {TL_AXIS_FACE_B, 0, (uint16_t)f, tl_v3_neg(view->normal_b[f]), s, 0};
-        if (s > best->second && !is_inside(view, one.n))
+        if (s > best->second && !a_is_inside(view, one.n))
             offer(best, &one);
     }
 }
@@ -269,7 +284,8 @@ static void search_edges(const tl_pair_view *view, tl_narrow *room, tl_axis *bes
             double a1 = column[ea->left], a2 = column[ea->right];
             tl_axis one;
             if (b1 * b2 < 0 && a1 * a2 < 0 && b1 * a2 < 0 && may_matter(view, i, j, best->second) &&
-                edge_axis(view, i, j, &one) && one.s > best->second && !is_inside(view, one.n))
+                edge_axis(view, i, j, &one) && one.s > best->second && !a_is_inside(view, one.n) &&
+                !b_is_inside(view, one.n))
                 offer(best, &one);
         }
     }
