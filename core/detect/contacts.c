@@ -114,7 +114,8 @@ uint32_t tl_kind_state_columns(const tl_kind *kind)
 
 void tl_point_clear(tl_points_table *p, size_t i)
 {
-    p->area[i] = p->rest[i] = p->lean[i] = p->reference[i] = p->closure[i] = 0;
+    p->lean[i] = (tl_lean){0, 0};
+    p->area[i] = p->rest[i] = p->reference[i] = p->closure[i] = 0;
     p->f_n0[i] = p->f_n[i] = 0;
     p->flags[i] = p->key[i] = 0;
     for (int k = 0; k < 3; k++)

@@ -71,13 +71,20 @@ typedef struct tl_facet {
         last_lean; /* normal when last followed, and how points' normals differ, model's axes */
 } tl_facet;
 
+/* How the normal of a point of a patch differs from the mean of its faces' normals. With M = (nA - nB)/2, L = (nA +
+ * nB)/2, which is perpendicular to it, it lies along M + face L + edge M x L. `face` is -1 for a vertex of A, which
+ * stands on B's face, 1 for one of B; `edge` is not 0 where two edges cross. */
+typedef struct tl_lean {
+    float face, edge;
+} tl_lean;
+
 /* A contact point as the geometry gives it. `p` is fixed to A for patches, faces of B and edges, and
  * to B for faces of A. Patches: `rest` is what the point's own wall adds to the gap; `lean` tells along
- * which normal the gap opens: -1 that of B's face, on which a vertex of A stands, 1 that of A's face, 0 half-way. */
+ * which normal the gap opens. */
 typedef struct tl_contact_point {
     tl_vec3 p;
     double rest;
-    double lean;
+    tl_lean lean;
     double area;
     uint32_t key;  /* of the features that made it */
     tl_vec3 swing; /* as a facet's: what its own area adds to it */
@@ -95,7 +102,8 @@ typedef struct tl_manifold {
 
 /* The contact points of one patch, as columns: see tl_contact_point. */
 typedef struct tl_patch_points {
-    double *p[3], *rest, *lean, *area;
+    double *p[3], *rest, *area;
+    tl_lean *lean;
     uint32_t *key;
     size_t count, room;
 } tl_patch_points;
@@ -160,7 +168,8 @@ enum { TL_FATE_KEEP, TL_FATE_GROW, TL_FATE_DIE, TL_FATE_MATERIAL, TL_FATE_MEMORY
 typedef struct tl_points_table {
     tl_table table;
     double *p[3];
-    double *rest, *lean;
+    double *rest;
+    tl_lean *lean;
     uint32_t *key;
     double *area;
     double *reference; /* overlap at closure 0 */
@@ -326,7 +335,7 @@ void tl_contact_begin(tl_model *m, uint32_t contact, const tl_point_lanes *lanes
 void tl_contact_summary(const tl_model *m, uint32_t contact, tl_vec3 *normal, tl_vec3 *point,
                         double *gap);
 /* Normal of a point that leans so when its contact was last followed; 0 when it never was. */
-tl_vec3 tl_facet_last_normal(const tl_facet *facet, double lean);
+tl_vec3 tl_facet_last_normal(const tl_facet *facet, tl_lean lean);
 
 /* ---- update.c ---- */
 /* The rule of the point share for a pair of a joint; pairs that carry a force across a gap keep all

@@ -154,14 +154,21 @@ static sight sight_of(const tl_model *m, uint32_t c)
                    .b = contacts->b[c]};
 }
 
-/* To the bit what place_block made of the same mean and lean: a point that rests is not turned. */
-tl_vec3 tl_facet_last_normal(const tl_facet *f, double lean)
+/* The unit normal of a point that leans so; m2 and l2 are the squares of the two vectors. */
+static inline tl_vec3 leaning(tl_vec3 mean, tl_vec3 lean, double m2, double l2, tl_lean by)
+{
+    double l = by.face, k = by.edge;
+    tl_vec3 n = tl_v3_madd(tl_v3_madd(mean, l, lean), k, tl_v3_cross(mean, lean));
+    return tl_v3_scale(1 / sqrt(m2 + l2 * (l * l + k * k * m2)), n);
+}
+
+/* To the bit what a step made of the same mean and lean: a point that rests is not turned. */
+tl_vec3 tl_facet_last_normal(const tl_facet *f, tl_lean lean)
 {
     double l2 = tl_v3_norm2(f->last_lean);
     if (l2 == 0)
         return f->last;
-    double inverse = 1 / sqrt(tl_v3_norm2(f->last) + lean * lean * l2);
-    return tl_v3_scale(inverse, tl_v3_madd(f->last, lean, f->last_lean));
+    return leaning(f->last, f->last_lean, tl_v3_norm2(f->last), l2, lean);
 }
 
 static void note_normals(tl_facet *f, const facing *to)
@@ -177,7 +184,8 @@ enum { WIDE = 8, NARROW = 4 };
 
 /* Columns of points and lanes, row 0 of both the same point. */
 typedef struct columns {
-    const double *lean, *reference;
+    const tl_lean *lean;
+    const double *reference;
     double *p[3], *rest, *closure, *f_s[3];
     double *arm[3], *normal[3], *du_n, *du_s[3];
 } columns;
@@ -236,11 +244,12 @@ static inline __attribute__((always_inline)) void place_block(const columns *c, 
         c->closure[i + k] = (f->offset - c->rest[i + k]) -
                             (f->plane.x * x + f->plane.y * y + f->plane.z * z) -
                             c->reference[i + k];
-        double l = tilted ? c->lean[i + k] : 0;
-        double inverse = tilted ? 1 / sqrt(f->mean2 + l * l * f->l2) : 1;
-        c->normal[0][i + k] = tilted ? inverse * (f->mean.x + l * f->lean.x) : f->n.x;
-        c->normal[1][i + k] = tilted ? inverse * (f->mean.y + l * f->lean.y) : f->n.y;
-        c->normal[2][i + k] = tilted ? inverse * (f->mean.z + l * f->lean.z) : f->n.z;
+        tl_vec3 n = f->n;
+        if (tilted)
+            n = leaning(f->mean, f->lean, f->mean2, f->l2, c->lean[i + k]);
+        c->normal[0][i + k] = n.x;
+        c->normal[1][i + k] = n.y;
+        c->normal[2][i + k] = n.z;
     }
 }
 
@@ -323,21 +332,25 @@ static inline __attribute__((always_inline)) void tilted_block(const columns *c,
 {
     const double last2 = tl_v3_norm2(last), last_l2 = tl_v3_norm2(last_lean);
     const tl_mat3 *r = &f->to;
-    const tl_vec3 na = tl_v3_add(f->mean, f->lean);
+    const tl_vec3 na = tl_v3_add(f->mean, f->lean), cross = tl_v3_cross(f->mean, f->lean);
 #pragma omp simd
     for (uint32_t k = 0; k < width; k++) {
         size_t at = i + k;
-        double l = c->lean[at], share = s->carry * (1 + l);
+        tl_lean by = c->lean[at];
         tl_vec3 x = tl_m3_mul(r, tl_v3(c->p[0][at], c->p[1][at], c->p[2][at]));
-        tl_vec3 n =
-            tl_v3_scale(1 / sqrt(f->mean2 + l * l * f->l2), tl_v3_madd(f->mean, l, f->lean));
-        tl_vec3 du = tl_v3_add(s->way, tl_m3_mul(&s->m, x)), along = tl_m3_tmul(r, du);
-        double du_n = tl_v3_dot(du, n), old = 1 / sqrt(last2 + l * l * last_l2);
-        x = tl_v3_madd(x, share, du);
-        c->p[0][at] += share * along.x;
-        c->p[1][at] += share * along.y;
-        c->p[2][at] += share * along.z;
-        c->rest[at] += share * tl_v3_dot(na, du);
+        tl_vec3 n = leaning(f->mean, f->lean, f->mean2, f->l2, by);
+        tl_vec3 du = tl_v3_add(s->way, tl_m3_mul(&s->m, x));
+        double du_n = tl_v3_dot(du, n);
+        /* with the features that made it, along the faces; where two edges cross, also up the faces by
+         * how far one edge has slid over the other */
+        tl_vec3 go = tl_v3_scale(s->carry * (1 + (double)by.face), du);
+        go = tl_v3_madd(go, s->carry * by.edge * tl_v3_dot(cross, du) / f->l2, f->lean);
+        tl_vec3 along = tl_m3_tmul(r, go);
+        x = tl_v3_add(x, go);
+        c->p[0][at] += along.x;
+        c->p[1][at] += along.y;
+        c->p[2][at] += along.z;
+        c->rest[at] += tl_v3_dot(na, go);
         c->closure[at] = (f->offset - c->rest[at]) - tl_v3_dot(f->plane, x) - c->reference[at];
         c->arm[0][at] = x.x;
         c->arm[1][at] = x.y;
@@ -349,7 +362,7 @@ static inline __attribute__((always_inline)) void tilted_block(const columns *c,
         c->du_s[0][at] = du.x - du_n * n.x;
         c->du_s[1][at] = du.y - du_n * n.y;
         c->du_s[2][at] = du.z - du_n * n.z;
-        tl_vec3 from = tl_v3_scale(last_l2 > 0 ? old : 1, tl_v3_madd(last, l, last_lean));
+        tl_vec3 from = last_l2 > 0 ? leaning(last, last_lean, last2, last_l2, by) : last;
         tl_vec3 v = turn_one(tl_v3(c->f_s[0][at], c->f_s[1][at], c->f_s[2][at]), from, n, s->half);
         c->f_s[0][at] = v.x;
         c->f_s[1][at] = v.y;

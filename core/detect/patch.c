@@ -44,7 +44,7 @@ typedef struct corner {
     point2 at;
     uint32_t key;  /* of the features that made it */
     uint32_t edge; /* source of the edge that leaves it */
-    double lean;   /* of its gap's normal, see tl_contact_point */
+    tl_lean lean;  /* of its gap's normal */
     double height; /* over the line that cuts */
     double share;  /* of the corner in the mixture: 0 .. 1 */
     double fan;    /* area of the fan triangle of the edge that leaves it */
@@ -138,23 +138,31 @@ static point2 from_to(point2 a, point2 b)
     return (point2){b.x - a.x, b.y - a.y};
 }
 
-/* How the normal of two crossing edges, a of A's face and b of B's, leans. With both measured from the
- * line in which the faces' planes meet, by angles alpha and beta, it is nA (1 + l)/2 - nB (1 - l)/2 with
- * l = -sin(alpha + beta) / sin(beta - alpha), and something along that line that is left out. An edge
- * along it has the other face's normal. Bounded, for edges nearly along each other have no normal. */
-static double lean_of(point2 a, point2 b, point2 rise)
+/* How the normal of two crossing edges, a of A's face and b of B's, leans. With both measured from the line in
+ * which the faces' planes meet, by angles alpha and beta, it is along M - L sin(alpha + beta)/d - M x L 2 sin alpha
+ * sin beta/d, with d = sin(beta - alpha); see tl_lean. Bounded, for edges nearly along each other have no normal. */
+static tl_lean lean_of(point2 a, point2 b, point2 rise)
 {
     double a_along = a.x * rise.y - a.y * rise.x, a_up = a.x * rise.x + a.y * rise.y;
     double b_along = b.x * rise.y - b.y * rise.x, b_up = b.x * rise.x + b.y * rise.y;
-    double across = a_along * b_up - a_up * b_along, sum = a_along * b_up + a_up * b_along;
-    return fabs(sum) < fabs(across) ? -sum / across : (sum < 0) == (across < 0) ? -1 : 1;
+    double d = a_along * b_up - a_up * b_along;
+    double face = -(a_along * b_up + a_up * b_along), edge = -2 * a_up * b_up;
+    double most = fmax(fabs(d), fmax(fabs(face), 0.5 * fabs(edge)));
+    d = d < 0 ? -most : most;
+    return most > 0 ? (tl_lean){(float)(face / d), (float)(edge / d)} : (tl_lean){0, 0};
+}
+
+/* Of a mean of corners. */
+static tl_lean between(tl_lean a, tl_lean b)
+{
+    return (tl_lean){0.5f * (a.face + b.face), 0.5f * (a.edge + b.edge)};
 }
 
 /* What the corner is where edges `one` and `other` meet at `cut`. A meeting of two neighbouring edges
  * of B is B's own vertex. */
 static corner meet(uint32_t one, uint32_t other, point2 cut, const point2 *clip, uint32_t count)
 {
-    corner c = {.at = cut, .edge = other, .lean = 1};
+    corner c = {.at = cut, .edge = other, .lean = {1, 0}};
     if (one >= EDGE_B && other >= EDGE_B) {
         uint32_t i = one - EDGE_B, j = other - EDGE_B;
         if ((i + 1) % count == j || (j + 1) % count == i) {
@@ -305,7 +313,7 @@ typedef struct patch {
 } patch;
 
 /* Adds a point for which there is room; without area it would carry nothing, and have no stress. */
-static inline void add_point(const patch *p, point2 at, double lean, double area, uint32_t key)
+static inline void add_point(const patch *p, point2 at, tl_lean lean, double area, uint32_t key)
 {
     const frame2 *f = &p->frame;
     tl_patch_points *out = p->out;
@@ -326,7 +334,7 @@ static void add_full_edges(const patch *p, const corner *c, size_t count)
     for (size_t i = 0; i < count && p->middle > 0; i++) {
         const corner *next = &c[i + 1 == count ? 0 : i + 1];
         point2 middle = {0.5 * (c[i].at.x + next->at.x), 0.5 * (c[i].at.y + next->at.y)};
-        add_point(p, middle, 0.5 * (c[i].lean + next->lean), p->middle * c[i].fan,
+        add_point(p, middle, between(c[i].lean, next->lean), p->middle * c[i].fan,
                   key_of(POINT_MIDDLE, c[i].key, next->key));
     }
     for (size_t i = 0; i < count; i++) {
@@ -349,7 +357,7 @@ static void add_edges(const patch *p, corner *c, size_t count, double *corner_ar
             double area = chance * share * fan;
             if (area > 0) {
                 point2 middle = {0.5 * (c[i].at.x + c[j].at.x), 0.5 * (c[i].at.y + c[j].at.y)};
-                add_point(p, middle, 0.5 * (c[i].lean + c[j].lean), p->middle * area,
+                add_point(p, middle, between(c[i].lean, c[j].lean), p->middle * area,
                           key_of(POINT_MIDDLE, c[i].key, c[j].key));
                 corner_area[i] += p->corner * area;
                 corner_area[j] += p->corner * area;
@@ -372,7 +380,7 @@ static size_t clip_faces(const tl_pair_view *view, uint32_t fa, uint32_t fb, con
         p->now[i] = (corner){.at = project(frame, a->vertex[v]),
                              .key = vertex_key(POINT_A, v),
                              .edge = i,
-                             .lean = -1};
+                             .lean = {-1, 0}};
     }
     for (uint32_t i = 0; i < nb; i++)
         p->clip[i] = project(frame, view->vertex_b[b->loop[b->start[fb] + nb - 1 - i]]);
@@ -414,17 +422,18 @@ static bool reserve(tl_patch_points *out, size_t count)
     if (count <= out->room)
         return true;
     size_t room = 2 * count;
-    double *block =
-        room > UINT16_MAX ? NULL : malloc(room * (6 * sizeof(double) + sizeof(uint32_t)));
+    double *block = room > UINT16_MAX
+                        ? NULL
+                        : malloc(room * (5 * sizeof(double) + sizeof(tl_lean) + sizeof(uint32_t)));
     if (!block)
         return false;
     free(out->p[0]);
     for (int k = 0; k < 3; k++)
         out->p[k] = block + (size_t)k * room;
     out->rest = block + 3 * room;
-    out->lean = block + 4 * room;
-    out->area = block + 5 * room;
-    out->key = (uint32_t *)(void *)(block + 6 * room);
+    out->area = block + 4 * room;
+    out->lean = (tl_lean *)(void *)(block + 5 * room);
+    out->key = (uint32_t *)(void *)(out->lean + room);
     out->room = room;
     return true;
 }
@@ -450,15 +459,16 @@ static point2 rise_of(const frame2 *f, tl_vec3 na, tl_vec3 nb)
 }
 
 /* Of the centroid, which is a mean of the corners by their fan triangles. */
-static double mean_lean(const corner *c, size_t count)
+static tl_lean mean_lean(const corner *c, size_t count)
 {
-    double lean = 0, area = 0;
+    double face = 0, edge = 0, area = 0;
     for (size_t i = 0; i < count; i++) {
         double fans = c[i ? i - 1 : count - 1].fan + c[i].fan;
-        lean += fans * c[i].lean;
+        face += fans * c[i].lean.face;
+        edge += fans * c[i].lean.edge;
         area += fans;
     }
-    return lean / area;
+    return (tl_lean){(float)(face / area), (float)(edge / area)};
 }
 
 double tl_patch_lay(const tl_pair_view *view, uint32_t fa, uint32_t fb, double weight,

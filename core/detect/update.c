@@ -209,7 +209,7 @@ TL_VECTORIZED static void refit_patch(tl_points_table *p, size_t begin, const tl
     for (int k = 0; k < 3; k++)
         memcpy(p->p[k] + begin, g->p[k], g->count * sizeof(double));
     memcpy(p->rest + begin, g->rest, g->count * sizeof(double));
-    memcpy(p->lean + begin, g->lean, g->count * sizeof(double));
+    memcpy(p->lean + begin, g->lean, g->count * sizeof *g->lean);
     double *restrict f_n = p->f_n + begin, *restrict f_n0 = p->f_n0 + begin;
     double *restrict x = p->f_s[0] + begin, *restrict y = p->f_s[1] + begin;
     double *restrict z = p->f_s[2] + begin, *restrict area = p->area + begin;
