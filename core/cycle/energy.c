@@ -8,7 +8,9 @@
  * The error of the balance is of the second order in omega dt.
  *
  * Velocities may be set and bodies held, driven or freed between two steps: the kinetic energy this gives or
- * takes counts as external work, and the work until then goes by the motion that was made.
+ * takes counts as external work, and the work until then goes by the motion that was made. So does
+ * what contacts lose or gain when blocks are deleted, made, joined or parted, or laws changed: it is what the sum of
+ * that step lacks.
  *
  * The move books its bodies group by group (motion.c), while all that is needed is at hand. */
 #include "cycle/cycle_room.h"
@@ -24,9 +26,11 @@ struct tl_ledger {
     /* running sums, in the model's own ledger */
     double sum[TL_WORK_COUNT];
     double start_kinetic, start_stored;
-    double largest; /* change of a term so far */
-    double by_hand; /* kinetic energy given between steps */
-    double first;   /* kinetic energy by which the scheme's sum is less in the first step */
+    double largest;           /* change of a term so far */
+    double by_hand;           /* energy given between steps */
+    double error;             /* of the sum, at the last step */
+    uint64_t structure, laws; /* of the model, at the last step */
+    double first; /* kinetic energy by which the scheme's sum is less in the first step */
     bool started;
     tl_energy energy;
 };
@@ -184,7 +188,7 @@ static void sum_points(const tl_model *m, struct tl_ledger *l)
 }
 
 /* The ledger at the forces' time, and its balance. */
-static void close_ledger(struct tl_ledger *total, const struct tl_ledger *now)
+static void close_ledger(struct tl_ledger *total, const struct tl_ledger *now, bool changed)
 {
     tl_energy *e = &total->energy;
     bool first = !total->started;
@@ -208,6 +212,13 @@ static void close_ledger(struct tl_ledger *total, const struct tl_ledger *now)
     double gain_kinetic = e->kinetic - total->start_kinetic;
     double gain_stored = e->stored - total->start_stored;
     double sum = gain_kinetic + e->potential + gain_stored + e->friction + e->damping - e->external;
+    if (changed &&
+        !first) { /* what a deleted block's contacts held, or another law of them holds */
+        e->external += sum - total->error;
+        total->by_hand += sum - total->error;
+        sum = total->error;
+    }
+    total->error = sum;
     double largest = fmax(fmax(fabs(gain_kinetic), fabs(e->potential)),
                           fmax(fabs(gain_stored), fabs(e->friction)));
     largest = fmax(largest, fmax(fabs(e->damping), fabs(e->external)));
@@ -239,7 +250,10 @@ void tl_energy_close(tl_model *m)
     total->motion = now.motion;
     c->kinetic_before = now.motion0;
     sum_points(m, &now);
-    close_ledger(total, &now);
+    bool changed = total->structure != m->structure || total->laws != m->laws;
+    total->structure = m->structure;
+    total->laws = m->laws;
+    close_ledger(total, &now, changed);
 }
 
 tl_status tl_model_energy(tl_model *m, tl_energy *energy)

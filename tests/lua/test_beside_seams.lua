@@ -48,3 +48,19 @@ model:joint("*", "coulomb", { kn = 1e8, ks = 1e8, friction = 30 })
 check.near(model:contacts():min "gap", 0, 1e-9)
 model:blocks { group = "tunnel" }:delete()
 check.near(model:contacts():min "gap", 0, 1e-9)
+
+-- Freshly cut rock whose pieces outside a tunnel are joined again: whichever corner of a face is farthest by
+-- rounding, parts that share a face touch there, and nothing overlaps.
+for seed = 1, 3 do
+    local rock = talus.model { seed = seed }
+    rock:generate("box", { min = { 0, 0, 0 }, max = { 10, 10, 10 }, density = 2500 })
+    for i, set in ipairs { { 45, 30, 1.6, 7 }, { 70, 160, 1.8, 7 }, { 30, 250, 2, 6 } } do
+        rock:generate("jointset", { joint = "J" .. i, dip = set[1], dip_direction = set[2], dip_dev = 5,
+            spacing = set[3], number = set[4], origin = { 5, 5, 5 } })
+    end
+    rock:generate("tunnel", { face1 = { { 4, -1, 4 }, { 4, -1, 6.5 }, { 6, -1, 6.5 }, { 6, -1, 4 } },
+        face2 = { { 4, 11, 4 }, { 4, 11, 6.5 }, { 6, 11, 6.5 }, { 6, 11, 4 } }, group = "drift" })
+    rock:joint("*", "coulomb", { kn = 1e8, ks = 1e8, friction = 30 })
+    check.holds(#rock:contacts() > 900, "contacts are found")
+    check.near(rock:contacts():min "gap", 0, 1e-6)
+end

@@ -96,3 +96,21 @@ model:joint("*", "coulomb", { kn = K, ks = K })
 model:blocks():set { angular_velocity = { 0.1, 3, 0.1 } }
 model:timestep { dt = 0.01 }
 check.holds(watch(model, 2000) < BALANCE, "the balance of a top")
+
+-- A block deleted under load takes the energy of its contacts with it, and so does a softer law: external work.
+model = talus.model { gravity = { 0, 0, -10 } }
+model:generate("box", { min = { 0, 0, -1 }, max = { 1, 1, 0 }, density = DENSITY, group = "floor" })
+for i = 0, 2 do
+    model:generate("box", { min = { 0, 0, i }, max = { 1, 1, i + 1 }, density = DENSITY, group = "block " .. i })
+end
+model:blocks { group = "floor" }:fix()
+model:joint("*", "coulomb", { kn = K, ks = K, friction = 30 })
+model:damping "local"
+model:timestep { fraction = 0.05 }
+model:cycle(4000)
+local stored = model:energy().stored
+model:blocks { group = "block 2" }:delete()
+check.holds(watch(model, 4000) < BALANCE, "the balance after a block is deleted")
+check.holds(model:energy().stored < 0.5 * stored and model:energy().external < -0.05 * stored, "taken out")
+model:joint("*", { kn = K / 2 })
+check.holds(watch(model, 2000) < BALANCE, "the balance after a change of stiffness")
