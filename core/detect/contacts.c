@@ -66,17 +66,6 @@ void tl_contacts_init(tl_contacts *c, tl_points_table *p)
     p->state_columns = 0;
 }
 
-bool tl_points_hold_states(tl_points_table *p, uint32_t columns)
-{
-    for (uint32_t k = p->state_columns; k < columns; k++) {
-        if (!tl_table_widen(&p->table, "state", sizeof *p->state[k], TL_COLUMN_AT(p, state[k]),
-                            TL_COLUMN_STATE))
-            return false;
-        p->state_columns++;
-    }
-    return true;
-}
-
 void tl_point_lanes_init(tl_point_lanes *l)
 {
     tl_table *t = &l->table;
@@ -90,84 +79,6 @@ void tl_point_lanes_init(tl_point_lanes *l)
     TL_COLUMN(t, l, stored, 0);
     TL_COLUMN(t, l, dissipated, 0);
 }
-
-/* ---------------------------------------------------------------- points ----------------- */
-
-const tl_state *tl_kind_state(const tl_kind *kind, uint32_t k)
-{
-    return (const tl_state *)(const void *)((const char *)kind->states +
-                                            (size_t)k * kind->state_stride);
-}
-
-static uint32_t state_width(const tl_state *state)
-{
-    return state->kind == TL_STATE_TANGENT ? 3 : 1;
-}
-
-uint32_t tl_kind_state_columns(const tl_kind *kind)
-{
-    uint32_t columns = 0;
-    for (uint32_t k = 0; k < kind->state_count; k++)
-        columns += state_width(tl_kind_state(kind, k));
-    return columns;
-}
-
-void tl_point_clear(tl_points_table *p, size_t i)
-{
-    p->lean[i] = (tl_lean){0, 0};
-    p->area[i] = p->rest[i] = p->reference[i] = p->closure[i] = 0;
-    p->f_n0[i] = p->f_n[i] = 0;
-    p->flags[i] = p->key[i] = 0;
-    for (int k = 0; k < 3; k++)
-        p->p[k][i] = p->f_s[k][i] = 0;
-    for (uint32_t k = 0; k < p->state_columns; k++)
-        p->state[k][i] = 0;
-}
-
-void tl_point_initial_state(tl_points_table *p, size_t i, const tl_kind *kind)
-{
-    for (uint32_t k = 0; k < p->state_columns; k++)
-        p->state[k][i] = 0;
-    uint32_t column = 0;
-    for (uint32_t k = 0; kind && k < kind->state_count; k++) {
-        const tl_state *state = tl_kind_state(kind, k);
-        if (state->kind == TL_STATE_SCALAR)
-            p->state[column][i] = state->initial;
-        column += state_width(state);
-    }
-}
-
-/* Scales the split states to the new area; with `reset` false, states to be reset are kept. */
-static void take_state(tl_points_table *p, size_t i, const tl_kind *kind, const double *old,
-                       double old_area, bool reset)
-{
-    uint32_t column = 0;
-    for (uint32_t k = 0; kind && k < kind->state_count; k++) {
-        const tl_state *state = tl_kind_state(kind, k);
-        uint32_t width = state_width(state);
-        double scale = 1;
-        if (state->transfer == TL_TRANSFER_SPLIT)
-            scale = old_area > 0 ? p->area[i] / old_area : 0;
-        if (state->transfer != TL_TRANSFER_RESET || !reset)
-            for (uint32_t w = 0; w < width; w++)
-                p->state[column + w][i] = scale * old[column + w];
-        column += width;
-    }
-}
-
-void tl_point_take_state(tl_points_table *p, size_t i, const tl_kind *kind, const double *old,
-                         double old_area)
-{
-    take_state(p, i, kind, old, old_area, true);
-}
-
-void tl_point_keep_state(tl_points_table *p, size_t i, const tl_kind *kind, const double *old,
-                         double old_area)
-{
-    take_state(p, i, kind, old, old_area, false);
-}
-
-/* ---------------------------------------------------------------- contacts --------------- */
 
 uint32_t tl_material_row(const tl_model *m, tl_tag tag)
 {

@@ -391,6 +391,8 @@ static inline tl_vec3 tl_contact_moment(const tl_model *m, uint32_t contact, boo
 }
 /* Row of the contact of an id, or TL_NO_ROW. */
 uint32_t tl_contact_row(tl_detect *d, tl_id id);
+
+/* ---- points.c ---- */
 /* A point without force, area or place: an inert lane. */
 void tl_point_clear(tl_points_table *p, size_t point);
 /* The law's states of a point, at their initial values, or taken from an old point of some area. */
