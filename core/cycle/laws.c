@@ -5,6 +5,7 @@
 #include "cycle/cycle_room.h"
 
 #include <stdio.h>
+#include <string.h>
 
 /* Pages a worker takes at a time. */
 #define PAGE_CHUNK 2
@@ -57,6 +58,9 @@ static bool call_law(const run_job *job, size_t first, size_t count, const tl_po
         .stored = l->stored,
         .dissipated = l->dissipated,
     };
+    /* a law need not write its energies: those of the page before are not its own */
+    memset(l->stored, 0, count * sizeof *l->stored);
+    memset(l->dissipated, 0, count * sizeof *l->dissipated);
     const tl_law_ops *ops = job->material->kind->ops;
     tl_report report = {.size = sizeof report};
     tl_status status = ops->update(job->material->self, &batch, &report);

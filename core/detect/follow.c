@@ -211,8 +211,7 @@ static columns columns_at(const tl_points_table *p, size_t point, const tl_point
 typedef struct slip {
     tl_vec3 way, half;
     tl_mat3 m;
-    double
-        carry; /* half, for points that were there before that motion; 0 for those placed since */
+    double carry; /* half; 0 for points placed after that motion */
 } slip;
 
 static slip slip_of(const tl_moving *a, const tl_moving *b, tl_vec3 d)

@@ -262,7 +262,7 @@ static bool renew_patch(tl_model *m, uint32_t c, tl_narrow *room)
 static bool touches_still(tl_model *m, uint32_t c, tl_narrow *room)
 {
     tl_contacts *contacts = &m->detect->contacts;
-    if (contacts->point_count[c])
+    if (contacts->point_count[c] || contacts->until[c] == -INFINITY) /* under other rules */
         return false;
     tl_pair_view view = tl_pair_view_of(m, contacts->a[c], contacts->b[c]);
     if (!tl_pair_place(&view, room))

@@ -55,7 +55,7 @@ tl_poly *tl_poly_allocate(uint32_t vertex_count, uint32_t face_count, uint32_t e
     return p;
 }
 
-/* A half-edge is known by its place in `loop`; `star` lists them by their first vertex, for now. */
+/* A half-edge is known by its place in `loop`; `star` lists them by their first vertex until edges are known. */
 typedef struct half_edges {
     uint16_t *
         end; /* [place in star] the vertex it runs to: neighbours in memory are searched together */

@@ -91,3 +91,20 @@ for _, order in ipairs { { "A", "B" }, { "B", "A" } } do
     end
     check.near(contacts[1].gap, least, 0.03 * math.abs(least)) -- a step late, and the bisector turns
 end
+
+-- Two blocks that have touched along an edge and parted by less than ends their contact: an area given only
+-- then holds for it, too.
+local late = talus.model { gravity = { 0, 0, 0 } }
+late:generate("box", { min = { 0, 0, 0 }, max = { 1, 1, 1 }, density = 2000, group = "still" })
+late:generate("box", { min = { 0.99999, 0.99999, 0 }, max = { 2, 2, 1 }, density = 2000, group = "going" })
+late:joint("*", "coulomb", { kn = 1e9, ks = 1e9, friction = 30 })
+late:blocks { group = "still" }:fix()
+late:timestep { dt = 1e-6 }
+late:cycle(1)
+late:blocks { group = "going" }:set { velocity = { 1, 1, 0 } }
+late:cycle(30)
+check.equal(#late:contacts(), 0)
+late:contact_area { absolute = 0.01 }
+late:cycle(1)
+check.equal(#late:contacts(), 1)
+check.near(late:contacts():min "area", 0.01, 1e-12)
