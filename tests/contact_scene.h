@@ -283,7 +283,7 @@ static inline tl_vec3 scene_arm(const tl_model *m, size_t point)
 {
     const tl_point_lanes *lanes = &m->detect->lanes[0];
     tl_contact_places(m, 0, lanes);
-    return tl_columns_get(lanes->arm, point - m->detect->contacts.point_start[0]);
+    return tl_columns_get(lanes->arm, (point - m->detect->contacts.point_start[0]) / TL_LANES);
 }
 
 #endif

@@ -23,7 +23,7 @@ static void cycle_destroy(struct tl_cycle *cycle)
     pthread_mutex_destroy(&cycle->failure_lock);
     tl_table_free(&cycle->table);
     free(cycle->chunk_sums);
-    free(cycle->page_energy);
+    free(cycle->rank_energy);
     free(cycle->chunk_ledger);
     free(cycle->ledger);
     free(cycle);

@@ -24,10 +24,10 @@ typedef struct tl_sums {
     double max_speed2; /* largest v.v */
 } tl_sums;
 
-/* Energy in the contact points of a page, and turned to heat in this step. */
-typedef struct tl_page_energy {
+/* Energy in the contact points of a rank, and turned to heat in this step. */
+typedef struct tl_rank_energy {
     double stored, dissipated;
-} tl_page_energy;
+} tl_rank_energy;
 
 /* What the rules of the time step ask of the bodies that count, as long as none comes, goes or is held. */
 struct tl_counted {
@@ -117,8 +117,8 @@ struct tl_cycle {
     tl_sums *chunk_sums;
     size_t chunk_room;
     tl_sums sums;
-    tl_page_energy *page_energy;
-    size_t page_room;
+    tl_rank_energy *rank_energy;
+    size_t rank_room;
     struct tl_ledger *chunk_ledger, *ledger; /* energy.c */
     double kinetic_before;                   /* of the last step, for its rate */
     double dt;                               /* the step in use */

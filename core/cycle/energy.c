@@ -174,15 +174,15 @@ void tl_energy_chunk(tl_model *m, size_t chunk, const tl_work *work)
     }
 }
 
-/* Elastic energy and slip of the contact points, in the order of their pages. */
+/* Elastic energy and slip of the contact points, in the order of their ranks. */
 static void sum_points(const tl_model *m, struct tl_ledger *l)
 {
-    const tl_detect *d = m->detect;
-    for (size_t r = 0; r < d->run_count; r++) {
-        const tl_run *run = &d->runs[r];
-        for (size_t at = run->begin; at < run->end && run->material != TL_NO_ROW; at += TL_PAGE) {
-            l->stored += m->cycle->page_energy[at / TL_PAGE].stored;
-            l->friction += m->cycle->page_energy[at / TL_PAGE].dissipated;
+    const tl_layout *layout = &m->detect->layout;
+    for (size_t k = 0; k < layout->run_count; k++) {
+        const tl_run *run = &layout->runs[k];
+        for (size_t r = run->rank_begin; r < run->rank_end && run->material != TL_NO_ROW; r++) {
+            l->stored += m->cycle->rank_energy[r].stored;
+            l->friction += m->cycle->rank_energy[r].dissipated;
         }
     }
 }

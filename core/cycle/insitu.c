@@ -44,7 +44,7 @@ static void load_contact(tl_model *m, const tl_insitu *s, uint32_t c)
         if (f->kind != TL_FACET_PATCH)
             continue;
         for (size_t i = f->begin; i < f->begin + (size_t)f->count; i++)
-            load_point(m, s, contacts->point_start[c] + i, tl_columns_get(lanes->normal, i),
+            load_point(m, s, tl_point_row(contacts, c, i), tl_columns_get(lanes->normal, i),
                        foot + lanes->arm[2][i]);
     }
 }
@@ -62,7 +62,7 @@ static double covered_area(const tl_model *m, uint32_t row, uint32_t face)
             if (f->kind != TL_FACET_PATCH || (c->a[i] == row ? f->ia : f->ib) != face)
                 continue;
             for (uint32_t p = 0; p < f->count; p++)
-                area += d->points.area[c->point_start[i] + f->begin + p];
+                area += d->points.area[tl_point_row(c, i, f->begin + p)];
         }
     }
     return area;

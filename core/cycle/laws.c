@@ -7,8 +7,8 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Pages a worker takes at a time. */
-#define PAGE_CHUNK 2
+/* Ranks a worker takes at a time. */
+#define RANK_CHUNK 12
 
 typedef struct run_job {
     tl_model *m;
@@ -28,9 +28,9 @@ static void name_contact(tl_model *m, uint32_t c, char *text, size_t size)
 static uint32_t contact_of_point(const tl_contacts *contacts, size_t point)
 {
     for (uint32_t c = 0; c < contacts->table.rows; c++)
-        if (point >= contacts->point_start[c] &&
-            point < contacts->point_start[c] + contacts->point_room[c])
-            return c;
+        for (uint32_t k = 0; k < contacts->point_room[c]; k++)
+            if (point == tl_point_row(contacts, c, k))
+                return c;
     return 0;
 }
 
@@ -69,118 +69,119 @@ static bool call_law(const run_job *job, size_t first, size_t count, const tl_po
     return status == TL_OK;
 }
 
-/* The couple on B by which the areas of a facet, where they depend on tilt, do work: what the springs
+/* The couple on B by which the areas of a contact's facets, where they depend on tilt, do work: what the springs
  * gain or lose with their areas, the bodies lose or gain. Areas keep the points' stresses, so the energy
  * stored in them is in proportion. */
-static tl_vec3 facet_couple(const tl_facet *f, const double *stored_in, const tl_mat3 *ra)
+static tl_vec3 couple_of(const tl_model *m, uint32_t c, const double *stored_in)
 {
-    double stored = 0;
-    for (size_t i = f->begin; i < f->begin + (size_t)f->count; i++)
-        stored += stored_in[i];
-    return tl_v3_scale(stored, tl_m3_mul(ra, f->swing));
+    const tl_contacts *contacts = &m->detect->contacts;
+    const tl_mat3 *ra = &m->bodies.r[m->blocks.body[contacts->a[c]]];
+    tl_vec3 couple = {0, 0, 0};
+    for (uint32_t k = 0; k < contacts->facet_count[c]; k++) {
+        const tl_facet *f = &contacts->facet[contacts->facet_start[c] + k];
+        if (!(tl_v3_norm2(f->swing) > 0))
+            continue;
+        double stored = 0;
+        for (size_t i = f->begin; i < f->begin + (size_t)f->count; i++)
+            stored += stored_in[i * TL_LANES];
+        couple = tl_v3_madd(couple, stored, tl_m3_mul(ra, f->swing));
+    }
+    return couple;
 }
 
-/* Force on B of a contact's points, and its moment about A's centroid. */
-typedef struct sums {
-    tl_vec3 force, moment;
-} sums;
+/* Of each contact of a rank: force on B of its points, their moment about A's centroid, and the energies of
+ * their springs and slip. */
+typedef struct rank_sums {
+    double force[3][TL_LANES], moment[3][TL_LANES], stored[TL_LANES], dissipated[TL_LANES];
+} rank_sums;
+
+/* Point after point: the same order for every width of the processor's vectors. */
+TL_VECTORIZED static void sum_points(const tl_points_table *p, const tl_point_lanes *t, size_t row,
+                                     size_t lane, size_t slots, rank_sums *restrict out)
+{
+    const double *f_n = p->f_n + row, *f_x = p->f_s[0] + row, *f_y = p->f_s[1] + row;
+    const double *f_z = p->f_s[2] + row, *n_x = t->normal[0] + lane, *n_y = t->normal[1] + lane;
+    const double *n_z = t->normal[2] + lane, *x = t->arm[0] + lane, *y = t->arm[1] + lane;
+    const double *z = t->arm[2] + lane, *stored = t->stored + lane, *heat = t->dissipated + lane;
+    rank_sums s = {0};
+    for (size_t at = 0; at < slots * TL_LANES; at += TL_LANES)
+#pragma omp simd
+        for (size_t l = 0; l < TL_LANES; l++) {
+            size_t i = at + l;
+            double gx = f_x[i] + f_n[i] * n_x[i];
+            double gy = f_y[i] + f_n[i] * n_y[i];
+            double gz = f_z[i] + f_n[i] * n_z[i];
+            s.force[0][l] += gx;
+            s.force[1][l] += gy;
+            s.force[2][l] += gz;
+            s.moment[0][l] += y[i] * gz - z[i] * gy;
+            s.moment[1][l] += z[i] * gx - x[i] * gz;
+            s.moment[2][l] += x[i] * gy - y[i] * gx;
+            s.stored[l] += stored[i];
+            s.dissipated[l] += heat[i];
+        }
+    *out = s;
+}
 
 static double across(const double *lane)
 {
-    return (lane[0] + lane[1]) + (lane[2] + lane[3]);
+    return ((lane[0] + lane[1]) + (lane[2] + lane[3])) +
+           ((lane[4] + lane[5]) + (lane[6] + lane[7]));
 }
 
-/* Four sums side by side, added in the end: the same order for every width of the processor's vectors. Lanes
- * past the last point are inert. */
-TL_VECTORIZED static sums sum_points(const tl_points_table *p, size_t begin, size_t count,
-                                     const tl_point_lanes *l, size_t lane)
-{
-    const double *f_n = p->f_n + begin, *f_x = p->f_s[0] + begin, *f_y = p->f_s[1] + begin;
-    const double *f_z = p->f_s[2] + begin, *n_x = l->normal[0] + lane, *n_y = l->normal[1] + lane;
-    const double *n_z = l->normal[2] + lane, *x = l->arm[0] + lane, *y = l->arm[1] + lane;
-    const double *z = l->arm[2] + lane;
-    double fx[TL_POINT_ROUND] = {0}, fy[TL_POINT_ROUND] = {0}, fz[TL_POINT_ROUND] = {0};
-    double mx[TL_POINT_ROUND] = {0}, my[TL_POINT_ROUND] = {0}, mz[TL_POINT_ROUND] = {0};
-    for (size_t i = 0; i < count; i += TL_POINT_ROUND)
-#pragma omp simd
-        for (size_t k = 0; k < TL_POINT_ROUND; k++) {
-            double gx = f_x[i + k] + f_n[i + k] * n_x[i + k];
-            double gy = f_y[i + k] + f_n[i + k] * n_y[i + k];
-            double gz = f_z[i + k] + f_n[i + k] * n_z[i + k];
-            fx[k] += gx;
-            fy[k] += gy;
-            fz[k] += gz;
-            mx[k] += y[i + k] * gz - z[i + k] * gy;
-            my[k] += z[i + k] * gx - x[i + k] * gz;
-            mz[k] += x[i + k] * gy - y[i + k] * gx;
-        }
-    return (sums){{across(fx), across(fy), across(fz)}, {across(mx), across(my), across(mz)}};
-}
-
-/* The sums of a contact, with the couples of its facets, about both bodies' centroids. Lane 0 is point
- * `first`. */
-static void sum_contact(tl_model *m, uint32_t c, const tl_point_lanes *l, size_t first)
+/* Forces of the contacts of a rank, whose first point is in lane `lane`. */
+static void sum_rank(tl_model *m, const tl_rank *rank, const tl_point_lanes *t, size_t lane)
 {
     tl_contacts *contacts = &m->detect->contacts;
-    size_t begin = contacts->point_start[c];
-    sums sum = sum_points(&m->detect->points, begin, contacts->point_count[c], l, begin - first);
-    uint32_t a = m->blocks.body[contacts->a[c]];
-    const tl_facet *facets = &contacts->facet[contacts->facet_start[c]];
-    for (uint32_t k = 0; k < contacts->facet_count[c]; k++)
-        if (tl_v3_norm2(facets[k].swing) > 0)
-            sum.moment = tl_v3_add(
-                sum.moment, facet_couple(&facets[k], l->stored + (begin - first), &m->bodies.r[a]));
-    contacts->force[c] = sum.force;
-    contacts->moment[c] = sum.moment;
-    if (!tl_v3_finite(sum.force) || !tl_v3_finite(sum.moment))
-        tl_cycle_failed(m, begin, TL_E_NUMERIC, begin,
-                        "the force is not a finite number: is the time step too large, or a "
-                        "property out of proportion?");
+    rank_sums sum;
+    sum_points(&m->detect->points, t, rank->start, lane, rank->slots, &sum);
+    for (size_t l = 0; l < TL_LANES; l++) {
+        uint32_t c = rank->contact[l];
+        if (c == TL_NO_ROW)
+            continue;
+        tl_vec3 force = {sum.force[0][l], sum.force[1][l], sum.force[2][l]};
+        tl_vec3 moment = {sum.moment[0][l], sum.moment[1][l], sum.moment[2][l]};
+        contacts->force[c] = force;
+        contacts->moment[c] = tl_v3_add(moment, couple_of(m, c, t->stored + lane + l));
+        if (!tl_v3_finite(force) || !tl_v3_finite(moment))
+            tl_cycle_failed(m, rank->start, TL_E_NUMERIC, rank->start + l,
+                            "the force is not a finite number: is the time step too large, or a "
+                            "property out of proportion?");
+    }
+    m->cycle->rank_energy[rank - m->detect->layout.ranks] =
+        (tl_rank_energy){across(sum.stored), across(sum.dissipated)};
 }
 
-/* Energy in the points of a page, and turned to heat there in this step. */
-TL_VECTORIZED static tl_page_energy page_energy(const tl_point_lanes *l, size_t count)
+/* From the places of the bodies to the forces of the contacts of some ranks, which follow each other. */
+static void force_page(const run_job *job, const tl_rank *ranks, size_t count,
+                       const tl_point_lanes *t)
 {
-    const double *stored = l->stored, *dissipated = l->dissipated;
-    double s[TL_LANES] = {0}, d[TL_LANES] = {0};
-    for (size_t i = 0; i < count; i += TL_LANES)
-#pragma omp simd
-        for (size_t k = 0; k < TL_LANES; k++) {
-            s[k] += stored[i + k];
-            d[k] += dissipated[i + k];
-        }
-    return (tl_page_energy){across(s) + across(s + 4), across(d) + across(d + 4)};
+    size_t first = ranks->start, points = 0;
+    for (size_t r = 0; r < count; r++) {
+        tl_rank_follow(job->m, &ranks[r], t, points);
+        points += (size_t)ranks[r].slots * TL_LANES;
+    }
+    if (!call_law(job, first, points, t))
+        return;
+    for (size_t r = 0; r < count; r++)
+        sum_rank(job->m, &ranks[r], t, ranks[r].start - first);
 }
 
-/* From the places of the bodies to the forces of the contacts on a page. */
-static void force_page(const run_job *job, size_t page, const tl_point_lanes *l)
-{
-    tl_model *m = job->m;
-    tl_points_table *p = &m->detect->points;
-    size_t first = page * TL_PAGE, end = first + TL_PAGE;
-    const uint32_t *owner = p->owner + first / TL_POINT_ROUND;
-    job->m->cycle->page_energy[page] = (tl_page_energy){0, 0};
-    if (*owner == TL_OWNED_BEFORE)
-        return;
-    while (end < job->run->end && p->owner[end / TL_POINT_ROUND] == TL_OWNED_BEFORE)
-        end += TL_PAGE;
-    end = end < job->run->end ? end : (job->run->end + TL_LANES - 1) / TL_LANES * TL_LANES;
-    size_t count = end - first, groups = (count + TL_POINT_ROUND - 1) / TL_POINT_ROUND;
-    tl_contacts_follow(m, first, count, l);
-    if (!call_law(job, first, count, l))
-        return;
-    for (size_t g = 0; g < groups; g++)
-        if (owner[g] < TL_OWNED_BEFORE)
-            sum_contact(m, owner[g], l, first);
-    m->cycle->page_energy[page] = page_energy(l, count);
-}
-
+/* Ranks in pages, as many as fit. */
 static void force_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
 {
     (void)chunk;
     const run_job *job = user;
-    for (size_t page = begin; page < end; page++)
-        force_page(job, job->run->begin / TL_PAGE + page, &job->m->detect->lanes[thread]);
+    const tl_rank *ranks = job->m->detect->layout.ranks + job->run->rank_begin;
+    const tl_point_lanes *t = &job->m->detect->lanes[thread];
+    while (begin < end) {
+        size_t count = 1, points = (size_t)ranks[begin].slots * TL_LANES;
+        while (begin + count < end &&
+               (points += (size_t)ranks[begin + count].slots * TL_LANES) <= TL_PAGE)
+            count++;
+        force_page(job, &ranks[begin], count, t);
+        begin += count;
+    }
 }
 
 void tl_cycle_failed(tl_model *m, size_t chunk, tl_status status, size_t point, const char *text)
@@ -215,17 +216,16 @@ tl_status tl_laws_apply(tl_model *m)
 {
     tl_detect *d = m->detect;
     struct tl_cycle *cycle = m->cycle;
-    if (!tl_grow(&cycle->page_energy, &cycle->page_room, d->points.table.rows / TL_PAGE,
-                 sizeof *cycle->page_energy))
+    if (!tl_grow(&cycle->rank_energy, &cycle->rank_room, d->layout.rank_room,
+                 sizeof *cycle->rank_energy))
         return tl_fail_memory(&m->error);
     tl_follow_bodies(m);
-    for (size_t r = 0; r < d->run_count; r++) {
-        const tl_run *run = &d->runs[r];
+    for (size_t r = 0; r < d->layout.run_count; r++) {
+        const tl_run *run = &d->layout.runs[r];
         if (run->material == TL_NO_ROW)
             continue;
         run_job job = {m, &m->materials[run->material], run};
-        size_t pages = (run->end - run->begin + TL_PAGE - 1) / TL_PAGE;
-        tl_parallel_for(m->pool, pages, PAGE_CHUNK, force_range, &job);
+        tl_parallel_for(m->pool, run->rank_end - run->rank_begin, RANK_CHUNK, force_range, &job);
     }
     return report_failure(m);
 }
@@ -235,8 +235,8 @@ tl_status tl_laws_check(tl_model *m)
     const tl_detect *d = m->detect;
     const tl_contacts *c = &d->contacts;
     bool lawless = false; /* almost never: the contacts are then looked through for one to name */
-    for (size_t r = 0; r < d->run_count; r++)
-        lawless = lawless || d->runs[r].material == TL_NO_ROW;
+    for (size_t r = 0; r < d->layout.run_count; r++)
+        lawless = lawless || d->layout.runs[r].material == TL_NO_ROW;
     for (uint32_t i = 0; lawless && i < c->table.rows; i++) {
         if (c->material[i] != TL_NO_ROW || c->point_count[i] == 0)
             continue;

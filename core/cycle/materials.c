@@ -80,7 +80,7 @@ static void rebase(tl_model *m, const tl_material *material)
             before->ks == material->ks)
             continue;
         for (uint32_t i = 0; i < d->contacts.point_count[c]; i++)
-            rebase_point(&d->points, d->contacts.point_start[c] + i, before->kn);
+            rebase_point(&d->points, tl_point_row(&d->contacts, c, i), before->kn);
     }
 }
 
@@ -91,11 +91,8 @@ static void reset_states(tl_model *m, uint32_t material, const tl_kind *kind)
     for (uint32_t c = 0; d && c < d->contacts.table.rows; c++) {
         if (d->contacts.material[c] != material)
             continue;
-        size_t begin = d->contacts.point_start[c];
-        for (size_t i = begin; i < begin + d->contacts.point_count[c]; i++) {
-            d->points.flags[i] = 0;
-            tl_point_initial_state(&d->points, i, kind);
-        }
+        for (uint32_t k = 0; k < d->contacts.point_count[c]; k++)
+            tl_point_begin(&d->points, tl_point_row(&d->contacts, c, k), kind);
     }
 }
 

@@ -166,8 +166,8 @@ static sums facet_stiffness(const tl_model *m, uint32_t c, const tl_facet *f, bo
     if (in_b != of_b)
         centre = tl_m3_tmul(&m->bodies.r[in_b ? b : a], apart);
     sums out = {0, 0};
-    size_t begin = contacts->point_start[c] + f->begin;
-    for (size_t i = begin; i < begin + f->count; i++) {
+    for (uint32_t k = f->begin; k < f->begin + (uint32_t)f->count; k++) {
+        size_t i = tl_point_row(contacts, c, k);
         out.area += p->area[i];
         out.area_r2 += p->area[i] * tl_v3_norm2(tl_v3_sub(tl_columns_get(p->p, i), centre));
     }

@@ -46,10 +46,10 @@ const tl_field *tl_contact_fields(size_t *count)
 static void forces(const tl_detect *d, uint32_t c, double *normal, tl_vec3 *shear)
 {
     const tl_points_table *p = &d->points;
-    size_t begin = d->contacts.point_start[c];
     *normal = 0;
     *shear = tl_v3(0, 0, 0);
-    for (size_t i = begin; i < begin + d->contacts.point_count[c]; i++) {
+    for (uint32_t k = 0; k < d->contacts.point_count[c]; k++) {
+        size_t i = tl_point_row(&d->contacts, c, k);
         *normal += p->f_n[i];
         *shear = tl_v3_add(*shear, tl_v3(p->f_s[0][i], p->f_s[1][i], p->f_s[2][i]));
     }
@@ -58,11 +58,11 @@ static void forces(const tl_detect *d, uint32_t c, double *normal, tl_vec3 *shea
 /* Open when every point is, slipping when some point slips, failed when some bond is lost. */
 static const char *state_of(const tl_detect *d, uint32_t c)
 {
-    size_t begin = d->contacts.point_start[c];
     uint32_t any = 0, all = TL_POINT_OPEN;
-    for (size_t i = begin; i < begin + d->contacts.point_count[c]; i++) {
-        any |= d->points.flags[i];
-        all &= d->points.flags[i];
+    for (uint32_t k = 0; k < d->contacts.point_count[c]; k++) {
+        uint32_t flags = d->points.flags[tl_point_row(&d->contacts, c, k)];
+        any |= flags;
+        all &= flags;
     }
     if (all & TL_POINT_OPEN)
         return "open";

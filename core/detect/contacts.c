@@ -1,8 +1,7 @@
 /* contacts.c - the tables of contacts and contact points, and how they are laid out.
  *
- * The points of a material are one run of columns, so a law is called on the columns themselves. A
- * contact has room for a few points more than it needs, and a run for a few contacts more; what is not
- * used are inert lanes (area 0). Laying out anew sorts the contacts by material and blocks. */
+ * The points of a material are one run of columns, so a law is called on the columns themselves (ranks.c); a run
+ * has room for a few contacts more. Laying out anew sorts the contacts by material and blocks. */
 #include "detect/detect.h"
 
 #include <stdlib.h>
@@ -15,7 +14,6 @@
 #define SPARE_CALM 64
 #define SPARE_BUSY 8
 #define LAYOUT_LASTS 100
-#define SPARE_POINTS 256
 #define SPARE_ROWS 64
 
 void tl_contacts_init(tl_contacts *c, tl_points_table *p)
@@ -157,18 +155,12 @@ static place *sorted(const tl_contacts *c, size_t *count)
     return list;
 }
 
-/* Room for points, with one to spare; a contact that touches without area needs none. */
-static uint32_t room_for(uint32_t points)
-{
-    return points ? (points + TL_POINT_ROUND) / TL_POINT_ROUND * TL_POINT_ROUND : 0;
-}
-
 /* Room a contact is to get. What it has now must fit, too, for it is read when the new takes its place: of a
  * contact that grows in points the facets can become fewer, and the other way round. */
 static uint32_t wanted_points(const tl_contacts *c, uint32_t row)
 {
     uint32_t want = c->want_points[row], have = c->point_count[row];
-    return room_for(want > have ? want : have);
+    return want > have ? want : have;
 }
 
 static uint32_t wanted_facets(const tl_contacts *c, uint32_t row)
@@ -177,17 +169,21 @@ static uint32_t wanted_facets(const tl_contacts *c, uint32_t row)
     return want > have ? want : have;
 }
 
-static bool add_run(tl_detect *d, uint32_t material, size_t begin)
+/* Copies a contact's points from one table to other rows of another, or of the same. */
+static void copy_points(const tl_points_table *from, size_t row, tl_points_table *to, size_t start,
+                        uint32_t count)
 {
-    if (!tl_grow(&d->runs, &d->run_room, d->run_count + 1, sizeof *d->runs))
-        return false;
-    d->runs[d->run_count++] = (tl_run){material, begin, begin, begin};
-    return true;
+    for (size_t k = 0; k < from->table.column_count && count; k++) {
+        size_t size = from->table.columns[k].size;
+        char *target = (char *)tl_table_data(&to->table, k) + start * size;
+        const char *source = (const char *)tl_table_data(&from->table, k) + row * size;
+        for (uint32_t i = 0; i < count; i++)
+            memcpy(target + i * TL_LANES * size, source + i * TL_LANES * size, size);
+    }
 }
 
-/* Copies a contact and its points and facets into the spare tables. */
-static void copy_contact(tl_detect *d, uint32_t from, uint32_t to, uint32_t point_start,
-                         uint32_t facet_start)
+/* Copies a contact and its facets into the spare table, with the room for points it is to get. */
+static void copy_contact(tl_detect *d, uint32_t from, uint32_t to, uint32_t facet_start)
 {
     tl_contacts *c = &d->contacts, *fresh = &d->spare;
     for (size_t k = 0; k < c->table.column_count; k++) {
@@ -195,15 +191,9 @@ static void copy_contact(tl_detect *d, uint32_t from, uint32_t to, uint32_t poin
         memcpy((char *)tl_table_data(&fresh->table, k) + to * size,
                (const char *)tl_table_data(&c->table, k) + from * size, size);
     }
-    fresh->point_start[to] = point_start;
+    bool grows = c->fate[from] == TL_FATE_GROW;
+    fresh->point_room[to] = grows ? wanted_points(c, from) : c->point_count[from];
     fresh->facet_start[to] = facet_start;
-    size_t columns = c->point_count[from] ? d->points.table.column_count : 0;
-    for (size_t k = 0; k < columns; k++) {
-        size_t size = d->points.table.columns[k].size;
-        memcpy((char *)tl_table_data(&d->spare_points.table, k) + point_start * size,
-               (const char *)tl_table_data(&d->points.table, k) + c->point_start[from] * size,
-               c->point_count[from] * size);
-    }
     if (c->facet_count[from])
         memcpy(&fresh->facet[facet_start], &c->facet[c->facet_start[from]],
                c->facet_count[from] * sizeof *c->facet);
@@ -251,33 +241,6 @@ bool tl_contacts_index(tl_model *m)
     return true;
 }
 
-static size_t whole_pages(size_t points)
-{
-    return (points + TL_PAGE - 1) / TL_PAGE * TL_PAGE;
-}
-
-/* Where `room` points begin that follow what is used up to `end`: within one page, or on pages of their own. */
-static size_t begin_after(size_t end, uint32_t room)
-{
-    return end % TL_PAGE + room > TL_PAGE ? whole_pages(end) : end;
-}
-
-/* Where points that begin there end, for what follows. */
-static size_t end_of(size_t begin, uint32_t room)
-{
-    return room > TL_PAGE ? whole_pages(begin + room) : begin + room;
-}
-
-/* Notes the contact whose points begin there; on pages it has for itself, that nothing else does. */
-static void own(tl_points_table *p, size_t begin, uint32_t room, uint32_t row)
-{
-    if (room)
-        p->owner[begin / TL_POINT_ROUND] = row;
-    for (size_t page = whole_pages(begin + 1); page < begin + room && room > TL_PAGE;
-         page += TL_PAGE)
-        p->owner[page / TL_POINT_ROUND] = row == TL_NO_ROW ? TL_NO_ROW : TL_OWNED_BEFORE;
-}
-
 static void choose_spare(tl_detect *d, int64_t cycles)
 {
     size_t share = d->spare_share;
@@ -298,26 +261,6 @@ static size_t with_spare(const tl_detect *d, size_t need, size_t least)
     return need + (more > least ? more : least);
 }
 
-/* Where the runs of the sorted contacts begin and end, with their slack; *points is the sum. */
-static bool lay_runs(tl_detect *d, const place *list, size_t count, size_t *points)
-{
-    tl_contacts *c = &d->contacts;
-    d->run_count = 0;
-    *points = 0;
-    for (size_t i = 0; i < count;) {
-        uint32_t material = list[i].material;
-        if (!add_run(d, material, *points))
-            return false;
-        tl_run *run = &d->runs[d->run_count - 1];
-        for (; i < count && list[i].material == material; i++)
-            run->limit = end_of(begin_after(run->limit, c->point_room[list[i].row]),
-                                c->point_room[list[i].row]);
-        run->limit = whole_pages(run->begin + with_spare(d, run->limit - run->begin, SPARE_POINTS));
-        *points = run->limit;
-    }
-    return true;
-}
-
 /* Room for the facets of all contacts and some more, in the spare list. */
 static bool lay_facets(tl_detect *d, size_t facets)
 {
@@ -330,26 +273,22 @@ static bool lay_facets(tl_detect *d, size_t facets)
     return true;
 }
 
-/* Nobody owns points yet. */
-static bool lay_owners(tl_detect *d, size_t points)
+static size_t larger(size_t a, size_t b)
 {
-    tl_points_table *p = &d->spare_points;
-    size_t groups = points / TL_POINT_ROUND;
-    if (!tl_grow(&p->owner, &p->owner_room, groups + 1, sizeof *p->owner))
-        return false;
-    for (size_t i = 0; i < groups; i++)
-        p->owner[i] = TL_NO_ROW;
-    return true;
+    return a > b ? a : b;
 }
 
-/* Lanes for a page, or the pages of the largest contact, for every thread. */
-static bool make_lanes(tl_detect *d, size_t largest)
+/* Lanes for a page, or the largest rank, for every thread. */
+static bool make_lanes(tl_detect *d, const tl_layout *layout)
 {
-    size_t room = whole_pages(largest);
+    size_t room = TL_PAGE;
+    for (size_t r = 0; r < layout->run_count; r++)
+        for (size_t i = layout->runs[r].rank_begin; i < layout->runs[r].rank_end; i++)
+            room = larger(room, (size_t)layout->ranks[i].slots * TL_LANES);
     for (unsigned i = 0; i < d->threads; i++)
         if (!tl_table_resize(&d->lanes[i].table, room))
             return false;
-    d->lane_room = room > d->lane_room ? room : d->lane_room;
+    d->lane_room = larger(room, d->lane_room);
     return true;
 }
 
@@ -358,102 +297,101 @@ static void free_spare(tl_detect *d)
 {
     tl_table_free(&d->spare.table);
     tl_table_free(&d->spare_points.table);
-    free(d->spare_points.owner);
-    d->spare_points.owner = NULL;
-    d->spare_points.owner_room = 0;
     free(d->spare.facet);
     d->spare.facet = NULL;
     d->spare.facet_capacity = 0;
+}
+
+/* Points of the contacts in their new order, in the spare table. */
+static void move_points(tl_detect *d, const place *list)
+{
+    for (uint32_t i = 0; i < d->spare.table.rows; i++) {
+        uint32_t row = list[i].row;
+        copy_points(&d->points, d->contacts.point_start[row], &d->spare_points,
+                    d->spare.point_start[i], d->contacts.point_count[row]);
+        d->pairs[d->spare.pair[i]].contact = i;
+    }
 }
 
 tl_status tl_contacts_repack(tl_model *m)
 {
     tl_detect *d = m->detect;
     tl_contacts *c = &d->contacts, *fresh = &d->spare;
-    size_t count, points, facets = 0, largest = TL_PAGE;
+    size_t count, points, facets = 0;
     place *list = sorted(c, &count);
     if (!list)
         return tl_fail_memory(&m->error);
     for (size_t i = 0; i < count; i++) {
         uint32_t row = list[i].row;
-        if (c->fate[row] == TL_FATE_GROW) {
-            c->point_room[row] = wanted_points(c, row);
+        if (c->fate[row] == TL_FATE_GROW)
             c->facet_room[row] = wanted_facets(c, row);
-        }
         facets += c->facet_room[row];
-        largest = c->point_room[row] > largest ? c->point_room[row] : largest;
     }
     choose_spare(d, m->cycles);
     fresh->table.rows = 0;
     d->spare_points.table.rows = 0;
-    if (!lay_runs(d, list, count, &points) || !lay_facets(d, facets) ||
-        !tl_table_reserve(&fresh->table, with_spare(d, count, SPARE_ROWS)) ||
-        !tl_table_resize(&fresh->table, count) ||
-        !tl_table_resize(&d->spare_points.table, points) || !lay_owners(d, points) ||
-        !make_lanes(d, largest)) {
-        free(list);
+    bool there = lay_facets(d, facets) &&
+                 tl_table_reserve(&fresh->table, with_spare(d, count, SPARE_ROWS)) &&
+                 tl_table_resize(&fresh->table, count);
+    fresh->facet_total = 0;
+    for (uint32_t i = 0; i < count && there; i++) {
+        copy_contact(d, list[i].row, i, (uint32_t)fresh->facet_total);
+        fresh->facet_total += c->facet_room[list[i].row];
+    }
+    tl_layout layout = {0};
+    there = there && tl_layout_make(&layout, fresh, d->spare_share, &points) &&
+            make_lanes(d, &layout) && tl_table_resize(&d->spare_points.table, points);
+    if (there)
+        move_points(d, list);
+    free(list);
+    if (!there) {
+        tl_layout_free(&layout);
         return tl_fail_memory(&m->error);
     }
-    size_t facet_at = 0;
-    tl_run *run = d->runs;
-    for (uint32_t i = 0; i < count; i++) {
-        uint32_t row = list[i].row;
-        if (i && list[i].material != list[i - 1].material)
-            run++;
-        size_t at = begin_after(run->end, c->point_room[row]);
-        copy_contact(d, row, i, (uint32_t)at, (uint32_t)facet_at);
-        d->pairs[c->pair[row]].contact = i;
-        own(&d->spare_points, at, c->point_room[row], i);
-        run->end = end_of(at, c->point_room[row]);
-        facet_at += c->facet_room[row];
-    }
-    free(list);
-    fresh->facet_total = facet_at;
+    tl_layout_free(&d->layout);
+    d->layout = layout;
     swap_tables(d);
     free_spare(d);
     return tl_contacts_index(m) ? TL_OK : tl_fail_memory(&m->error);
 }
 
-static tl_run *run_of(tl_detect *d, uint32_t material)
-{
-    for (size_t r = 0; r < d->run_count; r++)
-        if (d->runs[r].material == material)
-            return &d->runs[r];
-    return NULL;
-}
-
+/* Leaves a contact's lane empty. */
 static void clear_points(tl_detect *d, uint32_t contact)
 {
-    size_t begin = d->contacts.point_start[contact];
-    own(&d->points, begin, d->contacts.point_room[contact], TL_NO_ROW);
-    for (size_t i = begin; i < begin + d->contacts.point_room[contact]; i++)
-        tl_point_clear(&d->points, i);
+    tl_rank_note(d, contact, TL_NO_ROW);
+    for (size_t k = 0; k < d->contacts.point_room[contact]; k++)
+        tl_point_clear(&d->points, tl_point_row(&d->contacts, contact, k));
+}
+
+/* Moves a contact's points, if it has or wants any, to a lane with the room it wants. */
+static bool place_points(tl_detect *d, uint32_t row)
+{
+    tl_contacts *c = &d->contacts;
+    uint32_t points = wanted_points(c, row), lane;
+    if (!points)
+        return true;
+    const tl_rank *rank = tl_rank_take(d, c->material[row], points, row, &lane);
+    if (!rank)
+        return false;
+    copy_points(&d->points, c->point_start[row], &d->points, rank->start + lane,
+                c->point_count[row]);
+    clear_points(d, row);
+    c->point_start[row] = rank->start + lane;
+    c->point_room[row] = rank->slots;
+    return true;
 }
 
 bool tl_contact_place(tl_detect *d, uint32_t row)
 {
     tl_contacts *c = &d->contacts;
-    tl_run *run = run_of(d, c->material[row]);
-    uint32_t points = wanted_points(c, row), facets = wanted_facets(c, row);
-    size_t from = c->point_start[row], to = begin_after(run ? run->end : 0, points);
-    if (!run || points > d->lane_room || end_of(to, points) > run->limit ||
-        c->facet_total + facets > c->facet_capacity)
+    uint32_t facets = wanted_facets(c, row);
+    if (c->facet_total + facets > c->facet_capacity || !place_points(d, row))
         return false;
-    for (size_t k = 0; k < d->points.table.column_count && c->point_count[row]; k++) {
-        size_t size = d->points.table.columns[k].size;
-        char *data = tl_table_data(&d->points.table, k);
-        memcpy(data + to * size, data + from * size, c->point_count[row] * size);
-    }
     if (c->facet_count[row])
         memcpy(&c->facet[c->facet_total], &c->facet[c->facet_start[row]],
                c->facet_count[row] * sizeof *c->facet);
-    clear_points(d, row);
-    c->point_start[row] = (uint32_t)to;
-    c->point_room[row] = points;
     c->facet_start[row] = (uint32_t)c->facet_total;
     c->facet_room[row] = facets;
-    run->end = end_of(to, points);
-    own(&d->points, to, points, row);
     c->facet_total += facets;
     return true;
 }
@@ -468,7 +406,7 @@ void tl_contact_remove(tl_detect *d, uint32_t row)
     if (row != last) {
         tl_table_move(&c->table, row, last);
         d->pairs[c->pair[row]].contact = row;
-        own(&d->points, c->point_start[row], c->point_room[row], row);
+        tl_rank_note(d, row, row);
     }
     c->table.rows = last;
 }

@@ -43,13 +43,11 @@ static void detect_destroy(tl_detect *d)
     free(d->narrow);
     free(d->lanes);
     free(d->moving);
-    free(d->points.owner);
-    free(d->spare_points.owner);
     free(d->contacts.facet);
     free(d->spare.facet);
     free(d->pairs);
     free(d->odometer_0);
-    free(d->runs);
+    tl_layout_free(&d->layout);
     free(d->by_block);
     free(d->by_block_start);
     free(d->by_id);
@@ -249,11 +247,8 @@ static void change_material(tl_model *m, uint32_t c)
     const tl_kind *kind = material == TL_NO_ROW ? NULL : m->materials[material].kind;
     if (old != TL_NO_ROW && m->materials[old].kind == kind)
         return;
-    size_t begin = d->contacts.point_start[c];
-    for (size_t i = begin; i < begin + d->contacts.point_count[c]; i++) {
-        d->points.flags[i] = 0;
-        tl_point_initial_state(&d->points, i, kind);
-    }
+    for (uint32_t k = 0; k < d->contacts.point_count[c]; k++)
+        tl_point_begin(&d->points, tl_point_row(&d->contacts, c, k), kind);
 }
 
 /* Takes out the dead and finds room for those that are new or have grown; false when there is none. Backward,

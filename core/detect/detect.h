@@ -150,7 +150,8 @@ typedef struct tl_contacts {
     double *search; /* sum of odometers up to which the axis need not be searched anew */
     double *until;  /* sum of odometers up to which the facets may be reused */
     uint32_t *facet_start, *facet_count, *facet_room;
-    uint32_t *point_start, *point_count, *point_room;
+    uint32_t *point_start; /* row of the first point; the next are TL_LANES rows apart */
+    uint32_t *point_count, *point_room;
     double *area;
     tl_vec3 *force;                      /* on B */
     tl_vec3 *moment;                     /* of the forces on B, about A's body's centroid */
@@ -179,9 +180,6 @@ typedef struct tl_points_table {
     uint32_t *flags;
     double *state[TL_STATE_COLUMNS]; /* as many as the laws need; the others are NULL */
     uint32_t state_columns;
-    uint32_t
-        *owner; /* for each TL_POINT_ROUND points: row of the contact whose points begin there */
-    size_t owner_room;
 } tl_points_table;
 
 /* What is known of points only while a step works on them. */
@@ -193,20 +191,34 @@ typedef struct tl_point_lanes {
     double *stored, *dissipated;
 } tl_point_lanes;
 
-/* A contact's room for points is a multiple of TL_POINT_ROUND and lies within one page of TL_PAGE points, so
- * that a page is worked on as a whole while it is in the nearest cache: gaps, laws, sums. A contact of more
- * points has pages of its own. */
-#define TL_POINT_ROUND 4
-#define TL_PAGE 256
-/* As an owner: the page belongs to a contact that begins before it. */
-#define TL_OWNED_BEFORE (UINT32_MAX - 1)
+/* Contacts of one material whose points lie side by side: point k of the contact in lane l is row start + TL_LANES k
+ * + l. What has to be done for each contact is done for all of a rank at once, one in each lane of the
+ * processor's vectors, and so is what has to be done for each point. Lanes without a contact, and rows beyond a
+ * contact's points, are inert: area 0. */
+typedef struct tl_rank {
+    uint32_t start, slots;      /* points there is room for in each lane */
+    uint32_t contact[TL_LANES]; /* row, or TL_NO_ROW */
+} tl_rank;
 
-/* Run of points of one material: whole pages, used up to `end`, with room up to `limit`. What lies beyond
- * a contact's points are inert lanes. */
+/* Points that are worked on as a whole while they are in the nearest cache, from gaps to sums: as many ranks as
+ * have room for so many, or one. */
+#define TL_PAGE 256
+
+/* The ranks of one material, one after the other: in the list of ranks, and their points from `begin`, used up to
+ * `end`, with room up to `limit`. */
 typedef struct tl_run {
     uint32_t material;
     size_t begin, end, limit;
+    size_t rank_begin, rank_end, rank_limit;
 } tl_run;
+
+/* Where the points of all contacts are. */
+typedef struct tl_layout {
+    tl_run *runs;
+    size_t run_count, run_room;
+    tl_rank *ranks;
+    size_t rank_room;
+} tl_layout;
 
 /* Motion of a body in the last step, at an arm from its centroid: way + m arm; `half` is its turn as axis
  * times the tangent of half the angle. */
@@ -228,8 +240,7 @@ typedef struct tl_detect {
     tl_points_table points, spare_points;
     int64_t laid_at;    /* steps made when contacts were laid out */
     size_t spare_share; /* 1 / this of rows, points and facets were added to spare; 0: never yet */
-    tl_run *runs;
-    size_t run_count, run_room;
+    tl_layout layout;
     uint32_t *by_block, *by_block_start; /* contacts of each block, ascending by partner */
     size_t by_block_room, by_start_room;
     uint32_t *by_id; /* contact rows by ascending id; made when asked for */
@@ -237,7 +248,7 @@ typedef struct tl_detect {
     bool by_id_fresh;
     tl_id next_contact;
     tl_narrow *narrow;     /* [threads] */
-    tl_point_lanes *lanes; /* [threads]: a page, or the largest contact */
+    tl_point_lanes *lanes; /* [threads]: a page, or the largest rank */
     size_t lane_room;
     tl_moving *moving;
     size_t moving_room;
@@ -324,9 +335,11 @@ void tl_polygon_free(struct tl_polygon *polygon, tl_patch_points *points);
 /* ---- follow.c ---- */
 /* Notes how every body moved in the last step: before contacts are followed. */
 void tl_follow_bodies(tl_model *m);
-/* Gaps, normals and relative motion of the contacts whose points begin among `points` from `first` on, the
- * first point's into lane 0; turns shear forces with the common plane. */
-void tl_contacts_follow(tl_model *m, size_t first, size_t points, const tl_point_lanes *lanes);
+/* Gaps, normals and relative motion of the contacts of a rank, its first point's into lane `lane`; turns shear forces
+ * with the common plane. */
+void tl_rank_follow(tl_model *m, const tl_rank *rank, const tl_point_lanes *lanes, size_t lane);
+
+/* ---- places.c ---- */
 /* Arms and normals of a contact's points in the present place, from lane 0 on; du_n gets their closures. */
 void tl_contact_places(const tl_model *m, uint32_t contact, const tl_point_lanes *lanes);
 /* The same for a contact whose points are new: closures are set, and forces turn from here. */
@@ -362,7 +375,7 @@ void tl_point_lanes_init(tl_point_lanes *lanes);
 bool tl_contact_append(tl_model *m, uint32_t pair, const tl_axis *axis, tl_tag tag,
                        size_t want_points, size_t want_facets);
 /* Lays contacts and points out anew: without those of fate TL_FATE_DIE, sorted by material and blocks,
- * each with the room it wants. */
+ * each with the room it wants at least. */
 tl_status tl_contacts_repack(tl_model *m);
 /* Moves a contact's points and facets to where there is the room it wants, in the run of its material;
  * false when there is none: lay all out anew. */
@@ -389,14 +402,31 @@ static inline tl_vec3 tl_contact_moment(const tl_model *m, uint32_t contact, boo
         tl_body_apart(&m->bodies, m->blocks.body[c->a[contact]], m->blocks.body[c->b[contact]]);
     return tl_v3_sub(c->moment[contact], tl_v3_cross(apart, c->force[contact]));
 }
+/* Row of point k of a contact. */
+static inline size_t tl_point_row(const tl_contacts *c, uint32_t contact, size_t k)
+{
+    return c->point_start[contact] + k * TL_LANES;
+}
 /* Row of the contact of an id, or TL_NO_ROW. */
 uint32_t tl_contact_row(tl_detect *d, tl_id id);
+
+/* ---- ranks.c ---- */
+/* Gives contacts that are sorted by material their lanes in an empty layout: sets the start and room of each by the
+ * room it wants, with one in `share` to spare; *points is the number of rows. false when out of memory. */
+bool tl_layout_make(tl_layout *layout, tl_contacts *contacts, size_t share, size_t *points);
+void tl_layout_free(tl_layout *layout);
+/* A free lane of a material's run with room for so many points, taken for a contact; NULL when there is none. */
+tl_rank *tl_rank_take(tl_detect *d, uint32_t material, uint32_t points, uint32_t contact,
+                      uint32_t *lane);
+/* Notes that a contact's lane belongs to that row, or to none. */
+void tl_rank_note(tl_detect *d, uint32_t contact, uint32_t row);
 
 /* ---- points.c ---- */
 /* A point without force, area or place: an inert lane. */
 void tl_point_clear(tl_points_table *p, size_t point);
 /* The law's states of a point, at their initial values, or taken from an old point of some area. */
 void tl_point_initial_state(tl_points_table *p, size_t point, const tl_kind *kind);
+void tl_point_begin(tl_points_table *p, size_t point, const tl_kind *kind); /* and no flags */
 void tl_point_take_state(tl_points_table *p, size_t point, const tl_kind *kind, const double *old,
                          double old_area);
 /* The same for a point that keeps its place: what is reset on a change of polygon stays. */

@@ -24,8 +24,8 @@ void tl_detect_memory(const tl_model *m, tl_memory *memory)
     memory->broad += tl_broad_bytes(d->broad) + d->body_room * sizeof *d->odometer_0;
     memory->index += d->by_block_room * sizeof *d->by_block +
                      d->by_start_room * sizeof *d->by_block_start +
-                     d->by_id_room * sizeof *d->by_id;
-    memory->other += sizeof *d + d->run_room * sizeof *d->runs;
+                     d->by_id_room * sizeof *d->by_id + d->layout.rank_room * sizeof(tl_rank);
+    memory->other += sizeof *d + d->layout.run_room * sizeof(tl_run);
     for (unsigned i = 0; i < d->threads; i++)
         memory->other += narrow_bytes(&d->narrow[i]);
 }

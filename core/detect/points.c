@@ -47,6 +47,12 @@ void tl_point_initial_state(tl_points_table *p, size_t i, const tl_kind *kind)
     }
 }
 
+void tl_point_begin(tl_points_table *p, size_t i, const tl_kind *kind)
+{
+    p->flags[i] = 0;
+    tl_point_initial_state(p, i, kind);
+}
+
 /* Scales the split states to the new area; with `reset` false, states to be reset are kept. */
 static void take_state(tl_points_table *p, size_t i, const tl_kind *kind, const double *old,
                        double old_area, bool reset)

@@ -28,9 +28,8 @@ bool tl_touches_add(const tl_model *m, uint32_t row, tl_touches *touches)
             tl_touch touch = {.other = first ? c->b[contact] : c->a[contact],
                               .normal = tl_m3_mul(turn, shape->plane[face].normal),
                               .joint = c->tag[contact]};
-            size_t begin = c->point_start[contact] + facet->begin;
-            for (size_t p = begin; p < begin + facet->count; p++)
-                touch.area += d->points.area[p];
+            for (uint32_t k = facet->begin; k < facet->begin + (uint32_t)facet->count; k++)
+                touch.area += d->points.area[tl_point_row(c, contact, k)];
             if (touch.area > 0 && !add(touches, &touch))
                 return false;
         }

@@ -59,11 +59,11 @@ static void read_old(const tl_model *m, uint32_t c, tl_narrow *room, const tl_po
         const tl_facet *f = &contacts->facet[contacts->facet_start[c] + k];
         for (uint32_t j = f->begin; j < f->begin + (uint32_t)f->count; j++) {
             room->old[j].arm = tl_columns_get(lanes->arm, j);
-            room->old[j].normal = tl_facet_last_normal(f, p->lean[contacts->point_start[c] + j]);
+            room->old[j].normal = tl_facet_last_normal(f, p->lean[tl_point_row(contacts, c, j)]);
         }
     }
     for (size_t k = 0; k < contacts->point_count[c]; k++) {
-        size_t i = contacts->point_start[c] + k;
+        size_t i = tl_point_row(contacts, c, k);
         double per_area = p->area[i] > 0 ? 1 / p->area[i] : 0;
         old_point *o = &room->old[k];
         o->shear = tl_v3_scale(per_area, tl_columns_get(p->f_s, i));
@@ -128,8 +128,9 @@ static void correct_shear(tl_points_table *p, const tl_point_lanes *lanes, size_
     tl_vec3 n = now->normal;
     tl_vec3 force = want->shear;
     double torsion = want->torsion, polar = 0, reach = 0;
-    for (size_t i = begin; i < begin + count; i++) {
-        tl_vec3 arm = tl_v3_sub(tl_columns_get(lanes->arm, i - begin), now->centre),
+    for (size_t k = 0; k < count; k++) {
+        size_t i = begin + k * TL_LANES;
+        tl_vec3 arm = tl_v3_sub(tl_columns_get(lanes->arm, k), now->centre),
                 f = tl_columns_get(p->f_s, i);
         tl_vec3 across = tl_v3_cross(n, arm);
         force = tl_v3_sub(force, f);
@@ -139,9 +140,9 @@ static void correct_shear(tl_points_table *p, const tl_point_lanes *lanes, size_
     }
     force = tl_v3_madd(force, -tl_v3_dot(force, n), n);
     double twist = polar > 0 ? bounded(torsion / polar, reach, largest) : 0;
-    for (size_t i = begin; i < begin + count; i++) {
-        tl_vec3 across =
-            tl_v3_cross(n, tl_v3_sub(tl_columns_get(lanes->arm, i - begin), now->centre));
+    for (size_t k = 0; k < count; k++) {
+        size_t i = begin + k * TL_LANES;
+        tl_vec3 across = tl_v3_cross(n, tl_v3_sub(tl_columns_get(lanes->arm, k), now->centre));
         tl_vec3 add =
             tl_v3_madd(tl_v3_scale(p->area[i] / now->area, force), p->area[i] * twist, across);
         p->f_s[0][i] += add.x;
@@ -166,7 +167,7 @@ static void correct_field(const tl_points_table *p, const tl_point_lanes *lanes,
     for (size_t k = 0; k < count; k++) {
         tl_vec3 arm = tl_v3_sub(tl_columns_get(lanes->arm, k), now->centre);
         reach = fmax(reach, tl_v3_norm(arm));
-        double a = p->area[begin + k], x = tl_v3_dot(arm, t1), y = tl_v3_dot(arm, t2);
+        double a = p->area[begin + k * TL_LANES], x = tl_v3_dot(arm, t1), y = tl_v3_dot(arm, t2);
         want.sum -= a * value[k];
         want.along1 -= a * value[k] * x;
         want.along2 -= a * value[k] * y;
@@ -279,9 +280,8 @@ static void write_points(tl_model *m, uint32_t c, const tl_manifold *g, const ol
     tl_points_table *p = &m->detect->points;
     uint32_t material = contacts->material[c];
     const tl_kind *kind = material == TL_NO_ROW ? NULL : m->materials[material].kind;
-    size_t begin = contacts->point_start[c];
     for (size_t k = 0; k < g->point_count; k++) {
-        size_t i = begin + k;
+        size_t i = tl_point_row(contacts, c, k);
         const tl_contact_point *point = &g->points[k];
         tl_columns_put(p->p, i, point->p);
         p->rest[i] = point->rest;
@@ -297,10 +297,12 @@ static void write_points(tl_model *m, uint32_t c, const tl_manifold *g, const ol
     /* positions and normals in the present place */
     tl_contact_begin(m, c, lanes);
     double size = fmin(m->blocks.size[contacts->a[c]], m->blocks.size[contacts->b[c]]);
-    for (size_t i = begin; i < begin + g->point_count && old_count == 0; i++)
+    for (size_t k = 0; k < g->point_count && old_count == 0; k++) {
+        size_t i = tl_point_row(contacts, c, k);
         p->flags[i] = p->closure[i] < -APART * size ? TL_POINT_APART : 0;
+    }
     for (size_t k = 0; k < g->point_count && old_count; k++) {
-        size_t i = begin + k;
+        size_t i = tl_point_row(contacts, c, k);
         tl_vec3 arm = tl_columns_get(lanes->arm, k);
         const old_point *o = match(old, old_count, p->key[i], arm);
         double value[FIT_COUNT];
@@ -348,8 +350,8 @@ bool tl_contact_transfer(tl_model *m, uint32_t c, tl_narrow *room, const tl_poin
     memcpy(facets, g->facets, g->facet_count * sizeof *facets);
     contacts->facet_count[c] = (uint32_t)g->facet_count;
     contacts->point_count[c] = (uint32_t)g->point_count;
-    for (size_t i = begin + g->point_count; i < begin + contacts->point_room[c]; i++)
-        tl_point_clear(p, i);
+    for (size_t k = g->point_count; k < contacts->point_room[c]; k++)
+        tl_point_clear(p, tl_point_row(contacts, c, k));
     plane_fit fit = {.made = false};
     if (before.area > 0 && !room->reframed)
         fit = fit_plane(old, old_count, &before);
@@ -358,9 +360,9 @@ bool tl_contact_transfer(tl_model *m, uint32_t c, tl_narrow *room, const tl_poin
         return true;
 
     totals now = {0};
-    for (size_t i = begin; i < begin + g->point_count; i++)
-        add_area(&now, p->area[i], tl_columns_get(lanes->arm, i - begin),
-                 tl_columns_get(lanes->normal, i - begin));
+    for (size_t k = 0; k < g->point_count; k++)
+        add_area(&now, p->area[tl_point_row(contacts, c, k)], tl_columns_get(lanes->arm, k),
+                 tl_columns_get(lanes->normal, k));
     close_area(&now);
     double follow = now.area / before.area;
     totals want = {.shear =
@@ -379,15 +381,17 @@ bool tl_contact_transfer(tl_model *m, uint32_t c, tl_narrow *room, const tl_poin
         keep.sum *= follow;
         keep.along1 *= follow;
         keep.along2 *= follow;
-        for (size_t k = 0; k < g->point_count; k++)
-            value[k] = field == FIELD_REFERENCE ? p->reference[begin + k]
-                                                : p->f_n0[begin + k] / p->area[begin + k];
+        for (size_t k = 0; k < g->point_count; k++) {
+            size_t i = tl_point_row(contacts, c, k);
+            value[k] = field == FIELD_REFERENCE ? p->reference[i] : p->f_n0[i] / p->area[i];
+        }
         correct_field(p, lanes, value, begin, g->point_count, &now, keep, largest);
         for (size_t k = 0; k < g->point_count; k++) {
+            size_t i = tl_point_row(contacts, c, k);
             if (field == FIELD_REFERENCE)
-                p->reference[begin + k] = value[k];
+                p->reference[i] = value[k];
             else
-                p->f_n0[begin + k] = value[k] * p->area[begin + k];
+                p->f_n0[i] = value[k] * p->area[i];
         }
     }
     return true;

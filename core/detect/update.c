@@ -39,10 +39,11 @@ static double axis_margin(const tl_axis *axis, double size)
 static bool carries_across(const tl_detect *d, uint32_t c)
 {
     const tl_points_table *p = &d->points;
-    size_t begin = d->contacts.point_start[c];
-    for (size_t i = begin; i < begin + d->contacts.point_count[c]; i++)
+    for (uint32_t k = 0; k < d->contacts.point_count[c]; k++) {
+        size_t i = tl_point_row(&d->contacts, c, k);
         if (p->f_n[i] < 0 || (p->f_n[i] > 0 && p->closure[i] + p->reference[i] < 0))
             return true;
+    }
     return false;
 }
 
@@ -57,7 +58,7 @@ static bool same_topology(const tl_detect *d, uint32_t c, const tl_manifold *g)
             return false;
     }
     for (size_t k = 0; k < g->point_count; k++)
-        if (d->points.key[contacts->point_start[c] + k] != g->points[k].key)
+        if (d->points.key[tl_point_row(contacts, c, k)] != g->points[k].key)
             return false;
     return true;
 }
@@ -79,7 +80,7 @@ static void refit(tl_model *m, uint32_t c, const tl_manifold *g)
     if (material != TL_NO_ROW && m->materials[material].splits)
         kind = m->materials[material].kind;
     for (size_t k = 0; k < g->point_count; k++) {
-        size_t i = d->contacts.point_start[c] + k;
+        size_t i = tl_point_row(&d->contacts, c, k);
         double old = p->area[i], scale = g->points[k].area / old;
         double state[TL_STATE_COLUMNS];
         tl_columns_put(p->p, i, g->points[k].p);
@@ -202,28 +203,34 @@ static bool follow_face(const tl_pair_view *view, const tl_facet *f, tl_axis *ax
     return true;
 }
 
-/* Puts a patch in the place of the contact's, which has the same points: stresses stay, forces follow the
- * area. */
-TL_VECTORIZED static void refit_patch(tl_points_table *p, size_t begin, const tl_patch_points *g)
+/* Puts a patch in the place of the contact's, whose points begin there and are the same: stresses stay, forces follow
+ * the area. Returns its area. */
+static double refit_patch(tl_points_table *p, size_t begin, const tl_patch_points *g)
 {
-    for (int k = 0; k < 3; k++)
-        memcpy(p->p[k] + begin, g->p[k], g->count * sizeof(double));
-    memcpy(p->rest + begin, g->rest, g->count * sizeof(double));
-    memcpy(p->lean + begin, g->lean, g->count * sizeof *g->lean);
-    double *restrict f_n = p->f_n + begin, *restrict f_n0 = p->f_n0 + begin;
-    double *restrict x = p->f_s[0] + begin, *restrict y = p->f_s[1] + begin;
-    double *restrict z = p->f_s[2] + begin, *restrict area = p->area + begin;
-    const double *restrict to = g->area;
-#pragma omp simd
-    for (size_t i = 0; i < g->count; i++) {
-        double scale = to[i] / area[i];
-        f_n[i] *= scale;
-        f_n0[i] *= scale;
-        x[i] *= scale;
-        y[i] *= scale;
-        z[i] *= scale;
-        area[i] = to[i];
+    double area = 0;
+    for (size_t k = 0; k < g->count; k++) {
+        size_t i = begin + k * TL_LANES;
+        double scale = g->area[k] / p->area[i];
+        for (int x = 0; x < 3; x++) {
+            p->p[x][i] = g->p[x][k];
+            p->f_s[x][i] *= scale;
+        }
+        p->rest[i] = g->rest[k];
+        p->lean[i] = g->lean[k];
+        p->f_n[i] *= scale;
+        p->f_n0[i] *= scale;
+        p->area[i] = g->area[k];
+        area += g->area[k];
     }
+    return area;
+}
+
+static bool same_keys(const tl_points_table *p, size_t begin, const tl_patch_points *g)
+{
+    for (size_t k = 0; k < g->count; k++)
+        if (p->key[begin + k * TL_LANES] != g->key[k])
+            return false;
+    return true;
 }
 
 /* The one patch of a contact whose axis stands, made anew where its points are the same; false when that is
@@ -245,14 +252,9 @@ static bool renew_patch(tl_model *m, uint32_t c, tl_narrow *room)
         return false;
     const tl_patch_points *g = &room->patch;
     size_t begin = contacts->point_start[c];
-    if (g->count != contacts->point_count[c] ||
-        memcmp(g->key, p->key + begin, g->count * sizeof *g->key) != 0)
+    if (g->count != contacts->point_count[c] || !same_keys(p, begin, g))
         return false;
-    refit_patch(p, begin, g);
-    double area = 0;
-    for (size_t i = 0; i < g->count; i++)
-        area += g->area[i];
-    contacts->area[c] = area;
+    contacts->area[c] = refit_patch(p, begin, g);
     contacts->fresh[c] = true;
     return true;
 }

@@ -271,7 +271,7 @@ static double normal_force(const tl_model *m, uint32_t c)
     const tl_contacts *contacts = &m->detect->contacts;
     double force = 0;
     for (uint32_t k = 0; k < contacts->point_count[c]; k++)
-        force += m->detect->points.f_n[contacts->point_start[c] + k];
+        force += m->detect->points.f_n[tl_point_row(contacts, c, k)];
     return force;
 }
 

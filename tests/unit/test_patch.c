@@ -219,8 +219,9 @@ static void check_stiffness(tl_poly *a, tl_poly *b, double twist, double x, doub
     tl_vec3 c = {0, 0, 0};
     double area = 0;
     for (uint32_t i = 0; i < d->contacts.point_count[0]; i++) {
-        double w = d->points.area[d->contacts.point_start[0] + i];
-        c = tl_v3_madd(c, w, scene_arm(m, d->contacts.point_start[0] + i));
+        size_t at = tl_point_row(&d->contacts, 0, i);
+        double w = d->points.area[at];
+        c = tl_v3_madd(c, w, scene_arm(m, at));
         area += w;
     }
     c = tl_v3_scale(1 / area, c);
@@ -229,7 +230,7 @@ static void check_stiffness(tl_poly *a, tl_poly *b, double twist, double x, doub
         tl_vec3 across = tl_v3_cross(tl_v3(0, 0, 1), axis);
         double inertia = 0;
         for (uint32_t i = 0; i < d->contacts.point_count[0]; i++) {
-            size_t at = d->contacts.point_start[0] + i;
+            size_t at = tl_point_row(&d->contacts, 0, i);
             double arm = tl_v3_dot(across, tl_v3_sub(scene_arm(m, at), c));
             inertia += d->points.area[at] * arm * arm;
         }

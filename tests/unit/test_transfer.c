@@ -28,8 +28,8 @@ static totals sum_points(const tl_model *m, tl_vec3 about)
 {
     totals t = {0};
     const tl_points_table *p = &m->detect->points;
-    size_t begin = m->detect->contacts.point_start[0];
-    for (size_t i = begin; i < begin + m->detect->contacts.point_count[0]; i++) {
+    for (uint32_t k = 0; k < m->detect->contacts.point_count[0]; k++) {
+        size_t i = tl_point_row(&m->detect->contacts, 0, k);
         tl_vec3 arm = tl_v3_sub(scene_arm(m, i), about);
         tl_vec3 f = {p->f_s[0][i], p->f_s[1][i], p->f_s[2][i]};
         t.area += p->area[i];
@@ -48,8 +48,8 @@ static tl_vec3 area_centre(const tl_model *m)
     tl_vec3 c = {0, 0, 0};
     double area = 0;
     const tl_points_table *p = &m->detect->points;
-    size_t begin = m->detect->contacts.point_start[0];
-    for (size_t i = begin; i < begin + m->detect->contacts.point_count[0]; i++) {
+    for (uint32_t k = 0; k < m->detect->contacts.point_count[0]; k++) {
+        size_t i = tl_point_row(&m->detect->contacts, 0, k);
         c = tl_v3_madd(c, p->area[i], scene_arm(m, i));
         area += p->area[i];
     }
@@ -60,8 +60,8 @@ static tl_vec3 area_centre(const tl_model *m)
 static void load_points(tl_model *m, uint64_t *seed)
 {
     tl_points_table *p = &m->detect->points;
-    size_t begin = m->detect->contacts.point_start[0];
-    for (size_t i = begin; i < begin + m->detect->contacts.point_count[0]; i++) {
+    for (uint32_t k = 0; k < m->detect->contacts.point_count[0]; k++) {
+        size_t i = tl_point_row(&m->detect->contacts, 0, k);
         p->f_s[0][i] = 1e3 * scene_between(seed, -1, 2) * p->area[i];
         p->f_s[1][i] = 1e3 * scene_between(seed, -2, 1) * p->area[i];
         p->f_s[2][i] = 0;
@@ -94,16 +94,17 @@ static void transfer(tl_model *m, const tl_contact_point *points, size_t count)
 static size_t other_points(const tl_model *m, double twist, double stretch, tl_contact_point *out)
 {
     const tl_detect *d = m->detect;
-    size_t begin = d->contacts.point_start[0], count = d->contacts.point_count[0];
+    size_t count = d->contacts.point_count[0];
     tl_vec3 centre = area_centre(m);
     for (size_t k = 0; k < count; k++) {
-        tl_vec3 arm = tl_v3_sub(tl_columns_get(d->points.p, begin + k), centre);
+        size_t i = tl_point_row(&d->contacts, 0, k);
+        tl_vec3 arm = tl_v3_sub(tl_columns_get(d->points.p, i), centre);
         arm.x *= stretch;
         arm.y /= stretch;
         arm = tl_v3_add(centre, tl_q_rotate(scene_turn(tl_v3(0, 0, 1), twist), arm));
         out[k] = (tl_contact_point){.p = arm,
-                                    .rest = d->points.rest[begin + k],
-                                    .area = d->points.area[begin + k],
+                                    .rest = d->points.rest[i],
+                                    .area = d->points.area[i],
                                     .key = 1000 + (uint32_t)k};
     }
     return count;
@@ -165,9 +166,9 @@ TEST(totals_stay_with_fewer_points)
     check_totals(&now, &before, 1e-12);
     /* lanes no longer used are inert */
     const tl_detect *d = m->detect;
-    for (uint32_t i = 4; i < d->contacts.point_room[0]; i++) {
-        CHECK_NEAR(d->points.area[d->contacts.point_start[0] + i], 0, 0);
-        CHECK_NEAR(d->points.f_n[d->contacts.point_start[0] + i], 0, 0);
+    for (uint32_t k = 4; k < d->contacts.point_room[0]; k++) {
+        CHECK_NEAR(d->points.area[tl_point_row(&d->contacts, 0, k)], 0, 0);
+        CHECK_NEAR(d->points.f_n[tl_point_row(&d->contacts, 0, k)], 0, 0);
     }
     tl_model_destroy(m);
 }
@@ -180,16 +181,16 @@ TEST(points_of_hardly_any_area_get_no_more_stress_than_there_was)
     tl_model *m = cube_on_plate("elastic", 0);
     load_points(m, &seed);
     const tl_points_table *p = &m->detect->points;
-    size_t begin = m->detect->contacts.point_start[0];
     tl_vec3 c = area_centre(m);
     totals before = sum_points(m, c);
     double largest = 0, largest_n0 = 0;
-    for (size_t i = begin; i < begin + m->detect->contacts.point_count[0]; i++) {
+    for (uint32_t k = 0; k < m->detect->contacts.point_count[0]; k++) {
+        size_t i = tl_point_row(&m->detect->contacts, 0, k);
         tl_vec3 f = {p->f_s[0][i], p->f_s[1][i], p->f_s[2][i]};
         largest = fmax(largest, tl_v3_norm(f) / p->area[i]);
         largest_n0 = fmax(largest_n0, p->f_n0[i] / p->area[i]);
     }
-    double rest = p->rest[begin];
+    double rest = p->rest[tl_point_row(&m->detect->contacts, 0, 0)];
     tl_contact_point points[3];
     for (int k = 0; k < 3; k++)
         points[k] = (tl_contact_point){.p = tl_v3_add(c, tl_v3(0.4 * (k == 1), 0.4 * (k == 2), 0)),
@@ -197,7 +198,8 @@ TEST(points_of_hardly_any_area_get_no_more_stress_than_there_was)
                                        .area = before.area * (k ? 1e-20 : 1),
                                        .key = (uint32_t)(3000 + k)};
     transfer(m, points, 3);
-    for (size_t i = begin; i < begin + 3; i++) {
+    for (uint32_t k = 0; k < 3; k++) {
+        size_t i = tl_point_row(&m->detect->contacts, 0, k);
         tl_vec3 f = {p->f_s[0][i], p->f_s[1][i], p->f_s[2][i]};
         /* the fit, the traction and the twist, each of which is bounded by the old stresses */
         CHECK(tl_v3_norm(f) <= 3 * largest * p->area[i]);
@@ -210,9 +212,9 @@ TEST(points_of_hardly_any_area_get_no_more_stress_than_there_was)
 static void load_linearly(tl_model *m)
 {
     tl_points_table *p = &m->detect->points;
-    size_t begin = m->detect->contacts.point_start[0];
     tl_vec3 centre = area_centre(m);
-    for (size_t i = begin; i < begin + m->detect->contacts.point_count[0]; i++) {
+    for (uint32_t k = 0; k < m->detect->contacts.point_count[0]; k++) {
+        size_t i = tl_point_row(&m->detect->contacts, 0, k);
         tl_vec3 arm = tl_v3_sub(scene_arm(m, i), centre);
         p->f_s[0][i] = (1e3 - 4e3 * arm.y) * p->area[i];
         p->f_s[1][i] = (-5e2 + 4e3 * arm.x) * p->area[i];
@@ -277,12 +279,12 @@ TEST(uniform_stress_stays_uniform)
         if (!CHECK_INT(m->detect->contacts.table.rows, 1))
             break;
         const tl_points_table *p = &m->detect->points;
-        size_t begin = m->detect->contacts.point_start[0];
-        for (size_t k = begin; k < begin + m->detect->contacts.point_count[0]; k++) {
-            CHECK_REL(p->f_n0[k] / p->area[k], 3e6, 1e-9);
-            CHECK_REL(p->f_n[k] / p->area[k], 3e6, 1e-9);
-            CHECK_REL(p->f_s[0][k] / p->area[k], -2e5, 1e-9);
-            CHECK_REL(p->f_s[1][k] / p->area[k], 1e5, 1e-9);
+        for (uint32_t k = 0; k < m->detect->contacts.point_count[0]; k++) {
+            size_t row = tl_point_row(&m->detect->contacts, 0, k);
+            CHECK_REL(p->f_n0[row] / p->area[row], 3e6, 1e-9);
+            CHECK_REL(p->f_n[row] / p->area[row], 3e6, 1e-9);
+            CHECK_REL(p->f_s[0][row] / p->area[row], -2e5, 1e-9);
+            CHECK_REL(p->f_s[1][row] / p->area[row], 1e5, 1e-9);
         }
         scene_move(m, 1, tl_v3(2e-3, 1e-3, 0), tl_v3(0, 0, 0));
     }

@@ -1,0 +1,88 @@
+/* facing.h - facets in the present place of their blocks, and how vectors of a common plane turn with it.
+ *
+ * The gap comes from the planes of the faces (or the normal of two edges), carried with their bodies, never from
+ * the axis. Of tilted faces each point has a normal of its own: see tl_lean.
+ *
+ * What is here is for a step, which works on eight contacts at a time (follow.c), and for the others, one by one
+ * (places.c): with the same operations in the same order, so that they agree to the bit. */
+#ifndef TL_DETECT_FACING_H
+#define TL_DETECT_FACING_H
+
+#include "base/inline.h"
+#include "detect/detect.h"
+
+/* Two bodies as a contact sees them: axes of the model, A's centroid as zero. */
+typedef struct tl_sight {
+    const tl_mat3 *ra, *rb;
+    tl_vec3 d; /* from A's centroid to B's */
+    tl_poly *const *shapes;
+    uint32_t a, b; /* rows of the blocks */
+} tl_sight;
+
+/* A facet in its present place: its normals, and the plane a point's gap is measured to. */
+typedef struct tl_facing {
+    tl_vec3 n;      /* A to B, unit; of a patch the bisector's */
+    tl_vec3 mean;   /* n; of a tilted patch the mean of the faces' normals ... */
+    tl_vec3 lean;   /* ... and from it to the normal of A's face, and against it to B's; else 0 */
+    double mean2;   /* squares of their lengths, or 1 and 0 */
+    double l2;
+    tl_vec3 plane;  /* outward normal of the plane; 0 for edges, whose gap is the same everywhere */
+    double offset;  /* of the plane, or the gap negated */
+} tl_facing;
+
+/* Of a patch, from the normals of its faces in the present place; `offset` is that of B's face in B's frame. */
+TL_INLINE tl_facing tl_facing_patch(tl_vec3 na, tl_vec3 nb, tl_vec3 d, double offset)
+{
+    tl_facing out = {.plane = nb, .offset = offset + tl_v3_dot(nb, d)};
+    tl_vec3 mean = tl_v3_scale(0.5, tl_v3_sub(na, nb)), lean = tl_v3_scale(0.5, tl_v3_add(na, nb));
+    double mean2 = tl_v3_norm2(mean), l2 = tl_v3_norm2(lean);
+    double tilted = l2 > TL_FLUSH * TL_FLUSH ? 1 : 0;
+    out.n = tl_v3_scale(1 / sqrt(mean2), mean);
+    out.mean = tl_v3(tilted > 0 ? mean.x : out.n.x, tilted > 0 ? mean.y : out.n.y,
+                     tilted > 0 ? mean.z : out.n.z);
+    out.lean = tl_v3_scale(tilted, lean);
+    out.mean2 = tilted > 0 ? mean2 : 1;
+    out.l2 = tilted * l2;
+    return out;
+}
+
+/* The unit normal of a point that leans so; m2 and l2 are the squares of the two vectors. */
+TL_INLINE tl_vec3 tl_leaning(tl_vec3 mean, tl_vec3 lean, double m2, double l2, tl_lean by)
+{
+    double l = by.face, k = by.edge;
+    tl_vec3 n = tl_v3_madd(tl_v3_madd(mean, l, lean), k, tl_v3_cross(mean, lean));
+    return tl_v3_scale(1 / sqrt(m2 + l2 * (l * l + k * k * m2)), n);
+}
+
+/* The turn that swings the plane of normal `from` into that of `to`, then by twice the angle whose tangent
+ * is `twist` about it: axis times the tangent of half its angle, no trigonometry. */
+TL_INLINE tl_vec3 tl_turn_between(tl_vec3 from, tl_vec3 to, double twist)
+{
+    double c = 1 + tl_v3_dot(from, to);
+    double swings = c > 0 ? 1 / (c > 0 ? c : 1) : 0;
+    tl_vec3 swing = tl_v3_scale(swings, tl_v3_cross(from, to));
+    /* swing is perpendicular to `to`: the product of the two half turns has no scalar part to divide by */
+    return tl_v3_madd(tl_v3_madd(swing, twist, to), twist, tl_v3_cross(to, swing));
+}
+
+/* Turns one vector of the old common plane of a point into its new one. */
+TL_INLINE tl_vec3 tl_turn_one(tl_vec3 v, tl_vec3 from, tl_vec3 n, tl_vec3 half)
+{
+    tl_vec3 g = tl_turn_between(from, n, tl_v3_dot(half, n));
+    double g2 = tl_v3_norm2(g);
+    tl_vec3 t = tl_v3_cross(g, v);
+    t = tl_v3_madd(v, 2 / (1 + g2), tl_v3_add(t, tl_v3_cross(g, t)));
+    /* what has not turned stays as it is, to the bit */
+    return tl_v3_madd(t, g2 > 0 ? -tl_v3_dot(t, n) : 0, n);
+}
+
+/* Whether a facet's points are kept in B's frame, not in A's. */
+TL_INLINE bool tl_facet_in_b(const tl_facet *f)
+{
+    return f->kind == TL_FACET_FACE_A;
+}
+
+tl_sight tl_sight_of(const tl_model *m, uint32_t contact);
+tl_facing tl_facing_of(const tl_facet *f, const tl_sight *s);
+
+#endif

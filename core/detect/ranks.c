@@ -1,0 +1,183 @@
+/* ranks.c - which contacts lie side by side, in the lanes of which rank, and where their points begin.
+ *
+ * Contacts of about as many points share a rank, for a rank has room for as many as its largest; they are
+ * looked for among neighbours in the order of blocks, so that what a rank needs lies close together in memory.
+ * Each material has a run of ranks. New contacts get a free lane near the end of the run, or the first lane of a
+ * new rank there. */
+#include "detect/detect.h"
+
+#include <stdlib.h>
+
+/* Contacts, one after the other, among which those of as many points are put together. */
+#define WINDOW 128
+/* Ranks at the end of a run that are looked through for a free lane, ... */
+#define LOOK_BACK 16
+/* ... in which no more than so many points are left to spare. */
+#define MOST_SPARE 8
+/* Points more than it needs that a contact may grow by in a rank that is begun for it. */
+#define GROWTH 2
+/* Rows and ranks that are left to spare in a run at least. */
+#define SPARE_POINTS 1024
+#define SPARE_RANKS 16
+
+/* `need` and one in `share` more. */
+static size_t with_spare(size_t need, size_t share, size_t least)
+{
+    size_t more = need / share;
+    return need + (more > least ? more : least);
+}
+
+typedef struct seat {
+    uint32_t points, row;
+} seat;
+
+/* By room, largest first, then by row. */
+static int compare_seats(const void *x, const void *y)
+{
+    const seat *p = x, *q = y;
+    if (p->points != q->points)
+        return p->points > q->points ? -1 : 1;
+    return (p->row > q->row) - (p->row < q->row);
+}
+
+static tl_rank *begin_rank(tl_layout *layout, tl_run *run, uint32_t slots)
+{
+    tl_rank *rank = &layout->ranks[run->rank_end++];
+    *rank = (tl_rank){.start = (uint32_t)run->end, .slots = slots};
+    for (uint32_t l = 0; l < TL_LANES; l++)
+        rank->contact[l] = TL_NO_ROW;
+    run->end += (size_t)slots * TL_LANES;
+    return rank;
+}
+
+/* Gives a window of contacts their lanes. */
+static void seat_window(tl_layout *layout, tl_contacts *c, tl_run *run, seat *seats, size_t count)
+{
+    if (count > 1)
+        qsort(seats, count, sizeof *seats, compare_seats);
+    tl_rank *rank = NULL;
+    for (size_t i = 0; i < count; i++) {
+        uint32_t lane = (uint32_t)(i % TL_LANES), row = seats[i].row;
+        if (lane == 0)
+            rank = begin_rank(layout, run, seats[i].points);
+        rank->contact[lane] = row;
+        c->point_start[row] = rank->start + lane;
+        c->point_room[row] = rank->slots;
+    }
+}
+
+/* Lays the run of the contacts from `row` on that are of its material; returns the row behind them. */
+static uint32_t lay_run(tl_layout *layout, tl_contacts *c, tl_run *run, uint32_t row)
+{
+    seat seats[WINDOW];
+    size_t count = 0;
+    for (; row < c->table.rows && c->material[row] == run->material; row++) {
+        c->point_start[row] = 0;
+        if (c->point_room[row])
+            seats[count++] = (seat){c->point_room[row], row};
+        if (count == WINDOW) {
+            seat_window(layout, c, run, seats, count);
+            count = 0;
+        }
+    }
+    seat_window(layout, c, run, seats, count);
+    return row;
+}
+
+bool tl_layout_make(tl_layout *layout, tl_contacts *c, size_t share, size_t *points)
+{
+    uint32_t rows = (uint32_t)c->table.rows;
+    *points = 0;
+    size_t ranks = 0;
+    for (uint32_t row = 0; row < rows;) {
+        if (!tl_grow(&layout->runs, &layout->run_room, layout->run_count + 1, sizeof *layout->runs))
+            return false;
+        tl_run *run = &layout->runs[layout->run_count++];
+        *run = (tl_run){.material = c->material[row], .begin = *points, .rank_begin = ranks};
+        size_t count = 0;
+        for (uint32_t i = row; i < rows && c->material[i] == run->material; i++)
+            count += c->point_room[i] > 0;
+        run->end = run->begin;
+        run->rank_end = ranks;
+        /* every window but the last of a run is full */
+        size_t full = (count + TL_LANES - 1) / TL_LANES;
+        run->rank_limit = ranks = ranks + with_spare(full, share, SPARE_RANKS);
+        if (!tl_grow(&layout->ranks, &layout->rank_room, ranks, sizeof *layout->ranks))
+            return false;
+        row = lay_run(layout, c, run, row);
+        run->limit = run->begin + with_spare(run->end - run->begin, share, SPARE_POINTS);
+        run->limit = (run->limit + TL_LANES - 1) / TL_LANES * TL_LANES;
+        *points = run->limit;
+    }
+    return true;
+}
+
+void tl_layout_free(tl_layout *layout)
+{
+    free(layout->runs);
+    free(layout->ranks);
+    *layout = (tl_layout){0};
+}
+
+static tl_run *run_of(tl_detect *d, uint32_t material)
+{
+    for (size_t r = 0; r < d->layout.run_count; r++)
+        if (d->layout.runs[r].material == material)
+            return &d->layout.runs[r];
+    return NULL;
+}
+
+static bool take_lane(tl_rank *rank, uint32_t contact, uint32_t *lane)
+{
+    for (uint32_t l = 0; l < TL_LANES; l++)
+        if (rank->contact[l] == TL_NO_ROW) {
+            rank->contact[l] = contact;
+            *lane = l;
+            return true;
+        }
+    return false;
+}
+
+tl_rank *tl_rank_take(tl_detect *d, uint32_t material, uint32_t points, uint32_t contact,
+                      uint32_t *lane)
+{
+    tl_run *run = run_of(d, material);
+    if (!run)
+        return NULL;
+    for (size_t r = run->rank_end, back = 0; r-- > run->rank_begin && back < LOOK_BACK; back++) {
+        tl_rank *rank = &d->layout.ranks[r];
+        if (rank->slots >= points && rank->slots <= points + MOST_SPARE &&
+            take_lane(rank, contact, lane))
+            return rank;
+    }
+    size_t rows = (size_t)(points + GROWTH) * TL_LANES;
+    if (run->rank_end == run->rank_limit || run->end + rows > run->limit || rows > d->lane_room)
+        return NULL;
+    tl_rank *rank = begin_rank(&d->layout, run, points + GROWTH);
+    take_lane(rank, contact, lane);
+    return rank;
+}
+
+/* The rank a contact has a lane of, by where its points begin. */
+static tl_rank *rank_at(tl_detect *d, uint32_t start)
+{
+    const tl_run *run = d->layout.runs;
+    while (start >= run->end)
+        run++;
+    size_t low = run->rank_begin, high = run->rank_end - 1; /* the last that begins there or before */
+    while (low < high) {
+        size_t middle = (low + high + 1) / 2;
+        if (d->layout.ranks[middle].start <= start)
+            low = middle;
+        else
+            high = middle - 1;
+    }
+    return &d->layout.ranks[low];
+}
+
+void tl_rank_note(tl_detect *d, uint32_t contact, uint32_t row)
+{
+    uint32_t start = d->contacts.point_start[contact];
+    if (d->contacts.point_room[contact])
+        rank_at(d, start)->contact[start % TL_LANES] = row;
+}
