@@ -93,6 +93,7 @@ static tl_vec3 couple_of(const tl_model *m, uint32_t c, const double *stored_in)
  * their springs and slip. */
 typedef struct rank_sums {
     double force[3][TL_LANES], moment[3][TL_LANES], stored[TL_LANES], dissipated[TL_LANES];
+    double odd; /* 0; NaN when a force or moment is not finite */
 } rank_sums;
 
 /* Point after point: the same order for every width of the processor's vectors. */
@@ -120,6 +121,9 @@ TL_VECTORIZED static void sum_points(const tl_points_table *p, const tl_point_la
             s.stored[l] += stored[i];
             s.dissipated[l] += heat[i];
         }
+    for (int k = 0; k < 3; k++)
+        for (size_t l = 0; l < TL_LANES; l++)
+            s.odd += 0 * s.force[k][l] + 0 * s.moment[k][l];
     *out = s;
 }
 
@@ -129,8 +133,23 @@ static double across(const double *lane)
            ((lane[4] + lane[5]) + (lane[6] + lane[7]));
 }
 
-/* Forces of the contacts of a rank, whose first point is in lane `lane`. */
-static void sum_rank(tl_model *m, const tl_rank *rank, const tl_point_lanes *t, size_t lane)
+/* Names a contact of a rank whose force is no number. */
+static void report_odd(tl_model *m, const tl_rank *rank, const rank_sums *sum)
+{
+    for (size_t l = 0; l < TL_LANES; l++) {
+        double odd = 0;
+        for (int k = 0; k < 3; k++)
+            odd += 0 * sum->force[k][l] + 0 * sum->moment[k][l];
+        if (odd != 0 && rank->contact[l] != TL_NO_ROW)
+            tl_cycle_failed(m, rank->start, TL_E_NUMERIC, rank->start + l,
+                            "the force is not a finite number: is the time step too large, or a "
+                            "property out of proportion?");
+    }
+}
+
+/* Forces of the contacts of a rank, whose first point is in lane `lane`; `tilted`: areas may depend on tilt. */
+static void sum_rank(tl_model *m, const tl_rank *rank, const tl_point_lanes *t, size_t lane,
+                     bool tilted)
 {
     tl_contacts *contacts = &m->detect->contacts;
     rank_sums sum;
@@ -139,15 +158,14 @@ static void sum_rank(tl_model *m, const tl_rank *rank, const tl_point_lanes *t, 
         uint32_t c = rank->contact[l];
         if (c == TL_NO_ROW)
             continue;
-        tl_vec3 force = {sum.force[0][l], sum.force[1][l], sum.force[2][l]};
-        tl_vec3 moment = {sum.moment[0][l], sum.moment[1][l], sum.moment[2][l]};
-        contacts->force[c] = force;
-        contacts->moment[c] = tl_v3_add(moment, couple_of(m, c, t->stored + lane + l));
-        if (!tl_v3_finite(force) || !tl_v3_finite(moment))
-            tl_cycle_failed(m, rank->start, TL_E_NUMERIC, rank->start + l,
-                            "the force is not a finite number: is the time step too large, or a "
-                            "property out of proportion?");
+        contacts->force[c] = tl_v3(sum.force[0][l], sum.force[1][l], sum.force[2][l]);
+        contacts->moment[c] = tl_v3(sum.moment[0][l], sum.moment[1][l], sum.moment[2][l]);
+        if (tilted)
+            contacts->moment[c] =
+                tl_v3_add(contacts->moment[c], couple_of(m, c, t->stored + lane + l));
     }
+    if (sum.odd != 0)
+        report_odd(m, rank, &sum);
     m->cycle->rank_energy[rank - m->detect->layout.ranks] =
         (tl_rank_energy){across(sum.stored), across(sum.dissipated)};
 }
@@ -157,14 +175,16 @@ static void force_page(const run_job *job, const tl_rank *ranks, size_t count,
                        const tl_point_lanes *t)
 {
     size_t first = ranks->start, points = 0;
+    bool tilted = false;
     for (size_t r = 0; r < count; r++) {
-        tl_rank_follow(job->m, &ranks[r], t, points);
+        bool one = tl_rank_follow(job->m, &ranks[r], t, points, job->material->tangents);
+        tilted = tilted || one;
         points += (size_t)ranks[r].slots * TL_LANES;
     }
     if (!call_law(job, first, points, t))
         return;
     for (size_t r = 0; r < count; r++)
-        sum_rank(job->m, &ranks[r], t, ranks[r].start - first);
+        sum_rank(job->m, &ranks[r], t, ranks[r].start - first, tilted);
 }
 
 /* Ranks in pages, as many as fit. */

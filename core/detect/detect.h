@@ -336,8 +336,10 @@ void tl_polygon_free(struct tl_polygon *polygon, tl_patch_points *points);
 /* Notes how every body moved in the last step: before contacts are followed. */
 void tl_follow_bodies(tl_model *m);
 /* Gaps, normals and relative motion of the contacts of a rank, its first point's into lane `lane`; turns shear forces
- * with the common plane. */
-void tl_rank_follow(tl_model *m, const tl_rank *rank, const tl_point_lanes *lanes, size_t lane);
+ * with the common plane, and the states of which `tangents` has a bit. false when all are flush patches, whose areas
+ * do not depend on tilt. */
+bool tl_rank_follow(tl_model *m, const tl_rank *rank, const tl_point_lanes *lanes, size_t lane,
+                    uint32_t tangents);
 
 /* ---- places.c ---- */
 /* Arms and normals of a contact's points in the present place, from lane 0 on; du_n gets their closures. */

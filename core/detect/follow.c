@@ -125,7 +125,7 @@ typedef struct patches {
     lane_vec3 na, nb, d;
 } patches;
 
-static void put_motion(frames *f, size_t l, const tl_moving *a, const tl_moving *b, tl_vec3 d)
+TL_INLINE void put_motion(frames *f, size_t l, const tl_moving *a, const tl_moving *b, tl_vec3 d)
 {
     vec_put(&f->way, l, tl_v3_sub(tl_v3_sub(b->way, a->way), tl_m3_mul(&b->m, d)));
     vec_put(&f->half, l, tl_v3_scale(0.5, tl_v3_add(a->half, b->half)));
@@ -135,7 +135,7 @@ static void put_motion(frames *f, size_t l, const tl_moving *a, const tl_moving 
 }
 
 /* Puts a patch into lane l, but for what the lanes work out together. */
-static void put_patch(const tl_model *m, uint32_t c, const tl_facet *facet, size_t l, frames *f,
+TL_INLINE void put_patch(const tl_model *m, uint32_t c, const tl_facet *facet, size_t l, frames *f,
                       patches *p)
 {
     const tl_contacts *contacts = &m->detect->contacts;
@@ -163,7 +163,7 @@ TL_INLINE tl_mat3 matrix_of(tl_vec3 g, double g2)
                       {h.z * g.x - h.y, h.z * g.y + h.x, d + h.z * g.z}}};
 }
 
-/* Brings the patches of all lanes into their present place; true when none is or was tilted. */
+/* Brings the patches of all lanes into their present place; false when none is or was tilted. */
 TL_VECTORIZED static bool place_patches(frames *restrict f, const patches *restrict p)
 {
     double tilted[TL_LANES];
@@ -190,7 +190,7 @@ TL_VECTORIZED static bool place_patches(frames *restrict f, const patches *restr
     double any = 0;
     for (size_t l = 0; l < TL_LANES; l++)
         any += tilted[l];
-    return any == 0;
+    return any != 0;
 }
 
 /* Puts any facet into lane l. */
@@ -343,16 +343,15 @@ static void turn_states(tl_model *m, uint32_t contact, const tl_facet *f, const 
 }
 
 /* The states that turn, and the normals to turn from in the next step. */
-static void finish_facets(tl_model *m, const tl_rank *rank, const columns *c, const frames *f)
+static void finish_facets(tl_model *m, const tl_rank *rank, const columns *c, const frames *f,
+                          uint32_t tangents)
 {
     for (size_t l = 0; l < TL_LANES; l++) {
         tl_facet *facet = f->facet[l];
         if (!facet)
             continue;
-        uint32_t contact = rank->contact[l];
-        uint32_t tangents = m->materials[m->detect->contacts.material[contact]].tangents;
         if (tangents)
-            turn_states(m, contact, facet, c, l, vec_at(&f->half, l), tangents);
+            turn_states(m, rank->contact[l], facet, c, l, vec_at(&f->half, l), tangents);
         facet->last = vec_at(&f->mean, l);
         facet->last_lean = vec_at(&f->lean, l);
     }
@@ -368,9 +367,6 @@ static bool take_facets(tl_detect *d, const tl_rank *rank, uint32_t k, frames *f
         uint32_t contact = rank->contact[l];
         bool has = contact != TL_NO_ROW && k < c->facet_count[contact];
         f->facet[l] = has ? &c->facet[c->facet_start[contact] + k] : NULL;
-        f->begin[l] = has ? f->facet[l]->begin : 0;
-        f->end[l] = has ? f->facet[l]->begin + f->facet[l]->count : 0;
-        f->carry[l] = has && !c->fresh[contact] ? 0.5 : 0;
         *some = has ? l : *some;
     }
     return *some < TL_LANES;
@@ -386,8 +382,22 @@ static bool are_patches(const tl_contacts *c, const tl_rank *rank, const frames 
     return true;
 }
 
-/* The facets that have been taken, all of them patches and the only ones of their contacts. */
-static void follow_patches(tl_model *m, const tl_rank *rank, const columns *c, frames *f,
+/* Slots `from` to `to` of the facets that have been taken, whatever they are. */
+static void follow_slots(const tl_contacts *contacts, const tl_rank *rank, const columns *c,
+                         frames *f, size_t from, size_t to, double first)
+{
+    for (size_t l = 0; l < TL_LANES; l++) {
+        const tl_facet *facet = f->facet[l];
+        f->begin[l] = facet ? facet->begin : 0;
+        f->end[l] = facet ? facet->begin + facet->count : 0;
+        f->carry[l] = facet && !contacts->fresh[rank->contact[l]] ? 0.5 : 0;
+    }
+    follow_any(c, from, to, f, first);
+}
+
+/* The facets that have been taken, all of them patches and the only ones of their contacts; false when all are flush
+ * and were. */
+static bool follow_patches(tl_model *m, const tl_rank *rank, const columns *c, frames *f,
                            size_t some)
 {
     patches p;
@@ -395,40 +405,47 @@ static void follow_patches(tl_model *m, const tl_rank *rank, const columns *c, f
         size_t from = f->facet[l] ? l : some;
         put_patch(m, rank->contact[from], f->facet[from], l, f, &p);
     }
-    if (place_patches(f, &p))
-        follow_level(c, rank->slots, f);
+    bool tilted = place_patches(f, &p);
+    if (tilted)
+        follow_slots(&m->detect->contacts, rank, c, f, 0, rank->slots, 1);
     else
-        follow_any(c, 0, rank->slots, f, 1);
+        follow_level(c, rank->slots, f);
+    return tilted;
 }
 
 /* The facets that have been taken, whatever they are. */
 static void follow_facets(tl_model *m, const tl_rank *rank, const columns *c, frames *f,
-                          size_t some, double first)
+                          size_t some, bool first)
 {
-    uint32_t begin = first > 0 ? 0 : rank->slots, end = first > 0 ? rank->slots : 0;
+    uint32_t begin = first ? 0 : rank->slots, end = first ? rank->slots : 0;
     for (size_t l = 0; l < TL_LANES; l++) {
         const tl_facet *facet = f->facet[l] ? f->facet[l] : f->facet[some];
         put_facet(m, rank->contact[f->facet[l] ? l : some], facet, l, f);
         begin = facet->begin < begin ? facet->begin : begin;
         end = facet->begin + facet->count > end ? facet->begin + (uint32_t)facet->count : end;
     }
-    follow_any(c, begin, end, f, first);
+    follow_slots(&m->detect->contacts, rank, c, f, begin, end, first ? 1 : 0);
 }
 
-void tl_rank_follow(tl_model *m, const tl_rank *rank, const tl_point_lanes *t, size_t lane)
+bool tl_rank_follow(tl_model *m, const tl_rank *rank, const tl_point_lanes *t, size_t lane,
+                    uint32_t tangents)
 {
     tl_contacts *contacts = &m->detect->contacts;
     columns c = columns_at(&m->detect->points, rank->start, t, lane);
     frames f;
     size_t some;
+    bool tilted = false;
     for (uint32_t k = 0; take_facets(m->detect, rank, k, &f, &some); k++) {
-        if (k == 0 && are_patches(contacts, rank, &f))
-            follow_patches(m, rank, &c, &f, some);
-        else
-            follow_facets(m, rank, &c, &f, some, k == 0 ? 1 : 0);
-        finish_facets(m, rank, &c, &f);
+        if (k == 0 && are_patches(contacts, rank, &f)) {
+            tilted = follow_patches(m, rank, &c, &f, some);
+        } else {
+            tilted = true;
+            follow_facets(m, rank, &c, &f, some, k == 0);
+        }
+        finish_facets(m, rank, &c, &f, tangents);
     }
     for (size_t l = 0; l < TL_LANES; l++)
-        if (rank->contact[l] != TL_NO_ROW)
+        if (rank->contact[l] != TL_NO_ROW && contacts->fresh[rank->contact[l]])
             contacts->fresh[rank->contact[l]] = false;
+    return tilted;
 }
