@@ -79,12 +79,13 @@ static tl_vec3 couple_of(const tl_model *m, uint32_t c, const double *stored_in)
     tl_vec3 couple = {0, 0, 0};
     for (uint32_t k = 0; k < contacts->facet_count[c]; k++) {
         const tl_facet *f = &contacts->facet[contacts->facet_start[c] + k];
-        if (!(tl_v3_norm2(f->swing) > 0))
+        tl_vec3 swing = tl_facet_swing(f);
+        if (!(tl_v3_norm2(swing) > 0))
             continue;
         double stored = 0;
         for (size_t i = f->begin; i < f->begin + (size_t)f->count; i++)
             stored += stored_in[i * TL_LANES];
-        couple = tl_v3_madd(couple, stored, tl_m3_mul(ra, f->swing));
+        couple = tl_v3_madd(couple, stored, tl_m3_mul(ra, swing));
     }
     return couple;
 }
@@ -93,7 +94,7 @@ static tl_vec3 couple_of(const tl_model *m, uint32_t c, const double *stored_in)
  * their springs and slip. */
 typedef struct rank_sums {
     double force[3][TL_LANES], moment[3][TL_LANES], stored[TL_LANES], dissipated[TL_LANES];
-    double odd; /* 0; NaN when a force or moment is not finite */
+    double odd[TL_LANES]; /* 0, or NaN when the force or moment is not finite */
 } rank_sums;
 
 /* Point after point: the same order for every width of the processor's vectors. */
@@ -122,8 +123,9 @@ TL_VECTORIZED static void sum_points(const tl_points_table *p, const tl_point_la
             s.dissipated[l] += heat[i];
         }
     for (int k = 0; k < 3; k++)
+#pragma omp simd
         for (size_t l = 0; l < TL_LANES; l++)
-            s.odd += 0 * s.force[k][l] + 0 * s.moment[k][l];
+            s.odd[l] += 0 * s.force[k][l] + 0 * s.moment[k][l];
     *out = s;
 }
 
@@ -136,15 +138,11 @@ static double across(const double *lane)
 /* Names a contact of a rank whose force is no number. */
 static void report_odd(tl_model *m, const tl_rank *rank, const rank_sums *sum)
 {
-    for (size_t l = 0; l < TL_LANES; l++) {
-        double odd = 0;
-        for (int k = 0; k < 3; k++)
-            odd += 0 * sum->force[k][l] + 0 * sum->moment[k][l];
-        if (odd != 0 && rank->contact[l] != TL_NO_ROW)
+    for (size_t l = 0; l < TL_LANES; l++)
+        if (sum->odd[l] != 0 && rank->contact[l] != TL_NO_ROW)
             tl_cycle_failed(m, rank->start, TL_E_NUMERIC, rank->start + l,
                             "the force is not a finite number: is the time step too large, or a "
                             "property out of proportion?");
-    }
 }
 
 /* Forces of the contacts of a rank, whose first point is in lane `lane`; `tilted`: areas may depend on tilt. */
@@ -164,7 +162,7 @@ static void sum_rank(tl_model *m, const tl_rank *rank, const tl_point_lanes *t, 
             contacts->moment[c] =
                 tl_v3_add(contacts->moment[c], couple_of(m, c, t->stored + lane + l));
     }
-    if (sum.odd != 0)
+    if (across(sum.odd) != 0)
         report_odd(m, rank, &sum);
     m->cycle->rank_energy[rank - m->detect->layout.ranks] =
         (tl_rank_energy){across(sum.stored), across(sum.dissipated)};

@@ -58,18 +58,36 @@ typedef enum tl_facet_kind {
     TL_FACET_EDGES   /* an edge of A across an edge of B */
 } tl_facet_kind;
 
+/* Largest couple per energy that is told apart, 1/rad. */
+#define TL_MOST_SWING 1e30
+
 /* Contact points that share a normal and a way to compute their gaps. Planes are kept here, for most facets
- * have them and every step asks; edges are looked up in the shapes. */
+ * have them and every step asks; edges are looked up in the shapes. A step reads the doubles as one row. */
 typedef struct tl_facet {
+    tl_vec3 na, nb; /* outward normals of the faces, own frames; edges: na is n when made */
+    double offset;  /* of the face a point is measured against */
+    tl_vec3 last,
+        last_lean;  /* normal when last followed, and how points' normals differ, model's axes */
+    float swing[3]; /* couple on B per energy stored in its points, A's frame, 1/rad */
     uint8_t kind;
     uint16_t ia, ib;       /* faces, or edges */
     uint16_t begin, count; /* of its points, within the contact */
-    tl_vec3 na, nb;        /* outward normals of the faces, own frames; edges: na is n when made */
-    double offset;         /* of the face a point is measured against */
-    tl_vec3 swing;         /* couple on B per energy stored in its points, A's frame, 1/rad */
-    tl_vec3 last,
-        last_lean; /* normal when last followed, and how points' normals differ, model's axes */
 } tl_facet;
+
+static inline tl_vec3 tl_facet_swing(const tl_facet *f)
+{
+    return tl_v3(f->swing[0], f->swing[1], f->swing[2]);
+}
+
+static inline void tl_facet_set_swing(tl_facet *f, tl_vec3 swing)
+{
+    const double value[] = {swing.x, swing.y, swing.z};
+    for (int k = 0; k < 3; k++) /* the energy it belongs to is next to nothing where it is beyond a float */
+        f->swing[k] = (float)fmin(fmax(value[k], -TL_MOST_SWING), TL_MOST_SWING);
+}
+
+/* Doubles at the head of a facet that a step reads. */
+#define TL_FACET_ROW 16
 
 /* How the normal of a point of a patch differs from the mean of its faces' normals. With M = (nA - nB)/2, L = (nA +
  * nB)/2, which is perpendicular to it, it lies along M + face L + edge M x L. `face` is -1 for a vertex of A, which
@@ -221,11 +239,14 @@ typedef struct tl_layout {
 } tl_layout;
 
 /* Motion of a body in the last step, at an arm from its centroid: way + m arm; `half` is its turn as axis
- * times the tangent of half the angle. */
+ * times the tangent of half the angle. A row of TL_MOVING_ROW doubles. */
 typedef struct tl_moving {
-    tl_vec3 way, half;
     tl_mat3 m;
+    tl_vec3 way, half;
+    double unused;
 } tl_moving;
+
+#define TL_MOVING_ROW 16
 
 typedef struct tl_detect {
     tl_pair *pairs;

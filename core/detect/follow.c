@@ -12,6 +12,8 @@
  * slots. */
 #include "detect/facing.h"
 
+#include <string.h>
+
 /* Angles below which sine and cosine are taken from their series, whose next term is then below
  * rounding. */
 #define SERIES_ANGLE 0.1
@@ -93,11 +95,24 @@ TL_INLINE tl_mat3 mat_at(const lane_mat3 *m, size_t l)
                       {m->m[2][0][l], m->m[2][1][l], m->m[2][2][l]}}};
 }
 
+TL_INLINE tl_vec3 mat_row(const tl_mat3 *m, size_t i)
+{
+    return tl_v3(m->m[i][0], m->m[i][1], m->m[i][2]);
+}
+
+/* Row by row, not in loops: a loop over lanes with loops in it does not become SIMD code. */
+TL_INLINE void row_put(double (*restrict row)[TL_LANES], size_t l, tl_vec3 value)
+{
+    row[0][l] = value.x;
+    row[1][l] = value.y;
+    row[2][l] = value.z;
+}
+
 TL_INLINE void mat_put(lane_mat3 *m, size_t l, const tl_mat3 *value)
 {
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++)
-            m->m[i][j][l] = value->m[i][j];
+    row_put(m->m[0], l, mat_row(value, 0));
+    row_put(m->m[1], l, mat_row(value, 1));
+    row_put(m->m[2], l, mat_row(value, 2));
 }
 
 /* One facet in each lane, in its present place, and how its points move. */
@@ -119,39 +134,62 @@ typedef struct frames {
     double begin[TL_LANES], end[TL_LANES]; /* slots of its points */
 } frames;
 
-/* Normals in the model's axes and apart from them what a patch needs, to be worked out for all lanes at once. */
+/* What is known of a patch and its bodies, a lane each, before the lanes work out together what follows from it. */
 typedef struct patches {
+    double a[TL_MOVING_ROW][TL_LANES], b[TL_MOVING_ROW][TL_LANES]; /* tl_moving */
+    double facet[TL_FACET_ROW][TL_LANES];                          /* tl_facet */
     lane_mat3 rb;
-    lane_vec3 na, nb, d;
+    lane_vec3 d;
 } patches;
 
-TL_INLINE void put_motion(frames *f, size_t l, const tl_moving *a, const tl_moving *b, tl_vec3 d)
+/* A patch, its bodies' motions and rotations, and how far these are apart. */
+typedef struct patch_rows {
+    const double *a[TL_LANES], *b[TL_LANES], *ra[TL_LANES], *rb[TL_LANES], *facet[TL_LANES];
+    lane_vec3 d;
+} patch_rows;
+
+typedef double quad __attribute__((vector_size(32)));
+typedef double octet __attribute__((vector_size(64)));
+
+/* Turns four doubles of the rows of four lanes into a row of four lanes for each double. */
+TL_INLINE void transpose_quads(quad out[4], const double *const *row, size_t k)
 {
-    vec_put(&f->way, l, tl_v3_sub(tl_v3_sub(b->way, a->way), tl_m3_mul(&b->m, d)));
-    vec_put(&f->half, l, tl_v3_scale(0.5, tl_v3_add(a->half, b->half)));
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++)
-            f->m.m[i][j][l] = b->m.m[i][j] - a->m.m[i][j];
+    quad a, b, c, d;
+    memcpy(&a, row[0] + k, sizeof a);
+    memcpy(&b, row[1] + k, sizeof b);
+    memcpy(&c, row[2] + k, sizeof c);
+    memcpy(&d, row[3] + k, sizeof d);
+    quad ab0 = __builtin_shufflevector(a, b, 0, 4, 2, 6);
+    quad ab1 = __builtin_shufflevector(a, b, 1, 5, 3, 7);
+    quad cd0 = __builtin_shufflevector(c, d, 0, 4, 2, 6);
+    quad cd1 = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+    out[0] = __builtin_shufflevector(ab0, cd0, 0, 1, 4, 5);
+    out[1] = __builtin_shufflevector(ab1, cd1, 0, 1, 4, 5);
+    out[2] = __builtin_shufflevector(ab0, cd0, 2, 3, 6, 7);
+    out[3] = __builtin_shufflevector(ab1, cd1, 2, 3, 6, 7);
 }
 
-/* Puts a patch into lane l, but for what the lanes work out together. */
-TL_INLINE void put_patch(const tl_model *m, uint32_t c, const tl_facet *facet, size_t l, frames *f,
-                      patches *p)
+/* Turns `count` doubles, a multiple of four, of a row for each lane into a row of lanes for each double. What is
+ * loaded as one vector is stored as one: a load cannot wait for two stores. */
+TL_INLINE void transpose(double (*restrict to)[TL_LANES], const double *const *row, size_t count)
 {
-    const tl_contacts *contacts = &m->detect->contacts;
-    const tl_bodies *bodies = &m->bodies;
-    uint32_t a = m->blocks.body[contacts->a[c]], b = m->blocks.body[contacts->b[c]];
-    tl_vec3 d = tl_body_apart(bodies, a, b);
-    put_motion(f, l, &m->detect->moving[a], &m->detect->moving[b], d);
-    mat_put(&f->to, l, &bodies->r[a]);
-    vec_put(&f->from, l, tl_v3(0, 0, 0));
-    mat_put(&p->rb, l, &bodies->r[b]);
-    vec_put(&p->na, l, facet->na);
-    vec_put(&p->nb, l, facet->nb);
-    vec_put(&p->d, l, d);
-    f->offset[l] = facet->offset;
-    vec_put(&f->last, l, facet->last);
-    vec_put(&f->last_lean, l, facet->last_lean);
+    for (size_t k = 0; k < count; k += 4) {
+        quad low[4], high[4];
+        transpose_quads(low, row, k);
+        transpose_quads(high, row + 4, k);
+        for (size_t i = 0; i < 4; i++) {
+            octet all = __builtin_shufflevector(low[i], high[i], 0, 1, 2, 3, 4, 5, 6, 7);
+            memcpy(to[k + i], &all, sizeof all);
+        }
+    }
+}
+
+/* A matrix of each lane; its last element does not fit into fours. */
+TL_INLINE void transpose_matrices(lane_mat3 *to, const double *const *row)
+{
+    transpose(to->m[0], row, 8);
+    for (size_t l = 0; l < TL_LANES; l++)
+        to->m[2][2][l] = row[l][8];
 }
 
 TL_INLINE tl_mat3 matrix_of(tl_vec3 g, double g2)
@@ -163,29 +201,74 @@ TL_INLINE tl_mat3 matrix_of(tl_vec3 g, double g2)
                       {h.z * g.x - h.y, h.z * g.y + h.x, d + h.z * g.z}}};
 }
 
-/* Brings the patches of all lanes into their present place; false when none is or was tilted. */
-TL_VECTORIZED static bool place_patches(frames *restrict f, const patches *restrict p)
+/* A facet in its present place, and its normals before. */
+TL_INLINE void put_facing(frames *f, size_t l, tl_facing to, tl_vec3 last, tl_vec3 last_lean)
 {
+    vec_put(&f->n, l, to.n);
+    vec_put(&f->mean, l, to.mean);
+    vec_put(&f->lean, l, to.lean);
+    vec_put(&f->plane, l, to.plane);
+    f->mean2[l] = to.mean2;
+    f->l2[l] = to.l2;
+    f->offset[l] = to.offset;
+    vec_put(&f->last, l, last);
+    vec_put(&f->last_lean, l, last_lean);
+}
+
+/* Element k and the two behind it as a vector of lane l. */
+TL_INLINE tl_vec3 row_vec3(double (*row)[TL_LANES], size_t k, size_t l)
+{
+    return tl_v3(row[k][l], row[k + 1][l], row[k + 2][l]);
+}
+
+TL_INLINE tl_mat3 row_mat3(double (*row)[TL_LANES], size_t l)
+{
+    return (tl_mat3){{{row[0][l], row[1][l], row[2][l]},
+                      {row[3][l], row[4][l], row[5][l]},
+                      {row[6][l], row[7][l], row[8][l]}}};
+}
+
+/* Motion of B against A in the last step; `d` is the way from A's centroid to B's. */
+TL_INLINE void put_motion(frames *f, size_t l, const tl_mat3 *ma, const tl_mat3 *mb, tl_vec3 way,
+                          tl_vec3 half, tl_vec3 d)
+{
+    vec_put(&f->way, l, tl_v3_sub(way, tl_m3_mul(mb, d)));
+    vec_put(&f->half, l, tl_v3_scale(0.5, half));
+    row_put(f->m.m[0], l, tl_v3_sub(mat_row(mb, 0), mat_row(ma, 0)));
+    row_put(f->m.m[1], l, tl_v3_sub(mat_row(mb, 1), mat_row(ma, 1)));
+    row_put(f->m.m[2], l, tl_v3_sub(mat_row(mb, 2), mat_row(ma, 2)));
+}
+
+/* Brings a patch in each lane into its present place; false when none is or was tilted. */
+TL_VECTORIZED static bool place_patches(frames *restrict f, const patch_rows *restrict rows)
+{
+    patches p;
+    transpose(p.a, rows->a, TL_MOVING_ROW);
+    transpose(p.b, rows->b, TL_MOVING_ROW);
+    transpose(p.facet, rows->facet, TL_FACET_ROW);
+    transpose_matrices(&f->to, rows->ra);
+    transpose_matrices(&p.rb, rows->rb);
     double tilted[TL_LANES];
 #pragma omp simd
     for (size_t l = 0; l < TL_LANES; l++) {
-        tl_mat3 ra = mat_at(&f->to, l), rb = mat_at(&p->rb, l);
-        tl_vec3 na = tl_m3_mul(&ra, vec_at(&p->na, l)), nb = tl_m3_mul(&rb, vec_at(&p->nb, l));
-        tl_facing to = tl_facing_patch(na, nb, vec_at(&p->d, l), f->offset[l]);
-        vec_put(&f->n, l, to.n);
-        vec_put(&f->mean, l, to.mean);
-        vec_put(&f->lean, l, to.lean);
-        vec_put(&f->plane, l, to.plane);
-        f->mean2[l] = to.mean2;
-        f->l2[l] = to.l2;
-        f->offset[l] = to.offset;
-        tl_vec3 half = vec_at(&f->half, l);
-        tl_vec3 by = tl_turn_between(vec_at(&f->last, l), to.n, tl_v3_dot(half, to.n));
+        tl_vec3 d = vec_at(&rows->d, l), last = row_vec3(p.facet, 7, l);
+        tl_vec3 last_lean = row_vec3(p.facet, 10, l);
+        tl_mat3 ma = row_mat3(p.a, l), mb = row_mat3(p.b, l);
+        tl_vec3 way = tl_v3_sub(row_vec3(p.b, 9, l), row_vec3(p.a, 9, l));
+        tl_vec3 half = tl_v3_add(row_vec3(p.a, 12, l), row_vec3(p.b, 12, l));
+        put_motion(f, l, &ma, &mb, way, half, d);
+        tl_mat3 ra = mat_at(&f->to, l), rb = mat_at(&p.rb, l);
+        tl_vec3 na = tl_m3_mul(&ra, row_vec3(p.facet, 0, l));
+        tl_vec3 nb = tl_m3_mul(&rb, row_vec3(p.facet, 3, l));
+        tl_facing to = tl_facing_patch(na, nb, d, p.facet[6][l]);
+        put_facing(f, l, to, last, last_lean);
+        vec_put(&f->from, l, tl_v3(0, 0, 0));
+        tl_vec3 by = tl_turn_between(last, to.n, tl_v3_dot(vec_at(&f->half, l), to.n));
         double g2 = tl_v3_norm2(by);
         tl_mat3 turn = matrix_of(by, g2);
         mat_put(&f->turn, l, &turn);
         f->turns[l] = g2 > 0 ? 1 : 0;
-        tilted[l] = to.l2 + tl_v3_norm2(vec_at(&f->last_lean, l));
+        tilted[l] = to.l2 + tl_v3_norm2(last_lean);
     }
     double any = 0;
     for (size_t l = 0; l < TL_LANES; l++)
@@ -199,19 +282,12 @@ static void put_facet(const tl_model *m, uint32_t c, const tl_facet *facet, size
     tl_sight s = tl_sight_of(m, c);
     tl_facing to = tl_facing_of(facet, &s);
     bool in_b = tl_facet_in_b(facet);
-    put_motion(f, l, &m->detect->moving[m->blocks.body[s.a]],
-               &m->detect->moving[m->blocks.body[s.b]], s.d);
+    const tl_moving *a = &m->detect->moving[m->blocks.body[s.a]];
+    const tl_moving *b = &m->detect->moving[m->blocks.body[s.b]];
+    put_motion(f, l, &a->m, &b->m, tl_v3_sub(b->way, a->way), tl_v3_add(a->half, b->half), s.d);
     mat_put(&f->to, l, in_b ? s.rb : s.ra);
     vec_put(&f->from, l, in_b ? s.d : tl_v3(0, 0, 0));
-    vec_put(&f->n, l, to.n);
-    vec_put(&f->mean, l, to.mean);
-    vec_put(&f->lean, l, to.lean);
-    vec_put(&f->plane, l, to.plane);
-    f->mean2[l] = to.mean2;
-    f->l2[l] = to.l2;
-    f->offset[l] = to.offset;
-    vec_put(&f->last, l, facet->last);
-    vec_put(&f->last_lean, l, facet->last_lean);
+    put_facing(f, l, to, facet->last, facet->last_lean);
 }
 
 /* ---------------------------------------------------------------- points ----------------- */
@@ -291,13 +367,14 @@ TL_VECTORIZED static void follow_any(const columns *c, size_t begin, size_t end,
 #pragma omp simd
         for (size_t l = 0; l < TL_LANES; l++) {
             size_t i = slot * TL_LANES + l;
-            double at = (double)slot, mine = at >= f->begin[l] && at < f->end[l] ? 1 : 0;
+            double at = (double)slot, not_before = at >= f->begin[l] ? 1 : 0;
+            double mine = at < f->end[l] ? not_before : 0;
             double seen = mine > first ? mine : first;
             tl_mat3 to = mat_at(&f->to, l), motion = mat_at(&f->m, l);
             tl_vec3 mean = vec_at(&f->mean, l), lean = vec_at(&f->lean, l);
             tl_vec3 last = vec_at(&f->last, l), last_lean = vec_at(&f->last_lean, l);
             tl_vec3 p = tl_columns_get(c->p, i), x = tl_v3_add(tl_m3_mul(&to, p), vec_at(&f->from, l));
-            tl_lean by = c->lean[i];
+            tl_lean by = {c->lean[i].face, c->lean[i].edge};
             double l2 = f->l2[l], last_l2 = tl_v3_norm2(last_lean);
             tl_vec3 n = tl_leaning(mean, lean, f->mean2[l], l2, by);
             tl_vec3 du = tl_v3_add(vec_at(&f->way, l), tl_m3_mul(&motion, x));
@@ -400,14 +477,23 @@ static void follow_slots(const tl_contacts *contacts, const tl_rank *rank, const
 static bool follow_patches(tl_model *m, const tl_rank *rank, const columns *c, frames *f,
                            size_t some)
 {
-    patches p;
+    const tl_contacts *contacts = &m->detect->contacts;
+    const tl_bodies *bodies = &m->bodies;
+    patch_rows rows;
     for (size_t l = 0; l < TL_LANES; l++) {
         size_t from = f->facet[l] ? l : some;
-        put_patch(m, rank->contact[from], f->facet[from], l, f, &p);
+        uint32_t contact = rank->contact[from];
+        uint32_t a = m->blocks.body[contacts->a[contact]], b = m->blocks.body[contacts->b[contact]];
+        rows.a[l] = &m->detect->moving[a].m.m[0][0];
+        rows.b[l] = &m->detect->moving[b].m.m[0][0];
+        rows.ra[l] = &bodies->r[a].m[0][0];
+        rows.rb[l] = &bodies->r[b].m[0][0];
+        rows.facet[l] = &f->facet[from]->na.x;
+        vec_put(&rows.d, l, tl_body_apart(bodies, a, b));
     }
-    bool tilted = place_patches(f, &p);
+    bool tilted = place_patches(f, &rows);
     if (tilted)
-        follow_slots(&m->detect->contacts, rank, c, f, 0, rank->slots, 1);
+        follow_slots(contacts, rank, c, f, 0, rank->slots, 1);
     else
         follow_level(c, rank->slots, f);
     return tilted;

@@ -383,7 +383,7 @@ static void share_of_edges(const tl_pair_view *view, const tl_axis *axis, tl_nar
 static void add_swings(tl_manifold *m, tl_vec3 swing)
 {
     tl_facet *facet = &m->facets[m->facet_count - 1];
-    facet->swing = swing;
+    tl_facet_set_swing(facet, swing);
     size_t begin = facet->begin, count = facet->count;
     double area = 0, own = 0;
     tl_vec3 sum = {0, 0, 0};
@@ -400,9 +400,8 @@ static void add_swings(tl_manifold *m, tl_vec3 swing)
     for (size_t i = begin; i < begin + count; i++) {
         whole.begin = (uint16_t)i;
         whole.count = 1;
-        m->facets[m->facet_count] = whole;
-        m->facets[m->facet_count++].swing =
-            tl_v3_add(whole.swing, tl_v3_sub(m->points[i].swing, mean));
+        tl_facet_set_swing(&whole, tl_v3_add(swing, tl_v3_sub(m->points[i].swing, mean)));
+        m->facets[m->facet_count++] = whole;
     }
 }
 

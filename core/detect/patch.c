@@ -528,15 +528,16 @@ double tl_patch_add(const tl_pair_view *view, uint32_t fa, uint32_t fb, double w
     if (!(area > 0) || !tl_manifold_reserve(m, from->count))
         return 0;
     tl_plane plane = view->b->plane[fb];
-    m->facets[m->facet_count++] = (tl_facet){.kind = TL_FACET_PATCH,
-                                             .ia = (uint16_t)fa,
-                                             .ib = (uint16_t)fb,
-                                             .begin = (uint16_t)m->point_count,
-                                             .count = (uint16_t)from->count,
-                                             .na = view->a->plane[fa].normal,
-                                             .nb = plane.normal,
-                                             .offset = plane.offset,
-                                             .swing = swing};
+    tl_facet facet = {.kind = TL_FACET_PATCH,
+                      .ia = (uint16_t)fa,
+                      .ib = (uint16_t)fb,
+                      .begin = (uint16_t)m->point_count,
+                      .count = (uint16_t)from->count,
+                      .na = view->a->plane[fa].normal,
+                      .nb = plane.normal,
+                      .offset = plane.offset};
+    tl_facet_set_swing(&facet, swing);
+    m->facets[m->facet_count++] = facet;
     for (size_t i = 0; i < from->count; i++)
         m->points[m->point_count++] = (tl_contact_point){.p = tl_columns_get(from->p, i),
                                                          .rest = from->rest[i],
