@@ -51,7 +51,8 @@ void tl_contacts_init(tl_contacts *c, tl_points_table *p)
     for (int k = 0; k < 3; k++)
         TL_COLUMN(t, p, p[k], TL_COLUMN_STATE);
     TL_COLUMN(t, p, rest, TL_COLUMN_STATE);
-    TL_COLUMN(t, p, lean, TL_COLUMN_STATE);
+    TL_COLUMN(t, p, lean_face, TL_COLUMN_STATE);
+    TL_COLUMN(t, p, lean_edge, TL_COLUMN_STATE);
     TL_COLUMN(t, p, key, 0);
     TL_COLUMN(t, p, area, TL_COLUMN_STATE);
     TL_COLUMN(t, p, reference, TL_COLUMN_STATE);

@@ -188,7 +188,7 @@ typedef struct tl_points_table {
     tl_table table;
     double *p[3];
     double *rest;
-    tl_lean *lean;
+    float *lean_face, *lean_edge; /* tl_lean */
     uint32_t *key;
     double *area;
     double *reference; /* overlap at closure 0 */
@@ -425,6 +425,18 @@ static inline tl_vec3 tl_contact_moment(const tl_model *m, uint32_t contact, boo
         tl_body_apart(&m->bodies, m->blocks.body[c->a[contact]], m->blocks.body[c->b[contact]]);
     return tl_v3_sub(c->moment[contact], tl_v3_cross(apart, c->force[contact]));
 }
+/* How the normal of a point leans. */
+static inline tl_lean tl_point_lean(const tl_points_table *p, size_t row)
+{
+    return (tl_lean){p->lean_face[row], p->lean_edge[row]};
+}
+
+static inline void tl_point_set_lean(tl_points_table *p, size_t row, tl_lean lean)
+{
+    p->lean_face[row] = lean.face;
+    p->lean_edge[row] = lean.edge;
+}
+
 /* Row of point k of a contact. */
 static inline size_t tl_point_row(const tl_contacts *c, uint32_t contact, size_t k)
 {

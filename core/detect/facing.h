@@ -46,12 +46,12 @@ TL_INLINE tl_facing tl_facing_patch(tl_vec3 na, tl_vec3 nb, tl_vec3 d, double of
     return out;
 }
 
-/* The unit normal of a point that leans so; m2 and l2 are the squares of the two vectors. */
-TL_INLINE tl_vec3 tl_leaning(tl_vec3 mean, tl_vec3 lean, double m2, double l2, tl_lean by)
+/* The unit normal of a point that leans by `face` and `edge` (tl_lean); m2 and l2 are the squares of the two vectors. */
+TL_INLINE tl_vec3 tl_leaning(tl_vec3 mean, tl_vec3 lean, double m2, double l2, double face,
+                             double edge)
 {
-    double l = by.face, k = by.edge;
-    tl_vec3 n = tl_v3_madd(tl_v3_madd(mean, l, lean), k, tl_v3_cross(mean, lean));
-    return tl_v3_scale(1 / sqrt(m2 + l2 * (l * l + k * k * m2)), n);
+    tl_vec3 n = tl_v3_madd(tl_v3_madd(mean, face, lean), edge, tl_v3_cross(mean, lean));
+    return tl_v3_scale(1 / sqrt(m2 + l2 * (face * face + edge * edge * m2)), n);
 }
 
 /* The turn that swings the plane of normal `from` into that of `to`, then by twice the angle whose tangent

@@ -294,7 +294,7 @@ static void put_facet(const tl_model *m, uint32_t c, const tl_facet *facet, size
 
 /* Columns of points and lanes, row 0 of both the first of a rank. */
 typedef struct columns {
-    const tl_lean *lean;
+    const float *face, *edge; /* tl_lean */
     const double *reference;
     double *p[3], *rest, *closure, *f_s[3];
     double *arm[3], *normal[3], *du_n, *du_s[3];
@@ -305,7 +305,8 @@ static columns columns_at(const tl_points_table *p, size_t row, const tl_point_l
     return (columns){
         .p = {p->p[0] + row, p->p[1] + row, p->p[2] + row},
         .rest = p->rest + row,
-        .lean = p->lean + row,
+        .face = p->lean_face + row,
+        .edge = p->lean_edge + row,
         .reference = p->reference + row,
         .closure = p->closure + row,
         .f_s = {p->f_s[0] + row, p->f_s[1] + row, p->f_s[2] + row},
@@ -363,7 +364,12 @@ TL_INLINE void choose_put(double yes, double *const column[3], size_t i, tl_vec3
 TL_VECTORIZED static void follow_any(const columns *c, size_t begin, size_t end,
                                      const frames *restrict f, double first)
 {
-    for (size_t slot = begin; slot < end; slot++)
+    for (size_t slot = begin; slot < end; slot++) {
+        double face[TL_LANES], edge[TL_LANES]; /* in a loop of their own: the next has no floats */
+        for (size_t l = 0; l < TL_LANES; l++) {
+            face[l] = c->face[slot * TL_LANES + l];
+            edge[l] = c->edge[slot * TL_LANES + l];
+        }
 #pragma omp simd
         for (size_t l = 0; l < TL_LANES; l++) {
             size_t i = slot * TL_LANES + l;
@@ -374,15 +380,14 @@ TL_VECTORIZED static void follow_any(const columns *c, size_t begin, size_t end,
             tl_vec3 mean = vec_at(&f->mean, l), lean = vec_at(&f->lean, l);
             tl_vec3 last = vec_at(&f->last, l), last_lean = vec_at(&f->last_lean, l);
             tl_vec3 p = tl_columns_get(c->p, i), x = tl_v3_add(tl_m3_mul(&to, p), vec_at(&f->from, l));
-            tl_lean by = {c->lean[i].face, c->lean[i].edge};
             double l2 = f->l2[l], last_l2 = tl_v3_norm2(last_lean);
-            tl_vec3 n = tl_leaning(mean, lean, f->mean2[l], l2, by);
+            tl_vec3 n = tl_leaning(mean, lean, f->mean2[l], l2, face[l], edge[l]);
             tl_vec3 du = tl_v3_add(vec_at(&f->way, l), tl_m3_mul(&motion, x));
             double du_n = tl_v3_dot(du, n);
             /* with the features that made it, along the faces; where two edges cross, also up the faces by how far
              * one edge has slid over the other */
-            double carry = l2 > 0 ? f->carry[l] : 0, slid = carry * by.edge / (l2 > 0 ? l2 : 1);
-            tl_vec3 go = tl_v3_scale(carry * (1 + (double)by.face), du);
+            double carry = l2 > 0 ? f->carry[l] : 0, slid = carry * edge[l] / (l2 > 0 ? l2 : 1);
+            tl_vec3 go = tl_v3_scale(carry * (1 + face[l]), du);
             go = tl_v3_madd(go, slid * tl_v3_dot(tl_v3_cross(mean, lean), du), lean);
             x = tl_v3_add(x, go);
             choose_put(mine, c->p, i, tl_v3_add(p, tl_m3_tmul(&to, go)));
@@ -395,10 +400,11 @@ TL_VECTORIZED static void follow_any(const columns *c, size_t begin, size_t end,
             c->du_n[i] = choose(seen, du_n, c->du_n[i]);
             choose_put(seen, c->du_s, i, tl_v3_madd(du, -du_n, n));
             double last2 = last_l2 > 0 ? tl_v3_norm2(last) : 1;
-            tl_vec3 before = tl_leaning(last, last_lean, last2, last_l2, by);
+            tl_vec3 before = tl_leaning(last, last_lean, last2, last_l2, face[l], edge[l]);
             tl_vec3 v = tl_turn_one(tl_columns_get(c->f_s, i), before, n, vec_at(&f->half, l));
             choose_put(mine, c->f_s, i, v);
         }
+    }
 }
 
 /* ---------------------------------------------------------------- ranks ------------------ */
@@ -412,7 +418,7 @@ static void turn_states(tl_model *m, uint32_t contact, const tl_facet *f, const 
         double *v[3] = {p->state[k], p->state[k + 1], p->state[k + 2]};
         for (uint32_t j = f->begin; j < f->begin + (uint32_t)f->count && tangents >> k & 1; j++) {
             size_t row = tl_point_row(&m->detect->contacts, contact, j), lane = j * TL_LANES + l;
-            tl_vec3 before = tl_facet_last_normal(f, p->lean[row]);
+            tl_vec3 before = tl_facet_last_normal(f, tl_point_lean(p, row));
             tl_columns_put(v, row, tl_turn_one(tl_columns_get(v, row), before,
                                                tl_columns_get(c->normal, lane), half));
         }

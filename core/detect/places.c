@@ -59,7 +59,7 @@ tl_vec3 tl_facet_last_normal(const tl_facet *f, tl_lean lean)
     double l2 = tl_v3_norm2(f->last_lean);
     if (l2 == 0)
         return f->last;
-    return tl_leaning(f->last, f->last_lean, tl_v3_norm2(f->last), l2, lean);
+    return tl_leaning(f->last, f->last_lean, tl_v3_norm2(f->last), l2, lean.face, lean.edge);
 }
 
 /* Arm, normal and closure of the contact's point k, which is in that row, into lane k. */
@@ -70,7 +70,9 @@ static double place_point(const tl_points_table *p, size_t row, size_t k, const 
     tl_vec3 x = tl_m3_mul(in_b ? s->rb : s->ra, tl_columns_get(p->p, row));
     x = tl_v3_add(x, in_b ? s->d : tl_v3(0, 0, 0));
     tl_columns_put(l->arm, k, x);
-    tl_columns_put(l->normal, k, tl_leaning(to->mean, to->lean, to->mean2, to->l2, p->lean[row]));
+    tl_lean by = tl_point_lean(p, row);
+    tl_columns_put(l->normal, k,
+                   tl_leaning(to->mean, to->lean, to->mean2, to->l2, by.face, by.edge));
     return (to->offset - p->rest[row]) - tl_v3_dot(to->plane, x) - p->reference[row];
 }
 
@@ -120,7 +122,7 @@ void tl_contact_summary(const tl_model *m, uint32_t contact, tl_vec3 *normal, tl
         for (size_t j = f->begin; j < f->begin + (size_t)f->count; j++) {
             size_t i = tl_point_row(contacts, contact, j);
             tl_vec3 at = tl_m3_mul(on_b ? s.rb : s.ra, tl_columns_get(p->p, i));
-            n = tl_v3_madd(n, p->area[i], tl_facet_last_normal(f, p->lean[i]));
+            n = tl_v3_madd(n, p->area[i], tl_facet_last_normal(f, tl_point_lean(p, i)));
             x = tl_v3_madd(x, p->area[i], on_b ? tl_v3_add(at, s.d) : at);
             area += p->area[i];
             *gap = fmin(*gap, -(p->closure[i] + p->reference[i]));

@@ -24,7 +24,7 @@ uint32_t tl_kind_state_columns(const tl_kind *kind)
 
 void tl_point_clear(tl_points_table *p, size_t i)
 {
-    p->lean[i] = (tl_lean){0, 0};
+    tl_point_set_lean(p, i, (tl_lean){0, 0});
     p->area[i] = p->rest[i] = p->reference[i] = p->closure[i] = 0;
     p->f_n0[i] = p->f_n[i] = 0;
     p->flags[i] = p->key[i] = 0;

@@ -59,7 +59,8 @@ static void read_old(const tl_model *m, uint32_t c, tl_narrow *room, const tl_po
         const tl_facet *f = &contacts->facet[contacts->facet_start[c] + k];
         for (uint32_t j = f->begin; j < f->begin + (uint32_t)f->count; j++) {
             room->old[j].arm = tl_columns_get(lanes->arm, j);
-            room->old[j].normal = tl_facet_last_normal(f, p->lean[tl_point_row(contacts, c, j)]);
+            tl_lean lean = tl_point_lean(p, tl_point_row(contacts, c, j));
+            room->old[j].normal = tl_facet_last_normal(f, lean);
         }
     }
     for (size_t k = 0; k < contacts->point_count[c]; k++) {
@@ -285,7 +286,7 @@ static void write_points(tl_model *m, uint32_t c, const tl_manifold *g, const ol
         const tl_contact_point *point = &g->points[k];
         tl_columns_put(p->p, i, point->p);
         p->rest[i] = point->rest;
-        p->lean[i] = point->lean;
+        tl_point_set_lean(p, i, point->lean);
         p->area[i] = point->area;
         p->key[i] = point->key;
         p->f_n[i] = p->f_n0[i] = p->reference[i] = 0;

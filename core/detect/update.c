@@ -85,7 +85,7 @@ static void refit(tl_model *m, uint32_t c, const tl_manifold *g)
         double state[TL_STATE_COLUMNS];
         tl_columns_put(p->p, i, g->points[k].p);
         p->rest[i] = g->points[k].rest;
-        p->lean[i] = g->points[k].lean;
+        tl_point_set_lean(p, i, g->points[k].lean);
         p->area[i] = g->points[k].area;
         if (scale == 1)
             continue;
@@ -216,7 +216,7 @@ static double refit_patch(tl_points_table *p, size_t begin, const tl_patch_point
             p->f_s[x][i] *= scale;
         }
         p->rest[i] = g->rest[k];
-        p->lean[i] = g->lean[k];
+        tl_point_set_lean(p, i, g->lean[k]);
         p->f_n[i] *= scale;
         p->f_n0[i] *= scale;
         p->area[i] = g->area[k];
