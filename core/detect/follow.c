@@ -131,7 +131,7 @@ typedef struct frames {
     /* flush patches: turn of their common plane, and whether it turns at all */
     lane_mat3 turn;
     double turns[TL_LANES];
-    double begin[TL_LANES], end[TL_LANES]; /* slots of its points */
+    uint32_t end[TL_LANES]; /* slot behind its points */
 } frames;
 
 /* What is known of a patch and its bodies, a lane each, before the lanes work out together what follows from it. */
@@ -346,23 +346,11 @@ TL_VECTORIZED static void follow_level(const columns *c, size_t slots, const fra
         }
 }
 
-TL_INLINE double choose(double yes, double a, double b)
-{
-    return yes > 0 ? a : b;
-}
-
-TL_INLINE void choose_put(double yes, double *const column[3], size_t i, tl_vec3 v)
-{
-    column[0][i] = choose(yes, v.x, column[0][i]);
-    column[1][i] = choose(yes, v.y, column[1][i]);
-    column[2][i] = choose(yes, v.z, column[2][i]);
-}
-
 /* Points of any facets. Features of a tilted patch move: a vertex of A with A (lean -1), one of B with B (lean 1), what
  * lies between with both; so do the points until the patch is made anew, and the gap opens along the point's
- * normal. The first facets that are followed fill the lanes of all points: what is inert must be finite there. */
+ * normal. */
 TL_VECTORIZED static void follow_any(const columns *c, size_t begin, size_t end,
-                                     const frames *restrict f, double first)
+                                     const frames *restrict f)
 {
     for (size_t slot = begin; slot < end; slot++) {
         double face[TL_LANES], edge[TL_LANES]; /* in a loop of their own: the next has no floats */
@@ -373,9 +361,6 @@ TL_VECTORIZED static void follow_any(const columns *c, size_t begin, size_t end,
 #pragma omp simd
         for (size_t l = 0; l < TL_LANES; l++) {
             size_t i = slot * TL_LANES + l;
-            double at = (double)slot, not_before = at >= f->begin[l] ? 1 : 0;
-            double mine = at < f->end[l] ? not_before : 0;
-            double seen = mine > first ? mine : first;
             tl_mat3 to = mat_at(&f->to, l), motion = mat_at(&f->m, l);
             tl_vec3 mean = vec_at(&f->mean, l), lean = vec_at(&f->lean, l);
             tl_vec3 last = vec_at(&f->last, l), last_lean = vec_at(&f->last_lean, l);
@@ -390,19 +375,19 @@ TL_VECTORIZED static void follow_any(const columns *c, size_t begin, size_t end,
             tl_vec3 go = tl_v3_scale(carry * (1 + face[l]), du);
             go = tl_v3_madd(go, slid * tl_v3_dot(tl_v3_cross(mean, lean), du), lean);
             x = tl_v3_add(x, go);
-            choose_put(mine, c->p, i, tl_v3_add(p, tl_m3_tmul(&to, go)));
+            put(c->p, i, tl_v3_add(p, tl_m3_tmul(&to, go)));
             double rest = c->rest[i] + tl_v3_dot(tl_v3_add(mean, lean), go);
-            c->rest[i] = choose(mine, rest, c->rest[i]);
-            double closure = (f->offset[l] - rest) - tl_v3_dot(vec_at(&f->plane, l), x);
-            c->closure[i] = choose(mine, closure - c->reference[i], c->closure[i]);
-            choose_put(seen, c->arm, i, x);
-            choose_put(seen, c->normal, i, n);
-            c->du_n[i] = choose(seen, du_n, c->du_n[i]);
-            choose_put(seen, c->du_s, i, tl_v3_madd(du, -du_n, n));
+            c->rest[i] = rest;
+            c->closure[i] = (f->offset[l] - rest) - tl_v3_dot(vec_at(&f->plane, l), x) -
+                            c->reference[i];
+            put(c->arm, i, x);
+            put(c->normal, i, n);
+            c->du_n[i] = du_n;
+            put(c->du_s, i, tl_v3_madd(du, -du_n, n));
             double last2 = last_l2 > 0 ? tl_v3_norm2(last) : 1;
             tl_vec3 before = tl_leaning(last, last_lean, last2, last_l2, face[l], edge[l]);
             tl_vec3 v = tl_turn_one(tl_columns_get(c->f_s, i), before, n, vec_at(&f->half, l));
-            choose_put(mine, c->f_s, i, v);
+            put(c->f_s, i, v);
         }
     }
 }
@@ -425,61 +410,44 @@ static void turn_states(tl_model *m, uint32_t contact, const tl_facet *f, const 
     }
 }
 
-/* The states that turn, and the normals to turn from in the next step. */
-static void finish_facets(tl_model *m, const tl_rank *rank, const columns *c, const frames *f,
-                          uint32_t tangents)
+/* The states that turn, and the normal to turn from in the next step. */
+static void finish_facet(tl_model *m, const tl_rank *rank, const columns *c, const frames *f,
+                         size_t l, uint32_t tangents)
 {
-    for (size_t l = 0; l < TL_LANES; l++) {
-        tl_facet *facet = f->facet[l];
-        if (!facet)
-            continue;
-        if (tangents)
-            turn_states(m, rank->contact[l], facet, c, l, vec_at(&f->half, l), tangents);
-        facet->last = vec_at(&f->mean, l);
-        facet->last_lean = vec_at(&f->lean, l);
-    }
+    tl_facet *facet = f->facet[l];
+    if (!facet)
+        return;
+    if (tangents)
+        turn_states(m, rank->contact[l], facet, c, l, vec_at(&f->half, l), tangents);
+    facet->last = vec_at(&f->mean, l);
+    facet->last_lean = vec_at(&f->lean, l);
 }
 
-/* Facet k of each contact of the rank into its lane; `some` is a lane that has one, for lanes without do as another.
- * false when no contact has one. */
-static bool take_facets(tl_detect *d, const tl_rank *rank, uint32_t k, frames *f, size_t *some)
+/* Lanes of the rank that hold a contact of one patch and nothing else, or no contact: all of them? `some` is one of the
+ * former. */
+static bool take_patches(tl_detect *d, const tl_rank *rank, frames *f, size_t *some)
 {
     tl_contacts *c = &d->contacts;
     *some = TL_LANES;
     for (size_t l = 0; l < TL_LANES; l++) {
         uint32_t contact = rank->contact[l];
-        bool has = contact != TL_NO_ROW && k < c->facet_count[contact];
-        f->facet[l] = has ? &c->facet[c->facet_start[contact] + k] : NULL;
-        *some = has ? l : *some;
+        f->facet[l] = NULL;
+        if (contact == TL_NO_ROW)
+            continue;
+        f->facet[l] = &c->facet[c->facet_start[contact]];
+        if (c->facet_count[contact] != 1 || f->facet[l]->kind != TL_FACET_PATCH)
+            return false;
+        *some = l;
     }
     return *some < TL_LANES;
 }
 
-/* Whether every contact of the rank has one patch and nothing else. */
-static bool are_patches(const tl_contacts *c, const tl_rank *rank, const frames *f)
+static double carry_of(const tl_contacts *contacts, uint32_t contact)
 {
-    for (size_t l = 0; l < TL_LANES; l++)
-        if (f->facet[l] &&
-            (f->facet[l]->kind != TL_FACET_PATCH || c->facet_count[rank->contact[l]] > 1))
-            return false;
-    return true;
+    return contact == TL_NO_ROW || contacts->fresh[contact] ? 0 : 0.5;
 }
 
-/* Slots `from` to `to` of the facets that have been taken, whatever they are. */
-static void follow_slots(const tl_contacts *contacts, const tl_rank *rank, const columns *c,
-                         frames *f, size_t from, size_t to, double first)
-{
-    for (size_t l = 0; l < TL_LANES; l++) {
-        const tl_facet *facet = f->facet[l];
-        f->begin[l] = facet ? facet->begin : 0;
-        f->end[l] = facet ? facet->begin + facet->count : 0;
-        f->carry[l] = facet && !contacts->fresh[rank->contact[l]] ? 0.5 : 0;
-    }
-    follow_any(c, from, to, f, first);
-}
-
-/* The facets that have been taken, all of them patches and the only ones of their contacts; false when all are flush
- * and were. */
+/* The patches that have been taken; lanes without a contact do as another. false when all are flush and were. */
 static bool follow_patches(tl_model *m, const tl_rank *rank, const columns *c, frames *f,
                            size_t some)
 {
@@ -497,47 +465,72 @@ static bool follow_patches(tl_model *m, const tl_rank *rank, const columns *c, f
         rows.facet[l] = &f->facet[from]->na.x;
         vec_put(&rows.d, l, tl_body_apart(bodies, a, b));
     }
-    bool tilted = place_patches(f, &rows);
-    if (tilted)
-        follow_slots(contacts, rank, c, f, 0, rank->slots, 1);
-    else
+    if (!place_patches(f, &rows)) {
         follow_level(c, rank->slots, f);
-    return tilted;
+        return false;
+    }
+    for (size_t l = 0; l < TL_LANES; l++)
+        f->carry[l] = carry_of(contacts, rank->contact[l]);
+    follow_any(c, 0, rank->slots, f);
+    return true;
 }
 
-/* The facets that have been taken, whatever they are. */
-static void follow_facets(tl_model *m, const tl_rank *rank, const columns *c, frames *f,
-                          size_t some, bool first)
+/* The facet of lane l that begins in a slot; where its contact ends before, the lane goes on as it is, inert. */
+static void next_facet(tl_model *m, const tl_rank *rank, frames *f, size_t l, uint32_t slot)
 {
-    uint32_t begin = first ? 0 : rank->slots, end = first ? rank->slots : 0;
-    for (size_t l = 0; l < TL_LANES; l++) {
-        const tl_facet *facet = f->facet[l] ? f->facet[l] : f->facet[some];
-        put_facet(m, rank->contact[f->facet[l] ? l : some], facet, l, f);
-        begin = facet->begin < begin ? facet->begin : begin;
-        end = facet->begin + facet->count > end ? facet->begin + (uint32_t)facet->count : end;
+    tl_contacts *contacts = &m->detect->contacts;
+    uint32_t contact = rank->contact[l];
+    uint32_t facets = contact == TL_NO_ROW ? 0 : contacts->facet_count[contact];
+    f->facet[l] = NULL;
+    for (uint32_t k = 0; k < facets && !f->facet[l]; k++) {
+        tl_facet *facet = &contacts->facet[contacts->facet_start[contact] + k];
+        if (facet->begin == slot && facet->count > 0)
+            f->facet[l] = facet;
     }
-    follow_slots(&m->detect->contacts, rank, c, f, begin, end, first ? 1 : 0);
+    f->carry[l] = f->facet[l] ? carry_of(contacts, contact) : 0;
+    f->end[l] = f->facet[l] ? slot + f->facet[l]->count : rank->slots;
+    if (f->facet[l])
+        put_facet(m, contact, f->facet[l], l, f);
+}
+
+/* Whatever facets the rank has: from where one begins in some lane to where the next does. */
+static void follow_facets(tl_model *m, const tl_rank *rank, const columns *c, frames *f,
+                          uint32_t tangents)
+{
+    uint32_t slot = 0;
+    memset(f, 0, sizeof *f); /* lanes without a contact: inert, but finite */
+    for (size_t l = 0; l < TL_LANES; l++)
+        f->mean2[l] = 1;
+    while (slot < rank->slots) {
+        uint32_t until = rank->slots;
+        for (size_t l = 0; l < TL_LANES; l++) {
+            if (f->end[l] == slot) {
+                finish_facet(m, rank, c, f, l, tangents);
+                next_facet(m, rank, f, l, slot);
+            }
+            until = f->end[l] < until ? f->end[l] : until;
+        }
+        follow_any(c, slot, until, f);
+        slot = until;
+    }
 }
 
 bool tl_rank_follow(tl_model *m, const tl_rank *rank, const tl_point_lanes *t, size_t lane,
                     uint32_t tangents)
 {
-    tl_contacts *contacts = &m->detect->contacts;
+    uint8_t *fresh = m->detect->contacts.fresh;
     columns c = columns_at(&m->detect->points, rank->start, t, lane);
     frames f;
     size_t some;
-    bool tilted = false;
-    for (uint32_t k = 0; take_facets(m->detect, rank, k, &f, &some); k++) {
-        if (k == 0 && are_patches(contacts, rank, &f)) {
-            tilted = follow_patches(m, rank, &c, &f, some);
-        } else {
-            tilted = true;
-            follow_facets(m, rank, &c, &f, some, k == 0);
-        }
-        finish_facets(m, rank, &c, &f, tangents);
+    bool tilted = true;
+    if (take_patches(m->detect, rank, &f, &some))
+        tilted = follow_patches(m, rank, &c, &f, some);
+    else
+        follow_facets(m, rank, &c, &f, tangents);
+    for (size_t l = 0; l < TL_LANES; l++) {
+        finish_facet(m, rank, &c, &f, l, tangents);
+        if (rank->contact[l] != TL_NO_ROW && fresh[rank->contact[l]])
+            fresh[rank->contact[l]] = false;
     }
-    for (size_t l = 0; l < TL_LANES; l++)
-        if (rank->contact[l] != TL_NO_ROW && contacts->fresh[rank->contact[l]])
-            contacts->fresh[rank->contact[l]] = false;
     return tilted;
 }
