@@ -18,14 +18,14 @@ static tl_sym3 stress_at(const tl_insitu *s, double z)
                      s->stress.yz + h * s->gradient.yz, s->stress.zx + h * s->gradient.zx};
 }
 
-static void load_point(tl_model *m, const tl_insitu *s, size_t i, tl_vec3 n, double z)
+static void load_point(tl_model *m, const tl_insitu *s, size_t i, tl_vec3 n, double z,
+                       double closure)
 {
     tl_points_table *p = &m->detect->points;
     tl_vec3 traction = tl_s3_mul(stress_at(s, z), n);
     double normal = tl_v3_dot(n, traction);
     tl_vec3 shear = tl_v3_madd(traction, -normal, n);
-    p->reference[i] += p->closure[i];
-    p->closure[i] = 0;
+    p->reference[i] += closure;
     p->f_n0[i] = p->f_n[i] = -normal * p->area[i];
     p->f_s[0][i] = -shear.x * p->area[i];
     p->f_s[1][i] = -shear.y * p->area[i];
@@ -39,13 +39,14 @@ static void load_contact(tl_model *m, const tl_insitu *s, uint32_t c)
     const tl_point_lanes *lanes = &m->detect->lanes[0];
     double foot = m->origin.z + tl_body_place(&m->bodies, m->blocks.body[contacts->a[c]]).z;
     tl_contact_places(m, c, lanes);
+    m->detect->contacts.across[c] = true; /* perhaps: the next step tells */
     for (uint32_t k = 0; k < contacts->facet_count[c]; k++) {
         const tl_facet *f = &contacts->facet[contacts->facet_start[c] + k];
         if (f->kind != TL_FACET_PATCH)
             continue;
         for (size_t i = f->begin; i < f->begin + (size_t)f->count; i++)
             load_point(m, s, tl_point_row(contacts, c, i), tl_columns_get(lanes->normal, i),
-                       foot + lanes->arm[2][i]);
+                       foot + lanes->arm[2][i], lanes->closure[i]);
     }
 }
 
@@ -123,6 +124,8 @@ tl_status tl_model_insitu(tl_model *m, const tl_insitu *insitu)
     tl_status status = tl_detect_refresh(m);
     if (status != TL_OK)
         return status;
+    if (!tl_detect_hold_initial(m->detect))
+        return tl_fail_memory(&m->error);
     const tl_contacts *c = &m->detect->contacts;
     for (uint32_t i = 0; i < c->table.rows; i++)
         load_contact(m, insitu, i);

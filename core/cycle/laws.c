@@ -46,8 +46,8 @@ static bool call_law(const run_job *job, size_t first, size_t count, const tl_po
         .count = (uint32_t)count,
         .dt = job->m->dt,
         .area = p->area + first,
-        .closure = p->closure + first,
-        .f_n0 = p->f_n0 + first,
+        .closure = l->closure,
+        .f_n0 = p->f_n0 ? p->f_n0 + first : l->zero,
         .normal = {l->normal[0], l->normal[1], l->normal[2]},
         .du_n = l->du_n,
         .du_s = {l->du_s[0], l->du_s[1], l->du_s[2]},
@@ -94,7 +94,8 @@ static tl_vec3 couple_of(const tl_model *m, uint32_t c, const double *stored_in)
  * their springs and slip. */
 typedef struct rank_sums {
     double force[3][TL_LANES], moment[3][TL_LANES], stored[TL_LANES], dissipated[TL_LANES];
-    double odd[TL_LANES]; /* 0, or NaN when the force or moment is not finite */
+    double across[TL_LANES]; /* above 0 when a force acts across a gap */
+    double odd[TL_LANES];    /* 0, or NaN when the force or moment is not finite */
 } rank_sums;
 
 /* Point after point: the same order for every width of the processor's vectors. */
@@ -105,6 +106,8 @@ TL_VECTORIZED static void sum_points(const tl_points_table *p, const tl_point_la
     const double *f_z = p->f_s[2] + row, *n_x = t->normal[0] + lane, *n_y = t->normal[1] + lane;
     const double *n_z = t->normal[2] + lane, *x = t->arm[0] + lane, *y = t->arm[1] + lane;
     const double *z = t->arm[2] + lane, *stored = t->stored + lane, *heat = t->dissipated + lane;
+    const double *closure = t->closure + lane;
+    const double *reference = p->reference ? p->reference + row : t->zero + lane;
     rank_sums s = {0};
     for (size_t at = 0; at < slots * TL_LANES; at += TL_LANES)
 #pragma omp simd
@@ -119,6 +122,8 @@ TL_VECTORIZED static void sum_points(const tl_points_table *p, const tl_point_la
             s.moment[0][l] += y[i] * gz - z[i] * gy;
             s.moment[1][l] += z[i] * gx - x[i] * gz;
             s.moment[2][l] += x[i] * gy - y[i] * gx;
+            double push = closure[i] + reference[i] < 0 ? f_n[i] : 0;
+            s.across[l] += f_n[i] < 0 ? -f_n[i] : push;
             s.stored[l] += stored[i];
             s.dissipated[l] += heat[i];
         }
@@ -156,6 +161,7 @@ static void sum_rank(tl_model *m, const tl_rank *rank, const tl_point_lanes *t, 
         uint32_t c = rank->contact[l];
         if (c == TL_NO_ROW)
             continue;
+        contacts->across[c] = sum.across[l] > 0;
         contacts->force[c] = tl_v3(sum.force[0][l], sum.force[1][l], sum.force[2][l]);
         contacts->moment[c] = tl_v3(sum.moment[0][l], sum.moment[1][l], sum.moment[2][l]);
         if (tilted)

@@ -46,7 +46,7 @@ static tl_status make_material(tl_model *m, tl_tag tag, const char *joint, const
     return TL_OK;
 }
 
-static void rebase_point(tl_points_table *p, size_t i, double old_kn)
+static void rebase_point(tl_points_table *p, size_t i, double closure, double old_kn)
 {
     if (p->area[i] <= 0)
         return;
@@ -56,15 +56,19 @@ static void rebase_point(tl_points_table *p, size_t i, double old_kn)
         p->f_n0[i] = 0;
         return;
     }
-    p->reference[i] += p->closure[i];
-    p->closure[i] = 0;
+    p->reference[i] += closure;
     p->f_n0[i] = p->f_n[i];
 }
 
 /* Keeps the forces of the contacts that come under another stiffness or law. */
-static void rebase(tl_model *m, const tl_material *material)
+static tl_status rebase(tl_model *m, const tl_material *material)
 {
     tl_detect *d = m->detect;
+    if (d && d->structure != m->structure) { /* contacts of blocks in other rows, or none */
+        tl_status status = tl_detect_refresh(m);
+        if (status != TL_OK)
+            return status;
+    }
     for (uint32_t c = 0; d && c < d->contacts.table.rows; c++) {
         uint32_t old = d->contacts.material[c];
         if (old == TL_NO_ROW || !tl_tag_matches(material->tag, d->contacts.tag[c]))
@@ -79,9 +83,14 @@ static void rebase(tl_model *m, const tl_material *material)
         if (before->kind == material->kind && before->kn == material->kn &&
             before->ks == material->ks)
             continue;
+        if (!tl_detect_hold_initial(d))
+            return tl_fail_memory(&m->error);
+        tl_contact_places(m, c, &d->lanes[0]);
         for (uint32_t i = 0; i < d->contacts.point_count[c]; i++)
-            rebase_point(&d->points, tl_point_row(&d->contacts, c, i), before->kn);
+            rebase_point(&d->points, tl_point_row(&d->contacts, c, i), d->lanes[0].closure[i],
+                         before->kn);
     }
+    return TL_OK;
 }
 
 /* Points whose law changes its kind under the same material begin with the new law's states. */
@@ -141,7 +150,11 @@ tl_status tl_joint_law(tl_model *m, const char *joint, const char *law, const tl
         }
         m->materials = materials;
     }
-    rebase(m, &fresh);
+    status = rebase(m, &fresh);
+    if (status != TL_OK) {
+        tl_material_clear(&fresh);
+        return status;
+    }
     if (place) {
         if (place->kind != fresh.kind)
             reset_states(m, (uint32_t)(place - m->materials), fresh.kind);

@@ -42,6 +42,7 @@ void tl_contacts_init(tl_contacts *c, tl_points_table *p)
     TL_COLUMN(t, c, moment, 0);
     TL_COLUMN(t, c, want_points, 0);
     TL_COLUMN(t, c, want_facets, 0);
+    TL_COLUMN(t, c, across, TL_COLUMN_STATE);
     TL_COLUMN(t, c, fresh, 0);
     TL_COLUMN(t, c, lone, 0);
     TL_COLUMN(t, c, fate, 0);
@@ -50,14 +51,10 @@ void tl_contacts_init(tl_contacts *c, tl_points_table *p)
     tl_table_init(t, p);
     for (int k = 0; k < 3; k++)
         TL_COLUMN(t, p, p[k], TL_COLUMN_STATE);
-    TL_COLUMN(t, p, rest, TL_COLUMN_STATE);
     TL_COLUMN(t, p, lean_face, TL_COLUMN_STATE);
     TL_COLUMN(t, p, lean_edge, TL_COLUMN_STATE);
     TL_COLUMN(t, p, key, 0);
     TL_COLUMN(t, p, area, TL_COLUMN_STATE);
-    TL_COLUMN(t, p, reference, TL_COLUMN_STATE);
-    TL_COLUMN(t, p, closure, TL_COLUMN_STATE);
-    TL_COLUMN(t, p, f_n0, TL_COLUMN_STATE);
     TL_COLUMN(t, p, f_n, TL_COLUMN_STATE);
     TL_COLUMN(t, p, flags, TL_COLUMN_STATE);
     for (int k = 0; k < 3; k++)
@@ -74,9 +71,11 @@ void tl_point_lanes_init(tl_point_lanes *l)
         TL_COLUMN(t, l, normal[k], 0);
         TL_COLUMN(t, l, du_s[k], 0);
     }
+    TL_COLUMN(t, l, closure, 0);
     TL_COLUMN(t, l, du_n, 0);
     TL_COLUMN(t, l, stored, 0);
     TL_COLUMN(t, l, dissipated, 0);
+    TL_COLUMN(t, l, zero, 0);
 }
 
 uint32_t tl_material_row(const tl_model *m, tl_tag tag)

@@ -54,6 +54,11 @@ static void detect_destroy(tl_detect *d)
     free(d);
 }
 
+bool tl_detect_hold_initial(tl_detect *d)
+{
+    return tl_points_hold_initial(&d->points) && tl_points_hold_initial(&d->spare_points);
+}
+
 static tl_status ensure(tl_model *m)
 {
     if (m->detect)

@@ -65,7 +65,7 @@ typedef enum tl_facet_kind {
  * have them and every step asks; edges are looked up in the shapes. A step reads the doubles as one row. */
 typedef struct tl_facet {
     tl_vec3 na, nb; /* outward normals of the faces, own frames; edges: na is n when made */
-    double offset;  /* of the face a point is measured against */
+    double offset;  /* of the face, or the sum of those of both faces, own frames */
     tl_vec3 last,
         last_lean;  /* normal when last followed, and how points' normals differ, model's axes */
     float swing[3]; /* couple on B per energy stored in its points, A's frame, 1/rad */
@@ -97,11 +97,9 @@ typedef struct tl_lean {
 } tl_lean;
 
 /* A contact point as the geometry gives it. `p` is fixed to A for patches, faces of B and edges, and
- * to B for faces of A. Patches: `rest` is what the point's own wall adds to the gap; `lean` tells along
- * which normal the gap opens. */
+ * to B for faces of A. Patches: `lean` tells along which normal the gap opens. */
 typedef struct tl_contact_point {
     tl_vec3 p;
-    double rest;
     tl_lean lean;
     double area;
     uint32_t key;  /* of the features that made it */
@@ -174,6 +172,8 @@ typedef struct tl_contacts {
     tl_vec3 *force;                      /* on B */
     tl_vec3 *moment;                     /* of the forces on B, about A's body's centroid */
     uint32_t *want_points, *want_facets; /* of a contact that must grow */
+    uint8_t *across; /* some point carried a force across a gap in the last step: a bond in tension, or an initial
+                        stress not yet relieved. Such a contact ends only with that force */
     uint8_t *fresh;                      /* its points were placed in this step */
     uint8_t *lone; /* its faces that look at each other are one of each block */
     uint8_t *fate; /* what the parallel phase leaves to the serial one: TL_FATE_* */
@@ -187,17 +187,15 @@ enum { TL_FATE_KEEP, TL_FATE_GROW, TL_FATE_DIE, TL_FATE_MATERIAL, TL_FATE_MEMORY
 typedef struct tl_points_table {
     tl_table table;
     double *p[3];
-    double *rest;
     float *lean_face, *lean_edge; /* tl_lean */
     uint32_t *key;
     double *area;
-    double *reference; /* overlap at closure 0 */
-    double *closure;
-    double *f_n0;
+    double *reference, *f_n0; /* overlap at closure 0, initial normal force; NULL: 0 everywhere */
     double *f_n, *f_s[3];
     uint32_t *flags;
     double *state[TL_STATE_COLUMNS]; /* as many as the laws need; the others are NULL */
     uint32_t state_columns;
+    bool initial; /* has the columns reference and f_n0 */
 } tl_points_table;
 
 /* What is known of points only while a step works on them. */
@@ -205,8 +203,10 @@ typedef struct tl_point_lanes {
     tl_table table;
     double *arm[3]; /* from A's body's centroid to the point, axes of the model */
     double *normal[3];
+    double *closure; /* overlap less reference */
     double *du_n, *du_s[3];
     double *stored, *dissipated;
+    double *zero; /* 0, for what points have no column of */
 } tl_point_lanes;
 
 /* Contacts of one material whose points lie side by side: point k of the contact in lane l is row start + TL_LANES k
@@ -295,6 +295,8 @@ tl_status tl_detect_update(tl_model *m);
 /* Finds the contacts of a model whose blocks or laws have changed since the last step, for queries and
  * settings between steps. Contacts that stand are not touched, so asking never changes a result. */
 tl_status tl_detect_refresh(tl_model *m);
+/* Makes sure that points have initial forces; false when out of memory. */
+bool tl_detect_hold_initial(tl_detect *d);
 
 /* ---- memory.c ---- */
 /* Adds what the detection holds. */
@@ -363,9 +365,9 @@ bool tl_rank_follow(tl_model *m, const tl_rank *rank, const tl_point_lanes *lane
                     uint32_t tangents);
 
 /* ---- places.c ---- */
-/* Arms and normals of a contact's points in the present place, from lane 0 on; du_n gets their closures. */
+/* Arms, normals and closures of a contact's points in the present place, from lane 0 on. */
 void tl_contact_places(const tl_model *m, uint32_t contact, const tl_point_lanes *lanes);
-/* The same for a contact whose points are new: closures are set, and forces turn from here. */
+/* The same for a contact whose points are new: forces turn from here. */
 void tl_contact_begin(tl_model *m, uint32_t contact, const tl_point_lanes *lanes);
 /* Area-weighted normal and point (coordinates relative to the origin), and the smallest gap. */
 void tl_contact_summary(const tl_model *m, uint32_t contact, tl_vec3 *normal, tl_vec3 *point,
@@ -472,6 +474,8 @@ uint32_t tl_kind_state_columns(const tl_kind *kind);
 /* Makes sure that points have that many state columns; false when out of memory. Both tables of points need
  * the same. */
 bool tl_points_hold_states(tl_points_table *points, uint32_t columns);
+/* The same for initial forces and the overlaps they belong to. */
+bool tl_points_hold_initial(tl_points_table *points);
 /* State descriptor k of a kind. */
 const tl_state *tl_kind_state(const tl_kind *kind, uint32_t k);
 

@@ -26,14 +26,15 @@ typedef struct tl_facing {
     tl_vec3 lean;   /* ... and from it to the normal of A's face, and against it to B's; else 0 */
     double mean2;   /* squares of their lengths, or 1 and 0 */
     double l2;
-    tl_vec3 plane;  /* outward normal of the plane; 0 for edges, whose gap is the same everywhere */
-    double offset;  /* of the plane, or the gap negated */
+    tl_vec3 plane;  /* overlap of a point at an arm: offset - plane . arm. The outward normal of the face, or the */
+    double offset;  /* sum of those of both; 0 for edges, whose gap is the same everywhere */
 } tl_facing;
 
-/* Of a patch, from the normals of its faces in the present place; `offset` is that of B's face in B's frame. */
+/* Of a patch, from the normals of its faces in the present place. A point's gap is what it lies above B's face and
+ * above A's: less exact than from one plane by nothing, for where the faces lie flush nA + nB is next to 0. */
 TL_INLINE tl_facing tl_facing_patch(tl_vec3 na, tl_vec3 nb, tl_vec3 d, double offset)
 {
-    tl_facing out = {.plane = nb, .offset = offset + tl_v3_dot(nb, d)};
+    tl_facing out = {.plane = tl_v3_add(na, nb), .offset = offset + tl_v3_dot(nb, d)};
     tl_vec3 mean = tl_v3_scale(0.5, tl_v3_sub(na, nb)), lean = tl_v3_scale(0.5, tl_v3_add(na, nb));
     double mean2 = tl_v3_norm2(mean), l2 = tl_v3_norm2(lean);
     double tilted = l2 > TL_FLUSH * TL_FLUSH ? 1 : 0;

@@ -296,22 +296,21 @@ static void put_facet(const tl_model *m, uint32_t c, const tl_facet *facet, size
 typedef struct columns {
     const float *face, *edge; /* tl_lean */
     const double *reference;
-    double *p[3], *rest, *closure, *f_s[3];
-    double *arm[3], *normal[3], *du_n, *du_s[3];
+    double *p[3], *f_s[3];
+    double *arm[3], *normal[3], *closure, *du_n, *du_s[3];
 } columns;
 
 static columns columns_at(const tl_points_table *p, size_t row, const tl_point_lanes *t, size_t lane)
 {
     return (columns){
         .p = {p->p[0] + row, p->p[1] + row, p->p[2] + row},
-        .rest = p->rest + row,
         .face = p->lean_face + row,
         .edge = p->lean_edge + row,
-        .reference = p->reference + row,
-        .closure = p->closure + row,
+        .reference = p->reference ? p->reference + row : t->zero + lane,
         .f_s = {p->f_s[0] + row, p->f_s[1] + row, p->f_s[2] + row},
         .arm = {t->arm[0] + lane, t->arm[1] + lane, t->arm[2] + lane},
         .normal = {t->normal[0] + lane, t->normal[1] + lane, t->normal[2] + lane},
+        .closure = t->closure + lane,
         .du_n = t->du_n + lane,
         .du_s = {t->du_s[0] + lane, t->du_s[1] + lane, t->du_s[2] + lane},
     };
@@ -336,8 +335,7 @@ TL_VECTORIZED static void follow_level(const columns *c, size_t slots, const fra
             double du_n = tl_v3_dot(du, n);
             put(c->arm, i, x);
             put(c->normal, i, n);
-            c->closure[i] = (f->offset[l] - c->rest[i]) - tl_v3_dot(vec_at(&f->plane, l), x) -
-                            c->reference[i];
+            c->closure[i] = f->offset[l] - tl_v3_dot(vec_at(&f->plane, l), x) - c->reference[i];
             c->du_n[i] = du_n;
             put(c->du_s, i, tl_v3_madd(du, -du_n, n));
             /* what has not turned stays as it is, to the bit */
@@ -376,10 +374,7 @@ TL_VECTORIZED static void follow_any(const columns *c, size_t begin, size_t end,
             go = tl_v3_madd(go, slid * tl_v3_dot(tl_v3_cross(mean, lean), du), lean);
             x = tl_v3_add(x, go);
             put(c->p, i, tl_v3_add(p, tl_m3_tmul(&to, go)));
-            double rest = c->rest[i] + tl_v3_dot(tl_v3_add(mean, lean), go);
-            c->rest[i] = rest;
-            c->closure[i] = (f->offset[l] - rest) - tl_v3_dot(vec_at(&f->plane, l), x) -
-                            c->reference[i];
+            c->closure[i] = f->offset[l] - tl_v3_dot(vec_at(&f->plane, l), x) - c->reference[i];
             put(c->arm, i, x);
             put(c->normal, i, n);
             c->du_n[i] = du_n;

@@ -535,12 +535,11 @@ double tl_patch_add(const tl_pair_view *view, uint32_t fa, uint32_t fb, double w
                       .count = (uint16_t)from->count,
                       .na = view->a->plane[fa].normal,
                       .nb = plane.normal,
-                      .offset = plane.offset};
+                      .offset = view->a->plane[fa].offset + plane.offset};
     tl_facet_set_swing(&facet, swing);
     m->facets[m->facet_count++] = facet;
     for (size_t i = 0; i < from->count; i++)
         m->points[m->point_count++] = (tl_contact_point){.p = tl_columns_get(from->p, i),
-                                                         .rest = from->rest[i],
                                                          .lean = from->lean[i],
                                                          .area = from->area[i],
                                                          .key = from->key[i]};

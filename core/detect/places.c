@@ -63,7 +63,7 @@ tl_vec3 tl_facet_last_normal(const tl_facet *f, tl_lean lean)
 }
 
 /* Arm, normal and closure of the contact's point k, which is in that row, into lane k. */
-static double place_point(const tl_points_table *p, size_t row, size_t k, const tl_facet *f,
+static void place_point(const tl_points_table *p, size_t row, size_t k, const tl_facet *f,
                           const tl_facing *to, const tl_sight *s, const tl_point_lanes *l)
 {
     bool in_b = tl_facet_in_b(f);
@@ -73,7 +73,8 @@ static double place_point(const tl_points_table *p, size_t row, size_t k, const 
     tl_lean by = tl_point_lean(p, row);
     tl_columns_put(l->normal, k,
                    tl_leaning(to->mean, to->lean, to->mean2, to->l2, by.face, by.edge));
-    return (to->offset - p->rest[row]) - tl_v3_dot(to->plane, x) - p->reference[row];
+    l->closure[k] =
+        to->offset - tl_v3_dot(to->plane, x) - (p->reference ? p->reference[row] : 0);
 }
 
 void tl_contact_places(const tl_model *m, uint32_t contact, const tl_point_lanes *l)
@@ -84,23 +85,20 @@ void tl_contact_places(const tl_model *m, uint32_t contact, const tl_point_lanes
         const tl_facet *f = &contacts->facet[contacts->facet_start[contact] + i];
         tl_facing to = tl_facing_of(f, &s);
         for (size_t k = f->begin; k < f->begin + (size_t)f->count; k++)
-            l->du_n[k] = place_point(&m->detect->points, tl_point_row(contacts, contact, k), k, f,
-                                     &to, &s, l);
+            place_point(&m->detect->points, tl_point_row(contacts, contact, k), k, f, &to, &s, l);
     }
 }
 
 void tl_contact_begin(tl_model *m, uint32_t contact, const tl_point_lanes *l)
 {
     tl_contacts *contacts = &m->detect->contacts;
-    tl_points_table *p = &m->detect->points;
+    const tl_points_table *p = &m->detect->points;
     tl_sight s = tl_sight_of(m, contact);
     for (uint32_t i = 0; i < contacts->facet_count[contact]; i++) {
         tl_facet *f = &contacts->facet[contacts->facet_start[contact] + i];
         tl_facing to = tl_facing_of(f, &s);
-        for (size_t k = f->begin; k < f->begin + (size_t)f->count; k++) {
-            size_t row = tl_point_row(contacts, contact, k);
-            p->closure[row] = place_point(p, row, k, f, &to, &s, l);
-        }
+        for (size_t k = f->begin; k < f->begin + (size_t)f->count; k++)
+            place_point(p, tl_point_row(contacts, contact, k), k, f, &to, &s, l);
         f->last = to.mean;
         f->last_lean = to.lean;
     }
@@ -119,13 +117,15 @@ void tl_contact_summary(const tl_model *m, uint32_t contact, tl_vec3 *normal, tl
     for (uint32_t k = 0; k < contacts->facet_count[contact]; k++) {
         const tl_facet *f = &contacts->facet[contacts->facet_start[contact] + k];
         bool on_b = tl_facet_in_b(f);
+        tl_facing to = tl_facing_of(f, &s);
         for (size_t j = f->begin; j < f->begin + (size_t)f->count; j++) {
             size_t i = tl_point_row(contacts, contact, j);
             tl_vec3 at = tl_m3_mul(on_b ? s.rb : s.ra, tl_columns_get(p->p, i));
+            at = tl_v3_add(at, on_b ? s.d : tl_v3(0, 0, 0));
             n = tl_v3_madd(n, p->area[i], tl_facet_last_normal(f, tl_point_lean(p, i)));
-            x = tl_v3_madd(x, p->area[i], on_b ? tl_v3_add(at, s.d) : at);
+            x = tl_v3_madd(x, p->area[i], at);
             area += p->area[i];
-            *gap = fmin(*gap, -(p->closure[i] + p->reference[i]));
+            *gap = fmin(*gap, tl_v3_dot(to.plane, at) - to.offset);
         }
     }
     *normal = tl_v3_unit(n);

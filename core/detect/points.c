@@ -25,8 +25,9 @@ uint32_t tl_kind_state_columns(const tl_kind *kind)
 void tl_point_clear(tl_points_table *p, size_t i)
 {
     tl_point_set_lean(p, i, (tl_lean){0, 0});
-    p->area[i] = p->rest[i] = p->reference[i] = p->closure[i] = 0;
-    p->f_n0[i] = p->f_n[i] = 0;
+    p->area[i] = p->f_n[i] = 0;
+    if (p->f_n0)
+        p->f_n0[i] = p->reference[i] = 0;
     p->flags[i] = p->key[i] = 0;
     for (int k = 0; k < 3; k++)
         p->p[k][i] = p->f_s[k][i] = 0;
@@ -81,6 +82,19 @@ void tl_point_keep_state(tl_points_table *p, size_t i, const tl_kind *kind, cons
                          double old_area)
 {
     take_state(p, i, kind, old, old_area, false);
+}
+
+bool tl_points_hold_initial(tl_points_table *p)
+{
+    if (p->initial)
+        return true;
+    size_t size = sizeof *p->f_n0;
+    if (!tl_table_widen(&p->table, "reference", size, TL_COLUMN_AT(p, reference),
+                        TL_COLUMN_STATE) ||
+        !tl_table_widen(&p->table, "f_n0", size, TL_COLUMN_AT(p, f_n0), TL_COLUMN_STATE))
+        return false;
+    p->initial = true;
+    return true;
 }
 
 bool tl_points_hold_states(tl_points_table *p, uint32_t columns)

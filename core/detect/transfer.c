@@ -70,8 +70,8 @@ static void read_old(const tl_model *m, uint32_t c, tl_narrow *room, const tl_po
         o->shear = tl_v3_scale(per_area, tl_columns_get(p->f_s, i));
         o->area = p->area[i];
         o->f_n = per_area * p->f_n[i];
-        o->field[FIELD_N0] = per_area * p->f_n0[i];
-        o->field[FIELD_REFERENCE] = p->reference[i];
+        o->field[FIELD_N0] = p->f_n0 ? per_area * p->f_n0[i] : 0;
+        o->field[FIELD_REFERENCE] = p->f_n0 ? p->reference[i] : 0;
         for (uint32_t s = 0; s < p->state_columns; s++)
             o->state[s] = p->state[s][i];
         o->key = p->key[i];
@@ -285,11 +285,12 @@ static void write_points(tl_model *m, uint32_t c, const tl_manifold *g, const ol
         size_t i = tl_point_row(contacts, c, k);
         const tl_contact_point *point = &g->points[k];
         tl_columns_put(p->p, i, point->p);
-        p->rest[i] = point->rest;
         tl_point_set_lean(p, i, point->lean);
         p->area[i] = point->area;
         p->key[i] = point->key;
-        p->f_n[i] = p->f_n0[i] = p->reference[i] = 0;
+        p->f_n[i] = 0;
+        if (p->f_n0)
+            p->f_n0[i] = p->reference[i] = 0;
         for (int s = 0; s < 3; s++)
             p->f_s[s][i] = 0;
         p->flags[i] = 0;
@@ -300,7 +301,7 @@ static void write_points(tl_model *m, uint32_t c, const tl_manifold *g, const ol
     double size = fmin(m->blocks.size[contacts->a[c]], m->blocks.size[contacts->b[c]]);
     for (size_t k = 0; k < g->point_count && old_count == 0; k++) {
         size_t i = tl_point_row(contacts, c, k);
-        p->flags[i] = p->closure[i] < -APART * size ? TL_POINT_APART : 0;
+        p->flags[i] = lanes->closure[k] < -APART * size ? TL_POINT_APART : 0;
     }
     for (size_t k = 0; k < g->point_count && old_count; k++) {
         size_t i = tl_point_row(contacts, c, k);
@@ -319,8 +320,10 @@ static void write_points(tl_model *m, uint32_t c, const tl_manifold *g, const ol
         p->f_s[1][i] = f.y;
         p->f_s[2][i] = f.z;
         p->f_n[i] = value[FIT_NORMAL] * p->area[i];
-        p->f_n0[i] = value[FIT_FIELDS + FIELD_N0] * p->area[i];
-        p->reference[i] = value[FIT_FIELDS + FIELD_REFERENCE];
+        if (p->f_n0) {
+            p->f_n0[i] = value[FIT_FIELDS + FIELD_N0] * p->area[i];
+            p->reference[i] = value[FIT_FIELDS + FIELD_REFERENCE];
+        }
         p->flags[i] = o->flags;
         tl_point_take_state(p, i, kind, o->state, o->area);
     }
@@ -374,7 +377,7 @@ bool tl_contact_transfer(tl_model *m, uint32_t c, tl_narrow *room, const tl_poin
         largest = fmax(largest, tl_v3_norm(old[k].shear));
     correct_shear(p, lanes, begin, g->point_count, &now, &want, largest);
     double *value = room->value;
-    for (int field = 0; field < FIELD_COUNT; field++) {
+    for (int field = 0; field < FIELD_COUNT && p->f_n0; field++) {
         moments keep = field_moments(old, old_count, field, &before, now.normal);
         largest = 0;
         for (size_t k = 0; k < old_count && !room->reframed; k++)

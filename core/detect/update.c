@@ -34,19 +34,6 @@ static double axis_margin(const tl_axis *axis, double size)
     return fmin(fmax(lead, AXIS_SHARE * fabs(axis->s)), AXIS_MOST * size);
 }
 
-/* Whether some point carries a force across a gap: a bond in tension, or an initial stress not yet relieved.
- * Such a contact ends only with that force. */
-static bool carries_across(const tl_detect *d, uint32_t c)
-{
-    const tl_points_table *p = &d->points;
-    for (uint32_t k = 0; k < d->contacts.point_count[c]; k++) {
-        size_t i = tl_point_row(&d->contacts, c, k);
-        if (p->f_n[i] < 0 || (p->f_n[i] > 0 && p->closure[i] + p->reference[i] < 0))
-            return true;
-    }
-    return false;
-}
-
 static bool same_topology(const tl_detect *d, uint32_t c, const tl_manifold *g)
 {
     const tl_contacts *contacts = &d->contacts;
@@ -84,13 +71,13 @@ static void refit(tl_model *m, uint32_t c, const tl_manifold *g)
         double old = p->area[i], scale = g->points[k].area / old;
         double state[TL_STATE_COLUMNS];
         tl_columns_put(p->p, i, g->points[k].p);
-        p->rest[i] = g->points[k].rest;
         tl_point_set_lean(p, i, g->points[k].lean);
         p->area[i] = g->points[k].area;
         if (scale == 1)
             continue;
         p->f_n[i] *= scale;
-        p->f_n0[i] *= scale;
+        if (p->f_n0)
+            p->f_n0[i] *= scale;
         for (int s = 0; s < 3; s++)
             p->f_s[s][i] *= scale;
         if (kind) {
@@ -215,10 +202,10 @@ static double refit_patch(tl_points_table *p, size_t begin, const tl_patch_point
             p->p[x][i] = g->p[x][k];
             p->f_s[x][i] *= scale;
         }
-        p->rest[i] = g->rest[k];
         tl_point_set_lean(p, i, g->lean[k]);
         p->f_n[i] *= scale;
-        p->f_n0[i] *= scale;
+        if (p->f_n0)
+            p->f_n0[i] *= scale;
         p->area[i] = g->area[k];
         area += g->area[k];
     }
@@ -291,7 +278,7 @@ void tl_contact_update(tl_model *m, uint32_t c, unsigned thread)
         allow_reuse(m, c);
         return;
     }
-    if (!rebuild(m, c, room, carries_across(m->detect, c)) ||
+    if (!rebuild(m, c, room, contacts->across[c]) ||
         (contacts->fate[c] != TL_FATE_DIE && !take_manifold(m, c, room, &m->detect->lanes[thread])))
         contacts->fate[c] = TL_FATE_MEMORY;
     else
@@ -306,7 +293,7 @@ void tl_contact_reframe(tl_model *m, uint32_t c, unsigned thread)
         return;
     contacts->search[c] = -INFINITY;
     room->reframed = true;
-    if (!rebuild(m, c, room, carries_across(m->detect, c)) ||
+    if (!rebuild(m, c, room, contacts->across[c]) ||
         (contacts->fate[c] != TL_FATE_DIE && !take_manifold(m, c, room, &m->detect->lanes[thread])))
         contacts->fate[c] = TL_FATE_MEMORY;
     room->reframed = false;
@@ -322,7 +309,7 @@ bool tl_contact_fill(tl_model *m, uint32_t c)
     if (contacts->search[c] == -INFINITY)
         contacts->search[c] = tl_pair_odometer(m, contacts->a[c], contacts->b[c]) +
                               axis_margin(&contacts->axis[c], view.size);
-    tl_share_rule rule = tl_share_rule_of(m, &view, contacts->tag[c], carries_across(m->detect, c));
+    tl_share_rule rule = tl_share_rule_of(m, &view, contacts->tag[c], contacts->across[c]);
     tl_manifold_build(&view, &contacts->axis[c], &rule, room);
     note_manifold(contacts, c, &room->manifold);
     if (room->manifold.failed || !tl_contact_transfer(m, c, room, &m->detect->lanes[0]))

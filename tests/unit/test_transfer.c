@@ -60,6 +60,7 @@ static tl_vec3 area_centre(const tl_model *m)
 static void load_points(tl_model *m, uint64_t *seed)
 {
     tl_points_table *p = &m->detect->points;
+    CHECK(tl_detect_hold_initial(m->detect));
     for (uint32_t k = 0; k < m->detect->contacts.point_count[0]; k++) {
         size_t i = tl_point_row(&m->detect->contacts, 0, k);
         p->f_s[0][i] = 1e3 * scene_between(seed, -1, 2) * p->area[i];
@@ -103,7 +104,6 @@ static size_t other_points(const tl_model *m, double twist, double stretch, tl_c
         arm.y /= stretch;
         arm = tl_v3_add(centre, tl_q_rotate(scene_turn(tl_v3(0, 0, 1), twist), arm));
         out[k] = (tl_contact_point){.p = arm,
-                                    .rest = d->points.rest[i],
                                     .area = d->points.area[i],
                                     .key = 1000 + (uint32_t)k};
     }
@@ -153,12 +153,10 @@ TEST(totals_stay_with_fewer_points)
     load_points(m, &seed);
     tl_vec3 c = area_centre(m);
     totals before = sum_points(m, c);
-    double rest = m->detect->points.rest[m->detect->contacts.point_start[0]];
     tl_contact_point points[4];
     for (int k = 0; k < 4; k++)
         points[k] =
             (tl_contact_point){.p = tl_v3_add(c, tl_v3(k & 1 ? 0.3 : -0.3, k & 2 ? 0.3 : -0.3, 0)),
-                               .rest = rest,
                                .area = before.area / 4,
                                .key = (uint32_t)(2000 + k)};
     transfer(m, points, 4);
@@ -190,11 +188,9 @@ TEST(points_of_hardly_any_area_get_no_more_stress_than_there_was)
         largest = fmax(largest, tl_v3_norm(f) / p->area[i]);
         largest_n0 = fmax(largest_n0, p->f_n0[i] / p->area[i]);
     }
-    double rest = p->rest[tl_point_row(&m->detect->contacts, 0, 0)];
     tl_contact_point points[3];
     for (int k = 0; k < 3; k++)
         points[k] = (tl_contact_point){.p = tl_v3_add(c, tl_v3(0.4 * (k == 1), 0.4 * (k == 2), 0)),
-                                       .rest = rest,
                                        .area = before.area * (k ? 1e-20 : 1),
                                        .key = (uint32_t)(3000 + k)};
     transfer(m, points, 3);
@@ -212,6 +208,7 @@ TEST(points_of_hardly_any_area_get_no_more_stress_than_there_was)
 static void load_linearly(tl_model *m)
 {
     tl_points_table *p = &m->detect->points;
+    CHECK(tl_detect_hold_initial(m->detect));
     tl_vec3 centre = area_centre(m);
     for (uint32_t k = 0; k < m->detect->contacts.point_count[0]; k++) {
         size_t i = tl_point_row(&m->detect->contacts, 0, k);
