@@ -82,7 +82,8 @@ static inline tl_vec3 tl_facet_swing(const tl_facet *f)
 static inline void tl_facet_set_swing(tl_facet *f, tl_vec3 swing)
 {
     const double value[] = {swing.x, swing.y, swing.z};
-    for (int k = 0; k < 3; k++) /* the energy it belongs to is next to nothing where it is beyond a float */
+    for (int k = 0; k < 3;
+         k++) /* the energy it belongs to is next to nothing where it is beyond a float */
         f->swing[k] = (float)fmin(fmax(value[k], -TL_MOST_SWING), TL_MOST_SWING);
 }
 
@@ -172,11 +173,12 @@ typedef struct tl_contacts {
     tl_vec3 *force;                      /* on B */
     tl_vec3 *moment;                     /* of the forces on B, about A's body's centroid */
     uint32_t *want_points, *want_facets; /* of a contact that must grow */
-    uint8_t *across; /* some point carried a force across a gap in the last step: a bond in tension, or an initial
+    uint8_t *
+        across; /* some point carried a force across a gap in the last step: a bond in tension, or an initial
                         stress not yet relieved. Such a contact ends only with that force */
-    uint8_t *fresh;                      /* its points were placed in this step */
-    uint8_t *lone; /* its faces that look at each other are one of each block */
-    uint8_t *fate; /* what the parallel phase leaves to the serial one: TL_FATE_* */
+    uint8_t *fresh; /* its points were placed in this step */
+    uint8_t *lone;  /* its faces that look at each other are one of each block */
+    uint8_t *fate;  /* what the parallel phase leaves to the serial one: TL_FATE_* */
     /* facets */
     tl_facet *facet;
     size_t facet_total, facet_capacity;

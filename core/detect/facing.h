@@ -21,13 +21,14 @@ typedef struct tl_sight {
 
 /* A facet in its present place: its normals, and the plane a point's gap is measured to. */
 typedef struct tl_facing {
-    tl_vec3 n;      /* A to B, unit; of a patch the bisector's */
-    tl_vec3 mean;   /* n; of a tilted patch the mean of the faces' normals ... */
-    tl_vec3 lean;   /* ... and from it to the normal of A's face, and against it to B's; else 0 */
-    double mean2;   /* squares of their lengths, or 1 and 0 */
+    tl_vec3 n;    /* A to B, unit; of a patch the bisector's */
+    tl_vec3 mean; /* n; of a tilted patch the mean of the faces' normals ... */
+    tl_vec3 lean; /* ... and from it to the normal of A's face, and against it to B's; else 0 */
+    double mean2; /* squares of their lengths, or 1 and 0 */
     double l2;
-    tl_vec3 plane;  /* overlap of a point at an arm: offset - plane . arm. The outward normal of the face, or the */
-    double offset;  /* sum of those of both; 0 for edges, whose gap is the same everywhere */
+    tl_vec3
+        plane; /* overlap of a point at an arm: offset - plane . arm. The outward normal of the face, or the */
+    double offset; /* sum of those of both; 0 for edges, whose gap is the same everywhere */
 } tl_facing;
 
 /* Of a patch, from the normals of its faces in the present place. A point's gap is what it lies above B's face and

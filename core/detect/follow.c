@@ -300,7 +300,8 @@ typedef struct columns {
     double *arm[3], *normal[3], *closure, *du_n, *du_s[3];
 } columns;
 
-static columns columns_at(const tl_points_table *p, size_t row, const tl_point_lanes *t, size_t lane)
+static columns columns_at(const tl_points_table *p, size_t row, const tl_point_lanes *t,
+                          size_t lane)
 {
     return (columns){
         .p = {p->p[0] + row, p->p[1] + row, p->p[2] + row},
@@ -362,7 +363,8 @@ TL_VECTORIZED static void follow_any(const columns *c, size_t begin, size_t end,
             tl_mat3 to = mat_at(&f->to, l), motion = mat_at(&f->m, l);
             tl_vec3 mean = vec_at(&f->mean, l), lean = vec_at(&f->lean, l);
             tl_vec3 last = vec_at(&f->last, l), last_lean = vec_at(&f->last_lean, l);
-            tl_vec3 p = tl_columns_get(c->p, i), x = tl_v3_add(tl_m3_mul(&to, p), vec_at(&f->from, l));
+            tl_vec3 p = tl_columns_get(c->p, i),
+                    x = tl_v3_add(tl_m3_mul(&to, p), vec_at(&f->from, l));
             double l2 = f->l2[l], last_l2 = tl_v3_norm2(last_lean);
             tl_vec3 n = tl_leaning(mean, lean, f->mean2[l], l2, face[l], edge[l]);
             tl_vec3 du = tl_v3_add(vec_at(&f->way, l), tl_m3_mul(&motion, x));
@@ -390,8 +392,8 @@ TL_VECTORIZED static void follow_any(const columns *c, size_t begin, size_t end,
 /* ---------------------------------------------------------------- ranks ------------------ */
 
 /* Turns the tangent states of a contact's points. */
-static void turn_states(tl_model *m, uint32_t contact, const tl_facet *f, const columns *c, size_t l,
-                        tl_vec3 half, uint32_t tangents)
+static void turn_states(tl_model *m, uint32_t contact, const tl_facet *f, const columns *c,
+                        size_t l, tl_vec3 half, uint32_t tangents)
 {
     tl_points_table *p = &m->detect->points;
     for (uint32_t k = 0; k + 2 < p->state_columns; k++) {
@@ -399,8 +401,9 @@ static void turn_states(tl_model *m, uint32_t contact, const tl_facet *f, const 
         for (uint32_t j = f->begin; j < f->begin + (uint32_t)f->count && tangents >> k & 1; j++) {
             size_t row = tl_point_row(&m->detect->contacts, contact, j), lane = j * TL_LANES + l;
             tl_vec3 before = tl_facet_last_normal(f, tl_point_lean(p, row));
-            tl_columns_put(v, row, tl_turn_one(tl_columns_get(v, row), before,
-                                               tl_columns_get(c->normal, lane), half));
+            tl_columns_put(
+                v, row,
+                tl_turn_one(tl_columns_get(v, row), before, tl_columns_get(c->normal, lane), half));
         }
     }
 }

@@ -64,7 +64,7 @@ tl_vec3 tl_facet_last_normal(const tl_facet *f, tl_lean lean)
 
 /* Arm, normal and closure of the contact's point k, which is in that row, into lane k. */
 static void place_point(const tl_points_table *p, size_t row, size_t k, const tl_facet *f,
-                          const tl_facing *to, const tl_sight *s, const tl_point_lanes *l)
+                        const tl_facing *to, const tl_sight *s, const tl_point_lanes *l)
 {
     bool in_b = tl_facet_in_b(f);
     tl_vec3 x = tl_m3_mul(in_b ? s->rb : s->ra, tl_columns_get(p->p, row));
@@ -73,8 +73,7 @@ static void place_point(const tl_points_table *p, size_t row, size_t k, const tl
     tl_lean by = tl_point_lean(p, row);
     tl_columns_put(l->normal, k,
                    tl_leaning(to->mean, to->lean, to->mean2, to->l2, by.face, by.edge));
-    l->closure[k] =
-        to->offset - tl_v3_dot(to->plane, x) - (p->reference ? p->reference[row] : 0);
+    l->closure[k] = to->offset - tl_v3_dot(to->plane, x) - (p->reference ? p->reference[row] : 0);
 }
 
 void tl_contact_places(const tl_model *m, uint32_t contact, const tl_point_lanes *l)

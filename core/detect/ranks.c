@@ -164,7 +164,8 @@ static tl_rank *rank_at(tl_detect *d, uint32_t start)
     const tl_run *run = d->layout.runs;
     while (start >= run->end)
         run++;
-    size_t low = run->rank_begin, high = run->rank_end - 1; /* the last that begins there or before */
+    size_t low = run->rank_begin,
+           high = run->rank_end - 1; /* the last that begins there or before */
     while (low < high) {
         size_t middle = (low + high + 1) / 2;
         if (d->layout.ranks[middle].start <= start)

@@ -103,9 +103,7 @@ static size_t other_points(const tl_model *m, double twist, double stretch, tl_c
         arm.x *= stretch;
         arm.y /= stretch;
         arm = tl_v3_add(centre, tl_q_rotate(scene_turn(tl_v3(0, 0, 1), twist), arm));
-        out[k] = (tl_contact_point){.p = arm,
-                                    .area = d->points.area[i],
-                                    .key = 1000 + (uint32_t)k};
+        out[k] = (tl_contact_point){.p = arm, .area = d->points.area[i], .key = 1000 + (uint32_t)k};
     }
     return count;
 }
