@@ -9,10 +9,7 @@
  * plane, a1 and a2 on different sides of edge B's, and both arcs in the same hemisphere. With e_a
  * running along its left face's loop, a1 x a2 is parallel to e_a, so all tests are products of edges
  * with normals. */
-#include "detect/detect.h"
-
-#include <stdlib.h>
-#include <string.h>
+#include "detect/arcs.h"
 
 /* A face is preferred to an edge pair whose s is larger by no more than this times the size: the
  * rounding of s, so that flush faces are never taken for crossing edges. */
@@ -27,6 +24,8 @@
 /* cos of the angle within which two axes count as the same one when the margin to the next best is
  * measured: two flush faces give the same common plane twice. */
 #define ALIKE 0.999
+/* Square of a cosine that is larger than ALIKE in spite of rounding. */
+#define SURELY_ALIKE2 0.9981
 /* How far outside its feature a support point may project, relative to the size, before the axis
  * counts as lost: rounding. */
 #define INSIDE 1e-9
@@ -34,10 +33,9 @@
 bool tl_pair_place(tl_pair_view *view, tl_narrow *room)
 {
     const tl_poly *a = view->a, *b = view->b;
-    size_t dots = (size_t)a->edge_count * b->face_count + (size_t)b->edge_count * a->face_count;
     if (!tl_grow(&room->vertex_b, &room->vertex_room, b->vertex_count, sizeof(tl_vec3)) ||
         !tl_grow(&room->normal_b, &room->normal_room, b->face_count, sizeof(tl_vec3)) ||
-        !tl_grow(&room->dots, &room->dot_room, dots, sizeof(double)))
+        !tl_grow(&room->dots, &room->dot_room, tl_arcs_room(a, b), sizeof(double)))
         return false;
     view->vertex_b = room->vertex_b;
     view->normal_b = room->normal_b;
@@ -69,17 +67,6 @@ static double lowest(const tl_vec3 *x, uint32_t count, tl_vec3 n)
 {
     double low = tl_v3_dot(n, x[0]);
     for (uint32_t i = 1; i < count; i++) {
-        double s = tl_v3_dot(n, x[i]);
-        low = s < low ? s : low;
-    }
-    return low;
-}
-
-/* The same, given up (any value below `floor`) as soon as it is below `floor`. */
-static double lowest_above(const tl_vec3 *x, uint32_t count, tl_vec3 n, double floor)
-{
-    double low = tl_v3_dot(n, x[0]);
-    for (uint32_t i = 1; i < count && low >= floor; i++) {
         double s = tl_v3_dot(n, x[i]);
         low = s < low ? s : low;
     }
@@ -162,28 +149,23 @@ static bool b_is_inside(const tl_pair_view *view, tl_vec3 n)
 
 /* A face of the body's surface is a wall itself: what may be missing is one of the other body that meets
  * it. */
-static void search_faces(const tl_pair_view *view, tl_axis *best)
+static void search_faces(const tl_pair_view *view, const tl_over *on_a, const tl_over *on_b,
+                         tl_axis *best)
 {
-    for (uint32_t f = 0; f < view->a->face_count; f++) {
-        if (view->a->covered[f])
-            continue;
-        tl_plane plane = view->a->plane[f];
-        double s = lowest_above(view->vertex_b, view->b->vertex_count, plane.normal,
-                                best->second + plane.offset) -
-                   plane.offset;
-        tl_axis one = {TL_AXIS_FACE_A, (uint16_t)f, 0, plane.normal, s, 0};
-        if (s > best->second && !b_is_inside(view, one.n))
+    for (uint32_t f = 0; f < on_a->faces; f++) {
+        tl_axis one = {.kind = TL_AXIS_FACE_A,
+                       .ia = (uint16_t)f,
+                       .n = view->a->plane[f].normal,
+                       .s = on_a->low[f] - on_a->offset[f]};
+        if (one.s > best->second && !view->a->covered[f] && !b_is_inside(view, one.n))
             offer(best, &one);
     }
-    for (uint32_t f = 0; f < view->b->face_count; f++) {
-        if (view->b->covered[f])
-            continue;
-        double offset = offset_b(view, f);
-        double s = lowest_above(view->a->vertex, view->a->vertex_count, view->normal_b[f],
-                                best->second + offset) -
-                   offset;
-        tl_axis one = {TL_AXIS_FACE_B, 0, (uint16_t)f, tl_v3_neg(view->normal_b[f]), s, 0};
-        if (s > best->second && !a_is_inside(view, one.n))
+    for (uint32_t f = 0; f < on_b->faces; f++) {
+        tl_axis one = {.kind = TL_AXIS_FACE_B,
+                       .ib = (uint16_t)f,
+                       .n = tl_v3_neg(view->normal_b[f]),
+                       .s = on_b->low[f] - on_b->offset[f]};
+        if (one.s > best->second && !view->b->covered[f] && !a_is_inside(view, one.n))
             offer(best, &one);
     }
 }
@@ -238,56 +220,36 @@ static bool edge_axis(const tl_pair_view *view, uint32_t ia, uint32_t ib, tl_axi
     return true;
 }
 
-/* False when the edges' s is certainly below `second`: most pairs that pass the Gauss map are, and this
- * takes no root. Nearly parallel edges are left to edge_axis. */
-static bool may_matter(const tl_pair_view *view, uint32_t ia, uint32_t ib, double second)
+/* False when the edges' axis certainly changes nothing, for it hardly differs from the best one and its s is
+ * below. Nearly parallel edges are left to edge_axis. */
+static bool may_matter(const tl_pair_view *view, uint32_t ia, uint32_t ib, const tl_axis *best)
 {
     tl_vec3 u = edge_a_direction(view, ia), v = edge_b_direction(view, ib);
     tl_vec3 c = tl_v3_cross(u, v);
-    double c2 = tl_v3_norm2(c);
-    if (!(second < 0) || !(c2 > CROSSING2 * tl_v3_norm2(u) * tl_v3_norm2(v)))
+    double c2 = tl_v3_norm2(c), limit = best->s - FACE_PREFERENCE * view->size;
+    if (!(limit < 0) || !(c2 > CROSSING2 * tl_v3_norm2(u) * tl_v3_norm2(v)))
         return true;
     const tl_edge *ea = &view->a->edge[ia], *eb = &view->b->edge[ib];
     tl_vec3 outward = tl_v3_add(view->a->plane[ea->left].normal, view->a->plane[ea->right].normal);
-    double t = tl_v3_dot(c, tl_v3_sub(view->vertex_b[eb->a], view->a->vertex[ea->a]));
-    t = tl_v3_dot(c, outward) < 0 ? -t : t;
-    double most = second - FACE_PREFERENCE * view->size; /* s = t / |c| */
-    return !(t < 0 && t * t > most * most * c2);
+    double sign = tl_v3_dot(c, outward) < 0 ? -1 : 1; /* s = t / |c| */
+    double t = sign * tl_v3_dot(c, tl_v3_sub(view->vertex_b[eb->a], view->a->vertex[ea->a]));
+    double alike = sign * tl_v3_dot(c, best->n);
+    return !(alike > 0 && alike * alike > SURELY_ALIKE2 * c2 && t < 0 &&
+             t * t > limit * limit * c2);
 }
 
-static void search_edges(const tl_pair_view *view, tl_narrow *room, tl_axis *best)
+static void search_edges(const tl_pair_view *view, const tl_arcs *arcs, tl_axis *best)
 {
-    const tl_poly *a = view->a, *b = view->b;
-    double *ab = room->dots; /* [edge of A][face of B] */
-    double *ba = room->dots + (size_t)a->edge_count * b->face_count;
-    for (uint32_t i = 0; i < a->edge_count; i++) {
-        tl_vec3 e = edge_a_direction(view, i);
-        for (uint32_t f = 0; f < b->face_count; f++)
-            ab[(size_t)i * b->face_count + f] = tl_v3_dot(e, view->normal_b[f]);
-    }
-    for (uint32_t j = 0; j < b->edge_count; j++) {
-        tl_vec3 e = edge_b_direction(view, j);
-        for (uint32_t f = 0; f < a->face_count; f++)
-            ba[(size_t)j * a->face_count + f] = tl_v3_dot(e, a->plane[f].normal);
-    }
-    for (uint32_t i = 0; i < a->edge_count; i++) {
-        if (a->hidden[i])
-            continue;
-        const tl_edge *ea = &a->edge[i];
-        const double *row = ab + (size_t)i * b->face_count;
-        for (uint32_t j = 0; j < b->edge_count; j++) {
-            if (b->hidden[j])
-                continue;
-            const tl_edge *eb = &b->edge[j];
-            const double *column = ba + (size_t)j * a->face_count;
-            double b1 = row[eb->left], b2 = row[eb->right];
-            double a1 = column[ea->left], a2 = column[ea->right];
-            tl_axis one;
-            if (b1 * b2 < 0 && a1 * a2 < 0 && b1 * a2 < 0 && may_matter(view, i, j, best->second) &&
-                edge_axis(view, i, j, &one) && one.s > best->second && !a_is_inside(view, one.n) &&
-                !b_is_inside(view, one.n))
-                offer(best, &one);
-        }
+    for (size_t begin = 0; begin < arcs->b_count; begin += TL_ARCS_ROW) {
+        const uint64_t *rows = tl_arcs_across(arcs, begin);
+        for (size_t k = 0; k < arcs->a_count; k++)
+            for (uint64_t bits = rows[k]; bits; bits &= bits - 1) {
+                uint32_t i = arcs->a[k], j = arcs->b[begin + (size_t)__builtin_ctzll(bits)];
+                tl_axis one;
+                if (may_matter(view, i, j, best) && edge_axis(view, i, j, &one) &&
+                    one.s > best->second && !a_is_inside(view, one.n) && !b_is_inside(view, one.n))
+                    offer(best, &one);
+            }
     }
 }
 
@@ -320,9 +282,13 @@ static bool is_beside_seam(const tl_pair_view *view, double s)
 tl_axis tl_axis_search(const tl_pair_view *view, tl_narrow *room, const tl_axis *previous)
 {
     tl_axis face = {.s = -INFINITY, .second = -INFINITY};
-    search_faces(view, &face);
+    tl_over on_a, on_b;
+    double *rest = tl_over_faces(view, room->dots, &on_a, &on_b);
+    search_faces(view, &on_a, &on_b, &face);
     tl_axis best = face;
-    search_edges(view, room, &best);
+    double least = face.second - FACE_PREFERENCE * view->size;
+    tl_arcs arcs = tl_arcs_begin(view, &on_a, &on_b, least, rest);
+    search_edges(view, &arcs, &best);
     if (!isfinite(best.s)) {
         /* no wall of one meets a wall of the other: parts deep inside bodies */
         best.s = view->size;
@@ -339,9 +305,9 @@ tl_axis tl_axis_search(const tl_pair_view *view, tl_narrow *room, const tl_axis 
     }
     if (previous) {
         tl_axis kept = *previous;
-        if (tl_axis_follow(view, &kept) &&
-            !(kept.kind == best.kind && kept.ia == best.ia && kept.ib == best.ib) &&
-            best.s - kept.s <= HYSTERESIS * fabs(best.s) && kept.s < 0) {
+        if (!(kept.kind == best.kind && kept.ia == best.ia && kept.ib == best.ib) &&
+            tl_axis_follow(view, &kept) && best.s - kept.s <= HYSTERESIS * fabs(best.s) &&
+            kept.s < 0) {
             kept.second = best.s;
             best = kept;
         }
