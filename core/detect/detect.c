@@ -121,10 +121,15 @@ static void find_rows(tl_model *m)
     d->pair_count = kept;
 }
 
-/* After a change of laws or of the minimum area: contacts under another material are marked, and all
- * facets are made anew in the next step. */
+/* After a change of laws or of the minimum area: contacts under another material are marked, all facets are made
+ * anew in the next step, and pairs that only touched are looked at again. */
 static void find_materials(tl_model *m)
 {
+    for (size_t i = 0; i < m->detect->pair_count; i++)
+        if (m->detect->pairs[i].between) {
+            m->detect->pairs[i].between = 0;
+            m->detect->pairs[i].wake = -INFINITY;
+        }
     tl_contacts *c = &m->detect->contacts;
     for (uint32_t row = 0; row < c->table.rows; row++) {
         c->until[row] = -INFINITY;
@@ -144,6 +149,32 @@ static bool left_skin(const tl_model *m)
 
 /* ---------------------------------------------------------------- pairs ------------------ */
 
+/* The face with the largest gap. */
+static uint16_t widest(const tl_pair_view *view, const tl_axis *axis)
+{
+    if (axis->kind != TL_AXIS_EDGES)
+        return axis->kind == TL_AXIS_FACE_A ? tl_face_of(false, axis->ia)
+                                            : tl_face_of(true, axis->ib);
+    uint16_t best = tl_face_of(false, 0);
+    for (int of_b = 0; of_b < 2; of_b++)
+        for (uint32_t f = 0; f < (of_b ? view->b : view->a)->face_count; f++)
+            if (tl_face_gap(view, tl_face_of(of_b, f)) > tl_face_gap(view, best))
+                best = tl_face_of(of_b, f);
+    return best;
+}
+
+/* Whether a pair that touched without area still overlaps by no more than may go unseen, or has parted: no
+ * direction has a gap above the true one. */
+static bool only_touches(const tl_pair_view *view, tl_pair *p, double odometer)
+{
+    double tolerance = TL_CONTACT_TOLERANCE * view->size, unseen = TL_SILENT * view->size;
+    double gap = p->between ? tl_face_gap(view, p->between) : -INFINITY;
+    if (!(gap >= -unseen))
+        return false;
+    p->wake = odometer + (gap > tolerance ? gap - tolerance : gap + unseen);
+    return true;
+}
+
 static void look_at(tl_model *m, tl_pair *p, tl_narrow *room)
 {
     p->found = false;
@@ -151,6 +182,9 @@ static void look_at(tl_model *m, tl_pair *p, tl_narrow *room)
     if (p->contact != TL_NO_ROW || odometer < p->wake)
         return;
     tl_pair_view view = tl_pair_view_of(m, p->a, p->b);
+    if (only_touches(&view, p, odometer))
+        return;
+    p->between = 0;
     if (!tl_pair_place(&view, room)) {
         room->failed = true;
         return;
@@ -170,6 +204,8 @@ static void look_at(tl_model *m, tl_pair *p, tl_narrow *room)
     room->failed = room->failed || room->manifold.failed;
     p->found = room->manifold.point_count > 0;
     p->wake = odometer + TL_SILENT * view.size;
+    if (!p->found)
+        p->between = widest(&view, &axis);
 }
 
 /* ---------------------------------------------------------------- phases ----------------- */

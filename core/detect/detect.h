@@ -152,6 +152,7 @@ typedef struct tl_pair {
     uint32_t a, b;    /* block rows, a < b */
     double wake;      /* sum of the odometers at which to look again */
     uint32_t contact; /* row, or TL_NO_ROW */
+    uint16_t between; /* tl_face_of the face that tells whether they still only touch; 0: none */
     bool found;       /* looked at in this step and near enough */
 } tl_pair;
 
@@ -321,6 +322,13 @@ bool tl_pair_place(tl_pair_view *view, tl_narrow *room);
 bool tl_pair_place_face(tl_pair_view *view, uint32_t face, tl_narrow *room);
 /* min over B - max over A of n . x: no direction's is above that of the pair's axis. */
 double tl_axis_gap(const tl_pair_view *view, tl_vec3 n);
+/* A face of A or of B in one number that is never 0. */
+static inline uint16_t tl_face_of(bool of_b, uint32_t face)
+{
+    return (uint16_t)(1 + 2 * face + of_b);
+}
+/* The gap along a face's normal, without B's vertices in place. */
+double tl_face_gap(const tl_pair_view *view, uint16_t face);
 /* The exact common plane's axis. `previous` (or NULL) is preferred when nearly as good. */
 tl_axis tl_axis_search(const tl_pair_view *view, tl_narrow *room, const tl_axis *previous);
 /* n and s of the same features in the present place; false when the features no longer define it. */
