@@ -68,19 +68,32 @@ static bool reserve_facets(tl_manifold *m, size_t room)
     return true;
 }
 
-/* 1 up to `full` degrees, 0 from `none` on, smooth between; `sine` is that of the angle (acute). */
+/* An arc is longer than its sine by no more than this, up to TILT_NONE. */
+#define ARC_OVER_SINE 1.02
+
+/* 1 up to `full` degrees, 0 from `none` on, linear between; `sine` is that of the angle (acute). */
+static double nearness(double sine, double full, double none)
+{
+    double least = sine * (180 / TL_PI);
+    if (least >= none)
+        return 0;
+    if (ARC_OVER_SINE * least <= full)
+        return 1;
+    double x = (none - asin(fmin(1, sine)) * (180 / TL_PI)) / (none - full);
+    return fmin(1, fmax(0, x));
+}
+
+/* The same, smooth. */
 static double fade(double sine, double full, double none)
 {
-    double degrees = asin(fmin(1, sine)) * (180 / TL_PI);
-    double x = (none - degrees) / (none - full);
-    return x <= 0 ? 0 : x >= 1 ? 1 : x * x * (3 - 2 * x);
+    double x = nearness(sine, full, none);
+    return x * x * (3 - 2 * x);
 }
 
 /* Its derivative by the angle, 1/rad. */
 static double fade_slope(double sine, double full, double none)
 {
-    double degrees = asin(fmin(1, sine)) * (180 / TL_PI);
-    double x = (none - degrees) / (none - full);
+    double x = nearness(sine, full, none);
     return x <= 0 || x >= 1 ? 0 : -6 * x * (1 - x) * (180 / TL_PI) / (none - full);
 }
 
@@ -148,46 +161,71 @@ typedef struct patches {
         flush; /* how flush the most parallel faces are that meet, by area or side by side: 1 .. 0 */
 } patches;
 
+/* Cosines of the angles with the axis up to which faces of a patch look along it, and those that will soon:
+ * of TILT_NONE, and of TURN_MOST more. */
+#define FACING 0.96592582628906829
+#define SOON 0.95105651629515357
+
+/* The faces of B that look at A, into the list; how many will soon or do. */
+static uint32_t list_looking(const tl_pair_view *view, tl_vec3 n, uint16_t *list, uint32_t *count)
+{
+    uint32_t soon = 0;
+    *count = 0;
+    for (uint32_t j = 0; j < view->b->face_count; j++) {
+        double towards = -tl_v3_dot(view->normal_b[j], n);
+        if (towards < SOON)
+            continue;
+        soon++;
+        if (towards >= FACING && !view->b->covered[j])
+            list[(*count)++] = (uint16_t)j;
+    }
+    return soon;
+}
+
+/* The patch of two faces, and how flush they are. */
+static void add_face_pair(const tl_pair_view *view, uint32_t i, uint32_t j, double near,
+                          const tl_share_rule *rule, tl_narrow *room, patches *sum)
+{
+    tl_manifold *m = &room->manifold;
+    tl_vec3 hinge = tl_v3_cross(view->a->plane[i].normal, view->normal_b[j]);
+    double sine = tl_v3_norm(hinge), area = 0; /* B turning about the hinge lessens the tilt */
+    double weight = fade(sine, TILT_FULL, TILT_NONE);
+    tl_vec3 swing = tl_v3_scale(fade_slope(sine, TILT_FULL, TILT_NONE), tl_v3_unit(hinge));
+    if (weight > 0 && reserve_facets(m, m->facet_count + 2))
+        area = tl_patch_add(view, i, j, weight, tl_v3_scale(1 / weight, swing), rule, room);
+    if (area > 0) {
+        sum->area.value += area;
+        sum->area.swing = tl_v3_madd(sum->area.swing, area / weight, swing);
+        sum->whole += area / weight;
+    }
+    double parallel = flushness(sine);
+    if (parallel > sum->flush.value && (area > 0 || level(view, i, j, near)))
+        sum->flush = (tilted){
+            parallel, tl_v3_scale(fade_slope(sine, FLUSH_NONE, FLUSH_FULL), tl_v3_unit(hinge))};
+}
+
 static patches add_patches(const tl_pair_view *view, const tl_axis *axis, const tl_share_rule *rule,
                            tl_narrow *room)
 {
-    static const double facing = 0.96592582628906829; /* cos(TILT_NONE) */
-    static const double soon = 0.95105651629515357;   /* cos(TILT_NONE + TURN_MOST) */
-    uint32_t looking_a = 0, looking_b = 0;
     const double near = reach_of(view, axis);
-    tl_manifold *m = &room->manifold;
-    tl_vec3 n = axis->n;
+    void *scratch = room->dots; /* has room for more than the faces */
+    uint16_t *list = scratch;
+    uint32_t looking_a = 0, count;
+    uint32_t looking_b = list_looking(view, axis->n, list, &count);
     patches sum = {0};
     for (uint32_t i = 0; i < view->a->face_count; i++) {
         tl_vec3 na = view->a->plane[i].normal;
-        double towards = tl_v3_dot(na, n);
-        looking_a += towards >= soon;
-        if (view->a->covered[i] || towards < facing)
+        double towards = tl_v3_dot(na, axis->n);
+        if (towards < SOON)
             continue;
-        for (uint32_t j = 0; j < view->b->face_count; j++) {
-            tl_vec3 nb = view->normal_b[j];
-            if (view->b->covered[j] || -tl_v3_dot(nb, n) < facing || -tl_v3_dot(na, nb) < facing)
-                continue;
-            tl_vec3 hinge = tl_v3_cross(na, nb); /* B turning about it lessens the tilt */
-            double sine = tl_v3_norm(hinge), area = 0;
-            double weight = fade(sine, TILT_FULL, TILT_NONE);
-            tl_vec3 swing = tl_v3_scale(fade_slope(sine, TILT_FULL, TILT_NONE), tl_v3_unit(hinge));
-            if (weight > 0 && reserve_facets(m, m->facet_count + 2))
-                area = tl_patch_add(view, i, j, weight, tl_v3_scale(1 / weight, swing), rule, room);
-            if (area > 0) {
-                sum.area.value += area;
-                sum.area.swing = tl_v3_madd(sum.area.swing, area / weight, swing);
-                sum.whole += area / weight;
-            }
-            double parallel = flushness(sine);
-            if (parallel > sum.flush.value && (area > 0 || level(view, i, j, near)))
-                sum.flush = (tilted){parallel, tl_v3_scale(fade_slope(sine, FLUSH_NONE, FLUSH_FULL),
-                                                           tl_v3_unit(hinge))};
-        }
+        looking_a++;
+        if (view->a->covered[i] || towards < FACING)
+            continue;
+        for (uint32_t k = 0; k < count; k++)
+            if (-tl_v3_dot(na, view->normal_b[list[k]]) >= FACING)
+                add_face_pair(view, i, list[k], near, rule, room, &sum);
     }
-    for (uint32_t j = 0; j < view->b->face_count; j++)
-        looking_b += -tl_v3_dot(view->normal_b[j], n) >= soon;
-    m->lone = looking_a == 1 && looking_b == 1;
+    room->manifold.lone = looking_a == 1 && looking_b == 1;
     return sum;
 }
 
