@@ -30,19 +30,35 @@
  * counts as lost: rounding. */
 #define INSIDE 1e-9
 
+/* Vectors turned and shifted: each is four lanes, of which the next vector takes the last one's place. */
+TL_VECTORIZED static void place(const tl_mat3 *turn, tl_vec3 shift, const tl_vec3 *restrict from,
+                                size_t stride, size_t count, double *restrict to)
+{
+    const double(*m)[3] = turn->m, t[4] = {shift.x, shift.y, shift.z, shift.z};
+    const double x[4] = {m[0][0], m[1][0], m[2][0], m[2][0]};
+    const double y[4] = {m[0][1], m[1][1], m[2][1], m[2][1]};
+    const double z[4] = {m[0][2], m[1][2], m[2][2], m[2][2]};
+    for (size_t i = 0; i < count; i++, to += 3) {
+        const tl_vec3 v = *(const tl_vec3 *)(const void *)((const char *)from + i * stride);
+#pragma omp simd
+        for (int k = 0; k < 4; k++)
+            to[k] = x[k] * v.x + y[k] * v.y + z[k] * v.z + t[k];
+    }
+}
+
 bool tl_pair_place(tl_pair_view *view, tl_narrow *room)
 {
     const tl_poly *a = view->a, *b = view->b;
-    if (!tl_grow(&room->vertex_b, &room->vertex_room, b->vertex_count, sizeof(tl_vec3)) ||
-        !tl_grow(&room->normal_b, &room->normal_room, b->face_count, sizeof(tl_vec3)) ||
+    if (!tl_grow(&room->vertex_b, &room->vertex_room, b->vertex_count + 1, sizeof(tl_vec3)) ||
+        !tl_grow(&room->normal_b, &room->normal_room, b->face_count + 1, sizeof(tl_vec3)) ||
         !tl_grow(&room->dots, &room->dot_room, tl_arcs_room(a, b), sizeof(double)))
         return false;
     view->vertex_b = room->vertex_b;
     view->normal_b = room->normal_b;
-    for (uint32_t i = 0; i < b->vertex_count; i++)
-        view->vertex_b[i] = tl_v3_add(tl_m3_mul(&view->turn, b->vertex[i]), view->shift);
-    for (uint32_t i = 0; i < b->face_count; i++)
-        view->normal_b[i] = tl_m3_mul(&view->turn, b->plane[i].normal);
+    place(&view->turn, view->shift, b->vertex, sizeof(tl_vec3), b->vertex_count,
+          &view->vertex_b->x);
+    place(&view->turn, tl_v3(0, 0, 0), &b->plane[0].normal, sizeof(tl_plane), b->face_count,
+          &view->normal_b->x);
     return true;
 }
 
@@ -340,8 +356,9 @@ static bool over_face(const tl_poly *p, uint32_t face, tl_vec3 x, double slack)
     for (uint32_t i = 0; i < count; i++) {
         tl_vec3 c = p->vertex[p->loop[start + i]];
         tl_vec3 d = p->vertex[p->loop[start + (i + 1) % count]];
-        tl_vec3 inward = tl_v3_unit(tl_v3_cross(n, tl_v3_sub(d, c)));
-        if (tl_v3_dot(inward, tl_v3_sub(x, c)) < -slack)
+        tl_vec3 inward = tl_v3_cross(n, tl_v3_sub(d, c));
+        double off = tl_v3_dot(inward, tl_v3_sub(x, c));
+        if (off < 0 && off * off > slack * slack * tl_v3_norm2(inward))
             return false;
     }
     return true;
@@ -373,9 +390,24 @@ static bool arcs_cross(const tl_pair_view *view, const tl_axis *axis)
     return b1 * b2 < 0 && a1 * a2 < 0 && b1 * a2 < 0;
 }
 
+/* The lowest of the points along n, and how low it is. */
+static uint32_t lowest_point(const tl_vec3 *x, uint32_t count, tl_vec3 n, double *low)
+{
+    uint32_t best = 0;
+    *low = tl_v3_dot(n, x[0]);
+    for (uint32_t i = 1; i < count; i++) {
+        double s = tl_v3_dot(n, x[i]);
+        if (s < *low) {
+            *low = s;
+            best = i;
+        }
+    }
+    return best;
+}
+
 bool tl_axis_follow(const tl_pair_view *view, tl_axis *axis)
 {
-    double slack = INSIDE * view->size;
+    double low, slack = INSIDE * view->size;
     if (axis->kind == TL_AXIS_EDGES) {
         tl_axis now;
         if (!arcs_cross(view, axis) || !edge_axis(view, axis->ia, axis->ib, &now) ||
@@ -386,17 +418,16 @@ bool tl_axis_follow(const tl_pair_view *view, tl_axis *axis)
         return true;
     }
     if (axis->kind == TL_AXIS_FACE_A) {
-        axis->n = view->a->plane[axis->ia].normal;
-        axis->s = tl_axis_gap(view, axis->n);
-        uint32_t low = 0;
-        for (uint32_t i = 1; i < view->b->vertex_count; i++)
-            if (tl_v3_dot(axis->n, view->vertex_b[i]) < tl_v3_dot(axis->n, view->vertex_b[low]))
-                low = i;
-        return over_face(view->a, axis->ia, view->vertex_b[low], slack);
+        const tl_plane *plane = &view->a->plane[axis->ia];
+        uint32_t b = lowest_point(view->vertex_b, view->b->vertex_count, plane->normal, &low);
+        axis->n = plane->normal;
+        axis->s = low - plane->offset;
+        return over_face(view->a, axis->ia, view->vertex_b[b], slack);
     }
-    axis->n = tl_v3_neg(view->normal_b[axis->ib]);
-    axis->s = tl_axis_gap(view, axis->n);
-    uint32_t top = tl_poly_support(view->a, axis->n);
-    tl_vec3 x = tl_m3_tmul(&view->turn, tl_v3_sub(view->a->vertex[top], view->shift));
+    tl_vec3 n = view->normal_b[axis->ib];
+    uint32_t a = lowest_point(view->a->vertex, view->a->vertex_count, n, &low);
+    axis->n = tl_v3_neg(n);
+    axis->s = low - view->b->plane[axis->ib].offset - tl_v3_dot(n, view->shift);
+    tl_vec3 x = tl_m3_tmul(&view->turn, tl_v3_sub(view->a->vertex[a], view->shift));
     return over_face(view->b, axis->ib, x, slack);
 }
