@@ -95,20 +95,6 @@ double tl_axis_gap(const tl_pair_view *view, tl_vec3 n)
            lowest(view->a->vertex, view->a->vertex_count, tl_v3_neg(n));
 }
 
-double tl_face_gap(const tl_pair_view *view, uint16_t face)
-{
-    bool of_b = !(face & 1);
-    uint32_t f = (uint32_t)(face - 1) / 2;
-    if (of_b) {
-        tl_vec3 n = tl_m3_mul(&view->turn, view->b->plane[f].normal);
-        return lowest(view->a->vertex, view->a->vertex_count, n) - tl_v3_dot(n, view->shift) -
-               view->b->plane[f].offset;
-    }
-    tl_vec3 n = view->a->plane[f].normal;
-    return lowest(view->b->vertex, view->b->vertex_count, tl_m3_tmul(&view->turn, n)) +
-           tl_v3_dot(n, view->shift) - view->a->plane[f].offset;
-}
-
 static double offset_b(const tl_pair_view *view, uint32_t face)
 {
     return view->b->plane[face].offset + tl_v3_dot(view->normal_b[face], view->shift);

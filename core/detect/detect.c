@@ -126,8 +126,8 @@ static void find_rows(tl_model *m)
 static void find_materials(tl_model *m)
 {
     for (size_t i = 0; i < m->detect->pair_count; i++)
-        if (m->detect->pairs[i].between) {
-            m->detect->pairs[i].between = 0;
+        if (m->detect->pairs[i].one != m->detect->pairs[i].other) {
+            m->detect->pairs[i].one = m->detect->pairs[i].other = 0;
             m->detect->pairs[i].wake = -INFINITY;
         }
     tl_contacts *c = &m->detect->contacts;
@@ -149,32 +149,6 @@ static bool left_skin(const tl_model *m)
 
 /* ---------------------------------------------------------------- pairs ------------------ */
 
-/* The face with the largest gap. */
-static uint16_t widest(const tl_pair_view *view, const tl_axis *axis)
-{
-    if (axis->kind != TL_AXIS_EDGES)
-        return axis->kind == TL_AXIS_FACE_A ? tl_face_of(false, axis->ia)
-                                            : tl_face_of(true, axis->ib);
-    uint16_t best = tl_face_of(false, 0);
-    for (int of_b = 0; of_b < 2; of_b++)
-        for (uint32_t f = 0; f < (of_b ? view->b : view->a)->face_count; f++)
-            if (tl_face_gap(view, tl_face_of(of_b, f)) > tl_face_gap(view, best))
-                best = tl_face_of(of_b, f);
-    return best;
-}
-
-/* Whether a pair that touched without area still overlaps by no more than may go unseen, or has parted: no
- * direction has a gap above the true one. */
-static bool only_touches(const tl_pair_view *view, tl_pair *p, double odometer)
-{
-    double tolerance = TL_CONTACT_TOLERANCE * view->size, unseen = TL_SILENT * view->size;
-    double gap = p->between ? tl_face_gap(view, p->between) : -INFINITY;
-    if (!(gap >= -unseen))
-        return false;
-    p->wake = odometer + (gap > tolerance ? gap - tolerance : gap + unseen);
-    return true;
-}
-
 static void look_at(tl_model *m, tl_pair *p, tl_narrow *room)
 {
     p->found = false;
@@ -182,9 +156,12 @@ static void look_at(tl_model *m, tl_pair *p, tl_narrow *room)
     if (p->contact != TL_NO_ROW || odometer < p->wake)
         return;
     tl_pair_view view = tl_pair_view_of(m, p->a, p->b);
-    if (only_touches(&view, p, odometer))
+    double gap, margin = tl_beside_margin(&view, p, &gap);
+    if (margin >= 0) {
+        p->wake = odometer + margin;
         return;
-    p->between = 0;
+    }
+    p->one = p->other = 0;
     if (!tl_pair_place(&view, room)) {
         room->failed = true;
         return;
@@ -205,7 +182,7 @@ static void look_at(tl_model *m, tl_pair *p, tl_narrow *room)
     p->found = room->manifold.point_count > 0;
     p->wake = odometer + TL_SILENT * view.size;
     if (!p->found)
-        p->between = widest(&view, &axis);
+        tl_beside_note(&view, p);
 }
 
 /* ---------------------------------------------------------------- phases ----------------- */

@@ -12,6 +12,8 @@
 #ifndef TL_DETECT_DETECT_H
 #define TL_DETECT_DETECT_H
 
+#include <assert.h>
+
 #include "model/model.h"
 
 /* Motion within which a pair that touches without area is not looked at again, relative to the size: the
@@ -148,12 +150,18 @@ typedef struct tl_share_rule {
     double reach;       /* patches with every gap beyond this are left out */
 } tl_share_rule;
 
+/* Twice the number of any face and one more. */
+#define TL_PAIR_FACE 0x1fffu
+static_assert(2 * TL_POLY_MAX_FACES - 1 <= TL_PAIR_FACE, "faces do not fit into a pair");
+
 typedef struct tl_pair {
-    uint32_t a, b;    /* block rows, a < b */
-    double wake;      /* sum of the odometers at which to look again */
-    uint32_t contact; /* row, or TL_NO_ROW */
-    uint16_t between; /* tl_face_of the face that tells whether they still only touch; 0: none */
-    bool found;       /* looked at in this step and near enough */
+    uint32_t a, b;      /* block rows, a < b */
+    double wake;        /* sum of the odometers at which to look again */
+    uint32_t contact;   /* row, or TL_NO_ROW */
+    uint32_t found : 1; /* looked at in this step and near enough */
+    /* two faces that show whether they still touch without area (beside.c), twice the number and one more for a
+     * face of B; the same: none */
+    uint32_t one : 13, other : 13;
 } tl_pair;
 
 typedef struct tl_contacts {
@@ -322,19 +330,19 @@ bool tl_pair_place(tl_pair_view *view, tl_narrow *room);
 bool tl_pair_place_face(tl_pair_view *view, uint32_t face, tl_narrow *room);
 /* min over B - max over A of n . x: no direction's is above that of the pair's axis. */
 double tl_axis_gap(const tl_pair_view *view, tl_vec3 n);
-/* A face of A or of B in one number that is never 0. */
-static inline uint16_t tl_face_of(bool of_b, uint32_t face)
-{
-    return (uint16_t)(1 + 2 * face + of_b);
-}
-/* The gap along a face's normal, without B's vertices in place. */
-double tl_face_gap(const tl_pair_view *view, uint16_t face);
 /* The exact common plane's axis. `previous` (or NULL) is preferred when nearly as good. */
 tl_axis tl_axis_search(const tl_pair_view *view, tl_narrow *room, const tl_axis *previous);
 /* n and s of the same features in the present place; false when the features no longer define it. */
 bool tl_axis_follow(const tl_pair_view *view, tl_axis *axis);
 /* Unit direction perpendicular to both edges, within `outward`'s half-space; false when parallel. */
 bool tl_edge_normal(tl_vec3 edge_a, tl_vec3 edge_b, tl_vec3 outward, tl_vec3 *n);
+
+/* ---- beside.c: pairs that touch without area ---- */
+/* Chooses the faces that show it. */
+void tl_beside_note(const tl_pair_view *view, tl_pair *p);
+/* How far the pair may run before it may carry more than goes unseen, or is as near as a contact; negative when it
+ * may do so now. `gap` gets the larger one of the two faces. */
+double tl_beside_margin(const tl_pair_view *view, const tl_pair *p, double *gap);
 
 /* ---- manifold.c ---- */
 /* Facets and points of a pair whose axis is known, into room->manifold. */

@@ -246,21 +246,22 @@ static bool renew_patch(tl_model *m, uint32_t c, tl_narrow *room)
     return true;
 }
 
-/* Whether a contact without points still overlaps by no more than may go unseen: its old axis tells, for no
- * direction has a gap above the true one. */
-static bool touches_still(tl_model *m, uint32_t c, tl_narrow *room)
+/* Whether a contact without points still overlaps by no more than may go unseen. */
+static bool touches_still(tl_model *m, uint32_t c)
 {
     tl_contacts *contacts = &m->detect->contacts;
     if (contacts->point_count[c] || contacts->until[c] == -INFINITY) /* under other rules */
         return false;
     tl_pair_view view = tl_pair_view_of(m, contacts->a[c], contacts->b[c]);
-    if (!tl_pair_place(&view, room))
+    tl_pair *p = &m->detect->pairs[contacts->pair[c]];
+    double gap, margin = tl_beside_margin(&view, p, &gap);
+    if (margin < 0) {
+        tl_beside_note(&view, p);
+        margin = tl_beside_margin(&view, p, &gap);
+    }
+    if (margin < 0 || gap > TL_CONTACT_TOLERANCE * view.size)
         return false;
-    double unseen = TL_SILENT * view.size, gap = tl_axis_gap(&view, contacts->axis[c].n);
-    if (gap < -unseen || gap > TL_CONTACT_TOLERANCE * view.size)
-        return false;
-    contacts->until[c] =
-        tl_pair_odometer(m, contacts->a[c], contacts->b[c]) + (gap > 0 ? gap + unseen : unseen);
+    contacts->until[c] = tl_pair_odometer(m, contacts->a[c], contacts->b[c]) + margin;
     return true;
 }
 
@@ -272,7 +273,7 @@ void tl_contact_update(tl_model *m, uint32_t c, unsigned thread)
         (m->config.reuse_geometry &&
          tl_pair_odometer(m, contacts->a[c], contacts->b[c]) <= contacts->until[c]))
         return;
-    if (touches_still(m, c, room))
+    if (touches_still(m, c))
         return;
     if (renew_patch(m, c, room)) {
         allow_reuse(m, c);

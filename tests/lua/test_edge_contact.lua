@@ -106,3 +106,39 @@ late:contact_area { absolute = 0.01 }
 late:cycle(1)
 check.equal(#late:contacts(), 1)
 check.near(late:contacts():min "area", 0.01, 1e-12)
+
+-- Two that only touch along an edge are no contact until they overlap by 1e-5 of their size, or are given an area.
+local function touching()
+    local model = talus.model { gravity = { 0, 0, 0 } }
+    model:generate("box", { min = { 0, 0, 0 }, max = { 1, 1, 1 }, density = 2000, group = "still" })
+    model:generate("box", { min = { 1, 1, 0 }, max = { 2, 2, 1 }, density = 2000, group = "going" })
+    model:joint("*", "coulomb", { kn = 1e9, ks = 1e9, friction = 30 })
+    model:blocks { group = "still" }:fix()
+    model:timestep { dt = 1e-6 }
+    model:cycle(1)
+    check.equal(#model:contacts(), 0)
+    return model
+end
+local given = touching()
+given:contact_area { absolute = 0.01 }
+given:cycle(1)
+check.equal(#given:contacts(), 1)
+check.near(given:contacts():min "area", 0.01, 1e-12)
+
+local pushed, UNSEEN = touching(), 1e-5
+pushed:blocks { group = "going" }:drive { velocity = { -0.1, -0.1, 0 } }
+local overlap = 0
+while #pushed:contacts() == 0 and overlap < 3 * UNSEEN do
+    pushed:cycle(1)
+    overlap = overlap + 0.1 * pushed.dt
+end
+check.near(overlap, UNSEEN, 3 * 0.1 * pushed.dt)
+check.near(pushed:contacts():min "area", overlap, 3 * 0.1 * pushed.dt)
+
+-- Moved apart and along each other they never are one.
+for _, velocity in ipairs { { 0.1, -0.1, 0 }, { -0.1, 0.1, 0 }, { 0, 0, 10 } } do
+    local parted = touching()
+    parted:blocks { group = "going" }:drive { velocity = velocity }
+    parted:cycle(1000)
+    check.equal(#parted:contacts(), 0)
+end
