@@ -89,7 +89,8 @@ static double lowest(const tl_vec3 *x, uint32_t count, tl_vec3 n)
     return low;
 }
 
-double tl_axis_gap(const tl_pair_view *view, tl_vec3 n)
+/* min over B - max over A of n . x */
+static double gap_along(const tl_pair_view *view, tl_vec3 n)
 {
     return lowest(view->vertex_b, view->b->vertex_count, n) +
            lowest(view->a->vertex, view->a->vertex_count, tl_v3_neg(n));
@@ -312,7 +313,7 @@ tl_axis tl_axis_search(const tl_pair_view *view, tl_narrow *room, const tl_axis 
     }
     if (best.kind == TL_AXIS_EDGES) {
         /* an edge axis counts by its full support, and only when it beats the faces clearly */
-        best.s = tl_axis_gap(view, best.n);
+        best.s = gap_along(view, best.n);
         if (best.s <= face.s + FACE_PREFERENCE * view->size) {
             double second = fmax(face.second, best.s < face.s ? best.s : face.second);
             best = face;
@@ -400,7 +401,7 @@ bool tl_axis_follow(const tl_pair_view *view, tl_axis *axis)
             !edges_meet(view, axis))
             return false;
         axis->n = now.n;
-        axis->s = tl_axis_gap(view, now.n);
+        axis->s = gap_along(view, now.n);
         return true;
     }
     if (axis->kind == TL_AXIS_FACE_A) {

@@ -4,14 +4,15 @@
  * Two faces that are far from parallel show it. What the blocks have in common lies under both, in a prism as wide as
  * the overlaps o1 and o2 along their normals, so that springs carry kn o1 o2 a metre of it. That goes unseen up to
  * o1 o2 = u^2 with u = TL_SILENT times the size: the force of a share TL_SILENT of a face that overlaps by u. After
- * motion m it is (o1 + m) (o2 + m) at most. The first face is flush with one of the other block, or else edges and
- * corners would carry more than the area in common does (see FLUSH_* in manifold.c). */
+ * motion m it is (o1 + m) (o2 + m) at most. Both faces are flush with one of the other block, or else edges and
+ * corners would carry more than the area in common does. */
 #include "detect/detect.h"
 
-/* cos of the tilt up to which two faces are flush: FLUSH_NONE, 0.5 degrees. */
-#define FLUSH 0.99996192306417131
+/* cos of 0.15 degrees, the tilt up to which both count as flush: a turn that tilts neither by more tilts no face by
+ * more than 2.6 times that, which is less than FLUSH_NONE in manifold.c. */
+#define FLUSH 0.99999657307
 /* Largest cosine between the two faces' normals. */
-#define APART 0.7
+#define CROSSWISE 0.7
 
 /* A face of A or B as a number: see tl_pair. */
 static uint32_t face_number(bool of_b, uint32_t face)
@@ -23,14 +24,15 @@ static uint32_t face_number(bool of_b, uint32_t face)
 typedef struct sight {
     tl_vec3 n; /* in A's frame */
     double gap;
-    bool flush; /* with some face of the other */
+    bool flush; /* with some face of the other; neither lies on a seam */
 } sight;
 
 static sight look_from(const tl_pair_view *view, uint32_t number)
 {
     bool of_b = number & 1;
     const tl_poly *other = of_b ? view->a : view->b;
-    tl_plane plane = (of_b ? view->b : view->a)->plane[number >> 1];
+    const tl_poly *own = of_b ? view->b : view->a;
+    tl_plane plane = own->plane[number >> 1];
     tl_vec3 n = of_b ? tl_m3_mul(&view->turn, plane.normal) : tl_m3_tmul(&view->turn, plane.normal);
     double low = tl_v3_dot(n, other->vertex[0]);
     for (uint32_t i = 1; i < other->vertex_count; i++) {
@@ -40,21 +42,20 @@ static sight look_from(const tl_pair_view *view, uint32_t number)
     sight out = {.n = of_b ? n : plane.normal};
     double shift = tl_v3_dot(out.n, view->shift);
     out.gap = low + (of_b ? -shift : shift) - plane.offset;
-    for (uint32_t f = 0; f < other->face_count && !out.flush; f++)
-        out.flush = tl_v3_dot(n, other->plane[f].normal) <= -FLUSH;
+    for (uint32_t f = 0; f < other->face_count && !own->covered[number >> 1] && !out.flush; f++)
+        out.flush = tl_v3_dot(n, other->plane[f].normal) <= -FLUSH && !other->covered[f];
     return out;
 }
 
-/* The face with the largest gap, of those that are flush and, but for the first, not nearly parallel to `than`. */
-static bool widest(const tl_pair_view *view, const sight *than, uint32_t *number, sight *best)
+/* The flush face with the largest gap that is not nearly parallel to `than`. */
+static bool widest(const tl_pair_view *view, tl_vec3 than, uint32_t *number, sight *best)
 {
     best->gap = -INFINITY;
     for (int of_b = 0; of_b < 2; of_b++) {
         uint32_t count = (of_b ? view->b : view->a)->face_count;
         for (uint32_t f = 0; f < count; f++) {
             sight one = look_from(view, face_number(of_b, f));
-            if (one.gap > best->gap &&
-                (than ? fabs(tl_v3_dot(one.n, than->n)) <= APART : one.flush)) {
+            if (one.gap > best->gap && one.flush && fabs(tl_v3_dot(one.n, than)) <= CROSSWISE) {
                 *best = one;
                 *number = face_number(of_b, f);
             }
@@ -68,7 +69,7 @@ void tl_beside_note(const tl_pair_view *view, tl_pair *p)
     sight first, second;
     uint32_t one, other;
     p->one = p->other = 0;
-    if (widest(view, NULL, &one, &first) && widest(view, &first, &other, &second)) {
+    if (widest(view, tl_v3(0, 0, 0), &one, &first) && widest(view, first.n, &other, &second)) {
         p->one = one & TL_PAIR_FACE;
         p->other = other & TL_PAIR_FACE;
     }
@@ -84,7 +85,7 @@ double tl_beside_margin(const tl_pair_view *view, const tl_pair *p, double *gap)
     *gap = fmax(first.gap, second.gap);
     if (*gap > tolerance)
         return *gap - tolerance;
-    if (!first.flush || fmin(first.gap, second.gap) < -tolerance)
+    if (!first.flush || !second.flush || fmin(first.gap, second.gap) < -tolerance)
         return -INFINITY;
     double apart = first.gap - second.gap;
     return 0.5 * (first.gap + second.gap + sqrt(apart * apart + 4 * unseen * unseen));

@@ -181,7 +181,7 @@ static void look_at(tl_model *m, tl_pair *p, tl_narrow *room)
     room->failed = room->failed || room->manifold.failed;
     p->found = room->manifold.point_count > 0;
     p->wake = odometer + TL_SILENT * view.size;
-    if (!p->found)
+    if (!p->found && !rule.unconditional)
         tl_beside_note(&view, p);
 }
 

@@ -16,8 +16,9 @@
 
 #include "model/model.h"
 
-/* Motion within which a pair that touches without area is not looked at again, relative to the size: the
- * share of its faces that may have come into contact unseen. */
+/* Overlap of a pair that touches without area, along both of two directions, that may go unseen, relative to the size:
+ * a share of its faces as small as that (beside.c); and how far other such pairs may move before they are looked at
+ * again. */
 #define TL_SILENT 1e-5
 
 /* Half the sine of the tilt of two faces up to which all points of their patch have the bisector for their
@@ -328,8 +329,6 @@ bool tl_look_near(const tl_pair_view *view, double reach);
 bool tl_pair_place(tl_pair_view *view, tl_narrow *room);
 /* Fills them for one face of B only. */
 bool tl_pair_place_face(tl_pair_view *view, uint32_t face, tl_narrow *room);
-/* min over B - max over A of n . x: no direction's is above that of the pair's axis. */
-double tl_axis_gap(const tl_pair_view *view, tl_vec3 n);
 /* The exact common plane's axis. `previous` (or NULL) is preferred when nearly as good. */
 tl_axis tl_axis_search(const tl_pair_view *view, tl_narrow *room, const tl_axis *previous);
 /* n and s of the same features in the present place; false when the features no longer define it. */

@@ -253,6 +253,8 @@ static bool touches_still(tl_model *m, uint32_t c)
     if (contacts->point_count[c] || contacts->until[c] == -INFINITY) /* under other rules */
         return false;
     tl_pair_view view = tl_pair_view_of(m, contacts->a[c], contacts->b[c]);
+    if (tl_share_rule_of(m, &view, contacts->tag[c], false).unconditional)
+        return false;
     tl_pair *p = &m->detect->pairs[contacts->pair[c]];
     double gap, margin = tl_beside_margin(&view, p, &gap);
     if (margin < 0) {
