@@ -22,6 +22,11 @@ tl_poly *tl_poly_allocate(uint32_t vertex_count, uint32_t face_count, uint32_t e
  * direction; the polyhedron then is fit only to be freed. */
 tl_status tl_poly_link(tl_poly *poly, tl_error *error);
 
+/* Forgets the seams of a polyhedron; gives it seams of its own, where nothing is covered or hidden yet: first the
+ * faces, then the edges, in one list; NULL without memory. */
+void tl_poly_clear_seams(tl_poly *poly);
+uint8_t *tl_poly_open_seams(tl_poly *poly);
+
 /* The plane of a face from its vertices: Newell's normal, and the offset midway between the
  * extremes of normal . x, so that a face normal to an axis gets exactly that axis and its
  * coordinate. */

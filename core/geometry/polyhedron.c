@@ -1,6 +1,7 @@
 /* polyhedron.c - making, copying and checking convex polyhedra.
  *
- * A polyhedron is one allocation: the header, then its arrays by falling alignment. Edges are found
+ * A polyhedron is one allocation: the header, then its arrays by falling alignment; seams, which few have, are
+ * another. Edges are found
  * by pairing half-edges: the half-edge a -> b of one face needs exactly one b -> a in another. */
 #include "geometry/polyhedron.h"
 
@@ -22,12 +23,36 @@ static size_t allocation(size_t v, size_t f, size_t e)
     const tl_poly *p = NULL;
     return sizeof *p + v * sizeof *p->vertex + f * (sizeof *p->plane + sizeof *p->tag) +
            (f + 1) * sizeof *p->start + (v + 1) * sizeof *p->star_at + e * sizeof *p->edge +
-           2 * e * (sizeof *p->loop + sizeof *p->star) + f + e;
+           2 * e * (sizeof *p->loop + sizeof *p->star);
 }
 
 size_t tl_poly_bytes(const tl_poly *p)
 {
-    return allocation(p->vertex_count, p->face_count, p->edge_count);
+    return allocation(p->vertex_count, p->face_count, p->edge_count) +
+           (p->seams ? p->face_count + p->edge_count : 0);
+}
+
+/* No face is covered and no edge hidden: of all polyhedra without seams. */
+static const uint8_t no_seams[TL_POLY_MAX_EDGES];
+
+void tl_poly_clear_seams(tl_poly *p)
+{
+    if (p->seams)
+        free((void *)(uintptr_t)p->covered);
+    p->seams = false;
+    p->covered = p->hidden = no_seams;
+}
+
+uint8_t *tl_poly_open_seams(tl_poly *p)
+{
+    uint8_t *marks = calloc((size_t)p->face_count + p->edge_count, 1);
+    if (!marks)
+        return NULL;
+    tl_poly_clear_seams(p);
+    p->seams = true;
+    p->covered = marks;
+    p->hidden = marks + p->face_count;
+    return marks;
 }
 
 tl_poly *tl_poly_allocate(uint32_t vertex_count, uint32_t face_count, uint32_t edge_count)
@@ -40,18 +65,15 @@ tl_poly *tl_poly_allocate(uint32_t vertex_count, uint32_t face_count, uint32_t e
     p->face_count = face_count;
     p->edge_count = edge_count;
     p->size = 0;
-    p->vertex = (tl_vec3 *)(p + 1);
     p->plane = (tl_plane *)(p->vertex + v);
     p->tag = (tl_tag *)(p->plane + f);
-    p->start = (uint32_t *)(p->tag + f);
-    p->star_at = p->start + f + 1;
-    p->edge = (tl_edge *)(p->star_at + v + 1);
+    p->edge = (tl_edge *)(p->tag + f);
     p->loop = (uint16_t *)(p->edge + e);
     p->star = p->loop + 2 * e;
-    p->covered = (uint8_t *)(p->star + 2 * e);
-    p->hidden = p->covered + f;
-    memset(p->covered, 0, f + e);
+    p->start = p->star + 2 * e;
+    p->star_at = p->start + f + 1;
     p->seams = false;
+    p->covered = p->hidden = no_seams;
     return p;
 }
 
@@ -72,12 +94,13 @@ static uint16_t after(const tl_poly *p, uint32_t face, uint32_t h)
 /* Groups half-edges by origin into star/star_at, and notes each one's face and end. */
 static void group_half_edges(tl_poly *p, half_edges half)
 {
-    uint32_t *at = p->star_at, half_count = 2 * p->edge_count;
+    uint16_t *at = p->star_at;
+    uint32_t half_count = 2 * p->edge_count;
     memset(at, 0, (p->vertex_count + 1) * sizeof *at);
     for (uint32_t h = 0; h < half_count; h++)
         at[p->loop[h] + 1]++;
     for (uint32_t v = 0; v < p->vertex_count; v++)
-        at[v + 1] += at[v];
+        at[v + 1] = (uint16_t)(at[v + 1] + at[v]);
     for (uint32_t f = 0; f < p->face_count; f++)
         for (uint32_t h = p->start[f]; h < p->start[f + 1]; h++) {
             uint32_t place = at[p->loop[h]]++;
@@ -237,7 +260,7 @@ tl_status tl_poly_make(const tl_vec3 *vertices, size_t vertex_count, const tl_pl
     else
         memset(p->tag, 0, face_count * sizeof *p->tag);
     for (size_t f = 0; f <= face_count; f++)
-        p->start[f] = start[f] - start[0];
+        p->start[f] = (uint16_t)(start[f] - start[0]);
     memcpy(p->loop, loops + start[0], loop_count * sizeof *loops);
     status = tl_poly_link(p, error);
     if (status)
@@ -274,6 +297,8 @@ tl_status tl_poly_box(tl_vec3 min, tl_vec3 max, tl_poly **poly, tl_error *error)
 
 void tl_poly_free(tl_poly *poly)
 {
+    if (poly)
+        tl_poly_clear_seams(poly);
     free(poly);
 }
 
@@ -299,9 +324,14 @@ tl_status tl_poly_transformed(const tl_poly *poly, const tl_mat3 *rotation, tl_v
     memcpy(p->edge, poly->edge, p->edge_count * sizeof *p->edge);
     memcpy(p->loop, poly->loop, 2 * p->edge_count * sizeof *p->loop);
     memcpy(p->star, poly->star, 2 * p->edge_count * sizeof *p->star);
-    p->seams = poly->seams;
-    memcpy(p->covered, poly->covered, p->face_count);
-    memcpy(p->hidden, poly->hidden, p->edge_count);
+    if (poly->seams) {
+        uint8_t *marks = tl_poly_open_seams(p);
+        if (!marks) {
+            tl_poly_free(p);
+            return tl_fail_memory(error);
+        }
+        memcpy(marks, poly->covered, (size_t)p->face_count + p->edge_count);
+    }
     tl_bounds bounds = tl_poly_bounds(p);
     p->size = tl_v3_norm(tl_v3_sub(bounds.max, bounds.min));
     *copy = p;

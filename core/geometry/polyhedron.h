@@ -2,7 +2,7 @@
  *
  * A polyhedron is closed and convex. Its faces are convex polygons given counter-clockwise from
  * outside, each with the plane it was made with (never refitted) and the tag of the joint that
- * made it (joint 0: none). It is immutable once made and lives in one allocation.
+ * made it (joint 0: none). But for seams it is immutable once made and lives in one allocation.
  *
  * Lengths: `size` of a polyhedron is the diagonal of its bounds; tolerances are relative to it. */
 #ifndef TL_GEOMETRY_POLYHEDRON_H
@@ -27,19 +27,20 @@ typedef struct tl_edge {
 
 typedef struct tl_poly {
     uint32_t vertex_count, face_count, edge_count;
+    bool seams;        /* some face is covered */
     double size;       /* diagonal of the bounds */
-    tl_vec3 *vertex;   /* [vertex_count] */
     tl_plane *plane;   /* [face_count] outward unit normal and offset */
     tl_tag *tag;       /* [face_count] */
-    uint32_t *start;   /* [face_count + 1] into loop */
+    uint16_t *start;   /* [face_count + 1] into loop */
     tl_edge *edge;     /* [edge_count], a < b never assumed */
     uint16_t *loop;    /* [2 edge_count] vertex indices */
     uint16_t *star;    /* [2 edge_count] edges at each vertex, by vertex */
-    uint32_t *star_at; /* [vertex_count + 1] into star */
-    /* Seams with the other parts of a body of several polyhedra (seam.c); 0 for a single one. */
-    bool seams;       /* some face is covered */
-    uint8_t *covered; /* [face_count] 1: the face lies on other parts */
-    uint8_t *hidden;  /* [edge_count] 1: the edge is no corner of the body */
+    uint16_t *star_at; /* [vertex_count + 1] into star */
+    /* Seams with the other parts of a body of several polyhedra (seam.c): zeros that all single ones share, or, where
+     * `seams`, an allocation of its own. */
+    const uint8_t *covered; /* [face_count] 1: the face lies on other parts */
+    const uint8_t *hidden;  /* [edge_count] 1: the edge is no corner of the body */
+    tl_vec3 vertex[];       /* [vertex_count] */
 } tl_poly;
 
 static inline uint32_t tl_poly_face_size(const tl_poly *p, uint32_t face)
@@ -62,7 +63,7 @@ tl_status tl_poly_box(tl_vec3 min, tl_vec3 max, tl_poly **poly, tl_error *error)
 tl_status tl_poly_hull(const tl_vec3 *points, size_t count, tl_poly **poly, tl_error *error);
 
 void tl_poly_free(tl_poly *poly);
-/* Bytes of its one allocation. */
+/* Bytes of its allocation, and of its seams. */
 size_t tl_poly_bytes(const tl_poly *poly);
 
 /* A copy with every vertex x replaced by R x + t (R a rotation; NULL is the identity). */

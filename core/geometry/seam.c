@@ -7,6 +7,7 @@
 #include "geometry/polyhedron.h"
 
 #include "base/error.h"
+#include "geometry/assemble.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -97,7 +98,8 @@ static bool face_each_other(const tl_poly *a, uint32_t fa, const tl_poly *b, uin
 typedef struct part {
     tl_poly *poly;
     tl_bounds bounds;
-    double *open; /* [faces] area not covered yet */
+    double *open;    /* [faces] area not covered yet */
+    uint8_t *hidden; /* [edges] of the polyhedron, when it has seams */
     uint32_t index;
     struct part *group; /* towards the first part it hangs together with */
     tl_sever_fn severs;
@@ -199,37 +201,51 @@ static bool turns_outward(const tl_poly *a, uint32_t f, uint32_t seam, const tl_
 }
 
 /* Shows the hidden edges of a again where the body turns outward over b. */
-static void show_edges(tl_poly *a, const tl_poly *b)
+static void show_edges(const part *of, const tl_poly *b)
 {
-    for (uint32_t e = 0; e < a->edge_count; e++) {
+    const tl_poly *a = of->poly;
+    for (uint32_t e = 0; e < a->edge_count && a->seams; e++) {
         const tl_edge *edge = &a->edge[e];
         bool left = a->covered[edge->left], right = a->covered[edge->right];
         if (left == right)
             continue;
         tl_vec3 x = tl_v3_scale(0.5, tl_v3_add(a->vertex[edge->a], a->vertex[edge->b]));
         for (uint32_t g = 0; g < b->face_count && a->hidden[e]; g++)
-            a->hidden[e] = !turns_outward(a, left ? edge->right : edge->left,
-                                          left ? edge->left : edge->right, b, g, x);
+            of->hidden[e] = !turns_outward(a, left ? edge->right : edge->left,
+                                           left ? edge->left : edge->right, b, g, x);
     }
 }
 
 static bool show(part *a, part *b)
 {
-    show_edges(a->poly, b->poly);
-    show_edges(b->poly, a->poly);
+    show_edges(a, b->poly);
+    show_edges(b, a->poly);
     return true;
 }
 
-static void mark(part *p)
+static bool is_covered(const part *p, uint32_t face)
+{
+    return p->open[face] < UNCOVERED * tl_poly_face_area(p->poly, face);
+}
+
+/* false without memory. */
+static bool mark(part *p)
 {
     tl_poly *poly = p->poly;
-    poly->seams = false;
-    for (uint32_t f = 0; f < poly->face_count; f++) {
-        poly->covered[f] = p->open[f] < UNCOVERED * tl_poly_face_area(poly, f);
-        poly->seams = poly->seams || poly->covered[f];
-    }
+    uint32_t first = 0;
+    while (first < poly->face_count && !is_covered(p, first))
+        first++;
+    if (first == poly->face_count)
+        return true;
+    p->hidden = tl_poly_open_seams(poly);
+    if (!p->hidden)
+        return false;
+    for (uint32_t f = first; f < poly->face_count; f++)
+        p->hidden[f] = is_covered(p, f);
+    p->hidden += poly->face_count;
     for (uint32_t e = 0; e < poly->edge_count; e++)
-        poly->hidden[e] = poly->covered[poly->edge[e].left] || poly->covered[poly->edge[e].right];
+        p->hidden[e] = poly->covered[poly->edge[e].left] || poly->covered[poly->edge[e].right];
+    return true;
 }
 
 /* The parts in order of their low x, with all their faces open; NULL without memory. One allocation. */
@@ -258,17 +274,14 @@ static part *list_parts(tl_poly *const *parts, size_t count)
 
 tl_status tl_poly_mark_seams(tl_poly *const *parts, size_t count, tl_error *error)
 {
-    for (size_t i = 0; i < count; i++) {
-        parts[i]->seams = false;
-        memset(parts[i]->covered, 0, parts[i]->face_count);
-        memset(parts[i]->hidden, 0, parts[i]->edge_count);
-    }
+    for (size_t i = 0; i < count; i++)
+        tl_poly_clear_seams(parts[i]);
     if (count < 2)
         return TL_OK;
     part *list = list_parts(parts, count);
     bool done = list && each_pair(list, count, cover);
     for (size_t i = 0; done && i < count; i++)
-        mark(&list[i]);
+        done = mark(&list[i]);
     if (done)
         each_pair(list, count, show);
     free(list);

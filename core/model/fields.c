@@ -138,7 +138,8 @@ tl_status tl_block_mesh_get(tl_model *m, tl_id block, tl_block_mesh *mesh)
     }
     for (uint32_t i = 0; i < shape->vertex_count; i++)
         mesh->vertices[i] = tl_model_point(m, body, shape->vertex[i]);
-    memcpy(mesh->start, shape->start, (shape->face_count + 1u) * sizeof *mesh->start);
+    for (size_t f = 0; f <= shape->face_count; f++)
+        mesh->start[f] = shape->start[f];
     for (size_t i = 0; i < corners; i++)
         mesh->loops[i] = shape->loop[i];
     memcpy(mesh->tags, shape->tag, shape->face_count * sizeof *mesh->tags);
