@@ -33,19 +33,23 @@ static void put(const tl_table *table, const tl_column *column, void *data)
     memcpy((char *)table->owner + column->offset, &data, sizeof data);
 }
 
-bool tl_grow(void *slot, size_t *room, size_t need, size_t size)
+bool tl_fit(void *slot, size_t *room, size_t need, size_t size)
 {
     if (need <= *room)
         return true;
-    size_t fresh = need + need / 2 + 16;
     void *data;
     memcpy(&data, slot, sizeof data);
-    data = realloc(data, fresh * size);
+    data = realloc(data, need * size);
     if (!data)
         return false;
     memcpy(slot, &data, sizeof data);
-    *room = fresh;
+    *room = need;
     return true;
+}
+
+bool tl_grow(void *slot, size_t *room, size_t need, size_t size)
+{
+    return need <= *room || tl_fit(slot, room, need + need / 2 + 16, size);
 }
 
 static size_t column_bytes(const tl_column *column, size_t capacity)

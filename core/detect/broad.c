@@ -16,6 +16,7 @@
 #define SKIN_EXTENTS 0.1  /* skin over the median extent */
 #define CELLS_PER_BLOCK 8 /* most cells a block, so that a scattered model needs no huge grid */
 
+/* What a list of pairs is made with: nothing of it is kept. */
 struct tl_broad {
     tl_bounds *bounds; /* [blocks] grown */
     size_t block_room;
@@ -35,26 +36,14 @@ typedef struct cell_range {
     uint32_t lo[3], hi[3];
 } cell_range;
 
-void tl_broad_destroy(struct tl_broad *broad)
+static void release(struct tl_broad *g)
 {
-    if (!broad)
-        return;
-    free(broad->bounds);
-    free(broad->extent);
-    free(broad->large);
-    free(broad->cell_start);
-    free(broad->entries);
-    free(broad->next);
-    free(broad);
-}
-
-size_t tl_broad_bytes(const struct tl_broad *g)
-{
-    if (!g)
-        return 0;
-    return sizeof *g + g->block_room * (sizeof *g->bounds + sizeof *g->extent + sizeof *g->large) +
-           g->cell_room * sizeof *g->cell_start + g->entry_room * sizeof *g->entries +
-           g->next_room * sizeof *g->next;
+    free(g->bounds);
+    free(g->extent);
+    free(g->large);
+    free(g->cell_start);
+    free(g->entries);
+    free(g->next);
 }
 
 static bool reserve_blocks(struct tl_broad *g, size_t count)
@@ -211,7 +200,7 @@ static bool push(struct tl_broad *g, size_t *count, uint32_t a, uint32_t b)
 {
     if (!tl_grow(&g->next, &g->next_room, *count + 1, sizeof *g->next))
         return false;
-    g->next[(*count)++] = (tl_pair){.a = a, .b = b, .wake = -1, .contact = TL_NO_ROW};
+    g->next[(*count)++] = (tl_pair){.a = a, .b = b, .contact = TL_NO_ROW, .wake = -1};
     return true;
 }
 
@@ -296,6 +285,8 @@ static tl_status merge(tl_model *m, struct tl_broad *g, size_t fresh)
             j++;
         if (j < fresh && compare_pair(&g->next[j], old) == 0) {
             g->next[j] = *old;
+            if (old->contact == TL_NO_ROW) /* runs begin anew */
+                tl_pair_rebase(d, &g->next[j]);
         } else if (old->contact != TL_NO_ROW) {
             if (!push(g, &count, old->a, old->b))
                 return tl_fail_memory(&m->error);
@@ -304,6 +295,11 @@ static tl_status merge(tl_model *m, struct tl_broad *g, size_t fresh)
     }
     if (count > fresh)
         qsort(g->next, count, sizeof *g->next, compare_pair);
+    size_t chunks = count / TL_PAIR_CHUNK + 1;
+    if (!tl_fit(&d->chunks, &d->chunk_room, chunks, sizeof *d->chunks))
+        return tl_fail_memory(&m->error);
+    for (size_t i = 0; i < chunks; i++)
+        d->chunks[i] = (tl_pair_chunk){.wake = -INFINITY};
     trim(g, count);
     free(d->pairs);
     d->pairs = g->next;
@@ -319,23 +315,18 @@ static tl_status merge(tl_model *m, struct tl_broad *g, size_t fresh)
 
 tl_status tl_broad_update(tl_model *m)
 {
-    tl_detect *d = m->detect;
-    if (!d->broad && !(d->broad = calloc(1, sizeof *d->broad)))
-        return tl_fail_memory(&m->error);
+    struct tl_broad g = {0};
     size_t fresh;
-    tl_status status = measure(m, d->broad);
+    tl_status status = measure(m, &g);
     if (status == TL_OK)
-        status = fill(m, d->broad);
+        status = fill(m, &g);
     if (status == TL_OK)
-        status = list_pairs(m, d->broad, &fresh);
+        status = list_pairs(m, &g, &fresh);
     if (status == TL_OK)
-        status = merge(m, d->broad, fresh);
+        status = merge(m, &g, fresh);
+    release(&g);
     if (status != TL_OK)
         return status;
-    size_t bodies = m->bodies.table.rows;
-    if (!tl_grow(&d->odometer_0, &d->body_room, bodies + 1, sizeof *d->odometer_0))
-        return tl_fail_memory(&m->error);
-    if (bodies)
-        memcpy(d->odometer_0, m->bodies.odometer, bodies * sizeof *d->odometer_0);
-    return TL_OK;
+    m->detect->listed = true;
+    return tl_pairs_restart(m);
 }

@@ -40,8 +40,6 @@ void tl_contacts_init(tl_contacts *c, tl_points_table *p)
     TL_COLUMN(t, c, area, 0);
     TL_COLUMN(t, c, force, 0);
     TL_COLUMN(t, c, moment, 0);
-    TL_COLUMN(t, c, want_points, 0);
-    TL_COLUMN(t, c, want_facets, 0);
     TL_COLUMN(t, c, across, TL_COLUMN_STATE);
     TL_COLUMN(t, c, fresh, 0);
     TL_COLUMN(t, c, lone, 0);
@@ -121,10 +119,10 @@ bool tl_contact_append(tl_model *m, uint32_t pair, const tl_axis *axis, tl_tag t
     c->axis[row] = *axis;
     c->until[row] = tl_pair_odometer(m, p->a, p->b);
     c->search[row] = -INFINITY; /* tl_contact_fill tells */
-    c->want_points[row] = (uint32_t)want_points;
-    c->want_facets[row] = (uint32_t)want_facets;
     c->fate[row] = TL_FATE_GROW;
     p->contact = row;
+    p->want.points = (uint16_t)want_points;
+    p->want.facets = (uint16_t)want_facets;
     return true;
 }
 
@@ -157,15 +155,17 @@ static place *sorted(const tl_contacts *c, size_t *count)
 
 /* Room a contact is to get. What it has now must fit, too, for it is read when the new takes its place: of a
  * contact that grows in points the facets can become fewer, and the other way round. */
-static uint32_t wanted_points(const tl_contacts *c, uint32_t row)
+static uint32_t wanted_points(const tl_detect *d, uint32_t row)
 {
-    uint32_t want = c->want_points[row], have = c->point_count[row];
+    const tl_contacts *c = &d->contacts;
+    uint32_t want = d->pairs[c->pair[row]].want.points, have = c->point_count[row];
     return want > have ? want : have;
 }
 
-static uint32_t wanted_facets(const tl_contacts *c, uint32_t row)
+static uint32_t wanted_facets(const tl_detect *d, uint32_t row)
 {
-    uint32_t want = c->want_facets[row], have = c->facet_count[row];
+    const tl_contacts *c = &d->contacts;
+    uint32_t want = d->pairs[c->pair[row]].want.facets, have = c->facet_count[row];
     return want > have ? want : have;
 }
 
@@ -192,7 +192,7 @@ static void copy_contact(tl_detect *d, uint32_t from, uint32_t to, uint32_t face
                (const char *)tl_table_data(&c->table, k) + from * size, size);
     }
     bool grows = c->fate[from] == TL_FATE_GROW;
-    fresh->point_room[to] = grows ? wanted_points(c, from) : c->point_count[from];
+    fresh->point_room[to] = grows ? (uint16_t)wanted_points(d, from) : c->point_count[from];
     fresh->facet_start[to] = facet_start;
     if (c->facet_count[from])
         memcpy(&fresh->facet[facet_start], &c->facet[c->facet_start[from]],
@@ -220,8 +220,9 @@ bool tl_contacts_index(tl_model *m)
     tl_detect *d = m->detect;
     d->by_id_fresh = false;
     size_t blocks = m->blocks.table.rows, contacts = d->contacts.table.rows;
-    if (!tl_grow(&d->by_block_start, &d->by_start_room, blocks + 2, sizeof *d->by_block_start) ||
-        !tl_grow(&d->by_block, &d->by_block_room, 2 * contacts + 1, sizeof *d->by_block))
+    if (!tl_fit(&d->by_block_start, &d->by_start_room, blocks + 2, sizeof *d->by_block_start) ||
+        !tl_fit(&d->by_block, &d->by_block_room, 2 * d->contacts.table.capacity + 1,
+                sizeof *d->by_block))
         return false;
     memset(d->by_block_start, 0, (blocks + 2) * sizeof *d->by_block_start);
     uint32_t *start = d->by_block_start + 1; /* filling moves each start to its end */
@@ -324,7 +325,7 @@ tl_status tl_contacts_repack(tl_model *m)
     for (size_t i = 0; i < count; i++) {
         uint32_t row = list[i].row;
         if (c->fate[row] == TL_FATE_GROW)
-            c->facet_room[row] = wanted_facets(c, row);
+            c->facet_room[row] = (uint16_t)wanted_facets(d, row);
         facets += c->facet_room[row];
     }
     choose_spare(d, m->cycles);
@@ -367,7 +368,7 @@ static void clear_points(tl_detect *d, uint32_t contact)
 static bool place_points(tl_detect *d, uint32_t row)
 {
     tl_contacts *c = &d->contacts;
-    uint32_t points = wanted_points(c, row), lane;
+    uint32_t points = wanted_points(d, row), lane;
     if (!points)
         return true;
     const tl_rank *rank = tl_rank_take(d, c->material[row], points, row, &lane);
@@ -377,21 +378,21 @@ static bool place_points(tl_detect *d, uint32_t row)
                 c->point_count[row]);
     clear_points(d, row);
     c->point_start[row] = rank->start + lane;
-    c->point_room[row] = rank->slots;
+    c->point_room[row] = (uint16_t)rank->slots;
     return true;
 }
 
 bool tl_contact_place(tl_detect *d, uint32_t row)
 {
     tl_contacts *c = &d->contacts;
-    uint32_t facets = wanted_facets(c, row);
+    uint32_t facets = wanted_facets(d, row);
     if (c->facet_total + facets > c->facet_capacity || !place_points(d, row))
         return false;
     if (c->facet_count[row])
         memcpy(&c->facet[c->facet_total], &c->facet[c->facet_start[row]],
                c->facet_count[row] * sizeof *c->facet);
     c->facet_start[row] = (uint32_t)c->facet_total;
-    c->facet_room[row] = facets;
+    c->facet_room[row] = (uint16_t)facets;
     c->facet_total += facets;
     return true;
 }

@@ -1,4 +1,4 @@
-/* detect.c - the order of contact detection, and the update of one pair and one contact.
+/* detect.c - the order of contact detection.
  *
  * Phases: rows that changed are found again by id; the broad phase is made anew when something may
  * have left its skin; pairs without a contact are looked at when they may have come near; contacts are
@@ -14,7 +14,6 @@
 #define DEEP 1e-2
 
 /* Rows a worker takes at a time. */
-#define PAIR_CHUNK 256
 #define CONTACT_CHUNK 64
 
 static void narrow_free(tl_narrow *n)
@@ -31,7 +30,6 @@ static void narrow_free(tl_narrow *n)
 
 static void detect_destroy(tl_detect *d)
 {
-    tl_broad_destroy(d->broad);
     tl_table_free(&d->contacts.table);
     tl_table_free(&d->spare.table);
     tl_table_free(&d->points.table);
@@ -46,8 +44,11 @@ static void detect_destroy(tl_detect *d)
     free(d->contacts.facet);
     free(d->spare.facet);
     free(d->pairs);
+    free(d->chunks);
     free(d->odometer_0);
     tl_layout_free(&d->layout);
+    free(d->run);
+    free(d->touched);
     free(d->by_block);
     free(d->by_block_start);
     free(d->by_id);
@@ -126,10 +127,7 @@ static void find_rows(tl_model *m)
 static void find_materials(tl_model *m)
 {
     for (size_t i = 0; i < m->detect->pair_count; i++)
-        if (m->detect->pairs[i].one != m->detect->pairs[i].other) {
-            m->detect->pairs[i].one = m->detect->pairs[i].other = 0;
-            m->detect->pairs[i].wake = -INFINITY;
-        }
+        tl_pair_wake(m->detect, (uint32_t)i);
     tl_contacts *c = &m->detect->contacts;
     for (uint32_t row = 0; row < c->table.rows; row++) {
         c->until[row] = -INFINITY;
@@ -138,62 +136,7 @@ static void find_materials(tl_model *m)
     }
 }
 
-static bool left_skin(const tl_model *m)
-{
-    const tl_detect *d = m->detect;
-    for (size_t body = 0; body < m->bodies.table.rows; body++)
-        if (m->bodies.odometer[body] - d->odometer_0[body] > d->reach)
-            return true;
-    return false;
-}
-
-/* ---------------------------------------------------------------- pairs ------------------ */
-
-static void look_at(tl_model *m, tl_pair *p, tl_narrow *room)
-{
-    p->found = false;
-    double odometer = tl_pair_odometer(m, p->a, p->b);
-    if (p->contact != TL_NO_ROW || odometer < p->wake)
-        return;
-    tl_pair_view view = tl_pair_view_of(m, p->a, p->b);
-    double gap, margin = tl_beside_margin(&view, p, &gap);
-    if (margin >= 0) {
-        p->wake = odometer + margin;
-        return;
-    }
-    p->one = p->other = 0;
-    if (!tl_pair_place(&view, room)) {
-        room->failed = true;
-        return;
-    }
-    double tolerance = TL_CONTACT_TOLERANCE * view.size, reach = m->detect->reach;
-    if (!tl_look_near(&view, tolerance + reach)) {
-        p->wake = odometer + reach;
-        return;
-    }
-    tl_axis axis = tl_axis_search(&view, room, NULL);
-    if (axis.s > tolerance) {
-        p->wake = odometer + (axis.s - tolerance);
-        return;
-    }
-    tl_share_rule rule = tl_share_rule_of(m, &view, tl_touching_tag(&view, axis.n), false);
-    tl_manifold_build(&view, &axis, &rule, room);
-    room->failed = room->failed || room->manifold.failed;
-    p->found = room->manifold.point_count > 0;
-    p->wake = odometer + TL_SILENT * view.size;
-    if (!p->found && !rule.unconditional)
-        tl_beside_note(&view, p);
-}
-
 /* ---------------------------------------------------------------- phases ----------------- */
-
-static void look_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
-{
-    (void)chunk;
-    tl_model *m = user;
-    for (size_t i = begin; i < end; i++)
-        look_at(m, &m->detect->pairs[i], &m->detect->narrow[thread]);
-}
 
 static void update_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
 {
@@ -219,31 +162,44 @@ typedef struct overlaps {
     uint32_t pair; /* the first */
 } overlaps;
 
-/* Contacts of the pairs that have come near. */
-static tl_status give_birth(tl_model *m, size_t *born)
+/* Makes the contact of a pair that has come near; its overlap is noted when it is deep. */
+static tl_status give_birth(tl_model *m, uint32_t pair, overlaps *deep)
 {
     tl_detect *d = m->detect;
     tl_narrow *room = &d->narrow[0];
+    tl_pair_view view = tl_pair_view_of(m, d->pairs[pair].a, d->pairs[pair].b);
+    if (!tl_pair_place(&view, room))
+        return tl_fail_memory(&m->error);
+    tl_axis axis = tl_axis_search(&view, room, NULL);
+    tl_tag tag = tl_touching_tag(&view, axis.n);
+    tl_share_rule rule = tl_share_rule_of(m, &view, tag, false);
+    tl_manifold_build(&view, &axis, &rule, room);
+    const tl_manifold *g = &room->manifold;
+    if (g->failed || !tl_contact_append(m, pair, &axis, tag, g->point_count, g->facet_count))
+        return tl_fail_memory(&m->error);
+    if (axis.s < -DEEP * view.size && deep->count++ == 0)
+        deep->pair = pair;
+    return TL_OK;
+}
+
+/* Contacts of the pairs that have come near. */
+static tl_status give_births(tl_model *m, size_t *born)
+{
+    tl_detect *d = m->detect;
     overlaps deep = {0, 0};
     *born = 0;
-    for (uint32_t i = 0; i < d->pair_count; i++) {
-        tl_pair *p = &d->pairs[i];
-        if (p->contact != TL_NO_ROW || !p->found)
-            continue;
-        tl_pair_view view = tl_pair_view_of(m, p->a, p->b);
-        if (!tl_pair_place(&view, room))
-            return tl_fail_memory(&m->error);
-        tl_axis axis = tl_axis_search(&view, room, NULL);
-        tl_tag tag = tl_touching_tag(&view, axis.n);
-        tl_share_rule rule = tl_share_rule_of(m, &view, tag, false);
-        tl_manifold_build(&view, &axis, &rule, room);
-        const tl_manifold *g = &room->manifold;
-        if (g->failed || !tl_contact_append(m, i, &axis, tag, g->point_count, g->facet_count))
-            return tl_fail_memory(&m->error);
-        p->found = false;
-        ++*born;
-        if (axis.s < -DEEP * view.size && deep.count++ == 0)
-            deep.pair = i;
+    for (uint32_t chunk = 0; (size_t)chunk * TL_PAIR_CHUNK < d->pair_count; chunk++) {
+        uint32_t begin = chunk * TL_PAIR_CHUNK;
+        for (uint32_t i = begin;
+             d->chunks[chunk].found && i < begin + TL_PAIR_CHUNK && i < d->pair_count; i++) {
+            if (d->pairs[i].contact != TL_NO_ROW || d->pairs[i].wake != TL_PAIR_FOUND)
+                continue;
+            tl_status status = give_birth(m, i, &deep);
+            if (status != TL_OK)
+                return status;
+            ++*born;
+        }
+        d->chunks[chunk].found = false;
     }
     if (deep.count)
         tl_model_say(
@@ -269,26 +225,41 @@ static void change_material(tl_model *m, uint32_t c)
         tl_point_begin(&d->points, tl_point_row(&d->contacts, c, k), kind);
 }
 
+/* Notes that the contacts of two bodies are no longer what they were. After a change of rows all are. */
+static void touch(tl_model *m, uint32_t row)
+{
+    tl_detect *d = m->detect;
+    if (d->rows_changed)
+        return;
+    d->any_touched = true;
+    d->touched[m->blocks.body[d->contacts.a[row]]] = true;
+    d->touched[m->blocks.body[d->contacts.b[row]]] = true;
+}
+
 /* Takes out the dead and finds room for those that are new or have grown; false when there is none. Backward,
  * for the last contact takes the row of one that goes. */
 static bool settle_rows(tl_model *m)
 {
-    tl_contacts *c = &m->detect->contacts;
+    tl_detect *d = m->detect;
+    tl_contacts *c = &d->contacts;
     bool room = true;
     for (uint32_t row = (uint32_t)c->table.rows; row-- > 0;) {
         if (c->fate[row] == TL_FATE_KEEP)
             continue;
+        touch(m, row);
+        uint32_t pair = c->pair[row];
         if (c->fate[row] == TL_FATE_DIE) {
-            tl_contact_remove(m->detect, row);
+            tl_contact_remove(d, row);
+            tl_pair_parted(d, pair);
             continue;
         }
         if (c->fate[row] == TL_FATE_MATERIAL) {
-            c->want_points[row] = c->point_room[row];
-            c->want_facets[row] = c->facet_room[row];
+            d->pairs[pair].want.points = c->point_room[row];
+            d->pairs[pair].want.facets = c->facet_room[row];
         }
         if (tl_material_row(m, c->tag[row]) != c->material[row])
             change_material(m, row);
-        room = room && tl_contact_place(m->detect, row);
+        room = room && tl_contact_place(d, row);
     }
     return room;
 }
@@ -318,7 +289,7 @@ static tl_status settle(tl_model *m)
             d->narrow[i].failed = false;
             return tl_fail_memory(&m->error);
         }
-    tl_status status = give_birth(m, &changed);
+    tl_status status = give_births(m, &changed);
     if (status != TL_OK)
         return status;
     for (uint32_t row = 0; row < c->table.rows; row++) {
@@ -345,22 +316,26 @@ static tl_status find_contacts(tl_model *m)
     if (status != TL_OK)
         return status;
     tl_detect *d = m->detect;
-    bool rows = d->structure != m->structure || !d->broad;
+    bool rows = d->structure != m->structure || !d->listed;
     if (rows) {
         d->rows_changed = true;
         find_rows(m);
+        status = tl_pairs_restart(m);
+        if (status != TL_OK)
+            return status;
         tl_parallel_for(m->pool, d->contacts.table.rows, CONTACT_CHUNK, reframe_range, m);
     }
     if (d->laws != m->laws)
         find_materials(m);
-    if (rows || left_skin(m)) {
+    tl_pairs_run(m);
+    if (rows || (double)d->ran > d->reach) {
         status = tl_broad_update(m);
         if (status != TL_OK)
             return status;
     }
     d->structure = m->structure;
     d->laws = m->laws;
-    tl_parallel_for(m->pool, d->pair_count, PAIR_CHUNK, look_range, m);
+    tl_pairs_look(m);
     return TL_OK;
 }
 
@@ -378,8 +353,8 @@ tl_status tl_detect_update(tl_model *m)
     if (status != TL_OK)
         return status;
     tl_parallel_for(m->pool, m->detect->contacts.table.rows, CONTACT_CHUNK, update_range, m);
-    if (!tl_grow(&m->detect->moving, &m->detect->moving_room, m->bodies.table.rows,
-                 sizeof *m->detect->moving))
+    if (!tl_fit(&m->detect->moving, &m->detect->moving_room, m->bodies.table.rows,
+                sizeof *m->detect->moving))
         return tl_fail_memory(&m->error);
     return settle(m);
 }

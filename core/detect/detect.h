@@ -155,15 +155,31 @@ typedef struct tl_share_rule {
 #define TL_PAIR_FACE 0x1fffu
 static_assert(2 * TL_POLY_MAX_FACES - 1 <= TL_PAIR_FACE, "faces do not fit into a pair");
 
+/* Two blocks that may come near. */
 typedef struct tl_pair {
-    uint32_t a, b;      /* block rows, a < b */
-    double wake;        /* sum of the odometers at which to look again */
-    uint32_t contact;   /* row, or TL_NO_ROW */
-    uint32_t found : 1; /* looked at in this step and near enough */
+    uint32_t a, b;    /* block rows, a < b */
+    uint32_t contact; /* row, or TL_NO_ROW */
+    union {
+        float
+            wake; /* without a contact: sum of the blocks' runs at which to look again, or TL_PAIR_FOUND */
+        struct {
+            uint16_t points, facets;
+        } want; /* of a contact that must grow: room */
+    };
     /* two faces that show whether they still touch without area (beside.c), twice the number and one more for a
      * face of B; the same: none */
     uint32_t one : 13, other : 13;
 } tl_pair;
+
+/* A pair that was looked at and is near enough to become a contact. */
+#define TL_PAIR_FOUND (-INFINITY)
+
+/* Pairs a worker takes at a time, and what is known of them together. */
+#define TL_PAIR_CHUNK 256
+typedef struct tl_pair_chunk {
+    float wake; /* none without a contact has an earlier one */
+    bool found; /* some pair is */
+} tl_pair_chunk;
 
 typedef struct tl_contacts {
     tl_table table;
@@ -176,16 +192,15 @@ typedef struct tl_contacts {
     tl_axis *axis;
     double *search; /* sum of odometers up to which the axis need not be searched anew */
     double *until;  /* sum of odometers up to which the facets may be reused */
-    uint32_t *facet_start, *facet_count, *facet_room;
+    uint32_t *facet_start;
     uint32_t *point_start; /* row of the first point; the next are TL_LANES rows apart */
-    uint32_t *point_count, *point_room;
+    uint16_t *facet_count, *facet_room, *point_count, *point_room;
     double *area;
-    tl_vec3 *force;                      /* on B */
-    tl_vec3 *moment;                     /* of the forces on B, about A's body's centroid */
-    uint32_t *want_points, *want_facets; /* of a contact that must grow */
-    uint8_t *
-        across; /* some point carried a force across a gap in the last step: a bond in tension, or an initial
-                        stress not yet relieved. Such a contact ends only with that force */
+    tl_vec3 *force;  /* on B */
+    tl_vec3 *moment; /* of the forces on B, about A's body's centroid */
+    /* some point carried a force across a gap in the last step: a bond in tension, or an initial stress not yet
+     * relieved. Such a contact ends only with that force */
+    uint8_t *across;
     uint8_t *fresh; /* its points were placed in this step */
     uint8_t *lone;  /* its faces that look at each other are one of each block */
     uint8_t *fate;  /* what the parallel phase leaves to the serial one: TL_FATE_* */
@@ -263,11 +278,20 @@ typedef struct tl_moving {
 typedef struct tl_detect {
     tl_pair *pairs;
     size_t pair_count, pair_room;
+    tl_pair_chunk *chunks;
+    size_t chunk_room;
     uint64_t changes;   /* counts births, deaths and growth of contacts */
+    bool listed;        /* pairs have been listed */
     bool rows_changed;  /* since contacts were laid out */
     double reach;       /* half the skin of the broad phase */
     double *odometer_0; /* of each body, when the broad phase was made */
-    size_t body_room;
+    size_t odometer_room;
+    float *run; /* of each block: how far it can have moved since then, rounded up */
+    size_t run_of_room;
+    float ran;        /* the farthest of them */
+    uint8_t *touched; /* bodies whose contacts came, went or grew since the time step was chosen */
+    size_t touched_room;
+    bool any_touched;
     uint64_t structure, laws; /* of the model, when last seen */
     tl_contacts contacts, spare;
     tl_points_table points, spare_points;
@@ -286,7 +310,6 @@ typedef struct tl_detect {
     tl_moving *moving;
     size_t moving_room;
     unsigned threads;
-    struct tl_broad *broad;
 } tl_detect;
 
 /* Row i of a vector kept as three columns. */
@@ -316,9 +339,22 @@ void tl_detect_memory(const tl_model *m, tl_memory *memory);
 
 /* ---- broad.c ---- */
 tl_status tl_broad_update(tl_model *m);
-void tl_broad_destroy(struct tl_broad *broad);
-/* Bytes it holds; `broad` may be NULL. */
-size_t tl_broad_bytes(const struct tl_broad *broad);
+
+/* ---- pairs.c ---- */
+/* Makes room for what is kept of the model's blocks and bodies; their runs begin here. */
+tl_status tl_pairs_restart(tl_model *m);
+/* Notes how far blocks have run. */
+void tl_pairs_run(tl_model *m);
+/* Looks at the pairs without a contact that may have come near: chunks and pairs tell which were found. */
+void tl_pairs_look(tl_model *m);
+/* Lets a pair sleep until its blocks have run `way` more. */
+void tl_pair_sleep(tl_detect *d, tl_pair *pair, double way);
+/* The wake of a pair, without a contact, whose runs are to begin anew. */
+void tl_pair_rebase(const tl_detect *d, tl_pair *pair);
+/* Forgets what shows that a pair touches without area; without a contact it is looked at again. */
+void tl_pair_wake(tl_detect *d, uint32_t pair);
+/* Notes that a pair has lost its contact. */
+void tl_pair_parted(tl_detect *d, uint32_t pair);
 
 /* ---- look.c: libccd's first look ---- */
 /* False when the blocks, each grown by `reach` / 2, are certainly apart. */

@@ -15,17 +15,20 @@ void tl_detect_memory(const tl_model *m, tl_memory *memory)
     const tl_detect *d = m->detect;
     if (!d)
         return;
-    memory->pairs += d->pair_room * sizeof *d->pairs;
+    memory->pairs += d->pair_room * sizeof *d->pairs + d->chunk_room * sizeof *d->chunks;
     memory->contacts += tl_table_bytes(&d->contacts.table);
     memory->facets += d->contacts.facet_capacity * sizeof *d->contacts.facet;
-    memory->points += tl_table_bytes(&d->points.table);
+    memory->points +=
+        tl_table_bytes(&d->points.table);
     memory->spare += tl_table_bytes(&d->spare.table) + tl_table_bytes(&d->spare_points.table) +
                      d->spare.facet_capacity * sizeof *d->spare.facet;
-    memory->broad += tl_broad_bytes(d->broad) + d->body_room * sizeof *d->odometer_0;
+    memory->broad += d->odometer_room * sizeof *d->odometer_0 + d->run_of_room * sizeof *d->run +
+                     d->touched_room * sizeof *d->touched;
+    memory->step += d->moving_room * sizeof *d->moving;
     memory->index += d->by_block_room * sizeof *d->by_block +
                      d->by_start_room * sizeof *d->by_block_start +
                      d->by_id_room * sizeof *d->by_id + d->layout.rank_room * sizeof(tl_rank);
     memory->other += sizeof *d + d->layout.run_room * sizeof(tl_run);
     for (unsigned i = 0; i < d->threads; i++)
-        memory->other += narrow_bytes(&d->narrow[i]);
+        memory->other += narrow_bytes(&d->narrow[i]) + tl_table_bytes(&d->lanes[i].table);
 }

@@ -62,7 +62,7 @@ static void seat_window(tl_layout *layout, tl_contacts *c, tl_run *run, seat *se
             rank = begin_rank(layout, run, seats[i].points);
         rank->contact[lane] = row;
         c->point_start[row] = rank->start + lane;
-        c->point_room[row] = rank->slots;
+        c->point_room[row] = (uint16_t)rank->slots;
     }
 }
 

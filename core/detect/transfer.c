@@ -352,8 +352,8 @@ bool tl_contact_transfer(tl_model *m, uint32_t c, tl_narrow *room, const tl_poin
 
     tl_facet *facets = &contacts->facet[contacts->facet_start[c]];
     memcpy(facets, g->facets, g->facet_count * sizeof *facets);
-    contacts->facet_count[c] = (uint32_t)g->facet_count;
-    contacts->point_count[c] = (uint32_t)g->point_count;
+    contacts->facet_count[c] = (uint16_t)g->facet_count;
+    contacts->point_count[c] = (uint16_t)g->point_count;
     for (size_t k = g->point_count; k < contacts->point_room[c]; k++)
         tl_point_clear(p, tl_point_row(contacts, c, k));
     plane_fit fit = {.made = false};

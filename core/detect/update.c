@@ -121,8 +121,8 @@ static bool rebuild(tl_model *m, uint32_t c, tl_narrow *room, bool across)
         /* a pair that touches without area stays a contact, so that it need not be born again */
         if (axis.s > TL_CONTACT_TOLERANCE * TL_CONTACT_RELEASE * view.size && !across) {
             contacts->fate[c] = TL_FATE_DIE;
-            m->detect->pairs[contacts->pair[c]].wake =
-                odometer + axis.s - TL_CONTACT_TOLERANCE * view.size;
+            tl_pair_sleep(m->detect, &m->detect->pairs[contacts->pair[c]],
+                          axis.s - TL_CONTACT_TOLERANCE * view.size);
         }
         return true;
     }
@@ -150,8 +150,9 @@ static bool take_manifold(tl_model *m, uint32_t c, tl_narrow *room, const tl_poi
         return true;
     }
     if (g->point_count > contacts->point_room[c] || g->facet_count > contacts->facet_room[c]) {
-        contacts->want_points[c] = (uint32_t)g->point_count;
-        contacts->want_facets[c] = (uint32_t)g->facet_count;
+        tl_pair *pair = &d->pairs[contacts->pair[c]];
+        pair->want.points = (uint16_t)g->point_count;
+        pair->want.facets = (uint16_t)g->facet_count;
         contacts->fate[c] = TL_FATE_GROW;
         return true;
     }

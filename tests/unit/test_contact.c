@@ -447,8 +447,9 @@ TEST(growing_contacts_have_room_for_what_they_had)
         CHECK(points > 1 && facets > 0);
         bool in_facets = grown & 1;
         c->fate[0] = TL_FATE_GROW;
-        c->want_points[0] = in_facets ? 1 : points + 8;
-        c->want_facets[0] = in_facets ? facets + 1 : 0;
+        tl_pair *pair = &m->detect->pairs[c->pair[0]];
+        pair->want.points = (uint16_t)(in_facets ? 1 : points + 8);
+        pair->want.facets = (uint16_t)(in_facets ? facets + 1 : 0);
         if (grown & 2)
             CHECK_INT(tl_contacts_repack(m), TL_OK);
         else

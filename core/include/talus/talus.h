@@ -346,7 +346,7 @@ TL_API tl_profile tl_model_profile(const tl_model *model);
     X(shapes, "polyhedra")                                                                         \
     X(bodies, "columns of the bodies")                                                             \
     X(step, "columns of the bodies that live through a step only")                                 \
-    X(broad, "grid and bounds of the broad phase")                                                 \
+    X(broad, "how far blocks have moved since pairs were listed")                                  \
     X(pairs, "candidate pairs")                                                                    \
     X(contacts, "columns of the contacts")                                                         \
     X(facets, "what the contacts remember of their faces, edges and vertices")                     \

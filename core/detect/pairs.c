@@ -1,0 +1,168 @@
+/* pairs.c - when pairs without a contact are looked at.
+ *
+ * A pair that was looked at and is not near sleeps until its blocks, together, may have moved as far as they are apart. How
+ * far a block can have moved is told by its body's odometer: by what that has run since the broad phase was made, so
+ * that single precision is enough. Roundings are upward for runs and downward for the pairs' wakes: a pair is looked at
+ * too early by them, never too late. Most pairs sleep in most steps, and of a whole chunk that sleeps longer than any two
+ * blocks have run nothing is read. */
+#include "detect/detect.h"
+
+/* Below any run: look at the pair in the next step. */
+#define AWAKE (-1.f)
+/* Blocks a worker takes at a time: there is little to do with each. */
+#define BLOCK_CHUNK 4096
+
+static float rounded_up(double x)
+{
+    float y = (float)x;
+    return (double)y < x ? nextafterf(y, INFINITY) : y;
+}
+
+static float rounded_down(double x)
+{
+    float y = (float)x;
+    return (double)y > x ? nextafterf(y, -INFINITY) : y;
+}
+
+tl_status tl_pairs_restart(tl_model *m)
+{
+    tl_detect *d = m->detect;
+    size_t blocks = m->blocks.table.rows, bodies = m->bodies.table.rows;
+    if (!tl_fit(&d->odometer_0, &d->odometer_room, bodies + 1, sizeof *d->odometer_0) ||
+        !tl_fit(&d->touched, &d->touched_room, bodies + 1, sizeof *d->touched) ||
+        !tl_fit(&d->run, &d->run_of_room, blocks + 1, sizeof *d->run))
+        return tl_fail_memory(&m->error);
+    for (size_t body = 0; body < bodies; body++)
+        d->odometer_0[body] = m->bodies.odometer[body];
+    for (size_t row = 0; row < blocks; row++)
+        d->run[row] = 0;
+    d->ran = 0;
+    return TL_OK;
+}
+
+typedef struct run_job {
+    tl_model *m;
+    float ran[TL_MAX_THREADS];
+} run_job;
+
+static void run_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
+{
+    (void)chunk;
+    run_job *job = user;
+    const tl_model *m = job->m;
+    tl_detect *d = m->detect;
+    float ran = job->ran[thread];
+    for (size_t row = begin; row < end; row++) {
+        uint32_t body = m->blocks.body[row];
+        float run = rounded_up(m->bodies.odometer[body] - d->odometer_0[body]);
+        d->run[row] = run;
+        ran = run > ran ? run : ran;
+    }
+    job->ran[thread] = ran;
+}
+
+void tl_pairs_run(tl_model *m)
+{
+    run_job job = {.m = m};
+    unsigned threads = tl_pool_threads(m->pool);
+    for (unsigned i = 0; i < threads; i++)
+        job.ran[i] = 0;
+    tl_parallel_for(m->pool, m->blocks.table.rows, BLOCK_CHUNK, run_range, &job);
+    m->detect->ran = 0;
+    for (unsigned i = 0; i < threads; i++)
+        m->detect->ran = job.ran[i] > m->detect->ran ? job.ran[i] : m->detect->ran;
+}
+
+static double run_of(const tl_detect *d, const tl_pair *p)
+{
+    return (double)d->run[p->a] + (double)d->run[p->b];
+}
+
+void tl_pair_sleep(tl_detect *d, tl_pair *pair, double way)
+{
+    pair->wake = rounded_down(run_of(d, pair) + way);
+}
+
+void tl_pair_rebase(const tl_detect *d, tl_pair *pair)
+{
+    pair->wake = rounded_down((double)pair->wake - run_of(d, pair));
+}
+
+void tl_pair_parted(tl_detect *d, uint32_t pair)
+{
+    tl_pair_chunk *chunk = &d->chunks[pair / TL_PAIR_CHUNK];
+    if (pair < d->pair_count && d->pairs[pair].wake < chunk->wake)
+        chunk->wake = d->pairs[pair].wake;
+}
+
+void tl_pair_wake(tl_detect *d, uint32_t i)
+{
+    tl_pair *p = &d->pairs[i];
+    if (p->contact == TL_NO_ROW && p->one != p->other) {
+        p->wake = AWAKE;
+        d->chunks[i / TL_PAIR_CHUNK].wake = AWAKE;
+    }
+    p->one = p->other = 0;
+}
+
+static void look_at(tl_model *m, tl_pair *p, tl_narrow *room)
+{
+    tl_detect *d = m->detect;
+    tl_pair_view view = tl_pair_view_of(m, p->a, p->b);
+    double gap, margin = tl_beside_margin(&view, p, &gap);
+    if (margin >= 0) {
+        tl_pair_sleep(d, p, margin);
+        return;
+    }
+    p->one = p->other = 0;
+    if (!tl_pair_place(&view, room)) {
+        room->failed = true;
+        return;
+    }
+    double tolerance = TL_CONTACT_TOLERANCE * view.size;
+    if (!tl_look_near(&view, tolerance + d->reach)) {
+        tl_pair_sleep(d, p, d->reach);
+        return;
+    }
+    tl_axis axis = tl_axis_search(&view, room, NULL);
+    if (axis.s > tolerance) {
+        tl_pair_sleep(d, p, axis.s - tolerance);
+        return;
+    }
+    tl_share_rule rule = tl_share_rule_of(m, &view, tl_touching_tag(&view, axis.n), false);
+    tl_manifold_build(&view, &axis, &rule, room);
+    room->failed = room->failed || room->manifold.failed;
+    if (room->manifold.point_count > 0) {
+        p->wake = TL_PAIR_FOUND;
+        return;
+    }
+    tl_pair_sleep(d, p, TL_SILENT * view.size);
+    if (!rule.unconditional)
+        tl_beside_note(&view, p);
+}
+
+static void look_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
+{
+    tl_model *m = user;
+    tl_detect *d = m->detect;
+    tl_pair_chunk *all = &d->chunks[chunk];
+    if (2 * (double)d->ran < (double)all->wake)
+        return;
+    float wake = INFINITY;
+    for (size_t i = begin; i < end; i++) {
+        tl_pair *p = &d->pairs[i];
+        if (p->contact != TL_NO_ROW)
+            continue;
+        if (run_of(d, p) >= (double)p->wake) {
+            look_at(m, p, &d->narrow[thread]);
+            all->found = all->found || p->wake == TL_PAIR_FOUND;
+        }
+        wake = p->wake < wake ? p->wake : wake;
+    }
+    all->wake = wake;
+}
+
+void tl_pairs_look(tl_model *m)
+{
+    tl_parallel_for(m->pool, m->detect->pair_count, TL_PAIR_CHUNK, look_range, m);
+}
