@@ -41,7 +41,7 @@ static void add_columns(struct tl_cycle *c)
     TL_COLUMN(t, c, reaction_force, 0);
     TL_COLUMN(t, c, reaction_moment, 0);
     TL_COLUMN(t, c, alpha, 0);
-    TL_COLUMN(t, c, scale, 0);
+    TL_COLUMN(t, c, rate, 0);
 }
 
 tl_status tl_cycle_prepare(tl_model *m)

@@ -37,6 +37,15 @@ struct tl_counted {
     double largest_face; /* area; negative: not measured yet */
 };
 
+/* For what the rates of the bodies are known, and the extreme one. */
+struct tl_rated {
+    uint64_t version; /* of the bodies and laws; 0: no rates are known */
+    int64_t look;     /* of mass scaling: steps over LOOK_EVERY */
+    int32_t rotation;
+    double extreme; /* the highest rate, with mass scaling the lowest */
+    uint32_t body;  /* row, or TL_NO_ROW */
+};
+
 /* Vectors and quaternions of a group of bodies, component by component. */
 typedef struct tl_lanes3 {
     double x[TL_LANES], y[TL_LANES], z[TL_LANES];
@@ -111,7 +120,7 @@ struct tl_cycle {
     tl_table table;
     /* per body */
     double *contact_force; /* sum of |contact forces| */
-    double *scale;         /* of the inertia: 1 without mass scaling */
+    double *rate;          /* sum k (1/M + r^2/I) of its contacts, where a rule asks: 0 for none */
     double *damping_force[3], *damping_moment[3], *alpha; /* what the damping plugin gave */
     tl_vec3 *reaction_force, *reaction_moment; /* of the contacts, on bodies held in some way */
     tl_sums *chunk_sums;
@@ -124,13 +133,19 @@ struct tl_cycle {
     double dt;                               /* the step in use */
     struct tl_counted counted;               /* timestep.c */
     bool all_held;                           /* no body can move */
-    uint64_t scaled_for; /* version of the contacts for which the inertia was scaled; 0: none */
-    double scaled_step;  /* M/(2K) of the bodies after scaling */
+    struct tl_rated rated;                   /* timestep.c */
+    double scaled; /* M/(2K) of all bodies with contacts, by mass scaling; 0 without it */
     /* the first failure of a parallel phase, by chunk, and the point it came from */
     pthread_mutex_t failure_lock;
     tl_error failure;
     size_t failure_chunk, failure_point;
 };
+
+/* What mass scaling makes of a body's inertia. */
+static inline double tl_inertia_scale(const struct tl_cycle *c, uint32_t body)
+{
+    return c->scaled > 0 && c->rate[body] > 0 ? 2 * c->scaled * c->rate[body] : 1;
+}
 
 /* One step of the model; a failure leaves places and velocities as they were. */
 tl_status tl_step(tl_model *m);

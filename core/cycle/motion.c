@@ -183,7 +183,7 @@ static void load_body(tl_group *g, const tl_model *m, uint32_t body)
     tl_lanes3_put(&g->w0, i, b->w[body]);
     g->mass[i] = b->mass[body];
     g->radius[i] = b->radius[body];
-    g->scale[i] = c->scale[body];
+    g->scale[i] = tl_inertia_scale(c, body);
     bool damped = m->damping != NULL;
     const tl_vec3 none = {0, 0, 0};
     tl_lanes3_put(&g->damping_force, i, damped ? tl_columns_get(c->damping_force, body) : none);

@@ -5,15 +5,19 @@
  *          contact points of stiffness k at distance r from the centroid, I the smallest moment of inertia:
  *          no motion of the body and its neighbours is faster, so FRAC 1 is stable.
  * Mass scaling gives every free body the bound of the one that has the most.
+ * What a body adds up over its contact points is its rate. Rates are kept from step to step, and made anew where contacts
+ * changed: where nothing moves by more than areas are reused for, they cost nothing.
  * Where no free body is in contact, the stiffest law on the largest face of a free block stands in for
  * K. */
 #include "cycle/cycle_room.h"
+
+#include <string.h>
 
 /* The step in use is kept while the rule gives one between it and this many times it: a step that
  * changes all the time would cost accuracy. */
 #define STEP_GROWTH 1.1
 
-/* Steps after which mass scaling looks at the bodies' stiffness again even when no contact has come or
+/* Steps after which mass scaling looks at the stiffness of all bodies again, even when no contact has come or
  * gone: areas may have grown. */
 #define LOOK_EVERY 64
 
@@ -51,13 +55,11 @@ static void count_bodies(tl_model *m)
     for (uint32_t body = 0; body < b->table.rows && c->all_held; body++)
         c->all_held = b->fixed[body] == TL_FIX_ALL;
     for (uint32_t body = 0; body < b->table.rows; body++) {
-        c->scale[body] = 1;
         if (counts(m, body) && b->mass[body] < to->least_mass) {
             to->least_mass = b->mass[body];
             to->lightest = body;
         }
     }
-    c->scaled_for = 0;
 }
 
 static double largest_free_face(tl_model *m)
@@ -95,7 +97,9 @@ typedef struct worst {
 
 typedef struct search {
     tl_model *m;
-    bool keep; /* what is found of every row */
+    bool slowest; /* the lowest rate is looked for, not the highest */
+    bool kept; /* rates are kept in their column, and made anew only where contacts have changed */
+    bool all;  /* all rates are made anew */
     worst of[TL_MAX_THREADS];
 } search;
 
@@ -105,16 +109,15 @@ static void keep_worst(worst *w, worst other)
         *w = other;
 }
 
-static worst find_worst(tl_model *m, size_t rows, size_t chunk, tl_range_fn range, bool keep)
+static worst find_worst(search *s, size_t rows, size_t chunk, tl_range_fn range)
 {
-    search s = {.m = m, .keep = keep};
-    unsigned threads = tl_pool_threads(m->pool);
+    unsigned threads = tl_pool_threads(s->m->pool);
     for (unsigned t = 0; t < threads; t++)
-        s.of[t] = (worst){0, 0, TL_NO_ROW};
-    tl_parallel_for(m->pool, rows, chunk, range, &s);
+        s->of[t] = (worst){-INFINITY, 0, TL_NO_ROW};
+    tl_parallel_for(s->m->pool, rows, chunk, range, s);
     for (unsigned t = 1; t < threads; t++)
-        keep_worst(&s.of[0], s.of[t]);
-    return s.of[0];
+        keep_worst(&s->of[0], s->of[t]);
+    return s->of[0];
 }
 
 static void stiffest_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
@@ -123,7 +126,7 @@ static void stiffest_range(void *user, size_t begin, size_t end, size_t chunk, u
     search *s = user;
     const tl_model *m = s->m;
     const tl_contacts *c = &m->detect->contacts;
-    worst found = {0, 0, TL_NO_ROW};
+    worst found = {-INFINITY, 0, TL_NO_ROW};
     for (uint32_t i = (uint32_t)begin; i < end; i++) {
         if (c->material[i] == TL_NO_ROW)
             continue;
@@ -140,8 +143,9 @@ static void stiffest_range(void *user, size_t begin, size_t end, size_t chunk, u
 static bound paper_rule(tl_model *m)
 {
     const struct tl_counted *counted = &m->cycle->counted;
+    search s = {.m = m};
     worst stiffest =
-        find_worst(m, m->detect->contacts.table.rows, TL_CONTACT_CHUNK, stiffest_range, false);
+        find_worst(&s, m->detect->contacts.table.rows, TL_CONTACT_CHUNK, stiffest_range);
     bound out = {
         .body = counted->lightest, .contact = stiffest.row, .stiffness = stiffest.stiffness};
     if (out.contact == TL_NO_ROW)
@@ -214,73 +218,86 @@ static double body_rate(const tl_model *m, uint32_t body, double *stiffness)
     return rate;
 }
 
-static void fastest_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
+/* Rates of the bodies, and the extreme one. */
+static void rate_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
 {
     (void)chunk;
     search *s = user;
-    worst found = {0, 0, TL_NO_ROW};
+    const tl_model *m = s->m;
+    double *kept = m->cycle->rate, k;
+    const uint8_t *touched = m->detect->touched;
+    worst found = {-INFINITY, 0, TL_NO_ROW};
     for (uint32_t body = (uint32_t)begin; body < end; body++) {
-        double k = 0, rate = counts(s->m, body) ? body_rate(s->m, body, &k) : 0;
-        if (rate > found.value)
-            found = (worst){rate, k, body};
+        double rate = kept[body];
+        if (!s->kept || s->all || touched[body])
+            rate = counts(m, body) ? body_rate(m, body, &k) : 0;
+        if (s->kept)
+            kept[body] = rate;
+        double value = s->slowest ? -rate : rate;
+        if (rate > 0 && value > found.value)
+            found = (worst){value, 0, body};
     }
     keep_worst(&s->of[thread], found);
 }
 
-static bound body_rule(tl_model *m)
+/* Notes the bodies whose contacts have other points than in the step before; true when there are any. */
+static bool touch_fresh(tl_model *m)
 {
-    worst fastest = find_worst(m, m->bodies.table.rows, TL_BODY_CHUNK, fastest_range, false);
-    if (fastest.row == TL_NO_ROW)
-        return paper_rule(m); /* no moving body touches another */
-    return (bound){1 / (2 * fastest.value), fastest.row, TL_NO_ROW, fastest.stiffness};
-}
-
-static void slowest_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
-{
-    (void)chunk;
-    search *s = user;
-    double *scale = s->m->cycle->scale;
-    worst found = {0, 0, TL_NO_ROW};
-    for (uint32_t body = (uint32_t)begin; body < end; body++) {
-        double k = 0, rate = counts(s->m, body) ? body_rate(s->m, body, &k) : 0;
-        if (rate > 0 && 1 / rate > found.value)
-            found = (worst){1 / rate, k, body};
-        if (s->keep)
-            scale[body] = rate;
+    tl_detect *d = m->detect;
+    tl_contacts *c = &d->contacts;
+    bool any = false;
+    for (size_t i = 0; i < c->table.rows; i++) {
+        if (!c->fresh[i])
+            continue;
+        any = d->touched[m->blocks.body[c->a[i]]] = d->touched[m->blocks.body[c->b[i]]] = true;
+        c->fresh[i] = c->point_count[i] > 0; /* without points the laws will not see it */
     }
-    keep_worst(&s->of[thread], found);
+    return any;
 }
 
-/* The bound of the body that needs mass scaling least. `keep`: leaves the rates of all in the column of scales. */
-static bound slowest_body(tl_model *m, bool keep)
-{
-    worst slowest = find_worst(m, m->bodies.table.rows, TL_BODY_CHUNK, slowest_range, keep);
-    if (slowest.row == TL_NO_ROW)
-        return paper_rule(m);
-    return (bound){0.5 * slowest.value, slowest.row, TL_NO_ROW, slowest.stiffness};
-}
-
-/* Scales the inertia of the free bodies up to the bound of the one that needs it least. */
-static double scaled_step(tl_model *m)
+/* M or I over 2 K of the fastest body, with mass scaling of the slowest, from rates that are kept. By the rule, bodies are
+ * rated anew when one of their contacts has points that were placed in this step; with mass scaling, when a contact has
+ * come, gone or grown, and all now and then. */
+static double kept_least(tl_model *m)
 {
     struct tl_cycle *c = m->cycle;
-    uint64_t version = 1 + m->detect->changes + (uint64_t)m->cycles / LOOK_EVERY + m->constraints +
-                       m->laws + m->structure;
-    if (version == c->scaled_for)
-        return c->scaled_step;
-    bound slowest = slowest_body(m, true);
-    for (uint32_t body = 0; body < m->bodies.table.rows; body++)
-        c->scale[body] = c->scale[body] > 0 ? 2 * slowest.least * c->scale[body] : 1;
-    c->scaled_for = version;
-    c->scaled_step = slowest.least;
-    return c->scaled_step;
+    tl_detect *d = m->detect;
+    struct tl_rated now = {.version = 1 + m->structure + m->constraints + m->laws,
+                           .look = m->mass_scaling ? m->cycles / LOOK_EVERY : 0,
+                           .rotation = m->config.rotation};
+    bool all = now.version != c->rated.version || now.look != c->rated.look ||
+               now.rotation != c->rated.rotation;
+    bool some = !m->mass_scaling && touch_fresh(m);
+    if (all || some || d->any_touched) {
+        search s = {.m = m, .slowest = m->mass_scaling, .kept = true, .all = all};
+        worst found = find_worst(&s, m->bodies.table.rows, TL_BODY_CHUNK, rate_range);
+        memset(d->touched, 0, m->bodies.table.rows);
+        d->any_touched = false;
+        now.extreme = fabs(found.value);
+        now.body = found.row;
+        c->rated = now;
+    }
+    return c->rated.body == TL_NO_ROW ? paper_rule(m).least : 0.5 / c->rated.extreme;
 }
 
+static bool rates_bodies(const tl_model *m)
+{
+    return m->mass_scaling || m->timestep.rule == TL_TIMESTEP_BODY;
+}
+
+/* What controls the step, looked at anew. */
 static bound controlling(tl_model *m)
 {
-    if (m->mass_scaling)
-        return slowest_body(m, false);
-    return m->timestep.rule == TL_TIMESTEP_BODY ? body_rule(m) : paper_rule(m);
+    if (!rates_bodies(m))
+        return paper_rule(m);
+    search s = {.m = m, .slowest = m->mass_scaling};
+    worst found = find_worst(&s, m->bodies.table.rows, TL_BODY_CHUNK, rate_range);
+    if (found.row == TL_NO_ROW)
+        return paper_rule(m); /* no moving body touches another */
+    bound out = {.least = 0.5 / fabs(found.value), .body = found.row, .contact = TL_NO_ROW};
+    double k_r2;
+    body_stiffness(m, found.row, &out.stiffness, &k_r2);
+    return out;
 }
 
 static double damping_factor(const tl_model *m)
@@ -319,10 +336,11 @@ static tl_status choose(tl_model *m, double *dt, bound *by)
     if (by) {
         *by = controlling(m);
         least = by->least;
-    } else if (m->mass_scaling) {
-        least = scaled_step(m);
-    } else if (!given) {
-        least = controlling(m).least;
+    } else if (m->mass_scaling || !given) {
+        least = rates_bodies(m) ? kept_least(m) : paper_rule(m).least;
+        c->scaled = m->mass_scaling ? least : 0;
+    } else {
+        c->scaled = 0;
     }
     if (given) {
         *dt = c->dt = m->timestep.dt;
@@ -355,8 +373,10 @@ tl_status tl_model_timestep(tl_model *m, const tl_timestep *timestep)
     if (!isnan(timestep->dt) && !(timestep->dt > 0 && isfinite(timestep->dt)))
         return tl_fail(&m->error, TL_E_ARGUMENT, "timestep: dt = %g s must be > 0", timestep->dt);
     m->timestep = *timestep;
-    if (m->cycle)
+    if (m->cycle) {
         m->cycle->dt = 0;
+        m->cycle->rated.version = 0; /* another rule asks something else of contacts */
+    }
     return TL_OK;
 }
 

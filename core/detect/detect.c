@@ -299,7 +299,6 @@ static tl_status settle(tl_model *m)
     }
     if (changed == 0 && !d->rows_changed)
         return TL_OK;
-    d->changes++;
     if (!settle_rows(m))
         status = tl_contacts_repack(m);
     else if (!tl_contacts_index(m))

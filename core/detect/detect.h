@@ -280,7 +280,6 @@ typedef struct tl_detect {
     size_t pair_count, pair_room;
     tl_pair_chunk *chunks;
     size_t chunk_room;
-    uint64_t changes;   /* counts births, deaths and growth of contacts */
     bool listed;        /* pairs have been listed */
     bool rows_changed;  /* since contacts were laid out */
     double reach;       /* half the skin of the broad phase */
