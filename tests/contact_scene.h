@@ -243,7 +243,7 @@ SCENE_UNUSED static void scene_forces(tl_model *m)
         status = tl_laws_check(m);
     if (status == TL_OK)
         status = tl_laws_apply(m);
-    if (scene_ok(m, status))
+    if (scene_ok(m, status) && CHECK(tl_gather_prepare(m)))
         tl_gather(m);
 }
 

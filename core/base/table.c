@@ -102,6 +102,14 @@ bool tl_table_widen(tl_table *table, const char *name, size_t size, size_t offse
     return false;
 }
 
+bool tl_table_need(tl_table *table, const char *name, size_t size, size_t offset, unsigned flags)
+{
+    for (size_t i = 0; i < table->column_count; i++)
+        if (table->columns[i].offset == offset)
+            return true;
+    return tl_table_widen(table, name, size, offset, flags);
+}
+
 bool tl_table_resize(tl_table *table, size_t rows)
 {
     if (!tl_table_reserve(table, rows))

@@ -42,6 +42,10 @@ void tl_table_init(tl_table *table, void *owner);
 void tl_table_column(tl_table *table, const char *name, size_t size, size_t offset, unsigned flags);
 /* Adds a column, of zeros, to a table that may have rows; false when out of memory (nothing changed). */
 bool tl_table_widen(tl_table *table, const char *name, size_t size, size_t offset, unsigned flags);
+/* The same, unless it has that column already: for what few models need. The pointer is NULL until then. */
+bool tl_table_need(tl_table *table, const char *name, size_t size, size_t offset, unsigned flags);
+#define TL_COLUMN_NEED(table, owner, member, flags)                                                \
+    tl_table_need((table), #member, sizeof *(owner)->member, TL_COLUMN_AT(owner, member), (flags))
 /* Makes room for `rows` rows; what is there stays. false when out of memory (nothing changed). */
 bool tl_table_reserve(tl_table *table, size_t rows);
 /* Sets the number of rows; new ones are zero. */

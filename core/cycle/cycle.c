@@ -22,6 +22,7 @@ static void cycle_destroy(struct tl_cycle *cycle)
 {
     pthread_mutex_destroy(&cycle->failure_lock);
     tl_table_free(&cycle->table);
+    free(cycle->reaction);
     free(cycle->chunk_sums);
     free(cycle->rank_energy);
     free(cycle->chunk_ledger);
@@ -38,8 +39,7 @@ static void add_columns(struct tl_cycle *c)
         TL_COLUMN(t, c, damping_force[k], 0);
         TL_COLUMN(t, c, damping_moment[k], 0);
     }
-    TL_COLUMN(t, c, reaction_force, 0);
-    TL_COLUMN(t, c, reaction_moment, 0);
+    TL_COLUMN(t, c, reaction_of, 0);
     TL_COLUMN(t, c, alpha, 0);
     TL_COLUMN(t, c, rate, 0);
 }
@@ -97,6 +97,8 @@ tl_status tl_step(tl_model *m)
     if (status == TL_OK)
         status = tl_timestep_choose(m, &dt);
     tl_phase_ends(m, TL_PHASE_TIMESTEP);
+    if (status == TL_OK && !tl_gather_prepare(m))
+        status = tl_fail_memory(&m->error);
     if (status == TL_OK)
         status = tl_laws_apply(m);
     if (status != TL_OK)

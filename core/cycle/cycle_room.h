@@ -116,13 +116,22 @@ typedef struct tl_work {
     double work_after[TL_WORK_COUNT][TL_LANES];  /* and in the half step that follows */
 } tl_work;
 
+/* Of the contacts, on a body that is held. */
+typedef struct tl_reaction {
+    tl_vec3 force, moment;
+} tl_reaction;
+
 struct tl_cycle {
     tl_table table;
     /* per body */
     double *contact_force; /* sum of |contact forces| */
     double *rate;          /* sum k (1/M + r^2/I) of its contacts, where a rule asks: 0 for none */
     double *damping_force[3], *damping_moment[3], *alpha; /* what the damping plugin gave */
-    tl_vec3 *reaction_force, *reaction_moment; /* of the contacts, on bodies held in some way */
+    uint32_t
+        *reaction_of; /* index of the reaction on a body that is held in some way, or TL_NO_ROW */
+    tl_reaction *reaction;
+    size_t reaction_room;
+    uint64_t reactions_for; /* version of the bodies; 0: none */
     tl_sums *chunk_sums;
     size_t chunk_room;
     tl_sums sums;
@@ -145,6 +154,11 @@ struct tl_cycle {
 static inline double tl_inertia_scale(const struct tl_cycle *c, uint32_t body)
 {
     return c->scaled > 0 && c->rate[body] > 0 ? 2 * c->scaled * c->rate[body] : 1;
+}
+
+static inline tl_reaction tl_reaction_on(const struct tl_cycle *c, uint32_t body)
+{
+    return c->reaction[c->reaction_of[body]];
 }
 
 /* One step of the model; a failure leaves places and velocities as they were. */
@@ -170,6 +184,8 @@ tl_status tl_cycle_prepare(tl_model *m);
 void tl_cycle_failed(tl_model *m, size_t chunk, tl_status status, size_t point, const char *text);
 /* Calls the laws on their runs of contact points and sums forces per contact. */
 tl_status tl_laws_apply(tl_model *m);
+/* Makes room for the reactions on bodies that are held; before the gather. false: out of memory. */
+bool tl_gather_prepare(tl_model *m);
 /* Each body gathers its contacts in fixed order, and its weight; sums for the convergence measures. */
 void tl_gather(tl_model *m);
 /* An unbalanced force ratio of the last gather. */

@@ -96,8 +96,8 @@ TL_INLINE void book_damping(tl_work *work, size_t i, const tl_group *g)
 
 static tl_vec3 load_moment(const tl_bodies *b, uint32_t body)
 {
-    tl_vec3 arm = tl_m3_mul(&b->r[body], b->load_arm[body]);
-    return tl_v3_add(b->load_moment[body], tl_v3_cross(arm, b->load_force[body]));
+    tl_body_load load = tl_load_of(b, body);
+    return tl_v3_add(load.moment, tl_v3_cross(tl_m3_mul(&b->r[body], load.arm), load.force));
 }
 
 /* The work of loads, and of what holds some components of a body's motion at a velocity. */
@@ -106,16 +106,15 @@ static void book_load(tl_work *work, size_t i, const tl_group *g, const tl_model
     const tl_bodies *b = &m->bodies;
     uint32_t body = g->body[i];
     unsigned fixed = b->fixed[body];
-    tl_vec3 force = b->load_force[body], moment = b->load_moment[body];
-    if (fixed == 0 && tl_v3_norm2(force) == 0 && tl_v3_norm2(moment) == 0)
+    if (fixed == 0 && !tl_body_loaded(b, body))
         return;
-    moment = load_moment(b, body);
+    tl_vec3 force = tl_load_of(b, body).force, moment = load_moment(b, body);
     book(work, i, TL_WORK_EXTERNAL, g, force, moment);
     if (fixed == 0)
         return;
-    force = tl_v3_add(tl_v3_madd(m->cycle->reaction_force[body], b->mass[body], m->config.gravity),
-                      force);
-    moment = tl_v3_add(m->cycle->reaction_moment[body], moment);
+    tl_reaction by = tl_reaction_on(m->cycle, body);
+    force = tl_v3_add(tl_v3_madd(by.force, b->mass[body], m->config.gravity), force);
+    moment = tl_v3_add(by.moment, moment);
     force = tl_v3(fixed & TL_FIX_X ? -force.x : 0, fixed & TL_FIX_Y ? -force.y : 0,
                   fixed & TL_FIX_Z ? -force.z : 0);
     book(work, i, TL_WORK_EXTERNAL, g, force,
@@ -146,11 +145,11 @@ void tl_energy_book_held(const tl_model *m, uint32_t body, tl_vec3 moved, tl_vec
 {
     const tl_bodies *b = &m->bodies;
     /* what moves the body works against the contacts' reaction */
-    tl_vec3 force = m->cycle->reaction_force[body], moment = m->cycle->reaction_moment[body];
+    tl_reaction by = tl_reaction_on(m->cycle, body);
     work->work_until[TL_WORK_EXTERNAL][0] -=
-        work->until * (tl_v3_dot(force, moved) + tl_v3_dot(moment, turned));
+        work->until * (tl_v3_dot(by.force, moved) + tl_v3_dot(by.moment, turned));
     work->work_after[TL_WORK_EXTERNAL][0] -=
-        work->after * (tl_v3_dot(force, b->v[body]) + tl_v3_dot(moment, b->w[body]));
+        work->after * (tl_v3_dot(by.force, b->v[body]) + tl_v3_dot(by.moment, b->w[body]));
 }
 
 static double sum_lanes(const double lanes[TL_LANES])

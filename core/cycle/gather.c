@@ -8,12 +8,6 @@ static tl_vec3 free_part(tl_vec3 v, unsigned fixed)
                  fixed & TL_FIX_Z ? 0 : v.z);
 }
 
-static bool is_loaded(const tl_bodies *b, uint32_t body)
-{
-    tl_vec3 f = b->load_force[body], l = b->load_moment[body];
-    return f.x != 0 || f.y != 0 || f.z != 0 || l.x != 0 || l.y != 0 || l.z != 0;
-}
-
 /* fmax, of which few compilers make one instruction. */
 static double larger(double a, double b)
 {
@@ -38,15 +32,14 @@ static void gather_body(tl_model *m, uint32_t body)
         }
     }
     if (b->fixed[body]) {
-        m->cycle->reaction_force[body] = force;
-        m->cycle->reaction_moment[body] = moment;
+        m->cycle->reaction[m->cycle->reaction_of[body]] = (tl_reaction){force, moment};
     }
     force = tl_v3_madd(force, b->mass[body], m->config.gravity);
-    if (is_loaded(b, body)) {
-        tl_vec3 arm = tl_m3_mul(&b->r[body], b->load_arm[body]);
-        force = tl_v3_add(force, b->load_force[body]);
-        moment = tl_v3_add(moment,
-                           tl_v3_add(b->load_moment[body], tl_v3_cross(arm, b->load_force[body])));
+    if (tl_body_loaded(b, body)) {
+        const tl_body_load *load = &b->load[body];
+        tl_vec3 arm = tl_m3_mul(&b->r[body], load->arm);
+        force = tl_v3_add(force, load->force);
+        moment = tl_v3_add(moment, tl_v3_add(load->moment, tl_v3_cross(arm, load->force)));
     }
     b->force[body] = free_part(force, b->fixed[body]);
     b->moment[body] = b->fixed[body] & TL_FIX_ROTATION ? tl_v3(0, 0, 0) : moment;
@@ -79,8 +72,9 @@ static void gather_range(void *user, size_t begin, size_t end, size_t chunk, uns
         double v2 = tl_v3_norm2(b->v[body]);
         double unbalanced = tl_v3_norm(b->force[body]);
         double contact = m->cycle->contact_force[body];
-        double weight =
-            b->mass[body] * gravity + tl_v3_norm(b->load_force[body]); /* a load weighs as much */
+        double weight = b->mass[body] * gravity; /* a load weighs as much */
+        if (b->load)
+            weight += tl_v3_norm(b->load[body].force);
         double against = contact > 0 ? contact : weight;
         sums.unbalanced += unbalanced;
         sums.turning += tl_v3_norm(b->moment[body]) / b->radius[body];
@@ -94,6 +88,21 @@ static void gather_range(void *user, size_t begin, size_t end, size_t chunk, uns
         sums.max_speed2 = larger(sums.max_speed2, v2);
     }
     m->cycle->chunk_sums[chunk] = sums;
+}
+
+bool tl_gather_prepare(tl_model *m)
+{
+    struct tl_cycle *c = m->cycle;
+    uint64_t version = 1 + m->structure + m->constraints;
+    if (c->reactions_for == version)
+        return true;
+    uint32_t held = 0;
+    for (size_t body = 0; body < m->bodies.table.rows; body++)
+        c->reaction_of[body] = m->bodies.fixed[body] ? held++ : TL_NO_ROW;
+    if (!tl_fit(&c->reaction, &c->reaction_room, held, sizeof *c->reaction))
+        return false;
+    c->reactions_for = version;
+    return true;
 }
 
 void tl_gather(tl_model *m)

@@ -12,7 +12,8 @@ tl_memory tl_model_memory(const tl_model *m)
     memory.bodies = tl_table_bytes(&m->bodies.table);
     if (m->cycle)
         memory.step = sizeof *m->cycle + tl_table_bytes(&m->cycle->table) +
-                      m->cycle->chunk_room * sizeof *m->cycle->chunk_sums;
+                      m->cycle->chunk_room * sizeof *m->cycle->chunk_sums +
+                      m->cycle->reaction_room * sizeof *m->cycle->reaction;
     memory.other = sizeof *m + m->next_id * sizeof *m->row_of + blocks * sizeof *m->members +
                    m->joint_count * sizeof *m->joints + m->material_count * sizeof *m->materials;
     tl_detect_memory(m, &memory);

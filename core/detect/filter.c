@@ -94,9 +94,8 @@ static uint32_t root(const uint32_t *group, uint32_t row)
 /* Whether two bodies may become one: nothing but their own weight and contacts may tell them apart. */
 static bool may_join(const tl_bodies *b, uint32_t body, uint32_t other)
 {
-    bool loaded = tl_v3_norm2(b->load_force[other]) + tl_v3_norm2(b->load_moment[other]) > 0 ||
-                  tl_v3_norm2(b->load_force[body]) + tl_v3_norm2(b->load_moment[body]) > 0;
-    return b->fixed[body] == b->fixed[other] && !b->drive[body] && !b->drive[other] && !loaded;
+    return b->fixed[body] == b->fixed[other] && !b->drive[body] && !b->drive[other] &&
+           !tl_body_loaded(b, body) && !tl_body_loaded(b, other);
 }
 
 /* The row of the block to join to, or TL_NO_ROW: the one with the largest shared face among sound

@@ -300,7 +300,7 @@ static tl_status look_at(work *w, uint32_t body)
     tl_vec3 gravity = w->query->gravity;
     if (isnan(gravity.x))
         gravity = m->config.gravity;
-    block.force = tl_v3_madd(m->bodies.load_force[body], block.mass, gravity);
+    block.force = tl_v3_madd(tl_load_of(&m->bodies, body).force, block.mass, gravity);
     find_mode(w, block.force, &block);
     result->blocks[result->count++] = block;
     return TL_OK;

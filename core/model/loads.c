@@ -22,12 +22,14 @@ tl_status tl_blocks_load(tl_model *m, const tl_id *ids, size_t count, const tl_l
     tl_status status = check_blocks(m, ids, count);
     if (status != TL_OK)
         return status;
+    if (count && !TL_COLUMN_NEED(&m->bodies.table, &m->bodies, load, TL_COLUMN_STATE))
+        return tl_fail_memory(&m->error);
     for (size_t i = 0; i < count; i++) {
         uint32_t body = m->blocks.body[m->row_of[ids[i]]];
         tl_vec3 from = tl_v3_sub(tl_v3_sub(load->at, m->origin), tl_body_place(&m->bodies, body));
-        m->bodies.load_force[body] = load->force;
-        m->bodies.load_moment[body] = load->moment;
-        m->bodies.load_arm[body] = placed ? tl_m3_tmul(&m->bodies.r[body], from) : tl_v3(0, 0, 0);
+        m->bodies.load[body] =
+            (tl_body_load){load->force, load->moment,
+                           placed ? tl_m3_tmul(&m->bodies.r[body], from) : tl_v3(0, 0, 0)};
     }
     return TL_OK;
 }

@@ -15,8 +15,6 @@ static void blocks_init(tl_blocks *b)
     TL_COLUMN(t, b, group, 0);
     TL_COLUMN(t, b, density, TL_COLUMN_STATE);
     TL_COLUMN(t, b, volume, TL_COLUMN_STATE);
-    TL_COLUMN(t, b, local, TL_COLUMN_STATE);
-    TL_COLUMN(t, b, base, 0);
     TL_COLUMN(t, b, size, 0);
     TL_COLUMN(t, b, mean_face, 0);
     TL_COLUMN(t, b, lineage, 0);
@@ -48,9 +46,6 @@ static void bodies_init(tl_bodies *b)
     TL_COLUMN(t, b, moment, TL_COLUMN_STATE);
     TL_COLUMN(t, b, force_before, TL_COLUMN_STATE);
     TL_COLUMN(t, b, moment_before, TL_COLUMN_STATE);
-    TL_COLUMN(t, b, load_force, TL_COLUMN_STATE);
-    TL_COLUMN(t, b, load_moment, TL_COLUMN_STATE);
-    TL_COLUMN(t, b, load_arm, TL_COLUMN_STATE);
     TL_COLUMN(t, b, drive, 0);
     TL_COLUMN(t, b, odometer, 0);
 }
@@ -238,17 +233,18 @@ size_t tl_block_count(const tl_model *m)
 
 tl_vec3 tl_block_centroid(const tl_model *m, uint32_t row)
 {
-    return tl_model_point(m, m->blocks.body[row], m->blocks.local[row]);
+    return tl_model_point(m, m->blocks.body[row], tl_block_local(m, row));
 }
 
 tl_vec3 tl_block_point_displacement(const tl_model *m, uint32_t row, tl_vec3 local)
 {
     uint32_t body = m->blocks.body[row];
     tl_vec3 turned = tl_v3_sub(tl_m3_mul(&m->bodies.r[body], local), local);
-    return tl_v3_sub(tl_v3_add(m->bodies.u[body], turned), m->blocks.base[row]);
+    tl_vec3 moved = tl_v3_add(m->bodies.u[body], turned);
+    return m->blocks.base ? tl_v3_sub(moved, m->blocks.base[row]) : moved;
 }
 
 tl_vec3 tl_block_displacement(const tl_model *m, uint32_t row)
 {
-    return tl_block_point_displacement(m, row, m->blocks.local[row]);
+    return tl_block_point_displacement(m, row, tl_block_local(m, row));
 }

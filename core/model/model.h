@@ -35,18 +35,23 @@
 typedef struct tl_blocks {
     tl_table table;
     tl_id *id;
-    uint32_t *body;    /* row of its body */
-    tl_poly **shape;   /* in the body's frame; owned */
-    uint32_t *group;   /* index into groups */
-    double *density;   /* kg/m3 */
-    double *volume;    /* m3 */
-    tl_vec3 *local;    /* centroid in the body's frame; zero for a body of one block */
-    tl_vec3 *base;     /* subtracted from the displacement (reset_displacement) */
-    double *size;      /* cube root of the volume: the length tolerances refer to */
+    uint32_t *body;  /* row of its body */
+    tl_poly **shape; /* in the body's frame; owned */
+    uint32_t *group; /* index into groups */
+    double *density; /* kg/m3 */
+    double *volume;  /* m3 */
+    tl_vec3 *local;  /* centroid in the body's frame, zero for a body of one block; NULL: all are */
+    tl_vec3 *base;   /* subtracted from the displacement (reset_displacement); NULL: nothing is */
+    double *size;    /* cube root of the volume: the length tolerances refer to */
     double *mean_face; /* mean face area, m2 */
     uint64_t *lineage; /* key of the block's descent, for random draws */
     uint8_t *hidden;
 } tl_blocks;
+
+typedef struct tl_body_load {
+    tl_vec3 force, moment; /* axes of the model */
+    tl_vec3 arm;           /* where it acts, body's frame */
+} tl_body_load;
 
 typedef struct tl_bodies {
     tl_table table;
@@ -71,10 +76,9 @@ typedef struct tl_bodies {
     tl_vec3 *moment;
     tl_vec3 *force_before; /* unbalanced, in the last damped step */
     tl_vec3 *moment_before;
-    tl_vec3 *load_force, *load_moment; /* of the user's, axes of the model */
-    tl_vec3 *load_arm;                 /* where the load acts, body's frame */
-    uint32_t *drive;                   /* index into drives + 1, or 0 */
-    double *odometer; /* sum of (|v| + |w| radius) dt: no vertex has moved farther */
+    tl_body_load *load; /* of the user's; NULL: none has ever been set */
+    uint32_t *drive;    /* index into drives + 1, or 0 */
+    double *odometer;   /* sum of (|v| + |w| radius) dt: no vertex has moved farther */
 } tl_bodies;
 
 typedef struct tl_joint_set {
@@ -201,6 +205,23 @@ static inline tl_vec3 tl_model_point(const tl_model *m, uint32_t body, tl_vec3 l
 {
     tl_vec3 x = tl_v3_add(tl_body_place(&m->bodies, body), tl_m3_mul(&m->bodies.r[body], local));
     return tl_v3_add(m->origin, x);
+}
+
+/* Load of a body, zero where there is none. */
+static inline tl_body_load tl_load_of(const tl_bodies *b, uint32_t body)
+{
+    return b->load ? b->load[body] : (tl_body_load){{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+}
+
+static inline bool tl_body_loaded(const tl_bodies *b, uint32_t body)
+{
+    return b->load && tl_v3_norm2(b->load[body].force) + tl_v3_norm2(b->load[body].moment) > 0;
+}
+
+/* A block's centroid in its body's frame. */
+static inline tl_vec3 tl_block_local(const tl_model *m, uint32_t row)
+{
+    return m->blocks.local ? m->blocks.local[row] : tl_v3(0, 0, 0);
 }
 
 /* Centroid and displacement of a block, in the user's coordinates. */

@@ -36,7 +36,7 @@ tl_sym3 tl_block_inertia(const tl_model *m, uint32_t row)
 tl_vec3 tl_block_velocity(const tl_model *m, uint32_t row)
 {
     uint32_t body = m->blocks.body[row];
-    tl_vec3 arm = tl_m3_mul(&m->bodies.r[body], m->blocks.local[row]);
+    tl_vec3 arm = tl_m3_mul(&m->bodies.r[body], tl_block_local(m, row));
     return tl_v3_add(m->bodies.v[body], tl_v3_cross(m->bodies.w[body], arm));
 }
 
@@ -60,7 +60,7 @@ static tl_vec3 part_place(const tl_model *m, uint32_t row)
 {
     uint32_t body = m->blocks.body[row];
     return tl_v3_add(tl_body_place(&m->bodies, body),
-                     tl_m3_mul(&m->bodies.r[body], m->blocks.local[row]));
+                     tl_m3_mul(&m->bodies.r[body], tl_block_local(m, row)));
 }
 
 static parts sum_parts(const tl_model *m, const uint32_t *rows, size_t count)
@@ -209,7 +209,17 @@ static void write_body(tl_model *m, const parts *sum, uint32_t body)
     b->v[body] = tl_v3(sum->fixed & TL_FIX_X ? 0 : v.x, sum->fixed & TL_FIX_Y ? 0 : v.y,
                        sum->fixed & TL_FIX_Z ? 0 : v.z);
     b->force_before[body] = b->moment_before[body] = tl_v3(0, 0, 0);
-    b->load_force[body] = b->load_moment[body] = b->load_arm[body] = tl_v3(0, 0, 0);
+    if (b->load)
+        b->load[body] = (tl_body_load){{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+}
+
+/* Room for bodies, and for what only blocks of joined bodies have. */
+static bool make_room(tl_model *m, size_t bodies)
+{
+    tl_blocks *blocks = &m->blocks;
+    return tl_table_reserve(&m->bodies.table, bodies) &&
+           TL_COLUMN_NEED(&blocks->table, blocks, local, 0) &&
+           TL_COLUMN_NEED(&blocks->table, blocks, base, 0);
 }
 
 tl_status tl_bodies_regroup(tl_model *m, const uint32_t *group)
@@ -218,7 +228,7 @@ tl_status tl_bodies_regroup(tl_model *m, const uint32_t *group)
     tl_bodies *bodies = &m->bodies;
     size_t count = blocks->table.rows;
     regroup r;
-    bool room = list_groups(m, group, &r) && tl_table_reserve(&bodies->table, 2 * count + 1);
+    bool room = list_groups(m, group, &r) && make_room(m, 2 * count + 1);
     tl_status status = room ? TL_OK : tl_fail_memory(&m->error);
     for (size_t g = 0; g < r.groups && status == TL_OK; g++) {
         if (stays(m, &r, g))
@@ -350,8 +360,7 @@ static tl_status check_parts(tl_model *m, const tl_id *ids, size_t count, const 
         if (row == TL_NO_ROW)
             return m->error.status;
         uint32_t body = m->blocks.body[row];
-        bool loaded = tl_v3_norm2(m->bodies.load_force[body]) > 0 ||
-                      tl_v3_norm2(m->bodies.load_moment[body]) > 0;
+        bool loaded = tl_body_loaded(&m->bodies, body);
         if (m->bodies.drive[body] || loaded)
             status =
                 tl_fail(&m->error, TL_E_STATE,

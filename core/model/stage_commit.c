@@ -29,7 +29,7 @@ static source source_of(const tl_model *m, uint32_t row)
 {
     const tl_bodies *b = &m->bodies;
     uint32_t body = m->blocks.body[row];
-    return (source){.base = m->blocks.base[row],
+    return (source){.base = m->blocks.base ? m->blocks.base[row] : tl_v3(0, 0, 0),
                     .x_ref = b->x_ref[body],
                     .u = b->u[body],
                     .v = b->v[body],
@@ -68,7 +68,8 @@ static void put(tl_model *m, const tl_stage_block *block, const source *from, ui
         return;
     }
     tl_vec3 arm = tl_m3_mul(&from->r, c);
-    blocks->base[row] = from->base;
+    if (blocks->base)
+        blocks->base[row] = from->base;
     bodies->x_ref[body] = tl_v3_add(from->x_ref, c);
     bodies->u[body] = tl_v3_add(from->u, tl_v3_sub(arm, c));
     bodies->q[body] = from->q;
