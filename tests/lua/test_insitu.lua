@@ -28,6 +28,27 @@ for _, law in ipairs { "elastic", "coulomb" } do
     check.near(model:energy().balance, 0, 1e-9)
 end
 
+-- Rock in equilibrium with its stress stays in it, also where two joints meet: over the edge of a wedge the blocks
+-- above and below it face each other, but the stress goes through the wedge.
+local rock = talus.model { gravity = { 0, 0, -10 } }
+rock:generate("box", { min = { 0, 0, 0 }, max = { 4, 4, 4 }, density = 2000 })
+rock:generate("joint", { joint = "flat", dip = 0, dip_direction = 0, origin = { 2, 2, 2 } })
+rock:generate("joint", { joint = "tilted", dip = 2, dip_direction = 90, origin = { 2, 2, 2 } })
+check.equal(#rock:blocks(), 4)
+for axis = 1, 3 do
+    for _, low in ipairs { -1, 4 } do
+        local min, max = { 0, 0, 0 }, { 4, 4, 4 }
+        min[axis], max[axis] = low, low + 1
+        rock:generate("box", { min = min, max = max, density = 2000, group = "plate" })
+    end
+end
+rock:blocks { group = "plate" }:fix()
+rock:joint("*", "coulomb", { kn = 1e9, ks = 1e9, friction = 60 })
+local gradient = 2000 * 10
+rock:insitu { at = { 0, 0, 4 }, stress = { xx = -1e5, yy = -1e5, zz = -1e5 },
+    gradient = { xx = gradient, yy = gradient, zz = gradient } }
+check.near(rock:cycle(1).ratio, 0, 1e-12)
+
 -- A block that spins up under an unbalanced moment is not in equilibrium, whatever its forces are.
 local model = talus.model { gravity = { 0, 0, -10 } }
 model:generate("box", { min = { -2, -2, -1 }, max = { 2, 2, 0 }, density = 2000, group = "base" })
