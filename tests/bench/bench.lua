@@ -14,7 +14,7 @@ bench.PHASES = { "detect", "timestep", "laws", "gather", "damping", "move", "ene
 local LEAST = 0.2
 
 local COLUMNS = { "workload", "size", "blocks", "contacts", "face_contacts", "threads", "reuse",
-    "rate", "unit", "block_steps_per_s" }
+    "rate", "unit", "block_steps_per_s", "ratio" }
 for _, phase in ipairs(bench.PHASES) do
     COLUMNS[#COLUMNS + 1] = phase .. "_ns" -- a contact update
 end
@@ -80,11 +80,11 @@ local function median(numbers)
     return (numbers[(n + 1) // 2] + numbers[n // 2 + 1]) / 2
 end
 
--- Seconds that `steps` steps take, and the same by the clock.
+-- Seconds that `steps` steps take, and the same by the clock; the unbalanced force ratio after them.
 local function time(model, steps)
     local began = os.clock()
     local run = model:cycle(steps)
-    return model.threads == 1 and os.clock() - began or run.wall, run.wall
+    return model.threads == 1 and os.clock() - began or run.wall, run.wall, run.ratio
 end
 
 -- Measures a model that is ready, and prints a row: `name` has its workload, size and reuse;
@@ -93,10 +93,11 @@ function bench.measure(model, name, options)
     model.reuse_geometry = name.reuse == "on"
     local warm = time(model, options.warm or 5) / (options.warm or 5)
     local steps = options.steps or math.max(1, math.ceil(LEAST / warm))
-    local seconds, phases = {}, {}
+    local seconds, phases, ratio = {}, {}, nil
     for i = 1, options.reps do
         model:profile(true)
-        local taken, wall = time(model, steps)
+        local taken, wall
+        taken, wall, ratio = time(model, steps)
         seconds[i] = taken / steps
         local cost = model:profile()
         for _, phase in ipairs(bench.PHASES) do
@@ -110,7 +111,8 @@ function bench.measure(model, name, options)
     local row = { workload = name.workload, size = name.size, blocks = blocks,
         contacts = cost.loaded, face_contacts = name.face_contacts, threads = model.threads,
         reuse = name.reuse,
-        rate = cost.loaded / step, unit = "contacts/s", block_steps_per_s = blocks / step }
+        rate = cost.loaded / step, unit = "contacts/s", block_steps_per_s = blocks / step,
+        ratio = ratio }
     for _, part in ipairs(MEMORY) do
         row[part .. "_bytes"] = bytes[part] / blocks
     end
