@@ -42,9 +42,9 @@ static bool faces_meet(const tl_model *m, uint32_t c, const tl_facet *f)
     double size = fmin(m->blocks.size[contacts->a[c]], m->blocks.size[contacts->b[c]]);
     double area = 0, apart = 0;
     for (size_t i = f->begin; i < f->begin + (size_t)f->count; i++) {
-        size_t point = contacts->point_start[c] + i;
+        size_t point = tl_point_row(contacts, c, i);
         area += p->area[point];
-        apart -= p->area[point] * (p->closure[point] + p->reference[point]);
+        apart -= p->area[point] * (m->detect->lanes[0].closure[i] + p->reference[point]);
     }
     return apart <= TL_CONTACT_TOLERANCE * size * area;
 }
