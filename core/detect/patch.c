@@ -13,144 +13,16 @@
  * work along a smooth tilted face. Areas are those on the faces, not in the bisecting plane, so
  * that the area of a face that lies wholly on another does not change as it tilts.
  *
- * Corners with a turning angle below STRAIGHT are left out. Between STRAIGHT and CORNER the points are
+ * Corners with a turning angle below TL_STRAIGHT are left out. Between TL_STRAIGHT and TL_CORNER the points are
  * a mixture of those with and without the corner, so that a corner that comes or goes while blocks
  * wobble does not change the force. */
-#include "detect/detect.h"
-
-#include "base/random.h"
+#include "detect/patch.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-/* Turning angles, rad, below which a corner is none, and from which it is a full one. */
-#define STRAIGHT 1e-4
-#define CORNER 2e-3
-/* Corners nearer to each other than this times the size are one, and corners nearer to a line that clips lie on
- * it: far below any length that matters, far above rounding. Edges along each other would otherwise cross
- * here and there, and points come and go. */
-#define MERGE 1e-7
-/* A polygon thinner than this times the size has no area worth a point: faces that only touch along an
- * edge. */
-#define THIN 1e-9
 /* Longest run of blended corners that is mixed; longer runs belong to round outlines. */
 #define BLEND_RUN 3
-
-typedef struct point2 {
-    double x, y;
-} point2;
-
-typedef struct corner {
-    point2 at;
-    uint32_t key;  /* of the features that made it */
-    uint32_t edge; /* source of the edge that leaves it */
-    tl_lean lean;  /* of its gap's normal */
-    double height; /* over the line that cuts */
-    double share;  /* of the corner in the mixture: 0 .. 1 */
-    double fan;    /* area of the fan triangle of the edge that leaves it */
-} corner;
-
-/* Room for one clipping. */
-struct tl_polygon {
-    corner *now, *next;
-    point2 *clip;
-    size_t room, clip_room;
-    double snap2; /* square of the distance up to which a corner lies on a line */
-    /* unit, in the patch's plane: across the line where the faces' planes meet, up A's */
-    point2 rise;
-};
-
-/* Edges of A's face are 0, 1, ..., those of B's face EDGE_B, EDGE_B + 1, ... */
-enum { EDGE_B = 1 << 16 };
-/* What a point is; with the features that made it, this gives its key. */
-enum { POINT_A, POINT_B, POINT_CROSSING, POINT_MIDDLE, POINT_CENTROID };
-
-/* Different features of one contact have different keys: vertices the numbers of A, then those of B ... */
-static uint32_t vertex_key(uint32_t kind, uint32_t vertex)
-{
-    return kind == POINT_A ? vertex : vertex | 1u << 16;
-}
-
-/* ... and what two features make a mixture of theirs: a multiplication or two must do, for every point has a
- * key in every step. */
-static uint32_t key_of(uint32_t kind, uint32_t one, uint32_t other)
-{
-    uint64_t x = (kind + UINT64_C(0x9e3779b97f4a7c15) * one) ^ UINT64_C(0xd6e8feb86659fd93) * other;
-    return (uint32_t)((x ^ x >> 32) * UINT64_C(0xd6e8feb86659fd93) >> 32);
-}
-
-void tl_polygon_free(struct tl_polygon *polygon, tl_patch_points *points)
-{
-    free(points->p[0]);
-    if (!polygon)
-        return;
-    free(polygon->now);
-    free(polygon->next);
-    free(polygon->clip);
-    free(polygon);
-}
-
-static struct tl_polygon *polygon_room(tl_narrow *room, size_t corners, size_t clip)
-{
-    if (!room->polygon && !(room->polygon = calloc(1, sizeof *room->polygon)))
-        return NULL;
-    struct tl_polygon *p = room->polygon;
-    if (corners > p->room) {
-        free(p->now);
-        free(p->next);
-        p->now = malloc(2 * corners * sizeof *p->now);
-        p->next = malloc(2 * corners * sizeof *p->next);
-        p->room = p->now && p->next ? 2 * corners : 0;
-    }
-    if (clip > p->clip_room) {
-        free(p->clip);
-        p->clip = malloc(2 * clip * sizeof *p->clip);
-        p->clip_room = p->clip ? 2 * clip : 0;
-    }
-    return corners <= p->room && clip <= p->clip_room ? p : NULL;
-}
-
-/* The plane of the patch: origin, two directions in it, its normal (A to B). */
-typedef struct frame2 {
-    tl_vec3 o, t1, t2, n;
-} frame2;
-
-static point2 project(const frame2 *f, tl_vec3 x)
-{
-    tl_vec3 d = tl_v3_sub(x, f->o);
-    return (point2){tl_v3_dot(d, f->t1), tl_v3_dot(d, f->t2)};
-}
-
-static double cross2(point2 o, point2 a, point2 b)
-{
-    return (a.x - o.x) * (b.y - o.y) - (a.y - o.y) * (b.x - o.x);
-}
-
-/* Square of the distance. */
-static double distance2(point2 a, point2 b)
-{
-    double x = a.x - b.x, y = a.y - b.y;
-    return x * x + y * y;
-}
-
-static point2 from_to(point2 a, point2 b)
-{
-    return (point2){b.x - a.x, b.y - a.y};
-}
-
-/* How the normal of two crossing edges, a of A's face and b of B's, leans. With both measured from the line in
- * which the faces' planes meet, by angles alpha and beta, it is along M - L sin(alpha + beta)/d - M x L 2 sin alpha
- * sin beta/d, with d = sin(beta - alpha); see tl_lean. Bounded, for edges nearly along each other have no normal. */
-static tl_lean lean_of(point2 a, point2 b, point2 rise)
-{
-    double a_along = a.x * rise.y - a.y * rise.x, a_up = a.x * rise.x + a.y * rise.y;
-    double b_along = b.x * rise.y - b.y * rise.x, b_up = b.x * rise.x + b.y * rise.y;
-    double d = a_along * b_up - a_up * b_along;
-    double face = -(a_along * b_up + a_up * b_along), edge = -2 * a_up * b_up;
-    double most = fmax(fabs(d), fmax(fabs(face), 0.5 * fabs(edge)));
-    d = d < 0 ? -most : most;
-    return most > 0 ? (tl_lean){(float)(face / d), (float)(edge / d)} : (tl_lean){0, 0};
-}
 
 /* Of a mean of corners. */
 static tl_lean between(tl_lean a, tl_lean b)
@@ -158,88 +30,18 @@ static tl_lean between(tl_lean a, tl_lean b)
     return (tl_lean){0.5f * (a.face + b.face), 0.5f * (a.edge + b.edge)};
 }
 
-/* What the corner is where edges `one` and `other` meet at `cut`. A meeting of two neighbouring edges
- * of B is B's own vertex. */
-static corner meet(uint32_t one, uint32_t other, point2 cut, const point2 *clip, uint32_t count)
-{
-    corner c = {.at = cut, .edge = other, .lean = {1, 0}};
-    if (one >= EDGE_B && other >= EDGE_B) {
-        uint32_t i = one - EDGE_B, j = other - EDGE_B;
-        if ((i + 1) % count == j || (j + 1) % count == i) {
-            uint32_t v = (i + 1) % count == j ? j : i;
-            c.at = clip[v];
-            c.key = vertex_key(POINT_B, v);
-            return c;
-        }
-    }
-    c.key = one < other ? key_of(POINT_CROSSING, one, other) : key_of(POINT_CROSSING, other, one);
-    return c;
-}
-
-/* Keeps what lies left of the line from clip[j] to clip[j + 1]; returns the number of corners. */
-static size_t clip_by(struct tl_polygon *p, size_t count, uint32_t j, uint32_t clip_count)
-{
-    point2 o = p->clip[j], q = p->clip[j + 1 == clip_count ? 0 : j + 1];
-    double low = 0, on2 = p->snap2 * distance2(o, q);
-    for (size_t i = 0; i < count; i++) {
-        double h = cross2(o, q, p->now[i].at);
-        p->now[i].height = h * h > on2 ? h : 0;
-        low = p->now[i].height < low ? p->now[i].height : low;
-    }
-    if (low == 0)
-        return count; /* all of it: most lines cut nothing */
-    size_t kept = 0;
-    for (size_t i = 0; i < count; i++) {
-        const corner *here = &p->now[i], *after = &p->now[i + 1 == count ? 0 : i + 1];
-        double h = here->height, a = after->height;
-        if (h >= 0)
-            p->next[kept++] = *here;
-        if ((h > 0 && a < 0) || (h < 0 && a > 0) || (h == 0 && a < 0)) {
-            double t = h / (h - a);
-            point2 cut = {here->at.x + t * (after->at.x - here->at.x),
-                          here->at.y + t * (after->at.y - here->at.y)};
-            corner c = meet(here->edge, EDGE_B + j, cut, p->clip, clip_count);
-            if (h == 0) { /* the line passes through the corner: it only changes its edge */
-                p->next[kept - 1].edge = EDGE_B + j;
-                continue;
-            }
-            if (here->edge < EDGE_B)
-                c.lean = lean_of(from_to(here->at, after->at), from_to(o, q), p->rise);
-            c.edge = h > 0 ? EDGE_B + j : here->edge;
-            p->next[kept++] = c;
-        }
-    }
-    corner *swap = p->now;
-    p->now = p->next;
-    p->next = swap;
-    return kept;
-}
-
-static size_t merge_near(struct tl_polygon *p, size_t count, double near)
-{
-    size_t kept = 0;
-    for (size_t i = 0; i < count; i++)
-        if (kept == 0 || distance2(p->now[i].at, p->now[kept - 1].at) > near * near)
-            p->now[kept++] = p->now[i];
-        else
-            p->now[kept - 1].edge = p->now[i].edge;
-    while (kept > 1 && distance2(p->now[kept - 1].at, p->now[0].at) <= near * near)
-        kept--;
-    return kept;
-}
-
 /* Area and area centroid, taken about a corner. */
-static double area_of(const corner *c, size_t count, point2 *centroid)
+static double area_of(const tl_corner *c, size_t count, tl_point2 *centroid)
 {
     double area = 0, x = 0, y = 0;
     for (size_t i = 1; i + 1 < count; i++) {
-        double a = 0.5 * cross2(c[0].at, c[i].at, c[i + 1].at);
+        double a = 0.5 * tl_cross2(c[0].at, c[i].at, c[i + 1].at);
         area += a;
-        x += a * ((c[i].at.x - c[0].at.x) + (c[i + 1].at.x - c[0].at.x)) / 3;
-        y += a * ((c[i].at.y - c[0].at.y) + (c[i + 1].at.y - c[0].at.y)) / 3;
+        x += a * ((c[i].at.x - c[0].at.x) + (c[i + 1].at.x - c[0].at.x));
+        y += a * ((c[i].at.y - c[0].at.y) + (c[i + 1].at.y - c[0].at.y));
     }
-    if (area > 0)
-        *centroid = (point2){c[0].at.x + x / area, c[0].at.y + y / area};
+    double share = area > 0 ? 1 / (3 * area) : 0;
+    *centroid = (tl_point2){c[0].at.x + x * share, c[0].at.y + y * share};
     return area;
 }
 
@@ -249,29 +51,29 @@ static double smooth(double x)
 }
 
 /* Share of a corner by its turning angle. */
-static double corner_share(point2 before, point2 here, point2 after)
+static double corner_share(tl_point2 before, tl_point2 here, tl_point2 after)
 {
-    double uv = distance2(before, here) * distance2(here, after), s = cross2(before, here, after);
-    double ahead =
-        (here.x - before.x) * (after.x - here.x) + (here.y - before.y) * (after.y - here.y);
+    tl_point2 u = tl_from_to(before, here), v = tl_from_to(here, after);
+    double uv = (u.x * u.x + u.y * u.y) * (v.x * v.x + v.y * v.y);
+    double s = u.x * v.y - u.y * v.x, ahead = u.x * v.x + u.y * v.y;
     if (s > 0 &&
-        (ahead <= 0 || s * s >= CORNER * CORNER * uv)) /* the sine is less than the angle */
+        (ahead <= 0 || s * s >= TL_CORNER * TL_CORNER * uv)) /* the sine is less than the angle */
         return 1;
     double turn = asin(fmin(1, fmax(-1, s / sqrt(uv))));
     turn = ahead < 0 ? TL_PI - turn : turn;
-    return smooth((turn - STRAIGHT) / (CORNER - STRAIGHT));
+    return smooth((turn - TL_STRAIGHT) / (TL_CORNER - TL_STRAIGHT));
 }
 
 /* Gives each corner its share by its turning angle and each edge its fan area; drops corners of share
  * 0, whose fan area goes to the edge before. Returns the number of corners, and whether all are full. */
-static size_t weigh_corners(corner *c, size_t count, point2 centroid, bool *full)
+static size_t weigh_corners(tl_corner *c, size_t count, tl_point2 centroid, bool *full)
 {
     size_t blended = 0, solid = 0, kept = 0;
     for (size_t i = 0; i < count; i++) {
-        point2 before = c[i ? i - 1 : count - 1].at, here = c[i].at;
-        point2 after = c[i + 1 == count ? 0 : i + 1].at;
+        tl_point2 before = c[i ? i - 1 : count - 1].at, here = c[i].at;
+        tl_point2 after = c[i + 1 == count ? 0 : i + 1].at;
         c[i].share = corner_share(before, here, after);
-        double fan = 0.5 * cross2(centroid, here, after);
+        double fan = 0.5 * tl_cross2(centroid, here, after);
         c[i].fan = fan > 0 ? fan : 0;
         blended += c[i].share < 1;
         solid += c[i].share >= 1;
@@ -287,7 +89,7 @@ static size_t weigh_corners(corner *c, size_t count, point2 centroid, bool *full
         first++;
     if (first) { /* begin at a full corner, so that what is dropped has one before it */
         for (size_t turns = 0; turns < first; turns++) {
-            corner head = c[0];
+            tl_corner head = c[0];
             memmove(c, c + 1, (count - 1) * sizeof *c);
             c[count - 1] = head;
         }
@@ -302,26 +104,25 @@ static size_t weigh_corners(corner *c, size_t count, point2 centroid, bool *full
 
 /* Everything a point needs to become one. */
 typedef struct patch {
-    frame2 frame;
-    tl_plane a, b;               /* in A's frame */
-    double rest, rest_x, rest_y; /* distance from A's face over the plane of the patch */
-    double weight;               /* from area in the plane of the patch to area of the points */
+    tl_frame2 frame;
+    tl_plane a, b; /* in A's frame */
+    double weight; /* from area in the plane of the patch to area of the points */
     double corner,
         middle;     /* of the fan triangle of an edge: the share of each end, of its middle */
+    double near;    /* corners nearer to each other are one */
+    double least;   /* area from which on there is a patch */
+    double reach;   /* gap beyond which there is none */
     uint32_t faces; /* key of the two faces */
     tl_patch_points *out;
 } patch;
 
 /* Adds a point for which there is room; without area it would carry nothing, and have no stress. */
-static inline void add_point(const patch *p, point2 at, tl_lean lean, double area, uint32_t key)
+static void add_point(const patch *p, tl_point2 at, tl_lean lean, double area, uint32_t key)
 {
-    const frame2 *f = &p->frame;
     tl_patch_points *out = p->out;
     size_t i = out->count;
-    out->p[0][i] = f->o.x + at.x * f->t1.x + at.y * f->t2.x;
-    out->p[1][i] = f->o.y + at.x * f->t1.y + at.y * f->t2.y;
-    out->p[2][i] = f->o.z + at.x * f->t1.z + at.y * f->t2.z;
-    out->rest[i] = p->rest + at.x * p->rest_x + at.y * p->rest_y;
+    tl_columns_put(out->p, i, tl_frame2_point(&p->frame, at));
+    out->rest[i] = tl_frame2_rest(&p->frame, at);
     out->lean[i] = lean;
     out->area[i] = p->weight * area;
     out->key[i] = p->faces ^ key;
@@ -329,13 +130,13 @@ static inline void add_point(const patch *p, point2 at, tl_lean lean, double are
 }
 
 /* Adds middles and corners when all corners are full. */
-static void add_full_edges(const patch *p, const corner *c, size_t count)
+static void add_full_edges(const patch *p, const tl_corner *c, size_t count)
 {
     for (size_t i = 0; i < count && p->middle > 0; i++) {
-        const corner *next = &c[i + 1 == count ? 0 : i + 1];
-        point2 middle = {0.5 * (c[i].at.x + next->at.x), 0.5 * (c[i].at.y + next->at.y)};
+        const tl_corner *next = &c[i + 1 == count ? 0 : i + 1];
+        tl_point2 middle = {0.5 * (c[i].at.x + next->at.x), 0.5 * (c[i].at.y + next->at.y)};
         add_point(p, middle, between(c[i].lean, next->lean), p->middle * c[i].fan,
-                  key_of(POINT_MIDDLE, c[i].key, next->key));
+                  tl_key_of(TL_POINT_MIDDLE, c[i].key, next->key));
     }
     for (size_t i = 0; i < count; i++) {
         double fans = c[i ? i - 1 : count - 1].fan + c[i].fan;
@@ -345,7 +146,7 @@ static void add_full_edges(const patch *p, const corner *c, size_t count)
 
 /* The same with a mixture: for every two corners that may follow each other in the mixture, the rule
  * of their edge, times the chance that they do. */
-static void add_edges(const patch *p, corner *c, size_t count, double *corner_area)
+static void add_edges(const patch *p, tl_corner *c, size_t count, double *corner_area)
 {
     memset(corner_area, 0, count * sizeof *corner_area);
     for (size_t i = 0; i < count; i++) {
@@ -356,9 +157,9 @@ static void add_edges(const patch *p, corner *c, size_t count, double *corner_ar
             double share = step > BLEND_RUN ? 1 : c[j].share;
             double area = chance * share * fan;
             if (area > 0) {
-                point2 middle = {0.5 * (c[i].at.x + c[j].at.x), 0.5 * (c[i].at.y + c[j].at.y)};
+                tl_point2 middle = {0.5 * (c[i].at.x + c[j].at.x), 0.5 * (c[i].at.y + c[j].at.y)};
                 add_point(p, middle, between(c[i].lean, c[j].lean), p->middle * area,
-                          key_of(POINT_MIDDLE, c[i].key, c[j].key));
+                          tl_key_of(TL_POINT_MIDDLE, c[i].key, c[j].key));
                 corner_area[i] += p->corner * area;
                 corner_area[j] += p->corner * area;
             }
@@ -369,51 +170,18 @@ static void add_edges(const patch *p, corner *c, size_t count, double *corner_ar
         add_point(p, c[i].at, c[i].lean, corner_area[i], c[i].key);
 }
 
-/* Loads both outlines, counter-clockwise seen against the patch normal, and clips. */
-static size_t clip_faces(const tl_pair_view *view, uint32_t fa, uint32_t fb, const frame2 *frame,
+/* Projects both outlines, counter-clockwise seen against the patch normal, and clips. */
+static size_t clip_faces(const tl_pair_view *view, uint32_t fa, uint32_t fb, const patch *one,
                          struct tl_polygon *p)
 {
     const tl_poly *a = view->a, *b = view->b;
     uint32_t na = tl_poly_face_size(a, fa), nb = tl_poly_face_size(b, fb);
-    for (uint32_t i = 0; i < na; i++) {
-        uint16_t v = a->loop[a->start[fa] + i];
-        p->now[i] = (corner){.at = project(frame, a->vertex[v]),
-                             .key = vertex_key(POINT_A, v),
-                             .edge = i,
-                             .lean = {-1, 0}};
-    }
+    for (uint32_t i = 0; i < na; i++)
+        p->face[i] = tl_frame2_project(&one->frame, a->vertex[a->loop[a->start[fa] + i]]);
     for (uint32_t i = 0; i < nb; i++)
-        p->clip[i] = project(frame, view->vertex_b[b->loop[b->start[fb] + nb - 1 - i]]);
-    size_t count = na;
-    for (uint32_t j = 0; j < nb && count; j++)
-        count = clip_by(p, count, j, nb);
-    return count;
-}
-
-/* The plane of the patch, through a point of A's face. */
-static void lay_frame(patch *p, tl_vec3 through)
-{
-    frame2 *f = &p->frame;
-    f->n = tl_v3_unit(tl_v3_sub(p->a.normal, p->b.normal));
-    f->o = through;
-    f->t1 = tl_v3_perpendicular(f->n);
-    f->t2 = tl_v3_cross(f->n, f->t1);
-}
-
-/* Moves the plane of the patch into the middle between the two faces at the centroid, and notes how far A's
- * face is from it; returns the cosine of its tilt against either. */
-static double move_between(patch *p, point2 centroid)
-{
-    frame2 *f = &p->frame;
-    tl_vec3 x = tl_v3_madd(tl_v3_madd(f->o, centroid.x, f->t1), centroid.y, f->t2);
-    double up = tl_v3_dot(p->b.normal, x) - p->b.offset;
-    double down = tl_v3_dot(p->a.normal, x) - p->a.offset;
-    double slope = tl_v3_dot(f->n, p->a.normal);
-    f->o = tl_v3_madd(f->o, 0.5 * (up - down) / slope, f->n);
-    p->rest = tl_v3_dot(p->a.normal, f->o) - p->a.offset;
-    p->rest_x = tl_v3_dot(p->a.normal, f->t1);
-    p->rest_y = tl_v3_dot(p->a.normal, f->t2);
-    return slope;
+        p->clip[i] =
+            tl_frame2_project(&one->frame, view->vertex_b[b->loop[b->start[fb] + nb - 1 - i]]);
+    return tl_polygon_clip(p, na, nb, one->near, one->frame.rise);
 }
 
 /* Makes room for `count` points. */
@@ -438,28 +206,22 @@ static bool reserve(tl_patch_points *out, size_t count)
     return true;
 }
 
-/* Smallest gap: of a polygon, at a corner. */
-static double nearest_gap(const patch *p, const corner *c, size_t count)
+/* Whether every gap is beyond reach. The smallest is at a corner, and no larger than the centroid's. */
+static bool out_of_reach(const patch *p, const tl_corner *c, size_t count, tl_point2 centroid)
 {
-    const frame2 *f = &p->frame;
-    double g = p->rest + tl_v3_dot(p->b.normal, f->o) - p->b.offset, nearest = INFINITY;
-    double x = p->rest_x + tl_v3_dot(p->b.normal, f->t1);
-    double y = p->rest_y + tl_v3_dot(p->b.normal, f->t2);
+    tl_patch_gap gap = tl_patch_gap_of(&p->frame, p->b);
+    if (tl_gap_at(gap, centroid) <= p->reach)
+        return false;
+    double nearest = INFINITY;
     for (size_t i = 0; i < count; i++) {
-        double gap = g + c[i].at.x * x + c[i].at.y * y;
-        nearest = gap < nearest ? gap : nearest;
+        double g = tl_gap_at(gap, c[i].at);
+        nearest = g < nearest ? g : nearest;
     }
-    return nearest;
-}
-
-static point2 rise_of(const frame2 *f, tl_vec3 na, tl_vec3 nb)
-{
-    tl_vec3 up = tl_v3_unit(tl_v3_add(na, nb));
-    return (point2){tl_v3_dot(up, f->t1), tl_v3_dot(up, f->t2)};
+    return nearest > p->reach;
 }
 
 /* Of the centroid, which is a mean of the corners by their fan triangles. */
-static tl_lean mean_lean(const corner *c, size_t count)
+static tl_lean mean_lean(const tl_corner *c, size_t count)
 {
     double face = 0, edge = 0, area = 0;
     for (size_t i = 0; i < count; i++) {
@@ -475,33 +237,31 @@ double tl_patch_lay(const tl_pair_view *view, uint32_t fa, uint32_t fb, double w
                     const tl_share_rule *rule, tl_narrow *room)
 {
     const tl_poly *a = view->a, *b = view->b;
-    /* each clip adds a corner, or two where rounding makes it cross a straight run of corners twice */
-    size_t most = (size_t)tl_poly_face_size(a, fa) + 2 * (size_t)tl_poly_face_size(b, fb) + 4;
-    struct tl_polygon *p = polygon_room(room, most, tl_poly_face_size(b, fb));
+    patch one = {.corner = tl_corner_weight(rule->corners),
+                 .middle = tl_middle_weight(rule->corners),
+                 .near = TL_MERGE * view->size,
+                 .least = TL_THIN * fmax(a->size, b->size) * view->size,
+                 .reach = rule->reach,
+                 .faces = tl_key_of(0, fa, fb),
+                 .out = &room->patch,
+                 .a = a->plane[fa],
+                 .b = tl_plane_placed(&view->turn, view->shift, b->plane[fb])};
+    one.frame = tl_frame2_of(one.a.normal, one.b.normal, a->vertex[a->loop[a->start[fa]]]);
+    one.weight = weight * one.frame.secant;
+    struct tl_polygon *p =
+        tl_polygon_room(room, tl_poly_face_size(a, fa), tl_poly_face_size(b, fb));
     room->patch.count = 0;
     if (!p) {
         room->manifold.failed = true;
         return 0;
     }
-    patch one = {.corner = rule->corners ? 0.5 : 1. / 12,
-                 .middle = rule->corners ? 0 : 1. / 3,
-                 .faces = key_of(0, fa, fb),
-                 .out = &room->patch,
-                 .a = a->plane[fa]};
-    one.b.normal = view->normal_b[fb];
-    one.b.offset = b->plane[fb].offset + tl_v3_dot(one.b.normal, view->shift);
-    lay_frame(&one, a->vertex[a->loop[a->start[fa]]]);
-    p->snap2 = MERGE * MERGE * view->size * view->size;
-    p->rise = rise_of(&one.frame, one.a.normal, one.b.normal);
-
-    double size = fmax(a->size, b->size);
-    size_t count = merge_near(p, clip_faces(view, fa, fb, &one.frame, p), MERGE * view->size);
-    point2 centroid = {0, 0};
+    size_t count = clip_faces(view, fa, fb, &one, p);
+    tl_point2 centroid = {0, 0};
     double area = count >= 3 ? area_of(p->now, count, &centroid) : 0;
-    if (!(area > THIN * size * view->size))
+    if (!(area > one.least))
         return 0;
-    one.weight = weight / move_between(&one, centroid);
-    if (nearest_gap(&one, p->now, count) > rule->reach)
+    tl_frame2_move(&one.frame, one.a, one.b, centroid);
+    if (out_of_reach(&one, p->now, count, centroid))
         return 0;
     bool full;
     count = weigh_corners(p->now, count, centroid, &full);
@@ -515,7 +275,7 @@ double tl_patch_lay(const tl_pair_view *view, uint32_t fa, uint32_t fb, double w
     else /* the clipping is over: its room is free */
         add_edges(&one, p->now, count, (double *)(void *)p->next);
     add_point(&one, centroid, mean_lean(p->now, count), (1 - 2 * one.corner - one.middle) * area,
-              key_of(POINT_CENTROID, 0, 0));
+              tl_key_of(TL_POINT_CENTROID, 0, 0));
     return one.weight * area;
 }
 
