@@ -4,7 +4,7 @@
  * have left its skin; pairs without a contact are looked at when they may have come near; contacts are
  * followed, or made anew when they moved more than a margin; births, deaths and growth are then settled
  * serially in the order of pairs. How far anything can have moved is told by the bodies' odometers. */
-#include "detect/detect.h"
+#include "detect/update.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -14,7 +14,8 @@
 #define DEEP 1e-2
 
 /* Rows a worker takes at a time. */
-#define CONTACT_CHUNK 64
+#define CONTACT_CHUNK 256
+#define RANK_CHUNK 8
 
 static void narrow_free(tl_narrow *n)
 {
@@ -138,12 +139,39 @@ static void find_materials(tl_model *m)
 
 /* ---------------------------------------------------------------- phases ----------------- */
 
-static void update_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
+/* Ranks of a run. */
+typedef struct update_job {
+    tl_model *m;
+    const tl_rank *ranks;
+} update_job;
+
+static void update_ranks(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
+{
+    (void)chunk;
+    const update_job *job = user;
+    for (size_t r = begin; r < end; r++)
+        tl_rank_update(job->m, &job->ranks[r], thread);
+}
+
+/* Contacts without points are in no rank. */
+static void update_others(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
 {
     (void)chunk;
     tl_model *m = user;
-    for (size_t c = begin; c < end; c++)
-        tl_contact_update(m, (uint32_t)c, thread);
+    for (uint32_t c = (uint32_t)begin; c < end; c++)
+        if (m->detect->contacts.point_room[c] == 0 && !tl_contact_stands(m, c))
+            tl_contact_update(m, c, thread);
+}
+
+static void update_contacts(tl_model *m)
+{
+    const tl_layout *layout = &m->detect->layout;
+    for (size_t k = 0; k < layout->run_count; k++) {
+        const tl_run *run = &layout->runs[k];
+        update_job job = {m, layout->ranks + run->rank_begin};
+        tl_parallel_for(m->pool, run->rank_end - run->rank_begin, RANK_CHUNK, update_ranks, &job);
+    }
+    tl_parallel_for(m->pool, m->detect->contacts.table.rows, CONTACT_CHUNK, update_others, m);
 }
 
 /* Bodies that were joined or parted have other frames than before: what contacts keep in them is made
@@ -351,7 +379,7 @@ tl_status tl_detect_update(tl_model *m)
     tl_status status = find_contacts(m);
     if (status != TL_OK)
         return status;
-    tl_parallel_for(m->pool, m->detect->contacts.table.rows, CONTACT_CHUNK, update_range, m);
+    update_contacts(m);
     if (!tl_fit(&m->detect->moving, &m->detect->moving_room, m->bodies.table.rows,
                 sizeof *m->detect->moving))
         return tl_fail_memory(&m->error);

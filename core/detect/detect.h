@@ -25,6 +25,9 @@
  * normal: a share of the force that no result shows. */
 #define TL_FLUSH 1e-5
 
+/* Square of the sine of the tilt of two faces up to which they are flush: of FLUSH_NONE in manifold.c. */
+#define TL_FLUSH_TILT2 7.6152421804e-5
+
 /* When a pair becomes a contact, and when a contact ends, relative to the smaller block's size. */
 #define TL_CONTACT_TOLERANCE 1e-3
 #define TL_CONTACT_RELEASE 1.5
@@ -122,7 +125,7 @@ typedef struct tl_manifold {
 
 /* The contact points of one patch, as columns: see tl_contact_point. */
 typedef struct tl_patch_points {
-    double *p[3], *rest, *area;
+    double *p[3], *area;
     tl_lean *lean;
     uint32_t *key;
     size_t count, room;
@@ -432,12 +435,15 @@ tl_vec3 tl_facet_last_normal(const tl_facet *facet, tl_lean lean);
  * their points. */
 tl_share_rule tl_share_rule_of(const tl_model *m, const tl_pair_view *view, tl_tag tag,
                                bool across);
-/* Brings a contact's facets up to the present place, if they are stale; its fate tells what is left to do. */
-void tl_contact_update(tl_model *m, uint32_t contact, unsigned thread);
 /* The same for a contact of bodies that have other frames than when its facets were made. */
 void tl_contact_reframe(tl_model *m, uint32_t contact, unsigned thread);
 /* Builds the facets of a contact that has just been given its room; false when out of memory. */
 bool tl_contact_fill(tl_model *m, uint32_t contact);
+
+/* ---- renew.c ---- */
+/* Brings the facets of the contacts of a rank up to the present place, if they are stale; their fates tell what is left
+ * to do. */
+void tl_rank_update(tl_model *m, const tl_rank *rank, unsigned thread);
 
 /* ---- transfer.c ---- */
 /* Puts the manifold's points in the place of the contact's, carrying over state so that total force

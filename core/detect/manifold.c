@@ -495,10 +495,9 @@ void tl_manifold_build(const tl_pair_view *view, const tl_axis *axis, const tl_s
 bool tl_manifold_renew(const tl_pair_view *view, uint32_t fa, uint32_t fb,
                        const tl_share_rule *rule, tl_narrow *room)
 {
-    static const double flush2 = 7.6152421804e-5; /* square of sin(FLUSH_NONE) */
     tl_manifold *m = &room->manifold;
     double sine2 = tl_v3_norm2(tl_v3_cross(view->a->plane[fa].normal, view->normal_b[fb]));
-    if (rule->unconditional || sine2 > flush2)
+    if (rule->unconditional || sine2 > TL_FLUSH_TILT2)
         return false;
     m->failed = false;
     return tl_patch_lay(view, fa, fb, 1, rule, room) > 0;

@@ -7,7 +7,7 @@ static size_t narrow_bytes(const tl_narrow *n)
     return sizeof *n + n->vertex_room * sizeof *n->vertex_b + n->normal_room * sizeof *n->normal_b +
            n->dot_room * sizeof *n->dots + n->manifold.facet_room * sizeof *n->manifold.facets +
            n->manifold.point_room * sizeof *n->manifold.points +
-           n->patch.room * (5 * sizeof(double) + sizeof(tl_lean) + sizeof(uint32_t));
+           n->patch.room * (4 * sizeof(double) + sizeof(tl_lean) + sizeof(uint32_t));
 }
 
 void tl_detect_memory(const tl_model *m, tl_memory *memory)

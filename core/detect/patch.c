@@ -122,7 +122,6 @@ static void add_point(const patch *p, tl_point2 at, tl_lean lean, double area, u
     tl_patch_points *out = p->out;
     size_t i = out->count;
     tl_columns_put(out->p, i, tl_frame2_point(&p->frame, at));
-    out->rest[i] = tl_frame2_rest(&p->frame, at);
     out->lean[i] = lean;
     out->area[i] = p->weight * area;
     out->key[i] = p->faces ^ key;
@@ -192,15 +191,14 @@ static bool reserve(tl_patch_points *out, size_t count)
     size_t room = 2 * count;
     double *block = room > UINT16_MAX
                         ? NULL
-                        : malloc(room * (5 * sizeof(double) + sizeof(tl_lean) + sizeof(uint32_t)));
+                        : malloc(room * (4 * sizeof(double) + sizeof(tl_lean) + sizeof(uint32_t)));
     if (!block)
         return false;
     free(out->p[0]);
     for (int k = 0; k < 3; k++)
         out->p[k] = block + (size_t)k * room;
-    out->rest = block + 3 * room;
-    out->area = block + 4 * room;
-    out->lean = (tl_lean *)(void *)(block + 5 * room);
+    out->area = block + 3 * room;
+    out->lean = (tl_lean *)(void *)(block + 4 * room);
     out->key = (uint32_t *)(void *)(out->lean + room);
     out->room = room;
     return true;

@@ -3,9 +3,8 @@
 #ifndef TL_DETECT_PATCH_H
 #define TL_DETECT_PATCH_H
 
+#include "base/inline.h"
 #include "detect/polygon.h"
-
-#define TL_INLINE static inline __attribute__((always_inline))
 
 /* Turning angles, rad, below which a corner is none, and from which it is a full one. */
 #define TL_STRAIGHT 1e-4
@@ -54,11 +53,6 @@ TL_INLINE tl_vec3 tl_frame2_point(const tl_frame2 *f, tl_point2 at)
 {
     return tl_v3(f->o.x + at.x * f->t1.x + at.y * f->t2.x, f->o.y + at.x * f->t1.y + at.y * f->t2.y,
                  f->o.z + at.x * f->t1.z + at.y * f->t2.z);
-}
-
-TL_INLINE double tl_frame2_rest(const tl_frame2 *f, tl_point2 at)
-{
-    return f->rest + at.x * f->rest_x + at.y * f->rest_y;
 }
 
 /* Moves the plane into the middle between the two faces at the centroid, and notes how far A's face is from it. */

@@ -1,9 +1,10 @@
 /* update.c - one contact brought up to the present place of its blocks: its axis, its facets and points.
  *
  * Most contacts are two faces on each other and stay so: while the axis is certain and no other faces look
- * at each other, the patch alone is made anew (renew_patch). Otherwise everything is looked at that could
+ * at each other, the patch alone is made anew, several at once (patch_batch.c). Otherwise everything is looked at that could
  * touch (rebuild). */
-#include "detect/detect.h"
+#include "detect/update.h"
+
 
 #include <stdlib.h>
 #include <string.h>
@@ -159,8 +160,7 @@ static bool take_manifold(tl_model *m, uint32_t c, tl_narrow *room, const tl_poi
     return tl_contact_transfer(m, c, room, lanes);
 }
 
-/* How far a contact whose facets have just been made may move before they are made anew. */
-static void allow_reuse(tl_model *m, uint32_t c)
+void tl_contact_allow_reuse(tl_model *m, uint32_t c)
 {
     tl_contacts *contacts = &m->detect->contacts;
     double size = fmin(m->blocks.size[contacts->a[c]], m->blocks.size[contacts->b[c]]);
@@ -221,17 +221,26 @@ static bool same_keys(const tl_points_table *p, size_t begin, const tl_patch_poi
     return true;
 }
 
+bool tl_contact_is_patch(const tl_model *m, uint32_t c)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    const tl_facet *f = &contacts->facet[contacts->facet_start[c]];
+    const tl_axis *axis = &contacts->axis[c];
+    uint32_t material = contacts->material[c];
+    return contacts->lone[c] && contacts->facet_count[c] == 1 && f->kind == TL_FACET_PATCH &&
+           ((axis->kind == TL_AXIS_FACE_A && axis->ia == f->ia) ||
+            (axis->kind == TL_AXIS_FACE_B && axis->ib == f->ib)) &&
+           material != TL_NO_ROW && !m->materials[material].splits &&
+           tl_pair_odometer(m, contacts->a[c], contacts->b[c]) <= contacts->search[c];
+}
+
 /* The one patch of a contact whose axis stands, made anew where its points are the same; false when that is
  * not all there is to it. */
 static bool renew_patch(tl_model *m, uint32_t c, tl_narrow *room)
 {
     tl_contacts *contacts = &m->detect->contacts;
-    tl_points_table *p = &m->detect->points;
     const tl_facet *f = &contacts->facet[contacts->facet_start[c]];
-    uint32_t material = contacts->material[c];
-    if (!contacts->lone[c] || contacts->facet_count[c] != 1 || f->kind != TL_FACET_PATCH ||
-        material == TL_NO_ROW || m->materials[material].splits ||
-        tl_pair_odometer(m, contacts->a[c], contacts->b[c]) > contacts->search[c])
+    if (!tl_contact_is_patch(m, c))
         return false;
     tl_pair_view view = tl_pair_view_of(m, contacts->a[c], contacts->b[c]);
     tl_share_rule rule = tl_share_rule_of(m, &view, contacts->tag[c], false);
@@ -239,6 +248,7 @@ static bool renew_patch(tl_model *m, uint32_t c, tl_narrow *room)
         !tl_manifold_renew(&view, f->ia, f->ib, &rule, room))
         return false;
     const tl_patch_points *g = &room->patch;
+    tl_points_table *p = &m->detect->points;
     size_t begin = contacts->point_start[c];
     if (g->count != contacts->point_count[c] || !same_keys(p, begin, g))
         return false;
@@ -268,25 +278,29 @@ static bool touches_still(tl_model *m, uint32_t c)
     return true;
 }
 
+bool tl_contact_stands(const tl_model *m, uint32_t c)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    return contacts->fate[c] == TL_FATE_DIE ||
+           (m->config.reuse_geometry &&
+            tl_pair_odometer(m, contacts->a[c], contacts->b[c]) <= contacts->until[c]);
+}
+
 void tl_contact_update(tl_model *m, uint32_t c, unsigned thread)
 {
     tl_contacts *contacts = &m->detect->contacts;
     tl_narrow *room = &m->detect->narrow[thread];
-    if (contacts->fate[c] == TL_FATE_DIE ||
-        (m->config.reuse_geometry &&
-         tl_pair_odometer(m, contacts->a[c], contacts->b[c]) <= contacts->until[c]))
-        return;
     if (touches_still(m, c))
         return;
     if (renew_patch(m, c, room)) {
-        allow_reuse(m, c);
+        tl_contact_allow_reuse(m, c);
         return;
     }
     if (!rebuild(m, c, room, contacts->across[c]) ||
         (contacts->fate[c] != TL_FATE_DIE && !take_manifold(m, c, room, &m->detect->lanes[thread])))
         contacts->fate[c] = TL_FATE_MEMORY;
     else
-        allow_reuse(m, c);
+        tl_contact_allow_reuse(m, c);
 }
 
 void tl_contact_reframe(tl_model *m, uint32_t c, unsigned thread)
@@ -318,6 +332,6 @@ bool tl_contact_fill(tl_model *m, uint32_t c)
     note_manifold(contacts, c, &room->manifold);
     if (room->manifold.failed || !tl_contact_transfer(m, c, room, &m->detect->lanes[0]))
         return false;
-    allow_reuse(m, c);
+    tl_contact_allow_reuse(m, c);
     return true;
 }
