@@ -4,8 +4,8 @@
  * waiting, and the vectors. Heights of all corners over all lines of the other face tell by their signs which
  * polygon it is (outline.c); its corners are then placed from those of the faces. Where corners stand clear of
  * each other and turn enough to be full, every point is what patch.c makes it, to the bit; the others are left
- * to it. A lane's patch does not depend on what is in other lanes: corners and edges beyond its last have no length, and
- * add nothing. */
+ * to it. A lane's patch does not depend on what is in other lanes: corners and edges beyond its last have no
+ * length, and add nothing. */
 #include "detect/patch_batch.h"
 
 #include <stdlib.h>
@@ -172,7 +172,7 @@ TL_INLINE void lay_frames(tl_patch_batch *b, work *w)
         w->frame.rise_y[l] = f.rise.y;
         set3(&b->placed_b, l, placed.normal);
         b->placed_offset[l] = placed.offset;
-        b->laid[l] = tl_tilt2(na, placed.normal) > steep ? 0 : 1;
+        b->laid[l] = (uint64_t) !(tl_tilt2(na, placed.normal) > steep);
     }
 }
 
@@ -220,7 +220,8 @@ TL_INLINE void look_inside(const tl_patch_batch *b, work *w, uint32_t first, uin
     {
         dx[l] = w->x[to][l] - w->x[from][l];
         dy[l] = w->y[to][l] - w->y[from][l];
-        on[l] = b->near[l] * sqrt(dx[l] * dx[l] + dy[l] * dy[l]);
+        on[l] = b->near[l] * b->near[l] * (dx[l] * dx[l] + dy[l] * dy[l]);
+        on[l] = strict ? on[l] : -on[l];
     }
     for (uint32_t i = 0; i < count; i++) {
         const double *restrict x = w->x[first + i], *restrict y = w->y[first + i];
@@ -233,7 +234,8 @@ TL_INLINE void look_inside(const tl_patch_batch *b, work *w, uint32_t first, uin
             double h = dx[l] * (y[l] - oy[l]) - dy[l] * (x[l] - ox[l]);
             if (!strict)
                 height[l] = h;
-            inside[l] |= one & -(uint64_t)(strict ? h > on[l] : h >= -on[l]);
+            double square = h * fabs(h); /* roots cost more */
+            inside[l] |= one & -(uint64_t)(strict ? square > on[l] : square >= on[l]);
         }
     }
     if (!strict) {
@@ -246,8 +248,8 @@ TL_INLINE void look_inside(const tl_patch_batch *b, work *w, uint32_t first, uin
     }
 }
 
-/* Up to which corners lie inside which lines. Lines beyond a face's last have no length; rows beyond the last corner of any
- * lane are not looked at. */
+/* Which corners lie inside which lines. Lines beyond a face's last have no length; rows beyond the last corner
+ * of any lane are not looked at. */
 TL_VECTORIZED static void look(tl_patch_batch *b, work *w)
 {
     view(b);

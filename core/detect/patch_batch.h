@@ -47,8 +47,8 @@ typedef struct tl_patch_batch {
     tl_outline found[TL_OUTLINES];
 } tl_patch_batch;
 
-/* The thread's batch, empty; NULL when out of memory. Points are at corners only, or not; faces tilted so that the square
- * of the sine between them is more than `steep` have no patch. */
+/* The thread's batch, empty; NULL when out of memory. Points are at corners only, or not; faces tilted so that
+ * the square of the sine between them is more than `steep` have no patch. */
 tl_patch_batch *tl_batch_room(tl_narrow *room, bool corners, double steep);
 /* Whether two faces are for a batch. */
 static inline bool tl_batch_takes(const tl_poly *a, uint32_t fa, const tl_poly *b, uint32_t fb)
@@ -62,8 +62,8 @@ void tl_batch_add(tl_patch_batch *batch, uint32_t lane, const tl_poly *a, uint32
                       uint32_t fb, double size, double reach);
 /* Lays the patches of all lanes. */
 void tl_batch_lay(tl_patch_batch *batch);
-/* A lane that is laid has as many points as tl_patch_lay gives it, in the same order: `middles` middles (0 where points are
- * at corners only), `corners` corners, and the centroid if `centroid`. */
+/* A lane that is laid has as many points as tl_patch_lay gives it, in the same order: `middles` middles (0 where
+ * points are at corners only), `corners` corners, and the centroid if `centroid`. */
 typedef struct tl_batch_counts {
     uint32_t middles, corners, all;
     bool centroid;

@@ -1,8 +1,8 @@
 /* update.c - one contact brought up to the present place of its blocks: its axis, its facets and points.
  *
  * Most contacts are two faces on each other and stay so: while the axis is certain and no other faces look
- * at each other, the patch alone is made anew, several at once (patch_batch.c). Otherwise everything is looked at that could
- * touch (rebuild). */
+ * at each other, the patch alone is made anew, several at once (renew.c). Otherwise everything is looked
+ * at that could touch (rebuild). */
 #include "detect/update.h"
 
 
@@ -163,8 +163,9 @@ static bool take_manifold(tl_model *m, uint32_t c, tl_narrow *room, const tl_poi
 void tl_contact_allow_reuse(tl_model *m, uint32_t c)
 {
     tl_contacts *contacts = &m->detect->contacts;
-    double size = fmin(m->blocks.size[contacts->a[c]], m->blocks.size[contacts->b[c]]);
-    double most = (contacts->point_count[c] ? REUSE : TL_SILENT) * size;
+    double size_a = m->blocks.size[contacts->a[c]], size_b = m->blocks.size[contacts->b[c]];
+    double most =
+        (contacts->point_count[c] ? REUSE : TL_SILENT) * (size_a < size_b ? size_a : size_b);
     contacts->until[c] = tl_pair_odometer(m, contacts->a[c], contacts->b[c]) + most;
 }
 

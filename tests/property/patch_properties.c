@@ -1,8 +1,8 @@
 /* patch_properties.c - patches laid several at a time against patches laid one by one.
  *
  * Two prisms on each other, their faces aligned, turned, offset, a sliver of overlap, or a corner near an edge of the
- * other, then in small motion. Where a batch lays a patch, it is that of tl_patch_lay: the same features, the same numbers
- * to the bit. Only where a corner stands on an edge within about the snap distance may the two decide differently; they
+ * other, then in small motion. Where a batch lays a patch, it is that of tl_patch_lay: the same features, the
+ * same numbers to the bit. Only where a corner stands on an edge within about the snap distance may the two decide differently; they
  * then differ by no more than that distance. */
 #include "contact_scene.h"
 #include "detect/patch_batch.h"
