@@ -18,8 +18,7 @@ void tl_detect_memory(const tl_model *m, tl_memory *memory)
     memory->pairs += d->pair_room * sizeof *d->pairs + d->chunk_room * sizeof *d->chunks;
     memory->contacts += tl_table_bytes(&d->contacts.table);
     memory->facets += d->contacts.facet_capacity * sizeof *d->contacts.facet;
-    memory->points +=
-        tl_table_bytes(&d->points.table);
+    memory->points += tl_table_bytes(&d->points.table);
     memory->spare += tl_table_bytes(&d->spare.table) + tl_table_bytes(&d->spare_points.table) +
                      d->spare.facet_capacity * sizeof *d->spare.facet;
     memory->broad += d->odometer_room * sizeof *d->odometer_0 + d->run_of_room * sizeof *d->run +

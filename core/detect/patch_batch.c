@@ -46,8 +46,8 @@ static void fill_face(tl_batch3 *corner, uint32_t lane, uint32_t count, uint32_t
         tl_batch3_put(&corner[i], lane, tl_batch3_get(&corner[0], lane));
 }
 
-void tl_batch_add(tl_patch_batch *batch, uint32_t lane, const tl_poly *a, uint32_t fa, const tl_poly *b,
-                      uint32_t fb, double size, double reach)
+void tl_batch_add(tl_patch_batch *batch, uint32_t lane, const tl_poly *a, uint32_t fa,
+                  const tl_poly *b, uint32_t fb, double size, double reach)
 {
     batch->used |= 1u << lane;
     batch->na[lane] = tl_poly_face_size(a, fa);

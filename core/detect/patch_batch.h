@@ -41,7 +41,7 @@ typedef struct tl_patch_batch {
     /* what is not in columns */
     uint32_t na[TL_BATCH], nb[TL_BATCH], faces[TL_BATCH];
     uint32_t used; /* bits of the lanes that have a pair */
-    double steep; /* square of the sine of the tilt beyond which there is no patch */
+    double steep;  /* square of the sine of the tilt beyond which there is no patch */
     double corner,
         middle; /* of the fan triangle of an edge: the share of each end, of its middle */
     tl_outline found[TL_OUTLINES];
@@ -58,8 +58,8 @@ static inline bool tl_batch_takes(const tl_poly *a, uint32_t fa, const tl_poly *
 }
 /* Puts two faces, of blocks the smaller of which has this size, into a lane: where they are is yet to be
  * told. Patches with every gap beyond `reach` are left out. */
-void tl_batch_add(tl_patch_batch *batch, uint32_t lane, const tl_poly *a, uint32_t fa, const tl_poly *b,
-                      uint32_t fb, double size, double reach);
+void tl_batch_add(tl_patch_batch *batch, uint32_t lane, const tl_poly *a, uint32_t fa,
+                  const tl_poly *b, uint32_t fb, double size, double reach);
 /* Lays the patches of all lanes. */
 void tl_batch_lay(tl_patch_batch *batch);
 /* A lane that is laid has as many points as tl_patch_lay gives it, in the same order: `middles` middles (0 where

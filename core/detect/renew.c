@@ -99,7 +99,8 @@ static void note_patch(tl_model *m, uint32_t c, const tl_patch_batch *batch, uin
 
 /* Puts patches into the place of those of the rank that have the same points, and takes their lanes out of `in`: lanes
  * of as many points together. */
-static void take_patches(tl_model *m, const tl_rank *rank, const tl_patch_batch *batch, uint32_t *in)
+static void take_patches(tl_model *m, const tl_rank *rank, const tl_patch_batch *batch,
+                         uint32_t *in)
 {
     const tl_contacts *contacts = &m->detect->contacts;
     tl_points_table *p = &m->detect->points;

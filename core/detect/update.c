@@ -5,7 +5,6 @@
  * at that could touch (rebuild). */
 #include "detect/update.h"
 
-
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,0 +1,228 @@
+/* frames.c - how bodies moved in the last step, and facets in the lanes of a rank.
+ *
+ * What eight contacts need is scattered over their bodies and facets: it is read as rows and transposed, and then
+ * worked out for all of them at once. */
+#include "detect/frames.h"
+
+#include <string.h>
+
+/* Angles below which sine and cosine are taken from their series, whose next term is then below
+ * rounding. */
+#define SERIES_ANGLE 0.1
+
+/* ---------------------------------------------------------------- bodies ----------------- */
+
+/* A body's motion in the last step, as it acts on a point at `arm` from the centroid now: way + m arm.
+ * Exact, so a rolling contact and one that is turned as a whole gather no slip. */
+static tl_moving moving_of(tl_vec3 v, tl_vec3 w, double dt)
+{
+    tl_moving out = {.way = tl_v3_scale(dt, v)};
+    tl_vec3 t = tl_v3_scale(dt, w); /* axis times angle */
+    double a2 = tl_v3_norm2(t);
+    double sine, versine, tangent; /* sin a / a, (1 - cos a) / a^2, tan(a/2) / a */
+    if (a2 < SERIES_ANGLE * SERIES_ANGLE) {
+        sine = 1 - a2 / 6 * (1 - a2 / 20 * (1 - a2 / 42 * (1 - a2 / 72)));
+        versine = 0.5 * (1 - a2 / 12 * (1 - a2 / 30 * (1 - a2 / 56 * (1 - a2 / 90))));
+        tangent = 0.5 + a2 * (1. / 24 + a2 * (1. / 240 + a2 * (17. / 40320 + a2 * 31. / 725760)));
+    } else {
+        double a = sqrt(a2);
+        sine = sin(a) / a;
+        versine = (1 - cos(a)) / a2;
+        tangent = tan(0.5 * a) / a;
+    }
+    out.half = tl_v3_scale(tangent, t);
+    /* sine [t] - versine [t]^2 */
+    double d = versine * a2;
+    out.m = (tl_mat3){{{d - versine * t.x * t.x, -versine * t.x * t.y - sine * t.z,
+                        -versine * t.x * t.z + sine * t.y},
+                       {-versine * t.y * t.x + sine * t.z, d - versine * t.y * t.y,
+                        -versine * t.y * t.z - sine * t.x},
+                       {-versine * t.z * t.x - sine * t.y, -versine * t.z * t.y + sine * t.x,
+                        d - versine * t.z * t.z}}};
+    return out;
+}
+
+static void moving_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
+{
+    (void)chunk;
+    (void)thread;
+    tl_model *m = user;
+    for (size_t i = begin; i < end; i++)
+        m->detect->moving[i] = moving_of(m->bodies.v_moved[i], m->bodies.w_moved[i], m->dt);
+}
+
+void tl_follow_bodies(tl_model *m)
+{
+    enum { CHUNK = 256 };
+    tl_parallel_for(m->pool, m->bodies.table.rows, CHUNK, moving_range, m);
+}
+
+/* ---------------------------------------------------------------- lanes ------------------ */
+
+TL_INLINE tl_vec3 mat_row(const tl_mat3 *m, size_t i)
+{
+    return tl_v3(m->m[i][0], m->m[i][1], m->m[i][2]);
+}
+
+/* Row by row, not in loops: a loop over lanes with loops in it does not become SIMD code. */
+TL_INLINE void row_put(double (*restrict row)[TL_LANES], size_t l, tl_vec3 value)
+{
+    row[0][l] = value.x;
+    row[1][l] = value.y;
+    row[2][l] = value.z;
+}
+
+TL_INLINE void mat_put(lane_mat3 *m, size_t l, const tl_mat3 *value)
+{
+    row_put(m->m[0], l, mat_row(value, 0));
+    row_put(m->m[1], l, mat_row(value, 1));
+    row_put(m->m[2], l, mat_row(value, 2));
+}
+
+/* What is known of a patch and its bodies, a lane each, before the lanes work out together what follows from it. */
+typedef struct patches {
+    double a[TL_MOVING_ROW][TL_LANES], b[TL_MOVING_ROW][TL_LANES]; /* tl_moving */
+    double facet[TL_FACET_ROW][TL_LANES];                          /* tl_facet */
+    lane_mat3 rb;
+    lane_vec3 d;
+} patches;
+
+typedef double quad __attribute__((vector_size(32)));
+typedef double octet __attribute__((vector_size(64)));
+
+/* Turns four doubles of the rows of four lanes into a row of four lanes for each double. */
+TL_INLINE void transpose_quads(quad out[4], const double *const *row, size_t k)
+{
+    quad a, b, c, d;
+    memcpy(&a, row[0] + k, sizeof a);
+    memcpy(&b, row[1] + k, sizeof b);
+    memcpy(&c, row[2] + k, sizeof c);
+    memcpy(&d, row[3] + k, sizeof d);
+    quad ab0 = __builtin_shufflevector(a, b, 0, 4, 2, 6);
+    quad ab1 = __builtin_shufflevector(a, b, 1, 5, 3, 7);
+    quad cd0 = __builtin_shufflevector(c, d, 0, 4, 2, 6);
+    quad cd1 = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+    out[0] = __builtin_shufflevector(ab0, cd0, 0, 1, 4, 5);
+    out[1] = __builtin_shufflevector(ab1, cd1, 0, 1, 4, 5);
+    out[2] = __builtin_shufflevector(ab0, cd0, 2, 3, 6, 7);
+    out[3] = __builtin_shufflevector(ab1, cd1, 2, 3, 6, 7);
+}
+
+/* Turns `count` doubles, a multiple of four, of a row for each lane into a row of lanes for each double. What is
+ * loaded as one vector is stored as one: a load cannot wait for two stores. */
+TL_INLINE void transpose(double (*restrict to)[TL_LANES], const double *const *row, size_t count)
+{
+    for (size_t k = 0; k < count; k += 4) {
+        quad low[4], high[4];
+        transpose_quads(low, row, k);
+        transpose_quads(high, row + 4, k);
+        for (size_t i = 0; i < 4; i++) {
+            octet all = __builtin_shufflevector(low[i], high[i], 0, 1, 2, 3, 4, 5, 6, 7);
+            memcpy(to[k + i], &all, sizeof all);
+        }
+    }
+}
+
+/* A matrix of each lane; its last element does not fit into fours. */
+TL_INLINE void transpose_matrices(lane_mat3 *to, const double *const *row)
+{
+    transpose(to->m[0], row, 8);
+    for (size_t l = 0; l < TL_LANES; l++)
+        to->m[2][2][l] = row[l][8];
+}
+
+TL_INLINE tl_mat3 matrix_of(tl_vec3 g, double g2)
+{
+    const double s = 2 / (1 + g2), d = 1 - s * g2;
+    const tl_vec3 h = tl_v3_scale(s, g);
+    return (tl_mat3){{{d + h.x * g.x, h.x * g.y - h.z, h.x * g.z + h.y},
+                      {h.y * g.x + h.z, d + h.y * g.y, h.y * g.z - h.x},
+                      {h.z * g.x - h.y, h.z * g.y + h.x, d + h.z * g.z}}};
+}
+
+/* A facet in its present place, and its normals before. */
+TL_INLINE void put_facing(tl_frames *f, size_t l, tl_facing to, tl_vec3 last, tl_vec3 last_lean)
+{
+    vec_put(&f->n, l, to.n);
+    vec_put(&f->mean, l, to.mean);
+    vec_put(&f->lean, l, to.lean);
+    vec_put(&f->plane, l, to.plane);
+    f->mean2[l] = to.mean2;
+    f->l2[l] = to.l2;
+    f->offset[l] = to.offset;
+    vec_put(&f->last, l, last);
+    vec_put(&f->last_lean, l, last_lean);
+}
+
+/* Element k and the two behind it as a vector of lane l. */
+TL_INLINE tl_vec3 row_vec3(double (*row)[TL_LANES], size_t k, size_t l)
+{
+    return tl_v3(row[k][l], row[k + 1][l], row[k + 2][l]);
+}
+
+TL_INLINE tl_mat3 row_mat3(double (*row)[TL_LANES], size_t l)
+{
+    return (tl_mat3){{{row[0][l], row[1][l], row[2][l]},
+                      {row[3][l], row[4][l], row[5][l]},
+                      {row[6][l], row[7][l], row[8][l]}}};
+}
+
+/* Motion of B against A in the last step; `d` is the way from A's centroid to B's. */
+TL_INLINE void put_motion(tl_frames *f, size_t l, const tl_mat3 *ma, const tl_mat3 *mb, tl_vec3 way,
+                          tl_vec3 half, tl_vec3 d)
+{
+    vec_put(&f->way, l, tl_v3_sub(way, tl_m3_mul(mb, d)));
+    vec_put(&f->half, l, tl_v3_scale(0.5, half));
+    row_put(f->m.m[0], l, tl_v3_sub(mat_row(mb, 0), mat_row(ma, 0)));
+    row_put(f->m.m[1], l, tl_v3_sub(mat_row(mb, 1), mat_row(ma, 1)));
+    row_put(f->m.m[2], l, tl_v3_sub(mat_row(mb, 2), mat_row(ma, 2)));
+}
+
+TL_VECTORIZED bool tl_frames_put_patches(tl_frames *restrict f, const tl_patch_rows *restrict rows)
+{
+    patches p;
+    transpose(p.a, rows->a, TL_MOVING_ROW);
+    transpose(p.b, rows->b, TL_MOVING_ROW);
+    transpose(p.facet, rows->facet, TL_FACET_ROW);
+    transpose_matrices(&f->to, rows->ra);
+    transpose_matrices(&p.rb, rows->rb);
+    double tilted[TL_LANES];
+#pragma omp simd
+    for (size_t l = 0; l < TL_LANES; l++) {
+        tl_vec3 d = vec_at(&rows->d, l), last = row_vec3(p.facet, 7, l);
+        tl_vec3 last_lean = row_vec3(p.facet, 10, l);
+        tl_mat3 ma = row_mat3(p.a, l), mb = row_mat3(p.b, l);
+        tl_vec3 way = tl_v3_sub(row_vec3(p.b, 9, l), row_vec3(p.a, 9, l));
+        tl_vec3 half = tl_v3_add(row_vec3(p.a, 12, l), row_vec3(p.b, 12, l));
+        put_motion(f, l, &ma, &mb, way, half, d);
+        tl_mat3 ra = mat_at(&f->to, l), rb = mat_at(&p.rb, l);
+        tl_vec3 na = tl_m3_mul(&ra, row_vec3(p.facet, 0, l));
+        tl_vec3 nb = tl_m3_mul(&rb, row_vec3(p.facet, 3, l));
+        tl_facing to = tl_facing_patch(na, nb, d, p.facet[6][l]);
+        put_facing(f, l, to, last, last_lean);
+        vec_put(&f->from, l, tl_v3(0, 0, 0));
+        tl_vec3 by = tl_turn_between(last, to.n, tl_v3_dot(vec_at(&f->half, l), to.n));
+        double g2 = tl_v3_norm2(by);
+        tl_mat3 turn = matrix_of(by, g2);
+        mat_put(&f->turn, l, &turn);
+        f->turns[l] = g2 > 0 ? 1 : 0;
+        tilted[l] = to.l2 + tl_v3_norm2(last_lean);
+    }
+    double any = 0;
+    for (size_t l = 0; l < TL_LANES; l++)
+        any += tilted[l];
+    return any != 0;
+}
+
+void tl_frames_put(tl_frames *f, size_t l, const tl_model *m, uint32_t c, const tl_facet *facet)
+{
+    tl_sight s = tl_sight_of(m, c);
+    tl_facing to = tl_facing_of(facet, &s);
+    bool in_b = tl_facet_in_b(facet);
+    const tl_moving *a = &m->detect->moving[m->blocks.body[s.a]];
+    const tl_moving *b = &m->detect->moving[m->blocks.body[s.b]];
+    put_motion(f, l, &a->m, &b->m, tl_v3_sub(b->way, a->way), tl_v3_add(a->half, b->half), s.d);
+    mat_put(&f->to, l, in_b ? s.rb : s.ra);
+    vec_put(&f->from, l, in_b ? s.d : tl_v3(0, 0, 0));
+    put_facing(f, l, to, facet->last, facet->last_lean);
+}
