@@ -316,6 +316,7 @@ tl_axis tl_axis_search(const tl_pair_view *view, tl_narrow *room, const tl_axis 
         best.s = gap_along(view, best.n);
         if (best.s <= face.s + FACE_PREFERENCE * view->size) {
             double second = fmax(face.second, best.s < face.s ? best.s : face.second);
+            second = fmax(second, best.second < face.s ? best.second : face.second);
             best = face;
             best.second = second;
         }

@@ -14,6 +14,9 @@
 /* Largest cosine between the two faces' normals. */
 #define CROSSWISE 0.7
 
+/* Product of the blocks' numbers of faces up to which they may be of a lattice: others are hardly ever flush. */
+#define FEW 400
+
 /* A face of A or B as a number: see tl_pair. */
 static uint32_t face_number(bool of_b, uint32_t face)
 {
@@ -69,6 +72,8 @@ void tl_beside_note(const tl_pair_view *view, tl_pair *p)
     sight first, second;
     uint32_t one, other;
     p->one = p->other = 0;
+    if (view->a->face_count * view->b->face_count > FEW)
+        return;
     if (widest(view, tl_v3(0, 0, 0), &one, &first) && widest(view, first.n, &other, &second)) {
         p->one = one & TL_PAIR_FACE;
         p->other = other & TL_PAIR_FACE;

@@ -142,3 +142,20 @@ for _, velocity in ipairs { { 0.1, -0.1, 0 }, { -0.1, 0.1, 0 }, { 0, 0, 10 } } d
     parted:cycle(1000)
     check.equal(#parted:contacts(), 0)
 end
+
+-- A block beside and over another's edge, in touch without area, slides over its top and comes down: it is carried at
+-- once.
+local slides, ABOVE = talus.model { gravity = { 0, 0, 0 } }, 2e-5
+slides:generate("box", { min = { 0, 0, 0 }, max = { 1, 1, 1 }, density = 2000, group = "still" })
+slides:generate("box", { min = { 0.9999, 0, 1 + ABOVE }, max = { 2, 1, 2 }, density = 2000, group = "going" })
+slides:joint("*", "coulomb", { kn = 1e9, ks = 1e9, friction = 0 })
+slides:blocks { group = "still" }:fix()
+slides:timestep { dt = 1e-6 }
+local going = slides:blocks { group = "going" }
+for _, run in ipairs { { 55, 0, steps = 2 }, { 0, 0, steps = 2 }, { -50, 0, steps = 1000 }, { 0, -1, steps = 26 } } do
+    going:drive { velocity = { run[1], 0, run[2] } }
+    slides:cycle(run.steps)
+end
+check.equal(#slides:contacts(), 1)
+check.near(slides:contacts():max "area", 0.05, 1e-3)
+check.near(slides:contacts():max "gap", ABOVE - 25e-6, 1e-9) -- at the beginning of the last step
