@@ -249,7 +249,9 @@ static bool touch_fresh(tl_model *m)
     for (size_t i = 0; i < c->table.rows; i++) {
         if (!c->fresh[i])
             continue;
-        any = d->touched[m->blocks.body[c->a[i]]] = d->touched[m->blocks.body[c->b[i]]] = true;
+        d->touched[m->blocks.body[c->a[i]]] = true;
+        d->touched[m->blocks.body[c->b[i]]] = true;
+        any = true;
         c->fresh[i] = c->point_count[i] > 0; /* without points the laws will not see it */
     }
     return any;

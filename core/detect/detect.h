@@ -268,15 +268,14 @@ typedef struct tl_layout {
     size_t rank_room;
 } tl_layout;
 
-/* Motion of a body in the last step, at an arm from its centroid: way + m arm; `half` is its turn as axis
+/* Turn of a body in the last step: `m` times an arm is what that moved beside the centroid; `half` is the turn as axis
  * times the tangent of half the angle. A row of TL_MOVING_ROW doubles. */
 typedef struct tl_moving {
     tl_mat3 m;
-    tl_vec3 way, half;
-    double unused;
+    tl_vec3 half;
 } tl_moving;
 
-#define TL_MOVING_ROW 16
+#define TL_MOVING_ROW 12
 
 typedef struct tl_detect {
     tl_pair *pairs;

@@ -194,6 +194,7 @@ static bool follow_patches(tl_model *m, const tl_rank *rank, const columns *c, t
         rows.rb[l] = &bodies->r[b].m[0][0];
         rows.facet[l] = &f->facet[from]->na.x;
         vec_put(&rows.d, l, tl_body_apart(bodies, a, b));
+        vec_put(&rows.way, l, tl_way_between(m, a, b));
     }
     if (!tl_frames_put_patches(f, &rows)) {
         follow_level(c, rank->slots, f);

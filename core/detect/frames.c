@@ -12,11 +12,11 @@
 
 /* ---------------------------------------------------------------- bodies ----------------- */
 
-/* A body's motion in the last step, as it acts on a point at `arm` from the centroid now: way + m arm.
+/* A body's turn in the last step, as it acts on a point at `arm` from the centroid now: m arm.
  * Exact, so a rolling contact and one that is turned as a whole gather no slip. */
-static tl_moving moving_of(tl_vec3 v, tl_vec3 w, double dt)
+static tl_moving moving_of(tl_vec3 w, double dt)
 {
-    tl_moving out = {.way = tl_v3_scale(dt, v)};
+    tl_moving out;
     tl_vec3 t = tl_v3_scale(dt, w); /* axis times angle */
     double a2 = tl_v3_norm2(t);
     double sine, versine, tangent; /* sin a / a, (1 - cos a) / a^2, tan(a/2) / a */
@@ -48,7 +48,7 @@ static void moving_range(void *user, size_t begin, size_t end, size_t chunk, uns
     (void)thread;
     tl_model *m = user;
     for (size_t i = begin; i < end; i++)
-        m->detect->moving[i] = moving_of(m->bodies.v_moved[i], m->bodies.w_moved[i], m->dt);
+        m->detect->moving[i] = moving_of(m->bodies.w_moved[i], m->dt);
 }
 
 void tl_follow_bodies(tl_model *m)
@@ -192,9 +192,8 @@ TL_VECTORIZED bool tl_frames_put_patches(tl_frames *restrict f, const tl_patch_r
         tl_vec3 d = vec_at(&rows->d, l), last = row_vec3(p.facet, 7, l);
         tl_vec3 last_lean = row_vec3(p.facet, 10, l);
         tl_mat3 ma = row_mat3(p.a, l), mb = row_mat3(p.b, l);
-        tl_vec3 way = tl_v3_sub(row_vec3(p.b, 9, l), row_vec3(p.a, 9, l));
-        tl_vec3 half = tl_v3_add(row_vec3(p.a, 12, l), row_vec3(p.b, 12, l));
-        put_motion(f, l, &ma, &mb, way, half, d);
+        tl_vec3 half = tl_v3_add(row_vec3(p.a, 9, l), row_vec3(p.b, 9, l));
+        put_motion(f, l, &ma, &mb, vec_at(&rows->way, l), half, d);
         tl_mat3 ra = mat_at(&f->to, l), rb = mat_at(&p.rb, l);
         tl_vec3 na = tl_m3_mul(&ra, row_vec3(p.facet, 0, l));
         tl_vec3 nb = tl_m3_mul(&rb, row_vec3(p.facet, 3, l));
@@ -219,9 +218,10 @@ void tl_frames_put(tl_frames *f, size_t l, const tl_model *m, uint32_t c, const 
     tl_sight s = tl_sight_of(m, c);
     tl_facing to = tl_facing_of(facet, &s);
     bool in_b = tl_facet_in_b(facet);
-    const tl_moving *a = &m->detect->moving[m->blocks.body[s.a]];
-    const tl_moving *b = &m->detect->moving[m->blocks.body[s.b]];
-    put_motion(f, l, &a->m, &b->m, tl_v3_sub(b->way, a->way), tl_v3_add(a->half, b->half), s.d);
+    uint32_t body_a = m->blocks.body[s.a], body_b = m->blocks.body[s.b];
+    const tl_moving *a = &m->detect->moving[body_a], *b = &m->detect->moving[body_b];
+    tl_vec3 way = tl_way_between(m, body_a, body_b);
+    put_motion(f, l, &a->m, &b->m, way, tl_v3_add(a->half, b->half), s.d);
     mat_put(&f->to, l, in_b ? s.rb : s.ra);
     vec_put(&f->from, l, in_b ? s.d : tl_v3(0, 0, 0));
     put_facing(f, l, to, facet->last, facet->last_lean);

@@ -437,7 +437,7 @@ static tl_status assemble(builder *b, tl_poly **poly, tl_error *error)
         uint32_t from = rank[f].face, corners = b->start[from + 1] - b->start[from];
         const uint16_t *loop = b->loop + b->start[from];
         memcpy(p->loop + p->start[f], loop, corners * sizeof *loop);
-        p->start[f + 1] = p->start[f] + corners;
+        p->start[f + 1] = (uint16_t)(p->start[f] + corners);
         p->plane[f] = tl_poly_fit_plane(p->vertex, loop, corners);
         p->tag[f] = (tl_tag){0, 0};
     }

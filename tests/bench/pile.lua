@@ -1,4 +1,4 @@
--- pile.lua - irregular blocks dropped into a box and measured when they have come to rest.
+-- pile.lua - irregular blocks dropped into a box and measured when they hardly move.
 --
 --     talus tests/bench/pile.lua blocks=500 threads=1,2 reps=5 [write=pile.json]
 --
