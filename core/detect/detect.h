@@ -250,7 +250,7 @@ typedef struct tl_rank {
 
 /* Points that are worked on as a whole while they are in the nearest cache, from gaps to sums: as many ranks as
  * have room for so many, or one. */
-#define TL_PAGE 256
+#define TL_PAGE 144
 
 /* The ranks of one material, one after the other: in the list of ranks, and their points from `begin`, used up to
  * `end`, with room up to `limit`. */

@@ -112,6 +112,7 @@ TL_INLINE void transpose_quads(quad out[4], const double *const *row, size_t k)
  * loaded as one vector is stored as one: a load cannot wait for two stores. */
 TL_INLINE void transpose(double (*restrict to)[TL_LANES], const double *const *row, size_t count)
 {
+#pragma GCC unroll 1
     for (size_t k = 0; k < count; k += 4) {
         quad low[4], high[4];
         transpose_quads(low, row, k);
