@@ -15,6 +15,8 @@
 #define SPARE_BUSY 8
 #define LAYOUT_LASTS 100
 #define SPARE_ROWS 64
+/* Lanes a thread has at least, so that most contacts can grow without a new layout. */
+#define LEAST_LANES 512
 
 void tl_contacts_init(tl_contacts *c, tl_points_table *p)
 {
@@ -282,7 +284,7 @@ static size_t larger(size_t a, size_t b)
 /* Lanes for a page, or the largest rank, for every thread. */
 static bool make_lanes(tl_detect *d, const tl_layout *layout)
 {
-    size_t room = TL_PAGE;
+    size_t room = LEAST_LANES;
     for (size_t r = 0; r < layout->run_count; r++)
         for (size_t i = layout->runs[r].rank_begin; i < layout->runs[r].rank_end; i++)
             room = larger(room, (size_t)layout->ranks[i].slots * TL_LANES);

@@ -296,12 +296,35 @@ static void find_outlines(tl_patch_batch *b, work *w)
     for (uint32_t l = 0; l < TL_BATCH; l++)
         if (!(b->used >> l & 1))
             b->outline[l] = *some;
+    b->alike = true;
+    for (uint32_t l = 1; l < TL_BATCH; l++)
+        b->alike =
+            b->alike && b->outline[l].count == b->outline[0].count &&
+            memcmp(b->outline[l].corner, b->outline[0].corner, sizeof b->outline[0].corner) == 0;
+}
+
+/* Looks up what corner k is placed by where it is of the same features in all lanes. */
+static void find_row(const tl_outline_corner *c, work *w, uint32_t k)
+{
+    ends *e = &w->ends[k];
+    memcpy(e->px, w->x[c->from], sizeof e->px);
+    memcpy(e->py, w->y[c->from], sizeof e->py);
+    memcpy(e->qx, w->x[c->to], sizeof e->qx);
+    memcpy(e->qy, w->y[c->to], sizeof e->qy);
+    memcpy(e->h, w->height[c->over], sizeof e->h);
+    memcpy(e->g, w->height[c->under], sizeof e->g);
+    memcpy(e->line_x, w->line_x[c->line], sizeof e->line_x);
+    memcpy(e->line_y, w->line_y[c->line], sizeof e->line_y);
+    for (uint32_t l = 0; l < TL_BATCH; l++)
+        e->face[l] = c->face;
 }
 
 /* Looks up what the corners are placed by. */
 static void find_ends(const tl_patch_batch *b, work *w)
 {
-    for (uint32_t l = 0; l < TL_BATCH; l++)
+    for (uint32_t k = 0; k < w->corners && b->alike; k++)
+        find_row(&b->outline[0].corner[k], w, k);
+    for (uint32_t l = 0; l < TL_BATCH && !b->alike; l++)
         for (uint32_t k = 0; k < w->corners; k++) {
             const tl_outline_corner *c = &b->outline[l].corner[k];
             ends *e = &w->ends[k];

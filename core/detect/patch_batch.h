@@ -41,6 +41,7 @@ typedef struct tl_patch_batch {
     /* what is not in columns */
     uint32_t na[TL_BATCH], nb[TL_BATCH], faces[TL_BATCH];
     uint32_t used; /* bits of the lanes that have a pair */
+    bool alike;    /* all outlines are, as in rock cut by a few sets of joints */
     double steep;  /* square of the sine of the tilt beyond which there is no patch */
     double corner,
         middle; /* of the fan triangle of an edge: the share of each end, of its middle */

@@ -6,6 +6,8 @@
 #include "detect/patch_batch.h"
 #include "detect/update.h"
 
+#include <string.h>
+
 /* Adds a contact's pair of faces to a batch; false when they are none for it. */
 static bool add_to_batch(const tl_model *m, uint32_t c, uint32_t lane, tl_patch_batch *batch)
 {
@@ -28,6 +30,7 @@ static bool add_to_batch(const tl_model *m, uint32_t c, uint32_t lane, tl_patch_
 /* Lanes whose patch takes the place of the contact's, 1 or 0, and the area it gets. */
 typedef struct taken {
     double mine[TL_LANES], area[TL_LANES];
+    bool all;
 } taken;
 
 TL_INLINE double choose(double yes, double a, double b)
@@ -60,7 +63,11 @@ TL_VECTORIZED static void refit_slot(tl_points_table *p, size_t row, const tl_ba
     }
     for (uint32_t l = 0; l < TL_LANES && p->f_n0; l++)
         p->f_n0[row + l] *= scale[l];
-    for (uint32_t l = 0; l < TL_LANES; l++)
+    if (t->all) {
+        memcpy(p->lean_face + row, point->face, sizeof point->face);
+        memcpy(p->lean_edge + row, point->edge, sizeof point->edge);
+    }
+    for (uint32_t l = 0; l < TL_LANES && !t->all; l++)
         if (t->mine[l] > 0)
             tl_point_set_lean(p, row + l, (tl_lean){point->face[l], point->edge[l]});
 }
@@ -126,6 +133,7 @@ static void take_patches(tl_model *m, const tl_rank *rank, const tl_patch_batch 
         }
         if (!now)
             continue;
+        t.all = now == (1u << TL_LANES) - 1;
         refit(p, rank->start, batch, n[l], &t);
         for (uint32_t k = 0; k < TL_LANES; k++)
             if (now >> k & 1)
