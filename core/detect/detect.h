@@ -217,7 +217,7 @@ enum { TL_FATE_KEEP, TL_FATE_GROW, TL_FATE_DIE, TL_FATE_MATERIAL, TL_FATE_MEMORY
 typedef struct tl_points_table {
     tl_table table;
     double *p[3];
-    float *lean_face, *lean_edge; /* tl_lean */
+    int16_t *lean_face, *lean_edge; /* tl_lean, in steps: see tl_point_lean */
     uint32_t *key;
     double *area;
     double *reference, *f_n0; /* overlap at closure 0, initial normal force; NULL: 0 everywhere */
@@ -484,16 +484,27 @@ static inline tl_vec3 tl_contact_moment(const tl_model *m, uint32_t contact, boo
         tl_body_apart(&m->bodies, m->blocks.body[c->a[contact]], m->blocks.body[c->b[contact]]);
     return tl_v3_sub(c->moment[contact], tl_v3_cross(apart, c->force[contact]));
 }
+/* Leans are kept in steps: -1, 0 and 1 are exact, and the normal of a point is as exact as its place in a patch. `face`
+ * lies within 1, `edge` within 2. */
+#define TL_LEAN_FACE_STEP 0x1p-14f
+#define TL_LEAN_EDGE_STEP 0x1p-13f
+
+/* The nearest whole number of steps: of a positive number, which is cut off without asking for its sign. */
+static inline int16_t tl_lean_steps(float lean, float step)
+{
+    return (int16_t)((int32_t)(lean / step + (INT16_MAX + 1.5f)) - (INT16_MAX + 1));
+}
+
 /* How the normal of a point leans. */
 static inline tl_lean tl_point_lean(const tl_points_table *p, size_t row)
 {
-    return (tl_lean){p->lean_face[row], p->lean_edge[row]};
+    return (tl_lean){TL_LEAN_FACE_STEP * p->lean_face[row], TL_LEAN_EDGE_STEP * p->lean_edge[row]};
 }
 
 static inline void tl_point_set_lean(tl_points_table *p, size_t row, tl_lean lean)
 {
-    p->lean_face[row] = lean.face;
-    p->lean_edge[row] = lean.edge;
+    p->lean_face[row] = tl_lean_steps(lean.face, TL_LEAN_FACE_STEP);
+    p->lean_edge[row] = tl_lean_steps(lean.edge, TL_LEAN_EDGE_STEP);
 }
 
 /* Row of point k of a contact. */

@@ -18,7 +18,7 @@
 
 /* Columns of points and lanes, row 0 of both the first of a rank. */
 typedef struct columns {
-    const float *face, *edge; /* tl_lean */
+    const int16_t *face, *edge; /* tl_lean, in steps */
     const double *reference;
     double *p[3], *f_s[3];
     double *arm[3], *normal[3], *closure, *du_n, *du_s[3];
@@ -76,10 +76,10 @@ TL_VECTORIZED static void follow_any(const columns *c, size_t begin, size_t end,
                                      const tl_frames *restrict f)
 {
     for (size_t slot = begin; slot < end; slot++) {
-        double face[TL_LANES], edge[TL_LANES]; /* in a loop of their own: the next has no floats */
+        double face[TL_LANES], edge[TL_LANES]; /* in a loop of their own: the next is all doubles */
         for (size_t l = 0; l < TL_LANES; l++) {
-            face[l] = c->face[slot * TL_LANES + l];
-            edge[l] = c->edge[slot * TL_LANES + l];
+            face[l] = (double)TL_LEAN_FACE_STEP * c->face[slot * TL_LANES + l];
+            edge[l] = (double)TL_LEAN_EDGE_STEP * c->edge[slot * TL_LANES + l];
         }
 #pragma omp simd
         for (size_t l = 0; l < TL_LANES; l++) {

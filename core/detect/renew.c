@@ -38,6 +38,13 @@ TL_INLINE double choose(double yes, double a, double b)
     return yes > 0 ? a : b;
 }
 
+TL_INLINE void refit_lean(int16_t *restrict steps, const float *restrict lean, float step)
+{
+#pragma omp simd
+    for (uint32_t l = 0; l < TL_LANES; l++)
+        steps[l] = tl_lean_steps(lean[l], step);
+}
+
 /* Puts a point of each lane that is taken in the place of the table's: stress stays, force follows the area. */
 TL_VECTORIZED static void refit_slot(tl_points_table *p, size_t row, const tl_batch_point *point,
                                      taken *restrict t)
@@ -64,8 +71,8 @@ TL_VECTORIZED static void refit_slot(tl_points_table *p, size_t row, const tl_ba
     for (uint32_t l = 0; l < TL_LANES && p->f_n0; l++)
         p->f_n0[row + l] *= scale[l];
     if (t->all) {
-        memcpy(p->lean_face + row, point->face, sizeof point->face);
-        memcpy(p->lean_edge + row, point->edge, sizeof point->edge);
+        refit_lean(p->lean_face + row, point->face, TL_LEAN_FACE_STEP);
+        refit_lean(p->lean_edge + row, point->edge, TL_LEAN_EDGE_STEP);
     }
     for (uint32_t l = 0; l < TL_LANES && !t->all; l++)
         if (t->mine[l] > 0)
