@@ -268,14 +268,14 @@ typedef struct tl_layout {
     size_t rank_room;
 } tl_layout;
 
-/* Turn of a body in the last step: `m` times an arm is what that moved beside the centroid; `half` is the turn as axis
- * times the tangent of half the angle. A row of TL_MOVING_ROW doubles. */
+/* Turn of a body in the last step: `half` is axis times the tangent of half the angle, `scale` 2 / (1 + half^2). A row of
+ * TL_MOVING_ROW doubles. */
 typedef struct tl_moving {
-    tl_mat3 m;
     tl_vec3 half;
+    double scale;
 } tl_moving;
 
-#define TL_MOVING_ROW 12
+#define TL_MOVING_ROW 4
 
 typedef struct tl_detect {
     tl_pair *pairs;

@@ -188,8 +188,8 @@ static bool follow_patches(tl_model *m, const tl_rank *rank, const columns *c, t
         size_t from = f->facet[l] ? l : some;
         uint32_t contact = rank->contact[from];
         uint32_t a = m->blocks.body[contacts->a[contact]], b = m->blocks.body[contacts->b[contact]];
-        rows.a[l] = &m->detect->moving[a].m.m[0][0];
-        rows.b[l] = &m->detect->moving[b].m.m[0][0];
+        rows.a[l] = &m->detect->moving[a].half.x;
+        rows.b[l] = &m->detect->moving[b].half.x;
         rows.ra[l] = &bodies->r[a].m[0][0];
         rows.rb[l] = &bodies->r[b].m[0][0];
         rows.facet[l] = &f->facet[from]->na.x;

@@ -6,40 +6,31 @@
 
 #include <string.h>
 
-/* Angles below which sine and cosine are taken from their series, whose next term is then below
- * rounding. */
+/* Angle below which a tangent is taken from its series, whose next term is then below rounding. */
 #define SERIES_ANGLE 0.1
 
 /* ---------------------------------------------------------------- bodies ----------------- */
 
-/* A body's turn in the last step, as it acts on a point at `arm` from the centroid now: m arm.
- * Exact, so a rolling contact and one that is turned as a whole gather no slip. */
 static tl_moving moving_of(tl_vec3 w, double dt)
 {
-    tl_moving out;
-    tl_vec3 t = tl_v3_scale(dt, w); /* axis times angle */
-    double a2 = tl_v3_norm2(t);
-    double sine, versine, tangent; /* sin a / a, (1 - cos a) / a^2, tan(a/2) / a */
-    if (a2 < SERIES_ANGLE * SERIES_ANGLE) {
-        sine = 1 - a2 / 6 * (1 - a2 / 20 * (1 - a2 / 42 * (1 - a2 / 72)));
-        versine = 0.5 * (1 - a2 / 12 * (1 - a2 / 30 * (1 - a2 / 56 * (1 - a2 / 90))));
-        tangent = 0.5 + a2 * (1. / 24 + a2 * (1. / 240 + a2 * (17. / 40320 + a2 * 31. / 725760)));
-    } else {
-        double a = sqrt(a2);
-        sine = sin(a) / a;
-        versine = (1 - cos(a)) / a2;
-        tangent = tan(0.5 * a) / a;
-    }
-    out.half = tl_v3_scale(tangent, t);
-    /* sine [t] - versine [t]^2 */
-    double d = versine * a2;
-    out.m = (tl_mat3){{{d - versine * t.x * t.x, -versine * t.x * t.y - sine * t.z,
-                        -versine * t.x * t.z + sine * t.y},
-                       {-versine * t.y * t.x + sine * t.z, d - versine * t.y * t.y,
-                        -versine * t.y * t.z - sine * t.x},
-                       {-versine * t.z * t.x - sine * t.y, -versine * t.z * t.y + sine * t.x,
-                        d - versine * t.z * t.z}}};
-    return out;
+    tl_vec3 t = tl_v3_scale(dt, w);            /* axis times angle */
+    double a2 = tl_v3_norm2(t), tangent = 0.5; /* tan(a/2) / a */
+    if (a2 < SERIES_ANGLE * SERIES_ANGLE)
+        tangent += a2 * (1. / 24 + a2 * (1. / 240 + a2 * (17. / 40320 + a2 * 31. / 725760)));
+    else
+        tangent = tan(0.5 * sqrt(a2)) / sqrt(a2);
+    tl_vec3 half = tl_v3_scale(tangent, t);
+    return (tl_moving){half, 2 / (1 + tl_v3_norm2(half))};
+}
+
+/* What a point has moved beside the centroid, as it acts on its arm from there now: scale ([half] - [half]^2). Exact, so a
+ * rolling contact and one that is turned as a whole gather no slip. */
+TL_INLINE tl_mat3 turn_back(tl_vec3 h, double scale)
+{
+    tl_vec3 s = tl_v3_scale(scale, h);
+    return (tl_mat3){{{s.y * h.y + s.z * h.z, -s.x * h.y - s.z, -s.x * h.z + s.y},
+                      {-s.y * h.x + s.z, s.z * h.z + s.x * h.x, -s.y * h.z - s.x},
+                      {-s.z * h.x - s.y, -s.z * h.y + s.x, s.x * h.x + s.y * h.y}}};
 }
 
 static void moving_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
@@ -161,22 +152,16 @@ TL_INLINE tl_vec3 row_vec3(double (*row)[TL_LANES], size_t k, size_t l)
     return tl_v3(row[k][l], row[k + 1][l], row[k + 2][l]);
 }
 
-TL_INLINE tl_mat3 row_mat3(double (*row)[TL_LANES], size_t l)
+/* Motion of B against A in the last step, by their turns; `d` is the way from A's centroid to B's. */
+TL_INLINE void put_motion(tl_frames *f, size_t l, tl_vec3 half_a, double scale_a, tl_vec3 half_b,
+                          double scale_b, tl_vec3 way, tl_vec3 d)
 {
-    return (tl_mat3){{{row[0][l], row[1][l], row[2][l]},
-                      {row[3][l], row[4][l], row[5][l]},
-                      {row[6][l], row[7][l], row[8][l]}}};
-}
-
-/* Motion of B against A in the last step; `d` is the way from A's centroid to B's. */
-TL_INLINE void put_motion(tl_frames *f, size_t l, const tl_mat3 *ma, const tl_mat3 *mb, tl_vec3 way,
-                          tl_vec3 half, tl_vec3 d)
-{
-    vec_put(&f->way, l, tl_v3_sub(way, tl_m3_mul(mb, d)));
-    vec_put(&f->half, l, tl_v3_scale(0.5, half));
-    row_put(f->m.m[0], l, tl_v3_sub(mat_row(mb, 0), mat_row(ma, 0)));
-    row_put(f->m.m[1], l, tl_v3_sub(mat_row(mb, 1), mat_row(ma, 1)));
-    row_put(f->m.m[2], l, tl_v3_sub(mat_row(mb, 2), mat_row(ma, 2)));
+    tl_mat3 ma = turn_back(half_a, scale_a), mb = turn_back(half_b, scale_b);
+    vec_put(&f->way, l, tl_v3_sub(way, tl_m3_mul(&mb, d)));
+    vec_put(&f->half, l, tl_v3_scale(0.5, tl_v3_add(half_a, half_b)));
+    row_put(f->m.m[0], l, tl_v3_sub(mat_row(&mb, 0), mat_row(&ma, 0)));
+    row_put(f->m.m[1], l, tl_v3_sub(mat_row(&mb, 1), mat_row(&ma, 1)));
+    row_put(f->m.m[2], l, tl_v3_sub(mat_row(&mb, 2), mat_row(&ma, 2)));
 }
 
 TL_VECTORIZED bool tl_frames_put_patches(tl_frames *restrict f, const tl_patch_rows *restrict rows)
@@ -192,9 +177,8 @@ TL_VECTORIZED bool tl_frames_put_patches(tl_frames *restrict f, const tl_patch_r
     for (size_t l = 0; l < TL_LANES; l++) {
         tl_vec3 d = vec_at(&rows->d, l), last = row_vec3(p.facet, 7, l);
         tl_vec3 last_lean = row_vec3(p.facet, 10, l);
-        tl_mat3 ma = row_mat3(p.a, l), mb = row_mat3(p.b, l);
-        tl_vec3 half = tl_v3_add(row_vec3(p.a, 9, l), row_vec3(p.b, 9, l));
-        put_motion(f, l, &ma, &mb, vec_at(&rows->way, l), half, d);
+        tl_vec3 ha = row_vec3(p.a, 0, l), hb = row_vec3(p.b, 0, l);
+        put_motion(f, l, ha, p.a[3][l], hb, p.b[3][l], vec_at(&rows->way, l), d);
         tl_mat3 ra = mat_at(&f->to, l), rb = mat_at(&p.rb, l);
         tl_vec3 na = tl_m3_mul(&ra, row_vec3(p.facet, 0, l));
         tl_vec3 nb = tl_m3_mul(&rb, row_vec3(p.facet, 3, l));
@@ -222,7 +206,7 @@ void tl_frames_put(tl_frames *f, size_t l, const tl_model *m, uint32_t c, const 
     uint32_t body_a = m->blocks.body[s.a], body_b = m->blocks.body[s.b];
     const tl_moving *a = &m->detect->moving[body_a], *b = &m->detect->moving[body_b];
     tl_vec3 way = tl_way_between(m, body_a, body_b);
-    put_motion(f, l, &a->m, &b->m, way, tl_v3_add(a->half, b->half), s.d);
+    put_motion(f, l, a->half, a->scale, b->half, b->scale, way, s.d);
     mat_put(&f->to, l, in_b ? s.rb : s.ra);
     vec_put(&f->from, l, in_b ? s.d : tl_v3(0, 0, 0));
     put_facing(f, l, to, facet->last, facet->last_lean);
