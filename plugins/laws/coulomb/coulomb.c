@@ -31,6 +31,7 @@
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #define DEGREE (3.14159265358979323846 / 180)
 /* Lanes worked on at a time: none of them slips, or all are looked at for slip. */
@@ -131,7 +132,8 @@ static inline __attribute__((always_inline)) bool stick(const coulomb *law,
     double *restrict f_n = batch->f_n + begin, *restrict f_x = batch->f_s[0] + begin;
     double *restrict f_y = batch->f_s[1] + begin, *restrict f_z = batch->f_s[2] + begin;
     const double kn = law->kn, ks = law->ks, tangent = law->tangent, cohesion = law->cohesion;
-    double total[TL_LANES], tx[TL_LANES], ty[TL_LANES], tz[TL_LANES], beyond[TL_LANES];
+    double total[TL_LANES], tx[TL_LANES], ty[TL_LANES], tz[TL_LANES], mark[TL_LANES];
+    uint64_t beyond[TL_LANES], any = 0;
 #pragma omp simd
     for (uint32_t i = 0; i < TL_LANES; i++) {
         double stiffness = ks * area[i];
@@ -143,10 +145,10 @@ static inline __attribute__((always_inline)) bool stick(const coulomb *law,
         double trial2 = tx[i] * tx[i] + ty[i] * ty[i] + tz[i] * tz[i];
         beyond[i] = trial2 > limit * limit ? 1 : 0;
     }
-    double any = 0;
+#pragma omp simd reduction(| : any)
     for (uint32_t i = 0; i < TL_LANES; i++)
-        any += beyond[i];
-    if (any > 0)
+        any |= beyond[i];
+    if (any)
         return false;
 #pragma omp simd
     for (uint32_t i = 0; i < TL_LANES; i++) {
@@ -154,11 +156,14 @@ static inline __attribute__((always_inline)) bool stick(const coulomb *law,
         f_x[i] = tx[i];
         f_y[i] = ty[i];
         f_z[i] = tz[i];
+        mark[i] = total[i] < 0 ? TL_POINT_OPEN : 0;
     }
+    uint32_t *restrict flags = batch->flags + begin;
+#pragma omp simd
     for (uint32_t i = 0; i < TL_LANES; i++)
-        batch->flags[begin + i] = total[i] < 0 ? TL_POINT_OPEN : 0;
-    for (uint32_t i = 0; i < TL_LANES && batch->dissipated; i++)
-        batch->dissipated[begin + i] = 0;
+        flags[i] = (uint32_t)(int32_t)mark[i];
+    if (batch->dissipated)
+        memset(batch->dissipated + begin, 0, TL_LANES * sizeof *batch->dissipated);
     return true;
 }
 
@@ -244,7 +249,7 @@ TL_VECTORIZED static tl_status update(const void *self, const tl_law_batch *batc
         else
             move(law, batch, begin, lanes, mark, 0, 0);
         for (uint32_t i = 0; i < lanes; i++)
-            batch->flags[begin + i] = (uint32_t)mark[i];
+            batch->flags[begin + i] = (uint32_t)(int32_t)mark[i];
     }
     if (batch->stored)
         store_energy(law, batch, 0, batch->count);
