@@ -15,8 +15,9 @@
 #define SPARE_BUSY 8
 #define LAYOUT_LASTS 100
 #define SPARE_ROWS 64
-/* Lanes a thread has at least, so that most contacts can grow without a new layout. */
-#define LEAST_LANES 512
+/* Lanes a thread has at least, so that most contacts can grow without a new layout; and not a power of two, or rows of all
+ * columns would lie in the same few lines of the nearest cache. */
+#define LEAST_LANES 656
 
 void tl_contacts_init(tl_contacts *c, tl_points_table *p)
 {
