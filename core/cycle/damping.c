@@ -1,13 +1,28 @@
 /* damping.c - the damping plugin: chosen by name, called on batches of bodies.
  *
- * The plugin's states are numbers of the model, kept here and given to it, as are the forces of the step
- * before, which a change of damping begins with those of the last step; the kinetic energy and its
+ * The plugin's states are numbers of the model, kept here and given to it, as are, where it asks for them, the forces
+ * of the step before, which a change of damping begins with those of the last step; the kinetic energy and its
  * rate are sums made by gather.c. */
 #include "cycle/cycle_room.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* Forces of the last step are those before the next. */
+static void note_forces(tl_bodies *b, size_t begin, size_t end)
+{
+    for (size_t i = begin; i < end; i++) {
+        b->force_before[i] = b->force[i];
+        b->moment_before[i] = b->moment[i];
+    }
+}
+
+static bool hold_forces(tl_bodies *b)
+{
+    return TL_COLUMN_NEED(&b->table, b, moment_before, 0) &&
+           TL_COLUMN_NEED(&b->table, b, force_before, 0);
+}
 
 tl_status tl_model_damping(tl_model *m, const char *damping, const tl_args *args)
 {
@@ -21,7 +36,7 @@ tl_status tl_model_damping(tl_model *m, const char *damping, const tl_args *args
     const tl_damping_ops *ops = kind->ops;
     void *params = calloc(1, kind->params_size + 1), *self = params;
     double *state = calloc(kind->state_count + 1u, sizeof *state);
-    if (!params || !state) {
+    if (!params || !state || (ops->before && !hold_forces(&m->bodies))) {
         free(params);
         free(state);
         return tl_fail_memory(&m->error);
@@ -48,10 +63,8 @@ tl_status tl_model_damping(tl_model *m, const char *damping, const tl_args *args
     m->damping_params = params;
     m->damping_self = self;
     m->damping_state = state;
-    for (size_t i = 0; i < m->bodies.table.rows; i++) {
-        m->bodies.force_before[i] = m->bodies.force[i];
-        m->bodies.moment_before[i] = m->bodies.moment[i];
-    }
+    if (ops->before)
+        note_forces(&m->bodies, 0, m->bodies.table.rows);
     if (m->cycle)
         m->cycle->dt = 0; /* the stable step depends on the damping */
     return TL_OK;
@@ -88,10 +101,16 @@ static void look_at(seen *s, size_t i, const tl_bodies *b, size_t body)
     put(s->angular_velocity, i, real ? b->w[body] : none);
     put(s->force, i, real ? b->force[body] : none);
     put(s->moment, i, real ? b->moment[body] : none);
-    put(s->force_before, i, real ? b->force_before[body] : none);
-    put(s->moment_before, i, real ? b->moment_before[body] : none);
     s->mass[i] = real ? b->mass[body] : 1;
     s->inertia[i] = (moments.x + moments.y + moments.z) / 3;
+}
+
+static void look_before(seen *s, size_t i, const tl_bodies *b, size_t body)
+{
+    const tl_vec3 none = {0, 0, 0};
+    bool real = body < b->table.rows;
+    put(s->force_before, i, real ? b->force_before[body] : none);
+    put(s->moment_before, i, real ? b->moment_before[body] : none);
 }
 
 static void damp_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
@@ -101,9 +120,12 @@ static void damp_range(void *user, size_t begin, size_t end, size_t chunk, unsig
     tl_model *m = job->m;
     struct tl_cycle *c = m->cycle;
     tl_bodies *b = &m->bodies;
+    const tl_damping_ops *ops = m->damping->ops;
     seen s;
     for (size_t i = begin; i < end; i++)
         look_at(&s, i - begin, b, i);
+    for (size_t i = begin; i < end && ops->before; i++)
+        look_before(&s, i - begin, b, i);
     tl_damping_batch batch = {.size = sizeof batch,
                               .count = (uint32_t)(end - begin),
                               .dt = job->dt,
@@ -117,22 +139,19 @@ static void damp_range(void *user, size_t begin, size_t end, size_t chunk, unsig
         batch.angular_velocity[k] = s.angular_velocity[k];
         batch.force[k] = s.force[k];
         batch.moment[k] = s.moment[k];
-        batch.force_before[k] = s.force_before[k];
-        batch.moment_before[k] = s.moment_before[k];
+        batch.force_before[k] = ops->before ? s.force_before[k] : NULL;
+        batch.moment_before[k] = ops->before ? s.moment_before[k] : NULL;
         batch.damping_force[k] = c->damping_force[k] + begin;
         batch.damping_moment[k] = c->damping_moment[k] + begin;
         memset(batch.damping_force[k], 0, (end - begin) * sizeof *batch.damping_force[k]);
         memset(batch.damping_moment[k], 0, (end - begin) * sizeof *batch.damping_moment[k]);
     }
-    const tl_damping_ops *ops = m->damping->ops;
     tl_report report = {.size = sizeof report};
     tl_status status = ops->update(m->damping_self, &batch, &report);
     if (status != TL_OK)
         tl_cycle_failed(m, chunk, status, 0, report.text);
-    for (size_t i = begin; i < end && i < b->table.rows; i++) {
-        b->force_before[i] = b->force[i];
-        b->moment_before[i] = b->moment[i];
-    }
+    if (ops->before)
+        note_forces(b, begin, end < b->table.rows ? end : b->table.rows);
 }
 
 tl_status tl_damping_apply(tl_model *m, double dt)

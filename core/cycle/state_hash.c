@@ -22,6 +22,18 @@ static void hash_shape(tl_hash *hash, const tl_poly *p)
     tl_hash_bytes(hash, p->loop, p->start[p->face_count] * sizeof *p->loop);
 }
 
+static void hash_damping(tl_hash *hash, const tl_model *m)
+{
+    const tl_damping_ops *ops = m->damping->ops;
+    const tl_bodies *b = &m->bodies;
+    tl_hash_bytes(hash, m->damping_params, m->damping->params_size);
+    tl_hash_bytes(hash, m->damping_state, m->damping->state_count * sizeof *m->damping_state);
+    if (!ops->before)
+        return;
+    tl_hash_bytes(hash, b->force_before, b->table.rows * sizeof *b->force_before);
+    tl_hash_bytes(hash, b->moment_before, b->table.rows * sizeof *b->moment_before);
+}
+
 tl_status tl_state_hash(tl_model *m, char text[33])
 {
     tl_status status = tl_detect_refresh(m);
@@ -53,9 +65,7 @@ tl_status tl_state_hash(tl_model *m, char text[33])
                                m->config.rotation, m->mass_scaling};
     tl_hash_bytes(&hash, settings, sizeof settings);
     if (m->damping)
-        tl_hash_bytes(&hash, m->damping_params, m->damping->params_size);
-    if (m->damping)
-        tl_hash_bytes(&hash, m->damping_state, m->damping->state_count * sizeof *m->damping_state);
+        hash_damping(&hash, m);
     tl_hash_text(&hash, text);
     return TL_OK;
 }

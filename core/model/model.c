@@ -44,8 +44,6 @@ static void bodies_init(tl_bodies *b)
     TL_COLUMN(t, b, fixed, TL_COLUMN_STATE);
     TL_COLUMN(t, b, force, TL_COLUMN_STATE);
     TL_COLUMN(t, b, moment, TL_COLUMN_STATE);
-    TL_COLUMN(t, b, force_before, TL_COLUMN_STATE);
-    TL_COLUMN(t, b, moment_before, TL_COLUMN_STATE);
     TL_COLUMN(t, b, drive, 0);
     TL_COLUMN(t, b, odometer, 0);
 }

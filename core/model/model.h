@@ -74,8 +74,8 @@ typedef struct tl_bodies {
     uint8_t *fixed;   /* TL_FIX_* */
     tl_vec3 *force;   /* unbalanced: contacts, weight, loads */
     tl_vec3 *moment;
-    tl_vec3 *force_before; /* unbalanced, in the last damped step */
-    tl_vec3 *moment_before;
+    /* unbalanced, in the last damped step; NULL: no damping has asked for them */
+    tl_vec3 *force_before, *moment_before;
     tl_body_load *load; /* of the user's; NULL: none has ever been set */
     uint32_t *drive;    /* index into drives + 1, or 0 */
     double *odometer;   /* sum of (|v| + |w| radius) dt: no vertex has moved farther */

@@ -208,7 +208,8 @@ static void write_body(tl_model *m, const parts *sum, uint32_t body)
     tl_vec3 v = tl_v3_scale(1 / sum->mass, sum->momentum);
     b->v[body] = tl_v3(sum->fixed & TL_FIX_X ? 0 : v.x, sum->fixed & TL_FIX_Y ? 0 : v.y,
                        sum->fixed & TL_FIX_Z ? 0 : v.z);
-    b->force_before[body] = b->moment_before[body] = tl_v3(0, 0, 0);
+    if (b->force_before)
+        b->force_before[body] = b->moment_before[body] = tl_v3(0, 0, 0);
     if (b->load)
         b->load[body] = (tl_body_load){{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
 }

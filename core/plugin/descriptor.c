@@ -22,7 +22,7 @@ enum {
     FIRST_PARAM_SIZE = sizeof(tl_param),
     FIRST_STATE_SIZE = sizeof(tl_state),
     FIRST_LAW_SIZE = sizeof(tl_law_ops),
-    FIRST_DAMPING_SIZE = sizeof(tl_damping_ops),
+    FIRST_DAMPING_SIZE = offsetof(tl_damping_ops, before),
     FIRST_GENERATOR_SIZE = sizeof(tl_generator_ops)
 };
 
@@ -257,6 +257,8 @@ static tl_status copy_ops(const version *v, tl_kind *kind)
     if (!ops)
         return tl_fail_memory(v->error);
     memcpy(ops, given, size < ours[kind->type] ? size : ours[kind->type]);
+    if (kind->type == TL_KIND_DAMPING && size == FIRST_DAMPING_SIZE) /* cannot say so */
+        ops->damping.before = v->minor == 1;
     kind->ops = ops;
     return check_ops(kind->type, ops, v->error);
 }

@@ -97,10 +97,10 @@ TEST(a_search_for_nothing_is_no_error)
 
 TEST(broken_plugins_are_refused_with_the_reason)
 {
-    refused(bad_folder, "wrong_major", "it was built for plugin ABI 2.1, this Talus has 1.1");
+    refused(bad_folder, "wrong_major", "it was built for plugin ABI 2.2, this Talus has 1.2");
     refused(bad_folder, "newer_minor", "law 'newer_minor': ops has size");
     refused(bad_folder, "no_entry", "it does not export tl_plugin_entry");
-    refused(bad_folder, "refuses", "it refuses this Talus (plugin ABI 1.1)");
+    refused(bad_folder, "refuses", "it refuses this Talus (plugin ABI 1.2)");
     refused(bad_folder, "duplicate_id", "plugin 'talus.coulomb' is already loaded from ");
     refused(bad_folder, "name_clash",
             "law 'coulomb' is already provided by plugin 'talus.coulomb' from ");
@@ -112,6 +112,18 @@ TEST(broken_plugins_are_refused_with_the_reason)
     refused(bad_folder, "no_unit", "law 'no_unit': parameter 'value' has no unit");
     refused(bad_folder, "twice", "law 'twice': parameters 'value' and 'value' share a name");
     refused(bad_folder, "snapped", "its descriptor has size 0: not a Talus plugin");
+}
+
+TEST(dampings_that_could_not_ask_get_the_forces_of_the_step_before)
+{
+    char path[1024];
+    snprintf(path, sizeof path, "%s/older_minor.so", bad_folder);
+    tl_error error = {TL_OK, ""};
+    CHECK_INT(tl_plugin_load(path, &error), TL_OK);
+    const tl_kind *kind = tl_plugin_find(TL_KIND_DAMPING, "older_minor");
+    CHECK(kind && ((const tl_damping_ops *)kind->ops)->before);
+    CHECK(!((const tl_damping_ops *)tl_plugin_find(TL_KIND_DAMPING, "local")->ops)->before);
+    CHECK(((const tl_damping_ops *)tl_plugin_find(TL_KIND_DAMPING, "combined")->ops)->before);
 }
 
 TEST(the_same_file_again_is_a_duplicate)
@@ -153,6 +165,7 @@ int main(void)
     RUN(the_same_file_again_is_a_duplicate);
     RUN(a_text_file_is_refused);
     RUN(refusals_leave_the_kinds_as_they_were);
+    RUN(dampings_that_could_not_ask_get_the_forces_of_the_step_before);
     printf("%s: %d checks, %d failed\n", __FILE__, check_count, check_failed);
     return check_failed != 0;
 }

@@ -28,7 +28,7 @@ extern "C" {
 #endif
 
 #define TL_ABI_MAJOR 1u
-#define TL_ABI_MINOR 1u
+#define TL_ABI_MINOR 2u
 
 #if defined(__GNUC__)
 #define TL_PLUGIN_EXPORT __attribute__((visibility("default")))
@@ -221,7 +221,7 @@ typedef struct tl_damping_batch {
     double *damping_moment[3];         /* out, preset to 0 */
     double *alpha;                     /* out, preset to 0: viscous coefficient, 1/s */
     double *const *state;              /* the damping's states, one number each, read only here */
-    /* since minor 1: force and moment of the step before, 0 on a new body */
+    /* since minor 1: force and moment of the step before, 0 on a new body; NULL when `before` is 0 */
     const double *force_before[3];
     const double *moment_before[3];
 } tl_damping_batch;
@@ -239,6 +239,9 @@ typedef struct tl_damping_ops {
     double (*step_factor)(const void *self);
     /* [main] */
     void (*destroy)(void *self);
+    /* since minor 2: not 0: `update` reads force and moment of the step before, which the host then keeps. Plugins of
+     * minor 1 are given them. */
+    uint32_t before;
 } tl_damping_ops;
 
 /* ---------------------------------------------------------------- generators ------------- */

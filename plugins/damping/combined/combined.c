@@ -59,7 +59,7 @@ static double step_factor(const void *self)
 }
 
 static const tl_damping_ops ops = {
-    .size = sizeof ops, .update = update, .step_factor = step_factor};
+    .size = sizeof ops, .update = update, .step_factor = step_factor, .before = true};
 
 static const tl_kind kind = {
     .size = sizeof kind,
@@ -87,7 +87,7 @@ static const tl_plugin plugin = {
     .kind_stride = sizeof kind,
 };
 
-/* Hosts give the forces of the step before since minor version 1. */
+/* Hosts give the forces of the step before since minor version 1, but since 2 to those that ask. */
 TL_PLUGIN_EXPORT const tl_plugin *tl_plugin_entry(uint32_t host_major, uint32_t host_minor)
 {
     return host_major == TL_ABI_MAJOR && host_minor >= 1 ? &plugin : NULL;
