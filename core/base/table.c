@@ -8,6 +8,9 @@
 
 /* Capacities are multiples of this, so that a vector loop may run past the last row. */
 #define ROW_ROUND 16u
+/* What grows row by row gets 1 / this more than it has: a row is then copied some ten times before it lies still, and
+ * little is left over. */
+#define GROWTH 8
 
 void tl_table_init(tl_table *table, void *owner)
 {
@@ -86,7 +89,7 @@ bool tl_table_reserve(tl_table *table, size_t rows)
 {
     if (rows <= table->capacity)
         return true;
-    size_t grown = table->capacity + table->capacity / 2;
+    size_t grown = table->capacity + table->capacity / GROWTH;
     return allocate(table, ((rows > grown ? rows : grown) + ROW_ROUND - 1) / ROW_ROUND * ROW_ROUND);
 }
 
