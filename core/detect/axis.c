@@ -296,7 +296,7 @@ static bool is_beside_seam(const tl_pair_view *view, double s)
            seam_separation(view) > -BESIDE * view->size;
 }
 
-tl_axis tl_axis_search(const tl_pair_view *view, tl_narrow *room, const tl_axis *previous)
+tl_axis tl_axis_search(const tl_pair_view *view, tl_narrow *room, const tl_axis_features *previous)
 {
     tl_axis face = {.s = -INFINITY, .second = -INFINITY};
     tl_over on_a, on_b;
@@ -322,7 +322,7 @@ tl_axis tl_axis_search(const tl_pair_view *view, tl_narrow *room, const tl_axis 
         }
     }
     if (previous) {
-        tl_axis kept = *previous;
+        tl_axis kept = tl_axis_of(*previous);
         if (!(kept.kind == best.kind && kept.ia == best.ia && kept.ib == best.ib) &&
             tl_axis_follow(view, &kept) && best.s - kept.s <= HYSTERESIS * fabs(best.s) &&
             kept.s < 0) {
@@ -393,29 +393,47 @@ static uint32_t lowest_point(const tl_vec3 *x, uint32_t count, tl_vec3 n, double
     return best;
 }
 
-bool tl_axis_follow(const tl_pair_view *view, tl_axis *axis)
+/* n and s of a face's normal; returns the vertex of the other block that it rests on. */
+static uint32_t place_face(const tl_pair_view *view, tl_axis *axis)
 {
-    double low, slack = INSIDE * view->size;
-    if (axis->kind == TL_AXIS_EDGES) {
-        tl_axis now;
-        if (!arcs_cross(view, axis) || !edge_axis(view, axis->ia, axis->ib, &now) ||
-            !edges_meet(view, axis))
-            return false;
-        axis->n = now.n;
-        axis->s = gap_along(view, now.n);
-        return true;
-    }
+    double low;
+    uint32_t vertex;
     if (axis->kind == TL_AXIS_FACE_A) {
         const tl_plane *plane = &view->a->plane[axis->ia];
-        uint32_t b = lowest_point(view->vertex_b, view->b->vertex_count, plane->normal, &low);
+        vertex = lowest_point(view->vertex_b, view->b->vertex_count, plane->normal, &low);
         axis->n = plane->normal;
         axis->s = low - plane->offset;
-        return over_face(view->a, axis->ia, view->vertex_b[b], slack);
+    } else {
+        tl_vec3 n = view->normal_b[axis->ib];
+        vertex = lowest_point(view->a->vertex, view->a->vertex_count, n, &low);
+        axis->n = tl_v3_neg(n);
+        axis->s = low - offset_b(view, axis->ib);
     }
-    tl_vec3 n = view->normal_b[axis->ib];
-    uint32_t a = lowest_point(view->a->vertex, view->a->vertex_count, n, &low);
-    axis->n = tl_v3_neg(n);
-    axis->s = low - view->b->plane[axis->ib].offset - tl_v3_dot(n, view->shift);
-    tl_vec3 x = tl_m3_tmul(&view->turn, tl_v3_sub(view->a->vertex[a], view->shift));
+    return vertex;
+}
+
+bool tl_axis_place(const tl_pair_view *view, tl_axis *axis)
+{
+    if (axis->kind != TL_AXIS_EDGES) {
+        place_face(view, axis);
+        return true;
+    }
+    tl_axis now;
+    if (!edge_axis(view, axis->ia, axis->ib, &now))
+        return false;
+    axis->n = now.n;
+    axis->s = gap_along(view, now.n);
+    return true;
+}
+
+bool tl_axis_follow(const tl_pair_view *view, tl_axis *axis)
+{
+    if (axis->kind == TL_AXIS_EDGES)
+        return arcs_cross(view, axis) && edges_meet(view, axis) && tl_axis_place(view, axis);
+    uint32_t vertex = place_face(view, axis);
+    double slack = INSIDE * view->size;
+    if (axis->kind == TL_AXIS_FACE_A)
+        return over_face(view->a, axis->ia, view->vertex_b[vertex], slack);
+    tl_vec3 x = tl_m3_tmul(&view->turn, tl_v3_sub(view->a->vertex[vertex], view->shift));
     return over_face(view->b, axis->ib, x, slack);
 }

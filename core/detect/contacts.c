@@ -102,7 +102,7 @@ tl_pair_view tl_pair_view_of(const tl_model *m, uint32_t a, uint32_t b)
     return view;
 }
 
-bool tl_contact_append(tl_model *m, uint32_t pair, const tl_axis *axis, tl_tag tag,
+bool tl_contact_append(tl_model *m, uint32_t pair, const tl_axis *axis, double margin, tl_tag tag,
                        size_t want_points, size_t want_facets)
 {
     tl_detect *d = m->detect;
@@ -119,9 +119,9 @@ bool tl_contact_append(tl_model *m, uint32_t pair, const tl_axis *axis, tl_tag t
     c->pair[row] = pair;
     c->tag[row] = tag;
     c->material[row] = tl_material_row(m, tag);
-    c->axis[row] = *axis;
+    c->axis[row] = tl_features_of(axis);
     c->until[row] = tl_pair_odometer(m, p->a, p->b);
-    c->search[row] = -INFINITY; /* tl_contact_fill tells */
+    c->search[row] = c->until[row] + margin;
     c->fate[row] = TL_FATE_GROW;
     p->contact = row;
     p->want.points = (uint16_t)want_points;

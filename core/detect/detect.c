@@ -203,7 +203,9 @@ static tl_status give_birth(tl_model *m, uint32_t pair, overlaps *deep)
     tl_share_rule rule = tl_share_rule_of(m, &view, tag, false);
     tl_manifold_build(&view, &axis, &rule, room);
     const tl_manifold *g = &room->manifold;
-    if (g->failed || !tl_contact_append(m, pair, &axis, tag, g->point_count, g->facet_count))
+    double margin = tl_axis_margin(&axis, view.size);
+    if (g->failed ||
+        !tl_contact_append(m, pair, &axis, margin, tag, g->point_count, g->facet_count))
         return tl_fail_memory(&m->error);
     if (axis.s < -DEEP * view.size && deep->count++ == 0)
         deep->pair = pair;
@@ -292,16 +294,17 @@ static bool settle_rows(tl_model *m)
     return room;
 }
 
-/* Builds the facets of the contacts that have been given their room. */
-static tl_status fill_contacts(tl_model *m)
+/* Builds the facets of the contacts that have been given their room; *more: some want more still. */
+static tl_status fill_contacts(tl_model *m, bool *more)
 {
     tl_contacts *c = &m->detect->contacts;
+    *more = false;
     for (uint32_t row = 0; row < c->table.rows; row++) {
-        if (c->fate[row] == TL_FATE_GROW) {
-            if (!tl_contact_fill(m, row))
-                return tl_fail_memory(&m->error);
-        }
-        c->fate[row] = TL_FATE_KEEP;
+        if (c->fate[row] != TL_FATE_GROW)
+            c->fate[row] = TL_FATE_KEEP;
+        else if (!tl_contact_fill(m, row))
+            return tl_fail_memory(&m->error);
+        *more = *more || c->fate[row] == TL_FATE_GROW;
     }
     return TL_OK;
 }
@@ -327,12 +330,16 @@ static tl_status settle(tl_model *m)
     }
     if (changed == 0 && !d->rows_changed)
         return TL_OK;
-    if (!settle_rows(m))
-        status = tl_contacts_repack(m);
-    else if (!tl_contacts_index(m))
-        status = tl_fail_memory(&m->error);
-    d->rows_changed = status != TL_OK;
-    return status == TL_OK ? fill_contacts(m) : status;
+    for (bool more = true; more && status == TL_OK;) {
+        if (!settle_rows(m))
+            status = tl_contacts_repack(m);
+        else if (!tl_contacts_index(m))
+            status = tl_fail_memory(&m->error);
+        d->rows_changed = status != TL_OK;
+        if (status == TL_OK)
+            status = fill_contacts(m, &more);
+    }
+    return status;
 }
 
 /* Pairs and contacts after a change of rows or laws, and new contacts; those that stand are not

@@ -57,6 +57,22 @@ typedef struct tl_axis {
     double second;   /* the next best axis's s */
 } tl_axis;
 
+/* The features it belongs to: all that a contact keeps of its axis. */
+typedef struct tl_axis_features {
+    uint16_t kind, ia, ib;
+} tl_axis_features;
+
+static inline tl_axis_features tl_features_of(const tl_axis *axis)
+{
+    return (tl_axis_features){(uint16_t)axis->kind, axis->ia, axis->ib};
+}
+
+/* An axis of these features that has no place yet. */
+static inline tl_axis tl_axis_of(tl_axis_features f)
+{
+    return (tl_axis){.kind = f.kind, .ia = f.ia, .ib = f.ib, .s = -INFINITY, .second = -INFINITY};
+}
+
 typedef enum tl_facet_kind {
     TL_FACET_PATCH,  /* face on face */
     TL_FACET_FACE_A, /* vertices of B on a face of A */
@@ -192,7 +208,7 @@ typedef struct tl_contacts {
     uint32_t *pair; /* index of its pair */
     tl_tag *tag;
     uint32_t *material; /* index of the model's materials, or TL_NO_ROW */
-    tl_axis *axis;
+    tl_axis_features *axis;
     double *search; /* sum of odometers up to which the axis need not be searched anew */
     double *until;  /* sum of odometers up to which the facets may be reused */
     uint32_t *facet_start;
@@ -366,9 +382,12 @@ bool tl_look_near(const tl_pair_view *view, double reach);
 bool tl_pair_place(tl_pair_view *view, tl_narrow *room);
 /* Fills them for one face of B only. */
 bool tl_pair_place_face(tl_pair_view *view, uint32_t face, tl_narrow *room);
-/* The exact common plane's axis. `previous` (or NULL) is preferred when nearly as good. */
-tl_axis tl_axis_search(const tl_pair_view *view, tl_narrow *room, const tl_axis *previous);
-/* n and s of the same features in the present place; false when the features no longer define it. */
+/* The exact common plane's axis. That of the features of `previous` (or NULL) is preferred when nearly as good. */
+tl_axis tl_axis_search(const tl_pair_view *view, tl_narrow *room, const tl_axis_features *previous);
+/* n and s of an axis's features in the present place, whether or not they still define it; false for edges that are
+ * parallel. */
+bool tl_axis_place(const tl_pair_view *view, tl_axis *axis);
+/* The same; false when the features no longer define it. */
 bool tl_axis_follow(const tl_pair_view *view, tl_axis *axis);
 /* Unit direction perpendicular to both edges, within `outward`'s half-space; false when parallel. */
 bool tl_edge_normal(tl_vec3 edge_a, tl_vec3 edge_b, tl_vec3 outward, tl_vec3 *n);
@@ -436,7 +455,8 @@ tl_share_rule tl_share_rule_of(const tl_model *m, const tl_pair_view *view, tl_t
                                bool across);
 /* The same for a contact of bodies that have other frames than when its facets were made. */
 void tl_contact_reframe(tl_model *m, uint32_t contact, unsigned thread);
-/* Builds the facets of a contact that has just been given its room; false when out of memory. */
+/* Builds the facets of a contact that has just been given its room, unless it wants more: then its fate is still to
+ * grow; false when out of memory. */
 bool tl_contact_fill(tl_model *m, uint32_t contact);
 
 /* ---- renew.c ---- */
@@ -453,8 +473,9 @@ bool tl_contact_transfer(tl_model *m, uint32_t contact, tl_narrow *room,
 /* ---- contacts.c ---- */
 void tl_contacts_init(tl_contacts *contacts, tl_points_table *points);
 void tl_point_lanes_init(tl_point_lanes *lanes);
-/* Adds a contact of a pair, without points, wanting room for some; false when out of memory. */
-bool tl_contact_append(tl_model *m, uint32_t pair, const tl_axis *axis, tl_tag tag,
+/* Adds a contact of a pair, without points, wanting room for some, whose axis stands for a run of `margin`; false when
+ * out of memory. */
+bool tl_contact_append(tl_model *m, uint32_t pair, const tl_axis *axis, double margin, tl_tag tag,
                        size_t want_points, size_t want_facets);
 /* Lays contacts and points out anew: without those of fate TL_FATE_DIE, sorted by material and blocks,
  * each with the room it wants at least. */

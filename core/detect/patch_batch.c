@@ -185,10 +185,8 @@ TL_INLINE void project_a(tl_patch_batch *b, work *w, uint32_t i)
         tl_frame2 f = frame_at(&w->frame, l);
         tl_vec3 v = lane3(&b->a[i], l);
         tl_point2 at = tl_frame2_project(&f, v);
-        double h = tl_v3_dot(lane3(&b->placed_b, l), v);
         w->x[i][l] = at.x;
         w->y[i][l] = at.y;
-        b->low_a[l] = h < b->low_a[l] ? h : b->low_a[l];
     }
 }
 
@@ -201,10 +199,8 @@ TL_INLINE void project_b(tl_patch_batch *b, work *w, uint32_t j)
         tl_mat3 turn = turn_at(b, l);
         tl_vec3 v = tl_v3_add(tl_m3_mul(&turn, lane3(&b->b[j], l)), lane3(&b->shift, l));
         tl_point2 at = tl_frame2_project(&f, v);
-        double h = tl_v3_dot(lane3(&b->normal_a, l), v);
         w->x[CORNERS + j][l] = at.x;
         w->y[CORNERS + j][l] = at.y;
-        b->low_b[l] = h < b->low_b[l] ? h : b->low_b[l];
     }
 }
 
@@ -259,7 +255,6 @@ TL_VECTORIZED static void look(tl_patch_batch *b, work *w)
     {
         w->height[TL_HEIGHT_OWN][l] = 0;
         w->height[TL_HEIGHT_OWN + 1][l] = -1;
-        b->low_a[l] = b->low_b[l] = INFINITY;
         w->inside_a[l] = w->inside_b[l] = 0;
     }
     for (uint32_t i = 0; i < w->na; i++)

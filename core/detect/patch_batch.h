@@ -37,7 +37,6 @@ typedef struct tl_patch_batch {
     tl_batch1 area;          /* in all */
     tl_batch3 placed_b;      /* B's normal, A's frame */
     tl_batch1 placed_offset; /* B's plane's */
-    tl_batch1 low_a, low_b;  /* least heights of each face's corners along the other's normal */
     /* what is not in columns */
     uint32_t na[TL_BATCH], nb[TL_BATCH], faces[TL_BATCH];
     uint32_t used; /* bits of the lanes that have a pair */

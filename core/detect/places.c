@@ -103,6 +103,16 @@ void tl_contact_begin(tl_model *m, uint32_t contact, const tl_point_lanes *l)
     }
 }
 
+/* Of a contact without points: that along its axis. */
+static double axis_gap(const tl_model *m, uint32_t contact)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    tl_pair_view view = tl_pair_view_of(m, contacts->a[contact], contacts->b[contact]);
+    tl_axis axis = tl_axis_of(contacts->axis[contact]);
+    bool placed = tl_pair_place(&view, &m->detect->narrow[0]) && tl_axis_place(&view, &axis);
+    return placed ? axis.s : INFINITY;
+}
+
 void tl_contact_summary(const tl_model *m, uint32_t contact, tl_vec3 *normal, tl_vec3 *point,
                         double *gap)
 {
@@ -112,7 +122,7 @@ void tl_contact_summary(const tl_model *m, uint32_t contact, tl_vec3 *normal, tl
     tl_sight s = tl_sight_of(m, contact);
     tl_vec3 n = {0, 0, 0}, x = {0, 0, 0};
     double area = 0;
-    *gap = contacts->point_count[contact] ? INFINITY : contacts->axis[contact].s;
+    *gap = contacts->point_count[contact] ? INFINITY : axis_gap(m, contact);
     for (uint32_t k = 0; k < contacts->facet_count[contact]; k++) {
         const tl_facet *f = &contacts->facet[contacts->facet_start[contact] + k];
         bool on_b = tl_facet_in_b(f);

@@ -94,20 +94,11 @@ static void refit(tl_points_table *p, size_t row, const tl_patch_batch *batch, t
 }
 
 /* What else a contact keeps of its patch. */
-static void note_patch(tl_model *m, uint32_t c, const tl_patch_batch *batch, uint32_t lane,
-                       double area)
+static void note_patch(tl_model *m, uint32_t c, double area)
 {
     tl_contacts *contacts = &m->detect->contacts;
-    tl_axis *axis = &contacts->axis[c];
     contacts->area[c] = area;
     contacts->fresh[c] = true;
-    if (axis->kind == TL_AXIS_FACE_A) {
-        axis->n = tl_batch3_get(&batch->normal_a, lane);
-        axis->s = batch->low_b[lane] - batch->offset_a[lane];
-    } else {
-        axis->n = tl_v3_neg(tl_batch3_get(&batch->placed_b, lane));
-        axis->s = batch->low_a[lane] - batch->placed_offset[lane];
-    }
     tl_contact_allow_reuse(m, c);
 }
 
@@ -144,7 +135,7 @@ static void take_patches(tl_model *m, const tl_rank *rank, const tl_patch_batch 
         refit(p, rank->start, batch, n[l], &t);
         for (uint32_t k = 0; k < TL_LANES; k++)
             if (now >> k & 1)
-                note_patch(m, rank->contact[k], batch, k, t.area[k]);
+                note_patch(m, rank->contact[k], t.area[k]);
         same &= ~now;
     }
 }

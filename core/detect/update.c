@@ -27,8 +27,7 @@ tl_share_rule tl_share_rule_of(const tl_model *m, const tl_pair_view *view, tl_t
                            .reach = across ? INFINITY : tolerance};
 }
 
-/* How far a pair may run before its axis is searched again. */
-static double axis_margin(const tl_axis *axis, double size)
+double tl_axis_margin(const tl_axis *axis, double size)
 {
     double lead = 0.5 * (axis->s - axis->second);
     return fmin(fmax(lead, AXIS_SHARE * fabs(axis->s)), AXIS_MOST * size);
@@ -94,15 +93,17 @@ static bool rebuild(tl_model *m, uint32_t c, tl_narrow *room, bool across)
     tl_contacts *contacts = &m->detect->contacts;
     double odometer = tl_pair_odometer(m, contacts->a[c], contacts->b[c]);
     tl_pair_view view = tl_pair_view_of(m, contacts->a[c], contacts->b[c]);
-    tl_axis axis = contacts->axis[c];
+    tl_axis axis = tl_axis_of(contacts->axis[c]);
     if (!tl_pair_place(&view, room))
         return false;
     bool search = odometer > contacts->search[c];
     for (;; search = true) {
         bool followed = !search && tl_axis_follow(&view, &axis);
+        if (!search && !followed && axis.kind == TL_AXIS_EDGES)
+            continue; /* edges that no longer meet have no axis */
         if (search) {
             axis = tl_axis_search(&view, room, &contacts->axis[c]);
-            contacts->search[c] = odometer + axis_margin(&axis, view.size);
+            contacts->search[c] = odometer + tl_axis_margin(&axis, view.size);
         }
         tl_tag tag = tl_touching_tag(&view, axis.n);
         tl_share_rule rule = tl_share_rule_of(m, &view, tag, across);
@@ -111,7 +112,7 @@ static bool rebuild(tl_model *m, uint32_t c, tl_narrow *room, bool across)
             return false;
         if (!search && !followed && !(room->manifold.patch_area > 0))
             continue; /* what touched has parted: look at all features */
-        contacts->axis[c] = axis;
+        contacts->axis[c] = tl_features_of(&axis);
         if (tag.joint != contacts->tag[c].joint || tag.plane != contacts->tag[c].plane) {
             contacts->tag[c] = tag;
             uint32_t material = tl_material_row(m, tag);
@@ -138,6 +139,19 @@ static void note_manifold(tl_contacts *contacts, uint32_t c, const tl_manifold *
     contacts->fresh[c] = true;
 }
 
+/* Asks for room for a manifold, unless there is enough. */
+static bool wants_room(tl_detect *d, uint32_t c, const tl_manifold *g)
+{
+    tl_contacts *contacts = &d->contacts;
+    if (g->point_count <= contacts->point_room[c] && g->facet_count <= contacts->facet_room[c])
+        return false;
+    tl_pair *pair = &d->pairs[contacts->pair[c]];
+    pair->want.points = (uint16_t)g->point_count;
+    pair->want.facets = (uint16_t)g->facet_count;
+    contacts->fate[c] = TL_FATE_GROW;
+    return true;
+}
+
 /* Puts the built manifold in the place of the contact's points, or asks for room. */
 static bool take_manifold(tl_model *m, uint32_t c, tl_narrow *room, const tl_point_lanes *lanes)
 {
@@ -149,14 +163,7 @@ static bool take_manifold(tl_model *m, uint32_t c, tl_narrow *room, const tl_poi
         refit(m, c, g);
         return true;
     }
-    if (g->point_count > contacts->point_room[c] || g->facet_count > contacts->facet_room[c]) {
-        tl_pair *pair = &d->pairs[contacts->pair[c]];
-        pair->want.points = (uint16_t)g->point_count;
-        pair->want.facets = (uint16_t)g->facet_count;
-        contacts->fate[c] = TL_FATE_GROW;
-        return true;
-    }
-    return tl_contact_transfer(m, c, room, lanes);
+    return wants_room(d, c, g) || tl_contact_transfer(m, c, room, lanes);
 }
 
 void tl_contact_allow_reuse(tl_model *m, uint32_t c)
@@ -166,29 +173,6 @@ void tl_contact_allow_reuse(tl_model *m, uint32_t c)
     double most =
         (contacts->point_count[c] ? REUSE : TL_SILENT) * (size_a < size_b ? size_a : size_b);
     contacts->until[c] = tl_pair_odometer(m, contacts->a[c], contacts->b[c]) + most;
-}
-
-/* n and s of an axis that is the normal of one of a patch's two faces, by the other's corners; false when it
- * is another. */
-static bool follow_face(const tl_pair_view *view, const tl_facet *f, tl_axis *axis)
-{
-    bool of_a = axis->kind == TL_AXIS_FACE_A && axis->ia == f->ia;
-    if (!of_a && !(axis->kind == TL_AXIS_FACE_B && axis->ib == f->ib))
-        return false;
-    const tl_poly *other = of_a ? view->b : view->a;
-    const tl_vec3 *vertex = of_a ? view->vertex_b : view->a->vertex;
-    uint32_t face = of_a ? f->ib : f->ia;
-    tl_vec3 up = of_a ? view->a->plane[f->ia].normal : view->normal_b[f->ib];
-    double low = INFINITY, offset = of_a
-                                        ? view->a->plane[f->ia].offset
-                                        : view->b->plane[f->ib].offset + tl_v3_dot(up, view->shift);
-    for (uint32_t i = other->start[face]; i < other->start[face + 1]; i++) {
-        double h = tl_v3_dot(up, vertex[other->loop[i]]);
-        low = h < low ? h : low;
-    }
-    axis->n = of_a ? up : tl_v3_neg(up);
-    axis->s = low - offset;
-    return true;
 }
 
 /* Puts a patch in the place of the contact's, whose points begin there and are the same: stresses stay, forces follow
@@ -225,7 +209,7 @@ bool tl_contact_is_patch(const tl_model *m, uint32_t c)
 {
     const tl_contacts *contacts = &m->detect->contacts;
     const tl_facet *f = &contacts->facet[contacts->facet_start[c]];
-    const tl_axis *axis = &contacts->axis[c];
+    const tl_axis_features *axis = &contacts->axis[c];
     uint32_t material = contacts->material[c];
     return contacts->lone[c] && contacts->facet_count[c] == 1 && f->kind == TL_FACET_PATCH &&
            ((axis->kind == TL_AXIS_FACE_A && axis->ia == f->ia) ||
@@ -244,7 +228,7 @@ static bool renew_patch(tl_model *m, uint32_t c, tl_narrow *room)
         return false;
     tl_pair_view view = tl_pair_view_of(m, contacts->a[c], contacts->b[c]);
     tl_share_rule rule = tl_share_rule_of(m, &view, contacts->tag[c], false);
-    if (!tl_pair_place_face(&view, f->ib, room) || !follow_face(&view, f, &contacts->axis[c]) ||
+    if (!tl_pair_place_face(&view, f->ib, room) ||
         !tl_manifold_renew(&view, f->ia, f->ib, &rule, room))
         return false;
     const tl_patch_points *g = &room->patch;
@@ -324,14 +308,19 @@ bool tl_contact_fill(tl_model *m, uint32_t c)
     tl_pair_view view = tl_pair_view_of(m, contacts->a[c], contacts->b[c]);
     if (!tl_pair_place(&view, room))
         return false;
-    if (contacts->search[c] == -INFINITY)
-        contacts->search[c] = tl_pair_odometer(m, contacts->a[c], contacts->b[c]) +
-                              axis_margin(&contacts->axis[c], view.size);
+    tl_axis axis = tl_axis_of(contacts->axis[c]);
+    if (!tl_axis_place(&view, &axis))
+        axis = tl_axis_search(&view, room, NULL);
     tl_share_rule rule = tl_share_rule_of(m, &view, contacts->tag[c], contacts->across[c]);
-    tl_manifold_build(&view, &contacts->axis[c], &rule, room);
+    tl_manifold_build(&view, &axis, &rule, room);
     note_manifold(contacts, c, &room->manifold);
-    if (room->manifold.failed || !tl_contact_transfer(m, c, room, &m->detect->lanes[0]))
+    if (room->manifold.failed)
         return false;
+    if (wants_room(m->detect, c, &room->manifold)) /* its axis has been found in another way */
+        return true;
+    if (!tl_contact_transfer(m, c, room, &m->detect->lanes[0]))
+        return false;
+    contacts->fate[c] = TL_FATE_KEEP;
     tl_contact_allow_reuse(m, c);
     return true;
 }

@@ -4,6 +4,8 @@
 
 #include "detect/detect.h"
 
+/* How far a pair may run before its axis is searched again. */
+double tl_axis_margin(const tl_axis *axis, double size);
 /* Whether a contact's facets are still good. */
 bool tl_contact_stands(const tl_model *m, uint32_t contact);
 /* Whether a contact is two faces on each other and nothing else, and its axis stands. */

@@ -257,8 +257,6 @@ TEST(lanes_do_not_know_each_other)
             CHECK_INT(one->laid[0], batch->laid[i]);
             if (one->laid[0] && batch->laid[i]) {
                 CHECK(same_bits(one->area[0], batch->area[i]));
-                CHECK(same_bits(one->low_a[0], batch->low_a[i]));
-                CHECK(same_bits(one->low_b[0], batch->low_b[i]));
                 CHECK(same_bits(one->centroid.p.x[0], batch->centroid.p.x[i]));
             }
             scene_pair_free(&p[i].pair);

@@ -161,8 +161,10 @@ static void check_contacts(tl_model *m, tl_narrow *room, int *closed, int *lost,
             *lost += c == TL_NO_ROW && room->manifold.point_count > 0;
             /* the axis kept may have sunk, and the best one risen, by a quarter of the depth since it
              * was within 5 % of the best */
-            if (c != TL_NO_ROW && axis.s < 0)
-                *stale += m->detect->contacts.axis[c].s < 1.8 * axis.s - 1e-5;
+            if (c != TL_NO_ROW && axis.s < 0) {
+                tl_axis kept = tl_axis_of(m->detect->contacts.axis[c]);
+                *stale += !tl_axis_place(&view, &kept) || kept.s < 1.8 * axis.s - 1e-5;
+            }
         }
 }
 
