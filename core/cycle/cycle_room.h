@@ -3,6 +3,7 @@
 #define TL_CYCLE_CYCLE_ROOM_H
 
 #include "base/inline.h"
+#include "base/lanes.h"
 #include "detect/detect.h"
 
 #include <pthread.h>
@@ -45,40 +46,6 @@ struct tl_rated {
     double extreme; /* the highest rate, with mass scaling the lowest */
     uint32_t body;  /* row, or TL_NO_ROW */
 };
-
-/* Vectors and quaternions of a group of bodies, component by component. */
-typedef struct tl_lanes3 {
-    double x[TL_LANES], y[TL_LANES], z[TL_LANES];
-} tl_lanes3;
-
-typedef struct tl_lanes4 {
-    double w[TL_LANES], x[TL_LANES], y[TL_LANES], z[TL_LANES];
-} tl_lanes4;
-
-static inline tl_vec3 tl_lanes3_get(const tl_lanes3 *from, size_t i)
-{
-    return (tl_vec3){from->x[i], from->y[i], from->z[i]};
-}
-
-static inline void tl_lanes3_put(tl_lanes3 *to, size_t i, tl_vec3 v)
-{
-    to->x[i] = v.x;
-    to->y[i] = v.y;
-    to->z[i] = v.z;
-}
-
-static inline tl_quat tl_lanes4_get(const tl_lanes4 *from, size_t i)
-{
-    return (tl_quat){from->w[i], from->x[i], from->y[i], from->z[i]};
-}
-
-static inline void tl_lanes4_put(tl_lanes4 *to, size_t i, tl_quat q)
-{
-    to->w[i] = q.w;
-    to->x[i] = q.x;
-    to->y[i] = q.y;
-    to->z[i] = q.z;
-}
 
 /* Bodies that can move, on their way through a step: the kick, which changes velocities, and the drift,
  * which changes places. The lanes beyond `count` are inert. Spins and angular momenta are in principal axes

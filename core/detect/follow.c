@@ -53,14 +53,16 @@ TL_VECTORIZED static void follow_level(const columns *c, size_t slots, const tl_
 #pragma omp simd
         for (size_t l = 0; l < TL_LANES; l++) {
             size_t i = at + l;
-            tl_mat3 to = mat_at(&f->to, l), motion = mat_at(&f->m, l), turn = mat_at(&f->turn, l);
-            tl_vec3 n = vec_at(&f->n, l);
+            tl_mat3 to = tl_lanes9_get(&f->to, l), motion = tl_lanes9_get(&f->m, l),
+                    turn = tl_lanes9_get(&f->turn, l);
+            tl_vec3 n = tl_lanes3_get(&f->n, l);
             tl_vec3 x = tl_m3_mul(&to, tl_columns_get(c->p, i));
-            tl_vec3 du = tl_v3_add(vec_at(&f->way, l), tl_m3_mul(&motion, x));
+            tl_vec3 du = tl_v3_add(tl_lanes3_get(&f->way, l), tl_m3_mul(&motion, x));
             double du_n = tl_v3_dot(du, n);
             put(c->arm, i, x);
             put(c->normal, i, n);
-            c->closure[i] = f->offset[l] - tl_v3_dot(vec_at(&f->plane, l), x) - c->reference[i];
+            c->closure[i] =
+                f->offset[l] - tl_v3_dot(tl_lanes3_get(&f->plane, l), x) - c->reference[i];
             c->du_n[i] = du_n;
             put(c->du_s, i, tl_v3_madd(du, -du_n, n));
             /* what has not turned stays as it is, to the bit */
@@ -84,14 +86,14 @@ TL_VECTORIZED static void follow_any(const columns *c, size_t begin, size_t end,
 #pragma omp simd
         for (size_t l = 0; l < TL_LANES; l++) {
             size_t i = slot * TL_LANES + l;
-            tl_mat3 to = mat_at(&f->to, l), motion = mat_at(&f->m, l);
-            tl_vec3 mean = vec_at(&f->mean, l), lean = vec_at(&f->lean, l);
-            tl_vec3 last = vec_at(&f->last, l), last_lean = vec_at(&f->last_lean, l);
+            tl_mat3 to = tl_lanes9_get(&f->to, l), motion = tl_lanes9_get(&f->m, l);
+            tl_vec3 mean = tl_lanes3_get(&f->mean, l), lean = tl_lanes3_get(&f->lean, l);
+            tl_vec3 last = tl_lanes3_get(&f->last, l), last_lean = tl_lanes3_get(&f->last_lean, l);
             tl_vec3 p = tl_columns_get(c->p, i),
-                    x = tl_v3_add(tl_m3_mul(&to, p), vec_at(&f->from, l));
+                    x = tl_v3_add(tl_m3_mul(&to, p), tl_lanes3_get(&f->from, l));
             double l2 = f->l2[l], last_l2 = tl_v3_norm2(last_lean);
             tl_vec3 n = tl_leaning(mean, lean, f->mean2[l], l2, face[l], edge[l]);
-            tl_vec3 du = tl_v3_add(vec_at(&f->way, l), tl_m3_mul(&motion, x));
+            tl_vec3 du = tl_v3_add(tl_lanes3_get(&f->way, l), tl_m3_mul(&motion, x));
             double du_n = tl_v3_dot(du, n);
             /* with the features that made it, along the faces; where two edges cross, also up the faces by how far
              * one edge has slid over the other */
@@ -100,14 +102,16 @@ TL_VECTORIZED static void follow_any(const columns *c, size_t begin, size_t end,
             go = tl_v3_madd(go, slid * tl_v3_dot(tl_v3_cross(mean, lean), du), lean);
             x = tl_v3_add(x, go);
             put(c->p, i, tl_v3_add(p, tl_m3_tmul(&to, go)));
-            c->closure[i] = f->offset[l] - tl_v3_dot(vec_at(&f->plane, l), x) - c->reference[i];
+            c->closure[i] =
+                f->offset[l] - tl_v3_dot(tl_lanes3_get(&f->plane, l), x) - c->reference[i];
             put(c->arm, i, x);
             put(c->normal, i, n);
             c->du_n[i] = du_n;
             put(c->du_s, i, tl_v3_madd(du, -du_n, n));
             double last2 = last_l2 > 0 ? tl_v3_norm2(last) : 1;
             tl_vec3 before = tl_leaning(last, last_lean, last2, last_l2, face[l], edge[l]);
-            tl_vec3 v = tl_turn_one(tl_columns_get(c->f_s, i), before, n, vec_at(&f->half, l));
+            tl_vec3 v =
+                tl_turn_one(tl_columns_get(c->f_s, i), before, n, tl_lanes3_get(&f->half, l));
             put(c->f_s, i, v);
         }
     }
@@ -140,9 +144,9 @@ static void finish_facet(tl_model *m, const tl_rank *rank, const columns *c, con
     if (!facet)
         return;
     if (tangents)
-        turn_states(m, rank->contact[l], facet, c, l, vec_at(&f->half, l), tangents);
-    facet->last = vec_at(&f->mean, l);
-    facet->last_lean = vec_at(&f->lean, l);
+        turn_states(m, rank->contact[l], facet, c, l, tl_lanes3_get(&f->half, l), tangents);
+    facet->last = tl_lanes3_get(&f->mean, l);
+    facet->last_lean = tl_lanes3_get(&f->lean, l);
 }
 
 /* The same of flush patches: theirs do not lean, and did not. */
@@ -150,7 +154,7 @@ static void finish_level(const tl_frames *f)
 {
     for (size_t l = 0; l < TL_LANES; l++)
         if (f->facet[l])
-            f->facet[l]->last = vec_at(&f->n, l);
+            f->facet[l]->last = tl_lanes3_get(&f->n, l);
 }
 
 /* Lanes of the rank that hold a contact of one patch and nothing else, or no contact: all of them? `some` is one of the
@@ -193,8 +197,8 @@ static bool follow_patches(tl_model *m, const tl_rank *rank, const columns *c, t
         rows.ra[l] = &bodies->r[a].m[0][0];
         rows.rb[l] = &bodies->r[b].m[0][0];
         rows.facet[l] = &f->facet[from]->na.x;
-        vec_put(&rows.d, l, tl_body_apart(bodies, a, b));
-        vec_put(&rows.way, l, tl_way_between(m, a, b));
+        tl_lanes3_put(&rows.d, l, tl_body_apart(bodies, a, b));
+        tl_lanes3_put(&rows.way, l, tl_way_between(m, a, b));
     }
     if (!tl_frames_put_patches(f, &rows)) {
         follow_level(c, rank->slots, f);

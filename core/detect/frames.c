@@ -50,32 +50,12 @@ void tl_follow_bodies(tl_model *m)
 
 /* ---------------------------------------------------------------- lanes ------------------ */
 
-TL_INLINE tl_vec3 mat_row(const tl_mat3 *m, size_t i)
-{
-    return tl_v3(m->m[i][0], m->m[i][1], m->m[i][2]);
-}
-
-/* Row by row, not in loops: a loop over lanes with loops in it does not become SIMD code. */
-TL_INLINE void row_put(double (*restrict row)[TL_LANES], size_t l, tl_vec3 value)
-{
-    row[0][l] = value.x;
-    row[1][l] = value.y;
-    row[2][l] = value.z;
-}
-
-TL_INLINE void mat_put(lane_mat3 *m, size_t l, const tl_mat3 *value)
-{
-    row_put(m->m[0], l, mat_row(value, 0));
-    row_put(m->m[1], l, mat_row(value, 1));
-    row_put(m->m[2], l, mat_row(value, 2));
-}
-
 /* What is known of a patch and its bodies, a lane each, before the lanes work out together what follows from it. */
 typedef struct patches {
     double a[TL_MOVING_ROW][TL_LANES], b[TL_MOVING_ROW][TL_LANES]; /* tl_moving */
     double facet[TL_FACET_ROW][TL_LANES];                          /* tl_facet */
-    lane_mat3 rb;
-    lane_vec3 d;
+    tl_lanes9 rb;
+    tl_lanes3 d;
 } patches;
 
 typedef double quad __attribute__((vector_size(32)));
@@ -116,7 +96,7 @@ TL_INLINE void transpose(double (*restrict to)[TL_LANES], const double *const *r
 }
 
 /* A matrix of each lane; its last element does not fit into fours. */
-TL_INLINE void transpose_matrices(lane_mat3 *to, const double *const *row)
+TL_INLINE void transpose_matrices(tl_lanes9 *to, const double *const *row)
 {
     transpose(to->m[0], row, 8);
     for (size_t l = 0; l < TL_LANES; l++)
@@ -135,15 +115,15 @@ TL_INLINE tl_mat3 matrix_of(tl_vec3 g, double g2)
 /* A facet in its present place, and its normals before. */
 TL_INLINE void put_facing(tl_frames *f, size_t l, tl_facing to, tl_vec3 last, tl_vec3 last_lean)
 {
-    vec_put(&f->n, l, to.n);
-    vec_put(&f->mean, l, to.mean);
-    vec_put(&f->lean, l, to.lean);
-    vec_put(&f->plane, l, to.plane);
+    tl_lanes3_put(&f->n, l, to.n);
+    tl_lanes3_put(&f->mean, l, to.mean);
+    tl_lanes3_put(&f->lean, l, to.lean);
+    tl_lanes3_put(&f->plane, l, to.plane);
     f->mean2[l] = to.mean2;
     f->l2[l] = to.l2;
     f->offset[l] = to.offset;
-    vec_put(&f->last, l, last);
-    vec_put(&f->last_lean, l, last_lean);
+    tl_lanes3_put(&f->last, l, last);
+    tl_lanes3_put(&f->last_lean, l, last_lean);
 }
 
 /* Element k and the two behind it as a vector of lane l. */
@@ -152,16 +132,22 @@ TL_INLINE tl_vec3 row_vec3(double (*row)[TL_LANES], size_t k, size_t l)
     return tl_v3(row[k][l], row[k + 1][l], row[k + 2][l]);
 }
 
+TL_INLINE tl_mat3 difference(const tl_mat3 *a, const tl_mat3 *b)
+{
+    return (tl_mat3){{{a->m[0][0] - b->m[0][0], a->m[0][1] - b->m[0][1], a->m[0][2] - b->m[0][2]},
+                      {a->m[1][0] - b->m[1][0], a->m[1][1] - b->m[1][1], a->m[1][2] - b->m[1][2]},
+                      {a->m[2][0] - b->m[2][0], a->m[2][1] - b->m[2][1], a->m[2][2] - b->m[2][2]}}};
+}
+
 /* Motion of B against A in the last step, by their turns; `d` is the way from A's centroid to B's. */
 TL_INLINE void put_motion(tl_frames *f, size_t l, tl_vec3 half_a, double scale_a, tl_vec3 half_b,
                           double scale_b, tl_vec3 way, tl_vec3 d)
 {
     tl_mat3 ma = turn_back(half_a, scale_a), mb = turn_back(half_b, scale_b);
-    vec_put(&f->way, l, tl_v3_sub(way, tl_m3_mul(&mb, d)));
-    vec_put(&f->half, l, tl_v3_scale(0.5, tl_v3_add(half_a, half_b)));
-    row_put(f->m.m[0], l, tl_v3_sub(mat_row(&mb, 0), mat_row(&ma, 0)));
-    row_put(f->m.m[1], l, tl_v3_sub(mat_row(&mb, 1), mat_row(&ma, 1)));
-    row_put(f->m.m[2], l, tl_v3_sub(mat_row(&mb, 2), mat_row(&ma, 2)));
+    tl_lanes3_put(&f->way, l, tl_v3_sub(way, tl_m3_mul(&mb, d)));
+    tl_lanes3_put(&f->half, l, tl_v3_scale(0.5, tl_v3_add(half_a, half_b)));
+    tl_mat3 moved = difference(&mb, &ma);
+    tl_lanes9_put(&f->m, l, &moved);
 }
 
 TL_VECTORIZED bool tl_frames_put_patches(tl_frames *restrict f, const tl_patch_rows *restrict rows)
@@ -175,20 +161,20 @@ TL_VECTORIZED bool tl_frames_put_patches(tl_frames *restrict f, const tl_patch_r
     double tilted[TL_LANES];
 #pragma omp simd
     for (size_t l = 0; l < TL_LANES; l++) {
-        tl_vec3 d = vec_at(&rows->d, l), last = row_vec3(p.facet, 7, l);
+        tl_vec3 d = tl_lanes3_get(&rows->d, l), last = row_vec3(p.facet, 7, l);
         tl_vec3 last_lean = row_vec3(p.facet, 10, l);
         tl_vec3 ha = row_vec3(p.a, 0, l), hb = row_vec3(p.b, 0, l);
-        put_motion(f, l, ha, p.a[3][l], hb, p.b[3][l], vec_at(&rows->way, l), d);
-        tl_mat3 ra = mat_at(&f->to, l), rb = mat_at(&p.rb, l);
+        put_motion(f, l, ha, p.a[3][l], hb, p.b[3][l], tl_lanes3_get(&rows->way, l), d);
+        tl_mat3 ra = tl_lanes9_get(&f->to, l), rb = tl_lanes9_get(&p.rb, l);
         tl_vec3 na = tl_m3_mul(&ra, row_vec3(p.facet, 0, l));
         tl_vec3 nb = tl_m3_mul(&rb, row_vec3(p.facet, 3, l));
         tl_facing to = tl_facing_patch(na, nb, d, p.facet[6][l]);
         put_facing(f, l, to, last, last_lean);
-        vec_put(&f->from, l, tl_v3(0, 0, 0));
-        tl_vec3 by = tl_turn_between(last, to.n, tl_v3_dot(vec_at(&f->half, l), to.n));
+        tl_lanes3_put(&f->from, l, tl_v3(0, 0, 0));
+        tl_vec3 by = tl_turn_between(last, to.n, tl_v3_dot(tl_lanes3_get(&f->half, l), to.n));
         double g2 = tl_v3_norm2(by);
         tl_mat3 turn = matrix_of(by, g2);
-        mat_put(&f->turn, l, &turn);
+        tl_lanes9_put(&f->turn, l, &turn);
         f->turns[l] = g2 > 0 ? 1 : 0;
         tilted[l] = to.l2 + tl_v3_norm2(last_lean);
     }
@@ -207,7 +193,7 @@ void tl_frames_put(tl_frames *f, size_t l, const tl_model *m, uint32_t c, const 
     const tl_moving *a = &m->detect->moving[body_a], *b = &m->detect->moving[body_b];
     tl_vec3 way = tl_way_between(m, body_a, body_b);
     put_motion(f, l, a->half, a->scale, b->half, b->scale, way, s.d);
-    mat_put(&f->to, l, in_b ? s.rb : s.ra);
-    vec_put(&f->from, l, in_b ? s.d : tl_v3(0, 0, 0));
+    tl_lanes9_put(&f->to, l, in_b ? s.rb : s.ra);
+    tl_lanes3_put(&f->from, l, in_b ? s.d : tl_v3(0, 0, 0));
     put_facing(f, l, to, facet->last, facet->last_lean);
 }

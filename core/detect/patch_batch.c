@@ -12,7 +12,7 @@
 #include <string.h>
 
 #define CORNERS TL_OUTLINE_CORNERS
-#define EACH_LANE(l) for (uint32_t l = 0; l < TL_BATCH; l++)
+#define EACH_LANE(l) for (uint32_t l = 0; l < TL_LANES; l++)
 
 tl_patch_batch *tl_batch_room(tl_narrow *room, bool corners, double steep)
 {
@@ -30,20 +30,20 @@ tl_patch_batch *tl_batch_room(tl_narrow *room, bool corners, double steep)
     return p->batch;
 }
 
-static void take_face(tl_batch3 *corner, uint32_t lane, const tl_poly *p, uint32_t face,
+static void take_face(tl_lanes3 *corner, uint32_t lane, const tl_poly *p, uint32_t face,
                       bool backward)
 {
     const uint16_t *loop = p->loop + p->start[face];
     uint32_t count = tl_poly_face_size(p, face);
     for (uint32_t i = 0; i < count; i++)
-        tl_batch3_put(&corner[i], lane, p->vertex[loop[backward ? count - 1 - i : i]]);
+        tl_lanes3_put(&corner[i], lane, p->vertex[loop[backward ? count - 1 - i : i]]);
 }
 
 /* Corners from `count` to `most` as the first. */
-static void fill_face(tl_batch3 *corner, uint32_t lane, uint32_t count, uint32_t most)
+static void fill_face(tl_lanes3 *corner, uint32_t lane, uint32_t count, uint32_t most)
 {
     for (uint32_t i = count; i < most; i++)
-        tl_batch3_put(&corner[i], lane, tl_batch3_get(&corner[0], lane));
+        tl_lanes3_put(&corner[i], lane, tl_lanes3_get(&corner[0], lane));
 }
 
 void tl_batch_add(tl_patch_batch *batch, uint32_t lane, const tl_poly *a, uint32_t fa,
@@ -55,8 +55,8 @@ void tl_batch_add(tl_patch_batch *batch, uint32_t lane, const tl_poly *a, uint32
     batch->faces[lane] = tl_key_of(0, fa, fb);
     take_face(batch->a, lane, a, fa, false);
     take_face(batch->b, lane, b, fb, true);
-    tl_batch3_put(&batch->normal_a, lane, a->plane[fa].normal);
-    tl_batch3_put(&batch->normal_b, lane, b->plane[fb].normal);
+    tl_lanes3_put(&batch->normal_a, lane, a->plane[fa].normal);
+    tl_lanes3_put(&batch->normal_b, lane, b->plane[fb].normal);
     batch->offset_a[lane] = a->plane[fa].offset;
     batch->offset_b[lane] = b->plane[fb].offset;
     batch->near[lane] = TL_MERGE * size;
@@ -66,7 +66,7 @@ void tl_batch_add(tl_patch_batch *batch, uint32_t lane, const tl_poly *a, uint32
 
 /* The plane of a patch, in lanes. */
 typedef struct frames {
-    tl_batch3 o, t1, t2, n;
+    tl_lanes3 o, t1, t2, n;
     tl_batch1 secant, rise_x, rise_y, rest, rest_x, rest_y;
 } frames;
 
@@ -82,7 +82,7 @@ typedef struct work {
     tl_batch1 x[2 * CORNERS], y[2 * CORNERS];   /* of the faces */
     tl_batch1 line_x[CORNERS], line_y[CORNERS]; /* of B's edges */
     tl_batch1 height[CORNERS * CORNERS + 2];
-    uint64_t inside_a[TL_BATCH], inside_b[TL_BATCH];
+    uint64_t inside_a[TL_LANES], inside_b[TL_LANES];
     /* of the polygon: corners, the first once more after the last; edges from corner k - 1 to k in row k */
     tl_batch1 count, px[CORNERS + 1], py[CORNERS + 1], fan[CORNERS + 1];
     tl_batch1 cx, cy, area;                         /* centroid; area in the plane */
@@ -90,18 +90,6 @@ typedef struct work {
     ends ends[CORNERS];
     uint32_t na, nb, corners; /* most of any lane */
 } work;
-
-TL_INLINE tl_vec3 lane3(const tl_batch3 *v, uint32_t l)
-{
-    return tl_v3(v->x[l], v->y[l], v->z[l]);
-}
-
-TL_INLINE void set3(tl_batch3 *v, uint32_t l, tl_vec3 value)
-{
-    v->x[l] = value.x;
-    v->y[l] = value.y;
-    v->z[l] = value.z;
-}
 
 /* Number by number: copies of structs would keep loops from becoming vectors. */
 TL_INLINE tl_frame2 frame_at(const frames *f, uint32_t l)
@@ -123,7 +111,7 @@ TL_INLINE tl_mat3 turn_at(const tl_patch_batch *b, uint32_t l)
                       {b->turn[2][0][l], b->turn[2][1][l], b->turn[2][2][l]}}};
 }
 
-TL_INLINE tl_plane plane_at(const tl_batch3 *normal, const tl_batch1 offset, uint32_t l)
+TL_INLINE tl_plane plane_at(const tl_lanes3 *normal, const tl_batch1 offset, uint32_t l)
 {
     tl_plane out;
     out.normal.x = normal->x[l], out.normal.y = normal->y[l], out.normal.z = normal->z[l];
@@ -160,17 +148,17 @@ TL_INLINE void lay_frames(tl_patch_batch *b, work *w)
     {
         tl_mat3 turn = turn_at(b, l);
         tl_plane own = plane_at(&b->normal_b, b->offset_b, l);
-        tl_plane placed = tl_plane_placed(&turn, lane3(&b->shift, l), own);
-        tl_vec3 na = lane3(&b->normal_a, l);
-        tl_frame2 f = tl_frame2_of(na, placed.normal, lane3(&b->a[0], l));
-        set3(&w->frame.o, l, f.o);
-        set3(&w->frame.n, l, f.n);
-        set3(&w->frame.t1, l, f.t1);
-        set3(&w->frame.t2, l, f.t2);
+        tl_plane placed = tl_plane_placed(&turn, tl_lanes3_get(&b->shift, l), own);
+        tl_vec3 na = tl_lanes3_get(&b->normal_a, l);
+        tl_frame2 f = tl_frame2_of(na, placed.normal, tl_lanes3_get(&b->a[0], l));
+        tl_lanes3_put(&w->frame.o, l, f.o);
+        tl_lanes3_put(&w->frame.n, l, f.n);
+        tl_lanes3_put(&w->frame.t1, l, f.t1);
+        tl_lanes3_put(&w->frame.t2, l, f.t2);
         w->frame.secant[l] = f.secant;
         w->frame.rise_x[l] = f.rise.x;
         w->frame.rise_y[l] = f.rise.y;
-        set3(&b->placed_b, l, placed.normal);
+        tl_lanes3_put(&b->placed_b, l, placed.normal);
         b->placed_offset[l] = placed.offset;
         b->laid[l] = (uint64_t) !(tl_tilt2(na, placed.normal) > steep);
     }
@@ -183,7 +171,7 @@ TL_INLINE void project_a(tl_patch_batch *b, work *w, uint32_t i)
     EACH_LANE(l)
     {
         tl_frame2 f = frame_at(&w->frame, l);
-        tl_vec3 v = lane3(&b->a[i], l);
+        tl_vec3 v = tl_lanes3_get(&b->a[i], l);
         tl_point2 at = tl_frame2_project(&f, v);
         w->x[i][l] = at.x;
         w->y[i][l] = at.y;
@@ -197,7 +185,8 @@ TL_INLINE void project_b(tl_patch_batch *b, work *w, uint32_t j)
     {
         tl_frame2 f = frame_at(&w->frame, l);
         tl_mat3 turn = turn_at(b, l);
-        tl_vec3 v = tl_v3_add(tl_m3_mul(&turn, lane3(&b->b[j], l)), lane3(&b->shift, l));
+        tl_vec3 v =
+            tl_v3_add(tl_m3_mul(&turn, tl_lanes3_get(&b->b[j], l)), tl_lanes3_get(&b->shift, l));
         tl_point2 at = tl_frame2_project(&f, v);
         w->x[CORNERS + j][l] = at.x;
         w->y[CORNERS + j][l] = at.y;
@@ -273,7 +262,7 @@ static void find_outlines(tl_patch_batch *b, work *w)
     static const uint64_t each = UINT64_C(0x0101010101010101);
     w->corners = 0;
     const tl_outline *some = NULL;
-    for (uint32_t l = 0; l < TL_BATCH; l++) {
+    for (uint32_t l = 0; l < TL_LANES; l++) {
         w->count[l] = 0;
         if (!(b->used >> l & 1))
             continue;
@@ -288,11 +277,11 @@ static void find_outlines(tl_patch_batch *b, work *w)
         w->count[l] = o->count;
         w->corners = o->count > w->corners ? o->count : w->corners;
     }
-    for (uint32_t l = 0; l < TL_BATCH; l++)
+    for (uint32_t l = 0; l < TL_LANES; l++)
         if (!(b->used >> l & 1))
             b->outline[l] = *some;
     b->alike = true;
-    for (uint32_t l = 1; l < TL_BATCH; l++)
+    for (uint32_t l = 1; l < TL_LANES; l++)
         b->alike =
             b->alike && b->outline[l].count == b->outline[0].count &&
             memcmp(b->outline[l].corner, b->outline[0].corner, sizeof b->outline[0].corner) == 0;
@@ -310,7 +299,7 @@ static void find_row(const tl_outline_corner *c, work *w, uint32_t k)
     memcpy(e->g, w->height[c->under], sizeof e->g);
     memcpy(e->line_x, w->line_x[c->line], sizeof e->line_x);
     memcpy(e->line_y, w->line_y[c->line], sizeof e->line_y);
-    for (uint32_t l = 0; l < TL_BATCH; l++)
+    for (uint32_t l = 0; l < TL_LANES; l++)
         e->face[l] = c->face;
 }
 
@@ -319,7 +308,7 @@ static void find_ends(const tl_patch_batch *b, work *w)
 {
     for (uint32_t k = 0; k < w->corners && b->alike; k++)
         find_row(&b->outline[0].corner[k], w, k);
-    for (uint32_t l = 0; l < TL_BATCH && !b->alike; l++)
+    for (uint32_t l = 0; l < TL_LANES && !b->alike; l++)
         for (uint32_t k = 0; k < w->corners; k++) {
             const tl_outline_corner *c = &b->outline[l].corner[k];
             ends *e = &w->ends[k];
@@ -339,7 +328,7 @@ static void find_ends(const tl_patch_batch *b, work *w)
 TL_INLINE void place(work *w, uint32_t k)
 {
     const ends *e = &w->ends[k];
-    float face[TL_BATCH], edge[TL_BATCH];
+    float face[TL_LANES], edge[TL_LANES];
 #pragma omp simd
     EACH_LANE(l)
     {
@@ -486,7 +475,7 @@ TL_INLINE void put_point(tl_batch_point *out, const work *w, const double *x, co
     {
         tl_frame2 f = frame_at(&w->frame, l);
         tl_point2 at = {x[l], y[l]};
-        set3(&out->p, l, tl_frame2_point(&f, at));
+        tl_lanes3_put(&out->p, l, tl_frame2_point(&f, at));
     }
 }
 
@@ -569,12 +558,12 @@ void tl_batch_lay(tl_patch_batch *batch)
 {
     _Alignas(64) work w;
     w.na = w.nb = 0;
-    for (uint32_t l = 0; l < TL_BATCH; l++) {
+    for (uint32_t l = 0; l < TL_LANES; l++) {
         bool used = batch->used >> l & 1;
         w.na = used && batch->na[l] > w.na ? batch->na[l] : w.na;
         w.nb = used && batch->nb[l] > w.nb ? batch->nb[l] : w.nb;
     }
-    for (uint32_t l = 0; l < TL_BATCH; l++) {
+    for (uint32_t l = 0; l < TL_LANES; l++) {
         fill_face(batch->a, l, batch->na[l], w.na);
         fill_face(batch->b, l, batch->nb[l], w.nb);
     }

@@ -2,43 +2,39 @@
 #ifndef TL_DETECT_PATCH_BATCH_H
 #define TL_DETECT_PATCH_BATCH_H
 
+#include "base/lanes.h"
 #include "detect/patch.h"
 
-#define TL_BATCH TL_LANES
-
-typedef double tl_batch1[TL_BATCH];
-typedef struct tl_batch3 {
-    tl_batch1 x, y, z;
-} tl_batch3;
+typedef double tl_batch1[TL_LANES];
 
 /* Points of a kind, one of each lane. */
 typedef struct tl_batch_point {
-    tl_batch3 p;
+    tl_lanes3 p;
     tl_batch1 area;
-    float face[TL_BATCH], edge[TL_BATCH]; /* lean */
+    float face[TL_LANES], edge[TL_LANES]; /* lean */
 } tl_batch_point;
 
 typedef struct tl_patch_batch {
     /* the pairs: bodies' rotations, the way from A's body to B's in the model's axes */
     _Alignas(64) tl_batch1 r_a[3][3];
     tl_batch1 r_b[3][3];
-    tl_batch3 apart;
+    tl_lanes3 apart;
     /* their faces: corners counter-clockwise seen against the patch's normal, B's in B's frame */
-    tl_batch3 a[TL_OUTLINE_CORNERS], b[TL_OUTLINE_CORNERS], normal_a, normal_b;
+    tl_lanes3 a[TL_OUTLINE_CORNERS], b[TL_OUTLINE_CORNERS], normal_a, normal_b;
     tl_batch1 offset_a, offset_b;
     tl_batch1 near, least,
         reach; /* corners nearer to each other are one; least area; largest gap */
     /* the patches */
-    uint64_t laid[TL_BATCH];      /* whether there is one, of full corners that stand clear */
-    tl_outline outline[TL_BATCH]; /* its corners */
+    uint64_t laid[TL_LANES];      /* whether there is one, of full corners that stand clear */
+    tl_outline outline[TL_LANES]; /* its corners */
     tl_batch_point middles[TL_OUTLINE_CORNERS], corners[TL_OUTLINE_CORNERS], centroid;
     tl_batch1 turn[3][3]; /* as in a tl_pair_view */
-    tl_batch3 shift;
+    tl_lanes3 shift;
     tl_batch1 area;          /* in all */
-    tl_batch3 placed_b;      /* B's normal, A's frame */
+    tl_lanes3 placed_b;      /* B's normal, A's frame */
     tl_batch1 placed_offset; /* B's plane's */
     /* what is not in columns */
-    uint32_t na[TL_BATCH], nb[TL_BATCH], faces[TL_BATCH];
+    uint32_t na[TL_LANES], nb[TL_LANES], faces[TL_LANES];
     uint32_t used; /* bits of the lanes that have a pair */
     bool alike;    /* all outlines are, as in rock cut by a few sets of joints */
     double steep;  /* square of the sine of the tilt beyond which there is no patch */
@@ -92,18 +88,6 @@ static inline bool tl_batch_has_keys(const tl_patch_batch *b, uint32_t lane, tl_
     return others == 0;
 }
 
-static inline tl_vec3 tl_batch3_get(const tl_batch3 *v, uint32_t lane)
-{
-    return tl_v3(v->x[lane], v->y[lane], v->z[lane]);
-}
-
-static inline void tl_batch3_put(tl_batch3 *v, uint32_t lane, tl_vec3 value)
-{
-    v->x[lane] = value.x;
-    v->y[lane] = value.y;
-    v->z[lane] = value.z;
-}
-
 /* Rotations of the bodies of a lane, and the way from A's to B's in the model's axes. */
 static inline void tl_batch_between(tl_patch_batch *batch, uint32_t lane, const tl_mat3 *r_a,
                                     const tl_mat3 *r_b, tl_vec3 apart)
@@ -113,7 +97,7 @@ static inline void tl_batch_between(tl_patch_batch *batch, uint32_t lane, const 
             batch->r_a[i][j][lane] = r_a->m[i][j];
             batch->r_b[i][j][lane] = r_b->m[i][j];
         }
-    tl_batch3_put(&batch->apart, lane, apart);
+    tl_lanes3_put(&batch->apart, lane, apart);
 }
 
 #endif

@@ -161,7 +161,7 @@ static int same_bits(double a, double b)
 
 static void same_point(const tl_batch_point *p, uint32_t lane, const tl_patch_points *g, size_t i)
 {
-    tl_vec3 a = tl_batch3_get(&p->p, lane), b = tl_columns_get(g->p, i);
+    tl_vec3 a = tl_lanes3_get(&p->p, lane), b = tl_columns_get(g->p, i);
     CHECK(same_bits(a.x, b.x) && same_bits(a.y, b.y) && same_bits(a.z, b.z));
     CHECK(same_bits(p->area[lane], g->area[i]));
     CHECK(same_bits((double)p->face[lane], (double)g->lean[i].face));
@@ -212,9 +212,9 @@ TEST(batches_lay_what_is_laid_one_by_one)
     tl_narrow room = {0};
     int found[KINDS] = {0}, made[KINDS] = {0};
     for (int round = 0; round < 1500; round++) {
-        laid p[TL_BATCH];
+        laid p[TL_LANES];
         int kind = round % KINDS;
-        uint32_t count = round % 7 == 0 ? 1 + (uint32_t)(7 * check_random(&seed)) : TL_BATCH;
+        uint32_t count = round % 7 == 0 ? 1 + (uint32_t)(7 * check_random(&seed)) : TL_LANES;
         for (uint32_t i = 0; i < count; i++)
             p[i] = make(&seed, kind);
         for (int move = 0; move < 3; move++) {
@@ -243,14 +243,14 @@ TEST(lanes_do_not_know_each_other)
     uint64_t seed = 21;
     tl_narrow alone = {0}, together = {0};
     for (int round = 0; round < 200; round++) {
-        laid p[TL_BATCH];
+        laid p[TL_LANES];
         tl_patch_batch *batch = tl_batch_room(&together, false, STEEP);
-        for (uint32_t i = 0; i < TL_BATCH; i++) {
+        for (uint32_t i = 0; i < TL_LANES; i++) {
             p[i] = make(&seed, ANYHOW);
             add(batch, i, &p[i]);
         }
         tl_batch_lay(batch);
-        for (uint32_t i = 0; i < TL_BATCH; i++) {
+        for (uint32_t i = 0; i < TL_LANES; i++) {
             tl_patch_batch *one = tl_batch_room(&alone, false, STEEP);
             add(one, 0, &p[i]);
             tl_batch_lay(one);

@@ -1,0 +1,70 @@
+/* lanes.h - vectors, quaternions and matrices of TL_LANES things side by side, component by component: what a loop over lanes
+ * reads and writes as whole vectors of the processor. */
+#ifndef TL_BASE_LANES_H
+#define TL_BASE_LANES_H
+
+#include "base/inline.h"
+
+#include <stddef.h>
+#include <talus/plugin.h>
+#include <talus/vmath.h>
+
+typedef struct tl_lanes3 {
+    double x[TL_LANES], y[TL_LANES], z[TL_LANES];
+} tl_lanes3;
+
+typedef struct tl_lanes4 {
+    double w[TL_LANES], x[TL_LANES], y[TL_LANES], z[TL_LANES];
+} tl_lanes4;
+
+typedef struct tl_lanes9 {
+    double m[3][3][TL_LANES];
+} tl_lanes9;
+
+TL_INLINE tl_vec3 tl_lanes3_get(const tl_lanes3 *from, size_t lane)
+{
+    return (tl_vec3){from->x[lane], from->y[lane], from->z[lane]};
+}
+
+TL_INLINE void tl_lanes3_put(tl_lanes3 *to, size_t lane, tl_vec3 v)
+{
+    to->x[lane] = v.x;
+    to->y[lane] = v.y;
+    to->z[lane] = v.z;
+}
+
+TL_INLINE tl_quat tl_lanes4_get(const tl_lanes4 *from, size_t lane)
+{
+    return (tl_quat){from->w[lane], from->x[lane], from->y[lane], from->z[lane]};
+}
+
+TL_INLINE void tl_lanes4_put(tl_lanes4 *to, size_t lane, tl_quat q)
+{
+    to->w[lane] = q.w;
+    to->x[lane] = q.x;
+    to->y[lane] = q.y;
+    to->z[lane] = q.z;
+}
+
+/* Matrices element by element, not in loops: a loop over lanes with loops in it does not become SIMD code. */
+TL_INLINE tl_mat3 tl_lanes9_get(const tl_lanes9 *from, size_t lane)
+{
+    return (tl_mat3){{{from->m[0][0][lane], from->m[0][1][lane], from->m[0][2][lane]},
+                      {from->m[1][0][lane], from->m[1][1][lane], from->m[1][2][lane]},
+                      {from->m[2][0][lane], from->m[2][1][lane], from->m[2][2][lane]}}};
+}
+
+TL_INLINE void tl_lanes9_put(tl_lanes9 *to, size_t lane, const tl_mat3 *m)
+{
+    to->m[0][0][lane] = m->m[0][0];
+    to->m[0][1][lane] = m->m[0][1];
+    to->m[0][2][lane] = m->m[0][2];
+    to->m[1][0][lane] = m->m[1][0];
+    to->m[1][1][lane] = m->m[1][1];
+    to->m[1][2][lane] = m->m[1][2];
+    to->m[2][0][lane] = m->m[2][0];
+    to->m[2][1][lane] = m->m[2][1];
+    to->m[2][2][lane] = m->m[2][2];
+}
+
+#endif
