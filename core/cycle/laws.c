@@ -21,8 +21,8 @@ static void name_contact(tl_model *m, uint32_t c, char *text, size_t size)
 {
     const tl_contacts *contacts = &m->detect->contacts;
     const char *joint = tl_tag_name(m, contacts->tag[c]);
-    snprintf(text, size, "contact of blocks %u and %u%s%s", contacts->id_a[c], contacts->id_b[c],
-             *joint ? ", joint " : " (no joint)", joint);
+    snprintf(text, size, "contact of blocks %u and %u%s%s", m->blocks.id[contacts->a[c]],
+             m->blocks.id[contacts->b[c]], *joint ? ", joint " : " (no joint)", joint);
 }
 
 static uint32_t contact_of_point(const tl_contacts *contacts, size_t point)

@@ -54,7 +54,11 @@ tl_status tl_state_hash(tl_model *m, char text[33])
     hash_table(&hash, &m->bodies.table);
     for (size_t row = 0; row < m->blocks.table.rows; row++)
         hash_shape(&hash, m->blocks.shape[row]);
-    hash_table(&hash, &m->detect->contacts.table);
+    const tl_contacts *contacts = &m->detect->contacts;
+    for (size_t i = 0; i < contacts->table.rows; i++)
+        tl_hash_word(&hash,
+                     (uint64_t)m->blocks.id[contacts->a[i]] << 32 | m->blocks.id[contacts->b[i]]);
+    hash_table(&hash, &contacts->table);
     hash_table(&hash, &m->detect->points.table);
     for (size_t i = 0; i < m->material_count; i++) {
         tl_hash_word(&hash, (uint64_t)m->materials[i].tag.joint << 32 | m->materials[i].tag.plane);

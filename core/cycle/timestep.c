@@ -418,7 +418,7 @@ tl_status tl_model_timestep_report(tl_model *m, tl_timestep_report *report)
         /* the paper's rule joins the smallest mass and the stiffest contact, wherever they are */
         const tl_contacts *contacts = &m->detect->contacts;
         bool a_free = counts(m, m->blocks.body[contacts->a[by.contact]]);
-        report->partner = a_free ? contacts->id_a[by.contact] : contacts->id_b[by.contact];
+        report->partner = m->blocks.id[a_free ? contacts->a[by.contact] : contacts->b[by.contact]];
     }
     return TL_OK;
 }

@@ -98,8 +98,8 @@ tl_status tl_contact_field(tl_model *m, tl_id contact, size_t index, tl_field_va
     switch (index) {
     case F_ID: value->number[0] = contact; break;
     case F_BLOCKS:
-        value->number[0] = contacts->id_a[c];
-        value->number[1] = contacts->id_b[c];
+        value->number[0] = m->blocks.id[contacts->a[c]];
+        value->number[1] = m->blocks.id[contacts->b[c]];
         break;
     case F_JOINT: value->text = tl_tag_name(m, contacts->tag[c]); break;
     case F_AREA: value->number[0] = contacts->area[c]; break;
@@ -196,7 +196,8 @@ tl_status tl_block_neighbours(tl_model *m, tl_id block, tl_id **ids, size_t *cou
     for (uint32_t e = begin; e < end; e++) {
         uint32_t c = d->by_block[e];
         if (d->contacts.point_count[c])
-            list[(*count)++] = d->contacts.a[c] == row ? d->contacts.id_b[c] : d->contacts.id_a[c];
+            list[(*count)++] =
+                m->blocks.id[d->contacts.a[c] == row ? d->contacts.b[c] : d->contacts.a[c]];
     }
     *ids = list;
     return TL_OK;

@@ -26,8 +26,6 @@ void tl_contacts_init(tl_contacts *c, tl_points_table *p)
     TL_COLUMN(t, c, id, 0);
     TL_COLUMN(t, c, a, 0);
     TL_COLUMN(t, c, b, 0);
-    TL_COLUMN(t, c, id_a, TL_COLUMN_STATE);
-    TL_COLUMN(t, c, id_b, TL_COLUMN_STATE);
     TL_COLUMN(t, c, pair, 0);
     TL_COLUMN(t, c, tag, TL_COLUMN_STATE);
     TL_COLUMN(t, c, material, TL_COLUMN_STATE);
@@ -114,8 +112,6 @@ bool tl_contact_append(tl_model *m, uint32_t pair, const tl_axis *axis, double m
     c->id[row] = ++d->next_contact;
     c->a[row] = p->a;
     c->b[row] = p->b;
-    c->id_a[row] = m->blocks.id[p->a];
-    c->id_b[row] = m->blocks.id[p->b];
     c->pair[row] = pair;
     c->tag[row] = tag;
     c->material[row] = tl_material_row(m, tag);

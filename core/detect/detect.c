@@ -47,6 +47,7 @@ static void detect_destroy(tl_detect *d)
     free(d->pairs);
     free(d->chunks);
     free(d->odometer_0);
+    free(d->ids);
     tl_layout_free(&d->layout);
     free(d->run);
     free(d->touched);
@@ -100,17 +101,20 @@ static tl_status ensure(tl_model *m)
 
 /* Finds the blocks of contacts and pairs again after rows have changed. Pairs without a contact are
  * forgotten: the broad phase lists them anew. */
-static void find_rows(tl_model *m)
+static tl_status find_rows(tl_model *m)
 {
     tl_detect *d = m->detect;
     tl_contacts *c = &d->contacts;
-    size_t kept = 0;
+    size_t kept = 0, blocks = m->blocks.table.rows;
+    if (!tl_fit(&d->ids, &d->id_room, blocks + 1, sizeof *d->ids))
+        return tl_fail_memory(&m->error);
     for (size_t i = 0; i < d->pair_count; i++) {
         tl_pair p = d->pairs[i];
         if (p.contact == TL_NO_ROW)
             continue;
         uint32_t row = p.contact;
-        uint32_t a = tl_block_row_quiet(m, c->id_a[row]), b = tl_block_row_quiet(m, c->id_b[row]);
+        uint32_t a = tl_block_row_quiet(m, d->ids[c->a[row]]);
+        uint32_t b = tl_block_row_quiet(m, d->ids[c->b[row]]);
         if (a == TL_NO_ROW || b == TL_NO_ROW || m->blocks.body[a] == m->blocks.body[b]) {
             c->fate[row] = TL_FATE_DIE;
             continue;
@@ -121,6 +125,9 @@ static void find_rows(tl_model *m)
         d->pairs[kept++] = p;
     }
     d->pair_count = kept;
+    for (size_t row = 0; row < blocks; row++)
+        d->ids[row] = m->blocks.id[row];
+    return TL_OK;
 }
 
 /* After a change of laws or of the minimum area: contacts under another material are marked, all facets are made
@@ -353,8 +360,9 @@ static tl_status find_contacts(tl_model *m)
     bool rows = d->structure != m->structure || !d->listed;
     if (rows) {
         d->rows_changed = true;
-        find_rows(m);
-        status = tl_pairs_restart(m);
+        status = find_rows(m);
+        if (status == TL_OK)
+            status = tl_pairs_restart(m);
         if (status != TL_OK)
             return status;
         tl_parallel_for(m->pool, d->contacts.table.rows, CONTACT_CHUNK, reframe_range, m);

@@ -204,8 +204,7 @@ typedef struct tl_contacts {
     tl_table table;
     tl_id *id;
     uint32_t *a, *b; /* block rows */
-    tl_id *id_a, *id_b;
-    uint32_t *pair; /* index of its pair */
+    uint32_t *pair;  /* index of its pair */
     tl_tag *tag;
     uint32_t *material; /* index of the model's materials, or TL_NO_ROW */
     tl_axis_features *axis;
@@ -303,6 +302,9 @@ typedef struct tl_detect {
     double reach;       /* half the skin of the broad phase */
     double *odometer_0; /* of each body, when the broad phase was made */
     size_t odometer_room;
+    tl_id *
+        ids; /* of each block, when rows were last looked at: finds them again after they have changed */
+    size_t id_room;
     float *run; /* of each block: how far it can have moved since then, rounded up */
     size_t run_of_room;
     float ran;        /* the farthest of them */

@@ -22,7 +22,7 @@ void tl_detect_memory(const tl_model *m, tl_memory *memory)
     memory->spare += tl_table_bytes(&d->spare.table) + tl_table_bytes(&d->spare_points.table) +
                      d->spare.facet_capacity * sizeof *d->spare.facet;
     memory->broad += d->odometer_room * sizeof *d->odometer_0 + d->run_of_room * sizeof *d->run +
-                     d->touched_room * sizeof *d->touched;
+                     d->id_room * sizeof *d->ids + d->touched_room * sizeof *d->touched;
     memory->step += d->moving_room * sizeof *d->moving;
     memory->index += d->by_block_room * sizeof *d->by_block +
                      d->by_start_room * sizeof *d->by_block_start +
