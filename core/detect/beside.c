@@ -71,21 +71,20 @@ void tl_beside_note(const tl_pair_view *view, tl_pair *p)
 {
     sight first, second;
     uint32_t one, other;
-    p->one = p->other = 0;
+    tl_pair_forget_faces(p);
     if (view->a->face_count * view->b->face_count > FEW)
         return;
-    if (widest(view, tl_v3(0, 0, 0), &one, &first) && widest(view, first.n, &other, &second)) {
-        p->one = one & TL_PAIR_FACE;
-        p->other = other & TL_PAIR_FACE;
-    }
+    if (widest(view, tl_v3(0, 0, 0), &one, &first) && widest(view, first.n, &other, &second))
+        tl_pair_set_faces(p, (tl_pair_faces){one, other});
 }
 
 double tl_beside_margin(const tl_pair_view *view, const tl_pair *p, double *gap)
 {
     *gap = -INFINITY;
-    if (p->one == p->other)
+    tl_pair_faces faces = tl_pair_faces_of(p);
+    if (faces.one == faces.other)
         return -INFINITY;
-    sight first = look_from(view, p->one), second = look_from(view, p->other);
+    sight first = look_from(view, faces.one), second = look_from(view, faces.other);
     double tolerance = TL_CONTACT_TOLERANCE * view->size, unseen = TL_SILENT * view->size;
     *gap = fmax(first.gap, second.gap);
     if (*gap > tolerance)

@@ -200,7 +200,7 @@ static bool push(struct tl_broad *g, size_t *count, uint32_t a, uint32_t b)
 {
     if (!tl_grow(&g->next, &g->next_room, *count + 1, sizeof *g->next))
         return false;
-    g->next[(*count)++] = (tl_pair){.a = a, .b = b, .contact = TL_NO_ROW, .wake = -1};
+    g->next[(*count)++] = (tl_pair){.a = a, .b = b, .contact = TL_PAIR_APART, .wake = -1};
     return true;
 }
 
@@ -285,9 +285,9 @@ static tl_status merge(tl_model *m, struct tl_broad *g, size_t fresh)
             j++;
         if (j < fresh && compare_pair(&g->next[j], old) == 0) {
             g->next[j] = *old;
-            if (old->contact == TL_NO_ROW) /* runs begin anew */
+            if (tl_pair_is_apart(old)) /* runs begin anew */
                 tl_pair_rebase(d, &g->next[j]);
-        } else if (old->contact != TL_NO_ROW) {
+        } else if (!tl_pair_is_apart(old)) {
             if (!push(g, &count, old->a, old->b))
                 return tl_fail_memory(&m->error);
             g->next[count - 1] = *old;
@@ -308,7 +308,7 @@ static tl_status merge(tl_model *m, struct tl_broad *g, size_t fresh)
     g->next = NULL;
     g->next_room = 0;
     for (uint32_t i = 0; i < count; i++)
-        if (d->pairs[i].contact != TL_NO_ROW)
+        if (!tl_pair_is_apart(&d->pairs[i]))
             d->contacts.pair[d->pairs[i].contact] = i;
     return TL_OK;
 }

@@ -233,7 +233,7 @@ bool tl_contacts_index(tl_model *m)
         start[row + 1] += start[row];
     for (size_t i = 0; i < d->pair_count; i++) {
         const tl_pair *p = &d->pairs[i];
-        if (p->contact == TL_NO_ROW)
+        if (tl_pair_is_apart(p))
             continue;
         d->by_block[start[p->a]++] = p->contact;
         d->by_block[start[p->b]++] = p->contact;
@@ -402,7 +402,7 @@ void tl_contact_remove(tl_detect *d, uint32_t row)
     uint32_t last = (uint32_t)c->table.rows - 1;
     clear_points(d, row);
     if (c->pair[row] < d->pair_count && d->pairs[c->pair[row]].contact == row)
-        d->pairs[c->pair[row]].contact = TL_NO_ROW;
+        d->pairs[c->pair[row]].contact = TL_PAIR_APART;
     if (row != last) {
         tl_table_move(&c->table, row, last);
         d->pairs[c->pair[row]].contact = row;

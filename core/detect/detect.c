@@ -110,7 +110,7 @@ static tl_status find_rows(tl_model *m)
         return tl_fail_memory(&m->error);
     for (size_t i = 0; i < d->pair_count; i++) {
         tl_pair p = d->pairs[i];
-        if (p.contact == TL_NO_ROW)
+        if (tl_pair_is_apart(&p))
             continue;
         uint32_t row = p.contact;
         uint32_t a = tl_block_row_quiet(m, d->ids[c->a[row]]);
@@ -229,7 +229,7 @@ static tl_status give_births(tl_model *m, size_t *born)
         uint32_t begin = chunk * TL_PAIR_CHUNK;
         for (uint32_t i = begin;
              d->chunks[chunk].found && i < begin + TL_PAIR_CHUNK && i < d->pair_count; i++) {
-            if (d->pairs[i].contact != TL_NO_ROW || d->pairs[i].wake != TL_PAIR_FOUND)
+            if (!tl_pair_is_apart(&d->pairs[i]) || d->pairs[i].wake != TL_PAIR_FOUND)
                 continue;
             tl_status status = give_birth(m, i, &deep);
             if (status != TL_OK)
@@ -304,14 +304,20 @@ static bool settle_rows(tl_model *m)
 /* Builds the facets of the contacts that have been given their room; *more: some want more still. */
 static tl_status fill_contacts(tl_model *m, bool *more)
 {
-    tl_contacts *c = &m->detect->contacts;
+    tl_detect *d = m->detect;
+    tl_contacts *c = &d->contacts;
     *more = false;
     for (uint32_t row = 0; row < c->table.rows; row++) {
-        if (c->fate[row] != TL_FATE_GROW)
-            c->fate[row] = TL_FATE_KEEP;
-        else if (!tl_contact_fill(m, row))
+        if (c->fate[row] == TL_FATE_KEEP)
+            continue;
+        if (c->fate[row] == TL_FATE_GROW && !tl_contact_fill(m, row))
             return tl_fail_memory(&m->error);
-        *more = *more || c->fate[row] == TL_FATE_GROW;
+        if (c->fate[row] == TL_FATE_GROW) {
+            *more = true;
+            continue;
+        }
+        c->fate[row] = TL_FATE_KEEP;
+        tl_pair_forget_faces(&d->pairs[c->pair[row]]); /* the room it wanted was in their place */
     }
     return TL_OK;
 }

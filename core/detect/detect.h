@@ -12,8 +12,7 @@
 #ifndef TL_DETECT_DETECT_H
 #define TL_DETECT_DETECT_H
 
-#include <assert.h>
-
+#include "detect/pair.h"
 #include "model/model.h"
 
 /* Overlap of a pair that touches without area, along both of two directions, that may go unseen, relative to the size:
@@ -169,36 +168,6 @@ typedef struct tl_share_rule {
     bool corners;       /* points of patches at corners only */
     double reach;       /* patches with every gap beyond this are left out */
 } tl_share_rule;
-
-/* Twice the number of any face and one more. */
-#define TL_PAIR_FACE 0x1fffu
-static_assert(2 * TL_POLY_MAX_FACES - 1 <= TL_PAIR_FACE, "faces do not fit into a pair");
-
-/* Two blocks that may come near. */
-typedef struct tl_pair {
-    uint32_t a, b;    /* block rows, a < b */
-    uint32_t contact; /* row, or TL_NO_ROW */
-    union {
-        float
-            wake; /* without a contact: sum of the blocks' runs at which to look again, or TL_PAIR_FOUND */
-        struct {
-            uint16_t points, facets;
-        } want; /* of a contact that must grow: room */
-    };
-    /* two faces that show whether they still touch without area (beside.c), twice the number and one more for a
-     * face of B; the same: none */
-    uint32_t one : 13, other : 13;
-} tl_pair;
-
-/* A pair that was looked at and is near enough to become a contact. */
-#define TL_PAIR_FOUND (-INFINITY)
-
-/* Pairs a worker takes at a time, and what is known of them together. */
-#define TL_PAIR_CHUNK 256
-typedef struct tl_pair_chunk {
-    float wake; /* none without a contact has an earlier one */
-    bool found; /* some pair is */
-} tl_pair_chunk;
 
 typedef struct tl_contacts {
     tl_table table;

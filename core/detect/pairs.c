@@ -98,11 +98,12 @@ void tl_pair_parted(tl_detect *d, uint32_t pair)
 void tl_pair_wake(tl_detect *d, uint32_t i)
 {
     tl_pair *p = &d->pairs[i];
-    if (p->contact == TL_NO_ROW && p->one != p->other) {
+    tl_pair_faces faces = tl_pair_faces_of(p);
+    if (tl_pair_is_apart(p) && faces.one != faces.other) {
         p->wake = AWAKE;
         d->chunks[i / TL_PAIR_CHUNK].wake = AWAKE;
     }
-    p->one = p->other = 0;
+    tl_pair_forget_faces(p);
 }
 
 static void look_at(tl_model *m, tl_pair *p, tl_narrow *room)
@@ -114,7 +115,7 @@ static void look_at(tl_model *m, tl_pair *p, tl_narrow *room)
         tl_pair_sleep(d, p, margin);
         return;
     }
-    p->one = p->other = 0;
+    tl_pair_forget_faces(p);
     if (!tl_pair_place(&view, room)) {
         room->failed = true;
         return;
@@ -151,7 +152,7 @@ static void look_range(void *user, size_t begin, size_t end, size_t chunk, unsig
     float wake = INFINITY;
     for (size_t i = begin; i < end; i++) {
         tl_pair *p = &d->pairs[i];
-        if (p->contact != TL_NO_ROW)
+        if (!tl_pair_is_apart(p))
             continue;
         if (run_of(d, p) >= (double)p->wake) {
             look_at(m, p, &d->narrow[thread]);
