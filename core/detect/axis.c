@@ -123,16 +123,13 @@ static void offer(tl_axis *best, const tl_axis *one)
 /* True when the part, at one of its vertices, goes on in `outward` into another part of its body. */
 static bool goes_on(const tl_poly *p, uint32_t vertex, tl_vec3 outward, const tl_mat3 *turn)
 {
-    for (uint32_t k = p->star_at[vertex]; k < p->star_at[vertex + 1]; k++) {
-        const tl_edge *e = &p->edge[p->star[k]];
-        const uint16_t faces[] = {e->left, e->right};
-        for (int i = 0; i < 2; i++) {
-            tl_vec3 n = p->plane[faces[i]].normal;
-            if (p->covered[faces[i]] &&
+    for (uint32_t f = 0; f < p->face_count; f++)
+        for (uint32_t h = p->start[f]; p->covered[f] && h < p->start[f + 1]; h++) {
+            tl_vec3 n = p->plane[f].normal;
+            if (p->loop[h] == vertex &&
                 tl_v3_dot(outward, turn ? tl_m3_mul(turn, n) : n) > INTO_SEAM)
                 return true;
         }
-    }
     return false;
 }
 

@@ -273,6 +273,24 @@ static tilted lying(const resting *r, bool b_stands, tl_vec3 d)
     return out;
 }
 
+/* Where a block rests by the edge from its lowest vertex, which is over the face or not, to another one. */
+static void add_resting_edge(const tl_pair_view *view, const resting *r, bool b_stands,
+                             uint32_t low, uint32_t other, bool over, tl_manifold *m)
+{
+    double t0, t1;
+    tl_vec3 x = r->vertex[low], d = tl_v3_sub(r->vertex[other], x);
+    tilted weight = lying(r, b_stands, d);
+    if (weight.value <= 0 || !tl_segment_over_face(x, r->vertex[other], r->corners, r->corner_count,
+                                                   r->up, r->slack, &t0, &t1))
+        return;
+    uint64_t key = tl_key(tl_key(b_stands ? 1 : 2, low), other + 1u);
+    tilted far =
+        over ? weight : (tilted){weight.value * weight.value, tl_v3_scale(2, weight.swing)};
+    add_resting(view, b_stands, m, tl_v3_madd(x, t1, d), far, tl_key(key, 1));
+    if (!over)
+        add_resting(view, b_stands, m, tl_v3_madd(x, t0, d), weight, tl_key(key, 2));
+}
+
 /* The points a block rests on: its lowest vertex and, as far as they lie nearly in the face, the other
  * ends of the edges there, all clipped to the face. */
 static void add_support(const tl_pair_view *view, const resting *r, bool b_stands, tl_manifold *m)
@@ -282,24 +300,12 @@ static void add_support(const tl_pair_view *view, const resting *r, bool b_stand
     tl_vec3 x = r->vertex[low];
     double t0, t1;
     bool over = tl_segment_over_face(x, x, r->corners, r->corner_count, r->up, r->slack, &t0, &t1);
-    uint64_t side = b_stands ? 1 : 2;
     if (over)
-        add_resting(view, b_stands, m, x, (tilted){.value = 1}, tl_key(side, low));
-    for (uint32_t k = p->star_at[low]; k < p->star_at[low + 1]; k++) {
-        const tl_edge *edge = &p->edge[p->star[k]];
-        uint32_t other = edge->a == low ? edge->b : edge->a;
-        tl_vec3 d = tl_v3_sub(r->vertex[other], x);
-        tilted weight = lying(r, b_stands, d);
-        if (weight.value <= 0 || !tl_segment_over_face(x, r->vertex[other], r->corners,
-                                                       r->corner_count, r->up, r->slack, &t0, &t1))
-            continue;
-        uint64_t key = tl_key(tl_key(side, low), other + 1u);
-        tilted far =
-            over ? weight : (tilted){weight.value * weight.value, tl_v3_scale(2, weight.swing)};
-        add_resting(view, b_stands, m, tl_v3_madd(x, t1, d), far, tl_key(key, 1));
-        if (!over)
-            add_resting(view, b_stands, m, tl_v3_madd(x, t0, d), weight, tl_key(key, 2));
-    }
+        add_resting(view, b_stands, m, x, (tilted){.value = 1}, tl_key(b_stands ? 1 : 2, low));
+    for (uint32_t f = 0; f < p->face_count; f++)
+        for (uint32_t h = p->start[f]; h < p->start[f + 1]; h++)
+            if (p->loop[h] == low) /* each edge leaves it once */
+                add_resting_edge(view, r, b_stands, low, p->loop[tl_poly_after(p, f, h)], over, m);
 }
 
 static tl_facet face_facet(const tl_pair_view *view, const tl_axis *axis, bool b_stands)

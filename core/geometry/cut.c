@@ -42,8 +42,7 @@ typedef struct cutter {
     signed char *side; /* [vertices] */
     uint16_t
         *cap_next; /* [vertices + crossings] the cap's half-edges as seen from the lower child */
-    uint16_t *crossing; /* [edges] vertices + number of the crossing on this edge */
-    uint16_t *crossed;  /* [crossings] the edge of each */
+    uint16_t *crossed; /* [crossings] the edge of each */
     uint32_t crossings;
     uint32_t cap_edges;
     child child[2]; /* below, above */
@@ -54,7 +53,7 @@ static size_t scratch_bytes(const tl_poly *p)
     size_t v = p->vertex_count, e = p->edge_count, f = p->face_count;
     size_t per_child = (v + e) + (f + 1) + f + (2 * e + 2 * f + v + e);
     return e * sizeof(tl_vec3) + v * sizeof(double) +
-           (v + e + 2 * e + 2 * per_child) * sizeof(uint16_t) + v;
+           (v + e + e + 2 * per_child) * sizeof(uint16_t) + v;
 }
 
 static void lay_out(cutter *c, void *scratch)
@@ -64,7 +63,6 @@ static void lay_out(cutter *c, void *scratch)
     c->distance = (double *)(c->point + e);
     uint16_t *next = (uint16_t *)(c->distance + v);
     c->cap_next = next, next += v + e;
-    c->crossing = next, next += e;
     c->crossed = next, next += e;
     for (int i = 0; i < 2; i++) {
         c->child[i].map = next, next += v + e;
@@ -113,8 +111,10 @@ static void settle_brushed(cutter *c)
         if (c->side[v] != 0)
             continue;
         bool below = false, above = false;
-        for (uint32_t i = p->star_at[v]; i < p->star_at[v + 1]; i++) {
-            tl_edge edge = p->edge[p->star[i]];
+        for (uint32_t e = 0; e < p->edge_count; e++) {
+            tl_edge edge = p->edge[e];
+            if (edge.a != v && edge.b != v)
+                continue;
             signed char other = c->side[edge.a == v ? edge.b : edge.a];
             below = below || other < 0;
             above = above || other > 0;
@@ -173,20 +173,17 @@ static void find_crossings(cutter *c)
     const tl_poly *p = c->poly;
     c->crossings = 0;
     for (uint32_t e = 0; e < p->edge_count; e++)
-        if (c->side[p->edge[e].a] * c->side[p->edge[e].b] < 0) {
-            c->crossing[e] = (uint16_t)(p->vertex_count + c->crossings);
+        if (c->side[p->edge[e].a] * c->side[p->edge[e].b] < 0)
             c->crossed[c->crossings++] = (uint16_t)e;
-        }
 }
 
 /* The crossing on the edge between two neighbouring vertices. */
 static uint16_t crossing_between(const cutter *c, uint16_t a, uint16_t b)
 {
-    const tl_poly *p = c->poly;
-    for (uint32_t i = p->star_at[a]; i < p->star_at[a + 1]; i++) {
-        tl_edge edge = p->edge[p->star[i]];
-        if ((edge.a == a ? edge.b : edge.a) == b)
-            return c->crossing[p->star[i]];
+    for (uint32_t i = 0; i < c->crossings; i++) {
+        tl_edge edge = c->poly->edge[c->crossed[i]];
+        if ((edge.a == a && edge.b == b) || (edge.a == b && edge.b == a))
+            return (uint16_t)(c->poly->vertex_count + i);
     }
     return NONE;
 }

@@ -22,8 +22,7 @@ static size_t allocation(size_t v, size_t f, size_t e)
 {
     const tl_poly *p = NULL;
     return sizeof *p + v * sizeof *p->vertex + f * (sizeof *p->plane + sizeof *p->tag) +
-           (f + 1) * sizeof *p->start + (v + 1) * sizeof *p->star_at + e * sizeof *p->edge +
-           2 * e * (sizeof *p->loop + sizeof *p->star);
+           (f + 1) * sizeof *p->start + e * sizeof *p->edge + 2 * e * sizeof *p->loop;
 }
 
 size_t tl_poly_bytes(const tl_poly *p)
@@ -69,32 +68,30 @@ tl_poly *tl_poly_allocate(uint32_t vertex_count, uint32_t face_count, uint32_t e
     p->tag = (tl_tag *)(p->plane + f);
     p->edge = (tl_edge *)(p->tag + f);
     p->loop = (uint16_t *)(p->edge + e);
-    p->star = p->loop + 2 * e;
-    p->start = p->star + 2 * e;
-    p->star_at = p->start + f + 1;
+    p->start = p->loop + 2 * e;
     p->seams = false;
     p->covered = p->hidden = no_seams;
     return p;
 }
 
-/* A half-edge is known by its place in `loop`; `star` lists them by their first vertex until edges are known. */
+/* A half-edge is known by its place in `loop`. */
 typedef struct half_edges {
-    uint16_t *
-        end; /* [place in star] the vertex it runs to: neighbours in memory are searched together */
+    uint16_t *at;   /* [vertex + 1] into star: the half-edges that begin there */
+    uint16_t *star; /* half-edges by their first vertex */
+    uint16_t *end;  /* [place in star] the vertex it runs to: neighbours are searched together */
     uint16_t *face; /* [half-edge] */
-    uint16_t *edge; /* [half-edge] the edge it belongs to */
 } half_edges;
 
 /* The vertex that follows place h in the loop of a face. */
 static uint16_t after(const tl_poly *p, uint32_t face, uint32_t h)
 {
-    return p->loop[h + 1 < p->start[face + 1] ? h + 1 : p->start[face]];
+    return p->loop[tl_poly_after(p, face, h)];
 }
 
-/* Groups half-edges by origin into star/star_at, and notes each one's face and end. */
+/* Groups half-edges by origin, and notes each one's face and end. */
 static void group_half_edges(tl_poly *p, half_edges half)
 {
-    uint16_t *at = p->star_at;
+    uint16_t *at = half.at;
     uint32_t half_count = 2 * p->edge_count;
     memset(at, 0, (p->vertex_count + 1) * sizeof *at);
     for (uint32_t h = 0; h < half_count; h++)
@@ -106,7 +103,7 @@ static void group_half_edges(tl_poly *p, half_edges half)
             uint32_t place = at[p->loop[h]]++;
             half.face[h] = (uint16_t)f;
             half.end[place] = after(p, f, h);
-            p->star[place] = (uint16_t)h;
+            half.star[place] = (uint16_t)h;
         }
     /* Filling moved every start to the next one's place. */
     memmove(at + 1, at, p->vertex_count * sizeof *at);
@@ -114,13 +111,12 @@ static void group_half_edges(tl_poly *p, half_edges half)
 }
 
 /* The number of half-edges from a to b; the last of them goes into *found. */
-static int find_half_edge(const tl_poly *p, half_edges half, uint16_t a, uint16_t b,
-                          uint16_t *found)
+static int find_half_edge(half_edges half, uint16_t a, uint16_t b, uint16_t *found)
 {
     int count = 0;
-    for (uint32_t i = p->star_at[a]; i < p->star_at[a + 1]; i++)
+    for (uint32_t i = half.at[a]; i < half.at[a + 1]; i++)
         if (half.end[i] == b) {
-            *found = p->star[i];
+            *found = half.star[i];
             count++;
         }
     return count;
@@ -132,8 +128,7 @@ static tl_status report_unpaired(const tl_poly *p, half_edges half, tl_error *er
     uint32_t half_count = 2 * p->edge_count;
     for (uint32_t h = 0; error && h < half_count; h++) {
         uint16_t a = p->loop[h], b = after(p, half.face[h], h), found;
-        int forth = find_half_edge(p, half, a, b, &found),
-            back = find_half_edge(p, half, b, a, &found);
+        int forth = find_half_edge(half, a, b, &found), back = find_half_edge(half, b, a, &found);
         if (a != b && forth == 1 && back == 1)
             continue;
         return tl_fail(
@@ -155,26 +150,26 @@ static tl_status pair_half_edges(tl_poly *p, half_edges half, tl_error *error)
         uint16_t a = p->loop[h], b = after(p, half.face[h], h), forth, back;
         if (a >= b)
             continue;
-        if (edges == p->edge_count || find_half_edge(p, half, a, b, &forth) != 1 ||
-            find_half_edge(p, half, b, a, &back) != 1)
+        if (edges == p->edge_count || find_half_edge(half, a, b, &forth) != 1 ||
+            find_half_edge(half, b, a, &back) != 1)
             return report_unpaired(p, half, error);
         p->edge[edges] = (tl_edge){a, b, half.face[h], half.face[back]};
-        half.edge[h] = half.edge[back] = (uint16_t)edges++;
+        edges++;
     }
     if (edges != p->edge_count)
         return report_unpaired(p, half, error);
-    for (uint32_t i = 0; i < half_count; i++)
-        p->star[i] = half.edge[p->star[i]];
     return TL_OK;
 }
 
 tl_status tl_poly_link(tl_poly *p, tl_error *error)
 {
+    /* there are fewer vertices than half-edges */
     uint32_t half_count = 2 * p->edge_count;
-    uint16_t local[3 * LOCAL_HALF_EDGES], *scratch = local;
-    if (half_count > LOCAL_HALF_EDGES && !(scratch = malloc(3 * half_count * sizeof *scratch)))
+    uint16_t local[4 * LOCAL_HALF_EDGES], *scratch = local;
+    if (half_count > LOCAL_HALF_EDGES && !(scratch = malloc(4 * half_count * sizeof *scratch)))
         return tl_fail_memory(error);
-    half_edges half = {scratch, scratch + half_count, scratch + 2 * half_count};
+    half_edges half = {scratch, scratch + half_count, scratch + 2 * half_count,
+                       scratch + 3 * half_count};
     group_half_edges(p, half);
     tl_status status = pair_half_edges(p, half, error);
     if (scratch != local)
@@ -320,10 +315,8 @@ tl_status tl_poly_transformed(const tl_poly *poly, const tl_mat3 *rotation, tl_v
     }
     memcpy(p->tag, poly->tag, p->face_count * sizeof *p->tag);
     memcpy(p->start, poly->start, (p->face_count + 1) * sizeof *p->start);
-    memcpy(p->star_at, poly->star_at, (p->vertex_count + 1) * sizeof *p->star_at);
     memcpy(p->edge, poly->edge, p->edge_count * sizeof *p->edge);
     memcpy(p->loop, poly->loop, 2 * p->edge_count * sizeof *p->loop);
-    memcpy(p->star, poly->star, 2 * p->edge_count * sizeof *p->star);
     if (poly->seams) {
         uint8_t *marks = tl_poly_open_seams(p);
         if (!marks) {
@@ -355,8 +348,11 @@ static tl_status check_topology(const tl_poly *p, tl_error *error)
                        p->vertex_count, p->edge_count, p->face_count);
     if (p->start[0] != 0 || p->start[p->face_count] != 2 * p->edge_count)
         return tl_fail(error, TL_E_GEOMETRY, "the face loops do not hold every edge twice");
+    uint16_t edges[TL_POLY_MAX_VERTICES] = {0};
+    for (uint32_t h = 0; h < 2 * p->edge_count; h++)
+        edges[p->loop[h]]++;
     for (uint32_t v = 0; v < p->vertex_count; v++)
-        if (p->star_at[v + 1] < p->star_at[v] + 3)
+        if (edges[v] < 3)
             return tl_fail(error, TL_E_GEOMETRY, "vertex %u has fewer than three edges", v + 1);
     for (uint32_t e = 0; e < p->edge_count; e++) {
         tl_edge edge = p->edge[e];

@@ -27,15 +27,13 @@ typedef struct tl_edge {
 
 typedef struct tl_poly {
     uint32_t vertex_count, face_count, edge_count;
-    bool seams;        /* some face is covered */
-    double size;       /* diagonal of the bounds */
-    tl_plane *plane;   /* [face_count] outward unit normal and offset */
-    tl_tag *tag;       /* [face_count] */
-    uint16_t *start;   /* [face_count + 1] into loop */
-    tl_edge *edge;     /* [edge_count], a < b never assumed */
-    uint16_t *loop;    /* [2 edge_count] vertex indices */
-    uint16_t *star;    /* [2 edge_count] edges at each vertex, by vertex */
-    uint16_t *star_at; /* [vertex_count + 1] into star */
+    bool seams;      /* some face is covered */
+    double size;     /* diagonal of the bounds */
+    tl_plane *plane; /* [face_count] outward unit normal and offset */
+    tl_tag *tag;     /* [face_count] */
+    uint16_t *start; /* [face_count + 1] into loop */
+    tl_edge *edge;   /* [edge_count], a < b never assumed */
+    uint16_t *loop;  /* [2 edge_count] vertex indices */
     /* Seams with the other parts of a body of several polyhedra (seam.c): zeros that all single ones share, or, where
      * `seams`, an allocation of its own. */
     const uint8_t *covered; /* [face_count] 1: the face lies on other parts */
@@ -43,13 +41,19 @@ typedef struct tl_poly {
     tl_vec3 vertex[];       /* [vertex_count] */
 } tl_poly;
 
+/* The place after place h in the loop of a face. */
+static inline uint32_t tl_poly_after(const tl_poly *p, uint32_t face, uint32_t h)
+{
+    return h + 1 < p->start[face + 1] ? h + 1u : p->start[face];
+}
+
 static inline uint32_t tl_poly_face_size(const tl_poly *p, uint32_t face)
 {
     return p->start[face + 1] - p->start[face];
 }
 
-/* A polyhedron from faces: loops[start[f] .. start[f+1]) are indices into `vertices`. Derives edges
- * and vertex stars. Fails (TL_E_GEOMETRY) when some edge does not belong to exactly two faces. */
+/* A polyhedron from faces: loops[start[f] .. start[f+1]) are indices into `vertices`. Derives edges.
+ * Fails (TL_E_GEOMETRY) when some edge does not belong to exactly two faces. */
 tl_status tl_poly_make(const tl_vec3 *vertices, size_t vertex_count, const tl_plane *planes,
                        const tl_tag *tags, const uint32_t *start, const uint16_t *loops,
                        size_t face_count, tl_poly **poly, tl_error *error);
