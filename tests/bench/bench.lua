@@ -87,6 +87,15 @@ local function time(model, steps)
     return model.threads == 1 and os.clock() - began or run.wall, run.wall, run.ratio
 end
 
+-- Adds what the model holds, a free block, to a row.
+function bench.weigh(row, model, blocks)
+    local bytes = model:memory()
+    for _, part in ipairs(MEMORY) do
+        row[part .. "_bytes"] = bytes[part] / blocks
+    end
+    return row
+end
+
 -- Measures a model that is ready, and prints a row: `name` has its workload, size and reuse;
 -- `options.reps` repetitions, of `options.steps` steps or as many as take long enough.
 function bench.measure(model, name, options)
@@ -105,7 +114,7 @@ function bench.measure(model, name, options)
             phases[phase][i] = cost.seconds[phase] / wall * seconds[i]
         end
     end
-    local cost, bytes, blocks = model:profile(), model:memory(), #model:blocks { fixed = false }
+    local cost, blocks = model:profile(), #model:blocks { fixed = false }
     model:profile(false)
     local step = median(seconds)
     local row = { workload = name.workload, size = name.size, blocks = blocks,
@@ -113,9 +122,7 @@ function bench.measure(model, name, options)
         reuse = name.reuse,
         rate = cost.loaded / step, unit = "contacts/s", block_steps_per_s = blocks / step,
         ratio = ratio }
-    for _, part in ipairs(MEMORY) do
-        row[part .. "_bytes"] = bytes[part] / blocks
-    end
+    bench.weigh(row, model, blocks)
     for _, phase in ipairs(bench.PHASES) do
         row[phase .. "_ns"] = 1e9 * median(phases[phase]) / cost.loaded
     end
