@@ -38,9 +38,9 @@ static uint32_t contact_of_point(const tl_contacts *contacts, size_t point)
 static bool call_law(const run_job *job, size_t first, size_t count, const tl_point_lanes *l)
 {
     tl_points_table *p = &job->m->detect->points;
-    double *state[TL_STATE_COLUMNS] = {NULL};
-    for (uint32_t k = 0; k < p->state_columns; k++)
-        state[k] = p->state[k] + first;
+    double *state[TL_STATE_COLUMNS];
+    for (uint32_t k = 0; k < TL_STATE_COLUMNS; k++)
+        state[k] = k < p->state_columns ? p->state[k] + first : l->zero;
     tl_law_batch batch = {
         .size = sizeof batch,
         .count = (uint32_t)count,

@@ -43,6 +43,7 @@ static tl_status make_material(tl_model *m, tl_tag tag, const char *joint, const
         out->splits = out->splits || tl_kind_state(kind, k)->transfer == TL_TRANSFER_SPLIT;
         column += tangent ? 3 : 1;
     }
+    out->columns = ops->stateless && ops->stateless(out->self) ? 0 : column;
     return TL_OK;
 }
 
@@ -136,8 +137,8 @@ tl_status tl_joint_law(tl_model *m, const char *joint, const char *law, const tl
     status = make_material(m, tag, joint, kind, args, law ? NULL : ruling, &fresh);
     if (status != TL_OK)
         return status;
-    if (m->detect && (!tl_points_hold_states(&m->detect->points, columns) ||
-                      !tl_points_hold_states(&m->detect->spare_points, columns))) {
+    if (m->detect && (!tl_points_hold_states(&m->detect->points, fresh.columns) ||
+                      !tl_points_hold_states(&m->detect->spare_points, fresh.columns))) {
         tl_material_clear(&fresh);
         return tl_fail_memory(&m->error);
     }

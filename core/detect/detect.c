@@ -84,7 +84,7 @@ static tl_status ensure(tl_model *m)
     tl_contacts_init(&d->spare, &d->spare_points);
     uint32_t columns = 0;
     for (size_t i = 0; i < m->material_count; i++) {
-        uint32_t wanted = tl_kind_state_columns(m->materials[i].kind);
+        uint32_t wanted = m->materials[i].columns;
         columns = wanted > columns ? wanted : columns;
     }
     if (!tl_points_hold_states(&d->points, columns) ||

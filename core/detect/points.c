@@ -40,7 +40,7 @@ void tl_point_initial_state(tl_points_table *p, size_t i, const tl_kind *kind)
     for (uint32_t k = 0; k < p->state_columns; k++)
         p->state[k][i] = 0;
     uint32_t column = 0;
-    for (uint32_t k = 0; kind && k < kind->state_count; k++) {
+    for (uint32_t k = 0; kind && k < kind->state_count && column < p->state_columns; k++) {
         const tl_state *state = tl_kind_state(kind, k);
         if (state->kind == TL_STATE_SCALAR)
             p->state[column][i] = state->initial;
@@ -59,7 +59,7 @@ static void take_state(tl_points_table *p, size_t i, const tl_kind *kind, const 
                        double old_area, bool reset)
 {
     uint32_t column = 0;
-    for (uint32_t k = 0; kind && k < kind->state_count; k++) {
+    for (uint32_t k = 0; kind && k < kind->state_count && column < p->state_columns; k++) {
         const tl_state *state = tl_kind_state(kind, k);
         uint32_t width = state_width(state);
         double scale = 1;

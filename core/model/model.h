@@ -94,6 +94,7 @@ typedef struct tl_material {
     void *self;   /* what its create made, or params */
     double kn, ks;
     uint32_t tangents; /* bit k: states k, k + 1, k + 2 are a vector in the common plane */
+    uint32_t columns;  /* of states that are to be kept */
     bool splits;       /* some state goes with the area */
 } tl_material;
 

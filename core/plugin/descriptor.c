@@ -21,7 +21,7 @@ enum {
     FIRST_KIND_SIZE = sizeof(tl_kind),
     FIRST_PARAM_SIZE = sizeof(tl_param),
     FIRST_STATE_SIZE = sizeof(tl_state),
-    FIRST_LAW_SIZE = sizeof(tl_law_ops),
+    FIRST_LAW_SIZE = offsetof(tl_law_ops, stateless),
     FIRST_DAMPING_SIZE = offsetof(tl_damping_ops, before),
     FIRST_GENERATOR_SIZE = sizeof(tl_generator_ops)
 };

@@ -81,3 +81,25 @@ check.holds(build(2):memory().shapes < before.shapes, "a block less is a shape l
 
 check.raises(function() model:profile(1) end, "profile")
 check.raises(function() model:memory(1) end, "memory")
+
+-- States that a law with its parameters has no use for take no room, and begin when it has: slip under dilation opens
+-- the joint, and the opening stays when dilation is taken back.
+local function slide(dilation)
+    local slides = build(1)
+    slides:joint("*", "coulomb", { kn = 1e8, ks = 1e8, friction = 10, dilation = dilation })
+    slides:cycle(200)
+    return slides, slides:memory().points
+end
+local plain, without = slide(0)
+local _, with = slide(5)
+check.holds(without < with, "no column for what stays 0")
+plain:joint("*", "coulomb", { kn = 1e8, ks = 1e8, friction = 10, dilation = 5 })
+local moving = plain:blocks { fixed = false }
+moving:load { force = { 6000, 0, 0 } }
+local before = moving:bounds().max[3]
+plain:cycle(100)
+check.equal(plain:memory().points, with)
+check.holds(moving:bounds().max[3] > before + 1e-6, "slip under dilation lifts the block")
+plain:joint("*", "coulomb", { kn = 1e8, ks = 1e8, friction = 10 })
+plain:cycle(1)
+check.equal(plain:memory().points, with)

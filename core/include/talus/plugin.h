@@ -192,6 +192,9 @@ typedef struct tl_law_ops {
     void (*stiffness)(const void *self, double *kn, double *ks);
     /* [main] */
     void (*destroy)(void *self);
+    /* [main] since 1.2; may be NULL. 1: with these parameters the law does not write to its states, and they are 0 unless
+     * other parameters have made them something else. The host then need not keep them: they are 0 in the batch. */
+    int (*stateless)(const void *self);
 } tl_law_ops;
 
 /* ---------------------------------------------------------------- damping ---------------- */

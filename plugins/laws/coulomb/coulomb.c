@@ -263,11 +263,17 @@ static void stiffness(const void *self, double *kn, double *ks)
     *ks = law->ks;
 }
 
+static int stateless(const void *self)
+{
+    return ((const coulomb *)self)->dilation == 0;
+}
+
 static const tl_law_ops ops = {.size = sizeof ops,
                                .create = create,
                                .update = update,
                                .stiffness = stiffness,
-                               .destroy = free};
+                               .destroy = free,
+                               .stateless = stateless};
 
 static const tl_kind kind = {
     .size = sizeof kind,
