@@ -14,6 +14,13 @@
 
 #include <string.h>
 
+/* Lanes up to which each is followed on its own. */
+#ifdef __SANITIZE_ADDRESS__ /* without vectors */
+#define FEW TL_LANES
+#else
+#define FEW 3
+#endif
+
 /* ---------------------------------------------------------------- points ----------------- */
 
 /* Columns of points and lanes, row 0 of both the first of a rank. */
@@ -71,9 +78,39 @@ TL_VECTORIZED static void follow_level(const columns *c, size_t slots, const tl_
         }
 }
 
-/* Points of any facets. Features of a tilted patch move: a vertex of A with A (lean -1), one of B with B (lean 1), what
- * lies between with both; so do the points until the patch is made anew, and the gap opens along the point's
- * normal. */
+/* A point of any facet, in row i of lane l. Features of a tilted patch move: a vertex of A with A (lean -1), one of B with
+ * B (lean 1), what lies between with both; so do the points until the patch is made anew, and the gap opens along the
+ * point's normal. */
+TL_INLINE void follow_point(const columns *c, size_t i, size_t l, const tl_frames *restrict f,
+                            double face, double edge)
+{
+    tl_mat3 to = tl_lanes9_get(&f->to, l), motion = tl_lanes9_get(&f->m, l);
+    tl_vec3 mean = tl_lanes3_get(&f->mean, l), lean = tl_lanes3_get(&f->lean, l);
+    tl_vec3 last = tl_lanes3_get(&f->last, l), last_lean = tl_lanes3_get(&f->last_lean, l);
+    tl_vec3 p = tl_columns_get(c->p, i);
+    tl_vec3 x = tl_v3_add(tl_m3_mul(&to, p), tl_lanes3_get(&f->from, l));
+    double l2 = f->l2[l], last_l2 = tl_v3_norm2(last_lean);
+    tl_vec3 n = tl_leaning(mean, lean, f->mean2[l], l2, face, edge);
+    tl_vec3 du = tl_v3_add(tl_lanes3_get(&f->way, l), tl_m3_mul(&motion, x));
+    double du_n = tl_v3_dot(du, n);
+    /* with the features that made it, along the faces; where two edges cross, also up the faces by how far one edge has
+     * slid over the other */
+    double carry = l2 > 0 ? f->carry[l] : 0, slid = carry * edge / (l2 > 0 ? l2 : 1);
+    tl_vec3 go = tl_v3_scale(carry * (1 + face), du);
+    go = tl_v3_madd(go, slid * tl_v3_dot(tl_v3_cross(mean, lean), du), lean);
+    x = tl_v3_add(x, go);
+    put(c->p, i, tl_v3_add(p, tl_m3_tmul(&to, go)));
+    c->closure[i] = f->offset[l] - tl_v3_dot(tl_lanes3_get(&f->plane, l), x) - c->reference[i];
+    put(c->arm, i, x);
+    put(c->normal, i, n);
+    c->du_n[i] = du_n;
+    put(c->du_s, i, tl_v3_madd(du, -du_n, n));
+    double last2 = last_l2 > 0 ? tl_v3_norm2(last) : 1;
+    tl_vec3 before = tl_leaning(last, last_lean, last2, last_l2, face, edge);
+    put(c->f_s, i, tl_turn_one(tl_columns_get(c->f_s, i), before, n, tl_lanes3_get(&f->half, l)));
+}
+
+/* Points of any facets, all lanes at once. */
 TL_VECTORIZED static void follow_any(const columns *c, size_t begin, size_t end,
                                      const tl_frames *restrict f)
 {
@@ -84,37 +121,21 @@ TL_VECTORIZED static void follow_any(const columns *c, size_t begin, size_t end,
             edge[l] = (double)TL_LEAN_EDGE_STEP * c->edge[slot * TL_LANES + l];
         }
 #pragma omp simd
-        for (size_t l = 0; l < TL_LANES; l++) {
-            size_t i = slot * TL_LANES + l;
-            tl_mat3 to = tl_lanes9_get(&f->to, l), motion = tl_lanes9_get(&f->m, l);
-            tl_vec3 mean = tl_lanes3_get(&f->mean, l), lean = tl_lanes3_get(&f->lean, l);
-            tl_vec3 last = tl_lanes3_get(&f->last, l), last_lean = tl_lanes3_get(&f->last_lean, l);
-            tl_vec3 p = tl_columns_get(c->p, i),
-                    x = tl_v3_add(tl_m3_mul(&to, p), tl_lanes3_get(&f->from, l));
-            double l2 = f->l2[l], last_l2 = tl_v3_norm2(last_lean);
-            tl_vec3 n = tl_leaning(mean, lean, f->mean2[l], l2, face[l], edge[l]);
-            tl_vec3 du = tl_v3_add(tl_lanes3_get(&f->way, l), tl_m3_mul(&motion, x));
-            double du_n = tl_v3_dot(du, n);
-            /* with the features that made it, along the faces; where two edges cross, also up the faces by how far
-             * one edge has slid over the other */
-            double carry = l2 > 0 ? f->carry[l] : 0, slid = carry * edge[l] / (l2 > 0 ? l2 : 1);
-            tl_vec3 go = tl_v3_scale(carry * (1 + face[l]), du);
-            go = tl_v3_madd(go, slid * tl_v3_dot(tl_v3_cross(mean, lean), du), lean);
-            x = tl_v3_add(x, go);
-            put(c->p, i, tl_v3_add(p, tl_m3_tmul(&to, go)));
-            c->closure[i] =
-                f->offset[l] - tl_v3_dot(tl_lanes3_get(&f->plane, l), x) - c->reference[i];
-            put(c->arm, i, x);
-            put(c->normal, i, n);
-            c->du_n[i] = du_n;
-            put(c->du_s, i, tl_v3_madd(du, -du_n, n));
-            double last2 = last_l2 > 0 ? tl_v3_norm2(last) : 1;
-            tl_vec3 before = tl_leaning(last, last_lean, last2, last_l2, face[l], edge[l]);
-            tl_vec3 v =
-                tl_turn_one(tl_columns_get(c->f_s, i), before, n, tl_lanes3_get(&f->half, l));
-            put(c->f_s, i, v);
-        }
+        for (size_t l = 0; l < TL_LANES; l++)
+            follow_point(c, slot * TL_LANES + l, l, f, face[l], edge[l]);
     }
+}
+
+/* The same lane by lane: for a few it is quicker. */
+static void follow_few(const columns *c, size_t begin, size_t end, const tl_frames *restrict f,
+                       size_t lanes)
+{
+    for (size_t slot = begin; slot < end; slot++)
+        for (size_t l = 0; l < lanes; l++) {
+            size_t i = slot * TL_LANES + l;
+            follow_point(c, i, l, f, (double)TL_LEAN_FACE_STEP * c->face[i],
+                         (double)TL_LEAN_EDGE_STEP * c->edge[i]);
+        }
 }
 
 /* ---------------------------------------------------------------- ranks ------------------ */
@@ -228,9 +249,18 @@ static void next_facet(tl_model *m, const tl_rank *rank, tl_frames *f, size_t l,
         tl_frames_put(f, l, m, contact, f->facet[l]);
 }
 
+/* Lanes up to the last that has a contact. */
+static size_t used_lanes(const tl_rank *rank)
+{
+    size_t lanes = TL_LANES;
+    while (lanes > 0 && rank->contact[lanes - 1] == TL_NO_ROW)
+        lanes--;
+    return lanes;
+}
+
 /* Whatever facets the rank has: from where one begins in some lane to where the next does. */
 static void follow_facets(tl_model *m, const tl_rank *rank, const columns *c, tl_frames *f,
-                          uint32_t tangents)
+                          size_t lanes, uint32_t tangents)
 {
     uint32_t slot = 0;
     memset(f, 0, sizeof *f); /* lanes without a contact: inert, but finite */
@@ -245,7 +275,10 @@ static void follow_facets(tl_model *m, const tl_rank *rank, const columns *c, tl
             }
             until = f->end[l] < until ? f->end[l] : until;
         }
-        follow_any(c, slot, until, f);
+        if (lanes <= FEW)
+            follow_few(c, slot, until, f, lanes);
+        else
+            follow_any(c, slot, until, f);
         slot = until;
     }
 }
@@ -256,12 +289,12 @@ bool tl_rank_follow(tl_model *m, const tl_rank *rank, const tl_point_lanes *t, s
     uint8_t *fresh = m->detect->contacts.fresh;
     columns c = columns_at(&m->detect->points, rank->start, t, lane);
     tl_frames f;
-    size_t some;
+    size_t some, lanes = used_lanes(rank);
     bool tilted = true;
-    if (take_patches(m->detect, rank, &f, &some))
+    if (lanes > FEW && take_patches(m->detect, rank, &f, &some))
         tilted = follow_patches(m, rank, &c, &f, some);
     else
-        follow_facets(m, rank, &c, &f, tangents);
+        follow_facets(m, rank, &c, &f, lanes, tangents);
     if (!tilted && !tangents)
         finish_level(&f);
     for (size_t l = 0; l < TL_LANES; l++) {

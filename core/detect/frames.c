@@ -150,7 +150,7 @@ TL_INLINE void put_motion(tl_frames *f, size_t l, tl_vec3 half_a, double scale_a
     tl_lanes9_put(&f->m, l, &moved);
 }
 
-TL_VECTORIZED bool tl_frames_put_patches(tl_frames *restrict f, const tl_patch_rows *restrict rows)
+TL_VECTORIZED static bool put_patches(tl_frames *restrict f, const tl_patch_rows *restrict rows)
 {
     patches p;
     transpose(p.a, rows->a, TL_MOVING_ROW);
@@ -182,6 +182,11 @@ TL_VECTORIZED bool tl_frames_put_patches(tl_frames *restrict f, const tl_patch_r
     for (size_t l = 0; l < TL_LANES; l++)
         any += tilted[l];
     return any != 0;
+}
+
+bool tl_frames_put_patches(tl_frames *f, const tl_patch_rows *rows)
+{
+    return put_patches(f, rows);
 }
 
 void tl_frames_put(tl_frames *f, size_t l, const tl_model *m, uint32_t c, const tl_facet *facet)

@@ -41,6 +41,6 @@ typedef struct tl_patch_rows {
 } tl_patch_rows;
 
 /* Brings a patch in each lane into its present place; false when none is or was tilted. */
-bool tl_frames_put_patches(tl_frames *restrict f, const tl_patch_rows *restrict rows);
+bool tl_frames_put_patches(tl_frames *f, const tl_patch_rows *rows);
 
 #endif

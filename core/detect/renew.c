@@ -159,7 +159,7 @@ void tl_rank_update(tl_model *m, const tl_rank *rank, unsigned thread)
         else
             others |= 1u << l;
     }
-    if (in) {
+    if (in & (in - 1)) { /* one alone is no batch */
         tl_batch_lay(batch);
         take_patches(m, rank, batch, &in);
     }
