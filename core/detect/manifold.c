@@ -13,6 +13,7 @@
 #include "detect/crease.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 /* Tilt of two faces, or of an edge and a face, or of two edges, up to which they count as parallel
  * contact, and from which not at all: degrees. */
@@ -291,6 +292,23 @@ static void add_resting_edge(const tl_pair_view *view, const resting *r, bool b_
         add_resting(view, b_stands, m, tl_v3_madd(x, t0, d), weight, tl_key(key, 2));
 }
 
+/* The first place from h on where a vertex is in the loop of a face; 2 edge_count for none. Four places at a time, of
+ * which one is equal when what differs has a 16-bit zero. */
+static uint32_t next_place(const tl_poly *p, uint32_t h, uint32_t vertex)
+{
+    const uint64_t ones = UINT64_C(0x0001000100010001), pattern = vertex * ones;
+    uint32_t end = 2 * p->edge_count;
+    for (uint64_t four; h + 4 <= end; h += 4) {
+        memcpy(&four, p->loop + h, sizeof four);
+        four ^= pattern;
+        if ((four - ones) & ~four & (ones << 15))
+            break;
+    }
+    while (h < end && p->loop[h] != vertex)
+        h++;
+    return h;
+}
+
 /* The points a block rests on: its lowest vertex and, as far as they lie nearly in the face, the other
  * ends of the edges there, all clipped to the face. */
 static void add_support(const tl_pair_view *view, const resting *r, bool b_stands, tl_manifold *m)
@@ -302,10 +320,12 @@ static void add_support(const tl_pair_view *view, const resting *r, bool b_stand
     bool over = tl_segment_over_face(x, x, r->corners, r->corner_count, r->up, r->slack, &t0, &t1);
     if (over)
         add_resting(view, b_stands, m, x, (tilted){.value = 1}, tl_key(b_stands ? 1 : 2, low));
-    for (uint32_t f = 0; f < p->face_count; f++)
-        for (uint32_t h = p->start[f]; h < p->start[f + 1]; h++)
-            if (p->loop[h] == low) /* each edge leaves it once */
-                add_resting_edge(view, r, b_stands, low, p->loop[tl_poly_after(p, f, h)], over, m);
+    for (uint32_t h = 0, f = 0; (h = next_place(p, h, low)) < 2 * p->edge_count; h++) {
+        while (p->start[f + 1] <= h)
+            f++;
+        /* each edge leaves it once */
+        add_resting_edge(view, r, b_stands, low, p->loop[tl_poly_after(p, f, h)], over, m);
+    }
 }
 
 static tl_facet face_facet(const tl_pair_view *view, const tl_axis *axis, bool b_stands)
