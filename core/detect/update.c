@@ -247,6 +247,8 @@ static bool touches_still(tl_model *m, uint32_t c)
     tl_contacts *contacts = &m->detect->contacts;
     if (contacts->point_count[c] || contacts->until[c] == -INFINITY) /* under other rules */
         return false;
+    if (contacts->fate[c] == TL_FATE_GROW) /* the room it wants is in the place of the faces */
+        return false;
     tl_pair_view view = tl_pair_view_of(m, contacts->a[c], contacts->b[c]);
     if (tl_share_rule_of(m, &view, contacts->tag[c], false).unconditional)
         return false;
