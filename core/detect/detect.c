@@ -371,10 +371,11 @@ static tl_status find_contacts(tl_model *m)
             status = tl_pairs_restart(m);
         if (status != TL_OK)
             return status;
-        tl_parallel_for(m->pool, d->contacts.table.rows, CONTACT_CHUNK, reframe_range, m);
     }
     if (d->laws != m->laws)
-        find_materials(m);
+        find_materials(m); /* before contacts note the room they want in the place of faces */
+    if (rows)
+        tl_parallel_for(m->pool, d->contacts.table.rows, CONTACT_CHUNK, reframe_range, m);
     tl_pairs_run(m);
     if (rows || (double)d->ran > d->reach) {
         status = tl_broad_update(m);
