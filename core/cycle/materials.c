@@ -87,9 +87,11 @@ static tl_status rebase(tl_model *m, const tl_material *material)
         if (!tl_detect_hold_initial(d))
             return tl_fail_memory(&m->error);
         tl_contact_places(m, c, &d->lanes[0]);
-        for (uint32_t i = 0; i < d->contacts.point_count[c]; i++)
-            rebase_point(&d->points, tl_point_row(&d->contacts, c, i), d->lanes[0].closure[i],
-                         before->kn);
+        for (uint32_t i = 0; i < d->contacts.point_count[c]; i++) {
+            size_t row = tl_point_row(&d->contacts, c, i);
+            if (!d->contacts.fresh[c] || d->points.f_n[row] != 0) /* else no law has seen it yet */
+                rebase_point(&d->points, row, d->lanes[0].closure[i], before->kn);
+        }
     }
     return TL_OK;
 }

@@ -368,8 +368,11 @@ static bool place_points(tl_detect *d, uint32_t row)
 {
     tl_contacts *c = &d->contacts;
     uint32_t points = wanted_points(d, row), lane;
-    if (!points)
+    if (!points) { /* its lane may be another material's */
+        clear_points(d, row);
+        c->point_room[row] = 0;
         return true;
+    }
     const tl_rank *rank = tl_rank_take(d, c->material[row], points, row, &lane);
     if (!rank)
         return false;

@@ -336,11 +336,17 @@ static tl_status settle(tl_model *m)
     tl_status status = give_births(m, &changed);
     if (status != TL_OK)
         return status;
+    bool failed = false;
     for (uint32_t row = 0; row < c->table.rows; row++) {
-        if (c->fate[row] == TL_FATE_MEMORY)
-            return tl_fail_memory(&m->error);
+        if (c->fate[row] == TL_FATE_MEMORY) {
+            failed = true;
+            c->fate[row] = TL_FATE_KEEP;
+            c->until[row] = -INFINITY; /* there may be some another time */
+        }
         changed += c->fate[row] != TL_FATE_KEEP;
     }
+    if (failed)
+        return tl_fail_memory(&m->error);
     if (changed == 0 && !d->rows_changed)
         return TL_OK;
     for (bool more = true; more && status == TL_OK;) {

@@ -60,8 +60,7 @@ TL_VECTORIZED static void follow_level(const columns *c, size_t slots, const tl_
 #pragma omp simd
         for (size_t l = 0; l < TL_LANES; l++) {
             size_t i = at + l;
-            tl_mat3 to = tl_lanes9_get(&f->to, l), motion = tl_lanes9_get(&f->m, l),
-                    turn = tl_lanes9_get(&f->turn, l);
+            tl_mat3 to = tl_lanes9_get(&f->to, l), motion = tl_lanes9_get(&f->m, l);
             tl_vec3 n = tl_lanes3_get(&f->n, l);
             tl_vec3 x = tl_m3_mul(&to, tl_columns_get(c->p, i));
             tl_vec3 du = tl_v3_add(tl_lanes3_get(&f->way, l), tl_m3_mul(&motion, x));
@@ -72,9 +71,9 @@ TL_VECTORIZED static void follow_level(const columns *c, size_t slots, const tl_
                 f->offset[l] - tl_v3_dot(tl_lanes3_get(&f->plane, l), x) - c->reference[i];
             c->du_n[i] = du_n;
             put(c->du_s, i, tl_v3_madd(du, -du_n, n));
-            /* what has not turned stays as it is, to the bit */
-            tl_vec3 v = tl_m3_mul(&turn, tl_columns_get(c->f_s, i));
-            put(c->f_s, i, tl_v3_madd(v, -f->turns[l] * tl_v3_dot(v, n), n));
+            put(c->f_s, i,
+                tl_turn_into(tl_columns_get(c->f_s, i), tl_lanes3_get(&f->turn, l), f->scale[l],
+                             f->turns[l], n));
         }
 }
 

@@ -103,15 +103,6 @@ TL_INLINE void transpose_matrices(tl_lanes9 *to, const double *const *row)
         to->m[2][2][l] = row[l][8];
 }
 
-TL_INLINE tl_mat3 matrix_of(tl_vec3 g, double g2)
-{
-    const double s = 2 / (1 + g2), d = 1 - s * g2;
-    const tl_vec3 h = tl_v3_scale(s, g);
-    return (tl_mat3){{{d + h.x * g.x, h.x * g.y - h.z, h.x * g.z + h.y},
-                      {h.y * g.x + h.z, d + h.y * g.y, h.y * g.z - h.x},
-                      {h.z * g.x - h.y, h.z * g.y + h.x, d + h.z * g.z}}};
-}
-
 /* A facet in its present place, and its normals before. */
 TL_INLINE void put_facing(tl_frames *f, size_t l, tl_facing to, tl_vec3 last, tl_vec3 last_lean)
 {
@@ -173,8 +164,8 @@ TL_VECTORIZED static bool put_patches(tl_frames *restrict f, const tl_patch_rows
         tl_lanes3_put(&f->from, l, tl_v3(0, 0, 0));
         tl_vec3 by = tl_turn_between(last, to.n, tl_v3_dot(tl_lanes3_get(&f->half, l), to.n));
         double g2 = tl_v3_norm2(by);
-        tl_mat3 turn = matrix_of(by, g2);
-        tl_lanes9_put(&f->turn, l, &turn);
+        tl_lanes3_put(&f->turn, l, by);
+        f->scale[l] = 2 / (1 + g2);
         f->turns[l] = g2 > 0 ? 1 : 0;
         tilted[l] = to.l2 + tl_v3_norm2(last_lean);
     }

@@ -18,9 +18,9 @@ typedef struct tl_frames {
     tl_lanes3 way, half;
     tl_lanes9 m;
     double carry[TL_LANES]; /* half; 0 for points placed after that motion */
-    /* flush patches: turn of their common plane, and whether it turns at all */
-    tl_lanes9 turn;
-    double turns[TL_LANES];
+    /* flush patches: how their common plane turns (tl_turn_into) */
+    tl_lanes3 turn;
+    double scale[TL_LANES], turns[TL_LANES];
     uint32_t end[TL_LANES]; /* slot behind its points */
 } tl_frames;
 
