@@ -481,10 +481,12 @@ static inline tl_vec3 tl_contact_moment(const tl_model *m, uint32_t contact, boo
 #define TL_LEAN_FACE_STEP 0x1p-14f
 #define TL_LEAN_EDGE_STEP 0x1p-13f
 
-/* The nearest whole number of steps: of a positive number, which is cut off without asking for its sign. */
+/* The nearest whole number of steps, for -lean the same with the other sign, as blocks in the other order have it: a float
+ * this large has no digits behind the point. */
 static inline int16_t tl_lean_steps(float lean, float step)
 {
-    return (int16_t)((int32_t)(lean / step + (INT16_MAX + 1.5f)) - (INT16_MAX + 1));
+    const float whole = 0x1.8p23f;
+    return (int16_t)(int32_t)((lean / step + whole) - whole);
 }
 
 /* How the normal of a point leans. */

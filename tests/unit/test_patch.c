@@ -431,9 +431,27 @@ TEST(part_of_a_segment_over_a_face)
     CHECK(tl_segment_over_face(p, p, square, 4, up, 1e-12, &t0, &t1));
 }
 
+/* Leans are kept in steps: the nearest, alike to both sides, and exact where the normal is a face's. */
+TEST(leans_are_rounded_alike_to_both_sides)
+{
+    uint64_t seed = 5;
+    for (int i = 0; i < 100000; i++) {
+        float lean = (float)(2 * check_random(&seed) - 1);
+        int steps = tl_lean_steps(lean, TL_LEAN_FACE_STEP);
+        CHECK_INT(tl_lean_steps(-lean, TL_LEAN_FACE_STEP), -steps);
+        CHECK(fabsf(TL_LEAN_FACE_STEP * (float)steps - lean) <= 0.5f * TL_LEAN_FACE_STEP);
+    }
+    for (int i = -2; i <= 2; i++) {
+        CHECK(TL_LEAN_EDGE_STEP * tl_lean_steps((float)i, TL_LEAN_EDGE_STEP) == (float)i);
+        if (abs(i) < 2)
+            CHECK(TL_LEAN_FACE_STEP * tl_lean_steps((float)i, TL_LEAN_FACE_STEP) == (float)i);
+    }
+}
+
 TEST_MAIN(RUN(points_integrate_the_common_polygon), RUN(drums_of_many_sides_keep_their_area),
           RUN(turning_stiffness_is_exact_about_every_axis), RUN(unit_square_resists_by_one_twelfth),
           RUN(wobble_of_a_closed_patch_changes_little),
           RUN(wobble_of_a_half_open_patch_does_not_jump), RUN(tiny_wobble_leaves_the_rule_alone),
           RUN(drums_wobble_without_jumps), RUN(faces_that_share_only_an_edge_have_no_points),
-          RUN(patch_beyond_the_reach_is_left_out), RUN(part_of_a_segment_over_a_face))
+          RUN(patch_beyond_the_reach_is_left_out), RUN(part_of_a_segment_over_a_face),
+          RUN(leans_are_rounded_alike_to_both_sides))
