@@ -14,6 +14,32 @@ static void hash_table(tl_hash *hash, const tl_table *table)
             tl_hash_bytes(hash, tl_table_data(table, i), table->rows * table->columns[i].size);
 }
 
+static void hash_row(tl_hash *hash, const tl_table *table, size_t row)
+{
+    for (size_t i = 0; i < table->column_count; i++) {
+        size_t size = table->columns[i].size;
+        if (table->columns[i].flags & TL_COLUMN_STATE)
+            tl_hash_bytes(hash, (const char *)tl_table_data(table, i) + row * size, size);
+    }
+}
+
+/* In the order of their blocks: which row and lane a contact has depends on when it was made. */
+static void hash_contacts(tl_hash *hash, const tl_model *m)
+{
+    const tl_detect *d = m->detect;
+    const tl_contacts *c = &d->contacts;
+    for (uint32_t block = 0; block < m->blocks.table.rows; block++)
+        for (uint32_t e = d->by_block_start[block]; e < d->by_block_start[block + 1]; e++) {
+            uint32_t contact = d->by_block[e];
+            if (c->a[contact] != block)
+                continue; /* it comes with its other block */
+            tl_hash_word(hash, (uint64_t)m->blocks.id[block] << 32 | m->blocks.id[c->b[contact]]);
+            hash_row(hash, &c->table, contact);
+            for (uint32_t k = 0; k < c->point_count[contact]; k++)
+                hash_row(hash, &d->points.table, tl_point_row(c, contact, k));
+        }
+}
+
 static void hash_shape(tl_hash *hash, const tl_poly *p)
 {
     tl_hash_bytes(hash, p->vertex, p->vertex_count * sizeof *p->vertex);
@@ -54,12 +80,7 @@ tl_status tl_state_hash(tl_model *m, char text[33])
     hash_table(&hash, &m->bodies.table);
     for (size_t row = 0; row < m->blocks.table.rows; row++)
         hash_shape(&hash, m->blocks.shape[row]);
-    const tl_contacts *contacts = &m->detect->contacts;
-    for (size_t i = 0; i < contacts->table.rows; i++)
-        tl_hash_word(&hash,
-                     (uint64_t)m->blocks.id[contacts->a[i]] << 32 | m->blocks.id[contacts->b[i]]);
-    hash_table(&hash, &contacts->table);
-    hash_table(&hash, &m->detect->points.table);
+    hash_contacts(&hash, m);
     for (size_t i = 0; i < m->material_count; i++) {
         tl_hash_word(&hash, (uint64_t)m->materials[i].tag.joint << 32 | m->materials[i].tag.plane);
         tl_hash_bytes(&hash, m->materials[i].kind->name, strlen(m->materials[i].kind->name));
