@@ -61,6 +61,15 @@ static void rebase_point(tl_points_table *p, size_t i, double closure, double ol
     p->f_n0[i] = p->f_n[i];
 }
 
+/* Whether a law has seen the contact: one that has only been asked for begins under the new law. */
+static bool was_followed(const tl_detect *d, uint32_t c)
+{
+    bool carries = false;
+    for (uint32_t k = 0; k < d->contacts.point_count[c]; k++)
+        carries = carries || d->points.f_n[tl_point_row(&d->contacts, c, k)] != 0;
+    return carries || !d->contacts.fresh[c];
+}
+
 /* Keeps the forces of the contacts that come under another stiffness or law. */
 static tl_status rebase(tl_model *m, const tl_material *material)
 {
@@ -81,17 +90,16 @@ static tl_status rebase(tl_model *m, const tl_material *material)
             continue;
         if (ruling->tag.plane > 0 && material->tag.plane == 0)
             continue;
-        if (before->kind == material->kind && before->kn == material->kn &&
-            before->ks == material->ks)
+        if ((before->kind == material->kind && before->kn == material->kn &&
+             before->ks == material->ks) ||
+            !was_followed(d, c))
             continue;
         if (!tl_detect_hold_initial(d))
             return tl_fail_memory(&m->error);
         tl_contact_places(m, c, &d->lanes[0]);
-        for (uint32_t i = 0; i < d->contacts.point_count[c]; i++) {
-            size_t row = tl_point_row(&d->contacts, c, i);
-            if (!d->contacts.fresh[c] || d->points.f_n[row] != 0) /* else no law has seen it yet */
-                rebase_point(&d->points, row, d->lanes[0].closure[i], before->kn);
-        }
+        for (uint32_t i = 0; i < d->contacts.point_count[c]; i++)
+            rebase_point(&d->points, tl_point_row(&d->contacts, c, i), d->lanes[0].closure[i],
+                         before->kn);
     }
     return TL_OK;
 }
