@@ -157,10 +157,13 @@ static void sum_rank(tl_model *m, const tl_rank *rank, const tl_point_lanes *t, 
     tl_contacts *contacts = &m->detect->contacts;
     rank_sums sum;
     sum_points(&m->detect->points, t, rank->start, lane, rank->slots, &sum);
+    tl_rank_energy energy = {0, 0};
     for (size_t l = 0; l < TL_LANES; l++) {
         uint32_t c = rank->contact[l];
         if (c == TL_NO_ROW)
-            continue;
+            continue; /* what its rows hold means nothing, after a step that failed not even a number */
+        energy.stored += sum.stored[l];
+        energy.dissipated += sum.dissipated[l];
         contacts->across[c] = sum.across[l] > 0;
         contacts->force[c] = tl_v3(sum.force[0][l], sum.force[1][l], sum.force[2][l]);
         contacts->moment[c] = tl_v3(sum.moment[0][l], sum.moment[1][l], sum.moment[2][l]);
@@ -170,8 +173,7 @@ static void sum_rank(tl_model *m, const tl_rank *rank, const tl_point_lanes *t, 
     }
     if (across(sum.odd) != 0)
         report_odd(m, rank, &sum);
-    m->cycle->rank_energy[rank - m->detect->layout.ranks] =
-        (tl_rank_energy){across(sum.stored), across(sum.dissipated)};
+    m->cycle->rank_energy[rank - m->detect->layout.ranks] = energy;
 }
 
 /* From the places of the bodies to the forces of the contacts of some ranks, which follow each other. */

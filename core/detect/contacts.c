@@ -254,17 +254,10 @@ static void choose_spare(tl_detect *d, int64_t cycles)
     d->laid_at = cycles;
 }
 
-/* `need` and some to spare. */
-static size_t with_spare(const tl_detect *d, size_t need, size_t least)
-{
-    size_t more = need / d->spare_share;
-    return need + (more > least ? more : least);
-}
-
 /* Room for the facets of all contacts and some more, in the spare list. */
 static bool lay_facets(tl_detect *d, size_t facets)
 {
-    size_t wanted = with_spare(d, facets, SPARE_ROWS);
+    size_t wanted = tl_with_spare(facets, d->spare_share, SPARE_ROWS);
     tl_facet *facet = realloc(d->spare.facet, wanted * sizeof *facet);
     if (!facet)
         return false;
@@ -330,9 +323,10 @@ tl_status tl_contacts_repack(tl_model *m)
     choose_spare(d, m->cycles);
     fresh->table.rows = 0;
     d->spare_points.table.rows = 0;
-    bool there = lay_facets(d, facets) &&
-                 tl_table_reserve(&fresh->table, with_spare(d, count, SPARE_ROWS)) &&
-                 tl_table_resize(&fresh->table, count);
+    bool there =
+        lay_facets(d, facets) &&
+        tl_table_reserve(&fresh->table, tl_with_spare(count, d->spare_share, SPARE_ROWS)) &&
+        tl_table_resize(&fresh->table, count);
     fresh->facet_total = 0;
     for (uint32_t i = 0; i < count && there; i++) {
         copy_contact(d, list[i].row, i, (uint32_t)fresh->facet_total);

@@ -103,8 +103,8 @@ static inline tl_vec3 tl_facet_swing(const tl_facet *f)
 static inline void tl_facet_set_swing(tl_facet *f, tl_vec3 swing)
 {
     const double value[] = {swing.x, swing.y, swing.z};
-    for (int k = 0; k < 3;
-         k++) /* the energy it belongs to is next to nothing where it is beyond a float */
+    /* the energy it belongs to is next to nothing where it is beyond a float */
+    for (int k = 0; k < 3; k++)
         f->swing[k] = (float)fmin(fmax(value[k], -TL_MOST_SWING), TL_MOST_SWING);
 }
 
@@ -508,6 +508,13 @@ static inline size_t tl_point_row(const tl_contacts *c, uint32_t contact, size_t
 }
 /* Row of the contact of an id, or TL_NO_ROW. */
 uint32_t tl_contact_row(tl_detect *d, tl_id id);
+
+/* `need` and one in `share` more, or `least` more. */
+static inline size_t tl_with_spare(size_t need, size_t share, size_t least)
+{
+    size_t more = need / share;
+    return need + (more > least ? more : least);
+}
 
 /* ---- ranks.c ---- */
 /* Gives contacts that are sorted by material their lanes in an empty layout: sets the start and room of each by the

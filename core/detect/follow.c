@@ -7,9 +7,8 @@
  *
  * Eight contacts are worked on side by side (tl_rank). What is the same for all points of a contact is brought into
  * matrices first, one in each lane (*frames*), so that what is left for a point are a few products, in loops over
- * columns without a branch. Ranks of one flush patch in each lane, as most are, take the shortest way; else
- * facets are taken one after the other, the first of every contact, the second ..., each in its own part of the
- * slots. */
+ * columns without a branch. Ranks of one flush patch in each lane, as most are, take the shortest way; else slot
+ * follows slot, and each lane goes on to its contact's next facet where that begins. */
 #include "detect/frames.h"
 
 #include <string.h>

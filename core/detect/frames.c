@@ -4,6 +4,8 @@
  * worked out for all of them at once. */
 #include "detect/frames.h"
 
+#include <assert.h>
+#include <stddef.h>
 #include <string.h>
 
 /* Angle below which a tangent is taken from its series, whose next term is then below rounding. */
@@ -55,8 +57,21 @@ typedef struct patches {
     double a[TL_MOVING_ROW][TL_LANES], b[TL_MOVING_ROW][TL_LANES]; /* tl_moving */
     double facet[TL_FACET_ROW][TL_LANES];                          /* tl_facet */
     tl_lanes9 rb;
-    tl_lanes3 d;
 } patches;
+
+/* Where the members of a facet and of a motion are in their rows. */
+#define AT(type, member) (offsetof(type, member) / sizeof(double))
+enum {
+    NA = AT(tl_facet, na),
+    NB = AT(tl_facet, nb),
+    OFFSET = AT(tl_facet, offset),
+    LAST = AT(tl_facet, last),
+    LAST_LEAN = AT(tl_facet, last_lean),
+    HALF = AT(tl_moving, half),
+    SCALE = AT(tl_moving, scale)
+};
+static_assert(sizeof(tl_facet) >= TL_FACET_ROW * sizeof(double), "a facet is shorter than its row");
+static_assert(sizeof(tl_moving) == TL_MOVING_ROW * sizeof(double), "a motion is not its row");
 
 typedef double quad __attribute__((vector_size(32)));
 typedef double octet __attribute__((vector_size(64)));
@@ -152,14 +167,14 @@ TL_VECTORIZED static bool put_patches(tl_frames *restrict f, const tl_patch_rows
     double tilted[TL_LANES];
 #pragma omp simd
     for (size_t l = 0; l < TL_LANES; l++) {
-        tl_vec3 d = tl_lanes3_get(&rows->d, l), last = row_vec3(p.facet, 7, l);
-        tl_vec3 last_lean = row_vec3(p.facet, 10, l);
-        tl_vec3 ha = row_vec3(p.a, 0, l), hb = row_vec3(p.b, 0, l);
-        put_motion(f, l, ha, p.a[3][l], hb, p.b[3][l], tl_lanes3_get(&rows->way, l), d);
+        tl_vec3 d = tl_lanes3_get(&rows->d, l), last = row_vec3(p.facet, LAST, l);
+        tl_vec3 last_lean = row_vec3(p.facet, LAST_LEAN, l);
+        tl_vec3 ha = row_vec3(p.a, HALF, l), hb = row_vec3(p.b, HALF, l);
+        put_motion(f, l, ha, p.a[SCALE][l], hb, p.b[SCALE][l], tl_lanes3_get(&rows->way, l), d);
         tl_mat3 ra = tl_lanes9_get(&f->to, l), rb = tl_lanes9_get(&p.rb, l);
-        tl_vec3 na = tl_m3_mul(&ra, row_vec3(p.facet, 0, l));
-        tl_vec3 nb = tl_m3_mul(&rb, row_vec3(p.facet, 3, l));
-        tl_facing to = tl_facing_patch(na, nb, d, p.facet[6][l]);
+        tl_vec3 na = tl_m3_mul(&ra, row_vec3(p.facet, NA, l));
+        tl_vec3 nb = tl_m3_mul(&rb, row_vec3(p.facet, NB, l));
+        tl_facing to = tl_facing_patch(na, nb, d, p.facet[OFFSET][l]);
         put_facing(f, l, to, last, last_lean);
         tl_lanes3_put(&f->from, l, tl_v3(0, 0, 0));
         tl_vec3 by = tl_turn_between(last, to.n, tl_v3_dot(tl_lanes3_get(&f->half, l), to.n));

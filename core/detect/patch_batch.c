@@ -104,13 +104,6 @@ TL_INLINE tl_frame2 frame_at(const frames *f, uint32_t l)
     return out;
 }
 
-TL_INLINE tl_mat3 turn_at(const tl_patch_batch *b, uint32_t l)
-{
-    return (tl_mat3){{{b->turn[0][0][l], b->turn[0][1][l], b->turn[0][2][l]},
-                      {b->turn[1][0][l], b->turn[1][1][l], b->turn[1][2][l]},
-                      {b->turn[2][0][l], b->turn[2][1][l], b->turn[2][2][l]}}};
-}
-
 TL_INLINE tl_plane plane_at(const tl_lanes3 *normal, const tl_batch1 offset, uint32_t l)
 {
     tl_plane out;
@@ -124,14 +117,15 @@ TL_INLINE void view(tl_patch_batch *b)
 {
     double *shift[3] = {b->shift.x, b->shift.y, b->shift.z};
     for (int i = 0; i < 3; i++) {
-        const double *restrict r0 = b->r_a[0][i], *restrict r1 = b->r_a[1][i];
-        const double *restrict r2 = b->r_a[2][i];
+        const double *restrict r0 = b->r_a.m[0][i], *restrict r1 = b->r_a.m[1][i];
+        const double *restrict r2 = b->r_a.m[2][i];
         double *restrict way = shift[i];
         for (int j = 0; j < 3; j++) {
-            double *restrict turn = b->turn[i][j];
+            double *restrict turn = b->turn.m[i][j];
 #pragma omp simd
             EACH_LANE(l)
-            turn[l] = r0[l] * b->r_b[0][j][l] + r1[l] * b->r_b[1][j][l] + r2[l] * b->r_b[2][j][l];
+            turn[l] =
+                r0[l] * b->r_b.m[0][j][l] + r1[l] * b->r_b.m[1][j][l] + r2[l] * b->r_b.m[2][j][l];
         }
 #pragma omp simd
         EACH_LANE(l)
@@ -146,7 +140,7 @@ TL_INLINE void lay_frames(tl_patch_batch *b, work *w)
 #pragma omp simd
     EACH_LANE(l)
     {
-        tl_mat3 turn = turn_at(b, l);
+        tl_mat3 turn = tl_lanes9_get(&b->turn, l);
         tl_plane own = plane_at(&b->normal_b, b->offset_b, l);
         tl_plane placed = tl_plane_placed(&turn, tl_lanes3_get(&b->shift, l), own);
         tl_vec3 na = tl_lanes3_get(&b->normal_a, l);
@@ -184,7 +178,7 @@ TL_INLINE void project_b(tl_patch_batch *b, work *w, uint32_t j)
     EACH_LANE(l)
     {
         tl_frame2 f = frame_at(&w->frame, l);
-        tl_mat3 turn = turn_at(b, l);
+        tl_mat3 turn = tl_lanes9_get(&b->turn, l);
         tl_vec3 v =
             tl_v3_add(tl_m3_mul(&turn, tl_lanes3_get(&b->b[j], l)), tl_lanes3_get(&b->shift, l));
         tl_point2 at = tl_frame2_project(&f, v);

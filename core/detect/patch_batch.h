@@ -16,8 +16,7 @@ typedef struct tl_batch_point {
 
 typedef struct tl_patch_batch {
     /* the pairs: bodies' rotations, the way from A's body to B's in the model's axes */
-    _Alignas(64) tl_batch1 r_a[3][3];
-    tl_batch1 r_b[3][3];
+    _Alignas(64) tl_lanes9 r_a, r_b;
     tl_lanes3 apart;
     /* their faces: corners counter-clockwise seen against the patch's normal, B's in B's frame */
     tl_lanes3 a[TL_OUTLINE_CORNERS], b[TL_OUTLINE_CORNERS], normal_a, normal_b;
@@ -28,7 +27,7 @@ typedef struct tl_patch_batch {
     uint64_t laid[TL_LANES];      /* whether there is one, of full corners that stand clear */
     tl_outline outline[TL_LANES]; /* its corners */
     tl_batch_point middles[TL_OUTLINE_CORNERS], corners[TL_OUTLINE_CORNERS], centroid;
-    tl_batch1 turn[3][3]; /* as in a tl_pair_view */
+    tl_lanes9 turn; /* as in a tl_pair_view */
     tl_lanes3 shift;
     tl_batch1 area;          /* in all */
     tl_lanes3 placed_b;      /* B's normal, A's frame */
@@ -92,11 +91,8 @@ static inline bool tl_batch_has_keys(const tl_patch_batch *b, uint32_t lane, tl_
 static inline void tl_batch_between(tl_patch_batch *batch, uint32_t lane, const tl_mat3 *r_a,
                                     const tl_mat3 *r_b, tl_vec3 apart)
 {
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++) {
-            batch->r_a[i][j][lane] = r_a->m[i][j];
-            batch->r_b[i][j][lane] = r_b->m[i][j];
-        }
+    tl_lanes9_put(&batch->r_a, lane, r_a);
+    tl_lanes9_put(&batch->r_b, lane, r_b);
     tl_lanes3_put(&batch->apart, lane, apart);
 }
 

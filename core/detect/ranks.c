@@ -20,13 +20,6 @@
 #define SPARE_POINTS 1024
 #define SPARE_RANKS 16
 
-/* `need` and one in `share` more. */
-static size_t with_spare(size_t need, size_t share, size_t least)
-{
-    size_t more = need / share;
-    return need + (more > least ? more : least);
-}
-
 typedef struct seat {
     uint32_t points, row;
 } seat;
@@ -101,11 +94,11 @@ bool tl_layout_make(tl_layout *layout, tl_contacts *c, size_t share, size_t *poi
         run->rank_end = ranks;
         /* every window but the last of a run is full */
         size_t full = (count + TL_LANES - 1) / TL_LANES;
-        run->rank_limit = ranks = ranks + with_spare(full, share, SPARE_RANKS);
+        run->rank_limit = ranks = ranks + tl_with_spare(full, share, SPARE_RANKS);
         if (!tl_grow(&layout->ranks, &layout->rank_room, ranks, sizeof *layout->ranks))
             return false;
         row = lay_run(layout, c, run, row);
-        run->limit = run->begin + with_spare(run->end - run->begin, share, SPARE_POINTS);
+        run->limit = run->begin + tl_with_spare(run->end - run->begin, share, SPARE_POINTS);
         run->limit = (run->limit + TL_LANES - 1) / TL_LANES * TL_LANES;
         *points = run->limit;
     }

@@ -5,9 +5,6 @@
  * at that could touch (rebuild). */
 #include "detect/update.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 /* Motion within which facets and areas are reused, relative to the smaller block's size: areas are
  * then wrong by a few 1e-6 at most; gaps are exact all the same. */
 #define REUSE 1e-6
