@@ -377,6 +377,8 @@ void tl_manifold_build(const tl_pair_view *view, const tl_axis *axis, const tl_s
 bool tl_manifold_add_point(tl_manifold *m, tl_contact_point point);
 /* Makes room for `count` points more; false when out of memory. */
 bool tl_manifold_reserve(tl_manifold *m, size_t count);
+/* Makes sure there is room for so many facets in all; false when out of memory. */
+bool tl_manifold_reserve_facets(tl_manifold *m, size_t room);
 /* Lays the patch of two faces that lie flush on each other, where nothing else touches; false, when they do
  * not. */
 bool tl_manifold_renew(const tl_pair_view *view, uint32_t fa, uint32_t fb,
@@ -393,10 +395,6 @@ double tl_patch_lay(const tl_pair_view *view, uint32_t fa, uint32_t fb, double w
  * `swing`; returns its scaled area (0 when they do not overlap). */
 double tl_patch_add(const tl_pair_view *view, uint32_t fa, uint32_t fb, double weight,
                     tl_vec3 swing, const tl_share_rule *rule, tl_narrow *room);
-/* The part [*t0, *t1] of the segment from p to q over a face (polygon of `count` corners in a plane of
- * normal n, any side), as shares of its length; false when none is. */
-bool tl_segment_over_face(tl_vec3 p, tl_vec3 q, const tl_vec3 *corners, size_t count, tl_vec3 n,
-                          double slack, double *t0, double *t1);
 void tl_polygon_free(struct tl_polygon *polygon, tl_patch_points *points);
 
 /* ---- follow.c ---- */

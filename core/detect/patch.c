@@ -303,23 +303,3 @@ double tl_patch_add(const tl_pair_view *view, uint32_t fa, uint32_t fb, double w
                                                          .key = from->key[i]};
     return area;
 }
-
-bool tl_segment_over_face(tl_vec3 p, tl_vec3 q, const tl_vec3 *corners, size_t count, tl_vec3 n,
-                          double slack, double *t0, double *t1)
-{
-    *t0 = 0;
-    *t1 = 1;
-    for (size_t i = 0; i < count; i++) {
-        tl_vec3 c = corners[i], d = corners[i + 1 == count ? 0 : i + 1];
-        tl_vec3 inward = tl_v3_unit(tl_v3_cross(n, tl_v3_sub(d, c)));
-        double hp = tl_v3_dot(inward, tl_v3_sub(p, c)) + slack;
-        double hq = tl_v3_dot(inward, tl_v3_sub(q, c)) + slack;
-        if (hp < 0 && hq < 0)
-            return false;
-        if (hp < 0)
-            *t0 = fmax(*t0, hp / (hp - hq));
-        else if (hq < 0)
-            *t1 = fmin(*t1, hp / (hp - hq));
-    }
-    return *t0 <= *t1;
-}

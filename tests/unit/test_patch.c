@@ -415,22 +415,6 @@ TEST(patch_beyond_the_reach_is_left_out)
     scene_pair_free(&p);
 }
 
-TEST(part_of_a_segment_over_a_face)
-{
-    const tl_vec3 square[] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, up = {0, 0, 1};
-    double t0, t1;
-    CHECK(tl_segment_over_face(tl_v3(-1, 0.5, 3), tl_v3(3, 0.5, 2), square, 4, up, 0, &t0, &t1));
-    CHECK_NEAR(t0, 0.25, 1e-15);
-    CHECK_NEAR(t1, 0.5, 1e-15);
-    CHECK(tl_segment_over_face(tl_v3(0.2, 0.5, 3), tl_v3(0.4, 0.5, 2), square, 4, up, 0, &t0, &t1));
-    CHECK_NEAR(t0, 0, 0);
-    CHECK_NEAR(t1, 1, 0);
-    CHECK(!tl_segment_over_face(tl_v3(-1, 0.5, 0), tl_v3(0.5, 3, 0), square, 4, up, 0, &t0, &t1));
-    CHECK(!tl_segment_over_face(tl_v3(2, 0, 0), tl_v3(2, 1, 0), square, 4, up, 0, &t0, &t1));
-    tl_vec3 p = {1, 1, 0};
-    CHECK(tl_segment_over_face(p, p, square, 4, up, 1e-12, &t0, &t1));
-}
-
 /* Leans are kept in steps: the nearest, alike to both sides, and exact where the normal is a face's. */
 TEST(leans_are_rounded_alike_to_both_sides)
 {
@@ -453,5 +437,5 @@ TEST_MAIN(RUN(points_integrate_the_common_polygon), RUN(drums_of_many_sides_keep
           RUN(wobble_of_a_closed_patch_changes_little),
           RUN(wobble_of_a_half_open_patch_does_not_jump), RUN(tiny_wobble_leaves_the_rule_alone),
           RUN(drums_wobble_without_jumps), RUN(faces_that_share_only_an_edge_have_no_points),
-          RUN(patch_beyond_the_reach_is_left_out), RUN(part_of_a_segment_over_a_face),
+          RUN(patch_beyond_the_reach_is_left_out),
           RUN(leans_are_rounded_alike_to_both_sides))
