@@ -15,6 +15,9 @@
 
 /* A vertex this near the border of a face, relative to the size, is over it. */
 #define BORDER 1e-9
+/* Tilt of an edge and a face up to which the edge lies in the face, and from which not at all: degrees. */
+#define LYING_FULL 1.0
+#define LYING_NONE 5.0
 /* An arc is longer than its sine by no more than this, up to TL_TILT_NONE. */
 #define ARC_OVER_SINE 1.02
 
@@ -157,8 +160,8 @@ static weight likeness(bool of_a, tl_vec3 out, tl_vec3 n, const line *a, const l
     double sine = tl_v3_norm(tl_v3_cross(n, out));
     if (tl_v3_dot(n, out) <= 0)
         return (weight){0};
-    weight w = {.value = tl_fade(sine, TL_TILT_FULL, TL_TILT_NONE)};
-    double slope = tl_fade_slope(sine, TL_TILT_FULL, TL_TILT_NONE);
+    weight w = {.value = tl_fade(sine, LYING_FULL, LYING_NONE)};
+    double slope = tl_fade_slope(sine, LYING_FULL, LYING_NONE);
     if (slope == 0)
         return w;
     tl_vec3 u = a->unit, v = b->unit, cross = tl_v3_cross(u, v);
@@ -217,9 +220,9 @@ typedef struct stand {
 static weight lying(const stand *s, tl_vec3 d)
 {
     double rise = tl_v3_dot(s->up, d) / tl_v3_norm(d), sine = fabs(rise);
-    weight out = {.value = tl_fade(sine, TL_TILT_FULL, TL_TILT_NONE)};
+    weight out = {.value = tl_fade(sine, LYING_FULL, LYING_NONE)};
     /* by B's turn, when B has the edge; when it has the face, the other way round */
-    double slope = (s->b_stands ? -1 : 1) * tl_fade_slope(sine, TL_TILT_FULL, TL_TILT_NONE);
+    double slope = (s->b_stands ? -1 : 1) * tl_fade_slope(sine, LYING_FULL, LYING_NONE);
     if (slope != 0)
         out.swing =
             tl_v3_scale((rise < 0 ? -slope : slope) / out.value, tl_v3_unit(tl_v3_cross(d, s->up)));
