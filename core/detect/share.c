@@ -18,6 +18,8 @@
 /* Tilt of an edge and a face up to which the edge lies in the face, and from which not at all: degrees. */
 #define LYING_FULL 1.0
 #define LYING_NONE 5.0
+/* Square of the sine of the latter. */
+#define LYING_SINE2 0.00759612349389597
 /* An arc is longer than its sine by no more than this, up to TL_TILT_NONE. */
 #define ARC_OVER_SINE 1.02
 
@@ -180,7 +182,8 @@ static weight likeness(bool of_a, tl_vec3 out, tl_vec3 n, const line *a, const l
 
 /* A vertex of the block that stands. */
 typedef struct foot {
-    weight share; /* 0: none */
+    uint16_t vertex;
+    weight share;
     bool settled; /* it will not get more */
     bool over;    /* over the face */
     bool beamed;  /* an edge from it lies in the face */
@@ -191,7 +194,8 @@ typedef struct foot {
 
 /* An edge that lies in the face, from the end with the larger share, and the part of it over the face (see over). */
 typedef struct beam {
-    uint16_t end[2], edge;
+    size_t end[2]; /* of the feet */
+    uint16_t edge;
     weight lies;
     double t[2];
     size_t side[2];
@@ -208,18 +212,20 @@ typedef struct stand {
     uint32_t face;
     tl_vec3 up; /* the face's outward normal */
     double slack;
-    foot *feet;     /* [vertices of `standing`] */
-    uint16_t *list; /* of those with a share */
-    beam *beams;    /* [edges of `standing`] */
-    size_t listed, beam_count;
-    candidate *found; /* [vertices + 2 edges]: the points, vertices first */
-    size_t found_count;
+    foot *feet;       /* [vertices of `standing`] those with a share */
+    uint16_t *place;  /* [vertices of `standing`] 1 + that among the feet, or 0 */
+    beam *beams;      /* [edges of `standing`] */
+    candidate *found; /* [vertices + 2 edges of `standing`] the points */
+    size_t foot_count, beam_count, found_count;
 } stand;
 
 /* How nearly an edge along d of the standing block lies in the face. */
 static weight lying(const stand *s, tl_vec3 d)
 {
-    double rise = tl_v3_dot(s->up, d) / tl_v3_norm(d), sine = fabs(rise);
+    double rise = tl_v3_dot(s->up, d), length2 = tl_v3_norm2(d);
+    if (rise * rise >= LYING_SINE2 * length2) /* most edges */
+        return (weight){0};
+    double sine = fabs(rise) / sqrt(length2);
     weight out = {.value = tl_fade(sine, LYING_FULL, LYING_NONE)};
     /* by B's turn, when B has the edge; when it has the face, the other way round */
     double slope = (s->b_stands ? -1 : 1) * tl_fade_slope(sine, LYING_FULL, LYING_NONE);
@@ -229,14 +235,28 @@ static weight lying(const stand *s, tl_vec3 d)
     return out;
 }
 
-static void give_share(stand *s, uint16_t vertex, weight w)
+/* Gives a vertex that share, unless it has a larger one; returns its place among the feet. */
+static size_t give_share(stand *s, uint16_t vertex, weight w)
 {
-    foot *f = &s->feet[vertex];
-    if (w.value <= f->share.value)
-        return;
-    if (f->share.value == 0)
-        s->list[s->listed++] = vertex;
-    f->share = w;
+    if (s->place[vertex] == 0) {
+        s->feet[s->foot_count] = (foot){.vertex = vertex};
+        s->place[vertex] = (uint16_t)++s->foot_count;
+    }
+    foot *f = &s->feet[s->place[vertex] - 1];
+    if (w.value > f->share.value)
+        f->share = w;
+    return s->place[vertex] - 1u;
+}
+
+/* The foot of the largest share among those not settled; the number of feet when all are. */
+static size_t next_foot(const stand *s)
+{
+    size_t best = s->foot_count;
+    for (size_t i = 0; i < s->foot_count; i++)
+        if (!s->feet[i].settled &&
+            (best == s->foot_count || s->feet[i].share.value > s->feet[best].share.value))
+            best = i;
+    return best;
 }
 
 /* The vertices that rest on the face with a first one, and the edges between them. Each has the largest share that a
@@ -246,26 +266,20 @@ static void find_feet(stand *s, uint16_t first)
 {
     const tl_poly *p = s->standing;
     give_share(s, first, (weight){.value = 1});
-    for (size_t settled = 0; settled < s->listed; settled++) {
-        size_t best = settled;
-        for (size_t i = settled + 1; i < s->listed; i++)
-            if (s->feet[s->list[i]].share.value > s->feet[s->list[best]].share.value)
-                best = i;
-        uint16_t v = s->list[best];
-        s->list[best] = s->list[settled];
-        s->list[settled] = v;
-        s->feet[v].settled = true;
+    for (size_t i; (i = next_foot(s)) < s->foot_count;) {
+        uint16_t v = s->feet[i].vertex;
+        s->feet[i].settled = true;
         for (uint32_t e = 0; e < p->edge_count; e++) {
             if (p->edge[e].a != v && p->edge[e].b != v)
                 continue;
             uint16_t u = p->edge[e].a == v ? p->edge[e].b : p->edge[e].a;
-            if (s->feet[u].settled)
+            if (s->place[u] && s->feet[s->place[u] - 1].settled)
                 continue;
             weight lies = lying(s, tl_v3_sub(s->vertex[u], s->vertex[v]));
             if (!(lies.value > 0))
                 continue;
-            give_share(s, u, product(s->feet[v].share, lies));
-            s->beams[s->beam_count++] = (beam){.end = {v, u}, .edge = (uint16_t)e, .lies = lies};
+            size_t to = give_share(s, u, product(s->feet[i].share, lies));
+            s->beams[s->beam_count++] = (beam){.end = {i, to}, .edge = (uint16_t)e, .lies = lies};
         }
     }
 }
@@ -322,7 +336,8 @@ static bool clip_beam(stand *s, beam *e)
 {
     for (int k = 0; k < 2; k++)
         s->feet[e->end[k]].beamed = true;
-    if (!over(s, s->vertex[e->end[0]], s->vertex[e->end[1]], e->t, e->side))
+    if (!over(s, s->vertex[s->feet[e->end[0]].vertex], s->vertex[s->feet[e->end[1]].vertex], e->t,
+              e->side))
         return false;
     for (int k = 0; k < 2; k++) {
         foot *f = &s->feet[e->end[k]];
@@ -359,15 +374,15 @@ static void add_crossing(stand *s, const beam *e, int end)
                                crossing_point(&a, &b), w, 0);
 }
 
-static void add_foot(stand *s, uint16_t vertex)
+static void add_foot(stand *s, const foot *f)
 {
     const tl_pair_view *view = s->view;
-    tl_vec3 x = s->vertex[vertex];
+    tl_vec3 x = s->vertex[f->vertex];
     s->found[s->found_count++] =
         (candidate){.facet = face_facet(view, s->face, s->b_stands),
                     .p = s->b_stands ? tl_m3_tmul(&view->turn, tl_v3_sub(x, view->shift)) : x,
-                    .weight = s->feet[vertex].share,
-                    .key = tl_key(s->b_stands ? 1 : 2, vertex)};
+                    .weight = f->share,
+                    .key = tl_key(s->b_stands ? 1 : 2, f->vertex)};
 }
 
 static void add_feet(stand *s)
@@ -380,13 +395,13 @@ static void add_feet(stand *s)
         for (int end = 0; end < 2; end++)
             if (s->beams[i].t[end] != end)
                 add_crossing(s, &s->beams[i], end);
-    for (size_t i = 0; i < s->listed; i++) {
-        uint16_t v = s->list[i];
-        foot *f = &s->feet[v];
+    for (size_t i = 0; i < s->foot_count; i++) {
+        const foot *f = &s->feet[i];
+        tl_vec3 x = s->vertex[f->vertex];
         double t[2];
         size_t side[2];
-        if (f->over || (!f->beamed && over(s, s->vertex[v], s->vertex[v], t, side)))
-            add_foot(s, v);
+        if (f->over || (!f->beamed && over(s, x, x, t, side)))
+            add_foot(s, f);
     }
 }
 
@@ -411,7 +426,7 @@ static bool stand_reserve(stand *s, tl_vec3 **border, tl_narrow *room)
 {
     size_t v = s->standing->vertex_count, e = s->standing->edge_count;
     size_t bytes = 2 * s->corner_count * sizeof(tl_vec3) + v * sizeof(foot) + e * sizeof(beam) +
-                   (v + 2 * e) * sizeof(candidate) + v * sizeof *s->list;
+                   (v + 2 * e) * sizeof(candidate) + v * sizeof *s->place;
     if (!tl_grow(&room->dots, &room->dot_room, bytes / sizeof(double) + 1, sizeof(double))) {
         room->manifold.failed = true;
         return false;
@@ -421,8 +436,8 @@ static bool stand_reserve(stand *s, tl_vec3 **border, tl_narrow *room)
     s->feet = (void *)(*border + 2 * s->corner_count);
     s->beams = (void *)(s->feet + v);
     s->found = (void *)(s->beams + e);
-    s->list = (void *)(s->found + v + 2 * e);
-    memset(s->feet, 0, v * sizeof *s->feet);
+    s->place = (void *)(s->found + v + 2 * e);
+    memset(s->place, 0, v * sizeof *s->place);
     return true;
 }
 
