@@ -155,26 +155,28 @@ static candidate crossing_candidate(uint32_t ia, uint32_t ib, tl_vec3 n, tl_vec3
         .key = number ? tl_key(key, number) : key};
 }
 
-/* How nearly the normal n of two edges is that of a face beside one of them, which is A's or B's; `out` is the face's
- * normal, turned from A to B. n = u x v / |u x v| follows B's turn by that of v. */
-static weight likeness(bool of_a, tl_vec3 out, tl_vec3 n, const line *a, const line *b)
+/* How the cosine between the normal n of two edges and that of a face beside one of them, which is A's or B's, changes
+ * with B's turn, 1/rad; `out` is the face's normal, turned from A to B. n = u x v / |u x v| follows that turn by v. */
+static tl_vec3 cosine_by_turn(bool of_a, tl_vec3 out, tl_vec3 n, const line *a, const line *b)
 {
-    double sine = tl_v3_norm(tl_v3_cross(n, out));
-    if (tl_v3_dot(n, out) <= 0)
-        return (weight){0};
-    weight w = {.value = tl_fade(sine, LYING_FULL, LYING_NONE)};
-    double slope = tl_fade_slope(sine, LYING_FULL, LYING_NONE);
-    if (slope == 0)
-        return w;
     tl_vec3 u = a->unit, v = b->unit, cross = tl_v3_cross(u, v);
     double sign = tl_v3_dot(cross, n) < 0 ? -1 : 1;
     tl_vec3 across = tl_v3_madd(out, -tl_v3_dot(out, n), n);
-    /* of the cosine between both, against B's turn */
     tl_vec3 g = tl_v3_madd(tl_v3_scale(tl_v3_dot(u, v), across), -tl_v3_dot(out, v), u);
     g = tl_v3_scale(sign / tl_v3_norm(cross), g);
-    if (!of_a)
-        g = tl_v3_add(g, tl_v3_cross(out, n));
-    w.swing = tl_v3_scale(slope / (sine * w.value), g);
+    return of_a ? g : tl_v3_add(g, tl_v3_cross(out, n));
+}
+
+/* How nearly n is the face's normal. */
+static weight likeness(bool of_a, tl_vec3 out, tl_vec3 n, const line *a, const line *b)
+{
+    if (tl_v3_dot(n, out) <= 0)
+        return (weight){0};
+    double sine = tl_v3_norm(tl_v3_cross(n, out));
+    weight w = {.value = tl_fade(sine, LYING_FULL, LYING_NONE)};
+    double slope = tl_fade_slope(sine, LYING_FULL, LYING_NONE);
+    if (slope != 0)
+        w.swing = tl_v3_scale(slope / (sine * w.value), cosine_by_turn(of_a, out, n, a, b));
     return w;
 }
 
@@ -511,51 +513,90 @@ static void share_of_edges(const tl_axis *axis, line a, line b, weight part, tl_
     add_points(m, found, count, part);
 }
 
+/* Square of a sine that is nothing, and a part of the share that is. */
+#define NO_SINE2 1e-30
+#define REST 1e-9
+
 /* A face beside one of two crossing edges. */
 typedef struct beside {
     bool of_a;
     uint32_t face;
-    double sine;
-    tl_vec3 out; /* its normal, turned from A to B */
+    weight like;  /* how nearly the edges' normal is the face's */
+    weight claim; /* that over the square of the angle between: the nearest face has nearly all */
 } beside;
 
-/* The face whose normal is the nearest to that of two edges; its sine is 2 when none is near. */
-static beside nearest_face(const tl_pair_view *view, const tl_axis *axis)
+/* The faces whose normals are near to that of the edges; how many. */
+static size_t faces_beside(const tl_pair_view *view, const tl_axis *axis, const line *a,
+                           const line *b, beside list[4])
 {
-    const tl_edge *ea = &view->a->edge[axis->ia], *eb = &view->b->edge[axis->ib];
-    beside best = {.sine = 2};
+    size_t count = 0;
     for (int k = 0; k < 4; k++) {
         bool of_a = k < 2;
-        const tl_edge *e = of_a ? ea : eb;
+        const tl_edge *e = of_a ? &view->a->edge[axis->ia] : &view->b->edge[axis->ib];
         uint32_t face = k % 2 ? e->right : e->left;
         tl_vec3 out = of_a ? view->a->plane[face].normal : tl_v3_neg(view->normal_b[face]);
-        double sine = tl_v3_norm(tl_v3_cross(axis->n, out));
-        if (!(of_a ? view->a : view->b)->covered[face] && tl_v3_dot(axis->n, out) > 0 &&
-            sine < best.sine)
-            best = (beside){of_a, face, sine, out};
+        weight like = likeness(of_a, out, axis->n, a, b);
+        if (!(like.value > 0) || (of_a ? view->a : view->b)->covered[face])
+            continue;
+        double sine2 = tl_v3_norm2(tl_v3_cross(axis->n, out)) + NO_SINE2;
+        weight claim = {like.value / sine2,
+                        tl_v3_madd(like.swing, -2 * tl_v3_dot(axis->n, out) / sine2,
+                                   cosine_by_turn(of_a, out, axis->n, a, b))};
+        list[count++] = (beside){of_a, face, like, claim};
     }
-    return best;
+    return count;
+}
+
+/* What the faces have together of the share, the edges the rest: all of it where one of them has the edges' normal. */
+static weight part_of_faces(const beside *list, size_t count)
+{
+    double none = 1;
+    tl_vec3 sum = {0, 0, 0};
+    for (size_t i = 0; i < count; i++)
+        none *= 1 - list[i].like.value;
+    for (size_t i = 0; i < count; i++) {
+        double others = list[i].like.value;
+        for (size_t j = 0; j < count; j++)
+            others *= j == i ? 1 : 1 - list[j].like.value;
+        sum = tl_v3_madd(sum, others, list[i].like.swing);
+    }
+    return (weight){1 - none, tl_v3_scale(1 / (1 - none), sum)};
+}
+
+/* The share of two edges, of which an edge may lie in faces beside the other. */
+static void share_beside(const tl_pair_view *view, const tl_axis *axis, weight all, tl_narrow *room)
+{
+    const tl_edge *ea = &view->a->edge[axis->ia], *eb = &view->b->edge[axis->ib];
+    line a = line_of(ea, view->a->vertex), b = line_of(eb, view->vertex_b);
+    beside list[4];
+    size_t count = faces_beside(view, axis, &a, &b, list);
+    double claims = 0, rest = all.value;
+    tl_vec3 mean = {0, 0, 0}, swing = all.swing;
+    for (size_t i = 0; i < count; i++) {
+        claims += list[i].claim.value;
+        mean = tl_v3_madd(mean, list[i].claim.value, list[i].claim.swing);
+    }
+    for (size_t i = 0; i < count; i++) {
+        weight part = {list[i].claim.value / claims,
+                       tl_v3_madd(list[i].claim.swing, -1 / claims, mean)};
+        part = product(product(part, part_of_faces(list, count)), all);
+        if (!share_of_face(view, list[i].of_a, list[i].face, list[i].of_a ? eb : ea, part, room))
+            continue; /* nothing stands on it after all */
+        /* what is left: swings go with values */
+        swing = tl_v3_scale(1 / (rest - part.value),
+                            tl_v3_madd(tl_v3_scale(rest, swing), -part.value, part.swing));
+        rest -= part.value;
+    }
+    if (rest > REST)
+        share_of_edges(axis, a, b, (weight){rest, swing}, &room->manifold);
 }
 
 void tl_share_add(const tl_pair_view *view, const tl_axis *axis, tl_vec3 swing, tl_narrow *room)
 {
     const weight all = {1, swing};
-    if (axis->kind != TL_AXIS_EDGES) {
-        bool of_a = axis->kind == TL_AXIS_FACE_A;
+    bool of_a = axis->kind == TL_AXIS_FACE_A;
+    if (axis->kind == TL_AXIS_EDGES)
+        share_beside(view, axis, all, room);
+    else
         share_of_face(view, of_a, of_a ? axis->ia : axis->ib, NULL, all, room);
-        return;
-    }
-    const tl_edge *ea = &view->a->edge[axis->ia], *eb = &view->b->edge[axis->ib];
-    line a = line_of(ea, view->a->vertex), b = line_of(eb, view->vertex_b);
-    beside f = nearest_face(view, axis);
-    weight on = likeness(f.of_a, f.out, axis->n, &a, &b);
-    if (!(on.value > 0) ||
-        !share_of_face(view, f.of_a, f.face, f.of_a ? eb : ea, product(all, on), room)) {
-        share_of_edges(axis, a, b, all, &room->manifold);
-        return;
-    }
-    double rest = 1 - on.value;
-    if (rest > 0)
-        share_of_edges(axis, a, b, (weight){rest, tl_v3_madd(swing, -on.value / rest, on.swing)},
-                       &room->manifold);
 }
