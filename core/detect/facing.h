@@ -31,6 +31,15 @@ typedef struct tl_facing {
     double offset; /* sum of those of both; 0 for edges, whose gap is the same everywhere */
 } tl_facing;
 
+/* 1 / sqrt(1 + e) without a root or a division: the first terms of its series, and those of what they leave. To rounding for
+ * patches: of the normals of faces tilted by up to 15 degrees e is between -0.02 and 0.07. 1 for 0. */
+TL_INLINE double tl_unit_scale(double e)
+{
+    double y = 1 - e * (0.5 - 0.375 * e);
+    double left = 1 - (1 + e) * (y * y);
+    return y + y * left * (0.5 + left * (0.375 + left * 0.3125));
+}
+
 /* Of a patch, from the normals of its faces in the present place. A point's gap is what it lies above B's face and
  * above A's: less exact than from one plane by nothing, for where the faces lie flush nA + nB is next to 0. */
 TL_INLINE tl_facing tl_facing_patch(tl_vec3 na, tl_vec3 nb, tl_vec3 d, double offset)
@@ -39,7 +48,7 @@ TL_INLINE tl_facing tl_facing_patch(tl_vec3 na, tl_vec3 nb, tl_vec3 d, double of
     tl_vec3 mean = tl_v3_scale(0.5, tl_v3_sub(na, nb)), lean = tl_v3_scale(0.5, tl_v3_add(na, nb));
     double mean2 = tl_v3_norm2(mean), l2 = tl_v3_norm2(lean);
     double tilted = l2 > TL_FLUSH * TL_FLUSH ? 1 : 0;
-    out.n = tl_v3_scale(1 / sqrt(mean2), mean);
+    out.n = tl_v3_scale(tl_unit_scale(mean2 - 1), mean);
     out.mean = tl_v3(tilted > 0 ? mean.x : out.n.x, tilted > 0 ? mean.y : out.n.y,
                      tilted > 0 ? mean.z : out.n.z);
     out.lean = tl_v3_scale(tilted, lean);
@@ -48,12 +57,13 @@ TL_INLINE tl_facing tl_facing_patch(tl_vec3 na, tl_vec3 nb, tl_vec3 d, double of
     return out;
 }
 
-/* The unit normal of a point that leans by `face` and `edge` (tl_lean); m2 and l2 are the squares of the two vectors. */
-TL_INLINE tl_vec3 tl_leaning(tl_vec3 mean, tl_vec3 lean, double m2, double l2, double face,
-                             double edge)
+/* The unit normal of a point that leans by `face` and `edge` (tl_lean), from the mean, the lean and the product of both; m2
+ * and l2 are the squares of the first two. */
+TL_INLINE tl_vec3 tl_leaning(tl_vec3 mean, tl_vec3 lean, tl_vec3 across, double m2, double l2,
+                             double face, double edge)
 {
-    tl_vec3 n = tl_v3_madd(tl_v3_madd(mean, face, lean), edge, tl_v3_cross(mean, lean));
-    return tl_v3_scale(1 / sqrt(m2 + l2 * (face * face + edge * edge * m2)), n);
+    tl_vec3 n = tl_v3_madd(tl_v3_madd(mean, face, lean), edge, across);
+    return tl_v3_scale(tl_unit_scale(m2 + l2 * (face * face + edge * edge * m2) - 1), n);
 }
 
 /* The turn that swings the plane of normal `from` into that of `to`, then by twice the angle whose tangent

@@ -60,6 +60,7 @@ TL_VECTORIZED static void follow_level(const columns *c, size_t slots, const tl_
         for (size_t l = 0; l < TL_LANES; l++) {
             size_t i = at + l;
             tl_mat3 to = tl_lanes9_get(&f->to, l), motion = tl_lanes9_get(&f->m, l);
+            tl_mat3 turn = tl_lanes9_get(&f->turn, l);
             tl_vec3 n = tl_lanes3_get(&f->n, l);
             tl_vec3 x = tl_m3_mul(&to, tl_columns_get(c->p, i));
             tl_vec3 du = tl_v3_add(tl_lanes3_get(&f->way, l), tl_m3_mul(&motion, x));
@@ -70,10 +71,27 @@ TL_VECTORIZED static void follow_level(const columns *c, size_t slots, const tl_
                 f->offset[l] - tl_v3_dot(tl_lanes3_get(&f->plane, l), x) - c->reference[i];
             c->du_n[i] = du_n;
             put(c->du_s, i, tl_v3_madd(du, -du_n, n));
-            put(c->f_s, i,
-                tl_turn_into(tl_columns_get(c->f_s, i), tl_lanes3_get(&f->turn, l), f->scale[l],
-                             f->turns[l], n));
+            put(c->f_s, i, tl_m3_mul(&turn, tl_columns_get(c->f_s, i)));
         }
+}
+
+/* Turns the shear force of a point with its facet, and then, as the tilt has changed, from its normal `before` that was
+ * turned as well into its normal n: v - (v . n)(before + n) / (1 + before . n), short of the fourth power of the change, and into
+ * the plane of n whatever rounding has left of v beside that of `before`. */
+TL_INLINE tl_vec3 turn_shear(tl_vec3 v, size_t l, const tl_frames *restrict f, tl_vec3 n,
+                             double face, double edge)
+{
+    tl_mat3 turn = tl_lanes9_get(&f->turn, l);
+    v = tl_m3_mul(&turn, v);
+    tl_vec3 before =
+        tl_leaning(tl_lanes3_get(&f->was, l), tl_lanes3_get(&f->was_lean, l),
+                   tl_lanes3_get(&f->was_across, l), f->was2[l], f->was_l2[l], face, edge);
+    tl_vec3 way = tl_v3_sub(n, before);
+    double lifted = f->tilted[l] * tl_v3_dot(v, way), along = tl_v3_dot(v, n);
+    tl_vec3 out = tl_v3_madd(tl_v3_scale(1 + 0.5 * tl_v3_dot(way, n), n), -0.5, way);
+    out = tl_v3_madd(v, -along, out);
+    /* what has not turned stays as it is, to the bit */
+    return tl_v3(lifted != 0 ? out.x : v.x, lifted != 0 ? out.y : v.y, lifted != 0 ? out.z : v.z);
 }
 
 /* A point of any facet, in row i of lane l. Features of a tilted patch move: a vertex of A with A (lean -1), one of B with
@@ -83,19 +101,17 @@ TL_INLINE void follow_point(const columns *c, size_t i, size_t l, const tl_frame
                             double face, double edge)
 {
     tl_mat3 to = tl_lanes9_get(&f->to, l), motion = tl_lanes9_get(&f->m, l);
-    tl_vec3 mean = tl_lanes3_get(&f->mean, l), lean = tl_lanes3_get(&f->lean, l);
-    tl_vec3 last = tl_lanes3_get(&f->last, l), last_lean = tl_lanes3_get(&f->last_lean, l);
+    tl_vec3 lean = tl_lanes3_get(&f->lean, l), across = tl_lanes3_get(&f->across, l);
     tl_vec3 p = tl_columns_get(c->p, i);
     tl_vec3 x = tl_v3_add(tl_m3_mul(&to, p), tl_lanes3_get(&f->from, l));
-    double l2 = f->l2[l], last_l2 = tl_v3_norm2(last_lean);
-    tl_vec3 n = tl_leaning(mean, lean, f->mean2[l], l2, face, edge);
+    tl_vec3 n =
+        tl_leaning(tl_lanes3_get(&f->mean, l), lean, across, f->mean2[l], f->l2[l], face, edge);
     tl_vec3 du = tl_v3_add(tl_lanes3_get(&f->way, l), tl_m3_mul(&motion, x));
     double du_n = tl_v3_dot(du, n);
     /* with the features that made it, along the faces; where two edges cross, also up the faces by how far one edge has
      * slid over the other */
-    double carry = l2 > 0 ? f->carry[l] : 0, slid = carry * edge / (l2 > 0 ? l2 : 1);
-    tl_vec3 go = tl_v3_scale(carry * (1 + face), du);
-    go = tl_v3_madd(go, slid * tl_v3_dot(tl_v3_cross(mean, lean), du), lean);
+    tl_vec3 go = tl_v3_scale(f->carry[l] * (1 + face), du);
+    go = tl_v3_madd(go, f->slide[l] * edge * tl_v3_dot(across, du), lean);
     x = tl_v3_add(x, go);
     put(c->p, i, tl_v3_add(p, tl_m3_tmul(&to, go)));
     c->closure[i] = f->offset[l] - tl_v3_dot(tl_lanes3_get(&f->plane, l), x) - c->reference[i];
@@ -103,21 +119,31 @@ TL_INLINE void follow_point(const columns *c, size_t i, size_t l, const tl_frame
     put(c->normal, i, n);
     c->du_n[i] = du_n;
     put(c->du_s, i, tl_v3_madd(du, -du_n, n));
-    double last2 = last_l2 > 0 ? tl_v3_norm2(last) : 1;
-    tl_vec3 before = tl_leaning(last, last_lean, last2, last_l2, face, edge);
-    put(c->f_s, i, tl_turn_one(tl_columns_get(c->f_s, i), before, n, tl_lanes3_get(&f->half, l)));
+    put(c->f_s, i, turn_shear(tl_columns_get(c->f_s, i), l, f, n, face, edge));
+}
+
+typedef int16_t steps __attribute__((vector_size(TL_LANES * sizeof(int16_t))));
+typedef int32_t whole __attribute__((vector_size(TL_LANES * sizeof(int32_t))));
+typedef double lanes __attribute__((vector_size(TL_LANES * sizeof(double))));
+
+/* Steps of all lanes as they are kept, times the length of one. */
+TL_INLINE void widen(double *to, const int16_t *from, double step)
+{
+    steps some;
+    memcpy(&some, from, sizeof some);
+    lanes all = step * __builtin_convertvector(__builtin_convertvector(some, whole), lanes);
+    memcpy(to, &all, sizeof all);
 }
 
 /* Points of any facets, all lanes at once. */
-TL_VECTORIZED static void follow_any(const columns *c, size_t begin, size_t end,
+TL_VECTORIZED static void follow_any(const columns *in, size_t begin, size_t end,
                                      const tl_frames *restrict f)
 {
+    const columns copy = *in, *c = &copy; /* which no store through a column can change */
     for (size_t slot = begin; slot < end; slot++) {
-        double face[TL_LANES], edge[TL_LANES]; /* in a loop of their own: the next is all doubles */
-        for (size_t l = 0; l < TL_LANES; l++) {
-            face[l] = (double)TL_LEAN_FACE_STEP * c->face[slot * TL_LANES + l];
-            edge[l] = (double)TL_LEAN_EDGE_STEP * c->edge[slot * TL_LANES + l];
-        }
+        double face[TL_LANES], edge[TL_LANES];
+        widen(face, c->face + slot * TL_LANES, (double)TL_LEAN_FACE_STEP);
+        widen(edge, c->edge + slot * TL_LANES, (double)TL_LEAN_EDGE_STEP);
 #pragma omp simd
         for (size_t l = 0; l < TL_LANES; l++)
             follow_point(c, slot * TL_LANES + l, l, f, face[l], edge[l]);
@@ -197,7 +223,7 @@ static bool take_patches(tl_detect *d, const tl_rank *rank, tl_frames *f, size_t
 
 static double carry_of(const tl_contacts *contacts, uint32_t contact)
 {
-    return contact == TL_NO_ROW || contacts->fresh[contact] ? 0 : 0.5;
+    return contacts->fresh[contact] ? 0 : 0.5;
 }
 
 /* The patches that have been taken; lanes without a contact do as another. false when all are flush and were. */
@@ -218,13 +244,12 @@ static bool follow_patches(tl_model *m, const tl_rank *rank, const columns *c, t
         rows.facet[l] = &f->facet[from]->na.x;
         tl_lanes3_put(&rows.d, l, tl_body_apart(bodies, a, b));
         tl_lanes3_put(&rows.way, l, tl_way_between(m, a, b));
+        rows.carry[l] = carry_of(contacts, contact);
     }
     if (!tl_frames_put_patches(f, &rows)) {
         follow_level(c, rank->slots, f);
         return false;
     }
-    for (size_t l = 0; l < TL_LANES; l++)
-        f->carry[l] = carry_of(contacts, rank->contact[l]);
     follow_any(c, 0, rank->slots, f);
     return true;
 }
@@ -241,10 +266,10 @@ static void next_facet(tl_model *m, const tl_rank *rank, tl_frames *f, size_t l,
         if (facet->begin == slot && facet->count > 0)
             f->facet[l] = facet;
     }
-    f->carry[l] = f->facet[l] ? carry_of(contacts, contact) : 0;
     f->end[l] = f->facet[l] ? slot + f->facet[l]->count : rank->slots;
+    f->carry[l] = f->slide[l] = 0;
     if (f->facet[l])
-        tl_frames_put(f, l, m, contact, f->facet[l]);
+        tl_frames_put(f, l, m, contact, f->facet[l], carry_of(contacts, contact));
 }
 
 /* Lanes up to the last that has a contact. */

@@ -118,8 +118,8 @@ TL_INLINE void transpose_matrices(tl_lanes9 *to, const double *const *row)
         to->m[2][2][l] = row[l][8];
 }
 
-/* A facet in its present place, and its normals before. */
-TL_INLINE void put_facing(tl_frames *f, size_t l, tl_facing to, tl_vec3 last, tl_vec3 last_lean)
+/* A facet in its present place. */
+TL_INLINE void put_facing(tl_frames *f, size_t l, tl_facing to)
 {
     tl_lanes3_put(&f->n, l, to.n);
     tl_lanes3_put(&f->mean, l, to.mean);
@@ -128,14 +128,12 @@ TL_INLINE void put_facing(tl_frames *f, size_t l, tl_facing to, tl_vec3 last, tl
     f->mean2[l] = to.mean2;
     f->l2[l] = to.l2;
     f->offset[l] = to.offset;
-    tl_lanes3_put(&f->last, l, last);
-    tl_lanes3_put(&f->last_lean, l, last_lean);
 }
 
-/* Element k and the two behind it as a vector of lane l. */
-TL_INLINE tl_vec3 row_vec3(double (*row)[TL_LANES], size_t k, size_t l)
+/* Square of the mean normal in the last step: 1 of facets that were flush. */
+TL_INLINE double last2(tl_vec3 last, double last_l2)
 {
-    return tl_v3(row[k][l], row[k + 1][l], row[k + 2][l]);
+    return last_l2 > 0 ? tl_v3_norm2(last) : 1;
 }
 
 TL_INLINE tl_mat3 difference(const tl_mat3 *a, const tl_mat3 *b)
@@ -143,6 +141,48 @@ TL_INLINE tl_mat3 difference(const tl_mat3 *a, const tl_mat3 *b)
     return (tl_mat3){{{a->m[0][0] - b->m[0][0], a->m[0][1] - b->m[0][1], a->m[0][2] - b->m[0][2]},
                       {a->m[1][0] - b->m[1][0], a->m[1][1] - b->m[1][1], a->m[1][2] - b->m[1][2]},
                       {a->m[2][0] - b->m[2][0], a->m[2][1] - b->m[2][1], a->m[2][2] - b->m[2][2]}}};
+}
+
+/* How shear forces of a facet turn, from its normals in the last step. What has not turned stays as it is, to the bit. */
+TL_INLINE void put_turn(tl_frames *f, size_t l, tl_vec3 last, tl_vec3 last_lean)
+{
+    double last_l2 = tl_v3_norm2(last_lean);
+    tl_vec3 n = tl_lanes3_get(&f->n, l);
+    tl_vec3 from = tl_v3_scale(tl_unit_scale(last2(last, last_l2) - 1), last);
+    tl_vec3 g = tl_turn_between(from, n, tl_v3_dot(tl_lanes3_get(&f->half, l), n));
+    double g2 = tl_v3_norm2(g), flush = f->l2[l] + last_l2 > 0 ? 0 : 1;
+    tl_mat3 back = turn_back(tl_v3_neg(g), 2 / (1 + g2)), one = tl_m3_identity();
+    tl_mat3 turn = difference(&one, &back);
+    /* into the plane: rounding would lead out of it in the course of many steps */
+    tl_vec3 along = tl_v3_scale(g2 > 0 ? flush : 0, tl_m3_tmul(&turn, n));
+    tl_mat3 out = {{{n.x * along.x, n.x * along.y, n.x * along.z},
+                    {n.y * along.x, n.y * along.y, n.y * along.z},
+                    {n.z * along.x, n.z * along.y, n.z * along.z}}};
+    turn = difference(&turn, &out);
+    tl_lanes9_put(&f->turn, l, &turn);
+    f->tilted[l] = 1 - flush;
+}
+
+/* What only the points of tilted facets need. */
+TL_INLINE void put_tilt(tl_frames *f, size_t l, tl_vec3 last, tl_vec3 last_lean, double carry)
+{
+    double l2 = f->l2[l], last_l2 = tl_v3_norm2(last_lean);
+    tl_mat3 turn = tl_lanes9_get(&f->turn, l);
+    tl_lanes3_put(&f->across, l,
+                  tl_v3_cross(tl_lanes3_get(&f->mean, l), tl_lanes3_get(&f->lean, l)));
+    tl_lanes3_put(&f->was, l, tl_m3_mul(&turn, last));
+    tl_lanes3_put(&f->was_lean, l, tl_m3_mul(&turn, last_lean));
+    tl_lanes3_put(&f->was_across, l, tl_m3_mul(&turn, tl_v3_cross(last, last_lean)));
+    f->was2[l] = last2(last, last_l2);
+    f->was_l2[l] = last_l2;
+    f->carry[l] = l2 > 0 ? carry : 0;
+    f->slide[l] = f->carry[l] / (l2 > 0 ? l2 : 1);
+}
+
+/* Element k and the two behind it as a vector of lane l. */
+TL_INLINE tl_vec3 row_vec3(double (*row)[TL_LANES], size_t k, size_t l)
+{
+    return tl_v3(row[k][l], row[k + 1][l], row[k + 2][l]);
 }
 
 /* Motion of B against A in the last step, by their turns; `d` is the way from A's centroid to B's. */
@@ -158,36 +198,34 @@ TL_INLINE void put_motion(tl_frames *f, size_t l, tl_vec3 half_a, double scale_a
 
 TL_VECTORIZED static bool put_patches(tl_frames *restrict f, const tl_patch_rows *restrict rows)
 {
+    double any = 0;
     patches p;
     transpose(p.a, rows->a, TL_MOVING_ROW);
     transpose(p.b, rows->b, TL_MOVING_ROW);
     transpose(p.facet, rows->facet, TL_FACET_ROW);
     transpose_matrices(&f->to, rows->ra);
     transpose_matrices(&p.rb, rows->rb);
-    double tilted[TL_LANES];
 #pragma omp simd
     for (size_t l = 0; l < TL_LANES; l++) {
-        tl_vec3 d = tl_lanes3_get(&rows->d, l), last = row_vec3(p.facet, LAST, l);
-        tl_vec3 last_lean = row_vec3(p.facet, LAST_LEAN, l);
-        tl_vec3 ha = row_vec3(p.a, HALF, l), hb = row_vec3(p.b, HALF, l);
+        tl_vec3 d = tl_lanes3_get(&rows->d, l), ha = row_vec3(p.a, HALF, l);
+        tl_vec3 hb = row_vec3(p.b, HALF, l);
         put_motion(f, l, ha, p.a[SCALE][l], hb, p.b[SCALE][l], tl_lanes3_get(&rows->way, l), d);
         tl_mat3 ra = tl_lanes9_get(&f->to, l), rb = tl_lanes9_get(&p.rb, l);
         tl_vec3 na = tl_m3_mul(&ra, row_vec3(p.facet, NA, l));
         tl_vec3 nb = tl_m3_mul(&rb, row_vec3(p.facet, NB, l));
-        tl_facing to = tl_facing_patch(na, nb, d, p.facet[OFFSET][l]);
-        put_facing(f, l, to, last, last_lean);
-        tl_lanes3_put(&f->from, l, tl_v3(0, 0, 0));
-        tl_vec3 by = tl_turn_between(last, to.n, tl_v3_dot(tl_lanes3_get(&f->half, l), to.n));
-        double g2 = tl_v3_norm2(by);
-        tl_lanes3_put(&f->turn, l, by);
-        f->scale[l] = 2 / (1 + g2);
-        f->turns[l] = g2 > 0 ? 1 : 0;
-        tilted[l] = to.l2 + tl_v3_norm2(last_lean);
+        put_facing(f, l, tl_facing_patch(na, nb, d, p.facet[OFFSET][l]));
+        put_turn(f, l, row_vec3(p.facet, LAST, l), row_vec3(p.facet, LAST_LEAN, l));
     }
-    double any = 0;
     for (size_t l = 0; l < TL_LANES; l++)
-        any += tilted[l];
-    return any != 0;
+        any += f->tilted[l];
+    if (!(any > 0))
+        return false;
+#pragma omp simd
+    for (size_t l = 0; l < TL_LANES; l++) {
+        tl_lanes3_put(&f->from, l, tl_v3(0, 0, 0));
+        put_tilt(f, l, row_vec3(p.facet, LAST, l), row_vec3(p.facet, LAST_LEAN, l), rows->carry[l]);
+    }
+    return true;
 }
 
 bool tl_frames_put_patches(tl_frames *f, const tl_patch_rows *rows)
@@ -195,7 +233,8 @@ bool tl_frames_put_patches(tl_frames *f, const tl_patch_rows *rows)
     return put_patches(f, rows);
 }
 
-void tl_frames_put(tl_frames *f, size_t l, const tl_model *m, uint32_t c, const tl_facet *facet)
+void tl_frames_put(tl_frames *f, size_t l, const tl_model *m, uint32_t c, const tl_facet *facet,
+                   double carry)
 {
     tl_sight s = tl_sight_of(m, c);
     tl_facing to = tl_facing_of(facet, &s);
@@ -206,5 +245,7 @@ void tl_frames_put(tl_frames *f, size_t l, const tl_model *m, uint32_t c, const 
     put_motion(f, l, a->half, a->scale, b->half, b->scale, way, s.d);
     tl_lanes9_put(&f->to, l, in_b ? s.rb : s.ra);
     tl_lanes3_put(&f->from, l, in_b ? s.d : tl_v3(0, 0, 0));
-    put_facing(f, l, to, facet->last, facet->last_lean);
+    put_facing(f, l, to);
+    put_turn(f, l, facet->last, facet->last_lean);
+    put_tilt(f, l, facet->last, facet->last_lean, carry);
 }

@@ -12,15 +12,18 @@ typedef struct tl_frames {
     tl_lanes3 from;            /* ... and that frame's origin */
     tl_lanes3 n, mean, lean, plane;
     double mean2[TL_LANES], l2[TL_LANES], offset[TL_LANES]; /* tl_facing */
-    tl_lanes3 last, last_lean;                              /* of the facet */
     /* the motion of B against A in the last step at an arm from A's centroid: way + m arm; the mean spin of
      * both, as axis times the tangent of half its angle */
     tl_lanes3 way, half;
     tl_lanes9 m;
-    double carry[TL_LANES]; /* half; 0 for points placed after that motion */
-    /* flush patches: how their common plane turns (tl_turn_into) */
-    tl_lanes3 turn;
-    double scale[TL_LANES], turns[TL_LANES];
+    /* how shear forces turn: with the bisector, and where the facet is flush and was, into the common plane */
+    tl_lanes9 turn;
+    /* Of tilted facets: mean x lean; the mean, the lean and their product before, turned so; squares of the first two. */
+    tl_lanes3 across, was, was_lean, was_across;
+    double was2[TL_LANES], was_l2[TL_LANES];
+    double tilted[TL_LANES]; /* 1 where the facet is or was, else 0 */
+    /* Half, by which points go along with the motion, and 0 for those placed after it; the same over l2. */
+    double carry[TL_LANES], slide[TL_LANES];
     uint32_t end[TL_LANES]; /* slot behind its points */
 } tl_frames;
 
@@ -32,12 +35,13 @@ static inline tl_vec3 tl_way_between(const tl_model *m, uint32_t from, uint32_t 
 
 /* Puts a facet of a contact into lane l. */
 void tl_frames_put(tl_frames *f, size_t l, const tl_model *m, uint32_t contact,
-                   const tl_facet *facet);
+                   const tl_facet *facet, double carry);
 
 /* A patch for each lane: its row, its bodies' turns and rotations, and how far these are apart. */
 typedef struct tl_patch_rows {
     const double *a[TL_LANES], *b[TL_LANES], *ra[TL_LANES], *rb[TL_LANES], *facet[TL_LANES];
-    tl_lanes3 d, way; /* of B against A in the last step */
+    tl_lanes3 d, way;       /* of B against A in the last step */
+    double carry[TL_LANES]; /* of points of tilted facets: see tl_frames */
 } tl_patch_rows;
 
 /* Brings a patch in each lane into its present place; false when none is or was tilted. */

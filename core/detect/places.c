@@ -59,7 +59,8 @@ tl_vec3 tl_facet_last_normal(const tl_facet *f, tl_lean lean)
     double l2 = tl_v3_norm2(f->last_lean);
     if (l2 == 0)
         return f->last;
-    return tl_leaning(f->last, f->last_lean, tl_v3_norm2(f->last), l2, lean.face, lean.edge);
+    return tl_leaning(f->last, f->last_lean, tl_v3_cross(f->last, f->last_lean),
+                      tl_v3_norm2(f->last), l2, lean.face, lean.edge);
 }
 
 /* Arm, normal and closure of the contact's point k, which is in that row, into lane k. */
@@ -72,7 +73,8 @@ static void place_point(const tl_points_table *p, size_t row, size_t k, const tl
     tl_columns_put(l->arm, k, x);
     tl_lean by = tl_point_lean(p, row);
     tl_columns_put(l->normal, k,
-                   tl_leaning(to->mean, to->lean, to->mean2, to->l2, by.face, by.edge));
+                   tl_leaning(to->mean, to->lean, tl_v3_cross(to->mean, to->lean), to->mean2,
+                              to->l2, by.face, by.edge));
     l->closure[k] = to->offset - tl_v3_dot(to->plane, x) - (p->reference ? p->reference[row] : 0);
 }
 
