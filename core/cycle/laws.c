@@ -62,7 +62,10 @@ static bool call_law(const run_job *job, size_t first, size_t count, const tl_po
     memset(l->stored, 0, count * sizeof *l->stored);
     memset(l->dissipated, 0, count * sizeof *l->dissipated);
     const tl_law_ops *ops = job->material->kind->ops;
-    tl_report report = {.size = sizeof report};
+    tl_report report; /* not cleared as a whole: its text is long */
+    report.size = sizeof report;
+    report.first_bad = 0;
+    report.text[0] = 0;
     tl_status status = ops->update(job->material->self, &batch, &report);
     if (status != TL_OK)
         tl_cycle_failed(job->m, first, status, first + report.first_bad, report.text);

@@ -103,8 +103,9 @@ static tl_status create(const void *given, void **self, tl_report *report)
 }
 
 /* Elastic energy of both springs; 0 for a lane of no area. */
-static inline void store_energy(const coulomb *law, const tl_law_batch *batch, uint32_t begin,
-                                uint32_t lanes)
+static inline __attribute__((always_inline)) void store_energy(const coulomb *law,
+                                                               const tl_law_batch *batch,
+                                                               uint32_t begin, uint32_t lanes)
 {
     const double *restrict area = batch->area + begin, *restrict f_n = batch->f_n + begin;
     const double *restrict f_x = batch->f_s[0] + begin, *restrict f_y = batch->f_s[1] + begin;
@@ -230,29 +231,42 @@ static inline __attribute__((always_inline)) void move(const coulomb *law,
     }
 }
 
+/* The law for up to STRIDE lanes from `begin`; a constant number of them at each call. */
+static inline __attribute__((always_inline)) void update_lanes(const coulomb *law,
+                                                               const tl_law_batch *batch,
+                                                               uint32_t begin, uint32_t lanes)
+{
+    double mark[STRIDE];
+    if (law->dilation > 0 && batch->dissipated)
+        move(law, batch, begin, lanes, mark, 1, 1);
+    else if (law->dilation > 0)
+        move(law, batch, begin, lanes, mark, 0, 1);
+    else if (batch->dissipated)
+        move(law, batch, begin, lanes, mark, 1, 0);
+    else
+        move(law, batch, begin, lanes, mark, 0, 0);
+    for (uint32_t i = 0; i < lanes; i++)
+        batch->flags[begin + i] = (uint32_t)(int32_t)mark[i];
+}
+
+/* Energies at once, not in a loop of their own: their divisions are made while the next lanes are worked on. */
 TL_VECTORIZED static tl_status update(const void *self, const tl_law_batch *batch,
                                       tl_report *report)
 {
     (void)report;
     const coulomb *law = self;
-    double mark[STRIDE];
-    for (uint32_t begin = 0; begin < batch->count; begin += STRIDE) {
-        uint32_t left = batch->count - begin, lanes = left < STRIDE ? left : STRIDE;
-        if (lanes == TL_LANES && stick(law, batch, begin))
-            continue;
-        if (law->dilation > 0 && batch->dissipated)
-            move(law, batch, begin, lanes, mark, 1, 1);
-        else if (law->dilation > 0)
-            move(law, batch, begin, lanes, mark, 0, 1);
-        else if (batch->dissipated)
-            move(law, batch, begin, lanes, mark, 1, 0);
-        else
-            move(law, batch, begin, lanes, mark, 0, 0);
-        for (uint32_t i = 0; i < lanes; i++)
-            batch->flags[begin + i] = (uint32_t)(int32_t)mark[i];
+    uint32_t begin = 0;
+    for (; begin + STRIDE <= batch->count; begin += STRIDE) {
+        if (!stick(law, batch, begin))
+            update_lanes(law, batch, begin, STRIDE);
+        if (batch->stored)
+            store_energy(law, batch, begin, STRIDE);
     }
-    if (batch->stored)
-        store_energy(law, batch, 0, batch->count);
+    if (begin < batch->count) {
+        update_lanes(law, batch, begin, batch->count - begin);
+        if (batch->stored)
+            store_energy(law, batch, begin, batch->count - begin);
+    }
     return TL_OK;
 }
 
