@@ -72,27 +72,6 @@ static bool call_law(const run_job *job, size_t first, size_t count, const tl_po
     return status == TL_OK;
 }
 
-/* The couple on B by which the areas of a contact's facets, where they depend on tilt, do work: what the springs
- * gain or lose with their areas, the bodies lose or gain. Areas keep the points' stresses, so the energy
- * stored in them is in proportion. */
-static tl_vec3 couple_of(const tl_model *m, uint32_t c, const double *stored_in)
-{
-    const tl_contacts *contacts = &m->detect->contacts;
-    const tl_mat3 *ra = &m->bodies.r[m->blocks.body[contacts->a[c]]];
-    tl_vec3 couple = {0, 0, 0};
-    for (uint32_t k = 0; k < contacts->facet_count[c]; k++) {
-        const tl_facet *f = &contacts->facet[contacts->facet_start[c] + k];
-        tl_vec3 swing = tl_facet_swing(f);
-        if (!(tl_v3_norm2(swing) > 0))
-            continue;
-        double stored = 0;
-        for (size_t i = f->begin; i < f->begin + (size_t)f->count; i++)
-            stored += stored_in[i * TL_LANES];
-        couple = tl_v3_madd(couple, stored, tl_m3_mul(ra, swing));
-    }
-    return couple;
-}
-
 /* Of each contact of a rank: force on B of its points, their moment about A's centroid, and the energies of
  * their springs and slip. */
 typedef struct rank_sums {
@@ -137,6 +116,29 @@ TL_VECTORIZED static void sum_points(const tl_points_table *p, const tl_point_la
     *out = s;
 }
 
+/* The couples on B by which the areas of contacts, where they depend on tilt, do work: what the springs gain or lose
+ * with their areas, the bodies lose or gain. Areas keep the points' stresses, so the energy stored in them is
+ * in proportion. */
+TL_VECTORIZED static void sum_couples(const tl_point_lanes *t, size_t lane, size_t slots,
+                                      rank_sums *restrict out)
+{
+    const double *x = t->couple[0] + lane, *y = t->couple[1] + lane, *z = t->couple[2] + lane;
+    const double *stored = t->stored + lane;
+    double couple[3][TL_LANES] = {{0}};
+    for (size_t at = 0; at < slots * TL_LANES; at += TL_LANES)
+#pragma omp simd
+        for (size_t l = 0; l < TL_LANES; l++) {
+            size_t i = at + l;
+            couple[0][l] += stored[i] * x[i];
+            couple[1][l] += stored[i] * y[i];
+            couple[2][l] += stored[i] * z[i];
+        }
+    for (int k = 0; k < 3; k++)
+#pragma omp simd
+        for (size_t l = 0; l < TL_LANES; l++)
+            out->moment[k][l] += couple[k][l];
+}
+
 static double across(const double *lane)
 {
     return ((lane[0] + lane[1]) + (lane[2] + lane[3])) +
@@ -153,13 +155,15 @@ static void report_odd(tl_model *m, const tl_rank *rank, const rank_sums *sum)
                             "property out of proportion?");
 }
 
-/* Forces of the contacts of a rank, whose first point is in lane `lane`; `tilted`: areas may depend on tilt. */
+/* Forces of the contacts of a rank, whose first point is in lane `lane`; `coupled`: areas may depend on tilt. */
 static void sum_rank(tl_model *m, const tl_rank *rank, const tl_point_lanes *t, size_t lane,
-                     bool tilted)
+                     bool coupled)
 {
     tl_contacts *contacts = &m->detect->contacts;
     rank_sums sum;
     sum_points(&m->detect->points, t, rank->start, lane, rank->slots, &sum);
+    if (coupled)
+        sum_couples(t, lane, rank->slots, &sum);
     tl_rank_energy energy = {0, 0};
     for (size_t l = 0; l < TL_LANES; l++) {
         uint32_t c = rank->contact[l];
@@ -170,9 +174,6 @@ static void sum_rank(tl_model *m, const tl_rank *rank, const tl_point_lanes *t, 
         contacts->across[c] = sum.across[l] > 0;
         contacts->force[c] = tl_v3(sum.force[0][l], sum.force[1][l], sum.force[2][l]);
         contacts->moment[c] = tl_v3(sum.moment[0][l], sum.moment[1][l], sum.moment[2][l]);
-        if (tilted)
-            contacts->moment[c] =
-                tl_v3_add(contacts->moment[c], couple_of(m, c, t->stored + lane + l));
     }
     if (across(sum.odd) != 0)
         report_odd(m, rank, &sum);
@@ -184,16 +185,15 @@ static void force_page(const run_job *job, const tl_rank *ranks, size_t count,
                        const tl_point_lanes *t)
 {
     size_t first = ranks->start, points = 0;
-    bool tilted = false;
+    bool coupled[RANK_CHUNK];
     for (size_t r = 0; r < count; r++) {
-        bool one = tl_rank_follow(job->m, &ranks[r], t, points, job->material->tangents);
-        tilted = tilted || one;
+        coupled[r] = tl_rank_follow(job->m, &ranks[r], t, points, job->material->tangents);
         points += (size_t)ranks[r].slots * TL_LANES;
     }
     if (!call_law(job, first, points, t))
         return;
     for (size_t r = 0; r < count; r++)
-        sum_rank(job->m, &ranks[r], t, ranks[r].start - first, tilted);
+        sum_rank(job->m, &ranks[r], t, ranks[r].start - first, coupled[r]);
 }
 
 /* Ranks in pages, as many as fit. */

@@ -69,6 +69,7 @@ void tl_point_lanes_init(tl_point_lanes *l)
         TL_COLUMN(t, l, arm[k], 0);
         TL_COLUMN(t, l, normal[k], 0);
         TL_COLUMN(t, l, du_s[k], 0);
+        TL_COLUMN(t, l, couple[k], 0);
     }
     TL_COLUMN(t, l, closure, 0);
     TL_COLUMN(t, l, du_n, 0);

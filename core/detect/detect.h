@@ -220,7 +220,8 @@ typedef struct tl_point_lanes {
     double *closure; /* overlap less reference */
     double *du_n, *du_s[3];
     double *stored, *dissipated;
-    double *zero; /* 0, for what points have no column of */
+    double *couple[3]; /* on B per energy stored, model's axes: of ranks that have such */
+    double *zero;      /* 0, for what points have no column of */
 } tl_point_lanes;
 
 /* Contacts of one material whose points lie side by side: point k of the contact in lane l is row start + TL_LANES k
@@ -401,8 +402,8 @@ void tl_polygon_free(struct tl_polygon *polygon, tl_patch_points *points);
 /* Notes how every body moved in the last step: before contacts are followed. */
 void tl_follow_bodies(tl_model *m);
 /* Gaps, normals and relative motion of the contacts of a rank, its first point's into lane `lane`; turns shear forces
- * with the common plane, and the states of which `tangents` has a bit. false when all are flush patches, whose areas
- * do not depend on tilt. */
+ * with the common plane, and the states of which `tangents` has a bit. false when no area depends on tilt: there are
+ * no couples then. */
 bool tl_rank_follow(tl_model *m, const tl_rank *rank, const tl_point_lanes *lanes, size_t lane,
                     uint32_t tangents);
 

@@ -11,6 +11,9 @@
 #include "base/inline.h"
 #include "detect/detect.h"
 
+/* Sine of the angle of two edges up to which they have no common normal of their own. */
+#define TL_PARALLEL 1e-12
+
 /* Two bodies as a contact sees them: axes of the model, A's centroid as zero. */
 typedef struct tl_sight {
     const tl_mat3 *ra, *rb;
@@ -55,6 +58,30 @@ TL_INLINE tl_facing tl_facing_patch(tl_vec3 na, tl_vec3 nb, tl_vec3 d, double of
     out.mean2 = tilted > 0 ? mean2 : 1;
     out.l2 = tilted * l2;
     return out;
+}
+
+/* Of a facet whose points have one normal. */
+TL_INLINE tl_facing tl_facing_level(tl_vec3 n, tl_vec3 plane, double offset)
+{
+    return (tl_facing){.n = n, .mean = n, .mean2 = 1, .plane = plane, .offset = offset};
+}
+
+/* Normal of two edges that cross, to the side of `side`; that itself where they have none of their own. */
+TL_INLINE tl_vec3 tl_facing_edges(tl_vec3 a, tl_vec3 b, tl_vec3 side)
+{
+    tl_vec3 c = tl_v3_cross(a, b);
+    double a2 = tl_v3_norm2(a), b2 = tl_v3_norm2(b), c2 = tl_v3_norm2(c);
+    double crosses = c2 > TL_PARALLEL * TL_PARALLEL * a2 * b2 ? 1 : 0;
+    double per_a = 1 / (crosses > 0 ? a2 : 1), per_b = 1 / (crosses > 0 ? b2 : 1);
+    /* the cross product of nearly parallel edges has a component along them: take it out */
+    c = tl_v3_madd(c, -per_a * tl_v3_dot(c, a), a);
+    c = tl_v3_madd(c, -per_b * tl_v3_dot(c, b), b);
+    c = tl_v3_madd(c, -per_a * tl_v3_dot(c, a), a);
+    c = tl_v3_madd(c, -per_b * tl_v3_dot(c, b), b);
+    c2 = tl_v3_norm2(c);
+    double scale = (tl_v3_dot(c, side) < 0 ? -1 : 1) / sqrt(crosses > 0 ? c2 : 1);
+    return tl_v3(crosses > 0 ? scale * c.x : side.x, crosses > 0 ? scale * c.y : side.y,
+                 crosses > 0 ? scale * c.z : side.z);
 }
 
 /* The unit normal of a point that leans by `face` and `edge` (tl_lean), from the mean, the lean and the product of both; m2

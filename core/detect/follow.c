@@ -27,7 +27,7 @@ typedef struct columns {
     const int16_t *face, *edge; /* tl_lean, in steps */
     const double *reference;
     double *p[3], *f_s[3];
-    double *arm[3], *normal[3], *closure, *du_n, *du_s[3];
+    double *arm[3], *normal[3], *closure, *du_n, *du_s[3], *couple[3];
 } columns;
 
 static columns columns_at(const tl_points_table *p, size_t row, const tl_point_lanes *t,
@@ -44,6 +44,7 @@ static columns columns_at(const tl_points_table *p, size_t row, const tl_point_l
         .closure = t->closure + lane,
         .du_n = t->du_n + lane,
         .du_s = {t->du_s[0] + lane, t->du_s[1] + lane, t->du_s[2] + lane},
+        .couple = {t->couple[0] + lane, t->couple[1] + lane, t->couple[2] + lane},
     };
 }
 
@@ -124,14 +125,14 @@ TL_INLINE void follow_point(const columns *c, size_t i, size_t l, const tl_frame
 
 typedef int16_t steps __attribute__((vector_size(TL_LANES * sizeof(int16_t))));
 typedef int32_t whole __attribute__((vector_size(TL_LANES * sizeof(int32_t))));
-typedef double lanes __attribute__((vector_size(TL_LANES * sizeof(double))));
+typedef double octet __attribute__((vector_size(TL_LANES * sizeof(double))));
 
 /* Steps of all lanes as they are kept, times the length of one. */
 TL_INLINE void widen(double *to, const int16_t *from, double step)
 {
     steps some;
     memcpy(&some, from, sizeof some);
-    lanes all = step * __builtin_convertvector(__builtin_convertvector(some, whole), lanes);
+    octet all = step * __builtin_convertvector(__builtin_convertvector(some, whole), octet);
     memcpy(to, &all, sizeof all);
 }
 
@@ -226,50 +227,86 @@ static double carry_of(const tl_contacts *contacts, uint32_t contact)
     return contacts->fresh[contact] ? 0 : 0.5;
 }
 
-/* The patches that have been taken; lanes without a contact do as another. false when all are flush and were. */
-static bool follow_patches(tl_model *m, const tl_rank *rank, const columns *c, tl_frames *f,
-                           size_t some)
+/* The bodies of the contacts of a rank; lanes without a facet do as lane `some`. */
+static void look_up_bodies(const tl_model *m, const tl_rank *rank, const tl_frames *f, size_t some,
+                           tl_body_rows *rows)
 {
     const tl_contacts *contacts = &m->detect->contacts;
     const tl_bodies *bodies = &m->bodies;
+    for (size_t l = 0; l < TL_LANES; l++) {
+        uint32_t contact = rank->contact[f->facet[l] ? l : some];
+        uint32_t a = m->blocks.body[contacts->a[contact]], b = m->blocks.body[contacts->b[contact]];
+        rows->a[l] = &m->detect->moving[a].half.x;
+        rows->b[l] = &m->detect->moving[b].half.x;
+        rows->ra[l] = &bodies->r[a].m[0][0];
+        rows->rb[l] = &bodies->r[b].m[0][0];
+        tl_lanes3_put(&rows->d, l, tl_body_apart(bodies, a, b));
+        tl_lanes3_put(&rows->way, l, tl_way_between(m, a, b));
+    }
+}
+
+/* How a step found a rank: flush now and before; tilted, but with areas that do not depend on it; with couples. */
+typedef enum found { FLUSH, TILTED, COUPLED } found;
+
+/* The patches that have been taken. */
+static found follow_patches(tl_model *m, const tl_rank *rank, const columns *c, tl_frames *f,
+                            size_t some)
+{
     tl_patch_rows rows;
+    look_up_bodies(m, rank, f, some, &rows.bodies);
     for (size_t l = 0; l < TL_LANES; l++) {
         size_t from = f->facet[l] ? l : some;
-        uint32_t contact = rank->contact[from];
-        uint32_t a = m->blocks.body[contacts->a[contact]], b = m->blocks.body[contacts->b[contact]];
-        rows.a[l] = &m->detect->moving[a].half.x;
-        rows.b[l] = &m->detect->moving[b].half.x;
-        rows.ra[l] = &bodies->r[a].m[0][0];
-        rows.rb[l] = &bodies->r[b].m[0][0];
         rows.facet[l] = &f->facet[from]->na.x;
-        tl_lanes3_put(&rows.d, l, tl_body_apart(bodies, a, b));
-        tl_lanes3_put(&rows.way, l, tl_way_between(m, a, b));
-        rows.carry[l] = carry_of(contacts, contact);
+        rows.carry[l] = carry_of(&m->detect->contacts, rank->contact[from]);
     }
     if (!tl_frames_put_patches(f, &rows)) {
         follow_level(c, rank->slots, f);
-        return false;
+        return FLUSH;
     }
     follow_any(c, 0, rank->slots, f);
-    return true;
+    tl_lanes3 swing = {0};
+    double coupled = 0;
+    for (size_t l = 0; l < TL_LANES; l++) {
+        tl_vec3 one = f->facet[l] ? tl_facet_swing(f->facet[l]) : tl_v3(0, 0, 0);
+        tl_lanes3_put(&swing, l, one);
+        coupled += fabs(one.x) + fabs(one.y) + fabs(one.z);
+    }
+    if (!(coupled > 0))
+        return TILTED;
+    tl_frames_put_couples(c->couple, 0, rank->slots, &f->to, &swing);
+    return COUPLED;
 }
 
-/* The facet of lane l that begins in a slot; where its contact ends before, the lane goes on as it is, inert. */
-static void next_facet(tl_model *m, const tl_rank *rank, tl_frames *f, size_t l, uint32_t slot)
+/* The facet of a contact that begins in a slot, looked for from number *next on; NULL when none does. */
+static tl_facet *facet_at(const tl_contacts *contacts, uint32_t contact, uint32_t slot,
+                          uint32_t *next)
 {
-    tl_contacts *contacts = &m->detect->contacts;
-    uint32_t contact = rank->contact[l];
-    uint32_t facets = contact == TL_NO_ROW ? 0 : contacts->facet_count[contact];
-    f->facet[l] = NULL;
-    for (uint32_t k = 0; k < facets && !f->facet[l]; k++) {
-        tl_facet *facet = &contacts->facet[contacts->facet_start[contact] + k];
-        if (facet->begin == slot && facet->count > 0)
-            f->facet[l] = facet;
+    if (contact == TL_NO_ROW || slot >= contacts->point_count[contact])
+        return NULL;
+    tl_facet *facet = &contacts->facet[contacts->facet_start[contact]];
+    while (*next < contacts->facet_count[contact]) {
+        tl_facet *one = &facet[(*next)++];
+        if (one->begin == slot && one->count > 0)
+            return one;
     }
-    f->end[l] = f->facet[l] ? slot + f->facet[l]->count : rank->slots;
-    f->carry[l] = f->slide[l] = 0;
-    if (f->facet[l])
-        tl_frames_put(f, l, m, contact, f->facet[l], carry_of(contacts, contact));
+    return NULL;
+}
+
+/* Goes on to the facets that begin in a slot; where a lane's contact ends before, it stays as it is, inert. Returns
+ * the slot up to which none begins. */
+static uint32_t next_facets(tl_model *m, const tl_rank *rank, const columns *c, tl_frames *f,
+                            uint32_t *next, uint32_t slot, uint32_t tangents)
+{
+    uint32_t until = rank->slots;
+    for (size_t l = 0; l < TL_LANES; l++) {
+        if (f->end[l] == slot) {
+            finish_facet(m, rank, c, f, l, tangents);
+            f->facet[l] = facet_at(&m->detect->contacts, rank->contact[l], slot, &next[l]);
+            f->end[l] = f->facet[l] ? slot + f->facet[l]->count : rank->slots;
+        }
+        until = f->end[l] < until ? f->end[l] : until;
+    }
+    return until;
 }
 
 /* Lanes up to the last that has a contact. */
@@ -281,29 +318,92 @@ static size_t used_lanes(const tl_rank *rank)
     return lanes;
 }
 
-/* Whatever facets the rank has: from where one begins in some lane to where the next does. */
-static void follow_facets(tl_model *m, const tl_rank *rank, const columns *c, tl_frames *f,
-                          size_t lanes, uint32_t tangents)
+/* A rank whose contacts have no facets: inert, but finite. */
+static void follow_nothing(const columns *c, size_t slots, tl_frames *f)
 {
-    uint32_t slot = 0;
-    memset(f, 0, sizeof *f); /* lanes without a contact: inert, but finite */
+    memset(f, 0, sizeof *f);
     for (size_t l = 0; l < TL_LANES; l++)
-        f->mean2[l] = 1;
-    while (slot < rank->slots) {
-        uint32_t until = rank->slots;
-        for (size_t l = 0; l < TL_LANES; l++) {
-            if (f->end[l] == slot) {
-                finish_facet(m, rank, c, f, l, tangents);
-                next_facet(m, rank, f, l, slot);
-            }
-            until = f->end[l] < until ? f->end[l] : until;
-        }
-        if (lanes <= FEW)
-            follow_few(c, slot, until, f, lanes);
-        else
-            follow_any(c, slot, until, f);
-        slot = until;
+        f->mean2[l] = f->was2[l] = 1;
+    follow_any(c, 0, slots, f);
+}
+
+/* Whatever facets the rank has: from where one begins in some lane to where the next does. Lanes without one do as another,
+ * or as their last; nothing in their rows moves. */
+static found follow_facets(tl_model *m, const tl_rank *rank, const columns *c, tl_frames *f,
+                           uint32_t tangents)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    uint32_t next[TL_LANES] = {0}, until;
+    size_t some = 0;
+    tl_body_rows bodies;
+    tl_facet_rows rows;
+    memset(f->end, 0, sizeof f->end);
+    memset(f->facet, 0, sizeof f->facet);
+    until = next_facets(m, rank, c, f, next, 0, tangents);
+    while (some < TL_LANES && !f->facet[some])
+        some++;
+    if (some == TL_LANES) {
+        follow_nothing(c, rank->slots, f);
+        return TILTED;
     }
+    look_up_bodies(m, rank, f, some, &bodies);
+    tl_frames_put_bodies(f, &rows, &bodies);
+    for (size_t l = 0; l < TL_LANES; l++)
+        if (!f->facet[l])
+            tl_facet_rows_put(&rows, l, m, rank->contact[some], f->facet[some], 0);
+    for (uint32_t slot = 0; slot < rank->slots; slot = until) {
+        if (slot > 0)
+            until = next_facets(m, rank, c, f, next, slot, tangents);
+        for (size_t l = 0; l < TL_LANES; l++)
+            if (!f->facet[l])
+                rows.carry[l] = 0;
+            else if (f->facet[l]->begin == slot)
+                tl_facet_rows_put(&rows, l, m, rank->contact[l], f->facet[l],
+                                  carry_of(contacts, rank->contact[l]));
+        tl_frames_put_facets(f, &rows);
+        follow_any(c, slot, until, f);
+        tl_frames_put_couples(c->couple, slot, until, &rows.ra, &rows.swing);
+    }
+    return COUPLED;
+}
+
+static void put_few_couples(const tl_model *m, const tl_rank *rank, const columns *c,
+                            const tl_frames *f, size_t begin, size_t end, size_t lanes)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    for (size_t l = 0; l < lanes; l++) {
+        tl_vec3 couple = {0, 0, 0};
+        if (f->facet[l]) {
+            uint32_t a = m->blocks.body[contacts->a[rank->contact[l]]];
+            couple = tl_m3_mul(&m->bodies.r[a], tl_facet_swing(f->facet[l]));
+        }
+        for (size_t slot = begin; slot < end; slot++)
+            put(c->couple, slot * TL_LANES + l, couple);
+    }
+}
+
+/* The same for a few lanes, one by one. */
+static found follow_few_facets(tl_model *m, const tl_rank *rank, const columns *c, tl_frames *f,
+                               size_t lanes, uint32_t tangents)
+{
+    uint32_t next[TL_LANES] = {0};
+    memset(f, 0, sizeof *f);
+    for (size_t l = 0; l < TL_LANES; l++)
+        f->mean2[l] = f->was2[l] = 1;
+    for (uint32_t slot = 0, until; slot < rank->slots; slot = until) {
+        until = next_facets(m, rank, c, f, next, slot, tangents);
+        for (size_t l = 0; l < lanes; l++) {
+            uint32_t contact = rank->contact[l];
+            if (f->facet[l] && f->facet[l]->begin == slot)
+                tl_frames_put(f, l, m, contact, f->facet[l],
+                              carry_of(&m->detect->contacts, contact));
+            else if (!f->facet[l])
+                f->carry[l] = f->slide[l] = 0;
+        }
+        follow_few(c, slot, until, f, lanes);
+        put_few_couples(m, rank, c, f, slot, until, lanes);
+    }
+    return COUPLED;
 }
 
 bool tl_rank_follow(tl_model *m, const tl_rank *rank, const tl_point_lanes *t, size_t lane,
@@ -313,18 +413,20 @@ bool tl_rank_follow(tl_model *m, const tl_rank *rank, const tl_point_lanes *t, s
     columns c = columns_at(&m->detect->points, rank->start, t, lane);
     tl_frames f;
     size_t some, lanes = used_lanes(rank);
-    bool tilted = true;
-    if (lanes > FEW && take_patches(m->detect, rank, &f, &some))
-        tilted = follow_patches(m, rank, &c, &f, some);
+    found how;
+    if (lanes <= FEW)
+        how = follow_few_facets(m, rank, &c, &f, lanes, tangents);
+    else if (take_patches(m->detect, rank, &f, &some))
+        how = follow_patches(m, rank, &c, &f, some);
     else
-        follow_facets(m, rank, &c, &f, lanes, tangents);
-    if (!tilted && !tangents)
+        how = follow_facets(m, rank, &c, &f, tangents);
+    if (how == FLUSH && !tangents)
         finish_level(&f);
     for (size_t l = 0; l < TL_LANES; l++) {
-        if (tilted || tangents)
+        if (how != FLUSH || tangents)
             finish_facet(m, rank, &c, &f, l, tangents);
         if (rank->contact[l] != TL_NO_ROW && fresh[rank->contact[l]])
             fresh[rank->contact[l]] = false;
     }
-    return tilted;
+    return how == COUPLED;
 }

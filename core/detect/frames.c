@@ -73,49 +73,52 @@ enum {
 static_assert(sizeof(tl_facet) >= TL_FACET_ROW * sizeof(double), "a facet is shorter than its row");
 static_assert(sizeof(tl_moving) == TL_MOVING_ROW * sizeof(double), "a motion is not its row");
 
+typedef double pair __attribute__((vector_size(16)));
 typedef double quad __attribute__((vector_size(32)));
 typedef double octet __attribute__((vector_size(64)));
 
-/* Turns four doubles of the rows of four lanes into a row of four lanes for each double. */
-TL_INLINE void transpose_quads(quad out[4], const double *const *row, size_t k)
+/* Two doubles of each of two rows. */
+TL_INLINE void of_rows(quad *out, const double *low, const double *high)
 {
-    quad a, b, c, d;
-    memcpy(&a, row[0] + k, sizeof a);
-    memcpy(&b, row[1] + k, sizeof b);
-    memcpy(&c, row[2] + k, sizeof c);
-    memcpy(&d, row[3] + k, sizeof d);
-    quad ab0 = __builtin_shufflevector(a, b, 0, 4, 2, 6);
-    quad ab1 = __builtin_shufflevector(a, b, 1, 5, 3, 7);
-    quad cd0 = __builtin_shufflevector(c, d, 0, 4, 2, 6);
-    quad cd1 = __builtin_shufflevector(c, d, 1, 5, 3, 7);
-    out[0] = __builtin_shufflevector(ab0, cd0, 0, 1, 4, 5);
-    out[1] = __builtin_shufflevector(ab1, cd1, 0, 1, 4, 5);
-    out[2] = __builtin_shufflevector(ab0, cd0, 2, 3, 6, 7);
-    out[3] = __builtin_shufflevector(ab1, cd1, 2, 3, 6, 7);
+    pair a, b;
+    memcpy(&a, low, sizeof a);
+    memcpy(&b, high, sizeof b);
+    *out = __builtin_shufflevector(a, b, 0, 1, 2, 3);
 }
 
-/* Turns `count` doubles, a multiple of four, of a row for each lane into a row of lanes for each double. What is
- * loaded as one vector is stored as one: a load cannot wait for two stores. */
+TL_INLINE void put_octet(double *to, const quad *low, const quad *high)
+{
+    octet all = __builtin_shufflevector(*low, *high, 0, 1, 2, 3, 4, 5, 6, 7);
+    memcpy(to, &all, sizeof all);
+}
+
+/* Turns `count` doubles, an even number, of a row for each lane into a row of lanes for each double. What is loaded
+ * as one vector is stored as one: a load cannot wait for two stores. */
 TL_INLINE void transpose(double (*restrict to)[TL_LANES], const double *const *row, size_t count)
 {
 #pragma GCC unroll 1
-    for (size_t k = 0; k < count; k += 4) {
-        quad low[4], high[4];
-        transpose_quads(low, row, k);
-        transpose_quads(high, row + 4, k);
-        for (size_t i = 0; i < 4; i++) {
-            octet all = __builtin_shufflevector(low[i], high[i], 0, 1, 2, 3, 4, 5, 6, 7);
-            memcpy(to[k + i], &all, sizeof all);
-        }
+    for (size_t k = 0; k < count; k += 2) {
+        quad even, odd, low[2], high[2];
+        of_rows(&even, row[0] + k, row[2] + k);
+        of_rows(&odd, row[1] + k, row[3] + k);
+        low[0] = __builtin_shufflevector(even, odd, 0, 4, 2, 6);
+        low[1] = __builtin_shufflevector(even, odd, 1, 5, 3, 7);
+        of_rows(&even, row[4] + k, row[6] + k);
+        of_rows(&odd, row[5] + k, row[7] + k);
+        high[0] = __builtin_shufflevector(even, odd, 0, 4, 2, 6);
+        high[1] = __builtin_shufflevector(even, odd, 1, 5, 3, 7);
+        put_octet(to[k], &low[0], &high[0]);
+        put_octet(to[k + 1], &low[1], &high[1]);
     }
 }
 
-/* A matrix of each lane; its last element does not fit into fours. */
+/* A matrix of each lane; its last element does not fit into pairs. */
 TL_INLINE void transpose_matrices(tl_lanes9 *to, const double *const *row)
 {
     transpose(to->m[0], row, 8);
-    for (size_t l = 0; l < TL_LANES; l++)
-        to->m[2][2][l] = row[l][8];
+    quad low = {row[0][8], row[1][8], row[2][8], row[3][8]};
+    quad high = {row[4][8], row[5][8], row[6][8], row[7][8]};
+    put_octet(to->m[2][2], &low, &high);
 }
 
 /* A facet in its present place. */
@@ -200,16 +203,17 @@ TL_VECTORIZED static bool put_patches(tl_frames *restrict f, const tl_patch_rows
 {
     double any = 0;
     patches p;
-    transpose(p.a, rows->a, TL_MOVING_ROW);
-    transpose(p.b, rows->b, TL_MOVING_ROW);
+    const tl_body_rows *bodies = &rows->bodies;
+    transpose(p.a, bodies->a, TL_MOVING_ROW);
+    transpose(p.b, bodies->b, TL_MOVING_ROW);
     transpose(p.facet, rows->facet, TL_FACET_ROW);
-    transpose_matrices(&f->to, rows->ra);
-    transpose_matrices(&p.rb, rows->rb);
+    transpose_matrices(&f->to, bodies->ra);
+    transpose_matrices(&p.rb, bodies->rb);
 #pragma omp simd
     for (size_t l = 0; l < TL_LANES; l++) {
-        tl_vec3 d = tl_lanes3_get(&rows->d, l), ha = row_vec3(p.a, HALF, l);
+        tl_vec3 d = tl_lanes3_get(&bodies->d, l), ha = row_vec3(p.a, HALF, l);
         tl_vec3 hb = row_vec3(p.b, HALF, l);
-        put_motion(f, l, ha, p.a[SCALE][l], hb, p.b[SCALE][l], tl_lanes3_get(&rows->way, l), d);
+        put_motion(f, l, ha, p.a[SCALE][l], hb, p.b[SCALE][l], tl_lanes3_get(&bodies->way, l), d);
         tl_mat3 ra = tl_lanes9_get(&f->to, l), rb = tl_lanes9_get(&p.rb, l);
         tl_vec3 na = tl_m3_mul(&ra, row_vec3(p.facet, NA, l));
         tl_vec3 nb = tl_m3_mul(&rb, row_vec3(p.facet, NB, l));
@@ -231,6 +235,160 @@ TL_VECTORIZED static bool put_patches(tl_frames *restrict f, const tl_patch_rows
 bool tl_frames_put_patches(tl_frames *f, const tl_patch_rows *rows)
 {
     return put_patches(f, rows);
+}
+
+TL_VECTORIZED static void put_bodies(tl_frames *restrict f, tl_facet_rows *restrict facets,
+                                     const tl_body_rows *restrict bodies)
+{
+    double a[TL_MOVING_ROW][TL_LANES], b[TL_MOVING_ROW][TL_LANES];
+    transpose(a, bodies->a, TL_MOVING_ROW);
+    transpose(b, bodies->b, TL_MOVING_ROW);
+    transpose_matrices(&facets->ra, bodies->ra);
+    transpose_matrices(&facets->rb, bodies->rb);
+#pragma omp simd
+    for (size_t l = 0; l < TL_LANES; l++) {
+        tl_vec3 d = tl_lanes3_get(&bodies->d, l), nothing = {0, 0, 0};
+        put_motion(f, l, row_vec3(a, HALF, l), a[SCALE][l], row_vec3(b, HALF, l), b[SCALE][l],
+                   tl_lanes3_get(&bodies->way, l), d);
+        tl_lanes3_put(&facets->d, l, d);
+        tl_lanes3_put(&facets->from_a, l, nothing);
+        tl_lanes3_put(&facets->from_b, l, nothing);
+        tl_lanes3_put(&facets->along_a, l, nothing);
+        tl_lanes3_put(&facets->along_b, l, nothing);
+        tl_lanes3_put(&facets->edge_n, l, nothing);
+        facets->edge_offset[l] = 0;
+    }
+}
+
+void tl_frames_put_bodies(tl_frames *f, tl_facet_rows *facets, const tl_body_rows *bodies)
+{
+    put_bodies(f, facets, bodies);
+    facets->new_edges = false;
+}
+
+void tl_facet_rows_put(tl_facet_rows *rows, size_t l, const tl_model *m, uint32_t c,
+                       const tl_facet *facet, double carry)
+{
+    rows->facet[l] = &facet->na.x;
+    rows->carry[l] = carry;
+    rows->kind[l] = facet->kind;
+    tl_lanes3_put(&rows->swing, l, tl_facet_swing(facet));
+    if (facet->kind != TL_FACET_EDGES)
+        return;
+    const tl_contacts *contacts = &m->detect->contacts;
+    const tl_poly *a = m->blocks.shape[contacts->a[c]], *b = m->blocks.shape[contacts->b[c]];
+    const tl_edge *ea = &a->edge[facet->ia], *eb = &b->edge[facet->ib];
+    tl_vec3 from_a = a->vertex[ea->a], from_b = b->vertex[eb->a];
+    tl_lanes3_put(&rows->from_a, l, from_a);
+    tl_lanes3_put(&rows->from_b, l, from_b);
+    tl_lanes3_put(&rows->along_a, l, tl_v3_sub(a->vertex[ea->b], from_a));
+    tl_lanes3_put(&rows->along_b, l, tl_v3_sub(b->vertex[eb->b], from_b));
+    rows->new_edges = true;
+}
+
+/* Normals and offsets of the edges; the operations are those of places.c. */
+TL_VECTORIZED static void put_edges(tl_facet_rows *restrict rows)
+{
+    double facet[4][TL_LANES];
+    transpose(facet, rows->facet, 4);
+#pragma omp simd
+    for (size_t l = 0; l < TL_LANES; l++) {
+        tl_mat3 ra = tl_lanes9_get(&rows->ra, l), rb = tl_lanes9_get(&rows->rb, l);
+        tl_vec3 along_a = tl_m3_mul(&ra, tl_lanes3_get(&rows->along_a, l));
+        tl_vec3 along_b = tl_m3_mul(&rb, tl_lanes3_get(&rows->along_b, l));
+        tl_vec3 foot_a = tl_m3_mul(&ra, tl_lanes3_get(&rows->from_a, l));
+        tl_vec3 foot_b =
+            tl_v3_add(tl_m3_mul(&rb, tl_lanes3_get(&rows->from_b, l)), tl_lanes3_get(&rows->d, l));
+        tl_vec3 n = tl_facing_edges(along_a, along_b, tl_m3_mul(&ra, row_vec3(facet, NA, l)));
+        tl_lanes3_put(&rows->edge_n, l, n);
+        rows->edge_offset[l] = -tl_v3_dot(n, tl_v3_sub(foot_b, foot_a));
+    }
+}
+
+TL_INLINE double choose(double yes, double a, double b)
+{
+    return yes > 0 ? a : b;
+}
+
+TL_INLINE tl_vec3 choose3(double yes, tl_vec3 a, tl_vec3 b)
+{
+    return tl_v3(choose(yes, a.x, b.x), choose(yes, a.y, b.y), choose(yes, a.z, b.z));
+}
+
+/* The facing of the kind of facet that lane l has: all are made, and one is chosen. */
+TL_INLINE tl_facing facing_in(const tl_facet_rows *restrict rows, size_t l, tl_vec3 na, tl_vec3 nb,
+                              double offset)
+{
+    double kind = rows->kind[l], level = kind == TL_FACET_PATCH ? 0 : 1;
+    double on_a = kind == TL_FACET_FACE_A ? 1 : 0, on_b = kind == TL_FACET_FACE_B ? 1 : 0;
+    double crosses = kind == TL_FACET_EDGES ? 1 : 0;
+    tl_vec3 d = tl_lanes3_get(&rows->d, l), nothing = {0, 0, 0};
+    tl_facing to = tl_facing_patch(na, nb, d, offset);
+    to.n = choose3(on_a, na, to.n);
+    to.n = choose3(on_b, tl_v3_neg(nb), to.n);
+    to.n = choose3(crosses, tl_lanes3_get(&rows->edge_n, l), to.n);
+    to.mean = choose3(level, to.n, to.mean);
+    to.lean = choose3(level, nothing, to.lean);
+    to.mean2 = choose(level, 1, to.mean2);
+    to.l2 = choose(level, 0, to.l2);
+    to.plane = choose3(on_a, na, to.plane);
+    to.plane = choose3(on_b, nb, to.plane);
+    to.plane = choose3(crosses, nothing, to.plane);
+    to.offset = choose(on_a, offset, to.offset); /* B's face: as of a patch */
+    to.offset = choose(crosses, rows->edge_offset[l], to.offset);
+    return to;
+}
+
+TL_VECTORIZED static void put_facets(tl_frames *restrict f, const tl_facet_rows *restrict rows)
+{
+    double facet[TL_FACET_ROW][TL_LANES];
+    transpose(facet, rows->facet, TL_FACET_ROW);
+#pragma omp simd
+    for (size_t l = 0; l < TL_LANES; l++) {
+        tl_mat3 ra = tl_lanes9_get(&rows->ra, l), rb = tl_lanes9_get(&rows->rb, l);
+        tl_vec3 na = tl_m3_mul(&ra, row_vec3(facet, NA, l));
+        tl_vec3 nb = tl_m3_mul(&rb, row_vec3(facet, NB, l));
+        tl_vec3 last = row_vec3(facet, LAST, l), last_lean = row_vec3(facet, LAST_LEAN, l);
+        put_facing(f, l, facing_in(rows, l, na, nb, facet[OFFSET][l]));
+        put_turn(f, l, last, last_lean);
+        put_tilt(f, l, last, last_lean, rows->carry[l]);
+        double in_b = rows->kind[l] == TL_FACET_FACE_A ? 1 : 0;
+        for (int i = 0; i < 3; i++)
+            for (int j = 0; j < 3; j++)
+                f->to.m[i][j][l] = choose(in_b, rb.m[i][j], ra.m[i][j]);
+        tl_lanes3_put(&f->from, l, choose3(in_b, tl_lanes3_get(&rows->d, l), tl_v3(0, 0, 0)));
+    }
+}
+
+void tl_frames_put_facets(tl_frames *f, tl_facet_rows *rows)
+{
+    if (rows->new_edges)
+        put_edges(rows);
+    rows->new_edges = false;
+    put_facets(f, rows);
+}
+
+/* The turn of A's frame is the same in all rows. */
+TL_VECTORIZED static void put_couples(double *const couple[3], size_t begin, size_t end,
+                                      const tl_lanes9 *restrict ra, const tl_lanes3 *restrict swing)
+{
+    tl_lanes3 turned;
+#pragma omp simd
+    for (size_t l = 0; l < TL_LANES; l++) {
+        tl_mat3 turn = tl_lanes9_get(ra, l);
+        tl_lanes3_put(&turned, l, tl_m3_mul(&turn, tl_lanes3_get(swing, l)));
+    }
+    for (size_t at = begin * TL_LANES; at < end * TL_LANES; at += TL_LANES) {
+        memcpy(couple[0] + at, turned.x, sizeof turned.x);
+        memcpy(couple[1] + at, turned.y, sizeof turned.y);
+        memcpy(couple[2] + at, turned.z, sizeof turned.z);
+    }
+}
+
+void tl_frames_put_couples(double *const couple[3], size_t begin, size_t end, const tl_lanes9 *ra,
+                           const tl_lanes3 *swing)
+{
+    put_couples(couple, begin, end, ra, swing);
 }
 
 void tl_frames_put(tl_frames *f, size_t l, const tl_model *m, uint32_t c, const tl_facet *facet,

@@ -37,14 +37,45 @@ static inline tl_vec3 tl_way_between(const tl_model *m, uint32_t from, uint32_t 
 void tl_frames_put(tl_frames *f, size_t l, const tl_model *m, uint32_t contact,
                    const tl_facet *facet, double carry);
 
-/* A patch for each lane: its row, its bodies' turns and rotations, and how far these are apart. */
+/* The bodies of a contact for each lane: their turns and rotations, and how far they are apart. */
+typedef struct tl_body_rows {
+    const double *a[TL_LANES], *b[TL_LANES], *ra[TL_LANES], *rb[TL_LANES];
+    tl_lanes3 d, way; /* of B against A in the last step */
+} tl_body_rows;
+
+/* A patch for each lane. */
 typedef struct tl_patch_rows {
-    const double *a[TL_LANES], *b[TL_LANES], *ra[TL_LANES], *rb[TL_LANES], *facet[TL_LANES];
-    tl_lanes3 d, way;       /* of B against A in the last step */
+    tl_body_rows bodies;
+    const double *facet[TL_LANES];
     double carry[TL_LANES]; /* of points of tilted facets: see tl_frames */
 } tl_patch_rows;
 
 /* Brings a patch in each lane into its present place; false when none is or was tilted. */
 bool tl_frames_put_patches(tl_frames *f, const tl_patch_rows *rows);
+
+/* A facet of any kind for each lane. */
+typedef struct tl_facet_rows {
+    tl_lanes9 ra, rb; /* of the bodies */
+    tl_lanes3 d;
+    const double *facet[TL_LANES];
+    double carry[TL_LANES]; /* see tl_frames */
+    double kind[TL_LANES];  /* tl_facet_kind */
+    tl_lanes3 swing;
+    /* edges: where they begin, in the frames of their bodies, and from there to their ends; what follows */
+    tl_lanes3 from_a, along_a, from_b, along_b, edge_n;
+    double edge_offset[TL_LANES];
+    bool new_edges; /* of which that has not been worked out */
+} tl_facet_rows;
+
+/* Brings the bodies of a rank into its lanes, which have no facets yet. */
+void tl_frames_put_bodies(tl_frames *f, tl_facet_rows *facets, const tl_body_rows *bodies);
+/* Puts a facet into lane l of rows whose bodies are there. */
+void tl_facet_rows_put(tl_facet_rows *rows, size_t l, const tl_model *m, uint32_t contact,
+                       const tl_facet *facet, double carry);
+/* Brings the facets into their present place. */
+void tl_frames_put_facets(tl_frames *f, tl_facet_rows *rows);
+/* The couples on B per energy, model's axes, of points of these slots, from the turns of A and the facets' swings. */
+void tl_frames_put_couples(double *const couple[3], size_t begin, size_t end, const tl_lanes9 *ra,
+                           const tl_lanes3 *swing);
 
 #endif

@@ -14,20 +14,15 @@ tl_sight tl_sight_of(const tl_model *m, uint32_t c)
                       .b = contacts->b[c]};
 }
 
-static tl_facing level(tl_vec3 n, tl_vec3 plane, double offset)
-{
-    return (tl_facing){.n = n, .mean = n, .mean2 = 1, .plane = plane, .offset = offset};
-}
-
 /* Of vertices on a face of A, or of B. */
 static tl_facing face_vertices(const tl_facet *f, const tl_sight *s)
 {
     if (f->kind == TL_FACET_FACE_A) {
         tl_vec3 n = tl_m3_mul(s->ra, f->na);
-        return level(n, n, f->offset);
+        return tl_facing_level(n, n, f->offset);
     }
     tl_vec3 n = tl_m3_mul(s->rb, f->nb);
-    return level(tl_v3_neg(n), n, f->offset + tl_v3_dot(n, s->d));
+    return tl_facing_level(tl_v3_neg(n), n, f->offset + tl_v3_dot(n, s->d));
 }
 
 static tl_facing face_edges(const tl_facet *f, const tl_sight *s)
@@ -39,11 +34,9 @@ static tl_facing face_edges(const tl_facet *f, const tl_sight *s)
     tl_vec3 along_b = tl_m3_mul(s->rb, tl_v3_sub(b->vertex[eb->b], from_b));
     tl_vec3 foot_a = tl_m3_mul(s->ra, from_a);
     tl_vec3 foot_b = tl_v3_add(tl_m3_mul(s->rb, from_b), s->d);
-    /* the side was settled when the facet was made: along_a x along_b, turned outward, is n */
-    tl_vec3 n, side = tl_m3_mul(s->ra, f->na);
-    if (!tl_edge_normal(along_a, along_b, side, &n))
-        n = side;
-    return level(n, tl_v3(0, 0, 0), -tl_v3_dot(n, tl_v3_sub(foot_b, foot_a)));
+    /* the side was settled when the facet was made */
+    tl_vec3 n = tl_facing_edges(along_a, along_b, tl_m3_mul(s->ra, f->na));
+    return tl_facing_level(n, tl_v3(0, 0, 0), -tl_v3_dot(n, tl_v3_sub(foot_b, foot_a)));
 }
 
 tl_facing tl_facing_of(const tl_facet *f, const tl_sight *s)
