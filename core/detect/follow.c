@@ -292,21 +292,24 @@ static tl_facet *facet_at(const tl_contacts *contacts, uint32_t contact, uint32_
     return NULL;
 }
 
-/* Goes on to the facets that begin in a slot; where a lane's contact ends before, it stays as it is, inert. Returns
- * the slot up to which none begins. */
+/* Goes on to the facets that begin in a slot; where a lane's contact ends before, it stays as it is, inert. Returns the
+ * lanes that go on, a bit each; *until is the slot up to which no other facet begins. */
 static uint32_t next_facets(tl_model *m, const tl_rank *rank, const columns *c, tl_frames *f,
-                            uint32_t *next, uint32_t slot, uint32_t tangents)
+                            uint32_t *next, uint32_t slot, uint32_t tangents, uint32_t *until)
 {
-    uint32_t until = rank->slots;
-    for (size_t l = 0; l < TL_LANES; l++) {
-        if (f->end[l] == slot) {
-            finish_facet(m, rank, c, f, l, tangents);
-            f->facet[l] = facet_at(&m->detect->contacts, rank->contact[l], slot, &next[l]);
-            f->end[l] = f->facet[l] ? slot + f->facet[l]->count : rank->slots;
-        }
-        until = f->end[l] < until ? f->end[l] : until;
+    uint32_t on = 0, first = rank->slots;
+    for (uint32_t l = 0; l < TL_LANES; l++)
+        on |= (uint32_t)(f->end[l] == slot) << l;
+    for (uint32_t left = on; left; left &= left - 1) {
+        size_t l = (size_t)__builtin_ctz(left);
+        finish_facet(m, rank, c, f, l, tangents);
+        f->facet[l] = facet_at(&m->detect->contacts, rank->contact[l], slot, &next[l]);
+        f->end[l] = f->facet[l] ? slot + f->facet[l]->count : rank->slots;
     }
-    return until;
+    for (size_t l = 0; l < TL_LANES; l++)
+        first = f->end[l] < first ? f->end[l] : first;
+    *until = first;
+    return on;
 }
 
 /* Lanes up to the last that has a contact. */
@@ -327,6 +330,27 @@ static void follow_nothing(const columns *c, size_t slots, tl_frames *f)
     follow_any(c, 0, slots, f);
 }
 
+/* Puts a facet of contact c into lane l of rows whose bodies are there. */
+static void put_row(tl_facet_rows *rows, size_t l, const tl_model *m, uint32_t c,
+                    const tl_facet *facet, double carry)
+{
+    rows->facet[l] = &facet->na.x;
+    rows->carry[l] = carry;
+    rows->kind[l] = facet->kind;
+    tl_lanes3_put(&rows->swing, l, tl_facet_swing(facet));
+    if (facet->kind != TL_FACET_EDGES)
+        return;
+    const tl_contacts *contacts = &m->detect->contacts;
+    const tl_poly *a = m->blocks.shape[contacts->a[c]], *b = m->blocks.shape[contacts->b[c]];
+    const tl_edge *ea = &a->edge[facet->ia], *eb = &b->edge[facet->ib];
+    tl_vec3 from_a = a->vertex[ea->a], from_b = b->vertex[eb->a];
+    tl_lanes3_put(&rows->from_a, l, from_a);
+    tl_lanes3_put(&rows->from_b, l, from_b);
+    tl_lanes3_put(&rows->along_a, l, tl_v3_sub(a->vertex[ea->b], from_a));
+    tl_lanes3_put(&rows->along_b, l, tl_v3_sub(b->vertex[eb->b], from_b));
+    rows->new_edges = true;
+}
+
 /* Whatever facets the rank has: from where one begins in some lane to where the next does. Lanes without one do as another,
  * or as their last; nothing in their rows moves. */
 static found follow_facets(tl_model *m, const tl_rank *rank, const columns *c, tl_frames *f,
@@ -339,7 +363,7 @@ static found follow_facets(tl_model *m, const tl_rank *rank, const columns *c, t
     tl_facet_rows rows;
     memset(f->end, 0, sizeof f->end);
     memset(f->facet, 0, sizeof f->facet);
-    until = next_facets(m, rank, c, f, next, 0, tangents);
+    uint32_t on = next_facets(m, rank, c, f, next, 0, tangents, &until);
     while (some < TL_LANES && !f->facet[some])
         some++;
     if (some == TL_LANES) {
@@ -349,17 +373,17 @@ static found follow_facets(tl_model *m, const tl_rank *rank, const columns *c, t
     look_up_bodies(m, rank, f, some, &bodies);
     tl_frames_put_bodies(f, &rows, &bodies);
     for (size_t l = 0; l < TL_LANES; l++)
-        if (!f->facet[l])
-            tl_facet_rows_put(&rows, l, m, rank->contact[some], f->facet[some], 0);
+        put_row(&rows, l, m, rank->contact[some], f->facet[some], 0);
     for (uint32_t slot = 0; slot < rank->slots; slot = until) {
         if (slot > 0)
-            until = next_facets(m, rank, c, f, next, slot, tangents);
-        for (size_t l = 0; l < TL_LANES; l++)
-            if (!f->facet[l])
-                rows.carry[l] = 0;
-            else if (f->facet[l]->begin == slot)
-                tl_facet_rows_put(&rows, l, m, rank->contact[l], f->facet[l],
-                                  carry_of(contacts, rank->contact[l]));
+            on = next_facets(m, rank, c, f, next, slot, tangents, &until);
+        for (; on; on &= on - 1) {
+            size_t l = (size_t)__builtin_ctz(on);
+            rows.carry[l] = 0;
+            if (f->facet[l])
+                put_row(&rows, l, m, rank->contact[l], f->facet[l],
+                        carry_of(contacts, rank->contact[l]));
+        }
         tl_frames_put_facets(f, &rows);
         follow_any(c, slot, until, f);
         tl_frames_put_couples(c->couple, slot, until, &rows.ra, &rows.swing);
@@ -391,14 +415,14 @@ static found follow_few_facets(tl_model *m, const tl_rank *rank, const columns *
     for (size_t l = 0; l < TL_LANES; l++)
         f->mean2[l] = f->was2[l] = 1;
     for (uint32_t slot = 0, until; slot < rank->slots; slot = until) {
-        until = next_facets(m, rank, c, f, next, slot, tangents);
-        for (size_t l = 0; l < lanes; l++) {
+        uint32_t on = next_facets(m, rank, c, f, next, slot, tangents, &until);
+        for (; on; on &= on - 1) {
+            size_t l = (size_t)__builtin_ctz(on);
             uint32_t contact = rank->contact[l];
-            if (f->facet[l] && f->facet[l]->begin == slot)
+            f->carry[l] = f->slide[l] = 0;
+            if (f->facet[l])
                 tl_frames_put(f, l, m, contact, f->facet[l],
                               carry_of(&m->detect->contacts, contact));
-            else if (!f->facet[l])
-                f->carry[l] = f->slide[l] = 0;
         }
         follow_few(c, slot, until, f, lanes);
         put_few_couples(m, rank, c, f, slot, until, lanes);

@@ -266,26 +266,6 @@ void tl_frames_put_bodies(tl_frames *f, tl_facet_rows *facets, const tl_body_row
     facets->new_edges = false;
 }
 
-void tl_facet_rows_put(tl_facet_rows *rows, size_t l, const tl_model *m, uint32_t c,
-                       const tl_facet *facet, double carry)
-{
-    rows->facet[l] = &facet->na.x;
-    rows->carry[l] = carry;
-    rows->kind[l] = facet->kind;
-    tl_lanes3_put(&rows->swing, l, tl_facet_swing(facet));
-    if (facet->kind != TL_FACET_EDGES)
-        return;
-    const tl_contacts *contacts = &m->detect->contacts;
-    const tl_poly *a = m->blocks.shape[contacts->a[c]], *b = m->blocks.shape[contacts->b[c]];
-    const tl_edge *ea = &a->edge[facet->ia], *eb = &b->edge[facet->ib];
-    tl_vec3 from_a = a->vertex[ea->a], from_b = b->vertex[eb->a];
-    tl_lanes3_put(&rows->from_a, l, from_a);
-    tl_lanes3_put(&rows->from_b, l, from_b);
-    tl_lanes3_put(&rows->along_a, l, tl_v3_sub(a->vertex[ea->b], from_a));
-    tl_lanes3_put(&rows->along_b, l, tl_v3_sub(b->vertex[eb->b], from_b));
-    rows->new_edges = true;
-}
-
 /* Normals and offsets of the edges; the operations are those of places.c. */
 TL_VECTORIZED static void put_edges(tl_facet_rows *restrict rows)
 {

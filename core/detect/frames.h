@@ -69,9 +69,6 @@ typedef struct tl_facet_rows {
 
 /* Brings the bodies of a rank into its lanes, which have no facets yet. */
 void tl_frames_put_bodies(tl_frames *f, tl_facet_rows *facets, const tl_body_rows *bodies);
-/* Puts a facet into lane l of rows whose bodies are there. */
-void tl_facet_rows_put(tl_facet_rows *rows, size_t l, const tl_model *m, uint32_t contact,
-                       const tl_facet *facet, double carry);
 /* Brings the facets into their present place. */
 void tl_frames_put_facets(tl_frames *f, tl_facet_rows *rows);
 /* The couples on B per energy, model's axes, of points of these slots, from the turns of A and the facets' swings. */

@@ -1,7 +1,8 @@
 /* ranks.c - which contacts lie side by side, in the lanes of which rank, and where their points begin.
  *
- * Contacts of about as many points share a rank, for a rank has room for as many as its largest; they are
- * looked for among neighbours in the order of blocks, so that what a rank needs lies close together in memory.
+ * Contacts of about as many points share a rank, for a rank has room for as many as its largest, and among those the ones
+ * whose first facets have as many, for where a facet begins is work for all of the rank. They are looked for among
+ * neighbours in the order of blocks, so that what a rank needs lies close together in memory.
  * Each material has a run of ranks. New contacts get a free lane near the end of the run, or the first lane of a
  * new rank there. */
 #include "detect/detect.h"
@@ -9,7 +10,7 @@
 #include <stdlib.h>
 
 /* Contacts, one after the other, among which those of as many points are put together. */
-#define WINDOW 128
+#define WINDOW 512
 /* Ranks at the end of a run that are looked through for a free lane, ... */
 #define LOOK_BACK 16
 /* ... in which no more than so many points are left to spare. */
@@ -21,15 +22,18 @@
 #define SPARE_RANKS 16
 
 typedef struct seat {
-    uint32_t points, row;
+    uint32_t points, first; /* of them: those of the first facet */
+    uint32_t row;
 } seat;
 
-/* By room, largest first, then by row. */
+/* By room, largest first, then by the points of the first facet, then by row. */
 static int compare_seats(const void *x, const void *y)
 {
     const seat *p = x, *q = y;
     if (p->points != q->points)
         return p->points > q->points ? -1 : 1;
+    if (p->first != q->first)
+        return p->first > q->first ? -1 : 1;
     return (p->row > q->row) - (p->row < q->row);
 }
 
@@ -59,6 +63,12 @@ static void seat_window(tl_layout *layout, tl_contacts *c, tl_run *run, seat *se
     }
 }
 
+/* Points of the first facet; 0 where there is none yet. */
+static uint32_t first_facet(const tl_contacts *c, uint32_t row)
+{
+    return c->facet_count[row] > 0 ? c->facet[c->facet_start[row]].count : 0;
+}
+
 /* Lays the run of the contacts from `row` on that are of its material; returns the row behind them. */
 static uint32_t lay_run(tl_layout *layout, tl_contacts *c, tl_run *run, uint32_t row)
 {
@@ -67,7 +77,7 @@ static uint32_t lay_run(tl_layout *layout, tl_contacts *c, tl_run *run, uint32_t
     for (; row < c->table.rows && c->material[row] == run->material; row++) {
         c->point_start[row] = 0;
         if (c->point_room[row])
-            seats[count++] = (seat){c->point_room[row], row};
+            seats[count++] = (seat){c->point_room[row], first_facet(c, row), row};
         if (count == WINDOW) {
             seat_window(layout, c, run, seats, count);
             count = 0;
