@@ -46,6 +46,31 @@ TL_INLINE void tl_lanes4_put(tl_lanes4 *to, size_t lane, tl_quat q)
     to->z[lane] = q.z;
 }
 
+/* From and to TL_LANES vectors that follow each other. */
+TL_INLINE void tl_lanes3_load(tl_lanes3 *restrict to, const tl_vec3 *restrict from)
+{
+    for (size_t i = 0; i < TL_LANES; i++)
+        tl_lanes3_put(to, i, from[i]);
+}
+
+TL_INLINE void tl_lanes3_store(const tl_lanes3 *restrict from, tl_vec3 *restrict to)
+{
+    for (size_t i = 0; i < TL_LANES; i++)
+        to[i] = tl_lanes3_get(from, i);
+}
+
+TL_INLINE void tl_lanes4_load(tl_lanes4 *restrict to, const tl_quat *restrict from)
+{
+    for (size_t i = 0; i < TL_LANES; i++)
+        tl_lanes4_put(to, i, from[i]);
+}
+
+TL_INLINE void tl_lanes4_store(const tl_lanes4 *restrict from, tl_quat *restrict to)
+{
+    for (size_t i = 0; i < TL_LANES; i++)
+        to[i] = tl_lanes4_get(from, i);
+}
+
 /* Matrices element by element, not in loops: a loop over lanes with loops in it does not become SIMD code. */
 TL_INLINE tl_mat3 tl_lanes9_get(const tl_lanes9 *from, size_t lane)
 {

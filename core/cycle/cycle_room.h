@@ -9,7 +9,7 @@
 #include <pthread.h>
 
 /* Rows a worker takes at a time. Of contacts where there is little to do with each. */
-#define TL_BODY_CHUNK 64
+#define TL_BODY_CHUNK 32
 #define TL_CONTACT_CHUNK 1024
 
 /* Sums over the free bodies, made per chunk and added in chunk order. */
@@ -51,20 +51,20 @@ struct tl_rated {
  * which changes places. The lanes beyond `count` are inert. Spins and angular momenta are in principal axes
  * at the forces' time, or where there is one moment of inertia in the model's: only their products count. */
 typedef struct tl_group {
-    uint32_t body[TL_LANES];
-    unsigned count;
-    tl_lanes4 q, axes;
-    tl_lanes3 moments;
+    _Alignas(TL_ALIGN) tl_lanes4 q, axes;
+    tl_lanes3 moments, per; /* per: 1 / moments */
     double mass[TL_LANES], scale[TL_LANES], alpha[TL_LANES];
     tl_lanes3 force, moment, damping_force, damping_moment;
     tl_lanes3 moved;                               /* velocity of the last step's motion */
     tl_lanes3 v0, w0, spin0, momentum0;            /* before the kick */
     tl_lanes3 v1, w1, spin1, momentum1;            /* after it */
-    tl_lanes4 q2;                                  /* after the drift */
-    tl_lanes3 w2, turned;                          /* angular velocity, and that of the motion */
+    tl_lanes4 made, q2;                            /* the drift's turn, and after it */
+    tl_lanes3 momentum2, w2, turned;               /* angular velocity, and that of the motion */
     double turning0[TL_LANES], turning2[TL_LANES]; /* w.I w, before the kick and after the drift */
     double radius[TL_LANES], speed[TL_LANES];      /* |v| + |w| radius: no vertex moves faster */
     double reach[TL_LANES];                        /* of the turn: see turn.h */
+    uint32_t body[TL_LANES];
+    unsigned count;
 } tl_group;
 
 /* Energies of a chunk of bodies, summed lane by lane, lanes last. */
@@ -75,12 +75,12 @@ typedef enum tl_work_kind {
     TL_WORK_COUNT
 } tl_work_kind;
 typedef struct tl_work {
-    double until, after; /* half of the step before and of the one after */
-    double kinetic[TL_LANES];
+    _Alignas(TL_ALIGN) double kinetic[TL_LANES];
     double first[TL_LANES]; /* by which the scheme's sum is less in the first step */
     double motion0[TL_LANES], motion2[TL_LANES]; /* kinetic before the kick and after it */
     double work_until[TL_WORK_COUNT][TL_LANES];  /* work of this step's forces until now */
     double work_after[TL_WORK_COUNT][TL_LANES];  /* and in the half step that follows */
+    double until, after;                         /* half of the step before and of the one after */
 } tl_work;
 
 /* Of the contacts, on a body that is held. */

@@ -11,10 +11,11 @@
  * Rotation, paper: one moment of inertia, w <- (D1 w + M/I h) D2 (20), (23); the attitude turns exactly
  * about w.
  *
- * Free bodies go through a step in groups of TL_LANES: their columns are copied into lanes, one loop kicks and turns
- * all of them, the energy ledger books what happened, and the lanes are copied back. Bodies held in some
- * components, and all with the paper's rotation, get their rotation one by one; those held in every component
- * are in no group and cost nothing as long as they stand. */
+ * Free bodies go through a step in groups of TL_LANES, those of a chunk together: their columns are copied into lanes, by
+ * whole vectors where the bodies of a group are side by side; loops over the lanes kick and turn all of them, stage by
+ * stage; the energy ledger books what happened, and the lanes are copied back. Bodies held in some components, and all
+ * with the paper's rotation, get their rotation one by one; those held in every component are in no group and cost
+ * nothing as long as they stand. */
 #include "cycle/cycle_room.h"
 #include "cycle/turn.h"
 
@@ -52,53 +53,74 @@ TL_INLINE double speed_of(const tl_group *g, size_t i)
            tl_v3_norm(tl_lanes3_get(&g->w2, i)) * g->radius[i];
 }
 
-/* The exact rotation of a body, kick and drift. */
-TL_INLINE void turn_lane(tl_group *g, size_t i, double kick, double drift, bool series)
+/* Exact rotation: the kick of the angular momentum, in principal axes. */
+TL_INLINE void kick_spin(tl_group *g, size_t i, double kick)
 {
-    tl_quat q = tl_lanes4_get(&g->q, i), axes = tl_lanes4_get(&g->axes, i);
     tl_vec3 moments = tl_lanes3_get(&g->moments, i);
     double d1 = 1 - 0.5 * g->alpha[i] * kick, d2 = 1 / (1 + 0.5 * g->alpha[i] * kick);
     double span = kick / g->scale[i];
     tl_vec3 moment = tl_v3_add(tl_lanes3_get(&g->moment, i), tl_lanes3_get(&g->damping_moment, i));
-    /* to principal axes, where the kick acts */
-    tl_mat3 attitude = attitude_of(q, axes);
+    tl_mat3 attitude = attitude_of(tl_lanes4_get(&g->q, i), tl_lanes4_get(&g->axes, i));
     tl_vec3 w = tl_m3_tmul(&attitude, tl_lanes3_get(&g->w0, i)), l0 = times(moments, w);
     tl_vec3 turn = tl_m3_tmul(&attitude, moment);
     tl_vec3 l1 = tl_v3_scale(d2, tl_v3_madd(tl_v3_scale(d1, l0), span, turn));
     tl_vec3 per = {1 / moments.x, 1 / moments.y, 1 / moments.z};
     tl_vec3 spin1 = times(per, l1);
+    tl_lanes3_put(&g->per, i, per);
     tl_lanes3_put(&g->spin0, i, w);
     tl_lanes3_put(&g->momentum0, i, l0);
     tl_lanes3_put(&g->spin1, i, spin1);
     tl_lanes3_put(&g->momentum1, i, l1);
     tl_lanes3_put(&g->w1, i, tl_m3_mul(&attitude, spin1));
     g->turning0[i] = tl_v3_dot(w, l0);
-    /* the drift, and the same turn in the body's frame: exactly none when nothing turned */
-    tl_free_turn free = tl_turn_freely(l1, per, drift, series);
-    tl_vec3 axis = tl_q_rotate(axes, tl_v3(free.made.x, free.made.y, free.made.z));
-    q = tl_q_trim(tl_q_mul(q, (tl_quat){free.made.w, axis.x, axis.y, axis.z}));
+}
+
+/* The drift. */
+TL_INLINE void turn_freely(tl_group *g, size_t i, double drift, bool series)
+{
+    tl_free_turn free =
+        tl_turn_freely(tl_lanes3_get(&g->momentum1, i), tl_lanes3_get(&g->per, i), drift, series);
+    tl_lanes4_put(&g->made, i, free.made);
+    tl_lanes3_put(&g->momentum2, i, free.momentum);
+    g->reach[i] = free.reach;
+}
+
+/* The same turn in the body's frame, exactly none when nothing turned, and what spins in the new attitude. */
+TL_INLINE void put_attitude(tl_group *g, size_t i, double drift, bool series)
+{
+    tl_quat axes = tl_lanes4_get(&g->axes, i), made = tl_lanes4_get(&g->made, i);
+    tl_vec3 moments = tl_lanes3_get(&g->moments, i), l2 = tl_lanes3_get(&g->momentum2, i);
+    tl_vec3 axis = tl_q_rotate(axes, tl_v3(made.x, made.y, made.z));
+    tl_quat q =
+        tl_q_trim(tl_q_mul(tl_lanes4_get(&g->q, i), (tl_quat){made.w, axis.x, axis.y, axis.z}));
     tl_lanes4_put(&g->q2, i, q);
-    attitude = attitude_of(q, axes);
-    tl_vec3 l2 = free.momentum;
+    tl_mat3 attitude = attitude_of(q, axes);
     /* a division here, not `per`: its error would be the same in every step and add up */
     tl_vec3 w2 = tl_m3_mul(&attitude, tl_v3(l2.x / moments.x, l2.y / moments.y, l2.z / moments.z));
     tl_lanes3_put(&g->w2, i, w2);
     tl_lanes3_put(&g->turned, i,
-                  tl_m3_mul(&attitude, tl_v3_scale(1 / drift, tl_turn_of(free.made, series))));
+                  tl_m3_mul(&attitude, tl_v3_scale(1 / drift, tl_turn_of(made, series))));
     /* as the next step will find it, to the last bit */
-    w = tl_m3_tmul(&attitude, w2);
+    tl_vec3 w = tl_m3_tmul(&attitude, w2);
     g->turning2[i] = tl_v3_dot(w, times(moments, w));
     g->speed[i] = speed_of(g, i);
-    g->reach[i] = free.reach;
 }
 
-/* Kicks and turns a group of bodies by the exact rule. */
-TL_VECTORIZED static void advance_lanes(tl_group *g, double kick, double drift)
+/* Kicks and turns groups of bodies by the exact rule. Stage by stage: what follows from each other in one group is worked
+ * out while that of the next is under way. */
+TL_VECTORIZED static void advance_lanes(tl_group *groups, size_t count, double kick, double drift)
 {
-    for (size_t i = 0; i < TL_LANES; i++)
-        kick_lane(g, i, kick);
-    for (size_t i = 0; i < TL_LANES; i++)
-        turn_lane(g, i, kick, drift, true);
+    for (size_t k = 0; k < count; k++)
+        for (size_t i = 0; i < TL_LANES; i++) {
+            kick_lane(&groups[k], i, kick);
+            kick_spin(&groups[k], i, kick);
+        }
+    for (size_t k = 0; k < count; k++)
+        for (size_t i = 0; i < TL_LANES; i++)
+            turn_freely(&groups[k], i, drift, true);
+    for (size_t k = 0; k < count; k++)
+        for (size_t i = 0; i < TL_LANES; i++)
+            put_attitude(&groups[k], i, drift, true);
 }
 
 /* What the ledger needs of a body's spin before the kick and after it, in the attitude before, and after the
@@ -159,18 +181,19 @@ static void mend_lanes(tl_group *g, const move_job *job)
             g->speed[i] = speed_of(g, i);
         if (paper || fixed & TL_FIX_ROTATION)
             turn_about(g, i, job, paper, fixed & TL_FIX_ROTATION);
-        else if (!(g->reach[i] < limit))
-            turn_lane(g, i, job->kick, job->drift, false);
+        else if (!(g->reach[i] < limit)) {
+            turn_freely(g, i, job->drift, false);
+            put_attitude(g, i, job->drift, false);
+        }
     }
 }
 
-static void load_body(tl_group *g, const tl_model *m, uint32_t body)
+static void load_lane(tl_group *g, size_t i, const tl_model *m)
 {
     const tl_bodies *b = &m->bodies;
     const struct tl_cycle *c = m->cycle;
-    size_t i = g->count++;
+    uint32_t body = g->body[i];
     double round = b->round[body];
-    g->body[i] = body;
     tl_lanes4_put(&g->q, i, b->q[body]);
     tl_lanes4_put(&g->axes, i, b->axes[body]);
     tl_lanes3_put(&g->moments, i,
@@ -191,6 +214,40 @@ static void load_body(tl_group *g, const tl_model *m, uint32_t body)
     g->alpha[i] = damped ? c->alpha[body] : 0;
 }
 
+/* The same of bodies that are side by side from `first` on, without mass scaling. */
+TL_VECTORIZED static void load_row(tl_group *restrict g, const tl_model *m, size_t first)
+{
+    const tl_bodies *b = &m->bodies;
+    const struct tl_cycle *c = m->cycle;
+    const tl_vec3 none = {0, 0, 0};
+    bool damped = m->damping != NULL, paper = m->config.rotation == TL_ROTATION_PAPER;
+    tl_lanes4_load(&g->q, b->q + first);
+    tl_lanes4_load(&g->axes, b->axes + first);
+    tl_lanes3_load(&g->moments, b->moments + first);
+    for (size_t i = 0; paper && i < TL_LANES; i++)
+        g->moments.x[i] = g->moments.y[i] = g->moments.z[i] = b->round[first + i];
+    tl_lanes3_load(&g->force, b->force + first);
+    tl_lanes3_load(&g->moment, b->moment + first);
+    tl_lanes3_load(&g->moved, b->v_moved + first);
+    tl_lanes3_load(&g->v0, b->v + first);
+    tl_lanes3_load(&g->w0, b->w + first);
+    for (size_t i = 0; i < TL_LANES; i++) {
+        g->mass[i] = b->mass[first + i];
+        g->radius[i] = b->radius[first + i];
+        g->scale[i] = 1;
+    }
+    for (size_t i = 0; damped && i < TL_LANES; i++) {
+        tl_lanes3_put(&g->damping_force, i, tl_columns_get(c->damping_force, first + i));
+        tl_lanes3_put(&g->damping_moment, i, tl_columns_get(c->damping_moment, first + i));
+        g->alpha[i] = c->alpha[first + i];
+    }
+    for (size_t i = 0; !damped && i < TL_LANES; i++) {
+        tl_lanes3_put(&g->damping_force, i, none);
+        tl_lanes3_put(&g->damping_moment, i, none);
+        g->alpha[i] = 0;
+    }
+}
+
 /* A lane without a body: one that rests, and to which nothing happens. */
 static void rest_lane(tl_group *g, size_t i)
 {
@@ -206,7 +263,7 @@ static void rest_lane(tl_group *g, size_t i)
     g->alpha[i] = 0;
 }
 
-static void store_body(const tl_group *g, size_t i, tl_bodies *b, double dt)
+static void store_lane(const tl_group *g, size_t i, tl_bodies *b, double dt)
 {
     uint32_t body = g->body[i];
     b->v[body] = tl_lanes3_get(&g->v1, i);
@@ -219,16 +276,54 @@ static void store_body(const tl_group *g, size_t i, tl_bodies *b, double dt)
     b->odometer[body] += g->speed[i] * dt;
 }
 
-static void advance_group(tl_group *g, const move_job *job, tl_work *work)
+/* The same of bodies that are side by side. */
+TL_VECTORIZED static void store_row(const tl_group *restrict g, const tl_bodies *b, size_t first,
+                                    double dt)
 {
+    double *restrict u = &b->u[first].x, *restrict odometer = b->odometer + first;
+    tl_lanes9 r;
+    tl_lanes3_store(&g->v1, b->v + first);
+    tl_lanes3_store(&g->v1, b->v_moved + first);
+    tl_lanes3_store(&g->w2, b->w + first);
+    tl_lanes3_store(&g->turned, b->w_moved + first);
+    tl_lanes4_store(&g->q2, b->q + first);
+    const double *restrict v = &b->v_moved[first].x;
+    for (size_t i = 0; i < 3 * TL_LANES; i++)
+        u[i] += dt * v[i];
+    for (size_t i = 0; i < TL_LANES; i++) {
+        tl_mat3 one = tl_q_matrix(tl_lanes4_get(&g->q2, i));
+        tl_lanes9_put(&r, i, &one);
+        odometer[i] += g->speed[i] * dt;
+    }
+    for (size_t i = 0; i < TL_LANES; i++)
+        b->r[first + i] = tl_lanes9_get(&r, i);
+}
+
+static bool side_by_side(const tl_group *g)
+{
+    return g->count == TL_LANES && g->body[TL_LANES - 1] - g->body[0] == TL_LANES - 1;
+}
+
+static void load_group(tl_group *g, const tl_model *m)
+{
+    if (side_by_side(g) && !(m->cycle->scaled > 0)) {
+        load_row(g, m, g->body[0]);
+        return;
+    }
+    for (size_t i = 0; i < g->count; i++)
+        load_lane(g, i, m);
     for (size_t i = g->count; i < TL_LANES; i++)
         rest_lane(g, i);
-    advance_lanes(g, job->kick, job->drift);
-    mend_lanes(g, job);
-    tl_energy_book(job->m, g, work);
+}
+
+static void store_group(const tl_group *g, const move_job *job)
+{
+    if (side_by_side(g)) {
+        store_row(g, &job->m->bodies, g->body[0], job->drift);
+        return;
+    }
     for (size_t i = 0; i < g->count; i++)
-        store_body(g, i, &job->m->bodies, job->drift);
-    g->count = 0;
+        store_lane(g, i, &job->m->bodies, job->drift);
 }
 
 static bool still(tl_vec3 v)
@@ -264,18 +359,26 @@ static void move_range(void *user, size_t begin, size_t end, size_t chunk, unsig
     const move_job *job = user;
     tl_model *m = job->m;
     tl_work work = {.until = 0.5 * m->dt, .after = 0.5 * job->drift};
-    tl_group group;
-    group.count = 0;
+    tl_group groups[TL_BODY_CHUNK / TL_LANES];
+    size_t free = 0;
     for (uint32_t body = (uint32_t)begin; body < end; body++) {
-        if (m->bodies.fixed[body] == TL_FIX_ALL)
+        if (m->bodies.fixed[body] == TL_FIX_ALL) {
             carry_body(job, body, &work);
-        else
-            load_body(&group, m, body);
-        if (group.count == TL_LANES)
-            advance_group(&group, job, &work);
+            continue;
+        }
+        tl_group *g = &groups[free / TL_LANES];
+        g->body[free % TL_LANES] = body;
+        g->count = 1 + (unsigned)(free++ % TL_LANES);
     }
-    if (group.count > 0)
-        advance_group(&group, job, &work);
+    size_t count = (free + TL_LANES - 1) / TL_LANES;
+    for (size_t k = 0; k < count; k++)
+        load_group(&groups[k], m);
+    advance_lanes(groups, count, job->kick, job->drift);
+    for (size_t k = 0; k < count; k++) {
+        mend_lanes(&groups[k], job);
+        tl_energy_book(m, &groups[k], &work);
+        store_group(&groups[k], job);
+    }
     tl_energy_chunk(m, chunk, &work);
 }
 

@@ -61,8 +61,8 @@ TL_INLINE tl_vec3 tl_turn_of(tl_quat q, bool series)
 {
     double s2 = q.x * q.x + q.y * q.y + q.z * q.z, k; /* k: angle / sine of its half */
     if (series) {
-        k = 2 * (1 + s2 * (1. / 6 +
-                           s2 * (3. / 40 + s2 * (5. / 112 + s2 * (35. / 1152 + s2 * 63. / 2816)))));
+        k = 2 * (1 + s2 * (1. / 6 + s2 * (3. / 40 + s2 * (5. / 112 +
+                                                          s2 * (35. / 1152 + s2 * (63. / 2816))))));
     } else {
         double s = sqrt(s2);
         k = s > 0 ? 2 * atan2(s, q.w) / s : 2;
