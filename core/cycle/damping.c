@@ -85,32 +85,33 @@ typedef struct seen {
     double mass[TL_BODY_CHUNK], inertia[TL_BODY_CHUNK];
 } seen;
 
-static void put(double columns[3][TL_BODY_CHUNK], size_t i, tl_vec3 v)
+/* The vectors of `count` bodies from `first` on as columns; 0 beyond them, up to `lanes`. */
+TL_INLINE void put(double (*restrict columns)[TL_BODY_CHUNK], const tl_vec3 *restrict first,
+                   size_t count, size_t lanes)
 {
-    columns[0][i] = v.x;
-    columns[1][i] = v.y;
-    columns[2][i] = v.z;
+    for (size_t i = 0; i < count; i++) {
+        columns[0][i] = first[i].x;
+        columns[1][i] = first[i].y;
+        columns[2][i] = first[i].z;
+    }
+    for (size_t i = count; i < lanes; i++)
+        columns[0][i] = columns[1][i] = columns[2][i] = 0;
 }
 
-static void look_at(seen *s, size_t i, const tl_bodies *b, size_t body)
+TL_VECTORIZED static void look_at(seen *s, const tl_bodies *b, size_t begin, size_t count,
+                                  size_t lanes)
 {
-    const tl_vec3 none = {0, 0, 0};
-    bool real = body < b->table.rows;
-    tl_vec3 moments = real ? b->moments[body] : tl_v3(1, 1, 1);
-    put(s->velocity, i, real ? b->v[body] : none);
-    put(s->angular_velocity, i, real ? b->w[body] : none);
-    put(s->force, i, real ? b->force[body] : none);
-    put(s->moment, i, real ? b->moment[body] : none);
-    s->mass[i] = real ? b->mass[body] : 1;
-    s->inertia[i] = (moments.x + moments.y + moments.z) / 3;
-}
-
-static void look_before(seen *s, size_t i, const tl_bodies *b, size_t body)
-{
-    const tl_vec3 none = {0, 0, 0};
-    bool real = body < b->table.rows;
-    put(s->force_before, i, real ? b->force_before[body] : none);
-    put(s->moment_before, i, real ? b->moment_before[body] : none);
+    put(s->velocity, b->v + begin, count, lanes);
+    put(s->angular_velocity, b->w + begin, count, lanes);
+    put(s->force, b->force + begin, count, lanes);
+    put(s->moment, b->moment + begin, count, lanes);
+    for (size_t i = 0; i < count; i++) {
+        tl_vec3 moments = b->moments[begin + i];
+        s->mass[i] = b->mass[begin + i];
+        s->inertia[i] = (moments.x + moments.y + moments.z) / 3;
+    }
+    for (size_t i = count; i < lanes; i++)
+        s->mass[i] = s->inertia[i] = 1;
 }
 
 static void damp_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
@@ -121,11 +122,13 @@ static void damp_range(void *user, size_t begin, size_t end, size_t chunk, unsig
     struct tl_cycle *c = m->cycle;
     tl_bodies *b = &m->bodies;
     const tl_damping_ops *ops = m->damping->ops;
+    size_t last = end < b->table.rows ? end : b->table.rows;
     seen s;
-    for (size_t i = begin; i < end; i++)
-        look_at(&s, i - begin, b, i);
-    for (size_t i = begin; i < end && ops->before; i++)
-        look_before(&s, i - begin, b, i);
+    look_at(&s, b, begin, last - begin, end - begin);
+    if (ops->before) {
+        put(s.force_before, b->force_before + begin, last - begin, end - begin);
+        put(s.moment_before, b->moment_before + begin, last - begin, end - begin);
+    }
     tl_damping_batch batch = {.size = sizeof batch,
                               .count = (uint32_t)(end - begin),
                               .dt = job->dt,
@@ -151,7 +154,7 @@ static void damp_range(void *user, size_t begin, size_t end, size_t chunk, unsig
     if (status != TL_OK)
         tl_cycle_failed(m, chunk, status, 0, report.text);
     if (ops->before)
-        note_forces(b, begin, end < b->table.rows ? end : b->table.rows);
+        note_forces(b, begin, last);
 }
 
 tl_status tl_damping_apply(tl_model *m, double dt)

@@ -25,9 +25,9 @@ static const tl_param param_table[] = {
 };
 
 /* One component of all bodies. Selects, not branches, so that the loop vectorises. */
-static void combine(double alpha, uint32_t count, const double *restrict velocity,
-                    const double *restrict force, const double *restrict before,
-                    double *restrict out)
+TL_VECTORIZED static void combine(double alpha, uint32_t count, const double *restrict velocity,
+                                  const double *restrict force, const double *restrict before,
+                                  double *restrict out)
 {
 #pragma omp simd
     for (uint32_t i = 0; i < count; i++) {

@@ -24,8 +24,8 @@ static const tl_param param_table[] = {
 };
 
 /* One component of all bodies. Selects, not branches, so that the loop vectorises. */
-static void oppose(double alpha, uint32_t count, const double *restrict velocity,
-                   const double *restrict force, double *restrict out)
+TL_VECTORIZED static void oppose(double alpha, uint32_t count, const double *restrict velocity,
+                                 const double *restrict force, double *restrict out)
 {
 #pragma omp simd
     for (uint32_t i = 0; i < count; i++) {
