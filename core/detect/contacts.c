@@ -224,11 +224,13 @@ bool tl_contacts_index(tl_model *m)
         !tl_fit(&d->by_block, &d->by_block_room, 2 * d->contacts.table.capacity + 1,
                 sizeof *d->by_block))
         return false;
+    d->bare = false;
     memset(d->by_block_start, 0, (blocks + 2) * sizeof *d->by_block_start);
     uint32_t *start = d->by_block_start + 1; /* filling moves each start to its end */
     for (size_t c = 0; c < contacts; c++) {
         start[d->contacts.a[c] + 1]++;
         start[d->contacts.b[c] + 1]++;
+        d->bare = d->bare || d->contacts.point_room[c] == 0;
     }
     for (size_t row = 0; row < blocks; row++)
         start[row + 1] += start[row];

@@ -178,7 +178,8 @@ static void update_contacts(tl_model *m)
         update_job job = {m, layout->ranks + run->rank_begin};
         tl_parallel_for(m->pool, run->rank_end - run->rank_begin, RANK_CHUNK, update_ranks, &job);
     }
-    tl_parallel_for(m->pool, m->detect->contacts.table.rows, CONTACT_CHUNK, update_others, m);
+    if (m->detect->bare)
+        tl_parallel_for(m->pool, m->detect->contacts.table.rows, CONTACT_CHUNK, update_others, m);
 }
 
 /* Bodies that were joined or parted have other frames than before: what contacts keep in them is made
@@ -349,6 +350,7 @@ static tl_status settle(tl_model *m)
         return tl_fail_memory(&m->error);
     if (changed == 0 && !d->rows_changed)
         return TL_OK;
+    d->bare = true; /* until they are listed anew */
     for (bool more = true; more && status == TL_OK;) {
         if (!settle_rows(m))
             status = tl_contacts_repack(m);

@@ -269,6 +269,7 @@ typedef struct tl_detect {
     size_t chunk_room;
     bool listed;        /* pairs have been listed */
     bool rows_changed;  /* since contacts were laid out */
+    bool bare;          /* there may be contacts without room for points */
     double reach;       /* half the skin of the broad phase */
     double *odometer_0; /* of each body, when the broad phase was made */
     size_t odometer_room;
@@ -455,7 +456,8 @@ tl_status tl_contacts_repack(tl_model *m);
 bool tl_contact_place(tl_detect *d, uint32_t contact);
 /* Takes a contact out; the last one gets its row. */
 void tl_contact_remove(tl_detect *d, uint32_t contact);
-/* Lists the contacts of each block; after contacts have come or gone. */
+/* Lists the contacts of each block, and notes whether some are bare; after contacts have come, gone or been given
+ * room. */
 bool tl_contacts_index(tl_model *m);
 /* Index of the material that rules a tag, or TL_NO_ROW. */
 uint32_t tl_material_row(const tl_model *m, tl_tag tag);

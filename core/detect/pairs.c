@@ -142,12 +142,18 @@ static void look_at(tl_model *m, tl_pair *p, tl_narrow *room)
         tl_beside_note(&view, p);
 }
 
+/* None of its pairs without a contact can have come near, whichever two blocks have run the farthest. */
+static bool sleeps(const tl_detect *d, const tl_pair_chunk *chunk)
+{
+    return 2 * (double)d->ran < (double)chunk->wake;
+}
+
 static void look_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
 {
     tl_model *m = user;
     tl_detect *d = m->detect;
     tl_pair_chunk *all = &d->chunks[chunk];
-    if (2 * (double)d->ran < (double)all->wake)
+    if (sleeps(d, all))
         return;
     float wake = INFINITY;
     for (size_t i = begin; i < end; i++) {
@@ -165,5 +171,10 @@ static void look_range(void *user, size_t begin, size_t end, size_t chunk, unsig
 
 void tl_pairs_look(tl_model *m)
 {
-    tl_parallel_for(m->pool, m->detect->pair_count, TL_PAIR_CHUNK, look_range, m);
+    const tl_detect *d = m->detect;
+    bool all_sleep = true;
+    for (size_t chunk = 0; all_sleep && chunk * TL_PAIR_CHUNK < d->pair_count; chunk++)
+        all_sleep = sleeps(d, &d->chunks[chunk]);
+    if (!all_sleep) /* a loop of the threads costs more than to see that there is nothing to do */
+        tl_parallel_for(m->pool, d->pair_count, TL_PAIR_CHUNK, look_range, m);
 }
