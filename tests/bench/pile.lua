@@ -1,11 +1,11 @@
--- pile.lua - irregular blocks dropped into a box and measured when they hardly move.
+-- pile.lua - irregular blocks dropped into a box and measured at rest.
 --
 --     talus tests/bench/pile.lua blocks=500 threads=1,2 reps=5 [write=pile.json]
 --
 -- A block is the hull of 12 to 20 points on an ellipsoid with half axes of 0.4 to 0.5 m, so every point is a
--- corner. They start apart, turned at random, in layers over the box, and fall. The pile at rest is written
--- to `write`, and taken from there when the file exists: settling takes far longer than measuring. Forces of a
--- model made from it start from the overlaps and settle in some steps. With reps=0 nothing is measured.
+-- corner. They start apart, turned at random, in layers over the box, and fall. The pile when it is down is written
+-- to `write`, and taken from there when the file exists. Forces of a model made from it start from the overlaps, and it
+-- comes to rest before it is measured. With reps=0 nothing is measured.
 package.path = (arg[0]:match "^(.*)/" or ".") .. "/?.lua;" .. package.path
 local talus = require "talus"
 local bench = require "bench"
@@ -23,9 +23,9 @@ local DT = 5e-4                        -- s
 local CORNER = 0.1
 local DRAG, DOWN = 4, 0.1              -- 1/s: blocks sink at 2.5 m/s; mean speed when they are down, m/s
 local DAMPING = 0.7                    -- share of the force, from then on
-local STILL, PATIENCE = 5e-3, 40000    -- mean speed of a pile at rest, m/s; steps
+local STILL = 5e-3                     -- mean speed of blocks of which hardly one falls on, m/s
 local LOOK = 250                       -- steps between looks at it
-local RATIO, SETTLE = 1e-4, 2000       -- unbalanced force ratio, steps: until forces have come back from overlaps
+local RATIO, PATIENCE = 1e-5, 40000    -- unbalanced force ratio of a pile at rest; steps
 
 local function gauss()
     return math.sqrt(-2 * math.log(1 - math.random())) * math.cos(2 * math.pi * math.random())
@@ -74,7 +74,7 @@ local function laws(model)
     model:damping("local", { alpha = DAMPING })
 end
 
--- Drops the blocks and waits until they rest; writes them.
+-- Drops the blocks, waits until they are down, and writes them.
 function pile.drop(count, path, threads)
     math.randomseed(SEED)
     local model = talus.model { threads = threads }
@@ -122,7 +122,8 @@ function pile.main()
     end
     for _, threads in ipairs(given.reps > 0 and bench.list(given.threads) or {}) do
         local model = pile.load(path, threads)
-        model:solve { ratio = RATIO, max_cycles = SETTLE }
+        local run = model:solve { ratio = RATIO, max_cycles = PATIENCE }
+        assert(run.reason == "ratio", "the pile does not come to rest")
         bench.measure_both(model, { workload = "pile", size = given.blocks }, { reps = given.reps })
     end
     if given.write == "" then
