@@ -26,6 +26,8 @@ for _, case in ipairs(reference) do
     model:solve { ratio = AT_REST / 1000, every = 5,
         stop = function() return statics.travel(columns) > TURNED end }
     model:joint("*", { friction = SETTLED })
+    -- stopped as well: on how they fall, which is chaotic, it would depend how far they still turn
+    columns:set { velocity = { 0, 0, 0 }, angular_velocity = { 0, 0, 0 } }
     assert(model:solve { ratio = AT_REST }.reason == "ratio", "what has turned is not caught")
     local friction = statics.search(STANDING, WEAK, STEP, STEP, function(angle)
         model:joint("*", { friction = angle })
