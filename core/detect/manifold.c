@@ -26,6 +26,10 @@
  * others: blocks that sink in so deep have next to no area in common to hold them. */
 #define SHALLOW_FULL 0.005
 #define SHALLOW_NONE 0.02
+/* Part of the minimum area below which vertices and edges have none, and from which on what is due to them: of next to
+ * nothing many points would have to be looked after in every step. */
+#define SLIGHT_NONE 0.01
+#define SLIGHT_FULL 0.05
 /* Normals whose cosines with the axis differ by less are equally near to it. */
 #define SAME_COSINE 1e-9
 
@@ -110,7 +114,7 @@ static double flushness(double sine)
 }
 
 /* Something that depends on the tilt of faces, and the couple on B that goes with it: its derivative
- * against B's turn, per radian. */
+ * against B's turn, per radian; of a share, over its value. */
 typedef struct tilted {
     double value;
     tl_vec3 swing;
@@ -226,6 +230,17 @@ static void scale_share(tl_manifold *m, size_t begin, double area)
         m->points[i].area *= area / sum;
 }
 
+/* A share of the minimum area where slight ones are left out; with its couple. */
+static tilted noticed(tilted share, double minimum)
+{
+    double part = share.value / minimum, width = SLIGHT_FULL - SLIGHT_NONE;
+    double x = fmin(1, fmax(0, (part - SLIGHT_NONE) / width));
+    if (!(x > 0))
+        return (tilted){0};
+    double fade = x * x * (3 - 2 * x), slope = 6 * x * (1 - x) / width;
+    return (tilted){share.value * fade, tl_v3_scale(1 + part * slope / fade, share.swing)};
+}
+
 void tl_manifold_build(const tl_pair_view *view, const tl_axis *axis, const tl_share_rule *rule,
                        tl_narrow *room)
 {
@@ -236,28 +251,29 @@ void tl_manifold_build(const tl_pair_view *view, const tl_axis *axis, const tl_s
     m->patch_area = sum.area.value;
     /* what the patches' whole area falls short of the minimum, and what they have lost of it by tilt */
     double enough = fmax(rule->minimum, sum.whole), missing = enough - sum.area.value;
-    double share = rule->minimum / enough * missing;
-    tl_vec3 swing = tl_v3_scale(-1 / missing, sum.area.swing);
+    tilted share = {rule->minimum / enough * missing, tl_v3_scale(-1 / missing, sum.area.swing)};
     if (!rule->unconditional) {
         double beside = shallow(-axis->s / view->size);
-        share *= 1 - beside * sum.flush.value;
-        swing = tl_v3_madd(swing, -beside / (1 - beside * sum.flush.value), sum.flush.swing);
+        share.value *= 1 - beside * sum.flush.value;
+        share.swing =
+            tl_v3_madd(share.swing, -beside / (1 - beside * sum.flush.value), sum.flush.swing);
+        share = noticed(share, rule->minimum);
     }
-    if (m->failed || !(share > 0) || axis->s > rule->reach ||
+    if (m->failed || !(share.value > 0) || axis->s > rule->reach ||
         !tl_manifold_reserve_facets(m, m->facet_count + 3))
         return;
     size_t begin = m->point_count;
     double crease =
         rule->unconditional ? tl_crease_add(view, reach_of(view, axis), flushness, m) : 0;
     if (crease > 0) {
-        scale_share(m, begin, crease * share);
-        share *= 1 - crease;
+        scale_share(m, begin, crease * share.value);
+        share.value *= 1 - crease;
         begin = m->point_count;
     }
-    if (!(share > 0))
+    if (!(share.value > 0))
         return;
-    tl_share_add(view, axis, swing, room);
-    scale_share(m, begin, share);
+    tl_share_add(view, axis, share.swing, room);
+    scale_share(m, begin, share.value);
 }
 
 bool tl_manifold_renew(const tl_pair_view *view, uint32_t fa, uint32_t fb,

@@ -591,12 +591,45 @@ static void share_beside(const tl_pair_view *view, const tl_axis *axis, weight a
         share_of_edges(axis, a, b, (weight){rest, swing}, &room->manifold);
 }
 
+/* Makes one of points that several faces have in common, from a facet on: those of the same two edges or vertex. */
+static void merge_points(tl_manifold *m, size_t first)
+{
+    size_t facets = first, points = first < m->facet_count ? m->facets[first].begin : 0;
+    for (size_t k = first; k < m->facet_count; k++) {
+        tl_facet f = m->facets[k];
+        const tl_contact_point *own = &m->points[f.begin];
+        size_t j = f.count == 1 ? first : facets;
+        while (j < facets && (m->facets[j].count > 1 || m->facets[j].kind != f.kind ||
+                              m->points[m->facets[j].begin].key != own->key))
+            j++;
+        if (j < facets) {
+            tl_contact_point *other = &m->points[m->facets[j].begin];
+            double area = other->area + own->area;
+            tl_vec3 swing = tl_v3_scale(other->area / area, tl_facet_swing(&m->facets[j]));
+            tl_facet_set_swing(&m->facets[j],
+                               tl_v3_madd(swing, own->area / area, tl_facet_swing(&f)));
+            other->area = area;
+            continue;
+        }
+        memmove(&m->points[points], own, f.count * sizeof *own);
+        f.begin = (uint16_t)points;
+        points += f.count;
+        m->facets[facets++] = f;
+    }
+    m->facet_count = facets;
+    m->point_count = points;
+}
+
 void tl_share_add(const tl_pair_view *view, const tl_axis *axis, tl_vec3 swing, tl_narrow *room)
 {
     const weight all = {1, swing};
     bool of_a = axis->kind == TL_AXIS_FACE_A;
-    if (axis->kind == TL_AXIS_EDGES)
-        share_beside(view, axis, all, room);
-    else
+    size_t first = room->manifold.facet_count;
+    if (axis->kind != TL_AXIS_EDGES) {
         share_of_face(view, of_a, of_a ? axis->ia : axis->ib, NULL, all, room);
+        return;
+    }
+    share_beside(view, axis, all, room);
+    if (room->manifold.facet_count > first)
+        merge_points(&room->manifold, first);
 }
