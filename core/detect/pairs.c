@@ -5,17 +5,24 @@
  * that single precision is enough. Roundings are upward for runs and downward for the pairs' wakes: a pair is looked at
  * too early by them, never too late. Most pairs sleep in most steps, and of a whole chunk that sleeps longer than any two
  * blocks have run nothing is read. */
+#include "base/inline.h"
 #include "detect/detect.h"
+
+#include <string.h>
+#include <talus/plugin.h>
 
 /* Below any run: look at the pair in the next step. */
 #define AWAKE (-1.f)
 /* Blocks a worker takes at a time: there is little to do with each. */
 #define BLOCK_CHUNK 4096
 
-static float rounded_up(double x)
+/* The bits of a float that is not less than a number which is not negative: those of the next one follow. */
+TL_INLINE uint32_t rounded_up(double x)
 {
     float y = (float)x;
-    return (double)y < x ? nextafterf(y, INFINITY) : y;
+    uint32_t bits;
+    memcpy(&bits, &y, sizeof bits);
+    return bits + ((double)y < x);
 }
 
 static float rounded_down(double x)
@@ -45,20 +52,31 @@ typedef struct run_job {
     float ran[TL_MAX_THREADS];
 } run_job;
 
+/* How far blocks have run; the farthest of them. Floats that are not negative are in the order of their bits. */
+TL_VECTORIZED static float run_blocks(float *restrict run, const uint32_t *restrict body,
+                                      const double *restrict odometer,
+                                      const double *restrict odometer_0, size_t count)
+{
+    uint32_t most = 0;
+    float farthest;
+    for (size_t i = 0; i < count; i++) {
+        uint32_t bits = rounded_up(odometer[body[i]] - odometer_0[body[i]]);
+        memcpy(&run[i], &bits, sizeof bits);
+        most = bits > most ? bits : most;
+    }
+    memcpy(&farthest, &most, sizeof farthest);
+    return farthest;
+}
+
 static void run_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
 {
     (void)chunk;
     run_job *job = user;
     const tl_model *m = job->m;
     tl_detect *d = m->detect;
-    float ran = job->ran[thread];
-    for (size_t row = begin; row < end; row++) {
-        uint32_t body = m->blocks.body[row];
-        float run = rounded_up(m->bodies.odometer[body] - d->odometer_0[body]);
-        d->run[row] = run;
-        ran = run > ran ? run : ran;
-    }
-    job->ran[thread] = ran;
+    float farthest = run_blocks(d->run + begin, m->blocks.body + begin, m->bodies.odometer,
+                                d->odometer_0, end - begin);
+    job->ran[thread] = farthest > job->ran[thread] ? farthest : job->ran[thread];
 }
 
 void tl_pairs_run(tl_model *m)
