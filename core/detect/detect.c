@@ -6,6 +6,7 @@
  * serially in the order of pairs. How far anything can have moved is told by the bodies' odometers. */
 #include "detect/update.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -323,20 +324,32 @@ static tl_status fill_contacts(tl_model *m, bool *more)
     return TL_OK;
 }
 
+/* Something was left to do for some contact: in most steps for none, and all are asked. */
+static bool some_fate(const tl_contacts *c)
+{
+    static_assert(TL_FATE_KEEP == 0, "fates are not told by their bits");
+    unsigned any = 0;
+    for (size_t row = 0; row < c->table.rows; row++)
+        any |= c->fate[row];
+    return any != TL_FATE_KEEP;
+}
+
 /* Births, deaths, growth and changes of material, in the order of pairs. */
 static tl_status settle(tl_model *m)
 {
     tl_detect *d = m->detect;
     tl_contacts *c = &d->contacts;
-    size_t changed;
+    size_t born;
     for (unsigned i = 0; i < d->threads; i++)
         if (d->narrow[i].failed) {
             d->narrow[i].failed = false;
             return tl_fail_memory(&m->error);
         }
-    tl_status status = give_births(m, &changed);
+    tl_status status = give_births(m, &born);
     if (status != TL_OK)
         return status;
+    if (born == 0 && !d->rows_changed && !some_fate(c))
+        return TL_OK;
     bool failed = false;
     for (uint32_t row = 0; row < c->table.rows; row++) {
         if (c->fate[row] == TL_FATE_MEMORY) {
@@ -344,12 +357,9 @@ static tl_status settle(tl_model *m)
             c->fate[row] = TL_FATE_KEEP;
             c->until[row] = -INFINITY; /* there may be some another time */
         }
-        changed += c->fate[row] != TL_FATE_KEEP;
     }
     if (failed)
         return tl_fail_memory(&m->error);
-    if (changed == 0 && !d->rows_changed)
-        return TL_OK;
     d->bare = true; /* until they are listed anew */
     for (bool more = true; more && status == TL_OK;) {
         if (!settle_rows(m))
