@@ -146,22 +146,26 @@ TL_INLINE tl_mat3 difference(const tl_mat3 *a, const tl_mat3 *b)
                       {a->m[2][0] - b->m[2][0], a->m[2][1] - b->m[2][1], a->m[2][2] - b->m[2][2]}}};
 }
 
-/* How shear forces of a facet turn, from its normals in the last step. What has not turned stays as it is, to the bit. */
+/* How shear forces of a facet turn: from its normal `from` in the last step to n, then by twice the angle of tangent w about
+ * that. With h = from x n + w (from + n) that is 1 + p [h] + p q [h]^2, p = 1 / (1 + w^2), q = 1 / (1 + from . n). What has not
+ * turned stays as it is, to the bit. */
 TL_INLINE void put_turn(tl_frames *f, size_t l, tl_vec3 last, tl_vec3 last_lean)
 {
-    double last_l2 = tl_v3_norm2(last_lean);
+    double last_l2 = tl_v3_norm2(last_lean), flush = f->l2[l] + last_l2 > 0 ? 0 : 1;
     tl_vec3 n = tl_lanes3_get(&f->n, l);
     tl_vec3 from = tl_v3_scale(tl_unit_scale(last2(last, last_l2) - 1), last);
-    tl_vec3 g = tl_turn_between(from, n, tl_v3_dot(tl_lanes3_get(&f->half, l), n));
-    double g2 = tl_v3_norm2(g), flush = f->l2[l] + last_l2 > 0 ? 0 : 1;
-    tl_mat3 back = turn_back(tl_v3_neg(g), 2 / (1 + g2)), one = tl_m3_identity();
-    tl_mat3 turn = difference(&one, &back);
-    /* into the plane: rounding would lead out of it in the course of many steps */
-    tl_vec3 along = tl_v3_scale(g2 > 0 ? flush : 0, tl_m3_tmul(&turn, n));
-    tl_mat3 out = {{{n.x * along.x, n.x * along.y, n.x * along.z},
-                    {n.y * along.x, n.y * along.y, n.y * along.z},
-                    {n.z * along.x, n.z * along.y, n.z * along.z}}};
-    turn = difference(&turn, &out);
+    double w = tl_v3_dot(tl_lanes3_get(&f->half, l), n), c = 1 + tl_v3_dot(from, n);
+    tl_vec3 h = tl_v3_madd(tl_v3_cross(from, n), w, tl_v3_add(from, n));
+    tl_vec3 s = tl_v3_scale(1 / (1 + w * w), h), g = tl_v3_scale(1 / (c > 0 ? c : 1), h);
+    tl_mat3 turn = {{{1 - (s.y * g.y + s.z * g.z), s.x * g.y - s.z, s.x * g.z + s.y},
+                     {s.y * g.x + s.z, 1 - (s.z * g.z + s.x * g.x), s.y * g.z - s.x},
+                     {s.z * g.x - s.y, s.z * g.y + s.x, 1 - (s.x * g.x + s.y * g.y)}}};
+    /* out of it what is along `from`: rounding would lead out of the plane in the course of many steps */
+    tl_vec3 out = tl_v3_scale(tl_v3_norm2(h) > 0 ? flush : 0, n);
+    tl_mat3 along = {{{out.x * from.x, out.x * from.y, out.x * from.z},
+                      {out.y * from.x, out.y * from.y, out.y * from.z},
+                      {out.z * from.x, out.z * from.y, out.z * from.z}}};
+    turn = difference(&turn, &along);
     tl_lanes9_put(&f->turn, l, &turn);
     f->tilted[l] = 1 - flush;
 }
