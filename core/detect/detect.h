@@ -108,8 +108,8 @@ static inline void tl_facet_set_swing(tl_facet *f, tl_vec3 swing)
         f->swing[k] = (float)fmin(fmax(value[k], -TL_MOST_SWING), TL_MOST_SWING);
 }
 
-/* Doubles at the head of a facet that a step reads. */
-#define TL_FACET_ROW 16
+/* Doubles at the head of a facet that a step reads; even, for it reads them in pairs. */
+#define TL_FACET_ROW 14
 
 /* How the normal of a point of a patch differs from the mean of its faces' normals. With M = (nA - nB)/2, L = (nA +
  * nB)/2, which is perpendicular to it, it lies along M + face L + edge M x L. `face` is -1 for a vertex of A, which

@@ -391,6 +391,7 @@ static found follow_facets(tl_model *m, const tl_rank *rank, const columns *c, t
     return COUPLED;
 }
 
+/* The couples per energy of the points of some slots, for the facets a few lanes have there. */
 static void put_few_couples(const tl_model *m, const tl_rank *rank, const columns *c,
                             const tl_frames *f, size_t begin, size_t end, size_t lanes)
 {
