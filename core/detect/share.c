@@ -2,10 +2,10 @@
  *
  * Where the axis is the normal of a face, the other block *stands* on that face by the vertex that reaches farthest, and
  * by those that edges join to it which lie nearly in the face, all clipped to the face. Where it is the normal of two
- * edges, they touch where they cross; but as far as that normal is nearly a face's, an edge lies on the face over
- * whose border it leaves it, and then it stands there, too. So nothing jumps where the axis goes over from the
- * face to the edges: an edge that lies on a face and hangs out over it may rest on either end and rock between them
- * in no time, and a jump would keep it rocking. */
+ * edges, they touch where they cross; and as far as one of them lies nearly in a face beside the other, it stands on
+ * that face by its end over it, too. So nothing jumps where the axis goes over from the face to the edges: an edge
+ * that lies on a face and hangs out over it may rest on either end and rock between them in no time, and a jump would
+ * keep it rocking. */
 #include "detect/share.h"
 
 #include "base/random.h"
@@ -20,8 +20,16 @@
 #define LYING_NONE 5.0
 /* Square of the sine of the latter. */
 #define LYING_SINE2 0.00759612349389597
-/* An arc is longer than its sine by no more than this, up to TL_TILT_NONE. */
-#define ARC_OVER_SINE 1.02
+/* Angle of the normals of two edges and of a face up to which an edge that lies in the face stands on it where it crosses
+ * the border, and from which not at all: degrees. The normal of an edge that crosses aslant leans more than the edge
+ * does; only that of one along the border leans far, and it may belong to the face beyond as well. */
+#define LIKE_FULL 5.0
+#define LIKE_NONE 20.0
+/* Sum of weights, 1 at the first vertex, below which nothing is left to share out: long chains of edges that hardly lie in
+ * the face, and none of it over the face but their ends. */
+#define FORLORN 1e-100
+/* An arc is longer than its sine by no more than this, up to LIKE_NONE. */
+#define ARC_OVER_SINE 1.03
 
 /* 1 up to `full` degrees, 0 from `none` on, linear between. */
 static double nearness(double sine, double full, double none)
@@ -69,6 +77,13 @@ typedef struct candidate {
     uint64_t key;
 } candidate;
 
+/* The points of a share. */
+typedef struct found_points {
+    candidate *list;
+    size_t count;
+    void *rest; /* of the room: for one stand */
+} found_points;
+
 static bool same_facet(const tl_facet *f, const tl_facet *g)
 {
     return f->kind == g->kind && f->ia == g->ia && f->ib == g->ib && f->swing[0] == g->swing[0] &&
@@ -85,6 +100,8 @@ static void add_points(tl_manifold *m, const candidate *list, size_t count, weig
         sum += list[i].weight.value;
         mean = tl_v3_madd(mean, list[i].weight.value, list[i].weight.swing);
     }
+    if (!(sum > FORLORN))
+        return;
     mean = tl_v3_scale(1 / sum, mean);
     if (!tl_manifold_reserve_facets(m, m->facet_count + count))
         return;
@@ -155,28 +172,26 @@ static candidate crossing_candidate(uint32_t ia, uint32_t ib, tl_vec3 n, tl_vec3
         .key = number ? tl_key(key, number) : key};
 }
 
-/* How the cosine between the normal n of two edges and that of a face beside one of them, which is A's or B's, changes
- * with B's turn, 1/rad; `out` is the face's normal, turned from A to B. n = u x v / |u x v| follows that turn by v. */
-static tl_vec3 cosine_by_turn(bool of_a, tl_vec3 out, tl_vec3 n, const line *a, const line *b)
+/* How nearly the normal n of two edges is that of a face beside one of them, which is A's or B's; `out` is the face's
+ * normal, turned from A to B. n = u x v / |u x v| follows B's turn by that of v. */
+static weight likeness(bool of_a, tl_vec3 out, tl_vec3 n, const line *a, const line *b)
 {
+    double sine = tl_v3_norm(tl_v3_cross(n, out));
+    if (tl_v3_dot(n, out) <= 0)
+        return (weight){0};
+    weight w = {.value = tl_fade(sine, LIKE_FULL, LIKE_NONE)};
+    double slope = tl_fade_slope(sine, LIKE_FULL, LIKE_NONE);
+    if (slope == 0)
+        return w;
     tl_vec3 u = a->unit, v = b->unit, cross = tl_v3_cross(u, v);
     double sign = tl_v3_dot(cross, n) < 0 ? -1 : 1;
     tl_vec3 across = tl_v3_madd(out, -tl_v3_dot(out, n), n);
+    /* of the cosine between both, against B's turn */
     tl_vec3 g = tl_v3_madd(tl_v3_scale(tl_v3_dot(u, v), across), -tl_v3_dot(out, v), u);
     g = tl_v3_scale(sign / tl_v3_norm(cross), g);
-    return of_a ? g : tl_v3_add(g, tl_v3_cross(out, n));
-}
-
-/* How nearly n is the face's normal. */
-static weight likeness(bool of_a, tl_vec3 out, tl_vec3 n, const line *a, const line *b)
-{
-    if (tl_v3_dot(n, out) <= 0)
-        return (weight){0};
-    double sine = tl_v3_norm(tl_v3_cross(n, out));
-    weight w = {.value = tl_fade(sine, LYING_FULL, LYING_NONE)};
-    double slope = tl_fade_slope(sine, LYING_FULL, LYING_NONE);
-    if (slope != 0)
-        w.swing = tl_v3_scale(slope / (sine * w.value), cosine_by_turn(of_a, out, n, a, b));
+    if (!of_a)
+        g = tl_v3_add(g, tl_v3_cross(out, n));
+    w.swing = tl_v3_scale(slope / (sine * w.value), g);
     return w;
 }
 
@@ -189,6 +204,7 @@ typedef struct foot {
     bool settled; /* it will not get more */
     bool over;    /* over the face */
     bool beamed;  /* an edge from it lies in the face */
+    bool crosses; /* its share is where the edges of the axis cross */
     /* of one that is not over it, of the edges by which its block comes over it: their sum, and of the couples */
     double lies;
     tl_vec3 swing;
@@ -214,11 +230,11 @@ typedef struct stand {
     uint32_t face;
     tl_vec3 up; /* the face's outward normal */
     double slack;
-    foot *feet;       /* [vertices of `standing`] those with a share */
-    uint16_t *place;  /* [vertices of `standing`] 1 + that among the feet, or 0 */
-    beam *beams;      /* [edges of `standing`] */
-    candidate *found; /* [vertices + 2 edges of `standing`] the points */
-    size_t foot_count, beam_count, found_count;
+    foot *feet;      /* [vertices of `standing`] those with a share */
+    uint16_t *place; /* [vertices of `standing`] 1 + that among the feet, or 0 */
+    beam *beams;     /* [edges of `standing`] */
+    size_t foot_count, beam_count;
+    found_points *found; /* to which it adds its points */
 } stand;
 
 /* How nearly an edge along d of the standing block lies in the face. */
@@ -261,28 +277,31 @@ static size_t next_foot(const stand *s)
     return best;
 }
 
-/* The vertices that rest on the face with a first one, and the edges between them. Each has the largest share that a
+/* Gives the vertex at the other end of an edge that share times what the edge lies in the face. */
+static void add_beam(stand *s, size_t from, uint32_t edge, weight share)
+{
+    const tl_edge *e = &s->standing->edge[edge];
+    uint16_t v = s->feet[from].vertex, u = e->a == v ? e->b : e->a;
+    if (s->place[u] && s->feet[s->place[u] - 1].settled)
+        return;
+    weight lies = lying(s, tl_v3_sub(s->vertex[u], s->vertex[v]));
+    if (!(lies.value > 0))
+        return;
+    size_t to = give_share(s, u, product(share, lies));
+    s->beams[s->beam_count++] = (beam){.end = {from, to}, .edge = (uint16_t)edge, .lies = lies};
+}
+
+/* The vertices that rest on the face with those there are, and the edges between them. Each has the largest share that a
  * chain of edges from the first one leaves it, so that it does not matter at which of several that lie in the
  * face the chains begin. */
-static void find_feet(stand *s, uint16_t first)
+static void find_feet(stand *s)
 {
     const tl_poly *p = s->standing;
-    give_share(s, first, (weight){.value = 1});
     for (size_t i; (i = next_foot(s)) < s->foot_count;) {
-        uint16_t v = s->feet[i].vertex;
         s->feet[i].settled = true;
-        for (uint32_t e = 0; e < p->edge_count; e++) {
-            if (p->edge[e].a != v && p->edge[e].b != v)
-                continue;
-            uint16_t u = p->edge[e].a == v ? p->edge[e].b : p->edge[e].a;
-            if (s->place[u] && s->feet[s->place[u] - 1].settled)
-                continue;
-            weight lies = lying(s, tl_v3_sub(s->vertex[u], s->vertex[v]));
-            if (!(lies.value > 0))
-                continue;
-            size_t to = give_share(s, u, product(s->feet[i].share, lies));
-            s->beams[s->beam_count++] = (beam){.end = {i, to}, .edge = (uint16_t)e, .lies = lies};
-        }
+        for (uint32_t e = 0; e < p->edge_count; e++)
+            if (p->edge[e].a == s->feet[i].vertex || p->edge[e].b == s->feet[i].vertex)
+                add_beam(s, i, e, s->feet[i].share);
     }
 }
 
@@ -370,17 +389,24 @@ static void add_crossing(stand *s, const beam *e, int end)
     n = tl_v3_scale((tl_v3_dot(n, out) < 0 ? -1 : 1) / sine, n);
     weight part = {e->lies.value / f->lies, tl_v3_madd(e->lies.swing, -1 / f->lies, f->swing)};
     weight w = product(product(f->share, part), likeness(s->b_stands, out, n, &a, &b));
-    if (w.value > 0)
-        s->found[s->found_count++] =
-            crossing_candidate(s->b_stands ? border : e->edge, s->b_stands ? e->edge : border, n,
-                               crossing_point(&a, &b), w, 0);
+    if (!(w.value > 0))
+        return;
+    candidate c = crossing_candidate(s->b_stands ? border : e->edge, s->b_stands ? e->edge : border,
+                                     n, crossing_point(&a, &b), w, 0);
+    for (size_t i = 0; i < s->found->count; i++)
+        if (s->found->list[i].key == c.key) { /* the other block stands there, too */
+            if (s->found->list[i].weight.value < w.value)
+                s->found->list[i].weight = w;
+            return;
+        }
+    s->found->list[s->found->count++] = c;
 }
 
 static void add_foot(stand *s, const foot *f)
 {
     const tl_pair_view *view = s->view;
     tl_vec3 x = s->vertex[f->vertex];
-    s->found[s->found_count++] =
+    s->found->list[s->found->count++] =
         (candidate){.facet = face_facet(view, s->face, s->b_stands),
                     .p = s->b_stands ? tl_m3_tmul(&view->turn, tl_v3_sub(x, view->shift)) : x,
                     .weight = f->share,
@@ -395,14 +421,14 @@ static void add_feet(stand *s)
             s->beams[crossing++] = s->beams[i];
     for (size_t i = 0; i < crossing; i++)
         for (int end = 0; end < 2; end++)
-            if (s->beams[i].t[end] != end)
+            if (s->beams[i].t[end] != end && !s->feet[s->beams[i].end[end]].crosses)
                 add_crossing(s, &s->beams[i], end);
     for (size_t i = 0; i < s->foot_count; i++) {
         const foot *f = &s->feet[i];
         tl_vec3 x = s->vertex[f->vertex];
         double t[2];
         size_t side[2];
-        if (f->over || (!f->beamed && over(s, x, x, t, side)))
+        if (!f->crosses && (f->over || (!f->beamed && over(s, x, x, t, side))))
             add_foot(s, f);
     }
 }
@@ -417,36 +443,8 @@ static uint16_t lowest_vertex(const stand *s)
     return low;
 }
 
-/* The lower end of an edge of the standing block. */
-static uint16_t lower_end(const stand *s, const tl_edge *e)
-{
-    return tl_v3_dot(s->up, tl_v3_sub(s->vertex[e->b], s->vertex[e->a])) < 0 ? e->b : e->a;
-}
-
-/* Room for what is noted of a stand and of the face's border. */
-static bool stand_reserve(stand *s, tl_vec3 **border, tl_narrow *room)
-{
-    size_t v = s->standing->vertex_count, e = s->standing->edge_count;
-    size_t bytes = 2 * s->corner_count * sizeof(tl_vec3) + v * sizeof(foot) + e * sizeof(beam) +
-                   (v + 2 * e) * sizeof(candidate) + v * sizeof *s->place;
-    if (!tl_grow(&room->dots, &room->dot_room, bytes / sizeof(double) + 1, sizeof(double))) {
-        room->manifold.failed = true;
-        return false;
-    }
-    void *at = room->dots;
-    *border = at;
-    s->feet = (void *)(*border + 2 * s->corner_count);
-    s->beams = (void *)(s->feet + v);
-    s->found = (void *)(s->beams + e);
-    s->place = (void *)(s->found + v + 2 * e);
-    memset(s->place, 0, v * sizeof *s->place);
-    return true;
-}
-
-/* What of a block stands on a face of the other, with an edge of it, or from its lowest vertex on: a facet that has `part`
- * of the share. false when none. */
-static bool share_of_face(const tl_pair_view *view, bool b_stands, uint32_t face,
-                          const tl_edge *edge, weight part, tl_narrow *room)
+/* A face of a block and the other one, nothing of which stands on it yet. */
+static stand stand_of(const tl_pair_view *view, bool b_stands, uint32_t face, found_points *found)
 {
     const tl_poly *base = b_stands ? view->a : view->b;
     const tl_vec3 *vertex = b_stands ? view->a->vertex : view->vertex_b;
@@ -457,179 +455,129 @@ static bool share_of_face(const tl_pair_view *view, bool b_stands, uint32_t face
                .corner_count = tl_poly_face_size(base, face),
                .face = face,
                .up = b_stands ? view->a->plane[face].normal : view->normal_b[face],
-               .slack = BORDER * view->size};
-    tl_vec3 *border;
-    if (!stand_reserve(&s, &border, room))
-        return false;
+               .slack = BORDER * view->size,
+               .found = found};
+    tl_vec3 *border = found->rest;
     s.corners = border;
     s.inward = border + s.corner_count;
+    s.feet = (void *)(border + 2 * s.corner_count);
+    s.beams = (void *)(s.feet + s.standing->vertex_count);
+    s.place = (void *)(s.beams + s.standing->edge_count);
+    memset(s.place, 0, s.standing->vertex_count * sizeof *s.place);
     for (size_t i = 0; i < s.corner_count; i++)
         border[i] = vertex[base->loop[base->start[face] + i]];
     for (size_t i = 0; i < s.corner_count; i++) {
         tl_vec3 side = tl_v3_sub(border[i + 1 == s.corner_count ? 0 : i + 1], border[i]);
         border[s.corner_count + i] = tl_v3_unit(tl_v3_cross(s.up, side));
     }
-    find_feet(&s, edge ? lower_end(&s, edge) : lowest_vertex(&s));
+    return s;
+}
+
+/* What of a block stands on a face of the other, from its lowest vertex on. */
+static void stand_on_face(const tl_pair_view *view, bool b_stands, uint32_t face,
+                          found_points *found)
+{
+    stand s = stand_of(view, b_stands, face, found);
+    give_share(&s, lowest_vertex(&s), (weight){.value = 1});
+    find_feet(&s);
     add_feet(&s);
-    if (s.found_count > 0)
-        add_points(&room->manifold, s.found, s.found_count, part);
-    return s.found_count > 0;
 }
 
 /* ---------------------------------------------------------------- the axis of two edges -- */
 
 /* The points of two crossing edges: where they cross and, as far as they are nearly parallel, the
  * ends of their common stretch, measured along their bisector so that neither block is preferred. */
-static void share_of_edges(const tl_axis *axis, line a, line b, weight part, tl_manifold *m)
+static void add_crossing_edges(const tl_axis *axis, line a, line b, found_points *found)
 {
     tl_vec3 u = a.unit, v = b.unit;
     double same = tl_v3_dot(u, v) < 0 ? -1 : 1, sine = tl_v3_norm(tl_v3_cross(u, v));
     double parallel = tl_fade(sine, TL_TILT_FULL, TL_TILT_NONE);
     tl_vec3 swing = tl_v3_scale(-same * tl_fade_slope(sine, TL_TILT_FULL, TL_TILT_NONE),
                                 tl_v3_unit(tl_v3_cross(u, v)));
-    candidate found[3];
-    size_t count = 0;
     if (parallel < 1)
-        found[count++] =
+        found->list[found->count++] =
             crossing_candidate(axis->ia, axis->ib, axis->n, crossing_point(&a, &b),
                                (weight){1 - parallel, tl_v3_scale(-1 / (1 - parallel), swing)}, 0);
-    if (parallel > 0) {
-        tl_vec3 d = tl_v3_unit(tl_v3_madd(u, same, v)), apart = tl_v3_sub(b.from, a.from);
-        a.start = 0;
-        a.end = tl_v3_dot(d, a.along);
-        b.start = tl_v3_dot(d, apart);
-        b.end = b.start + tl_v3_dot(d, b.along);
-        double low = fmax(a.start, fmin(b.start, b.end));
-        double high = fmin(a.end, fmax(b.start, b.end));
-        if (low > high)
-            low = high = 0.5 * (low + high);
-        for (uint32_t end = 0; end < 2; end++) {
-            double t = end ? high : low;
-            found[count++] = crossing_candidate(
-                axis->ia, axis->ib, axis->n, between(line_at(&a, t), line_at(&b, t)),
-                (weight){0.5 * parallel, tl_v3_scale(1 / parallel, swing)}, end ? 2 : 1);
-        }
+    if (!(parallel > 0))
+        return;
+    tl_vec3 d = tl_v3_unit(tl_v3_madd(u, same, v)), apart = tl_v3_sub(b.from, a.from);
+    a.start = 0;
+    a.end = tl_v3_dot(d, a.along);
+    b.start = tl_v3_dot(d, apart);
+    b.end = b.start + tl_v3_dot(d, b.along);
+    double low = fmax(a.start, fmin(b.start, b.end));
+    double high = fmin(a.end, fmax(b.start, b.end));
+    if (low > high)
+        low = high = 0.5 * (low + high);
+    for (uint32_t end = 0; end < 2; end++) {
+        double t = end ? high : low;
+        found->list[found->count++] = crossing_candidate(
+            axis->ia, axis->ib, axis->n, between(line_at(&a, t), line_at(&b, t)),
+            (weight){0.5 * parallel, tl_v3_scale(1 / parallel, swing)}, end ? 2 : 1);
     }
-    add_points(m, found, count, part);
 }
 
-/* Square of a sine that is nothing, and a part of the share that is. */
-#define NO_SINE2 1e-30
-#define REST 1e-9
-
-/* A face beside one of two crossing edges. */
-typedef struct beside {
-    bool of_a;
-    uint32_t face;
-    weight like;  /* how nearly the edges' normal is the face's */
-    weight claim; /* that over the square of the angle between: the nearest face has nearly all */
-} beside;
-
-/* The faces whose normals are near to that of the edges; how many. */
-static size_t faces_beside(const tl_pair_view *view, const tl_axis *axis, const line *a,
-                           const line *b, beside list[4])
+/* Of two crossing edges, what the one stands on that crosses the border of a face: on all but its end beyond, for whose
+ * share it is that both cross. */
+static void stand_on_border(const tl_pair_view *view, bool b_stands, const tl_axis *axis,
+                            bool right, const line *a, const line *b, found_points *found)
 {
-    size_t count = 0;
-    for (int k = 0; k < 4; k++) {
-        bool of_a = k < 2;
-        const tl_edge *e = of_a ? &view->a->edge[axis->ia] : &view->b->edge[axis->ib];
-        uint32_t face = k % 2 ? e->right : e->left;
-        tl_vec3 out = of_a ? view->a->plane[face].normal : tl_v3_neg(view->normal_b[face]);
-        weight like = likeness(of_a, out, axis->n, a, b);
-        if (!(like.value > 0) || (of_a ? view->a : view->b)->covered[face])
-            continue;
-        double sine2 = tl_v3_norm2(tl_v3_cross(axis->n, out)) + NO_SINE2;
-        weight claim = {like.value / sine2,
-                        tl_v3_madd(like.swing, -2 * tl_v3_dot(axis->n, out) / sine2,
-                                   cosine_by_turn(of_a, out, axis->n, a, b))};
-        list[count++] = (beside){of_a, face, like, claim};
-    }
-    return count;
+    const tl_poly *base = b_stands ? view->a : view->b, *standing = b_stands ? view->b : view->a;
+    const tl_edge *border = &base->edge[b_stands ? axis->ia : axis->ib];
+    uint32_t face = right ? border->right : border->left, edge = b_stands ? axis->ib : axis->ia;
+    tl_vec3 up = b_stands ? view->a->plane[face].normal : view->normal_b[face];
+    tl_vec3 side = b_stands ? a->unit : b->unit, d = b_stands ? b->unit : a->unit;
+    double rise = tl_v3_dot(up, d);
+    if (base->covered[face] || rise * rise >= LYING_SINE2)
+        return;
+    weight on = likeness(b_stands, b_stands ? up : tl_v3_neg(up), axis->n, a, b);
+    if (!(on.value > 0))
+        return;
+    stand s = stand_of(view, b_stands, face, found);
+    bool begins_outside = (tl_v3_dot(tl_v3_cross(up, side), d) > 0) != right;
+    const tl_edge *e = &standing->edge[edge];
+    give_share(&s, begins_outside ? e->a : e->b, (weight){.value = 1});
+    s.feet[0].settled = s.feet[0].crosses = true;
+    add_beam(&s, 0, edge, on);
+    find_feet(&s);
+    add_feet(&s);
 }
 
-/* What the faces have together of the share, the edges the rest: all of it where one of them has the edges' normal. */
-static weight part_of_faces(const beside *list, size_t count)
-{
-    double none = 1;
-    tl_vec3 sum = {0, 0, 0};
-    for (size_t i = 0; i < count; i++)
-        none *= 1 - list[i].like.value;
-    for (size_t i = 0; i < count; i++) {
-        double others = list[i].like.value;
-        for (size_t j = 0; j < count; j++)
-            others *= j == i ? 1 : 1 - list[j].like.value;
-        sum = tl_v3_madd(sum, others, list[i].like.swing);
-    }
-    return (weight){1 - none, tl_v3_scale(1 / (1 - none), sum)};
-}
+/* ---------------------------------------------------------------- all of it -------------- */
 
-/* The share of two edges, of which an edge may lie in faces beside the other. */
-static void share_beside(const tl_pair_view *view, const tl_axis *axis, weight all, tl_narrow *room)
+/* Room for the points of a share, and for one stand; false when out of memory. */
+static bool found_begin(found_points *found, const tl_pair_view *view, bool edges, tl_narrow *room)
 {
-    const tl_edge *ea = &view->a->edge[axis->ia], *eb = &view->b->edge[axis->ib];
-    line a = line_of(ea, view->a->vertex), b = line_of(eb, view->vertex_b);
-    beside list[4];
-    size_t count = faces_beside(view, axis, &a, &b, list);
-    double claims = 0, rest = all.value;
-    tl_vec3 mean = {0, 0, 0}, swing = all.swing;
-    for (size_t i = 0; i < count; i++) {
-        claims += list[i].claim.value;
-        mean = tl_v3_madd(mean, list[i].claim.value, list[i].claim.swing);
+    size_t v = view->a->vertex_count + view->b->vertex_count;
+    size_t e = view->a->edge_count + view->b->edge_count;
+    size_t most = edges ? 3 + 2 * (v + 2 * e) : v + 2 * e; /* of two faces beside each edge */
+    size_t bytes = most * sizeof(candidate) + 2 * v * sizeof(tl_vec3) + v * sizeof(foot) +
+                   e * sizeof(beam) + v * sizeof(uint16_t);
+    if (!tl_grow(&room->dots, &room->dot_room, bytes / sizeof(double) + 1, sizeof(double))) {
+        room->manifold.failed = true;
+        return false;
     }
-    for (size_t i = 0; i < count; i++) {
-        weight part = {list[i].claim.value / claims,
-                       tl_v3_madd(list[i].claim.swing, -1 / claims, mean)};
-        part = product(product(part, part_of_faces(list, count)), all);
-        if (!share_of_face(view, list[i].of_a, list[i].face, list[i].of_a ? eb : ea, part, room))
-            continue; /* nothing stands on it after all */
-        /* what is left: swings go with values */
-        swing = tl_v3_scale(1 / (rest - part.value),
-                            tl_v3_madd(tl_v3_scale(rest, swing), -part.value, part.swing));
-        rest -= part.value;
-    }
-    if (rest > REST)
-        share_of_edges(axis, a, b, (weight){rest, swing}, &room->manifold);
-}
-
-/* Makes one of points that several faces have in common, from a facet on: those of the same two edges or vertex. */
-static void merge_points(tl_manifold *m, size_t first)
-{
-    size_t facets = first, points = first < m->facet_count ? m->facets[first].begin : 0;
-    for (size_t k = first; k < m->facet_count; k++) {
-        tl_facet f = m->facets[k];
-        const tl_contact_point *own = &m->points[f.begin];
-        size_t j = f.count == 1 ? first : facets;
-        while (j < facets && (m->facets[j].count > 1 || m->facets[j].kind != f.kind ||
-                              m->points[m->facets[j].begin].key != own->key))
-            j++;
-        if (j < facets) {
-            tl_contact_point *other = &m->points[m->facets[j].begin];
-            double area = other->area + own->area;
-            tl_vec3 swing = tl_v3_scale(other->area / area, tl_facet_swing(&m->facets[j]));
-            tl_facet_set_swing(&m->facets[j],
-                               tl_v3_madd(swing, own->area / area, tl_facet_swing(&f)));
-            other->area = area;
-            continue;
-        }
-        memmove(&m->points[points], own, f.count * sizeof *own);
-        f.begin = (uint16_t)points;
-        points += f.count;
-        m->facets[facets++] = f;
-    }
-    m->facet_count = facets;
-    m->point_count = points;
+    found->list = (void *)room->dots;
+    found->count = 0;
+    found->rest = found->list + most;
+    return true;
 }
 
 void tl_share_add(const tl_pair_view *view, const tl_axis *axis, tl_vec3 swing, tl_narrow *room)
 {
-    const weight all = {1, swing};
-    bool of_a = axis->kind == TL_AXIS_FACE_A;
-    size_t first = room->manifold.facet_count;
-    if (axis->kind != TL_AXIS_EDGES) {
-        share_of_face(view, of_a, of_a ? axis->ia : axis->ib, NULL, all, room);
+    found_points found;
+    if (!found_begin(&found, view, axis->kind == TL_AXIS_EDGES, room))
         return;
+    if (axis->kind != TL_AXIS_EDGES) {
+        bool b_stands = axis->kind == TL_AXIS_FACE_A;
+        stand_on_face(view, b_stands, b_stands ? axis->ia : axis->ib, &found);
+    } else {
+        line a = line_of(&view->a->edge[axis->ia], view->a->vertex);
+        line b = line_of(&view->b->edge[axis->ib], view->vertex_b);
+        add_crossing_edges(axis, a, b, &found);
+        for (int k = 0; k < 4; k++)
+            stand_on_border(view, k < 2, axis, k % 2, &a, &b, &found);
     }
-    share_beside(view, axis, all, room);
-    if (room->manifold.facet_count > first)
-        merge_points(&room->manifold, first);
+    if (found.count > 0)
+        add_points(&room->manifold, found.list, found.count, (weight){1, swing});
 }
