@@ -12,6 +12,9 @@
 #define AXIS_SHARE 0.05
 /* ... but at the latest after this times the size. */
 #define AXIS_MOST 0.02
+/* The same where patches have less than the minimum area: flush ones that sink in get a point share (SHALLOW_* in
+ * manifold.c), of which this is a share that no result shows. */
+#define SINK_MOST 5e-4
 
 tl_share_rule tl_share_rule_of(const tl_model *m, const tl_pair_view *view, tl_tag tag, bool across)
 {
@@ -28,6 +31,16 @@ double tl_axis_margin(const tl_axis *axis, double size)
 {
     double lead = 0.5 * (axis->s - axis->second);
     return fmin(fmax(lead, AXIS_SHARE * fabs(axis->s)), AXIS_MOST * size);
+}
+
+/* Looks again soon at a contact that has just been built as one small patch. */
+static void watch_small(tl_model *m, uint32_t c, const tl_pair_view *view,
+                        const tl_share_rule *rule, const tl_manifold *g)
+{
+    tl_contacts *contacts = &m->detect->contacts;
+    double odometer = tl_pair_odometer(m, contacts->a[c], contacts->b[c]);
+    if (g->lone && g->facet_count == 1 && g->patch_area < rule->minimum)
+        contacts->search[c] = fmin(contacts->search[c], odometer + SINK_MOST * view->size);
 }
 
 static bool same_topology(const tl_detect *d, uint32_t c, const tl_manifold *g)
@@ -109,6 +122,8 @@ static bool rebuild(tl_model *m, uint32_t c, tl_narrow *room, bool across)
             return false;
         if (!search && !followed && !(room->manifold.patch_area > 0))
             continue; /* what touched has parted: look at all features */
+        if (search)
+            watch_small(m, c, &view, &rule, &room->manifold);
         contacts->axis[c] = tl_features_of(&axis);
         if (tag.joint != contacts->tag[c].joint || tag.plane != contacts->tag[c].plane) {
             contacts->tag[c] = tag;
@@ -312,6 +327,7 @@ bool tl_contact_fill(tl_model *m, uint32_t c)
         axis = tl_axis_search(&view, room, NULL);
     tl_share_rule rule = tl_share_rule_of(m, &view, contacts->tag[c], contacts->across[c]);
     tl_manifold_build(&view, &axis, &rule, room);
+    watch_small(m, c, &view, &rule, &room->manifold);
     note_manifold(contacts, c, &room->manifold);
     if (room->manifold.failed)
         return false;

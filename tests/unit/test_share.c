@@ -434,6 +434,16 @@ TEST(flush_faces_of_little_area_sink_in_some_percent)
             CHECK_REL(fresh.f.z, KN * minimum * depth, 1e-6);
         last = fresh.f.z;
     }
+    /* nor does it matter that it was a patch and nothing else before: it gets its share as it sinks in, in steps of less
+     * than a percent of the minimum area */
+    rig_fresh(&r, (place){{1 - side, 1 - side, 1 - 1e-4}, none});
+    for (double depth = 1e-4; depth < 0.028; depth += 1e-4) {
+        place at = {{1 - side, 1 - side, 1 - depth}, none};
+        load followed = rig_load(&r, at);
+        rig other = rig_of(scene_box_shape(1, 1, 1), scene_box_shape(1, 1, 1), false);
+        CHECK_NEAR(followed.f.z, rig_load(&other, at).f.z, 0.005 * KN * minimum * depth);
+        tl_model_destroy(other.m);
+    }
     tl_model_destroy(r.m);
 }
 
