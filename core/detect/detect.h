@@ -135,6 +135,7 @@ typedef struct tl_manifold {
     size_t facet_count, facet_room, point_count, point_room;
     double patch_area;
     bool lone;   /* no faces look at each other but one of each, nor will they soon */
+    bool brief;  /* some areas depend on a gap: they hold for a part of the motion others do */
     bool failed; /* out of memory */
 } tl_manifold;
 

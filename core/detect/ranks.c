@@ -10,7 +10,7 @@
 #include <stdlib.h>
 
 /* Contacts, one after the other, among which those of as many points are put together. */
-#define WINDOW 512
+#define WINDOW 1024
 /* Ranks at the end of a run that are looked through for a free lane, ... */
 #define LOOK_BACK 16
 /* ... in which no more than so many points are left to spare. */

@@ -99,7 +99,7 @@ static void note_patch(tl_model *m, uint32_t c, double area)
     tl_contacts *contacts = &m->detect->contacts;
     contacts->area[c] = area;
     contacts->fresh[c] = true;
-    tl_contact_allow_reuse(m, c);
+    tl_contact_allow_reuse(m, c, false);
 }
 
 /* Puts patches into the place of those of the rank that have the same points, and takes their lanes out of `in`: lanes

@@ -8,6 +8,8 @@
 /* Motion within which facets and areas are reused, relative to the smaller block's size: areas are
  * then wrong by a few 1e-6 at most; gaps are exact all the same. */
 #define REUSE 1e-6
+/* The same for areas that depend on a gap, over as little as TL_CONTACT_TOLERANCE: wrong by a few 1e-5. */
+#define REUSE_BRIEF 5e-8
 /* The axis is searched anew after motion of half its lead over the next one, or this share of |s|, ... */
 #define AXIS_SHARE 0.05
 /* ... but at the latest after this times the size. */
@@ -178,12 +180,14 @@ static bool take_manifold(tl_model *m, uint32_t c, tl_narrow *room, const tl_poi
     return wants_room(d, c, g) || tl_contact_transfer(m, c, room, lanes);
 }
 
-void tl_contact_allow_reuse(tl_model *m, uint32_t c)
+void tl_contact_allow_reuse(tl_model *m, uint32_t c, bool brief)
 {
     tl_contacts *contacts = &m->detect->contacts;
     double size_a = m->blocks.size[contacts->a[c]], size_b = m->blocks.size[contacts->b[c]];
-    double most =
-        (contacts->point_count[c] ? REUSE : TL_SILENT) * (size_a < size_b ? size_a : size_b);
+    double most = (brief                      ? REUSE_BRIEF
+                   : contacts->point_count[c] ? REUSE
+                                              : TL_SILENT) *
+                  (size_a < size_b ? size_a : size_b);
     contacts->until[c] = tl_pair_odometer(m, contacts->a[c], contacts->b[c]) + most;
 }
 
@@ -291,14 +295,14 @@ void tl_contact_update(tl_model *m, uint32_t c, unsigned thread)
     if (touches_still(m, c))
         return;
     if (renew_patch(m, c, room)) {
-        tl_contact_allow_reuse(m, c);
+        tl_contact_allow_reuse(m, c, false);
         return;
     }
     if (!rebuild(m, c, room, contacts->across[c]) ||
         (contacts->fate[c] != TL_FATE_DIE && !take_manifold(m, c, room, &m->detect->lanes[thread])))
         contacts->fate[c] = TL_FATE_MEMORY;
     else
-        tl_contact_allow_reuse(m, c);
+        tl_contact_allow_reuse(m, c, room->manifold.brief);
 }
 
 void tl_contact_reframe(tl_model *m, uint32_t c, unsigned thread)
@@ -336,6 +340,6 @@ bool tl_contact_fill(tl_model *m, uint32_t c)
     if (!tl_contact_transfer(m, c, room, &m->detect->lanes[0]))
         return false;
     contacts->fate[c] = TL_FATE_KEEP;
-    tl_contact_allow_reuse(m, c);
+    tl_contact_allow_reuse(m, c, room->manifold.brief);
     return true;
 }
