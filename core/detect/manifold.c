@@ -28,8 +28,8 @@
 #define SHALLOW_NONE 0.02
 /* Part of the minimum area below which vertices and edges have none, and from which on what is due to them: of next to
  * nothing many points would have to be looked after in every step. */
-#define SLIGHT_NONE 0.01
-#define SLIGHT_FULL 0.05
+#define SLIGHT_NONE 0.1
+#define SLIGHT_FULL 0.5
 /* Normals whose cosines with the axis differ by less are equally near to it. */
 #define SAME_COSINE 1e-9
 
@@ -182,7 +182,9 @@ static void add_face_pair(const tl_pair_view *view, uint32_t i, uint32_t j, doub
         area = tl_patch_add(view, i, j, weight, tl_v3_scale(1 / weight, swing), rule, room);
     if (area > 0) {
         /* one that does not touch yet must not take the share from what does */
-        area *= closeness(view, m, rule->reach);
+        double close = closeness(view, m, rule->reach);
+        m->brief = m->brief || close < 1;
+        area *= close;
         sum->area.value += area;
         sum->area.swing = tl_v3_madd(sum->area.swing, area / weight, swing);
         sum->whole += area / weight;
@@ -246,7 +248,7 @@ void tl_manifold_build(const tl_pair_view *view, const tl_axis *axis, const tl_s
 {
     tl_manifold *m = &room->manifold;
     m->facet_count = m->point_count = 0;
-    m->failed = false;
+    m->failed = m->brief = false;
     patches sum = add_patches(view, axis, rule, room);
     m->patch_area = sum.area.value;
     /* what the patches' whole area falls short of the minimum, and what they have lost of it by tilt */

@@ -16,10 +16,10 @@
 /* A vertex this near the border of a face, relative to the size, is over it. */
 #define BORDER 1e-9
 /* Tilt of an edge and a face up to which the edge lies in the face, and from which not at all: degrees. */
-#define LYING_FULL 1.0
-#define LYING_NONE 5.0
+#define LYING_FULL 0.25
+#define LYING_NONE 1.0
 /* Square of the sine of the latter. */
-#define LYING_SINE2 0.00759612349389597
+#define LYING_SINE2 0.00030458649045213493
 /* Angle of the normals of two edges and of a face up to which an edge that lies in the face stands on it where it crosses
  * the border, and from which not at all: degrees. The normal of an edge that crosses aslant leans more than the edge
  * does; only that of one along the border leans far, and it may belong to the face beyond as well. */

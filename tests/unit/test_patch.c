@@ -437,5 +437,4 @@ TEST_MAIN(RUN(points_integrate_the_common_polygon), RUN(drums_of_many_sides_keep
           RUN(wobble_of_a_closed_patch_changes_little),
           RUN(wobble_of_a_half_open_patch_does_not_jump), RUN(tiny_wobble_leaves_the_rule_alone),
           RUN(drums_wobble_without_jumps), RUN(faces_that_share_only_an_edge_have_no_points),
-          RUN(patch_beyond_the_reach_is_left_out),
-          RUN(leans_are_rounded_alike_to_both_sides))
+          RUN(patch_beyond_the_reach_is_left_out), RUN(leans_are_rounded_alike_to_both_sides))
