@@ -128,10 +128,13 @@ typedef struct patches {
         flush; /* how flush the most parallel faces are that meet, by area or side by side: 1 .. 0 */
 } patches;
 
-/* Cosines of the angles with the axis up to which faces of a patch look along it, and those that will soon:
- * of TL_TILT_NONE, and of TURN_MOST more. */
-#define FACING 0.96592582628906829
-#define SOON 0.95105651629515357
+/* Angle with the axis up to which a face looks along it, and its patches count in full, and from which they do not at all:
+ * degrees. Blocks may rest on a patch whose axis is that of edges beside it. */
+#define LOOK_FULL 15.0
+#define LOOK_NONE 25.0
+/* Cosines of the latter, and of TURN_MOST more: faces that look along the axis, and that will soon. */
+#define FACING 0.90630778703664994
+#define SOON 0.88294759285892699
 
 /* The faces of B that look at A, into the list; how many will soon or do. */
 static uint32_t list_looking(const tl_pair_view *view, tl_vec3 n, uint16_t *list, uint32_t *count)
@@ -169,30 +172,41 @@ static double closeness(const tl_pair_view *view, const tl_manifold *m, double r
     return x * x * (3 - 2 * x);
 }
 
+/* How far a face of this outward normal looks along a direction: 1 along it, 0 aside. */
+static double looking(tl_vec3 normal, tl_vec3 direction)
+{
+    return tl_fade(tl_v3_norm(tl_v3_cross(normal, direction)), LOOK_FULL, LOOK_NONE);
+}
+
 /* The patch of two faces, and how flush they are. */
-static void add_face_pair(const tl_pair_view *view, uint32_t i, uint32_t j, double near,
+static void add_face_pair(const tl_pair_view *view, tl_vec3 n, uint32_t i, uint32_t j, double near,
                           const tl_share_rule *rule, tl_narrow *room, patches *sum)
 {
     tl_manifold *m = &room->manifold;
     tl_vec3 hinge = tl_v3_cross(view->a->plane[i].normal, view->normal_b[j]);
     double sine = tl_v3_norm(hinge), area = 0; /* B turning about the hinge lessens the tilt */
     double weight = tl_fade(sine, TL_TILT_FULL, TL_TILT_NONE);
-    tl_vec3 swing = tl_v3_scale(tl_fade_slope(sine, TL_TILT_FULL, TL_TILT_NONE), tl_v3_unit(hinge));
-    if (weight > 0 && tl_manifold_reserve_facets(m, m->facet_count + 2))
-        area = tl_patch_add(view, i, j, weight, tl_v3_scale(1 / weight, swing), rule, room);
+    if (!(weight > 0))
+        return;
+    double look = looking(view->a->plane[i].normal, n) * looking(view->normal_b[j], n);
+    tl_vec3 swing =
+        tl_v3_scale(tl_fade_slope(sine, TL_TILT_FULL, TL_TILT_NONE) / weight, tl_v3_unit(hinge));
+    if (look > 0 && tl_manifold_reserve_facets(m, m->facet_count + 2))
+        area = tl_patch_add(view, i, j, weight * look, swing, rule, room);
     if (area > 0) {
         /* one that does not touch yet must not take the share from what does */
         double close = closeness(view, m, rule->reach);
         m->brief = m->brief || close < 1;
         area *= close;
         sum->area.value += area;
-        sum->area.swing = tl_v3_madd(sum->area.swing, area / weight, swing);
+        sum->area.swing = tl_v3_madd(sum->area.swing, area, swing);
         sum->whole += area / weight;
     }
-    double parallel = flushness(sine);
+    double parallel = flushness(sine) * look;
     if (parallel > sum->flush.value && (area > 0 || level(view, i, j, near)))
-        sum->flush = (tilted){
-            parallel, tl_v3_scale(tl_fade_slope(sine, FLUSH_NONE, FLUSH_FULL), tl_v3_unit(hinge))};
+        sum->flush =
+            (tilted){parallel, tl_v3_scale(look * tl_fade_slope(sine, FLUSH_NONE, FLUSH_FULL),
+                                           tl_v3_unit(hinge))};
 }
 
 static patches add_patches(const tl_pair_view *view, const tl_axis *axis, const tl_share_rule *rule,
@@ -213,8 +227,8 @@ static patches add_patches(const tl_pair_view *view, const tl_axis *axis, const 
         if (view->a->covered[i] || towards < FACING)
             continue;
         for (uint32_t k = 0; k < count; k++)
-            if (-tl_v3_dot(na, view->normal_b[list[k]]) >= FACING)
-                add_face_pair(view, i, list[k], near, rule, room, &sum);
+            if (tl_v3_dot(na, view->normal_b[list[k]]) < 0)
+                add_face_pair(view, axis->n, i, list[k], near, rule, room, &sum);
     }
     room->manifold.lone = looking_a == 1 && looking_b == 1;
     return sum;

@@ -28,8 +28,8 @@
 /* Sum of weights, 1 at the first vertex, below which nothing is left to share out: long chains of edges that hardly lie in
  * the face, and none of it over the face but their ends. */
 #define FORLORN 1e-100
-/* An arc is longer than its sine by no more than this, up to LIKE_NONE. */
-#define ARC_OVER_SINE 1.03
+/* An arc is longer than its sine by no more than this, up to 25 degrees. */
+#define ARC_OVER_SINE 1.04
 
 /* 1 up to `full` degrees, 0 from `none` on, linear between. */
 static double nearness(double sine, double full, double none)

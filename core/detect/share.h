@@ -10,7 +10,7 @@
 #define TL_TILT_FULL 5.0
 #define TL_TILT_NONE 15.0
 
-/* 1 up to `full` degrees, 0 from `none` on (at most 20), smooth between; `sine` is that of the angle (acute). */
+/* 1 up to `full` degrees, 0 from `none` on (at most 25), smooth between; `sine` is that of the angle (acute). */
 double tl_fade(double sine, double full, double none);
 /* Its derivative by the angle, 1/rad. */
 double tl_fade_slope(double sine, double full, double none);
