@@ -26,6 +26,9 @@
  * others: blocks that sink in so deep have next to no area in common to hold them. */
 #define SHALLOW_FULL 0.005
 #define SHALLOW_NONE 0.02
+/* How near the minimum area, as a part of it, patches lack a little more than the difference: so what they lack has no
+ * kink, at which the couples that go with it would jump. */
+#define ENOUGH 0.5
 /* Part of the minimum area below which vertices and edges have none, and from which on what is due to them: of next to
  * nothing many points would have to be looked after in every step. */
 #define SLIGHT_NONE 0.1
@@ -123,7 +126,7 @@ typedef struct tilted {
 /* All patches of a pair. */
 typedef struct patches {
     tilted area;
-    double whole; /* area, were none of them faded */
+    tilted faded; /* sum of each one's area times its weight, once more than the area has it */
     tilted
         flush; /* how flush the most parallel faces are that meet, by area or side by side: 1 .. 0 */
 } patches;
@@ -200,7 +203,8 @@ static void add_face_pair(const tl_pair_view *view, tl_vec3 n, uint32_t i, uint3
         area *= close;
         sum->area.value += area;
         sum->area.swing = tl_v3_madd(sum->area.swing, area, swing);
-        sum->whole += area / weight;
+        sum->faded.value += area * weight;
+        sum->faded.swing = tl_v3_madd(sum->faded.swing, 2 * area * weight, swing);
     }
     double parallel = flushness(sine) * look;
     if (parallel > sum->flush.value && (area > 0 || level(view, i, j, near)))
@@ -246,6 +250,23 @@ static void scale_share(tl_manifold *m, size_t begin, double area)
         m->points[i].area *= area / sum;
 }
 
+/* Part of the minimum area that patches make unnecessary: what they have kept of theirs in spite of their tilt, on average,
+ * times the part of the minimum that they would be without it. Each counts for the average as much as it has area,
+ * so that it comes in with none of it. */
+static tilted held_by(const patches *p, double minimum)
+{
+    tilted area = p->area, faded = p->faded;
+    if (!(area.value > 0))
+        return (tilted){0};
+    double kept = faded.value / area.value, large = area.value / (kept * minimum);
+    /* min(1, large), a parabola within ENOUGH of 1 */
+    double x = fmin(2 * ENOUGH, fmax(0, large - (1 - ENOUGH))), slope = 1 - x / (2 * ENOUGH);
+    double part = fmin(large, 1 + ENOUGH) - x * x / (4 * ENOUGH);
+    tl_vec3 swing = tl_v3_scale(kept * (2 * slope * large - part), area.swing);
+    swing = tl_v3_madd(swing, part - slope * large, faded.swing);
+    return (tilted){kept * part, tl_v3_scale(1 / area.value, swing)};
+}
+
 /* A share of the minimum area where slight ones are left out; with its couple. */
 static tilted noticed(tilted share, double minimum)
 {
@@ -265,9 +286,9 @@ void tl_manifold_build(const tl_pair_view *view, const tl_axis *axis, const tl_s
     m->failed = m->brief = false;
     patches sum = add_patches(view, axis, rule, room);
     m->patch_area = sum.area.value;
-    /* what the patches' whole area falls short of the minimum, and what they have lost of it by tilt */
-    double enough = fmax(rule->minimum, sum.whole), missing = enough - sum.area.value;
-    tilted share = {rule->minimum / enough * missing, tl_v3_scale(-1 / missing, sum.area.swing)};
+    tilted held = held_by(&sum, rule->minimum);
+    tilted share = {rule->minimum * (1 - held.value),
+                    tl_v3_scale(-1 / (1 - held.value), held.swing)};
     if (!rule->unconditional) {
         double beside = shallow(-axis->s / view->size);
         share.value *= 1 - beside * sum.flush.value;
