@@ -120,21 +120,9 @@ SCENE_UNUSED static scene_pair scene_pair_of(tl_poly *a, tl_poly *b, tl_quat tur
     return (scene_pair){.a = a, .b = b, .turn = turn, .shift = shift};
 }
 
-static inline void scene_room_free(tl_narrow *room)
-{
-    free(room->vertex_b);
-    free(room->normal_b);
-    free(room->dots);
-    free(room->manifold.facets);
-    free(room->manifold.points);
-    free(room->old);
-    free(room->value);
-    tl_polygon_free(room->polygon, &room->patch);
-}
-
 SCENE_UNUSED static void scene_pair_free(scene_pair *p)
 {
-    scene_room_free(&p->room);
+    tl_narrow_free(&p->room);
     tl_poly_free(p->a);
     tl_poly_free(p->b);
 }
@@ -245,6 +233,15 @@ SCENE_UNUSED static void scene_forces(tl_model *m)
         status = tl_laws_apply(m);
     if (scene_ok(m, status) && CHECK(tl_gather_prepare(m)))
         tl_gather(m);
+}
+
+/* Moves b along the axis until it overlaps a by a depth. */
+SCENE_UNUSED static void scene_press(scene_pair *p, double depth)
+{
+    for (int pass = 0; pass < 4; pass++) {
+        tl_axis axis = tl_axis_search(scene_place(p), &p->room, NULL);
+        p->shift = tl_v3_madd(p->shift, -depth - axis.s, axis.n);
+    }
 }
 
 /* Row of the contact of two block rows, or TL_NO_ROW. */

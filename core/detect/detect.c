@@ -18,11 +18,12 @@
 #define CONTACT_CHUNK 256
 #define RANK_CHUNK 8
 
-static void narrow_free(tl_narrow *n)
+void tl_narrow_free(tl_narrow *n)
 {
     free(n->vertex_b);
     free(n->normal_b);
     free(n->dots);
+    free(n->share);
     free(n->manifold.facets);
     free(n->manifold.points);
     free(n->old);
@@ -37,7 +38,7 @@ static void detect_destroy(tl_detect *d)
     tl_table_free(&d->points.table);
     tl_table_free(&d->spare_points.table);
     for (unsigned i = 0; i < d->threads; i++) {
-        narrow_free(&d->narrow[i]);
+        tl_narrow_free(&d->narrow[i]);
         tl_table_free(&d->lanes[i].table);
     }
     free(d->narrow);

@@ -151,7 +151,8 @@ typedef struct tl_patch_points {
 typedef struct tl_narrow {
     tl_vec3 *vertex_b, *normal_b;
     double *dots;
-    size_t vertex_room, normal_room, dot_room;
+    struct tl_share_point *share; /* stand.h */
+    size_t vertex_room, normal_room, dot_room, share_room;
     struct tl_polygon *polygon; /* patch.c */
     tl_patch_points patch;
     tl_manifold manifold;
@@ -161,6 +162,8 @@ typedef struct tl_narrow {
     double *value;
     size_t old_room;
 } tl_narrow;
+
+void tl_narrow_free(tl_narrow *room);
 
 /* How the point share of a pair is measured. */
 typedef struct tl_share_rule {

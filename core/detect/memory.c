@@ -1,11 +1,12 @@
 /* memory.c - what the detection holds, in bytes, by what it is for. Columns count with their spare rows, and
  * so does the second set of tables that contacts are laid out in from time to time. */
-#include "detect/detect.h"
+#include "detect/stand.h"
 
 static size_t narrow_bytes(const tl_narrow *n)
 {
     return sizeof *n + n->vertex_room * sizeof *n->vertex_b + n->normal_room * sizeof *n->normal_b +
-           n->dot_room * sizeof *n->dots + n->manifold.facet_room * sizeof *n->manifold.facets +
+           n->dot_room * sizeof *n->dots + n->share_room * sizeof *n->share +
+           n->manifold.facet_room * sizeof *n->manifold.facets +
            n->manifold.point_room * sizeof *n->manifold.points +
            n->patch.room * (4 * sizeof(double) + sizeof(tl_lean) + sizeof(uint32_t));
 }

@@ -287,7 +287,7 @@ static void check_swap(scene_pair *p, const best_axis *best, tally *t)
     tl_vec3 n = tl_v3_neg(tl_q_rotate(p->turn, mirror.n));
     if (best->s < 0 && best->s - best->second > CLEAR_LEAD * p->view.size)
         t->swaps += scene_apart(n, axis.n) > 1e-6;
-    scene_room_free(&other.room);
+    tl_narrow_free(&other.room);
 }
 
 /* Both blocks turned alike: the axis turns with them. */
@@ -306,7 +306,7 @@ static void check_turned(scene_pair *p, const best_axis *best, tally *t, uint64_
     t->turns += best->s < 0 && fabs(found.s - axis.s) > allowed;
     if (best->s < 0 && best->s - best->second > CLEAR_LEAD * p->view.size)
         t->turns += scene_apart(tl_q_rotate(q, axis.n), found.n) > 1e-6;
-    scene_room_free(&other.room);
+    tl_narrow_free(&other.room);
     tl_poly_free(turned);
 }
 

@@ -229,7 +229,7 @@ TEST(batches_lay_what_is_laid_one_by_one)
         for (uint32_t i = 0; i < count; i++)
             scene_pair_free(&p[i].pair);
     }
-    scene_room_free(&room);
+    tl_narrow_free(&room);
     if (getenv("TALUS_TEST_VERBOSE"))
         for (int kind = 0; kind < KINDS; kind++)
             printf("  kind %d: %d of %d laid\n", kind, found[kind], made[kind]);
@@ -262,8 +262,8 @@ TEST(lanes_do_not_know_each_other)
             scene_pair_free(&p[i].pair);
         }
     }
-    scene_room_free(&alone);
-    scene_room_free(&together);
+    tl_narrow_free(&alone);
+    tl_narrow_free(&together);
 }
 
 /* A contact whose polygon has other features than before does not take it for the same. */
@@ -296,7 +296,7 @@ TEST(other_features_have_other_keys)
         scene_pair_free(&p.pair);
     }
     CHECK(changed > 100 && stayed > 100);
-    scene_room_free(&room);
+    tl_narrow_free(&room);
 }
 
 TEST_MAIN(RUN(batches_lay_what_is_laid_one_by_one), RUN(lanes_do_not_know_each_other),

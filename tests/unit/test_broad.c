@@ -204,7 +204,7 @@ static void move_about(int64_t threads, double most_step, int steps, int *closed
         if (step % 50 == 0)
             check_contacts(m, &room, closed, lost, stale);
     }
-    scene_room_free(&room);
+    tl_narrow_free(&room);
     tl_model_destroy(m);
 }
 
