@@ -1,6 +1,8 @@
 /* table.c - see table.h. */
 #include "base/table.h"
 
+#include "base/pages.h"
+
 #include <assert.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -61,7 +63,7 @@ static size_t column_bytes(const tl_column *column, size_t capacity)
 }
 
 /* Gives the table memory for `capacity` rows and takes its rows over, but for columns without any data. All
- * columns lie in one allocation that comes zeroed: what is not written to yet costs no memory. */
+ * columns lie in one allocation that comes zeroed: what is not written to yet costs little memory. */
 static bool allocate(tl_table *table, size_t capacity)
 {
     size_t bytes = TL_ALIGN;
@@ -70,6 +72,7 @@ static bool allocate(tl_table *table, size_t capacity)
     char *memory = calloc(bytes, 1);
     if (!memory)
         return false;
+    tl_pages_large(memory, bytes);
     char *at = memory + (TL_ALIGN - (uintptr_t)memory % TL_ALIGN) % TL_ALIGN;
     for (size_t i = 0; i < table->column_count; i++) {
         const void *old = get(table, &table->columns[i]);

@@ -2,6 +2,7 @@
  *
  * The points of a material are one run of columns, so a law is called on the columns themselves (ranks.c); a run
  * has room for a few contacts more. Laying out anew sorts the contacts by material and blocks. */
+#include "base/pages.h"
 #include "detect/detect.h"
 
 #include <stdlib.h>
@@ -264,6 +265,7 @@ static bool lay_facets(tl_detect *d, size_t facets)
     tl_facet *facet = realloc(d->spare.facet, wanted * sizeof *facet);
     if (!facet)
         return false;
+    tl_pages_large(facet, wanted * sizeof *facet);
     d->spare.facet = facet;
     d->spare.facet_capacity = wanted;
     return true;

@@ -1,0 +1,11 @@
+/* pages.h - large memory in large pages. */
+#ifndef TL_BASE_PAGES_H
+#define TL_BASE_PAGES_H
+
+#include <stddef.h>
+
+/* Asks the system to keep allocated memory in large pages, as far as it has not been written to yet: a loop over many
+ * columns then has the address of each at hand. Nothing where there is no such thing, or for little memory. */
+void tl_pages_large(void *memory, size_t bytes);
+
+#endif
