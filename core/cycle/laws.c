@@ -180,13 +180,16 @@ static void sum_rank(tl_model *m, const tl_rank *rank, const tl_point_lanes *t, 
     m->cycle->rank_energy[rank - m->detect->layout.ranks] = energy;
 }
 
-/* From the places of the bodies to the forces of the contacts of some ranks, which follow each other. */
-static void force_page(const run_job *job, const tl_rank *ranks, size_t count,
+/* From the places of the bodies to the forces of the contacts of some ranks, which follow each other. `soon`: how many
+ * come next, for which the memory is asked on the way. */
+static void force_page(const run_job *job, const tl_rank *ranks, size_t count, size_t soon,
                        const tl_point_lanes *t)
 {
     size_t first = ranks->start, points = 0;
     bool coupled[RANK_CHUNK];
     for (size_t r = 0; r < count; r++) {
+        if (r < soon)
+            tl_rank_expect(job->m, &ranks[count + r]);
         coupled[r] = tl_rank_follow(job->m, &ranks[r], t, points, job->material->tangents);
         points += (size_t)ranks[r].slots * TL_LANES;
     }
@@ -203,12 +206,14 @@ static void force_range(void *user, size_t begin, size_t end, size_t chunk, unsi
     const run_job *job = user;
     const tl_rank *ranks = job->m->detect->layout.ranks + job->run->rank_begin;
     const tl_point_lanes *t = &job->m->detect->lanes[thread];
+    size_t asked =
+        tl_points_are_far(job->m->detect) ? job->run->rank_end - job->run->rank_begin : 0;
     while (begin < end) {
         size_t count = 1, points = (size_t)ranks[begin].slots * TL_LANES;
         while (begin + count < end &&
                (points += (size_t)ranks[begin + count].slots * TL_LANES) <= TL_PAGE)
             count++;
-        force_page(job, &ranks[begin], count, t);
+        force_page(job, &ranks[begin], count, asked > begin + count ? asked - begin - count : 0, t);
         begin += count;
     }
 }

@@ -17,6 +17,8 @@
 /* Rows a worker takes at a time. */
 #define CONTACT_CHUNK 256
 #define RANK_CHUNK 8
+/* Ranks from one for which the memory is asked to the present one. */
+#define AHEAD 2
 
 void tl_narrow_free(tl_narrow *n)
 {
@@ -152,14 +154,19 @@ static void find_materials(tl_model *m)
 typedef struct update_job {
     tl_model *m;
     const tl_rank *ranks;
+    size_t count;
 } update_job;
 
 static void update_ranks(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
 {
     (void)chunk;
     const update_job *job = user;
-    for (size_t r = begin; r < end; r++)
-        tl_rank_update(job->m, &job->ranks[r], thread);
+    bool far = tl_points_are_far(job->m->detect), moved = false;
+    for (size_t r = begin; r < end; r++) {
+        if (far && moved && r + AHEAD < job->count) /* ranks side by side are alike */
+            tl_rank_expect_shapes(job->m, &job->ranks[r + AHEAD]);
+        moved = tl_rank_update(job->m, &job->ranks[r], thread);
+    }
 }
 
 /* Contacts without points are in no rank. */
@@ -177,7 +184,7 @@ static void update_contacts(tl_model *m)
     const tl_layout *layout = &m->detect->layout;
     for (size_t k = 0; k < layout->run_count; k++) {
         const tl_run *run = &layout->runs[k];
-        update_job job = {m, layout->ranks + run->rank_begin};
+        update_job job = {m, layout->ranks + run->rank_begin, run->rank_end - run->rank_begin};
         tl_parallel_for(m->pool, run->rank_end - run->rank_begin, RANK_CHUNK, update_ranks, &job);
     }
     if (m->detect->bare)

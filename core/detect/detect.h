@@ -403,6 +403,13 @@ double tl_patch_add(const tl_pair_view *view, uint32_t fa, uint32_t fb, double w
                     tl_vec3 swing, const tl_share_rule *rule, tl_narrow *room);
 void tl_polygon_free(struct tl_polygon *polygon, tl_patch_points *points);
 
+/* ---- expect.c ---- */
+/* Whether it is worth asking the memory for what ranks need before they do. */
+bool tl_points_are_far(const tl_detect *d);
+/* Asks for what a rank that comes soon will need to be followed, or to be brought up to date. */
+void tl_rank_expect(const tl_model *m, const tl_rank *rank);
+void tl_rank_expect_shapes(const tl_model *m, const tl_rank *rank);
+
 /* ---- follow.c ---- */
 /* Notes how every body moved in the last step: before contacts are followed. */
 void tl_follow_bodies(tl_model *m);
@@ -436,8 +443,8 @@ bool tl_contact_fill(tl_model *m, uint32_t contact);
 
 /* ---- renew.c ---- */
 /* Brings the facets of the contacts of a rank up to the present place, if they are stale; their fates tell what is left
- * to do. */
-void tl_rank_update(tl_model *m, const tl_rank *rank, unsigned thread);
+ * to do. false when none was. */
+bool tl_rank_update(tl_model *m, const tl_rank *rank, unsigned thread);
 
 /* ---- transfer.c ---- */
 /* Puts the manifold's points in the place of the contact's, carrying over state so that total force

@@ -140,7 +140,7 @@ static void take_patches(tl_model *m, const tl_rank *rank, const tl_patch_batch 
     }
 }
 
-void tl_rank_update(tl_model *m, const tl_rank *rank, unsigned thread)
+bool tl_rank_update(tl_model *m, const tl_rank *rank, unsigned thread)
 {
     tl_patch_batch *batch = NULL;
     uint32_t in = 0, others = 0;
@@ -152,7 +152,7 @@ void tl_rank_update(tl_model *m, const tl_rank *rank, unsigned thread)
                                               m->config.contact_points == TL_POINTS_CORNERS,
                                               TL_FLUSH_TILT2))) {
             m->detect->contacts.fate[c] = TL_FATE_MEMORY;
-            return;
+            return true;
         }
         if (add_to_batch(m, c, l, batch))
             in |= 1u << l;
@@ -166,4 +166,5 @@ void tl_rank_update(tl_model *m, const tl_rank *rank, unsigned thread)
     for (uint32_t l = 0; l < TL_LANES; l++)
         if ((in | others) >> l & 1)
             tl_contact_update(m, rank->contact[l], thread);
+    return batch;
 }
