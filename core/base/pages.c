@@ -14,8 +14,7 @@ void tl_pages_large(void *memory, size_t bytes)
     uintptr_t begin = ((uintptr_t)memory + LARGE - 1) / LARGE * LARGE;
     uintptr_t end = ((uintptr_t)memory + bytes) / LARGE * LARGE;
     if (begin < end)
-        (void)madvise((void *)begin, end - begin,
-                      MADV_HUGEPAGE); /* advice: what fails changes nothing */
+        (void)madvise((void *)begin, end - begin, MADV_HUGEPAGE); /* if it fails, nothing changes */
 #else
     (void)memory;
     (void)bytes;

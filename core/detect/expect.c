@@ -20,9 +20,8 @@ bool tl_points_are_far(const tl_detect *d)
 
 TL_INLINE void expect(const void *from, size_t bytes)
 {
-    const char *line = (const char *)from - (uintptr_t)from % LINE,
-               *end = (const char *)from + bytes;
-    for (; line < end; line += LINE)
+    const char *begin = from, *end = begin + bytes;
+    for (const char *line = begin - (uintptr_t)from % LINE; line < end; line += LINE)
         __builtin_prefetch(line);
 }
 

@@ -29,8 +29,8 @@ typedef struct tl_share_point {
     tl_facet facet;
     tl_vec3 p;
     tl_weight weight;
-    tl_weight
-        beside[4]; /* of edges that cross: what a block gets from it that stands on a face beside */
+    /* of edges that cross: what a block that stands on a face beside them gets from them */
+    tl_weight beside[4];
     uint64_t key;
 } tl_share_point;
 
