@@ -66,17 +66,17 @@ static void common_ends(const tl_line *a, const tl_line *b, tl_vec3 ends[2])
     }
 }
 
-void tl_crossing_add(const tl_pair_view *view, uint32_t ia, uint32_t ib, tl_vec3 n,
-                     tl_weight weight, const tl_from *from, tl_share_points *found)
+void tl_crossing_add(const tl_pair_view *view, const tl_crossing *edges, tl_weight weight,
+                     const tl_from *from, tl_share_points *found)
 {
-    tl_line a = tl_line_of(&view->a->edge[ia], view->a->vertex);
-    tl_line b = tl_line_of(&view->b->edge[ib], view->vertex_b);
-    uint64_t key = tl_key(tl_key(3, ia), ib);
-    tl_share_point point = {
-        .facet = {.kind = TL_FACET_EDGES, .ia = (uint16_t)ia, .ib = (uint16_t)ib, .na = n},
-        .p = nearest(&a, &b),
-        .key = key};
-    tl_sides sides = tl_stand_sides(view, &point.facet, &a, &b, from);
+    uint64_t key = tl_key(tl_key(3, edges->ia), edges->ib);
+    tl_share_point point = {.facet = {.kind = TL_FACET_EDGES,
+                                      .ia = (uint16_t)edges->ia,
+                                      .ib = (uint16_t)edges->ib,
+                                      .na = edges->n},
+                            .p = nearest(&edges->a, &edges->b),
+                            .key = key};
+    tl_sides sides = tl_stand_sides(view, edges, from);
     tl_weight onward = weight; /* over the border, however aslant */
     if (from)
         weight = tl_weight_product(weight, from->like);
@@ -84,7 +84,7 @@ void tl_crossing_add(const tl_pair_view *view, uint32_t ia, uint32_t ib, tl_vec3
         point.beside[k] =
             tl_weight_product(from && from->b_stands == (k < 2) ? onward : weight, sides.alike[k]);
     weight = tl_weight_product(weight, sides.stops);
-    tl_weight two = tl_weight_product(parallelism(&a, &b), sides.aside);
+    tl_weight two = tl_weight_product(parallelism(&edges->a, &edges->b), sides.aside);
     double one = 1 - two.value;
     if (one > 0)
         point.weight =
@@ -93,7 +93,7 @@ void tl_crossing_add(const tl_pair_view *view, uint32_t ia, uint32_t ib, tl_vec3
     if (!(two.value > 0))
         return;
     tl_vec3 ends[2];
-    common_ends(&a, &b, ends);
+    common_ends(&edges->a, &edges->b, ends);
     two.value *= 0.5;
     point.weight = tl_weight_product(weight, two);
     memset(point.beside, 0, sizeof point.beside);

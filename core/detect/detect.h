@@ -163,6 +163,7 @@ typedef struct tl_narrow {
     size_t old_room;
 } tl_narrow;
 
+/* Frees what a room holds, not the room. */
 void tl_narrow_free(tl_narrow *room);
 
 /* How the point share of a pair is measured. */

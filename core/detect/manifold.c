@@ -2,8 +2,8 @@
  *
  * Every pair of faces that look at each other along the axis makes a patch (patch.c), weighted by
  * their tilt: fully up to TL_TILT_FULL, fading to nothing at TL_TILT_NONE. Where the patches' area falls
- * short of the minimum area (1 % of the smaller block's mean face, Hart, Cundall and Lemos 1988), the
- * rest is the *point share*: the vertices, or the edges, that the axis rests on. Blocks that meet in
+ * short of the minimum area (1 % of the smaller block's mean face, Hart, Cundall and Lemos 1988), or has been
+ * lost by tilt, the rest is the *point share*: the vertices, or the edges, that the axis rests on. Blocks that meet in
  * an edge or a corner with their faces parallel get none, or eight blocks meeting in a corner would
  * have stiffness where they have no area; an absolute minimum area set by the user holds for them too
  * (crease.c). */

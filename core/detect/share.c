@@ -158,6 +158,13 @@ static bool found_begin(tl_share_points *found, const tl_pair_view *view, tl_nar
     return true;
 }
 
+static void add_axis_edges(const tl_pair_view *view, const tl_axis *axis, tl_share_points *found)
+{
+    tl_crossing edges = {axis->ia, axis->ib, tl_line_of(&view->a->edge[axis->ia], view->a->vertex),
+                         tl_line_of(&view->b->edge[axis->ib], view->vertex_b), axis->n};
+    tl_crossing_add(view, &edges, (tl_weight){.value = 1}, NULL, found);
+}
+
 void tl_share_add(const tl_pair_view *view, const tl_axis *axis, tl_vec3 swing, tl_narrow *room)
 {
     tl_share_points found;
@@ -165,7 +172,7 @@ void tl_share_add(const tl_pair_view *view, const tl_axis *axis, tl_vec3 swing, 
         return;
     bool b_stands = axis->kind == TL_AXIS_FACE_A;
     if (axis->kind == TL_AXIS_EDGES)
-        tl_crossing_add(view, axis->ia, axis->ib, axis->n, (tl_weight){.value = 1}, NULL, &found);
+        add_axis_edges(view, axis, &found);
     else
         tl_stand_on_face(view, b_stands, b_stands ? axis->ia : axis->ib, &found);
     spread(view, &found);

@@ -221,18 +221,18 @@ static void add_crossing(stand *s, const beam *e, int end)
     const foot *f = &s->feet[e->end[end]];
     const tl_poly *base = s->b_stands ? s->view->a : s->view->b;
     uint32_t border = side_edge(base, s->face, e->side[end]);
-    const tl_edge *own = &s->standing->edge[e->edge], *other = &base->edge[border];
-    tl_line a = tl_line_of(s->b_stands ? other : own, s->view->a->vertex);
-    tl_line b = tl_line_of(s->b_stands ? own : other, s->view->vertex_b);
-    tl_vec3 out = s->b_stands ? s->up : tl_v3_neg(s->up), n = tl_v3_cross(a.unit, b.unit);
+    tl_crossing x = {.ia = s->b_stands ? border : e->edge, .ib = s->b_stands ? e->edge : border};
+    x.a = tl_line_of(&s->view->a->edge[x.ia], s->view->a->vertex);
+    x.b = tl_line_of(&s->view->b->edge[x.ib], s->view->vertex_b);
+    tl_vec3 out = s->b_stands ? s->up : tl_v3_neg(s->up), n = tl_v3_cross(x.a.unit, x.b.unit);
     double sine = tl_v3_norm(n), some = f->none.some;
     if (!(sine > 0))
         return;
-    n = tl_v3_scale((tl_v3_dot(n, out) < 0 ? -1 : 1) / sine, n);
+    x.n = tl_v3_scale((tl_v3_dot(n, out) < 0 ? -1 : 1) / sine, n);
     tl_weight part = {e->lies.value / some, tl_v3_madd(e->lies.swing, 1 / some, f->none.change)};
-    tl_from from = {s->b_stands, s->face, tl_crossing_likeness(s->b_stands, out, n, &a, &b)};
-    tl_crossing_add(s->view, s->b_stands ? border : e->edge, s->b_stands ? e->edge : border, n,
-                    tl_weight_product(f->share, part), &from, s->found);
+    tl_from from = {s->b_stands, s->face, e->lies,
+                    tl_crossing_likeness(s->b_stands, out, x.n, &x.a, &x.b)};
+    tl_crossing_add(s->view, &x, tl_weight_product(f->share, part), &from, s->found);
 }
 
 static void add_foot(stand *s, const foot *f)
@@ -341,13 +341,12 @@ typedef struct way {
     uint32_t face, edge; /* of the block that stands */
 } way;
 
-static way way_of(const tl_pair_view *view, const tl_facet *crossing, int side)
+static way way_of(const tl_pair_view *view, uint32_t ia, uint32_t ib, int side)
 {
     way w = {.b_stands = side < 2, .right = side % 2};
-    const tl_edge *border =
-        w.b_stands ? &view->a->edge[crossing->ia] : &view->b->edge[crossing->ib];
+    const tl_edge *border = w.b_stands ? &view->a->edge[ia] : &view->b->edge[ib];
     w.face = w.right ? border->right : border->left;
-    w.edge = w.b_stands ? crossing->ib : crossing->ia;
+    w.edge = w.b_stands ? ib : ia;
     return w;
 }
 
@@ -366,33 +365,42 @@ static tl_weight continuity(tl_vec3 up, tl_vec3 next)
     return (tl_weight){.value = same_way ? tl_fade(sine, TL_LIKE_FULL, TL_LIKE_NONE) : 0};
 }
 
-tl_sides tl_stand_sides(const tl_pair_view *view, const tl_facet *crossing, const tl_line *a,
-                        const tl_line *b, const tl_from *from)
+/* How nearly the normal of a face beside edges that cross is theirs, or, where one of them comes from the other face of the
+ * border, that face's; 0 when the edge does not lie in it anyway. */
+static tl_weight alikeness(const tl_pair_view *view, const tl_crossing *x, way w, bool onward,
+                           uint32_t from)
+{
+    tl_vec3 up = face_up(view, w.b_stands, w.face), own = w.b_stands ? x->b.unit : x->a.unit;
+    double rise = tl_v3_dot(up, own);
+    if (rise * rise >= LYING_SINE2 || (w.b_stands ? view->a : view->b)->covered[w.face])
+        return (tl_weight){0}; /* most */
+    if (onward)
+        return continuity(face_up(view, w.b_stands, from), up);
+    return tl_crossing_likeness(w.b_stands, w.b_stands ? up : tl_v3_neg(up), x->n, &x->a, &x->b);
+}
+
+tl_sides tl_stand_sides(const tl_pair_view *view, const tl_crossing *edges, const tl_from *from)
 {
     tl_sides out = {0};
     none_of aside = no_edges, stops = no_edges;
     for (int pair = 0; pair < 4; pair += 2) {
         tl_weight lies[2] = {0};
-        bool b_stands = pair == 0, along = from && from->b_stands == b_stands;
         for (int k = 0; k < 2; k++) {
-            uint32_t face = way_of(view, crossing, pair + k).face;
-            bool onward = along && face != from->face;
-            tl_vec3 up = face_up(view, b_stands, face), own = b_stands ? b->unit : a->unit;
-            double rise = tl_v3_dot(up, own);
-            if (along && !onward)
+            way w = way_of(view, edges->ia, edges->ib, pair + k);
+            bool along = from && from->b_stands == w.b_stands;
+            if (along && from->face == w.face) {
+                aside = none_with(aside, tl_weight_product(from->like, from->lies));
                 lies[k] = (tl_weight){.value = 1}; /* of what has come from there */
-            if (rise * rise >= LYING_SINE2 || (b_stands ? view->a : view->b)->covered[face])
-                continue; /* most */
-            tl_weight alike = onward ? continuity(face_up(view, b_stands, from->face), up)
-                                     : tl_crossing_likeness(b_stands, b_stands ? up : tl_v3_neg(up),
-                                                            crossing->na, a, b);
+                continue;
+            }
+            tl_weight alike = alikeness(view, edges, w, along, along ? from->face : 0);
             if (!(alike.value > 0))
                 continue;
             out.alike[pair + k] = alike;
-            tl_weight in = tl_weight_product(alike, lying(b_stands, up, own));
-            aside = none_with(aside, in);
-            if (!along || onward)
-                lies[k] = in;
+            tl_vec3 own = w.b_stands ? edges->b.unit : edges->a.unit;
+            lies[k] =
+                tl_weight_product(alike, lying(w.b_stands, face_up(view, w.b_stands, w.face), own));
+            aside = none_with(aside, lies[k]);
         }
         stops = none_with(stops, tl_weight_product(lies[0], lies[1]));
     }
@@ -404,14 +412,14 @@ tl_sides tl_stand_sides(const tl_pair_view *view, const tl_facet *crossing, cons
 bool tl_stand_seen(const tl_pair_view *view, const tl_share_point *crossing, int side,
                    const tl_share_points *found)
 {
-    way w = way_of(view, &crossing->facet, side);
+    way w = way_of(view, crossing->facet.ia, crossing->facet.ib, side);
     return found->seen[!w.b_stands][w.face];
 }
 
 void tl_stand_beside(const tl_pair_view *view, const tl_share_point *crossing, int side,
                      tl_share_points *found)
 {
-    way w = way_of(view, &crossing->facet, side);
+    way w = way_of(view, crossing->facet.ia, crossing->facet.ib, side);
     tl_weight weight = crossing->beside[side];
     stand s = stand_of(view, w.b_stands, w.face, found);
     const tl_poly *base = w.b_stands ? view->a : view->b;

@@ -44,12 +44,12 @@ typedef struct tl_share_points {
 /* Adds a point, or of the same point the one of more weight; not, when memory is out. */
 void tl_share_points_add(tl_share_points *found, tl_share_point point);
 
-/* A face on which a block stands, one of whose edges has been followed to the border, and how nearly the face's normal is
- * that of both edges there. */
+/* A face on which a block stands, one of whose edges has been followed to the border: how nearly that lies in the face, and
+ * how nearly the face's normal is that of both edges there. */
 typedef struct tl_from {
     bool b_stands;
     uint32_t face;
-    tl_weight like;
+    tl_weight lies, like;
 } tl_from;
 
 /* ---------------------------------------------------------------- crossing.c ------------- */
@@ -61,11 +61,18 @@ typedef struct tl_line {
 
 tl_line tl_line_of(const tl_edge *e, const tl_vec3 *vertex);
 
+/* An edge of A and one of B that touch along n, from A to B. */
+typedef struct tl_crossing {
+    uint32_t ia, ib;
+    tl_line a, b;
+    tl_vec3 n;
+} tl_crossing;
+
 /* Adds the points at which an edge of A and one of B touch along n, with that weight among them: where they cross or, as
  * far as they are nearly parallel and do not lie in a face beside, the ends of their common stretch. As far as one goes on
  * from one face to the next, there are none: it stands on both farther off. */
-void tl_crossing_add(const tl_pair_view *view, uint32_t ia, uint32_t ib, tl_vec3 n,
-                     tl_weight weight, const tl_from *from, tl_share_points *found);
+void tl_crossing_add(const tl_pair_view *view, const tl_crossing *edges, tl_weight weight,
+                     const tl_from *from, tl_share_points *found);
 
 /* How nearly the normal n of two edges is that of a face beside one of them, which is A's or B's; `out` is the face's
  * normal, turned from A to B. */
@@ -90,8 +97,7 @@ typedef struct tl_sides {
     tl_weight stops;
 } tl_sides;
 
-tl_sides tl_stand_sides(const tl_pair_view *view, const tl_facet *crossing, const tl_line *a,
-                        const tl_line *b, const tl_from *from);
+tl_sides tl_stand_sides(const tl_pair_view *view, const tl_crossing *edges, const tl_from *from);
 
 /* Whether the other block has been looked at standing on that face. */
 bool tl_stand_seen(const tl_pair_view *view, const tl_share_point *crossing, int side,
