@@ -2,15 +2,9 @@
  * and how much a step works on. Nothing that is computed depends on it. */
 #include "cycle/cycle_room.h"
 
-#include <string.h>
-#include <time.h>
+#include "base/clock.h"
 
-static double clock_now(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
+#include <string.h>
 
 void tl_model_profiling(tl_model *m, bool on)
 {
@@ -21,13 +15,13 @@ void tl_model_profiling(tl_model *m, bool on)
 
 void tl_profile_step(tl_model *m)
 {
-    m->phase_began = clock_now();
+    m->phase_began = tl_clock();
     m->profile.steps++;
 }
 
 void tl_profile_phase(tl_model *m, tl_phase phase)
 {
-    double now = clock_now();
+    double now = tl_clock();
     m->profile.seconds[phase] += now - m->phase_began;
     m->phase_began = now;
 }

@@ -1,7 +1,7 @@
 /* solve.c - many steps: until a limit is met, the user interrupts, or a callback says so. */
 #include "cycle/cycle_room.h"
 
-#include <time.h>
+#include "base/clock.h"
 
 static const char *const reason_names[] = {
     [TL_SOLVE_RATIO] = "ratio",         [TL_SOLVE_CYCLES] = "cycles",
@@ -12,13 +12,6 @@ static const char *const reason_names[] = {
 const char *tl_solve_reason_name(tl_solve_reason reason)
 {
     return reason_names[reason];
-}
-
-static double wall_clock(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
 typedef struct progress {
@@ -37,7 +30,7 @@ static void measure(const tl_model *m, const progress *p)
     r->max_velocity = sqrt(m->cycle->sums.max_speed2);
     r->cycles = m->cycles - p->cycles_0;
     r->time = m->time;
-    r->wall = wall_clock() - p->wall_0;
+    r->wall = tl_clock() - p->wall_0;
 }
 
 /* Calls the user's functions; true when one of them ends the run. */
@@ -97,7 +90,7 @@ static tl_status run(tl_model *m, const tl_solve *solve, tl_solve_result *result
     if (m->running)
         return tl_fail(&m->error, TL_E_STATE,
                        "cycle and solve cannot be called from a function that a run has called");
-    progress p = {solve, result, m->cycles, m->time, wall_clock()};
+    progress p = {solve, result, m->cycles, m->time, tl_clock()};
     tl_watch *watch = NULL;
     if ((solve->ratio > 0 || solve->stop_at_failure) && !(watch = tl_watch_begin(m)))
         return tl_fail_memory(&m->error);
