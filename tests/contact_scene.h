@@ -200,10 +200,10 @@ SCENE_UNUSED static void scene_move(tl_model *m, uint32_t body, tl_vec3 by, tl_v
 {
     tl_bodies *b = &m->bodies;
     double angle = tl_v3_norm(rotation);
-    b->u[body] = tl_v3_add(b->u[body], by);
+    b->pose[body].u = tl_v3_add(b->pose[body].u, by);
     if (angle > 0) {
         b->q[body] = tl_q_unit(tl_q_mul(scene_turn(rotation, angle), b->q[body]));
-        b->r[body] = tl_q_matrix(b->q[body]);
+        b->pose[body].r = tl_q_matrix(b->q[body]);
     }
     b->odometer[body] += tl_v3_norm(by) + angle * b->radius[body];
 }
@@ -214,10 +214,10 @@ SCENE_UNUSED static void scene_put(tl_model *m, uint32_t body, tl_vec3 u, tl_qua
     tl_bodies *b = &m->bodies;
     tl_quat d = tl_q_mul(q, tl_q_conj(b->q[body]));
     double angle = 2 * asin(fmin(1, tl_v3_norm(tl_v3(d.x, d.y, d.z))));
-    b->odometer[body] += tl_v3_norm(tl_v3_sub(u, b->u[body])) + angle * b->radius[body];
-    b->u[body] = u;
+    b->odometer[body] += tl_v3_norm(tl_v3_sub(u, b->pose[body].u)) + angle * b->radius[body];
+    b->pose[body].u = u;
     b->q[body] = q;
-    b->r[body] = tl_q_matrix(q);
+    b->pose[body].r = tl_q_matrix(q);
 }
 
 /* Contacts and their forces in the present place; nothing moves. With m->dt > 0 the bodies' velocities

@@ -97,7 +97,7 @@ TL_INLINE void book_damping(tl_work *work, size_t i, const tl_group *g)
 static tl_vec3 load_moment(const tl_bodies *b, uint32_t body)
 {
     tl_body_load load = tl_load_of(b, body);
-    return tl_v3_add(load.moment, tl_v3_cross(tl_m3_mul(&b->r[body], load.arm), load.force));
+    return tl_v3_add(load.moment, tl_v3_cross(tl_m3_mul(&b->pose[body].r, load.arm), load.force));
 }
 
 /* The work of loads, and of what holds some components of a body's motion at a velocity. */

@@ -37,7 +37,7 @@ static void gather_body(tl_model *m, uint32_t body)
     force = tl_v3_madd(force, b->mass[body], m->config.gravity);
     if (tl_body_loaded(b, body)) {
         const tl_body_load *load = &b->load[body];
-        tl_vec3 arm = tl_m3_mul(&b->r[body], load->arm);
+        tl_vec3 arm = tl_m3_mul(&b->pose[body].r, load->arm);
         force = tl_v3_add(force, load->force);
         moment = tl_v3_add(moment, tl_v3_add(load->moment, tl_v3_cross(arm, load->force)));
     }

@@ -90,7 +90,7 @@ static double face_traction(const tl_model *m, const tl_insitu *s, uint32_t row,
 {
     uint32_t body = m->blocks.body[row];
     const tl_poly *shape = m->blocks.shape[row];
-    tl_vec3 n = tl_m3_mul(&m->bodies.r[body], shape->plane[face].normal);
+    tl_vec3 n = tl_m3_mul(&m->bodies.pose[body].r, shape->plane[face].normal);
     double z = tl_model_point(m, body, tl_poly_face_centroid(shape, face)).z;
     return tl_v3_norm(tl_s3_mul(stress_at(s, z), n));
 }

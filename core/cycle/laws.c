@@ -253,7 +253,6 @@ tl_status tl_laws_apply(tl_model *m)
     if (!tl_grow(&cycle->rank_energy, &cycle->rank_room, d->layout.rank_room,
                  sizeof *cycle->rank_energy))
         return tl_fail_memory(&m->error);
-    tl_follow_bodies(m);
     for (size_t r = 0; r < d->layout.run_count; r++) {
         const tl_run *run = &d->layout.runs[r];
         if (run->material == TL_NO_ROW)

@@ -201,7 +201,7 @@ static void load_lane(tl_group *g, size_t i, const tl_model *m)
                                                           : b->moments[body]);
     tl_lanes3_put(&g->force, i, b->force[body]);
     tl_lanes3_put(&g->moment, i, b->moment[body]);
-    tl_lanes3_put(&g->moved, i, b->v_moved[body]);
+    tl_lanes3_put(&g->moved, i, b->pose[body].v_moved);
     tl_lanes3_put(&g->v0, i, b->v[body]);
     tl_lanes3_put(&g->w0, i, b->w[body]);
     g->mass[i] = b->mass[body];
@@ -228,10 +228,10 @@ TL_VECTORIZED static void load_row(tl_group *restrict g, const tl_model *m, size
         g->moments.x[i] = g->moments.y[i] = g->moments.z[i] = b->round[first + i];
     tl_lanes3_load(&g->force, b->force + first);
     tl_lanes3_load(&g->moment, b->moment + first);
-    tl_lanes3_load(&g->moved, b->v_moved + first);
     tl_lanes3_load(&g->v0, b->v + first);
     tl_lanes3_load(&g->w0, b->w + first);
     for (size_t i = 0; i < TL_LANES; i++) {
+        tl_lanes3_put(&g->moved, i, b->pose[first + i].v_moved);
         g->mass[i] = b->mass[first + i];
         g->radius[i] = b->radius[first + i];
         g->scale[i] = 1;
@@ -263,16 +263,23 @@ static void rest_lane(tl_group *g, size_t i)
     g->alpha[i] = 0;
 }
 
+TL_INLINE void store_pose(const tl_group *restrict g, size_t i, const tl_mat3 *r, double dt,
+                          tl_pose *restrict pose)
+{
+    pose->r = *r;
+    pose->v_moved = tl_lanes3_get(&g->v1, i);
+    pose->w_moved = tl_lanes3_get(&g->turned, i);
+    pose->u = tl_v3_madd(pose->u, dt, pose->v_moved);
+}
+
 static void store_lane(const tl_group *g, size_t i, tl_bodies *b, double dt)
 {
     uint32_t body = g->body[i];
     b->v[body] = tl_lanes3_get(&g->v1, i);
     b->w[body] = tl_lanes3_get(&g->w2, i);
-    b->v_moved[body] = b->v[body];
-    b->w_moved[body] = tl_lanes3_get(&g->turned, i);
-    b->u[body] = tl_v3_madd(b->u[body], dt, b->v[body]);
     b->q[body] = tl_lanes4_get(&g->q2, i);
-    b->r[body] = tl_q_matrix(b->q[body]);
+    tl_mat3 r = tl_q_matrix(b->q[body]);
+    store_pose(g, i, &r, dt, &b->pose[body]);
     b->odometer[body] += g->speed[i] * dt;
 }
 
@@ -280,23 +287,20 @@ static void store_lane(const tl_group *g, size_t i, tl_bodies *b, double dt)
 TL_VECTORIZED static void store_row(const tl_group *restrict g, const tl_bodies *b, size_t first,
                                     double dt)
 {
-    double *restrict u = &b->u[first].x, *restrict odometer = b->odometer + first;
+    double *restrict odometer = b->odometer + first;
     tl_lanes9 r;
     tl_lanes3_store(&g->v1, b->v + first);
-    tl_lanes3_store(&g->v1, b->v_moved + first);
     tl_lanes3_store(&g->w2, b->w + first);
-    tl_lanes3_store(&g->turned, b->w_moved + first);
     tl_lanes4_store(&g->q2, b->q + first);
-    const double *restrict v = &b->v_moved[first].x;
-    for (size_t i = 0; i < 3 * TL_LANES; i++)
-        u[i] += dt * v[i];
     for (size_t i = 0; i < TL_LANES; i++) {
         tl_mat3 one = tl_q_matrix(tl_lanes4_get(&g->q2, i));
         tl_lanes9_put(&r, i, &one);
         odometer[i] += g->speed[i] * dt;
     }
-    for (size_t i = 0; i < TL_LANES; i++)
-        b->r[first + i] = tl_lanes9_get(&r, i);
+    for (size_t i = 0; i < TL_LANES; i++) {
+        tl_mat3 one = tl_lanes9_get(&r, i);
+        store_pose(g, i, &one, dt, &b->pose[first + i]);
+    }
 }
 
 static bool side_by_side(const tl_group *g)
@@ -341,15 +345,16 @@ static void carry_body(const move_job *job, uint32_t body, tl_work *work)
         b->v[body] = drive->velocity;
         b->w[body] = drive->angular_velocity;
     }
-    tl_vec3 moved = b->v_moved[body], turned = b->w_moved[body];
+    tl_pose *pose = &b->pose[body];
+    tl_vec3 moved = pose->v_moved, turned = pose->w_moved;
     if (still(b->v[body]) && still(b->w[body]) && still(moved) && still(turned))
         return;
     tl_energy_book_held(job->m, body, moved, turned, work);
-    b->u[body] = tl_v3_madd(b->u[body], dt, b->v[body]);
-    b->w_moved[body] = b->w[body];
+    pose->u = tl_v3_madd(pose->u, dt, b->v[body]);
+    pose->v_moved = b->v[body];
+    pose->w_moved = b->w[body];
     b->q[body] = tl_q_trim(tl_q_mul(tl_turn_by(tl_v3_scale(dt, b->w[body])), b->q[body]));
-    b->r[body] = tl_q_matrix(b->q[body]);
-    b->v_moved[body] = b->v[body];
+    pose->r = tl_q_matrix(b->q[body]);
     b->odometer[body] += dt * (tl_v3_norm(b->v[body]) + tl_v3_norm(b->w[body]) * b->radius[body]);
 }
 

@@ -168,7 +168,7 @@ static sums facet_stiffness(const tl_model *m, uint32_t c, const tl_facet *f, bo
     bool in_b = f->kind == TL_FACET_FACE_A;
     tl_vec3 apart = tl_body_apart(&m->bodies, in_b ? b : a, in_b ? a : b), centre = {0, 0, 0};
     if (in_b != of_b)
-        centre = tl_m3_tmul(&m->bodies.r[in_b ? b : a], apart);
+        centre = tl_m3_tmul(&m->bodies.pose[in_b ? b : a].r, apart);
     sums out = {0, 0};
     for (uint32_t k = f->begin; k < f->begin + (uint32_t)f->count; k++) {
         size_t i = tl_point_row(contacts, c, k);

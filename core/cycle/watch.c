@@ -94,7 +94,8 @@ tl_id tl_watch_step(tl_watch *w, const tl_model *m)
     memmove(&w->place[1], &w->place[0], WINDOWS * sizeof w->place[0]);
     memmove(&w->ratio[1], &w->ratio[0], WINDOWS * sizeof w->ratio[0]);
     w->place[0] = oldest;
-    memcpy(oldest, m->bodies.u, w->bodies * sizeof *oldest);
+    for (uint32_t body = 0; body < w->bodies; body++)
+        oldest[body] = m->bodies.pose[body].u;
     w->ratio[0] = tl_unbalanced_ratio(m, TL_RATIO_AVERAGE);
     w->failing = ++w->windows > WINDOWS ? find_failing(w, m) : TL_NO_ID;
     return w->failing;

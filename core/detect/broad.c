@@ -61,7 +61,7 @@ static tl_bounds block_bounds(const tl_model *m, uint32_t row)
 {
     const tl_poly *shape = m->blocks.shape[row];
     uint32_t body = m->blocks.body[row];
-    const tl_mat3 *r = &m->bodies.r[body];
+    const tl_mat3 *r = &m->bodies.pose[body].r;
     tl_vec3 x = tl_m3_mul(r, shape->vertex[0]);
     tl_bounds b = {x, x};
     for (uint32_t i = 1; i < shape->vertex_count; i++) {

@@ -91,7 +91,7 @@ tl_pair_view tl_pair_view_of(const tl_model *m, uint32_t a, uint32_t b)
     const tl_bodies *bodies = &m->bodies;
     uint32_t body_a = blocks->body[a], body_b = blocks->body[b];
     tl_pair_view view = {.a = blocks->shape[a], .b = blocks->shape[b]};
-    const tl_mat3 *ra = &bodies->r[body_a], *rb = &bodies->r[body_b];
+    const tl_mat3 *ra = &bodies->pose[body_a].r, *rb = &bodies->pose[body_b].r;
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
             view.turn.m[i][j] =

@@ -45,7 +45,6 @@ static void detect_destroy(tl_detect *d)
     }
     free(d->narrow);
     free(d->lanes);
-    free(d->moving);
     free(d->contacts.facet);
     free(d->spare.facet);
     free(d->pairs);
@@ -428,8 +427,5 @@ tl_status tl_detect_update(tl_model *m)
     if (status != TL_OK)
         return status;
     update_contacts(m);
-    if (!tl_fit(&m->detect->moving, &m->detect->moving_room, m->bodies.table.rows,
-                sizeof *m->detect->moving))
-        return tl_fail_memory(&m->error);
     return settle(m);
 }

@@ -258,15 +258,6 @@ typedef struct tl_layout {
     size_t rank_room;
 } tl_layout;
 
-/* Turn of a body in the last step: `half` is axis times the tangent of half the angle, `scale` 2 / (1 + half^2). A row of
- * TL_MOVING_ROW doubles. */
-typedef struct tl_moving {
-    tl_vec3 half;
-    double scale;
-} tl_moving;
-
-#define TL_MOVING_ROW 4
-
 typedef struct tl_detect {
     tl_pair *pairs;
     size_t pair_count, pair_room;
@@ -302,8 +293,6 @@ typedef struct tl_detect {
     tl_narrow *narrow;     /* [threads] */
     tl_point_lanes *lanes; /* [threads]: a page, or the largest rank */
     size_t lane_room;
-    tl_moving *moving;
-    size_t moving_room;
     unsigned threads;
 } tl_detect;
 
@@ -412,8 +401,6 @@ void tl_rank_expect(const tl_model *m, const tl_rank *rank);
 void tl_rank_expect_shapes(const tl_model *m, const tl_rank *rank);
 
 /* ---- follow.c ---- */
-/* Notes how every body moved in the last step: before contacts are followed. */
-void tl_follow_bodies(tl_model *m);
 /* Gaps, normals and relative motion of the contacts of a rank, its first point's into lane `lane`; turns shear forces
  * with the common plane, and the states of which `tangents` has a bit. false when no area depends on tilt: there are
  * no couples then. */

@@ -232,16 +232,12 @@ static void look_up_bodies(const tl_model *m, const tl_rank *rank, const tl_fram
                            tl_body_rows *rows)
 {
     const tl_contacts *contacts = &m->detect->contacts;
-    const tl_bodies *bodies = &m->bodies;
+    const tl_pose *pose = m->bodies.pose;
+    rows->dt = m->dt;
     for (size_t l = 0; l < TL_LANES; l++) {
         uint32_t contact = rank->contact[f->facet[l] ? l : some];
-        uint32_t a = m->blocks.body[contacts->a[contact]], b = m->blocks.body[contacts->b[contact]];
-        rows->a[l] = &m->detect->moving[a].half.x;
-        rows->b[l] = &m->detect->moving[b].half.x;
-        rows->ra[l] = &bodies->r[a].m[0][0];
-        rows->rb[l] = &bodies->r[b].m[0][0];
-        tl_lanes3_put(&rows->d, l, tl_body_apart(bodies, a, b));
-        tl_lanes3_put(&rows->way, l, tl_way_between(m, a, b));
+        rows->a[l] = &pose[m->blocks.body[contacts->a[contact]]].r.m[0][0];
+        rows->b[l] = &pose[m->blocks.body[contacts->b[contact]]].r.m[0][0];
     }
 }
 
@@ -400,7 +396,7 @@ static void put_few_couples(const tl_model *m, const tl_rank *rank, const column
         tl_vec3 couple = {0, 0, 0};
         if (f->facet[l]) {
             uint32_t a = m->blocks.body[contacts->a[rank->contact[l]]];
-            couple = tl_m3_mul(&m->bodies.r[a], tl_facet_swing(f->facet[l]));
+            couple = tl_m3_mul(&m->bodies.pose[a].r, tl_facet_swing(f->facet[l]));
         }
         for (size_t slot = begin; slot < end; slot++)
             put(c->couple, slot * TL_LANES + l, couple);

@@ -13,53 +13,55 @@
 
 /* ---------------------------------------------------------------- bodies ----------------- */
 
-static tl_moving moving_of(tl_vec3 w, double dt)
+/* The square of an angle by which a body turned is small enough for the series. */
+TL_INLINE bool is_small(double a2)
 {
-    tl_vec3 t = tl_v3_scale(dt, w);            /* axis times angle */
-    double a2 = tl_v3_norm2(t), tangent = 0.5; /* tan(a/2) / a */
-    if (a2 < SERIES_ANGLE * SERIES_ANGLE)
-        tangent += a2 * (1. / 24 + a2 * (1. / 240 + a2 * (17. / 40320 + a2 * 31. / 725760)));
-    else
-        tangent = tan(0.5 * sqrt(a2)) / sqrt(a2);
-    tl_vec3 half = tl_v3_scale(tangent, t);
-    return (tl_moving){half, 2 / (1 + tl_v3_norm2(half))};
+    return a2 < SERIES_ANGLE * SERIES_ANGLE;
 }
 
-/* What a point has moved beside the centroid, as it acts on its arm from there now: scale ([half] - [half]^2). Exact, so a
- * rolling contact and one that is turned as a whole gather no slip. */
-TL_INLINE tl_mat3 turn_back(tl_vec3 h, double scale)
+/* tan(a/2) / a by its series, from the square of a. */
+TL_INLINE double tangent_series(double a2)
 {
-    tl_vec3 s = tl_v3_scale(scale, h);
+    return 0.5 + a2 * (1. / 24 + a2 * (1. / 240 + a2 * (17. / 40320 + a2 * 31. / 725760)));
+}
+
+static double tangent_of(double a2)
+{
+    return is_small(a2) ? tangent_series(a2) : tan(0.5 * sqrt(a2)) / sqrt(a2);
+}
+
+/* Square of the angle by which a body turned in a step. */
+TL_INLINE double angle2(tl_vec3 w, double dt)
+{
+    return tl_v3_norm2(tl_v3_scale(dt, w));
+}
+
+/* Its axis times the tangent of half of it. */
+TL_INLINE tl_vec3 half_turn(tl_vec3 w, double tangent, double dt)
+{
+    return tl_v3_scale(tangent, tl_v3_scale(dt, w));
+}
+
+/* What a point has moved beside the centroid, as it acts on its arm from there now: 2 / (1 + h^2) ([h] - [h]^2), where h is
+ * axis times the tangent of half the angle of the turn. Exact, so a rolling contact and one that is turned as a
+ * whole gather no slip. */
+TL_INLINE tl_mat3 turn_back(tl_vec3 h)
+{
+    tl_vec3 s = tl_v3_scale(2 / (1 + tl_v3_norm2(h)), h);
     return (tl_mat3){{{s.y * h.y + s.z * h.z, -s.x * h.y - s.z, -s.x * h.z + s.y},
                       {-s.y * h.x + s.z, s.z * h.z + s.x * h.x, -s.y * h.z - s.x},
                       {-s.z * h.x - s.y, -s.z * h.y + s.x, s.x * h.x + s.y * h.y}}};
-}
-
-static void moving_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
-{
-    (void)chunk;
-    (void)thread;
-    tl_model *m = user;
-    for (size_t i = begin; i < end; i++)
-        m->detect->moving[i] = moving_of(m->bodies.w_moved[i], m->dt);
-}
-
-void tl_follow_bodies(tl_model *m)
-{
-    enum { CHUNK = 256 };
-    tl_parallel_for(m->pool, m->bodies.table.rows, CHUNK, moving_range, m);
 }
 
 /* ---------------------------------------------------------------- lanes ------------------ */
 
 /* What is known of a patch and its bodies, a lane each, before the lanes work out together what follows from it. */
 typedef struct patches {
-    double a[TL_MOVING_ROW][TL_LANES], b[TL_MOVING_ROW][TL_LANES]; /* tl_moving */
-    double facet[TL_FACET_ROW][TL_LANES];                          /* tl_facet */
-    tl_lanes9 rb;
+    double a[TL_POSE_ROW][TL_LANES], b[TL_POSE_ROW][TL_LANES]; /* tl_pose */
+    double facet[TL_FACET_ROW][TL_LANES];                      /* tl_facet */
 } patches;
 
-/* Where the members of a facet and of a motion are in their rows. */
+/* Where the members of a facet and of a pose are in their rows. */
 #define AT(type, member) (offsetof(type, member) / sizeof(double))
 enum {
     NA = AT(tl_facet, na),
@@ -67,11 +69,15 @@ enum {
     OFFSET = AT(tl_facet, offset),
     LAST = AT(tl_facet, last),
     LAST_LEAN = AT(tl_facet, last_lean),
-    HALF = AT(tl_moving, half),
-    SCALE = AT(tl_moving, scale)
+    X_REF = AT(tl_pose, x_ref),
+    U = AT(tl_pose, u),
+    V_MOVED = AT(tl_pose, v_moved),
+    W_MOVED = AT(tl_pose, w_moved),
+    POSE_END = AT(tl_pose, unused)
 };
 static_assert(sizeof(tl_facet) >= TL_FACET_ROW * sizeof(double), "a facet is shorter than its row");
-static_assert(sizeof(tl_moving) == TL_MOVING_ROW * sizeof(double), "a motion is not its row");
+static_assert(sizeof(tl_pose) == TL_POSE_ROW * sizeof(double), "a pose is not its row");
+static_assert(AT(tl_pose, r) == 0, "a pose does not begin with its matrix");
 
 typedef double pair __attribute__((vector_size(16)));
 typedef double quad __attribute__((vector_size(32)));
@@ -112,13 +118,10 @@ TL_INLINE void transpose(double (*restrict to)[TL_LANES], const double *const *r
     }
 }
 
-/* A matrix of each lane; its last element does not fit into pairs. */
-TL_INLINE void transpose_matrices(tl_lanes9 *to, const double *const *row)
+/* The poses of a body in each lane. */
+TL_INLINE void transpose_poses(double (*restrict to)[TL_LANES], const double *const *row)
 {
-    transpose(to->m[0], row, 8);
-    quad low = {row[0][8], row[1][8], row[2][8], row[3][8]};
-    quad high = {row[4][8], row[5][8], row[6][8], row[7][8]};
-    put_octet(to->m[2][2], &low, &high);
+    transpose(to, row, (POSE_END + 1) / 2 * 2);
 }
 
 /* A facet in its present place. */
@@ -192,33 +195,77 @@ TL_INLINE tl_vec3 row_vec3(double (*row)[TL_LANES], size_t k, size_t l)
     return tl_v3(row[k][l], row[k + 1][l], row[k + 2][l]);
 }
 
-/* Motion of B against A in the last step, by their turns; `d` is the way from A's centroid to B's. */
-TL_INLINE void put_motion(tl_frames *f, size_t l, tl_vec3 half_a, double scale_a, tl_vec3 half_b,
-                          double scale_b, tl_vec3 way, tl_vec3 d)
+TL_INLINE tl_mat3 row_mat3(double (*row)[TL_LANES], size_t l)
 {
-    tl_mat3 ma = turn_back(half_a, scale_a), mb = turn_back(half_b, scale_b);
+    return (tl_mat3){{{row[0][l], row[1][l], row[2][l]},
+                      {row[3][l], row[4][l], row[5][l]},
+                      {row[6][l], row[7][l], row[8][l]}}};
+}
+
+/* tan(a/2) / a of the turns of a body in each lane. */
+TL_INLINE void put_tangents(double *restrict tangent, double (*row)[TL_LANES], double dt)
+{
+    double wide = 0;
+#pragma omp simd reduction(+ : wide)
+    for (size_t l = 0; l < TL_LANES; l++) {
+        double a2 = angle2(row_vec3(row, W_MOVED, l), dt);
+        tangent[l] = tangent_series(a2);
+        wide += is_small(a2) ? 0 : 1;
+    }
+    for (size_t l = 0; wide > 0 && l < TL_LANES; l++)
+        tangent[l] = tangent_of(angle2(row_vec3(row, W_MOVED, l), dt));
+}
+
+/* From A's body to B's in lane l. */
+TL_INLINE tl_vec3 rows_apart(double (*a)[TL_LANES], double (*b)[TL_LANES], size_t l)
+{
+    return tl_apart(row_vec3(a, X_REF, l), row_vec3(a, U, l), row_vec3(b, X_REF, l),
+                    row_vec3(b, U, l));
+}
+
+/* The way of B against A in the last step, at their centroids. */
+TL_INLINE tl_vec3 way_between(tl_vec3 v_a, tl_vec3 v_b, double dt)
+{
+    return tl_v3_scale(dt, tl_v3_sub(v_b, v_a));
+}
+
+/* Motion of B against A in the last step, by half their turns; `d` is the way from A's centroid to B's. */
+TL_INLINE void put_motion(tl_frames *f, size_t l, tl_vec3 half_a, tl_vec3 half_b, tl_vec3 way,
+                          tl_vec3 d)
+{
+    tl_mat3 ma = turn_back(half_a), mb = turn_back(half_b);
     tl_lanes3_put(&f->way, l, tl_v3_sub(way, tl_m3_mul(&mb, d)));
     tl_lanes3_put(&f->half, l, tl_v3_scale(0.5, tl_v3_add(half_a, half_b)));
     tl_mat3 moved = difference(&mb, &ma);
     tl_lanes9_put(&f->m, l, &moved);
 }
 
+/* The same of the bodies of lane l, whose turns have these tangents. */
+TL_INLINE void put_rows_motion(tl_frames *f, size_t l, double (*a)[TL_LANES], double (*b)[TL_LANES],
+                               double tangent_a, double tangent_b, double dt, tl_vec3 d)
+{
+    tl_vec3 half_a = half_turn(row_vec3(a, W_MOVED, l), tangent_a, dt);
+    tl_vec3 half_b = half_turn(row_vec3(b, W_MOVED, l), tangent_b, dt);
+    put_motion(f, l, half_a, half_b,
+               way_between(row_vec3(a, V_MOVED, l), row_vec3(b, V_MOVED, l), dt), d);
+}
+
 TL_VECTORIZED static bool put_patches(tl_frames *restrict f, const tl_patch_rows *restrict rows)
 {
-    double any = 0;
+    double any = 0, tangent_a[TL_LANES], tangent_b[TL_LANES];
     patches p;
     const tl_body_rows *bodies = &rows->bodies;
-    transpose(p.a, bodies->a, TL_MOVING_ROW);
-    transpose(p.b, bodies->b, TL_MOVING_ROW);
+    transpose_poses(p.a, bodies->a);
+    transpose_poses(p.b, bodies->b);
     transpose(p.facet, rows->facet, TL_FACET_ROW);
-    transpose_matrices(&f->to, bodies->ra);
-    transpose_matrices(&p.rb, bodies->rb);
+    put_tangents(tangent_a, p.a, bodies->dt);
+    put_tangents(tangent_b, p.b, bodies->dt);
 #pragma omp simd
     for (size_t l = 0; l < TL_LANES; l++) {
-        tl_vec3 d = tl_lanes3_get(&bodies->d, l), ha = row_vec3(p.a, HALF, l);
-        tl_vec3 hb = row_vec3(p.b, HALF, l);
-        put_motion(f, l, ha, p.a[SCALE][l], hb, p.b[SCALE][l], tl_lanes3_get(&bodies->way, l), d);
-        tl_mat3 ra = tl_lanes9_get(&f->to, l), rb = tl_lanes9_get(&p.rb, l);
+        tl_vec3 d = rows_apart(p.a, p.b, l);
+        put_rows_motion(f, l, p.a, p.b, tangent_a[l], tangent_b[l], bodies->dt, d);
+        tl_mat3 ra = row_mat3(p.a, l), rb = row_mat3(p.b, l);
+        tl_lanes9_put(&f->to, l, &ra);
         tl_vec3 na = tl_m3_mul(&ra, row_vec3(p.facet, NA, l));
         tl_vec3 nb = tl_m3_mul(&rb, row_vec3(p.facet, NB, l));
         put_facing(f, l, tl_facing_patch(na, nb, d, p.facet[OFFSET][l]));
@@ -244,16 +291,19 @@ bool tl_frames_put_patches(tl_frames *f, const tl_patch_rows *rows)
 TL_VECTORIZED static void put_bodies(tl_frames *restrict f, tl_facet_rows *restrict facets,
                                      const tl_body_rows *restrict bodies)
 {
-    double a[TL_MOVING_ROW][TL_LANES], b[TL_MOVING_ROW][TL_LANES];
-    transpose(a, bodies->a, TL_MOVING_ROW);
-    transpose(b, bodies->b, TL_MOVING_ROW);
-    transpose_matrices(&facets->ra, bodies->ra);
-    transpose_matrices(&facets->rb, bodies->rb);
+    double a[TL_POSE_ROW][TL_LANES], b[TL_POSE_ROW][TL_LANES];
+    double tangent_a[TL_LANES], tangent_b[TL_LANES];
+    transpose_poses(a, bodies->a);
+    transpose_poses(b, bodies->b);
+    put_tangents(tangent_a, a, bodies->dt);
+    put_tangents(tangent_b, b, bodies->dt);
 #pragma omp simd
     for (size_t l = 0; l < TL_LANES; l++) {
-        tl_vec3 d = tl_lanes3_get(&bodies->d, l), nothing = {0, 0, 0};
-        put_motion(f, l, row_vec3(a, HALF, l), a[SCALE][l], row_vec3(b, HALF, l), b[SCALE][l],
-                   tl_lanes3_get(&bodies->way, l), d);
+        tl_vec3 d = rows_apart(a, b, l), nothing = {0, 0, 0};
+        put_rows_motion(f, l, a, b, tangent_a[l], tangent_b[l], bodies->dt, d);
+        tl_mat3 ra = row_mat3(a, l), rb = row_mat3(b, l);
+        tl_lanes9_put(&facets->ra, l, &ra);
+        tl_lanes9_put(&facets->rb, l, &rb);
         tl_lanes3_put(&facets->d, l, d);
         tl_lanes3_put(&facets->from_a, l, nothing);
         tl_lanes3_put(&facets->from_b, l, nothing);
@@ -381,10 +431,11 @@ void tl_frames_put(tl_frames *f, size_t l, const tl_model *m, uint32_t c, const 
     tl_sight s = tl_sight_of(m, c);
     tl_facing to = tl_facing_of(facet, &s);
     bool in_b = tl_facet_in_b(facet);
-    uint32_t body_a = m->blocks.body[s.a], body_b = m->blocks.body[s.b];
-    const tl_moving *a = &m->detect->moving[body_a], *b = &m->detect->moving[body_b];
-    tl_vec3 way = tl_way_between(m, body_a, body_b);
-    put_motion(f, l, a->half, a->scale, b->half, b->scale, way, s.d);
+    const tl_pose *a = &m->bodies.pose[m->blocks.body[s.a]];
+    const tl_pose *b = &m->bodies.pose[m->blocks.body[s.b]];
+    tl_vec3 half_a = half_turn(a->w_moved, tangent_of(angle2(a->w_moved, m->dt)), m->dt);
+    tl_vec3 half_b = half_turn(b->w_moved, tangent_of(angle2(b->w_moved, m->dt)), m->dt);
+    put_motion(f, l, half_a, half_b, way_between(a->v_moved, b->v_moved, m->dt), s.d);
     tl_lanes9_put(&f->to, l, in_b ? s.rb : s.ra);
     tl_lanes3_put(&f->from, l, in_b ? s.d : tl_v3(0, 0, 0));
     put_facing(f, l, to);

@@ -27,20 +27,14 @@ typedef struct tl_frames {
     uint32_t end[TL_LANES]; /* slot behind its points */
 } tl_frames;
 
-/* The way of a body against another, at their centroids, in the last step. */
-static inline tl_vec3 tl_way_between(const tl_model *m, uint32_t from, uint32_t body)
-{
-    return tl_v3_scale(m->dt, tl_v3_sub(m->bodies.v_moved[body], m->bodies.v_moved[from]));
-}
-
 /* Puts a facet of a contact into lane l. */
 void tl_frames_put(tl_frames *f, size_t l, const tl_model *m, uint32_t contact,
                    const tl_facet *facet, double carry);
 
-/* The bodies of a contact for each lane: their turns and rotations, and how far they are apart. */
+/* The bodies of a contact for each lane. */
 typedef struct tl_body_rows {
-    const double *a[TL_LANES], *b[TL_LANES], *ra[TL_LANES], *rb[TL_LANES];
-    tl_lanes3 d, way; /* of B against A in the last step */
+    const double *a[TL_LANES], *b[TL_LANES]; /* tl_pose */
+    double dt;                               /* of the last step */
 } tl_body_rows;
 
 /* A patch for each lane. */

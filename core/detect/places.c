@@ -6,8 +6,8 @@ tl_sight tl_sight_of(const tl_model *m, uint32_t c)
 {
     const tl_contacts *contacts = &m->detect->contacts;
     uint32_t a = m->blocks.body[contacts->a[c]], b = m->blocks.body[contacts->b[c]];
-    return (tl_sight){.ra = &m->bodies.r[a],
-                      .rb = &m->bodies.r[b],
+    return (tl_sight){.ra = &m->bodies.pose[a].r,
+                      .rb = &m->bodies.pose[b].r,
                       .d = tl_body_apart(&m->bodies, a, b),
                       .shapes = m->blocks.shape,
                       .a = contacts->a[c],

@@ -22,7 +22,7 @@ static bool add_to_batch(const tl_model *m, uint32_t c, uint32_t lane, tl_patch_
     tl_batch_add(batch, lane, m->blocks.shape[a], f->ia, m->blocks.shape[b], f->ib, size,
                  TL_CONTACT_TOLERANCE * TL_CONTACT_RELEASE * size);
     uint32_t body_a = m->blocks.body[a], body_b = m->blocks.body[b];
-    tl_batch_between(batch, lane, &m->bodies.r[body_a], &m->bodies.r[body_b],
+    tl_batch_between(batch, lane, &m->bodies.pose[body_a].r, &m->bodies.pose[body_b].r,
                      tl_body_apart(&m->bodies, body_a, body_b));
     return true;
 }

@@ -16,7 +16,7 @@ bool tl_touches_add(const tl_model *m, uint32_t row, tl_touches *touches)
     const tl_detect *d = m->detect;
     const tl_contacts *c = &d->contacts;
     const tl_poly *shape = m->blocks.shape[row];
-    const tl_mat3 *turn = &m->bodies.r[m->blocks.body[row]];
+    const tl_mat3 *turn = &m->bodies.pose[m->blocks.body[row]].r;
     for (uint32_t e = d->by_block_start[row]; e < d->by_block_start[row + 1]; e++) {
         uint32_t contact = d->by_block[e];
         bool first = c->a[contact] == row;

@@ -70,7 +70,7 @@ static tl_vec3 velocity_of(const tl_model *m, size_t row)
 {
     const tl_bodies *bodies = &m->bodies;
     uint32_t body = m->blocks.body[row];
-    tl_vec3 arm = tl_m3_mul(&bodies->r[body], tl_block_local(m, (uint32_t)row));
+    tl_vec3 arm = tl_m3_mul(&bodies->pose[body].r, tl_block_local(m, (uint32_t)row));
     return tl_v3_add(bodies->v[body], tl_v3_cross(bodies->w[body], arm));
 }
 

@@ -88,7 +88,7 @@ static bool cut_blocks(const tl_model *m, tl_plane plane, section *s)
     for (uint32_t row = 0; row < b->table.rows; row++) {
         uint32_t body = b->body[row];
         const tl_poly *shape = b->shape[row];
-        tl_plane local = {tl_m3_tmul(&m->bodies.r[body], plane.normal),
+        tl_plane local = {tl_m3_tmul(&m->bodies.pose[body].r, plane.normal),
                           plane.offset - tl_v3_dot(plane.normal, tl_body_place(&m->bodies, body))};
         if (!make_room(s, shape->edge_count))
             return false;

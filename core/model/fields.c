@@ -144,7 +144,7 @@ tl_status tl_block_mesh_get(tl_model *m, tl_id block, tl_block_mesh *mesh)
         mesh->loops[i] = shape->loop[i];
     memcpy(mesh->tags, shape->tag, shape->face_count * sizeof *mesh->tags);
     for (uint32_t i = 0; i < shape->face_count; i++)
-        mesh->normals[i] = tl_m3_mul(&m->bodies.r[body], shape->plane[i].normal);
+        mesh->normals[i] = tl_m3_mul(&m->bodies.pose[body].r, shape->plane[i].normal);
     return TL_OK;
 }
 

@@ -28,14 +28,10 @@ static void bodies_init(tl_bodies *b)
     TL_COLUMN(t, b, id, TL_COLUMN_STATE);
     TL_COLUMN(t, b, member_start, 0);
     TL_COLUMN(t, b, member_count, 0);
-    TL_COLUMN(t, b, x_ref, TL_COLUMN_STATE);
-    TL_COLUMN(t, b, u, TL_COLUMN_STATE);
+    TL_COLUMN(t, b, pose, TL_COLUMN_STATE);
     TL_COLUMN(t, b, q, TL_COLUMN_STATE);
-    TL_COLUMN(t, b, r, 0);
     TL_COLUMN(t, b, v, TL_COLUMN_STATE);
     TL_COLUMN(t, b, w, TL_COLUMN_STATE);
-    TL_COLUMN(t, b, v_moved, TL_COLUMN_STATE);
-    TL_COLUMN(t, b, w_moved, TL_COLUMN_STATE);
     TL_COLUMN(t, b, mass, TL_COLUMN_STATE);
     TL_COLUMN(t, b, moments, TL_COLUMN_STATE);
     TL_COLUMN(t, b, axes, TL_COLUMN_STATE);
@@ -237,8 +233,8 @@ tl_vec3 tl_block_centroid(const tl_model *m, uint32_t row)
 tl_vec3 tl_block_point_displacement(const tl_model *m, uint32_t row, tl_vec3 local)
 {
     uint32_t body = m->blocks.body[row];
-    tl_vec3 turned = tl_v3_sub(tl_m3_mul(&m->bodies.r[body], local), local);
-    tl_vec3 moved = tl_v3_add(m->bodies.u[body], turned);
+    tl_vec3 turned = tl_v3_sub(tl_m3_mul(&m->bodies.pose[body].r, local), local);
+    tl_vec3 moved = tl_v3_add(m->bodies.pose[body].u, turned);
     return m->blocks.base ? tl_v3_sub(moved, m->blocks.base[row]) : moved;
 }
 

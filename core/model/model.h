@@ -53,19 +53,29 @@ typedef struct tl_body_load {
     tl_vec3 arm;           /* where it acts, body's frame */
 } tl_body_load;
 
+/* Where a body is and how it came there in the last step: what contacts need of it. They come to bodies in no order
+ * that memory knows, so all of it lies together, in three of the lines that memory hands over at a time, and not in
+ * columns. A row of TL_POSE_ROW doubles. */
+typedef struct tl_pose {
+    tl_mat3 r;       /* the rotation q as a matrix */
+    tl_vec3 x_ref;   /* centroid when made, relative to the origin */
+    tl_vec3 u;       /* displacement since */
+    tl_vec3 v_moved; /* of the last step's motion: since then v and w may have been set anew */
+    tl_vec3 w_moved; /* the turn of the step over its duration: w is that at its end */
+    double unused[3];
+} tl_pose;
+
+#define TL_POSE_ROW 24
+
 typedef struct tl_bodies {
     tl_table table;
     tl_id *id;              /* the lowest id of its blocks */
     uint32_t *member_start; /* its blocks: model->members[member_start .. + member_count) */
     uint32_t *member_count;
-    tl_vec3 *x_ref;   /* centroid when made, relative to the origin */
-    tl_vec3 *u;       /* displacement since */
-    tl_quat *q;       /* rotation since */
-    tl_mat3 *r;       /* the same as a matrix, derived from q */
-    tl_vec3 *v;       /* velocity, half a step behind the position */
-    tl_vec3 *w;       /* angular velocity */
-    tl_vec3 *v_moved; /* of the last step's motion: since then v and w may have been set anew */
-    tl_vec3 *w_moved; /* the turn of the step over its duration: w is that at its end */
+    tl_pose *pose;
+    tl_quat *q; /* rotation since it was made */
+    tl_vec3 *v; /* velocity, half a step behind the position */
+    tl_vec3 *w; /* angular velocity */
     double *mass;
     tl_vec3 *moments; /* principal moments of inertia */
     tl_quat *axes;    /* from principal axes to the body's frame */
@@ -190,21 +200,27 @@ struct tl_model {
 /* Present place of a body's centroid, relative to the origin. */
 static inline tl_vec3 tl_body_place(const tl_bodies *b, uint32_t body)
 {
-    return tl_v3_add(b->x_ref[body], b->u[body]);
+    return tl_v3_add(b->pose[body].x_ref, b->pose[body].u);
 }
 
 /* From body a's centroid to body b's. The references are subtracted first, so that a small relative
  * displacement keeps its digits. */
+static inline tl_vec3 tl_apart(tl_vec3 x_ref_a, tl_vec3 u_a, tl_vec3 x_ref_b, tl_vec3 u_b)
+{
+    return tl_v3_add(tl_v3_sub(x_ref_b, x_ref_a), tl_v3_sub(u_b, u_a));
+}
+
 static inline tl_vec3 tl_body_apart(const tl_bodies *bodies, uint32_t a, uint32_t b)
 {
-    return tl_v3_add(tl_v3_sub(bodies->x_ref[b], bodies->x_ref[a]),
-                     tl_v3_sub(bodies->u[b], bodies->u[a]));
+    const tl_pose *p = &bodies->pose[a], *q = &bodies->pose[b];
+    return tl_apart(p->x_ref, p->u, q->x_ref, q->u);
 }
 
 /* Present place of a point of a shape, in the user's coordinates. */
 static inline tl_vec3 tl_model_point(const tl_model *m, uint32_t body, tl_vec3 local)
 {
-    tl_vec3 x = tl_v3_add(tl_body_place(&m->bodies, body), tl_m3_mul(&m->bodies.r[body], local));
+    tl_vec3 x =
+        tl_v3_add(tl_body_place(&m->bodies, body), tl_m3_mul(&m->bodies.pose[body].r, local));
     return tl_v3_add(m->origin, x);
 }
 

@@ -28,7 +28,7 @@ static tl_sym3 turned(tl_sym3 t, const tl_mat3 *r)
 tl_sym3 tl_block_inertia(const tl_model *m, uint32_t row)
 {
     tl_sym3 t =
-        turned(tl_poly_mass(m->blocks.shape[row]).inertia, &m->bodies.r[m->blocks.body[row]]);
+        turned(tl_poly_mass(m->blocks.shape[row]).inertia, &m->bodies.pose[m->blocks.body[row]].r);
     double d = m->blocks.density[row];
     return (tl_sym3){d * t.xx, d * t.yy, d * t.zz, d * t.xy, d * t.yz, d * t.zx};
 }
@@ -36,7 +36,7 @@ tl_sym3 tl_block_inertia(const tl_model *m, uint32_t row)
 tl_vec3 tl_block_velocity(const tl_model *m, uint32_t row)
 {
     uint32_t body = m->blocks.body[row];
-    tl_vec3 arm = tl_m3_mul(&m->bodies.r[body], tl_block_local(m, row));
+    tl_vec3 arm = tl_m3_mul(&m->bodies.pose[body].r, tl_block_local(m, row));
     return tl_v3_add(m->bodies.v[body], tl_v3_cross(m->bodies.w[body], arm));
 }
 
@@ -60,7 +60,7 @@ static tl_vec3 part_place(const tl_model *m, uint32_t row)
 {
     uint32_t body = m->blocks.body[row];
     return tl_v3_add(tl_body_place(&m->bodies, body),
-                     tl_m3_mul(&m->bodies.r[body], tl_block_local(m, row)));
+                     tl_m3_mul(&m->bodies.pose[body].r, tl_block_local(m, row)));
 }
 
 static parts sum_parts(const tl_model *m, const uint32_t *rows, size_t count)
@@ -91,11 +91,12 @@ static tl_status new_shape(tl_model *m, const parts *sum, uint32_t row, tl_poly 
 {
     const tl_bodies *b = &m->bodies;
     uint32_t old = m->blocks.body[row];
-    tl_vec3 shift = tl_m3_tmul(&b->r[sum->leader], tl_v3_sub(tl_body_place(b, old), sum->place));
+    tl_vec3 shift =
+        tl_m3_tmul(&b->pose[sum->leader].r, tl_v3_sub(tl_body_place(b, old), sum->place));
     tl_mat3 turn;
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++) {
-            const tl_mat3 *to = &b->r[sum->leader], *from = &b->r[old];
+            const tl_mat3 *to = &b->pose[sum->leader].r, *from = &b->pose[old].r;
             turn.m[i][j] = to->m[0][i] * from->m[0][j] + to->m[1][i] * from->m[1][j] +
                            to->m[2][i] * from->m[2][j];
         }
@@ -202,8 +203,8 @@ static bool stays(const tl_model *m, const regroup *r, size_t g)
 static void write_body(tl_model *m, const parts *sum, uint32_t body)
 {
     tl_bodies *b = &m->bodies;
-    b->x_ref[body] = sum->place;
-    b->u[body] = tl_v3(0, 0, 0);
+    b->pose[body].x_ref = sum->place;
+    b->pose[body].u = tl_v3(0, 0, 0);
     b->fixed[body] = (uint8_t)sum->fixed;
     tl_vec3 v = tl_v3_scale(1 / sum->mass, sum->momentum);
     b->v[body] = tl_v3(sum->fixed & TL_FIX_X ? 0 : v.x, sum->fixed & TL_FIX_Y ? 0 : v.y,
@@ -280,8 +281,8 @@ tl_status tl_bodies_regroup(tl_model *m, const uint32_t *group)
         bodies->w[g] = r.parts[g].fixed & TL_FIX_ROTATION
                            ? tl_v3(0, 0, 0)
                            : spin_velocity(bodies, g, r.parts[g].spin);
-        bodies->v_moved[g] = bodies->v[g];
-        bodies->w_moved[g] = bodies->w[g];
+        bodies->pose[g].v_moved = bodies->v[g];
+        bodies->pose[g].w_moved = bodies->w[g];
         for (uint32_t k = r.start[g]; k < r.start[g + 1]; k++) {
             uint32_t row = r.rows[k];
             if (r.start[g + 1] - r.start[g] == 1)

@@ -22,7 +22,7 @@ static bool contains(const tl_model *m, uint32_t row, tl_vec3 point)
     uint32_t body = m->blocks.body[row];
     tl_vec3 relative = tl_v3_sub(tl_v3_sub(point, m->origin), tl_body_place(&m->bodies, body));
     const tl_poly *shape = m->blocks.shape[row];
-    return tl_poly_contains(shape, tl_m3_tmul(&m->bodies.r[body], relative),
+    return tl_poly_contains(shape, tl_m3_tmul(&m->bodies.pose[body].r, relative),
                             BOUNDARY * shape->size);
 }
 

@@ -41,7 +41,7 @@ static tl_stage_ball ball_of(const tl_model *m, const tl_stage_block *block)
     if (block->source != TL_NO_ROW) {
         uint32_t body = m->blocks.body[block->source];
         ball.center =
-            tl_v3_add(tl_body_place(&m->bodies, body), tl_m3_mul(&m->bodies.r[body], center));
+            tl_v3_add(tl_body_place(&m->bodies, body), tl_m3_mul(&m->bodies.pose[body].r, center));
     }
     ball.radius += BALL_ROUNDINGS * (tl_v3_norm(center) + tl_v3_norm(ball.center));
     return ball;
@@ -309,8 +309,9 @@ static tl_plane plane_in_frame(const tl_model *m, const tl_stage_block *block, t
     if (block->source == TL_NO_ROW)
         return (tl_plane){normal, tl_v3_dot(normal, point)};
     uint32_t body = m->blocks.body[block->source];
-    tl_vec3 relative = tl_v3_sub(tl_v3_sub(point, m->bodies.x_ref[body]), m->bodies.u[body]);
-    return (tl_plane){tl_m3_tmul(&m->bodies.r[body], normal), tl_v3_dot(normal, relative)};
+    tl_vec3 relative =
+        tl_v3_sub(tl_v3_sub(point, m->bodies.pose[body].x_ref), m->bodies.pose[body].u);
+    return (tl_plane){tl_m3_tmul(&m->bodies.pose[body].r, normal), tl_v3_dot(normal, relative)};
 }
 
 /* The largest coordinate that plane_in_frame computes with. */
@@ -386,8 +387,9 @@ static crossing crossing_in_frame(const tl_model *m, const tl_stage_block *block
     crossing x = {plane_in_frame(m, block, normal, point), point, radius};
     if (block->source != TL_NO_ROW && !isinf(radius)) {
         uint32_t body = m->blocks.body[block->source];
-        tl_vec3 relative = tl_v3_sub(tl_v3_sub(point, m->bodies.x_ref[body]), m->bodies.u[body]);
-        x.center = tl_m3_tmul(&m->bodies.r[body], relative);
+        tl_vec3 relative =
+            tl_v3_sub(tl_v3_sub(point, m->bodies.pose[body].x_ref), m->bodies.pose[body].u);
+        x.center = tl_m3_tmul(&m->bodies.pose[body].r, relative);
     }
     return x;
 }

@@ -45,7 +45,7 @@ static tl_status copy_shapes(tl_stage *stage, const member *members, size_t coun
     tl_model *m = stage->model;
     for (size_t i = 0; i < count; i++) {
         uint32_t body = frame_of(stage, &members[i]);
-        const tl_mat3 *turn = body == TL_NO_ROW ? NULL : &m->bodies.r[body];
+        const tl_mat3 *turn = body == TL_NO_ROW ? NULL : &m->bodies.pose[body].r;
         tl_vec3 shift = body == TL_NO_ROW ? tl_v3(0, 0, 0) : tl_body_place(&m->bodies, body);
         tl_status status = tl_poly_transformed(shapes[i], turn, shift, &shapes[i], &m->error);
         if (status != TL_OK) {

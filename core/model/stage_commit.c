@@ -18,9 +18,9 @@ static void centre_shape(tl_poly *shape, tl_vec3 centroid)
 
 /* What the children of a block take over from it and from its body. */
 typedef struct source {
-    tl_vec3 base, x_ref, u, v, w, v_moved, w_moved;
+    tl_pose pose;
+    tl_vec3 base, v, w;
     tl_quat q;
-    tl_mat3 r;
     uint32_t drive;
     uint8_t fixed;
 } source;
@@ -30,14 +30,10 @@ static source source_of(const tl_model *m, uint32_t row)
     const tl_bodies *b = &m->bodies;
     uint32_t body = m->blocks.body[row];
     return (source){.base = m->blocks.base ? m->blocks.base[row] : tl_v3(0, 0, 0),
-                    .x_ref = b->x_ref[body],
-                    .u = b->u[body],
+                    .pose = b->pose[body],
                     .v = b->v[body],
                     .w = b->w[body],
-                    .v_moved = b->v_moved[body],
-                    .w_moved = b->w_moved[body],
                     .q = b->q[body],
-                    .r = b->r[body],
                     .drive = b->drive[body],
                     .fixed = b->fixed[body]};
 }
@@ -48,6 +44,7 @@ static void put(tl_model *m, const tl_stage_block *block, const source *from, ui
 {
     tl_blocks *blocks = &m->blocks;
     tl_bodies *bodies = &m->bodies;
+    tl_pose *pose = &bodies->pose[body];
     tl_mass mass = tl_poly_mass(block->shape);
     tl_vec3 c = mass.centroid;
     centre_shape(block->shape, c);
@@ -61,23 +58,22 @@ static void put(tl_model *m, const tl_stage_block *block, const source *from, ui
     tl_block_measure(m, row, mass.volume);
     tl_body_measure_single(m, body, row, mass);
     if (!from) {
-        bodies->x_ref[body] = c;
+        pose->x_ref = c;
+        pose->r = tl_m3_identity();
         bodies->q[body] = tl_q_identity();
-        bodies->r[body] = tl_m3_identity();
         bodies->fixed[body] = block->fixed;
         return;
     }
-    tl_vec3 arm = tl_m3_mul(&from->r, c);
+    tl_vec3 arm = tl_m3_mul(&from->pose.r, c);
     if (blocks->base)
         blocks->base[row] = from->base;
-    bodies->x_ref[body] = tl_v3_add(from->x_ref, c);
-    bodies->u[body] = tl_v3_add(from->u, tl_v3_sub(arm, c));
+    *pose = from->pose;
+    pose->x_ref = tl_v3_add(pose->x_ref, c);
+    pose->u = tl_v3_add(pose->u, tl_v3_sub(arm, c));
+    pose->v_moved = tl_v3_add(pose->v_moved, tl_v3_cross(pose->w_moved, arm));
     bodies->q[body] = from->q;
-    bodies->r[body] = from->r;
     bodies->v[body] = tl_v3_add(from->v, tl_v3_cross(from->w, arm));
     bodies->w[body] = from->w;
-    bodies->v_moved[body] = tl_v3_add(from->v_moved, tl_v3_cross(from->w_moved, arm));
-    bodies->w_moved[body] = from->w_moved;
     bodies->fixed[body] = from->fixed;
     bodies->drive[body] = from->drive;
     if (from->drive)

@@ -10,8 +10,8 @@ static tl_bounds bounds_of(const tl_model *m, uint32_t row)
     const tl_poly *p = m->blocks.shape[row];
     tl_bounds b = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
     for (uint32_t i = 0; i < p->vertex_count; i++) {
-        tl_vec3 x =
-            tl_v3_add(tl_body_place(&m->bodies, body), tl_m3_mul(&m->bodies.r[body], p->vertex[i]));
+        tl_vec3 x = tl_v3_add(tl_body_place(&m->bodies, body),
+                              tl_m3_mul(&m->bodies.pose[body].r, p->vertex[i]));
         b.min = tl_v3_min(b.min, x);
         b.max = tl_v3_max(b.max, x);
     }

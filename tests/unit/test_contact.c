@@ -291,8 +291,8 @@ static tl_model *twin(const tl_model *m)
 {
     tl_model *fresh = pile(1, 0);
     for (uint32_t b = 0; b < m->bodies.table.rows; b++) {
-        scene_put(fresh, b, m->bodies.u[b], m->bodies.q[b]);
-        fresh->bodies.r[b] = m->bodies.r[b];
+        scene_put(fresh, b, m->bodies.pose[b].u, m->bodies.q[b]);
+        fresh->bodies.pose[b].r = m->bodies.pose[b].r;
     }
     return fresh;
 }

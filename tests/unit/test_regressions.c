@@ -266,7 +266,7 @@ TEST(tiny_steps_in_large_coordinates_add_up)
     }
     double force = scene_force(m, 1, 2).z;
     CHECK_REL(force, KN * 2e-9, 1e-6);
-    CHECK_REL(m->bodies.u[2].z, -2e-9, 1e-12);
+    CHECK_REL(m->bodies.pose[2].u.z, -2e-9, 1e-12);
     tl_model_destroy(m);
 }
 
