@@ -57,12 +57,12 @@ typedef struct tl_body_load {
  * that memory knows, so all of it lies together, in three of the lines that memory hands over at a time, and not in
  * columns. A row of TL_POSE_ROW doubles. */
 typedef struct tl_pose {
-    tl_mat3 r;       /* the rotation q as a matrix */
-    tl_vec3 x_ref;   /* centroid when made, relative to the origin */
-    tl_vec3 u;       /* displacement since */
-    tl_vec3 v_moved; /* of the last step's motion: since then v and w may have been set anew */
-    tl_vec3 w_moved; /* the turn of the step over its duration: w is that at its end */
-    double unused[3];
+    tl_mat3 r;        /* the rotation q as a matrix */
+    tl_vec3 x_ref;    /* centroid when made, relative to the origin */
+    tl_vec3 u;        /* displacement since */
+    tl_vec3 v_moved;  /* of the last step's motion: since then v and w may have been set anew */
+    tl_vec3 w_moved;  /* the turn of the step over its duration: w is that at its end */
+    double unused[3]; /* up to whole lines */
 } tl_pose;
 
 #define TL_POSE_ROW 24
