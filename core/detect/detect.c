@@ -17,8 +17,9 @@
 /* Rows a worker takes at a time. */
 #define CONTACT_CHUNK 256
 #define RANK_CHUNK 8
-/* Ranks from one for which the memory is asked to the present one. */
+/* Ranks from one for which the memory is asked to the present one, and from one whose contacts' rows are asked for. */
 #define AHEAD 2
+#define FAR_AHEAD 6
 
 void tl_narrow_free(tl_narrow *n)
 {
@@ -162,8 +163,10 @@ static void update_ranks(void *user, size_t begin, size_t end, size_t chunk, uns
     const update_job *job = user;
     bool far = tl_points_are_far(job->m->detect), moved = false;
     for (size_t r = begin; r < end; r++) {
-        if (far && moved && r + AHEAD < job->count) /* ranks side by side are alike */
+        if (far && moved && r + FAR_AHEAD < job->count) { /* ranks side by side are alike */
+            tl_rank_expect_contacts(job->m->detect, &job->ranks[r + FAR_AHEAD]);
             tl_rank_expect_shapes(job->m, &job->ranks[r + AHEAD]);
+        }
         moved = tl_rank_update(job->m, &job->ranks[r], thread);
     }
 }

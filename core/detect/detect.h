@@ -399,6 +399,8 @@ bool tl_points_are_far(const tl_detect *d);
 /* Asks for what a rank that comes soon will need to be followed, or to be brought up to date. */
 void tl_rank_expect(const tl_model *m, const tl_rank *rank);
 void tl_rank_expect_shapes(const tl_model *m, const tl_rank *rank);
+/* Asks for what tells where that is: for a rank that comes a little later. */
+void tl_rank_expect_contacts(const tl_detect *d, const tl_rank *rank);
 
 /* ---- follow.c ---- */
 /* Gaps, normals and relative motion of the contacts of a rank, its first point's into lane `lane`; turns shear forces

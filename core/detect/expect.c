@@ -60,6 +60,27 @@ void tl_rank_expect(const tl_model *m, const tl_rank *rank)
     expect(p->flags + rank->start, count * sizeof *p->flags);
 }
 
+void tl_rank_expect_contacts(const tl_detect *d, const tl_rank *rank)
+{
+    const tl_contacts *c = &d->contacts;
+    for (size_t l = 0; l < TL_LANES; l++) {
+        uint32_t i = rank->contact[l];
+        if (i == TL_NO_ROW)
+            continue;
+        expect(&c->a[i], sizeof *c->a);
+        expect(&c->b[i], sizeof *c->b);
+        expect(&c->tag[i], sizeof *c->tag);
+        expect(&c->material[i], sizeof *c->material);
+        expect(&c->axis[i], sizeof *c->axis);
+        expect(&c->search[i], sizeof *c->search);
+        expect(&c->until[i], sizeof *c->until);
+        expect(&c->facet_start[i], sizeof *c->facet_start);
+        expect(&c->facet_count[i], sizeof *c->facet_count);
+        expect(&c->point_count[i], sizeof *c->point_count);
+        expect(&c->lone[i], sizeof *c->lone);
+    }
+}
+
 void tl_rank_expect_shapes(const tl_model *m, const tl_rank *rank)
 {
     const tl_points_table *p = &m->detect->points;
