@@ -214,37 +214,6 @@ static void swap_tables(tl_detect *d)
     d->spare_points.table.owner = &d->spare_points;
 }
 
-/* Lists the contacts of each block, ascending by partner: the pairs are sorted, so every block meets
- * its lower partners before its higher ones, each in order. */
-bool tl_contacts_index(tl_model *m)
-{
-    tl_detect *d = m->detect;
-    d->by_id_fresh = false;
-    size_t blocks = m->blocks.table.rows, contacts = d->contacts.table.rows;
-    if (!tl_fit(&d->by_block_start, &d->by_start_room, blocks + 2, sizeof *d->by_block_start) ||
-        !tl_fit(&d->by_block, &d->by_block_room, 2 * d->contacts.table.capacity + 1,
-                sizeof *d->by_block))
-        return false;
-    d->bare = false;
-    memset(d->by_block_start, 0, (blocks + 2) * sizeof *d->by_block_start);
-    uint32_t *start = d->by_block_start + 1; /* filling moves each start to its end */
-    for (size_t c = 0; c < contacts; c++) {
-        start[d->contacts.a[c] + 1]++;
-        start[d->contacts.b[c] + 1]++;
-        d->bare = d->bare || d->contacts.point_room[c] == 0;
-    }
-    for (size_t row = 0; row < blocks; row++)
-        start[row + 1] += start[row];
-    for (size_t i = 0; i < d->pair_count; i++) {
-        const tl_pair *p = &d->pairs[i];
-        if (tl_pair_is_apart(p))
-            continue;
-        d->by_block[start[p->a]++] = p->contact;
-        d->by_block[start[p->b]++] = p->contact;
-    }
-    return true;
-}
-
 static void choose_spare(tl_detect *d, int64_t cycles)
 {
     size_t share = d->spare_share;
@@ -351,6 +320,7 @@ tl_status tl_contacts_repack(tl_model *m)
     d->layout = layout;
     swap_tables(d);
     free_spare(d);
+    tl_contacts_unlist(d);
     return tl_contacts_index(m) ? TL_OK : tl_fail_memory(&m->error);
 }
 
@@ -403,6 +373,7 @@ void tl_contact_remove(tl_detect *d, uint32_t row)
     tl_contacts *c = &d->contacts;
     uint32_t last = (uint32_t)c->table.rows - 1;
     clear_points(d, row);
+    tl_contacts_unlist(d);
     if (c->pair[row] < d->pair_count && d->pairs[c->pair[row]].contact == row)
         d->pairs[c->pair[row]].contact = TL_PAIR_APART;
     if (row != last) {
@@ -411,42 +382,4 @@ void tl_contact_remove(tl_detect *d, uint32_t row)
         tl_rank_note(d, row, row);
     }
     c->table.rows = last;
-}
-
-static int compare_id(const void *x, const void *y)
-{
-    const uint32_t *a = x, *b = y; /* id, row */
-    return (a[0] > b[0]) - (a[0] < b[0]);
-}
-
-/* Makes the list of rows by id: pairs of (id, row). */
-static bool index_by_id(tl_detect *d)
-{
-    size_t count = d->contacts.table.rows;
-    if (!tl_grow(&d->by_id, &d->by_id_room, 2 * count + 2, sizeof *d->by_id))
-        return false;
-    for (uint32_t row = 0; row < count; row++) {
-        d->by_id[2 * row] = d->contacts.id[row];
-        d->by_id[2 * row + 1] = row;
-    }
-    if (count > 1)
-        qsort(d->by_id, count, 2 * sizeof *d->by_id, compare_id);
-    d->by_id_fresh = true;
-    return true;
-}
-
-uint32_t tl_contact_row(tl_detect *d, tl_id id)
-{
-    if (!d->by_id_fresh && !index_by_id(d))
-        return TL_NO_ROW;
-    size_t low = 0, high = d->contacts.table.rows;
-    while (low < high) {
-        size_t middle = (low + high) / 2;
-        if (d->by_id[2 * middle] < id)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low < d->contacts.table.rows && d->by_id[2 * low] == id ? d->by_id[2 * low + 1]
-                                                                   : TL_NO_ROW;
 }

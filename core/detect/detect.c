@@ -96,6 +96,7 @@ static tl_status ensure(tl_model *m)
         detect_destroy(d);
         return tl_fail_memory(&m->error);
     }
+    tl_contacts_unlist(d);
     m->detect = d;
     m->detect_destroy = detect_destroy;
     return TL_OK;
@@ -129,6 +130,7 @@ static tl_status find_rows(tl_model *m)
         d->pairs[kept++] = p;
     }
     d->pair_count = kept;
+    tl_contacts_unlist(d);
     for (size_t row = 0; row < blocks; row++)
         d->ids[row] = m->blocks.id[row];
     return TL_OK;

@@ -284,8 +284,10 @@ typedef struct tl_detect {
     int64_t laid_at;    /* steps made when contacts were laid out */
     size_t spare_share; /* 1 / this of rows, points and facets were added to spare; 0: never yet */
     tl_layout layout;
-    uint32_t *by_block, *by_block_start; /* contacts of each block, ascending by partner */
+    uint32_t *by_block, *by_block_start; /* contacts of each block: index.c */
     size_t by_block_room, by_start_room;
+    uint32_t
+        indexed; /* contacts that are listed, those in the rows before this; TL_NO_ROW: the list is out of date */
     uint32_t *by_id; /* contact rows by ascending id; made when asked for */
     size_t by_id_room;
     bool by_id_fresh;
@@ -457,9 +459,6 @@ tl_status tl_contacts_repack(tl_model *m);
 bool tl_contact_place(tl_detect *d, uint32_t contact);
 /* Takes a contact out; the last one gets its row. */
 void tl_contact_remove(tl_detect *d, uint32_t contact);
-/* Lists the contacts of each block, and notes whether some are bare; after contacts have come, gone or been given
- * room. */
-bool tl_contacts_index(tl_model *m);
 /* Index of the material that rules a tag, or TL_NO_ROW. */
 uint32_t tl_material_row(const tl_model *m, tl_tag tag);
 /* View of two blocks, and the odometers of their bodies, summed. */
@@ -508,8 +507,6 @@ static inline size_t tl_point_row(const tl_contacts *c, uint32_t contact, size_t
 {
     return c->point_start[contact] + k * TL_LANES;
 }
-/* Row of the contact of an id, or TL_NO_ROW. */
-uint32_t tl_contact_row(tl_detect *d, tl_id id);
 
 /* `need` and one in `share` more, or `least` more. */
 static inline size_t tl_with_spare(size_t need, size_t share, size_t least)
@@ -517,6 +514,15 @@ static inline size_t tl_with_spare(size_t need, size_t share, size_t least)
     size_t more = need / share;
     return need + (more > least ? more : least);
 }
+
+/* ---- index.c ---- */
+/* Lists the contacts of each block, and notes whether some are bare; after contacts have come, gone or been given
+ * room. false when out of memory. */
+bool tl_contacts_index(tl_model *m);
+/* Contacts have gone, or rows of contacts or blocks have changed: all are to be listed anew. */
+void tl_contacts_unlist(tl_detect *d);
+/* Row of the contact of an id, or TL_NO_ROW. */
+uint32_t tl_contact_row(tl_detect *d, tl_id id);
 
 /* ---- ranks.c ---- */
 /* Gives contacts that are sorted by material their lanes in an empty layout: sets the start and room of each by the
