@@ -1,6 +1,7 @@
 /* state_hash.c - a digest of the mechanical state: places, velocities, forces and histories, shapes, laws,
  * damping and settings. Left out is what asking may change (contact ids) and what only saves work
- * (cached axes, the broad phase), for the results do not depend on it beyond the caches' margins. */
+ * (cached axes, the broad phase), for the results do not depend on it beyond the caches' margins. What follows from
+ * the rest and lies in a row with it (a pose's matrix) does no harm. */
 #include "cycle/cycle_room.h"
 
 #include "base/hash.h"

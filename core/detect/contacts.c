@@ -112,6 +112,7 @@ bool tl_contact_append(tl_model *m, uint32_t pair, const tl_axis *axis, double m
         return false;
     tl_pair *p = &d->pairs[pair];
     c->id[row] = ++d->next_contact;
+    d->by_id_fresh = false;
     c->a[row] = p->a;
     c->b[row] = p->b;
     c->pair[row] = pair;

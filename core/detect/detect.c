@@ -165,10 +165,11 @@ static void update_ranks(void *user, size_t begin, size_t end, size_t chunk, uns
     const update_job *job = user;
     bool far = tl_points_are_far(job->m->detect), moved = false;
     for (size_t r = begin; r < end; r++) {
-        if (far && moved && r + FAR_AHEAD < job->count) { /* ranks side by side are alike */
+        bool alike = far && moved; /* as ranks side by side are */
+        if (alike && r + FAR_AHEAD < job->count)
             tl_rank_expect_contacts(job->m->detect, &job->ranks[r + FAR_AHEAD]);
+        if (alike && r + AHEAD < job->count)
             tl_rank_expect_shapes(job->m, &job->ranks[r + AHEAD]);
-        }
         moved = tl_rank_update(job->m, &job->ranks[r], thread);
     }
 }
@@ -420,7 +421,10 @@ static tl_status find_contacts(tl_model *m)
 
 tl_status tl_detect_refresh(tl_model *m)
 {
-    if (m->detect && m->detect->structure == m->structure && m->detect->laws == m->laws)
+    const tl_detect *d = m->detect;
+    bool listed =
+        d && !d->rows_changed && d->indexed == d->contacts.table.rows; /* no step failed */
+    if (listed && d->structure == m->structure && d->laws == m->laws)
         return TL_OK;
     tl_status status = find_contacts(m);
     return status == TL_OK ? settle(m) : status;

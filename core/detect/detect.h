@@ -286,9 +286,8 @@ typedef struct tl_detect {
     tl_layout layout;
     uint32_t *by_block, *by_block_start; /* contacts of each block: index.c */
     size_t by_block_room, by_start_room;
-    uint32_t
-        indexed; /* contacts that are listed, those in the rows before this; TL_NO_ROW: the list is out of date */
-    uint32_t *by_id; /* contact rows by ascending id; made when asked for */
+    uint32_t indexed; /* rows of contacts that are listed; TL_NO_ROW: the lists are out of date */
+    uint32_t *by_id;  /* contact rows by ascending id; made when asked for */
     size_t by_id_room;
     bool by_id_fresh;
     tl_id next_contact;

@@ -92,6 +92,7 @@ static bool list_new(tl_detect *d, size_t blocks)
 void tl_contacts_unlist(tl_detect *d)
 {
     d->indexed = TL_NO_ROW;
+    d->by_id_fresh = false;
 }
 
 bool tl_contacts_index(tl_model *m)
@@ -99,7 +100,6 @@ bool tl_contacts_index(tl_model *m)
     tl_detect *d = m->detect;
     const tl_contacts *c = &d->contacts;
     size_t blocks = m->blocks.table.rows;
-    d->by_id_fresh = false;
     if (!tl_fit(&d->by_block_start, &d->by_start_room, blocks + 2, sizeof *d->by_block_start) ||
         !tl_fit(&d->by_block, &d->by_block_room, 2 * c->table.capacity + 1, sizeof *d->by_block))
         return false;

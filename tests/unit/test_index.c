@@ -92,4 +92,26 @@ TEST(contacts_of_blocks_are_listed)
     tl_model_destroy(m);
 }
 
-TEST_MAIN(RUN(contacts_of_blocks_are_listed))
+/* Where blocks have come and memory has run out before contacts were listed, whoever asks next gets lists of them, or is
+ * refused again. */
+TEST(lists_after_a_step_without_memory)
+{
+    uint64_t seed = 11;
+    tl_model *m = scene_model(1);
+    for (int i = 0; i < BLOCKS; i++)
+        add_block(m, &seed);
+    scene_law(m, "elastic", 1e6, 1e6, -1);
+    scene_forces(m);
+    tl_id first = m->detect->contacts.id[0];
+    for (int i = 0; i < 5; i++) {
+        add_block(m, &seed);
+        m->detect->narrow[0].failed = true; /* as when there is no room for what a contact needs */
+        CHECK_INT(tl_detect_refresh(m), TL_E_MEMORY);
+        scene_ok(m, tl_detect_refresh(m));
+        check_lists(m);
+        CHECK(tl_contact_row(m->detect, first) != TL_NO_ROW);
+    }
+    tl_model_destroy(m);
+}
+
+TEST_MAIN(RUN(contacts_of_blocks_are_listed), RUN(lists_after_a_step_without_memory))
