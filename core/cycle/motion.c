@@ -12,10 +12,10 @@
  * about w.
  *
  * Free bodies go through a step in groups of TL_LANES, those of a chunk together: their columns are copied into lanes, by
- * whole vectors where the bodies of a group are side by side, and their poses one by one; loops over the lanes kick and turn all of them, stage by
- * stage; the energy ledger books what happened, and the lanes are copied back. Bodies held in some components, and all
- * with the paper's rotation, get their rotation one by one; those held in every component are in no group and cost
- * nothing as long as they stand. */
+ * whole vectors where the bodies of a group are side by side, and their poses one by one; loops over the lanes kick and
+ * turn all of them, stage by stage; the energy ledger books what happened, and the lanes are copied back. Bodies held in
+ * some components, and all with the paper's rotation, get their rotation one by one; those held in every component are
+ * in no group and cost nothing as long as they stand. */
 #include "cycle/cycle_room.h"
 #include "cycle/turn.h"
 
