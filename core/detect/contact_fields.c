@@ -196,8 +196,7 @@ tl_status tl_block_neighbours(tl_model *m, tl_id block, tl_id **ids, size_t *cou
     for (uint32_t e = begin; e < end; e++) {
         uint32_t c = d->by_block[e];
         if (d->contacts.point_count[c])
-            list[(*count)++] =
-                m->blocks.id[d->contacts.a[c] == row ? d->contacts.b[c] : d->contacts.a[c]];
+            list[(*count)++] = m->blocks.id[tl_contact_partner(&d->contacts, c, row)];
     }
     *ids = list;
     return TL_OK;

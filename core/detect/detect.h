@@ -466,6 +466,11 @@ static inline double tl_pair_odometer(const tl_model *m, uint32_t a, uint32_t b)
 {
     return m->bodies.odometer[m->blocks.body[a]] + m->bodies.odometer[m->blocks.body[b]];
 }
+/* The block with which a block has a contact. */
+static inline uint32_t tl_contact_partner(const tl_contacts *c, uint32_t contact, uint32_t block)
+{
+    return c->a[contact] == block ? c->b[contact] : c->a[contact];
+}
 /* Moment of a contact's forces on A, or on B, about that block's body's centroid. */
 static inline tl_vec3 tl_contact_moment(const tl_model *m, uint32_t contact, bool on_b)
 {

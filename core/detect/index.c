@@ -41,11 +41,6 @@ static void list_all(tl_detect *d, size_t blocks)
     }
 }
 
-static uint32_t partner_of(const tl_contacts *c, uint32_t contact, uint32_t block)
-{
-    return c->a[contact] == block ? c->b[contact] : c->a[contact];
-}
-
 /* Puts sorted entries in between those that are listed: from the last one on, what lies behind it moves up. */
 static void put_entries(tl_detect *d, size_t blocks, const entry *list, size_t count)
 {
@@ -55,7 +50,7 @@ static void put_entries(tl_detect *d, size_t blocks, const entry *list, size_t c
         const entry *e = &list[k];
         size_t at = start[e->block + 1] < end ? start[e->block + 1] : end;
         while (at > start[e->block] &&
-               partner_of(&d->contacts, by_block[at - 1], e->block) > e->partner)
+               tl_contact_partner(&d->contacts, by_block[at - 1], e->block) > e->partner)
             at--;
         memmove(&by_block[at + k + 1], &by_block[at], (end - at) * sizeof *by_block);
         by_block[at + k] = e->contact;

@@ -25,7 +25,7 @@ bool tl_touches_add(const tl_model *m, uint32_t row, tl_touches *touches)
             if (facet->kind != TL_FACET_PATCH)
                 continue;
             uint32_t face = first ? facet->ia : facet->ib;
-            tl_touch touch = {.other = first ? c->b[contact] : c->a[contact],
+            tl_touch touch = {.other = tl_contact_partner(c, contact, row),
                               .normal = tl_m3_mul(turn, shape->plane[face].normal),
                               .joint = c->tag[contact]};
             for (uint32_t k = facet->begin; k < facet->begin + (uint32_t)facet->count; k++)
