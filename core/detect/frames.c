@@ -77,6 +77,7 @@ enum {
 };
 static_assert(sizeof(tl_facet) >= TL_FACET_ROW * sizeof(double), "a facet is shorter than its row");
 static_assert(sizeof(tl_pose) == TL_POSE_ROW * sizeof(double), "a pose is not its row");
+static_assert(sizeof(tl_pose) % TL_ALIGN == 0, "poses do not begin where lines of memory do");
 static_assert(AT(tl_pose, r) == 0, "a pose does not begin with its matrix");
 
 typedef double pair __attribute__((vector_size(16)));

@@ -59,11 +59,13 @@ static void on_interrupt(int signal_number)
     raise(signal_number);
 }
 
+#define NANOSECOND 1e-9
+
 static double now(void)
 {
     struct timespec t;
     clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+    return (double)t.tv_sec + NANOSECOND * (double)t.tv_nsec;
 }
 
 static void run_begin(run *r, lua_State *L, tl_model *model)
