@@ -64,15 +64,21 @@ static void wander(tl_model *m, uint64_t *seed)
     }
 }
 
-TEST(contacts_of_blocks_are_listed)
+static tl_model *crowd(uint64_t *seed)
 {
-    uint64_t seed = 7;
     tl_model *m = scene_model(1);
     for (int i = 0; i < BLOCKS; i++)
-        add_block(m, &seed);
+        add_block(m, seed);
     scene_law(m, "elastic", 1e6, 1e6, -1);
     scene_forces(m);
     check_lists(m);
+    return m;
+}
+
+TEST(contacts_of_blocks_are_listed)
+{
+    uint64_t seed = 7;
+    tl_model *m = crowd(&seed);
     size_t only_births = 0, several = 0, deaths = 0;
     for (int i = 0; i < STEPS; i++) {
         size_t rows = m->detect->contacts.table.rows;
@@ -97,11 +103,7 @@ TEST(contacts_of_blocks_are_listed)
 TEST(lists_after_a_step_without_memory)
 {
     uint64_t seed = 11;
-    tl_model *m = scene_model(1);
-    for (int i = 0; i < BLOCKS; i++)
-        add_block(m, &seed);
-    scene_law(m, "elastic", 1e6, 1e6, -1);
-    scene_forces(m);
+    tl_model *m = crowd(&seed);
     tl_id first = m->detect->contacts.id[0];
     for (int i = 0; i < 5; i++) {
         add_block(m, &seed);
