@@ -8,6 +8,7 @@
  * both its moments are kept exactly, unless that took stresses beyond those there were. Moments are taken about the centroids of the areas, so a uniform
  * stress stays uniform when the area changes. */
 #include "detect/detect.h"
+#include "detect/polygon.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -120,11 +121,21 @@ static double bounded(double value, double reach, double largest)
     return fabs(value) * reach > largest ? copysign(largest / reach, value) : value;
 }
 
+/* Whether points span a plane, by the second moments of their areas about their centre: det of the moments, or 0 when
+ * they lie within `place` of it or along a line, where slopes would be quotients of rounding. */
+static double spanned(double i11, double i12, double i22, double area, double place)
+{
+    double sum = i11 + i22, det = i11 * i22 - i12 * i12;
+    return sum > area * place * place && det > SINGULAR * sum * sum ? det : 0;
+}
+
 /* Adds a uniform traction and a twist so that shear force and torsion become `want`'s. The twist adds no
  * more than `largest`, a stress: points with hardly an area would need any stress to make up for the
- * torsion, and keep it when their areas grow. */
+ * torsion, and keep it when their areas grow. Points within `place` of their centre are in one place, which no
+ * twist can turn: their arms are rounding. */
 static void correct_shear(tl_points_table *p, const tl_point_lanes *lanes, size_t begin,
-                          size_t count, const totals *now, const totals *want, double largest)
+                          size_t count, const totals *now, const totals *want, double largest,
+                          double place)
 {
     tl_vec3 n = now->normal;
     tl_vec3 force = want->shear;
@@ -140,7 +151,7 @@ static void correct_shear(tl_points_table *p, const tl_point_lanes *lanes, size_
         reach = fmax(reach, tl_v3_norm(across));
     }
     force = tl_v3_madd(force, -tl_v3_dot(force, n), n);
-    double twist = polar > 0 ? bounded(torsion / polar, reach, largest) : 0;
+    double twist = reach > place ? bounded(torsion / polar, reach, largest) : 0;
     for (size_t k = 0; k < count; k++) {
         size_t i = begin + k * TL_LANES;
         tl_vec3 across = tl_v3_cross(n, tl_v3_sub(tl_columns_get(lanes->arm, k), now->centre));
@@ -161,7 +172,7 @@ typedef struct moments {
  * `want`; its slopes add no more than `largest`, for the reason given at correct_shear. */
 static void correct_field(const tl_points_table *p, const tl_point_lanes *lanes, double *value,
                           size_t begin, size_t count, const totals *now, moments want,
-                          double largest)
+                          double largest, double place)
 {
     tl_vec3 t1 = tl_v3_perpendicular(now->normal), t2 = tl_v3_cross(now->normal, t1);
     double i11 = 0, i12 = 0, i22 = 0, reach = 0;
@@ -176,9 +187,8 @@ static void correct_field(const tl_points_table *p, const tl_point_lanes *lanes,
         i12 += a * x * y;
         i22 += a * y * y;
     }
-    double det = i11 * i22 - i12 * i12;
-    double g1 = 0, g2 = 0;
-    if (det > SINGULAR * i11 * i22) {
+    double det = spanned(i11, i12, i22, now->area, place), g1 = 0, g2 = 0;
+    if (det > 0) {
         g1 = bounded((want.along1 * i22 - want.along2 * i12) / det, reach, largest);
         g2 = bounded((want.along2 * i11 - want.along1 * i12) / det, reach, largest);
     }
@@ -225,7 +235,7 @@ static void fit_values(const old_point *o, double *value)
         value[FIT_FIELDS + k] = o->field[k];
 }
 
-static plane_fit fit_plane(const old_point *old, size_t count, const totals *t)
+static plane_fit fit_plane(const old_point *old, size_t count, const totals *t, double place)
 {
     plane_fit fit = {.centre = t->centre, .t1 = tl_v3_perpendicular(t->normal)};
     fit.t2 = tl_v3_cross(t->normal, fit.t1);
@@ -249,8 +259,8 @@ static plane_fit fit_plane(const old_point *old, size_t count, const totals *t)
             fit.high[k] = fmax(fit.high[k], value[k]);
         }
     }
-    double det = i11 * i22 - i12 * i12;
-    fit.made = det > SINGULAR * i11 * i22;
+    double det = spanned(i11, i12, i22, 1, place);
+    fit.made = det > 0;
     for (int k = 0; k < FIT_COUNT && fit.made; k++) {
         double m1 = fit.along1[k], m2 = fit.along2[k];
         fit.along1[k] = (m1 * i22 - m2 * i12) / det;
@@ -356,9 +366,10 @@ bool tl_contact_transfer(tl_model *m, uint32_t c, tl_narrow *room, const tl_poin
     contacts->point_count[c] = (uint16_t)g->point_count;
     for (size_t k = g->point_count; k < contacts->point_room[c]; k++)
         tl_point_clear(p, tl_point_row(contacts, c, k));
+    double place = TL_MERGE * fmin(m->blocks.size[contacts->a[c]], m->blocks.size[contacts->b[c]]);
     plane_fit fit = {.made = false};
     if (before.area > 0 && !room->reframed)
-        fit = fit_plane(old, old_count, &before);
+        fit = fit_plane(old, old_count, &before, place);
     write_points(m, c, g, old, old_count, &fit, lanes);
     if (old_count == 0 || g->point_count == 0 || !(before.area > 0))
         return true;
@@ -375,7 +386,7 @@ bool tl_contact_transfer(tl_model *m, uint32_t c, tl_narrow *room, const tl_poin
     double largest = 0;
     for (size_t k = 0; k < old_count && !room->reframed; k++)
         largest = fmax(largest, tl_v3_norm(old[k].shear));
-    correct_shear(p, lanes, begin, g->point_count, &now, &want, largest);
+    correct_shear(p, lanes, begin, g->point_count, &now, &want, largest, place);
     double *value = room->value;
     for (int field = 0; field < FIELD_COUNT && p->f_n0; field++) {
         moments keep = field_moments(old, old_count, field, &before, now.normal);
@@ -389,7 +400,7 @@ bool tl_contact_transfer(tl_model *m, uint32_t c, tl_narrow *room, const tl_poin
             size_t i = tl_point_row(contacts, c, k);
             value[k] = field == FIELD_REFERENCE ? p->reference[i] : p->f_n0[i] / p->area[i];
         }
-        correct_field(p, lanes, value, begin, g->point_count, &now, keep, largest);
+        correct_field(p, lanes, value, begin, g->point_count, &now, keep, largest, place);
         for (size_t k = 0; k < g->point_count; k++) {
             size_t i = tl_point_row(contacts, c, k);
             if (field == FIELD_REFERENCE)
