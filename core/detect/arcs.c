@@ -133,12 +133,13 @@ TL_VECTORIZED static void find_under(const tl_over *over, uint32_t begin, double
 }
 
 /* The edges of a block that no vertex of the other rules out. */
-static size_t list_edges(const tl_poly *p, const tl_over *over, double floor, uint16_t *list)
+static size_t list_edges(const tl_poly *p, const tl_over *over, bool walls, double floor,
+                         uint16_t *list)
 {
     size_t count = 0;
     for (uint32_t i = 0; i < p->edge_count; i++) {
         list[count] = (uint16_t)i;
-        count += !p->hidden[i];
+        count += !(walls && p->hidden[i]);
     }
     for (uint32_t begin = 0; begin < over->vertices; begin += BITS) {
         size_t left = 0;
@@ -154,15 +155,15 @@ static size_t list_edges(const tl_poly *p, const tl_over *over, double floor, ui
 }
 
 tl_arcs tl_arcs_begin(const tl_pair_view *view, const tl_over *on_a, const tl_over *on_b,
-                      double least, double *room)
+                      bool walls, double least, double *room)
 {
     void *a = room, *b = room + list_room(view->a);
     room += list_room(view->a) + list_room(view->b);
     void *rows = room + ROW_COLUMNS * TL_ARCS_ROW;
     tl_arcs arcs = {.view = view, .least = least, .a = a, .b = b, .columns = room, .rows = rows};
     double floor = fmin(least, 0);
-    arcs.a_count = list_edges(view->a, on_a, floor, arcs.a);
-    arcs.b_count = arcs.a_count ? list_edges(view->b, on_b, floor, arcs.b) : 0;
+    arcs.a_count = list_edges(view->a, on_a, walls, floor, arcs.a);
+    arcs.b_count = arcs.a_count ? list_edges(view->b, on_b, walls, floor, arcs.b) : 0;
     return arcs;
 }
 

@@ -31,9 +31,10 @@ typedef struct tl_arcs {
 size_t tl_arcs_room(const tl_poly *a, const tl_poly *b);
 /* B's vertices over A's faces (`on_a`), and A's over B's; what is left of the room. */
 double *tl_over_faces(const tl_pair_view *view, double *room, tl_over *on_a, tl_over *on_b);
-/* The edges left when those are gone whose axes' s is no more than `least` for certain. */
+/* The edges left when those are gone whose axes' s is no more than `least` for certain; without those of seams for
+ * `walls`. */
 tl_arcs tl_arcs_begin(const tl_pair_view *view, const tl_over *on_a, const tl_over *on_b,
-                      double least, double *room);
+                      bool walls, double least, double *room);
 /* For each edge arcs->a[k] those of the TL_ARCS_ROW edges arcs->b[begin], ... whose arcs cross its own, and whose s may
  * be above `least`: a bit each. */
 const uint64_t *tl_arcs_across(const tl_arcs *arcs, size_t begin);

@@ -115,10 +115,13 @@ static void offer(tl_axis *best, const tl_axis *one)
 
 /* cos from which a direction counts as going into a seam. */
 #define INTO_SEAM 1e-6
-/* Share of the size that blocks which press on each other never overlap by. */
-#define BESIDE 0.01
-/* Share of the gap at which a contact ends. */
-#define BEYOND_REACH 1.01
+/* Overlap, relative to the size, up to which parts have no common volume: above the rounding of cuts and of parts that
+ * were placed in contact (TL_POLY_ON), below any overlap that carries. */
+#define NO_VOLUME 1e-8
+/* Parts that lie deeper than this share of the size under each other's walls, ... */
+#define BESIDE 0.002
+/* ... while a direction that is none of a wall separates them but for this share of that depth, meet through a seam. */
+#define BESIDE_LEAD 0.25
 
 /* True when the part, at one of its vertices, goes on in `outward` into another part of its body. */
 static bool goes_on(const tl_poly *p, uint32_t vertex, tl_vec3 outward, const tl_mat3 *turn)
@@ -164,14 +167,14 @@ static bool b_is_inside(const tl_pair_view *view, tl_vec3 n)
 /* A face of the body's surface is a wall itself: what may be missing is one of the other body that meets
  * it. */
 static void search_faces(const tl_pair_view *view, const tl_over *on_a, const tl_over *on_b,
-                         tl_axis *best)
+                         bool walls, tl_axis *best)
 {
     for (uint32_t f = 0; f < on_a->faces; f++) {
         tl_axis one = {.kind = TL_AXIS_FACE_A,
                        .ia = (uint16_t)f,
                        .n = view->a->plane[f].normal,
                        .s = on_a->low[f] - on_a->offset[f]};
-        if (one.s > best->second && !view->a->covered[f] && !b_is_inside(view, one.n))
+        if (one.s > best->second && !(walls && (view->a->covered[f] || b_is_inside(view, one.n))))
             offer(best, &one);
     }
     for (uint32_t f = 0; f < on_b->faces; f++) {
@@ -179,7 +182,7 @@ static void search_faces(const tl_pair_view *view, const tl_over *on_a, const tl
                        .ib = (uint16_t)f,
                        .n = tl_v3_neg(view->normal_b[f]),
                        .s = on_b->low[f] - on_b->offset[f]};
-        if (one.s > best->second && !view->b->covered[f] && !a_is_inside(view, one.n))
+        if (one.s > best->second && !(walls && (view->b->covered[f] || a_is_inside(view, one.n))))
             offer(best, &one);
     }
 }
@@ -252,7 +255,7 @@ static bool may_matter(const tl_pair_view *view, uint32_t ia, uint32_t ib, const
              t * t > limit * limit * c2);
 }
 
-static void search_edges(const tl_pair_view *view, const tl_arcs *arcs, tl_axis *best)
+static void search_edges(const tl_pair_view *view, const tl_arcs *arcs, bool walls, tl_axis *best)
 {
     for (size_t begin = 0; begin < arcs->b_count; begin += TL_ARCS_ROW) {
         const uint64_t *rows = tl_arcs_across(arcs, begin);
@@ -261,54 +264,26 @@ static void search_edges(const tl_pair_view *view, const tl_arcs *arcs, tl_axis 
                 uint32_t i = arcs->a[k], j = arcs->b[begin + (size_t)__builtin_ctzll(bits)];
                 tl_axis one;
                 if (may_matter(view, i, j, best) && edge_axis(view, i, j, &one) &&
-                    one.s > best->second && !a_is_inside(view, one.n) && !b_is_inside(view, one.n))
+                    one.s > best->second &&
+                    !(walls && (a_is_inside(view, one.n) || b_is_inside(view, one.n))))
                     offer(best, &one);
             }
     }
 }
 
-/* Largest s along the faces that lie on other parts of the same body. */
-static double seam_separation(const tl_pair_view *view)
-{
-    double most = -INFINITY;
-    for (uint32_t f = 0; f < view->a->face_count; f++)
-        if (view->a->covered[f]) {
-            tl_plane plane = view->a->plane[f];
-            double low = lowest(view->vertex_b, view->b->vertex_count, plane.normal);
-            most = fmax(most, low - plane.offset);
-        }
-    for (uint32_t f = 0; f < view->b->face_count; f++)
-        if (view->b->covered[f]) {
-            double low = lowest(view->a->vertex, view->a->vertex_count, view->normal_b[f]);
-            most = fmax(most, low - offset_b(view, f));
-        }
-    return most;
-}
-
-/* Parts of bodies that seem to lie deep in each other because only a seam's face, which is no wall,
- * separates them: what touches is what goes on beyond the seam. */
-static bool is_beside_seam(const tl_pair_view *view, double s)
-{
-    return s < -BESIDE * view->size && (view->a->seams || view->b->seams) &&
-           seam_separation(view) > -BESIDE * view->size;
-}
-
-tl_axis tl_axis_search(const tl_pair_view *view, tl_narrow *room, const tl_axis_features *previous)
+/* The best of all axes, or of those along which a wall of one meets a wall of the other. s is -INFINITY where no wall
+ * meets one. */
+static tl_axis search(const tl_pair_view *view, tl_narrow *room, bool walls)
 {
     tl_axis face = {.s = -INFINITY, .second = -INFINITY};
     tl_over on_a, on_b;
     double *rest = tl_over_faces(view, room->dots, &on_a, &on_b);
-    search_faces(view, &on_a, &on_b, &face);
+    search_faces(view, &on_a, &on_b, walls, &face);
     tl_axis best = face;
     double least = face.second - FACE_PREFERENCE * view->size;
-    tl_arcs arcs = tl_arcs_begin(view, &on_a, &on_b, least, rest);
-    search_edges(view, &arcs, &best);
-    if (!isfinite(best.s)) {
-        /* no wall of one meets a wall of the other: parts deep inside bodies */
-        best.s = view->size;
-        return best;
-    }
-    if (best.kind == TL_AXIS_EDGES) {
+    tl_arcs arcs = tl_arcs_begin(view, &on_a, &on_b, walls, least, rest);
+    search_edges(view, &arcs, walls, &best);
+    if (best.kind == TL_AXIS_EDGES && isfinite(best.s)) {
         /* an edge axis counts by its full support, and only when it beats the faces clearly */
         best.s = gap_along(view, best.n);
         if (best.s <= face.s + FACE_PREFERENCE * view->size) {
@@ -317,6 +292,28 @@ tl_axis tl_axis_search(const tl_pair_view *view, tl_narrow *room, const tl_axis_
             best = face;
             best.second = second;
         }
+    }
+    return best;
+}
+
+/* Parts of joined bodies that do not press on each other, although their walls overlap: either they have no common
+ * volume, for a seam's face or edge separates them, or they have little of it and lie deep under each other's walls,
+ * for they meet through a seam. What is beyond the seam is touched instead. */
+static bool is_beside_seam(const tl_pair_view *view, double walls, double all)
+{
+    double none = NO_VOLUME * view->size;
+    return all > walls + none &&
+           (all > -none || (walls < -BESIDE * view->size && all > BESIDE_LEAD * walls));
+}
+
+tl_axis tl_axis_search(const tl_pair_view *view, tl_narrow *room, const tl_axis_features *previous)
+{
+    tl_axis best = search(view, room, true);
+    if (view->a->seams || view->b->seams) {
+        double all = search(view, room, false).s;
+        if (is_beside_seam(view, best.s, all))
+            return (tl_axis){
+                .n = best.n, .s = INFINITY, .second = fmax(all, TL_SILENT * view->size)};
     }
     if (previous) {
         tl_axis kept = tl_axis_of(*previous);
@@ -327,10 +324,12 @@ tl_axis tl_axis_search(const tl_pair_view *view, tl_narrow *room, const tl_axis_
             best = kept;
         }
     }
-    /* just out of reach, so that it is looked at again after little motion */
-    if (is_beside_seam(view, best.s))
-        best.s = BEYOND_REACH * TL_CONTACT_TOLERANCE * TL_CONTACT_RELEASE * view->size;
     return best;
+}
+
+double tl_axis_wait(const tl_axis *axis, double size)
+{
+    return isfinite(axis->s) ? axis->s - TL_CONTACT_TOLERANCE * size : axis->second;
 }
 
 /* A vertex of the lower-dimensional side lies over the face. */

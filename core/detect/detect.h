@@ -53,7 +53,7 @@ typedef struct tl_axis {
     uint16_t ia, ib; /* face of A or of B, or edge of A and edge of B */
     tl_vec3 n;       /* unit, A to B, in A's frame */
     double s;        /* min over B - max over A of n . x: the gap, negative when overlapping */
-    double second;   /* the next best axis's s */
+    double second;   /* the next best axis's s; for an s of INFINITY how far the pair may run */
 } tl_axis;
 
 /* The features it belongs to: all that a contact keeps of its axis. */
@@ -350,8 +350,11 @@ bool tl_look_near(const tl_pair_view *view, double reach);
 bool tl_pair_place(tl_pair_view *view, tl_narrow *room);
 /* Fills them for one face of B only. */
 bool tl_pair_place_face(tl_pair_view *view, uint32_t face, tl_narrow *room);
-/* The exact common plane's axis. That of the features of `previous` (or NULL) is preferred when nearly as good. */
+/* The exact common plane's axis. That of the features of `previous` (or NULL) is preferred when nearly as good. s is
+ * INFINITY where parts of joined bodies do not press on each other, whatever their walls do. */
 tl_axis tl_axis_search(const tl_pair_view *view, tl_narrow *room, const tl_axis_features *previous);
+/* How far a pair whose axis parts it may run before it is searched again. */
+double tl_axis_wait(const tl_axis *axis, double size);
 /* n and s of an axis's features in the present place, whether or not they still define it; false for edges that are
  * parallel. */
 bool tl_axis_place(const tl_pair_view *view, tl_axis *axis);

@@ -145,7 +145,7 @@ static void look_at(tl_model *m, tl_pair *p, tl_narrow *room)
     }
     tl_axis axis = tl_axis_search(&view, room, NULL);
     if (axis.s > tolerance) {
-        tl_pair_sleep(d, p, axis.s - tolerance);
+        tl_pair_sleep(d, p, tl_axis_wait(&axis, view.size));
         return;
     }
     tl_share_rule rule = tl_share_rule_of(m, &view, tl_touching_tag(&view, axis.n), false);

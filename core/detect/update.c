@@ -99,6 +99,14 @@ static void refit(tl_model *m, uint32_t c, const tl_manifold *g)
     }
 }
 
+/* Ends a contact whose blocks have parted along an axis. */
+static void part(tl_model *m, uint32_t c, const tl_axis *axis, double size)
+{
+    tl_contacts *contacts = &m->detect->contacts;
+    contacts->fate[c] = TL_FATE_DIE;
+    tl_pair_sleep(m->detect, &m->detect->pairs[contacts->pair[c]], tl_axis_wait(axis, size));
+}
+
 /* The contact's facets in the present place, by its axis followed or searched. false: out of memory. */
 static bool rebuild(tl_model *m, uint32_t c, tl_narrow *room, bool across)
 {
@@ -115,6 +123,14 @@ static bool rebuild(tl_model *m, uint32_t c, tl_narrow *room, bool across)
             continue; /* edges that no longer meet have no axis */
         if (search) {
             axis = tl_axis_search(&view, room, &contacts->axis[c]);
+            if (isinf(axis.s) && !across) {
+                part(m, c, &axis, view.size);
+                return true;
+            }
+            if (isinf(axis.s)) { /* what bonds carry goes on along the walls that they belong to */
+                axis = tl_axis_of(contacts->axis[c]);
+                tl_axis_place(&view, &axis);
+            }
             contacts->search[c] = odometer + tl_axis_margin(&axis, view.size);
         }
         tl_tag tag = tl_touching_tag(&view, axis.n);
@@ -135,9 +151,7 @@ static bool rebuild(tl_model *m, uint32_t c, tl_narrow *room, bool across)
         }
         /* a pair that touches without area stays a contact, so that it need not be born again */
         if (axis.s > TL_CONTACT_TOLERANCE * TL_CONTACT_RELEASE * view.size && !across) {
-            contacts->fate[c] = TL_FATE_DIE;
-            tl_pair_sleep(m->detect, &m->detect->pairs[contacts->pair[c]],
-                          axis.s - TL_CONTACT_TOLERANCE * view.size);
+            part(m, c, &axis, view.size);
         }
         return true;
     }
