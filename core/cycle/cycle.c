@@ -42,6 +42,7 @@ static void add_columns(struct tl_cycle *c)
     TL_COLUMN(t, c, reaction_of, 0);
     TL_COLUMN(t, c, alpha, 0);
     TL_COLUMN(t, c, rate, 0);
+    TL_COLUMN(t, c, face_rate, 0);
 }
 
 tl_status tl_cycle_prepare(tl_model *m)
@@ -71,9 +72,7 @@ tl_status tl_cycle_prepare(tl_model *m)
                : tl_fail_memory(&m->error);
 }
 
-/* Whether the velocities of this step are half a step behind the places: not when all is held and still, as
- * if the model had not begun. */
-static bool has_begun(const tl_model *m)
+bool tl_model_moves(const tl_model *m)
 {
     if (!m->cycle->all_held)
         return true;
@@ -114,7 +113,8 @@ tl_status tl_step(tl_model *m)
     tl_phase_ends(m, TL_PHASE_MOVE);
     tl_energy_close(m);
     tl_phase_ends(m, TL_PHASE_ENERGY);
-    m->dt = has_begun(m) ? dt : 0;
+    /* velocities are half a step behind the places, but not when all is held and still, as if the model had not begun */
+    m->dt = tl_model_moves(m) ? dt : 0;
     m->time += dt;
     m->cycles++;
     if (!driven) /* the step is whole: bodies went on as they were driven before */

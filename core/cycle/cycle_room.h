@@ -30,12 +30,14 @@ typedef struct tl_rank_energy {
     double stored, dissipated;
 } tl_rank_energy;
 
-/* What the rules of the time step ask of the bodies that count, as long as none comes, goes or is held. */
+/* What the rules of the time step ask of the bodies that count, as long as none comes, goes or is held: with it the column
+ * face_rate. */
 struct tl_counted {
     uint64_t version; /* of the bodies; 0: none */
+    int32_t rotation;
+    bool points; /* whether rates count contact points */
     double least_mass;
-    uint32_t lightest;   /* row, or TL_NO_ROW */
-    double largest_face; /* area; negative: not measured yet */
+    uint32_t lightest; /* row, or TL_NO_ROW */
 };
 
 /* For what the rates of the bodies are known, and the extreme one. */
@@ -92,7 +94,8 @@ struct tl_cycle {
     tl_table table;
     /* per body */
     double *contact_force; /* sum of |contact forces| */
-    double *rate;          /* sum k (1/M + r^2/I) of its contacts, where a rule asks: 0 for none */
+    double *rate;          /* what it asks of the time step, 1/s2 (rates.c); 0: it is held */
+    double *face_rate;     /* the same on its largest face, for a stiffness per area of 1 */
     double *damping_force[3], *damping_moment[3], *alpha; /* what the damping plugin gave */
     uint32_t
         *reaction_of; /* index of the reaction on a body that is held in some way, or TL_NO_ROW */
@@ -107,10 +110,10 @@ struct tl_cycle {
     struct tl_ledger *chunk_ledger, *ledger; /* energy.c */
     double kinetic_before;                   /* of the last step, for its rate */
     double dt;                               /* the step in use */
-    struct tl_counted counted;               /* timestep.c */
+    struct tl_counted counted;               /* rates.c */
     bool all_held;                           /* no body can move */
-    struct tl_rated rated;                   /* timestep.c */
-    double scaled; /* M/(2K) of all bodies with contacts, by mass scaling; 0 without it */
+    struct tl_rated rated;                   /* rates.c */
+    double scaled; /* 1 / (2 rate) of all free bodies, by mass scaling; 0 without it */
     /* the first failure of a parallel phase, by chunk, and the point it came from */
     pthread_mutex_t failure_lock;
     tl_error failure;
@@ -166,8 +169,10 @@ tl_watch *tl_watch_begin(const tl_model *m);
 /* After each step; gives the id of the block that fails steadily, or 0. */
 tl_id tl_watch_step(tl_watch *watch, const tl_model *m);
 void tl_watch_end(tl_watch *watch);
-/* The step to take, s. */
+/* The step to take, s; 0 when nothing moves and nothing says how long it may be. */
 tl_status tl_timestep_choose(tl_model *m, double *dt);
+/* Whether a body can move, or is held but moves. */
+bool tl_model_moves(const tl_model *m);
 tl_status tl_damping_apply(tl_model *m, double dt);
 /* Velocities, places and rotations one step on; false when a user's drive function ends the run (bodies then
  * go on as they were driven before). */

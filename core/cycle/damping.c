@@ -164,9 +164,9 @@ tl_status tl_damping_apply(tl_model *m, double dt)
     tl_damping_totals totals = {.size = sizeof totals,
                                 .dt = dt,
                                 .kinetic = kinetic,
-                                .kinetic_rate = (kinetic - c->kinetic_before) / dt,
+                                .kinetic_rate = dt > 0 ? (kinetic - c->kinetic_before) / dt : 0,
                                 .power_unit = 2 * kinetic};
-    if (!m->damping)
+    if (!m->damping || !(dt > 0)) /* a step of 0: nothing moves */
         return TL_OK;
     const tl_damping_ops *ops = m->damping->ops;
     double *state[TL_STATE_COLUMNS];

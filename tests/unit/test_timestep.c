@@ -1,5 +1,6 @@
-/* test_timestep.c - the rates that the rules of the time step keep from step to step, against rates made anew in
- * every step: of blocks that fall on each other, so that contacts come, go and change all the time. */
+/* test_timestep.c - the time step: the rates that its rules keep from step to step, against rates made anew in every step,
+ * of blocks that fall on each other, so that contacts come, go and change all the time; bodies without contacts; and models
+ * from which no step follows. */
 #include "../contact_scene.h"
 
 #define KN 1e8 /* Pa/m */
@@ -86,5 +87,123 @@ TEST(mass_scaling_knows_which_bodies_have_contacts)
     tl_model_destroy(m);
 }
 
+/* ---------------------------------------------------------------- no contacts ------------ */
+
+/* A box a x b x c that falls past another that is held: on its largest face a x b, whose points are c / 2 below. */
+TEST(a_body_without_contacts_stands_on_its_largest_face)
+{
+    const double a = 3, b = 2, c = 0.5, mass = 2000 * a * b * c, kn = 2e7, fraction = 0.7;
+    tl_model *m = scene_model(1);
+    scene_box(m, tl_v3(10, 10, 10), tl_v3(19, 19, 19));
+    scene_box(m, tl_v3(0, 0, 0), tl_v3(a, b, c));
+    scene_ok(m, tl_blocks_fix(m, &m->blocks.id[0], 1, TL_FIX_ALL));
+    scene_law(m, "elastic", kn / 3, kn, -1);
+    double dt, least = mass * fmin(a * a + c * c, b * b + c * c) / 12;
+    double r2 = (a * a + b * b) / 12 + c * c / 4;
+    tl_timestep timestep = {fraction, TL_TIMESTEP_BODY, NAN};
+    scene_ok(m, tl_model_timestep(m, &timestep));
+    scene_ok(m, tl_model_dt(m, &dt));
+    CHECK_REL(dt, fraction * 2 * sqrt(1 / (2 * kn * a * b * (1 / mass + r2 / least))), 1e-12);
+    timestep.rule = TL_TIMESTEP_PAPER;
+    scene_ok(m, tl_model_timestep(m, &timestep));
+    scene_ok(m, tl_model_dt(m, &dt));
+    CHECK_REL(dt, fraction * 2 * sqrt(mass / (2 * kn * a * b)), 1e-12);
+    /* no rotation, no part of it in the step */
+    timestep.rule = TL_TIMESTEP_BODY;
+    scene_ok(m, tl_model_timestep(m, &timestep));
+    scene_ok(m, tl_blocks_fix(m, &m->blocks.id[1], 1, TL_FIX_ROTATION));
+    scene_ok(m, tl_model_dt(m, &dt));
+    CHECK_REL(dt, fraction * 2 * sqrt(mass / (2 * kn * a * b)), 1e-12);
+    tl_model_destroy(m);
+}
+
+/* A stiff law that only others touch by does not shorten the step of a block on a soft joint. */
+TEST(a_body_in_contact_has_the_law_of_its_contacts)
+{
+    tl_model *m = scene_model(1);
+    uint32_t joint = tl_joint_intern(m, "stiff");
+    CHECK(joint > 0);
+    scene_box(m, tl_v3(0, 0, -1), tl_v3(4, 4, 0));
+    scene_box(m, tl_v3(1, 1, 0), tl_v3(2, 2, 1));
+    scene_ok(m, tl_blocks_fix(m, &m->blocks.id[0], 1, TL_FIX_ALL));
+    scene_law(m, "elastic", 1e7, 1e7, -1);
+    double soft, both;
+    scene_ok(m, tl_model_dt(m, &soft));
+    tl_value values[] = {{.key = "kn", .type = TL_VALUE_NUMBER, .number = 1e13},
+                         {.key = "ks", .type = TL_VALUE_NUMBER, .number = 1e13}};
+    scene_ok(m, tl_joint_law(m, "stiff", "elastic", &(tl_args){values, 2}));
+    scene_ok(m, tl_model_dt(m, &both));
+    CHECK_REL(both, soft, 1e-15);
+    tl_model_destroy(m);
+}
+
+/* ---------------------------------------------------------------- no step ---------------- */
+
+static tl_status ten_steps(tl_model *m)
+{
+    tl_solve_result result;
+    return tl_model_cycle(m, 10, &result);
+}
+
+TEST(time_stands_where_nothing_can_move)
+{
+    tl_model *m = scene_model(1);
+    double dt = 1;
+    scene_ok(m, tl_model_damping(m, "local", &(tl_args){NULL, 0}));
+    scene_ok(m, ten_steps(m)); /* without a block */
+    CHECK(m->time == 0);
+    CHECK_INT(m->cycles, 10);
+    scene_box(m, tl_v3(0, 0, 0), tl_v3(1, 1, 1));
+    scene_ok(m, tl_blocks_fix(m, &m->blocks.id[0], 1, TL_FIX_ALL));
+    scene_ok(m, ten_steps(m));
+    scene_ok(m, tl_model_dt(m, &dt));
+    CHECK(m->time == 0 && dt == 0);
+    /* what is held but moves needs a step */
+    tl_block_set moves = {.density = NAN, .velocity = {1, 0, 0}, .angular_velocity = {0, 0, 0}};
+    scene_ok(m, tl_blocks_set(m, &m->blocks.id[0], 1, &moves));
+    CHECK_INT(ten_steps(m), TL_E_STATE);
+    CHECK_CONTAINS(tl_model_error(m)->text, "no law says how stiff a contact is");
+    /* and where the user gives one, time goes on */
+    scene_ok(m, tl_model_timestep(m, &(tl_timestep){0.5, TL_TIMESTEP_BODY, 0.25}));
+    scene_ok(m, ten_steps(m));
+    CHECK_NEAR(m->time, 2.5, 1e-15);
+    CHECK_NEAR(m->bodies.pose[0].u.x, 2.5, 1e-15);
+    tl_model_destroy(m);
+}
+
+/* A body begins with half a kick when it is freed, whatever went before. */
+TEST(a_fall_begins_after_steps_without_time)
+{
+    tl_model *m = scene_model(1);
+    m->config.gravity = tl_v3(0, 0, -10);
+    scene_box(m, tl_v3(0, 0, 0), tl_v3(1, 1, 1));
+    scene_ok(m, tl_blocks_fix(m, &m->blocks.id[0], 1, TL_FIX_ALL));
+    scene_ok(m, ten_steps(m));
+    scene_ok(m, tl_blocks_free(m, &m->blocks.id[0], 1));
+    scene_ok(m, tl_model_timestep(m, &(tl_timestep){0.5, TL_TIMESTEP_BODY, 0.125}));
+    scene_ok(m, ten_steps(m));
+    CHECK_NEAR(m->bodies.pose[0].u.z, -5 * 1.25 * 1.25, 1e-14);
+    tl_model_destroy(m);
+}
+
+TEST(the_reason_for_no_step_is_the_true_one)
+{
+    tl_model *m = scene_model(1);
+    double dt;
+    scene_box(m, tl_v3(0, 0, 0), tl_v3(1e-5, 1e-5, 1e-5));
+    CHECK_INT(tl_model_dt(m, &dt), TL_E_STATE);
+    CHECK_CONTAINS(tl_model_error(m)->text, "no law says how stiff a contact is");
+    scene_law(m, "elastic", 1e308, 1, -1);
+    CHECK_INT(ten_steps(m), TL_E_STATE);
+    CHECK(m->cycles == 0 && m->time == 0);
+    CHECK(!strstr(tl_model_error(m)->text, "no law"));
+    CHECK_CONTAINS(tl_model_error(m)->text, "it would be 0 s; check the units of density");
+    tl_model_destroy(m);
+}
+
 TEST_MAIN(RUN(kept_rates_are_those_of_the_present_contacts),
-          RUN(mass_scaling_knows_which_bodies_have_contacts))
+          RUN(mass_scaling_knows_which_bodies_have_contacts),
+          RUN(a_body_without_contacts_stands_on_its_largest_face),
+          RUN(a_body_in_contact_has_the_law_of_its_contacts),
+          RUN(time_stands_where_nothing_can_move), RUN(a_fall_begins_after_steps_without_time),
+          RUN(the_reason_for_no_step_is_the_true_one))

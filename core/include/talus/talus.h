@@ -229,15 +229,15 @@ typedef struct tl_timestep {
 } tl_timestep;
 
 TL_API tl_status tl_model_timestep(tl_model *model, const tl_timestep *timestep);
-/* The step the next cycle will use, s. */
+/* The step the next cycle will use, s; 0 where nothing can move and no law is set. */
 TL_API tl_status tl_model_dt(tl_model *model, double *dt);
 
 /* Where the step comes from. */
 typedef struct tl_timestep_report {
     double dt;
     tl_id block, partner; /* the block that controls it, and the block of the contact; 0: none */
-    double mass,
-        stiffness; /* of the block's body, kg; of the contact or of all its contacts, N/m */
+    double mass;          /* of the block's body, kg */
+    double stiffness; /* of the contact, of all contacts of the body or of its largest face, N/m */
 } tl_timestep_report;
 
 TL_API tl_status tl_model_timestep_report(tl_model *model, tl_timestep_report *report);

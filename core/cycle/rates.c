@@ -1,0 +1,325 @@
+/* rates.c - what each body asks of the time step: its rate.
+ *
+ * The rate of a body is sum k (1/M + r^2/I) over its contact points: k the stiffness of a point at distance r from the
+ * centroid, I the smallest moment of inertia. Twice the highest rate is no less than the square of any frequency.
+ *
+ * No rate is below that of the body standing on its largest face under the stiffest law of its contacts, or, without a
+ * contact, of the model. So a contact whose area vanishes never makes the step long, and a body that lands finds the
+ * step that its landing needs: a step that shrinks while a body lands costs energy.
+ *
+ * Rates are kept from step to step and made anew where contacts have changed. Where nothing moves by more than areas are
+ * reused for, they cost nothing. */
+#include "cycle/rates.h"
+
+#include <string.h>
+
+/* Steps after which mass scaling rates all bodies again, even when no contact has come or gone: areas may have
+ * grown. */
+#define LOOK_EVERY 64
+
+double tl_law_stiffness(const tl_model *m, uint32_t material)
+{
+    const tl_material *law = &m->materials[material];
+    return law->kn > law->ks ? law->kn : law->ks;
+}
+
+double tl_stiffest_law(const tl_model *m)
+{
+    double k = 0;
+    for (size_t i = 0; i < m->material_count; i++)
+        k = fmax(k, tl_law_stiffness(m, (uint32_t)i));
+    return k;
+}
+
+bool tl_rates_points(const tl_model *m)
+{
+    return m->mass_scaling || m->timestep.rule == TL_TIMESTEP_BODY;
+}
+
+/* ---------------------------------------------------------------- search ----------------- */
+
+static void keep_extreme(tl_row_value *kept, tl_row_value other)
+{
+    if (other.value > kept->value || (other.value == kept->value && other.row < kept->row))
+        *kept = other;
+}
+
+void tl_row_search_note(tl_row_search *s, unsigned thread, tl_row_value found)
+{
+    if (found.row != TL_NO_ROW)
+        keep_extreme(&s->found[thread], found);
+}
+
+tl_row_value tl_row_search_run(tl_row_search *s, size_t rows, size_t chunk, tl_range_fn range)
+{
+    unsigned threads = tl_pool_threads(s->m->pool);
+    for (unsigned t = 0; t < threads; t++)
+        s->found[t] = (tl_row_value){-INFINITY, TL_NO_ROW};
+    tl_parallel_for(s->m->pool, rows, chunk, range, s);
+    for (unsigned t = 1; t < threads; t++)
+        keep_extreme(&s->found[0], s->found[t]);
+    return s->found[0];
+}
+
+/* ---------------------------------------------------------------- areas ------------------ */
+
+/* An area, and its second moment about a body's centroid. */
+typedef struct area_sums {
+    double area, area_r2;
+} area_sums;
+
+/* 1 over mass and smallest moment of inertia; 0 for a rotation that is held. */
+typedef struct inverse_inertia {
+    double mass, moment;
+} inverse_inertia;
+
+static inverse_inertia inverse_of(const tl_model *m, uint32_t body)
+{
+    const tl_bodies *b = &m->bodies;
+    tl_vec3 i = b->moments[body];
+    double least =
+        m->config.rotation == TL_ROTATION_PAPER ? b->round[body] : fmin(i.x, fmin(i.y, i.z));
+    return (inverse_inertia){1 / b->mass[body], b->fixed[body] & TL_FIX_ROTATION ? 0 : 1 / least};
+}
+
+static double rate_of(area_sums on, inverse_inertia per)
+{
+    return on.area * per.mass + on.area_r2 * per.moment;
+}
+
+/* A triangle, about the zero of its frame. */
+static area_sums triangle(tl_vec3 a, tl_vec3 b, tl_vec3 c)
+{
+    double area = 0.5 * tl_v3_norm(tl_v3_cross(tl_v3_sub(b, a), tl_v3_sub(c, a)));
+    double squares = tl_v3_norm2(a) + tl_v3_norm2(b) + tl_v3_norm2(c) +
+                     tl_v3_norm2(tl_v3_add(a, tl_v3_add(b, c)));
+    return (area_sums){area, area * squares / 12};
+}
+
+static area_sums face_of(const tl_poly *shape, uint32_t face)
+{
+    const uint16_t *loop = shape->loop + shape->start[face];
+    area_sums out = {0, 0};
+    for (uint32_t i = 2; i < tl_poly_face_size(shape, face); i++) {
+        area_sums next =
+            triangle(shape->vertex[loop[0]], shape->vertex[loop[i - 1]], shape->vertex[loop[i]]);
+        out.area += next.area;
+        out.area_r2 += next.area_r2;
+    }
+    return out;
+}
+
+/* The largest face of a body that does not lie on another of its blocks. */
+static area_sums largest_face(const tl_model *m, uint32_t body)
+{
+    area_sums largest = {0, 0};
+    for (uint32_t k = 0; k < m->bodies.member_count[body]; k++) {
+        const tl_poly *shape = m->blocks.shape[m->members[m->bodies.member_start[body] + k]];
+        for (uint32_t f = 0; f < shape->face_count; f++) {
+            area_sums face = shape->covered[f] ? (area_sums){0, 0} : face_of(shape, f);
+            if (face.area > largest.area)
+                largest = face;
+        }
+    }
+    return largest;
+}
+
+static area_sums facet_of(const tl_model *m, uint32_t c, const tl_facet *f, bool of_b)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    const tl_points_table *p = &m->detect->points;
+    uint32_t a = m->blocks.body[contacts->a[c]], b = m->blocks.body[contacts->b[c]];
+    /* points are kept in one body's frame; the other's centroid in it */
+    bool in_b = f->kind == TL_FACET_FACE_A;
+    tl_vec3 apart = tl_body_apart(&m->bodies, in_b ? b : a, in_b ? a : b), centre = {0, 0, 0};
+    if (in_b != of_b)
+        centre = tl_m3_tmul(&m->bodies.pose[in_b ? b : a].r, apart);
+    area_sums out = {0, 0};
+    for (uint32_t k = f->begin; k < f->begin + (uint32_t)f->count; k++) {
+        size_t i = tl_point_row(contacts, c, k);
+        out.area += p->area[i];
+        out.area_r2 += p->area[i] * tl_v3_norm2(tl_v3_sub(tl_columns_get(p->p, i), centre));
+    }
+    return out;
+}
+
+/* ---------------------------------------------------------------- one body --------------- */
+
+/* Stiffness of a body's contact points and its second moment, and the stiffest of their laws; 0 without contacts. */
+typedef struct contact_sums {
+    area_sums stiffness;
+    double law;
+} contact_sums;
+
+/* Contacts without area have a law, too. `points`: their stiffness is asked for as well. */
+static contact_sums add_contacts(const tl_model *m, uint32_t body, bool points)
+{
+    const tl_detect *d = m->detect;
+    const tl_contacts *c = &d->contacts;
+    contact_sums out = {{0, 0}, 0};
+    for (uint32_t j = 0; j < m->bodies.member_count[body]; j++) {
+        uint32_t row = m->members[m->bodies.member_start[body] + j];
+        for (uint32_t e = d->by_block_start[row]; e < d->by_block_start[row + 1]; e++) {
+            uint32_t i = d->by_block[e];
+            if (c->material[i] == TL_NO_ROW)
+                continue;
+            double law = tl_law_stiffness(m, c->material[i]);
+            out.law = fmax(out.law, law);
+            for (uint32_t f = 0; points && f < c->facet_count[i]; f++) {
+                area_sums next = facet_of(m, i, &c->facet[c->facet_start[i] + f], c->b[i] == row);
+                out.stiffness.area += law * next.area;
+                out.stiffness.area_r2 += law * next.area_r2;
+            }
+        }
+    }
+    return out;
+}
+
+static double law_on_face(contact_sums of, double stiffest)
+{
+    return of.law > 0 ? of.law : stiffest;
+}
+
+static double body_rate(const tl_model *m, uint32_t body, double stiffest)
+{
+    contact_sums of = add_contacts(m, body, tl_rates_points(m));
+    return fmax(rate_of(of.stiffness, inverse_of(m, body)),
+                law_on_face(of, stiffest) * m->cycle->face_rate[body]);
+}
+
+double tl_rate_stiffness(const tl_model *m, uint32_t body)
+{
+    contact_sums of = add_contacts(m, body, tl_rates_points(m));
+    double law = law_on_face(of, tl_stiffest_law(m));
+    if (rate_of(of.stiffness, inverse_of(m, body)) < law * m->cycle->face_rate[body])
+        return law * largest_face(m, body).area;
+    return of.stiffness.area;
+}
+
+double tl_rate_law(const tl_model *m, uint32_t body)
+{
+    return law_on_face(add_contacts(m, body, false), tl_stiffest_law(m));
+}
+
+/* ---------------------------------------------------------------- all bodies ------------- */
+
+/* The rate of a body that stands on its largest face, for a stiffness per area of 1. Where points do not count, as by the
+ * paper's rule, turning does not either. */
+static double rate_on_face(const tl_model *m, uint32_t body)
+{
+    area_sums face = largest_face(m, body);
+    inverse_inertia per = inverse_of(m, body);
+    return tl_rates_points(m) ? rate_of(face, per) : face.area * per.mass;
+}
+
+static void face_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
+{
+    (void)chunk, (void)thread;
+    const tl_model *m = user;
+    for (uint32_t body = (uint32_t)begin; body < end; body++)
+        m->cycle->face_rate[body] = rate_on_face(m, body);
+}
+
+void tl_rates_count(tl_model *m)
+{
+    struct tl_cycle *c = m->cycle;
+    struct tl_counted *to = &c->counted;
+    struct tl_counted now = {.version = 1 + m->structure + m->constraints,
+                             .rotation = m->config.rotation,
+                             .points = tl_rates_points(m),
+                             .least_mass = INFINITY,
+                             .lightest = TL_NO_ROW};
+    if (to->version == now.version && to->rotation == now.rotation && to->points == now.points)
+        return;
+    const tl_bodies *b = &m->bodies;
+    c->all_held = true;
+    for (uint32_t body = 0; body < b->table.rows && c->all_held; body++)
+        c->all_held = b->fixed[body] == TL_FIX_ALL;
+    for (uint32_t body = 0; body < b->table.rows; body++) {
+        if (tl_body_counts(m, body) && b->mass[body] < now.least_mass) {
+            now.least_mass = b->mass[body];
+            now.lightest = body;
+        }
+    }
+    tl_parallel_for(m->pool, b->table.rows, TL_BODY_CHUNK, face_range, m);
+    *to = now;
+}
+
+/* Which rates a search makes anew, and what it needs for that. */
+typedef struct rate_search {
+    tl_row_search search;
+    double stiffest; /* of the model's laws */
+    bool kept; /* rates are kept in their column, and made anew only where contacts have changed */
+    bool all;  /* all rates are made anew */
+} rate_search;
+
+static void rate_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
+{
+    (void)chunk;
+    rate_search *s = user;
+    const tl_model *m = s->search.m;
+    double *kept = m->cycle->rate;
+    const uint8_t *touched = m->detect->touched;
+    tl_row_value found = {-INFINITY, TL_NO_ROW};
+    for (uint32_t body = (uint32_t)begin; body < end; body++) {
+        double rate = kept[body];
+        if (!s->kept || s->all || touched[body])
+            rate = tl_body_counts(m, body) ? body_rate(m, body, s->stiffest) : 0;
+        if (s->kept)
+            kept[body] = rate;
+        double value = m->mass_scaling ? -rate : rate;
+        if (rate > 0 && value > found.value)
+            found = (tl_row_value){value, body};
+    }
+    tl_row_search_note(&s->search, thread, found);
+}
+
+/* Notes the bodies whose contacts have other points than in the step before; true when there are any. */
+static bool touch_fresh(tl_model *m)
+{
+    tl_detect *d = m->detect;
+    tl_contacts *c = &d->contacts;
+    bool any = false;
+    for (size_t i = 0; i < c->table.rows; i++) {
+        if (!c->fresh[i])
+            continue;
+        d->touched[m->blocks.body[c->a[i]]] = true;
+        d->touched[m->blocks.body[c->b[i]]] = true;
+        any = true;
+        c->fresh[i] = c->point_count[i] > 0; /* without points the laws will not see it */
+    }
+    return any;
+}
+
+/* Where contact points count, bodies are rated anew when one of their contacts has points that were placed in this step;
+ * otherwise, and with mass scaling, when a contact has come, gone or grown; with mass scaling, all now and then. */
+tl_row_value tl_rates_keep(tl_model *m)
+{
+    struct tl_cycle *c = m->cycle;
+    tl_detect *d = m->detect;
+    struct tl_rated now = {.version = 1 + m->structure + m->constraints + m->laws,
+                           .look = m->mass_scaling ? m->cycles / LOOK_EVERY : 0,
+                           .rotation = m->config.rotation};
+    bool all = now.version != c->rated.version || now.look != c->rated.look ||
+               now.rotation != c->rated.rotation;
+    bool some = tl_rates_points(m) && !m->mass_scaling && touch_fresh(m);
+    if (all || some || d->any_touched) {
+        rate_search s = {.search.m = m, .stiffest = tl_stiffest_law(m), .kept = true, .all = all};
+        tl_row_value found =
+            tl_row_search_run(&s.search, m->bodies.table.rows, TL_BODY_CHUNK, rate_range);
+        memset(d->touched, 0, m->bodies.table.rows);
+        d->any_touched = false;
+        now.extreme = fabs(found.value);
+        now.body = found.row;
+        c->rated = now;
+    }
+    return (tl_row_value){c->rated.extreme, c->rated.body};
+}
+
+tl_row_value tl_rates_anew(tl_model *m)
+{
+    rate_search s = {.search.m = m, .stiffest = tl_stiffest_law(m)};
+    tl_row_value found =
+        tl_row_search_run(&s.search, m->bodies.table.rows, TL_BODY_CHUNK, rate_range);
+    return (tl_row_value){fabs(found.value), found.row};
+}
