@@ -171,6 +171,8 @@ tl_id tl_watch_step(tl_watch *watch, const tl_model *m);
 void tl_watch_end(tl_watch *watch);
 /* The step to take, s; 0 when nothing moves and nothing says how long it may be. */
 tl_status tl_timestep_choose(tl_model *m, double *dt);
+/* FRAC of (27): the user's, or that of the rule. */
+double tl_timestep_fraction(const tl_model *m);
 /* Whether a body can move, or is held but moves. */
 bool tl_model_moves(const tl_model *m);
 tl_status tl_damping_apply(tl_model *m, double dt);

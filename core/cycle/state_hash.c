@@ -87,7 +87,7 @@ tl_status tl_state_hash(tl_model *m, char text[33])
         tl_hash_bytes(&hash, m->materials[i].kind->name, strlen(m->materials[i].kind->name));
         tl_hash_bytes(&hash, m->materials[i].params, m->materials[i].kind->params_size);
     }
-    const double settings[] = {m->timestep.fraction, m->timestep.rule, m->area.fraction,
+    const double settings[] = {tl_timestep_fraction(m), m->timestep.rule, m->area.fraction,
                                m->config.rotation, m->mass_scaling};
     tl_hash_bytes(&hash, settings, sizeof settings);
     if (m->damping)

@@ -70,6 +70,13 @@ static bound controlling(tl_model *m, bool report)
     return out;
 }
 
+double tl_timestep_fraction(const tl_model *m)
+{
+    if (!isnan(m->timestep.fraction))
+        return m->timestep.fraction;
+    return m->timestep.rule == TL_TIMESTEP_BODY ? TL_BODY_FRACTION : TL_PAPER_FRACTION;
+}
+
 static double damping_factor(const tl_model *m)
 {
     if (!m->damping)
@@ -139,7 +146,7 @@ static tl_status choose(tl_model *m, double *dt, bound *by)
         *dt = c->dt = m->timestep.dt;
         return TL_OK;
     }
-    double fresh = m->timestep.fraction * damping_factor(m) * 2 * sqrt(least);
+    double fresh = tl_timestep_fraction(m) * damping_factor(m) * 2 * sqrt(least);
     if (!(isfinite(fresh) && fresh > 0)) {
         *dt = 0;
         return tl_model_moves(m) ? no_step(m, fresh) : TL_OK;
@@ -157,7 +164,8 @@ tl_status tl_timestep_choose(tl_model *m, double *dt)
 
 tl_status tl_model_timestep(tl_model *m, const tl_timestep *timestep)
 {
-    if (!(timestep->fraction > 0 && timestep->fraction <= TL_FRACTION_MOST))
+    if (!isnan(timestep->fraction) &&
+        !(timestep->fraction > 0 && timestep->fraction <= TL_FRACTION_MOST))
         return tl_fail(&m->error, TL_E_ARGUMENT, "timestep: fraction = %g is outside (0, %g]",
                        timestep->fraction, TL_FRACTION_MOST);
     if (!isnan(timestep->dt) && !(timestep->dt > 0 && isfinite(timestep->dt)))

@@ -76,10 +76,11 @@ static const tl_lua_key energy_terms[] = {
 };
 
 static const tl_lua_key timestep_results[] = {
-    {"dt", "", "the step the next cycle will use, s"},
+    {"dt", "", "the step the next cycle will use, s; 0 where nothing can move and no law is set"},
     {"block", "", "the block that controls it, or nil"},
     {"partner", "", "the block at the stiffest contact, or nil"},
-    {"mass, stiffness", "", "of the block's body, kg; of the contact or of all its contacts, N/m"},
+    {"mass, stiffness", "",
+     "of the block's body, kg; of the contact, of all its contacts or of its largest face, N/m"},
     {"message", "", "the same in a sentence"},
     {NULL, NULL, NULL},
 };
@@ -187,7 +188,7 @@ const tl_lua_topic tl_lua_topics[] = {
             "selection:free().",
      .keys = tl_lua_drive_keys},
     {.name = "timestep",
-     .usage = "model:timestep{fraction = 0.1}  or  report = model:timestep()",
+     .usage = "model:timestep{fraction = 0.3}  or  report = model:timestep()",
      .function = "timestep",
      .title = "Fields of the report",
      .verbs = timestep_results},

@@ -63,7 +63,7 @@ tl_status tl_model_create(const tl_model_config *config, tl_model **model, tl_er
     m->pool = pool;
     m->next_id = 1;
     m->area = (tl_area_rule){TL_AREA_FRACTION, NAN};
-    m->timestep = (tl_timestep){TL_TIMESTEP_FRACTION, TL_TIMESTEP_PAPER, NAN};
+    m->timestep = (tl_timestep){NAN, TL_TIMESTEP_BODY, NAN};
     atomic_init(&m->interrupted, false);
     blocks_init(&m->blocks);
     bodies_init(&m->bodies);

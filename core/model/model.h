@@ -29,8 +29,9 @@
 /* Default minimum area of edge and point contacts, as a share of the smaller block's mean face area
  * (Hart, Cundall and Lemos 1988). */
 #define TL_AREA_FRACTION 0.01
-/* Default FRAC of (27). */
-#define TL_TIMESTEP_FRACTION 0.1
+/* Default FRAC of (27), by the rule: one contact counts (Hart, Cundall and Lemos 1988), or all of a body. */
+#define TL_PAPER_FRACTION 0.1
+#define TL_BODY_FRACTION 0.5
 
 typedef struct tl_blocks {
     tl_table table;

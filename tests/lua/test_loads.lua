@@ -299,6 +299,11 @@ local cube = model:blocks { group = "cube" }[1]
 check.equal(report.block, cube)
 check.near(report.mass, 2000, 1e-9)
 check.near(report.stiffness, 1e8, 1e-3)
+-- The cube's mass, and its moment 2000 / 6 with the points of a patch of 1 m2 half a metre below: r^2 is 5/12.
+check.near(report.dt, 0.5 * 2 * math.sqrt(1 / (2 * 1e8 * (1 / 2000 + (5 / 12) / (2000 / 6)))), 1e-12)
+model:timestep { rule = "paper" } -- with the fraction 0.1
+report = model:timestep()
+check.equal(report.block, cube)
 check.near(report.dt, 0.1 * 2 * math.sqrt(2000 / (2 * 1e8)), 1e-12)
 check.near(report.dt, model.dt, 0)
 check.holds(report.message:find("^block " .. cube.id .. " controls the step"), report.message)

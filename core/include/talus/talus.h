@@ -222,10 +222,9 @@ typedef enum tl_timestep_rule { TL_TIMESTEP_PAPER, TL_TIMESTEP_BODY } tl_timeste
 #define TL_FRACTION_MOST 2.0
 
 typedef struct tl_timestep {
-    double
-        fraction; /* FRAC of (27), in (0, TL_FRACTION_MOST]; what is stable depends on the rule */
-    int32_t rule; /* tl_timestep_rule */
-    double dt;    /* fixed step, s; NaN: by the rule */
+    double fraction; /* FRAC of (27), in (0, TL_FRACTION_MOST]; NaN: that of the rule */
+    int32_t rule;    /* tl_timestep_rule */
+    double dt;       /* fixed step, s; NaN: by the rule */
 } tl_timestep;
 
 TL_API tl_status tl_model_timestep(tl_model *model, const tl_timestep *timestep);

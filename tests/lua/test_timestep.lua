@@ -1,0 +1,154 @@
+-- The time step: what it is by default, where nothing can move, and what it does to blocks that land.
+local check = require "check"
+local talus = require "talus"
+
+local DENSITY = 2500
+
+-- ---------------------------------------------------------------- by default
+
+-- A free cube on a held one: its points are those of a square of 1 m2 half a metre below, r^2 is 5/12, I is M/6.
+local function cube_on_base()
+    local model = talus.model { gravity = { 0, 0, -10 } }
+    model:generate("box", { min = { 0, 0, -1 }, max = { 1, 1, 0 }, density = DENSITY, group = "base" })
+    model:generate("box", { min = { 0, 0, 0 }, max = { 1, 1, 1 }, density = DENSITY })
+    model:blocks { group = "base" }:fix()
+    model:joint("*", "coulomb", { kn = 1e8, ks = 1e8, friction = 30 })
+    return model
+end
+local function body_step(fraction)
+    return fraction * 2 * math.sqrt(DENSITY / (2 * 1e8 * (1 + 6 * 5 / 12)))
+end
+local function paper_step(fraction)
+    return fraction * 2 * math.sqrt(DENSITY / (2 * 1e8))
+end
+
+local model = cube_on_base()
+check.near(model.dt / body_step(0.5), 1, 1e-12)
+local default = model:state_hash()
+for _, case in ipairs {
+    { {}, body_step(0.5) }, { { fraction = 0.2 }, body_step(0.2) }, { { rule = "paper" }, paper_step(0.1) },
+    { { rule = "paper", fraction = 0.3 }, paper_step(0.3) }, { { rule = "body" }, body_step(0.5) },
+    { { rule = "body", fraction = 1 }, body_step(1) }, { { dt = 1e-3 }, 1e-3 },
+} do
+    model:timestep(case[1])
+    check.near(model.dt / case[2], 1, 1e-12)
+end
+model:timestep { fraction = 0.5 } -- what is the default is the same state when it is said
+check.equal(model:state_hash(), default)
+check.refused(model, function() model:timestep { fraction = 2.5 } end, "fraction")
+
+-- ---------------------------------------------------------------- where nothing can move
+
+model = talus.model { gravity = { 0, 0, -10 } }
+model:cycle(10)
+check.equal(model.time, 0)
+check.equal(model.cycles, 10)
+check.equal(model.dt, 0)
+check.equal(model:timestep().block, nil)
+check.equal(model:timestep().message, "no block controls the step: dt = 0.0 s")
+check.equal(model:solve { max_time = 5, max_cycles = 100 }.time, 0)
+model:generate("box", { min = { 0, 0, 0 }, max = { 1, 1, 1 }, density = DENSITY })
+check.raises(function() model:cycle(1) end, "no law says how stiff a contact is")
+model:blocks():fix()
+model:cycle(10)
+check.equal(model.time, 0)
+model:blocks():drive { velocity = { 1, 0, 0 } }
+check.raises(function() model:cycle(1) end, "no law says how stiff a contact is")
+model:joint("*", "coulomb", { kn = 1e8, ks = 1e8, friction = 30 })
+model:cycle(10)
+check.near(model.time / (10 * paper_step(0.5)), 1, 1e-12) -- its rotation is held, and not in the step
+
+-- ---------------------------------------------------------------- blocks that land
+
+-- A box of half sides `half`, turned by `turns` {axis, degrees}, its lowest vertex at `height` over x and y.
+local function turned_box(half, turns, x, y, height)
+    local vertices, low = {}, math.huge
+    for i = 0, 7 do
+        local p = { (i % 2 * 2 - 1) * half[1], (i // 2 % 2 * 2 - 1) * half[2], (i // 4 * 2 - 1) * half[3] }
+        for _, turn in ipairs(turns) do
+            local k, s, c = turn[1], math.sin(math.rad(turn[2])), math.cos(math.rad(turn[2]))
+            local u, v = k % 3 + 1, (k + 1) % 3 + 1
+            p[u], p[v] = c * p[u] - s * p[v], s * p[u] + c * p[v]
+        end
+        vertices[i + 1] = p
+        low = math.min(low, p[3])
+    end
+    for _, p in ipairs(vertices) do
+        p[1], p[2], p[3] = p[1] + x, p[2] + y, p[3] - low + height
+    end
+    return vertices
+end
+
+-- Lets it fall on a held slab for a time and a half of its fall; gives the largest error of the energy on the way, the
+-- shortest and the longest step. Without friction, by the default of the step.
+local function land(half, turns, height, kn, share)
+    local m = talus.model { gravity = { 0, 0, -10 } }
+    m:generate("box", { min = { -4, -4, -1 }, max = { 4, 4, 0 }, density = DENSITY, group = "slab" })
+    m:blocks { group = "slab" }:fix()
+    m:generate("polyhedron", { vertices = turned_box(half, turns, 0.1, 0.2, height), density = DENSITY })
+    m:joint("*", "coulomb", { kn = kn, ks = kn, friction = 0 })
+    m:contact_area { fraction = share or 0.01 }
+    local worst, shortest, longest = 0, math.huge, 0
+    while m.time < 1.5 * math.sqrt(2 * height / 10) do
+        m:cycle(1)
+        worst = math.max(worst, math.abs(m:energy().balance))
+        shortest, longest = math.min(shortest, m.dt), math.max(longest, m.dt)
+    end
+    return worst, shortest, longest
+end
+
+local CUBE, PLATE = { 0.5, 0.5, 0.5 }, { 1, 1, 0.05 }
+local CORNER = { { 3, 45 }, { 1, math.deg(math.acos(1 / math.sqrt(3))) } } -- down
+-- Bounds: what the steps of 2 to 6 % of a period of the block on its joint may make.
+local landings = {
+    { "flat", CUBE, {}, 0.06 }, { "3 degrees", PLATE, { { 2, 3 } }, 0.06 },
+    { "3 degrees, turned", PLATE, { { 2, 3 }, { 3, 20 } }, 0.06 },
+    { "on an edge", CUBE, { { 2, 44 } }, 0.005 }, { "on a corner", CUBE, CORNER, 0.005 },
+    { "nearly on an edge", CUBE, { { 2, 30 }, { 3, 10 } }, 0.02 },
+}
+for _, landing in ipairs(landings) do
+    local name, half, turns, bound = table.unpack(landing)
+    for _, kn in ipairs { 1e8, 1e9 } do
+        for _, height in ipairs { 0.3, 0.41 } do
+            local worst, shortest, longest = land(half, turns, height, kn)
+            check.holds(worst < bound, string.format("%s, kn = %g, %g m: energy off by %.2g", name, kn, height, worst))
+            check.holds(longest < 1.2 * shortest, string.format("%s: one step, %g to %g s", name, shortest, longest))
+        end
+    end
+end
+
+-- A cube falls corner on corner of another, with no area where they touch first: the step stays that of a face.
+for _, share in ipairs { 0, 0.01 } do
+    local m = talus.model { gravity = { 0, 0, -10 } }
+    m:generate("polyhedron", { vertices = turned_box(CUBE, CORNER, 0, 0, 0), density = DENSITY, group = "held" })
+    m:generate("polyhedron", { vertices = turned_box(CUBE, CORNER, 0.01, 0.02, 1.74), density = DENSITY })
+    m:blocks { group = "held" }:fix()
+    m:joint("*", "coulomb", { kn = 1e8, ks = 1e8, friction = 30 })
+    m:contact_area { fraction = share }
+    local longest, least, touched = 0, body_step(0.5), false
+    for _ = 1, 400 do
+        m:cycle(1)
+        touched = touched or #m:contacts() > 0
+        longest = math.max(longest, m.dt)
+    end
+    check.holds(touched, "they touch")
+    check.holds(longest < 1.001 * least, string.format("a step of %g s, on a face %g s", longest, least))
+end
+
+-- A cube slides off the end of a slab, until they share nothing: by either rule the step is never longer than on its face.
+for rule, step in pairs { body = body_step(0.5), paper = paper_step(0.1) } do
+    local m = talus.model { gravity = { 0, 0, -10 } }
+    m:generate("box", { min = { -1, -1, -1 }, max = { 1, 1, 0 }, density = DENSITY, group = "slab" })
+    m:generate("box", { min = { -0.5, -0.5, 0 }, max = { 0.5, 0.5, 1 }, density = DENSITY, group = "cube" })
+    m:blocks { group = "slab" }:fix()
+    m:joint("*", "coulomb", { kn = 1e8, ks = 1e8, friction = 0 })
+    m:timestep { rule = rule }
+    m:blocks { group = "cube" }:set { velocity = { 6, 0, 0 } }
+    local longest = 0
+    while m.time < 0.5 do
+        m:cycle(1)
+        longest = math.max(longest, m.dt)
+    end
+    check.holds(m:blocks { group = "cube" }[1].centroid[1] > 2, "it is off")
+    check.holds(longest < 1.001 * step, string.format("%s: a step of %g s, on its face %g s", rule, longest, step))
+end
