@@ -113,7 +113,9 @@ struct tl_cycle {
     struct tl_counted counted;               /* rates.c */
     bool all_held;                           /* no body can move */
     struct tl_rated rated;                   /* rates.c */
-    double scaled; /* 1 / (2 rate) of all free bodies, by mass scaling; 0 without it */
+    uint64_t sliver_structure; /* 1 + that of the model when slivers were looked for: sliver.c */
+    tl_id sliver;              /* the one that was told of last */
+    double scaled;             /* 1 / (2 rate) of all free bodies, by mass scaling; 0 without it */
     /* the first failure of a parallel phase, by chunk, and the point it came from */
     pthread_mutex_t failure_lock;
     tl_error failure;
@@ -173,6 +175,8 @@ void tl_watch_end(tl_watch *watch);
 tl_status tl_timestep_choose(tl_model *m, double *dt);
 /* FRAC of (27): the user's, or that of the rule. */
 double tl_timestep_fraction(const tl_model *m);
+/* Says once of a model's blocks that one of them makes the step short: sliver.c. */
+void tl_sliver_remark(tl_model *m);
 /* Whether a body can move, or is held but moves. */
 bool tl_model_moves(const tl_model *m);
 tl_status tl_damping_apply(tl_model *m, double dt);

@@ -151,6 +151,8 @@ static tl_status choose(tl_model *m, double *dt, bound *by)
         *dt = 0;
         return tl_model_moves(m) ? no_step(m, fresh) : TL_OK;
     }
+    if (!by && !m->mass_scaling)
+        tl_sliver_remark(m);
     if (!(c->dt > 0) || fresh < c->dt || fresh > STEP_GROWTH * c->dt)
         c->dt = fresh;
     *dt = c->dt;

@@ -1,6 +1,6 @@
 /* test_timestep.c - the time step: the rates that its rules keep from step to step, against rates made anew in every step,
- * of blocks that fall on each other, so that contacts come, go and change all the time; bodies without contacts; and models
- * from which no step follows. */
+ * of blocks that fall on each other, so that contacts come, go and change all the time; bodies without contacts; models
+ * from which no step follows; and what is said of slivers. */
 #include "../contact_scene.h"
 
 #define KN 1e8 /* Pa/m */
@@ -201,9 +201,154 @@ TEST(the_reason_for_no_step_is_the_true_one)
     tl_model_destroy(m);
 }
 
+/* ---------------------------------------------------------------- slivers ---------------- */
+
+typedef struct heard {
+    int remarks;
+    char last[512];
+} heard;
+
+static void listen(void *user, const char *text)
+{
+    heard *h = user;
+    h->remarks++;
+    snprintf(h->last, sizeof h->last, "%s", text);
+}
+
+/* Eight cubes of `size`, one of them in two, the thinner one by `share` of it; 0: whole. */
+static tl_model *eight_cubes(double size, double share, heard *h)
+{
+    tl_model *m = scene_model(1);
+    tl_stage stage;
+    scene_ok(m, tl_stage_begin(m, &stage));
+    for (int i = 0; i < 8; i++) {
+        tl_vec3 from = tl_v3_scale(size, tl_v3(i % 2, i / 2 % 2, i / 4)), to = from;
+        to = tl_v3_add(to, tl_v3(size, size, size));
+        if (i == 5 && share > 0) {
+            tl_vec3 thin = to;
+            thin.x = from.x + share * size;
+            scene_ok(m, tl_stage_add_box(&stage, from, thin, 2000, "rock"));
+            from.x = thin.x;
+        }
+        scene_ok(m, tl_stage_add_box(&stage, from, to, 2000, "rock"));
+    }
+    scene_ok(m, tl_stage_commit(&stage));
+    scene_law(m, "coulomb", 1e9, 1e9, 30);
+    scene_ok(m, tl_model_damping(m, "local", &(tl_args){NULL, 0}));
+    tl_model_log(m, listen, h);
+    return m;
+}
+
+/* The filter that the remark names, with joining. */
+static tl_filter named_filter(const char *text)
+{
+    tl_filter filter = {NAN, NAN, NAN, TL_FILTER_JOIN};
+    const char *volume = strstr(text, "model:filter{ volume = "),
+               *aspect = strstr(text, "model:filter{ aspect = ");
+    if (volume)
+        filter.volume = atof(volume + 23);
+    if (aspect)
+        filter.aspect = atof(aspect + 23);
+    return filter;
+}
+
+static void check_sliver(double size, double share, int32_t rule)
+{
+    heard h = {0, ""};
+    tl_model *m = eight_cubes(size, share, &h);
+    scene_ok(m, tl_model_timestep(m, &(tl_timestep){NAN, rule, NAN}));
+    scene_ok(m, ten_steps(m));
+    scene_ok(m, ten_steps(m));
+    if (!CHECK_INT(h.remarks, 1))
+        return;
+    tl_timestep_report report;
+    scene_ok(m, tl_model_timestep_report(m, &report));
+    char block[40];
+    snprintf(block, sizeof block, "block %u (", report.block);
+    CHECK_CONTAINS(h.last, block);
+    CHECK_INT(tl_model_timestep_report(m, &report), TL_OK);
+    double before = report.dt;
+    tl_filter filter = named_filter(h.last);
+    tl_filter_result result;
+    scene_ok(m, tl_model_filter(m, &filter, &result));
+    CHECK_INT(result.joined, 1);
+    CHECK_INT(result.slivers[0].block, report.block);
+    free(result.slivers);
+    scene_ok(m, ten_steps(m));
+    scene_ok(m, tl_model_timestep_report(m, &report));
+    CHECK_INT(h.remarks, 1);
+    CHECK(report.dt > 3 * before);
+    tl_model_destroy(m);
+}
+
+TEST(a_sliver_is_told_of_once_with_its_remedy)
+{
+    check_sliver(1, 0.01, TL_TIMESTEP_BODY);
+    check_sliver(1e-3, 0.003, TL_TIMESTEP_BODY);
+    check_sliver(1e3, 0.02, TL_TIMESTEP_BODY);
+    check_sliver(1, 0.01, TL_TIMESTEP_PAPER);
+}
+
+static int remarks_of(double share, double density, bool scaling)
+{
+    heard h = {0, ""};
+    tl_model *m = eight_cubes(1, share, &h);
+    tl_block_set lighter = {density, NULL, {NAN, NAN, NAN}, {NAN, NAN, NAN}};
+    scene_ok(m, tl_blocks_set(m, &m->blocks.id[2], 1, &lighter));
+    scene_ok(m, tl_model_mass_scaling(m, scaling));
+    scene_ok(m, ten_steps(m));
+    tl_model_destroy(m);
+    return h.remarks;
+}
+
+/* Cubes in a row; the second is on a stiff joint with the first, which is held. */
+static int remarks_of_a_stiff_joint(void)
+{
+    heard h = {0, ""};
+    tl_model *m = scene_model(1);
+    tl_stage stage;
+    tl_joint_intern(m, "stiff");
+    scene_ok(m, tl_stage_begin(m, &stage));
+    scene_ok(m, tl_stage_add_box(&stage, tl_v3(0, 0, 0), tl_v3(2, 1, 1), 2000, "rock"));
+    scene_ok(m, tl_stage_cut(&stage, tl_v3(1, 0, 0), tl_v3(1, 0.5, 0.5), (tl_tag){1, 1}, 1));
+    for (int i = 2; i < 8; i++)
+        scene_ok(m, tl_stage_add_box(&stage, tl_v3(i, 0, 0), tl_v3(i + 1, 1, 1), 2000, "rock"));
+    scene_ok(m, tl_stage_commit(&stage));
+    for (uint32_t row = 0; row < m->blocks.table.rows; row++)
+        if (tl_block_centroid(m, row).x < 1)
+            scene_ok(m, tl_blocks_fix(m, &m->blocks.id[row], 1, TL_FIX_ALL));
+    scene_law(m, "elastic", 1e7, 1e7, -1);
+    tl_value values[] = {{.key = "kn", .type = TL_VALUE_NUMBER, .number = 1e12},
+                         {.key = "ks", .type = TL_VALUE_NUMBER, .number = 1e12}};
+    scene_ok(m, tl_joint_law(m, "stiff", "elastic", &(tl_args){values, 2}));
+    tl_model_log(m, listen, &h);
+    scene_ok(m, ten_steps(m));
+    /* it is the second block's step, and the joint that makes it short */
+    tl_timestep_report report;
+    scene_ok(m, tl_model_timestep_report(m, &report));
+    uint32_t row = tl_block_row_quiet(m, report.block);
+    CHECK_NEAR(tl_block_centroid(m, row).x, 1.5, 1e-6);
+    CHECK(report.stiffness >= 1e12);
+    tl_model_destroy(m);
+    return h.remarks;
+}
+
+/* Even blocks, a block somewhat thinner, a light block, a stiff law, and a sliver that mass scaling slows down. */
+TEST(nothing_is_said_where_no_sliver_is_to_blame)
+{
+    CHECK_INT(remarks_of(0.01, 2000, false), 1);
+    CHECK_INT(remarks_of(0, 2000, false), 0);
+    CHECK_INT(remarks_of(0.3, 2000, false), 0);
+    CHECK_INT(remarks_of(0, 20, false), 0);
+    CHECK_INT(remarks_of(0.01, 2000, true), 0);
+    CHECK_INT(remarks_of_a_stiff_joint(), 0);
+}
+
 TEST_MAIN(RUN(kept_rates_are_those_of_the_present_contacts),
           RUN(mass_scaling_knows_which_bodies_have_contacts),
           RUN(a_body_without_contacts_stands_on_its_largest_face),
           RUN(a_body_in_contact_has_the_law_of_its_contacts),
           RUN(time_stands_where_nothing_can_move), RUN(a_fall_begins_after_steps_without_time),
-          RUN(the_reason_for_no_step_is_the_true_one))
+          RUN(the_reason_for_no_step_is_the_true_one),
+          RUN(a_sliver_is_told_of_once_with_its_remedy),
+          RUN(nothing_is_said_where_no_sliver_is_to_blame))
