@@ -11,6 +11,8 @@
  * nobody waits for one that does not run. What describes a loop does not change while a chunk of it is out. */
 #include "base/parallel.h"
 
+#include "base/signals.h"
+
 #include <pthread.h>
 #include <stdatomic.h>
 #include <stdbool.h>
@@ -162,6 +164,20 @@ static void end_pool(tl_pool *pool, unsigned started)
     free(pool);
 }
 
+/* Starts the workers with the signals that end a program blocked: the thread that calls the library takes them, when
+ * it is ready to (io/output_file.c). Returns how many threads run, the caller counted. */
+static unsigned start_workers(tl_pool *pool)
+{
+    sigset_t before;
+    tl_signals_hold(&before);
+    unsigned started = 1;
+    while (started < pool->threads &&
+           pthread_create(&pool->workers[started].thread, NULL, work, &pool->workers[started]) == 0)
+        started++;
+    tl_signals_release(&before);
+    return started;
+}
+
 tl_pool *tl_pool_create(unsigned threads)
 {
     tl_pool *pool = aligned_alloc(APART, sizeof *pool);
@@ -177,12 +193,11 @@ tl_pool *tl_pool_create(unsigned threads)
     pthread_mutex_init(&pool->lock, NULL);
     pthread_cond_init(&pool->wake, NULL);
     pthread_cond_init(&pool->done, NULL);
-    for (unsigned i = 1; i < threads; i++)
-        if (pthread_create(&workers[i].thread, NULL, work, &workers[i]) != 0) {
-            end_pool(pool, i);
-            return NULL;
-        }
-    return pool;
+    unsigned started = start_workers(pool);
+    if (started == threads)
+        return pool;
+    end_pool(pool, started);
+    return NULL;
 }
 
 void tl_pool_destroy(tl_pool *pool)

@@ -1,6 +1,7 @@
 /* block_model.c - writes the blocks of a model into a JSON file; docs/block_model.md describes it. Numbers
  * are written with the digits that give back the same double. */
 #include "base/params.h"
+#include "base/signals.h"
 #include "io/output_file.h"
 #include "model/model.h"
 
@@ -102,7 +103,7 @@ static tl_status write_model(FILE *file, tl_model *m)
     return status;
 }
 
-tl_status tl_write_blocks(tl_model *m, const char *path)
+static tl_status write_file(tl_model *m, const char *path)
 {
     tl_output output = {0};
     tl_status status = tl_output_open(&output, path, &m->error);
@@ -113,5 +114,16 @@ tl_status tl_write_blocks(tl_model *m, const char *path)
     if (status == TL_OK)
         status = tl_output_commit(&output, &m->error);
     tl_output_drop(&output);
+    return status;
+}
+
+tl_status tl_write_blocks(tl_model *m, const char *path)
+{
+    sigset_t before;
+    tl_signals_hold(&before);
+    tl_status status = write_file(m, path);
+    tl_signals_release(&before);
+    if (status != TL_OK && status != TL_E_MEMORY)
+        tl_error_prefix(&m->error, "write_blocks: ");
     return status;
 }

@@ -4,6 +4,7 @@
  * The files of a frame are all written under temporary names before the first is renamed, so
  * that a full disk or a folder without permission leaves the series as it was. */
 #include "base/error.h"
+#include "base/signals.h"
 #include "io/output_file.h"
 #include "io/vtk_data.h"
 #include "io/vtk_series.h"
@@ -99,6 +100,8 @@ static tl_status write_frame(tl_model *m, const char *function, const char *pref
 
     /* The data first, then the indices, so that no index ever names a file that is not there. */
     tl_output outputs[2 * PART_COUNT] = {{0}};
+    sigset_t before;
+    tl_signals_hold(&before);
     for (int i = 0; status == TL_OK && i < count; i++)
         status = write_part(m, series, &parts[i], section, &outputs[i]);
     for (int i = 0; status == TL_OK && i < count; i++)
@@ -107,6 +110,7 @@ static tl_status write_frame(tl_model *m, const char *function, const char *pref
         status = tl_output_commit(&outputs[i], &m->error);
     for (int i = 0; i < 2 * count; i++)
         tl_output_drop(&outputs[i]);
+    tl_signals_release(&before);
     if (status == TL_OK)
         tl_vtk_series_add(series, m->time);
     else if (status == TL_E_IO)
