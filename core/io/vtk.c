@@ -7,8 +7,9 @@
 #include "base/signals.h"
 #include "io/output_file.h"
 #include "io/vtk_data.h"
-#include "io/vtk_series.h"
+#include "io/vtk_index.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -49,31 +50,16 @@ static const part frame_parts[] = {
 static const part section_part = {"section", write_section};
 
 enum { PART_COUNT = sizeof frame_parts / sizeof *frame_parts };
-
-/* Opens the file of that name, which is freed; NULL stands for no memory to make it. */
-static tl_status open_named(tl_output *output, char *name, tl_error *error)
-{
-    tl_status status = name ? tl_output_open(output, name, error) : tl_fail_memory(error);
-    free(name);
-    return status;
-}
+static_assert(PART_COUNT <= TL_VTK_PARTS, "a series has an index for each file of a frame");
 
 static tl_status write_part(tl_model *m, const tl_vtk_series *series, const part *p,
                             const tl_plane *section, tl_output *output)
 {
     char *name = tl_vtk_frame_name(series, p->content, series->count);
-    tl_status status = open_named(output, name, &m->error);
+    tl_status status = name ? tl_output_open(output, name, &m->error) : tl_fail_memory(&m->error);
+    free(name);
     if (status == TL_OK)
         status = p->write(m, section, output->file);
-    return status == TL_OK ? tl_output_finish(output, &m->error) : status;
-}
-
-static tl_status write_index(tl_model *m, const tl_vtk_series *series, const part *p,
-                             tl_output *output)
-{
-    tl_status status = open_named(output, tl_vtk_index_name(series, p->content), &m->error);
-    if (status == TL_OK && !tl_vtk_series_index(series, p->content, m->time, output->file))
-        status = tl_fail_memory(&m->error);
     return status == TL_OK ? tl_output_finish(output, &m->error) : status;
 }
 
@@ -87,6 +73,29 @@ static tl_status check_prefix(const char *function, const char *prefix, tl_error
     return TL_OK;
 }
 
+/* The data first, then the indices, so that no index ever names a file that is not there. */
+static tl_status write_files(tl_model *m, tl_vtk_series *series, const part *parts, int count,
+                             const tl_plane *section)
+{
+    tl_output data[PART_COUNT] = {{0}};
+    tl_vtk_index_change indices[PART_COUNT] = {{.file = 0}};
+    tl_status status = TL_OK;
+    for (int i = 0; status == TL_OK && i < count; i++)
+        status = write_part(m, series, &parts[i], section, &data[i]);
+    for (int i = 0; status == TL_OK && i < count; i++)
+        status =
+            tl_vtk_index_open(&indices[i], series, (size_t)i, parts[i].content, m->time, &m->error);
+    for (int i = 0; status == TL_OK && i < count; i++)
+        status = tl_output_commit(&data[i], &m->error);
+    for (int i = 0; status == TL_OK && i < count; i++)
+        status = tl_vtk_index_commit(&indices[i], &m->error);
+    for (int i = 0; i < count; i++) {
+        tl_output_drop(&data[i]);
+        tl_vtk_index_drop(&indices[i]);
+    }
+    return status;
+}
+
 /* Writes the next frame, of `count` files, of the series of that prefix and kind. */
 static tl_status write_frame(tl_model *m, const char *function, const char *prefix,
                              const part *parts, int count, const tl_plane *section)
@@ -98,18 +107,9 @@ static tl_status write_frame(tl_model *m, const char *function, const char *pref
     if (!series)
         return tl_fail_memory(&m->error);
 
-    /* The data first, then the indices, so that no index ever names a file that is not there. */
-    tl_output outputs[2 * PART_COUNT] = {{0}};
     sigset_t before;
     tl_signals_hold(&before);
-    for (int i = 0; status == TL_OK && i < count; i++)
-        status = write_part(m, series, &parts[i], section, &outputs[i]);
-    for (int i = 0; status == TL_OK && i < count; i++)
-        status = write_index(m, series, &parts[i], &outputs[count + i]);
-    for (int i = 0; status == TL_OK && i < 2 * count; i++)
-        status = tl_output_commit(&outputs[i], &m->error);
-    for (int i = 0; i < 2 * count; i++)
-        tl_output_drop(&outputs[i]);
+    status = write_files(m, series, parts, count, section);
     tl_signals_release(&before);
     if (status == TL_OK)
         tl_vtk_series_add(series, m->time);

@@ -1,10 +1,27 @@
-/* vtk_series.h - which frames a model has written under which prefix, and the .vtk.series index. */
+/* vtk_series.h - which frames a model has written under which prefix. */
 #ifndef TL_IO_VTK_SERIES_H
 #define TL_IO_VTK_SERIES_H
 
 #include "model/model.h"
 
-#include <stdio.h>
+#include <sys/types.h>
+
+/* Most files that a frame consists of. */
+#define TL_VTK_PARTS 3
+
+/* Which file of a system a file is, whatever its name. */
+typedef struct tl_vtk_file_id {
+    dev_t device;
+    ino_t number;
+} tl_vtk_file_id;
+
+/* A .vtk.series index as it was last written: vtk_index.c. */
+typedef struct tl_vtk_index {
+    size_t frames; /* that it lists; 0: nothing is known of it */
+    off_t place;   /* where its blank room begins, ... */
+    off_t end;     /* ... and ends */
+    tl_vtk_file_id written;
+} tl_vtk_index;
 
 /* The frames of one prefix and one kind of frame. A model keeps a list of these; frame i was written at times[i]. */
 typedef struct tl_vtk_series {
@@ -13,6 +30,7 @@ typedef struct tl_vtk_series {
     const char *kind;
     double *times;
     size_t count, capacity;
+    tl_vtk_index index[TL_VTK_PARTS];
 } tl_vtk_series;
 
 /* Finds or makes the series of a prefix and a kind of frame (a string that lives as long as the
@@ -23,9 +41,6 @@ tl_vtk_series *tl_vtk_series_of(tl_model *m, const char *prefix, const char *kin
  * PREFIX_CONTENT.vtk.series. The text is the caller's; NULL when out of memory. */
 char *tl_vtk_frame_name(const tl_vtk_series *series, const char *content, size_t frame);
 char *tl_vtk_index_name(const tl_vtk_series *series, const char *content);
-
-/* Writes the index with all frames so far and one more at `time`. false when out of memory. */
-bool tl_vtk_series_index(const tl_vtk_series *series, const char *content, double time, FILE *file);
 
 /* Notes that the frame is written. */
 void tl_vtk_series_add(tl_vtk_series *series, double time);

@@ -2,12 +2,14 @@
  * tests/python/check_vtk.py reads back with VTK itself.
  *
  * The model: a box of 4 x 3 x 2 cut into 24 unit cubes by three joint sets, then once obliquely. */
+#define _GNU_SOURCE /* usleep */
 #include "check.h"
 
 #include <dirent.h>
 #include <signal.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <talus/talus.h>
 #include <unistd.h>
 
@@ -244,6 +246,123 @@ TEST(a_full_disk_is_noticed)
     tl_model_destroy(m);
 }
 
+/* ---- the index of a long series ---- */
+
+#define FRAMES 600
+
+/* The text of a file without blanks; the caller's. */
+static char *squeezed(const char *path)
+{
+    FILE *file = fopen(path, "rb");
+    size_t room = 1 << 20, count = 0;
+    char *text = malloc(room);
+    for (int c; file && text && count + 1 < room && (c = fgetc(file)) != EOF;)
+        if (c != ' ' && c != '\n')
+            text[count++] = (char)c;
+    if (text)
+        text[count] = '\0';
+    if (file)
+        fclose(file);
+    return text;
+}
+
+/* What the index of the blocks is to be, for so many frames at time 0. */
+static char *index_of(const char *name, int frames)
+{
+    char *text = malloc(100 + 100 * (size_t)frames), *end = text;
+    end += sprintf(end, "{\"file-series-version\":\"1.0\",\"files\":[");
+    for (int i = 0; i < frames; i++)
+        end +=
+            sprintf(end, "%s{\"name\":\"%s_blocks_%06d.vtk\",\"time\":0}", i ? "," : "", name, i);
+    sprintf(end, "]}");
+    return text;
+}
+
+static int lists(const char *name, int frames)
+{
+    char path[256];
+    snprintf(path, sizeof path, FOLDER "/%s_blocks.vtk.series", name);
+    char *text = squeezed(path), *wanted = index_of(name, frames);
+    int same = text && wanted && strcmp(text, wanted) == 0;
+    free(text);
+    free(wanted);
+    return same;
+}
+
+static ino_t number_of(const char *path)
+{
+    struct stat info;
+    return stat(path, &info) == 0 ? info.st_ino : 0;
+}
+
+/* Complete after every frame, and written anew a few times only: what a frame costs does not grow with their number. */
+TEST(an_index_is_kept_in_its_place)
+{
+    tl_model *m = empty_model();
+    const char *path = FOLDER "/many_blocks.vtk.series";
+    int anew = 0, wrong = 0;
+    ino_t before = 0;
+    for (int i = 0; i < FRAMES; i++) {
+        CHECK_INT(tl_write_vtk(m, FOLDER "/many"), TL_OK);
+        wrong += !lists("many", i + 1);
+        anew += number_of(path) != before;
+        before = number_of(path);
+    }
+    CHECK_INT(wrong, 0);
+    CHECK(anew <= 30); /* the first 17, and each time when it has doubled */
+    tl_model_destroy(m);
+}
+
+/* A list that is not the one that was written is no place for an entry. */
+TEST(an_index_that_was_changed_is_written_anew)
+{
+    tl_model *one = empty_model(), *other = empty_model();
+    const char *path = FOLDER "/two_blocks.vtk.series";
+    for (int i = 0; i < 60; i++) {
+        CHECK_INT(tl_write_vtk(one, FOLDER "/two"), TL_OK);
+        CHECK(lists("two", i + 1));
+        if (i % 20 == 5)
+            remove(path);
+        if (i % 20 == 9)
+            CHECK_INT(truncate(path, 100), 0);
+        if (i % 20 == 15) {
+            CHECK_INT(tl_write_vtk(other, FOLDER "/two"), TL_OK);
+            CHECK(lists("two", i / 20 + 1));
+        }
+    }
+    tl_model_destroy(one);
+    tl_model_destroy(other);
+}
+
+/* A child that writes frames is killed: what the index lists is there, and nothing else is left. */
+TEST(a_killed_writer_leaves_a_whole_series)
+{
+    for (int round = 0; round < 20; round++) {
+        files_with("killed_", 1);
+        pid_t child = fork();
+        if (child == 0) {
+            tl_model *m = empty_model();
+            for (;;)
+                if (tl_write_vtk(m, FOLDER "/killed") != TL_OK)
+                    _exit(1);
+        }
+        char last[256];
+        snprintf(last, sizeof last, FOLDER "/killed_joints_%06d.vtk", 10 * round);
+        int how = 0;
+        while (!exists(last) && waitpid(child, &how, WNOHANG) == 0)
+            usleep(200);
+        kill(child, round % 2 ? SIGKILL : SIGTERM);
+        CHECK_INT(waitpid(child, &how, 0), child);
+        CHECK(WIFSIGNALED(how));
+        int frames = files_with("killed_blocks_0", 0);
+        CHECK(lists("killed", frames) || lists("killed", frames - 1));
+        if (round % 2 == 0)
+            CHECK_INT(files_with(".tmp", 0), 0);
+        files_with(".tmp", 1);
+    }
+    files_with("killed_", 1);
+}
+
 static void clean_folder(void)
 {
     mkdir(FOLDER, 0777);
@@ -256,4 +375,6 @@ static void clean_folder(void)
 TEST_MAIN(RUN(clean_folder), RUN(two_frames_for_the_reader), RUN(sections_for_the_reader),
           RUN(an_empty_model_has_files_too), RUN(prefixes_count_their_own_frames),
           RUN(a_prefix_names_files), RUN(a_file_is_no_folder), RUN(a_failed_frame_leaves_nothing),
-          RUN(a_full_disk_is_noticed))
+          RUN(a_full_disk_is_noticed), RUN(an_index_is_kept_in_its_place),
+          RUN(an_index_that_was_changed_is_written_anew),
+          RUN(a_killed_writer_leaves_a_whole_series))
