@@ -9,6 +9,7 @@
  *     laws     contact forces, by the joints' law plugins                 laws.c
  *     gather   each body adds its contacts in a fixed order, its weight   gather.c
  *     damping  a damping plugin's forces and coefficients                 damping.c
+ *     limits   no body would move out of all proportion                   limits.c
  *     move     velocities and places one step on, work done on bodies     motion.c
  *     energy   the balance of the work                                    energy.c
  *
@@ -90,6 +91,8 @@ tl_status tl_step(tl_model *m)
     tl_status status = tl_cycle_prepare(m);
     if (status == TL_OK)
         status = tl_detect_update(m);
+    if (status == TL_OK)
+        status = tl_overlaps_check(m);
     tl_phase_ends(m, TL_PHASE_DETECT);
     if (status == TL_OK)
         status = tl_laws_check(m);
@@ -109,7 +112,12 @@ tl_status tl_step(tl_model *m)
     if (status != TL_OK)
         return status;
     tl_phase_ends(m, TL_PHASE_DAMPING);
-    bool driven = tl_move(m, dt);
+    /* false when a user's function ends the run: bodies then go on as they were driven before */
+    bool driven = tl_drives_evaluate(m, m->time + 0.5 * dt);
+    status = tl_motion_check(m, dt);
+    if (status != TL_OK)
+        return status;
+    tl_move(m, dt);
     tl_phase_ends(m, TL_PHASE_MOVE);
     tl_energy_close(m);
     tl_phase_ends(m, TL_PHASE_ENERGY);

@@ -180,9 +180,11 @@ void tl_sliver_remark(tl_model *m);
 /* Whether a body can move, or is held but moves. */
 bool tl_model_moves(const tl_model *m);
 tl_status tl_damping_apply(tl_model *m, double dt);
-/* Velocities, places and rotations one step on; false when a user's drive function ends the run (bodies then
- * go on as they were driven before). */
-bool tl_move(tl_model *m, double dt);
+/* Every body would move by a finite number that is not out of all proportion, or a sentence that names one that would
+ * not; after the drives have been evaluated. */
+tl_status tl_motion_check(tl_model *m, double dt);
+/* Velocities, places and rotations one step on. */
+void tl_move(tl_model *m, double dt);
 /* The energy ledger: the move books what its bodies have and what is done to them, chunk by chunk, ... */
 tl_status tl_energy_prepare(tl_model *m, size_t chunks);
 void tl_energy_book(const tl_model *m, const tl_group *g, tl_work *work);

@@ -4,7 +4,6 @@
  * motion are in the thread's lanes, which stay in the nearest cache from one end to the other. */
 #include "cycle/cycle_room.h"
 
-#include <stdio.h>
 #include <string.h>
 
 /* Ranks a worker takes at a time. */
@@ -15,15 +14,6 @@ typedef struct run_job {
     const tl_material *material;
     const tl_run *run;
 } run_job;
-
-/* The blocks and joint of the contact that owns a point: "contact of blocks 3 and 7, joint J1:2". */
-static void name_contact(tl_model *m, uint32_t c, char *text, size_t size)
-{
-    const tl_contacts *contacts = &m->detect->contacts;
-    const char *joint = tl_tag_name(m, contacts->tag[c]);
-    snprintf(text, size, "contact of blocks %u and %u%s%s", m->blocks.id[contacts->a[c]],
-             m->blocks.id[contacts->b[c]], *joint ? ", joint " : " (no joint)", joint);
-}
 
 static uint32_t contact_of_point(const tl_contacts *contacts, size_t point)
 {
@@ -239,7 +229,7 @@ static tl_status report_failure(tl_model *m)
     char name[320];
     uint32_t c = contact_of_point(&m->detect->contacts, cycle->failure_point);
     uint32_t material = m->detect->contacts.material[c];
-    name_contact(m, c, name, sizeof name);
+    tl_contact_name(m, c, name, sizeof name);
     tl_fail(&m->error, cycle->failure.status, "cycle %lld, law '%s', %s: %s",
             (long long)m->cycles + 1, m->materials[material].kind->name, name, cycle->failure.text);
     cycle->failure.status = TL_OK;
@@ -274,7 +264,7 @@ tl_status tl_laws_check(tl_model *m)
         if (c->material[i] != TL_NO_ROW || c->point_count[i] == 0)
             continue;
         char name[320];
-        name_contact(m, i, name, sizeof name);
+        tl_contact_name(m, i, name, sizeof name);
         return tl_fail(&m->error, TL_E_STATE,
                        "%s has no law: set one with model:joint(\"*\", ...) or for that joint",
                        name);

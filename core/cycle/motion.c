@@ -387,10 +387,8 @@ static void move_range(void *user, size_t begin, size_t end, size_t chunk, unsig
     tl_energy_chunk(m, chunk, &work);
 }
 
-bool tl_move(tl_model *m, double dt)
+void tl_move(tl_model *m, double dt)
 {
     move_job job = {m, 0.5 * (m->dt + dt), dt};
-    bool driven = tl_drives_evaluate(m, m->time + 0.5 * dt);
     tl_parallel_for(m->pool, m->bodies.table.rows, TL_BODY_CHUNK, move_range, &job);
-    return driven;
 }

@@ -136,6 +136,11 @@ static tl_status measure(tl_model *m, struct tl_broad *g)
     }
     g->low = all.min;
     tl_vec3 span = tl_v3_sub(all.max, all.min);
+    /* no place is infinite, as limits.c sees to; what follows becomes whole numbers, so it is made sure of here */
+    if (!isfinite(span.x) || !isfinite(span.y) || !isfinite(span.z) || !(median > 0))
+        return tl_fail(&m->error, TL_E_NUMERIC,
+                       "the blocks reach over %g, %g, %g m, which is more than numbers can tell",
+                       span.x, span.y, span.z);
     g->cell = CELL_EXTENTS * median;
     double most = (double)CELLS_PER_BLOCK * (double)count + 64;
     for (;; g->cell *= 1.25) {

@@ -158,6 +158,7 @@ typedef struct tl_narrow {
     tl_manifold manifold;
     bool failed;              /* out of memory, in a phase that cannot say so */
     bool reframed;            /* the places of old points are in frames that are no more */
+    bool deep;                /* met a contact whose blocks overlap too deeply: overlap.c */
     struct tl_old_point *old; /* transfer.c */
     double *value;
     size_t old_room;
@@ -423,6 +424,18 @@ void tl_contact_summary(const tl_model *m, uint32_t contact, tl_vec3 *normal, tl
                         double *gap);
 /* Normal of a point that leans so when its contact was last followed; 0 when it never was. */
 tl_vec3 tl_facet_last_normal(const tl_facet *facet, tl_lean lean);
+
+/* ---- overlap.c ---- */
+/* "contact of blocks 3 and 7, joint J1:2" */
+void tl_contact_name(tl_model *m, uint32_t contact, char *text, size_t size);
+/* Whether two blocks overlap so deeply that their contact cannot tell how to part them; less is enough for one that is
+ * just born. */
+bool tl_overlap_is_deep(const tl_model *m, const tl_pair_view *view, const tl_axis *axis,
+                        uint32_t a, uint32_t b, bool born);
+/* Marks a contact whose blocks do, so that its axis is searched whenever it is looked at. */
+void tl_overlap_mark(tl_contacts *contacts, uint32_t contact);
+/* After a step's contacts have been settled: the sentence of the first that is marked, and of which a block can move. */
+tl_status tl_overlaps_check(tl_model *m);
 
 /* ---- update.c ---- */
 /* The rule of the point share for a pair of a joint; pairs that carry a force across a gap keep all

@@ -122,6 +122,7 @@ static bool rebuild(tl_model *m, uint32_t c, tl_narrow *room, bool across)
         if (!search && !followed && axis.kind == TL_AXIS_EDGES)
             continue; /* edges that no longer meet have no axis */
         if (search) {
+            bool marked = contacts->search[c] == -INFINITY;
             axis = tl_axis_search(&view, room, &contacts->axis[c]);
             if (isinf(axis.s) && !across) {
                 part(m, c, &axis, view.size);
@@ -132,6 +133,10 @@ static bool rebuild(tl_model *m, uint32_t c, tl_narrow *room, bool across)
                 tl_axis_place(&view, &axis);
             }
             contacts->search[c] = odometer + tl_axis_margin(&axis, view.size);
+            if (tl_overlap_is_deep(m, &view, &axis, contacts->a[c], contacts->b[c], marked)) {
+                tl_overlap_mark(contacts, c);
+                room->deep = true;
+            }
         }
         tl_tag tag = tl_touching_tag(&view, axis.n);
         tl_share_rule rule = tl_share_rule_of(m, &view, tag, across);

@@ -1,0 +1,180 @@
+/* limits.c - how far a body may move in one step: the last look before anything moves.
+ *
+ * A step that would take a body farther than TL_TRAVEL times its diameter, or nowhere that is a number, has no meaning:
+ * the body would pass through others unseen, turn by several radians at a time, and lose the digits of its place. Such a
+ * step fails before the move, so places and velocities of a model are finite numbers always. The bound is on
+ * (|v| + |w| r) dt, v and w the velocities that the kick would give (motion.c), r the farthest vertex.
+ *
+ * All bodies are looked at in every step: a test without roots sorts out those that are far from the limit. */
+#include "cycle/cycle_room.h"
+
+#include <stdio.h>
+
+/* Most motion in a step over the body's diameter, 2 r. Blocks in contact move by 1e-2 of it at the most where the step
+ * is stable; ten leaves room for fragments in free fall with a long step. It is a turn of 20 radians. */
+#define TL_TRAVEL 10
+
+/* What a step makes of a body's motion. */
+typedef struct kick {
+    double dt, span; /* of the drift and of the kick, s */
+} kick;
+
+typedef struct limit_job {
+    tl_model *m;
+    kick kick;
+} limit_job;
+
+/* Forces on a body with those of the damping, and the inertia they meet. */
+typedef struct push {
+    tl_vec3 force, moment;
+    double mass, alpha, scale;
+} push;
+
+static push push_of(const tl_model *m, uint32_t body)
+{
+    const struct tl_cycle *c = m->cycle;
+    const tl_bodies *b = &m->bodies;
+    push p = {b->force[body], b->moment[body], b->mass[body], 0, 1};
+    if (c->scaled > 0)
+        p.scale = tl_inertia_scale(c, body);
+    if (m->damping) {
+        p.force = tl_v3_add(p.force, tl_columns_get(c->damping_force, body));
+        p.moment = tl_v3_add(p.moment, tl_columns_get(c->damping_moment, body));
+        p.alpha = c->alpha[body];
+    }
+    return p;
+}
+
+/* Whether a body that can move is so far from the limit that a bound without roots tells: squares of sums are at most
+ * twice the sums of squares. Where numbers leave their range it tells nothing. */
+static bool surely_slow(const tl_model *m, uint32_t body, const kick *k)
+{
+    const tl_bodies *b = &m->bodies;
+    push p = push_of(m, body);
+    tl_vec3 i = b->moments[body];
+    double least = i.x < i.y ? i.x : i.y, r = b->radius[body];
+    least = i.z < least ? i.z : least;
+    least = m->config.rotation == TL_ROTATION_PAPER ? b->round[body] : least;
+    double per_mass = k->span / (p.mass * p.scale), per_moment = k->span / (least * p.scale);
+    double v2 = tl_v3_norm2(b->v[body]) + per_mass * per_mass * tl_v3_norm2(p.force);
+    double w2 = tl_v3_norm2(b->w[body]) + per_moment * per_moment * tl_v3_norm2(p.moment);
+    double motion = k->dt, limit = TL_TRAVEL * r; /* half of 2 r TL_TRAVEL */
+    return (v2 + w2 * r * r) * (motion * motion) < limit * limit && p.alpha >= 0;
+}
+
+/* Velocities after the kick, as the move makes them. */
+static void kicked(const tl_model *m, uint32_t body, const kick *k, tl_vec3 *v, tl_vec3 *w)
+{
+    const tl_bodies *b = &m->bodies;
+    *v = b->v[body];
+    *w = b->w[body];
+    if (b->fixed[body] == TL_FIX_ALL) {
+        if (b->drive[body]) {
+            *v = m->drives[b->drive[body] - 1].velocity;
+            *w = m->drives[b->drive[body] - 1].angular_velocity;
+        }
+        return;
+    }
+    push p = push_of(m, body);
+    double d1 = 1 - 0.5 * p.alpha * k->span, d2 = 1 / (1 + 0.5 * p.alpha * k->span);
+    double span = k->span / p.scale;
+    tl_vec3 faster = tl_v3_madd(tl_v3_scale(d1, *v), span / p.mass, p.force);
+    *v = tl_v3_scale(d2, faster);
+    if (b->fixed[body] & TL_FIX_ROTATION)
+        return;
+    tl_quat axes = tl_q_mul(b->q[body], b->axes[body]);
+    tl_vec3 turn = tl_q_rotate(tl_q_conj(axes), p.moment), i = b->moments[body];
+    if (m->config.rotation == TL_ROTATION_PAPER)
+        i = tl_v3(b->round[body], b->round[body], b->round[body]);
+    turn = tl_q_rotate(axes, tl_v3(turn.x / i.x, turn.y / i.y, turn.z / i.z));
+    *w = tl_v3_scale(d2, tl_v3_madd(tl_v3_scale(d1, *w), span, turn));
+}
+
+/* How far the farthest vertex may move in the step: no number when it cannot be told. */
+static double travel_of(const tl_model *m, uint32_t body, const kick *k)
+{
+    tl_vec3 v, w;
+    kicked(m, body, k, &v, &w);
+    return (tl_v3_norm(v) + tl_v3_norm(w) * m->bodies.radius[body]) * k->dt;
+}
+
+static bool too_far(const tl_model *m, uint32_t body, double travel)
+{
+    return !(travel <= TL_TRAVEL * 2 * m->bodies.radius[body]);
+}
+
+static bool stands(const tl_bodies *b, uint32_t body)
+{
+    return !b->drive[body] && tl_v3_norm2(b->v[body]) + tl_v3_norm2(b->w[body]) == 0;
+}
+
+static void look_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
+{
+    (void)thread;
+    const limit_job *job = user;
+    tl_model *m = job->m;
+    for (uint32_t body = (uint32_t)begin; body < end; body++) {
+        bool held = m->bodies.fixed[body] == TL_FIX_ALL;
+        if (held ? stands(&m->bodies, body) : surely_slow(m, body, &job->kick))
+            continue;
+        if (too_far(m, body, travel_of(m, body, &job->kick))) {
+            tl_cycle_failed(m, chunk, TL_E_NUMERIC, body, "");
+            return;
+        }
+    }
+}
+
+/* The contact that presses on a body with the largest force, or TL_NO_ROW. One that is no number counts most. */
+static uint32_t hardest_contact(const tl_model *m, uint32_t body, double *force)
+{
+    const tl_detect *d = m->detect;
+    uint32_t found = TL_NO_ROW;
+    *force = 0;
+    for (uint32_t k = 0; k < m->bodies.member_count[body]; k++) {
+        uint32_t row = m->members[m->bodies.member_start[body] + k];
+        for (uint32_t e = d->by_block_start[row]; e < d->by_block_start[row + 1]; e++) {
+            double f = tl_v3_norm(d->contacts.force[d->by_block[e]]);
+            if (f <= *force)
+                continue;
+            *force = f;
+            found = d->by_block[e];
+        }
+    }
+    return found;
+}
+
+/* The sentence of a body that would move too far. */
+static tl_status report(tl_model *m, uint32_t body, const kick *k)
+{
+    const tl_bodies *b = &m->bodies;
+    char by[400], far[120];
+    double force, travel = travel_of(m, body, k), diameter = 2 * b->radius[body];
+    uint32_t contact = hardest_contact(m, body, &force);
+    if (contact == TL_NO_ROW) {
+        snprintf(by, sizeof by, "no contact presses on it");
+    } else {
+        char name[320];
+        tl_contact_name(m, contact, name, sizeof name);
+        snprintf(by, sizeof by, "most of all presses the %s, with %.3g N", name, force);
+    }
+    if (isfinite(travel))
+        snprintf(far, sizeof far, "%.3g m in this step, more than %d times its diameter of %.3g m",
+                 travel, TL_TRAVEL, diameter);
+    else
+        snprintf(far, sizeof far, "in this step by what is no finite number");
+    return tl_fail(&m->error, TL_E_NUMERIC,
+                   "cycle %lld: block %u would move %s (dt = %.3g s); %s: is the time step too "
+                   "large, or a velocity, force or property out of proportion?",
+                   (long long)m->cycles + 1, b->id[body], far, k->dt, by);
+}
+
+tl_status tl_motion_check(tl_model *m, double dt)
+{
+    struct tl_cycle *c = m->cycle;
+    limit_job job = {m, {dt, 0.5 * (m->dt + dt)}};
+    tl_parallel_for(m->pool, m->bodies.table.rows, TL_BODY_CHUNK, look_range, &job);
+    if (c->failure.status == TL_OK)
+        return TL_OK;
+    c->failure.status = TL_OK;
+    return report(m, (uint32_t)c->failure_point, &job.kick);
+}

@@ -1,0 +1,132 @@
+/* overlap.c - blocks that overlap so deeply that no contact can tell how to part them.
+ *
+ * An overlap is measured along the contact's axis, the direction in which it is least. Two lengths limit what it means. At
+ * half the sum of both blocks' widths along the axis their middles have met, and the way out is the one on the far side.
+ * At the diameter of the smaller block that one is wholly inside the other.
+ *
+ * A contact that is born so deep comes of blocks that were placed into each other, or thrown into each other in one step:
+ * nobody knows which way they came. One that was born at the surface and sinks in is followed on its way; soft contacts of
+ * vertices and edges let stones sink in by a diameter. Only when the smaller block is gone inside the larger is it given
+ * up. A step that finds such an overlap fails before its forces are made. Two blocks that are both held may overlap as they
+ * like: nothing comes of it.
+ *
+ * The overlap is known wherever an axis is searched, which is after a motion of 0.02 of the size at the latest
+ * (update.c), so the look costs next to nothing. A contact that is marked has no lease: its axis is searched in every
+ * step, and it stays marked until its overlap would do for a birth. */
+#include "detect/detect.h"
+
+#include <stdio.h>
+
+/* Deepest overlap of a contact at its birth, over the shorter of the two lengths: beyond it rounding and the shapes decide
+ * which way out is the shorter one. */
+#define TL_DEEPEST_BORN 0.9
+/* Deepest overlap of any contact over the diameter of the smaller block. Stones that fall on soft edge contacts (kn 1e7)
+ * come to 1.06. */
+#define TL_DEEPEST 1.25
+/* Overlap over the smaller block's size up to which nothing is measured: most contacts. */
+#define SHALLOW 0.01
+
+void tl_contact_name(tl_model *m, uint32_t contact, char *text, size_t size)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    const char *joint = tl_tag_name(m, contacts->tag[contact]);
+    snprintf(text, size, "contact of blocks %u and %u%s%s", m->blocks.id[contacts->a[contact]],
+             m->blocks.id[contacts->b[contact]], *joint ? ", joint " : " (no joint)", joint);
+}
+
+static bool both_held(const tl_model *m, uint32_t a, uint32_t b)
+{
+    const uint8_t *fixed = m->bodies.fixed;
+    return fixed[m->blocks.body[a]] == TL_FIX_ALL && fixed[m->blocks.body[b]] == TL_FIX_ALL;
+}
+
+static double width_along(tl_vec3 n, const tl_vec3 *vertex, uint32_t count)
+{
+    double least = INFINITY, most = -INFINITY;
+    for (uint32_t i = 0; i < count; i++) {
+        double x = tl_v3_dot(n, vertex[i]);
+        least = fmin(least, x);
+        most = fmax(most, x);
+    }
+    return most - least;
+}
+
+/* Twice the distance of a block's farthest vertex from its centroid. */
+static double diameter_of(const tl_model *m, uint32_t row)
+{
+    const tl_poly *shape = m->blocks.shape[row];
+    tl_vec3 centre = tl_block_local(m, row);
+    double most = 0;
+    for (uint32_t i = 0; i < shape->vertex_count; i++)
+        most = fmax(most, tl_v3_norm2(tl_v3_sub(shape->vertex[i], centre)));
+    return 2 * sqrt(most);
+}
+
+/* How deep a pair may overlap. */
+static double deepest(const tl_model *m, const tl_pair_view *view, tl_vec3 n, uint32_t a,
+                      uint32_t b, bool born)
+{
+    double diameter = diameter_of(m, m->blocks.size[a] < m->blocks.size[b] ? a : b);
+    if (!born)
+        return TL_DEEPEST * diameter;
+    double middles = 0.5 * (width_along(n, view->a->vertex, view->a->vertex_count) +
+                            width_along(n, view->vertex_b, view->b->vertex_count));
+    return TL_DEEPEST_BORN * fmin(middles, diameter);
+}
+
+bool tl_overlap_is_deep(const tl_model *m, const tl_pair_view *view, const tl_axis *axis,
+                        uint32_t a, uint32_t b, bool born)
+{
+    return axis->s < -SHALLOW * view->size && -axis->s > deepest(m, view, axis->n, a, b, born);
+}
+
+void tl_overlap_mark(tl_contacts *contacts, uint32_t contact)
+{
+    contacts->search[contact] = -INFINITY;
+}
+
+static tl_status report(tl_model *m, uint32_t contact)
+{
+    const tl_contacts *c = &m->detect->contacts;
+    uint32_t a = c->a[contact], b = c->b[contact];
+    tl_pair_view view = tl_pair_view_of(m, a, b);
+    tl_axis axis = tl_axis_of(c->axis[contact]);
+    if (!tl_pair_place(&view, &m->detect->narrow[0]))
+        return tl_fail_memory(&m->error);
+    tl_axis_place(&view, &axis);
+    char name[320];
+    tl_contact_name(m, contact, name, sizeof name);
+    return tl_fail(&m->error, TL_E_NUMERIC,
+                   "cycle %lld, %s: they overlap by %.3g m, more than the %.3g m up to which a "
+                   "contact can tell how to part them: were they placed into each other, is a "
+                   "stiffness too low for what presses, or the time step too large?",
+                   (long long)m->cycles + 1, name, -axis.s, deepest(m, &view, axis.n, a, b, true));
+}
+
+tl_status tl_overlaps_check(tl_model *m)
+{
+    tl_detect *d = m->detect;
+    tl_contacts *c = &d->contacts;
+    bool any = false;
+    for (unsigned i = 0; i < d->threads; i++)
+        any = any || d->narrow[i].deep;
+    if (!any)
+        return TL_OK;
+    uint32_t first = TL_NO_ROW;
+    bool marked = false;
+    for (uint32_t row = 0; row < c->table.rows; row++) {
+        if (c->search[row] != -INFINITY)
+            continue;
+        marked = true;
+        if (both_held(m, c->a[row], c->b[row]))
+            continue;              /* until one of them is free */
+        c->until[row] = -INFINITY; /* look again when the step is repeated */
+        if (first == TL_NO_ROW)
+            first = row;
+    }
+    if (first != TL_NO_ROW)
+        return report(m, first);
+    for (unsigned i = 0; i < d->threads; i++)
+        d->narrow[i].deep = marked;
+    return TL_OK;
+}
