@@ -14,7 +14,7 @@
 #include <string.h>
 
 /* Lanes up to which each is followed on its own. */
-#ifdef __SANITIZE_ADDRESS__ /* without vectors */
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) /* without vectors */
 #define FEW TL_LANES
 #else
 #define FEW 3
