@@ -10,7 +10,7 @@ local function finite(x)
     return x == x and math.abs(x) < math.huge
 end
 
--- A cube on a fixed slab, after three steps. `size`: of the cube, m; `slab` thick.
+-- A cube of `size` (m) on a fixed slab, after three steps.
 local function stack(threads, size, kn)
     local a = size or 1
     local m = talus.model { threads = threads, gravity = { 0, 0, -9.81 * a } }
@@ -90,7 +90,7 @@ check.near(top[1].displacement[3], 0, 1e-3)
 -- The limit is a motion of ten diameters in a step, whatever the units: 0.99 of it goes on and 1.01 of it does not.
 for _, size in ipairs { 1e-3, 1, 1e3 } do
     for _, share in ipairs { 0.99, 1.01 } do
-        m, top = stack(1, size, 1e8 / size)
+        m, top = stack(1, size, 1e8 * size)
         local speed = share * 10 * math.sqrt(3) * size / 1e-3
         m:timestep { dt = 1e-3 }
         top:drive { velocity = { 0.6 * speed, 0, 0.8 * speed } }
