@@ -96,15 +96,17 @@ bool tl_table_reserve(tl_table *table, size_t rows)
     return allocate(table, ((rows > grown ? rows : grown) + ROW_ROUND - 1) / ROW_ROUND * ROW_ROUND);
 }
 
-bool tl_table_widen(tl_table *table, const char *name, size_t size, size_t offset, unsigned flags)
+bool tl_table_widen(tl_table *table, const tl_column *columns, size_t count)
 {
-    assert(table->column_count < TL_TABLE_COLUMNS);
-    tl_column *column = &table->columns[table->column_count++];
-    *column = (tl_column){name, size, offset, flags};
-    put(table, column, NULL);
+    assert(table->column_count + count <= TL_TABLE_COLUMNS);
+    for (size_t i = 0; i < count; i++) {
+        table->columns[table->column_count + i] = columns[i];
+        put(table, &columns[i], NULL);
+    }
+    table->column_count += count;
     if (table->capacity == 0 || allocate(table, table->capacity))
         return true;
-    table->column_count--;
+    table->column_count -= count;
     return false;
 }
 
@@ -113,7 +115,8 @@ bool tl_table_need(tl_table *table, const char *name, size_t size, size_t offset
     for (size_t i = 0; i < table->column_count; i++)
         if (table->columns[i].offset == offset)
             return true;
-    return tl_table_widen(table, name, size, offset, flags);
+    const tl_column column = {name, size, offset, flags};
+    return tl_table_widen(table, &column, 1);
 }
 
 bool tl_table_resize(tl_table *table, size_t rows)
@@ -164,6 +167,18 @@ void tl_table_move(tl_table *table, size_t to, size_t from)
 void *tl_table_data(const tl_table *table, size_t column)
 {
     return get(table, &table->columns[column]);
+}
+
+bool tl_table_copy(tl_table *table, void *owner, const tl_table *from)
+{
+    *table = *from;
+    table->owner = owner;
+    table->memory =
+        NULL; /* the pointers are still those of `from`: allocate copies what is there */
+    if (from->capacity == 0 || allocate(table, from->capacity))
+        return true;
+    tl_table_free(table);
+    return false;
 }
 
 size_t tl_table_bytes(const tl_table *table)

@@ -14,7 +14,10 @@
 
 #define TL_TABLE_COLUMNS 64
 
-enum { TL_COLUMN_STATE = 1 }; /* part of the mechanical state: hashed and saved */
+enum {
+    TL_COLUMN_STATE = 1, /* part of the mechanical state: hashed and saved */
+    TL_COLUMN_STEP = 2 /* overwritten by laws or gather: kept where a step may have to be undone */
+};
 
 typedef struct tl_column {
     const char *name;
@@ -34,15 +37,20 @@ typedef struct tl_table {
 
 #define TL_COLUMN(table, owner, member, flags)                                                     \
     tl_table_column((table), #member, sizeof *(owner)->member, TL_COLUMN_AT(owner, member), (flags))
+/* The same, for tl_table_widen. */
+#define TL_COLUMN_NEW(owner, member, flags)                                                        \
+    {                                                                                              \
+#member, sizeof *(owner)->member, TL_COLUMN_AT(owner, member), (flags)                     \
+    }
 /* Where the pointer of a column is in its owner. */
 #define TL_COLUMN_AT(owner, member) (size_t)((char *)&(owner)->member - (char *)(owner))
 
 void tl_table_init(tl_table *table, void *owner);
 /* Adds a column while the table is empty. */
 void tl_table_column(tl_table *table, const char *name, size_t size, size_t offset, unsigned flags);
-/* Adds a column, of zeros, to a table that may have rows; false when out of memory (nothing changed). */
-bool tl_table_widen(tl_table *table, const char *name, size_t size, size_t offset, unsigned flags);
-/* The same, unless it has that column already: for what few models need. The pointer is NULL until then. */
+/* Adds columns, of zeros, to a table that may have rows: all of them or, when out of memory, none (false). */
+bool tl_table_widen(tl_table *table, const tl_column *columns, size_t count);
+/* Adds one, unless it is there already: for what few models need. The pointer is NULL until then. */
 bool tl_table_need(tl_table *table, const char *name, size_t size, size_t offset, unsigned flags);
 #define TL_COLUMN_NEED(table, owner, member, flags)                                                \
     tl_table_need((table), #member, sizeof *(owner)->member, TL_COLUMN_AT(owner, member), (flags))
@@ -56,6 +64,9 @@ void tl_table_keep(tl_table *table, const unsigned char *keep);
 void tl_table_move(tl_table *table, size_t to, size_t from);
 void *tl_table_data(const tl_table *table, size_t column);
 void tl_table_free(tl_table *table);
+/* Makes a table of the same columns, rows and capacity for another owner of the same type, whose column pointers are
+ * `from`'s; false when out of memory (it is empty then). */
+bool tl_table_copy(tl_table *table, void *owner, const tl_table *from);
 /* Bytes its columns take, spare rows included. */
 size_t tl_table_bytes(const tl_table *table);
 

@@ -61,47 +61,69 @@ static void rebase_point(tl_points_table *p, size_t i, double closure, double ol
     p->f_n0[i] = p->f_n[i];
 }
 
-/* Whether a law has seen the contact: one that has only been asked for begins under the new law. */
-static bool was_followed(const tl_detect *d, uint32_t c)
+/* Whether there are forces to keep: a contact that no step has seen begins under the new law, and so does one that carries
+ * nothing and has no initial force, of which there is nothing to keep. */
+static bool has_forces(const tl_detect *d, uint32_t c)
 {
-    bool carries = false;
-    for (uint32_t k = 0; k < d->contacts.point_count[c]; k++)
-        carries = carries || d->points.f_n[tl_point_row(&d->contacts, c, k)] != 0;
-    return carries || !d->contacts.fresh[c];
+    const tl_points_table *p = &d->points;
+    for (uint32_t k = 0; k < d->contacts.point_count[c]; k++) {
+        size_t i = tl_point_row(&d->contacts, c, k);
+        if (p->f_n[i] != 0 || (p->initial && p->f_n0[i] != 0))
+            return true;
+    }
+    return false;
+}
+
+/* Whether a contact comes under another stiffness or law by a material, and has forces that stay. */
+static bool is_rebased(const tl_model *m, const tl_material *material, uint32_t c)
+{
+    const tl_detect *d = m->detect;
+    uint32_t old = d->contacts.material[c];
+    if (old == TL_NO_ROW || !tl_tag_matches(material->tag, d->contacts.tag[c]))
+        return false;
+    const tl_material *before = &m->materials[old];
+    const tl_material *ruling = tl_material_of(m, d->contacts.tag[c]);
+    /* a law set for a plane of the joint goes before one set for the whole */
+    if (ruling->tag.joint > 0 && material->tag.joint == 0)
+        return false;
+    if (ruling->tag.plane > 0 && material->tag.plane == 0)
+        return false;
+    bool same =
+        before->kind == material->kind && before->kn == material->kn && before->ks == material->ks;
+    return !same && has_forces(d, c);
+}
+
+/* Brings contacts up to the present places, where a step that failed has left them already, and makes room for what a
+ * material needs of their points: all that can fail before it takes its place. */
+static tl_status prepare_contacts(tl_model *m, const tl_material *material)
+{
+    if (!m->detect)
+        return TL_OK;
+    tl_status status = tl_detect_update(m);
+    if (status != TL_OK)
+        return status;
+    bool rebased = false;
+    for (uint32_t c = 0; c < m->detect->contacts.table.rows && !rebased; c++)
+        rebased = is_rebased(m, material, c);
+    return tl_detect_hold_states(m->detect, material->columns) &&
+                   (!rebased || tl_detect_hold_initial(m->detect))
+               ? TL_OK
+               : tl_fail_memory(&m->error);
 }
 
 /* Keeps the forces of the contacts that come under another stiffness or law. */
-static tl_status rebase(tl_model *m, const tl_material *material)
+static void rebase(tl_model *m, const tl_material *material)
 {
     tl_detect *d = m->detect;
-    if (d && d->structure != m->structure) { /* contacts of blocks in other rows, or none */
-        tl_status status = tl_detect_refresh(m);
-        if (status != TL_OK)
-            return status;
-    }
     for (uint32_t c = 0; d && c < d->contacts.table.rows; c++) {
-        uint32_t old = d->contacts.material[c];
-        if (old == TL_NO_ROW || !tl_tag_matches(material->tag, d->contacts.tag[c]))
+        if (!is_rebased(m, material, c))
             continue;
-        const tl_material *before = &m->materials[old];
-        const tl_material *ruling = tl_material_of(m, d->contacts.tag[c]);
-        /* a law set for a plane of the joint goes before one set for the whole */
-        if (ruling->tag.joint > 0 && material->tag.joint == 0)
-            continue;
-        if (ruling->tag.plane > 0 && material->tag.plane == 0)
-            continue;
-        if ((before->kind == material->kind && before->kn == material->kn &&
-             before->ks == material->ks) ||
-            !was_followed(d, c))
-            continue;
-        if (!tl_detect_hold_initial(d))
-            return tl_fail_memory(&m->error);
+        double old_kn = m->materials[d->contacts.material[c]].kn;
         tl_contact_places(m, c, &d->lanes[0]);
         for (uint32_t i = 0; i < d->contacts.point_count[c]; i++)
             rebase_point(&d->points, tl_point_row(&d->contacts, c, i), d->lanes[0].closure[i],
-                         before->kn);
+                         old_kn);
     }
-    return TL_OK;
 }
 
 /* Points whose law changes its kind under the same material begin with the new law's states. */
@@ -147,11 +169,6 @@ tl_status tl_joint_law(tl_model *m, const char *joint, const char *law, const tl
     status = make_material(m, tag, joint, kind, args, law ? NULL : ruling, &fresh);
     if (status != TL_OK)
         return status;
-    if (m->detect && (!tl_points_hold_states(&m->detect->points, fresh.columns) ||
-                      !tl_points_hold_states(&m->detect->spare_points, fresh.columns))) {
-        tl_material_clear(&fresh);
-        return tl_fail_memory(&m->error);
-    }
     tl_material *place = exact_material(m, tag);
     if (!place) {
         tl_material *materials = realloc(m->materials, (m->material_count + 1) * sizeof *materials);
@@ -161,11 +178,12 @@ tl_status tl_joint_law(tl_model *m, const char *joint, const char *law, const tl
         }
         m->materials = materials;
     }
-    status = rebase(m, &fresh);
+    status = prepare_contacts(m, &fresh);
     if (status != TL_OK) {
         tl_material_clear(&fresh);
         return status;
     }
+    rebase(m, &fresh);
     if (place) {
         if (place->kind != fresh.kind)
             reset_states(m, (uint32_t)(place - m->materials), fresh.kind);

@@ -29,7 +29,7 @@ void tl_contacts_init(tl_contacts *c, tl_points_table *p)
     TL_COLUMN(t, c, b, 0);
     TL_COLUMN(t, c, pair, 0);
     TL_COLUMN(t, c, tag, TL_COLUMN_STATE);
-    TL_COLUMN(t, c, material, TL_COLUMN_STATE);
+    TL_COLUMN(t, c, material, 0);
     TL_COLUMN(t, c, axis, 0);
     TL_COLUMN(t, c, search, 0);
     TL_COLUMN(t, c, until, 0);
@@ -40,25 +40,25 @@ void tl_contacts_init(tl_contacts *c, tl_points_table *p)
     TL_COLUMN(t, c, point_count, TL_COLUMN_STATE);
     TL_COLUMN(t, c, point_room, 0);
     TL_COLUMN(t, c, area, 0);
-    TL_COLUMN(t, c, force, 0);
-    TL_COLUMN(t, c, moment, 0);
-    TL_COLUMN(t, c, across, TL_COLUMN_STATE);
-    TL_COLUMN(t, c, fresh, 0);
+    TL_COLUMN(t, c, force, TL_COLUMN_STEP);
+    TL_COLUMN(t, c, moment, TL_COLUMN_STEP);
+    TL_COLUMN(t, c, across, TL_COLUMN_STATE | TL_COLUMN_STEP);
+    TL_COLUMN(t, c, fresh, TL_COLUMN_STEP);
     TL_COLUMN(t, c, lone, 0);
     TL_COLUMN(t, c, fate, 0);
 
     t = &p->table;
     tl_table_init(t, p);
     for (int k = 0; k < 3; k++)
-        TL_COLUMN(t, p, p[k], TL_COLUMN_STATE);
+        TL_COLUMN(t, p, p[k], TL_COLUMN_STATE | TL_COLUMN_STEP);
     TL_COLUMN(t, p, lean_face, TL_COLUMN_STATE);
     TL_COLUMN(t, p, lean_edge, TL_COLUMN_STATE);
     TL_COLUMN(t, p, key, 0);
     TL_COLUMN(t, p, area, TL_COLUMN_STATE);
-    TL_COLUMN(t, p, f_n, TL_COLUMN_STATE);
-    TL_COLUMN(t, p, flags, TL_COLUMN_STATE);
+    TL_COLUMN(t, p, f_n, TL_COLUMN_STATE | TL_COLUMN_STEP);
+    TL_COLUMN(t, p, flags, TL_COLUMN_STATE | TL_COLUMN_STEP);
     for (int k = 0; k < 3; k++)
-        TL_COLUMN(t, p, f_s[k], TL_COLUMN_STATE);
+        TL_COLUMN(t, p, f_s[k], TL_COLUMN_STATE | TL_COLUMN_STEP);
     p->state_columns = 0;
 }
 

@@ -34,16 +34,16 @@ void tl_narrow_free(tl_narrow *n)
     tl_polygon_free(n->polygon, &n->patch);
 }
 
-static void detect_destroy(tl_detect *d)
+void tl_detect_destroy(tl_detect *d)
 {
     tl_table_free(&d->contacts.table);
     tl_table_free(&d->spare.table);
     tl_table_free(&d->points.table);
     tl_table_free(&d->spare_points.table);
-    for (unsigned i = 0; i < d->threads; i++) {
+    for (unsigned i = 0; d->narrow && i < d->threads; i++)
         tl_narrow_free(&d->narrow[i]);
+    for (unsigned i = 0; d->lanes && i < d->threads; i++)
         tl_table_free(&d->lanes[i].table);
-    }
     free(d->narrow);
     free(d->lanes);
     free(d->contacts.facet);
@@ -61,9 +61,21 @@ static void detect_destroy(tl_detect *d)
     free(d);
 }
 
+/* The spare table, in which nothing is kept, gets the columns of the other: with no rows that cannot fail. */
 bool tl_detect_hold_initial(tl_detect *d)
 {
-    return tl_points_hold_initial(&d->points) && tl_points_hold_initial(&d->spare_points);
+    if (!tl_points_hold_initial(&d->points))
+        return false;
+    tl_table_free(&d->spare_points.table);
+    return tl_points_hold_initial(&d->spare_points);
+}
+
+bool tl_detect_hold_states(tl_detect *d, uint32_t columns)
+{
+    if (!tl_points_hold_states(&d->points, columns))
+        return false;
+    tl_table_free(&d->spare_points.table);
+    return tl_points_hold_states(&d->spare_points, columns);
 }
 
 static tl_status ensure(tl_model *m)
@@ -77,9 +89,7 @@ static tl_status ensure(tl_model *m)
     d->narrow = calloc(d->threads, sizeof *d->narrow);
     d->lanes = calloc(d->threads, sizeof *d->lanes);
     if (!d->narrow || !d->lanes) {
-        free(d->narrow);
-        free(d->lanes);
-        free(d);
+        tl_detect_destroy(d);
         return tl_fail_memory(&m->error);
     }
     for (unsigned i = 0; i < d->threads; i++)
@@ -91,14 +101,13 @@ static tl_status ensure(tl_model *m)
         uint32_t wanted = m->materials[i].columns;
         columns = wanted > columns ? wanted : columns;
     }
-    if (!tl_points_hold_states(&d->points, columns) ||
-        !tl_points_hold_states(&d->spare_points, columns)) {
-        detect_destroy(d);
+    if (!tl_detect_hold_states(d, columns)) {
+        tl_detect_destroy(d);
         return tl_fail_memory(&m->error);
     }
     tl_contacts_unlist(d);
     m->detect = d;
-    m->detect_destroy = detect_destroy;
+    m->detect_destroy = tl_detect_destroy;
     return TL_OK;
 }
 
@@ -351,41 +360,38 @@ static bool some_fate(const tl_contacts *c)
     return any != TL_FATE_KEEP;
 }
 
+/* Whether there was no memory to look at some pair or to bring some contact up to date; it is as it was, for another time. */
+static bool lacked_memory(tl_detect *d)
+{
+    bool lacked = false;
+    for (unsigned i = 0; i < d->threads; i++) {
+        lacked = lacked || d->narrow[i].failed;
+        d->narrow[i].failed = false;
+    }
+    return lacked;
+}
+
 /* Births, deaths, growth and changes of material, in the order of pairs. */
 static tl_status settle(tl_model *m)
 {
     tl_detect *d = m->detect;
     tl_contacts *c = &d->contacts;
-    size_t born;
-    for (unsigned i = 0; i < d->threads; i++)
-        if (d->narrow[i].failed) {
-            d->narrow[i].failed = false;
-            return tl_fail_memory(&m->error);
-        }
-    tl_status status = give_births(m, &born);
+    size_t born = 0;
+    tl_status status = lacked_memory(d) ? tl_fail_memory(&m->error) : give_births(m, &born);
     if (status != TL_OK)
         return status;
     if (born == 0 && !d->rows_changed && !some_fate(c))
         return TL_OK;
-    bool failed = false;
-    for (uint32_t row = 0; row < c->table.rows; row++) {
-        if (c->fate[row] == TL_FATE_MEMORY) {
-            failed = true;
-            c->fate[row] = TL_FATE_KEEP;
-            c->until[row] = -INFINITY; /* there may be some another time */
-        }
-    }
-    if (failed)
-        return tl_fail_memory(&m->error);
     d->bare = true; /* until they are listed anew */
     for (bool more = true; more && status == TL_OK;) {
         if (!settle_rows(m))
             status = tl_contacts_repack(m);
         else if (!tl_contacts_index(m))
             status = tl_fail_memory(&m->error);
-        d->rows_changed = status != TL_OK;
         if (status == TL_OK)
             status = fill_contacts(m, &more);
+        d->rows_changed =
+            status != TL_OK; /* contacts are not what they seem until all is settled */
     }
     return status;
 }
@@ -411,6 +417,8 @@ static tl_status find_contacts(tl_model *m)
         find_materials(m); /* before contacts note the room they want in the place of faces */
     if (rows)
         tl_parallel_for(m->pool, d->contacts.table.rows, CONTACT_CHUNK, reframe_range, m);
+    if (rows && lacked_memory(d))
+        return tl_fail_memory(&m->error);
     tl_pairs_run(m);
     if (rows || (double)d->ran > d->reach) {
         status = tl_broad_update(m);

@@ -202,7 +202,7 @@ typedef struct tl_contacts {
     size_t facet_total, facet_capacity;
 } tl_contacts;
 
-enum { TL_FATE_KEEP, TL_FATE_GROW, TL_FATE_DIE, TL_FATE_MATERIAL, TL_FATE_MEMORY };
+enum { TL_FATE_KEEP, TL_FATE_GROW, TL_FATE_DIE, TL_FATE_MATERIAL };
 
 typedef struct tl_points_table {
     tl_table table;
@@ -316,8 +316,13 @@ tl_status tl_detect_update(tl_model *m);
 /* Finds the contacts of a model whose blocks or laws have changed since the last step, for queries and
  * settings between steps. Contacts that stand are not touched, so asking never changes a result. */
 tl_status tl_detect_refresh(tl_model *m);
-/* Makes sure that points have initial forces; false when out of memory. */
+void tl_detect_destroy(tl_detect *d);
+/* A second detection in the same state: copy.c. NULL when out of memory. */
+tl_detect *tl_detect_copy(const tl_detect *from);
+/* Makes sure that points have initial forces and the overlaps they belong to, or so many columns of states; false when
+ * out of memory (nothing changed). */
 bool tl_detect_hold_initial(tl_detect *d);
+bool tl_detect_hold_states(tl_detect *d, uint32_t columns);
 
 /* ---- memory.c ---- */
 /* Adds what the detection holds. */
@@ -568,8 +573,8 @@ void tl_point_keep_state(tl_points_table *p, size_t point, const tl_kind *kind, 
                          double old_area);
 /* Columns of the states of a kind of law. */
 uint32_t tl_kind_state_columns(const tl_kind *kind);
-/* Makes sure that points have that many state columns; false when out of memory. Both tables of points need
- * the same. */
+/* Makes sure that one table of points has that many state columns; false when out of memory (nothing changed). Both
+ * tables need the same: tl_detect_hold_states. */
 bool tl_points_hold_states(tl_points_table *points, uint32_t columns);
 /* The same for initial forces and the overlaps they belong to. */
 bool tl_points_hold_initial(tl_points_table *points);

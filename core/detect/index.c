@@ -135,9 +135,12 @@ static bool index_by_id(tl_detect *d)
 
 uint32_t tl_contact_row(tl_detect *d, tl_id id)
 {
-    if (!d->by_id_fresh && !index_by_id(d))
-        return TL_NO_ROW;
     size_t low = 0, high = d->contacts.table.rows;
+    if (!d->by_id_fresh && !index_by_id(d)) { /* without the memory for a list: one by one */
+        while (low < high && d->contacts.id[low] != id)
+            low++;
+        return low < high ? (uint32_t)low : TL_NO_ROW;
+    }
     while (low < high) {
         size_t middle = (low + high) / 2;
         if (d->by_id[2 * middle] < id)

@@ -150,7 +150,10 @@ static void look_at(tl_model *m, tl_pair *p, tl_narrow *room)
     }
     tl_share_rule rule = tl_share_rule_of(m, &view, tl_touching_tag(&view, axis.n), false);
     tl_manifold_build(&view, &axis, &rule, room);
-    room->failed = room->failed || room->manifold.failed;
+    if (room->manifold.failed) { /* what was found is not all there is: look again */
+        room->failed = true;
+        return;
+    }
     if (room->manifold.point_count > 0) {
         p->wake = TL_PAIR_FOUND;
         return;

@@ -88,22 +88,19 @@ bool tl_points_hold_initial(tl_points_table *p)
 {
     if (p->initial)
         return true;
-    size_t size = sizeof *p->f_n0;
-    if (!tl_table_widen(&p->table, "reference", size, TL_COLUMN_AT(p, reference),
-                        TL_COLUMN_STATE) ||
-        !tl_table_widen(&p->table, "f_n0", size, TL_COLUMN_AT(p, f_n0), TL_COLUMN_STATE))
-        return false;
-    p->initial = true;
-    return true;
+    const tl_column columns[] = {TL_COLUMN_NEW(p, reference, 0), TL_COLUMN_NEW(p, f_n0, 0)};
+    p->initial = tl_table_widen(&p->table, columns, 2);
+    return p->initial;
 }
 
 bool tl_points_hold_states(tl_points_table *p, uint32_t columns)
 {
-    for (uint32_t k = p->state_columns; k < columns; k++) {
-        if (!tl_table_widen(&p->table, "state", sizeof *p->state[k], TL_COLUMN_AT(p, state[k]),
-                            TL_COLUMN_STATE))
-            return false;
-        p->state_columns++;
-    }
+    tl_column more[TL_STATE_COLUMNS];
+    uint32_t count = 0;
+    for (uint32_t k = p->state_columns; k < columns; k++)
+        more[count++] = (tl_column)TL_COLUMN_NEW(p, state[k], TL_COLUMN_STEP);
+    if (count && !tl_table_widen(&p->table, more, count))
+        return false;
+    p->state_columns += count;
     return true;
 }

@@ -151,7 +151,7 @@ bool tl_rank_update(tl_model *m, const tl_rank *rank, unsigned thread)
         if (!batch && !(batch = tl_batch_room(&m->detect->narrow[thread],
                                               m->config.contact_points == TL_POINTS_CORNERS,
                                               TL_FLUSH_TILT2))) {
-            m->detect->contacts.fate[c] = TL_FATE_MEMORY;
+            m->detect->narrow[thread].failed = true;
             return true;
         }
         if (add_to_batch(m, c, l, batch))

@@ -263,8 +263,8 @@ static bool renew_patch(tl_model *m, uint32_t c, tl_narrow *room)
         return false;
     tl_pair_view view = tl_pair_view_of(m, contacts->a[c], contacts->b[c]);
     tl_share_rule rule = tl_share_rule_of(m, &view, contacts->tag[c], false);
-    if (!tl_pair_place_face(&view, f->ib, room) ||
-        !tl_manifold_renew(&view, f->ia, f->ib, &rule, room))
+    room->manifold.failed = !tl_pair_place_face(&view, f->ib, room);
+    if (room->manifold.failed || !tl_manifold_renew(&view, f->ia, f->ib, &rule, room))
         return false;
     const tl_patch_points *g = &room->patch;
     tl_points_table *p = &m->detect->points;
@@ -307,20 +307,39 @@ bool tl_contact_stands(const tl_model *m, uint32_t c)
             tl_pair_odometer(m, contacts->a[c], contacts->b[c]) <= contacts->until[c]);
 }
 
-void tl_contact_update(tl_model *m, uint32_t c, unsigned thread)
+/* Makes all that a contact is anew. Without the memory for it the contact is as it was, so that it can be tried again
+ * and gives the same. */
+static bool make_anew(tl_model *m, uint32_t c, unsigned thread)
 {
     tl_contacts *contacts = &m->detect->contacts;
     tl_narrow *room = &m->detect->narrow[thread];
+    tl_axis_features axis = contacts->axis[c];
+    double search = contacts->search[c];
+    tl_tag tag = contacts->tag[c];
+    uint8_t lone = contacts->lone[c], fate = contacts->fate[c];
+    if (rebuild(m, c, room, contacts->across[c]) &&
+        (contacts->fate[c] == TL_FATE_DIE || take_manifold(m, c, room, &m->detect->lanes[thread])))
+        return true;
+    contacts->axis[c] = axis;
+    contacts->search[c] = search;
+    contacts->tag[c] = tag;
+    contacts->lone[c] = lone;
+    contacts->fate[c] = fate;
+    room->failed = true;
+    return false;
+}
+
+void tl_contact_update(tl_model *m, uint32_t c, unsigned thread)
+{
+    tl_narrow *room = &m->detect->narrow[thread];
     if (touches_still(m, c))
         return;
-    if (renew_patch(m, c, room)) {
+    room->manifold.failed = false;
+    if (renew_patch(m, c, room))
         tl_contact_allow_reuse(m, c, false);
-        return;
-    }
-    if (!rebuild(m, c, room, contacts->across[c]) ||
-        (contacts->fate[c] != TL_FATE_DIE && !take_manifold(m, c, room, &m->detect->lanes[thread])))
-        contacts->fate[c] = TL_FATE_MEMORY;
-    else
+    else if (room->manifold.failed)
+        room->failed = true; /* to be tried again, and not in another way */
+    else if (make_anew(m, c, thread))
         tl_contact_allow_reuse(m, c, room->manifold.brief);
 }
 
@@ -332,9 +351,7 @@ void tl_contact_reframe(tl_model *m, uint32_t c, unsigned thread)
         return;
     contacts->search[c] = -INFINITY;
     room->reframed = true;
-    if (!rebuild(m, c, room, contacts->across[c]) ||
-        (contacts->fate[c] != TL_FATE_DIE && !take_manifold(m, c, room, &m->detect->lanes[thread])))
-        contacts->fate[c] = TL_FATE_MEMORY;
+    make_anew(m, c, thread);
     room->reframed = false;
 }
 

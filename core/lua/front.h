@@ -172,6 +172,9 @@ void tl_lua_item_open(lua_State *L, const tl_lua_kind *kind);
 void tl_lua_selection_open(lua_State *L, const tl_lua_kind *kind);
 /* Pushes an item; `model_index` is where the model's userdata is. */
 void tl_lua_item_push(lua_State *L, const tl_lua_kind *kind, int model_index, tl_id id);
+/* The table at the top of the stack has a block in the field `name`, pushed before a call: makes it the one of that id,
+ * without needing memory; TL_NO_ID: takes it out. */
+void tl_lua_item_rename(lua_State *L, const char *name, tl_id id);
 /* Pushes an empty selection, to be filled with a list that then belongs to it. */
 tl_lua_selection *tl_lua_selection_push(lua_State *L, const tl_lua_kind *kind, int model_index);
 /* The selection at `index`, raising when it is something else. */

@@ -22,6 +22,18 @@ void tl_lua_item_push(lua_State *L, const tl_lua_kind *kind, int model_index, tl
     luaL_setmetatable(L, kind->item_type);
 }
 
+void tl_lua_item_rename(lua_State *L, const char *name, tl_id id)
+{
+    lua_getfield(L, -1, name);
+    tl_lua_item *item = lua_touserdata(L, -1);
+    item->id = id;
+    lua_pop(L, 1);
+    if (id != TL_NO_ID)
+        return;
+    lua_pushnil(L);
+    lua_setfield(L, -2, name);
+}
+
 static int unknown_field(lua_State *L, const tl_lua_kind *kind, const char *name)
 {
     tl_lua_names names = {0};

@@ -87,7 +87,8 @@ static int model_text(lua_State *L)
 
 /* ---------------------------------------------------------------- methods ---------------- */
 
-static void push_summary(lua_State *L, const tl_generate_summary *summary)
+/* Writes a summary into the table at the top of the stack. */
+static void set_summary(lua_State *L, const tl_generate_summary *summary)
 {
     const struct {
         const char *name;
@@ -104,7 +105,6 @@ static void push_summary(lua_State *L, const tl_generate_summary *summary)
                    {"smallest_edge", summary->smallest_edge},
                    {"smallest_face", summary->smallest_face},
                    {"volume_error", summary->volume_error}};
-    lua_createtable(L, 0, 9);
     for (size_t i = 0; i < sizeof counts / sizeof counts[0]; i++) {
         lua_pushinteger(L, (lua_Integer)counts[i].count);
         lua_setfield(L, -2, counts[i].name);
@@ -123,9 +123,13 @@ static int model_generate(lua_State *L)
     const char *generator = tl_lua_text(L, 2, "generate", "the generator's name");
     tl_args args;
     tl_lua_args(L, 3, lua_pushfstring(L, "generate '%s'", generator), NULL, &args);
-    tl_generate_summary summary;
+    tl_generate_summary summary = {0};
+    lua_newtable(L);
+    set_summary(
+        L,
+        &summary); /* all memory is had before blocks are made: a call that fails changes nothing */
     tl_lua_ok(L, model, tl_generate(model, generator, &args, &summary));
-    push_summary(L, &summary);
+    set_summary(L, &summary);
     return 1;
 }
 

@@ -174,6 +174,7 @@ int tl_lua_report(lua_State *L)
 
 /* ---------------------------------------------------------------- filter ----------------- */
 
+/* Each sliver gets a block it is joined to, which the action tells. */
 static int push_filter(lua_State *L)
 {
     const tl_filter_result *r = lua_touserdata(L, 2);
@@ -199,13 +200,28 @@ static int push_filter(lua_State *L)
                 lua_rawseti(L, -2, (lua_Integer)lua_rawlen(L, -2) + 1);
             }
         lua_setfield(L, -2, "beyond");
-        set_block(L, "joined_to", s->joined_to);
+        set_block(L, "joined_to", s->block);
         lua_rawseti(L, -2, (lua_Integer)i + 1);
     }
     lua_setfield(L, -2, "slivers");
     return 1;
 }
 
+/* Writes what the action did into the table at the top of the stack, without needing memory. */
+static void set_filtered(lua_State *L, const tl_filter_result *r)
+{
+    set_count(L, "deleted", r->deleted);
+    set_count(L, "joined", r->joined);
+    lua_getfield(L, -1, "slivers");
+    for (size_t i = 0; i < r->count; i++) {
+        lua_rawgeti(L, -1, (lua_Integer)i + 1);
+        tl_lua_item_rename(L, "joined_to", r->slivers[i].joined_to);
+        lua_pop(L, 1);
+    }
+    lua_pop(L, 1);
+}
+
+/* First a report, for which there must be memory, and then the action: a call that fails changes nothing. */
 int tl_lua_filter(lua_State *L)
 {
     tl_model *model = tl_lua_model_of(L, "filter");
@@ -214,11 +230,18 @@ int tl_lua_filter(lua_State *L)
     tl_filter limits;
     tl_lua_spec spec = tl_lua_spec_of("filter", NULL);
     tl_lua_read(L, 2, &spec, false, &limits);
+    tl_filter report = limits;
+    report.action = TL_FILTER_REPORT;
     tl_filter_result result;
-    tl_lua_ok(L, model, tl_model_filter(model, &limits, &result));
+    tl_lua_ok(L, model, tl_model_filter(model, &report, &result));
     int status = push_protected(L, push_filter, &result);
     free(result.slivers);
-    return status == LUA_OK ? 1 : lua_error(L);
+    if (status != LUA_OK)
+        return lua_error(L);
+    tl_lua_ok(L, model, tl_model_filter(model, &limits, &result));
+    set_filtered(L, &result);
+    free(result.slivers);
+    return 1;
 }
 
 /* ---------------------------------------------------------------- keyblocks -------------- */

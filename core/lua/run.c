@@ -18,7 +18,16 @@
 #define PIECE 10
 
 /* Places on the Lua stack during a run. */
-enum { AT_MODEL = TL_LUA_AT_MODEL, AT_ARGS, AT_ANCHOR, AT_STOP, AT_PROGRESS, AT_ERROR };
+enum {
+    AT_MODEL = TL_LUA_AT_MODEL,
+    AT_ARGS,
+    AT_ANCHOR,
+    AT_STOP,
+    AT_PROGRESS,
+    AT_ERROR,
+    AT_REASONS,
+    AT_RESULT
+};
 
 typedef struct run {
     lua_State *L;
@@ -116,9 +125,8 @@ static void show(run *r)
     r->shown_time = time;
 }
 
-/* The model's userdata is at `model_index`. */
-static void push_result(lua_State *L, int model_index, const tl_solve_result *result,
-                        const char *reason)
+/* Writes numbers into the table at the top of the stack. */
+static void set_numbers(lua_State *L, const tl_solve_result *result)
 {
     const struct {
         const char *name;
@@ -129,22 +137,44 @@ static void push_result(lua_State *L, int model_index, const tl_solve_result *re
                    {"time", result->time},
                    {"wall", result->wall},
                    {"max_velocity", result->max_velocity}};
-    model_index = lua_absindex(L, model_index);
-    lua_createtable(L, 0, 9);
-    if (reason) {
-        lua_pushstring(L, reason);
-        lua_setfield(L, -2, "reason");
-    }
     lua_pushinteger(L, (lua_Integer)result->cycles);
     lua_setfield(L, -2, "cycles");
     for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++) {
         lua_pushnumber(L, numbers[i].number);
         lua_setfield(L, -2, numbers[i].name);
     }
-    if (result->failing != TL_NO_ID) {
-        tl_lua_item_push(L, &tl_lua_block_kind, model_index, result->failing);
-        lua_setfield(L, -2, "failing");
+}
+
+/* Pushes a table for a result, with a place for each field. The model's userdata is at `model_index`. */
+static void push_result_room(lua_State *L, int model_index)
+{
+    const tl_solve_result none = {0};
+    model_index = lua_absindex(L, model_index);
+    lua_newtable(L);
+    set_numbers(L, &none);
+    tl_lua_item_push(L, &tl_lua_block_kind, model_index, TL_NO_ID);
+    lua_setfield(L, -2, "failing");
+}
+
+/* Fills the table at the top of the stack, made for it, without needing memory. */
+static void set_result(lua_State *L, const tl_solve_result *result)
+{
+    set_numbers(L, result);
+    tl_lua_item_rename(L, "failing", result->failing);
+}
+
+/* All memory for what a run will answer is had before the first step: a call that fails for want of it has made none. */
+static void push_answer_room(lua_State *L)
+{
+    lua_settop(L, AT_ERROR);
+    lua_newtable(L);
+    for (int reason = 0; reason <= TL_SOLVE_FAILURE; reason++) {
+        lua_pushstring(L, tl_solve_reason_name((tl_solve_reason)reason));
+        lua_rawseti(L, AT_REASONS, reason + 1);
     }
+    push_result_room(L, AT_MODEL);
+    lua_pushboolean(L, false);
+    lua_setfield(L, AT_RESULT, "reason");
 }
 
 /* ---------------------------------------------------------------- callbacks -------------- */
@@ -171,7 +201,8 @@ static int call_progress(lua_State *L)
 {
     const run *r = lua_touserdata(L, 3);
     lua_settop(L, 2);
-    push_result(L, 2, &r->result, NULL);
+    push_result_room(L, 2);
+    set_result(L, &r->result);
     lua_call(L, 2, 0);
     return 0;
 }
@@ -243,7 +274,10 @@ static int finish(lua_State *L, run *r, tl_status status)
         return lua_error(L);
     }
     tl_lua_ok(L, r->model, status);
-    push_result(L, AT_MODEL, &r->result, tl_solve_reason_name(r->result.reason));
+    lua_settop(L, AT_RESULT);
+    set_result(L, &r->result);
+    lua_rawgeti(L, AT_REASONS, (int)r->result.reason + 1);
+    lua_setfield(L, AT_RESULT, "reason");
     return 1;
 }
 
@@ -258,7 +292,7 @@ int tl_lua_solve(lua_State *L)
     tl_lua_read(L, AT_ARGS, &spec, false, &solve);
     lua_settop(L, AT_ANCHOR);
     bool stop = push_callback(L, "stop"), progress = push_callback(L, "on_progress");
-    lua_pushnil(L);
+    push_answer_room(L);
     run r;
     run_begin(&r, L, model);
     r.progress = progress;
@@ -295,7 +329,7 @@ int tl_lua_cycle(lua_State *L)
     int64_t cycles;
     tl_lua_spec spec = tl_lua_spec_of("cycle", NULL);
     tl_lua_read_one(L, 2, &spec, "cycles", &cycles);
-    lua_settop(L, AT_ERROR);
+    push_answer_room(L);
     run r;
     run_begin(&r, L, model);
     return finish(L, &r,

@@ -61,8 +61,6 @@ void tl_rows_keep(tl_model *m, const unsigned char *keep)
     for (uint32_t row = 0; row < blocks->table.rows; row++) {
         if (keep[row])
             bodies->member_count[blocks->body[row]]++;
-        else
-            tl_poly_free(blocks->shape[row]);
     }
     uint32_t kept = 0;
     for (uint32_t body = 0; body < body_count; body++) {

@@ -163,6 +163,23 @@ const char *tl_tag_name(tl_model *m, tl_tag tag)
     return m->name;
 }
 
+/* Puts the rule of a joint in the place of the one it has, or adds it; false when out of memory. */
+static bool set_joint_area(tl_model *m, const tl_joint_area *entry)
+{
+    for (size_t i = 0; i < m->area_count; i++)
+        if (m->areas[i].tag.joint == entry->tag.joint &&
+            m->areas[i].tag.plane == entry->tag.plane) {
+            m->areas[i] = *entry;
+            return true;
+        }
+    tl_joint_area *areas = realloc(m->areas, (m->area_count + 1) * sizeof *areas);
+    if (!areas)
+        return false;
+    m->areas = areas;
+    m->areas[m->area_count++] = *entry;
+    return true;
+}
+
 tl_status tl_model_contact_area(tl_model *m, const tl_contact_area *area)
 {
     if (!(area->fraction >= 0) || !isfinite(area->fraction))
@@ -175,20 +192,10 @@ tl_status tl_model_contact_area(tl_model *m, const tl_contact_area *area)
     tl_status status = tl_joint_parse(m, area->joint ? area->joint : "*", &entry.tag);
     if (status != TL_OK)
         return status;
-    m->laws++;
-    if (entry.tag.joint == 0) {
+    if (entry.tag.joint == 0)
         m->area = entry.rule;
-        return TL_OK;
-    }
-    for (size_t i = 0; i < m->area_count; i++)
-        if (m->areas[i].tag.joint == entry.tag.joint && m->areas[i].tag.plane == entry.tag.plane) {
-            m->areas[i] = entry;
-            return TL_OK;
-        }
-    tl_joint_area *areas = realloc(m->areas, (m->area_count + 1) * sizeof *areas);
-    if (!areas)
+    else if (!set_joint_area(m, &entry))
         return tl_fail_memory(&m->error);
-    m->areas = areas;
-    m->areas[m->area_count++] = entry;
+    m->laws++;
     return TL_OK;
 }

@@ -22,7 +22,7 @@ tl_status tl_blocks_load(tl_model *m, const tl_id *ids, size_t count, const tl_l
     tl_status status = check_blocks(m, ids, count);
     if (status != TL_OK)
         return status;
-    if (count && !TL_COLUMN_NEED(&m->bodies.table, &m->bodies, load, TL_COLUMN_STATE))
+    if (count && !TL_COLUMN_NEED(&m->bodies.table, &m->bodies, load, 0))
         return tl_fail_memory(&m->error);
     for (size_t i = 0; i < count; i++) {
         uint32_t body = m->blocks.body[m->row_of[ids[i]]];
@@ -50,7 +50,7 @@ void tl_drive_leave(tl_model *m, uint32_t body)
         return;
     m->bodies.drive[body] = 0;
     m->bodies.fixed[body] = 0;
-    if (--m->drives[index - 1].bodies == 0)
+    if (--m->drives[index - 1].bodies == 0 && !m->drives[index - 1].held)
         release(&m->drives[index - 1]);
 }
 
@@ -61,6 +61,23 @@ void tl_drives_recount(tl_model *m)
     for (size_t body = 0; body < m->bodies.table.rows; body++)
         if (m->bodies.drive[body])
             m->drives[m->bodies.drive[body] - 1].bodies++;
+}
+
+void tl_drives_hold(tl_model *m)
+{
+    for (size_t i = 0; i < m->drive_count; i++)
+        m->drives[i].held = m->drives[i].bodies > 0;
+}
+
+void tl_drives_settle(tl_model *m)
+{
+    tl_drives_recount(m);
+    for (size_t i = 0; i < m->drive_count; i++) {
+        bool held = m->drives[i].held;
+        m->drives[i].held = false;
+        if (held && m->drives[i].bodies == 0)
+            release(&m->drives[i]);
+    }
 }
 
 void tl_drives_clear(tl_model *m)

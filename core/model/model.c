@@ -17,7 +17,7 @@ static void blocks_init(tl_blocks *b)
     TL_COLUMN(t, b, volume, TL_COLUMN_STATE);
     TL_COLUMN(t, b, size, 0);
     TL_COLUMN(t, b, mean_face, 0);
-    TL_COLUMN(t, b, lineage, 0);
+    TL_COLUMN(t, b, lineage, TL_COLUMN_STATE);
     TL_COLUMN(t, b, hidden, TL_COLUMN_STATE);
 }
 
@@ -38,8 +38,8 @@ static void bodies_init(tl_bodies *b)
     TL_COLUMN(t, b, round, 0);
     TL_COLUMN(t, b, radius, 0);
     TL_COLUMN(t, b, fixed, TL_COLUMN_STATE);
-    TL_COLUMN(t, b, force, TL_COLUMN_STATE);
-    TL_COLUMN(t, b, moment, TL_COLUMN_STATE);
+    TL_COLUMN(t, b, force, TL_COLUMN_STATE | TL_COLUMN_STEP);
+    TL_COLUMN(t, b, moment, TL_COLUMN_STATE | TL_COLUMN_STEP);
     TL_COLUMN(t, b, drive, 0);
     TL_COLUMN(t, b, odometer, 0);
 }

@@ -114,6 +114,7 @@ typedef struct tl_drive_record {
     tl_drive drive;
     tl_vec3 velocity, angular_velocity; /* in the step being made */
     size_t bodies;                      /* that follow it; 0: free for use again */
+    bool held;                          /* it may be asked for again: tl_rows_set_aside */
 } tl_drive_record;
 
 /* A rule for the minimum area of edge and point contacts. */
@@ -389,8 +390,24 @@ void tl_block_measure(tl_model *m, uint32_t row, double volume);
 void tl_body_measure(tl_model *m, uint32_t body);
 /* The same for a body of one block, whose mass properties at density 1 are known. */
 void tl_body_measure_single(tl_model *m, uint32_t body, uint32_t row, tl_mass mass);
-/* Removes the blocks with keep[row] == 0, and bodies left without blocks. */
+/* Removes the blocks with keep[row] == 0, and bodies left without blocks. Their shapes are the caller's. */
 void tl_rows_keep(tl_model *m, const unsigned char *keep);
+
+/* The rows of blocks and bodies as they were before a change that may fail half-way: aside.c. */
+typedef struct tl_aside {
+    tl_blocks blocks;
+    tl_bodies bodies;
+    tl_id next_id;
+    uint64_t structure, constraints;
+} tl_aside;
+
+/* Sets copies aside; false when out of memory. Until the change is settled shapes of the rows must not be freed, and drives
+ * are kept though no body follows them. */
+bool tl_rows_set_aside(tl_model *m, tl_aside *aside);
+/* Takes them back: the model is as it was. */
+void tl_rows_take_back(tl_model *m, tl_aside *aside);
+/* Forgets them: the change is made. */
+void tl_rows_settle(tl_model *m, tl_aside *aside);
 
 /* ---- regroup.c ---- */
 
@@ -420,5 +437,8 @@ void tl_drive_leave(tl_model *m, uint32_t body);
 void tl_drives_clear(tl_model *m);
 /* Counts the bodies of each drive again, after a driven body has fallen into several. */
 void tl_drives_recount(tl_model *m);
+/* Keeps the drives in use though no body follows them, or ends those that none follows any more. */
+void tl_drives_hold(tl_model *m);
+void tl_drives_settle(tl_model *m);
 
 #endif

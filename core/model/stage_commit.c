@@ -1,6 +1,6 @@
 /* stage_commit.c - a staging set becomes the model's blocks: rows are written, blocks that were cut or
  * deleted go, and blocks that hang together become bodies. All memory is reserved before the model is
- * touched, but for that of the bodies of several blocks. */
+ * touched, but for that of the bodies of several blocks: where there are such, the rows as they were are set aside. */
 #include "model/model.h"
 
 #include <stdlib.h>
@@ -109,35 +109,18 @@ static bool is_made(const tl_stage_block *block)
     return block->owned && !block->retagged;
 }
 
-/* Adds what the stage did to the model's record. `first` is the id of the first block made; blocks of
- * the stage that were made got ids in their order. */
-static void keep_record(tl_stage *stage, tl_id first)
+/* Adds what the stage did to the model's record, whose list has room. `ids` are those of the staged blocks. */
+static void keep_record(const tl_stage *stage, const tl_id *ids)
 {
-    tl_model *m = stage->model;
-    tl_cut_record *record = &m->record;
+    tl_cut_record *record = &stage->model->record;
     record->cuts += stage->summary.cuts;
     record->refused += stage->summary.refused;
     record->coincident += stage->summary.coincident;
     record->created += stage->created_volume;
-    if (!stage->refused_listed)
-        return;
-    size_t listed = record->listed + stage->refused_listed;
-    tl_refused_cut *list = realloc(record->list, listed * sizeof *list);
-    if (!list)
-        return;
-    record->list = list;
-    tl_id *id = malloc((stage->count + 1) * sizeof *id);
-    if (!id)
-        return;
-    for (size_t i = 0; i < stage->count; i++) {
-        const tl_stage_block *block = &stage->blocks[i];
-        id[i] = is_made(block) ? first++ : m->blocks.id[block->source];
-    }
     for (size_t i = 0; i < stage->refused_listed; i++) {
-        list[record->listed] = stage->refused[i];
-        list[record->listed++].block = id[stage->refused[i].block];
+        record->list[record->listed] = stage->refused[i];
+        record->list[record->listed++].block = ids[stage->refused[i].block];
     }
-    free(id);
 }
 
 /* What a commit needs before it changes anything. */
@@ -146,7 +129,10 @@ typedef struct commit_room {
     uint32_t *slot;      /* [rows before] of blocks that were cut: place in sources */
     source *sources;     /* of the blocks that were cut */
     size_t source_count;
-    tl_id *ids;      /* [staged blocks] their ids in the model */
+    tl_id *ids;     /* [staged blocks] their ids in the model */
+    tl_poly **gone; /* [rows before] shapes that other shapes or blocks take the place of */
+    size_t gone_count;
+    tl_aside aside;  /* where there are bodies of several blocks */
     uint32_t *first; /* [staged bodies] */
     uint32_t *group; /* [rows] */
 } commit_room;
@@ -157,6 +143,7 @@ static void free_room(commit_room *room)
     free(room->slot);
     free(room->sources);
     free(room->ids);
+    free(room->gone);
     free(room->first);
     free(room->group);
 }
@@ -183,16 +170,32 @@ static bool sort_rows(const tl_stage *stage, size_t old, commit_room *room)
     return room->sources != NULL;
 }
 
+/* Room in the model's record for the cuts that were refused. */
+static bool reserve_record(const tl_stage *stage)
+{
+    tl_cut_record *record = &stage->model->record;
+    if (stage->refused_listed == 0)
+        return true;
+    size_t listed = record->listed + stage->refused_listed;
+    tl_refused_cut *list = realloc(record->list, listed * sizeof *list);
+    if (list)
+        record->list = list;
+    return list != NULL;
+}
+
 static bool make_room(tl_stage *stage, size_t old, size_t made, commit_room *room)
 {
     room->ids = malloc((stage->count + 1) * sizeof *room->ids);
+    room->gone = malloc((old + 1) * sizeof *room->gone);
     if (stage->regroups) {
         room->first = malloc((stage->next_body + (size_t)1) * sizeof *room->first);
         room->group = malloc((old + made + 1) * sizeof *room->group);
     }
-    return sort_rows(stage, old, room) && room->ids &&
+    return sort_rows(stage, old, room) && room->ids && room->gone &&
            (!stage->regroups || (room->first && room->group)) && old + made < TL_NO_ROW &&
-           tl_rows_reserve(stage->model, old + made, stage->model->next_id + (tl_id)made);
+           reserve_record(stage) &&
+           tl_rows_reserve(stage->model, old + made, stage->model->next_id + (tl_id)made) &&
+           (!stage->regroups || tl_rows_set_aside(stage->model, &room->aside));
 }
 
 /* Writes what the stage changed of the blocks that stay, and drops those it replaces; what their
@@ -207,7 +210,7 @@ static void drop_replaced(tl_stage *stage, size_t old, commit_room *room)
         room->ids[i] = m->blocks.id[block->source];
         m->blocks.group[block->source] = block->group;
         if (block->retagged) {
-            tl_poly_free(m->blocks.shape[block->source]);
+            room->gone[room->gone_count++] = m->blocks.shape[block->source];
             m->blocks.shape[block->source] = block->shape;
         }
     }
@@ -219,6 +222,9 @@ static void drop_replaced(tl_stage *stage, size_t old, commit_room *room)
             if (drive)
                 m->drives[drive - 1].bodies++;
         }
+    for (uint32_t row = 0; row < old; row++)
+        if (!room->keep[row])
+            room->gone[room->gone_count++] = m->blocks.shape[row];
     tl_rows_keep(m, room->keep);
     tl_generate_summary *s = &stage->summary;
     s->smallest_volume = s->smallest_edge = s->smallest_face = INFINITY;
@@ -265,7 +271,6 @@ tl_status tl_stage_commit(tl_stage *stage)
         return status;
     }
     /* From here on nothing can fail but the grouping of blocks into bodies, for want of memory. */
-    keep_record(stage, m->next_id);
     double volume_before = 0;
     for (size_t row = 0; row < old; row++)
         volume_before += m->blocks.volume[row];
@@ -275,8 +280,19 @@ tl_status tl_stage_commit(tl_stage *stage)
     if (stage->regroups) {
         tl_stage_groups(stage, room.ids, room.first, room.group);
         status = tl_bodies_regroup(m, room.group);
+        if (status == TL_OK)
+            tl_rows_settle(m, &room.aside);
+        else
+            tl_rows_take_back(m, &room.aside);
+    }
+    if (status == TL_OK) {
+        keep_record(stage, room.ids);
+        for (size_t i = 0; i < room.gone_count; i++)
+            tl_poly_free(room.gone[i]);
+        tl_stage_end(stage);
+    } else {
+        tl_stage_drop(stage);
     }
     free_room(&room);
-    tl_stage_end(stage);
     return status;
 }

@@ -44,8 +44,12 @@ tl_status tl_blocks_delete(tl_model *m, const tl_id *ids, size_t count)
     if (status == TL_OK)
         status = tl_bodies_regroup(m, group);
     if (status == TL_OK) {
-        for (size_t row = 0; row < m->blocks.table.rows; row++)
-            m->record.deleted += keep[row] ? 0 : m->blocks.volume[row];
+        for (size_t row = 0; row < m->blocks.table.rows; row++) {
+            if (keep[row])
+                continue;
+            m->record.deleted += m->blocks.volume[row];
+            tl_poly_free(m->blocks.shape[row]);
+        }
         tl_rows_keep(m, keep);
     }
     free(keep);
@@ -124,6 +128,15 @@ static tl_status check_set(tl_model *m, const tl_block_set *set)
     return TL_OK;
 }
 
+/* Whether some of the blocks are parts of bodies of several. */
+static bool some_joined(const tl_model *m, const tl_id *ids, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        if (m->bodies.member_count[m->blocks.body[m->row_of[ids[i]]]] > 1)
+            return true;
+    return false;
+}
+
 tl_status tl_blocks_set(tl_model *m, const tl_id *ids, size_t count, const tl_block_set *set)
 {
     tl_status status = check_ids(m, ids, count);
@@ -133,6 +146,10 @@ tl_status tl_blocks_set(tl_model *m, const tl_id *ids, size_t count, const tl_bl
         return status;
     uint32_t group = 0;
     if (set->group && (group = tl_group_intern(m, set->group)) == UINT32_MAX)
+        return tl_fail_memory(&m->error);
+    tl_aside aside;
+    bool mends = !isnan(set->density) && some_joined(m, ids, count);
+    if (mends && !tl_rows_set_aside(m, &aside))
         return tl_fail_memory(&m->error);
     for (size_t i = 0; i < count; i++) {
         uint32_t row = m->row_of[ids[i]], body = m->blocks.body[row];
@@ -149,5 +166,12 @@ tl_status tl_blocks_set(tl_model *m, const tl_id *ids, size_t count, const tl_bl
             m->bodies.w[body] = set->angular_velocity;
     }
     m->constraints++;
-    return tl_bodies_mend(m); /* a body of several blocks has another centroid now */
+    if (!mends)
+        return TL_OK;
+    status = tl_bodies_mend(m); /* a body of several blocks has another centroid now */
+    if (status == TL_OK)
+        tl_rows_settle(m, &aside);
+    else
+        tl_rows_take_back(m, &aside);
+    return status;
 }

@@ -27,8 +27,8 @@ static void make(things *t, size_t rows)
 
 static bool widen(things *t)
 {
-    return tl_table_widen(&t->table, "late", sizeof *t->late, TL_COLUMN_AT(t, late),
-                          TL_COLUMN_STATE);
+    const tl_column late = TL_COLUMN_NEW(t, late, TL_COLUMN_STATE);
+    return tl_table_widen(&t->table, &late, 1);
 }
 
 static void a_late_column_is_zero_and_the_rest_stays(void)

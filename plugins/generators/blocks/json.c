@@ -203,9 +203,13 @@ static tl_status read_file(const json_tree *t, char **text, size_t *count)
     while (status == TL_OK && !feof(stream)) {
         if (*count + 1 >= room) {
             room = room ? 2 * room : FIRST_BYTES;
-            char *more = room <= MOST_BYTES ? realloc(*text, room) : NULL;
+            bool large = room > MOST_BYTES;
+            char *more = large ? NULL : realloc(*text, room);
             if (!more) {
-                status = t->host->fail(t->host, TL_E_MEMORY, "file '%.200s' is too large", t->file);
+                status = t->host->fail(t->host, TL_E_MEMORY,
+                                       large ? "file '%.200s' is too large"
+                                             : "out of memory while file '%.200s' is read",
+                                       t->file);
                 break;
             }
             *text = more;

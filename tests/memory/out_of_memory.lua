@@ -1,0 +1,250 @@
+-- out_of_memory.lua - every call of a small complete model, with each of its allocations failing in turn: there is no crash,
+-- one clear sentence, the model is as it was, and the call made again gives what it gives in a model that never ran out.
+--
+--     LD_PRELOAD=memory_failure.so talus tests/memory/out_of_memory.lua [threads=2] [every=1] [leave=N] [only=NAME]
+--
+-- `every`: of allocations beyond the first `leave` of a call only each so many is let fail; 1: each.
+package.cpath = os.getenv "TALUS_TEST_MEMORY" .. "/?.so;" .. package.cpath
+local talus = require "talus"
+local memory = require "memory_failure"
+io.stdout:setvbuf "line"
+
+local options = { threads = "2", every = "1", leave = "40", only = "" }
+for _, text in ipairs(arg) do
+    local key, value = text:match "^(%w+)=(.*)$"
+    assert(options[key], "unknown option " .. text)
+    options[key] = value
+end
+local THREADS, EVERY, LEAVE = tonumber(options.threads), tonumber(options.every), tonumber(options.leave)
+local TMP = os.getenv "TALUS_TEST_TMP" .. "/out_of_memory" .. THREADS
+
+local function text_of(name)
+    local file = assert(io.open(name))
+    local text = file:read "a"
+    file:close()
+    return text
+end
+
+local COULOMB = { kn = 1e8, ks = 1e8, friction = 30 }
+
+-- Name and work of each call, in order; what a call answers is compared, too (a function: what that answers when there is
+-- memory again). `m` holds the model.
+local calls = {
+    { "model", function(m) m.model = talus.model { gravity = { 0, 0, -10 }, threads = THREADS } end },
+    { "box", function(m)
+        m.model:generate("box", { min = { 0, 0, 0 }, max = { 6, 6, 6 }, density = 2000, group = "rock" })
+    end },
+    { "polyhedron", function(m)
+        m.model:generate("polyhedron", { vertices = { { 1, 1, 6 }, { 3, 1, 6 }, { 3, 3, 6 }, { 1, 3, 6 }, { 2, 2, 7.5 } },
+            density = 2500, group = "cap" })
+    end },
+    { "jointset", function(m)
+        return m.model:generate("jointset", { joint = "J1", dip = 60, dip_direction = 90, spacing = 1.7,
+            persistence = 0.7, origin = { 3, 3, 3 } }).after
+    end },
+    { "joint", function(m)
+        return m.model:generate("joint", { joint = "J2", dip = 10, dip_direction = 20, origin = { 3, 3, 2 } }).cuts
+    end },
+    { "tunnel", function(m)
+        return m.model:generate("tunnel", { face1 = { { 2, 0, 2.5 }, { 2, 0, 4 }, { 4, 0, 4 }, { 4, 0, 2.5 } },
+            face2 = { { 2, 6, 2.5 }, { 2, 6, 4 }, { 4, 6, 4 }, { 4, 6, 2.5 } }, group = "tunnel" }).after
+    end },
+    { "prism", function(m)
+        m.model:generate("prism", { base = { { 7, 0, 0 }, { 9, 0, 0 }, { 9, 2, 0 }, { 7, 2, 0 } }, axis = { 0, 0, 1 }, density = 2000 })
+    end },
+    { "delete", function(m) m.model:blocks { group = "tunnel" }:delete() end },
+    { "law", function(m) m.model:joint("*", "coulomb", COULOMB) end },
+    { "query", function(m) return #m.model:contacts() end },
+    { "first hash", function(m) return m.model:state_hash() end },
+    { "law of J1", function(m) m.model:joint("J1", "coulomb_tensile", { kn = 2e8, ks = 1e8, friction = 40, cohesion = 1e5 }) end },
+    { "fix", function(m) m.model:blocks { below = { dip = 0, dip_direction = 0, origin = { 0, 0, 0.9 } } }:fix() end },
+    { "hide", function(m) m.model:blocks { group = "cap" }:hide() end },
+    { "timestep", function(m) m.model:timestep { rule = "body", fraction = 0.2 } end },
+    { "contact_area", function(m) m.model:contact_area { fraction = 0.02, joint = "J1" } end },
+    { "damping", function(m) m.model:damping("local", { alpha = 0.5 }) end },
+    { "insitu", function(m) m.model:insitu { stress = { xx = -1e5, yy = -1e5, zz = -1e5 } } end },
+    { "first cycle", function(m) return m.model:cycle(1).ratio end, run = true },
+    { "cycles", function(m) return m.model:cycle(20).ratio end, run = true },
+    { "contact_area under load", function(m) m.model:contact_area { fraction = 0.015, joint = "J2" } end },
+    { "law under load", function(m) m.model:joint("J2", "coulomb", { kn = 3e8, ks = 1e8, friction = 20 }) end },
+    { "set density", function(m) m.model:blocks():set { density = 2100 } end },
+    { "set group", function(m) m.model:blocks { group = "rock" }:set { group = "stone", velocity = { 0, 0, 0.1 } } end },
+    { "adaptive", function(m) m.model:damping("adaptive", {}) end },
+    { "load", function(m) m.model:blocks { group = "cap", hidden = "any" }:load { force = { 100, 0, 0 } } end },
+    { "drive", function(m)
+        local blocks = m.model:blocks { inside = { min = { 7, 0, 0 }, max = { 9, 2, 1 } } }
+        assert(#blocks == 1)
+        blocks:drive { velocity = function(t) return -t, 0, 0 end }
+    end },
+    { "solve", function(m) return m.model:solve { ratio = 1e-9, max_cycles = 30 }.ratio end, run = true, driven = true },
+    { "free", function(m) m.model:blocks { inside = { min = { 6, -1, -1 }, max = { 9, 3, 2 } } }:free() end },
+    { "join", function(m)
+        local stone = m.model:blocks { group = "stone", fixed = false }
+        local low = stone:where(function(block) return block.id <= stone[3].id end)
+        low:join()
+    end },
+    { "cycle joined", function(m) return m.model:cycle(5).ratio end, run = true },
+    { "unjoin", function(m)
+        local stone = m.model:blocks { group = "stone", fixed = false }
+        stone:where(function(block) return block.id == stone[2].id end):unjoin()
+    end },
+    { "delete one", function(m)
+        local stone = m.model:blocks { group = "stone", fixed = false }
+        stone:where(function(block) return block.id == stone[1].id end):delete()
+    end },
+    { "reset", function(m) m.model:blocks():reset_displacement() end },
+    { "jointset later", function(m)
+        return m.model:generate("jointset", { joint = "J3", dip = 80, dip_direction = 200, spacing = 3, origin = { 1, 1, 1 } }).after
+    end },
+    { "cycle cut", function(m) return m.model:cycle(5).ratio end, run = true },
+    { "filter", function(m) return #m.model:filter { volume = 0.05, action = "join" } end },
+    { "energy", function(m) return m.model:energy().kinetic end },
+    { "report", function(m) return talus.report and m.model.dt end },
+    { "keyblocks", function(m) return #m.model:keyblocks { friction = 35 } end },
+    { "fields", function(m)
+        local sum = 0
+        for _, name in ipairs { "mass", "volume" } do sum = sum + m.model:blocks():sum(name) end
+        local block = m.model:blocks()[1]
+        return sum + #block.vertices + #block.faces + #block.neighbours
+    end },
+    { "write_vtk", function(m)
+        local function written() return text_of(TMP .. "/vtk_blocks.vtk.series") end
+        m.model:write_vtk(TMP .. "/vtk") -- the last that needs memory
+        return written
+    end },
+    { "write_section", function(m) m.model:write_section(TMP .. "/cut", { dip = 90, dip_direction = 0, origin = { 3, 3, 3 } }) end },
+    { "write_blocks", function(m) m.model:write_blocks(TMP .. "/blocks.json") end },
+    { "last cycles", function(m) return m.model:cycle(3).ratio end, run = true },
+    { "blocks", function(m)
+        local copy = talus.model { threads = THREADS }
+        copy:generate("blocks", { file = TMP .. "/blocks.json" })
+        return copy:state_hash()
+    end },
+    { "state_hash", function(m) return m.model:state_hash() end },
+    { "profile", function(m) return m.model:memory().blocks end },
+}
+
+local function digest(m)
+    if not m.model then
+        return "no model"
+    end
+    local groups = {}
+    for i, name in ipairs { "rock", "cap", "tunnel", "stone" } do
+        groups[i] = #m.model:blocks { group = name, hidden = "any" }
+    end
+    local e = m.model:energy()
+    return table.concat({ m.model:state_hash(), #m.model:blocks { hidden = "any" }, #m.model:blocks(), m.model.time, m.model.cycles,
+        string.format("%a %a %a %a", e.kinetic, e.stored, e.friction, e.external), table.concat(groups, ",") }, " ")
+end
+
+local function rebuilt(count)
+    local m = {}
+    for k = 1, count do
+        calls[k][2](m)
+    end
+    return m
+end
+
+-- What a model that never ran out of memory is after each call, and in a run after each step, by the count of steps.
+local expected, answers, steps = {}, {}, {}
+do
+    local m = {}
+    for k, call in ipairs(calls) do
+        local first = m.model and m.model.cycles
+        answers[k] = call[2](m)
+        answers[k] = type(answers[k]) == "function" and answers[k]() or answers[k]
+        expected[k] = digest(m)
+        if call.run then
+            local slow = rebuilt(k - 1)
+            for cycle = first + 1, m.model.cycles do
+                slow.model:cycle(1)
+                steps[cycle] = digest(slow)
+            end
+            assert(digest(slow) == expected[k], "steps one by one differ from a run")
+        end
+    end
+end
+
+local MOST_TOLD = 3
+local bad, told = 0, 0
+local function complain(format, ...)
+    bad, told = bad + 1, told + 1
+    if told <= MOST_TOLD then
+        print(string.format(format, ...))
+    end
+end
+
+local SENTENCE = { "out of memory", "not enough memory", "Cannot allocate memory" }
+local function is_clean(message)
+    if type(message) ~= "string" or message:find("\n", 1, true) then
+        return false
+    end
+    for _, part in ipairs(SENTENCE) do
+        if message:find(part, 1, true) then
+            return true
+        end
+    end
+    return false
+end
+
+-- Lets the n-th allocation of call k fail for each n. Returns the model after it.
+local function try(k, m, for_good)
+    local name, work = calls[k][1], calls[k][2]
+    local before, n, failures, cycles = digest(m), 1, 0, m.model and m.model.cycles
+    told = 0
+    while true do
+        collectgarbage()
+        collectgarbage "stop"
+        memory.fail(n, for_good)
+        local good, answer = pcall(work, m)
+        local asked = memory.stop()
+        collectgarbage "restart"
+        local where = string.format("%s, allocation %d%s", name, n, for_good and " and all after" or "")
+        if good then
+            answer = type(answer) == "function" and answer() or answer
+            if answer ~= answers[k] then
+                complain("%s: it answers %s, not %s", where, tostring(answer), tostring(answers[k]))
+            end
+            local after = digest(m)
+            if after ~= expected[k] then
+                complain("%s: made, but %s is not %s", where, after, expected[k])
+            end
+            if asked < n then
+                return m, n - 1, failures
+            end
+            m = rebuilt(k - 1)
+        else
+            failures = failures + 1
+            if not is_clean(answer) then
+                complain("%s: '%s'", where, tostring(answer))
+            end
+            local after = digest(m)
+            -- The steps that were made stand; so does one in which a drive's function failed.
+            if calls[k].run and (after == steps[m.model.cycles] or calls[k].driven and m.model.cycles > cycles) then
+                m = rebuilt(k - 1)
+            elseif after ~= before then
+                complain("%s: refused with '%s', but %s became %s", where, tostring(answer), before, after)
+                m = rebuilt(k - 1)
+            end
+        end
+        n = n + (n > LEAVE and EVERY or 1)
+    end
+end
+
+for _, for_good in ipairs { false, true } do
+    local m = {}
+    for k, call in ipairs(calls) do
+        if options.only == "" or options.only == call[1] then
+            if options.only ~= "" then
+                m = rebuilt(k - 1)
+            end
+            local t = os.clock()
+            local _, count, failures
+            m, count, failures = try(k, m, for_good)
+            print(string.format("%-16s %6d allocations, %6d refused, %.2f s", call[1], count, failures, os.clock() - t))
+        elseif options.only == "" then
+            call[2](m)
+        end
+    end
+end
+assert(bad == 0, bad .. " complaints")
