@@ -1,7 +1,12 @@
-/* state_hash.c - a digest of the mechanical state: places, velocities, forces and histories, shapes, laws,
- * damping and settings. Left out is what asking may change (contact ids) and what only saves work
- * (cached axes, the broad phase), for the results do not depend on it beyond the caches' margins. What follows from
- * the rest and lies in a row with it (a pose's matrix) does no harm. */
+/* state_hash.c - a digest of all that the next call depends on: places, velocities, forces and histories, shapes, names,
+ * laws, damping and settings. Two models of the same digest go on alike, whatever is done to both.
+ *
+ * Contacts are taken as the next step will find them, in a copy of the detection: whether they have been brought up to the
+ * present places already, by a step that failed after that or by a question, makes no difference. Left out is what is only
+ * told (energies, displacements' zero, record of cuts), what asking may change (contact ids, order of contacts) and what
+ * only saves work (cached axes, the broad phase), for the results do not depend on it beyond the caches' margins. A
+ * column that few models need counts as zeros where there is none. What follows from the rest and lies in a row with it (a
+ * pose's matrix) does no harm. */
 #include "cycle/cycle_room.h"
 
 #include "base/hash.h"
@@ -24,6 +29,45 @@ static void hash_row(tl_hash *hash, const tl_table *table, size_t row)
     }
 }
 
+/* Any NaN counts as the same: what is not given. */
+static void hash_numbers(tl_hash *hash, const double *numbers, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        double number = isnan(numbers[i]) ? NAN : numbers[i];
+        tl_hash_bytes(hash, &number, sizeof number);
+    }
+}
+
+static void hash_text(tl_hash *hash, const char *text)
+{
+    tl_hash_bytes(hash, text, strlen(text));
+}
+
+static void hash_tag(tl_hash *hash, tl_tag tag)
+{
+    tl_hash_word(hash, (uint64_t)tag.joint << 32 | tag.plane);
+}
+
+/* Adds to `sum` one of several things whose order means nothing. */
+static void hash_any_order(tl_hash *sum, const tl_hash *one)
+{
+    sum->a += one->a;
+    sum->b += one->b;
+}
+
+/* ---------------------------------------------------------------- contacts --------------- */
+
+static void hash_point(tl_hash *hash, const tl_points_table *p, size_t row, uint32_t columns)
+{
+    double late[2 + TL_STATE_COLUMNS];
+    late[0] = p->initial ? p->reference[row] : 0;
+    late[1] = p->initial ? p->f_n0[row] : 0;
+    for (uint32_t k = 0; k < columns; k++)
+        late[2 + k] = k < p->state_columns ? p->state[k][row] : 0;
+    hash_row(hash, &p->table, row);
+    hash_numbers(hash, late, 2 + columns);
+}
+
 /* In the order of their blocks: which row and lane a contact has depends on when it was made. */
 static void hash_contacts(tl_hash *hash, const tl_model *m)
 {
@@ -34,12 +78,48 @@ static void hash_contacts(tl_hash *hash, const tl_model *m)
             uint32_t contact = d->by_block[e];
             if (c->a[contact] != block)
                 continue; /* it comes with its other block */
+            uint32_t material = c->material[contact], columns = 0;
+            if (material != TL_NO_ROW)
+                columns = tl_kind_state_columns(m->materials[material].kind);
             tl_hash_word(hash, (uint64_t)m->blocks.id[block] << 32 | m->blocks.id[c->b[contact]]);
             hash_row(hash, &c->table, contact);
             for (uint32_t k = 0; k < c->point_count[contact]; k++)
-                hash_row(hash, &d->points.table, tl_point_row(c, contact, k));
+                hash_point(hash, &d->points, tl_point_row(c, contact, k), columns);
         }
 }
+
+static void say_nothing(void *user, const char *text)
+{
+    (void)user;
+    (void)text;
+}
+
+/* Hashes the contacts as the next step will find them. The first contacts of a model are found in the model itself, as by
+ * any question; contacts that stand are brought up to date in a copy, for it would change what a later join does with them. */
+static tl_status hash_next_contacts(tl_hash *hash, tl_model *m)
+{
+    if (!m->detect || m->detect->contacts.table.rows == 0) {
+        tl_status status = tl_detect_refresh(m);
+        if (status != TL_OK)
+            return status;
+    }
+    struct tl_detect *own = m->detect;
+    tl_log_fn log = m->log;
+    if (!(m->detect = tl_detect_copy(own))) {
+        m->detect = own;
+        return tl_fail_memory(&m->error);
+    }
+    m->log = say_nothing;
+    tl_status status = tl_detect_update(m);
+    if (status == TL_OK)
+        hash_contacts(hash, m);
+    m->log = log;
+    tl_detect_destroy(m->detect);
+    m->detect = own;
+    return status;
+}
+
+/* ---------------------------------------------------------------- blocks and bodies ------ */
 
 static void hash_shape(tl_hash *hash, const tl_poly *p)
 {
@@ -49,10 +129,62 @@ static void hash_shape(tl_hash *hash, const tl_poly *p)
     tl_hash_bytes(hash, p->loop, p->start[p->face_count] * sizeof *p->loop);
 }
 
+/* Of a drive's functions it is only told that they are there: what they do is the script's. */
+static void hash_drive(tl_hash *hash, const tl_drive *drive)
+{
+    const double parts[] = {drive->velocity.x,         drive->velocity.y,
+                            drive->velocity.z,         drive->angular_velocity.x,
+                            drive->angular_velocity.y, drive->angular_velocity.z};
+    hash_numbers(hash, parts, sizeof parts / sizeof *parts);
+    tl_hash_word(hash, (uint64_t)(drive->velocity_at != NULL) << 1 |
+                           (uint64_t)(drive->angular_velocity_at != NULL));
+}
+
+static void hash_blocks(tl_hash *hash, const tl_model *m)
+{
+    hash_table(hash, &m->blocks.table);
+    for (size_t row = 0; row < m->blocks.table.rows; row++) {
+        hash_text(hash, m->groups[m->blocks.group[row]]);
+        hash_shape(hash, m->blocks.shape[row]);
+    }
+    hash_table(hash, &m->bodies.table);
+    for (uint32_t body = 0; body < m->bodies.table.rows; body++) {
+        tl_body_load load = tl_load_of(&m->bodies, body);
+        tl_hash_bytes(hash, &load, sizeof load);
+        if (m->bodies.drive[body])
+            hash_drive(hash, &m->drives[m->bodies.drive[body] - 1].drive);
+    }
+}
+
+/* ---------------------------------------------------------------- settings --------------- */
+
+static void hash_laws(tl_hash *hash, const tl_model *m)
+{
+    tl_hash sum = {0, 0};
+    for (size_t i = 0; i < m->material_count; i++) {
+        const tl_material *law = &m->materials[i];
+        tl_hash one = tl_hash_start();
+        hash_tag(&one, law->tag);
+        hash_text(&one, law->kind->name);
+        tl_hash_bytes(&one, law->params, law->kind->params_size);
+        hash_any_order(&sum, &one);
+    }
+    for (size_t i = 0; i < m->area_count; i++) {
+        tl_hash one = tl_hash_start();
+        hash_tag(&one, m->areas[i].tag);
+        hash_numbers(&one, (const double[]){m->areas[i].rule.fraction, m->areas[i].rule.absolute},
+                     2);
+        hash_any_order(&sum, &one);
+    }
+    tl_hash_word(hash, sum.a);
+    tl_hash_word(hash, sum.b);
+}
+
 static void hash_damping(tl_hash *hash, const tl_model *m)
 {
     const tl_damping_ops *ops = m->damping->ops;
     const tl_bodies *b = &m->bodies;
+    hash_text(hash, m->damping->name);
     tl_hash_bytes(hash, m->damping_params, m->damping->params_size);
     tl_hash_bytes(hash, m->damping_state, m->damping->state_count * sizeof *m->damping_state);
     if (!ops->before)
@@ -61,37 +193,54 @@ static void hash_damping(tl_hash *hash, const tl_model *m)
     tl_hash_bytes(hash, b->moment_before, b->table.rows * sizeof *b->moment_before);
 }
 
+static void hash_settings(tl_hash *hash, const tl_model *m)
+{
+    const struct tl_cycle *c = m->cycle;
+    const tl_model_config *config = &m->config;
+    const double numbers[] = {
+        m->time,
+        m->dt,
+        c ? c->dt : 0, /* the step in use, which stays while it is hardly too short */
+        c ? c->kinetic_before : 0,
+        m->origin.x,
+        m->origin.y,
+        m->origin.z,
+        config->gravity.x,
+        config->gravity.y,
+        config->gravity.z,
+        tl_timestep_fraction(m),
+        m->timestep.dt,
+        m->area.fraction,
+        m->area.absolute,
+    };
+    const int64_t words[] = {m->cycles,
+                             m->next_id,
+                             config->seed,
+                             config->rotation,
+                             config->reuse_geometry,
+                             config->contact_points,
+                             m->timestep.rule,
+                             m->mass_scaling,
+                             m->origin_set};
+    hash_numbers(hash, numbers, sizeof numbers / sizeof *numbers);
+    tl_hash_bytes(hash, words, sizeof words);
+    for (size_t i = 0; i < m->joint_count; i++) {
+        hash_text(hash, m->joints[i].name);
+        tl_hash_word(hash, m->joints[i].planes);
+    }
+    hash_laws(hash, m);
+    if (m->damping)
+        hash_damping(hash, m);
+}
+
 tl_status tl_state_hash(tl_model *m, char text[33])
 {
-    tl_status status = tl_detect_refresh(m);
+    tl_hash hash = tl_hash_start();
+    tl_status status = hash_next_contacts(&hash, m);
     if (status != TL_OK)
         return status;
-    tl_hash hash = tl_hash_start();
-    const double clock[] = {m->time,
-                            m->dt,
-                            m->origin.x,
-                            m->origin.y,
-                            m->origin.z,
-                            m->config.gravity.x,
-                            m->config.gravity.y,
-                            m->config.gravity.z};
-    tl_hash_bytes(&hash, clock, sizeof clock);
-    tl_hash_word(&hash, (uint64_t)m->cycles);
-    hash_table(&hash, &m->blocks.table);
-    hash_table(&hash, &m->bodies.table);
-    for (size_t row = 0; row < m->blocks.table.rows; row++)
-        hash_shape(&hash, m->blocks.shape[row]);
-    hash_contacts(&hash, m);
-    for (size_t i = 0; i < m->material_count; i++) {
-        tl_hash_word(&hash, (uint64_t)m->materials[i].tag.joint << 32 | m->materials[i].tag.plane);
-        tl_hash_bytes(&hash, m->materials[i].kind->name, strlen(m->materials[i].kind->name));
-        tl_hash_bytes(&hash, m->materials[i].params, m->materials[i].kind->params_size);
-    }
-    const double settings[] = {tl_timestep_fraction(m), m->timestep.rule, m->area.fraction,
-                               m->config.rotation, m->mass_scaling};
-    tl_hash_bytes(&hash, settings, sizeof settings);
-    if (m->damping)
-        hash_damping(&hash, m);
+    hash_settings(&hash, m);
+    hash_blocks(&hash, m);
     tl_hash_text(&hash, text);
     return TL_OK;
 }

@@ -250,6 +250,7 @@ const tl_lua_topic tl_lua_topics[] = {
      .function = "write_blocks"},
     {.name = "state_hash",
      .usage = "text = model:state_hash()",
-     .doc = "A digest of the whole mechanical state: equal bits, equal text."},
+     .doc = "A digest of all that what comes next depends on, settings too: models with the same "
+            "text go on alike, to the last bit. Takes about as long as a step."},
     {.name = NULL},
 };

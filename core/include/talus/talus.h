@@ -588,7 +588,7 @@ TL_API tl_status tl_write_vtk(tl_model *model, const char *prefix);
  * that format makes them again. */
 TL_API tl_status tl_write_blocks(tl_model *model, const char *path);
 
-/* 32 hexadecimal digits over the whole mechanical state: equal bits, equal text. */
+/* 32 hexadecimal digits over all that what comes next depends on: models of the same text go on alike. */
 TL_API tl_status tl_state_hash(tl_model *model, char text[33]);
 
 #ifdef __cplusplus
