@@ -226,9 +226,13 @@ SCENE_UNUSED static void scene_forces(tl_model *m)
 {
     tl_status status = tl_cycle_prepare(m);
     if (status == TL_OK)
+        status = tl_undo_begin(m);
+    if (status == TL_OK)
         status = tl_detect_update(m);
     if (status == TL_OK)
         status = tl_laws_check(m);
+    if (status == TL_OK)
+        status = tl_laws_prepare(m);
     if (status == TL_OK)
         status = tl_laws_apply(m);
     if (scene_ok(m, status) && CHECK(tl_gather_prepare(m)))

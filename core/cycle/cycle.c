@@ -28,6 +28,7 @@ static void cycle_destroy(struct tl_cycle *cycle)
     free(cycle->rank_energy);
     free(cycle->chunk_ledger);
     free(cycle->ledger);
+    tl_undo_free(cycle->undo);
     free(cycle);
 }
 
@@ -35,7 +36,7 @@ static void add_columns(struct tl_cycle *c)
 {
     tl_table *t = &c->table;
     tl_table_init(t, c);
-    TL_COLUMN(t, c, contact_force, 0);
+    TL_COLUMN(t, c, contact_force, TL_COLUMN_STEP);
     for (int k = 0; k < 3; k++) {
         TL_COLUMN(t, c, damping_force[k], 0);
         TL_COLUMN(t, c, damping_moment[k], 0);
@@ -84,11 +85,12 @@ bool tl_model_moves(const tl_model *m)
     return false;
 }
 
-tl_status tl_step(tl_model *m)
+/* The step to take, before anything is changed by it. */
+static tl_status prepare(tl_model *m, double *dt, bool *driven)
 {
-    double dt;
-    tl_step_begins(m);
     tl_status status = tl_cycle_prepare(m);
+    if (status == TL_OK)
+        status = tl_undo_begin(m);
     if (status == TL_OK)
         status = tl_detect_update(m);
     if (status == TL_OK)
@@ -97,30 +99,56 @@ tl_status tl_step(tl_model *m)
     if (status == TL_OK)
         status = tl_laws_check(m);
     if (status == TL_OK)
-        status = tl_timestep_choose(m, &dt);
+        status = tl_timestep_choose(m, dt);
     tl_phase_ends(m, TL_PHASE_TIMESTEP);
     if (status == TL_OK && !tl_gather_prepare(m))
         status = tl_fail_memory(&m->error);
     if (status == TL_OK)
-        status = tl_laws_apply(m);
-    if (status != TL_OK)
-        return status;
-    tl_phase_ends(m, TL_PHASE_LAWS);
-    tl_gather(m);
-    tl_phase_ends(m, TL_PHASE_GATHER);
-    status = tl_damping_apply(m, dt);
-    if (status != TL_OK)
-        return status;
-    tl_phase_ends(m, TL_PHASE_DAMPING);
+        status = tl_laws_prepare(m);
     /* false when a user's function ends the run: bodies then go on as they were driven before */
-    bool driven = tl_drives_evaluate(m, m->time + 0.5 * dt);
-    status = tl_motion_check(m, dt);
+    *driven = status != TL_OK || tl_drives_evaluate(m, m->time + 0.5 * *dt);
+    if (status == TL_OK)
+        status = tl_motion_check_held(m, *dt);
+    return status == TL_OK ? tl_undo_reserve(m) : status;
+}
+
+/* Forces on the bodies: undone when a law or the damping fails, or a body would move too far. */
+static tl_status apply_forces(tl_model *m, double dt)
+{
+    tl_status status = tl_laws_apply(m);
+    tl_phase_ends(m, TL_PHASE_LAWS);
+    if (status == TL_OK) {
+        tl_undo_keep_bodies(m);
+        tl_gather(m);
+        tl_phase_ends(m, TL_PHASE_GATHER);
+        status = tl_damping_apply(m, dt);
+        if (status == TL_OK)
+            status = tl_motion_check(m, dt);
+        tl_phase_ends(m, TL_PHASE_DAMPING);
+    }
     if (status != TL_OK)
+        tl_undo_step(m);
+    return status;
+}
+
+tl_status tl_step(tl_model *m)
+{
+    double dt, in_use = m->cycle ? m->cycle->dt : 0;
+    bool driven;
+    tl_step_begins(m);
+    tl_status status = prepare(m, &dt, &driven);
+    if (status == TL_OK)
+        status = apply_forces(m, dt);
+    if (status != TL_OK) {
+        if (m->cycle)
+            m->cycle->dt = in_use;
         return status;
+    }
     tl_move(m, dt);
     tl_phase_ends(m, TL_PHASE_MOVE);
     tl_energy_close(m);
     tl_phase_ends(m, TL_PHASE_ENERGY);
+    tl_undo_end(m);
     /* velocities are half a step behind the places, but not when all is held and still, as if the model had not begun */
     m->dt = tl_model_moves(m) ? dt : 0;
     m->time += dt;

@@ -116,6 +116,8 @@ struct tl_cycle {
     uint64_t sliver_structure; /* 1 + that of the model when slivers were looked for: sliver.c */
     tl_id sliver;              /* the one that was told of last */
     double scaled;             /* 1 / (2 rate) of all free bodies, by mass scaling; 0 without it */
+    struct tl_undo *undo;      /* undo.c */
+    bool fast;                 /* a body came near the limit of motion in the last step: limits.c */
     /* the first failure of a parallel phase, by chunk, and the point it came from */
     pthread_mutex_t failure_lock;
     tl_error failure;
@@ -133,7 +135,7 @@ static inline tl_reaction tl_reaction_on(const struct tl_cycle *c, uint32_t body
     return c->reaction[c->reaction_of[body]];
 }
 
-/* One step of the model; a failure leaves places and velocities as they were. */
+/* One step of the model; a failure leaves the model as it was. */
 tl_status tl_step(tl_model *m);
 
 /* Times a phase that ends now and began when the one before ended, or with the step: profile.c. */
@@ -154,8 +156,25 @@ static inline void tl_phase_ends(tl_model *m, tl_phase phase)
 tl_status tl_cycle_prepare(tl_model *m);
 /* Notes a failure in a parallel phase; that of the lowest chunk counts. */
 void tl_cycle_failed(tl_model *m, size_t chunk, tl_status status, size_t point, const char *text);
+/* Makes room for the energies of the contacts. */
+tl_status tl_laws_prepare(tl_model *m);
 /* Calls the laws on their runs of contact points and sums forces per contact. */
 tl_status tl_laws_apply(tl_model *m);
+
+/* What a step may have to undo: undo.c. It begins with each step, ... */
+tl_status tl_undo_begin(tl_model *m);
+/* ... gets room, before laws change anything, where something may fail, ... */
+tl_status tl_undo_reserve(tl_model *m);
+/* ... keeps what laws and gather overwrite (of some ranks, on any thread; of the bodies), ... */
+void tl_undo_keep_ranks(tl_model *m, const tl_rank *ranks, size_t count);
+void tl_undo_keep_bodies(tl_model *m);
+/* ... and puts it back after a failure, or ends with the step. What is not kept is lost: no step is made after that. */
+void tl_undo_step(tl_model *m);
+void tl_undo_end(tl_model *m);
+/* Forces were set by hand: they may be anything. */
+void tl_undo_by_hand(tl_model *m);
+size_t tl_undo_bytes(const struct tl_cycle *c);
+void tl_undo_free(struct tl_undo *undo);
 /* Makes room for the reactions on bodies that are held; before the gather. false: out of memory. */
 bool tl_gather_prepare(tl_model *m);
 /* Each body gathers its contacts in fixed order, and its weight; sums for the convergence measures. */
@@ -181,7 +200,8 @@ void tl_sliver_remark(tl_model *m);
 bool tl_model_moves(const tl_model *m);
 tl_status tl_damping_apply(tl_model *m, double dt);
 /* Every body would move by a finite number that is not out of all proportion, or a sentence that names one that would
- * not; after the drives have been evaluated. */
+ * not: bodies whose motion is given, after the drives have been evaluated, and those that forces move. */
+tl_status tl_motion_check_held(tl_model *m, double dt);
 tl_status tl_motion_check(tl_model *m, double dt);
 /* Velocities, places and rotations one step on. */
 void tl_move(tl_model *m, double dt);

@@ -20,8 +20,8 @@ static void note_forces(tl_bodies *b, size_t begin, size_t end)
 
 static bool hold_forces(tl_bodies *b)
 {
-    return TL_COLUMN_NEED(&b->table, b, moment_before, 0) &&
-           TL_COLUMN_NEED(&b->table, b, force_before, 0);
+    return TL_COLUMN_NEED(&b->table, b, moment_before, TL_COLUMN_STEP) &&
+           TL_COLUMN_NEED(&b->table, b, force_before, TL_COLUMN_STEP);
 }
 
 tl_status tl_model_damping(tl_model *m, const char *damping, const tl_args *args)
@@ -67,6 +67,7 @@ tl_status tl_model_damping(tl_model *m, const char *damping, const tl_args *args
         note_forces(&m->bodies, 0, m->bodies.table.rows);
     if (m->cycle)
         m->cycle->dt = 0; /* the stable step depends on the damping */
+    tl_undo_by_hand(m);
     return TL_OK;
 }
 

@@ -137,7 +137,8 @@ tl_status tl_model_insitu(tl_model *m, const tl_insitu *insitu)
         !tl_v3_finite(insitu->at))
         return tl_fail(&m->error, TL_E_ARGUMENT,
                        "insitu: stress, gradient and at must be finite numbers");
-    tl_status status = tl_detect_refresh(m);
+    /* in the present places, where a step that failed has left the contacts already */
+    tl_status status = tl_detect_update(m);
     if (status != TL_OK)
         return status;
     if (!tl_detect_hold_initial(m->detect))
@@ -145,6 +146,7 @@ tl_status tl_model_insitu(tl_model *m, const tl_insitu *insitu)
     const tl_contacts *c = &m->detect->contacts;
     for (uint32_t i = 0; i < c->table.rows; i++)
         load_contact(m, insitu, i);
+    tl_undo_by_hand(m);
     warn_outer_faces(m, insitu);
     return TL_OK;
 }

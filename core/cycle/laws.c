@@ -177,6 +177,7 @@ static void force_page(const run_job *job, const tl_rank *ranks, size_t count, s
 {
     size_t first = ranks->start, points = 0;
     bool coupled[RANK_CHUNK];
+    tl_undo_keep_ranks(job->m, ranks, count);
     for (size_t r = 0; r < count; r++) {
         if (r < soon)
             tl_rank_expect(job->m, &ranks[count + r]);
@@ -236,13 +237,17 @@ static tl_status report_failure(tl_model *m)
     return m->error.status;
 }
 
+tl_status tl_laws_prepare(tl_model *m)
+{
+    struct tl_cycle *c = m->cycle;
+    bool room = tl_grow(&c->rank_energy, &c->rank_room, m->detect->layout.rank_room,
+                        sizeof *c->rank_energy);
+    return room ? TL_OK : tl_fail_memory(&m->error);
+}
+
 tl_status tl_laws_apply(tl_model *m)
 {
     tl_detect *d = m->detect;
-    struct tl_cycle *cycle = m->cycle;
-    if (!tl_grow(&cycle->rank_energy, &cycle->rank_room, d->layout.rank_room,
-                 sizeof *cycle->rank_energy))
-        return tl_fail_memory(&m->error);
     for (size_t r = 0; r < d->layout.run_count; r++) {
         const tl_run *run = &d->layout.runs[r];
         if (run->material == TL_NO_ROW)

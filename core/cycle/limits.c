@@ -8,11 +8,15 @@
  * All bodies are looked at in every step: a test without roots sorts out those that are far from the limit. */
 #include "cycle/cycle_room.h"
 
+#include <stdatomic.h>
 #include <stdio.h>
 
 /* Most motion in a step over the body's diameter, 2 r. Blocks in contact move by 1e-2 of it at the most where the step
  * is stable; ten leaves room for fragments in free fall with a long step. It is a turn of 20 radians. */
 #define TL_TRAVEL 10
+/* Share of that from which a body is fast: a step that follows is kept, for it may have to be undone. Blocks in contact
+ * come nowhere near it, and none gets from there to the limit in one step unless something is set by hand. */
+#define TL_FAST 0.01
 
 /* What a step makes of a body's motion. */
 typedef struct kick {
@@ -22,6 +26,8 @@ typedef struct kick {
 typedef struct limit_job {
     tl_model *m;
     kick kick;
+    bool held;        /* bodies whose motion is given, or those that forces move */
+    atomic_bool fast; /* some body is */
 } limit_job;
 
 /* Forces on a body with those of the damping, and the inertia they meet. */
@@ -58,7 +64,7 @@ static bool surely_slow(const tl_model *m, uint32_t body, const kick *k)
     double per_mass = k->span / (p.mass * p.scale), per_moment = k->span / (least * p.scale);
     double v2 = tl_v3_norm2(b->v[body]) + per_mass * per_mass * tl_v3_norm2(p.force);
     double w2 = tl_v3_norm2(b->w[body]) + per_moment * per_moment * tl_v3_norm2(p.moment);
-    double motion = k->dt, limit = TL_TRAVEL * r; /* half of 2 r TL_TRAVEL */
+    double motion = k->dt, limit = TL_FAST * TL_TRAVEL * r; /* half of 2 r TL_TRAVEL */
     return (v2 + w2 * r * r) * (motion * motion) < limit * limit && p.alpha >= 0;
 }
 
@@ -111,13 +117,17 @@ static bool stands(const tl_bodies *b, uint32_t body)
 static void look_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
 {
     (void)thread;
-    const limit_job *job = user;
+    limit_job *job = user;
     tl_model *m = job->m;
     for (uint32_t body = (uint32_t)begin; body < end; body++) {
         bool held = m->bodies.fixed[body] == TL_FIX_ALL;
-        if (held ? stands(&m->bodies, body) : surely_slow(m, body, &job->kick))
+        if (held != job->held ||
+            (held ? stands(&m->bodies, body) : surely_slow(m, body, &job->kick)))
             continue;
-        if (too_far(m, body, travel_of(m, body, &job->kick))) {
+        double travel = travel_of(m, body, &job->kick);
+        if (too_far(m, body, travel / TL_FAST))
+            atomic_store(&job->fast, true);
+        if (too_far(m, body, travel)) {
             tl_cycle_failed(m, chunk, TL_E_NUMERIC, body, "");
             return;
         }
@@ -168,13 +178,26 @@ static tl_status report(tl_model *m, uint32_t body, const kick *k)
                    (long long)m->cycles + 1, b->id[body], far, k->dt, by);
 }
 
-tl_status tl_motion_check(tl_model *m, double dt)
+static tl_status check(tl_model *m, double dt, bool held)
 {
     struct tl_cycle *c = m->cycle;
-    limit_job job = {m, {dt, 0.5 * (m->dt + dt)}};
+    limit_job job = {.m = m, .kick = {dt, 0.5 * (m->dt + dt)}, .held = held};
+    atomic_init(&job.fast, false);
     tl_parallel_for(m->pool, m->bodies.table.rows, TL_BODY_CHUNK, look_range, &job);
+    if (!held)
+        c->fast = atomic_load(&job.fast);
     if (c->failure.status == TL_OK)
         return TL_OK;
     c->failure.status = TL_OK;
     return report(m, (uint32_t)c->failure_point, &job.kick);
+}
+
+tl_status tl_motion_check_held(tl_model *m, double dt)
+{
+    return check(m, dt, true);
+}
+
+tl_status tl_motion_check(tl_model *m, double dt)
+{
+    return check(m, dt, false);
 }

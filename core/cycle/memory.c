@@ -12,6 +12,7 @@ tl_memory tl_model_memory(const tl_model *m)
     memory.bodies = tl_table_bytes(&m->bodies.table);
     if (m->cycle)
         memory.step = sizeof *m->cycle + tl_table_bytes(&m->cycle->table) +
+                      tl_undo_bytes(m->cycle) +
                       m->cycle->chunk_room * sizeof *m->cycle->chunk_sums +
                       m->cycle->reaction_room * sizeof *m->cycle->reaction;
     memory.other = sizeof *m + m->next_id * sizeof *m->row_of + blocks * sizeof *m->members +

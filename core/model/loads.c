@@ -31,6 +31,7 @@ tl_status tl_blocks_load(tl_model *m, const tl_id *ids, size_t count, const tl_l
             (tl_body_load){load->force, load->moment,
                            placed ? tl_m3_tmul(&m->bodies.pose[body].r, from) : tl_v3(0, 0, 0)};
     }
+    m->constraints++; /* not as it was in the last step */
     return TL_OK;
 }
 

@@ -259,6 +259,8 @@ static tl_status copy_ops(const version *v, tl_kind *kind)
     memcpy(ops, given, size < ours[kind->type] ? size : ours[kind->type]);
     if (kind->type == TL_KIND_DAMPING && size == FIRST_DAMPING_SIZE) /* cannot say so */
         ops->damping.before = v->minor == 1;
+    if (kind->type == TL_KIND_DAMPING && v->minor < 3) /* what it has there is padding */
+        ops->damping.never_fails = false;
     kind->ops = ops;
     return check_ops(kind->type, ops, v->error);
 }

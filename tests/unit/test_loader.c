@@ -97,10 +97,10 @@ TEST(a_search_for_nothing_is_no_error)
 
 TEST(broken_plugins_are_refused_with_the_reason)
 {
-    refused(bad_folder, "wrong_major", "it was built for plugin ABI 2.2, this Talus has 1.2");
+    refused(bad_folder, "wrong_major", "it was built for plugin ABI 2.3, this Talus has 1.3");
     refused(bad_folder, "newer_minor", "law 'newer_minor': ops has size");
     refused(bad_folder, "no_entry", "it does not export tl_plugin_entry");
-    refused(bad_folder, "refuses", "it refuses this Talus (plugin ABI 1.2)");
+    refused(bad_folder, "refuses", "it refuses this Talus (plugin ABI 1.3)");
     refused(bad_folder, "duplicate_id", "plugin 'talus.coulomb' is already loaded from ");
     refused(bad_folder, "name_clash",
             "law 'coulomb' is already provided by plugin 'talus.coulomb' from ");
@@ -122,6 +122,7 @@ TEST(dampings_that_could_not_ask_get_the_forces_of_the_step_before)
     CHECK_INT(tl_plugin_load(path, &error), TL_OK);
     const tl_kind *kind = tl_plugin_find(TL_KIND_DAMPING, "older_minor");
     CHECK(kind && ((const tl_damping_ops *)kind->ops)->before);
+    CHECK(kind && !((const tl_damping_ops *)kind->ops)->never_fails);
     CHECK(!((const tl_damping_ops *)tl_plugin_find(TL_KIND_DAMPING, "local")->ops)->before);
     CHECK(((const tl_damping_ops *)tl_plugin_find(TL_KIND_DAMPING, "combined")->ops)->before);
 }

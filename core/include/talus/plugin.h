@@ -28,7 +28,7 @@ extern "C" {
 #endif
 
 #define TL_ABI_MAJOR 1u
-#define TL_ABI_MINOR 2u
+#define TL_ABI_MINOR 3u
 
 #if defined(__GNUC__)
 #define TL_PLUGIN_EXPORT __attribute__((visibility("default")))
@@ -195,6 +195,9 @@ typedef struct tl_law_ops {
     /* [main] since 1.2; may be NULL. 1: with these parameters the law does not write to its states, and they are 0 unless
      * other parameters have made them something else. The host then need not keep them: they are 0 in the batch. */
     int (*stateless)(const void *self);
+    /* since 1.3; not 0: `update` always returns TL_OK. A step in which a law or the damping fails is undone; of those that
+     * cannot fail the host need not keep what that takes, up to a fifth of the time of a step. */
+    uint32_t never_fails;
 } tl_law_ops;
 
 /* ---------------------------------------------------------------- damping ---------------- */
@@ -245,6 +248,8 @@ typedef struct tl_damping_ops {
     /* since minor 2: not 0: `update` reads force and moment of the step before, which the host then keeps. Plugins of
      * minor 1 are given them. */
     uint32_t before;
+    /* since minor 3; not 0: `begin` and `update` always return TL_OK, as a law's */
+    uint32_t never_fails;
 } tl_damping_ops;
 
 /* ---------------------------------------------------------------- generators ------------- */

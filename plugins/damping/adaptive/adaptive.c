@@ -119,7 +119,8 @@ static const tl_damping_ops ops = {.size = sizeof ops,
                                    .begin = begin,
                                    .update = update,
                                    .step_factor = step_factor,
-                                   .destroy = free};
+                                   .destroy = free,
+                                   .never_fails = true};
 
 static const tl_kind kind = {
     .size = sizeof kind,

@@ -58,8 +58,11 @@ static double step_factor(const void *self)
     return 1 / sqrt(1 + p->alpha);
 }
 
-static const tl_damping_ops ops = {
-    .size = sizeof ops, .update = update, .step_factor = step_factor, .before = true};
+static const tl_damping_ops ops = {.size = sizeof ops,
+                                   .update = update,
+                                   .step_factor = step_factor,
+                                   .before = true,
+                                   .never_fails = true};
 
 static const tl_kind kind = {
     .size = sizeof kind,

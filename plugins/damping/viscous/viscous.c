@@ -34,7 +34,7 @@ static double step_factor(const void *self)
 }
 
 static const tl_damping_ops ops = {
-    .size = sizeof ops, .update = update, .step_factor = step_factor};
+    .size = sizeof ops, .update = update, .step_factor = step_factor, .never_fails = true};
 
 static const tl_kind kind = {
     .size = sizeof kind,

@@ -287,7 +287,8 @@ static const tl_law_ops ops = {.size = sizeof ops,
                                .update = update,
                                .stiffness = stiffness,
                                .destroy = free,
-                               .stateless = stateless};
+                               .stateless = stateless,
+                               .never_fails = true};
 
 static const tl_kind kind = {
     .size = sizeof kind,

@@ -260,7 +260,8 @@ static const tl_law_ops ops = {.size = sizeof ops,
                                .create = create,
                                .update = update,
                                .stiffness = stiffness,
-                               .destroy = free};
+                               .destroy = free,
+                               .never_fails = true};
 
 static const tl_kind kind = {
     .size = sizeof kind,

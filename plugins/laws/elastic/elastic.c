@@ -79,7 +79,8 @@ static void stiffness(const void *self, double *kn, double *ks)
     *ks = p->ks;
 }
 
-static const tl_law_ops ops = {.size = sizeof ops, .update = update, .stiffness = stiffness};
+static const tl_law_ops ops = {
+    .size = sizeof ops, .update = update, .stiffness = stiffness, .never_fails = true};
 
 static const tl_kind kind = {
     .size = sizeof kind,

@@ -1,0 +1,261 @@
+/* undo.c - a step that a law or the damping fails is undone.
+ *
+ * Laws work on the columns of points in place, so by the time one of them fails others have added the step's motion to
+ * their shear forces, and the same step made again would add it twice. What laws and gather overwrite is kept for that,
+ * page by page on the way, in steps in which something can fail: a plugin that does not say that it never does, numbers
+ * so large that a force may not be finite, something that was set by hand since the last step, or a body that came near
+ * the limit of motion. A step of the laws and dampings that come with the program costs nothing more. Detection and the
+ * choice of the step need no undoing, for made again in the same places they change nothing; the move cannot fail. */
+#include "cycle/cycle_room.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Stiffnesses, forces, gravity and squares of speeds below this make finite forces, in any units: products of five of
+ * them are still doubles. */
+#define TAME 1e60
+
+/* The columns of a table that a step overwrites (TL_COLUMN_STEP), one after the other, each of the table's capacity. */
+typedef struct shadow {
+    char *memory;
+    size_t room; /* bytes */
+} shadow;
+
+/* What a step overwrites of a facet. */
+typedef struct normals {
+    tl_vec3 last, last_lean;
+} normals;
+
+struct tl_undo {
+    bool keeps;       /* in this step */
+    bool gathered;    /* bodies have been kept, too */
+    bool lost;        /* a step failed and was not kept */
+    bool once;        /* only because something was set by hand, or a body is fast */
+    uint64_t version; /* of bodies and laws, in the last step that was made */
+    double dt;        /* that the user had fixed then; NAN: none */
+    tl_vec3 gravity;  /* then */
+    shadow points, contacts, bodies, loads;
+    normals *facet;
+    tl_reaction *reaction;
+    size_t facet_room, reaction_room;
+    tl_sums sums;
+    double damping_state[TL_STATE_COLUMNS];
+};
+
+/* ---------------------------------------------------------------- shadows ---------------- */
+
+static bool shadow_reserve(shadow *s, const tl_table *table)
+{
+    size_t row = 0;
+    for (size_t i = 0; i < table->column_count; i++)
+        if (table->columns[i].flags & TL_COLUMN_STEP)
+            row += table->columns[i].size;
+    return tl_fit(&s->memory, &s->room, row * table->capacity, 1);
+}
+
+/* Copies rows of the table to its shadow, or back. */
+static void shadow_copy(const shadow *s, const tl_table *table, size_t first, size_t count,
+                        bool back)
+{
+    char *column = s->memory;
+    for (size_t i = 0; i < table->column_count; i++) {
+        size_t size = table->columns[i].size;
+        if (!(table->columns[i].flags & TL_COLUMN_STEP))
+            continue;
+        char *kept = column + first * size;
+        char *here = (char *)tl_table_data(table, i) + first * size;
+        if (count > 0)
+            memcpy(back ? here : kept, back ? kept : here, count * size);
+        column += table->capacity * size;
+    }
+}
+
+/* ---------------------------------------------------------------- what is kept ----------- */
+
+/* Of the points of some ranks that follow each other, and of their contacts. */
+static void copy_ranks(tl_model *m, const tl_rank *ranks, size_t count, bool back)
+{
+    struct tl_undo *u = m->cycle->undo;
+    tl_detect *d = m->detect;
+    const tl_contacts *c = &d->contacts;
+    size_t points = 0;
+    for (size_t r = 0; r < count; r++) {
+        points += (size_t)ranks[r].slots * TL_LANES;
+        for (size_t l = 0; l < TL_LANES; l++) {
+            uint32_t contact = ranks[r].contact[l];
+            if (contact == TL_NO_ROW)
+                continue;
+            shadow_copy(&u->contacts, &c->table, contact, 1, back);
+            for (size_t k = 0; k < c->facet_count[contact]; k++) {
+                tl_facet *facet = &c->facet[c->facet_start[contact] + k];
+                normals *kept = &u->facet[c->facet_start[contact] + k];
+                if (back) {
+                    facet->last = kept->last;
+                    facet->last_lean = kept->last_lean;
+                } else {
+                    *kept = (normals){facet->last, facet->last_lean};
+                }
+            }
+        }
+    }
+    if (count > 0)
+        shadow_copy(&u->points, &d->points.table, ranks->start, points, back);
+}
+
+void tl_undo_keep_ranks(tl_model *m, const tl_rank *ranks, size_t count)
+{
+    if (m->cycle->undo->keeps)
+        copy_ranks(m, ranks, count, false);
+}
+
+/* Of the bodies, and of the sums over them. */
+static void copy_bodies(tl_model *m, bool back)
+{
+    struct tl_cycle *c = m->cycle;
+    struct tl_undo *u = c->undo;
+    size_t held = 0, states = m->damping ? m->damping->state_count : 0;
+    for (size_t body = 0; body < m->bodies.table.rows; body++)
+        held += c->reaction_of[body] != TL_NO_ROW;
+    shadow_copy(&u->bodies, &m->bodies.table, 0, m->bodies.table.rows, back);
+    shadow_copy(&u->loads, &c->table, 0, c->table.rows, back);
+    if (held > 0)
+        memcpy(back ? c->reaction : u->reaction, back ? u->reaction : c->reaction,
+               held * sizeof *c->reaction);
+    if (states > 0)
+        memcpy(back ? m->damping_state : u->damping_state,
+               back ? u->damping_state : m->damping_state, states * sizeof *m->damping_state);
+    *(back ? &c->sums : &u->sums) = *(back ? &u->sums : &c->sums);
+}
+
+void tl_undo_keep_bodies(tl_model *m)
+{
+    struct tl_undo *u = m->cycle->undo;
+    if (u->keeps)
+        copy_bodies(m, false);
+    u->gathered = true;
+}
+
+/* ---------------------------------------------------------------- steps ------------------ */
+
+static uint64_t version_of(const tl_model *m)
+{
+    return 1 + m->structure + m->constraints + m->laws;
+}
+
+/* Whether something was set since the last step that was made, after which numbers may be any. */
+static bool set_by_hand(const tl_model *m)
+{
+    const struct tl_undo *u = m->cycle->undo;
+    const tl_vec3 g = m->config.gravity;
+    return u->version != version_of(m) ||
+           !(u->dt == m->timestep.dt || (isnan(u->dt) && isnan(m->timestep.dt))) ||
+           tl_v3_norm2(tl_v3_sub(u->gravity, g)) > 0;
+}
+
+/* Whether laws or damping may fail in any step. */
+static bool may_fail(const tl_model *m)
+{
+    const tl_sums *last = &m->cycle->sums;
+    bool tame = last->contact_force < TAME && last->max_speed2 < TAME &&
+                tl_v3_norm2(m->config.gravity) < TAME;
+    bool sure = !m->damping || ((const tl_damping_ops *)m->damping->ops)->never_fails;
+    for (size_t i = 0; i < m->material_count; i++) {
+        tame = tame && m->materials[i].kn < TAME && m->materials[i].ks < TAME;
+        sure = sure && ((const tl_law_ops *)m->materials[i].kind->ops)->never_fails;
+    }
+    return !tame || !sure;
+}
+
+/* Gives back the memory in which steps are kept. */
+static void forget(struct tl_undo *u)
+{
+    shadow *all[] = {&u->points, &u->contacts, &u->bodies, &u->loads};
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
+        free(all[i]->memory);
+        *all[i] = (shadow){NULL, 0};
+    }
+    free(u->facet);
+    free(u->reaction);
+    u->facet = NULL;
+    u->reaction = NULL;
+    u->facet_room = u->reaction_room = 0;
+}
+
+tl_status tl_undo_begin(tl_model *m)
+{
+    struct tl_cycle *c = m->cycle;
+    if (!c->undo && !(c->undo = calloc(1, sizeof *c->undo)))
+        return tl_fail_memory(&m->error);
+    if (c->undo->lost)
+        return tl_fail(&m->error, TL_E_STATE,
+                       "cycle %lld failed and could not be taken back: make the model anew",
+                       (long long)m->cycles + 1);
+    c->undo->keeps = c->undo->gathered = false;
+    return TL_OK;
+}
+
+tl_status tl_undo_reserve(tl_model *m)
+{
+    struct tl_undo *u = m->cycle->undo;
+    u->once = !may_fail(m);
+    if (u->once && !set_by_hand(m) && !m->cycle->fast)
+        return TL_OK;
+    const tl_detect *d = m->detect;
+    u->keeps =
+        shadow_reserve(&u->points, &d->points.table) &&
+        shadow_reserve(&u->contacts, &d->contacts.table) &&
+        shadow_reserve(&u->bodies, &m->bodies.table) &&
+        shadow_reserve(&u->loads, &m->cycle->table) &&
+        tl_fit(&u->facet, &u->facet_room, d->contacts.facet_capacity, sizeof *u->facet) &&
+        tl_fit(&u->reaction, &u->reaction_room, m->cycle->reaction_room, sizeof *u->reaction);
+    return u->keeps ? TL_OK : tl_fail_memory(&m->error);
+}
+
+void tl_undo_step(tl_model *m)
+{
+    struct tl_undo *u = m->cycle->undo;
+    const tl_layout *layout = &m->detect->layout;
+    if (!u->keeps) {
+        u->lost = true;
+        return;
+    }
+    for (size_t r = 0; r < layout->run_count; r++) {
+        const tl_run *run = &layout->runs[r];
+        for (size_t k = run->rank_begin; run->material != TL_NO_ROW && k < run->rank_end; k++)
+            copy_ranks(m, &layout->ranks[k], 1, true);
+    }
+    if (u->gathered)
+        copy_bodies(m, true);
+}
+
+void tl_undo_end(tl_model *m)
+{
+    struct tl_undo *u = m->cycle->undo;
+    u->version = version_of(m);
+    u->dt = m->timestep.dt;
+    u->gravity = m->config.gravity;
+    if (u->keeps && u->once)
+        forget(u);
+}
+
+void tl_undo_by_hand(tl_model *m)
+{
+    if (m->cycle && m->cycle->undo)
+        m->cycle->undo->version = 0;
+}
+
+size_t tl_undo_bytes(const struct tl_cycle *c)
+{
+    const struct tl_undo *u = c->undo;
+    if (!u)
+        return 0;
+    return sizeof *u + u->points.room + u->contacts.room + u->bodies.room + u->loads.room +
+           u->facet_room * sizeof *u->facet + u->reaction_room * sizeof *u->reaction;
+}
+
+void tl_undo_free(struct tl_undo *u)
+{
+    if (u)
+        forget(u);
+    free(u);
+}
