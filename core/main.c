@@ -115,13 +115,13 @@ static void set_arguments(lua_State *L, int argc, char **argv, int script)
     lua_setglobal(L, "arg");
 }
 
-/* Calls the chunk on the top of the stack with argv[first ...]. */
-static bool run_chunk(lua_State *L, int load_status, int argc, char **argv, int first,
-                      const options *o)
+/* Calls the chunk on the top of the stack with argv[first ...]; gives the exit status. */
+static int run_chunk(lua_State *L, int load_status, int argc, char **argv, int first,
+                     const options *o)
 {
     if (load_status != LUA_OK) {
         tl_repl_report(L);
-        return false;
+        return EXIT_FAILURE;
     }
     int count = first < argc ? argc - first : 0;
     luaL_checkstack(L, count, "too many arguments");
@@ -130,13 +130,13 @@ static bool run_chunk(lua_State *L, int load_status, int argc, char **argv, int 
     return tl_repl_call(L, count, 0, o->verbose);
 }
 
-static bool run_script(lua_State *L, int argc, char **argv, const options *o)
+static int run_script(lua_State *L, int argc, char **argv, const options *o)
 {
     const char *script = argv[o->next];
     bool standard_input = strcmp(script, "-") == 0;
     if (!standard_input && access(script, R_OK) != 0) {
         fprintf(stderr, "talus: cannot read the script '%s': %s\n", script, strerror(errno));
-        return false;
+        return EXIT_FAILURE;
     }
     int status = luaL_loadfile(L, standard_input ? NULL : script);
     return run_chunk(L, status, argc, argv, o->next + 1, o);
@@ -160,33 +160,39 @@ static int prepare(lua_State *L)
 
 /* What is typed at the prompt or after -e has the module at hand without require; a script has not,
  * for it should run in a stock Lua too. */
-static bool give_module(lua_State *L, const options *o)
+static int give_module(lua_State *L, const options *o)
 {
     int status = luaL_loadstring(L, "talus = require 'talus'");
-    return status == LUA_OK && tl_repl_call(L, 0, 0, o->verbose);
+    return status == LUA_OK ? tl_repl_call(L, 0, 0, o->verbose) : EXIT_FAILURE;
 }
 
-static bool run(lua_State *L, int argc, char **argv, options *o)
+/* Gives the exit status. */
+static int run(lua_State *L, int argc, char **argv, options *o)
 {
     lua_pushcfunction(L, prepare);
     lua_pushlightuserdata(L, o);
     lua_pushinteger(L, argc);
     lua_pushlightuserdata(L, argv);
-    if (!tl_repl_call(L, 3, 0, o->verbose))
-        return false;
+    int exit_status = tl_repl_call(L, 3, 0, o->verbose);
+    if (exit_status != EXIT_SUCCESS)
+        return exit_status;
     if (o->chunk) {
+        exit_status = give_module(L, o);
+        if (exit_status != EXIT_SUCCESS)
+            return exit_status;
         int status = luaL_loadbuffer(L, o->chunk, strlen(o->chunk), "=(command line)");
-        return give_module(L, o) && run_chunk(L, status, argc, argv, o->next, o);
+        return run_chunk(L, status, argc, argv, o->next, o);
     }
     if (o->next < argc)
         return run_script(L, argc, argv, o);
     if (!isatty(STDIN_FILENO))
         return run_chunk(L, luaL_loadfile(L, NULL), argc, argv, argc, o);
-    if (!give_module(L, o))
-        return false;
+    exit_status = give_module(L, o);
+    if (exit_status != EXIT_SUCCESS)
+        return exit_status;
     printf("Talus %s. talus.help() tells what there is; Ctrl-D ends.\n", TALUS_VERSION);
     tl_repl_run(L, o->verbose);
-    return true;
+    return EXIT_SUCCESS;
 }
 
 static int help(const char *topic)
@@ -219,7 +225,7 @@ int main(int argc, char **argv)
     lua_State *L = luaL_newstate();
     if (!L)
         return fail("%s", "not enough memory to start Lua");
-    bool good = run(L, argc, argv, &o);
+    int exit_status = run(L, argc, argv, &o);
     lua_close(L);
-    return good ? EXIT_SUCCESS : EXIT_FAILURE;
+    return exit_status;
 }

@@ -169,7 +169,7 @@ static void end_pool(tl_pool *pool, unsigned started)
 static unsigned start_workers(tl_pool *pool)
 {
     sigset_t before;
-    tl_signals_hold(&before);
+    tl_signals_hold(&before, true);
     unsigned started = 1;
     while (started < pool->threads &&
            pthread_create(&pool->workers[started].thread, NULL, work, &pool->workers[started]) == 0)

@@ -4,16 +4,21 @@
 
 #include <pthread.h>
 #include <signal.h>
+#include <stdbool.h>
 #include <stddef.h>
 
-/* Blocks SIGTERM, SIGINT, SIGHUP and SIGQUIT for this thread and those that it starts; *before is what to go back to. */
-static inline void tl_signals_hold(sigset_t *before)
+/* Blocks SIGTERM, SIGINT, SIGHUP and SIGQUIT for this thread and those that it starts: `all` of them, or those that end
+ * the program, for nothing handles them. *before is what to go back to. */
+static inline void tl_signals_hold(sigset_t *before, bool all)
 {
     static const int ending[] = {SIGTERM, SIGINT, SIGHUP, SIGQUIT};
     sigset_t set;
     sigemptyset(&set);
-    for (size_t i = 0; i < sizeof ending / sizeof *ending; i++)
-        sigaddset(&set, ending[i]);
+    for (size_t i = 0; i < sizeof ending / sizeof *ending; i++) {
+        struct sigaction action;
+        if (all || sigaction(ending[i], NULL, &action) != 0 || action.sa_handler == SIG_DFL)
+            sigaddset(&set, ending[i]);
+    }
     pthread_sigmask(SIG_BLOCK, &set, before);
 }
 

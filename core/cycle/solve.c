@@ -56,7 +56,7 @@ static bool ended(tl_model *m, const progress *p, tl_status *status)
     tl_solve_reason *reason = &p->result->reason;
     if ((s->progress || s->stop) && s->every > 0 && done % s->every == 0 && call_back(m, p, status))
         return true;
-    if (atomic_load(&m->interrupted))
+    if (tl_model_interrupted(m))
         *reason = TL_SOLVE_INTERRUPT;
     else if (s->ratio > 0 && tl_unbalanced_ratio(m, (tl_ratio_measure)s->measure) < s->ratio &&
              tl_turning_ratio(m) < s->ratio)

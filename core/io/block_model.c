@@ -97,8 +97,11 @@ static tl_status write_model(FILE *file, tl_model *m)
     }
     fputs("],\n  \"blocks\": [", file);
     tl_status status = TL_OK;
-    for (uint32_t row = 0; row < m->blocks.table.rows && status == TL_OK; row++)
+    for (uint32_t row = 0; row < m->blocks.table.rows && status == TL_OK; row++) {
         status = write_block(file, m, row);
+        if (status == TL_OK)
+            status = tl_output_go_on(m);
+    }
     fputs("]}\n", file);
     return status;
 }
@@ -106,6 +109,7 @@ static tl_status write_model(FILE *file, tl_model *m)
 static tl_status write_file(tl_model *m, const char *path)
 {
     tl_output output = {0};
+    atomic_store(&m->interrupted, false);
     tl_status status = tl_output_open(&output, path, &m->error);
     if (status == TL_OK)
         status = write_model(output.file, m);
@@ -120,7 +124,7 @@ static tl_status write_file(tl_model *m, const char *path)
 tl_status tl_write_blocks(tl_model *m, const char *path)
 {
     sigset_t before;
-    tl_signals_hold(&before);
+    tl_signals_hold(&before, false);
     tl_status status = write_file(m, path);
     tl_signals_release(&before);
     if (status != TL_OK && status != TL_E_MEMORY)

@@ -181,6 +181,13 @@ tl_status tl_output_open(tl_output *output, const char *path, tl_error *error)
     return status;
 }
 
+tl_status tl_output_go_on(tl_model *m)
+{
+    if (tl_model_interrupted(m))
+        return tl_fail(&m->error, TL_E_CANCELLED, "%s", tl_status_text(TL_E_CANCELLED));
+    return TL_OK;
+}
+
 tl_status tl_output_finish(tl_output *output, tl_error *error)
 {
     /* A write error stays on the stream, but the errno of a full disk may come only with the last

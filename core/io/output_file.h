@@ -5,8 +5,9 @@
 #ifndef TL_IO_OUTPUT_FILE_H
 #define TL_IO_OUTPUT_FILE_H
 
+#include "model/model.h"
+
 #include <stdio.h>
-#include <talus/types.h>
 
 typedef struct tl_output {
     FILE *file;      /* to write to, until finished; write errors are found by tl_output_finish */
@@ -22,6 +23,8 @@ typedef struct tl_output {
 /* Opens the file that is to become `path`, making the folders on the way. Only a regular file is ever replaced: a
  * device, a pipe or a folder is refused. A symbolic link stays, and the file that it leads to is replaced. */
 tl_status tl_output_open(tl_output *output, const char *path, tl_error *error);
+/* TL_E_CANCELLED when the user asked to stop, else TL_OK. */
+tl_status tl_output_go_on(tl_model *m);
 /* Writes out and closes; TL_E_IO when anything since the opening failed. */
 tl_status tl_output_finish(tl_output *output, tl_error *error);
 /* Gives the finished file its name, in place of any older one. */

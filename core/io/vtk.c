@@ -59,6 +59,8 @@ static tl_status write_part(tl_model *m, const tl_vtk_series *series, const part
     tl_status status = name ? tl_output_open(output, name, &m->error) : tl_fail_memory(&m->error);
     free(name);
     if (status == TL_OK)
+        status = tl_output_go_on(m);
+    if (status == TL_OK)
         status = p->write(m, section, output->file);
     return status == TL_OK ? tl_output_finish(output, &m->error) : status;
 }
@@ -85,6 +87,8 @@ static tl_status write_files(tl_model *m, tl_vtk_series *series, const part *par
     for (int i = 0; status == TL_OK && i < count; i++)
         status =
             tl_vtk_index_open(&indices[i], series, (size_t)i, parts[i].content, m->time, &m->error);
+    if (status == TL_OK)
+        status = tl_output_go_on(m);
     for (int i = 0; status == TL_OK && i < count; i++)
         status = tl_output_commit(&data[i], &m->error);
     for (int i = 0; status == TL_OK && i < count; i++)
@@ -108,7 +112,8 @@ static tl_status write_frame(tl_model *m, const char *function, const char *pref
         return tl_fail_memory(&m->error);
 
     sigset_t before;
-    tl_signals_hold(&before);
+    tl_signals_hold(&before, false);
+    atomic_store(&m->interrupted, false);
     status = write_files(m, series, parts, count, section);
     tl_signals_release(&before);
     if (status == TL_OK)

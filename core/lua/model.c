@@ -19,6 +19,7 @@ tl_model *tl_lua_living(lua_State *L, const tl_lua_model *owner)
 {
     if (!owner->model)
         tl_lua_fail(L, "the model was closed");
+    tl_lua_interrupt_check(L); /* in a coroutine no hook tells */
     return owner->model;
 }
 
@@ -67,6 +68,7 @@ static int model_create(lua_State *L)
     if (tl_model_create(&config, &object->model, &error) != TL_OK)
         return tl_lua_raise(L, &error);
     tl_model_log(object->model, tl_lua_log, tl_lua_options_of(L));
+    tl_model_interrupt_if(object->model, tl_lua_interrupt_asked);
     return 1;
 }
 
@@ -115,6 +117,18 @@ static void set_summary(lua_State *L, const tl_generate_summary *summary)
     }
 }
 
+/* What a writer has done that was cancelled. */
+#define NO_FILE "no file was written"
+
+/* Ends the watch of a call that is done whole or not at all, and raises its error. */
+static void finish_call(lua_State *L, tl_model *model, const tl_lua_watch *watch, const char *what,
+                        const char *outcome, tl_status status)
+{
+    bool cancelled = status == TL_E_CANCELLED;
+    tl_lua_watch_end(L, watch, cancelled ? what : "", cancelled ? outcome : "");
+    tl_lua_ok(L, model, status);
+}
+
 static int model_generate(lua_State *L)
 {
     tl_model *model = tl_lua_model_of(L, "generate");
@@ -123,12 +137,15 @@ static int model_generate(lua_State *L)
     const char *generator = tl_lua_text(L, 2, "generate", "the generator's name");
     tl_args args;
     tl_lua_args(L, 3, lua_pushfstring(L, "generate '%s'", generator), NULL, &args);
+    const char *what = lua_pushfstring(L, "generator '%s'", generator);
     tl_generate_summary summary = {0};
     lua_newtable(L);
     set_summary(
         L,
         &summary); /* all memory is had before blocks are made: a call that fails changes nothing */
-    tl_lua_ok(L, model, tl_generate(model, generator, &args, &summary));
+    tl_lua_watch watch = tl_lua_watch_begin(L);
+    tl_status status = tl_generate(model, generator, &args, &summary);
+    finish_call(L, model, &watch, what, "the model is as it was", status);
     set_summary(L, &summary);
     return 1;
 }
@@ -307,7 +324,9 @@ static int model_write_vtk(lua_State *L)
 {
     tl_model *model = tl_lua_model_of(L, "write_vtk");
     tl_lua_arity(L, 2, "write_vtk");
-    tl_lua_ok(L, model, tl_write_vtk(model, tl_lua_text(L, 2, "write_vtk", "the prefix")));
+    const char *prefix = tl_lua_text(L, 2, "write_vtk", "the prefix");
+    tl_lua_watch watch = tl_lua_watch_begin(L);
+    finish_call(L, model, &watch, "write_vtk", NO_FILE, tl_write_vtk(model, prefix));
     return 0;
 }
 
@@ -315,8 +334,9 @@ static int model_write_blocks(lua_State *L)
 {
     tl_model *model = tl_lua_model_of(L, "write_blocks");
     tl_lua_arity(L, 2, "write_blocks");
-    tl_lua_ok(L, model,
-              tl_write_blocks(model, tl_lua_text(L, 2, "write_blocks", "the file's name")));
+    const char *path = tl_lua_text(L, 2, "write_blocks", "the file's name");
+    tl_lua_watch watch = tl_lua_watch_begin(L);
+    finish_call(L, model, &watch, "write_blocks", NO_FILE, tl_write_blocks(model, path));
     return 0;
 }
 
@@ -329,7 +349,9 @@ static int model_write_section(lua_State *L)
     tl_halfspace plane;
     tl_lua_spec spec = tl_lua_spec_of("write_section", NULL);
     tl_lua_read(L, 3, &spec, false, &plane);
-    tl_lua_ok(L, model, tl_write_section(model, prefix, &plane));
+    tl_lua_watch watch = tl_lua_watch_begin(L);
+    finish_call(L, model, &watch, "write_section", NO_FILE,
+                tl_write_section(model, prefix, &plane));
     return 0;
 }
 

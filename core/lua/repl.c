@@ -1,36 +1,20 @@
 /* repl.c - the read-eval-print loop, on libedit's line editing. */
 #include "repl.h"
 
+#include "front.h"
+
 #include <editline/readline.h>
+#include <errno.h>
 #include <lauxlib.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/ioctl.h>
+#include <sys/select.h>
+#include <unistd.h>
 
 /* ---------------------------------------------------------------- calls ------------------ */
-
-/* The state Ctrl-C is meant for; a signal handler has no other way to know it. */
-static lua_State *interrupted_state;
-
-static void raise_interrupt(lua_State *L, lua_Debug *record)
-{
-    lua_sethook(L, NULL, 0, 0);
-    lua_getinfo(L, "Sl", record);
-    lua_pushfstring(L, "%s:%d: stopped by Ctrl-C", record->short_src, record->currentline);
-    lua_error(L);
-}
-
-/* Outside a run of the kernel, Ctrl-C raises an error at the next Lua instruction; once more and
- * the program ends. */
-static void on_interrupt(int signal_number)
-{
-    struct sigaction standard = {.sa_handler = SIG_DFL};
-    sigemptyset(&standard.sa_mask);
-    sigaction(signal_number, &standard, NULL);
-    lua_sethook(interrupted_state, raise_interrupt,
-                LUA_MASKCALL | LUA_MASKRET | LUA_MASKLINE | LUA_MASKCOUNT, 1);
-}
 
 /* Turns an error object into text. */
 static int error_text(lua_State *L)
@@ -57,36 +41,94 @@ void tl_repl_report(lua_State *L)
     lua_pop(L, 1);
 }
 
-bool tl_repl_call(lua_State *L, int arguments, int results, bool verbose)
+static int call(lua_State *L, int arguments, int results, bool verbose, bool at_prompt)
 {
     int base = lua_gettop(L) - arguments;
     lua_pushcfunction(L, verbose ? error_traceback : error_text);
     lua_insert(L, base);
-    struct sigaction action = {.sa_handler = on_interrupt}, before;
-    sigemptyset(&action.sa_mask);
-    interrupted_state = L;
-    sigaction(SIGINT, &action, &before);
-    int status = lua_pcall(L, arguments, results, base);
-    sigaction(SIGINT, &before, NULL);
+    int status = tl_lua_watch_call(L, arguments, results, base, at_prompt);
     lua_remove(L, base);
-    if (status != LUA_OK)
-        tl_repl_report(L);
-    return status == LUA_OK;
+    if (status == LUA_OK)
+        return EXIT_SUCCESS;
+    bool interrupted = tl_lua_interrupted(lua_tostring(L, -1));
+    tl_repl_report(L);
+    return interrupted ? TL_EXIT_INTERRUPTED : EXIT_FAILURE;
+}
+
+int tl_repl_call(lua_State *L, int arguments, int results, bool verbose)
+{
+    return call(L, arguments, results, verbose, false);
 }
 
 /* ---------------------------------------------------------------- the loop --------------- */
 
-/* Pushes a line read from the terminal; false at the end of input. */
-static bool read_line(lua_State *L, const char *prompt)
+typedef enum line_end { LINE_READ, LINE_STOPPED, LINE_END_OF_INPUT } line_end;
+
+static struct {
+    char *text; /* of the line, from malloc, or NULL at the end of input */
+    bool done;
+    volatile sig_atomic_t stopped;
+} line;
+
+static void on_line(char *text)
 {
-    char *line = readline(prompt);
-    if (!line)
-        return false;
-    if (line[0])
-        add_history(line);
-    lua_pushstring(L, line);
-    free(line);
-    return true;
+    line.text = text;
+    line.done = true;
+}
+
+static void on_stop(int signal_number)
+{
+    (void)signal_number;
+    line.stopped = 1;
+}
+
+/* Feeds what is typed to the editor until the line is there, input ends or Ctrl-C is pressed, which is let through only
+ * while nothing is done. */
+static void edit_line(const sigset_t *waiting)
+{
+    while (!line.done && !line.stopped) {
+        fd_set input;
+        FD_ZERO(&input);
+        FD_SET(STDIN_FILENO, &input);
+        if (pselect(STDIN_FILENO + 1, &input, NULL, NULL, NULL, waiting) > 0) {
+            int bytes = 0;
+            /* a terminal that has gone can be read, but gives nothing */
+            if (ioctl(STDIN_FILENO, FIONREAD, &bytes) != 0 || bytes == 0)
+                line.done = true;
+            else
+                rl_callback_read_char();
+        } else if (errno != EINTR)
+            line.done = true;
+    }
+}
+
+/* Pushes a line read from the terminal, if one was. After Ctrl-C the line is dropped. */
+static line_end read_line(lua_State *L, const char *prompt)
+{
+    sigset_t interrupt, before;
+    sigemptyset(&interrupt);
+    sigaddset(&interrupt, SIGINT);
+    sigprocmask(SIG_BLOCK, &interrupt, &before);
+    struct sigaction action = {.sa_handler = on_stop}, action_before;
+    sigemptyset(&action.sa_mask);
+    sigaction(SIGINT, &action, &action_before);
+    line.text = NULL;
+    line.done = false;
+    line.stopped = 0;
+    rl_callback_handler_install(prompt, on_line);
+    edit_line(&before);
+    rl_callback_handler_remove();
+    sigaction(SIGINT, &action_before, NULL);
+    sigprocmask(SIG_SETMASK, &before, NULL);
+    if (!line.done)
+        putchar('\n');
+    if (!line.text)
+        return line.done ? LINE_END_OF_INPUT : LINE_STOPPED;
+    if (line.text[0])
+        add_history(line.text);
+    lua_pushstring(L, line.text);
+    free(line.text);
+    return LINE_READ;
 }
 
 /* Compiles the text at index `text` as an expression, so that `return` may be left out. */
@@ -109,24 +151,25 @@ static bool is_incomplete(lua_State *L)
     return length >= sizeof mark - 1 && strcmp(message + length - (sizeof mark - 1), mark) == 0;
 }
 
-/* Reads one chunk of as many lines as it takes and leaves its function on the stack, or the error.
- * LUA_OK, an error status, or -1 at the end of input. */
-static int read_chunk(lua_State *L)
+/* Reads one chunk of as many lines as it takes and leaves its function on the stack, or the error, with the status of the
+ * loading in `status`. */
+static line_end read_chunk(lua_State *L, int *status)
 {
     lua_settop(L, 0);
-    if (!read_line(L, "> "))
-        return -1;
-    if (load_expression(L, 1))
-        return LUA_OK;
+    line_end end = read_line(L, "> ");
+    *status = LUA_OK;
+    if (end != LINE_READ || load_expression(L, 1))
+        return end;
     for (;;) {
         size_t length;
         const char *text = lua_tolstring(L, 1, &length);
-        int status = luaL_loadbuffer(L, text, length, "=stdin");
-        if (status != LUA_ERRSYNTAX || !is_incomplete(L))
-            return status;
+        *status = luaL_loadbuffer(L, text, length, "=stdin");
+        if (*status != LUA_ERRSYNTAX || !is_incomplete(L))
+            return LINE_READ;
         lua_pop(L, 1);
-        if (!read_line(L, ">> "))
-            return -1;
+        end = read_line(L, ">> ");
+        if (end != LINE_READ)
+            return end;
         lua_pushliteral(L, "\n");
         lua_insert(L, 2);
         lua_concat(L, 3);
@@ -188,14 +231,17 @@ static int print_all(lua_State *L)
 void tl_repl_run(lua_State *L, bool verbose)
 {
     int status;
-    while ((status = read_chunk(L)) != -1) {
+    line_end end;
+    while ((end = read_chunk(L, &status)) != LINE_END_OF_INPUT) {
+        if (end == LINE_STOPPED)
+            continue;
         lua_remove(L, 1);
         if (status != LUA_OK)
             tl_repl_report(L);
-        else if (tl_repl_call(L, 0, LUA_MULTRET, verbose) && lua_gettop(L) > 0) {
+        else if (call(L, 0, LUA_MULTRET, verbose, true) == EXIT_SUCCESS && lua_gettop(L) > 0) {
             lua_pushcfunction(L, print_all);
             lua_insert(L, 1);
-            tl_repl_call(L, lua_gettop(L) - 1, 0, verbose);
+            call(L, lua_gettop(L) - 1, 0, verbose, false);
         }
     }
     lua_settop(L, 0);

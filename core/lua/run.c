@@ -1,11 +1,9 @@
-/* run.c - cycle and solve: callbacks into Lua, Ctrl-C, and the line that shows how a run goes.
+/* run.c - cycle and solve: callbacks into Lua, and the line that shows how a run goes.
  *
  * No Lua error may jump over the kernel's frames: callbacks run in protected calls, an error is kept
  * on the stack, the run ends after the step, and only then is the error raised again, as it was. */
 #include "front.h"
 
-#include <signal.h>
-#include <stdatomic.h>
 #include <stdio.h>
 #include <time.h>
 #include <unistd.h>
@@ -33,7 +31,7 @@ typedef struct run {
     lua_State *L;
     tl_model *model;
     struct run *outer; /* the run whose callback started this one, of another model */
-    volatile sig_atomic_t interrupted;
+    tl_lua_watch watch;
     bool progress, failed, show;
     double began, shown; /* s */
     int64_t first_cycle;
@@ -42,30 +40,13 @@ typedef struct run {
     tl_solve_result result;
 } run;
 
-static _Atomic(run *) current;
-static struct sigaction previous;
+static run *current;
 
 void tl_lua_log(void *user, const char *text)
 {
     const tl_lua_options *options = user;
     if (!options->quiet)
         fprintf(stderr, "%stalus: %s\n", isatty(STDERR_FILENO) ? "\r\033[K" : "", text);
-}
-
-/* ---------------------------------------------------------------- Ctrl-C ----------------- */
-
-/* The first Ctrl-C ends the run after the step; a second before that goes where it would have gone
- * without us. */
-static void on_interrupt(int signal_number)
-{
-    run *r = atomic_load(&current);
-    if (r && !r->interrupted) {
-        r->interrupted = 1;
-        tl_model_interrupt(r->model);
-        return;
-    }
-    sigaction(SIGINT, &previous, NULL);
-    raise(signal_number);
 }
 
 #define NANOSECOND 1e-9
@@ -79,26 +60,18 @@ static double now(void)
 
 static void run_begin(run *r, lua_State *L, tl_model *model)
 {
-    *r = (run){.L = L, .model = model, .outer = atomic_load(&current)};
+    *r = (run){.L = L, .model = model, .outer = current};
     r->show = !tl_lua_options_of(L)->quiet && isatty(STDERR_FILENO);
     r->began = r->shown = now();
     r->first_cycle = r->shown_cycle = tl_model_cycles(model);
     r->shown_time = tl_model_time(model);
-    if (!r->outer) {
-        struct sigaction action = {.sa_handler = on_interrupt};
-        sigemptyset(&action.sa_mask);
-        sigaction(SIGINT, NULL, &previous);
-        if (previous.sa_handler != SIG_IGN)
-            sigaction(SIGINT, &action, NULL);
-    }
-    atomic_store(&current, r);
+    r->watch = tl_lua_watch_begin(L);
+    current = r;
 }
 
 static void run_end(run *r)
 {
-    atomic_store(&current, r->outer);
-    if (!r->outer)
-        sigaction(SIGINT, &previous, NULL);
+    current = r->outer;
     if (r->show)
         fputs("\r\033[K", stderr);
 }
@@ -188,12 +161,12 @@ static void keep_error(run *r)
 
 lua_State *tl_lua_run_state(void)
 {
-    return atomic_load(&current)->L;
+    return current->L;
 }
 
 void tl_lua_run_keep_error(void)
 {
-    keep_error(atomic_load(&current));
+    keep_error(current);
 }
 
 /* Runs protected: on_progress(model, result). Arguments: function, model, run. */
@@ -266,9 +239,10 @@ static bool push_callback(lua_State *L, const char *key)
     return type == LUA_TFUNCTION;
 }
 
-static int finish(lua_State *L, run *r, tl_status status)
+static int finish(lua_State *L, run *r, const char *what, tl_status status)
 {
     run_end(r);
+    tl_lua_watch_end_run(L, &r->watch, what);
     if (r->failed) {
         lua_settop(L, AT_ERROR);
         return lua_error(L);
@@ -299,7 +273,7 @@ int tl_lua_solve(lua_State *L)
     solve.progress = on_progress;
     solve.stop = stop ? on_stop : NULL;
     solve.user = &r;
-    return finish(L, &r, tl_model_solve(model, &solve, &r.result));
+    return finish(L, &r, "solve", tl_model_solve(model, &solve, &r.result));
 }
 
 /* tl_model_cycle, with the line written now and then. */
@@ -311,9 +285,6 @@ static tl_status cycle_showing(run *r, int64_t cycles)
         int64_t piece = cycles - done < PIECE ? cycles - done : PIECE;
         status = tl_model_cycle(r->model, piece, &r->result);
         done += r->result.cycles;
-        /* Ctrl-C between two pieces would be forgotten as the next begins. */
-        if (r->interrupted)
-            r->result.reason = TL_SOLVE_INTERRUPT;
         show(r);
     } while (status == TL_OK && r->result.reason == TL_SOLVE_CYCLES && done < cycles);
     r->result.cycles = done;
@@ -332,6 +303,6 @@ int tl_lua_cycle(lua_State *L)
     push_answer_room(L);
     run r;
     run_begin(&r, L, model);
-    return finish(L, &r,
+    return finish(L, &r, "cycle",
                   r.show ? cycle_showing(&r, cycles) : tl_model_cycle(model, cycles, &r.result));
 }

@@ -198,6 +198,11 @@ void tl_model_interrupt(tl_model *m)
     atomic_store(&m->interrupted, true);
 }
 
+void tl_model_interrupt_if(tl_model *m, bool (*asked)(void))
+{
+    m->interrupt_asked = asked;
+}
+
 /* ---------------------------------------------------------------- rows ------------------- */
 
 uint32_t tl_block_row_quiet(const tl_model *m, tl_id id)

@@ -182,8 +182,9 @@ struct tl_model {
     double dt; /* of the last step; 0 before the first */
     int64_t cycles;
     atomic_bool interrupted;
-    bool running; /* inside a callback: no blocks may be made or deleted */
-    bool driving; /* inside a drive's function: no drive may begin or end */
+    bool (*interrupt_asked)(void); /* or NULL */
+    bool running;                  /* inside a callback: no blocks may be made or deleted */
+    bool driving;                  /* inside a drive's function: no drive may begin or end */
     bool warned_undamped;
     bool mass_scaling;
 
@@ -198,6 +199,12 @@ struct tl_model {
     struct tl_vtk_series *vtk; /* of the io room: the frames written so far */
     void (*vtk_destroy)(struct tl_vtk_series *);
 };
+
+/* Whether the user wants the call of the kernel to end that is being made. */
+static inline bool tl_model_interrupted(const tl_model *m)
+{
+    return atomic_load(&m->interrupted) || (m->interrupt_asked && m->interrupt_asked());
+}
 
 /* Present place of a body's centroid, relative to the origin. */
 static inline tl_vec3 tl_body_place(const tl_bodies *b, uint32_t body)

@@ -49,6 +49,15 @@ static void say(const tl_host *host, const char *format, ...)
     tl_model_say(service_of(host)->model, "generator '%s': %s", service_of(host)->generator, text);
 }
 
+/* Not TL_OK when the user asked to stop. Every service that makes or cuts blocks looks, so that a plugin that shows
+ * no progress ends, too. */
+static tl_status go_on(const tl_host *host)
+{
+    if (tl_model_interrupted(service_of(host)->model))
+        return fail(host, TL_E_CANCELLED, "%s", tl_status_text(TL_E_CANCELLED));
+    return TL_OK;
+}
+
 /* ---------------------------------------------------------------- blocks ----------------- */
 
 static tl_status check_group(const tl_host *host, const char *group)
@@ -63,7 +72,8 @@ static tl_status check_block(const tl_host *host, double density, const char *gr
 {
     if (!(density > 0) || !isfinite(density))
         return fail(host, TL_E_ARGUMENT, "density = %g kg/m3 must be > 0", density);
-    return check_group(host, group);
+    tl_status status = check_group(host, group);
+    return status == TL_OK ? go_on(host) : status;
 }
 
 static tl_status create_hull(const tl_host *host, const tl_vec3 *vertices, size_t count,
@@ -181,7 +191,7 @@ static tl_status check_index(const tl_host *host, size_t index)
 {
     size_t count = service_of(host)->stage.visible_count;
     if (index < count)
-        return TL_OK;
+        return go_on(host);
     return fail(host, TL_E_PLUGIN, "it asks for block %zu of %zu, counted from 0", index, count);
 }
 
@@ -336,6 +346,8 @@ static tl_status cut_disc(const tl_host *host, tl_vec3 normal, tl_vec3 point, do
         return fail(host, TL_E_PLUGIN, "it cuts by plane %u of joint %u, which it did not ask for",
                     tag.plane, tag.joint);
     tl_status status = check_plane(host, normal, point);
+    if (status == TL_OK)
+        status = go_on(host);
     if (status != TL_OK)
         return status;
     if (!(persistence >= 0 && persistence <= 1))
@@ -367,9 +379,7 @@ static double draw_uniform(const tl_host *host, uint32_t number, int64_t plane, 
 static tl_status progress(const tl_host *host, double fraction)
 {
     (void)fraction;
-    if (atomic_load(&service_of(host)->model->interrupted))
-        return fail(host, TL_E_CANCELLED, "%s", tl_status_text(TL_E_CANCELLED));
-    return TL_OK;
+    return go_on(host);
 }
 
 /* ---------------------------------------------------------------- tl_generate ------------ */
@@ -408,6 +418,8 @@ static tl_status run(service *s, const tl_kind *kind, const void *params)
         return status;
     m->error = (tl_error){TL_OK, ""};
     status = ops->generate(&host, params);
+    if (status == TL_OK) /* the plugin may not have asked */
+        status = go_on(&host);
     if (status == TL_OK)
         return tl_stage_commit(&s->stage);
     tl_stage_drop(&s->stage);

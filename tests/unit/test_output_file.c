@@ -165,7 +165,7 @@ static pid_t start_writer(void)
     for (int i = 0;; i++) {
         sigset_t before;
         snprintf(path, sizeof path, "%s/written_%d", FOLDER, i % 4);
-        tl_signals_hold(&before);
+        tl_signals_hold(&before, false);
         if (write_text(path, &error) != TL_OK)
             _exit(1);
         tl_signals_release(&before);

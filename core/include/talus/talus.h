@@ -303,8 +303,10 @@ TL_API const char *tl_solve_reason_name(tl_solve_reason reason);
 TL_API tl_status tl_model_cycle(tl_model *model, int64_t cycles, tl_solve_result *result);
 /* Runs until a limit is met. `*result` is up to date whenever a callback is called. */
 TL_API tl_status tl_model_solve(tl_model *model, const tl_solve *solve, tl_solve_result *result);
-/* Asks a running cycle or solve to end after the step; safe from a signal handler. */
+/* Asks a running cycle or solve to end after the step, a generator or writer to fail with TL_E_CANCELLED. Signal-safe. */
 TL_API void tl_model_interrupt(tl_model *model);
+/* Has the same happen whenever `asked` answers true, which such a call asks often, on the caller's thread. NULL: no more. */
+TL_API void tl_model_interrupt_if(tl_model *model, bool (*asked)(void));
 
 /* ---------------------------------------------------------------- cost ------------------- */
 
