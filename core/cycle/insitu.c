@@ -7,8 +7,9 @@
 
 /* A traction below this share of the largest stress given is none. */
 #define NO_TRACTION 1e-9
-/* A face of which less than this share is covered by contacts counts as an outer face. */
-#define COVERED 0.01
+/* A face is an outer face when more than this share of it, and of the mean face of its block, lies neither on another body nor
+ * on its own: less carries no force to speak of. */
+#define BARE 0.01
 
 static tl_sym3 stress_at(const tl_insitu *s, double z)
 {
@@ -85,6 +86,25 @@ static double covered_area(const tl_model *m, uint32_t row, uint32_t face)
     return area;
 }
 
+/* Area of a block's face that lies on other blocks of its body. */
+static tl_status inner_area(tl_model *m, uint32_t row, uint32_t face, double *area)
+{
+    const tl_poly *shape = m->blocks.shape[row];
+    uint32_t body = m->blocks.body[row];
+    const uint32_t *member = m->members + m->bodies.member_start[body];
+    *area = 0;
+    for (uint32_t i = 0; i < m->bodies.member_count[body]; i++) {
+        const tl_poly *other = m->blocks.shape[member[i]];
+        for (uint32_t f = 0; f < other->face_count && member[i] != row; f++) {
+            double shared;
+            if (!tl_poly_shared_area(shape, face, other, f, &shared))
+                return tl_fail_memory(&m->error);
+            *area += shared;
+        }
+    }
+    return TL_OK;
+}
+
 /* Length of the traction on a block's face. */
 static double face_traction(const tl_model *m, const tl_insitu *s, uint32_t row, uint32_t face)
 {
@@ -95,34 +115,59 @@ static double face_traction(const tl_model *m, const tl_insitu *s, uint32_t row,
     return tl_v3_norm(tl_s3_mul(stress_at(s, z), n));
 }
 
-/* Says how many blocks that can move have an outer face on which the stress would act: nothing holds it
- * there. */
-static void warn_outer_faces(tl_model *m, const tl_insitu *s)
+/* Sets *outer when the stress would act on a bare part of the block's surface. Tractions below `least` are none. */
+static tl_status has_outer_face(tl_model *m, const tl_insitu *s, uint32_t row, double least,
+                                bool *outer)
 {
-    size_t blocks = 0;
-    tl_id first = TL_NO_ID;
+    const tl_poly *shape = m->blocks.shape[row];
+    tl_status status = TL_OK;
+    *outer = false;
+    for (uint32_t f = 0; f < shape->face_count && !*outer && status == TL_OK; f++) {
+        if (shape->covered[f] || face_traction(m, s, row, f) <= least)
+            continue;
+        double area = tl_poly_face_area(shape, f), bare = area - covered_area(m, row, f), inner = 0;
+        double enough = BARE * fmax(area, m->blocks.mean_face[row]);
+        if (bare > enough)
+            status = inner_area(m, row, f, &inner);
+        *outer = bare - inner > enough;
+    }
+    return status;
+}
+
+/* Blocks that can move and have an outer face on which the stress would act: nothing holds it there. */
+typedef struct outer_blocks {
+    size_t count;
+    tl_id first;
+} outer_blocks;
+
+static tl_status find_outer(tl_model *m, const tl_insitu *s, outer_blocks *found)
+{
+    *found = (outer_blocks){0, TL_NO_ID};
     double most = 0;
     for (uint32_t row = 0; row < m->blocks.table.rows; row++)
         for (uint32_t f = 0; f < m->blocks.shape[row]->face_count; f++)
             most = fmax(most, face_traction(m, s, row, f));
-    for (uint32_t row = 0; row < m->blocks.table.rows; row++) {
-        if (m->bodies.fixed[m->blocks.body[row]] == TL_FIX_ALL)
-            continue;
-        const tl_poly *shape = m->blocks.shape[row];
+    tl_status status = TL_OK;
+    for (uint32_t row = 0; row < m->blocks.table.rows && status == TL_OK; row++) {
         bool outer = false;
-        for (uint32_t f = 0; f < shape->face_count && !outer; f++)
-            outer = !shape->covered[f] && face_traction(m, s, row, f) > NO_TRACTION * most &&
-                    covered_area(m, row, f) < COVERED * tl_poly_face_area(shape, f);
-        blocks += outer;
-        if (outer && first == TL_NO_ID)
-            first = m->blocks.id[row];
+        if (m->bodies.fixed[m->blocks.body[row]] != TL_FIX_ALL)
+            status = has_outer_face(m, s, row, NO_TRACTION * most, &outer);
+        found->count += outer;
+        if (outer && found->first == TL_NO_ID)
+            found->first = m->blocks.id[row];
     }
-    if (blocks)
+    return status;
+}
+
+static void say_outer(tl_model *m, const outer_blocks *found)
+{
+    if (found->count)
         tl_model_say(
             m,
             "insitu: %zu block%s that can move (first: block %u) %s an outer face on which "
             "the stress does not act; fix the blocks around the region of interest",
-            blocks, blocks == 1 ? "" : "s", first, blocks == 1 ? "has" : "have");
+            found->count, found->count == 1 ? "" : "s", found->first,
+            found->count == 1 ? "has" : "have");
 }
 
 static bool finite_tensor(tl_sym3 t)
@@ -139,6 +184,9 @@ tl_status tl_model_insitu(tl_model *m, const tl_insitu *insitu)
                        "insitu: stress, gradient and at must be finite numbers");
     /* in the present places, where a step that failed has left the contacts already */
     tl_status status = tl_detect_update(m);
+    outer_blocks outer;
+    if (status == TL_OK)
+        status = find_outer(m, insitu, &outer);
     if (status != TL_OK)
         return status;
     if (!tl_detect_hold_initial(m->detect))
@@ -147,6 +195,6 @@ tl_status tl_model_insitu(tl_model *m, const tl_insitu *insitu)
     for (uint32_t i = 0; i < c->table.rows; i++)
         load_contact(m, insitu, i);
     tl_undo_by_hand(m);
-    warn_outer_faces(m, insitu);
+    say_outer(m, &outer);
     return TL_OK;
 }

@@ -108,6 +108,11 @@ bool tl_poly_contains(const tl_poly *poly, tl_vec3 point, double tolerance);
  * identity for a diagonal tensor's own axes up to their order. */
 void tl_principal_axes(tl_sym3 tensor, tl_vec3 *moments, tl_quat *axes);
 
+/* Area common to face fa of a and face fb of b, given in one frame, when they lie in one plane and face each other; else 0.
+ * false when out of memory. */
+bool tl_poly_shared_area(const tl_poly *a, uint32_t fa, const tl_poly *b, uint32_t fb,
+                         double *area);
+
 /* Marks the seams of a body made of `count` parts given in one frame: faces that lie on other parts over
  * their whole area, and edges of such faces where the body's surface goes on flat or turns inward. */
 tl_status tl_poly_mark_seams(tl_poly *const *parts, size_t count, tl_error *error);

@@ -95,6 +95,20 @@ static bool face_each_other(const tl_poly *a, uint32_t fa, const tl_poly *b, uin
            fabs(p.offset + q.offset) < FIT * size;
 }
 
+bool tl_poly_shared_area(const tl_poly *a, uint32_t fa, const tl_poly *b, uint32_t fb, double *area)
+{
+    *area = 0;
+    if (!face_each_other(a, fa, b, fb))
+        return true;
+    size_t corners = tl_poly_face_size(a, fa) + tl_poly_face_size(b, fb);
+    flat *room = malloc(4 * corners * sizeof *room);
+    if (!room)
+        return false;
+    *area = common_area(a, fa, b, fb, room);
+    free(room);
+    return true;
+}
+
 typedef struct part {
     tl_poly *poly;
     tl_bounds bounds;
@@ -141,19 +155,14 @@ static bool cover(part *a, part *b)
 {
     for (uint32_t i = 0; i < a->poly->face_count; i++)
         for (uint32_t j = 0; j < b->poly->face_count; j++) {
-            if (!face_each_other(a->poly, i, b->poly, j))
-                continue;
-            size_t corners = tl_poly_face_size(a->poly, i) + tl_poly_face_size(b->poly, j);
-            flat *room = malloc(4 * corners * sizeof *room);
-            if (!room)
+            double area;
+            if (!tl_poly_shared_area(a->poly, i, b->poly, j, &area))
                 return false;
-            double area = common_area(a->poly, i, b->poly, j, room);
             a->open[i] -= area;
             b->open[j] -= area;
             if (area > UNCOVERED * tl_poly_face_area(a->poly, i) && !is_severed(a, i) &&
                 !is_severed(b, j))
                 unite(a, b);
-            free(room);
         }
     return true;
 }
