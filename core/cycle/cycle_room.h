@@ -115,6 +115,7 @@ struct tl_cycle {
     struct tl_rated rated;                   /* rates.c */
     uint64_t sliver_structure; /* 1 + that of the model when slivers were looked for: sliver.c */
     tl_id sliver;              /* the one that was told of last */
+    size_t contacts;           /* the most there have been, for the remark on the step */
     double scaled;             /* 1 / (2 rate) of all free bodies, by mass scaling; 0 without it */
     struct tl_undo *undo;      /* undo.c */
     bool fast;                 /* a body came near the limit of motion in the last step: limits.c */
@@ -190,6 +191,10 @@ tl_watch *tl_watch_begin(const tl_model *m);
 /* After each step; gives the id of the block that fails steadily, or 0. */
 tl_id tl_watch_step(tl_watch *watch, const tl_model *m);
 void tl_watch_end(tl_watch *watch);
+/* Remarks on numbers that are legal and improbable: remarks.c. Looks at gravity, densities and stiffnesses when they
+ * have changed; at the friction of a law that is set. */
+void tl_remark_units(tl_model *m);
+void tl_remark_friction(tl_model *m, const char *joint, const tl_material *law);
 /* The step to take, s; 0 when nothing moves and nothing says how long it may be. */
 tl_status tl_timestep_choose(tl_model *m, double *dt);
 /* FRAC of (27): the user's, or that of the rule. */

@@ -7,6 +7,9 @@
 
 /* A traction below this share of the largest stress given is none. */
 #define NO_TRACTION 1e-9
+/* A mean tension on a contact below this share of the largest stress on any is none: at a free surface the stress of a gradient
+ * passes through 0. */
+#define PULL 0.01
 /* A face is an outer face when more than this share of it, and of the mean face of its block, lies neither on another body nor
  * on its own: less carries no force to speak of. */
 #define BARE 0.01
@@ -32,6 +35,39 @@ static void load_point(tl_model *m, const tl_insitu *s, size_t i, tl_vec3 n, dou
     p->f_s[1][i] = -shear.y * p->area[i];
     p->f_s[2][i] = -shear.z * p->area[i];
     p->flags[i] = 0;
+}
+
+/* Says so when the stress pulls at faces: most likely its sign is that of compression. */
+static void say_tension(tl_model *m, const tl_insitu *s)
+{
+    const tl_detect *d = m->detect;
+    double most = 0;
+    size_t pulled = 0;
+    tl_id a = TL_NO_ID, b = TL_NO_ID;
+    for (int pass = 0; pass < 2; pass++)
+        for (uint32_t c = 0; c < d->contacts.table.rows; c++) {
+            double force = 0, area = 0;
+            for (uint32_t k = 0; k < d->contacts.point_count[c]; k++) {
+                size_t i = tl_point_row(&d->contacts, c, k);
+                bool loaded = d->points.f_n0 && d->points.f_n0[i] != 0;
+                force += loaded ? d->points.f_n0[i] : 0;
+                area += loaded ? d->points.area[i] : 0;
+            }
+            double stress = area > 0 ? force / area : 0;
+            if (pass == 0)
+                most = fmax(most, fabs(stress));
+            else if (stress < -PULL * most && pulled++ == 0) {
+                a = m->blocks.id[d->contacts.a[c]];
+                b = m->blocks.id[d->contacts.b[c]];
+            }
+        }
+    if (pulled && tl_model_says(m, TL_REMARK_TENSION))
+        tl_model_say(m,
+                     "insitu: the stress pulls at %zu contact%s (first: between blocks %u and %u): "
+                     "it is positive in "
+                     "tension; give compression as negative numbers, as in zz = %g",
+                     pulled, pulled == 1 ? "" : "s", a, b,
+                     s->stress.zz != 0 ? -fabs(s->stress.zz) : -1e6);
 }
 
 /* Whether the faces of a patch are together: in the mean over its area not farther apart than blocks in contact are. Faces
@@ -196,5 +232,6 @@ tl_status tl_model_insitu(tl_model *m, const tl_insitu *insitu)
         load_contact(m, insitu, i);
     tl_undo_by_hand(m);
     say_outer(m, &outer);
+    say_tension(m, insitu);
     return TL_OK;
 }

@@ -183,6 +183,7 @@ tl_status tl_joint_law(tl_model *m, const char *joint, const char *law, const tl
         tl_material_clear(&fresh);
         return status;
     }
+    tl_remark_friction(m, joint, &fresh);
     rebase(m, &fresh);
     if (place) {
         if (place->kind != fresh.kind)

@@ -95,6 +95,7 @@ static tl_status run(tl_model *m, const tl_solve *solve, tl_solve_result *result
     if ((solve->ratio > 0 || solve->stop_at_failure) && !(watch = tl_watch_begin(m)))
         return tl_fail_memory(&m->error);
     atomic_store(&m->interrupted, false);
+    tl_remark_units(m);
     tl_status status = TL_OK;
     while (result->cycles < solve->max_cycles) {
         status = tl_step(m);
@@ -114,11 +115,9 @@ static tl_status run(tl_model *m, const tl_solve *solve, tl_solve_result *result
 
 tl_status tl_model_solve(tl_model *m, const tl_solve *solve, tl_solve_result *result)
 {
-    if (!m->damping && !m->warned_undamped) {
-        m->warned_undamped = true;
+    if (!m->damping && tl_model_says(m, TL_REMARK_UNDAMPED))
         tl_model_say(m, "solve: the model has no damping and may never come to rest; "
                         "model:damping(\"local\") or another one helps");
-    }
     return run(m, solve, result);
 }
 

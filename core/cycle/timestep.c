@@ -13,6 +13,12 @@
  * changes all the time would cost accuracy. */
 #define STEP_GROWTH 1.1
 
+/* A given step is far too long from this many times the stable one on, which is safe by up to the square root of 2. */
+#define TOO_LONG 2
+
+/* Steps after which a given step is compared with the stable one again. */
+#define COMPARE_EVERY 64
+
 /* M or I over 2 K of the body, or of the smallest mass and the stiffest contact, that controls the step. */
 typedef struct bound {
     double least;
@@ -124,6 +130,29 @@ static tl_status no_step(tl_model *m, double dt)
 
 /* The step; 0 where there is no body that can move or does. A report asks `by` what controls it, and leaves the scale of the
  * inertia alone. */
+
+/* Says so when the step that was given is far above the longest that is stable whatever the rule: that of the body which is the
+ * fastest now. All are looked at when there are more contacts than ever, and now and then: an impact lasts one such step. */
+static void remark_step(tl_model *m)
+{
+    size_t contacts = m->detect->contacts.table.rows;
+    bool due = m->cycle->dt <= 0 || m->cycles % COMPARE_EVERY == 0 || contacts > m->cycle->contacts;
+    m->cycle->contacts = contacts > m->cycle->contacts ? contacts : m->cycle->contacts;
+    if (!due || m->cycle->all_held || m->mass_scaling || m->said & 1u << TL_REMARK_STEP)
+        return;
+    tl_row_value fastest = tl_rates_anew(m);
+    double stable = 2 * sqrt(0.5 / fastest.value);
+    if (fastest.row == TL_NO_ROW || m->timestep.dt <= TOO_LONG * stable ||
+        !tl_model_says(m, TL_REMARK_STEP))
+        return;
+    tl_model_say(m,
+                 "timestep: dt = %g s is %.3g times the longest stable step, %.3g s, which block "
+                 "%u sets: contact forces "
+                 "will grow without bound; give a shorter one, or leave dt out",
+                 m->timestep.dt, m->timestep.dt / stable, stable, m->bodies.id[fastest.row]);
+}
+
+/* The step. A report asks `by` what controls it, and leaves the scale of the inertia alone. */
 static tl_status choose(tl_model *m, double *dt, bound *by)
 {
     struct tl_cycle *c = m->cycle;
@@ -143,6 +172,8 @@ static tl_status choose(tl_model *m, double *dt, bound *by)
         c->scaled = 0;
     }
     if (given) {
+        if (!by)
+            remark_step(m);
         *dt = c->dt = m->timestep.dt;
         return TL_OK;
     }

@@ -167,7 +167,8 @@ int tl_lua_blocks_load(lua_State *L)
     if (!lua_istable(L, 2))
         return tl_lua_fail(L,
                            "load: give force, moment and at in a table; load{} takes the load off");
-    return tl_lua_blocks_done(L, b, tl_blocks_load(b->owner->model, b->ids, b->count, &load));
+    return tl_lua_blocks_acted(L, b, "load", "loaded",
+                               tl_blocks_load(b->owner->model, b->ids, b->count, &load));
 }
 
 /* Reads one of the two velocities of the table at index 2; true when it is given. A function goes to
@@ -223,5 +224,5 @@ int tl_lua_blocks_drive(lua_State *L)
     tl_status status = tl_blocks_drive(b->owner->model, b->ids, b->count, &drive);
     if (status == TL_OK && b->count > 0)
         a->ended = false;
-    return tl_lua_blocks_done(L, b, status);
+    return tl_lua_blocks_acted(L, b, "drive", "driven", status);
 }

@@ -237,6 +237,33 @@ tl_lua_selection *tl_lua_blocks_self(lua_State *L, int most, const char *method)
     return blocks;
 }
 
+/* Says once for each place in a script that a verb had nothing to act on. */
+static void remark_empty(lua_State *L, const char *verb, const char *done)
+{
+    luaL_getsubtable(L, LUA_REGISTRYINDEX, "talus.remarks");
+    tl_lua_push_where(L);
+    lua_pushfstring(L,
+                    "%s: the selection is empty: no block was %s; see what model:blocks{...} finds",
+                    verb, done);
+    lua_concat(L, 2);
+    lua_pushvalue(L, -1);
+    if (lua_rawget(L, -3) == LUA_TNIL) {
+        tl_lua_log(tl_lua_options_of(L), lua_tostring(L, -2));
+        lua_pushvalue(L, -2);
+        lua_pushboolean(L, true);
+        lua_rawset(L, -5);
+    }
+    lua_pop(L, 3);
+}
+
+int tl_lua_blocks_acted(lua_State *L, const tl_lua_selection *blocks, const char *verb,
+                        const char *done, tl_status status)
+{
+    if (blocks->count == 0 && status == TL_OK)
+        remark_empty(L, verb, done);
+    return tl_lua_blocks_done(L, blocks, status);
+}
+
 int tl_lua_blocks_done(lua_State *L, const tl_lua_selection *blocks, tl_status status)
 {
     tl_lua_ok(L, blocks->owner->model, status);
@@ -249,7 +276,8 @@ int tl_lua_blocks_done(lua_State *L, const tl_lua_selection *blocks, tl_status s
 static int blocks_hide(lua_State *L)
 {
     tl_lua_selection *b = tl_lua_blocks_self(L, 1, "hide");
-    return tl_lua_blocks_done(L, b, tl_blocks_hide(b->owner->model, b->ids, b->count, true));
+    return tl_lua_blocks_acted(L, b, "hide", "hidden",
+                               tl_blocks_hide(b->owner->model, b->ids, b->count, true));
 }
 
 static int blocks_show(lua_State *L)
@@ -261,13 +289,15 @@ static int blocks_show(lua_State *L)
 static int blocks_delete(lua_State *L)
 {
     tl_lua_selection *b = tl_lua_blocks_self(L, 1, "delete");
-    return tl_lua_blocks_done(L, b, tl_blocks_delete(b->owner->model, b->ids, b->count));
+    return tl_lua_blocks_acted(L, b, "delete", "deleted",
+                               tl_blocks_delete(b->owner->model, b->ids, b->count));
 }
 
 static int blocks_join(lua_State *L)
 {
     tl_lua_selection *b = tl_lua_blocks_self(L, 1, "join");
-    return tl_lua_blocks_done(L, b, tl_blocks_join(b->owner->model, b->ids, b->count));
+    return tl_lua_blocks_acted(L, b, "join", "joined",
+                               tl_blocks_join(b->owner->model, b->ids, b->count));
 }
 
 static int blocks_unjoin(lua_State *L)
@@ -279,7 +309,8 @@ static int blocks_unjoin(lua_State *L)
 static int blocks_free(lua_State *L)
 {
     tl_lua_selection *b = tl_lua_blocks_self(L, 1, "free");
-    return tl_lua_blocks_done(L, b, tl_blocks_free(b->owner->model, b->ids, b->count));
+    return tl_lua_blocks_acted(L, b, "free", "set free",
+                               tl_blocks_free(b->owner->model, b->ids, b->count));
 }
 
 static int blocks_reset_displacement(lua_State *L)
@@ -314,7 +345,8 @@ static int blocks_fix(lua_State *L)
         what = TL_FIX_ALL;
     else if (what == 0)
         return tl_lua_fail(L, "fix: nothing is to be held; to let blocks go use selection:free()");
-    return tl_lua_blocks_done(L, b, tl_blocks_fix(b->owner->model, b->ids, b->count, what));
+    return tl_lua_blocks_acted(L, b, "fix", "held",
+                               tl_blocks_fix(b->owner->model, b->ids, b->count, what));
 }
 
 static const tl_param set_params[] = {
@@ -337,7 +369,8 @@ static int blocks_set(lua_State *L)
     tl_lua_read(L, 2, &tl_lua_set_spec, false, &set);
     if (isnan(set.density) && !set.group && isnan(set.velocity.x) && isnan(set.angular_velocity.x))
         return tl_lua_fail(L, "set: give density, group, velocity or angular_velocity");
-    return tl_lua_blocks_done(L, b, tl_blocks_set(b->owner->model, b->ids, b->count, &set));
+    return tl_lua_blocks_acted(L, b, "set", "changed",
+                               tl_blocks_set(b->owner->model, b->ids, b->count, &set));
 }
 
 /* Bounds over all vertices of the blocks in their present place. */

@@ -5,7 +5,7 @@
 
 /* Pushes "file:line: " of the nearest Lua code up the stack, so that a call through pcall or a
  * metamethod is placed too. */
-static void push_where(lua_State *L)
+void tl_lua_push_where(lua_State *L)
 {
     lua_Debug record;
     for (int level = 0; lua_getstack(L, level, &record); level++) {
@@ -21,7 +21,7 @@ static void push_where(lua_State *L)
 int tl_lua_fail(lua_State *L, const char *format, ...)
 {
     luaL_checkstack(L, 8, "too many values");
-    push_where(L);
+    tl_lua_push_where(L);
     va_list arguments;
     va_start(arguments, format);
     lua_pushvfstring(L, format, arguments);

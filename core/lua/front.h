@@ -31,6 +31,8 @@ TL_API int luaopen_talus(lua_State *L);
 /* Raises "file:line: " (of the nearest Lua code up the stack) and a formatted sentence; formats as
  * of lua_pushfstring. The int is for `return tl_lua_fail(...)`. */
 int tl_lua_fail(lua_State *L, const char *format, ...);
+/* Pushes "file:line: " of the nearest Lua code up the stack, or "". */
+void tl_lua_push_where(lua_State *L);
 /* Raises the sentence of a failed kernel call. */
 int tl_lua_raise(lua_State *L, const tl_error *error);
 
@@ -219,6 +221,9 @@ int tl_lua_contacts(lua_State *L);
 tl_lua_selection *tl_lua_blocks_self(lua_State *L, int most, const char *method);
 /* Raises on failure; otherwise answers with the selection itself. */
 int tl_lua_blocks_done(lua_State *L, const tl_lua_selection *blocks, tl_status status);
+/* The same of a verb that is of no use to an empty selection: a remark says so, "VERB: ...: no block was DONE". */
+int tl_lua_blocks_acted(lua_State *L, const tl_lua_selection *blocks, const char *verb,
+                        const char *done, tl_status status);
 
 /* ---- loads and drives: action.c ---- */
 

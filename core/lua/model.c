@@ -69,6 +69,7 @@ static int model_create(lua_State *L)
         return tl_lua_raise(L, &error);
     tl_model_log(object->model, tl_lua_log, tl_lua_options_of(L));
     tl_model_interrupt_if(object->model, tl_lua_interrupt_asked);
+    tl_model_set_gravity(object->model, config.gravity); /* now that remarks are heard */
     return 1;
 }
 

@@ -142,6 +142,13 @@ void tl_model_say(tl_model *m, const char *format, ...)
         fprintf(stderr, "talus: %s\n", text);
 }
 
+bool tl_model_says(tl_model *m, tl_remark remark)
+{
+    bool first = !(m->said & 1u << remark);
+    m->said |= 1u << remark;
+    return first;
+}
+
 tl_status tl_model_may_change(tl_model *m, const char *what)
 {
     if (m->running)
@@ -164,6 +171,13 @@ tl_status tl_model_set_gravity(tl_model *m, tl_vec3 gravity)
                        "gravity = {%g, %g, %g} must be three finite numbers", gravity.x, gravity.y,
                        gravity.z);
     m->config.gravity = gravity;
+    m->remarked = 0;
+    if (gravity.z > hypot(gravity.x, gravity.y) && tl_model_says(m, TL_REMARK_GRAVITY))
+        tl_model_say(m,
+                     "gravity = {%g, %g, %g} points upward, for z is up: blocks will fall to the "
+                     "sky; give {%g, %g, %g} for "
+                     "weight",
+                     gravity.x, gravity.y, gravity.z, gravity.x, gravity.y, -gravity.z);
     return TL_OK;
 }
 

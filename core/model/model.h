@@ -139,6 +139,18 @@ typedef struct tl_cut_record {
 /* Most refused cuts that are listed; more are only counted. */
 #define TL_REFUSED_LISTED 1000
 
+/* Remarks that are made once a model. */
+typedef enum tl_remark {
+    TL_REMARK_UNDAMPED, /* solve without damping */
+    TL_REMARK_GRAVITY,  /* points upward */
+    TL_REMARK_STEP,     /* a given one is far too long */
+    TL_REMARK_FRICTION, /* looks like a coefficient */
+    TL_REMARK_SOFT,     /* blocks sink in under their weight */
+    TL_REMARK_STIFF,    /* the closure under weight is lost in rounding */
+    TL_REMARK_DENSITY,  /* is not that of a solid, or does not go with the stiffness */
+    TL_REMARK_TENSION   /* initial stress pulls */
+} tl_remark;
+
 struct tl_model {
     tl_model_config config;
     tl_error error;
@@ -185,7 +197,8 @@ struct tl_model {
     bool (*interrupt_asked)(void); /* or NULL */
     bool running;                  /* inside a callback: no blocks may be made or deleted */
     bool driving;                  /* inside a drive's function: no drive may begin or end */
-    bool warned_undamped;
+    uint32_t said;                 /* bit r: remark r has been made */
+    uint64_t remarked; /* changes of blocks and laws at the last look at their numbers */
     bool mass_scaling;
 
     bool profiling;
@@ -268,6 +281,8 @@ tl_status tl_unknown_kind(tl_model *m, tl_kind_type type, const char *name);
 void tl_damping_clear(tl_model *m);
 
 void tl_model_say(tl_model *m, const char *format, ...) TL_PRINTF(2, 3);
+/* True the first time only: a remark of this kind is made once a model. */
+bool tl_model_says(tl_model *m, tl_remark remark);
 /* Refuses with TL_E_STATE while a callback runs; `what` is "create blocks". */
 tl_status tl_model_may_change(tl_model *m, const char *what);
 

@@ -1,0 +1,139 @@
+/* remarks.c - what is legal and yet improbable: said once a model, with what to do.
+ *
+ * Units are any consistent set, so only ratios tell. Under its own weight a block of density rho and size L closes a face
+ * contact by about rho g L / kn: rho g / kn of its size, whatever the units. Gravity near 10 tells metres and seconds; then
+ * densities have a unit of mass, t or kg, that goes with kN or N. */
+#include "cycle/cycle_room.h"
+
+#include "base/params.h"
+
+#include <string.h>
+
+/* A contact that closes by more than this share of a block's size under its weight: faces pass through each other's corners. */
+#define SOFT 0.01
+/* One that closes by less: the closure is lost in the rounding of places, some 1e-13 of a size, and steps are needlessly short. */
+#define STIFF 1e-10
+/* Gravity between these is the Earth's in m/s2. */
+#define EARTH_LEAST 9.0
+#define EARTH_MOST 11.0
+/* Densities of solids in t/m3, from pumice to dense ore; and in kg/m3, to the densest metals. Weights lie between and above. */
+#define TONNES_LEAST 0.5
+#define TONNES_MOST 10.0
+#define KILOGRAMS_LEAST 100.0
+#define KILOGRAMS_MOST 20000.0
+/* kn / (rho g), 1/m, with densities in t/m3, above which kn is rather in Pa/m: 8e10 Pa/m for rock, a joint without a flaw. */
+#define RIGID 3e6
+
+/* The densities of the blocks that can move, and whose they are. */
+typedef struct densities {
+    double least, most;
+    uint32_t lightest, densest; /* rows, or TL_NO_ROW */
+} densities;
+
+static densities find_densities(const tl_model *m)
+{
+    densities d = {INFINITY, 0, TL_NO_ROW, TL_NO_ROW};
+    for (uint32_t row = 0; row < m->blocks.table.rows; row++) {
+        double density = m->blocks.density[row];
+        if (m->bodies.fixed[m->blocks.body[row]] == TL_FIX_ALL)
+            continue;
+        if (density < d.least) {
+            d.least = density;
+            d.lightest = row;
+        }
+        if (density > d.most) {
+            d.most = density;
+            d.densest = row;
+        }
+    }
+    return d;
+}
+
+static bool is_density(double density)
+{
+    return (density >= TONNES_LEAST && density <= TONNES_MOST) ||
+           (density >= KILOGRAMS_LEAST && density <= KILOGRAMS_MOST);
+}
+
+/* "J1:3", "J1", or "*" for the law of all joints that have none of their own. */
+static const char *joint_name(tl_model *m, const tl_material *law)
+{
+    if (law->tag.joint == 0)
+        return "*";
+    return law->tag.plane ? tl_tag_name(m, law->tag) : m->joints[law->tag.joint - 1].name;
+}
+
+static void remark_density(tl_model *m, const densities *d, double g)
+{
+    uint32_t row = is_density(d->most) ? d->lightest : d->densest;
+    if (g < EARTH_LEAST || g > EARTH_MOST || is_density(m->blocks.density[row]) ||
+        !tl_model_says(m, TL_REMARK_DENSITY))
+        return;
+    tl_model_say(m,
+                 "density = %g of block %u is not that of a solid, with gravity = %g m/s2: rock "
+                 "has 2000 to 3000 kg/m3, "
+                 "with kn in Pa/m, or 2 to 3 t/m3, with kn in kPa/m; give the mass of a volume, "
+                 "not its weight",
+                 m->blocks.density[row], m->blocks.id[row], g);
+}
+
+static void remark_stiffness(tl_model *m, const densities *d, double g, const tl_material *law)
+{
+    double sunk = d->most * g / law->kn, least = d->least * g / law->kn;
+    bool tonnes =
+        g >= EARTH_LEAST && g <= EARTH_MOST && d->least >= TONNES_LEAST && d->most <= TONNES_MOST;
+    if (sunk > SOFT && tl_model_says(m, TL_REMARK_SOFT))
+        tl_model_say(m,
+                     "joint '%s': kn = %g is soft: block %u sinks in by %.3g %% of its size under "
+                     "its own weight; "
+                     "give a larger kn, or look at the units of kn (Pa/m), density and gravity",
+                     joint_name(m, law), law->kn, m->blocks.id[d->densest], 100 * sunk);
+    else if (tonnes && sunk * RIGID < 1 && tl_model_says(m, TL_REMARK_DENSITY))
+        tl_model_say(m,
+                     "joint '%s': kn = %g goes with density = %g of block %u only if kn is in "
+                     "kPa/m and rock is that stiff; "
+                     "if kn is in Pa/m, give the density in kg/m3",
+                     joint_name(m, law), law->kn, d->most, m->blocks.id[d->densest]);
+    else if (least < STIFF && tl_model_says(m, TL_REMARK_STIFF))
+        tl_model_say(m,
+                     "joint '%s': kn = %g is improbably stiff: block %u closes the joint by %.2g "
+                     "of its size under its own "
+                     "weight, and steps are short for nothing; look at the units of kn (Pa/m), "
+                     "density and gravity",
+                     joint_name(m, law), law->kn, m->blocks.id[d->lightest], least);
+}
+
+void tl_remark_units(tl_model *m)
+{
+    uint64_t version = 1 + m->structure + m->constraints + m->laws;
+    if (m->remarked == version)
+        return;
+    m->remarked = version;
+    double g = tl_v3_norm(m->config.gravity);
+    densities d = find_densities(m);
+    if (d.densest == TL_NO_ROW || !(g > 0))
+        return;
+    remark_density(m, &d, g);
+    for (size_t i = 0; i < m->material_count; i++)
+        if (m->materials[i].kn > 0)
+            remark_stiffness(m, &d, g, &m->materials[i]);
+}
+
+void tl_remark_friction(tl_model *m, const char *joint, const tl_material *law)
+{
+    for (uint32_t i = 0; i < law->kind->param_count; i++) {
+        tl_param p = tl_param_row(law->kind->params, i, law->kind->param_stride);
+        if (p.type != TL_PARAM_REAL || strcmp(p.name, "friction") != 0 ||
+            strcmp(p.unit, "deg") != 0)
+            continue;
+        double value;
+        memcpy(&value, (const char *)law->params + p.offset, sizeof value);
+        if (value > 0 && value <= 1 && tl_model_says(m, TL_REMARK_FRICTION))
+            tl_model_say(m,
+                         "joint '%s', law '%s': friction = %g deg is nearly none: it is an angle "
+                         "in degrees; a "
+                         "coefficient of %g is %.3g deg, and %g rad are %.3g deg",
+                         joint, law->kind->name, value, value, atan(value) * 180 / TL_PI, value,
+                         value * 180 / TL_PI);
+    }
+}

@@ -1,0 +1,118 @@
+-- program only
+-- Remarks: said where one belongs, once, with a name and a remedy, and nowhere else.
+local check = require "check"
+
+local program = os.getenv("TALUS_PROGRAM") or arg[-1]
+local path = (os.getenv("TALUS_TEST_TMP") or "/tmp") .. "/remarks.lua"
+
+-- A slab that is held, with a cube on it.
+local HEAD = [[
+local talus = require "talus"
+local function stack(settings)
+    settings = settings or {}
+    local u = settings.unit or 1
+    local model = talus.model { gravity = settings.gravity or { 0, 0, -9.81 } }
+    model:generate("box", { min = { 0, 0, -u }, max = { 2 * u, 2 * u, 0 }, density = settings.density or 2700, group = "slab" })
+    model:generate("box", { min = { 0, 0, 0 }, max = { u, u, u }, density = settings.density or 2700, group = "cube" })
+    model:blocks { group = "slab" }:fix()
+    model:joint("*", "coulomb", { kn = settings.kn or 1e9, ks = settings.kn or 1e9, friction = settings.friction or 35 })
+    model:damping "local"
+    return model
+end
+]]
+
+-- The remarks of a script, one a line.
+local function remarks(script)
+    local file = assert(io.open(path, "w"))
+    file:write(HEAD, script)
+    file:close()
+    local pipe = assert(io.popen(string.format("'%s' '%s' 2>&1", program, path)))
+    local text = pipe:read("a")
+    check.holds(pipe:close(), text)
+    return text
+end
+
+-- Exactly one remark, of one line, with all these parts.
+local function says(script, ...)
+    local text = remarks(script)
+    check.holds(text:match("^talus: [^\n]+\n$"), "one remark: " .. script .. "\n" .. text)
+    for _, part in ipairs { ... } do
+        check.holds(text:find(part, 1, true), "'" .. part .. "' in: " .. text)
+    end
+end
+
+local function is_silent(script)
+    check.equal(remarks(script), "")
+end
+
+-- Empty selections: once for each place, which is named.
+for verb, done in pairs { ["fix()"] = "held", ["free()"] = "set free", ["delete()"] = "deleted", ["hide()"] = "hidden",
+    ["join()"] = "joined", ["set { density = 2000 }"] = "changed", ["load { force = { 0, 0, 1 } }"] = "loaded",
+    ["drive { velocity = { 0, 0, 1 } }"] = "driven", ["fix { x = true }"] = "held" } do
+    local name = verb:match("^%a+")
+    says("local m = stack()\nfor i = 1, 3 do\n    m:blocks { group = 'cub' }:" .. verb .. "\nend m:cycle(1)",
+        "remarks.lua:15: " .. name .. ": the selection is empty: no block was " .. done, "model:blocks{...}")
+    is_silent("stack():blocks { group = 'cube' }:" .. verb)
+end
+local _, count = remarks("local none = stack():blocks { group = 'cub' }\nnone:fix()\nnone:fix()\nnone:free()"):gsub("\n", "\n")
+check.equal(count, 3)
+is_silent("stack():blocks { group = 'cub' }:show():unjoin():reset_displacement()")
+
+-- A time step that is far too long, given before the run or after some of it; of blocks that meet later, too.
+says("local m = stack() m:timestep { dt = 0.05 } m:cycle(3) m:cycle(3)", "dt = 0.05 s is", "times the longest stable step",
+    "which block 2 sets", "leave dt out")
+says("local m = stack() m:cycle(9) m:timestep { dt = 0.05 } m:cycle(1)", "dt = 0.05 s")
+says("local m = stack() m:timestep { rule = 'paper', dt = 0.05 } m:cycle(1)", "dt = 0.05 s")
+says([[local m = stack() m:blocks { group = "slab" }:delete()
+m:generate("box", { min = { 0, 0, -2 }, max = { 1, 1, -1.2 }, density = 2700 })
+m:blocks { below = { dip = 0, dip_direction = 0, origin = { 0, 0, -1 } } }:fix()
+m:joint("*", { kn = 1e11, ks = 1e11 }) m:timestep { dt = 0.005 } m:cycle(600)]], "dt = 0.005 s")
+is_silent("local m = stack() m:timestep { dt = 1.5 * m.dt } m:cycle(200)")
+is_silent("local m = stack() m:blocks():fix() m:timestep { dt = 1 } m:cycle(2)")
+
+-- Stiffness against weight, whatever the units: metres and kilograms, millimetres and tonnes, metres and tonnes.
+says("local m = stack { kn = 1e5 } m:cycle(1) m:cycle(1)", "joint '*': kn = 100000 is soft: block 2 sinks in by 26.5 %")
+says("stack { kn = 1e16 }:cycle(1)", "joint '*': kn = 1e+16 is improbably stiff: block 2")
+says("stack { unit = 1000, density = 2.7e-9, gravity = { 0, 0, -9810 }, kn = 1e-4 }:cycle(1)", "is soft", "26.5 %")
+is_silent("stack { unit = 1000, density = 2.7e-9, gravity = { 0, 0, -9810 }, kn = 1 }:cycle(1)")
+is_silent("stack { density = 2.7, kn = 1e6 }:cycle(1)")
+is_silent("stack { kn = 1e5, gravity = { 0, 0, 0 } }:cycle(1)")
+says([[local m = stack()
+m:generate("joint", { joint = "bed", dip = 0, dip_direction = 0, origin = { 0, 0, 0.5 } })
+m:joint("bed", "coulomb", { kn = 1e5, ks = 1e9, friction = 30 }) m:cycle(1)]], "joint 'bed': kn = 100000 is soft")
+
+-- Density: a weight, or tonnes with a stiffness in pascals.
+says("stack { density = 26.5, kn = 1e6 }:cycle(1)", "density = 26.5 of block 2 is not that of a solid", "kg/m3", "t/m3")
+says("stack { density = 26500 }:cycle(1)", "density = 26500 of block 2")
+says("stack { density = 2.7, kn = 1e9 }:cycle(1)", "kn = 1e+09 goes with density = 2.7 of block 2", "kg/m3")
+for _, density in ipairs { 1000, 2000, 2700, 3300, 7850 } do
+    is_silent("stack { density = " .. density .. " }:cycle(1)")
+end
+
+-- Friction that is a coefficient or in radians; none at all is none.
+says("local m = stack { friction = 0.6 } m:joint('*', { friction = 0.7 }) m:cycle(1)",
+    "joint '*', law 'coulomb': friction = 0.6 deg", "0.6 is 31 deg", "0.6 rad are 34.4 deg")
+says("local m = stack() m:joint('*', 'coulomb_tensile', { kn = 1e9, ks = 1e9, friction = 0.5 })", "friction = 0.5 deg")
+is_silent("stack { friction = 0 }:cycle(1)")
+is_silent("stack { friction = 5 }:cycle(1)")
+
+-- Gravity.
+says("stack { gravity = { 0, 0, 9.81 } }:cycle(1)", "gravity = {0, 0, 9.81} points upward", "{0, 0, -9.81}")
+says("local m = stack() m.gravity = { 0, 0, 10 } m.gravity = { 0, 0, 10 } m:cycle(1)", "gravity = {0, 0, 10} points upward")
+is_silent("stack { gravity = { 3, 0, -9.81 } }:cycle(1)")
+is_silent("stack { gravity = { 9.81, 0, 0 } }:cycle(1)")
+
+-- Initial stress: tension is positive. At a free surface the stress of a gradient may pass through zero.
+local held = "local m = stack() m:blocks():fix() m:insitu { %s }"
+says(held:format("stress = { xx = 1e6, yy = 1e6, zz = 2e6 }"), "pulls at 1 contact (first: between blocks 1 and 2)",
+    "zz = -2e+06")
+says(held:format("gradient = { zz = -2.7e4 }, at = { 0, 0, 9 }"), "insitu: the stress pulls at 1 contact")
+is_silent(held:format("stress = { xx = -1e6, yy = -1e6, zz = -2e6 }"))
+is_silent(held:format("stress = { xx = 1e6, zz = -2e6 }"))
+is_silent(held:format("gradient = { zz = 2.7e4 }, at = { 0, 0, 0 }"))
+
+-- No remark is heard of --quiet.
+local pipe = io.popen(string.format("'%s' --quiet -e '%s' 2>&1", program,
+    "talus.model { gravity = { 0, 0, 10 } }:blocks():fix()"))
+check.equal(pipe:read("a"), "")
+pipe:close()
