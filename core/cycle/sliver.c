@@ -9,6 +9,8 @@
 
 /* How many times longer a step the rest must allow. */
 #define SHORTENS 3.0
+/* How many times as small or as thin as the rest a sliver is. */
+#define SLIMMER 2.0
 /* Share of the bodies that are not the rest; one at least. */
 #define FEW 0.01
 
@@ -72,10 +74,21 @@ static double shape_rate(const tl_model *m, tl_row_value of, const body_shape *s
     return of.value / law * (m->bodies.mass[of.row] / shape->all_volume);
 }
 
+/* How many times as small, by the cube root of the volume, and as thin a sliver is as the rest. */
+typedef struct slimness {
+    double small, thin;
+} slimness;
+
+static slimness compare(const body_shape *sliver, const body_shape *rest)
+{
+    return (slimness){cbrt(rest->volume / sliver->volume), sliver->aspect / rest->aspect};
+}
+
 static void say(tl_model *m, const ranking *r, const body_shape *sliver, const body_shape *rest)
 {
     /* the filter that tells the two apart best, with a limit half-way between them */
-    bool by_volume = cbrt(rest->volume / sliver->volume) > sliver->aspect / rest->aspect;
+    slimness slim = compare(sliver, rest);
+    bool by_volume = slim.small > slim.thin;
     double limit =
         by_volume ? sqrt(sliver->volume) * sqrt(rest->volume) : sqrt(sliver->aspect * rest->aspect);
     char others[40] = "";
@@ -100,8 +113,9 @@ void tl_sliver_remark(tl_model *m)
     if (r.rest.row == TL_NO_ROW || (double)r.few > fmax(1, FEW * (double)r.all))
         return;
     body_shape sliver = shape_of(m, r.first.row), rest = shape_of(m, r.rest.row);
+    slimness slim = compare(&sliver, &rest);
     if (shape_rate(m, r.first, &sliver) < SHORTENS * SHORTENS * shape_rate(m, r.rest, &rest) ||
-        (sliver.volume >= rest.volume && sliver.aspect <= rest.aspect))
+        fmax(slim.small, slim.thin) < SLIMMER)
         return;
     tl_id block = m->bodies.id[r.first.row];
     if (block != c->sliver)
