@@ -38,7 +38,7 @@ TL_INLINE tl_half_turn tl_half_turn_of(double h, bool series)
         double h2 = h * h;
         return (tl_half_turn){tl_cos_series(h2), h * tl_sinc_series(h2)};
     }
-    return (tl_half_turn){cos(h), sin(h)};
+    return (tl_half_turn){tl_cos(h), tl_sin(h)};
 }
 
 /* The quaternion of a turn: along `rotation`, by its length. */
@@ -50,8 +50,8 @@ TL_INLINE tl_quat tl_turn_by(tl_vec3 rotation)
         s = tl_sinc_series(h2);
     } else {
         double h = sqrt(h2);
-        c = cos(h);
-        s = sin(h) / h;
+        c = tl_cos(h);
+        s = tl_sin(h) / h;
     }
     return (tl_quat){c, 0.5 * s * rotation.x, 0.5 * s * rotation.y, 0.5 * s * rotation.z};
 }
@@ -65,7 +65,7 @@ TL_INLINE tl_vec3 tl_turn_of(tl_quat q, bool series)
                                                           s2 * (35. / 1152 + s2 * (63. / 2816))))));
     } else {
         double s = sqrt(s2);
-        k = s > 0 ? 2 * atan2(s, q.w) / s : 2;
+        k = s > 0 ? 2 * tl_atan2(s, q.w) / s : 2;
     }
     return tl_v3(k * q.x, k * q.y, k * q.z);
 }

@@ -27,7 +27,7 @@ TL_INLINE double tangent_series(double a2)
 
 static double tangent_of(double a2)
 {
-    return is_small(a2) ? tangent_series(a2) : tan(0.5 * sqrt(a2)) / sqrt(a2);
+    return is_small(a2) ? tangent_series(a2) : tl_tan(0.5 * sqrt(a2)) / sqrt(a2);
 }
 
 /* Square of the angle by which a body turned in a step. */

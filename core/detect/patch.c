@@ -59,7 +59,7 @@ static double corner_share(tl_point2 before, tl_point2 here, tl_point2 after)
     if (s > 0 &&
         (ahead <= 0 || s * s >= TL_CORNER * TL_CORNER * uv)) /* the sine is less than the angle */
         return 1;
-    double turn = asin(fmin(1, fmax(-1, s / sqrt(uv))));
+    double turn = tl_asin(fmin(1, fmax(-1, s / sqrt(uv))));
     turn = ahead < 0 ? TL_PI - turn : turn;
     return smooth((turn - TL_STRAIGHT) / (TL_CORNER - TL_STRAIGHT));
 }

@@ -27,7 +27,7 @@ static double nearness(double sine, double full, double none)
         return 0;
     if (ARC_OVER_SINE * least <= full)
         return 1;
-    double x = (none - asin(fmin(1, sine)) * (180 / TL_PI)) / (none - full);
+    double x = (none - tl_asin(fmin(1, sine)) * (180 / TL_PI)) / (none - full);
     return fmin(1, fmax(0, x));
 }
 

@@ -169,8 +169,11 @@ static bool cover(part *a, part *b)
 
 static int compare_part(const void *x, const void *y)
 {
-    double a = ((const part *)x)->bounds.min.x, b = ((const part *)y)->bounds.min.x;
-    return (a > b) - (a < b);
+    const part *p = x, *q = y;
+    double a = p->bounds.min.x, b = q->bounds.min.x;
+    if (a < b || a > b)
+        return a < b ? -1 : 1;
+    return (p->index > q->index) - (p->index < q->index); /* the same order from every qsort */
 }
 
 /* Calls `visit` for every two parts whose bounds meet; parts are sorted by their low x. */

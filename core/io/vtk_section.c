@@ -70,7 +70,7 @@ static size_t order_corners(tl_vec3 normal, double on, corner *list, size_t coun
     tl_vec3 t1 = tl_v3_perpendicular(normal), t2 = tl_v3_cross(normal, t1);
     for (size_t i = 0; i < count; i++) {
         tl_vec3 arm = tl_v3_sub(list[i].at, middle);
-        list[i].angle = atan2(tl_v3_dot(arm, t2), tl_v3_dot(arm, t1));
+        list[i].angle = tl_atan2(tl_v3_dot(arm, t2), tl_v3_dot(arm, t1));
     }
     qsort(list, count, sizeof *list, by_angle);
     size_t kept = 0;

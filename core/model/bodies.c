@@ -85,7 +85,7 @@ void tl_block_measure(tl_model *m, uint32_t row, double volume)
     tl_blocks *b = &m->blocks;
     const tl_poly *shape = b->shape[row];
     b->volume[row] = volume;
-    b->size[row] = cbrt(volume);
+    b->size[row] = tl_cbrt(volume);
     double area = 0;
     for (uint32_t face = 0; face < shape->face_count; face++)
         area += tl_poly_face_area(shape, face);

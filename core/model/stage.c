@@ -164,7 +164,9 @@ static void set_origin(tl_model *m, tl_vec3 min, tl_vec3 max)
     double size = tl_v3_norm(tl_v3_sub(max, min));
     if (!(size > 0) || !isfinite(size))
         return;
-    double unit = exp2(ceil(log2(ORIGIN_SIZES * size)));
+    int exponent; /* the least power of two that is no smaller */
+    double share = frexp(ORIGIN_SIZES * size, &exponent);
+    double unit = ldexp(1, share > 0.5 ? exponent : exponent - 1);
     tl_vec3 center = tl_v3_scale(0.5, tl_v3_add(min, max));
     m->origin = tl_v3(unit * round(center.x / unit), unit * round(center.y / unit),
                       unit * round(center.z / unit));

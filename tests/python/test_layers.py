@@ -24,11 +24,12 @@ ROOMS = {
 # Public header -> public headers it may include.
 PUBLIC = {
     "types.h": set(),
-    "vmath.h": {"types.h"},
+    "elementary.h": set(),
+    "vmath.h": {"elementary.h", "types.h"},
     "plugin.h": {"types.h"},
     "talus.h": {"types.h", "plugin.h"},
 }
-PLUGIN_HEADERS = {"talus/types.h", "talus/vmath.h", "talus/plugin.h"}
+PLUGIN_HEADERS = {"talus/types.h", "talus/elementary.h", "talus/vmath.h", "talus/plugin.h"}
 # What a plugin may include besides: the headers of standard C.
 STANDARD_HEADERS = {
     name + ".h"
@@ -53,6 +54,11 @@ INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.M)
 COMMENT = re.compile(r'/\*.*?\*/|//[^\n]*|("(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])*\')', re.S)
 STRING = re.compile(r'"((?:\\.|[^"\\\n])*)"')
 MACHINE_PATH = re.compile(r"(?<![\w.*/:)\]}>?%-])/(?:" + MACHINE_FOLDERS + r")/[\w.]")
+# Functions of the C library whose last bits depend on its version and on the processor. What talus/elementary.h
+# uses instead (fma, fmod, frexp, ldexp, floor, sqrt and the like) is defined to the bit.
+INEXACT = re.compile(
+    r"(?<![\w.>])(?:sin|cos|tan|sincos|asin|acos|atan|atan2|sinh|cosh|tanh|asinh|acosh|atanh|exp|exp2|expm1|log|"
+    r"log2|log10|log1p|pow|cbrt|hypot|erf|erfc|tgamma|lgamma)[fl]?\(")
 UNFINISHED = re.compile(r"\b(?:TO" + r"DO|FIX" + r"ME|XX" + r"X)\b")
 
 
@@ -103,6 +109,14 @@ def check_kind_names(text, kinds):
                 yield f'line {number}: core names the plugin kind "{literal}"'
 
 
+def check_functions(text):
+    """The same bits on every machine: sines and the like come from talus/elementary.h."""
+    code = STRING.sub('""', without_comments(text))
+    for number, line in enumerate(code.splitlines(), 1):
+        for match in INEXACT.finditer(line):
+            yield f"line {number}: {match.group(0)}...) has other bits on other machines: use talus/elementary.h"
+
+
 def check_lengths(path, text):
     lines = text.splitlines()
     if len(lines) > MAX_FILE_LINES:
@@ -149,6 +163,8 @@ def check_tree(root):
         found += check_lengths(path, text) if path.suffix not in (".md", ".json", ".txt", "") else []
         if is_c and parts[0] == "core":
             found += [*check_core_includes(path, parts, text), *check_kind_names(text, kinds)]
+        if is_c and parts[0] in ("core", "plugins"):
+            found += check_functions(text)
         if is_c and parts[0] == "plugins" and len(parts) > 2 and parts[1] in KIND_FOLDERS:
             found += check_plugin_includes(path, text)
         faults += [("/".join(parts), fault) for fault in found]
@@ -176,6 +192,9 @@ BAD = [
     ("core/cycle/c.c", 'tl_plugin_find(TL_KIND_GENERATOR, "joint");\n', "core names"),
     ("core/cycle/long.c", "\n" * (MAX_FILE_LINES + 1), f"more than {MAX_FILE_LINES}"),
     ("core/cycle/d.c", "int f(void)\n{\n" + "    ;\n" * (MAX_FUNCTION_LINES + 1) + "}\n", "a function of"),
+    ("core/cycle/f.c", "double x = sin(y);\n", "has other bits"),
+    ("plugins/laws/springy/f.c", "double x = 1 + atan2(y, z);\n", "has other bits"),
+    ("core/base/f.h", "float x = powf(y, z);\n", "has other bits"),
     ("scripts/a.lua", "-- TO" + "DO\n", "unfinished work"),
     ("docs/a.md", "see /home" + "/someone/notes.md\n", "path of some machine"),
 ]
@@ -185,6 +204,7 @@ GOOD = [
     ("core/model/fine.c", 'int f = 0; /* "springy" is a law */ const char *s = "joint";\n'),
     ("plugins/laws/springy/springy.c", "#include <math.h>\n#include <talus/plugin.h>\n"),
     ("plugins/generators/joint/joint.c", "#include <talus/plugin.h>\n"),
+    ("core/model/f.c", 'double x = tl_sin(y) + sqrt(y) + m->log(fma(y, y, y)); /* sin(y) */ char *s = "sin(y)";\n'),
     ("docs/a.md", "kn in Pa/m, https://example.org/a/b, /usr/bin/python3, a/b/c\n"),
 ]
 

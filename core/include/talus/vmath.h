@@ -7,6 +7,7 @@
 #define TALUS_VMATH_H
 
 #include <math.h>
+#include <talus/elementary.h>
 #include <talus/types.h>
 
 #define TL_PI 3.14159265358979323846
@@ -176,14 +177,16 @@ static inline tl_vec3 tl_v3_turn(tl_vec3 v, tl_vec3 a, tl_vec3 b)
  * degrees of a multiple of 90 first, which rounds nothing. */
 static inline double tl_sin_quarter(double degrees, int quarter)
 {
+    if (!isfinite(degrees))
+        return degrees - degrees;
     double r = fmod(degrees, 360);
     double turns = floor((r + 45) / 90);
     double x = (r - 90 * turns) * (TL_PI / 180);
     switch (((int)turns + quarter) & 3) {
-    case 0: return sin(x);
-    case 1: return cos(x);
-    case 2: return -sin(x);
-    default: return -cos(x);
+    case 0: return tl_sin(x);
+    case 1: return tl_cos(x);
+    case 2: return -tl_sin(x);
+    default: return -tl_cos(x);
     }
 }
 

@@ -207,7 +207,7 @@ static double inner_angle(const mesh *m, uint32_t h, uint32_t g)
     tl_vec3 along = tl_v3_unit(tl_v3_sub(b, a)), n = m->normal[m->face_of[h]];
     tl_vec3 into = tl_v3_cross(n, along);
     tl_vec3 other = tl_v3_cross(along, m->normal[m->face_of[g]]);
-    double angle = atan2(-tl_v3_dot(other, n), tl_v3_dot(other, into));
+    double angle = tl_atan2(-tl_v3_dot(other, n), tl_v3_dot(other, into));
     return angle < SAME_SIDE ? angle + 2 * TL_PI : angle;
 }
 

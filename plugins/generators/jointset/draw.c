@@ -30,7 +30,7 @@ double draw_normal(const draws *d, int64_t index, uint32_t kind, double limit)
         uint32_t draw = kind + 2 * DRAW_KINDS * attempt;
         double u = draw_one(d, index, draw), v = draw_one(d, index, draw + DRAW_KINDS);
         /* 1 - u is in (0, 1], so the logarithm is finite */
-        double z = sqrt(-2 * log(1 - u)) * tl_cos_degrees(360 * v);
+        double z = sqrt(-2 * tl_log1p(-u)) * tl_cos_degrees(360 * v);
         if (fabs(z) < limit)
             return z;
     }
@@ -40,7 +40,7 @@ double draw_normal(const draws *d, int64_t index, uint32_t kind, double limit)
 tl_vec3 draw_fisher(const draws *d, int64_t index, tl_vec3 mean, double k)
 {
     double u = draw_one(d, index, DRAW_DIP), azimuth = 360 * draw_one(d, index, DRAW_DIRECTION);
-    double drop = fmin(-log1p(u * expm1(-2 * k)) / k, 2);
+    double drop = fmin(-tl_log1p(u * tl_expm1(-2 * k)) / k, 2);
     double sine = sqrt(drop * (2 - drop));
     tl_vec3 e = tl_v3_perpendicular(mean), f = tl_v3_cross(mean, e);
     tl_vec3 side = tl_v3_madd(tl_v3_scale(tl_cos_degrees(azimuth), e), tl_sin_degrees(azimuth), f);

@@ -17,7 +17,8 @@ static double turn(flat a, flat b, flat c)
 
 static double apart(flat a, flat b)
 {
-    return hypot(b.x - a.x, b.y - a.y);
+    double x = b.x - a.x, y = b.y - a.y;
+    return sqrt(x * x + y * y);
 }
 
 bool outline_make(const tl_vec3 *corners, size_t count, outline *made)

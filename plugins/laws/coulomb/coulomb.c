@@ -25,6 +25,7 @@
  *
  * Limit: a change of kn or ks, and insitu, take the present force as the one at closure 0; they belong
  * before slip has opened the joint. */
+#include <talus/elementary.h>
 #include <talus/plugin.h>
 
 #include <math.h>
@@ -92,11 +93,11 @@ static tl_status create(const void *given, void **self, tl_report *report)
     *law = (coulomb){
         .kn = p->kn,
         .ks = p->ks,
-        .tangent = tan(p->friction * DEGREE),
+        .tangent = tl_tan(p->friction * DEGREE),
         .cohesion = p->cohesion,
-        .dilation = tan(p->dilation * DEGREE),
+        .dilation = tl_tan(p->dilation * DEGREE),
         .most_opening =
-            isnan(p->dilation_limit) ? INFINITY : tan(p->dilation * DEGREE) * p->dilation_limit,
+            isnan(p->dilation_limit) ? INFINITY : tl_tan(p->dilation * DEGREE) * p->dilation_limit,
     };
     *self = law;
     return TL_OK;

@@ -21,6 +21,7 @@
  * closed cycle of opening: it lets go and takes hold again at the same gap.
  *
  * Limit: as for "coulomb", changes of kn and ks and insitu belong before slip has opened the joint. */
+#include <talus/elementary.h>
 #include <talus/plugin.h>
 
 #include <math.h>
@@ -114,11 +115,11 @@ static tl_status create(const void *given, void **self, tl_report *report)
     *law = (bonded){
         .kn = p->kn,
         .ks = p->ks,
-        .peak = {tan(p->friction * DEGREE), p->cohesion, p->tension},
-        .residual = {tan(residual * DEGREE), p->residual_cohesion, p->residual_tension},
-        .dilation = tan(p->dilation * DEGREE),
+        .peak = {tl_tan(p->friction * DEGREE), p->cohesion, p->tension},
+        .residual = {tl_tan(residual * DEGREE), p->residual_cohesion, p->residual_tension},
+        .dilation = tl_tan(p->dilation * DEGREE),
         .most_opening =
-            isnan(p->dilation_limit) ? INFINITY : tan(p->dilation * DEGREE) * p->dilation_limit,
+            isnan(p->dilation_limit) ? INFINITY : tl_tan(p->dilation * DEGREE) * p->dilation_limit,
     };
     *self = law;
     return TL_OK;
