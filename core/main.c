@@ -13,6 +13,12 @@
 #define TALUS_BUILD "unknown build type"
 #endif
 
+#ifdef __clang__
+#define COMPILER __VERSION__
+#else
+#define COMPILER "gcc " __VERSION__
+#endif
+
 typedef struct options {
     tl_lua_options lua;
     bool verbose;
@@ -30,14 +36,8 @@ static int fail(const char *sentence, const char *what)
 
 static int print_version(void)
 {
-    printf("Talus %s\nplugin interface %u.%u\n%s\ncompiler: %s%s\nbuild: %s\n", TALUS_VERSION,
-           TL_ABI_MAJOR, TL_ABI_MINOR, LUA_RELEASE,
-#ifdef __clang__
-           "", __VERSION__,
-#else
-           "gcc ", __VERSION__,
-#endif
-           TALUS_BUILD);
+    printf("Talus %s\nplugin interface %u.%u\n%s\ncompiler: %s\nbuild: %s\n", TALUS_VERSION,
+           TL_ABI_MAJOR, TL_ABI_MINOR, LUA_RELEASE, COMPILER, TALUS_BUILD);
     return EXIT_SUCCESS;
 }
 

@@ -44,7 +44,9 @@ extern "C" {
 
 /* Before a function whose loops run over columns: compiled once more for processors with wider vectors, of
  * which the program takes what it finds. Contraction of products is off, so all give the same bits. */
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#if defined(TL_VECTORIZED)
+/* whoever builds has chosen */
+#elif defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define TL_VECTORIZED /* the choice is made before the sanitizer has started */
 #elif defined(__has_feature)
 #if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
