@@ -1,0 +1,59 @@
+-- hashes.lua - the state hashes of the scenes of scenes.lua, compared with the committed ones: the same bits from
+-- every compiler, processor, vector width and number of threads.
+--
+--     build/release/talus tests/golden/hashes.lua            compare with tests/golden/hashes.txt
+--     build/release/talus tests/golden/hashes.lua --renew    write tests/golden/hashes.txt
+--
+-- A difference on one build alone breaks rule 1 of docs/architecture.md: look for a function of the C library, a
+-- fused product or a sum in another order. A difference on every build is a change of results: renew the table in
+-- the commit that brings it about, and say in its message why. Scenes whose first stage differs differ in geometry.
+package.path = "tests/golden/?.lua;" .. package.path -- run in the source root
+local scenes = require "scenes"
+
+local TABLE = "tests/golden/hashes.txt"
+local folder = os.getenv("TALUS_TEST_TMP") or os.tmpname():match("^(.*)/")
+
+-- "scene: stage" -> hash
+local function read()
+    local hashes = {}
+    for line in io.lines(TABLE) do
+        local name, hash = line:match("^(.-)%s+(%x+)$")
+        assert(name, TABLE .. ": a line is not a name and a hash: " .. line)
+        hashes[name] = hash
+    end
+    return hashes
+end
+
+local found = {} -- {name, hash}, in the order of the scenes
+for _, scene in ipairs(scenes) do
+    local begun = os.clock()
+    scene.run(function(model, stage)
+        found[#found + 1] = { scene.name .. ": " .. stage, model:state_hash() }
+    end, folder)
+    print(string.format("%-20s %.2f s", scene.name, os.clock() - begun))
+end
+
+if arg[1] == "--renew" then
+    local file <close> = assert(io.open(TABLE, "w"))
+    for _, row in ipairs(found) do
+        file:write(string.format("%-32s %s\n", row[1], row[2]))
+    end
+    print(string.format("%s: %d hashes written", TABLE, #found))
+    return
+end
+
+local committed, different = read(), 0
+for _, row in ipairs(found) do
+    local name, hash = row[1], row[2]
+    if hash ~= committed[name] then
+        different = different + 1
+        print(string.format("DIFFERENT  %-32s %s, committed %s", name, hash, committed[name] or "nothing"))
+    end
+    committed[name] = nil
+end
+for name in pairs(committed) do
+    different = different + 1
+    print(string.format("MISSING    %s is in the table and in no scene", name))
+end
+print(string.format("%d hashes, %d different", #found, different))
+os.exit(different == 0, true)
