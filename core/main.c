@@ -205,6 +205,7 @@ static int help(const char *topic)
 int main(int argc, char **argv)
 {
     options o = {.next = 1};
+    tl_plugin_name_crashes();
     while (o.next < argc && argv[o.next][0] == '-' && argv[o.next][1]) {
         const char *word = argv[o.next];
         if (strcmp(word, "--version") == 0)

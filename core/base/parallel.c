@@ -9,11 +9,14 @@
  * finds nothing on it or takes a chunk of the new loop, never one of the old. So a loop ends as soon as its
  * chunks are done, whether or not all threads have seen it: where there are more threads than processors,
  * nobody waits for one that does not run. What describes a loop does not change while a chunk of it is out. */
+#define _XOPEN_SOURCE 700 /* sigaltstack */
 #include "base/parallel.h"
 
+#include "base/inside.h"
 #include "base/signals.h"
 
 #include <pthread.h>
+#include <signal.h>
 #include <stdatomic.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -131,6 +134,10 @@ static void *work(void *argument)
 {
     struct worker *worker = argument;
     tl_pool *pool = worker->pool;
+    /* for a handler of signals that asks for another stack, should a law use up this one */
+    char spare[TL_SIGNAL_STACK];
+    stack_t own = {.ss_sp = spare, .ss_size = sizeof spare}, before;
+    bool placed = sigaltstack(&own, &before) == 0;
     while (await_loop(pool, worker)) {
         if (do_chunks(pool, worker->number) && atomic_load(&pool->caller_sleeps)) {
             pthread_mutex_lock(&pool->lock);
@@ -138,6 +145,8 @@ static void *work(void *argument)
             pthread_mutex_unlock(&pool->lock);
         }
     }
+    if (placed)
+        sigaltstack(&before, NULL);
     return NULL;
 }
 

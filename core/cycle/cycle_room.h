@@ -3,6 +3,7 @@
 #define TL_CYCLE_CYCLE_ROOM_H
 
 #include "base/inline.h"
+#include "base/inside.h"
 #include "base/lanes.h"
 #include "detect/detect.h"
 

@@ -29,10 +29,6 @@ tl_status tl_model_damping(tl_model *m, const char *damping, const tl_args *args
     const tl_kind *kind = tl_plugin_find(TL_KIND_DAMPING, damping);
     if (!kind)
         return tl_unknown_kind(m, TL_KIND_DAMPING, damping);
-    if (kind->state_count > TL_STATE_COLUMNS)
-        return tl_fail(&m->error, TL_E_PLUGIN,
-                       "damping '%s' has %u states; a damping may have %d at the most", kind->name,
-                       kind->state_count, TL_STATE_COLUMNS);
     const tl_damping_ops *ops = kind->ops;
     void *params = calloc(1, kind->params_size + 1), *self = params;
     double *state = calloc(kind->state_count + 1u, sizeof *state);
@@ -47,7 +43,9 @@ tl_status tl_model_damping(tl_model *m, const char *damping, const tl_args *args
     tl_status status = tl_args_read(kind->params, kind->param_count, kind->param_stride, args,
                                     false, params, context, &m->error);
     if (status == TL_OK && ops->create) {
+        tl_enter(kind, "create");
         status = ops->create(params, &self, &report);
+        tl_leave();
         if (status != TL_OK)
             tl_fail(&m->error, status, "%s: %s", context, report.text);
     }
@@ -151,7 +149,9 @@ static void damp_range(void *user, size_t begin, size_t end, size_t chunk, unsig
         memset(batch.damping_moment[k], 0, (end - begin) * sizeof *batch.damping_moment[k]);
     }
     tl_report report = {.size = sizeof report};
+    tl_enter(m->damping, "update");
     tl_status status = ops->update(m->damping_self, &batch, &report);
+    tl_leave();
     if (status != TL_OK)
         tl_cycle_failed(m, chunk, status, 0, report.text);
     if (ops->before)
@@ -174,7 +174,9 @@ tl_status tl_damping_apply(tl_model *m, double dt)
     for (uint32_t k = 0; k < m->damping->state_count && k < TL_STATE_COLUMNS; k++)
         state[k] = &m->damping_state[k];
     tl_report report = {.size = sizeof report};
+    tl_enter(m->damping, "begin");
     tl_status status = ops->begin ? ops->begin(m->damping_self, &totals, state, &report) : TL_OK;
+    tl_leave();
     if (status == TL_OK) {
         damping_job job = {m, dt, state};
         tl_parallel_for(m->pool, c->table.rows, TL_BODY_CHUNK, damp_range, &job);

@@ -56,7 +56,9 @@ static bool call_law(const run_job *job, size_t first, size_t count, const tl_po
     report.size = sizeof report;
     report.first_bad = 0;
     report.text[0] = 0;
+    tl_enter(job->material->kind, "update");
     tl_status status = ops->update(job->material->self, &batch, &report);
+    tl_leave();
     if (status != TL_OK)
         tl_cycle_failed(job->m, first, status, first + report.first_bad, report.text);
     return status == TL_OK;

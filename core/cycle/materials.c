@@ -26,7 +26,9 @@ static tl_status make_material(tl_model *m, tl_tag tag, const char *joint, const
                                     from != NULL, out->params, context, &m->error);
     out->self = out->params;
     if (status == TL_OK && ops->create) {
+        tl_enter(kind, "create");
         status = ops->create(out->params, &out->self, &report);
+        tl_leave();
         if (status != TL_OK)
             tl_fail(&m->error, status, "%s: %s", context, report.text);
     }
@@ -35,7 +37,9 @@ static tl_status make_material(tl_model *m, tl_tag tag, const char *joint, const
         *out = (tl_material){0};
         return status;
     }
+    tl_enter(kind, "stiffness");
     ops->stiffness(out->self, &out->kn, &out->ks);
+    tl_leave();
     uint32_t column = 0;
     for (uint32_t k = 0; k < kind->state_count; k++) {
         bool tangent = tl_kind_state(kind, k)->kind == TL_STATE_TANGENT;
@@ -43,7 +47,9 @@ static tl_status make_material(tl_model *m, tl_tag tag, const char *joint, const
         out->splits = out->splits || tl_kind_state(kind, k)->transfer == TL_TRANSFER_SPLIT;
         column += tangent ? 3 : 1;
     }
+    tl_enter(kind, "stateless");
     out->columns = ops->stateless && ops->stateless(out->self) ? 0 : column;
+    tl_leave();
     return TL_OK;
 }
 
@@ -160,11 +166,6 @@ tl_status tl_joint_law(tl_model *m, const char *joint, const char *law, const tl
         return tl_fail(&m->error, TL_E_STATE,
                        "joint '%s' has no law yet: name one, as in model:joint(\"%s\", LAW, {...})",
                        joint, joint);
-    uint32_t columns = tl_kind_state_columns(kind);
-    if (columns > TL_STATE_COLUMNS)
-        return tl_fail(&m->error, TL_E_PLUGIN,
-                       "law '%s' has %u state columns; a law may have %d at the most", kind->name,
-                       columns, TL_STATE_COLUMNS);
     tl_material fresh;
     status = make_material(m, tag, joint, kind, args, law ? NULL : ruling, &fresh);
     if (status != TL_OK)

@@ -88,7 +88,10 @@ static double damping_factor(const tl_model *m)
     if (!m->damping)
         return 1;
     const tl_damping_ops *ops = m->damping->ops;
-    return ops->step_factor ? ops->step_factor(m->damping_self) : 1;
+    tl_enter(m->damping, "step_factor");
+    double factor = ops->step_factor ? ops->step_factor(m->damping_self) : 1;
+    tl_leave();
+    return factor;
 }
 
 /* A plugin's factor and stiffness are its word: refused when they cannot be. */

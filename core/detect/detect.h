@@ -31,9 +31,6 @@
 #define TL_CONTACT_TOLERANCE 1e-3
 #define TL_CONTACT_RELEASE 1.5
 
-/* Most scalar state columns a law may have. */
-#define TL_STATE_COLUMNS 8
-
 /* Two blocks in the frame of A's body. */
 typedef struct tl_pair_view {
     const tl_poly *a, *b;

@@ -264,12 +264,15 @@ void tl_lua_help_plugins(void)
             const tl_kind *kind = (const tl_kind *)(const void *)at;
             printf("    %s '%s'\n", plugin_word((tl_kind_type)kind->type), kind->name);
         }
+        if (record.note)
+            printf("    note: %s\n", record.note);
     }
     if (count == refused)
         puts("No plugin is loaded; set TALUS_PLUGIN_PATH to the folder they are in.");
     for (size_t i = 0; i < count && refused; i++) {
         tl_plugin_record record = tl_plugin_record_at(i);
         if (!record.plugin)
-            printf("refused: %s: %s\n", record.path, record.reason);
+            printf("%s: %s: %s\n", record.reason ? "refused" : "note", record.path,
+                   record.reason ? record.reason : record.note);
     }
 }

@@ -1,6 +1,8 @@
 /* joints.c - names of groups and joint sets, and which rule holds for which joint. */
 #include "model/model.h"
 
+#include "base/inside.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -148,8 +150,11 @@ void tl_material_clear(tl_material *material)
     if (!material->kind)
         return;
     const tl_law_ops *ops = material->kind->ops;
-    if (ops->destroy && material->self != material->params)
+    if (ops->destroy && material->self != material->params) {
+        tl_enter(material->kind, "destroy");
         ops->destroy(material->self);
+        tl_leave();
+    }
     free(material->params);
     *material = (tl_material){0};
 }

@@ -1,6 +1,8 @@
 /* model.c - life of a model, its settings, and the way from ids to rows. */
 #include "model/model.h"
 
+#include "base/inside.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -108,8 +110,11 @@ void tl_damping_clear(tl_model *m)
 {
     if (m->damping) {
         const tl_damping_ops *ops = m->damping->ops;
-        if (ops->destroy && m->damping_self != m->damping_params)
+        if (ops->destroy && m->damping_self != m->damping_params) {
+            tl_enter(m->damping, "destroy");
             ops->destroy(m->damping_self);
+            tl_leave();
+        }
     }
     free(m->damping_params);
     free(m->damping_state);

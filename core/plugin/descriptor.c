@@ -9,6 +9,7 @@
 #include "base/params.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -282,6 +283,13 @@ static tl_status check_rows(const tl_kind *kind, tl_error *error)
         if (status != TL_OK)
             return status;
     }
+    uint32_t columns = 0;
+    for (uint32_t i = 0; i < kind->state_count; i++)
+        columns += kind->states[i].kind == TL_STATE_TANGENT ? 3 : 1;
+    if (columns > TL_STATE_COLUMNS)
+        return tl_fail(error, TL_E_PLUGIN,
+                       "its states take %u columns (a scalar 1, a tangent 3); %d at the most",
+                       columns, TL_STATE_COLUMNS);
     return TL_OK;
 }
 
@@ -310,9 +318,6 @@ static tl_status copy_kind(const version *v, tl_kind *kind)
 static tl_status check_kind(const tl_plugin *plugin, uint32_t index, tl_error *error)
 {
     const tl_kind *kind = &plugin->kinds[index];
-    if (kind->type > TL_KIND_GENERATOR)
-        return tl_fail(error, TL_E_PLUGIN, "kind %u has the unknown type %u", index + 1,
-                       kind->type);
     if (!tl_name_is_valid(kind->name))
         return tl_fail(error, TL_E_PLUGIN,
                        "kind %u has the bad name '%.60s': small letters, digits and _ only",
@@ -325,6 +330,27 @@ static tl_status check_kind(const tl_plugin *plugin, uint32_t index, tl_error *e
             return tl_fail(error, TL_E_PLUGIN, "it holds two %ss named '%s'",
                            tl_kind_type_name(kind->type), kind->name);
     return TL_OK;
+}
+
+/* Leaves out the kinds of a type that this host does not know; the note tells of the first. */
+static void drop_unknown(tl_plugin *plugin, tl_kind *kinds, char note[TL_NOTE_TEXT])
+{
+    uint32_t kept = 0, given = plugin->kind_count;
+    for (uint32_t i = 0; i < given; i++) {
+        if (kinds[i].type <= TL_KIND_GENERATOR)
+            kinds[kept++] = kinds[i];
+        else if (i == kept)
+            snprintf(
+                note, TL_NOTE_TEXT,
+                "kind %u, '%.60s', is of the unknown type %u and is left out: this Talus knows "
+                "laws (%d), dampings (%d) and generators (%d)",
+                i + 1, kinds[i].name ? kinds[i].name : "", kinds[i].type, TL_KIND_LAW,
+                TL_KIND_DAMPING, TL_KIND_GENERATOR);
+    }
+    size_t length = strlen(note);
+    if (given - kept > 1)
+        snprintf(note + length, TL_NOTE_TEXT - length, "; so are %u more", given - kept - 1);
+    plugin->kind_count = kept;
 }
 
 /* Reads the kinds one after the other. Those not yet read are cut off on failure. */
@@ -363,9 +389,11 @@ static tl_status check_version(const tl_plugin *given, tl_error *error)
     return TL_OK;
 }
 
-tl_status tl_descriptor_read(const tl_plugin *given, tl_plugin **plugin, tl_error *error)
+tl_status tl_descriptor_read(const tl_plugin *given, tl_plugin **plugin, char note[TL_NOTE_TEXT],
+                             tl_error *error)
 {
     *plugin = NULL;
+    note[0] = '\0';
     tl_status status = check_version(given, error);
     if (status != TL_OK)
         return status;
@@ -390,7 +418,10 @@ tl_status tl_descriptor_read(const tl_plugin *given, tl_plugin **plugin, tl_erro
     memcpy(copy, given, sizeof *copy);
     copy->kinds = kinds;
     copy->kind_stride = sizeof(tl_kind);
-    status = read_kinds(&v, copy, kinds);
+    drop_unknown(copy, kinds, note);
+    status = copy->kind_count > 0
+                 ? read_kinds(&v, copy, kinds)
+                 : tl_fail(error, TL_E_PLUGIN, "it holds nothing of use: %s", note);
     if (status == TL_OK)
         *plugin = copy;
     else

@@ -11,9 +11,14 @@
  * The file that holds this function is asked for its place (dladdr), so that a moved install still
  * works and a stock Lua that loads the module finds the module's plugins, not its own.
  *
- * A plugin of an id that is loaded already is refused, so the first found wins. */
+ * A plugin of an id that is loaded already is refused, so the first found wins.
+ *
+ * A folder or file that others may write is refused (trust.c), but where the user has named it: with --plugin, or in
+ * TALUS_PLUGIN_PATH, when a note says so. */
 #define _GNU_SOURCE /* dladdr */
 #include "plugin/registry.h"
+
+#include "base/inside.h"
 
 #include <dirent.h>
 #include <dlfcn.h>
@@ -26,6 +31,11 @@
 #include <unistd.h>
 
 #define ENTRY "tl_plugin_entry"
+/* Why a folder or file that nobody has named is left alone; what is wrong comes first. */
+#define UNTRUSTED                                                                                  \
+    "%s: nothing is loaded from there unless it is named, with --plugin FILE or in "               \
+    "TALUS_PLUGIN_PATH"
+
 /* Folders searched at most: a TALUS_PLUGIN_PATH longer than this is a mistake. */
 #define MOST_FOLDERS 64
 
@@ -51,15 +61,19 @@ static tl_status take_in(const char *path, void *handle, tl_error *error)
     tl_plugin_entry_fn entry = find_entry(handle);
     if (!entry)
         return tl_fail(error, TL_E_PLUGIN, "it does not export " ENTRY ": not a Talus plugin");
+    tl_inside_plugin.path = path;
+    tl_enter(NULL, ENTRY);
     const tl_plugin *given = entry(TL_ABI_MAJOR, TL_ABI_MINOR);
+    tl_leave();
     if (!given)
         return tl_fail(error, TL_E_PLUGIN, "it refuses this Talus (plugin ABI %u.%u)", TL_ABI_MAJOR,
                        TL_ABI_MINOR);
     tl_plugin *plugin;
-    tl_status status = tl_descriptor_read(given, &plugin, error);
+    char note[TL_NOTE_TEXT];
+    tl_status status = tl_descriptor_read(given, &plugin, note, error);
     if (status != TL_OK)
         return status;
-    status = tl_registry_add(path, plugin, error);
+    status = tl_registry_add(path, plugin, note, error);
     if (status != TL_OK)
         tl_descriptor_free(plugin);
     return status;
@@ -72,7 +86,10 @@ static tl_status open_and_take_in(const char *path, tl_error *error)
     int n = snprintf(local, sizeof local, "%s%s", strchr(path, '/') ? "" : "./", path);
     if (n < 0 || (size_t)n >= sizeof local)
         return tl_fail(error, TL_E_PLUGIN, "its path is too long");
+    tl_inside_plugin.path = path;
+    tl_enter(NULL, "dlopen"); /* which runs the file's constructors */
     void *handle = dlopen(local, RTLD_NOW | RTLD_LOCAL);
+    tl_leave();
     if (!handle) {
         const char *reason = dlerror();
         size_t length = strlen(local);
@@ -129,18 +146,41 @@ static bool is_new_folder(searched *seen, const char *folder)
     return true;
 }
 
-static void load_folder(searched *seen, const char *folder)
+/* A file of a folder. A refusal is kept in the records; the search goes on. */
+static void load_found(const char *path, const char *program)
 {
+    char why[PATH_MAX + 128], text[PATH_MAX + 256];
+    if (!program || tl_path_is_trusted(path, program, why, sizeof why)) {
+        (void)tl_plugin_load(path, NULL);
+        return;
+    }
+    snprintf(text, sizeof text, UNTRUSTED, why);
+    tl_registry_refused(path, text);
+}
+
+/* `program`: the file whose owner is trusted, or NULL where the user has named the folder. */
+static void load_folder(searched *seen, const char *folder, const char *program)
+{
+    char why[PATH_MAX + 128], text[PATH_MAX + 256];
     if (!is_new_folder(seen, folder))
         return;
+    if (!tl_path_is_trusted(folder, program ? program : folder, why, sizeof why)) {
+        snprintf(text, sizeof text,
+                 program ? UNTRUSTED
+                         : "%s: plugins are loaded from it because TALUS_PLUGIN_PATH "
+                           "names it",
+                 why);
+        (program ? tl_registry_refused : tl_registry_noted)(folder, text);
+        if (program)
+            return;
+    }
     struct dirent **entries;
     int count = scandir(folder, &entries, is_plugin_file, by_name);
     for (int i = 0; i < count; i++) {
         char path[PATH_MAX];
         int n = snprintf(path, sizeof path, "%s/%s", folder, entries[i]->d_name);
-        /* A refusal is kept in the records; the search goes on. */
         if (n > 0 && (size_t)n < sizeof path)
-            (void)tl_plugin_load(path, NULL);
+            load_found(path, program);
         free(entries[i]);
     }
     if (count >= 0)
@@ -155,43 +195,38 @@ static void load_path_list(searched *seen, const char *list)
         if (length > 0 && length < sizeof folder) {
             memcpy(folder, list, length);
             folder[length] = '\0';
-            load_folder(seen, folder);
+            load_folder(seen, folder, NULL);
         }
         list += length + (list[length] == ':');
     }
 }
 
-/* The folder of the program or library this function is in. The name of the main program may be a bare
+/* The file of the program or library this function is in. The name of the main program may be a bare
  * word found through PATH; then the system knows where it is. */
-static bool own_folder(char folder[PATH_MAX])
+static bool own_file(char file[PATH_MAX])
 {
     Dl_info info;
-    bool named = dladdr((void *)(uintptr_t)&own_folder, &info) != 0 && info.dli_fname &&
-                 strchr(info.dli_fname, '/') && realpath(info.dli_fname, folder);
-    if (!named && !realpath("/proc/self/exe", folder))
-        return false;
-    char *slash = strrchr(folder, '/');
-    if (!slash)
-        return false;
-    *slash = '\0';
-    return true;
+    bool named = dladdr((void *)(uintptr_t)&own_file, &info) != 0 && info.dli_fname &&
+                 strchr(info.dli_fname, '/') && realpath(info.dli_fname, file);
+    return named || realpath("/proc/self/exe", file);
 }
 
 static void load_everything(void)
 {
     static const char *const installed[] = {"../lib/talus", "../../talus", "talus"};
     searched seen = {.count = 0};
-    char here[PATH_MAX], folder[PATH_MAX + 64], plain[PATH_MAX];
+    char own[PATH_MAX], here[PATH_MAX], folder[PATH_MAX + 64], plain[PATH_MAX];
     load_path_list(&seen, getenv("TALUS_PLUGIN_PATH"));
-    if (!own_folder(here))
+    if (!own_file(own))
         return;
+    snprintf(here, sizeof here, "%.*s", (int)(strrchr(own, '/') - own), own);
     snprintf(folder, sizeof folder, "%s/plugins", here);
-    load_folder(&seen, folder);
+    load_folder(&seen, folder, own);
     for (size_t i = 0; i < sizeof installed / sizeof *installed; i++) {
         snprintf(folder, sizeof folder, "%s/%s/plugins-%u", here, installed[i], TL_ABI_MAJOR);
         /* Without the "..", as a user would write it. */
         if (realpath(folder, plain))
-            load_folder(&seen, plain);
+            load_folder(&seen, plain, own);
     }
 }
 

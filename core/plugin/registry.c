@@ -2,57 +2,92 @@
 #include "plugin/registry.h"
 
 #include <pthread.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 
-typedef struct record {
+typedef struct record record;
+struct record {
     char *path;
-    char *reason;      /* NULL when loaded */
+    char *reason;      /* why it was refused, or NULL */
+    char *note;        /* what else there is to say, or NULL */
     tl_plugin *plugin; /* NULL when refused */
-} record;
+    _Atomic(record *) next;
+};
 
-/* Append only; guarded by the lock, since models may live on several threads. */
+/* Append only; guarded by the lock, since models may live on several threads. Records never move, so a handler of
+ * signals may follow the list without the lock. */
 static struct {
     pthread_mutex_t lock;
-    record *records;
-    size_t count, capacity;
+    _Atomic(record *) first;
+    record *last;
+    size_t count;
 } registry = {.lock = PTHREAD_MUTEX_INITIALIZER};
 
-static bool make_room(void)
+static char *copy_of(const char *text)
 {
-    if (registry.count < registry.capacity)
-        return true;
-    size_t capacity = registry.capacity ? 2 * registry.capacity : 32;
-    record *records = realloc(registry.records, capacity * sizeof *records);
-    if (!records)
-        return false;
-    registry.records = records;
-    registry.capacity = capacity;
-    return true;
+    return text && *text ? strdup(text) : NULL;
 }
 
 /* Appends copies of the texts; the lock is held. */
-static bool append(const char *path, const char *reason, tl_plugin *plugin)
+static bool append(const char *path, const char *reason, const char *note, tl_plugin *plugin)
 {
-    record r = {strdup(path), reason ? strdup(reason) : NULL, plugin};
-    if (!r.path || (reason && !r.reason) || !make_room()) {
-        free(r.path);
-        free(r.reason);
+    record *r = calloc(1, sizeof *r);
+    if (!r)
+        return false;
+    r->path = strdup(path);
+    r->reason = copy_of(reason);
+    r->note = copy_of(note);
+    r->plugin = plugin;
+    if (!r->path || (reason && *reason && !r->reason) || (note && *note && !r->note)) {
+        free(r->path);
+        free(r->reason);
+        free(r->note);
+        free(r);
         return false;
     }
-    registry.records[registry.count++] = r;
+    if (registry.last)
+        atomic_store(&registry.last->next, r);
+    else
+        atomic_store(&registry.first, r);
+    registry.last = r;
+    registry.count++;
     return true;
+}
+
+static const record *first_record(void)
+{
+    return atomic_load(&registry.first);
+}
+
+static const record *next_record(const record *r)
+{
+    return atomic_load(&((record *)(uintptr_t)r)->next);
 }
 
 /* The record whose plugin offers this kind, or NULL; the lock is held. */
 static const record *provider(uint32_t type, const char *name, const tl_kind **kind)
 {
-    for (size_t i = 0; i < registry.count; i++) {
-        const tl_plugin *plugin = registry.records[i].plugin;
+    for (const record *r = first_record(); r; r = next_record(r)) {
+        const tl_plugin *plugin = r->plugin;
         for (uint32_t k = 0; plugin && k < plugin->kind_count; k++) {
             if (plugin->kinds[k].type == type && strcmp(plugin->kinds[k].name, name) == 0) {
                 *kind = &plugin->kinds[k];
-                return &registry.records[i];
+                return r;
+            }
+        }
+    }
+    return NULL;
+}
+
+const tl_plugin *tl_registry_owner(const tl_kind *kind, const char **path)
+{
+    for (const record *r = first_record(); r; r = next_record(r)) {
+        const tl_plugin *plugin = r->plugin;
+        for (uint32_t k = 0; plugin && k < plugin->kind_count; k++) {
+            if (&plugin->kinds[k] == kind) {
+                *path = r->path;
+                return plugin;
             }
         }
     }
@@ -61,12 +96,10 @@ static const record *provider(uint32_t type, const char *name, const tl_kind **k
 
 static tl_status check_new(const tl_plugin *plugin, tl_error *error)
 {
-    for (size_t i = 0; i < registry.count; i++) {
-        const tl_plugin *other = registry.records[i].plugin;
-        if (other && strcmp(other->id, plugin->id) == 0)
+    for (const record *r = first_record(); r; r = next_record(r))
+        if (r->plugin && strcmp(r->plugin->id, plugin->id) == 0)
             return tl_fail(error, TL_E_PLUGIN, "plugin '%s' is already loaded from %s", plugin->id,
-                           registry.records[i].path);
-    }
+                           r->path);
     for (uint32_t k = 0; k < plugin->kind_count; k++) {
         const tl_kind *mine = &plugin->kinds[k], *theirs;
         const record *other = provider(mine->type, mine->name, &theirs);
@@ -78,11 +111,11 @@ static tl_status check_new(const tl_plugin *plugin, tl_error *error)
     return TL_OK;
 }
 
-tl_status tl_registry_add(const char *path, tl_plugin *plugin, tl_error *error)
+tl_status tl_registry_add(const char *path, tl_plugin *plugin, const char *note, tl_error *error)
 {
     pthread_mutex_lock(&registry.lock);
     tl_status status = check_new(plugin, error);
-    if (status == TL_OK && !append(path, NULL, plugin))
+    if (status == TL_OK && !append(path, NULL, note, plugin))
         status = tl_fail_memory(error);
     pthread_mutex_unlock(&registry.lock);
     return status;
@@ -92,7 +125,14 @@ void tl_registry_refused(const char *path, const char *reason)
 {
     pthread_mutex_lock(&registry.lock);
     /* Out of memory the record is lost; the caller still has the sentence. */
-    (void)append(path, reason, NULL);
+    (void)append(path, reason, NULL, NULL);
+    pthread_mutex_unlock(&registry.lock);
+}
+
+void tl_registry_noted(const char *path, const char *note)
+{
+    pthread_mutex_lock(&registry.lock);
+    (void)append(path, NULL, note, NULL);
     pthread_mutex_unlock(&registry.lock);
 }
 
@@ -100,12 +140,10 @@ const tl_kind *tl_plugin_kind(tl_kind_type type, size_t index)
 {
     const tl_kind *found = NULL;
     pthread_mutex_lock(&registry.lock);
-    for (size_t i = 0; i < registry.count && !found; i++) {
-        const tl_plugin *plugin = registry.records[i].plugin;
-        for (uint32_t k = 0; plugin && k < plugin->kind_count && !found; k++)
-            if (plugin->kinds[k].type == (uint32_t)type && index-- == 0)
-                found = &plugin->kinds[k];
-    }
+    for (const record *r = first_record(); r && !found; r = next_record(r))
+        for (uint32_t k = 0; r->plugin && k < r->plugin->kind_count && !found; k++)
+            if (r->plugin->kinds[k].type == (uint32_t)type && index-- == 0)
+                found = &r->plugin->kinds[k];
     pthread_mutex_unlock(&registry.lock);
     return found;
 }
@@ -129,11 +167,13 @@ size_t tl_plugin_record_count(void)
 
 tl_plugin_record tl_plugin_record_at(size_t index)
 {
-    tl_plugin_record r = {NULL, NULL, NULL};
+    tl_plugin_record found = {NULL, NULL, NULL, NULL};
     pthread_mutex_lock(&registry.lock);
-    if (index < registry.count)
-        r = (tl_plugin_record){registry.records[index].path, registry.records[index].plugin,
-                               registry.records[index].reason};
+    const record *r = first_record();
+    while (r && index-- > 0)
+        r = next_record(r);
+    if (r)
+        found = (tl_plugin_record){r->path, r->plugin, r->reason, r->note};
     pthread_mutex_unlock(&registry.lock);
-    return r;
+    return found;
 }

@@ -11,10 +11,15 @@
 
 /* ---- descriptor.c ---- */
 
+/* Room for a note on a plugin that was taken in. */
+#define TL_NOTE_TEXT 256
+
 /* Checks a plugin's descriptor and copies it into the host's own shape: every struct at its full size,
  * arrays dense, members the plugin's headers did not have yet zero. Texts and functions stay the
- * plugin's. On failure nothing is left and the sentence says what is wrong. */
-tl_status tl_descriptor_read(const tl_plugin *given, tl_plugin **plugin, tl_error *error);
+ * plugin's. Kinds of a type this host does not know are left out, which the note then tells. On failure nothing is
+ * left and the sentence says what is wrong. */
+tl_status tl_descriptor_read(const tl_plugin *given, tl_plugin **plugin, char note[TL_NOTE_TEXT],
+                             tl_error *error);
 void tl_descriptor_free(tl_plugin *plugin);
 
 /* "law", "damping" or "generator". */
@@ -24,8 +29,18 @@ const char *tl_kind_type_name(uint32_t type);
 
 /* Takes in a plugin that was read from `path`. Refused when its id, or one of its kinds, is there
  * already; it then stays the caller's. */
-tl_status tl_registry_add(const char *path, tl_plugin *plugin, tl_error *error);
+tl_status tl_registry_add(const char *path, tl_plugin *plugin, const char *note, tl_error *error);
 /* Keeps a failed attempt and its reason for the list of records. */
 void tl_registry_refused(const char *path, const char *reason);
+/* Keeps a remark on a folder. */
+void tl_registry_noted(const char *path, const char *note);
+/* The plugin that a kind is of and its path, or NULL; takes no lock. */
+const tl_plugin *tl_registry_owner(const tl_kind *kind, const char **path);
+
+/* ---- trust.c ---- */
+
+/* Whether nobody but root, the user and the owner of the file `program` can have put the folder or file there;
+ * otherwise `why` says who could. */
+bool tl_path_is_trusted(const char *path, const char *program, char *why, size_t size);
 
 #endif

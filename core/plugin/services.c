@@ -4,6 +4,7 @@
  * What a plugin passes in is checked here, once, so that the geometry below may rely on it. */
 #include "model/model.h"
 
+#include "base/inside.h"
 #include "base/names.h"
 #include "base/random.h"
 
@@ -417,7 +418,9 @@ static tl_status run(service *s, const tl_kind *kind, const void *params)
     if (status != TL_OK)
         return status;
     m->error = (tl_error){TL_OK, ""};
+    tl_enter(kind, "generate");
     status = ops->generate(&host, params);
+    tl_leave();
     if (status == TL_OK) /* the plugin may not have asked */
         status = go_on(&host);
     if (status == TL_OK)

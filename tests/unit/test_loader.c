@@ -11,7 +11,7 @@ static const char good_folder[] = TALUS_TEST_PLUGIN_DIR;
 /* The record of a path, the last one when it was tried several times. */
 static tl_plugin_record record_of(const char *path)
 {
-    tl_plugin_record found = {NULL, NULL, NULL};
+    tl_plugin_record found = {NULL, NULL, NULL, NULL};
     for (size_t i = 0; i < tl_plugin_record_count(); i++) {
         tl_plugin_record r = tl_plugin_record_at(i);
         if (strcmp(r.path, path) == 0)
@@ -79,7 +79,7 @@ TEST(default_search_finds_every_plugin_once_in_order)
     CHECK_INT(found[0] + found[1] + found[2], files);
     for (size_t i = 0; i < tl_plugin_record_count(); i++) {
         tl_plugin_record r = tl_plugin_record_at(i);
-        CHECK(r.plugin && !r.reason);
+        CHECK(r.plugin && !r.reason && !r.note);
         CHECK(strncmp(r.path, good_folder, strlen(good_folder)) == 0);
     }
     tl_plugins_load_default();
@@ -111,7 +111,26 @@ TEST(broken_plugins_are_refused_with_the_reason)
     refused(bad_folder, "outside", "law 'outside': parameter 'value' lies at bytes 0 to 8");
     refused(bad_folder, "no_unit", "law 'no_unit': parameter 'value' has no unit");
     refused(bad_folder, "twice", "law 'twice': parameters 'value' and 'value' share a name");
+    refused(
+        bad_folder, "many_states",
+        "law 'many_states': its states take 9 columns (a scalar 1, a tangent 3); 8 at the most");
+    refused(bad_folder, "only_unknown",
+            "it holds nothing of use: kind 1, 'only_unknown', is of the unknown type 23");
     refused(bad_folder, "snapped", "its descriptor has size 0: not a Talus plugin");
+}
+
+TEST(a_kind_of_unknown_type_is_left_out_and_the_others_are_used)
+{
+    char path[1024];
+    snprintf(path, sizeof path, "%s/crasher.so", bad_folder);
+    tl_error error = {TL_OK, ""};
+    if (!CHECK_INT(tl_plugin_load(path, &error), TL_OK))
+        printf("%s\n", error.text);
+    for (int type = TL_KIND_LAW; type <= TL_KIND_GENERATOR; type++)
+        CHECK(tl_plugin_find((tl_kind_type)type, "crasher") != NULL);
+    tl_plugin_record r = record_of(path);
+    CHECK(r.plugin && !r.reason && r.plugin->kind_count == 3);
+    CHECK_CONTAINS(r.note, "kind 2, 'crasher', is of the unknown type 17 and is left out");
 }
 
 TEST(dampings_that_could_not_ask_get_the_forces_of_the_step_before)
@@ -166,6 +185,7 @@ int main(void)
     RUN(the_same_file_again_is_a_duplicate);
     RUN(a_text_file_is_refused);
     RUN(refusals_leave_the_kinds_as_they_were);
+    RUN(a_kind_of_unknown_type_is_left_out_and_the_others_are_used);
     RUN(dampings_that_could_not_ask_get_the_forces_of_the_step_before);
     printf("%s: %d checks, %d failed\n", __FILE__, check_count, check_failed);
     return check_failed != 0;

@@ -113,6 +113,9 @@ typedef struct tl_param {
 
 /* ---------------------------------------------------------------- states ----------------- */
 
+/* Columns that the states of one law or damping may take: one for a scalar, three for a tangent. */
+#define TL_STATE_COLUMNS 8
+
 typedef enum tl_state_kind {
     TL_STATE_SCALAR, /* one column */
     TL_STATE_TANGENT /* three columns: a vector in the common plane, turned with it by the host */

@@ -77,6 +77,9 @@ TL_API const char *const *tl_function_names(void);
 TL_API void tl_plugins_load_default(void);
 /* Loads one shared object. */
 TL_API tl_status tl_plugin_load(const char *path, tl_error *error);
+/* From now on a crash inside a plugin names it on the standard error before the process ends by the same signal. For
+ * programs: it takes SIGSEGV, SIGBUS, SIGFPE, SIGILL and SIGABRT, which a library must leave to the program it is in. */
+TL_API void tl_plugin_name_crashes(void);
 /* The loaded kinds of one type, in the order loaded; index past the end gives NULL. */
 TL_API const tl_kind *tl_plugin_kind(tl_kind_type type, size_t index);
 /* The kind of that name, or NULL. */
@@ -86,9 +89,10 @@ typedef struct tl_plugin_record {
     const char *path;
     const tl_plugin *plugin; /* NULL when refused */
     const char *reason;      /* why it was refused, NULL when loaded */
+    const char *note;        /* what else there is to say of the file or folder, or NULL */
 } tl_plugin_record;
 
-/* What was loaded and what was refused, in the order tried. */
+/* What was loaded and what was refused, in the order tried; with neither plugin nor reason, a note on a folder. */
 TL_API size_t tl_plugin_record_count(void);
 TL_API tl_plugin_record tl_plugin_record_at(size_t index);
 
