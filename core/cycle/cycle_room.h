@@ -177,6 +177,20 @@ void tl_undo_end(tl_model *m);
 void tl_undo_by_hand(tl_model *m);
 size_t tl_undo_bytes(const struct tl_cycle *c);
 void tl_undo_free(struct tl_undo *undo);
+/* ---- law_check.c: a law that breaks the interface is a failure of the step, with the contact it did so in ---- */
+
+/* Component of a shear force along the normal, relative to the whole force of the point, and of all points of a contact
+ * before they are looked at one by one. The host's own reaches 4e-7 where normals change from point to point. */
+#define TL_OUT_OF_PLANE 1e-4
+
+/* Of the points of a rank, whose first is in lane `lane`: whether they are stiffer than the law says, those in the lanes of the
+ * mask `begins`, and whether shear forces leave the common plane. */
+void tl_law_check_stiffness(tl_model *m, const tl_material *law, const tl_rank *rank,
+                            const tl_point_lanes *lanes, size_t lane, unsigned begins);
+void tl_law_check_shear(tl_model *m, const tl_material *law, const tl_rank *rank,
+                        const tl_point_lanes *lanes, size_t lane);
+/* Of `count` points from row `first`: whether their states are numbers. */
+void tl_law_check_states(tl_model *m, const tl_material *law, size_t first, size_t count);
 /* Makes room for the reactions on bodies that are held; before the gather. false: out of memory. */
 bool tl_gather_prepare(tl_model *m);
 /* Each body gathers its contacts in fixed order, and its weight; sums for the convergence measures. */

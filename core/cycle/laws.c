@@ -6,6 +6,10 @@
 
 #include <string.h>
 
+/* Steps after which shear forces are looked at again for components along the normals: a law that has them has them all
+ * the time, and every step would cost 3 % of its instructions. */
+#define SHEAR_EVERY 8
+
 /* Ranks a worker takes at a time. */
 #define RANK_CHUNK 12
 
@@ -69,7 +73,8 @@ static bool call_law(const run_job *job, size_t first, size_t count, const tl_po
 typedef struct rank_sums {
     double force[3][TL_LANES], moment[3][TL_LANES], stored[TL_LANES], dissipated[TL_LANES];
     double across[TL_LANES]; /* above 0 when a force acts across a gap */
-    double odd[TL_LANES];    /* 0, or NaN when the force or moment is not finite */
+    double odd
+        [TL_LANES]; /* 0, NaN when the force or moment is not finite, 1 when shear forces may leave their planes */
 } rank_sums;
 
 /* Point after point: the same order for every width of the processor's vectors. */
@@ -101,11 +106,50 @@ TL_VECTORIZED static void sum_points(const tl_points_table *p, const tl_point_la
             s.stored[l] += stored[i];
             s.dissipated[l] += heat[i];
         }
-    for (int k = 0; k < 3; k++)
 #pragma omp simd
-        for (size_t l = 0; l < TL_LANES; l++)
-            s.odd[l] += 0 * s.force[k][l] + 0 * s.moment[k][l];
+    for (size_t l = 0; l < TL_LANES; l++) {
+        double moment = s.moment[0][l] + s.moment[1][l] + s.moment[2][l];
+        s.odd[l] = 0 * (s.force[0][l] + s.force[1][l] + s.force[2][l]) + 0 * moment;
+    }
     *out = s;
+}
+
+/* Adds 1 to what is odd of a contact whose shear forces may leave their planes. A loop of its own: sum_points has no
+ * register left. */
+TL_VECTORIZED static void sum_tilts(const tl_points_table *p, const tl_point_lanes *t, size_t row,
+                                    size_t lane, size_t slots, rank_sums *restrict out)
+{
+    const double *f_x = p->f_s[0] + row, *f_y = p->f_s[1] + row, *f_z = p->f_s[2] + row;
+    const double *n_x = t->normal[0] + lane, *n_y = t->normal[1] + lane, *n_z = t->normal[2] + lane;
+    double along[TL_LANES] = {0};
+    for (size_t at = 0; at < slots * TL_LANES; at += TL_LANES)
+#pragma omp simd
+        for (size_t l = 0; l < TL_LANES; l++) {
+            size_t i = at + l;
+            along[l] += fabs(f_x[i] * n_x[i] + f_y[i] * n_y[i] + f_z[i] * n_z[i]);
+        }
+#pragma omp simd
+    for (size_t l = 0; l < TL_LANES; l++) {
+        double force = fabs(out->force[0][l]) + fabs(out->force[1][l]) + fabs(out->force[2][l]);
+        out->odd[l] += along[l] > TL_OUT_OF_PLANE * force ? 1 : 0;
+    }
+}
+
+/* 0, or NaN when a state of the points is not finite. */
+TL_VECTORIZED static double odd_states(const tl_points_table *p, uint32_t columns, size_t first,
+                                       size_t count)
+{
+    double odd[TL_LANES] = {0}, sum = 0;
+    for (uint32_t c = 0; c < columns; c++) {
+        const double *state = p->state[c] + first;
+        for (size_t at = 0; at < count; at += TL_LANES)
+#pragma omp simd
+            for (size_t l = 0; l < TL_LANES; l++)
+                odd[l] += 0 * state[at + l];
+    }
+    for (size_t l = 0; l < TL_LANES; l++)
+        sum += odd[l];
+    return sum;
 }
 
 /* The couples on B by which the areas of contacts, where they depend on tilt, do work: what the springs gain or lose
@@ -137,23 +181,34 @@ static double across(const double *lane)
            ((lane[4] + lane[5]) + (lane[6] + lane[7]));
 }
 
-/* Names a contact of a rank whose force is no number. */
-static void report_odd(tl_model *m, const tl_rank *rank, const rank_sums *sum)
+/* Names what is wrong in a rank of which a sum is odd. */
+static void report_odd(const run_job *job, const tl_rank *rank, const rank_sums *sum,
+                       const tl_point_lanes *t, size_t lane)
 {
     for (size_t l = 0; l < TL_LANES; l++)
-        if (sum->odd[l] != 0 && rank->contact[l] != TL_NO_ROW)
-            tl_cycle_failed(m, rank->start, TL_E_NUMERIC, rank->start + l,
+        if (isnan(sum->odd[l]) && rank->contact[l] != TL_NO_ROW)
+            tl_cycle_failed(job->m, rank->start, TL_E_NUMERIC, rank->start + l,
                             "the force is not a finite number: is the time step too large, or a "
                             "property out of proportion?");
+    tl_law_check_shear(job->m, job->material, rank, t, lane);
+}
+
+static bool is_zero(tl_vec3 v)
+{
+    return v.x == 0 && v.y == 0 && v.z == 0;
 }
 
 /* Forces of the contacts of a rank, whose first point is in lane `lane`; `coupled`: areas may depend on tilt. */
-static void sum_rank(tl_model *m, const tl_rank *rank, const tl_point_lanes *t, size_t lane,
+static void sum_rank(const run_job *job, const tl_rank *rank, const tl_point_lanes *t, size_t lane,
                      bool coupled)
 {
+    tl_model *m = job->m;
     tl_contacts *contacts = &m->detect->contacts;
+    unsigned begins = 0; /* lanes of contacts that carried nothing in the step before */
     rank_sums sum;
     sum_points(&m->detect->points, t, rank->start, lane, rank->slots, &sum);
+    if (m->cycles % SHEAR_EVERY == 0)
+        sum_tilts(&m->detect->points, t, rank->start, lane, rank->slots, &sum);
     if (coupled)
         sum_couples(t, lane, rank->slots, &sum);
     tl_rank_energy energy = {0, 0};
@@ -164,11 +219,18 @@ static void sum_rank(tl_model *m, const tl_rank *rank, const tl_point_lanes *t, 
         energy.stored += sum.stored[l];
         energy.dissipated += sum.dissipated[l];
         contacts->across[c] = sum.across[l] > 0;
-        contacts->force[c] = tl_v3(sum.force[0][l], sum.force[1][l], sum.force[2][l]);
+        tl_vec3 force = tl_v3(sum.force[0][l], sum.force[1][l], sum.force[2][l]);
+        if (is_zero(contacts->force[c]) && !is_zero(force))
+            begins |= 1u << l;
+        contacts->force[c] = force;
         contacts->moment[c] = tl_v3(sum.moment[0][l], sum.moment[1][l], sum.moment[2][l]);
     }
     if (across(sum.odd) != 0)
-        report_odd(m, rank, &sum);
+        report_odd(job, rank, &sum, t, lane);
+    if (begins) {
+        tl_law_check_shear(m, job->material, rank, t, lane);
+        tl_law_check_stiffness(m, job->material, rank, t, lane, begins);
+    }
     m->cycle->rank_energy[rank - m->detect->layout.ranks] = energy;
 }
 
@@ -188,8 +250,10 @@ static void force_page(const run_job *job, const tl_rank *ranks, size_t count, s
     }
     if (!call_law(job, first, points, t))
         return;
+    if (odd_states(&job->m->detect->points, job->material->columns, first, points) != 0)
+        tl_law_check_states(job->m, job->material, first, points);
     for (size_t r = 0; r < count; r++)
-        sum_rank(job->m, &ranks[r], t, ranks[r].start - first, coupled[r]);
+        sum_rank(job, &ranks[r], t, ranks[r].start - first, coupled[r]);
 }
 
 /* Ranks in pages, as many as fit. */
@@ -231,10 +295,12 @@ static tl_status report_failure(tl_model *m)
         return TL_OK;
     char name[320];
     uint32_t c = contact_of_point(&m->detect->contacts, cycle->failure_point);
-    uint32_t material = m->detect->contacts.material[c];
+    const tl_kind *kind = m->materials[m->detect->contacts.material[c]].kind;
+    const tl_plugin *plugin = tl_plugin_of(kind, NULL);
     tl_contact_name(m, c, name, sizeof name);
-    tl_fail(&m->error, cycle->failure.status, "cycle %lld, law '%s', %s: %s",
-            (long long)m->cycles + 1, m->materials[material].kind->name, name, cycle->failure.text);
+    tl_fail(&m->error, cycle->failure.status, "cycle %lld, law '%s' of plugin '%s', %s: %s",
+            (long long)m->cycles + 1, kind->name, plugin ? plugin->id : "?", name,
+            cycle->failure.text);
     cycle->failure.status = TL_OK;
     return m->error.status;
 }

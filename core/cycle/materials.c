@@ -40,6 +40,15 @@ static tl_status make_material(tl_model *m, tl_tag tag, const char *joint, const
     tl_enter(kind, "stiffness");
     ops->stiffness(out->self, &out->kn, &out->ks);
     tl_leave();
+    if (!(out->kn >= 0 && out->ks >= 0 && isfinite(out->kn) && isfinite(out->ks))) {
+        const tl_plugin *plugin = tl_plugin_of(kind, NULL);
+        tl_fail(&m->error, TL_E_PLUGIN,
+                "%s of plugin '%s': its stiffness() gives kn = %g and ks = %g Pa/m; both must be "
+                "finite and >= 0",
+                context, plugin ? plugin->id : "?", out->kn, out->ks);
+        tl_material_clear(out);
+        return TL_E_PLUGIN;
+    }
     uint32_t column = 0;
     for (uint32_t k = 0; k < kind->state_count; k++) {
         bool tangent = tl_kind_state(kind, k)->kind == TL_STATE_TANGENT;

@@ -94,18 +94,14 @@ static double damping_factor(const tl_model *m)
     return factor;
 }
 
-/* A plugin's factor and stiffness are its word: refused when they cannot be. */
-static tl_status check_plugins(tl_model *m)
+/* A plugin's factor is its word: refused when it cannot be. */
+static tl_status check_factor(tl_model *m)
 {
     double factor = damping_factor(m);
     if (!(factor > 0 && factor <= 1))
         return tl_fail(&m->error, TL_E_PLUGIN,
                        "damping '%s' gives the step factor %g, which is outside (0, 1]",
                        m->damping->name, factor);
-    for (size_t i = 0; i < m->material_count; i++)
-        if (!isfinite(tl_law_stiffness(m, (uint32_t)i)))
-            return tl_fail(&m->error, TL_E_PLUGIN, "law '%s' gives a stiffness that is not finite",
-                           m->materials[i].kind->name);
     return TL_OK;
 }
 
@@ -159,7 +155,7 @@ static void remark_step(tl_model *m)
 static tl_status choose(tl_model *m, double *dt, bound *by)
 {
     struct tl_cycle *c = m->cycle;
-    tl_status status = check_plugins(m);
+    tl_status status = check_factor(m);
     if (status != TL_OK)
         return status;
     tl_rates_count(m);

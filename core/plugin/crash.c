@@ -9,8 +9,9 @@
 #include "base/inside.h"
 
 #include <errno.h>
+#include <limits.h>
 #include <signal.h>
-#include <string.h>
+#include <stddef.h>
 #include <unistd.h>
 
 typedef struct fault {
@@ -25,36 +26,46 @@ static fault faults[] = {{.signal = SIGSEGV, .name = "SIGSEGV, memory that is no
                          {.signal = SIGILL, .name = "SIGILL, an instruction that does not exist"},
                          {.signal = SIGABRT, .name = "SIGABRT, abort() or a failed assertion"}};
 
-static void say(const char *text)
+/* A sentence that is put together without the C library's help, and said at once: several threads may crash. */
+typedef struct sentence {
+    char text[PATH_MAX + 512];
+    size_t length;
+} sentence;
+
+static void add(sentence *s, const char *text)
 {
-    /* to a closed standard error nothing can be said */
-    if (write(STDERR_FILENO, text, strlen(text)) < 0)
-        return;
+    for (; text && *text && s->length < sizeof s->text; text++)
+        s->text[s->length++] = *text;
 }
 
 static void name_plugin(const tl_inside *inside, const char *signal)
 {
+    sentence s = {.length = 0};
     const char *path = inside->path;
-    say("talus: ");
+    add(&s, "talus: ");
     if (inside->kind) {
-        const tl_plugin *plugin = tl_registry_owner(inside->kind, &path);
-        say(tl_kind_type_name(inside->kind->type));
-        say(" '");
-        say(inside->kind->name);
-        say("' of plugin '");
-        say(plugin ? plugin->id : "?");
-        say("' (");
-        say(path ? path : "?");
-        say(")");
+        const tl_plugin *plugin = tl_plugin_of(inside->kind, &path);
+        add(&s, tl_kind_type_name(inside->kind->type));
+        add(&s, " '");
+        add(&s, inside->kind->name);
+        add(&s, "' of ");
+        add(&s, plugin ? "plugin '" : "a plugin");
+        add(&s, plugin ? plugin->id : "");
+        add(&s, plugin ? "' (" : " (");
+        add(&s, path);
+        add(&s, ")");
     } else {
-        say("plugin ");
-        say(path);
+        add(&s, "plugin ");
+        add(&s, path);
     }
-    say(" crashed in its function '");
-    say(inside->function);
-    say("', or in what that called: ");
-    say(signal);
-    say("\n");
+    add(&s, " crashed in its function '");
+    add(&s, inside->function);
+    add(&s, "', or in what that called: ");
+    add(&s, signal);
+    add(&s, "\n");
+    /* to a closed standard error nothing can be said */
+    ssize_t written = write(STDERR_FILENO, s.text, s.length);
+    (void)written;
 }
 
 static void on_crash(int signal, siginfo_t *info, void *context)

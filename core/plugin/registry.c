@@ -80,13 +80,14 @@ static const record *provider(uint32_t type, const char *name, const tl_kind **k
     return NULL;
 }
 
-const tl_plugin *tl_registry_owner(const tl_kind *kind, const char **path)
+const tl_plugin *tl_plugin_of(const tl_kind *kind, const char **path)
 {
     for (const record *r = first_record(); r; r = next_record(r)) {
         const tl_plugin *plugin = r->plugin;
         for (uint32_t k = 0; plugin && k < plugin->kind_count; k++) {
             if (&plugin->kinds[k] == kind) {
-                *path = r->path;
+                if (path)
+                    *path = r->path;
                 return plugin;
             }
         }

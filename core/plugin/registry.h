@@ -34,8 +34,6 @@ tl_status tl_registry_add(const char *path, tl_plugin *plugin, const char *note,
 void tl_registry_refused(const char *path, const char *reason);
 /* Keeps a remark on a folder. */
 void tl_registry_noted(const char *path, const char *note);
-/* The plugin that a kind is of and its path, or NULL; takes no lock. */
-const tl_plugin *tl_registry_owner(const tl_kind *kind, const char **path);
 
 /* ---- trust.c ---- */
 

@@ -27,7 +27,8 @@ PUBLIC = {
     "elementary.h": set(),
     "vmath.h": {"elementary.h", "types.h"},
     "plugin.h": {"types.h"},
-    "talus.h": {"types.h", "plugin.h"},
+    "plugins.h": {"types.h", "plugin.h"},
+    "talus.h": {"types.h", "plugin.h", "plugins.h"},
 }
 PLUGIN_HEADERS = {"talus/types.h", "talus/elementary.h", "talus/vmath.h", "talus/plugin.h"}
 # What a plugin may include besides: the headers of standard C.

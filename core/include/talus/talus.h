@@ -12,13 +12,12 @@
 
 #include <stdbool.h>
 #include <talus/plugin.h>
+#include <talus/plugins.h>
 #include <talus/types.h>
 
 #ifdef __cplusplus
 extern "C" {
 #endif
-
-#define TL_API __attribute__((visibility("default")))
 
 #define TALUS_VERSION "0.1.0"
 
@@ -69,32 +68,6 @@ TL_API const char *tl_nearest_name(const char *word, const char *const *names, s
 TL_API const tl_param *tl_function_params(const char *function, size_t *count, const char **doc);
 /* The names of those functions, NULL terminated, in the order of the reference. */
 TL_API const char *const *tl_function_names(void);
-
-/* ---------------------------------------------------------------- plugins ---------------- */
-
-/* Loads the plugins found in TALUS_PLUGIN_PATH, beside the library and in the installed place.
- * Done once a process; later calls do nothing. Refused files are kept with their reasons. */
-TL_API void tl_plugins_load_default(void);
-/* Loads one shared object. */
-TL_API tl_status tl_plugin_load(const char *path, tl_error *error);
-/* From now on a crash inside a plugin names it on the standard error before the process ends by the same signal. For
- * programs: it takes SIGSEGV, SIGBUS, SIGFPE, SIGILL and SIGABRT, which a library must leave to the program it is in. */
-TL_API void tl_plugin_name_crashes(void);
-/* The loaded kinds of one type, in the order loaded; index past the end gives NULL. */
-TL_API const tl_kind *tl_plugin_kind(tl_kind_type type, size_t index);
-/* The kind of that name, or NULL. */
-TL_API const tl_kind *tl_plugin_find(tl_kind_type type, const char *name);
-
-typedef struct tl_plugin_record {
-    const char *path;
-    const tl_plugin *plugin; /* NULL when refused */
-    const char *reason;      /* why it was refused, NULL when loaded */
-    const char *note;        /* what else there is to say of the file or folder, or NULL */
-} tl_plugin_record;
-
-/* What was loaded and what was refused, in the order tried; with neither plugin nor reason, a note on a folder. */
-TL_API size_t tl_plugin_record_count(void);
-TL_API tl_plugin_record tl_plugin_record_at(size_t index);
 
 /* ---------------------------------------------------------------- model ------------------ */
 

@@ -1,0 +1,114 @@
+-- Laws that break the plugin interface: each is found and named, with joint, blocks and cycle; laws that do not pass.
+-- program only
+local talus = require "talus"
+local check = require "check"
+
+local bad = os.getenv("TALUS_BAD_PLUGIN_DIR") .. "/liar.so"
+local program = os.getenv("TALUS_PROGRAM")
+
+-- The program runs this file once more for each lie, with the plugin, and then with the arguments that `scenes` takes.
+if not arg[1] then
+    local function said(words, threads)
+        local pipe = io.popen(string.format("'%s' --quiet --threads %d --plugin '%s' '%s' %s 2>&1", program, threads, bad,
+            arg[0], words))
+        local text = pipe:read("a")
+        return pipe:close() or false, text
+    end
+    local function refused(words, ...)
+        local _, first = said(words, 1)
+        for _, part in ipairs { ... } do
+            check.holds(first:find(part, 1, true), words .. ": '" .. part .. "' in: " .. first)
+        end
+        local good, text = said(words, 3)
+        check.equal(good, false)
+        check.equal(text, first) -- the same contact, on any number of threads
+    end
+    local function passes(words)
+        local good, text = said(words, 2)
+        check.holds(good, words .. ": " .. text)
+    end
+
+    -- What is static is refused where the joint gets the law.
+    local stiffness = "joint 'J1', law 'liar' of plugin 'bad.liar': its stiffness() gives kn = "
+    refused("slide negative", stiffness .. "1e+08 and ks = -1e+08 Pa/m; both must be finite and >= 0")
+    refused("slide not_a_number", stiffness .. "nan and")
+    refused("slide infinite", stiffness .. "inf and")
+
+    -- The rest by the step; the blocks are those of the joint J1, 2 and 3.
+    local where = "law 'liar' of plugin 'bad.liar', contact of blocks 2 and 3, joint J1:1: "
+    refused("slide state", "cycle 3, " .. where .. "it leaves nan in its state 'wear', which must be a finite number")
+    for _, scale in ipairs { 1, 1e-3, 1e3 } do -- the same model in other units of length
+        refused("slide tilted 1 " .. scale, where .. "its shear force of ", " N along the normal", "common plane")
+        refused("slide weak 100 " .. scale, where, " force rises by ", "Pa/m here", "upper bounds")
+        refused("slide weak 20 " .. scale, where, " force rises by ", "Pa/m here")
+        refused("slide weak_shear 50 " .. scale, where .. "its shear force rises by ")
+        for _, scene in ipairs { "slide", "tumble" } do
+            passes(scene .. " none 1 " .. scale)
+            passes(scene .. " weak 5 " .. scale)
+            passes(scene .. " rounding " .. scale .. " " .. scale) -- a share of the size
+        end
+    end
+    refused("tumble weak 1e4", "law 'liar' of plugin 'bad.liar', contact of blocks ", "force rises by ")
+    passes("in_situ none")
+    return
+end
+
+-- ---------------------------------------------------------------- scenes
+
+local lie, factor, scale = arg[2], tonumber(arg[3] or "100"), tonumber(arg[4] or "1")
+local scenes = {}
+
+local function scaled(x, y, z)
+    return { x * scale, y * scale, z * scale }
+end
+
+-- kn in Pa/m: the same motion when lengths are in other units needs stiffness per area to go with the density, which
+-- stays, and gravity, which is scaled.
+local function model_of(gravity)
+    return talus.model { gravity = scaled(table.unpack(gravity)) }
+end
+
+-- A block on a floor, cut by J1, whose upper part slides.
+function scenes.slide()
+    local model = model_of { 0, 0, -10 }
+    model:generate("box", { min = scaled(5, 1, 0), max = scaled(6, 2, 2), density = 2500, group = "rock" })
+    model:generate("joint", { joint = "J1", dip = 20, dip_direction = 90, origin = scaled(5.5, 1.5, 1) })
+    for i = 0, 2 do
+        model:generate("box", { min = scaled(4 * i, 0, -1), max = scaled(4 * i + 4, 4, 0), density = 2500, group = "floor" })
+    end
+    model:blocks { group = "floor" }:fix()
+    model:joint("*", "coulomb", { kn = 1e8 * scale, ks = 1e8 * scale, friction = 40 })
+    model:joint("J1", "liar", { lie = lie, factor = factor, kn = 1e8 * scale })
+    model:cycle(200)
+end
+
+-- Blocks that fall on their corners and turn.
+function scenes.tumble()
+    local model = model_of { 0, 0, -10 }
+    model:generate("box", { min = scaled(-4, -4, -1), max = scaled(8, 4, 0), density = 2500, group = "floor" })
+    model:blocks { group = "floor" }:fix()
+    for i = 0, 3 do
+        model:generate("polyhedron", { density = 2500, group = "rock", vertices = {
+            scaled(2 * i, 0, 0.02), scaled(2 * i + 1, 0.1, 0.2), scaled(2 * i, 1, 0.3), scaled(2 * i + 0.1, 0, 1),
+            scaled(2 * i + 0.9, 0.8, 0.9) } })
+    end
+    model:blocks { group = "rock" }:set { angular_velocity = { 1, 2, 0.5 } }
+    model:joint("*", "liar", { lie = lie, factor = factor, kn = 1e8 * scale })
+    model:damping "local"
+    model:cycle(400)
+end
+
+-- A large initial force at closures that are rounding.
+function scenes.in_situ()
+    local model = model_of { 0, 0, -10 }
+    model:generate("box", { min = { 0, 0, 0 }, max = { 3, 3, 3 }, density = 2500, group = "rock" })
+    for i, set in ipairs { { 65, 33 }, { 50, 160 }, { 12, 290 } } do
+        model:generate("jointset", { joint = "J" .. i, dip = set[1], dip_direction = set[2], spacing = 0.7, number = 4,
+            origin = { 1.5, 1.5, 1.5 } })
+    end
+    model:joint("*", "liar", { lie = lie, kn = 1e8 })
+    model:insitu { stress = { xx = -1e6, yy = -1e6, zz = -1e6 } }
+    model:cycle(1)
+end
+
+scenes[arg[1]]()
