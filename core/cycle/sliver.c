@@ -81,7 +81,7 @@ typedef struct slimness {
 
 static slimness compare(const body_shape *sliver, const body_shape *rest)
 {
-    return (slimness){cbrt(rest->volume / sliver->volume), sliver->aspect / rest->aspect};
+    return (slimness){tl_cbrt(rest->volume / sliver->volume), sliver->aspect / rest->aspect};
 }
 
 static void say(tl_model *m, const ranking *r, const body_shape *sliver, const body_shape *rest)
