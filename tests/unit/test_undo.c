@@ -185,6 +185,40 @@ TEST(a_force_beyond_all_numbers_is_undone)
     }
 }
 
+/* A step that is too long, step by step, until a block would be flung: cured by a shorter one. */
+TEST(a_step_that_would_fling_a_block_is_undone)
+{
+    const tl_timestep longer = {.fraction = 0.1, .dt = 2e-2},
+                      shorter = {.fraction = 0.1, .dt = 1e-4};
+    int64_t made = 0;
+    tl_model *m[2];
+    for (int k = 0; k < 2; k++) {
+        char before[33], after[33];
+        tl_solve_result result;
+        m[k] = scene(2, 5, "elastic", NULL);
+        run(m[k], STEPS);
+        scene_ok(m[k], tl_model_timestep(m[k], &longer));
+        tl_status status = TL_OK;
+        if (k == 1)
+            run(m[k], made);
+        while (k == 0 && status == TL_OK && made < 1000) {
+            hash_of(m[k], before);
+            status = tl_model_cycle(m[k], 1, &result);
+            made += status == TL_OK;
+        }
+        if (k == 0) {
+            hash_of(m[k], after);
+            CHECK_INT(status, TL_E_NUMERIC);
+            CHECK_CONTAINS(tl_model_error(m[k])->text, "times its diameter");
+            CHECK_TEXT(after, before);
+        }
+        scene_ok(m[k], tl_model_timestep(m[k], &shorter));
+        run(m[k], AFTER);
+    }
+    CHECK(made > 0);
+    same(m[0], m[1]);
+}
+
 TEST(nothing_goes_on_from_a_step_that_cannot_be_undone)
 {
     tl_solve_result result;
@@ -219,6 +253,6 @@ TEST(laws_that_never_fail_need_no_memory_for_it)
 }
 
 TEST_MAIN(RUN(a_step_that_a_law_fails_is_undone), RUN(a_step_that_the_damping_fails_is_undone),
-          RUN(a_force_beyond_all_numbers_is_undone),
+          RUN(a_force_beyond_all_numbers_is_undone), RUN(a_step_that_would_fling_a_block_is_undone),
           RUN(nothing_goes_on_from_a_step_that_cannot_be_undone),
           RUN(laws_that_never_fail_need_no_memory_for_it))
