@@ -127,9 +127,6 @@ static tl_status no_step(tl_model *m, double dt)
         dt, way_out);
 }
 
-/* The step; 0 where there is no body that can move or does. A report asks `by` what controls it, and leaves the scale of the
- * inertia alone. */
-
 /* Says so when the step that was given is far above the longest that is stable whatever the rule: that of the body which is the
  * fastest now. All are looked at when there are more contacts than ever, and now and then: an impact lasts one such step. */
 static void remark_step(tl_model *m)
@@ -151,7 +148,8 @@ static void remark_step(tl_model *m)
                  m->timestep.dt, m->timestep.dt / stable, stable, m->bodies.id[fastest.row]);
 }
 
-/* The step. A report asks `by` what controls it, and leaves the scale of the inertia alone. */
+/* The step; 0 where there is no body that can move or does. A report asks `by` what controls it, and leaves the scale of the
+ * inertia alone. */
 static tl_status choose(tl_model *m, double *dt, bound *by)
 {
     struct tl_cycle *c = m->cycle;

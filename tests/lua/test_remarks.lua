@@ -59,14 +59,14 @@ check.equal(count, 3)
 is_silent("stack():blocks { group = 'cub' }:show():unjoin():reset_displacement()")
 
 -- A time step that is far too long, given before the run or after some of it; of blocks that meet later, too.
-says("local m = stack() m:timestep { dt = 0.05 } m:cycle(3) m:cycle(3)", "dt = 0.05 s is", "times the longest stable step",
+says("local m = stack() m:timestep { dt = 0.005 } m:cycle(1) m:cycle(1)", "dt = 0.005 s is", "times the longest stable step",
     "which block 2 sets", "leave dt out")
 says("local m = stack() m:cycle(9) m:timestep { dt = 0.05 } m:cycle(1)", "dt = 0.05 s")
 says("local m = stack() m:timestep { rule = 'paper', dt = 0.05 } m:cycle(1)", "dt = 0.05 s")
 says([[local m = stack() m:blocks { group = "slab" }:delete()
 m:generate("box", { min = { 0, 0, -2 }, max = { 1, 1, -1.2 }, density = 2700 })
 m:blocks { below = { dip = 0, dip_direction = 0, origin = { 0, 0, -1 } } }:fix()
-m:joint("*", { kn = 1e11, ks = 1e11 }) m:timestep { dt = 0.005 } m:cycle(600)]], "dt = 0.005 s")
+m:joint("*", { kn = 1e11, ks = 1e11 }) m:timestep { dt = 0.005 } pcall(m.cycle, m, 600)]], "dt = 0.005 s")
 is_silent("local m = stack() m:timestep { dt = 1.5 * m.dt } m:cycle(200)")
 is_silent("local m = stack() m:blocks():fix() m:timestep { dt = 1 } m:cycle(2)")
 

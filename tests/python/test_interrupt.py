@@ -6,7 +6,6 @@ import glob
 import os
 import random
 import re
-import select
 import signal
 import subprocess
 import sys
@@ -15,7 +14,6 @@ import time
 
 PROGRAM = os.environ["TALUS_PROGRAM"]
 STOCK = os.environ.get("TALUS_STOCK_LUA", "")
-LIMIT = 100  # s: longer than anything here takes on a machine under load
 FAULTS = []
 
 HEAD = """
@@ -104,11 +102,11 @@ def check_endless(draw):
             write(folder, script)
             process = start([PROGRAM, "script.lua"], folder)
             if not wait_for(process, "ready"):
-                fault(what, "did not begin", process.communicate(timeout=LIMIT))
+                fault(what, "did not begin", process.communicate())
                 continue
             time.sleep(draw.uniform(0, 0.2))
             process.send_signal(signal.SIGINT)
-            _, errors = process.communicate(timeout=LIMIT)
+            _, errors = process.communicate()
             if process.returncode != 130 or not re.fullmatch(
                     r"talus: script\.lua:\d+: [^\n]*stopped by Ctrl-C[^\n]*\n", errors):
                 fault(what, process.returncode, errors)
@@ -137,7 +135,7 @@ local function cut(model, i)
     return model:generate("jointset", { joint = "J" .. i, dip = 30 * i, dip_direction = 70 * i, spacing = 0.2,
         number = 60, origin = { 4, 4, 4 } })
 end
-local function attempt(until_stopped)
+local function attempt()
     base = talus.model {}
     base:generate("box", { min = { 0, 0, 0 }, max = { 8, 8, 8 }, density = 2500 })
     after = base:state_hash()
@@ -146,13 +144,10 @@ local function attempt(until_stopped)
         cut(base, i)
         after = base:state_hash()
     end
-    while until_stopped do end
+    while true do end
 end
-local clock = os.clock()
-attempt(false)
-say(tostring(os.clock() - clock))
 for k = 1, 10 do
-    local message = catch(function() attempt(true) end)
+    local message = catch(function() attempt() end)
     if message:find("the model is as it was", 1, true) then
         assert(message:find("generator 'jointset'", 1, true) and base:state_hash() == after, message)
         cut(base, 1) -- the model goes on
@@ -168,17 +163,14 @@ def check_caught(draw):
     with tempfile.TemporaryDirectory() as folder:
         write(folder, CAUGHT)
         process = start([PROGRAM, "script.lua"], folder)
-        good, longest = True, 0.1
-        for k in range(20):
-            if k == 10:
-                good = good and wait_for(process, "ready")
-                longest = float(process.stdout.readline() or 0)
+        good = True
+        for _ in range(20):
             good = good and wait_for(process, "ready")
-            time.sleep(draw.uniform(0, longest))
+            time.sleep(draw.uniform(0, 0.3))
             process.send_signal(signal.SIGINT)
             good = good and wait_for(process, "caught")
         good = good and wait_for(process, "good")
-        _, errors = process.communicate(timeout=LIMIT)
+        _, errors = process.communicate()
         if not good or process.returncode != 0 or errors:
             fault("caught", process.returncode, errors)
 
@@ -190,11 +182,9 @@ def end_twice(wait):
         process = start([PROGRAM, "script.lua"], folder, stdin=subprocess.PIPE)
         wait_for(process, "ready")
         time.sleep(wait)
-        begun = time.monotonic()
-        while process.poll() is None and time.monotonic() < begun + LIMIT:
+        while process.poll() is None:
             process.send_signal(signal.SIGINT)
             time.sleep(0.02)
-        process.kill()
         process.communicate()
         return process.returncode
 
@@ -217,7 +207,7 @@ def check_rethrown():
             process = start([PROGRAM, "script.lua"], folder)
             wait_for(process, "ready")
             process.send_signal(signal.SIGINT)
-            process.communicate(timeout=LIMIT)
+            process.communicate()
             if process.returncode != status:
                 fault("rethrown", last, process.returncode)
 
@@ -234,13 +224,11 @@ class Prompt:
 
     def read_to(self, end):
         """Takes what comes, up to the text `end`."""
-        begun = time.monotonic()
-        while end not in self.seen and time.monotonic() < begun + LIMIT:
-            if select.select([self.terminal], [], [], 1)[0]:
-                try:
-                    self.seen += os.read(self.terminal, 4096).decode()
-                except OSError:
-                    break
+        while end not in self.seen:
+            try:
+                self.seen += os.read(self.terminal, 4096).decode()
+            except OSError:
+                break
         if end not in self.seen:
             fault("prompt", "no", end, "in", self.seen)
         before, _, self.seen = self.seen.partition(end)
@@ -310,7 +298,7 @@ def check_stock(draw):
             wait_for(process, "ready")
             time.sleep(draw.uniform(0, 0.2))
             process.send_signal(signal.SIGINT)
-            _, errors = process.communicate(timeout=LIMIT)
+            _, errors = process.communicate()
             if process.returncode != 1 or not re.search(sentence, errors):
                 fault("stock, " + what, process.returncode, errors)
     with tempfile.TemporaryDirectory() as folder:
@@ -331,7 +319,7 @@ while true do end
             wait_for(process, "ready")
             time.sleep(0.2 if k < 3 else 0)  # a moment later it is in the run
             process.send_signal(signal.SIGINT)
-        _, errors = process.communicate(timeout=LIMIT)
+        _, errors = process.communicate()
         if process.returncode != 1 or "interrupted!" not in errors:
             fault("stock, its own handler", process.returncode, errors)
 
