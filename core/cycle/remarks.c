@@ -133,7 +133,7 @@ void tl_remark_friction(tl_model *m, const char *joint, const tl_material *law)
                          "joint '%s', law '%s': friction = %g deg is nearly none: it is an angle "
                          "in degrees; a "
                          "coefficient of %g is %.3g deg, and %g rad are %.3g deg",
-                         joint, law->kind->name, value, value, atan(value) * 180 / TL_PI, value,
-                         value * 180 / TL_PI);
+                         joint, law->kind->name, value, value, tl_atan2(value, 1) * 180 / TL_PI,
+                         value, value * 180 / TL_PI);
     }
 }

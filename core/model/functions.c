@@ -78,10 +78,11 @@ static const tl_param tensor_params[] = {
 };
 
 static const tl_param timestep_params[] = {
-    TL_PARAM(TL_PARAM_REAL, tl_timestep, fraction, "",
-             "share of the critical step that is used, FRAC of (27); when left out 0.5, by the rule "
-             "paper 0.1",
-             .min = 0.0, .max = TL_FRACTION_MOST, .flags = TL_PARAM_OPTIONAL | TL_PARAM_MIN_OPEN),
+    TL_PARAM(
+        TL_PARAM_REAL, tl_timestep, fraction, "",
+        "share of the critical step that is used, FRAC of (27); when left out 0.5, by the rule "
+        "paper 0.1",
+        .min = 0.0, .max = TL_FRACTION_MOST, .flags = TL_PARAM_OPTIONAL | TL_PARAM_MIN_OPEN),
     TL_PARAM(TL_PARAM_ENUM, tl_timestep, rule, "",
              "critical step from the lightest block and the stiffest contact (paper), or from "
              "each body's own mass and stiffness (body)",

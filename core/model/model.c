@@ -177,7 +177,8 @@ tl_status tl_model_set_gravity(tl_model *m, tl_vec3 gravity)
                        gravity.z);
     m->config.gravity = gravity;
     m->remarked = 0;
-    if (gravity.z > sqrt(gravity.x * gravity.x + gravity.y * gravity.y) && tl_model_says(m, TL_REMARK_GRAVITY))
+    if (gravity.z > sqrt(gravity.x * gravity.x + gravity.y * gravity.y) &&
+        tl_model_says(m, TL_REMARK_GRAVITY))
         tl_model_say(m,
                      "gravity = {%g, %g, %g} points upward, for z is up: blocks will fall to the "
                      "sky; give {%g, %g, %g} for "

@@ -26,11 +26,9 @@ end
 
 local found = {} -- {name, hash}, in the order of the scenes
 for _, scene in ipairs(scenes) do
-    local begun = os.clock()
     scene.run(function(model, stage)
         found[#found + 1] = { scene.name .. ": " .. stage, model:state_hash() }
     end, folder)
-    print(string.format("%-20s %.2f s", scene.name, os.clock() - begun))
 end
 
 if arg[1] == "--renew" then

@@ -123,7 +123,7 @@ static void law_fails(int64_t threads, int64_t steps, const char *damping, doubl
         run(m[k], steps);
         scene_ok(m[k], set_law(m[k], NULL, truth("fails", 1), number("beyond", 1e-7)));
         if (k == 0)
-            fail(m[k], "law 'failing', contact of blocks");
+            fail(m[k], "law 'failing' of plugin 'bad.failing', contact of blocks");
         scene_ok(m[k], set_law(m[k], NULL, truth("fails", 0), number("kn", kn)));
         run(m[k], AFTER);
     }
