@@ -140,14 +140,13 @@ function common.rock(seed, falls)
     return model
 end
 
--- How far apart, m, blocks may be whose contact presses: areas are reused for so much motion (REUSE), ...
+-- How far apart blocks may be whose contact presses: areas are reused for so much motion, m (REUSE), ...
 local REUSED = 2e-6
--- ... and the common polygon of two tilted faces is exact to their overlap times the sine of their tilt, 15 degrees at
--- the most.
-local TILTED = 0.26
+-- ... and a patch is what two faces have in common in projection. At an acute edge that overlaps by o, blocks may be o
+-- apart beside it.
 -- A contact's overlap is measured along a wall that may not be the nearest one: from how many times the true one on, and
--- how much more in metres, it is false.
-local TIMES, MORE = 10, 1e-3
+-- how much more relative to the smaller block's size, it is false (BESIDE).
+local TIMES, MORE = 10, 0.002
 
 -- Contacts that press although their blocks have no common volume, and those with a false overlap; a sentence on
 -- the first.
@@ -160,8 +159,9 @@ function common.false_contacts(model)
             shapes[a.id] = shapes[a.id] or shape(a)
             shapes[b.id] = shapes[b.id] or shape(b)
             local depth = -separation(shapes[a.id], shapes[b.id])
-            local presses = contact.normal_force > 0 and -depth > REUSED + TILTED * overlap
-            if presses or overlap > TIMES * math.max(depth, 0) + MORE then
+            local presses = contact.normal_force > 0 and -depth > REUSED + overlap
+            local size = math.min(a.volume, b.volume) ^ (1 / 3)
+            if presses or overlap > TIMES * math.max(depth, 0) + MORE * size then
                 count = count + 1
                 first = first or string.format("blocks %d and %d, overlap %g m, in truth %g m, force %g N", a.id, b.id,
                     overlap, depth, contact.normal_force)
