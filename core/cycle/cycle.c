@@ -17,6 +17,8 @@
  * in fixed chunks, so the bits do not depend on the number of threads. */
 #include "cycle/cycle_room.h"
 
+#include "detect/held.h"
+
 #include <stdlib.h>
 
 static void cycle_destroy(struct tl_cycle *cycle)
@@ -144,6 +146,7 @@ tl_status tl_step(tl_model *m)
             m->cycle->dt = in_use;
         return status;
     }
+    tl_held_followed(m);
     tl_move(m, dt);
     tl_phase_ends(m, TL_PHASE_MOVE);
     tl_energy_close(m);

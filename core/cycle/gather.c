@@ -65,7 +65,10 @@ static void gather_range(void *user, size_t begin, size_t end, size_t chunk, uns
     bool totals = m->damping && ((const tl_damping_ops *)m->damping->ops)->begin;
     double gravity = tl_v3_norm(m->config.gravity);
     tl_sums sums = {0};
+    const uint8_t *idle = m->detect->any_idle ? m->detect->idle : NULL;
     for (uint32_t body = (uint32_t)begin; body < end; body++) {
+        if (idle && idle[body])
+            continue;
         gather_body(m, body);
         if (b->fixed[body] == TL_FIX_ALL)
             continue;

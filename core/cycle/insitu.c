@@ -5,6 +5,8 @@
  * Edge and point contacts begin without force, and so do contacts made later, and faces with rock between them. */
 #include "cycle/cycle_room.h"
 
+#include "detect/held.h"
+
 /* A traction below this share of the largest stress given is none. */
 #define NO_TRACTION 1e-9
 /* A mean tension on a contact below this share of the largest stress on any is none: at a free surface the stress of a gradient
@@ -231,6 +233,7 @@ tl_status tl_model_insitu(tl_model *m, const tl_insitu *insitu)
     for (uint32_t i = 0; i < c->table.rows; i++)
         load_contact(m, insitu, i);
     tl_undo_by_hand(m);
+    tl_held_wake(m);
     say_outer(m, &outer);
     say_tension(m, insitu);
     return TL_OK;

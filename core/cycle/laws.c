@@ -4,6 +4,9 @@
  * motion are in the thread's lanes, which stay in the nearest cache from one end to the other. */
 #include "cycle/cycle_room.h"
 
+#include "detect/held.h"
+
+#include <stdatomic.h>
 #include <string.h>
 
 /* Steps after which shear forces are looked at again for components along the normals: a law that has them has them all
@@ -17,6 +20,8 @@ typedef struct run_job {
     tl_model *m;
     const tl_material *material;
     const tl_run *run;
+    /* of a run of bodies held still: some of it is not what it was; else NULL */
+    atomic_bool *changed;
 } run_job;
 
 static uint32_t contact_of_point(const tl_contacts *contacts, size_t point)
@@ -234,6 +239,45 @@ static void sum_rank(const run_job *job, const tl_rank *rank, const tl_point_lan
     m->cycle->rank_energy[rank - m->detect->layout.ranks] = energy;
 }
 
+/* ---------------------------------------------------------------- rest ------------------- */
+
+/* Forces and states of points, column by column; NULL beyond the last. */
+static double *carried(const tl_points_table *p, size_t k)
+{
+    if (k == 0)
+        return p->f_n;
+    if (k < 4)
+        return p->f_s[k - 1];
+    return k - 4 < p->state_columns ? p->state[k - 4] : NULL;
+}
+
+/* Notes what the points of a page carry before they are followed. */
+static void note_points(const tl_points_table *p, size_t first, size_t count,
+                        const tl_point_lanes *t)
+{
+    for (size_t k = 0; k < 4 + TL_STATE_COLUMNS && carried(p, k); k++)
+        memcpy(t->before[k], carried(p, k) + first, count * sizeof *t->before[k]);
+    memcpy(t->flags_before, p->flags + first, count * sizeof *t->flags_before);
+}
+
+/* Whether they carry the same after their law, to the bit, and it turned nothing to heat. */
+static bool as_noted(const tl_points_table *p, size_t first, size_t count, const tl_point_lanes *t)
+{
+    bool same = memcmp(t->flags_before, p->flags + first, count * sizeof *t->flags_before) == 0;
+    for (size_t k = 0; same && k < 4 + TL_STATE_COLUMNS && carried(p, k); k++)
+        same = memcmp(t->before[k], carried(p, k) + first, count * sizeof *t->before[k]) == 0;
+    for (size_t i = 0; same && i < count; i++)
+        same = t->dissipated[i] == 0;
+    return same;
+}
+
+/* ---------------------------------------------------------------- pages ------------------ */
+
+static size_t page_points(const tl_rank *ranks, size_t count)
+{
+    return ranks[count - 1].start + (size_t)ranks[count - 1].slots * TL_LANES - ranks->start;
+}
+
 /* From the places of the bodies to the forces of the contacts of some ranks, which follow each other. `soon`: how many
  * come next, for which the memory is asked on the way. */
 static void force_page(const run_job *job, const tl_rank *ranks, size_t count, size_t soon,
@@ -242,6 +286,8 @@ static void force_page(const run_job *job, const tl_rank *ranks, size_t count, s
     size_t first = ranks->start, points = 0;
     bool coupled[RANK_CHUNK];
     tl_undo_keep_ranks(job->m, ranks, count);
+    if (job->changed)
+        note_points(&job->m->detect->points, first, page_points(ranks, count), t);
     for (size_t r = 0; r < count; r++) {
         if (r < soon)
             tl_rank_expect(job->m, &ranks[count + r]);
@@ -254,6 +300,8 @@ static void force_page(const run_job *job, const tl_rank *ranks, size_t count, s
         tl_law_check_states(job->m, job->material, first, points);
     for (size_t r = 0; r < count; r++)
         sum_rank(job, &ranks[r], t, ranks[r].start - first, coupled[r]);
+    if (job->changed && !as_noted(&job->m->detect->points, first, points, t))
+        atomic_store_explicit(job->changed, true, memory_order_relaxed);
 }
 
 /* Ranks in pages, as many as fit. */
@@ -317,11 +365,13 @@ tl_status tl_laws_apply(tl_model *m)
 {
     tl_detect *d = m->detect;
     for (size_t r = 0; r < d->layout.run_count; r++) {
-        const tl_run *run = &d->layout.runs[r];
-        if (run->material == TL_NO_ROW)
+        tl_run *run = &d->layout.runs[r];
+        if (run->material == TL_NO_ROW || tl_run_rests(m, run))
             continue;
-        run_job job = {m, &m->materials[run->material], run};
+        atomic_bool changed = false;
+        run_job job = {m, &m->materials[run->material], run, run->held ? &changed : NULL};
         tl_parallel_for(m->pool, run->rank_end - run->rank_begin, RANK_CHUNK, force_range, &job);
+        run->changed = changed;
     }
     return report_failure(m);
 }

@@ -8,6 +8,8 @@
  * choice of the step need no undoing, for made again in the same places they change nothing; the move cannot fail. */
 #include "cycle/cycle_room.h"
 
+#include "detect/held.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -221,7 +223,9 @@ void tl_undo_step(tl_model *m)
     }
     for (size_t r = 0; r < layout->run_count; r++) {
         const tl_run *run = &layout->runs[r];
-        for (size_t k = run->rank_begin; run->material != TL_NO_ROW && k < run->rank_end; k++)
+        if (run->material == TL_NO_ROW || tl_run_rests(m, run))
+            continue; /* the laws have passed it over */
+        for (size_t k = run->rank_begin; k < run->rank_end; k++)
             copy_ranks(m, &layout->ranks[k], 1, true);
     }
     if (u->gathered)

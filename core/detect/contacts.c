@@ -1,9 +1,10 @@
 /* contacts.c - the tables of contacts and contact points, and how they are laid out.
  *
  * The points of a material are one run of columns, so a law is called on the columns themselves (ranks.c); a run
- * has room for a few contacts more. Laying out anew sorts the contacts by material and blocks. */
+ * has room for a few contacts more. Laying out anew sorts the contacts by material, apart those between bodies that are held
+ * still, and by blocks. */
 #include "base/pages.h"
-#include "detect/detect.h"
+#include "detect/held.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -46,6 +47,7 @@ void tl_contacts_init(tl_contacts *c, tl_points_table *p)
     TL_COLUMN(t, c, fresh, TL_COLUMN_STEP);
     TL_COLUMN(t, c, lone, 0);
     TL_COLUMN(t, c, fate, 0);
+    TL_COLUMN(t, c, held, 0);
 
     t = &p->table;
     tl_table_init(t, p);
@@ -77,6 +79,9 @@ void tl_point_lanes_init(tl_point_lanes *l)
     TL_COLUMN(t, l, stored, 0);
     TL_COLUMN(t, l, dissipated, 0);
     TL_COLUMN(t, l, zero, 0);
+    for (int k = 0; k < 4 + TL_STATE_COLUMNS; k++)
+        TL_COLUMN(t, l, before[k], 0);
+    TL_COLUMN(t, l, flags_before, 0);
 }
 
 uint32_t tl_material_row(const tl_model *m, tl_tag tag)
@@ -122,6 +127,8 @@ bool tl_contact_append(tl_model *m, uint32_t pair, const tl_axis *axis, double m
     c->until[row] = tl_pair_odometer(m, p->a, p->b);
     c->search[row] = c->until[row] + margin;
     c->fate[row] = TL_FATE_GROW;
+    c->held[row] = tl_blocks_held_still(m, p->a, p->b);
+    d->idle[m->blocks.body[p->a]] = d->idle[m->blocks.body[p->b]] = false;
     p->contact = row;
     p->want.points = (uint16_t)want_points;
     p->want.facets = (uint16_t)want_facets;
@@ -129,7 +136,7 @@ bool tl_contact_append(tl_model *m, uint32_t pair, const tl_axis *axis, double m
 }
 
 typedef struct place {
-    uint32_t material, a, b, row;
+    uint32_t material, held, a, b, row;
 } place;
 
 static int compare_place(const void *x, const void *y)
@@ -137,6 +144,8 @@ static int compare_place(const void *x, const void *y)
     const place *p = x, *q = y;
     if (p->material != q->material)
         return p->material < q->material ? -1 : 1;
+    if (p->held != q->held)
+        return p->held < q->held ? -1 : 1;
     if (p->a != q->a)
         return p->a < q->a ? -1 : 1;
     return (p->b > q->b) - (p->b < q->b);
@@ -149,7 +158,7 @@ static place *sorted(const tl_contacts *c, size_t *count)
     *count = 0;
     for (uint32_t row = 0; list && row < c->table.rows; row++)
         if (c->fate[row] != TL_FATE_DIE)
-            list[(*count)++] = (place){c->material[row], c->a[row], c->b[row], row};
+            list[(*count)++] = (place){c->material[row], c->held[row], c->a[row], c->b[row], row};
     if (list && *count > 1)
         qsort(list, *count, sizeof *list, compare_place);
     return list;
@@ -343,7 +352,7 @@ static bool place_points(tl_detect *d, uint32_t row)
         c->point_room[row] = 0;
         return true;
     }
-    const tl_rank *rank = tl_rank_take(d, c->material[row], points, row, &lane);
+    const tl_rank *rank = tl_rank_take(d, points, row, &lane);
     if (!rank)
         return false;
     copy_points(&d->points, c->point_start[row], &d->points, rank->start + lane,

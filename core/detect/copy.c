@@ -37,6 +37,7 @@ static bool copy_lists(tl_detect *d)
         {&d->ids, d->id_room, sizeof *d->ids},
         {&d->run, d->run_of_room, sizeof *d->run},
         {&d->touched, d->touched_room, sizeof *d->touched},
+        {&d->idle, d->idle_room, sizeof *d->idle},
         {&d->contacts.facet, d->contacts.facet_capacity, sizeof *d->contacts.facet},
         {&d->layout.runs, d->layout.run_room, sizeof *d->layout.runs},
         {&d->layout.ranks, d->layout.rank_room, sizeof *d->layout.ranks},

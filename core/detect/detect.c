@@ -4,6 +4,7 @@
  * have left its skin; pairs without a contact are looked at when they may have come near; contacts are
  * followed, or made anew when they moved more than a margin; births, deaths and growth are then settled
  * serially in the order of pairs. How far anything can have moved is told by the bodies' odometers. */
+#include "detect/held.h"
 #include "detect/update.h"
 
 #include <assert.h>
@@ -55,6 +56,7 @@ void tl_detect_destroy(tl_detect *d)
     tl_layout_free(&d->layout);
     free(d->run);
     free(d->touched);
+    free(d->idle);
     free(d->by_block);
     free(d->by_block_start);
     free(d->by_id);
@@ -155,7 +157,7 @@ static void find_materials(tl_model *m)
     for (uint32_t row = 0; row < c->table.rows; row++) {
         c->until[row] = -INFINITY;
         if (c->fate[row] == TL_FATE_KEEP && tl_material_row(m, c->tag[row]) != c->material[row])
-            c->fate[row] = TL_FATE_MATERIAL;
+            c->fate[row] = TL_FATE_MOVE;
     }
 }
 
@@ -198,6 +200,8 @@ static void update_contacts(tl_model *m)
     const tl_layout *layout = &m->detect->layout;
     for (size_t k = 0; k < layout->run_count; k++) {
         const tl_run *run = &layout->runs[k];
+        if (tl_run_rests(m, run))
+            continue;
         update_job job = {m, layout->ranks + run->rank_begin, run->rank_end - run->rank_begin};
         tl_parallel_for(m->pool, run->rank_end - run->rank_begin, RANK_CHUNK, update_ranks, &job);
     }
@@ -318,7 +322,7 @@ static bool settle_rows(tl_model *m)
             tl_pair_parted(d, pair);
             continue;
         }
-        if (c->fate[row] == TL_FATE_MATERIAL) {
+        if (c->fate[row] == TL_FATE_MOVE) {
             d->pairs[pair].want.points = c->point_room[row];
             d->pairs[pair].want.facets = c->facet_room[row];
         }
@@ -419,6 +423,8 @@ static tl_status find_contacts(tl_model *m)
         tl_parallel_for(m->pool, d->contacts.table.rows, CONTACT_CHUNK, reframe_range, m);
     if (rows && lacked_memory(d))
         return tl_fail_memory(&m->error);
+    if (rows || d->laws != m->laws || d->constraints != m->constraints)
+        tl_held_sort(m);
     tl_pairs_run(m);
     if (rows || (double)d->ran > d->reach) {
         status = tl_broad_update(m);
@@ -427,6 +433,7 @@ static tl_status find_contacts(tl_model *m)
     }
     d->structure = m->structure;
     d->laws = m->laws;
+    d->constraints = m->constraints;
     tl_pairs_look(m);
     return TL_OK;
 }

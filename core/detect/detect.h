@@ -194,12 +194,14 @@ typedef struct tl_contacts {
     uint8_t *fresh; /* its points were placed in this step */
     uint8_t *lone;  /* its faces that look at each other are one of each block */
     uint8_t *fate;  /* what the parallel phase leaves to the serial one: TL_FATE_* */
+    uint8_t *held;  /* both its bodies are held still: held.c */
     /* facets */
     tl_facet *facet;
     size_t facet_total, facet_capacity;
 } tl_contacts;
 
-enum { TL_FATE_KEEP, TL_FATE_GROW, TL_FATE_DIE, TL_FATE_MATERIAL };
+/* MOVE: its points belong in another run. */
+enum { TL_FATE_KEEP, TL_FATE_GROW, TL_FATE_DIE, TL_FATE_MOVE };
 
 typedef struct tl_points_table {
     tl_table table;
@@ -225,6 +227,9 @@ typedef struct tl_point_lanes {
     double *stored, *dissipated;
     double *couple[3]; /* on B per energy stored, model's axes: of ranks that have such */
     double *zero;      /* 0, for what points have no column of */
+    /* what a law found, where it is asked whether it changes anything: forces and states, and flags */
+    double *before[4 + TL_STATE_COLUMNS];
+    uint32_t *flags_before;
 } tl_point_lanes;
 
 /* Contacts of one material whose points lie side by side: point k of the contact in lane l is row start + TL_LANES k
@@ -240,10 +245,17 @@ typedef struct tl_rank {
  * have room for so many, or one. */
 #define TL_PAGE 144
 
+/* Whether the contacts of a run are passed over: held.c. */
+enum { TL_RUN_WOKEN, TL_RUN_FOLLOWED, TL_RUN_RESTS };
+
 /* The ranks of one material, one after the other: in the list of ranks, and their points from `begin`, used up to
- * `end`, with room up to `limit`. */
+ * `end`, with room up to `limit`. Contacts between bodies that are held still have runs of their own. */
 typedef struct tl_run {
     uint32_t material;
+    bool held;    /* between bodies that are held still */
+    uint8_t rest; /* of one that is held: TL_RUN_* */
+    bool
+        changed; /* of one that is held: some point or sum was not what it had been, in the last step */
     size_t begin, end, limit;
     size_t rank_begin, rank_end, rank_limit;
 } tl_run;
@@ -276,7 +288,11 @@ typedef struct tl_detect {
     uint8_t *touched; /* bodies whose contacts came, went or grew since the time step was chosen */
     size_t touched_room;
     bool any_touched;
-    uint64_t structure, laws; /* of the model, when last seen */
+    uint64_t structure, laws, constraints; /* of the model, when last seen */
+    /* bodies held still all of whose contacts rest, so that the sums of their forces stand; `any_idle` false: none */
+    uint8_t *idle;
+    size_t idle_room;
+    bool any_idle;
     tl_contacts contacts, spare;
     tl_points_table points, spare_points;
     int64_t laid_at;    /* steps made when contacts were laid out */
@@ -547,13 +563,12 @@ void tl_contacts_unlist(tl_detect *d);
 uint32_t tl_contact_row(tl_detect *d, tl_id id);
 
 /* ---- ranks.c ---- */
-/* Gives contacts that are sorted by material their lanes in an empty layout: sets the start and room of each by the
+/* Gives contacts that are sorted by runs their lanes in an empty layout: sets the start and room of each by the
  * room it wants, with one in `share` to spare; *points is the number of rows. false when out of memory. */
 bool tl_layout_make(tl_layout *layout, tl_contacts *contacts, size_t share, size_t *points);
 void tl_layout_free(tl_layout *layout);
-/* A free lane of a material's run with room for so many points, taken for a contact; NULL when there is none. */
-tl_rank *tl_rank_take(tl_detect *d, uint32_t material, uint32_t points, uint32_t contact,
-                      uint32_t *lane);
+/* A free lane of a contact's run with room for so many points, taken for it; NULL when there is none. */
+tl_rank *tl_rank_take(tl_detect *d, uint32_t points, uint32_t contact, uint32_t *lane);
 /* Notes that a contact's lane belongs to that row, or to none. */
 void tl_rank_note(tl_detect *d, uint32_t contact, uint32_t row);
 

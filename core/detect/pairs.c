@@ -37,6 +37,7 @@ tl_status tl_pairs_restart(tl_model *m)
     size_t blocks = m->blocks.table.rows, bodies = m->bodies.table.rows;
     if (!tl_fit(&d->odometer_0, &d->odometer_room, bodies + 1, sizeof *d->odometer_0) ||
         !tl_fit(&d->touched, &d->touched_room, bodies + 1, sizeof *d->touched) ||
+        !tl_fit(&d->idle, &d->idle_room, bodies + 1, sizeof *d->idle) ||
         !tl_fit(&d->run, &d->run_of_room, blocks + 1, sizeof *d->run))
         return tl_fail_memory(&m->error);
     for (size_t body = 0; body < bodies; body++)

@@ -3,7 +3,7 @@
  * Contacts of about as many points share a rank, for a rank has room for as many as its largest, and among those the ones
  * whose first facets have as many, for where a facet begins is work for all of the rank. They are looked for among
  * neighbours in the order of blocks, so that what a rank needs lies close together in memory.
- * Each material has a run of ranks. New contacts get a free lane near the end of the run, or the first lane of a
+ * Each material has a run of ranks, and another for contacts between bodies that are held still. New contacts get a free lane near the end of the run, or the first lane of a
  * new rank there. */
 #include "detect/detect.h"
 
@@ -69,12 +69,17 @@ static uint32_t first_facet(const tl_contacts *c, uint32_t row)
     return c->facet_count[row] > 0 ? c->facet[c->facet_start[row]].count : 0;
 }
 
-/* Lays the run of the contacts from `row` on that are of its material; returns the row behind them. */
+static bool is_of_run(const tl_contacts *c, uint32_t row, const tl_run *run)
+{
+    return c->material[row] == run->material && c->held[row] == run->held;
+}
+
+/* Lays the run of the contacts from `row` on that are of it; returns the row behind them. */
 static uint32_t lay_run(tl_layout *layout, tl_contacts *c, tl_run *run, uint32_t row)
 {
     seat seats[WINDOW];
     size_t count = 0;
-    for (; row < c->table.rows && c->material[row] == run->material; row++) {
+    for (; row < c->table.rows && is_of_run(c, row, run); row++) {
         c->point_start[row] = 0;
         if (c->point_room[row])
             seats[count++] = (seat){c->point_room[row], first_facet(c, row), row};
@@ -96,9 +101,12 @@ bool tl_layout_make(tl_layout *layout, tl_contacts *c, size_t share, size_t *poi
         if (!tl_grow(&layout->runs, &layout->run_room, layout->run_count + 1, sizeof *layout->runs))
             return false;
         tl_run *run = &layout->runs[layout->run_count++];
-        *run = (tl_run){.material = c->material[row], .begin = *points, .rank_begin = ranks};
+        *run = (tl_run){.material = c->material[row],
+                        .held = c->held[row],
+                        .begin = *points,
+                        .rank_begin = ranks};
         size_t count = 0;
-        for (uint32_t i = row; i < rows && c->material[i] == run->material; i++)
+        for (uint32_t i = row; i < rows && is_of_run(c, i, run); i++)
             count += c->point_room[i] > 0;
         run->end = run->begin;
         run->rank_end = ranks;
@@ -122,10 +130,10 @@ void tl_layout_free(tl_layout *layout)
     *layout = (tl_layout){0};
 }
 
-static tl_run *run_of(tl_detect *d, uint32_t material)
+static tl_run *run_of(tl_detect *d, uint32_t contact)
 {
     for (size_t r = 0; r < d->layout.run_count; r++)
-        if (d->layout.runs[r].material == material)
+        if (is_of_run(&d->contacts, contact, &d->layout.runs[r]))
             return &d->layout.runs[r];
     return NULL;
 }
@@ -141,12 +149,12 @@ static bool take_lane(tl_rank *rank, uint32_t contact, uint32_t *lane)
     return false;
 }
 
-tl_rank *tl_rank_take(tl_detect *d, uint32_t material, uint32_t points, uint32_t contact,
-                      uint32_t *lane)
+tl_rank *tl_rank_take(tl_detect *d, uint32_t points, uint32_t contact, uint32_t *lane)
 {
-    tl_run *run = run_of(d, material);
+    tl_run *run = run_of(d, contact);
     if (!run)
         return NULL;
+    run->rest = TL_RUN_WOKEN;
     for (size_t r = run->rank_end, back = 0; r-- > run->rank_begin && back < LOOK_BACK; back++) {
         tl_rank *rank = &d->layout.ranks[r];
         if (rank->slots >= points && rank->slots <= points + MOST_SPARE &&

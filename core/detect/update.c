@@ -152,7 +152,7 @@ static bool rebuild(tl_model *m, uint32_t c, tl_narrow *room, bool across)
             contacts->tag[c] = tag;
             uint32_t material = tl_material_row(m, tag);
             if (material != contacts->material[c])
-                contacts->fate[c] = TL_FATE_MATERIAL;
+                contacts->fate[c] = TL_FATE_MOVE;
         }
         /* a pair that touches without area stays a contact, so that it need not be born again */
         if (axis.s > TL_CONTACT_TOLERANCE * TL_CONTACT_RELEASE * view.size && !across) {

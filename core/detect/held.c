@@ -1,0 +1,80 @@
+/* held.c - contacts between two bodies that are held still: told apart from the others, and left alone at rest.
+ *
+ * Such contacts have runs of their own (ranks.c). Their gaps and areas do not change, so they are followed only until a
+ * step finds that their laws leave them exactly as they were. Laws are functions of their points' parameters, states and
+ * motion, so every later step would find the same, and the whole run is passed over. A law that goes on with time at rest
+ * keeps its run followed. Whatever could change that wakes all such runs: blocks that are fixed, freed, driven or
+ * given a velocity, that come or go, another law or initial stress, another contact in the run. */
+#include "detect/held.h"
+
+static bool is_zero(tl_vec3 v)
+{
+    return v.x == 0 && v.y == 0 && v.z == 0;
+}
+
+static bool is_still(const tl_bodies *b, uint32_t body)
+{
+    return b->fixed[body] == TL_FIX_ALL && b->drive[body] == 0 && is_zero(b->v[body]) &&
+           is_zero(b->w[body]);
+}
+
+bool tl_blocks_held_still(const tl_model *m, uint32_t a, uint32_t b)
+{
+    return is_still(&m->bodies, m->blocks.body[a]) && is_still(&m->bodies, m->blocks.body[b]);
+}
+
+/* Bodies none of whose contacts can change the sum of their forces. */
+static void find_idle(tl_model *m)
+{
+    tl_detect *d = m->detect;
+    const tl_contacts *c = &d->contacts;
+    for (uint32_t body = 0; body < m->bodies.table.rows; body++)
+        d->idle[body] = is_still(&m->bodies, body);
+    for (uint32_t i = 0; i < c->table.rows; i++) {
+        if (c->held[i])
+            continue;
+        d->idle[m->blocks.body[c->a[i]]] = false;
+        d->idle[m->blocks.body[c->b[i]]] = false;
+    }
+}
+
+void tl_held_wake(tl_model *m)
+{
+    tl_detect *d = m->detect;
+    for (size_t r = 0; r < d->layout.run_count; r++)
+        d->layout.runs[r].rest = TL_RUN_WOKEN;
+    d->any_idle = false;
+}
+
+void tl_held_sort(tl_model *m)
+{
+    tl_contacts *c = &m->detect->contacts;
+    for (uint32_t row = 0; row < c->table.rows; row++) {
+        if (c->fate[row] == TL_FATE_DIE)
+            continue;
+        bool held = tl_blocks_held_still(m, c->a[row], c->b[row]);
+        if (held != c->held[row] && c->fate[row] == TL_FATE_KEEP)
+            c->fate[row] = TL_FATE_MOVE;
+        c->held[row] = held;
+    }
+    tl_held_wake(m);
+}
+
+void tl_held_followed(tl_model *m)
+{
+    tl_detect *d = m->detect;
+    bool rests = false, all = true;
+    for (size_t r = 0; r < d->layout.run_count; r++) {
+        tl_run *run = &d->layout.runs[r];
+        if (!run->held || run->rest == TL_RUN_RESTS)
+            continue;
+        /* the first step may still have met motion from before the bodies were held */
+        run->rest = run->rest == TL_RUN_WOKEN || run->changed ? TL_RUN_FOLLOWED : TL_RUN_RESTS;
+        rests = rests || run->rest == TL_RUN_RESTS;
+        all = all && run->rest == TL_RUN_RESTS;
+    }
+    if (!rests || !all)
+        return;
+    find_idle(m);
+    d->any_idle = true;
+}

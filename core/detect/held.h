@@ -1,0 +1,21 @@
+/* held.h - contacts between bodies that are held still, which are left alone once they rest: held.c. */
+#ifndef TL_DETECT_HELD_H
+#define TL_DETECT_HELD_H
+
+#include "detect/detect.h"
+
+/* Whether the bodies of two blocks are held still. */
+bool tl_blocks_held_still(const tl_model *m, uint32_t a, uint32_t b);
+/* Notes which contacts are between bodies that are held still, and wakes their runs. */
+void tl_held_sort(tl_model *m);
+/* All such contacts are followed again, until they are found to rest. */
+void tl_held_wake(tl_model *m);
+/* After a step whose laws have not failed: which runs rest from now on. */
+void tl_held_followed(tl_model *m);
+/* Whether a run is passed over. */
+static inline bool tl_run_rests(const tl_model *m, const tl_run *run)
+{
+    return run->rest == TL_RUN_RESTS && m->config.reuse_geometry;
+}
+
+#endif
