@@ -19,8 +19,10 @@ typedef struct tl_sums {
     double turning;       /* sum of |unbalanced moment| over the body's radius */
     double contact_force; /* sum over bodies of the sum of |contact forces| */
     double largest;       /* largest |unbalanced force| */
-    double local;  /* largest |unbalanced force| over the body's own contact forces or weight */
-    size_t bodies; /* that are free */
+    double local;         /* largest |unbalanced force| over what the body bears: rest.c */
+    double worst_ratio; /* the same of |unbalanced force| and |unbalanced moment| over its radius */
+    uint32_t worst;     /* the body that has it; TL_NO_ROW: none */
+    size_t bodies;      /* that are free */
     double weight;
     double kinetic;    /* sum of (m v.v + w.I w) / 2; made for a damping that asks for totals */
     double max_speed2; /* largest v.v */
@@ -195,10 +197,22 @@ void tl_law_check_states(tl_model *m, const tl_material *law, size_t first, size
 bool tl_gather_prepare(tl_model *m);
 /* Each body gathers its contacts in fixed order, and its weight; sums for the convergence measures. */
 void tl_gather(tl_model *m);
-/* An unbalanced force ratio of the last gather. */
+/* Weight of a body under gravity of that size; a load weighs as much as its force. */
+static inline double tl_weight_of(const tl_bodies *b, uint32_t body, double gravity)
+{
+    return b->mass[body] * gravity + (b->load ? tl_v3_norm(b->load[body].force) : 0);
+}
+/* Twice the rotational energy of a body. */
+double tl_spin_energy2(const tl_model *m, uint32_t body);
+
+/* An unbalanced force ratio of the last gather: rest.c. */
 double tl_unbalanced_ratio(const tl_model *m, tl_ratio_measure measure);
-/* The same of the moments, each over its body's radius: a block that spins up is not in equilibrium. */
-double tl_turning_ratio(const tl_model *m);
+/* Whether the model is at rest by a measure, to within a ratio. */
+bool tl_at_rest(tl_model *m, tl_ratio_measure measure, double ratio);
+/* Id of the body that is farthest from equilibrium by the local measure, or TL_NO_ID. */
+tl_id tl_worst_body(const tl_model *m);
+/* Force that a body bears at the least: what its contacts carry at an overlap that is rounding. */
+double tl_least_borne(const tl_model *m, uint32_t body);
 
 /* Watches for steady failure: watch.c. */
 typedef struct tl_watch tl_watch;

@@ -1,5 +1,6 @@
 /* gather.c - forces on bodies: each adds its blocks' contacts in order of the partner's id (13-17 of
- * Hart, Cundall and Lemos 1988), its weight and its load. Components that are held carry no unbalanced force. */
+ * Hart, Cundall and Lemos 1988), its weight and its load. Components that are held carry no unbalanced force.
+ * What the measures of convergence ask (rest.c) is summed on the way. */
 #include "cycle/cycle_room.h"
 
 static tl_vec3 free_part(tl_vec3 v, unsigned fixed)
@@ -46,8 +47,7 @@ static void gather_body(tl_model *m, uint32_t body)
     m->cycle->contact_force[body] = contact_force;
 }
 
-/* Twice the rotational energy. */
-static double spin_energy2(const tl_model *m, uint32_t body)
+double tl_spin_energy2(const tl_model *m, uint32_t body)
 {
     const tl_bodies *b = &m->bodies;
     tl_vec3 w = tl_q_rotate(tl_q_conj(tl_q_mul(b->q[body], b->axes[body])), b->w[body]);
@@ -57,6 +57,30 @@ static double spin_energy2(const tl_model *m, uint32_t body)
     return i.x * w.x * w.x + i.y * w.y * w.y + i.z * w.z * w.z;
 }
 
+/* Unbalanced force and moment of a body, by themselves and over what it bears. What that is at the least is asked only
+ * where the ratio may be the largest. */
+static void sum_ratios(const tl_model *m, uint32_t body, double weight, tl_sums *sums)
+{
+    const tl_bodies *b = &m->bodies;
+    double unbalanced = tl_v3_norm(b->force[body]);
+    double turning = tl_v3_norm(b->moment[body]) / b->radius[body];
+    double contact = m->cycle->contact_force[body];
+    double bears = larger(contact, weight), worse = larger(unbalanced, turning);
+    sums->unbalanced += unbalanced;
+    sums->turning += turning;
+    sums->contact_force += contact;
+    sums->largest = larger(sums->largest, unbalanced);
+    if (!(worse > sums->local * bears))
+        return;
+    bears = larger(bears, tl_least_borne(m, body));
+    double ratio = bears > 0 ? worse / bears : 1; /* nothing holds what turns it */
+    sums->local = larger(sums->local, bears > 0 ? unbalanced / bears : 0);
+    if (ratio > sums->worst_ratio) {
+        sums->worst_ratio = ratio;
+        sums->worst = body;
+    }
+}
+
 static void gather_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
 {
     (void)thread;
@@ -64,7 +88,7 @@ static void gather_range(void *user, size_t begin, size_t end, size_t chunk, uns
     tl_bodies *b = &m->bodies;
     bool totals = m->damping && ((const tl_damping_ops *)m->damping->ops)->begin;
     double gravity = tl_v3_norm(m->config.gravity);
-    tl_sums sums = {0};
+    tl_sums sums = {.worst = TL_NO_ROW};
     const uint8_t *idle = m->detect->any_idle ? m->detect->idle : NULL;
     for (uint32_t body = (uint32_t)begin; body < end; body++) {
         if (idle && idle[body])
@@ -73,21 +97,12 @@ static void gather_range(void *user, size_t begin, size_t end, size_t chunk, uns
         if (b->fixed[body] == TL_FIX_ALL)
             continue;
         double v2 = tl_v3_norm2(b->v[body]);
-        double unbalanced = tl_v3_norm(b->force[body]);
-        double contact = m->cycle->contact_force[body];
-        double weight = b->mass[body] * gravity; /* a load weighs as much */
-        if (b->load)
-            weight += tl_v3_norm(b->load[body].force);
-        double against = contact > 0 ? contact : weight;
-        sums.unbalanced += unbalanced;
-        sums.turning += tl_v3_norm(b->moment[body]) / b->radius[body];
-        sums.contact_force += contact;
+        double weight = tl_weight_of(b, body, gravity);
         sums.weight += weight;
-        sums.largest = larger(sums.largest, unbalanced);
-        sums.local = larger(sums.local, against > 0 ? unbalanced / against : 0);
+        sum_ratios(m, body, weight, &sums);
         sums.bodies++;
         if (totals)
-            sums.kinetic += 0.5 * (b->mass[body] * v2 + spin_energy2(m, body));
+            sums.kinetic += 0.5 * (b->mass[body] * v2 + tl_spin_energy2(m, body));
         sums.max_speed2 = larger(sums.max_speed2, v2);
     }
     m->cycle->chunk_sums[chunk] = sums;
@@ -113,7 +128,7 @@ void tl_gather(tl_model *m)
     struct tl_cycle *c = m->cycle;
     size_t bodies = m->bodies.table.rows;
     tl_parallel_for(m->pool, bodies, TL_BODY_CHUNK, gather_range, m);
-    c->sums = (tl_sums){0};
+    c->sums = (tl_sums){.worst = TL_NO_ROW};
     for (size_t chunk = 0; chunk * TL_BODY_CHUNK < bodies; chunk++) {
         const tl_sums *s = &c->chunk_sums[chunk];
         c->sums.unbalanced += s->unbalanced;
@@ -122,26 +137,12 @@ void tl_gather(tl_model *m)
         c->sums.weight += s->weight;
         c->sums.largest = larger(c->sums.largest, s->largest);
         c->sums.local = larger(c->sums.local, s->local);
+        if (s->worst_ratio > c->sums.worst_ratio) {
+            c->sums.worst_ratio = s->worst_ratio;
+            c->sums.worst = s->worst;
+        }
         c->sums.bodies += s->bodies;
         c->sums.kinetic += s->kinetic;
         c->sums.max_speed2 = larger(c->sums.max_speed2, s->max_speed2);
     }
-}
-
-double tl_unbalanced_ratio(const tl_model *m, tl_ratio_measure measure)
-{
-    const tl_sums *s = &m->cycle->sums;
-    if (measure == TL_RATIO_LOCAL)
-        return s->local;
-    double against = s->contact_force > 0 ? s->contact_force : s->weight;
-    double unbalanced =
-        measure == TL_RATIO_MAXIMUM ? s->largest * (double)s->bodies : s->unbalanced;
-    return against > 0 ? unbalanced / against : 0;
-}
-
-double tl_turning_ratio(const tl_model *m)
-{
-    const tl_sums *s = &m->cycle->sums;
-    double against = s->contact_force > 0 ? s->contact_force : s->weight;
-    return against > 0 ? s->turning / against : 0;
 }

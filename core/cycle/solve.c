@@ -27,6 +27,7 @@ static void measure(const tl_model *m, const progress *p)
     r->ratio = tl_unbalanced_ratio(m, TL_RATIO_AVERAGE);
     r->ratio_maximum = tl_unbalanced_ratio(m, TL_RATIO_MAXIMUM);
     r->ratio_local = tl_unbalanced_ratio(m, TL_RATIO_LOCAL);
+    r->worst = tl_worst_body(m);
     r->max_velocity = sqrt(m->cycle->sums.max_speed2);
     r->cycles = m->cycles - p->cycles_0;
     r->time = m->time;
@@ -48,6 +49,13 @@ static bool call_back(tl_model *m, const progress *p, tl_status *status)
     return stop || *status != TL_OK;
 }
 
+static bool at_rest(tl_model *m, const progress *p)
+{
+    bool rests = tl_at_rest(m, (tl_ratio_measure)p->solve->measure, p->solve->ratio);
+    p->result->worst = tl_worst_body(m); /* where forces balance, one that still moves */
+    return rests;
+}
+
 /* True when the run is over; sets the reason. */
 static bool ended(tl_model *m, const progress *p, tl_status *status)
 {
@@ -58,8 +66,7 @@ static bool ended(tl_model *m, const progress *p, tl_status *status)
         return true;
     if (tl_model_interrupted(m))
         *reason = TL_SOLVE_INTERRUPT;
-    else if (s->ratio > 0 && tl_unbalanced_ratio(m, (tl_ratio_measure)s->measure) < s->ratio &&
-             tl_turning_ratio(m) < s->ratio)
+    else if (s->ratio > 0 && at_rest(m, p))
         *reason = TL_SOLVE_RATIO;
     else if (done > 1 && p->result->max_velocity < s->velocity) /* from rest the first is zero */
         *reason = TL_SOLVE_VELOCITY;
@@ -79,14 +86,15 @@ static void say_failure(tl_model *m, const tl_solve_result *r)
     uint32_t row = tl_block_row_quiet(m, r->failing);
     double speed = row == TL_NO_ROW ? 0 : tl_v3_norm(tl_block_velocity(m, row));
     tl_model_say(m,
-                 "solve: the model fails: block %u moves on at %.3g m/s without slowing down while "
-                 "the unbalanced force ratio stays at %.3g",
-                 r->failing, speed, r->ratio);
+                 "solve: the model fails: block %u moves on at %.3g m/s without slowing down "
+                 "(unbalanced force ratio: local %.3g, average %.3g)",
+                 r->failing, speed, r->ratio_local, r->ratio);
 }
 
 static tl_status run(tl_model *m, const tl_solve *solve, tl_solve_result *result)
 {
-    *result = (tl_solve_result){.reason = TL_SOLVE_CYCLES, .time = m->time};
+    *result =
+        (tl_solve_result){.reason = TL_SOLVE_CYCLES, .time = m->time, .measure = solve->measure};
     if (m->running)
         return tl_fail(&m->error, TL_E_STATE,
                        "cycle and solve cannot be called from a function that a run has called");
@@ -125,6 +133,7 @@ tl_status tl_model_cycle(tl_model *m, int64_t cycles, tl_solve_result *result)
 {
     if (cycles < 0)
         return tl_fail(&m->error, TL_E_ARGUMENT, "cycle: %lld must be >= 0", (long long)cycles);
-    const tl_solve plain = {.max_cycles = cycles, .max_time = NAN, .velocity = NAN};
+    const tl_solve plain = {
+        .max_cycles = cycles, .max_time = NAN, .velocity = NAN, .measure = TL_RATIO_LOCAL};
     return run(m, &plain, result);
 }

@@ -78,6 +78,16 @@ static void run_end(run *r)
 
 /* ---------------------------------------------------------------- showing ---------------- */
 
+/* The ratio that may end the run. */
+static double ratio_of(const tl_solve_result *r)
+{
+    switch (r->measure) {
+    case TL_RATIO_AVERAGE: return r->ratio;
+    case TL_RATIO_MAXIMUM: return r->ratio_maximum;
+    default: return r->ratio_local;
+    }
+}
+
 /* Writes the line anew when it is time to. It asks nothing that could make the kernel compute: a run
  * gives the same with it and without. So dt is the mean step since the last time. */
 static void show(run *r)
@@ -89,8 +99,8 @@ static void show(run *r)
     char line[160];
     snprintf(line, sizeof line,
              "cycle %lld  t %.4g s  dt %.2g s  ratio %.1e  velocity %.1e  %.0f/s", (long long)cycle,
-             time, (time - r->shown_time) / (double)steps, r->result.ratio, r->result.max_velocity,
-             (double)(cycle - r->first_cycle) / (t - r->began));
+             time, (time - r->shown_time) / (double)steps, ratio_of(&r->result),
+             r->result.max_velocity, (double)(cycle - r->first_cycle) / (t - r->began));
     fprintf(stderr, "\r\033[K%.*s", SHOW_COLUMNS, line);
     fflush(stderr);
     r->shown = t;
@@ -118,26 +128,34 @@ static void set_numbers(lua_State *L, const tl_solve_result *result)
     }
 }
 
+/* Fields of a result that are blocks. */
+static const char *const result_blocks[] = {"failing", "worst"};
+
 /* Pushes a table for a result, with a place for each field. The model's userdata is at `model_index`. */
-static void push_result_room(lua_State *L, int model_index)
+static void push_result_room(lua_State *L, int model_index, int32_t measure)
 {
     const tl_solve_result none = {0};
     model_index = lua_absindex(L, model_index);
     lua_newtable(L);
     set_numbers(L, &none);
-    tl_lua_item_push(L, &tl_lua_block_kind, model_index, TL_NO_ID);
-    lua_setfield(L, -2, "failing");
+    lua_pushstring(L, tl_ratio_measure_name((tl_ratio_measure)measure));
+    lua_setfield(L, -2, "measure");
+    for (size_t i = 0; i < sizeof result_blocks / sizeof result_blocks[0]; i++) {
+        tl_lua_item_push(L, &tl_lua_block_kind, model_index, TL_NO_ID);
+        lua_setfield(L, -2, result_blocks[i]);
+    }
 }
 
 /* Fills the table at the top of the stack, made for it, without needing memory. */
 static void set_result(lua_State *L, const tl_solve_result *result)
 {
     set_numbers(L, result);
-    tl_lua_item_rename(L, "failing", result->failing);
+    tl_lua_item_rename(L, result_blocks[0], result->failing);
+    tl_lua_item_rename(L, result_blocks[1], result->worst);
 }
 
 /* All memory for what a run will answer is had before the first step: a call that fails for want of it has made none. */
-static void push_answer_room(lua_State *L)
+static void push_answer_room(lua_State *L, int32_t measure)
 {
     lua_settop(L, AT_ERROR);
     lua_newtable(L);
@@ -145,7 +163,7 @@ static void push_answer_room(lua_State *L)
         lua_pushstring(L, tl_solve_reason_name((tl_solve_reason)reason));
         lua_rawseti(L, AT_REASONS, reason + 1);
     }
-    push_result_room(L, AT_MODEL);
+    push_result_room(L, AT_MODEL, measure);
     lua_pushboolean(L, false);
     lua_setfield(L, AT_RESULT, "reason");
 }
@@ -174,7 +192,7 @@ static int call_progress(lua_State *L)
 {
     const run *r = lua_touserdata(L, 3);
     lua_settop(L, 2);
-    push_result_room(L, 2);
+    push_result_room(L, 2, r->result.measure);
     set_result(L, &r->result);
     lua_call(L, 2, 0);
     return 0;
@@ -266,7 +284,7 @@ int tl_lua_solve(lua_State *L)
     tl_lua_read(L, AT_ARGS, &spec, false, &solve);
     lua_settop(L, AT_ANCHOR);
     bool stop = push_callback(L, "stop"), progress = push_callback(L, "on_progress");
-    push_answer_room(L);
+    push_answer_room(L, solve.measure);
     run r;
     run_begin(&r, L, model);
     r.progress = progress;
@@ -300,7 +318,7 @@ int tl_lua_cycle(lua_State *L)
     int64_t cycles;
     tl_lua_spec spec = tl_lua_spec_of("cycle", NULL);
     tl_lua_read_one(L, 2, &spec, "cycles", &cycles);
-    push_answer_room(L);
+    push_answer_room(L, TL_RATIO_LOCAL);
     run r;
     run_begin(&r, L, model);
     return finish(L, &r, "cycle",

@@ -40,11 +40,19 @@ static const tl_lua_key run_results[] = {
      "\"interrupt\" (Ctrl-C at the prompt; in a script it raises an error)"},
     {"ratio", "", "mean unbalanced force over mean contact force"},
     {"ratio_maximum", "", "largest unbalanced force over mean contact force"},
-    {"ratio_local", "", "largest unbalanced force of a block over its own contact force"},
+    {"ratio_local", "",
+     "largest unbalanced force of a block over its own contact forces, or its weight and load "
+     "where "
+     "these are more"},
+    {"measure", "", "the measure that may end the run"},
+    {"worst", "",
+     "the block farthest from rest by the measure \"local\": nil when there is none that can move, "
+     "or "
+     "no force on any"},
     {"failing", "",
-     "a block that fails steadily: it has moved on in one direction over three windows of steps, "
-     "each "
-     "time as far as before, while the ratio stayed; nil when none does"},
+     "a block that fails steadily: it moves on in one direction without slowing down, and the "
+     "force "
+     "that pushes it stays; nil when none does"},
     {"cycles", "", "steps of this call"},
     {"time", "", "the model's time at the end, s"},
     {"wall", "", "seconds it took"},

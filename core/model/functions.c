@@ -137,12 +137,18 @@ static const char *const ratio_measures[] = {[TL_RATIO_AVERAGE] = "average",
                                              [TL_RATIO_LOCAL] = "local",
                                              NULL};
 
+const char *tl_ratio_measure_name(tl_ratio_measure measure)
+{
+    return ratio_measures[measure];
+}
+
 static const tl_param solve_params[] = {
     TL_PARAM(TL_PARAM_REAL, tl_solve, ratio, "",
              "ends when the unbalanced force ratio falls below this; 0 for never", .def = {1e-5},
              .min = 0.0, .max = 1.0),
-    TL_PARAM(TL_PARAM_ENUM, tl_solve, measure, "", "which unbalanced force ratio ends the run",
-             .choices = ratio_measures),
+    TL_PARAM(TL_PARAM_ENUM, tl_solve, measure, "",
+             "which unbalanced force ratio ends the run: see theory.md, Convergence",
+             .def = {TL_RATIO_LOCAL}, .choices = ratio_measures),
     TL_PARAM(TL_PARAM_REAL, tl_solve, velocity, "m/s", "ends when no block is faster than this",
              .flags = TL_PARAM_OPTIONAL, .min = 0.0, .max = INFINITY),
     TL_PARAM(TL_PARAM_BOOL, tl_solve, stop_at_failure, "",

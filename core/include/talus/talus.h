@@ -248,7 +248,7 @@ typedef enum tl_solve_reason {
 typedef enum tl_ratio_measure {
     TL_RATIO_AVERAGE, /* mean unbalanced force over mean sum of contact forces, of the free bodies */
     TL_RATIO_MAXIMUM, /* largest unbalanced force over mean sum of contact forces */
-    TL_RATIO_LOCAL    /* largest ratio of a body's unbalanced force to its own contact forces */
+    TL_RATIO_LOCAL    /* each body's own force, moment and motion: docs/theory.md, Convergence */
 } tl_ratio_measure;
 
 typedef struct tl_solve {
@@ -268,14 +268,15 @@ typedef struct tl_solve {
 typedef struct tl_solve_result {
     tl_solve_reason reason;
     double ratio, time, wall, max_velocity; /* ratio: the average one */
-    double ratio_maximum, ratio_local;
+    double ratio_maximum, ratio_local;      /* the latter of forces */
+    int32_t measure;                        /* tl_ratio_measure that may end the run */
     int64_t cycles;
-    /* Steady failure: over three windows of steps some block has moved on in one direction, each time
-     * at least as far as before, while the ratio stayed. 0: none seen. */
-    tl_id failing;
+    tl_id failing; /* a block that moves on in one direction without slowing down; 0: none seen */
+    tl_id worst;   /* block farthest from rest by the local measure; 0: no force on any */
 } tl_solve_result;
 
 TL_API const char *tl_solve_reason_name(tl_solve_reason reason);
+TL_API const char *tl_ratio_measure_name(tl_ratio_measure measure);
 /* Runs exactly `cycles` steps (fewer only on an interrupt, an error or a callback's word). */
 TL_API tl_status tl_model_cycle(tl_model *model, int64_t cycles, tl_solve_result *result);
 /* Runs until a limit is met. `*result` is up to date whenever a callback is called. */

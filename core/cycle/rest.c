@@ -1,0 +1,144 @@
+/* rest.c - whether the model is at rest: the unbalanced force ratios, and the motion that is left.
+ *
+ * A mean over all bodies says nothing of a small one among large ones that slides. So a solve ends, unless it is told
+ * to look at another measure, when every single body is at rest:
+ *
+ *     |F| and |M| / r  <  ratio B          its unbalanced force, and moment over its radius
+ *     (m v.v + w.I w) / 2  <  ratio U      its kinetic energy
+ *
+ * with what the body bears, B: the sum of its contact forces, or its weight and load where these are more, and at least
+ * what its contacts carry at an overlap that is rounding. U = B^2 / (2 K) is the energy that B stores in the springs of its
+ * contacts, of stiffness K: without it a body that swings would be at rest each time it passes through equilibrium,
+ * and so would one that flies or slides on without a force. A body without contacts has its share, by mass, of the energy
+ * stored in all contacts for U. */
+#include "cycle/cycle_room.h"
+
+#include <stdatomic.h>
+
+/* Overlap, relative to the body's radius, of which contacts cannot tell a ratio of 1e-5: places and so overlaps are
+ * rounded at some 1e-16 of it. */
+#define ROUNDED_OVERLAP 1e-10
+
+/* Bodies a worker takes at a time. */
+#define REST_CHUNK 256
+
+/* Sum of k A over the contacts of a body. */
+static double stiffness_of(const tl_model *m, uint32_t body)
+{
+    const tl_detect *d = m->detect;
+    const tl_contacts *c = &d->contacts;
+    double sum = 0;
+    for (uint32_t j = 0; j < m->bodies.member_count[body]; j++) {
+        uint32_t row = m->members[m->bodies.member_start[body] + j];
+        for (uint32_t e = d->by_block_start[row]; e < d->by_block_start[row + 1]; e++) {
+            uint32_t i = d->by_block[e];
+            if (c->material[i] == TL_NO_ROW || c->point_count[i] == 0)
+                continue;
+            const tl_material *law = &m->materials[c->material[i]];
+            sum += fmax(law->kn, law->ks) * c->area[i];
+        }
+    }
+    return sum;
+}
+
+double tl_least_borne(const tl_model *m, uint32_t body)
+{
+    return ROUNDED_OVERLAP * m->bodies.radius[body] * stiffness_of(m, body);
+}
+
+double tl_unbalanced_ratio(const tl_model *m, tl_ratio_measure measure)
+{
+    const tl_sums *s = &m->cycle->sums;
+    if (measure == TL_RATIO_LOCAL)
+        return s->local;
+    double against = s->contact_force > 0 ? s->contact_force : s->weight;
+    double unbalanced =
+        measure == TL_RATIO_MAXIMUM ? s->largest * (double)s->bodies : s->unbalanced;
+    return against > 0 ? unbalanced / against : 0;
+}
+
+/* The average ratio of the moments, each over its body's radius: a block that spins up is not in equilibrium. */
+static double turning_ratio(const tl_model *m)
+{
+    const tl_sums *s = &m->cycle->sums;
+    double against = s->contact_force > 0 ? s->contact_force : s->weight;
+    return against > 0 ? s->turning / against : 0;
+}
+
+static double kinetic_energy(const tl_model *m, uint32_t body)
+{
+    const tl_bodies *b = &m->bodies;
+    unsigned fixed = b->fixed[body];
+    tl_vec3 v = b->v[body];
+    v = tl_v3(fixed & TL_FIX_X ? 0 : v.x, fixed & TL_FIX_Y ? 0 : v.y, fixed & TL_FIX_Z ? 0 : v.z);
+    double spin = fixed & TL_FIX_ROTATION ? 0 : tl_spin_energy2(m, body);
+    return 0.5 * (b->mass[body] * tl_v3_norm2(v) + spin);
+}
+
+typedef struct rest_job {
+    const tl_model *m;
+    double ratio, gravity;
+    double stored;           /* energy in all contacts per mass of the free bodies, J/kg */
+    _Atomic uint32_t moving; /* the first body that does; TL_NO_ROW: none */
+} rest_job;
+
+static bool moves(const rest_job *job, uint32_t body)
+{
+    const tl_model *m = job->m;
+    const tl_bodies *b = &m->bodies;
+    double kinetic = kinetic_energy(m, body);
+    if (kinetic == 0)
+        return false;
+    double stiffness = stiffness_of(m, body);
+    double bears = fmax(m->cycle->contact_force[body], tl_weight_of(b, body, job->gravity));
+    bears = fmax(bears, ROUNDED_OVERLAP * b->radius[body] * stiffness);
+    double stored = stiffness > 0 ? 0.5 * bears * bears / stiffness : b->mass[body] * job->stored;
+    return !(kinetic < job->ratio * stored);
+}
+
+static void rest_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
+{
+    (void)chunk;
+    (void)thread;
+    rest_job *job = user;
+    uint32_t body = (uint32_t)begin, first = atomic_load(&job->moving);
+    while (body < end && (job->m->bodies.fixed[body] == TL_FIX_ALL || !moves(job, body)))
+        body++;
+    while (body < end && body < first &&
+           !atomic_compare_exchange_weak(&job->moving, &first, body)) {
+    }
+}
+
+/* Whether no body moves any more than `ratio` allows; the first that does is the worst. Looked at only when forces are in
+ * equilibrium. */
+static bool stands_still(tl_model *m, double ratio)
+{
+    double mass = 0;
+    for (size_t body = 0; body < m->bodies.table.rows; body++)
+        mass += m->bodies.fixed[body] == TL_FIX_ALL ? 0 : m->bodies.mass[body];
+    tl_energy energy;
+    tl_model_energy(m, &energy);
+    rest_job job = {.m = m,
+                    .ratio = ratio,
+                    .gravity = tl_v3_norm(m->config.gravity),
+                    .stored = mass > 0 ? energy.stored / mass : 0,
+                    .moving = TL_NO_ROW};
+    tl_parallel_for(m->pool, m->bodies.table.rows, REST_CHUNK, rest_range, &job);
+    if (job.moving == TL_NO_ROW)
+        return true;
+    m->cycle->sums.worst = job.moving;
+    return false;
+}
+
+bool tl_at_rest(tl_model *m, tl_ratio_measure measure, double ratio)
+{
+    if (measure == TL_RATIO_LOCAL)
+        return m->cycle->sums.worst_ratio < ratio && stands_still(m, ratio);
+    return tl_unbalanced_ratio(m, measure) < ratio && turning_ratio(m) < ratio;
+}
+
+tl_id tl_worst_body(const tl_model *m)
+{
+    uint32_t worst = m->cycle->sums.worst;
+    return worst == TL_NO_ROW ? TL_NO_ID : m->bodies.id[worst];
+}
