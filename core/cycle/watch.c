@@ -1,31 +1,101 @@
-/* watch.c - telling steady failure from slow convergence.
+/* watch.c - telling steady failure from settling.
  *
- * At the end of every window of steps each free body's motion in the window is compared with that in the
- * window before: a body fails steadily when over three windows it has moved on in one direction, each
- * time nearly as far as before or farther, and farther than a contact's tolerance, while the unbalanced
- * force ratio has not halved. A body that swings turns back; one that settles moves less and less. */
+ * The motion of each free body is followed in legs, each a share of the body's size long. A body fails steadily when it
+ * has gone LEGS legs in one direction, none of them slower than the one before, and the mean unbalanced force on it
+ * pushes it that way. A body that settles or swings slows
+ * down; one that is carried along feels no force. Legs are lengths, so neither the time step nor the damping nor the stiffness decides how far
+ * a body has gone when it is told.
+ *
+ * Blocks on soft joints settle by more than a share of their size. So a leg is not shorter than a share of how far the model
+ * may settle: the mean closure of its loaded contacts, weighted by their forces, times the number of blocks on end.
+ *
+ * Bodies that touched nothing when the run began fall until they land, and tumble on. They are followed only while
+ * something bears them, and in longer legs: what is poured has not failed. */
 #include "cycle/cycle_room.h"
 
+#include <stdatomic.h>
 #include <stdlib.h>
-#include <string.h>
 
-/* Steps of a window. */
-#define WINDOW 400
-#define WINDOWS 3
-/* A window's motion counts as no less than the one before from this share on. */
-#define NO_LESS 0.95
-/* cos of the largest change of direction between windows. */
+/* Steps between two looks at the bodies: few of them make a leg of a body that moves. */
+#define LOOK_STEPS 5
+/* Legs in a row, and how long they are together, relative to the size of the body. */
+#define LEGS 5
+#define FAILED_SHARE 0.05
+/* The same for a body that has landed. */
+#define LANDED_SHARE 1.0
+/* The same relative to how far the model may settle: a column under sudden weight settles by about 1.5 of it. */
+#define SETTLED_SHARE 3.0
+/* A leg counts as no slower than the one before from this share of its speed on. */
+#define NO_SLOWER 0.95
+/* cos of the largest change of direction between legs. */
 #define ONE_WAY 0.7
+/* Unbalanced force over what a body bears, below which such a body lies on something or slides on it. */
+#define SUPPORTED 0.5
+/* Unbalanced force over what a body bears from which it is pushed on: above what is left where a body is carried along. */
+#define LEAST_PUSH 1e-4
+/* Bodies a worker takes at a time. */
+#define WATCH_CHUNK 256
+
+/* A leg of a body, until now, and those behind it. */
+typedef struct leg {
+    tl_vec3 from; /* displacement where it began */
+    double began; /* s */
+    tl_vec3 way;  /* direction and speed of the leg before */
+    double speed;
+    uint8_t legs; /* gone, one no slower than the other */
+    tl_vec3
+        force; /* sum over the looks at these legs of the unbalanced force, and of what the body bore */
+    double borne;
+    bool touched; /* something, when the run began */
+    bool reached; /* has gone as far as its size asks: the leg may be at its end */
+} leg;
 
 struct tl_watch {
     size_t bodies;
     uint64_t structure;
     int64_t steps;
-    tl_vec3 *place[WINDOWS + 1]; /* displacements at the ends of the last windows, newest first */
-    double ratio[WINDOWS + 1];
-    int windows;
+    double on_end; /* free blocks on end across the model */
+    double least;  /* length of a leg that settlement asks for, when it was last needed, m */
+    leg *leg;
     tl_id failing;
 };
+
+static double size_of(const tl_model *m, uint32_t body)
+{
+    return m->blocks.size[m->members[m->bodies.member_start[body]]];
+}
+
+/* Number of blocks of the mean size across the free bodies. */
+static double count_on_end(const tl_model *m)
+{
+    tl_vec3 low = {INFINITY, INFINITY, INFINITY}, high = tl_v3_neg(low);
+    double sizes = 0, count = 0;
+    for (uint32_t body = 0; body < m->bodies.table.rows; body++) {
+        if (m->bodies.fixed[body] == TL_FIX_ALL)
+            continue;
+        tl_vec3 x = tl_body_place(&m->bodies, body);
+        low = tl_v3(fmin(low.x, x.x), fmin(low.y, x.y), fmin(low.z, x.z));
+        high = tl_v3(fmax(high.x, x.x), fmax(high.y, x.y), fmax(high.z, x.z));
+        sizes += size_of(m, body);
+        count++;
+    }
+    return count > 0 ? 1 + tl_v3_norm(tl_v3_sub(high, low)) * count / sizes : 1;
+}
+
+static void begin_leg(leg *l, const tl_model *m, uint32_t body)
+{
+    l->from = m->bodies.pose[body].u;
+    l->began = m->time;
+    l->reached = false;
+}
+
+/* None of the legs behind it counts. */
+static void forget_legs(leg *l)
+{
+    l->legs = 0;
+    l->force = tl_v3(0, 0, 0);
+    l->borne = 0;
+}
 
 tl_watch *tl_watch_begin(const tl_model *m)
 {
@@ -34,13 +104,14 @@ tl_watch *tl_watch_begin(const tl_model *m)
         return NULL;
     w->bodies = m->bodies.table.rows;
     w->structure = m->structure;
-    for (int k = 0; k <= WINDOWS; k++) {
-        w->place[k] = malloc((w->bodies + 1) * sizeof *w->place[k]);
-        if (!w->place[k]) {
-            tl_watch_end(w);
-            return NULL;
-        }
+    w->on_end = count_on_end(m);
+    w->leg = calloc(w->bodies + 1, sizeof *w->leg);
+    if (!w->leg) {
+        tl_watch_end(w);
+        return NULL;
     }
+    for (uint32_t body = 0; body < w->bodies; body++)
+        begin_leg(&w->leg[body], m, body);
     return w;
 }
 
@@ -48,37 +119,123 @@ void tl_watch_end(tl_watch *w)
 {
     if (!w)
         return;
-    for (int k = 0; k <= WINDOWS; k++)
-        free(w->place[k]);
+    free(w->leg);
     free(w);
 }
 
-/* True when the body has gone on in every window as the head of the file says. */
-static bool goes_on(const tl_watch *w, const tl_model *m, uint32_t body)
+/* ---------------------------------------------------------------- looks ------------------ */
+
+/* Whether a block of the body has contact points, in the first step. */
+static bool touches(const tl_model *m, uint32_t body)
 {
-    double size = m->blocks.size[m->members[m->bodies.member_start[body]]];
-    tl_vec3 later = tl_v3_sub(w->place[0][body], w->place[1][body]);
-    if (tl_v3_norm(later) < TL_CONTACT_TOLERANCE * size)
-        return false;
-    for (int k = 1; k < WINDOWS; k++) {
-        tl_vec3 earlier = tl_v3_sub(w->place[k][body], w->place[k + 1][body]);
-        double a = tl_v3_norm(later), b = tl_v3_norm(earlier);
-        if (!(b > 0) || a < NO_LESS * b || tl_v3_dot(later, earlier) < ONE_WAY * a * b)
-            return false;
-        later = earlier;
+    const tl_detect *d = m->detect;
+    for (uint32_t k = 0; k < m->bodies.member_count[body]; k++) {
+        uint32_t row = m->members[m->bodies.member_start[body] + k];
+        for (uint32_t e = d->by_block_start[row]; e < d->by_block_start[row + 1]; e++)
+            if (d->contacts.point_count[d->by_block[e]] > 0)
+                return true;
     }
-    return true;
+    return false;
 }
 
+static double borne_by(const tl_model *m, uint32_t body)
+{
+    double weight = tl_weight_of(&m->bodies, body, tl_v3_norm(m->config.gravity));
+    return fmax(m->cycle->contact_force[body], weight);
+}
+
+typedef struct look_job {
+    tl_watch *w;
+    const tl_model *m;
+    atomic_bool reached; /* by some body */
+} look_job;
+
+/* Adds what a look tells to the leg of a body. */
+static void look_at(leg *l, double least, const tl_model *m, uint32_t body)
+{
+    double unbalanced = tl_v3_norm(m->bodies.force[body]), borne = borne_by(m, body);
+    bool judged =
+        l->touched || (m->cycle->contact_force[body] > 0 && unbalanced < SUPPORTED * borne);
+    tl_vec3 gone = tl_v3_sub(m->bodies.pose[body].u, l->from);
+    double share = l->touched ? FAILED_SHARE : LANDED_SHARE;
+    double length = share / LEGS * size_of(m, body), time = m->time - l->began;
+    if (!judged) {
+        forget_legs(l);
+        begin_leg(l, m, body);
+        return;
+    }
+    double far = tl_v3_norm(gone), whole = fmax(length, least);
+    if (far < whole && whole < NO_SLOWER * l->speed * time) /* too late by now */
+        forget_legs(l);
+    l->force = tl_v3_add(l->force, m->bodies.force[body]);
+    l->borne += borne;
+    l->reached = far >= length;
+}
+
+static void look_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
+{
+    (void)chunk;
+    (void)thread;
+    look_job *job = user;
+    const tl_model *m = job->m;
+    bool reached = false;
+    for (uint32_t body = (uint32_t)begin; body < end; body++) {
+        if (m->bodies.fixed[body] == TL_FIX_ALL)
+            continue;
+        look_at(&job->w->leg[body], job->w->least, m, body);
+        reached = reached || job->w->leg[body].reached;
+    }
+    if (reached)
+        atomic_store_explicit(&job->reached, true, memory_order_relaxed);
+}
+
+/* How far the model may settle: see the head of the file. */
+static double settlement(const tl_watch *w, const tl_model *m)
+{
+    const tl_contacts *c = &m->detect->contacts;
+    double force = 0, force_closure = 0;
+    for (uint32_t i = 0; i < c->table.rows; i++) {
+        double f = tl_v3_norm(c->force[i]);
+        if (!(f > 0) || c->held[i])
+            continue;
+        const tl_material *law = &m->materials[c->material[i]];
+        double k = law->ks > 0 && law->ks < law->kn ? law->ks : law->kn;
+        force += f;
+        force_closure += k > 0 && c->area[i] > 0 ? f * f / (k * c->area[i]) : 0;
+    }
+    return force > 0 ? w->on_end * force_closure / force : 0;
+}
+
+/* Ends the leg of a body, and begins the next. */
+static void end_leg(leg *l, const tl_model *m, uint32_t body)
+{
+    tl_vec3 gone = tl_v3_sub(m->bodies.pose[body].u, l->from), way = tl_v3_unit(gone);
+    double speed = tl_v3_norm(gone) / (m->time - l->began);
+    if (speed < NO_SLOWER * l->speed || tl_v3_dot(way, l->way) < ONE_WAY)
+        forget_legs(l);
+    if (l->legs < LEGS)
+        l->legs++;
+    l->way = way;
+    l->speed = speed;
+    begin_leg(l, m, body);
+}
+
+/* Whether a body has gone all its legs, pushed that way. */
+static bool fails(const leg *l)
+{
+    return l->legs == LEGS && tl_v3_dot(l->force, l->way) > LEAST_PUSH * l->borne;
+}
+
+/* The fastest of the bodies that fail. */
 static tl_id find_failing(const tl_watch *w, const tl_model *m)
 {
-    if (w->ratio[0] < 0.5 * w->ratio[WINDOWS])
-        return TL_NO_ID;
     tl_id failing = TL_NO_ID;
     double fastest = 0;
     for (uint32_t body = 0; body < w->bodies; body++) {
+        if (!fails(&w->leg[body]) || m->bodies.fixed[body] == TL_FIX_ALL)
+            continue;
         double speed = tl_v3_norm(m->bodies.v[body]);
-        if (m->bodies.fixed[body] != TL_FIX_ALL && speed > fastest && goes_on(w, m, body)) {
+        if (speed > fastest) {
             fastest = speed;
             failing = m->bodies.id[body];
         }
@@ -88,15 +245,21 @@ static tl_id find_failing(const tl_watch *w, const tl_model *m)
 
 tl_id tl_watch_step(tl_watch *w, const tl_model *m)
 {
-    if (++w->steps % WINDOW != 0 || w->structure != m->structure)
+    if (w->structure != m->structure)
         return w->failing;
-    tl_vec3 *oldest = w->place[WINDOWS];
-    memmove(&w->place[1], &w->place[0], WINDOWS * sizeof w->place[0]);
-    memmove(&w->ratio[1], &w->ratio[0], WINDOWS * sizeof w->ratio[0]);
-    w->place[0] = oldest;
-    for (uint32_t body = 0; body < w->bodies; body++)
-        oldest[body] = m->bodies.pose[body].u;
-    w->ratio[0] = tl_unbalanced_ratio(m, TL_RATIO_AVERAGE);
-    w->failing = ++w->windows > WINDOWS ? find_failing(w, m) : TL_NO_ID;
+    if (w->steps++ == 0)
+        for (uint32_t body = 0; body < w->bodies; body++)
+            w->leg[body].touched = touches(m, body);
+    if (w->steps % LOOK_STEPS != 0)
+        return w->failing;
+    look_job job = {.w = w, .m = m};
+    tl_parallel_for(m->pool, w->bodies, WATCH_CHUNK, look_range, &job);
+    if (job.reached)
+        w->least = SETTLED_SHARE / LEGS * settlement(w, m);
+    for (uint32_t body = 0; body < w->bodies && job.reached; body++)
+        if (w->leg[body].reached && m->bodies.fixed[body] != TL_FIX_ALL &&
+            tl_v3_norm(tl_v3_sub(m->bodies.pose[body].u, w->leg[body].from)) >= w->least)
+            end_leg(&w->leg[body], m, body);
+    w->failing = find_failing(w, m);
     return w->failing;
 }
