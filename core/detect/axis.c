@@ -314,6 +314,8 @@ tl_axis tl_axis_search(const tl_pair_view *view, tl_narrow *room, const tl_axis_
         if (is_beside_seam(view, best.s, all))
             return (tl_axis){
                 .n = best.n, .s = INFINITY, .second = fmax(all, TL_SILENT * view->size)};
+        /* it may come to lie there: half the lead is how far the pair may move before it is searched again */
+        best.second = fmax(best.second, best.s - BESIDE * view->size);
     }
     if (previous) {
         tl_axis kept = tl_axis_of(*previous);

@@ -157,9 +157,10 @@ static void correct_shear(tl_points_table *p, const tl_point_lanes *lanes, size_
         tl_vec3 across = tl_v3_cross(n, tl_v3_sub(tl_columns_get(lanes->arm, k), now->centre));
         tl_vec3 add =
             tl_v3_madd(tl_v3_scale(p->area[i] / now->area, force), p->area[i] * twist, across);
-        p->f_s[0][i] += add.x;
-        p->f_s[1][i] += add.y;
-        p->f_s[2][i] += add.z;
+        /* each point's own plane: normals lean by a little */
+        tl_vec3 own = tl_columns_get(lanes->normal, k);
+        tl_vec3 f = tl_v3_add(tl_columns_get(p->f_s, i), add);
+        tl_columns_put(p->f_s, i, tl_v3_madd(f, -tl_v3_dot(f, own), own));
     }
 }
 

@@ -372,7 +372,55 @@ TEST(failed_bonds_stay_failed)
     tl_model_destroy(m);
 }
 
+/* Component of a shear force along its point's normal, over the whole force: rounding. */
+#define IN_PLANE 1e-9
+
+/* The largest of a contact's points, in the planes of the last step. */
+static double out_of_plane(const tl_detect *d, uint32_t c, int *sheared)
+{
+    double worst = 0;
+    for (uint32_t k = 0; k < d->contacts.facet_count[c]; k++) {
+        const tl_facet *facet = &d->contacts.facet[d->contacts.facet_start[c] + k];
+        for (uint32_t j = facet->begin; j < facet->begin + (uint32_t)facet->count; j++) {
+            size_t i = tl_point_row(&d->contacts, c, j);
+            tl_vec3 f = tl_columns_get(d->points.f_s, i);
+            tl_vec3 n = tl_facet_last_normal(facet, tl_point_lean(&d->points, i));
+            double whole = tl_v3_norm(f) + fabs(d->points.f_n[i]);
+            worst = whole > 1e-3 ? fmax(worst, fabs(tl_v3_dot(f, n)) / whole) : worst;
+            *sheared += tl_v3_norm(f) > 1e-3;
+        }
+    }
+    return worst;
+}
+
+/* Stones tumble over each other: points come, go and lean, and friction acts along the faces all the while. */
+TEST(shear_forces_stay_in_the_plane_of_their_point)
+{
+    uint64_t seed = 5;
+    tl_model *m = scene_model(1);
+    scene_box(m, tl_v3(-5, -5, -1), tl_v3(5, 5, 0));
+    for (int k = 0; k < 16; k++)
+        scene_block(m, scene_random_hull(&seed, 14, tl_v3(0.5, 0.45, 0.4)), scene_any_turn(&seed),
+                    tl_v3(0.8 * (k % 4) - 1.2, 0.8 * (k / 4 % 2) - 0.4, 0.5 + 0.75 * (k / 8)));
+    const tl_id base = 1;
+    scene_ok(m, tl_blocks_fix(m, &base, 1, TL_FIX_ALL));
+    scene_ok(m, tl_model_set_gravity(m, tl_v3(1, 0, -10)));
+    scene_law(m, "coulomb", KN, KN, 30);
+    double worst = 0;
+    int sheared = 0;
+    for (int step = 0; step < 600; step++) {
+        tl_solve_result result;
+        scene_ok(m, tl_model_cycle(m, 1, &result));
+        for (uint32_t c = 0; c < m->detect->contacts.table.rows; c++)
+            worst = fmax(worst, out_of_plane(m->detect, c, &sheared));
+    }
+    CHECK(sheared > 1000);
+    CHECK_NEAR(worst, 0, IN_PLANE);
+    tl_model_destroy(m);
+}
+
 TEST_MAIN(RUN(totals_stay_at_unchanged_area), RUN(totals_stay_with_fewer_points),
           RUN(points_of_hardly_any_area_get_no_more_stress_than_there_was),
           RUN(wobbling_keeps_the_totals), RUN(uniform_stress_stays_uniform),
-          RUN(states_are_copied_split_or_reset), RUN(failed_bonds_stay_failed))
+          RUN(states_are_copied_split_or_reset), RUN(failed_bonds_stay_failed),
+          RUN(shear_forces_stay_in_the_plane_of_their_point))
