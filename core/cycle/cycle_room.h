@@ -121,6 +121,7 @@ struct tl_cycle {
     size_t contacts;           /* the most there have been, for the remark on the step */
     double scaled;             /* 1 / (2 rate) of all free bodies, by mass scaling; 0 without it */
     struct tl_undo *undo;      /* undo.c */
+    bool long_step;            /* the given one is far above what is stable */
     bool fast;                 /* a body came near the limit of motion in the last step: limits.c */
     /* the first failure of a parallel phase, by chunk, and the point it came from */
     pthread_mutex_t failure_lock;

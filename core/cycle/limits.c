@@ -15,7 +15,8 @@
  * is stable; ten leaves room for fragments in free fall with a long step. It is a turn of 20 radians. */
 #define TL_TRAVEL 10
 /* Share of that from which a body is fast: a step that follows is kept, for it may have to be undone. Blocks in contact
- * come nowhere near it, and none gets from there to the limit in one step unless something is set by hand. */
+ * come nowhere near it, and none gets from there to the limit in one step unless something is set by hand or the given
+ * time step is far above what is stable: then the step is kept, too. */
 #define TL_FAST 0.01
 
 /* What a step makes of a body's motion. */

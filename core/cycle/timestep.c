@@ -127,25 +127,31 @@ static tl_status no_step(tl_model *m, double dt)
         dt, way_out);
 }
 
-/* Says so when the step that was given is far above the longest that is stable whatever the rule: that of the body which is the
- * fastest now. All are looked at when there are more contacts than ever, and now and then: an impact lasts one such step. */
-static void remark_step(tl_model *m)
+static void say_long(tl_model *m, double stable, uint32_t body)
 {
+    tl_model_say(m,
+                 "timestep: dt = %g s is %.3g times the longest stable step, %.3g s, which block "
+                 "%u sets: contact forces will grow without bound; give a shorter one, or leave dt "
+                 "out",
+                 m->timestep.dt, m->timestep.dt / stable, stable, m->bodies.id[body]);
+}
+
+/* Notes whether the step that was given is far above the longest that is stable whatever the rule, that of the body
+ * which is the fastest now, and says so once. All are looked at when there are more contacts than ever, and now and then:
+ * an impact lasts one such step. */
+static void judge_step(tl_model *m)
+{
+    struct tl_cycle *c = m->cycle;
     size_t contacts = m->detect->contacts.table.rows;
-    bool due = m->cycle->dt <= 0 || m->cycles % COMPARE_EVERY == 0 || contacts > m->cycle->contacts;
-    m->cycle->contacts = contacts > m->cycle->contacts ? contacts : m->cycle->contacts;
-    if (!due || m->cycle->all_held || m->mass_scaling || m->said & 1u << TL_REMARK_STEP)
+    bool due = c->dt <= 0 || m->cycles % COMPARE_EVERY == 0 || contacts > c->contacts;
+    c->contacts = contacts > c->contacts ? contacts : c->contacts;
+    if (!due || c->all_held || m->mass_scaling)
         return;
     tl_row_value fastest = tl_rates_anew(m);
     double stable = 2 * sqrt(0.5 / fastest.value);
-    if (fastest.row == TL_NO_ROW || m->timestep.dt <= TOO_LONG * stable ||
-        !tl_model_says(m, TL_REMARK_STEP))
-        return;
-    tl_model_say(m,
-                 "timestep: dt = %g s is %.3g times the longest stable step, %.3g s, which block "
-                 "%u sets: contact forces "
-                 "will grow without bound; give a shorter one, or leave dt out",
-                 m->timestep.dt, m->timestep.dt / stable, stable, m->bodies.id[fastest.row]);
+    c->long_step = fastest.row != TL_NO_ROW && m->timestep.dt > TOO_LONG * stable;
+    if (c->long_step && tl_model_says(m, TL_REMARK_STEP))
+        say_long(m, stable, fastest.row);
 }
 
 /* The step; 0 where there is no body that can move or does. A report asks `by` what controls it, and leaves the scale of the
@@ -170,10 +176,11 @@ static tl_status choose(tl_model *m, double *dt, bound *by)
     }
     if (given) {
         if (!by)
-            remark_step(m);
+            judge_step(m);
         *dt = c->dt = m->timestep.dt;
         return TL_OK;
     }
+    c->long_step = false;
     double fresh = tl_timestep_fraction(m) * damping_factor(m) * 2 * sqrt(least);
     if (!(isfinite(fresh) && fresh > 0)) {
         *dt = 0;

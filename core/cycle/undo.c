@@ -3,8 +3,8 @@
  * Laws work on the columns of points in place, so by the time one of them fails others have added the step's motion to
  * their shear forces, and the same step made again would add it twice. What laws and gather overwrite is kept for that,
  * page by page on the way, in steps in which something can fail: a plugin that does not say that it never does, numbers
- * so large that a force may not be finite, something that was set by hand since the last step, or a body that came near
- * the limit of motion. A step of the laws and dampings that come with the program costs nothing more. Detection and the
+ * so large that a force may not be finite, something that was set by hand since the last step, a body that came near
+ * the limit of motion, or a given time step that is not stable. A step of the laws and dampings that come with the program costs nothing more. Detection and the
  * choice of the step need no undoing, for made again in the same places they change nothing; the move cannot fail. */
 #include "cycle/cycle_room.h"
 
@@ -29,10 +29,10 @@ typedef struct normals {
 } normals;
 
 struct tl_undo {
-    bool keeps;       /* in this step */
-    bool gathered;    /* bodies have been kept, too */
-    bool lost;        /* a step failed and was not kept */
-    bool once;        /* only because something was set by hand, or a body is fast */
+    bool keeps;    /* in this step */
+    bool gathered; /* bodies have been kept, too */
+    bool lost;     /* a step failed and was not kept */
+    bool once;     /* only because something was set by hand, a body is fast or the step is long */
     uint64_t version; /* of bodies and laws, in the last step that was made */
     double dt;        /* that the user had fixed then; NAN: none */
     tl_vec3 gravity;  /* then */
@@ -200,7 +200,7 @@ tl_status tl_undo_reserve(tl_model *m)
 {
     struct tl_undo *u = m->cycle->undo;
     u->once = !may_fail(m);
-    if (u->once && !set_by_hand(m) && !m->cycle->fast)
+    if (u->once && !set_by_hand(m) && !m->cycle->fast && !m->cycle->long_step)
         return TL_OK;
     const tl_detect *d = m->detect;
     u->keeps =
