@@ -113,6 +113,29 @@ TL_VECTORIZED static void look_at(seen *s, const tl_bodies *b, size_t begin, siz
         s->mass[i] = s->inertia[i] = 1;
 }
 
+/* Whether what the plugin gave a body are numbers. */
+static bool gave_numbers(const struct tl_cycle *c, size_t body)
+{
+    double sum = c->alpha[body];
+    for (int k = 0; k < 3; k++)
+        sum += fabs(c->damping_force[k][body]) + fabs(c->damping_moment[k][body]);
+    return isfinite(sum);
+}
+
+/* What the damping gave must be numbers: one that is not would spread over the model. */
+static void check_numbers(tl_model *m, size_t begin, size_t end, size_t chunk)
+{
+    for (size_t body = begin; body < end; body++)
+        if (!gave_numbers(m->cycle, body)) {
+            char text[120];
+            snprintf(text, sizeof text,
+                     "what it gives block %u is no finite number (a force, a moment or alpha)",
+                     m->bodies.id[body]);
+            tl_cycle_failed(m, chunk, TL_E_NUMERIC, body, text);
+            return;
+        }
+}
+
 static void damp_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
 {
     (void)thread;
@@ -154,8 +177,19 @@ static void damp_range(void *user, size_t begin, size_t end, size_t chunk, unsig
     tl_leave();
     if (status != TL_OK)
         tl_cycle_failed(m, chunk, status, 0, report.text);
+    else
+        check_numbers(m, begin, last, chunk);
     if (ops->before)
         note_forces(b, begin, last);
+}
+
+static tl_status check_states(const tl_model *m, tl_error *error)
+{
+    for (uint32_t k = 0; k < m->damping->state_count && k < TL_STATE_COLUMNS; k++)
+        if (!isfinite(m->damping_state[k]))
+            return tl_fail(error, TL_E_NUMERIC, "its state '%s' is no finite number",
+                           tl_kind_state(m->damping, k)->name);
+    return TL_OK;
 }
 
 tl_status tl_damping_apply(tl_model *m, double dt)
@@ -181,6 +215,8 @@ tl_status tl_damping_apply(tl_model *m, double dt)
         damping_job job = {m, dt, state};
         tl_parallel_for(m->pool, c->table.rows, TL_BODY_CHUNK, damp_range, &job);
         status = c->failure.status;
+        if (status == TL_OK)
+            status = check_states(m, &c->failure);
     } else {
         tl_fail(&c->failure, status, "%s", report.text);
     }

@@ -384,7 +384,7 @@ tl_status tl_laws_check(tl_model *m)
     for (size_t r = 0; r < d->layout.run_count; r++)
         lawless = lawless || d->layout.runs[r].material == TL_NO_ROW;
     for (uint32_t i = 0; lawless && i < c->table.rows; i++) {
-        if (c->material[i] != TL_NO_ROW || c->point_count[i] == 0)
+        if (c->material[i] != TL_NO_ROW || c->point_count[i] == 0 || c->held[i])
             continue;
         char name[320];
         tl_contact_name(m, i, name, sizeof name);

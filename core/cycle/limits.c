@@ -110,6 +110,17 @@ static bool too_far(const tl_model *m, uint32_t body, double travel)
     return !(travel <= TL_TRAVEL * 2 * m->bodies.radius[body]);
 }
 
+/* How far a load alone may move the body in a step, whichever way it comes to point as the body turns. */
+static double load_travel(const tl_model *m, uint32_t body, const kick *k)
+{
+    const tl_bodies *b = &m->bodies;
+    const tl_body_load *load = &b->load[body];
+    double force = tl_v3_norm(load->force), arm = tl_v3_norm(load->arm), r = b->radius[body];
+    tl_vec3 i = b->moments[body];
+    double turn = (tl_v3_norm(load->moment) + arm * force) / fmin(i.x, fmin(i.y, i.z));
+    return (force / b->mass[body] + turn * r) * k->span * k->dt;
+}
+
 static bool stands(const tl_bodies *b, uint32_t body)
 {
     return !b->drive[body] && tl_v3_norm2(b->v[body]) + tl_v3_norm2(b->w[body]) == 0;
@@ -122,6 +133,9 @@ static void look_range(void *user, size_t begin, size_t end, size_t chunk, unsig
     tl_model *m = job->m;
     for (uint32_t body = (uint32_t)begin; body < end; body++) {
         bool held = m->bodies.fixed[body] == TL_FIX_ALL;
+        if (!held && !job->held && m->bodies.load &&
+            too_far(m, body, load_travel(m, body, &job->kick) / TL_FAST))
+            atomic_store(&job->fast, true);
         if (held != job->held ||
             (held ? stands(&m->bodies, body) : surely_slow(m, body, &job->kick)))
             continue;

@@ -4,12 +4,13 @@
  * to look at another measure, when every single body is at rest:
  *
  *     |F| and |M| / r  <  ratio B          its unbalanced force, and moment over its radius
- *     (m v.v + w.I w) / 2  <  ratio U      its kinetic energy
+ *     (m v.v + w.I w) / 2  <  ratio^2 S U  its kinetic energy
  *
  * with what the body bears, B: the sum of its contact forces, or its weight and load where these are more, and at least
  * what its contacts carry at an overlap that is rounding. U = B^2 / (2 K) is the energy that B stores in the springs of its
  * contacts, of stiffness K: without it a body that swings would be at rest each time it passes through equilibrium,
- * and so would one that flies or slides on without a force. A body without contacts has its share, by mass, of the energy
+ * and so would one that flies or slides on without a force. A body that swings on a spring of stiffness K with the force
+ * ratio B has ratio^2 U; the whole may swing more softly than its contacts by S (SOFTER). A body without contacts has its share, by mass, of the energy
  * stored in all contacts for U. */
 #include "cycle/cycle_room.h"
 
@@ -18,6 +19,10 @@
 /* Overlap, relative to the body's radius, of which contacts cannot tell a ratio of 1e-5: places and so overlaps are
  * rounded at some 1e-16 of it. */
 #define ROUNDED_OVERLAP 1e-10
+
+/* How much softer than the contacts of one body the whole may swing, as a column of 30 blocks does: so much more energy
+ * goes with the same force. */
+#define SOFTER 1e3
 
 /* Bodies a worker takes at a time. */
 #define REST_CHUNK 256
@@ -93,7 +98,7 @@ static bool moves(const rest_job *job, uint32_t body)
     double bears = fmax(m->cycle->contact_force[body], tl_weight_of(b, body, job->gravity));
     bears = fmax(bears, ROUNDED_OVERLAP * b->radius[body] * stiffness);
     double stored = stiffness > 0 ? 0.5 * bears * bears / stiffness : b->mass[body] * job->stored;
-    return !(kinetic < job->ratio * stored);
+    return !(kinetic < job->ratio * fmin(1, SOFTER * job->ratio) * stored);
 }
 
 static void rest_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)

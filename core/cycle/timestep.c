@@ -202,11 +202,13 @@ tl_status tl_timestep_choose(tl_model *m, double *dt)
 tl_status tl_model_timestep(tl_model *m, const tl_timestep *timestep)
 {
     if (!isnan(timestep->fraction) &&
-        !(timestep->fraction > 0 && timestep->fraction <= TL_FRACTION_MOST))
-        return tl_fail(&m->error, TL_E_ARGUMENT, "timestep: fraction = %g is outside (0, %g]",
-                       timestep->fraction, TL_FRACTION_MOST);
-    if (!isnan(timestep->dt) && !(timestep->dt > 0 && isfinite(timestep->dt)))
-        return tl_fail(&m->error, TL_E_ARGUMENT, "timestep: dt = %g s must be > 0", timestep->dt);
+        !(timestep->fraction >= TL_FRACTION_LEAST && timestep->fraction <= TL_FRACTION_MOST))
+        return tl_fail(&m->error, TL_E_ARGUMENT, "timestep: fraction = %g is outside [%g, %g]",
+                       timestep->fraction, TL_FRACTION_LEAST, TL_FRACTION_MOST);
+    if (!isnan(timestep->dt) &&
+        !(timestep->dt >= TL_STEP_LEAST && timestep->dt <= 1 / TL_STEP_LEAST))
+        return tl_fail(&m->error, TL_E_ARGUMENT, "timestep: dt = %g s is outside [%g, %g]",
+                       timestep->dt, TL_STEP_LEAST, 1 / TL_STEP_LEAST);
     m->timestep = *timestep;
     if (m->cycle) {
         m->cycle->dt = 0;

@@ -270,7 +270,7 @@ static tl_status give_births(tl_model *m, size_t *born)
         }
         d->chunks[chunk].found = false;
     }
-    if (deep.count)
+    if (deep.count && tl_model_says(m, TL_REMARK_OVERLAP))
         tl_model_say(
             m,
             "%zu pair%s of blocks (first: blocks %u and %u) overlap%s by more than %g of their "

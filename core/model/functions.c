@@ -82,14 +82,13 @@ static const tl_param timestep_params[] = {
         TL_PARAM_REAL, tl_timestep, fraction, "",
         "share of the critical step that is used, FRAC of (27); when left out 0.5, by the rule "
         "paper 0.1",
-        .min = 0.0, .max = TL_FRACTION_MOST, .flags = TL_PARAM_OPTIONAL | TL_PARAM_MIN_OPEN),
+        .min = TL_FRACTION_LEAST, .max = TL_FRACTION_MOST, .flags = TL_PARAM_OPTIONAL),
     TL_PARAM(TL_PARAM_ENUM, tl_timestep, rule, "",
              "critical step from the lightest block and the stiffest contact (paper), or from "
              "each body's own mass and stiffness (body)",
              .def = {TL_TIMESTEP_BODY}, .choices = timestep_names),
     TL_PARAM(TL_PARAM_REAL, tl_timestep, dt, "s", "a fixed time step instead of the rule",
-             .min = 0.0, .max = INFINITY,
-             .flags = TL_PARAM_OPTIONAL | TL_PARAM_MIN_OPEN | TL_PARAM_MAX_OPEN),
+             .min = TL_STEP_LEAST, .max = 1 / TL_STEP_LEAST, .flags = TL_PARAM_OPTIONAL),
 };
 
 static const tl_param mass_scaling_params[] = {

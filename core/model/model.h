@@ -148,7 +148,8 @@ typedef enum tl_remark {
     TL_REMARK_SOFT,     /* blocks sink in under their weight */
     TL_REMARK_STIFF,    /* the closure under weight is lost in rounding */
     TL_REMARK_DENSITY,  /* is not that of a solid, or does not go with the stiffness */
-    TL_REMARK_TENSION   /* initial stress pulls */
+    TL_REMARK_TENSION,  /* initial stress pulls */
+    TL_REMARK_OVERLAP   /* blocks overlap when they come into contact */
 } tl_remark;
 
 struct tl_model {

@@ -73,7 +73,7 @@ for _, x in ipairs { 1e9, 1e80, 1e160, 1e305, 1.7e308 } do
         refuses(function(_, top) top:load { moment = { 0, 0, sign * math.min(x * 1e3, 1e308) } } end, "block 2 would move")
     end
 end
-refuses(function(m) m:timestep { dt = 1e200 } end, "block 2 would move")
+refuses(function(m) m:timestep { dt = 1e90 } end, "block 2 would move")
 refuses(function(_, top) top:set { density = 1e300 } end, "block 2 would move")
 refuses(function(m) m:damping("viscous", { alpha = 0.1 }) m.gravity = { 0, 0, 1e300 } end, "block 2 would move")
 refuses(function(m) m:damping("local", { alpha = 0.8 }) m.gravity = { 0, 0, 1e300 } end, "block 2 would move")
@@ -106,6 +106,31 @@ for _, times in ipairs { 3, 8, 20, 25, 40, 100 } do
     end
 end
 check.holds(ended >= 3, "steps that are far too long end with a sentence") -- others throw the cube away before
+
+-- A load far off a block's centroid begins to turn it only when the block has moved a little: that step is undone, too.
+do
+    local m, top = stack(1)
+    top:load { force = { 1e6, 1e6, 1e6 }, at = { 1e6, 1e6, 1e6 } }
+    local hash
+    check.raises(function()
+        for _ = 1, 50 do
+            hash = m:state_hash()
+            m:cycle(1)
+        end
+    end, "block 2 would move")
+    check.equal(m:state_hash(), hash)
+    top:load {}
+    top:set { velocity = { 0, 0, 0 }, angular_velocity = { 0, 0, 0 } }
+    m:cycle(5)
+end
+
+-- Steps whose squares are no numbers.
+do
+    local m = stack(1)
+    for _, wild in ipairs { { dt = 1e-320 }, { dt = 1e300 }, { fraction = 1e-308 }, { fraction = 0 } } do
+        check.refused(m, function() m:timestep(wild) end, "timestep")
+    end
+end
 
 -- What was wrong is put right, and the run goes on.
 local m, top = stack(1)

@@ -156,3 +156,18 @@ blocks = cube(model, 0)
 blocks:load { force = { 0, 0, 0.999 * DENSITY * GRAVITY } }
 result = model:cycle(1)
 check.holds(result.ratio_local <= 1, "the weight counts")
+
+-- A block that slides on without friction between clamps, at a velocity that is nothing beside what the clamps could give
+-- it, is not at rest.
+do
+    local m = talus.model { gravity = { 0, 0, 0 } }
+    m:generate("box", { min = { -5, -5, -1 }, max = { 5, 5, 0 }, density = 2700 })
+    m:generate("box", { min = { -5, -5, 1 }, max = { 5, 5, 2 }, density = 2700 })
+    m:blocks():fix()
+    m:generate("box", { min = { -.5, -.5, 0 }, max = { .5, .5, 1 }, density = 2700, group = "b" })
+    m:joint("*", "coulomb", { kn = 1e9, ks = 1e9, friction = 0 })
+    m:insitu { stress = { zz = -1e7 } }
+    m:damping "local"
+    m:blocks { group = "b" }:set { velocity = { .01, 0, 0 } }
+    check.equal(m:solve { max_cycles = 500 }.reason, "cycles")
+end

@@ -197,11 +197,15 @@ typedef enum tl_timestep_rule { TL_TIMESTEP_PAPER, TL_TIMESTEP_BODY } tl_timeste
 
 /* Largest FRAC: twice what two free blocks bear; more is a slip of the pen. */
 #define TL_FRACTION_MOST 2.0
+/* Least fraction, and least given step, s: below, steps and their squares leave the range of numbers. */
+#define TL_FRACTION_LEAST 1e-9
+#define TL_STEP_LEAST 1e-100
 
 typedef struct tl_timestep {
-    double fraction; /* FRAC of (27), in (0, TL_FRACTION_MOST]; NaN: that of the rule */
-    int32_t rule;    /* tl_timestep_rule */
-    double dt;       /* fixed step, s; NaN: by the rule */
+    double
+        fraction; /* FRAC of (27), in [TL_FRACTION_LEAST, TL_FRACTION_MOST]; NaN: that of the rule */
+    int32_t rule; /* tl_timestep_rule */
+    double dt;    /* fixed step, s; NaN: by the rule */
 } tl_timestep;
 
 TL_API tl_status tl_model_timestep(tl_model *model, const tl_timestep *timestep);
