@@ -8,7 +8,8 @@
  * step that its landing needs: a step that shrinks while a body lands costs energy.
  *
  * Rates are kept from step to step and made anew where contacts have changed. Where nothing moves by more than areas are
- * reused for, they cost nothing. */
+ * reused for, they cost nothing. Kept ones follow from the contacts as they were when the body was rated, not as they are:
+ * where the step follows from them they are part of the model's state. */
 #include "cycle/rates.h"
 
 #include <string.h>
@@ -314,6 +315,25 @@ tl_row_value tl_rates_keep(tl_model *m)
         c->rated = now;
     }
     return (tl_row_value){c->rated.extreme, c->rated.body};
+}
+
+bool tl_rates_are_state(const tl_model *m)
+{
+    return m->mass_scaling || (tl_rates_points(m) && isnan(m->timestep.dt));
+}
+
+void tl_rates_try(tl_model *m, double *rate)
+{
+    struct tl_cycle *c = m->cycle;
+    struct tl_rated rated = c->rated;
+    double *own = c->rate;
+    tl_rates_count(m);
+    for (size_t body = 0; body < m->bodies.table.rows; body++)
+        rate[body] = own[body];
+    c->rate = rate;
+    tl_rates_keep(m);
+    c->rate = own;
+    c->rated = rated;
 }
 
 tl_row_value tl_rates_anew(tl_model *m)

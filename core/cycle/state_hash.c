@@ -2,15 +2,16 @@
  * laws, damping and settings. Two models of the same digest go on alike, whatever is done to both.
  *
  * Contacts are taken as the next step will find them, in a copy of the detection: whether they have been brought up to the
- * present places already, by a step that failed after that or by a question, makes no difference. Left out is what is only
- * told (energies, displacements' zero, record of cuts), what asking may change (contact ids, order of contacts) and what
- * only saves work (cached axes, the broad phase), for the results do not depend on it beyond the caches' margins. A
- * column that few models need counts as zeros where there is none. What follows from the rest and lies in a row with it (a
- * pose's matrix) does no harm. */
-#include "cycle/cycle_room.h"
+ * present places already, by a step that failed after that or by a question, makes no difference. So are the rates of the
+ * bodies where motion follows from rates that were kept. Left out is what is only told (energies, displacements' zero,
+ * record of cuts), what asking may change (contact ids, order of contacts) and what only saves work (cached axes, the broad
+ * phase), for the results do not depend on it beyond the caches' margins. A column that few models need counts as zeros
+ * where there is none. What follows from the rest and lies in a row with it (a pose's matrix) does no harm. */
+#include "cycle/rates.h"
 
 #include "base/hash.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 static void hash_table(tl_hash *hash, const tl_table *table)
@@ -94,6 +95,24 @@ static void say_nothing(void *user, const char *text)
     (void)text;
 }
 
+/* Rates as the next step will keep them, for contacts as it will find them. */
+static tl_status hash_rates(tl_hash *hash, tl_model *m)
+{
+    if (!tl_rates_are_state(m))
+        return TL_OK;
+    tl_status status = tl_cycle_prepare(m);
+    if (status != TL_OK)
+        return status;
+    size_t bodies = m->bodies.table.rows;
+    double *rate = malloc((bodies + 1) * sizeof *rate);
+    if (!rate)
+        return tl_fail_memory(&m->error);
+    tl_rates_try(m, rate);
+    hash_numbers(hash, rate, bodies);
+    free(rate);
+    return TL_OK;
+}
+
 /* Hashes the contacts as the next step will find them. The first contacts of a model are found in the model itself, as by
  * any question; contacts that stand are brought up to date in a copy, for it would change what a later join does with them. */
 static tl_status hash_next_contacts(tl_hash *hash, tl_model *m)
@@ -111,8 +130,10 @@ static tl_status hash_next_contacts(tl_hash *hash, tl_model *m)
     }
     m->log = say_nothing;
     tl_status status = tl_detect_update(m);
-    if (status == TL_OK)
+    if (status == TL_OK) {
         hash_contacts(hash, m);
+        status = hash_rates(hash, m);
+    }
     m->log = log;
     tl_detect_destroy(m->detect);
     m->detect = own;

@@ -195,6 +195,7 @@ void tl_model_set_rotation(tl_model *m, tl_rotation_rule rule)
 void tl_model_set_reuse_geometry(tl_model *m, bool reuse)
 {
     m->config.reuse_geometry = reuse;
+    m->constraints++; /* areas that were reused will be others */
 }
 
 void tl_model_set_contact_points(tl_model *m, tl_contact_points where)

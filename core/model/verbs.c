@@ -57,6 +57,27 @@ tl_status tl_blocks_delete(tl_model *m, const tl_id *ids, size_t count)
     return status;
 }
 
+/* In what way a body is held, and the motion that holding it may end. */
+typedef struct held {
+    uint8_t fixed;
+    uint32_t drive;
+    tl_vec3 v, w;
+} held;
+
+static held held_as(const tl_model *m, uint32_t body)
+{
+    const tl_bodies *b = &m->bodies;
+    return (held){b->fixed[body], b->drive[body], b->v[body], b->w[body]};
+}
+
+static bool is_held_as(const tl_model *m, uint32_t body, held before)
+{
+    held now = held_as(m, body);
+    double faster =
+        tl_v3_norm2(tl_v3_sub(now.v, before.v)) + tl_v3_norm2(tl_v3_sub(now.w, before.w));
+    return now.fixed == before.fixed && now.drive == before.drive && faster == 0;
+}
+
 tl_status tl_blocks_fix(tl_model *m, const tl_id *ids, size_t count, unsigned what)
 {
     tl_status status = tl_drives_may_change(m, "fix blocks");
@@ -64,9 +85,11 @@ tl_status tl_blocks_fix(tl_model *m, const tl_id *ids, size_t count, unsigned wh
         status = check_ids(m, ids, count);
     if (status != TL_OK)
         return status;
+    bool changed = false;
     for (size_t i = 0; i < count; i++) {
         uint32_t body = m->blocks.body[m->row_of[ids[i]]];
         tl_vec3 *v = &m->bodies.v[body];
+        held before = held_as(m, body);
         tl_drive_leave(m, body);
         m->bodies.fixed[body] = (uint8_t)(m->bodies.fixed[body] | (what & TL_FIX_ALL));
         v->x = what & TL_FIX_X ? 0 : v->x;
@@ -74,8 +97,9 @@ tl_status tl_blocks_fix(tl_model *m, const tl_id *ids, size_t count, unsigned wh
         v->z = what & TL_FIX_Z ? 0 : v->z;
         if (what & TL_FIX_ROTATION)
             m->bodies.w[body] = tl_v3(0, 0, 0);
+        changed = changed || !is_held_as(m, body, before);
     }
-    m->constraints++;
+    m->constraints += changed;
     return TL_OK;
 }
 
@@ -86,12 +110,15 @@ tl_status tl_blocks_free(tl_model *m, const tl_id *ids, size_t count)
         status = check_ids(m, ids, count);
     if (status != TL_OK)
         return status;
+    bool changed = false;
     for (size_t i = 0; i < count; i++) {
         uint32_t body = m->blocks.body[m->row_of[ids[i]]];
+        held before = held_as(m, body);
         tl_drive_leave(m, body);
         m->bodies.fixed[body] = 0;
+        changed = changed || !is_held_as(m, body, before);
     }
-    m->constraints++;
+    m->constraints += changed;
     return TL_OK;
 }
 
