@@ -24,15 +24,6 @@ typedef struct run_job {
     atomic_bool *changed;
 } run_job;
 
-static uint32_t contact_of_point(const tl_contacts *contacts, size_t point)
-{
-    for (uint32_t c = 0; c < contacts->table.rows; c++)
-        for (uint32_t k = 0; k < contacts->point_room[c]; k++)
-            if (point == tl_point_row(contacts, c, k))
-                return c;
-    return 0;
-}
-
 /* Calls the law on `count` points from `first`; false when it failed. */
 static bool call_law(const run_job *job, size_t first, size_t count, const tl_point_lanes *l)
 {
@@ -68,8 +59,10 @@ static bool call_law(const run_job *job, size_t first, size_t count, const tl_po
     tl_enter(job->material->kind, "update");
     tl_status status = ops->update(job->material->self, &batch, &report);
     tl_leave();
+    /* the plugin's word: there need not be such a point */
+    size_t bad = report.first_bad < count ? report.first_bad : 0;
     if (status != TL_OK)
-        tl_cycle_failed(job->m, first, status, first + report.first_bad, report.text);
+        tl_cycle_failed(job->m, first, status, first + bad, report.text);
     return status == TL_OK;
 }
 
@@ -335,17 +328,47 @@ void tl_cycle_failed(tl_model *m, size_t chunk, tl_status status, size_t point, 
     pthread_mutex_unlock(&cycle->failure_lock);
 }
 
+/* Where a step failed: the law, and the contact or TL_NO_ROW. */
+typedef struct failed_at {
+    const tl_material *material;
+    uint32_t contact;
+} failed_at;
+
+/* The contact in a lane of a rank or, where that is padding, the first one of the rank; TL_NO_ROW: all are. */
+static uint32_t contact_near(const tl_rank *rank, size_t lane)
+{
+    uint32_t c = rank->contact[lane];
+    for (size_t l = 0; c == TL_NO_ROW && l < TL_LANES; l++)
+        c = rank->contact[l];
+    return c;
+}
+
+static failed_at find_failed(const tl_model *m, size_t point)
+{
+    const tl_layout *layout = &m->detect->layout;
+    const tl_run *run = layout->runs;
+    while (point >= run->end)
+        run++;
+    size_t k = run->rank_begin;
+    while (point - layout->ranks[k].start >= (size_t)layout->ranks[k].slots * TL_LANES)
+        k++;
+    const tl_rank *rank = &layout->ranks[k];
+    uint32_t contact = contact_near(rank, (point - rank->start) % TL_LANES);
+    return (failed_at){&m->materials[run->material], contact};
+}
+
 /* Turns a failure in a parallel phase into the model's error, with the contact it came from. */
 static tl_status report_failure(tl_model *m)
 {
     struct tl_cycle *cycle = m->cycle;
     if (cycle->failure.status == TL_OK)
         return TL_OK;
-    char name[320];
-    uint32_t c = contact_of_point(&m->detect->contacts, cycle->failure_point);
-    const tl_kind *kind = m->materials[m->detect->contacts.material[c]].kind;
+    char name[320] = "a point of no contact";
+    failed_at at = find_failed(m, cycle->failure_point);
+    const tl_kind *kind = at.material->kind;
     const tl_plugin *plugin = tl_plugin_of(kind, NULL);
-    tl_contact_name(m, c, name, sizeof name);
+    if (at.contact != TL_NO_ROW)
+        tl_contact_name(m, at.contact, name, sizeof name);
     tl_fail(&m->error, cycle->failure.status, "cycle %lld, law '%s' of plugin '%s', %s: %s",
             (long long)m->cycles + 1, kind->name, plugin ? plugin->id : "?", name,
             cycle->failure.text);

@@ -2,8 +2,10 @@
 #include <talus/plugin.h>
 
 #include <math.h>
+#include <stdint.h>
+#include <string.h>
 
-enum { NONE, NEGATIVE, NOT_A_NUMBER, INFINITE, STATE, TILTED, ROUNDING, WEAK, WEAK_SHEAR };
+enum { NONE, NEGATIVE, NOT_A_NUMBER, INFINITE, STATE, TILTED, ROUNDING, WEAK, WEAK_SHEAR, PLACE };
 
 typedef struct params {
     int32_t lie;
@@ -11,7 +13,8 @@ typedef struct params {
 } params;
 
 static const char *const lies[] = {"none",   "negative", "not_a_number", "infinite",   "state",
-                                   "tilted", "rounding", "weak",         "weak_shear", NULL};
+                                   "tilted", "rounding", "weak",         "weak_shear", "place",
+                                   NULL};
 
 static const tl_param param_table[] = {
     TL_PARAM(TL_PARAM_ENUM, params, lie, "", "what is wrong with the law", .choices = lies),
@@ -28,8 +31,12 @@ static const tl_state state_table[] = {
 
 static tl_status update(const void *self, const tl_law_batch *batch, tl_report *report)
 {
-    (void)report;
     const params *p = self;
+    if (p->lie == PLACE) {
+        report->first_bad = p->factor < 1e9 ? (size_t)p->factor : SIZE_MAX;
+        strcpy(report->text, "it fails somewhere");
+        return TL_E_NUMERIC;
+    }
     for (uint32_t i = 0; i < batch->count; i++) {
         double k = p->kn * batch->area[i];
         double f_n = fmax(0, k * batch->closure[i] + batch->f_n0[i]);
