@@ -7,6 +7,7 @@
  *
  * All bodies are looked at in every step: a test without roots sorts out those that are far from the limit. */
 #include "cycle/cycle_room.h"
+#include "cycle/kick.h"
 
 #include <stdatomic.h>
 #include <stdio.h>
@@ -83,10 +84,7 @@ static void kicked(const tl_model *m, uint32_t body, const kick *k, tl_vec3 *v, 
         return;
     }
     push p = push_of(m, body);
-    double d1 = 1 - 0.5 * p.alpha * k->span, d2 = 1 / (1 + 0.5 * p.alpha * k->span);
-    double span = k->span / p.scale;
-    tl_vec3 faster = tl_v3_madd(tl_v3_scale(d1, *v), span / p.mass, p.force);
-    *v = tl_v3_scale(d2, faster);
+    *v = tl_kick(*v, p.force, k->span / (p.mass * p.scale), p.alpha, k->span);
     if (b->fixed[body] & TL_FIX_ROTATION)
         return;
     tl_quat axes = tl_q_mul(b->q[body], b->axes[body]);
@@ -94,7 +92,7 @@ static void kicked(const tl_model *m, uint32_t body, const kick *k, tl_vec3 *v, 
     if (m->config.rotation == TL_ROTATION_PAPER)
         i = tl_v3(b->round[body], b->round[body], b->round[body]);
     turn = tl_q_rotate(axes, tl_v3(turn.x / i.x, turn.y / i.y, turn.z / i.z));
-    *w = tl_v3_scale(d2, tl_v3_madd(tl_v3_scale(d1, *w), span, turn));
+    *w = tl_kick(*w, turn, k->span / p.scale, p.alpha, k->span);
 }
 
 /* How far the farthest vertex may move in the step: no number when it cannot be told. */

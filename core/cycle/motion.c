@@ -17,6 +17,7 @@
  * some components, and all with the paper's rotation, get their rotation one by one; those held in every component are
  * in no group and cost nothing as long as they stand. */
 #include "cycle/cycle_room.h"
+#include "cycle/kick.h"
 #include "cycle/turn.h"
 
 typedef struct move_job {
@@ -39,12 +40,11 @@ TL_INLINE tl_mat3 attitude_of(tl_quat q, tl_quat axes)
 /* The velocity by (23). */
 TL_INLINE void kick_lane(tl_group *g, size_t i, double kick)
 {
-    double d1 = 1 - 0.5 * g->alpha[i] * kick, d2 = 1 / (1 + 0.5 * g->alpha[i] * kick);
     double per_mass =
         kick / (g->mass[i] * g->scale[i]); /* mass scaling: less motion for the same force */
     tl_vec3 force = tl_v3_add(tl_lanes3_get(&g->force, i), tl_lanes3_get(&g->damping_force, i));
-    tl_vec3 v = tl_v3_madd(tl_v3_scale(d1, tl_lanes3_get(&g->v0, i)), per_mass, force);
-    tl_lanes3_put(&g->v1, i, tl_v3_scale(d2, v));
+    tl_vec3 v0 = tl_lanes3_get(&g->v0, i);
+    tl_lanes3_put(&g->v1, i, tl_kick(v0, force, per_mass, g->alpha[i], kick));
 }
 
 TL_INLINE double speed_of(const tl_group *g, size_t i)
@@ -57,13 +57,11 @@ TL_INLINE double speed_of(const tl_group *g, size_t i)
 TL_INLINE void kick_spin(tl_group *g, size_t i, double kick)
 {
     tl_vec3 moments = tl_lanes3_get(&g->moments, i);
-    double d1 = 1 - 0.5 * g->alpha[i] * kick, d2 = 1 / (1 + 0.5 * g->alpha[i] * kick);
-    double span = kick / g->scale[i];
     tl_vec3 moment = tl_v3_add(tl_lanes3_get(&g->moment, i), tl_lanes3_get(&g->damping_moment, i));
     tl_mat3 attitude = attitude_of(tl_lanes4_get(&g->q, i), tl_lanes4_get(&g->axes, i));
     tl_vec3 w = tl_m3_tmul(&attitude, tl_lanes3_get(&g->w0, i)), l0 = times(moments, w);
     tl_vec3 turn = tl_m3_tmul(&attitude, moment);
-    tl_vec3 l1 = tl_v3_scale(d2, tl_v3_madd(tl_v3_scale(d1, l0), span, turn));
+    tl_vec3 l1 = tl_kick(l0, turn, kick / g->scale[i], g->alpha[i], kick);
     tl_vec3 per = {1 / moments.x, 1 / moments.y, 1 / moments.z};
     tl_vec3 spin1 = times(per, l1);
     tl_lanes3_put(&g->per, i, per);
@@ -151,11 +149,10 @@ static void turn_about(tl_group *g, size_t i, const move_job *job, bool paper, b
 {
     tl_vec3 w = tl_lanes3_get(&g->w0, i);
     if (!held) {
-        double span = 0.5 * g->alpha[i] * job->kick;
         double per_moment = job->kick / (g->moments.x[i] * g->scale[i]);
         tl_vec3 moment =
             tl_v3_add(tl_lanes3_get(&g->moment, i), tl_lanes3_get(&g->damping_moment, i));
-        w = tl_v3_scale(1 / (1 + span), tl_v3_madd(tl_v3_scale(1 - span, w), per_moment, moment));
+        w = tl_kick(w, moment, per_moment, g->alpha[i], job->kick);
     }
     tl_quat turn = tl_turn_by(tl_v3_scale(job->drift, w));
     tl_lanes4_put(&g->q2, i, tl_q_trim(tl_q_mul(turn, tl_lanes4_get(&g->q, i))));
