@@ -9,8 +9,9 @@
 
 #include <pthread.h>
 
-/* Rows a worker takes at a time. Of contacts where there is little to do with each. */
+/* Rows a worker takes at a time. Of bodies that are only looked at, and of contacts, there is little to do with each. */
 #define TL_BODY_CHUNK 32
+#define TL_LOOK_CHUNK 256
 #define TL_CONTACT_CHUNK 1024
 
 /* Sums over the free bodies, made per chunk and added in chunk order. */
@@ -129,6 +130,12 @@ struct tl_cycle {
     size_t failure_chunk, failure_point;
 };
 
+/* The larger of a law's kn and ks, Pa/m. */
+static inline double tl_law_stiffness(const tl_material *law)
+{
+    return law->kn > law->ks ? law->kn : law->ks;
+}
+
 /* What mass scaling makes of a body's inertia. */
 static inline double tl_inertia_scale(const struct tl_cycle *c, uint32_t body)
 {
@@ -202,6 +209,12 @@ void tl_gather(tl_model *m);
 static inline double tl_weight_of(const tl_bodies *b, uint32_t body, double gravity)
 {
     return b->mass[body] * gravity + (b->load ? tl_v3_norm(b->load[body].force) : 0);
+}
+/* What a body of that weight bears: the sum of its contact forces or, where that is more, its weight. */
+static inline double tl_borne(const tl_model *m, uint32_t body, double weight)
+{
+    double contact = m->cycle->contact_force[body];
+    return contact > weight ? contact : weight;
 }
 /* Twice the rotational energy of a body. */
 double tl_spin_energy2(const tl_model *m, uint32_t body);

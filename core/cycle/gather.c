@@ -65,7 +65,7 @@ static void sum_ratios(const tl_model *m, uint32_t body, double weight, tl_sums 
     double unbalanced = tl_v3_norm(b->force[body]);
     double turning = tl_v3_norm(b->moment[body]) / b->radius[body];
     double contact = m->cycle->contact_force[body];
-    double bears = larger(contact, weight), worse = larger(unbalanced, turning);
+    double bears = tl_borne(m, body, weight), worse = larger(unbalanced, turning);
     sums->unbalanced += unbalanced;
     sums->turning += turning;
     sums->contact_force += contact;

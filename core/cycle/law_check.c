@@ -40,11 +40,6 @@ typedef struct place {
     size_t row, lane;
 } place;
 
-static tl_vec3 lane_of(double *const columns[3], size_t i)
-{
-    return tl_v3(columns[0][i], columns[1][i], columns[2][i]);
-}
-
 static void copy_points(const place *at, trial *t)
 {
     const tl_points_table *p = &at->m->detect->points;
@@ -146,7 +141,7 @@ static void compare(tl_model *m, const tl_material *law, const tl_rank *rank, si
         bool shear = found->shear[l] > found->normal[l];
         double stiffness = shear ? found->shear[l] : found->normal[l];
         char text[240];
-        if (!(stiffness > FAR_STIFFER * fmax(law->kn, law->ks)))
+        if (!(stiffness > FAR_STIFFER * tl_law_stiffness(law)))
             continue;
         snprintf(text, sizeof text,
                  "its %s force rises by %.3g Pa/m here, and its stiffness() gives kn = %.3g and ks "
@@ -167,10 +162,10 @@ void tl_law_check_stiffness(tl_model *m, const tl_material *law, const tl_rank *
         slopes found;
         for (size_t l = 0; l < TL_LANES; l++) {
             size_t i = at.lane + l;
-            tl_vec3 du_s = lane_of(lanes->du_s, i);
+            tl_vec3 du_s = tl_columns_get(lanes->du_s, i);
             double length = tl_v3_norm(du_s);
-            slide[l] =
-                length > 0 ? tl_v3_unit(du_s) : tl_v3_perpendicular(lane_of(lanes->normal, i));
+            slide[l] = length > 0 ? tl_v3_unit(du_s)
+                                  : tl_v3_perpendicular(tl_columns_get(lanes->normal, i));
             move[l] = begins >> l & 1
                           ? TRIAL * (fabs(lanes->closure[i]) + fabs(lanes->du_n[i]) + length)
                           : 0;
@@ -186,9 +181,9 @@ static bool try_in_plane(const place *at, double along[TL_LANES])
     trial t;
     copy_points(at, &t);
     for (size_t l = 0; l < TL_LANES; l++) {
-        tl_vec3 n = lane_of(at->lanes->normal, at->lane + l);
-        tl_vec3 f = lane_of(at->m->detect->points.f_s, at->row + l);
-        tl_vec3 du_s = lane_of(at->lanes->du_s, at->lane + l);
+        tl_vec3 n = tl_columns_get(at->lanes->normal, at->lane + l);
+        tl_vec3 f = tl_columns_get(at->m->detect->points.f_s, at->row + l);
+        tl_vec3 du_s = tl_columns_get(at->lanes->du_s, at->lane + l);
         f = tl_v3_madd(f, -tl_v3_dot(f, n), n);
         du_s = tl_v3_madd(du_s, -tl_v3_dot(du_s, n), n);
         put_lane(t.f_s, l, f);
@@ -210,8 +205,8 @@ static bool is_out_of_plane(const tl_model *m, const tl_material *law, uint32_t 
     const tl_points_table *p = &m->detect->points;
     const tl_contacts *contacts = &m->detect->contacts;
     double size = fmin(m->blocks.size[contacts->a[c]], m->blocks.size[contacts->b[c]]);
-    double spring = fmax(law->kn, law->ks) * p->area[row] * size;
-    double force = tl_v3_norm(lane_of(p->f_s, row)) + fabs(p->f_n[row]);
+    double spring = tl_law_stiffness(law) * p->area[row] * size;
+    double force = tl_v3_norm(tl_columns_get(p->f_s, row)) + fabs(p->f_n[row]);
     return along > TL_OUT_OF_PLANE * force && along > ROUNDING_FORCE * spring;
 }
 
@@ -224,8 +219,8 @@ void tl_law_check_shear(tl_model *m, const tl_material *law, const tl_rank *rank
         uint32_t c = rank->contact[l];
         if (c == TL_NO_ROW || !(p->area[row] > 0))
             continue;
-        tl_vec3 f = lane_of(p->f_s, row);
-        double along = fabs(tl_v3_dot(f, lane_of(lanes->normal, lane + i))), own[TL_LANES];
+        tl_vec3 f = tl_columns_get(p->f_s, row);
+        double along = fabs(tl_v3_dot(f, tl_columns_get(lanes->normal, lane + i))), own[TL_LANES];
         place at = {m, law, lanes, row - l, lane + i - l};
         /* what a new contact polygon leaves of the old one's forces is not the law's */
         if (!is_out_of_plane(m, law, c, row, along) || !try_in_plane(&at, own) ||

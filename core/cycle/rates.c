@@ -18,17 +18,11 @@
  * grown. */
 #define LOOK_EVERY 64
 
-double tl_law_stiffness(const tl_model *m, uint32_t material)
-{
-    const tl_material *law = &m->materials[material];
-    return law->kn > law->ks ? law->kn : law->ks;
-}
-
 double tl_stiffest_law(const tl_model *m)
 {
     double k = 0;
     for (size_t i = 0; i < m->material_count; i++)
-        k = fmax(k, tl_law_stiffness(m, (uint32_t)i));
+        k = fmax(k, tl_law_stiffness(&m->materials[i]));
     return k;
 }
 
@@ -164,7 +158,7 @@ static contact_sums add_contacts(const tl_model *m, uint32_t body, bool points)
             uint32_t i = d->by_block[e];
             if (c->material[i] == TL_NO_ROW)
                 continue;
-            double law = tl_law_stiffness(m, c->material[i]);
+            double law = tl_law_stiffness(&m->materials[c->material[i]]);
             out.law = fmax(out.law, law);
             for (uint32_t f = 0; points && f < c->facet_count[i]; f++) {
                 area_sums next = facet_of(m, i, &c->facet[c->facet_start[i] + f], c->b[i] == row);

@@ -21,8 +21,7 @@ tl_row_value tl_row_search_run(tl_row_search *s, size_t rows, size_t chunk, tl_r
 /* Notes the best row of a range. */
 void tl_row_search_note(tl_row_search *s, unsigned thread, tl_row_value found);
 
-/* The larger of a law's kn and ks, Pa/m; and that of the stiffest law. */
-double tl_law_stiffness(const tl_model *m, uint32_t material);
+/* The stiffness of the stiffest law, Pa/m. */
 double tl_stiffest_law(const tl_model *m);
 
 /* Whether the rates count contact points, or only faces. */

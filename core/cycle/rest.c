@@ -24,9 +24,6 @@
  * goes with the same force. */
 #define SOFTER 1e3
 
-/* Bodies a worker takes at a time. */
-#define REST_CHUNK 256
-
 /* Sum of k A over the contacts of a body. */
 static double stiffness_of(const tl_model *m, uint32_t body)
 {
@@ -39,8 +36,7 @@ static double stiffness_of(const tl_model *m, uint32_t body)
             uint32_t i = d->by_block[e];
             if (c->material[i] == TL_NO_ROW || c->point_count[i] == 0)
                 continue;
-            const tl_material *law = &m->materials[c->material[i]];
-            sum += fmax(law->kn, law->ks) * c->area[i];
+            sum += tl_law_stiffness(&m->materials[c->material[i]]) * c->area[i];
         }
     }
     return sum;
@@ -95,7 +91,7 @@ static bool moves(const rest_job *job, uint32_t body)
     if (kinetic == 0)
         return false;
     double stiffness = stiffness_of(m, body);
-    double bears = fmax(m->cycle->contact_force[body], tl_weight_of(b, body, job->gravity));
+    double bears = tl_borne(m, body, tl_weight_of(b, body, job->gravity));
     bears = fmax(bears, ROUNDED_OVERLAP * b->radius[body] * stiffness);
     double stored = stiffness > 0 ? 0.5 * bears * bears / stiffness : b->mass[body] * job->stored;
     return !(kinetic < job->ratio * fmin(1, SOFTER * job->ratio) * stored);
@@ -128,7 +124,7 @@ static bool stands_still(tl_model *m, double ratio)
                     .gravity = tl_v3_norm(m->config.gravity),
                     .stored = mass > 0 ? energy.stored / mass : 0,
                     .moving = TL_NO_ROW};
-    tl_parallel_for(m->pool, m->bodies.table.rows, REST_CHUNK, rest_range, &job);
+    tl_parallel_for(m->pool, m->bodies.table.rows, TL_LOOK_CHUNK, rest_range, &job);
     if (job.moving == TL_NO_ROW)
         return true;
     m->cycle->sums.worst = job.moving;

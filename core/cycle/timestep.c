@@ -37,7 +37,7 @@ static void stiffest_range(void *user, size_t begin, size_t end, size_t chunk, u
     for (uint32_t i = (uint32_t)begin; i < end; i++) {
         if (c->material[i] == TL_NO_ROW)
             continue;
-        double k = tl_law_stiffness(m, c->material[i]) * c->area[i];
+        double k = tl_law_stiffness(&m->materials[c->material[i]]) * c->area[i];
         /* most are not stiffer: what is dearer to know is asked last */
         if (k > found.value && (tl_body_counts(m, m->blocks.body[c->a[i]]) ||
                                 tl_body_counts(m, m->blocks.body[c->b[i]])))

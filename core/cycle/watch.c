@@ -33,8 +33,6 @@
 #define SUPPORTED 0.5
 /* Unbalanced force over what a body bears from which it is pushed on: above what is left where a body is carried along. */
 #define LEAST_PUSH 1e-4
-/* Bodies a worker takes at a time. */
-#define WATCH_CHUNK 256
 
 /* A leg of a body, until now, and those behind it. */
 typedef struct leg {
@@ -138,10 +136,10 @@ static bool touches(const tl_model *m, uint32_t body)
     return false;
 }
 
+/* What contacts carry at an overlap that is rounding (rest.c) does not count. */
 static double borne_by(const tl_model *m, uint32_t body)
 {
-    double weight = tl_weight_of(&m->bodies, body, tl_v3_norm(m->config.gravity));
-    return fmax(m->cycle->contact_force[body], weight);
+    return tl_borne(m, body, tl_weight_of(&m->bodies, body, tl_v3_norm(m->config.gravity)));
 }
 
 typedef struct look_job {
@@ -253,7 +251,7 @@ tl_id tl_watch_step(tl_watch *w, const tl_model *m)
     if (w->steps % LOOK_STEPS != 0)
         return w->failing;
     look_job job = {.w = w, .m = m};
-    tl_parallel_for(m->pool, w->bodies, WATCH_CHUNK, look_range, &job);
+    tl_parallel_for(m->pool, w->bodies, TL_LOOK_CHUNK, look_range, &job);
     if (job.reached)
         w->least = SETTLED_SHARE / LEGS * settlement(w, m);
     for (uint32_t body = 0; body < w->bodies && job.reached; body++)
