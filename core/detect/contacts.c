@@ -47,6 +47,7 @@ void tl_contacts_init(tl_contacts *c, tl_points_table *p)
     TL_COLUMN(t, c, fresh, TL_COLUMN_STEP);
     TL_COLUMN(t, c, lone, 0);
     TL_COLUMN(t, c, fate, 0);
+    TL_COLUMN(t, c, deep, 0);
     TL_COLUMN(t, c, held, 0);
 
     t = &p->table;
@@ -127,6 +128,7 @@ bool tl_contact_append(tl_model *m, uint32_t pair, const tl_axis *axis, double m
     c->until[row] = tl_pair_odometer(m, p->a, p->b);
     c->search[row] = c->until[row] + margin;
     c->fate[row] = TL_FATE_GROW;
+    c->deep[row] = TL_DEEP_NOT;
     c->held[row] = tl_blocks_held_still(m, p->a, p->b);
     d->idle[m->blocks.body[p->a]] = d->idle[m->blocks.body[p->b]] = false;
     p->contact = row;

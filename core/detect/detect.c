@@ -245,7 +245,7 @@ static tl_status give_birth(tl_model *m, uint32_t pair, overlaps *deep)
     if (axis.s < -DEEP * view.size && deep->count++ == 0)
         deep->pair = pair;
     if (tl_overlap_is_deep(m, &view, &axis, d->pairs[pair].a, d->pairs[pair].b, true)) {
-        tl_overlap_mark(&d->contacts, (uint32_t)d->contacts.table.rows - 1);
+        tl_overlap_mark(&d->contacts, (uint32_t)d->contacts.table.rows - 1, true);
         room->deep = true;
     }
     return TL_OK;

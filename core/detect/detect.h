@@ -195,6 +195,7 @@ typedef struct tl_contacts {
     uint8_t *lone;  /* its faces that look at each other are one of each block */
     uint8_t *fate;  /* what the parallel phase leaves to the serial one: TL_FATE_* */
     uint8_t *held;  /* both its bodies are held still: held.c */
+    uint8_t *deep;  /* its blocks overlap too deeply: TL_DEEP_*, overlap.c */
     /* facets */
     tl_facet *facet;
     size_t facet_total, facet_capacity;
@@ -202,6 +203,9 @@ typedef struct tl_contacts {
 
 /* MOVE: its points belong in another run. */
 enum { TL_FATE_KEEP, TL_FATE_GROW, TL_FATE_DIE, TL_FATE_MOVE };
+
+/* Which of the two limits an overlap is beyond: that of a contact that is born so, or that of one that has sunk in. */
+enum { TL_DEEP_NOT, TL_DEEP_BORN, TL_DEEP_SUNK };
 
 typedef struct tl_points_table {
     tl_table table;
@@ -451,7 +455,7 @@ void tl_contact_name(tl_model *m, uint32_t contact, char *text, size_t size);
 bool tl_overlap_is_deep(const tl_model *m, const tl_pair_view *view, const tl_axis *axis,
                         uint32_t a, uint32_t b, bool born);
 /* Marks a contact whose blocks do, so that its axis is searched whenever it is looked at. */
-void tl_overlap_mark(tl_contacts *contacts, uint32_t contact);
+void tl_overlap_mark(tl_contacts *contacts, uint32_t contact, bool born);
 /* After a step's contacts have been settled: the sentence of the first that is marked, and of which a block can move. */
 tl_status tl_overlaps_check(tl_model *m);
 

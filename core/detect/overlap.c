@@ -12,7 +12,9 @@
  *
  * The overlap is known wherever an axis is searched, which is after a motion of 0.02 of the size at the latest
  * (update.c), so the look costs next to nothing. A contact that is marked has no lease: its axis is searched in every
- * step, and it stays marked until its overlap would do for a birth. */
+ * step. The mark tells which limit was exceeded, and stays until the overlap is within that limit: what was born too deep
+ * is still nobody's way in when it is looked at again, and what has sunk in is still followed when blocks elsewhere come or
+ * go. */
 #include "detect/detect.h"
 
 #include <stdio.h>
@@ -34,6 +36,8 @@ void tl_contact_name(tl_model *m, uint32_t contact, char *text, size_t size)
              m->blocks.id[contacts->b[contact]], *joint ? ", joint " : " (no joint)", joint);
 }
 
+/* Whether no force can move either block. More than tl_blocks_held_still (held.h): bodies that a drive carries along, or
+ * that still have a velocity, do not feel what their overlap would do. */
 static bool both_held(const tl_model *m, uint32_t a, uint32_t b)
 {
     const uint8_t *fixed = m->bodies.fixed;
@@ -80,8 +84,9 @@ bool tl_overlap_is_deep(const tl_model *m, const tl_pair_view *view, const tl_ax
     return axis->s < -SHALLOW * view->size && -axis->s > deepest(m, view, axis->n, a, b, born);
 }
 
-void tl_overlap_mark(tl_contacts *contacts, uint32_t contact)
+void tl_overlap_mark(tl_contacts *contacts, uint32_t contact, bool born)
 {
+    contacts->deep[contact] = born ? TL_DEEP_BORN : TL_DEEP_SUNK;
     contacts->search[contact] = -INFINITY;
 }
 
@@ -100,7 +105,8 @@ static tl_status report(tl_model *m, uint32_t contact)
                    "cycle %lld, %s: they overlap by %.3g m, more than the %.3g m up to which a "
                    "contact can tell how to part them: were they placed into each other, is a "
                    "stiffness too low for what presses, or the time step too large?",
-                   (long long)m->cycles + 1, name, -axis.s, deepest(m, &view, axis.n, a, b, true));
+                   (long long)m->cycles + 1, name, -axis.s,
+                   deepest(m, &view, axis.n, a, b, c->deep[contact] == TL_DEEP_BORN));
 }
 
 tl_status tl_overlaps_check(tl_model *m)
@@ -115,7 +121,7 @@ tl_status tl_overlaps_check(tl_model *m)
     uint32_t first = TL_NO_ROW;
     bool marked = false;
     for (uint32_t row = 0; row < c->table.rows; row++) {
-        if (c->search[row] != -INFINITY)
+        if (c->deep[row] == TL_DEEP_NOT)
             continue;
         marked = true;
         if (both_held(m, c->a[row], c->b[row]))

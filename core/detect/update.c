@@ -122,7 +122,6 @@ static bool rebuild(tl_model *m, uint32_t c, tl_narrow *room, bool across)
         if (!search && !followed && axis.kind == TL_AXIS_EDGES)
             continue; /* edges that no longer meet have no axis */
         if (search) {
-            bool marked = contacts->search[c] == -INFINITY;
             axis = tl_axis_search(&view, room, &contacts->axis[c]);
             if (isinf(axis.s) && !across) {
                 part(m, c, &axis, view.size);
@@ -133,8 +132,10 @@ static bool rebuild(tl_model *m, uint32_t c, tl_narrow *room, bool across)
                 tl_axis_place(&view, &axis);
             }
             contacts->search[c] = odometer + tl_axis_margin(&axis, view.size);
-            if (tl_overlap_is_deep(m, &view, &axis, contacts->a[c], contacts->b[c], marked)) {
-                tl_overlap_mark(contacts, c);
+            bool born = contacts->deep[c] == TL_DEEP_BORN;
+            contacts->deep[c] = TL_DEEP_NOT;
+            if (tl_overlap_is_deep(m, &view, &axis, contacts->a[c], contacts->b[c], born)) {
+                tl_overlap_mark(contacts, c, born);
                 room->deep = true;
             }
         }
@@ -316,7 +317,7 @@ static bool make_anew(tl_model *m, uint32_t c, unsigned thread)
     tl_axis_features axis = contacts->axis[c];
     double search = contacts->search[c];
     tl_tag tag = contacts->tag[c];
-    uint8_t lone = contacts->lone[c], fate = contacts->fate[c];
+    uint8_t lone = contacts->lone[c], fate = contacts->fate[c], deep = contacts->deep[c];
     if (rebuild(m, c, room, contacts->across[c]) &&
         (contacts->fate[c] == TL_FATE_DIE || take_manifold(m, c, room, &m->detect->lanes[thread])))
         return true;
@@ -325,6 +326,7 @@ static bool make_anew(tl_model *m, uint32_t c, unsigned thread)
     contacts->tag[c] = tag;
     contacts->lone[c] = lone;
     contacts->fate[c] = fate;
+    contacts->deep[c] = deep;
     room->failed = true;
     return false;
 }

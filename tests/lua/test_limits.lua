@@ -203,7 +203,7 @@ end
 
 -- A cube that sinks into soft ground: at the same overlap in any units and on any number of threads. Down to its own
 -- diameter and a quarter it goes on.
-local deepest
+local deepest, sentence
 for _, size in ipairs { 1, 1e-3, 250 } do
     for _, threads in ipairs { 1, 3 } do
         m = talus.model { threads = threads, gravity = { 0, 0, -9.81 * size } }
@@ -218,11 +218,62 @@ for _, size in ipairs { 1, 1e-3, 250 } do
         deepest = deepest or depth
         check.near(depth, deepest, 1e-6)
         check.near(depth, 1.25 * math.sqrt(3), 0.05)
+        -- The sentence tells the limit that was exceeded, %.3g of it.
+        check.near(tonumber(text:match("more than the (%S+) m up to")) / size, 1.25 * math.sqrt(3), 5e-3)
         check.equal(check.raises(function() m:cycle(1) end, "overlap by"):gsub("^.-:%d+: ", ""),
             (text:gsub("^.-:%d+: ", "")))
         is_usable(m)
     end
 end
+
+-- A cube that rests legally deeper in soft ground than one may be born is followed on its way, whatever blocks come or go
+-- elsewhere.
+local function sunk(size, threads, depth)
+    local model = talus.model { threads = threads, gravity = { 0, 0, -9.81 } }
+    local function box(group, x, y, z, wide)
+        model:generate("box", { min = { x * size, y * size, z * size },
+            max = { (x + wide) * size, (y + wide) * size, (z + 1) * size }, density = 2000, group = group })
+    end
+    box("ground", 0, 0, 0, 4)
+    box("top", 1.5, 1.5, 1, 1)
+    box("far one", 20, 0, 0, 1)
+    box("far two", 21, 0, 0, 1)
+    model:blocks { where = function(b) return b.group ~= "top" end }:fix()
+    model:blocks { group = "top" }:fix { x = true, y = true, rotation = true }
+    local k = 2000 * 9.81 / depth
+    model:joint("*", "elastic", { kn = k, ks = k })
+    model:damping("viscous", { alpha = 20 / math.sqrt(size) })
+    model:cycle(3000)
+    check.near(model:blocks { group = "top" }[1].displacement[3] / size, -depth, 1e-6)
+    return model
+end
+local function far_of(model)
+    return model:blocks { where = function(b) return b.group:find("far") end }
+end
+local changes = {
+    function(model) model:blocks { group = "far one" }:delete() end,
+    function(model) far_of(model):join() end,
+    function(model) far_of(model):join() model:cycle(1) far_of(model):unjoin() end,
+    function(model) model:generate("box", { min = { 90, 90, 90 }, max = { 91, 91, 91 }, density = 2000 }) end,
+    function(model) model:blocks { group = "far one" }:delete() model:cycle(1) model:blocks { group = "far two" }:delete() end,
+    function(model) model:contact_area { fraction = 0.5 } end,
+}
+for _, size in ipairs { 1, 0.01, 30 } do
+    for i, change in ipairs(changes) do
+        local depth = 0.92 + 0.01 * i
+        m = sunk(size, i % 3 + 1, depth)
+        change(m)
+        m:cycle(10)
+        check.near(m:blocks { group = "top" }[1].displacement[3] / size, -depth, 1e-6)
+    end
+end
+
+-- What was placed into each other stays so when blocks elsewhere come or go.
+m = twins(0.05)
+m:generate("box", { min = { 20, 0, 0 }, max = { 21, 1, 1 }, density = 2000 })
+sentence = check.raises(function() m:cycle(1) end, "contact of blocks 1 and 2 (no joint): they overlap by 0.95 m, more than the 0.9 m")
+m:blocks { id = 3 }:delete()
+check.equal(check.raises(function() m:cycle(1) end, "overlap by"):gsub("^.-:%d+: ", ""), (sentence:gsub("^.-:%d+: ", "")))
 
 -- Walls that are held may overlap, and what stands between them runs.
 m = talus.model {}
