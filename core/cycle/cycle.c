@@ -6,12 +6,16 @@
  *
  *     detect   which blocks touch, where, how far they overlap            core/detect
  *     step     how long it may be                                         timestep.c
+ *     drives   what driven bodies are told for the middle of the step     model/loads.c
  *     laws     contact forces, by the joints' law plugins                 laws.c
  *     gather   each body adds its contacts in a fixed order, its weight   gather.c
  *     damping  a damping plugin's forces and coefficients                 damping.c
  *     limits   no body would move out of all proportion                   limits.c
  *     move     velocities and places one step on, work done on bodies     motion.c
  *     energy   the balance of the work                                    energy.c
+ *
+ * The functions of drives are a user's, and the step has been chosen for the model as it is: what a step depends on cannot
+ * be changed in them (tl_model_may_set).
  *
  * Everything computed in parallel is either a pure function of one contact or one body, or a sum made
  * in fixed chunks, so the bits do not depend on the number of threads. */

@@ -26,6 +26,9 @@ static bool hold_forces(tl_bodies *b)
 
 tl_status tl_model_damping(tl_model *m, const char *damping, const tl_args *args)
 {
+    tl_status status = tl_model_may_set(m, "set damping");
+    if (status != TL_OK)
+        return status;
     const tl_kind *kind = tl_plugin_find(TL_KIND_DAMPING, damping);
     if (!kind)
         return tl_unknown_kind(m, TL_KIND_DAMPING, damping);
@@ -40,8 +43,8 @@ tl_status tl_model_damping(tl_model *m, const char *damping, const tl_args *args
     char context[64];
     snprintf(context, sizeof context, "damping '%.40s'", damping);
     tl_report report = {.size = sizeof report};
-    tl_status status = tl_args_read(kind->params, kind->param_count, kind->param_stride, args,
-                                    false, params, context, &m->error);
+    status = tl_args_read(kind->params, kind->param_count, kind->param_stride, args, false, params,
+                          context, &m->error);
     if (status == TL_OK && ops->create) {
         tl_enter(kind, "create");
         status = ops->create(params, &self, &report);

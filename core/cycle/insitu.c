@@ -216,12 +216,15 @@ static bool finite_tensor(tl_sym3 t)
 
 tl_status tl_model_insitu(tl_model *m, const tl_insitu *insitu)
 {
+    tl_status status = tl_model_may_set(m, "put stress on contacts");
+    if (status != TL_OK)
+        return status;
     if (!finite_tensor(insitu->stress) || !finite_tensor(insitu->gradient) ||
         !tl_v3_finite(insitu->at))
         return tl_fail(&m->error, TL_E_ARGUMENT,
                        "insitu: stress, gradient and at must be finite numbers");
     /* in the present places, where a step that failed has left the contacts already */
-    tl_status status = tl_detect_update(m);
+    status = tl_detect_update(m);
     outer_blocks outer;
     if (status == TL_OK)
         status = find_outer(m, insitu, &outer);

@@ -164,7 +164,9 @@ static tl_material *exact_material(tl_model *m, tl_tag tag)
 tl_status tl_joint_law(tl_model *m, const char *joint, const char *law, const tl_args *args)
 {
     tl_tag tag;
-    tl_status status = tl_joint_parse(m, joint, &tag);
+    tl_status status = tl_model_may_set(m, "set a law or its properties");
+    if (status == TL_OK)
+        status = tl_joint_parse(m, joint, &tag);
     if (status != TL_OK)
         return status;
     const tl_material *ruling = tl_material_of(m, tag);

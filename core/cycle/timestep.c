@@ -201,6 +201,9 @@ tl_status tl_timestep_choose(tl_model *m, double *dt)
 
 tl_status tl_model_timestep(tl_model *m, const tl_timestep *timestep)
 {
+    tl_status status = tl_model_may_set(m, "set timestep");
+    if (status != TL_OK)
+        return status;
     if (!isnan(timestep->fraction) &&
         !(timestep->fraction >= TL_FRACTION_LEAST && timestep->fraction <= TL_FRACTION_MOST))
         return tl_fail(&m->error, TL_E_ARGUMENT, "timestep: fraction = %g is outside [%g, %g]",
@@ -219,6 +222,9 @@ tl_status tl_model_timestep(tl_model *m, const tl_timestep *timestep)
 
 tl_status tl_model_mass_scaling(tl_model *m, bool on)
 {
+    tl_status status = tl_model_may_set(m, "set mass_scaling");
+    if (status != TL_OK)
+        return status;
     m->mass_scaling = on;
     m->constraints++;
     if (m->cycle)

@@ -476,13 +476,14 @@ static int model_assign(lua_State *L)
         tl_lua_ok(L, model, tl_model_set_gravity(model, config.gravity));
     } else if (strcmp(name, "rotation") == 0) {
         tl_lua_read_one(L, 3, &spec, name, &config);
-        tl_model_set_rotation(model, (tl_rotation_rule)config.rotation);
+        tl_lua_ok(L, model, tl_model_set_rotation(model, (tl_rotation_rule)config.rotation));
     } else if (strcmp(name, "contact_points") == 0) {
         tl_lua_read_one(L, 3, &spec, name, &config);
-        tl_model_set_contact_points(model, (tl_contact_points)config.contact_points);
+        tl_lua_ok(L, model,
+                  tl_model_set_contact_points(model, (tl_contact_points)config.contact_points));
     } else if (strcmp(name, "reuse_geometry") == 0) {
         tl_lua_read_one(L, 3, &spec, name, &config);
-        tl_model_set_reuse_geometry(model, config.reuse_geometry);
+        tl_lua_ok(L, model, tl_model_set_reuse_geometry(model, config.reuse_geometry));
     } else if (strcmp(name, "threads") == 0 || strcmp(name, "seed") == 0)
         return tl_lua_fail(L, "model.%s is chosen when the model is made: talus.model{%s = ...}",
                            name, name);

@@ -192,8 +192,10 @@ const tl_lua_topic tl_lua_topics[] = {
      .function = "load"},
     {.name = "drive",
      .usage = "selection:drive{velocity = function(t) return 0.1 * math.sin(t), 0, 0 end}",
-     .doc = "Prescribes the motion of the blocks' bodies, in the place of any fixing, until "
-            "selection:free().",
+     .doc =
+         "Prescribes the motion of the blocks' bodies, in the place of any fixing, until "
+         "selection:free(). A function is called in the middle of a step: it may read the model, "
+         "but not change it.",
      .keys = tl_lua_drive_keys},
     {.name = "timestep",
      .usage = "model:timestep{fraction = 0.3}  or  report = model:timestep()",

@@ -187,6 +187,9 @@ static bool set_joint_area(tl_model *m, const tl_joint_area *entry)
 
 tl_status tl_model_contact_area(tl_model *m, const tl_contact_area *area)
 {
+    tl_status status = tl_model_may_set(m, "set contact_area");
+    if (status != TL_OK)
+        return status;
     if (!(area->fraction >= 0) || !isfinite(area->fraction))
         return tl_fail(&m->error, TL_E_ARGUMENT, "contact_area: fraction = %g must be >= 0",
                        area->fraction);
@@ -194,7 +197,7 @@ tl_status tl_model_contact_area(tl_model *m, const tl_contact_area *area)
         return tl_fail(&m->error, TL_E_ARGUMENT, "contact_area: absolute = %g must be >= 0",
                        area->absolute);
     tl_joint_area entry = {.rule = {area->fraction, area->absolute}};
-    tl_status status = tl_joint_parse(m, area->joint ? area->joint : "*", &entry.tag);
+    status = tl_joint_parse(m, area->joint ? area->joint : "*", &entry.tag);
     if (status != TL_OK)
         return status;
     if (entry.tag.joint == 0)

@@ -14,12 +14,15 @@ static tl_status check_blocks(tl_model *m, const tl_id *ids, size_t count)
 
 tl_status tl_blocks_load(tl_model *m, const tl_id *ids, size_t count, const tl_load *load)
 {
+    tl_status status = tl_model_may_set(m, "load blocks");
+    if (status != TL_OK)
+        return status;
     bool placed = !isnan(load->at.x);
     if (!tl_v3_finite(load->force) || !tl_v3_finite(load->moment) ||
         (placed && !tl_v3_finite(load->at)))
         return tl_fail(&m->error, TL_E_ARGUMENT,
                        "load: force, moment and at must be finite numbers");
-    tl_status status = check_blocks(m, ids, count);
+    status = check_blocks(m, ids, count);
     if (status != TL_OK)
         return status;
     if (count && !TL_COLUMN_NEED(&m->bodies.table, &m->bodies, load, 0))
@@ -105,17 +108,9 @@ static tl_drive_record *new_record(tl_model *m)
     return &m->drives[m->drive_count++];
 }
 
-tl_status tl_drives_may_change(tl_model *m, const char *what)
-{
-    if (m->driving)
-        return tl_fail(&m->error, TL_E_STATE,
-                       "cannot %s from a drive's function; do it after the run", what);
-    return TL_OK;
-}
-
 tl_status tl_blocks_drive(tl_model *m, const tl_id *ids, size_t count, const tl_drive *drive)
 {
-    tl_status status = tl_drives_may_change(m, "drive blocks");
+    tl_status status = tl_model_may_set(m, "drive blocks");
     if (status != TL_OK)
         return status;
     if (!tl_v3_finite(drive->velocity) || !tl_v3_finite(drive->angular_velocity))

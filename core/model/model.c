@@ -164,6 +164,17 @@ tl_status tl_model_may_change(tl_model *m, const char *what)
     return TL_OK;
 }
 
+tl_status tl_model_may_set(tl_model *m, const char *what)
+{
+    if (m->driving)
+        return tl_fail(
+            &m->error, TL_E_STATE,
+            "cannot %s from a drive's function, which is called in the middle of a step: "
+            "do it between two runs, or in solve's on_progress",
+            what);
+    return TL_OK;
+}
+
 tl_model_config tl_model_settings(const tl_model *m)
 {
     return m->config;
@@ -171,6 +182,9 @@ tl_model_config tl_model_settings(const tl_model *m)
 
 tl_status tl_model_set_gravity(tl_model *m, tl_vec3 gravity)
 {
+    tl_status status = tl_model_may_set(m, "set gravity");
+    if (status != TL_OK)
+        return status;
     if (!tl_v3_finite(gravity))
         return tl_fail(&m->error, TL_E_ARGUMENT,
                        "gravity = {%g, %g, %g} must be three finite numbers", gravity.x, gravity.y,
@@ -187,21 +201,33 @@ tl_status tl_model_set_gravity(tl_model *m, tl_vec3 gravity)
     return TL_OK;
 }
 
-void tl_model_set_rotation(tl_model *m, tl_rotation_rule rule)
+tl_status tl_model_set_rotation(tl_model *m, tl_rotation_rule rule)
 {
+    tl_status status = tl_model_may_set(m, "set rotation");
+    if (status != TL_OK)
+        return status;
     m->config.rotation = (int32_t)rule;
+    return TL_OK;
 }
 
-void tl_model_set_reuse_geometry(tl_model *m, bool reuse)
+tl_status tl_model_set_reuse_geometry(tl_model *m, bool reuse)
 {
+    tl_status status = tl_model_may_set(m, "set reuse_geometry");
+    if (status != TL_OK)
+        return status;
     m->config.reuse_geometry = reuse;
     m->constraints++; /* areas that were reused will be others */
+    return TL_OK;
 }
 
-void tl_model_set_contact_points(tl_model *m, tl_contact_points where)
+tl_status tl_model_set_contact_points(tl_model *m, tl_contact_points where)
 {
+    tl_status status = tl_model_may_set(m, "set contact_points");
+    if (status != TL_OK)
+        return status;
     m->config.contact_points = (int32_t)where;
     m->laws++; /* contacts are made anew */
+    return TL_OK;
 }
 
 double tl_model_time(const tl_model *m)

@@ -197,8 +197,8 @@ struct tl_model {
     atomic_bool interrupted;
     bool (*interrupt_asked)(void); /* or NULL */
     bool running;                  /* inside a callback: no blocks may be made or deleted */
-    bool driving;                  /* inside a drive's function: no drive may begin or end */
-    uint32_t said;                 /* bit r: remark r has been made */
+    bool driving;      /* inside a drive's function: nothing that a step depends on may be set */
+    uint32_t said;     /* bit r: remark r has been made */
     uint64_t remarked; /* changes of blocks and laws at the last look at their numbers */
     bool mass_scaling;
 
@@ -286,6 +286,9 @@ void tl_model_say(tl_model *m, const char *format, ...) TL_PRINTF(2, 3);
 bool tl_model_says(tl_model *m, tl_remark remark);
 /* Refuses with TL_E_STATE while a callback runs; `what` is "create blocks". */
 tl_status tl_model_may_change(tl_model *m, const char *what);
+/* Refuses with TL_E_STATE while a drive's function runs, which is in the middle of a step; `what` is "fix blocks". All that
+ * detection, the step, laws, damping or motion depend on asks this before it is changed. */
+tl_status tl_model_may_set(tl_model *m, const char *what);
 
 /* ---- groups and joints: joints.c ---- */
 
@@ -453,8 +456,6 @@ tl_vec3 tl_block_velocity(const tl_model *m, uint32_t row);
 
 /* Evaluates all drives at time t; false when a user's function ends the run. */
 bool tl_drives_evaluate(tl_model *m, double t);
-/* Refuses with TL_E_STATE while a drive's function runs; `what` is "fix blocks". */
-tl_status tl_drives_may_change(tl_model *m, const char *what);
 /* Lets a body go from its drive. */
 void tl_drive_leave(tl_model *m, uint32_t body);
 void tl_drives_clear(tl_model *m);

@@ -80,7 +80,7 @@ static bool is_held_as(const tl_model *m, uint32_t body, held before)
 
 tl_status tl_blocks_fix(tl_model *m, const tl_id *ids, size_t count, unsigned what)
 {
-    tl_status status = tl_drives_may_change(m, "fix blocks");
+    tl_status status = tl_model_may_set(m, "fix blocks");
     if (status == TL_OK)
         status = check_ids(m, ids, count);
     if (status != TL_OK)
@@ -105,7 +105,7 @@ tl_status tl_blocks_fix(tl_model *m, const tl_id *ids, size_t count, unsigned wh
 
 tl_status tl_blocks_free(tl_model *m, const tl_id *ids, size_t count)
 {
-    tl_status status = tl_drives_may_change(m, "free blocks");
+    tl_status status = tl_model_may_set(m, "free blocks");
     if (status == TL_OK)
         status = check_ids(m, ids, count);
     if (status != TL_OK)
@@ -166,7 +166,9 @@ static bool some_joined(const tl_model *m, const tl_id *ids, size_t count)
 
 tl_status tl_blocks_set(tl_model *m, const tl_id *ids, size_t count, const tl_block_set *set)
 {
-    tl_status status = check_ids(m, ids, count);
+    tl_status status = tl_model_may_set(m, "set properties of blocks");
+    if (status == TL_OK)
+        status = check_ids(m, ids, count);
     if (status == TL_OK)
         status = check_set(m, set);
     if (status != TL_OK)

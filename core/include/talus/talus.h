@@ -92,6 +92,9 @@ typedef struct tl_model_config {
     int32_t contact_points; /* tl_contact_points */
 } tl_model_config;
 
+/* What a step depends on is not changed in the middle of one: while a drive's function runs (tl_drive), all calls that
+ * change blocks, what acts on them, laws, damping or settings fail with TL_E_STATE. All may be read there. */
+
 /* Remarks and warnings go to this function; NULL restores the default (standard error). */
 typedef void (*tl_log_fn)(void *user, const char *text);
 
@@ -102,9 +105,9 @@ TL_API void tl_model_log(tl_model *model, tl_log_fn log, void *user);
 
 TL_API tl_model_config tl_model_settings(const tl_model *model);
 TL_API tl_status tl_model_set_gravity(tl_model *model, tl_vec3 gravity);
-TL_API void tl_model_set_rotation(tl_model *model, tl_rotation_rule rule);
-TL_API void tl_model_set_reuse_geometry(tl_model *model, bool reuse);
-TL_API void tl_model_set_contact_points(tl_model *model, tl_contact_points where);
+TL_API tl_status tl_model_set_rotation(tl_model *model, tl_rotation_rule rule);
+TL_API tl_status tl_model_set_reuse_geometry(tl_model *model, bool reuse);
+TL_API tl_status tl_model_set_contact_points(tl_model *model, tl_contact_points where);
 TL_API double tl_model_time(const tl_model *model);
 TL_API int64_t tl_model_cycles(const tl_model *model);
 
