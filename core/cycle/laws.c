@@ -191,11 +191,6 @@ static void report_odd(const run_job *job, const tl_rank *rank, const rank_sums 
     tl_law_check_shear(job->m, job->material, rank, t, lane);
 }
 
-static bool is_zero(tl_vec3 v)
-{
-    return v.x == 0 && v.y == 0 && v.z == 0;
-}
-
 /* Forces of the contacts of a rank, whose first point is in lane `lane`; `coupled`: areas may depend on tilt. */
 static void sum_rank(const run_job *job, const tl_rank *rank, const tl_point_lanes *t, size_t lane,
                      bool coupled)
@@ -218,7 +213,7 @@ static void sum_rank(const run_job *job, const tl_rank *rank, const tl_point_lan
         energy.dissipated += sum.dissipated[l];
         contacts->across[c] = sum.across[l] > 0;
         tl_vec3 force = tl_v3(sum.force[0][l], sum.force[1][l], sum.force[2][l]);
-        if (is_zero(contacts->force[c]) && !is_zero(force))
+        if (tl_v3_is_zero(contacts->force[c]) && !tl_v3_is_zero(force))
             begins |= 1u << l;
         contacts->force[c] = force;
         contacts->moment[c] = tl_v3(sum.moment[0][l], sum.moment[1][l], sum.moment[2][l]);

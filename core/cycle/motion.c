@@ -327,11 +327,6 @@ static void store_group(const tl_group *g, const move_job *job)
         store_lane(g, i, &job->m->bodies, job->drift);
 }
 
-static bool still(tl_vec3 v)
-{
-    return v.x == 0 && v.y == 0 && v.z == 0;
-}
-
 /* A body held in every component goes on with the velocity it was given: none, or that of its drive. */
 static void carry_body(const move_job *job, uint32_t body, tl_work *work)
 {
@@ -344,7 +339,8 @@ static void carry_body(const move_job *job, uint32_t body, tl_work *work)
     }
     tl_pose *pose = &b->pose[body];
     tl_vec3 moved = pose->v_moved, turned = pose->w_moved;
-    if (still(b->v[body]) && still(b->w[body]) && still(moved) && still(turned))
+    if (tl_v3_is_zero(b->v[body]) && tl_v3_is_zero(b->w[body]) && tl_v3_is_zero(moved) &&
+        tl_v3_is_zero(turned))
         return;
     tl_energy_book_held(job->m, body, moved, turned, work);
     pose->u = tl_v3_madd(pose->u, dt, b->v[body]);

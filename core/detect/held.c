@@ -7,15 +7,10 @@
  * given a velocity, that come or go, another law or initial stress, another contact in the run. */
 #include "detect/held.h"
 
-static bool is_zero(tl_vec3 v)
-{
-    return v.x == 0 && v.y == 0 && v.z == 0;
-}
-
 static bool is_still(const tl_bodies *b, uint32_t body)
 {
-    return b->fixed[body] == TL_FIX_ALL && b->drive[body] == 0 && is_zero(b->v[body]) &&
-           is_zero(b->w[body]);
+    return b->fixed[body] == TL_FIX_ALL && b->drive[body] == 0 && tl_v3_is_zero(b->v[body]) &&
+           tl_v3_is_zero(b->w[body]);
 }
 
 bool tl_blocks_held_still(const tl_model *m, uint32_t a, uint32_t b)

@@ -85,6 +85,11 @@ static inline int tl_v3_finite(tl_vec3 a)
     return isfinite(a.x) && isfinite(a.y) && isfinite(a.z);
 }
 
+static inline int tl_v3_is_zero(tl_vec3 a)
+{
+    return a.x == 0 && a.y == 0 && a.z == 0;
+}
+
 /* Some unit vector perpendicular to the unit vector n (the same one for the same n). */
 static inline tl_vec3 tl_v3_perpendicular(tl_vec3 n)
 {
