@@ -56,7 +56,7 @@ static const tl_lua_key run_results[] = {
     {"cycles", "", "steps of this call"},
     {"time", "", "the model's time at the end, s"},
     {"wall", "", "seconds it took"},
-    {"max_velocity", "", "largest speed of a block, m/s"},
+    {"max_velocity", "", "largest speed of a block that forces move, m/s"},
     {NULL, NULL, NULL},
 };
 
