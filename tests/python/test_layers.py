@@ -14,6 +14,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 ROOMS = {
     "base": {"base"},
     "geometry": {"base", "geometry"},
+    "narrow": {"base", "geometry", "narrow"},
     "model": {"base", "geometry", "model"},
     "detect": {"base", "geometry", "model", "detect"},
     "cycle": {"base", "geometry", "model", "detect", "cycle"},

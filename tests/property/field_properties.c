@@ -1,0 +1,410 @@
+/* field_properties.c - the pressure field of random pairs of shapes: force and moment are the gradient of the energy,
+ * and the energy is that of a brute-force sum. Overlaps go from touching to 0.4 of the size; faces may be borders. */
+#include "contact_scene.h"
+
+#include "narrow/field.h"
+
+/* Force over the cube of the overlap, a length, below which a pair hardly touches: needles that cross by a corner. */
+#define LEAST 1e-3
+
+/* How far outside, relative to the size, a face lies that cannot meet a block. */
+#define NEAR 1e-3
+
+/* All faces of both blocks as planes about a point, those of A's and B's `border` masks as borders. */
+typedef struct planes {
+    double number[4][512];
+    bool all;
+    tl_field_faces faces;
+} planes;
+
+/* Whether a face may meet the other block: not when all its corners lie outside one face of the other. */
+static bool may_meet(const tl_pair_view *view, bool of_b, uint32_t face)
+{
+    const tl_poly *p = of_b ? view->b : view->a, *q = of_b ? view->a : view->b;
+    const tl_vec3 *vertex = of_b ? view->vertex_b : view->a->vertex;
+    for (uint32_t g = 0; g < q->face_count; g++) {
+        tl_vec3 n = of_b ? q->plane[g].normal : view->normal_b[g];
+        double c = q->plane[g].offset + (of_b ? 0 : tl_v3_dot(n, view->shift)), low = INFINITY;
+        for (uint32_t h = p->start[face]; h < p->start[face + 1]; h++)
+            low = fmin(low, tl_v3_dot(n, vertex[p->loop[h]]) - c);
+        if (low > NEAR * view->size)
+            return false;
+    }
+    return true;
+}
+
+static void add_planes(planes *p, const tl_pair_view *view, bool of_b, const uint8_t *border,
+                       bool wanted, tl_vec3 origin, uint32_t *count)
+{
+    const tl_poly *poly = of_b ? view->b : view->a;
+    for (uint32_t f = 0; f < poly->face_count; f++) {
+        if ((border && border[f]) != wanted || (!p->all && !may_meet(view, of_b, f)))
+            continue;
+        tl_vec3 n = of_b ? view->normal_b[f] : poly->plane[f].normal;
+        double c = poly->plane[f].offset + (of_b ? tl_v3_dot(n, view->shift) : 0);
+        uint32_t i = p->faces.a + p->faces.b + p->faces.border_a + p->faces.border_b;
+        p->number[0][i] = n.x;
+        p->number[1][i] = n.y;
+        p->number[2][i] = n.z;
+        p->number[3][i] = c - tl_v3_dot(n, origin);
+        ++*count;
+    }
+}
+
+static void list_planes(planes *p, const tl_pair_view *view, const uint8_t *border_a,
+                        const uint8_t *border_b, tl_vec3 origin)
+{
+    p->faces = (tl_field_faces){.n = {p->number[0], p->number[1], p->number[2]}, .c = p->number[3]};
+    add_planes(p, view, false, border_a, false, origin, &p->faces.a);
+    add_planes(p, view, true, border_b, false, origin, &p->faces.b);
+    add_planes(p, view, false, border_a, true, origin, &p->faces.border_a);
+    add_planes(p, view, true, border_b, true, origin, &p->faces.border_b);
+}
+
+typedef struct scene {
+    scene_pair pair;
+    planes planes;
+    uint8_t border_a[256], border_b[256];
+    bool borders;
+    tl_field_room room;
+    tl_vec3 origin; /* near the common volume */
+} scene;
+
+static void list_scene(scene *s)
+{
+    const tl_pair_view *view = scene_place(&s->pair);
+    /* faces that cannot meet may be left out of blocks that do; of blocks that are apart all are needed to tell */
+    s->planes.all = s->borders || tl_axis_search(view, &s->pair.room, NULL).s >= 0;
+    list_planes(&s->planes, view, s->borders ? s->border_a : NULL, s->borders ? s->border_b : NULL,
+                s->origin);
+}
+
+static double energy(scene *s)
+{
+    tl_field_volume volume;
+    list_scene(s);
+    CHECK(tl_field_integrate(&s->planes.faces, &s->room, &volume));
+    return volume.energy;
+}
+
+static tl_vec3 axis_of(int k)
+{
+    return tl_v3(k == 0, k == 1, k == 2);
+}
+
+/* Energy after B has been moved along an axis, or turned about the origin, by some way. */
+static double energy_after(scene *s, int axis, double way, bool turned)
+{
+    const tl_quat turn = s->pair.turn;
+    const tl_vec3 shift = s->pair.shift;
+    if (turned) {
+        tl_quat q = scene_turn(axis_of(axis), way);
+        s->pair.turn = tl_q_mul(q, turn);
+        s->pair.shift = tl_v3_add(s->origin, tl_q_rotate(q, tl_v3_sub(shift, s->origin)));
+    } else {
+        s->pair.shift = tl_v3_madd(shift, way, axis_of(axis));
+    }
+    double out = energy(s);
+    s->pair.turn = turn;
+    s->pair.shift = shift;
+    return out;
+}
+
+/* Minus the gradient of the energy, by differences of fourth order. */
+static tl_vec3 minus_gradient(scene *s, double h, bool turned)
+{
+    double out[3];
+    for (int k = 0; k < 3; k++) {
+        double near = energy_after(s, k, h, turned) - energy_after(s, k, -h, turned);
+        double far = energy_after(s, k, 2 * h, turned) - energy_after(s, k, -2 * h, turned);
+        out[k] = -(8 * near - far) / (12 * h);
+    }
+    return tl_v3(out[0], out[1], out[2]);
+}
+
+static tl_poly *shape_of(uint64_t *seed, int kind)
+{
+    switch (kind) {
+    case 0: return scene_box_shape(1, 1, 1);
+    case 1: return scene_random_hull(seed, 14, tl_v3(0.6, 0.6, 0.6));
+    case 2: return scene_box_shape(2, 2, 0.2);
+    case 3: return scene_box_shape(0.2, 0.2, 2);
+    case 4: return scene_box_shape(10, 10, 10);
+    case 5: return scene_random_hull(seed, 40, tl_v3(0.5, 0.7, 0.6));
+    default: return scene_random_hull(seed, 5, tl_v3(0.6, 0.6, 0.6));
+    }
+}
+
+/* Moves B along a direction until it overlaps by a depth from where they touch. */
+static void dip(scene *s, tl_vec3 way, double depth)
+{
+    double near = 0, far = 40;
+    tl_vec3 start = s->pair.shift;
+    for (int i = 0; i < 70; i++) {
+        double middle = 0.5 * (near + far);
+        s->pair.shift = tl_v3_madd(start, middle, way);
+        tl_axis axis = tl_axis_search(scene_place(&s->pair), &s->pair.room, NULL);
+        if (axis.s < 0)
+            near = middle;
+        else
+            far = middle;
+    }
+    s->pair.shift = tl_v3_madd(start, near - depth, way);
+}
+
+/* A point of the common volume: vertices of one inside the other, or crossings of edges with faces; the mean. */
+static tl_vec3 middle_of(const tl_pair_view *view)
+{
+    tl_vec3 sum = tl_v3(0, 0, 0);
+    int count = 0;
+    for (int side = 0; side < 2; side++) {
+        const tl_poly *p = side ? view->b : view->a, *q = side ? view->a : view->b;
+        const tl_vec3 *vertex = side ? view->vertex_b : view->a->vertex;
+        for (uint32_t e = 0; e < p->edge_count; e++) {
+            double from = 0, to = 1;
+            tl_vec3 x = vertex[p->edge[e].a], d = tl_v3_sub(vertex[p->edge[e].b], x);
+            for (uint32_t f = 0; f < q->face_count; f++) {
+                tl_vec3 n = side ? q->plane[f].normal : view->normal_b[f];
+                double c = q->plane[f].offset + (side ? 0 : tl_v3_dot(n, view->shift));
+                double h = tl_v3_dot(n, x) - c, slope = tl_v3_dot(n, d);
+                if (slope > 0)
+                    to = fmin(to, -h / slope);
+                else if (slope < 0)
+                    from = fmax(from, -h / slope);
+                else if (h > 0)
+                    to = -1;
+            }
+            if (to >= from) {
+                sum = tl_v3_add(sum, tl_v3_madd(x, 0.5 * (from + to), d));
+                count++;
+            }
+        }
+    }
+    return count ? tl_v3_scale(1.0 / count, sum) : sum;
+}
+
+/* Two blocks that overlap by a depth, relative to the smaller one's size. */
+static void make_scene(scene *s, int one, int other, double depth, bool flush, uint64_t *seed)
+{
+    *s = (scene){.pair = scene_pair_of(shape_of(seed, one), shape_of(seed, other),
+                                       flush ? tl_q_identity() : scene_any_turn(seed),
+                                       tl_v3_scale(0.3, scene_direction(seed)))};
+    scene_place(&s->pair);
+    tl_vec3 way = scene_direction(seed);
+    if (flush)
+        way = axis_of((int)(3 * check_random(seed)));
+    dip(s, way, depth * s->pair.view.size);
+    s->origin = middle_of(scene_place(&s->pair));
+}
+
+static void free_scene(scene *s)
+{
+    tl_field_free(&s->room);
+    scene_pair_free(&s->pair);
+}
+
+/* Force and moment may differ from the differences by this. */
+#define GRADIENT 1e-6
+/* Steps of the differences over the overlap. Rounding spoils the smaller one, a polygon that comes or goes the larger. */
+static const double steps[] = {1e-3, 2e-4, 4e-5, 1e-2};
+
+static double worst;
+
+/* How far force and moment are off the differences with a step, relative to the force. */
+static double off_by(scene *s, const tl_field_sums *sums, double h)
+{
+    double force = tl_v3_norm(sums->force), size = s->pair.view.size;
+    tl_vec3 g = minus_gradient(s, h * size, false), m = minus_gradient(s, h, true);
+    return fmax(tl_v3_norm(tl_v3_sub(g, sums->force)) / force,
+                tl_v3_norm(tl_v3_sub(m, sums->moment)) / (force * size));
+}
+
+/* false: the blocks do not press on each other. */
+static bool check_gradient(scene *s, double depth, uint64_t seed)
+{
+    tl_field_sums sums;
+    list_scene(s);
+    CHECK(tl_field_surface(&s->planes.faces, &s->room, &sums));
+    if (!(tl_v3_norm(sums.force) > LEAST * pow(depth * s->pair.view.size, 3)))
+        return false;
+    double off = INFINITY;
+    for (size_t k = 0; k < sizeof steps / sizeof *steps; k++)
+        off = fmin(off, off_by(s, &sums, steps[k] * depth));
+    worst = fmax(worst, off);
+    if (!CHECK(off < GRADIENT))
+        printf("  seed %d, overlap %g: off by %g of %g\n", (int)seed, depth, off,
+               tl_v3_norm(sums.force));
+    return true;
+}
+
+static double random_depth(uint64_t *seed)
+{
+    return pow(10, scene_between(seed, -4, log10(0.4)));
+}
+
+static int random_kind(uint64_t *seed)
+{
+    return (int)(7 * check_random(seed));
+}
+
+TEST(force_and_moment_are_the_gradient_of_the_energy)
+{
+    int cases = 0;
+    for (uint64_t k = 1; k <= 1000; k++) {
+        uint64_t seed = k;
+        static scene s;
+        double depth = random_depth(&seed);
+        make_scene(&s, random_kind(&seed), random_kind(&seed), depth, k % 8 == 0, &seed);
+        cases += check_gradient(&s, depth, k);
+        free_scene(&s);
+    }
+    CHECK(cases > 900);
+    printf("  %d cases, off by %.1e at the most\n", cases, worst);
+}
+
+/* Faces of both blocks chosen at random bound them as seams do. */
+TEST(borders_do_work_as_well)
+{
+    int cases = 0;
+    for (uint64_t k = 1; k <= 250; k++) {
+        uint64_t seed = k + 5000;
+        static scene s;
+        double depth = random_depth(&seed);
+        make_scene(&s, random_kind(&seed) % 5, random_kind(&seed) % 5, depth, false, &seed);
+        s.borders = true;
+        for (int i = 0; i < 256; i++) {
+            s.border_a[i] = check_random(&seed) < 0.3;
+            s.border_b[i] = k % 2 && check_random(&seed) < 0.3;
+        }
+        cases += check_gradient(&s, depth, k);
+        free_scene(&s);
+    }
+    CHECK(cases > 170);
+}
+
+/* The depth of a point in both blocks, 0 outside. */
+static double depth_at(const tl_field_faces *f, tl_vec3 x)
+{
+    double depth = INFINITY;
+    for (uint32_t i = 0; i < f->a + f->b; i++)
+        depth = fmin(depth, f->c[i] - tl_v3_dot(tl_v3(f->n[0][i], f->n[1][i], f->n[2][i]), x));
+    return fmax(depth, 0);
+}
+
+/* Volume of what two blocks have in common, by cutting one by the faces of the other. */
+static double volume_in_common(const scene *s)
+{
+    const tl_pair_view *view = &s->pair.view;
+    tl_error error;
+    tl_poly *left = NULL;
+    CHECK_INT(tl_poly_transformed(view->a, NULL, tl_v3(0, 0, 0), &left, &error), TL_OK);
+    double volume = 0;
+    for (uint32_t f = 0; f < view->b->face_count && left; f++) {
+        tl_vec3 n = view->normal_b[f];
+        tl_plane plane = {n, view->b->plane[f].offset + tl_v3_dot(n, view->shift)};
+        tl_cut cut;
+        CHECK_INT(tl_poly_cut(left, plane, 0, (tl_tag){0, 0}, &cut, &error), TL_OK);
+        if (cut.result == TL_CUT_MADE) {
+            tl_poly_free(left);
+            tl_poly_free(cut.above);
+            left = cut.below;
+        } else if (cut.result != TL_CUT_MISS || tl_v3_dot(n, left->vertex[0]) > plane.offset) {
+            volume =
+                cut.result == TL_CUT_MISS ? 0 : NAN; /* all of it is outside; too thin to be cut */
+            tl_poly_free(left);
+            left = NULL;
+        }
+    }
+    if (left)
+        volume = tl_poly_mass(left).volume;
+    tl_poly_free(left);
+    return volume;
+}
+
+TEST(volume_is_that_of_what_is_left_by_cuts)
+{
+    int cases = 0;
+    for (uint64_t k = 1; k <= 400; k++) {
+        uint64_t seed = k + 7000;
+        static scene s;
+        make_scene(&s, random_kind(&seed), random_kind(&seed), scene_between(&seed, 0.02, 0.4),
+                   false, &seed);
+        list_scene(&s);
+        tl_field_volume found;
+        CHECK(tl_field_integrate(&s.planes.faces, &s.room, &found));
+        double volume = volume_in_common(&s);
+        if (!isnan(volume)) {
+            CHECK_NEAR(found.volume, volume, 1e-9 * volume);
+            cases += volume > 0;
+        }
+        free_scene(&s);
+    }
+    CHECK(cases > 300);
+}
+
+/* The energy by a sum over a grid of cells: its error goes with the square of their size. */
+TEST(energy_is_that_of_a_sum)
+{
+    enum { CELLS = 70 };
+    const double half = 0.9, cell = 2 * half / CELLS;
+    for (uint64_t k = 1; k <= 20; k++) {
+        uint64_t seed = k + 9000;
+        static scene s;
+        make_scene(&s, random_kind(&seed) % 2, random_kind(&seed) % 2, 0.3, false, &seed);
+        list_scene(&s);
+        tl_field_volume found;
+        CHECK(tl_field_integrate(&s.planes.faces, &s.room, &found));
+        double sum = 0;
+        for (int i = 0; i < CELLS * CELLS * CELLS; i++) {
+            tl_vec3 at = tl_v3(i % CELLS + 0.5, i / CELLS % CELLS + 0.5, i / CELLS / CELLS + 0.5);
+            tl_vec3 x = tl_v3_sub(tl_v3_scale(cell, at), tl_v3(half, half, half));
+            sum += depth_at(&s.planes.faces, x) * cell * cell * cell;
+        }
+        CHECK_REL(found.energy, sum, 0.04);
+        free_scene(&s);
+    }
+}
+
+/* Two flush cubes: U = kn A o^2 / 2 and F = kn A o but for what their borders take, of the order of o over the side. */
+TEST(flush_faces_have_the_force_of_springs)
+{
+    static scene s;
+    for (int k = -6; k < -1; k++) {
+        double o = pow(10, k);
+        s = (scene){.pair = scene_pair_of(scene_box_shape(1, 1, 1), scene_box_shape(3, 3, 1),
+                                          tl_q_identity(), tl_v3(0.2, 0.1, 1 - o))};
+        s.origin = tl_v3(0.1, 0, 0.5);
+        list_scene(&s);
+        tl_field_sums sums;
+        tl_field_volume volume;
+        CHECK(tl_field_surface(&s.planes.faces, &s.room, &sums));
+        CHECK(tl_field_integrate(&s.planes.faces, &s.room, &volume));
+        CHECK_REL(volume.volume, o, 1e-9);
+        CHECK_REL(2 * volume.energy, 0.5 * o * o, 2 * o);
+        CHECK_REL(2 * sums.force.z, o, 2 * o);
+        CHECK_REL(sums.area.z, 1.0, 4 * o);
+        CHECK_NEAR(sums.force.x, 0, 1e-9 * o);
+        CHECK_NEAR(sums.force.y, 0, 1e-9 * o);
+        CHECK_REL(sums.deepest, 0.5 * o, 1e-9);
+        free_scene(&s);
+    }
+}
+
+/* Whatever seams, nothing is carried where nothing is in common; and nothing depends on the order of the blocks. */
+TEST(blocks_that_only_touch_have_no_force)
+{
+    for (uint64_t k = 1; k <= 400; k++) {
+        uint64_t seed = k + 20000;
+        static scene s;
+        make_scene(&s, random_kind(&seed) % 5, random_kind(&seed) % 5, -1e-9, k % 2, &seed);
+        list_scene(&s);
+        tl_field_sums sums;
+        CHECK(tl_field_surface(&s.planes.faces, &s.room, &sums));
+        CHECK_NEAR(tl_v3_norm(sums.force), 0, 0);
+        free_scene(&s);
+    }
+}
+
+TEST_MAIN(RUN(force_and_moment_are_the_gradient_of_the_energy), RUN(borders_do_work_as_well),
+          RUN(volume_is_that_of_what_is_left_by_cuts), RUN(energy_is_that_of_a_sum),
+          RUN(flush_faces_have_the_force_of_springs), RUN(blocks_that_only_touch_have_no_force))
