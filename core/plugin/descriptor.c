@@ -15,6 +15,10 @@
 
 /* More rows than this in one array are a descriptor that was never initialised. */
 #define MOST_ROWS 4096
+/* Bytes from one row to the next: ours have some 120, and newer headers may add to them. */
+#define MOST_STRIDE 4096
+/* Bytes of a struct of parameters: one of MOST_ROWS reals is 32 KiB. */
+#define MOST_PARAM_BYTES ((size_t)1 << 20)
 
 /* Sizes of the structs in version 1.0 of the interface: no plugin can have smaller ones. */
 enum {
@@ -89,7 +93,8 @@ static tl_status copy_rows(const version *v, const char *what, const void *rows,
         const char *row = (const char *)rows + (size_t)i * stride;
         uint32_t size = size_of(row);
         tl_status status = check_size(v, what, size, first, ours);
-        if (status == TL_OK && (stride < size || stride % sizeof(void *) != 0))
+        if (status == TL_OK &&
+            (stride < size || stride > MOST_STRIDE || stride % sizeof(void *) != 0))
             status = tl_fail(v->error, TL_E_PLUGIN, "%s: stride %u does not fit rows of %u bytes",
                              what, stride, size);
         if (status != TL_OK) {
@@ -325,6 +330,12 @@ static tl_status check_kind(const tl_plugin *plugin, uint32_t index, tl_error *e
     if (!kind->doc)
         return tl_fail(error, TL_E_PLUGIN, "%s '%s' has no doc", tl_kind_type_name(kind->type),
                        kind->name);
+    if (kind->params_size > MOST_PARAM_BYTES)
+        return tl_fail(error, TL_E_PLUGIN,
+                       "%s '%s' has a params_size of %zu bytes; %zu at the most: is it sizeof its "
+                       "struct of parameters?",
+                       tl_kind_type_name(kind->type), kind->name, kind->params_size,
+                       MOST_PARAM_BYTES);
     for (uint32_t i = 0; i < index; i++)
         if (plugin->kinds[i].type == kind->type && same(plugin->kinds[i].name, kind->name))
             return tl_fail(error, TL_E_PLUGIN, "it holds two %ss named '%s'",

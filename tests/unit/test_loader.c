@@ -114,6 +114,11 @@ TEST(broken_plugins_are_refused_with_the_reason)
     refused(
         bad_folder, "many_states",
         "law 'many_states': its states take 9 columns (a scalar 1, a tangent 3); 8 at the most");
+    refused(bad_folder, "endless_params",
+            "law 'endless_params' has a params_size of 18446744073709551615 bytes; 1048576 at the "
+            "most");
+    refused(bad_folder, "large_params",
+            "law 'large_params' has a params_size of 100000000000 bytes; 1048576 at the most");
     refused(bad_folder, "only_unknown",
             "it holds nothing of use: kind 1, 'only_unknown', is of the unknown type 23");
     refused(bad_folder, "snapped", "its descriptor has size 0: not a Talus plugin");
