@@ -13,6 +13,13 @@ tl_status tl_vfail(tl_error *error, tl_status status, const char *format, va_lis
 tl_status tl_fail_memory(tl_error *error);
 /* Puts a formatted text in front of the sentence already there; returns its status. */
 tl_status tl_error_prefix(tl_error *error, const char *format, ...) TL_PRINTF(2, 3);
+/* Makes one line for people of what a plugin wrote: control characters, which may hold a terminal's codes, become '?', and
+ * line ends and tabs become spaces. */
+void tl_text_clean(char *text);
+/* Whether tl_text_clean has nothing to do. */
+bool tl_text_is_clean(const char *text);
+/* The sentence in a report that came back with `status`, ended and cleaned; what is told where it is empty. */
+const char *tl_report_text(tl_report *report, tl_status status);
 /* The text of a status code. */
 const char *tl_status_text(tl_status status);
 

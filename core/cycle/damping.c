@@ -50,7 +50,8 @@ tl_status tl_model_damping(tl_model *m, const char *damping, const tl_args *args
         status = ops->create(params, &self, &report);
         tl_leave();
         if (status != TL_OK)
-            tl_fail(&m->error, status, "%s: %s", context, report.text);
+            tl_fail(&m->error, status, "%s of plugin '%s': %s", context, tl_plugin_id(kind),
+                    tl_report_text(&report, status));
     }
     if (status != TL_OK) {
         free(params);
@@ -179,7 +180,7 @@ static void damp_range(void *user, size_t begin, size_t end, size_t chunk, unsig
     tl_status status = ops->update(m->damping_self, &batch, &report);
     tl_leave();
     if (status != TL_OK)
-        tl_cycle_failed(m, chunk, status, 0, report.text);
+        tl_cycle_failed(m, chunk, status, 0, tl_report_text(&report, status));
     else
         check_numbers(m, begin, last, chunk);
     if (ops->before)
@@ -221,11 +222,12 @@ tl_status tl_damping_apply(tl_model *m, double dt)
         if (status == TL_OK)
             status = check_states(m, &c->failure);
     } else {
-        tl_fail(&c->failure, status, "%s", report.text);
+        tl_fail(&c->failure, status, "%s", tl_report_text(&report, status));
     }
     if (status == TL_OK)
         return TL_OK;
     c->failure.status = TL_OK;
-    return tl_fail(&m->error, status, "cycle %lld, damping '%s': %s", (long long)m->cycles + 1,
-                   m->damping->name, c->failure.text);
+    return tl_fail(&m->error, status, "cycle %lld, damping '%s' of plugin '%s': %s",
+                   (long long)m->cycles + 1, m->damping->name, tl_plugin_id(m->damping),
+                   c->failure.text);
 }

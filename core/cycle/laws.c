@@ -52,17 +52,14 @@ static bool call_law(const run_job *job, size_t first, size_t count, const tl_po
     memset(l->stored, 0, count * sizeof *l->stored);
     memset(l->dissipated, 0, count * sizeof *l->dissipated);
     const tl_law_ops *ops = job->material->kind->ops;
-    tl_report report; /* not cleared as a whole: its text is long */
-    report.size = sizeof report;
-    report.first_bad = 0;
-    report.text[0] = 0;
+    tl_report report = {.size = sizeof report};
     tl_enter(job->material->kind, "update");
     tl_status status = ops->update(job->material->self, &batch, &report);
     tl_leave();
     /* the plugin's word: there need not be such a point */
     size_t bad = report.first_bad < count ? report.first_bad : 0;
     if (status != TL_OK)
-        tl_cycle_failed(job->m, first, status, first + bad, report.text);
+        tl_cycle_failed(job->m, first, status, first + bad, tl_report_text(&report, status));
     return status == TL_OK;
 }
 

@@ -30,7 +30,8 @@ static tl_status make_material(tl_model *m, tl_tag tag, const char *joint, const
         status = ops->create(out->params, &out->self, &report);
         tl_leave();
         if (status != TL_OK)
-            tl_fail(&m->error, status, "%s: %s", context, report.text);
+            tl_fail(&m->error, status, "%s of plugin '%s': %s", context, tl_plugin_id(kind),
+                    tl_report_text(&report, status));
     }
     if (status != TL_OK) {
         free(out->params);
@@ -41,11 +42,10 @@ static tl_status make_material(tl_model *m, tl_tag tag, const char *joint, const
     ops->stiffness(out->self, &out->kn, &out->ks);
     tl_leave();
     if (!(out->kn >= 0 && out->ks >= 0 && isfinite(out->kn) && isfinite(out->ks))) {
-        const tl_plugin *plugin = tl_plugin_of(kind, NULL);
         tl_fail(&m->error, TL_E_PLUGIN,
                 "%s of plugin '%s': its stiffness() gives kn = %g and ks = %g Pa/m; both must be "
                 "finite and >= 0",
-                context, plugin ? plugin->id : "?", out->kn, out->ks);
+                context, tl_plugin_id(kind), out->kn, out->ks);
         tl_material_clear(out);
         return TL_E_PLUGIN;
     }

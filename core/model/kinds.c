@@ -1,4 +1,4 @@
-/* kinds.c - plugin kinds as the model sees them: the sentence for one that is not loaded. */
+/* kinds.c - plugin kinds as the model sees them: whose they are, and the sentence for one that is not loaded. */
 #include "model/model.h"
 
 #include "base/names.h"
@@ -7,6 +7,12 @@
 
 static const char *const type_names[] = {
     [TL_KIND_LAW] = "law", [TL_KIND_DAMPING] = "damping", [TL_KIND_GENERATOR] = "generator"};
+
+const char *tl_plugin_id(const tl_kind *kind)
+{
+    const tl_plugin *plugin = tl_plugin_of(kind, NULL);
+    return plugin ? plugin->id : "?";
+}
 
 tl_status tl_unknown_kind(tl_model *m, tl_kind_type type, const char *name)
 {

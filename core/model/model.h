@@ -277,6 +277,8 @@ uint32_t tl_block_row_quiet(const tl_model *m, tl_id id);
 
 /* TL_E_NOT_FOUND: "unknown law 'coulom'; did you mean ...": kinds.c. */
 tl_status tl_unknown_kind(tl_model *m, tl_kind_type type, const char *name);
+/* The id of the plugin that a kind is of, for sentences. */
+const char *tl_plugin_id(const tl_kind *kind);
 
 /* Takes the damping off. */
 void tl_damping_clear(tl_model *m);

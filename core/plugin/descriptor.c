@@ -157,6 +157,18 @@ static tl_status check_default(const tl_param *p, tl_error *error)
     return TL_OK;
 }
 
+/* Texts are shown on terminals. */
+static bool any_unclean(const char *a, const char *b)
+{
+    return !tl_text_is_clean(a) || !tl_text_is_clean(b);
+}
+
+static tl_status unclean(tl_error *error, const char *what, const char *name)
+{
+    return tl_fail(error, TL_E_PLUGIN, "%s '%s' has a control character in its unit or doc", what,
+                   name);
+}
+
 static tl_status check_param(const tl_kind *kind, uint32_t index, tl_error *error)
 {
     const tl_param *p = &kind->params[index];
@@ -167,6 +179,8 @@ static tl_status check_param(const tl_kind *kind, uint32_t index, tl_error *erro
     if (!p->unit || !p->doc)
         return tl_fail(error, TL_E_PLUGIN, "parameter '%s' has no %s", p->name,
                        p->doc ? "unit (\"\" for a pure number)" : "doc");
+    if (any_unclean(p->unit, p->doc))
+        return unclean(error, "parameter", p->name);
     if (bytes == 0)
         return tl_fail(error, TL_E_PLUGIN, "parameter '%s' has the unknown type %u", p->name,
                        p->type);
@@ -205,6 +219,8 @@ static tl_status check_state(const tl_kind *kind, uint32_t index, tl_error *erro
     if (!s->unit || !s->doc)
         return tl_fail(error, TL_E_PLUGIN, "state '%s' has no %s", s->name,
                        s->doc ? "unit" : "doc");
+    if (any_unclean(s->unit, s->doc))
+        return unclean(error, "state", s->name);
     if (s->kind > TL_STATE_TANGENT || s->transfer > TL_TRANSFER_RESET)
         return tl_fail(error, TL_E_PLUGIN, "state '%s' has the unknown %s %u", s->name,
                        s->kind > TL_STATE_TANGENT ? "kind" : "transfer",
@@ -330,6 +346,8 @@ static tl_status check_kind(const tl_plugin *plugin, uint32_t index, tl_error *e
     if (!kind->doc)
         return tl_fail(error, TL_E_PLUGIN, "%s '%s' has no doc", tl_kind_type_name(kind->type),
                        kind->name);
+    if (!tl_text_is_clean(kind->doc))
+        return unclean(error, tl_kind_type_name(kind->type), kind->name);
     if (kind->params_size > MOST_PARAM_BYTES)
         return tl_fail(error, TL_E_PLUGIN,
                        "%s '%s' has a params_size of %zu bytes; %zu at the most: is it sizeof its "
@@ -414,6 +432,11 @@ tl_status tl_descriptor_read(const tl_plugin *given, tl_plugin **plugin, char no
         return status;
     if (!given->id || !given->id[0] || !given->version || !given->doc || !given->licence)
         return tl_fail(error, TL_E_PLUGIN, "its descriptor lacks an id, version, doc or licence");
+    if (any_unclean(given->id, given->version) || any_unclean(given->doc, given->licence))
+        return tl_fail(
+            error, TL_E_PLUGIN,
+            "its id, version, doc or licence has a control character in it; its id is '%.60s'",
+            given->id);
     if (given->kind_count == 0)
         return tl_fail(error, TL_E_PLUGIN, "it holds no law, damping or generator");
     void *kinds;
@@ -430,6 +453,7 @@ tl_status tl_descriptor_read(const tl_plugin *given, tl_plugin **plugin, char no
     copy->kinds = kinds;
     copy->kind_stride = sizeof(tl_kind);
     drop_unknown(copy, kinds, note);
+    tl_text_clean(note);
     status = copy->kind_count > 0
                  ? read_kinds(&v, copy, kinds)
                  : tl_fail(error, TL_E_PLUGIN, "it holds nothing of use: %s", note);

@@ -37,6 +37,7 @@ static tl_status fail(const tl_host *host, tl_status status, const char *format,
     va_start(args, format);
     tl_vfail(&service_of(host)->model->error, status, format, args);
     va_end(args);
+    tl_text_clean(service_of(host)->model->error.text);
     return status;
 }
 
@@ -47,6 +48,7 @@ static void say(const tl_host *host, const char *format, ...)
     va_start(args, format);
     vsnprintf(text, sizeof text, format, args);
     va_end(args);
+    tl_text_clean(text);
     tl_model_say(service_of(host)->model, "generator '%s': %s", service_of(host)->generator, text);
 }
 
@@ -427,7 +429,8 @@ static tl_status run(service *s, const tl_kind *kind, const void *params)
         return tl_stage_commit(&s->stage);
     tl_stage_drop(&s->stage);
     if (m->error.text[0] == '\0')
-        return tl_fail(&m->error, status, "%s", tl_status_text(status));
+        return tl_fail(&m->error, status, "no reason given (status %d: %s)", (int)status,
+                       tl_status_text(status));
     m->error.status = status;
     return status;
 }
@@ -453,7 +456,7 @@ tl_status tl_generate(tl_model *m, const char *generator, const tl_args *args,
         atomic_store(&m->interrupted, false);
         status = run(&s, kind, params);
         if (status != TL_OK)
-            tl_error_prefix(&m->error, "%s: ", context);
+            tl_error_prefix(&m->error, "%s of plugin '%s': ", context, tl_plugin_id(kind));
         else if (summary)
             *summary = s.stage.summary;
     }

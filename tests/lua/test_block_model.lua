@@ -134,7 +134,7 @@ local function refused(pattern, replacement, part)
     check.holds(count == 1, "the pattern " .. pattern)
     local file = write(content)
     local message = check.refused(small, function() small:generate("blocks", { file = file }) end, part)
-    check.holds(message:find("generator 'blocks': ", 1, true), "the generator is named in " .. message)
+    check.holds(message:find("generator 'blocks' of plugin 'talus.blocks': ", 1, true), "the generator is named in " .. message)
 end
 
 refused("talus block", "other", "the file is no block model")
@@ -184,7 +184,7 @@ local function try(content)
         small:generate("box", { min = { 0, 0, 0 }, max = { 1, 1, 1 }, density = 1000 })
         return
     end
-    check.holds(type(message) == "string" and message:find("generator 'blocks': ", 1, true), "a sentence")
+    check.holds(type(message) == "string" and message:find("generator 'blocks' of plugin 'talus.blocks': ", 1, true), "a sentence")
     check.equal(small:state_hash(), state)
 end
 for length = 0, #plain - 3 do

@@ -290,7 +290,7 @@ local function try(ending, content)
         odd:delete()
         return 1
     end
-    check.holds(type(message) == "string" and message:find("generator 'import': ", 1, true), "a sentence")
+    check.holds(type(message) == "string" and message:find("generator 'import' of plugin '", 1, true), "a sentence")
     check.equal(model:state_hash(), before)
     return 0
 end

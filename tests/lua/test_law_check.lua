@@ -28,6 +28,47 @@ if not arg[1] then
         check.holds(good, words .. ": " .. text)
     end
 
+    -- Reports without an end, empty, or with codes of terminals become one line that names the plugin.
+    local function mumble(law, damping, context)
+        local chunk = [[
+            local talus = require "talus"
+            local model = talus.model { gravity = { 0, 0, -10 } }
+            model:generate("box", { min = { 0, 0, 0 }, max = { 1, 1, 1 }, density = 2000 })
+            model:generate("box", { min = { 0, 0, 1 }, max = { 1, 1, 2 }, density = 2000 })
+            model:blocks { below = { origin = { 0, 0, 1 }, dip = 0, dip_direction = 0 } }:fix()
+            for what, part in pairs {
+                full = (": %s$"):format(("x"):rep(255)),
+                nothing = ": no reason given %(status 8: a value that must be finite is not%)$",
+                codes = ": one%?%[31m two \xc3\xbc%?%?three%?$" } do
+                local good, text = pcall(function()
+                    model:joint("*", "mumbles", { where = LAW, what = what })
+                    model:damping("mumbles", { where = DAMPING, what = what })
+                    if CONTEXT:find "^generator" then
+                        model:generate("mumbles", { what = what == "nothing" and what or "codes" })
+                    end
+                    model:cycle(5)
+                end)
+                if what == "full" and CONTEXT:find "^generator" then part = "" end
+                assert(not good and text:find(CONTEXT .. " of plugin 'bad.mumbles'", 1, true) and text:find(part), text)
+            end]]
+        chunk = chunk:gsub("LAW", '"' .. law .. '"'):gsub("DAMPING", '"' .. damping .. '"')
+        chunk = chunk:gsub("CONTEXT", '("' .. context .. '")')
+        local path = os.getenv("TALUS_TEST_TMP") .. "/mumble.lua"
+        local file = assert(io.open(path, "w"))
+        file:write(chunk)
+        file:close()
+        local pipe = io.popen(string.format("'%s' --quiet --plugin '%s' '%s' 2>&1", program,
+            os.getenv("TALUS_BAD_PLUGIN_DIR") .. "/mumbles.so", path))
+        local text = pipe:read("a")
+        check.holds(pipe:close(), law .. ", " .. damping .. ": " .. text)
+    end
+    mumble("create", "never", "law 'mumbles'")
+    mumble("update", "never", "law 'mumbles'")
+    mumble("never", "create", "damping 'mumbles'")
+    mumble("never", "begin", "damping 'mumbles'")
+    mumble("never", "update", "damping 'mumbles'")
+    mumble("never", "never", "generator 'mumbles'")
+
     -- What is static is refused where the joint gets the law.
     local stiffness = "joint 'J1', law 'liar' of plugin 'bad.liar': its stiffness() gives kn = "
     refused("slide negative", stiffness .. "1e+08 and ks = -1e+08 Pa/m; both must be finite and >= 0")

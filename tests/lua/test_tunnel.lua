@@ -163,7 +163,7 @@ model = rock()
 local function refused(face1, face2, part)
     check.refused(model, function()
         model:generate("tunnel", { face1 = face1, face2 = face2 })
-    end, "generator 'tunnel': " .. part)
+    end, "generator 'tunnel' of plugin 'talus.tunnel': " .. part)
 end
 refused(face({ { 0, 0 }, { 1, 1 } }, -9), face({ { 0, 0 }, { 1, 1 } }, 9), "face1 has 2 corners")
 refused(face(square, -9), face({ { 0, 0 }, { 1, 1 }, { 2, 0 } }, 9),

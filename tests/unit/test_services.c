@@ -306,25 +306,29 @@ TEST(mistakes_leave_the_model_as_it_was)
     refused(m, "bix", NULL, 0,
             "unknown generator 'bix'; did you mean 'box'? (known: blocks, box, ");
     tl_value upside[] = {vector("min", one), vector("max", zero), number("density", 1)};
-    refused(m, "box", upside, 3, "generator 'box': max.x = 0 m must be > min.x = 1 m");
+    refused(m, "box", upside, 3,
+            "generator 'box' of plugin 'talus.box': max.x = 0 m must be > min.x = 1 m");
     tl_value weightless[] = {vector("min", zero), vector("max", one), number("density", 0)};
     refused(m, "box", weightless, 3, "generator 'box': density = 0 kg/m3 must be > 0");
     tl_value plane[] = {{.key = "vertices", .type = TL_VALUE_POINTS, .data = flat, .count = 4},
                         number("density", 1)};
-    refused(m, "polyhedron", plane, 2, "generator 'polyhedron': ");
+    refused(m, "polyhedron", plane, 2, "generator 'polyhedron' of plugin 'talus.polyhedron': ");
     plane[0].count = 3;
-    refused(m, "polyhedron", plane, 2, "generator 'polyhedron': ");
+    refused(m, "polyhedron", plane, 2, "generator 'polyhedron' of plugin 'talus.polyhedron': ");
     plane[0].count = 0;
-    refused(m, "polyhedron", plane, 2, "generator 'polyhedron': ");
+    refused(m, "polyhedron", plane, 2, "generator 'polyhedron' of plugin 'talus.polyhedron': ");
     tl_value set_values[] = {text("joint", "K"), number("dip", 10), number("dip_direction", 10),
                              number("spacing", 0.1), number("spacing_dev", 0.1)};
     refused(m, "jointset", set_values, 5,
-            "generator 'jointset': spacing_dev = 0.1 m must be < spacing = 0.1 m");
+            "generator 'jointset' of plugin 'talus.jointset': spacing_dev = 0.1 m must be < "
+            "spacing = 0.1 m");
     refused(m, "jointset", set_values, 3, "generator 'jointset': parameter 'spacing' is missing");
     set_values[0].text = "K:1";
-    refused(m, "joint", set_values, 3, "generator 'joint': joint = 'K:1' is not a name");
+    refused(m, "joint", set_values, 3,
+            "generator 'joint' of plugin 'talus.joint': joint = 'K:1' is not a name");
     set_values[0].text = "";
-    refused(m, "joint", set_values, 3, "generator 'joint': joint = '' is not a name");
+    refused(m, "joint", set_values, 3,
+            "generator 'joint' of plugin 'talus.joint': joint = '' is not a name");
     set_values[1].number = 91;
     refused(m, "joint", set_values, 3, "generator 'joint': dip = 91 deg is outside [0, 90]");
     tl_model_destroy(m);
@@ -338,7 +342,7 @@ TEST(a_generator_that_fails_half_way_leaves_no_trace)
     static const char *const modes[] = {"fail", "silent",      "normal",
                                         "tag",  "persistence", "density"};
     static const char *const reasons[] = {"went half way",
-                                          "a shape is degenerate",
+                                          "no reason given (status 3: a shape is degenerate",
                                           "which is not of unit length",
                                           "it cuts by plane 2 of joint 1, which it did not ask for",
                                           "persistence = 1.5 is outside [0, 1]",
@@ -351,7 +355,7 @@ TEST(a_generator_that_fails_half_way_leaves_no_trace)
         for (int i = 0; i < 6; i++) {
             tl_value mode = text("mode", modes[i]);
             char part[200];
-            snprintf(part, sizeof part, "generator 'half_way': ");
+            snprintf(part, sizeof part, "generator 'half_way' of plugin 'bad.half_way': ");
             refused(m, "half_way", &mode, 1, part);
             refused(m, "half_way", &mode, 1, reasons[i]);
         }
@@ -365,12 +369,14 @@ TEST(the_host_describes_the_blocks_it_holds)
     tl_model *m = model_new(1);
     tl_value mode = text("mode", "look");
     refused(m, "half_way", &mode, 1,
-            "generator 'half_way': 2 blocks of volume 6.000000 from 10,10,10 to 11,12,13");
+            "generator 'half_way' of plugin 'bad.half_way': 2 blocks of volume 6.000000 from "
+            "10,10,10 to 11,12,13");
     CHECK_CONTAINS(remark, "generator 'half_way': 2 blocks");
     box(m, zero, one);
     cut_set(m, (set){"J", 90, 0, 90, 0, 0.25, 0, 3, 1, half});
     refused(m, "half_way", &mode, 1,
-            "generator 'half_way': 6 blocks of volume 7.000000 from 0,0,0 to 11,12,13");
+            "generator 'half_way' of plugin 'bad.half_way': 6 blocks of volume 7.000000 from 0,0,0 "
+            "to 11,12,13");
     tl_model_destroy(m);
 }
 

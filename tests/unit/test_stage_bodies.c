@@ -69,7 +69,8 @@ TEST(mistakes_of_a_generator_are_told)
                           : i == 1 ? TL_E_ARGUMENT
                                    : TL_E_NUMERIC,
                           NULL);
-        CHECK_CONTAINS(tl_model_error(m)->text, "generator 'single_blocks': ");
+        CHECK_CONTAINS(tl_model_error(m)->text,
+                       "generator 'single_blocks' of plugin 'test.single_blocks': ");
         CHECK_CONTAINS(tl_model_error(m)->text, reasons[i]);
         CHECK_INT(tl_block_count(m), 0);
         CHECK_INT(m->group_count, 0);

@@ -152,7 +152,8 @@ TEST(a_step_that_the_damping_fails_is_undone)
             if (k == 0) { /* the same damping, but that it fails: its states are set back by hand */
                 double calls = m[k]->damping_state[0];
                 scene_ok(m[k], tl_model_damping(m[k], "failing_damping", &(tl_args){&told, 1}));
-                fail(m[k], "damping 'failing_damping': it was told to fail");
+                fail(m[k],
+                     "damping 'failing_damping' of plugin 'bad.failing': it was told to fail");
                 scene_ok(m[k], tl_model_damping(m[k], "failing_damping", &(tl_args){NULL, 0}));
                 m[k]->damping_state[0] = calls;
             } else {
