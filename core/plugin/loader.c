@@ -19,6 +19,7 @@
 #include "plugin/registry.h"
 
 #include "base/inside.h"
+#include "base/regular.h"
 
 #include <dirent.h>
 #include <dlfcn.h>
@@ -86,6 +87,9 @@ static tl_status open_and_take_in(const char *path, tl_error *error)
     int n = snprintf(local, sizeof local, "%s%s", strchr(path, '/') ? "" : "./", path);
     if (n < 0 || (size_t)n >= sizeof local)
         return tl_fail(error, TL_E_PLUGIN, "its path is too long");
+    const char *other = tl_not_regular(local);
+    if (other)
+        return tl_fail(error, TL_E_PLUGIN, "it is %s: only regular files are loaded", other);
     tl_inside_plugin.path = path;
     tl_enter(NULL, "dlopen"); /* which runs the file's constructors */
     void *handle = dlopen(local, RTLD_NOW | RTLD_LOCAL);

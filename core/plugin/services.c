@@ -7,6 +7,7 @@
 #include "base/inside.h"
 #include "base/names.h"
 #include "base/random.h"
+#include "base/regular.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -435,6 +436,24 @@ static tl_status run(service *s, const tl_kind *kind, const void *params)
     return status;
 }
 
+/* The files that are to be read must be such as end; those that are not there are left to the plugin. */
+static tl_status check_files(tl_model *m, const tl_kind *kind, const void *params,
+                             const char *context)
+{
+    for (uint32_t i = 0; i < kind->param_count; i++) {
+        const tl_param *p = &kind->params[i];
+        const char *file = NULL;
+        if (p->type != TL_PARAM_STRING || !(p->flags & TL_PARAM_FILE))
+            continue;
+        memcpy(&file, (const char *)params + p->offset, sizeof file);
+        const char *other = file ? tl_not_regular(file) : NULL;
+        if (other)
+            return tl_fail(&m->error, TL_E_IO, "%s: %s '%.200s' is %s: only regular files are read",
+                           context, p->name, file, other);
+    }
+    return TL_OK;
+}
+
 tl_status tl_generate(tl_model *m, const char *generator, const tl_args *args,
                       tl_generate_summary *summary)
 {
@@ -451,6 +470,8 @@ tl_status tl_generate(tl_model *m, const char *generator, const tl_args *args,
         return tl_fail_memory(&m->error);
     status = tl_args_read(kind->params, kind->param_count, kind->param_stride, args, false, params,
                           context, &m->error);
+    if (status == TL_OK)
+        status = check_files(m, kind, params, context);
     if (status == TL_OK) {
         service s = {.model = m, .generator = kind->name};
         atomic_store(&m->interrupted, false);

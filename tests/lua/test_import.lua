@@ -15,6 +15,24 @@ local function write(ending, content)
     return path
 end
 
+-- ---------------------------------------------------------------- what is no regular file
+
+-- A pipe that nobody writes to would never open; links are followed.
+for ending, generator in pairs { [".stl"] = "import", [".obj"] = "import", [".json"] = "blocks" } do
+    local pipe, link = stem .. "_pipe" .. ending, stem .. "_link" .. ending
+    assert(os.execute(string.format("mkfifo '%s' && ln -s '%s' '%s'", pipe, pipe, link)))
+    for path, what in pairs { [pipe] = "a pipe", [link] = "a pipe" } do
+        local model = talus.model {}
+        check.refused(model, function()
+            model:generate(generator, { file = path, density = generator == "import" and 2000 or nil })
+        end, "file '" .. path .. "' is " .. what .. ": only regular files are read")
+    end
+    os.remove(link)
+    os.remove(pipe)
+end
+check.refused(talus.model {}, function() talus.model {}:generate("blocks", { file = folder }) end, "is a folder: only regular files are read")
+check.refused(talus.model {}, function() talus.model {}:generate("blocks", { file = "/dev/zero" }) end, "is a device: only regular files")
+
 -- ---------------------------------------------------------------- solids as lists of triangles
 
 -- Twelve triangles of a box, counter-clockwise from outside.

@@ -38,7 +38,7 @@ def expect(holds, what, done):
 
 def run(command, **variables):
     environment = {name: value for name, value in os.environ.items() if not name.startswith("TALUS_")}
-    return subprocess.run([str(word) for word in command], capture_output=True, text=True, check=False,
+    return subprocess.run([str(word) for word in command], capture_output=True, text=True, check=False, timeout=300,
                           env={**environment, **variables})
 
 
@@ -130,11 +130,25 @@ def check_folders(program, folder, root):
         expect(loaded in done.stdout, "folder of root's group", done)
 
 
+def check_pipes(program, folder, root):
+    """A pipe in the place of a plugin is passed over with a reason; nobody writes to it."""
+    plugins = root / "pipes"
+    plugins.mkdir()
+    os.mkfifo(plugins / "a.so")
+    shutil.copy(folder / "liar.so", plugins / "b.so")
+    reason = "it is a pipe: only regular files are loaded"
+    done = listed(program, TALUS_PLUGIN_PATH=str(plugins))
+    expect(reason in done.stdout and f"bad.liar 1  {plugins}/b.so" in done.stdout, "a pipe in a folder", done)
+    done = run([program, "--plugin", plugins / "a.so", "plugins"])
+    expect(done.returncode != 0 and reason in done.stderr, "a pipe that is named", done)
+
+
 def main():
     build = pathlib.Path(sys.argv[1]).resolve()
     check_crashes(build / "talus", build / "bad_plugins")
     with tempfile.TemporaryDirectory() as folder:
         check_folders(build / "talus", build / "bad_plugins", pathlib.Path(folder).resolve())
+        check_pipes(build / "talus", build / "bad_plugins", pathlib.Path(folder).resolve())
     for fault in faults:
         print(fault)
     print(f"plugins: {len(faults)} faults")

@@ -3,7 +3,9 @@
 #include "check.h"
 
 #include <dirent.h>
+#include <sys/stat.h>
 #include <talus/talus.h>
+#include <unistd.h>
 
 static const char bad_folder[] = TALUS_BAD_PLUGIN_DIR;
 static const char good_folder[] = TALUS_TEST_PLUGIN_DIR;
@@ -171,6 +173,18 @@ TEST(a_text_file_is_refused)
     remove(path);
 }
 
+TEST(a_pipe_is_refused_and_not_waited_for)
+{
+    char path[1024];
+    snprintf(path, sizeof path, "%s/loader_pipe.so", TALUS_TEST_TMP);
+    remove(path);
+    CHECK_INT(mkfifo(path, 0600), 0);
+    alarm(60); /* a loader that waits for a writer is ended */
+    refused(TALUS_TEST_TMP, "loader_pipe", "it is a pipe: only regular files are loaded");
+    alarm(0);
+    remove(path);
+}
+
 TEST(refusals_leave_the_kinds_as_they_were)
 {
     for (int type = TL_KIND_LAW; type <= TL_KIND_GENERATOR; type++)
@@ -190,6 +204,7 @@ int main(void)
     RUN(broken_plugins_are_refused_with_the_reason);
     RUN(the_same_file_again_is_a_duplicate);
     RUN(a_text_file_is_refused);
+    RUN(a_pipe_is_refused_and_not_waited_for);
     RUN(refusals_leave_the_kinds_as_they_were);
     RUN(a_kind_of_unknown_type_is_left_out_and_the_others_are_used);
     RUN(dampings_that_could_not_ask_get_the_forces_of_the_step_before);

@@ -84,7 +84,10 @@ enum {
     TL_PARAM_REQUIRED = 1, /* must be given; `def` is not used */
     TL_PARAM_OPTIONAL = 2, /* may be missing, and has no default */
     TL_PARAM_MIN_OPEN = 4, /* value > min instead of >= */
-    TL_PARAM_MAX_OPEN = 8  /* value < max instead of <= */
+    TL_PARAM_MAX_OPEN = 8, /* value < max instead of <= */
+    TL_PARAM_FILE =
+        16 /* since 1.3, of a string: a file that is read. The host refuses pipes, devices and folders, so that
+                          opening it does not wait */
 };
 
 /* One parameter. Reals and integers are checked against [min, max]; for a vec3 every component

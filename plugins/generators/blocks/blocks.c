@@ -19,7 +19,8 @@ typedef struct params {
 } params;
 
 static const tl_param param_table[] = {
-    TL_PARAM(TL_PARAM_STRING, params, file, "", "block model in JSON", .flags = TL_PARAM_REQUIRED),
+    TL_PARAM(TL_PARAM_STRING, params, file, "", "block model in JSON",
+             .flags = TL_PARAM_REQUIRED | TL_PARAM_FILE),
 };
 
 /* A block's body number and its index, to be sorted. */

@@ -16,7 +16,7 @@ typedef struct params {
 
 static const tl_param param_table[] = {
     TL_PARAM(TL_PARAM_STRING, params, file, "", "file of solids, ending in .stl or .obj",
-             .flags = TL_PARAM_REQUIRED),
+             .flags = TL_PARAM_REQUIRED | TL_PARAM_FILE),
     TL_PARAM(TL_PARAM_REAL, params, scale, "", "factor on coordinates: 0.001 for millimetres",
              .def = {1}, .flags = TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
     TL_PARAM(TL_PARAM_VEC3, params, translate, "m", "added to the scaled coordinates",
