@@ -149,6 +149,29 @@ void tl_body_measure(tl_model *m, uint32_t body)
     write_measures(&m->bodies, body, &sum);
 }
 
+static tl_status check_measure(tl_error *error, const char *name, double value, const char *unit)
+{
+    if (value >= TL_LEAST_MEASURE && value <= TL_MOST_MEASURE)
+        return TL_OK;
+    return tl_fail(
+        error, TL_E_NUMERIC,
+        "a block would have the %s %g %s, outside [%g, %g]: are its size or density in the "
+        "wrong unit?",
+        name, isnan(value) ? (double)NAN : value, unit, TL_LEAST_MEASURE, TL_MOST_MEASURE);
+}
+
+tl_status tl_check_measures(tl_error *error, const tl_poly *shape, double density)
+{
+    tl_mass mass = tl_poly_mass(shape);
+    tl_status status = check_measure(error, "volume", mass.volume, "m3");
+    if (status == TL_OK)
+        status = check_measure(error, "mass", density * mass.volume, "kg");
+    const double moments[3] = {mass.inertia.xx, mass.inertia.yy, mass.inertia.zz};
+    for (int k = 0; k < 3 && status == TL_OK; k++)
+        status = check_measure(error, "moment of inertia", density * moments[k], "kg m2");
+    return status;
+}
+
 void tl_body_measure_single(tl_model *m, uint32_t body, uint32_t row, tl_mass mass)
 {
     body_sum sum = {0};

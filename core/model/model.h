@@ -277,6 +277,15 @@ uint32_t tl_block_row_quiet(const tl_model *m, tl_id id);
 
 /* TL_E_NOT_FOUND: "unknown law 'coulom'; did you mean ...": kinds.c. */
 tl_status tl_unknown_kind(tl_model *m, tl_kind_type type, const char *name);
+/* Points farther from zero than this, m, are refused: the fifth power of a length, which inertia needs, must be finite
+ * with room for densities and sums over bodies. */
+#define TL_FARTHEST 1e50
+/* Volume, mass and inertia, in SI units, are computed with between the one and the other: products with what else a step
+ * has, and sums over bodies, stay finite, and so do their reciprocals. */
+#define TL_LEAST_MEASURE 1e-250
+#define TL_MOST_MEASURE 1e250
+/* TL_E_NUMERIC with a sentence when volume, mass or inertia of a block of this density cannot be computed with. */
+tl_status tl_check_measures(tl_error *error, const tl_poly *shape, double density);
 /* The id of the plugin that a kind is of, for sentences. */
 const char *tl_plugin_id(const tl_kind *kind);
 

@@ -192,6 +192,11 @@ static uint64_t shape_key(const tl_model *m, const tl_poly *shape)
 static tl_status add_shape(tl_stage *stage, tl_poly *shape, double density, const char *group)
 {
     tl_model *m = stage->model;
+    tl_status status = tl_check_measures(&m->error, shape, density);
+    if (status != TL_OK) {
+        tl_poly_free(shape);
+        return status;
+    }
     tl_stage_block block = {.shape = shape, .source = TL_NO_ROW, .density = density, .owned = true};
     block.group = tl_group_intern(m, group ? group : "");
     block.lineage = block.draw = shape_key(m, shape);

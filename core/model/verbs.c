@@ -142,11 +142,18 @@ static bool given(tl_vec3 v)
     return !(isnan(v.x) && isnan(v.y) && isnan(v.z));
 }
 
-static tl_status check_set(tl_model *m, const tl_block_set *set)
+static tl_status check_set(tl_model *m, const tl_id *ids, size_t count, const tl_block_set *set)
 {
     if (!isnan(set->density) && !(set->density > 0 && isfinite(set->density)))
         return tl_fail(&m->error, TL_E_ARGUMENT, "set: density = %g kg/m3 must be > 0",
                        set->density);
+    for (size_t i = 0; i < count && !isnan(set->density); i++) {
+        tl_status status =
+            tl_check_measures(&m->error, m->blocks.shape[m->row_of[ids[i]]], set->density);
+        if (status != TL_OK)
+            return tl_error_prefix(&m->error, "set: density = %g kg/m3, block %u: ", set->density,
+                                   ids[i]);
+    }
     if (given(set->velocity) && !tl_v3_finite(set->velocity))
         return tl_fail(&m->error, TL_E_ARGUMENT, "set: velocity must be three finite numbers");
     if (given(set->angular_velocity) && !tl_v3_finite(set->angular_velocity))
@@ -170,7 +177,7 @@ tl_status tl_blocks_set(tl_model *m, const tl_id *ids, size_t count, const tl_bl
     if (status == TL_OK)
         status = check_ids(m, ids, count);
     if (status == TL_OK)
-        status = check_set(m, set);
+        status = check_set(m, ids, count, set);
     if (status != TL_OK)
         return status;
     uint32_t group = 0;

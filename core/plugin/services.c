@@ -80,13 +80,24 @@ static tl_status check_block(const tl_host *host, double density, const char *gr
     return status == TL_OK ? go_on(host) : status;
 }
 
+/* A point that is finite and near enough to compute with; `what` begins the sentence. */
+static tl_status check_point(const tl_host *host, const char *what, size_t number, tl_vec3 at)
+{
+    if (fabs(at.x) <= TL_FARTHEST && fabs(at.y) <= TL_FARTHEST && fabs(at.z) <= TL_FARTHEST)
+        return TL_OK;
+    if (!tl_v3_finite(at))
+        return fail(host, TL_E_NUMERIC, "%s %zu is not finite", what, number);
+    return fail(host, TL_E_NUMERIC,
+                "%s %zu at {%g, %g, %g} m is farther from zero than %g m: is it in the wrong unit?",
+                what, number, at.x, at.y, at.z, TL_FARTHEST);
+}
+
 static tl_status create_hull(const tl_host *host, const tl_vec3 *vertices, size_t count,
                              double density, const char *group)
 {
     tl_status status = check_block(host, density, group);
     for (size_t i = 0; i < count && status == TL_OK; i++)
-        if (!tl_v3_finite(vertices[i]))
-            status = fail(host, TL_E_NUMERIC, "vertex %zu is not finite", i + 1);
+        status = check_point(host, "vertex", i + 1, vertices[i]);
     if (status != TL_OK)
         return status;
     return tl_stage_add_hull(&service_of(host)->stage, vertices, count, density, group);
@@ -134,8 +145,7 @@ static tl_status create_block(const tl_host *host, const tl_block_shape *given)
     if (status == TL_OK)
         status = check_faces(host, &shape);
     for (size_t i = 0; i < shape.vertex_count && status == TL_OK; i++)
-        if (!tl_v3_finite(shape.vertices[i]))
-            status = fail(host, TL_E_NUMERIC, "vertex %zu is not finite", i + 1);
+        status = check_point(host, "vertex", i + 1, shape.vertices[i]);
     return status == TL_OK ? tl_stage_add_faces(&service_of(host)->stage, &shape) : status;
 }
 
@@ -145,8 +155,11 @@ static tl_status create_box(const tl_host *host, tl_vec3 min, tl_vec3 max, doubl
     tl_status status = check_block(host, density, group);
     if (status != TL_OK)
         return status;
-    if (!tl_v3_finite(min) || !tl_v3_finite(max))
-        return fail(host, TL_E_NUMERIC, "a corner of the box is not finite");
+    status = check_point(host, "corner", 1, min);
+    if (status == TL_OK)
+        status = check_point(host, "corner", 2, max);
+    if (status != TL_OK)
+        return status;
     if (!(min.x < max.x && min.y < max.y && min.z < max.z))
         return fail(host, TL_E_ARGUMENT,
                     "the box from {%g, %g, %g} to {%g, %g, %g} has no volume: min must be < max",
@@ -202,12 +215,12 @@ static tl_status check_index(const tl_host *host, size_t index)
 static tl_status check_plane(const tl_host *host, tl_vec3 normal, tl_vec3 point)
 {
     double length = tl_v3_norm(normal);
-    if (fabs(length - 1) <= UNIT_TOLERANCE && tl_v3_finite(point))
+    if (fabs(length - 1) <= UNIT_TOLERANCE && tl_v3_norm(point) <= TL_FARTHEST)
         return TL_OK;
     return fail(host, TL_E_NUMERIC,
                 "a cutting plane has the normal {%g, %g, %g}, which is not of unit length, or "
-                "the point {%g, %g, %g}, which is not finite",
-                normal.x, normal.y, normal.z, point.x, point.y, point.z);
+                "the point {%g, %g, %g}, which is not finite or farther from zero than %g m",
+                normal.x, normal.y, normal.z, point.x, point.y, point.z, TL_FARTHEST);
 }
 
 static tl_status meets(const tl_host *host, size_t index, const tl_half_space *spaces, size_t count,

@@ -171,3 +171,34 @@ check.refused(model, function() lower:bounds() end, "no longer exists")
 check.refused(model, function() lower:hide() end, "no longer exists")
 check.refused(model, function() lower:delete() end, "no longer exists")
 check.equal(#model:blocks { id = id }, 0)
+
+-- Blocks that cannot be computed with are refused, whole, by whatever way they come.
+model = talus.model {}
+model:generate("box", { min = { 0, 0, 0 }, max = { 1, 1, 1 }, density = 2000 })
+for _, case in ipairs {
+    { 1e100, 2000, "farther from zero than 1e+50 m" }, { 1e300, 2000, "farther from zero than 1e+50 m" },
+    { 1, 1e308, "the mass 8e+308 kg" }, { 1, 1e-300, "the mass 8e-300 kg" }, { 1e50, 1e120, "the mass 8e+270 kg" },
+    { 1e-100, 2000, "the volume 8e-300 m3" }, { 1e-60, 2000, "the moment of inertia" },
+    { 1e49, 1e50, "the moment of inertia" } } do
+    local size, density, part = table.unpack(case)
+    if part == "the mass 8e+308 kg" then part = "the mass inf kg" end
+    local p, q = { -size, -size, -size }, { size, size, size }
+    check.refused(model, function() model:generate("box", { min = p, max = q, density = density }) end, part)
+    check.refused(model, function()
+        model:generate("polyhedron", { vertices = { p, { size, -size, -size }, { -size, size, -size }, q }, density = density })
+    end, size == 1 and "kg, outside [1e-250, 1e+250]" or size > 1e50 and part or "") -- hulls have bounds of their own
+end
+for _, density in ipairs { 1e308, 1e300, 1e-300 } do
+    check.refused(model, function() model:blocks():set { density = density } end, "kg, outside [1e-250, 1e+250]")
+end
+for _, far in ipairs { 1e300, -1e300, 1e60 } do
+    check.refused(model, function()
+        model:generate("joint", { joint = "F", dip = 30, dip_direction = 90, origin = { far, 0, far } })
+    end, "farther from zero than 1e+50 m")
+    check.refused(model, function()
+        model:generate("jointset", { joint = "F", dip = 30, dip_direction = 90, spacing = 1, number = 3, origin = { far, 0, 0 } })
+    end, "farther from zero than 1e+50 m")
+end
+local large = talus.model {} -- as large as may be
+large:generate("box", { min = { -1e40, -1e40, -1e40 }, max = { 1e40, 1e40, 1e40 }, density = 1e20 })
+check.near(large:blocks()[1].mass, 8e140, 1e130)
