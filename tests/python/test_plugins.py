@@ -38,7 +38,7 @@ def expect(holds, what, done):
 
 def run(command, **variables):
     environment = {name: value for name, value in os.environ.items() if not name.startswith("TALUS_")}
-    return subprocess.run([str(word) for word in command], capture_output=True, text=True, check=False, timeout=300,
+    return subprocess.run([str(word) for word in command], capture_output=True, text=True, check=False,
                           env={**environment, **variables})
 
 

@@ -5,7 +5,6 @@
 #include <dirent.h>
 #include <sys/stat.h>
 #include <talus/talus.h>
-#include <unistd.h>
 
 static const char bad_folder[] = TALUS_BAD_PLUGIN_DIR;
 static const char good_folder[] = TALUS_TEST_PLUGIN_DIR;
@@ -179,9 +178,7 @@ TEST(a_pipe_is_refused_and_not_waited_for)
     snprintf(path, sizeof path, "%s/loader_pipe.so", TALUS_TEST_TMP);
     remove(path);
     CHECK_INT(mkfifo(path, 0600), 0);
-    alarm(60); /* a loader that waits for a writer is ended */
     refused(TALUS_TEST_TMP, "loader_pipe", "it is a pipe: only regular files are loaded");
-    alarm(0);
     remove(path);
 }
 
