@@ -74,7 +74,7 @@ for _, x in ipairs { 1e9, 1e80, 1e160, 1e305, 1.7e308 } do
     end
 end
 refuses(function(m) m:timestep { dt = 1e90 } end, "block 2 would move")
-refuses(function(_, top) top:set { density = 1e300 } end, "block 2 would move")
+refuses(function(_, top) top:set { density = 1e240 } end, "block 2 would move")
 refuses(function(m) m:damping("viscous", { alpha = 0.1 }) m.gravity = { 0, 0, 1e300 } end, "block 2 would move")
 refuses(function(m) m:damping("local", { alpha = 0.8 }) m.gravity = { 0, 0, 1e300 } end, "block 2 would move")
 refuses(function(m) m.rotation = "paper" m.gravity = { 0, 0, 1e300 } end, "block 2 would move")
