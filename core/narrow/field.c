@@ -112,13 +112,13 @@ TL_VECTORIZED static void place_line(lanes *restrict p, double number, const dou
         o -= p->h[l] * (x * p->n[0][l] + y * p->n[1][l] + z * p->n[2][l]);
         double length = sqrt(t * t + s * s);
         bool none = own ? p->own[l] == 0 : (p->one[l] == number) | (p->other[l] == number);
-        bool level = length < LEVEL;
+        bool level = length < LEVEL, gone = none | level;
         double part = o > one_plane ? 1.0 : o < -one_plane ? 0.0 : 0.5;
-        p->share[l] *= none | !level ? 1.0 : part;
+        p->share[l] *= (none | !level) ? 1.0 : part;
         double per = 1 / length;
-        gt[l] = none | level ? 0.0 : t * per;
-        gs[l] = none | level ? 0.0 : s * per;
-        c[l] = none | level ? FAR : o * per;
+        gt[l] = gone ? 0.0 : t * per;
+        gs[l] = gone ? 0.0 : s * per;
+        c[l] = gone ? FAR : o * per;
     }
 }
 

@@ -4,6 +4,13 @@
 
 #include "narrow/field.h"
 
+/* How many random cases are made, of those that an optimised build makes. */
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define CASES(count) ((count) / 10)
+#else
+#define CASES(count) (count)
+#endif
+
 /* Force over the cube of the overlap, a length, below which a pair hardly touches: needles that cross by a corner. */
 #define LEAST 1e-3
 
@@ -250,7 +257,7 @@ static int random_kind(uint64_t *seed)
 TEST(force_and_moment_are_the_gradient_of_the_energy)
 {
     int cases = 0;
-    for (uint64_t k = 1; k <= 1000; k++) {
+    for (uint64_t k = 1; k <= CASES(1000); k++) {
         uint64_t seed = k;
         static scene s;
         double depth = random_depth(&seed);
@@ -258,7 +265,7 @@ TEST(force_and_moment_are_the_gradient_of_the_energy)
         cases += check_gradient(&s, depth, k);
         free_scene(&s);
     }
-    CHECK(cases > 900);
+    CHECK(cases > CASES(900));
     printf("  %d cases, off by %.1e at the most\n", cases, worst);
 }
 
@@ -266,7 +273,7 @@ TEST(force_and_moment_are_the_gradient_of_the_energy)
 TEST(borders_do_work_as_well)
 {
     int cases = 0;
-    for (uint64_t k = 1; k <= 250; k++) {
+    for (uint64_t k = 1; k <= CASES(250); k++) {
         uint64_t seed = k + 5000;
         static scene s;
         double depth = random_depth(&seed);
@@ -279,7 +286,7 @@ TEST(borders_do_work_as_well)
         cases += check_gradient(&s, depth, k);
         free_scene(&s);
     }
-    CHECK(cases > 170);
+    CHECK(cases > CASES(170));
 }
 
 /* The depth of a point in both blocks, 0 outside. */
@@ -324,7 +331,7 @@ static double volume_in_common(const scene *s)
 TEST(volume_is_that_of_what_is_left_by_cuts)
 {
     int cases = 0;
-    for (uint64_t k = 1; k <= 400; k++) {
+    for (uint64_t k = 1; k <= CASES(400); k++) {
         uint64_t seed = k + 7000;
         static scene s;
         make_scene(&s, random_kind(&seed), random_kind(&seed), scene_between(&seed, 0.02, 0.4),
@@ -339,7 +346,7 @@ TEST(volume_is_that_of_what_is_left_by_cuts)
         }
         free_scene(&s);
     }
-    CHECK(cases > 300);
+    CHECK(cases > CASES(300));
 }
 
 /* The energy by a sum over a grid of cells: its error goes with the square of their size. */
@@ -347,7 +354,7 @@ TEST(energy_is_that_of_a_sum)
 {
     enum { CELLS = 70 };
     const double half = 0.9, cell = 2 * half / CELLS;
-    for (uint64_t k = 1; k <= 20; k++) {
+    for (uint64_t k = 1; k <= CASES(20); k++) {
         uint64_t seed = k + 9000;
         static scene s;
         make_scene(&s, random_kind(&seed) % 2, random_kind(&seed) % 2, 0.3, false, &seed);
@@ -393,7 +400,7 @@ TEST(flush_faces_have_the_force_of_springs)
 /* Whatever seams, nothing is carried where nothing is in common; and nothing depends on the order of the blocks. */
 TEST(blocks_that_only_touch_have_no_force)
 {
-    for (uint64_t k = 1; k <= 400; k++) {
+    for (uint64_t k = 1; k <= CASES(400); k++) {
         uint64_t seed = k + 20000;
         static scene s;
         make_scene(&s, random_kind(&seed) % 5, random_kind(&seed) % 5, -1e-9, k % 2, &seed);
