@@ -4,7 +4,7 @@
  * to look at another measure, when every single body is at rest:
  *
  *     |F| and |M| / r  <  ratio B          its unbalanced force, and moment over its radius
- *     (m v.v + w.I w) / 2  <  ratio^2 S U  its kinetic energy
+ *     (m v.v + w.I w) / 2  <  U times the smaller of ratio and S ratio^2
  *
  * with what the body bears, B: the sum of its contact forces, or its weight and load where these are more, and at least
  * what its contacts carry at an overlap that is rounding. U = B^2 / (2 K) is the energy that B stores in the springs of its
