@@ -3,8 +3,13 @@
 #ifndef TALUS_TESTS_CONTACT_SCENE_H
 #define TALUS_TESTS_CONTACT_SCENE_H
 
+#include "base/columns.h"
 #include "check.h"
 #include "cycle/cycle_room.h"
+#include "detect/detect.h"
+#include "detect/detection.h"
+#include "detect/places.h"
+#include "detect/room.h"
 
 #define SCENE_UNUSED __attribute__((unused))
 

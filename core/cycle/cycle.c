@@ -21,7 +21,9 @@
  * in fixed chunks, so the bits do not depend on the number of threads. */
 #include "cycle/cycle_room.h"
 
+#include "detect/detect.h"
 #include "detect/held.h"
+#include "detect/overlap.h"
 
 #include <stdlib.h>
 

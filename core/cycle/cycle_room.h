@@ -5,7 +5,8 @@
 #include "base/inline.h"
 #include "base/inside.h"
 #include "base/lanes.h"
-#include "detect/detect.h"
+#include "detect/layout.h"
+#include "model/model.h"
 
 #include <pthread.h>
 

@@ -5,6 +5,8 @@
  * rate are sums made by gather.c. */
 #include "cycle/cycle_room.h"
 
+#include "detect/points.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

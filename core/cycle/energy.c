@@ -15,6 +15,8 @@
  * The move books its bodies group by group (motion.c), while all that is needed is at hand. */
 #include "cycle/cycle_room.h"
 
+#include "detect/detection.h"
+
 #include <stdlib.h>
 
 struct tl_ledger {

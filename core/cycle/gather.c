@@ -3,6 +3,8 @@
  * What the measures of convergence ask (rest.c) is summed on the way. */
 #include "cycle/cycle_room.h"
 
+#include "detect/contacts.h"
+
 static tl_vec3 free_part(tl_vec3 v, unsigned fixed)
 {
     return tl_v3(fixed & TL_FIX_X ? 0 : v.x, fixed & TL_FIX_Y ? 0 : v.y,

@@ -5,7 +5,11 @@
  * Edge and point contacts begin without force, and so do contacts made later, and faces with rock between them. */
 #include "cycle/cycle_room.h"
 
+#include "base/columns.h"
+#include "detect/detect.h"
 #include "detect/held.h"
+#include "detect/places.h"
+#include "detect/store.h"
 
 /* A traction below this share of the largest stress given is none. */
 #define NO_TRACTION 1e-9

@@ -11,6 +11,10 @@
  * is looked at here, point by point. */
 #include "cycle/cycle_room.h"
 
+#include "base/columns.h"
+#include "detect/detection.h"
+#include "detect/points.h"
+
 #include <stdio.h>
 
 /* Component of a point's shear force along the normal, relative to the force of a spring pressed by the block's size: forces

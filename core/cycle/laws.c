@@ -4,6 +4,9 @@
  * motion are in the thread's lanes, which stay in the nearest cache from one end to the other. */
 #include "cycle/cycle_room.h"
 
+#include "detect/contacts.h"
+#include "detect/expect.h"
+#include "detect/follow.h"
 #include "detect/held.h"
 
 #include <stdatomic.h>

@@ -7,7 +7,10 @@
  *
  * All bodies are looked at in every step: a test without roots sorts out those that are far from the limit. */
 #include "cycle/cycle_room.h"
+
+#include "base/columns.h"
 #include "cycle/kick.h"
+#include "detect/contacts.h"
 
 #include <stdatomic.h>
 #include <stdio.h>

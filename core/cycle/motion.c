@@ -17,6 +17,8 @@
  * some components, and all with the paper's rotation, get their rotation one by one; those held in every component are
  * in no group and cost nothing as long as they stand. */
 #include "cycle/cycle_room.h"
+
+#include "base/columns.h"
 #include "cycle/kick.h"
 #include "cycle/turn.h"
 

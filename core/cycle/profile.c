@@ -3,6 +3,7 @@
 #include "cycle/cycle_room.h"
 
 #include "base/clock.h"
+#include "detect/detection.h"
 
 #include <string.h>
 

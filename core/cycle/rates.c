@@ -12,6 +12,9 @@
  * where the step follows from them they are part of the model's state. */
 #include "cycle/rates.h"
 
+#include "base/columns.h"
+#include "detect/detection.h"
+
 #include <string.h>
 
 /* Steps after which mass scaling rates all bodies again, even when no contact has come or gone: areas may have

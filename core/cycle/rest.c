@@ -14,6 +14,8 @@
  * stored in all contacts for U. */
 #include "cycle/cycle_room.h"
 
+#include "detect/detection.h"
+
 #include <stdatomic.h>
 
 /* Overlap, relative to the body's radius, of which contacts cannot tell a ratio of 1e-5: places and so overlaps are

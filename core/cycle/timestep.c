@@ -7,6 +7,9 @@
  * Mass scaling gives every free body the bound of the one that has the most. */
 #include "cycle/rates.h"
 
+#include "detect/detect.h"
+#include "detect/detection.h"
+
 #include <string.h>
 
 /* The step in use is kept while the rule gives one between it and this many times it: a step that

@@ -8,6 +8,7 @@
  * choice of the step need no undoing, for made again in the same places they change nothing; the move cannot fail. */
 #include "cycle/cycle_room.h"
 
+#include "detect/detection.h"
 #include "detect/held.h"
 
 #include <stdlib.h>

@@ -8,6 +8,9 @@
  * corner few edges are left. The same heights give the s of two crossing edges (`across`). */
 #include "detect/arcs.h"
 
+#include <talus/plugin.h>
+#include <talus/vmath.h>
+
 /* Lanes are padded to a multiple of this many. */
 #define LANES 4
 /* Vertices that are looked at together: a bit each. */

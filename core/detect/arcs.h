@@ -2,7 +2,7 @@
 #ifndef TL_DETECT_ARCS_H
 #define TL_DETECT_ARCS_H
 
-#include "detect/detect.h"
+#include "detect/view.h"
 
 /* Edges of B that are looked at together: a bit each. */
 #define TL_ARCS_ROW 64

@@ -9,6 +9,9 @@
  * plane, a1 and a2 on different sides of edge B's, and both arcs in the same hemisphere. With e_a
  * running along its left face's loop, a1 x a2 is parallel to e_a, so all tests are products of edges
  * with normals. */
+#include "detect/axis.h"
+
+#include "base/table.h"
 #include "detect/arcs.h"
 
 /* A face is preferred to an edge pair whose s is larger by no more than this times the size: the

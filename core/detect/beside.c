@@ -6,7 +6,9 @@
  * o1 o2 = u^2 with u = TL_SILENT times the size: the force of a share TL_SILENT of a face that overlaps by u. After
  * motion m it is (o1 + m) (o2 + m) at most. Both faces are flush with one of the other block, or else edges and
  * corners would carry more than the area in common does. */
-#include "detect/detect.h"
+#include "detect/beside.h"
+
+#include <talus/vmath.h>
 
 /* cos of 0.15 degrees, the tilt up to which both count as flush: a turn that tilts neither by more tilts no face by
  * more than 2.6 times that, which is less than FLUSH_NONE in manifold.c. */

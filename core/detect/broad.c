@@ -6,7 +6,9 @@
  * they overlap. Bounds are grown by `reach`, so the list holds until some body has moved that far, and
  * by half of the block's own contact tolerance: a pair's is that of its smaller block, so a huge block
  * must not make the small ones neighbours of each other. */
-#include "detect/detect.h"
+#include "detect/broad.h"
+
+#include "detect/pairs.h"
 
 #include <stdlib.h>
 #include <string.h>

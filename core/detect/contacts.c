@@ -3,9 +3,16 @@
  * The points of a material are one run of columns, so a law is called on the columns themselves (ranks.c); a run
  * has room for a few contacts more. Laying out anew sorts the contacts by material, apart those between bodies that are held
  * still, and by blocks. */
+#include "detect/contacts.h"
+
 #include "base/pages.h"
 #include "detect/held.h"
+#include "detect/index.h"
+#include "detect/pair_view.h"
+#include "detect/points.h"
+#include "detect/ranks.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -89,23 +96,6 @@ uint32_t tl_material_row(const tl_model *m, tl_tag tag)
 {
     const tl_material *material = tl_material_of(m, tag);
     return material ? (uint32_t)(material - m->materials) : TL_NO_ROW;
-}
-
-tl_pair_view tl_pair_view_of(const tl_model *m, uint32_t a, uint32_t b)
-{
-    const tl_blocks *blocks = &m->blocks;
-    const tl_bodies *bodies = &m->bodies;
-    uint32_t body_a = blocks->body[a], body_b = blocks->body[b];
-    tl_pair_view view = {.a = blocks->shape[a], .b = blocks->shape[b]};
-    const tl_mat3 *ra = &bodies->pose[body_a].r, *rb = &bodies->pose[body_b].r;
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++)
-            view.turn.m[i][j] =
-                ra->m[0][i] * rb->m[0][j] + ra->m[1][i] * rb->m[1][j] + ra->m[2][i] * rb->m[2][j];
-    view.shift = tl_m3_tmul(ra, tl_body_apart(bodies, body_a, body_b));
-    view.size = fmin(blocks->size[a], blocks->size[b]);
-    view.mean_face = fmin(blocks->mean_face[a], blocks->mean_face[b]);
-    return view;
 }
 
 bool tl_contact_append(tl_model *m, uint32_t pair, const tl_axis *axis, double margin, tl_tag tag,
@@ -394,4 +384,12 @@ void tl_contact_remove(tl_detect *d, uint32_t row)
         tl_rank_note(d, row, row);
     }
     c->table.rows = last;
+}
+
+void tl_contact_name(tl_model *m, uint32_t contact, char *text, size_t size)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    const char *joint = tl_tag_name(m, contacts->tag[contact]);
+    snprintf(text, size, "contact of blocks %u and %u%s%s", m->blocks.id[contacts->a[contact]],
+             m->blocks.id[contacts->b[contact]], *joint ? ", joint " : " (no joint)", joint);
 }

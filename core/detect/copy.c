@@ -1,5 +1,8 @@
 /* copy.c - a second detection in the same state as the first: on it can be tried what the next step would find. */
-#include "detect/detect.h"
+#include "detect/copy.h"
+
+#include "detect/contacts.h"
+#include "detect/store.h"
 
 #include <stdlib.h>
 #include <string.h>

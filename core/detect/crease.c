@@ -12,6 +12,7 @@
 #include "detect/crease.h"
 
 #include "base/random.h"
+#include "detect/room.h"
 
 /* The common stretch of two edges counts from this length on, relative to the size: rounding. */
 #define STRETCH 1e-9

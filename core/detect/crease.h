@@ -2,7 +2,8 @@
 #ifndef TL_DETECT_CREASE_H
 #define TL_DETECT_CREASE_H
 
-#include "detect/detect.h"
+#include "detect/facet.h"
+#include "detect/view.h"
 
 /* Adds the facet of two edges along each other within `near`, its points' areas summing to 1, and returns
  * how flush their four faces are by `flush` of the sine between them; 0 and no facet without such edges.

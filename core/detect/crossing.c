@@ -1,8 +1,10 @@
 /* crossing.c - the points of an edge of one block and an edge of the other that touch, and how nearly their normal is that
  * of a face beside them. */
-#include "detect/stand.h"
+#include "detect/crossing.h"
 
 #include "base/random.h"
+#include "detect/share.h"
+#include "detect/stand.h"
 
 #include <string.h>
 

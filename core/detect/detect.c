@@ -4,7 +4,20 @@
  * have left its skin; pairs without a contact are looked at when they may have come near; contacts are
  * followed, or made anew when they moved more than a margin; births, deaths and growth are then settled
  * serially in the order of pairs. How far anything can have moved is told by the bodies' odometers. */
+#include "detect/detect.h"
+
+#include "detect/broad.h"
+#include "detect/contacts.h"
+#include "detect/expect.h"
 #include "detect/held.h"
+#include "detect/index.h"
+#include "detect/manifold.h"
+#include "detect/overlap.h"
+#include "detect/pair_view.h"
+#include "detect/pairs.h"
+#include "detect/points.h"
+#include "detect/renew.h"
+#include "detect/store.h"
 #include "detect/update.h"
 
 #include <assert.h>
@@ -21,64 +34,6 @@
 /* Ranks from one for which the memory is asked to the present one, and from one whose contacts' rows are asked for. */
 #define AHEAD 2
 #define FAR_AHEAD 6
-
-void tl_narrow_free(tl_narrow *n)
-{
-    free(n->vertex_b);
-    free(n->normal_b);
-    free(n->dots);
-    free(n->share);
-    free(n->manifold.facets);
-    free(n->manifold.points);
-    free(n->old);
-    free(n->value);
-    tl_polygon_free(n->polygon, &n->patch);
-}
-
-void tl_detect_destroy(tl_detect *d)
-{
-    tl_table_free(&d->contacts.table);
-    tl_table_free(&d->spare.table);
-    tl_table_free(&d->points.table);
-    tl_table_free(&d->spare_points.table);
-    for (unsigned i = 0; d->narrow && i < d->threads; i++)
-        tl_narrow_free(&d->narrow[i]);
-    for (unsigned i = 0; d->lanes && i < d->threads; i++)
-        tl_table_free(&d->lanes[i].table);
-    free(d->narrow);
-    free(d->lanes);
-    free(d->contacts.facet);
-    free(d->spare.facet);
-    free(d->pairs);
-    free(d->chunks);
-    free(d->odometer_0);
-    free(d->ids);
-    tl_layout_free(&d->layout);
-    free(d->run);
-    free(d->touched);
-    free(d->idle);
-    free(d->by_block);
-    free(d->by_block_start);
-    free(d->by_id);
-    free(d);
-}
-
-/* The spare table, in which nothing is kept, gets the columns of the other: with no rows that cannot fail. */
-bool tl_detect_hold_initial(tl_detect *d)
-{
-    if (!tl_points_hold_initial(&d->points))
-        return false;
-    tl_table_free(&d->spare_points.table);
-    return tl_points_hold_initial(&d->spare_points);
-}
-
-bool tl_detect_hold_states(tl_detect *d, uint32_t columns)
-{
-    if (!tl_points_hold_states(&d->points, columns))
-        return false;
-    tl_table_free(&d->spare_points.table);
-    return tl_points_hold_states(&d->spare_points, columns);
-}
 
 static tl_status ensure(tl_model *m)
 {

@@ -1,4 +1,4 @@
-/* facing.h - facets in the present place of their blocks, and how vectors of a common plane turn with it.
+/* facing.h - facets in the present place of their blocks.
  *
  * The gap comes from the planes of the faces (or the normal of two edges), carried with their bodies, never from
  * the axis. Of tilted faces each point has a normal of its own: see tl_lean.
@@ -9,18 +9,10 @@
 #define TL_DETECT_FACING_H
 
 #include "base/inline.h"
-#include "detect/detect.h"
+#include "detect/facet.h"
 
 /* Sine of the angle of two edges up to which they have no common normal of their own. */
 #define TL_PARALLEL 1e-12
-
-/* Two bodies as a contact sees them: axes of the model, A's centroid as zero. */
-typedef struct tl_sight {
-    const tl_mat3 *ra, *rb;
-    tl_vec3 d; /* from A's centroid to B's */
-    tl_poly *const *shapes;
-    uint32_t a, b; /* rows of the blocks */
-} tl_sight;
 
 /* A facet in its present place: its normals, and the plane a point's gap is measured to. */
 typedef struct tl_facing {
@@ -93,41 +85,10 @@ TL_INLINE tl_vec3 tl_leaning(tl_vec3 mean, tl_vec3 lean, tl_vec3 across, double 
     return tl_v3_scale(tl_unit_scale(m2 + l2 * (face * face + edge * edge * m2) - 1), n);
 }
 
-/* The turn that swings the plane of normal `from` into that of `to`, then by twice the angle whose tangent
- * is `twist` about it: axis times the tangent of half its angle, no trigonometry. */
-TL_INLINE tl_vec3 tl_turn_between(tl_vec3 from, tl_vec3 to, double twist)
-{
-    double c = 1 + tl_v3_dot(from, to);
-    double swings = c > 0 ? 1 / (c > 0 ? c : 1) : 0;
-    tl_vec3 swing = tl_v3_scale(swings, tl_v3_cross(from, to));
-    /* swing is perpendicular to `to`: the product of the two half turns has no scalar part to divide by */
-    return tl_v3_madd(tl_v3_madd(swing, twist, to), twist, tl_v3_cross(to, swing));
-}
-
-/* Turns a vector by g, of which `scale` is 2 / (1 + g^2), into the plane of normal n. What has not turned stays as it is, to
- * the bit; `turns` is 0 then, else 1. */
-TL_INLINE tl_vec3 tl_turn_into(tl_vec3 v, tl_vec3 g, double scale, double turns, tl_vec3 n)
-{
-    tl_vec3 t = tl_v3_cross(g, v);
-    t = tl_v3_madd(v, scale, tl_v3_add(t, tl_v3_cross(g, t)));
-    return tl_v3_madd(t, -turns * tl_v3_dot(t, n), n);
-}
-
-/* Turns one vector of the old common plane of a point into its new one. */
-TL_INLINE tl_vec3 tl_turn_one(tl_vec3 v, tl_vec3 from, tl_vec3 n, tl_vec3 half)
-{
-    tl_vec3 g = tl_turn_between(from, n, tl_v3_dot(half, n));
-    double g2 = tl_v3_norm2(g);
-    return tl_turn_into(v, g, 2 / (1 + g2), g2 > 0 ? 1 : 0, n);
-}
-
 /* Whether a facet's points are kept in B's frame, not in A's. */
 TL_INLINE bool tl_facet_in_b(const tl_facet *f)
 {
     return f->kind == TL_FACET_FACE_A;
 }
-
-tl_sight tl_sight_of(const tl_model *m, uint32_t contact);
-tl_facing tl_facing_of(const tl_facet *f, const tl_sight *s);
 
 #endif

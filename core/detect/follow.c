@@ -9,7 +9,14 @@
  * matrices first, one in each lane (*frames*), so that what is left for a point are a few products, in loops over
  * columns without a branch. Ranks of one flush patch in each lane, as most are, take the shortest way; else slot
  * follows slot, and each lane goes on to its contact's next facet where that begins. */
+#include "detect/follow.h"
+
+#include "base/columns.h"
+#include "detect/detection.h"
 #include "detect/frames.h"
+#include "detect/places.h"
+#include "detect/points.h"
+#include "detect/turning.h"
 
 #include <string.h>
 

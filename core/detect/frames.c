@@ -4,6 +4,8 @@
  * worked out for all of them at once. */
 #include "detect/frames.h"
 
+#include "detect/places.h"
+
 #include <assert.h>
 #include <stddef.h>
 #include <string.h>

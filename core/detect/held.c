@@ -7,6 +7,8 @@
  * given a velocity, that come or go, another law or initial stress, another contact in the run. */
 #include "detect/held.h"
 
+#include "detect/detection.h"
+
 static bool is_still(const tl_bodies *b, uint32_t body)
 {
     return b->fixed[body] == TL_FIX_ALL && b->drive[body] == 0 && tl_v3_is_zero(b->v[body]) &&

@@ -2,7 +2,8 @@
 #ifndef TL_DETECT_HELD_H
 #define TL_DETECT_HELD_H
 
-#include "detect/detect.h"
+#include "detect/layout.h"
+#include "model/model.h"
 
 /* Whether the bodies of two blocks are held still. */
 bool tl_blocks_held_still(const tl_model *m, uint32_t a, uint32_t b);

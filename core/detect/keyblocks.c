@@ -21,6 +21,7 @@
  * Limits: translations only; each body alone, all others at rest; a body of several blocks is
  * judged by its contact faces alone, which is exact only when it is convex. */
 #include "base/error.h"
+#include "detect/detect.h"
 #include "detect/touching.h"
 
 #include <stdlib.h>

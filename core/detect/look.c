@@ -1,9 +1,10 @@
 /* look.c - the first look at a candidate pair, by libccd: is it near enough to be worth the exact
  * search? Both blocks are grown by a ball. Only the yes or no is used: libccd's depths, normals and
  * positions are not reliable for faces that nearly touch. */
-#include "detect/detect.h"
+#include "detect/look.h"
 
 #include <ccd/ccd.h>
+#include <talus/vmath.h>
 
 /* Relative accuracy asked of libccd's portal refinement; at its default of 1e-4 it misses pairs. */
 #define LOOK_TOLERANCE 1e-10

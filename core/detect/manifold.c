@@ -7,10 +7,12 @@
  * an edge or a corner with their faces parallel get none, or eight blocks meeting in a corner would
  * have stiffness where they have no area; an absolute minimum area set by the user holds for them too
  * (crease.c). */
-#include "detect/detect.h"
+#include "detect/manifold.h"
 
 #include "base/random.h"
 #include "detect/crease.h"
+#include "detect/patch.h"
+#include "detect/room.h"
 #include "detect/share.h"
 
 #include <stdlib.h>
@@ -35,45 +37,6 @@
 #define SLIGHT_FULL 0.5
 /* Normals whose cosines with the axis differ by less are equally near to it. */
 #define SAME_COSINE 1e-9
-
-bool tl_manifold_reserve(tl_manifold *m, size_t count)
-{
-    if (m->point_count + count <= m->point_room)
-        return true;
-    size_t room = 2 * (m->point_count + count);
-    tl_contact_point *points = room > UINT16_MAX ? NULL : realloc(m->points, room * sizeof *points);
-    if (!points) {
-        m->failed = true;
-        return false;
-    }
-    m->points = points;
-    m->point_room = room;
-    return true;
-}
-
-bool tl_manifold_add_point(tl_manifold *m, tl_contact_point point)
-{
-    if (!(point.area > 0)) /* a point without area carries nothing, and has no stress */
-        return true;
-    if (!tl_manifold_reserve(m, 1))
-        return false;
-    m->points[m->point_count++] = point;
-    return true;
-}
-
-bool tl_manifold_reserve_facets(tl_manifold *m, size_t room)
-{
-    if (room <= m->facet_room)
-        return true;
-    tl_facet *facets = realloc(m->facets, 2 * room * sizeof *facets);
-    if (!facets) {
-        m->failed = true;
-        return false;
-    }
-    m->facets = facets;
-    m->facet_room = 2 * room;
-    return true;
-}
 
 /* ---------------------------------------------------------------- patches ---------------- */
 

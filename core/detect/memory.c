@@ -1,6 +1,9 @@
 /* memory.c - what the detection holds, in bytes, by what it is for. Columns count with their spare rows, and
  * so does the second set of tables that contacts are laid out in from time to time. */
-#include "detect/stand.h"
+#include "detect/memory.h"
+
+#include "detect/detection.h"
+#include "detect/share_points.h"
 
 static size_t narrow_bytes(const tl_narrow *n)
 {

@@ -5,7 +5,9 @@
  * A corner of A on a line of B counts as inside, one of B on a line of A as outside, as if B were the larger by
  * a hair; edges along each other then do not cross. The same signs come again step after step, so what they
  * mean is kept in a table. Signs that fit no two convex faces, as rounding may make them, give no outline. */
-#include "detect/polygon.h"
+#include "detect/outline.h"
+
+#include "detect/point2.h"
 
 typedef struct walk {
     tl_outline *o;

@@ -15,7 +15,10 @@
  * step. The mark tells which limit was exceeded, and stays until the overlap is within that limit: what was born too deep
  * is still nobody's way in when it is looked at again, and what has sunk in is still followed when blocks elsewhere come or
  * go. */
-#include "detect/detect.h"
+#include "detect/overlap.h"
+
+#include "detect/contacts.h"
+#include "detect/pair_view.h"
 
 #include <stdio.h>
 
@@ -27,14 +30,6 @@
 #define TL_DEEPEST 1.25
 /* Overlap over the smaller block's size up to which nothing is measured: most contacts. */
 #define SHALLOW 0.01
-
-void tl_contact_name(tl_model *m, uint32_t contact, char *text, size_t size)
-{
-    const tl_contacts *contacts = &m->detect->contacts;
-    const char *joint = tl_tag_name(m, contacts->tag[contact]);
-    snprintf(text, size, "contact of blocks %u and %u%s%s", m->blocks.id[contacts->a[contact]],
-             m->blocks.id[contacts->b[contact]], *joint ? ", joint " : " (no joint)", joint);
-}
 
 /* Whether no force can move either block. More than tl_blocks_held_still (held.h): bodies that a drive carries along, or
  * that still have a velocity, do not feel what their overlap would do. */

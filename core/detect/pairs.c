@@ -5,8 +5,13 @@
  * that single precision is enough. Roundings are upward for runs and downward for the pairs' wakes: a pair is looked at
  * too early by them, never too late. Most pairs sleep in most steps, and of a whole chunk that sleeps longer than any two
  * blocks have run nothing is read. */
+#include "detect/pairs.h"
+
 #include "base/inline.h"
-#include "detect/detect.h"
+#include "detect/beside.h"
+#include "detect/look.h"
+#include "detect/manifold.h"
+#include "detect/pair_view.h"
 
 #include <string.h>
 #include <talus/plugin.h>

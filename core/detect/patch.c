@@ -18,6 +18,11 @@
  * wobble does not change the force. */
 #include "detect/patch.h"
 
+#include "base/columns.h"
+#include "detect/frame2.h"
+#include "detect/polygon.h"
+#include "detect/room.h"
+
 #include <stdlib.h>
 #include <string.h>
 

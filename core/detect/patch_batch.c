@@ -8,6 +8,9 @@
  * length, and add nothing. */
 #include "detect/patch_batch.h"
 
+#include "detect/frame2.h"
+#include "detect/polygon.h"
+
 #include <stdlib.h>
 #include <string.h>
 

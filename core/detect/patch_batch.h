@@ -3,7 +3,9 @@
 #define TL_DETECT_PATCH_BATCH_H
 
 #include "base/lanes.h"
-#include "detect/patch.h"
+#include "detect/narrow.h"
+#include "detect/outline.h"
+#include "detect/point2.h"
 
 typedef double tl_batch1[TL_LANES];
 

@@ -3,7 +3,9 @@
  *
  * Where an edge of A crosses one of B, the place follows from the corners of both faces, not from what earlier
  * lines have left, so that it is the same to the bit however the crossing was found (patch_batch.c). */
-#include "detect/patch.h"
+#include "detect/polygon.h"
+
+#include "detect/frame2.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -3,7 +3,12 @@
  * Most contacts are two faces on each other and stay so. What eight of them need is laid side by side (patch_batch.c)
  * and comes out as the rank has its points: slot by slot. Lanes whose polygon has changed, and contacts that are
  * something else, are brought up to date one by one (update.c). */
+#include "detect/renew.h"
+
+#include "detect/detection.h"
+#include "detect/manifold.h"
 #include "detect/patch_batch.h"
+#include "detect/points.h"
 #include "detect/update.h"
 
 #include <string.h>

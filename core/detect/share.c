@@ -8,6 +8,9 @@
  * out over it may rest on either end and rock between them in no time, and a jump would keep it rocking. */
 #include "detect/share.h"
 
+#include "base/table.h"
+#include "detect/crossing.h"
+#include "detect/room.h"
 #include "detect/stand.h"
 
 #include <stdlib.h>

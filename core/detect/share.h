@@ -3,7 +3,8 @@
 #ifndef TL_DETECT_SHARE_H
 #define TL_DETECT_SHARE_H
 
-#include "detect/detect.h"
+#include "detect/axis.h"
+#include "detect/share_points.h"
 
 /* Tilt of two faces, or of an edge and a face, or of two edges, up to which they count as parallel
  * contact, and from which not at all: degrees. */
@@ -18,5 +19,8 @@ double tl_fade_slope(double sine, double full, double none);
 /* Adds the facets of the point share of an axis, areas of their points still relative to each other; `swing` is the
  * couple that goes with the whole share (tl_facet). */
 void tl_share_add(const tl_pair_view *view, const tl_axis *axis, tl_vec3 swing, tl_narrow *room);
+
+/* Adds a point, or of the same point the one of more weight; not, when memory is out. */
+void tl_share_points_add(tl_share_points *found, tl_share_point point);
 
 #endif

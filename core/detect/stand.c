@@ -6,6 +6,8 @@
 #include "detect/stand.h"
 
 #include "base/random.h"
+#include "detect/crossing.h"
+#include "detect/share.h"
 
 #include <string.h>
 

@@ -3,6 +3,8 @@
  * neighbours do not. */
 #include "detect/touching.h"
 
+#include "detect/detection.h"
+
 static bool add(tl_touches *touches, const tl_touch *touch)
 {
     if (!tl_grow(&touches->at, &touches->room, touches->count + 1, sizeof *touches->at))

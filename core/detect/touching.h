@@ -2,7 +2,7 @@
 #ifndef TL_DETECT_TOUCHING_H
 #define TL_DETECT_TOUCHING_H
 
-#include "detect/detect.h"
+#include "model/model.h"
 
 /* A face of a block, as far as it lies on a face of a block of another body. */
 typedef struct tl_touch {

@@ -5,6 +5,16 @@
  * at that could touch (rebuild). */
 #include "detect/update.h"
 
+#include "base/columns.h"
+#include "detect/beside.h"
+#include "detect/contacts.h"
+#include "detect/manifold.h"
+#include "detect/overlap.h"
+#include "detect/pair_view.h"
+#include "detect/pairs.h"
+#include "detect/points.h"
+#include "detect/transfer.h"
+
 /* Motion within which facets and areas are reused, relative to the smaller block's size: areas are
  * then wrong by a few 1e-6 at most; gaps are exact all the same. */
 #define REUSE 1e-6
@@ -17,17 +27,6 @@
 /* The same where patches have less than the minimum area: flush ones that sink in get a point share (SHALLOW_* in
  * manifold.c), of which this is a share that no result shows. */
 #define SINK_MOST 5e-4
-
-tl_share_rule tl_share_rule_of(const tl_model *m, const tl_pair_view *view, tl_tag tag, bool across)
-{
-    tl_area_rule rule = tl_area_rule_of(m, tag);
-    double tolerance = TL_CONTACT_TOLERANCE * TL_CONTACT_RELEASE * view->size;
-    bool absolute = !isnan(rule.absolute);
-    return (tl_share_rule){.minimum = absolute ? rule.absolute : rule.fraction * view->mean_face,
-                           .unconditional = absolute,
-                           .corners = m->config.contact_points == TL_POINTS_CORNERS,
-                           .reach = across ? INFINITY : tolerance};
-}
 
 double tl_axis_margin(const tl_axis *axis, double size)
 {

@@ -1,8 +1,9 @@
-/* update.h - what update.c and renew.c share: contacts one by one, and eight patches at once. */
+/* update.h - one contact brought up to the present place of its blocks (update.c). */
 #ifndef TL_DETECT_UPDATE_H
 #define TL_DETECT_UPDATE_H
 
-#include "detect/detect.h"
+#include "detect/axis.h"
+#include "model/model.h"
 
 /* How far a pair may run before its axis is searched again. */
 double tl_axis_margin(const tl_axis *axis, double size);
@@ -15,5 +16,10 @@ bool tl_contact_is_patch(const tl_model *m, uint32_t contact);
 void tl_contact_allow_reuse(tl_model *m, uint32_t contact, bool brief);
 /* Brings the facets of a contact up to the present place; its fate tells what is left to do. */
 void tl_contact_update(tl_model *m, uint32_t contact, unsigned thread);
+/* The same for a contact of bodies that have other frames than when its facets were made. */
+void tl_contact_reframe(tl_model *m, uint32_t contact, unsigned thread);
+/* Builds the facets of a contact that has just been given its room, unless it wants more: then its fate is still to
+ * grow; false when out of memory. */
+bool tl_contact_fill(tl_model *m, uint32_t contact);
 
 #endif

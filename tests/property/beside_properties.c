@@ -4,6 +4,8 @@
  * Boxes, some of them sheared, meet in an edge or a corner, or nearly; then B moves as far as it may, in any way. The
  * bound: overlap times area of the patches, no point share. */
 #include "contact_scene.h"
+#include "detect/beside.h"
+#include "detect/manifold.h"
 
 /* The prism in common may be skew (sine of its angle, 0.7), and s is that of the deepest point: bound on force over
  * stiffness, in units of (TL_SILENT size)^2 times the blocks' largest diameter. */

@@ -4,7 +4,9 @@
  * other, then in small motion. Where a batch lays a patch, it is that of tl_patch_lay: the same features, the
  * same numbers to the bit. Only where a corner stands on an edge within about the snap distance may the two decide differently; they
  * then differ by no more than that distance. */
+#include "base/columns.h"
 #include "contact_scene.h"
+#include "detect/patch.h"
 #include "detect/patch_batch.h"
 
 #define STEEP 7.6e-5

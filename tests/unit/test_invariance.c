@@ -2,6 +2,7 @@
  * whole model; and what must be continuous or absent: sizes that differ, sliding off, edges passing over
  * edges, corners of eight blocks, torsion. */
 #include "contact_scene.h"
+#include "detect/contacts.h"
 
 #define KN 1e9
 #define OVERLAP 1e-4

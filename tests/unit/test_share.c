@@ -2,6 +2,7 @@
  * edge that nearly lies on a face rocks, slides and turns over its border, whichever vertex is the lowest; and they are
  * the slope of an energy. Patches beyond contact, and flush ones with little area. */
 #include "contact_scene.h"
+#include "detect/contacts.h"
 
 #define KN 1e9
 

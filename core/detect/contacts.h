@@ -1,0 +1,37 @@
+/* contacts.h - the tables of contacts and contact points, and how they are laid out (contacts.c). */
+#ifndef TL_DETECT_CONTACTS_H
+#define TL_DETECT_CONTACTS_H
+
+#include "detect/detection.h"
+#include "model/model.h"
+
+void tl_contacts_init(tl_contacts *contacts, tl_points_table *points);
+void tl_point_lanes_init(tl_point_lanes *lanes);
+/* Adds a contact of a pair, without points, wanting room for some, whose axis stands for a run of `margin`; false when
+ * out of memory. */
+bool tl_contact_append(tl_model *m, uint32_t pair, const tl_axis *axis, double margin, tl_tag tag,
+                       size_t want_points, size_t want_facets);
+/* Lays contacts and points out anew: without those of fate TL_FATE_DIE, sorted by material and blocks,
+ * each with the room it wants at least. */
+tl_status tl_contacts_repack(tl_model *m);
+/* Moves a contact's points and facets to where there is the room it wants, in the run of its material;
+ * false when there is none: lay all out anew. */
+bool tl_contact_place(tl_detect *d, uint32_t contact);
+/* Takes a contact out; the last one gets its row. */
+void tl_contact_remove(tl_detect *d, uint32_t contact);
+/* Index of the material that rules a tag, or TL_NO_ROW. */
+uint32_t tl_material_row(const tl_model *m, tl_tag tag);
+/* "contact of blocks 3 and 7, joint J1:2" */
+void tl_contact_name(tl_model *m, uint32_t contact, char *text, size_t size);
+/* Moment of a contact's forces on A, or on B, about that block's body's centroid. */
+static inline tl_vec3 tl_contact_moment(const tl_model *m, uint32_t contact, bool on_b)
+{
+    const tl_contacts *c = &m->detect->contacts;
+    if (!on_b)
+        return tl_v3_neg(c->moment[contact]);
+    tl_vec3 apart =
+        tl_body_apart(&m->bodies, m->blocks.body[c->a[contact]], m->blocks.body[c->b[contact]]);
+    return tl_v3_sub(c->moment[contact], tl_v3_cross(apart, c->force[contact]));
+}
+
+#endif

@@ -1,0 +1,52 @@
+/* detection.h - all that is kept of pairs and contacts. */
+#ifndef TL_DETECT_DETECTION_H
+#define TL_DETECT_DETECTION_H
+
+#include "detect/layout.h"
+#include "detect/pair.h"
+#include "detect/tables.h"
+
+typedef struct tl_detect {
+    tl_pair *pairs;
+    size_t pair_count, pair_room;
+    tl_pair_chunk *chunks;
+    size_t chunk_room;
+    bool listed;        /* pairs have been listed */
+    bool rows_changed;  /* since contacts were laid out */
+    bool bare;          /* there may be contacts without room for points */
+    double reach;       /* half the skin of the broad phase */
+    double *odometer_0; /* of each body, when the broad phase was made */
+    size_t odometer_room;
+    tl_id *
+        ids; /* of each block, when rows were last looked at: finds them again after they have changed */
+    size_t id_room;
+    float *run; /* of each block: how far it can have moved since then, rounded up */
+    size_t run_of_room;
+    float ran;        /* the farthest of them */
+    uint8_t *touched; /* bodies whose contacts came, went or grew since the time step was chosen */
+    size_t touched_room;
+    bool any_touched;
+    uint64_t structure, laws, constraints; /* of the model, when last seen */
+    /* bodies held still all of whose contacts rest, so that the sums of their forces stand; `any_idle` false: none */
+    uint8_t *idle;
+    size_t idle_room;
+    bool any_idle;
+    tl_contacts contacts, spare;
+    tl_points_table points, spare_points;
+    int64_t laid_at;    /* steps made when contacts were laid out */
+    size_t spare_share; /* 1 / this of rows, points and facets were added to spare; 0: never yet */
+    tl_layout layout;
+    uint32_t *by_block, *by_block_start; /* contacts of each block: index.c */
+    size_t by_block_room, by_start_room;
+    uint32_t indexed; /* rows of contacts that are listed; TL_NO_ROW: the lists are out of date */
+    uint32_t *by_id;  /* contact rows by ascending id; made when asked for */
+    size_t by_id_room;
+    bool by_id_fresh;
+    tl_id next_contact;
+    tl_narrow *narrow;     /* [threads] */
+    tl_point_lanes *lanes; /* [threads]: a page, or the largest rank */
+    size_t lane_room;
+    unsigned threads;
+} tl_detect;
+
+#endif

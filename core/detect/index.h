@@ -1,0 +1,16 @@
+/* index.h - the contacts of a block, and the contact of an id (index.c). */
+#ifndef TL_DETECT_INDEX_H
+#define TL_DETECT_INDEX_H
+
+#include "detect/detection.h"
+#include "model/model.h"
+
+/* Lists the contacts of each block, and notes whether some are bare; after contacts have come, gone or been given
+ * room. false when out of memory. */
+bool tl_contacts_index(tl_model *m);
+/* Contacts have gone, or rows of contacts or blocks have changed: all are to be listed anew. */
+void tl_contacts_unlist(tl_detect *d);
+/* Row of the contact of an id, or TL_NO_ROW. */
+uint32_t tl_contact_row(tl_detect *d, tl_id id);
+
+#endif

@@ -1,0 +1,58 @@
+/* layout.h - where the points of contacts are, and what is known of them while a step works on them. */
+#ifndef TL_DETECT_LAYOUT_H
+#define TL_DETECT_LAYOUT_H
+
+#include "base/table.h"
+
+/* What is known of points only while a step works on them. */
+typedef struct tl_point_lanes {
+    tl_table table;
+    double *arm[3]; /* from A's body's centroid to the point, axes of the model */
+    double *normal[3];
+    double *closure; /* overlap less reference */
+    double *du_n, *du_s[3];
+    double *stored, *dissipated;
+    double *couple[3]; /* on B per energy stored, model's axes: of ranks that have such */
+    double *zero;      /* 0, for what points have no column of */
+    /* what a law found, where it is asked whether it changes anything: forces and states, and flags */
+    double *before[4 + TL_STATE_COLUMNS];
+    uint32_t *flags_before;
+} tl_point_lanes;
+
+/* Contacts of one material whose points lie side by side: point k of the contact in lane l is row start + TL_LANES k
+ * + l. What has to be done for each contact is done for all of a rank at once, one in each lane of the
+ * processor's vectors, and so is what has to be done for each point. Lanes without a contact, and rows beyond a
+ * contact's points, are inert: area 0. */
+typedef struct tl_rank {
+    uint32_t start, slots;      /* points there is room for in each lane */
+    uint32_t contact[TL_LANES]; /* row, or TL_NO_ROW */
+} tl_rank;
+
+/* Points that are worked on as a whole while they are in the nearest cache, from gaps to sums: as many ranks as
+ * have room for so many, or one. */
+#define TL_PAGE 144
+
+/* Whether the contacts of a run are passed over: held.c. */
+enum { TL_RUN_WOKEN, TL_RUN_FOLLOWED, TL_RUN_RESTS };
+
+/* The ranks of one material, one after the other: in the list of ranks, and their points from `begin`, used up to
+ * `end`, with room up to `limit`. Contacts between bodies that are held still have runs of their own. */
+typedef struct tl_run {
+    uint32_t material;
+    bool held;    /* between bodies that are held still */
+    uint8_t rest; /* of one that is held: TL_RUN_* */
+    bool
+        changed; /* of one that is held: some point or sum was not what it had been, in the last step */
+    size_t begin, end, limit;
+    size_t rank_begin, rank_end, rank_limit;
+} tl_run;
+
+/* Where the points of all contacts are. */
+typedef struct tl_layout {
+    tl_run *runs;
+    size_t run_count, run_room;
+    tl_rank *ranks;
+    size_t rank_room;
+} tl_layout;
+
+#endif

@@ -1,0 +1,17 @@
+/* overlap.h - blocks that overlap so deeply that no contact can tell how to part them (overlap.c). */
+#ifndef TL_DETECT_OVERLAP_H
+#define TL_DETECT_OVERLAP_H
+
+#include "detect/tables.h"
+#include "model/model.h"
+
+/* Whether two blocks overlap so deeply that their contact cannot tell how to part them; less is enough for one that is
+ * just born. */
+bool tl_overlap_is_deep(const tl_model *m, const tl_pair_view *view, const tl_axis *axis,
+                        uint32_t a, uint32_t b, bool born);
+/* Marks a contact whose blocks do, so that its axis is searched whenever it is looked at. */
+void tl_overlap_mark(tl_contacts *contacts, uint32_t contact, bool born);
+/* After a step's contacts have been settled: the sentence of the first that is marked, and of which a block can move. */
+tl_status tl_overlaps_check(tl_model *m);
+
+#endif

@@ -1,0 +1,30 @@
+/* pair_view.c - what the geometry of a pair gets of the model: where the two blocks are, and the rule of their joint. */
+#include "detect/pair_view.h"
+
+tl_pair_view tl_pair_view_of(const tl_model *m, uint32_t a, uint32_t b)
+{
+    const tl_blocks *blocks = &m->blocks;
+    const tl_bodies *bodies = &m->bodies;
+    uint32_t body_a = blocks->body[a], body_b = blocks->body[b];
+    tl_pair_view view = {.a = blocks->shape[a], .b = blocks->shape[b]};
+    const tl_mat3 *ra = &bodies->pose[body_a].r, *rb = &bodies->pose[body_b].r;
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            view.turn.m[i][j] =
+                ra->m[0][i] * rb->m[0][j] + ra->m[1][i] * rb->m[1][j] + ra->m[2][i] * rb->m[2][j];
+    view.shift = tl_m3_tmul(ra, tl_body_apart(bodies, body_a, body_b));
+    view.size = fmin(blocks->size[a], blocks->size[b]);
+    view.mean_face = fmin(blocks->mean_face[a], blocks->mean_face[b]);
+    return view;
+}
+
+tl_share_rule tl_share_rule_of(const tl_model *m, const tl_pair_view *view, tl_tag tag, bool across)
+{
+    tl_area_rule rule = tl_area_rule_of(m, tag);
+    double tolerance = TL_CONTACT_TOLERANCE * TL_CONTACT_RELEASE * view->size;
+    bool absolute = !isnan(rule.absolute);
+    return (tl_share_rule){.minimum = absolute ? rule.absolute : rule.fraction * view->mean_face,
+                           .unconditional = absolute,
+                           .corners = m->config.contact_points == TL_POINTS_CORNERS,
+                           .reach = across ? INFINITY : tolerance};
+}

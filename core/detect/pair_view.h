@@ -1,0 +1,20 @@
+/* pair_view.h - the view of two blocks of a model (pair_view.c). */
+#ifndef TL_DETECT_PAIR_VIEW_H
+#define TL_DETECT_PAIR_VIEW_H
+
+#include "detect/narrow.h"
+#include "detect/view.h"
+#include "model/model.h"
+
+/* View of two blocks, and the odometers of their bodies, summed. */
+tl_pair_view tl_pair_view_of(const tl_model *m, uint32_t a, uint32_t b);
+static inline double tl_pair_odometer(const tl_model *m, uint32_t a, uint32_t b)
+{
+    return m->bodies.odometer[m->blocks.body[a]] + m->bodies.odometer[m->blocks.body[b]];
+}
+/* The rule of the point share for a pair of a joint; pairs that carry a force across a gap keep all
+ * their points. */
+tl_share_rule tl_share_rule_of(const tl_model *m, const tl_pair_view *view, tl_tag tag,
+                               bool across);
+
+#endif

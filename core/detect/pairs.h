@@ -1,0 +1,23 @@
+/* pairs.h - pairs without a contact (pairs.c). */
+#ifndef TL_DETECT_PAIRS_H
+#define TL_DETECT_PAIRS_H
+
+#include "detect/detection.h"
+#include "model/model.h"
+
+/* Makes room for what is kept of the model's blocks and bodies; their runs begin here. */
+tl_status tl_pairs_restart(tl_model *m);
+/* Notes how far blocks have run. */
+void tl_pairs_run(tl_model *m);
+/* Looks at the pairs without a contact that may have come near: chunks and pairs tell which were found. */
+void tl_pairs_look(tl_model *m);
+/* Lets a pair sleep until its blocks have run `way` more. */
+void tl_pair_sleep(tl_detect *d, tl_pair *pair, double way);
+/* The wake of a pair, without a contact, whose runs are to begin anew. */
+void tl_pair_rebase(const tl_detect *d, tl_pair *pair);
+/* Forgets what shows that a pair touches without area; without a contact it is looked at again. */
+void tl_pair_wake(tl_detect *d, uint32_t pair);
+/* Notes that a pair has lost its contact. */
+void tl_pair_parted(tl_detect *d, uint32_t pair);
+
+#endif

@@ -1,0 +1,52 @@
+/* points.h - contact points: cleared, and the states of their law (points.c). */
+#ifndef TL_DETECT_POINTS_H
+#define TL_DETECT_POINTS_H
+
+#include "detect/tables.h"
+
+/* Leans are kept in steps: -1, 0 and 1 are exact, and the normal of a point is as exact as its place in a patch. `face`
+ * lies within 1, `edge` within 2. */
+#define TL_LEAN_FACE_STEP 0x1p-14f
+#define TL_LEAN_EDGE_STEP 0x1p-13f
+
+/* The nearest whole number of steps, for -lean the same with the other sign, as blocks in the other order have it: a float
+ * this large has no digits behind the point. */
+static inline int16_t tl_lean_steps(float lean, float step)
+{
+    const float whole = 0x1.8p23f;
+    return (int16_t)(int32_t)((lean / step + whole) - whole);
+}
+
+/* How the normal of a point leans. */
+static inline tl_lean tl_point_lean(const tl_points_table *p, size_t row)
+{
+    return (tl_lean){TL_LEAN_FACE_STEP * p->lean_face[row], TL_LEAN_EDGE_STEP * p->lean_edge[row]};
+}
+
+static inline void tl_point_set_lean(tl_points_table *p, size_t row, tl_lean lean)
+{
+    p->lean_face[row] = tl_lean_steps(lean.face, TL_LEAN_FACE_STEP);
+    p->lean_edge[row] = tl_lean_steps(lean.edge, TL_LEAN_EDGE_STEP);
+}
+
+/* A point without force, area or place: an inert lane. */
+void tl_point_clear(tl_points_table *p, size_t point);
+/* The law's states of a point, at their initial values, or taken from an old point of some area. */
+void tl_point_initial_state(tl_points_table *p, size_t point, const tl_kind *kind);
+void tl_point_begin(tl_points_table *p, size_t point, const tl_kind *kind); /* and no flags */
+void tl_point_take_state(tl_points_table *p, size_t point, const tl_kind *kind, const double *old,
+                         double old_area);
+/* The same for a point that keeps its place: what is reset on a change of polygon stays. */
+void tl_point_keep_state(tl_points_table *p, size_t point, const tl_kind *kind, const double *old,
+                         double old_area);
+/* Columns of the states of a kind of law. */
+uint32_t tl_kind_state_columns(const tl_kind *kind);
+/* Makes sure that one table of points has that many state columns; false when out of memory (nothing changed). Both
+ * tables need the same: tl_detect_hold_states. */
+bool tl_points_hold_states(tl_points_table *points, uint32_t columns);
+/* The same for initial forces and the overlaps they belong to. */
+bool tl_points_hold_initial(tl_points_table *points);
+/* State descriptor k of a kind. */
+const tl_state *tl_kind_state(const tl_kind *kind, uint32_t k);
+
+#endif

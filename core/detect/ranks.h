@@ -1,0 +1,23 @@
+/* ranks.h - the lanes of contacts in runs and ranks (ranks.c). */
+#ifndef TL_DETECT_RANKS_H
+#define TL_DETECT_RANKS_H
+
+#include "detect/detection.h"
+
+/* `need` and one in `share` more, or `least` more. */
+static inline size_t tl_with_spare(size_t need, size_t share, size_t least)
+{
+    size_t more = need / share;
+    return need + (more > least ? more : least);
+}
+
+/* Gives contacts that are sorted by runs their lanes in an empty layout: sets the start and room of each by the
+ * room it wants, with one in `share` to spare; *points is the number of rows. false when out of memory. */
+bool tl_layout_make(tl_layout *layout, tl_contacts *contacts, size_t share, size_t *points);
+void tl_layout_free(tl_layout *layout);
+/* A free lane of a contact's run with room for so many points, taken for it; NULL when there is none. */
+tl_rank *tl_rank_take(tl_detect *d, uint32_t points, uint32_t contact, uint32_t *lane);
+/* Notes that a contact's lane belongs to that row, or to none. */
+void tl_rank_note(tl_detect *d, uint32_t contact, uint32_t row);
+
+#endif

@@ -1,0 +1,53 @@
+/* store.c - the detection as a whole: let go of, and given the columns that laws and initial forces need. */
+#include "detect/store.h"
+
+#include "detect/points.h"
+#include "detect/ranks.h"
+#include "detect/room.h"
+
+#include <stdlib.h>
+
+void tl_detect_destroy(tl_detect *d)
+{
+    tl_table_free(&d->contacts.table);
+    tl_table_free(&d->spare.table);
+    tl_table_free(&d->points.table);
+    tl_table_free(&d->spare_points.table);
+    for (unsigned i = 0; d->narrow && i < d->threads; i++)
+        tl_narrow_free(&d->narrow[i]);
+    for (unsigned i = 0; d->lanes && i < d->threads; i++)
+        tl_table_free(&d->lanes[i].table);
+    free(d->narrow);
+    free(d->lanes);
+    free(d->contacts.facet);
+    free(d->spare.facet);
+    free(d->pairs);
+    free(d->chunks);
+    free(d->odometer_0);
+    free(d->ids);
+    tl_layout_free(&d->layout);
+    free(d->run);
+    free(d->touched);
+    free(d->idle);
+    free(d->by_block);
+    free(d->by_block_start);
+    free(d->by_id);
+    free(d);
+}
+
+/* The spare table, in which nothing is kept, gets the columns of the other: with no rows that cannot fail. */
+bool tl_detect_hold_initial(tl_detect *d)
+{
+    if (!tl_points_hold_initial(&d->points))
+        return false;
+    tl_table_free(&d->spare_points.table);
+    return tl_points_hold_initial(&d->spare_points);
+}
+
+bool tl_detect_hold_states(tl_detect *d, uint32_t columns)
+{
+    if (!tl_points_hold_states(&d->points, columns))
+        return false;
+    tl_table_free(&d->spare_points.table);
+    return tl_points_hold_states(&d->spare_points, columns);
+}

@@ -1,0 +1,13 @@
+/* store.h - what belongs to the detection as a whole (store.c). */
+#ifndef TL_DETECT_STORE_H
+#define TL_DETECT_STORE_H
+
+#include "detect/detection.h"
+
+void tl_detect_destroy(tl_detect *d);
+/* Makes sure that points have initial forces and the overlaps they belong to, or so many columns of states; false when
+ * out of memory (nothing changed). */
+bool tl_detect_hold_initial(tl_detect *d);
+bool tl_detect_hold_states(tl_detect *d, uint32_t columns);
+
+#endif

@@ -1,0 +1,14 @@
+/* transfer.h - new contact points in the place of old ones (transfer.c). */
+#ifndef TL_DETECT_TRANSFER_H
+#define TL_DETECT_TRANSFER_H
+
+#include "detect/layout.h"
+#include "detect/narrow.h"
+#include "model/model.h"
+
+/* Puts the manifold's points in the place of the contact's, carrying over state so that total force
+ * and moment follow the area; the points fit into the contact's room. */
+bool tl_contact_transfer(tl_model *m, uint32_t contact, tl_narrow *room,
+                         const tl_point_lanes *lanes);
+
+#endif
