@@ -9,7 +9,7 @@
 #include "detect/detect.h"
 #include "detect/detection.h"
 #include "detect/places.h"
-#include "detect/room.h"
+#include "narrow/room.h"
 
 #define SCENE_UNUSED __attribute__((unused))
 

@@ -3,7 +3,7 @@
 #define TL_DETECT_BESIDE_H
 
 #include "detect/pair.h"
-#include "detect/view.h"
+#include "narrow/view.h"
 
 /* Chooses the faces that show it. */
 void tl_beside_note(const tl_pair_view *view, tl_pair *p);

@@ -11,7 +11,6 @@
 #include "detect/expect.h"
 #include "detect/held.h"
 #include "detect/index.h"
-#include "detect/manifold.h"
 #include "detect/overlap.h"
 #include "detect/pair_view.h"
 #include "detect/pairs.h"
@@ -19,6 +18,7 @@
 #include "detect/renew.h"
 #include "detect/store.h"
 #include "detect/update.h"
+#include "narrow/manifold.h"
 
 #include <assert.h>
 #include <stdlib.h>

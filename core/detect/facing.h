@@ -9,7 +9,7 @@
 #define TL_DETECT_FACING_H
 
 #include "base/inline.h"
-#include "detect/facet.h"
+#include "narrow/facet.h"
 
 /* Sine of the angle of two edges up to which they have no common normal of their own. */
 #define TL_PARALLEL 1e-12

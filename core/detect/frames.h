@@ -3,8 +3,8 @@
 #define TL_DETECT_FRAMES_H
 
 #include "base/lanes.h"
-#include "detect/facet.h"
 #include "model/model.h"
+#include "narrow/facet.h"
 
 /* One facet in each lane, in its present place, and how its points move. */
 typedef struct tl_frames {

@@ -3,7 +3,7 @@
 #include "detect/memory.h"
 
 #include "detect/detection.h"
-#include "detect/share_points.h"
+#include "narrow/share_points.h"
 
 static size_t narrow_bytes(const tl_narrow *n)
 {

@@ -2,9 +2,9 @@
 #ifndef TL_DETECT_PAIR_VIEW_H
 #define TL_DETECT_PAIR_VIEW_H
 
-#include "detect/narrow.h"
-#include "detect/view.h"
 #include "model/model.h"
+#include "narrow/narrow.h"
+#include "narrow/view.h"
 
 /* View of two blocks, and the odometers of their bodies, summed. */
 tl_pair_view tl_pair_view_of(const tl_model *m, uint32_t a, uint32_t b);

@@ -9,9 +9,9 @@
 
 #include "base/inline.h"
 #include "detect/beside.h"
-#include "detect/look.h"
-#include "detect/manifold.h"
 #include "detect/pair_view.h"
+#include "narrow/look.h"
+#include "narrow/manifold.h"
 
 #include <string.h>
 #include <talus/plugin.h>

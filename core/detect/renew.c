@@ -6,10 +6,10 @@
 #include "detect/renew.h"
 
 #include "detect/detection.h"
-#include "detect/manifold.h"
-#include "detect/patch_batch.h"
 #include "detect/points.h"
 #include "detect/update.h"
+#include "narrow/manifold.h"
+#include "narrow/patch_batch.h"
 
 #include <string.h>
 

@@ -3,7 +3,7 @@
 
 #include "detect/points.h"
 #include "detect/ranks.h"
-#include "detect/room.h"
+#include "narrow/room.h"
 
 #include <stdlib.h>
 

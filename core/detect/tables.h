@@ -3,7 +3,7 @@
 #define TL_DETECT_TABLES_H
 
 #include "base/table.h"
-#include "detect/axis.h"
+#include "narrow/axis.h"
 
 typedef struct tl_contacts {
     tl_table table;

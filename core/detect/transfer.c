@@ -12,8 +12,8 @@
 #include "base/columns.h"
 #include "detect/detection.h"
 #include "detect/places.h"
-#include "detect/point2.h"
 #include "detect/points.h"
+#include "narrow/point2.h"
 
 #include <stdlib.h>
 #include <string.h>

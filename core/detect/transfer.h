@@ -3,8 +3,8 @@
 #define TL_DETECT_TRANSFER_H
 
 #include "detect/layout.h"
-#include "detect/narrow.h"
 #include "model/model.h"
+#include "narrow/narrow.h"
 
 /* Puts the manifold's points in the place of the contact's, carrying over state so that total force
  * and moment follow the area; the points fit into the contact's room. */

@@ -8,12 +8,12 @@
 #include "base/columns.h"
 #include "detect/beside.h"
 #include "detect/contacts.h"
-#include "detect/manifold.h"
 #include "detect/overlap.h"
 #include "detect/pair_view.h"
 #include "detect/pairs.h"
 #include "detect/points.h"
 #include "detect/transfer.h"
+#include "narrow/manifold.h"
 
 /* Motion within which facets and areas are reused, relative to the smaller block's size: areas are
  * then wrong by a few 1e-6 at most; gaps are exact all the same. */

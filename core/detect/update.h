@@ -2,8 +2,8 @@
 #ifndef TL_DETECT_UPDATE_H
 #define TL_DETECT_UPDATE_H
 
-#include "detect/axis.h"
 #include "model/model.h"
+#include "narrow/axis.h"
 
 /* How far a pair may run before its axis is searched again. */
 double tl_axis_margin(const tl_axis *axis, double size);

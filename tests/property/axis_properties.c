@@ -5,8 +5,8 @@
  * its axis until it overlaps, or is apart, by 1e-3 to 1e-9 of its size. The first look is compared with
  * the distance of all features, and libccd without any growth is a third opinion. */
 #include "contact_scene.h"
-#include "detect/look.h"
 #include "exact_axis.h"
+#include "narrow/look.h"
 
 #include <ccd/ccd.h>
 

@@ -5,7 +5,7 @@
  * bound: overlap times area of the patches, no point share. */
 #include "contact_scene.h"
 #include "detect/beside.h"
-#include "detect/manifold.h"
+#include "narrow/manifold.h"
 
 /* The prism in common may be skew (sine of its angle, 0.7), and s is that of the deepest point: bound on force over
  * stiffness, in units of (TL_SILENT size)^2 times the blocks' largest diameter. */

@@ -6,8 +6,8 @@
  * then differ by no more than that distance. */
 #include "base/columns.h"
 #include "contact_scene.h"
-#include "detect/patch.h"
-#include "detect/patch_batch.h"
+#include "narrow/patch.h"
+#include "narrow/patch_batch.h"
 
 #define STEEP 7.6e-5
 /* Heights of corners over lines this near the snap distance, TL_MERGE times the size, may fall on either side. */

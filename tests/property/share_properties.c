@@ -1,7 +1,7 @@
 /* share_properties.c - the contact points of any pair of shapes in any place: areas and places are numbers, each point
  * belongs to one facet, and nothing is left over of a minimum area that holds whatever touches. */
 #include "contact_scene.h"
-#include "detect/manifold.h"
+#include "narrow/manifold.h"
 
 static tl_poly *any_shape(uint64_t *seed)
 {

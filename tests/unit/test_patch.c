@@ -2,8 +2,8 @@
  * stiffness against turning, and that a wobble of the blocks does not make the force jump. */
 #include "contact_scene.h"
 #include "detect/contacts.h"
-#include "detect/manifold.h"
 #include "detect/points.h"
+#include "narrow/manifold.h"
 
 /* ---------------------------------------------------------------- reference -------------- */
 

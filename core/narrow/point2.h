@@ -1,0 +1,83 @@
+/* point2.h - points and corners in the plane of a patch, and the keys of what made them. */
+#ifndef TL_NARROW_POINT2_H
+#define TL_NARROW_POINT2_H
+
+#include "narrow/facet.h"
+
+/* Corners nearer to each other than this times the size are one, and corners nearer to a line that clips lie on
+ * it: far below any length that matters, far above rounding. Edges along each other would otherwise cross
+ * here and there, and points come and go. */
+#define TL_MERGE 1e-7
+
+/* Edges of A's face are 0, 1, ..., those of B's face TL_EDGE_B, TL_EDGE_B + 1, ... */
+enum { TL_EDGE_B = 1 << 16 };
+/* What a point is; with the features that made it, this gives its key. */
+enum { TL_POINT_A, TL_POINT_B, TL_POINT_CROSSING, TL_POINT_MIDDLE, TL_POINT_CENTROID };
+
+/* Different features of one contact have different keys: corners of A's face their numbers, then those of B's ... */
+static inline uint32_t tl_corner_key(uint32_t kind, uint32_t corner)
+{
+    return kind == TL_POINT_A ? corner : corner | 1u << 16;
+}
+
+/* ... and what two features make a mixture of theirs: a multiplication or two must do. */
+static inline uint32_t tl_key_of(uint32_t kind, uint32_t one, uint32_t other)
+{
+    uint64_t x = (kind + UINT64_C(0x9e3779b97f4a7c15) * one) ^ UINT64_C(0xd6e8feb86659fd93) * other;
+    return (uint32_t)((x ^ x >> 32) * UINT64_C(0xd6e8feb86659fd93) >> 32);
+}
+
+typedef struct tl_point2 {
+    double x, y;
+} tl_point2;
+
+static inline double tl_cross2(tl_point2 o, tl_point2 a, tl_point2 b)
+{
+    return (a.x - o.x) * (b.y - o.y) - (a.y - o.y) * (b.x - o.x);
+}
+
+/* Square of the distance. */
+static inline double tl_distance2(tl_point2 a, tl_point2 b)
+{
+    double x = a.x - b.x, y = a.y - b.y;
+    return x * x + y * y;
+}
+
+static inline tl_point2 tl_from_to(tl_point2 a, tl_point2 b)
+{
+    return (tl_point2){b.x - a.x, b.y - a.y};
+}
+
+/* How the normal of two crossing edges, a of A's face and b of B's, leans. With both measured from the line in
+ * which the faces' planes meet, by angles alpha and beta, it is along M - L sin(alpha + beta)/d - M x L 2 sin alpha
+ * sin beta/d, with d = sin(beta - alpha); see tl_lean. `rise` points across that line, up A's face.
+ * Bounded, for edges nearly along each other have no normal. */
+static inline tl_point2 tl_lean2_of(tl_point2 a, tl_point2 b, tl_point2 rise)
+{
+    double a_along = a.x * rise.y - a.y * rise.x, a_up = a.x * rise.x + a.y * rise.y;
+    double b_along = b.x * rise.y - b.y * rise.x, b_up = b.x * rise.x + b.y * rise.y;
+    double d = a_along * b_up - a_up * b_along;
+    double face = -(a_along * b_up + a_up * b_along), edge = -2 * a_up * b_up;
+    double most = fabs(face) > 0.5 * fabs(edge) ? fabs(face) : 0.5 * fabs(edge);
+    most = fabs(d) > most ? fabs(d) : most;
+    double scale = most > 0 ? (d < 0 ? -1 : 1) / most : 0;
+    return (tl_point2){face * scale, edge * scale};
+}
+
+static inline tl_lean tl_lean_of(tl_point2 a, tl_point2 b, tl_point2 rise)
+{
+    tl_point2 lean = tl_lean2_of(a, b, rise);
+    return (tl_lean){(float)lean.x, (float)lean.y};
+}
+
+typedef struct tl_corner {
+    tl_point2 at;
+    uint32_t key;  /* of the features that made it */
+    uint32_t edge; /* source of the edge that leaves it */
+    tl_lean lean;  /* of its gap's normal */
+    double height; /* over the line that cuts */
+    double share;  /* of the corner in the mixture: 0 .. 1 */
+    double fan;    /* area of the fan triangle of the edge that leaves it */
+} tl_corner;
+
+#endif

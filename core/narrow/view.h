@@ -1,0 +1,30 @@
+/* view.h - two blocks as the geometry of a pair sees them, and the lengths that count there, over their size.
+ *
+ * The geometry is done in the frame of block A's body, where B's body is given by a rotation and a translation; A is the
+ * block with the lower id. Normals point from A to B. Gap is positive between separate walls; overlap is -gap. */
+#ifndef TL_NARROW_VIEW_H
+#define TL_NARROW_VIEW_H
+
+#include "geometry/polyhedron.h"
+
+/* Overlap of a pair that touches without area, along both of two directions, that may go unseen, relative to the size:
+ * a share of its faces as small as that (beside.c); and how far other such pairs may move before they are looked at
+ * again. */
+#define TL_SILENT 1e-5
+
+/* When a pair becomes a contact, and when a contact ends, relative to the smaller block's size. */
+#define TL_CONTACT_TOLERANCE 1e-3
+#define TL_CONTACT_RELEASE 1.5
+
+/* Two blocks in the frame of A's body. */
+typedef struct tl_pair_view {
+    const tl_poly *a, *b;
+    tl_mat3 turn;      /* from B's frame to A's */
+    tl_vec3 shift;     /* B's origin in A's frame */
+    double size;       /* of the smaller block */
+    double mean_face;  /* smaller of the two mean face areas */
+    tl_vec3 *vertex_b; /* B's vertices and face normals in A's frame: filled by tl_pair_place */
+    tl_vec3 *normal_b;
+} tl_pair_view;
+
+#endif
