@@ -5,10 +5,10 @@
 
 #include "base/columns.h"
 #include "check.h"
+#include "contact/detection.h"
+#include "contact/places.h"
 #include "cycle/cycle_room.h"
 #include "detect/detect.h"
-#include "detect/detection.h"
-#include "detect/places.h"
 #include "narrow/room.h"
 
 #define SCENE_UNUSED __attribute__((unused))

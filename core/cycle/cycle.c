@@ -21,8 +21,8 @@
  * in fixed chunks, so the bits do not depend on the number of threads. */
 #include "cycle/cycle_room.h"
 
+#include "contact/held.h"
 #include "detect/detect.h"
-#include "detect/held.h"
 #include "detect/overlap.h"
 
 #include <stdlib.h>

@@ -5,7 +5,7 @@
 #include "base/inline.h"
 #include "base/inside.h"
 #include "base/lanes.h"
-#include "detect/layout.h"
+#include "contact/layout.h"
 #include "model/model.h"
 
 #include <pthread.h>

@@ -5,7 +5,7 @@
  * rate are sums made by gather.c. */
 #include "cycle/cycle_room.h"
 
-#include "detect/points.h"
+#include "contact/points.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -15,7 +15,7 @@
  * The move books its bodies group by group (motion.c), while all that is needed is at hand. */
 #include "cycle/cycle_room.h"
 
-#include "detect/detection.h"
+#include "contact/detection.h"
 
 #include <stdlib.h>
 

@@ -3,7 +3,7 @@
  * What the measures of convergence ask (rest.c) is summed on the way. */
 #include "cycle/cycle_room.h"
 
-#include "detect/contacts.h"
+#include "contact/contacts.h"
 
 static tl_vec3 free_part(tl_vec3 v, unsigned fixed)
 {

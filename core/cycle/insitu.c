@@ -6,10 +6,10 @@
 #include "cycle/cycle_room.h"
 
 #include "base/columns.h"
+#include "contact/held.h"
+#include "contact/places.h"
+#include "contact/store.h"
 #include "detect/detect.h"
-#include "detect/held.h"
-#include "detect/places.h"
-#include "detect/store.h"
 
 /* A traction below this share of the largest stress given is none. */
 #define NO_TRACTION 1e-9

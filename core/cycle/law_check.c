@@ -12,8 +12,8 @@
 #include "cycle/cycle_room.h"
 
 #include "base/columns.h"
-#include "detect/detection.h"
-#include "detect/points.h"
+#include "contact/detection.h"
+#include "contact/points.h"
 
 #include <stdio.h>
 

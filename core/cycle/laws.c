@@ -4,10 +4,10 @@
  * motion are in the thread's lanes, which stay in the nearest cache from one end to the other. */
 #include "cycle/cycle_room.h"
 
-#include "detect/contacts.h"
-#include "detect/expect.h"
+#include "contact/contacts.h"
+#include "contact/expect.h"
+#include "contact/held.h"
 #include "detect/follow.h"
-#include "detect/held.h"
 
 #include <stdatomic.h>
 #include <string.h>

@@ -9,8 +9,8 @@
 #include "cycle/cycle_room.h"
 
 #include "base/columns.h"
+#include "contact/contacts.h"
 #include "cycle/kick.h"
-#include "detect/contacts.h"
 
 #include <stdatomic.h>
 #include <stdio.h>

@@ -4,10 +4,10 @@
  * the initial one at the present closure. A point that is open keeps the gap at which it closes. */
 #include "cycle/cycle_room.h"
 
+#include "contact/places.h"
+#include "contact/points.h"
+#include "contact/store.h"
 #include "detect/detect.h"
-#include "detect/places.h"
-#include "detect/points.h"
-#include "detect/store.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -2,7 +2,7 @@
  * allocator's own bytes (some 16 an allocation, of which a block has one) are not counted. */
 #include "cycle/cycle_room.h"
 
-#include "detect/memory.h"
+#include "contact/memory.h"
 
 tl_memory tl_model_memory(const tl_model *m)
 {

@@ -3,7 +3,7 @@
 #include "cycle/cycle_room.h"
 
 #include "base/clock.h"
-#include "detect/detection.h"
+#include "contact/detection.h"
 
 #include <string.h>
 

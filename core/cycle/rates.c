@@ -13,7 +13,7 @@
 #include "cycle/rates.h"
 
 #include "base/columns.h"
-#include "detect/detection.h"
+#include "contact/detection.h"
 
 #include <string.h>
 

@@ -14,7 +14,7 @@
  * stored in all contacts for U. */
 #include "cycle/cycle_room.h"
 
-#include "detect/detection.h"
+#include "contact/detection.h"
 
 #include <stdatomic.h>
 

@@ -10,10 +10,10 @@
 #include "cycle/rates.h"
 
 #include "base/hash.h"
-#include "detect/copy.h"
+#include "contact/copy.h"
+#include "contact/points.h"
+#include "contact/store.h"
 #include "detect/detect.h"
-#include "detect/points.h"
-#include "detect/store.h"
 
 #include <stdlib.h>
 #include <string.h>

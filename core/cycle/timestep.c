@@ -7,8 +7,8 @@
  * Mass scaling gives every free body the bound of the one that has the most. */
 #include "cycle/rates.h"
 
+#include "contact/detection.h"
 #include "detect/detect.h"
-#include "detect/detection.h"
 
 #include <string.h>
 

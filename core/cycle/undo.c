@@ -8,8 +8,8 @@
  * choice of the step need no undoing, for made again in the same places they change nothing; the move cannot fail. */
 #include "cycle/cycle_room.h"
 
-#include "detect/detection.h"
-#include "detect/held.h"
+#include "contact/detection.h"
+#include "contact/held.h"
 
 #include <stdlib.h>
 #include <string.h>

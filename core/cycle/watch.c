@@ -13,7 +13,7 @@
  * something bears them, and in longer legs: what is poured has not failed. */
 #include "cycle/cycle_room.h"
 
-#include "detect/detection.h"
+#include "contact/detection.h"
 
 #include <stdatomic.h>
 #include <stdlib.h>

@@ -2,7 +2,7 @@
 #ifndef TL_DETECT_BESIDE_H
 #define TL_DETECT_BESIDE_H
 
-#include "detect/pair.h"
+#include "contact/pair.h"
 #include "narrow/view.h"
 
 /* Chooses the faces that show it. */

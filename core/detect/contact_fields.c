@@ -1,8 +1,8 @@
 /* contact_fields.c - what can be asked of contacts: which ones, their named fields, a block's
  * neighbours. Values are those of the last step's forces. */
+#include "contact/index.h"
+#include "contact/places.h"
 #include "detect/detect.h"
-#include "detect/index.h"
-#include "detect/places.h"
 
 #include <assert.h>
 #include <stdlib.h>

@@ -12,10 +12,10 @@
 #include "detect/follow.h"
 
 #include "base/columns.h"
-#include "detect/detection.h"
+#include "contact/detection.h"
+#include "contact/places.h"
+#include "contact/points.h"
 #include "detect/frames.h"
-#include "detect/places.h"
-#include "detect/points.h"
 #include "detect/turning.h"
 
 #include <string.h>

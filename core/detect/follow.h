@@ -2,7 +2,7 @@
 #ifndef TL_DETECT_FOLLOW_H
 #define TL_DETECT_FOLLOW_H
 
-#include "detect/layout.h"
+#include "contact/layout.h"
 #include "model/model.h"
 
 /* Gaps, normals and relative motion of the contacts of a rank, its first point's into lane `lane`; turns shear forces

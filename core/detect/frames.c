@@ -4,7 +4,7 @@
  * worked out for all of them at once. */
 #include "detect/frames.h"
 
-#include "detect/places.h"
+#include "contact/places.h"
 
 #include <assert.h>
 #include <stddef.h>

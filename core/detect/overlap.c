@@ -17,8 +17,8 @@
  * go. */
 #include "detect/overlap.h"
 
-#include "detect/contacts.h"
-#include "detect/pair_view.h"
+#include "contact/contacts.h"
+#include "contact/pair_view.h"
 
 #include <stdio.h>
 

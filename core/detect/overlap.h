@@ -2,7 +2,7 @@
 #ifndef TL_DETECT_OVERLAP_H
 #define TL_DETECT_OVERLAP_H
 
-#include "detect/tables.h"
+#include "contact/tables.h"
 #include "model/model.h"
 
 /* Whether two blocks overlap so deeply that their contact cannot tell how to part them; less is enough for one that is

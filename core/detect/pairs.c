@@ -8,8 +8,8 @@
 #include "detect/pairs.h"
 
 #include "base/inline.h"
+#include "contact/pair_view.h"
 #include "detect/beside.h"
-#include "detect/pair_view.h"
 #include "narrow/look.h"
 #include "narrow/manifold.h"
 

@@ -2,7 +2,7 @@
 #ifndef TL_DETECT_PAIRS_H
 #define TL_DETECT_PAIRS_H
 
-#include "detect/detection.h"
+#include "contact/detection.h"
 #include "model/model.h"
 
 /* Makes room for what is kept of the model's blocks and bodies; their runs begin here. */

@@ -5,8 +5,8 @@
  * something else, are brought up to date one by one (update.c). */
 #include "detect/renew.h"
 
-#include "detect/detection.h"
-#include "detect/points.h"
+#include "contact/detection.h"
+#include "contact/points.h"
 #include "detect/update.h"
 #include "narrow/manifold.h"
 #include "narrow/patch_batch.h"

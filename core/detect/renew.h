@@ -2,7 +2,7 @@
 #ifndef TL_DETECT_RENEW_H
 #define TL_DETECT_RENEW_H
 
-#include "detect/layout.h"
+#include "contact/layout.h"
 #include "model/model.h"
 
 /* Brings the facets of the contacts of a rank up to the present place, if they are stale; their fates tell what is left

@@ -3,7 +3,7 @@
  * neighbours do not. */
 #include "detect/touching.h"
 
-#include "detect/detection.h"
+#include "contact/detection.h"
 
 static bool add(tl_touches *touches, const tl_touch *touch)
 {

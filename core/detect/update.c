@@ -6,13 +6,13 @@
 #include "detect/update.h"
 
 #include "base/columns.h"
+#include "contact/contacts.h"
+#include "contact/pair_view.h"
+#include "contact/points.h"
+#include "contact/transfer.h"
 #include "detect/beside.h"
-#include "detect/contacts.h"
 #include "detect/overlap.h"
-#include "detect/pair_view.h"
 #include "detect/pairs.h"
-#include "detect/points.h"
-#include "detect/transfer.h"
 #include "narrow/manifold.h"
 
 /* Motion within which facets and areas are reused, relative to the smaller block's size: areas are

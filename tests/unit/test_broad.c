@@ -1,7 +1,7 @@
 /* test_broad.c - candidate pairs against all pairs of bounds, and contacts of moving blocks against a
  * search of all pairs: the odometers must never let one slip by. */
+#include "contact/pair_view.h"
 #include "contact_scene.h"
-#include "detect/pair_view.h"
 #include "narrow/manifold.h"
 
 /* ---------------------------------------------------------------- candidates ------------- */

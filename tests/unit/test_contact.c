@@ -1,9 +1,9 @@
 /* test_contact.c - the life of contacts: birth before touching, death after parting but never in tension,
  * ids that stay, the joint they belong to, the same bits every time and on any number of threads, and
  * reused geometry that agrees with geometry made anew in every step. */
+#include "contact/contacts.h"
+#include "contact/pair_view.h"
 #include "contact_scene.h"
-#include "detect/contacts.h"
-#include "detect/pair_view.h"
 
 #define KN 1e9
 #define PILE_KN 3e8

@@ -1,6 +1,6 @@
 /* test_facing.c - normals of points and of crossing edges. */
 #include "check.h"
-#include "detect/facing.h"
+#include "contact/facing.h"
 
 #define DEGREE (TL_PI / 180)
 

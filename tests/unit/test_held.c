@@ -1,7 +1,7 @@
 /* test_held.c - contacts between bodies that are held still: passed over once they rest, as if they had been followed. */
+#include "contact/held.h"
+#include "contact/points.h"
 #include "contact_scene.h"
-#include "detect/held.h"
-#include "detect/points.h"
 
 #include <stdatomic.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 /* test_index.c - the lists of the contacts of each block, while contacts come, go and grow, against lists made from
  * nothing. */
+#include "contact/index.h"
 #include "contact_scene.h"
-#include "detect/index.h"
 
 #define BLOCKS 60
 #define STEPS 400

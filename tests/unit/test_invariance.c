@@ -1,8 +1,8 @@
 /* test_invariance.c - what must not matter to contacts: the order of the blocks, motion and offset of the
  * whole model; and what must be continuous or absent: sizes that differ, sliding off, edges passing over
  * edges, corners of eight blocks, torsion. */
+#include "contact/contacts.h"
 #include "contact_scene.h"
-#include "detect/contacts.h"
 
 #define KN 1e9
 #define OVERLAP 1e-4

@@ -1,8 +1,8 @@
 /* test_patch.c - face on face: areas and moments of the contact points against an independent clipping,
  * stiffness against turning, and that a wobble of the blocks does not make the force jump. */
+#include "contact/contacts.h"
+#include "contact/points.h"
 #include "contact_scene.h"
-#include "detect/contacts.h"
-#include "detect/points.h"
 #include "narrow/manifold.h"
 
 /* ---------------------------------------------------------------- reference -------------- */

@@ -1,8 +1,8 @@
 /* test_share.c - the point share: blocks that touch by edges and vertices. Force and moment change continuously as an
  * edge that nearly lies on a face rocks, slides and turns over its border, whichever vertex is the lowest; and they are
  * the slope of an energy. Patches beyond contact, and flush ones with little area. */
+#include "contact/contacts.h"
 #include "contact_scene.h"
-#include "detect/contacts.h"
 
 #define KN 1e9
 

@@ -1,11 +1,11 @@
 /* test_transfer.c - when a contact gets other points: forces and moments stay at unchanged area, stresses
  * stay uniform when the area changes, and a law's states are copied, split or reset as it declares. */
 #include "base/columns.h"
+#include "contact/contacts.h"
+#include "contact/points.h"
+#include "contact/store.h"
+#include "contact/transfer.h"
 #include "contact_scene.h"
-#include "detect/contacts.h"
-#include "detect/points.h"
-#include "detect/store.h"
-#include "detect/transfer.h"
 
 #define KN 1e9
 #define OVERLAP 1e-4

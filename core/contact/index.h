@@ -1,8 +1,8 @@
 /* index.h - the contacts of a block, and the contact of an id (index.c). */
-#ifndef TL_DETECT_INDEX_H
-#define TL_DETECT_INDEX_H
+#ifndef TL_CONTACT_INDEX_H
+#define TL_CONTACT_INDEX_H
 
-#include "detect/detection.h"
+#include "contact/detection.h"
 #include "model/model.h"
 
 /* Lists the contacts of each block, and notes whether some are bare; after contacts have come, gone or been given

@@ -1,11 +1,11 @@
 /* places.c - contacts one by one: where their facets and points are, for those who ask between steps and for points
  * that are new. */
-#include "detect/places.h"
+#include "contact/places.h"
 
 #include "base/columns.h"
-#include "detect/detection.h"
-#include "detect/pair_view.h"
-#include "detect/points.h"
+#include "contact/detection.h"
+#include "contact/pair_view.h"
+#include "contact/points.h"
 
 tl_sight tl_sight_of(const tl_model *m, uint32_t c)
 {

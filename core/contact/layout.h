@@ -1,6 +1,6 @@
 /* layout.h - where the points of contacts are, and what is known of them while a step works on them. */
-#ifndef TL_DETECT_LAYOUT_H
-#define TL_DETECT_LAYOUT_H
+#ifndef TL_CONTACT_LAYOUT_H
+#define TL_CONTACT_LAYOUT_H
 
 #include "base/table.h"
 

@@ -5,7 +5,7 @@
  * neighbours in the order of blocks, so that what a rank needs lies close together in memory.
  * Each material has a run of ranks, and another for contacts between bodies that are held still. New contacts get a free lane near the end of the run, or the first lane of a
  * new rank there. */
-#include "detect/ranks.h"
+#include "contact/ranks.h"
 
 #include "model/model.h"
 

@@ -5,8 +5,8 @@
  *
  * What is here is for a step, which works on eight contacts at a time (follow.c), and for the others, one by one
  * (places.c): with the same operations in the same order, so that they agree to the bit. */
-#ifndef TL_DETECT_FACING_H
-#define TL_DETECT_FACING_H
+#ifndef TL_CONTACT_FACING_H
+#define TL_CONTACT_FACING_H
 
 #include "base/inline.h"
 #include "narrow/facet.h"

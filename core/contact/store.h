@@ -1,8 +1,8 @@
 /* store.h - what belongs to the detection as a whole (store.c). */
-#ifndef TL_DETECT_STORE_H
-#define TL_DETECT_STORE_H
+#ifndef TL_CONTACT_STORE_H
+#define TL_CONTACT_STORE_H
 
-#include "detect/detection.h"
+#include "contact/detection.h"
 
 void tl_detect_destroy(tl_detect *d);
 /* Makes sure that points have initial forces and the overlaps they belong to, or so many columns of states; false when

@@ -1,8 +1,8 @@
 /* held.h - contacts between bodies that are held still, which are left alone once they rest: held.c. */
-#ifndef TL_DETECT_HELD_H
-#define TL_DETECT_HELD_H
+#ifndef TL_CONTACT_HELD_H
+#define TL_CONTACT_HELD_H
 
-#include "detect/layout.h"
+#include "contact/layout.h"
 #include "model/model.h"
 
 /* Whether the bodies of two blocks are held still. */

@@ -1,8 +1,8 @@
 /* copy.c - a second detection in the same state as the first: on it can be tried what the next step would find. */
-#include "detect/copy.h"
+#include "contact/copy.h"
 
-#include "detect/contacts.h"
-#include "detect/store.h"
+#include "contact/contacts.h"
+#include "contact/store.h"
 
 #include <stdlib.h>
 #include <string.h>

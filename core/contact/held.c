@@ -5,9 +5,9 @@
  * motion, so every later step would find the same, and the whole run is passed over. A law that goes on with time at rest
  * keeps its run followed. Whatever could change that wakes all such runs: blocks that are fixed, freed, driven or
  * given a velocity, that come or go, another law or initial stress, another contact in the run. */
-#include "detect/held.h"
+#include "contact/held.h"
 
-#include "detect/detection.h"
+#include "contact/detection.h"
 
 static bool is_still(const tl_bodies *b, uint32_t body)
 {

@@ -1,8 +1,8 @@
 /* ranks.h - the lanes of contacts in runs and ranks (ranks.c). */
-#ifndef TL_DETECT_RANKS_H
-#define TL_DETECT_RANKS_H
+#ifndef TL_CONTACT_RANKS_H
+#define TL_CONTACT_RANKS_H
 
-#include "detect/detection.h"
+#include "contact/detection.h"
 
 /* `need` and one in `share` more, or `least` more. */
 static inline size_t tl_with_spare(size_t need, size_t share, size_t least)

@@ -3,14 +3,14 @@
  * The points of a material are one run of columns, so a law is called on the columns themselves (ranks.c); a run
  * has room for a few contacts more. Laying out anew sorts the contacts by material, apart those between bodies that are held
  * still, and by blocks. */
-#include "detect/contacts.h"
+#include "contact/contacts.h"
 
 #include "base/pages.h"
-#include "detect/held.h"
-#include "detect/index.h"
-#include "detect/pair_view.h"
-#include "detect/points.h"
-#include "detect/ranks.h"
+#include "contact/held.h"
+#include "contact/index.h"
+#include "contact/pair_view.h"
+#include "contact/points.h"
+#include "contact/ranks.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 /* memory.h - what the detection holds, in bytes (memory.c). */
-#ifndef TL_DETECT_MEMORY_H
-#define TL_DETECT_MEMORY_H
+#ifndef TL_CONTACT_MEMORY_H
+#define TL_CONTACT_MEMORY_H
 
 #include "model/model.h"
 

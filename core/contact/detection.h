@@ -1,10 +1,10 @@
 /* detection.h - all that is kept of pairs and contacts. */
-#ifndef TL_DETECT_DETECTION_H
-#define TL_DETECT_DETECTION_H
+#ifndef TL_CONTACT_DETECTION_H
+#define TL_CONTACT_DETECTION_H
 
-#include "detect/layout.h"
-#include "detect/pair.h"
-#include "detect/tables.h"
+#include "contact/layout.h"
+#include "contact/pair.h"
+#include "contact/tables.h"
 
 typedef struct tl_detect {
     tl_pair *pairs;

@@ -1,7 +1,7 @@
 /* points.c - contact points: cleared, and the states of their law, begun or carried over.
  *
  * A state is copied, split by area, or reset when the point's polygon changes, as its law declares. */
-#include "detect/points.h"
+#include "contact/points.h"
 
 const tl_state *tl_kind_state(const tl_kind *kind, uint32_t k)
 {

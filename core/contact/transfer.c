@@ -7,12 +7,12 @@
  * stay the same, total shear force, its moment about the normal, and total initial normal force with
  * both its moments are kept exactly, unless that took stresses beyond those there were. Moments are taken about the centroids of the areas, so a uniform
  * stress stays uniform when the area changes. */
-#include "detect/transfer.h"
+#include "contact/transfer.h"
 
 #include "base/columns.h"
-#include "detect/detection.h"
-#include "detect/places.h"
-#include "detect/points.h"
+#include "contact/detection.h"
+#include "contact/places.h"
+#include "contact/points.h"
 #include "narrow/point2.h"
 
 #include <stdlib.h>

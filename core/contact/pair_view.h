@@ -1,6 +1,6 @@
 /* pair_view.h - the view of two blocks of a model (pair_view.c). */
-#ifndef TL_DETECT_PAIR_VIEW_H
-#define TL_DETECT_PAIR_VIEW_H
+#ifndef TL_CONTACT_PAIR_VIEW_H
+#define TL_CONTACT_PAIR_VIEW_H
 
 #include "model/model.h"
 #include "narrow/narrow.h"

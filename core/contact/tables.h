@@ -1,6 +1,6 @@
 /* tables.h - contacts and contact points, as tables. */
-#ifndef TL_DETECT_TABLES_H
-#define TL_DETECT_TABLES_H
+#ifndef TL_CONTACT_TABLES_H
+#define TL_CONTACT_TABLES_H
 
 #include "base/table.h"
 #include "narrow/axis.h"

@@ -1,9 +1,9 @@
 /* places.h - contacts one by one: where their facets and points are (places.c). */
-#ifndef TL_DETECT_PLACES_H
-#define TL_DETECT_PLACES_H
+#ifndef TL_CONTACT_PLACES_H
+#define TL_CONTACT_PLACES_H
 
-#include "detect/facing.h"
-#include "detect/layout.h"
+#include "contact/facing.h"
+#include "contact/layout.h"
 #include "model/model.h"
 
 /* Two bodies as a contact sees them: axes of the model, A's centroid as zero. */

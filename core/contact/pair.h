@@ -1,6 +1,6 @@
 /* pair.h - two blocks that may come near, as the broad phase lists them: there are many, so each is kept small. */
-#ifndef TL_DETECT_PAIR_H
-#define TL_DETECT_PAIR_H
+#ifndef TL_CONTACT_PAIR_H
+#define TL_CONTACT_PAIR_H
 
 #include <assert.h>
 #include <math.h>

@@ -1,8 +1,8 @@
 /* memory.c - what the detection holds, in bytes, by what it is for. Columns count with their spare rows, and
  * so does the second set of tables that contacts are laid out in from time to time. */
-#include "detect/memory.h"
+#include "contact/memory.h"
 
-#include "detect/detection.h"
+#include "contact/detection.h"
 #include "narrow/share_points.h"
 
 static size_t narrow_bytes(const tl_narrow *n)

@@ -1,8 +1,8 @@
 /* contacts.h - the tables of contacts and contact points, and how they are laid out (contacts.c). */
-#ifndef TL_DETECT_CONTACTS_H
-#define TL_DETECT_CONTACTS_H
+#ifndef TL_CONTACT_CONTACTS_H
+#define TL_CONTACT_CONTACTS_H
 
-#include "detect/detection.h"
+#include "contact/detection.h"
 #include "model/model.h"
 
 void tl_contacts_init(tl_contacts *contacts, tl_points_table *points);

@@ -1,8 +1,8 @@
 /* expect.h - what ranks will need, asked of the memory before (expect.c). */
-#ifndef TL_DETECT_EXPECT_H
-#define TL_DETECT_EXPECT_H
+#ifndef TL_CONTACT_EXPECT_H
+#define TL_CONTACT_EXPECT_H
 
-#include "detect/detection.h"
+#include "contact/detection.h"
 #include "model/model.h"
 
 /* Whether it is worth asking the memory for what ranks need before they do. */

@@ -1,7 +1,7 @@
 /* expect.c - what a rank will need, asked of the memory some ranks before: its contacts' bodies, facets and shapes, and its
  * points, a little of each of some twenty columns. The processor sees none of that coming; out of cache a step would
  * wait for memory most of the time. */
-#include "detect/expect.h"
+#include "contact/expect.h"
 
 #include "base/inline.h"
 

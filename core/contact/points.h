@@ -1,8 +1,8 @@
 /* points.h - contact points: cleared, and the states of their law (points.c). */
-#ifndef TL_DETECT_POINTS_H
-#define TL_DETECT_POINTS_H
+#ifndef TL_CONTACT_POINTS_H
+#define TL_CONTACT_POINTS_H
 
-#include "detect/tables.h"
+#include "contact/tables.h"
 
 /* Leans are kept in steps: -1, 0 and 1 are exact, and the normal of a point is as exact as its place in a patch. `face`
  * lies within 1, `edge` within 2. */

@@ -1,8 +1,8 @@
 /* store.c - the detection as a whole: let go of, and given the columns that laws and initial forces need. */
-#include "detect/store.h"
+#include "contact/store.h"
 
-#include "detect/points.h"
-#include "detect/ranks.h"
+#include "contact/points.h"
+#include "contact/ranks.h"
 #include "narrow/room.h"
 
 #include <stdlib.h>

@@ -1,8 +1,8 @@
 /* transfer.h - new contact points in the place of old ones (transfer.c). */
-#ifndef TL_DETECT_TRANSFER_H
-#define TL_DETECT_TRANSFER_H
+#ifndef TL_CONTACT_TRANSFER_H
+#define TL_CONTACT_TRANSFER_H
 
-#include "detect/layout.h"
+#include "contact/layout.h"
 #include "model/model.h"
 #include "narrow/narrow.h"
 
