@@ -1,6 +1,6 @@
 /* touching.h - the faces of blocks that lie on faces of others. */
-#ifndef TL_DETECT_TOUCHING_H
-#define TL_DETECT_TOUCHING_H
+#ifndef TL_QUERY_TOUCHING_H
+#define TL_QUERY_TOUCHING_H
 
 #include "model/model.h"
 

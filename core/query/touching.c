@@ -1,7 +1,7 @@
 /* touching.c - the faces of blocks that lie on faces of others, as the contacts have found them: only
  * patches count, for a corner or an edge on a face bounds no half-space of motion that its
  * neighbours do not. */
-#include "detect/touching.h"
+#include "query/touching.h"
 
 #include "contact/detection.h"
 

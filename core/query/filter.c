@@ -10,7 +10,7 @@
  * A block is a sliver only when every block of its body is one: what hangs on a sound block has been
  * dealt with. Hidden blocks are left alone. */
 #include "detect/detect.h"
-#include "detect/touching.h"
+#include "query/touching.h"
 
 #include <stdlib.h>
 

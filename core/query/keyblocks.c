@@ -22,7 +22,7 @@
  * judged by its contact faces alone, which is exact only when it is convex. */
 #include "base/error.h"
 #include "detect/detect.h"
-#include "detect/touching.h"
+#include "query/touching.h"
 
 #include <stdlib.h>
 
