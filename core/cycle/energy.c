@@ -262,3 +262,13 @@ tl_status tl_model_energy(tl_model *m, tl_energy *energy)
     *energy = m->cycle && m->cycle->ledger ? m->cycle->ledger->energy : (tl_energy){0};
     return TL_OK;
 }
+
+double tl_spin_energy2(const tl_model *m, uint32_t body)
+{
+    const tl_bodies *b = &m->bodies;
+    tl_vec3 w = tl_q_rotate(tl_q_conj(tl_q_mul(b->q[body], b->axes[body])), b->w[body]);
+    if (m->config.rotation == TL_ROTATION_PAPER)
+        return b->round[body] * tl_v3_norm2(w);
+    tl_vec3 i = b->moments[body];
+    return i.x * w.x * w.x + i.y * w.y * w.y + i.z * w.z * w.z;
+}

@@ -49,16 +49,6 @@ static void gather_body(tl_model *m, uint32_t body)
     m->cycle->contact_force[body] = contact_force;
 }
 
-double tl_spin_energy2(const tl_model *m, uint32_t body)
-{
-    const tl_bodies *b = &m->bodies;
-    tl_vec3 w = tl_q_rotate(tl_q_conj(tl_q_mul(b->q[body], b->axes[body])), b->w[body]);
-    if (m->config.rotation == TL_ROTATION_PAPER)
-        return b->round[body] * tl_v3_norm2(w);
-    tl_vec3 i = b->moments[body];
-    return i.x * w.x * w.x + i.y * w.y * w.y + i.z * w.z * w.z;
-}
-
 /* Unbalanced force and moment of a body, by themselves and over what it bears. What that is at the least is asked only
  * where the ratio may be the largest. */
 static void sum_ratios(const tl_model *m, uint32_t body, double weight, tl_sums *sums)

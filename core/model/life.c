@@ -1,0 +1,103 @@
+/* life.c - a model is made and destroyed. */
+#include "model/model.h"
+
+#include <stdlib.h>
+
+static void blocks_init(tl_blocks *b)
+{
+    tl_table *t = &b->table;
+    tl_table_init(t, b);
+    TL_COLUMN(t, b, id, TL_COLUMN_STATE);
+    TL_COLUMN(t, b, body, TL_COLUMN_STATE);
+    TL_COLUMN(t, b, shape, 0);
+    TL_COLUMN(t, b, group, 0);
+    TL_COLUMN(t, b, density, TL_COLUMN_STATE);
+    TL_COLUMN(t, b, volume, TL_COLUMN_STATE);
+    TL_COLUMN(t, b, size, 0);
+    TL_COLUMN(t, b, mean_face, 0);
+    TL_COLUMN(t, b, lineage, TL_COLUMN_STATE);
+    TL_COLUMN(t, b, hidden, TL_COLUMN_STATE);
+}
+
+static void bodies_init(tl_bodies *b)
+{
+    tl_table *t = &b->table;
+    tl_table_init(t, b);
+    TL_COLUMN(t, b, id, TL_COLUMN_STATE);
+    TL_COLUMN(t, b, member_start, 0);
+    TL_COLUMN(t, b, member_count, 0);
+    TL_COLUMN(t, b, pose, TL_COLUMN_STATE);
+    TL_COLUMN(t, b, q, TL_COLUMN_STATE);
+    TL_COLUMN(t, b, v, TL_COLUMN_STATE);
+    TL_COLUMN(t, b, w, TL_COLUMN_STATE);
+    TL_COLUMN(t, b, mass, TL_COLUMN_STATE);
+    TL_COLUMN(t, b, moments, TL_COLUMN_STATE);
+    TL_COLUMN(t, b, axes, TL_COLUMN_STATE);
+    TL_COLUMN(t, b, round, 0);
+    TL_COLUMN(t, b, radius, 0);
+    TL_COLUMN(t, b, fixed, TL_COLUMN_STATE);
+    TL_COLUMN(t, b, force, TL_COLUMN_STATE | TL_COLUMN_STEP);
+    TL_COLUMN(t, b, moment, TL_COLUMN_STATE | TL_COLUMN_STEP);
+    TL_COLUMN(t, b, drive, 0);
+    TL_COLUMN(t, b, odometer, 0);
+}
+
+tl_status tl_model_create(const tl_model_config *config, tl_model **model, tl_error *error)
+{
+    *model = NULL;
+    if (config->threads < 1 || config->threads > TL_MAX_THREADS)
+        return tl_fail(error, TL_E_ARGUMENT, "model: threads = %lld is outside [1, %d]",
+                       (long long)config->threads, TL_MAX_THREADS);
+    if (!tl_v3_finite(config->gravity))
+        return tl_fail(error, TL_E_ARGUMENT, "model: gravity must be three finite numbers");
+    tl_model *m = calloc(1, sizeof *m);
+    tl_pool *pool = tl_pool_create((unsigned)config->threads);
+    if (!m || !pool) {
+        free(m);
+        tl_pool_destroy(pool);
+        return tl_fail_memory(error);
+    }
+    m->config = *config;
+    m->pool = pool;
+    m->next_id = 1;
+    m->area = (tl_area_rule){TL_AREA_FRACTION, NAN};
+    m->timestep = (tl_timestep){NAN, TL_TIMESTEP_BODY, NAN};
+    atomic_init(&m->interrupted, false);
+    blocks_init(&m->blocks);
+    bodies_init(&m->bodies);
+    *model = m;
+    return TL_OK;
+}
+
+void tl_model_destroy(tl_model *m)
+{
+    if (!m)
+        return;
+    if (m->detect)
+        m->detect_destroy(m->detect);
+    if (m->cycle)
+        m->cycle_destroy(m->cycle);
+    if (m->vtk)
+        m->vtk_destroy(m->vtk);
+    for (size_t i = 0; i < m->blocks.table.rows; i++)
+        tl_poly_free(m->blocks.shape[i]);
+    tl_table_free(&m->blocks.table);
+    tl_table_free(&m->bodies.table);
+    for (size_t i = 0; i < m->group_count; i++)
+        free(m->groups[i]);
+    for (size_t i = 0; i < m->joint_count; i++)
+        free(m->joints[i].name);
+    for (size_t i = 0; i < m->material_count; i++)
+        tl_material_clear(&m->materials[i]);
+    tl_damping_clear(m);
+    tl_drives_clear(m);
+    free(m->record.list);
+    free(m->groups);
+    free(m->joints);
+    free(m->materials);
+    free(m->areas);
+    free(m->members);
+    free(m->row_of);
+    tl_pool_destroy(m->pool);
+    free(m);
+}
