@@ -238,8 +238,10 @@ SCENE_UNUSED static void scene_forces(tl_model *m)
         status = tl_laws_check(m);
     if (status == TL_OK)
         status = tl_laws_prepare(m);
-    if (status == TL_OK)
-        status = tl_laws_apply(m);
+    if (status == TL_OK) {
+        const tl_law_phase phase = tl_law_phase_of(m->cycle);
+        status = tl_laws_apply(m, &phase);
+    }
     if (scene_ok(m, status) && CHECK(tl_gather_prepare(m)))
         tl_gather(m);
 }

@@ -55,7 +55,8 @@ static tl_status prepare(tl_model *m, double *dt, bool *driven)
 /* Forces on the bodies: undone when a law or the damping fails, or a body would move too far. */
 static tl_status apply_forces(tl_model *m, double dt)
 {
-    tl_status status = tl_laws_apply(m);
+    const tl_law_phase phase = tl_law_phase_of(m->cycle);
+    tl_status status = tl_laws_apply(m, &phase);
     tl_phase_ends(m, TL_PHASE_LAWS);
     if (status == TL_OK) {
         tl_undo_keep_bodies(m);

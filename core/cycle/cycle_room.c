@@ -1,11 +1,13 @@
 /* cycle_room.c - what the phases of a step keep between them: made, given room for the bodies, and let go of. */
 #include "cycle/cycle_room.h"
 
+#include "contact/detection.h"
+
 #include <stdlib.h>
 
 static void cycle_destroy(struct tl_cycle *cycle)
 {
-    pthread_mutex_destroy(&cycle->failure_lock);
+    tl_failure_destroy(&cycle->failure);
     tl_table_free(&cycle->table);
     free(cycle->reaction);
     free(cycle->chunk_sums);
@@ -37,7 +39,7 @@ tl_status tl_cycle_prepare(tl_model *m)
         if (!(m->cycle = calloc(1, sizeof *m->cycle)))
             return tl_fail_memory(&m->error);
         m->cycle_destroy = cycle_destroy;
-        pthread_mutex_init(&m->cycle->failure_lock, NULL);
+        tl_failure_init(&m->cycle->failure);
         add_columns(m->cycle);
     }
     struct tl_cycle *c = m->cycle;
@@ -67,4 +69,17 @@ bool tl_model_moves(const tl_model *m)
             tl_v3_norm2(m->bodies.w[i]) > 0)
             return true;
     return false;
+}
+
+tl_status tl_laws_prepare(tl_model *m)
+{
+    struct tl_cycle *c = m->cycle;
+    bool room = tl_grow(&c->rank_energy, &c->rank_room, m->detect->layout.rank_room,
+                        sizeof *c->rank_energy);
+    return room ? TL_OK : tl_fail_memory(&m->error);
+}
+
+tl_law_phase tl_law_phase_of(struct tl_cycle *c)
+{
+    return (tl_law_phase){&c->failure, c->rank_energy, tl_undo_keep_ranks};
 }

@@ -2,13 +2,12 @@
 #ifndef TL_CYCLE_CYCLE_ROOM_H
 #define TL_CYCLE_CYCLE_ROOM_H
 
+#include "base/failure.h"
 #include "base/inline.h"
 #include "base/inside.h"
 #include "base/lanes.h"
-#include "contact/layout.h"
+#include "force/laws.h"
 #include "model/model.h"
-
-#include <pthread.h>
 
 /* Rows a worker takes at a time. Of bodies that are only looked at, and of contacts, there is little to do with each. */
 #define TL_BODY_CHUNK 32
@@ -29,11 +28,6 @@ typedef struct tl_sums {
     double kinetic;    /* sum of (m v.v + w.I w) / 2; made for a damping that asks for totals */
     double max_speed2; /* largest v.v */
 } tl_sums;
-
-/* Energy in the contact points of a rank, and turned to heat in this step. */
-typedef struct tl_rank_energy {
-    double stored, dissipated;
-} tl_rank_energy;
 
 /* What the rules of the time step ask of the bodies that count, as long as none comes, goes or is held: with it the column
  * face_rate. */
@@ -110,7 +104,7 @@ struct tl_cycle {
     tl_sums *chunk_sums;
     size_t chunk_room;
     tl_sums sums;
-    tl_rank_energy *rank_energy;
+    tl_rank_energy *rank_energy; /* of the contacts */
     size_t rank_room;
     struct tl_ledger *chunk_ledger, *ledger; /* energy.c */
     double kinetic_before;                   /* of the last step, for its rate */
@@ -125,17 +119,8 @@ struct tl_cycle {
     struct tl_undo *undo;      /* undo.c */
     bool long_step;            /* the given one is far above what is stable */
     bool fast;                 /* a body came near the limit of motion in the last step: limits.c */
-    /* the first failure of a parallel phase, by chunk, and the point it came from */
-    pthread_mutex_t failure_lock;
-    tl_error failure;
-    size_t failure_chunk, failure_point;
+    tl_failure failure;        /* of a parallel phase */
 };
-
-/* The larger of a law's kn and ks, Pa/m. */
-static inline double tl_law_stiffness(const tl_material *law)
-{
-    return law->kn > law->ks ? law->kn : law->ks;
-}
 
 /* What mass scaling makes of a body's inertia. */
 static inline double tl_inertia_scale(const struct tl_cycle *c, uint32_t body)
@@ -167,12 +152,10 @@ static inline void tl_phase_ends(tl_model *m, tl_phase phase)
 
 /* Makes room for the model's bodies. */
 tl_status tl_cycle_prepare(tl_model *m);
-/* Notes a failure in a parallel phase; that of the lowest chunk counts. */
-void tl_cycle_failed(tl_model *m, size_t chunk, tl_status status, size_t point, const char *text);
 /* Makes room for the energies of the contacts. */
 tl_status tl_laws_prepare(tl_model *m);
-/* Calls the laws on their runs of contact points and sums forces per contact. */
-tl_status tl_laws_apply(tl_model *m);
+/* What the laws give this step, and what is kept before they overwrite it. */
+tl_law_phase tl_law_phase_of(struct tl_cycle *c);
 
 /* What a step may have to undo: undo.c. It begins with each step, ... */
 tl_status tl_undo_begin(tl_model *m);
@@ -188,20 +171,6 @@ void tl_undo_end(tl_model *m);
 void tl_undo_by_hand(tl_model *m);
 size_t tl_undo_bytes(const struct tl_cycle *c);
 void tl_undo_free(struct tl_undo *undo);
-/* ---- law_check.c: a law that breaks the interface is a failure of the step, with the contact it did so in ---- */
-
-/* Component of a shear force along the normal, relative to the whole force of the point, and of all points of a contact
- * before they are looked at one by one. The host's own reaches 4e-7 where normals change from point to point. */
-#define TL_OUT_OF_PLANE 1e-4
-
-/* Of the points of a rank, whose first is in lane `lane`: whether they are stiffer than the law says, those in the lanes of the
- * mask `begins`, and whether shear forces leave the common plane. */
-void tl_law_check_stiffness(tl_model *m, const tl_material *law, const tl_rank *rank,
-                            const tl_point_lanes *lanes, size_t lane, unsigned begins);
-void tl_law_check_shear(tl_model *m, const tl_material *law, const tl_rank *rank,
-                        const tl_point_lanes *lanes, size_t lane);
-/* Of `count` points from row `first`: whether their states are numbers. */
-void tl_law_check_states(tl_model *m, const tl_material *law, size_t first, size_t count);
 /* Makes room for the reactions on bodies that are held; before the gather. false: out of memory. */
 bool tl_gather_prepare(tl_model *m);
 /* Each body gathers its contacts in fixed order, and its weight; sums for the convergence measures. */
@@ -262,7 +231,5 @@ void tl_energy_book_held(const tl_model *m, uint32_t body, tl_vec3 moved, tl_vec
 void tl_energy_chunk(tl_model *m, size_t chunk, const tl_work *work);
 /* ... and the step closes it. */
 void tl_energy_close(tl_model *m);
-/* Every contact has a law, or a sentence that names one that has not. */
-tl_status tl_laws_check(tl_model *m);
 
 #endif

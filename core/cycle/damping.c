@@ -137,7 +137,7 @@ static void check_numbers(tl_model *m, size_t begin, size_t end, size_t chunk)
             snprintf(text, sizeof text,
                      "what it gives block %u is no finite number (a force, a moment or alpha)",
                      m->bodies.id[body]);
-            tl_cycle_failed(m, chunk, TL_E_NUMERIC, body, text);
+            tl_failure_note(&m->cycle->failure, chunk, TL_E_NUMERIC, body, text);
             return;
         }
 }
@@ -182,7 +182,7 @@ static void damp_range(void *user, size_t begin, size_t end, size_t chunk, unsig
     tl_status status = ops->update(m->damping_self, &batch, &report);
     tl_leave();
     if (status != TL_OK)
-        tl_cycle_failed(m, chunk, status, 0, tl_report_text(&report, status));
+        tl_failure_note(&m->cycle->failure, chunk, status, 0, tl_report_text(&report, status));
     else
         check_numbers(m, begin, last, chunk);
     if (ops->before)
@@ -220,16 +220,16 @@ tl_status tl_damping_apply(tl_model *m, double dt)
     if (status == TL_OK) {
         damping_job job = {m, dt, state};
         tl_parallel_for(m->pool, c->table.rows, TL_BODY_CHUNK, damp_range, &job);
-        status = c->failure.status;
+        status = c->failure.error.status;
         if (status == TL_OK)
-            status = check_states(m, &c->failure);
+            status = check_states(m, &c->failure.error);
     } else {
-        tl_fail(&c->failure, status, "%s", tl_report_text(&report, status));
+        tl_fail(&c->failure.error, status, "%s", tl_report_text(&report, status));
     }
     if (status == TL_OK)
         return TL_OK;
-    c->failure.status = TL_OK;
+    c->failure.error.status = TL_OK;
     return tl_fail(&m->error, status, "cycle %lld, damping '%s' of plugin '%s': %s",
                    (long long)m->cycles + 1, m->damping->name, tl_plugin_id(m->damping),
-                   c->failure.text);
+                   c->failure.error.text);
 }

@@ -144,7 +144,7 @@ static void look_range(void *user, size_t begin, size_t end, size_t chunk, unsig
         if (too_far(m, body, travel / TL_FAST))
             atomic_store(&job->fast, true);
         if (too_far(m, body, travel)) {
-            tl_cycle_failed(m, chunk, TL_E_NUMERIC, body, "");
+            tl_failure_note(&m->cycle->failure, chunk, TL_E_NUMERIC, body, "");
             return;
         }
     }
@@ -202,10 +202,10 @@ static tl_status check(tl_model *m, double dt, bool held)
     tl_parallel_for(m->pool, m->bodies.table.rows, TL_BODY_CHUNK, look_range, &job);
     if (!held)
         c->fast = atomic_load(&job.fast);
-    if (c->failure.status == TL_OK)
+    if (c->failure.error.status == TL_OK)
         return TL_OK;
-    c->failure.status = TL_OK;
-    return report(m, (uint32_t)c->failure_point, &job.kick);
+    c->failure.error.status = TL_OK;
+    return report(m, (uint32_t)c->failure.point, &job.kick);
 }
 
 tl_status tl_motion_check_held(tl_model *m, double dt)

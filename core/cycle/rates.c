@@ -14,6 +14,7 @@
 
 #include "base/columns.h"
 #include "contact/detection.h"
+#include "force/materials.h"
 
 #include <string.h>
 

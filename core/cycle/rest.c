@@ -15,6 +15,7 @@
 #include "cycle/cycle_room.h"
 
 #include "contact/detection.h"
+#include "force/materials.h"
 
 #include <stdatomic.h>
 

@@ -9,6 +9,7 @@
 
 #include "contact/detection.h"
 #include "detect/detect.h"
+#include "force/materials.h"
 
 #include <string.h>
 

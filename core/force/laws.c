@@ -2,12 +2,15 @@
  *
  * A law gets the points of a page at once, all of one material, as the columns themselves; gaps and
  * motion are in the thread's lanes, which stay in the nearest cache from one end to the other. */
-#include "cycle/cycle_room.h"
 
+#include "force/laws.h"
+
+#include "base/inside.h"
 #include "contact/contacts.h"
 #include "contact/expect.h"
 #include "contact/held.h"
-#include "detect/follow.h"
+#include "force/follow.h"
+#include "force/law_check.h"
 
 #include <stdatomic.h>
 #include <string.h>
@@ -21,6 +24,7 @@
 
 typedef struct run_job {
     tl_model *m;
+    const tl_law_phase *phase;
     const tl_material *material;
     const tl_run *run;
     /* of a run of bodies held still: some of it is not what it was; else NULL */
@@ -62,7 +66,8 @@ static bool call_law(const run_job *job, size_t first, size_t count, const tl_po
     /* the plugin's word: there need not be such a point */
     size_t bad = report.first_bad < count ? report.first_bad : 0;
     if (status != TL_OK)
-        tl_cycle_failed(job->m, first, status, first + bad, tl_report_text(&report, status));
+        tl_failure_note(job->phase->failure, first, status, first + bad,
+                        tl_report_text(&report, status));
     return status == TL_OK;
 }
 
@@ -185,10 +190,10 @@ static void report_odd(const run_job *job, const tl_rank *rank, const rank_sums 
 {
     for (size_t l = 0; l < TL_LANES; l++)
         if (isnan(sum->odd[l]) && rank->contact[l] != TL_NO_ROW)
-            tl_cycle_failed(job->m, rank->start, TL_E_NUMERIC, rank->start + l,
+            tl_failure_note(job->phase->failure, rank->start, TL_E_NUMERIC, rank->start + l,
                             "the force is not a finite number: is the time step too large, or a "
                             "property out of proportion?");
-    tl_law_check_shear(job->m, job->material, rank, t, lane);
+    tl_law_check_shear(job->m, job->phase->failure, job->material, rank, t, lane);
 }
 
 /* Forces of the contacts of a rank, whose first point is in lane `lane`; `coupled`: areas may depend on tilt. */
@@ -221,10 +226,10 @@ static void sum_rank(const run_job *job, const tl_rank *rank, const tl_point_lan
     if (across(sum.odd) != 0)
         report_odd(job, rank, &sum, t, lane);
     if (begins) {
-        tl_law_check_shear(m, job->material, rank, t, lane);
-        tl_law_check_stiffness(m, job->material, rank, t, lane, begins);
+        tl_law_check_shear(m, job->phase->failure, job->material, rank, t, lane);
+        tl_law_check_stiffness(m, job->phase->failure, job->material, rank, t, lane, begins);
     }
-    m->cycle->rank_energy[rank - m->detect->layout.ranks] = energy;
+    job->phase->energy[rank - m->detect->layout.ranks] = energy;
 }
 
 /* ---------------------------------------------------------------- rest ------------------- */
@@ -273,7 +278,7 @@ static void force_page(const run_job *job, const tl_rank *ranks, size_t count, s
 {
     size_t first = ranks->start, points = 0;
     bool coupled[RANK_CHUNK];
-    tl_undo_keep_ranks(job->m, ranks, count);
+    job->phase->keep(job->m, ranks, count);
     if (job->changed)
         note_points(&job->m->detect->points, first, page_points(ranks, count), t);
     for (size_t r = 0; r < count; r++) {
@@ -285,7 +290,7 @@ static void force_page(const run_job *job, const tl_rank *ranks, size_t count, s
     if (!call_law(job, first, points, t))
         return;
     if (odd_states(&job->m->detect->points, job->material->columns, first, points) != 0)
-        tl_law_check_states(job->m, job->material, first, points);
+        tl_law_check_states(job->m, job->phase->failure, job->material, first, points);
     for (size_t r = 0; r < count; r++)
         sum_rank(job, &ranks[r], t, ranks[r].start - first, coupled[r]);
     if (job->changed && !as_noted(&job->m->detect->points, first, points, t))
@@ -309,18 +314,6 @@ static void force_range(void *user, size_t begin, size_t end, size_t chunk, unsi
         force_page(job, &ranks[begin], count, asked > begin + count ? asked - begin - count : 0, t);
         begin += count;
     }
-}
-
-void tl_cycle_failed(tl_model *m, size_t chunk, tl_status status, size_t point, const char *text)
-{
-    struct tl_cycle *cycle = m->cycle;
-    pthread_mutex_lock(&cycle->failure_lock);
-    if (cycle->failure.status == TL_OK || chunk < cycle->failure_chunk) {
-        cycle->failure_chunk = chunk;
-        cycle->failure_point = point;
-        tl_fail(&cycle->failure, status, "%s", text);
-    }
-    pthread_mutex_unlock(&cycle->failure_lock);
 }
 
 /* Where a step failed: the law, and the contact or TL_NO_ROW. */
@@ -353,33 +346,24 @@ static failed_at find_failed(const tl_model *m, size_t point)
 }
 
 /* Turns a failure in a parallel phase into the model's error, with the contact it came from. */
-static tl_status report_failure(tl_model *m)
+static tl_status report_failure(tl_model *m, tl_failure *failure)
 {
-    struct tl_cycle *cycle = m->cycle;
-    if (cycle->failure.status == TL_OK)
+    if (failure->error.status == TL_OK)
         return TL_OK;
     char name[320] = "a point of no contact";
-    failed_at at = find_failed(m, cycle->failure_point);
+    failed_at at = find_failed(m, failure->point);
     const tl_kind *kind = at.material->kind;
     const tl_plugin *plugin = tl_plugin_of(kind, NULL);
     if (at.contact != TL_NO_ROW)
         tl_contact_name(m, at.contact, name, sizeof name);
-    tl_fail(&m->error, cycle->failure.status, "cycle %lld, law '%s' of plugin '%s', %s: %s",
+    tl_fail(&m->error, failure->error.status, "cycle %lld, law '%s' of plugin '%s', %s: %s",
             (long long)m->cycles + 1, kind->name, plugin ? plugin->id : "?", name,
-            cycle->failure.text);
-    cycle->failure.status = TL_OK;
+            failure->error.text);
+    failure->error.status = TL_OK;
     return m->error.status;
 }
 
-tl_status tl_laws_prepare(tl_model *m)
-{
-    struct tl_cycle *c = m->cycle;
-    bool room = tl_grow(&c->rank_energy, &c->rank_room, m->detect->layout.rank_room,
-                        sizeof *c->rank_energy);
-    return room ? TL_OK : tl_fail_memory(&m->error);
-}
-
-tl_status tl_laws_apply(tl_model *m)
+tl_status tl_laws_apply(tl_model *m, const tl_law_phase *phase)
 {
     tl_detect *d = m->detect;
     for (size_t r = 0; r < d->layout.run_count; r++) {
@@ -387,11 +371,11 @@ tl_status tl_laws_apply(tl_model *m)
         if (run->material == TL_NO_ROW || tl_run_rests(m, run))
             continue;
         atomic_bool changed = false;
-        run_job job = {m, &m->materials[run->material], run, run->held ? &changed : NULL};
+        run_job job = {m, phase, &m->materials[run->material], run, run->held ? &changed : NULL};
         tl_parallel_for(m->pool, run->rank_end - run->rank_begin, RANK_CHUNK, force_range, &job);
         run->changed = changed;
     }
-    return report_failure(m);
+    return report_failure(m, phase->failure);
 }
 
 tl_status tl_laws_check(tl_model *m)

@@ -1,6 +1,6 @@
 /* turning.h - how vectors of a common plane turn with it. */
-#ifndef TL_DETECT_TURNING_H
-#define TL_DETECT_TURNING_H
+#ifndef TL_FORCE_TURNING_H
+#define TL_FORCE_TURNING_H
 
 #include "base/inline.h"
 

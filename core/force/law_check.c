@@ -9,11 +9,14 @@
  *
  * States are looked at in every step and shear forces in every eighth, by sums over points (laws.c); what these find
  * is looked at here, point by point. */
-#include "cycle/cycle_room.h"
+
+#include "force/law_check.h"
 
 #include "base/columns.h"
+#include "base/inside.h"
 #include "contact/detection.h"
 #include "contact/points.h"
+#include "force/materials.h"
 
 #include <stdio.h>
 
@@ -138,7 +141,7 @@ static bool measure(const place *at, const double *move, const tl_vec3 *slide, s
 }
 
 /* Names the first point that is far stiffer than its law says. */
-static void compare(tl_model *m, const tl_material *law, const tl_rank *rank, size_t row,
+static void compare(tl_failure *failure, const tl_material *law, const tl_rank *rank, size_t row,
                     const slopes *found)
 {
     for (size_t l = 0; l < TL_LANES; l++) {
@@ -152,12 +155,13 @@ static void compare(tl_model *m, const tl_material *law, const tl_rank *rank, si
                  "= %.3g Pa/m, from "
                  "which the time step follows: they must be upper bounds, or the step is unstable",
                  shear ? "shear" : "normal", stiffness, law->kn, law->ks);
-        tl_cycle_failed(m, rank->start, TL_E_PLUGIN, row + l, text);
+        tl_failure_note(failure, rank->start, TL_E_PLUGIN, row + l, text);
     }
 }
 
-void tl_law_check_stiffness(tl_model *m, const tl_material *law, const tl_rank *rank,
-                            const tl_point_lanes *lanes, size_t lane, unsigned begins)
+void tl_law_check_stiffness(const tl_model *m, tl_failure *failure, const tl_material *law,
+                            const tl_rank *rank, const tl_point_lanes *lanes, size_t lane,
+                            unsigned begins)
 {
     for (size_t k = 0; k < rank->slots; k++) {
         place at = {m, law, lanes, rank->start + k * TL_LANES, lane + k * TL_LANES};
@@ -175,7 +179,7 @@ void tl_law_check_stiffness(tl_model *m, const tl_material *law, const tl_rank *
                           : 0;
         }
         if (measure(&at, move, slide, &found))
-            compare(m, law, rank, at.row, &found);
+            compare(failure, law, rank, at.row, &found);
     }
 }
 
@@ -214,8 +218,8 @@ static bool is_out_of_plane(const tl_model *m, const tl_material *law, uint32_t 
     return along > TL_OUT_OF_PLANE * force && along > ROUNDING_FORCE * spring;
 }
 
-void tl_law_check_shear(tl_model *m, const tl_material *law, const tl_rank *rank,
-                        const tl_point_lanes *lanes, size_t lane)
+void tl_law_check_shear(const tl_model *m, tl_failure *failure, const tl_material *law,
+                        const tl_rank *rank, const tl_point_lanes *lanes, size_t lane)
 {
     const tl_points_table *p = &m->detect->points;
     for (size_t i = 0; i < rank->slots * TL_LANES; i++) {
@@ -235,7 +239,7 @@ void tl_law_check_shear(tl_model *m, const tl_material *law, const tl_rank *rank
                  "its shear force of %.3g N has a component of %.3g N along the normal: it must "
                  "lie in the common plane, to %g of the force",
                  tl_v3_norm(f), along, TL_OUT_OF_PLANE);
-        tl_cycle_failed(m, rank->start, TL_E_PLUGIN, row, text);
+        tl_failure_note(failure, rank->start, TL_E_PLUGIN, row, text);
     }
 }
 
@@ -251,7 +255,8 @@ static const char *state_name(const tl_kind *kind, uint32_t column)
     return "?";
 }
 
-void tl_law_check_states(tl_model *m, const tl_material *law, size_t first, size_t count)
+void tl_law_check_states(const tl_model *m, tl_failure *failure, const tl_material *law,
+                         size_t first, size_t count)
 {
     const tl_points_table *p = &m->detect->points;
     for (uint32_t c = 0; c < law->columns; c++)
@@ -262,7 +267,7 @@ void tl_law_check_states(tl_model *m, const tl_material *law, size_t first, size
             snprintf(text, sizeof text,
                      "it leaves %g in its state '%.40s', which must be a finite number",
                      p->state[c][i], state_name(law->kind, c));
-            tl_cycle_failed(m, first, TL_E_PLUGIN, i, text);
+            tl_failure_note(failure, first, TL_E_PLUGIN, i, text);
             return;
         }
 }

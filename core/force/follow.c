@@ -9,14 +9,14 @@
  * matrices first, one in each lane (*frames*), so that what is left for a point are a few products, in loops over
  * columns without a branch. Ranks of one flush patch in each lane, as most are, take the shortest way; else slot
  * follows slot, and each lane goes on to its contact's next facet where that begins. */
-#include "detect/follow.h"
+#include "force/follow.h"
 
 #include "base/columns.h"
 #include "contact/detection.h"
 #include "contact/places.h"
 #include "contact/points.h"
-#include "detect/frames.h"
-#include "detect/turning.h"
+#include "force/frames.h"
+#include "force/turning.h"
 
 #include <string.h>
 

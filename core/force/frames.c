@@ -2,7 +2,7 @@
  *
  * What eight contacts need is scattered over their bodies and facets: it is read as rows and transposed, and then
  * worked out for all of them at once. */
-#include "detect/frames.h"
+#include "force/frames.h"
 
 #include "contact/places.h"
 

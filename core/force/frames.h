@@ -1,6 +1,6 @@
 /* frames.h - what is the same for all points of a facet, a facet in each lane: where it is, and how it moves. */
-#ifndef TL_DETECT_FRAMES_H
-#define TL_DETECT_FRAMES_H
+#ifndef TL_FORCE_FRAMES_H
+#define TL_FORCE_FRAMES_H
 
 #include "base/lanes.h"
 #include "model/model.h"

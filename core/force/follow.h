@@ -1,6 +1,6 @@
 /* follow.h - the contacts of a rank in the present place (follow.c). */
-#ifndef TL_DETECT_FOLLOW_H
-#define TL_DETECT_FOLLOW_H
+#ifndef TL_FORCE_FOLLOW_H
+#define TL_FORCE_FOLLOW_H
 
 #include "contact/layout.h"
 #include "model/model.h"

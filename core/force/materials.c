@@ -1,21 +1,21 @@
-/* materials.c - setting the law of a joint.
+/* materials.c - a law and its properties, for a joint, and what becomes of the contacts that come under it.
  *
  * A new law, kn or ks leaves the forces of its contacts as they are: the present normal force becomes
  * the initial one at the present closure. A point that is open keeps the gap at which it closes. */
-#include "cycle/cycle_room.h"
 
+#include "force/materials.h"
+
+#include "base/inside.h"
 #include "contact/places.h"
 #include "contact/points.h"
 #include "contact/store.h"
-#include "detect/detect.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* Makes a material from a law and arguments; with `from`, properties not given are taken from it. */
-static tl_status make_material(tl_model *m, tl_tag tag, const char *joint, const tl_kind *kind,
-                               const tl_args *args, const tl_material *from, tl_material *out)
+tl_status tl_material_make(tl_model *m, tl_tag tag, const char *joint, const tl_kind *kind,
+                           const tl_args *args, const tl_material *from, tl_material *out)
 {
     const tl_law_ops *ops = kind->ops;
     *out = (tl_material){.tag = tag, .kind = kind};
@@ -113,26 +113,16 @@ static bool is_rebased(const tl_model *m, const tl_material *material, uint32_t 
     return !same && has_forces(d, c);
 }
 
-/* Brings contacts up to the present places, where a step that failed has left them already, and makes room for what a
- * material needs of their points: all that can fail before it takes its place. */
-static tl_status prepare_contacts(tl_model *m, const tl_material *material)
+bool tl_material_reserve(tl_model *m, const tl_material *material)
 {
-    if (!m->detect)
-        return TL_OK;
-    tl_status status = tl_detect_update(m);
-    if (status != TL_OK)
-        return status;
     bool rebased = false;
     for (uint32_t c = 0; c < m->detect->contacts.table.rows && !rebased; c++)
         rebased = is_rebased(m, material, c);
     return tl_detect_hold_states(m->detect, material->columns) &&
-                   (!rebased || tl_detect_hold_initial(m->detect))
-               ? TL_OK
-               : tl_fail_memory(&m->error);
+           (!rebased || tl_detect_hold_initial(m->detect));
 }
 
-/* Keeps the forces of the contacts that come under another stiffness or law. */
-static void rebase(tl_model *m, const tl_material *material)
+void tl_material_rebase(tl_model *m, const tl_material *material)
 {
     tl_detect *d = m->detect;
     for (uint32_t c = 0; d && c < d->contacts.table.rows; c++) {
@@ -146,8 +136,7 @@ static void rebase(tl_model *m, const tl_material *material)
     }
 }
 
-/* Points whose law changes its kind under the same material begin with the new law's states. */
-static void reset_states(tl_model *m, uint32_t material, const tl_kind *kind)
+void tl_material_reset(tl_model *m, uint32_t material, const tl_kind *kind)
 {
     tl_detect *d = m->detect;
     for (uint32_t c = 0; d && c < d->contacts.table.rows; c++) {
@@ -156,62 +145,4 @@ static void reset_states(tl_model *m, uint32_t material, const tl_kind *kind)
         for (uint32_t k = 0; k < d->contacts.point_count[c]; k++)
             tl_point_begin(&d->points, tl_point_row(&d->contacts, c, k), kind);
     }
-}
-
-static tl_material *exact_material(tl_model *m, tl_tag tag)
-{
-    for (size_t i = 0; i < m->material_count; i++)
-        if (m->materials[i].tag.joint == tag.joint && m->materials[i].tag.plane == tag.plane)
-            return &m->materials[i];
-    return NULL;
-}
-
-tl_status tl_joint_law(tl_model *m, const char *joint, const char *law, const tl_args *args)
-{
-    tl_tag tag;
-    tl_status status = tl_model_may_set(m, "set a law or its properties");
-    if (status == TL_OK)
-        status = tl_joint_parse(m, joint, &tag);
-    if (status != TL_OK)
-        return status;
-    const tl_material *ruling = tl_material_of(m, tag);
-    const tl_kind *kind = law ? tl_plugin_find(TL_KIND_LAW, law) : ruling ? ruling->kind : NULL;
-    if (law && !kind)
-        return tl_unknown_kind(m, TL_KIND_LAW, law);
-    if (!kind)
-        return tl_fail(&m->error, TL_E_STATE,
-                       "joint '%s' has no law yet: name one, as in model:joint(\"%s\", LAW, {...})",
-                       joint, joint);
-    tl_material fresh;
-    status = make_material(m, tag, joint, kind, args, law ? NULL : ruling, &fresh);
-    if (status != TL_OK)
-        return status;
-    tl_material *place = exact_material(m, tag);
-    if (!place) {
-        tl_material *materials = realloc(m->materials, (m->material_count + 1) * sizeof *materials);
-        if (!materials) {
-            tl_material_clear(&fresh);
-            return tl_fail_memory(&m->error);
-        }
-        m->materials = materials;
-    }
-    status = prepare_contacts(m, &fresh);
-    if (status != TL_OK) {
-        tl_material_clear(&fresh);
-        return status;
-    }
-    tl_remark_friction(m, joint, &fresh);
-    rebase(m, &fresh);
-    if (place) {
-        if (place->kind != fresh.kind)
-            reset_states(m, (uint32_t)(place - m->materials), fresh.kind);
-        tl_material_clear(place);
-        *place = fresh;
-    } else {
-        m->materials[m->material_count++] = fresh;
-    }
-    m->laws++;
-    if (m->cycle)
-        m->cycle->dt = 0;
-    return TL_OK;
 }

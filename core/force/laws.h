@@ -1,0 +1,27 @@
+/* laws.h - contact forces: the laws of the contacts of a model, and the sum per contact (laws.c). */
+#ifndef TL_FORCE_LAWS_H
+#define TL_FORCE_LAWS_H
+
+#include "base/failure.h"
+#include "contact/layout.h"
+#include "model/model.h"
+
+/* Energy in the contact points of a rank, and turned to heat in this step. */
+typedef struct tl_rank_energy {
+    double stored, dissipated;
+} tl_rank_energy;
+
+/* What the laws give the step besides forces, and what the step does before they overwrite anything. */
+typedef struct tl_law_phase {
+    tl_failure *failure;
+    tl_rank_energy *energy; /* of each rank of the layout */
+    /* keeps what the points of some ranks and their contacts carry; on any thread */
+    void (*keep)(tl_model *m, const tl_rank *ranks, size_t count);
+} tl_law_phase;
+
+/* Calls the laws on their runs of contact points and sums forces per contact. */
+tl_status tl_laws_apply(tl_model *m, const tl_law_phase *phase);
+/* Every contact has a law, or a sentence that names one that has not. */
+tl_status tl_laws_check(tl_model *m);
+
+#endif
