@@ -7,7 +7,7 @@
  *     detect   which blocks touch, where, how far they overlap            core/detect
  *     step     how long it may be                                         timestep.c
  *     drives   what driven bodies are told for the middle of the step     model/loads.c
- *     laws     contact forces, by the joints' law plugins                 laws.c
+ *     laws     contact forces, by the joints' law plugins                 force/laws.c
  *     gather   each body adds its contacts in a fixed order, its weight   gather.c
  *     damping  a damping plugin's forces and coefficients                 damping.c
  *     limits   no body would move out of all proportion                   limits.c

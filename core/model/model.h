@@ -1,4 +1,4 @@
-/* model.h - what a model is made of, for the rooms to the right of it (detect, cycle, io).
+/* model.h - what a model is made of, for the rooms to the right of it (contact, force, cycle, io ...).
  *
  * Blocks are shapes; bodies move. A body is one block or several joined ones. All kinematics lives in
  * the bodies' columns: a block's shape is kept in its body's frame, whose origin is the body's
@@ -206,7 +206,7 @@ struct tl_model {
     double phase_began; /* s, of the clock */
     tl_profile profile; /* so far; the counts of contacts are made when asked for */
 
-    struct tl_detect *detect; /* of the detect room */
+    struct tl_detect *detect; /* of the contact room */
     void (*detect_destroy)(struct tl_detect *);
     struct tl_cycle *cycle; /* of the cycle room */
     void (*cycle_destroy)(struct tl_cycle *);

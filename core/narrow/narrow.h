@@ -8,7 +8,7 @@
 typedef struct tl_narrow {
     tl_vec3 *vertex_b, *normal_b;
     double *dots;
-    struct tl_share_point *share; /* stand.h */
+    struct tl_share_point *share; /* share_points.h */
     size_t vertex_room, normal_room, dot_room, share_room;
     struct tl_polygon *polygon; /* patch.c */
     tl_patch_points patch;
