@@ -278,3 +278,12 @@ void tl_contact_refit_field(tl_model *m, uint32_t c, const tl_manifold *g)
     contacts->facet[c].last = last;
     row->press = g->press;
 }
+
+double tl_contact_sheared(const tl_model *m, uint32_t c)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    if (contacts->facet[c].kind != TL_FACET_FIELD || contacts->material[c] == TL_NO_ROW)
+        return 0;
+    double ks = m->materials[contacts->material[c]].ks;
+    return ks > 0 ? 0.5 * shear_of(m, c, NULL).energy / ks : 0;
+}

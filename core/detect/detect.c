@@ -7,6 +7,7 @@
 #include "detect/detect.h"
 
 #include "contact/contacts.h"
+#include "contact/handover.h"
 #include "contact/held.h"
 #include "contact/index.h"
 #include "contact/pair_view.h"
@@ -277,6 +278,7 @@ static bool settle_rows(tl_model *m)
         touch(m, row);
         uint32_t pair = c->pair[row];
         if (c->pending[row] == TL_PENDING_DIE) {
+            d->parted += tl_contact_sheared(m, row);
             tl_contact_remove(d, row);
             tl_pair_parted(d, pair);
             continue;

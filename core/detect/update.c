@@ -141,12 +141,6 @@ static tl_manifold_before before_of(const tl_model *m, uint32_t c)
     return out;
 }
 
-/* Whether a contact is a field's: what its shear springs still hold is booked before it ends. */
-static bool has_press(const tl_contacts *contacts, uint32_t c)
-{
-    return contacts->facet[c].kind == TL_FACET_FIELD && contacts->point_count[c] > 0;
-}
-
 /* Ends a contact whose blocks have parted. */
 static void part(tl_model *m, uint32_t c, double way)
 {
@@ -232,7 +226,7 @@ static bool find(tl_model *m, uint32_t c, tl_narrow *room)
     if (!tl_manifold_find(&view, &region, &rule, &before, room))
         return false;
     contacts->faces_valid_to[c] = odometer + g->valid;
-    if (g->point_count == 0 && !is_near(&view, region.gap, &way) && !has_press(contacts, c)) {
+    if (g->point_count == 0 && !is_near(&view, region.gap, &way)) {
         part(m, c, way);
         return true;
     }
