@@ -9,6 +9,7 @@
 #include "contact/places.h"
 #include "cycle/cycle_room.h"
 #include "detect/detect.h"
+#include "narrow/place.h"
 #include "narrow/room.h"
 
 #define SCENE_UNUSED __attribute__((unused))
@@ -244,15 +245,6 @@ SCENE_UNUSED static void scene_forces(tl_model *m)
     }
     if (scene_ok(m, status) && CHECK(tl_gather_prepare(m)))
         tl_gather(m);
-}
-
-/* Moves b along the axis until it overlaps a by a depth. */
-SCENE_UNUSED static void scene_press(scene_pair *p, double depth)
-{
-    for (int pass = 0; pass < 4; pass++) {
-        tl_axis axis = tl_axis_search(scene_place(p), &p->room, NULL);
-        p->shift = tl_v3_madd(p->shift, -depth - axis.s, axis.n);
-    }
 }
 
 /* Row of the contact of two block rows, or TL_NO_ROW. */

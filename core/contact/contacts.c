@@ -5,11 +5,11 @@
  * still, and by blocks. */
 #include "contact/contacts.h"
 
-#include "base/pages.h"
 #include "contact/held.h"
 #include "contact/index.h"
 #include "contact/pair_view.h"
 #include "contact/points.h"
+#include "contact/presses.h"
 #include "contact/ranks.h"
 
 #include <stdio.h>
@@ -38,22 +38,21 @@ void tl_contacts_init(tl_contacts *c, tl_points_table *p)
     TL_COLUMN(t, c, pair, 0);
     TL_COLUMN(t, c, tag, TL_COLUMN_STATE);
     TL_COLUMN(t, c, material, 0);
-    TL_COLUMN(t, c, axis, 0);
-    TL_COLUMN(t, c, search, 0);
-    TL_COLUMN(t, c, until, 0);
-    TL_COLUMN(t, c, facet_start, 0);
-    TL_COLUMN(t, c, facet_count, 0);
-    TL_COLUMN(t, c, facet_room, 0);
+    TL_COLUMN(t, c, facet, TL_COLUMN_STEP);
+    TL_COLUMN(t, c, field, 0);
+    TL_COLUMN(t, c, press, 0);
+    TL_COLUMN(t, c, faces_valid_to, 0);
+    TL_COLUMN(t, c, points_valid_to, 0);
     TL_COLUMN(t, c, point_start, 0);
     TL_COLUMN(t, c, point_count, TL_COLUMN_STATE);
     TL_COLUMN(t, c, point_room, 0);
     TL_COLUMN(t, c, area, 0);
+    TL_COLUMN(t, c, released, TL_COLUMN_STEP);
     TL_COLUMN(t, c, force, TL_COLUMN_STEP);
     TL_COLUMN(t, c, moment, TL_COLUMN_STEP);
     TL_COLUMN(t, c, across, TL_COLUMN_STATE | TL_COLUMN_STEP);
     TL_COLUMN(t, c, fresh, TL_COLUMN_STEP);
-    TL_COLUMN(t, c, lone, 0);
-    TL_COLUMN(t, c, fate, 0);
+    TL_COLUMN(t, c, pending, 0);
     TL_COLUMN(t, c, deep, 0);
     TL_COLUMN(t, c, held, 0);
 
@@ -61,8 +60,6 @@ void tl_contacts_init(tl_contacts *c, tl_points_table *p)
     tl_table_init(t, p);
     for (int k = 0; k < 3; k++)
         TL_COLUMN(t, p, p[k], TL_COLUMN_STATE | TL_COLUMN_STEP);
-    TL_COLUMN(t, p, lean_face, TL_COLUMN_STATE);
-    TL_COLUMN(t, p, lean_edge, TL_COLUMN_STATE);
     TL_COLUMN(t, p, key, 0);
     TL_COLUMN(t, p, area, TL_COLUMN_STATE);
     TL_COLUMN(t, p, f_n, TL_COLUMN_STATE | TL_COLUMN_STEP);
@@ -80,9 +77,9 @@ void tl_point_lanes_init(tl_point_lanes *l)
         TL_COLUMN(t, l, arm[k], 0);
         TL_COLUMN(t, l, normal[k], 0);
         TL_COLUMN(t, l, du_s[k], 0);
-        TL_COLUMN(t, l, couple[k], 0);
     }
     TL_COLUMN(t, l, closure, 0);
+    TL_COLUMN(t, l, edge, 0);
     TL_COLUMN(t, l, du_n, 0);
     TL_COLUMN(t, l, stored, 0);
     TL_COLUMN(t, l, dissipated, 0);
@@ -98,8 +95,8 @@ uint32_t tl_material_row(const tl_model *m, tl_tag tag)
     return material ? (uint32_t)(material - m->materials) : TL_NO_ROW;
 }
 
-bool tl_contact_append(tl_model *m, uint32_t pair, const tl_axis *axis, double margin, tl_tag tag,
-                       size_t want_points, size_t want_facets)
+bool tl_contact_append(tl_model *m, uint32_t pair, bool field, double valid, tl_tag tag,
+                       size_t want_points)
 {
     tl_detect *d = m->detect;
     tl_contacts *c = &d->contacts;
@@ -114,21 +111,22 @@ bool tl_contact_append(tl_model *m, uint32_t pair, const tl_axis *axis, double m
     c->pair[row] = pair;
     c->tag[row] = tag;
     c->material[row] = tl_material_row(m, tag);
-    c->axis[row] = tl_features_of(axis);
-    c->until[row] = tl_pair_odometer(m, p->a, p->b);
-    c->search[row] = c->until[row] + margin;
-    c->fate[row] = TL_FATE_GROW;
+    c->facet[row] = (tl_facet){.kind = field ? TL_FACET_FIELD : TL_FACET_PATCH};
+    c->field[row] = field;
+    c->press[row] = TL_NO_ROW;
+    c->points_valid_to[row] = tl_pair_odometer(m, p->a, p->b);
+    c->faces_valid_to[row] = c->points_valid_to[row] + valid;
+    c->pending[row] = TL_PENDING_GROW;
     c->deep[row] = TL_DEEP_NOT;
     c->held[row] = tl_blocks_held_still(m, p->a, p->b);
     d->idle[m->blocks.body[p->a]] = d->idle[m->blocks.body[p->b]] = false;
     p->contact = row;
-    p->want.points = (uint16_t)want_points;
-    p->want.facets = (uint16_t)want_facets;
+    p->want_points = (uint16_t)want_points;
     return true;
 }
 
 typedef struct place {
-    uint32_t material, held, a, b, row;
+    uint32_t material, held, field, a, b, row;
 } place;
 
 static int compare_place(const void *x, const void *y)
@@ -138,6 +136,8 @@ static int compare_place(const void *x, const void *y)
         return p->material < q->material ? -1 : 1;
     if (p->held != q->held)
         return p->held < q->held ? -1 : 1;
+    if (p->field != q->field)
+        return p->field < q->field ? -1 : 1;
     if (p->a != q->a)
         return p->a < q->a ? -1 : 1;
     return (p->b > q->b) - (p->b < q->b);
@@ -149,26 +149,19 @@ static place *sorted(const tl_contacts *c, size_t *count)
     place *list = malloc((c->table.rows + 1) * sizeof *list);
     *count = 0;
     for (uint32_t row = 0; list && row < c->table.rows; row++)
-        if (c->fate[row] != TL_FATE_DIE)
-            list[(*count)++] = (place){c->material[row], c->held[row], c->a[row], c->b[row], row};
+        if (c->pending[row] != TL_PENDING_DIE)
+            list[(*count)++] =
+                (place){c->material[row], c->held[row], c->field[row], c->a[row], c->b[row], row};
     if (list && *count > 1)
         qsort(list, *count, sizeof *list, compare_place);
     return list;
 }
 
-/* Room a contact is to get. What it has now must fit, too, for it is read when the new takes its place: of a
- * contact that grows in points the facets can become fewer, and the other way round. */
+/* Room a contact is to get. What it has now must fit, too, for it is read when the new takes its place. */
 static uint32_t wanted_points(const tl_detect *d, uint32_t row)
 {
     const tl_contacts *c = &d->contacts;
-    uint32_t want = d->pairs[c->pair[row]].want.points, have = c->point_count[row];
-    return want > have ? want : have;
-}
-
-static uint32_t wanted_facets(const tl_detect *d, uint32_t row)
-{
-    const tl_contacts *c = &d->contacts;
-    uint32_t want = d->pairs[c->pair[row]].want.facets, have = c->facet_count[row];
+    uint32_t want = d->pairs[c->pair[row]].want_points, have = c->point_count[row];
     return want > have ? want : have;
 }
 
@@ -185,8 +178,8 @@ static void copy_points(const tl_points_table *from, size_t row, tl_points_table
     }
 }
 
-/* Copies a contact and its facets into the spare table, with the room for points it is to get. */
-static void copy_contact(tl_detect *d, uint32_t from, uint32_t to, uint32_t facet_start)
+/* Copies a contact into the spare table, with the room for points it is to get. */
+static void copy_contact(tl_detect *d, uint32_t from, uint32_t to)
 {
     tl_contacts *c = &d->contacts, *fresh = &d->spare;
     for (size_t k = 0; k < c->table.column_count; k++) {
@@ -194,12 +187,8 @@ static void copy_contact(tl_detect *d, uint32_t from, uint32_t to, uint32_t face
         memcpy((char *)tl_table_data(&fresh->table, k) + to * size,
                (const char *)tl_table_data(&c->table, k) + from * size, size);
     }
-    bool grows = c->fate[from] == TL_FATE_GROW;
+    bool grows = c->pending[from] == TL_PENDING_GROW;
     fresh->point_room[to] = grows ? (uint16_t)wanted_points(d, from) : c->point_count[from];
-    fresh->facet_start[to] = facet_start;
-    if (c->facet_count[from])
-        memcpy(&fresh->facet[facet_start], &c->facet[c->facet_start[from]],
-               c->facet_count[from] * sizeof *c->facet);
 }
 
 static void swap_tables(tl_detect *d)
@@ -229,19 +218,6 @@ static void choose_spare(tl_detect *d, int64_t cycles)
     d->laid_at = cycles;
 }
 
-/* Room for the facets of all contacts and some more, in the spare list. */
-static bool lay_facets(tl_detect *d, size_t facets)
-{
-    size_t wanted = tl_with_spare(facets, d->spare_share, SPARE_ROWS);
-    tl_facet *facet = realloc(d->spare.facet, wanted * sizeof *facet);
-    if (!facet)
-        return false;
-    tl_pages_large(facet, wanted * sizeof *facet);
-    d->spare.facet = facet;
-    d->spare.facet_capacity = wanted;
-    return true;
-}
-
 static size_t larger(size_t a, size_t b)
 {
     return a > b ? a : b;
@@ -266,9 +242,6 @@ static void free_spare(tl_detect *d)
 {
     tl_table_free(&d->spare.table);
     tl_table_free(&d->spare_points.table);
-    free(d->spare.facet);
-    d->spare.facet = NULL;
-    d->spare.facet_capacity = 0;
 }
 
 /* Points of the contacts in their new order, in the spare table. */
@@ -286,28 +259,18 @@ tl_status tl_contacts_repack(tl_model *m)
 {
     tl_detect *d = m->detect;
     tl_contacts *c = &d->contacts, *fresh = &d->spare;
-    size_t count, points, facets = 0;
+    size_t count, points;
     place *list = sorted(c, &count);
     if (!list)
         return tl_fail_memory(&m->error);
-    for (size_t i = 0; i < count; i++) {
-        uint32_t row = list[i].row;
-        if (c->fate[row] == TL_FATE_GROW)
-            c->facet_room[row] = (uint16_t)wanted_facets(d, row);
-        facets += c->facet_room[row];
-    }
     choose_spare(d, m->cycles);
     fresh->table.rows = 0;
     d->spare_points.table.rows = 0;
     bool there =
-        lay_facets(d, facets) &&
         tl_table_reserve(&fresh->table, tl_with_spare(count, d->spare_share, SPARE_ROWS)) &&
         tl_table_resize(&fresh->table, count);
-    fresh->facet_total = 0;
-    for (uint32_t i = 0; i < count && there; i++) {
-        copy_contact(d, list[i].row, i, (uint32_t)fresh->facet_total);
-        fresh->facet_total += c->facet_room[list[i].row];
-    }
+    for (uint32_t i = 0; i < count && there; i++)
+        copy_contact(d, list[i].row, i);
     tl_layout layout = {0};
     there = there && tl_layout_make(&layout, fresh, d->spare_share, &points) &&
             make_lanes(d, &layout) && tl_table_resize(&d->spare_points.table, points);
@@ -334,8 +297,7 @@ static void clear_points(tl_detect *d, uint32_t contact)
         tl_point_clear(&d->points, tl_point_row(&d->contacts, contact, k));
 }
 
-/* Moves a contact's points, if it has or wants any, to a lane with the room it wants. */
-static bool place_points(tl_detect *d, uint32_t row)
+bool tl_contact_place(tl_detect *d, uint32_t row)
 {
     tl_contacts *c = &d->contacts;
     uint32_t points = wanted_points(d, row), lane;
@@ -355,26 +317,12 @@ static bool place_points(tl_detect *d, uint32_t row)
     return true;
 }
 
-bool tl_contact_place(tl_detect *d, uint32_t row)
-{
-    tl_contacts *c = &d->contacts;
-    uint32_t facets = wanted_facets(d, row);
-    if (c->facet_total + facets > c->facet_capacity || !place_points(d, row))
-        return false;
-    if (c->facet_count[row])
-        memcpy(&c->facet[c->facet_total], &c->facet[c->facet_start[row]],
-               c->facet_count[row] * sizeof *c->facet);
-    c->facet_start[row] = (uint32_t)c->facet_total;
-    c->facet_room[row] = (uint16_t)facets;
-    c->facet_total += facets;
-    return true;
-}
-
 void tl_contact_remove(tl_detect *d, uint32_t row)
 {
     tl_contacts *c = &d->contacts;
     uint32_t last = (uint32_t)c->table.rows - 1;
     clear_points(d, row);
+    tl_press_give_back(d, c->press[row]);
     tl_contacts_unlist(d);
     if (c->pair[row] < d->pair_count && d->pairs[c->pair[row]].contact == row)
         d->pairs[c->pair[row]].contact = TL_PAIR_APART;

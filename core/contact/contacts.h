@@ -7,14 +7,14 @@
 
 void tl_contacts_init(tl_contacts *contacts, tl_points_table *points);
 void tl_point_lanes_init(tl_point_lanes *lanes);
-/* Adds a contact of a pair, without points, wanting room for some, whose axis stands for a run of `margin`; false when
- * out of memory. */
-bool tl_contact_append(tl_model *m, uint32_t pair, const tl_axis *axis, double margin, tl_tag tag,
-                       size_t want_points, size_t want_facets);
-/* Lays contacts and points out anew: without those of fate TL_FATE_DIE, sorted by material and blocks,
+/* Adds a patch or a field contact of a pair, without points, wanting room for some, whose faces stand for a run of `valid`;
+ * false when out of memory. */
+bool tl_contact_append(tl_model *m, uint32_t pair, bool field, double valid, tl_tag tag,
+                       size_t want_points);
+/* Lays contacts and points out anew: without those with TL_PENDING_DIE, sorted by material and blocks,
  * each with the room it wants at least. */
 tl_status tl_contacts_repack(tl_model *m);
-/* Moves a contact's points and facets to where there is the room it wants, in the run of its material;
+/* Moves a contact's points, if it has or wants any, to a lane with the room it wants, in its run;
  * false when there is none: lay all out anew. */
 bool tl_contact_place(tl_detect *d, uint32_t contact);
 /* Takes a contact out; the last one gets its row. */

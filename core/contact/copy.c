@@ -41,7 +41,7 @@ static bool copy_lists(tl_detect *d)
         {&d->run, d->run_of_room, sizeof *d->run},
         {&d->touched, d->touched_room, sizeof *d->touched},
         {&d->idle, d->idle_room, sizeof *d->idle},
-        {&d->contacts.facet, d->contacts.facet_capacity, sizeof *d->contacts.facet},
+        {&d->press, d->press_room, sizeof *d->press},
         {&d->layout.runs, d->layout.run_room, sizeof *d->layout.runs},
         {&d->layout.ranks, d->layout.rank_room, sizeof *d->layout.ranks},
         {&d->by_block, d->by_block_room, sizeof *d->by_block},
@@ -77,8 +77,6 @@ tl_detect *tl_detect_copy(const tl_detect *from)
     *d = *from;
     empty_table(&d->spare.table, &d->spare);
     empty_table(&d->spare_points.table, &d->spare_points);
-    d->spare.facet = NULL;
-    d->spare.facet_capacity = 0;
     bool all = tl_table_copy(&d->contacts.table, &d->contacts, &from->contacts.table);
     all = tl_table_copy(&d->points.table, &d->points, &from->points.table) && all;
     all = copy_lists(d) && all;

@@ -32,8 +32,12 @@ typedef struct tl_detect {
     size_t idle_room;
     bool any_idle;
     tl_contacts contacts, spare;
+    tl_press_row *press; /* of field contacts: presses.c */
+    size_t press_count, press_room;
+    uint32_t press_free; /* the first free row; valid when there are rows */
     tl_points_table points, spare_points;
-    int64_t laid_at;    /* steps made when contacts were laid out */
+    double parted;   /* shear energy of contacts that ended since the ledger was closed, J: heat */
+    int64_t laid_at; /* steps made when contacts were laid out */
     size_t spare_share; /* 1 / this of rows, points and facets were added to spare; 0: never yet */
     tl_layout layout;
     uint32_t *by_block, *by_block_start; /* contacts of each block: index.c */

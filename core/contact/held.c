@@ -47,11 +47,11 @@ void tl_held_sort(tl_model *m)
 {
     tl_contacts *c = &m->detect->contacts;
     for (uint32_t row = 0; row < c->table.rows; row++) {
-        if (c->fate[row] == TL_FATE_DIE)
+        if (c->pending[row] == TL_PENDING_DIE)
             continue;
         bool held = tl_blocks_held_still(m, c->a[row], c->b[row]);
-        if (held != c->held[row] && c->fate[row] == TL_FATE_KEEP)
-            c->fate[row] = TL_FATE_MOVE;
+        if (held != c->held[row] && c->pending[row] == TL_PENDING_KEEP)
+            c->pending[row] = TL_PENDING_MOVE;
         c->held[row] = held;
     }
     tl_held_wake(m);

@@ -10,10 +10,10 @@ typedef struct tl_point_lanes {
     double *arm[3]; /* from A's body's centroid to the point, axes of the model */
     double *normal[3];
     double *closure; /* overlap less reference */
+    double *edge;    /* the same at the outermost fibre of a point's area */
     double *du_n, *du_s[3];
     double *stored, *dissipated;
-    double *couple[3]; /* on B per energy stored, model's axes: of ranks that have such */
-    double *zero;      /* 0, for what points have no column of */
+    double *zero; /* 0, for what points have no column of */
     /* what a law found, where it is asked whether it changes anything: forces and states, and flags */
     double *before[4 + TL_STATE_COLUMNS];
     uint32_t *flags_before;
@@ -40,6 +40,7 @@ enum { TL_RUN_WOKEN, TL_RUN_FOLLOWED, TL_RUN_RESTS };
 typedef struct tl_run {
     uint32_t material;
     bool held;    /* between bodies that are held still */
+    bool field;   /* of field contacts, else of patches */
     uint8_t rest; /* of one that is held: TL_RUN_* */
     bool
         changed; /* of one that is held: some point or sum was not what it had been, in the last step */

@@ -3,15 +3,13 @@
 #include "contact/memory.h"
 
 #include "contact/detection.h"
-#include "narrow/share_points.h"
 
 static size_t narrow_bytes(const tl_narrow *n)
 {
     return sizeof *n + n->vertex_room * sizeof *n->vertex_b + n->normal_room * sizeof *n->normal_b +
-           n->dot_room * sizeof *n->dots + n->share_room * sizeof *n->share +
-           n->manifold.facet_room * sizeof *n->manifold.facets +
-           n->manifold.point_room * sizeof *n->manifold.points +
-           n->patch.room * (4 * sizeof(double) + sizeof(tl_lean) + sizeof(uint32_t));
+           (n->plane_room + n->press_room + n->field.count) * sizeof(double) +
+           n->face_room * sizeof *n->face + n->manifold.point_room * sizeof *n->manifold.points +
+           n->patch.room * (4 * sizeof(double) + sizeof(uint32_t));
 }
 
 void tl_detect_memory(const tl_model *m, tl_memory *memory)
@@ -20,11 +18,11 @@ void tl_detect_memory(const tl_model *m, tl_memory *memory)
     if (!d)
         return;
     memory->pairs += d->pair_room * sizeof *d->pairs + d->chunk_room * sizeof *d->chunks;
-    memory->contacts += tl_table_bytes(&d->contacts.table);
-    memory->facets += d->contacts.facet_capacity * sizeof *d->contacts.facet;
+    size_t facets = d->contacts.table.capacity * sizeof *d->contacts.facet;
+    memory->contacts += tl_table_bytes(&d->contacts.table) - facets;
+    memory->facets += facets + d->press_room * sizeof *d->press;
     memory->points += tl_table_bytes(&d->points.table);
-    memory->spare += tl_table_bytes(&d->spare.table) + tl_table_bytes(&d->spare_points.table) +
-                     d->spare.facet_capacity * sizeof *d->spare.facet;
+    memory->spare += tl_table_bytes(&d->spare.table) + tl_table_bytes(&d->spare_points.table);
     memory->broad += d->odometer_room * sizeof *d->odometer_0 + d->run_of_room * sizeof *d->run +
                      d->id_room * sizeof *d->ids + d->touched_room * sizeof *d->touched +
                      d->idle_room * sizeof *d->idle;

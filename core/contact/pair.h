@@ -19,10 +19,8 @@ typedef struct tl_pair {
     union {
         float
             wake; /* without a contact: sum of the blocks' runs at which to look again, or TL_PAIR_FOUND */
-        struct {
-            uint16_t points, facets;
-        } want;         /* of a contact that must grow: room */
-        uint32_t faces; /* of one that has no points */
+        uint16_t want_points; /* of a contact that must grow: room */
+        uint32_t faces;       /* of one that has no points */
     };
 } tl_pair;
 

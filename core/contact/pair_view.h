@@ -12,9 +12,8 @@ static inline double tl_pair_odometer(const tl_model *m, uint32_t a, uint32_t b)
 {
     return m->bodies.odometer[m->blocks.body[a]] + m->bodies.odometer[m->blocks.body[b]];
 }
-/* The rule of the point share for a pair of a joint; pairs that carry a force across a gap keep all
- * their points. */
-tl_share_rule tl_share_rule_of(const tl_model *m, const tl_pair_view *view, tl_tag tag,
+/* How a pair of a joint is to touch; pairs that carry a force across a gap keep all their points. */
+tl_touch_rule tl_touch_rule_of(const tl_model *m, const tl_pair_view *view, tl_tag tag,
                                bool across);
 
 #endif

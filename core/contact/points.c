@@ -24,7 +24,6 @@ uint32_t tl_kind_state_columns(const tl_kind *kind)
 
 void tl_point_clear(tl_points_table *p, size_t i)
 {
-    tl_point_set_lean(p, i, (tl_lean){0, 0});
     p->area[i] = p->f_n[i] = 0;
     if (p->f_n0)
         p->f_n0[i] = p->reference[i] = 0;

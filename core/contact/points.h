@@ -4,31 +4,6 @@
 
 #include "contact/tables.h"
 
-/* Leans are kept in steps: -1, 0 and 1 are exact, and the normal of a point is as exact as its place in a patch. `face`
- * lies within 1, `edge` within 2. */
-#define TL_LEAN_FACE_STEP 0x1p-14f
-#define TL_LEAN_EDGE_STEP 0x1p-13f
-
-/* The nearest whole number of steps, for -lean the same with the other sign, as blocks in the other order have it: a float
- * this large has no digits behind the point. */
-static inline int16_t tl_lean_steps(float lean, float step)
-{
-    const float whole = 0x1.8p23f;
-    return (int16_t)(int32_t)((lean / step + whole) - whole);
-}
-
-/* How the normal of a point leans. */
-static inline tl_lean tl_point_lean(const tl_points_table *p, size_t row)
-{
-    return (tl_lean){TL_LEAN_FACE_STEP * p->lean_face[row], TL_LEAN_EDGE_STEP * p->lean_edge[row]};
-}
-
-static inline void tl_point_set_lean(tl_points_table *p, size_t row, tl_lean lean)
-{
-    p->lean_face[row] = tl_lean_steps(lean.face, TL_LEAN_FACE_STEP);
-    p->lean_edge[row] = tl_lean_steps(lean.edge, TL_LEAN_EDGE_STEP);
-}
-
 /* A point without force, area or place: an inert lane. */
 void tl_point_clear(tl_points_table *p, size_t point);
 /* The law's states of a point, at their initial values, or taken from an old point of some area. */

@@ -1,9 +1,9 @@
 /* ranks.c - which contacts lie side by side, in the lanes of which rank, and where their points begin.
  *
- * Contacts of about as many points share a rank, for a rank has room for as many as its largest, and among those the ones
- * whose first facets have as many, for where a facet begins is work for all of the rank. They are looked for among
+ * Contacts of about as many points share a rank, for a rank has room for as many as its largest. They are looked for among
  * neighbours in the order of blocks, so that what a rank needs lies close together in memory.
- * Each material has a run of ranks, and another for contacts between bodies that are held still. New contacts get a free lane near the end of the run, or the first lane of a
+ * Each material has a run of ranks for patches and one for field contacts, and others for contacts between bodies that are
+ * held still. New contacts get a free lane near the end of the run, or the first lane of a
  * new rank there. */
 #include "contact/ranks.h"
 
@@ -24,18 +24,15 @@
 #define SPARE_RANKS 16
 
 typedef struct seat {
-    uint32_t points, first; /* of them: those of the first facet */
-    uint32_t row;
+    uint32_t points, row;
 } seat;
 
-/* By room, largest first, then by the points of the first facet, then by row. */
+/* By room, largest first, then by row. */
 static int compare_seats(const void *x, const void *y)
 {
     const seat *p = x, *q = y;
     if (p->points != q->points)
         return p->points > q->points ? -1 : 1;
-    if (p->first != q->first)
-        return p->first > q->first ? -1 : 1;
     return (p->row > q->row) - (p->row < q->row);
 }
 
@@ -65,15 +62,10 @@ static void seat_window(tl_layout *layout, tl_contacts *c, tl_run *run, seat *se
     }
 }
 
-/* Points of the first facet; 0 where there is none yet. */
-static uint32_t first_facet(const tl_contacts *c, uint32_t row)
-{
-    return c->facet_count[row] > 0 ? c->facet[c->facet_start[row]].count : 0;
-}
-
 static bool is_of_run(const tl_contacts *c, uint32_t row, const tl_run *run)
 {
-    return c->material[row] == run->material && c->held[row] == run->held;
+    return c->material[row] == run->material && c->held[row] == run->held &&
+           c->field[row] == run->field;
 }
 
 /* Lays the run of the contacts from `row` on that are of it; returns the row behind them. */
@@ -84,7 +76,7 @@ static uint32_t lay_run(tl_layout *layout, tl_contacts *c, tl_run *run, uint32_t
     for (; row < c->table.rows && is_of_run(c, row, run); row++) {
         c->point_start[row] = 0;
         if (c->point_room[row])
-            seats[count++] = (seat){c->point_room[row], first_facet(c, row), row};
+            seats[count++] = (seat){c->point_room[row], row};
         if (count == WINDOW) {
             seat_window(layout, c, run, seats, count);
             count = 0;
@@ -105,6 +97,7 @@ bool tl_layout_make(tl_layout *layout, tl_contacts *c, size_t share, size_t *poi
         tl_run *run = &layout->runs[layout->run_count++];
         *run = (tl_run){.material = c->material[row],
                         .held = c->held[row],
+                        .field = c->field[row],
                         .begin = *points,
                         .rank_begin = ranks};
         size_t count = 0;

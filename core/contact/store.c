@@ -19,8 +19,7 @@ void tl_detect_destroy(tl_detect *d)
         tl_table_free(&d->lanes[i].table);
     free(d->narrow);
     free(d->lanes);
-    free(d->contacts.facet);
-    free(d->spare.facet);
+    free(d->press);
     free(d->pairs);
     free(d->chunks);
     free(d->odometer_0);

@@ -3,7 +3,7 @@
 #define TL_CONTACT_TABLES_H
 
 #include "base/table.h"
-#include "narrow/axis.h"
+#include "narrow/press.h"
 
 typedef struct tl_contacts {
     tl_table table;
@@ -12,30 +12,45 @@ typedef struct tl_contacts {
     uint32_t *pair;  /* index of its pair */
     tl_tag *tag;
     uint32_t *material; /* index of the model's materials, or TL_NO_ROW */
-    tl_axis_features *axis;
-    double *search; /* sum of odometers up to which the axis need not be searched anew */
-    double *until;  /* sum of odometers up to which the facets may be reused */
-    uint32_t *facet_start;
-    uint32_t *point_start; /* row of the first point; the next are TL_LANES rows apart */
-    uint16_t *facet_count, *facet_room, *point_count, *point_room;
+    tl_facet *facet;
+    uint8_t *field;          /* its points belong into a run of field contacts */
+    uint32_t *press;         /* row of what a field contact keeps, or TL_NO_ROW */
+    double *faces_valid_to;  /* sum of odometers up to which the choice of its faces stands */
+    double *points_valid_to; /* sum of odometers up to which its points may be reused */
+    uint32_t *point_start;   /* row of the first point; the next are TL_LANES rows apart */
+    uint16_t *point_count, *point_room;
     double *area;
-    tl_vec3 *force;  /* on B */
-    tl_vec3 *moment; /* of the forces on B, about A's body's centroid */
+    double *released; /* shear energy that went with area since the last step, J: heat */
+    tl_vec3 *force;   /* on B */
+    tl_vec3 *moment;  /* of the forces on B, about A's body's centroid */
     /* some point carried a force across a gap in the last step: a bond in tension, or an initial stress not yet
      * relieved. Such a contact ends only with that force */
     uint8_t *across;
-    uint8_t *fresh; /* its points were placed in this step */
-    uint8_t *lone;  /* its faces that look at each other are one of each block */
-    uint8_t *fate;  /* what the parallel phase leaves to the serial one: TL_FATE_* */
-    uint8_t *held;  /* both its bodies are held still: held.c */
-    uint8_t *deep;  /* its blocks overlap too deeply: TL_DEEP_*, overlap.c */
-    /* facets */
-    tl_facet *facet;
-    size_t facet_total, facet_capacity;
+    uint8_t *fresh;   /* its points were placed in this step */
+    uint8_t *pending; /* what the parallel phase leaves to the serial one: TL_PENDING_* */
+    uint8_t *held;    /* both its bodies are held still: held.c */
+    uint8_t *deep;    /* its blocks overlap too deeply: TL_DEEP_*, overlap.c */
 } tl_contacts;
 
+/* Faces that a field contact remembers; of one with more the faces are listed in every step. */
+#define TL_PRESS_FACES 48
+
+/* What a field contact keeps beside its points. Lengths and forces of the press in A's frame. */
+typedef struct tl_press_row {
+    tl_press press;
+    double shift; /* how far face `shifted` of A is moved out by an initial stress, m */
+    uint32_t shifted;
+    uint32_t next_free;
+    double spare[2];  /* energy, times 2 ks, of shear and of torsion beyond that of uniform stress: handover.c */
+    /* the region: its faces, of the four kinds of tl_region */
+    uint16_t count[4], face[TL_PRESS_FACES];
+    uint16_t known[TL_FIELD_KNOWN]; /* of its field: field.h */
+    uint16_t blunt_a, blunt_b;
+    bool flush, listed;
+} tl_press_row;
+
 /* MOVE: its points belong in another run. */
-enum { TL_FATE_KEEP, TL_FATE_GROW, TL_FATE_DIE, TL_FATE_MOVE };
+enum { TL_PENDING_KEEP, TL_PENDING_GROW, TL_PENDING_DIE, TL_PENDING_MOVE };
 
 /* Which of the two limits an overlap is beyond: that of a contact that is born so, or that of one that has sunk in. */
 enum { TL_DEEP_NOT, TL_DEEP_BORN, TL_DEEP_SUNK };
@@ -43,7 +58,6 @@ enum { TL_DEEP_NOT, TL_DEEP_BORN, TL_DEEP_SUNK };
 typedef struct tl_points_table {
     tl_table table;
     double *p[3];
-    int16_t *lean_face, *lean_edge; /* tl_lean, in steps: see tl_point_lean */
     uint32_t *key;
     double *area;
     double *reference, *f_n0; /* overlap at closure 0, initial normal force; NULL: 0 everywhere */

@@ -3,18 +3,22 @@
  * Each new point takes over the stresses of the old point of the same key, or else those of the plane
  * fitted through the old points: the nearest one's would wear a stress that varies over the face down
  * while corners come and go. A law's states are those of the same key or the nearest.
- * Then the fields are corrected so that their totals follow the area: where the area and its centroid
- * stay the same, total shear force, its moment about the normal, and total initial normal force with
- * both its moments are kept exactly, unless that took stresses beyond those there were. Moments are taken about the centroids of the areas, so a uniform
- * stress stays uniform when the area changes. */
+ * Then the fields are corrected. Total initial normal force and both its moments follow the area. What comes into contact
+ * brings no shear, and what goes takes its own with it: where the area shrinks total shear force follows it, where it grows
+ * the force stays; so does the shear's moment about the normal, with the second moment of the area. Where the area
+ * and its centroid stay the same, all are kept exactly, unless that took stresses beyond those there were. Moments are
+ * taken about the centroids of the areas, so a uniform stress stays uniform when the area changes. The shear springs
+ * never have more energy than before; what they have less is heat. */
 #include "contact/transfer.h"
 
 #include "base/columns.h"
 #include "contact/detection.h"
 #include "contact/places.h"
 #include "contact/points.h"
+#include "contact/shear.h"
 #include "narrow/point2.h"
 
+#include <float.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -56,18 +60,16 @@ static bool reserve(tl_narrow *room, size_t count)
     return true;
 }
 
+/* Points of patches that are remade have gone along with their features in the last step: those of A's face with A, in whose
+ * frame they are, those of B's with B. */
 static void read_old(const tl_model *m, uint32_t c, tl_narrow *room, const tl_point_lanes *lanes)
 {
     const tl_contacts *contacts = &m->detect->contacts;
     const tl_points_table *p = &m->detect->points;
     tl_contact_places(m, c, lanes);
-    for (uint32_t k = 0; k < contacts->facet_count[c]; k++) {
-        const tl_facet *f = &contacts->facet[contacts->facet_start[c] + k];
-        for (uint32_t j = f->begin; j < f->begin + (uint32_t)f->count; j++) {
-            room->old[j].arm = tl_columns_get(lanes->arm, j);
-            tl_lean lean = tl_point_lean(p, tl_point_row(contacts, c, j));
-            room->old[j].normal = tl_facet_last_normal(f, lean);
-        }
+    for (uint32_t j = 0; j < contacts->point_count[c]; j++) {
+        room->old[j].arm = tl_columns_get(lanes->arm, j);
+        room->old[j].normal = contacts->facet[c].last;
     }
     for (size_t k = 0; k < contacts->point_count[c]; k++) {
         size_t i = tl_point_row(contacts, c, k);
@@ -104,6 +106,9 @@ typedef struct totals {
     tl_vec3 centre, normal;
     tl_vec3 shear;  /* force */
     double torsion; /* moment of the shear about the normal through the centre */
+    double polar;   /* second moment of area about it */
+    double energy;  /* of the shear springs, times 2 ks */
+    tl_vec3 moment; /* of the shear, about A's centroid */
 } totals;
 
 static void add_area(totals *t, double area, tl_vec3 arm, tl_vec3 normal)
@@ -120,6 +125,29 @@ static void close_area(totals *t)
     t->normal = tl_v3_unit(t->normal);
 }
 
+/* Adds what a point of known centre and normal adds besides. */
+static void add_shear(totals *t, double area, tl_vec3 arm, tl_vec3 f)
+{
+    tl_vec3 across = tl_v3_cross(t->normal, tl_v3_sub(arm, t->centre));
+    t->shear = tl_v3_add(t->shear, f);
+    t->torsion += tl_v3_dot(across, f);
+    t->polar += area * tl_v3_norm2(across);
+    t->energy += area > 0 ? tl_v3_norm2(f) / area : 0;
+    t->moment = tl_v3_add(t->moment, tl_v3_cross(arm, f));
+}
+
+/* The same of all points of a contact, anew. */
+static void sum_shear(const tl_points_table *p, const tl_point_lanes *lanes, size_t begin,
+                      size_t count, totals *t)
+{
+    t->shear = t->moment = tl_v3(0, 0, 0);
+    t->torsion = t->polar = t->energy = 0;
+    for (size_t k = 0; k < count; k++) {
+        size_t i = begin + k * TL_LANES;
+        add_shear(t, p->area[i], tl_columns_get(lanes->arm, k), tl_columns_get(p->f_s, i));
+    }
+}
+
 /* `value`, but at most so large that times `reach` it makes `largest`. */
 static double bounded(double value, double reach, double largest)
 {
@@ -134,39 +162,71 @@ static double spanned(double i11, double i12, double i22, double area, double pl
     return sum > area * place * place && det > SINGULAR * sum * sum ? det : 0;
 }
 
-/* Adds a uniform traction and a twist so that shear force and torsion become `want`'s. The twist adds no
- * more than `largest`, a stress: points with hardly an area would need any stress to make up for the
- * torsion, and keep it when their areas grow. Points within `place` of their centre are in one place, which no
- * twist can turn: their arms are rounding. */
-static void correct_shear(tl_points_table *p, const tl_point_lanes *lanes, size_t begin,
-                          size_t count, const totals *now, const totals *want, double largest,
-                          double place)
+/* How far points reach out from their centre. */
+static double reach_of(const tl_point_lanes *lanes, size_t count, const totals *now)
 {
-    tl_vec3 n = now->normal;
-    tl_vec3 force = want->shear;
-    double torsion = want->torsion, polar = 0, reach = 0;
+    double reach = 0;
     for (size_t k = 0; k < count; k++) {
-        size_t i = begin + k * TL_LANES;
-        tl_vec3 arm = tl_v3_sub(tl_columns_get(lanes->arm, k), now->centre),
-                f = tl_columns_get(p->f_s, i);
-        tl_vec3 across = tl_v3_cross(n, arm);
-        force = tl_v3_sub(force, f);
-        torsion -= tl_v3_dot(across, f);
-        polar += p->area[i] * tl_v3_norm2(across);
-        reach = fmax(reach, tl_v3_norm(across));
+        tl_vec3 arm = tl_v3_sub(tl_columns_get(lanes->arm, k), now->centre);
+        reach = fmax(reach, tl_v3_norm(tl_v3_cross(now->normal, arm)));
     }
-    force = tl_v3_madd(force, -tl_v3_dot(force, n), n);
-    double twist = reach > place ? bounded(torsion / polar, reach, largest) : 0;
+    return reach;
+}
+
+/* A point's shear force becomes `keep` times what it is and a uniform traction and a twist: in its own plane, for
+ * normals lean by a little. */
+static void add_traction(tl_points_table *p, const tl_point_lanes *lanes, size_t begin,
+                         size_t count, const totals *now, double keep, tl_vec3 traction,
+                         double twist)
+{
     for (size_t k = 0; k < count; k++) {
         size_t i = begin + k * TL_LANES;
-        tl_vec3 across = tl_v3_cross(n, tl_v3_sub(tl_columns_get(lanes->arm, k), now->centre));
-        tl_vec3 add =
-            tl_v3_madd(tl_v3_scale(p->area[i] / now->area, force), p->area[i] * twist, across);
-        /* each point's own plane: normals lean by a little */
+        tl_vec3 arm = tl_v3_sub(tl_columns_get(lanes->arm, k), now->centre);
+        tl_vec3 stress = tl_v3_madd(traction, twist, tl_v3_cross(now->normal, arm));
+        tl_vec3 f = tl_v3_scale(keep, tl_columns_get(p->f_s, i));
         tl_vec3 own = tl_columns_get(lanes->normal, k);
-        tl_vec3 f = tl_v3_add(tl_columns_get(p->f_s, i), add);
+        f = tl_v3_madd(f, p->area[i], stress);
         tl_columns_put(p->f_s, i, tl_v3_madd(f, -tl_v3_dot(f, own), own));
     }
+}
+
+/* Brings the energy of the shear springs down to `most`. Of all stresses of the same force and torsion a uniform traction
+ * with a twist has the least energy, and what else there is has an energy of its own: that is made less. */
+static void limit_energy(tl_points_table *p, const tl_point_lanes *lanes, size_t begin,
+                         size_t count, totals *now, double most, double reach, double place)
+{
+    sum_shear(p, lanes, begin, count, now);
+    if (!(now->energy > most))
+        return;
+    double twist = reach > place ? now->torsion / now->polar : 0;
+    double least = tl_v3_norm2(now->shear) / now->area + twist * twist * now->polar;
+    double rest = now->energy - least, keep = sqrt(fmax(0, most - least) / fmax(rest, DBL_MIN));
+    keep = fmin(keep, 1);
+    add_traction(p, lanes, begin, count, now, keep, tl_v3_scale((1 - keep) / now->area, now->shear),
+                 (1 - keep) * twist);
+    sum_shear(p, lanes, begin, count, now);
+    if (now->energy > most) { /* what the normals' leaning adds */
+        add_traction(p, lanes, begin, count, now, sqrt(most / now->energy), tl_v3(0, 0, 0), 0);
+        sum_shear(p, lanes, begin, count, now);
+    }
+}
+
+/* Adds a uniform traction and a twist so that shear force and torsion become `want`'s, and sees that there is no more
+ * energy than there was. The twist adds no more than `largest`, a stress: points with hardly an area would need any
+ * stress to make up for the torsion, and keep it when their areas grow. Points within `place` of their centre are in one
+ * place, which no twist can turn: their arms are rounding. */
+static void correct_shear(tl_points_table *p, const tl_point_lanes *lanes, size_t begin,
+                          size_t count, totals *now, const totals *want, double largest,
+                          double place)
+{
+    sum_shear(p, lanes, begin, count, now);
+    tl_vec3 n = now->normal, force = tl_v3_sub(want->shear, now->shear);
+    double reach = reach_of(lanes, count, now);
+    force = tl_v3_madd(force, -tl_v3_dot(force, n), n);
+    double twist =
+        reach > place ? bounded((want->torsion - now->torsion) / now->polar, reach, largest) : 0;
+    add_traction(p, lanes, begin, count, now, 1, tl_v3_scale(1 / now->area, force), twist);
+    limit_energy(p, lanes, begin, count, now, want->energy, reach, place);
 }
 
 /* Integral of a field over the points' areas, and its moments along two directions. */
@@ -229,7 +289,18 @@ typedef struct plane_fit {
     bool made; /* false: the old points lie on a line */
     tl_vec3 centre, t1, t2;
     double mean[FIT_COUNT], along1[FIT_COUNT], along2[FIT_COUNT], low[FIT_COUNT], high[FIT_COUNT];
+    double
+        spread; /* largest deviation of a shear stress from the mean: bounds of components would hang on the axes */
 } plane_fit;
+
+/* How far the shear stress among some values is from the mean. */
+static double shear_off(const plane_fit *fit, const double *value)
+{
+    double x = value[FIT_SHEAR] - fit->mean[FIT_SHEAR];
+    double y = value[FIT_SHEAR + 1] - fit->mean[FIT_SHEAR + 1];
+    double z = value[FIT_SHEAR + 2] - fit->mean[FIT_SHEAR + 2];
+    return sqrt(x * x + y * y + z * z);
+}
 
 static void fit_values(const old_point *o, double *value)
 {
@@ -265,6 +336,10 @@ static plane_fit fit_plane(const old_point *old, size_t count, const totals *t, 
             fit.high[k] = fmax(fit.high[k], value[k]);
         }
     }
+    for (size_t i = 0; i < count; i++) {
+        fit_values(&old[i], value);
+        fit.spread = fmax(fit.spread, shear_off(&fit, value));
+    }
     double det = spanned(i11, i12, i22, 1, place);
     fit.made = det > 0;
     for (int k = 0; k < FIT_COUNT && fit.made; k++) {
@@ -284,9 +359,13 @@ static void fitted(const plane_fit *fit, tl_vec3 arm, const old_point *o, double
     tl_vec3 d = tl_v3_sub(arm, fit->centre);
     double x = tl_v3_dot(d, fit->t1), y = tl_v3_dot(d, fit->t2);
     for (int k = 0; k < FIT_COUNT; k++) {
-        double v = fit->mean[k] + x * fit->along1[k] + y * fit->along2[k];
-        value[k] = fmin(fit->high[k], fmax(fit->low[k], v));
+        value[k] = fit->mean[k] + x * fit->along1[k] + y * fit->along2[k];
+        if (k >= FIT_NORMAL)
+            value[k] = fmin(fit->high[k], fmax(fit->low[k], value[k]));
     }
+    double off = shear_off(fit, value), part = off > fit->spread ? fit->spread / off : 1;
+    for (int k = FIT_SHEAR; k < FIT_NORMAL; k++)
+        value[k] = fit->mean[k] + part * (value[k] - fit->mean[k]);
 }
 
 /* Writes the points of the manifold, with what they take over from the old ones. */
@@ -301,7 +380,6 @@ static void write_points(tl_model *m, uint32_t c, const tl_manifold *g, const ol
         size_t i = tl_point_row(contacts, c, k);
         const tl_contact_point *point = &g->points[k];
         tl_columns_put(p->p, i, point->p);
-        tl_point_set_lean(p, i, point->lean);
         p->area[i] = point->area;
         p->key[i] = point->key;
         p->f_n[i] = 0;
@@ -345,6 +423,72 @@ static void write_points(tl_model *m, uint32_t c, const tl_manifold *g, const ol
     }
 }
 
+/* Totals of the old points. */
+static totals old_totals(const old_point *old, size_t count)
+{
+    totals t = {0};
+    for (size_t k = 0; k < count; k++)
+        add_area(&t, old[k].area, old[k].arm, old[k].normal);
+    close_area(&t);
+    for (size_t k = 0; k < count; k++)
+        add_shear(&t, old[k].area, old[k].arm, tl_v3_scale(old[k].area, old[k].shear));
+    return t;
+}
+
+/* What the shear of new points is to be: what comes into contact brings none, what goes takes its own with it; a
+ * twist goes with the second moment of area as traction does with the area. */
+static totals shear_wanted(const totals *before, const totals *now)
+{
+    double area = fmin(1, now->area / before->area);
+    double polar = before->polar > 0 ? fmin(1, now->polar / before->polar) : 1;
+    return (totals){.shear =
+                        tl_v3_scale(area, tl_v3_turn(before->shear, before->normal, now->normal)),
+                    .torsion = polar * before->torsion,
+                    .energy = before->energy};
+}
+
+/* Corrects the scalar fields so that their integrals and moments follow the area. */
+static void correct_fields(tl_model *m, uint32_t c, size_t old_count, tl_narrow *room,
+                           const tl_point_lanes *lanes, const totals *before, const totals *now,
+                           double place)
+{
+    tl_points_table *p = &m->detect->points;
+    const tl_contacts *contacts = &m->detect->contacts;
+    size_t begin = contacts->point_start[c], count = contacts->point_count[c];
+    double *value = room->value, follow = now->area / before->area;
+    for (int field = 0; field < FIELD_COUNT && p->f_n0; field++) {
+        moments keep = field_moments(room->old, old_count, field, before, now->normal);
+        double largest = 0;
+        for (size_t k = 0; k < old_count && !room->reframed; k++)
+            largest = fmax(largest, fabs(room->old[k].field[field]));
+        keep.sum *= follow;
+        keep.along1 *= follow;
+        keep.along2 *= follow;
+        for (size_t k = 0; k < count; k++) {
+            size_t i = tl_point_row(contacts, c, k);
+            value[k] = field == FIELD_REFERENCE ? p->reference[i] : p->f_n0[i] / p->area[i];
+        }
+        correct_field(p, lanes, value, begin, count, now, keep, largest, place);
+        for (size_t k = 0; k < count; k++) {
+            size_t i = tl_point_row(contacts, c, k);
+            if (field == FIELD_REFERENCE)
+                p->reference[i] = value[k];
+            else
+                p->f_n0[i] = value[k] * p->area[i];
+        }
+    }
+}
+
+/* Notes what has become of the shear. */
+static void release(tl_model *m, uint32_t c, const totals *before, const totals *now, bool reframed)
+{
+    tl_shear old = {.energy = before->energy, .force = before->shear, .moment = before->moment};
+    tl_shear fresh = {.energy = now->energy, .force = now->shear, .moment = now->moment};
+    if (reframed) /* the last step's motion was that of other bodies */
+        fresh.force = old.force, fresh.moment = old.moment;
+    tl_shear_release(m, c, &old, &fresh);
+}
+
 bool tl_contact_transfer(tl_model *m, uint32_t c, tl_narrow *room, const tl_point_lanes *lanes)
 {
     tl_contacts *contacts = &m->detect->contacts;
@@ -355,20 +499,9 @@ bool tl_contact_transfer(tl_model *m, uint32_t c, tl_narrow *room, const tl_poin
         return false;
     read_old(m, c, room, lanes);
     const old_point *old = room->old;
-    totals before = {0};
-    for (size_t k = 0; k < old_count; k++)
-        add_area(&before, old[k].area, old[k].arm, old[k].normal);
-    close_area(&before);
-    for (size_t k = 0; k < old_count; k++) {
-        tl_vec3 f = tl_v3_scale(old[k].area, old[k].shear);
-        tl_vec3 arm = tl_v3_sub(old[k].arm, before.centre);
-        before.shear = tl_v3_add(before.shear, f);
-        before.torsion += tl_v3_dot(before.normal, tl_v3_cross(arm, f));
-    }
+    totals before = old_totals(old, old_count), now = {0};
 
-    tl_facet *facets = &contacts->facet[contacts->facet_start[c]];
-    memcpy(facets, g->facets, g->facet_count * sizeof *facets);
-    contacts->facet_count[c] = (uint16_t)g->facet_count;
+    contacts->facet[c] = g->facet;
     contacts->point_count[c] = (uint16_t)g->point_count;
     for (size_t k = g->point_count; k < contacts->point_room[c]; k++)
         tl_point_clear(p, tl_point_row(contacts, c, k));
@@ -377,43 +510,22 @@ bool tl_contact_transfer(tl_model *m, uint32_t c, tl_narrow *room, const tl_poin
     if (before.area > 0 && !room->reframed)
         fit = fit_plane(old, old_count, &before, place);
     write_points(m, c, g, old, old_count, &fit, lanes);
-    if (old_count == 0 || g->point_count == 0 || !(before.area > 0))
+    if (old_count == 0 || g->point_count == 0 || !(before.area > 0)) {
+        release(m, c, &before, &now, room->reframed);
         return true;
+    }
 
-    totals now = {0};
     for (size_t k = 0; k < g->point_count; k++)
         add_area(&now, p->area[tl_point_row(contacts, c, k)], tl_columns_get(lanes->arm, k),
                  tl_columns_get(lanes->normal, k));
     close_area(&now);
-    double follow = now.area / before.area;
-    totals want = {.shear =
-                       tl_v3_scale(follow, tl_v3_turn(before.shear, before.normal, now.normal))};
-    want.torsion = follow * before.torsion;
+    sum_shear(p, lanes, begin, g->point_count, &now); /* for its second moment */
+    totals want = shear_wanted(&before, &now);
     double largest = 0;
     for (size_t k = 0; k < old_count && !room->reframed; k++)
         largest = fmax(largest, tl_v3_norm(old[k].shear));
     correct_shear(p, lanes, begin, g->point_count, &now, &want, largest, place);
-    double *value = room->value;
-    for (int field = 0; field < FIELD_COUNT && p->f_n0; field++) {
-        moments keep = field_moments(old, old_count, field, &before, now.normal);
-        largest = 0;
-        for (size_t k = 0; k < old_count && !room->reframed; k++)
-            largest = fmax(largest, fabs(old[k].field[field]));
-        keep.sum *= follow;
-        keep.along1 *= follow;
-        keep.along2 *= follow;
-        for (size_t k = 0; k < g->point_count; k++) {
-            size_t i = tl_point_row(contacts, c, k);
-            value[k] = field == FIELD_REFERENCE ? p->reference[i] : p->f_n0[i] / p->area[i];
-        }
-        correct_field(p, lanes, value, begin, g->point_count, &now, keep, largest, place);
-        for (size_t k = 0; k < g->point_count; k++) {
-            size_t i = tl_point_row(contacts, c, k);
-            if (field == FIELD_REFERENCE)
-                p->reference[i] = value[k];
-            else
-                p->f_n0[i] = value[k] * p->area[i];
-        }
-    }
+    release(m, c, &before, &now, room->reframed);
+    correct_fields(m, c, old_count, room, lanes, &before, &now, place);
     return true;
 }

@@ -176,9 +176,11 @@ void tl_energy_chunk(tl_model *m, size_t chunk, const tl_work *work)
 }
 
 /* Elastic energy and slip of the contact points, in the order of their ranks. */
-static void sum_points(const tl_model *m, struct tl_ledger *l)
+static void sum_points(tl_model *m, struct tl_ledger *l)
 {
     const tl_layout *layout = &m->detect->layout;
+    l->friction += m->detect->parted;
+    m->detect->parted = 0;
     for (size_t k = 0; k < layout->run_count; k++) {
         const tl_run *run = &layout->runs[k];
         for (size_t r = run->rank_begin; r < run->rank_end && run->material != TL_NO_ROW; r++) {

@@ -56,13 +56,9 @@ static double covered_area(const tl_model *m, uint32_t row, uint32_t face)
     double area = 0;
     for (uint32_t e = d->by_block_start[row]; e < d->by_block_start[row + 1]; e++) {
         uint32_t i = d->by_block[e];
-        for (uint32_t k = 0; k < c->facet_count[i]; k++) {
-            const tl_facet *f = &c->facet[c->facet_start[i] + k];
-            if (f->kind != TL_FACET_PATCH || (c->a[i] == row ? f->ia : f->ib) != face)
-                continue;
-            for (uint32_t p = 0; p < f->count; p++)
-                area += d->points.area[tl_point_row(c, i, f->begin + p)];
-        }
+        const tl_facet *f = &c->facet[i];
+        if (f->kind == TL_FACET_PATCH && (c->a[i] == row ? f->ia : f->ib) == face)
+            area += c->area[i];
     }
     return area;
 }

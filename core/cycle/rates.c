@@ -3,9 +3,12 @@
  * The rate of a body is sum k (1/M + r^2/I) over its contact points: k the stiffness of a point at distance r from the
  * centroid, I the smallest moment of inertia. Twice the highest rate is no less than the square of any frequency.
  *
- * No rate is below that of the body standing on its largest face under the stiffest law of its contacts, or, without a
- * contact, of the model. So a contact whose area vanishes never makes the step long, and a body that lands finds the
- * step that its landing needs: a step that shrinks while a body lands costs energy.
+ * A body that lands finds the step that its landing needs, for a step that shrinks while a body lands costs energy: no rate is
+ * below that of the body standing on its largest face under the stiffest law of its contacts, or, without a contact, of
+ * the model. Where it stands on corners or edges, with overlaps o, and these go on with a velocity v, a part of that is
+ * enough: the further overlap v / omega over o, omega^2 being the rate on the face, within FLOOR and 1. So a contact whose
+ * area vanishes never makes the step long. The stiffness of corners and edges counts as it will be when they are pressed
+ * in twice as deep.
  *
  * Rates are kept from step to step and made anew where contacts have changed. Where nothing moves by more than areas are
  * reused for, they cost nothing. Kept ones follow from the contacts as they were when the body was rated, not as they are:
@@ -18,6 +21,10 @@
 
 #include <string.h>
 
+/* Part of its largest face that a body stands on at least, if it rests on corners and edges: */
+#define FLOOR 0.15
+/* Stiffness of a corner that is pressed in twice as deep, over what it is. */
+#define TWICE_AS_DEEP 4
 /* Steps after which mass scaling rates all bodies again, even when no contact has come or gone: areas may have
  * grown. */
 #define LOOK_EVERY 64
@@ -123,18 +130,23 @@ static area_sums largest_face(const tl_model *m, uint32_t body)
     return largest;
 }
 
-static area_sums facet_of(const tl_model *m, uint32_t c, const tl_facet *f, bool of_b)
+/* The points of a contact about the centroid of B's or of A's body. */
+static area_sums points_of(const tl_model *m, uint32_t c, bool of_b)
 {
     const tl_contacts *contacts = &m->detect->contacts;
     const tl_points_table *p = &m->detect->points;
     uint32_t a = m->blocks.body[contacts->a[c]], b = m->blocks.body[contacts->b[c]];
-    /* points are kept in one body's frame; the other's centroid in it */
-    bool in_b = f->kind == TL_FACET_FACE_A;
-    tl_vec3 apart = tl_body_apart(&m->bodies, in_b ? b : a, in_b ? a : b), centre = {0, 0, 0};
-    if (in_b != of_b)
-        centre = tl_m3_tmul(&m->bodies.pose[in_b ? b : a].r, apart);
+    tl_vec3 centre = {0, 0, 0};
+    if (of_b)
+        centre = tl_m3_tmul(&m->bodies.pose[a].r, tl_body_apart(&m->bodies, a, b));
     area_sums out = {0, 0};
-    for (uint32_t k = f->begin; k < f->begin + (uint32_t)f->count; k++) {
+    if (contacts->facet[c].kind == TL_FACET_FIELD) {
+        const tl_press *press = &m->detect->press[contacts->press[c]].press;
+        double r2 = tl_v3_norm2(tl_v3_sub(press->point, centre)) + press->radius * press->radius;
+        double stiffness = TWICE_AS_DEEP * press->stiffness;
+        return (area_sums){stiffness, stiffness * r2};
+    }
+    for (uint32_t k = 0; k < contacts->point_count[c]; k++) {
         size_t i = tl_point_row(contacts, c, k);
         out.area += p->area[i];
         out.area_r2 += p->area[i] * tl_v3_norm2(tl_v3_sub(tl_columns_get(p->p, i), centre));
@@ -148,14 +160,32 @@ static area_sums facet_of(const tl_model *m, uint32_t c, const tl_facet *f, bool
 typedef struct contact_sums {
     area_sums stiffness;
     double law;
+    bool stands;     /* some have points */
+    double approach; /* highest speed at which a field contact goes on, over its overlap, 1/s */
 } contact_sums;
+
+/* Speed at which the blocks of a field contact come together there, over their overlap. */
+static double approach_of(const tl_model *m, uint32_t c)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    const tl_bodies *bodies = &m->bodies;
+    const tl_press *press = &m->detect->press[contacts->press[c]].press;
+    uint32_t a = m->blocks.body[contacts->a[c]], b = m->blocks.body[contacts->b[c]];
+    const tl_mat3 *turn = &bodies->pose[a].r;
+    tl_vec3 arm = tl_m3_mul(turn, press->point);
+    tl_vec3 arm_b = tl_v3_sub(arm, tl_body_apart(bodies, a, b));
+    tl_vec3 v_a = tl_v3_add(bodies->v[a], tl_v3_cross(bodies->w[a], arm));
+    tl_vec3 v_b = tl_v3_add(bodies->v[b], tl_v3_cross(bodies->w[b], arm_b));
+    double closing = tl_v3_dot(tl_v3_sub(v_a, v_b), tl_m3_mul(turn, press->normal));
+    return press->overlap > 0 ? fabs(closing) / press->overlap : INFINITY;
+}
 
 /* Contacts without area have a law, too. `points`: their stiffness is asked for as well. */
 static contact_sums add_contacts(const tl_model *m, uint32_t body, bool points)
 {
     const tl_detect *d = m->detect;
     const tl_contacts *c = &d->contacts;
-    contact_sums out = {{0, 0}, 0};
+    contact_sums out = {{0, 0}, 0, false, 0};
     for (uint32_t j = 0; j < m->bodies.member_count[body]; j++) {
         uint32_t row = m->members[m->bodies.member_start[body] + j];
         for (uint32_t e = d->by_block_start[row]; e < d->by_block_start[row + 1]; e++) {
@@ -164,8 +194,11 @@ static contact_sums add_contacts(const tl_model *m, uint32_t body, bool points)
                 continue;
             double law = tl_law_stiffness(&m->materials[c->material[i]]);
             out.law = fmax(out.law, law);
-            for (uint32_t f = 0; points && f < c->facet_count[i]; f++) {
-                area_sums next = facet_of(m, i, &c->facet[c->facet_start[i] + f], c->b[i] == row);
+            if (points && c->point_count[i] > 0) {
+                area_sums next = points_of(m, i, c->b[i] == row);
+                out.stands = true;
+                if (c->facet[i].kind == TL_FACET_FIELD)
+                    out.approach = fmax(out.approach, approach_of(m, i));
                 out.stiffness.area += law * next.area;
                 out.stiffness.area_r2 += law * next.area_r2;
             }
@@ -179,18 +212,26 @@ static double law_on_face(contact_sums of, double stiffest)
     return of.law > 0 ? of.law : stiffest;
 }
 
+/* The least rate of a body: that on its largest face, or a part of it. */
+static double least_rate(const tl_model *m, uint32_t body, const contact_sums *of, double law)
+{
+    double face = law * m->cycle->face_rate[body];
+    double more = of->stands ? of->approach / sqrt(face) : 1;
+    return fmin(fmax(more, FLOOR), 1) * face;
+}
+
 static double body_rate(const tl_model *m, uint32_t body, double stiffest)
 {
     contact_sums of = add_contacts(m, body, tl_rates_points(m));
     return fmax(rate_of(of.stiffness, inverse_of(m, body)),
-                law_on_face(of, stiffest) * m->cycle->face_rate[body]);
+                least_rate(m, body, &of, law_on_face(of, stiffest)));
 }
 
 double tl_rate_stiffness(const tl_model *m, uint32_t body)
 {
     contact_sums of = add_contacts(m, body, tl_rates_points(m));
     double law = law_on_face(of, tl_stiffest_law(m));
-    if (rate_of(of.stiffness, inverse_of(m, body)) < law * m->cycle->face_rate[body])
+    if (rate_of(of.stiffness, inverse_of(m, body)) < least_rate(m, body, &of, law))
         return law * largest_face(m, body).area;
     return of.stiffness.area;
 }

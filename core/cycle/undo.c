@@ -24,11 +24,6 @@ typedef struct shadow {
     size_t room; /* bytes */
 } shadow;
 
-/* What a step overwrites of a facet. */
-typedef struct normals {
-    tl_vec3 last, last_lean;
-} normals;
-
 struct tl_undo {
     bool keeps;    /* in this step */
     bool gathered; /* bodies have been kept, too */
@@ -38,9 +33,8 @@ struct tl_undo {
     double dt;        /* that the user had fixed then; NAN: none */
     tl_vec3 gravity;  /* then */
     shadow points, contacts, bodies, loads;
-    normals *facet;
     tl_reaction *reaction;
-    size_t facet_room, reaction_room;
+    size_t reaction_room;
     tl_sums sums;
     double damping_state[TL_STATE_COLUMNS];
 };
@@ -89,16 +83,6 @@ static void copy_ranks(tl_model *m, const tl_rank *ranks, size_t count, bool bac
             if (contact == TL_NO_ROW)
                 continue;
             shadow_copy(&u->contacts, &c->table, contact, 1, back);
-            for (size_t k = 0; k < c->facet_count[contact]; k++) {
-                tl_facet *facet = &c->facet[c->facet_start[contact] + k];
-                normals *kept = &u->facet[c->facet_start[contact] + k];
-                if (back) {
-                    facet->last = kept->last;
-                    facet->last_lean = kept->last_lean;
-                } else {
-                    *kept = (normals){facet->last, facet->last_lean};
-                }
-            }
         }
     }
     if (count > 0)
@@ -177,11 +161,9 @@ static void forget(struct tl_undo *u)
         free(all[i]->memory);
         *all[i] = (shadow){NULL, 0};
     }
-    free(u->facet);
     free(u->reaction);
-    u->facet = NULL;
     u->reaction = NULL;
-    u->facet_room = u->reaction_room = 0;
+    u->reaction_room = 0;
 }
 
 tl_status tl_undo_begin(tl_model *m)
@@ -209,7 +191,6 @@ tl_status tl_undo_reserve(tl_model *m)
         shadow_reserve(&u->contacts, &d->contacts.table) &&
         shadow_reserve(&u->bodies, &m->bodies.table) &&
         shadow_reserve(&u->loads, &m->cycle->table) &&
-        tl_fit(&u->facet, &u->facet_room, d->contacts.facet_capacity, sizeof *u->facet) &&
         tl_fit(&u->reaction, &u->reaction_room, m->cycle->reaction_room, sizeof *u->reaction);
     return u->keeps ? TL_OK : tl_fail_memory(&m->error);
 }
@@ -255,7 +236,7 @@ size_t tl_undo_bytes(const struct tl_cycle *c)
     if (!u)
         return 0;
     return sizeof *u + u->points.room + u->contacts.room + u->bodies.room + u->loads.room +
-           u->facet_room * sizeof *u->facet + u->reaction_room * sizeof *u->reaction;
+           u->reaction_room * sizeof *u->reaction;
 }
 
 void tl_undo_free(struct tl_undo *u)

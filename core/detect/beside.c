@@ -3,7 +3,7 @@
  *
  * Two faces that are far from parallel show it. What the blocks have in common lies under both, in a prism as wide as
  * the overlaps o1 and o2 along their normals, so that springs carry kn o1 o2 a metre of it. That goes unseen up to
- * o1 o2 = u^2 with u = TL_SILENT times the size: the force of a share TL_SILENT of a face that overlaps by u. After
+ * o1 o2 = u^2 with u = UNSEEN times the size: the force of a share UNSEEN of a face that overlaps by u. After
  * motion m it is (o1 + m) (o2 + m) at most. Both faces are flush with one of the other block, or else edges and
  * corners would carry more than the area in common does. */
 #include "detect/beside.h"
@@ -15,6 +15,10 @@
 #define FLUSH 0.99999657307
 /* Largest cosine between the two faces' normals. */
 #define CROSSWISE 0.7
+
+/* Overlap along both of two directions that may go unseen, relative to the size. The energy of it, kn u^3 a metre, is a
+ * millionth of what a face stores that overlaps by as much as 1e-3. */
+#define UNSEEN 2e-4
 
 /* Product of the blocks' numbers of faces up to which they may be of a lattice: others are hardly ever flush. */
 #define FEW 400
@@ -87,7 +91,7 @@ double tl_beside_margin(const tl_pair_view *view, const tl_pair *p, double *gap)
     if (faces.one == faces.other)
         return -INFINITY;
     sight first = look_from(view, faces.one), second = look_from(view, faces.other);
-    double tolerance = TL_CONTACT_TOLERANCE * view->size, unseen = TL_SILENT * view->size;
+    double tolerance = TL_CONTACT_TOLERANCE * view->size, unseen = UNSEEN * view->size;
     *gap = fmax(first.gap, second.gap);
     if (*gap > tolerance)
         return *gap - tolerance;

@@ -7,11 +7,12 @@
 #include "detect/detect.h"
 
 #include "contact/contacts.h"
-#include "contact/expect.h"
+#include "contact/handover.h"
 #include "contact/held.h"
 #include "contact/index.h"
 #include "contact/pair_view.h"
 #include "contact/points.h"
+#include "contact/prefetch.h"
 #include "contact/store.h"
 #include "detect/broad.h"
 #include "detect/overlap.h"
@@ -19,6 +20,7 @@
 #include "detect/renew.h"
 #include "detect/update.h"
 #include "narrow/manifold.h"
+#include "narrow/place.h"
 
 #include <assert.h>
 #include <stdlib.h>
@@ -87,7 +89,7 @@ static tl_status find_rows(tl_model *m)
         uint32_t a = tl_block_row_quiet(m, d->ids[c->a[row]]);
         uint32_t b = tl_block_row_quiet(m, d->ids[c->b[row]]);
         if (a == TL_NO_ROW || b == TL_NO_ROW || m->blocks.body[a] == m->blocks.body[b]) {
-            c->fate[row] = TL_FATE_DIE;
+            c->pending[row] = TL_PENDING_DIE;
             continue;
         }
         p.a = c->a[row] = a;
@@ -110,9 +112,10 @@ static void find_materials(tl_model *m)
         tl_pair_wake(m->detect, (uint32_t)i);
     tl_contacts *c = &m->detect->contacts;
     for (uint32_t row = 0; row < c->table.rows; row++) {
-        c->until[row] = -INFINITY;
-        if (c->fate[row] == TL_FATE_KEEP && tl_material_row(m, c->tag[row]) != c->material[row])
-            c->fate[row] = TL_FATE_MOVE;
+        c->points_valid_to[row] = -INFINITY;
+        if (c->pending[row] == TL_PENDING_KEEP &&
+            tl_material_row(m, c->tag[row]) != c->material[row])
+            c->pending[row] = TL_PENDING_MOVE;
     }
 }
 
@@ -133,9 +136,9 @@ static void update_ranks(void *user, size_t begin, size_t end, size_t chunk, uns
     for (size_t r = begin; r < end; r++) {
         bool alike = far && moved; /* as ranks side by side are */
         if (alike && r + FAR_AHEAD < job->count)
-            tl_rank_expect_contacts(job->m->detect, &job->ranks[r + FAR_AHEAD]);
+            tl_rank_prefetch_contacts(job->m->detect, &job->ranks[r + FAR_AHEAD]);
         if (alike && r + AHEAD < job->count)
-            tl_rank_expect_shapes(job->m, &job->ranks[r + AHEAD]);
+            tl_rank_prefetch_shapes(job->m, &job->ranks[r + AHEAD]);
         moved = tl_rank_update(job->m, &job->ranks[r], thread);
     }
 }
@@ -188,18 +191,20 @@ static tl_status give_birth(tl_model *m, uint32_t pair, overlaps *deep)
     tl_pair_view view = tl_pair_view_of(m, d->pairs[pair].a, d->pairs[pair].b);
     if (!tl_pair_place(&view, room))
         return tl_fail_memory(&m->error);
-    tl_axis axis = tl_axis_search(&view, room, NULL);
-    tl_tag tag = tl_touching_tag(&view, axis.n);
-    tl_share_rule rule = tl_share_rule_of(m, &view, tag, false);
-    tl_manifold_build(&view, &axis, &rule, room);
-    const tl_manifold *g = &room->manifold;
-    double margin = tl_axis_margin(&axis, view.size);
-    if (g->failed ||
-        !tl_contact_append(m, pair, &axis, margin, tag, g->point_count, g->facet_count))
+    tl_region region;
+    if (!tl_region_find(&view, TL_LIST_MARGIN * view.size, room, &region))
         return tl_fail_memory(&m->error);
-    if (axis.s < -DEEP * view.size && deep->count++ == 0)
+    tl_tag tag = tl_touching_tag(&view, region.n);
+    tl_touch_rule rule = tl_touch_rule_of(m, &view, tag, false);
+    const tl_manifold_before none = {.facet = {.kind = TL_FACET_PATCH}};
+    const tl_manifold *g = &room->manifold;
+    if (!tl_manifold_find(&view, &region, &rule, &none, room) ||
+        !tl_contact_append(m, pair, g->facet.kind == TL_FACET_FIELD, g->valid, tag, g->point_count))
+        return tl_fail_memory(&m->error);
+    double overlap = g->facet.kind == TL_FACET_FIELD ? g->press.deepest : -region.gap;
+    if (overlap > DEEP * view.size && deep->count++ == 0)
         deep->pair = pair;
-    if (tl_overlap_is_deep(m, &view, &axis, d->pairs[pair].a, d->pairs[pair].b, true)) {
+    if (tl_overlap_is_deep(m, &view, &region, d->pairs[pair].a, d->pairs[pair].b, true)) {
         tl_overlap_mark(&d->contacts, (uint32_t)d->contacts.table.rows - 1, true);
         room->deep = true;
     }
@@ -268,18 +273,18 @@ static bool settle_rows(tl_model *m)
     tl_contacts *c = &d->contacts;
     bool room = true;
     for (uint32_t row = (uint32_t)c->table.rows; row-- > 0;) {
-        if (c->fate[row] == TL_FATE_KEEP)
+        if (c->pending[row] == TL_PENDING_KEEP)
             continue;
         touch(m, row);
         uint32_t pair = c->pair[row];
-        if (c->fate[row] == TL_FATE_DIE) {
+        if (c->pending[row] == TL_PENDING_DIE) {
+            d->parted += tl_contact_sheared(m, row);
             tl_contact_remove(d, row);
             tl_pair_parted(d, pair);
             continue;
         }
-        if (c->fate[row] == TL_FATE_MOVE) {
-            d->pairs[pair].want.points = c->point_room[row];
-            d->pairs[pair].want.facets = c->facet_room[row];
+        if (c->pending[row] == TL_PENDING_MOVE) {
+            d->pairs[pair].want_points = c->point_room[row];
         }
         if (tl_material_row(m, c->tag[row]) != c->material[row])
             change_material(m, row);
@@ -295,28 +300,28 @@ static tl_status fill_contacts(tl_model *m, bool *more)
     tl_contacts *c = &d->contacts;
     *more = false;
     for (uint32_t row = 0; row < c->table.rows; row++) {
-        if (c->fate[row] == TL_FATE_KEEP)
+        if (c->pending[row] == TL_PENDING_KEEP)
             continue;
-        if (c->fate[row] == TL_FATE_GROW && !tl_contact_fill(m, row))
+        if (c->pending[row] == TL_PENDING_GROW && !tl_contact_fill(m, row))
             return tl_fail_memory(&m->error);
-        if (c->fate[row] == TL_FATE_GROW) {
+        if (c->pending[row] == TL_PENDING_GROW) {
             *more = true;
             continue;
         }
-        c->fate[row] = TL_FATE_KEEP;
+        c->pending[row] = TL_PENDING_KEEP;
         tl_pair_forget_faces(&d->pairs[c->pair[row]]); /* the room it wanted was in their place */
     }
     return TL_OK;
 }
 
 /* Something was left to do for some contact: in most steps for none, and all are asked. */
-static bool some_fate(const tl_contacts *c)
+static bool some_pending(const tl_contacts *c)
 {
-    static_assert(TL_FATE_KEEP == 0, "fates are not told by their bits");
+    static_assert(TL_PENDING_KEEP == 0, "what is pending is not told by its bits");
     unsigned any = 0;
     for (size_t row = 0; row < c->table.rows; row++)
-        any |= c->fate[row];
-    return any != TL_FATE_KEEP;
+        any |= c->pending[row];
+    return any != TL_PENDING_KEEP;
 }
 
 /* Whether there was no memory to look at some pair or to bring some contact up to date; it is as it was, for another time. */
@@ -339,7 +344,7 @@ static tl_status settle(tl_model *m)
     tl_status status = lacked_memory(d) ? tl_fail_memory(&m->error) : give_births(m, &born);
     if (status != TL_OK)
         return status;
-    if (born == 0 && !d->rows_changed && !some_fate(c))
+    if (born == 0 && !d->rows_changed && !some_pending(c))
         return TL_OK;
     d->bare = true; /* until they are listed anew */
     for (bool more = true; more && status == TL_OK;) {

@@ -1,10 +1,9 @@
 /* detect.h - contact detection: from block shapes and body places to contacts with contact points.
  *
- * A *pair* is two blocks whose inflated bounds overlap (broad.c). A pair near enough is a *contact*: it
- * has an *axis* (axis.c: the common plane's normal, exact), and *facets* (manifold.c): face-face
- * patches, or the point share of vertices and edges, each with *contact points* that have an area
- * share. Contacts persist: while nothing has moved more than a margin, only the gaps are computed
- * anew (follow.c). */
+ * A *pair* is two blocks whose inflated bounds overlap (broad.c). A pair near enough is a *contact*. It has one *facet*
+ * (manifold.c): a *patch* of two flush faces, or a *field contact* of whatever else has a common volume. A facet has
+ * *contact points*, each with an area. Contacts persist: while nothing has moved more than a margin, only the gaps are
+ * computed anew (follow.c). */
 #ifndef TL_DETECT_DETECT_H
 #define TL_DETECT_DETECT_H
 

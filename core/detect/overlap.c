@@ -1,7 +1,7 @@
 /* overlap.c - blocks that overlap so deeply that no contact can tell how to part them.
  *
- * An overlap is measured along the contact's axis, the direction in which it is least. Two lengths limit what it means. At
- * half the sum of both blocks' widths along the axis their middles have met, and the way out is the one on the far side.
+ * An overlap is measured along the normal of the face along which it is least (region.h). Two lengths limit what it means. At
+ * half the sum of both blocks' widths along that normal their middles have met, and the way out is the one on the far side.
  * At the diameter of the smaller block that one is wholly inside the other.
  *
  * A contact that is born so deep comes of blocks that were placed into each other, or thrown into each other in one step:
@@ -10,8 +10,8 @@
  * up. A step that finds such an overlap fails before its forces are made. Two blocks that are both held may overlap as they
  * like: nothing comes of it.
  *
- * The overlap is known wherever an axis is searched, which is after a motion of 0.02 of the size at the latest
- * (update.c), so the look costs next to nothing. A contact that is marked has no lease: its axis is searched in every
+ * The overlap is known wherever the faces of a pair are listed, which is after a motion of TL_LIST_MARGIN of the size at the
+ * latest (update.c), so the look costs next to nothing. The faces of a contact that is marked are listed in every
  * step. The mark tells which limit was exceeded, and stays until the overlap is within that limit: what was born too deep
  * is still nobody's way in when it is looked at again, and what has sunk in is still followed when blocks elsewhere come or
  * go. */
@@ -19,6 +19,7 @@
 
 #include "contact/contacts.h"
 #include "contact/pair_view.h"
+#include "narrow/place.h"
 
 #include <stdio.h>
 
@@ -73,16 +74,17 @@ static double deepest(const tl_model *m, const tl_pair_view *view, tl_vec3 n, ui
     return TL_DEEPEST_BORN * fmin(middles, diameter);
 }
 
-bool tl_overlap_is_deep(const tl_model *m, const tl_pair_view *view, const tl_axis *axis,
+bool tl_overlap_is_deep(const tl_model *m, const tl_pair_view *view, const tl_region *region,
                         uint32_t a, uint32_t b, bool born)
 {
-    return axis->s < -SHALLOW * view->size && -axis->s > deepest(m, view, axis->n, a, b, born);
+    return region->gap < -SHALLOW * view->size &&
+           -region->gap > deepest(m, view, region->n, a, b, born);
 }
 
 void tl_overlap_mark(tl_contacts *contacts, uint32_t contact, bool born)
 {
     contacts->deep[contact] = born ? TL_DEEP_BORN : TL_DEEP_SUNK;
-    contacts->search[contact] = -INFINITY;
+    contacts->faces_valid_to[contact] = -INFINITY;
 }
 
 static tl_status report(tl_model *m, uint32_t contact)
@@ -90,18 +92,18 @@ static tl_status report(tl_model *m, uint32_t contact)
     const tl_contacts *c = &m->detect->contacts;
     uint32_t a = c->a[contact], b = c->b[contact];
     tl_pair_view view = tl_pair_view_of(m, a, b);
-    tl_axis axis = tl_axis_of(c->axis[contact]);
-    if (!tl_pair_place(&view, &m->detect->narrow[0]))
+    tl_narrow *room = &m->detect->narrow[0];
+    tl_region region;
+    if (!tl_pair_place(&view, room) || !tl_region_find(&view, 0, room, &region))
         return tl_fail_memory(&m->error);
-    tl_axis_place(&view, &axis);
     char name[320];
     tl_contact_name(m, contact, name, sizeof name);
     return tl_fail(&m->error, TL_E_NUMERIC,
                    "cycle %lld, %s: they overlap by %.3g m, more than the %.3g m up to which a "
                    "contact can tell how to part them: were they placed into each other, is a "
                    "stiffness too low for what presses, or the time step too large?",
-                   (long long)m->cycles + 1, name, -axis.s,
-                   deepest(m, &view, axis.n, a, b, c->deep[contact] == TL_DEEP_BORN));
+                   (long long)m->cycles + 1, name, -region.gap,
+                   deepest(m, &view, region.n, a, b, c->deep[contact] == TL_DEEP_BORN));
 }
 
 tl_status tl_overlaps_check(tl_model *m)
@@ -120,8 +122,8 @@ tl_status tl_overlaps_check(tl_model *m)
             continue;
         marked = true;
         if (both_held(m, c->a[row], c->b[row]))
-            continue;              /* until one of them is free */
-        c->until[row] = -INFINITY; /* look again when the step is repeated */
+            continue;                        /* until one of them is free */
+        c->points_valid_to[row] = -INFINITY; /* look again when the step is repeated */
         if (first == TL_NO_ROW)
             first = row;
     }

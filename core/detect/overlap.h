@@ -4,12 +4,13 @@
 
 #include "contact/tables.h"
 #include "model/model.h"
+#include "narrow/region.h"
 
 /* Whether two blocks overlap so deeply that their contact cannot tell how to part them; less is enough for one that is
  * just born. */
-bool tl_overlap_is_deep(const tl_model *m, const tl_pair_view *view, const tl_axis *axis,
+bool tl_overlap_is_deep(const tl_model *m, const tl_pair_view *view, const tl_region *region,
                         uint32_t a, uint32_t b, bool born);
-/* Marks a contact whose blocks do, so that its axis is searched whenever it is looked at. */
+/* Marks a contact whose blocks do, so that its faces are listed whenever it is looked at. */
 void tl_overlap_mark(tl_contacts *contacts, uint32_t contact, bool born);
 /* After a step's contacts have been settled: the sentence of the first that is marked, and of which a block can move. */
 tl_status tl_overlaps_check(tl_model *m);

@@ -12,6 +12,7 @@
 #include "detect/beside.h"
 #include "narrow/look.h"
 #include "narrow/manifold.h"
+#include "narrow/place.h"
 
 #include <string.h>
 #include <talus/plugin.h>
@@ -149,24 +150,36 @@ static void look_at(tl_model *m, tl_pair *p, tl_narrow *room)
         tl_pair_sleep(d, p, d->reach);
         return;
     }
-    tl_axis axis = tl_axis_search(&view, room, NULL);
-    if (axis.s > tolerance) {
-        tl_pair_sleep(d, p, tl_axis_wait(&axis, view.size));
+    tl_region region;
+    if (!tl_region_find(&view, TL_LIST_MARGIN * view.size, room, &region)) {
+        room->failed = true;
         return;
     }
-    tl_share_rule rule = tl_share_rule_of(m, &view, tl_touching_tag(&view, axis.n), false);
-    tl_manifold_build(&view, &axis, &rule, room);
-    if (room->manifold.failed) { /* what was found is not all there is: look again */
-        room->failed = true;
+    if (region.gap > tolerance) {
+        tl_pair_sleep(d, p, region.gap - tolerance);
+        return;
+    }
+    tl_touch_rule rule = tl_touch_rule_of(m, &view, tl_touching_tag(&view, region.n), false);
+    if (!(rule.least > 0)) {
+        tl_beside_note(&view, p);
+        margin = tl_beside_margin(&view, p, &gap);
+        if (margin >= 0) {
+            tl_pair_sleep(d, p, margin);
+            return;
+        }
+        tl_pair_forget_faces(p);
+    }
+    const tl_manifold_before none = {.facet = {.kind = TL_FACET_PATCH}};
+    if (!tl_manifold_find(&view, &region, &rule, &none, room)) {
+        room->failed = true; /* what was found is not all there is: look again */
         return;
     }
     if (room->manifold.point_count > 0) {
         p->wake = TL_PAIR_FOUND;
         return;
     }
-    tl_pair_sleep(d, p, TL_SILENT * view.size);
-    if (!rule.unconditional)
-        tl_beside_note(&view, p);
+    /* edges part the blocks: by more than the tolerance, or by next to nothing */
+    tl_pair_sleep(d, p, tl_look_near(&view, tolerance) ? TL_SILENT * view.size : tolerance);
 }
 
 /* None of its pairs without a contact can have come near, whichever two blocks have run the farthest. */

@@ -6,10 +6,10 @@
 #include "detect/renew.h"
 
 #include "contact/detection.h"
-#include "contact/points.h"
+#include "contact/shear.h"
 #include "detect/update.h"
-#include "narrow/manifold.h"
 #include "narrow/patch_batch.h"
+#include "narrow/press.h"
 
 #include <string.h>
 
@@ -17,11 +17,10 @@
 static bool add_to_batch(const tl_model *m, uint32_t c, uint32_t lane, tl_patch_batch *batch)
 {
     const tl_contacts *contacts = &m->detect->contacts;
-    const tl_facet *f = &contacts->facet[contacts->facet_start[c]];
+    const tl_facet *f = &contacts->facet[c];
     uint32_t a = contacts->a[c], b = contacts->b[c];
-    if (!tl_contact_is_patch(m, c) ||
-        !tl_batch_takes(m->blocks.shape[a], f->ia, m->blocks.shape[b], f->ib) ||
-        !isnan(tl_area_rule_of(m, contacts->tag[c]).absolute))
+    if (!tl_contact_is_patch(m, c) || contacts->across[c] ||
+        !tl_batch_takes(m->blocks.shape[a], f->ia, m->blocks.shape[b], f->ib))
         return false;
     double size = m->blocks.size[a] < m->blocks.size[b] ? m->blocks.size[a] : m->blocks.size[b];
     tl_batch_add(batch, lane, m->blocks.shape[a], f->ia, m->blocks.shape[b], f->ib, size,
@@ -35,19 +34,11 @@ static bool add_to_batch(const tl_model *m, uint32_t c, uint32_t lane, tl_patch_
 /* Lanes whose patch takes the place of the contact's, 1 or 0, and the area it gets. */
 typedef struct taken {
     double mine[TL_LANES], area[TL_LANES];
-    bool all;
 } taken;
 
 TL_INLINE double choose(double yes, double a, double b)
 {
     return yes > 0 ? a : b;
-}
-
-TL_INLINE void refit_lean(int16_t *restrict steps, const float *restrict lean, float step)
-{
-#pragma omp simd
-    for (uint32_t l = 0; l < TL_LANES; l++)
-        steps[l] = tl_lean_steps(lean[l], step);
 }
 
 /* Puts a point of each lane that is taken in the place of the table's: stress stays, force follows the area. */
@@ -75,13 +66,6 @@ TL_VECTORIZED static void refit_slot(tl_points_table *p, size_t row, const tl_ba
     }
     for (uint32_t l = 0; l < TL_LANES && p->f_n0; l++)
         p->f_n0[row + l] *= scale[l];
-    if (t->all) {
-        refit_lean(p->lean_face + row, point->face, TL_LEAN_FACE_STEP);
-        refit_lean(p->lean_edge + row, point->edge, TL_LEAN_EDGE_STEP);
-    }
-    for (uint32_t l = 0; l < TL_LANES && !t->all; l++)
-        if (t->mine[l] > 0)
-            tl_point_set_lean(p, row + l, (tl_lean){point->face[l], point->edge[l]});
 }
 
 /* Puts the patches of the lanes that are taken, which all have so many points, in the place of the contacts'. */
@@ -98,13 +82,85 @@ static void refit(tl_points_table *p, size_t row, const tl_patch_batch *batch, t
         refit_slot(p, row, &batch->centroid, t);
 }
 
+/* The shear of the points of a rank, summed over those of each lane: energy times 2 ks, and force. */
+typedef struct shear_lanes {
+    double energy[TL_LANES];
+    tl_lanes3 force;
+} shear_lanes;
+
+TL_VECTORIZED static void sum_shear(const tl_points_table *p, size_t row, uint32_t slots,
+                                    shear_lanes *restrict out)
+{
+    const double *restrict f_x = p->f_s[0] + row, *restrict f_y = p->f_s[1] + row;
+    const double *restrict f_z = p->f_s[2] + row, *restrict area = p->area + row;
+    shear_lanes sum = {0};
+    for (size_t at = 0; at < (size_t)slots * TL_LANES; at += TL_LANES)
+#pragma omp simd
+        for (size_t l = 0; l < TL_LANES; l++) {
+            double x = f_x[at + l], y = f_y[at + l], z = f_z[at + l];
+            sum.force.x[l] += x;
+            sum.force.y[l] += y;
+            sum.force.z[l] += z;
+            sum.energy[l] += (x * x + y * y + z * z) / choose(area[at + l], area[at + l], 1);
+        }
+    *out = sum;
+}
+
+/* Lanes whose area is to change, a bit each. */
+static uint32_t changing(const tl_contacts *contacts, const tl_rank *rank,
+                         const tl_patch_batch *batch, uint32_t now)
+{
+    uint32_t changed = 0;
+    for (uint32_t l = 0; l < TL_LANES; l++)
+        if (now >> l & 1) {
+            double area = contacts->area[rank->contact[l]];
+            changed |= (uint32_t)(fabs(batch->area[l] - area) > TL_SAME_AREA * area) << l;
+        }
+    return changed;
+}
+
+/* The shear of lane l. All of it acts at the centroid: an area that changes by as little as those of a batch takes no
+ * more of a twist's heat than goes unseen. */
+static tl_shear shear_in(const shear_lanes *s, const tl_patch_batch *batch, uint32_t l, double area)
+{
+    tl_mat3 turn = tl_lanes9_get(&batch->r_a, l);
+    tl_vec3 arm = tl_m3_mul(&turn, tl_lanes3_get(&batch->centroid.p, l));
+    tl_vec3 force = tl_lanes3_get(&s->force, l);
+    return (tl_shear){area, s->energy[l], force, tl_v3_cross(arm, force)};
+}
+
 /* What else a contact keeps of its patch. */
 static void note_patch(tl_model *m, uint32_t c, double area)
 {
     tl_contacts *contacts = &m->detect->contacts;
     contacts->area[c] = area;
     contacts->fresh[c] = true;
-    tl_contact_allow_reuse(m, c, false);
+    tl_contact_allow_reuse(m, c);
+}
+
+/* Puts the patches of some lanes, a bit each, into the place of their contacts'. */
+static void take_lanes(tl_model *m, const tl_rank *rank, const tl_patch_batch *batch,
+                       tl_batch_counts n, uint32_t now, taken *t)
+{
+    tl_contacts *contacts = &m->detect->contacts;
+    tl_points_table *p = &m->detect->points;
+    uint32_t changed = changing(contacts, rank, batch, now);
+    shear_lanes before, after;
+    if (changed)
+        sum_shear(p, rank->start, n.all, &before);
+    refit(p, rank->start, batch, n, t);
+    if (changed)
+        sum_shear(p, rank->start, n.all, &after);
+    for (uint32_t l = 0; l < TL_LANES; l++) {
+        uint32_t c = rank->contact[l];
+        if (changed >> l & 1) {
+            tl_shear old = shear_in(&before, batch, l, contacts->area[c]);
+            tl_shear fresh = shear_in(&after, batch, l, t->area[l]);
+            tl_shear_resized(m, c, &old, &fresh);
+        }
+        if (now >> l & 1)
+            note_patch(m, c, t->area[l]);
+    }
 }
 
 /* Puts patches into the place of those of the rank that have the same points, and takes their lanes out of `in`: lanes
@@ -136,11 +192,7 @@ static void take_patches(tl_model *m, const tl_rank *rank, const tl_patch_batch 
         }
         if (!now)
             continue;
-        t.all = now == (1u << TL_LANES) - 1;
-        refit(p, rank->start, batch, n[l], &t);
-        for (uint32_t k = 0; k < TL_LANES; k++)
-            if (now >> k & 1)
-                note_patch(m, rank->contact[k], t.area[k]);
+        take_lanes(m, rank, batch, n[l], now, &t);
         same &= ~now;
     }
 }
@@ -155,7 +207,7 @@ bool tl_rank_update(tl_model *m, const tl_rank *rank, unsigned thread)
             continue;
         if (!batch && !(batch = tl_batch_room(&m->detect->narrow[thread],
                                               m->config.contact_points == TL_POINTS_CORNERS,
-                                              TL_FLUSH_TILT2))) {
+                                              TL_FLUSH_TILT * TL_FLUSH_TILT))) {
             m->detect->narrow[thread].failed = true;
             return true;
         }

@@ -5,7 +5,7 @@
 #include "contact/layout.h"
 #include "model/model.h"
 
-/* Brings the facets of the contacts of a rank up to the present place, if they are stale; their fates tell what is left
+/* Brings the facets of the contacts of a rank up to the present place, if they are stale; `pending` tells what is left
  * to do. false when none was. */
 bool tl_rank_update(tl_model *m, const tl_rank *rank, unsigned thread);
 

@@ -1,187 +1,288 @@
-/* update.c - one contact brought up to the present place of its blocks: its axis, its facets and points.
+/* update.c - one contact brought up to the present place of its blocks: its faces, its points.
  *
- * Most contacts are two faces on each other and stay so: while the axis is certain and no other faces look
- * at each other, the patch alone is made anew, several at once (renew.c). Otherwise everything is looked
- * at that could touch (rebuild). */
+ * Most contacts are two faces on each other and stay so: while nothing else can touch, the patch alone is made anew,
+ * several at once (renew.c). A field contact goes by its list of faces while that holds. Otherwise everything is looked
+ * at that could touch (find). */
 #include "detect/update.h"
 
 #include "base/columns.h"
 #include "contact/contacts.h"
+#include "contact/handover.h"
 #include "contact/pair_view.h"
 #include "contact/points.h"
+#include "contact/presses.h"
+#include "contact/shear.h"
 #include "contact/transfer.h"
 #include "detect/beside.h"
 #include "detect/overlap.h"
 #include "detect/pairs.h"
+#include "narrow/look.h"
 #include "narrow/manifold.h"
+#include "narrow/patch.h"
+#include "narrow/place.h"
 
-/* Motion within which facets and areas are reused, relative to the smaller block's size: areas are
- * then wrong by a few 1e-6 at most; gaps are exact all the same. */
+#include <string.h>
+
+/* Motion within which the points of a patch are reused, relative to the smaller block's size: areas are then wrong by a few
+ * 1e-6 at most; gaps are exact all the same. */
 #define REUSE 1e-6
-/* The same for areas that depend on a gap, over as little as TL_CONTACT_TOLERANCE: wrong by a few 1e-5. */
-#define REUSE_BRIEF 5e-8
-/* The axis is searched anew after motion of half its lead over the next one, or this share of |s|, ... */
-#define AXIS_SHARE 0.05
-/* ... but at the latest after this times the size. */
-#define AXIS_MOST 0.02
-/* The same where patches have less than the minimum area: flush ones that sink in get a point share (SHALLOW_* in
- * manifold.c), of which this is a share that no result shows. */
-#define SINK_MOST 5e-4
-
-double tl_axis_margin(const tl_axis *axis, double size)
-{
-    double lead = 0.5 * (axis->s - axis->second);
-    return fmin(fmax(lead, AXIS_SHARE * fabs(axis->s)), AXIS_MOST * size);
-}
-
-/* Looks again soon at a contact that has just been built as one small patch. */
-static void watch_small(tl_model *m, uint32_t c, const tl_pair_view *view,
-                        const tl_share_rule *rule, const tl_manifold *g)
-{
-    tl_contacts *contacts = &m->detect->contacts;
-    double odometer = tl_pair_odometer(m, contacts->a[c], contacts->b[c]);
-    if (g->lone && g->facet_count == 1 && g->patch_area < rule->minimum)
-        contacts->search[c] = fmin(contacts->search[c], odometer + SINK_MOST * view->size);
-}
+/* The same of a field contact, over its overlap: its force is then wrong by no more than that. A contact that rests moves by
+ * less. */
+#define REUSE_FIELD 1e-11
+/* Motion in a step, relative to the size, up to which a field contact may become a patch. A patch spreads the shear anew: where
+ * faces only pass by each other that would turn some of it into heat. */
+#define CALM 1e-6
 
 static bool same_topology(const tl_detect *d, uint32_t c, const tl_manifold *g)
 {
     const tl_contacts *contacts = &d->contacts;
-    if (contacts->point_count[c] != g->point_count || contacts->facet_count[c] != g->facet_count)
+    const tl_facet *f = &contacts->facet[c], *h = &g->facet;
+    if (contacts->point_count[c] != g->point_count || f->kind != h->kind)
         return false;
-    for (size_t k = 0; k < g->facet_count; k++) {
-        const tl_facet *f = &contacts->facet[contacts->facet_start[c] + k], *h = &g->facets[k];
-        if (f->kind != h->kind || f->ia != h->ia || f->ib != h->ib || f->count != h->count)
-            return false;
-    }
+    if (f->kind == TL_FACET_FIELD)
+        return true;
+    if (f->ia != h->ia || f->ib != h->ib)
+        return false;
     for (size_t k = 0; k < g->point_count; k++)
         if (d->points.key[tl_point_row(contacts, c, k)] != g->points[k].key)
             return false;
     return true;
 }
 
-/* New places and areas of the same points: stresses stay, forces follow the area. */
+/* Gives a point another area: its stresses stay. */
+static void resize(tl_points_table *p, size_t i, double area)
+{
+    double by = area / p->area[i];
+    p->area[i] = area;
+    if (by == 1)
+        return;
+    p->f_n[i] *= by;
+    if (p->f_n0)
+        p->f_n0[i] *= by;
+    for (int s = 0; s < 3; s++)
+        p->f_s[s][i] *= by;
+}
+
+/* New places and areas of the same points. */
 static void refit(tl_model *m, uint32_t c, const tl_manifold *g)
 {
     tl_detect *d = m->detect;
     tl_points_table *p = &d->points;
-    tl_facet *facet = &d->contacts.facet[d->contacts.facet_start[c]];
-    for (size_t k = 0; k < g->facet_count; k++) {
-        tl_vec3 last = facet[k].last, last_lean = facet[k].last_lean;
-        facet[k] = g->facets[k];
-        facet[k].last = last;
-        facet[k].last_lean = last_lean;
-    }
+    tl_shear before = tl_shear_of(m, c);
+    tl_vec3 last = d->contacts.facet[c].last;
+    d->contacts.facet[c] = g->facet;
+    d->contacts.facet[c].last = last;
     uint32_t material = d->contacts.material[c];
     const tl_kind *kind = NULL; /* of states that go with the area */
     if (material != TL_NO_ROW && m->materials[material].splits)
         kind = m->materials[material].kind;
     for (size_t k = 0; k < g->point_count; k++) {
         size_t i = tl_point_row(&d->contacts, c, k);
-        double old = p->area[i], scale = g->points[k].area / old;
-        double state[TL_STATE_COLUMNS];
+        double old = p->area[i], state[TL_STATE_COLUMNS];
         tl_columns_put(p->p, i, g->points[k].p);
-        tl_point_set_lean(p, i, g->points[k].lean);
-        p->area[i] = g->points[k].area;
-        if (scale == 1)
-            continue;
-        p->f_n[i] *= scale;
-        if (p->f_n0)
-            p->f_n0[i] *= scale;
-        for (int s = 0; s < 3; s++)
-            p->f_s[s][i] *= scale;
-        if (kind) {
-            for (uint32_t s = 0; s < p->state_columns; s++)
-                state[s] = p->state[s][i];
+        resize(p, i, g->points[k].area);
+        if (kind && g->points[k].area != old) {
+            for (uint32_t column = 0; column < p->state_columns; column++)
+                state[column] = p->state[column][i];
             tl_point_keep_state(p, i, kind, state, old);
         }
     }
+    tl_shear now = tl_shear_of(m, c);
+    tl_shear_resized(m, c, &before, &now);
 }
 
-/* Ends a contact whose blocks have parted along an axis. */
-static void part(tl_model *m, uint32_t c, const tl_axis *axis, double size)
+/* ---------------------------------------------------------------- looking at all ---------- */
+
+static tl_press_row *press_of(const tl_model *m, uint32_t c)
 {
-    tl_contacts *contacts = &m->detect->contacts;
-    contacts->fate[c] = TL_FATE_DIE;
-    tl_pair_sleep(m->detect, &m->detect->pairs[contacts->pair[c]], tl_axis_wait(axis, size));
+    uint32_t row = m->detect->contacts.press[c];
+    return row == TL_NO_ROW ? NULL : &m->detect->press[row];
 }
 
-/* The contact's facets in the present place, by its axis followed or searched. false: out of memory. */
-static bool rebuild(tl_model *m, uint32_t c, tl_narrow *room, bool across)
+/* Whether some point may carry a force across a gap: the walls were together when it was made, and no bond of it has
+ * failed. */
+static bool may_hold(const tl_model *m, uint32_t c)
 {
-    tl_contacts *contacts = &m->detect->contacts;
-    double odometer = tl_pair_odometer(m, contacts->a[c], contacts->b[c]);
-    tl_pair_view view = tl_pair_view_of(m, contacts->a[c], contacts->b[c]);
-    tl_axis axis = tl_axis_of(contacts->axis[c]);
-    if (!tl_pair_place(&view, room))
+    const tl_contacts *contacts = &m->detect->contacts;
+    uint32_t material = contacts->material[c];
+    if (material == TL_NO_ROW || m->materials[material].pulls == TL_PULL_NONE)
         return false;
-    bool search = odometer > contacts->search[c];
-    for (;; search = true) {
-        bool followed = !search && tl_axis_follow(&view, &axis);
-        if (!search && !followed && axis.kind == TL_AXIS_EDGES)
-            continue; /* edges that no longer meet have no axis */
-        if (search) {
-            axis = tl_axis_search(&view, room, &contacts->axis[c]);
-            if (isinf(axis.s) && !across) {
-                part(m, c, &axis, view.size);
-                return true;
-            }
-            if (isinf(axis.s)) { /* what bonds carry goes on along the walls that they belong to */
-                axis = tl_axis_of(contacts->axis[c]);
-                tl_axis_place(&view, &axis);
-            }
-            contacts->search[c] = odometer + tl_axis_margin(&axis, view.size);
-            bool born = contacts->deep[c] == TL_DEEP_BORN;
-            contacts->deep[c] = TL_DEEP_NOT;
-            if (tl_overlap_is_deep(m, &view, &axis, contacts->a[c], contacts->b[c], born)) {
-                tl_overlap_mark(contacts, c, born);
-                room->deep = true;
-            }
-        }
-        tl_tag tag = tl_touching_tag(&view, axis.n);
-        tl_share_rule rule = tl_share_rule_of(m, &view, tag, across);
-        tl_manifold_build(&view, &axis, &rule, room);
-        if (room->manifold.failed)
-            return false;
-        if (!search && !followed && !(room->manifold.patch_area > 0))
-            continue; /* what touched has parted: look at all features */
-        if (search)
-            watch_small(m, c, &view, &rule, &room->manifold);
-        contacts->axis[c] = tl_features_of(&axis);
-        if (tag.joint != contacts->tag[c].joint || tag.plane != contacts->tag[c].plane) {
-            contacts->tag[c] = tag;
-            uint32_t material = tl_material_row(m, tag);
-            if (material != contacts->material[c])
-                contacts->fate[c] = TL_FATE_MOVE;
-        }
-        /* a pair that touches without area stays a contact, so that it need not be born again */
-        if (axis.s > TL_CONTACT_TOLERANCE * TL_CONTACT_RELEASE * view.size && !across) {
-            part(m, c, &axis, view.size);
-        }
+    for (uint32_t k = 0; k < contacts->point_count[c]; k++) {
+        uint32_t flags = m->detect->points.flags[tl_point_row(contacts, c, k)];
+        if (!(flags & (TL_POINT_FAILED | TL_POINT_APART)))
+            return true;
+    }
+    return false;
+}
+
+/* Whether the blocks of a field contact hardly moved against each other in the last step. */
+static bool is_calm(const tl_model *m, uint32_t c, const tl_press_row *row)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    double size = fmin(m->blocks.size[contacts->a[c]], m->blocks.size[contacts->b[c]]);
+    const tl_mat3 *turn = &m->bodies.pose[m->blocks.body[contacts->a[c]]].r;
+    tl_contact_motion by = tl_contact_moved(m, c);
+    tl_vec3 there = tl_v3_cross(by.turn, tl_m3_mul(turn, row->press.point));
+    return tl_v3_norm(tl_v3_add(by.way, there)) + size * tl_v3_norm(by.turn) < CALM * size;
+}
+
+static tl_manifold_before before_of(const tl_model *m, uint32_t c)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    const tl_press_row *row = press_of(m, c);
+    tl_manifold_before out = {.facet = contacts->facet[c]};
+    bool patch = out.facet.kind == TL_FACET_PATCH && contacts->point_count[c] > 0;
+    out.holds = patch && (contacts->across[c] || may_hold(m, c));
+    if (row) {
+        out.calm = is_calm(m, c, row);
+        out.shift = row->shift;
+        out.shifted = row->shifted;
+    }
+    return out;
+}
+
+/* Ends a contact whose blocks have parted. */
+static void part(tl_model *m, uint32_t c, double way)
+{
+    tl_contacts *contacts = &m->detect->contacts;
+    contacts->pending[c] = TL_PENDING_DIE;
+    tl_pair_sleep(m->detect, &m->detect->pairs[contacts->pair[c]], way);
+}
+
+/* Whether a pair without points is still near enough to stay a contact, so that it need not be born again. */
+static bool is_near(const tl_pair_view *view, double gap, double *way)
+{
+    double reach = TL_CONTACT_TOLERANCE * TL_CONTACT_RELEASE * view->size;
+    *way = fmax(gap, reach) - TL_CONTACT_TOLERANCE * view->size;
+    return gap <= reach && tl_look_near(view, reach);
+}
+
+static void note_tag(tl_model *m, uint32_t c, tl_tag tag)
+{
+    tl_contacts *contacts = &m->detect->contacts;
+    if (tag.joint == contacts->tag[c].joint && tag.plane == contacts->tag[c].plane)
+        return;
+    contacts->tag[c] = tag;
+    if (tl_material_row(m, tag) != contacts->material[c])
+        contacts->pending[c] = TL_PENDING_MOVE;
+}
+
+static void check_depth(tl_model *m, uint32_t c, const tl_pair_view *view, const tl_region *region,
+                        tl_narrow *room)
+{
+    tl_contacts *contacts = &m->detect->contacts;
+    bool born = contacts->deep[c] == TL_DEEP_BORN;
+    contacts->deep[c] = TL_DEEP_NOT;
+    if (!tl_overlap_is_deep(m, view, region, contacts->a[c], contacts->b[c], born))
+        return;
+    tl_overlap_mark(contacts, c, born);
+    room->deep = true;
+}
+
+/* Keeps the region of a field contact. */
+static void keep_region(tl_press_row *row, const tl_region *r)
+{
+    uint32_t faces = r->a + r->b + r->border_a + r->border_b;
+    row->listed = faces <= TL_PRESS_FACES;
+    row->flush = r->flush;
+    row->blunt_a = (uint16_t)r->blunt_a;
+    row->blunt_b = (uint16_t)r->blunt_b;
+    if (!row->listed)
+        return;
+    const uint32_t count[] = {r->a, r->b, r->border_a, r->border_b};
+    for (int k = 0; k < 4; k++)
+        row->count[k] = (uint16_t)count[k];
+    memcpy(row->face, r->face, faces * sizeof *r->face);
+    memset(row->known, 0, sizeof row->known);
+}
+
+static tl_region kept_region(tl_press_row *row)
+{
+    return (tl_region){.known = row->known,
+                       .a = row->count[0],
+                       .b = row->count[1],
+                       .border_a = row->count[2],
+                       .border_b = row->count[3],
+                       .face = row->face,
+                       .flush = row->flush,
+                       .blunt_a = row->blunt_a,
+                       .blunt_b = row->blunt_b};
+}
+
+/* All that the contact is in the present place, into the thread's manifold. false: out of memory. */
+static bool find(tl_model *m, uint32_t c, tl_narrow *room)
+{
+    tl_contacts *contacts = &m->detect->contacts;
+    double odometer = tl_pair_odometer(m, contacts->a[c], contacts->b[c]), way;
+    tl_pair_view view = tl_pair_view_of(m, contacts->a[c], contacts->b[c]);
+    tl_region region;
+    if (!tl_pair_place(&view, room) ||
+        !tl_region_find(&view, TL_LIST_MARGIN * view.size, room, &region))
+        return false;
+    tl_manifold_before before = before_of(m, c);
+    tl_tag tag = tl_touching_tag(&view, region.n);
+    tl_touch_rule rule = tl_touch_rule_of(m, &view, tag, before.holds);
+    const tl_manifold *g = &room->manifold;
+    if (!tl_manifold_find(&view, &region, &rule, &before, room))
+        return false;
+    contacts->faces_valid_to[c] = odometer + g->valid;
+    if (g->point_count == 0 && !is_near(&view, region.gap, &way)) {
+        part(m, c, way);
         return true;
     }
+    check_depth(m, c, &view, &region, room);
+    note_tag(m, c, tag);
+    if (press_of(m, c))
+        keep_region(press_of(m, c), &region);
+    return true;
 }
+
+/* A field contact by its list of faces; false when all is to be looked at. *failed: out of memory. */
+static bool follow_field(tl_model *m, uint32_t c, tl_narrow *room, bool *failed)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    tl_press_row *row = press_of(m, c);
+    if (!row || !row->listed || contacts->facet[c].kind != TL_FACET_FIELD ||
+        contacts->point_count[c] == 0 || contacts->deep[c] != TL_DEEP_NOT ||
+        tl_pair_odometer(m, contacts->a[c], contacts->b[c]) > contacts->faces_valid_to[c])
+        return false;
+    tl_pair_view view = tl_pair_view_of(m, contacts->a[c], contacts->b[c]);
+    tl_touch_rule rule = tl_touch_rule_of(m, &view, contacts->tag[c], false);
+    tl_manifold_before before = before_of(m, c);
+    tl_region region = kept_region(row);
+    *failed = !tl_pair_place(&view, room);
+    if (*failed)
+        return false;
+    tl_region_choose_flush(&view, &region);
+    *failed = !tl_manifold_follow(&view, &region, &rule, &before, room);
+    return !*failed && room->manifold.valid > 0;
+}
+
+/* ---------------------------------------------------------------- taking ------------------ */
 
 static void note_manifold(tl_contacts *contacts, uint32_t c, const tl_manifold *g)
 {
     double area = 0;
-    for (size_t k = 0; k < g->point_count; k++)
+    bool field = g->facet.kind == TL_FACET_FIELD;
+    for (size_t k = 0; k < g->point_count && (k == 0 || !field); k++)
         area += g->points[k].area;
     contacts->area[c] = area;
-    contacts->lone[c] = g->lone;
     contacts->fresh[c] = true;
 }
 
-/* Asks for room for a manifold, unless there is enough. */
+/* Asks for room for a manifold, or for a place in another run, unless the contact has them. */
 static bool wants_room(tl_detect *d, uint32_t c, const tl_manifold *g)
 {
     tl_contacts *contacts = &d->contacts;
-    if (g->point_count <= contacts->point_room[c] && g->facet_count <= contacts->facet_room[c])
+    bool field = g->facet.kind == TL_FACET_FIELD;
+    bool bare =
+        field && contacts->press[c] == TL_NO_ROW; /* it has not got the room for its press yet */
+    bool moves = g->point_count > 0 && (contacts->field[c] != field || bare);
+    if (!moves && g->point_count <= contacts->point_room[c])
         return false;
-    tl_pair *pair = &d->pairs[contacts->pair[c]];
-    pair->want.points = (uint16_t)g->point_count;
-    pair->want.facets = (uint16_t)g->facet_count;
-    contacts->fate[c] = TL_FATE_GROW;
+    contacts->field[c] = field;
+    d->pairs[contacts->pair[c]].want_points = (uint16_t)g->point_count;
+    contacts->pending[c] = TL_PENDING_GROW;
     return true;
 }
 
@@ -189,47 +290,58 @@ static bool wants_room(tl_detect *d, uint32_t c, const tl_manifold *g)
 static bool take_manifold(tl_model *m, uint32_t c, tl_narrow *room, const tl_point_lanes *lanes)
 {
     tl_detect *d = m->detect;
-    tl_contacts *contacts = &d->contacts;
-    const tl_manifold *g = &room->manifold;
-    note_manifold(contacts, c, g);
-    if (same_topology(d, c, g)) {
-        refit(m, c, g);
+    tl_manifold *g = &room->manifold;
+    note_manifold(&d->contacts, c, g);
+    if (wants_room(d, c, g))
         return true;
+    if (g->point_count == 0)
+        g->facet = d->contacts.facet[c];
+    if (!same_topology(d, c, g)) {
+        bool fields =
+            g->facet.kind == TL_FACET_FIELD || d->contacts.facet[c].kind == TL_FACET_FIELD;
+        if (!fields)
+            return tl_contact_transfer(m, c, room, lanes);
+        tl_contact_hand_over(m, c, g, lanes);
+    } else if (g->facet.kind == TL_FACET_FIELD) {
+        if (g->point_count > 0)
+            tl_contact_refit_field(m, c, g);
+    } else {
+        refit(m, c, g);
     }
-    return wants_room(d, c, g) || tl_contact_transfer(m, c, room, lanes);
+    return true;
 }
 
-void tl_contact_allow_reuse(tl_model *m, uint32_t c, bool brief)
+void tl_contact_allow_reuse(tl_model *m, uint32_t c)
 {
     tl_contacts *contacts = &m->detect->contacts;
     double size_a = m->blocks.size[contacts->a[c]], size_b = m->blocks.size[contacts->b[c]];
-    double most = (brief                      ? REUSE_BRIEF
-                   : contacts->point_count[c] ? REUSE
-                                              : TL_SILENT) *
-                  (size_a < size_b ? size_a : size_b);
-    contacts->until[c] = tl_pair_odometer(m, contacts->a[c], contacts->b[c]) + most;
+    double most = (contacts->point_count[c] ? REUSE : TL_SILENT) * fmin(size_a, size_b);
+    if (contacts->facet[c].kind == TL_FACET_FIELD && contacts->point_count[c])
+        most = REUSE_FIELD * contacts->facet[c].offset;
+    contacts->points_valid_to[c] = tl_pair_odometer(m, contacts->a[c], contacts->b[c]) + most;
 }
 
-/* Puts a patch in the place of the contact's, whose points begin there and are the same: stresses stay, forces follow
- * the area. Returns its area. */
-static double refit_patch(tl_points_table *p, size_t begin, const tl_patch_points *g)
+/* ---------------------------------------------------------------- patches ----------------- */
+
+/* Puts a patch in the place of the contact's, whose points are the same. */
+static void refit_patch(tl_model *m, uint32_t c, const tl_patch_points *g)
 {
-    double area = 0;
-    for (size_t k = 0; k < g->count; k++) {
-        size_t i = begin + k * TL_LANES;
-        double scale = g->area[k] / p->area[i];
-        for (int x = 0; x < 3; x++) {
-            p->p[x][i] = g->p[x][k];
-            p->f_s[x][i] *= scale;
-        }
-        tl_point_set_lean(p, i, g->lean[k]);
-        p->f_n[i] *= scale;
-        if (p->f_n0)
-            p->f_n0[i] *= scale;
-        p->area[i] = g->area[k];
+    tl_points_table *p = &m->detect->points;
+    double area = 0, *whole = &m->detect->contacts.area[c];
+    for (size_t k = 0; k < g->count; k++)
         area += g->area[k];
+    bool same = fabs(area - *whole) <= TL_SAME_AREA * area;
+    tl_shear before = same ? (tl_shear){0} : tl_shear_of(m, c);
+    for (size_t k = 0; k < g->count; k++) {
+        size_t i = tl_point_row(&m->detect->contacts, c, k);
+        tl_columns_put(p->p, i, tl_columns_get(g->p, k));
+        resize(p, i, g->area[k]);
     }
-    return area;
+    *whole = area;
+    if (same)
+        return;
+    tl_shear now = tl_shear_of(m, c);
+    tl_shear_resized(m, c, &before, &now);
 }
 
 static bool same_keys(const tl_points_table *p, size_t begin, const tl_patch_points *g)
@@ -243,35 +355,30 @@ static bool same_keys(const tl_points_table *p, size_t begin, const tl_patch_poi
 bool tl_contact_is_patch(const tl_model *m, uint32_t c)
 {
     const tl_contacts *contacts = &m->detect->contacts;
-    const tl_facet *f = &contacts->facet[contacts->facet_start[c]];
-    const tl_axis_features *axis = &contacts->axis[c];
     uint32_t material = contacts->material[c];
-    return contacts->lone[c] && contacts->facet_count[c] == 1 && f->kind == TL_FACET_PATCH &&
-           ((axis->kind == TL_AXIS_FACE_A && axis->ia == f->ia) ||
-            (axis->kind == TL_AXIS_FACE_B && axis->ib == f->ib)) &&
+    return contacts->facet[c].kind == TL_FACET_PATCH && contacts->point_count[c] > 0 &&
            material != TL_NO_ROW && !m->materials[material].splits &&
-           tl_pair_odometer(m, contacts->a[c], contacts->b[c]) <= contacts->search[c];
+           tl_pair_odometer(m, contacts->a[c], contacts->b[c]) <= contacts->faces_valid_to[c];
 }
 
-/* The one patch of a contact whose axis stands, made anew where its points are the same; false when that is
+/* The patch of a contact that is one and stays one, made anew where its points are the same; false when that is
  * not all there is to it. */
 static bool renew_patch(tl_model *m, uint32_t c, tl_narrow *room)
 {
     tl_contacts *contacts = &m->detect->contacts;
-    const tl_facet *f = &contacts->facet[contacts->facet_start[c]];
+    const tl_facet *f = &contacts->facet[c];
     if (!tl_contact_is_patch(m, c))
         return false;
     tl_pair_view view = tl_pair_view_of(m, contacts->a[c], contacts->b[c]);
-    tl_share_rule rule = tl_share_rule_of(m, &view, contacts->tag[c], false);
+    tl_touch_rule rule = tl_touch_rule_of(m, &view, contacts->tag[c], contacts->across[c]);
     room->manifold.failed = !tl_pair_place_face(&view, f->ib, room);
-    if (room->manifold.failed || !tl_manifold_renew(&view, f->ia, f->ib, &rule, room))
+    if (room->manifold.failed || !(tl_patch_lay(&view, f->ia, f->ib, &rule, room) > 0))
         return false;
     const tl_patch_points *g = &room->patch;
-    tl_points_table *p = &m->detect->points;
     size_t begin = contacts->point_start[c];
-    if (g->count != contacts->point_count[c] || !same_keys(p, begin, g))
+    if (g->count != contacts->point_count[c] || !same_keys(&m->detect->points, begin, g))
         return false;
-    contacts->area[c] = refit_patch(p, begin, g);
+    refit_patch(m, c, g);
     contacts->fresh[c] = true;
     return true;
 }
@@ -280,12 +387,14 @@ static bool renew_patch(tl_model *m, uint32_t c, tl_narrow *room)
 static bool touches_still(tl_model *m, uint32_t c)
 {
     tl_contacts *contacts = &m->detect->contacts;
-    if (contacts->point_count[c] || contacts->until[c] == -INFINITY) /* under other rules */
+    /* -INFINITY: its rules are others now */
+    if (contacts->point_count[c] || contacts->points_valid_to[c] == -INFINITY)
         return false;
-    if (contacts->fate[c] == TL_FATE_GROW) /* the room it wants is in the place of the faces */
+    /* the room it wants is in the place of the faces */
+    if (contacts->pending[c] == TL_PENDING_GROW)
         return false;
     tl_pair_view view = tl_pair_view_of(m, contacts->a[c], contacts->b[c]);
-    if (tl_share_rule_of(m, &view, contacts->tag[c], false).unconditional)
+    if (tl_touch_rule_of(m, &view, contacts->tag[c], false).least > 0)
         return false;
     tl_pair *p = &m->detect->pairs[contacts->pair[c]];
     double gap, margin = tl_beside_margin(&view, p, &gap);
@@ -295,16 +404,16 @@ static bool touches_still(tl_model *m, uint32_t c)
     }
     if (margin < 0 || gap > TL_CONTACT_TOLERANCE * view.size)
         return false;
-    contacts->until[c] = tl_pair_odometer(m, contacts->a[c], contacts->b[c]) + margin;
+    contacts->points_valid_to[c] = tl_pair_odometer(m, contacts->a[c], contacts->b[c]) + margin;
     return true;
 }
 
 bool tl_contact_stands(const tl_model *m, uint32_t c)
 {
     const tl_contacts *contacts = &m->detect->contacts;
-    return contacts->fate[c] == TL_FATE_DIE ||
+    return contacts->pending[c] == TL_PENDING_DIE ||
            (m->config.reuse_geometry &&
-            tl_pair_odometer(m, contacts->a[c], contacts->b[c]) <= contacts->until[c]);
+            tl_pair_odometer(m, contacts->a[c], contacts->b[c]) <= contacts->points_valid_to[c]);
 }
 
 /* Makes all that a contact is anew. Without the memory for it the contact is as it was, so that it can be tried again
@@ -313,18 +422,16 @@ static bool make_anew(tl_model *m, uint32_t c, unsigned thread)
 {
     tl_contacts *contacts = &m->detect->contacts;
     tl_narrow *room = &m->detect->narrow[thread];
-    tl_axis_features axis = contacts->axis[c];
-    double search = contacts->search[c];
+    double faces_valid_to = contacts->faces_valid_to[c];
     tl_tag tag = contacts->tag[c];
-    uint8_t lone = contacts->lone[c], fate = contacts->fate[c], deep = contacts->deep[c];
-    if (rebuild(m, c, room, contacts->across[c]) &&
-        (contacts->fate[c] == TL_FATE_DIE || take_manifold(m, c, room, &m->detect->lanes[thread])))
+    uint8_t field = contacts->field[c], pending = contacts->pending[c], deep = contacts->deep[c];
+    if (find(m, c, room) && (contacts->pending[c] == TL_PENDING_DIE ||
+                             take_manifold(m, c, room, &m->detect->lanes[thread])))
         return true;
-    contacts->axis[c] = axis;
-    contacts->search[c] = search;
+    contacts->faces_valid_to[c] = faces_valid_to;
     contacts->tag[c] = tag;
-    contacts->lone[c] = lone;
-    contacts->fate[c] = fate;
+    contacts->field[c] = field;
+    contacts->pending[c] = pending;
     contacts->deep[c] = deep;
     room->failed = true;
     return false;
@@ -333,24 +440,31 @@ static bool make_anew(tl_model *m, uint32_t c, unsigned thread)
 void tl_contact_update(tl_model *m, uint32_t c, unsigned thread)
 {
     tl_narrow *room = &m->detect->narrow[thread];
+    bool failed = false;
     if (touches_still(m, c))
         return;
     room->manifold.failed = false;
-    if (renew_patch(m, c, room))
-        tl_contact_allow_reuse(m, c, false);
-    else if (room->manifold.failed)
+    if (renew_patch(m, c, room)) {
+        tl_contact_allow_reuse(m, c);
+    } else if (room->manifold.failed) {
         room->failed = true; /* to be tried again, and not in another way */
-    else if (make_anew(m, c, thread))
-        tl_contact_allow_reuse(m, c, room->manifold.brief);
+    } else if (follow_field(m, c, room, &failed)) {
+        take_manifold(m, c, room, &m->detect->lanes[thread]);
+        tl_contact_allow_reuse(m, c);
+    } else if (failed) {
+        room->failed = true;
+    } else if (make_anew(m, c, thread)) {
+        tl_contact_allow_reuse(m, c);
+    }
 }
 
 void tl_contact_reframe(tl_model *m, uint32_t c, unsigned thread)
 {
     tl_contacts *contacts = &m->detect->contacts;
     tl_narrow *room = &m->detect->narrow[thread];
-    if (contacts->fate[c] == TL_FATE_DIE)
+    if (contacts->pending[c] == TL_PENDING_DIE)
         return;
-    contacts->search[c] = -INFINITY;
+    contacts->faces_valid_to[c] = -INFINITY;
     room->reframed = true;
     make_anew(m, c, thread);
     room->reframed = false;
@@ -358,25 +472,18 @@ void tl_contact_reframe(tl_model *m, uint32_t c, unsigned thread)
 
 bool tl_contact_fill(tl_model *m, uint32_t c)
 {
-    tl_contacts *contacts = &m->detect->contacts;
-    tl_narrow *room = &m->detect->narrow[0];
-    tl_pair_view view = tl_pair_view_of(m, contacts->a[c], contacts->b[c]);
-    if (!tl_pair_place(&view, room))
+    tl_detect *d = m->detect;
+    tl_contacts *contacts = &d->contacts;
+    if (contacts->field[c] && contacts->press[c] == TL_NO_ROW &&
+        (contacts->press[c] = tl_press_take(d)) == TL_NO_ROW)
         return false;
-    tl_axis axis = tl_axis_of(contacts->axis[c]);
-    if (!tl_axis_place(&view, &axis))
-        axis = tl_axis_search(&view, room, NULL);
-    tl_share_rule rule = tl_share_rule_of(m, &view, contacts->tag[c], contacts->across[c]);
-    tl_manifold_build(&view, &axis, &rule, room);
-    watch_small(m, c, &view, &rule, &room->manifold);
-    note_manifold(contacts, c, &room->manifold);
-    if (room->manifold.failed)
+    contacts->pending[c] = TL_PENDING_KEEP;
+    if (!make_anew(m, c, 0)) {
+        d->narrow[0].failed = false; /* the caller tells */
+        contacts->pending[c] = TL_PENDING_GROW;
         return false;
-    if (wants_room(m->detect, c, &room->manifold)) /* its axis has been found in another way */
-        return true;
-    if (!tl_contact_transfer(m, c, room, &m->detect->lanes[0]))
-        return false;
-    contacts->fate[c] = TL_FATE_KEEP;
-    tl_contact_allow_reuse(m, c, room->manifold.brief);
+    }
+    if (contacts->pending[c] == TL_PENDING_KEEP)
+        tl_contact_allow_reuse(m, c);
     return true;
 }

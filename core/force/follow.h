@@ -5,10 +5,9 @@
 #include "contact/layout.h"
 #include "model/model.h"
 
-/* Gaps, normals and relative motion of the contacts of a rank, its first point's into lane `lane`; turns shear forces
- * with the common plane, and the states of which `tangents` has a bit. false when no area depends on tilt: there are
- * no couples then. */
-bool tl_rank_follow(tl_model *m, const tl_rank *rank, const tl_point_lanes *lanes, size_t lane,
-                    uint32_t tangents);
+/* Gaps, normals and relative motion of the contacts of a rank of patches, or of field contacts, its first point's into lane
+ * `lane`; turns shear forces with the common plane, and the states of which `tangents` has a bit. */
+void tl_rank_follow(tl_model *m, const tl_rank *rank, bool field, const tl_point_lanes *lanes,
+                    size_t lane, uint32_t tangents);
 
 #endif

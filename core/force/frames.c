@@ -4,7 +4,7 @@
  * worked out for all of them at once. */
 #include "force/frames.h"
 
-#include "contact/places.h"
+#include "contact/facing.h"
 
 #include <assert.h>
 #include <stddef.h>
@@ -57,11 +57,11 @@ TL_INLINE tl_mat3 turn_back(tl_vec3 h)
 
 /* ---------------------------------------------------------------- lanes ------------------ */
 
-/* What is known of a patch and its bodies, a lane each, before the lanes work out together what follows from it. */
-typedef struct patches {
+/* What is known of a contact and its bodies, a lane each, before the lanes work out together what follows from it. */
+typedef struct contacts {
     double a[TL_POSE_ROW][TL_LANES], b[TL_POSE_ROW][TL_LANES]; /* tl_pose */
     double facet[TL_FACET_ROW][TL_LANES];                      /* tl_facet */
-} patches;
+} contacts;
 
 /* Where the members of a facet and of a pose are in their rows. */
 #define AT(type, member) (offsetof(type, member) / sizeof(double))
@@ -70,7 +70,6 @@ enum {
     NB = AT(tl_facet, nb),
     OFFSET = AT(tl_facet, offset),
     LAST = AT(tl_facet, last),
-    LAST_LEAN = AT(tl_facet, last_lean),
     X_REF = AT(tl_pose, x_ref),
     U = AT(tl_pose, u),
     V_MOVED = AT(tl_pose, v_moved),
@@ -127,24 +126,6 @@ TL_INLINE void transpose_poses(double (*restrict to)[TL_LANES], const double *co
     transpose(to, row, (POSE_END + 1) / 2 * 2);
 }
 
-/* A facet in its present place. */
-TL_INLINE void put_facing(tl_frames *f, size_t l, tl_facing to)
-{
-    tl_lanes3_put(&f->n, l, to.n);
-    tl_lanes3_put(&f->mean, l, to.mean);
-    tl_lanes3_put(&f->lean, l, to.lean);
-    tl_lanes3_put(&f->plane, l, to.plane);
-    f->mean2[l] = to.mean2;
-    f->l2[l] = to.l2;
-    f->offset[l] = to.offset;
-}
-
-/* Square of the mean normal in the last step: 1 of facets that were flush. */
-TL_INLINE double last2(tl_vec3 last, double last_l2)
-{
-    return last_l2 > 0 ? tl_v3_norm2(last) : 1;
-}
-
 TL_INLINE tl_mat3 difference(const tl_mat3 *a, const tl_mat3 *b)
 {
     return (tl_mat3){{{a->m[0][0] - b->m[0][0], a->m[0][1] - b->m[0][1], a->m[0][2] - b->m[0][2]},
@@ -152,14 +133,12 @@ TL_INLINE tl_mat3 difference(const tl_mat3 *a, const tl_mat3 *b)
                       {a->m[2][0] - b->m[2][0], a->m[2][1] - b->m[2][1], a->m[2][2] - b->m[2][2]}}};
 }
 
-/* How shear forces of a facet turn: from its normal `from` in the last step to n, then by twice the angle of tangent w about
- * that. With h = from x n + w (from + n) that is 1 + p [h] + p q [h]^2, p = 1 / (1 + w^2), q = 1 / (1 + from . n). What has not
+/* How shear forces turn: from the normal `from` of the last step to n, then by twice the angle of tangent w about that.
+ * With h = from x n + w (from + n) that is 1 + p [h] + p q [h]^2, p = 1 / (1 + w^2), q = 1 / (1 + from . n). What has not
  * turned stays as it is, to the bit. */
-TL_INLINE void put_turn(tl_frames *f, size_t l, tl_vec3 last, tl_vec3 last_lean)
+TL_INLINE void put_turn(tl_frames *f, size_t l, tl_vec3 from)
 {
-    double last_l2 = tl_v3_norm2(last_lean), flush = f->l2[l] + last_l2 > 0 ? 0 : 1;
     tl_vec3 n = tl_lanes3_get(&f->n, l);
-    tl_vec3 from = tl_v3_scale(tl_unit_scale(last2(last, last_l2) - 1), last);
     double w = tl_v3_dot(tl_lanes3_get(&f->half, l), n), c = 1 + tl_v3_dot(from, n);
     tl_vec3 h = tl_v3_madd(tl_v3_cross(from, n), w, tl_v3_add(from, n));
     tl_vec3 s = tl_v3_scale(1 / (1 + w * w), h), g = tl_v3_scale(1 / (c > 0 ? c : 1), h);
@@ -167,29 +146,12 @@ TL_INLINE void put_turn(tl_frames *f, size_t l, tl_vec3 last, tl_vec3 last_lean)
                      {s.y * g.x + s.z, 1 - (s.z * g.z + s.x * g.x), s.y * g.z - s.x},
                      {s.z * g.x - s.y, s.z * g.y + s.x, 1 - (s.x * g.x + s.y * g.y)}}};
     /* out of it what is along `from`: rounding would lead out of the plane in the course of many steps */
-    tl_vec3 out = tl_v3_scale(tl_v3_norm2(h) > 0 ? flush : 0, n);
+    tl_vec3 out = tl_v3_scale(tl_v3_norm2(h) > 0 ? 1 : 0, n);
     tl_mat3 along = {{{out.x * from.x, out.x * from.y, out.x * from.z},
                       {out.y * from.x, out.y * from.y, out.y * from.z},
                       {out.z * from.x, out.z * from.y, out.z * from.z}}};
     turn = difference(&turn, &along);
     tl_lanes9_put(&f->turn, l, &turn);
-    f->tilted[l] = 1 - flush;
-}
-
-/* What only the points of tilted facets need. */
-TL_INLINE void put_tilt(tl_frames *f, size_t l, tl_vec3 last, tl_vec3 last_lean, double carry)
-{
-    double l2 = f->l2[l], last_l2 = tl_v3_norm2(last_lean);
-    tl_mat3 turn = tl_lanes9_get(&f->turn, l);
-    tl_lanes3_put(&f->across, l,
-                  tl_v3_cross(tl_lanes3_get(&f->mean, l), tl_lanes3_get(&f->lean, l)));
-    tl_lanes3_put(&f->was, l, tl_m3_mul(&turn, last));
-    tl_lanes3_put(&f->was_lean, l, tl_m3_mul(&turn, last_lean));
-    tl_lanes3_put(&f->was_across, l, tl_m3_mul(&turn, tl_v3_cross(last, last_lean)));
-    f->was2[l] = last2(last, last_l2);
-    f->was_l2[l] = last_l2;
-    f->carry[l] = l2 > 0 ? carry : 0;
-    f->slide[l] = f->carry[l] / (l2 > 0 ? l2 : 1);
 }
 
 /* Element k and the two behind it as a vector of lane l. */
@@ -253,195 +215,48 @@ TL_INLINE void put_rows_motion(tl_frames *f, size_t l, double (*a)[TL_LANES], do
                way_between(row_vec3(a, V_MOVED, l), row_vec3(b, V_MOVED, l), dt), d);
 }
 
-TL_VECTORIZED static bool put_patches(tl_frames *restrict f, const tl_patch_rows *restrict rows)
+/* `field` is a constant at each call. */
+TL_INLINE void put_all(tl_frames *restrict f, const tl_frame_rows *restrict rows, bool field)
 {
-    double any = 0, tangent_a[TL_LANES], tangent_b[TL_LANES];
-    patches p;
-    const tl_body_rows *bodies = &rows->bodies;
-    transpose_poses(p.a, bodies->a);
-    transpose_poses(p.b, bodies->b);
+    double tangent_a[TL_LANES], tangent_b[TL_LANES];
+    contacts p;
+    transpose_poses(p.a, rows->a);
+    transpose_poses(p.b, rows->b);
     transpose(p.facet, rows->facet, TL_FACET_ROW);
-    put_tangents(tangent_a, p.a, bodies->dt);
-    put_tangents(tangent_b, p.b, bodies->dt);
+    put_tangents(tangent_a, p.a, rows->dt);
+    put_tangents(tangent_b, p.b, rows->dt);
 #pragma omp simd
     for (size_t l = 0; l < TL_LANES; l++) {
         tl_vec3 d = rows_apart(p.a, p.b, l);
-        put_rows_motion(f, l, p.a, p.b, tangent_a[l], tangent_b[l], bodies->dt, d);
+        put_rows_motion(f, l, p.a, p.b, tangent_a[l], tangent_b[l], rows->dt, d);
         tl_mat3 ra = row_mat3(p.a, l), rb = row_mat3(p.b, l);
         tl_lanes9_put(&f->to, l, &ra);
         tl_vec3 na = tl_m3_mul(&ra, row_vec3(p.facet, NA, l));
         tl_vec3 nb = tl_m3_mul(&rb, row_vec3(p.facet, NB, l));
-        put_facing(f, l, tl_facing_patch(na, nb, d, p.facet[OFFSET][l]));
-        put_turn(f, l, row_vec3(p.facet, LAST, l), row_vec3(p.facet, LAST_LEAN, l));
-    }
-    for (size_t l = 0; l < TL_LANES; l++)
-        any += f->tilted[l];
-    if (!(any > 0))
-        return false;
-#pragma omp simd
-    for (size_t l = 0; l < TL_LANES; l++) {
-        tl_lanes3_put(&f->from, l, tl_v3(0, 0, 0));
-        put_tilt(f, l, row_vec3(p.facet, LAST, l), row_vec3(p.facet, LAST_LEAN, l), rows->carry[l]);
-    }
-    return true;
-}
-
-bool tl_frames_put_patches(tl_frames *f, const tl_patch_rows *rows)
-{
-    return put_patches(f, rows);
-}
-
-TL_VECTORIZED static void put_bodies(tl_frames *restrict f, tl_facet_rows *restrict facets,
-                                     const tl_body_rows *restrict bodies)
-{
-    double a[TL_POSE_ROW][TL_LANES], b[TL_POSE_ROW][TL_LANES];
-    double tangent_a[TL_LANES], tangent_b[TL_LANES];
-    transpose_poses(a, bodies->a);
-    transpose_poses(b, bodies->b);
-    put_tangents(tangent_a, a, bodies->dt);
-    put_tangents(tangent_b, b, bodies->dt);
-#pragma omp simd
-    for (size_t l = 0; l < TL_LANES; l++) {
-        tl_vec3 d = rows_apart(a, b, l), nothing = {0, 0, 0};
-        put_rows_motion(f, l, a, b, tangent_a[l], tangent_b[l], bodies->dt, d);
-        tl_mat3 ra = row_mat3(a, l), rb = row_mat3(b, l);
-        tl_lanes9_put(&facets->ra, l, &ra);
-        tl_lanes9_put(&facets->rb, l, &rb);
-        tl_lanes3_put(&facets->d, l, d);
-        tl_lanes3_put(&facets->from_a, l, nothing);
-        tl_lanes3_put(&facets->from_b, l, nothing);
-        tl_lanes3_put(&facets->along_a, l, nothing);
-        tl_lanes3_put(&facets->along_b, l, nothing);
-        tl_lanes3_put(&facets->edge_n, l, nothing);
-        facets->edge_offset[l] = 0;
+        tl_facing to = field ? tl_facing_field(na, p.facet[OFFSET][l])
+                             : tl_facing_patch(na, nb, d, p.facet[OFFSET][l]);
+        tl_lanes3_put(&f->n, l, to.n);
+        tl_lanes3_put(&f->plane, l, to.plane);
+        f->offset[l] = to.offset;
+        tl_lanes3_put(&f->last, l, row_vec3(p.facet, LAST, l));
+        put_turn(f, l, row_vec3(p.facet, LAST, l));
     }
 }
 
-void tl_frames_put_bodies(tl_frames *f, tl_facet_rows *facets, const tl_body_rows *bodies)
+TL_VECTORIZED static void put_patches(tl_frames *restrict f, const tl_frame_rows *restrict rows)
 {
-    put_bodies(f, facets, bodies);
-    facets->new_edges = false;
+    put_all(f, rows, false);
 }
 
-/* Normals and offsets of the edges; the operations are those of places.c. */
-TL_VECTORIZED static void put_edges(tl_facet_rows *restrict rows)
+TL_VECTORIZED static void put_fields(tl_frames *restrict f, const tl_frame_rows *restrict rows)
 {
-    double facet[4][TL_LANES];
-    transpose(facet, rows->facet, 4);
-#pragma omp simd
-    for (size_t l = 0; l < TL_LANES; l++) {
-        tl_mat3 ra = tl_lanes9_get(&rows->ra, l), rb = tl_lanes9_get(&rows->rb, l);
-        tl_vec3 along_a = tl_m3_mul(&ra, tl_lanes3_get(&rows->along_a, l));
-        tl_vec3 along_b = tl_m3_mul(&rb, tl_lanes3_get(&rows->along_b, l));
-        tl_vec3 foot_a = tl_m3_mul(&ra, tl_lanes3_get(&rows->from_a, l));
-        tl_vec3 foot_b =
-            tl_v3_add(tl_m3_mul(&rb, tl_lanes3_get(&rows->from_b, l)), tl_lanes3_get(&rows->d, l));
-        tl_vec3 n = tl_facing_edges(along_a, along_b, tl_m3_mul(&ra, row_vec3(facet, NA, l)));
-        tl_lanes3_put(&rows->edge_n, l, n);
-        rows->edge_offset[l] = -tl_v3_dot(n, tl_v3_sub(foot_b, foot_a));
-    }
+    put_all(f, rows, true);
 }
 
-TL_INLINE double choose(double yes, double a, double b)
+void tl_frames_put(tl_frames *f, const tl_frame_rows *rows, bool field)
 {
-    return yes > 0 ? a : b;
-}
-
-TL_INLINE tl_vec3 choose3(double yes, tl_vec3 a, tl_vec3 b)
-{
-    return tl_v3(choose(yes, a.x, b.x), choose(yes, a.y, b.y), choose(yes, a.z, b.z));
-}
-
-/* The facing of the kind of facet that lane l has: all are made, and one is chosen. */
-TL_INLINE tl_facing facing_in(const tl_facet_rows *restrict rows, size_t l, tl_vec3 na, tl_vec3 nb,
-                              double offset)
-{
-    double kind = rows->kind[l], level = kind == TL_FACET_PATCH ? 0 : 1;
-    double on_a = kind == TL_FACET_FACE_A ? 1 : 0, on_b = kind == TL_FACET_FACE_B ? 1 : 0;
-    double crosses = kind == TL_FACET_EDGES ? 1 : 0;
-    tl_vec3 d = tl_lanes3_get(&rows->d, l), nothing = {0, 0, 0};
-    tl_facing to = tl_facing_patch(na, nb, d, offset);
-    to.n = choose3(on_a, na, to.n);
-    to.n = choose3(on_b, tl_v3_neg(nb), to.n);
-    to.n = choose3(crosses, tl_lanes3_get(&rows->edge_n, l), to.n);
-    to.mean = choose3(level, to.n, to.mean);
-    to.lean = choose3(level, nothing, to.lean);
-    to.mean2 = choose(level, 1, to.mean2);
-    to.l2 = choose(level, 0, to.l2);
-    to.plane = choose3(on_a, na, to.plane);
-    to.plane = choose3(on_b, nb, to.plane);
-    to.plane = choose3(crosses, nothing, to.plane);
-    to.offset = choose(on_a, offset, to.offset); /* B's face: as of a patch */
-    to.offset = choose(crosses, rows->edge_offset[l], to.offset);
-    return to;
-}
-
-TL_VECTORIZED static void put_facets(tl_frames *restrict f, const tl_facet_rows *restrict rows)
-{
-    double facet[TL_FACET_ROW][TL_LANES];
-    transpose(facet, rows->facet, TL_FACET_ROW);
-#pragma omp simd
-    for (size_t l = 0; l < TL_LANES; l++) {
-        tl_mat3 ra = tl_lanes9_get(&rows->ra, l), rb = tl_lanes9_get(&rows->rb, l);
-        tl_vec3 na = tl_m3_mul(&ra, row_vec3(facet, NA, l));
-        tl_vec3 nb = tl_m3_mul(&rb, row_vec3(facet, NB, l));
-        tl_vec3 last = row_vec3(facet, LAST, l), last_lean = row_vec3(facet, LAST_LEAN, l);
-        put_facing(f, l, facing_in(rows, l, na, nb, facet[OFFSET][l]));
-        put_turn(f, l, last, last_lean);
-        put_tilt(f, l, last, last_lean, rows->carry[l]);
-        double in_b = rows->kind[l] == TL_FACET_FACE_A ? 1 : 0;
-        for (int i = 0; i < 3; i++)
-            for (int j = 0; j < 3; j++)
-                f->to.m[i][j][l] = choose(in_b, rb.m[i][j], ra.m[i][j]);
-        tl_lanes3_put(&f->from, l, choose3(in_b, tl_lanes3_get(&rows->d, l), tl_v3(0, 0, 0)));
-    }
-}
-
-void tl_frames_put_facets(tl_frames *f, tl_facet_rows *rows)
-{
-    if (rows->new_edges)
-        put_edges(rows);
-    rows->new_edges = false;
-    put_facets(f, rows);
-}
-
-/* The turn of A's frame is the same in all rows. */
-TL_VECTORIZED static void put_couples(double *const couple[3], size_t begin, size_t end,
-                                      const tl_lanes9 *restrict ra, const tl_lanes3 *restrict swing)
-{
-    tl_lanes3 turned;
-#pragma omp simd
-    for (size_t l = 0; l < TL_LANES; l++) {
-        tl_mat3 turn = tl_lanes9_get(ra, l);
-        tl_lanes3_put(&turned, l, tl_m3_mul(&turn, tl_lanes3_get(swing, l)));
-    }
-    for (size_t at = begin * TL_LANES; at < end * TL_LANES; at += TL_LANES) {
-        memcpy(couple[0] + at, turned.x, sizeof turned.x);
-        memcpy(couple[1] + at, turned.y, sizeof turned.y);
-        memcpy(couple[2] + at, turned.z, sizeof turned.z);
-    }
-}
-
-void tl_frames_put_couples(double *const couple[3], size_t begin, size_t end, const tl_lanes9 *ra,
-                           const tl_lanes3 *swing)
-{
-    put_couples(couple, begin, end, ra, swing);
-}
-
-void tl_frames_put(tl_frames *f, size_t l, const tl_model *m, uint32_t c, const tl_facet *facet,
-                   double carry)
-{
-    tl_sight s = tl_sight_of(m, c);
-    tl_facing to = tl_facing_of(facet, &s);
-    bool in_b = tl_facet_in_b(facet);
-    const tl_pose *a = &m->bodies.pose[m->blocks.body[s.a]];
-    const tl_pose *b = &m->bodies.pose[m->blocks.body[s.b]];
-    tl_vec3 half_a = half_turn(a->w_moved, tangent_of(angle2(a->w_moved, m->dt)), m->dt);
-    tl_vec3 half_b = half_turn(b->w_moved, tangent_of(angle2(b->w_moved, m->dt)), m->dt);
-    put_motion(f, l, half_a, half_b, way_between(a->v_moved, b->v_moved, m->dt), s.d);
-    tl_lanes9_put(&f->to, l, in_b ? s.rb : s.ra);
-    tl_lanes3_put(&f->from, l, in_b ? s.d : tl_v3(0, 0, 0));
-    put_facing(f, l, to);
-    put_turn(f, l, facet->last, facet->last_lean);
-    put_tilt(f, l, facet->last, facet->last_lean, carry);
+    if (field)
+        put_fields(f, rows);
+    else
+        put_patches(f, rows);
 }

@@ -95,7 +95,8 @@ static bool call(const place *at, trial *t)
                           .state = state,
                           .flags = t->flags,
                           .stored = t->stored,
-                          .dissipated = t->dissipated};
+                          .dissipated = t->dissipated,
+                          .closure_edge = t->closure};
     tl_report report = {.size = sizeof report};
     tl_enter(at->law->kind, "update");
     tl_status status = ops->update(at->law->self, &batch, &report);

@@ -5,12 +5,14 @@
 
 #include "force/laws.h"
 
+#include "base/columns.h"
 #include "base/inside.h"
 #include "contact/contacts.h"
-#include "contact/expect.h"
 #include "contact/held.h"
+#include "contact/prefetch.h"
 #include "force/follow.h"
 #include "force/law_check.h"
+#include "force/partly_open.h"
 
 #include <stdatomic.h>
 #include <string.h>
@@ -54,6 +56,8 @@ static bool call_law(const run_job *job, size_t first, size_t count, const tl_po
         .flags = p->flags + first,
         .stored = l->stored,
         .dissipated = l->dissipated,
+        .closure_edge =
+            job->run->field || job->material->pulls != TL_PULL_BONDED ? l->closure : l->edge,
     };
     /* a law need not write its energies: those of the page before are not its own */
     memset(l->stored, 0, count * sizeof *l->stored);
@@ -155,29 +159,6 @@ TL_VECTORIZED static double odd_states(const tl_points_table *p, uint32_t column
     return sum;
 }
 
-/* The couples on B by which the areas of contacts, where they depend on tilt, do work: what the springs gain or lose
- * with their areas, the bodies lose or gain. Areas keep the points' stresses, so the energy stored in them is
- * in proportion. */
-TL_VECTORIZED static void sum_couples(const tl_point_lanes *t, size_t lane, size_t slots,
-                                      rank_sums *restrict out)
-{
-    const double *x = t->couple[0] + lane, *y = t->couple[1] + lane, *z = t->couple[2] + lane;
-    const double *stored = t->stored + lane;
-    double couple[3][TL_LANES] = {{0}};
-    for (size_t at = 0; at < slots * TL_LANES; at += TL_LANES)
-#pragma omp simd
-        for (size_t l = 0; l < TL_LANES; l++) {
-            size_t i = at + l;
-            couple[0][l] += stored[i] * x[i];
-            couple[1][l] += stored[i] * y[i];
-            couple[2][l] += stored[i] * z[i];
-        }
-    for (int k = 0; k < 3; k++)
-#pragma omp simd
-        for (size_t l = 0; l < TL_LANES; l++)
-            out->moment[k][l] += couple[k][l];
-}
-
 static double across(const double *lane)
 {
     return ((lane[0] + lane[1]) + (lane[2] + lane[3])) +
@@ -196,26 +177,83 @@ static void report_odd(const run_job *job, const tl_rank *rank, const rank_sums 
     tl_law_check_shear(job->m, job->phase->failure, job->material, rank, t, lane);
 }
 
-/* Forces of the contacts of a rank, whose first point is in lane `lane`; `coupled`: areas may depend on tilt. */
+/* Of the field contacts of a rank. The first point carries the normal force, the point of torsion the same again. What the
+ * springs of the law hold pressed is not what the field holds: see tl_press. */
+static void sum_fields(const run_job *job, const tl_rank *rank, const tl_point_lanes *t,
+                       size_t lane, rank_sums *out)
+{
+    const tl_detect *d = job->m->detect;
+    const tl_contacts *contacts = &d->contacts;
+    const tl_points_table *p = &d->points;
+    memset(out, 0, sizeof *out);
+    for (size_t l = 0; l < TL_LANES; l++) {
+        uint32_t c = rank->contact[l];
+        size_t i = rank->start + l, k = lane + l, torsion = TL_FIELD_TORSION * TL_LANES;
+        if (c == TL_NO_ROW || !(p->area[i] > 0))
+            continue;
+        const tl_press_row *row = &d->press[contacts->press[c]];
+        const tl_press *press = &row->press;
+        const tl_mat3 *turn = &job->m->bodies.pose[job->m->blocks.body[contacts->a[c]]].r;
+        double f_n = p->f_n[i], per = 1 / tl_v3_norm(press->force);
+        tl_vec3 x = tl_columns_get(t->arm, k), n = tl_columns_get(t->normal, k);
+        tl_vec3 shear = tl_columns_get(p->f_s, i);
+        tl_vec3 twist = tl_columns_get(p->f_s, i + torsion);
+        tl_vec3 force = tl_v3_madd(shear, f_n, n);
+        tl_vec3 couple = tl_v3_sub(press->moment, tl_v3_cross(press->point, press->force));
+        tl_vec3 moment = tl_v3_madd(tl_v3_cross(x, force), f_n * per, tl_m3_mul(turn, couple));
+        moment = tl_v3_madd(moment, press->radius, twist);
+        double springs = f_n * f_n / (job->material->kn * p->area[i]);
+        double ks = job->material->ks;
+        double spare = ks > 0 ? 0.5 * (row->spare[0] + row->spare[1]) / ks : 0;
+        for (int axis = 0; axis < 3; axis++) {
+            out->force[axis][l] = (&force.x)[axis];
+            out->moment[axis][l] = (&moment.x)[axis];
+        }
+        out->stored[l] =
+            t->stored[k] + t->stored[k + torsion] - springs + f_n * per * press->energy + spare;
+        out->dissipated[l] = t->dissipated[k] + t->dissipated[k + torsion];
+        out->odd[l] = 0 * (force.x + force.y + force.z + moment.x + moment.y + moment.z);
+        if (fabs(tl_v3_dot(shear, n)) > TL_OUT_OF_PLANE * tl_v3_norm(force))
+            out->odd[l] += 1;
+    }
+}
+
+/* Adds what partly open patches have besides their points. */
+static void add_parts(const run_job *job, const tl_partly_open *open, rank_sums *sum)
+{
+    for (size_t l = 0; l < TL_LANES && open->any; l++) {
+        sum->moment[0][l] += job->material->kn * open->moment[l].x;
+        sum->moment[1][l] += job->material->kn * open->moment[l].y;
+        sum->moment[2][l] += job->material->kn * open->moment[l].z;
+        sum->stored[l] += job->material->kn * open->energy[l];
+    }
+}
+
+/* Forces of the contacts of a rank, whose first point is in lane `lane`. */
 static void sum_rank(const run_job *job, const tl_rank *rank, const tl_point_lanes *t, size_t lane,
-                     bool coupled)
+                     const tl_partly_open *open)
 {
     tl_model *m = job->m;
     tl_contacts *contacts = &m->detect->contacts;
     unsigned begins = 0; /* lanes of contacts that carried nothing in the step before */
     rank_sums sum;
-    sum_points(&m->detect->points, t, rank->start, lane, rank->slots, &sum);
-    if (m->cycles % SHEAR_EVERY == 0)
+    if (job->run->field)
+        sum_fields(job, rank, t, lane, &sum);
+    else
+        sum_points(&m->detect->points, t, rank->start, lane, rank->slots, &sum);
+    add_parts(job, open, &sum);
+    if (m->cycles % SHEAR_EVERY == 0 && !job->run->field)
         sum_tilts(&m->detect->points, t, rank->start, lane, rank->slots, &sum);
-    if (coupled)
-        sum_couples(t, lane, rank->slots, &sum);
     tl_rank_energy energy = {0, 0};
     for (size_t l = 0; l < TL_LANES; l++) {
         uint32_t c = rank->contact[l];
         if (c == TL_NO_ROW)
             continue; /* what its rows hold means nothing, after a step that failed not even a number */
         energy.stored += sum.stored[l];
-        energy.dissipated += sum.dissipated[l];
+        energy.dissipated += sum.dissipated[l] + contacts->released[c];
+        if (job->changed && contacts->released[c] != 0) /* heat of this step only */
+            atomic_store_explicit(job->changed, true, memory_order_relaxed);
+        contacts->released[c] = 0;
         contacts->across[c] = sum.across[l] > 0;
         tl_vec3 force = tl_v3(sum.force[0][l], sum.force[1][l], sum.force[2][l]);
         if (tl_v3_is_zero(contacts->force[c]) && !tl_v3_is_zero(force))
@@ -277,14 +315,20 @@ static void force_page(const run_job *job, const tl_rank *ranks, size_t count, s
                        const tl_point_lanes *t)
 {
     size_t first = ranks->start, points = 0;
-    bool coupled[RANK_CHUNK];
+    tl_partly_open open[RANK_CHUNK];
+    bool parts = !job->run->field && tl_part_applies(job->m, job->material);
     job->phase->keep(job->m, ranks, count);
     if (job->changed)
         note_points(&job->m->detect->points, first, page_points(ranks, count), t);
     for (size_t r = 0; r < count; r++) {
         if (r < soon)
-            tl_rank_expect(job->m, &ranks[count + r]);
-        coupled[r] = tl_rank_follow(job->m, &ranks[r], t, points, job->material->tangents);
+            tl_rank_prefetch(job->m, &ranks[count + r]);
+        tl_rank_follow(job->m, &ranks[r], job->run->field, t, points, job->material->tangents);
+        open[r].any = false;
+        if (!job->run->field && job->material->pulls == TL_PULL_BONDED)
+            tl_rank_edges(job->m, &ranks[r], t, points);
+        if (parts)
+            tl_rank_part(job->m, job->material, &ranks[r], t, points, &open[r]);
         points += (size_t)ranks[r].slots * TL_LANES;
     }
     if (!call_law(job, first, points, t))
@@ -292,7 +336,7 @@ static void force_page(const run_job *job, const tl_rank *ranks, size_t count, s
     if (odd_states(&job->m->detect->points, job->material->columns, first, points) != 0)
         tl_law_check_states(job->m, job->phase->failure, job->material, first, points);
     for (size_t r = 0; r < count; r++)
-        sum_rank(job, &ranks[r], t, ranks[r].start - first, coupled[r]);
+        sum_rank(job, &ranks[r], t, ranks[r].start - first, &open[r]);
     if (job->changed && !as_noted(&job->m->detect->points, first, points, t))
         atomic_store_explicit(job->changed, true, memory_order_relaxed);
 }

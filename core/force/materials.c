@@ -64,6 +64,9 @@ tl_status tl_material_make(tl_model *m, tl_tag tag, const char *joint, const tl_
     tl_enter(kind, "stateless");
     out->columns = ops->stateless && ops->stateless(out->self) ? 0 : column;
     tl_leave();
+    tl_enter(kind, "pulls");
+    out->pulls = ops->pulls ? ops->pulls(out->self) : TL_PULL_ANY;
+    tl_leave();
     return TL_OK;
 }
 

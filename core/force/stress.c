@@ -2,7 +2,7 @@
  *
  * sigma(z) = stress + gradient (z - at.z), tension positive. A point of area a and normal n (A to B) gets
  * f_n = -(n . sigma n) a and f_s = -(sigma n - (n . sigma n) n) a on B, and its closure counts from now.
- * Edge and point contacts begin without force, and so do contacts made later, and faces with rock between them. */
+ * Field contacts begin without force, and so do contacts made later, and faces with rock between them. */
 #include "force/stress.h"
 
 #include "base/columns.h"
@@ -36,13 +36,13 @@ static void load_point(tl_model *m, const tl_insitu *s, size_t i, tl_vec3 n, dou
 
 /* Whether the faces of a patch are together: in the mean over its area not farther apart than blocks in contact are. Faces
  * with a wedge of rock between them touch along its edge and have a patch, but the wedge carries their stress. */
-static bool faces_meet(const tl_model *m, uint32_t c, const tl_facet *f)
+static bool faces_meet(const tl_model *m, uint32_t c)
 {
     const tl_contacts *contacts = &m->detect->contacts;
     const tl_points_table *p = &m->detect->points;
     double size = fmin(m->blocks.size[contacts->a[c]], m->blocks.size[contacts->b[c]]);
     double area = 0, apart = 0;
-    for (size_t i = f->begin; i < f->begin + (size_t)f->count; i++) {
+    for (size_t i = 0; i < contacts->point_count[c]; i++) {
         size_t point = tl_point_row(contacts, c, i);
         area += p->area[point];
         apart -= p->area[point] * (m->detect->lanes[0].closure[i] + p->reference[point]);
@@ -57,12 +57,9 @@ void tl_insitu_load(tl_model *m, const tl_insitu *s, uint32_t c)
     double foot = m->origin.z + tl_body_place(&m->bodies, m->blocks.body[contacts->a[c]]).z;
     tl_contact_places(m, c, lanes);
     m->detect->contacts.across[c] = true; /* perhaps: the next step tells */
-    for (uint32_t k = 0; k < contacts->facet_count[c]; k++) {
-        const tl_facet *f = &contacts->facet[contacts->facet_start[c] + k];
-        if (f->kind != TL_FACET_PATCH || !faces_meet(m, c, f))
-            continue;
-        for (size_t i = f->begin; i < f->begin + (size_t)f->count; i++)
-            load_point(m, s, tl_point_row(contacts, c, i), tl_columns_get(lanes->normal, i),
-                       foot + lanes->arm[2][i], lanes->closure[i]);
-    }
+    if (contacts->facet[c].kind != TL_FACET_PATCH || !faces_meet(m, c))
+        return;
+    for (size_t i = 0; i < contacts->point_count[c]; i++)
+        load_point(m, s, tl_point_row(contacts, c, i), tl_columns_get(lanes->normal, i),
+                   foot + lanes->arm[2][i], lanes->closure[i]);
 }

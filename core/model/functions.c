@@ -115,12 +115,12 @@ static const tl_param load_params[] = {
 
 static const tl_param contact_area_params[] = {
     TL_PARAM(TL_PARAM_REAL, tl_contact_area, fraction, "",
-             "minimum area of edge and point contacts, as a share of the smaller block's mean "
-             "face area",
+             "minimum area of field contacts, as a share of the smaller block's mean face area; "
+             "with 0 they have no more than their own",
              .def = {TL_AREA_FRACTION}, .min = 0.0, .max = 1.0),
     TL_PARAM(TL_PARAM_REAL, tl_contact_area, absolute, "m2",
-             "minimum area in square metres instead of the share; serves parallel edges too",
-             .min = 0.0, .max = INFINITY, .flags = TL_PARAM_OPTIONAL | TL_PARAM_MAX_OPEN),
+             "minimum area in square metres instead of the share", .min = 0.0, .max = INFINITY,
+             .flags = TL_PARAM_OPTIONAL | TL_PARAM_MAX_OPEN),
     TL_PARAM(TL_PARAM_STRING, tl_contact_area, joint, "",
              "the joint (\"J1\") or plane (\"J1:3\") it applies to; every joint when left out",
              .flags = TL_PARAM_OPTIONAL),
@@ -227,7 +227,9 @@ static const tl_function functions[] = {
      "place "
      "of what they had; none at all takes the load off.",
      PARAMS(load_params)},
-    {"contact_area", "Sets the minimum area of edge and point contacts.",
+    {"contact_area",
+     "Sets the minimum area of field contacts: those of edges, vertices and tilted faces. None by "
+     "default.",
      PARAMS(contact_area_params)},
     {"cycle", "Runs a number of steps.", PARAMS(cycle_params)},
     {"solve", "Runs until the forces balance or a limit is met.", PARAMS(solve_params)},

@@ -26,9 +26,9 @@
 
 #define TL_NO_ROW UINT32_MAX
 
-/* Default minimum area of edge and point contacts, as a share of the smaller block's mean face area
- * (Hart, Cundall and Lemos 1988). */
-#define TL_AREA_FRACTION 0.01
+/* Default minimum area of field contacts, as a share of the smaller block's mean face area: none. Hart, Cundall and Lemos
+ * (1988) have 1 % of a face. */
+#define TL_AREA_FRACTION 0.0
 /* Default FRAC of (27), by the rule: one contact counts (Hart, Cundall and Lemos 1988), or all of a body. */
 #define TL_PAPER_FRACTION 0.1
 #define TL_BODY_FRACTION 0.5
@@ -107,6 +107,7 @@ typedef struct tl_material {
     uint32_t tangents; /* bit k: states k, k + 1, k + 2 are a vector in the common plane */
     uint32_t columns;  /* of states that are to be kept */
     bool splits;       /* some state goes with the area */
+    uint32_t pulls;    /* TL_PULL_* */
 } tl_material;
 
 /* A prescribed motion, shared by the bodies of one call. */
@@ -117,7 +118,7 @@ typedef struct tl_drive_record {
     bool held;                          /* it may be asked for again: tl_rows_set_aside */
 } tl_drive_record;
 
-/* A rule for the minimum area of edge and point contacts. */
+/* A rule for the minimum area of field contacts. */
 typedef struct tl_area_rule {
     double fraction;
     double absolute; /* NaN: by the fraction */

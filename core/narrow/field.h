@@ -26,13 +26,23 @@
 #include <stddef.h>
 #include <talus/types.h>
 
-/* The planes that bound K, in this order: faces of A, faces of B, borders of A, borders of B. Others may be among them. For
- * blocks that are apart, all planes are needed to tell that they are; for others a face may be left out that lies wholly
- * outside one face of the other block. With a border all faces are needed, for beyond it the nearest need not bound K. */
+/* The planes that bound K, in this order: faces of A, faces of B, borders of A, borders of B. Others may be among them. Of
+ * blocks that overlap a face may be left out that lies wholly outside one face of the other block. With a border all faces
+ * are needed, for beyond it the nearest need not bound K. Of blocks that are apart the faces left may still enclose
+ * something: the deepest point is then not in both blocks. */
 typedef struct tl_field_faces {
     uint32_t a, b, border_a, border_b; /* how many of each */
-    double *n[3], *c;                  /* [all of them] */
+    uint32_t quiet_a,
+        quiet_b; /* so many borders, the last of A's and of B's, take no part in the force: what they would
+                                * add another part of the body takes away */
+    double *n[3], *c; /* [all of them] */
+    /* [real faces] or NULL: bit j of entry i is set where the cells of the faces i and j have met, for up to
+     * TL_FIELD_KNOWN faces. Only those pairs are looked at, and what turns out to be next to them; empty: all. The function
+     * leaves those that meet. */
+    uint16_t *known;
 } tl_field_faces;
+
+#define TL_FIELD_KNOWN 16
 
 /* Memory that the functions below work in; zero at first. */
 typedef struct tl_field_room {
@@ -40,30 +50,25 @@ typedef struct tl_field_room {
     size_t count;
 } tl_field_room;
 
-/* Integrals over S, moments about the origin. Force and moment include the borders; the others do not. */
+/* Integrals over S and K, moments about the origin. Those marked * include the borders. */
 typedef struct tl_field_sums {
-    tl_vec3 force, moment;     /* -dG: int d n dS, int d x cross n dS; on B; m^3, m^4 */
-    tl_vec3 area, area_moment; /* -dV of the volume of K: int n dS, int x cross n dS; m^2, m^3 */
-    double pressure;           /* int d dS; m^3 */
-    tl_vec3 pressed;           /* int d x dS; m^4 */
-    double extent;             /* int dS; m^2 */
-    tl_vec3 first;             /* int x dS; m^3 */
-    double second;             /* int x . x dS; m^4 */
-    double
-        stiffness;  /* int 2 / |n_a - n_b| dS: times kn the stiffness against motion along n; m^2 */
-    double deepest; /* largest d; m */
-    uint32_t polygons; /* how many S consists of */
+    double energy, volume; /* of K: G and its volume; m^4, m^3 */
+    tl_vec3 force, moment; /* * -dG: int d n dS, int d x cross n dS; on B; m^3, m^4 */
+    tl_vec3 swept,
+        swept_moment; /* * -dV of the volume of K: int n dS, int x cross n dS; m^2, m^3 */
+    tl_vec3 area;     /* int n dS; m^2 */
+    double pressure;  /* int d dS; m^3 */
+    tl_vec3 pressed;  /* int d x dS; m^4 */
+    double extent;    /* int dS; m^2 */
+    tl_vec3 first;    /* int x dS; m^3 */
+    double second;    /* int x . x dS; m^4 */
+    double stiffness; /* int 2 / |n_a - n_b| dS: times kn that against motion along n; m^2 */
+    double deepest;   /* largest d on S; m */
+    tl_vec3 deepest_at;
 } tl_field_sums;
 
-/* Integrals over K. */
-typedef struct tl_field_volume {
-    double volume; /* m^3 */
-    double energy; /* G; m^4 */
-} tl_field_volume;
-
-/* Both return false without memory. */
-bool tl_field_surface(const tl_field_faces *faces, tl_field_room *room, tl_field_sums *sums);
-bool tl_field_integrate(const tl_field_faces *faces, tl_field_room *room, tl_field_volume *volume);
+/* false without memory. */
+bool tl_field_integrate(const tl_field_faces *faces, tl_field_room *room, tl_field_sums *sums);
 void tl_field_free(tl_field_room *room);
 
 #endif

@@ -4,7 +4,10 @@
 #define TL_NARROW_FRAME2_H
 
 #include "base/inline.h"
+#include "geometry/polyhedron.h"
 #include "narrow/point2.h"
+
+#include <talus/vmath.h>
 
 /* Turning angles, rad, below which a corner is none, and from which it is a full one. */
 #define TL_STRAIGHT 1e-4
@@ -17,7 +20,6 @@
 typedef struct tl_frame2 {
     tl_vec3 o, t1, t2, n;
     double secant;               /* of its tilt against either face */
-    tl_point2 rise;              /* see tl_lean_of */
     double rest, rest_x, rest_y; /* distance from A's face over it */
 } tl_frame2;
 
@@ -25,14 +27,13 @@ typedef struct tl_frame2 {
  * orthonormal basis, revisited. */
 TL_INLINE tl_frame2 tl_frame2_of(tl_vec3 na, tl_vec3 nb, tl_vec3 through)
 {
-    tl_vec3 apart = tl_v3_sub(na, nb), up = tl_v3_add(na, nb);
+    tl_vec3 apart = tl_v3_sub(na, nb);
     double inverse = 1 / sqrt(tl_v3_norm2(apart));
     tl_vec3 n = tl_v3_scale(inverse, apart);
     double sign = n.z < 0 ? -1 : 1, s = -1 / (sign + n.z), xy = n.x * n.y * s;
     tl_frame2 f = {.o = through, .n = n, .secant = 2 * inverse};
     f.t1 = tl_v3(1 + sign * n.x * n.x * s, sign * xy, -sign * n.x);
     f.t2 = tl_v3(xy, sign + n.y * n.y * s, -n.y);
-    f.rise = (tl_point2){tl_v3_dot(up, f.t1), tl_v3_dot(up, f.t2)};
     return f;
 }
 
@@ -86,22 +87,23 @@ TL_INLINE double tl_gap_at(tl_patch_gap gap, tl_point2 at)
     return gap.at + at.x * gap.x + at.y * gap.y;
 }
 
-/* Where the line from p, at height h over another, to q, at height g, meets that. */
-TL_INLINE tl_point2 tl_part_way(tl_point2 p, tl_point2 q, double h, double g)
+/* Where the points of a patch lie, and their areas: of the fan triangle of an edge, the share of each end, of its middle
+ * and of the centroid; corners lie at `reach` of the way out from the centroid, middles at `out`. */
+typedef struct tl_point_rule {
+    double corner, middle, centroid, reach, out;
+} tl_point_rule;
+
+/* Points at the corners only, or the rule of patch.c. */
+static inline tl_point_rule tl_point_rule_of(bool corners)
 {
-    double t = h / (h - g);
-    return (tl_point2){p.x + t * (q.x - p.x), p.y + t * (q.y - p.y)};
+    return corners ? (tl_point_rule){.corner = 0.5, .reach = 1, .out = 1}
+                   : (tl_point_rule){16. / 75, 12. / 25, 7. / 75, 5. / 8, 5. / 6};
 }
 
-/* Of the fan triangle of an edge: the share of each end, and of its middle. */
-static inline double tl_corner_weight(bool corners)
+/* A number at `reach` of the way out from the centroid, where it is `from`, to where it is `to`. */
+TL_INLINE double tl_drawn_in(double reach, double from, double to)
 {
-    return corners ? 0.5 : 1. / 12;
-}
-
-static inline double tl_middle_weight(bool corners)
-{
-    return corners ? 0 : 1. / 3;
+    return (1 - reach) * from + reach * to;
 }
 
 /* B's plane in A's frame. */

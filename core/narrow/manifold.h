@@ -1,20 +1,31 @@
-/* manifold.h - what touches: from a pair's axis to facets with contact points (manifold.c). */
+/* manifold.h - what touches: a patch of two flush faces, a field contact, or nothing (manifold.c). */
 #ifndef TL_NARROW_MANIFOLD_H
 #define TL_NARROW_MANIFOLD_H
 
-#include "narrow/axis.h"
+#include "narrow/press.h"
 
-/* Square of the sine of the tilt of two faces up to which they are flush: of FLUSH_NONE in manifold.c. */
-#define TL_FLUSH_TILT2 7.6152421804e-5
+/* What is known of the contact of a pair before it is looked at. */
+typedef struct tl_manifold_before {
+    bool
+        holds; /* it carries force across a gap, or may: its faces stay a patch however they turn */
+    bool calm; /* a field contact that hardly moves: only that becomes a patch */
+    tl_facet facet; /* its faces; without points: none */
+    double shift;   /* see tl_press_find */
+    uint32_t shifted;
+} tl_manifold_before;
 
-/* Facets and points of a pair whose axis is known, into room->manifold. */
-void tl_manifold_build(const tl_pair_view *view, const tl_axis *axis, const tl_share_rule *rule,
-                       tl_narrow *room);
-/* Lays the patch of two faces that lie flush on each other, where nothing else touches; false, when they do
- * not. */
-bool tl_manifold_renew(const tl_pair_view *view, uint32_t fa, uint32_t fb,
-                       const tl_share_rule *rule, tl_narrow *room);
-/* The joint of the touching faces. */
+/* Way that a list of faces holds for, over the size. */
+#define TL_LIST_MARGIN 0.005
+
+/* Facet and points of a pair that has been placed, into room->manifold. The region was found with a margin of
+ * TL_LIST_MARGIN times the size. false: out of memory. */
+bool tl_manifold_find(const tl_pair_view *view, const tl_region *region, const tl_touch_rule *rule,
+                      const tl_manifold_before *before, tl_narrow *room);
+/* The same for a field contact whose region is known; room->manifold.valid is 0 when it may be a patch or nothing now. */
+bool tl_manifold_follow(const tl_pair_view *view, const tl_region *region,
+                        const tl_touch_rule *rule, const tl_manifold_before *before,
+                        tl_narrow *room);
+/* The joint of the faces that touch along a direction from A to B. */
 tl_tag tl_touching_tag(const tl_pair_view *view, tl_vec3 n);
 
 #endif

@@ -1,15 +1,38 @@
-/* narrow.h - what the geometry of a pair works in, and the rule of the point share. */
+/* narrow.h - what the geometry of a pair works in and finds, and the rule it goes by. */
 #ifndef TL_NARROW_NARROW_H
 #define TL_NARROW_NARROW_H
 
 #include "narrow/facet.h"
+#include "narrow/field.h"
+
+/* In A's frame, for a stiffness 2 kn of 1: energy, m^4, and force on B, m^3, with its moment about the origin, m^4. */
+typedef struct tl_press {
+    double energy;
+    tl_vec3 force, moment;
+    double area;      /* on which it acts, m^2 */
+    double overlap;   /* 2 |force| / area, m: that of flush faces of that area */
+    double deepest;   /* largest overlap, m */
+    double radius;    /* of gyration of the area, m */
+    double stiffness; /* over kn, m^2 */
+    double patch;     /* share of the patch: 1 .. 0 */
+    tl_vec3 point;    /* centre of the pressure */
+    tl_vec3 normal;   /* force / |force| */
+} tl_press;
+
+/* The contact points of one pair, as one geometric evaluation finds them. */
+typedef struct tl_manifold {
+    tl_facet facet;
+    tl_contact_point *points;
+    size_t point_count, point_room;
+    tl_press press; /* of a field */
+    double valid;   /* way that the pair may move before the kind and the faces are chosen anew */
+    bool failed;    /* out of memory */
+} tl_manifold;
 
 /* Per-thread room for the narrow phase. */
 typedef struct tl_narrow {
     tl_vec3 *vertex_b, *normal_b;
-    double *dots;
-    struct tl_share_point *share; /* share_points.h */
-    size_t vertex_room, normal_room, dot_room, share_room;
+    size_t vertex_room, normal_room;
     struct tl_polygon *polygon; /* patch.c */
     tl_patch_points patch;
     tl_manifold manifold;
@@ -19,14 +42,17 @@ typedef struct tl_narrow {
     struct tl_old_point *old; /* transfer.c */
     double *value;
     size_t old_room;
+    double *plane, *press; /* region.c, press.c */
+    uint16_t *face;        /* of a region */
+    size_t plane_room, press_room, face_room;
+    tl_field_room field;
 } tl_narrow;
 
-/* How the point share of a pair is measured. */
-typedef struct tl_share_rule {
-    double minimum;     /* area, m2 */
-    bool unconditional; /* also for edges of parallel faces */
-    bool corners;       /* points of patches at corners only */
-    double reach;       /* patches with every gap beyond this are left out */
-} tl_share_rule;
+/* How a pair is to touch. */
+typedef struct tl_touch_rule {
+    double least; /* minimum area of a field contact, m2 */
+    bool corners; /* points of patches at corners only */
+    double reach; /* patches with every gap beyond this are left out */
+} tl_touch_rule;
 
 #endif

@@ -9,6 +9,8 @@
 
 #include "narrow/point2.h"
 
+#include <stdbool.h>
+
 typedef struct walk {
     tl_outline *o;
     uint32_t na, nb;
@@ -47,11 +49,8 @@ static void add_own(walk *w, uint32_t kind, uint32_t i)
 {
     uint8_t at = (uint8_t)(kind == TL_POINT_A ? i : TL_OUTLINE_CORNERS + i);
     add(w, tl_corner_key(kind, i),
-        (tl_outline_corner){.from = at,
-                            .to = at,
-                            .over = TL_HEIGHT_OWN,
-                            .under = TL_HEIGHT_OWN + 1,
-                            .face = kind == TL_POINT_A ? -1 : 1});
+        (tl_outline_corner){
+            .from = at, .to = at, .over = TL_HEIGHT_OWN, .under = TL_HEIGHT_OWN + 1});
 }
 
 static void add_crossing(walk *w, uint32_t i, uint32_t j)
@@ -61,8 +60,7 @@ static void add_crossing(walk *w, uint32_t i, uint32_t j)
         (tl_outline_corner){.from = (uint8_t)i,
                             .to = (uint8_t)end,
                             .over = (uint8_t)(TL_OUTLINE_CORNERS * j + i),
-                            .under = (uint8_t)(TL_OUTLINE_CORNERS * j + end),
-                            .line = (uint8_t)j});
+                            .under = (uint8_t)(TL_OUTLINE_CORNERS * j + end)});
 }
 
 /* Adds the corners of B from its line j to its line `to`, which must all lie inside A; returns their number. */

@@ -13,8 +13,6 @@
  * heights `over` and `under` meet 0. */
 typedef struct tl_outline_corner {
     uint8_t from, to, over, under;
-    uint8_t line; /* of B that is crossed */
-    int8_t face;  /* lean of a face's own corner; 0 for a crossing */
 } tl_outline_corner;
 
 /* Heights of a face's own corner: 0 and -1. */

@@ -5,13 +5,11 @@
 #include "narrow/narrow.h"
 #include "narrow/view.h"
 
-/* The points of face `fa` of A on face `fb` of B, into room->patch, with areas scaled by `weight`; returns the
- * scaled area (0 when they do not overlap). */
-double tl_patch_lay(const tl_pair_view *view, uint32_t fa, uint32_t fb, double weight,
-                    const tl_share_rule *rule, tl_narrow *room);
-/* Adds the patch of face `fa` of A on face `fb` of B, with areas scaled by `weight` and the facet's
- * `swing`; returns its scaled area (0 when they do not overlap). */
-double tl_patch_add(const tl_pair_view *view, uint32_t fa, uint32_t fb, double weight,
-                    tl_vec3 swing, const tl_share_rule *rule, tl_narrow *room);
+/* The points of face `fa` of A on face `fb` of B, into room->patch; returns their area (0 when they do not overlap). */
+double tl_patch_lay(const tl_pair_view *view, uint32_t fa, uint32_t fb, const tl_touch_rule *rule,
+                    tl_narrow *room);
+/* The same with its facet into room->manifold. */
+double tl_patch_add(const tl_pair_view *view, uint32_t fa, uint32_t fb, const tl_touch_rule *rule,
+                    tl_narrow *room);
 
 #endif

@@ -27,8 +27,7 @@ tl_patch_batch *tl_batch_room(tl_narrow *room, bool corners, double steep)
     if (!p->batch)
         return NULL;
     p->batch->used = 0;
-    p->batch->corner = tl_corner_weight(corners);
-    p->batch->middle = tl_middle_weight(corners);
+    p->batch->rule = tl_point_rule_of(corners);
     p->batch->steep = steep;
     return p->batch;
 }
@@ -70,26 +69,24 @@ void tl_batch_add(tl_patch_batch *batch, uint32_t lane, const tl_poly *a, uint32
 /* The plane of a patch, in lanes. */
 typedef struct frames {
     tl_lanes3 o, t1, t2, n;
-    tl_batch1 secant, rise_x, rise_y, rest, rest_x, rest_y;
+    tl_batch1 secant, rest, rest_x, rest_y;
 } frames;
 
 /* What a corner of the polygon is placed by: see tl_outline_corner. */
 typedef struct ends {
-    tl_batch1 px, py, qx, qy, h, g, line_x, line_y, face;
+    tl_batch1 px, py, qx, qy, h, g;
 } ends;
 
 /* What is computed on the way. Corners of A in the plane of the patch come first, then those of B; heights of
  * corner i of A over line j of B are in row CORNERS j + i. */
 typedef struct work {
     _Alignas(64) frames frame;
-    tl_batch1 x[2 * CORNERS], y[2 * CORNERS];   /* of the faces */
-    tl_batch1 line_x[CORNERS], line_y[CORNERS]; /* of B's edges */
+    tl_batch1 x[2 * CORNERS], y[2 * CORNERS]; /* of the faces */
     tl_batch1 height[CORNERS * CORNERS + 2];
     uint64_t inside_a[TL_LANES], inside_b[TL_LANES];
     /* of the polygon: corners, the first once more after the last; edges from corner k - 1 to k in row k */
     tl_batch1 count, px[CORNERS + 1], py[CORNERS + 1], fan[CORNERS + 1];
-    tl_batch1 cx, cy, area;                         /* centroid; area in the plane */
-    tl_batch1 face[CORNERS + 1], edge[CORNERS + 1]; /* lean: no digits beyond a float's */
+    tl_batch1 cx, cy, area; /* centroid; area in the plane */
     ends ends[CORNERS];
     uint32_t na, nb, corners; /* most of any lane */
 } work;
@@ -153,8 +150,6 @@ TL_INLINE void lay_frames(tl_patch_batch *b, work *w)
         tl_lanes3_put(&w->frame.t1, l, f.t1);
         tl_lanes3_put(&w->frame.t2, l, f.t2);
         w->frame.secant[l] = f.secant;
-        w->frame.rise_x[l] = f.rise.x;
-        w->frame.rise_y[l] = f.rise.y;
         tl_lanes3_put(&b->placed_b, l, placed.normal);
         b->placed_offset[l] = placed.offset;
         b->laid[l] = (uint64_t) !(tl_tilt2(na, placed.normal) > steep);
@@ -218,14 +213,6 @@ TL_INLINE void look_inside(const tl_patch_batch *b, work *w, uint32_t first, uin
                 height[l] = h;
             double square = h * fabs(h); /* roots cost more */
             inside[l] |= one & -(uint64_t)(strict ? square > on[l] : square >= on[l]);
-        }
-    }
-    if (!strict) {
-#pragma omp simd
-        EACH_LANE(l)
-        {
-            w->line_x[bit][l] = dx[l];
-            w->line_y[bit][l] = dy[l];
         }
     }
 }
@@ -294,10 +281,6 @@ static void find_row(const tl_outline_corner *c, work *w, uint32_t k)
     memcpy(e->qy, w->y[c->to], sizeof e->qy);
     memcpy(e->h, w->height[c->over], sizeof e->h);
     memcpy(e->g, w->height[c->under], sizeof e->g);
-    memcpy(e->line_x, w->line_x[c->line], sizeof e->line_x);
-    memcpy(e->line_y, w->line_y[c->line], sizeof e->line_y);
-    for (uint32_t l = 0; l < TL_LANES; l++)
-        e->face[l] = c->face;
 }
 
 /* Looks up what the corners are placed by. */
@@ -315,9 +298,6 @@ static void find_ends(const tl_patch_batch *b, work *w)
             e->qy[l] = w->y[c->to][l];
             e->h[l] = w->height[c->over][l];
             e->g[l] = w->height[c->under][l];
-            e->line_x[l] = w->line_x[c->line][l];
-            e->line_y[l] = w->line_y[c->line][l];
-            e->face[l] = c->face;
         }
 }
 
@@ -325,31 +305,13 @@ static void find_ends(const tl_patch_batch *b, work *w)
 TL_INLINE void place(work *w, uint32_t k)
 {
     const ends *e = &w->ends[k];
-    float face[TL_LANES], edge[TL_LANES];
 #pragma omp simd
     EACH_LANE(l)
     {
         tl_point2 p = {e->px[l], e->py[l]}, q = {e->qx[l], e->qy[l]};
-        tl_point2 at = tl_part_way(p, q, e->h[l], e->g[l]), b = {e->line_x[l], e->line_y[l]};
-        tl_point2 rise = {w->frame.rise_x[l], w->frame.rise_y[l]};
-        tl_point2 lean = tl_lean2_of(tl_from_to(p, q), b, rise);
-        double own = e->face[l];
+        tl_point2 at = tl_part_way(p, q, e->h[l], e->g[l]);
         w->px[k][l] = at.x;
         w->py[k][l] = at.y;
-        w->face[k][l] = own == 0 ? lean.x : own;
-        w->edge[k][l] = own == 0 ? lean.y : 0;
-    }
-#pragma omp simd
-    EACH_LANE(l)
-    {
-        face[l] = (float)w->face[k][l];
-        edge[l] = (float)w->edge[k][l];
-    }
-#pragma omp simd
-    EACH_LANE(l)
-    {
-        w->face[k][l] = face[l];
-        w->edge[k][l] = edge[l];
     }
 }
 
@@ -379,6 +341,7 @@ TL_INLINE void weigh(tl_patch_batch *b, work *w)
             double length2 = x * x + y * y, uv = (ux[l] * ux[l] + uy[l] * uy[l]) * length2;
             double turn = ux[l] * y - uy[l] * x, ahead = ux[l] * x + uy[l] * y;
             bool full = (turn > 0) & ((ahead <= 0) | (turn * turn >= TL_CORNER * TL_CORNER * uv));
+            full = full | (b->rule.middle > 0);
             bool clear = full & (length2 > b->near[l] * b->near[l]);
             b->laid[l] &= (uint64_t)(clear | (number >= w->count[l]));
             ux[l] = x;
@@ -429,7 +392,7 @@ TL_INLINE void lay_fans(tl_patch_batch *b, work *w)
 /* Moves the planes into the middle between the faces; patches with every gap beyond reach are not laid. */
 TL_INLINE void move_between(tl_patch_batch *b, work *w)
 {
-    tl_batch1 nearest, at, gx, gy, whole;
+    tl_batch1 least, at, gx, gy;
 #pragma omp simd
     EACH_LANE(l)
     {
@@ -445,8 +408,7 @@ TL_INLINE void move_between(tl_patch_batch *b, work *w)
         w->frame.rest[l] = f.rest;
         w->frame.rest_x[l] = f.rest_x;
         w->frame.rest_y[l] = f.rest_y;
-        whole[l] = tl_gap_at(gap, centroid);
-        nearest[l] = INFINITY;
+        least[l] = INFINITY;
         at[l] = gap.at;
         gx[l] = gap.x;
         gy[l] = gap.y;
@@ -456,12 +418,12 @@ TL_INLINE void move_between(tl_patch_batch *b, work *w)
         EACH_LANE(l)
         {
             double gap = at[l] + w->px[k][l] * gx[l] + w->py[k][l] * gy[l];
-            nearest[l] = gap < nearest[l] ? gap : nearest[l];
+            least[l] = gap < least[l] ? gap : least[l];
         }
     }
 #pragma omp simd
     EACH_LANE(l)
-    b->laid[l] &= (uint64_t)((whole[l] <= b->reach[l]) | !(nearest[l] > b->reach[l]));
+    b->laid[l] &= (uint64_t) !(least[l] > b->reach[l]);
 }
 
 /* Puts a point at x, y of the planes. */
@@ -476,54 +438,34 @@ TL_INLINE void put_point(tl_batch_point *out, const work *w, const double *x, co
     }
 }
 
+/* The points of corner k and of the middle of the edge that leaves it. */
 TL_INLINE void put_edge(tl_patch_batch *b, const work *w, uint32_t k)
 {
     tl_batch_point *middle = &b->middles[k], *corner = &b->corners[k];
-    double of_middle = b->middle, of_corner = b->corner;
-    tl_batch1 x, y;
+    double of_middle = b->rule.middle, of_corner = b->rule.corner, reach = b->rule.reach;
+    double out = b->rule.out;
+    tl_batch1 mx, my, x, y;
 #pragma omp simd
     EACH_LANE(l)
     {
-        x[l] = 0.5 * (w->px[k][l] + w->px[k + 1][l]);
-        y[l] = 0.5 * (w->py[k][l] + w->py[k + 1][l]);
+        mx[l] = tl_drawn_in(out, w->cx[l], 0.5 * (w->px[k][l] + w->px[k + 1][l]));
+        my[l] = tl_drawn_in(out, w->cy[l], 0.5 * (w->py[k][l] + w->py[k + 1][l]));
+        x[l] = tl_drawn_in(reach, w->cx[l], w->px[k][l]);
+        y[l] = tl_drawn_in(reach, w->cy[l], w->py[k][l]);
         middle->area[l] = w->frame.secant[l] * (of_middle * w->fan[k + 1][l]);
         corner->area[l] = w->frame.secant[l] * (of_corner * (w->fan[k][l] + w->fan[k + 1][l]));
     }
-#pragma omp simd
-    EACH_LANE(l)
-    {
-        middle->face[l] = (float)(0.5 * (w->face[k][l] + w->face[k + 1][l]));
-        middle->edge[l] = (float)(0.5 * (w->edge[k][l] + w->edge[k + 1][l]));
-        corner->face[l] = (float)w->face[k][l];
-        corner->edge[l] = (float)w->edge[k][l];
-    }
-    put_point(middle, w, x, y);
-    put_point(corner, w, w->px[k], w->py[k]);
+    put_point(middle, w, mx, my);
+    put_point(corner, w, x, y);
 }
 
-/* Its lean is the mean of the corners' by their fan triangles. */
 TL_INLINE void put_centroid(tl_patch_batch *b, const work *w)
 {
     tl_batch_point *out = &b->centroid;
-    double share = 1 - 2 * b->corner - b->middle;
-    tl_batch1 face = {0}, edge = {0}, fans = {0};
-    for (uint32_t k = 0; k < w->corners; k++) {
-        double number = k;
-#pragma omp simd
-        EACH_LANE(l)
-        {
-            double fan = w->fan[k][l] + w->fan[k + 1][l];
-            fan = number < w->count[l] ? fan : 0;
-            face[l] += fan * w->face[k][l];
-            edge[l] += fan * w->edge[k][l];
-            fans[l] += fan;
-        }
-    }
+    double share = b->rule.centroid;
 #pragma omp simd
     EACH_LANE(l)
     {
-        out->face[l] = (float)(face[l] / fans[l]);
-        out->edge[l] = (float)(edge[l] / fans[l]);
         out->area[l] = w->frame.secant[l] * (share * w->area[l]);
         b->area[l] = w->frame.secant[l] * w->area[l];
     }
@@ -540,15 +482,13 @@ TL_VECTORIZED static void lay(tl_patch_batch *b, work *w)
     {
         w->px[w->corners][l] = w->px[0][l];
         w->py[w->corners][l] = w->py[0][l];
-        w->face[w->corners][l] = w->face[0][l];
-        w->edge[w->corners][l] = w->edge[0][l];
     }
     weigh(b, w);
     lay_fans(b, w);
     move_between(b, w);
+    put_centroid(b, w);
     for (uint32_t k = 0; k < w->corners; k++)
         put_edge(b, w, k);
-    put_centroid(b, w);
 }
 
 void tl_batch_lay(tl_patch_batch *batch)

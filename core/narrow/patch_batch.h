@@ -3,6 +3,7 @@
 #define TL_NARROW_PATCH_BATCH_H
 
 #include "base/lanes.h"
+#include "narrow/frame2.h"
 #include "narrow/narrow.h"
 #include "narrow/outline.h"
 #include "narrow/point2.h"
@@ -13,7 +14,6 @@ typedef double tl_batch1[TL_LANES];
 typedef struct tl_batch_point {
     tl_lanes3 p;
     tl_batch1 area;
-    float face[TL_LANES], edge[TL_LANES]; /* lean */
 } tl_batch_point;
 
 typedef struct tl_patch_batch {
@@ -39,8 +39,7 @@ typedef struct tl_patch_batch {
     uint32_t used; /* bits of the lanes that have a pair */
     bool alike;    /* all outlines are, as in rock cut by a few sets of joints */
     double steep;  /* square of the sine of the tilt beyond which there is no patch */
-    double corner,
-        middle; /* of the fan triangle of an edge: the share of each end, of its middle */
+    tl_point_rule rule;
     tl_outline found[TL_OUTLINES];
 } tl_patch_batch;
 
@@ -69,7 +68,7 @@ typedef struct tl_batch_counts {
 static inline tl_batch_counts tl_batch_count(const tl_patch_batch *b, uint32_t lane)
 {
     tl_batch_counts n = {.corners = b->outline[lane].count, .centroid = b->centroid.area[lane] > 0};
-    n.middles = b->middle > 0 ? n.corners : 0;
+    n.middles = b->rule.middle > 0 ? n.corners : 0;
     n.all = n.middles + n.corners + n.centroid;
     return n;
 }

@@ -2,7 +2,9 @@
 #ifndef TL_NARROW_POINT2_H
 #define TL_NARROW_POINT2_H
 
-#include "narrow/facet.h"
+#include "base/inline.h"
+
+#include <stdint.h>
 
 /* Corners nearer to each other than this times the size are one, and corners nearer to a line that clips lie on
  * it: far below any length that matters, far above rounding. Edges along each other would otherwise cross
@@ -27,6 +29,12 @@ static inline uint32_t tl_key_of(uint32_t kind, uint32_t one, uint32_t other)
     return (uint32_t)((x ^ x >> 32) * UINT64_C(0xd6e8feb86659fd93) >> 32);
 }
 
+/* Key of the centroid of a patch of two faces, its last point. */
+static inline uint32_t tl_centroid_key(uint32_t face_a, uint32_t face_b)
+{
+    return tl_key_of(0, face_a, face_b) ^ tl_key_of(TL_POINT_CENTROID, 0, 0);
+}
+
 typedef struct tl_point2 {
     double x, y;
 } tl_point2;
@@ -48,33 +56,17 @@ static inline tl_point2 tl_from_to(tl_point2 a, tl_point2 b)
     return (tl_point2){b.x - a.x, b.y - a.y};
 }
 
-/* How the normal of two crossing edges, a of A's face and b of B's, leans. With both measured from the line in
- * which the faces' planes meet, by angles alpha and beta, it is along M - L sin(alpha + beta)/d - M x L 2 sin alpha
- * sin beta/d, with d = sin(beta - alpha); see tl_lean. `rise` points across that line, up A's face.
- * Bounded, for edges nearly along each other have no normal. */
-static inline tl_point2 tl_lean2_of(tl_point2 a, tl_point2 b, tl_point2 rise)
+/* Where the line from p, at height h over another, to q, at height g, meets that. */
+TL_INLINE tl_point2 tl_part_way(tl_point2 p, tl_point2 q, double h, double g)
 {
-    double a_along = a.x * rise.y - a.y * rise.x, a_up = a.x * rise.x + a.y * rise.y;
-    double b_along = b.x * rise.y - b.y * rise.x, b_up = b.x * rise.x + b.y * rise.y;
-    double d = a_along * b_up - a_up * b_along;
-    double face = -(a_along * b_up + a_up * b_along), edge = -2 * a_up * b_up;
-    double most = fabs(face) > 0.5 * fabs(edge) ? fabs(face) : 0.5 * fabs(edge);
-    most = fabs(d) > most ? fabs(d) : most;
-    double scale = most > 0 ? (d < 0 ? -1 : 1) / most : 0;
-    return (tl_point2){face * scale, edge * scale};
-}
-
-static inline tl_lean tl_lean_of(tl_point2 a, tl_point2 b, tl_point2 rise)
-{
-    tl_point2 lean = tl_lean2_of(a, b, rise);
-    return (tl_lean){(float)lean.x, (float)lean.y};
+    double t = h / (h - g);
+    return (tl_point2){p.x + t * (q.x - p.x), p.y + t * (q.y - p.y)};
 }
 
 typedef struct tl_corner {
     tl_point2 at;
     uint32_t key;  /* of the features that made it */
     uint32_t edge; /* source of the edge that leaves it */
-    tl_lean lean;  /* of its gap's normal */
     double height; /* over the line that cuts */
     double share;  /* of the corner in the mixture: 0 .. 1 */
     double fan;    /* area of the fan triangle of the edge that leaves it */

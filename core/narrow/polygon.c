@@ -5,8 +5,6 @@
  * lines have left, so that it is the same to the bit however the crossing was found (patch_batch.c). */
 #include "narrow/polygon.h"
 
-#include "narrow/frame2.h"
-
 #include <stdlib.h>
 #include <string.h>
 
@@ -49,7 +47,7 @@ struct tl_polygon *tl_polygon_room(tl_narrow *room, size_t na, size_t nb)
 static tl_corner meet(uint32_t one, uint32_t other, tl_point2 cut, const tl_point2 *clip,
                       uint32_t count)
 {
-    tl_corner c = {.at = cut, .lean = {1, 0}};
+    tl_corner c = {.at = cut};
     uint32_t i = one - TL_EDGE_B, j = other - TL_EDGE_B;
     if ((i + 1) % count == j || (j + 1) % count == i) {
         uint32_t v = (i + 1) % count == j ? j : i;
@@ -64,17 +62,16 @@ static tl_corner meet(uint32_t one, uint32_t other, tl_point2 cut, const tl_poin
 
 /* Where edge i of A crosses line j of B, from o to q. */
 static tl_corner cross(const struct tl_polygon *p, uint32_t na, uint32_t i, uint32_t j, tl_point2 o,
-                       tl_point2 q, tl_point2 rise)
+                       tl_point2 q)
 {
     tl_point2 from = p->face[i], to = p->face[i + 1 == na ? 0 : i + 1];
     return (tl_corner){.at = tl_part_way(from, to, tl_cross2(o, q, from), tl_cross2(o, q, to)),
-                       .key = tl_key_of(TL_POINT_CROSSING, i, TL_EDGE_B + j),
-                       .lean = tl_lean_of(tl_from_to(from, to), tl_from_to(o, q), rise)};
+                       .key = tl_key_of(TL_POINT_CROSSING, i, TL_EDGE_B + j)};
 }
 
 /* Keeps what lies left of the line from clip[j] to clip[j + 1]; returns the number of corners. */
 static size_t clip_by(struct tl_polygon *p, size_t count, uint32_t na, uint32_t j, uint32_t nb,
-                      double near, tl_point2 rise)
+                      double near)
 {
     tl_point2 o = p->clip[j], q = p->clip[j + 1 == nb ? 0 : j + 1];
     double low = 0, on2 = near * near * tl_distance2(o, q);
@@ -96,7 +93,7 @@ static size_t clip_by(struct tl_polygon *p, size_t count, uint32_t na, uint32_t 
         if (!((h > 0 && g < 0) || (h < 0 && g > 0)))
             continue;
         tl_corner c = here->edge < TL_EDGE_B
-                          ? cross(p, na, here->edge, j, o, q, rise)
+                          ? cross(p, na, here->edge, j, o, q)
                           : meet(here->edge, TL_EDGE_B + j, tl_part_way(here->at, after->at, h, g),
                                  p->clip, nb);
         c.edge = h > 0 ? TL_EDGE_B + j : here->edge;
@@ -136,14 +133,13 @@ static void begin_at_lowest(struct tl_polygon *p, size_t count)
     p->next = swap;
 }
 
-size_t tl_polygon_clip(struct tl_polygon *p, uint32_t na, uint32_t nb, double near, tl_point2 rise)
+size_t tl_polygon_clip(struct tl_polygon *p, uint32_t na, uint32_t nb, double near)
 {
     for (uint32_t i = 0; i < na; i++)
-        p->now[i] = (tl_corner){
-            .at = p->face[i], .key = tl_corner_key(TL_POINT_A, i), .edge = i, .lean = {-1, 0}};
+        p->now[i] = (tl_corner){.at = p->face[i], .key = tl_corner_key(TL_POINT_A, i), .edge = i};
     size_t count = na;
     for (uint32_t j = 0; j < nb && count; j++)
-        count = clip_by(p, count, na, j, nb, near, rise);
+        count = clip_by(p, count, na, j, nb, near);
     count = merge_near(p, count, near);
     begin_at_lowest(p, count);
     return count;

@@ -19,7 +19,7 @@ struct tl_polygon {
 struct tl_polygon *tl_polygon_room(tl_narrow *room, size_t na, size_t nb);
 /* Clips `face` by `clip`: into `now`, beginning with the corner whose edge has the lowest number; corners nearer
  * than `near` are one. Returns their number. */
-size_t tl_polygon_clip(struct tl_polygon *p, uint32_t na, uint32_t nb, double near, tl_point2 rise);
+size_t tl_polygon_clip(struct tl_polygon *p, uint32_t na, uint32_t nb, double near);
 void tl_polygon_free(struct tl_polygon *polygon, tl_patch_points *points);
 
 #endif

@@ -9,12 +9,13 @@ void tl_narrow_free(tl_narrow *n)
 {
     free(n->vertex_b);
     free(n->normal_b);
-    free(n->dots);
-    free(n->share);
-    free(n->manifold.facets);
     free(n->manifold.points);
     free(n->old);
     free(n->value);
+    free(n->plane);
+    free(n->press);
+    free(n->face);
+    tl_field_free(&n->field);
     tl_polygon_free(n->polygon, &n->patch);
 }
 
@@ -30,29 +31,5 @@ bool tl_manifold_reserve(tl_manifold *m, size_t count)
     }
     m->points = points;
     m->point_room = room;
-    return true;
-}
-
-bool tl_manifold_add_point(tl_manifold *m, tl_contact_point point)
-{
-    if (!(point.area > 0)) /* a point without area carries nothing, and has no stress */
-        return true;
-    if (!tl_manifold_reserve(m, 1))
-        return false;
-    m->points[m->point_count++] = point;
-    return true;
-}
-
-bool tl_manifold_reserve_facets(tl_manifold *m, size_t room)
-{
-    if (room <= m->facet_room)
-        return true;
-    tl_facet *facets = realloc(m->facets, 2 * room * sizeof *facets);
-    if (!facets) {
-        m->failed = true;
-        return false;
-    }
-    m->facets = facets;
-    m->facet_room = 2 * room;
     return true;
 }

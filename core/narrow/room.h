@@ -7,10 +7,6 @@
 /* Frees what a room holds, not the room. */
 void tl_narrow_free(tl_narrow *room);
 
-bool tl_manifold_add_point(tl_manifold *m, tl_contact_point point);
 /* Makes room for `count` points more; false when out of memory. */
 bool tl_manifold_reserve(tl_manifold *m, size_t count);
-/* Makes sure there is room for so many facets in all; false when out of memory. */
-bool tl_manifold_reserve_facets(tl_manifold *m, size_t room);
-
 #endif

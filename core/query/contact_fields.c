@@ -28,9 +28,10 @@ static const tl_field fields[F_COUNT] = {
     [F_ID] = {"id", TL_FIELD_COUNT, "", "number of the contact, never used again"},
     [F_BLOCKS] = {"blocks", TL_FIELD_IDS, "", "its two blocks, the older first"},
     [F_JOINT] = {"joint", TL_FIELD_TEXT, "", "joint and plane (\"J1:3\"), or empty"},
-    [F_AREA] = {"area", TL_FIELD_SCALAR, "m2", "sum of its points' areas"},
+    [F_AREA] = {"area", TL_FIELD_SCALAR, "m2",
+                "of the common polygon of two faces, or of the surface of pressure"},
     [F_NORMAL] = {"normal", TL_FIELD_VEC3, "", "unit normal from the first block to the second"},
-    [F_POINT] = {"point", TL_FIELD_VEC3, "m", "centroid of its area"},
+    [F_POINT] = {"point", TL_FIELD_VEC3, "m", "centroid of the polygon, or centre of pressure"},
     [F_GAP] = {"gap", TL_FIELD_SCALAR, "m", "smallest gap, negative when overlapping"},
     [F_NORMAL_FORCE] = {"normal_force", TL_FIELD_SCALAR, "N", "compression positive"},
     [F_SHEAR_FORCE] = {"shear_force", TL_FIELD_VEC3, "N", "on the second block"},
@@ -45,12 +46,16 @@ const tl_field *tl_contact_fields(size_t *count)
     return fields;
 }
 
+/* The second point of a field contact has its torsion, and the normal force again. */
 static void forces(const tl_detect *d, uint32_t c, double *normal, tl_vec3 *shear)
 {
     const tl_points_table *p = &d->points;
+    uint32_t count = d->contacts.point_count[c];
+    if (d->contacts.facet[c].kind == TL_FACET_FIELD && count > TL_FIELD_TORSION)
+        count = TL_FIELD_TORSION;
     *normal = 0;
     *shear = tl_v3(0, 0, 0);
-    for (uint32_t k = 0; k < d->contacts.point_count[c]; k++) {
+    for (uint32_t k = 0; k < count; k++) {
         size_t i = tl_point_row(&d->contacts, c, k);
         *normal += p->f_n[i];
         *shear = tl_v3_add(*shear, tl_v3(p->f_s[0][i], p->f_s[1][i], p->f_s[2][i]));

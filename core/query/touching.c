@@ -22,19 +22,16 @@ bool tl_touches_add(const tl_model *m, uint32_t row, tl_touches *touches)
     for (uint32_t e = d->by_block_start[row]; e < d->by_block_start[row + 1]; e++) {
         uint32_t contact = d->by_block[e];
         bool first = c->a[contact] == row;
-        for (uint32_t f = 0; f < c->facet_count[contact]; f++) {
-            const tl_facet *facet = &c->facet[c->facet_start[contact] + f];
-            if (facet->kind != TL_FACET_PATCH)
-                continue;
-            uint32_t face = first ? facet->ia : facet->ib;
-            tl_touch touch = {.other = tl_contact_partner(c, contact, row),
-                              .normal = tl_m3_mul(turn, shape->plane[face].normal),
-                              .joint = c->tag[contact]};
-            for (uint32_t k = facet->begin; k < facet->begin + (uint32_t)facet->count; k++)
-                touch.area += d->points.area[tl_point_row(c, contact, k)];
-            if (touch.area > 0 && !add(touches, &touch))
-                return false;
-        }
+        const tl_facet *facet = &c->facet[contact];
+        if (facet->kind != TL_FACET_PATCH || c->point_count[contact] == 0)
+            continue;
+        uint32_t face = first ? facet->ia : facet->ib;
+        tl_touch touch = {.other = tl_contact_partner(c, contact, row),
+                          .normal = tl_m3_mul(turn, shape->plane[face].normal),
+                          .area = c->area[contact],
+                          .joint = c->tag[contact]};
+        if (touch.area > 0 && !add(touches, &touch))
+            return false;
     }
     return true;
 }

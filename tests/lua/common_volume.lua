@@ -151,7 +151,11 @@ local TIMES, MORE = 10, 0.002
 -- Contacts that press although their blocks have no common volume, and those with a false overlap; a sentence on
 -- the first.
 function common.false_contacts(model)
-    local shapes, count, first = {}, 0, nil
+    local shapes, bodies, count, first = {}, {}, 0, nil
+    for _, block in ipairs(model:blocks()) do
+        bodies[block.body] = bodies[block.body] or {}
+        table.insert(bodies[block.body], block.id)
+    end
     for _, contact in ipairs(model:contacts()) do
         local overlap = -contact.gap
         if overlap > 0 and contact.area > 0 then
@@ -159,9 +163,21 @@ function common.false_contacts(model)
             shapes[a.id] = shapes[a.id] or shape(a)
             shapes[b.id] = shapes[b.id] or shape(b)
             local depth = -separation(shapes[a.id], shapes[b.id])
-            local presses = contact.normal_force > 0 and -depth > REUSED + overlap
             local size = math.min(a.volume, b.volume) ^ (1 / 3)
-            if presses or overlap > TIMES * math.max(depth, 0) + MORE * size then
+            -- forces and overlaps are those of the last step, places those after it
+            local moved = 0
+            for _, block in ipairs { a, b } do
+                local w = block.angular_velocity
+                local turned = math.sqrt(dot(w, w)) * block.volume ^ (1 / 3)
+                moved = moved + model.dt * (block.speed + 2 * turned)
+            end
+            local presses = contact.normal_force > 0 and -depth > REUSED + overlap + moved
+            -- beside a seam the overlap is the depth under the body's surface, not that of the part
+            local parts = a.body ~= a.id or b.body ~= b.id
+            for _, block in ipairs { a, b } do
+                parts = parts or #(bodies[block.body] or {}) > 1
+            end
+            if presses or (not parts and overlap > TIMES * math.max(depth, 0) + MORE * size) then
                 count = count + 1
                 first = first or string.format("blocks %d and %d, overlap %g m, in truth %g m, force %g N", a.id, b.id,
                     overlap, depth, contact.normal_force)

@@ -61,20 +61,23 @@ for _, fs in ipairs { 1.01, 1.03, 1.1 } do
     end
 end
 
--- A column of forty settles at its top by several blocks on joints so soft, and holds.
+-- A column of forty settles at its top by 1.7 blocks on joints so soft, and holds. Its lowest joint closes by 9 % of the side;
+-- at kn = 1e6 no overlap would carry it, for what two cubes have in common presses with kn L^3 / 3 at most.
+-- It is guided, for it would buckle: by 7.84 kn L^5 / 12 H^2 under 0.005 of its weight.
 local function column(k, damping)
     local model = talus.model { gravity = { 0, 0, -10 } }
     model:generate("box", { min = { 0, 0, -1 }, max = { 1, 1, 0 }, density = DENSITY, group = "base" })
     for z = 0, 39 do
-        model:generate("box", { min = { 0, 0, z }, max = { 1, 1, z + 1 }, density = DENSITY })
+        model:generate("box", { min = { 0, 0, z }, max = { 1, 1, z + 1 }, density = DENSITY, group = "column" })
     end
     model:blocks { group = "base" }:fix()
+    model:blocks { group = "column" }:fix { x = true, y = true, rotation = true }
     model:joint("*", "coulomb", { kn = k, ks = k, friction = 30 })
     model:damping(damping)
     model:timestep { rule = "body", fraction = 0.5 }
     return model
 end
-for _, k in ipairs { 1e6, 1e7, 1e9 } do
+for _, k in ipairs { 1e7, 1e8, 1e9 } do
     for _, damping in ipairs { "local", "adaptive" } do
         local result = column(k, damping):solve { stop_at_failure = true, max_cycles = 3000 }
         check.equal(result.failing, nil)

@@ -1,5 +1,5 @@
-/* exact_axis.h - the common plane by a search in long double over all faces and all pairs of edges, each with full
- * support: what the kernel's is compared with. */
+/* exact_axis.h - whether two blocks are apart, and by how much they overlap, by a search in long double over all faces
+ * and all pairs of edges, each with full support: what the kernel is compared with. */
 #ifndef TALUS_TESTS_EXACT_AXIS_H
 #define TALUS_TESTS_EXACT_AXIS_H
 
@@ -77,37 +77,19 @@ static real separation(const exact *e, lvec n)
     return low - high;
 }
 
-/* The largest separation of all axes, its direction, and the largest one of axes that differ. */
-typedef struct best_axis {
-    real s, second;
-    lvec n;
-} best_axis;
+/* What is asked of an axis: n of any length. */
+typedef void ask_axis(const exact *e, lvec n, void *user);
 
-static void try_axis(const exact *e, lvec n, best_axis *best)
-{
-    real s = separation(e, n);
-    n = lscale(1 / sqrtl(ldot(n, n)), n);
-    int alike = ldot(n, best->n) > 1 - 1e-9L;
-    if (s > best->s) {
-        if (!alike)
-            best->second = best->s;
-        best->s = s;
-        best->n = n;
-    } else if (!alike && s > best->second) {
-        best->second = s;
-    }
-}
-
-static best_axis brute_force(const tl_pair_view *view)
+/* Asks all axes that may part two blocks: faces, and pairs of edges in both directions. */
+static void try_all(const tl_pair_view *view, ask_axis *ask, void *user)
 {
     static exact e;
     load_exact(view, &e);
-    best_axis best = {-INFINITY, -INFINITY, {0, 0, 0}};
     const tl_poly *a = view->a, *b = view->b;
     for (uint32_t f = 0; f < a->face_count; f++)
-        try_axis(&e, lv(a->plane[f].normal), &best);
+        ask(&e, lv(a->plane[f].normal), user);
     for (uint32_t f = 0; f < b->face_count; f++)
-        try_axis(&e, lscale(-1, e.normal_b[f]), &best);
+        ask(&e, lscale(-1, e.normal_b[f]), user);
     for (uint32_t i = 0; i < a->edge_count; i++)
         for (uint32_t j = 0; j < b->edge_count; j++) {
             lvec u = lsub(e.a[a->edge[i].b], e.a[a->edge[i].a]);
@@ -115,39 +97,63 @@ static best_axis brute_force(const tl_pair_view *view)
             lvec n = lcross(u, v);
             if (ldot(n, n) <= 1e-30L * ldot(u, u) * ldot(v, v))
                 continue; /* parallel: no direction of their own */
-            try_axis(&e, n, &best);
-            try_axis(&e, lscale(-1, n), &best);
+            ask(&e, n, user);
+            ask(&e, lscale(-1, n), user);
         }
+}
+
+/* The largest separation of all axes, and its direction. */
+typedef struct best_axis {
+    real s;
+    lvec n;
+} best_axis;
+
+static void keep_best(const exact *e, lvec n, void *user)
+{
+    best_axis *best = user;
+    real s = separation(e, n);
+    if (s > best->s)
+        *best = (best_axis){s, lscale(1 / sqrtl(ldot(n, n)), n)};
+}
+
+SCENE_UNUSED static best_axis brute_force(const tl_pair_view *view)
+{
+    best_axis best = {-INFINITY, {0, 0, 0}};
+    try_all(view, keep_best, &best);
     return best;
 }
 
-/* The largest s of an axis that differs from n, over all faces and all edges whose arcs cross: none is left out. */
-static double plain_second(const tl_pair_view *view, const exact *e, tl_vec3 n)
+/* The way along a direction until some axis parts the blocks. */
+typedef struct leaving {
+    lvec way;
+    real far;
+} leaving;
+
+static void leave_along(const exact *e, lvec n, void *user)
 {
-    static const double differs =
-        0.99; /* cos: axes alike are one, and so may be those alike to these */
-    const tl_poly *a = view->a, *b = view->b;
-    double second = -INFINITY;
-    for (uint32_t f = 0; f < a->face_count; f++)
-        if (tl_v3_dot(a->plane[f].normal, n) < differs)
-            second = fmax(second, (double)separation(e, lv(a->plane[f].normal)));
-    for (uint32_t f = 0; f < b->face_count; f++)
-        if (-tl_v3_dot(view->normal_b[f], n) < differs)
-            second = fmax(second, (double)separation(e, lv(tl_v3_neg(view->normal_b[f]))));
-    for (uint32_t i = 0; i < a->edge_count; i++)
-        for (uint32_t j = 0; j < b->edge_count; j++) {
-            const tl_edge *ea = &a->edge[i], *eb = &b->edge[j];
-            tl_vec3 u = tl_v3_sub(a->vertex[ea->b], a->vertex[ea->a]), c;
-            tl_vec3 v = tl_v3_sub(view->vertex_b[eb->b], view->vertex_b[eb->a]);
-            tl_vec3 a1 = a->plane[ea->left].normal, a2 = a->plane[ea->right].normal;
-            double b1 = tl_v3_dot(u, view->normal_b[eb->left]);
-            double b2 = tl_v3_dot(u, view->normal_b[eb->right]);
-            double s1 = tl_v3_dot(v, a1), s2 = tl_v3_dot(v, a2);
-            if (b1 * b2 < 0 && s1 * s2 < 0 && b1 * s2 < 0 &&
-                tl_edge_normal(u, v, tl_v3_add(a1, a2), &c) && tl_v3_dot(c, n) < differs)
-                second = fmax(second, (double)separation(e, lv(c)));
-        }
-    return second;
+    leaving *out = user;
+    real by = ldot(n, out->way) / sqrtl(ldot(n, n));
+    if (by > 0)
+        out->far = fminl(out->far, -separation(e, n) / by);
+}
+
+/* Moves B along the best axis until it overlaps A by a depth; the best axis may change on the way. */
+SCENE_UNUSED static void exact_press(scene_pair *p, double depth)
+{
+    for (int pass = 0; pass < 4; pass++) {
+        best_axis best = brute_force(scene_place(p));
+        real by = -(real)depth - best.s;
+        p->shift = tl_v3_add(p->shift, tl_v3((double)(by * best.n.x), (double)(by * best.n.y),
+                                             (double)(by * best.n.z)));
+    }
+}
+
+/* How far B, which overlaps A, must go along a direction until they only touch. */
+SCENE_UNUSED static double exact_way_out(const tl_pair_view *view, tl_vec3 way)
+{
+    leaving out = {.way = lv(way), .far = INFINITY};
+    try_all(view, leave_along, &out);
+    return (double)out.far;
 }
 
 #endif

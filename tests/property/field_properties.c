@@ -1,8 +1,8 @@
 /* field_properties.c - the pressure field of random pairs of shapes: force and moment are the gradient of the energy,
  * and the energy is that of a brute-force sum. Overlaps go from touching to 0.4 of the size; faces may be borders. */
-#include "contact_scene.h"
-
+#include "exact_axis.h"
 #include "narrow/field.h"
+#include "narrow/look.h"
 
 /* How many random cases are made, of those that an optimised build makes. */
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
@@ -72,7 +72,7 @@ typedef struct scene {
     scene_pair pair;
     planes planes;
     uint8_t border_a[256], border_b[256];
-    bool borders;
+    bool borders, apart;
     tl_field_room room;
     tl_vec3 origin; /* near the common volume */
 } scene;
@@ -81,17 +81,17 @@ static void list_scene(scene *s)
 {
     const tl_pair_view *view = scene_place(&s->pair);
     /* faces that cannot meet may be left out of blocks that do; of blocks that are apart all are needed to tell */
-    s->planes.all = s->borders || tl_axis_search(view, &s->pair.room, NULL).s >= 0;
+    s->planes.all = s->borders || s->apart || !tl_look_near(view, 0);
     list_planes(&s->planes, view, s->borders ? s->border_a : NULL, s->borders ? s->border_b : NULL,
                 s->origin);
 }
 
 static double energy(scene *s)
 {
-    tl_field_volume volume;
+    tl_field_sums sums;
     list_scene(s);
-    CHECK(tl_field_integrate(&s->planes.faces, &s->room, &volume));
-    return volume.energy;
+    CHECK(tl_field_integrate(&s->planes.faces, &s->room, &sums));
+    return sums.energy;
 }
 
 static tl_vec3 axis_of(int k)
@@ -145,18 +145,9 @@ static tl_poly *shape_of(uint64_t *seed, int kind)
 /* Moves B along a direction until it overlaps by a depth from where they touch. */
 static void dip(scene *s, tl_vec3 way, double depth)
 {
-    double near = 0, far = 40;
-    tl_vec3 start = s->pair.shift;
-    for (int i = 0; i < 70; i++) {
-        double middle = 0.5 * (near + far);
-        s->pair.shift = tl_v3_madd(start, middle, way);
-        tl_axis axis = tl_axis_search(scene_place(&s->pair), &s->pair.room, NULL);
-        if (axis.s < 0)
-            near = middle;
-        else
-            far = middle;
-    }
-    s->pair.shift = tl_v3_madd(start, near - depth, way);
+    double out = exact_way_out(scene_place(&s->pair), way);
+    s->pair.shift = tl_v3_madd(s->pair.shift, out - depth, way);
+    s->apart = depth < 0;
 }
 
 /* A point of the common volume: vertices of one inside the other, or crossings of edges with faces; the mean. */
@@ -231,7 +222,7 @@ static bool check_gradient(scene *s, double depth, uint64_t seed)
 {
     tl_field_sums sums;
     list_scene(s);
-    CHECK(tl_field_surface(&s->planes.faces, &s->room, &sums));
+    CHECK(tl_field_integrate(&s->planes.faces, &s->room, &sums));
     if (!(tl_v3_norm(sums.force) > LEAST * pow(depth * s->pair.view.size, 3)))
         return false;
     double off = INFINITY;
@@ -337,7 +328,7 @@ TEST(volume_is_that_of_what_is_left_by_cuts)
         make_scene(&s, random_kind(&seed), random_kind(&seed), scene_between(&seed, 0.02, 0.4),
                    false, &seed);
         list_scene(&s);
-        tl_field_volume found;
+        tl_field_sums found;
         CHECK(tl_field_integrate(&s.planes.faces, &s.room, &found));
         double volume = volume_in_common(&s);
         if (!isnan(volume)) {
@@ -359,7 +350,7 @@ TEST(energy_is_that_of_a_sum)
         static scene s;
         make_scene(&s, random_kind(&seed) % 2, random_kind(&seed) % 2, 0.3, false, &seed);
         list_scene(&s);
-        tl_field_volume found;
+        tl_field_sums found;
         CHECK(tl_field_integrate(&s.planes.faces, &s.room, &found));
         double sum = 0;
         for (int i = 0; i < CELLS * CELLS * CELLS; i++) {
@@ -370,6 +361,89 @@ TEST(energy_is_that_of_a_sum)
         CHECK_REL(found.energy, sum, 0.04);
         free_scene(&s);
     }
+}
+
+/* Loss of digits that may come of an origin as far away as a block is large: its roundings over the size of K. */
+#define FAR_ORIGIN 1e-14
+
+/* However small what two blocks have in common, its centre is found as well from afar: the moment of its force about it, the
+ * place, and the radius. */
+TEST(a_far_origin_moves_nothing)
+{
+    int cases = 0;
+    for (uint64_t k = 1; k <= CASES(400); k++) {
+        uint64_t seed = k + 12000;
+        static scene s;
+        make_scene(&s, random_kind(&seed) % 4, random_kind(&seed) % 4,
+                   pow(10, scene_between(&seed, -5, -1)), false, &seed);
+        tl_field_sums near, far;
+        tl_vec3 by = scene_direction(&seed);
+        list_scene(&s);
+        CHECK(tl_field_integrate(&s.planes.faces, &s.room, &near));
+        s.origin = tl_v3_add(s.origin, by);
+        list_scene(&s);
+        CHECK(tl_field_integrate(&s.planes.faces, &s.room, &far));
+        double force = tl_v3_norm(near.force), length = cbrt(near.volume);
+        if (near.volume > 0) {
+            double off = FAR_ORIGIN / length;
+            CHECK_NEAR(scene_apart(far.force, near.force), 0, 100 * off * force);
+            CHECK_REL(far.energy, near.energy, 100 * off);
+            CHECK_REL(far.volume, near.volume, 100 * off);
+            tl_vec3 centre = tl_v3_scale(1 / near.pressure, near.pressed);
+            tl_vec3 same = tl_v3_add(by, tl_v3_scale(1 / far.pressure, far.pressed));
+            double reach = sqrt(near.second / near.extent);
+            CHECK_NEAR(scene_apart(same, centre), 0, 100 * off * reach);
+            tl_vec3 about = tl_v3_add(far.moment, tl_v3_cross(by, far.force));
+            CHECK_NEAR(scene_apart(about, near.moment), 0, 100 * off * force);
+            cases++;
+        }
+        free_scene(&s);
+    }
+    CHECK(cases > CASES(300));
+}
+
+/* A pair that wanders about, by less or more than its overlap: which cells met in the last place is a help to find those that
+ * meet in the next, and changes nothing. */
+TEST(cells_that_met_before_change_nothing)
+{
+    int cases = 0, changes = 0;
+    for (uint64_t k = 1; k <= CASES(600); k++) {
+        uint64_t seed = k + 30000;
+        static scene s;
+        uint16_t known[TL_FIELD_KNOWN] = {0}, before[TL_FIELD_KNOWN];
+        double depth = pow(10, scene_between(&seed, -4, log10(0.3)));
+        make_scene(&s, random_kind(&seed), random_kind(&seed), depth, k % 8 == 0, &seed);
+        list_scene(&s);
+        tl_field_faces kept = s.planes.faces; /* these stay, whatever else comes near */
+        for (int step = 0; step < 20; step++) {
+            tl_field_sums with, without;
+            if (kept.a + kept.b > TL_FIELD_KNOWN || s.planes.faces.a != kept.a ||
+                s.planes.faces.b != kept.b)
+                break;
+            memcpy(before, known, sizeof before);
+            s.planes.faces.known = known;
+            CHECK(tl_field_integrate(&s.planes.faces, &s.room, &with));
+            s.planes.faces.known = NULL;
+            CHECK(tl_field_integrate(&s.planes.faces, &s.room, &without));
+            double force = without.deepest > 0 ? without.energy / without.deepest : 0;
+            CHECK_NEAR(scene_apart(with.force, without.force), 0, 1e-9 * force);
+            CHECK_NEAR(scene_apart(with.moment, without.moment), 0, 1e-9 * force);
+            CHECK_NEAR(with.energy, without.energy, 1e-9 * without.energy);
+            CHECK_NEAR(with.volume, without.volume, 1e-9 * without.volume);
+            cases += without.deepest > 0;
+            changes += memcmp(before, known, sizeof before) != 0;
+            double way = depth * s.pair.view.size * pow(10, scene_between(&seed, -2, 0));
+            s.pair.shift = tl_v3_madd(s.pair.shift, way, scene_direction(&seed));
+            s.pair.turn = tl_q_unit(
+                tl_q_mul(scene_turn(scene_direction(&seed), way / s.pair.view.size), s.pair.turn));
+            list_scene(&s);
+        }
+        free_scene(&s);
+    }
+    CHECK(cases > CASES(2000));
+    CHECK(changes > CASES(500));
+    if (getenv("TALUS_TEST_VERBOSE"))
+        printf("  %d places, %d times other cells met\n", cases, changes);
 }
 
 /* Two flush cubes: U = kn A o^2 / 2 and F = kn A o but for what their borders take, of the order of o over the side. */
@@ -383,11 +457,9 @@ TEST(flush_faces_have_the_force_of_springs)
         s.origin = tl_v3(0.1, 0, 0.5);
         list_scene(&s);
         tl_field_sums sums;
-        tl_field_volume volume;
-        CHECK(tl_field_surface(&s.planes.faces, &s.room, &sums));
-        CHECK(tl_field_integrate(&s.planes.faces, &s.room, &volume));
-        CHECK_REL(volume.volume, o, 1e-9);
-        CHECK_REL(2 * volume.energy, 0.5 * o * o, 2 * o);
+        CHECK(tl_field_integrate(&s.planes.faces, &s.room, &sums));
+        CHECK_REL(sums.volume, o, 1e-9);
+        CHECK_REL(2 * sums.energy, 0.5 * o * o, 2 * o);
         CHECK_REL(2 * sums.force.z, o, 2 * o);
         CHECK_REL(sums.area.z, 1.0, 4 * o);
         CHECK_NEAR(sums.force.x, 0, 1e-9 * o);
@@ -406,7 +478,7 @@ TEST(blocks_that_only_touch_have_no_force)
         make_scene(&s, random_kind(&seed) % 5, random_kind(&seed) % 5, -1e-9, k % 2, &seed);
         list_scene(&s);
         tl_field_sums sums;
-        CHECK(tl_field_surface(&s.planes.faces, &s.room, &sums));
+        CHECK(tl_field_integrate(&s.planes.faces, &s.room, &sums));
         CHECK_NEAR(tl_v3_norm(sums.force), 0, 0);
         free_scene(&s);
     }
@@ -414,4 +486,5 @@ TEST(blocks_that_only_touch_have_no_force)
 
 TEST_MAIN(RUN(force_and_moment_are_the_gradient_of_the_energy), RUN(borders_do_work_as_well),
           RUN(volume_is_that_of_what_is_left_by_cuts), RUN(energy_is_that_of_a_sum),
-          RUN(flush_faces_have_the_force_of_springs), RUN(blocks_that_only_touch_have_no_force))
+          RUN(flush_faces_have_the_force_of_springs), RUN(blocks_that_only_touch_have_no_force),
+          RUN(a_far_origin_moves_nothing), RUN(cells_that_met_before_change_nothing))

@@ -255,8 +255,13 @@ static size_t points_a_step(double age, double warm, double *least, size_t *all)
     *least = INFINITY;
     *all = 0;
     for (uint32_t i = 0; i < c->table.rows; i++)
-        for (size_t k = 0; k < c->point_count[i] && c->held[i]; k++, ++*all)
-            *least = fmin(*least, m->detect->points.state[0][tl_point_row(c, i, k)]);
+        for (size_t k = 0; k < c->point_count[i] && c->held[i]; k++) {
+            size_t at = tl_point_row(c, i, k);
+            if (!(m->detect->points.area[at] > 0)) /* the rim of a field contact that has none */
+                continue;
+            *least = fmin(*least, m->detect->points.state[0][at]);
+            ++*all;
+        }
     law->kind = kind;
     tl_model_destroy(m);
     return seen_points;

@@ -24,17 +24,14 @@ static void own(const tl_outline *o, uint32_t k, uint32_t number)
 {
     CHECK_INT(o->corner[k].from, number);
     CHECK_INT(o->corner[k].to, number);
-    CHECK_INT(o->corner[k].face, number < TL_OUTLINE_CORNERS ? -1 : 1);
 }
 
 static void crossing(const tl_outline *o, uint32_t k, uint32_t from, uint32_t line)
 {
     CHECK_INT(o->corner[k].from, from);
     CHECK_INT(o->corner[k].to, (from + 1) % 4);
-    CHECK_INT(o->corner[k].line, line);
     CHECK_INT(o->corner[k].over, TL_OUTLINE_CORNERS * line + from);
     CHECK_INT(o->corner[k].under, TL_OUTLINE_CORNERS * line + (from + 1) % 4);
-    CHECK_INT(o->corner[k].face, 0);
 }
 
 TEST(one_square_in_the_other)

@@ -101,15 +101,24 @@ static moments point_moments(const tl_manifold *m)
 
 /* ---------------------------------------------------------------- weights ---------------- */
 
-static const tl_share_rule no_share = {.minimum = 0, .reach = INFINITY};
+static const tl_touch_rule any_reach = {.reach = INFINITY};
+
+static tl_manifold *build_by(scene_pair *p, const tl_touch_rule *rule)
+{
+    const tl_manifold_before none = {.facet = {.kind = TL_FACET_PATCH}};
+    const tl_pair_view *view = scene_place(p);
+    tl_region region;
+    CHECK(tl_region_find(view, TL_LIST_MARGIN * view->size, &p->room, &region));
+    CHECK(tl_manifold_find(view, &region, rule, &none, &p->room));
+    return &p->room.manifold;
+}
 
 /* Builds the manifold of B standing on A, both prisms along z of height 1. */
 static const tl_manifold *build(scene_pair *p)
 {
-    tl_pair_view *view = scene_place(p);
-    tl_axis axis = tl_axis_search(view, &p->room, NULL);
-    tl_manifold_build(view, &axis, &no_share, &p->room);
-    return &p->room.manifold;
+    tl_manifold *m = build_by(p, &any_reach);
+    CHECK_INT(m->facet.kind, TL_FACET_PATCH);
+    return m;
 }
 
 static void same_moments(moments found, moments want, double tolerance, double reach)
@@ -152,7 +161,6 @@ TEST(points_integrate_the_common_polygon)
         scene_pair p = scene_pair_of(scene_drum(na, ra, 1, phase_a), scene_drum(nb, rb, 1, 0),
                                      scene_turn(tl_v3(0, 0, 1), twist), tl_v3(x, y, 1 - 1e-5));
         const tl_manifold *m = build(&p);
-        CHECK_INT(m->facet_count, 1);
         same_moments(point_moments(m), want, 1e-12, 2);
         for (size_t k = 0; k < m->point_count; k++) {
             CHECK(m->points[k].area > 0);
@@ -388,16 +396,8 @@ TEST(faces_that_share_only_an_edge_have_no_points)
         scene_pair p =
             scene_pair_of(scene_box_shape(1, 1, 1), scene_box_shape(1, 1, 1), tl_q_identity(),
                           tl_v3(shifts[i][0], shifts[i][1], shifts[i][2]));
-        tl_pair_view *view = scene_place(&p);
-        tl_axis axis = tl_axis_search(view, &p.room, NULL);
-        tl_share_rule rule = {.minimum = 0.01, .reach = 1.5e-3};
-        tl_manifold_build(view, &axis, &rule, &p.room);
-        CHECK_INT(p.room.manifold.point_count, 0);
-        /* the user's own minimum area holds for them too */
-        rule.unconditional = true;
-        tl_manifold_build(view, &axis, &rule, &p.room);
-        CHECK(p.room.manifold.point_count > 0);
-        CHECK_NEAR(point_moments(&p.room.manifold).area, 0.01, 1e-15);
+        const tl_touch_rule rule = {.least = 0.01, .reach = 1.5e-3};
+        CHECK_INT(build_by(&p, &rule)->point_count, 0);
         scene_pair_free(&p);
     }
 }
@@ -406,33 +406,12 @@ TEST(faces_that_share_only_an_edge_have_no_points)
 TEST(patch_beyond_the_reach_is_left_out)
 {
     scene_pair p = scene_pair_of(scene_box_shape(1, 1, 1), scene_box_shape(1, 1, 1),
-                                 tl_q_identity(), tl_v3(0, 0, 1.01));
-    tl_pair_view *view = scene_place(&p);
-    tl_axis axis = tl_axis_search(view, &p.room, NULL);
-    tl_share_rule rule = {.minimum = 0.01, .reach = 0.0099};
-    tl_manifold_build(view, &axis, &rule, &p.room);
-    CHECK_INT(p.room.manifold.point_count, 0);
-    rule.reach = 0.0101;
-    tl_manifold_build(view, &axis, &rule, &p.room);
-    CHECK_NEAR(point_moments(&p.room.manifold).area, 1, 1e-14);
+                                 tl_q_identity(), tl_v3(0, 0, 1.002));
+    tl_touch_rule rule = {.reach = 0.0019};
+    CHECK_INT(build_by(&p, &rule)->point_count, 0);
+    rule.reach = 0.0021;
+    CHECK_NEAR(point_moments(build_by(&p, &rule)).area, 1, 1e-14);
     scene_pair_free(&p);
-}
-
-/* Leans are kept in steps: the nearest, alike to both sides, and exact where the normal is a face's. */
-TEST(leans_are_rounded_alike_to_both_sides)
-{
-    uint64_t seed = 5;
-    for (int i = 0; i < 100000; i++) {
-        float lean = (float)(2 * check_random(&seed) - 1);
-        int steps = tl_lean_steps(lean, TL_LEAN_FACE_STEP);
-        CHECK_INT(tl_lean_steps(-lean, TL_LEAN_FACE_STEP), -steps);
-        CHECK(fabsf(TL_LEAN_FACE_STEP * (float)steps - lean) <= 0.5f * TL_LEAN_FACE_STEP);
-    }
-    for (int i = -2; i <= 2; i++) {
-        CHECK(TL_LEAN_EDGE_STEP * tl_lean_steps((float)i, TL_LEAN_EDGE_STEP) == (float)i);
-        if (abs(i) < 2)
-            CHECK(TL_LEAN_FACE_STEP * tl_lean_steps((float)i, TL_LEAN_FACE_STEP) == (float)i);
-    }
 }
 
 TEST_MAIN(RUN(points_integrate_the_common_polygon), RUN(drums_of_many_sides_keep_their_area),
@@ -440,4 +419,4 @@ TEST_MAIN(RUN(points_integrate_the_common_polygon), RUN(drums_of_many_sides_keep
           RUN(wobble_of_a_closed_patch_changes_little),
           RUN(wobble_of_a_half_open_patch_does_not_jump), RUN(tiny_wobble_leaves_the_rule_alone),
           RUN(drums_wobble_without_jumps), RUN(faces_that_share_only_an_edge_have_no_points),
-          RUN(patch_beyond_the_reach_is_left_out), RUN(leans_are_rounded_alike_to_both_sides))
+          RUN(patch_beyond_the_reach_is_left_out))

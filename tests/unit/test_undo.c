@@ -165,7 +165,7 @@ TEST(a_step_that_the_damping_fails_is_undone)
     }
 }
 
-/* Laws that never fail, and forces whose moments are beyond all numbers: cured by a stress that is not. */
+/* Laws that never fail, and forces that are beyond all numbers: cured by a stress that is not. */
 TEST(a_force_beyond_all_numbers_is_undone)
 {
     const char *const laws[] = {"elastic", "coulomb"};
@@ -174,7 +174,8 @@ TEST(a_force_beyond_all_numbers_is_undone)
         for (int k = 0; k < 2; k++) {
             m[k] = scene(2, 5, laws[law], NULL);
             run(m[k], STEPS);
-            const tl_insitu wild = {.stress = {.xx = -1.7e308, .yy = -1.7e308, .zz = -1.7e308}};
+            const double all = -1.7e308;
+            const tl_insitu wild = {.stress = {all, all, all, all, all, all}};
             const tl_insitu tame = {.stress = {.xx = -1e3, .yy = -1e3, .zz = -1e3}};
             scene_ok(m[k], tl_model_insitu(m[k], &wild));
             if (k == 0)

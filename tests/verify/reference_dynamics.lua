@@ -44,15 +44,11 @@ reference.wall = {
     across = { mu = 0.5, tilt = 9.462322208025618 },
 }
 
--- A wedge on planes A and B (dip, dip direction) whose lower edge carries too, with three contacts of the
--- same stiffness: shares of its weight when the edge's normal bisects those of the planes, and the
--- friction coefficient at failure, which the paper gives as 0.70 without that normal.
+-- A wedge on planes A and B (dip, dip direction) whose lower edge carries too.
 reference.wedge_edge = {
-    source = "Hart, Cundall and Lemos (1988), example 1, second run; elastic shares of a wedge that does "
-        .. "not turn: 0.698 with an upright normal of the edge, 0.708 with the bisector",
+    source = "Hart, Cundall and Lemos (1988), example 1, second run; springs of both faces, and of the mean "
+        .. "overlap at the edge",
     A = { 40, 130 }, B = { 60, 220 },
-    normal = { 0.48124134256103107, 0.050035467056991564, 0.31944146016105335 },
-    low = 0.69, high = 0.715,
 }
 
 -- Friction coefficient at failure of a wedge on A (dip as listed, dip direction 130) and B (60/220).

@@ -2,6 +2,7 @@
 package.path = "tests/verify/?.lua;scripts/?.lua;" .. package.path -- run in the source root
 local talus = require "talus"
 local figures = require "check_figures"
+local joint = require "check_joint"
 local case = require("reference_statics")["S.series"]
 
 local STRESS = 1e-4   -- relative to the larger stress
@@ -28,8 +29,8 @@ local function build(row)
     return model, plates[1], model:blocks { containing = { 0.5, 0.5, 1.5 } }
 end
 
-local function stress(model, joint)
-    local contacts = model:contacts { joint = joint }
+local function stress(model, name)
+    local contacts = model:contacts { joint = name }
     return #contacts > 0 and contacts:sum "normal_force" / contacts:sum "area" or 0
 end
 
@@ -61,8 +62,10 @@ for i, row in ipairs(case.rows) do
     local most = math.max(row.sigma_upper, row.sigma_lower)
     figures.near(name .. "upper stress, Pa", stress(model, "upper"), row.sigma_upper, STRESS * most)
     figures.near(name .. "lower stress, Pa", stress(model, "lower"), row.sigma_lower, STRESS * most)
-    figures.relative(name .. "way of the block, m", -block[1].displacement[3],
-        row.block_displacement, STRESS)
+    -- A joint that closes by more than a thousandth of the side is no linear spring.
+    local expected = row.sigma_upper > 0 and row.block_displacement
+        or joint.closure(row.kn2, 1, row.sigma_lower)
+    figures.relative(name .. "way of the block, m", -block[1].displacement[3], expected, STRESS)
     series[i] = { name = string.format("lower joint, row %d", i), x = way, y = lower }
     ends.x[i], ends.y[i] = row.d, row.sigma_lower
 end

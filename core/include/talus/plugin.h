@@ -28,7 +28,7 @@ extern "C" {
 #endif
 
 #define TL_ABI_MAJOR 1u
-#define TL_ABI_MINOR 3u
+#define TL_ABI_MINOR 4u
 
 #if defined(__GNUC__)
 #define TL_PLUGIN_EXPORT __attribute__((visibility("default")))
@@ -186,7 +186,19 @@ typedef struct tl_law_batch {
     uint32_t *flags;         /* in/out */
     double *stored;          /* out, or NULL: elastic energy, J */
     double *dissipated;      /* out, or NULL: energy turned to heat in this step, J */
+    /* since 1.4: m, closure at the outermost fibre of the area that a point stands for. Points of a patch are drawn in from
+     * its corners and edges; a bond begins to break there. The closure itself for points that stand alone. */
+    const double *closure_edge;
 } tl_law_batch;
+
+/* Which points of a law may carry a normal force where their walls are apart (closure < 0). Patches of points that carry
+ * none there end at the line where the walls part, so that a linear pressure is integrated exactly. Points with an
+ * initial normal force are kept whole whatever the law says. */
+enum {
+    TL_PULL_ANY,    /* any may */
+    TL_PULL_BONDED, /* those without TL_POINT_FAILED may */
+    TL_PULL_NONE    /* none: no tension, and slip does not open the joint */
+};
 
 /* Operations of a law. `create` and `destroy` may both be NULL: then `self` is the host's own copy
  * of the params struct. */
@@ -206,6 +218,8 @@ typedef struct tl_law_ops {
     /* since 1.3; not 0: `update` always returns TL_OK. A step in which a law or the damping fails is undone; of those that
      * cannot fail the host need not keep what that takes, up to a fifth of the time of a step. */
     uint32_t never_fails;
+    /* [main] since 1.4; may be NULL, which is TL_PULL_ANY. TL_PULL_*, with these parameters. */
+    uint32_t (*pulls)(const void *self);
 } tl_law_ops;
 
 /* ---------------------------------------------------------------- damping ---------------- */

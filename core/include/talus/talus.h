@@ -231,8 +231,8 @@ TL_API tl_status tl_model_mass_scaling(tl_model *model, bool on);
 TL_API bool tl_model_mass_scaled(const tl_model *model);
 
 typedef struct tl_contact_area {
-    double fraction;   /* of the smaller block's mean face area; >= 0 */
-    double absolute;   /* m2; NaN: by the fraction. Given, it also serves edges of parallel faces */
+    double fraction;   /* of the smaller block's mean face area; >= 0. 0: no minimum area */
+    double absolute;   /* m2; NaN: by the fraction */
     const char *joint; /* NULL: every joint */
 } tl_contact_area;
 
@@ -335,10 +335,10 @@ TL_API tl_profile tl_model_profile(const tl_model *model);
     X(broad, "how far blocks have moved since pairs were listed")                                  \
     X(pairs, "candidate pairs")                                                                    \
     X(contacts, "columns of the contacts")                                                         \
-    X(facets, "what the contacts remember of their faces, edges and vertices")                     \
+    X(facets, "faces of the contacts, and what field contacts keep beside their points")           \
     X(points, "columns of the contact points")                                                     \
     X(index, "lists of each block's contacts, and of contacts by number")                          \
-    X(spare, "second set of tables of contacts, facets and points")                                \
+    X(spare, "second set of tables of contacts and points")                                        \
     X(other, "rows by number, scratch of the threads, joints and laws")
 
 typedef struct tl_memory {

@@ -283,13 +283,20 @@ static int stateless(const void *self)
     return ((const coulomb *)self)->dilation == 0;
 }
 
+/* Open points carry nothing, unless slip has lifted them. */
+static uint32_t pulls(const void *self)
+{
+    return ((const coulomb *)self)->dilation > 0 ? TL_PULL_ANY : TL_PULL_NONE;
+}
+
 static const tl_law_ops ops = {.size = sizeof ops,
                                .create = create,
                                .update = update,
                                .stiffness = stiffness,
                                .destroy = free,
                                .stateless = stateless,
-                               .never_fails = true};
+                               .never_fails = true,
+                               .pulls = pulls};
 
 static const tl_kind kind = {
     .size = sizeof kind,

@@ -2,12 +2,13 @@
  *
  *     f_n = kn A (closure + opening) + f_n0         total, compression positive; after eq. (6)
  *     f_t = f_s - ks A du_s                         eq. (7), on block B
- *     fails when  f_n < -T A   or   |f_t| > max(0, c A + f_n tan(friction))       eq. (10)
+ *     fails when  f_e < -T A   or   |f_t| > max(0, c A + f_n tan(friction))       eq. (10)
  *     f_n < -T A:  f_n = 0, f_s = 0, open
  *     |f_t| > limit:  f_s = f_t limit / |f_t|       eq. (12), slipping
  *     opening += tan(dilation) slip                 up to dilation_limit tan(dilation)
  *
- * T, c and the friction are those of the bond while it holds. At the first failure, in tension or
+ * f_e is the normal force that the area A would have with the closure at its outermost fibre: a bond in bending breaks where
+ * it is pulled most. T, c and the friction are those of the bond while it holds. At the first failure, in tension or
  * in shear, the bond is lost for good: T, c and the friction drop to their residual values within that
  * step (brittle), as 3DEC does. State `bond` is 1 while it holds, 0 when lost. Since the closure is a
  * total one, a point that has opened carries again only where its walls meet. Dilation and its state
@@ -25,6 +26,8 @@
 #include <talus/plugin.h>
 
 #include <math.h>
+#include <stdbool.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -141,6 +144,13 @@ static void store_energy(const bonded *law, const tl_law_batch *batch)
     }
 }
 
+/* Closures at the outermost fibres; a host of an older interface knows none. */
+static inline const double *edges(const tl_law_batch *batch)
+{
+    bool known = batch->size >= offsetof(tl_law_batch, closure_edge) + sizeof batch->closure_edge;
+    return known && batch->closure_edge ? batch->closure_edge : batch->closure;
+}
+
 /* The law itself, for up to STRIDE lanes from `begin`. `heat` and `dilates` are constants at each call,
  * so that the loop exists once for each and none has a branch in it; without dilation the opening of
  * slip in the past still counts. A NaN goes through
@@ -152,6 +162,7 @@ static inline __attribute__((always_inline)) void move(const bonded *law, const 
                                                        const int dilates)
 {
     const double *restrict area = batch->area + begin, *restrict closure = batch->closure + begin;
+    const double *restrict edge = edges(batch) + begin;
     const double *restrict f_n0 = batch->f_n0 + begin;
     const double *restrict du_x = batch->du_s[0] + begin, *restrict du_y = batch->du_s[1] + begin;
     const double *restrict du_z = batch->du_s[2] + begin;
@@ -175,8 +186,8 @@ static inline __attribute__((always_inline)) void move(const bonded *law, const 
         double bound = peak.cohesion * area[i] + total * peak.tangent;
         double before = bond[i];
         double after = trial > (bound < 0 ? 0 : bound) ? 0 : before;
-        after = total < -peak.tension * area[i] ? 0 : after;
-
+        double fibre = kn * area[i] * (edge[i] + opened) + f_n0[i];
+        after = fibre < -peak.tension * area[i] ? 0 : after;
         /* The strength that is left. */
         double tangent = after > BOND_HOLDS ? peak.tangent : residual.tangent;
         double cohesion = after > BOND_HOLDS ? peak.cohesion : residual.cohesion;
@@ -195,8 +206,7 @@ static inline __attribute__((always_inline)) void move(const bonded *law, const 
         }
         double lowest = -tension * area[i];
         double limit = cohesion * area[i] + total * tangent;
-        limit = limit < 0 ? 0 : limit;
-        limit = total < lowest ? 0 : limit;
+        limit = ((limit < 0) | (total < lowest)) ? 0 : limit;
         double most = limit * (1 + ROUNDING);
         double whole = trial > most ? trial : 1;
         double scale = trial > most ? limit / whole : 1;
@@ -257,12 +267,22 @@ static void stiffness(const void *self, double *kn, double *ks)
     *ks = law->ks;
 }
 
+/* Open points carry nothing without tensile strength, unless slip has lifted them. */
+static uint32_t pulls(const void *self)
+{
+    const bonded *law = self;
+    if (law->dilation > 0 || law->residual.tension > 0)
+        return TL_PULL_ANY;
+    return law->peak.tension > 0 ? TL_PULL_BONDED : TL_PULL_NONE;
+}
+
 static const tl_law_ops ops = {.size = sizeof ops,
                                .create = create,
                                .update = update,
                                .stiffness = stiffness,
                                .destroy = free,
-                               .never_fails = true};
+                               .never_fails = true,
+                               .pulls = pulls};
 
 static const tl_kind kind = {
     .size = sizeof kind,

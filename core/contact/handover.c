@@ -1,0 +1,289 @@
+/* handover.c - a contact that was a patch becomes a field contact, or the other way round, and a field contact that has
+ * moved.
+ *
+ * The shear of a field contact is one force and one torsion. Area that comes brings no shear, and of what
+ * is there that goes first which carries the least (resized). Neither makes energy. An initial stress of a patch moves a face of A outward by what its springs would be
+ * pressed, f_n0 / (kn A) less the overlap it belongs to, and stays so. */
+#include "contact/handover.h"
+
+#include "base/columns.h"
+#include "contact/detection.h"
+#include "contact/places.h"
+#include "contact/points.h"
+#include "contact/shear.h"
+
+/* Shear of a contact: force, and torsion about its normal. */
+typedef struct shear {
+    double area;
+    tl_vec3 normal, force;
+    double torsion;
+    double energy; /* of its springs, times 2 ks */
+} shear;
+
+/* A shear spring: twice its energy times ks. */
+static double energy_of(double f2, double area)
+{
+    return area > 0 ? f2 / area : 0;
+}
+
+static tl_press_row *press_of(const tl_model *m, uint32_t c)
+{
+    uint32_t row = m->detect->contacts.press[c];
+    return row == TL_NO_ROW ? NULL : &m->detect->press[row];
+}
+
+/* Of the points as they are, whose arms are in the lanes. */
+static shear shear_of(const tl_model *m, uint32_t c, const tl_point_lanes *lanes)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    const tl_points_table *p = &m->detect->points;
+    const tl_facet *f = &contacts->facet[c];
+    size_t count = contacts->point_count[c];
+    shear out = {.normal = f->last};
+    tl_vec3 centre = {0, 0, 0};
+    if (count && f->kind == TL_FACET_FIELD) {
+        size_t first = tl_point_row(contacts, c, TL_FIELD_SHEAR);
+        size_t torsion = tl_point_row(contacts, c, TL_FIELD_TORSION);
+        out.area = p->area[torsion];
+        out.force = tl_columns_get(p->f_s, first);
+        out.torsion =
+            press_of(m, c)->press.radius * tl_v3_dot(f->last, tl_columns_get(p->f_s, torsion));
+        for (size_t k = 0; k < TL_FIELD_POINTS; k++) {
+            size_t i = tl_point_row(contacts, c, k);
+            out.energy += energy_of(tl_v3_norm2(tl_columns_get(p->f_s, i)), p->area[i]);
+        }
+        out.energy += press_of(m, c)->spare[0] + press_of(m, c)->spare[1];
+        return out;
+    }
+    for (size_t k = 0; k < count; k++) {
+        size_t i = tl_point_row(contacts, c, k);
+        out.area += p->area[i];
+        centre = tl_v3_madd(centre, p->area[i], tl_columns_get(lanes->arm, k));
+    }
+    centre = tl_v3_scale(out.area > 0 ? 1 / out.area : 0, centre);
+    /* the forces are as they were before A's last turn: so must the arms be, or the torsion is another one for B */
+    tl_vec3 turn = tl_v3_scale(m->dt, m->bodies.pose[m->blocks.body[contacts->a[c]]].w_moved);
+    for (size_t k = 0; k < count; k++) {
+        tl_vec3 force = tl_columns_get(p->f_s, tl_point_row(contacts, c, k));
+        tl_vec3 arm = tl_v3_sub(tl_columns_get(lanes->arm, k), centre);
+        arm = tl_v3_sub(arm, tl_v3_cross(turn, arm));
+        out.force = tl_v3_add(out.force, force);
+        out.energy += energy_of(tl_v3_norm2(force), p->area[tl_point_row(contacts, c, k)]);
+        out.torsion += tl_v3_dot(out.normal, tl_v3_cross(arm, force));
+    }
+    return out;
+}
+
+/* How far the initial stress of a patch moves its face. */
+static double shift_of(const tl_model *m, uint32_t c)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    const tl_points_table *p = &m->detect->points;
+    uint32_t material = contacts->material[c];
+    double area = 0, shift = 0;
+    if (!p->f_n0 || material == TL_NO_ROW)
+        return 0;
+    for (size_t k = 0; k < contacts->point_count[c]; k++) {
+        size_t i = tl_point_row(contacts, c, k);
+        area += p->area[i];
+        shift += p->f_n0[i] / m->materials[material].kn - p->area[i] * p->reference[i];
+    }
+    return area > 0 ? shift / area : 0;
+}
+
+/* What the law keeps of a point. */
+typedef struct law_state {
+    double state[TL_STATE_COLUMNS], area;
+    uint32_t flags;
+    bool known;
+} law_state;
+
+static law_state state_of(const tl_model *m, uint32_t c)
+{
+    const tl_points_table *p = &m->detect->points;
+    law_state out = {.known = m->detect->contacts.point_count[c] > 0};
+    size_t i = out.known ? tl_point_row(&m->detect->contacts, c, 0) : 0;
+    for (uint32_t s = 0; s < p->state_columns && out.known; s++)
+        out.state[s] = p->state[s][i];
+    out.flags = out.known ? p->flags[i] : 0;
+    out.area = out.known ? p->area[i] : 0;
+    return out;
+}
+
+static void write_points(tl_model *m, uint32_t c, const tl_manifold *g, const law_state *old,
+                         double reference)
+{
+    tl_contacts *contacts = &m->detect->contacts;
+    tl_points_table *p = &m->detect->points;
+    uint32_t material = contacts->material[c];
+    const tl_kind *kind = material == TL_NO_ROW ? NULL : m->materials[material].kind;
+    for (size_t k = g->point_count; k < contacts->point_room[c]; k++)
+        tl_point_clear(p, tl_point_row(contacts, c, k));
+    contacts->point_count[c] = (uint16_t)g->point_count;
+    for (size_t k = 0; k < g->point_count; k++) {
+        size_t i = tl_point_row(contacts, c, k);
+        tl_columns_put(p->p, i, g->points[k].p);
+        tl_columns_put(p->f_s, i, tl_v3(0, 0, 0));
+        p->area[i] = g->points[k].area;
+        p->key[i] = g->points[k].key;
+        p->f_n[i] = 0;
+        if (p->f_n0) {
+            p->f_n0[i] = 0;
+            p->reference[i] = reference;
+        }
+        p->flags[i] = old->flags;
+        tl_point_initial_state(p, i, kind);
+        if (old->known)
+            tl_point_take_state(p, i, kind, old->state, old->area);
+    }
+}
+
+/* Shear of what is left of it on a new area. */
+static shear carried(const shear *old, double area, tl_vec3 normal)
+{
+    double part = area < old->area ? area / old->area : 1;
+    shear out = {area, normal, {0, 0, 0}, part * old->torsion, 0};
+    if (old->area > 0)
+        out.force = tl_v3_scale(part, tl_v3_turn(old->force, old->normal, normal));
+    out.force = tl_v3_madd(out.force, -tl_v3_dot(out.force, normal), normal);
+    return out;
+}
+
+static void spread_over_patch(tl_model *m, uint32_t c, const shear *s, const tl_point_lanes *lanes)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    tl_points_table *p = &m->detect->points;
+    size_t count = contacts->point_count[c];
+    tl_vec3 centre = tl_columns_get(lanes->arm, count - 1);
+    double polar = 0;
+    for (size_t k = 0; k < count; k++) {
+        tl_vec3 arm = tl_v3_sub(tl_columns_get(lanes->arm, k), centre);
+        polar += p->area[tl_point_row(contacts, c, k)] * tl_v3_norm2(arm);
+    }
+    for (size_t k = 0; k < count; k++) {
+        size_t i = tl_point_row(contacts, c, k);
+        tl_vec3 arm = tl_v3_sub(tl_columns_get(lanes->arm, k), centre);
+        tl_vec3 f = tl_v3_scale(p->area[i] / s->area, s->force);
+        f = tl_v3_madd(f, polar > 0 ? p->area[i] * s->torsion / polar : 0,
+                       tl_v3_cross(s->normal, arm));
+        tl_columns_put(p->f_s, i, f);
+    }
+}
+
+static void put_on_field(tl_model *m, uint32_t c, const shear *s, double radius)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    tl_points_table *p = &m->detect->points;
+    tl_columns_put(p->f_s, tl_point_row(contacts, c, TL_FIELD_SHEAR), s->force);
+    tl_columns_put(p->f_s, tl_point_row(contacts, c, TL_FIELD_TORSION),
+                   tl_v3_scale(radius > 0 ? s->torsion / radius : 0, s->normal));
+}
+
+void tl_contact_hand_over(tl_model *m, uint32_t c, const tl_manifold *g,
+                          const tl_point_lanes *lanes)
+{
+    tl_contacts *contacts = &m->detect->contacts;
+    tl_press_row *row = press_of(m, c);
+    bool was_patch = contacts->facet[c].kind == TL_FACET_PATCH;
+    tl_contact_places(m, c, lanes);
+    shear old = shear_of(m, c, lanes);
+    law_state state = state_of(m, c);
+    double shift = was_patch ? shift_of(m, c) : row->shift;
+    if (row && was_patch) {
+        row->shift = shift;
+        row->shifted = contacts->facet[c].ia;
+    }
+    bool held = contacts->point_count[c] > 0;
+    bool field = g->facet.kind == TL_FACET_FIELD;
+    contacts->facet[c] = g->facet;
+    write_points(m, c, g, &state, field ? 0 : -shift);
+    if (row)
+        row->spare[0] = row->spare[1] = 0;
+    if (field)
+        row->press = g->press;
+    tl_contact_begin(m, c, lanes);
+    double ks = contacts->material[c] == TL_NO_ROW ? 0 : m->materials[contacts->material[c]].ks;
+    if (!held || g->point_count == 0) {
+        contacts->released[c] += ks > 0 ? 0.5 * old.energy / ks : 0;
+        return;
+    }
+    double area = 0;
+    for (size_t k = 0; k < (field ? 1 : g->point_count); k++)
+        area += g->points[k].area;
+    shear now = carried(&old, area, contacts->facet[c].last);
+    if (field)
+        put_on_field(m, c, &now, row->press.radius);
+    else
+        spread_over_patch(m, c, &now, lanes);
+    contacts->released[c] += ks > 0 ? 0.5 * (old.energy - shear_of(m, c, lanes).energy) / ks : 0;
+}
+
+/* Gives a shear spring of force f and area `old` another area. What comes carries nothing until it is sheared, so that the
+ * energy stays with what was there: `spare` is by how much it is more than that of the same force spread over all. What
+ * goes is what carries the least, which costs nothing while the energy of the force on what is left is not more than there
+ * is; then the stress stays, and the force goes with the area. All of it is continuous in area and force, and an area that
+ * swings costs nothing from the second time on. Energies times 2 ks. Returns the share of the force that stays. */
+static double resized(double f2, double old, double now, double *spare)
+{
+    double energy = energy_of(f2, old) + *spare;
+    double part = f2 > energy * now ? energy * now / f2 : 1;
+    *spare = fmax(0, energy - energy_of(f2, now));
+    return part;
+}
+
+/* Shear and torsion for a new area and radius. */
+static void refit_springs(tl_model *m, uint32_t c, const tl_manifold *g)
+{
+    tl_contacts *contacts = &m->detect->contacts;
+    tl_points_table *p = &m->detect->points;
+    tl_press_row *row = press_of(m, c);
+    size_t first = tl_point_row(contacts, c, TL_FIELD_SHEAR);
+    size_t torsion = tl_point_row(contacts, c, TL_FIELD_TORSION);
+    double old = p->area[torsion], area = g->points[0].area;
+    double r0 = row->press.radius, r1 = g->press.radius;
+    double polar = old * r0 * r0, now = area * r1 * r1;
+    tl_vec3 force = tl_columns_get(p->f_s, first);
+    tl_vec3 twist = tl_v3_scale(r0, tl_columns_get(p->f_s, torsion));
+    double f2 = tl_v3_norm2(force), t2 = tl_v3_norm2(twist);
+    double lost = energy_of(f2, old) + energy_of(t2, polar) + row->spare[0] + row->spare[1];
+    double stays = resized(f2, old, area, &row->spare[0]);
+    double stays_turned = resized(t2, polar, now, &row->spare[1]);
+    lost -= energy_of(stays * stays * f2, area) + energy_of(stays_turned * stays_turned * t2, now) +
+            row->spare[0] + row->spare[1];
+    tl_contact_motion by_step = tl_contact_moved(m, c);
+    tl_vec3 arm = tl_m3_mul(&m->bodies.pose[m->blocks.body[contacts->a[c]]].r, g->points[0].p);
+    tl_vec3 du = tl_v3_add(by_step.way, tl_v3_cross(by_step.turn, arm));
+    double work =
+        (1 - stays) * tl_v3_dot(force, du) + (1 - stays_turned) * tl_v3_dot(twist, by_step.turn);
+    double ks = contacts->material[c] == TL_NO_ROW ? 0 : m->materials[contacts->material[c]].ks;
+    contacts->released[c] += ks > 0 ? 0.5 * (lost / ks - work) : 0;
+    tl_columns_put(p->f_s, first, tl_v3_scale(stays, force));
+    tl_columns_put(p->f_s, torsion, tl_v3_scale(r1 > 0 ? stays_turned / r1 : 0, twist));
+    p->area[first] = p->area[torsion] = area;
+}
+
+void tl_contact_refit_field(tl_model *m, uint32_t c, const tl_manifold *g)
+{
+    tl_contacts *contacts = &m->detect->contacts;
+    tl_points_table *p = &m->detect->points;
+    tl_press_row *row = press_of(m, c);
+    tl_vec3 last = contacts->facet[c].last;
+    double area = p->area[tl_point_row(contacts, c, TL_FIELD_TORSION)];
+    /* what is found again in the same place stays what it is, to the bit */
+    if (g->points[0].area != area || g->press.radius != row->press.radius)
+        refit_springs(m, c, g);
+    for (size_t k = 0; k < TL_FIELD_POINTS; k++)
+        tl_columns_put(p->p, tl_point_row(contacts, c, k), g->points[0].p);
+    contacts->facet[c] = g->facet;
+    contacts->facet[c].last = last;
+    row->press = g->press;
+}
+
+double tl_contact_sheared(const tl_model *m, uint32_t c)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    if (contacts->facet[c].kind != TL_FACET_FIELD || contacts->material[c] == TL_NO_ROW)
+        return 0;
+    double ks = m->materials[contacts->material[c]].ks;
+    return ks > 0 ? 0.5 * shear_of(m, c, NULL).energy / ks : 0;
+}

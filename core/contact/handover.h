@@ -1,0 +1,18 @@
+/* handover.h - a contact that was a patch becomes a field contact, or the other way round (handover.c). */
+#ifndef TL_CONTACT_HANDOVER_H
+#define TL_CONTACT_HANDOVER_H
+
+#include "contact/layout.h"
+#include "model/model.h"
+#include "narrow/narrow.h"
+
+/* Puts the manifold's points in the place of the contact's, one of which is a field's, and notes the press of a field. Total
+ * shear force and torsion are kept, or go down with the area. The points fit into the contact's room. */
+void tl_contact_hand_over(tl_model *m, uint32_t contact, const tl_manifold *manifold,
+                          const tl_point_lanes *lanes);
+/* Puts the manifold of a field contact in the place of what it was. */
+void tl_contact_refit_field(tl_model *m, uint32_t contact, const tl_manifold *manifold);
+/* What the shear springs of a field contact hold, J; 0 of a patch, whose open points hold none. */
+double tl_contact_sheared(const tl_model *m, uint32_t contact);
+
+#endif

@@ -1,0 +1,16 @@
+/* prefetch.h - prefetches what ranks will need (prefetch.c). */
+#ifndef TL_CONTACT_PREFETCH_H
+#define TL_CONTACT_PREFETCH_H
+
+#include "contact/detection.h"
+#include "model/model.h"
+
+/* Whether there are so many points that prefetching pays. */
+bool tl_points_are_far(const tl_detect *d);
+/* Prefetches what a rank that comes soon will need to be followed, or to be brought up to date. */
+void tl_rank_prefetch(const tl_model *m, const tl_rank *rank);
+void tl_rank_prefetch_shapes(const tl_model *m, const tl_rank *rank);
+/* Prefetches the contacts' rows, which tell where all that is: for a rank that comes a little later. */
+void tl_rank_prefetch_contacts(const tl_detect *d, const tl_rank *rank);
+
+#endif

@@ -1,0 +1,31 @@
+/* presses.c - what field contacts keep beside their points, in rows that stay where they are. A row that is given back is the
+ * next to be taken. */
+#include "contact/presses.h"
+
+#include "model/model.h"
+
+#include <string.h>
+
+uint32_t tl_press_take(tl_detect *d)
+{
+    uint32_t row = d->press_free;
+    if (d->press_count == 0)
+        row = d->press_free = TL_NO_ROW;
+    if (row != TL_NO_ROW) {
+        d->press_free = d->press[row].next_free;
+    } else {
+        if (!tl_grow(&d->press, &d->press_room, d->press_count + 1, sizeof *d->press))
+            return TL_NO_ROW;
+        row = (uint32_t)d->press_count++;
+    }
+    memset(&d->press[row], 0, sizeof *d->press);
+    return row;
+}
+
+void tl_press_give_back(tl_detect *d, uint32_t row)
+{
+    if (row == TL_NO_ROW)
+        return;
+    d->press[row].next_free = d->press_free;
+    d->press_free = row;
+}

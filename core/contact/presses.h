@@ -1,0 +1,12 @@
+/* presses.h - what field contacts keep beside their points (presses.c). */
+#ifndef TL_CONTACT_PRESSES_H
+#define TL_CONTACT_PRESSES_H
+
+#include "contact/detection.h"
+
+/* A free row for a field contact; TL_NO_ROW when out of memory. */
+uint32_t tl_press_take(tl_detect *d);
+/* Gives a row back; TL_NO_ROW is none. */
+void tl_press_give_back(tl_detect *d, uint32_t row);
+
+#endif

@@ -1,0 +1,54 @@
+/* place.c - block B of a pair brought into A's frame. */
+#include "narrow/place.h"
+
+#include "base/table.h"
+
+#include <talus/plugin.h>
+#include <talus/vmath.h>
+
+/* Vectors turned and shifted: each is four lanes, of which the next vector takes the last one's place. */
+TL_VECTORIZED static void place(const tl_mat3 *turn, tl_vec3 shift, const tl_vec3 *restrict from,
+                                size_t stride, size_t count, double *restrict to)
+{
+    const double(*m)[3] = turn->m, t[4] = {shift.x, shift.y, shift.z, shift.z};
+    const double x[4] = {m[0][0], m[1][0], m[2][0], m[2][0]};
+    const double y[4] = {m[0][1], m[1][1], m[2][1], m[2][1]};
+    const double z[4] = {m[0][2], m[1][2], m[2][2], m[2][2]};
+    for (size_t i = 0; i < count; i++, to += 3) {
+        const tl_vec3 v = *(const tl_vec3 *)(const void *)((const char *)from + i * stride);
+#pragma omp simd
+        for (int k = 0; k < 4; k++)
+            to[k] = x[k] * v.x + y[k] * v.y + z[k] * v.z + t[k];
+    }
+}
+
+bool tl_pair_place(tl_pair_view *view, tl_narrow *room)
+{
+    const tl_poly *b = view->b;
+    if (!tl_grow(&room->vertex_b, &room->vertex_room, b->vertex_count + 1, sizeof(tl_vec3)) ||
+        !tl_grow(&room->normal_b, &room->normal_room, b->face_count + 1, sizeof(tl_vec3)))
+        return false;
+    view->vertex_b = room->vertex_b;
+    view->normal_b = room->normal_b;
+    place(&view->turn, view->shift, b->vertex, sizeof(tl_vec3), b->vertex_count,
+          &view->vertex_b->x);
+    place(&view->turn, tl_v3(0, 0, 0), &b->plane[0].normal, sizeof(tl_plane), b->face_count,
+          &view->normal_b->x);
+    return true;
+}
+
+bool tl_pair_place_face(tl_pair_view *view, uint32_t face, tl_narrow *room)
+{
+    const tl_poly *b = view->b;
+    if (!tl_grow(&room->vertex_b, &room->vertex_room, b->vertex_count, sizeof(tl_vec3)) ||
+        !tl_grow(&room->normal_b, &room->normal_room, b->face_count, sizeof(tl_vec3)))
+        return false;
+    view->vertex_b = room->vertex_b;
+    view->normal_b = room->normal_b;
+    for (uint32_t i = b->start[face]; i < b->start[face + 1]; i++) {
+        uint32_t v = b->loop[i];
+        view->vertex_b[v] = tl_v3_add(tl_m3_mul(&view->turn, b->vertex[v]), view->shift);
+    }
+    view->normal_b[face] = tl_m3_mul(&view->turn, b->plane[face].normal);
+    return true;
+}

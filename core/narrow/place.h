@@ -1,0 +1,13 @@
+/* place.h - block B of a pair brought into A's frame (place.c). */
+#ifndef TL_NARROW_PLACE_H
+#define TL_NARROW_PLACE_H
+
+#include "narrow/narrow.h"
+#include "narrow/view.h"
+
+/* Fills vertex_b and normal_b of the view; false when out of memory. */
+bool tl_pair_place(tl_pair_view *view, tl_narrow *room);
+/* Fills them for one face of B only. */
+bool tl_pair_place_face(tl_pair_view *view, uint32_t face, tl_narrow *room);
+
+#endif

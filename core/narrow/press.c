@@ -1,0 +1,233 @@
+/* press.c - what two blocks press on each other with.
+ *
+ * The energy is that of the pressure field (field.h), U_f = 2 kn G_f. Where two faces a and b lie flush, it is that of
+ * their patch, for which only the distances to these two count, and to others of nearly their direction, and all other
+ * faces are borders, U_p = 2 kn G_p. Between
+ * them one blend,
+ *
+ *     G = w G_f + (1 - w) G_p,    w = 1 - (1 - S(sin tilt)) (1 - S(q)),    q = (4 G_p)^(3/2) / V_p^2
+ *
+ * with the smoothstep S; q is the overlap of the patch over the root of its area. The force is the gradient of all of it,
+ *
+ *     F = w F_f + (1 - w) F_p - (G_f - G_p) grad w.
+ *
+ * A minimum area A_m joins the field's own area, A_e = V^2 / 4 G, at its mean overlap s = 4 G / V:
+ *
+ *     G_m = s^2 / 4 (A_e^2 + A_m^2)^(1/2),
+ *
+ * which is G without A_m. */
+#include "narrow/press.h"
+
+#include <stdlib.h>
+#include <talus/vmath.h>
+
+/* Depth over the size of the smaller block up to which blocks only touch: roundings of places. */
+#define TOUCHING 1e-12
+/* Depth, over the deepest point's, by which that point may lie outside a block for rounding. */
+#define INSIDE 1e-6
+
+/* ---------------------------------------------------------------- faces ------------------ */
+
+/* Where the planes of a region are put together. */
+typedef struct planes {
+    tl_field_faces faces;
+    tl_vec3 origin;
+    uint32_t count;
+} planes;
+
+static bool reserve(tl_narrow *room, uint32_t count, planes *p)
+{
+    if (4u * count > room->press_room) {
+        double *press = realloc(room->press, 8u * count * sizeof *press);
+        if (!press)
+            return false;
+        room->press = press;
+        room->press_room = 8u * count;
+    }
+    for (uint32_t k = 0; k < 3; k++)
+        p->faces.n[k] = room->press + (size_t)k * count;
+    p->faces.c = room->press + 3u * (size_t)count;
+    return true;
+}
+
+static tl_plane plane_of(const tl_pair_view *view, bool of_b, uint32_t face)
+{
+    if (!of_b)
+        return view->a->plane[face];
+    return (tl_plane){view->normal_b[face],
+                      view->b->plane[face].offset + tl_v3_dot(view->normal_b[face], view->shift)};
+}
+
+static void add(planes *p, tl_plane plane)
+{
+    p->faces.n[0][p->count] = plane.normal.x;
+    p->faces.n[1][p->count] = plane.normal.y;
+    p->faces.n[2][p->count] = plane.normal.z;
+    p->faces.c[p->count++] = plane.offset - tl_v3_dot(plane.normal, p->origin);
+}
+
+/* A pair with its region, and where face `shifted` of A lies. */
+typedef struct pair {
+    const tl_pair_view *view;
+    const tl_region *region;
+    double shift;
+    uint32_t shifted;
+} pair;
+
+static void add_face(planes *p, const pair *of, bool of_b, uint32_t face)
+{
+    tl_plane plane = plane_of(of->view, of_b, face);
+    plane.offset += !of_b && face == of->shifted ? of->shift : 0;
+    add(p, plane);
+}
+
+static uint32_t add_faces(planes *p, const pair *of, bool of_b, uint32_t begin, uint32_t count)
+{
+    for (uint32_t k = begin; k < begin + count; k++)
+        add_face(p, of, of_b, of->region->face[k]);
+    return count;
+}
+
+static void list_field(planes *p, const pair *of)
+{
+    const tl_region *r = of->region;
+    p->count = 0;
+    p->faces.a = add_faces(p, of, false, 0, r->a);
+    p->faces.b = add_faces(p, of, true, r->a, r->b);
+    p->faces.border_a = add_faces(p, of, false, r->a + r->b, r->border_a);
+    p->faces.border_b = add_faces(p, of, true, r->a + r->b + r->border_a, r->border_b);
+}
+
+/* Seams are quiet: the patch of the next part is laid by points, and has no force on its borders. */
+static void list_patch(planes *p, const pair *of)
+{
+    const tl_region *r = of->region;
+    uint32_t more_a = r->a - r->blunt_a, more_b = r->b - r->blunt_b;
+    p->count = 0;
+    p->faces.a = add_faces(p, of, false, 0, r->blunt_a);
+    p->faces.b = add_faces(p, of, true, r->a, r->blunt_b);
+    p->faces.border_a = add_faces(p, of, false, r->blunt_a, more_a) +
+                        add_faces(p, of, false, r->a + r->b, r->border_a);
+    p->faces.border_b = add_faces(p, of, true, r->a + r->blunt_b, more_b) +
+                        add_faces(p, of, true, r->a + r->b + r->border_a, r->border_b);
+    p->faces.quiet_a = r->border_a;
+    p->faces.quiet_b = r->border_b;
+}
+
+/* Whether the deepest point lies in both blocks, as it does if they have anything in common. */
+static bool in_both(const pair *of, tl_vec3 x, double depth)
+{
+    for (int of_b = 0; of_b < 2; of_b++) {
+        uint32_t count = (of_b ? of->view->b : of->view->a)->face_count;
+        for (uint32_t f = 0; f < count; f++) {
+            tl_plane plane = plane_of(of->view, of_b, f);
+            double shift = !of_b && f == of->shifted ? of->shift : 0;
+            if (tl_v3_dot(plane.normal, x) > plane.offset + shift + INSIDE * depth)
+                return false;
+        }
+    }
+    return true;
+}
+
+/* ---------------------------------------------------------------- energies --------------- */
+
+/* An energy with its gradient: force and moment are minus it. */
+typedef struct stored {
+    double energy;
+    tl_vec3 force, moment;
+} stored;
+
+/* G_m of the minimum area. */
+static stored with_least(const tl_field_sums *f, double least)
+{
+    if (!(least > 0))
+        return (stored){f->energy, f->force, f->moment};
+    double g = f->energy, v = f->volume, s = 4 * g / v, area = 0.25 * v * v / g;
+    double r = sqrt(area * area + least * least), ds = 0.5 * s * r, dr = 0.25 * s * s * area / r;
+    double by_g = ds * 4 / v - dr * area / g, by_v = -ds * s / v + dr * 2 * area / v;
+    return (stored){0.25 * s * s * r, tl_v3_madd(tl_v3_scale(by_g, f->force), by_v, f->swept),
+                    tl_v3_madd(tl_v3_scale(by_g, f->moment), by_v, f->swept_moment)};
+}
+
+/* Smoothstep from 0 at `low` to 1 at `high`, and its slope. */
+static double step(double x, double low, double high, double *slope)
+{
+    double t = fmin(1, fmax(0, (x - low) / (high - low)));
+    *slope = 6 * t * (1 - t) / (high - low);
+    return t * t * (3 - 2 * t);
+}
+
+/* Blends the field with the patch of the flush faces; the share of the patch. Both have the minimum area. */
+static double blend(const pair *of, const tl_field_sums *patch, double least, stored *field)
+{
+    const stored flat = with_least(patch, least);
+    tl_vec3 na = of->view->a->plane[of->region->flush_a].normal;
+    tl_vec3 nb = of->view->normal_b[of->region->flush_b], hinge = tl_v3_cross(na, nb);
+    double sine = tl_v3_norm(hinge), g = patch->energy, v = patch->volume, by_tilt, by_q;
+    double q = 8 * g * sqrt(g) / (v * v);
+    double tilted = step(sine, TL_FLUSH_TILT, TL_FIELD_TILT, &by_tilt);
+    double deep = step(q, TL_FLUSH_DEPTH, TL_FIELD_DEPTH, &by_q);
+    double share = (1 - tilted) * (1 - deep), w = 1 - share;
+    double more = field->energy - flat.energy;
+    if (!(share > 0))
+        return 0;
+    /* minus grad w, about the origin of the integrals */
+    double scale = (1 - tilted) * by_q * q;
+    tl_vec3 push =
+        tl_v3_madd(tl_v3_scale(1.5 * scale / g, patch->force), -2 * scale / v, patch->swept);
+    tl_vec3 turn = tl_v3_madd(tl_v3_scale(1.5 * scale / g, patch->moment), -2 * scale / v,
+                              patch->swept_moment);
+    double couple = sine > 0 ? -(1 - deep) * by_tilt * tl_v3_dot(na, nb) / sine : 0;
+    turn = tl_v3_madd(turn, couple, hinge);
+    field->force = tl_v3_madd(tl_v3_scale(w, field->force), share, flat.force);
+    field->moment = tl_v3_madd(tl_v3_scale(w, field->moment), share, flat.moment);
+    field->force = tl_v3_madd(field->force, more, push);
+    field->moment = tl_v3_madd(field->moment, more, turn);
+    field->energy = w * field->energy + share * flat.energy;
+    return share;
+}
+
+bool tl_press_find(const tl_pair_view *view, const tl_region *region, double least, double shift,
+                   uint32_t shifted, tl_narrow *room, tl_press *press)
+{
+    const pair of = {view, region, shift, shifted};
+    bool b_is_small = view->b->size < view->a->size;
+    planes p = {.origin = b_is_small ? view->vertex_b[0] : view->a->vertex[0]};
+    tl_field_sums sums, patch;
+    *press = (tl_press){0};
+    if (!reserve(room, region->a + region->b + region->border_a + region->border_b, &p))
+        return false;
+    list_field(&p, &of);
+    p.faces.known = region->a + region->b <= TL_FIELD_KNOWN ? region->known : NULL;
+    if (!tl_field_integrate(&p.faces, &room->field, &sums))
+        return false;
+    double force = tl_v3_norm(sums.force);
+    if (!(sums.deepest > TOUCHING * view->size) || !(force > 0) || !(sums.volume > 0) ||
+        !in_both(&of, tl_v3_add(p.origin, sums.deepest_at), sums.deepest))
+        return true;
+    stored field = with_least(&sums, least);
+    if (region->flush && tl_region_tilt(view, region->flush_a, region->flush_b) < TL_FIELD_TILT) {
+        list_patch(&p, &of);
+        p.faces.known = NULL;
+        if (!tl_field_integrate(&p.faces, &room->field, &patch))
+            return false;
+        if (patch.energy > 0 && patch.volume > 0)
+            press->patch = blend(&of, &patch, least, &field);
+    }
+    force = tl_v3_norm(field.force);
+    press->energy = field.energy;
+    press->force = field.force;
+    press->moment = tl_v3_add(field.moment, tl_v3_cross(p.origin, field.force));
+    press->normal = tl_v3_scale(1 / force, field.force);
+    double area = tl_v3_norm(sums.area);
+    press->area = sqrt(area * area + least * least);
+    press->overlap = 2 * force / press->area;
+    press->deepest = 2 * sums.deepest;
+    press->stiffness = fmax(sums.stiffness, press->area);
+    tl_vec3 centre = tl_v3_scale(1 / sums.pressure, sums.pressed);
+    press->point = tl_v3_add(p.origin, centre);
+    double second =
+        sums.second - 2 * tl_v3_dot(centre, sums.first) + tl_v3_norm2(centre) * sums.extent;
+    press->radius = sqrt(fmax(0, second / sums.extent));
+    return true;
+}

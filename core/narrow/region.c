@@ -1,0 +1,279 @@
+/* region.c - which faces of two blocks bound what they have in common.
+ *
+ * A face that lies wholly outside one face of the other block bounds nothing of the common volume K, and may be left out:
+ * the faces that stay enclose K and nothing else, as long as there is a K. For, on the way from a point of K out of it
+ * through a face that was left out, the point on that face would lie in the other block. By how far the face lies outside,
+ * so far may the pair move and the face be left out still.
+ *
+ * Where a block has seams, the nearest face of a point in K need not bound K. No point of K lies deeper than the least
+ * overlap: a face is left out if it is farther away than that from the whole of the other block. */
+#include "narrow/region.h"
+
+#include <stdlib.h>
+#include <talus/plugin.h>
+
+/* Cosine of the angle, 15 degrees, within which two faces look at each other. Two of one block meet in a blunt edge. */
+#define FACING 0.96592582628906831
+
+/* The planes of a block in A's frame, as columns, and where the other block lies along each of them. */
+typedef struct planes {
+    const tl_poly *poly;
+    const tl_vec3 *vertex;
+    size_t count;
+    double *x, *y, *z, *c;
+    double *low, *high; /* of the other block's vertices, over the plane */
+    double *outside;    /* of each face: how far it lies outside one face of the other block */
+} planes;
+
+static size_t padded(size_t faces)
+{
+    return (faces + TL_LANES - 1) / TL_LANES * TL_LANES;
+}
+
+static void set_columns(planes *p, double *at)
+{
+    size_t step = padded(p->count);
+    p->x = at;
+    p->y = at + step;
+    p->z = at + 2 * step;
+    p->c = at + 3 * step;
+    p->low = at + 4 * step;
+    p->high = at + 5 * step;
+    p->outside = at + 6 * step;
+}
+
+static bool reserve(tl_narrow *room, size_t doubles, size_t faces)
+{
+    if (doubles > room->plane_room) {
+        double *plane = aligned_alloc(TL_ALIGN, 2 * doubles * sizeof *plane);
+        if (!plane)
+            return false;
+        free(room->plane);
+        room->plane = plane;
+        room->plane_room = 2 * doubles;
+    }
+    if (faces > room->face_room) {
+        uint16_t *face = realloc(room->face, 2 * faces * sizeof *face);
+        if (!face)
+            return false;
+        room->face = face;
+        room->face_room = 2 * faces;
+    }
+    return true;
+}
+
+static void fill(planes *p, size_t f, tl_vec3 n, double c)
+{
+    p->x[f] = n.x;
+    p->y[f] = n.y;
+    p->z[f] = n.z;
+    p->c[f] = c;
+    p->low[f] = INFINITY;
+    p->high[f] = -INFINITY;
+}
+
+static void fill_columns(planes *a, planes *b, const tl_pair_view *view)
+{
+    for (size_t f = 0; f < a->count; f++)
+        fill(a, f, view->a->plane[f].normal, view->a->plane[f].offset);
+    for (size_t f = 0; f < b->count; f++)
+        fill(b, f, view->normal_b[f],
+             view->b->plane[f].offset + tl_v3_dot(view->normal_b[f], view->shift));
+    for (size_t f = a->count; f < padded(a->count); f++)
+        fill(a, f, tl_v3(0, 0, 0), INFINITY);
+    for (size_t f = b->count; f < padded(b->count); f++)
+        fill(b, f, tl_v3(0, 0, 0), INFINITY);
+}
+
+/* How high a vertex lies over the planes of the other block: the lowest of a face's vertices in `row`. */
+TL_VECTORIZED static void lower(const planes *restrict q, tl_vec3 v, double *restrict row,
+                                double *restrict high)
+{
+    const double *restrict x = q->x, *restrict y = q->y, *restrict z = q->z, *restrict c = q->c;
+    size_t count = padded(q->count);
+#pragma omp simd
+    for (size_t g = 0; g < count; g++) {
+        double h = x[g] * v.x + y[g] * v.y + z[g] * v.z - c[g];
+        row[g] = h < row[g] ? h : row[g];
+        high[g] = h > high[g] ? h : high[g];
+    }
+}
+
+/* Where the faces of p lie over the planes of q. `row` has room for the latter. */
+static void look_over(const planes *p, const planes *q, double *row)
+{
+    size_t count = padded(q->count);
+    for (size_t f = 0; f < p->count; f++) {
+        for (size_t g = 0; g < count; g++)
+            row[g] = INFINITY;
+        for (uint32_t h = p->poly->start[f]; h < p->poly->start[f + 1]; h++)
+            lower(q, p->vertex[p->poly->loop[h]], row, q->high);
+        double most = -INFINITY;
+        for (size_t g = 0; g < q->count; g++) {
+            most = row[g] > most ? row[g] : most;
+            q->low[g] = row[g] < q->low[g] ? row[g] : q->low[g];
+        }
+        p->outside[f] = most;
+    }
+}
+
+/* The plane over which the other block lies highest; borders do not count for the least overlap, for walls of a seam
+ * press on nothing. */
+static double highest(const planes *p, bool borders, size_t *face)
+{
+    double gap = -INFINITY;
+    for (size_t f = 0; f < p->count; f++)
+        if (p->low[f] > gap && (borders || !p->poly->covered[f])) {
+            gap = p->low[f];
+            *face = f;
+        }
+    return gap;
+}
+
+/* The gap, with its normal: apart by any face, or overlapping by the least along a real one. */
+static void find_gap(const planes *a, const planes *b, tl_region *out)
+{
+    size_t face_a = 0, face_b = 0;
+    double gap_a = highest(a, true, &face_a), gap_b = highest(b, true, &face_b);
+    if (!(gap_a > 0 || gap_b > 0)) {
+        gap_a = highest(a, false, &face_a);
+        gap_b = highest(b, false, &face_b);
+    }
+    out->gap = fmax(gap_a, gap_b);
+    out->n = gap_a >= gap_b ? tl_v3(a->x[face_a], a->y[face_a], a->z[face_a])
+                            : tl_v3(-b->x[face_b], -b->y[face_b], -b->z[face_b]);
+}
+
+/* Adds the faces of a block that are borders, or that are none; returns how many. */
+static uint32_t list(const planes *p, bool borders, bool seams, double margin, double deepest,
+                     uint16_t *face)
+{
+    uint32_t count = 0;
+    for (size_t f = 0; f < p->count; f++) {
+        if ((p->poly->covered[f] != 0) != borders)
+            continue;
+        bool away = seams && !borders ? -p->high[f] > deepest + 2 * margin : p->outside[f] > margin;
+        if (!away)
+            face[count++] = (uint16_t)f;
+    }
+    return count;
+}
+
+static double cosine(const planes *p, size_t i, const planes *q, size_t j)
+{
+    return p->x[i] * q->x[j] + p->y[i] * q->y[j] + p->z[i] * q->z[j];
+}
+
+/* The flush faces: of the two that overlap the least and those that meet them in blunt edges the most parallel. So the
+ * choice changes where two tilts are the same. */
+static void find_flush(const planes *a, const planes *b, tl_region *out)
+{
+    const uint16_t *of_a = out->face, *of_b = out->face + out->a;
+    uint16_t first_a = 0, first_b = 0;
+    double most = -1, gap = -INFINITY;
+    for (uint32_t k = 0; k < out->a; k++)
+        for (uint32_t m = 0; m < out->b; m++) {
+            double g = fmax(a->low[of_a[k]], b->low[of_b[m]]);
+            if (g <= gap || cosine(a, of_a[k], b, of_b[m]) > -FACING)
+                continue;
+            out->flush = true;
+            gap = g;
+            first_a = of_a[k];
+            first_b = of_b[m];
+        }
+    for (uint32_t k = 0; k < out->a && out->flush; k++)
+        for (uint32_t m = 0; m < out->b; m++) {
+            double c = -cosine(a, of_a[k], b, of_b[m]);
+            if (c <= most || cosine(a, of_a[k], a, first_a) < FACING ||
+                cosine(b, of_b[m], b, first_b) < FACING)
+                continue;
+            most = c;
+            out->flush_a = of_a[k];
+            out->flush_b = of_b[m];
+        }
+    out->flush_gap = fmax(a->low[out->flush_a], b->low[out->flush_b]);
+}
+
+/* Puts the faces that meet the flush one in blunt edges before the others of a block; how many they are, with it. The least
+ * by which one falls behind it. */
+static uint32_t gather_blunt(const planes *p, uint16_t *face, uint32_t count, uint16_t flush,
+                             double *lead)
+{
+    uint32_t blunt = 0;
+    for (uint32_t k = 0; k < count; k++) {
+        uint16_t f = face[k];
+        if (cosine(p, f, p, flush) < FACING)
+            continue;
+        if (f != flush)
+            *lead = fmin(*lead, p->low[flush] - p->low[f]);
+        for (uint32_t m = k; m > blunt; m--)
+            face[m] = face[m - 1];
+        face[blunt++] = f;
+    }
+    return blunt;
+}
+
+/* By how much all other faces that look at each other fall behind the flush ones. */
+static void find_leads(const planes *a, const planes *b, tl_region *out, uint16_t *face)
+{
+    uint16_t *of_b = face + out->a;
+    out->flush_lead = out->blunt_lead = INFINITY;
+    out->blunt_a = gather_blunt(a, face, out->a, out->flush_a, &out->blunt_lead);
+    out->blunt_b = gather_blunt(b, of_b, out->b, out->flush_b, &out->blunt_lead);
+    for (uint32_t k = 0; k < out->a; k++)
+        for (uint32_t m = 0; m < out->b; m++)
+            if ((k >= out->blunt_a || m >= out->blunt_b) &&
+                cosine(a, face[k], b, of_b[m]) <= -FACING)
+                out->flush_lead =
+                    fmin(out->flush_lead, out->flush_gap - fmax(a->low[face[k]], b->low[of_b[m]]));
+}
+
+bool tl_region_find(const tl_pair_view *view, double margin, tl_narrow *room, tl_region *out)
+{
+    planes a = {.poly = view->a, .vertex = view->a->vertex, .count = view->a->face_count};
+    planes b = {.poly = view->b, .vertex = view->vertex_b, .count = view->b->face_count};
+    size_t rows_a = padded(a.count), rows_b = padded(b.count);
+    *out = (tl_region){0};
+    if (!reserve(room, 7 * (rows_a + rows_b) + (rows_a > rows_b ? rows_a : rows_b),
+                 a.count + b.count))
+        return false;
+    set_columns(&a, room->plane);
+    set_columns(&b, room->plane + 7 * rows_a);
+    double *row = room->plane + 7 * (rows_a + rows_b);
+    fill_columns(&a, &b, view);
+    look_over(&a, &b, row);
+    look_over(&b, &a, row);
+    find_gap(&a, &b, out);
+    uint16_t *face = room->face;
+    bool seams = view->a->seams || view->b->seams;
+    double deepest = fmax(-out->gap, 0);
+    out->face = face;
+    out->a = list(&a, false, seams, margin, deepest, face);
+    out->b = list(&b, false, seams, margin, deepest, face += out->a);
+    out->border_a = list(&a, true, seams, margin, deepest, face += out->b);
+    out->border_b = list(&b, true, seams, margin, deepest, face += out->border_a);
+    find_flush(&a, &b, out);
+    if (out->flush)
+        find_leads(&a, &b, out, room->face);
+    return true;
+}
+
+void tl_region_choose_flush(const tl_pair_view *view, tl_region *out)
+{
+    double most = -1;
+    for (uint32_t k = 0; k < out->blunt_a; k++)
+        for (uint32_t m = 0; m < out->blunt_b; m++) {
+            uint16_t i = out->face[k], j = out->face[out->a + m];
+            double c = -tl_v3_dot(view->a->plane[i].normal, view->normal_b[j]);
+            if (c > most) {
+                most = c;
+                out->flush_a = i;
+                out->flush_b = j;
+            }
+        }
+}
+
+double tl_region_tilt(const tl_pair_view *view, uint32_t face_a, uint32_t face_b)
+{
+    return tl_v3_norm(tl_v3_cross(view->a->plane[face_a].normal, view->normal_b[face_b]));
+}

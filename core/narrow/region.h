@@ -1,0 +1,36 @@
+/* region.h - which faces of two blocks bound what they have in common, and along which face they overlap the least
+ * (region.c). */
+#ifndef TL_NARROW_REGION_H
+#define TL_NARROW_REGION_H
+
+#include "narrow/narrow.h"
+#include "narrow/view.h"
+
+/* Faces of two blocks near what they have in common. */
+typedef struct tl_region {
+    /* the listed faces of A, of B, the borders of A and of B: faces on seams */
+    uint32_t a, b, border_a, border_b;
+    const uint16_t *face; /* their numbers, one after the other; in the thread's room */
+    uint16_t *known;      /* of the field of these faces (field.h); NULL: none is kept */
+    /* the face along whose normal the blocks are farthest apart, or overlap the least: min over B - max over A */
+    double gap;
+    tl_vec3 n; /* its normal, A to B, in A's frame */
+    /* two nearly antiparallel faces along which they overlap the least; 0 and 0 when `flush` is false */
+    bool flush;
+    uint16_t flush_a, flush_b;
+    /* how many listed faces of A, and of B, have nearly their direction: the first ones, them among these */
+    uint32_t blunt_a, blunt_b;
+    double flush_gap;
+    double flush_lead; /* by how much all other pairs that look at each other overlap more */
+    double blunt_lead; /* the same of those among the first */
+} tl_region;
+
+/* Fills the region of a pair that has been placed. Faces that stay away from the other block while the pair moves by
+ * `margin` are not listed; with a border all real faces are that may be the nearest to some point. false: out of memory. */
+bool tl_region_find(const tl_pair_view *view, double margin, tl_narrow *room, tl_region *region);
+/* Chooses the flush faces of a region anew, when the pair has moved. */
+void tl_region_choose_flush(const tl_pair_view *view, tl_region *region);
+/* Sine of the angle between two faces, one of A and one of B. */
+double tl_region_tilt(const tl_pair_view *view, uint32_t face_a, uint32_t face_b);
+
+#endif

@@ -1,0 +1,23 @@
+-- program only
+-- A stack, an arch, a beam on two edges, a cube in a groove and a pile come to rest under local damping, to rounding, and
+-- in few steps. tests/verify/field/resting.lua has more of them.
+local check = require "check"
+local resting = require "resting"
+
+local SLOWER = 1.5
+
+local failed = 0
+for _, scene in ipairs(resting.scenes) do
+    for i, kn in ipairs { 1e9, 1e10 } do
+        if scene.make ~= resting.pile or i == 1 then -- the other is a long test
+            local result = resting.run(scene.make(kn))
+            local most = scene.steps[i] and SLOWER * scene.steps[i] or resting.MOST
+            local good = result.rest and result.steps and result.steps <= most
+            print(string.format("%s%s, kn %.0e: ratio after %s steps, of %.0f, %.3f s; rest after %s, %.1e m/s, balance %.1e",
+                good and "" or "FAILED ", scene.name, kn, result.steps, most, result.time, result.rest, result.speed,
+                result.balance))
+            failed = failed + (good and 0 or 1)
+        end
+    end
+end
+check.equal(failed, 0)

@@ -1,0 +1,220 @@
+/* press_properties.c - what two blocks press on each other with, through the blend of field and patch: force and moment
+ * are the gradient of the energy, and faces that were left out change nothing. */
+#include "contact_scene.h"
+
+#include "narrow/press.h"
+
+/* How many random cases are made, of those that an optimised build makes. */
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define CASES(count) ((count) / 10)
+#else
+#define CASES(count) (count)
+#endif
+
+typedef struct scene {
+    scene_pair pair;
+    double least, margin, shift;
+} scene;
+
+static tl_press press_of(scene *s)
+{
+    const tl_pair_view *view = scene_place(&s->pair);
+    tl_region region;
+    tl_press press;
+    CHECK(tl_region_find(view, s->margin * view->size, &s->pair.room, &region));
+    CHECK(tl_press_find(view, &region, s->least, s->shift, region.flush ? region.flush_a : 0,
+                        &s->pair.room, &press));
+    return press;
+}
+
+static tl_vec3 axis_of(int k)
+{
+    return tl_v3(k == 0, k == 1, k == 2);
+}
+
+static double energy_after(scene *s, int axis, double way, bool turned)
+{
+    const tl_quat turn = s->pair.turn;
+    const tl_vec3 shift = s->pair.shift;
+    if (turned) {
+        tl_quat q = scene_turn(axis_of(axis), way);
+        s->pair.turn = tl_q_mul(q, turn);
+        s->pair.shift = tl_q_rotate(q, shift);
+    } else {
+        s->pair.shift = tl_v3_madd(shift, way, axis_of(axis));
+    }
+    double out = press_of(s).energy;
+    s->pair.turn = turn;
+    s->pair.shift = shift;
+    return out;
+}
+
+static tl_vec3 minus_gradient(scene *s, double h, bool turned)
+{
+    double out[3];
+    for (int k = 0; k < 3; k++) {
+        double near = energy_after(s, k, h, turned) - energy_after(s, k, -h, turned);
+        double far = energy_after(s, k, 2 * h, turned) - energy_after(s, k, -2 * h, turned);
+        out[k] = -(8 * near - far) / (12 * h);
+    }
+    return tl_v3(out[0], out[1], out[2]);
+}
+
+static double off_by(scene *s, const tl_press *press, double h)
+{
+    double force = tl_v3_norm(press->force), size = s->pair.view.size;
+    tl_vec3 g = minus_gradient(s, h * size, false), m = minus_gradient(s, h, true);
+    return fmax(tl_v3_norm(tl_v3_sub(g, press->force)) / force,
+                tl_v3_norm(tl_v3_sub(m, press->moment)) / (force * size));
+}
+
+/* A block on another, its lower face tilted by some degrees over the other's upper one, and in it by a depth. */
+static void make_flush(scene *s, double tilt, double depth, uint64_t *seed)
+{
+    tl_vec3 hinge = tl_v3(scene_between(seed, -1, 1), scene_between(seed, -1, 1), 0);
+    tl_quat turn = tl_q_mul(scene_turn(tl_v3_unit(hinge), tilt * 3.14159265358979 / 180),
+                            scene_turn(tl_v3(0, 0, 1), scene_between(seed, 0, 3)));
+    tl_vec3 shift = tl_v3(scene_between(seed, -0.6, 0.6), scene_between(seed, -0.6, 0.6), 0);
+    *s = (scene){.pair = scene_pair_of(scene_box_shape(1, 1.2, 0.8), scene_box_shape(1.4, 1, 1.1),
+                                       turn, shift)};
+    /* down until the lowest corner over the face is so deep */
+    const tl_pair_view *view = scene_place(&s->pair);
+    double low = INFINITY;
+    for (uint32_t k = 0; k < view->b->vertex_count; k++)
+        low = fmin(low, view->vertex_b[k].z);
+    double top = -INFINITY;
+    for (uint32_t k = 0; k < view->a->vertex_count; k++)
+        top = fmax(top, view->a->vertex[k].z);
+    s->pair.shift.z += top - low - depth;
+}
+
+TEST(force_is_the_gradient_through_the_blend)
+{
+    int cases = 0, blended = 0;
+    double worst = 0;
+    for (uint64_t k = 1; k <= CASES(1500); k++) {
+        uint64_t seed = k;
+        static scene s;
+        double tilt = scene_between(&seed, 0, 0.2), depth = pow(10, scene_between(&seed, -4, -2));
+        make_flush(&s, tilt, depth, &seed);
+        s.least = k % 3 ? 0 : 0.01;
+        s.shift = k % 5 ? 0 : 1e-3;
+        tl_press press = press_of(&s);
+        if (tl_v3_norm(press.force) > 1e-6) {
+            double off = INFINITY;
+            const double steps[] = {1e-2, 1e-3, 1e-4, 1e-5};
+            for (int i = 0; i < 4; i++)
+                off = fmin(off, off_by(&s, &press, steps[i] * depth));
+            worst = fmax(worst, off);
+            cases++;
+            blended += press.patch > 0 && press.patch < 1;
+            if (!CHECK(off < 1e-6))
+                printf("  seed %d, tilt %g, overlap %g, patch %g: off by %g\n", (int)k, tilt, depth,
+                       press.patch, off);
+        }
+        scene_pair_free(&s.pair);
+    }
+    printf("  %d cases, %d blended, off by %.1e at the most\n", cases, blended, worst);
+    CHECK(cases > CASES(900));
+    CHECK(blended > CASES(200));
+}
+
+static tl_poly *shape_of(uint64_t *seed, int kind)
+{
+    switch (kind) {
+    case 0: return scene_box_shape(1, 1, 1);
+    case 1: return scene_random_hull(seed, 14, tl_v3(0.6, 0.6, 0.6));
+    case 2: return scene_box_shape(2, 2, 0.2);
+    case 3: return scene_random_hull(seed, 40, tl_v3(0.5, 0.7, 0.6));
+    default: return scene_random_hull(seed, 5, tl_v3(0.6, 0.6, 0.6));
+    }
+}
+
+/* All faces give the same as those listed; and a list made with a margin holds while the pair moves by it. */
+TEST(faces_left_out_do_not_matter)
+{
+    int cases = 0;
+    for (uint64_t k = 1; k <= CASES(3000); k++) {
+        uint64_t seed = k;
+        static scene s;
+        s = (scene){.pair = scene_pair_of(
+                        shape_of(&seed, (int)(k % 5)), shape_of(&seed, (int)(k / 5 % 5)),
+                        scene_any_turn(&seed),
+                        tl_v3_scale(scene_between(&seed, 0.4, 1.2), scene_direction(&seed)))};
+        const tl_pair_view *view = scene_place(&s.pair);
+        tl_region region;
+        tl_press some, all;
+        double margin = 0.01 * view->size;
+        CHECK(tl_region_find(view, margin, &s.pair.room, &region));
+        s.pair.shift = tl_v3_madd(s.pair.shift, margin, scene_direction(&seed));
+        view = scene_place(&s.pair);
+        CHECK(tl_press_find(view, &region, 0, 0, 0, &s.pair.room, &some));
+        s.margin = 1e3;
+        all = press_of(&s);
+        double force = tl_v3_norm(all.force);
+        cases += force > 0;
+        /* of a plate that is pierced nothing is left of the force but roundings */
+        double pressed = force > 0 ? fmax(force, all.energy / all.deepest) : 0;
+        CHECK_NEAR(tl_v3_norm(tl_v3_sub(some.force, all.force)), 0, 1e-9 * pressed);
+        CHECK_NEAR(tl_v3_norm(tl_v3_sub(some.moment, all.moment)), 0, 1e-9 * pressed);
+        CHECK_NEAR(some.energy, all.energy, 1e-9 * all.energy);
+        scene_pair_free(&s.pair);
+    }
+    CHECK(cases > CASES(1000));
+}
+
+/* A block whose lower side is folded along y by an angle, its lowest edge at the origin. */
+static tl_poly *folded(double degrees)
+{
+    double rise = 0.5 * tan(degrees * TL_PI / 180);
+    tl_vec3 p[10];
+    for (int k = 0; k < 10; k++) {
+        double x = k % 5 == 4 ? 0 : k % 5 < 2 ? -0.5 : 0.5;
+        double z = k % 5 == 4 ? 0 : k % 2 ? 1 : k % 5 < 2 ? rise : 0;
+        p[k] = tl_v3(x, k < 5 ? -0.5 : 0.5, z);
+    }
+    return scene_hull_shape(p, 10);
+}
+
+/* Which of two faces beside each other lies flush may change while a list of faces holds. */
+TEST(faces_that_become_flush_are_found_in_an_old_list)
+{
+    int cases = 0, blended = 0;
+    for (uint64_t k = 1; k <= CASES(1000); k++) {
+        uint64_t seed = k;
+        double angle = scene_between(&seed, 1, 12), tilt = scene_between(&seed, 0, 0.2);
+        double depth = pow(10, scene_between(&seed, -5, -3));
+        static scene s;
+        bool swapped = k % 2, other = check_random(&seed) < 0.5; /* the fold's other face */
+        tl_vec3 hinge = {0, 1, 0}, up = {0, 0, swapped ? -0.5 + depth : 0.5 - depth};
+        tl_quat was = scene_turn(hinge, (other ? -angle : 0) * TL_PI / 180);
+        tl_quat is = tl_q_mul(scene_turn(hinge, tilt * TL_PI / 180), was);
+        tl_poly *plate = scene_box_shape(3, 3, 1), *block = folded(angle);
+        s = (scene){.pair = swapped ? scene_pair_of(block, plate, tl_q_conj(was),
+                                                    tl_q_rotate(tl_q_conj(was), up))
+                                    : scene_pair_of(plate, block, was, up)};
+        tl_region region;
+        tl_press some, all;
+        const tl_pair_view *view = scene_place(&s.pair);
+        s.margin = 0.005;
+        CHECK(tl_region_find(view, s.margin * view->size, &s.pair.room, &region));
+        s.pair.turn = swapped ? tl_q_conj(is) : is;
+        s.pair.shift = swapped ? tl_q_rotate(tl_q_conj(is), up) : up;
+        view = scene_place(&s.pair);
+        tl_region_choose_flush(view, &region);
+        CHECK(tl_press_find(view, &region, 0, 0, 0, &s.pair.room, &some));
+        all = press_of(&s);
+        double force = tl_v3_norm(all.force);
+        cases += force > 0;
+        blended += all.patch > 0;
+        CHECK_NEAR(some.patch, all.patch, 1e-9);
+        CHECK_NEAR(scene_apart(some.force, all.force), 0, 1e-9 * force);
+        CHECK_NEAR(some.energy, all.energy, 1e-9 * all.energy);
+        scene_pair_free(&s.pair);
+    }
+    CHECK(cases > CASES(900));
+    CHECK(blended > CASES(300));
+}
+
+TEST_MAIN(RUN(force_is_the_gradient_through_the_blend), RUN(faces_left_out_do_not_matter),
+          RUN(faces_that_become_flush_are_found_in_an_old_list))

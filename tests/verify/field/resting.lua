@@ -1,0 +1,35 @@
+-- Piles of 30 and 500 hulls, and cubes dropped into a groove in many attitudes, come to rest to rounding.
+-- tests/lua/test_coming_to_rest.lua does it with smaller ones.
+package.path = "tests/verify/?.lua;tests/lua/?.lua;tests/bench/?.lua;" .. package.path -- run in the source root
+local figures = require "check_figures"
+local resting = require "resting"
+local pile = require "pile"
+
+local BLOCKS, SEEDS = 500, 20
+local SLOWER = 1.5 -- than what scenes took with other contacts
+
+local function run(name, model, steps)
+    local result = resting.run(model)
+    figures.between(name .. ": steps to an unbalanced force ratio of 1e-6", result.steps or math.huge, 0,
+        steps and SLOWER * steps or resting.MOST)
+    figures.between(name .. ": largest speed in the end, m/s", result.speed, 0, resting.REST)
+    return result
+end
+
+figures.case("S.rest", "Piles, a stack, an arch, a beam on edges and cubes in a groove under local damping", "equilibrium")
+for _, scene in ipairs(resting.scenes) do
+    for i, kn in ipairs { 1e9, 1e10 } do
+        run(string.format("%s, kn %.0e", scene.name, kn), scene.make(kn), scene.steps[i])
+    end
+end
+for seed = 4, 3 + SEEDS do
+    run("cube in a groove, kn 1e9, seed " .. seed, resting.groove(1e9, seed))
+    run("stack, kn 1e9, seed " .. seed, resting.stack(1e9, seed), 8291)
+end
+local path = os.tmpname()
+pile.drop(BLOCKS, path, 1)
+for _, kn in ipairs { 1e9, 1e10 } do
+    run(string.format("pile of %d, kn %.0e", BLOCKS, kn), resting.pile(kn, path))
+end
+os.remove(path)
+figures.finish()
