@@ -337,18 +337,27 @@ static tl_vec3 place_of(const lanes *p, int l, double along, double it, double i
     return tl_v3_madd(x, p->origin_s[l] * along + is, lane_vector(p->s, l));
 }
 
-/* Force and moment of a polygon, and what its motion sweeps. */
-static void add_force(work *w, int l, const depths *o, double sign)
+/* Adds int d n dS of a polygon, and int d x cross n dS. */
+static void add_force(const lanes *p, int l, const depths *o, double sign, tl_vec3 *force,
+                      tl_vec3 *moment)
+{
+    tl_vec3 n = lane_vector(p->n, l), t = lane_vector(p->t, l), s = lane_vector(p->s, l);
+    double ot = p->origin_t[l], os = p->origin_s[l];
+    *force = tl_v3_madd(*force, sign * o->d, n);
+    /* t cross n = -s, s cross n = t */
+    *moment = tl_v3_madd(*moment, sign * (o->ds + os * o->d), t);
+    *moment = tl_v3_madd(*moment, -sign * (o->dt + ot * o->d), s);
+}
+
+/* A polygon's part in the gradients of G and V. */
+static void add_gradient(work *w, int l, const depths *o, double sign)
 {
     const lanes *p = &w->lanes;
     tl_field_sums *sums = w->sums;
     tl_vec3 n = lane_vector(p->n, l), t = lane_vector(p->t, l), s = lane_vector(p->s, l);
     double ot = p->origin_t[l], os = p->origin_s[l], part = sign * p->share[l];
-    sums->force = tl_v3_madd(sums->force, sign * o->d, n);
+    add_force(p, l, o, sign, &sums->force, &sums->moment);
     sums->swept = tl_v3_madd(sums->swept, sign * o->area, n);
-    /* t cross n = -s, s cross n = t */
-    sums->moment = tl_v3_madd(sums->moment, sign * (o->ds + os * o->d), t);
-    sums->moment = tl_v3_madd(sums->moment, -sign * (o->dt + ot * o->d), s);
     sums->swept_moment = tl_v3_madd(sums->swept_moment, part * p->is[l] + sign * os * o->area, t);
     sums->swept_moment = tl_v3_madd(sums->swept_moment, -part * p->it[l] - sign * ot * o->area, s);
 }
@@ -359,7 +368,7 @@ static void add_surface(work *w, int l, const depths *o)
     const lanes *p = &w->lanes;
     tl_field_sums *sums = w->sums;
     double part = p->share[l], ot = p->origin_t[l], os = p->origin_s[l];
-    add_force(w, l, o, 1);
+    add_gradient(w, l, o, 1);
     sums->area = tl_v3_madd(sums->area, o->area, lane_vector(p->n, l));
     sums->pressure += o->d;
     sums->pressed = tl_v3_add(sums->pressed, place_of(p, l, o->d, o->dt, o->ds));
@@ -405,11 +414,12 @@ static void take(work *w, int l)
     }
     /* B's motion shifts K's border at a seam of A where A is deeper than B, and the other way round */
     bool border_of_b = w->with[l] >= real_faces(f) + f->border_a;
-    uint32_t end = border_of_b ? all_faces(f) : real_faces(f) + f->border_a;
-    if (w->with[l] + (border_of_b ? f->quiet_b : f->quiet_a) >= end)
-        return;
     if (face_of_b != border_of_b)
-        add_force(w, l, &o, border_of_b ? -1 : 1);
+        add_gradient(w, l, &o, border_of_b ? -1 : 1);
+    uint32_t end = border_of_b ? all_faces(f) : real_faces(f) + f->border_a;
+    if (w->with[l] + (border_of_b ? f->seam_b : f->seam_a) >= end)
+        add_force(&w->lanes, l, &o, border_of_b ? 1 : -1, &w->sums->through,
+                  &w->sums->through_moment);
 }
 
 /* ---------------------------------------------------------------- polygons --------------- */

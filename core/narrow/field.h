@@ -13,8 +13,9 @@
  *
  * Two flush faces of common area A that overlap by o give U = kn A o^2 / 2 and the force kn A o.
  *
- * A *border* is a face that bounds K and does not count for the depth: the seam of a joined body. The gradient then has
- * a share on the borders, too.
+ * A *border* is a face that bounds K and does not count for the depth. The gradient then has a share on the borders, too.
+ * At a seam, a border where the next part of a joined body begins, K gets in motion what the K of the next part loses: the
+ * force of the pair is the gradient and what passes through, and the sum over the parts is the gradient of the body's energy.
  *
  * Normals are unit vectors that point out of their block; a face's plane is n . x = c. All is in one frame, whose
  * origin should lie near K: the relative error of the sums is some roundings of the distance from it over the size of
@@ -32,9 +33,8 @@
  * something: the deepest point is then not in both blocks. */
 typedef struct tl_field_faces {
     uint32_t a, b, border_a, border_b; /* how many of each */
-    uint32_t quiet_a,
-        quiet_b; /* so many borders, the last of A's and of B's, take no part in the force: what they would
-                                * add another part of the body takes away */
+    uint32_t seam_a,
+        seam_b;       /* so many borders, the last of A's and of B's, are seams to other parts */
     double *n[3], *c; /* [all of them] */
     /* [real faces] or NULL: bit j of entry i is set where the cells of the faces i and j have met, for up to
      * TL_FIELD_KNOWN faces. Only those pairs are looked at, and what turns out to be next to them; empty: all. The function
@@ -56,6 +56,8 @@ typedef struct tl_field_sums {
     tl_vec3 force, moment; /* * -dG: int d n dS, int d x cross n dS; on B; m^3, m^4 */
     tl_vec3 swept,
         swept_moment; /* * -dV of the volume of K: int n dS, int x cross n dS; m^2, m^3 */
+    /* int d n dS over the seams: what passes through them from one part of a body to the next, and into `force` of both */
+    tl_vec3 through, through_moment;
     tl_vec3 area;     /* int n dS; m^2 */
     double pressure;  /* int d dS; m^3 */
     tl_vec3 pressed;  /* int d x dS; m^4 */

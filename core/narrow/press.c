@@ -96,9 +96,10 @@ static void list_field(planes *p, const pair *of)
     p->faces.b = add_faces(p, of, true, r->a, r->b);
     p->faces.border_a = add_faces(p, of, false, r->a + r->b, r->border_a);
     p->faces.border_b = add_faces(p, of, true, r->a + r->b + r->border_a, r->border_b);
+    p->faces.seam_a = r->border_a;
+    p->faces.seam_b = r->border_b;
 }
 
-/* Seams are quiet: the patch of the next part is laid by points, and has no force on its borders. */
 static void list_patch(planes *p, const pair *of)
 {
     const tl_region *r = of->region;
@@ -110,8 +111,8 @@ static void list_patch(planes *p, const pair *of)
                         add_faces(p, of, false, r->a + r->b, r->border_a);
     p->faces.border_b = add_faces(p, of, true, r->a + r->blunt_b, more_b) +
                         add_faces(p, of, true, r->a + r->b + r->border_a, r->border_b);
-    p->faces.quiet_a = r->border_a;
-    p->faces.quiet_b = r->border_b;
+    p->faces.seam_a = r->border_a;
+    p->faces.seam_b = r->border_b;
 }
 
 /* Whether the deepest point lies in both blocks, as it does if they have anything in common. */
@@ -131,7 +132,7 @@ static bool in_both(const pair *of, tl_vec3 x, double depth)
 
 /* ---------------------------------------------------------------- energies --------------- */
 
-/* An energy with its gradient: force and moment are minus it. */
+/* An energy, the force and moment of it: minus the gradient, and what passes through seams. */
 typedef struct stored {
     double energy;
     tl_vec3 force, moment;
@@ -140,13 +141,15 @@ typedef struct stored {
 /* G_m of the minimum area. */
 static stored with_least(const tl_field_sums *f, double least)
 {
+    tl_vec3 force = tl_v3_add(f->force, f->through);
+    tl_vec3 moment = tl_v3_add(f->moment, f->through_moment);
     if (!(least > 0))
-        return (stored){f->energy, f->force, f->moment};
+        return (stored){f->energy, force, moment};
     double g = f->energy, v = f->volume, s = 4 * g / v, area = 0.25 * v * v / g;
     double r = sqrt(area * area + least * least), ds = 0.5 * s * r, dr = 0.25 * s * s * area / r;
     double by_g = ds * 4 / v - dr * area / g, by_v = -ds * s / v + dr * 2 * area / v;
-    return (stored){0.25 * s * s * r, tl_v3_madd(tl_v3_scale(by_g, f->force), by_v, f->swept),
-                    tl_v3_madd(tl_v3_scale(by_g, f->moment), by_v, f->swept_moment)};
+    return (stored){0.25 * s * s * r, tl_v3_madd(tl_v3_scale(by_g, force), by_v, f->swept),
+                    tl_v3_madd(tl_v3_scale(by_g, moment), by_v, f->swept_moment)};
 }
 
 /* Smoothstep from 0 at `low` to 1 at `high`, and its slope. */

@@ -280,6 +280,59 @@ TEST(borders_do_work_as_well)
     CHECK(cases > CASES(170));
 }
 
+/* Integrates the field of A, or of the part of A below a plane, or above it, whose face in that plane is a seam. */
+static tl_field_sums sums_of_part(scene *s, tl_vec3 n, double offset, double side)
+{
+    planes *p = &s->planes;
+    tl_field_sums sums;
+    list_scene(s);
+    if (side != 0) {
+        uint32_t i = p->faces.a + p->faces.b;
+        p->number[0][i] = side * n.x;
+        p->number[1][i] = side * n.y;
+        p->number[2][i] = side * n.z;
+        p->number[3][i] = side * offset;
+        p->faces.border_a = p->faces.seam_a = 1;
+    }
+    CHECK(tl_field_integrate(&p->faces, &s->room, &sums));
+    return sums;
+}
+
+/* The energies and forces of two parts are those of the whole; what passes through the seam is taken from the one and
+ * given to the other. */
+TEST(what_passes_through_a_seam_stays_in_the_body)
+{
+    int cases = 0;
+    for (uint64_t k = 1; k <= CASES(400); k++) {
+        uint64_t seed = k + 9000;
+        static scene s;
+        double depth = random_depth(&seed);
+        make_scene(&s, random_kind(&seed) % 5, random_kind(&seed) % 5, depth, false, &seed);
+        s.apart = true; /* all faces are listed */
+        tl_vec3 n = scene_direction(&seed);
+        double offset = scene_between(&seed, -0.3, 0.3) * depth;
+        tl_field_sums whole = sums_of_part(&s, n, offset, 0);
+        tl_field_sums below = sums_of_part(&s, n, offset, 1);
+        tl_field_sums above = sums_of_part(&s, n, offset, -1);
+        double force = tl_v3_norm(whole.force), size = cbrt(whole.volume);
+        if (force > 0 && below.volume > 1e-3 * whole.volume && above.volume > 1e-3 * whole.volume) {
+            cases++;
+            CHECK_REL(below.energy + above.energy, whole.energy, 1e-9);
+            CHECK(tl_v3_norm(below.through) > 0);
+            tl_vec3 sum = tl_v3_add(below.force, above.force);
+            CHECK_NEAR(tl_v3_norm(tl_v3_sub(sum, whole.force)), 0, 1e-8 * force);
+            sum = tl_v3_add(below.through, above.through);
+            CHECK_NEAR(tl_v3_norm(sum), 0, 1e-8 * force);
+            sum = tl_v3_sub(tl_v3_add(below.moment, above.moment), whole.moment);
+            CHECK_NEAR(tl_v3_norm(sum), 0, 1e-8 * force * size);
+            sum = tl_v3_add(below.through_moment, above.through_moment);
+            CHECK_NEAR(tl_v3_norm(sum), 0, 1e-8 * force * size);
+        }
+        free_scene(&s);
+    }
+    CHECK(cases > CASES(200));
+}
+
 /* The depth of a point in both blocks, 0 outside. */
 static double depth_at(const tl_field_faces *f, tl_vec3 x)
 {
@@ -485,6 +538,7 @@ TEST(blocks_that_only_touch_have_no_force)
 }
 
 TEST_MAIN(RUN(force_and_moment_are_the_gradient_of_the_energy), RUN(borders_do_work_as_well),
+          RUN(what_passes_through_a_seam_stays_in_the_body),
           RUN(volume_is_that_of_what_is_left_by_cuts), RUN(energy_is_that_of_a_sum),
           RUN(flush_faces_have_the_force_of_springs), RUN(blocks_that_only_touch_have_no_force),
           RUN(a_far_origin_moves_nothing), RUN(cells_that_met_before_change_nothing))

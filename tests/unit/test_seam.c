@@ -154,25 +154,29 @@ static double slide(int pieces, double kn, double *place)
     return worst;
 }
 
-static void check_slide(double kn)
+/* Slides over a seam, with a change of velocity of at most `change`, m/s, for the 2 s it takes. */
+static void check_slide(double kn, double change)
 {
     double one, two;
     CHECK_NEAR(slide(1, kn, &one), 0, 1e-9);
-    CHECK_NEAR(slide(2, kn, &two), 0, 1e-9);
+    CHECK_NEAR(slide(2, kn, &two), 0, change);
     CHECK_NEAR(one, 1.0, 1e-3);
-    CHECK_NEAR(two, one, 1e-9);
+    CHECK_NEAR(two, one, 2 * change);
 }
 
 TEST(a_block_slides_over_a_seam_as_over_one_piece)
 {
-    check_slide(1e8);
-    check_slide(1e9);
+    check_slide(1e8, 1e-9);
+    check_slide(1e9, 1e-9);
 }
 
-/* In by up to 1.2 mm, a share of 2.5e-3 of the root of its face. */
+/* In by up to 1.2 mm. While less of the block lies on the next piece than some 200 times that is wide, the piece presses as
+ * the field does, whose energy is less than that of a patch by kn o^3 / 12 for each metre of its edges: that much kinetic
+ * energy the block has more, at the most, until it is over. */
 TEST(a_block_slides_over_a_seam_on_a_soft_joint)
 {
-    check_slide(1e7);
+    const double kn = 1e7, mass = 144, overlap = 2 * mass * 10 / (kn * 0.24), edges = 2.0;
+    check_slide(kn, kn * edges * overlap * overlap * overlap / 12 / (mass * 0.5));
 }
 
 int main(void)
