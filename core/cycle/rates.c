@@ -7,7 +7,7 @@
  * below that of the body standing on its largest face under the stiffest law of its contacts, or, without a contact, of
  * the model. Where it stands on corners or edges, with overlaps o, and these go on with a velocity v, a part of that is
  * enough: the further overlap v / omega over o, omega^2 being the rate on the face, within FLOOR and 1. So a contact whose
- * area vanishes never makes the step long. The stiffness of corners and edges counts as it will be when they are pressed
+ * area vanishes, or that is about to be another, never makes the step long. The stiffness of corners and edges counts as it will be when they are pressed
  * in twice as deep.
  *
  * Rates are kept from step to step and made anew where contacts have changed. Where nothing moves by more than areas are
@@ -161,23 +161,42 @@ typedef struct contact_sums {
     area_sums stiffness;
     double law;
     bool stands;     /* some have points */
-    double approach; /* highest speed at which a field contact goes on, over its overlap, 1/s */
+    double approach; /* highest speed at which a contact goes on, over its overlap, 1/s */
 } contact_sums;
 
-/* Speed at which the blocks of a field contact come together there, over their overlap. */
-static double approach_of(const tl_model *m, uint32_t c)
+/* Where a contact presses in A's frame, and its overlap there. A patch, whose area counts before it touches, has besides its
+ * overlap the gap at which it is born: with that, blocks that come faster may press on by other faces. */
+static double overlap_of(const tl_model *m, uint32_t c, double law, tl_vec3 *at)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    const tl_points_table *p = &m->detect->points;
+    if (contacts->facet[c].kind == TL_FACET_FIELD) {
+        const tl_press *press = &m->detect->press[contacts->press[c]].press;
+        *at = press->point;
+        return press->overlap;
+    }
+    uint32_t count = contacts->point_count[c];
+    *at = tl_v3(0, 0, 0);
+    for (uint32_t k = 0; k < count; k++)
+        *at = tl_v3_madd(*at, 1.0 / count, tl_columns_get(p->p, tl_point_row(contacts, c, k)));
+    double size = fmin(m->blocks.size[contacts->a[c]], m->blocks.size[contacts->b[c]]);
+    return tl_v3_norm(contacts->force[c]) / (law * contacts->area[c]) + TL_CONTACT_TOLERANCE * size;
+}
+
+/* Speed at which the blocks of a contact come together there, over their overlap. */
+static double approach_of(const tl_model *m, uint32_t c, double law)
 {
     const tl_contacts *contacts = &m->detect->contacts;
     const tl_bodies *bodies = &m->bodies;
-    const tl_press *press = &m->detect->press[contacts->press[c]].press;
     uint32_t a = m->blocks.body[contacts->a[c]], b = m->blocks.body[contacts->b[c]];
-    const tl_mat3 *turn = &bodies->pose[a].r;
-    tl_vec3 arm = tl_m3_mul(turn, press->point);
+    tl_vec3 point;
+    double overlap = overlap_of(m, c, law, &point);
+    tl_vec3 arm = tl_m3_mul(&bodies->pose[a].r, point);
     tl_vec3 arm_b = tl_v3_sub(arm, tl_body_apart(bodies, a, b));
     tl_vec3 v_a = tl_v3_add(bodies->v[a], tl_v3_cross(bodies->w[a], arm));
     tl_vec3 v_b = tl_v3_add(bodies->v[b], tl_v3_cross(bodies->w[b], arm_b));
-    double closing = tl_v3_dot(tl_v3_sub(v_a, v_b), tl_m3_mul(turn, press->normal));
-    return press->overlap > 0 ? fabs(closing) / press->overlap : INFINITY;
+    double closing = tl_v3_dot(tl_v3_sub(v_a, v_b), contacts->facet[c].last);
+    return overlap > 0 ? fabs(closing) / overlap : INFINITY;
 }
 
 /* Contacts without area have a law, too. `points`: their stiffness is asked for as well. */
@@ -197,8 +216,7 @@ static contact_sums add_contacts(const tl_model *m, uint32_t body, bool points)
             if (points && c->point_count[i] > 0) {
                 area_sums next = points_of(m, i, c->b[i] == row);
                 out.stands = true;
-                if (c->facet[i].kind == TL_FACET_FIELD)
-                    out.approach = fmax(out.approach, approach_of(m, i));
+                out.approach = fmax(out.approach, approach_of(m, i, law));
                 out.stiffness.area += law * next.area;
                 out.stiffness.area_r2 += law * next.area_r2;
             }
