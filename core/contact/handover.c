@@ -1,9 +1,11 @@
 /* handover.c - a contact that was a patch becomes a field contact, or the other way round, and a field contact that has
  * moved.
  *
- * The shear of a field contact is one force and one torsion. Area that comes brings no shear, and of what
- * is there that goes first which carries the least (resized). Neither makes energy. An initial stress of a patch moves a face of A outward by what its springs would be
- * pressed, f_n0 / (kn A) less the overlap it belongs to, and stays so. */
+ * The shear of a field contact is one force and one torsion about the centre of its pressure, that of a patch a force at
+ * each point. Force and moment are carried over; the moment no further than the energy of the springs goes. Area that comes
+ * brings no shear, and of what is there that goes first which carries the least (resized). Neither makes energy. An initial
+ * stress of a patch moves a face of A outward by what its springs would be pressed, f_n0 / (kn A) less the overlap it
+ * belongs to, and stays so. */
 #include "contact/handover.h"
 
 #include "base/columns.h"
@@ -12,10 +14,10 @@
 #include "contact/points.h"
 #include "contact/shear.h"
 
-/* Shear of a contact: force, and torsion about its normal. */
+/* Shear of a contact: force, and torsion about its normal through a centre. */
 typedef struct shear {
     double area;
-    tl_vec3 normal, force;
+    tl_vec3 normal, force, centre;
     double torsion;
     double energy; /* of its springs, times 2 ks */
 } shear;
@@ -32,6 +34,41 @@ static tl_press_row *press_of(const tl_model *m, uint32_t c)
     return row == TL_NO_ROW ? NULL : &m->detect->press[row];
 }
 
+/* An arm of a contact before A's last turn. The forces are as they were then: so must the arms be, or the torsion is
+ * another one for B. */
+static tl_vec3 arm_before(const tl_model *m, uint32_t c, tl_vec3 arm)
+{
+    tl_vec3 turned = m->bodies.pose[m->blocks.body[m->detect->contacts.a[c]]].w_moved;
+    return tl_v3_sub(arm, tl_v3_scale(m->dt, tl_v3_cross(turned, arm)));
+}
+
+/* From the centre of the new points to that of the old, which has gone half with A and half with B, before their last turns:
+ * so that it is the same whichever block is A. */
+static tl_vec3 arm_of_old(const tl_model *m, uint32_t c, tl_vec3 old, tl_vec3 centre)
+{
+    tl_contact_motion moved = tl_contact_moved(m, c);
+    tl_vec3 passed = tl_v3_add(moved.way, tl_v3_cross(moved.turn, old));
+    tl_vec3 arm = tl_v3_sub(tl_v3_madd(old, 0.5, passed), centre);
+    tl_vec3 back = tl_v3_scale(-0.5, moved.turn);
+    return tl_v3_add(arm_before(m, c, arm), tl_v3_cross(back, arm));
+}
+
+/* Where the shear of a contact acts: a field's at its centre of pressure, a patch's at the centroid of its points. */
+static tl_vec3 centre_of(const tl_model *m, uint32_t c, const tl_point_lanes *lanes)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    if (contacts->facet[c].kind == TL_FACET_FIELD)
+        return tl_columns_get(lanes->arm, TL_FIELD_SHEAR);
+    tl_vec3 sum = {0, 0, 0};
+    double area = 0;
+    for (size_t k = 0; k < contacts->point_count[c]; k++) {
+        double part = m->detect->points.area[tl_point_row(contacts, c, k)];
+        area += part;
+        sum = tl_v3_madd(sum, part, tl_columns_get(lanes->arm, k));
+    }
+    return tl_v3_scale(area > 0 ? 1 / area : 0, sum);
+}
+
 /* Of the points as they are, whose arms are in the lanes. */
 static shear shear_of(const tl_model *m, uint32_t c, const tl_point_lanes *lanes)
 {
@@ -39,8 +76,7 @@ static shear shear_of(const tl_model *m, uint32_t c, const tl_point_lanes *lanes
     const tl_points_table *p = &m->detect->points;
     const tl_facet *f = &contacts->facet[c];
     size_t count = contacts->point_count[c];
-    shear out = {.normal = f->last};
-    tl_vec3 centre = {0, 0, 0};
+    shear out = {.normal = f->last, .centre = lanes ? centre_of(m, c, lanes) : tl_v3(0, 0, 0)};
     if (count && f->kind == TL_FACET_FIELD) {
         size_t first = tl_point_row(contacts, c, TL_FIELD_SHEAR);
         size_t torsion = tl_point_row(contacts, c, TL_FIELD_TORSION);
@@ -57,18 +93,12 @@ static shear shear_of(const tl_model *m, uint32_t c, const tl_point_lanes *lanes
     }
     for (size_t k = 0; k < count; k++) {
         size_t i = tl_point_row(contacts, c, k);
-        out.area += p->area[i];
-        centre = tl_v3_madd(centre, p->area[i], tl_columns_get(lanes->arm, k));
-    }
-    centre = tl_v3_scale(out.area > 0 ? 1 / out.area : 0, centre);
-    /* the forces are as they were before A's last turn: so must the arms be, or the torsion is another one for B */
-    tl_vec3 turn = tl_v3_scale(m->dt, m->bodies.pose[m->blocks.body[contacts->a[c]]].w_moved);
-    for (size_t k = 0; k < count; k++) {
-        tl_vec3 force = tl_columns_get(p->f_s, tl_point_row(contacts, c, k));
-        tl_vec3 arm = tl_v3_sub(tl_columns_get(lanes->arm, k), centre);
-        arm = tl_v3_sub(arm, tl_v3_cross(turn, arm));
+        tl_vec3 force = tl_columns_get(p->f_s, i);
+        tl_vec3 arm = tl_v3_sub(tl_columns_get(lanes->arm, k), out.centre);
+        arm = arm_before(m, c, arm);
         out.force = tl_v3_add(out.force, force);
-        out.energy += energy_of(tl_v3_norm2(force), p->area[tl_point_row(contacts, c, k)]);
+        out.area += p->area[i];
+        out.energy += energy_of(tl_v3_norm2(force), p->area[i]);
         out.torsion += tl_v3_dot(out.normal, tl_v3_cross(arm, force));
     }
     return out;
@@ -138,45 +168,56 @@ static void write_points(tl_model *m, uint32_t c, const tl_manifold *g, const la
     }
 }
 
-/* Shear of what is left of it on a new area. */
-static shear carried(const shear *old, double area, tl_vec3 normal)
+/* Shear of what is left of it on a new area, as in `resized`, with an arm from the new centre to the old. */
+static shear carried(const shear *old, double area, tl_vec3 normal, tl_vec3 arm)
 {
-    double part = area < old->area ? area / old->area : 1;
-    shear out = {area, normal, {0, 0, 0}, part * old->torsion, 0};
+    double f2 = tl_v3_norm2(old->force);
+    double part = f2 > old->energy * area ? old->energy * area / f2 : 1;
+    shear out = {.area = area, .normal = normal};
     if (old->area > 0)
         out.force = tl_v3_scale(part, tl_v3_turn(old->force, old->normal, normal));
     out.force = tl_v3_madd(out.force, -tl_v3_dot(out.force, normal), normal);
+    out.torsion = part * old->torsion + tl_v3_dot(normal, tl_v3_cross(arm, out.force));
     return out;
 }
 
-static void spread_over_patch(tl_model *m, uint32_t c, const shear *s, const tl_point_lanes *lanes)
+/* Torsion that springs of a polar moment of area may have beside a force, of the energy there is. */
+static double allowed_torsion(const shear *now, double energy, double polar)
+{
+    double most = polar * fmax(0, energy - energy_of(tl_v3_norm2(now->force), now->area));
+    return now->torsion * now->torsion > most ? copysign(sqrt(most), now->torsion) : now->torsion;
+}
+
+static void spread_over_patch(tl_model *m, uint32_t c, const shear *s, double energy,
+                              const tl_point_lanes *lanes)
 {
     const tl_contacts *contacts = &m->detect->contacts;
     tl_points_table *p = &m->detect->points;
     size_t count = contacts->point_count[c];
-    tl_vec3 centre = tl_columns_get(lanes->arm, count - 1);
     double polar = 0;
     for (size_t k = 0; k < count; k++) {
-        tl_vec3 arm = tl_v3_sub(tl_columns_get(lanes->arm, k), centre);
+        tl_vec3 arm = tl_v3_sub(tl_columns_get(lanes->arm, k), s->centre);
         polar += p->area[tl_point_row(contacts, c, k)] * tl_v3_norm2(arm);
     }
+    double torsion = allowed_torsion(s, energy, polar);
     for (size_t k = 0; k < count; k++) {
         size_t i = tl_point_row(contacts, c, k);
-        tl_vec3 arm = tl_v3_sub(tl_columns_get(lanes->arm, k), centre);
+        tl_vec3 arm = tl_v3_sub(tl_columns_get(lanes->arm, k), s->centre);
         tl_vec3 f = tl_v3_scale(p->area[i] / s->area, s->force);
-        f = tl_v3_madd(f, polar > 0 ? p->area[i] * s->torsion / polar : 0,
+        f = tl_v3_madd(f, polar > 0 ? p->area[i] * torsion / polar : 0,
                        tl_v3_cross(s->normal, arm));
         tl_columns_put(p->f_s, i, f);
     }
 }
 
-static void put_on_field(tl_model *m, uint32_t c, const shear *s, double radius)
+static void put_on_field(tl_model *m, uint32_t c, const shear *s, double energy, double radius)
 {
     const tl_contacts *contacts = &m->detect->contacts;
     tl_points_table *p = &m->detect->points;
+    double torsion = allowed_torsion(s, energy, s->area * radius * radius);
     tl_columns_put(p->f_s, tl_point_row(contacts, c, TL_FIELD_SHEAR), s->force);
     tl_columns_put(p->f_s, tl_point_row(contacts, c, TL_FIELD_TORSION),
-                   tl_v3_scale(radius > 0 ? s->torsion / radius : 0, s->normal));
+                   tl_v3_scale(radius > 0 ? torsion / radius : 0, s->normal));
 }
 
 void tl_contact_hand_over(tl_model *m, uint32_t c, const tl_manifold *g,
@@ -210,11 +251,13 @@ void tl_contact_hand_over(tl_model *m, uint32_t c, const tl_manifold *g,
     double area = 0;
     for (size_t k = 0; k < (field ? 1 : g->point_count); k++)
         area += g->points[k].area;
-    shear now = carried(&old, area, contacts->facet[c].last);
+    tl_vec3 centre = centre_of(m, c, lanes), arm = arm_of_old(m, c, old.centre, centre);
+    shear now = carried(&old, area, contacts->facet[c].last, arm);
+    now.centre = centre;
     if (field)
-        put_on_field(m, c, &now, row->press.radius);
+        put_on_field(m, c, &now, old.energy, row->press.radius);
     else
-        spread_over_patch(m, c, &now, lanes);
+        spread_over_patch(m, c, &now, old.energy, lanes);
     contacts->released[c] += ks > 0 ? 0.5 * (old.energy - shear_of(m, c, lanes).energy) / ks : 0;
 }
 
