@@ -230,27 +230,27 @@ static double law_on_face(contact_sums of, double stiffest)
     return of.law > 0 ? of.law : stiffest;
 }
 
-/* The least rate of a body: that on its largest face, or a part of it. */
-static double least_rate(const tl_model *m, uint32_t body, const contact_sums *of, double law)
+/* The part of its largest face on which a body stands at least, for the rate on all of it. */
+static double least_part(const contact_sums *of, double face)
 {
-    double face = law * m->cycle->face_rate[body];
     double more = of->stands ? of->approach / sqrt(face) : 1;
-    return fmin(fmax(more, FLOOR), 1) * face;
+    return fmin(fmax(more, FLOOR), 1);
 }
 
 static double body_rate(const tl_model *m, uint32_t body, double stiffest)
 {
     contact_sums of = add_contacts(m, body, tl_rates_points(m));
-    return fmax(rate_of(of.stiffness, inverse_of(m, body)),
-                least_rate(m, body, &of, law_on_face(of, stiffest)));
+    double face = law_on_face(of, stiffest) * m->cycle->face_rate[body];
+    return fmax(rate_of(of.stiffness, inverse_of(m, body)), least_part(&of, face) * face);
 }
 
 double tl_rate_stiffness(const tl_model *m, uint32_t body)
 {
     contact_sums of = add_contacts(m, body, tl_rates_points(m));
-    double law = law_on_face(of, tl_stiffest_law(m));
-    if (rate_of(of.stiffness, inverse_of(m, body)) < least_rate(m, body, &of, law))
-        return law * largest_face(m, body).area;
+    double law = law_on_face(of, tl_stiffest_law(m)), face = law * m->cycle->face_rate[body];
+    double part = least_part(&of, face);
+    if (rate_of(of.stiffness, inverse_of(m, body)) < part * face)
+        return part * law * largest_face(m, body).area;
     return of.stiffness.area;
 }
 

@@ -44,7 +44,7 @@ tl_row_value tl_rates_anew(tl_model *m);
 void tl_rates_try(tl_model *m, double *rate);
 /* Whether the step follows from rates that were kept: these are then part of the model's state. */
 bool tl_rates_are_state(const tl_model *m);
-/* The stiffness that a body's rate comes from, N/m: of its contacts, or of its largest face. */
+/* The stiffness that a body's rate comes from, N/m: of its contacts, or of the part of its largest face that counts. */
 double tl_rate_stiffness(const tl_model *m, uint32_t body);
 /* The stiffest law of a body's contacts or, without any, of the model, Pa/m. */
 double tl_rate_law(const tl_model *m, uint32_t body);

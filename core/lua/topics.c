@@ -88,7 +88,8 @@ static const tl_lua_key timestep_results[] = {
     {"block", "", "the block that controls it, or nil"},
     {"partner", "", "the block at the stiffest contact, or nil"},
     {"mass, stiffness", "",
-     "of the block's body, kg; of the contact, of all its contacts or of its largest face, N/m"},
+     "of the block's body, kg; of the contact, of all its contacts or of the part of its largest "
+     "face that counts, N/m"},
     {"message", "", "the same in a sentence"},
     {NULL, NULL, NULL},
 };

@@ -1,6 +1,6 @@
 -- program only
 -- A stack, an arch, a beam on two edges, a cube in a groove and a pile come to rest under local damping, to rounding, and
--- in few steps. tests/verify/field/resting.lua has more of them.
+-- in few steps. tests/verify/long/coming_to_rest.lua has more of them.
 local check = require "check"
 local resting = require "resting"
 

@@ -1,6 +1,6 @@
 -- program only
 -- Stones that fall into a tray, dominoes, a heap that collapses and a pile that is shaken: all of it strikes, slides and
--- turns over with friction, and the energy ledger closes. tests/verify/field/falling.lua has more and larger ones.
+-- turns over with friction, and the energy ledger closes. tests/verify/long/falling.lua has more and larger ones.
 local check = require "check"
 local falling = require "falling"
 

@@ -1,7 +1,7 @@
 -- program only
 -- Blocks that meet without friction keep energy, momentum and angular momentum, whatever their shapes, attitudes and
--- stiffness; what error of energy there is falls with the square of the step. tests/verify/field/impacts.lua does the same
--- for many more.
+-- stiffness; what error of energy there is falls with the square of the step. tests/verify/long/frictionless_impacts.lua
+-- does the same for many more.
 local check = require "check"
 local impacts = require "impacts"
 

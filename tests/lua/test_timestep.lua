@@ -121,6 +121,24 @@ for _, landing in ipairs(landings) do
     end
 end
 
+-- A cube that touches a slab with a corner, without going on: FLOOR of its largest face makes the step, and the stiffness
+-- that is told is that of this part. Where it goes on fast, all of the face counts.
+do
+    local m = talus.model { gravity = { 0, 0, 0 } }
+    m:generate("box", { min = { -4, -4, -1 }, max = { 4, 4, 0 }, density = DENSITY, group = "slab" })
+    m:blocks { group = "slab" }:fix()
+    m:generate("polyhedron", { vertices = turned_box(CUBE, CORNER, 0, 0, -1e-3), density = DENSITY, group = "cube" })
+    m:joint("*", "coulomb", { kn = 1e8, ks = 1e8, friction = 30 })
+    check.equal(#m:contacts(), 1)
+    for speed, part in pairs { [0] = FLOOR, [5] = 1 } do
+        m:blocks { group = "cube" }:set { velocity = { 0, 0, -speed } }
+        local report = m:timestep()
+        check.equal(report.block.group, "cube")
+        check.near(report.dt / body_step(0.5) * math.sqrt(part), 1, 1e-9)
+        check.near(report.stiffness / (part * 1e8), 1, 1e-9)
+    end
+end
+
 -- A cube falls corner on corner of another, with no area where they touch first: the step is never longer than
 -- it may be on a corner.
 for _, share in ipairs { 0, 0.01 } do

@@ -220,7 +220,9 @@ typedef struct tl_timestep_report {
     double dt;
     tl_id block, partner; /* the block that controls it, and the block of the contact; 0: none */
     double mass;          /* of the block's body, kg */
-    double stiffness; /* of the contact, of all contacts of the body or of its largest face, N/m */
+    /* of the contact, of all contacts of the body or of the part of its largest face that counts, N/m; of corners and edges
+     * as it is when they are pressed in twice as deep */
+    double stiffness;
 } tl_timestep_report;
 
 TL_API tl_status tl_model_timestep_report(tl_model *model, tl_timestep_report *report);

@@ -1,7 +1,7 @@
 -- program only
 -- Hulls and cubes that fall on a floor and on each other with friction do so alike wherever the scene lies, however it is
--- turned, in a mirror and in other units, as long as their motion is not chaotic. tests/verify/field/invariance.lua has
--- more.
+-- turned, in a mirror and in other units, as long as their motion is not chaotic.
+-- tests/verify/long/falling_invariance.lua has more.
 local check = require "check"
 local invariance = require "invariance"
 

@@ -1,5 +1,5 @@
 -- Hulls and cubes that fall on a floor with friction, in other places, attitudes and units. tests/lua/
--- test_field_invariance.lua does the same for the first seeds.
+-- test_falling_invariance.lua does the same for the first seeds.
 package.path = "tests/verify/?.lua;tests/lua/?.lua;" .. package.path -- run in the source root
 local figures = require "check_figures"
 local invariance = require "invariance"
