@@ -12,7 +12,7 @@ impacts.survey(SEEDS, function(row)
     figures.equal(row.name .. ": impacts after which blocks have parted", row.apart, SEEDS)
     figures.between(row.name .. ": worst error of the energy ledger, over the kinetic energy", row.worst, 0, impacts.ENERGY)
     figures.between(row.name .. ": worst error of the energy after the impact", row.parted, 0, impacts.ENERGY)
-    if row.half > impacts.SMALL then
+    if row.half > row.least then
         figures.between(row.name .. ": mean error of the ledger with half the step, over that before",
             row.half / row.mean, 0, impacts.FALL)
     end
