@@ -6,8 +6,8 @@ local statics = require "check_statics"
 local columns_of = require "check_columns"
 local reference = require("reference_dynamics").goodman_bray
 
-local FIRST, NEAR = 44, 39       -- friction angle to settle under; and from which it is lowered by less, degrees
-local COARSE, STEP = 0.5, 0.1    -- by which it is lowered, degrees
+local FIRST, LEAST = 44, 20      -- friction angles to settle under and to stop at, degrees
+local STEP = 0.25                -- by which it is lowered, degrees
 local AT_REST = 1e-6             -- unbalanced force ratio that counts as equilibrium
 local MOVING = 0.02              -- m in one step of friction: many times what the springs yield
 local TOLERANCE = 0.5            -- degrees
@@ -30,7 +30,7 @@ local function check(case, name, points)
     figures.case(name, string.format("%d columns on a stepped base dipping %g degrees, contact points %q: friction angle at "
         .. "failure, and what each column then does", case.n, case.psi, points), reference.source)
     local model, columns = columns_of(case, points, FIRST)
-    local friction = statics.search(FIRST, NEAR, COARSE, STEP, function(angle)
+    local friction = statics.search(FIRST, LEAST, STEP, STEP, function(angle)
         model:joint("*", { friction = angle })
         return (statics.stands(model, columns, { ratio = AT_REST, moving = MOVING }))
     end)
