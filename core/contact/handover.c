@@ -3,9 +3,9 @@
  *
  * The shear of a field contact is one force and one torsion about the centre of its pressure, that of a patch a force at
  * each point. Force and moment are carried over; the moment no further than the energy of the springs goes. Area that comes
- * brings no shear, and of what is there that goes first which carries the least (resized). Neither makes energy. An initial
- * stress of a patch moves a face of A outward by what its springs would be pressed, f_n0 / (kn A) less the overlap it
- * belongs to, and stays so. */
+ * brings no shear. Of the area that is there that goes first which carries the least (resized). Neither makes energy. An
+ * initial stress of a patch moves a face of A outward by as much as its springs would be pressed, f_n0 / (kn A) less the
+ * overlap it belongs to. The face stays there. */
 #include "contact/handover.h"
 
 #include "base/columns.h"

@@ -50,7 +50,7 @@ void tl_held_sort(tl_model *m)
         if (c->pending[row] == TL_PENDING_DIE)
             continue;
         bool held = tl_blocks_held_still(m, c->a[row], c->b[row]);
-        if (held != c->held[row] && c->pending[row] == TL_PENDING_KEEP)
+        if (held != c->held[row] && c->pending[row] == TL_PENDING_NONE)
             c->pending[row] = TL_PENDING_MOVE;
         c->held[row] = held;
     }

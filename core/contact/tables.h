@@ -41,7 +41,8 @@ typedef struct tl_press_row {
     double shift; /* how far face `shifted` of A is moved out by an initial stress, m */
     uint32_t shifted;
     uint32_t next_free;
-    double spare[2];  /* energy, times 2 ks, of shear and of torsion beyond that of uniform stress: handover.c */
+    double spare
+        [2]; /* energy, times 2 ks, of shear and of torsion beyond that of uniform stress: handover.c */
     /* the region: its faces, of the four kinds of tl_region */
     uint16_t count[4], face[TL_PRESS_FACES];
     uint16_t known[TL_FIELD_KNOWN]; /* of its field: field.h */
@@ -50,7 +51,7 @@ typedef struct tl_press_row {
 } tl_press_row;
 
 /* MOVE: its points belong in another run. */
-enum { TL_PENDING_KEEP, TL_PENDING_GROW, TL_PENDING_DIE, TL_PENDING_MOVE };
+enum { TL_PENDING_NONE, TL_PENDING_GROW, TL_PENDING_DIE, TL_PENDING_MOVE };
 
 /* Which of the two limits an overlap is beyond: that of a contact that is born so, or that of one that has sunk in. */
 enum { TL_DEEP_NOT, TL_DEEP_BORN, TL_DEEP_SUNK };

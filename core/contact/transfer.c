@@ -205,7 +205,7 @@ static void limit_energy(tl_points_table *p, const tl_point_lanes *lanes, size_t
     add_traction(p, lanes, begin, count, now, keep, tl_v3_scale((1 - keep) / now->area, now->shear),
                  (1 - keep) * twist);
     sum_shear(p, lanes, begin, count, now);
-    if (now->energy > most) { /* what the normals' leaning adds */
+    if (now->energy > most) { /* a torsion too large for it, which a bounded twist has left */
         add_traction(p, lanes, begin, count, now, sqrt(most / now->energy), tl_v3(0, 0, 0), 0);
         sum_shear(p, lanes, begin, count, now);
     }

@@ -73,6 +73,20 @@ static void hash_point(tl_hash *hash, const tl_points_table *p, size_t row, uint
     hash_numbers(hash, late, 2 + columns);
 }
 
+/* What a field contact keeps beside its points that does not follow from places: how far an initial stress moves a face, and
+ * shear energy beyond that of uniform stress. Zeros count as no row. */
+static void hash_press(tl_hash *hash, const tl_detect *d, uint32_t contact)
+{
+    if (d->contacts.press[contact] == TL_NO_ROW)
+        return;
+    const tl_press_row *row = &d->press[d->contacts.press[contact]];
+    const double numbers[] = {row->shift, row->spare[0], row->spare[1]};
+    if (row->shift == 0 && row->spare[0] == 0 && row->spare[1] == 0)
+        return;
+    hash_numbers(hash, numbers, sizeof numbers / sizeof *numbers);
+    tl_hash_word(hash, row->shift != 0 ? row->shifted : 0);
+}
+
 /* In the order of their blocks: which row and lane a contact has depends on when it was made. */
 static void hash_contacts(tl_hash *hash, const tl_model *m)
 {
@@ -88,6 +102,7 @@ static void hash_contacts(tl_hash *hash, const tl_model *m)
                 columns = tl_kind_state_columns(m->materials[material].kind);
             tl_hash_word(hash, (uint64_t)m->blocks.id[block] << 32 | m->blocks.id[c->b[contact]]);
             hash_row(hash, &c->table, contact);
+            hash_press(hash, d, contact);
             for (uint32_t k = 0; k < c->point_count[contact]; k++)
                 hash_point(hash, &d->points, tl_point_row(c, contact, k), columns);
         }

@@ -113,7 +113,7 @@ static void find_materials(tl_model *m)
     tl_contacts *c = &m->detect->contacts;
     for (uint32_t row = 0; row < c->table.rows; row++) {
         c->points_valid_to[row] = -INFINITY;
-        if (c->pending[row] == TL_PENDING_KEEP &&
+        if (c->pending[row] == TL_PENDING_NONE &&
             tl_material_row(m, c->tag[row]) != c->material[row])
             c->pending[row] = TL_PENDING_MOVE;
     }
@@ -273,7 +273,7 @@ static bool settle_rows(tl_model *m)
     tl_contacts *c = &d->contacts;
     bool room = true;
     for (uint32_t row = (uint32_t)c->table.rows; row-- > 0;) {
-        if (c->pending[row] == TL_PENDING_KEEP)
+        if (c->pending[row] == TL_PENDING_NONE)
             continue;
         touch(m, row);
         uint32_t pair = c->pair[row];
@@ -300,7 +300,7 @@ static tl_status fill_contacts(tl_model *m, bool *more)
     tl_contacts *c = &d->contacts;
     *more = false;
     for (uint32_t row = 0; row < c->table.rows; row++) {
-        if (c->pending[row] == TL_PENDING_KEEP)
+        if (c->pending[row] == TL_PENDING_NONE)
             continue;
         if (c->pending[row] == TL_PENDING_GROW && !tl_contact_fill(m, row))
             return tl_fail_memory(&m->error);
@@ -308,7 +308,7 @@ static tl_status fill_contacts(tl_model *m, bool *more)
             *more = true;
             continue;
         }
-        c->pending[row] = TL_PENDING_KEEP;
+        c->pending[row] = TL_PENDING_NONE;
         tl_pair_forget_faces(&d->pairs[c->pair[row]]); /* the room it wanted was in their place */
     }
     return TL_OK;
@@ -317,11 +317,11 @@ static tl_status fill_contacts(tl_model *m, bool *more)
 /* Something was left to do for some contact: in most steps for none, and all are asked. */
 static bool some_pending(const tl_contacts *c)
 {
-    static_assert(TL_PENDING_KEEP == 0, "what is pending is not told by its bits");
+    static_assert(TL_PENDING_NONE == 0, "what is pending is not told by its bits");
     unsigned any = 0;
     for (size_t row = 0; row < c->table.rows; row++)
         any |= c->pending[row];
-    return any != TL_PENDING_KEEP;
+    return any != TL_PENDING_NONE;
 }
 
 /* Whether there was no memory to look at some pair or to bring some contact up to date; it is as it was, for another time. */

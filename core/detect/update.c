@@ -477,13 +477,13 @@ bool tl_contact_fill(tl_model *m, uint32_t c)
     if (contacts->field[c] && contacts->press[c] == TL_NO_ROW &&
         (contacts->press[c] = tl_press_take(d)) == TL_NO_ROW)
         return false;
-    contacts->pending[c] = TL_PENDING_KEEP;
+    contacts->pending[c] = TL_PENDING_NONE;
     if (!make_anew(m, c, 0)) {
         d->narrow[0].failed = false; /* the caller tells */
         contacts->pending[c] = TL_PENDING_GROW;
         return false;
     }
-    if (contacts->pending[c] == TL_PENDING_KEEP)
+    if (contacts->pending[c] == TL_PENDING_NONE)
         tl_contact_allow_reuse(m, c);
     return true;
 }

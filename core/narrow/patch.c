@@ -8,7 +8,8 @@
  * its moments over the polygon. (For corners at the share s of the way out with the weight w and middles at t with v,
  * that asks for w s^2 = 1/12, v t^2 = 1/3 and w s + v t/2 = 1/3: t is free, and friction against a spin is right to 2 %
  * for squares, triangles and rectangles up to 1:5 with t = 5/6.) With points at the corners only, each takes half of
- * its two fan triangles: resultants are right, turning is up to three times too stiff.
+ * its two fan triangles: resultants are right, turning is 3 times too stiff for a rectangle, 4 times for a
+ * triangle.
  *
  * The bisector is the normal of all points. Areas are those on the faces, not in the bisecting plane, so that the
  * area of a face that lies wholly on another does not change as it tilts.

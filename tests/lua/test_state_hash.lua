@@ -193,6 +193,38 @@ local one, count_one = hidden(false)
 local two, count_two = hidden(true)
 check.holds(one ~= two and count_one ~= count_two, "hiding shows in both")
 
+-- What is left of an initial stress in a contact that is open: it has no points then, and presses more when it closes again.
+-- A block in contact with a fixed one is turned out of its face's plane, lifted off, and let down.
+local function lifted_off(stress)
+    local m = talus.model { gravity = { 0, 0, 0 } }
+    m:generate("box", { min = { -3, -3, -1 }, max = { 3, 3, 0 }, density = 2000, group = "base" })
+    m:generate("box", { min = { -1, -1, 0 }, max = { 1, 1, 2 }, density = 2000, group = "rock" })
+    m:blocks { group = "base" }:fix()
+    m:joint("*", "coulomb", { kn = 1e8, ks = 1e8, friction = 30 })
+    m:insitu { stress = { zz = stress } }
+    m:blocks():load {} -- what holds the stress
+    m:timestep { dt = 1e-4 }
+    local block = rock(m)
+    block:drive { velocity = { 0, 0, -0.5 }, angular_velocity = { 0.5, 0, 0 } }
+    m:cycle(150)
+    block:drive { velocity = { 0, 0, 0.5 } }
+    repeat
+        m:cycle(1)
+    until m:contacts():sum "normal_force" == 0
+    local open, steps = m:state_hash(), m.cycles
+    block:drive { velocity = { 0, 0, -0.5 } }
+    m:cycle(20)
+    return open, steps, m:contacts():sum "normal_force"
+end
+local open, steps, force = lifted_off(-10)
+local open_of_more, steps_of_more, force_of_more = lifted_off(-20)
+check.equal(steps, steps_of_more)
+check.holds(force_of_more > force, "a contact that was under more stress presses more")
+check.holds(open ~= open_of_more, "and is another state while it is open")
+local again, _, force_again = lifted_off(-10)
+check.equal(again, open)
+check.equal(force_again, force)
+
 -- Blocks that slide in between a floor and a roof, so that contact areas change all the time, and one that only settles. Rates of the
 -- bodies that are kept from step to step are part of the state where motion follows from them: models of the same hash go on
 -- alike after calls that make rates anew.

@@ -79,8 +79,9 @@ typedef enum tl_rotation_rule {
 /* Where the points of a face-face contact lie. */
 typedef enum tl_contact_points {
     TL_POINTS_CONSISTENT, /* corners, middles of edges, centroid: every linear gap integrated exactly */
-    TL_POINTS_CORNERS /* corners only, as in programs whose contacts are vertices on faces: up to three
-                             times as stiff against turning */
+    /* corners only, as in programs whose contacts are vertices on faces: 3 times as stiff against turning for a rectangle,
+     * 4 times for a triangle */
+    TL_POINTS_CORNERS
 } tl_contact_points;
 
 typedef struct tl_model_config {
