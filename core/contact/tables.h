@@ -45,7 +45,7 @@ typedef struct tl_press_row {
         [2]; /* energy, times 2 ks, of shear and of torsion beyond that of uniform stress: handover.c */
     /* the region: its faces, of the four kinds of tl_region */
     uint16_t count[4], face[TL_PRESS_FACES];
-    uint16_t known[TL_FIELD_KNOWN]; /* of its field: field.h */
+    uint64_t bounding; /* which of them bound the common volume: field.h */
     uint16_t blunt_a, blunt_b;
     bool flush, listed;
 } tl_press_row;

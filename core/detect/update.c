@@ -193,12 +193,12 @@ static void keep_region(tl_press_row *row, const tl_region *r)
     for (int k = 0; k < 4; k++)
         row->count[k] = (uint16_t)count[k];
     memcpy(row->face, r->face, faces * sizeof *r->face);
-    memset(row->known, 0, sizeof row->known);
+    row->bounding = *r->bounding;
 }
 
 static tl_region kept_region(tl_press_row *row)
 {
-    return (tl_region){.known = row->known,
+    return (tl_region){.bounding = &row->bounding,
                        .a = row->count[0],
                        .b = row->count[1],
                        .border_a = row->count[2],
@@ -219,6 +219,8 @@ static bool find(tl_model *m, uint32_t c, tl_narrow *room)
     if (!tl_pair_place(&view, room) ||
         !tl_region_find(&view, TL_LIST_MARGIN * view.size, room, &region))
         return false;
+    uint64_t bounding = 0;
+    region.bounding = &bounding;
     tl_manifold_before before = before_of(m, c);
     tl_tag tag = tl_touching_tag(&view, region.n);
     tl_touch_rule rule = tl_touch_rule_of(m, &view, tag, before.holds);

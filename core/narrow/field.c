@@ -1,38 +1,28 @@
 /* field.c - integrals of the pressure field of two blocks: field.h says what it is.
  *
- * Every polygon lies in a plane and is bounded by lines, one for each other face: on the part of S that belongs to the
- * faces a and b, d_h >= d_a for all others h, and d_a >= 0. Eight polygons are worked on side by side, one in a lane.
- * No polygon is ever clipped: a line bounds the polygon between the crossings with all other lines, and the polygon's
- * integrals are sums over its lines (Green's theorem). So there are no corners to be kept, and no branches.
- *
- * Cells that meet along a line make three polygons that meet there. So of the pairs of cells that met at another time those
- * that have come to meet are found: a line that bounds a polygon of the cells i and j, and belongs to a face k, bounds
- * polygons of i and k and of j and k as well. The polygons of a convex K hang together by their lines.
+ * On the part of S that belongs to the faces a and b, d_h >= d_a for all others h, and d_a >= 0: a polygon in a plane, bounded
+ * by a line for each other face. Eight polygons are worked on side by side (field_lanes.c).
  *
  * K consists of cells, one for each face, where that face is the nearest. The fields -n d^2 / 2 and -n d have the
  * divergences d and 1 in the cell of a face of normal n, and vanish on the face. So G and V are sums over the polygons
  * between two cells, G = sum |n_i - n_j| / 2 int d^2 dS and V = sum |n_i - n_j| int d dS, and over the borders. No term
  * between cells is negative.
  *
- * In a polygon's plane: axes t and s, origin where the plane is nearest to the frame's. A line is g . x <= c with a
- * unit normal g, its own points are c g + r (-g_s, g_t) with the place r along it. Integrals are about a corner of the
- * polygon. */
+ * Without borders a face has a cell only if it bounds K: from any point of its cell the way along its normal stays in K to the
+ * face. So the faces that bounded K at another time are enough for all polygons, while they still enclose K and nothing else:
+ * while no corner of what they enclose lies beyond another face. Corners on faces of both blocks lie on S, where d = 0, and are
+ * looked at here; the others are corners of one block (press.c). Otherwise the faces that bound K are found again, as
+ * those of which the others leave some. */
 #include "narrow/field.h"
 
+#include "narrow/field_lanes.h"
+
 #include <math.h>
-#include <stdint.h>
 #include <stdlib.h>
-#include <string.h>
-#include <talus/plugin.h>
 #include <talus/vmath.h>
 
 #define LANES TL_LANES
 
-/* Sine of the angle between two lines below which they do not cross: the error of a crossing's place, a rounding over
- * the sine, then becomes as large as what the wrong one of two such lines encloses. */
-#define PARALLEL 1e-8
-/* Length of a face's normal, within the polygon's plane, below which the face is parallel to the plane. */
-#define LEVEL 1e-9
 /* Length of n_a - n_b below which two faces look the same way, and have no surface between them. */
 #define ALIKE 1e-7
 /* Roundings of the largest offset within which two faces that look the same way are one plane. */
@@ -41,32 +31,6 @@
 #define STEEP 0.1
 /* The same from which two faces look so much the same way that what is between them bears nothing: no part of the stiffness. */
 #define SAME_WAY 0.5
-/* Place beyond the end of any line. */
-#define FAR 1e290
-
-/* Eight polygons. */
-typedef struct lanes {
-    double n[3][LANES], h[LANES];           /* plane */
-    double t[3][LANES], s[3][LANES];        /* axes in it */
-    double face_n[3][LANES], face_c[LANES]; /* the face whose depth counts */
-    double one[LANES], other[LANES]; /* numbers of the planes that bound the polygon nowhere */
-    double share[LANES];             /* of the integrals: 1; 1/2 for a tie; 0 for none */
-    double d0[LANES], dt[LANES], ds[LANES];   /* depth in the plane: d0 + dt x_t + ds x_s */
-    double origin_t[LANES], origin_s[LANES];  /* a corner; d0 and the rest are about it */
-    double area[LANES], it[LANES], is[LANES]; /* integrals of 1, x_t, x_s, ... */
-    double itt[LANES], its[LANES], iss[LANES];
-    double d1[LANES], d2[LANES]; /* |grad d|^2 times the integrals of d and d^2 */
-    double deepest[LANES], deepest_t[LANES], deepest_s[LANES];
-    uint64_t bounded[LANES]; /* a bit for each line, the first for d = 0, that bounds the polygon */
-} lanes;
-
-/* The lines of eight polygons: columns [line][lane]. */
-typedef struct lines {
-    size_t count;
-    double *gt, *gs, *c; /* unit normal, offset */
-    double *from, *to;   /* places between which the line bounds the polygon */
-} lines;
-
 static uint32_t real_faces(const tl_field_faces *f)
 {
     return f->a + f->b;
@@ -87,225 +51,78 @@ static tl_vec3 lane_vector(const double v[3][LANES], int lane)
     return tl_v3(v[0][lane], v[1][lane], v[2][lane]);
 }
 
-/* ---------------------------------------------------------------- lines ------------------ */
-
-/* Axes of the planes without a branch (Duff and others, "Building an orthonormal basis, revisited", 2017), and the
- * depth in them. */
-TL_VECTORIZED static void place_axes(lanes *p)
-{
-    double *restrict n0 = p->n[0], *restrict n1 = p->n[1], *restrict n2 = p->n[2];
-#pragma omp simd
-    for (unsigned l = 0; l < LANES; l++) {
-        double sign = n2[l] >= 0 ? 1.0 : -1.0, a = -1 / (sign + n2[l]), b = n0[l] * n1[l] * a;
-        p->t[0][l] = 1 + sign * n0[l] * n0[l] * a;
-        p->t[1][l] = sign * b;
-        p->t[2][l] = -sign * n0[l];
-        p->s[0][l] = b;
-        p->s[1][l] = sign + n1[l] * n1[l] * a;
-        p->s[2][l] = -n1[l];
-        double x = p->face_n[0][l], y = p->face_n[1][l], z = p->face_n[2][l];
-        p->d0[l] = p->face_c[l] - p->h[l] * (x * n0[l] + y * n1[l] + z * n2[l]);
-        p->dt[l] = -(x * p->t[0][l] + y * p->t[1][l] + z * p->t[2][l]);
-        p->ds[l] = -(x * p->s[0][l] + y * p->s[1][l] + z * p->s[2][l]);
-    }
-}
-
-/* The line in which d_h - k d is zero, for a face or border h; k is 1 for a face, and 0 for a border. */
-TL_VECTORIZED static void place_line(lanes *restrict p, double number, const double normal[3],
-                                     double offset, double k, double one_plane, double *restrict gt,
-                                     double *restrict gs, double *restrict c, double *restrict from,
-                                     double *restrict to)
-{
-    const double nx = normal[0], ny = normal[1], nz = normal[2];
-#pragma omp simd
-    for (unsigned l = 0; l < LANES; l++) {
-        double x = nx - k * p->face_n[0][l], y = ny - k * p->face_n[1][l];
-        double z = nz - k * p->face_n[2][l], o = offset - k * p->face_c[l];
-        double t = x * p->t[0][l] + y * p->t[1][l] + z * p->t[2][l];
-        double s = x * p->s[0][l] + y * p->s[1][l] + z * p->s[2][l];
-        o -= p->h[l] * (x * p->n[0][l] + y * p->n[1][l] + z * p->n[2][l]);
-        double length = sqrt(t * t + s * s);
-        double none = ((p->one[l] == number) | (p->other[l] == number)) ? 1.0 : 0.0;
-        double level = length < LEVEL ? 1.0 : 0.0;
-        double part = o > one_plane ? 1.0 : 0.5;
-        part = o < -one_plane ? 0.0 : part;
-        double kept = none > level ? 1.0 : level > 0 ? part : 1.0;
-        kept = none > 0 ? 1.0 : kept;
-        p->share[l] *= kept;
-        double gone = none + level, per = 1 / length;
-        gt[l] = gone > 0 ? 0.0 : t * per;
-        gs[l] = gone > 0 ? 0.0 : s * per;
-        c[l] = gone > 0 ? FAR : o * per;
-        from[l] = -FAR;
-        to[l] = FAR;
-    }
-}
-
-/* The line d = 0. A plane parallel to its face has d > 0 or d < 0 everywhere. */
-TL_VECTORIZED static void place_own_line(lanes *restrict p, double *restrict gt,
-                                         double *restrict gs, double *restrict c,
-                                         double *restrict from, double *restrict to)
-{
-#pragma omp simd
-    for (unsigned l = 0; l < LANES; l++) {
-        double length = sqrt(p->dt[l] * p->dt[l] + p->ds[l] * p->ds[l]), per = 1 / length;
-        double level = length < LEVEL ? 1.0 : 0.0;
-        p->share[l] *= level > 0 ? (p->d0[l] > 0 ? 1.0 : 0.0) : 1.0;
-        gt[l] = level > 0 ? 0.0 : -p->dt[l] * per;
-        gs[l] = level > 0 ? 0.0 : -p->ds[l] * per;
-        c[l] = level > 0 ? FAR : p->d0[l] * per;
-        from[l] = -FAR;
-        to[l] = FAR;
-    }
-}
-
-/* Bounds each of two lines by the other. Parallel lines cross far away, on the side that leaves nothing of one that the
- * other excludes; of two lines in one place each bounds a half. */
-TL_VECTORIZED static void cross_lines(const lines *restrict all)
-{
-    for (size_t i = 0; i < all->count; i++) {
-        const double *restrict it = all->gt + i * LANES, *restrict is = all->gs + i * LANES;
-        const double *restrict ic = all->c + i * LANES;
-        double from[LANES], to[LANES];
-        memcpy(from, all->from + i * LANES, sizeof from);
-        memcpy(to, all->to + i * LANES, sizeof to);
-        for (size_t j = i + 1; j < all->count; j++) {
-            const double *restrict jt = all->gt + j * LANES, *restrict js = all->gs + j * LANES;
-            const double *restrict jc = all->c + j * LANES;
-            double *restrict jfrom = all->from + j * LANES, *restrict jto = all->to + j * LANES;
-#pragma omp simd
-            for (unsigned l = 0; l < LANES; l++) {
-                double sine = it[l] * js[l] - is[l] * jt[l], cosine = it[l] * jt[l] + is[l] * js[l];
-                double least = sine < 0 ? -1 / FAR : 1 / FAR, whole = cosine < 0 ? -1.0 : 1.0;
-                bool level = fabs(sine) < PARALLEL;
-                double per = 1 / (level ? least : sine);
-                cosine = level ? whole : cosine; /* so that both agree which is the nearer */
-                double ri = (jc[l] - cosine * ic[l]) * per, rj = (cosine * jc[l] - ic[l]) * per;
-                double to_i = per > 0 ? ri : FAR, from_i = per > 0 ? -FAR : ri;
-                double to_j = per > 0 ? FAR : rj, from_j = per > 0 ? rj : -FAR;
-                to[l] = to[l] < to_i ? to[l] : to_i;
-                from[l] = from[l] > from_i ? from[l] : from_i;
-                jto[l] = jto[l] < to_j ? jto[l] : to_j;
-                jfrom[l] = jfrom[l] > from_j ? jfrom[l] : from_j;
-            }
-        }
-        memcpy(all->from + i * LANES, from, sizeof from);
-        memcpy(all->to + i * LANES, to, sizeof to);
-    }
-}
-
-/* Takes a corner of each polygon for the origin of its plane: far from it nothing would be left of small ones but roundings. */
-TL_VECTORIZED static void place_origin(lanes *restrict p, const lines *restrict all)
-{
-    for (size_t i = 0; i < all->count; i++) {
-        const double *restrict gt = all->gt + i * LANES, *restrict gs = all->gs + i * LANES;
-        const double *restrict c = all->c + i * LANES;
-        const double *restrict from = all->from + i * LANES, *restrict to = all->to + i * LANES;
-#pragma omp simd
-        for (unsigned l = 0; l < LANES; l++) {
-            bool bounds = (to[l] > from[l]) & (c[l] < FAR) & (p->share[l] > 0);
-            double f = bounds ? from[l] : 0.0, o = bounds ? c[l] : 0.0;
-            p->origin_t[l] = bounds ? o * gt[l] - f * gs[l] : p->origin_t[l];
-            p->origin_s[l] = bounds ? o * gs[l] + f * gt[l] : p->origin_s[l];
-        }
-    }
-#pragma omp simd
-    for (unsigned l = 0; l < LANES; l++)
-        p->d0[l] += p->dt[l] * p->origin_t[l] + p->ds[l] * p->origin_s[l];
-}
-
-/* Sums the triangles between the origin and each line's part. */
-TL_VECTORIZED static void add_lines(lanes *restrict p, const lines *restrict all)
-{
-    for (size_t i = 0; i < all->count; i++) {
-        const double *restrict gt = all->gt + i * LANES, *restrict gs = all->gs + i * LANES;
-        const double *restrict c = all->c + i * LANES;
-        const double *restrict from = all->from + i * LANES, *restrict to = all->to + i * LANES;
-        const uint64_t bit = i < 64 ? UINT64_C(1) << i : 0;
-#pragma omp simd
-        for (unsigned l = 0; l < LANES; l++) {
-            bool bounds = (to[l] > from[l]) & (c[l] < FAR) & (p->share[l] > 0);
-            p->bounded[l] |= bounds ? bit : 0;
-            double along = gt[l] * p->origin_s[l] - gs[l] * p->origin_t[l];
-            double off = c[l] - (gt[l] * p->origin_t[l] + gs[l] * p->origin_s[l]);
-            double f = bounds ? from[l] - along : 0.0, e = bounds ? to[l] - along : 0.0;
-            double o = bounds ? off : 0.0;
-            double w = 0.5 * o * (e - f);
-            double pt = o * gt[l] - f * gs[l], ps = o * gs[l] + f * gt[l];
-            double qt = o * gt[l] - e * gs[l], qs = o * gs[l] + e * gt[l];
-            p->area[l] += w;
-            p->it[l] += w * (pt + qt) * (1.0 / 3);
-            p->is[l] += w * (ps + qs) * (1.0 / 3);
-            p->itt[l] += w * (pt * pt + pt * qt + qt * qt) * (1.0 / 6);
-            p->iss[l] += w * (ps * ps + ps * qs + qs * qs) * (1.0 / 6);
-            p->its[l] += w * (2 * (pt * ps + qt * qs) + pt * qs + qt * ps) * (1.0 / 12);
-            double dp = p->d0[l] + p->dt[l] * pt + p->ds[l] * ps;
-            double dq = p->d0[l] + p->dt[l] * qt + p->ds[l] * qs;
-            /* by the divergence of d^2 grad d / 2 and d^3 grad d / 3: nothing cancels in thin slivers far from the origin */
-            double up = (gt[l] * p->dt[l] + gs[l] * p->ds[l]) * (e - f);
-            p->d1[l] += up * (dp * dp + dp * dq + dq * dq) * (1.0 / 6);
-            p->d2[l] += up * (dp * dp + dq * dq) * (dp + dq) * (1.0 / 12);
-            double d = dp > dq ? dp : dq, at_t = dp > dq ? pt : qt, at_s = dp > dq ? ps : qs;
-            bool more = bounds & (d > p->deepest[l]);
-            p->deepest[l] = more ? d : p->deepest[l];
-            p->deepest_t[l] = more ? at_t : p->deepest_t[l];
-            p->deepest_s[l] = more ? at_s : p->deepest_s[l];
-        }
-    }
-}
-
 /* ---------------------------------------------------------------- work ------------------- */
 
 /* Integrals of polygons, eight at a time. */
 typedef struct work {
     const tl_field_faces *faces;
+    tl_field_sums *sums;
     double one_plane; /* offset within which planes are one */
-    lines lines;
-    lanes lanes;
+    uint16_t *number;
+    tl_field_list planes, others; /* planes that bound polygons; faces that are to bound none */
+    tl_field_line *line;
+    bool flat;   /* the polygons are those of K's own faces, found for `bounding` */
+    bool beyond; /* some corner lies beyond one of the others */
+    uint64_t bounding;
+    tl_field_lanes lanes;
     int filled;
     uint32_t face[LANES], with[LANES]; /* the polygon's two planes */
-    double length[LANES];         /* |n_a - n_b|; of a border minus the cosine of both planes */
-    uint16_t met[TL_FIELD_KNOWN]; /* pairs of cells that meet, where few faces are known */
-    tl_field_sums *sums;
+    double length[LANES]; /* |n_a - n_b|; of a border minus the cosine of both planes */
 } work;
 
-static bool make_room(tl_field_room *room, const tl_field_faces *f, lines *all)
+static bool make_room(tl_field_room *room, uint32_t count)
 {
-    size_t count = all_faces(f) + 1u, need = 5 * count * LANES;
-    if (need > room->count) {
-        double *numbers = aligned_alloc(TL_ALIGN, 2 * need * sizeof *numbers);
-        if (!numbers)
-            return false;
-        free(room->numbers);
-        room->numbers = numbers;
-        room->count = 2 * need;
-    }
-    double *at = room->numbers;
-    *all = (lines){.count = count,
-                   .gt = at,
-                   .gs = at + count * LANES,
-                   .c = at + 2 * count * LANES,
-                   .from = at + 3 * count * LANES,
-                   .to = at + 4 * count * LANES};
+    if (count <= room->count)
+        return true;
+    tl_field_free(room);
+    room->line = aligned_alloc(TL_ALIGN, (2u * count + 1) * sizeof *room->line);
+    room->number = malloc(2u * count * sizeof *room->number);
+    if (!room->line || !room->number)
+        return false;
+    room->count = 2 * count;
     return true;
 }
 
 void tl_field_free(tl_field_room *room)
 {
-    free(room->numbers);
+    free(room->line);
+    free(room->number);
     *room = (tl_field_room){0};
 }
 
 static bool begin(work *w, const tl_field_faces *f, tl_field_room *room, tl_field_sums *sums)
 {
+    if (!make_room(room, all_faces(f)))
+        return false;
     w->faces = f;
     w->sums = sums;
     w->filled = 0;
+    w->number = room->number;
+    w->line = room->line;
     double largest = 0;
     for (uint32_t i = 0; i < all_faces(f); i++)
         largest = fmax(largest, fabs(f->c[i]));
     w->one_plane = ONE_PLANE * largest;
-    return make_room(room, f, &w->lines);
+    return true;
+}
+
+/* Takes the faces of a mask, or all, and the borders for the planes that bound polygons. */
+static void choose(work *w, const uint64_t *mask)
+{
+    const tl_field_faces *f = w->faces;
+    uint32_t count = all_faces(f), chosen = 0, left = count;
+    for (uint32_t i = 0; i < count; i++)
+        if (!mask || *mask >> i & 1)
+            w->number[chosen++] = (uint16_t)i;
+        else
+            w->number[--left] = (uint16_t)i;
+    w->planes = w->others =
+        (tl_field_list){.n = {f->n[0], f->n[1], f->n[2]}, .c = f->c, .faces = real_faces(f)};
+    w->planes.number = w->number;
+    w->planes.count = chosen;
+    w->others.number = w->number + left;
+    w->others.count = count - left;
+    w->beyond = false;
 }
 
 /* ---------------------------------------------------------------- sums ------------------- */
@@ -315,7 +132,7 @@ typedef struct depths {
     double area, d, dd, dt, ds;
 } depths;
 
-static depths depths_of(const lanes *p, int l)
+static depths depths_of(const tl_field_lanes *p, int l)
 {
     double d0 = p->d0[l], t = p->dt[l], s = p->ds[l], part = p->share[l];
     depths o = {.area = part * p->area[l],
@@ -330,7 +147,7 @@ static depths depths_of(const lanes *p, int l)
 }
 
 /* The origin times an integral + its first moments about it: int x dS, or int d x dS. */
-static tl_vec3 place_of(const lanes *p, int l, double along, double it, double is)
+static tl_vec3 place_of(const tl_field_lanes *p, int l, double along, double it, double is)
 {
     tl_vec3 x = tl_v3_scale(p->h[l] * along, lane_vector(p->n, l));
     x = tl_v3_madd(x, p->origin_t[l] * along + it, lane_vector(p->t, l));
@@ -338,7 +155,7 @@ static tl_vec3 place_of(const lanes *p, int l, double along, double it, double i
 }
 
 /* Adds int d n dS of a polygon, and int d x cross n dS. */
-static void add_force(const lanes *p, int l, const depths *o, double sign, tl_vec3 *force,
+static void add_force(const tl_field_lanes *p, int l, const depths *o, double sign, tl_vec3 *force,
                       tl_vec3 *moment)
 {
     tl_vec3 n = lane_vector(p->n, l), t = lane_vector(p->t, l), s = lane_vector(p->s, l);
@@ -352,7 +169,7 @@ static void add_force(const lanes *p, int l, const depths *o, double sign, tl_ve
 /* A polygon's part in the gradients of G and V. */
 static void add_gradient(work *w, int l, const depths *o, double sign)
 {
-    const lanes *p = &w->lanes;
+    const tl_field_lanes *p = &w->lanes;
     tl_field_sums *sums = w->sums;
     tl_vec3 n = lane_vector(p->n, l), t = lane_vector(p->t, l), s = lane_vector(p->s, l);
     double ot = p->origin_t[l], os = p->origin_s[l], part = sign * p->share[l];
@@ -365,7 +182,7 @@ static void add_gradient(work *w, int l, const depths *o, double sign)
 /* A polygon of S. */
 static void add_surface(work *w, int l, const depths *o)
 {
-    const lanes *p = &w->lanes;
+    const tl_field_lanes *p = &w->lanes;
     tl_field_sums *sums = w->sums;
     double part = p->share[l], ot = p->origin_t[l], os = p->origin_s[l];
     add_gradient(w, l, o, 1);
@@ -383,43 +200,30 @@ static void add_surface(work *w, int l, const depths *o)
     }
 }
 
-/* Notes the cells that meet along a polygon and its lines. */
-static void note_met(work *w, int l)
+/* What a polygon on a border adds. B's motion shifts K's border at a seam of A where A is deeper than B, and the other way
+ * round. */
+static void add_border(work *w, int l, const depths *o)
 {
-    uint32_t i = w->face[l], j = w->with[l], real = real_faces(w->faces);
-    uint32_t by = (uint32_t)(w->lanes.bounded[l] >> 1) & ((1u << real) - 1);
-    w->met[i] |= (uint16_t)(1u << j);
-    w->met[j] |= (uint16_t)(1u << i);
-    for (; by; by &= by - 1) {
-        uint32_t k = (uint32_t)__builtin_ctz(by);
-        w->met[i] |= (uint16_t)(1u << k);
-        w->met[j] |= (uint16_t)(1u << k);
-        w->met[k] |= (uint16_t)(1u << i | 1u << j);
-    }
+    const tl_field_faces *f = w->faces;
+    bool face_of_b = w->face[l] >= f->a, border_of_b = w->with[l] >= real_faces(f) + f->border_a;
+    uint32_t end = border_of_b ? all_faces(f) : real_faces(f) + f->border_a;
+    double out = border_of_b ? -1 : 1;
+    if (face_of_b != border_of_b)
+        add_gradient(w, l, o, out);
+    if (w->with[l] + (border_of_b ? f->seam_b : f->seam_a) >= end)
+        add_force(&w->lanes, l, o, -out, &w->sums->through, &w->sums->through_moment);
 }
 
 static void take(work *w, int l)
 {
     const tl_field_faces *f = w->faces;
-    if (f->known && w->with[l] < real_faces(f))
-        note_met(w, l);
     const depths o = depths_of(&w->lanes, l);
     w->sums->volume += w->length[l] * o.d;
     w->sums->energy += 0.5 * w->length[l] * o.dd;
-    bool face_of_b = w->face[l] >= f->a;
-    if (w->with[l] < real_faces(f)) {
-        if (!face_of_b && w->with[l] >= f->a)
-            add_surface(w, l, &o);
-        return;
-    }
-    /* B's motion shifts K's border at a seam of A where A is deeper than B, and the other way round */
-    bool border_of_b = w->with[l] >= real_faces(f) + f->border_a;
-    if (face_of_b != border_of_b)
-        add_gradient(w, l, &o, border_of_b ? -1 : 1);
-    uint32_t end = border_of_b ? all_faces(f) : real_faces(f) + f->border_a;
-    if (w->with[l] + (border_of_b ? f->seam_b : f->seam_a) >= end)
-        add_force(&w->lanes, l, &o, border_of_b ? 1 : -1, &w->sums->through,
-                  &w->sums->through_moment);
+    if (w->with[l] >= real_faces(f))
+        add_border(w, l, &o);
+    else if (w->face[l] < f->a && w->with[l] >= f->a)
+        add_surface(w, l, &o);
 }
 
 /* ---------------------------------------------------------------- polygons --------------- */
@@ -427,36 +231,31 @@ static void take(work *w, int l)
 /* Integrates the polygons in the lanes. */
 static void flush(work *w)
 {
-    const tl_field_faces *f = w->faces;
-    lanes *p = &w->lanes;
-    lines *all = &w->lines;
+    tl_field_lanes *p = &w->lanes;
     if (!w->filled)
         return;
-    for (int lane = w->filled; lane < (int)LANES;
-         lane++) /* what is left there is of earlier ones */
-        p->share[lane] = 0;
-    memset(p->origin_t, 0, (size_t)((char *)(p + 1) - (char *)p->origin_t));
-    place_axes(p);
-    place_own_line(p, all->gt, all->gs, all->c, all->from, all->to);
-    for (uint32_t i = 0; i < all_faces(f); i++) {
-        const double n[3] = {f->n[0][i], f->n[1][i], f->n[2][i]};
-        size_t at = (i + 1u) * LANES;
-        place_line(p, i, n, f->c[i], i < real_faces(f), w->one_plane, all->gt + at, all->gs + at,
-                   all->c + at, all->from + at, all->to + at);
-    }
-    cross_lines(all);
-    place_origin(p, all);
-    add_lines(p, all);
-    for (int lane = 0; lane < w->filled; lane++)
-        if (p->area[lane] > 0)
+    for (int lane = w->filled; lane < (int)LANES; lane++)
+        p->share[lane] = 0; /* what is left there is of earlier ones */
+    size_t lines = tl_field_draw(p, &w->planes, w->flat, w->one_plane, w->line);
+    if (!w->flat)
+        w->beyond = w->beyond || tl_field_corner_beyond(p, &w->others, w->line);
+    tl_field_sum_lines(p, w->line, lines);
+    for (int lane = 0; lane < w->filled; lane++) {
+        if (!(p->area[lane] > 0))
+            continue;
+        if (w->flat)
+            w->bounding |= UINT64_C(1) << w->face[lane];
+        else
             take(w, lane);
+        w->beyond = w->beyond || p->open[lane] > 0;
+    }
     w->filled = 0;
 }
 
 /* Puts a polygon into the lanes: in a plane, of the depth of a face, bounded by neither that nor another plane. */
 static void put(work *w, tl_vec3 n, double h, uint32_t face, uint32_t with, double length)
 {
-    lanes *p = &w->lanes;
+    tl_field_lanes *p = &w->lanes;
     int l = w->filled++;
     tl_vec3 m = normal_of(w->faces, face);
     p->n[0][l] = n.x;
@@ -487,52 +286,62 @@ static void put_between(work *w, uint32_t a, uint32_t b)
         put(w, tl_v3_scale(1 / length, m), (f->c[a] - f->c[b]) / length, a, b, length);
 }
 
-/* The polygons between cells that are known to meet. Where others turn out to, all is done again with these: the sums are
- * always those of the same polygons in the same order. */
-static void put_known(work *w)
+/* The polygons between the cells of the chosen faces, and at borders. */
+static void integrate(work *w)
 {
     const tl_field_faces *f = w->faces;
-    uint32_t real = real_faces(f), any = 0, missing;
-    uint16_t look[TL_FIELD_KNOWN];
-    for (uint32_t i = 0; i < real; i++)
-        any |= f->known[i];
-    for (uint32_t i = 0; i < real; i++)
-        look[i] = any ? f->known[i] : UINT16_MAX;
-    do {
-        *w->sums = (tl_field_sums){0};
-        memset(w->met, 0, sizeof w->met);
-        for (uint32_t i = 0; i < real; i++)
-            for (uint32_t j = i + 1; j < real; j++)
-                if (look[i] >> j & 1)
-                    put_between(w, i, j);
-        flush(w);
-        missing = 0;
-        for (uint32_t i = 0; i < real; i++) {
-            missing |= w->met[i] & ~(uint32_t)look[i];
-            look[i] |= w->met[i];
+    const uint16_t *i = w->number, *end = i + w->planes.count;
+    *w->sums = (tl_field_sums){0};
+    w->flat = false;
+    for (; i < end && *i < real_faces(f); i++)
+        for (const uint16_t *j = i + 1; j < end && *j < real_faces(f); j++)
+            put_between(w, *i, *j);
+    for (uint32_t k = real_faces(f); k < all_faces(f); k++)
+        for (uint32_t face = 0; face < real_faces(f); face++) {
+            tl_vec3 n = normal_of(f, k);
+            put(w, n, f->c[k], face, k, -tl_v3_dot(n, normal_of(f, face)));
         }
-    } while (missing);
-    memcpy(f->known, w->met, real * sizeof *f->known);
+    flush(w);
+}
+
+/* The faces that bound K: those of which something lies within all others. */
+static uint64_t find_bounding(work *w)
+{
+    const tl_field_faces *f = w->faces;
+    choose(w, NULL);
+    w->flat = true;
+    w->bounding = 0;
+    for (uint32_t i = 0; i < real_faces(f); i++)
+        put(w, normal_of(f, i), f->c[i], i, i, 1);
+    flush(w);
+    return w->bounding;
 }
 
 bool tl_field_integrate(const tl_field_faces *f, tl_field_room *room, tl_field_sums *sums)
 {
     work w;
-    *sums = (tl_field_sums){0};
     if (!begin(&w, f, room, sums))
         return false;
-    if (f->known) {
-        put_known(&w);
-    } else {
-        for (uint32_t i = 0; i < real_faces(f); i++)
-            for (uint32_t j = i + 1; j < real_faces(f); j++)
-                put_between(&w, i, j);
+    bool known = f->bounding && *f->bounding;
+    if (!f->bounding || all_faces(f) > real_faces(f) || real_faces(f) > TL_FIELD_KNOWN) {
+        choose(&w, NULL);
+        integrate(&w);
+        return true;
     }
-    for (uint32_t k = real_faces(f); k < all_faces(f); k++)
-        for (uint32_t i = 0; i < real_faces(f); i++) {
-            tl_vec3 n = normal_of(f, k);
-            put(&w, n, f->c[k], i, k, -tl_v3_dot(n, normal_of(f, i)));
-        }
-    flush(&w);
+    if (known) {
+        choose(&w, f->bounding);
+        integrate(&w);
+    }
+    if (!known || w.beyond) {
+        *f->bounding = find_bounding(&w);
+        choose(&w, f->bounding);
+        integrate(&w);
+        known = !w.beyond;
+    }
+    if (!known) { /* K is so thin that a face was lost in roundings */
+        *f->bounding = 0;
+        choose(&w, NULL);
+        integrate(&w);
+    }
     return true;
 }

@@ -25,6 +25,7 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 #include <talus/types.h>
 
 /* The planes that bound K, in this order: faces of A, faces of B, borders of A, borders of B. Others may be among them. Of
@@ -36,18 +37,19 @@ typedef struct tl_field_faces {
     uint32_t seam_a,
         seam_b;       /* so many borders, the last of A's and of B's, are seams to other parts */
     double *n[3], *c; /* [all of them] */
-    /* [real faces] or NULL: bit j of entry i is set where the cells of the faces i and j have met, for up to
-     * TL_FIELD_KNOWN faces. Only those pairs are looked at, and what turns out to be next to them; empty: all. The function
-     * leaves those that meet. */
-    uint16_t *known;
+    /* Bits of the faces that bounded K at another time, or 0; NULL: nobody keeps them. They are of use without borders and for
+     * up to TL_FIELD_KNOWN faces. They must have been all, and must be forgotten when a corner of one block has come to lie in
+     * the other and on or beyond a face that is not among them. The function leaves those that bound K. */
+    uint64_t *bounding;
 } tl_field_faces;
 
-#define TL_FIELD_KNOWN 16
+#define TL_FIELD_KNOWN 64
 
 /* Memory that the functions below work in; zero at first. */
 typedef struct tl_field_room {
-    double *numbers;
-    size_t count;
+    struct tl_field_line *line;
+    uint16_t *number;
+    uint32_t count;
 } tl_field_room;
 
 /* Integrals over S and K, moments about the origin. Those marked * include the borders. */

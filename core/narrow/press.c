@@ -190,6 +190,14 @@ static double blend(const pair *of, const tl_field_sums *patch, double least, st
     return share;
 }
 
+/* The faces that bounded the common volume, or none where these may be others now. */
+static uint64_t bounding_of(const pair *of)
+{
+    const tl_region *r = of->region;
+    bool known = r->bounding && *r->bounding && !(of->shift > 0) && r->border_a + r->border_b == 0;
+    return known && tl_region_corners_agree(of->view, r) ? *r->bounding : 0;
+}
+
 bool tl_press_find(const tl_pair_view *view, const tl_region *region, double least, double shift,
                    uint32_t shifted, tl_narrow *room, tl_press *press)
 {
@@ -201,9 +209,12 @@ bool tl_press_find(const tl_pair_view *view, const tl_region *region, double lea
     if (!reserve(room, region->a + region->b + region->border_a + region->border_b, &p))
         return false;
     list_field(&p, &of);
-    p.faces.known = region->a + region->b <= TL_FIELD_KNOWN ? region->known : NULL;
+    uint64_t bounding = bounding_of(&of);
+    p.faces.bounding = &bounding;
     if (!tl_field_integrate(&p.faces, &room->field, &sums))
         return false;
+    if (region->bounding)
+        *region->bounding = bounding;
     double force = tl_v3_norm(sums.force);
     if (!(sums.deepest > TOUCHING * view->size) || !(force > 0) || !(sums.volume > 0) ||
         !in_both(&of, tl_v3_add(p.origin, sums.deepest_at), sums.deepest))
@@ -211,7 +222,7 @@ bool tl_press_find(const tl_pair_view *view, const tl_region *region, double lea
     stored field = with_least(&sums, least);
     if (region->flush && tl_region_tilt(view, region->flush_a, region->flush_b) < TL_FIELD_TILT) {
         list_patch(&p, &of);
-        p.faces.known = NULL;
+        p.faces.bounding = NULL;
         if (!tl_field_integrate(&p.faces, &room->field, &patch))
             return false;
         if (patch.energy > 0 && patch.volume > 0)

@@ -10,6 +10,7 @@
 #include "narrow/region.h"
 
 #include <stdlib.h>
+#include <string.h>
 #include <talus/plugin.h>
 
 /* Cosine of the angle, 15 degrees, within which two faces look at each other. Two of one block meet in a blunt edge. */
@@ -85,35 +86,53 @@ static void fill_columns(planes *a, planes *b, const tl_pair_view *view)
         fill(b, f, tl_v3(0, 0, 0), INFINITY);
 }
 
-/* How high a vertex lies over the planes of the other block: the lowest of a face's vertices in `row`. */
-TL_VECTORIZED static void lower(const planes *restrict q, tl_vec3 v, double *restrict row,
-                                double *restrict high)
+/* How high the vertices of a block lie over eight planes, from number g on, of the other block. */
+TL_VECTORIZED static void look_from(const planes *restrict q, size_t g, const tl_vec3 *vertex,
+                                    size_t count, double (*restrict height)[TL_LANES])
 {
-    const double *restrict x = q->x, *restrict y = q->y, *restrict z = q->z, *restrict c = q->c;
-    size_t count = padded(q->count);
+    const double *restrict x = q->x + g, *restrict y = q->y + g, *restrict z = q->z + g;
+    const double *restrict c = q->c + g;
+    double *restrict low = q->low + g, *restrict high = q->high + g;
+    for (size_t i = 0; i < count; i++) {
+        const tl_vec3 v = vertex[i];
 #pragma omp simd
-    for (size_t g = 0; g < count; g++) {
-        double h = x[g] * v.x + y[g] * v.y + z[g] * v.z - c[g];
-        row[g] = h < row[g] ? h : row[g];
-        high[g] = h > high[g] ? h : high[g];
+        for (size_t l = 0; l < TL_LANES; l++) {
+            double h = x[l] * v.x + y[l] * v.y + z[l] * v.z - c[l];
+            height[i][l] = h;
+            low[l] = h < low[l] ? h : low[l];
+            high[l] = h > high[l] ? h : high[l];
+        }
     }
 }
 
-/* Where the faces of p lie over the planes of q. `row` has room for the latter. */
-static void look_over(const planes *p, const planes *q, double *row)
+/* The largest height over one of the planes of a face's lowest vertex. */
+TL_VECTORIZED static void look_at(const tl_poly *poly, size_t faces,
+                                  const double (*restrict height)[TL_LANES],
+                                  double *restrict outside)
 {
-    size_t count = padded(q->count);
-    for (size_t f = 0; f < p->count; f++) {
-        for (size_t g = 0; g < count; g++)
-            row[g] = INFINITY;
-        for (uint32_t h = p->poly->start[f]; h < p->poly->start[f + 1]; h++)
-            lower(q, p->vertex[p->poly->loop[h]], row, q->high);
-        double most = -INFINITY;
-        for (size_t g = 0; g < q->count; g++) {
-            most = row[g] > most ? row[g] : most;
-            q->low[g] = row[g] < q->low[g] ? row[g] : q->low[g];
+    for (size_t f = 0; f < faces; f++) {
+        double low[TL_LANES], most = outside[f];
+        memcpy(low, height[poly->loop[poly->start[f]]], sizeof low);
+        for (uint32_t k = poly->start[f] + 1; k < poly->start[f + 1]; k++) {
+            const double *restrict h = height[poly->loop[k]];
+#pragma omp simd
+            for (size_t l = 0; l < TL_LANES; l++)
+                low[l] = h[l] < low[l] ? h[l] : low[l];
         }
-        p->outside[f] = most;
+        for (size_t l = 0; l < TL_LANES; l++)
+            most = low[l] > most ? low[l] : most;
+        outside[f] = most;
+    }
+}
+
+/* Where the faces of p lie over the planes of q. `height` has room for p's vertices. */
+static void look_over(const planes *p, const planes *q, double (*height)[TL_LANES])
+{
+    for (size_t f = 0; f < p->count; f++)
+        p->outside[f] = -INFINITY;
+    for (size_t g = 0; g < q->count; g += TL_LANES) {
+        look_from(q, g, p->vertex, p->poly->vertex_count, height);
+        look_at(p->poly, p->count, (const double(*)[TL_LANES])height, p->outside);
     }
 }
 
@@ -234,15 +253,16 @@ bool tl_region_find(const tl_pair_view *view, double margin, tl_narrow *room, tl
     planes b = {.poly = view->b, .vertex = view->vertex_b, .count = view->b->face_count};
     size_t rows_a = padded(a.count), rows_b = padded(b.count);
     *out = (tl_region){0};
-    if (!reserve(room, 7 * (rows_a + rows_b) + (rows_a > rows_b ? rows_a : rows_b),
-                 a.count + b.count))
+    uint32_t vertices = view->a->vertex_count > view->b->vertex_count ? view->a->vertex_count
+                                                                      : view->b->vertex_count;
+    if (!reserve(room, 7 * (rows_a + rows_b) + TL_LANES * (size_t)vertices, a.count + b.count))
         return false;
     set_columns(&a, room->plane);
     set_columns(&b, room->plane + 7 * rows_a);
-    double *row = room->plane + 7 * (rows_a + rows_b);
+    double(*height)[TL_LANES] = (double(*)[TL_LANES])(room->plane + 7 * (rows_a + rows_b));
     fill_columns(&a, &b, view);
-    look_over(&a, &b, row);
-    look_over(&b, &a, row);
+    look_over(&a, &b, height);
+    look_over(&b, &a, height);
     find_gap(&a, &b, out);
     uint16_t *face = room->face;
     bool seams = view->a->seams || view->b->seams;
@@ -271,6 +291,65 @@ void tl_region_choose_flush(const tl_pair_view *view, tl_region *out)
                 out->flush_b = j;
             }
         }
+}
+
+/* The listed faces of one block: those that bound the common volume, from the left, and the others, from the right. */
+typedef struct sides {
+    tl_plane plane[TL_FIELD_KNOWN];
+    uint16_t face[TL_FIELD_KNOWN];
+    uint32_t bounding, other;
+} sides;
+
+static void split(const tl_pair_view *view, const tl_region *r, bool of_b, sides *s)
+{
+    uint32_t begin = of_b ? r->a : 0, end = begin + (of_b ? r->b : r->a);
+    s->bounding = 0;
+    s->other = TL_FIELD_KNOWN;
+    for (uint32_t k = begin; k < end; k++) {
+        uint32_t at = *r->bounding >> k & 1 ? s->bounding++ : --s->other;
+        uint16_t f = r->face[k];
+        s->face[at] = f;
+        s->plane[at] = of_b ? view->b->plane[f] : view->a->plane[f];
+        if (of_b) {
+            s->plane[at].normal = view->normal_b[f];
+            s->plane[at].offset += tl_v3_dot(view->normal_b[f], view->shift);
+        }
+    }
+}
+
+static bool lies_within(const sides *s, tl_vec3 v)
+{
+    for (uint32_t k = 0; k < s->bounding; k++)
+        if (tl_v3_dot(s->plane[k].normal, v) > s->plane[k].offset)
+            return false;
+    return true;
+}
+
+/* Whether the corners of a block, of sides `own`, that lie in another, of sides `s`, lie on or beyond none of the others. */
+static bool agree(const tl_poly *p, const tl_vec3 *vertex, const sides *own, const sides *s)
+{
+    for (uint32_t m = own->other; m < TL_FIELD_KNOWN; m++)
+        for (uint32_t h = p->start[own->face[m]]; h < p->start[own->face[m] + 1u]; h++)
+            if (lies_within(s, vertex[p->loop[h]]))
+                return false;
+    for (uint32_t i = 0; i < p->vertex_count && s->other < TL_FIELD_KNOWN; i++) {
+        if (!lies_within(s, vertex[i]))
+            continue;
+        for (uint32_t m = s->other; m < TL_FIELD_KNOWN; m++)
+            if (tl_v3_dot(s->plane[m].normal, vertex[i]) > s->plane[m].offset)
+                return false;
+    }
+    return true;
+}
+
+bool tl_region_corners_agree(const tl_pair_view *view, const tl_region *region)
+{
+    sides a, b;
+    if (region->a > TL_FIELD_KNOWN || region->b > TL_FIELD_KNOWN)
+        return false;
+    split(view, region, false, &a);
+    split(view, region, true, &b);
+    return agree(view->a, view->a->vertex, &a, &b) && agree(view->b, view->vertex_b, &b, &a);
 }
 
 double tl_region_tilt(const tl_pair_view *view, uint32_t face_a, uint32_t face_b)

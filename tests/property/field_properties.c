@@ -455,50 +455,6 @@ TEST(a_far_origin_moves_nothing)
     CHECK(cases > CASES(300));
 }
 
-/* A pair that wanders about, by less or more than its overlap: which cells met in the last place is a help to find those that
- * meet in the next, and changes nothing. */
-TEST(cells_that_met_before_change_nothing)
-{
-    int cases = 0, changes = 0;
-    for (uint64_t k = 1; k <= CASES(600); k++) {
-        uint64_t seed = k + 30000;
-        static scene s;
-        uint16_t known[TL_FIELD_KNOWN] = {0}, before[TL_FIELD_KNOWN];
-        double depth = pow(10, scene_between(&seed, -4, log10(0.3)));
-        make_scene(&s, random_kind(&seed), random_kind(&seed), depth, k % 8 == 0, &seed);
-        list_scene(&s);
-        tl_field_faces kept = s.planes.faces; /* these stay, whatever else comes near */
-        for (int step = 0; step < 20; step++) {
-            tl_field_sums with, without;
-            if (kept.a + kept.b > TL_FIELD_KNOWN || s.planes.faces.a != kept.a ||
-                s.planes.faces.b != kept.b)
-                break;
-            memcpy(before, known, sizeof before);
-            s.planes.faces.known = known;
-            CHECK(tl_field_integrate(&s.planes.faces, &s.room, &with));
-            s.planes.faces.known = NULL;
-            CHECK(tl_field_integrate(&s.planes.faces, &s.room, &without));
-            double force = without.deepest > 0 ? without.energy / without.deepest : 0;
-            CHECK_NEAR(scene_apart(with.force, without.force), 0, 1e-9 * force);
-            CHECK_NEAR(scene_apart(with.moment, without.moment), 0, 1e-9 * force);
-            CHECK_NEAR(with.energy, without.energy, 1e-9 * without.energy);
-            CHECK_NEAR(with.volume, without.volume, 1e-9 * without.volume);
-            cases += without.deepest > 0;
-            changes += memcmp(before, known, sizeof before) != 0;
-            double way = depth * s.pair.view.size * pow(10, scene_between(&seed, -2, 0));
-            s.pair.shift = tl_v3_madd(s.pair.shift, way, scene_direction(&seed));
-            s.pair.turn = tl_q_unit(
-                tl_q_mul(scene_turn(scene_direction(&seed), way / s.pair.view.size), s.pair.turn));
-            list_scene(&s);
-        }
-        free_scene(&s);
-    }
-    CHECK(cases > CASES(2000));
-    CHECK(changes > CASES(500));
-    if (getenv("TALUS_TEST_VERBOSE"))
-        printf("  %d places, %d times other cells met\n", cases, changes);
-}
-
 /* Two flush cubes: U = kn A o^2 / 2 and F = kn A o but for what their borders take, of the order of o over the side. */
 TEST(flush_faces_have_the_force_of_springs)
 {
@@ -541,4 +497,4 @@ TEST_MAIN(RUN(force_and_moment_are_the_gradient_of_the_energy), RUN(borders_do_w
           RUN(what_passes_through_a_seam_stays_in_the_body),
           RUN(volume_is_that_of_what_is_left_by_cuts), RUN(energy_is_that_of_a_sum),
           RUN(flush_faces_have_the_force_of_springs), RUN(blocks_that_only_touch_have_no_force),
-          RUN(a_far_origin_moves_nothing), RUN(cells_that_met_before_change_nothing))
+          RUN(a_far_origin_moves_nothing))

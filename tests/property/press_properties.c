@@ -163,6 +163,59 @@ TEST(faces_left_out_do_not_matter)
     CHECK(cases > CASES(1000));
 }
 
+/* Moves a pair by less than `most`, turns about B's origin counted at its size. */
+static double wander(scene *s, double most, uint64_t *seed)
+{
+    double way = most * pow(10, scene_between(seed, -3, 0)), size = s->pair.view.size;
+    tl_quat turn = scene_turn(scene_direction(seed), 0.25 * way / size);
+    s->pair.turn = tl_q_unit(tl_q_mul(turn, s->pair.turn));
+    s->pair.shift = tl_v3_madd(s->pair.shift, 0.5 * way, scene_direction(seed));
+    return way;
+}
+
+/* A pair that wanders about while its list holds, by less or more than its overlap, and comes apart at times: which faces bound
+ * the common volume in the last place is a help in the next, and changes nothing. */
+TEST(faces_that_bounded_before_change_nothing)
+{
+    int cases = 0, changes = 0, forgotten = 0;
+    for (uint64_t k = 1; k <= CASES(1000); k++) {
+        uint64_t seed = k + 40000, bounding = 0;
+        static scene s;
+        s = (scene){.pair = scene_pair_of(
+                        shape_of(&seed, (int)(k % 5)), shape_of(&seed, (int)(k / 5 % 5)),
+                        scene_any_turn(&seed),
+                        tl_v3_scale(scene_between(&seed, 0.2, 1.2), scene_direction(&seed)))};
+        const tl_pair_view *view = scene_place(&s.pair);
+        tl_region region;
+        tl_press with, without;
+        double left = (k % 2 ? 0.02 : 0.3) * view->size;
+        CHECK(tl_region_find(view, left, &s.pair.room, &region));
+        for (double way = 0; left > 0; way = wander(&s, 0.2 * view->size, &seed), left -= way) {
+            uint64_t before = bounding;
+            view = scene_place(&s.pair);
+            region.bounding = NULL;
+            CHECK(tl_press_find(view, &region, 0, 0, 0, &s.pair.room, &without));
+            region.bounding = &bounding;
+            forgotten += bounding && !tl_region_corners_agree(view, &region);
+            CHECK(tl_press_find(view, &region, 0, 0, 0, &s.pair.room, &with));
+            cases += before && without.deepest > 0;
+            changes += before && before != bounding;
+            double force = tl_v3_norm(without.force);
+            double pressed = force > 0 ? fmax(force, without.energy / without.deepest) : 0;
+            CHECK_NEAR(scene_apart(with.force, without.force), 0, 1e-9 * pressed);
+            CHECK_NEAR(scene_apart(with.moment, without.moment), 0, 1e-9 * pressed);
+            CHECK_NEAR(with.stiffness, without.stiffness, 1e-9 * without.stiffness);
+            CHECK_NEAR(with.energy, without.energy, 1e-9 * without.energy);
+            CHECK_NEAR(with.deepest, without.deepest, 1e-9 * without.deepest);
+        }
+        scene_pair_free(&s.pair);
+    }
+    CHECK(cases > CASES(2500));
+    CHECK(changes > CASES(100));
+    CHECK(forgotten > CASES(100));
+    printf("  %d places, other faces %d times, by a corner %d times\n", cases, changes, forgotten);
+}
+
 /* A block whose lower side is folded along y by an angle, its lowest edge at the origin. */
 static tl_poly *folded(double degrees)
 {
@@ -217,4 +270,5 @@ TEST(faces_that_become_flush_are_found_in_an_old_list)
 }
 
 TEST_MAIN(RUN(force_is_the_gradient_through_the_blend), RUN(faces_left_out_do_not_matter),
+          RUN(faces_that_bounded_before_change_nothing),
           RUN(faces_that_become_flush_are_found_in_an_old_list))

@@ -1,0 +1,241 @@
+/* field_lanes.c - eight polygons of a pressure field side by side, one in a lane.
+ *
+ * Every polygon lies in a plane and is bounded by lines, one for each other plane. No polygon is ever clipped: a line bounds
+ * the polygon between the crossings with all other lines, and the polygon's integrals are sums over its lines (Green's
+ * theorem). So there are no corners to be kept, and no branches.
+ *
+ * In a polygon's plane: axes t and s, origin where the plane is nearest to the frame's. A line is g . x <= c with a
+ * unit normal g, its own points are c g + r (-g_s, g_t) with the place r along it. Integrals are about a corner of the
+ * polygon. */
+#include "narrow/field_lanes.h"
+
+#include <math.h>
+#include <string.h>
+
+#define LANES TL_LANES
+
+/* Sine of the angle between two lines below which they do not cross: the error of a crossing's place, a rounding over
+ * the sine, then becomes as large as what the wrong one of two such lines encloses. */
+#define PARALLEL 1e-8
+/* Length of a face's normal, within the polygon's plane, below which the face is parallel to the plane. */
+#define LEVEL 1e-9
+/* Place beyond the end of any line. */
+#define FAR 1e290
+/* Length of a line that has no end: where it is crossed at all, by parallel lines far away. */
+#define ENDLESS 1e145
+
+/* ---------------------------------------------------------------- lines ------------------ */
+
+/* Axes of the planes without a branch (Duff and others, "Building an orthonormal basis, revisited", 2017), and the
+ * depth in them. */
+TL_VECTORIZED static void place_axes(tl_field_lanes *restrict p)
+{
+    double *restrict n0 = p->n[0], *restrict n1 = p->n[1], *restrict n2 = p->n[2];
+#pragma omp simd
+    for (unsigned l = 0; l < LANES; l++) {
+        double sign = n2[l] >= 0 ? 1.0 : -1.0, a = -1 / (sign + n2[l]), b = n0[l] * n1[l] * a;
+        p->t[0][l] = 1 + sign * n0[l] * n0[l] * a;
+        p->t[1][l] = sign * b;
+        p->t[2][l] = -sign * n0[l];
+        p->s[0][l] = b;
+        p->s[1][l] = sign + n1[l] * n1[l] * a;
+        p->s[2][l] = -n1[l];
+        double x = p->face_n[0][l], y = p->face_n[1][l], z = p->face_n[2][l];
+        p->d0[l] = p->face_c[l] - p->h[l] * (x * n0[l] + y * n1[l] + z * n2[l]);
+        p->dt[l] = -(x * p->t[0][l] + y * p->t[1][l] + z * p->t[2][l]);
+        p->ds[l] = -(x * p->s[0][l] + y * p->s[1][l] + z * p->s[2][l]);
+    }
+}
+
+/* The line in which d_h - k d is zero, for a plane h; k is 1 for a face, and 0 for a border. */
+TL_VECTORIZED static void draw_line(tl_field_lanes *restrict p, double number,
+                                    const double plane[4], double k, double one_plane,
+                                    tl_field_line *restrict line)
+{
+    const double nx = plane[0], ny = plane[1], nz = plane[2], offset = plane[3];
+#pragma omp simd
+    for (unsigned l = 0; l < LANES; l++) {
+        double x = nx - k * p->face_n[0][l], y = ny - k * p->face_n[1][l];
+        double z = nz - k * p->face_n[2][l], o = offset - k * p->face_c[l];
+        double t = x * p->t[0][l] + y * p->t[1][l] + z * p->t[2][l];
+        double s = x * p->s[0][l] + y * p->s[1][l] + z * p->s[2][l];
+        o -= p->h[l] * (x * p->n[0][l] + y * p->n[1][l] + z * p->n[2][l]);
+        double length = sqrt(t * t + s * s);
+        double none = ((p->one[l] == number) | (p->other[l] == number)) ? 1.0 : 0.0;
+        double level = length < LEVEL ? 1.0 : 0.0;
+        double part = o > one_plane ? 1.0 : 0.5;
+        part = o < -one_plane ? 0.0 : part;
+        double kept = none > level ? 1.0 : level > 0 ? part : 1.0;
+        kept = none > 0 ? 1.0 : kept;
+        p->share[l] *= kept;
+        double gone = none + level, per = 1 / length;
+        line->gt[l] = gone > 0 ? 0.0 : t * per;
+        line->gs[l] = gone > 0 ? 0.0 : s * per;
+        line->c[l] = gone > 0 ? FAR : o * per;
+        line->from[l] = -FAR;
+        line->to[l] = FAR;
+    }
+}
+
+/* The line d = 0. A plane parallel to its face has d > 0 or d < 0 everywhere. */
+TL_VECTORIZED static void draw_own_line(tl_field_lanes *restrict p, tl_field_line *restrict line)
+{
+#pragma omp simd
+    for (unsigned l = 0; l < LANES; l++) {
+        double length = sqrt(p->dt[l] * p->dt[l] + p->ds[l] * p->ds[l]), per = 1 / length;
+        double level = length < LEVEL ? 1.0 : 0.0;
+        p->share[l] *= level > 0 ? (p->d0[l] > 0 ? 1.0 : 0.0) : 1.0;
+        line->gt[l] = level > 0 ? 0.0 : -p->dt[l] * per;
+        line->gs[l] = level > 0 ? 0.0 : -p->ds[l] * per;
+        line->c[l] = level > 0 ? FAR : p->d0[l] * per;
+        line->from[l] = -FAR;
+        line->to[l] = FAR;
+    }
+}
+
+/* Bounds each of two lines by the other. Parallel lines cross far away, on the side that leaves nothing of one that the
+ * other excludes; of two lines in one place each bounds a half. */
+TL_VECTORIZED static void cross_lines(tl_field_line *line, size_t count)
+{
+    for (size_t a = 0; a < count; a++) {
+        const tl_field_line *restrict i = &line[a];
+        double from[LANES], to[LANES];
+        memcpy(from, i->from, sizeof from);
+        memcpy(to, i->to, sizeof to);
+        for (size_t b = a + 1; b < count; b++) {
+            tl_field_line *restrict j = &line[b];
+#pragma omp simd
+            for (unsigned l = 0; l < LANES; l++) {
+                double sine = i->gt[l] * j->gs[l] - i->gs[l] * j->gt[l];
+                double cosine = i->gt[l] * j->gt[l] + i->gs[l] * j->gs[l];
+                double least = sine < 0 ? -1 / FAR : 1 / FAR, whole = cosine < 0 ? -1.0 : 1.0;
+                bool level = fabs(sine) < PARALLEL;
+                double per = 1 / (level ? least : sine);
+                cosine = level ? whole : cosine; /* so that both agree which is the nearer */
+                double ri = (j->c[l] - cosine * i->c[l]) * per;
+                double rj = (cosine * j->c[l] - i->c[l]) * per;
+                double to_i = per > 0 ? ri : FAR, from_i = per > 0 ? -FAR : ri;
+                double to_j = per > 0 ? FAR : rj, from_j = per > 0 ? rj : -FAR;
+                to[l] = to[l] < to_i ? to[l] : to_i;
+                from[l] = from[l] > from_i ? from[l] : from_i;
+                j->to[l] = j->to[l] < to_j ? j->to[l] : to_j;
+                j->from[l] = j->from[l] > from_j ? j->from[l] : from_j;
+            }
+        }
+        memcpy(line[a].from, from, sizeof from);
+        memcpy(line[a].to, to, sizeof to);
+    }
+}
+
+size_t tl_field_draw(tl_field_lanes *p, const tl_field_list *planes, bool flat, double one_plane,
+                     tl_field_line *line)
+{
+    size_t count = 0;
+    place_axes(p);
+    if (!flat)
+        draw_own_line(p, &line[count++]);
+    for (uint32_t m = 0; m < planes->count; m++) {
+        uint32_t i = planes->number[m];
+        const double plane[4] = {planes->n[0][i], planes->n[1][i], planes->n[2][i], planes->c[i]};
+        draw_line(p, i, plane, !flat && i < planes->faces, one_plane, &line[count++]);
+    }
+    cross_lines(line, count);
+    return count;
+}
+
+/* How many of the corners at one end of the lines d = 0 lie beyond a plane. */
+TL_VECTORIZED static double count_beyond(const tl_field_lanes *restrict p, const double plane[4],
+                                         const tl_field_line *restrict own,
+                                         const double *restrict end)
+{
+    const double nx = plane[0], ny = plane[1], nz = plane[2], offset = plane[3];
+    double count = 0;
+#pragma omp simd reduction(+ : count)
+    for (unsigned l = 0; l < LANES; l++) {
+        bool bounds = (own->to[l] > own->from[l]) & (own->c[l] < FAR) & (p->share[l] > 0);
+        double t = own->c[l] * own->gt[l] - end[l] * own->gs[l];
+        double s = own->c[l] * own->gs[l] + end[l] * own->gt[l];
+        double x = p->h[l] * p->n[0][l] + t * p->t[0][l] + s * p->s[0][l];
+        double y = p->h[l] * p->n[1][l] + t * p->t[1][l] + s * p->s[1][l];
+        double z = p->h[l] * p->n[2][l] + t * p->t[2][l] + s * p->s[2][l];
+        bool within = x * nx + y * ny + z * nz <= offset;
+        count += (bounds & !within) ? 1.0 : 0.0;
+    }
+    return count;
+}
+
+bool tl_field_corner_beyond(const tl_field_lanes *p, const tl_field_list *planes,
+                            const tl_field_line *own)
+{
+    for (uint32_t m = 0; m < planes->count; m++) {
+        uint32_t i = planes->number[m];
+        const double plane[4] = {planes->n[0][i], planes->n[1][i], planes->n[2][i], planes->c[i]};
+        if (count_beyond(p, plane, own, own->from) + count_beyond(p, plane, own, own->to) > 0)
+            return true;
+    }
+    return false;
+}
+
+/* ---------------------------------------------------------------- integrals -------------- */
+
+/* Takes a corner of each polygon for the origin of its plane: far from it nothing would be left of small ones but roundings. */
+TL_VECTORIZED static void place_origin(tl_field_lanes *restrict p,
+                                       const tl_field_line *restrict line, size_t count)
+{
+    for (const tl_field_line *restrict i = line; i < line + count; i++) {
+#pragma omp simd
+        for (unsigned l = 0; l < LANES; l++) {
+            bool bounds = (i->to[l] > i->from[l]) & (i->c[l] < FAR) & (p->share[l] > 0);
+            double f = bounds ? i->from[l] : 0.0, o = bounds ? i->c[l] : 0.0;
+            p->open[l] = (bounds & (i->to[l] - i->from[l] > ENDLESS)) ? 1.0 : p->open[l];
+            p->origin_t[l] = bounds ? o * i->gt[l] - f * i->gs[l] : p->origin_t[l];
+            p->origin_s[l] = bounds ? o * i->gs[l] + f * i->gt[l] : p->origin_s[l];
+        }
+    }
+#pragma omp simd
+    for (unsigned l = 0; l < LANES; l++)
+        p->d0[l] += p->dt[l] * p->origin_t[l] + p->ds[l] * p->origin_s[l];
+}
+
+/* Sums the triangles between the origin and each line's part. */
+TL_VECTORIZED static void add_lines(tl_field_lanes *restrict p, const tl_field_line *restrict line,
+                                    size_t count)
+{
+    for (const tl_field_line *restrict i = line; i < line + count; i++) {
+#pragma omp simd
+        for (unsigned l = 0; l < LANES; l++) {
+            bool bounds = (i->to[l] > i->from[l]) & (i->c[l] < FAR) & (p->share[l] > 0);
+            double along = i->gt[l] * p->origin_s[l] - i->gs[l] * p->origin_t[l];
+            double off = i->c[l] - (i->gt[l] * p->origin_t[l] + i->gs[l] * p->origin_s[l]);
+            double f = bounds ? i->from[l] - along : 0.0, e = bounds ? i->to[l] - along : 0.0;
+            double o = bounds ? off : 0.0;
+            double w = 0.5 * o * (e - f);
+            double pt = o * i->gt[l] - f * i->gs[l], ps = o * i->gs[l] + f * i->gt[l];
+            double qt = o * i->gt[l] - e * i->gs[l], qs = o * i->gs[l] + e * i->gt[l];
+            p->area[l] += w;
+            p->it[l] += w * (pt + qt) * (1.0 / 3);
+            p->is[l] += w * (ps + qs) * (1.0 / 3);
+            p->itt[l] += w * (pt * pt + pt * qt + qt * qt) * (1.0 / 6);
+            p->iss[l] += w * (ps * ps + ps * qs + qs * qs) * (1.0 / 6);
+            p->its[l] += w * (2 * (pt * ps + qt * qs) + pt * qs + qt * ps) * (1.0 / 12);
+            double dp = p->d0[l] + p->dt[l] * pt + p->ds[l] * ps;
+            double dq = p->d0[l] + p->dt[l] * qt + p->ds[l] * qs;
+            /* by the divergence of d^2 grad d / 2 and d^3 grad d / 3: nothing cancels in thin slivers far from the origin */
+            double up = (i->gt[l] * p->dt[l] + i->gs[l] * p->ds[l]) * (e - f);
+            p->d1[l] += up * (dp * dp + dp * dq + dq * dq) * (1.0 / 6);
+            p->d2[l] += up * (dp * dp + dq * dq) * (dp + dq) * (1.0 / 12);
+            double d = dp > dq ? dp : dq, at_t = dp > dq ? pt : qt, at_s = dp > dq ? ps : qs;
+            bool more = bounds & (d > p->deepest[l]);
+            p->deepest[l] = more ? d : p->deepest[l];
+            p->deepest_t[l] = more ? at_t : p->deepest_t[l];
+            p->deepest_s[l] = more ? at_s : p->deepest_s[l];
+        }
+    }
+}
+
+void tl_field_sum_lines(tl_field_lanes *p, const tl_field_line *line, size_t count)
+{
+    memset(p->origin_t, 0, sizeof *p - offsetof(tl_field_lanes, origin_t));
+    place_origin(p, line, count);
+    add_lines(p, line, count);
+}
