@@ -106,9 +106,9 @@ TL_VECTORIZED static void look_from(const planes *restrict q, size_t g, const tl
 }
 
 /* The largest height over one of the planes of a face's lowest vertex. */
-TL_VECTORIZED static void look_at(const tl_poly *poly, size_t faces,
-                                  const double (*restrict height)[TL_LANES],
-                                  double *restrict outside)
+TL_VECTORIZED static void find_outside(const tl_poly *poly, size_t faces,
+                                       const double (*restrict height)[TL_LANES],
+                                       double *restrict outside)
 {
     for (size_t f = 0; f < faces; f++) {
         double low[TL_LANES], most = outside[f];
@@ -132,7 +132,7 @@ static void look_over(const planes *p, const planes *q, double (*height)[TL_LANE
         p->outside[f] = -INFINITY;
     for (size_t g = 0; g < q->count; g += TL_LANES) {
         look_from(q, g, p->vertex, p->poly->vertex_count, height);
-        look_at(p->poly, p->count, (const double(*)[TL_LANES])height, p->outside);
+        find_outside(p->poly, p->count, (const double(*)[TL_LANES])height, p->outside);
     }
 }
 
