@@ -17,18 +17,11 @@
 #include "contact/points.h"
 #include "contact/shear.h"
 #include "narrow/point2.h"
+#include "narrow/view.h"
 
 #include <float.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* Gap from which a new contact was made by walls coming near, relative to the smaller block's size: far
- * above the rounding of blocks placed in contact, far below the contact tolerance. */
-#define APART 1e-6
-
-/* A polygon whose moments of area are nearer to singular than this gets no linear correction: its points
- * lie on a line. */
-#define SINGULAR 1e-12
 
 /* Fields that are scalars per point: initial normal stress, reference overlap. */
 enum { FIELD_N0, FIELD_REFERENCE, FIELD_COUNT };
@@ -155,11 +148,11 @@ static double bounded(double value, double reach, double largest)
 }
 
 /* Whether points span a plane, by the second moments of their areas about their centre: det of the moments, or 0 when
- * they lie within `place` of it or along a line, where slopes would be quotients of rounding. */
+ * they lie within about `place` of a line through it, where slopes would be quotients of rounding. */
 static double spanned(double i11, double i12, double i22, double area, double place)
 {
     double sum = i11 + i22, det = i11 * i22 - i12 * i12;
-    return sum > area * place * place && det > SINGULAR * sum * sum ? det : 0;
+    return det > area * place * place * sum ? det : 0;
 }
 
 /* How far points reach out from their centre. */
@@ -395,7 +388,7 @@ static void write_points(tl_model *m, uint32_t c, const tl_manifold *g, const ol
     double size = fmin(m->blocks.size[contacts->a[c]], m->blocks.size[contacts->b[c]]);
     for (size_t k = 0; k < g->point_count && old_count == 0; k++) {
         size_t i = tl_point_row(contacts, c, k);
-        p->flags[i] = lanes->closure[k] < -APART * size ? TL_POINT_APART : 0;
+        p->flags[i] = lanes->closure[k] < -TL_STILL * size ? TL_POINT_APART : 0;
     }
     for (size_t k = 0; k < g->point_count && old_count; k++) {
         size_t i = tl_point_row(contacts, c, k);

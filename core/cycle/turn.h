@@ -6,14 +6,11 @@
 #define TL_CYCLE_TURN_H
 
 #include "base/inline.h"
+#include "base/series.h"
 
 #include <math.h>
 #include <stdbool.h>
 #include <talus/vmath.h>
-
-/* Half angles below which sine and cosine are taken from their series, whose next term is then below
- * rounding: the same bits with any mathematics library, and faster. */
-#define TL_SERIES_HALF_ANGLE 0.05
 
 /* Cosine and sine of half an angle. */
 typedef struct tl_half_turn {

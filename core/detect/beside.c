@@ -8,13 +8,9 @@
  * corners would carry more than the area in common does. */
 #include "detect/beside.h"
 
-#include <talus/vmath.h>
+#include "narrow/press.h"
 
-/* cos of 0.15 degrees, the tilt up to which both count as flush: a turn that tilts neither by more tilts no face by
- * more than 2.6 times that, which is less than FLUSH_NONE in manifold.c. */
-#define FLUSH 0.99999657307
-/* Largest cosine between the two faces' normals. */
-#define CROSSWISE 0.7
+#include <talus/vmath.h>
 
 /* Overlap along both of two directions that may go unseen, relative to the size. The energy of it, kn u^3 a metre, is a
  * millionth of what a face stores that overlaps by as much as 1e-3. */
@@ -22,6 +18,19 @@
 
 /* Product of the blocks' numbers of faces up to which they may be of a lattice: others are hardly ever flush. */
 #define FEW 400
+
+/* Whether two faces look at each other with a tilt at which they may still be a patch's. */
+static bool are_flush(tl_vec3 n, tl_vec3 other)
+{
+    return 1 + tl_v3_dot(n, other) <= 0.5 * TL_FIELD_TILT * TL_FIELD_TILT;
+}
+
+/* Whether one direction lies more across another than along it: at 45 degrees or more. */
+static bool is_across(tl_vec3 n, tl_vec3 other)
+{
+    double c = tl_v3_dot(n, other);
+    return 2 * c * c <= 1;
+}
 
 /* A face of A or B as a number: see tl_pair. */
 static uint32_t face_number(bool of_b, uint32_t face)
@@ -52,11 +61,11 @@ static sight look_from(const tl_pair_view *view, uint32_t number)
     double shift = tl_v3_dot(out.n, view->shift);
     out.gap = low + (of_b ? -shift : shift) - plane.offset;
     for (uint32_t f = 0; f < other->face_count && !own->covered[number >> 1] && !out.flush; f++)
-        out.flush = tl_v3_dot(n, other->plane[f].normal) <= -FLUSH && !other->covered[f];
+        out.flush = are_flush(n, other->plane[f].normal) && !other->covered[f];
     return out;
 }
 
-/* The flush face with the largest gap that is not nearly parallel to `than`. */
+/* The flush face with the largest gap that is across `than`. */
 static bool widest(const tl_pair_view *view, tl_vec3 than, uint32_t *number, sight *best)
 {
     best->gap = -INFINITY;
@@ -64,7 +73,7 @@ static bool widest(const tl_pair_view *view, tl_vec3 than, uint32_t *number, sig
         uint32_t count = (of_b ? view->b : view->a)->face_count;
         for (uint32_t f = 0; f < count; f++) {
             sight one = look_from(view, face_number(of_b, f));
-            if (one.gap > best->gap && one.flush && fabs(tl_v3_dot(one.n, than)) <= CROSSWISE) {
+            if (one.gap > best->gap && one.flush && is_across(one.n, than)) {
                 *best = one;
                 *number = face_number(of_b, f);
             }

@@ -1,10 +1,10 @@
 /* broad.c - the broad phase: a uniform grid that turns bounds into candidate pairs.
  *
- * Cells are 1.5 times the median extent. A block is entered in every cell its bounds overlap; two
- * blocks that share several cells are reported once, from the cell that holds the low corner of their
- * common bounds. Blocks larger than LARGE_CELLS cells are not entered: they look through the cells
- * they overlap. Bounds are grown by `reach`, so the list holds until some body has moved that far, and
- * by half of the block's own contact tolerance: a pair's is that of its smaller block, so a huge block
+ * Cells are as large as the median extent, or so much larger that there are no more cells than blocks: a scattered
+ * model needs no huge grid. A block is entered in every cell its bounds overlap; blocks lie beside each other, so that
+ * those of all sizes come to a few entries a cell. Two blocks that share several cells are reported once, from the cell
+ * that holds the low corner of their common bounds. Bounds are grown by `reach`, so the list holds until some body has
+ * moved that far, and by half of the block's own contact tolerance: a pair's is that of its smaller block, so a huge block
  * must not make the small ones neighbours of each other. */
 #include "detect/broad.h"
 
@@ -13,18 +13,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define CELL_EXTENTS 1.5  /* cell size over the median extent */
-#define LARGE_CELLS 6     /* cells along one axis from which a block is large */
-#define SKIN_EXTENTS 0.1  /* skin over the median extent */
-#define CELLS_PER_BLOCK 8 /* most cells a block, so that a scattered model needs no huge grid */
+#define SKIN_EXTENTS 0.1 /* skin over the median extent */
 
 /* What a list of pairs is made with: nothing of it is kept. */
 struct tl_broad {
     tl_bounds *bounds; /* [blocks] grown */
     size_t block_room;
     double *extent;
-    uint32_t *large;
-    size_t large_count;
     uint32_t *cell_start, *entries;
     size_t cell_room, entry_room;
     tl_pair *next; /* the list being made */
@@ -42,7 +37,6 @@ static void release(struct tl_broad *g)
 {
     free(g->bounds);
     free(g->extent);
-    free(g->large);
     free(g->cell_start);
     free(g->entries);
     free(g->next);
@@ -50,10 +44,9 @@ static void release(struct tl_broad *g)
 
 static bool reserve_blocks(struct tl_broad *g, size_t count)
 {
-    size_t a = g->block_room, b = a, c = a;
+    size_t a = g->block_room, b = a;
     if (!tl_grow(&g->bounds, &a, count, sizeof *g->bounds) ||
-        !tl_grow(&g->extent, &b, count, sizeof *g->extent) ||
-        !tl_grow(&g->large, &c, count, sizeof *g->large))
+        !tl_grow(&g->extent, &b, count, sizeof *g->extent))
         return false;
     g->block_room = a;
     return true;
@@ -100,12 +93,6 @@ static cell_range range_of(const struct tl_broad *g, const tl_bounds *b)
     return r;
 }
 
-static bool is_large(const cell_range *r)
-{
-    return r->hi[0] - r->lo[0] >= LARGE_CELLS || r->hi[1] - r->lo[1] >= LARGE_CELLS ||
-           r->hi[2] - r->lo[2] >= LARGE_CELLS;
-}
-
 static size_t cell_index(const struct tl_broad *g, uint32_t x, uint32_t y, uint32_t z)
 {
     return ((size_t)z * g->n[1] + y) * g->n[0] + x;
@@ -143,12 +130,10 @@ static tl_status measure(tl_model *m, struct tl_broad *g)
         return tl_fail(&m->error, TL_E_NUMERIC,
                        "the blocks reach over %g, %g, %g m, which is more than numbers can tell",
                        span.x, span.y, span.z);
-    g->cell = CELL_EXTENTS * median;
-    double most = (double)CELLS_PER_BLOCK * (double)count + 64;
-    for (;; g->cell *= 1.25) {
+    for (g->cell = median;; g->cell *= 1.25) {
         double nx = floor(span.x / g->cell) + 1, ny = floor(span.y / g->cell) + 1;
         double nz = floor(span.z / g->cell) + 1;
-        if (nx * ny * nz > most)
+        if (nx * ny * nz > (double)count + 1)
             continue;
         g->n[0] = (uint32_t)nx;
         g->n[1] = (uint32_t)ny;
@@ -157,7 +142,7 @@ static tl_status measure(tl_model *m, struct tl_broad *g)
     }
 }
 
-/* Enters the blocks that are not large into their cells (a counting sort; rows ascend in a cell). */
+/* Enters the blocks into their cells (a counting sort; rows ascend in a cell). */
 static tl_status fill(tl_model *m, struct tl_broad *g)
 {
     size_t cells = (size_t)g->n[0] * g->n[1] * g->n[2], total = 0;
@@ -165,15 +150,9 @@ static tl_status fill(tl_model *m, struct tl_broad *g)
         return tl_fail_memory(&m->error);
     memset(g->cell_start, 0, (cells + 2) * sizeof *g->cell_start);
     uint32_t *start = g->cell_start + 1; /* shifted: filling moves each start to its end */
-    g->large_count = 0;
     for (int pass = 0; pass < 2; pass++) {
         for (uint32_t row = 0; row < m->blocks.table.rows; row++) {
             cell_range r = range_of(g, &g->bounds[row]);
-            if (is_large(&r)) {
-                if (pass == 0)
-                    g->large[g->large_count++] = row;
-                continue;
-            }
             for (uint32_t z = r.lo[2]; z <= r.hi[2]; z++)
                 for (uint32_t y = r.lo[1]; y <= r.hi[1]; y++)
                     for (uint32_t x = r.lo[0]; x <= r.hi[0]; x++) {
@@ -211,9 +190,8 @@ static bool push(struct tl_broad *g, size_t *count, uint32_t a, uint32_t b)
     return true;
 }
 
-/* Pairs of `row` with blocks entered in the cells its bounds overlap; large blocks take every one,
- * others only rows above their own. */
-static bool pairs_of(const tl_model *m, struct tl_broad *g, uint32_t row, bool large, size_t *count)
+/* Pairs of `row` with blocks of rows above its own, entered in the cells its bounds overlap. */
+static bool pairs_of(const tl_model *m, struct tl_broad *g, uint32_t row, size_t *count)
 {
     const tl_bounds *mine = &g->bounds[row];
     cell_range r = range_of(g, mine);
@@ -223,7 +201,7 @@ static bool pairs_of(const tl_model *m, struct tl_broad *g, uint32_t row, bool l
                 size_t cell = cell_index(g, x, y, z);
                 for (uint32_t e = g->cell_start[cell]; e < g->cell_start[cell + 1]; e++) {
                     uint32_t other = g->entries[e];
-                    if ((!large && other <= row) || !overlap(mine, &g->bounds[other]) ||
+                    if (other <= row || !overlap(mine, &g->bounds[other]) ||
                         m->blocks.body[row] == m->blocks.body[other])
                         continue;
                     cell_range q = range_of(g, &g->bounds[other]);
@@ -231,7 +209,7 @@ static bool pairs_of(const tl_model *m, struct tl_broad *g, uint32_t row, bool l
                         y != (q.lo[1] > r.lo[1] ? q.lo[1] : r.lo[1]) ||
                         z != (q.lo[2] > r.lo[2] ? q.lo[2] : r.lo[2]))
                         continue;
-                    if (!push(g, count, row < other ? row : other, row < other ? other : row))
+                    if (!push(g, count, row, other))
                         return false;
                 }
             }
@@ -249,19 +227,8 @@ static tl_status list_pairs(tl_model *m, struct tl_broad *g, size_t *count)
 {
     *count = 0;
     bool room = tl_grow(&g->next, &g->next_room, m->detect->pair_count, sizeof *g->next);
-    for (uint32_t row = 0; row < m->blocks.table.rows && room; row++) {
-        cell_range r = range_of(g, &g->bounds[row]);
-        if (!is_large(&r))
-            room = pairs_of(m, g, row, false, count);
-    }
-    for (size_t i = 0; i < g->large_count && room; i++) {
-        room = pairs_of(m, g, g->large[i], true, count);
-        for (size_t j = i + 1; j < g->large_count && room; j++) {
-            uint32_t a = g->large[i], b = g->large[j];
-            if (overlap(&g->bounds[a], &g->bounds[b]) && m->blocks.body[a] != m->blocks.body[b])
-                room = push(g, count, a, b);
-        }
-    }
+    for (uint32_t row = 0; row < m->blocks.table.rows && room; row++)
+        room = pairs_of(m, g, row, count);
     if (!room)
         return tl_fail_memory(&m->error);
     if (*count > 1)

@@ -26,10 +26,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Overlap of a new contact, relative to the smaller block's size, of which the user is told: blocks that
- * were placed into each other, or that a step has thrown into each other. */
-#define DEEP 1e-2
-
 /* Rows a worker takes at a time. */
 #define CONTACT_CHUNK 256
 #define RANK_CHUNK 8
@@ -202,7 +198,7 @@ static tl_status give_birth(tl_model *m, uint32_t pair, overlaps *deep)
         !tl_contact_append(m, pair, g->facet.kind == TL_FACET_FIELD, g->valid, tag, g->point_count))
         return tl_fail_memory(&m->error);
     double overlap = g->facet.kind == TL_FACET_FIELD ? g->press.deepest : -region.gap;
-    if (overlap > DEEP * view.size && deep->count++ == 0)
+    if (overlap > TL_SHALLOW * view.size && deep->count++ == 0)
         deep->pair = pair;
     if (tl_overlap_is_deep(m, &view, &region, d->pairs[pair].a, d->pairs[pair].b, true)) {
         tl_overlap_mark(&d->contacts, (uint32_t)d->contacts.table.rows - 1, true);
@@ -236,7 +232,7 @@ static tl_status give_births(tl_model *m, size_t *born)
             "%zu pair%s of blocks (first: blocks %u and %u) overlap%s by more than %g of their "
             "size when they come into contact: they will be pushed apart by that much",
             deep.count, deep.count == 1 ? "" : "s", m->blocks.id[d->pairs[deep.pair].a],
-            m->blocks.id[d->pairs[deep.pair].b], deep.count == 1 ? "s" : "", DEEP);
+            m->blocks.id[d->pairs[deep.pair].b], deep.count == 1 ? "s" : "", TL_SHALLOW);
     return TL_OK;
 }
 

@@ -29,9 +29,6 @@
 /* Deepest overlap of any contact over the diameter of the smaller block. Stones that fall on soft edge contacts (kn 1e7)
  * come to 1.06. */
 #define TL_DEEPEST 1.25
-/* Overlap over the smaller block's size up to which nothing is measured: most contacts. */
-#define SHALLOW 0.01
-
 /* Whether no force can move either block. More than tl_blocks_held_still (held.h): bodies that a drive carries along, or
  * that still have a velocity, do not feel what their overlap would do. */
 static bool both_held(const tl_model *m, uint32_t a, uint32_t b)
@@ -77,7 +74,7 @@ static double deepest(const tl_model *m, const tl_pair_view *view, tl_vec3 n, ui
 bool tl_overlap_is_deep(const tl_model *m, const tl_pair_view *view, const tl_region *region,
                         uint32_t a, uint32_t b, bool born)
 {
-    return region->gap < -SHALLOW * view->size &&
+    return region->gap < -TL_SHALLOW * view->size &&
            -region->gap > deepest(m, view, region->n, a, b, born);
 }
 

@@ -179,7 +179,7 @@ static void look_at(tl_model *m, tl_pair *p, tl_narrow *room)
         return;
     }
     /* edges part the blocks: by more than the tolerance, or by next to nothing */
-    tl_pair_sleep(d, p, tl_look_near(&view, tolerance) ? TL_SILENT * view.size : tolerance);
+    tl_pair_sleep(d, p, tl_look_near(&view, tolerance) ? TL_STILL * view.size : tolerance);
 }
 
 /* None of its pairs without a contact can have come near, whichever two blocks have run the farthest. */

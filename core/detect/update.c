@@ -23,15 +23,9 @@
 
 #include <string.h>
 
-/* Motion within which the points of a patch are reused, relative to the smaller block's size: areas are then wrong by a few
- * 1e-6 at most; gaps are exact all the same. */
-#define REUSE 1e-6
-/* The same of a field contact, over its overlap: its force is then wrong by no more than that. A contact that rests moves by
- * less. */
+/* Motion within which a field contact is reused, over its overlap: its force is then wrong by no more than that. A contact
+ * that rests moves by less. */
 #define REUSE_FIELD 1e-11
-/* Motion in a step, relative to the size, up to which a field contact may become a patch. A patch spreads the shear anew: where
- * faces only pass by each other that would turn some of it into heat. */
-#define CALM 1e-6
 
 static bool same_topology(const tl_detect *d, uint32_t c, const tl_manifold *g)
 {
@@ -115,7 +109,8 @@ static bool may_hold(const tl_model *m, uint32_t c)
     return false;
 }
 
-/* Whether the blocks of a field contact hardly moved against each other in the last step. */
+/* Whether the blocks of a field contact hardly moved against each other in the last step: only then may it become a patch.
+ * A patch spreads the shear anew: where faces only pass by each other that would turn some of it into heat. */
 static bool is_calm(const tl_model *m, uint32_t c, const tl_press_row *row)
 {
     const tl_contacts *contacts = &m->detect->contacts;
@@ -123,7 +118,7 @@ static bool is_calm(const tl_model *m, uint32_t c, const tl_press_row *row)
     const tl_mat3 *turn = &m->bodies.pose[m->blocks.body[contacts->a[c]]].r;
     tl_contact_motion by = tl_contact_moved(m, c);
     tl_vec3 there = tl_v3_cross(by.turn, tl_m3_mul(turn, row->press.point));
-    return tl_v3_norm(tl_v3_add(by.way, there)) + size * tl_v3_norm(by.turn) < CALM * size;
+    return tl_v3_norm(tl_v3_add(by.way, there)) + size * tl_v3_norm(by.turn) < TL_STILL * size;
 }
 
 static tl_manifold_before before_of(const tl_model *m, uint32_t c)
@@ -317,7 +312,7 @@ void tl_contact_allow_reuse(tl_model *m, uint32_t c)
 {
     tl_contacts *contacts = &m->detect->contacts;
     double size_a = m->blocks.size[contacts->a[c]], size_b = m->blocks.size[contacts->b[c]];
-    double most = (contacts->point_count[c] ? REUSE : TL_SILENT) * fmin(size_a, size_b);
+    double most = TL_STILL * fmin(size_a, size_b);
     if (contacts->facet[c].kind == TL_FACET_FIELD && contacts->point_count[c])
         most = REUSE_FIELD * contacts->facet[c].offset;
     contacts->points_valid_to[c] = tl_pair_odometer(m, contacts->a[c], contacts->b[c]) + most;

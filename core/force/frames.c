@@ -4,21 +4,19 @@
  * worked out for all of them at once. */
 #include "force/frames.h"
 
+#include "base/series.h"
 #include "contact/facing.h"
 
 #include <assert.h>
 #include <stddef.h>
 #include <string.h>
 
-/* Angle below which a tangent is taken from its series, whose next term is then below rounding. */
-#define SERIES_ANGLE 0.1
-
 /* ---------------------------------------------------------------- bodies ----------------- */
 
 /* The square of an angle by which a body turned is small enough for the series. */
 TL_INLINE bool is_small(double a2)
 {
-    return a2 < SERIES_ANGLE * SERIES_ANGLE;
+    return a2 < 4 * TL_SERIES_HALF_ANGLE * TL_SERIES_HALF_ANGLE;
 }
 
 /* tan(a/2) / a by its series, from the square of a. */

@@ -21,8 +21,6 @@
 
 /* Corners of the patches that are looked at; others are left as they are. */
 #define MOST_CORNERS 16
-/* How exactly a point between two corners lies between them, over the distance of the corners. */
-#define BETWEEN 1e-6
 
 typedef struct corner {
     tl_vec3 x;
@@ -34,6 +32,7 @@ typedef struct patch {
     const tl_points_table *p;
     const tl_point_lanes *lanes;
     size_t lane, row, count;
+    uint32_t faces; /* their key, which is in all of its points' */
 } patch;
 
 static tl_vec3 arm_of(const patch *of, size_t k)
@@ -46,11 +45,26 @@ static double closure_of(const patch *of, size_t k)
     return of->lanes->closure[of->lane + k * TL_LANES];
 }
 
+static uint32_t key_of(const patch *of, size_t k)
+{
+    return of->p->key[of->row + k * TL_LANES] ^ of->faces;
+}
+
+/* Whether the points are those of the corners, of every two neighbours and of the centroid: some may have had no area. */
+static bool are_all(const patch *of, size_t corners)
+{
+    bool all = key_of(of, 2 * corners) == tl_key_of(TL_POINT_CENTROID, 0, 0);
+    for (size_t k = 0; k < corners && all; k++)
+        all = key_of(of, k) == tl_key_of(TL_POINT_MIDDLE, key_of(of, corners + k),
+                                         key_of(of, corners + (k + 1) % corners));
+    return all;
+}
+
 /* The corners, in order, from the points; 0 for a patch whose points are others. */
 static size_t corners_of(const patch *of, corner *out)
 {
     size_t corners = (of->count - 1) / 2;
-    if (of->count % 2 == 0 || corners < 3 || corners > MOST_CORNERS)
+    if (of->count % 2 == 0 || corners < 3 || corners > MOST_CORNERS || !are_all(of, corners))
         return 0;
     const tl_point_rule rule = tl_point_rule_of(false);
     double per = 1 / rule.reach, o = closure_of(of, of->count - 1);
@@ -59,13 +73,6 @@ static size_t corners_of(const patch *of, corner *out)
         tl_vec3 out_there = tl_v3_sub(arm_of(of, corners + k), centre);
         out[k].x = tl_v3_madd(centre, per, out_there);
         out[k].o = o + per * (closure_of(of, corners + k) - o);
-    }
-    for (size_t k = 0; k < corners; k++) {
-        tl_vec3 a = out[k].x, b = out[(k + 1) % corners].x;
-        tl_vec3 middle = tl_v3_sub(tl_v3_scale(0.5, tl_v3_add(a, b)), centre);
-        tl_vec3 off = tl_v3_sub(arm_of(of, k), tl_v3_madd(centre, rule.out, middle));
-        if (tl_v3_norm2(off) > BETWEEN * BETWEEN * tl_v3_norm2(tl_v3_sub(a, b)))
-            return 0;
     }
     return corners;
 }
@@ -216,7 +223,14 @@ void tl_rank_part(const tl_model *m, const tl_material *law, const tl_rank *rank
                 out->moment[k] = tl_v3(0, 0, 0);
                 out->energy[k] = 0;
             }
-        part(&(patch){p, t, lane + l, rank->start + l, m->detect->contacts.point_count[c]}, out, l);
+        const tl_facet *f = &m->detect->contacts.facet[c];
+        const patch of = {.p = p,
+                          .lanes = t,
+                          .lane = lane + l,
+                          .row = rank->start + l,
+                          .count = m->detect->contacts.point_count[c],
+                          .faces = tl_key_of(0, f->ia, f->ib)};
+        part(&of, out, l);
     }
 }
 

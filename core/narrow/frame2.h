@@ -12,9 +12,6 @@
 /* Turning angles, rad, below which a corner is none, and from which it is a full one. */
 #define TL_STRAIGHT 1e-4
 #define TL_CORNER 2e-3
-/* A polygon thinner than this times the size has no area worth a point: faces that only touch along an
- * edge. */
-#define TL_THIN 1e-9
 
 /* The plane of the patch: origin, two directions in it, its normal (A to B). */
 typedef struct tl_frame2 {

@@ -6,11 +6,6 @@
 #include <ccd/ccd.h>
 #include <talus/vmath.h>
 
-/* Relative accuracy asked of libccd's portal refinement; at its default of 1e-4 it misses pairs. */
-#define LOOK_TOLERANCE 1e-10
-/* Refinement steps after which the pair counts as near and is left to the exact search. */
-#define LOOK_STEPS 200
-
 typedef struct grown {
     const tl_vec3 *vertex;
     uint32_t count;
@@ -59,7 +54,6 @@ bool tl_look_near(const tl_pair_view *view, double reach)
     CCD_INIT(&ccd);
     ccd.support1 = ccd.support2 = support;
     ccd.center1 = ccd.center2 = center;
-    ccd.mpr_tolerance = LOOK_TOLERANCE;
-    ccd.max_iterations = LOOK_STEPS;
+    ccd.mpr_tolerance = TL_STILL * view->size; /* m; its default of 1e-4 misses pairs */
     return ccdMPRIntersect(&a, &b, &ccd) != 0;
 }

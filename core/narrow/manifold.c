@@ -11,16 +11,11 @@
 
 /* Part of the limits of a patch within which a field contact becomes one: so none changes to and fro. */
 #define BACK 0.5
-/* Overlaps by which other faces that look at each other must stay behind those of a patch. */
-#define BEHIND 4.0
-/* The same across a blunt edge, over which the blocks press on each other, too: by this share of the patch's force. */
+/* Overlaps by which faces across a blunt edge must stay behind those of a patch, for the blocks press on each other over it,
+ * too: by this share of the patch's force. */
 #define BLUNT 2000.0
 /* Minimum area over that of a patch up to which it makes no difference: by less than 2e-3 of the force. */
 #define LEAST 0.05
-/* Share of the way to a limit up to which the choice holds. */
-#define CAUTION 0.25
-/* Normals whose cosines with a direction differ by less are equally near to it. */
-#define SAME_COSINE 1e-9
 
 /* ---------------------------------------------------------------- patches ---------------- */
 
@@ -33,8 +28,7 @@ static bool is_patch(const tl_pair_view *view, const tl_region *r, const tl_touc
     if (!r->flush || r->gap > rule->reach)
         return false;
     double overlap = fmax(0, -r->flush_gap), away = TL_CONTACT_TOLERANCE * size;
-    double behind = fmin(r->flush_lead - BEHIND * overlap - away,
-                         (r->blunt_lead - BLUNT * overlap - away) / BLUNT);
+    double behind = fmin(r->flush_lead - away, (r->blunt_lead - BLUNT * overlap - away) / BLUNT);
     double level = part * TL_FLUSH_TILT - tl_region_tilt(view, r->flush_a, r->flush_b);
     if (!(behind > 0 && level > 0))
         return false;
@@ -44,8 +38,9 @@ static bool is_patch(const tl_pair_view *view, const tl_region *r, const tl_touc
     double shallow = part * TL_FLUSH_DEPTH * sqrt(area) + room->patch.gap;
     if (!(shallow > 0))
         return false;
-    double way = fmin(fmin(behind, shallow), level * size);
-    m->valid = fmin(CAUTION * way, TL_LIST_MARGIN * size);
+    /* when the pair moves, none of these changes by more than twice the way */
+    double way = 0.5 * fmin(fmin(behind, shallow), level * size);
+    m->valid = fmin(way, TL_LIST_MARGIN * size);
     return true;
 }
 
@@ -154,9 +149,11 @@ tl_tag tl_touching_tag(const tl_pair_view *view, tl_vec3 n)
     tl_tag a = view->a->tag[fa], b = view->b->tag[fb];
     if (a.joint == 0 || b.joint == 0)
         return a.joint == 0 ? b : a;
-    if (ca > cb + SAME_COSINE)
+    /* of flush faces both are equally near */
+    double same = 0.5 * TL_FLUSH_TILT * TL_FLUSH_TILT;
+    if (ca > cb + same)
         return a;
-    if (cb > ca + SAME_COSINE)
+    if (cb > ca + same)
         return b;
     return a.joint < b.joint || (a.joint == b.joint && a.plane <= b.plane) ? a : b;
 }

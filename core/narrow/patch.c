@@ -110,7 +110,7 @@ typedef struct patch {
     tl_point_rule rule;
     tl_point2 centroid;
     double near;    /* corners nearer to each other are one */
-    double least;   /* area from which on there is a patch */
+    double least;   /* area from which on there is a patch: faces may only touch along an edge */
     double reach;   /* gap beyond which there is none */
     uint32_t faces; /* key of the two faces */
     tl_patch_points *out;
@@ -245,7 +245,7 @@ double tl_patch_lay(const tl_pair_view *view, uint32_t fa, uint32_t fb, const tl
     const tl_poly *a = view->a, *b = view->b;
     patch one = {.rule = tl_point_rule_of(rule->corners),
                  .near = TL_MERGE * view->size,
-                 .least = TL_THIN * fmax(a->size, b->size) * view->size,
+                 .least = TL_MERGE * fmax(a->size, b->size) * view->size,
                  .reach = rule->reach,
                  .faces = tl_key_of(0, fa, fb),
                  .out = &room->patch,

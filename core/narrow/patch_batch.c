@@ -62,7 +62,7 @@ void tl_batch_add(tl_patch_batch *batch, uint32_t lane, const tl_poly *a, uint32
     batch->offset_a[lane] = a->plane[fa].offset;
     batch->offset_b[lane] = b->plane[fb].offset;
     batch->near[lane] = TL_MERGE * size;
-    batch->least[lane] = TL_THIN * (a->size > b->size ? a->size : b->size) * size;
+    batch->least[lane] = TL_MERGE * (a->size > b->size ? a->size : b->size) * size;
     batch->reach[lane] = reach;
 }
 

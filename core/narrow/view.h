@@ -7,10 +7,11 @@
 
 #include "geometry/polyhedron.h"
 
-/* Overlap of a pair that touches without area, along both of two directions, that may go unseen, relative to the size:
- * a share of its faces as small as that (beside.c); and how far other such pairs may move before they are looked at
- * again. */
-#define TL_SILENT 1e-5
+/* Lengths below it, relative to the smaller block's size, make no difference: a motion after which the points of a patch
+ * are still good (areas are then wrong by a few 1e-6 at most; gaps are exact all the same), and a pair without points is not
+ * looked at again; a motion in a step with which a contact is calm; a gap of walls that are together. Far above rounding of
+ * places, far below the contact tolerance. */
+#define TL_STILL 1e-6
 
 /* When a pair becomes a contact, and when a contact ends, relative to the smaller block's size. */
 #define TL_CONTACT_TOLERANCE 1e-3

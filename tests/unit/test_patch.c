@@ -414,9 +414,38 @@ TEST(patch_beyond_the_reach_is_left_out)
     scene_pair_free(&p);
 }
 
+/* A block whose bottom goes on beyond a blunt edge of 3 degrees presses there, too: what is found presses as all of it
+ * does, to a thousandth, and is a patch where the edge makes no difference. */
+TEST(what_presses_beyond_a_blunt_edge_counts)
+{
+    const double rise = 0.3 * tan(3 * TL_PI / 180);
+    const tl_vec3 points[] = {{-0.5, -0.5, -0.5}, {0.5, -0.5, -0.5},       {-0.5, 0.5, -0.5},
+                              {0.5, 0.5, -0.5},   {0.8, -0.5, rise - 0.5}, {0.8, 0.5, rise - 0.5},
+                              {-0.5, -0.5, 0.5},  {0.8, -0.5, 0.5},        {-0.5, 0.5, 0.5},
+                              {0.8, 0.5, 0.5}};
+    static const double overlaps[] = {1e-6, 1e-5, 1e-4, 1e-3, 3e-3};
+    int patches = 0;
+    for (size_t i = 0; i < sizeof overlaps / sizeof *overlaps; i++) {
+        double o = overlaps[i];
+        scene_pair p = scene_pair_of(scene_box_shape(3, 3, 1), scene_hull_shape(points, 10),
+                                     tl_q_identity(), tl_v3(0, 0, 1 - o));
+        const tl_manifold *m = build_by(&p, &any_reach);
+        bool patch = m->facet.kind == TL_FACET_PATCH;
+        double found = patch ? o * point_moments(m).area : 2 * tl_v3_norm(m->press.force);
+        tl_region region;
+        tl_press all;
+        CHECK(tl_region_find(&p.view, TL_LIST_MARGIN * p.view.size, &p.room, &region));
+        CHECK(tl_press_find(&p.view, &region, 0, 0, UINT32_MAX, &p.room, &all));
+        CHECK_REL(found, 2 * tl_v3_norm(all.force), 1e-3);
+        patches += patch;
+        scene_pair_free(&p);
+    }
+    CHECK(patches > 0);
+}
+
 TEST_MAIN(RUN(points_integrate_the_common_polygon), RUN(drums_of_many_sides_keep_their_area),
           RUN(turning_stiffness_is_exact_about_every_axis), RUN(unit_square_resists_by_one_twelfth),
           RUN(wobble_of_a_closed_patch_changes_little),
           RUN(wobble_of_a_half_open_patch_does_not_jump), RUN(tiny_wobble_leaves_the_rule_alone),
           RUN(drums_wobble_without_jumps), RUN(faces_that_share_only_an_edge_have_no_points),
-          RUN(patch_beyond_the_reach_is_left_out))
+          RUN(patch_beyond_the_reach_is_left_out), RUN(what_presses_beyond_a_blunt_edge_counts))
