@@ -20,6 +20,8 @@
 #define TL_POLY_MAX_VERTICES 4096
 #define TL_POLY_MAX_FACES 4096
 
+enum { TL_COVERED = 1, TL_SEAM };
+
 /* Edge from vertex a to b in the loop of face `left`; in that of face `right` it runs from b to a. */
 typedef struct tl_edge {
     uint16_t a, b, left, right;
@@ -36,9 +38,10 @@ typedef struct tl_poly {
     uint16_t *loop;  /* [2 edge_count] vertex indices */
     /* Seams with the other parts of a body of several polyhedra (seam.c): zeros that all single ones share, or, where
      * `seams`, an allocation of its own. */
-    const uint8_t *covered; /* [face_count] 1: the face lies on other parts */
-    const uint8_t *hidden;  /* [edge_count] 1: the edge is no corner of the body */
-    tl_vec3 vertex[];       /* [vertex_count] */
+    const uint8_t *
+        covered; /* [face_count] TL_COVERED: the face lies on other parts; TL_SEAM: as all do that it lies on */
+    const uint8_t *hidden; /* [edge_count] 1: the edge is no corner of the body */
+    tl_vec3 vertex[];      /* [vertex_count] */
 } tl_poly;
 
 /* The place after place h in the loop of a face. */

@@ -1,6 +1,7 @@
 /* seam.c - a body made of several convex polyhedra: which of their faces and edges are inside it.
  *
- * A face is covered when faces of other parts, in the same plane and facing it, overlap all of its area.
+ * A face is covered when faces of other parts, in the same plane and facing it, overlap all of its area. It is a seam
+ * when these are covered as well; a smaller face on a larger one is none.
  * An edge of a covered face is hidden unless the surface turns outward there, from the edge's other face
  * to a face of another part. Covered faces and hidden edges are no directions in which the body could
  * part from another: a block that slides over a seam must not feel it. */
@@ -253,10 +254,35 @@ static bool mark(part *p)
     if (!p->hidden)
         return false;
     for (uint32_t f = first; f < poly->face_count; f++)
-        p->hidden[f] = is_covered(p, f);
+        p->hidden[f] = is_covered(p, f) ? TL_SEAM : 0;
     p->hidden += poly->face_count;
     for (uint32_t e = 0; e < poly->edge_count; e++)
         p->hidden[e] = poly->covered[poly->edge[e].left] || poly->covered[poly->edge[e].right];
+    return true;
+}
+
+/* A covered face that lies on one which is not covered is no seam. */
+static void compare_faces(const part *of, uint32_t face, const tl_poly *b, uint32_t g)
+{
+    const tl_poly *a = of->poly;
+    if (a->covered[face] && !b->covered[g])
+        (of->hidden - a->face_count)[face] = TL_COVERED;
+}
+
+static bool match(part *a, part *b)
+{
+    for (uint32_t i = 0; i < a->poly->face_count; i++)
+        for (uint32_t j = 0; j < b->poly->face_count; j++) {
+            double area;
+            if ((a->poly->covered[i] != 0) == (b->poly->covered[j] != 0))
+                continue;
+            if (!tl_poly_shared_area(a->poly, i, b->poly, j, &area))
+                return false;
+            if (area > 0) {
+                compare_faces(a, i, b->poly, j);
+                compare_faces(b, j, a->poly, i);
+            }
+        }
     return true;
 }
 
@@ -294,6 +320,7 @@ tl_status tl_poly_mark_seams(tl_poly *const *parts, size_t count, tl_error *erro
     bool done = list && each_pair(list, count, cover);
     for (size_t i = 0; done && i < count; i++)
         done = mark(&list[i]);
+    done = done && each_pair(list, count, match);
     if (done)
         each_pair(list, count, show);
     free(list);

@@ -88,16 +88,31 @@ static uint32_t add_faces(planes *p, const pair *of, bool of_b, uint32_t begin, 
     return count;
 }
 
+/* Adds faces on other parts, the seams behind the others; how many are seams, with it. */
+static uint32_t add_covered(planes *p, const pair *of, bool of_b, uint32_t begin, uint32_t count,
+                            uint32_t *seams)
+{
+    const tl_poly *poly = of_b ? of->view->b : of->view->a;
+    *seams = 0;
+    for (int seam = 0; seam < 2; seam++)
+        for (uint32_t k = begin; k < begin + count; k++)
+            if ((poly->covered[of->region->face[k]] == TL_SEAM) == seam) {
+                add_face(p, of, of_b, of->region->face[k]);
+                *seams += (uint32_t)seam;
+            }
+    return count;
+}
+
 static void list_field(planes *p, const pair *of)
 {
     const tl_region *r = of->region;
     p->count = 0;
     p->faces.a = add_faces(p, of, false, 0, r->a);
     p->faces.b = add_faces(p, of, true, r->a, r->b);
-    p->faces.border_a = add_faces(p, of, false, r->a + r->b, r->border_a);
-    p->faces.border_b = add_faces(p, of, true, r->a + r->b + r->border_a, r->border_b);
-    p->faces.seam_a = r->border_a;
-    p->faces.seam_b = r->border_b;
+    uint32_t covered = r->a + r->b;
+    p->faces.border_a = add_covered(p, of, false, covered, r->border_a, &p->faces.seam_a);
+    p->faces.border_b =
+        add_covered(p, of, true, covered + r->border_a, r->border_b, &p->faces.seam_b);
 }
 
 static void list_patch(planes *p, const pair *of)
@@ -107,12 +122,12 @@ static void list_patch(planes *p, const pair *of)
     p->count = 0;
     p->faces.a = add_faces(p, of, false, 0, r->blunt_a);
     p->faces.b = add_faces(p, of, true, r->a, r->blunt_b);
-    p->faces.border_a = add_faces(p, of, false, r->blunt_a, more_a) +
-                        add_faces(p, of, false, r->a + r->b, r->border_a);
-    p->faces.border_b = add_faces(p, of, true, r->a + r->blunt_b, more_b) +
-                        add_faces(p, of, true, r->a + r->b + r->border_a, r->border_b);
-    p->faces.seam_a = r->border_a;
-    p->faces.seam_b = r->border_b;
+    uint32_t covered = r->a + r->b;
+    p->faces.border_a = add_faces(p, of, false, r->blunt_a, more_a);
+    p->faces.border_a += add_covered(p, of, false, covered, r->border_a, &p->faces.seam_a);
+    p->faces.border_b = add_faces(p, of, true, r->a + r->blunt_b, more_b);
+    p->faces.border_b +=
+        add_covered(p, of, true, covered + r->border_a, r->border_b, &p->faces.seam_b);
 }
 
 /* Whether the deepest point lies in both blocks, as it does if they have anything in common. */

@@ -19,7 +19,16 @@ static unsigned covered(const tl_poly *p)
 {
     unsigned n = 0;
     for (uint32_t f = 0; f < p->face_count; f++)
-        n += p->covered[f];
+        n += p->covered[f] != 0;
+    return n;
+}
+
+/* Of these, how many lie on faces that are covered, too. */
+static unsigned seams(const tl_poly *p)
+{
+    unsigned n = 0;
+    for (uint32_t f = 0; f < p->face_count; f++)
+        n += p->covered[f] == TL_SEAM;
     return n;
 }
 
@@ -37,6 +46,7 @@ TEST(equal_boxes_share_one_face_and_its_four_edges)
     CHECK_INT(tl_poly_mark_seams(parts, 2, &error), TL_OK);
     for (int i = 0; i < 2; i++) {
         CHECK_INT(covered(parts[i]), 1);
+        CHECK_INT(seams(parts[i]), 1);
         CHECK_INT(hidden(parts[i]), 4);
         tl_poly_free(parts[i]);
     }
@@ -49,6 +59,7 @@ TEST(a_step_covers_only_the_lower_box)
     CHECK_INT(tl_poly_mark_seams(parts, 2, &error), TL_OK);
     CHECK_INT(covered(parts[0]), 1);
     CHECK_INT(covered(parts[1]), 0);
+    CHECK_INT(seams(parts[0]), 0);
     CHECK_INT(hidden(parts[0]), 4);
     CHECK_INT(hidden(parts[1]), 0);
     for (int i = 0; i < 2; i++)
@@ -62,6 +73,8 @@ TEST(two_boxes_cover_the_side_of_a_third)
     CHECK_INT(covered(parts[0]), 1);
     CHECK_INT(covered(parts[1]), 2);
     CHECK_INT(covered(parts[2]), 2);
+    CHECK_INT(seams(parts[0]), 1);
+    CHECK_INT(seams(parts[1]), 2);
     for (int i = 0; i < 3; i++)
         tl_poly_free(parts[i]);
 }
