@@ -2,12 +2,13 @@
  *
  * The points are put on a grid of 2^-40 of their extent and triangulate.c makes the exact hull of
  * the grid points. The grid is finer than TL_POLY_ON by 10^3 and coarser than the rounding of
- * coordinates by 10^3, so neither shows. Triangles within TL_POLY_ON times the extent of one plane
- * then become one face, the largest first, so that a sliver between two faces joins one of them. A
- * vertex left with fewer than three faces lies on a face or an edge and is dropped. Coordinates are
- * never moved; planes are fitted to the coordinates given. Should noise as large as the tolerance
- * leave faces that are no convex polygons, triangles are merged anew with a wider one, up to
- * TL_POLY_THIN. Every loop starts at its lowest vertex and the faces are in the order of their
+ * coordinates by 10^3, so neither shows. Triangles within TL_POLY_FLAT times the extent of one plane
+ * then become one face, the largest first, so that a sliver between two faces joins one of them:
+ * else the corners of a face, rounded in a file, would make several of it, which a joint could not
+ * bond. A vertex left with fewer than three faces lies on a face or an edge and is dropped.
+ * Coordinates are never moved; planes are fitted to the coordinates given. Should that leave faces
+ * that are no convex polygons, triangles are merged anew within TL_POLY_ON, or, when noise is as
+ * large as that, with a wider tolerance up to TL_POLY_THIN. Every loop starts at its lowest vertex and the faces are in the order of their
  * loops, so that the result depends on the points alone. */
 #include "geometry/assemble.h"
 #include "geometry/triangulate.h"
@@ -509,18 +510,22 @@ static tl_status build(builder *b, tl_poly **poly, tl_error *error)
         return status;
     tl_hull_triangulate(&b->hull, corner);
     tl_poly *p = NULL;
-    for (; !p && b->tolerance <= TL_POLY_THIN * b->extent; b->tolerance *= WIDER) {
+    double fine = b->tolerance / WIDER;
+    b->tolerance = fmax(TL_POLY_FLAT * b->extent, b->tolerance);
+    status = merge(b, &p, error);
+    while (!status && !p && WIDER * fine <= TL_POLY_THIN * b->extent) {
+        fine *= WIDER;
+        b->tolerance = fine;
         status = merge(b, &p, error);
-        if (status)
-            return status;
     }
+    if (status)
+        return status;
     if (!p)
         return tl_fail(
             error, TL_E_GEOMETRY,
             "the %u vertices do not make a block with flat faces: leave out vertices "
             "closer together than %.3g, or nearer than that to a face they do not belong to",
             b->hull.count, TL_POLY_THIN * b->extent);
-    b->tolerance /= WIDER; /* what the loop stepped past */
     status = check_hull(b, p, error);
     if (status)
         tl_poly_free(p);

@@ -14,6 +14,8 @@
 /* A face whose vertices are all closer to a plane than this times the size lies on it. A block small
  * in its model knows planes to fewer digits than its own vertices: this leaves it six orders. */
 #define TL_POLY_ON 1e-9
+/* Faces of points given by coordinates of six digits, for a block of about one: a face bent by less is one face. */
+#define TL_POLY_FLAT 1e-6
 /* A cut that would leave a side thinner than this times the size is refused. */
 #define TL_POLY_THIN 1e-5
 /* Most vertices and most faces of one polyhedron. */

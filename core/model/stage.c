@@ -15,9 +15,6 @@
 /* The origin is rounded to a power of two of at least this many sizes of the first block, so models
  * near zero keep the origin zero, and subtracting it from coordinates is exact. */
 #define ORIGIN_SIZES 8.0
-/* Corners of faces that are given may miss the face's plane by this times the block's size: coordinates
- * written with nine digits. */
-#define GIVEN_FACES 1e-8
 /* A cut takes vertices this near, relative to the size, for being on its plane (TL_POLY_ON); and centres
  * of balls are known to some roundings of the coordinates. */
 #define BALL_MARGIN (2 * TL_POLY_ON)
@@ -273,7 +270,7 @@ static tl_status make_faces(tl_model *m, const tl_block_shape *given, const face
     tl_status status = tl_poly_make(l->vertex, given->vertex_count, l->plane, given->tags,
                                     given->start, l->loop, given->face_count, shape, &m->error);
     if (status == TL_OK) {
-        status = tl_poly_check(*shape, GIVEN_FACES, &m->error);
+        status = tl_poly_check(*shape, TL_POLY_FLAT, &m->error);
         if (status != TL_OK)
             tl_poly_free(*shape);
     }

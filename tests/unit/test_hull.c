@@ -108,9 +108,9 @@ TEST(noise_on_the_corners)
                                                    noise * (check_random(&seed) - 0.5)));
         tl_poly *p = hull_of(points, 8);
         CHECK_INT(p->vertex_count, 8);
-        if (noise < 5e-10)
+        if (noise < 5e-7)
             CHECK_INT(p->face_count, 6);
-        CHECK_INT(tl_poly_check(p, 2 * TL_POLY_ON, &error), TL_OK);
+        CHECK_INT(tl_poly_check(p, 2 * TL_POLY_FLAT, &error), TL_OK);
         CHECK_NEAR(tl_poly_mass(p).volume, 1, 6 * noise + 1e-15);
         tl_poly_free(p);
     }
@@ -222,21 +222,21 @@ TEST(numbers_that_cannot_be_computed_with_are_refused)
 TEST(many_vertices)
 {
     static tl_vec3 points[TL_POLY_MAX_VERTICES];
-    for (uint32_t count = 2048; count <= 4096; count += 2048) {
-        /* A spiral from pole to pole. */
+    for (uint32_t count = 1024; count <= 4096; count *= 4) {
+        /* A spiral from pole to pole; of many points some faces at the poles are flat. */
         for (uint32_t i = 0; i < count; i++) {
             double z = 1 - (2 * i + 1.0) / count, r = sqrt(1 - z * z), angle = 2.4 * i;
             points[i] = tl_v3(r * cos(angle), r * sin(angle), z);
         }
         if (count == 4096) {
             expect_refusal(points, count,
-                           "the 4096 vertices make 8188 faces: one block can have 4096");
+                           "the 4096 vertices make 8170 faces: one block can have 4096");
             break;
         }
         tl_poly *p = hull_of(points, count);
         expect_counts(p, count, 3 * count - 6, 2 * count - 4);
         CHECK_INT(tl_poly_check(p, 1e-15, &error), TL_OK);
-        CHECK_NEAR(tl_poly_mass(p).volume, 4 * TL_PI / 3, 0.02);
+        CHECK_NEAR(tl_poly_mass(p).volume, 4 * TL_PI / 3, 0.03);
         tl_poly_free(p);
     }
 }
