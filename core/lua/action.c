@@ -18,10 +18,6 @@ static const char *const key_names[] = {
     [ANGULAR_VELOCITY] = "angular_velocity",
 };
 
-typedef struct anchor {
-    bool ended;
-} anchor;
-
 const tl_lua_key tl_lua_drive_keys[] = {
     {"velocity", "{x, y, z} or function(t)",
      "velocity of the centroid, m/s; the function gives {x, y, z} or three numbers for a time t, "
@@ -33,24 +29,10 @@ const tl_lua_key tl_lua_drive_keys[] = {
 
 /* ---------------------------------------------------------------- anchors ---------------- */
 
-void tl_lua_drives_sweep(lua_State *L, int model_index)
-{
-    lua_getiuservalue(L, model_index, 1);
-    for (lua_pushnil(L); lua_next(L, -2);) {
-        const anchor *a = lua_touserdata(L, -1);
-        lua_pop(L, 1);
-        if (a->ended) {
-            lua_pushnil(L);
-            lua_rawsetp(L, -3, a);
-        }
-    }
-    lua_pop(L, 1);
-}
-
 /* Pushes a new anchor and hangs it on the model at `model_index`. */
-static anchor *anchor_push(lua_State *L, int model_index)
+static tl_lua_anchor *anchor_push(lua_State *L, int model_index)
 {
-    anchor *a = lua_newuserdatauv(L, sizeof *a, FUNCTIONS);
+    tl_lua_anchor *a = lua_newuserdatauv(L, sizeof *a, FUNCTIONS);
     a->ended = false;
     lua_getiuservalue(L, model_index, 1);
     lua_pushvalue(L, -2);
@@ -61,14 +43,14 @@ static anchor *anchor_push(lua_State *L, int model_index)
 
 static void on_release(void *user)
 {
-    anchor *a = user;
+    tl_lua_anchor *a = user;
     a->ended = true;
 }
 
 /* ---------------------------------------------------------------- in a step -------------- */
 
 typedef struct call {
-    anchor *anchor;
+    tl_lua_anchor *anchor;
     int key;
     double t;
     tl_vec3 velocity;
@@ -127,7 +109,7 @@ static int call_function(lua_State *L)
     return 0;
 }
 
-static bool evaluate(anchor *a, int key, double t, tl_vec3 *velocity)
+static bool evaluate(tl_lua_anchor *a, int key, double t, tl_vec3 *velocity)
 {
     lua_State *L = tl_lua_run_state();
     call c = {.anchor = a, .key = key, .t = t};
@@ -209,7 +191,7 @@ int tl_lua_blocks_drive(lua_State *L)
     tl_lua_read(L, 2, &spec, false, NULL);
     lua_settop(L, 2);
     lua_getiuservalue(L, 1, 1);
-    anchor *a = anchor_push(L, 3);
+    tl_lua_anchor *a = anchor_push(L, 3);
     a->ended = true; /* until the kernel has taken it */
     tl_drive drive = {.user = a, .release = on_release};
     bool moves = false;

@@ -68,7 +68,7 @@ static void push_neighbours(lua_State *L, tl_model *model, tl_id id)
     tl_lua_ok(L, model, tl_block_neighbours(model, id, &found->ids, &found->count));
     lua_createtable(L, (int)found->count, 0);
     for (size_t i = 0; i < found->count; i++) {
-        tl_lua_item_push(L, &tl_lua_block_kind, 3, found->ids[i]);
+        tl_lua_item_push(L, TL_LUA_BLOCK, 3, found->ids[i]);
         lua_rawseti(L, -2, (lua_Integer)i + 1);
     }
 }
@@ -228,51 +228,6 @@ int tl_lua_blocks(lua_State *L)
 
 /* ---------------------------------------------------------------- verbs ------------------ */
 
-tl_lua_selection *tl_lua_blocks_self(lua_State *L, int most, const char *method)
-{
-    tl_lua_selection *blocks = tl_lua_selection_of(L, 1, &tl_lua_block_kind, method);
-    tl_lua_living(L, blocks->owner);
-    tl_lua_arity(L, most, method);
-    lua_settop(L, most);
-    return blocks;
-}
-
-/* Says once for each place in a script that a verb had nothing to act on. */
-static void remark_empty(lua_State *L, const char *verb, const char *done)
-{
-    luaL_getsubtable(L, LUA_REGISTRYINDEX, "talus.remarks");
-    tl_lua_push_where(L);
-    lua_pushfstring(L,
-                    "%s: the selection is empty: no block was %s; see what model:blocks{...} finds",
-                    verb, done);
-    lua_concat(L, 2);
-    lua_pushvalue(L, -1);
-    if (lua_rawget(L, -3) == LUA_TNIL) {
-        tl_lua_log(tl_lua_options_of(L), lua_tostring(L, -2));
-        lua_pushvalue(L, -2);
-        lua_pushboolean(L, true);
-        lua_rawset(L, -5);
-    }
-    lua_pop(L, 3);
-}
-
-int tl_lua_blocks_acted(lua_State *L, const tl_lua_selection *blocks, const char *verb,
-                        const char *done, tl_status status)
-{
-    if (blocks->count == 0 && status == TL_OK)
-        remark_empty(L, verb, done);
-    return tl_lua_blocks_done(L, blocks, status);
-}
-
-int tl_lua_blocks_done(lua_State *L, const tl_lua_selection *blocks, tl_status status)
-{
-    tl_lua_ok(L, blocks->owner->model, status);
-    lua_getiuservalue(L, 1, 1);
-    tl_lua_drives_sweep(L, lua_gettop(L)); /* the verb may have ended a drive */
-    lua_settop(L, 1);
-    return 1;
-}
-
 static int blocks_hide(lua_State *L)
 {
     tl_lua_selection *b = tl_lua_blocks_self(L, 1, "hide");
@@ -426,8 +381,8 @@ static const tl_lua_key block_extra_keys[] = {
 const tl_lua_kind tl_lua_block_kind = {
     .item = "block",
     .items = "blocks",
-    .item_type = "talus.block",
-    .selection_type = "talus.blocks",
+    .item_type = TL_LUA_BLOCK,
+    .selection_type = TL_LUA_BLOCKS,
     .fields = tl_block_fields,
     .field = tl_block_field,
     .extra = block_extra,

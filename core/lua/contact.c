@@ -25,8 +25,8 @@ const tl_lua_spec tl_lua_contacts_spec = {
 /* The ids meant by the selection of blocks or the block at the top of the stack. */
 static const tl_id *read_side(lua_State *L, const tl_lua_model *owner, int side, size_t *count)
 {
-    const tl_lua_selection *blocks = luaL_testudata(L, -1, tl_lua_block_kind.selection_type);
-    const tl_lua_item *block = luaL_testudata(L, -1, tl_lua_block_kind.item_type);
+    const tl_lua_selection *blocks = luaL_testudata(L, -1, TL_LUA_BLOCKS);
+    const tl_lua_item *block = luaL_testudata(L, -1, TL_LUA_BLOCK);
     if (!blocks && !block)
         tl_lua_fail(L,
                     "contacts, between: item %d must be a selection of blocks or a block, not %s",
@@ -97,7 +97,7 @@ static bool contact_extra(lua_State *L, tl_model *model, tl_id id, const char *n
         tl_lua_ok(L, model, tl_contact_field(model, id, i, &value));
         lua_createtable(L, 2, 0);
         for (int side = 0; side < 2; side++) {
-            tl_lua_item_push(L, &tl_lua_block_kind, 3, (tl_id)value.number[side]);
+            tl_lua_item_push(L, TL_LUA_BLOCK, 3, (tl_id)value.number[side]);
             lua_rawseti(L, -2, side + 1);
         }
         return true;

@@ -14,7 +14,7 @@
 #include <lua.h>
 #include <talus/talus.h>
 
-/* ---- what a state was asked to do by options or environment: module.c ---- */
+/* ---- what a state was asked to do by options or environment: living.c ---- */
 
 typedef struct tl_lua_options {
     int64_t threads; /* default of talus.model; 0: not set */
@@ -23,6 +23,8 @@ typedef struct tl_lua_options {
 
 /* The options of a Lua state, made when first asked for; lives as long as the state. */
 tl_lua_options *tl_lua_options_of(lua_State *L);
+/* Prints a remark of the kernel on standard error, unless the options, its user data, say quiet. */
+void tl_lua_log(void *user, const char *text);
 /* Opens the module `talus`. */
 TL_API int luaopen_talus(lua_State *L);
 
@@ -90,7 +92,7 @@ void tl_lua_push_vec3(lua_State *L, tl_vec3 v);
 /* Pushes a field's value as Lua sees it. */
 void tl_lua_push_field(lua_State *L, tl_field_kind kind, const tl_field_value *value);
 
-/* ---- models: model.c ---- */
+/* ---- models: living.c, model.c ---- */
 
 /* Name of the metatable of models. */
 #define TL_LUA_MODEL_TYPE "talus.model"
@@ -108,13 +110,12 @@ tl_model *tl_lua_living(lua_State *L, const tl_lua_model *owner);
 /* Raises the model's error unless `status` is TL_OK. */
 void tl_lua_ok(lua_State *L, tl_model *model, tl_status status);
 
-/* Pushes the sentence that says which block controls the time step. */
-void tl_lua_push_timestep(lua_State *L, const tl_timestep_report *report);
-
 extern const tl_lua_key tl_lua_insitu_keys[];
 
 /* ---- quality of the blocks, keyblocks: quality.c ---- */
 
+/* Pushes the sentence that says which block controls the time step. */
+void tl_lua_push_timestep(lua_State *L, const tl_timestep_report *report);
 extern const tl_lua_key tl_lua_keyblocks_keys[];
 int tl_lua_report(lua_State *L);
 int tl_lua_filter(lua_State *L);
@@ -155,8 +156,6 @@ int tl_lua_solve(lua_State *L);
 lua_State *tl_lua_run_state(void);
 /* Pops the error on the top of its stack, to be raised again when the run has ended. */
 void tl_lua_run_keep_error(void);
-/* Prints a remark of the kernel on standard error. */
-void tl_lua_log(void *user, const char *text);
 
 /* ---- what a model costs: cost.c ---- */
 
@@ -179,6 +178,10 @@ typedef struct tl_lua_kind {
     const luaL_Reg *verbs; /* methods of selections beyond those both types have */
 } tl_lua_kind;
 
+/* Types of items and selections of blocks. */
+#define TL_LUA_BLOCK "talus.block"
+#define TL_LUA_BLOCKS "talus.blocks"
+
 typedef struct tl_lua_item {
     const tl_lua_kind *kind;
     tl_lua_model *owner;
@@ -195,15 +198,15 @@ typedef struct tl_lua_selection {
 /* Makes the metatables of a kind's items and selections. */
 void tl_lua_item_open(lua_State *L, const tl_lua_kind *kind);
 void tl_lua_selection_open(lua_State *L, const tl_lua_kind *kind);
-/* Pushes an item; `model_index` is where the model's userdata is. */
-void tl_lua_item_push(lua_State *L, const tl_lua_kind *kind, int model_index, tl_id id);
+/* Pushes an item of an open type; `model_index` is where the model's userdata is. */
+void tl_lua_item_push(lua_State *L, const char *type, int model_index, tl_id id);
 /* The table at the top of the stack has a block in the field `name`, pushed before a call: makes it the one of that id,
  * without needing memory; TL_NO_ID: takes it out. */
 void tl_lua_item_rename(lua_State *L, const char *name, tl_id id);
 /* Pushes an empty selection, to be filled with a list that then belongs to it. */
 tl_lua_selection *tl_lua_selection_push(lua_State *L, const tl_lua_kind *kind, int model_index);
-/* The selection at `index`, raising when it is something else. */
-tl_lua_selection *tl_lua_selection_of(lua_State *L, int index, const tl_lua_kind *kind,
+/* The selection of a type at index 1, raising when it is something else. */
+tl_lua_selection *tl_lua_selection_of(lua_State *L, const char *type, const char *items,
                                       const char *method);
 /* Keeps those of the selection at `selection_index` for which the function at `function_index`
  * answers true. */
@@ -217,6 +220,8 @@ extern const tl_lua_spec tl_lua_blocks_spec, tl_lua_contacts_spec, tl_lua_fix_sp
 int tl_lua_blocks(lua_State *L);
 int tl_lua_contacts(lua_State *L);
 
+/* ---- what verbs of blocks share: verb.c ---- */
+
 /* The selection of blocks at index 1, of a verb that takes `most` arguments with it. */
 tl_lua_selection *tl_lua_blocks_self(lua_State *L, int most, const char *method);
 /* Raises on failure; otherwise answers with the selection itself. */
@@ -227,11 +232,14 @@ int tl_lua_blocks_acted(lua_State *L, const tl_lua_selection *blocks, const char
 
 /* ---- loads and drives: action.c ---- */
 
+/* What a drive's functions hang on: action.c. */
+typedef struct tl_lua_anchor {
+    bool ended;
+} tl_lua_anchor;
+
 extern const tl_lua_key tl_lua_drive_keys[];
 int tl_lua_blocks_load(lua_State *L);
 int tl_lua_blocks_drive(lua_State *L);
-/* Lets go of the functions of drives that have ended. */
-void tl_lua_drives_sweep(lua_State *L, int model_index);
 
 /* ---- help: help.c, topics.c ---- */
 

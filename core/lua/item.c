@@ -4,6 +4,9 @@
  * was deleted raises and never crashes. */
 #include "front.h"
 
+/* Its address is where the metatable of items has their kind. */
+static const char kind_key;
+
 static tl_lua_item *item_of(lua_State *L, int index, const char *type)
 {
     tl_lua_item *item = luaL_testudata(L, index, type);
@@ -12,14 +15,17 @@ static tl_lua_item *item_of(lua_State *L, int index, const char *type)
     return item;
 }
 
-void tl_lua_item_push(lua_State *L, const tl_lua_kind *kind, int model_index, tl_id id)
+void tl_lua_item_push(lua_State *L, const char *type, int model_index, tl_id id)
 {
     model_index = lua_absindex(L, model_index);
     tl_lua_item *item = lua_newuserdatauv(L, sizeof *item, 1);
-    *item = (tl_lua_item){kind, lua_touserdata(L, model_index), id};
+    luaL_getmetatable(L, type);
+    lua_rawgetp(L, -1, &kind_key);
+    *item = (tl_lua_item){lua_touserdata(L, -1), lua_touserdata(L, model_index), id};
+    lua_pop(L, 1);
+    lua_setmetatable(L, -2);
     lua_pushvalue(L, model_index);
     lua_setiuservalue(L, -2, 1);
-    luaL_setmetatable(L, kind->item_type);
 }
 
 void tl_lua_item_rename(lua_State *L, const char *name, tl_id id)
@@ -72,7 +78,7 @@ static int item_assign(lua_State *L)
 {
     tl_lua_item *item = item_of(L, 1, lua_tostring(L, lua_upvalueindex(2)));
     const char *name = lua_type(L, 2) == LUA_TSTRING ? lua_tostring(L, 2) : "?";
-    if (item->kind != &tl_lua_block_kind)
+    if (!item->kind->verbs->name)
         return tl_lua_fail(L, "the fields of a %s can only be read ('%s')", item->kind->item, name);
     return tl_lua_fail(L,
                        "the fields of a block can only be read; to change '%s' use a selection: "
@@ -98,6 +104,8 @@ static int item_text(lua_State *L)
 void tl_lua_item_open(lua_State *L, const tl_lua_kind *kind)
 {
     if (luaL_newmetatable(L, kind->item_type)) {
+        lua_pushlightuserdata(L, (void *)(uintptr_t)kind);
+        lua_rawsetp(L, -2, &kind_key);
         size_t count;
         const tl_field *fields = kind->fields(&count);
         lua_createtable(L, 0, (int)count);

@@ -6,29 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-tl_model *tl_lua_model_of(lua_State *L, const char *method)
-{
-    tl_lua_model *object = luaL_testudata(L, 1, TL_LUA_MODEL_TYPE);
-    if (!object)
-        tl_lua_fail(L, "%s: called on %s; write model:%s(...)", method, tl_lua_describe(L, 1),
-                    method);
-    return tl_lua_living(L, object);
-}
-
-tl_model *tl_lua_living(lua_State *L, const tl_lua_model *owner)
-{
-    if (!owner->model)
-        tl_lua_fail(L, "the model was closed");
-    tl_lua_interrupt_check(L); /* in a coroutine no hook tells */
-    return owner->model;
-}
-
-void tl_lua_ok(lua_State *L, tl_model *model, tl_status status)
-{
-    if (status != TL_OK)
-        tl_lua_raise(L, tl_model_error(model));
-}
-
 /* ---------------------------------------------------------------- life ------------------- */
 
 /* Default number of threads: of --threads, else of the environment, else 1. */
@@ -222,21 +199,7 @@ static void push_block(lua_State *L, tl_id id)
     if (id == TL_NO_ID)
         lua_pushnil(L);
     else
-        tl_lua_item_push(L, &tl_lua_block_kind, 1, id);
-}
-
-void tl_lua_push_timestep(lua_State *L, const tl_timestep_report *r)
-{
-    char numbers[120];
-    snprintf(numbers, sizeof numbers, "dt = %.4g s, mass %.4g kg, stiffness %.4g N/m", r->dt,
-             r->mass, r->stiffness);
-    if (r->block == TL_NO_ID)
-        lua_pushfstring(L, "no block controls the step: dt = %f s", r->dt);
-    else if (r->partner == TL_NO_ID)
-        lua_pushfstring(L, "block %I controls the step: %s", (lua_Integer)r->block, numbers);
-    else
-        lua_pushfstring(L, "block %I controls the step, with the stiffest contact at block %I: %s",
-                        (lua_Integer)r->block, (lua_Integer)r->partner, numbers);
+        tl_lua_item_push(L, TL_LUA_BLOCK, 1, id);
 }
 
 /* model:timestep(): where the step comes from. */

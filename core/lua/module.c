@@ -1,24 +1,6 @@
 /* module.c - the module `talus`: what require "talus" gives, in the program and in a stock Lua. */
 #include "front.h"
 
-#include <string.h>
-
-tl_lua_options *tl_lua_options_of(lua_State *L)
-{
-    /* Only the address is used: it is a key no one else can have. */
-    static const char key;
-    if (lua_rawgetp(L, LUA_REGISTRYINDEX, &key) == LUA_TNIL) {
-        tl_lua_options *fresh = lua_newuserdatauv(L, sizeof *fresh, 0);
-        *fresh = (tl_lua_options){0};
-        lua_rawsetp(L, LUA_REGISTRYINDEX, &key);
-        lua_pop(L, 1);
-        return fresh;
-    }
-    tl_lua_options *options = lua_touserdata(L, -1);
-    lua_pop(L, 1);
-    return options;
-}
-
 /* talus.help(topic): prints what `talus help TOPIC` prints. */
 static int module_help(lua_State *L)
 {

@@ -32,7 +32,7 @@ static void set_block(lua_State *L, const char *name, tl_id id)
 {
     if (id == TL_NO_ID)
         return;
-    tl_lua_item_push(L, &tl_lua_block_kind, 1, id);
+    tl_lua_item_push(L, TL_LUA_BLOCK, 1, id);
     lua_setfield(L, -2, name);
 }
 
@@ -46,6 +46,20 @@ static void set_vec3(lua_State *L, const char *name, tl_vec3 v)
 {
     tl_lua_push_vec3(L, v);
     lua_setfield(L, -2, name);
+}
+
+void tl_lua_push_timestep(lua_State *L, const tl_timestep_report *r)
+{
+    char numbers[120];
+    snprintf(numbers, sizeof numbers, "dt = %.4g s, mass %.4g kg, stiffness %.4g N/m", r->dt,
+             r->mass, r->stiffness);
+    if (r->block == TL_NO_ID)
+        lua_pushfstring(L, "no block controls the step: dt = %f s", r->dt);
+    else if (r->partner == TL_NO_ID)
+        lua_pushfstring(L, "block %I controls the step: %s", (lua_Integer)r->block, numbers);
+    else
+        lua_pushfstring(L, "block %I controls the step, with the stiffest contact at block %I: %s",
+                        (lua_Integer)r->block, (lua_Integer)r->partner, numbers);
 }
 
 /* ---------------------------------------------------------------- report ----------------- */

@@ -42,13 +42,6 @@ typedef struct run {
 
 static run *current;
 
-void tl_lua_log(void *user, const char *text)
-{
-    const tl_lua_options *options = user;
-    if (!options->quiet)
-        fprintf(stderr, "%stalus: %s\n", isatty(STDERR_FILENO) ? "\r\033[K" : "", text);
-}
-
 #define NANOSECOND 1e-9
 
 static double now(void)
@@ -141,7 +134,7 @@ static void push_result_room(lua_State *L, int model_index, int32_t measure)
     lua_pushstring(L, tl_ratio_measure_name((tl_ratio_measure)measure));
     lua_setfield(L, -2, "measure");
     for (size_t i = 0; i < sizeof result_blocks / sizeof result_blocks[0]; i++) {
-        tl_lua_item_push(L, &tl_lua_block_kind, model_index, TL_NO_ID);
+        tl_lua_item_push(L, TL_LUA_BLOCK, model_index, TL_NO_ID);
         lua_setfield(L, -2, result_blocks[i]);
     }
 }

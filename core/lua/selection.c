@@ -18,13 +18,13 @@ tl_lua_selection *tl_lua_selection_push(lua_State *L, const tl_lua_kind *kind, i
     return selection;
 }
 
-tl_lua_selection *tl_lua_selection_of(lua_State *L, int index, const tl_lua_kind *kind,
+tl_lua_selection *tl_lua_selection_of(lua_State *L, const char *type, const char *items,
                                       const char *method)
 {
-    tl_lua_selection *selection = luaL_testudata(L, index, kind->selection_type);
+    tl_lua_selection *selection = luaL_testudata(L, 1, type);
     if (!selection)
         tl_lua_fail(L, "%s: called on %s, not on a selection of %s; write selection:%s(...)",
-                    method, tl_lua_describe(L, index), kind->items, method);
+                    method, tl_lua_describe(L, 1), items, method);
     return selection;
 }
 
@@ -32,7 +32,7 @@ tl_lua_selection *tl_lua_selection_of(lua_State *L, int index, const tl_lua_kind
 static tl_lua_selection *self(lua_State *L, const char *method)
 {
     const tl_lua_kind *kind = lua_touserdata(L, lua_upvalueindex(1));
-    return tl_lua_selection_of(L, 1, kind, method);
+    return tl_lua_selection_of(L, kind->selection_type, kind->items, method);
 }
 
 static int selection_collect(lua_State *L)
@@ -146,7 +146,7 @@ void tl_lua_selection_filter(lua_State *L, int selection_index, int function_ind
     for (size_t i = 0; i < selection->count; i++) {
         tl_id id = selection->ids[i];
         lua_pushvalue(L, function_index);
-        tl_lua_item_push(L, selection->kind, model_index, id);
+        tl_lua_item_push(L, selection->kind->item_type, model_index, id);
         lua_call(L, 1, 1);
         if (lua_toboolean(L, -1))
             selection->ids[kept++] = id;
@@ -201,7 +201,7 @@ static int selection_index(lua_State *L)
         if (i < 1 || (lua_Unsigned)i > selection->count)
             return 0;
         lua_getiuservalue(L, 1, 1);
-        tl_lua_item_push(L, selection->kind, 3, selection->ids[i - 1]);
+        tl_lua_item_push(L, selection->kind->item_type, 3, selection->ids[i - 1]);
         return 1;
     }
     lua_pushvalue(L, 2);

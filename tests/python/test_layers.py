@@ -28,10 +28,6 @@ ROOMS = {
 # Rooms of which a header declares the functions of the source of its name, or types only, in fewer lines than
 # MAX_HEADER_LINES, and no file includes one that includes it back.
 MODULES = ("narrow", "contact", "detect", "force", "query")
-# Files that need each other, by what they call or include. Others must not; these are to go.
-KNOWN_CIRCLES = {
-    "lua": {"action block contact cost help item model module quality run selection topics"},
-}
 # Public header -> public headers it may include.
 PUBLIC = {
     "types.h": set(),
@@ -217,15 +213,8 @@ def circles(graph):
 def check_circles(root):
     for folder in sorted((root / "core").glob("*")):
         if folder.name in ROOMS and folder.is_dir():
-            for circle in sorted(circles(room_graph(folder)) - KNOWN_CIRCLES.get(folder.name, set())):
+            for circle in sorted(circles(room_graph(folder))):
                 yield f"core/{folder.name}", f"files that need each other: {circle}"
-
-
-def check_known_circles(root):
-    """What is opened is to be taken from the list."""
-    for room, known in KNOWN_CIRCLES.items():
-        for circle in sorted(known - circles(room_graph(root / "core" / room))):
-            yield f"core/{room}", f"no longer a circle, take it from KNOWN_CIRCLES: {circle}"
 
 
 def check_words(text):
@@ -357,7 +346,7 @@ def main():
     blind = [*check_the_checks()]
     for fault in blind:
         print(f"test_layers.py: {fault}")
-    faults = check_tree(ROOT) + [*check_known_circles(ROOT)]
+    faults = check_tree(ROOT)
     for name, sentence in faults:
         print(f"{name}: {sentence}")
     files = sum(1 for _ in source_files(ROOT))

@@ -1,0 +1,51 @@
+/* living.c - what all of the front end asks of a Lua state: its options, the model behind an object, its errors and remarks. */
+#include "front.h"
+
+#include <stdio.h>
+#include <unistd.h>
+
+tl_lua_options *tl_lua_options_of(lua_State *L)
+{
+    /* Only the address is used: it is a key no one else can have. */
+    static const char key;
+    if (lua_rawgetp(L, LUA_REGISTRYINDEX, &key) == LUA_TNIL) {
+        tl_lua_options *fresh = lua_newuserdatauv(L, sizeof *fresh, 0);
+        *fresh = (tl_lua_options){0};
+        lua_rawsetp(L, LUA_REGISTRYINDEX, &key);
+        lua_pop(L, 1);
+        return fresh;
+    }
+    tl_lua_options *options = lua_touserdata(L, -1);
+    lua_pop(L, 1);
+    return options;
+}
+
+void tl_lua_log(void *user, const char *text)
+{
+    const tl_lua_options *options = user;
+    if (!options->quiet)
+        fprintf(stderr, "%stalus: %s\n", isatty(STDERR_FILENO) ? "\r\033[K" : "", text);
+}
+
+tl_model *tl_lua_model_of(lua_State *L, const char *method)
+{
+    tl_lua_model *object = luaL_testudata(L, 1, TL_LUA_MODEL_TYPE);
+    if (!object)
+        tl_lua_fail(L, "%s: called on %s; write model:%s(...)", method, tl_lua_describe(L, 1),
+                    method);
+    return tl_lua_living(L, object);
+}
+
+tl_model *tl_lua_living(lua_State *L, const tl_lua_model *owner)
+{
+    if (!owner->model)
+        tl_lua_fail(L, "the model was closed");
+    tl_lua_interrupt_check(L); /* in a coroutine no hook tells */
+    return owner->model;
+}
+
+void tl_lua_ok(lua_State *L, tl_model *model, tl_status status)
+{
+    if (status != TL_OK)
+        tl_lua_raise(L, tl_model_error(model));
+}
