@@ -408,7 +408,8 @@ static bool touches_still(tl_model *m, uint32_t c)
 bool tl_contact_stands(const tl_model *m, uint32_t c)
 {
     const tl_contacts *contacts = &m->detect->contacts;
-    return contacts->pending[c] == TL_PENDING_DIE ||
+    /* one that wants room is made when it has got it */
+    return contacts->pending[c] == TL_PENDING_DIE || contacts->pending[c] == TL_PENDING_GROW ||
            (m->config.reuse_geometry &&
             tl_pair_odometer(m, contacts->a[c], contacts->b[c]) <= contacts->points_valid_to[c]);
 }
