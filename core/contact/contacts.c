@@ -187,7 +187,7 @@ static void copy_contact(tl_detect *d, uint32_t from, uint32_t to)
         memcpy((char *)tl_table_data(&fresh->table, k) + to * size,
                (const char *)tl_table_data(&c->table, k) + from * size, size);
     }
-    bool grows = c->pending[from] == TL_PENDING_GROW;
+    bool grows = tl_pending_waits(c->pending[from]);
     fresh->point_room[to] = grows ? (uint16_t)wanted_points(d, from) : c->point_count[from];
 }
 

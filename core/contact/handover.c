@@ -220,7 +220,7 @@ static void put_on_field(tl_model *m, uint32_t c, const shear *s, double energy,
                    tl_v3_scale(radius > 0 ? torsion / radius : 0, s->normal));
 }
 
-void tl_contact_hand_over(tl_model *m, uint32_t c, const tl_manifold *g,
+void tl_contact_hand_over(tl_model *m, uint32_t c, const tl_manifold *g, bool reframed,
                           const tl_point_lanes *lanes)
 {
     tl_contacts *contacts = &m->detect->contacts;
@@ -252,6 +252,10 @@ void tl_contact_hand_over(tl_model *m, uint32_t c, const tl_manifold *g,
     for (size_t k = 0; k < (field ? 1 : g->point_count); k++)
         area += g->points[k].area;
     tl_vec3 centre = centre_of(m, c, lanes), arm = arm_of_old(m, c, old.centre, centre);
+    if (reframed) {
+        old.torsion = 0;
+        arm = tl_v3(0, 0, 0);
+    }
     shear now = carried(&old, area, contacts->facet[c].last, arm);
     now.centre = centre;
     if (field)

@@ -6,9 +6,10 @@
 #include "model/model.h"
 #include "narrow/narrow.h"
 
-/* Puts the manifold's points in the place of the contact's, one of which is a field's, and notes the press of a field. Total
- * shear force and torsion are kept, or go down with the area. The points fit into the contact's room. */
-void tl_contact_hand_over(tl_model *m, uint32_t contact, const tl_manifold *manifold,
+/* Puts the manifold's points in the place of the contact's, one of which is a field's, and notes the press of a field. Force
+ * and moment of the shear are kept as far as the energy of its springs goes; the moment is lost where the old points are
+ * `reframed`, in frames that are no more. The points fit into the contact's room. */
+void tl_contact_hand_over(tl_model *m, uint32_t contact, const tl_manifold *manifold, bool reframed,
                           const tl_point_lanes *lanes);
 /* Puts the manifold of a field contact in the place of what it was. */
 void tl_contact_refit_field(tl_model *m, uint32_t contact, const tl_manifold *manifold);

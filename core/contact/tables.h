@@ -50,8 +50,15 @@ typedef struct tl_press_row {
     bool flush, listed;
 } tl_press_row;
 
-/* MOVE: its points belong in another run. */
-enum { TL_PENDING_NONE, TL_PENDING_GROW, TL_PENDING_DIE, TL_PENDING_MOVE };
+/* GROW: it waits for room for its points; REFRAME: besides, its old points are in frames that are no more. MOVE: its points
+ * belong in another run. */
+enum { TL_PENDING_NONE, TL_PENDING_GROW, TL_PENDING_REFRAME, TL_PENDING_DIE, TL_PENDING_MOVE };
+
+/* Whether a contact waits for room for its points. */
+static inline bool tl_pending_waits(uint8_t pending)
+{
+    return pending == TL_PENDING_GROW || pending == TL_PENDING_REFRAME;
+}
 
 /* Which of the two limits an overlap is beyond: that of a contact that is born so, or that of one that has sunk in. */
 enum { TL_DEEP_NOT, TL_DEEP_BORN, TL_DEEP_SUNK };

@@ -298,9 +298,9 @@ static tl_status fill_contacts(tl_model *m, bool *more)
     for (uint32_t row = 0; row < c->table.rows; row++) {
         if (c->pending[row] == TL_PENDING_NONE)
             continue;
-        if (c->pending[row] == TL_PENDING_GROW && !tl_contact_fill(m, row))
+        if (tl_pending_waits(c->pending[row]) && !tl_contact_fill(m, row))
             return tl_fail_memory(&m->error);
-        if (c->pending[row] == TL_PENDING_GROW) {
+        if (tl_pending_waits(c->pending[row])) {
             *more = true;
             continue;
         }

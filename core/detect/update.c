@@ -121,15 +121,16 @@ static bool is_calm(const tl_model *m, uint32_t c, const tl_press_row *row)
     return tl_v3_norm(tl_v3_add(by.way, there)) + size * tl_v3_norm(by.turn) < TL_STILL * size;
 }
 
-static tl_manifold_before before_of(const tl_model *m, uint32_t c)
+/* What is known of a contact before. One whose bodies have got other frames stays what it is until its points are in these. */
+static tl_manifold_before before_of(const tl_model *m, uint32_t c, bool reframed)
 {
     const tl_contacts *contacts = &m->detect->contacts;
     const tl_press_row *row = press_of(m, c);
     tl_manifold_before out = {.facet = contacts->facet[c]};
     bool patch = out.facet.kind == TL_FACET_PATCH && contacts->point_count[c] > 0;
-    out.holds = patch && (contacts->across[c] || may_hold(m, c));
+    out.holds = patch && (reframed || contacts->across[c] || may_hold(m, c));
     if (row) {
-        out.calm = is_calm(m, c, row);
+        out.calm = !reframed && is_calm(m, c, row);
         out.shift = row->shift;
         out.shifted = row->shifted;
     }
@@ -216,13 +217,13 @@ static bool find(tl_model *m, uint32_t c, tl_narrow *room)
         return false;
     uint64_t bounding = 0;
     region.bounding = &bounding;
-    tl_manifold_before before = before_of(m, c);
+    tl_manifold_before before = before_of(m, c, room->reframed);
     tl_tag tag = tl_touching_tag(&view, region.n);
     tl_touch_rule rule = tl_touch_rule_of(m, &view, tag, before.holds);
     const tl_manifold *g = &room->manifold;
     if (!tl_manifold_find(&view, &region, &rule, &before, room))
         return false;
-    contacts->faces_valid_to[c] = odometer + g->valid;
+    contacts->faces_valid_to[c] = room->reframed ? -INFINITY : odometer + g->valid;
     if (g->point_count == 0 && !is_near(&view, region.gap, &way)) {
         part(m, c, way);
         return true;
@@ -245,7 +246,7 @@ static bool follow_field(tl_model *m, uint32_t c, tl_narrow *room, bool *failed)
         return false;
     tl_pair_view view = tl_pair_view_of(m, contacts->a[c], contacts->b[c]);
     tl_touch_rule rule = tl_touch_rule_of(m, &view, contacts->tag[c], false);
-    tl_manifold_before before = before_of(m, c);
+    tl_manifold_before before = before_of(m, c, false);
     tl_region region = kept_region(row);
     *failed = !tl_pair_place(&view, room);
     if (*failed)
@@ -268,7 +269,7 @@ static void note_manifold(tl_contacts *contacts, uint32_t c, const tl_manifold *
 }
 
 /* Asks for room for a manifold, or for a place in another run, unless the contact has them. */
-static bool wants_room(tl_detect *d, uint32_t c, const tl_manifold *g)
+static bool wants_room(tl_detect *d, uint32_t c, const tl_manifold *g, bool reframed)
 {
     tl_contacts *contacts = &d->contacts;
     bool field = g->facet.kind == TL_FACET_FIELD;
@@ -279,7 +280,7 @@ static bool wants_room(tl_detect *d, uint32_t c, const tl_manifold *g)
         return false;
     contacts->field[c] = field;
     d->pairs[contacts->pair[c]].want_points = (uint16_t)g->point_count;
-    contacts->pending[c] = TL_PENDING_GROW;
+    contacts->pending[c] = reframed ? TL_PENDING_REFRAME : TL_PENDING_GROW;
     return true;
 }
 
@@ -289,7 +290,7 @@ static bool take_manifold(tl_model *m, uint32_t c, tl_narrow *room, const tl_poi
     tl_detect *d = m->detect;
     tl_manifold *g = &room->manifold;
     note_manifold(&d->contacts, c, g);
-    if (wants_room(d, c, g))
+    if (wants_room(d, c, g, room->reframed))
         return true;
     if (g->point_count == 0)
         g->facet = d->contacts.facet[c];
@@ -298,7 +299,7 @@ static bool take_manifold(tl_model *m, uint32_t c, tl_narrow *room, const tl_poi
             g->facet.kind == TL_FACET_FIELD || d->contacts.facet[c].kind == TL_FACET_FIELD;
         if (!fields)
             return tl_contact_transfer(m, c, room, lanes);
-        tl_contact_hand_over(m, c, g, lanes);
+        tl_contact_hand_over(m, c, g, room->reframed, lanes);
     } else if (g->facet.kind == TL_FACET_FIELD) {
         if (g->point_count > 0)
             tl_contact_refit_field(m, c, g);
@@ -387,9 +388,6 @@ static bool touches_still(tl_model *m, uint32_t c)
     /* -INFINITY: its rules are others now */
     if (contacts->point_count[c] || contacts->points_valid_to[c] == -INFINITY)
         return false;
-    /* the room it wants is in the place of the faces */
-    if (contacts->pending[c] == TL_PENDING_GROW)
-        return false;
     tl_pair_view view = tl_pair_view_of(m, contacts->a[c], contacts->b[c]);
     if (tl_touch_rule_of(m, &view, contacts->tag[c], false).least > 0)
         return false;
@@ -409,7 +407,7 @@ bool tl_contact_stands(const tl_model *m, uint32_t c)
 {
     const tl_contacts *contacts = &m->detect->contacts;
     /* one that wants room is made when it has got it */
-    return contacts->pending[c] == TL_PENDING_DIE || contacts->pending[c] == TL_PENDING_GROW ||
+    return contacts->pending[c] == TL_PENDING_DIE || tl_pending_waits(contacts->pending[c]) ||
            (m->config.reuse_geometry &&
             tl_pair_odometer(m, contacts->a[c], contacts->b[c]) <= contacts->points_valid_to[c]);
 }
@@ -462,7 +460,6 @@ void tl_contact_reframe(tl_model *m, uint32_t c, unsigned thread)
     tl_narrow *room = &m->detect->narrow[thread];
     if (contacts->pending[c] == TL_PENDING_DIE)
         return;
-    contacts->faces_valid_to[c] = -INFINITY;
     room->reframed = true;
     make_anew(m, c, thread);
     room->reframed = false;
@@ -475,10 +472,14 @@ bool tl_contact_fill(tl_model *m, uint32_t c)
     if (contacts->field[c] && contacts->press[c] == TL_NO_ROW &&
         (contacts->press[c] = tl_press_take(d)) == TL_NO_ROW)
         return false;
+    uint8_t pending = contacts->pending[c];
     contacts->pending[c] = TL_PENDING_NONE;
-    if (!make_anew(m, c, 0)) {
+    d->narrow[0].reframed = pending == TL_PENDING_REFRAME;
+    bool made = make_anew(m, c, 0);
+    d->narrow[0].reframed = false;
+    if (!made) {
         d->narrow[0].failed = false; /* the caller tells */
-        contacts->pending[c] = TL_PENDING_GROW;
+        contacts->pending[c] = pending;
         return false;
     }
     if (contacts->pending[c] == TL_PENDING_NONE)
