@@ -133,6 +133,21 @@ SCENE_UNUSED static void scene_pair_free(scene_pair *p)
     tl_poly_free(p->b);
 }
 
+/* Minus the gradient of an energy of `user` by the moves, or turns, of B along or about the axes, by differences of fourth
+ * order over h. */
+SCENE_UNUSED static tl_vec3 scene_minus_gradient(double (*energy)(void *user, int axis, double way,
+                                                                  bool turned),
+                                                 void *user, double h, bool turned)
+{
+    double out[3];
+    for (int k = 0; k < 3; k++) {
+        double near = energy(user, k, h, turned) - energy(user, k, -h, turned);
+        double far = energy(user, k, 2 * h, turned) - energy(user, k, -2 * h, turned);
+        out[k] = -(8 * near - far) / (12 * h);
+    }
+    return tl_v3(out[0], out[1], out[2]);
+}
+
 /* ---------------------------------------------------------------- models ----------------- */
 
 static inline void scene_hush(void *user, const char *text)

@@ -12,6 +12,7 @@
 #include "contact/detection.h"
 #include "contact/places.h"
 #include "contact/points.h"
+#include "contact/presses.h"
 #include "contact/shear.h"
 
 /* Shear of a contact: force, and torsion about its normal through a centre. */
@@ -26,12 +27,6 @@ typedef struct shear {
 static double energy_of(double f2, double area)
 {
     return area > 0 ? f2 / area : 0;
-}
-
-static tl_press_row *press_of(const tl_model *m, uint32_t c)
-{
-    uint32_t row = m->detect->contacts.press[c];
-    return row == TL_NO_ROW ? NULL : &m->detect->press[row];
 }
 
 /* An arm of a contact before A's last turn. The forces are as they were then: so must the arms be, or the torsion is
@@ -82,13 +77,13 @@ static shear shear_of(const tl_model *m, uint32_t c, const tl_point_lanes *lanes
         size_t torsion = tl_point_row(contacts, c, TL_FIELD_TORSION);
         out.area = p->area[torsion];
         out.force = tl_columns_get(p->f_s, first);
-        out.torsion =
-            press_of(m, c)->press.radius * tl_v3_dot(f->last, tl_columns_get(p->f_s, torsion));
+        out.torsion = tl_press_row_of(m, c)->press.radius *
+                      tl_v3_dot(f->last, tl_columns_get(p->f_s, torsion));
         for (size_t k = 0; k < TL_FIELD_POINTS; k++) {
             size_t i = tl_point_row(contacts, c, k);
             out.energy += energy_of(tl_v3_norm2(tl_columns_get(p->f_s, i)), p->area[i]);
         }
-        out.energy += press_of(m, c)->spare[0] + press_of(m, c)->spare[1];
+        out.energy += tl_press_row_of(m, c)->spare[0] + tl_press_row_of(m, c)->spare[1];
         return out;
     }
     for (size_t k = 0; k < count; k++) {
@@ -224,7 +219,7 @@ void tl_contact_hand_over(tl_model *m, uint32_t c, const tl_manifold *g, bool re
                           const tl_point_lanes *lanes)
 {
     tl_contacts *contacts = &m->detect->contacts;
-    tl_press_row *row = press_of(m, c);
+    tl_press_row *row = tl_press_row_of(m, c);
     bool was_patch = contacts->facet[c].kind == TL_FACET_PATCH;
     tl_contact_places(m, c, lanes);
     shear old = shear_of(m, c, lanes);
@@ -283,7 +278,7 @@ static void refit_springs(tl_model *m, uint32_t c, const tl_manifold *g)
 {
     tl_contacts *contacts = &m->detect->contacts;
     tl_points_table *p = &m->detect->points;
-    tl_press_row *row = press_of(m, c);
+    tl_press_row *row = tl_press_row_of(m, c);
     size_t first = tl_point_row(contacts, c, TL_FIELD_SHEAR);
     size_t torsion = tl_point_row(contacts, c, TL_FIELD_TORSION);
     double old = p->area[torsion], area = g->points[0].area;
@@ -313,7 +308,7 @@ void tl_contact_refit_field(tl_model *m, uint32_t c, const tl_manifold *g)
 {
     tl_contacts *contacts = &m->detect->contacts;
     tl_points_table *p = &m->detect->points;
-    tl_press_row *row = press_of(m, c);
+    tl_press_row *row = tl_press_row_of(m, c);
     tl_vec3 last = contacts->facet[c].last;
     double area = p->area[tl_point_row(contacts, c, TL_FIELD_TORSION)];
     /* what is found again in the same place stays what it is, to the bit */

@@ -53,21 +53,18 @@ static bool reserve(tl_narrow *room, size_t count)
     return true;
 }
 
-/* Points of patches that are remade have gone along with their features in the last step: those of A's face with A, in whose
- * frame they are, those of B's with B. */
+/* Old points have gone along with A, in whose frame they are. */
 static void read_old(const tl_model *m, uint32_t c, tl_narrow *room, const tl_point_lanes *lanes)
 {
     const tl_contacts *contacts = &m->detect->contacts;
     const tl_points_table *p = &m->detect->points;
     tl_contact_places(m, c, lanes);
-    for (uint32_t j = 0; j < contacts->point_count[c]; j++) {
-        room->old[j].arm = tl_columns_get(lanes->arm, j);
-        room->old[j].normal = contacts->facet[c].last;
-    }
     for (size_t k = 0; k < contacts->point_count[c]; k++) {
         size_t i = tl_point_row(contacts, c, k);
         double per_area = p->area[i] > 0 ? 1 / p->area[i] : 0;
         old_point *o = &room->old[k];
+        o->arm = tl_columns_get(lanes->arm, k);
+        o->normal = contacts->facet[c].last;
         o->shear = tl_v3_scale(per_area, tl_columns_get(p->f_s, i));
         o->area = p->area[i];
         o->f_n = per_area * p->f_n[i];

@@ -87,12 +87,6 @@ static void refit(tl_model *m, uint32_t c, const tl_manifold *g)
 
 /* ---------------------------------------------------------------- looking at all ---------- */
 
-static tl_press_row *press_of(const tl_model *m, uint32_t c)
-{
-    uint32_t row = m->detect->contacts.press[c];
-    return row == TL_NO_ROW ? NULL : &m->detect->press[row];
-}
-
 /* Whether some point may carry a force across a gap: the walls were together when it was made, and no bond of it has
  * failed. */
 static bool may_hold(const tl_model *m, uint32_t c)
@@ -125,7 +119,7 @@ static bool is_calm(const tl_model *m, uint32_t c, const tl_press_row *row)
 static tl_manifold_before before_of(const tl_model *m, uint32_t c, bool reframed)
 {
     const tl_contacts *contacts = &m->detect->contacts;
-    const tl_press_row *row = press_of(m, c);
+    const tl_press_row *row = tl_press_row_of(m, c);
     tl_manifold_before out = {.facet = contacts->facet[c]};
     bool patch = out.facet.kind == TL_FACET_PATCH && contacts->point_count[c] > 0;
     out.holds = patch && (reframed || contacts->across[c] || may_hold(m, c));
@@ -230,8 +224,8 @@ static bool find(tl_model *m, uint32_t c, tl_narrow *room)
     }
     check_depth(m, c, &view, &region, room);
     note_tag(m, c, tag);
-    if (press_of(m, c))
-        keep_region(press_of(m, c), &region);
+    if (tl_press_row_of(m, c))
+        keep_region(tl_press_row_of(m, c), &region);
     return true;
 }
 
@@ -239,7 +233,7 @@ static bool find(tl_model *m, uint32_t c, tl_narrow *room)
 static bool follow_field(tl_model *m, uint32_t c, tl_narrow *room, bool *failed)
 {
     const tl_contacts *contacts = &m->detect->contacts;
-    tl_press_row *row = press_of(m, c);
+    tl_press_row *row = tl_press_row_of(m, c);
     if (!row || !row->listed || contacts->facet[c].kind != TL_FACET_FIELD ||
         contacts->point_count[c] == 0 || contacts->deep[c] != TL_DEEP_NOT ||
         tl_pair_odometer(m, contacts->a[c], contacts->b[c]) > contacts->faces_valid_to[c])

@@ -1,29 +1,5 @@
 /* only_unknown.c - one kind, of a type that no host knows. */
-#include <talus/plugin.h>
-
-typedef struct params {
-    double value;
-} params;
-
-static const tl_param param_table[] = {
-    TL_PARAM(TL_PARAM_REAL, params, value, "Pa", "some value", .def = {1}, .min = 0, .max = 2),
-};
-
-static tl_status update(const void *self, const tl_law_batch *batch, tl_report *report)
-{
-    (void)self;
-    (void)batch;
-    (void)report;
-    return TL_OK;
-}
-
-static void stiffness(const void *self, double *kn, double *ks)
-{
-    (void)self;
-    *kn = *ks = 1;
-}
-
-static const tl_law_ops ops = {.size = sizeof ops, .update = update, .stiffness = stiffness};
+#include "plain_law.h"
 
 static const tl_kind kind = {
     .size = sizeof kind,

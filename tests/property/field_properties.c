@@ -100,8 +100,9 @@ static tl_vec3 axis_of(int k)
 }
 
 /* Energy after B has been moved along an axis, or turned about the origin, by some way. */
-static double energy_after(scene *s, int axis, double way, bool turned)
+static double energy_after(void *user, int axis, double way, bool turned)
 {
+    scene *s = user;
     const tl_quat turn = s->pair.turn;
     const tl_vec3 shift = s->pair.shift;
     if (turned) {
@@ -115,18 +116,6 @@ static double energy_after(scene *s, int axis, double way, bool turned)
     s->pair.turn = turn;
     s->pair.shift = shift;
     return out;
-}
-
-/* Minus the gradient of the energy, by differences of fourth order. */
-static tl_vec3 minus_gradient(scene *s, double h, bool turned)
-{
-    double out[3];
-    for (int k = 0; k < 3; k++) {
-        double near = energy_after(s, k, h, turned) - energy_after(s, k, -h, turned);
-        double far = energy_after(s, k, 2 * h, turned) - energy_after(s, k, -2 * h, turned);
-        out[k] = -(8 * near - far) / (12 * h);
-    }
-    return tl_v3(out[0], out[1], out[2]);
 }
 
 static tl_poly *shape_of(uint64_t *seed, int kind)
@@ -212,7 +201,8 @@ static double worst;
 static double off_by(scene *s, const tl_field_sums *sums, double h)
 {
     double force = tl_v3_norm(sums->force), size = s->pair.view.size;
-    tl_vec3 g = minus_gradient(s, h * size, false), m = minus_gradient(s, h, true);
+    tl_vec3 g = scene_minus_gradient(energy_after, s, h * size, false),
+            m = scene_minus_gradient(energy_after, s, h, true);
     return fmax(tl_v3_norm(tl_v3_sub(g, sums->force)) / force,
                 tl_v3_norm(tl_v3_sub(m, sums->moment)) / (force * size));
 }

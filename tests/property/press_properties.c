@@ -32,8 +32,9 @@ static tl_vec3 axis_of(int k)
     return tl_v3(k == 0, k == 1, k == 2);
 }
 
-static double energy_after(scene *s, int axis, double way, bool turned)
+static double energy_after(void *user, int axis, double way, bool turned)
 {
+    scene *s = user;
     const tl_quat turn = s->pair.turn;
     const tl_vec3 shift = s->pair.shift;
     if (turned) {
@@ -49,21 +50,11 @@ static double energy_after(scene *s, int axis, double way, bool turned)
     return out;
 }
 
-static tl_vec3 minus_gradient(scene *s, double h, bool turned)
-{
-    double out[3];
-    for (int k = 0; k < 3; k++) {
-        double near = energy_after(s, k, h, turned) - energy_after(s, k, -h, turned);
-        double far = energy_after(s, k, 2 * h, turned) - energy_after(s, k, -2 * h, turned);
-        out[k] = -(8 * near - far) / (12 * h);
-    }
-    return tl_v3(out[0], out[1], out[2]);
-}
-
 static double off_by(scene *s, const tl_press *press, double h)
 {
     double force = tl_v3_norm(press->force), size = s->pair.view.size;
-    tl_vec3 g = minus_gradient(s, h * size, false), m = minus_gradient(s, h, true);
+    tl_vec3 g = scene_minus_gradient(energy_after, s, h * size, false),
+            m = scene_minus_gradient(energy_after, s, h, true);
     return fmax(tl_v3_norm(tl_v3_sub(g, press->force)) / force,
                 tl_v3_norm(tl_v3_sub(m, press->moment)) / (force * size));
 }
