@@ -8,6 +8,11 @@
  * between two cells, G = sum |n_i - n_j| / 2 int d^2 dS and V = sum |n_i - n_j| int d dS, and over the borders. No term
  * between cells is negative.
  *
+ * Mostly a corner, an edge or a face is pressed in, and all planes of a block that bound K meet in one point x_0, its apex.
+ * There d is homogeneous about x_0 in the cells of this block: (x - x_0) d has the divergence 4 d, x - x_0 has 3, and on the
+ * faces both are tangents. So S alone gives the block's share in G, int d (x - x_0) . n dS / 4, and the polygons between its
+ * cells are not needed.
+ *
  * Without borders a face has a cell only if it bounds K: from any point of its cell the way along its normal stays in K to the
  * face. So the faces that bounded K at another time are enough for all polygons, while they still enclose K and nothing else:
  * while no corner of what they enclose lies beyond another face. Corners on faces of both blocks lie on S, where d = 0, and are
@@ -53,6 +58,13 @@ static tl_vec3 lane_vector(const double v[3][LANES], int lane)
 
 /* ---------------------------------------------------------------- work ------------------- */
 
+/* A point in which the planes of a block meet, and normals that hold it in them, at right angles to each other. */
+typedef struct apex {
+    tl_vec3 x, held[3];
+    int count;
+    bool known;
+} apex;
+
 /* Integrals of polygons, eight at a time. */
 typedef struct work {
     const tl_field_faces *faces;
@@ -68,6 +80,8 @@ typedef struct work {
     int filled;
     uint32_t face[LANES], with[LANES]; /* the polygon's two planes */
     double length[LANES]; /* |n_a - n_b|; of a border minus the cosine of both planes */
+    apex apex[2];         /* of A and of B */
+    double by_force, by_swept; /* of S: int d x . n dS, int x . n dS */
 } work;
 
 static bool make_room(tl_field_room *room, uint32_t count)
@@ -125,6 +139,51 @@ static void choose(work *w, const uint64_t *mask)
     w->beyond = false;
 }
 
+/* ---------------------------------------------------------------- apex ------------------- */
+
+/* What of a direction does not leave the planes that hold an apex. */
+static tl_vec3 within(const apex *p, tl_vec3 way)
+{
+    for (int i = 0; i < p->count; i++)
+        way = tl_v3_madd(way, -tl_v3_dot(p->held[i], way), p->held[i]);
+    return way;
+}
+
+/* Finds a point in which the chosen faces of a block meet. From the origin, it goes on to one plane after the other, along
+ * those before. */
+static apex find_apex(const work *w, uint32_t begin, uint32_t end)
+{
+    const tl_field_faces *f = w->faces;
+    apex p = {.known = true};
+    for (uint32_t k = begin; k < end && p.count < 3; k++) {
+        tl_vec3 n = normal_of(f, w->number[k]), way = within(&p, n);
+        double sine2 = tl_v3_norm2(way);
+        if (sine2 > STEEP * STEEP) {
+            p.x = tl_v3_madd(p.x, (f->c[w->number[k]] - tl_v3_dot(n, p.x)) / sine2, way);
+            p.held[p.count++] = tl_v3_unit(way);
+        }
+    }
+    for (uint32_t k = begin; k < end && p.known; k++) {
+        tl_vec3 n = normal_of(f, w->number[k]);
+        p.known = fabs(f->c[w->number[k]] - tl_v3_dot(n, p.x)) <= w->one_plane &&
+                  tl_v3_norm(within(&p, n)) < ALIKE;
+    }
+    return p;
+}
+
+/* Adds energy and volume of the cells of a block with an apex. Of the points that it may be, that nearest the centre of
+ * pressure is taken: roundings of the force count by the way from there. */
+static void add_share(work *w, const apex *p, double out)
+{
+    tl_field_sums *sums = w->sums;
+    if (!p->known || !(sums->pressure > 0))
+        return;
+    tl_vec3 centre = tl_v3_scale(1 / sums->pressure, sums->pressed);
+    tl_vec3 x = tl_v3_add(p->x, within(p, tl_v3_sub(centre, p->x)));
+    sums->energy += 0.25 * out * (tl_v3_dot(x, sums->force) - w->by_force);
+    sums->volume += (1.0 / 3) * out * (tl_v3_dot(x, sums->swept) - w->by_swept);
+}
+
 /* ---------------------------------------------------------------- sums ------------------- */
 
 /* Integrals of 1, d, d^2, d x_t and d x_s over a lane's polygon, times its share. */
@@ -179,12 +238,29 @@ static void add_gradient(work *w, int l, const depths *o, double sign)
     sums->swept_moment = tl_v3_madd(sums->swept_moment, -part * p->it[l] - sign * ot * o->area, s);
 }
 
+/* Adds what a polygon of S gives of the energy and volume of the cells on its sides, unless the block has an apex. */
+static void add_sides(work *w, int l, const depths *o)
+{
+    const tl_vec3 n = lane_vector(w->lanes.n, l);
+    w->by_force += w->lanes.h[l] * o->d;
+    w->by_swept += w->lanes.h[l] * o->area;
+    const uint32_t face[] = {w->face[l], w->with[l]};
+    for (int of_b = 0; of_b < 2; of_b++) {
+        if (w->apex[of_b].known)
+            continue;
+        double slope = (of_b ? -1 : 1) * tl_v3_dot(n, normal_of(w->faces, face[of_b]));
+        w->sums->energy += 0.5 * slope * o->dd;
+        w->sums->volume += slope * o->d;
+    }
+}
+
 /* A polygon of S. */
 static void add_surface(work *w, int l, const depths *o)
 {
     const tl_field_lanes *p = &w->lanes;
     tl_field_sums *sums = w->sums;
     double part = p->share[l], ot = p->origin_t[l], os = p->origin_s[l];
+    add_sides(w, l, o);
     add_gradient(w, l, o, 1);
     sums->area = tl_v3_madd(sums->area, o->area, lane_vector(p->n, l));
     sums->pressure += o->d;
@@ -218,12 +294,14 @@ static void take(work *w, int l)
 {
     const tl_field_faces *f = w->faces;
     const depths o = depths_of(&w->lanes, l);
+    if (w->face[l] < f->a && w->with[l] >= f->a && w->with[l] < real_faces(f)) {
+        add_surface(w, l, &o);
+        return;
+    }
     w->sums->volume += w->length[l] * o.d;
     w->sums->energy += 0.5 * w->length[l] * o.dd;
     if (w->with[l] >= real_faces(f))
         add_border(w, l, &o);
-    else if (w->face[l] < f->a && w->with[l] >= f->a)
-        add_surface(w, l, &o);
 }
 
 /* ---------------------------------------------------------------- polygons --------------- */
@@ -286,22 +364,32 @@ static void put_between(work *w, uint32_t a, uint32_t b)
         put(w, tl_v3_scale(1 / length, m), (f->c[a] - f->c[b]) / length, a, b, length);
 }
 
-/* The polygons between the cells of the chosen faces, and at borders. */
-static void integrate(work *w)
+/* The polygons between the cells of the chosen faces, of which all may be known to bound K, and at borders. */
+static void integrate(work *w, bool only_bounding)
 {
     const tl_field_faces *f = w->faces;
-    const uint16_t *i = w->number, *end = i + w->planes.count;
+    const uint16_t *number = w->number;
+    uint32_t a = 0, real = 0;
     *w->sums = (tl_field_sums){0};
     w->flat = false;
-    for (; i < end && *i < real_faces(f); i++)
-        for (const uint16_t *j = i + 1; j < end && *j < real_faces(f); j++)
-            put_between(w, *i, *j);
+    while (real < w->planes.count && number[real] < real_faces(f))
+        a += number[real++] < f->a;
+    /* a face that bounds nothing of K may be far from it, and so would the apex be */
+    w->apex[0] = only_bounding ? find_apex(w, 0, a) : (apex){0};
+    w->apex[1] = only_bounding ? find_apex(w, a, real) : (apex){0};
+    w->by_force = w->by_swept = 0;
+    for (uint32_t i = 0; i < real; i++)
+        for (uint32_t j = i + 1; j < real; j++)
+            if ((i < a) != (j < a) || !w->apex[i >= a].known)
+                put_between(w, number[i], number[j]);
     for (uint32_t k = real_faces(f); k < all_faces(f); k++)
         for (uint32_t face = 0; face < real_faces(f); face++) {
             tl_vec3 n = normal_of(f, k);
             put(w, n, f->c[k], face, k, -tl_v3_dot(n, normal_of(f, face)));
         }
     flush(w);
+    add_share(w, &w->apex[0], 1);
+    add_share(w, &w->apex[1], -1);
 }
 
 /* The faces that bound K: those of which something lies within all others. */
@@ -325,23 +413,23 @@ bool tl_field_integrate(const tl_field_faces *f, tl_field_room *room, tl_field_s
     bool known = f->bounding && *f->bounding;
     if (!f->bounding || all_faces(f) > real_faces(f) || real_faces(f) > TL_FIELD_KNOWN) {
         choose(&w, NULL);
-        integrate(&w);
+        integrate(&w, false);
         return true;
     }
     if (known) {
         choose(&w, f->bounding);
-        integrate(&w);
+        integrate(&w, true);
     }
     if (!known || w.beyond) {
         *f->bounding = find_bounding(&w);
         choose(&w, f->bounding);
-        integrate(&w);
+        integrate(&w, true);
         known = !w.beyond;
     }
     if (!known) { /* K is so thin that a face was lost in roundings */
         *f->bounding = 0;
         choose(&w, NULL);
-        integrate(&w);
+        integrate(&w, false);
     }
     return true;
 }
