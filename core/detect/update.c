@@ -199,6 +199,24 @@ static tl_region kept_region(tl_press_row *row)
                        .blunt_b = row->blunt_b};
 }
 
+/* The faces that bounded the common volume, among those that are listed now; 0: some are not, or none were known. */
+static uint64_t bounding_again(const tl_press_row *row, const tl_region *r)
+{
+    uint64_t out = 0;
+    const uint32_t old_a = row->count[0], old = old_a + row->count[1];
+    for (uint32_t k = 0; row->listed && k < old; k++) {
+        if (!(row->bounding >> k & 1))
+            continue;
+        uint32_t at = k < old_a ? 0 : r->a, end = k < old_a ? r->a : r->a + r->b;
+        while (at < end && r->face[at] != row->face[k])
+            at++;
+        if (at == end || at >= TL_FIELD_KNOWN)
+            return 0;
+        out |= UINT64_C(1) << at;
+    }
+    return out;
+}
+
 /* All that the contact is in the present place, into the thread's manifold. false: out of memory. */
 static bool find(tl_model *m, uint32_t c, tl_narrow *room)
 {
@@ -209,7 +227,8 @@ static bool find(tl_model *m, uint32_t c, tl_narrow *room)
     if (!tl_pair_place(&view, room) ||
         !tl_region_find(&view, TL_LIST_MARGIN * view.size, room, &region))
         return false;
-    uint64_t bounding = 0;
+    const tl_press_row *row = tl_press_row_of(m, c);
+    uint64_t bounding = row && contacts->point_count[c] ? bounding_again(row, &region) : 0;
     region.bounding = &bounding;
     tl_manifold_before before = before_of(m, c, room->reframed);
     tl_tag tag = tl_touching_tag(&view, region.n);

@@ -58,9 +58,10 @@ static tl_vec3 lane_vector(const double v[3][LANES], int lane)
 
 /* ---------------------------------------------------------------- work ------------------- */
 
-/* A point in which the planes of a block meet, and normals that hold it in them, at right angles to each other. */
+/* A point in which the planes of a block meet, and directions that hold it in them, at right angles to each other. */
 typedef struct apex {
     tl_vec3 x, held[3];
+    double per[3]; /* 1 / |held|^2 */
     int count;
     bool known;
 } apex;
@@ -145,7 +146,7 @@ static void choose(work *w, const uint64_t *mask)
 static tl_vec3 within(const apex *p, tl_vec3 way)
 {
     for (int i = 0; i < p->count; i++)
-        way = tl_v3_madd(way, -tl_v3_dot(p->held[i], way), p->held[i]);
+        way = tl_v3_madd(way, -p->per[i] * tl_v3_dot(p->held[i], way), p->held[i]);
     return way;
 }
 
@@ -159,14 +160,16 @@ static apex find_apex(const work *w, uint32_t begin, uint32_t end)
         tl_vec3 n = normal_of(f, w->number[k]), way = within(&p, n);
         double sine2 = tl_v3_norm2(way);
         if (sine2 > STEEP * STEEP) {
-            p.x = tl_v3_madd(p.x, (f->c[w->number[k]] - tl_v3_dot(n, p.x)) / sine2, way);
-            p.held[p.count++] = tl_v3_unit(way);
+            p.held[p.count] = way;
+            p.per[p.count] = 1 / sine2;
+            double off = f->c[w->number[k]] - tl_v3_dot(n, p.x);
+            p.x = tl_v3_madd(p.x, off * p.per[p.count++], way);
         }
     }
     for (uint32_t k = begin; k < end && p.known; k++) {
         tl_vec3 n = normal_of(f, w->number[k]);
         p.known = fabs(f->c[w->number[k]] - tl_v3_dot(n, p.x)) <= w->one_plane &&
-                  tl_v3_norm(within(&p, n)) < ALIKE;
+                  (p.count == 3 || tl_v3_norm2(within(&p, n)) < ALIKE * ALIKE);
     }
     return p;
 }

@@ -224,16 +224,22 @@ bool tl_press_find(const tl_pair_view *view, const tl_region *region, double lea
     if (!reserve(room, region->a + region->b + region->border_a + region->border_b, &p))
         return false;
     list_field(&p, &of);
-    uint64_t bounding = bounding_of(&of);
+    const uint64_t known = bounding_of(&of);
+    uint64_t bounding = known;
     p.faces.bounding = &bounding;
     if (!tl_field_integrate(&p.faces, &room->field, &sums))
         return false;
     if (region->bounding)
         *region->bounding = bounding;
     double force = tl_v3_norm(sums.force);
+    /* the same faces enclose what they enclosed before: nothing else */
+    bool same = known && bounding == known;
     if (!(sums.deepest > TOUCHING * view->size) || !(force > 0) || !(sums.volume > 0) ||
-        !in_both(&of, tl_v3_add(p.origin, sums.deepest_at), sums.deepest))
+        !(same || in_both(&of, tl_v3_add(p.origin, sums.deepest_at), sums.deepest))) {
+        if (region->bounding)
+            *region->bounding = 0;
         return true;
+    }
     stored field = with_least(&sums, least);
     if (region->flush && tl_region_tilt(view, region->flush_a, region->flush_b) < TL_FIELD_TILT) {
         list_patch(&p, &of);
