@@ -3,7 +3,7 @@
 #define TL_CONTACT_TABLES_H
 
 #include "base/table.h"
-#include "narrow/press.h"
+#include "narrow/press_slope.h"
 
 typedef struct tl_contacts {
     tl_table table;
@@ -48,6 +48,12 @@ typedef struct tl_press_row {
     uint64_t bounding; /* which of them bound the common volume: field.h */
     uint16_t blunt_a, blunt_b;
     bool flush, listed;
+    /* It has stayed near a place since some step. When it has stayed for long, its press there has slopes, and it goes by
+     * them: detect/fields.c */
+    tl_pair_pose place;
+    int64_t since;
+    tl_press there;
+    tl_press_slope slope;
 } tl_press_row;
 
 /* GROW: it waits for room for its points; REFRAME: besides, its old points are in frames that are no more. MOVE: its points

@@ -14,6 +14,7 @@
 #include "contact/shear.h"
 #include "contact/transfer.h"
 #include "detect/beside.h"
+#include "detect/fields.h"
 #include "detect/overlap.h"
 #include "detect/pairs.h"
 #include "narrow/look.h"
@@ -87,50 +88,6 @@ static void refit(tl_model *m, uint32_t c, const tl_manifold *g)
 
 /* ---------------------------------------------------------------- looking at all ---------- */
 
-/* Whether some point may carry a force across a gap: the walls were together when it was made, and no bond of it has
- * failed. */
-static bool may_hold(const tl_model *m, uint32_t c)
-{
-    const tl_contacts *contacts = &m->detect->contacts;
-    uint32_t material = contacts->material[c];
-    if (material == TL_NO_ROW || m->materials[material].pulls == TL_PULL_NONE)
-        return false;
-    for (uint32_t k = 0; k < contacts->point_count[c]; k++) {
-        uint32_t flags = m->detect->points.flags[tl_point_row(contacts, c, k)];
-        if (!(flags & (TL_POINT_FAILED | TL_POINT_APART)))
-            return true;
-    }
-    return false;
-}
-
-/* Whether the blocks of a field contact hardly moved against each other in the last step: only then may it become a patch.
- * A patch spreads the shear anew: where faces only pass by each other that would turn some of it into heat. */
-static bool is_calm(const tl_model *m, uint32_t c, const tl_press_row *row)
-{
-    const tl_contacts *contacts = &m->detect->contacts;
-    double size = fmin(m->blocks.size[contacts->a[c]], m->blocks.size[contacts->b[c]]);
-    const tl_mat3 *turn = &m->bodies.pose[m->blocks.body[contacts->a[c]]].r;
-    tl_contact_motion by = tl_contact_moved(m, c);
-    tl_vec3 there = tl_v3_cross(by.turn, tl_m3_mul(turn, row->press.point));
-    return tl_v3_norm(tl_v3_add(by.way, there)) + size * tl_v3_norm(by.turn) < TL_STILL * size;
-}
-
-/* What is known of a contact before. One whose bodies have got other frames stays what it is until its points are in these. */
-static tl_manifold_before before_of(const tl_model *m, uint32_t c, bool reframed)
-{
-    const tl_contacts *contacts = &m->detect->contacts;
-    const tl_press_row *row = tl_press_row_of(m, c);
-    tl_manifold_before out = {.facet = contacts->facet[c]};
-    bool patch = out.facet.kind == TL_FACET_PATCH && contacts->point_count[c] > 0;
-    out.holds = patch && (reframed || contacts->across[c] || may_hold(m, c));
-    if (row) {
-        out.calm = !reframed && is_calm(m, c, row);
-        out.shift = row->shift;
-        out.shifted = row->shifted;
-    }
-    return out;
-}
-
 /* Ends a contact whose blocks have parted. */
 static void part(tl_model *m, uint32_t c, double way)
 {
@@ -169,54 +126,6 @@ static void check_depth(tl_model *m, uint32_t c, const tl_pair_view *view, const
     room->deep = true;
 }
 
-/* Keeps the region of a field contact. */
-static void keep_region(tl_press_row *row, const tl_region *r)
-{
-    uint32_t faces = r->a + r->b + r->border_a + r->border_b;
-    row->listed = faces <= TL_PRESS_FACES;
-    row->flush = r->flush;
-    row->blunt_a = (uint16_t)r->blunt_a;
-    row->blunt_b = (uint16_t)r->blunt_b;
-    if (!row->listed)
-        return;
-    const uint32_t count[] = {r->a, r->b, r->border_a, r->border_b};
-    for (int k = 0; k < 4; k++)
-        row->count[k] = (uint16_t)count[k];
-    memcpy(row->face, r->face, faces * sizeof *r->face);
-    row->bounding = *r->bounding;
-}
-
-static tl_region kept_region(tl_press_row *row)
-{
-    return (tl_region){.bounding = &row->bounding,
-                       .a = row->count[0],
-                       .b = row->count[1],
-                       .border_a = row->count[2],
-                       .border_b = row->count[3],
-                       .face = row->face,
-                       .flush = row->flush,
-                       .blunt_a = row->blunt_a,
-                       .blunt_b = row->blunt_b};
-}
-
-/* The faces that bounded the common volume, among those that are listed now; 0: some are not, or none were known. */
-static uint64_t bounding_again(const tl_press_row *row, const tl_region *r)
-{
-    uint64_t out = 0;
-    const uint32_t old_a = row->count[0], old = old_a + row->count[1];
-    for (uint32_t k = 0; row->listed && k < old; k++) {
-        if (!(row->bounding >> k & 1))
-            continue;
-        uint32_t at = k < old_a ? 0 : r->a, end = k < old_a ? r->a : r->a + r->b;
-        while (at < end && r->face[at] != row->face[k])
-            at++;
-        if (at == end || at >= TL_FIELD_KNOWN)
-            return 0;
-        out |= UINT64_C(1) << at;
-    }
-    return out;
-}
-
 /* All that the contact is in the present place, into the thread's manifold. false: out of memory. */
 static bool find(tl_model *m, uint32_t c, tl_narrow *room)
 {
@@ -228,9 +137,9 @@ static bool find(tl_model *m, uint32_t c, tl_narrow *room)
         !tl_region_find(&view, TL_LIST_MARGIN * view.size, room, &region))
         return false;
     const tl_press_row *row = tl_press_row_of(m, c);
-    uint64_t bounding = row && contacts->point_count[c] ? bounding_again(row, &region) : 0;
+    uint64_t bounding = row && contacts->point_count[c] ? tl_field_bounding(row, &region) : 0;
     region.bounding = &bounding;
-    tl_manifold_before before = before_of(m, c, room->reframed);
+    tl_manifold_before before = tl_contact_before(m, c, room->reframed);
     tl_tag tag = tl_touching_tag(&view, region.n);
     tl_touch_rule rule = tl_touch_rule_of(m, &view, tag, before.holds);
     const tl_manifold *g = &room->manifold;
@@ -244,29 +153,8 @@ static bool find(tl_model *m, uint32_t c, tl_narrow *room)
     check_depth(m, c, &view, &region, room);
     note_tag(m, c, tag);
     if (tl_press_row_of(m, c))
-        keep_region(tl_press_row_of(m, c), &region);
+        tl_field_keep(tl_press_row_of(m, c), &region);
     return true;
-}
-
-/* A field contact by its list of faces; false when all is to be looked at. *failed: out of memory. */
-static bool follow_field(tl_model *m, uint32_t c, tl_narrow *room, bool *failed)
-{
-    const tl_contacts *contacts = &m->detect->contacts;
-    tl_press_row *row = tl_press_row_of(m, c);
-    if (!row || !row->listed || contacts->facet[c].kind != TL_FACET_FIELD ||
-        contacts->point_count[c] == 0 || contacts->deep[c] != TL_DEEP_NOT ||
-        tl_pair_odometer(m, contacts->a[c], contacts->b[c]) > contacts->faces_valid_to[c])
-        return false;
-    tl_pair_view view = tl_pair_view_of(m, contacts->a[c], contacts->b[c]);
-    tl_touch_rule rule = tl_touch_rule_of(m, &view, contacts->tag[c], false);
-    tl_manifold_before before = before_of(m, c, false);
-    tl_region region = kept_region(row);
-    *failed = !tl_pair_place(&view, room);
-    if (*failed)
-        return false;
-    tl_region_choose_flush(&view, &region);
-    *failed = !tl_manifold_follow(&view, &region, &rule, &before, room);
-    return !*failed && room->manifold.valid > 0;
 }
 
 /* ---------------------------------------------------------------- taking ------------------ */
@@ -449,7 +337,7 @@ static bool make_anew(tl_model *m, uint32_t c, unsigned thread)
 void tl_contact_update(tl_model *m, uint32_t c, unsigned thread)
 {
     tl_narrow *room = &m->detect->narrow[thread];
-    bool failed = false;
+    tl_field_result field = TL_FIELD_LOST;
     if (touches_still(m, c))
         return;
     room->manifold.failed = false;
@@ -457,10 +345,10 @@ void tl_contact_update(tl_model *m, uint32_t c, unsigned thread)
         tl_contact_allow_reuse(m, c);
     } else if (room->manifold.failed) {
         room->failed = true; /* to be tried again, and not in another way */
-    } else if (follow_field(m, c, room, &failed)) {
+    } else if ((field = tl_field_follow(m, c, room)) == TL_FIELD_FOUND) {
         take_manifold(m, c, room, &m->detect->lanes[thread]);
         tl_contact_allow_reuse(m, c);
-    } else if (failed) {
+    } else if (field == TL_FIELD_FAILED) {
         room->failed = true;
     } else if (make_anew(m, c, thread)) {
         tl_contact_allow_reuse(m, c);

@@ -80,8 +80,8 @@ typedef struct work {
     tl_field_lanes lanes;
     int filled;
     uint32_t face[LANES], with[LANES]; /* the polygon's two planes */
-    double length[LANES]; /* |n_a - n_b|; of a border minus the cosine of both planes */
-    apex apex[2];         /* of A and of B */
+    double length[LANES];      /* |n_a - n_b|; of a border minus the cosine of both planes */
+    apex apex[2];              /* of A and of B */
     double by_force, by_swept; /* of S: int d x . n dS, int x . n dS */
 } work;
 

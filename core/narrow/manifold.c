@@ -46,26 +46,34 @@ static bool is_patch(const tl_pair_view *view, const tl_region *r, const tl_touc
 
 /* ---------------------------------------------------------------- fields ----------------- */
 
-static bool find_field(const tl_pair_view *view, const tl_region *r, const tl_touch_rule *rule,
-                       const tl_manifold_before *before, tl_narrow *room)
+bool tl_manifold_press(const tl_press *press, const tl_facet *faces, tl_narrow *room)
 {
     tl_manifold *m = &room->manifold;
-    const tl_press *press = &m->press;
-    uint32_t shifted = before->shift > 0 ? before->shifted : UINT32_MAX;
     m->point_count = 0;
-    m->valid = TL_LIST_MARGIN * view->size;
-    if (!tl_press_find(view, r, rule->least, before->shift, shifted, room, &m->press) ||
-        !tl_manifold_reserve(m, TL_FIELD_POINTS))
+    m->press = *press;
+    if (!tl_manifold_reserve(m, TL_FIELD_POINTS))
         return false;
     m->facet = (tl_facet){.kind = TL_FACET_FIELD,
-                          .ia = r->flush_a,
-                          .ib = r->flush_b,
+                          .ia = faces->ia,
+                          .ib = faces->ib,
                           .na = press->normal,
                           .offset = press->overlap};
     for (uint32_t k = 0; k < TL_FIELD_POINTS && press->area > 0; k++)
         m->points[m->point_count++] =
             (tl_contact_point){.p = press->point, .area = press->area, .key = k};
     return true;
+}
+
+static bool find_field(const tl_pair_view *view, const tl_region *r, const tl_touch_rule *rule,
+                       const tl_manifold_before *before, tl_narrow *room)
+{
+    uint32_t shifted = before->shift > 0 ? before->shifted : UINT32_MAX;
+    const tl_facet faces = {.ia = r->flush_a, .ib = r->flush_b};
+    tl_press press;
+    room->manifold.point_count = 0;
+    room->manifold.valid = TL_LIST_MARGIN * view->size;
+    return tl_press_find(view, r, rule->least, before->shift, shifted, room, &press) &&
+           tl_manifold_press(&press, &faces, room);
 }
 
 /* ---------------------------------------------------------------- all of it -------------- */

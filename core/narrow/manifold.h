@@ -25,6 +25,8 @@ bool tl_manifold_find(const tl_pair_view *view, const tl_region *region, const t
 bool tl_manifold_follow(const tl_pair_view *view, const tl_region *region,
                         const tl_touch_rule *rule, const tl_manifold_before *before,
                         tl_narrow *room);
+/* A field contact of a press, and of the flush faces of a facet, into room->manifold. false: out of memory. */
+bool tl_manifold_press(const tl_press *press, const tl_facet *faces, tl_narrow *room);
 /* The joint of the faces that touch along a direction from A to B. */
 tl_tag tl_touching_tag(const tl_pair_view *view, tl_vec3 n);
 

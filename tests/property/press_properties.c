@@ -2,7 +2,7 @@
  * are the gradient of the energy, and faces that were left out change nothing. */
 #include "contact_scene.h"
 
-#include "narrow/press.h"
+#include "narrow/press_slope.h"
 
 /* How many random cases are made, of those that an optimised build makes. */
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
@@ -108,6 +108,72 @@ TEST(force_is_the_gradient_through_the_blend)
     printf("  %d cases, %d blended, off by %.1e at the most\n", cases, blended, worst);
     CHECK(cases > CASES(900));
     CHECK(blended > CASES(200));
+}
+
+static tl_pair_pose place_of(const scene *s)
+{
+    return (tl_pair_pose){s->pair.view.turn, s->pair.view.shift};
+}
+
+/* Moves B by a part of the overlap: along, and by a turn about the centre of the pressure that moves the rim as far. */
+static void nudge(scene *s, const tl_press *at, double part, uint64_t *seed)
+{
+    double way = part * at->deepest, lever = fmax(2 * at->radius, at->deepest);
+    tl_quat turn = scene_turn(scene_direction(seed), way / lever);
+    tl_vec3 arm = tl_v3_sub(s->pair.shift, at->point);
+    s->pair.turn = tl_q_unit(tl_q_mul(turn, s->pair.turn));
+    s->pair.shift = tl_v3_add(at->point, tl_q_rotate(turn, arm));
+    s->pair.shift = tl_v3_madd(s->pair.shift, way, scene_direction(seed));
+}
+
+/* Of what was found at a place and goes on by its slopes, the error goes with the square of the way; half of it each for the
+ * move and the turn. */
+TEST(slopes_go_on_with_the_press)
+{
+    int cases = 0;
+    double worst = 0;
+    for (uint64_t k = 1; k <= CASES(1000); k++) {
+        uint64_t seed = k + 70000;
+        static scene s;
+        make_flush(&s, k % 2 ? scene_between(&seed, 0, 0.3) : scene_between(&seed, 1, 50),
+                   pow(10, scene_between(&seed, -5, -2)), &seed);
+        s.least = k % 3 ? 0 : 0.01;
+        s.shift = k % 5 ? 0 : 1e-3;
+        s.margin = 0.01;
+        tl_press at = press_of(&s);
+        tl_press_slope slope;
+        tl_region region;
+        const tl_pair_view *view = scene_place(&s.pair);
+        const tl_pair_pose from = place_of(&s);
+        CHECK(tl_region_find(view, s.margin * view->size, &s.pair.room, &region));
+        uint32_t shifted = region.flush ? region.flush_a : 0;
+        if (at.area > 0) {
+            CHECK(tl_press_slope_find(view, &region, s.least, s.shift, shifted, &at, &s.pair.room,
+                                      &slope));
+            CHECK(slope.known);
+            nudge(&s, &at, 0.5 * TL_PRESS_NEAR, &seed);
+            tl_press found = press_of(&s);
+            const tl_pair_pose to = place_of(&s);
+            tl_press near = tl_press_near(&at, &slope, &from, &to);
+            CHECK(tl_press_moved(&at, &from, &to) <= TL_PRESS_NEAR * (1 + 1e-5));
+            double force = tl_v3_norm(found.force), size = s.pair.view.size;
+            double off = fmax(scene_apart(near.force, found.force),
+                              scene_apart(near.moment, found.moment) / size) /
+                         force;
+            off = fmax(off, fabs(near.energy / found.energy - 1));
+            off = fmax(off, fabs(near.area / found.area - 1));
+            off = fmax(off, fabs(near.deepest / found.deepest - 1));
+            off = fmax(off, scene_apart(near.point, found.point) / size);
+            worst = fmax(worst, off);
+            if (!CHECK(off < 4 * TL_PRESS_NEAR * TL_PRESS_NEAR))
+                printf("  seed %d, patch %g, overlap %g, radius %g: off by %g\n", (int)k, at.patch,
+                       at.deepest, at.radius, off);
+            cases++;
+        }
+        scene_pair_free(&s.pair);
+    }
+    printf("  %d cases, off by %.1e at the most\n", cases, worst);
+    CHECK(cases > CASES(500));
 }
 
 static tl_poly *shape_of(uint64_t *seed, int kind)
@@ -260,6 +326,6 @@ TEST(faces_that_become_flush_are_found_in_an_old_list)
     CHECK(blended > CASES(300));
 }
 
-TEST_MAIN(RUN(force_is_the_gradient_through_the_blend), RUN(faces_left_out_do_not_matter),
-          RUN(faces_that_bounded_before_change_nothing),
+TEST_MAIN(RUN(force_is_the_gradient_through_the_blend), RUN(slopes_go_on_with_the_press),
+          RUN(faces_left_out_do_not_matter), RUN(faces_that_bounded_before_change_nothing),
           RUN(faces_that_become_flush_are_found_in_an_old_list))

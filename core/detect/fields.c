@@ -1,0 +1,176 @@
+/* fields.c - field contacts from step to step.
+ *
+ * A contact that has stayed near a place for some time goes by the slopes that its press has there; another one by its list of
+ * faces, while that holds. */
+#include "detect/fields.h"
+
+#include "contact/contacts.h"
+#include "contact/pair_view.h"
+#include "contact/presses.h"
+#include "contact/shear.h"
+#include "narrow/place.h"
+
+#include <string.h>
+
+/* ---------------------------------------------------------------- before ----------------- */
+
+/* Whether some point may carry a force across a gap: the walls were together when it was made, and no bond of it has
+ * failed. */
+static bool may_hold(const tl_model *m, uint32_t c)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    uint32_t material = contacts->material[c];
+    if (material == TL_NO_ROW || m->materials[material].pulls == TL_PULL_NONE)
+        return false;
+    for (uint32_t k = 0; k < contacts->point_count[c]; k++) {
+        uint32_t flags = m->detect->points.flags[tl_point_row(contacts, c, k)];
+        if (!(flags & (TL_POINT_FAILED | TL_POINT_APART)))
+            return true;
+    }
+    return false;
+}
+
+/* Whether the blocks of a field contact hardly moved against each other in the last step: only then may it become a patch.
+ * A patch spreads the shear anew: where faces only pass by each other that would turn some of it into heat. */
+static bool is_calm(const tl_model *m, uint32_t c, const tl_press_row *row)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    double size = fmin(m->blocks.size[contacts->a[c]], m->blocks.size[contacts->b[c]]);
+    const tl_mat3 *turn = &m->bodies.pose[m->blocks.body[contacts->a[c]]].r;
+    tl_contact_motion by = tl_contact_moved(m, c);
+    tl_vec3 there = tl_v3_cross(by.turn, tl_m3_mul(turn, row->press.point));
+    return tl_v3_norm(tl_v3_add(by.way, there)) + size * tl_v3_norm(by.turn) < TL_STILL * size;
+}
+
+tl_manifold_before tl_contact_before(const tl_model *m, uint32_t c, bool reframed)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    const tl_press_row *row = tl_press_row_of(m, c);
+    tl_manifold_before out = {.facet = contacts->facet[c]};
+    bool patch = out.facet.kind == TL_FACET_PATCH && contacts->point_count[c] > 0;
+    out.holds = patch && (reframed || contacts->across[c] || may_hold(m, c));
+    if (row) {
+        out.calm = !reframed && is_calm(m, c, row);
+        out.shift = row->shift;
+        out.shifted = row->shifted;
+    }
+    return out;
+}
+
+/* ---------------------------------------------------------------- faces ------------------ */
+
+uint64_t tl_field_bounding(const tl_press_row *row, const tl_region *r)
+{
+    uint64_t out = 0;
+    const uint32_t old_a = row->count[0], old = old_a + row->count[1];
+    for (uint32_t k = 0; row->listed && k < old; k++) {
+        if (!(row->bounding >> k & 1))
+            continue;
+        uint32_t at = k < old_a ? 0 : r->a, end = k < old_a ? r->a : r->a + r->b;
+        while (at < end && r->face[at] != row->face[k])
+            at++;
+        if (at == end || at >= TL_FIELD_KNOWN)
+            return 0;
+        out |= UINT64_C(1) << at;
+    }
+    return out;
+}
+
+void tl_field_keep(tl_press_row *row, const tl_region *r)
+{
+    uint32_t faces = r->a + r->b + r->border_a + r->border_b;
+    row->slope.known = false;
+    row->listed = faces <= TL_PRESS_FACES;
+    row->flush = r->flush;
+    row->blunt_a = (uint16_t)r->blunt_a;
+    row->blunt_b = (uint16_t)r->blunt_b;
+    if (!row->listed)
+        return;
+    const uint32_t count[] = {r->a, r->b, r->border_a, r->border_b};
+    for (int k = 0; k < 4; k++)
+        row->count[k] = (uint16_t)count[k];
+    memcpy(row->face, r->face, faces * sizeof *r->face);
+    row->bounding = *r->bounding;
+}
+
+static tl_region kept_region(tl_press_row *row)
+{
+    return (tl_region){.bounding = &row->bounding,
+                       .a = row->count[0],
+                       .b = row->count[1],
+                       .border_a = row->count[2],
+                       .border_b = row->count[3],
+                       .face = row->face,
+                       .flush = row->flush,
+                       .blunt_a = row->blunt_a,
+                       .blunt_b = row->blunt_b};
+}
+
+/* ---------------------------------------------------------------- places ----------------- */
+
+/* Whether a field contact that was one in the last step still has its list of faces. */
+static bool has_faces(const tl_model *m, uint32_t c, const tl_press_row *row)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    return row && row->listed && contacts->facet[c].kind == TL_FACET_FIELD &&
+           contacts->point_count[c] > 0 && contacts->deep[c] == TL_DEEP_NOT &&
+           tl_pair_odometer(m, contacts->a[c], contacts->b[c]) <= contacts->faces_valid_to[c];
+}
+
+/* Whether a contact may go by the slopes of its press. */
+static bool is_near(const tl_model *m, uint32_t c, const tl_press_row *row,
+                    const tl_pair_pose *place)
+{
+    /* -INFINITY: its rules are others now */
+    return row->slope.known && m->config.reuse_geometry &&
+           m->detect->contacts.points_valid_to[c] != -INFINITY &&
+           tl_press_moved(&row->there, &row->place, place) <= TL_PRESS_NEAR;
+}
+
+/* Finds the slopes of the press just found when the contact has stayed where it is for as many steps as that costs. They go
+ * by the count of steps, not of looks: a step made again finds the same. false: out of memory. */
+static bool watch(const tl_model *m, const tl_pair_view *view, const tl_region *region,
+                  const tl_touch_rule *rule, tl_press_row *row, tl_narrow *room)
+{
+    const tl_press *press = &room->manifold.press;
+    const tl_pair_pose place = {view->turn, view->shift};
+    bool stays = tl_press_moved(press, &row->place, &place) <= 0.5 * TL_PRESS_NEAR;
+    if (!stays) {
+        row->place = place;
+        row->since = m->cycles;
+    }
+    if (!stays || m->cycles - row->since < TL_PRESS_SLOPE_COST || press->patch >= 1 ||
+        !m->config.reuse_geometry)
+        return true;
+    row->there = *press;
+    row->place = place;
+    return tl_press_slope_find(view, region, rule->least, row->shift, row->shifted, press, room,
+                               &row->slope);
+}
+
+tl_field_result tl_field_follow(tl_model *m, uint32_t c, tl_narrow *room)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    tl_press_row *row = tl_press_row_of(m, c);
+    if (!has_faces(m, c, row))
+        return TL_FIELD_LOST;
+    tl_pair_view view = tl_pair_view_of(m, contacts->a[c], contacts->b[c]);
+    const tl_pair_pose place = {view.turn, view.shift};
+    if (is_near(m, c, row, &place)) {
+        tl_press press = tl_press_near(&row->there, &row->slope, &row->place, &place);
+        return tl_manifold_press(&press, &contacts->facet[c], room) ? TL_FIELD_FOUND
+                                                                    : TL_FIELD_FAILED;
+    }
+    row->slope.known = false;
+    tl_touch_rule rule = tl_touch_rule_of(m, &view, contacts->tag[c], false);
+    tl_manifold_before before = tl_contact_before(m, c, false);
+    tl_region region = kept_region(row);
+    if (!tl_pair_place(&view, room))
+        return TL_FIELD_FAILED;
+    tl_region_choose_flush(&view, &region);
+    if (!tl_manifold_follow(&view, &region, &rule, &before, room))
+        return TL_FIELD_FAILED;
+    if (!(room->manifold.valid > 0))
+        return TL_FIELD_LOST;
+    return watch(m, &view, &region, &rule, row, room) ? TL_FIELD_FOUND : TL_FIELD_FAILED;
+}

@@ -1,0 +1,127 @@
+/* press_slope.c - a press near a place where it was found: force and all else go on by their slopes there.
+ *
+ * Blocks at rest move by a small part of their overlap. There the energy is a quadratic of the motion: its force goes by the
+ * slopes -d2G, which are symmetric, so that what swings within neither gains nor loses. The slopes are central differences
+ * over the same way that they are used for. */
+#include "narrow/press_slope.h"
+
+#include "narrow/place.h"
+
+#include <talus/vmath.h>
+
+/* A motion of B: a turn about a point, as a vector, and the way of that point. */
+typedef struct motion {
+    tl_vec3 way, turn;
+} motion;
+
+static tl_mat3 between(const tl_mat3 *from, const tl_mat3 *to)
+{
+    tl_mat3 out;
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            out.m[i][j] = to->m[i][0] * from->m[j][0] + to->m[i][1] * from->m[j][1] +
+                          to->m[i][2] * from->m[j][2];
+    return out;
+}
+
+static motion motion_between(tl_vec3 point, const tl_pair_pose *from, const tl_pair_pose *to)
+{
+    tl_mat3 q = between(&from->turn, &to->turn);
+    tl_vec3 arm = tl_v3_sub(from->shift, point);
+    return (motion){.way = tl_v3_sub(tl_v3_sub(to->shift, point), tl_m3_mul(&q, arm)),
+                    .turn = tl_v3_scale(0.5, tl_v3(q.m[2][1] - q.m[1][2], q.m[0][2] - q.m[2][0],
+                                                   q.m[1][0] - q.m[0][1]))};
+}
+
+/* Way at the rim of the area for a turn of 1. Of a corner the area is smaller than its overlap. */
+static double lever(const tl_press *at)
+{
+    return fmax(2 * at->radius, at->deepest);
+}
+
+double tl_press_moved(const tl_press *at, const tl_pair_pose *from, const tl_pair_pose *to)
+{
+    motion by = motion_between(at->point, from, to);
+    return (tl_v3_norm(by.way) + lever(at) * tl_v3_norm(by.turn)) / at->deepest;
+}
+
+/* The view after B has moved along an axis, or turned about it. */
+static tl_pair_view moved(const tl_pair_view *view, tl_vec3 point, int axis, double by)
+{
+    tl_pair_view out = *view;
+    tl_vec3 way = {0, 0, 0};
+    (&way.x)[axis % 3] = by;
+    if (axis < 3) {
+        out.shift = tl_v3_add(view->shift, way);
+        return out;
+    }
+    double half = 0.5 * by;
+    tl_vec3 v = tl_v3_scale(0.5, way);
+    tl_mat3 turn = tl_q_matrix(tl_q_unit((tl_quat){1 - 0.5 * half * half, v.x, v.y, v.z}));
+    out.shift = tl_v3_add(point, tl_m3_mul(&turn, tl_v3_sub(view->shift, point)));
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            out.turn.m[i][j] = turn.m[i][0] * view->turn.m[0][j] +
+                               turn.m[i][1] * view->turn.m[1][j] +
+                               turn.m[i][2] * view->turn.m[2][j];
+    return out;
+}
+
+static tl_vec3 difference(tl_vec3 to, tl_vec3 from, double per)
+{
+    return tl_v3_scale(per, tl_v3_sub(to, from));
+}
+
+bool tl_press_slope_find(const tl_pair_view *view, const tl_region *region, double least,
+                         double shift, uint32_t shifted, const tl_press *at, tl_narrow *room,
+                         tl_press_slope *slope)
+{
+    slope->known = true;
+    for (int axis = 0; axis < 6; axis++) {
+        double way = TL_PRESS_NEAR * at->deepest, by = axis < 3 ? way : way / lever(at);
+        double per = 1 / (2 * by);
+        tl_press side[2];
+        for (int k = 0; k < 2; k++) {
+            tl_pair_view there = moved(view, at->point, axis, k ? by : -by);
+            uint64_t bounding = region->bounding ? *region->bounding : 0;
+            tl_region same = *region;
+            same.bounding = &bounding;
+            if (!tl_pair_place(&there, room) ||
+                !tl_press_find(&there, &same, least, shift, shifted, room, &side[k]))
+                return false;
+            slope->known = slope->known && side[k].area > 0;
+        }
+        slope->force[axis] = difference(side[1].force, side[0].force, per);
+        slope->moment[axis] = difference(side[1].moment, side[0].moment, per);
+        slope->point[axis] = difference(side[1].point, side[0].point, per);
+        slope->area[axis] = per * (side[1].area - side[0].area);
+        slope->radius[axis] = per * (side[1].radius - side[0].radius);
+        slope->deepest[axis] = per * (side[1].deepest - side[0].deepest);
+    }
+    return true;
+}
+
+tl_press tl_press_near(const tl_press *at, const tl_press_slope *slope, const tl_pair_pose *from,
+                       const tl_pair_pose *to)
+{
+    motion by = motion_between(at->point, from, to);
+    const double x[] = {by.way.x, by.way.y, by.way.z, by.turn.x, by.turn.y, by.turn.z};
+    tl_press out = *at;
+    for (int k = 0; k < 6; k++) {
+        out.force = tl_v3_madd(out.force, x[k], slope->force[k]);
+        out.moment = tl_v3_madd(out.moment, x[k], slope->moment[k]);
+        out.point = tl_v3_madd(out.point, x[k], slope->point[k]);
+        out.area += x[k] * slope->area[k];
+        out.radius += x[k] * slope->radius[k];
+        out.deepest += x[k] * slope->deepest[k];
+    }
+    /* minus the work of the mean force, and of its mean moment about the point */
+    tl_vec3 force = tl_v3_scale(0.5, tl_v3_add(at->force, out.force));
+    tl_vec3 moment = tl_v3_scale(0.5, tl_v3_add(at->moment, out.moment));
+    moment = tl_v3_sub(moment, tl_v3_cross(at->point, force));
+    out.energy -= tl_v3_dot(force, by.way) + tl_v3_dot(moment, by.turn);
+    double size = tl_v3_norm(out.force);
+    out.normal = tl_v3_scale(1 / size, out.force);
+    out.overlap = 2 * size / out.area;
+    return out;
+}

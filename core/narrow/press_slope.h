@@ -1,0 +1,36 @@
+/* press_slope.h - how a press changes with the place of B (press_slope.c). */
+#ifndef TL_NARROW_PRESS_SLOPE_H
+#define TL_NARROW_PRESS_SLOPE_H
+
+#include "narrow/press.h"
+
+/* Where B is in A's frame. */
+typedef struct tl_pair_pose {
+    tl_mat3 turn;
+    tl_vec3 shift;
+} tl_pair_pose;
+
+/* Derivatives by B's moves along the axes of A's frame, and then by its turns about them through the press's point. */
+typedef struct tl_press_slope {
+    tl_vec3 force[6], moment[6], point[6];
+    double area[6], radius[6], deepest[6];
+    bool known; /* false: nothing is pressed within the way that they are made for */
+} tl_press_slope;
+
+/* Presses that are found for the slopes of one. */
+enum { TL_PRESS_SLOPE_COST = 12 };
+
+/* How far B has moved between two places, over the overlap of the press: along, and by turns at the rim of its area. */
+double tl_press_moved(const tl_press *at, const tl_pair_pose *from, const tl_pair_pose *to);
+/* Slopes at a place where the press was found by these. false: out of memory. */
+bool tl_press_slope_find(const tl_pair_view *view, const tl_region *region, double least,
+                         double shift, uint32_t shifted, const tl_press *at, tl_narrow *room,
+                         tl_press_slope *slope);
+/* The press when B has moved a little from where its slopes were found. */
+tl_press tl_press_near(const tl_press *at, const tl_press_slope *slope, const tl_pair_pose *from,
+                       const tl_pair_pose *to);
+
+/* Motion, over the overlap, up to which slopes are used. The force is wrong by its square, then. */
+#define TL_PRESS_NEAR 1e-4
+
+#endif
