@@ -7,7 +7,7 @@
 static size_t narrow_bytes(const tl_narrow *n)
 {
     return sizeof *n + n->vertex_room * sizeof *n->vertex_b + n->normal_room * sizeof *n->normal_b +
-           (n->plane_room + n->press_room + n->field.count) * sizeof(double) +
+           (n->plane_room + n->press_room + n->field.lines) * sizeof(double) +
            n->face_room * sizeof *n->face + n->manifold.point_room * sizeof *n->manifold.points +
            n->patch.room * (4 * sizeof(double) + sizeof(uint32_t));
 }

@@ -108,10 +108,10 @@ static tl_region kept_region(tl_press_row *row)
 
 /* ---------------------------------------------------------------- places ----------------- */
 
-/* Whether a field contact that was one in the last step still has its list of faces. */
-static bool has_faces(const tl_model *m, uint32_t c, const tl_press_row *row)
+bool tl_field_goes_on(const tl_model *m, uint32_t c)
 {
     const tl_contacts *contacts = &m->detect->contacts;
+    const tl_press_row *row = tl_press_row_of(m, c);
     return row && row->listed && contacts->facet[c].kind == TL_FACET_FIELD &&
            contacts->point_count[c] > 0 && contacts->deep[c] == TL_DEEP_NOT &&
            tl_pair_odometer(m, contacts->a[c], contacts->b[c]) <= contacts->faces_valid_to[c];
@@ -129,48 +129,82 @@ static bool is_near(const tl_model *m, uint32_t c, const tl_press_row *row,
 
 /* Finds the slopes of the press just found when the contact has stayed where it is for as many steps as that costs. They go
  * by the count of steps, not of looks: a step made again finds the same. false: out of memory. */
-static bool watch(const tl_model *m, const tl_pair_view *view, const tl_region *region,
-                  const tl_touch_rule *rule, tl_press_row *row, tl_narrow *room)
+static bool watch(const tl_model *m, const tl_press_query *query, const tl_press *press,
+                  tl_press_row *row, tl_narrow *room)
 {
-    const tl_press *press = &room->manifold.press;
-    const tl_pair_pose place = {view->turn, view->shift};
+    const tl_pair_pose place = {query->view->turn, query->view->shift};
     bool stays = tl_press_moved(press, &row->place, &place) <= 0.5 * TL_PRESS_NEAR;
     if (!stays) {
         row->place = place;
         row->since = m->cycles;
     }
+    row->slope.known = false;
     if (!stays || m->cycles - row->since < TL_PRESS_SLOPE_COST || press->patch >= 1 ||
         !m->config.reuse_geometry)
         return true;
     row->there = *press;
     row->place = place;
-    return tl_press_slope_find(view, region, rule->least, row->shift, row->shifted, press, room,
-                               &row->slope);
+    if (tl_press_slope_find(query, press, room, &row->slope))
+        return true;
+    row->slope.known = false;
+    return false;
 }
 
-tl_field_result tl_field_follow(tl_model *m, uint32_t c, tl_narrow *room)
+/* Adds a contact to those of which the presses are to be found. */
+static void ask(tl_model *m, tl_field_batch *b, uint32_t c, const tl_pair_view *view)
+{
+    tl_press_row *row = tl_press_row_of(m, c);
+    uint32_t k = b->asked++;
+    tl_touch_rule rule = tl_touch_rule_of(m, view, m->detect->contacts.tag[c], false);
+    b->view[k] = *view;
+    b->region[k] = kept_region(row);
+    b->before[k] = tl_contact_before(m, c, false);
+    b->query[k] = tl_manifold_query(&b->view[k], &b->region[k], &rule, &b->before[k]);
+}
+
+void tl_fields_follow(tl_model *m, tl_field_batch *b, tl_narrow *room)
 {
     const tl_contacts *contacts = &m->detect->contacts;
-    tl_press_row *row = tl_press_row_of(m, c);
-    if (!has_faces(m, c, row))
-        return TL_FIELD_LOST;
-    tl_pair_view view = tl_pair_view_of(m, contacts->a[c], contacts->b[c]);
-    const tl_pair_pose place = {view.turn, view.shift};
-    if (is_near(m, c, row, &place)) {
-        tl_press press = tl_press_near(&row->there, &row->slope, &row->place, &place);
-        return tl_manifold_press(&press, &contacts->facet[c], room) ? TL_FIELD_FOUND
-                                                                    : TL_FIELD_FAILED;
+    tl_press found[TL_FIELD_PAIRS];
+    b->asked = 0;
+    for (uint32_t k = 0; k < b->count; k++) {
+        uint32_t c = b->contact[k];
+        const tl_press_row *row = tl_press_row_of(m, c);
+        tl_pair_view view = tl_pair_view_of(m, contacts->a[c], contacts->b[c]);
+        const tl_pair_pose place = {view.turn, view.shift};
+        b->near[k] = is_near(m, c, row, &place);
+        if (b->near[k])
+            b->press[k] = tl_press_near(&row->there, &row->slope, &row->place, &place);
+        else
+            ask(m, b, c, &view);
     }
-    row->slope.known = false;
-    tl_touch_rule rule = tl_touch_rule_of(m, &view, contacts->tag[c], false);
-    tl_manifold_before before = tl_contact_before(m, c, false);
-    tl_region region = kept_region(row);
-    if (!tl_pair_place(&view, room))
+    b->failed = !tl_pairs_place(b->view, b->asked, room);
+    if (b->failed)
+        return;
+    for (uint32_t k = 0; k < b->asked; k++)
+        tl_region_choose_flush(&b->view[k], &b->region[k]);
+    b->failed = !tl_press_find(b->query, b->asked, room, found);
+    for (uint32_t k = 0, i = 0; k < b->count; k++)
+        if (!b->near[k])
+            b->press[k] = found[i++];
+    b->asked = 0;
+}
+
+tl_field_result tl_field_take(tl_model *m, tl_field_batch *b, uint32_t k, tl_narrow *room)
+{
+    uint32_t c = b->contact[k];
+    tl_press_row *row = tl_press_row_of(m, c);
+    const tl_press *press = &b->press[k];
+    tl_facet faces = m->detect->contacts.facet[c];
+    if (b->failed)
         return TL_FIELD_FAILED;
-    tl_region_choose_flush(&view, &region);
-    if (!tl_manifold_follow(&view, &region, &rule, &before, room))
-        return TL_FIELD_FAILED;
-    if (!(room->manifold.valid > 0))
-        return TL_FIELD_LOST;
-    return watch(m, &view, &region, &rule, row, room) ? TL_FIELD_FOUND : TL_FIELD_FAILED;
+    if (!b->near[k]) {
+        uint32_t i = b->asked++;
+        if (!(press->area > 0) || (press->patch >= 1 && b->before[i].calm))
+            return TL_FIELD_LOST; /* it may be a patch or nothing now */
+        if (!watch(m, &b->query[i], press, row, room))
+            return TL_FIELD_FAILED;
+        faces = (tl_facet){.ia = b->region[i].flush_a, .ib = b->region[i].flush_b};
+    }
+    return tl_manifold_press(press, &faces, room) ? TL_FIELD_FOUND : TL_FIELD_FAILED;
 }

@@ -14,13 +14,31 @@ void tl_field_keep(tl_press_row *row, const tl_region *region);
 /* The faces that bounded the common volume, among those that are listed now; 0: some are not, or none were known. */
 uint64_t tl_field_bounding(const tl_press_row *row, const tl_region *region);
 
+/* Whether a contact was a field contact in the last step and still has its list of faces. */
+bool tl_field_goes_on(const tl_model *m, uint32_t contact);
+
 typedef enum tl_field_result {
     TL_FIELD_FOUND,
     TL_FIELD_LOST,  /* all is to be looked at */
     TL_FIELD_FAILED /* out of memory */
 } tl_field_result;
 
-/* What a field contact is now, by what it keeps, into the thread's manifold. */
-tl_field_result tl_field_follow(tl_model *m, uint32_t contact, tl_narrow *room);
+/* Some field contacts on their way through a step. */
+typedef struct tl_field_batch {
+    uint32_t contact[TL_FIELD_PAIRS], count;
+    bool near[TL_FIELD_PAIRS], failed; /* goes by slopes; out of memory */
+    tl_press press[TL_FIELD_PAIRS];
+    /* of those that do not go by slopes, one after the other */
+    tl_pair_view view[TL_FIELD_PAIRS];
+    tl_region region[TL_FIELD_PAIRS];
+    tl_manifold_before before[TL_FIELD_PAIRS];
+    tl_press_query query[TL_FIELD_PAIRS];
+    uint32_t asked;
+} tl_field_batch;
+
+/* Finds the presses of the contacts of a batch, which go on. */
+void tl_fields_follow(tl_model *m, tl_field_batch *batch, tl_narrow *room);
+/* What its k-th contact is now, into the thread's manifold; in ascending order. */
+tl_field_result tl_field_take(tl_model *m, tl_field_batch *batch, uint32_t k, tl_narrow *room);
 
 #endif

@@ -7,6 +7,7 @@
 
 #include "contact/detection.h"
 #include "contact/shear.h"
+#include "detect/fields.h"
 #include "detect/update.h"
 #include "narrow/patch_batch.h"
 #include "narrow/press.h"
@@ -200,11 +201,17 @@ static void take_patches(tl_model *m, const tl_rank *rank, const tl_patch_batch 
 bool tl_rank_update(tl_model *m, const tl_rank *rank, unsigned thread)
 {
     tl_patch_batch *batch = NULL;
-    uint32_t in = 0, others = 0;
+    bool any = false;
+    uint32_t in = 0, others = 0, fields[TL_LANES], field_count = 0;
     for (uint32_t l = 0; l < TL_LANES; l++) {
         uint32_t c = rank->contact[l];
         if (c == TL_NO_ROW || tl_contact_stands(m, c))
             continue;
+        any = true;
+        if (tl_field_goes_on(m, c)) {
+            fields[field_count++] = c;
+            continue;
+        }
         if (!batch && !(batch = tl_batch_room(&m->detect->narrow[thread],
                                               m->config.contact_points == TL_POINTS_CORNERS,
                                               TL_FLUSH_TILT * TL_FLUSH_TILT))) {
@@ -223,5 +230,7 @@ bool tl_rank_update(tl_model *m, const tl_rank *rank, unsigned thread)
     for (uint32_t l = 0; l < TL_LANES; l++)
         if ((in | others) >> l & 1)
             tl_contact_update(m, rank->contact[l], thread);
-    return batch;
+    if (field_count)
+        tl_contacts_follow(m, fields, field_count, thread);
+    return any;
 }

@@ -337,21 +337,33 @@ static bool make_anew(tl_model *m, uint32_t c, unsigned thread)
 void tl_contact_update(tl_model *m, uint32_t c, unsigned thread)
 {
     tl_narrow *room = &m->detect->narrow[thread];
-    tl_field_result field = TL_FIELD_LOST;
     if (touches_still(m, c))
         return;
     room->manifold.failed = false;
-    if (renew_patch(m, c, room)) {
+    if (tl_field_goes_on(m, c))
+        tl_contacts_follow(m, &c, 1, thread);
+    else if (renew_patch(m, c, room) || (!room->manifold.failed && make_anew(m, c, thread)))
         tl_contact_allow_reuse(m, c);
-    } else if (room->manifold.failed) {
+    else
         room->failed = true; /* to be tried again, and not in another way */
-    } else if ((field = tl_field_follow(m, c, room)) == TL_FIELD_FOUND) {
-        take_manifold(m, c, room, &m->detect->lanes[thread]);
-        tl_contact_allow_reuse(m, c);
-    } else if (field == TL_FIELD_FAILED) {
-        room->failed = true;
-    } else if (make_anew(m, c, thread)) {
-        tl_contact_allow_reuse(m, c);
+}
+
+void tl_contacts_follow(tl_model *m, const uint32_t contact[], uint32_t count, unsigned thread)
+{
+    tl_narrow *room = &m->detect->narrow[thread];
+    tl_field_batch batch;
+    batch.count = count;
+    memcpy(batch.contact, contact, count * sizeof *contact);
+    tl_fields_follow(m, &batch, room);
+    for (uint32_t k = 0; k < count; k++) {
+        tl_field_result result = tl_field_take(m, &batch, k, room);
+        bool done = result == TL_FIELD_FOUND &&
+                    take_manifold(m, contact[k], room, &m->detect->lanes[thread]);
+        done = done || (result == TL_FIELD_LOST && make_anew(m, contact[k], thread));
+        if (done)
+            tl_contact_allow_reuse(m, contact[k]);
+        else
+            room->failed = true;
     }
 }
 

@@ -12,6 +12,8 @@ bool tl_contact_is_patch(const tl_model *m, uint32_t contact);
 void tl_contact_allow_reuse(tl_model *m, uint32_t contact);
 /* Brings a contact up to the present place; `pending` tells what is left to do. */
 void tl_contact_update(tl_model *m, uint32_t contact, unsigned thread);
+/* The same for some field contacts that go on, up to TL_FIELD_PAIRS. */
+void tl_contacts_follow(tl_model *m, const uint32_t contact[], uint32_t count, unsigned thread);
 /* The same for a contact of bodies that have other frames than when its points were made. */
 void tl_contact_reframe(tl_model *m, uint32_t contact, unsigned thread);
 /* Lays the points of a contact that has just been given its room, unless it wants more: then it is still to grow;

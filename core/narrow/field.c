@@ -1,7 +1,7 @@
 /* field.c - integrals of the pressure field of two blocks: field.h says what it is.
  *
  * On the part of S that belongs to the faces a and b, d_h >= d_a for all others h, and d_a >= 0: a polygon in a plane, bounded
- * by a line for each other face. Eight polygons are worked on side by side (field_lanes.c).
+ * by a line for each other face. Eight polygons are worked on side by side (field_lanes.c), of one pair or of several.
  *
  * K consists of cells, one for each face, where that face is the nearest. The fields -n d^2 / 2 and -n d have the
  * divergences d and 1 in the cell of a face of normal n, and vanish on the face. So G and V are sums over the polygons
@@ -66,78 +66,83 @@ typedef struct apex {
     bool known;
 } apex;
 
-/* Integrals of polygons, eight at a time. */
-typedef struct work {
+/* Some of the planes of a pair. */
+typedef struct list {
+    const uint16_t *number;
+    uint32_t count;
+} list;
+
+/* The integrals of one pair. */
+typedef struct pair {
     const tl_field_faces *faces;
     tl_field_sums *sums;
-    double one_plane; /* offset within which planes are one */
     uint16_t *number;
-    tl_field_list planes, others; /* planes that bound polygons; faces that are to bound none */
-    tl_field_line *line;
-    bool flat;   /* the polygons are those of K's own faces, found for `bounding` */
-    bool beyond; /* some corner lies beyond one of the others */
-    uint64_t bounding;
-    tl_field_lanes lanes;
-    int filled;
-    uint32_t face[LANES], with[LANES]; /* the polygon's two planes */
-    double length[LANES];      /* |n_a - n_b|; of a border minus the cosine of both planes */
+    list planes, others;       /* planes that bound polygons; faces that are to bound none */
+    double one_plane;          /* offset within which planes are one */
+    bool beyond;               /* some corner lies beyond one of the others */
+    uint64_t found;            /* faces that bound K, when its own faces are looked at */
     apex apex[2];              /* of A and of B */
     double by_force, by_swept; /* of S: int d x . n dS, int x . n dS */
+} pair;
+
+/* Planes of the polygons in the lanes: the k-th of each is in row k. */
+typedef struct rows {
+    tl_field_plane *row;
+    uint32_t count[LANES], most;
+} rows;
+
+/* Polygons, eight at a time. */
+typedef struct work {
+    tl_field_line *line;
+    bool flat; /* the polygons are K's own faces */
+    int filled;
+    tl_field_lanes lanes;
+    rows planes, others;
+    pair *of[LANES];
+    uint32_t face[LANES], with[LANES]; /* the polygon's two planes */
+    double length[LANES]; /* |n_a - n_b|; of a border minus the cosine of both planes */
 } work;
 
-static bool make_room(tl_field_room *room, uint32_t count)
+static bool make_room(tl_field_room *room, uint32_t lines, uint32_t numbers)
 {
-    if (count <= room->count)
+    if (lines <= room->lines && numbers <= room->numbers)
         return true;
     tl_field_free(room);
-    room->line = aligned_alloc(TL_ALIGN, (2u * count + 1) * sizeof *room->line);
-    room->number = malloc(2u * count * sizeof *room->number);
-    if (!room->line || !room->number)
+    room->line = aligned_alloc(TL_ALIGN, 2u * lines * sizeof *room->line);
+    room->plane = aligned_alloc(TL_ALIGN, 4u * lines * sizeof *room->plane);
+    room->number = malloc(2u * numbers * sizeof *room->number);
+    if (!room->line || !room->plane || !room->number)
         return false;
-    room->count = 2 * count;
+    room->lines = 2 * lines;
+    room->numbers = 2 * numbers;
     return true;
 }
 
 void tl_field_free(tl_field_room *room)
 {
     free(room->line);
+    free(room->plane);
     free(room->number);
     *room = (tl_field_room){0};
 }
 
-static bool begin(work *w, const tl_field_faces *f, tl_field_room *room, tl_field_sums *sums)
-{
-    if (!make_room(room, all_faces(f)))
-        return false;
-    w->faces = f;
-    w->sums = sums;
-    w->filled = 0;
-    w->number = room->number;
-    w->line = room->line;
-    double largest = 0;
-    for (uint32_t i = 0; i < all_faces(f); i++)
-        largest = fmax(largest, fabs(f->c[i]));
-    w->one_plane = ONE_PLANE * largest;
-    return true;
-}
-
 /* Takes the faces of a mask, or all, and the borders for the planes that bound polygons. */
-static void choose(work *w, const uint64_t *mask)
+static void choose(pair *p, const uint64_t *mask)
 {
-    const tl_field_faces *f = w->faces;
+    const tl_field_faces *f = p->faces;
     uint32_t count = all_faces(f), chosen = 0, left = count;
-    for (uint32_t i = 0; i < count; i++)
+    double largest = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        largest = fmax(largest, fabs(f->c[i]));
         if (!mask || *mask >> i & 1)
-            w->number[chosen++] = (uint16_t)i;
+            p->number[chosen++] = (uint16_t)i;
         else
-            w->number[--left] = (uint16_t)i;
-    w->planes = w->others =
-        (tl_field_list){.n = {f->n[0], f->n[1], f->n[2]}, .c = f->c, .faces = real_faces(f)};
-    w->planes.number = w->number;
-    w->planes.count = chosen;
-    w->others.number = w->number + left;
-    w->others.count = count - left;
-    w->beyond = false;
+            p->number[--left] = (uint16_t)i;
+    }
+    p->planes = (list){p->number, chosen};
+    p->others = (list){p->number + left, count - left};
+    p->one_plane = ONE_PLANE * largest;
+    p->beyond = false;
 }
 
 /* ---------------------------------------------------------------- apex ------------------- */
@@ -152,23 +157,23 @@ static tl_vec3 within(const apex *p, tl_vec3 way)
 
 /* Finds a point in which the chosen faces of a block meet. From the origin, it goes on to one plane after the other, along
  * those before. */
-static apex find_apex(const work *w, uint32_t begin, uint32_t end)
+static apex find_apex(const pair *of, uint32_t begin, uint32_t end)
 {
-    const tl_field_faces *f = w->faces;
+    const tl_field_faces *f = of->faces;
     apex p = {.known = true};
     for (uint32_t k = begin; k < end && p.count < 3; k++) {
-        tl_vec3 n = normal_of(f, w->number[k]), way = within(&p, n);
+        tl_vec3 n = normal_of(f, of->number[k]), way = within(&p, n);
         double sine2 = tl_v3_norm2(way);
         if (sine2 > STEEP * STEEP) {
             p.held[p.count] = way;
             p.per[p.count] = 1 / sine2;
-            double off = f->c[w->number[k]] - tl_v3_dot(n, p.x);
+            double off = f->c[of->number[k]] - tl_v3_dot(n, p.x);
             p.x = tl_v3_madd(p.x, off * p.per[p.count++], way);
         }
     }
     for (uint32_t k = begin; k < end && p.known; k++) {
-        tl_vec3 n = normal_of(f, w->number[k]);
-        p.known = fabs(f->c[w->number[k]] - tl_v3_dot(n, p.x)) <= w->one_plane &&
+        tl_vec3 n = normal_of(f, of->number[k]);
+        p.known = fabs(f->c[of->number[k]] - tl_v3_dot(n, p.x)) <= of->one_plane &&
                   (p.count == 3 || tl_v3_norm2(within(&p, n)) < ALIKE * ALIKE);
     }
     return p;
@@ -176,15 +181,15 @@ static apex find_apex(const work *w, uint32_t begin, uint32_t end)
 
 /* Adds energy and volume of the cells of a block with an apex. Of the points that it may be, that nearest the centre of
  * pressure is taken: roundings of the force count by the way from there. */
-static void add_share(work *w, const apex *p, double out)
+static void add_share(pair *of, const apex *p, double out)
 {
-    tl_field_sums *sums = w->sums;
+    tl_field_sums *sums = of->sums;
     if (!p->known || !(sums->pressure > 0))
         return;
     tl_vec3 centre = tl_v3_scale(1 / sums->pressure, sums->pressed);
     tl_vec3 x = tl_v3_add(p->x, within(p, tl_v3_sub(centre, p->x)));
-    sums->energy += 0.25 * out * (tl_v3_dot(x, sums->force) - w->by_force);
-    sums->volume += (1.0 / 3) * out * (tl_v3_dot(x, sums->swept) - w->by_swept);
+    sums->energy += 0.25 * out * (tl_v3_dot(x, sums->force) - of->by_force);
+    sums->volume += (1.0 / 3) * out * (tl_v3_dot(x, sums->swept) - of->by_swept);
 }
 
 /* ---------------------------------------------------------------- sums ------------------- */
@@ -232,7 +237,7 @@ static void add_force(const tl_field_lanes *p, int l, const depths *o, double si
 static void add_gradient(work *w, int l, const depths *o, double sign)
 {
     const tl_field_lanes *p = &w->lanes;
-    tl_field_sums *sums = w->sums;
+    tl_field_sums *sums = w->of[l]->sums;
     tl_vec3 n = lane_vector(p->n, l), t = lane_vector(p->t, l), s = lane_vector(p->s, l);
     double ot = p->origin_t[l], os = p->origin_s[l], part = sign * p->share[l];
     add_force(p, l, o, sign, &sums->force, &sums->moment);
@@ -245,15 +250,16 @@ static void add_gradient(work *w, int l, const depths *o, double sign)
 static void add_sides(work *w, int l, const depths *o)
 {
     const tl_vec3 n = lane_vector(w->lanes.n, l);
-    w->by_force += w->lanes.h[l] * o->d;
-    w->by_swept += w->lanes.h[l] * o->area;
+    pair *of = w->of[l];
+    of->by_force += w->lanes.h[l] * o->d;
+    of->by_swept += w->lanes.h[l] * o->area;
     const uint32_t face[] = {w->face[l], w->with[l]};
     for (int of_b = 0; of_b < 2; of_b++) {
-        if (w->apex[of_b].known)
+        if (of->apex[of_b].known)
             continue;
-        double slope = (of_b ? -1 : 1) * tl_v3_dot(n, normal_of(w->faces, face[of_b]));
-        w->sums->energy += 0.5 * slope * o->dd;
-        w->sums->volume += slope * o->d;
+        double slope = (of_b ? -1 : 1) * tl_v3_dot(n, normal_of(of->faces, face[of_b]));
+        of->sums->energy += 0.5 * slope * o->dd;
+        of->sums->volume += slope * o->d;
     }
 }
 
@@ -261,7 +267,7 @@ static void add_sides(work *w, int l, const depths *o)
 static void add_surface(work *w, int l, const depths *o)
 {
     const tl_field_lanes *p = &w->lanes;
-    tl_field_sums *sums = w->sums;
+    tl_field_sums *sums = w->of[l]->sums;
     double part = p->share[l], ot = p->origin_t[l], os = p->origin_s[l];
     add_sides(w, l, o);
     add_gradient(w, l, o, 1);
@@ -283,31 +289,61 @@ static void add_surface(work *w, int l, const depths *o)
  * round. */
 static void add_border(work *w, int l, const depths *o)
 {
-    const tl_field_faces *f = w->faces;
+    const tl_field_faces *f = w->of[l]->faces;
+    tl_field_sums *sums = w->of[l]->sums;
     bool face_of_b = w->face[l] >= f->a, border_of_b = w->with[l] >= real_faces(f) + f->border_a;
     uint32_t end = border_of_b ? all_faces(f) : real_faces(f) + f->border_a;
     double out = border_of_b ? -1 : 1;
     if (face_of_b != border_of_b)
         add_gradient(w, l, o, out);
     if (w->with[l] + (border_of_b ? f->seam_b : f->seam_a) >= end)
-        add_force(&w->lanes, l, o, -out, &w->sums->through, &w->sums->through_moment);
+        add_force(&w->lanes, l, o, -out, &sums->through, &sums->through_moment);
 }
 
 static void take(work *w, int l)
 {
-    const tl_field_faces *f = w->faces;
+    const tl_field_faces *f = w->of[l]->faces;
     const depths o = depths_of(&w->lanes, l);
     if (w->face[l] < f->a && w->with[l] >= f->a && w->with[l] < real_faces(f)) {
         add_surface(w, l, &o);
         return;
     }
-    w->sums->volume += w->length[l] * o.d;
-    w->sums->energy += 0.5 * w->length[l] * o.dd;
+    w->of[l]->sums->volume += w->length[l] * o.d;
+    w->of[l]->sums->energy += 0.5 * w->length[l] * o.dd;
     if (w->with[l] >= real_faces(f))
         add_border(w, l, &o);
 }
 
 /* ---------------------------------------------------------------- polygons --------------- */
+
+/* Puts some of a pair's planes into a lane, but for two. */
+static void put_planes(rows *r, int lane, const tl_field_faces *f, const list *from, uint32_t one,
+                       uint32_t other)
+{
+    tl_field_plane *to = r->row;
+    for (const uint16_t *i = from->number; i < from->number + from->count; i++) {
+        if (*i == one || *i == other)
+            continue;
+        for (int k = 0; k < 3; k++)
+            to->n[k][lane] = f->n[k][*i];
+        to->c[lane] = f->c[*i];
+        to->face[lane] = *i < real_faces(f);
+        to++;
+    }
+    r->count[lane] = (uint32_t)(to - r->row);
+    r->most = r->count[lane] > r->most ? r->count[lane] : r->most;
+}
+
+/* Fills up the lanes that have fewer planes than others, or no polygon. */
+static void fill_up(rows *r, int filled)
+{
+    for (int lane = 0; lane < (int)LANES; lane++)
+        for (uint32_t k = lane < filled ? r->count[lane] : 0; k < r->most; k++) {
+            r->row[k].n[0][lane] = r->row[k].n[1][lane] = r->row[k].n[2][lane] = 0;
+            r->row[k].c[lane] = TL_FIELD_FAR;
+            r->row[k].face[lane] = 0;
+        }
+}
 
 /* Integrates the polygons in the lanes. */
 static void flush(work *w)
@@ -317,28 +353,32 @@ static void flush(work *w)
         return;
     for (int lane = w->filled; lane < (int)LANES; lane++)
         p->share[lane] = 0; /* what is left there is of earlier ones */
-    size_t lines = tl_field_draw(p, &w->planes, w->flat, w->one_plane, w->line);
-    if (!w->flat)
-        w->beyond = w->beyond || tl_field_corner_beyond(p, &w->others, w->line);
+    fill_up(&w->planes, w->filled);
+    fill_up(&w->others, w->filled);
+    size_t lines = tl_field_draw(p, w->planes.row, w->planes.most, w->flat, w->line);
+    uint32_t beyond = tl_field_corners_beyond(p, w->others.row, w->others.most, w->line);
     tl_field_sum_lines(p, w->line, lines);
     for (int lane = 0; lane < w->filled; lane++) {
+        pair *of = w->of[lane];
+        of->beyond = of->beyond || beyond >> lane & 1;
         if (!(p->area[lane] > 0))
             continue;
         if (w->flat)
-            w->bounding |= UINT64_C(1) << w->face[lane];
+            of->found |= UINT64_C(1) << w->face[lane];
         else
             take(w, lane);
-        w->beyond = w->beyond || p->open[lane] > 0;
+        of->beyond = of->beyond || p->open[lane] > 0;
     }
     w->filled = 0;
+    w->planes.most = w->others.most = 0;
 }
 
 /* Puts a polygon into the lanes: in a plane, of the depth of a face, bounded by neither that nor another plane. */
-static void put(work *w, tl_vec3 n, double h, uint32_t face, uint32_t with, double length)
+static void put(work *w, pair *of, tl_vec3 n, double h, uint32_t face, uint32_t with, double length)
 {
     tl_field_lanes *p = &w->lanes;
     int l = w->filled++;
-    tl_vec3 m = normal_of(w->faces, face);
+    tl_vec3 m = normal_of(of->faces, face);
     p->n[0][l] = n.x;
     p->n[1][l] = n.y;
     p->n[2][l] = n.z;
@@ -346,93 +386,150 @@ static void put(work *w, tl_vec3 n, double h, uint32_t face, uint32_t with, doub
     p->face_n[0][l] = m.x;
     p->face_n[1][l] = m.y;
     p->face_n[2][l] = m.z;
-    p->face_c[l] = w->faces->c[face];
-    p->one[l] = face;
-    p->other[l] = with;
+    p->face_c[l] = of->faces->c[face];
+    p->one_plane[l] = of->one_plane;
     p->share[l] = 1;
+    w->of[l] = of;
     w->face[l] = face;
     w->with[l] = with;
     w->length[l] = length;
+    put_planes(&w->planes, l, of->faces, &of->planes, face, with);
+    put_planes(&w->others, l, of->faces, &of->others, face, with);
     if (w->filled == (int)LANES)
         flush(w);
 }
 
 /* The surface between the cells of two faces, where both are the nearest. */
-static void put_between(work *w, uint32_t a, uint32_t b)
+static void put_between(work *w, pair *of, uint32_t a, uint32_t b)
 {
-    const tl_field_faces *f = w->faces;
+    const tl_field_faces *f = of->faces;
     tl_vec3 m = tl_v3_sub(normal_of(f, a), normal_of(f, b));
     double length = tl_v3_norm(m);
     if (length > ALIKE)
-        put(w, tl_v3_scale(1 / length, m), (f->c[a] - f->c[b]) / length, a, b, length);
+        put(w, of, tl_v3_scale(1 / length, m), (f->c[a] - f->c[b]) / length, a, b, length);
 }
 
 /* The polygons between the cells of the chosen faces, of which all may be known to bound K, and at borders. */
-static void integrate(work *w, bool only_bounding)
+static void put_pair(work *w, pair *of, bool only_bounding)
 {
-    const tl_field_faces *f = w->faces;
-    const uint16_t *number = w->number;
+    const tl_field_faces *f = of->faces;
+    const uint16_t *number = of->number;
     uint32_t a = 0, real = 0;
-    *w->sums = (tl_field_sums){0};
-    w->flat = false;
-    while (real < w->planes.count && number[real] < real_faces(f))
+    *of->sums = (tl_field_sums){0};
+    while (real < of->planes.count && number[real] < real_faces(f))
         a += number[real++] < f->a;
     /* a face that bounds nothing of K may be far from it, and so would the apex be */
-    w->apex[0] = only_bounding ? find_apex(w, 0, a) : (apex){0};
-    w->apex[1] = only_bounding ? find_apex(w, a, real) : (apex){0};
-    w->by_force = w->by_swept = 0;
+    of->apex[0] = only_bounding ? find_apex(of, 0, a) : (apex){0};
+    of->apex[1] = only_bounding ? find_apex(of, a, real) : (apex){0};
+    of->by_force = of->by_swept = 0;
     for (uint32_t i = 0; i < real; i++)
         for (uint32_t j = i + 1; j < real; j++)
-            if ((i < a) != (j < a) || !w->apex[i >= a].known)
-                put_between(w, number[i], number[j]);
+            if ((i < a) != (j < a) || !of->apex[i >= a].known)
+                put_between(w, of, number[i], number[j]);
     for (uint32_t k = real_faces(f); k < all_faces(f); k++)
         for (uint32_t face = 0; face < real_faces(f); face++) {
             tl_vec3 n = normal_of(f, k);
-            put(w, n, f->c[k], face, k, -tl_v3_dot(n, normal_of(f, face)));
+            put(w, of, n, f->c[k], face, k, -tl_v3_dot(n, normal_of(f, face)));
         }
+}
+
+static void end_pair(pair *of)
+{
+    add_share(of, &of->apex[0], 1);
+    add_share(of, &of->apex[1], -1);
+}
+
+static void integrate(work *w, pair *of, const uint64_t *mask)
+{
+    choose(of, mask);
+    put_pair(w, of, mask);
     flush(w);
-    add_share(w, &w->apex[0], 1);
-    add_share(w, &w->apex[1], -1);
+    end_pair(of);
 }
 
 /* The faces that bound K: those of which something lies within all others. */
-static uint64_t find_bounding(work *w)
+static uint64_t find_bounding(work *w, pair *of)
 {
-    const tl_field_faces *f = w->faces;
-    choose(w, NULL);
+    const tl_field_faces *f = of->faces;
+    choose(of, NULL);
     w->flat = true;
-    w->bounding = 0;
+    of->found = 0;
     for (uint32_t i = 0; i < real_faces(f); i++)
-        put(w, normal_of(f, i), f->c[i], i, i, 1);
+        put(w, of, normal_of(f, i), f->c[i], i, i, 1);
     flush(w);
-    return w->bounding;
+    w->flat = false;
+    return of->found;
 }
 
-bool tl_field_integrate(const tl_field_faces *f, tl_field_room *room, tl_field_sums *sums)
+/* ---------------------------------------------------------------- pairs ------------------ */
+
+/* Whether somebody keeps which faces of a pair bound K. */
+static bool is_kept(const tl_field_faces *f)
 {
-    work w;
-    if (!begin(&w, f, room, sums))
+    return f->bounding && all_faces(f) == real_faces(f) && real_faces(f) <= TL_FIELD_KNOWN;
+}
+
+static bool is_known(const tl_field_faces *f)
+{
+    return is_kept(f) && *f->bounding;
+}
+
+/* A pair of which it is not known which faces bound K, or not any more. */
+static void integrate_anew(work *w, pair *of)
+{
+    const tl_field_faces *f = of->faces;
+    if (is_kept(f)) {
+        *f->bounding = find_bounding(w, of);
+        integrate(w, of, f->bounding);
+        if (!of->beyond)
+            return;
+        *f->bounding = 0; /* K is so thin that a face was lost in roundings */
+    }
+    integrate(w, of, NULL);
+}
+
+bool tl_field_integrate_all(const tl_field_faces *const faces[], tl_field_sums *const sums[],
+                            uint32_t count, tl_field_room *room)
+{
+    pair pairs[TL_FIELD_PAIRS];
+    work w; /* the lanes are filled before they are read */
+    w.flat = false;
+    w.filled = 0;
+    w.planes.most = w.others.most = 0;
+    uint32_t most = 0, all = 0;
+    for (uint32_t k = 0; k < count; k++) {
+        uint32_t planes = all_faces(faces[k]);
+        most = planes > most ? planes : most;
+        all += planes;
+    }
+    if (!make_room(room, most + 1, all))
         return false;
-    bool known = f->bounding && *f->bounding;
-    if (!f->bounding || all_faces(f) > real_faces(f) || real_faces(f) > TL_FIELD_KNOWN) {
-        choose(&w, NULL);
-        integrate(&w, false);
-        return true;
+    w.line = room->line;
+    w.planes.row = room->plane;
+    w.others.row = room->plane + room->lines;
+    all = 0;
+    for (uint32_t k = 0; k < count; k++) {
+        pairs[k].faces = faces[k];
+        pairs[k].sums = sums[k];
+        pairs[k].number = room->number + all;
+        all += all_faces(faces[k]);
+        if (!is_known(faces[k]))
+            continue;
+        choose(&pairs[k], faces[k]->bounding);
+        put_pair(&w, &pairs[k], true);
     }
-    if (known) {
-        choose(&w, f->bounding);
-        integrate(&w, true);
-    }
-    if (!known || w.beyond) {
-        *f->bounding = find_bounding(&w);
-        choose(&w, f->bounding);
-        integrate(&w, true);
-        known = !w.beyond;
-    }
-    if (!known) { /* K is so thin that a face was lost in roundings */
-        *f->bounding = 0;
-        choose(&w, NULL);
-        integrate(&w, false);
+    flush(&w);
+    for (uint32_t k = 0; k < count; k++) {
+        bool known = is_known(faces[k]);
+        if (known)
+            end_pair(&pairs[k]);
+        if (!known || pairs[k].beyond)
+            integrate_anew(&w, &pairs[k]);
     }
     return true;
+}
+
+bool tl_field_integrate(const tl_field_faces *faces, tl_field_room *room, tl_field_sums *sums)
+{
+    return tl_field_integrate_all(&faces, &sums, 1, room);
 }

@@ -26,7 +26,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
-#include <talus/types.h>
+#include <talus/plugin.h>
 
 /* The planes that bound K, in this order: faces of A, faces of B, borders of A, borders of B. Others may be among them. Of
  * blocks that overlap a face may be left out that lies wholly outside one face of the other block. With a border all faces
@@ -48,8 +48,9 @@ typedef struct tl_field_faces {
 /* Memory that the functions below work in; zero at first. */
 typedef struct tl_field_room {
     struct tl_field_line *line;
+    struct tl_field_plane *plane;
     uint16_t *number;
-    uint32_t count;
+    uint32_t lines, numbers;
 } tl_field_room;
 
 /* Integrals over S and K, moments about the origin. Those marked * include the borders. */
@@ -71,7 +72,13 @@ typedef struct tl_field_sums {
     tl_vec3 deepest_at;
 } tl_field_sums;
 
+/* Pairs that are integrated together. */
+#define TL_FIELD_PAIRS TL_LANES
+
 /* false without memory. */
+bool tl_field_integrate_all(const tl_field_faces *const faces[], tl_field_sums *const sums[],
+                            uint32_t count, tl_field_room *room);
+/* The same of one pair. */
 bool tl_field_integrate(const tl_field_faces *faces, tl_field_room *room, tl_field_sums *sums);
 void tl_field_free(tl_field_room *room);
 

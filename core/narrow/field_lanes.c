@@ -20,7 +20,7 @@
 /* Length of a face's normal, within the polygon's plane, below which the face is parallel to the plane. */
 #define LEVEL 1e-9
 /* Place beyond the end of any line. */
-#define FAR 1e290
+#define FAR TL_FIELD_FAR
 /* Length of a line that has no end: where it is crossed at all, by parallel lines far away. */
 #define ENDLESS 1e145
 
@@ -47,28 +47,24 @@ TL_VECTORIZED static void place_axes(tl_field_lanes *restrict p)
     }
 }
 
-/* The line in which d_h - k d is zero, for a plane h; k is 1 for a face, and 0 for a border. */
-TL_VECTORIZED static void draw_line(tl_field_lanes *restrict p, double number,
-                                    const double plane[4], double k, double one_plane,
-                                    tl_field_line *restrict line)
+/* The line in which d_h - k d is zero, for a plane h; k is 1 for a face between cells, else 0. */
+TL_VECTORIZED static void draw_line(tl_field_lanes *restrict p, const tl_field_plane *restrict h,
+                                    double between, tl_field_line *restrict line)
 {
-    const double nx = plane[0], ny = plane[1], nz = plane[2], offset = plane[3];
 #pragma omp simd
     for (unsigned l = 0; l < LANES; l++) {
-        double x = nx - k * p->face_n[0][l], y = ny - k * p->face_n[1][l];
-        double z = nz - k * p->face_n[2][l], o = offset - k * p->face_c[l];
+        double k = between * h->face[l];
+        double x = h->n[0][l] - k * p->face_n[0][l], y = h->n[1][l] - k * p->face_n[1][l];
+        double z = h->n[2][l] - k * p->face_n[2][l], o = h->c[l] - k * p->face_c[l];
         double t = x * p->t[0][l] + y * p->t[1][l] + z * p->t[2][l];
         double s = x * p->s[0][l] + y * p->s[1][l] + z * p->s[2][l];
         o -= p->h[l] * (x * p->n[0][l] + y * p->n[1][l] + z * p->n[2][l]);
-        double length = sqrt(t * t + s * s);
-        double none = ((p->one[l] == number) | (p->other[l] == number)) ? 1.0 : 0.0;
-        double level = length < LEVEL ? 1.0 : 0.0;
-        double part = o > one_plane ? 1.0 : 0.5;
-        part = o < -one_plane ? 0.0 : part;
-        double kept = none > level ? 1.0 : level > 0 ? part : 1.0;
-        kept = none > 0 ? 1.0 : kept;
-        p->share[l] *= kept;
-        double gone = none + level, per = 1 / length;
+        double length = sqrt(t * t + s * s), per = 1 / length;
+        double none = h->c[l] >= FAR ? 1.0 : 0.0, level = length < LEVEL ? 1.0 : 0.0;
+        double part = o > p->one_plane[l] ? 1.0 : 0.5;
+        part = o < -p->one_plane[l] ? 0.0 : part;
+        double kept = level > 0 ? part : 1.0, gone = none + level;
+        p->share[l] *= none > 0 ? 1.0 : kept;
         line->gt[l] = gone > 0 ? 0.0 : t * per;
         line->gs[l] = gone > 0 ? 0.0 : s * per;
         line->c[l] = gone > 0 ? FAR : o * per;
@@ -127,30 +123,26 @@ TL_VECTORIZED static void cross_lines(tl_field_line *line, size_t count)
     }
 }
 
-size_t tl_field_draw(tl_field_lanes *p, const tl_field_list *planes, bool flat, double one_plane,
+size_t tl_field_draw(tl_field_lanes *p, const tl_field_plane *planes, uint32_t count, bool flat,
                      tl_field_line *line)
 {
-    size_t count = 0;
+    size_t lines = 0;
     place_axes(p);
     if (!flat)
-        draw_own_line(p, &line[count++]);
-    for (uint32_t m = 0; m < planes->count; m++) {
-        uint32_t i = planes->number[m];
-        const double plane[4] = {planes->n[0][i], planes->n[1][i], planes->n[2][i], planes->c[i]};
-        draw_line(p, i, plane, !flat && i < planes->faces, one_plane, &line[count++]);
-    }
-    cross_lines(line, count);
-    return count;
+        draw_own_line(p, &line[lines++]);
+    for (uint32_t k = 0; k < count; k++)
+        draw_line(p, &planes[k], flat ? 0 : 1, &line[lines++]);
+    cross_lines(line, lines);
+    return lines;
 }
 
-/* How many of the corners at one end of the lines d = 0 lie beyond a plane. */
-TL_VECTORIZED static double count_beyond(const tl_field_lanes *restrict p, const double plane[4],
-                                         const tl_field_line *restrict own,
-                                         const double *restrict end)
+/* Adds 1 to the lanes of which a corner at one end of the line d = 0 lies beyond a plane. */
+TL_VECTORIZED static void count_beyond(const tl_field_lanes *restrict p,
+                                       const tl_field_plane *restrict h,
+                                       const tl_field_line *restrict own,
+                                       const double *restrict end, double *restrict count)
 {
-    const double nx = plane[0], ny = plane[1], nz = plane[2], offset = plane[3];
-    double count = 0;
-#pragma omp simd reduction(+ : count)
+#pragma omp simd
     for (unsigned l = 0; l < LANES; l++) {
         bool bounds = (own->to[l] > own->from[l]) & (own->c[l] < FAR) & (p->share[l] > 0);
         double t = own->c[l] * own->gt[l] - end[l] * own->gs[l];
@@ -158,22 +150,23 @@ TL_VECTORIZED static double count_beyond(const tl_field_lanes *restrict p, const
         double x = p->h[l] * p->n[0][l] + t * p->t[0][l] + s * p->s[0][l];
         double y = p->h[l] * p->n[1][l] + t * p->t[1][l] + s * p->s[1][l];
         double z = p->h[l] * p->n[2][l] + t * p->t[2][l] + s * p->s[2][l];
-        bool within = x * nx + y * ny + z * nz <= offset;
-        count += (bounds & !within) ? 1.0 : 0.0;
+        bool within = x * h->n[0][l] + y * h->n[1][l] + z * h->n[2][l] <= h->c[l];
+        count[l] += (bounds & !within) ? 1.0 : 0.0;
     }
-    return count;
 }
 
-bool tl_field_corner_beyond(const tl_field_lanes *p, const tl_field_list *planes,
-                            const tl_field_line *own)
+uint32_t tl_field_corners_beyond(const tl_field_lanes *p, const tl_field_plane *planes,
+                                 uint32_t count, const tl_field_line *own)
 {
-    for (uint32_t m = 0; m < planes->count; m++) {
-        uint32_t i = planes->number[m];
-        const double plane[4] = {planes->n[0][i], planes->n[1][i], planes->n[2][i], planes->c[i]};
-        if (count_beyond(p, plane, own, own->from) + count_beyond(p, plane, own, own->to) > 0)
-            return true;
+    double beyond[LANES] = {0};
+    uint32_t out = 0;
+    for (uint32_t k = 0; k < count; k++) {
+        count_beyond(p, &planes[k], own, own->from, beyond);
+        count_beyond(p, &planes[k], own, own->to, beyond);
     }
-    return false;
+    for (unsigned l = 0; l < LANES; l++)
+        out |= (uint32_t)(beyond[l] > 0) << l;
+    return out;
 }
 
 /* ---------------------------------------------------------------- integrals -------------- */

@@ -17,10 +17,9 @@ typedef struct tl_field_line {
 typedef struct tl_field_lanes {
     double n[3][TL_LANES], h[TL_LANES];           /* plane */
     double face_n[3][TL_LANES], face_c[TL_LANES]; /* the face whose depth counts */
-    double one[TL_LANES],
-        other[TL_LANES];    /* numbers of the planes that bound the polygon nowhere */
-    double share[TL_LANES]; /* of the integrals: 1; 1/2 for a tie; 0 for none */
-    double t[3][TL_LANES], s[3][TL_LANES];           /* axes in the plane */
+    double one_plane[TL_LANES];                   /* offset within which planes are one */
+    double share[TL_LANES];                /* of the integrals: 1; 1/2 for a tie; 0 for none */
+    double t[3][TL_LANES], s[3][TL_LANES]; /* axes in the plane */
     double d0[TL_LANES], dt[TL_LANES], ds[TL_LANES]; /* depth in the plane: d0 + dt x_t + ds x_s */
     double origin_t[TL_LANES], origin_s[TL_LANES];   /* a corner; d0 and the rest are about it */
     double area[TL_LANES], it[TL_LANES], is[TL_LANES]; /* integrals of 1, x_t, x_s, ... */
@@ -30,22 +29,23 @@ typedef struct tl_field_lanes {
     double deepest[TL_LANES], deepest_t[TL_LANES], deepest_s[TL_LANES];
 } tl_field_lanes;
 
-/* Some of the planes n . x = c, of which the first are faces and the others borders. */
-typedef struct tl_field_list {
-    const double *n[3], *c;
-    uint32_t faces;
-    const uint16_t *number;
-    uint32_t count;
-} tl_field_list;
+/* A plane n . x = c for each polygon. */
+typedef struct tl_field_plane {
+    double n[3][TL_LANES], c[TL_LANES];
+    double face[TL_LANES]; /* 1: a face, 0: a border */
+} tl_field_plane;
 
-/* Draws the lines of these planes, the first of `line`, and finds between which places they bound the polygons; how many lines
+/* Offset of a plane that is none: it lies behind everything. */
+#define TL_FIELD_FAR 1e290
+
+/* Draws the lines of some planes, the first of `line`, and finds between which places they bound the polygons; how many lines
  * there are. Polygons between cells lie where no face is nearer than theirs, and theirs is not passed: `line[0]` is that of
- * d = 0. Others, with `flat`, lie on a face and within all other planes. Planes are one within the offset `one_plane`. */
-size_t tl_field_draw(tl_field_lanes *p, const tl_field_list *planes, bool flat, double one_plane,
+ * d = 0. Others, with `flat`, lie on a face and within all other planes. */
+size_t tl_field_draw(tl_field_lanes *p, const tl_field_plane *planes, uint32_t count, bool flat,
                      tl_field_line *line);
-/* Whether a corner with d = 0 lies beyond one of these planes. */
-bool tl_field_corner_beyond(const tl_field_lanes *p, const tl_field_list *planes,
-                            const tl_field_line *own);
+/* Lanes, a bit each, of which a corner with d = 0 lies beyond one of some planes. */
+uint32_t tl_field_corners_beyond(const tl_field_lanes *p, const tl_field_plane *planes,
+                                 uint32_t count, const tl_field_line *own);
 /* Integrates the polygons that these lines bound. */
 void tl_field_sum_lines(tl_field_lanes *p, const tl_field_line *line, size_t count);
 

@@ -64,16 +64,25 @@ bool tl_manifold_press(const tl_press *press, const tl_facet *faces, tl_narrow *
     return true;
 }
 
+tl_press_query tl_manifold_query(const tl_pair_view *view, const tl_region *region,
+                                 const tl_touch_rule *rule, const tl_manifold_before *before)
+{
+    return (tl_press_query){.view = view,
+                            .region = region,
+                            .least = rule->least,
+                            .shift = before->shift,
+                            .shifted = before->shift > 0 ? before->shifted : UINT32_MAX};
+}
+
 static bool find_field(const tl_pair_view *view, const tl_region *r, const tl_touch_rule *rule,
                        const tl_manifold_before *before, tl_narrow *room)
 {
-    uint32_t shifted = before->shift > 0 ? before->shifted : UINT32_MAX;
+    const tl_press_query query = tl_manifold_query(view, r, rule, before);
     const tl_facet faces = {.ia = r->flush_a, .ib = r->flush_b};
     tl_press press;
     room->manifold.point_count = 0;
     room->manifold.valid = TL_LIST_MARGIN * view->size;
-    return tl_press_find(view, r, rule->least, before->shift, shifted, room, &press) &&
-           tl_manifold_press(&press, &faces, room);
+    return tl_press_find(&query, 1, room, &press) && tl_manifold_press(&press, &faces, room);
 }
 
 /* ---------------------------------------------------------------- all of it -------------- */
@@ -94,18 +103,6 @@ bool tl_manifold_find(const tl_pair_view *view, const tl_region *r, const tl_tou
     if (m->failed || r->gap > 0)
         return !m->failed;
     return find_field(view, r, rule, before, room);
-}
-
-bool tl_manifold_follow(const tl_pair_view *view, const tl_region *r, const tl_touch_rule *rule,
-                        const tl_manifold_before *before, tl_narrow *room)
-{
-    tl_manifold *m = &room->manifold;
-    m->failed = false;
-    if (!find_field(view, r, rule, before, room))
-        return false;
-    if (m->point_count == 0 || (m->press.patch >= 1 && before->calm))
-        m->valid = 0;
-    return true;
 }
 
 /* ---------------------------------------------------------------- joint ------------------ */

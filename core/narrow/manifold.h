@@ -10,7 +10,7 @@ typedef struct tl_manifold_before {
         holds; /* it carries force across a gap, or may: its faces stay a patch however they turn */
     bool calm; /* a field contact that hardly moves: only that becomes a patch */
     tl_facet facet; /* its faces; without points: none */
-    double shift;   /* see tl_press_find */
+    double shift;   /* see tl_press_query */
     uint32_t shifted;
 } tl_manifold_before;
 
@@ -21,10 +21,9 @@ typedef struct tl_manifold_before {
  * TL_LIST_MARGIN times the size. false: out of memory. */
 bool tl_manifold_find(const tl_pair_view *view, const tl_region *region, const tl_touch_rule *rule,
                       const tl_manifold_before *before, tl_narrow *room);
-/* The same for a field contact whose region is known; room->manifold.valid is 0 when it may be a patch or nothing now. */
-bool tl_manifold_follow(const tl_pair_view *view, const tl_region *region,
-                        const tl_touch_rule *rule, const tl_manifold_before *before,
-                        tl_narrow *room);
+/* What the press of a field contact is found for. */
+tl_press_query tl_manifold_query(const tl_pair_view *view, const tl_region *region,
+                                 const tl_touch_rule *rule, const tl_manifold_before *before);
 /* A field contact of a press, and of the flush faces of a facet, into room->manifold. false: out of memory. */
 bool tl_manifold_press(const tl_press *press, const tl_facet *faces, tl_narrow *room);
 /* The joint of the faces that touch along a direction from A to B. */

@@ -22,19 +22,33 @@ TL_VECTORIZED static void place(const tl_mat3 *turn, tl_vec3 shift, const tl_vec
     }
 }
 
+bool tl_pairs_place(tl_pair_view view[], uint32_t count, tl_narrow *room)
+{
+    size_t vertices = 1, faces = 1;
+    for (uint32_t k = 0; k < count; k++) {
+        vertices += view[k].b->vertex_count;
+        faces += view[k].b->face_count;
+    }
+    if (!tl_grow(&room->vertex_b, &room->vertex_room, vertices, sizeof(tl_vec3)) ||
+        !tl_grow(&room->normal_b, &room->normal_room, faces, sizeof(tl_vec3)))
+        return false;
+    tl_vec3 *vertex = room->vertex_b, *normal = room->normal_b;
+    for (tl_pair_view *v = view; v < view + count; v++) {
+        const tl_poly *b = v->b;
+        v->vertex_b = vertex;
+        v->normal_b = normal;
+        vertex += b->vertex_count;
+        normal += b->face_count;
+        place(&v->turn, v->shift, b->vertex, sizeof(tl_vec3), b->vertex_count, &v->vertex_b->x);
+        place(&v->turn, tl_v3(0, 0, 0), &b->plane[0].normal, sizeof(tl_plane), b->face_count,
+              &v->normal_b->x);
+    }
+    return true;
+}
+
 bool tl_pair_place(tl_pair_view *view, tl_narrow *room)
 {
-    const tl_poly *b = view->b;
-    if (!tl_grow(&room->vertex_b, &room->vertex_room, b->vertex_count + 1, sizeof(tl_vec3)) ||
-        !tl_grow(&room->normal_b, &room->normal_room, b->face_count + 1, sizeof(tl_vec3)))
-        return false;
-    view->vertex_b = room->vertex_b;
-    view->normal_b = room->normal_b;
-    place(&view->turn, view->shift, b->vertex, sizeof(tl_vec3), b->vertex_count,
-          &view->vertex_b->x);
-    place(&view->turn, tl_v3(0, 0, 0), &b->plane[0].normal, sizeof(tl_plane), b->face_count,
-          &view->normal_b->x);
-    return true;
+    return tl_pairs_place(view, 1, room);
 }
 
 bool tl_pair_place_face(tl_pair_view *view, uint32_t face, tl_narrow *room)

@@ -5,7 +5,8 @@
 #include "narrow/narrow.h"
 #include "narrow/view.h"
 
-/* Fills vertex_b and normal_b of the view; false when out of memory. */
+/* Fills vertex_b and normal_b of views, until any are filled anew; false when out of memory. */
+bool tl_pairs_place(tl_pair_view view[], uint32_t count, tl_narrow *room);
 bool tl_pair_place(tl_pair_view *view, tl_narrow *room);
 /* Fills them for one face of B only. */
 bool tl_pair_place_face(tl_pair_view *view, uint32_t face, tl_narrow *room);

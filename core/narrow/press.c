@@ -35,18 +35,30 @@ typedef struct planes {
     uint32_t count;
 } planes;
 
-static bool reserve(tl_narrow *room, uint32_t count, planes *p)
+/* Room for planes of so many pairs, each of which has no more than its region. */
+static bool reserve(tl_narrow *room, const tl_press_query query[], uint32_t count, planes p[])
 {
-    if (4u * count > room->press_room) {
-        double *press = realloc(room->press, 8u * count * sizeof *press);
+    size_t all = 0;
+    uint32_t faces[TL_FIELD_PAIRS];
+    for (uint32_t k = 0; k < count; k++) {
+        const tl_region *r = query[k].region;
+        faces[k] = r->a + r->b + r->border_a + r->border_b;
+        all += faces[k];
+    }
+    if (4 * all > room->press_room) {
+        double *press = realloc(room->press, 8 * all * sizeof *press);
         if (!press)
             return false;
         room->press = press;
-        room->press_room = 8u * count;
+        room->press_room = 8 * all;
     }
-    for (uint32_t k = 0; k < 3; k++)
-        p->faces.n[k] = room->press + (size_t)k * count;
-    p->faces.c = room->press + 3u * (size_t)count;
+    double *at = room->press;
+    for (uint32_t k = 0; k < count; k++) {
+        for (uint32_t axis = 0; axis < 3; axis++, at += faces[k])
+            p[k].faces.n[axis] = at;
+        p[k].faces.c = at;
+        at += faces[k];
+    }
     return true;
 }
 
@@ -66,22 +78,15 @@ static void add(planes *p, tl_plane plane)
     p->faces.c[p->count++] = plane.offset - tl_v3_dot(plane.normal, p->origin);
 }
 
-/* A pair with its region, and where face `shifted` of A lies. */
-typedef struct pair {
-    const tl_pair_view *view;
-    const tl_region *region;
-    double shift;
-    uint32_t shifted;
-} pair;
-
-static void add_face(planes *p, const pair *of, bool of_b, uint32_t face)
+static void add_face(planes *p, const tl_press_query *of, bool of_b, uint32_t face)
 {
     tl_plane plane = plane_of(of->view, of_b, face);
     plane.offset += !of_b && face == of->shifted ? of->shift : 0;
     add(p, plane);
 }
 
-static uint32_t add_faces(planes *p, const pair *of, bool of_b, uint32_t begin, uint32_t count)
+static uint32_t add_faces(planes *p, const tl_press_query *of, bool of_b, uint32_t begin,
+                          uint32_t count)
 {
     for (uint32_t k = begin; k < begin + count; k++)
         add_face(p, of, of_b, of->region->face[k]);
@@ -89,8 +94,8 @@ static uint32_t add_faces(planes *p, const pair *of, bool of_b, uint32_t begin, 
 }
 
 /* Adds faces on other parts, the seams behind the others; how many are seams, with it. */
-static uint32_t add_covered(planes *p, const pair *of, bool of_b, uint32_t begin, uint32_t count,
-                            uint32_t *seams)
+static uint32_t add_covered(planes *p, const tl_press_query *of, bool of_b, uint32_t begin,
+                            uint32_t count, uint32_t *seams)
 {
     const tl_poly *poly = of_b ? of->view->b : of->view->a;
     *seams = 0;
@@ -103,7 +108,7 @@ static uint32_t add_covered(planes *p, const pair *of, bool of_b, uint32_t begin
     return count;
 }
 
-static void list_field(planes *p, const pair *of)
+static void list_field(planes *p, const tl_press_query *of)
 {
     const tl_region *r = of->region;
     p->count = 0;
@@ -115,7 +120,7 @@ static void list_field(planes *p, const pair *of)
         add_covered(p, of, true, covered + r->border_a, r->border_b, &p->faces.seam_b);
 }
 
-static void list_patch(planes *p, const pair *of)
+static void list_patch(planes *p, const tl_press_query *of)
 {
     const tl_region *r = of->region;
     uint32_t more_a = r->a - r->blunt_a, more_b = r->b - r->blunt_b;
@@ -131,7 +136,7 @@ static void list_patch(planes *p, const pair *of)
 }
 
 /* Whether the deepest point lies in both blocks, as it does if they have anything in common. */
-static bool in_both(const pair *of, tl_vec3 x, double depth)
+static bool in_both(const tl_press_query *of, tl_vec3 x, double depth)
 {
     for (int of_b = 0; of_b < 2; of_b++) {
         uint32_t count = (of_b ? of->view->b : of->view->a)->face_count;
@@ -176,7 +181,8 @@ static double step(double x, double low, double high, double *slope)
 }
 
 /* Blends the field with the patch of the flush faces; the share of the patch. Both have the minimum area. */
-static double blend(const pair *of, const tl_field_sums *patch, double least, stored *field)
+static double blend(const tl_press_query *of, const tl_field_sums *patch, double least,
+                    stored *field)
 {
     const stored flat = with_least(patch, least);
     tl_vec3 na = of->view->a->plane[of->region->flush_a].normal;
@@ -206,63 +212,80 @@ static double blend(const pair *of, const tl_field_sums *patch, double least, st
 }
 
 /* The faces that bounded the common volume, or none where these may be others now. */
-static uint64_t bounding_of(const pair *of)
+static uint64_t bounding_of(const tl_press_query *of)
 {
     const tl_region *r = of->region;
     bool known = r->bounding && *r->bounding && !(of->shift > 0) && r->border_a + r->border_b == 0;
     return known && tl_region_corners_agree(of->view, r) ? *r->bounding : 0;
 }
 
-bool tl_press_find(const tl_pair_view *view, const tl_region *region, double least, double shift,
-                   uint32_t shifted, tl_narrow *room, tl_press *press)
+/* The press of a pair from the integrals of its field. `same`: over faces that have enclosed the common volume before. */
+static bool press_of(const tl_press_query *of, planes *p, const tl_field_sums *sums, bool same,
+                     tl_narrow *room, tl_press *press)
 {
-    const pair of = {view, region, shift, shifted};
-    bool b_is_small = view->b->size < view->a->size;
-    planes p = {.origin = b_is_small ? view->vertex_b[0] : view->a->vertex[0]};
-    tl_field_sums sums, patch;
+    const tl_pair_view *view = of->view;
+    const tl_region *region = of->region;
+    tl_field_sums patch;
     *press = (tl_press){0};
-    if (!reserve(room, region->a + region->b + region->border_a + region->border_b, &p))
-        return false;
-    list_field(&p, &of);
-    const uint64_t known = bounding_of(&of);
-    uint64_t bounding = known;
-    p.faces.bounding = &bounding;
-    if (!tl_field_integrate(&p.faces, &room->field, &sums))
-        return false;
-    if (region->bounding)
-        *region->bounding = bounding;
-    double force = tl_v3_norm(sums.force);
-    /* the same faces enclose what they enclosed before: nothing else */
-    bool same = known && bounding == known;
-    if (!(sums.deepest > TOUCHING * view->size) || !(force > 0) || !(sums.volume > 0) ||
-        !(same || in_both(&of, tl_v3_add(p.origin, sums.deepest_at), sums.deepest))) {
+    if (!(sums->deepest > TOUCHING * view->size) || !(tl_v3_norm(sums->force) > 0) ||
+        !(sums->volume > 0) ||
+        !(same || in_both(of, tl_v3_add(p->origin, sums->deepest_at), sums->deepest))) {
         if (region->bounding)
             *region->bounding = 0;
         return true;
     }
-    stored field = with_least(&sums, least);
+    stored field = with_least(sums, of->least);
     if (region->flush && tl_region_tilt(view, region->flush_a, region->flush_b) < TL_FIELD_TILT) {
-        list_patch(&p, &of);
-        p.faces.bounding = NULL;
-        if (!tl_field_integrate(&p.faces, &room->field, &patch))
+        list_patch(p, of);
+        p->faces.bounding = NULL;
+        if (!tl_field_integrate(&p->faces, &room->field, &patch))
             return false;
         if (patch.energy > 0 && patch.volume > 0)
-            press->patch = blend(&of, &patch, least, &field);
+            press->patch = blend(of, &patch, of->least, &field);
     }
-    force = tl_v3_norm(field.force);
+    double force = tl_v3_norm(field.force), area = tl_v3_norm(sums->area);
     press->energy = field.energy;
     press->force = field.force;
-    press->moment = tl_v3_add(field.moment, tl_v3_cross(p.origin, field.force));
+    press->moment = tl_v3_add(field.moment, tl_v3_cross(p->origin, field.force));
     press->normal = tl_v3_scale(1 / force, field.force);
-    double area = tl_v3_norm(sums.area);
-    press->area = sqrt(area * area + least * least);
+    press->area = sqrt(area * area + of->least * of->least);
     press->overlap = 2 * force / press->area;
-    press->deepest = 2 * sums.deepest;
-    press->stiffness = fmax(sums.stiffness, press->area);
-    tl_vec3 centre = tl_v3_scale(1 / sums.pressure, sums.pressed);
-    press->point = tl_v3_add(p.origin, centre);
+    press->deepest = 2 * sums->deepest;
+    press->stiffness = fmax(sums->stiffness, press->area);
+    tl_vec3 centre = tl_v3_scale(1 / sums->pressure, sums->pressed);
+    press->point = tl_v3_add(p->origin, centre);
     double second =
-        sums.second - 2 * tl_v3_dot(centre, sums.first) + tl_v3_norm2(centre) * sums.extent;
-    press->radius = sqrt(fmax(0, second / sums.extent));
+        sums->second - 2 * tl_v3_dot(centre, sums->first) + tl_v3_norm2(centre) * sums->extent;
+    press->radius = sqrt(fmax(0, second / sums->extent));
+    return true;
+}
+
+bool tl_press_find(const tl_press_query query[], uint32_t count, tl_narrow *room, tl_press press[])
+{
+    planes p[TL_FIELD_PAIRS];
+    uint64_t known[TL_FIELD_PAIRS], bounding[TL_FIELD_PAIRS];
+    tl_field_sums sums[TL_FIELD_PAIRS], *to[TL_FIELD_PAIRS];
+    const tl_field_faces *faces[TL_FIELD_PAIRS];
+    if (!reserve(room, query, count, p))
+        return false;
+    for (uint32_t k = 0; k < count; k++) {
+        const tl_pair_view *view = query[k].view;
+        bool b_is_small = view->b->size < view->a->size;
+        p[k].origin = b_is_small ? view->vertex_b[0] : view->a->vertex[0];
+        list_field(&p[k], &query[k]);
+        bounding[k] = known[k] = bounding_of(&query[k]);
+        p[k].faces.bounding = &bounding[k];
+        faces[k] = &p[k].faces;
+        to[k] = &sums[k];
+    }
+    if (!tl_field_integrate_all(faces, to, count, &room->field))
+        return false;
+    for (uint32_t k = 0; k < count; k++) {
+        if (query[k].region->bounding)
+            *query[k].region->bounding = bounding[k];
+        bool same = known[k] && bounding[k] == known[k];
+        if (!press_of(&query[k], &p[k], &sums[k], same, room, &press[k]))
+            return false;
+    }
     return true;
 }

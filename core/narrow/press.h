@@ -13,9 +13,16 @@
 #define TL_FLUSH_DEPTH 4e-3
 #define TL_FIELD_DEPTH 1e-2
 
-/* `least` is the minimum area, m^2, `shift` how far face `shifted` of A is moved out by an initial stress, m. The result is 0
- * where the blocks have nothing in common. false: out of memory. */
-bool tl_press_find(const tl_pair_view *view, const tl_region *region, double least, double shift,
-                   uint32_t shifted, tl_narrow *room, tl_press *press);
+/* A pair that has been placed, and how it is to be pressed. */
+typedef struct tl_press_query {
+    const tl_pair_view *view;
+    const tl_region *region;
+    double least; /* minimum area, m^2 */
+    double shift; /* how far face `shifted` of A is moved out by an initial stress, m */
+    uint32_t shifted;
+} tl_press_query;
+
+/* The presses of some pairs, up to TL_FIELD_PAIRS: 0 where the blocks have nothing in common. false: out of memory. */
+bool tl_press_find(const tl_press_query query[], uint32_t count, tl_narrow *room, tl_press press[]);
 
 #endif

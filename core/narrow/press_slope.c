@@ -72,25 +72,29 @@ static tl_vec3 difference(tl_vec3 to, tl_vec3 from, double per)
     return tl_v3_scale(per, tl_v3_sub(to, from));
 }
 
-bool tl_press_slope_find(const tl_pair_view *view, const tl_region *region, double least,
-                         double shift, uint32_t shifted, const tl_press *at, tl_narrow *room,
+bool tl_press_slope_find(const tl_press_query *query, const tl_press *at, tl_narrow *room,
                          tl_press_slope *slope)
 {
+    const tl_region *region = query->region;
     slope->known = true;
     for (int axis = 0; axis < 6; axis++) {
         double way = TL_PRESS_NEAR * at->deepest, by = axis < 3 ? way : way / lever(at);
         double per = 1 / (2 * by);
+        uint64_t bounding[2];
+        tl_region same[2] = {*region, *region};
         tl_press side[2];
+        tl_pair_view view[] = {moved(query->view, at->point, axis, -by),
+                               moved(query->view, at->point, axis, by)};
+        tl_press_query there[] = {*query, *query};
         for (int k = 0; k < 2; k++) {
-            tl_pair_view there = moved(view, at->point, axis, k ? by : -by);
-            uint64_t bounding = region->bounding ? *region->bounding : 0;
-            tl_region same = *region;
-            same.bounding = &bounding;
-            if (!tl_pair_place(&there, room) ||
-                !tl_press_find(&there, &same, least, shift, shifted, room, &side[k]))
-                return false;
-            slope->known = slope->known && side[k].area > 0;
+            bounding[k] = region->bounding ? *region->bounding : 0;
+            same[k].bounding = &bounding[k];
+            there[k].region = &same[k];
+            there[k].view = &view[k];
         }
+        if (!tl_pairs_place(view, 2, room) || !tl_press_find(there, 2, room, side))
+            return false;
+        slope->known = slope->known && side[0].area > 0 && side[1].area > 0;
         slope->force[axis] = difference(side[1].force, side[0].force, per);
         slope->moment[axis] = difference(side[1].moment, side[0].moment, per);
         slope->point[axis] = difference(side[1].point, side[0].point, per);

@@ -22,8 +22,9 @@ static tl_press press_of(scene *s)
     tl_region region;
     tl_press press;
     CHECK(tl_region_find(view, s->margin * view->size, &s->pair.room, &region));
-    CHECK(tl_press_find(view, &region, s->least, s->shift, region.flush ? region.flush_a : 0,
-                        &s->pair.room, &press));
+    CHECK(tl_press_find(
+        &(tl_press_query){view, &region, s->least, s->shift, region.flush ? region.flush_a : 0}, 1,
+        &s->pair.room, &press));
     return press;
 }
 
@@ -148,8 +149,8 @@ TEST(slopes_go_on_with_the_press)
         CHECK(tl_region_find(view, s.margin * view->size, &s.pair.room, &region));
         uint32_t shifted = region.flush ? region.flush_a : 0;
         if (at.area > 0) {
-            CHECK(tl_press_slope_find(view, &region, s.least, s.shift, shifted, &at, &s.pair.room,
-                                      &slope));
+            CHECK(tl_press_slope_find(&(tl_press_query){view, &region, s.least, s.shift, shifted},
+                                      &at, &s.pair.room, &slope));
             CHECK(slope.known);
             nudge(&s, &at, 0.5 * TL_PRESS_NEAR, &seed);
             tl_press found = press_of(&s);
@@ -205,7 +206,8 @@ TEST(faces_left_out_do_not_matter)
         CHECK(tl_region_find(view, margin, &s.pair.room, &region));
         s.pair.shift = tl_v3_madd(s.pair.shift, margin, scene_direction(&seed));
         view = scene_place(&s.pair);
-        CHECK(tl_press_find(view, &region, 0, 0, 0, &s.pair.room, &some));
+        CHECK(tl_press_find(&(tl_press_query){.view = view, .region = &region}, 1, &s.pair.room,
+                            &some));
         s.margin = 1e3;
         all = press_of(&s);
         double force = tl_v3_norm(all.force);
@@ -251,10 +253,12 @@ TEST(faces_that_bounded_before_change_nothing)
             uint64_t before = bounding;
             view = scene_place(&s.pair);
             region.bounding = NULL;
-            CHECK(tl_press_find(view, &region, 0, 0, 0, &s.pair.room, &without));
+            CHECK(tl_press_find(&(tl_press_query){.view = view, .region = &region}, 1, &s.pair.room,
+                                &without));
             region.bounding = &bounding;
             forgotten += bounding && !tl_region_corners_agree(view, &region);
-            CHECK(tl_press_find(view, &region, 0, 0, 0, &s.pair.room, &with));
+            CHECK(tl_press_find(&(tl_press_query){.view = view, .region = &region}, 1, &s.pair.room,
+                                &with));
             cases += before && without.deepest > 0;
             changes += before && before != bounding;
             double force = tl_v3_norm(without.force);
@@ -312,7 +316,8 @@ TEST(faces_that_become_flush_are_found_in_an_old_list)
         s.pair.shift = swapped ? tl_q_rotate(tl_q_conj(is), up) : up;
         view = scene_place(&s.pair);
         tl_region_choose_flush(view, &region);
-        CHECK(tl_press_find(view, &region, 0, 0, 0, &s.pair.room, &some));
+        CHECK(tl_press_find(&(tl_press_query){.view = view, .region = &region}, 1, &s.pair.room,
+                            &some));
         all = press_of(&s);
         double force = tl_v3_norm(all.force);
         cases += force > 0;

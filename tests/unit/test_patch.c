@@ -435,7 +435,8 @@ TEST(what_presses_beyond_a_blunt_edge_counts)
         tl_region region;
         tl_press all;
         CHECK(tl_region_find(&p.view, TL_LIST_MARGIN * p.view.size, &p.room, &region));
-        CHECK(tl_press_find(&p.view, &region, 0, 0, UINT32_MAX, &p.room, &all));
+        CHECK(
+            tl_press_find(&(tl_press_query){.view = &p.view, .region = &region}, 1, &p.room, &all));
         CHECK_REL(found, 2 * tl_v3_norm(all.force), 1e-3);
         patches += patch;
         scene_pair_free(&p);
