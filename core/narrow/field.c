@@ -28,7 +28,7 @@
 
 #define LANES TL_LANES
 
-/* Length of n_a - n_b below which two faces look the same way, and have no surface between them. */
+/* Sine of the angle between a direction and planes below which it lies in them. */
 #define ALIKE 1e-7
 /* Roundings of the largest offset within which two faces that look the same way are one plane. */
 #define ONE_PLANE (16 * 2.220446049250313e-16)
@@ -100,7 +100,6 @@ typedef struct work {
     rows planes, others;
     pair *of[LANES];
     uint32_t face[LANES], with[LANES]; /* the polygon's two planes */
-    double length[LANES]; /* |n_a - n_b|; of a border minus the cosine of both planes */
 } work;
 
 static bool make_room(tl_field_room *room, uint32_t lines, uint32_t numbers)
@@ -278,7 +277,7 @@ static void add_surface(work *w, int l, const depths *o)
     sums->first = tl_v3_add(sums->first, place_of(p, l, o->area, part * p->it[l], part * p->is[l]));
     sums->second += (p->h[l] * p->h[l] + ot * ot + os * os) * o->area +
                     part * (p->itt[l] + p->iss[l] + 2 * (ot * p->it[l] + os * p->is[l]));
-    sums->stiffness += 2 / fmax(w->length[l], SAME_WAY) * o->area;
+    sums->stiffness += 2 / fmax(w->lanes.length[l], SAME_WAY) * o->area;
     if (p->deepest[l] > sums->deepest) {
         sums->deepest = p->deepest[l];
         sums->deepest_at = place_of(p, l, 1, p->deepest_t[l], p->deepest_s[l]);
@@ -308,8 +307,8 @@ static void take(work *w, int l)
         add_surface(w, l, &o);
         return;
     }
-    w->of[l]->sums->volume += w->length[l] * o.d;
-    w->of[l]->sums->energy += 0.5 * w->length[l] * o.dd;
+    w->of[l]->sums->volume += w->lanes.length[l] * o.d;
+    w->of[l]->sums->energy += 0.5 * w->lanes.length[l] * o.dd;
     if (w->with[l] >= real_faces(f))
         add_border(w, l, &o);
 }
@@ -374,7 +373,8 @@ static void flush(work *w)
 }
 
 /* Puts a polygon into the lanes: in a plane, of the depth of a face, bounded by neither that nor another plane. */
-static void put(work *w, pair *of, tl_vec3 n, double h, uint32_t face, uint32_t with, double length)
+static void put(work *w, pair *of, tl_vec3 n, double h, uint32_t face, uint32_t with, bool between,
+                double length)
 {
     tl_field_lanes *p = &w->lanes;
     int l = w->filled++;
@@ -392,7 +392,8 @@ static void put(work *w, pair *of, tl_vec3 n, double h, uint32_t face, uint32_t 
     w->of[l] = of;
     w->face[l] = face;
     w->with[l] = with;
-    w->length[l] = length;
+    p->between[l] = between;
+    p->length[l] = length;
     put_planes(&w->planes, l, of->faces, &of->planes, face, with);
     put_planes(&w->others, l, of->faces, &of->others, face, with);
     if (w->filled == (int)LANES)
@@ -404,9 +405,7 @@ static void put_between(work *w, pair *of, uint32_t a, uint32_t b)
 {
     const tl_field_faces *f = of->faces;
     tl_vec3 m = tl_v3_sub(normal_of(f, a), normal_of(f, b));
-    double length = tl_v3_norm(m);
-    if (length > ALIKE)
-        put(w, of, tl_v3_scale(1 / length, m), (f->c[a] - f->c[b]) / length, a, b, length);
+    put(w, of, m, f->c[a] - f->c[b], a, b, true, 0);
 }
 
 /* The polygons between the cells of the chosen faces, of which all may be known to bound K, and at borders. */
@@ -429,7 +428,7 @@ static void put_pair(work *w, pair *of, bool only_bounding)
     for (uint32_t k = real_faces(f); k < all_faces(f); k++)
         for (uint32_t face = 0; face < real_faces(f); face++) {
             tl_vec3 n = normal_of(f, k);
-            put(w, of, n, f->c[k], face, k, -tl_v3_dot(n, normal_of(f, face)));
+            put(w, of, n, f->c[k], face, k, false, -tl_v3_dot(n, normal_of(f, face)));
         }
 }
 
@@ -455,7 +454,7 @@ static uint64_t find_bounding(work *w, pair *of)
     w->flat = true;
     of->found = 0;
     for (uint32_t i = 0; i < real_faces(f); i++)
-        put(w, of, normal_of(f, i), f->c[i], i, i, 1);
+        put(w, of, normal_of(f, i), f->c[i], i, i, false, 0);
     flush(w);
     w->flat = false;
     return of->found;

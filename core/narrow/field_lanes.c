@@ -17,6 +17,8 @@
 /* Sine of the angle between two lines below which they do not cross: the error of a crossing's place, a rounding over
  * the sine, then becomes as large as what the wrong one of two such lines encloses. */
 #define PARALLEL 1e-8
+/* Length of n_a - n_b below which two faces look the same way, and have no surface between them. */
+#define ALIKE 1e-7
 /* Length of a face's normal, within the polygon's plane, below which the face is parallel to the plane. */
 #define LEVEL 1e-9
 /* Place beyond the end of any line. */
@@ -26,13 +28,22 @@
 
 /* ---------------------------------------------------------------- lines ------------------ */
 
-/* Axes of the planes without a branch (Duff and others, "Building an orthonormal basis, revisited", 2017), and the
+/* Unit normals of the planes, and axes in them without a branch (Duff and others, "Building an orthonormal basis, revisited", 2017), and the
  * depth in them. */
 TL_VECTORIZED static void place_axes(tl_field_lanes *restrict p)
 {
     double *restrict n0 = p->n[0], *restrict n1 = p->n[1], *restrict n2 = p->n[2];
 #pragma omp simd
     for (unsigned l = 0; l < LANES; l++) {
+        double length = sqrt(n0[l] * n0[l] + n1[l] * n1[l] + n2[l] * n2[l]);
+        bool between = p->between[l] > 0, alike = between & (length <= ALIKE);
+        double per = between ? 1 / length : 1.0;
+        p->h[l] = between ? p->h[l] / length : p->h[l];
+        p->length[l] = between ? length : p->length[l];
+        p->share[l] = alike ? 0.0 : p->share[l];
+        n0[l] *= per;
+        n1[l] *= per;
+        n2[l] *= per;
         double sign = n2[l] >= 0 ? 1.0 : -1.0, a = -1 / (sign + n2[l]), b = n0[l] * n1[l] * a;
         p->t[0][l] = 1 + sign * n0[l] * n0[l] * a;
         p->t[1][l] = sign * b;
@@ -139,14 +150,13 @@ size_t tl_field_draw(tl_field_lanes *p, const tl_field_plane *planes, uint32_t c
 /* Adds 1 to the lanes of which a corner at one end of the line d = 0 lies beyond a plane. */
 TL_VECTORIZED static void count_beyond(const tl_field_lanes *restrict p,
                                        const tl_field_plane *restrict h,
-                                       const tl_field_line *restrict own,
-                                       const double *restrict end, double *restrict count)
+                                       const tl_field_line *restrict own, double *restrict count)
 {
 #pragma omp simd
     for (unsigned l = 0; l < LANES; l++) {
         bool bounds = (own->to[l] > own->from[l]) & (own->c[l] < FAR) & (p->share[l] > 0);
-        double t = own->c[l] * own->gt[l] - end[l] * own->gs[l];
-        double s = own->c[l] * own->gs[l] + end[l] * own->gt[l];
+        double t = own->c[l] * own->gt[l] - own->from[l] * own->gs[l];
+        double s = own->c[l] * own->gs[l] + own->from[l] * own->gt[l];
         double x = p->h[l] * p->n[0][l] + t * p->t[0][l] + s * p->s[0][l];
         double y = p->h[l] * p->n[1][l] + t * p->t[1][l] + s * p->s[1][l];
         double z = p->h[l] * p->n[2][l] + t * p->t[2][l] + s * p->s[2][l];
@@ -161,8 +171,7 @@ uint32_t tl_field_corners_beyond(const tl_field_lanes *p, const tl_field_plane *
     double beyond[LANES] = {0};
     uint32_t out = 0;
     for (uint32_t k = 0; k < count; k++) {
-        count_beyond(p, &planes[k], own, own->from, beyond);
-        count_beyond(p, &planes[k], own, own->to, beyond);
+        count_beyond(p, &planes[k], own, beyond);
     }
     for (unsigned l = 0; l < LANES; l++)
         out |= (uint32_t)(beyond[l] > 0) << l;

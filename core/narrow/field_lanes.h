@@ -15,7 +15,10 @@ typedef struct tl_field_line {
 
 /* Eight polygons. */
 typedef struct tl_field_lanes {
-    double n[3][TL_LANES], h[TL_LANES];           /* plane */
+    double n[3][TL_LANES], h[TL_LANES]; /* plane */
+    double between
+        [TL_LANES]; /* 1: between two cells; n = n_a - n_b and h are yet to be divided by the length of n */
+    double length[TL_LANES]; /* that; of a border minus the cosine of both planes */
     double face_n[3][TL_LANES], face_c[TL_LANES]; /* the face whose depth counts */
     double one_plane[TL_LANES];                   /* offset within which planes are one */
     double share[TL_LANES];                /* of the integrals: 1; 1/2 for a tie; 0 for none */
