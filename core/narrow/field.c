@@ -28,8 +28,6 @@
 
 #define LANES TL_LANES
 
-/* Sine of the angle between a direction and planes below which it lies in them. */
-#define ALIKE 1e-7
 /* Roundings of the largest offset within which two faces that look the same way are one plane. */
 #define ONE_PLANE (16 * 2.220446049250313e-16)
 /* Slope of d within a polygon's plane from which integrals of d are taken by its gradient. */
@@ -173,7 +171,7 @@ static apex find_apex(const pair *of, uint32_t begin, uint32_t end)
     for (uint32_t k = begin; k < end && p.known; k++) {
         tl_vec3 n = normal_of(f, of->number[k]);
         p.known = fabs(f->c[of->number[k]] - tl_v3_dot(n, p.x)) <= of->one_plane &&
-                  (p.count == 3 || tl_v3_norm2(within(&p, n)) < ALIKE * ALIKE);
+                  (p.count == 3 || tl_v3_norm2(within(&p, n)) < TL_FIELD_ALIKE * TL_FIELD_ALIKE);
     }
     return p;
 }

@@ -17,8 +17,6 @@
 /* Sine of the angle between two lines below which they do not cross: the error of a crossing's place, a rounding over
  * the sine, then becomes as large as what the wrong one of two such lines encloses. */
 #define PARALLEL 1e-8
-/* Length of n_a - n_b below which two faces look the same way, and have no surface between them. */
-#define ALIKE 1e-7
 /* Length of a face's normal, within the polygon's plane, below which the face is parallel to the plane. */
 #define LEVEL 1e-9
 /* Place beyond the end of any line. */
@@ -36,7 +34,7 @@ TL_VECTORIZED static void place_axes(tl_field_lanes *restrict p)
 #pragma omp simd
     for (unsigned l = 0; l < LANES; l++) {
         double length = sqrt(n0[l] * n0[l] + n1[l] * n1[l] + n2[l] * n2[l]);
-        bool between = p->between[l] > 0, alike = between & (length <= ALIKE);
+        bool between = p->between[l] > 0, alike = between & (length <= TL_FIELD_ALIKE);
         double per = between ? 1 / length : 1.0;
         p->h[l] = between ? p->h[l] / length : p->h[l];
         p->length[l] = between ? length : p->length[l];

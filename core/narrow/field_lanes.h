@@ -38,6 +38,9 @@ typedef struct tl_field_plane {
     double face[TL_LANES]; /* 1: a face, 0: a border */
 } tl_field_plane;
 
+/* Length of n_a - n_b below which two directions are the same: such faces have no surface between them. */
+#define TL_FIELD_ALIKE 1e-7
+
 /* Offset of a plane that is none: it lies behind everything. */
 #define TL_FIELD_FAR 1e290
 
