@@ -20,6 +20,7 @@
  * those of which the others leave some. */
 #include "narrow/field.h"
 
+#include "base/inline.h"
 #include "narrow/field_lanes.h"
 
 #include <math.h>
@@ -30,9 +31,7 @@
 
 /* Roundings of the largest offset within which two faces that look the same way are one plane. */
 #define ONE_PLANE (16 * 2.220446049250313e-16)
-/* Slope of d within a polygon's plane from which integrals of d are taken by its gradient. */
-#define STEEP 0.1
-/* The same from which two faces look so much the same way that what is between them bears nothing: no part of the stiffness. */
+/* Length of n_a - n_b from which two faces look so much the same way that what is between them bears nothing: no part of the stiffness. */
 #define SAME_WAY 0.5
 static uint32_t real_faces(const tl_field_faces *f)
 {
@@ -86,7 +85,7 @@ typedef struct pair {
 /* Planes of the polygons in the lanes: the k-th of each is in row k. */
 typedef struct rows {
     tl_field_plane *row;
-    uint32_t count[LANES], most;
+    uint32_t most;
 } rows;
 
 /* Polygons, eight at a time. */
@@ -95,7 +94,10 @@ typedef struct work {
     bool flat; /* the polygons are K's own faces */
     int filled;
     tl_field_lanes lanes;
+    tl_field_parts parts;
     rows planes, others;
+    const pair
+        *laid; /* the pair whose planes have been put into the lanes that are left; NULL: none */
     pair *of[LANES];
     uint32_t face[LANES], with[LANES]; /* the polygon's two planes */
 } work;
@@ -161,7 +163,7 @@ static apex find_apex(const pair *of, uint32_t begin, uint32_t end)
     for (uint32_t k = begin; k < end && p.count < 3; k++) {
         tl_vec3 n = normal_of(f, of->number[k]), way = within(&p, n);
         double sine2 = tl_v3_norm2(way);
-        if (sine2 > STEEP * STEEP) {
+        if (sine2 > TL_FIELD_STEEP * TL_FIELD_STEEP) {
             p.held[p.count] = way;
             p.per[p.count] = 1 / sine2;
             double off = f->c[of->number[k]] - tl_v3_dot(n, p.x);
@@ -191,155 +193,152 @@ static void add_share(pair *of, const apex *p, double out)
 
 /* ---------------------------------------------------------------- sums ------------------- */
 
-/* Integrals of 1, d, d^2, d x_t and d x_s over a lane's polygon, times its share. */
-typedef struct depths {
-    double area, d, dd, dt, ds;
-} depths;
-
-static depths depths_of(const tl_field_lanes *p, int l)
+static tl_vec3 plus(tl_vec3 sum, double sign, const double v[3][LANES], int l)
 {
-    double d0 = p->d0[l], t = p->dt[l], s = p->ds[l], part = p->share[l];
-    depths o = {.area = part * p->area[l],
-                .d = part * (d0 * p->area[l] + t * p->it[l] + s * p->is[l]),
-                .dt = part * (d0 * p->it[l] + t * p->itt[l] + s * p->its[l]),
-                .ds = part * (d0 * p->is[l] + t * p->its[l] + s * p->iss[l])};
-    double slope2 = t * t + s * s;
-    bool steep = slope2 > STEEP * STEEP;
-    o.dd = steep ? part * p->d2[l] / slope2 : d0 * o.d + t * o.dt + s * o.ds;
-    o.d = steep ? part * p->d1[l] / slope2 : o.d;
-    return o;
+    return tl_v3_madd(sum, sign, lane_vector(v, l));
 }
 
-/* The origin times an integral + its first moments about it: int x dS, or int d x dS. */
-static tl_vec3 place_of(const tl_field_lanes *p, int l, double along, double it, double is)
+/* Adds a polygon's part in the gradients of G and V. */
+static void add_gradient(work *w, int l, double sign)
 {
-    tl_vec3 x = tl_v3_scale(p->h[l] * along, lane_vector(p->n, l));
-    x = tl_v3_madd(x, p->origin_t[l] * along + it, lane_vector(p->t, l));
-    return tl_v3_madd(x, p->origin_s[l] * along + is, lane_vector(p->s, l));
-}
-
-/* Adds int d n dS of a polygon, and int d x cross n dS. */
-static void add_force(const tl_field_lanes *p, int l, const depths *o, double sign, tl_vec3 *force,
-                      tl_vec3 *moment)
-{
-    tl_vec3 n = lane_vector(p->n, l), t = lane_vector(p->t, l), s = lane_vector(p->s, l);
-    double ot = p->origin_t[l], os = p->origin_s[l];
-    *force = tl_v3_madd(*force, sign * o->d, n);
-    /* t cross n = -s, s cross n = t */
-    *moment = tl_v3_madd(*moment, sign * (o->ds + os * o->d), t);
-    *moment = tl_v3_madd(*moment, -sign * (o->dt + ot * o->d), s);
-}
-
-/* A polygon's part in the gradients of G and V. */
-static void add_gradient(work *w, int l, const depths *o, double sign)
-{
-    const tl_field_lanes *p = &w->lanes;
+    const tl_field_parts *o = &w->parts;
     tl_field_sums *sums = w->of[l]->sums;
-    tl_vec3 n = lane_vector(p->n, l), t = lane_vector(p->t, l), s = lane_vector(p->s, l);
-    double ot = p->origin_t[l], os = p->origin_s[l], part = sign * p->share[l];
-    add_force(p, l, o, sign, &sums->force, &sums->moment);
-    sums->swept = tl_v3_madd(sums->swept, sign * o->area, n);
-    sums->swept_moment = tl_v3_madd(sums->swept_moment, part * p->is[l] + sign * os * o->area, t);
-    sums->swept_moment = tl_v3_madd(sums->swept_moment, -part * p->it[l] - sign * ot * o->area, s);
+    sums->force = plus(sums->force, sign, o->force, l);
+    sums->moment = plus(sums->moment, sign, o->moment, l);
+    sums->swept = plus(sums->swept, sign, o->swept, l);
+    sums->swept_moment = plus(sums->swept_moment, sign, o->swept_moment, l);
 }
 
 /* Adds what a polygon of S gives of the energy and volume of the cells on its sides, unless the block has an apex. */
-static void add_sides(work *w, int l, const depths *o)
+static void add_sides(work *w, int l)
 {
-    const tl_vec3 n = lane_vector(w->lanes.n, l);
+    const tl_field_parts *o = &w->parts;
+    const tl_field_lanes *p = &w->lanes;
+    const tl_vec3 n = lane_vector(p->n, l);
     pair *of = w->of[l];
-    of->by_force += w->lanes.h[l] * o->d;
-    of->by_swept += w->lanes.h[l] * o->area;
+    of->by_force += p->h[l] * o->d[l];
+    of->by_swept += p->h[l] * o->area[l];
     const uint32_t face[] = {w->face[l], w->with[l]};
     for (int of_b = 0; of_b < 2; of_b++) {
         if (of->apex[of_b].known)
             continue;
         double slope = (of_b ? -1 : 1) * tl_v3_dot(n, normal_of(of->faces, face[of_b]));
-        of->sums->energy += 0.5 * slope * o->dd;
-        of->sums->volume += slope * o->d;
+        of->sums->energy += 0.5 * slope * o->dd[l];
+        of->sums->volume += slope * o->d[l];
     }
 }
 
 /* A polygon of S. */
-static void add_surface(work *w, int l, const depths *o)
+static void add_surface(work *w, int l)
 {
-    const tl_field_lanes *p = &w->lanes;
+    const tl_field_parts *o = &w->parts;
     tl_field_sums *sums = w->of[l]->sums;
-    double part = p->share[l], ot = p->origin_t[l], os = p->origin_s[l];
-    add_sides(w, l, o);
-    add_gradient(w, l, o, 1);
-    sums->area = tl_v3_madd(sums->area, o->area, lane_vector(p->n, l));
-    sums->pressure += o->d;
-    sums->pressed = tl_v3_add(sums->pressed, place_of(p, l, o->d, o->dt, o->ds));
-    sums->extent += o->area;
-    sums->first = tl_v3_add(sums->first, place_of(p, l, o->area, part * p->it[l], part * p->is[l]));
-    sums->second += (p->h[l] * p->h[l] + ot * ot + os * os) * o->area +
-                    part * (p->itt[l] + p->iss[l] + 2 * (ot * p->it[l] + os * p->is[l]));
-    sums->stiffness += 2 / fmax(w->lanes.length[l], SAME_WAY) * o->area;
-    if (p->deepest[l] > sums->deepest) {
-        sums->deepest = p->deepest[l];
-        sums->deepest_at = place_of(p, l, 1, p->deepest_t[l], p->deepest_s[l]);
+    add_sides(w, l);
+    add_gradient(w, l, 1);
+    sums->area = plus(sums->area, 1, o->swept, l);
+    sums->pressure += o->d[l];
+    sums->pressed = plus(sums->pressed, 1, o->pressed, l);
+    sums->extent += o->area[l];
+    sums->first = plus(sums->first, 1, o->first, l);
+    sums->second += o->second[l];
+    sums->stiffness += 2 / fmax(w->lanes.length[l], SAME_WAY) * o->area[l];
+    if (w->lanes.deepest[l] > sums->deepest) {
+        sums->deepest = w->lanes.deepest[l];
+        sums->deepest_at = lane_vector(o->deepest_at, l);
     }
 }
 
 /* What a polygon on a border adds. B's motion shifts K's border at a seam of A where A is deeper than B, and the other way
  * round. */
-static void add_border(work *w, int l, const depths *o)
+static void add_border(work *w, int l)
 {
+    const tl_field_parts *o = &w->parts;
     const tl_field_faces *f = w->of[l]->faces;
     tl_field_sums *sums = w->of[l]->sums;
     bool face_of_b = w->face[l] >= f->a, border_of_b = w->with[l] >= real_faces(f) + f->border_a;
     uint32_t end = border_of_b ? all_faces(f) : real_faces(f) + f->border_a;
     double out = border_of_b ? -1 : 1;
     if (face_of_b != border_of_b)
-        add_gradient(w, l, o, out);
-    if (w->with[l] + (border_of_b ? f->seam_b : f->seam_a) >= end)
-        add_force(&w->lanes, l, o, -out, &sums->through, &sums->through_moment);
+        add_gradient(w, l, out);
+    if (w->with[l] + (border_of_b ? f->seam_b : f->seam_a) < end)
+        return;
+    sums->through = plus(sums->through, -out, o->force, l);
+    sums->through_moment = plus(sums->through_moment, -out, o->moment, l);
 }
 
 static void take(work *w, int l)
 {
     const tl_field_faces *f = w->of[l]->faces;
-    const depths o = depths_of(&w->lanes, l);
     if (w->face[l] < f->a && w->with[l] >= f->a && w->with[l] < real_faces(f)) {
-        add_surface(w, l, &o);
+        add_surface(w, l);
         return;
     }
-    w->of[l]->sums->volume += w->lanes.length[l] * o.d;
-    w->of[l]->sums->energy += 0.5 * w->lanes.length[l] * o.dd;
+    w->of[l]->sums->volume += w->lanes.length[l] * w->parts.d[l];
+    w->of[l]->sums->energy += 0.5 * w->lanes.length[l] * w->parts.dd[l];
     if (w->with[l] >= real_faces(f))
-        add_border(w, l, &o);
+        add_border(w, l);
 }
 
 /* ---------------------------------------------------------------- polygons --------------- */
 
-/* Puts some of a pair's planes into a lane, but for two. */
-static void put_planes(rows *r, int lane, const tl_field_faces *f, const list *from, uint32_t one,
-                       uint32_t other)
+/* Puts a plane into a row, in the lanes from `lane` on. */
+TL_INLINE void fill(tl_field_plane *restrict row, int lane, const double n[3], double c,
+                    double face)
 {
-    tl_field_plane *to = r->row;
-    for (const uint16_t *i = from->number; i < from->number + from->count; i++) {
-        if (*i == one || *i == other)
-            continue;
-        for (int k = 0; k < 3; k++)
-            to->n[k][lane] = f->n[k][*i];
-        to->c[lane] = f->c[*i];
-        to->face[lane] = *i < real_faces(f);
-        to++;
+#pragma omp simd
+    for (int l = 0; l < (int)LANES; l++) {
+        bool mine = l >= lane;
+        row->n[0][l] = mine ? n[0] : row->n[0][l];
+        row->n[1][l] = mine ? n[1] : row->n[1][l];
+        row->n[2][l] = mine ? n[2] : row->n[2][l];
+        row->c[l] = mine ? c : row->c[l];
+        row->face[l] = mine ? face : row->face[l];
     }
-    r->count[lane] = (uint32_t)(to - r->row);
-    r->most = r->count[lane] > r->most ? r->count[lane] : r->most;
 }
 
-/* Fills up the lanes that have fewer planes than others, or no polygon. */
-static void fill_up(rows *r, int filled)
+/* Puts the first `count` of some planes into the lanes from `lane` on. */
+TL_VECTORIZED static void lay(rows *r, int lane, const tl_field_faces *f, const list *from,
+                              uint32_t count)
 {
-    for (int lane = 0; lane < (int)LANES; lane++)
-        for (uint32_t k = lane < filled ? r->count[lane] : 0; k < r->most; k++) {
-            r->row[k].n[0][lane] = r->row[k].n[1][lane] = r->row[k].n[2][lane] = 0;
-            r->row[k].c[lane] = TL_FIELD_FAR;
-            r->row[k].face[lane] = 0;
-        }
+    const double none[3] = {0};
+    uint32_t most = count > r->most ? count : r->most;
+    for (uint32_t k = 0; k < most; k++) {
+        if (k >= r->most)
+            fill(&r->row[k], 0, none, TL_FIELD_FAR, 0);
+        uint32_t i = k < count ? from->number[k] : 0;
+        const double n[3] = {f->n[0][i], f->n[1][i], f->n[2][i]};
+        if (k < count)
+            fill(&r->row[k], lane, n, f->c[i], i < real_faces(f));
+        else
+            fill(&r->row[k], lane, none, TL_FIELD_FAR, 0);
+    }
+    r->most = most;
+}
+
+/* How many planes bound a polygon of a pair: all but its own. */
+static uint32_t bounds(const work *w, const pair *of)
+{
+    return of->planes.count - (w->flat ? 1 : 2);
+}
+
+/* Takes a polygon's own planes, the i-th and j-th of its pair, out of its lane: the last of all come in their place. */
+static void take_out(work *w, int lane, const pair *of, uint32_t i, uint32_t j)
+{
+    const tl_field_faces *f = of->faces;
+    const uint32_t own[] = {i, j}, count = bounds(w, of);
+    uint32_t last = count;
+    for (int k = 0; k < (i == j ? 1 : 2); k++) {
+        if (own[k] >= count)
+            continue;
+        while (last == i || last == j)
+            last++;
+        tl_field_plane *row = &w->planes.row[own[k]];
+        uint32_t plane = of->number[last++];
+        for (int axis = 0; axis < 3; axis++)
+            row->n[axis][lane] = f->n[axis][plane];
+        row->c[lane] = f->c[plane];
+        row->face[lane] = plane < real_faces(f);
+    }
 }
 
 /* Integrates the polygons in the lanes. */
@@ -350,11 +349,10 @@ static void flush(work *w)
         return;
     for (int lane = w->filled; lane < (int)LANES; lane++)
         p->share[lane] = 0; /* what is left there is of earlier ones */
-    fill_up(&w->planes, w->filled);
-    fill_up(&w->others, w->filled);
     size_t lines = tl_field_draw(p, w->planes.row, w->planes.most, w->flat, w->line);
     uint32_t beyond = tl_field_corners_beyond(p, w->others.row, w->others.most, w->line);
     tl_field_sum_lines(p, w->line, lines);
+    tl_field_share(p, &w->parts);
     for (int lane = 0; lane < w->filled; lane++) {
         pair *of = w->of[lane];
         of->beyond = of->beyond || beyond >> lane & 1;
@@ -367,20 +365,29 @@ static void flush(work *w)
         of->beyond = of->beyond || p->open[lane] > 0;
     }
     w->filled = 0;
+    w->laid = NULL;
     w->planes.most = w->others.most = 0;
 }
 
-/* Puts a polygon into the lanes: in a plane, of the depth of a face, bounded by neither that nor another plane. */
-static void put(work *w, pair *of, tl_vec3 n, double h, uint32_t face, uint32_t with, bool between,
+/* Puts a polygon into the lanes: in a plane, of the depth of the pair's i-th plane, bounded by neither that nor the j-th. */
+static void put(work *w, pair *of, tl_vec3 n, double h, uint32_t i, uint32_t j, bool between,
                 double length)
 {
     tl_field_lanes *p = &w->lanes;
     int l = w->filled++;
+    uint32_t face = of->number[i];
+    if (w->laid != of) {
+        lay(&w->planes, l, of->faces, &of->planes, bounds(w, of));
+        lay(&w->others, l, of->faces, &of->others, of->others.count);
+        w->laid = of;
+    }
     tl_vec3 m = normal_of(of->faces, face);
     p->n[0][l] = n.x;
     p->n[1][l] = n.y;
     p->n[2][l] = n.z;
     p->h[l] = h;
+    p->between[l] = between;
+    p->length[l] = length;
     p->face_n[0][l] = m.x;
     p->face_n[1][l] = m.y;
     p->face_n[2][l] = m.z;
@@ -389,21 +396,19 @@ static void put(work *w, pair *of, tl_vec3 n, double h, uint32_t face, uint32_t 
     p->share[l] = 1;
     w->of[l] = of;
     w->face[l] = face;
-    w->with[l] = with;
-    p->between[l] = between;
-    p->length[l] = length;
-    put_planes(&w->planes, l, of->faces, &of->planes, face, with);
-    put_planes(&w->others, l, of->faces, &of->others, face, with);
+    w->with[l] = of->number[j];
+    take_out(w, l, of, i, j);
     if (w->filled == (int)LANES)
         flush(w);
 }
 
 /* The surface between the cells of two faces, where both are the nearest. */
-static void put_between(work *w, pair *of, uint32_t a, uint32_t b)
+static void put_between(work *w, pair *of, uint32_t i, uint32_t j)
 {
     const tl_field_faces *f = of->faces;
+    uint32_t a = of->number[i], b = of->number[j];
     tl_vec3 m = tl_v3_sub(normal_of(f, a), normal_of(f, b));
-    put(w, of, m, f->c[a] - f->c[b], a, b, true, 0);
+    put(w, of, m, f->c[a] - f->c[b], i, j, true, 0);
 }
 
 /* The polygons between the cells of the chosen faces, of which all may be known to bound K, and at borders. */
@@ -422,7 +427,7 @@ static void put_pair(work *w, pair *of, bool only_bounding)
     for (uint32_t i = 0; i < real; i++)
         for (uint32_t j = i + 1; j < real; j++)
             if ((i < a) != (j < a) || !of->apex[i >= a].known)
-                put_between(w, of, number[i], number[j]);
+                put_between(w, of, i, j);
     for (uint32_t k = real_faces(f); k < all_faces(f); k++)
         for (uint32_t face = 0; face < real_faces(f); face++) {
             tl_vec3 n = normal_of(f, k);
@@ -492,6 +497,7 @@ bool tl_field_integrate_all(const tl_field_faces *const faces[], tl_field_sums *
     work w; /* the lanes are filled before they are read */
     w.flat = false;
     w.filled = 0;
+    w.laid = NULL;
     w.planes.most = w.others.most = 0;
     uint32_t most = 0, all = 0;
     for (uint32_t k = 0; k < count; k++) {

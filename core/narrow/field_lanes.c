@@ -9,6 +9,8 @@
  * polygon. */
 #include "narrow/field_lanes.h"
 
+#include "base/inline.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -238,4 +240,48 @@ void tl_field_sum_lines(tl_field_lanes *p, const tl_field_line *line, size_t cou
     memset(p->origin_t, 0, sizeof *p - offsetof(tl_field_lanes, origin_t));
     place_origin(p, line, count);
     add_lines(p, line, count);
+}
+
+/* x n + y t + z s of a lane. */
+TL_INLINE void put_vector(const tl_field_lanes *p, double to[3][LANES], unsigned l, double x,
+                          double y, double z)
+{
+    to[0][l] = x * p->n[0][l] + y * p->t[0][l] + z * p->s[0][l];
+    to[1][l] = x * p->n[1][l] + y * p->t[1][l] + z * p->s[1][l];
+    to[2][l] = x * p->n[2][l] + y * p->t[2][l] + z * p->s[2][l];
+}
+
+TL_VECTORIZED static void share_out(const tl_field_lanes *restrict p, tl_field_parts *restrict out)
+{
+#pragma omp simd
+    for (unsigned l = 0; l < LANES; l++) {
+        double d0 = p->d0[l], t = p->dt[l], s = p->ds[l], part = p->share[l];
+        double ot = p->origin_t[l], os = p->origin_s[l], h = p->h[l];
+        double area = part * p->area[l], it = part * p->it[l], is = part * p->is[l];
+        double flat = d0 * area + t * it + s * is;
+        double dt = part * (d0 * p->it[l] + t * p->itt[l] + s * p->its[l]);
+        double ds = part * (d0 * p->is[l] + t * p->its[l] + s * p->iss[l]);
+        double slope2 = t * t + s * s;
+        bool steep = slope2 > TL_FIELD_STEEP * TL_FIELD_STEEP;
+        double per = part / (steep ? slope2 : 1.0);
+        double d = steep ? p->d1[l] * per : flat;
+        out->area[l] = area;
+        out->d[l] = d;
+        out->dd[l] = steep ? p->d2[l] * per : d0 * flat + t * dt + s * ds;
+        put_vector(p, out->force, l, d, 0, 0);
+        /* t cross n = -s, s cross n = t */
+        put_vector(p, out->moment, l, 0, ds + os * d, -(dt + ot * d));
+        put_vector(p, out->swept, l, area, 0, 0);
+        put_vector(p, out->swept_moment, l, 0, is + os * area, -(it + ot * area));
+        put_vector(p, out->pressed, l, h * d, ot * d + dt, os * d + ds);
+        put_vector(p, out->first, l, h * area, ot * area + it, os * area + is);
+        out->second[l] = (h * h + ot * ot + os * os) * area + part * (p->itt[l] + p->iss[l]) +
+                         2 * (ot * it + os * is);
+        put_vector(p, out->deepest_at, l, h, ot + p->deepest_t[l], os + p->deepest_s[l]);
+    }
+}
+
+void tl_field_share(const tl_field_lanes *p, tl_field_parts *out)
+{
+    share_out(p, out);
 }

@@ -32,6 +32,16 @@ typedef struct tl_field_lanes {
     double deepest[TL_LANES], deepest_t[TL_LANES], deepest_s[TL_LANES];
 } tl_field_lanes;
 
+/* What each polygon gives, times its share. */
+typedef struct tl_field_parts {
+    double area[TL_LANES], d[TL_LANES], dd[TL_LANES];     /* int dS, int d dS, int d^2 dS */
+    double force[3][TL_LANES], moment[3][TL_LANES];       /* int d n dS, int d x cross n dS */
+    double swept[3][TL_LANES], swept_moment[3][TL_LANES]; /* int n dS, int x cross n dS */
+    double pressed[3][TL_LANES], first[3][TL_LANES];      /* int d x dS, int x dS */
+    double second[TL_LANES];                              /* int x . x dS */
+    double deepest_at[3][TL_LANES];
+} tl_field_parts;
+
 /* A plane n . x = c for each polygon. */
 typedef struct tl_field_plane {
     double n[3][TL_LANES], c[TL_LANES];
@@ -40,6 +50,9 @@ typedef struct tl_field_plane {
 
 /* Length of n_a - n_b below which two directions are the same: such faces have no surface between them. */
 #define TL_FIELD_ALIKE 1e-7
+
+/* Slope of d within a polygon's plane from which integrals of d are taken by its gradient: nothing cancels in thin slivers. */
+#define TL_FIELD_STEEP 0.1
 
 /* Offset of a plane that is none: it lies behind everything. */
 #define TL_FIELD_FAR 1e290
@@ -54,5 +67,7 @@ uint32_t tl_field_corners_beyond(const tl_field_lanes *p, const tl_field_plane *
                                  uint32_t count, const tl_field_line *own);
 /* Integrates the polygons that these lines bound. */
 void tl_field_sum_lines(tl_field_lanes *p, const tl_field_line *line, size_t count);
+/* What the polygons give whose lines have been summed. */
+void tl_field_share(const tl_field_lanes *p, tl_field_parts *out);
 
 #endif
