@@ -20,12 +20,12 @@ static bool add_to_batch(const tl_model *m, uint32_t c, uint32_t lane, tl_patch_
     const tl_contacts *contacts = &m->detect->contacts;
     const tl_facet *f = &contacts->facet[c];
     uint32_t a = contacts->a[c], b = contacts->b[c];
-    if (!tl_contact_is_patch(m, c) || contacts->across[c] ||
+    if (!tl_contact_is_patch(m, c) ||
         !tl_batch_takes(m->blocks.shape[a], f->ia, m->blocks.shape[b], f->ib))
         return false;
     double size = m->blocks.size[a] < m->blocks.size[b] ? m->blocks.size[a] : m->blocks.size[b];
     tl_batch_add(batch, lane, m->blocks.shape[a], f->ia, m->blocks.shape[b], f->ib, size,
-                 TL_CONTACT_TOLERANCE * TL_CONTACT_RELEASE * size);
+                 contacts->across[c] ? INFINITY : TL_CONTACT_TOLERANCE * TL_CONTACT_RELEASE * size);
     uint32_t body_a = m->blocks.body[a], body_b = m->blocks.body[b];
     tl_batch_between(batch, lane, &m->bodies.pose[body_a].r, &m->bodies.pose[body_b].r,
                      tl_body_apart(&m->bodies, body_a, body_b));
