@@ -131,6 +131,18 @@ void tl_pair_wake(tl_detect *d, uint32_t i)
     tl_pair_forget_faces(p);
 }
 
+/* How far a pair may move that is apart by the gap of its region before it may become a contact; below 0: it may be one. Only
+ * a patch is born across a gap, of faces that are level by then. */
+static double way_to_contact(const tl_pair_view *view, const tl_region *r)
+{
+    double tolerance = TL_CONTACT_TOLERANCE * view->size;
+    if (r->gap > tolerance)
+        return r->gap - tolerance;
+    double tilt = r->flush ? tl_region_tilt(view, r->flush_a, r->flush_b) : INFINITY;
+    bool level = (tilt - TL_FLUSH_TILT) * view->size <= 2 * r->gap;
+    return r->gap > 0 && !level ? r->gap : -1;
+}
+
 static void look_at(tl_model *m, tl_pair *p, tl_narrow *room)
 {
     tl_detect *d = m->detect;
@@ -155,8 +167,9 @@ static void look_at(tl_model *m, tl_pair *p, tl_narrow *room)
         room->failed = true;
         return;
     }
-    if (region.gap > tolerance) {
-        tl_pair_sleep(d, p, region.gap - tolerance);
+    double way = way_to_contact(&view, &region);
+    if (way > 0) {
+        tl_pair_sleep(d, p, way);
         return;
     }
     tl_touch_rule rule = tl_touch_rule_of(m, &view, tl_touching_tag(&view, region.n), false);
