@@ -3,12 +3,15 @@
 #include "contact/memory.h"
 
 #include "contact/detection.h"
+#include "narrow/field_lanes.h"
 
 static size_t narrow_bytes(const tl_narrow *n)
 {
     return sizeof *n + n->vertex_room * sizeof *n->vertex_b + n->normal_room * sizeof *n->normal_b +
-           (n->plane_room + n->press_room + n->field.lines) * sizeof(double) +
-           n->face_room * sizeof *n->face + n->manifold.point_room * sizeof *n->manifold.points +
+           (n->plane_room + n->press_room) * sizeof(double) +
+           n->field.lines * (sizeof(tl_field_line) + 2 * sizeof(tl_field_plane)) +
+           n->field.numbers * sizeof *n->field.number + n->face_room * sizeof *n->face +
+           n->manifold.point_room * sizeof *n->manifold.points +
            n->patch.room * (4 * sizeof(double) + sizeof(uint32_t));
 }
 

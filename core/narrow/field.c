@@ -31,8 +31,10 @@
 
 /* Roundings of the largest offset within which two faces that look the same way are one plane. */
 #define ONE_PLANE (16 * 2.220446049250313e-16)
-/* Length of n_a - n_b from which two faces look so much the same way that what is between them bears nothing: no part of the stiffness. */
+/* Length of n_a - n_b below which two faces look so much the same way that what is between them bears nothing: it counts no
+ * more in the stiffness. */
 #define SAME_WAY 0.5
+
 static uint32_t real_faces(const tl_field_faces *f)
 {
     return f->a + f->b;
@@ -96,8 +98,7 @@ typedef struct work {
     tl_field_lanes lanes;
     tl_field_parts parts;
     rows planes, others;
-    const pair
-        *laid; /* the pair whose planes have been put into the lanes that are left; NULL: none */
+    const pair *laid; /* whose planes are in the lanes that are left; NULL: nobody's */
     pair *of[LANES];
     uint32_t face[LANES], with[LANES]; /* the polygon's two planes */
 } work;
@@ -154,27 +155,37 @@ static tl_vec3 within(const apex *p, tl_vec3 way)
     return way;
 }
 
+/* Whether an apex lies in a plane, and all points that it may be do. */
+static bool holds(const apex *p, const pair *of, uint32_t face)
+{
+    tl_vec3 n = normal_of(of->faces, face);
+    return fabs(of->faces->c[face] - tl_v3_dot(n, p->x)) <= of->one_plane &&
+           (p->count == 3 || tl_v3_norm2(within(p, n)) < TL_FIELD_ALIKE * TL_FIELD_ALIKE);
+}
+
 /* Finds a point in which the chosen faces of a block meet. From the origin, it goes on to one plane after the other, along
  * those before. */
 static apex find_apex(const pair *of, uint32_t begin, uint32_t end)
 {
     const tl_field_faces *f = of->faces;
-    apex p = {.known = true};
-    for (uint32_t k = begin; k < end && p.count < 3; k++) {
-        tl_vec3 n = normal_of(f, of->number[k]), way = within(&p, n);
+    apex p = {.count = 0};
+    uint32_t left[TL_FIELD_KNOWN], count = 0;
+    for (uint32_t k = begin; k < end; k++) {
+        uint32_t face = of->number[k];
+        tl_vec3 n = normal_of(f, face), way = within(&p, n);
         double sine2 = tl_v3_norm2(way);
-        if (sine2 > TL_FIELD_STEEP * TL_FIELD_STEEP) {
-            p.held[p.count] = way;
-            p.per[p.count] = 1 / sine2;
-            double off = f->c[of->number[k]] - tl_v3_dot(n, p.x);
-            p.x = tl_v3_madd(p.x, off * p.per[p.count++], way);
+        if (p.count == 3 || !(sine2 > TL_FIELD_STEEP * TL_FIELD_STEEP)) {
+            left[count++] = face;
+            continue;
         }
+        p.held[p.count] = way;
+        p.per[p.count] = 1 / sine2;
+        p.x = tl_v3_madd(p.x, (f->c[face] - tl_v3_dot(n, p.x)) * p.per[p.count], way);
+        p.count++;
     }
-    for (uint32_t k = begin; k < end && p.known; k++) {
-        tl_vec3 n = normal_of(f, of->number[k]);
-        p.known = fabs(f->c[of->number[k]] - tl_v3_dot(n, p.x)) <= of->one_plane &&
-                  (p.count == 3 || tl_v3_norm2(within(&p, n)) < TL_FIELD_ALIKE * TL_FIELD_ALIKE);
-    }
+    p.known = true;
+    for (uint32_t k = 0; k < count && p.known; k++)
+        p.known = holds(&p, of, left[k]);
     return p;
 }
 
