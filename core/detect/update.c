@@ -24,6 +24,10 @@
 
 #include <string.h>
 
+/* Motion within which a field contact is reused, over its overlap: its force is then wrong by no more than that. A contact
+ * that rests moves by less. */
+#define REUSE_FIELD 1e-11
+
 static bool same_topology(const tl_detect *d, uint32_t c, const tl_manifold *g)
 {
     const tl_contacts *contacts = &d->contacts;
@@ -212,7 +216,7 @@ void tl_contact_allow_reuse(tl_model *m, uint32_t c)
     double size_a = m->blocks.size[contacts->a[c]], size_b = m->blocks.size[contacts->b[c]];
     double most = TL_STILL * fmin(size_a, size_b);
     if (contacts->facet[c].kind == TL_FACET_FIELD && contacts->point_count[c])
-        most = 0; /* it goes on by its slopes, which costs little */
+        most = REUSE_FIELD * contacts->facet[c].offset;
     contacts->points_valid_to[c] = tl_pair_odometer(m, contacts->a[c], contacts->b[c]) + most;
 }
 
