@@ -143,6 +143,18 @@ static double way_to_contact(const tl_pair_view *view, const tl_region *r)
     return r->gap > 0 && !level ? r->gap : -1;
 }
 
+/* How far a pair may move that only edges part before it may touch; 0: it may touch already. By looks with reaches twice as long
+ * each, up to the longest with which it is known to be near. */
+static double way_to_edges(const tl_pair_view *view, double longest)
+{
+    double tolerance = TL_CONTACT_TOLERANCE * view->size, reach = tolerance;
+    if (tl_look_near(view, reach))
+        return 0;
+    while (2 * reach < longest && !tl_look_near(view, 2 * reach))
+        reach *= 2;
+    return fmax(reach - tolerance, tolerance);
+}
+
 static void look_at(tl_model *m, tl_pair *p, tl_narrow *room)
 {
     tl_detect *d = m->detect;
@@ -182,6 +194,11 @@ static void look_at(tl_model *m, tl_pair *p, tl_narrow *room)
         }
         tl_pair_forget_faces(p);
     }
+    way = way_to_edges(&view, tolerance + d->reach);
+    if (way > 0) {
+        tl_pair_sleep(d, p, way);
+        return;
+    }
     const tl_manifold_before none = {.facet = {.kind = TL_FACET_PATCH}};
     if (!tl_manifold_find(&view, &region, &rule, &none, room)) {
         room->failed = true; /* what was found is not all there is: look again */
@@ -191,8 +208,7 @@ static void look_at(tl_model *m, tl_pair *p, tl_narrow *room)
         p->wake = TL_PAIR_FOUND;
         return;
     }
-    /* edges part the blocks: by more than the tolerance, or by next to nothing */
-    tl_pair_sleep(d, p, tl_look_near(&view, tolerance) ? TL_STILL * view.size : tolerance);
+    tl_pair_sleep(d, p, TL_STILL * view.size); /* edges part the blocks by next to nothing */
 }
 
 /* None of its pairs without a contact can have come near, whichever two blocks have run the farthest. */
