@@ -8,10 +8,7 @@
  * between two cells, G = sum |n_i - n_j| / 2 int d^2 dS and V = sum |n_i - n_j| int d dS, and over the borders. No term
  * between cells is negative.
  *
- * Mostly a corner, an edge or a face is pressed in, and all planes of a block that bound K meet in one point x_0, its apex.
- * There d is homogeneous about x_0 in the cells of this block: (x - x_0) d has the divergence 4 d, x - x_0 has 3, and on the
- * faces both are tangents. So S alone gives the block's share in G, int d (x - x_0) . n dS / 4, and the polygons between its
- * cells are not needed.
+ * Of a block whose faces that bound K meet in a point S alone tells the share in G (apex.c).
  *
  * Without borders a face has a cell only if it bounds K: from any point of its cell the way along its normal stays in K to the
  * face. So the faces that bounded K at another time are enough for all polygons, while they still enclose K and nothing else:
@@ -21,6 +18,7 @@
 #include "narrow/field.h"
 
 #include "base/inline.h"
+#include "narrow/apex.h"
 #include "narrow/field_lanes.h"
 
 #include <math.h>
@@ -45,25 +43,12 @@ static uint32_t all_faces(const tl_field_faces *f)
     return f->a + f->b + f->border_a + f->border_b;
 }
 
-static tl_vec3 normal_of(const tl_field_faces *f, uint32_t i)
-{
-    return tl_v3(f->n[0][i], f->n[1][i], f->n[2][i]);
-}
-
 static tl_vec3 lane_vector(const double v[3][LANES], int lane)
 {
     return tl_v3(v[0][lane], v[1][lane], v[2][lane]);
 }
 
 /* ---------------------------------------------------------------- work ------------------- */
-
-/* A point in which the planes of a block meet, and directions that hold it in them, at right angles to each other. */
-typedef struct apex {
-    tl_vec3 x, held[3];
-    double per[3]; /* 1 / |held|^2 */
-    int count;
-    bool known;
-} apex;
 
 /* Some of the planes of a pair. */
 typedef struct list {
@@ -80,7 +65,7 @@ typedef struct pair {
     double one_plane;          /* offset within which planes are one */
     bool beyond;               /* some corner lies beyond one of the others */
     uint64_t found;            /* faces that bound K, when its own faces are looked at */
-    apex apex[2];              /* of A and of B */
+    tl_apex apex[2];           /* of A and of B */
     double by_force, by_swept; /* of S: int d x . n dS, int x . n dS */
 } pair;
 
@@ -145,63 +130,6 @@ static void choose(pair *p, const uint64_t *mask)
     p->beyond = false;
 }
 
-/* ---------------------------------------------------------------- apex ------------------- */
-
-/* What of a direction does not leave the planes that hold an apex. */
-static tl_vec3 within(const apex *p, tl_vec3 way)
-{
-    for (int i = 0; i < p->count; i++)
-        way = tl_v3_madd(way, -p->per[i] * tl_v3_dot(p->held[i], way), p->held[i]);
-    return way;
-}
-
-/* Whether an apex lies in a plane, and all points that it may be do. */
-static bool holds(const apex *p, const pair *of, uint32_t face)
-{
-    tl_vec3 n = normal_of(of->faces, face);
-    return fabs(of->faces->c[face] - tl_v3_dot(n, p->x)) <= of->one_plane &&
-           (p->count == 3 || tl_v3_norm2(within(p, n)) < TL_FIELD_ALIKE * TL_FIELD_ALIKE);
-}
-
-/* Finds a point in which the chosen faces of a block meet. From the origin, it goes on to one plane after the other, along
- * those before. */
-static apex find_apex(const pair *of, uint32_t begin, uint32_t end)
-{
-    const tl_field_faces *f = of->faces;
-    apex p = {.count = 0};
-    uint32_t left[TL_FIELD_KNOWN], count = 0;
-    for (uint32_t k = begin; k < end; k++) {
-        uint32_t face = of->number[k];
-        tl_vec3 n = normal_of(f, face), way = within(&p, n);
-        double sine2 = tl_v3_norm2(way);
-        if (p.count == 3 || !(sine2 > TL_FIELD_STEEP * TL_FIELD_STEEP)) {
-            left[count++] = face;
-            continue;
-        }
-        p.held[p.count] = way;
-        p.per[p.count] = 1 / sine2;
-        p.x = tl_v3_madd(p.x, (f->c[face] - tl_v3_dot(n, p.x)) * p.per[p.count], way);
-        p.count++;
-    }
-    p.known = true;
-    for (uint32_t k = 0; k < count && p.known; k++)
-        p.known = holds(&p, of, left[k]);
-    return p;
-}
-
-/* Adds energy and volume of the cells of a block with an apex. Of the points that it may be, that nearest the centre of
- * pressure is taken: roundings of the force count by the way from there. */
-static void add_share(pair *of, const apex *p, double out)
-{
-    tl_field_sums *sums = of->sums;
-    if (!p->known || !(sums->pressure > 0))
-        return;
-    tl_vec3 centre = tl_v3_scale(1 / sums->pressure, sums->pressed);
-    tl_vec3 x = tl_v3_add(p->x, within(p, tl_v3_sub(centre, p->x)));
-    sums->energy += 0.25 * out * (tl_v3_dot(x, sums->force) - of->by_force);
-    sums->volume += (1.0 / 3) * out * (tl_v3_dot(x, sums->swept) - of->by_swept);
-}
-
 /* ---------------------------------------------------------------- sums ------------------- */
 
 static tl_vec3 plus(tl_vec3 sum, double sign, const double v[3][LANES], int l)
@@ -231,9 +159,12 @@ static void add_sides(work *w, int l)
     of->by_swept += p->h[l] * o->area[l];
     const uint32_t face[] = {w->face[l], w->with[l]};
     for (int of_b = 0; of_b < 2; of_b++) {
-        if (of->apex[of_b].known)
+        double out = of_b ? -1 : 1; /* n points into the cell of A */
+        if (of->apex[of_b].known) {
+            tl_apex_add_side(&of->apex[of_b], of->faces, face[of_b], n, out * o->d[l]);
             continue;
-        double slope = (of_b ? -1 : 1) * tl_v3_dot(n, normal_of(of->faces, face[of_b]));
+        }
+        double slope = out * tl_v3_dot(n, tl_field_normal(of->faces, face[of_b]));
         of->sums->energy += 0.5 * slope * o->dd[l];
         of->sums->volume += slope * o->d[l];
     }
@@ -284,8 +215,17 @@ static void take(work *w, int l)
         add_surface(w, l);
         return;
     }
-    w->of[l]->sums->volume += w->lanes.length[l] * w->parts.d[l];
-    w->of[l]->sums->energy += 0.5 * w->lanes.length[l] * w->parts.dd[l];
+    pair *of = w->of[l];
+    tl_apex *own = &of->apex[w->face[l] >= f->a];
+    if (own->known) { /* a side of a stray's cell */
+        const tl_field_lanes *p = &w->lanes;
+        const tl_vec3 n = lane_vector(p->n, l);
+        tl_apex_add_side(own, f, w->face[l], n, w->parts.d[l]);
+        tl_apex_add_side(own, f, w->with[l], n, -w->parts.d[l]);
+        return;
+    }
+    of->sums->volume += w->lanes.length[l] * w->parts.d[l];
+    of->sums->energy += 0.5 * w->lanes.length[l] * w->parts.dd[l];
     if (w->with[l] >= real_faces(f))
         add_border(w, l);
 }
@@ -392,7 +332,7 @@ static void put(work *w, pair *of, tl_vec3 n, double h, uint32_t i, uint32_t j, 
         lay(&w->others, l, of->faces, &of->others, of->others.count);
         w->laid = of;
     }
-    tl_vec3 m = normal_of(of->faces, face);
+    tl_vec3 m = tl_field_normal(of->faces, face);
     p->n[0][l] = n.x;
     p->n[1][l] = n.y;
     p->n[2][l] = n.z;
@@ -418,7 +358,7 @@ static void put_between(work *w, pair *of, uint32_t i, uint32_t j)
 {
     const tl_field_faces *f = of->faces;
     uint32_t a = of->number[i], b = of->number[j];
-    tl_vec3 m = tl_v3_sub(normal_of(f, a), normal_of(f, b));
+    tl_vec3 m = tl_v3_sub(tl_field_normal(f, a), tl_field_normal(f, b));
     put(w, of, m, f->c[a] - f->c[b], i, j, true, 0);
 }
 
@@ -432,24 +372,35 @@ static void put_pair(work *w, pair *of, bool only_bounding)
     while (real < of->planes.count && number[real] < real_faces(f))
         a += number[real++] < f->a;
     /* a face that bounds nothing of K may be far from it, and so would the apex be */
-    of->apex[0] = only_bounding ? find_apex(of, 0, a) : (apex){0};
-    of->apex[1] = only_bounding ? find_apex(of, a, real) : (apex){0};
+    of->apex[0] = of->apex[1] = (tl_apex){.known = false};
+    if (only_bounding) {
+        of->apex[0] = tl_apex_find(f, number, a, of->one_plane);
+        of->apex[1] = tl_apex_find(f, number + a, real - a, of->one_plane);
+    }
     of->by_force = of->by_swept = 0;
     for (uint32_t i = 0; i < real; i++)
         for (uint32_t j = i + 1; j < real; j++)
-            if ((i < a) != (j < a) || !of->apex[i >= a].known)
+            if ((i < a) != (j < a) || tl_apex_needs(&of->apex[i >= a], number[i], number[j]))
                 put_between(w, of, i, j);
     for (uint32_t k = real_faces(f); k < all_faces(f); k++)
         for (uint32_t face = 0; face < real_faces(f); face++) {
-            tl_vec3 n = normal_of(f, k);
-            put(w, of, n, f->c[k], face, k, false, -tl_v3_dot(n, normal_of(f, face)));
+            tl_vec3 n = tl_field_normal(f, k);
+            put(w, of, n, f->c[k], face, k, false, -tl_v3_dot(n, tl_field_normal(f, face)));
         }
 }
 
 static void end_pair(pair *of)
 {
-    add_share(of, &of->apex[0], 1);
-    add_share(of, &of->apex[1], -1);
+    tl_field_sums *sums = of->sums;
+    const tl_apex_surface s = {sums->force, sums->swept, of->by_force, of->by_swept};
+    if (!(sums->pressure > 0))
+        return;
+    tl_vec3 centre = tl_v3_scale(1 / sums->pressure, sums->pressed);
+    for (int of_b = 0; of_b < 2; of_b++) {
+        tl_apex_gives gives = tl_apex_share(&of->apex[of_b], of->faces, of_b, &s, centre);
+        sums->energy += gives.energy;
+        sums->volume += gives.volume;
+    }
 }
 
 static void integrate(work *w, pair *of, const uint64_t *mask)
@@ -468,7 +419,7 @@ static uint64_t find_bounding(work *w, pair *of)
     w->flat = true;
     of->found = 0;
     for (uint32_t i = 0; i < real_faces(f); i++)
-        put(w, of, normal_of(f, i), f->c[i], i, i, false, 0);
+        put(w, of, tl_field_normal(f, i), f->c[i], i, i, false, 0);
     flush(w);
     w->flat = false;
     return of->found;

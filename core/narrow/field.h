@@ -23,27 +23,10 @@
 #ifndef TL_NARROW_FIELD_H
 #define TL_NARROW_FIELD_H
 
-#include <stdbool.h>
+#include "narrow/field_faces.h"
+
 #include <stddef.h>
-#include <stdint.h>
 #include <talus/plugin.h>
-
-/* The planes that bound K, in this order: faces of A, faces of B, borders of A, borders of B. Others may be among them. Of
- * blocks that overlap a face may be left out that lies wholly outside one face of the other block. With a border all faces
- * are needed, for beyond it the nearest need not bound K. Of blocks that are apart the faces left may still enclose
- * something: the deepest point is then not in both blocks. */
-typedef struct tl_field_faces {
-    uint32_t a, b, border_a, border_b; /* how many of each */
-    uint32_t seam_a,
-        seam_b;       /* so many borders, the last of A's and of B's, are seams to other parts */
-    double *n[3], *c; /* [all of them] */
-    /* Bits of the faces that bounded K at another time, or 0; NULL: nobody keeps them. They are of use without borders and for
-     * up to TL_FIELD_KNOWN faces. They must have been all, and must be forgotten when a corner of one block has come to lie in
-     * the other and on or beyond a face that is not among them. The function leaves those that bound K. */
-    uint64_t *bounding;
-} tl_field_faces;
-
-#define TL_FIELD_KNOWN 64
 
 /* Memory that the functions below work in; zero at first. */
 typedef struct tl_field_room {
@@ -55,7 +38,7 @@ typedef struct tl_field_room {
 
 /* Integrals over S and K, moments about the origin. Those marked * include the borders. */
 typedef struct tl_field_sums {
-    double energy, volume; /* of K: G and its volume; m^4, m^3 */
+    double energy, volume; /* of K: G and its volume (see energy_only); m^4, m^3 */
     tl_vec3 force, moment; /* * -dG: int d n dS, int d x cross n dS; on B; m^3, m^4 */
     tl_vec3 swept,
         swept_moment; /* * -dV of the volume of K: int n dS, int x cross n dS; m^2, m^3 */

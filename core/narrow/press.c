@@ -228,7 +228,7 @@ static bool press_of(const tl_press_query *of, planes *p, const tl_field_sums *s
     tl_field_sums patch;
     *press = (tl_press){0};
     if (!(sums->deepest > TOUCHING * view->size) || !(tl_v3_norm(sums->force) > 0) ||
-        !(sums->volume > 0) ||
+        !(sums->energy > 0) ||
         !(same || in_both(of, tl_v3_add(p->origin, sums->deepest_at), sums->deepest))) {
         if (region->bounding)
             *region->bounding = 0;
@@ -238,6 +238,7 @@ static bool press_of(const tl_press_query *of, planes *p, const tl_field_sums *s
     if (region->flush && tl_region_tilt(view, region->flush_a, region->flush_b) < TL_FIELD_TILT) {
         list_patch(p, of);
         p->faces.bounding = NULL;
+        p->faces.energy_only = false;
         if (!tl_field_integrate(&p->faces, &room->field, &patch))
             return false;
         if (patch.energy > 0 && patch.volume > 0)
@@ -264,8 +265,8 @@ bool tl_press_find(const tl_press_query query[], uint32_t count, tl_narrow *room
 {
     planes p[TL_FIELD_PAIRS];
     uint64_t known[TL_FIELD_PAIRS], bounding[TL_FIELD_PAIRS];
-    tl_field_sums sums[TL_FIELD_PAIRS], *to[TL_FIELD_PAIRS];
-    const tl_field_faces *faces[TL_FIELD_PAIRS];
+    tl_field_sums sums[TL_FIELD_PAIRS], *to[TL_FIELD_PAIRS] = {NULL};
+    const tl_field_faces *faces[TL_FIELD_PAIRS] = {NULL};
     if (!reserve(room, query, count, p))
         return false;
     for (uint32_t k = 0; k < count; k++) {
@@ -275,6 +276,7 @@ bool tl_press_find(const tl_press_query query[], uint32_t count, tl_narrow *room
         list_field(&p[k], &query[k]);
         bounding[k] = known[k] = bounding_of(&query[k]);
         p[k].faces.bounding = &bounding[k];
+        p[k].faces.energy_only = !(query[k].least > 0);
         faces[k] = &p[k].faces;
         to[k] = &sums[k];
     }

@@ -406,6 +406,37 @@ TEST(energy_is_that_of_a_sum)
     }
 }
 
+/* Where the faces of a block that bound K meet in a point, or all but two do, the surface gives the energy; of all faces, the
+ * polygons between them do. */
+TEST(energy_from_the_surface_is_that_from_all)
+{
+    int cases = 0;
+    for (uint64_t k = 1; k <= CASES(3000); k++) {
+        uint64_t seed = k + 15000, bounding = 0;
+        static scene s;
+        make_scene(&s, random_kind(&seed), random_kind(&seed),
+                   pow(10, scene_between(&seed, -4, -0.5)), false, &seed);
+        list_scene(&s);
+        tl_field_sums all, few;
+        tl_field_faces *f = &s.planes.faces;
+        CHECK(tl_field_integrate(f, &s.room, &all));
+        f->bounding = &bounding;
+        f->energy_only = k % 2;
+        CHECK(tl_field_integrate(f, &s.room, &few));
+        if (all.deepest > 0 && bounding) {
+            CHECK_REL(few.energy, all.energy, 1e-9);
+            if (!f->energy_only)
+                CHECK_REL(few.volume, all.volume, 1e-9);
+            CHECK_NEAR(scene_apart(few.force, all.force), 0, 1e-9 * all.pressure);
+            cases++;
+        }
+        f->bounding = NULL;
+        f->energy_only = false;
+        free_scene(&s);
+    }
+    CHECK(cases > CASES(2000));
+}
+
 /* Loss of digits that may come of an origin as far away as a block is large: its roundings over the size of K. */
 #define FAR_ORIGIN 1e-14
 
@@ -486,5 +517,5 @@ TEST(blocks_that_only_touch_have_no_force)
 TEST_MAIN(RUN(force_and_moment_are_the_gradient_of_the_energy), RUN(borders_do_work_as_well),
           RUN(what_passes_through_a_seam_stays_in_the_body),
           RUN(volume_is_that_of_what_is_left_by_cuts), RUN(energy_is_that_of_a_sum),
-          RUN(flush_faces_have_the_force_of_springs), RUN(blocks_that_only_touch_have_no_force),
-          RUN(a_far_origin_moves_nothing))
+          RUN(energy_from_the_surface_is_that_from_all), RUN(flush_faces_have_the_force_of_springs),
+          RUN(blocks_that_only_touch_have_no_force), RUN(a_far_origin_moves_nothing))

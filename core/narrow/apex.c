@@ -1,0 +1,92 @@
+/* apex.c - the energy of a block's cells from the surface S alone.
+ *
+ * Mostly a corner, an edge or a face is pressed in, and all planes of a block that bound K meet in one point x_0, its apex.
+ * There d is homogeneous about x_0 in the cells of this block: (x - x_0) d has the divergence 4 d, x - x_0 has 3, and on the
+ * faces both are tangents. So S alone gives the block's share in G, int d (x - x_0) . n dS / 4, and the polygons between its
+ * cells are not needed. A face q that passes by x_0 at the depth d_q adds d_q V_q / 4, with the volume V_q of its cell: for
+ * that the polygons between this cell and the others are needed. */
+#include "narrow/apex.h"
+
+#include "narrow/field_lanes.h"
+
+#include <math.h>
+#include <talus/vmath.h>
+
+/* What of a direction does not leave the planes that hold an apex. */
+static tl_vec3 within(const tl_apex *p, tl_vec3 way)
+{
+    for (int i = 0; i < p->count; i++)
+        way = tl_v3_madd(way, -p->per[i] * tl_v3_dot(p->held[i], way), p->held[i]);
+    return way;
+}
+
+/* Whether an apex lies in a plane, and all points that it may be do. */
+static bool holds(const tl_apex *p, const tl_field_faces *f, uint32_t face, double one_plane)
+{
+    tl_vec3 n = tl_field_normal(f, face);
+    return fabs(f->c[face] - tl_v3_dot(n, p->x)) <= one_plane &&
+           (p->count == 3 || tl_v3_norm2(within(p, n)) < TL_FIELD_ALIKE * TL_FIELD_ALIKE);
+}
+
+/* From the origin, the point goes on to one plane after the other, along those before. */
+tl_apex tl_apex_find(const tl_field_faces *f, const uint16_t *face, uint32_t count,
+                     double one_plane)
+{
+    tl_apex p = {.count = 0};
+    uint32_t left[TL_FIELD_KNOWN], more = 0;
+    for (uint32_t k = 0; k < count; k++) {
+        tl_vec3 n = tl_field_normal(f, face[k]), way = within(&p, n);
+        double sine2 = tl_v3_norm2(way);
+        if (p.count == 3 || !(sine2 > TL_FIELD_STEEP * TL_FIELD_STEEP)) {
+            left[more++] = face[k];
+            continue;
+        }
+        p.held[p.count] = way;
+        p.per[p.count] = 1 / sine2;
+        p.x = tl_v3_madd(p.x, (f->c[face[k]] - tl_v3_dot(n, p.x)) * p.per[p.count], way);
+        p.count++;
+    }
+    p.known = true;
+    for (uint32_t k = 0; k < more && p.known; k++)
+        if (!holds(&p, f, left[k], one_plane)) {
+            p.known = f->energy_only && p.strays < TL_APEX_STRAYS;
+            if (p.known)
+                p.stray[p.strays++] = left[k];
+        }
+    return p;
+}
+
+bool tl_apex_needs(const tl_apex *p, uint32_t face, uint32_t other)
+{
+    bool needed = !p->known;
+    for (uint32_t k = 0; k < p->strays; k++)
+        needed = needed || p->stray[k] == face || p->stray[k] == other;
+    return needed;
+}
+
+/* The flux of -n_face d, whose divergence is 1 in the cell, and which vanishes on the face. */
+void tl_apex_add_side(tl_apex *p, const tl_field_faces *f, uint32_t face, tl_vec3 n, double d)
+{
+    for (uint32_t k = 0; k < p->strays; k++)
+        if (p->stray[k] == face)
+            p->volume[k] += tl_v3_dot(n, tl_field_normal(f, face)) * d;
+}
+
+/* Of the points that an apex may be, that nearest the centre of pressure is taken: roundings of the force count by the way
+ * from there. */
+tl_apex_gives tl_apex_share(const tl_apex *p, const tl_field_faces *f, bool of_b,
+                            const tl_apex_surface *s, tl_vec3 centre)
+{
+    tl_apex_gives out = {0};
+    if (!p->known)
+        return out;
+    double side = of_b ? -1 : 1; /* n points into the cells of A */
+    tl_vec3 x = tl_v3_add(p->x, within(p, tl_v3_sub(centre, p->x)));
+    out.energy = 0.25 * side * (tl_v3_dot(x, s->force) - s->by_force);
+    out.volume = (1.0 / 3) * side * (tl_v3_dot(x, s->swept) - s->by_swept);
+    for (uint32_t k = 0; k < p->strays; k++) {
+        uint32_t face = p->stray[k];
+        out.energy += 0.25 * (f->c[face] - tl_v3_dot(tl_field_normal(f, face), x)) * p->volume[k];
+    }
+    return out;
+}
