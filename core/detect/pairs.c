@@ -194,7 +194,7 @@ static void look_at(tl_model *m, tl_pair *p, tl_narrow *room)
         }
         tl_pair_forget_faces(p);
     }
-    way = way_to_edges(&view, tolerance + d->reach);
+    way = region.gap > 0 ? 0 : way_to_edges(&view, tolerance + d->reach);
     if (way > 0) {
         tl_pair_sleep(d, p, way);
         return;

@@ -248,8 +248,8 @@ TL_INLINE void fill(tl_field_plane *restrict row, int lane, const double n[3], d
 }
 
 /* Puts the first `count` of some planes into the lanes from `lane` on. */
-TL_VECTORIZED static void lay(rows *r, int lane, const tl_field_faces *f, const list *from,
-                              uint32_t count)
+TL_VECTORIZED static void lay_rows(rows *r, int lane, const tl_field_faces *f, const list *from,
+                                   uint32_t count)
 {
     const double none[3] = {0};
     uint32_t most = count > r->most ? count : r->most;
@@ -328,8 +328,8 @@ static void put(work *w, pair *of, tl_vec3 n, double h, uint32_t i, uint32_t j, 
     int l = w->filled++;
     uint32_t face = of->number[i];
     if (w->laid != of) {
-        lay(&w->planes, l, of->faces, &of->planes, bounds(w, of));
-        lay(&w->others, l, of->faces, &of->others, of->others.count);
+        lay_rows(&w->planes, l, of->faces, &of->planes, bounds(w, of));
+        lay_rows(&w->others, l, of->faces, &of->others, of->others.count);
         w->laid = of;
     }
     tl_vec3 m = tl_field_normal(of->faces, face);
