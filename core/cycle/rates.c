@@ -115,7 +115,10 @@ static area_sums face_of(const tl_poly *shape, uint32_t face)
     return out;
 }
 
-/* The largest face of a body that does not lie on another of its blocks. */
+/* Area over the largest one by which another face is less than that: above roundings of a turned shape. */
+#define AS_LARGE 1e-6
+
+/* The largest face of a body that does not lie on another of its blocks; of several the arms of the farthest. */
 static area_sums largest_face(const tl_model *m, uint32_t body)
 {
     area_sums largest = {0, 0};
@@ -123,8 +126,10 @@ static area_sums largest_face(const tl_model *m, uint32_t body)
         const tl_poly *shape = m->blocks.shape[m->members[m->bodies.member_start[body] + k]];
         for (uint32_t f = 0; f < shape->face_count; f++) {
             area_sums face = shape->covered[f] ? (area_sums){0, 0} : face_of(shape, f);
-            if (face.area > largest.area)
+            if (face.area > (1 + AS_LARGE) * largest.area)
                 largest = face;
+            else if (face.area > (1 - AS_LARGE) * largest.area)
+                largest.area_r2 = fmax(largest.area_r2, face.area_r2);
         }
     }
     return largest;

@@ -75,7 +75,7 @@ static const tl_lua_key model_members[] = {
 static const tl_lua_key energy_terms[] = {
     {"kinetic", "", "of motion, J"},
     {"potential", "", "minus the work of gravity, J"},
-    {"stored", "", "elastic, in contacts, J"},
+    {"stored", "", "elastic, in all contacts, those of held blocks, too, J"},
     {"friction", "", "turned to heat by slip, J"},
     {"damping", "", "taken out by the damping, J"},
     {"external", "", "work of loads and driven bodies, and given by setting velocities, J"},

@@ -1,5 +1,6 @@
 -- The time step: what it is by default, where nothing can move, and what it does to blocks that land.
 local check = require "check"
+local shapes = require "shapes"
 local talus = require "talus"
 
 local DENSITY = 2500
@@ -175,4 +176,20 @@ for rule, step in pairs { body = LONGER * body_step(0.5), paper = paper_step(0.1
     end
     check.holds(m:blocks { group = "cube" }[1].centroid[1] > 2, "it is off")
     check.holds(longest < 1.001 * step, string.format("%s: a step of %g s, more than %g s", rule, longest, step))
+end
+
+-- Two joined cubes in free fall, turned: the step is that of the same one of their faces, of which some are equally large.
+local same
+for angle = 0, 170, 10 do
+    local m = talus.model {}
+    local turn = shapes.turn({ 2 / 3, 1 / 3, 2 / 3 }, math.rad(angle))
+    for side, at in pairs { [0.8] = { 0, 0, 0 }, [0.5] = { 0.65, 0.15, 0.1 } } do
+        m:generate("polyhedron", { density = DENSITY,
+            vertices = shapes.placed(shapes.box(side, side, side), turn, shapes.apply(turn, at)) })
+    end
+    m:blocks():join()
+    m:joint("*", "coulomb", { kn = 1e9, ks = 5e8, friction = 30 })
+    m:cycle(2)
+    same = same or m.dt
+    check.near(m.dt, same, 1e-6 * same)
 end
