@@ -73,13 +73,26 @@ static void hash_point(tl_hash *hash, const tl_points_table *p, size_t row, uint
     hash_numbers(hash, late, 2 + columns);
 }
 
-/* What a field contact keeps beside its points that does not follow from places: how far an initial stress moves a face, and
- * shear energy beyond that of uniform stress. Zeros count as no row. */
+/* Where a field contact has stayed, since when, and whether it goes by slopes from there. */
+static void hash_place(tl_hash *hash, const tl_press_row *row)
+{
+    double place[12];
+    memcpy(place, row->place.turn.m, 9 * sizeof *place);
+    memcpy(place + 9, &row->place.shift, 3 * sizeof *place);
+    hash_numbers(hash, place, sizeof place / sizeof *place);
+    tl_hash_word(hash, (uint64_t)row->since);
+    tl_hash_word(hash, row->slope.known);
+}
+
+/* What a field contact keeps beside its points that does not follow from places: how far an initial stress moves a face, shear
+ * energy beyond that of uniform stress, and the place that its slopes are of. Zeros count as no row. */
 static void hash_press(tl_hash *hash, const tl_detect *d, uint32_t contact)
 {
     if (d->contacts.press[contact] == TL_NO_ROW)
         return;
     const tl_press_row *row = &d->press[d->contacts.press[contact]];
+    if (d->contacts.facet[contact].kind == TL_FACET_FIELD && d->contacts.point_count[contact] > 0)
+        hash_place(hash, row);
     const double numbers[] = {row->shift, row->spare[0], row->spare[1]};
     if (row->shift == 0 && row->spare[0] == 0 && row->spare[1] == 0)
         return;
