@@ -302,6 +302,16 @@ static place sliding(const way *w, double t)
                  w->depth);
 }
 
+/* Checks that nothing jumps on a way; what jumps, with the value that tells the way from others. */
+static double no_jump(rig *r, const way *w, const char *name, double value, int swapped)
+{
+    uint32_t kinds;
+    double jump = worst_jump(r, w, &kinds);
+    if (!CHECK(jump == 0))
+        printf("  yaw %g, %s %g, swapped %d: %g\n", w->yaw / degree, name, value, swapped, jump);
+    return jump;
+}
+
 TEST(an_edge_over_a_border_rocks_without_a_jump)
 {
     double worst = 0;
@@ -313,12 +323,7 @@ TEST(an_edge_over_a_border_rocks_without_a_jump)
                 w.yaw = 20 * turn * degree;
                 w.roll = 3 * (turn + 1) * degree;
                 w.value[1] = 6 * degree;
-                uint32_t kinds;
-                double jump = worst_jump(&r, &w, &kinds);
-                if (!CHECK(jump == 0))
-                    printf("  yaw %d, middle at %g, swapped %d: %g\n", 20 * turn, along_x, swapped,
-                           jump);
-                worst = fmax(worst, jump);
+                worst = fmax(worst, no_jump(&r, &w, "middle at", along_x, swapped));
             }
         tl_model_destroy(r.m);
     }
@@ -339,12 +344,7 @@ TEST(an_end_passes_over_a_border_without_a_jump)
                 w.roll = 5 * degree;
                 w.value[0] = -0.45;
                 w.value[1] = 0.35;
-                uint32_t kinds;
-                double jump = worst_jump(&r, &w, &kinds);
-                if (!CHECK(jump == 0))
-                    printf("  yaw %d, tilt %g, swapped %d: %g\n", 20 * turn, tilts[k], swapped,
-                           jump);
-                worst = fmax(worst, jump);
+                worst = fmax(worst, no_jump(&r, &w, "tilt", tilts[k], swapped));
             }
         tl_model_destroy(r.m);
     }
