@@ -45,15 +45,21 @@ typedef struct tl_press_row {
         [2]; /* energy, times 2 ks, of shear and of torsion beyond that of uniform stress: handover.c */
     /* the region: its faces, of the four kinds of tl_region */
     uint16_t count[4], face[TL_PRESS_FACES];
-    uint64_t bounding; /* which of them bound the common volume: field.h */
+    tl_pair_pose listed_at; /* where they were listed */
     uint16_t blunt_a, blunt_b;
     bool flush, listed;
     /* It has stayed near a place since some step. When it has stayed for long, its press there has slopes, and it goes by
-     * them: detect/fields.c */
+     * them; otherwise by the mesh of its field: detect/fields.c */
     tl_pair_pose place;
     int64_t since;
-    tl_press there;
-    tl_press_slope slope;
+    bool by_slope;
+    union {
+        tl_field_mesh mesh;
+        struct {
+            tl_press there;
+            tl_press_slope slope;
+        };
+    };
 } tl_press_row;
 
 /* GROW: it waits for room for its points; REFRAME: besides, its old points are in frames that are no more. MOVE: its points

@@ -81,7 +81,7 @@ static void hash_place(tl_hash *hash, const tl_press_row *row)
     memcpy(place + 9, &row->place.shift, 3 * sizeof *place);
     hash_numbers(hash, place, sizeof place / sizeof *place);
     tl_hash_word(hash, (uint64_t)row->since);
-    tl_hash_word(hash, row->slope.known);
+    tl_hash_word(hash, row->by_slope);
 }
 
 /* What a field contact keeps beside its points that does not follow from places: how far an initial stress moves a face, shear

@@ -59,27 +59,57 @@ tl_manifold_before tl_contact_before(const tl_model *m, uint32_t c, bool reframe
 
 /* ---------------------------------------------------------------- faces ------------------ */
 
-uint64_t tl_field_bounding(const tl_press_row *row, const tl_region *r)
+/* Gives planes of a mesh their new numbers; false: one has none. */
+static bool renumber(uint8_t *plane, uint32_t count, const uint8_t *now)
 {
-    uint64_t out = 0;
+    bool all = true;
+    for (size_t k = 0; k < count; k++) {
+        uint8_t number = plane[k] == TL_MESH_ZERO ? TL_MESH_ZERO : now[plane[k]];
+        all = all && (plane[k] == TL_MESH_ZERO || number != TL_MESH_ZERO);
+        plane[k] = number;
+    }
+    return all;
+}
+
+tl_field_mesh tl_field_listed_anew(const tl_press_row *row, const tl_region *r)
+{
     const uint32_t old_a = row->count[0], old = old_a + row->count[1];
-    for (uint32_t k = 0; row->listed && k < old; k++) {
-        if (!(row->bounding >> k & 1))
-            continue;
+    uint8_t now[TL_PRESS_FACES];
+    tl_field_mesh mesh = {0};
+    if (!row->listed || row->by_slope)
+        return mesh;
+    mesh = row->mesh;
+    mesh.bounding = 0;
+    for (uint32_t k = 0; k < old; k++) {
         uint32_t at = k < old_a ? 0 : r->a, end = k < old_a ? r->a : r->a + r->b;
         while (at < end && r->face[at] != row->face[k])
             at++;
-        if (at == end || at >= TL_FIELD_KNOWN)
-            return 0;
-        out |= UINT64_C(1) << at;
+        bool there = at < end && at < TL_FIELD_KNOWN;
+        now[k] = there ? (uint8_t)at : TL_MESH_ZERO;
+        if (!(row->mesh.bounding >> k & 1))
+            continue;
+        if (!there)
+            return (tl_field_mesh){0};
+        mesh.bounding |= UINT64_C(1) << at;
     }
-    return out;
+    if (!mesh.bounding)
+        return (tl_field_mesh){0};
+    bool all = renumber(mesh.own[0], 2u * mesh.polygons, now);
+    for (int k = 0; k < 4; k++)
+        all = all && renumber(mesh.plane[k], tl_mesh_room(&mesh), now);
+    for (int k = 0; k < 2; k++)
+        all = all && renumber(mesh.apex[k].held, mesh.apex[k].holds, now) &&
+              renumber(mesh.apex[k].stray, mesh.apex[k].strays, now);
+    if (!all)
+        mesh.polygons = 0;
+    return mesh;
 }
 
-void tl_field_keep(tl_press_row *row, const tl_region *r)
+void tl_field_keep(tl_press_row *row, const tl_pair_view *view, const tl_region *r)
 {
     uint32_t faces = r->a + r->b + r->border_a + r->border_b;
-    row->slope.known = false;
+    row->by_slope = false;
+    row->listed_at = (tl_pair_pose){view->turn, view->shift};
     row->listed = faces <= TL_PRESS_FACES;
     row->flush = r->flush;
     row->blunt_a = (uint16_t)r->blunt_a;
@@ -90,12 +120,12 @@ void tl_field_keep(tl_press_row *row, const tl_region *r)
     for (int k = 0; k < 4; k++)
         row->count[k] = (uint16_t)count[k];
     memcpy(row->face, r->face, faces * sizeof *r->face);
-    row->bounding = *r->bounding;
+    row->mesh = *r->mesh;
 }
 
 static tl_region kept_region(tl_press_row *row)
 {
-    return (tl_region){.bounding = &row->bounding,
+    return (tl_region){.mesh = &row->mesh,
                        .a = row->count[0],
                        .b = row->count[1],
                        .border_a = row->count[2],
@@ -108,13 +138,29 @@ static tl_region kept_region(tl_press_row *row)
 
 /* ---------------------------------------------------------------- places ----------------- */
 
-bool tl_field_goes_on(const tl_model *m, uint32_t c)
+/* Whether the faces of a contact are listed still. By the odometers, which count the motion of both blocks together, and when
+ * that has run out by their motion against each other. */
+static bool is_listed(tl_model *m, uint32_t c, const tl_press_row *row)
+{
+    tl_contacts *contacts = &m->detect->contacts;
+    double odometer = tl_pair_odometer(m, contacts->a[c], contacts->b[c]);
+    if (odometer <= contacts->faces_valid_to[c])
+        return true;
+    if (contacts->faces_valid_to[c] == -INFINITY) /* it is to be looked at in any case */
+        return false;
+    tl_pair_view view = tl_pair_view_of(m, contacts->a[c], contacts->b[c]);
+    double left = TL_LIST_MARGIN * view.size - tl_pair_moved(&view, &row->listed_at);
+    if (left > 0)
+        contacts->faces_valid_to[c] = odometer + left;
+    return left > 0;
+}
+
+bool tl_field_goes_on(tl_model *m, uint32_t c)
 {
     const tl_contacts *contacts = &m->detect->contacts;
     const tl_press_row *row = tl_press_row_of(m, c);
     return row && row->listed && contacts->facet[c].kind == TL_FACET_FIELD &&
-           contacts->point_count[c] > 0 && contacts->deep[c] == TL_DEEP_NOT &&
-           tl_pair_odometer(m, contacts->a[c], contacts->b[c]) <= contacts->faces_valid_to[c];
+           contacts->point_count[c] > 0 && contacts->deep[c] == TL_DEEP_NOT && is_listed(m, c, row);
 }
 
 /* Whether a contact may go by the slopes of its press. */
@@ -122,7 +168,7 @@ static bool is_near(const tl_model *m, uint32_t c, const tl_press_row *row,
                     const tl_pair_pose *place)
 {
     /* -INFINITY: its rules are others now */
-    return row->slope.known && m->config.reuse_geometry &&
+    return row->by_slope && m->config.reuse_geometry &&
            m->detect->contacts.points_valid_to[c] != -INFINITY &&
            tl_press_moved(&row->there, &row->place, place) <= TL_PRESS_NEAR;
 }
@@ -138,16 +184,19 @@ static bool watch(const tl_model *m, const tl_press_query *query, const tl_press
         row->place = place;
         row->since = m->cycles;
     }
-    row->slope.known = false;
     if (!stays || m->cycles - row->since < TL_PRESS_SLOPE_COST || press->patch >= 1 ||
         !m->config.reuse_geometry)
         return true;
-    row->there = *press;
+    tl_press_slope slope;
+    if (!tl_press_slope_find(query, press, room, &slope))
+        return false;
     row->place = place;
-    if (tl_press_slope_find(query, press, room, &row->slope))
-        return true;
-    row->slope.known = false;
-    return false;
+    if (slope.known) { /* it takes the place of the mesh */
+        row->by_slope = true;
+        row->there = *press;
+        row->slope = slope;
+    }
+    return true;
 }
 
 /* Adds a contact to those of which the presses are to be found. */
@@ -155,6 +204,9 @@ static void ask(tl_model *m, tl_field_batch *b, uint32_t c, const tl_pair_view *
 {
     tl_press_row *row = tl_press_row_of(m, c);
     uint32_t k = b->asked++;
+    if (row->by_slope)
+        row->mesh = (tl_field_mesh){0};
+    row->by_slope = false;
     tl_touch_rule rule = tl_touch_rule_of(m, view, m->detect->contacts.tag[c], false);
     b->view[k] = *view;
     b->region[k] = kept_region(row);

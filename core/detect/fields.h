@@ -10,12 +10,13 @@
  * are in these. */
 tl_manifold_before tl_contact_before(const tl_model *m, uint32_t contact, bool reframed);
 /* Keeps the region of a field contact. */
-void tl_field_keep(tl_press_row *row, const tl_region *region);
-/* The faces that bounded the common volume, among those that are listed now; 0: some are not, or none were known. */
-uint64_t tl_field_bounding(const tl_press_row *row, const tl_region *region);
+void tl_field_keep(tl_press_row *row, const tl_pair_view *view, const tl_region *region);
+/* What is known of the field, with the numbers that its faces have in a list made anew; nothing where one is not in it. */
+tl_field_mesh tl_field_listed_anew(const tl_press_row *row, const tl_region *region);
 
-/* Whether a contact was a field contact in the last step and still has its list of faces. */
-bool tl_field_goes_on(const tl_model *m, uint32_t contact);
+/* Whether a contact was a field contact in the last step and still has its list of faces; how long it has is found anew when it
+ * may have run out. */
+bool tl_field_goes_on(tl_model *m, uint32_t contact);
 
 typedef enum tl_field_result {
     TL_FIELD_FOUND,

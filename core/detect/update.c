@@ -137,8 +137,12 @@ static bool find(tl_model *m, uint32_t c, tl_narrow *room)
         !tl_region_find(&view, TL_LIST_MARGIN * view.size, room, &region))
         return false;
     const tl_press_row *row = tl_press_row_of(m, c);
-    uint64_t bounding = row && contacts->point_count[c] ? tl_field_bounding(row, &region) : 0;
-    region.bounding = &bounding;
+    tl_field_mesh mesh;
+    if (row)
+        mesh = (tl_field_mesh){0};
+    if (row && contacts->point_count[c])
+        mesh = tl_field_listed_anew(row, &region);
+    region.mesh = row ? &mesh : NULL;
     tl_manifold_before before = tl_contact_before(m, c, room->reframed);
     tl_tag tag = tl_touching_tag(&view, region.n);
     tl_touch_rule rule = tl_touch_rule_of(m, &view, tag, before.holds);
@@ -153,7 +157,7 @@ static bool find(tl_model *m, uint32_t c, tl_narrow *room)
     check_depth(m, c, &view, &region, room);
     note_tag(m, c, tag);
     if (tl_press_row_of(m, c))
-        tl_field_keep(tl_press_row_of(m, c), &region);
+        tl_field_keep(tl_press_row_of(m, c), &view, &region);
     return true;
 }
 

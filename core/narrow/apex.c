@@ -28,31 +28,48 @@ static bool holds(const tl_apex *p, const tl_field_faces *f, uint32_t face, doub
            (p->count == 3 || tl_v3_norm2(within(p, n)) < TL_FIELD_ALIKE * TL_FIELD_ALIKE);
 }
 
-/* From the origin, the point goes on to one plane after the other, along those before. */
-tl_apex tl_apex_find(const tl_field_faces *f, const uint16_t *face, uint32_t count,
-                     double one_plane)
+/* From where it is, the point goes on to one plane more, along those before; false: the plane has nearly their directions. */
+static bool hold(tl_apex *p, const tl_field_faces *f, uint32_t face, double least2)
+{
+    tl_vec3 n = tl_field_normal(f, face), way = within(p, n);
+    double sine2 = tl_v3_norm2(way);
+    if (!(sine2 > least2))
+        return false;
+    p->held[p->count] = way;
+    p->per[p->count] = 1 / sine2;
+    p->x = tl_v3_madd(p->x, (f->c[face] - tl_v3_dot(n, p->x)) * p->per[p->count], way);
+    p->count++;
+    return true;
+}
+
+tl_apex_faces tl_apex_choose(const tl_field_faces *f, const uint16_t *face, uint32_t count,
+                             double one_plane)
 {
     tl_apex p = {.count = 0};
+    tl_apex_faces out = {.known = true};
     uint32_t left[TL_FIELD_KNOWN], more = 0;
     for (uint32_t k = 0; k < count; k++) {
-        tl_vec3 n = tl_field_normal(f, face[k]), way = within(&p, n);
-        double sine2 = tl_v3_norm2(way);
-        if (p.count == 3 || !(sine2 > TL_FIELD_STEEP * TL_FIELD_STEEP)) {
+        if (p.count < 3 && hold(&p, f, face[k], TL_FIELD_STEEP * TL_FIELD_STEEP))
+            out.held[out.holds++] = (uint8_t)face[k];
+        else
             left[more++] = face[k];
-            continue;
-        }
-        p.held[p.count] = way;
-        p.per[p.count] = 1 / sine2;
-        p.x = tl_v3_madd(p.x, (f->c[face[k]] - tl_v3_dot(n, p.x)) * p.per[p.count], way);
-        p.count++;
     }
-    p.known = true;
-    for (uint32_t k = 0; k < more && p.known; k++)
+    for (uint32_t k = 0; k < more && out.known; k++)
         if (!holds(&p, f, left[k], one_plane)) {
-            p.known = f->energy_only && p.strays < TL_APEX_STRAYS;
-            if (p.known)
-                p.stray[p.strays++] = left[k];
+            out.known = f->energy_only && out.strays < TL_APEX_STRAYS;
+            if (out.known)
+                out.stray[out.strays++] = (uint8_t)left[k];
         }
+    return out;
+}
+
+tl_apex tl_apex_find(const tl_field_faces *f, const tl_apex_faces *by)
+{
+    tl_apex p = {.known = by->known, .strays = by->strays};
+    for (uint32_t k = 0; k < by->holds && by->known; k++)
+        hold(&p, f, by->held[k], 0);
+    for (uint32_t k = 0; k < by->strays; k++)
+        p.stray[k] = by->stray[k];
     return p;
 }
 
@@ -74,19 +91,24 @@ void tl_apex_add_side(tl_apex *p, const tl_field_faces *f, uint32_t face, tl_vec
 
 /* Of the points that an apex may be, that nearest the centre of pressure is taken: roundings of the force count by the way
  * from there. */
-tl_apex_gives tl_apex_share(const tl_apex *p, const tl_field_faces *f, bool of_b,
-                            const tl_apex_surface *s, tl_vec3 centre)
+void tl_apex_add_shares(const tl_apex apex[2], const tl_field_faces *f, double by_force,
+                        double by_swept, tl_field_sums *sums)
 {
-    tl_apex_gives out = {0};
-    if (!p->known)
-        return out;
-    double side = of_b ? -1 : 1; /* n points into the cells of A */
-    tl_vec3 x = tl_v3_add(p->x, within(p, tl_v3_sub(centre, p->x)));
-    out.energy = 0.25 * side * (tl_v3_dot(x, s->force) - s->by_force);
-    out.volume = (1.0 / 3) * side * (tl_v3_dot(x, s->swept) - s->by_swept);
-    for (uint32_t k = 0; k < p->strays; k++) {
-        uint32_t face = p->stray[k];
-        out.energy += 0.25 * (f->c[face] - tl_v3_dot(tl_field_normal(f, face), x)) * p->volume[k];
+    if (!(sums->pressure > 0))
+        return;
+    tl_vec3 centre = tl_v3_scale(1 / sums->pressure, sums->pressed);
+    for (int of_b = 0; of_b < 2; of_b++) {
+        const tl_apex *p = &apex[of_b];
+        if (!p->known)
+            continue;
+        double side = of_b ? -1 : 1; /* n points into the cells of A */
+        tl_vec3 x = tl_v3_add(p->x, within(p, tl_v3_sub(centre, p->x)));
+        sums->energy += 0.25 * side * (tl_v3_dot(x, sums->force) - by_force);
+        sums->volume += (1.0 / 3) * side * (tl_v3_dot(x, sums->swept) - by_swept);
+        for (uint32_t k = 0; k < p->strays; k++) {
+            uint32_t face = p->stray[k];
+            sums->energy +=
+                0.25 * (f->c[face] - tl_v3_dot(tl_field_normal(f, face), x)) * p->volume[k];
+        }
     }
-    return out;
 }

@@ -2,10 +2,7 @@
 #ifndef TL_NARROW_APEX_H
 #define TL_NARROW_APEX_H
 
-#include "narrow/field_faces.h"
-
-/* Faces that may pass by the point in which the others meet. */
-#define TL_APEX_STRAYS 2
+#include "narrow/field_sums.h"
 
 /* The point, and directions that hold it in the planes, at right angles to each other. */
 typedef struct tl_apex {
@@ -17,27 +14,18 @@ typedef struct tl_apex {
     double volume[TL_APEX_STRAYS];
 } tl_apex;
 
-/* Of the surface S, about the origin: int d n dS, int n dS, int d x . n dS, int x . n dS. */
-typedef struct tl_apex_surface {
-    tl_vec3 force, swept;
-    double by_force, by_swept;
-} tl_apex_surface;
-
-/* What the cells of a block give of G and of the volume. */
-typedef struct tl_apex_gives {
-    double energy, volume;
-} tl_apex_gives;
-
-/* The apex of some faces of a block, all of which bound K. Planes are one within the offset `one_plane`. Faces that pass by are
- * allowed where the volume is not wanted. */
-tl_apex tl_apex_find(const tl_field_faces *f, const uint16_t *face, uint32_t count,
-                     double one_plane);
+/* Which of some faces of a block, all of which bound K, hold an apex. Planes are one within the offset `one_plane`. Faces that
+ * pass by are allowed where the volume is not wanted. */
+tl_apex_faces tl_apex_choose(const tl_field_faces *f, const uint16_t *face, uint32_t count,
+                             double one_plane);
+/* The apex of faces that have been chosen, here or at another place. */
+tl_apex tl_apex_find(const tl_field_faces *f, const tl_apex_faces *by);
 /* Whether the polygon between the cells of two faces of the block is needed. */
 bool tl_apex_needs(const tl_apex *p, uint32_t face, uint32_t other);
 /* Adds a side of the cell of a face that passes by: int d dS over it, and its normal into the cell. */
 void tl_apex_add_side(tl_apex *p, const tl_field_faces *f, uint32_t face, tl_vec3 n, double d);
-/* What a block gives by its apex; nothing without one. */
-tl_apex_gives tl_apex_share(const tl_apex *p, const tl_field_faces *f, bool of_b,
-                            const tl_apex_surface *s, tl_vec3 centre);
+/* Adds what both blocks give by their apexes, of A and of B, to the energy and the volume. Of S: int d x . n dS, int x . n dS. */
+void tl_apex_add_shares(const tl_apex apex[2], const tl_field_faces *f, double by_force,
+                        double by_swept, tl_field_sums *sums);
 
 #endif

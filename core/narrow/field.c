@@ -20,18 +20,13 @@
 #include "base/inline.h"
 #include "narrow/apex.h"
 #include "narrow/field_lanes.h"
+#include "narrow/field_mesh.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <talus/vmath.h>
 
 #define LANES TL_LANES
-
-/* Roundings of the largest offset within which two faces that look the same way are one plane. */
-#define ONE_PLANE (16 * 2.220446049250313e-16)
-/* Length of n_a - n_b below which two faces look so much the same way that what is between them bears nothing: it counts no
- * more in the stiffness. */
-#define SAME_WAY 0.5
 
 static uint32_t real_faces(const tl_field_faces *f)
 {
@@ -61,11 +56,13 @@ typedef struct pair {
     const tl_field_faces *faces;
     tl_field_sums *sums;
     uint16_t *number;
-    list planes, others;       /* planes that bound polygons; faces that are to bound none */
-    double one_plane;          /* offset within which planes are one */
-    bool beyond;               /* some corner lies beyond one of the others */
-    uint64_t found;            /* faces that bound K, when its own faces are looked at */
-    tl_apex apex[2];           /* of A and of B */
+    list planes, others;  /* planes that bound polygons; faces that are to bound none */
+    double one_plane;     /* offset within which planes are one */
+    bool beyond;          /* some corner lies beyond one of the others */
+    uint64_t found;       /* faces that bound K, when its own faces are looked at */
+    tl_mesh_draft *draft; /* its polygons are noted here; NULL: nowhere */
+    tl_apex_faces by[2];  /* what holds the apexes of A and of B */
+    tl_apex apex[2];
     double by_force, by_swept; /* of S: int d x . n dS, int x . n dS */
 } pair;
 
@@ -86,6 +83,7 @@ typedef struct work {
     const pair *laid; /* whose planes are in the lanes that are left; NULL: nobody's */
     pair *of[LANES];
     uint32_t face[LANES], with[LANES]; /* the polygon's two planes */
+    uint32_t i[LANES], j[LANES];       /* the same as numbers of those that bound polygons */
 } work;
 
 static bool make_room(tl_field_room *room, uint32_t lines, uint32_t numbers)
@@ -126,7 +124,7 @@ static void choose(pair *p, const uint64_t *mask)
     }
     p->planes = (list){p->number, chosen};
     p->others = (list){p->number + left, count - left};
-    p->one_plane = ONE_PLANE * largest;
+    p->one_plane = TL_FIELD_ONE_PLANE * largest;
     p->beyond = false;
 }
 
@@ -183,7 +181,7 @@ static void add_surface(work *w, int l)
     sums->extent += o->area[l];
     sums->first = plus(sums->first, 1, o->first, l);
     sums->second += o->second[l];
-    sums->stiffness += 2 / fmax(w->lanes.length[l], SAME_WAY) * o->area[l];
+    sums->stiffness += 2 / fmax(w->lanes.length[l], TL_FIELD_SAME_WAY) * o->area[l];
     if (w->lanes.deepest[l] > sums->deepest) {
         sums->deepest = w->lanes.deepest[l];
         sums->deepest_at = lane_vector(o->deepest_at, l);
@@ -272,10 +270,9 @@ static uint32_t bounds(const work *w, const pair *of)
     return of->planes.count - (w->flat ? 1 : 2);
 }
 
-/* Takes a polygon's own planes, the i-th and j-th of its pair, out of its lane: the last of all come in their place. */
-static void take_out(work *w, int lane, const pair *of, uint32_t i, uint32_t j)
+/* The planes that bound a polygon in whose own two are the i-th and j-th of its pair: the last of all come in their place. */
+static void list_bounds(const work *w, const pair *of, uint32_t i, uint32_t j, uint16_t in_place[2])
 {
-    const tl_field_faces *f = of->faces;
     const uint32_t own[] = {i, j}, count = bounds(w, of);
     uint32_t last = count;
     for (int k = 0; k < (i == j ? 1 : 2); k++) {
@@ -283,13 +280,45 @@ static void take_out(work *w, int lane, const pair *of, uint32_t i, uint32_t j)
             continue;
         while (last == i || last == j)
             last++;
+        in_place[k] = of->number[last++];
+    }
+}
+
+/* Takes a polygon's own planes out of its lane. */
+static void take_out(work *w, int lane, const pair *of, uint32_t i, uint32_t j)
+{
+    const tl_field_faces *f = of->faces;
+    const uint32_t own[] = {i, j}, count = bounds(w, of);
+    uint16_t in_place[2];
+    list_bounds(w, of, i, j, in_place);
+    for (int k = 0; k < (i == j ? 1 : 2); k++) {
+        if (own[k] >= count)
+            continue;
         tl_field_plane *row = &w->planes.row[own[k]];
-        uint32_t plane = of->number[last++];
+        uint32_t plane = in_place[k];
         for (int axis = 0; axis < 3; axis++)
             row->n[axis][lane] = f->n[axis][plane];
         row->c[lane] = f->c[plane];
         row->face[lane] = plane < real_faces(f);
     }
+}
+
+/* Notes the polygon in a lane for a mesh. */
+static void draw(work *w, int lane, size_t lines)
+{
+    const pair *of = w->of[lane];
+    const uint32_t count = bounds(w, of), i = w->i[lane], j = w->j[lane];
+    const uint16_t own[] = {(uint16_t)w->face[lane], (uint16_t)w->with[lane]};
+    uint16_t bound[TL_FIELD_KNOWN], in_place[2];
+    for (uint32_t k = 0; k < count; k++)
+        bound[k] = of->number[k];
+    list_bounds(w, of, i, j, in_place);
+    if (i < count)
+        bound[i] = in_place[0];
+    if (j < count)
+        bound[j] = in_place[1];
+    tl_mesh_draw(of->draft, own, bound, w->line, count + 1 < lines ? count + 1 : lines,
+                 (unsigned)lane);
 }
 
 /* Integrates the polygons in the lanes. */
@@ -313,6 +342,8 @@ static void flush(work *w)
             of->found |= UINT64_C(1) << w->face[lane];
         else
             take(w, lane);
+        if (of->draft && !w->flat)
+            draw(w, lane, lines);
         of->beyond = of->beyond || p->open[lane] > 0;
     }
     w->filled = 0;
@@ -348,6 +379,8 @@ static void put(work *w, pair *of, tl_vec3 n, double h, uint32_t i, uint32_t j, 
     w->of[l] = of;
     w->face[l] = face;
     w->with[l] = of->number[j];
+    w->i[l] = i;
+    w->j[l] = j;
     take_out(w, l, of, i, j);
     if (w->filled == (int)LANES)
         flush(w);
@@ -374,8 +407,10 @@ static void put_pair(work *w, pair *of, bool only_bounding)
     /* a face that bounds nothing of K may be far from it, and so would the apex be */
     of->apex[0] = of->apex[1] = (tl_apex){.known = false};
     if (only_bounding) {
-        of->apex[0] = tl_apex_find(f, number, a, of->one_plane);
-        of->apex[1] = tl_apex_find(f, number + a, real - a, of->one_plane);
+        of->by[0] = tl_apex_choose(f, number, a, of->one_plane);
+        of->by[1] = tl_apex_choose(f, number + a, real - a, of->one_plane);
+        of->apex[0] = tl_apex_find(f, &of->by[0]);
+        of->apex[1] = tl_apex_find(f, &of->by[1]);
     }
     of->by_force = of->by_swept = 0;
     for (uint32_t i = 0; i < real; i++)
@@ -391,16 +426,7 @@ static void put_pair(work *w, pair *of, bool only_bounding)
 
 static void end_pair(pair *of)
 {
-    tl_field_sums *sums = of->sums;
-    const tl_apex_surface s = {sums->force, sums->swept, of->by_force, of->by_swept};
-    if (!(sums->pressure > 0))
-        return;
-    tl_vec3 centre = tl_v3_scale(1 / sums->pressure, sums->pressed);
-    for (int of_b = 0; of_b < 2; of_b++) {
-        tl_apex_gives gives = tl_apex_share(&of->apex[of_b], of->faces, of_b, &s, centre);
-        sums->energy += gives.energy;
-        sums->volume += gives.volume;
-    }
+    tl_apex_add_shares(of->apex, of->faces, of->by_force, of->by_swept, of->sums);
 }
 
 static void integrate(work *w, pair *of, const uint64_t *mask)
@@ -427,41 +453,52 @@ static uint64_t find_bounding(work *w, pair *of)
 
 /* ---------------------------------------------------------------- pairs ------------------ */
 
-/* Whether somebody keeps which faces of a pair bound K. */
+/* Whether somebody keeps what is known of a pair. */
 static bool is_kept(const tl_field_faces *f)
 {
-    return f->bounding && all_faces(f) == real_faces(f) && real_faces(f) <= TL_FIELD_KNOWN;
+    return f->mesh && all_faces(f) == real_faces(f) && real_faces(f) <= TL_FIELD_KNOWN;
 }
 
 static bool is_known(const tl_field_faces *f)
 {
-    return is_kept(f) && *f->bounding;
+    return is_kept(f) && f->mesh->bounding;
+}
+
+/* Begins to note polygons. */
+static void begin_draft(pair *of, tl_mesh_draft *draft)
+{
+    of->draft = of->faces->inner ? draft : NULL;
+    draft->full = false;
+    draft->polygons = draft->labels = 0;
 }
 
 /* A pair of which it is not known which faces bound K, or not any more. */
-static void integrate_anew(work *w, pair *of)
+static void integrate_anew(work *w, pair *of, tl_mesh_draft *draft)
 {
     const tl_field_faces *f = of->faces;
+    of->draft = NULL;
     if (is_kept(f)) {
-        *f->bounding = find_bounding(w, of);
-        integrate(w, of, f->bounding);
+        f->mesh->polygons = 0;
+        f->mesh->bounding = find_bounding(w, of);
+        begin_draft(of, draft);
+        integrate(w, of, &f->mesh->bounding);
         if (!of->beyond)
             return;
-        *f->bounding = 0; /* K is so thin that a face was lost in roundings */
+        f->mesh->bounding = 0; /* K is so thin that a face was lost in roundings */
+        of->draft = NULL;
     }
     integrate(w, of, NULL);
 }
 
-bool tl_field_integrate_all(const tl_field_faces *const faces[], tl_field_sums *const sums[],
-                            uint32_t count, tl_field_room *room)
+/* An empty work for pairs of so many planes. false: out of memory. */
+static bool begin_work(work *w, const tl_field_faces *const faces[], uint32_t count,
+                       tl_field_room *room)
 {
-    pair pairs[TL_FIELD_PAIRS];
-    work w; /* the lanes are filled before they are read */
-    w.flat = false;
-    w.filled = 0;
-    w.laid = NULL;
-    w.planes.most = w.others.most = 0;
     uint32_t most = 0, all = 0;
+    w->flat = false;
+    w->filled = 0;
+    w->laid = NULL;
+    w->planes.most = w->others.most = 0;
     for (uint32_t k = 0; k < count; k++) {
         uint32_t planes = all_faces(faces[k]);
         most = planes > most ? planes : most;
@@ -469,18 +506,31 @@ bool tl_field_integrate_all(const tl_field_faces *const faces[], tl_field_sums *
     }
     if (!make_room(room, most + 1, all))
         return false;
-    w.line = room->line;
-    w.planes.row = room->plane;
-    w.others.row = room->plane + room->lines;
-    all = 0;
+    w->line = room->line;
+    w->planes.row = room->plane;
+    w->others.row = room->plane + room->lines;
+    return true;
+}
+
+bool tl_field_integrate_all(const tl_field_faces *const faces[], tl_field_sums *const sums[],
+                            uint32_t count, tl_field_room *room)
+{
+    pair pairs[TL_FIELD_PAIRS];
+    tl_mesh_draft drafts[TL_FIELD_PAIRS];
+    work w; /* the lanes are filled before they are read */
+    if (!begin_work(&w, faces, count, room))
+        return false;
+    uint32_t all = 0;
     for (uint32_t k = 0; k < count; k++) {
         pairs[k].faces = faces[k];
         pairs[k].sums = sums[k];
         pairs[k].number = room->number + all;
+        pairs[k].draft = NULL;
         all += all_faces(faces[k]);
         if (!is_known(faces[k]))
             continue;
-        choose(&pairs[k], faces[k]->bounding);
+        begin_draft(&pairs[k], &drafts[k]);
+        choose(&pairs[k], &faces[k]->mesh->bounding);
         put_pair(&w, &pairs[k], true);
     }
     flush(&w);
@@ -489,7 +539,12 @@ bool tl_field_integrate_all(const tl_field_faces *const faces[], tl_field_sums *
         if (known)
             end_pair(&pairs[k]);
         if (!known || pairs[k].beyond)
-            integrate_anew(&w, &pairs[k]);
+            integrate_anew(&w, &pairs[k], &drafts[k]);
+        if (pairs[k].draft) {
+            tl_mesh_make(pairs[k].draft, faces[k], faces[k]->mesh);
+            faces[k]->mesh->apex[0] = pairs[k].by[0];
+            faces[k]->mesh->apex[1] = pairs[k].by[1];
+        }
     }
     return true;
 }

@@ -23,7 +23,7 @@
 #ifndef TL_NARROW_FIELD_H
 #define TL_NARROW_FIELD_H
 
-#include "narrow/field_faces.h"
+#include "narrow/field_sums.h"
 
 #include <stddef.h>
 #include <talus/plugin.h>
@@ -36,29 +36,10 @@ typedef struct tl_field_room {
     uint32_t lines, numbers;
 } tl_field_room;
 
-/* Integrals over S and K, moments about the origin. Those marked * include the borders. */
-typedef struct tl_field_sums {
-    double energy, volume; /* of K: G and its volume (see energy_only); m^4, m^3 */
-    tl_vec3 force, moment; /* * -dG: int d n dS, int d x cross n dS; on B; m^3, m^4 */
-    tl_vec3 swept,
-        swept_moment; /* * -dV of the volume of K: int n dS, int x cross n dS; m^2, m^3 */
-    /* int d n dS over the seams: what passes through them from one part of a body to the next, and into `force` of both */
-    tl_vec3 through, through_moment;
-    tl_vec3 area;     /* int n dS; m^2 */
-    double pressure;  /* int d dS; m^3 */
-    tl_vec3 pressed;  /* int d x dS; m^4 */
-    double extent;    /* int dS; m^2 */
-    tl_vec3 first;    /* int x dS; m^3 */
-    double second;    /* int x . x dS; m^4 */
-    double stiffness; /* int 2 / |n_a - n_b| dS: times kn that against motion along n; m^2 */
-    double deepest;   /* largest d on S; m */
-    tl_vec3 deepest_at;
-} tl_field_sums;
-
 /* Pairs that are integrated together. */
 #define TL_FIELD_PAIRS TL_LANES
 
-/* false without memory. */
+/* All integrals, and a new mesh. false: out of memory. */
 bool tl_field_integrate_all(const tl_field_faces *const faces[], tl_field_sums *const sums[],
                             uint32_t count, tl_field_room *room);
 /* The same of one pair. */

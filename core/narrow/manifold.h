@@ -15,7 +15,7 @@ typedef struct tl_manifold_before {
 } tl_manifold_before;
 
 /* Way that a list of faces holds for, over the size. */
-#define TL_LIST_MARGIN 0.005
+#define TL_LIST_MARGIN 0.01
 
 /* Facet and points of a pair that has been placed, into room->manifold. The region was found with a margin of
  * TL_LIST_MARGIN times the size. false: out of memory. */

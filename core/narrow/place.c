@@ -51,6 +51,22 @@ bool tl_pair_place(tl_pair_view *view, tl_narrow *room)
     return tl_pairs_place(view, 1, room);
 }
 
+double tl_pair_moved(const tl_pair_view *view, const tl_pair_pose *since)
+{
+    double most = 0;
+    for (uint32_t i = 0; i < view->b->vertex_count; i++) {
+        tl_vec3 now = tl_v3_add(tl_m3_mul(&view->turn, view->b->vertex[i]), view->shift);
+        tl_vec3 then = tl_v3_add(tl_m3_mul(&since->turn, view->b->vertex[i]), since->shift);
+        most = fmax(most, tl_v3_norm2(tl_v3_sub(now, then)));
+    }
+    for (uint32_t i = 0; i < view->a->vertex_count; i++) { /* in B's frame */
+        tl_vec3 now = tl_m3_tmul(&view->turn, tl_v3_sub(view->a->vertex[i], view->shift));
+        tl_vec3 then = tl_m3_tmul(&since->turn, tl_v3_sub(view->a->vertex[i], since->shift));
+        most = fmax(most, tl_v3_norm2(tl_v3_sub(now, then)));
+    }
+    return sqrt(most);
+}
+
 bool tl_pair_place_face(tl_pair_view *view, uint32_t face, tl_narrow *room)
 {
     const tl_poly *b = view->b;

@@ -18,6 +18,8 @@
  * which is G without A_m. */
 #include "narrow/press.h"
 
+#include "narrow/field_mesh.h"
+
 #include <stdlib.h>
 #include <talus/vmath.h>
 
@@ -43,6 +45,7 @@ static bool reserve(tl_narrow *room, const tl_press_query query[], uint32_t coun
     for (uint32_t k = 0; k < count; k++) {
         const tl_region *r = query[k].region;
         faces[k] = r->a + r->b + r->border_a + r->border_b;
+        faces[k] = faces[k] > TL_FIELD_KNOWN ? faces[k] : TL_FIELD_KNOWN + 1; /* field_mesh.c */
         all += faces[k];
     }
     if (4 * all > room->press_room) {
@@ -211,12 +214,12 @@ static double blend(const tl_press_query *of, const tl_field_sums *patch, double
     return share;
 }
 
-/* The faces that bounded the common volume, or none where these may be others now. */
-static uint64_t bounding_of(const tl_press_query *of)
+/* Whether what is known of the field at another place may be of use here. */
+static bool is_of_use(const tl_press_query *of)
 {
     const tl_region *r = of->region;
-    bool known = r->bounding && *r->bounding && !(of->shift > 0) && r->border_a + r->border_b == 0;
-    return known && tl_region_corners_agree(of->view, r) ? *r->bounding : 0;
+    return r->mesh && !(of->shift > 0) && r->border_a + r->border_b == 0 &&
+           r->a + r->b <= TL_FIELD_KNOWN;
 }
 
 /* The press of a pair from the integrals of its field. `same`: over faces that have enclosed the common volume before. */
@@ -230,14 +233,14 @@ static bool press_of(const tl_press_query *of, planes *p, const tl_field_sums *s
     if (!(sums->deepest > TOUCHING * view->size) || !(tl_v3_norm(sums->force) > 0) ||
         !(sums->energy > 0) ||
         !(same || in_both(of, tl_v3_add(p->origin, sums->deepest_at), sums->deepest))) {
-        if (region->bounding)
-            *region->bounding = 0;
+        if (region->mesh)
+            region->mesh->bounding = region->mesh->polygons = 0;
         return true;
     }
     stored field = with_least(sums, of->least);
     if (region->flush && tl_region_tilt(view, region->flush_a, region->flush_b) < TL_FIELD_TILT) {
         list_patch(p, of);
-        p->faces.bounding = NULL;
+        p->faces.mesh = NULL;
         p->faces.energy_only = false;
         if (!tl_field_integrate(&p->faces, &room->field, &patch))
             return false;
@@ -261,31 +264,85 @@ static bool press_of(const tl_press_query *of, planes *p, const tl_field_sums *s
     return true;
 }
 
+/* The planes of a pair's field about a point. */
+static void begin(const tl_press_query *of, tl_vec3 origin, planes *p)
+{
+    p->origin = origin;
+    list_field(p, of);
+    p->faces.energy_only = !(of->least > 0);
+    p->faces.mesh = of->region->mesh;
+    p->faces.inner = NULL;
+}
+
+/* The integrals by the mesh that is known; false: they are to be found. */
+static bool follow(const tl_press_query *of, planes *p, tl_field_sums *sums)
+{
+    tl_field_mesh *mesh = of->region->mesh;
+    if (mesh && !is_of_use(of))
+        mesh->bounding = mesh->polygons = 0;
+    if (!mesh || mesh->polygons == 0)
+        return false;
+    begin(of, mesh->origin, p);
+    return tl_mesh_integrate(&p->faces, sums);
+}
+
+/* Goes by a mesh that has just been made at once: so the same is found when all is done again. */
+static void begin_mesh(const tl_press_query *of, planes *p, tl_field_sums *sums)
+{
+    tl_field_mesh *mesh = of->region->mesh;
+    if (!mesh || mesh->polygons == 0 || !(sums->pressure > 0))
+        return;
+    const tl_vec3 origin = p->origin, centre = tl_v3_scale(1 / sums->pressure, sums->pressed);
+    mesh->origin = tl_v3_add(origin, centre);
+    begin(of, mesh->origin, p);
+    if (tl_mesh_integrate(&p->faces, sums))
+        return;
+    mesh->polygons = 0;
+    begin(of, origin, p);
+}
+
+/* Forgets what is no longer known, and finds what a new mesh needs. */
+static void begin_anew(const tl_press_query *of, planes *p, tl_mesh_inner *inner)
+{
+    const tl_pair_view *view = of->view;
+    bool b_is_small = view->b->size < view->a->size;
+    tl_field_mesh *mesh = of->region->mesh;
+    begin(of, b_is_small ? view->vertex_b[0] : view->a->vertex[0], p);
+    if (!mesh || !is_of_use(of))
+        return;
+    if (mesh->bounding && !tl_region_corners_agree(of->view, of->region))
+        mesh->bounding = 0;
+    tl_region_inner_corners(of->view, of->region, inner);
+    p->faces.inner = inner;
+}
+
 bool tl_press_find(const tl_press_query query[], uint32_t count, tl_narrow *room, tl_press press[])
 {
     planes p[TL_FIELD_PAIRS];
-    uint64_t known[TL_FIELD_PAIRS], bounding[TL_FIELD_PAIRS];
+    uint64_t known[TL_FIELD_PAIRS];
+    tl_mesh_inner inner[TL_FIELD_PAIRS];
     tl_field_sums sums[TL_FIELD_PAIRS], *to[TL_FIELD_PAIRS] = {NULL};
     const tl_field_faces *faces[TL_FIELD_PAIRS] = {NULL};
+    uint32_t left = 0, anew[TL_FIELD_PAIRS];
     if (!reserve(room, query, count, p))
         return false;
     for (uint32_t k = 0; k < count; k++) {
-        const tl_pair_view *view = query[k].view;
-        bool b_is_small = view->b->size < view->a->size;
-        p[k].origin = b_is_small ? view->vertex_b[0] : view->a->vertex[0];
-        list_field(&p[k], &query[k]);
-        bounding[k] = known[k] = bounding_of(&query[k]);
-        p[k].faces.bounding = &bounding[k];
-        p[k].faces.energy_only = !(query[k].least > 0);
-        faces[k] = &p[k].faces;
-        to[k] = &sums[k];
+        bool found = follow(&query[k], &p[k], &sums[k]);
+        if (!found)
+            begin_anew(&query[k], &p[k], &inner[k]);
+        known[k] = p[k].faces.mesh ? p[k].faces.mesh->bounding : 0;
+        if (found)
+            continue;
+        faces[left] = &p[k].faces;
+        to[left] = &sums[k];
+        anew[left++] = k;
     }
-    if (!tl_field_integrate_all(faces, to, count, &room->field))
+    if (left && !tl_field_integrate_all(faces, to, left, &room->field))
         return false;
+    for (uint32_t k = 0; k < left; k++)
+        begin_mesh(&query[anew[k]], &p[anew[k]], &sums[anew[k]]);
     for (uint32_t k = 0; k < count; k++) {
-        if (query[k].region->bounding)
-            *query[k].region->bounding = bounding[k];
-        bool same = known[k] && bounding[k] == known[k];
+        bool same = known[k] && p[k].faces.mesh->bounding == known[k];
         if (!press_of(&query[k], &p[k], &sums[k], same, room, &press[k]))
             return false;
     }

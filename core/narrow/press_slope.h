@@ -4,12 +4,6 @@
 
 #include "narrow/press.h"
 
-/* Where B is in A's frame. */
-typedef struct tl_pair_pose {
-    tl_mat3 turn;
-    tl_vec3 shift;
-} tl_pair_pose;
-
 /* Derivatives by B's moves along the axes of A's frame, and then by its turns about them through the press's point. */
 typedef struct tl_press_slope {
     tl_vec3 force[6], moment[6], point[6];

@@ -306,7 +306,7 @@ static void split(const tl_pair_view *view, const tl_region *r, bool of_b, sides
     s->bounding = 0;
     s->other = TL_FIELD_KNOWN;
     for (uint32_t k = begin; k < end; k++) {
-        uint32_t at = *r->bounding >> k & 1 ? s->bounding++ : --s->other;
+        uint32_t at = r->mesh->bounding >> k & 1 ? s->bounding++ : --s->other;
         uint16_t f = r->face[k];
         s->face[at] = f;
         s->plane[at] = of_b ? view->b->plane[f] : view->a->plane[f];
@@ -350,6 +350,68 @@ bool tl_region_corners_agree(const tl_pair_view *view, const tl_region *region)
     split(view, region, false, &a);
     split(view, region, true, &b);
     return agree(view->a, view->a->vertex, &a, &b) && agree(view->b, view->vertex_b, &b, &a);
+}
+
+/* Of the listed faces of a block that meet in a vertex the three that do so at the sharpest. false: there are no three. */
+static bool faces_at(const tl_poly *p, const tl_vec3 *normals, size_t stride, const tl_region *r,
+                     uint32_t begin, uint32_t end, uint32_t vertex, uint8_t face[3])
+{
+    uint32_t at[TL_FIELD_KNOWN], count = 0;
+    tl_vec3 n[TL_FIELD_KNOWN];
+    for (uint32_t k = begin; k < end; k++)
+        for (uint32_t h = p->start[r->face[k]]; h < p->start[r->face[k] + 1u]; h++)
+            if (p->loop[h] == vertex) {
+                n[count] =
+                    *(const tl_vec3 *)(const void *)((const char *)normals + r->face[k] * stride);
+                at[count++] = k;
+            }
+    double most = 0;
+    for (uint32_t i = 0; i < count; i++)
+        for (uint32_t j = i + 1; j < count; j++)
+            for (uint32_t k = j + 1; k < count; k++) {
+                double sharp = fabs(tl_v3_dot(tl_v3_cross(n[i], n[j]), n[k]));
+                if (sharp <= most)
+                    continue;
+                most = sharp;
+                face[0] = (uint8_t)at[i];
+                face[1] = (uint8_t)at[j];
+                face[2] = (uint8_t)at[k];
+            }
+    return most > 0;
+}
+
+void tl_region_inner_corners(const tl_pair_view *view, const tl_region *r, tl_mesh_inner *out)
+{
+    out->count = 0;
+    for (int of_b = 0; of_b < 2; of_b++) {
+        const tl_poly *p = of_b ? view->b : view->a;
+        const tl_vec3 *vertex = of_b ? view->vertex_b : view->a->vertex;
+        uint32_t begin = of_b ? r->a : 0, end = of_b ? r->a + r->b : r->a;
+        uint32_t other = of_b ? 0 : r->a, other_end = of_b ? r->a : r->a + r->b;
+        for (uint32_t i = 0; i < p->vertex_count && out->count <= TL_MESH_INNER; i++) {
+            bool inside = true;
+            for (uint32_t k = other; k < other_end && inside; k++) {
+                uint16_t f = r->face[k];
+                tl_vec3 n = of_b ? view->a->plane[f].normal : view->normal_b[f];
+                double c = of_b ? view->a->plane[f].offset
+                                : view->b->plane[f].offset + tl_v3_dot(n, view->shift);
+                inside = tl_v3_dot(n, vertex[i]) <= c;
+            }
+            if (!inside)
+                continue;
+            uint8_t face[3];
+            bool found =
+                of_b ? faces_at(p, view->normal_b, sizeof(tl_vec3), r, begin, end, i, face)
+                     : faces_at(p, &p->plane[0].normal, sizeof(tl_plane), r, begin, end, i, face);
+            if (!found || out->count == TL_MESH_INNER) {
+                out->count = TL_MESH_INNER + 1;
+                return;
+            }
+            for (int k = 0; k < 3; k++)
+                out->face[out->count][k] = face[k];
+            out->count++;
+        }
+    }
 }
 
 double tl_region_tilt(const tl_pair_view *view, uint32_t face_a, uint32_t face_b)

@@ -11,8 +11,7 @@ typedef struct tl_region {
     /* the listed faces of A, of B, the borders of A and of B: faces on seams */
     uint32_t a, b, border_a, border_b;
     const uint16_t *face; /* their numbers, one after the other; in the thread's room */
-    uint64_t
-        *bounding; /* those that bounded the common volume (field.h); NULL: nobody keeps them */
+    tl_field_mesh *mesh;  /* what is known of the field at another place; NULL: nobody keeps it */
     /* the face along whose normal the blocks are farthest apart, or overlap the least: min over B - max over A */
     double gap;
     tl_vec3 n; /* its normal, A to B, in A's frame */
@@ -34,6 +33,9 @@ void tl_region_choose_flush(const tl_pair_view *view, tl_region *region);
 /* Whether the faces marked in `bounding` are all that bound the common volume, as far as the corners of one block tell that lie
  * in the other. The pair has moved by less than its margin. */
 bool tl_region_corners_agree(const tl_pair_view *view, const tl_region *region);
+/* The corners of one block that lie in the other, as far as the listed faces tell; a corner has the numbers of three of them in
+ * the list. */
+void tl_region_inner_corners(const tl_pair_view *view, const tl_region *region, tl_mesh_inner *out);
 /* Sine of the angle between two faces, one of A and one of B. */
 double tl_region_tilt(const tl_pair_view *view, uint32_t face_a, uint32_t face_b);
 

@@ -17,6 +17,12 @@
 #define TL_CONTACT_TOLERANCE 1e-3
 #define TL_CONTACT_RELEASE 1.5
 
+/* Where B is in A's frame. */
+typedef struct tl_pair_pose {
+    tl_mat3 turn;
+    tl_vec3 shift;
+} tl_pair_pose;
+
 /* Two blocks in the frame of A's body. */
 typedef struct tl_pair_view {
     const tl_poly *a, *b;

@@ -412,7 +412,8 @@ TEST(energy_from_the_surface_is_that_from_all)
 {
     int cases = 0;
     for (uint64_t k = 1; k <= CASES(3000); k++) {
-        uint64_t seed = k + 15000, bounding = 0;
+        uint64_t seed = k + 15000;
+        tl_field_mesh mesh = {0};
         static scene s;
         make_scene(&s, random_kind(&seed), random_kind(&seed),
                    pow(10, scene_between(&seed, -4, -0.5)), false, &seed);
@@ -420,17 +421,17 @@ TEST(energy_from_the_surface_is_that_from_all)
         tl_field_sums all, few;
         tl_field_faces *f = &s.planes.faces;
         CHECK(tl_field_integrate(f, &s.room, &all));
-        f->bounding = &bounding;
+        f->mesh = &mesh;
         f->energy_only = k % 2;
         CHECK(tl_field_integrate(f, &s.room, &few));
-        if (all.deepest > 0 && bounding) {
+        if (all.deepest > 0 && mesh.bounding) {
             CHECK_REL(few.energy, all.energy, 1e-9);
             if (!f->energy_only)
                 CHECK_REL(few.volume, all.volume, 1e-9);
             CHECK_NEAR(scene_apart(few.force, all.force), 0, 1e-9 * all.pressure);
             cases++;
         }
-        f->bounding = NULL;
+        f->mesh = NULL;
         f->energy_only = false;
         free_scene(&s);
     }

@@ -1,0 +1,32 @@
+/* field_sums.h - what is integrated over a pressure field (field.h), and what counts as one plane there. */
+#ifndef TL_NARROW_FIELD_SUMS_H
+#define TL_NARROW_FIELD_SUMS_H
+
+#include "narrow/field_faces.h"
+
+/* Integrals over S and K, moments about the origin. Those marked * include the borders. */
+typedef struct tl_field_sums {
+    double energy, volume; /* of K: G and its volume (see energy_only); m^4, m^3 */
+    tl_vec3 force, moment; /* * -dG: int d n dS, int d x cross n dS; on B; m^3, m^4 */
+    tl_vec3 swept,
+        swept_moment; /* * -dV of the volume of K: int n dS, int x cross n dS; m^2, m^3 */
+    /* int d n dS over the seams: what passes through them from one part of a body to the next, and into `force` of both */
+    tl_vec3 through, through_moment;
+    tl_vec3 area;     /* int n dS; m^2 */
+    double pressure;  /* int d dS; m^3 */
+    tl_vec3 pressed;  /* int d x dS; m^4 */
+    double extent;    /* int dS; m^2 */
+    tl_vec3 first;    /* int x dS; m^3 */
+    double second;    /* int x . x dS; m^4 */
+    double stiffness; /* int 2 / |n_a - n_b| dS: times kn that against motion along n; m^2 */
+    double deepest;   /* largest d on S; m */
+    tl_vec3 deepest_at;
+} tl_field_sums;
+
+/* Roundings of the largest offset within which two faces that look the same way are one plane. */
+#define TL_FIELD_ONE_PLANE (16 * 2.220446049250313e-16)
+/* Length of n_a - n_b below which two faces look so much the same way that what is between them bears nothing: it counts no
+ * more in the stiffness. */
+#define TL_FIELD_SAME_WAY 0.5
+
+#endif
