@@ -66,19 +66,6 @@ bool tl_param_in_range(const tl_param *param, double value)
     return above && below;
 }
 
-void tl_number_text(double value, char text[TL_NUMBER_TEXT])
-{
-    /* The sign of a NaN, which some systems print, says nothing to a user. */
-    if (isnan(value))
-        value = (double)NAN;
-    for (int digits = 6; digits <= 17; digits++) {
-        snprintf(text, TL_NUMBER_TEXT, "%.*g", digits, value);
-        double back = strtod(text, NULL);
-        if (!isfinite(value) || !(back < value || back > value))
-            return;
-    }
-}
-
 void tl_param_range(const tl_param *param, char *text, size_t size)
 {
     char low[TL_NUMBER_TEXT], high[TL_NUMBER_TEXT];

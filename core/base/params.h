@@ -4,11 +4,12 @@
 #ifndef TL_BASE_PARAMS_H
 #define TL_BASE_PARAMS_H
 
+#include "base/number.h"
+
 #include <stdbool.h>
 #include <talus/talus.h>
 
-/* Bytes of the longest texts tl_number_text and tl_param_range write. */
-#define TL_NUMBER_TEXT 32
+/* Bytes of the longest text tl_param_range writes. */
 #define TL_RANGE_TEXT 96
 
 /* Row `index` of a table whose rows are `stride` bytes apart, copied into the host's own shape;
@@ -23,8 +24,5 @@ bool tl_param_ranged(const tl_param *param);
 
 /* True when `value` is finite and inside the range, open ends left out. */
 bool tl_param_in_range(const tl_param *param, double value);
-
-/* The shortest decimal text that reads back as the same double, from six digits on. */
-void tl_number_text(double value, char text[TL_NUMBER_TEXT]);
 
 #endif
