@@ -1,108 +1,169 @@
 /* block_model.c - writes the blocks of a model into a JSON file; docs/block_model.md describes it. Numbers
  * are written with the digits that give back the same double. */
-#include "base/params.h"
+#include "base/number.h"
 #include "base/signals.h"
-#include "io/output_file.h"
-#include "model/model.h"
+#include "io/pieces.h"
+
+#include <string.h>
+
+/* Bytes of a block's text, about. */
+#define BLOCK_TEXT 1000
+
+/* ---------------------------------------------------------------- text ------------------- */
+
+static void put_bytes(tl_piece *to, const char *text, size_t length)
+{
+    unsigned char *at = tl_piece_room(to, length);
+    if (!at)
+        return;
+    memcpy(at, text, length);
+    to->length += length;
+}
+
+static void put(tl_piece *to, const char *text)
+{
+    put_bytes(to, text, strlen(text));
+}
+
+static void put_number(tl_piece *to, double value)
+{
+    unsigned char *at = tl_piece_room(to, TL_NUMBER_TEXT);
+    if (at)
+        to->length += tl_number_text(value, (char *)at);
+}
+
+static void put_whole(tl_piece *to, uint32_t value)
+{
+    char digits[10];
+    size_t at = sizeof digits;
+    do
+        digits[--at] = (char)('0' + value % 10);
+    while ((value /= 10) > 0);
+    put_bytes(to, digits + at, sizeof digits - at);
+}
 
 /* A text in quotes, escaped as JSON wants it. */
-static void write_text(FILE *file, const char *text)
+static void put_text(tl_piece *to, const char *text)
 {
-    fputc('"', file);
+    put(to, "\"");
     for (const unsigned char *c = (const unsigned char *)text; *c; c++) {
+        char escaped[8] = {(char)*c, '\0'};
         if (*c == '"' || *c == '\\')
-            fprintf(file, "\\%c", *c);
+            snprintf(escaped, sizeof escaped, "\\%c", *c);
         else if (*c < ' ')
-            fprintf(file, "\\u%04x", *c);
-        else
-            fputc(*c, file);
+            snprintf(escaped, sizeof escaped, "\\u%04x", *c);
+        put(to, escaped);
     }
-    fputc('"', file);
+    put(to, "\"");
 }
 
-static void write_vertices(FILE *file, const tl_block_mesh *mesh)
+/* ---------------------------------------------------------------- blocks ----------------- */
+
+static void put_vertices(tl_piece *to, const tl_model *m, uint32_t row)
 {
-    fputs("\"vertices\": [", file);
-    for (size_t i = 0; i < mesh->vertex_count; i++) {
-        char x[TL_NUMBER_TEXT], y[TL_NUMBER_TEXT], z[TL_NUMBER_TEXT];
-        tl_number_text(mesh->vertices[i].x, x);
-        tl_number_text(mesh->vertices[i].y, y);
-        tl_number_text(mesh->vertices[i].z, z);
-        fprintf(file, "%s[%s, %s, %s]", i ? ", " : "", x, y, z);
+    const tl_poly *shape = m->blocks.shape[row];
+    put(to, "\"vertices\": [");
+    for (uint32_t i = 0; i < shape->vertex_count; i++) {
+        tl_vec3 at = tl_model_point(m, m->blocks.body[row], shape->vertex[i]);
+        put(to, i ? ", [" : "[");
+        put_number(to, at.x);
+        put(to, ", ");
+        put_number(to, at.y);
+        put(to, ", ");
+        put_number(to, at.z);
+        put(to, "]");
     }
-    fputs("]", file);
+    put(to, "]");
 }
 
-static void write_faces(FILE *file, const tl_model *m, const tl_block_mesh *mesh)
+static void put_faces(tl_piece *to, const tl_model *m, const tl_poly *shape)
 {
-    fputs("\"faces\": [", file);
-    for (size_t f = 0; f < mesh->face_count; f++) {
-        fprintf(file, "%s\n      {\"vertices\": [", f ? "," : "");
-        for (uint32_t i = mesh->start[f]; i < mesh->start[f + 1]; i++)
-            fprintf(file, "%s%u", i > mesh->start[f] ? ", " : "", mesh->loops[i]);
-        fputs("]", file);
-        if (mesh->tags[f].joint) {
-            fputs(", \"joint\": ", file);
-            write_text(file, m->joints[mesh->tags[f].joint - 1].name);
-            fprintf(file, ", \"plane\": %u", mesh->tags[f].plane);
+    put(to, "\"faces\": [");
+    for (uint32_t f = 0; f < shape->face_count; f++) {
+        put(to, f ? ",\n      {\"vertices\": [" : "\n      {\"vertices\": [");
+        for (uint32_t i = shape->start[f]; i < shape->start[f + 1]; i++) {
+            if (i > shape->start[f])
+                put(to, ", ");
+            put_whole(to, shape->loop[i]);
         }
-        fputs("}", file);
+        put(to, "]");
+        if (shape->tag[f].joint) {
+            put(to, ", \"joint\": ");
+            put_text(to, m->joints[shape->tag[f].joint - 1].name);
+            put(to, ", \"plane\": ");
+            put_whole(to, shape->tag[f].plane);
+        }
+        put(to, "}");
     }
-    fputs("]", file);
+    put(to, "]");
 }
 
-static void write_fixed(FILE *file, unsigned fixed)
+static void put_fixed(tl_piece *to, unsigned fixed)
 {
-    static const char *const names[] = {"x", "y", "z", "rotation"};
-    fputs("\"fixed\": [", file);
+    static const char *const names[] = {"\"x\"", "\"y\"", "\"z\"", "\"rotation\""};
+    put(to, "\"fixed\": [");
     bool first = true;
     for (unsigned i = 0; i < 4; i++) {
         if (!(fixed & 1u << i))
             continue;
-        fprintf(file, "%s\"%s\"", first ? "" : ", ", names[i]);
+        put(to, first ? "" : ", ");
+        put(to, names[i]);
         first = false;
     }
-    fputs("]", file);
+    put(to, "]");
 }
 
-static tl_status write_block(FILE *file, tl_model *m, uint32_t row)
+static void put_block(tl_piece *to, const tl_model *m, uint32_t row)
 {
-    tl_block_mesh mesh;
-    tl_status status = tl_block_mesh_get(m, m->blocks.id[row], &mesh);
-    if (status != TL_OK)
-        return status;
     uint32_t body = m->blocks.body[row];
-    char density[TL_NUMBER_TEXT];
-    tl_number_text(m->blocks.density[row], density);
-    fprintf(file, "%s\n    {\"id\": %u, \"group\": ", row ? "," : "", m->blocks.id[row]);
-    write_text(file, m->groups[m->blocks.group[row]]);
-    fprintf(file, ", \"density\": %s, \"body\": %u, ", density, m->bodies.id[body]);
-    write_fixed(file, m->bodies.fixed[body]);
-    fprintf(file, ", \"hidden\": %s,\n     ", m->blocks.hidden[row] ? "true" : "false");
-    write_vertices(file, &mesh);
-    fputs(",\n     ", file);
-    write_faces(file, m, &mesh);
-    fputs("}", file);
-    tl_block_mesh_free(&mesh);
-    return TL_OK;
+    put(to, row ? ",\n    {\"id\": " : "\n    {\"id\": ");
+    put_whole(to, m->blocks.id[row]);
+    put(to, ", \"group\": ");
+    put_text(to, m->groups[m->blocks.group[row]]);
+    put(to, ", \"density\": ");
+    put_number(to, m->blocks.density[row]);
+    put(to, ", \"body\": ");
+    put_whole(to, m->bodies.id[body]);
+    put(to, ", ");
+    put_fixed(to, m->bodies.fixed[body]);
+    put(to, m->blocks.hidden[row] ? ", \"hidden\": true,\n     " : ", \"hidden\": false,\n     ");
+    put_vertices(to, m, row);
+    put(to, ",\n     ");
+    put_faces(to, m, m->blocks.shape[row]);
+    put(to, "}");
 }
 
-static tl_status write_model(FILE *file, tl_model *m)
+static void fill_blocks(const void *user, size_t begin, size_t end, tl_piece *piece)
 {
+    for (size_t row = begin; row < end; row++)
+        put_block(piece, user, (uint32_t)row);
+}
+
+/* ---------------------------------------------------------------- the file --------------- */
+
+static void fill_joints(const void *user, size_t begin, size_t end, tl_piece *piece)
+{
+    const tl_model *m = user;
+    for (size_t i = begin; i < end; i++) {
+        put(piece, i ? ",\n    {\"name\": " : "\n    {\"name\": ");
+        put_text(piece, m->joints[i].name);
+        put(piece, ", \"planes\": ");
+        put_whole(piece, m->joints[i].planes);
+        put(piece, "}");
+    }
+}
+
+static tl_status write_model(tl_output *output, tl_model *m)
+{
+    FILE *file = output->file;
+    tl_pieces pieces = {.model = m, .output = output};
     fputs("{\"format\": \"talus block model\", \"version\": 1,\n  \"joints\": [", file);
-    for (size_t i = 0; i < m->joint_count; i++) {
-        fprintf(file, "%s\n    {\"name\": ", i ? "," : "");
-        write_text(file, m->joints[i].name);
-        fprintf(file, ", \"planes\": %u}", m->joints[i].planes);
-    }
+    tl_status status = tl_pieces_write(&pieces, m->joint_count, BLOCK_TEXT, fill_joints, m);
     fputs("],\n  \"blocks\": [", file);
-    tl_status status = TL_OK;
-    for (uint32_t row = 0; row < m->blocks.table.rows && status == TL_OK; row++) {
-        status = write_block(file, m, row);
-        if (status == TL_OK)
-            status = tl_output_go_on(m);
-    }
+    if (status == TL_OK)
+        status = tl_pieces_write(&pieces, m->blocks.table.rows, BLOCK_TEXT, fill_blocks, m);
     fputs("]}\n", file);
+    tl_pieces_free(&pieces);
     return status;
 }
 
@@ -112,7 +173,7 @@ static tl_status write_file(tl_model *m, const char *path)
     atomic_store(&m->interrupted, false);
     tl_status status = tl_output_open(&output, path, &m->error);
     if (status == TL_OK)
-        status = write_model(output.file, m);
+        status = write_model(&output, m);
     if (status == TL_OK)
         status = tl_output_finish(&output, &m->error);
     if (status == TL_OK)

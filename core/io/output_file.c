@@ -181,6 +181,13 @@ tl_status tl_output_open(tl_output *output, const char *path, tl_error *error)
     return status;
 }
 
+void tl_output_put(tl_output *output, const void *data, size_t bytes)
+{
+    errno = 0;
+    if (bytes > 0 && fwrite(data, 1, bytes, output->file) != bytes && !output->code)
+        output->code = errno;
+}
+
 tl_status tl_output_go_on(tl_model *m)
 {
     if (tl_model_interrupted(m))
@@ -194,7 +201,7 @@ tl_status tl_output_finish(tl_output *output, tl_error *error)
      * flush. */
     errno = 0;
     int bad = fflush(output->file) != 0;
-    int code = errno;
+    int code = output->code ? output->code : errno;
     if (!bad && !output->temporary) { /* the file is to outlive its stream */
         output->nameless = fcntl(fileno(output->file), F_DUPFD_CLOEXEC, 1);
         if (output->nameless < 0) {

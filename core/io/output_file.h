@@ -15,6 +15,7 @@ typedef struct tl_output {
     char *path;      /* as the user gave it */
     char *place;     /* the same without symbolic links */
     char *temporary; /* its name until it is committed; NULL: it has none */
+    int code;        /* errno of the first failure of tl_output_put */
 } tl_output;
 
 /* From the opening of a file until it is dropped the caller holds the signals that end a program (base/signals.h), so
@@ -23,6 +24,8 @@ typedef struct tl_output {
 /* Opens the file that is to become `path`, making the folders on the way. Only a regular file is ever replaced: a
  * device, a pipe or a folder is refused. A symbolic link stays, and the file that it leads to is replaced. */
 tl_status tl_output_open(tl_output *output, const char *path, tl_error *error);
+/* Writes many bytes at once; what fails is found by tl_output_finish. */
+void tl_output_put(tl_output *output, const void *data, size_t bytes);
 /* TL_E_CANCELLED when the user asked to stop, else TL_OK. */
 tl_status tl_output_go_on(tl_model *m);
 /* Writes out and closes; TL_E_IO when anything since the opening failed. */

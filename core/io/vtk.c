@@ -1,5 +1,5 @@
-/* vtk.c - a frame for ParaView: blocks, contacts and joint faces, or a section, and the index of each
- * series.
+/* vtk.c - a frame for ParaView: blocks, contacts and joint faces, or some of these, or a section, and the index of
+ * each series. Files of one number are of one frame; a part that is left out of a frame has no file of that number.
  *
  * The files of a frame are all written under temporary names before the first is renamed, so
  * that a full disk or a folder without permission leaves the series as it was. */
@@ -15,53 +15,70 @@
 
 typedef struct part {
     const char *content; /* in the file's name */
-    tl_status (*write)(tl_model *m, const tl_plane *section, FILE *file);
+    tl_status (*write)(tl_model *m, const tl_plane *section, tl_pieces *out);
 } part;
 
-static tl_status write_blocks(tl_model *m, const tl_plane *section, FILE *file)
+static tl_status write_blocks(tl_model *m, const tl_plane *section, tl_pieces *out)
 {
     (void)section;
-    return tl_vtk_blocks(m, file);
+    return tl_vtk_blocks(m, out);
 }
 
-static tl_status write_contacts(tl_model *m, const tl_plane *section, FILE *file)
+static tl_status write_contacts(tl_model *m, const tl_plane *section, tl_pieces *out)
 {
     (void)section;
-    return tl_vtk_contacts(m, file);
+    return tl_vtk_contacts(m, out);
 }
 
-static tl_status write_joints(tl_model *m, const tl_plane *section, FILE *file)
+static tl_status write_joints(tl_model *m, const tl_plane *section, tl_pieces *out)
 {
     (void)section;
-    return tl_vtk_joints(m, file);
+    return tl_vtk_joints(m, out);
 }
 
-static tl_status write_section(tl_model *m, const tl_plane *section, FILE *file)
+static tl_status write_section(tl_model *m, const tl_plane *section, tl_pieces *out)
 {
-    return tl_vtk_section(m, *section, file);
+    return tl_vtk_section(m, *section, out);
 }
 
-static const part frame_parts[] = {
-    {"blocks", write_blocks},
-    {"contacts", write_contacts},
-    {"joints", write_joints},
+enum { BLOCKS, CONTACTS, JOINTS, PART_COUNT };
+
+static const part frame_parts[PART_COUNT] = {
+    [BLOCKS] = {"blocks", write_blocks},
+    [CONTACTS] = {"contacts", write_contacts},
+    [JOINTS] = {"joints", write_joints},
 };
 
 static const part section_part = {"section", write_section};
 
-enum { PART_COUNT = sizeof frame_parts / sizeof *frame_parts };
 static_assert(PART_COUNT <= TL_VTK_PARTS, "a series has an index for each file of a frame");
 
-static tl_status write_part(tl_model *m, const tl_vtk_series *series, const part *p,
-                            const tl_plane *section, tl_output *output)
+/* What is written: the parts of a kind of frame whose bits are set. */
+typedef struct frame {
+    const char *function; /* of the user's */
+    const part *parts;
+    size_t count;
+    unsigned wanted;
+    const tl_plane *section;
+} frame;
+
+static bool wants(const frame *f, size_t i)
 {
+    return f->wanted >> i & 1;
+}
+
+static tl_status write_part(tl_model *m, const tl_vtk_series *series, const frame *f, size_t i,
+                            tl_pieces *pieces, tl_output *output)
+{
+    const part *p = &f->parts[i];
     char *name = tl_vtk_frame_name(series, p->content, series->count);
     tl_status status = name ? tl_output_open(output, name, &m->error) : tl_fail_memory(&m->error);
     free(name);
     if (status == TL_OK)
         status = tl_output_go_on(m);
+    pieces->output = output;
     if (status == TL_OK)
-        status = p->write(m, section, output->file);
+        status = p->write(m, f->section, pieces);
     return status == TL_OK ? tl_output_finish(output, &m->error) : status;
 }
 
@@ -76,56 +93,74 @@ static tl_status check_prefix(const char *function, const char *prefix, tl_error
 }
 
 /* The data first, then the indices, so that no index ever names a file that is not there. */
-static tl_status write_files(tl_model *m, tl_vtk_series *series, const part *parts, int count,
-                             const tl_plane *section)
+static tl_status write_files(tl_model *m, tl_vtk_series *series, const frame *f)
 {
     tl_output data[PART_COUNT] = {{0}};
     tl_vtk_index_change indices[PART_COUNT] = {{.file = 0}};
+    tl_pieces pieces = {.model = m};
     tl_status status = TL_OK;
-    for (int i = 0; status == TL_OK && i < count; i++)
-        status = write_part(m, series, &parts[i], section, &data[i]);
-    for (int i = 0; status == TL_OK && i < count; i++)
-        status =
-            tl_vtk_index_open(&indices[i], series, (size_t)i, parts[i].content, m->time, &m->error);
+    for (size_t i = 0; status == TL_OK && i < f->count; i++)
+        if (wants(f, i))
+            status = write_part(m, series, f, i, &pieces, &data[i]);
+    tl_pieces_free(&pieces);
+    for (size_t i = 0; status == TL_OK && i < f->count; i++)
+        if (wants(f, i))
+            status =
+                tl_vtk_index_open(&indices[i], series, i, f->parts[i].content, m->time, &m->error);
     if (status == TL_OK)
         status = tl_output_go_on(m);
-    for (int i = 0; status == TL_OK && i < count; i++)
-        status = tl_output_commit(&data[i], &m->error);
-    for (int i = 0; status == TL_OK && i < count; i++)
-        status = tl_vtk_index_commit(&indices[i], &m->error);
-    for (int i = 0; i < count; i++) {
+    for (size_t i = 0; status == TL_OK && i < f->count; i++)
+        if (wants(f, i))
+            status = tl_output_commit(&data[i], &m->error);
+    for (size_t i = 0; status == TL_OK && i < f->count; i++)
+        if (wants(f, i))
+            status = tl_vtk_index_commit(&indices[i], &m->error);
+    for (size_t i = 0; i < f->count; i++) {
         tl_output_drop(&data[i]);
         tl_vtk_index_drop(&indices[i]);
     }
     return status;
 }
 
-/* Writes the next frame, of `count` files, of the series of that prefix and kind. */
-static tl_status write_frame(tl_model *m, const char *function, const char *prefix,
-                             const part *parts, int count, const tl_plane *section)
+/* Writes the next frame of the series of that prefix and kind. */
+static tl_status write_frame(tl_model *m, const char *prefix, const frame *f)
 {
-    tl_status status = check_prefix(function, prefix, &m->error);
+    tl_status status = check_prefix(f->function, prefix, &m->error);
     if (status != TL_OK)
         return status;
-    tl_vtk_series *series = tl_vtk_series_of(m, prefix, parts[0].content);
+    tl_vtk_series *series = tl_vtk_series_of(m, prefix, f->parts[0].content);
     if (!series)
         return tl_fail_memory(&m->error);
 
     sigset_t before;
     tl_signals_hold(&before, false);
     atomic_store(&m->interrupted, false);
-    status = write_files(m, series, parts, count, section);
+    status = write_files(m, series, f);
     tl_signals_release(&before);
     if (status == TL_OK)
-        tl_vtk_series_add(series, m->time);
+        tl_vtk_series_add(series, (tl_vtk_frame){m->time, f->wanted});
     else if (status == TL_E_IO)
-        tl_error_prefix(&m->error, "%s: ", function);
+        tl_error_prefix(&m->error, "%s: ", f->function);
     return status;
+}
+
+tl_status tl_write_vtk_parts(tl_model *m, const char *prefix, const tl_vtk_parts *parts)
+{
+    frame f = {.function = "write_vtk", .parts = frame_parts, .count = PART_COUNT};
+    f.wanted = (unsigned)(parts->blocks != 0) << BLOCKS |
+               (unsigned)(parts->contacts != 0) << CONTACTS |
+               (unsigned)(parts->joints != 0) << JOINTS;
+    if (f.wanted == 0)
+        return tl_fail(&m->error, TL_E_ARGUMENT,
+                       "write_vtk: blocks, contacts and joints are all false, so there is nothing "
+                       "to write; leave out what is to be written");
+    return write_frame(m, prefix, &f);
 }
 
 tl_status tl_write_vtk(tl_model *m, const char *prefix)
 {
-    return write_frame(m, "write_vtk", prefix, frame_parts, PART_COUNT, NULL);
+    const tl_vtk_parts all = {1, 1, 1};
+    return tl_write_vtk_parts(m, prefix, &all);
 }
 
 tl_status tl_write_section(tl_model *m, const char *prefix, const tl_halfspace *plane)
@@ -138,5 +173,6 @@ tl_status tl_write_section(tl_model *m, const char *prefix, const tl_halfspace *
             plane->dip);
     tl_vec3 normal = tl_plane_normal(plane->dip, plane->dip_direction);
     tl_plane section = {normal, tl_v3_dot(normal, tl_v3_sub(plane->origin, m->origin))};
-    return write_frame(m, "write_section", prefix, &section_part, 1, &section);
+    const frame f = {"write_section", &section_part, 1, 1, &section};
+    return write_frame(m, prefix, &f);
 }

@@ -15,103 +15,233 @@
  *                           Vector with it moves the blocks apart
  *
  * The model's centre is the mean of the blocks' centroids weighted by volume. */
+#include "base/error.h"
 #include "io/vtk_data.h"
 #include "io/vtk_file.h"
 
-typedef struct counts {
-    size_t points; /* vertices of all blocks */
-    size_t stream; /* integers of all face streams, with the leading length of each */
-} counts;
+#include <stdlib.h>
 
-static counts count_all(const tl_blocks *b)
+/* The model and what its rows need of each other. */
+typedef struct grid {
+    const tl_model *model;
+    const tl_blocks *blocks;
+    uint32_t *first; /* [rows + 1] index of the block's first vertex */
+    tl_vec3 centre;  /* of the model */
+} grid;
+
+/* Integers of a block's face stream, with its leading length. */
+static size_t stream_of(const tl_poly *shape)
 {
-    counts total = {0, 0};
-    for (size_t row = 0; row < b->table.rows; row++) {
-        const tl_poly *shape = b->shape[row];
-        total.points += shape->vertex_count;
-        total.stream += 2 + shape->face_count + shape->start[shape->face_count];
+    return 2u + shape->face_count + shape->start[shape->face_count];
+}
+
+static size_t vertices_of(const grid *g, size_t begin, size_t end)
+{
+    return g->first[end] - g->first[begin];
+}
+
+/* ---------------------------------------------------------------- points ----------------- */
+
+typedef tl_vec3 (*point_fn)(const grid *g, uint32_t row, tl_vec3 local);
+
+/* A vector of each vertex of rows. */
+static inline void fill_vertices(const grid *g, size_t begin, size_t end, tl_piece *piece,
+                                 point_fn of)
+{
+    size_t bytes = vertices_of(g, begin, end) * TL_VTK_VEC3_BYTES;
+    unsigned char *to = tl_piece_room(piece, bytes);
+    if (!to)
+        return;
+    for (uint32_t row = (uint32_t)begin; row < end; row++) {
+        const tl_poly *shape = g->blocks->shape[row];
+        for (uint32_t v = 0; v < shape->vertex_count; v++)
+            to = tl_vtk_put_vec3(to, of(g, row, shape->vertex[v]));
     }
-    return total;
+    piece->length += bytes;
 }
 
-static void put_points(const tl_model *m, size_t points, FILE *file)
+static tl_vec3 place_of(const grid *g, uint32_t row, tl_vec3 local)
 {
-    const tl_blocks *b = &m->blocks;
-    fprintf(file, "POINTS %zu double\n", points);
-    for (size_t row = 0; row < b->table.rows; row++)
-        for (uint32_t v = 0; v < b->shape[row]->vertex_count; v++)
-            tl_vtk_vec3(file, tl_model_point(m, b->body[row], b->shape[row]->vertex[v]));
-    tl_vtk_line(file);
+    return tl_model_point(g->model, g->blocks->body[row], local);
 }
 
-static void put_cells(const tl_blocks *b, size_t stream, FILE *file)
+static tl_vec3 displacement_of(const grid *g, uint32_t row, tl_vec3 local)
 {
-    fprintf(file, "CELLS %zu %zu\n", b->table.rows, stream);
-    uint32_t first = 0; /* index of the block's first vertex */
-    for (size_t row = 0; row < b->table.rows; row++) {
-        const tl_poly *shape = b->shape[row];
-        tl_vtk_int(file, (int32_t)(1 + shape->face_count + shape->start[shape->face_count]));
-        tl_vtk_int(file, (int32_t)shape->face_count);
+    return tl_block_point_displacement(g->model, row, local);
+}
+
+static void fill_places(const void *user, size_t begin, size_t end, tl_piece *piece)
+{
+    fill_vertices(user, begin, end, piece, place_of);
+}
+
+static void fill_displacements(const void *user, size_t begin, size_t end, tl_piece *piece)
+{
+    fill_vertices(user, begin, end, piece, displacement_of);
+}
+
+/* From the model's centre to the block's: the same for all its vertices. */
+static void fill_explode(const void *user, size_t begin, size_t end, tl_piece *piece)
+{
+    const grid *g = user;
+    size_t bytes = vertices_of(g, begin, end) * TL_VTK_VEC3_BYTES;
+    unsigned char *to = tl_piece_room(piece, bytes);
+    if (!to)
+        return;
+    for (uint32_t row = (uint32_t)begin; row < end; row++) {
+        tl_vec3 away = tl_v3_sub(tl_block_centroid(g->model, row), g->centre);
+        for (uint32_t v = g->first[row]; v < g->first[row + 1]; v++)
+            to = tl_vtk_put_vec3(to, away);
+    }
+    piece->length += bytes;
+}
+
+/* ---------------------------------------------------------------- cells ------------------ */
+
+static void fill_cells(const void *user, size_t begin, size_t end, tl_piece *piece)
+{
+    const grid *g = user;
+    for (size_t row = begin; row < end; row++) {
+        const tl_poly *shape = g->blocks->shape[row];
+        size_t bytes = stream_of(shape) * TL_VTK_INT_BYTES;
+        unsigned char *to = tl_piece_room(piece, bytes);
+        if (!to)
+            return;
+        to = tl_vtk_put_int(to, (int32_t)stream_of(shape) - 1);
+        to = tl_vtk_put_int(to, (int32_t)shape->face_count);
         for (uint32_t face = 0; face < shape->face_count; face++) {
-            tl_vtk_int(file, (int32_t)tl_poly_face_size(shape, face));
+            to = tl_vtk_put_int(to, (int32_t)tl_poly_face_size(shape, face));
             for (uint32_t i = shape->start[face]; i < shape->start[face + 1]; i++)
-                tl_vtk_int(file, (int32_t)(first + shape->loop[i]));
+                to = tl_vtk_put_int(to, (int32_t)(g->first[row] + shape->loop[i]));
         }
-        first += shape->vertex_count;
+        piece->length += bytes;
     }
-    fprintf(file, "\nCELL_TYPES %zu\n", b->table.rows);
-    for (size_t row = 0; row < b->table.rows; row++)
-        tl_vtk_int(file, TL_VTK_POLYHEDRON);
-    tl_vtk_line(file);
+}
+
+/* ---------------------------------------------------------------- cell data -------------- */
+
+/* A number or a vector of each block. */
+typedef struct cell_array {
+    const char *name;
+    int32_t (*whole)(const tl_model *m, uint32_t row);
+    double (*real)(const tl_model *m, uint32_t row);
+    tl_vec3 (*vector)(const tl_model *m, uint32_t row);
+} cell_array;
+
+typedef struct cell_job {
+    const tl_model *model;
+    const cell_array *array;
+} cell_job;
+
+static size_t bytes_of(const cell_array *a)
+{
+    return a->whole ? TL_VTK_INT_BYTES : a->real ? sizeof(double) : TL_VTK_VEC3_BYTES;
+}
+
+static void fill_array(const void *user, size_t begin, size_t end, tl_piece *piece)
+{
+    const cell_job *job = user;
+    const cell_array *a = job->array;
+    size_t bytes = (end - begin) * bytes_of(a);
+    unsigned char *to = tl_piece_room(piece, bytes);
+    if (!to)
+        return;
+    for (uint32_t row = (uint32_t)begin; row < end; row++) {
+        if (a->whole)
+            to = tl_vtk_put_int(to, a->whole(job->model, row));
+        else if (a->real)
+            to = tl_vtk_put_double(to, a->real(job->model, row));
+        else
+            to = tl_vtk_put_vec3(to, a->vector(job->model, row));
+    }
+    piece->length += bytes;
+}
+
+static int32_t cell_type(const tl_model *m, uint32_t row)
+{
+    (void)m, (void)row;
+    return TL_VTK_POLYHEDRON;
+}
+
+static int32_t id_of(const tl_model *m, uint32_t row)
+{
+    return (int32_t)m->blocks.id[row];
+}
+
+static int32_t group_of(const tl_model *m, uint32_t row)
+{
+    return (int32_t)m->blocks.group[row];
+}
+
+static int32_t body_of(const tl_model *m, uint32_t row)
+{
+    return (int32_t)m->bodies.id[m->blocks.body[row]];
+}
+
+static int32_t is_fixed(const tl_model *m, uint32_t row)
+{
+    return m->bodies.fixed[m->blocks.body[row]] == TL_FIX_ALL;
+}
+
+static int32_t is_hidden(const tl_model *m, uint32_t row)
+{
+    return m->blocks.hidden[row] != 0;
+}
+
+static double volume_of(const tl_model *m, uint32_t row)
+{
+    return m->blocks.volume[row];
+}
+
+static double density_of(const tl_model *m, uint32_t row)
+{
+    return m->blocks.density[row];
 }
 
 /* Of a block's centroid: its body's, and what the body's turning adds off the body's centroid. */
-static tl_vec3 velocity_of(const tl_model *m, size_t row)
+static tl_vec3 velocity_of(const tl_model *m, uint32_t row)
 {
     const tl_bodies *bodies = &m->bodies;
     uint32_t body = m->blocks.body[row];
-    tl_vec3 arm = tl_m3_mul(&bodies->pose[body].r, tl_block_local(m, (uint32_t)row));
+    tl_vec3 arm = tl_m3_mul(&bodies->pose[body].r, tl_block_local(m, row));
     return tl_v3_add(bodies->v[body], tl_v3_cross(bodies->w[body], arm));
 }
 
-static void put_cell_data(const tl_model *m, FILE *file)
-{
-    const tl_blocks *b = &m->blocks;
-    size_t rows = b->table.rows;
-    fprintf(file, "CELL_DATA %zu\nSCALARS block_id int 1\nLOOKUP_TABLE default\n", rows);
-    for (size_t row = 0; row < rows; row++)
-        tl_vtk_int(file, (int32_t)b->id[row]);
-    fprintf(file, "\nVECTORS velocity double\n");
-    for (size_t row = 0; row < rows; row++)
-        tl_vtk_vec3(file, velocity_of(m, row));
-    tl_vtk_line(file);
+static const cell_array types = {.whole = cell_type}, ids = {.whole = id_of},
+                        velocities = {.vector = velocity_of};
+static const cell_array fields[] = {
+    {"group", .whole = group_of},    {"body", .whole = body_of},   {"volume", .real = volume_of},
+    {"density", .real = density_of}, {"fixed", .whole = is_fixed}, {"hidden", .whole = is_hidden},
+};
 
-    tl_vtk_field(file, "FieldData", 6);
-    tl_vtk_array(file, "group", 1, rows, TL_VTK_INT);
-    for (size_t row = 0; row < rows; row++)
-        tl_vtk_int(file, (int32_t)b->group[row]);
-    tl_vtk_line(file);
-    tl_vtk_array(file, "body", 1, rows, TL_VTK_INT);
-    for (size_t row = 0; row < rows; row++)
-        tl_vtk_int(file, (int32_t)m->bodies.id[b->body[row]]);
-    tl_vtk_line(file);
-    tl_vtk_array(file, "volume", 1, rows, TL_VTK_DOUBLE);
-    for (size_t row = 0; row < rows; row++)
-        tl_vtk_double(file, b->volume[row]);
-    tl_vtk_line(file);
-    tl_vtk_array(file, "density", 1, rows, TL_VTK_DOUBLE);
-    for (size_t row = 0; row < rows; row++)
-        tl_vtk_double(file, b->density[row]);
-    tl_vtk_line(file);
-    tl_vtk_array(file, "fixed", 1, rows, TL_VTK_INT);
-    for (size_t row = 0; row < rows; row++)
-        tl_vtk_int(file, m->bodies.fixed[b->body[row]] == TL_FIX_ALL);
-    tl_vtk_line(file);
-    tl_vtk_array(file, "hidden", 1, rows, TL_VTK_INT);
-    for (size_t row = 0; row < rows; row++)
-        tl_vtk_int(file, b->hidden[row] != 0);
-    tl_vtk_line(file);
+enum { FIELDS = sizeof fields / sizeof *fields };
+
+static tl_status put_array(tl_model *m, tl_pieces *out, const cell_array *a)
+{
+    const cell_job job = {m, a};
+    tl_status status = tl_pieces_write(out, m->blocks.table.rows, bytes_of(a), fill_array, &job);
+    tl_vtk_line(out->output->file);
+    return status;
 }
+
+static tl_status put_cell_data(tl_model *m, tl_pieces *out)
+{
+    FILE *file = out->output->file;
+    size_t rows = m->blocks.table.rows;
+    fprintf(file, "CELL_DATA %zu\nSCALARS block_id int 1\nLOOKUP_TABLE default\n", rows);
+    tl_status status = put_array(m, out, &ids);
+    fprintf(file, "VECTORS velocity double\n");
+    if (status == TL_OK)
+        status = put_array(m, out, &velocities);
+    tl_vtk_field(file, "FieldData", FIELDS);
+    for (size_t i = 0; i < FIELDS && status == TL_OK; i++) {
+        tl_vtk_array(file, fields[i].name, 1, rows, fields[i].whole ? TL_VTK_INT : TL_VTK_DOUBLE);
+        status = put_array(m, out, &fields[i]);
+    }
+    return status;
+}
+
+/* ---------------------------------------------------------------- the file --------------- */
 
 static tl_vec3 model_centre(const tl_model *m)
 {
@@ -127,36 +257,56 @@ static tl_vec3 model_centre(const tl_model *m)
     return volume > 0 ? tl_v3_madd(m->origin, 1 / volume, sum) : m->origin;
 }
 
-static void put_point_data(const tl_model *m, size_t points, FILE *file)
+/* A list that is made of the blocks, `bytes` in all. */
+static tl_status put_list(const grid *g, tl_pieces *out, size_t bytes, tl_piece_fn fn)
 {
-    const tl_blocks *b = &m->blocks;
-    fprintf(file, "POINT_DATA %zu\nVECTORS displacement double\n", points);
-    for (uint32_t row = 0; row < b->table.rows; row++)
-        for (uint32_t v = 0; v < b->shape[row]->vertex_count; v++)
-            tl_vtk_vec3(file, tl_block_point_displacement(m, row, b->shape[row]->vertex[v]));
-    tl_vtk_line(file);
-
-    tl_vec3 centre = model_centre(m);
-    tl_vtk_field(file, "FieldData", 1);
-    tl_vtk_array(file, "explode", 3, points, TL_VTK_DOUBLE);
-    for (uint32_t row = 0; row < b->table.rows; row++) {
-        tl_vec3 away = tl_v3_sub(tl_block_centroid(m, row), centre);
-        for (uint32_t v = 0; v < b->shape[row]->vertex_count; v++)
-            tl_vtk_vec3(file, away);
-    }
-    tl_vtk_line(file);
+    size_t rows = g->blocks->table.rows;
+    tl_status status = tl_pieces_write(out, rows, 1 + bytes / (rows + 1), fn, g);
+    tl_vtk_line(out->output->file);
+    return status;
 }
 
-tl_status tl_vtk_blocks(tl_model *m, FILE *file)
+static tl_status put_grid(tl_model *m, const grid *g, size_t stream, tl_pieces *out)
 {
-    counts total = count_all(&m->blocks);
-    tl_status status = tl_vtk_countable(total.stream, "blocks", &m->error);
+    FILE *file = out->output->file;
+    size_t rows = m->blocks.table.rows, points = g->first[rows];
+    size_t bytes = points * TL_VTK_VEC3_BYTES;
+    tl_vtk_header(file, m, "blocks", "UNSTRUCTURED_GRID");
+    fprintf(file, "POINTS %zu double\n", points);
+    tl_status status = put_list(g, out, bytes, fill_places);
+    fprintf(file, "CELLS %zu %zu\n", rows, stream);
+    if (status == TL_OK)
+        status = put_list(g, out, stream * TL_VTK_INT_BYTES, fill_cells);
+    fprintf(file, "CELL_TYPES %zu\n", rows);
+    if (status == TL_OK)
+        status = put_array(m, out, &types);
+    if (status == TL_OK)
+        status = put_cell_data(m, out);
+    fprintf(file, "POINT_DATA %zu\nVECTORS displacement double\n", points);
+    if (status == TL_OK)
+        status = put_list(g, out, bytes, fill_displacements);
+    tl_vtk_field(file, "FieldData", 1);
+    tl_vtk_array(file, "explode", 3, points, TL_VTK_DOUBLE);
+    return status == TL_OK ? put_list(g, out, bytes, fill_explode) : status;
+}
+
+tl_status tl_vtk_blocks(tl_model *m, tl_pieces *out)
+{
+    const tl_blocks *b = &m->blocks;
+    size_t stream = 0;
+    for (size_t row = 0; row < b->table.rows; row++)
+        stream += stream_of(b->shape[row]);
+    tl_status status = tl_vtk_countable(stream, "blocks", &m->error);
     if (status != TL_OK)
         return status;
-    tl_vtk_header(file, m, "blocks", "UNSTRUCTURED_GRID");
-    put_points(m, total.points, file);
-    put_cells(&m->blocks, total.stream, file);
-    put_cell_data(m, file);
-    put_point_data(m, total.points, file);
-    return TL_OK;
+    grid g = {.model = m, .blocks = b, .centre = model_centre(m)};
+    g.first = malloc((b->table.rows + 1) * sizeof *g.first);
+    if (!g.first)
+        return tl_fail_memory(&m->error);
+    g.first[0] = 0;
+    for (size_t row = 0; row < b->table.rows; row++)
+        g.first[row + 1] = g.first[row] + b->shape[row]->vertex_count;
+    status = put_grid(m, &g, stream, out);
+    free(g.first);
+    return status;
 }

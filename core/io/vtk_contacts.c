@@ -9,192 +9,171 @@
  *             normal         unit vector, from the lower block id to the higher
  *             contact_id, block_a, block_b               ids
  *
- * All of it comes from the contact fields of talus.h, by name. */
+ * All of a contact is asked for once and kept in the form of the file, array by array. */
 #include "base/error.h"
+#include "base/pages.h"
 #include "io/vtk_data.h"
 #include "io/vtk_file.h"
+#include "query/contact_fields.h"
 
-#include <assert.h>
 #include <stdlib.h>
-#include <string.h>
+
+/* Contacts that a thread takes at a time. */
+#define CHUNK 512
+
+/* The arrays, in the order of the file; those of the field from FIELDS on. */
+enum {
+    POINTS,
+    VERTICES,
+    NORMAL_FORCE,
+    SHEAR_FORCE,
+    FIELDS,
+    NORMAL_STRESS = FIELDS,
+    SHEAR_STRESS,
+    AREA,
+    NORMAL,
+    GAP,
+    STATE,
+    JOINT,
+    PLANE,
+    CONTACT_ID,
+    BLOCK_A,
+    BLOCK_B,
+    ARRAYS
+};
+
+typedef struct array {
+    const char *name, *type;
+    unsigned components;
+} array;
+
+static const array arrays[ARRAYS] = {
+    [POINTS] = {NULL, TL_VTK_DOUBLE, 3},
+    [VERTICES] = {NULL, TL_VTK_INT, 2},
+    [NORMAL_FORCE] = {NULL, TL_VTK_DOUBLE, 1},
+    [SHEAR_FORCE] = {NULL, TL_VTK_DOUBLE, 3},
+    [NORMAL_STRESS] = {"normal_stress", TL_VTK_DOUBLE, 1},
+    [SHEAR_STRESS] = {"shear_stress", TL_VTK_DOUBLE, 1},
+    [AREA] = {"area", TL_VTK_DOUBLE, 1},
+    [NORMAL] = {"normal", TL_VTK_DOUBLE, 3},
+    [GAP] = {"gap", TL_VTK_DOUBLE, 1},
+    [STATE] = {"state", TL_VTK_INT, 1},
+    [JOINT] = {"joint", TL_VTK_INT, 1},
+    [PLANE] = {"plane", TL_VTK_INT, 1},
+    [CONTACT_ID] = {"contact_id", TL_VTK_INT, 1},
+    [BLOCK_A] = {"block_a", TL_VTK_INT, 1},
+    [BLOCK_B] = {"block_b", TL_VTK_INT, 1},
+};
 
 typedef struct contacts {
-    tl_model *model;
-    FILE *file;
-    const tl_id *ids;
+    const tl_model *model;
+    uint32_t *rows;
     size_t count;
+    unsigned char *memory, *at[ARRAYS]; /* of the arrays, as they are in the file */
 } contacts;
 
-static const char *const state_names[] = {"elastic", "slipping", "open", "failed"};
-
-static size_t field_index(const char *name, size_t *components)
+static size_t bytes_of(size_t a)
 {
-    size_t count;
-    const tl_field *fields = tl_contact_fields(&count);
-    size_t index = 0;
-    while (index < count && strcmp(fields[index].name, name) != 0)
-        index++;
-    assert(index < count);
-    *components = fields[index].kind == TL_FIELD_VEC3 ? 3 : 1;
-    return index;
+    return arrays[a].components *
+           (arrays[a].type[0] == 'i' ? (size_t)TL_VTK_INT_BYTES : sizeof(double));
 }
 
-/* The numbers of one field, contact after contact. */
-static tl_status put_numbers(const contacts *c, const char *field)
+static void put_double(const contacts *c, size_t a, size_t i, double value)
 {
-    size_t components;
-    size_t index = field_index(field, &components);
-    for (size_t i = 0; i < c->count; i++) {
-        tl_field_value value;
-        tl_status status = tl_contact_field(c->model, c->ids[i], index, &value);
-        if (status != TL_OK)
-            return status;
-        for (size_t k = 0; k < components; k++)
-            tl_vtk_double(c->file, value.number[k]);
+    tl_vtk_put_double(c->at[a] + i * sizeof value, value);
+}
+
+static void put_vec3(const contacts *c, size_t a, size_t i, tl_vec3 value)
+{
+    tl_vtk_put_vec3(c->at[a] + i * TL_VTK_VEC3_BYTES, value);
+}
+
+static void put_int(const contacts *c, size_t a, size_t i, uint32_t value)
+{
+    tl_vtk_put_int(c->at[a] + i * TL_VTK_INT_BYTES, (int32_t)value);
+}
+
+static void fill_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
+{
+    (void)chunk, (void)thread;
+    const contacts *c = user;
+    for (size_t i = begin; i < end; i++) {
+        tl_contact_facts facts = tl_contact_facts_of(c->model, c->rows[i]);
+        put_vec3(c, POINTS, i, facts.point);
+        put_int(c, VERTICES, 2 * i, 1);
+        put_int(c, VERTICES, 2 * i + 1, (uint32_t)i);
+        put_double(c, NORMAL_FORCE, i, facts.normal_force);
+        put_vec3(c, SHEAR_FORCE, i, facts.shear_force);
+        put_double(c, NORMAL_STRESS, i, facts.normal_stress);
+        put_double(c, SHEAR_STRESS, i, facts.shear_stress);
+        put_double(c, AREA, i, facts.area);
+        put_vec3(c, NORMAL, i, facts.normal);
+        put_double(c, GAP, i, facts.gap);
+        put_int(c, STATE, i, facts.state);
+        put_int(c, JOINT, i, facts.tag.joint);
+        put_int(c, PLANE, i, facts.tag.plane);
+        put_int(c, CONTACT_ID, i, facts.id);
+        put_int(c, BLOCK_A, i, facts.a);
+        put_int(c, BLOCK_B, i, facts.b);
     }
-    tl_vtk_line(c->file);
-    return TL_OK;
 }
 
-static tl_status put_array(const contacts *c, const char *field)
+/* Asks for all contacts; false when out of memory. */
+static bool fill_arrays(contacts *c, tl_model *m)
 {
-    size_t components;
-    field_index(field, &components);
-    tl_vtk_array(c->file, field, components, c->count, TL_VTK_DOUBLE);
-    return put_numbers(c, field);
-}
-
-static tl_status put_blocks(const contacts *c, const char *name, size_t which)
-{
-    size_t components;
-    size_t index = field_index("blocks", &components);
-    tl_vtk_array(c->file, name, 1, c->count, TL_VTK_INT);
-    for (size_t i = 0; i < c->count; i++) {
-        tl_field_value value;
-        tl_status status = tl_contact_field(c->model, c->ids[i], index, &value);
-        if (status != TL_OK)
-            return status;
-        tl_vtk_int(c->file, (int32_t)value.number[which]);
+    size_t bytes = 0;
+    for (size_t a = 0; a < ARRAYS; a++)
+        bytes += c->count * bytes_of(a);
+    c->memory = malloc(bytes + 1);
+    if (!c->memory)
+        return false;
+    tl_pages_large(c->memory, bytes);
+    unsigned char *at = c->memory;
+    for (size_t a = 0; a < ARRAYS; a++) {
+        c->at[a] = at;
+        at += c->count * bytes_of(a);
     }
-    tl_vtk_line(c->file);
-    return TL_OK;
+    tl_parallel_for(m->pool, c->count, CHUNK, fill_range, c);
+    return true;
 }
 
-static tl_status put_ids(const contacts *c)
+static void put_array(const contacts *c, size_t a, tl_output *output)
 {
-    tl_vtk_array(c->file, "contact_id", 1, c->count, TL_VTK_INT);
-    for (size_t i = 0; i < c->count; i++)
-        tl_vtk_int(c->file, (int32_t)c->ids[i]);
-    tl_vtk_line(c->file);
-    tl_status status = put_blocks(c, "block_a", 0);
-    return status == TL_OK ? put_blocks(c, "block_b", 1) : status;
+    if (arrays[a].name)
+        tl_vtk_array(output->file, arrays[a].name, arrays[a].components, c->count, arrays[a].type);
+    tl_output_put(output, c->at[a], c->count * bytes_of(a));
+    tl_vtk_line(output->file);
 }
 
-static int32_t state_number(const char *text)
+static void put_contacts(const contacts *c, tl_output *output)
 {
-    const int32_t count = sizeof state_names / sizeof *state_names;
-    int32_t number = 0;
-    while (number < count && strcmp(text, state_names[number]) != 0)
-        number++;
-    assert(number < count);
-    return number;
-}
-
-static tl_status put_state(const contacts *c)
-{
-    size_t components;
-    size_t index = field_index("state", &components);
-    tl_vtk_array(c->file, "state", 1, c->count, TL_VTK_INT);
-    for (size_t i = 0; i < c->count; i++) {
-        tl_field_value value;
-        tl_status status = tl_contact_field(c->model, c->ids[i], index, &value);
-        if (status != TL_OK)
-            return status;
-        tl_vtk_int(c->file, state_number(value.text));
-    }
-    tl_vtk_line(c->file);
-    return TL_OK;
-}
-
-/* The field holds "J1:3", or "" where no joint made the faces. */
-static tl_status joint_tag(const contacts *c, size_t contact, tl_tag *tag)
-{
-    size_t components;
-    tl_field_value value;
-    size_t index = field_index("joint", &components);
-    tl_status status = tl_contact_field(c->model, c->ids[contact], index, &value);
-    *tag = (tl_tag){0, 0};
-    if (status == TL_OK && value.text[0] != '\0')
-        status = tl_joint_parse(c->model, value.text, tag);
-    return status;
-}
-
-static tl_status put_joint(const contacts *c, const char *name, bool plane)
-{
-    tl_vtk_array(c->file, name, 1, c->count, TL_VTK_INT);
-    for (size_t i = 0; i < c->count; i++) {
-        tl_tag tag;
-        tl_status status = joint_tag(c, i, &tag);
-        if (status != TL_OK)
-            return status;
-        tl_vtk_int(c->file, (int32_t)(plane ? tag.plane : tag.joint));
-    }
-    tl_vtk_line(c->file);
-    return TL_OK;
-}
-
-static tl_status put_shape(const contacts *c)
-{
-    fprintf(c->file, "POINTS %zu double\n", c->count);
-    tl_status status = put_numbers(c, "point");
-    fprintf(c->file, "VERTICES %zu %zu\n", c->count, 2 * c->count);
-    for (size_t i = 0; i < c->count; i++) {
-        tl_vtk_int(c->file, 1);
-        tl_vtk_int(c->file, (int32_t)i);
-    }
-    tl_vtk_line(c->file);
-    return status;
-}
-
-static tl_status put_data(const contacts *c)
-{
-    static const char *const reals[] = {"normal_stress", "shear_stress", "area", "normal", "gap"};
-    const size_t real_count = sizeof reals / sizeof *reals;
-
-    fprintf(c->file, "POINT_DATA %zu\nSCALARS normal_force double 1\nLOOKUP_TABLE default\n",
+    FILE *file = output->file;
+    tl_vtk_header(file, c->model, "contacts", "POLYDATA");
+    fprintf(file, "POINTS %zu double\n", c->count);
+    put_array(c, POINTS, output);
+    fprintf(file, "VERTICES %zu %zu\n", c->count, 2 * c->count);
+    put_array(c, VERTICES, output);
+    fprintf(file, "POINT_DATA %zu\nSCALARS normal_force double 1\nLOOKUP_TABLE default\n",
             c->count);
-    tl_status status = put_numbers(c, "normal_force");
-    fprintf(c->file, "VECTORS shear_force double\n");
-    if (status == TL_OK)
-        status = put_numbers(c, "shear_force");
-    tl_vtk_field(c->file, "FieldData", real_count + 6);
-    for (size_t i = 0; status == TL_OK && i < real_count; i++)
-        status = put_array(c, reals[i]);
-    if (status == TL_OK)
-        status = put_state(c);
-    if (status == TL_OK)
-        status = put_joint(c, "joint", false);
-    if (status == TL_OK)
-        status = put_joint(c, "plane", true);
-    return status == TL_OK ? put_ids(c) : status;
+    put_array(c, NORMAL_FORCE, output);
+    fprintf(file, "VECTORS shear_force double\n");
+    put_array(c, SHEAR_FORCE, output);
+    tl_vtk_field(file, "FieldData", ARRAYS - FIELDS);
+    for (size_t a = FIELDS; a < ARRAYS; a++)
+        put_array(c, a, output);
 }
 
-tl_status tl_vtk_contacts(tl_model *m, FILE *file)
+tl_status tl_vtk_contacts(tl_model *m, tl_pieces *out)
 {
-    tl_id *ids = NULL;
-    contacts c = {.model = m, .file = file};
-    tl_contact_filter every = {0};
-    tl_status status = tl_contacts_select(m, &every, &ids, &c.count);
-    if (status != TL_OK)
-        return status;
-    c.ids = ids;
-    status = tl_vtk_countable(2 * c.count, "contacts", &m->error);
-    if (status == TL_OK) {
-        tl_vtk_header(file, m, "contacts", "POLYDATA");
-        status = put_shape(&c);
-    }
+    contacts c = {.model = m};
+    tl_status status = tl_contacts_listed(m, &c.rows, &c.count);
     if (status == TL_OK)
-        status = put_data(&c);
-    free(ids);
+        status = tl_vtk_countable(2 * c.count, "contacts", &m->error);
+    if (status == TL_OK && !fill_arrays(&c, m))
+        status = tl_fail_memory(&m->error);
+    if (status == TL_OK)
+        put_contacts(&c, out->output);
+    free(c.memory);
+    free(c.rows);
     return status;
 }

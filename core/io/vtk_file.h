@@ -1,13 +1,14 @@
-/* vtk_file.h - the pieces a legacy VTK file is made of.
+/* vtk_file.h - what a legacy VTK file is made of.
  *
  * Numbers are written binary, most significant byte first. Errors stay on the stream; whoever
  * closes it looks (output_file.h). */
 #ifndef TL_IO_VTK_FILE_H
 #define TL_IO_VTK_FILE_H
 
-#include "model/model.h"
+#include "io/pieces.h"
 
 #include <stdio.h>
+#include <string.h>
 
 #define TL_VTK_DOUBLE "double"
 #define TL_VTK_INT "int"
@@ -30,6 +31,35 @@ void tl_vtk_int(FILE *file, int32_t value);
 void tl_vtk_double(FILE *file, double value);
 void tl_vtk_vec3(FILE *file, tl_vec3 value);
 void tl_vtk_string(FILE *file, const char *text);
+
+/* The same of long arrays: put at `to`, they give where the next goes. */
+static inline unsigned char *tl_vtk_put_int(unsigned char *to, int32_t value)
+{
+    uint32_t bits = (uint32_t)value;
+    for (int i = 0; i < 4; i++)
+        to[i] = (unsigned char)(bits >> (24 - 8 * i));
+    return to + 4;
+}
+
+static inline unsigned char *tl_vtk_put_double(unsigned char *to, double value)
+{
+    uint64_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    for (int i = 0; i < 8; i++)
+        to[i] = (unsigned char)(bits >> (56 - 8 * i));
+    return to + 8;
+}
+
+static inline unsigned char *tl_vtk_put_vec3(unsigned char *to, tl_vec3 value)
+{
+    to = tl_vtk_put_double(to, value.x);
+    to = tl_vtk_put_double(to, value.y);
+    return tl_vtk_put_double(to, value.z);
+}
+
+/* Bytes of a vector, and of a whole number. */
+#define TL_VTK_VEC3_BYTES 24
+#define TL_VTK_INT_BYTES 4
 
 /* Legacy files count in 32 bits: TL_E_IO with a sentence when `count` numbers are too many. */
 tl_status tl_vtk_countable(size_t count, const char *content, tl_error *error);

@@ -70,8 +70,8 @@ static bool put_entry(const tl_vtk_series *series, const char *content, size_t f
     return true;
 }
 
-/* Writes the list with all frames so far and one more at `time`, and notes where the next goes. */
-static tl_status write_whole(tl_vtk_index_change *change, const tl_vtk_series *series,
+/* Writes the list with all frames so far that have the file and one more at `time`, and notes where the next goes. */
+static tl_status write_whole(tl_vtk_index_change *change, const tl_vtk_series *series, size_t part,
                              const char *content, double time, tl_error *error)
 {
     tl_status status = tl_output_open(&change->whole, change->path, error);
@@ -80,18 +80,20 @@ static tl_status write_whole(tl_vtk_index_change *change, const tl_vtk_series *s
     FILE *file = change->whole.file;
     fprintf(file, "{\n  \"file-series-version\": \"1.0\",\n  \"files\": [\n");
     for (size_t frame = 0; frame <= series->count; frame++) {
-        if (!put_entry(series, content, frame, frame < series->count ? series->times[frame] : time,
-                       file))
+        bool last = frame == series->count;
+        if (!last && !(series->frames[frame].parts >> part & 1))
+            continue;
+        if (!put_entry(series, content, frame, last ? time : series->frames[frame].time, file))
             return tl_fail_memory(error);
-        if (frame < series->count)
+        if (!last)
             fputs(before_entry, file);
     }
     off_t end = ftello(file);
-    off_t room = series->count >= LEAST_ROOMY && end > 0 ? end : 0;
+    off_t room = series->written[part] >= LEAST_ROOMY && end > 0 ? end : 0;
     for (off_t i = 0; i < room; i++)
         fputc(' ', file);
     fputs(tail, file);
-    change->next = (tl_vtk_index){series->count + 1, end, end + room, {0}};
+    change->next = (tl_vtk_index){series->written[part] + 1, end, end + room, {0}};
     return tl_output_finish(&change->whole, error);
 }
 
@@ -112,13 +114,13 @@ static char *entry_text(const tl_vtk_series *series, const char *content, double
 }
 
 /* Opens the index for an entry that goes into its room; false when the whole is to be written anew. */
-static bool open_room(tl_vtk_index_change *change, const tl_vtk_series *series)
+static bool open_room(tl_vtk_index_change *change, size_t written)
 {
     const tl_vtk_index *index = change->index;
     off_t length = (off_t)change->length, at = index->place, next = (at / PAGE + 1) * PAGE;
     if (at + length > next) /* within one page */
         at = next;
-    if (index->frames != series->count || length > PAGE || at + length > index->end)
+    if (index->frames != written || length > PAGE || at + length > index->end)
         return false;
     int file = open(change->path, O_WRONLY | O_CLOEXEC);
     if (file < 0)
@@ -149,7 +151,9 @@ tl_status tl_vtk_index_open(tl_vtk_index_change *change, tl_vtk_series *series, 
     change->entry = entry_text(series, content, time, &change->length);
     if (!change->path || !change->entry)
         return tl_fail_memory(error);
-    return open_room(change, series) ? TL_OK : write_whole(change, series, content, time, error);
+    if (open_room(change, series->written[part]))
+        return TL_OK;
+    return write_whole(change, series, part, content, time, error);
 }
 
 /* Writes the entry by one call, so that it is there or not. */

@@ -181,8 +181,9 @@ static void put_point_data(const tl_model *m, const section *s, FILE *file)
     tl_vtk_line(file);
 }
 
-tl_status tl_vtk_section(tl_model *m, tl_plane plane, FILE *file)
+tl_status tl_vtk_section(tl_model *m, tl_plane plane, tl_pieces *out)
 {
+    FILE *file = out->output->file;
     section s = {.normal = plane.normal};
     tl_status status = cut_blocks(m, plane, &s) ? TL_OK : tl_fail_memory(&m->error);
     if (status == TL_OK)

@@ -10,7 +10,7 @@ static void series_destroy(tl_vtk_series *series)
     while (series) {
         tl_vtk_series *next = series->next;
         free(series->prefix);
-        free(series->times);
+        free(series->frames);
         free(series);
         series = next;
     }
@@ -21,10 +21,10 @@ static bool make_room(tl_vtk_series *series)
     if (series->count < series->capacity)
         return true;
     size_t capacity = series->capacity ? 2 * series->capacity : 16;
-    double *times = realloc(series->times, capacity * sizeof *times);
-    if (!times)
+    tl_vtk_frame *frames = realloc(series->frames, capacity * sizeof *frames);
+    if (!frames)
         return false;
-    series->times = times;
+    series->frames = frames;
     series->capacity = capacity;
     return true;
 }
@@ -69,7 +69,9 @@ char *tl_vtk_index_name(const tl_vtk_series *series, const char *content)
     return name;
 }
 
-void tl_vtk_series_add(tl_vtk_series *series, double time)
+void tl_vtk_series_add(tl_vtk_series *series, tl_vtk_frame frame)
 {
-    series->times[series->count++] = time;
+    series->frames[series->count++] = frame;
+    for (unsigned k = 0; k < TL_VTK_PARTS; k++)
+        series->written[k] += frame.parts >> k & 1;
 }

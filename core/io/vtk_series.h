@@ -23,13 +23,20 @@ typedef struct tl_vtk_index {
     tl_vtk_file_id written;
 } tl_vtk_index;
 
-/* The frames of one prefix and one kind of frame. A model keeps a list of these; frame i was written at times[i]. */
+/* A frame: its time, and which of its files were written, bit k for number k. */
+typedef struct tl_vtk_frame {
+    double time;
+    unsigned parts;
+} tl_vtk_frame;
+
+/* The frames of one prefix and one kind of frame. A model keeps a list of these. */
 typedef struct tl_vtk_series {
     struct tl_vtk_series *next;
     char *prefix;
     const char *kind;
-    double *times;
+    tl_vtk_frame *frames;
     size_t count, capacity;
+    size_t written[TL_VTK_PARTS]; /* frames that have the file */
     tl_vtk_index index[TL_VTK_PARTS];
 } tl_vtk_series;
 
@@ -43,6 +50,6 @@ char *tl_vtk_frame_name(const tl_vtk_series *series, const char *content, size_t
 char *tl_vtk_index_name(const tl_vtk_series *series, const char *content);
 
 /* Notes that the frame is written. */
-void tl_vtk_series_add(tl_vtk_series *series, double time);
+void tl_vtk_series_add(tl_vtk_series *series, tl_vtk_frame frame);
 
 #endif

@@ -287,10 +287,14 @@ static int model_contact_area(lua_State *L)
 static int model_write_vtk(lua_State *L)
 {
     tl_model *model = tl_lua_model_of(L, "write_vtk");
-    tl_lua_arity(L, 2, "write_vtk");
+    tl_lua_arity(L, 3, "write_vtk");
+    lua_settop(L, 3);
     const char *prefix = tl_lua_text(L, 2, "write_vtk", "the prefix");
+    tl_vtk_parts parts;
+    tl_lua_spec spec = tl_lua_spec_of("write_vtk", NULL);
+    tl_lua_read(L, 3, &spec, false, &parts);
     tl_lua_watch watch = tl_lua_watch_begin(L);
-    finish_call(L, model, &watch, "write_vtk", NO_FILE, tl_write_vtk(model, prefix));
+    finish_call(L, model, &watch, "write_vtk", NO_FILE, tl_write_vtk_parts(model, prefix, &parts));
     return 0;
 }
 

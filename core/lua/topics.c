@@ -251,7 +251,9 @@ const tl_lua_topic tl_lua_topics[] = {
      .doc = "Bytes the model holds, by what they are for, room for growth included.",
      .title = "Fields of the result",
      .verbs = tl_lua_memory_fields},
-    {.name = "write_vtk", .usage = "model:write_vtk(\"out/run\")", .function = "write_vtk"},
+    {.name = "write_vtk",
+     .usage = "model:write_vtk(\"out/run\", {contacts = false, joints = false})",
+     .function = "write_vtk"},
     {.name = "write_section",
      .usage =
          "model:write_section(\"out/cut\", {dip = 90, dip_direction = 90, origin = {0, 0, 0}})",

@@ -22,10 +22,6 @@ typedef struct tl_profile_args {
     int32_t on;
 } tl_profile_args;
 
-typedef struct tl_write_vtk_args {
-    const char *prefix;
-} tl_write_vtk_args;
-
 typedef struct tl_write_blocks_args {
     const char *path;
 } tl_write_blocks_args;
@@ -164,8 +160,12 @@ static const tl_param solve_params[] = {
 };
 
 static const tl_param write_vtk_params[] = {
-    TL_PARAM(TL_PARAM_STRING, tl_write_vtk_args, prefix, "",
-             "folder and beginning of the files' names", .flags = TL_PARAM_REQUIRED),
+    TL_PARAM(TL_PARAM_BOOL, tl_vtk_parts, blocks, "", "whether the frame has a file of the blocks",
+             .def = {1.0}),
+    TL_PARAM(TL_PARAM_BOOL, tl_vtk_parts, contacts, "",
+             "whether the frame has a file of the contacts", .def = {1.0}),
+    TL_PARAM(TL_PARAM_BOOL, tl_vtk_parts, joints, "",
+             "whether the frame has a file of the faces that joints made", .def = {1.0}),
 };
 
 static const tl_param write_blocks_params[] = {
@@ -237,7 +237,9 @@ static const tl_function functions[] = {
     {"solve", "Runs until the forces balance or a limit is met.", PARAMS(solve_params)},
     {"profile", "Times the phases of the steps, and tells what a step works on.",
      PARAMS(profile_params)},
-    {"write_vtk", "Writes the next frame of a series of VTK files for ParaView.",
+    {"write_vtk",
+     "Writes the next frame of a series of VTK files for ParaView, all of it or some of its files. "
+     "Their names begin with the folder and the name given first.",
      PARAMS(write_vtk_params)},
     {"write_section",
      "Writes the next frame of a section: the polygons in which a plane cuts the blocks, with "

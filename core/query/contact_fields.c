@@ -1,5 +1,7 @@
 /* contact_fields.c - what can be asked of contacts: which ones, their named fields, a block's
  * neighbours. Values are those of the last step's forces. */
+#include "query/contact_fields.h"
+
 #include "contact/index.h"
 #include "contact/places.h"
 #include "detect/detect.h"
@@ -63,7 +65,7 @@ static void forces(const tl_detect *d, uint32_t c, double *normal, tl_vec3 *shea
 }
 
 /* Open when every point is, slipping when some point slips, failed when some bond is lost. */
-static const char *state_of(const tl_detect *d, uint32_t c)
+static tl_contact_state state_of(const tl_detect *d, uint32_t c)
 {
     uint32_t any = 0, all = TL_POINT_OPEN;
     for (uint32_t k = 0; k < d->contacts.point_count[c]; k++) {
@@ -72,10 +74,33 @@ static const char *state_of(const tl_detect *d, uint32_t c)
         all &= flags;
     }
     if (all & TL_POINT_OPEN)
-        return "open";
+        return TL_CONTACT_OPEN;
     if (any & TL_POINT_SLIPPING)
-        return "slipping";
-    return any & TL_POINT_FAILED ? "failed" : "elastic";
+        return TL_CONTACT_SLIPPING;
+    return any & TL_POINT_FAILED ? TL_CONTACT_FAILED : TL_CONTACT_ELASTIC;
+}
+
+static const char *const state_names[] = {[TL_CONTACT_ELASTIC] = "elastic",
+                                          [TL_CONTACT_SLIPPING] = "slipping",
+                                          [TL_CONTACT_OPEN] = "open",
+                                          [TL_CONTACT_FAILED] = "failed"};
+
+tl_contact_facts tl_contact_facts_of(const tl_model *m, uint32_t contact)
+{
+    const tl_contacts *c = &m->detect->contacts;
+    tl_contact_facts out = {.id = c->id[contact],
+                            .a = m->blocks.id[c->a[contact]],
+                            .b = m->blocks.id[c->b[contact]],
+                            .tag = c->tag[contact],
+                            .area = c->area[contact],
+                            .state = state_of(m->detect, contact)};
+    tl_vec3 point;
+    forces(m->detect, contact, &out.normal_force, &out.shear_force);
+    tl_contact_summary(m, contact, &out.normal, &point, &out.gap);
+    out.point = tl_v3_add(m->origin, point);
+    out.normal_stress = out.area > 0 ? out.normal_force / out.area : 0;
+    out.shear_stress = out.area > 0 ? tl_v3_norm(out.shear_force) / out.area : 0;
+    return out;
 }
 
 static void put_vector(tl_field_value *value, tl_vec3 v)
@@ -91,42 +116,87 @@ tl_status tl_contact_field(tl_model *m, tl_id contact, size_t index, tl_field_va
     tl_status status = tl_detect_refresh(m);
     if (status != TL_OK)
         return status;
-    tl_detect *d = m->detect;
-    const tl_contacts *contacts = &d->contacts;
-    uint32_t c = tl_contact_row(d, contact);
+    uint32_t c = tl_contact_row(m->detect, contact);
     if (c == TL_NO_ROW)
         return tl_fail(&m->error, TL_E_STALE, "contact %u no longer exists: its blocks have parted",
                        contact);
     *value = (tl_field_value){{0}, NULL};
-    double normal, gap, area = contacts->area[c];
-    tl_vec3 shear, direction, point;
-    forces(d, c, &normal, &shear);
-    tl_contact_summary(m, c, &direction, &point, &gap);
+    tl_contact_facts facts = tl_contact_facts_of(m, c);
     switch (index) {
     case F_ID: value->number[0] = contact; break;
     case F_BLOCKS:
-        value->number[0] = m->blocks.id[contacts->a[c]];
-        value->number[1] = m->blocks.id[contacts->b[c]];
+        value->number[0] = facts.a;
+        value->number[1] = facts.b;
         break;
-    case F_JOINT: value->text = tl_tag_name(m, contacts->tag[c]); break;
-    case F_AREA: value->number[0] = contacts->area[c]; break;
-    case F_NORMAL: put_vector(value, direction); break;
-    case F_POINT: put_vector(value, tl_v3_add(m->origin, point)); break;
-    case F_GAP: value->number[0] = gap; break;
-    case F_NORMAL_FORCE: value->number[0] = normal; break;
-    case F_SHEAR_FORCE: put_vector(value, shear); break;
-    case F_NORMAL_STRESS: value->number[0] = area > 0 ? normal / area : 0; break;
-    case F_SHEAR_STRESS: value->number[0] = area > 0 ? tl_v3_norm(shear) / area : 0; break;
-    case F_STATE: value->text = state_of(d, c); break;
+    case F_JOINT: value->text = tl_tag_name(m, facts.tag); break;
+    case F_AREA: value->number[0] = facts.area; break;
+    case F_NORMAL: put_vector(value, facts.normal); break;
+    case F_POINT: put_vector(value, facts.point); break;
+    case F_GAP: value->number[0] = facts.gap; break;
+    case F_NORMAL_FORCE: value->number[0] = facts.normal_force; break;
+    case F_SHEAR_FORCE: put_vector(value, facts.shear_force); break;
+    case F_NORMAL_STRESS: value->number[0] = facts.normal_stress; break;
+    case F_SHEAR_STRESS: value->number[0] = facts.shear_stress; break;
+    case F_STATE: value->text = state_names[facts.state]; break;
     default: break;
     }
     return TL_OK;
 }
 
+/* ---------------------------------------------------------------- lists ------------------ */
+
 static int compare_id(const void *a, const void *b)
 {
     tl_id x = *(const tl_id *)a, y = *(const tl_id *)b;
     return (x > y) - (x < y);
+}
+
+/* Sorts rows by the contacts' ids, byte by byte from the last: ids are many, and no two are equal. */
+static void sort_by_id(const tl_id *id, uint32_t **rows, uint32_t **spare, size_t count)
+{
+    for (unsigned shift = 0; shift < 32; shift += 8) {
+        size_t place[256] = {0}, next = 0;
+        for (size_t i = 0; i < count; i++)
+            place[id[(*rows)[i]] >> shift & 255]++;
+        for (size_t digit = 0; digit < 256; digit++) {
+            size_t here = place[digit];
+            place[digit] = next;
+            next += here;
+        }
+        for (size_t i = 0; i < count; i++)
+            (*spare)[place[id[(*rows)[i]] >> shift & 255]++] = (*rows)[i];
+        uint32_t *sorted = *spare;
+        *spare = *rows;
+        *rows = sorted;
+    }
+}
+
+tl_status tl_contacts_listed(tl_model *m, uint32_t **rows, size_t *count)
+{
+    *rows = NULL;
+    *count = 0;
+    tl_status status = tl_detect_refresh(m);
+    if (status != TL_OK)
+        return status;
+    const tl_contacts *c = &m->detect->contacts;
+    uint32_t *list = malloc((c->table.rows + 1) * sizeof *list);
+    uint32_t *spare = malloc((c->table.rows + 1) * sizeof *spare);
+    size_t n = 0;
+    for (uint32_t row = 0; list && spare && row < c->table.rows; row++)
+        if (c->point_count[row])
+            list[n++] = row;
+    if (list && spare)
+        sort_by_id(c->id, &list, &spare, n);
+    else
+        status = tl_fail_memory(&m->error);
+    free(spare);
+    if (status != TL_OK) {
+        free(list);
+        return status;
+    }
+    *rows = list;
+    *count = n;
+    return TL_OK;
 }
 
 /* Marks [block rows] which are in a list; NULL for no list. */

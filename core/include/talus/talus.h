@@ -574,6 +574,13 @@ TL_API tl_status tl_write_section(tl_model *model, const char *prefix, const tl_
  * PREFIX_{blocks,contacts,joints}.vtk.series. Folders are made as needed. */
 TL_API tl_status tl_write_vtk(tl_model *model, const char *prefix);
 
+/* Which of these files a frame has. Files of one number are of one frame; a file that is left out is missing from its
+ * index only. */
+typedef struct tl_vtk_parts {
+    int32_t blocks, contacts, joints;
+} tl_vtk_parts;
+TL_API tl_status tl_write_vtk_parts(tl_model *model, const char *prefix, const tl_vtk_parts *parts);
+
 /* Writes all blocks as they stand into a JSON file (docs/block_model.md), from which the generator of
  * that format makes them again. */
 TL_API tl_status tl_write_blocks(tl_model *model, const char *path);

@@ -1,0 +1,31 @@
+/* contact_fields.h - all that can be told of a contact, at once: for lists of many. */
+#ifndef TL_QUERY_CONTACT_FIELDS_H
+#define TL_QUERY_CONTACT_FIELDS_H
+
+#include "model/model.h"
+
+typedef enum tl_contact_state {
+    TL_CONTACT_ELASTIC,
+    TL_CONTACT_SLIPPING,
+    TL_CONTACT_OPEN,
+    TL_CONTACT_FAILED
+} tl_contact_state;
+
+/* As of the last step's forces. */
+typedef struct tl_contact_facts {
+    tl_id id, a, b; /* of the contact, of its older block and its younger */
+    tl_tag tag;
+    tl_contact_state state;
+    double area, gap;                   /* m2; m, overlap negative */
+    double normal_force;                /* N, compression positive */
+    double normal_stress, shear_stress; /* Pa */
+    tl_vec3 normal, point;              /* from a to b; m, in the user's coordinates */
+    tl_vec3 shear_force;                /* N, on b */
+} tl_contact_facts;
+
+/* Of a row of contacts that are up to date: tl_contacts_listed. Changes nothing, so several threads may ask. */
+tl_contact_facts tl_contact_facts_of(const tl_model *m, uint32_t contact);
+/* Brings the contacts up to date and gives the rows of those with points, in order of id; the caller frees the list. */
+tl_status tl_contacts_listed(tl_model *m, uint32_t **rows, size_t *count);
+
+#endif

@@ -1,0 +1,109 @@
+-- Files of a frame: which ones, their series, and the same bytes on any number of threads.
+local talus = require "talus"
+local check = require "check"
+
+local stem = string.format("%s/output_%s", assert(os.getenv("TALUS_TEST_TMP")),
+    tostring({}):match("0x(%x+)") or "0")
+
+local function content_of(path)
+    local file = io.open(path, "rb")
+    if file then
+        local content = file:read("a")
+        file:close()
+        return content
+    end
+end
+
+-- Rock of some thousand blocks, so that each list takes several pieces, some of it moving.
+local function rock(threads)
+    local model = talus.model { seed = 5, threads = threads }
+    model:generate("box", { min = { 0, 0, 0 }, max = { 12, 12, 12 }, density = 2600, group = "rock" })
+    for i, set in ipairs { { 60, 80 }, { 75, 200 }, { 15, 320 } } do
+        model:generate("jointset", { joint = "J" .. i, dip = set[1], dip_dev = 4, dip_direction = set[2],
+            dip_direction_dev = 5, spacing = 0.8, spacing_dev = 0.2, number = 20, origin = { 6, 6, 6 } })
+    end
+    model:blocks { below = { dip = 0, dip_direction = 0, origin = { 0, 0, 1 } } }:fix()
+    model:joint("*", "coulomb", { kn = 1e9, ks = 1e9, friction = 30 })
+    return model
+end
+
+-- ---------------------------------------------------------------- threads
+
+local files = {}
+for threads = 1, 3 do
+    local model = rock(threads)
+    check.holds(#model:blocks() > 2000, "many blocks")
+    model:cycle(4)
+    local prefix = stem .. "_t" .. threads
+    model:write_vtk(prefix)
+    model:write_blocks(prefix .. ".json")
+    for _, name in ipairs { "_blocks_000000.vtk", "_contacts_000000.vtk", "_joints_000000.vtk", ".json" } do
+        local content = content_of(prefix .. name)
+        check.holds(#content > 300000, "a long file " .. name)
+        files[name] = files[name] or content
+        check.holds(content == files[name], threads .. " threads write the same " .. name)
+    end
+end
+
+-- ---------------------------------------------------------------- parts
+
+local model = talus.model { gravity = { 0, 0, 0 } }
+model:generate("box", { min = { 0, 0, 0 }, max = { 2, 1, 1 }, density = 2600 })
+model:generate("joint", { joint = "J", dip = 90, dip_direction = 90, origin = { 1, 0, 0 } })
+model:joint("*", "elastic", { kn = 1e8, ks = 1e8 })
+model:blocks { id = model:blocks()[1].id }:fix()
+model:timestep { dt = 0.5 }
+
+-- The numbers and times of the frames that a series lists.
+local function listed(prefix, part)
+    local list = {}
+    for number, time in (content_of(prefix .. "_" .. part .. ".vtk.series") or ""):gmatch(
+        '"name": "[^"]*_' .. part .. '_(%d+)%.vtk", "time": ([^}]+)}') do
+        list[#list + 1] = string.format("%d@%g", tonumber(number), tonumber(time))
+    end
+    return table.concat(list, " ")
+end
+
+local prefix = stem .. "_parts"
+local PARTS = { "blocks", "contacts", "joints" }
+local wanted, contents = { blocks = {}, contacts = {}, joints = {} }, {}
+for frame = 0, 59 do
+    -- contacts now and then, joints once, blocks nearly always
+    local parts = { contacts = frame % 7 == 0, joints = frame == 3, blocks = frame % 14 ~= 7 }
+    model:write_vtk(prefix, parts)
+    for _, part in ipairs(PARTS) do
+        local path = string.format("%s_%s_%06d.vtk", prefix, part, frame)
+        if parts[part] then
+            table.insert(wanted[part], string.format("%d@%g", frame, 0.5 * frame))
+            contents[path] = content_of(path)
+        end
+        check.equal(content_of(path) ~= nil, parts[part])
+        check.equal(listed(prefix, part), table.concat(wanted[part], " "))
+    end
+    model:cycle(1)
+end
+for path, content in pairs(contents) do
+    check.holds(content_of(path) == content, path .. " is as it was written")
+end
+model:write_vtk(prefix) -- all parts
+for _, part in ipairs(PARTS) do
+    table.insert(wanted[part], "60@30")
+    check.equal(listed(prefix, part), table.concat(wanted[part], " "))
+end
+
+-- A frame of some files has the same ones as a whole frame.
+model:write_vtk(stem .. "_whole")
+model:write_vtk(stem .. "_one", { joints = true, blocks = false, contacts = false })
+check.holds(content_of(stem .. "_one_joints_000000.vtk") == content_of(stem .. "_whole_joints_000000.vtk"),
+    "the same file of the joints")
+check.equal(content_of(stem .. "_one_blocks_000000.vtk"), nil)
+
+-- ---------------------------------------------------------------- mistakes
+
+check.refused(model, function() model:write_vtk(prefix, { contact = false }) end, "did you mean 'contacts'?")
+check.refused(model, function() model:write_vtk(prefix, { joints = 0 }) end, "joints must be true or false")
+check.refused(model, function() model:write_vtk(prefix, "blocks") end, "must be a table")
+check.refused(model, function() model:write_vtk(prefix, { blocks = false, contacts = false, joints = false }) end,
+    "nothing to write")
+check.refused(model, function() model:write_vtk(prefix, {}, 1) end, "too many")
+check.equal(content_of(prefix .. "_blocks_000061.vtk"), nil)
