@@ -48,13 +48,23 @@ struct tl_rated {
     uint32_t body;  /* row, or TL_NO_ROW */
 };
 
+/* What partial mass scaling adds: added_mass.c. */
+struct tl_added {
+    double share; /* of the mass of the bodies that can move */
+    size_t bodies;
+    double factor;  /* the highest, 1 without any */
+    uint32_t worst; /* row of the body that has it, or TL_NO_ROW */
+};
+
 /* Bodies that can move, on their way through a step: the kick, which changes velocities, and the drift,
  * which changes places. The lanes beyond `count` are inert. Spins and angular momenta are in principal axes
  * at the forces' time, or where there is one moment of inertia in the model's: only their products count. */
 typedef struct tl_group {
     _Alignas(TL_ALIGN) tl_lanes4 q, axes;
     tl_lanes3 moments, per; /* per: 1 / moments */
-    double mass[TL_LANES], scale[TL_LANES], alpha[TL_LANES];
+    double mass[TL_LANES], alpha[TL_LANES];
+    double scale[TL_LANES];   /* of the inertia that forces meet, by mass scaling, */
+    double counted[TL_LANES]; /* and of that which energies count */
     tl_lanes3 force, moment, damping_force, damping_moment;
     tl_lanes3 moved;                               /* velocity of the last step's motion */
     tl_lanes3 v0, w0, spin0, momentum0;            /* before the kick */
@@ -95,6 +105,7 @@ struct tl_cycle {
     double *contact_force; /* sum of |contact forces| */
     double *rate;          /* what it asks of the time step, 1/s2 (rates.c); 0: it is held */
     double *face_rate;     /* the same on its largest face, for a stiffness per area of 1 */
+    double *inertia;       /* over its own, where `adds` */
     double *damping_force[3], *damping_moment[3], *alpha; /* what the damping plugin gave */
     uint32_t
         *reaction_of; /* index of the reaction on a body that is held in some way, or TL_NO_ROW */
@@ -116,16 +127,46 @@ struct tl_cycle {
     tl_id sliver;              /* the one that was told of last */
     size_t contacts;           /* the most there have been, for the remark on the step */
     double scaled;             /* 1 / (2 rate) of all free bodies, by mass scaling; 0 without it */
+    struct tl_added added;     /* in the last step: added_mass.c */
+    tl_id added_block;         /* that of added.worst then, or TL_NO_ID */
+    double told_share;         /* of mass added, for the remark on it */
+    bool adds;                 /* some body has been given inertia */
     struct tl_undo *undo;      /* undo.c */
     bool long_step;            /* the given one is far above what is stable */
     bool fast;                 /* a body came near the limit of motion in the last step: limits.c */
     tl_failure failure;        /* of a parallel phase */
 };
 
-/* What mass scaling makes of a body's inertia. */
+/* What partial mass scaling makes of a body's inertia: energies count it. */
+static inline double tl_counted_scale(const struct tl_cycle *c, uint32_t body)
+{
+    return c->adds ? c->inertia[body] : 1;
+}
+
+/* What mass scaling of either kind makes of it. */
 static inline double tl_inertia_scale(const struct tl_cycle *c, uint32_t body)
 {
-    return c->scaled > 0 && c->rate[body] > 0 ? 2 * c->scaled * c->rate[body] : 1;
+    if (c->scaled > 0)
+        return c->rate[body] > 0 ? 2 * c->scaled * c->rate[body] : 1;
+    return tl_counted_scale(c, body);
+}
+
+/* Whether it may make anything of any. */
+static inline bool tl_inertia_scaled(const struct tl_cycle *c)
+{
+    return c->scaled > 0 || c->adds;
+}
+
+/* Whether inertia is to be added for a step that was asked for. */
+static inline bool tl_adds_mass(const tl_model *m)
+{
+    return !isnan(m->added_dt);
+}
+
+/* Whether there is mass scaling of either kind. */
+static inline bool tl_mass_scaled(const tl_model *m)
+{
+    return m->mass_scaling || tl_adds_mass(m);
 }
 
 static inline tl_reaction tl_reaction_on(const struct tl_cycle *c, uint32_t body)

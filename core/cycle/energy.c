@@ -9,7 +9,7 @@
  *
  * Velocities may be set and bodies held, driven or freed between two steps: the kinetic energy this gives or
  * takes counts as external work, and the work until then goes by the motion that was made. So does
- * what contacts lose or gain when blocks are deleted, made, joined or parted, or laws changed: it is what the sum of
+ * what partial mass scaling adds to moving bodies and takes from them (added_mass.c), and what contacts lose or gain when blocks are deleted, made, joined or parted, or laws changed: it is what the sum of
  * that step lacks.
  *
  * The move books its bodies group by group (motion.c), while all that is needed is at hand. */
@@ -62,20 +62,21 @@ TL_INLINE void book(tl_work *work, size_t i, int kind, const tl_group *g, tl_vec
  * step before in both half steps; what two unequal halves spread about it is taken out. */
 TL_INLINE void book_kinetic(tl_work *work, size_t i, const tl_group *g, double share)
 {
-    double mass = g->mass[i], spread = share * (1 - share);
+    double scale = g->counted[i], mass = scale * g->mass[i], spread = share * (1 - share);
     tl_vec3 v0 = tl_lanes3_get(&g->v0, i), v1 = tl_lanes3_get(&g->v1, i), dv = tl_v3_sub(v1, v0);
     tl_vec3 w0 = tl_lanes3_get(&g->spin0, i), dw = tl_v3_sub(tl_lanes3_get(&g->spin1, i), w0);
     tl_vec3 l0 = tl_lanes3_get(&g->momentum0, i);
     tl_vec3 dl = tl_v3_sub(tl_lanes3_get(&g->momentum1, i), l0);
     tl_vec3 v = tl_v3_madd(v0, share, dv), w = tl_v3_madd(w0, share, dw);
     tl_vec3 l = tl_v3_madd(l0, share, dl);
-    double dv2 = mass * tl_v3_norm2(dv), dw2 = tl_v3_dot(dw, dl);
-    work->kinetic[i] += 0.5 * (mass * tl_v3_norm2(v) + tl_v3_dot(w, l) - spread * (dv2 + dw2));
+    double dv2 = mass * tl_v3_norm2(dv), dw2 = scale * tl_v3_dot(dw, dl);
+    work->kinetic[i] +=
+        0.5 * (mass * tl_v3_norm2(v) + scale * tl_v3_dot(w, l) - spread * (dv2 + dw2));
     /* The first kick from rest is half of one: what the whole one would have spread is missing from
      * the sum ever after. */
     work->first[i] += 0.5 * (dv2 + dw2);
-    work->motion0[i] += 0.5 * (mass * tl_v3_norm2(v0) + g->turning0[i]);
-    work->motion2[i] += 0.5 * (mass * tl_v3_norm2(v1) + g->turning2[i]);
+    work->motion0[i] += 0.5 * (mass * tl_v3_norm2(v0) + scale * g->turning0[i]);
+    work->motion2[i] += 0.5 * (mass * tl_v3_norm2(v1) + scale * g->turning2[i]);
     /* a velocity set since the last step meets this kick, too */
     tl_vec3 set = tl_v3_sub(v0, tl_lanes3_get(&g->moved, i));
     work->work_until[TL_WORK_EXTERNAL][i] += share * mass * tl_v3_dot(set, dv);
@@ -84,7 +85,7 @@ TL_INLINE void book_kinetic(tl_work *work, size_t i, const tl_group *g, double s
 /* (23) takes out alpha m (v- + v+) / 2 over the kick, besides what the damping's force does. */
 TL_INLINE void book_damping(tl_work *work, size_t i, const tl_group *g)
 {
-    double alpha = 0.5 * g->alpha[i];
+    double alpha = 0.5 * g->alpha[i] * g->counted[i];
     tl_vec3 slowed = tl_v3_add(tl_lanes3_get(&g->v0, i), tl_lanes3_get(&g->v1, i));
     tl_vec3 braked = tl_v3_add(tl_lanes3_get(&g->momentum0, i), tl_lanes3_get(&g->momentum1, i));
     book(work, i, TL_WORK_DAMPING, g,

@@ -94,7 +94,8 @@ static void gather_range(void *user, size_t begin, size_t end, size_t chunk, uns
         sum_ratios(m, body, weight, &sums);
         sums.bodies++;
         if (totals)
-            sums.kinetic += 0.5 * (b->mass[body] * v2 + tl_spin_energy2(m, body));
+            sums.kinetic += 0.5 * tl_counted_scale(m->cycle, body) *
+                            (b->mass[body] * v2 + tl_spin_energy2(m, body));
         sums.max_speed2 = larger(sums.max_speed2, v2);
     }
     m->cycle->chunk_sums[chunk] = sums;

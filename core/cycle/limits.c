@@ -46,7 +46,7 @@ static push push_of(const tl_model *m, uint32_t body)
     const struct tl_cycle *c = m->cycle;
     const tl_bodies *b = &m->bodies;
     push p = {b->force[body], b->moment[body], b->mass[body], 0, 1};
-    if (c->scaled > 0)
+    if (tl_inertia_scaled(c))
         p.scale = tl_inertia_scale(c, body);
     if (m->damping) {
         p.force = tl_v3_add(p.force, tl_columns_get(c->damping_force, body));

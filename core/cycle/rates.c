@@ -39,7 +39,7 @@ double tl_stiffest_law(const tl_model *m)
 
 bool tl_rates_points(const tl_model *m)
 {
-    return m->mass_scaling || m->timestep.rule == TL_TIMESTEP_BODY;
+    return tl_mass_scaled(m) || m->timestep.rule == TL_TIMESTEP_BODY;
 }
 
 /* ---------------------------------------------------------------- search ----------------- */
@@ -381,7 +381,7 @@ tl_row_value tl_rates_keep(tl_model *m)
 
 bool tl_rates_are_state(const tl_model *m)
 {
-    return m->mass_scaling || (tl_rates_points(m) && isnan(m->timestep.dt));
+    return tl_mass_scaled(m) || (tl_rates_points(m) && isnan(m->timestep.dt));
 }
 
 void tl_rates_try(tl_model *m, double *rate)

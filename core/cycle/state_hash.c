@@ -277,6 +277,8 @@ static void hash_settings(tl_hash *hash, const tl_model *m)
                              m->origin_set};
     hash_numbers(hash, numbers, sizeof numbers / sizeof *numbers);
     tl_hash_bytes(hash, words, sizeof words);
+    if (tl_adds_mass(m))
+        hash_numbers(hash, (const double[]){m->added_dt, m->added_most}, 2);
     for (size_t i = 0; i < m->joint_count; i++) {
         hash_text(hash, m->joints[i].name);
         tl_hash_word(hash, m->joints[i].planes);

@@ -4,7 +4,9 @@
  * "body":  dt = FRAC 2 (1 / (2 rate))^1/2 with the highest rate of a body (rates.c): no motion of a body and its
  *          neighbours is faster, so FRAC 1 is stable.
  * By either rule no body's step is longer than its largest face allows, whatever areas its contacts have.
- * Mass scaling gives every free body the bound of the one that has the most. */
+ * Mass scaling gives every free body the bound of the one that has the most; with a step asked for it adds inertia to the
+ * bodies that need it (added_mass.c), and that step is taken. */
+#include "cycle/added_mass.h"
 #include "cycle/rates.h"
 
 #include "contact/detection.h"
@@ -158,6 +160,30 @@ static void judge_step(tl_model *m)
         say_long(m, stable, fastest.row);
 }
 
+/* The step that inertia is added for, or a shorter one that is given as well. */
+static tl_status choose_added(tl_model *m, double *dt, bool report)
+{
+    struct tl_cycle *c = m->cycle;
+    double wanted = m->added_dt, given = m->timestep.dt;
+    if (given > wanted)
+        return tl_fail(
+            &m->error, TL_E_STATE,
+            "timestep: dt = %g s is longer than %g s, the dt of mass_scaling; give one of "
+            "them only, or the longer one to mass_scaling",
+            given, wanted);
+    if (!report) {
+        double share = tl_timestep_fraction(m) * damping_factor(m) / wanted;
+        tl_rates_keep(m);
+        tl_status status = tl_added_find(m, 2 * share * share);
+        if (status != TL_OK)
+            return status;
+        c->scaled = 0;
+        c->long_step = false;
+    }
+    *dt = c->dt = isnan(given) ? wanted : given;
+    return TL_OK;
+}
+
 /* The step; 0 where there is no body that can move or does. A report asks `by` what controls it, and leaves the scale of the
  * inertia alone. */
 static tl_status choose(tl_model *m, double *dt, bound *by)
@@ -167,6 +193,12 @@ static tl_status choose(tl_model *m, double *dt, bound *by)
     if (status != TL_OK)
         return status;
     tl_rates_count(m);
+    if (tl_adds_mass(m)) {
+        if (by)
+            *by = (bound){INFINITY, TL_NO_ROW, TL_NO_ROW, 0};
+        return choose_added(m, dt, by != NULL);
+    }
+    c->adds = false;
     bool given = !isnan(m->timestep.dt);
     double least = 0;
     if (by) {
@@ -222,23 +254,6 @@ tl_status tl_model_timestep(tl_model *m, const tl_timestep *timestep)
         m->cycle->rated.version = 0; /* another rule asks something else of contacts */
     }
     return TL_OK;
-}
-
-tl_status tl_model_mass_scaling(tl_model *m, bool on)
-{
-    tl_status status = tl_model_may_set(m, "set mass_scaling");
-    if (status != TL_OK)
-        return status;
-    m->mass_scaling = on;
-    m->constraints++;
-    if (m->cycle)
-        m->cycle->dt = 0;
-    return TL_OK;
-}
-
-bool tl_model_mass_scaled(const tl_model *m)
-{
-    return m->mass_scaling;
 }
 
 tl_status tl_model_timestep_report(tl_model *m, tl_timestep_report *report)

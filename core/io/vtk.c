@@ -144,23 +144,17 @@ static tl_status write_frame(tl_model *m, const char *prefix, const frame *f)
     return status;
 }
 
-tl_status tl_write_vtk_parts(tl_model *m, const char *prefix, const tl_vtk_parts *parts)
+tl_status tl_write_vtk(tl_model *m, const char *prefix, const tl_vtk_parts *parts)
 {
+    const tl_vtk_parts all = {1, 1, 1}, *of = parts ? parts : &all;
     frame f = {.function = "write_vtk", .parts = frame_parts, .count = PART_COUNT};
-    f.wanted = (unsigned)(parts->blocks != 0) << BLOCKS |
-               (unsigned)(parts->contacts != 0) << CONTACTS |
-               (unsigned)(parts->joints != 0) << JOINTS;
+    f.wanted = (unsigned)(of->blocks != 0) << BLOCKS | (unsigned)(of->contacts != 0) << CONTACTS |
+               (unsigned)(of->joints != 0) << JOINTS;
     if (f.wanted == 0)
         return tl_fail(&m->error, TL_E_ARGUMENT,
                        "write_vtk: blocks, contacts and joints are all false, so there is nothing "
                        "to write; leave out what is to be written");
     return write_frame(m, prefix, &f);
-}
-
-tl_status tl_write_vtk(tl_model *m, const char *prefix)
-{
-    const tl_vtk_parts all = {1, 1, 1};
-    return tl_write_vtk_parts(m, prefix, &all);
 }
 
 tl_status tl_write_section(tl_model *m, const char *prefix, const tl_halfspace *plane)

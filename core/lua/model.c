@@ -239,15 +239,50 @@ static int model_timestep(lua_State *L)
     return 0;
 }
 
+/* model:mass_scaling(): what the last step has added. */
+static int push_mass_added(lua_State *L, const tl_model *model)
+{
+    tl_mass_added added = tl_model_mass_added(model);
+    lua_createtable(L, 0, 6);
+    lua_pushboolean(L, added.scaling.on);
+    lua_setfield(L, -2, "on");
+    if (isnan(added.scaling.dt))
+        return 1;
+    const struct {
+        const char *name;
+        double number;
+    } numbers[] = {{"dt", added.scaling.dt}, {"most", added.scaling.most}, {"added", added.share}};
+    for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++) {
+        lua_pushnumber(L, numbers[i].number);
+        lua_setfield(L, -2, numbers[i].name);
+    }
+    lua_pushinteger(L, (lua_Integer)added.bodies);
+    lua_setfield(L, -2, "bodies");
+    if (added.worst != TL_NO_ID) {
+        lua_createtable(L, 0, 2);
+        lua_pushinteger(L, (lua_Integer)added.worst); /* it may have been deleted */
+        lua_setfield(L, -2, "block");
+        lua_pushnumber(L, added.factor);
+        lua_setfield(L, -2, "factor");
+        lua_setfield(L, -2, "worst");
+    }
+    return 1;
+}
+
 static int model_mass_scaling(lua_State *L)
 {
     tl_model *model = tl_lua_model_of(L, "mass_scaling");
     tl_lua_arity(L, 2, "mass_scaling");
     lua_settop(L, 2);
-    int32_t on;
+    if (lua_isnil(L, 2))
+        return push_mass_added(L, model);
+    tl_mass_scaling scaling = {.dt = NAN};
     tl_lua_spec spec = tl_lua_spec_of("mass_scaling", NULL);
-    tl_lua_read_one(L, 2, &spec, "on", &on);
-    tl_lua_ok(L, model, tl_model_mass_scaling(model, on != 0));
+    if (lua_istable(L, 2))
+        tl_lua_read(L, 2, &spec, false, &scaling);
+    else
+        tl_lua_read_one(L, 2, &spec, "on", &scaling);
+    tl_lua_ok(L, model, tl_model_mass_scaling(model, &scaling));
     return 0;
 }
 
@@ -294,7 +329,7 @@ static int model_write_vtk(lua_State *L)
     tl_lua_spec spec = tl_lua_spec_of("write_vtk", NULL);
     tl_lua_read(L, 3, &spec, false, &parts);
     tl_lua_watch watch = tl_lua_watch_begin(L);
-    finish_call(L, model, &watch, "write_vtk", NO_FILE, tl_write_vtk_parts(model, prefix, &parts));
+    finish_call(L, model, &watch, "write_vtk", NO_FILE, tl_write_vtk(model, prefix, &parts));
     return 0;
 }
 
@@ -420,7 +455,7 @@ static int model_index(lua_State *L)
     else if (strcmp(name, "cycles") == 0)
         lua_pushinteger(L, (lua_Integer)tl_model_cycles(model));
     else if (strcmp(name, "mass_scaled") == 0)
-        lua_pushboolean(L, tl_model_mass_scaled(model));
+        lua_pushboolean(L, tl_model_mass_added(model).scaling.on);
     else if (strcmp(name, "dt") == 0) {
         double dt;
         tl_lua_ok(L, model, tl_model_dt(model, &dt));

@@ -94,6 +94,20 @@ static const tl_lua_key timestep_results[] = {
     {NULL, NULL, NULL},
 };
 
+static const tl_lua_key mass_scaling_results[] = {
+    {"on", "",
+     "whether inertia is scaled; the other fields are there after mass_scaling{dt =} only"},
+    {"dt, most", "", "the step, s, and the largest share, as given"},
+    {"added", "",
+     "mass that the last step has added, as a share of that of the bodies that can move"},
+    {"bodies", "", "how many have got some"},
+    {"worst", "",
+     "{block =, factor =}: the number of the block with the highest factor, and its inertia over "
+     "its "
+     "own; nil when none has got any"},
+    {NULL, NULL, NULL},
+};
+
 static const tl_lua_key report_results[] = {
     {"blocks, bodies", "", "number of blocks, and of bodies they make"},
     {"volume, volume_error", "",
@@ -203,7 +217,12 @@ const tl_lua_topic tl_lua_topics[] = {
      .function = "timestep",
      .title = "Fields of the report",
      .verbs = timestep_results},
-    {.name = "mass_scaling", .usage = "model:mass_scaling(true)", .function = "mass_scaling"},
+    {.name = "mass_scaling",
+     .usage = "model:mass_scaling(true)  or  model:mass_scaling{dt = 1e-4}  or  "
+              "added = model:mass_scaling()",
+     .function = "mass_scaling",
+     .title = "Fields of what it tells",
+     .verbs = mass_scaling_results},
     {.name = "contact_area",
      .usage = "model:contact_area{fraction = 0.01}",
      .function = "contact_area"},

@@ -14,10 +14,6 @@ typedef struct tl_cycle_args {
     int64_t cycles;
 } tl_cycle_args;
 
-typedef struct tl_mass_scaling_args {
-    int32_t on;
-} tl_mass_scaling_args;
-
 typedef struct tl_profile_args {
     int32_t on;
 } tl_profile_args;
@@ -90,8 +86,17 @@ static const tl_param timestep_params[] = {
 };
 
 static const tl_param mass_scaling_params[] = {
-    TL_PARAM(TL_PARAM_BOOL, tl_mass_scaling_args, on, "", "whether the inertia is scaled",
-             .flags = TL_PARAM_REQUIRED),
+    TL_PARAM(TL_PARAM_BOOL, tl_mass_scaling, on, "", "whether the inertia is scaled", .def = {1.0}),
+    TL_PARAM(
+        TL_PARAM_REAL, tl_mass_scaling, dt, "s",
+        "for motion that is to be right: the step. Only bodies in contact whose own stable step "
+        "is shorter get inertia, as much as they need for it",
+        .min = TL_STEP_LEAST, .max = 1 / TL_STEP_LEAST, .flags = TL_PARAM_OPTIONAL),
+    TL_PARAM(
+        TL_PARAM_REAL, tl_mass_scaling, most, "",
+        "with dt: mass that may be added, as a share of the mass of all bodies that can move; a "
+        "step that would need more fails",
+        .def = {TL_MOST_ADDED}, .min = 0.0, .max = INFINITY, .flags = TL_PARAM_MAX_OPEN),
 };
 
 static const tl_param profile_params[] = {
@@ -222,7 +227,11 @@ static const tl_function functions[] = {
     {"timestep", "Chooses how the time step is found.", PARAMS(timestep_params)},
     {"mass_scaling",
      "Scales the inertia, not the weight, of free bodies up to that of the one with the longest "
-     "stable step, for finding equilibria: times and velocities then mean nothing.",
+     "stable step, for finding equilibria: times and velocities then mean nothing. With dt it is "
+     "for "
+     "dynamics: inertia is added to the few bodies that need it. Without arguments it tells what "
+     "the "
+     "last step has added.",
      PARAMS(mass_scaling_params)},
     {"load",
      "Puts a force and a moment, along the axes of the model, on the bodies of blocks, in the "

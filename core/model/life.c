@@ -62,6 +62,7 @@ tl_status tl_model_create(const tl_model_config *config, tl_model **model, tl_er
     m->next_id = 1;
     m->area = (tl_area_rule){TL_AREA_FRACTION, NAN};
     m->timestep = (tl_timestep){NAN, TL_TIMESTEP_BODY, NAN};
+    m->added_dt = m->added_most = NAN;
     atomic_init(&m->interrupted, false);
     blocks_init(&m->blocks);
     bodies_init(&m->bodies);

@@ -33,6 +33,9 @@
 #define TL_PAPER_FRACTION 0.1
 #define TL_BODY_FRACTION 0.5
 
+/* Default share of the mass that may be added for a longer step: what slides or falls is then as much slower at the most. */
+#define TL_MOST_ADDED 0.05
+
 typedef struct tl_blocks {
     tl_table table;
     tl_id *id;
@@ -201,7 +204,8 @@ struct tl_model {
     bool driving;      /* inside a drive's function: nothing that a step depends on may be set */
     uint32_t said;     /* bit r: remark r has been made */
     uint64_t remarked; /* changes of blocks and laws at the last look at their numbers */
-    bool mass_scaling;
+    bool mass_scaling; /* of all free bodies */
+    double added_dt, added_most; /* of the bodies that need it: tl_mass_scaling; NaN: off */
 
     bool profiling;
     double phase_began; /* s, of the clock */

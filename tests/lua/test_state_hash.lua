@@ -35,6 +35,10 @@ local settings = {
     { "another dt", function(m) m:timestep { dt = 2e-4 } end },
     { "dt let go", function(m) m:timestep { fraction = 0.05, rule = "paper" } end },
     { "mass_scaling", function(m) m:mass_scaling(true) end, function(m) m:mass_scaling(false) end },
+    { "mass_scaling for a step", function(m) m:mass_scaling { dt = 1e-3 } end },
+    { "its step", function(m) m:mass_scaling { dt = 2e-3 } end },
+    { "its most", function(m) m:mass_scaling { dt = 2e-3, most = 0.1 } end, function(m) m:mass_scaling { dt = 2e-3 } end },
+    { "mass_scaling off", function(m) m:mass_scaling(false) end },
     { "contact_area", function(m) m:contact_area { fraction = 0.03 } end },
     { "contact_area, absolute", function(m) m:contact_area { fraction = 0.03, absolute = 0.01 } end },
     { "contact_area of a joint", function(m) m:contact_area { fraction = 0.03, joint = "J1" } end },
@@ -243,6 +247,7 @@ local function sliding(setting, threads)
 end
 local function floor_of(m) return m:blocks { group = "floor" } end
 local function scaled(m) m:mass_scaling(true) end
+local function added(m) m:mass_scaling { dt = 1e-3, most = 1e9 } end
 local function scaled_step(m) m:mass_scaling(true) m:timestep { dt = 1e-3 } end
 local function by_body(m) m:timestep { rule = "body", fraction = 0.5 } end
 local function by_paper(m) m:timestep { rule = "paper", fraction = 0.1 } end
@@ -260,7 +265,7 @@ local anew = {
     function(m) m:state_hash() end,
 }
 local told, quiet = 0, 0 -- calls that the hash tells of, and those that it does not
-for _, setting in ipairs { scaled, scaled_step, by_body, by_paper } do
+for _, setting in ipairs { scaled, added, scaled_step, by_body, by_paper } do
     for _, steps in ipairs { 40, 64, 120 } do
         local function after(call, later)
             local m = sliding(setting, 1 + steps % 3)

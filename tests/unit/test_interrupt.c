@@ -146,7 +146,7 @@ static size_t files_in(const char *folder)
 
 static tl_status write_frame(tl_model *m)
 {
-    return tl_write_vtk(m, TALUS_TEST_TMP "/interrupt_vtk/run");
+    return tl_write_vtk(m, TALUS_TEST_TMP "/interrupt_vtk/run", NULL);
 }
 
 static tl_status write_rock(tl_model *m)

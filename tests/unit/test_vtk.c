@@ -134,10 +134,10 @@ TEST(two_frames_for_the_reader)
 {
     tl_model *m = cut_box();
     CHECK(tl_block_count(m) > 24);
-    CHECK_INT(tl_write_vtk(m, FOLDER "/run"), TL_OK);
+    CHECK_INT(tl_write_vtk(m, FOLDER "/run", NULL), TL_OK);
     tl_solve_result result;
     CHECK_INT(tl_model_cycle(m, 20, &result), TL_OK);
-    CHECK_INT(tl_write_vtk(m, FOLDER "/run"), TL_OK);
+    CHECK_INT(tl_write_vtk(m, FOLDER "/run", NULL), TL_OK);
     CHECK_TEXT(tl_model_error(m)->text, "");
     CHECK(exists(FOLDER "/run_blocks_000001.vtk"));
     CHECK(exists(FOLDER "/run_contacts_000001.vtk"));
@@ -156,7 +156,7 @@ TEST(sections_for_the_reader)
     CHECK_INT(tl_write_section(m, FOLDER "/along", &along), TL_OK);
     CHECK_INT(tl_write_section(m, FOLDER "/steep", &steep), TL_OK);
     CHECK_INT(tl_write_section(m, FOLDER "/outside", &outside), TL_OK);
-    CHECK_INT(tl_write_vtk(m, FOLDER "/cut"), TL_OK);
+    CHECK_INT(tl_write_vtk(m, FOLDER "/cut", NULL), TL_OK);
     tl_solve_result result;
     CHECK_INT(tl_model_cycle(m, 20, &result), TL_OK);
     CHECK_INT(tl_write_section(m, FOLDER "/cut", &across), TL_OK);
@@ -172,7 +172,7 @@ TEST(sections_for_the_reader)
 TEST(an_empty_model_has_files_too)
 {
     tl_model *m = empty_model();
-    CHECK_INT(tl_write_vtk(m, FOLDER "/empty"), TL_OK);
+    CHECK_INT(tl_write_vtk(m, FOLDER "/empty", NULL), TL_OK);
     const tl_halfspace level = {0, 0, {0, 0, 0}};
     CHECK_INT(tl_write_section(m, FOLDER "/empty", &level), TL_OK);
     CHECK_INT(files_with("empty_", 0), 8);
@@ -182,9 +182,9 @@ TEST(an_empty_model_has_files_too)
 TEST(prefixes_count_their_own_frames)
 {
     tl_model *m = empty_model();
-    CHECK_INT(tl_write_vtk(m, FOLDER "/new/folder/a"), TL_OK);
-    CHECK_INT(tl_write_vtk(m, FOLDER "/quote\"b"), TL_OK);
-    CHECK_INT(tl_write_vtk(m, FOLDER "/new/folder/a"), TL_OK);
+    CHECK_INT(tl_write_vtk(m, FOLDER "/new/folder/a", NULL), TL_OK);
+    CHECK_INT(tl_write_vtk(m, FOLDER "/quote\"b", NULL), TL_OK);
+    CHECK_INT(tl_write_vtk(m, FOLDER "/new/folder/a", NULL), TL_OK);
     CHECK(exists(FOLDER "/new/folder/a_blocks_000001.vtk"));
     CHECK(exists(FOLDER "/quote\"b_blocks_000000.vtk"));
     CHECK(!exists(FOLDER "/quote\"b_blocks_000001.vtk"));
@@ -194,8 +194,8 @@ TEST(prefixes_count_their_own_frames)
 TEST(a_prefix_names_files)
 {
     tl_model *m = empty_model();
-    CHECK_INT(tl_write_vtk(m, ""), TL_E_ARGUMENT);
-    CHECK_INT(tl_write_vtk(m, FOLDER "/"), TL_E_ARGUMENT);
+    CHECK_INT(tl_write_vtk(m, "", NULL), TL_E_ARGUMENT);
+    CHECK_INT(tl_write_vtk(m, FOLDER "/", NULL), TL_E_ARGUMENT);
     CHECK_CONTAINS(tl_model_error(m)->text, "prefix");
     tl_model_destroy(m);
 }
@@ -206,7 +206,7 @@ TEST(a_file_is_no_folder)
     FILE *file = fopen(FOLDER "/plain", "w");
     if (CHECK(file != NULL))
         fclose(file);
-    CHECK_INT(tl_write_vtk(m, FOLDER "/plain/run"), TL_E_IO);
+    CHECK_INT(tl_write_vtk(m, FOLDER "/plain/run", NULL), TL_E_IO);
     CHECK_CONTAINS(tl_model_error(m)->text, FOLDER "/plain/run_blocks_000000.vtk");
     CHECK_CONTAINS(tl_model_error(m)->text, "Not a directory");
     tl_model_destroy(m);
@@ -217,11 +217,11 @@ TEST(a_failed_frame_leaves_nothing)
 {
     tl_model *m = empty_model();
     CHECK_INT(mkdir(FOLDER "/taken_joints.vtk.series", 0777), 0);
-    CHECK_INT(tl_write_vtk(m, FOLDER "/taken"), TL_E_IO);
+    CHECK_INT(tl_write_vtk(m, FOLDER "/taken", NULL), TL_E_IO);
     CHECK_CONTAINS(tl_model_error(m)->text, "Is a directory");
     CHECK_INT(files_with("taken_", 0), 1);
     CHECK_INT(rmdir(FOLDER "/taken_joints.vtk.series"), 0);
-    CHECK_INT(tl_write_vtk(m, FOLDER "/taken"), TL_OK);
+    CHECK_INT(tl_write_vtk(m, FOLDER "/taken", NULL), TL_OK);
     CHECK(exists(FOLDER "/taken_blocks_000000.vtk"));
     CHECK_INT(files_with("taken_", 0), 6);
     tl_model_destroy(m);
@@ -237,7 +237,7 @@ TEST(a_full_disk_is_noticed)
     small.rlim_cur = 2048;
     signal(SIGXFSZ, SIG_IGN);
     CHECK_INT(setrlimit(RLIMIT_FSIZE, &small), 0);
-    tl_status status = tl_write_vtk(m, FOLDER "/full");
+    tl_status status = tl_write_vtk(m, FOLDER "/full", NULL);
     CHECK_INT(setrlimit(RLIMIT_FSIZE, &old), 0);
     CHECK_INT(status, TL_E_IO);
     CHECK_CONTAINS(tl_model_error(m)->text, "full_blocks_000000.vtk");
@@ -303,7 +303,7 @@ TEST(an_index_is_kept_in_its_place)
     int anew = 0, wrong = 0;
     ino_t before = 0;
     for (int i = 0; i < FRAMES; i++) {
-        CHECK_INT(tl_write_vtk(m, FOLDER "/many"), TL_OK);
+        CHECK_INT(tl_write_vtk(m, FOLDER "/many", NULL), TL_OK);
         wrong += !lists("many", i + 1);
         anew += number_of(path) != before;
         before = number_of(path);
@@ -319,14 +319,14 @@ TEST(an_index_that_was_changed_is_written_anew)
     tl_model *one = empty_model(), *other = empty_model();
     const char *path = FOLDER "/two_blocks.vtk.series";
     for (int i = 0; i < 60; i++) {
-        CHECK_INT(tl_write_vtk(one, FOLDER "/two"), TL_OK);
+        CHECK_INT(tl_write_vtk(one, FOLDER "/two", NULL), TL_OK);
         CHECK(lists("two", i + 1));
         if (i % 20 == 5)
             remove(path);
         if (i % 20 == 9)
             CHECK_INT(truncate(path, 100), 0);
         if (i % 20 == 15) {
-            CHECK_INT(tl_write_vtk(other, FOLDER "/two"), TL_OK);
+            CHECK_INT(tl_write_vtk(other, FOLDER "/two", NULL), TL_OK);
             CHECK(lists("two", i / 20 + 1));
         }
     }
@@ -343,7 +343,7 @@ TEST(a_killed_writer_leaves_a_whole_series)
         if (child == 0) {
             tl_model *m = empty_model();
             for (;;)
-                if (tl_write_vtk(m, FOLDER "/killed") != TL_OK)
+                if (tl_write_vtk(m, FOLDER "/killed", NULL) != TL_OK)
                     _exit(1);
         }
         char last[256];

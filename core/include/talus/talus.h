@@ -49,11 +49,10 @@ typedef struct tl_args {
     size_t count;
 } tl_args;
 
-/* Checks `args` against a table of parameters and fills the struct `out`: unknown keys (with the
- * nearest known name), wrong types, values out of range, NaN and infinity, and missing required
- * parameters are refused with a sentence that starts with `context` ("joint 'J1', law 'coulomb'").
- * With `keep` true only the given parameters are written (a change of one property) and
- * nothing is required. On failure `out` is unspecified. Strings and points stay the caller's. */
+/* Checks `args` against a table of parameters and fills the struct `out`: unknown keys (with the nearest known name),
+ * wrong types, values out of range, NaN and infinity, and missing required parameters are refused with a sentence that
+ * starts with `context` ("joint 'J1', law 'coulomb'"). With `keep` true only the given parameters are written (a change
+ * of one property) and nothing is required. On failure `out` is unspecified. Strings and points stay the caller's. */
 TL_API tl_status tl_args_read(const tl_param *params, size_t count, size_t stride,
                               const tl_args *args, bool keep, void *out, const char *context,
                               tl_error *error);
@@ -206,12 +205,10 @@ typedef enum tl_timestep_rule { TL_TIMESTEP_PAPER, TL_TIMESTEP_BODY } tl_timeste
 #define TL_STEP_LEAST 1e-100
 
 typedef struct tl_timestep {
-    double
-        fraction; /* FRAC of (27), in [TL_FRACTION_LEAST, TL_FRACTION_MOST]; NaN: that of the rule */
-    int32_t rule; /* tl_timestep_rule */
-    double dt;    /* fixed step, s; NaN: by the rule */
+    double fraction; /* FRAC of (27); NaN: that of the rule */
+    int32_t rule;    /* tl_timestep_rule */
+    double dt;       /* fixed step, s; NaN: by the rule */
 } tl_timestep;
-
 TL_API tl_status tl_model_timestep(tl_model *model, const tl_timestep *timestep);
 /* The step the next cycle will use, s; 0 where nothing can move and no law is set. */
 TL_API tl_status tl_model_dt(tl_model *model, double *dt);
@@ -225,20 +222,33 @@ typedef struct tl_timestep_report {
      * as it is when they are pressed in twice as deep */
     double stiffness;
 } tl_timestep_report;
-
 TL_API tl_status tl_model_timestep_report(tl_model *model, tl_timestep_report *report);
 
-/* Scales the inertia (not the weight) of every free body up to that of the one with the longest stable
- * step, for finding equilibria: paths, times and velocities then mean nothing. */
-TL_API tl_status tl_model_mass_scaling(tl_model *model, bool on);
-TL_API bool tl_model_mass_scaled(const tl_model *model);
+/* Scales the inertia (not the weight) of free bodies for a longer step. Without `dt` of all, up to that of the one with the
+ * longest stable step, for finding equilibria: paths, times and velocities then mean nothing. With `dt` of those in contact
+ * whose own stable step is shorter, so that it is `dt`; a step that would add more than the share `most` fails. */
+typedef struct tl_mass_scaling {
+    int32_t on;
+    double dt;   /* s, or NaN */
+    double most; /* of the mass of the bodies that can move */
+} tl_mass_scaling;
+TL_API tl_status tl_model_mass_scaling(tl_model *model, const tl_mass_scaling *scaling);
+
+/* What the last step has added, with `dt`. */
+typedef struct tl_mass_added {
+    tl_mass_scaling scaling;
+    double share;  /* of the mass of the bodies that can move */
+    size_t bodies; /* that have been given some */
+    tl_id worst;   /* a block of the one that has the highest factor, or TL_NO_ID */
+    double factor; /* its inertia over its own */
+} tl_mass_added;
+TL_API tl_mass_added tl_model_mass_added(const tl_model *model);
 
 typedef struct tl_contact_area {
     double fraction;   /* of the smaller block's mean face area; >= 0. 0: no minimum area */
     double absolute;   /* m2; NaN: by the fraction */
     const char *joint; /* NULL: every joint */
 } tl_contact_area;
-
 TL_API tl_status tl_model_contact_area(tl_model *model, const tl_contact_area *rule);
 
 /* Called between steps, on the caller's thread; not TL_OK ends the run after the step. */
@@ -407,9 +417,8 @@ TL_API const tl_field *tl_block_fields(size_t *count);
 /* The value of field `index` (of tl_block_fields) of a block. */
 TL_API tl_status tl_block_field(tl_model *model, tl_id block, size_t index, tl_field_value *value);
 
-/* A block's shape in its present place. Arrays are freed with free(). `loops` holds the vertex
- * indices (from 0) of each face, counter-clockwise from outside; face i starts at start[i] and ends
- * before start[i + 1]. */
+/* A block's shape in its present place. Arrays are freed with free(). `loops` holds the vertex indices (from 0) of each
+ * face, counter-clockwise from outside; face i starts at start[i] and ends before start[i + 1]. */
 typedef struct tl_block_mesh {
     size_t vertex_count, face_count;
     tl_vec3 *vertices;
@@ -566,20 +575,16 @@ TL_API void tl_keyblocks_free(tl_keyblocks *keyblocks);
 
 /* ---------------------------------------------------------------- output ----------------- */
 
-/* Writes the next frame of the section of all blocks by a plane: PREFIX_section_NNNNNN.vtk and its
- * index. */
+/* Writes the next frame of the section of all blocks by a plane: PREFIX_section_NNNNNN.vtk and its index. */
 TL_API tl_status tl_write_section(tl_model *model, const char *prefix, const tl_halfspace *plane);
 
-/* Writes the next frame of the series PREFIX: PREFIX_blocks_NNNNNN.vtk, _contacts_, _joints_, and
- * PREFIX_{blocks,contacts,joints}.vtk.series. Folders are made as needed. */
-TL_API tl_status tl_write_vtk(tl_model *model, const char *prefix);
-
-/* Which of these files a frame has. Files of one number are of one frame; a file that is left out is missing from its
- * index only. */
+/* The files of a frame. */
 typedef struct tl_vtk_parts {
     int32_t blocks, contacts, joints;
 } tl_vtk_parts;
-TL_API tl_status tl_write_vtk_parts(tl_model *model, const char *prefix, const tl_vtk_parts *parts);
+/* Writes the next frame of the series PREFIX: PREFIX_blocks_NNNNNN.vtk, _contacts_ and _joints_, or those of `parts`, and
+ * PREFIX_{blocks,contacts,joints}.vtk.series. Folders are made as needed. Files of one number are of one frame. */
+TL_API tl_status tl_write_vtk(tl_model *model, const char *prefix, const tl_vtk_parts *parts);
 
 /* Writes all blocks as they stand into a JSON file (docs/block_model.md), from which the generator of
  * that format makes them again. */
