@@ -1,4 +1,4 @@
-/* talus/talus.h - the kernel's C interface: build a model, run it, ask it, write it.
+/* talus/talus.h - the kernel's C interface: build a model, run it, ask it; output.h, write it.
  *
  * Conventions. Coordinates x east, y north, z up; any consistent units (SI in the examples).
  * Stress tensors are tension positive, joint stresses and forces compression positive. Angles of
@@ -11,6 +11,7 @@
 #define TALUS_TALUS_H
 
 #include <stdbool.h>
+#include <talus/output.h>
 #include <talus/plugin.h>
 #include <talus/plugins.h>
 #include <talus/types.h>
@@ -573,22 +574,7 @@ TL_API tl_status tl_model_keyblocks(tl_model *model, const tl_keyblock_query *qu
                                     tl_keyblocks *keyblocks);
 TL_API void tl_keyblocks_free(tl_keyblocks *keyblocks);
 
-/* ---------------------------------------------------------------- output ----------------- */
-
-/* Writes the next frame of the section of all blocks by a plane: PREFIX_section_NNNNNN.vtk and its index. */
-TL_API tl_status tl_write_section(tl_model *model, const char *prefix, const tl_halfspace *plane);
-
-/* The files of a frame. */
-typedef struct tl_vtk_parts {
-    int32_t blocks, contacts, joints;
-} tl_vtk_parts;
-/* Writes the next frame of the series PREFIX: PREFIX_blocks_NNNNNN.vtk, _contacts_ and _joints_, or those of `parts`, and
- * PREFIX_{blocks,contacts,joints}.vtk.series. Folders are made as needed. Files of one number are of one frame. */
-TL_API tl_status tl_write_vtk(tl_model *model, const char *prefix, const tl_vtk_parts *parts);
-
-/* Writes all blocks as they stand into a JSON file (docs/block_model.md), from which the generator of
- * that format makes them again. */
-TL_API tl_status tl_write_blocks(tl_model *model, const char *path);
+/* ---------------------------------------------------------------- state ------------------ */
 
 /* 32 hexadecimal digits over all that what comes next depends on: models of the same text go on alike. */
 TL_API tl_status tl_state_hash(tl_model *model, char text[33]);
