@@ -187,8 +187,12 @@ static void copy_contact(tl_detect *d, uint32_t from, uint32_t to)
         memcpy((char *)tl_table_data(&fresh->table, k) + to * size,
                (const char *)tl_table_data(&c->table, k) + from * size, size);
     }
-    bool grows = tl_pending_waits(c->pending[from]);
-    fresh->point_room[to] = grows ? (uint16_t)wanted_points(d, from) : c->point_count[from];
+    uint32_t want =
+        tl_pending_waits(c->pending[from]) ? wanted_points(d, from) : c->point_count[from];
+    bool busy = d->spare_share < SPARE_CALM; /* what has grown may grow again */
+    bool keeps = busy && c->point_count[from] > 0 && c->pending[from] != TL_PENDING_MOVE;
+    uint32_t room = keeps && c->point_room[from] > want ? c->point_room[from] : want;
+    fresh->point_room[to] = (uint16_t)room;
 }
 
 static void swap_tables(tl_detect *d)

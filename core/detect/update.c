@@ -264,26 +264,30 @@ bool tl_contact_is_patch(const tl_model *m, uint32_t c)
            tl_pair_odometer(m, contacts->a[c], contacts->b[c]) <= contacts->faces_valid_to[c];
 }
 
-/* The patch of a contact that is one and stays one, made anew where its points are the same; false when that is
- * not all there is to it. */
-static bool renew_patch(tl_model *m, uint32_t c, tl_narrow *room)
+/* The patch of a contact that is one and stays one, made anew; false when that is not all there is to it. */
+static bool renew_patch(tl_model *m, uint32_t c, unsigned thread)
 {
     tl_contacts *contacts = &m->detect->contacts;
+    tl_narrow *room = &m->detect->narrow[thread];
     const tl_facet *f = &contacts->facet[c];
     if (!tl_contact_is_patch(m, c))
         return false;
     tl_pair_view view = tl_pair_view_of(m, contacts->a[c], contacts->b[c]);
     tl_touch_rule rule = tl_touch_rule_of(m, &view, contacts->tag[c], contacts->across[c]);
     room->manifold.failed = !tl_pair_place_face(&view, f->ib, room);
-    if (room->manifold.failed || !(tl_patch_lay(&view, f->ia, f->ib, &rule, room) > 0))
+    if (room->manifold.failed || !(tl_patch_add(&view, f->ia, f->ib, &rule, room) > 0))
         return false;
     const tl_patch_points *g = &room->patch;
     size_t begin = contacts->point_start[c];
-    if (g->count != contacts->point_count[c] || !same_keys(&m->detect->points, begin, g))
+    if (g->count == contacts->point_count[c] && same_keys(&m->detect->points, begin, g)) {
+        refit_patch(m, c, g);
+        contacts->fresh[c] = true;
+        return true;
+    }
+    if (rule.least > 0) /* it may be too small for a patch now */
         return false;
-    refit_patch(m, c, g);
-    contacts->fresh[c] = true;
-    return true;
+    room->manifold.failed = !take_manifold(m, c, room, &m->detect->lanes[thread]);
+    return !room->manifold.failed;
 }
 
 /* Whether a contact without points still overlaps by no more than may go unseen. */
@@ -346,7 +350,7 @@ void tl_contact_update(tl_model *m, uint32_t c, unsigned thread)
     room->manifold.failed = false;
     if (tl_field_goes_on(m, c))
         tl_contacts_follow(m, &c, 1, thread);
-    else if (renew_patch(m, c, room) || (!room->manifold.failed && make_anew(m, c, thread)))
+    else if (renew_patch(m, c, thread) || (!room->manifold.failed && make_anew(m, c, thread)))
         tl_contact_allow_reuse(m, c);
     else
         room->failed = true; /* to be tried again, and not in another way */
