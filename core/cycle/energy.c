@@ -82,10 +82,11 @@ TL_INLINE void book_kinetic(tl_work *work, size_t i, const tl_group *g, double s
     work->work_until[TL_WORK_EXTERNAL][i] += share * mass * tl_v3_dot(set, dv);
 }
 
-/* (23) takes out alpha m (v- + v+) / 2 over the kick, besides what the damping's force does. */
+/* (23) takes out alpha m (v- + v+) / 2 over the kick, m as mass scaling makes it, besides what the damping's force
+ * does. */
 TL_INLINE void book_damping(tl_work *work, size_t i, const tl_group *g)
 {
-    double alpha = 0.5 * g->alpha[i] * g->counted[i];
+    double alpha = 0.5 * g->alpha[i] * g->scale[i];
     tl_vec3 slowed = tl_v3_add(tl_lanes3_get(&g->v0, i), tl_lanes3_get(&g->v1, i));
     tl_vec3 braked = tl_v3_add(tl_lanes3_get(&g->momentum0, i), tl_lanes3_get(&g->momentum1, i));
     book(work, i, TL_WORK_DAMPING, g,

@@ -79,6 +79,22 @@ for _, damping in ipairs { { "none" }, { "viscous", { alpha = 20 } }, { "local",
     check.holds(damping[1] == "none" and energy.damping == 0 or energy.damping > 0.01, damping[1])
 end
 
+-- What damping takes out of bodies whose inertia is scaled is all there was, once they rest.
+for _, damping in ipairs { { "viscous", { alpha = 100 } }, { "local" } } do
+    model = talus.model { gravity = { 0, 0, -10 } }
+    model:generate("box", { min = { 0, 0, -1 }, max = { 1, 1, 0 }, density = DENSITY })
+    model:blocks():fix()
+    for i = 0, 2 do -- the lower, the smaller, and so the more their inertia is scaled
+        model:generate("box", { min = { 0, 0, i * (i + 1) / 2 }, max = { 1, 1, (i + 1) * (i + 2) / 2 },
+            density = DENSITY })
+    end
+    model:joint("*", "coulomb", { kn = K, ks = K, friction = 30 })
+    model:mass_scaling(true)
+    model:damping(damping[1], damping[2])
+    check.equal(model:solve { ratio = 1e-7 }.reason, "ratio")
+    check.holds(math.abs(model:energy().balance) < BALANCE, "the balance of scaled inertia, damping " .. damping[1])
+end
+
 -- Loads and drives do the external work.
 model, block = block_on_floor({ friction = 30 }, 0, 0, STIFF)
 block:load { force = { 1.5e4, 0, 0 } } -- slides, and does not tip
