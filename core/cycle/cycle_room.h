@@ -26,6 +26,7 @@ typedef struct tl_sums {
     size_t bodies;      /* that are free */
     double weight;
     double kinetic;    /* sum of (m v.v + w.I w) / 2; made for a damping that asks for totals */
+    double power;      /* sum of F.v + M.w, F and M unbalanced; made for the same */
     double max_speed2; /* largest v.v */
 } tl_sums;
 

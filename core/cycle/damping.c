@@ -206,7 +206,8 @@ tl_status tl_damping_apply(tl_model *m, double dt)
                                 .dt = dt,
                                 .kinetic = kinetic,
                                 .kinetic_rate = dt > 0 ? (kinetic - c->kinetic_before) / dt : 0,
-                                .power_unit = 2 * kinetic};
+                                .power_unit = 2 * kinetic,
+                                .power = c->sums.power};
     if (!m->damping || !(dt > 0)) /* a step of 0: nothing moves */
         return TL_OK;
     const tl_damping_ops *ops = m->damping->ops;

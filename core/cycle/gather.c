@@ -93,9 +93,12 @@ static void gather_range(void *user, size_t begin, size_t end, size_t chunk, uns
         sums.weight += weight;
         sum_ratios(m, body, weight, &sums);
         sums.bodies++;
-        if (totals)
+        if (totals) {
             sums.kinetic += 0.5 * tl_counted_scale(m->cycle, body) *
                             (b->mass[body] * v2 + tl_spin_energy2(m, body));
+            sums.power +=
+                tl_v3_dot(b->force[body], b->v[body]) + tl_v3_dot(b->moment[body], b->w[body]);
+        }
         sums.max_speed2 = larger(sums.max_speed2, v2);
     }
     m->cycle->chunk_sums[chunk] = sums;
@@ -136,6 +139,7 @@ void tl_gather(tl_model *m)
         }
         c->sums.bodies += s->bodies;
         c->sums.kinetic += s->kinetic;
+        c->sums.power += s->power;
         c->sums.max_speed2 = larger(c->sums.max_speed2, s->max_speed2);
     }
 }

@@ -202,6 +202,9 @@ end)
 scene("slide, combined", function(note)
     sliding(note, "combined", { alpha = 0.6 })
 end)
+scene("slide, kinetic", function(note)
+    sliding(note, "kinetic")
+end)
 
 scene("driven and loaded", function(note)
     local model = talus.model { rotation = "paper" }

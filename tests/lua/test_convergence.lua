@@ -37,7 +37,7 @@ check.equal(result.reason, "failure")
 
 -- One that holds settles; no failure is seen, whatever the damping.
 for _, damping in ipairs { { "local" }, { "viscous", { alpha = 100 } }, { "adaptive" },
-    { "combined" } } do
+    { "combined" }, { "kinetic" } } do
     model = incline(20, 30, damping[1], damping[2])
     result = model:solve { ratio = 1e-6, max_cycles = 200000, stop_at_failure = true }
     check.equal(result.reason, "ratio")

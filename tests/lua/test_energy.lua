@@ -71,7 +71,7 @@ check.refused(model, function() model:joint("*", { dilation = 30 }) end, "must b
 
 -- An oscillation under each damping: what is missing was taken out by it.
 for _, damping in ipairs { { "none" }, { "viscous", { alpha = 20 } }, { "local", { alpha = 0.3 } },
-    { "adaptive" }, { "combined", { alpha = 0.3 } } } do
+    { "adaptive" }, { "combined", { alpha = 0.3 } }, { "kinetic" } } do
     model, block = block_on_floor({}, -1e-3)
     model:damping(damping[1], damping[2])
     check.holds(watch(model, 1000) < BALANCE, "the balance with damping " .. damping[1])
@@ -80,7 +80,7 @@ for _, damping in ipairs { { "none" }, { "viscous", { alpha = 20 } }, { "local",
 end
 
 -- What damping takes out of bodies whose inertia is scaled is all there was, once they rest.
-for _, damping in ipairs { { "viscous", { alpha = 100 } }, { "local" } } do
+for _, damping in ipairs { { "viscous", { alpha = 100 } }, { "local" }, { "kinetic" } } do
     model = talus.model { gravity = { 0, 0, -10 } }
     model:generate("box", { min = { 0, 0, -1 }, max = { 1, 1, 0 }, density = DENSITY })
     model:blocks():fix()

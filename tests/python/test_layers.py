@@ -49,8 +49,8 @@ STANDARD_HEADERS = {
 LUA_HEADERS = {"lua.h", "lauxlib.h", "lualib.h", "luaconf.h", "lua.hpp"}
 KIND_FOLDERS = ("laws", "damping", "generators")
 # Kinds whose names are also words of the model (a joint is a thing, a field and a generator; a
-# contact's state may be elastic, a ratio local): only a look-up or comparison with them is a fault.
-WORDS_OF_THE_MODEL = {"joint", "blocks", "elastic", "local"}
+# contact's state may be elastic, a ratio local, energy kinetic): only a look-up or comparison with them is a fault.
+WORDS_OF_THE_MODEL = {"joint", "blocks", "elastic", "local", "kinetic"}
 
 MAX_FILE_LINES = 600
 MAX_FUNCTION_LINES = 70

@@ -152,7 +152,7 @@ function acts.settings(self)
 end
 
 function acts.damping(self)
-    local m, kind = self.model, self:pick { "local", "viscous", "adaptive", "combined", "none" }
+    local m, kind = self.model, self:pick { "local", "viscous", "adaptive", "combined", "kinetic", "none" }
     local p = nil
     if kind == "local" or kind == "combined" then
         p = { alpha = self:number(0, 0.9) }

@@ -351,6 +351,25 @@ TEST(adaptive_stays_within_its_bounds)
 
 /* Nothing moves, forever: the coefficient sinks to its bound and stays finite; then motion begins and it
  * is back within a few hundred steps. */
+TEST(kinetic_stops_all_when_forces_brake)
+{
+    damping d;
+    tl_report report;
+    CHECK_INT(damping_open(&d, "kinetic", NULL, 0, &report), TL_OK);
+    const double powers[] = {3, 0, -1e-30};
+    for (int n = 0; n < 3; n++) {
+        bodies b = {0};
+        tl_damping_totals totals = {.size = sizeof totals, .dt = 0.1, .power = powers[n]};
+        CHECK_INT(d.ops->begin(d.self, &totals, d.state, &report), TL_OK);
+        damping_update(&d, &b, 0.1);
+        for (int i = 0; i < BODIES; i++)
+            CHECK(b.alpha[i] == (powers[n] < 0 ? 2 / 0.1 : 0));
+        CHECK(b.damping_force[0][0] == 0 && b.damping_moment[2][0] == 0);
+    }
+    CHECK(d.ops->step_factor(d.self) == 1);
+    damping_close(&d);
+}
+
 TEST(adaptive_survives_rest)
 {
     damping d;
@@ -379,6 +398,7 @@ int main(void)
     RUN(adaptive_follows_free_fall_and_releases_steady_motion);
     RUN(adaptive_stays_within_its_bounds);
     RUN(adaptive_survives_rest);
+    RUN(kinetic_stops_all_when_forces_brake);
     printf("%s: %d checks, %d failed\n", __FILE__, check_count, check_failed);
     return check_failed != 0;
 }

@@ -194,4 +194,33 @@ for _, case in ipairs(reference.adaptive) do
     figures.relative("acceleration of free fall, share of g", cube.speed / model.time / GRAVITY,
         case.free_fall_acceleration_factor, SERVO)
 end
+
+-- ---------------------------------------------------------------- kinetic
+
+local ANGLE = 0.01 -- omega dt
+figures.case("P.kinetic", "A cube on a joint under kinetic damping starts from rest, is stopped in the first step in "
+    .. "which the joint pushes it back, and starts again from there. Free fall is not braked.", "closed form of the central difference: from rest x = a cos(n "
+    .. "theta), sin(theta / 2) = omega dt / 2")
+do
+    local model, cube = build(OMEGA, ANGLE / OMEGA, "kinetic")
+    local theta = 2 * math.asin(ANGLE / 2)
+    local quarter = math.ceil(0.5 * math.pi / theta) -- steps to the first place beyond the equilibrium
+    local place, motion = -AMPLITUDE, { x = {}, y = {} }
+    for stop = 1, 2 do
+        for n = 1, quarter do
+            model:cycle(1)
+            motion.x[#motion.x + 1], motion.y[#motion.y + 1] = model.time, 1e3 * height(cube)
+        end
+        place = place * math.cos(quarter * theta)
+        -- Tolerance, of the amplitude at first: the digits of a gap between coordinates of 1 m.
+        figures.near("stop " .. stop .. ", height over the amplitude", height(cube) / AMPLITUDE, place / AMPLITUDE, 1e-10)
+    end
+    figures.near("energy left after two stops, share", 0.5 * cube.mass * (OMEGA * height(cube)) ^ 2
+        / (0.5 * cube.mass * (OMEGA * AMPLITUDE) ^ 2), math.cos(quarter * theta) ^ 4, 1e-10)
+    plot_motion("kinetic", motion)
+
+    model, cube = build(nil, 1e-3, "kinetic")
+    model:cycle(1000)
+    figures.relative("speed of free fall, of g t", -cube.velocity[3], GRAVITY * (model.time - 0.5e-3), EXACT)
+end
 figures.finish()

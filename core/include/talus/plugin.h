@@ -28,7 +28,7 @@ extern "C" {
 #endif
 
 #define TL_ABI_MAJOR 1u
-#define TL_ABI_MINOR 4u
+#define TL_ABI_MINOR 5u
 
 #if defined(__GNUC__)
 #define TL_PLUGIN_EXPORT __attribute__((visibility("default")))
@@ -231,6 +231,8 @@ typedef struct tl_damping_totals {
     double kinetic;      /* sum of (m v.v + I w.w) / 2, J */
     double kinetic_rate; /* change of `kinetic` over the last step / dt, W */
     double power_unit;   /* sum of (m v.v + I w.w), W per unit of alpha */
+    /* since minor 5: sum of (F.v + M.w), W: the power of the unbalanced forces, on velocities of half a step ago */
+    double power;
 } tl_damping_totals;
 
 /* A run of bodies. The host then applies (23): v <- (D1 v + (F + F_d)/m dt) D2 with

@@ -1,0 +1,90 @@
+/* kinetic.c - damping "kinetic": nothing is braked until the unbalanced forces of all bodies, together, work against
+ * the motion. Then every body is stopped.
+ *
+ *     sum (F.v + M.w) < 0:   v = w = 0 before the kick
+ *
+ * The kinetic energy of the whole has then just been at its peak, and the model near an equilibrium. From there it
+ * starts again, towards the next. No coefficient has to fit the model's lowest frequency: a vibration comes to rest
+ * after a quarter of its period, the lowest too. A body that slides or falls, on which the forces do work, is not braked.
+ *
+ * Source: the kinetic damping of dynamic relaxation, P. A. Cundall, "Explicit finite-difference methods in
+ * geomechanics" (1976), and M. R. Barnes, "Form-finding and analysis of prestressed nets and membranes", Computers and
+ * Structures 30 (1988) 685-695. There the kinetic energy is watched; its rate, the power of the forces, tells the peak a
+ * step sooner and under mass scaling, too.
+ *
+ * Velocities are stopped by the viscous coefficient 2 / dt, with which (23) leaves nothing of them, whatever the inertia,
+ * and takes half of the kick. So the half step after a stop is that of a motion that begins. */
+#include <talus/plugin.h>
+
+static const tl_state state_table[] = {
+    {.size = sizeof(tl_state),
+     .kind = TL_STATE_SCALAR,
+     .transfer = TL_TRANSFER_COPY,
+     .name = "alpha",
+     .unit = "1/s",
+     .doc = "2 / dt in a step that stops all bodies, else 0",
+     .initial = 0},
+};
+
+/* Once a step. */
+static tl_status begin(const void *self, const tl_damping_totals *totals, double *const *state,
+                       tl_report *report)
+{
+    (void)self;
+    (void)report;
+    *state[0] = totals->power < 0 ? 2 / totals->dt : 0;
+    return TL_OK;
+}
+
+static tl_status update(const void *self, const tl_damping_batch *batch, tl_report *report)
+{
+    (void)self;
+    (void)report;
+    double alpha = *batch->state[0];
+    for (uint32_t i = 0; i < batch->count; i++)
+        batch->alpha[i] = alpha;
+    return TL_OK;
+}
+
+static double step_factor(const void *self)
+{
+    (void)self;
+    return 1;
+}
+
+static const tl_damping_ops ops = {.size = sizeof ops,
+                                   .begin = begin,
+                                   .update = update,
+                                   .step_factor = step_factor,
+                                   .never_fails = true};
+
+static const tl_kind kind = {
+    .size = sizeof kind,
+    .type = TL_KIND_DAMPING,
+    .name = "kinetic",
+    .doc = "Stops all bodies whenever the kinetic energy of the model has been at its peak; the "
+           "fastest way to an equilibrium of many blocks.",
+    .states = state_table,
+    .state_count = sizeof state_table / sizeof *state_table,
+    .state_stride = sizeof *state_table,
+    .ops = &ops,
+};
+
+static const tl_plugin plugin = {
+    .size = sizeof plugin,
+    .abi_major = TL_ABI_MAJOR,
+    .abi_minor = TL_ABI_MINOR,
+    .id = "talus.kinetic",
+    .version = "0.1.0",
+    .doc = "Kinetic damping.",
+    .licence = "BSD-3-Clause",
+    .kinds = &kind,
+    .kind_count = 1,
+    .kind_stride = sizeof kind,
+};
+
+/* Hosts give the power of the forces since minor version 5. */
+TL_PLUGIN_EXPORT const tl_plugin *tl_plugin_entry(uint32_t host_major, uint32_t host_minor)
+{
+    return host_major == TL_ABI_MAJOR && host_minor >= 5 ? &plugin : NULL;
+}
