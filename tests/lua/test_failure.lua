@@ -32,7 +32,7 @@ local function told(options)
     check.equal(result.reason, "failure")
     check.equal(result.failing, block)
     local gone = block.displacement[1] / block.volume ^ (1 / 3)
-    check.holds(gone > EARLIEST and gone < SOON, "told after a small share of its size")
+    check.holds(gone > EARLIEST and gone < (options.soon or SOON), "told after a small share of its size")
     return gone, model.time
 end
 
@@ -47,12 +47,14 @@ for _, options in ipairs { { k = 1e7 }, { k = 1e10 }, { size = 1e-3, k = 1e11 },
     { damping = "viscous", alpha = 1 }, { damping = "viscous", alpha = 30 } } do
     told(options)
 end
+-- Stopped with its own vibration again and again, it comes by less speed in each leg.
+told { damping = "kinetic", soon = 0.4 }
 
 -- Slabs that hold, even when they slip a little as the weight comes on; also on joints so soft that they settle by more
 -- than that share.
 for _, fs in ipairs { 1.01, 1.03, 1.1 } do
     for _, k in ipairs { 1e6, 1e7, K } do
-        for _, damping in ipairs { { "local" }, { "combined" }, { "viscous", 100 } } do
+        for _, damping in ipairs { { "local" }, { "combined" }, { "viscous", 100 }, { "kinetic" } } do
             local model = slab { fs = fs, k = k, damping = damping[1], alpha = damping[2] }
             local result = model:solve { stop_at_failure = true, max_cycles = 20000 }
             check.equal(result.reason, "ratio")
@@ -78,7 +80,7 @@ local function column(k, damping)
     return model
 end
 for _, k in ipairs { 1e7, 1e8, 1e9 } do
-    for _, damping in ipairs { "local", "adaptive" } do
+    for _, damping in ipairs { "local", "adaptive", "kinetic" } do
         local result = column(k, damping):solve { stop_at_failure = true, max_cycles = 3000 }
         check.equal(result.failing, nil)
     end
@@ -103,7 +105,7 @@ local function leaning(angle, damping)
     model:timestep { rule = "body", fraction = 0.5 }
     return model
 end
-for _, damping in ipairs { "local", "adaptive" } do
+for _, damping in ipairs { "local", "adaptive", "kinetic" } do
     check.equal(leaning(0.04, damping):solve { stop_at_failure = true, max_cycles = 20000 }.reason, "ratio")
 end
 check.equal(leaning(0.04, "none"):solve { stop_at_failure = true, max_cycles = 5000 }.failing, nil)

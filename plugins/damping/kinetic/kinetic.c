@@ -5,7 +5,7 @@
  *
  * The kinetic energy of the whole has then just been at its peak, and the model near an equilibrium. From there it
  * starts again, towards the next. No coefficient has to fit the model's lowest frequency: a vibration comes to rest
- * after a quarter of its period, the lowest too. A body that slides or falls, on which the forces do work, is not braked.
+ * after a quarter of its period, the lowest too. What slides or falls gains speed until then, and loses it with the rest.
  *
  * Source: the kinetic damping of dynamic relaxation, P. A. Cundall, "Explicit finite-difference methods in
  * geomechanics" (1976), and M. R. Barnes, "Form-finding and analysis of prestressed nets and membranes", Computers and
