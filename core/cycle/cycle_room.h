@@ -64,7 +64,8 @@ typedef struct tl_group {
     _Alignas(TL_ALIGN) tl_lanes4 q, axes;
     tl_lanes3 moments, per; /* per: 1 / moments */
     double mass[TL_LANES], alpha[TL_LANES];
-    double scale[TL_LANES];   /* of the inertia that forces meet, by mass scaling, */
+    double scale[TL_LANES],
+        turn_scale[TL_LANES]; /* of mass and moments that forces meet, by mass scaling */
     double counted[TL_LANES]; /* and of that which energies count */
     tl_lanes3 force, moment, damping_force, damping_moment;
     tl_lanes3 moved;                               /* velocity of the last step's motion */
@@ -105,8 +106,12 @@ struct tl_cycle {
     /* per body */
     double *contact_force; /* sum of |contact forces| */
     double *rate;          /* what it asks of the time step, 1/s2 (rates.c); 0: it is held */
-    double *face_rate;     /* the same on its largest face, for a stiffness per area of 1 */
-    double *inertia;       /* over its own, where `adds` */
+    double *
+        turn_rate; /* with mass scaling what its rotation asks, and `rate` what its translation does */
+    double *
+        face_rate; /* `rate` of both together on its largest face, for a stiffness per area of 1 ... */
+    double *face_turn;                                    /* ... and the rotation's part of that */
+    double *inertia;                                      /* over its own, where `adds` */
     double *damping_force[3], *damping_moment[3], *alpha; /* what the damping plugin gave */
     uint32_t
         *reaction_of; /* index of the reaction on a body that is held in some way, or TL_NO_ROW */
@@ -144,7 +149,7 @@ static inline double tl_counted_scale(const struct tl_cycle *c, uint32_t body)
     return c->adds ? c->inertia[body] : 1;
 }
 
-/* What mass scaling of either kind makes of it. */
+/* What mass scaling of either kind makes of a body's mass ... */
 static inline double tl_inertia_scale(const struct tl_cycle *c, uint32_t body)
 {
     if (c->scaled > 0)
@@ -168,6 +173,15 @@ static inline bool tl_adds_mass(const tl_model *m)
 static inline bool tl_mass_scaled(const tl_model *m)
 {
     return m->mass_scaling || tl_adds_mass(m);
+}
+
+/* ... and of its moments of inertia, which it does not make less. */
+static inline double tl_turn_scale(const struct tl_cycle *c, uint32_t body)
+{
+    if (!(c->scaled > 0))
+        return tl_counted_scale(c, body);
+    double scale = c->rate[body] > 0 ? 2 * c->scaled * c->turn_rate[body] : 1;
+    return scale > 1 ? scale : 1;
 }
 
 static inline tl_reaction tl_reaction_on(const struct tl_cycle *c, uint32_t body)

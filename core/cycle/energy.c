@@ -86,16 +86,16 @@ TL_INLINE void book_kinetic(tl_work *work, size_t i, const tl_group *g, double s
  * does. */
 TL_INLINE void book_damping(tl_work *work, size_t i, const tl_group *g)
 {
-    double alpha = 0.5 * g->alpha[i] * g->scale[i];
+    double alpha = 0.5 * g->alpha[i] * g->scale[i], turning = 0.5 * g->alpha[i] * g->turn_scale[i];
     tl_vec3 slowed = tl_v3_add(tl_lanes3_get(&g->v0, i), tl_lanes3_get(&g->v1, i));
     tl_vec3 braked = tl_v3_add(tl_lanes3_get(&g->momentum0, i), tl_lanes3_get(&g->momentum1, i));
     book(work, i, TL_WORK_DAMPING, g,
          tl_v3_madd(tl_lanes3_get(&g->damping_force, i), -alpha * g->mass[i], slowed),
          tl_lanes3_get(&g->damping_moment, i));
     work->work_until[TL_WORK_DAMPING][i] -=
-        work->until * alpha * tl_v3_dot(braked, tl_lanes3_get(&g->spin0, i));
+        work->until * turning * tl_v3_dot(braked, tl_lanes3_get(&g->spin0, i));
     work->work_after[TL_WORK_DAMPING][i] -=
-        work->after * alpha * tl_v3_dot(braked, tl_lanes3_get(&g->spin1, i));
+        work->after * turning * tl_v3_dot(braked, tl_lanes3_get(&g->spin1, i));
 }
 
 static tl_vec3 load_moment(const tl_bodies *b, uint32_t body)

@@ -38,16 +38,18 @@ typedef struct limit_job {
 /* Forces on a body with those of the damping, and the inertia they meet. */
 typedef struct push {
     tl_vec3 force, moment;
-    double mass, alpha, scale;
+    double mass, alpha, scale, turn_scale;
 } push;
 
 static push push_of(const tl_model *m, uint32_t body)
 {
     const struct tl_cycle *c = m->cycle;
     const tl_bodies *b = &m->bodies;
-    push p = {b->force[body], b->moment[body], b->mass[body], 0, 1};
-    if (tl_inertia_scaled(c))
+    push p = {b->force[body], b->moment[body], b->mass[body], 0, 1, 1};
+    if (tl_inertia_scaled(c)) {
         p.scale = tl_inertia_scale(c, body);
+        p.turn_scale = tl_turn_scale(c, body);
+    }
     if (m->damping) {
         p.force = tl_v3_add(p.force, tl_columns_get(c->damping_force, body));
         p.moment = tl_v3_add(p.moment, tl_columns_get(c->damping_moment, body));
@@ -66,7 +68,7 @@ static bool surely_slow(const tl_model *m, uint32_t body, const kick *k)
     double least = i.x < i.y ? i.x : i.y, r = b->radius[body];
     least = i.z < least ? i.z : least;
     least = m->config.rotation == TL_ROTATION_PAPER ? b->round[body] : least;
-    double per_mass = k->span / (p.mass * p.scale), per_moment = k->span / (least * p.scale);
+    double per_mass = k->span / (p.mass * p.scale), per_moment = k->span / (least * p.turn_scale);
     double v2 = tl_v3_norm2(b->v[body]) + per_mass * per_mass * tl_v3_norm2(p.force);
     double w2 = tl_v3_norm2(b->w[body]) + per_moment * per_moment * tl_v3_norm2(p.moment);
     double motion = k->dt, limit = TL_FAST * TL_TRAVEL * r; /* half of 2 r TL_TRAVEL */
@@ -95,7 +97,7 @@ static void kicked(const tl_model *m, uint32_t body, const kick *k, tl_vec3 *v, 
     if (m->config.rotation == TL_ROTATION_PAPER)
         i = tl_v3(b->round[body], b->round[body], b->round[body]);
     turn = tl_q_rotate(axes, tl_v3(turn.x / i.x, turn.y / i.y, turn.z / i.z));
-    *w = tl_kick(*w, turn, k->span / p.scale, p.alpha, k->span);
+    *w = tl_kick(*w, turn, k->span / p.turn_scale, p.alpha, k->span);
 }
 
 /* How far the farthest vertex may move in the step: no number when it cannot be told. */

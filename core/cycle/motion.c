@@ -63,7 +63,7 @@ TL_INLINE void kick_spin(tl_group *g, size_t i, double kick)
     tl_mat3 attitude = attitude_of(tl_lanes4_get(&g->q, i), tl_lanes4_get(&g->axes, i));
     tl_vec3 w = tl_m3_tmul(&attitude, tl_lanes3_get(&g->w0, i)), l0 = times(moments, w);
     tl_vec3 turn = tl_m3_tmul(&attitude, moment);
-    tl_vec3 l1 = tl_kick(l0, turn, kick / g->scale[i], g->alpha[i], kick);
+    tl_vec3 l1 = tl_kick(l0, turn, kick / g->turn_scale[i], g->alpha[i], kick);
     tl_vec3 per = {1 / moments.x, 1 / moments.y, 1 / moments.z};
     tl_vec3 spin1 = times(per, l1);
     tl_lanes3_put(&g->per, i, per);
@@ -151,7 +151,7 @@ static void turn_about(tl_group *g, size_t i, const move_job *job, bool paper, b
 {
     tl_vec3 w = tl_lanes3_get(&g->w0, i);
     if (!held) {
-        double per_moment = job->kick / (g->moments.x[i] * g->scale[i]);
+        double per_moment = job->kick / (g->moments.x[i] * g->turn_scale[i]);
         tl_vec3 moment =
             tl_v3_add(tl_lanes3_get(&g->moment, i), tl_lanes3_get(&g->damping_moment, i));
         w = tl_kick(w, moment, per_moment, g->alpha[i], job->kick);
@@ -207,6 +207,7 @@ static void load_lane(tl_group *g, size_t i, const tl_model *m)
     g->radius[i] = b->radius[body];
     g->scale[i] = tl_inertia_scale(c, body);
     g->counted[i] = tl_counted_scale(c, body);
+    g->turn_scale[i] = tl_turn_scale(c, body);
     bool damped = m->damping != NULL;
     const tl_vec3 none = {0, 0, 0};
     tl_lanes3_put(&g->damping_force, i, damped ? tl_columns_get(c->damping_force, body) : none);
@@ -234,7 +235,7 @@ TL_VECTORIZED static void load_row(tl_group *restrict g, const tl_model *m, size
         tl_lanes3_put(&g->moved, i, b->pose[first + i].v_moved);
         g->mass[i] = b->mass[first + i];
         g->radius[i] = b->radius[first + i];
-        g->scale[i] = g->counted[i] = 1;
+        g->scale[i] = g->turn_scale[i] = g->counted[i] = 1;
     }
     for (size_t i = 0; damped && i < TL_LANES; i++) {
         tl_lanes3_put(&g->damping_force, i, tl_columns_get(c->damping_force, first + i));
@@ -259,7 +260,7 @@ static void rest_lane(tl_group *g, size_t i)
         &g->force, &g->moment, &g->damping_force, &g->damping_moment, &g->moved, &g->v0, &g->w0};
     for (size_t k = 0; k < sizeof still / sizeof *still; k++)
         tl_lanes3_put(still[k], i, none);
-    g->mass[i] = g->scale[i] = g->counted[i] = g->radius[i] = 1;
+    g->mass[i] = g->scale[i] = g->turn_scale[i] = g->counted[i] = g->radius[i] = 1;
     g->alpha[i] = 0;
 }
 

@@ -2,6 +2,9 @@
  *
  * The rate of a body is sum k (1/M + r^2/I) over its contact points: k the stiffness of a point at distance r from the
  * centroid, I the smallest moment of inertia. Twice the highest rate is no less than the square of any frequency.
+ * Mass scaling has two rates instead: sum 2 k/M of the translation and sum 2 k r^2/I of the rotation, which scale masses
+ * and moments of inertia each by itself. Since |v + w r|^2 <= 2 (|v|^2 + |w r|^2), twice the higher one is no less
+ * either. So what turns easily, as a slender block, is not made too heavy to move.
  *
  * A body that lands finds the step that its landing needs, for a step that shrinks while a body lands costs energy: no rate is
  * below that of the body standing on its largest face under the stiffest law of its contacts, or, without a contact, of
@@ -242,11 +245,23 @@ static double least_part(const contact_sums *of, double face)
     return fmin(fmax(more, FLOOR), 1);
 }
 
-static double body_rate(const tl_model *m, uint32_t body, double stiffest)
+/* What a body asks of the step: in all or, with mass scaling, by translation and by rotation, each for itself. */
+typedef struct asked {
+    double rate, turn;
+} asked;
+
+static asked body_rate(const tl_model *m, uint32_t body, double stiffest)
 {
+    const struct tl_cycle *c = m->cycle;
     contact_sums of = add_contacts(m, body, tl_rates_points(m));
-    double face = law_on_face(of, stiffest) * m->cycle->face_rate[body];
-    return fmax(rate_of(of.stiffness, inverse_of(m, body)), least_part(&of, face) * face);
+    inverse_inertia per = inverse_of(m, body);
+    double law = law_on_face(of, stiffest), face = law * c->face_rate[body];
+    double part = least_part(&of, face);
+    if (!m->mass_scaling)
+        return (asked){fmax(rate_of(of.stiffness, per), part * face), 0};
+    double turn = law * c->face_turn[body];
+    return (asked){2 * fmax(of.stiffness.area * per.mass, part * (face - turn)),
+                   2 * fmax(of.stiffness.area_r2 * per.moment, part * turn)};
 }
 
 double tl_rate_stiffness(const tl_model *m, uint32_t body)
@@ -268,19 +283,23 @@ double tl_rate_law(const tl_model *m, uint32_t body)
 
 /* The rate of a body that stands on its largest face, for a stiffness per area of 1. Where points do not count, as by the
  * paper's rule, turning does not either. */
-static double rate_on_face(const tl_model *m, uint32_t body)
+static asked rate_on_face(const tl_model *m, uint32_t body)
 {
     area_sums face = largest_face(m, body);
     inverse_inertia per = inverse_of(m, body);
-    return tl_rates_points(m) ? rate_of(face, per) : face.area * per.mass;
+    return (asked){tl_rates_points(m) ? rate_of(face, per) : face.area * per.mass,
+                   face.area_r2 * per.moment};
 }
 
 static void face_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
 {
     (void)chunk, (void)thread;
     const tl_model *m = user;
-    for (uint32_t body = (uint32_t)begin; body < end; body++)
-        m->cycle->face_rate[body] = rate_on_face(m, body);
+    for (uint32_t body = (uint32_t)begin; body < end; body++) {
+        asked on_face = rate_on_face(m, body);
+        m->cycle->face_rate[body] = on_face.rate;
+        m->cycle->face_turn[body] = on_face.turn;
+    }
 }
 
 void tl_rates_count(tl_model *m)
@@ -325,13 +344,15 @@ static void rate_range(void *user, size_t begin, size_t end, size_t chunk, unsig
     const uint8_t *touched = m->detect->touched;
     tl_row_value found = {-INFINITY, TL_NO_ROW};
     for (uint32_t body = (uint32_t)begin; body < end; body++) {
-        double rate = kept[body];
+        asked of = {kept[body], m->cycle->turn_rate[body]};
         if (!s->kept || s->all || touched[body])
-            rate = tl_body_counts(m, body) ? body_rate(m, body, s->stiffest) : 0;
-        if (s->kept)
-            kept[body] = rate;
-        double value = m->mass_scaling ? -rate : rate;
-        if (rate > 0 && value > found.value)
+            of = tl_body_counts(m, body) ? body_rate(m, body, s->stiffest) : (asked){0, 0};
+        if (s->kept) {
+            kept[body] = of.rate;
+            m->cycle->turn_rate[body] = of.turn;
+        }
+        double value = m->mass_scaling ? -of.rate : of.rate;
+        if (of.rate > 0 && value > found.value)
             found = (tl_row_value){value, body};
     }
     tl_row_search_note(&s->search, thread, found);
@@ -384,17 +405,19 @@ bool tl_rates_are_state(const tl_model *m)
     return tl_mass_scaled(m) || (tl_rates_points(m) && isnan(m->timestep.dt));
 }
 
-void tl_rates_try(tl_model *m, double *rate)
+void tl_rates_try(tl_model *m, double *rate, double *turn_rate)
 {
     struct tl_cycle *c = m->cycle;
     struct tl_rated rated = c->rated;
-    double *own = c->rate;
+    double *own = c->rate, *own_turn = c->turn_rate;
     tl_rates_count(m);
     for (size_t body = 0; body < m->bodies.table.rows; body++)
-        rate[body] = own[body];
+        rate[body] = own[body], turn_rate[body] = own_turn[body];
     c->rate = rate;
+    c->turn_rate = turn_rate;
     tl_rates_keep(m);
     c->rate = own;
+    c->turn_rate = own_turn;
     c->rated = rated;
 }
 

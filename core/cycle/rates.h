@@ -41,7 +41,7 @@ tl_row_value tl_rates_keep(tl_model *m);
 tl_row_value tl_rates_anew(tl_model *m);
 /* The rates that the next step will keep, for the contacts as they are, of all bodies. Kept are those of before; noted in
  * m->detect, a copy that is thrown away, is that bodies have been rated. */
-void tl_rates_try(tl_model *m, double *rate);
+void tl_rates_try(tl_model *m, double *rate, double *turn_rate);
 /* Whether the step follows from rates that were kept: these are then part of the model's state. */
 bool tl_rates_are_state(const tl_model *m);
 /* The stiffness that a body's rate comes from, N/m: of its contacts, or of the part of its largest face that counts. */

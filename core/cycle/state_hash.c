@@ -136,11 +136,11 @@ static tl_status hash_rates(tl_hash *hash, tl_model *m)
     if (status != TL_OK)
         return status;
     size_t bodies = m->bodies.table.rows;
-    double *rate = malloc((bodies + 1) * sizeof *rate);
+    double *rate = calloc(2 * bodies + 1, sizeof *rate);
     if (!rate)
         return tl_fail_memory(&m->error);
-    tl_rates_try(m, rate);
-    hash_numbers(hash, rate, bodies);
+    tl_rates_try(m, rate, rate + bodies);
+    hash_numbers(hash, rate, m->mass_scaling ? 2 * bodies : bodies);
     free(rate);
     return TL_OK;
 }
