@@ -241,11 +241,16 @@ static bool make_lanes(tl_detect *d, const tl_layout *layout)
     return true;
 }
 
-/* Contacts are laid out anew now and then only: the room they came from goes back. */
 static void free_spare(tl_detect *d)
 {
     tl_table_free(&d->spare.table);
     tl_table_free(&d->spare_points.table);
+}
+
+void tl_contacts_free_spare(tl_detect *d, int64_t cycles)
+{
+    if (d->spare.table.capacity > 0 && cycles - d->laid_at >= LAYOUT_LASTS)
+        free_spare(d);
 }
 
 /* Points of the contacts in their new order, in the spare table. */
@@ -288,7 +293,8 @@ tl_status tl_contacts_repack(tl_model *m)
     tl_layout_free(&d->layout);
     d->layout = layout;
     swap_tables(d);
-    free_spare(d);
+    if (d->spare_share == SPARE_CALM) /* else they are laid out anew soon again */
+        free_spare(d);
     tl_contacts_unlist(d);
     return tl_contacts_index(m) ? TL_OK : tl_fail_memory(&m->error);
 }

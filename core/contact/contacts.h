@@ -14,6 +14,8 @@ bool tl_contact_append(tl_model *m, uint32_t pair, bool field, double valid, tl_
 /* Lays contacts and points out anew: without those with TL_PENDING_DIE, sorted by material and blocks,
  * each with the room it wants at least. */
 tl_status tl_contacts_repack(tl_model *m);
+/* Gives back the room that contacts came from when they were laid out anew last, once the layout has lasted. */
+void tl_contacts_free_spare(tl_detect *d, int64_t cycles);
 /* Moves a contact's points, if it has or wants any, to a lane with the room it wants, in its run;
  * false when there is none: lay all out anew. */
 bool tl_contact_place(tl_detect *d, uint32_t contact);

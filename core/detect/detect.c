@@ -337,6 +337,7 @@ static tl_status settle(tl_model *m)
     tl_detect *d = m->detect;
     tl_contacts *c = &d->contacts;
     size_t born = 0;
+    tl_contacts_free_spare(d, m->cycles);
     tl_status status = lacked_memory(d) ? tl_fail_memory(&m->error) : give_births(m, &born);
     if (status != TL_OK)
         return status;
