@@ -168,8 +168,7 @@ static area_sums points_of(const tl_model *m, uint32_t c, bool of_b)
 typedef struct contact_sums {
     area_sums stiffness;
     double law;
-    bool stands;     /* some have points */
-    double approach; /* highest speed at which a contact goes on, over its overlap, 1/s */
+    bool stands; /* some have points */
 } contact_sums;
 
 /* Where a contact presses in A's frame, and its overlap there. A patch, whose area counts before it touches, has besides its
@@ -212,7 +211,7 @@ static contact_sums add_contacts(const tl_model *m, uint32_t body, bool points)
 {
     const tl_detect *d = m->detect;
     const tl_contacts *c = &d->contacts;
-    contact_sums out = {{0, 0}, 0, false, 0};
+    contact_sums out = {{0, 0}, 0, false};
     for (uint32_t j = 0; j < m->bodies.member_count[body]; j++) {
         uint32_t row = m->members[m->bodies.member_start[body] + j];
         for (uint32_t e = d->by_block_start[row]; e < d->by_block_start[row + 1]; e++) {
@@ -224,7 +223,6 @@ static contact_sums add_contacts(const tl_model *m, uint32_t body, bool points)
             if (points && c->point_count[i] > 0) {
                 area_sums next = points_of(m, i, c->b[i] == row);
                 out.stands = true;
-                out.approach = fmax(out.approach, approach_of(m, i, law));
                 out.stiffness.area += law * next.area;
                 out.stiffness.area_r2 += law * next.area_r2;
             }
@@ -238,10 +236,28 @@ static double law_on_face(contact_sums of, double stiffest)
     return of.law > 0 ? of.law : stiffest;
 }
 
-/* The part of its largest face on which a body stands at least, for the rate on all of it. */
-static double least_part(const contact_sums *of, double face)
+/* Highest speed at which a contact of a body goes on, over its overlap, 1/s. */
+static double highest_approach(const tl_model *m, uint32_t body)
 {
-    double more = of->stands ? of->approach / sqrt(face) : 1;
+    const tl_detect *d = m->detect;
+    const tl_contacts *c = &d->contacts;
+    double out = 0;
+    for (uint32_t j = 0; j < m->bodies.member_count[body]; j++) {
+        uint32_t row = m->members[m->bodies.member_start[body] + j];
+        for (uint32_t e = d->by_block_start[row]; e < d->by_block_start[row + 1]; e++) {
+            uint32_t i = d->by_block[e];
+            if (c->material[i] == TL_NO_ROW || c->point_count[i] == 0)
+                continue;
+            out = fmax(out, approach_of(m, i, tl_law_stiffness(&m->materials[c->material[i]])));
+        }
+    }
+    return out;
+}
+
+/* The part of its largest face on which a body stands at least, for the rate on all of it. */
+static double least_part(const tl_model *m, uint32_t body, const contact_sums *of, double face)
+{
+    double more = of->stands ? highest_approach(m, body) / sqrt(face) : 1;
     return fmin(fmax(more, FLOOR), 1);
 }
 
@@ -256,19 +272,21 @@ static asked body_rate(const tl_model *m, uint32_t body, double stiffest)
     contact_sums of = add_contacts(m, body, tl_rates_points(m));
     inverse_inertia per = inverse_of(m, body);
     double law = law_on_face(of, stiffest), face = law * c->face_rate[body];
-    double part = least_part(&of, face);
+    double turn = law * c->face_turn[body], part = 0; /* where the contacts ask for more anyway */
+    double pushed = of.stiffness.area * per.mass, turned = of.stiffness.area_r2 * per.moment;
+    bool more = m->mass_scaling ? pushed < face - turn || turned < turn : pushed + turned < face;
+    if (more)
+        part = least_part(m, body, &of, face);
     if (!m->mass_scaling)
-        return (asked){fmax(rate_of(of.stiffness, per), part * face), 0};
-    double turn = law * c->face_turn[body];
-    return (asked){2 * fmax(of.stiffness.area * per.mass, part * (face - turn)),
-                   2 * fmax(of.stiffness.area_r2 * per.moment, part * turn)};
+        return (asked){fmax(pushed + turned, part * face), 0};
+    return (asked){2 * fmax(pushed, part * (face - turn)), 2 * fmax(turned, part * turn)};
 }
 
 double tl_rate_stiffness(const tl_model *m, uint32_t body)
 {
     contact_sums of = add_contacts(m, body, tl_rates_points(m));
     double law = law_on_face(of, tl_stiffest_law(m)), face = law * m->cycle->face_rate[body];
-    double part = least_part(&of, face);
+    double part = least_part(m, body, &of, face);
     if (rate_of(of.stiffness, inverse_of(m, body)) < part * face)
         return part * law * largest_face(m, body).area;
     return of.stiffness.area;
