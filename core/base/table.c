@@ -155,6 +155,25 @@ void tl_table_keep(tl_table *table, const unsigned char *keep)
     table->rows = kept;
 }
 
+void tl_table_insert(tl_table *table, const uint32_t *at, size_t count)
+{
+    size_t rows = table->rows;
+    assert(rows + count <= table->capacity);
+    for (size_t i = 0; count && i < table->column_count; i++) {
+        size_t size = table->columns[i].size, to = rows, from = rows - count;
+        char *data = get(table, &table->columns[i]);
+        memcpy(data + rows * size, data + from * size, count * size);
+        for (size_t k = count; k-- > 0;) {
+            size_t behind = to - at[k] - 1;
+            from -= behind;
+            memmove(data + (at[k] + 1) * size, data + from * size, behind * size);
+            memcpy(data + at[k] * size, data + (rows + k) * size, size);
+            to = at[k];
+        }
+    }
+    table->used = rows + count > table->used ? rows + count : table->used;
+}
+
 void tl_table_move(tl_table *table, size_t to, size_t from)
 {
     for (size_t i = 0; i < table->column_count; i++) {

@@ -60,6 +60,9 @@ bool tl_table_reserve(tl_table *table, size_t rows);
 bool tl_table_resize(tl_table *table, size_t rows);
 /* Keeps the rows for which keep[row] is not 0, in order. */
 void tl_table_keep(tl_table *table, const unsigned char *keep);
+/* Puts the last `count` rows in between the others: the k-th of them becomes row at[k]; they ascend. There is room for as many
+ * rows more. */
+void tl_table_insert(tl_table *table, const uint32_t *at, size_t count);
 /* Copies a row over another. */
 void tl_table_move(tl_table *table, size_t to, size_t from);
 void *tl_table_data(const tl_table *table, size_t column);

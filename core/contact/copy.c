@@ -37,7 +37,7 @@ static bool copy_lists(tl_detect *d)
         {&d->pairs, d->pair_room, sizeof *d->pairs},
         {&d->chunks, d->chunk_room, sizeof *d->chunks},
         {&d->odometer_0, d->odometer_room, sizeof *d->odometer_0},
-        {&d->ids, d->id_room, sizeof *d->ids},
+        {&d->seen, d->seen_room, sizeof *d->seen},
         {&d->run, d->run_of_room, sizeof *d->run},
         {&d->touched, d->touched_room, sizeof *d->touched},
         {&d->idle, d->idle_room, sizeof *d->idle},

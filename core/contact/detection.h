@@ -6,6 +6,12 @@
 #include "contact/pair.h"
 #include "contact/tables.h"
 
+/* A block, and the row of its body. */
+typedef struct tl_seen {
+    tl_id id;
+    uint32_t body;
+} tl_seen;
+
 typedef struct tl_detect {
     tl_pair *pairs;
     size_t pair_count, pair_room;
@@ -17,16 +23,17 @@ typedef struct tl_detect {
     double reach;       /* half the skin of the broad phase */
     double *odometer_0; /* of each body, when the broad phase was made */
     size_t odometer_room;
-    tl_id *
-        ids; /* of each block, when rows were last looked at: finds them again after they have changed */
-    size_t id_room;
+    tl_seen *
+        seen; /* of each block, when rows were last looked at: finds it again after they have changed */
+    size_t seen_count, seen_room;
     float *run; /* of each block: how far it can have moved since then, rounded up */
     size_t run_of_room;
     float ran;        /* the farthest of them */
     uint8_t *touched; /* bodies whose contacts came, went or grew since the time step was chosen */
     size_t touched_room;
     bool any_touched;
-    uint64_t structure, laws, constraints; /* of the model, when last seen */
+    uint64_t structure, laws, rules, constraints; /* of the model, when last seen */
+    int32_t contact_points;                       /* likewise */
     /* bodies held still all of whose contacts rest, so that the sums of their forces stand; `any_idle` false: none */
     uint8_t *idle;
     size_t idle_room;

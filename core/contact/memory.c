@@ -27,7 +27,7 @@ void tl_detect_memory(const tl_model *m, tl_memory *memory)
     memory->points += tl_table_bytes(&d->points.table);
     memory->spare += tl_table_bytes(&d->spare.table) + tl_table_bytes(&d->spare_points.table);
     memory->broad += d->odometer_room * sizeof *d->odometer_0 + d->run_of_room * sizeof *d->run +
-                     d->id_room * sizeof *d->ids + d->touched_room * sizeof *d->touched +
+                     d->seen_room * sizeof *d->seen + d->touched_room * sizeof *d->touched +
                      d->idle_room * sizeof *d->idle;
     memory->index += d->by_block_room * sizeof *d->by_block +
                      d->by_start_room * sizeof *d->by_block_start +

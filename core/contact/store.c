@@ -23,7 +23,7 @@ void tl_detect_destroy(tl_detect *d)
     free(d->pairs);
     free(d->chunks);
     free(d->odometer_0);
-    free(d->ids);
+    free(d->seen);
     tl_layout_free(&d->layout);
     free(d->run);
     free(d->touched);

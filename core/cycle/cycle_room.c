@@ -31,9 +31,7 @@ static void add_columns(struct tl_cycle *c)
     TL_COLUMN(t, c, alpha, 0);
     TL_COLUMN(t, c, rate, 0);
     TL_COLUMN(t, c, turn_rate, 0);
-    TL_COLUMN(t, c, face_rate, 0);
     TL_COLUMN(t, c, inertia, 0);
-    TL_COLUMN(t, c, face_turn, 0);
 }
 
 tl_status tl_cycle_prepare(tl_model *m)

@@ -31,9 +31,10 @@ typedef struct tl_sums {
 } tl_sums;
 
 /* What the rules of the time step ask of the bodies that count, as long as none comes, goes or is held: with it the column
- * face_rate. */
+ * face_rate of the bodies. */
 struct tl_counted {
-    uint64_t version; /* of the bodies; 0: none */
+    uint64_t version;     /* of the bodies; 0: none */
+    uint64_t constraints; /* of the model */
     int32_t rotation;
     bool points; /* whether rates count contact points */
     double least_mass;
@@ -108,9 +109,6 @@ struct tl_cycle {
     double *rate;          /* what it asks of the time step, 1/s2 (rates.c); 0: it is held */
     double *
         turn_rate; /* with mass scaling what its rotation asks, and `rate` what its translation does */
-    double *
-        face_rate; /* `rate` of both together on its largest face, for a stiffness per area of 1 ... */
-    double *face_turn;                                    /* ... and the rotation's part of that */
     double *inertia;                                      /* over its own, where `adds` */
     double *damping_force[3], *damping_moment[3], *alpha; /* what the damping plugin gave */
     uint32_t

@@ -268,11 +268,11 @@ typedef struct asked {
 
 static asked body_rate(const tl_model *m, uint32_t body, double stiffest)
 {
-    const struct tl_cycle *c = m->cycle;
     contact_sums of = add_contacts(m, body, tl_rates_points(m));
     inverse_inertia per = inverse_of(m, body);
-    double law = law_on_face(of, stiffest), face = law * c->face_rate[body];
-    double turn = law * c->face_turn[body], part = 0; /* where the contacts ask for more anyway */
+    double law = law_on_face(of, stiffest), face = law * m->bodies.face_rate[body];
+    double turn = law * m->bodies.face_turn[body],
+           part = 0; /* where the contacts ask for more anyway */
     double pushed = of.stiffness.area * per.mass, turned = of.stiffness.area_r2 * per.moment;
     bool more = m->mass_scaling ? pushed < face - turn || turned < turn : pushed + turned < face;
     if (more)
@@ -285,7 +285,7 @@ static asked body_rate(const tl_model *m, uint32_t body, double stiffest)
 double tl_rate_stiffness(const tl_model *m, uint32_t body)
 {
     contact_sums of = add_contacts(m, body, tl_rates_points(m));
-    double law = law_on_face(of, tl_stiffest_law(m)), face = law * m->cycle->face_rate[body];
+    double law = law_on_face(of, tl_stiffest_law(m)), face = law * m->bodies.face_rate[body];
     double part = least_part(m, body, &of, face);
     if (rate_of(of.stiffness, inverse_of(m, body)) < part * face)
         return part * law * largest_face(m, body).area;
@@ -309,14 +309,17 @@ static asked rate_on_face(const tl_model *m, uint32_t body)
                    face.area_r2 * per.moment};
 }
 
+/* Of the bodies of which it is not known: those that have come or changed. */
 static void face_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
 {
     (void)chunk, (void)thread;
     const tl_model *m = user;
     for (uint32_t body = (uint32_t)begin; body < end; body++) {
+        if (m->bodies.face_rate[body] != 0)
+            continue;
         asked on_face = rate_on_face(m, body);
-        m->cycle->face_rate[body] = on_face.rate;
-        m->cycle->face_turn[body] = on_face.turn;
+        m->bodies.face_rate[body] = on_face.rate;
+        m->bodies.face_turn[body] = on_face.turn;
     }
 }
 
@@ -325,6 +328,7 @@ void tl_rates_count(tl_model *m)
     struct tl_cycle *c = m->cycle;
     struct tl_counted *to = &c->counted;
     struct tl_counted now = {.version = 1 + m->structure + m->constraints,
+                             .constraints = m->constraints,
                              .rotation = m->config.rotation,
                              .points = tl_rates_points(m),
                              .least_mass = INFINITY,
@@ -341,6 +345,9 @@ void tl_rates_count(tl_model *m)
             now.lightest = body;
         }
     }
+    if (to->version == 0 || to->constraints != now.constraints || to->rotation != now.rotation ||
+        to->points != now.points)
+        memset(b->face_rate, 0, b->table.rows * sizeof *b->face_rate);
     tl_parallel_for(m->pool, b->table.rows, TL_BODY_CHUNK, face_range, m);
     *to = now;
 }

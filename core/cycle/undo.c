@@ -17,6 +17,9 @@
 /* Stiffnesses, forces, gravity and squares of speeds below this make finite forces, in any units: products of five of
  * them are still doubles. */
 #define TAME 1e60
+/* Steps after which the memory of a step that was kept once is given back: an edit is often followed by others, and new memory
+ * costs more than the copies. */
+#define FORGET_AFTER 64
 
 /* The columns of a table that a step overwrites (TL_COLUMN_STEP), one after the other, each of the table's capacity. */
 typedef struct shadow {
@@ -30,6 +33,7 @@ struct tl_undo {
     bool lost;     /* a step failed and was not kept */
     bool once;     /* only because something was set by hand, a body is fast or the step is long */
     uint64_t version; /* of bodies and laws, in the last step that was made */
+    int64_t kept_at;  /* steps made when a step was kept last */
     double dt;        /* that the user had fixed then; NAN: none */
     tl_vec3 gravity;  /* then */
     shadow points, contacts, bodies, loads;
@@ -220,7 +224,9 @@ void tl_undo_end(tl_model *m)
     u->version = version_of(m);
     u->dt = m->timestep.dt;
     u->gravity = m->config.gravity;
-    if (u->keeps && u->once)
+    if (u->keeps)
+        u->kept_at = m->cycles;
+    if (u->once && m->cycles - u->kept_at >= FORGET_AFTER)
         forget(u);
 }
 

@@ -16,6 +16,9 @@
  * millionth of what a face stores that overlaps by as much as 1e-3. */
 #define UNSEEN 2e-4
 
+/* Overlap up to which blocks only touch, relative to the size: as in narrow/press.c. */
+#define TOUCHING 1e-12
+
 /* Product of the blocks' numbers of faces up to which they may be of a lattice: others are hardly ever flush. */
 #define FEW 400
 
@@ -38,6 +41,22 @@ static uint32_t face_number(bool of_b, uint32_t face)
     return 2 * face + of_b;
 }
 
+/* How far the other block is from the plane of a face, negative where it lies under it. */
+static double gap_from(const tl_pair_view *view, uint32_t number)
+{
+    bool of_b = number & 1;
+    const tl_poly *other = of_b ? view->a : view->b;
+    tl_plane plane = (of_b ? view->b : view->a)->plane[number >> 1];
+    tl_vec3 n = of_b ? tl_m3_mul(&view->turn, plane.normal) : tl_m3_tmul(&view->turn, plane.normal);
+    double shift = of_b ? -tl_v3_dot(n, view->shift) : tl_v3_dot(plane.normal, view->shift);
+    double low = tl_v3_dot(n, other->vertex[0]);
+    for (uint32_t i = 1; i < other->vertex_count; i++) {
+        double s = tl_v3_dot(n, other->vertex[i]);
+        low = s < low ? s : low;
+    }
+    return low + shift - plane.offset;
+}
+
 /* What a face sees of the other block. */
 typedef struct sight {
     tl_vec3 n; /* in A's frame */
@@ -52,14 +71,7 @@ static sight look_from(const tl_pair_view *view, uint32_t number)
     const tl_poly *own = of_b ? view->b : view->a;
     tl_plane plane = own->plane[number >> 1];
     tl_vec3 n = of_b ? tl_m3_mul(&view->turn, plane.normal) : tl_m3_tmul(&view->turn, plane.normal);
-    double low = tl_v3_dot(n, other->vertex[0]);
-    for (uint32_t i = 1; i < other->vertex_count; i++) {
-        double s = tl_v3_dot(n, other->vertex[i]);
-        low = s < low ? s : low;
-    }
-    sight out = {.n = of_b ? n : plane.normal};
-    double shift = tl_v3_dot(out.n, view->shift);
-    out.gap = low + (of_b ? -shift : shift) - plane.offset;
+    sight out = {.n = of_b ? n : plane.normal, .gap = gap_from(view, number)};
     for (uint32_t f = 0; f < other->face_count && !own->covered[number >> 1] && !out.flush; f++)
         out.flush = are_flush(n, other->plane[f].normal) && !other->covered[f];
     return out;
@@ -80,6 +92,14 @@ static bool widest(const tl_pair_view *view, tl_vec3 than, uint32_t *number, sig
         }
     }
     return best->gap > -INFINITY;
+}
+
+bool tl_beside_only_touches(const tl_pair_view *view, const tl_pair *p)
+{
+    tl_pair_faces faces = tl_pair_faces_of(p);
+    double least = -TOUCHING * view->size;
+    return faces.one != faces.other && gap_from(view, faces.one) >= least &&
+           gap_from(view, faces.other) >= least;
 }
 
 void tl_beside_note(const tl_pair_view *view, tl_pair *p)

@@ -5,27 +5,33 @@
  * those of all sizes come to a few entries a cell. Two blocks that share several cells are reported once, from the cell
  * that holds the low corner of their common bounds. Bounds are grown by `reach`, so the list holds until some body has
  * moved that far, and by half of the block's own contact tolerance: a pair's is that of its smaller block, so a huge block
- * must not make the small ones neighbours of each other. */
+ * must not make the small ones neighbours of each other.
+ *
+ * After edits only the blocks that have come or changed are entered, and the others looked up among them. */
 #include "detect/broad.h"
 
+#include "detect/edited.h"
 #include "detect/pairs.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 #define SKIN_EXTENTS 0.1 /* skin over the median extent */
+/* Roundings of a body's radius, and of places: far above them. */
+#define BALL_MARGIN 1e-9
 
 /* What a list of pairs is made with: nothing of it is kept. */
 struct tl_broad {
-    tl_bounds *bounds; /* [blocks] grown */
-    size_t block_room;
+    uint32_t *row; /* of each block that is entered, ascending */
+    size_t count;
+    tl_bounds *bounds; /* of each, grown */
     double *extent;
-    uint32_t *cell_start, *entries;
+    uint32_t *cell_start, *entries; /* entries: numbers of blocks that are entered */
     size_t cell_room, entry_room;
     tl_pair *next; /* the list being made */
     size_t next_room;
-    tl_vec3 low;
-    double cell;
+    tl_bounds all;
+    double reach, cell;
     uint32_t n[3];
 };
 
@@ -35,6 +41,7 @@ typedef struct cell_range {
 
 static void release(struct tl_broad *g)
 {
+    free(g->row);
     free(g->bounds);
     free(g->extent);
     free(g->cell_start);
@@ -42,13 +49,20 @@ static void release(struct tl_broad *g)
     free(g->next);
 }
 
-static bool reserve_blocks(struct tl_broad *g, size_t count)
+/* Enters all blocks, or those that have come or changed. */
+static bool enter(const tl_model *m, struct tl_broad *g, bool all)
 {
-    size_t a = g->block_room, b = a;
-    if (!tl_grow(&g->bounds, &a, count, sizeof *g->bounds) ||
-        !tl_grow(&g->extent, &b, count, sizeof *g->extent))
+    for (uint32_t row = 0; row < m->blocks.table.rows; row++)
+        g->count += all || tl_block_is_new(m, row);
+    g->row = malloc((g->count + 1) * sizeof *g->row);
+    g->bounds = malloc((g->count + 1) * sizeof *g->bounds);
+    g->extent = malloc((g->count + 1) * sizeof *g->extent);
+    if (!g->row || !g->bounds || !g->extent)
         return false;
-    g->block_room = a;
+    g->count = 0;
+    for (uint32_t row = 0; row < m->blocks.table.rows; row++)
+        if (all || tl_block_is_new(m, row))
+            g->row[g->count++] = row;
     return true;
 }
 
@@ -82,8 +96,9 @@ static double longest(tl_bounds b)
 
 static cell_range range_of(const struct tl_broad *g, const tl_bounds *b)
 {
-    const double lo[3] = {b->min.x - g->low.x, b->min.y - g->low.y, b->min.z - g->low.z};
-    const double hi[3] = {b->max.x - g->low.x, b->max.y - g->low.y, b->max.z - g->low.z};
+    tl_vec3 low = g->all.min;
+    const double lo[3] = {b->min.x - low.x, b->min.y - low.y, b->min.z - low.z};
+    const double hi[3] = {b->max.x - low.x, b->max.y - low.y, b->max.z - low.z};
     cell_range r;
     for (int k = 0; k < 3; k++) {
         double top = g->n[k] - 1.0;
@@ -98,33 +113,39 @@ static size_t cell_index(const struct tl_broad *g, uint32_t x, uint32_t y, uint3
     return ((size_t)z * g->n[1] + y) * g->n[0] + x;
 }
 
-/* Chooses cell size and counts, and measures the grown bounds. */
-static tl_status measure(tl_model *m, struct tl_broad *g)
+/* By how much the bounds of a block are grown. */
+static double growth_of(const tl_model *m, const struct tl_broad *g, uint32_t row)
 {
-    size_t count = m->blocks.table.rows;
-    if (!reserve_blocks(g, count + 1))
-        return tl_fail_memory(&m->error);
-    tl_bounds all = {{0, 0, 0}, {0, 0, 0}};
-    for (uint32_t row = 0; row < count; row++) {
-        tl_bounds b = g->bounds[row] = block_bounds(m, row);
-        g->extent[row] = longest(b);
-        all.min = row ? tl_v3_min(all.min, b.min) : b.min;
-        all.max = row ? tl_v3_max(all.max, b.max) : b.max;
+    double tolerance = TL_CONTACT_TOLERANCE * TL_CONTACT_RELEASE * m->blocks.size[row];
+    return g->reach + 0.5 * tolerance;
+}
+
+static tl_bounds grown(tl_bounds b, double growth)
+{
+    tl_vec3 skin = {growth, growth, growth};
+    return (tl_bounds){tl_v3_sub(b.min, skin), tl_v3_add(b.max, skin)};
+}
+
+/* Chooses cell size and counts, and measures the grown bounds. `reach` is found where all blocks are entered. */
+static tl_status measure(tl_model *m, struct tl_broad *g, bool whole)
+{
+    size_t count = g->count;
+    g->all = (tl_bounds){{0, 0, 0}, {0, 0, 0}};
+    for (size_t i = 0; i < count; i++) {
+        tl_bounds b = g->bounds[i] = block_bounds(m, g->row[i]);
+        g->extent[i] = longest(b);
+        g->all.min = i ? tl_v3_min(g->all.min, b.min) : b.min;
+        g->all.max = i ? tl_v3_max(g->all.max, b.max) : b.max;
     }
     qsort(g->extent, count, sizeof *g->extent, compare_double);
     double median = count ? g->extent[count / 2] : 1;
-    m->detect->reach = 0.5 * SKIN_EXTENTS * median;
-    for (uint32_t row = 0; row < count; row++) {
-        double tolerance = TL_CONTACT_TOLERANCE * TL_CONTACT_RELEASE * m->blocks.size[row];
-        double growth = m->detect->reach + 0.5 * tolerance;
-        tl_vec3 skin = {growth, growth, growth};
-        g->bounds[row].min = tl_v3_sub(g->bounds[row].min, skin);
-        g->bounds[row].max = tl_v3_add(g->bounds[row].max, skin);
-        all.min = tl_v3_min(all.min, g->bounds[row].min);
-        all.max = tl_v3_max(all.max, g->bounds[row].max);
+    g->reach = whole ? 0.5 * SKIN_EXTENTS * median : m->detect->reach;
+    for (size_t i = 0; i < count; i++) {
+        g->bounds[i] = grown(g->bounds[i], growth_of(m, g, g->row[i]));
+        g->all.min = tl_v3_min(g->all.min, g->bounds[i].min);
+        g->all.max = tl_v3_max(g->all.max, g->bounds[i].max);
     }
-    g->low = all.min;
-    tl_vec3 span = tl_v3_sub(all.max, all.min);
+    tl_vec3 span = tl_v3_sub(g->all.max, g->all.min);
     /* no place is infinite, as limits.c sees to; what follows becomes whole numbers, so it is made sure of here */
     if (!isfinite(span.x) || !isfinite(span.y) || !isfinite(span.z) || !(median > 0))
         return tl_fail(&m->error, TL_E_NUMERIC,
@@ -142,7 +163,7 @@ static tl_status measure(tl_model *m, struct tl_broad *g)
     }
 }
 
-/* Enters the blocks into their cells (a counting sort; rows ascend in a cell). */
+/* Lists the blocks in their cells (a counting sort; rows ascend in a cell). */
 static tl_status fill(tl_model *m, struct tl_broad *g)
 {
     size_t cells = (size_t)g->n[0] * g->n[1] * g->n[2], total = 0;
@@ -151,8 +172,8 @@ static tl_status fill(tl_model *m, struct tl_broad *g)
     memset(g->cell_start, 0, (cells + 2) * sizeof *g->cell_start);
     uint32_t *start = g->cell_start + 1; /* shifted: filling moves each start to its end */
     for (int pass = 0; pass < 2; pass++) {
-        for (uint32_t row = 0; row < m->blocks.table.rows; row++) {
-            cell_range r = range_of(g, &g->bounds[row]);
+        for (uint32_t i = 0; i < g->count; i++) {
+            cell_range r = range_of(g, &g->bounds[i]);
             for (uint32_t z = r.lo[2]; z <= r.hi[2]; z++)
                 for (uint32_t y = r.lo[1]; y <= r.hi[1]; y++)
                     for (uint32_t x = r.lo[0]; x <= r.hi[0]; x++) {
@@ -160,7 +181,7 @@ static tl_status fill(tl_model *m, struct tl_broad *g)
                         if (pass == 0)
                             start[cell]++;
                         else
-                            g->entries[start[cell]++] = row;
+                            g->entries[start[cell]++] = i;
                     }
         }
         if (pass == 1)
@@ -190,29 +211,58 @@ static bool push(struct tl_broad *g, size_t *count, uint32_t a, uint32_t b)
     return true;
 }
 
-/* Pairs of `row` with blocks of rows above its own, entered in the cells its bounds overlap. */
-static bool pairs_of(const tl_model *m, struct tl_broad *g, uint32_t row, size_t *count)
+/* Pairs of a block with those that are entered in the cells its bounds overlap; with rows above its own, if it is one of them. */
+static bool pairs_of(const tl_model *m, struct tl_broad *g, uint32_t row, const tl_bounds *mine,
+                     bool entered, size_t *count)
 {
-    const tl_bounds *mine = &g->bounds[row];
     cell_range r = range_of(g, mine);
     for (uint32_t z = r.lo[2]; z <= r.hi[2]; z++)
         for (uint32_t y = r.lo[1]; y <= r.hi[1]; y++)
             for (uint32_t x = r.lo[0]; x <= r.hi[0]; x++) {
                 size_t cell = cell_index(g, x, y, z);
                 for (uint32_t e = g->cell_start[cell]; e < g->cell_start[cell + 1]; e++) {
-                    uint32_t other = g->entries[e];
-                    if (other <= row || !overlap(mine, &g->bounds[other]) ||
+                    const tl_bounds *its = &g->bounds[g->entries[e]];
+                    uint32_t other = g->row[g->entries[e]];
+                    if ((entered && other <= row) || !overlap(mine, its) ||
                         m->blocks.body[row] == m->blocks.body[other])
                         continue;
-                    cell_range q = range_of(g, &g->bounds[other]);
+                    cell_range q = range_of(g, its);
                     if (x != (q.lo[0] > r.lo[0] ? q.lo[0] : r.lo[0]) ||
                         y != (q.lo[1] > r.lo[1] ? q.lo[1] : r.lo[1]) ||
                         z != (q.lo[2] > r.lo[2] ? q.lo[2] : r.lo[2]))
                         continue;
-                    if (!push(g, count, row, other))
+                    if (!push(g, count, row < other ? row : other, row < other ? other : row))
                         return false;
                 }
             }
+    return true;
+}
+
+/* A look whether a block may be among those that are entered: the ball of its body, or if that is of several, the block. */
+static bool may_meet(const tl_model *m, const struct tl_broad *g, uint32_t row)
+{
+    uint32_t body = m->blocks.body[row];
+    tl_vec3 place = tl_body_place(&m->bodies, body);
+    double radius = m->bodies.radius[body] * (1 + BALL_MARGIN) + BALL_MARGIN * tl_v3_norm(place);
+    tl_bounds ball = grown((tl_bounds){place, place}, radius + growth_of(m, g, row));
+    return overlap(&ball, &g->all);
+}
+
+/* Pairs of the blocks that are entered with those that are not. */
+static bool pairs_with_others(const tl_model *m, struct tl_broad *g, size_t *count)
+{
+    size_t next = 0;
+    for (uint32_t row = 0; row < m->blocks.table.rows; row++) {
+        if (next < g->count && g->row[next] == row) {
+            next++;
+            continue;
+        }
+        if (!may_meet(m, g, row))
+            continue;
+        tl_bounds bounds = grown(block_bounds(m, row), growth_of(m, g, row));
+        if (overlap(&bounds, &g->all) && !pairs_of(m, g, row, &bounds, false, count))
+            return false;
+    }
     return true;
 }
 
@@ -223,12 +273,15 @@ static int compare_pair(const void *a, const void *b)
 }
 
 /* Lists the candidate pairs, sorted. */
-static tl_status list_pairs(tl_model *m, struct tl_broad *g, size_t *count)
+static tl_status list_pairs(tl_model *m, struct tl_broad *g, bool whole, size_t *count)
 {
     *count = 0;
-    bool room = tl_grow(&g->next, &g->next_room, m->detect->pair_count, sizeof *g->next);
-    for (uint32_t row = 0; row < m->blocks.table.rows && room; row++)
-        room = pairs_of(m, g, row, count);
+    bool room =
+        tl_grow(&g->next, &g->next_room, whole ? m->detect->pair_count : 1, sizeof *g->next);
+    for (uint32_t i = 0; i < g->count && room; i++)
+        room = pairs_of(m, g, g->row[i], &g->bounds[i], true, count);
+    if (room && !whole)
+        room = pairs_with_others(m, g, count);
     if (!room)
         return tl_fail_memory(&m->error);
     if (*count > 1)
@@ -287,20 +340,74 @@ static tl_status merge(tl_model *m, struct tl_broad *g, size_t fresh)
     return TL_OK;
 }
 
+/* Those of a sorted list that are not in the detection's, to its beginning; returns their number. */
+static size_t unknown_pairs(const tl_detect *d, tl_pair *list, size_t count)
+{
+    size_t kept = 0;
+    for (size_t i = 0; i < count; i++)
+        if (!bsearch(&list[i], d->pairs, d->pair_count, sizeof *list, compare_pair))
+            list[kept++] = list[i];
+    return kept;
+}
+
+/* Puts pairs in between the others: from the last one on, what lies behind it moves up. */
+static tl_status insert(tl_model *m, struct tl_broad *g, size_t fresh)
+{
+    tl_detect *d = m->detect;
+    fresh = unknown_pairs(d, g->next, fresh);
+    size_t from = d->pair_count, to = from + fresh, chunks = to / TL_PAIR_CHUNK + 1;
+    if (!tl_fit(&d->pairs, &d->pair_room, to, sizeof *d->pairs) ||
+        !tl_fit(&d->chunks, &d->chunk_room, chunks, sizeof *d->chunks))
+        return tl_fail_memory(&m->error);
+    while (fresh) {
+        bool old = from && compare_pair(&d->pairs[from - 1], &g->next[fresh - 1]) > 0;
+        d->pairs[--to] = old ? d->pairs[--from] : g->next[--fresh];
+        if (!tl_pair_is_apart(&d->pairs[to]))
+            d->contacts.pair[d->pairs[to].contact] = (uint32_t)to;
+        d->pair_count += !old;
+    }
+    for (size_t i = 0; i < chunks; i++)
+        d->chunks[i] = (tl_pair_chunk){.wake = -INFINITY};
+    return TL_OK;
+}
+
+/* Candidate pairs of all blocks, or of those that have come or changed, into g->next. */
+static tl_status find(tl_model *m, struct tl_broad *g, bool whole, size_t *count)
+{
+    if (!enter(m, g, whole))
+        return tl_fail_memory(&m->error);
+    *count = 0;
+    if (!whole && g->count == 0)
+        return TL_OK;
+    tl_status status = measure(m, g, whole);
+    if (status == TL_OK)
+        status = fill(m, g);
+    return status == TL_OK ? list_pairs(m, g, whole, count) : status;
+}
+
+tl_status tl_broad_add(tl_model *m)
+{
+    struct tl_broad g = {0};
+    size_t fresh;
+    tl_status status = find(m, &g, false, &fresh);
+    if (status == TL_OK && fresh)
+        status = insert(m, &g, fresh);
+    release(&g);
+    return status;
+}
+
 tl_status tl_broad_update(tl_model *m)
 {
     struct tl_broad g = {0};
     size_t fresh;
-    tl_status status = measure(m, &g);
-    if (status == TL_OK)
-        status = fill(m, &g);
-    if (status == TL_OK)
-        status = list_pairs(m, &g, &fresh);
+    tl_status status = find(m, &g, true, &fresh);
     if (status == TL_OK)
         status = merge(m, &g, fresh);
+    double reach = g.reach;
     release(&g);
     if (status != TL_OK)
         return status;
+    m->detect->reach = reach;
     m->detect->listed = true;
     return tl_pairs_restart(m);
 }

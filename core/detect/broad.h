@@ -4,6 +4,9 @@
 
 #include "model/model.h"
 
+/* Lists all pairs anew: what is known of those that stay is kept. */
 tl_status tl_broad_update(tl_model *m);
+/* Adds the pairs of blocks that have come or changed since the detection looked. */
+tl_status tl_broad_add(tl_model *m);
 
 #endif

@@ -1,7 +1,7 @@
 /* detect.c - the order of contact detection.
  *
- * Phases: rows that changed are found again by id; the broad phase is made anew when something may
- * have left its skin; pairs without a contact are looked at when they may have come near; contacts are
+ * Phases: after edits rows are found again by id, and what was known of blocks that have changed is dropped (edited.c); the
+ * broad phase lists the neighbours of these, and is made anew when something may have left its skin; pairs without a contact are looked at when they may have come near; contacts are
  * followed, or made anew when they moved more than a margin; births, deaths and growth are then settled
  * serially in the order of pairs. How far anything can have moved is told by the bodies' odometers. */
 #include "detect/detect.h"
@@ -15,6 +15,7 @@
 #include "contact/prefetch.h"
 #include "contact/store.h"
 #include "detect/broad.h"
+#include "detect/edited.h"
 #include "detect/overlap.h"
 #include "detect/pairs.h"
 #include "detect/renew.h"
@@ -66,55 +67,6 @@ static tl_status ensure(tl_model *m)
     return TL_OK;
 }
 
-/* ---------------------------------------------------------------- rows ------------------- */
-
-/* Finds the blocks of contacts and pairs again after rows have changed. Pairs without a contact are
- * forgotten: the broad phase lists them anew. */
-static tl_status find_rows(tl_model *m)
-{
-    tl_detect *d = m->detect;
-    tl_contacts *c = &d->contacts;
-    size_t kept = 0, blocks = m->blocks.table.rows;
-    if (!tl_fit(&d->ids, &d->id_room, blocks + 1, sizeof *d->ids))
-        return tl_fail_memory(&m->error);
-    for (size_t i = 0; i < d->pair_count; i++) {
-        tl_pair p = d->pairs[i];
-        if (tl_pair_is_apart(&p))
-            continue;
-        uint32_t row = p.contact;
-        uint32_t a = tl_block_row_quiet(m, d->ids[c->a[row]]);
-        uint32_t b = tl_block_row_quiet(m, d->ids[c->b[row]]);
-        if (a == TL_NO_ROW || b == TL_NO_ROW || m->blocks.body[a] == m->blocks.body[b]) {
-            c->pending[row] = TL_PENDING_DIE;
-            continue;
-        }
-        p.a = c->a[row] = a;
-        p.b = c->b[row] = b;
-        c->pair[row] = (uint32_t)kept;
-        d->pairs[kept++] = p;
-    }
-    d->pair_count = kept;
-    tl_contacts_unlist(d);
-    for (size_t row = 0; row < blocks; row++)
-        d->ids[row] = m->blocks.id[row];
-    return TL_OK;
-}
-
-/* After a change of laws or of the minimum area: contacts under another material are marked, all facets are made
- * anew in the next step, and pairs that only touched are looked at again. */
-static void find_materials(tl_model *m)
-{
-    for (size_t i = 0; i < m->detect->pair_count; i++)
-        tl_pair_wake(m->detect, (uint32_t)i);
-    tl_contacts *c = &m->detect->contacts;
-    for (uint32_t row = 0; row < c->table.rows; row++) {
-        c->points_valid_to[row] = -INFINITY;
-        if (c->pending[row] == TL_PENDING_NONE &&
-            tl_material_row(m, c->tag[row]) != c->material[row])
-            c->pending[row] = TL_PENDING_MOVE;
-    }
-}
-
 /* ---------------------------------------------------------------- phases ----------------- */
 
 /* Ranks of a run. */
@@ -161,16 +113,6 @@ static void update_contacts(tl_model *m)
     }
     if (m->detect->bare)
         tl_parallel_for(m->pool, m->detect->contacts.table.rows, CONTACT_CHUNK, update_others, m);
-}
-
-/* Bodies that were joined or parted have other frames than before: what contacts keep in them is made
- * anew, before anything is computed from it. */
-static void reframe_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
-{
-    (void)chunk;
-    tl_model *m = user;
-    for (size_t c = begin; c < end; c++)
-        tl_contact_reframe(m, (uint32_t)c, thread);
 }
 
 /* Pairs that overlap deeply when their contact is made. */
@@ -250,11 +192,12 @@ static void change_material(tl_model *m, uint32_t c)
         tl_point_begin(&d->points, tl_point_row(&d->contacts, c, k), kind);
 }
 
-/* Notes that the contacts of two bodies are no longer what they were. After a change of rows all are. */
+/* Notes that the contacts of two bodies are no longer what they were. Of those that ended with their blocks it was noted when
+ * rows were found. */
 static void touch(tl_model *m, uint32_t row)
 {
     tl_detect *d = m->detect;
-    if (d->rows_changed)
+    if (d->rows_changed && d->contacts.pending[row] == TL_PENDING_DIE)
         return;
     d->any_touched = true;
     d->touched[m->blocks.body[d->contacts.a[row]]] = true;
@@ -357,8 +300,7 @@ static tl_status settle(tl_model *m)
     return status;
 }
 
-/* Pairs and contacts after a change of rows or laws, and new contacts; those that stand are not
- * touched. */
+/* Pairs and contacts after edits of the model, and new contacts; those that stand are not touched. */
 static tl_status find_contacts(tl_model *m)
 {
     tl_status status = ensure(m);
@@ -368,28 +310,28 @@ static tl_status find_contacts(tl_model *m)
     bool rows = d->structure != m->structure || !d->listed;
     if (rows) {
         d->rows_changed = true;
-        status = find_rows(m);
-        if (status == TL_OK)
-            status = tl_pairs_restart(m);
+        status = tl_edited_rows(m);
         if (status != TL_OK)
             return status;
     }
-    if (d->laws != m->laws)
-        find_materials(m); /* before contacts note the room they want in the place of faces */
+    tl_pairs_run(m);
+    tl_edited_laws(m);
     if (rows)
-        tl_parallel_for(m->pool, d->contacts.table.rows, CONTACT_CHUNK, reframe_range, m);
+        tl_edited_frames(m);
     if (rows && lacked_memory(d))
         return tl_fail_memory(&m->error);
     if (rows || d->laws != m->laws || d->constraints != m->constraints)
         tl_held_sort(m);
-    tl_pairs_run(m);
-    if (rows || (double)d->ran > d->reach) {
+    if (!d->listed || (double)d->ran > d->reach)
         status = tl_broad_update(m);
-        if (status != TL_OK)
-            return status;
-    }
+    else if (rows)
+        status = tl_broad_add(m);
+    if (status != TL_OK)
+        return status;
     d->structure = m->structure;
     d->laws = m->laws;
+    d->rules = m->rules;
+    d->contact_points = m->config.contact_points;
     d->constraints = m->constraints;
     tl_pairs_look(m);
     return TL_OK;

@@ -382,7 +382,8 @@ void tl_contact_reframe(tl_model *m, uint32_t c, unsigned thread)
     if (contacts->pending[c] == TL_PENDING_DIE)
         return;
     room->reframed = true;
-    make_anew(m, c, thread);
+    if (make_anew(m, c, thread))
+        tl_contact_allow_reuse(m, c); /* by the odometers of the bodies as they are now */
     room->reframed = false;
 }
 

@@ -132,6 +132,7 @@ static void write_measures(tl_bodies *b, uint32_t body, const body_sum *sum)
 {
     double mean = sum->distance / (double)sum->vertices;
     b->mass[body] = sum->mass;
+    b->face_rate[body] = 0;
     b->round[body] = ROUND_COEFFICIENT * sum->mass * mean * mean;
     b->radius[body] = sum->radius;
     tl_principal_axes(sum->inertia, &b->moments[body], &b->axes[body]);

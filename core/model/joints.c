@@ -205,5 +205,6 @@ tl_status tl_model_contact_area(tl_model *m, const tl_contact_area *area)
     else if (!set_joint_area(m, &entry))
         return tl_fail_memory(&m->error);
     m->laws++;
+    m->rules++;
     return TL_OK;
 }

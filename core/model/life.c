@@ -17,6 +17,7 @@ static void blocks_init(tl_blocks *b)
     TL_COLUMN(t, b, mean_face, 0);
     TL_COLUMN(t, b, lineage, TL_COLUMN_STATE);
     TL_COLUMN(t, b, hidden, TL_COLUMN_STATE);
+    TL_COLUMN(t, b, changed, 0);
 }
 
 static void bodies_init(tl_bodies *b)
@@ -40,6 +41,8 @@ static void bodies_init(tl_bodies *b)
     TL_COLUMN(t, b, moment, TL_COLUMN_STATE | TL_COLUMN_STEP);
     TL_COLUMN(t, b, drive, 0);
     TL_COLUMN(t, b, odometer, 0);
+    TL_COLUMN(t, b, face_rate, 0);
+    TL_COLUMN(t, b, face_turn, 0);
 }
 
 tl_status tl_model_create(const tl_model_config *config, tl_model **model, tl_error *error)

@@ -126,7 +126,8 @@ tl_status tl_model_set_contact_points(tl_model *m, tl_contact_points where)
     if (status != TL_OK)
         return status;
     m->config.contact_points = (int32_t)where;
-    m->laws++; /* contacts are made anew */
+    m->laws++;
+    m->rules++; /* contacts are made anew */
     return TL_OK;
 }
 

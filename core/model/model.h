@@ -11,7 +11,7 @@
  * displacement since, kept apart so that a step far below the rounding of x_ref still counts.
  *
  * Rows of blocks and bodies are in ascending order of id. Rows change when blocks are created, cut,
- * joined or deleted; `structure` counts these changes. Ids never change and are never used again. */
+ * joined or deleted; `structure` counts these changes, and a block that came or changed bears the count. Ids never change and are never used again. */
 #ifndef TL_MODEL_MODEL_H
 #define TL_MODEL_MODEL_H
 
@@ -50,6 +50,7 @@ typedef struct tl_blocks {
     double *mean_face; /* mean face area, m2 */
     uint64_t *lineage; /* key of the block's descent, for random draws */
     uint8_t *hidden;
+    uint64_t *changed; /* count of `structure` with which it came, or got another shape, frame or tags */
 } tl_blocks;
 
 typedef struct tl_body_load {
@@ -93,6 +94,8 @@ typedef struct tl_bodies {
     tl_body_load *load; /* of the user's; NULL: none has ever been set */
     uint32_t *drive;    /* index into drives + 1, or 0 */
     double *odometer;   /* sum of (|v| + |w| radius) dt: no vertex has moved farther */
+    double *face_rate;  /* what it asks of the time step on its largest face: cycle/rates.c. 0: not known */
+    double *face_turn;  /* its rotation's part of that */
 } tl_bodies;
 
 typedef struct tl_joint_set {
@@ -182,7 +185,8 @@ struct tl_model {
 
     tl_material *materials;
     size_t material_count;
-    uint64_t laws; /* counts changes of the materials */
+    uint64_t laws;  /* counts changes of the materials */
+    uint64_t rules; /* counts changes of minimum areas and of contact_points */
     tl_area_rule area;
     tl_joint_area *areas;
     size_t area_count;
@@ -274,6 +278,12 @@ tl_vec3 tl_block_centroid(const tl_model *m, uint32_t row);
 tl_vec3 tl_block_displacement(const tl_model *m, uint32_t row);
 /* Displacement of a point (in the body's frame) of a block since its creation or last reset. */
 tl_vec3 tl_block_point_displacement(const tl_model *m, uint32_t row, tl_vec3 local);
+
+/* Notes that a block has come, or has got another shape, frame or tags; rows are refreshed after that. */
+static inline void tl_block_changes(tl_model *m, uint32_t row)
+{
+    m->blocks.changed[row] = m->structure + 1;
+}
 
 /* Row of a block id, or TL_NO_ROW with a sentence in the model's error. */
 uint32_t tl_block_row(tl_model *m, tl_id id);

@@ -104,19 +104,6 @@ static tl_status new_shape(tl_model *m, const parts *sum, uint32_t row, tl_poly 
                                shape, &m->error);
 }
 
-/* Marks the seams of a new body on the new shapes of its parts. */
-static tl_status mark_seams(tl_model *m, const uint32_t *rows, size_t count, tl_poly **shapes)
-{
-    tl_poly **polys = malloc(count * sizeof *polys);
-    if (!polys)
-        return tl_fail_memory(&m->error);
-    for (size_t i = 0; i < count; i++)
-        polys[i] = shapes[rows[i]];
-    tl_status status = tl_poly_mark_seams(polys, count, &m->error);
-    free(polys);
-    return status;
-}
-
 /* The inverse of a body's inertia applied to its angular momentum. */
 static tl_vec3 spin_velocity(const tl_bodies *b, uint32_t body, tl_vec3 spin)
 {
@@ -125,55 +112,43 @@ static tl_vec3 spin_velocity(const tl_bodies *b, uint32_t body, tl_vec3 spin)
     return tl_q_rotate(attitude, tl_v3(l.x / i.x, l.y / i.y, l.z / i.z));
 }
 
+/* A block of a body that is made anew. */
+typedef struct member {
+    uint32_t row;
+    tl_vec3 displacement; /* before */
+} member;
+
+/* A body that is made anew, of the members from `start` on. */
+typedef struct made {
+    parts parts;
+    uint32_t start, count;
+    uint32_t body; /* its new row */
+} made;
+
+/* What changes: bodies that stay as they are are only moved to other rows. */
 typedef struct regroup {
-    tl_poly **shapes;   /* [blocks] new shapes, NULL where nothing changes */
-    parts *parts;       /* [groups] */
-    uint32_t *rows;     /* [blocks] block rows, group by group */
-    uint32_t *start;    /* [groups + 1] into rows */
-    uint32_t *group_of; /* [blocks] number of the group whose lowest block this is */
-    size_t groups;
-    tl_vec3 *displacement; /* [blocks] */
+    uint32_t *of;         /* [blocks] of the lowest block of a group: its size, then its number */
+    unsigned char *stays; /* [bodies + made] */
+    uint32_t *now;        /* [bodies] new rows of those that stay */
+    member *members;      /* [member_count] body by body */
+    tl_poly **shapes;     /* [member_count] theirs, in the frames of the new bodies */
+    size_t member_count;
+    made *made; /* in the order of their lowest blocks */
+    uint32_t *at;
+    size_t made_count;
 } regroup;
 
-static void regroup_free(regroup *r, size_t blocks)
+static void regroup_free(regroup *r)
 {
-    for (size_t i = 0; r->shapes && i < blocks; i++)
+    for (size_t i = 0; r->shapes && i < r->member_count; i++)
         tl_poly_free(r->shapes[i]);
+    free(r->of);
+    free(r->stays);
+    free(r->now);
+    free(r->members);
     free(r->shapes);
-    free(r->parts);
-    free(r->rows);
-    free(r->start);
-    free(r->group_of);
-    free(r->displacement);
-}
-
-/* Lists the groups in the order of their lowest blocks. */
-static bool list_groups(const tl_model *m, const uint32_t *group, regroup *r)
-{
-    size_t blocks = m->blocks.table.rows;
-    *r = (regroup){.shapes = calloc(blocks + 1, sizeof *r->shapes),
-                   .parts = calloc(blocks + 1, sizeof *r->parts),
-                   .rows = calloc(blocks + 1, sizeof *r->rows),
-                   .start = calloc(blocks + 2, sizeof *r->start),
-                   .group_of = calloc(blocks + 1, sizeof *r->group_of),
-                   .displacement = calloc(blocks + 1, sizeof *r->displacement)};
-    if (!r->shapes || !r->parts || !r->rows || !r->start || !r->group_of || !r->displacement)
-        return false;
-    for (uint32_t row = 0; row < blocks; row++)
-        if (group[row] == row)
-            r->group_of[row] = (uint32_t)r->groups++;
-    for (uint32_t row = 0; row < blocks; row++)
-        r->start[r->group_of[group[row]] + 1]++;
-    for (size_t g = 0; g < r->groups; g++)
-        r->start[g + 1] += r->start[g];
-    uint32_t *fill = malloc((r->groups + 1) * sizeof *fill);
-    if (!fill)
-        return false;
-    memcpy(fill, r->start, r->groups * sizeof *fill);
-    for (uint32_t row = 0; row < blocks; row++)
-        r->rows[fill[r->group_of[group[row]]]++] = row;
-    free(fill);
-    return true;
+    free(r->made);
+    free(r->at);
 }
 
 /* Whether a body still consists of all the blocks it was measured with. */
@@ -187,16 +162,85 @@ static bool is_whole(const tl_model *m, uint32_t body)
     return fabs(mass - m->bodies.mass[body]) <= WHOLE * mass;
 }
 
-/* True when the group is a body already. */
-static bool stays(const tl_model *m, const regroup *r, size_t g)
+/* Whether the blocks of a body are a group, as r->of has their sizes. */
+static bool stays(const tl_model *m, const regroup *r, const uint32_t *group, uint32_t body)
 {
-    uint32_t count = r->start[g + 1] - r->start[g], body = m->blocks.body[r->rows[r->start[g]]];
-    if (m->bodies.member_count[body] != count || !is_whole(m, body))
+    const uint32_t *rows = &m->members[m->bodies.member_start[body]];
+    uint32_t count = m->bodies.member_count[body];
+    if (r->of[group[rows[0]]] != count || !is_whole(m, body))
         return false;
-    for (uint32_t k = r->start[g]; k < r->start[g + 1]; k++)
-        if (m->blocks.body[r->rows[k]] != body)
+    for (uint32_t k = 1; k < count; k++)
+        if (group[rows[k]] != group[rows[0]])
             return false;
     return true;
+}
+
+/* Finds the bodies that stay, and counts what is made anew. */
+static bool sort_bodies(const tl_model *m, const uint32_t *group, regroup *r)
+{
+    size_t blocks = m->blocks.table.rows, bodies = m->bodies.table.rows;
+    r->of = calloc(blocks + 1, sizeof *r->of);
+    r->now = malloc((bodies + 1) * sizeof *r->now);
+    r->stays = malloc(bodies + blocks + 1);
+    if (!r->of || !r->now || !r->stays)
+        return false;
+    for (uint32_t row = 0; row < blocks; row++)
+        r->of[group[row]]++;
+    for (uint32_t body = 0; body < bodies; body++)
+        r->stays[body] = stays(m, r, group, body);
+    for (uint32_t row = 0; row < blocks; row++) {
+        bool changes = !r->stays[m->blocks.body[row]];
+        r->member_count += changes;
+        r->made_count += changes && group[row] == row;
+    }
+    return true;
+}
+
+/* Lists the members of the new bodies, in the order of the lowest blocks, and gives all bodies their new rows. */
+static bool list_made(const tl_model *m, const uint32_t *group, regroup *r)
+{
+    uint32_t kept = 0, count = 0, start = 0;
+    r->members = malloc((r->member_count + 1) * sizeof *r->members);
+    r->shapes = calloc(r->member_count + 1, sizeof *r->shapes);
+    r->made = calloc(r->made_count + 1, sizeof *r->made);
+    r->at = malloc((r->made_count + 1) * sizeof *r->at);
+    if (!r->members || !r->shapes || !r->made || !r->at)
+        return false;
+    for (uint32_t row = 0; row < m->blocks.table.rows; row++) {
+        uint32_t body = m->blocks.body[row];
+        if (r->stays[body]) {
+            if (m->members[m->bodies.member_start[body]] == row)
+                r->now[body] = count + kept++;
+            continue;
+        }
+        if (group[row] == row) {
+            r->made[count].start = start;
+            r->made[count].body = r->at[count] = count + kept;
+            start += r->of[row];
+            r->of[row] = count++;
+        }
+        made *one = &r->made[r->of[group[row]]];
+        r->members[one->start + one->count++] = (member){row, tl_block_displacement(m, row)};
+    }
+    memset(r->stays + m->bodies.table.rows, 1, count);
+    return true;
+}
+
+/* What a new body is made of, and the shapes of its blocks in its frame, with their seams. */
+static tl_status make_body(tl_model *m, regroup *r, made *one)
+{
+    uint32_t *rows = malloc((one->count + 1) * sizeof *rows);
+    if (!rows)
+        return tl_fail_memory(&m->error);
+    for (uint32_t k = 0; k < one->count; k++)
+        rows[k] = r->members[one->start + k].row;
+    one->parts = sum_parts(m, rows, one->count);
+    tl_status status = TL_OK;
+    for (uint32_t k = 0; k < one->count && status == TL_OK; k++)
+        status = new_shape(m, &one->parts, rows[k], &r->shapes[one->start + k]);
+    free(rows);
+    return status == TL_OK ? tl_poly_mark_seams(r->shapes + one->start, one->count, &m->error)
+                           : status;
 }
 
 /* Writes the row of a new body over that of its leader. */
@@ -216,85 +260,91 @@ static void write_body(tl_model *m, const parts *sum, uint32_t body)
 }
 
 /* Room for bodies, and for what only blocks of joined bodies have. */
-static bool make_room(tl_model *m, size_t bodies)
+static bool make_room(tl_model *m, const regroup *r)
 {
     tl_blocks *blocks = &m->blocks;
-    return tl_table_reserve(&m->bodies.table, bodies) &&
+    return tl_table_reserve(&m->bodies.table, m->bodies.table.rows + 2 * r->made_count) &&
            TL_COLUMN_NEED(&blocks->table, blocks, local, 0) &&
            TL_COLUMN_NEED(&blocks->table, blocks, base, 0);
 }
 
-tl_status tl_bodies_regroup(tl_model *m, const uint32_t *group)
+/* Rows of the new bodies, in between those that stay; the others go. */
+static void write_rows(tl_model *m, regroup *r)
+{
+    tl_blocks *blocks = &m->blocks;
+    tl_table *bodies = &m->bodies.table;
+    size_t old = bodies->rows;
+    tl_table_resize(bodies, old + r->made_count);
+    for (size_t i = 0; i < r->made_count; i++) {
+        const made *one = &r->made[i];
+        uint32_t lowest = r->members[one->start].row;
+        tl_table_move(bodies, old + i, blocks->body[lowest]);
+        write_body(m, &one->parts, (uint32_t)(old + i));
+        m->bodies.id[old + i] = blocks->id[lowest];
+    }
+    for (uint32_t row = 0; row < blocks->table.rows; row++)
+        if (r->stays[blocks->body[row]])
+            blocks->body[row] = r->now[blocks->body[row]];
+    for (size_t i = 0; i < r->made_count; i++)
+        for (uint32_t k = 0; k < r->made[i].count; k++)
+            blocks->body[r->members[r->made[i].start + k].row] = r->made[i].body;
+    tl_table_keep(bodies, r->stays);
+    tl_table_insert(bodies, r->at, r->made_count);
+}
+
+/* Puts the new shapes into the place of the old ones. */
+static void write_shapes(tl_model *m, regroup *r)
+{
+    tl_blocks *blocks = &m->blocks;
+    for (size_t i = 0; i < r->member_count; i++) {
+        uint32_t row = r->members[i].row;
+        tl_poly_free(blocks->shape[row]);
+        blocks->shape[row] = r->shapes[i];
+        r->shapes[i] = NULL;
+        blocks->local[row] = tl_poly_mass(blocks->shape[row]).centroid;
+        tl_block_changes(m, row);
+    }
+}
+
+/* Mass, inertia and motion of a new body, and what its blocks have been displaced by. */
+static void finish_body(tl_model *m, const regroup *r, const made *one)
 {
     tl_blocks *blocks = &m->blocks;
     tl_bodies *bodies = &m->bodies;
-    size_t count = blocks->table.rows;
-    regroup r;
-    bool room = list_groups(m, group, &r) && make_room(m, 2 * count + 1);
-    tl_status status = room ? TL_OK : tl_fail_memory(&m->error);
-    for (size_t g = 0; g < r.groups && status == TL_OK; g++) {
-        if (stays(m, &r, g))
-            continue;
-        r.parts[g] = sum_parts(m, &r.rows[r.start[g]], r.start[g + 1] - r.start[g]);
-        for (uint32_t k = r.start[g]; k < r.start[g + 1] && status == TL_OK; k++)
-            status = new_shape(m, &r.parts[g], r.rows[k], &r.shapes[r.rows[k]]);
-        if (status == TL_OK)
-            status = mark_seams(m, &r.rows[r.start[g]], r.start[g + 1] - r.start[g], r.shapes);
+    tl_body_measure(m, one->body);
+    bodies->w[one->body] = one->parts.fixed & TL_FIX_ROTATION
+                               ? tl_v3(0, 0, 0)
+                               : spin_velocity(bodies, one->body, one->parts.spin);
+    bodies->pose[one->body].v_moved = bodies->v[one->body];
+    bodies->pose[one->body].w_moved = bodies->w[one->body];
+    for (uint32_t k = 0; k < one->count; k++) {
+        const member *of = &r->members[one->start + k];
+        if (one->count == 1)
+            blocks->local[of->row] = tl_v3(0, 0, 0);
+        blocks->base[of->row] = tl_v3(0, 0, 0);
+        blocks->base[of->row] = tl_v3_sub(tl_block_displacement(m, of->row), of->displacement);
     }
-    if (status != TL_OK) {
-        regroup_free(&r, count);
-        return status;
+}
+
+tl_status tl_bodies_regroup(tl_model *m, const uint32_t *group)
+{
+    regroup r = {0};
+    tl_status status = sort_bodies(m, group, &r) ? TL_OK : tl_fail_memory(&m->error);
+    bool changes = status == TL_OK && r.made_count > 0;
+    if (changes && !(list_made(m, group, &r) && make_room(m, &r)))
+        status = tl_fail_memory(&m->error);
+    for (size_t i = 0; i < r.made_count && status == TL_OK; i++)
+        status = make_body(m, &r, &r.made[i]);
+    if (changes && status == TL_OK) { /* from here on nothing can fail */
+        write_rows(m, &r);
+        write_shapes(m, &r);
+        tl_rows_refresh(m);
+        for (size_t i = 0; i < r.made_count; i++)
+            finish_body(m, &r, &r.made[i]);
+        tl_drives_recount(m);
     }
-    /* From here on nothing can fail. New bodies go behind the old rows, group by group, then the old
-     * rows go: rows are in order of the groups' lowest blocks. */
-    size_t old = bodies->table.rows;
-    for (uint32_t row = 0; row < count; row++)
-        r.displacement[row] = tl_block_displacement(m, row);
-    tl_table_resize(&bodies->table, old + r.groups);
-    for (size_t g = 0; g < r.groups; g++) {
-        uint32_t body = (uint32_t)(old + g);
-        tl_table_move(&bodies->table, body, blocks->body[r.rows[r.start[g]]]);
-        if (r.parts[g].mass > 0)
-            write_body(m, &r.parts[g], body);
-    }
-    for (size_t g = 0; g < r.groups; g++)
-        for (uint32_t k = r.start[g]; k < r.start[g + 1]; k++)
-            blocks->body[r.rows[k]] = (uint32_t)g;
-    for (size_t g = 0; g < r.groups; g++) {
-        tl_table_move(&bodies->table, g, old + g);
-        bodies->id[g] = blocks->id[r.rows[r.start[g]]];
-    }
-    bodies->table.rows = r.groups;
-    for (uint32_t row = 0; row < count; row++) {
-        if (!r.shapes[row])
-            continue;
-        tl_poly_free(blocks->shape[row]);
-        blocks->shape[row] = r.shapes[row];
-        r.shapes[row] = NULL;
-        blocks->local[row] = tl_poly_mass(blocks->shape[row]).centroid;
-    }
-    tl_rows_refresh(m);
-    for (uint32_t g = 0; g < r.groups; g++) {
-        if (!(r.parts[g].mass > 0))
-            continue;
-        tl_body_measure(m, g);
-        bodies->w[g] = r.parts[g].fixed & TL_FIX_ROTATION
-                           ? tl_v3(0, 0, 0)
-                           : spin_velocity(bodies, g, r.parts[g].spin);
-        bodies->pose[g].v_moved = bodies->v[g];
-        bodies->pose[g].w_moved = bodies->w[g];
-        for (uint32_t k = r.start[g]; k < r.start[g + 1]; k++) {
-            uint32_t row = r.rows[k];
-            if (r.start[g + 1] - r.start[g] == 1)
-                blocks->local[row] = tl_v3(0, 0, 0);
-            blocks->base[row] = tl_v3(0, 0, 0);
-            blocks->base[row] = tl_v3_sub(tl_block_displacement(m, row), r.displacement[row]);
-        }
-    }
-    tl_drives_recount(m);
-    m->constraints++;
-    regroup_free(&r, count);
-    return TL_OK;
+    regroup_free(&r);
+    return status;
 }
 
 tl_status tl_bodies_fall_apart(tl_model *m, const unsigned char *keep, uint32_t *group)

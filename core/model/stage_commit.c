@@ -55,6 +55,7 @@ static void put(tl_model *m, const tl_stage_block *block, const source *from, ui
     blocks->density[row] = block->density;
     blocks->lineage[row] = block->lineage;
     blocks->hidden[row] = block->hidden || block->conceal;
+    tl_block_changes(m, row);
     tl_block_measure(m, row, mass.volume);
     tl_body_measure_single(m, body, row, mass);
     if (!from) {
@@ -212,6 +213,7 @@ static void drop_replaced(tl_stage *stage, size_t old, commit_room *room)
         if (block->retagged) {
             room->gone[room->gone_count++] = m->blocks.shape[block->source];
             m->blocks.shape[block->source] = block->shape;
+            tl_block_changes(m, block->source);
         }
     }
     /* a drive goes on for the children though none of its bodies is left in between */

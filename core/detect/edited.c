@@ -1,0 +1,231 @@
+/* edited.c - what edits of the model leave of pairs and contacts.
+ *
+ * A block bears the count of structure with which it came, or got another shape, frame or tags. What is newer than the
+ * count that detection has seen is looked at as if it were new; all else that is known of pairs and contacts stays. */
+#include "detect/edited.h"
+
+#include "contact/contacts.h"
+#include "contact/index.h"
+#include "contact/pair_view.h"
+#include "detect/beside.h"
+#include "detect/pairs.h"
+#include "detect/update.h"
+
+#include <stdlib.h>
+
+/* Rows a worker takes at a time. */
+#define CONTACT_CHUNK 256
+/* Minimum area over that of a patch from which the patch may be none: below LEAST of narrow/manifold.c. */
+#define PATCH_STANDS 0.01
+
+/* ---------------------------------------------------------------- rows ------------------- */
+
+/* What is made before anything is changed. */
+typedef struct rows_room {
+    uint32_t *row;      /* [blocks seen] the present row, or TL_NO_ROW */
+    double *odometer_0; /* [bodies] */
+    uint8_t *touched;   /* [bodies] */
+    tl_seen *seen;      /* [blocks] */
+} rows_room;
+
+static bool make_room(const tl_model *m, rows_room *room)
+{
+    tl_detect *d = m->detect;
+    size_t blocks = m->blocks.table.rows, bodies = m->bodies.table.rows;
+    *room = (rows_room){.row = malloc((d->seen_count + 1) * sizeof *room->row),
+                        .odometer_0 = malloc((bodies + 1) * sizeof *room->odometer_0),
+                        .touched = malloc(bodies + 1),
+                        .seen = malloc((blocks + 1) * sizeof *room->seen)};
+    if (room->row && room->odometer_0 && room->touched && room->seen &&
+        tl_fit(&d->idle, &d->idle_room, bodies + 1, sizeof *d->idle) &&
+        tl_fit(&d->run, &d->run_of_room, blocks + 1, sizeof *d->run))
+        return true;
+    free(room->row);
+    free(room->odometer_0);
+    free(room->touched);
+    free(room->seen);
+    return false;
+}
+
+/* Runs of bodies that have come or changed begin here, and their contacts are not what they were; others keep both. */
+static void keep_bodies(tl_model *m, const rows_room *room)
+{
+    const tl_detect *d = m->detect;
+    for (size_t body = 0; body < m->bodies.table.rows; body++) {
+        room->odometer_0[body] = m->bodies.odometer[body];
+        room->touched[body] = true;
+    }
+    for (size_t old = 0; old < d->seen_count; old++) {
+        uint32_t row = room->row[old], before = d->seen[old].body;
+        if (row == TL_NO_ROW || tl_block_is_new(m, row))
+            continue;
+        room->odometer_0[m->blocks.body[row]] = d->odometer_0[before];
+        room->touched[m->blocks.body[row]] = d->touched[before];
+    }
+}
+
+/* Ends a contact: a block of it has gone, or both have become one body. */
+static void end_contact(tl_model *m, const rows_room *room, uint32_t contact, uint32_t a,
+                        uint32_t b)
+{
+    m->detect->contacts.pending[contact] = TL_PENDING_DIE;
+    if (a != TL_NO_ROW)
+        room->touched[m->blocks.body[a]] = true;
+    if (b != TL_NO_ROW)
+        room->touched[m->blocks.body[b]] = true;
+}
+
+/* Pairs, in their order, with their present rows: ids ascend with rows before and after. */
+static void keep_pairs(tl_model *m, const rows_room *room)
+{
+    tl_detect *d = m->detect;
+    tl_contacts *c = &d->contacts;
+    size_t kept = 0;
+    for (size_t i = 0; i < d->pair_count; i++) {
+        tl_pair p = d->pairs[i];
+        uint32_t a = room->row[p.a], b = room->row[p.b];
+        bool parted = a == TL_NO_ROW || b == TL_NO_ROW || m->blocks.body[a] == m->blocks.body[b];
+        if (tl_pair_is_apart(&p)) {
+            if (parted || tl_block_is_new(m, a) || tl_block_is_new(m, b))
+                continue; /* the broad phase lists it anew */
+        } else if (parted) {
+            end_contact(m, room, p.contact, a, b);
+            continue;
+        } else {
+            c->a[p.contact] = a;
+            c->b[p.contact] = b;
+            c->pair[p.contact] = (uint32_t)kept;
+            if (c->pending[p.contact] == TL_PENDING_DIE)
+                end_contact(m, room, p.contact, a, b);
+        }
+        p.a = a;
+        p.b = b;
+        d->pairs[kept++] = p;
+    }
+    d->pair_count = kept;
+    for (size_t chunk = 0; chunk * TL_PAIR_CHUNK < kept; chunk++)
+        d->chunks[chunk] = (tl_pair_chunk){.wake = -INFINITY};
+}
+
+tl_status tl_edited_rows(tl_model *m)
+{
+    tl_detect *d = m->detect;
+    size_t blocks = m->blocks.table.rows, bodies = m->bodies.table.rows;
+    rows_room room;
+    if (!make_room(m, &room))
+        return tl_fail_memory(&m->error);
+    for (size_t old = 0; old < d->seen_count; old++)
+        room.row[old] = tl_block_row_quiet(m, d->seen[old].id);
+    keep_bodies(m, &room);
+    keep_pairs(m, &room);
+    for (size_t row = 0; row < blocks; row++)
+        room.seen[row] = (tl_seen){m->blocks.id[row], m->blocks.body[row]};
+    free(room.row);
+    free(d->odometer_0);
+    free(d->touched);
+    free(d->seen);
+    d->odometer_0 = room.odometer_0;
+    d->touched = room.touched;
+    d->seen = room.seen;
+    d->odometer_room = d->touched_room = bodies + 1;
+    d->seen_room = blocks + 1;
+    d->seen_count = blocks;
+    d->any_touched = true;
+    tl_contacts_unlist(d);
+    return TL_OK;
+}
+
+/* ---------------------------------------------------------------- laws ------------------- */
+
+/* Contacts under another material belong in another run. */
+static void find_materials(tl_model *m)
+{
+    tl_contacts *c = &m->detect->contacts;
+    for (uint32_t row = 0; row < c->table.rows; row++)
+        if (c->pending[row] == TL_PENDING_NONE &&
+            tl_material_row(m, c->tag[row]) != c->material[row])
+            c->pending[row] = TL_PENDING_MOVE;
+}
+
+/* Whether a contact that is a patch remains one whatever the minimum area was before. */
+static bool stays_patch(const tl_model *m, uint32_t row)
+{
+    const tl_contacts *c = &m->detect->contacts;
+    if (c->point_count[row] == 0 || c->facet[row].kind == TL_FACET_FIELD)
+        return false;
+    tl_area_rule rule = tl_area_rule_of(m, c->tag[row]);
+    double mean = fmin(m->blocks.mean_face[c->a[row]], m->blocks.mean_face[c->b[row]]);
+    double least = isnan(rule.absolute) ? rule.fraction * mean : rule.absolute;
+    return least <= PATCH_STANDS * c->area[row];
+}
+
+/* Pairs that touch without area are looked at again, but for those that have nothing in common. */
+static void wake_pairs(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
+{
+    (void)thread;
+    tl_model *m = user;
+    tl_detect *d = m->detect;
+    for (uint32_t i = (uint32_t)begin; i < end; i++) {
+        tl_pair *p = &d->pairs[i];
+        tl_pair_faces faces = tl_pair_faces_of(p);
+        if (!tl_pair_is_apart(p) || faces.one == faces.other) {
+            tl_pair_wake(d, i);
+            continue;
+        }
+        tl_pair_view view = tl_pair_view_of(m, p->a, p->b);
+        if (!tl_beside_only_touches(&view, p)) {
+            tl_pair_wake(d, i);
+            continue;
+        }
+        tl_pair_forget_faces(p);
+        tl_pair_sleep(d, p, TL_STILL * view.size);
+        if (p->wake < d->chunks[chunk].wake)
+            d->chunks[chunk].wake = p->wake;
+    }
+}
+
+/* Under another minimum area contacts that are no patches, or too small ones, are made anew, and pairs that only touched are
+ * looked at again; under another rule for the points of patches, all are made anew. */
+static void find_rules(tl_model *m)
+{
+    tl_detect *d = m->detect;
+    tl_contacts *c = &d->contacts;
+    bool all = d->contact_points != m->config.contact_points;
+    tl_parallel_for(m->pool, d->pair_count, TL_PAIR_CHUNK, wake_pairs, m);
+    for (uint32_t row = 0; row < c->table.rows; row++) {
+        if (c->pending[row] == TL_PENDING_DIE)
+            continue;
+        bool patch = stays_patch(m, row);
+        if (all || !patch)
+            c->points_valid_to[row] = -INFINITY;
+        if (!patch && c->facet[row].kind == TL_FACET_PATCH)
+            c->faces_valid_to[row] = -INFINITY;
+    }
+}
+
+void tl_edited_laws(tl_model *m)
+{
+    tl_detect *d = m->detect;
+    if (d->rules != m->rules) /* before contacts note the room they want in the place of faces */
+        find_rules(m);
+    if (d->laws != m->laws)
+        find_materials(m);
+}
+
+/* ---------------------------------------------------------------- frames ----------------- */
+
+static void reframe_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
+{
+    (void)chunk;
+    tl_model *m = user;
+    const tl_contacts *c = &m->detect->contacts;
+    for (uint32_t row = (uint32_t)begin; row < end; row++)
+        if (c->pending[row] != TL_PENDING_DIE &&
+            (tl_block_is_new(m, c->a[row]) || tl_block_is_new(m, c->b[row])))
+            tl_contact_reframe(m, row, thread);
+}
+
+void tl_edited_frames(tl_model *m)
+{
+    tl_parallel_for(m->pool, m->detect->contacts.table.rows, CONTACT_CHUNK, reframe_range, m);
+}

@@ -1,0 +1,21 @@
+/* edited.h - what edits of the model leave of pairs and contacts (edited.c). */
+#ifndef TL_DETECT_EDITED_H
+#define TL_DETECT_EDITED_H
+
+#include "contact/detection.h"
+#include "model/model.h"
+
+/* Finds the blocks of pairs and contacts again after rows have changed, and drops what was known of those that have come, gone
+ * or changed: their pairs without a contact, and contacts of which a block has gone. TL_E_MEMORY: nothing has changed. */
+tl_status tl_edited_rows(tl_model *m);
+/* Marks the contacts that come under another material, and those whose facets follow other rules than they did. */
+void tl_edited_laws(tl_model *m);
+/* Makes anew what contacts keep in the frames of bodies that have changed, before anything is computed from it. */
+void tl_edited_frames(tl_model *m);
+/* Whether a block has come or changed since the detection looked. */
+static inline bool tl_block_is_new(const tl_model *m, uint32_t row)
+{
+    return m->blocks.changed[row] > m->detect->structure;
+}
+
+#endif
