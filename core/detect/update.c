@@ -140,7 +140,7 @@ static bool find(tl_model *m, uint32_t c, tl_narrow *room)
     tl_field_mesh mesh;
     if (row)
         mesh = (tl_field_mesh){0};
-    if (row && contacts->point_count[c])
+    if (row && contacts->point_count[c] && !room->reframed) /* else faces may have other numbers */
         mesh = tl_field_listed_anew(row, &region);
     region.mesh = row ? &mesh : NULL;
     tl_manifold_before before = tl_contact_before(m, c, room->reframed);

@@ -345,7 +345,10 @@ bool tl_mesh_integrate(const tl_field_faces *f, tl_field_sums *sums)
     corners at;
     polygons p;
     double given[GIVEN][LANES], sum[GIVEN];
-    if (!mesh || mesh->polygons == 0 || !stands(f, &at))
+    if (!mesh || mesh->polygons == 0)
+        return false;
+    bool strays = mesh->apex[0].strays || mesh->apex[1].strays;
+    if ((strays && !f->energy_only) || !stands(f, &at)) /* their cells tell no volume */
         return false;
     const uint8_t *loop = mesh->loop;
     tl_apex apex[] = {tl_apex_find(f, &mesh->apex[0]), tl_apex_find(f, &mesh->apex[1])};
@@ -354,7 +357,7 @@ bool tl_mesh_integrate(const tl_field_faces *f, tl_field_sums *sums)
         uint32_t count = begin_polygons(f, apex, first, &loop, &p);
         integrate_polygons(&at, &p);
         add_given(&p, given);
-        if (apex[0].strays || apex[1].strays)
+        if (strays)
             add_strays(f, &p, first, count, apex);
     }
     sum_lanes(given, sum);
