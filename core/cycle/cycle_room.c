@@ -36,6 +36,7 @@ static void add_columns(struct tl_cycle *c)
 
 tl_status tl_cycle_prepare(tl_model *m)
 {
+    tl_rows_tidy(m);
     if (!m->cycle) {
         if (!(m->cycle = calloc(1, sizeof *m->cycle)))
             return tl_fail_memory(&m->error);

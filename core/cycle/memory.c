@@ -10,7 +10,7 @@ tl_memory tl_model_memory(const tl_model *m)
     size_t blocks = m->blocks.table.rows;
     memory.blocks = tl_table_bytes(&m->blocks.table);
     for (size_t row = 0; row < blocks; row++)
-        memory.shapes += tl_poly_bytes(m->blocks.shape[row]);
+        memory.shapes += m->blocks.stays[row] ? tl_poly_bytes(m->blocks.shape[row]) : 0;
     memory.bodies = tl_table_bytes(&m->bodies.table);
     if (m->cycle)
         memory.step = sizeof *m->cycle + tl_table_bytes(&m->cycle->table) +

@@ -93,6 +93,7 @@ static void say_failure(tl_model *m, const tl_solve_result *r)
 
 static tl_status run(tl_model *m, const tl_solve *solve, tl_solve_result *result)
 {
+    tl_rows_tidy(m);
     *result =
         (tl_solve_result){.reason = TL_SOLVE_CYCLES, .time = m->time, .measure = solve->measure};
     if (m->running)

@@ -303,6 +303,7 @@ static tl_status settle(tl_model *m)
 /* Pairs and contacts after edits of the model, and new contacts; those that stand are not touched. */
 static tl_status find_contacts(tl_model *m)
 {
+    tl_rows_tidy(m);
     tl_status status = ensure(m);
     if (status != TL_OK)
         return status;
@@ -339,6 +340,7 @@ static tl_status find_contacts(tl_model *m)
 
 tl_status tl_detect_refresh(tl_model *m)
 {
+    tl_rows_tidy(m);
     const tl_detect *d = m->detect;
     bool listed =
         d && !d->rows_changed && d->indexed == d->contacts.table.rows; /* no step failed */

@@ -184,6 +184,7 @@ static tl_status write_file(tl_model *m, const char *path)
 
 tl_status tl_write_blocks(tl_model *m, const char *path)
 {
+    tl_rows_tidy(m);
     sigset_t before;
     tl_signals_hold(&before, false);
     tl_status status = write_file(m, path);

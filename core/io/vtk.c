@@ -154,11 +154,13 @@ tl_status tl_write_vtk(tl_model *m, const char *prefix, const tl_vtk_parts *part
         return tl_fail(&m->error, TL_E_ARGUMENT,
                        "write_vtk: blocks, contacts and joints are all false, so there is nothing "
                        "to write; leave out what is to be written");
+    tl_rows_tidy(m);
     return write_frame(m, prefix, &f);
 }
 
 tl_status tl_write_section(tl_model *m, const char *prefix, const tl_halfspace *plane)
 {
+    tl_rows_tidy(m);
     if (!(plane->dip >= 0 && plane->dip <= 90) || !isfinite(plane->dip_direction) ||
         !tl_v3_finite(plane->origin))
         return tl_fail(

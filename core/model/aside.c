@@ -4,6 +4,7 @@
 
 bool tl_rows_set_aside(tl_model *m, tl_aside *aside)
 {
+    tl_rows_tidy(m);
     aside->blocks = m->blocks;
     aside->bodies = m->bodies;
     bool blocks = tl_table_copy(&aside->blocks.table, &aside->blocks, &m->blocks.table);
@@ -29,6 +30,7 @@ void tl_rows_take_back(tl_model *m, tl_aside *aside)
     m->blocks.table.owner = &m->blocks;
     m->bodies.table.owner = &m->bodies;
     m->next_id = aside->next_id;
+    m->extremes.known = false;
     tl_rows_refresh(m);
     tl_drives_settle(m);
     m->structure = aside->structure;

@@ -13,15 +13,12 @@ bool tl_rows_reserve(tl_model *m, size_t count, tl_id next_id)
 {
     if (!tl_table_reserve(&m->blocks.table, count) || !tl_table_reserve(&m->bodies.table, count))
         return false;
-    uint32_t *members = realloc(m->members, (count + 1) * sizeof *members);
-    if (!members)
-        return false;
-    m->members = members;
-    uint32_t *row_of = realloc(m->row_of, ((size_t)next_id + 1) * sizeof *row_of);
-    if (!row_of)
-        return false;
-    m->row_of = row_of;
-    return true;
+    /* by an eighth more than is needed: blocks may come one by one */
+    size_t ids = (size_t)next_id + 1;
+    return (count + 1 <= m->member_room ||
+            tl_fit(&m->members, &m->member_room, count + count / 8 + 1, sizeof *m->members)) &&
+           (ids <= m->row_of_room ||
+            tl_fit(&m->row_of, &m->row_of_room, ids + ids / 8, sizeof *m->row_of));
 }
 
 void tl_rows_refresh(tl_model *m)
@@ -47,6 +44,25 @@ void tl_rows_refresh(tl_model *m)
         m->members[bodies->member_start[body] + bodies->member_count[body]++] = row;
     }
     m->structure++;
+}
+
+void tl_rows_added(tl_model *m, uint32_t first)
+{
+    for (uint32_t row = first; row < m->blocks.table.rows; row++) {
+        uint32_t body = m->blocks.body[row];
+        m->row_of[m->blocks.id[row]] = row;
+        m->bodies.member_start[body] = row; /* every block before is a member of one body */
+        m->bodies.member_count[body] = 1;
+        m->members[row] = row;
+    }
+    m->structure++;
+}
+
+void tl_rows_tidy(tl_model *m)
+{
+    if (m->gone)
+        tl_rows_keep(m, m->blocks.stays); /* what is read of it has not moved yet */
+    m->gone = 0;
 }
 
 void tl_rows_keep(tl_model *m, const unsigned char *keep)

@@ -17,6 +17,7 @@ static void blocks_init(tl_blocks *b)
     TL_COLUMN(t, b, mean_face, 0);
     TL_COLUMN(t, b, lineage, TL_COLUMN_STATE);
     TL_COLUMN(t, b, hidden, TL_COLUMN_STATE);
+    TL_COLUMN(t, b, stays, 0);
     TL_COLUMN(t, b, changed, 0);
 }
 

@@ -175,7 +175,7 @@ tl_status tl_block_check(tl_model *m, tl_id block)
 
 size_t tl_block_count(const tl_model *m)
 {
-    return m->blocks.table.rows;
+    return m->blocks.table.rows - m->gone;
 }
 
 tl_vec3 tl_block_centroid(const tl_model *m, uint32_t row)

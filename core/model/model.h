@@ -11,7 +11,8 @@
  * displacement since, kept apart so that a step far below the rounding of x_ref still counts.
  *
  * Rows of blocks and bodies are in ascending order of id. Rows change when blocks are created, cut,
- * joined or deleted; `structure` counts these changes, and a block that came or changed bears the count. Ids never change and are never used again. */
+ * joined or deleted; `structure` counts these changes, and a block that came or changed bears the count.
+ * Rows of blocks that were deleted go when rows are next gone through (tl_rows_tidy). Ids never change and are never used again. */
 #ifndef TL_MODEL_MODEL_H
 #define TL_MODEL_MODEL_H
 
@@ -50,7 +51,10 @@ typedef struct tl_blocks {
     double *mean_face; /* mean face area, m2 */
     uint64_t *lineage; /* key of the block's descent, for random draws */
     uint8_t *hidden;
-    uint64_t *changed; /* count of `structure` with which it came, or got another shape, frame or tags */
+    uint8_t *
+        stays; /* 0: it is deleted, and its row goes when rows are next tidied; its shape has gone */
+    uint64_t
+        *changed; /* count of `structure` with which it came, or got another shape, frame or tags */
 } tl_blocks;
 
 typedef struct tl_body_load {
@@ -146,6 +150,12 @@ typedef struct tl_cut_record {
 /* Most refused cuts that are listed; more are only counted. */
 #define TL_REFUSED_LISTED 1000
 
+/* Of all blocks, while known: total volume, m3, and the smallest volume, edge, m, and face, m2. */
+typedef struct tl_extremes {
+    bool known;
+    double total, volume, edge, face;
+} tl_extremes;
+
 /* Remarks that are made once a model. */
 typedef enum tl_remark {
     TL_REMARK_UNDAMPED, /* solve without damping */
@@ -172,7 +182,9 @@ struct tl_model {
     tl_bodies bodies;
     uint32_t *members; /* block rows, body by body, ascending */
     uint32_t *row_of;  /* [next_id] row of a block id, or TL_NO_ROW */
+    size_t member_room, row_of_room;
     tl_id next_id;
+    size_t gone;          /* rows of blocks that are deleted */
     uint64_t structure;   /* counts changes of the rows */
     uint64_t constraints; /* counts changes of fixing, hiding or mass */
 
@@ -182,6 +194,7 @@ struct tl_model {
     tl_joint_set *joints; /* joint number j is joints[j - 1] */
     size_t joint_count;
     tl_cut_record record;
+    tl_extremes extremes;
 
     tl_material *materials;
     size_t material_count;
@@ -371,10 +384,13 @@ typedef struct tl_stage {
     size_t *visible; /* [capacity] indices of the blocks that generators see, ascending */
     size_t visible_count;
     uint32_t next_body;
+    bool opened;   /* the model's blocks are in it */
+    bool lost;     /* there was no memory for that when a service asked that cannot say so */
     bool torn;     /* some block is */
     bool regroups; /* bodies of several blocks are made or changed */
     tl_generate_summary summary;
     double created_volume;   /* less what was deleted */
+    double changed_volume;   /* of what a commit has made, less what it replaced */
     tl_refused_cut *refused; /* `block` is an index into blocks until the commit */
     size_t refused_listed;
     /* what to go back to when the stage is dropped */
@@ -383,9 +399,15 @@ typedef struct tl_stage {
     bool origin_set;
 } tl_stage;
 
+/* Begins a staging set without the model's blocks, to which new ones may be added. */
+tl_status tl_stage_begin_empty(tl_model *m, tl_stage *stage);
+/* Puts the model's blocks into it, before those that were added. TL_E_MEMORY leaves it as it was. */
+tl_status tl_stage_open(tl_stage *stage);
 /* Begins a staging set with the model's blocks in it. */
 tl_status tl_stage_begin(tl_model *m, tl_stage *stage);
-/* Adds the convex hull of vertices, or a box, given in user coordinates. */
+/* Adds a block, of which it then owns what the block does; false when out of memory. */
+bool tl_stage_push(tl_stage *stage, const tl_stage_block *block);
+/* Adds the convex hull of vertices, or a box, given in user coordinates (stage_new.c). */
 tl_status tl_stage_add_hull(tl_stage *stage, const tl_vec3 *vertices, size_t count, double density,
                             const char *group);
 tl_status tl_stage_add_box(tl_stage *stage, tl_vec3 min, tl_vec3 max, double density,
@@ -436,6 +458,10 @@ bool tl_rows_reserve(tl_model *m, size_t count, tl_id next_id);
 /* Derives the members of all bodies and the id-to-row table after rows have changed; the memory must
  * have been reserved. Counts a change of structure. */
 void tl_rows_refresh(tl_model *m);
+/* The same where single blocks, bodies of their own, have been added from row `first` on. */
+void tl_rows_added(tl_model *m, uint32_t first);
+/* Takes out the rows of blocks that have been deleted. Whoever goes through rows, and not from ids, calls this before. */
+void tl_rows_tidy(tl_model *m);
 /* Derives a block's size and mean face from its shape, whose volume is given. */
 void tl_block_measure(tl_model *m, uint32_t row, double volume);
 /* Derives a body's mass, inertia and radius from its blocks. */
@@ -444,6 +470,11 @@ void tl_body_measure(tl_model *m, uint32_t body);
 void tl_body_measure_single(tl_model *m, uint32_t body, uint32_t row, tl_mass mass);
 /* Removes the blocks with keep[row] == 0, and bodies left without blocks. Their shapes are the caller's. */
 void tl_rows_keep(tl_model *m, const unsigned char *keep);
+
+/* ---- extremes.c: a block has come, goes; all that is known of them ---- */
+void tl_extremes_add(tl_model *m, uint32_t row);
+void tl_extremes_drop(tl_model *m, uint32_t row);
+tl_extremes tl_extremes_of(tl_model *m);
 
 /* The rows of blocks and bodies as they were before a change that may fail half-way: aside.c. */
 typedef struct tl_aside {

@@ -33,6 +33,7 @@ static double smallest_face(const tl_poly *shape)
 
 tl_status tl_model_quality(tl_model *m, tl_quality *quality)
 {
+    tl_rows_tidy(m);
     const tl_blocks *b = &m->blocks;
     const tl_cut_record *record = &m->record;
     *quality = (tl_quality){.blocks = b->table.rows,

@@ -407,6 +407,8 @@ tl_status tl_bodies_mend(tl_model *m)
 static tl_status check_parts(tl_model *m, const tl_id *ids, size_t count, const char *verb)
 {
     tl_status status = tl_model_may_change(m, verb);
+    if (status == TL_OK)
+        tl_rows_tidy(m);
     for (size_t i = 0; i < count && status == TL_OK; i++) {
         uint32_t row = tl_block_row(m, ids[i]);
         if (row == TL_NO_ROW)

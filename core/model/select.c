@@ -42,8 +42,6 @@ static bool in_bounds(const tl_bounds *box, tl_vec3 p, double slack)
 static bool passes(const tl_model *m, const tl_block_filter *f, tl_tag joint, uint32_t row)
 {
     const tl_blocks *b = &m->blocks;
-    if (f->id != TL_NO_ID && b->id[row] != f->id)
-        return false;
     if (f->hidden >= 0 && (b->hidden[row] != 0) != (f->hidden != 0))
         return false;
     if (f->group && strcmp(m->groups[b->group[row]], f->group) != 0)
@@ -75,11 +73,19 @@ tl_status tl_blocks_select(tl_model *m, const tl_block_filter *filter, tl_id **i
         if (status != TL_OK)
             return status;
     }
-    tl_id *list = malloc((m->blocks.table.rows + 1) * sizeof *list);
+    uint32_t begin = 0, end;
+    if (filter->id != TL_NO_ID) { /* one block at most, and other rows may be untidy */
+        begin = tl_block_row_quiet(m, filter->id);
+        end = begin == TL_NO_ROW ? begin : begin + 1;
+    } else {
+        tl_rows_tidy(m);
+        end = (uint32_t)m->blocks.table.rows;
+    }
+    tl_id *list = malloc((end - begin + 1u) * sizeof *list);
     if (!list)
         return tl_fail_memory(&m->error);
     size_t n = 0;
-    for (uint32_t row = 0; row < m->blocks.table.rows; row++)
+    for (uint32_t row = begin; row < end; row++)
         if (passes(m, filter, joint, row))
             list[n++] = m->blocks.id[row];
     *ids = list;

@@ -117,20 +117,36 @@ static int compare_body(const void *x, const void *y)
     return (a > b) - (a < b);
 }
 
-/* Settles the bodies that have a torn block or that one has left. */
-static tl_status settle_bodies(tl_stage *stage, const member *members, size_t count,
-                               const uint32_t *left, size_t left_count)
+/* Lists the bodies that have a torn block or that one has left, ascending; returns how many. */
+static size_t list_torn(const tl_stage *stage, uint32_t *torn)
 {
-    for (size_t from = 0, to; from < count; from = to) {
-        uint32_t body = members[from].body;
-        bool torn = bsearch(&body, left, left_count, sizeof body, compare_body) != NULL;
-        for (to = from; to < count && members[to].body == body; to++)
-            torn = torn || stage->blocks[members[to].index].torn;
-        tl_status status = torn ? settle_body(stage, members + from, to - from) : TL_OK;
-        if (status != TL_OK)
-            return status;
+    size_t count = 0, kept = 0;
+    for (size_t i = 0; i < stage->count; i++) {
+        const tl_stage_block *block = &stage->blocks[i];
+        if (block->torn)
+            torn[count++] = block->body;
+        if (block->left != TL_NO_ROW)
+            torn[count++] = block->left;
     }
-    return TL_OK;
+    qsort(torn, count, sizeof *torn, compare_body);
+    for (size_t i = 0; i < count; i++)
+        if (i == 0 || torn[i] != torn[i - 1])
+            torn[kept++] = torn[i];
+    return kept;
+}
+
+/* The blocks of listed bodies, body by body; returns how many. */
+static size_t list_members(const tl_stage *stage, const uint32_t *torn, size_t torn_count,
+                           member *members)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < stage->count; i++) {
+        const tl_stage_block *block = &stage->blocks[i];
+        if (block->joined && bsearch(&block->body, torn, torn_count, sizeof *torn, compare_body))
+            members[count++] = (member){block->body, i};
+    }
+    qsort(members, count, sizeof *members, compare_member);
+    return count;
 }
 
 tl_status tl_stage_settle(tl_stage *stage)
@@ -138,23 +154,18 @@ tl_status tl_stage_settle(tl_stage *stage)
     if (!stage->torn)
         return TL_OK;
     member *members = malloc((stage->count + 1) * sizeof *members);
-    uint32_t *left = malloc((stage->count + 1) * sizeof *left);
-    size_t count = 0, left_count = 0;
-    tl_status status = members && left ? TL_OK : tl_fail_memory(&stage->model->error);
-    for (size_t i = 0; i < stage->count && status == TL_OK; i++) {
-        const tl_stage_block *block = &stage->blocks[i];
-        if (block->joined)
-            members[count++] = (member){block->body, i};
-        if (block->left != TL_NO_ROW)
-            left[left_count++] = block->left;
-    }
-    if (status == TL_OK) {
-        qsort(members, count, sizeof *members, compare_member);
-        qsort(left, left_count, sizeof *left, compare_body);
-        status = settle_bodies(stage, members, count, left, left_count);
+    uint32_t *torn = malloc((2 * stage->count + 1) * sizeof *torn);
+    tl_status status = members && torn ? TL_OK : tl_fail_memory(&stage->model->error);
+    size_t count = 0;
+    if (status == TL_OK)
+        count = list_members(stage, torn, list_torn(stage, torn), members);
+    for (size_t from = 0, to; from < count && status == TL_OK; from = to) {
+        for (to = from; to < count && members[to].body == members[from].body;)
+            to++;
+        status = settle_body(stage, members + from, to - from);
     }
     free(members);
-    free(left);
+    free(torn);
     stage->torn = status != TL_OK;
     return status;
 }
@@ -226,6 +237,16 @@ static void forget_refused(tl_stage *stage, size_t index)
     stage->refused_listed = kept;
 }
 
+/* Lists the visible blocks again from one of them on. */
+static void list_visible(tl_stage *stage, size_t from)
+{
+    while (stage->visible_count > 0 && stage->visible[stage->visible_count - 1] >= from)
+        stage->visible_count--;
+    for (size_t i = from; i < stage->count; i++)
+        if (!stage->blocks[i].hidden && !stage->blocks[i].veiled)
+            stage->visible[stage->visible_count++] = i;
+}
+
 void tl_stage_delete(tl_stage *stage, size_t index)
 {
     tl_stage_block gone = stage->blocks[index];
@@ -240,15 +261,12 @@ void tl_stage_delete(tl_stage *stage, size_t index)
     forget_refused(stage, index);
     if (gone.joined)
         tear(stage, gone.body);
-    tl_stage_list_visible(stage);
+    list_visible(stage, index);
 }
 
 void tl_stage_list_visible(tl_stage *stage)
 {
-    stage->visible_count = 0;
-    for (size_t i = 0; i < stage->count; i++)
-        if (!stage->blocks[i].hidden && !stage->blocks[i].veiled)
-            stage->visible[stage->visible_count++] = i;
+    list_visible(stage, 0);
 }
 
 void tl_stage_groups(const tl_stage *stage, const tl_id *ids, uint32_t *first, uint32_t *group)

@@ -55,6 +55,7 @@ static void put(tl_model *m, const tl_stage_block *block, const source *from, ui
     blocks->density[row] = block->density;
     blocks->lineage[row] = block->lineage;
     blocks->hidden[row] = block->hidden || block->conceal;
+    blocks->stays[row] = true;
     tl_block_changes(m, row);
     tl_block_measure(m, row, mass.volume);
     tl_body_measure_single(m, body, row, mass);
@@ -81,27 +82,16 @@ static void put(tl_model *m, const tl_stage_block *block, const source *from, ui
         m->drives[from->drive - 1].bodies++;
 }
 
-/* Takes a block into the smallest volume, edge and face of all. */
-static void note_extremes(tl_generate_summary *s, const tl_poly *shape, double volume)
+static void summarize(tl_stage *stage)
 {
-    s->smallest_volume = fmin(s->smallest_volume, volume);
-    s->smallest_edge = fmin(s->smallest_edge, tl_poly_shortest_edge(shape));
-    for (uint32_t f = 0; f < shape->face_count; f++)
-        s->smallest_face = fmin(s->smallest_face, tl_poly_face_area(shape, f));
-}
-
-static void summarize(tl_stage *stage, double volume_before)
-{
-    const tl_blocks *b = &stage->model->blocks;
+    tl_extremes all = tl_extremes_of(stage->model);
     tl_generate_summary *s = &stage->summary;
-    s->after = b->table.rows;
-    if (s->after == 0)
-        s->smallest_volume = s->smallest_edge = s->smallest_face = 0;
-    double volume = 0;
-    for (uint32_t row = 0; row < b->table.rows; row++)
-        volume += b->volume[row];
-    if (volume > 0)
-        s->volume_error = fabs(volume - volume_before - stage->created_volume) / volume;
+    s->after = tl_block_count(stage->model);
+    s->smallest_volume = s->after ? all.volume : 0;
+    s->smallest_edge = s->after ? all.edge : 0;
+    s->smallest_face = s->after ? all.face : 0;
+    if (all.total > 0)
+        s->volume_error = fabs(stage->changed_volume - stage->created_volume) / all.total;
 }
 
 /* A block that the commit gives a new row, and not one of the model as it was or with other tags. */
@@ -184,8 +174,10 @@ static bool reserve_record(const tl_stage *stage)
     return list != NULL;
 }
 
+/* `old`: rows that the stage may replace, none of one that has not been opened. */
 static bool make_room(tl_stage *stage, size_t old, size_t made, commit_room *room)
 {
+    size_t rows = stage->model->blocks.table.rows + made;
     room->ids = malloc((stage->count + 1) * sizeof *room->ids);
     room->gone = malloc((old + 1) * sizeof *room->gone);
     if (stage->regroups) {
@@ -193,9 +185,9 @@ static bool make_room(tl_stage *stage, size_t old, size_t made, commit_room *roo
         room->group = malloc((old + made + 1) * sizeof *room->group);
     }
     return sort_rows(stage, old, room) && room->ids && room->gone &&
-           (!stage->regroups || (room->first && room->group)) && old + made < TL_NO_ROW &&
+           (!stage->regroups || (room->first && room->group)) && rows < TL_NO_ROW &&
            reserve_record(stage) &&
-           tl_rows_reserve(stage->model, old + made, stage->model->next_id + (tl_id)made) &&
+           tl_rows_reserve(stage->model, rows, stage->model->next_id + (tl_id)made) &&
            (!stage->regroups || tl_rows_set_aside(stage->model, &room->aside));
 }
 
@@ -225,13 +217,13 @@ static void drop_replaced(tl_stage *stage, size_t old, commit_room *room)
                 m->drives[drive - 1].bodies++;
         }
     for (uint32_t row = 0; row < old; row++)
-        if (!room->keep[row])
+        if (!room->keep[row]) {
             room->gone[room->gone_count++] = m->blocks.shape[row];
-    tl_rows_keep(m, room->keep);
-    tl_generate_summary *s = &stage->summary;
-    s->smallest_volume = s->smallest_edge = s->smallest_face = INFINITY;
-    for (uint32_t row = 0; row < m->blocks.table.rows; row++)
-        note_extremes(s, m->blocks.shape[row], m->blocks.volume[row]);
+            stage->changed_volume -= m->blocks.volume[row];
+            tl_extremes_drop(m, row);
+        }
+    if (old)
+        tl_rows_keep(m, room->keep);
 }
 
 /* Adds the blocks that were made, each as a body of its own. */
@@ -239,6 +231,7 @@ static void add_made(tl_stage *stage, size_t made, commit_room *room)
 {
     tl_model *m = stage->model;
     uint32_t row = (uint32_t)m->blocks.table.rows, body = (uint32_t)m->bodies.table.rows;
+    uint32_t first = row;
     tl_table_resize(&m->blocks.table, row + made);
     tl_table_resize(&m->bodies.table, body + made);
     for (size_t i = 0; i < stage->count; i++) {
@@ -249,18 +242,22 @@ static void add_made(tl_stage *stage, size_t made, commit_room *room)
         const source *from =
             block->source == TL_NO_ROW ? NULL : &room->sources[room->slot[block->source]];
         put(m, block, from, row, body++);
-        note_extremes(&stage->summary, block->shape, m->blocks.volume[row++]);
+        stage->changed_volume += m->blocks.volume[row];
+        tl_extremes_add(m, row++);
     }
     for (size_t i = 0; i < room->source_count; i++)
         if (room->sources[i].drive)
             m->drives[room->sources[i].drive - 1].bodies--;
-    tl_rows_refresh(m);
+    if (stage->opened)
+        tl_rows_refresh(m);
+    else
+        tl_rows_added(m, first);
 }
 
 tl_status tl_stage_commit(tl_stage *stage)
 {
     tl_model *m = stage->model;
-    size_t old = m->blocks.table.rows, made = 0;
+    size_t old = stage->opened ? m->blocks.table.rows : 0, made = 0;
     for (size_t i = 0; i < stage->count; i++)
         made += is_made(&stage->blocks[i]);
     commit_room room = {0};
@@ -273,12 +270,9 @@ tl_status tl_stage_commit(tl_stage *stage)
         return status;
     }
     /* From here on nothing can fail but the grouping of blocks into bodies, for want of memory. */
-    double volume_before = 0;
-    for (size_t row = 0; row < old; row++)
-        volume_before += m->blocks.volume[row];
     drop_replaced(stage, old, &room);
     add_made(stage, made, &room);
-    summarize(stage, volume_before);
+    summarize(stage);
     if (stage->regroups) {
         tl_stage_groups(stage, room.ids, room.first, room.group);
         status = tl_bodies_regroup(m, room.group);

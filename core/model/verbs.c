@@ -23,37 +23,61 @@ tl_status tl_blocks_hide(tl_model *m, const tl_id *ids, size_t count, bool hidde
     return TL_OK;
 }
 
-tl_status tl_blocks_delete(tl_model *m, const tl_id *ids, size_t count)
+/* Whether each of the blocks is a body by itself. */
+static bool are_single(const tl_model *m, const tl_id *ids, size_t count)
 {
-    tl_status status = tl_model_may_change(m, "delete blocks");
-    if (status == TL_OK)
-        status = check_ids(m, ids, count);
-    if (status != TL_OK || count == 0)
-        return status;
+    for (size_t i = 0; i < count; i++)
+        if (m->bodies.member_count[m->blocks.body[m->row_of[ids[i]]]] > 1)
+            return false;
+    return true;
+}
+
+/* Deletes a block that has no part in a body of several. Its row goes with others. */
+static void delete_block(tl_model *m, tl_id id)
+{
+    uint32_t row = m->row_of[id];
+    if (row == TL_NO_ROW) /* named twice */
+        return;
+    m->record.deleted += m->blocks.volume[row];
+    tl_extremes_drop(m, row);
+    tl_drive_leave(m, m->blocks.body[row]);
+    tl_poly_free(m->blocks.shape[row]);
+    m->blocks.shape[row] = NULL;
+    m->blocks.stays[row] = false;
+    m->row_of[id] = TL_NO_ROW;
+    m->gone++;
+}
+
+/* Makes every block that is to go a body by itself: what is left of joined bodies goes on as the groups that hang together. */
+static tl_status part_blocks(tl_model *m, const tl_id *ids, size_t count)
+{
+    tl_rows_tidy(m);
     unsigned char *keep = malloc(m->blocks.table.rows);
     uint32_t *group = malloc(m->blocks.table.rows * sizeof *group);
-    status = keep && group ? TL_OK : tl_fail_memory(&m->error);
+    tl_status status = keep && group ? TL_OK : tl_fail_memory(&m->error);
     if (status == TL_OK) {
         memset(keep, 1, m->blocks.table.rows);
         for (size_t i = 0; i < count; i++)
             keep[m->row_of[ids[i]]] = 0;
-        /* what is left of joined bodies goes on as the groups that hang together */
         tl_bodies_groups(m, group);
         status = tl_bodies_fall_apart(m, keep, group);
     }
     if (status == TL_OK)
         status = tl_bodies_regroup(m, group);
-    if (status == TL_OK) {
-        for (size_t row = 0; row < m->blocks.table.rows; row++) {
-            if (keep[row])
-                continue;
-            m->record.deleted += m->blocks.volume[row];
-            tl_poly_free(m->blocks.shape[row]);
-        }
-        tl_rows_keep(m, keep);
-    }
     free(keep);
     free(group);
+    return status;
+}
+
+tl_status tl_blocks_delete(tl_model *m, const tl_id *ids, size_t count)
+{
+    tl_status status = tl_model_may_change(m, "delete blocks");
+    if (status == TL_OK)
+        status = check_ids(m, ids, count);
+    if (status == TL_OK && !are_single(m, ids, count))
+        status = part_blocks(m, ids, count);
+    for (size_t i = 0; i < count && status == TL_OK; i++)
+        delete_block(m, ids[i]);
     return status;
 }
 

@@ -167,9 +167,17 @@ static tl_status create_box(const tl_host *host, tl_vec3 min, tl_vec3 max, doubl
     return tl_stage_add_box(&service_of(host)->stage, min, max, density, group);
 }
 
+/* Puts the model's blocks into the staging set for a service that cannot fail: the generator does, in the end. */
+static tl_stage *open_stage(const tl_host *host)
+{
+    tl_stage *stage = &service_of(host)->stage;
+    stage->lost = tl_stage_open(stage) != TL_OK || stage->lost;
+    return stage;
+}
+
 static size_t block_count(const tl_host *host)
 {
-    return service_of(host)->stage.visible_count;
+    return open_stage(host)->visible_count;
 }
 
 /* A point of a staged block's shape in the user's coordinates. */
@@ -184,6 +192,7 @@ static void block_info(const tl_host *host, size_t index, tl_block_info *info)
 {
     service *s = service_of(host);
     tl_block_info full = {.size = info->size, .group = ""};
+    open_stage(host);
     if (index < s->stage.visible_count) {
         const tl_stage_block *block = &s->stage.blocks[s->stage.visible[index]];
         tl_mass mass = tl_poly_mass(block->shape);
@@ -206,9 +215,10 @@ static void block_info(const tl_host *host, size_t index, tl_block_info *info)
 
 static tl_status check_index(const tl_host *host, size_t index)
 {
+    tl_status status = tl_stage_open(&service_of(host)->stage);
     size_t count = service_of(host)->stage.visible_count;
-    if (index < count)
-        return go_on(host);
+    if (status != TL_OK || index < count)
+        return status == TL_OK ? go_on(host) : status;
     return fail(host, TL_E_PLUGIN, "it asks for block %zu of %zu, counted from 0", index, count);
 }
 
@@ -401,52 +411,33 @@ static tl_status progress(const tl_host *host, double fraction)
 
 /* ---------------------------------------------------------------- tl_generate ------------ */
 
-/* Calls the plugin on an open staging set and closes the set. */
-static tl_status run(service *s, const tl_kind *kind, const void *params)
+/* The services, for a generator of the model's. */
+static tl_host host_of(service *s)
 {
-    tl_model *m = s->model;
-    const tl_generator_ops *ops = kind->ops;
-    tl_host host = {.size = sizeof host,
-                    .impl = s,
-                    .seed = (uint64_t)m->config.seed,
-                    .create_hull = create_hull,
-                    .create_block = create_block,
-                    .create_box = create_box,
-                    .joint = joint,
-                    .next_plane = next_plane,
-                    .cut = cut,
-                    .block_count = block_count,
-                    .block_info = block_info,
-                    .random = draw_uniform,
-                    .progress = progress,
-                    .log = say,
-                    .fail = fail,
-                    .cut_disc = cut_disc,
-                    .meets = meets,
-                    .cut_block = cut_block,
-                    .set_group = set_group,
-                    .part = part,
-                    .join = join,
-                    .remove = remove_block,
-                    .hide = hide,
-                    .show = show};
-    tl_status status = tl_stage_begin(m, &s->stage);
-    if (status != TL_OK)
-        return status;
-    m->error = (tl_error){TL_OK, ""};
-    tl_enter(kind, "generate");
-    status = ops->generate(&host, params);
-    tl_leave();
-    if (status == TL_OK) /* the plugin may not have asked */
-        status = go_on(&host);
-    if (status == TL_OK)
-        return tl_stage_commit(&s->stage);
-    tl_stage_drop(&s->stage);
-    if (m->error.text[0] == '\0')
-        return tl_fail(&m->error, status, "no reason given (status %d: %s)", (int)status,
-                       tl_status_text(status));
-    m->error.status = status;
-    return status;
+    return (tl_host){.size = sizeof(tl_host),
+                     .impl = s,
+                     .seed = (uint64_t)s->model->config.seed,
+                     .create_hull = create_hull,
+                     .create_block = create_block,
+                     .create_box = create_box,
+                     .joint = joint,
+                     .next_plane = next_plane,
+                     .cut = cut,
+                     .block_count = block_count,
+                     .block_info = block_info,
+                     .random = draw_uniform,
+                     .progress = progress,
+                     .log = say,
+                     .fail = fail,
+                     .cut_disc = cut_disc,
+                     .meets = meets,
+                     .cut_block = cut_block,
+                     .set_group = set_group,
+                     .part = part,
+                     .join = join,
+                     .remove = remove_block,
+                     .hide = hide,
+                     .show = show};
 }
 
 /* The files that are to be read must be such as end; those that are not there are left to the plugin. */
@@ -467,8 +458,71 @@ static tl_status check_files(tl_model *m, const tl_kind *kind, const void *param
     return TL_OK;
 }
 
-tl_status tl_generate(tl_model *m, const char *generator, const tl_args *args,
-                      tl_generate_summary *summary)
+/* Calls the plugin with parameters on the staging set. `entry`: ", entry 3" of a list, or nothing. */
+static tl_status call(service *s, const tl_kind *kind, const tl_args *args, void *params,
+                      const char *entry)
+{
+    tl_model *m = s->model;
+    const tl_generator_ops *ops = kind->ops;
+    tl_host host = host_of(s);
+    char context[TL_ERROR_TEXT / 4];
+    snprintf(context, sizeof context, "generator '%s'%s", kind->name, entry);
+    memset(params, 0, kind->params_size);
+    tl_status status = tl_args_read(kind->params, kind->param_count, kind->param_stride, args,
+                                    false, params, context, &m->error);
+    if (status == TL_OK)
+        status = check_files(m, kind, params, context);
+    if (status != TL_OK)
+        return status;
+    m->error = (tl_error){TL_OK, ""};
+    tl_enter(kind, "generate");
+    status = ops->generate(&host, params);
+    tl_leave();
+    if (status == TL_OK) /* the plugin may not have asked */
+        status = go_on(&host);
+    if (s->stage.lost)
+        status = tl_fail_memory(&m->error);
+    if (status == TL_OK)
+        return TL_OK;
+    if (m->error.text[0] == '\0')
+        tl_fail(&m->error, status, "no reason given (status %d: %s)", (int)status,
+                tl_status_text(status));
+    m->error.status = status;
+    tl_error_prefix(&m->error, "generator '%s' of plugin '%s'%s: ", kind->name, tl_plugin_id(kind),
+                    entry);
+    return status;
+}
+
+/* Calls the plugin with each of several sets of parameters, and closes the staging set. */
+static tl_status run(service *s, const tl_kind *kind, const tl_args *args, size_t count, bool list)
+{
+    tl_model *m = s->model;
+    void *params = malloc(kind->params_size + 1);
+    tl_status status = params ? tl_stage_begin_empty(m, &s->stage) : tl_fail_memory(&m->error);
+    if (status != TL_OK) {
+        free(params);
+        return status;
+    }
+    for (size_t i = 0; i < count && status == TL_OK; i++) {
+        char entry[40] = "";
+        if (list)
+            snprintf(entry, sizeof entry, ", entry %zu", i + 1);
+        status = call(s, kind, &args[i], params, entry);
+    }
+    free(params);
+    if (status != TL_OK) {
+        tl_stage_drop(&s->stage);
+        return status;
+    }
+    status = tl_stage_commit(&s->stage);
+    if (status != TL_OK)
+        tl_error_prefix(&m->error, "generator '%s' of plugin '%s': ", kind->name,
+                        tl_plugin_id(kind));
+    return status;
+}
+
+static tl_status generate(tl_model *m, const char *generator, const tl_args *args, size_t count,
+                          bool list, tl_generate_summary *summary)
 {
     tl_status status = tl_model_may_change(m, "create blocks");
     if (status != TL_OK)
@@ -476,24 +530,22 @@ tl_status tl_generate(tl_model *m, const char *generator, const tl_args *args,
     const tl_kind *kind = tl_plugin_find(TL_KIND_GENERATOR, generator);
     if (!kind)
         return tl_unknown_kind(m, TL_KIND_GENERATOR, generator);
-    char context[TL_ERROR_TEXT / 4];
-    snprintf(context, sizeof context, "generator '%s'", kind->name);
-    void *params = calloc(1, kind->params_size + 1);
-    if (!params)
-        return tl_fail_memory(&m->error);
-    status = tl_args_read(kind->params, kind->param_count, kind->param_stride, args, false, params,
-                          context, &m->error);
-    if (status == TL_OK)
-        status = check_files(m, kind, params, context);
-    if (status == TL_OK) {
-        service s = {.model = m, .generator = kind->name};
-        atomic_store(&m->interrupted, false);
-        status = run(&s, kind, params);
-        if (status != TL_OK)
-            tl_error_prefix(&m->error, "%s of plugin '%s': ", context, tl_plugin_id(kind));
-        else if (summary)
-            *summary = s.stage.summary;
-    }
-    free(params);
+    service s = {.model = m, .generator = kind->name};
+    atomic_store(&m->interrupted, false);
+    status = run(&s, kind, args, count, list);
+    if (status == TL_OK && summary)
+        *summary = s.stage.summary;
     return status;
+}
+
+tl_status tl_generate(tl_model *m, const char *generator, const tl_args *args,
+                      tl_generate_summary *summary)
+{
+    return generate(m, generator, args, 1, false, summary);
+}
+
+tl_status tl_generate_list(tl_model *m, const char *generator, const tl_args *args, size_t count,
+                           tl_generate_summary *summary)
+{
+    return generate(m, generator, args, count, true, summary);
 }

@@ -259,6 +259,7 @@ tl_status tl_block_neighbours(tl_model *m, tl_id block, tl_id **ids, size_t *cou
 {
     *ids = NULL;
     *count = 0;
+    tl_rows_tidy(m);
     uint32_t row = tl_block_row(m, block);
     if (row == TL_NO_ROW)
         return m->error.status;

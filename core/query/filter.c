@@ -166,6 +166,7 @@ static tl_status delete (filter *f, tl_filter_result *result)
 tl_status tl_model_filter(tl_model *m, const tl_filter *limits, tl_filter_result *result)
 {
     *result = (tl_filter_result){0};
+    tl_rows_tidy(m);
     if (!is_given(limits->volume) && !is_given(limits->edge) && !is_given(limits->aspect))
         return tl_fail(&m->error, TL_E_ARGUMENT,
                        "filter: give a limit: the smallest volume, the shortest edge or the worst "

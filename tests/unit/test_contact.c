@@ -212,6 +212,7 @@ TEST(of_two_joints_the_older_one_rules)
         }
         CHECK_INT(count, 2);
         scene_ok(m, tl_blocks_delete(m, gone, count));
+        tl_rows_tidy(m);
         uint32_t upper = tl_block_centroid(m, 0).z > 3 ? 0U : 1U;
         scene_put(m, m->blocks.body[upper], tl_v3(-5, 0, -3), tl_q_identity());
         scene_forces(m);

@@ -118,6 +118,7 @@ static uint32_t cut(tl_model *m, const char *joint, tl_vec3 normal, tl_vec3 poin
         if ((side > 0) == keep_below) {
             tl_id id = m->blocks.id[row];
             scene_ok(m, tl_blocks_delete(m, &id, 1));
+            tl_rows_tidy(m);
             break;
         }
     }

@@ -123,6 +123,10 @@ typedef struct tl_generate_summary {
 /* Runs a generator plugin on the visible blocks; commits its work whole or not at all. */
 TL_API tl_status tl_generate(tl_model *model, const char *generator, const tl_args *args,
                              tl_generate_summary *summary);
+/* The same for several sets of parameters, one after the other on the blocks as the ones before have left them: all or none.
+ * A failure names the entry, counted from 1. */
+TL_API tl_status tl_generate_list(tl_model *model, const char *generator, const tl_args *args,
+                                  size_t count, tl_generate_summary *summary);
 
 /* The extreme value of a measure over the blocks, and the block that has it; 0 without blocks. */
 typedef struct tl_extreme {
