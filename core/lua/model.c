@@ -107,14 +107,55 @@ static void finish_call(lua_State *L, tl_model *model, const tl_lua_watch *watch
     tl_lua_ok(L, model, status);
 }
 
+/* The number of tables in the list at index 3; 0 when it is none. */
+static size_t entry_count(lua_State *L, const char *generator)
+{
+    if (!lua_istable(L, 3) || lua_rawgeti(L, 3, 1) != LUA_TTABLE)
+        return 0;
+    for (lua_pushnil(L); lua_next(L, 3); lua_pop(L, 1))
+        if (!lua_isinteger(L, -2))
+            tl_lua_fail(L,
+                        "generate '%s': give a list of parameter tables, or parameters by name, "
+                        "not both",
+                        generator);
+    return lua_rawlen(L, 3);
+}
+
+/* Reads the list of parameter tables at index 3; what they point to hangs on a table that is pushed. */
+static const tl_args *read_entries(lua_State *L, const char *generator, size_t count)
+{
+    lua_newtable(L);
+    int anchor = lua_gettop(L);
+    tl_args *list = lua_newuserdatauv(L, count * sizeof *list, 0);
+    lua_rawseti(L, anchor, 0);
+    for (size_t i = 0; i < count; i++) {
+        const char *context =
+            lua_pushfstring(L, "generate '%s', entry %I", generator, (lua_Integer)i + 1);
+        lua_rawgeti(L, 3, (lua_Integer)i + 1);
+        if (!lua_istable(L, -1))
+            tl_lua_fail(L, "%s: the parameters must be a table, not %s", context,
+                        tl_lua_describe(L, -1));
+        tl_lua_args(L, -1, context, NULL, &list[i]);
+        lua_rawseti(L, anchor, (lua_Integer)i + 1);
+        lua_settop(L, anchor);
+    }
+    return list;
+}
+
 static int model_generate(lua_State *L)
 {
     tl_model *model = tl_lua_model_of(L, "generate");
     tl_lua_arity(L, 3, "generate");
     lua_settop(L, 3);
     const char *generator = tl_lua_text(L, 2, "generate", "the generator's name");
-    tl_args args;
-    tl_lua_args(L, 3, lua_pushfstring(L, "generate '%s'", generator), NULL, &args);
+    size_t count = entry_count(L, generator); /* of a list */
+    lua_settop(L, 3);
+    tl_args one;
+    const tl_args *args = &one;
+    if (count)
+        args = read_entries(L, generator, count);
+    else
+        tl_lua_args(L, 3, lua_pushfstring(L, "generate '%s'", generator), NULL, &one);
     const char *what = lua_pushfstring(L, "generator '%s'", generator);
     tl_generate_summary summary = {0};
     lua_newtable(L);
@@ -122,7 +163,8 @@ static int model_generate(lua_State *L)
         L,
         &summary); /* all memory is had before blocks are made: a call that fails changes nothing */
     tl_lua_watch watch = tl_lua_watch_begin(L);
-    tl_status status = tl_generate(model, generator, &args, &summary);
+    tl_status status = count ? tl_generate_list(model, generator, args, count, &summary)
+                             : tl_generate(model, generator, args, &summary);
     finish_call(L, model, &watch, what, "the model is as it was", status);
     set_summary(L, &summary);
     return 1;

@@ -170,7 +170,9 @@ const tl_lua_topic tl_lua_topics[] = {
      .verbs = model_members},
     {.name = "generate",
      .usage = "summary = model:generate(\"GENERATOR\", {...})",
-     .doc = "Creates or cuts blocks; acts on visible blocks only, wholly or not at all.",
+     .doc = "Creates or cuts blocks; acts on visible blocks only, wholly or not at all. A list of "
+            "tables, {{...}, {...}}, in the place of one: once for each, in their order and in one "
+            "go.",
      .type = &generators,
      .title = "Fields of the summary",
      .verbs = generate_results},

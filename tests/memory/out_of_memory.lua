@@ -52,7 +52,15 @@ local calls = {
     { "prism", function(m)
         m.model:generate("prism", { base = { { 7, 0, 0 }, { 9, 0, 0 }, { 9, 2, 0 }, { 7, 2, 0 } }, axis = { 0, 0, 1 }, density = 2000 })
     end },
+    { "prisms", function(m)
+        local list = {}
+        for i = 1, 3 do
+            list[i] = { base = { { 9 + i, 0, 0 }, { 10 + i, 0, 0 }, { 10 + i, 1, 0 } }, axis = { 0, 0, 1 }, density = 2000, group = "row" }
+        end
+        return m.model:generate("prism", list).after
+    end },
     { "delete", function(m) m.model:blocks { group = "tunnel" }:delete() end },
+    { "delete a single one", function(m) m.model:blocks { group = "row" }:where(function(b) return b.centroid[1] > 12 end):delete() end },
     { "law", function(m) m.model:joint("*", "coulomb", COULOMB) end },
     { "query", function(m) return #m.model:contacts() end },
     { "first hash", function(m) return m.model:state_hash() end },
