@@ -3,7 +3,8 @@
 -- A *contact update* is one contact that carries a force, updated for one step, all its points together.
 -- One thread is timed by the processor time of the process, which other programs do not disturb; several
 -- are timed by the clock. The phases are timed by the clock always and take their shares of that time. Of
--- several repetitions the median counts.
+-- several repetitions the median counts. They are stretches of steps of one run, one after the other: what rests
+-- is the same in all, what moves is not, and each stretch has its own number of contacts.
 local talus = require "talus"
 
 local bench = {}
@@ -96,48 +97,59 @@ function bench.weigh(row, model, blocks)
     return row
 end
 
--- Measures a model that is ready, and prints a row: `name` has its workload, size and reuse;
--- `options.reps` repetitions, of `options.steps` steps or as many as take long enough.
+-- Measures a model that is ready, and prints a row: `name` has its workload, size and reuse; `options.warm` steps
+-- first, then `options.reps` stretches of `options.steps` steps or as many as take long enough. The contacts of a
+-- stretch are the mean of those at its beginning and its end.
 function bench.measure(model, name, options)
     model.reuse_geometry = name.reuse == "on"
     local warm = time(model, options.warm or 5) / (options.warm or 5)
     local steps = options.steps or math.max(1, math.ceil(LEAST / warm))
-    local seconds, phases, ratio = {}, {}, nil
+    local seconds, contacts, rates, phases, ratio = {}, {}, {}, {}, nil
+    local loaded = model:profile().loaded
     for i = 1, options.reps do
         model:profile(true)
         local taken, wall
         taken, wall, ratio = time(model, steps)
-        seconds[i] = taken / steps
         local cost = model:profile()
+        seconds[i] = taken / steps
+        contacts[i] = (loaded + cost.loaded) / 2
+        rates[i] = contacts[i] / seconds[i]
+        loaded = cost.loaded
         for _, phase in ipairs(bench.PHASES) do
             phases[phase] = phases[phase] or {}
-            phases[phase][i] = cost.seconds[phase] / wall * seconds[i]
+            phases[phase][i] = 1e9 * cost.seconds[phase] / wall / rates[i]
         end
     end
-    local cost, blocks = model:profile(), #model:blocks { fixed = false }
+    local blocks = #model:blocks { fixed = false }
     model:profile(false)
-    local step = median(seconds)
     local row = { workload = name.workload, size = name.size, blocks = blocks,
-        contacts = cost.loaded, face_contacts = name.face_contacts, threads = model.threads,
-        reuse = name.reuse,
-        rate = cost.loaded / step, unit = "contacts/s", block_steps_per_s = blocks / step,
-        ratio = ratio }
+        contacts = math.floor(median(contacts) + 0.5), face_contacts = name.face_contacts,
+        threads = model.threads, reuse = name.reuse, rate = median(rates), unit = "contacts/s",
+        block_steps_per_s = blocks / median(seconds), ratio = ratio }
     bench.weigh(row, model, blocks)
     for _, phase in ipairs(bench.PHASES) do
-        row[phase .. "_ns"] = 1e9 * median(phases[phase]) / cost.loaded
+        row[phase .. "_ns"] = median(phases[phase])
     end
     print_row(row)
-    return cost
 end
 
 -- With and without reuse, in this order: what is reused is then as after a run.
 function bench.measure_both(model, name, options)
-    local cost
     for _, reuse in ipairs { "on", "off" } do
         name.reuse = reuse
-        cost = bench.measure(model, name, options)
+        bench.measure(model, name, options)
     end
-    return cost
+end
+
+-- The same of what moves: `build` makes the model anew for each, so both start from one state. Returns the model
+-- without reuse.
+function bench.measure_moving(build, name, options)
+    local model
+    for _, reuse in ipairs { "on", "off" } do
+        model, name.reuse = build(), reuse
+        bench.measure(model, name, options)
+    end
+    return model
 end
 
 -- ---------------------------------------------------------------- many boxes at once

@@ -65,14 +65,14 @@ local function corners(centre)
     return points
 end
 
-local function laws(model)
+function pile.laws(model)
     model:joint("*", "coulomb", { kn = KN, ks = KS, friction = FRICTION })
     model:timestep { dt = DT }
     model:damping("local", { alpha = DAMPING })
 end
 
--- Drops the blocks, waits until they are down, and writes them.
-function pile.drop(count, path, threads)
+-- Drops the blocks and waits until they lie still.
+function pile.drop(count, threads)
     math.randomseed(SEED)
     local model = talus.model { threads = threads }
     local side = math.max(2, math.floor((count / FULL) ^ (1 / 3) + 0.5))
@@ -84,7 +84,7 @@ function pile.drop(count, path, threads)
         model:generate("polyhedron", { density = DENSITY, group = "pile",
             vertices = corners { (x + 0.5) * APART, (y + 0.5) * APART, (z + 0.6) * APART } })
     end
-    laws(model)
+    pile.laws(model)
     local pieces = model:blocks { group = "pile" }
     local function run_until(speed)
         repeat
@@ -97,14 +97,13 @@ function pile.drop(count, path, threads)
     model:damping("local", { alpha = DAMPING })
     run_until(STILL)
     assert(pieces:bounds().min[3] > -0.1, "a block has left the box")
-    model:write_blocks(path)
     return model
 end
 
 function pile.load(path, threads)
     local model = talus.model { threads = threads }
     model:generate("blocks", { file = path })
-    laws(model)
+    pile.laws(model)
     return model
 end
 
@@ -115,7 +114,7 @@ function pile.main()
     if there then
         there:close()
     else
-        pile.drop(given.blocks, path, 1)
+        pile.drop(given.blocks, 1):write_blocks(path)
     end
     for _, threads in ipairs(given.reps > 0 and bench.list(given.threads) or {}) do
         local model = pile.load(path, threads)

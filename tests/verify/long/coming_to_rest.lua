@@ -31,7 +31,7 @@ for seed = 4, 3 + SEEDS do
     run("stack, kn 1e9, seed " .. seed, resting.stack(1e9, seed), 8291)
 end
 local path = os.tmpname()
-pile.drop(BLOCKS, path, 1)
+pile.drop(BLOCKS, 1):write_blocks(path)
 run(string.format("pile of %d, kn 1e9", BLOCKS), pile.load(path, 1))
 os.remove(path)
 figures.finish()
