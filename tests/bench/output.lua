@@ -13,17 +13,9 @@ local rock = require "rock"
 local STEPS = 3
 local PARTS = { "blocks", "contacts", "joints" }
 
--- Seconds since the system began, by the clock.
-local function clock()
-    local file = assert(io.open("/proc/uptime"), "several threads are timed by /proc/uptime")
-    local text = file:read "l"
-    file:close()
-    return tonumber(text:match "^%S+")
-end
-
 -- The median of the seconds that `act` takes; `after` is not timed.
 local function seconds(threads, reps, act, after)
-    local now, taken = threads == 1 and os.clock or clock, {}
+    local now, taken = bench.clock(threads), {}
     for i = 1, reps do
         local began = now()
         act()

@@ -3,9 +3,10 @@
 
     tests/bench/run.py [--quick] [--renew] [--build FOLDER] [NAME...]
 
-NAME is a job below (limit wall bond pile rock consolidate slope tunnel yade million cuts); without names
-all run. --quick takes smaller models. --renew writes docs/performance/MACHINE.csv and the tables of
-docs/performance.md from the figures of this run; --page writes the tables from the CSV files there are.
+NAME is a job below (limit wall bond pile rock collapse slope shake falling consolidate output examples yade
+million cuts); without names all run. --quick takes smaller models. --renew writes docs/performance/MACHINE.csv and
+the tables of docs/performance.md from the figures of this run; --page writes the tables from the CSV files there
+are.
 
 A job is a program that prints rows of CSV after a line with the names of their columns (the first of which
 is "workload"); what else it prints is let through. A row has any of these:
@@ -43,6 +44,7 @@ import table  # noqa: E402
 MOST_MEMORY = 0.5
 # Times a cold start is repeated.
 COLD = 5
+MEMORY = pathlib.Path("/dev/shm")
 
 
 def machine():
@@ -131,11 +133,13 @@ def bond(r):
 
 
 def pile_file(r):
-    """Settled once, kept for later runs until the script changes."""
-    count = 100 if r.quick else 500
+    """The pile: settled once, kept for later runs until the script changes."""
+    count = 200 if r.quick else 500
     path = r.out / f"pile_{count}.json"
     if path.exists() and path.stat().st_mtime < (ROOT / BENCH / "pile.lua").stat().st_mtime:
         path.unlink()
+    if not path.exists():
+        r.script("pile", f"blocks={count}", f"write={path}", "reps=0")
     return count, path
 
 
@@ -155,16 +159,36 @@ def rock(r):
             print(f"    a million blocks need some {need / 2 ** 30:.0f} GiB, more than half of what this machine has")
 
 
+def collapse(r):
+    r.script("collapse", f"file={pile_file(r)[1]}", "threads=1,2")
+
+
+def slope(r):
+    r.script("slope", f"blocks={1000 if r.quick else 5000}", "threads=1,2")
+
+
+def shake(r):
+    for layout in ("lattice", "bond"):
+        r.script("shake", f"layout={layout}", f"n={5 if r.quick else 10}", "threads=1,2")
+
+
+def falling(r):
+    r.script("falling", f"blocks={200 if r.quick else 2000}", "threads=1,2")
+
+
 def consolidate(r):
     r.script("consolidate", f"blocks={200 if r.quick else 1000}")
 
 
-def slope(r):
-    r.script("slope", cold=COLD)
+def output(r):
+    """Where there is one, in a folder that is memory: the figures are of the program and not of the disk."""
+    r.script("output", f"blocks={5000 if r.quick else 100000}", "threads=1,2", f"reps={3 if r.quick else 5}",
+             f"folder={MEMORY if MEMORY.is_dir() else r.out}")
 
 
-def tunnel(r):
-    r.script("tunnel", cold=COLD)
+def examples(r):
+    for example in ("slope", "tunnel"):
+        r.script("examples", f"example={example}", cold=COLD)
 
 
 def yade(r):
@@ -182,8 +206,6 @@ def yade(r):
         r.run(program, "-n", "-x", "-j1", BENCH / "yade_blocks.py",
               env={"BLOCKS": str(blocks), "WORKLOAD": f"yade {layout}", "SIZE": str(n ** 3), "STEPS": str(steps),
                    "VERLET": "0.001" if layout == "bond" else "0.01", "OMP_NUM_THREADS": "1"})
-    if not path.exists():
-        r.script("pile", f"blocks={count}", f"write={path}", "reps=0")
     r.run(program, "-n", "-x", "-j1", BENCH / "yade_blocks.py",
           env={"BLOCKS": str(path), "WORKLOAD": "yade pile", "SIZE": str(count), "STEPS": "3" if r.quick else "10",
                "DT": "5e-4", "DAMPING": "0.7", "VERLET": "0.02", "OMP_NUM_THREADS": "1"})
@@ -201,7 +223,8 @@ def cuts(r):
         r.program("cuts")
 
 
-JOBS = {job.__name__: job for job in (limit, wall, bond, pile, rock, consolidate, slope, tunnel, yade, million, cuts)}
+JOBS = {job.__name__: job for job in (limit, wall, bond, pile, rock, collapse, slope, shake, falling, consolidate, output,
+                                      examples, yade, million, cuts)}
 
 
 # ---------------------------------------------------------------------- figures
@@ -222,7 +245,7 @@ def write_csv(path, rows, notes):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--quick", action="store_true", help="smaller models, under two minutes")
+    parser.add_argument("--quick", action="store_true", help="smaller models, some two minutes")
     parser.add_argument("--renew", action="store_true", help="write docs/performance/*.csv and the page's tables")
     parser.add_argument("--page", action="store_true", help="write the page's tables from the CSV files; run nothing")
     parser.add_argument("--build", default="build/release", help="folder of the build")

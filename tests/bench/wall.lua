@@ -27,7 +27,7 @@ local RATIO, PATIENCE, SETTLING = 1e-6, 10000, 0.8
 local COUNTED = 20 -- up to this n the face contacts are counted: in Lua, one by one
 
 -- Brings the blocks of bond to rest.
-local function settle(model)
+function wall.settle(model)
     model:damping("local", { alpha = SETTLING })
     local run = model:solve { ratio = RATIO, max_cycles = PATIENCE }
     assert(run.reason == "ratio", string.format("the unbalanced force ratio is still %g", run.ratio))
@@ -96,7 +96,7 @@ function wall.main()
             local model = wall.build(given.layout, n, threads)
             model:cycle(n <= COUNTED and 50 or 5)
             if given.layout == "bond" then
-                settle(model)
+                wall.settle(model)
             end
             local faces = wall.faces(given.layout, n)
             local found = n <= COUNTED and wall.count_faces(model) or faces

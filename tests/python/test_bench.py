@@ -37,7 +37,7 @@ workload,size,blocks,contacts,face_contacts,threads,reuse,rate,unit,block_steps_
 wall,125,125,1000,400,1,on,4e6,contacts/s,5e5
 wall,125,125,1000,400,1,off,1e6,contacts/s,1e5
 yade wall,125,125,1000,400,1,,5000,contacts/s,600
-tunnel,780 steps,21,,,1,on,0.05,s,
+example tunnel,780 steps,21,,,1,on,0.05,s,
 """
 
 rows, rest = run.parse(TEXT)
@@ -55,7 +55,7 @@ equal("face contacts a second", table.faces(walls[0]), 4e6 * 0.4)
 equal("face contacts that were not told apart", table.faces({"rate": "7", "contacts": "3"}), 7)
 head, body = table.peer_table(rows)
 equal("ratios to Yade", body, [["wall", "125", "2 k", "5 k", "800", "800", "200", "200"]])
-equal("whole runs", table.figure_table(rows)[1], [["tunnel", "780 steps", "21", "1", "0.05", "s"]])
+equal("whole runs", table.figure_table(rows)[1], [["example tunnel", "780 steps", "21", "1", "0.05", "s"]])
 equal("short numbers", [table.short(x) for x in (0.05, 12.34, 1234.5, 2.5e6, float("nan"))],
       ["0.05", "12.3", "1.23 k", "2.5 M", ""])
 equal("file name", table.slug("Some CPU @ 2.0 GHz, family 6"), "some-cpu-2-0-ghz-family-6")
