@@ -3,7 +3,7 @@
 
     tests/bench/run.py [--quick] [--renew] [--build FOLDER] [NAME...]
 
-NAME is a job below (limit wall bond pile rock collapse slope shake falling consolidate output examples yade
+NAME is a job below (limit wall bond pile rock collapse slope shake falling consolidate edits output examples yade
 million cuts); without names all run. --quick takes smaller models. --renew writes docs/performance/MACHINE.csv and
 the tables of docs/performance.md from the figures of this run; --page writes the tables from the CSV files there
 are.
@@ -186,6 +186,10 @@ def output(r):
              f"folder={MEMORY if MEMORY.is_dir() else r.out}")
 
 
+def edits(r):
+    r.script("edits", f"blocks={'1000' if r.quick else '10000,100000'}", f"reps={3 if r.quick else 5}")
+
+
 def examples(r):
     for example in ("slope", "tunnel"):
         r.script("examples", f"example={example}", cold=COLD)
@@ -223,7 +227,7 @@ def cuts(r):
         r.program("cuts")
 
 
-JOBS = {job.__name__: job for job in (limit, wall, bond, pile, rock, collapse, slope, shake, falling, consolidate, output,
+JOBS = {job.__name__: job for job in (limit, wall, bond, pile, rock, collapse, slope, shake, falling, consolidate, edits, output,
                                       examples, yade, million, cuts)}
 
 
