@@ -25,6 +25,8 @@
 
 /* Depth over the size of the smaller block up to which blocks only touch: roundings of places. */
 #define TOUCHING 1e-12
+/* The same up to which the integrals are looked at for being nothing but roundings. */
+#define FAINT 1e-7
 /* Depth, over the deepest point's, by which that point may lie outside a block for rounding. */
 #define INSIDE 1e-6
 
@@ -153,6 +155,18 @@ static bool in_both(const tl_press_query *of, tl_vec3 x, double depth)
     return true;
 }
 
+/* Whether the integrals of blocks that hardly overlap are no more than roundings: the centre of pressure lies in both blocks, and
+ * with a minimum area their mean depth is no larger than the largest. */
+static bool is_noise(const tl_press_query *of, const planes *p, const tl_field_sums *sums)
+{
+    double size = of->view->size;
+    if (sums->deepest > FAINT * size)
+        return false;
+    tl_vec3 centre = tl_v3_madd(p->origin, 1 / sums->pressure, sums->pressed);
+    bool deeper = of->least > 0 && !(sums->energy <= 2 * sums->deepest * sums->volume);
+    return deeper || !in_both(of, centre, TOUCHING / INSIDE * size);
+}
+
 /* ---------------------------------------------------------------- energies --------------- */
 
 /* An energy, the force and moment of it: minus the gradient, and what passes through seams. */
@@ -231,7 +245,7 @@ static bool press_of(const tl_press_query *of, planes *p, const tl_field_sums *s
     tl_field_sums patch;
     *press = (tl_press){0};
     if (!(sums->deepest > TOUCHING * view->size) || !(tl_v3_norm(sums->force) > 0) ||
-        !(sums->energy > 0) ||
+        !(sums->energy > 0) || is_noise(of, p, sums) ||
         !(same || in_both(of, tl_v3_add(p->origin, sums->deepest_at), sums->deepest))) {
         if (region->mesh)
             region->mesh->bounding = region->mesh->polygons = 0;
