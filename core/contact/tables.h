@@ -3,6 +3,7 @@
 #define TL_CONTACT_TABLES_H
 
 #include "base/table.h"
+#include "contact/spot.h"
 #include "narrow/press_slope.h"
 
 typedef struct tl_contacts {
@@ -17,7 +18,11 @@ typedef struct tl_contacts {
     uint32_t *press;         /* row of what a field contact keeps, or TL_NO_ROW */
     double *faces_valid_to;  /* sum of odometers up to which the choice of its faces stands */
     double *points_valid_to; /* sum of odometers up to which its points may be reused */
-    uint32_t *point_start;   /* row of the first point; the next are TL_LANES rows apart */
+    /* of patches: where their points were laid, where their faces were chosen, and the way that the choice is good for */
+    tl_spot *laid_at;
+    tl_rough_spot *found_at;
+    float *found_for;
+    uint32_t *point_start; /* row of the first point; the next are TL_LANES rows apart */
     uint16_t *point_count, *point_room;
     double *area;
     double *released; /* shear energy that went with area since the last step, J: heat */

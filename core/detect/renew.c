@@ -15,7 +15,7 @@
 #include <string.h>
 
 /* Adds a contact's pair of faces to a batch; false when they are none for it. */
-static bool add_to_batch(const tl_model *m, uint32_t c, uint32_t lane, tl_patch_batch *batch)
+static bool add_to_batch(tl_model *m, uint32_t c, uint32_t lane, tl_patch_batch *batch)
 {
     const tl_contacts *contacts = &m->detect->contacts;
     const tl_facet *f = &contacts->facet[c];

@@ -150,6 +150,9 @@ static bool find(tl_model *m, uint32_t c, tl_narrow *room)
     if (!tl_manifold_find(&view, &region, &rule, &before, room))
         return false;
     contacts->faces_valid_to[c] = room->reframed ? -INFINITY : odometer + g->valid;
+    tl_spot spot = tl_spot_of(m, contacts->a[c], contacts->b[c]);
+    contacts->found_at[c] = tl_spot_roughly(&spot);
+    contacts->found_for[c] = (float)g->valid;
     if (g->point_count == 0 && !is_near(&view, region.gap, &way)) {
         part(m, c, way);
         return true;
@@ -222,6 +225,46 @@ void tl_contact_allow_reuse(tl_model *m, uint32_t c)
     if (contacts->facet[c].kind == TL_FACET_FIELD && contacts->point_count[c])
         most = REUSE_FIELD * contacts->facet[c].offset;
     contacts->points_valid_to[c] = tl_pair_odometer(m, contacts->a[c], contacts->b[c]) + most;
+    if (contacts->facet[c].kind == TL_FACET_PATCH && contacts->point_count[c])
+        contacts->laid_at[c] = tl_spot_of(m, contacts->a[c], contacts->b[c]);
+}
+
+/* How far B has moved against A since its points were laid, as far as points are that lie in it. */
+static double moved_since_laid(const tl_model *m, uint32_t c)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    tl_spot now = tl_spot_of(m, contacts->a[c], contacts->b[c]);
+    return tl_spot_moved(&contacts->laid_at[c], &now,
+                         m->bodies.radius[m->blocks.body[contacts->b[c]]]);
+}
+
+/* The same of both blocks against each other since the faces were chosen. */
+static double moved_since_found(const tl_model *m, uint32_t c)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    const double *radius = m->bodies.radius;
+    uint32_t a = m->blocks.body[contacts->a[c]], b = m->blocks.body[contacts->b[c]];
+    tl_spot now = tl_spot_of(m, contacts->a[c], contacts->b[c]);
+    tl_spot then = tl_spot_from(&contacts->found_at[c]);
+    return tl_spot_moved(&then, &now, fmax(radius[b], tl_v3_norm(now.way) + radius[a]));
+}
+
+/* Whether the odometers have not run out, or the blocks have moved less than that against each other. -INFINITY: all is to be
+ * looked at in any case. */
+static bool is_valid(const tl_model *m, uint32_t c, double *valid_to, double way,
+                     double moved(const tl_model *m, uint32_t c))
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    double odometer = tl_pair_odometer(m, contacts->a[c], contacts->b[c]);
+    if (odometer <= *valid_to)
+        return true;
+    if (*valid_to == -INFINITY || contacts->facet[c].kind != TL_FACET_PATCH ||
+        contacts->point_count[c] == 0)
+        return false;
+    double left = way - moved(m, c);
+    if (left > 0)
+        *valid_to = odometer + left;
+    return left > 0;
 }
 
 /* ---------------------------------------------------------------- patches ----------------- */
@@ -255,13 +298,14 @@ static bool same_keys(const tl_points_table *p, size_t begin, const tl_patch_poi
     return true;
 }
 
-bool tl_contact_is_patch(const tl_model *m, uint32_t c)
+bool tl_contact_is_patch(tl_model *m, uint32_t c)
 {
-    const tl_contacts *contacts = &m->detect->contacts;
+    tl_contacts *contacts = &m->detect->contacts;
     uint32_t material = contacts->material[c];
     return contacts->facet[c].kind == TL_FACET_PATCH && contacts->point_count[c] > 0 &&
            material != TL_NO_ROW && !m->materials[material].splits &&
-           tl_pair_odometer(m, contacts->a[c], contacts->b[c]) <= contacts->faces_valid_to[c];
+           is_valid(m, c, &contacts->faces_valid_to[c], (double)contacts->found_for[c],
+                    moved_since_found);
 }
 
 /* The patch of a contact that is one and stays one, made anew; false when that is not all there is to it. */
@@ -312,13 +356,14 @@ static bool touches_still(tl_model *m, uint32_t c)
     return true;
 }
 
-bool tl_contact_stands(const tl_model *m, uint32_t c)
+bool tl_contact_stands(tl_model *m, uint32_t c)
 {
-    const tl_contacts *contacts = &m->detect->contacts;
+    tl_contacts *contacts = &m->detect->contacts;
+    double way = TL_STILL * fmin(m->blocks.size[contacts->a[c]], m->blocks.size[contacts->b[c]]);
     /* one that wants room is made when it has got it */
     return contacts->pending[c] == TL_PENDING_DIE || tl_pending_waits(contacts->pending[c]) ||
            (m->config.reuse_geometry &&
-            tl_pair_odometer(m, contacts->a[c], contacts->b[c]) <= contacts->points_valid_to[c]);
+            is_valid(m, c, &contacts->points_valid_to[c], way, moved_since_laid));
 }
 
 /* Makes all that a contact is anew. Without the memory for it the contact is as it was, so that it can be tried again

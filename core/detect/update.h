@@ -5,9 +5,9 @@
 #include "model/model.h"
 
 /* Whether a contact's points are still good. */
-bool tl_contact_stands(const tl_model *m, uint32_t contact);
+bool tl_contact_stands(tl_model *m, uint32_t contact);
 /* Whether a contact is a patch and stays one. */
-bool tl_contact_is_patch(const tl_model *m, uint32_t contact);
+bool tl_contact_is_patch(tl_model *m, uint32_t contact);
 /* Lets a contact whose points have just been made move a little before they are made anew. */
 void tl_contact_allow_reuse(tl_model *m, uint32_t contact);
 /* Brings a contact up to the present place; `pending` tells what is left to do. */
