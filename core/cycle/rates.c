@@ -345,8 +345,9 @@ void tl_rates_count(tl_model *m)
             now.lightest = body;
         }
     }
-    if (to->version == 0 || to->constraints != now.constraints || to->rotation != now.rotation ||
-        to->points != now.points)
+    bool anew = to->version == 0 || to->constraints != now.constraints ||
+                to->rotation != now.rotation || to->points != now.points;
+    if (anew && b->table.rows > 0)
         memset(b->face_rate, 0, b->table.rows * sizeof *b->face_rate);
     tl_parallel_for(m->pool, b->table.rows, TL_BODY_CHUNK, face_range, m);
     *to = now;

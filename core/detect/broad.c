@@ -345,7 +345,8 @@ static size_t unknown_pairs(const tl_detect *d, tl_pair *list, size_t count)
 {
     size_t kept = 0;
     for (size_t i = 0; i < count; i++)
-        if (!bsearch(&list[i], d->pairs, d->pair_count, sizeof *list, compare_pair))
+        if (d->pair_count == 0 ||
+            !bsearch(&list[i], d->pairs, d->pair_count, sizeof *list, compare_pair))
             list[kept++] = list[i];
     return kept;
 }

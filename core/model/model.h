@@ -98,8 +98,9 @@ typedef struct tl_bodies {
     tl_body_load *load; /* of the user's; NULL: none has ever been set */
     uint32_t *drive;    /* index into drives + 1, or 0 */
     double *odometer;   /* sum of (|v| + |w| radius) dt: no vertex has moved farther */
-    double *face_rate;  /* what it asks of the time step on its largest face: cycle/rates.c. 0: not known */
-    double *face_turn;  /* its rotation's part of that */
+    double *
+        face_rate; /* what it asks of the time step on its largest face: cycle/rates.c. 0: not known */
+    double *face_turn; /* its rotation's part of that */
 } tl_bodies;
 
 typedef struct tl_joint_set {
