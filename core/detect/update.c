@@ -225,7 +225,10 @@ void tl_contact_allow_reuse(tl_model *m, uint32_t c)
     if (contacts->facet[c].kind == TL_FACET_FIELD && contacts->point_count[c])
         most = REUSE_FIELD * contacts->facet[c].offset;
     contacts->points_valid_to[c] = tl_pair_odometer(m, contacts->a[c], contacts->b[c]) + most;
-    if (contacts->facet[c].kind == TL_FACET_PATCH && contacts->point_count[c])
+    if (contacts->facet[c].kind != TL_FACET_PATCH || contacts->point_count[c] == 0)
+        return;
+    contacts->laid_at[c] = (tl_spot){0}; /* nowhere: no rotation is 0 */
+    if (m->config.reuse_geometry)
         contacts->laid_at[c] = tl_spot_of(m, contacts->a[c], contacts->b[c]);
 }
 
