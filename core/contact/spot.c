@@ -10,9 +10,8 @@ tl_spot tl_spot_of(const tl_model *m, uint32_t block_a, uint32_t block_b)
 {
     const tl_bodies *bodies = &m->bodies;
     uint32_t a = m->blocks.body[block_a], b = m->blocks.body[block_b];
-    const tl_quat p = bodies->q[a], q = bodies->q[b];
     return (tl_spot){tl_m3_tmul(&bodies->pose[a].r, tl_body_apart(bodies, a, b)),
-                     tl_q_mul((tl_quat){p.w, -p.x, -p.y, -p.z}, q)};
+                     tl_q_mul(tl_q_conj(bodies->q[a]), bodies->q[b])};
 }
 
 tl_rough_spot tl_spot_roughly(const tl_spot *s)

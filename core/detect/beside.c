@@ -16,9 +16,6 @@
  * millionth of what a face stores that overlaps by as much as 1e-3. */
 #define UNSEEN 2e-4
 
-/* Overlap up to which blocks only touch, relative to the size: as in narrow/press.c. */
-#define TOUCHING 1e-12
-
 /* Product of the blocks' numbers of faces up to which they may be of a lattice: others are hardly ever flush. */
 #define FEW 400
 
@@ -97,7 +94,7 @@ static bool widest(const tl_pair_view *view, tl_vec3 than, uint32_t *number, sig
 bool tl_beside_only_touches(const tl_pair_view *view, const tl_pair *p)
 {
     tl_pair_faces faces = tl_pair_faces_of(p);
-    double least = -TOUCHING * view->size;
+    double least = -TL_TOUCHING * view->size;
     return faces.one != faces.other && gap_from(view, faces.one) >= least &&
            gap_from(view, faces.other) >= least;
 }

@@ -4,7 +4,7 @@
 
 #include <stdbool.h>
 #include <stdint.h>
-#include <talus/types.h>
+#include <talus/plugin.h>
 
 /* Faces of which it can be kept that they bounded K. */
 #define TL_FIELD_KNOWN 64
@@ -45,10 +45,10 @@ typedef struct tl_field_mesh {
     uint8_t loop[TL_MESH_SIDES]; /* its corners, one polygon after the other */
 } tl_field_mesh;
 
-/* Corners of a mesh with those that fill up the last eight. */
+/* Corners of a mesh with those that fill up the last lanes. */
 static inline uint32_t tl_mesh_room(const tl_field_mesh *mesh)
 {
-    return (mesh->corners + 7u) / 8 * 8;
+    return (mesh->corners + TL_LANES - 1) / TL_LANES * TL_LANES;
 }
 
 /* The planes that bound K, in this order: faces of A, faces of B, borders of A, borders of B. Others may be among them. Of

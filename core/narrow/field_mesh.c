@@ -4,9 +4,9 @@
  * place changes. So the planes of all corners are kept, the mesh. At a new place every corner is found from its planes, three
  * equations, and the mesh stands if no plane is nearer to any corner than its own are, and none is passed:
  *
- *     c_h - n_h . x >= d    for all faces h,    c_h - n_h . x >= 0    for all borders h.
+ *     c_h - n_h . x >= d    for all faces h.
  *
- * Then it is all of the field. A polygon is convex, and its sides lie between corners that belong to it, so it is whole, and
+ * There are no borders. Then it is all of the field. A polygon is convex, and its sides lie between corners that belong to it, so it is whole, and
  * so is the part of S that it hangs together with. From a point where A is the nearer, the way out through its nearest face
  * stays where A is the nearer, for d_B grows no faster than d_A falls: so each part of S ends on the surface of K, where faces of
  * both blocks meet, and there all corners are known: K has no others than these and those of one block that lie in the
@@ -141,9 +141,7 @@ typedef struct polygons {
     uint32_t sides[LANES], most;
     double n[3][LANES], length[LANES]; /* n_i - n_j, then divided by its length, and that */
     double surface[LANES];             /* 1: of S, 0: between cells of one block */
-    double
-        cells[LANES]; /* twice as many cells on its sides as have their energy from their sides */
-    double deepest;
+    double cells[LANES]; /* how many of the cells beside it have their energy from their sides */
     integrals of;
 } polygons;
 

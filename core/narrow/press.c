@@ -23,9 +23,7 @@
 #include <stdlib.h>
 #include <talus/vmath.h>
 
-/* Depth over the size of the smaller block up to which blocks only touch: roundings of places. */
-#define TOUCHING 1e-12
-/* The same up to which the integrals are looked at for being nothing but roundings. */
+/* Depth over the size of the smaller block up to which the integrals are looked at for being nothing but roundings. */
 #define FAINT 1e-7
 /* Depth, over the deepest point's, by which that point may lie outside a block for rounding. */
 #define INSIDE 1e-6
@@ -164,7 +162,7 @@ static bool is_noise(const tl_press_query *of, const planes *p, const tl_field_s
         return false;
     tl_vec3 centre = tl_v3_madd(p->origin, 1 / sums->pressure, sums->pressed);
     bool deeper = of->least > 0 && !(sums->energy <= 2 * sums->deepest * sums->volume);
-    return deeper || !in_both(of, centre, TOUCHING / INSIDE * size);
+    return deeper || !in_both(of, centre, TL_TOUCHING / INSIDE * size);
 }
 
 /* ---------------------------------------------------------------- energies --------------- */
@@ -244,7 +242,7 @@ static bool press_of(const tl_press_query *of, planes *p, const tl_field_sums *s
     const tl_region *region = of->region;
     tl_field_sums patch;
     *press = (tl_press){0};
-    if (!(sums->deepest > TOUCHING * view->size) || !(tl_v3_norm(sums->force) > 0) ||
+    if (!(sums->deepest > TL_TOUCHING * view->size) || !(tl_v3_norm(sums->force) > 0) ||
         !(sums->energy > 0) || is_noise(of, p, sums) ||
         !(same || in_both(of, tl_v3_add(p->origin, sums->deepest_at), sums->deepest))) {
         if (region->mesh)

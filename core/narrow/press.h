@@ -13,6 +13,9 @@
 #define TL_FLUSH_DEPTH 4e-3
 #define TL_FIELD_DEPTH 1e-2
 
+/* Depth over the size of the smaller block up to which blocks only touch: roundings of places. */
+#define TL_TOUCHING 1e-12
+
 /* A pair that has been placed, and how it is to be pressed. */
 typedef struct tl_press_query {
     const tl_pair_view *view;
