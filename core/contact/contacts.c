@@ -43,9 +43,7 @@ void tl_contacts_init(tl_contacts *c, tl_points_table *p)
     TL_COLUMN(t, c, press, 0);
     TL_COLUMN(t, c, faces_valid_to, 0);
     TL_COLUMN(t, c, points_valid_to, 0);
-    TL_COLUMN(t, c, laid_at, 0);
-    TL_COLUMN(t, c, found_at, 0);
-    TL_COLUMN(t, c, found_for, 0);
+    TL_COLUMN(t, c, spot, 0);
     TL_COLUMN(t, c, point_start, 0);
     TL_COLUMN(t, c, point_count, TL_COLUMN_STATE);
     TL_COLUMN(t, c, point_room, 0);
@@ -119,7 +117,7 @@ bool tl_contact_append(tl_model *m, uint32_t pair, bool field, double valid, tl_
     c->press[row] = TL_NO_ROW;
     c->points_valid_to[row] = tl_pair_odometer(m, p->a, p->b);
     c->faces_valid_to[row] = c->points_valid_to[row] + valid;
-    c->found_for[row] = 0;
+    c->spot[row] = tl_spot_of(m, p->a, p->b, valid);
     c->pending[row] = TL_PENDING_GROW;
     c->deep[row] = TL_DEEP_NOT;
     c->held[row] = tl_blocks_held_still(m, p->a, p->b);

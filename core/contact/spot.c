@@ -4,37 +4,43 @@
 
 #include "model/model.h"
 
+#include <float.h>
 #include <talus/vmath.h>
 
-tl_spot tl_spot_of(const tl_model *m, uint32_t block_a, uint32_t block_b)
+/* Half the spacing of the floats at 1: no number is rounded by a larger share. */
+#define ROUNDED (FLT_EPSILON / 2)
+
+typedef struct tl_relative {
+    tl_vec3 way;
+    tl_quat turn;
+} tl_relative;
+
+static tl_relative relative(const tl_model *m, uint32_t block_a, uint32_t block_b)
 {
     const tl_bodies *bodies = &m->bodies;
     uint32_t a = m->blocks.body[block_a], b = m->blocks.body[block_b];
-    return (tl_spot){tl_m3_tmul(&bodies->pose[a].r, tl_body_apart(bodies, a, b)),
-                     tl_q_mul(tl_q_conj(bodies->q[a]), bodies->q[b])};
+    return (tl_relative){tl_m3_tmul(&bodies->pose[a].r, tl_body_apart(bodies, a, b)),
+                         tl_q_mul(tl_q_conj(bodies->q[a]), bodies->q[b])};
 }
 
-tl_rough_spot tl_spot_roughly(const tl_spot *s)
+tl_spot tl_spot_of(const tl_model *m, uint32_t block_a, uint32_t block_b, double left)
 {
-    return (tl_rough_spot){
-        {(float)s->way.x, (float)s->way.y, (float)s->way.z},
-        {(float)s->turn.w, (float)s->turn.x, (float)s->turn.y, (float)s->turn.z}};
-}
-
-tl_spot tl_spot_from(const tl_rough_spot *s)
-{
-    return (tl_spot){
-        {(double)s->way[0], (double)s->way[1], (double)s->way[2]},
-        {(double)s->turn[0], (double)s->turn[1], (double)s->turn[2], (double)s->turn[3]}};
+    tl_relative s = relative(m, block_a, block_b);
+    return (tl_spot){{(float)s.way.x, (float)s.way.y, (float)s.way.z},
+                     {(float)s.turn.w, (float)s.turn.x, (float)s.turn.y, (float)s.turn.z},
+                     (float)left};
 }
 
 /* The difference of two unit quaternions is 2 sin of a quarter of the angle between them; a quaternion and its negative are the same
  * rotation. */
-double tl_spot_moved(const tl_spot *from, const tl_spot *to, double radius)
+double tl_spot_moved(const tl_model *m, const tl_spot *then, uint32_t block_a, uint32_t block_b,
+                     double radius)
 {
-    const tl_quat p = from->turn, q = to->turn;
+    tl_relative now = relative(m, block_a, block_b);
+    tl_vec3 way = {then->way[0], then->way[1], then->way[2]};
+    tl_quat p = {then->turn[0], then->turn[1], then->turn[2], then->turn[3]}, q = now.turn;
     double sign = p.w * q.w + p.x * q.x + p.y * q.y + p.z * q.z < 0 ? -1 : 1;
     double w = q.w - sign * p.w, x = q.x - sign * p.x, y = q.y - sign * p.y, z = q.z - sign * p.z;
-    double angle = 2 * sqrt(w * w + x * x + y * y + z * z);
-    return tl_v3_norm(tl_v3_sub(to->way, from->way)) + angle * radius;
+    double angle = 2 * (sqrt(w * w + x * x + y * y + z * z) + ROUNDED);
+    return tl_v3_norm(tl_v3_sub(now.way, way)) + ROUNDED * tl_v3_norm(way) + angle * radius;
 }

@@ -4,22 +4,19 @@
 
 #include <talus/types.h>
 
-/* B's body in the frame of A's: its centroid and its rotation. */
+/* B's body in the frame of A's: its centroid and its rotation, each to seven digits. */
 typedef struct tl_spot {
-    tl_vec3 way;
-    tl_quat turn;
+    float way[3], turn[4];
+    /* of a contact: from here its blocks may move so far against each other, m, before its faces are to be chosen anew */
+    float left;
 } tl_spot;
 
-/* The same, to seven digits. */
-typedef struct tl_rough_spot {
-    float way[3], turn[4];
-} tl_rough_spot;
-
 struct tl_model;
-tl_spot tl_spot_of(const struct tl_model *m, uint32_t block_a, uint32_t block_b);
-tl_rough_spot tl_spot_roughly(const tl_spot *spot);
-tl_spot tl_spot_from(const tl_rough_spot *spot);
-/* How far a point has moved between two spots that lies within `radius` of the centroid of B's body, at the most. */
-double tl_spot_moved(const tl_spot *from, const tl_spot *to, double radius);
+/* Where the blocks are. */
+tl_spot tl_spot_of(const struct tl_model *m, uint32_t block_a, uint32_t block_b, double left);
+/* How far points have moved since then that lie within `radius` of the centroid of B's body, at the most: what the rounding of
+ * the spot may hide is counted. */
+double tl_spot_moved(const struct tl_model *m, const tl_spot *then, uint32_t block_a,
+                     uint32_t block_b, double radius);
 
 #endif

@@ -18,10 +18,8 @@ typedef struct tl_contacts {
     uint32_t *press;         /* row of what a field contact keeps, or TL_NO_ROW */
     double *faces_valid_to;  /* sum of odometers up to which the choice of its faces stands */
     double *points_valid_to; /* sum of odometers up to which its points may be reused */
-    /* of patches: where their points were laid, where their faces were chosen, and the way that the choice is good for */
-    tl_spot *laid_at;
-    tl_rough_spot *found_at;
-    float *found_for;
+    /* of patches: where their points were laid or, without reuse, their faces chosen */
+    tl_spot *spot;
     uint32_t *point_start; /* row of the first point; the next are TL_LANES rows apart */
     uint16_t *point_count, *point_room;
     double *area;

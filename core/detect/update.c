@@ -150,9 +150,7 @@ static bool find(tl_model *m, uint32_t c, tl_narrow *room)
     if (!tl_manifold_find(&view, &region, &rule, &before, room))
         return false;
     contacts->faces_valid_to[c] = room->reframed ? -INFINITY : odometer + g->valid;
-    tl_spot spot = tl_spot_of(m, contacts->a[c], contacts->b[c]);
-    contacts->found_at[c] = tl_spot_roughly(&spot);
-    contacts->found_for[c] = (float)g->valid;
+    contacts->spot[c] = tl_spot_of(m, contacts->a[c], contacts->b[c], g->valid);
     if (g->point_count == 0 && !is_near(&view, region.gap, &way)) {
         part(m, c, way);
         return true;
@@ -217,6 +215,24 @@ static bool take_manifold(tl_model *m, uint32_t c, tl_narrow *room, const tl_poi
     return true;
 }
 
+/* How far points of B, or of either block, have moved against the other since the contact's spot, at the most. */
+static double points_moved(const tl_model *m, uint32_t c)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    uint32_t a = contacts->a[c], b = contacts->b[c];
+    return tl_spot_moved(m, &contacts->spot[c], a, b, m->bodies.radius[m->blocks.body[b]]);
+}
+
+static double faces_moved(const tl_model *m, uint32_t c)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    uint32_t a = contacts->a[c], b = contacts->b[c];
+    uint32_t body_a = m->blocks.body[a], body_b = m->blocks.body[b];
+    double away = tl_v3_norm(tl_body_apart(&m->bodies, body_a, body_b));
+    double radius = fmax(m->bodies.radius[body_b], away + m->bodies.radius[body_a]);
+    return tl_spot_moved(m, &contacts->spot[c], a, b, radius);
+}
+
 void tl_contact_allow_reuse(tl_model *m, uint32_t c)
 {
     tl_contacts *contacts = &m->detect->contacts;
@@ -227,29 +243,12 @@ void tl_contact_allow_reuse(tl_model *m, uint32_t c)
     contacts->points_valid_to[c] = tl_pair_odometer(m, contacts->a[c], contacts->b[c]) + most;
     if (contacts->facet[c].kind != TL_FACET_PATCH || contacts->point_count[c] == 0)
         return;
-    contacts->laid_at[c] = (tl_spot){0}; /* nowhere: no rotation is 0 */
-    if (m->config.reuse_geometry)
-        contacts->laid_at[c] = tl_spot_of(m, contacts->a[c], contacts->b[c]);
-}
-
-/* How far B has moved against A since its points were laid, as far as points are that lie in it. */
-static double moved_since_laid(const tl_model *m, uint32_t c)
-{
-    const tl_contacts *contacts = &m->detect->contacts;
-    tl_spot now = tl_spot_of(m, contacts->a[c], contacts->b[c]);
-    return tl_spot_moved(&contacts->laid_at[c], &now,
-                         m->bodies.radius[m->blocks.body[contacts->b[c]]]);
-}
-
-/* The same of both blocks against each other since the faces were chosen. */
-static double moved_since_found(const tl_model *m, uint32_t c)
-{
-    const tl_contacts *contacts = &m->detect->contacts;
-    const double *radius = m->bodies.radius;
-    uint32_t a = m->blocks.body[contacts->a[c]], b = m->blocks.body[contacts->b[c]];
-    tl_spot now = tl_spot_of(m, contacts->a[c], contacts->b[c]);
-    tl_spot then = tl_spot_from(&contacts->found_at[c]);
-    return tl_spot_moved(&then, &now, fmax(radius[b], tl_v3_norm(now.way) + radius[a]));
+    if (!m->config.reuse_geometry) { /* its spot is not where the points are laid now */
+        contacts->points_valid_to[c] = -INFINITY;
+        return;
+    }
+    double left = (double)contacts->spot[c].left - faces_moved(m, c);
+    contacts->spot[c] = tl_spot_of(m, contacts->a[c], contacts->b[c], left);
 }
 
 /* Whether the odometers have not run out, or the blocks have moved less than that against each other. -INFINITY: all is to be
@@ -307,8 +306,8 @@ bool tl_contact_is_patch(tl_model *m, uint32_t c)
     uint32_t material = contacts->material[c];
     return contacts->facet[c].kind == TL_FACET_PATCH && contacts->point_count[c] > 0 &&
            material != TL_NO_ROW && !m->materials[material].splits &&
-           is_valid(m, c, &contacts->faces_valid_to[c], (double)contacts->found_for[c],
-                    moved_since_found);
+           is_valid(m, c, &contacts->faces_valid_to[c], (double)contacts->spot[c].left,
+                    faces_moved);
 }
 
 /* The patch of a contact that is one and stays one, made anew; false when that is not all there is to it. */
@@ -366,7 +365,7 @@ bool tl_contact_stands(tl_model *m, uint32_t c)
     /* one that wants room is made when it has got it */
     return contacts->pending[c] == TL_PENDING_DIE || tl_pending_waits(contacts->pending[c]) ||
            (m->config.reuse_geometry &&
-            is_valid(m, c, &contacts->points_valid_to[c], way, moved_since_laid));
+            is_valid(m, c, &contacts->points_valid_to[c], way, points_moved));
 }
 
 /* Makes all that a contact is anew. Without the memory for it the contact is as it was, so that it can be tried again
@@ -376,12 +375,14 @@ static bool make_anew(tl_model *m, uint32_t c, unsigned thread)
     tl_contacts *contacts = &m->detect->contacts;
     tl_narrow *room = &m->detect->narrow[thread];
     double faces_valid_to = contacts->faces_valid_to[c];
+    tl_spot spot = contacts->spot[c];
     tl_tag tag = contacts->tag[c];
     uint8_t field = contacts->field[c], pending = contacts->pending[c], deep = contacts->deep[c];
     if (find(m, c, room) && (contacts->pending[c] == TL_PENDING_DIE ||
                              take_manifold(m, c, room, &m->detect->lanes[thread])))
         return true;
     contacts->faces_valid_to[c] = faces_valid_to;
+    contacts->spot[c] = spot;
     contacts->tag[c] = tag;
     contacts->field[c] = field;
     contacts->pending[c] = pending;
