@@ -318,7 +318,7 @@ static int model_mass_scaling(lua_State *L)
     lua_settop(L, 2);
     if (lua_isnil(L, 2))
         return push_mass_added(L, model);
-    tl_mass_scaling scaling = {.dt = NAN};
+    tl_mass_scaling scaling = {.dt = NAN, .most = NAN};
     tl_lua_spec spec = tl_lua_spec_of("mass_scaling", NULL);
     if (lua_istable(L, 2))
         tl_lua_read(L, 2, &spec, false, &scaling);

@@ -95,8 +95,8 @@ static const tl_param mass_scaling_params[] = {
     TL_PARAM(
         TL_PARAM_REAL, tl_mass_scaling, most, "",
         "with dt: mass that may be added, as a share of the mass of all bodies that can move; a "
-        "step that would need more fails",
-        .def = {TL_MOST_ADDED}, .min = 0.0, .max = INFINITY, .flags = TL_PARAM_MAX_OPEN),
+        "step that would need more fails. Left out, 0.05",
+        .min = 0.0, .max = INFINITY, .flags = TL_PARAM_MAX_OPEN | TL_PARAM_OPTIONAL),
 };
 
 static const tl_param profile_params[] = {

@@ -125,6 +125,8 @@ check.near(model.dt, own, 0.01 * own)
 check.refused(model, function() model:mass_scaling { dt = 0 } end, "dt = 0")
 check.refused(model, function() model:mass_scaling { dt = 1e-4, most = -1 } end, "most = -1")
 check.refused(model, function() model:mass_scaling { step = 1e-4 } end, "unknown parameter 'step'")
+check.refused(model, function() model:mass_scaling { most = 0.1 } end, "give dt")
+check.refused(model, function() model:mass_scaling { on = false, dt = 1e-4 } end, "leave one")
 
 -- ---------------------------------------------------------------- threads
 

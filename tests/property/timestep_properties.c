@@ -137,7 +137,7 @@ TEST(no_step_is_longer_than_its_floor_allows)
         double dt = step_of(m);
         CHECK(dt > 0 && dt <= shortest * (1 + ROUNDING));
         /* mass scaling makes all as slow as the slowest, which has that bound, too */
-        scene_ok(m, tl_model_mass_scaling(m, &(tl_mass_scaling){1, NAN, 0}));
+        scene_ok(m, tl_model_mass_scaling(m, &(tl_mass_scaling){1, NAN, NAN}));
         double scaled = step_of(m);
         if (r.rule == TL_TIMESTEP_BODY)
             CHECK(scaled >= dt * (1 - ROUNDING));

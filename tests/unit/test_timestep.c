@@ -69,7 +69,7 @@ TEST(kept_rates_are_those_of_the_present_contacts)
 TEST(mass_scaling_knows_which_bodies_have_contacts)
 {
     tl_model *m = shower();
-    scene_ok(m, tl_model_mass_scaling(m, &(tl_mass_scaling){1, NAN, 0}));
+    scene_ok(m, tl_model_mass_scaling(m, &(tl_mass_scaling){1, NAN, NAN}));
     double copy[BLOCKS + 1];
     int missed = 0;
     for (int i = 0; i < STEPS; i++) {
@@ -296,7 +296,7 @@ static int remarks_of(double share, double density, bool scaling)
     tl_model *m = eight_cubes(1, share, &h);
     tl_block_set lighter = {density, NULL, {NAN, NAN, NAN}, {NAN, NAN, NAN}};
     scene_ok(m, tl_blocks_set(m, &m->blocks.id[2], 1, &lighter));
-    scene_ok(m, tl_model_mass_scaling(m, &(tl_mass_scaling){scaling, NAN, 0}));
+    scene_ok(m, tl_model_mass_scaling(m, &(tl_mass_scaling){scaling, NAN, NAN}));
     scene_ok(m, ten_steps(m));
     tl_model_destroy(m);
     return h.remarks;

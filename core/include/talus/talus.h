@@ -235,7 +235,7 @@ TL_API tl_status tl_model_timestep_report(tl_model *model, tl_timestep_report *r
 typedef struct tl_mass_scaling {
     int32_t on;
     double dt;   /* s, or NaN */
-    double most; /* of the mass of the bodies that can move */
+    double most; /* of the mass of the bodies that can move, or NaN: 0.05 */
 } tl_mass_scaling;
 TL_API tl_status tl_model_mass_scaling(tl_model *model, const tl_mass_scaling *scaling);
 
