@@ -192,12 +192,22 @@ bool tl_table_copy(tl_table *table, void *owner, const tl_table *from)
 {
     *table = *from;
     table->owner = owner;
-    table->memory =
-        NULL; /* the pointers are still those of `from`: allocate copies what is there */
+    table->memory = NULL;
+    for (size_t i = 0; i < table->column_count; i++)
+        put(table, &table->columns[i], get(from, &table->columns[i])); /* allocate copies it */
     if (from->capacity == 0 || allocate(table, from->capacity))
         return true;
     tl_table_free(table);
     return false;
+}
+
+void tl_table_like(tl_table *table, void *owner, const tl_table *from)
+{
+    free(table->memory);
+    *table = *from;
+    table->owner = owner;
+    table->memory = NULL;
+    tl_table_free(table);
 }
 
 size_t tl_table_bytes(const tl_table *table)

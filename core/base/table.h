@@ -16,6 +16,7 @@
 
 enum {
     TL_COLUMN_STATE = 1, /* part of the mechanical state: hashed and saved */
+    TL_COLUMN_OWNED = 4, /* pointers to what has an owner of its own: saved otherwise */
     TL_COLUMN_STEP = 2 /* overwritten by laws or gather: kept where a step may have to be undone */
 };
 
@@ -67,9 +68,11 @@ void tl_table_insert(tl_table *table, const uint32_t *at, size_t count);
 void tl_table_move(tl_table *table, size_t to, size_t from);
 void *tl_table_data(const tl_table *table, size_t column);
 void tl_table_free(tl_table *table);
-/* Makes a table of the same columns, rows and capacity for another owner of the same type, whose column pointers are
- * `from`'s; false when out of memory (it is empty then). */
+/* Makes a table of the same columns, rows and capacity for another owner of the same type, in the place of one without memory;
+ * false when out of memory (it is empty then). */
 bool tl_table_copy(tl_table *table, void *owner, const tl_table *from);
+/* Makes an empty table of the same columns for such an owner in its place. */
+void tl_table_like(tl_table *table, void *owner, const tl_table *from);
 /* Bytes its columns take, spare rows included. */
 size_t tl_table_bytes(const tl_table *table);
 

@@ -90,6 +90,14 @@ void tl_point_lanes_init(tl_point_lanes *l)
     TL_COLUMN(t, l, flags_before, 0);
 }
 
+bool tl_detect_hold_lanes(tl_detect *d, size_t room)
+{
+    for (unsigned i = 0; i < d->threads; i++)
+        if (!tl_table_resize(&d->lanes[i].table, room))
+            return false;
+    return true;
+}
+
 uint32_t tl_material_row(const tl_model *m, tl_tag tag)
 {
     const tl_material *material = tl_material_of(m, tag);
@@ -236,9 +244,8 @@ static bool make_lanes(tl_detect *d, const tl_layout *layout)
     for (size_t r = 0; r < layout->run_count; r++)
         for (size_t i = layout->runs[r].rank_begin; i < layout->runs[r].rank_end; i++)
             room = larger(room, (size_t)layout->ranks[i].slots * TL_LANES);
-    for (unsigned i = 0; i < d->threads; i++)
-        if (!tl_table_resize(&d->lanes[i].table, room))
-            return false;
+    if (!tl_detect_hold_lanes(d, room))
+        return false;
     d->lane_room = larger(room, d->lane_room);
     return true;
 }

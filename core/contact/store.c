@@ -1,11 +1,33 @@
 /* store.c - the detection as a whole: let go of, and given the columns that laws and initial forces need. */
 #include "contact/store.h"
 
+#include "contact/contacts.h"
+#include "contact/index.h"
 #include "contact/points.h"
 #include "contact/ranks.h"
 #include "narrow/room.h"
 
 #include <stdlib.h>
+
+tl_detect *tl_detect_make(unsigned threads)
+{
+    tl_detect *d = calloc(1, sizeof *d);
+    if (!d)
+        return NULL;
+    d->threads = threads;
+    d->narrow = calloc(threads, sizeof *d->narrow);
+    d->lanes = calloc(threads, sizeof *d->lanes);
+    tl_contacts_init(&d->contacts, &d->points);
+    tl_contacts_init(&d->spare, &d->spare_points);
+    if (!d->narrow || !d->lanes) {
+        tl_detect_destroy(d);
+        return NULL;
+    }
+    for (unsigned i = 0; i < threads; i++)
+        tl_point_lanes_init(&d->lanes[i]);
+    tl_contacts_unlist(d);
+    return d;
+}
 
 void tl_detect_destroy(tl_detect *d)
 {

@@ -4,6 +4,8 @@
 
 #include "contact/detection.h"
 
+/* A detection without pairs and contacts, for so many threads; NULL when out of memory. */
+tl_detect *tl_detect_make(unsigned threads);
 void tl_detect_destroy(tl_detect *d);
 /* Makes sure that points have initial forces and the overlaps they belong to, or so many columns of states; false when
  * out of memory (nothing changed). */

@@ -223,6 +223,8 @@ void tl_undo_step(tl_model *m);
 void tl_undo_end(tl_model *m);
 /* Forces were set by hand: they may be anything. */
 void tl_undo_by_hand(tl_model *m);
+/* Whether a step failed and could not be taken back. */
+bool tl_undo_lost(const struct tl_cycle *c);
 size_t tl_undo_bytes(const struct tl_cycle *c);
 void tl_undo_free(struct tl_undo *undo);
 /* Makes room for the reactions on bodies that are held; before the gather. false: out of memory. */
@@ -270,6 +272,9 @@ double tl_timestep_fraction(const tl_model *m);
 void tl_sliver_remark(tl_model *m);
 /* Whether a body can move, or is held but moves. */
 bool tl_model_moves(const tl_model *m);
+/* Puts a damping in the place of the model's, with its states as they begin; with `from`, params of the same kind, what is
+ * not given is taken from it. */
+tl_status tl_damping_make(tl_model *m, const tl_kind *kind, const tl_args *args, const void *from);
 tl_status tl_damping_apply(tl_model *m, double dt);
 /* Every body would move by a finite number that is not out of all proportion, or a sentence that names one that would
  * not: bodies whose motion is given, after the drives have been evaluated, and those that forces move. */
@@ -277,6 +282,9 @@ tl_status tl_motion_check_held(tl_model *m, double dt);
 tl_status tl_motion_check(tl_model *m, double dt);
 /* Velocities, places and rotations one step on. */
 void tl_move(tl_model *m, double dt);
+/* Bytes of the ledger, and whether one that was read from a file is none of impossible bits. */
+size_t tl_ledger_size(void);
+bool tl_ledger_is_sound(const struct tl_ledger *ledger);
 /* The energy ledger: the move books what its bodies have and what is done to them, chunk by chunk, ... */
 tl_status tl_energy_prepare(tl_model *m, size_t chunks);
 void tl_energy_book(const tl_model *m, const tl_group *g, tl_work *work);

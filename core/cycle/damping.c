@@ -26,14 +26,8 @@ static bool hold_forces(tl_bodies *b)
            TL_COLUMN_NEED(&b->table, b, force_before, TL_COLUMN_STEP);
 }
 
-tl_status tl_model_damping(tl_model *m, const char *damping, const tl_args *args)
+tl_status tl_damping_make(tl_model *m, const tl_kind *kind, const tl_args *args, const void *from)
 {
-    tl_status status = tl_model_may_set(m, "set damping");
-    if (status != TL_OK)
-        return status;
-    const tl_kind *kind = tl_plugin_find(TL_KIND_DAMPING, damping);
-    if (!kind)
-        return tl_unknown_kind(m, TL_KIND_DAMPING, damping);
     const tl_damping_ops *ops = kind->ops;
     void *params = calloc(1, kind->params_size + 1), *self = params;
     double *state = calloc(kind->state_count + 1u, sizeof *state);
@@ -42,11 +36,13 @@ tl_status tl_model_damping(tl_model *m, const char *damping, const tl_args *args
         free(state);
         return tl_fail_memory(&m->error);
     }
+    if (from)
+        memcpy(params, from, kind->params_size);
     char context[64];
-    snprintf(context, sizeof context, "damping '%.40s'", damping);
+    snprintf(context, sizeof context, "damping '%.40s'", kind->name);
     tl_report report = {.size = sizeof report};
-    status = tl_args_read(kind->params, kind->param_count, kind->param_stride, args, false, params,
-                          context, &m->error);
+    tl_status status = tl_args_read(kind->params, kind->param_count, kind->param_stride, args,
+                                    from != NULL, params, context, &m->error);
     if (status == TL_OK && ops->create) {
         tl_enter(kind, "create");
         status = ops->create(params, &self, &report);
@@ -67,6 +63,21 @@ tl_status tl_model_damping(tl_model *m, const char *damping, const tl_args *args
     m->damping_params = params;
     m->damping_self = self;
     m->damping_state = state;
+    return TL_OK;
+}
+
+tl_status tl_model_damping(tl_model *m, const char *damping, const tl_args *args)
+{
+    tl_status status = tl_model_may_set(m, "set damping");
+    if (status != TL_OK)
+        return status;
+    const tl_kind *kind = tl_plugin_find(TL_KIND_DAMPING, damping);
+    if (!kind)
+        return tl_unknown_kind(m, TL_KIND_DAMPING, damping);
+    const tl_damping_ops *ops = kind->ops;
+    status = tl_damping_make(m, kind, args, NULL);
+    if (status != TL_OK)
+        return status;
     if (ops->before)
         note_forces(&m->bodies, 0, m->bodies.table.rows);
     if (m->cycle)

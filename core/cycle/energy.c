@@ -15,6 +15,7 @@
  * The move books its bodies group by group (motion.c), while all that is needed is at hand. */
 #include "cycle/cycle_room.h"
 
+#include "base/walk.h"
 #include "contact/detection.h"
 
 #include <stdlib.h>
@@ -36,6 +37,16 @@ struct tl_ledger {
     bool started;
     tl_energy energy;
 };
+
+size_t tl_ledger_size(void)
+{
+    return sizeof(struct tl_ledger);
+}
+
+bool tl_ledger_is_sound(const struct tl_ledger *ledger)
+{
+    return tl_is_flag(&ledger->started);
+}
 
 tl_status tl_energy_prepare(tl_model *m, size_t chunks)
 {

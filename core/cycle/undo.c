@@ -236,6 +236,11 @@ void tl_undo_by_hand(tl_model *m)
         m->cycle->undo->version = 0;
 }
 
+bool tl_undo_lost(const struct tl_cycle *c)
+{
+    return c->undo && c->undo->lost;
+}
+
 size_t tl_undo_bytes(const struct tl_cycle *c)
 {
     const struct tl_undo *u = c->undo;

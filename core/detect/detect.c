@@ -38,30 +38,17 @@ static tl_status ensure(tl_model *m)
 {
     if (m->detect)
         return TL_OK;
-    tl_detect *d = calloc(1, sizeof *d);
-    if (!d)
-        return tl_fail_memory(&m->error);
-    d->threads = tl_pool_threads(m->pool);
-    d->narrow = calloc(d->threads, sizeof *d->narrow);
-    d->lanes = calloc(d->threads, sizeof *d->lanes);
-    if (!d->narrow || !d->lanes) {
-        tl_detect_destroy(d);
-        return tl_fail_memory(&m->error);
-    }
-    for (unsigned i = 0; i < d->threads; i++)
-        tl_point_lanes_init(&d->lanes[i]);
-    tl_contacts_init(&d->contacts, &d->points);
-    tl_contacts_init(&d->spare, &d->spare_points);
     uint32_t columns = 0;
     for (size_t i = 0; i < m->material_count; i++) {
         uint32_t wanted = m->materials[i].columns;
         columns = wanted > columns ? wanted : columns;
     }
-    if (!tl_detect_hold_states(d, columns)) {
-        tl_detect_destroy(d);
+    tl_detect *d = tl_detect_make(tl_pool_threads(m->pool));
+    if (!d || !tl_detect_hold_states(d, columns)) {
+        if (d)
+            tl_detect_destroy(d);
         return tl_fail_memory(&m->error);
     }
-    tl_contacts_unlist(d);
     m->detect = d;
     m->detect_destroy = tl_detect_destroy;
     return TL_OK;

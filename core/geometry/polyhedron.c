@@ -297,11 +297,33 @@ void tl_poly_free(tl_poly *poly)
     free(poly);
 }
 
+tl_poly *tl_poly_copy(const tl_poly *poly)
+{
+    tl_poly *p = tl_poly_allocate(poly->vertex_count, poly->face_count, poly->edge_count);
+    if (!p)
+        return NULL;
+    p->size = poly->size;
+    memcpy(p->vertex, poly->vertex, p->vertex_count * sizeof *p->vertex);
+    memcpy(p->plane, poly->plane, p->face_count * sizeof *p->plane);
+    memcpy(p->tag, poly->tag, p->face_count * sizeof *p->tag);
+    memcpy(p->start, poly->start, (p->face_count + 1) * sizeof *p->start);
+    memcpy(p->edge, poly->edge, p->edge_count * sizeof *p->edge);
+    memcpy(p->loop, poly->loop, 2 * p->edge_count * sizeof *p->loop);
+    uint8_t *marks = NULL;
+    if (poly->seams && !(marks = tl_poly_open_seams(p))) {
+        tl_poly_free(p);
+        return NULL;
+    }
+    if (marks)
+        memcpy(marks, poly->covered, (size_t)p->face_count + p->edge_count);
+    return p;
+}
+
 tl_status tl_poly_transformed(const tl_poly *poly, const tl_mat3 *rotation, tl_vec3 translation,
                               tl_poly **copy, tl_error *error)
 {
     *copy = NULL;
-    tl_poly *p = tl_poly_allocate(poly->vertex_count, poly->face_count, poly->edge_count);
+    tl_poly *p = tl_poly_copy(poly);
     if (!p)
         return tl_fail_memory(error);
     for (uint32_t v = 0; v < p->vertex_count; v++) {
@@ -312,18 +334,6 @@ tl_status tl_poly_transformed(const tl_poly *poly, const tl_mat3 *rotation, tl_v
         tl_vec3 n = poly->plane[f].normal;
         p->plane[f].normal = rotation ? tl_m3_mul(rotation, n) : n;
         p->plane[f].offset = poly->plane[f].offset + tl_v3_dot(p->plane[f].normal, translation);
-    }
-    memcpy(p->tag, poly->tag, p->face_count * sizeof *p->tag);
-    memcpy(p->start, poly->start, (p->face_count + 1) * sizeof *p->start);
-    memcpy(p->edge, poly->edge, p->edge_count * sizeof *p->edge);
-    memcpy(p->loop, poly->loop, 2 * p->edge_count * sizeof *p->loop);
-    if (poly->seams) {
-        uint8_t *marks = tl_poly_open_seams(p);
-        if (!marks) {
-            tl_poly_free(p);
-            return tl_fail_memory(error);
-        }
-        memcpy(marks, poly->covered, (size_t)p->face_count + p->edge_count);
     }
     tl_bounds bounds = tl_poly_bounds(p);
     p->size = tl_v3_norm(tl_v3_sub(bounds.max, bounds.min));

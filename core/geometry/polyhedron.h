@@ -75,6 +75,9 @@ void tl_poly_free(tl_poly *poly);
 /* Bytes of its allocation, and of its seams. */
 size_t tl_poly_bytes(const tl_poly *poly);
 
+/* The same once more; NULL when out of memory. */
+tl_poly *tl_poly_copy(const tl_poly *poly);
+
 /* A copy with every vertex x replaced by R x + t (R a rotation; NULL is the identity). */
 tl_status tl_poly_transformed(const tl_poly *poly, const tl_mat3 *rotation, tl_vec3 translation,
                               tl_poly **copy, tl_error *error);

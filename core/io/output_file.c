@@ -5,8 +5,8 @@
  * temporary one first, since only a rename replaces a file. Elsewhere it has the temporary name from the beginning.
  *
  * Temporary names carry the process id and a number that is not taken, so two runs that write the same series do not
- * write into each other's files. Limit: a crash of the machine may lose a file (no fsync); a result can be written
- * again. */
+ * write into each other's files. Limit: a crash of the machine may lose a file that is not durable; a result can be
+ * written again. */
 #define _GNU_SOURCE /* O_TMPFILE */
 #include "io/output_file.h"
 
@@ -15,7 +15,6 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
-#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -200,7 +199,7 @@ tl_status tl_output_finish(tl_output *output, tl_error *error)
     /* A write error stays on the stream, but the errno of a full disk may come only with the last
      * flush. */
     errno = 0;
-    int bad = fflush(output->file) != 0;
+    int bad = fflush(output->file) != 0 || (output->durable && fsync(fileno(output->file)) != 0);
     int code = output->code ? output->code : errno;
     if (!bad && !output->temporary) { /* the file is to outlive its stream */
         output->nameless = fcntl(fileno(output->file), F_DUPFD_CLOEXEC, 1);
@@ -226,6 +225,21 @@ static int link_nameless(const tl_output *output, const char *name)
     return linkat(AT_FDCWD, descriptor, AT_FDCWD, name, AT_SYMLINK_FOLLOW) == 0 ? 0 : errno;
 }
 
+/* Brings the names in the folder of the place to the disk; 0 or an errno. */
+static int sync_folder(const tl_output *output)
+{
+    size_t length = folder_length(output->place);
+    char *folder = length ? strndup(output->place, length) : strdup(".");
+    int fd = folder ? open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC) : -1;
+    int code = fd < 0 ? errno : 0;
+    if (fd >= 0 && fsync(fd) != 0 && errno != EINVAL) /* some file systems have no such thing */
+        code = errno;
+    if (fd >= 0)
+        close(fd);
+    free(folder);
+    return code;
+}
+
 static int link_temporary(tl_output *output)
 {
     return link_nameless(output, output->temporary);
@@ -236,18 +250,17 @@ tl_status tl_output_commit(tl_output *output, tl_error *error)
     int code = 0;
     if (output->nameless) {
         code = link_nameless(output, output->place);
-        if (code == 0)
-            return TL_OK;
         if (code == EEXIST)
             code = take_temporary(output, link_temporary);
     }
-    if (code == 0 && rename(output->temporary, output->place) != 0)
+    if (code == 0 && output->temporary && rename(output->temporary, output->place) != 0)
         code = errno;
     if (code != 0)
         return tl_output_fail(error, output->path, code);
     free(output->temporary);
     output->temporary = NULL;
-    return TL_OK;
+    code = output->durable ? sync_folder(output) : 0;
+    return code ? tl_output_fail(error, output->path, code) : TL_OK;
 }
 
 void tl_output_drop(tl_output *output)

@@ -11,11 +11,9 @@
 
 #include <math.h>
 
-enum { VELOCITY = 1, ANGULAR_VELOCITY, FUNCTIONS = 2 };
-
 static const char *const key_names[] = {
-    [VELOCITY] = "velocity",
-    [ANGULAR_VELOCITY] = "angular_velocity",
+    [TL_LUA_VELOCITY] = "velocity",
+    [TL_LUA_ANGULAR_VELOCITY] = "angular_velocity",
 };
 
 const tl_lua_key tl_lua_drive_keys[] = {
@@ -29,11 +27,10 @@ const tl_lua_key tl_lua_drive_keys[] = {
 
 /* ---------------------------------------------------------------- anchors ---------------- */
 
-/* Pushes a new anchor and hangs it on the model at `model_index`. */
-static tl_lua_anchor *anchor_push(lua_State *L, int model_index)
+tl_lua_anchor *tl_lua_anchor_push(lua_State *L, int model_index)
 {
-    tl_lua_anchor *a = lua_newuserdatauv(L, sizeof *a, FUNCTIONS);
-    a->ended = false;
+    tl_lua_anchor *a = lua_newuserdatauv(L, sizeof *a, TL_LUA_MOTIONS);
+    a->ended = true;
     lua_getiuservalue(L, model_index, 1);
     lua_pushvalue(L, -2);
     lua_rawsetp(L, -2, a);
@@ -130,12 +127,23 @@ static bool evaluate(tl_lua_anchor *a, int key, double t, tl_vec3 *velocity)
 
 static bool velocity_at(void *user, double t, tl_vec3 *velocity)
 {
-    return evaluate(user, VELOCITY, t, velocity);
+    return evaluate(user, TL_LUA_VELOCITY, t, velocity);
 }
 
 static bool angular_velocity_at(void *user, double t, tl_vec3 *velocity)
 {
-    return evaluate(user, ANGULAR_VELOCITY, t, velocity);
+    return evaluate(user, TL_LUA_ANGULAR_VELOCITY, t, velocity);
+}
+
+void tl_lua_anchor_drive(lua_State *L, tl_lua_anchor *a, tl_drive *drive)
+{
+    bool moves = lua_getiuservalue(L, -1, TL_LUA_VELOCITY) == LUA_TFUNCTION;
+    bool turns = lua_getiuservalue(L, -2, TL_LUA_ANGULAR_VELOCITY) == LUA_TFUNCTION;
+    lua_pop(L, 2);
+    *drive = (tl_drive){.velocity_at = moves ? velocity_at : NULL,
+                        .angular_velocity_at = turns ? angular_velocity_at : NULL,
+                        .user = a,
+                        .release = on_release};
 }
 
 /* ---------------------------------------------------------------- verbs ------------------ */
@@ -159,8 +167,8 @@ static bool read_motion(lua_State *L, int key, tl_vec3 *constant, tl_drive_fn *f
                         tl_drive_fn ours)
 {
     static const tl_param vectors[] = {
-        [VELOCITY] = TL_PARAM(TL_PARAM_VEC3, tl_drive, velocity, "m/s", "", .def = {0.0}),
-        [ANGULAR_VELOCITY] =
+        [TL_LUA_VELOCITY] = TL_PARAM(TL_PARAM_VEC3, tl_drive, velocity, "m/s", "", .def = {0.0}),
+        [TL_LUA_ANGULAR_VELOCITY] =
             TL_PARAM(TL_PARAM_VEC3, tl_drive, angular_velocity, "rad/s", "", .def = {0.0}),
     };
     int type = lua_getfield(L, 2, key_names[key]);
@@ -177,7 +185,7 @@ static bool read_motion(lua_State *L, int key, tl_vec3 *constant, tl_drive_fn *f
             tl_lua_fail(L, "drive: %s must be a list of 3 numbers or a function(t), not %s",
                         key_names[key], tl_lua_describe(L, -1));
         tl_lua_read_one(L, top, &spec, key_names[key], &read);
-        *constant = key == VELOCITY ? read.velocity : read.angular_velocity;
+        *constant = key == TL_LUA_VELOCITY ? read.velocity : read.angular_velocity;
         lua_settop(L, top);
     }
     lua_pop(L, 1);
@@ -191,13 +199,12 @@ int tl_lua_blocks_drive(lua_State *L)
     tl_lua_read(L, 2, &spec, false, NULL);
     lua_settop(L, 2);
     lua_getiuservalue(L, 1, 1);
-    tl_lua_anchor *a = anchor_push(L, 3);
-    a->ended = true; /* until the kernel has taken it */
+    tl_lua_anchor *a = tl_lua_anchor_push(L, 3);
     tl_drive drive = {.user = a, .release = on_release};
     bool moves = false;
     if (lua_istable(L, 2)) {
-        moves = read_motion(L, VELOCITY, &drive.velocity, &drive.velocity_at, velocity_at);
-        moves |= read_motion(L, ANGULAR_VELOCITY, &drive.angular_velocity,
+        moves = read_motion(L, TL_LUA_VELOCITY, &drive.velocity, &drive.velocity_at, velocity_at);
+        moves |= read_motion(L, TL_LUA_ANGULAR_VELOCITY, &drive.angular_velocity,
                              &drive.angular_velocity_at, angular_velocity_at);
     }
     if (!moves)

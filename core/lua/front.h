@@ -103,6 +103,11 @@ typedef struct tl_lua_model {
 
 /* Pushes the function talus.model and makes the metatable of models. */
 void tl_lua_model_open(lua_State *L);
+/* Pushes an object without a model yet; gives the model that has been put into it its log and its ear for Ctrl-C. */
+tl_lua_model *tl_lua_model_push(lua_State *L);
+void tl_lua_model_begin(lua_State *L, const tl_lua_model *object);
+/* Sets a number of threads by --threads, else by the environment; else it stays. */
+void tl_lua_default_threads(lua_State *L, int64_t *threads);
 /* The model at index 1; raises, naming the method, when it is something else. */
 tl_model *tl_lua_model_of(lua_State *L, const char *method);
 /* The model of an item or a selection; raises when it was closed (as the Lua state ends). */
@@ -240,6 +245,20 @@ typedef struct tl_lua_anchor {
 extern const tl_lua_key tl_lua_drive_keys[];
 int tl_lua_blocks_load(lua_State *L);
 int tl_lua_blocks_drive(lua_State *L);
+
+/* Pushes a new anchor and hangs it on the model at `model_index`; it counts as ended until the kernel has taken it. */
+tl_lua_anchor *tl_lua_anchor_push(lua_State *L, int model_index);
+/* The functions of a drive for the anchor `a`, which is at the top of the stack: those that it has. */
+void tl_lua_anchor_drive(lua_State *L, tl_lua_anchor *a, tl_drive *drive);
+/* Which user values of an anchor are its functions. */
+enum { TL_LUA_VELOCITY = 1, TL_LUA_ANGULAR_VELOCITY, TL_LUA_MOTIONS = 2 };
+
+/* ---- copies and files: state.c ---- */
+
+extern const tl_lua_key tl_lua_restore_keys[];
+int tl_lua_copy(lua_State *L);
+int tl_lua_save(lua_State *L);
+int tl_lua_restore(lua_State *L);
 
 /* ---- help: help.c, topics.c ---- */
 

@@ -2,6 +2,7 @@
 #include "front.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <unistd.h>
 
 tl_lua_options *tl_lua_options_of(lua_State *L)
@@ -25,6 +26,39 @@ void tl_lua_log(void *user, const char *text)
     const tl_lua_options *options = user;
     if (!options->quiet)
         fprintf(stderr, "%stalus: %s\n", isatty(STDERR_FILENO) ? "\r\033[K" : "", text);
+}
+
+void tl_lua_default_threads(lua_State *L, int64_t *threads)
+{
+    const char *text = getenv("TALUS_THREADS");
+    tl_lua_options *options = tl_lua_options_of(L);
+    if (options->threads > 0)
+        *threads = options->threads;
+    else if (text && text[0]) {
+        char *end;
+        long number = strtol(text, &end, 10);
+        if (*end || number < 1 || number > 256)
+            tl_lua_fail(L,
+                        "the environment's TALUS_THREADS = '%s' is not a whole number in [1, 256]",
+                        text);
+        *threads = number;
+    }
+}
+
+tl_lua_model *tl_lua_model_push(lua_State *L)
+{
+    tl_lua_model *object = lua_newuserdatauv(L, sizeof *object, 1);
+    object->model = NULL;
+    lua_newtable(L); /* of the drives' functions: action.c */
+    lua_setiuservalue(L, -2, 1);
+    luaL_setmetatable(L, TL_LUA_MODEL_TYPE);
+    return object;
+}
+
+void tl_lua_model_begin(lua_State *L, const tl_lua_model *object)
+{
+    tl_model_log(object->model, tl_lua_log, tl_lua_options_of(L));
+    tl_model_interrupt_if(object->model, tl_lua_interrupt_asked);
 }
 
 tl_model *tl_lua_model_of(lua_State *L, const char *method)

@@ -8,24 +8,6 @@
 
 /* ---------------------------------------------------------------- life ------------------- */
 
-/* Default number of threads: of --threads, else of the environment, else 1. */
-static void default_threads(lua_State *L, int64_t *threads)
-{
-    const char *text = getenv("TALUS_THREADS");
-    tl_lua_options *options = tl_lua_options_of(L);
-    if (options->threads > 0)
-        *threads = options->threads;
-    else if (text && text[0]) {
-        char *end;
-        long number = strtol(text, &end, 10);
-        if (*end || number < 1 || number > 256)
-            tl_lua_fail(L,
-                        "the environment's TALUS_THREADS = '%s' is not a whole number in [1, 256]",
-                        text);
-        *threads = number;
-    }
-}
-
 static int model_create(lua_State *L)
 {
     tl_lua_arity(L, 1, "talus.model");
@@ -35,17 +17,12 @@ static int model_create(lua_State *L)
     tl_model_config config;
     tl_lua_read(L, 1, &spec, false, &config);
     if (!lua_istable(L, 1) || lua_getfield(L, 1, "threads") == LUA_TNIL)
-        default_threads(L, &config.threads);
-    tl_lua_model *object = lua_newuserdatauv(L, sizeof *object, 1);
-    object->model = NULL;
-    lua_newtable(L); /* of the drives' functions: action.c */
-    lua_setiuservalue(L, -2, 1);
-    luaL_setmetatable(L, TL_LUA_MODEL_TYPE);
+        tl_lua_default_threads(L, &config.threads);
+    tl_lua_model *object = tl_lua_model_push(L);
     tl_error error;
     if (tl_model_create(&config, &object->model, &error) != TL_OK)
         return tl_lua_raise(L, &error);
-    tl_model_log(object->model, tl_lua_log, tl_lua_options_of(L));
-    tl_model_interrupt_if(object->model, tl_lua_interrupt_asked);
+    tl_lua_model_begin(L, object);
     tl_model_set_gravity(object->model, config.gravity); /* now that remarks are heard */
     return 1;
 }
@@ -431,6 +408,8 @@ static const luaL_Reg model_methods[] = {
     {"filter", tl_lua_filter},
     {"keyblocks", tl_lua_keyblocks},
     {"state_hash", model_state_hash},
+    {"copy", tl_lua_copy},
+    {"save", tl_lua_save},
     {NULL, NULL},
 };
 

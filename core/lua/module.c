@@ -24,6 +24,8 @@ int luaopen_talus(lua_State *L)
     lua_setfield(L, -2, "model");
     lua_pushcfunction(L, tl_lua_report);
     lua_setfield(L, -2, "report");
+    lua_pushcfunction(L, tl_lua_restore);
+    lua_setfield(L, -2, "restore");
     lua_pushcfunction(L, module_help);
     lua_setfield(L, -2, "help");
     lua_pushliteral(L, TALUS_VERSION);

@@ -286,5 +286,26 @@ const tl_lua_topic tl_lua_topics[] = {
      .usage = "text = model:state_hash()",
      .doc = "A digest of all that what comes next depends on, settings too: models with the same "
             "text go on alike, to the last bit. Takes about as long as a step."},
+    {.name = "copy",
+     .usage = "twin = model:copy()",
+     .doc =
+         "The same model once more in memory: equal state, and equal bits after equal calls from "
+         "then on. The functions of drives are shared; VTK frames of the copy begin with 0."},
+    {.name = "save",
+     .usage = "model:save(\"out/run.talus\")",
+     .doc =
+         "Saves all that the next steps depend on, to the bit, compressed and with checksums. The "
+         "file appears whole or not at all, in the place of an older one, and outlives a crash "
+         "of the machine; folders are made. The model goes on as if it had not been saved. "
+         "Functions of drives are not saved."},
+    {.name = "restore",
+     .usage =
+         "model = talus.restore(\"out/run.talus\", {threads = 2, drives = {[7] = function(t) ... "
+         "end}})",
+     .doc =
+         "The model that a file holds: it goes on as the saved one does, to the bit, on any number "
+         "of threads. Laws and damping must be loaded in the version that it was saved with. A "
+         "damaged file, and one of another format, is refused.",
+     .keys = tl_lua_restore_keys},
     {.name = NULL},
 };

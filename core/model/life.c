@@ -9,7 +9,7 @@ static void blocks_init(tl_blocks *b)
     tl_table_init(t, b);
     TL_COLUMN(t, b, id, TL_COLUMN_STATE);
     TL_COLUMN(t, b, body, TL_COLUMN_STATE);
-    TL_COLUMN(t, b, shape, 0);
+    TL_COLUMN(t, b, shape, TL_COLUMN_OWNED);
     TL_COLUMN(t, b, group, 0);
     TL_COLUMN(t, b, density, TL_COLUMN_STATE);
     TL_COLUMN(t, b, volume, TL_COLUMN_STATE);

@@ -128,6 +128,9 @@ local calls = {
         copy:generate("blocks", { file = TMP .. "/blocks.json" })
         return copy:state_hash()
     end },
+    { "copy", function(m) return m.model:copy():state_hash() end },
+    { "save", function(m) m.model:save(TMP .. "/run.talus") end },
+    { "restore", function() return talus.restore(TMP .. "/run.talus", { threads = THREADS }):state_hash() end },
     { "state_hash", function(m) return m.model:state_hash() end },
     { "profile", function(m) return m.model:memory().blocks end },
 }

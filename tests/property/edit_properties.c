@@ -3,7 +3,7 @@
  * anew: what presses where, and by how much. */
 #include "contact_scene.h"
 
-#include "contact/copy.h"
+#include "state/copy.h"
 #include "contact/places.h"
 #include "contact/presses.h"
 #include "contact/store.h"

@@ -22,12 +22,13 @@ ROOMS = {
     "query": {"base", "geometry", "narrow", "model", "contact", "detect", "query"},
     "cycle": {"base", "geometry", "narrow", "model", "contact", "detect", "force", "cycle"},
     "io": {"base", "geometry", "narrow", "model", "contact", "detect", "force", "query", "cycle", "io"},
+    "state": {"base", "geometry", "narrow", "model", "contact", "detect", "force", "cycle", "io", "state"},
     "plugin": {"base", "model", "plugin"},
     "lua": {"lua"},
 }
 # Rooms of which a header declares the functions of the source of its name, or types only, in fewer lines than
 # MAX_HEADER_LINES, and no file includes one that includes it back.
-MODULES = ("narrow", "contact", "detect", "force", "query")
+MODULES = ("narrow", "contact", "detect", "force", "query", "state")
 # Public header -> public headers it may include.
 PUBLIC = {
     "types.h": set(),
@@ -36,7 +37,8 @@ PUBLIC = {
     "plugin.h": {"types.h"},
     "plugins.h": {"types.h", "plugin.h"},
     "output.h": {"types.h", "plugin.h"},
-    "talus.h": {"types.h", "plugin.h", "plugins.h", "output.h"},
+    "state.h": {"types.h", "plugin.h"},
+    "talus.h": {"types.h", "plugin.h", "plugins.h", "output.h", "state.h"},
 }
 PLUGIN_HEADERS = {"talus/types.h", "talus/elementary.h", "talus/vmath.h", "talus/plugin.h"}
 # What a plugin may include besides: the headers of standard C.

@@ -1,4 +1,4 @@
-/* talus/talus.h - the kernel's C interface: build a model, run it, ask it; output.h, write it.
+/* talus/talus.h - the kernel's C interface: build a model, run it, ask it; output.h, write it; state.h, keep it.
  *
  * Conventions. Coordinates x east, y north, z up; any consistent units (SI in the examples).
  * Stress tensors are tension positive, joint stresses and forces compression positive. Angles of
@@ -14,6 +14,7 @@
 #include <talus/output.h>
 #include <talus/plugin.h>
 #include <talus/plugins.h>
+#include <talus/state.h>
 #include <talus/types.h>
 
 #ifdef __cplusplus

@@ -7,13 +7,12 @@
  * record of cuts), what asking may change (contact ids, order of contacts) and what only saves work (cached axes, the broad
  * phase), for the results do not depend on it beyond the caches' margins. A column that few models need counts as zeros
  * where there is none. What follows from the rest and lies in a row with it (a pose's matrix) does no harm. */
-#include "cycle/rates.h"
-
 #include "base/hash.h"
-#include "contact/copy.h"
 #include "contact/points.h"
 #include "contact/store.h"
+#include "cycle/rates.h"
 #include "detect/detect.h"
+#include "state/copy.h"
 
 #include <stdlib.h>
 #include <string.h>

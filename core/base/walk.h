@@ -1,0 +1,106 @@
+/* walk.h - the entries of a module, listed once: what counts bytes, copies, saves and restores a model walks these lists.
+ *
+ * A module's walk (model/walk.c, contact/walk.c, cycle/walk.c) names each of its values, lists and tables and calls a function
+ * with it, always in the same order. */
+#ifndef TL_BASE_WALK_H
+#define TL_BASE_WALK_H
+
+#include "base/table.h"
+
+#include <string.h>
+
+/* What becomes of an entry. */
+typedef enum tl_keep {
+    TL_KEEP_STATE, /* the next step depends on it: copied, saved */
+    TL_KEEP_CACHE, /* saves work; without it the next steps would be the same but for rounding: copied, saved */
+    TL_KEEP_DERIVED, /* follows from the rest to the bit: copied, not saved */
+    TL_KEEP_SCRATCH  /* means nothing between two calls: neither */
+} tl_keep;
+
+typedef enum tl_entry_form {
+    TL_ENTRY_VALUE, /* `at` points to `size` bytes */
+    TL_ENTRY_FLAG,  /* a bool */
+    TL_ENTRY_LIST,  /* `at` points to the pointer to `items` items of `size` bytes, from malloc */
+    TL_ENTRY_TABLE  /* `at` points to a tl_table, which is the first member of its owner */
+} tl_entry_form;
+
+typedef struct tl_entry {
+    const char *name; /* "detect.pairs" */
+    tl_entry_form form;
+    tl_keep keep;
+    void *at;
+    size_t size, items;
+    size_t bytes; /* of a list: of the room that it has */
+    size_t *count,
+        *room; /* of a list: where its number of items, and of items it has room for, are noted; or NULL */
+    size_t counts_for; /* offset in tl_memory of what its bytes count for */
+} tl_entry;
+
+/* Whether the byte of a bool is one: of what was read from a file it may be anything. */
+static inline bool tl_is_flag(const bool *flag)
+{
+    unsigned char byte;
+    memcpy(&byte, flag, 1);
+    return byte <= 1;
+}
+
+typedef struct tl_walk {
+    void (*visit)(void *user, const tl_entry *entry);
+    void *user;
+} tl_walk;
+
+static inline void tl_walk_value(const tl_walk *w, tl_keep keep, const char *name, void *at,
+                                 size_t size)
+{
+    const tl_entry e = {.name = name, .form = TL_ENTRY_VALUE, .keep = keep, .at = at, .size = size};
+    w->visit(w->user, &e);
+}
+
+static inline void tl_walk_flag(const tl_walk *w, tl_keep keep, const char *name, bool *at)
+{
+    const tl_entry e = {
+        .name = name, .form = TL_ENTRY_FLAG, .keep = keep, .at = at, .size = sizeof *at};
+    w->visit(w->user, &e);
+}
+
+/* A list; one whose room is noted nowhere has room for its items. */
+static inline void tl_walk_list(const tl_walk *w, tl_keep keep, const char *name, void *slot,
+                                size_t size, size_t *count, size_t *room, size_t counts_for)
+{
+    const tl_entry e = {.name = name,
+                        .form = TL_ENTRY_LIST,
+                        .keep = keep,
+                        .at = slot,
+                        .size = size,
+                        .items = count ? *count : 0,
+                        .bytes = size * (room    ? *room
+                                         : count ? *count
+                                                 : 0),
+                        .count = count,
+                        .room = room,
+                        .counts_for = counts_for};
+    w->visit(w->user, &e);
+}
+
+static inline void tl_walk_table(const tl_walk *w, tl_keep keep, const char *name, tl_table *table,
+                                 size_t counts_for)
+{
+    const tl_entry e = {.name = name,
+                        .form = TL_ENTRY_TABLE,
+                        .keep = keep,
+                        .at = table,
+                        .bytes = tl_table_bytes(table),
+                        .counts_for = counts_for};
+    w->visit(w->user, &e);
+}
+
+/* A member of a struct under its own name after a prefix: TL_WALK_VALUE(walk, TL_KEEP_STATE, "model.", m, time). */
+#define TL_WALK_VALUE(walk, keep, prefix, owner, member)                                           \
+    tl_walk_value((walk), (keep), prefix #member, &(owner)->member, sizeof(owner)->member)
+#define TL_WALK_FLAG(walk, keep, prefix, owner, member)                                            \
+    tl_walk_flag((walk), (keep), prefix #member, &(owner)->member)
+#define TL_WALK_LIST(walk, keep, prefix, owner, member, count, room, counts_for)                   \
+    tl_walk_list((walk), (keep), prefix #member, &(owner)->member, sizeof *(owner)->member,        \
+                 (count), (room), (counts_for))
+
+#endif

@@ -1,0 +1,285 @@
+/* sound.c - whether a detection that was read from a file fits together. The file may hold anything: what is used as the number
+ * of a row, a face, a lane or a choice must be one, and a bool must be one. What the numbers of the mechanics are does not matter
+ * here, as long as places are finite. */
+#include "contact/sound.h"
+
+#include "base/walk.h"
+#include "narrow/narrow.h"
+
+#include <stdlib.h>
+
+/* A face number that every block may have had which has gone, or has another shape now. */
+#define ANY_FACES UINT32_MAX
+
+/* Faces of the block that had a row when the detection last looked. */
+static uint32_t faces_of(const tl_model *m, const tl_detect *d, uint32_t seen)
+{
+    uint32_t row = tl_block_row_quiet(m, d->seen[seen].id);
+    if (row == TL_NO_ROW || m->blocks.changed[row] > d->structure)
+        return ANY_FACES;
+    return m->blocks.shape[row]->face_count;
+}
+
+/* ---------------------------------------------------------------- pairs ------------------ */
+
+/* Whether the faces of a pair are there. A contact that has points, or waits for room, has something else in their place. */
+static bool pair_faces_are_sound(const tl_model *m, const tl_detect *d, const tl_pair *p)
+{
+    const tl_contacts *c = &d->contacts;
+    if (!tl_pair_is_apart(p) &&
+        (c->point_count[p->contact] || tl_pending_waits(c->pending[p->contact])))
+        return true;
+    tl_pair_faces f = tl_pair_faces_of(p);
+    const uint32_t faces[] = {f.one, f.other};
+    for (int k = 0; k < 2; k++)
+        if (faces[k] / 2 >= faces_of(m, d, faces[k] % 2 ? p->b : p->a))
+            return false;
+    return true;
+}
+
+static bool pair_is_sound(const tl_model *m, const tl_detect *d, uint32_t index)
+{
+    const tl_pair *p = &d->pairs[index];
+    if (p->a >= p->b || p->b >= d->seen_count)
+        return false;
+    if (!tl_pair_is_apart(p) &&
+        (p->contact >= d->contacts.table.rows || d->contacts.pair[p->contact] != index ||
+         d->contacts.a[p->contact] != p->a || d->contacts.b[p->contact] != p->b))
+        return false;
+    return pair_faces_are_sound(m, d, p);
+}
+
+/* What is known of blocks and bodies as they were when the detection last looked: as they are, if nothing was edited since. */
+static bool seen_are_sound(const tl_model *m, const tl_detect *d)
+{
+    size_t blocks = m->blocks.table.rows;
+    if (d->listed && d->structure == m->structure && d->seen_count != blocks)
+        return false;
+    if (d->listed && (d->run_of_room < d->seen_count || d->structure > m->structure))
+        return false;
+    for (size_t row = 0; row < d->seen_count; row++) {
+        const tl_seen *s = &d->seen[row];
+        if (s->body >= d->odometer_room || s->body >= d->touched_room || s->body >= d->idle_room ||
+            s->id <= (row ? d->seen[row - 1].id : 0))
+            return false;
+        if (d->structure == m->structure &&
+            (s->id != m->blocks.id[row] || s->body != m->blocks.body[row]))
+            return false;
+    }
+    return true;
+}
+
+static bool pairs_are_sound(const tl_model *m, const tl_detect *d)
+{
+    size_t chunks = (d->pair_count + TL_PAIR_CHUNK - 1) / TL_PAIR_CHUNK;
+    if (d->pair_count >= TL_PAIR_APART || d->chunk_room < chunks)
+        return false;
+    for (uint32_t i = 0; i < d->pair_count; i++)
+        if (!pair_is_sound(m, d, i))
+            return false;
+    for (size_t i = 0; i < d->chunk_room; i++)
+        if (!tl_is_flag(&d->chunks[i].found))
+            return false;
+    return true;
+}
+
+/* ---------------------------------------------------------------- presses ---------------- */
+
+static bool apex_is_sound(const tl_apex_faces *apex, uint32_t faces)
+{
+    if (!tl_is_flag(&apex->known) || apex->holds > 3 || apex->strays > TL_APEX_STRAYS)
+        return false;
+    for (uint32_t k = 0; k < apex->holds; k++)
+        if (apex->held[k] >= faces)
+            return false;
+    for (uint32_t k = 0; k < apex->strays; k++)
+        if (apex->stray[k] >= faces)
+            return false;
+    return true;
+}
+
+static bool planes_are_sound(const uint8_t *plane, uint32_t count, uint32_t faces)
+{
+    for (uint32_t k = 0; k < count; k++)
+        if (plane[k] >= faces && plane[k] != TL_MESH_ZERO)
+            return false;
+    return true;
+}
+
+static bool mesh_is_sound(const tl_field_mesh *mesh, uint32_t faces)
+{
+    if (mesh->corners > TL_MESH_CORNERS || mesh->polygons > TL_MESH_POLYGONS ||
+        !apex_is_sound(&mesh->apex[0], faces) || !apex_is_sound(&mesh->apex[1], faces) ||
+        (faces < TL_FIELD_KNOWN && mesh->bounding >> faces != 0) ||
+        !planes_are_sound(mesh->own[0], 2u * mesh->polygons, faces))
+        return false;
+    for (int k = 0; k < 4; k++)
+        if (!planes_are_sound(mesh->plane[k], tl_mesh_room(mesh), faces))
+            return false;
+    uint32_t sides = 0;
+    for (uint32_t k = 0; k < mesh->polygons; k++) {
+        if (mesh->sides[k] < 3)
+            return false;
+        sides += mesh->sides[k];
+    }
+    if (sides > TL_MESH_SIDES)
+        return false;
+    for (uint32_t k = 0; k < sides; k++)
+        if (mesh->loop[k] >= mesh->corners)
+            return false;
+    return true;
+}
+
+static bool press_is_sound(const tl_model *m, const tl_detect *d, const tl_press_row *row,
+                           uint32_t a, uint32_t b)
+{
+    if (!tl_is_flag(&row->flush) || !tl_is_flag(&row->listed) || !tl_is_flag(&row->by_slope) ||
+        !(row->shift == 0 || row->shifted < faces_of(m, d, a)))
+        return false;
+    uint32_t sum = 0;
+    for (int k = 0; k < 4; k++)
+        for (uint32_t i = 0; i < row->count[k]; i++) {
+            if (sum == TL_PRESS_FACES || row->face[sum] >= faces_of(m, d, k % 2 ? b : a))
+                return false;
+            sum++;
+        }
+    if (row->blunt_a > row->count[0] || row->blunt_b > row->count[1])
+        return row->listed ? false : true;
+    if (row->by_slope)
+        return tl_is_flag(&row->slope.known);
+    return mesh_is_sound(&row->mesh, (uint32_t)row->count[0] + row->count[1]);
+}
+
+/* The rows of presses: each is a contact's, or in the list of free ones. */
+static bool presses_are_sound(const tl_model *m, const tl_detect *d)
+{
+    size_t count = d->press_count, rows = 0, free_rows = 0;
+    unsigned char *used = calloc(count + 1, 1);
+    bool sound = used != NULL;
+    for (uint32_t c = 0; c < d->contacts.table.rows && sound; c++) {
+        uint32_t row = d->contacts.press[c];
+        if (row == TL_NO_ROW)
+            continue;
+        sound = row < count && !used[row] &&
+                press_is_sound(m, d, &d->press[row], d->contacts.a[c], d->contacts.b[c]);
+        if (sound)
+            used[row] = 1;
+        rows++;
+    }
+    for (uint32_t row = count ? d->press_free : TL_NO_ROW; sound && row != TL_NO_ROW;
+         row = d->press[row].next_free) {
+        sound = row < count && !used[row];
+        if (!sound)
+            break;
+        used[row] = 1;
+        free_rows++;
+    }
+    free(used);
+    return sound && rows + free_rows == count;
+}
+
+/* ---------------------------------------------------------------- contacts --------------- */
+
+static bool facet_is_sound(const tl_model *m, const tl_detect *d, uint32_t row)
+{
+    const tl_contacts *c = &d->contacts;
+    const tl_facet *f = &c->facet[row];
+    bool field = f->kind == TL_FACET_FIELD;
+    if (!field && f->kind != TL_FACET_PATCH)
+        return false;
+    if (c->point_count[row] == 0)
+        return f->ia < TL_POLY_MAX_FACES && f->ib < TL_POLY_MAX_FACES;
+    if (field)
+        return c->point_count[row] == TL_FIELD_POINTS && c->press[row] != TL_NO_ROW;
+    return f->ia < faces_of(m, d, c->a[row]) && f->ib < faces_of(m, d, c->b[row]);
+}
+
+static bool contact_is_sound(const tl_model *m, const tl_detect *d, uint32_t row)
+{
+    const tl_contacts *c = &d->contacts;
+    return c->id[row] != 0 && c->id[row] <= d->next_contact && c->a[row] < c->b[row] &&
+           c->b[row] < d->seen_count && c->pair[row] < d->pair_count &&
+           d->pairs[c->pair[row]].contact == row &&
+           (c->material[row] < m->material_count || c->material[row] == TL_NO_ROW) &&
+           c->tag[row].joint <= m->joint_count && c->field[row] <= 1 && c->held[row] <= 1 &&
+           c->across[row] <= 1 && c->fresh[row] <= 1 && c->pending[row] <= TL_PENDING_MOVE &&
+           c->deep[row] <= TL_DEEP_SUNK && c->point_count[row] <= c->point_room[row] &&
+           facet_is_sound(m, d, row);
+}
+
+/* ---------------------------------------------------------------- layout ----------------- */
+
+/* The lanes of a rank: those that are taken belong to contacts of its run that know so. */
+static bool rank_is_sound(const tl_detect *d, const tl_run *run, const tl_rank *rank, size_t *taken)
+{
+    const tl_contacts *c = &d->contacts;
+    for (uint32_t l = 0; l < TL_LANES; l++) {
+        uint32_t row = rank->contact[l];
+        if (row == TL_NO_ROW)
+            continue;
+        if (row >= c->table.rows || c->point_start[row] != rank->start + l ||
+            c->point_room[row] != rank->slots || c->material[row] != run->material ||
+            c->held[row] != run->held || c->field[row] != run->field)
+            return false;
+        ++*taken;
+    }
+    return true;
+}
+
+/* A run's ranks lie one after the other in its rows, which begin behind those of the run before. */
+static bool run_is_sound(const tl_model *m, const tl_detect *d, const tl_run *run,
+                         const tl_run *before, size_t *taken)
+{
+    if (!tl_is_flag(&run->held) || !tl_is_flag(&run->field) || !tl_is_flag(&run->changed) ||
+        run->rest > TL_RUN_RESTS ||
+        (run->material != TL_NO_ROW && run->material >= m->material_count))
+        return false;
+    if (run->begin < (before ? before->limit : 0) || run->begin % TL_LANES ||
+        run->end < run->begin || run->limit < run->end || run->limit > d->points.table.rows ||
+        run->limit % TL_LANES || run->rank_begin < (before ? before->rank_limit : 0) ||
+        run->rank_end < run->rank_begin || run->rank_limit < run->rank_end ||
+        run->rank_limit > d->layout.rank_room)
+        return false;
+    size_t at = run->begin;
+    for (size_t r = run->rank_begin; r < run->rank_end; r++) {
+        const tl_rank *rank = &d->layout.ranks[r];
+        size_t rows = (size_t)rank->slots * TL_LANES;
+        if (rank->start != at || rank->slots == 0 || rows > d->lane_room || rows > run->end - at ||
+            !rank_is_sound(d, run, rank, taken))
+            return false;
+        at += rows;
+    }
+    return at == run->end;
+}
+
+static bool layout_is_sound(const tl_model *m, const tl_detect *d)
+{
+    size_t taken = 0, wanted = 0;
+    if (d->points.table.rows > UINT32_MAX ||
+        d->layout.rank_room > d->points.table.rows + 1024 * (d->layout.run_count + 1))
+        return false;
+    for (size_t k = 0; k < d->layout.run_count; k++)
+        if (!run_is_sound(m, d, &d->layout.runs[k], k ? &d->layout.runs[k - 1] : NULL, &taken))
+            return false;
+    for (uint32_t row = 0; row < d->contacts.table.rows; row++)
+        wanted += d->contacts.point_room[row] > 0;
+    return taken == wanted;
+}
+
+const char *tl_detect_unsound(const tl_model *m, const tl_detect *d)
+{
+    if (d->contacts.table.rows >= TL_PAIR_APART || d->contacts.table.rows > d->pair_count)
+        return "contacts do not fit their pairs";
+    if (!seen_are_sound(m, d))
+        return "what was known of blocks does not fit them";
+    for (uint32_t row = 0; row < d->contacts.table.rows; row++)
+        if (!contact_is_sound(m, d, row))
+            return "a contact does not fit its blocks";
+    if (!pairs_are_sound(m, d))
+        return "pairs do not fit the blocks";
+    if (!presses_are_sound(m, d))
+        return "what field contacts keep does not fit them";
+    if (!layout_is_sound(m, d))
+        return "the points do not fit their contacts";
+    return NULL;
+}

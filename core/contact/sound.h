@@ -1,0 +1,12 @@
+/* sound.h - whether a detection that was read from a file fits together (sound.c). */
+#ifndef TL_CONTACT_SOUND_H
+#define TL_CONTACT_SOUND_H
+
+#include "contact/detection.h"
+#include "model/model.h"
+
+/* What is wrong with the detection, whose lists of contacts by block are not made yet; NULL: it fits together and the model.
+ * All numbers of rows, faces, lanes and states are then those of things that are there. */
+const char *tl_detect_unsound(const tl_model *m, const tl_detect *d);
+
+#endif

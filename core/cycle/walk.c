@@ -1,0 +1,43 @@
+/* walk.c - the entries of what the phases of a step keep. What a step may have to undo is no entry: no call ends in between. */
+#include "cycle/walk.h"
+
+#define VALUE(keep, member) TL_WALK_VALUE(walk, TL_KEEP_##keep, "cycle.", c, member)
+#define FLAG(keep, member) TL_WALK_FLAG(walk, TL_KEEP_##keep, "cycle.", c, member)
+#define LIST(keep, member, count, room, bytes)                                                     \
+    TL_WALK_LIST(walk, TL_KEEP_##keep, "cycle.", c, member, (count), (room),                       \
+                 offsetof(tl_memory, bytes))
+
+void tl_cycle_walk(struct tl_cycle *c, const tl_walk *walk)
+{
+    tl_walk_table(walk, TL_KEEP_CACHE, "cycle", &c->table, offsetof(tl_memory, step));
+    LIST(CACHE, reaction, &c->reaction_room, &c->reaction_room, step);
+    VALUE(CACHE, reactions_for);
+    VALUE(CACHE, sums);
+    VALUE(STATE, kinetic_before);
+    VALUE(STATE, dt);
+    VALUE(CACHE, counted.version);
+    VALUE(CACHE, counted.constraints);
+    VALUE(CACHE, counted.rotation);
+    FLAG(CACHE, counted.points);
+    VALUE(CACHE, counted.least_mass);
+    VALUE(CACHE, counted.lightest);
+    FLAG(CACHE, all_held);
+    VALUE(CACHE, rated);
+    VALUE(CACHE, sliver_structure);
+    VALUE(CACHE, sliver);
+    VALUE(CACHE, contacts);
+    VALUE(STATE, scaled);
+    VALUE(STATE, added);
+    VALUE(STATE, added_block);
+    VALUE(CACHE, told_share);
+    FLAG(STATE, adds);
+    FLAG(CACHE, long_step);
+    FLAG(CACHE, fast);
+    size_t one = c->ledger ? 1 : 0;
+    tl_walk_list(walk, TL_KEEP_STATE, "cycle.ledger", &c->ledger, tl_ledger_size(), &one, NULL,
+                 offsetof(tl_memory, step));
+    LIST(SCRATCH, chunk_sums, &c->chunk_room, &c->chunk_room, step);
+    LIST(CACHE, rank_energy, &c->rank_room, &c->rank_room, step);
+    tl_walk_list(walk, TL_KEEP_SCRATCH, "cycle.chunk_ledger", &c->chunk_ledger, tl_ledger_size(),
+                 &c->chunk_room, NULL, offsetof(tl_memory, step));
+}

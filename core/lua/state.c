@@ -1,0 +1,184 @@
+/* state.c - a model once more: model:copy(), model:save(path), talus.restore(path).
+ *
+ * A drive's functions belong to the script. A copy shares them; no file keeps them, so they are given again to restore. Either
+ * way the anchors they hang on (action.c) are made before the kernel asks for them, for it must not be left by a Lua error. */
+#include "front.h"
+
+#include <string.h>
+
+const tl_lua_key tl_lua_restore_keys[] = {
+    {"threads", "whole number",
+     "threads, in [1, 256]; default: as of talus.model. Results are the same bits for any number"},
+    {"drives", "table",
+     "what functions drive, by the lowest block of each drive: a function(t) for its velocity, or "
+     "{velocity = function(t), angular_velocity = function(t)}"},
+    {NULL, NULL, NULL},
+};
+
+/* Anchors by whom they are for: an anchor of the model that is copied, or a block. */
+typedef struct given {
+    const void *anchor;
+    tl_id block;
+    tl_drive drive;
+} given;
+
+typedef struct givens {
+    size_t count;
+    given list[];
+} givens;
+
+static bool give(void *user, const tl_drive_asked *asked, tl_drive *drive)
+{
+    const givens *all = user;
+    for (size_t i = 0; i < all->count; i++) {
+        const given *g = &all->list[i];
+        if (asked->from ? g->anchor == asked->from->user : g->block == asked->block) {
+            *drive = g->drive;
+            /* the kernel has it now, and says when it ends */
+            ((tl_lua_anchor *)drive->user)->ended = false;
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Pushes an empty list with room for as many anchors as the table at the top of the stack has entries. */
+static givens *push_givens(lua_State *L)
+{
+    size_t count = 0;
+    for (lua_pushnil(L); lua_next(L, -2); lua_pop(L, 1))
+        count++;
+    givens *all = lua_newuserdatauv(L, sizeof *all + count * sizeof all->list[0], 0);
+    all->count = 0;
+    return all;
+}
+
+/* ---------------------------------------------------------------- copy ------------------- */
+
+/* Twins, hanging on the model at `to`, of all anchors of the model at `from`. */
+static givens *push_twins(lua_State *L, int from, int to)
+{
+    lua_getiuservalue(L, from, 1);
+    int anchors = lua_gettop(L);
+    givens *all = push_givens(L);
+    for (lua_pushnil(L); lua_next(L, anchors);) {
+        int old = lua_gettop(L);
+        given *g = &all->list[all->count];
+        tl_lua_anchor *twin = tl_lua_anchor_push(L, to);
+        for (int k = 1; k <= TL_LUA_MOTIONS; k++) {
+            lua_getiuservalue(L, old, k);
+            lua_setiuservalue(L, -2, k);
+        }
+        *g = (given){.anchor = lua_touserdata(L, old), .block = TL_NO_ID};
+        tl_lua_anchor_drive(L, twin, &g->drive);
+        all->count++;
+        lua_settop(L, old - 1);
+    }
+    return all;
+}
+
+int tl_lua_copy(lua_State *L)
+{
+    tl_model *model = tl_lua_model_of(L, "copy");
+    tl_lua_arity(L, 1, "copy");
+    tl_lua_model *object = tl_lua_model_push(L);
+    givens *all = push_twins(L, 1, 2);
+    tl_lua_ok(L, model, tl_model_copy(model, give, all, &object->model));
+    tl_lua_model_begin(L, object);
+    lua_settop(L, 2);
+    return 1;
+}
+
+/* ---------------------------------------------------------------- files ------------------ */
+
+int tl_lua_save(lua_State *L)
+{
+    tl_model *model = tl_lua_model_of(L, "save");
+    tl_lua_arity(L, 2, "save");
+    const char *path = tl_lua_text(L, 2, "save", "the file");
+    tl_lua_ok(L, model, tl_model_save(model, path));
+    return 0;
+}
+
+/* Sets function `key` of the anchor at `anchor` from the value at the top of the stack, which it pops. */
+static void take_function(lua_State *L, int anchor, int key, const char *what)
+{
+    if (!lua_isnil(L, -1) && !lua_isfunction(L, -1))
+        tl_lua_fail(L, "talus.restore: %s of a drive must be a function(t), not %s", what,
+                    tl_lua_describe(L, -1));
+    lua_setiuservalue(L, anchor, key);
+}
+
+/* Fills an anchor, at the top of the stack, from the value of `drives` at `value`. */
+static void take_functions(lua_State *L, int value)
+{
+    int anchor = lua_gettop(L);
+    if (lua_istable(L, value)) {
+        lua_getfield(L, value, "velocity");
+        take_function(L, anchor, TL_LUA_VELOCITY, "velocity");
+        lua_getfield(L, value, "angular_velocity");
+        take_function(L, anchor, TL_LUA_ANGULAR_VELOCITY, "angular_velocity");
+    } else {
+        lua_pushvalue(L, value);
+        take_function(L, anchor, TL_LUA_VELOCITY, "velocity");
+    }
+}
+
+/* Anchors, hanging on the model at `to`, of what the option `drives` of the table at index 2 gives. */
+static givens *push_given(lua_State *L, int to)
+{
+    if (!lua_istable(L, 2) || lua_getfield(L, 2, "drives") == LUA_TNIL)
+        lua_newtable(L);
+    int drives = lua_gettop(L);
+    if (!lua_istable(L, drives))
+        tl_lua_fail(L, "talus.restore: drives must be a table of functions by block, not %s",
+                    tl_lua_describe(L, drives));
+    givens *all = push_givens(L);
+    for (lua_pushnil(L); lua_next(L, drives);) {
+        int value = lua_gettop(L);
+        if (!lua_isinteger(L, value - 1))
+            tl_lua_fail(L, "talus.restore: drives has the key %s, which is the number of no block",
+                        tl_lua_describe(L, value - 1));
+        given *g = &all->list[all->count];
+        tl_lua_anchor *anchor = tl_lua_anchor_push(L, to);
+        take_functions(L, value);
+        *g = (given){.block = (tl_id)lua_tointeger(L, value - 1)};
+        tl_lua_anchor_drive(L, anchor, &g->drive);
+        all->count++;
+        lua_settop(L, value - 1);
+    }
+    return all;
+}
+
+static void read_threads(lua_State *L, int64_t *threads)
+{
+    *threads = 1;
+    tl_lua_default_threads(L, threads);
+    if (!lua_istable(L, 2) || lua_getfield(L, 2, "threads") == LUA_TNIL)
+        return;
+    if (!lua_isinteger(L, -1) || lua_tointeger(L, -1) < 1 || lua_tointeger(L, -1) > 256)
+        tl_lua_fail(L, "talus.restore: threads = %s is not a whole number in [1, 256]",
+                    luaL_tolstring(L, -1, NULL));
+    *threads = lua_tointeger(L, -1);
+}
+
+int tl_lua_restore(lua_State *L)
+{
+    tl_lua_arity(L, 2, "talus.restore");
+    lua_settop(L, 2);
+    const char *path = tl_lua_text(L, 1, "talus.restore", "the file");
+    tl_lua_spec spec = {"talus.restore", NULL, 0, tl_lua_restore_keys};
+    tl_lua_read(L, 2, &spec, false, NULL);
+    lua_settop(L, 2);
+    int64_t threads;
+    read_threads(L, &threads);
+    lua_settop(L, 2);
+    tl_lua_model *object = tl_lua_model_push(L);
+    givens *all = push_given(L, 3);
+    tl_error error;
+    if (tl_model_restore(path, threads, give, all, &object->model, &error) != TL_OK)
+        return tl_lua_raise(L, &error);
+    tl_lua_model_begin(L, object);
+    lua_settop(L, 3);
+    return 1;
+}

@@ -1,0 +1,56 @@
+/* walk.c - the entries of a model. */
+#include "model/walk.h"
+
+#define VALUE(keep, member) TL_WALK_VALUE(walk, TL_KEEP_##keep, "model.", m, member)
+#define FLAG(keep, member) TL_WALK_FLAG(walk, TL_KEEP_##keep, "model.", m, member)
+#define LIST(keep, member, count, room)                                                            \
+    TL_WALK_LIST(walk, TL_KEEP_##keep, "model.", m, member, &m->count, &m->room,                   \
+                 offsetof(tl_memory, other))
+
+static void walk_settings(tl_model *m, const tl_walk *walk)
+{
+    VALUE(STATE, config.gravity);
+    VALUE(STATE, config.seed);
+    VALUE(STATE, config.rotation);
+    VALUE(STATE, config.reuse_geometry);
+    VALUE(STATE, config.contact_points);
+    VALUE(STATE, area);
+    LIST(STATE, areas, area_count, area_count);
+    VALUE(STATE, timestep);
+    FLAG(STATE, mass_scaling);
+    VALUE(STATE, added_dt);
+    VALUE(STATE, added_most);
+    VALUE(STATE, said);
+    VALUE(CACHE, remarked);
+}
+
+void tl_model_walk(tl_model *m, const tl_walk *walk)
+{
+    walk_settings(m, walk);
+    VALUE(STATE, origin);
+    FLAG(STATE, origin_set);
+    VALUE(STATE, next_id);
+    VALUE(STATE, time);
+    VALUE(STATE, dt);
+    VALUE(STATE, cycles);
+    VALUE(CACHE, gone);
+    VALUE(CACHE, structure);
+    VALUE(CACHE, constraints);
+    VALUE(CACHE, laws);
+    VALUE(CACHE, rules);
+    tl_walk_table(walk, TL_KEEP_STATE, "blocks", &m->blocks.table, offsetof(tl_memory, blocks));
+    tl_walk_table(walk, TL_KEEP_STATE, "bodies", &m->bodies.table, offsetof(tl_memory, bodies));
+    LIST(DERIVED, members, member_room, member_room);
+    LIST(DERIVED, row_of, row_of_room, row_of_room);
+    VALUE(STATE, record.cuts);
+    VALUE(STATE, record.refused);
+    VALUE(STATE, record.coincident);
+    VALUE(STATE, record.created);
+    VALUE(STATE, record.deleted);
+    LIST(STATE, record.list, record.listed, record.listed);
+    FLAG(CACHE, extremes.known);
+    VALUE(CACHE, extremes.total);
+    VALUE(CACHE, extremes.volume);
+    VALUE(CACHE, extremes.edge);
+    VALUE(CACHE, extremes.face);
+}

@@ -1,0 +1,294 @@
+/* archive.c - a file of named chunks, each compressed and with a checksum.
+ *
+ *     file    magic, format, byte order, then chunks; the last is "end", whose data is the sum of all checksums before it
+ *     chunk   head of 48 bytes, name, data
+ *     head    bytes of the name (4), 1 if the data is compressed (4), bytes of an item, items, bytes of the data as stored,
+ *             XXH64 of name and stored data, XXH64 of the 40 bytes before
+ *
+ * Numbers are as the machine has them; a file of another byte order is refused. Data is compressed with zstd where that makes
+ * it shorter. A file that was cut off lacks its end. */
+#include "state/archive.h"
+
+#include "base/regular.h"
+
+#include <errno.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <xxhash.h>
+#include <zstd.h>
+
+static const char magic[8] = {'T', 'A', 'L', 'U', 'S', '\r', '\n', '\x1a'};
+
+/* Format of the file, and of what the chunks hold: another is refused. */
+#define FORMAT 1
+#define ORDER 0x01020304u
+/* Level of compression: half the size of the columns at 300 MB/s; higher levels take longer than the disk. */
+#define LEVEL 1
+/* Data of fewer bytes is stored as it is. */
+#define SHORT_DATA 128
+
+typedef struct file_head {
+    char magic[8];
+    uint32_t format, order;
+} file_head;
+
+typedef struct chunk_head {
+    uint32_t name_bytes, packed;
+    uint64_t size, items, stored, sum, head_sum;
+} chunk_head;
+
+#define HEAD_SUMMED offsetof(chunk_head, head_sum)
+
+/* ---------------------------------------------------------------- writing ---------------- */
+
+tl_status tl_archive_begin(tl_archive_writer *w, const char *path, tl_error *error)
+{
+    *w = (tl_archive_writer){.room = NULL};
+    tl_status status = tl_output_open(&w->out, path, error);
+    if (status != TL_OK)
+        return status;
+    w->out.durable = true;
+    file_head head = {.format = FORMAT, .order = ORDER};
+    memcpy(head.magic, magic, sizeof magic);
+    tl_output_put(&w->out, &head, sizeof head);
+    return TL_OK;
+}
+
+/* Compresses into the writer's room; 0: not shorter. */
+static size_t pack(tl_archive_writer *w, const void *data, size_t bytes)
+{
+    size_t bound = ZSTD_compressBound(bytes);
+    if (bound > w->room_bytes) {
+        free(w->room);
+        w->room = malloc(bound);
+        w->room_bytes = w->room ? bound : 0;
+        w->lost = w->lost || !w->room;
+    }
+    if (!w->room)
+        return 0;
+    size_t packed = ZSTD_compress(w->room, bound, data, bytes, LEVEL);
+    return ZSTD_isError(packed) || packed >= bytes ? 0 : packed;
+}
+
+static uint64_t sum_of(const char *name, size_t name_bytes, const void *data, size_t bytes)
+{
+    XXH64_hash_t sum = XXH64(name, name_bytes, 0);
+    return bytes ? XXH64(data, bytes, sum) : sum;
+}
+
+void tl_archive_put(tl_archive_writer *w, const char *name, const void *data, size_t size,
+                    size_t items)
+{
+    size_t bytes = size * items;
+    size_t packed = bytes < SHORT_DATA ? 0 : pack(w, data, bytes);
+    const void *stored = packed ? w->room : data;
+    chunk_head head = {.name_bytes = (uint32_t)strlen(name),
+                       .packed = packed > 0,
+                       .size = size,
+                       .items = items,
+                       .stored = packed ? packed : bytes};
+    head.sum = sum_of(name, head.name_bytes, stored, head.stored);
+    head.head_sum = XXH64(&head, HEAD_SUMMED, 0);
+    w->sum = XXH64(&head.sum, sizeof head.sum, w->sum);
+    w->chunks++;
+    tl_output_put(&w->out, &head, sizeof head);
+    tl_output_put(&w->out, name, head.name_bytes);
+    tl_output_put(&w->out, stored, head.stored);
+}
+
+tl_status tl_archive_end(tl_archive_writer *w, tl_error *error)
+{
+    const uint64_t sum = w->sum;
+    tl_archive_put(w, "end", &sum, sizeof sum, 1);
+    tl_status status = w->lost ? tl_fail_memory(error) : tl_output_finish(&w->out, error);
+    if (status == TL_OK)
+        status = tl_output_commit(&w->out, error);
+    tl_output_drop(&w->out);
+    free(w->room);
+    return status;
+}
+
+/* ---------------------------------------------------------------- reading ---------------- */
+
+tl_status tl_archive_bad(const tl_archive *a, tl_error *error, const char *format, ...)
+{
+    char what[TL_ERROR_TEXT / 2];
+    va_list args;
+    va_start(args, format);
+    vsnprintf(what, sizeof what, format, args);
+    va_end(args);
+    return tl_fail(error, TL_E_ARGUMENT, "cannot restore '%.200s': the file is damaged: %s",
+                   a->path, what);
+}
+
+static tl_status check_file_head(const tl_archive *a, tl_error *error)
+{
+    file_head head;
+    if (a->length < sizeof head || memcmp(a->bytes, magic, sizeof magic) != 0)
+        return tl_fail(error, TL_E_ARGUMENT,
+                       "cannot restore '%.200s': it is no file that model:save has written",
+                       a->path);
+    memcpy(&head, a->bytes, sizeof head);
+    if (head.order != ORDER)
+        return tl_fail(error, TL_E_ARGUMENT,
+                       "cannot restore '%.200s': it was written by a machine of another byte order",
+                       a->path);
+    if (head.format != FORMAT)
+        return tl_fail(error, TL_E_ARGUMENT,
+                       "cannot restore '%.200s': it has format %u, and this version of Talus reads "
+                       "format %d: use the version that has written it",
+                       a->path, head.format, FORMAT);
+    return TL_OK;
+}
+
+/* Reads the chunk at `*at`, and moves that on; false: there is no whole one. */
+static bool read_chunk(const tl_archive *a, size_t *at, tl_chunk *chunk, uint64_t *sum)
+{
+    chunk_head head;
+    size_t left = a->length - *at;
+    if (left < sizeof head)
+        return false;
+    memcpy(&head, a->bytes + *at, sizeof head);
+    left -= sizeof head;
+    if (XXH64(&head, HEAD_SUMMED, 0) != head.head_sum || head.packed > 1 ||
+        head.name_bytes > TL_CHUNK_NAME || head.name_bytes > left ||
+        head.stored > left - head.name_bytes)
+        return false;
+    const unsigned char *name = a->bytes + *at + sizeof head;
+    *chunk = (tl_chunk){.name = (const char *)name,
+                        .name_bytes = head.name_bytes,
+                        .data = name + head.name_bytes,
+                        .size = head.size,
+                        .items = head.items,
+                        .stored = head.stored,
+                        .packed = head.packed};
+    *at += sizeof head + head.name_bytes + (size_t)head.stored;
+    *sum = XXH64(&head.sum, sizeof head.sum, *sum);
+    return sum_of(chunk->name, chunk->name_bytes, chunk->data, chunk->stored) == head.sum;
+}
+
+static bool is_named(const tl_chunk *chunk, const char *name)
+{
+    return strlen(name) == chunk->name_bytes && memcmp(chunk->name, name, chunk->name_bytes) == 0;
+}
+
+/* Lists the chunks. The last must be the end, with nothing behind it. */
+static tl_status list_chunks(tl_archive *a, tl_error *error)
+{
+    size_t at = sizeof(file_head), room = 0;
+    uint64_t sum = 0, before;
+    tl_chunk chunk;
+    do {
+        before = sum;
+        if (!read_chunk(a, &at, &chunk, &sum))
+            return tl_archive_bad(a, error,
+                                  "chunk %zu of it is not whole, or its checksum is wrong",
+                                  a->chunk_count + 1);
+        if (a->chunk_count == room) {
+            room = room ? 2 * room : 256;
+            tl_chunk *chunks = realloc(a->chunks, room * sizeof *chunks);
+            if (!chunks)
+                return tl_fail_memory(error);
+            a->chunks = chunks;
+        }
+        a->chunks[a->chunk_count++] = chunk;
+    } while (!is_named(&chunk, "end"));
+    uint64_t told;
+    if (at != a->length || !tl_archive_get(a, "end", &told, sizeof told, 1) || told != before)
+        return tl_archive_bad(a, error, "its end does not fit the rest");
+    return TL_OK;
+}
+
+tl_status tl_archive_of_bytes(tl_archive *a, const char *path, unsigned char *bytes, size_t length,
+                              tl_error *error)
+{
+    *a = (tl_archive){.path = strdup(path), .bytes = bytes, .length = length};
+    tl_status status = a->path ? check_file_head(a, error) : tl_fail_memory(error);
+    if (status == TL_OK)
+        status = list_chunks(a, error);
+    if (status != TL_OK)
+        tl_archive_close(a);
+    return status;
+}
+
+static tl_status cannot_read(tl_error *error, const char *path, const char *why)
+{
+    return tl_fail(error, TL_E_IO, "cannot restore '%.200s': %s", path, why);
+}
+
+/* The bytes of a file; NULL with an errno. */
+static unsigned char *read_all(FILE *file, size_t *length)
+{
+    unsigned char *bytes = NULL;
+    size_t room = 0;
+    *length = 0;
+    do {
+        if (*length == room) {
+            room = room ? 2 * room : 1 << 20;
+            unsigned char *more = realloc(bytes, room);
+            if (!more) {
+                free(bytes);
+                return NULL;
+            }
+            bytes = more;
+        }
+        *length += fread(bytes + *length, 1, room - *length, file);
+    } while (!feof(file) && !ferror(file));
+    if (!ferror(file))
+        return bytes;
+    free(bytes);
+    return NULL;
+}
+
+tl_status tl_archive_open(tl_archive *a, const char *path, tl_error *error)
+{
+    *a = (tl_archive){.path = NULL};
+    const char *special = tl_not_regular(path);
+    if (special)
+        return cannot_read(error, path, special);
+    FILE *file = fopen(path, "rb");
+    if (!file)
+        return cannot_read(error, path, strerror(errno));
+    size_t length;
+    errno = 0;
+    unsigned char *bytes = read_all(file, &length);
+    int code = errno;
+    fclose(file);
+    if (!bytes)
+        return code == ENOMEM ? tl_fail_memory(error) : cannot_read(error, path, strerror(code));
+    return tl_archive_of_bytes(a, path, bytes, length, error);
+}
+
+void tl_archive_close(tl_archive *a)
+{
+    free(a->path);
+    free(a->bytes);
+    free(a->chunks);
+    *a = (tl_archive){.path = NULL};
+}
+
+const tl_chunk *tl_archive_find(const tl_archive *a, const char *name)
+{
+    for (size_t i = 0; i < a->chunk_count; i++)
+        if (is_named(&a->chunks[i], name))
+            return &a->chunks[i];
+    return NULL;
+}
+
+bool tl_archive_get(const tl_archive *a, const char *name, void *to, size_t size, size_t items)
+{
+    const tl_chunk *chunk = tl_archive_find(a, name);
+    if (!chunk || chunk->size != size || chunk->items != items)
+        return false;
+    size_t bytes = size * items;
+    if (!chunk->packed) {
+        if (chunk->stored != bytes)
+            return false;
+        if (bytes)
+            memcpy(to, chunk->data, bytes);
+        return true;
+    }
+    return bytes && ZSTD_decompress(to, bytes, chunk->data, chunk->stored) == bytes;
+}

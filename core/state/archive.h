@@ -1,0 +1,71 @@
+/* archive.h - a file of named chunks, each compressed and with a checksum (archive.c). */
+#ifndef TL_STATE_ARCHIVE_H
+#define TL_STATE_ARCHIVE_H
+
+#include "base/error.h"
+#include "io/output_file.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* Longest name of a chunk. */
+#define TL_CHUNK_NAME 96
+
+/* ---- writing ---- */
+
+typedef struct tl_archive_writer {
+    tl_output out;
+    void *room; /* for what is compressed */
+    size_t room_bytes;
+    uint64_t sum; /* of the checksums so far */
+    uint64_t chunks;
+    bool lost; /* out of memory */
+} tl_archive_writer;
+
+/* Opens the archive that is to become `path`, durably. */
+tl_status tl_archive_begin(tl_archive_writer *w, const char *path, tl_error *error);
+/* Adds a chunk of `items` items of `size` bytes; what fails is found by tl_archive_end. */
+void tl_archive_put(tl_archive_writer *w, const char *name, const void *data, size_t size,
+                    size_t items);
+/* Gives the file its name when all is well; else what was there stays. */
+tl_status tl_archive_end(tl_archive_writer *w, tl_error *error);
+
+/* ---- reading ---- */
+
+typedef struct tl_chunk {
+    const char *name; /* not terminated */
+    size_t name_bytes;
+    const unsigned char *data; /* as it is stored */
+    uint64_t size, items, stored;
+    bool packed;
+} tl_chunk;
+
+/* An archive in memory. Whatever the bytes are, its functions read nothing beyond them. */
+typedef struct tl_archive {
+    char *path; /* of the file, for sentences */
+    unsigned char *bytes;
+    size_t length;
+    tl_chunk *chunks;
+    size_t chunk_count;
+} tl_archive;
+
+/* Reads a file and checks its checksums. TL_E_IO: it cannot be read; TL_E_ARGUMENT: it is no archive, of another format, cut
+ * off or damaged. */
+tl_status tl_archive_open(tl_archive *archive, const char *path, tl_error *error);
+/* The same of bytes, which then belong to the archive; `path` is what sentences call it. */
+tl_status tl_archive_of_bytes(tl_archive *archive, const char *path, unsigned char *bytes,
+                              size_t length, tl_error *error);
+void tl_archive_close(tl_archive *archive);
+
+/* A chunk, or NULL. */
+const tl_chunk *tl_archive_find(const tl_archive *archive, const char *name);
+/* Puts the items of a chunk into `to`, which has room for them. false: it is not there, of items of another size or another
+ * number of them, or does not unpack to them. */
+bool tl_archive_get(const tl_archive *archive, const char *name, void *to, size_t size,
+                    size_t items);
+/* "cannot restore 'path': the file is damaged: ..." */
+tl_status tl_archive_bad(const tl_archive *archive, tl_error *error, const char *format, ...)
+    TL_PRINTF(3, 4);
+
+#endif

@@ -1,0 +1,159 @@
+/* copy.c - a model once more, in the same state: from the same next call on both go on alike, to the bit. */
+#include "state/copy.h"
+
+#include "contact/contacts.h"
+#include "contact/store.h"
+#include "contact/walk.h"
+#include "cycle/walk.h"
+#include "force/materials.h"
+#include "model/walk.h"
+#include "state/drives.h"
+#include "state/entries.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* The copies' own lists are made with the room that is in use only, and grow when they have to. */
+
+tl_detect *tl_detect_copy(const tl_detect *from)
+{
+    tl_detect *d = tl_detect_make(from->threads);
+    if (!d)
+        return NULL;
+    tl_entries entries = {.count = 0};
+    tl_detect_walk((tl_detect *)(uintptr_t)from, &(tl_walk){tl_entries_note, &entries});
+    tl_entries_copy copy = {.from = &entries};
+    tl_detect_walk(d, &(tl_walk){tl_entries_take, &copy});
+    d->spare_points.state_columns = d->points.state_columns; /* it has the same columns */
+    d->spare_points.initial = d->points.initial;
+    if (!copy.failed && tl_detect_hold_lanes(d, d->lane_room))
+        return d;
+    tl_detect_destroy(d);
+    return NULL;
+}
+
+/* Columns of blocks and bodies, lists and values. The polyhedra are still to be copied. */
+static bool copy_rows(tl_model *to, tl_model *from)
+{
+    tl_entries entries = {.count = 0};
+    tl_model_walk(from, &(tl_walk){tl_entries_note, &entries});
+    tl_entries_copy copy = {.from = &entries};
+    tl_model_walk(to, &(tl_walk){tl_entries_take, &copy});
+    for (size_t row = 0; row < to->blocks.table.rows; row++)
+        to->blocks.shape[row] = NULL; /* it is the original's */
+    return !copy.failed;
+}
+
+static bool copy_shapes(tl_model *to, const tl_model *from)
+{
+    for (size_t row = 0; row < to->blocks.table.rows; row++)
+        if (!(to->blocks.shape[row] = tl_poly_copy(from->blocks.shape[row])))
+            return false;
+    return true;
+}
+
+static bool copy_names(tl_model *to, const tl_model *from)
+{
+    for (size_t i = 0; i < from->group_count; i++)
+        if (tl_group_intern(to, from->groups[i]) == UINT32_MAX)
+            return false;
+    for (size_t i = 0; i < from->joint_count; i++) {
+        if (tl_joint_intern(to, from->joints[i].name) == 0)
+            return false;
+        to->joints[i].planes = from->joints[i].planes;
+    }
+    return true;
+}
+
+static tl_status copy_laws(tl_model *to, const tl_model *from)
+{
+    if (from->material_count == 0)
+        return TL_OK;
+    to->materials = calloc(from->material_count, sizeof *to->materials);
+    if (!to->materials)
+        return tl_fail_memory(&to->error);
+    for (size_t i = 0; i < from->material_count; i++) {
+        const tl_material *law = &from->materials[i];
+        const char *joint = law->tag.joint ? tl_tag_name(to, law->tag) : "*";
+        tl_status status = tl_material_make(to, law->tag, joint, law->kind, &(tl_args){NULL, 0},
+                                            law, &to->materials[to->material_count]);
+        if (status != TL_OK)
+            return status;
+        to->material_count++;
+    }
+    return TL_OK;
+}
+
+static tl_status copy_damping(tl_model *to, const tl_model *from)
+{
+    if (!from->damping)
+        return TL_OK;
+    tl_status status =
+        tl_damping_make(to, from->damping, &(tl_args){NULL, 0}, from->damping_params);
+    if (status == TL_OK && from->damping->state_count)
+        memcpy(to->damping_state, from->damping_state,
+               from->damping->state_count * sizeof *to->damping_state);
+    return status;
+}
+
+static tl_status copy_detection(tl_model *to, const tl_model *from)
+{
+    if (!from->detect)
+        return TL_OK;
+    to->detect_destroy = from->detect_destroy;
+    to->detect = tl_detect_copy(from->detect);
+    return to->detect ? TL_OK : tl_fail_memory(&to->error);
+}
+
+static tl_status copy_cycle(tl_model *to, const tl_model *from)
+{
+    if (!from->cycle)
+        return TL_OK;
+    tl_status status = tl_cycle_prepare(to);
+    if (status != TL_OK)
+        return status;
+    tl_entries entries = {.count = 0};
+    tl_cycle_walk(from->cycle, &(tl_walk){tl_entries_note, &entries});
+    tl_entries_copy copy = {.from = &entries};
+    tl_cycle_walk(to->cycle, &(tl_walk){tl_entries_take, &copy});
+    return copy.failed ? tl_fail_memory(&to->error) : TL_OK;
+}
+
+static tl_status fill(tl_model *to, tl_model *from, tl_drive_again_fn again, void *user)
+{
+    if (!copy_rows(to, from) || !copy_shapes(to, from) || !copy_names(to, from))
+        return tl_fail_memory(&to->error);
+    tl_status status = copy_laws(to, from);
+    if (status == TL_OK)
+        status = copy_damping(to, from);
+    if (status == TL_OK)
+        status = copy_detection(to, from);
+    if (status == TL_OK)
+        status = copy_cycle(to, from);
+    if (status == TL_OK)
+        status = tl_drives_copy(to, from, again, user);
+    return status;
+}
+
+tl_status tl_model_copy(tl_model *m, tl_drive_again_fn again, void *user, tl_model **copy)
+{
+    *copy = NULL;
+    tl_status status = tl_model_may_set(m, "copy the model");
+    if (status != TL_OK)
+        return status;
+    tl_rows_tidy(m);
+    tl_model *to;
+    status = tl_model_create(&m->config, &to, &m->error);
+    if (status != TL_OK)
+        return status;
+    tl_model_log(to, m->log, m->log_user);
+    to->interrupt_asked = m->interrupt_asked;
+    status = fill(to, m, again, user);
+    if (status != TL_OK) {
+        m->error = to->error;
+        tl_model_destroy(to);
+        return status;
+    }
+    *copy = to;
+    return TL_OK;
+}

@@ -1,0 +1,94 @@
+/* drives.c - drives of a copied or restored model. What a function of a script does is the script's: it is asked for again. */
+#include "state/drives.h"
+
+#include <stdlib.h>
+
+void tl_drive_keep(const tl_drive_record *record, tl_drive_kept *kept)
+{
+    const tl_drive *drive = &record->drive;
+    kept->velocity = drive->velocity;
+    kept->angular_velocity = drive->angular_velocity;
+    kept->velocity_now = record->velocity;
+    kept->angular_velocity_now = record->angular_velocity;
+    kept->velocity_asked = drive->velocity_at != NULL;
+    kept->angular_velocity_asked = drive->angular_velocity_at != NULL;
+}
+
+/* The lowest block that a drive, counted from 1, moves, and how many bodies. */
+static tl_drive_asked asked_of(const tl_model *m, size_t index)
+{
+    tl_drive_asked asked = {.block = TL_NO_ID};
+    for (size_t body = 0; body < m->bodies.table.rows; body++) {
+        if (m->bodies.drive[body] != index)
+            continue;
+        if (asked.bodies++ == 0)
+            asked.block = m->bodies.id[body];
+    }
+    return asked;
+}
+
+/* Asks for the functions of a drive that had some. */
+static tl_status ask(tl_model *m, size_t index, const tl_drive_kept *kept,
+                     const tl_drive_record *from, tl_drive_again_fn again, void *user,
+                     tl_drive *drive)
+{
+    tl_drive_asked asked = asked_of(m, index);
+    asked.velocity = kept->velocity_asked;
+    asked.angular_velocity = kept->angular_velocity_asked;
+    asked.from = from ? &from[index - 1].drive : NULL;
+    tl_drive given = {.velocity_at = NULL};
+    bool found = again && again(user, &asked, &given);
+    drive->velocity_at = given.velocity_at;
+    drive->angular_velocity_at = given.angular_velocity_at;
+    drive->user = given.user;
+    drive->release = given.release;
+    if (found && !given.velocity_at == !asked.velocity &&
+        !given.angular_velocity_at == !asked.angular_velocity)
+        return TL_OK;
+    return tl_fail(
+        &m->error, TL_E_STATE,
+        "block %llu%s is driven by a function for its %s%s%s, which has to be given again",
+        (unsigned long long)asked.block, asked.bodies > 1 ? " with others" : "",
+        asked.velocity ? "velocity" : "",
+        asked.velocity && asked.angular_velocity ? " and its " : "",
+        asked.angular_velocity ? "angular_velocity" : "");
+}
+
+tl_status tl_drives_make(tl_model *m, const tl_drive_kept *kept, size_t count,
+                         const tl_drive_record *from, tl_drive_again_fn again, void *user)
+{
+    if (count == 0)
+        return TL_OK;
+    m->drives = calloc(count, sizeof *m->drives);
+    if (!m->drives)
+        return tl_fail_memory(&m->error);
+    m->drive_count = count;
+    tl_drives_recount(m);
+    for (size_t i = 0; i < count; i++) {
+        tl_drive_record *record = &m->drives[i];
+        if (record->bodies == 0)
+            continue;
+        record->drive.velocity = kept[i].velocity;
+        record->drive.angular_velocity = kept[i].angular_velocity;
+        record->velocity = kept[i].velocity_now;
+        record->angular_velocity = kept[i].angular_velocity_now;
+        if (!kept[i].velocity_asked && !kept[i].angular_velocity_asked)
+            continue;
+        tl_status status = ask(m, i + 1, &kept[i], from, again, user, &record->drive);
+        if (status != TL_OK)
+            return status;
+    }
+    return TL_OK;
+}
+
+tl_status tl_drives_copy(tl_model *to, const tl_model *from, tl_drive_again_fn again, void *user)
+{
+    tl_drive_kept *kept = calloc(from->drive_count + 1, sizeof *kept);
+    if (!kept)
+        return tl_fail_memory(&to->error);
+    for (size_t i = 0; i < from->drive_count; i++)
+        tl_drive_keep(&from->drives[i], &kept[i]);
+    tl_status status = tl_drives_make(to, kept, from->drive_count, from->drives, again, user);
+    free(kept);
+    return status;
+}

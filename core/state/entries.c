@@ -1,0 +1,80 @@
+/* entries.c - all entries of one owner copied to another. */
+#include "state/entries.h"
+
+#include <assert.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+void tl_entries_note(void *user, const tl_entry *entry)
+{
+    tl_entries *entries = user;
+    assert(entries->count < TL_MOST_ENTRIES);
+    entries->list[entries->count++] = *entry;
+}
+
+/* Puts a list in the place of the one at a slot. */
+static void put_list(const tl_entry *to, void *list, size_t items)
+{
+    void *old;
+    memcpy(&old, to->at, sizeof old);
+    free(old);
+    memcpy(to->at, &list, sizeof list);
+    if (to->count)
+        *to->count = items;
+    if (to->room)
+        *to->room = items;
+}
+
+static bool copy_list(const tl_entry *to, const tl_entry *from)
+{
+    const void *source;
+    memcpy(&source, from->at, sizeof source);
+    size_t items = source ? from->items : 0;
+    void *list = items ? malloc(items * from->size) : NULL;
+    bool copied = list || !items;
+    if (list)
+        memcpy(list, source, items * from->size);
+    put_list(to, list, copied ? items : 0);
+    return copied;
+}
+
+static bool copy_table(const tl_entry *to, const tl_entry *from)
+{
+    tl_table_free(to->at);
+    return tl_table_copy(to->at, to->at, from->at);
+}
+
+void tl_entries_take(void *user, const tl_entry *to)
+{
+    tl_entries_copy *copy = user;
+    assert(copy->next < copy->from->count);
+    const tl_entry *from = &copy->from->list[copy->next++];
+    assert(strcmp(from->name, to->name) == 0);
+    bool copied = true;
+    if (to->keep == TL_KEEP_SCRATCH) {
+        if (to->form == TL_ENTRY_TABLE)
+            tl_table_like(to->at, to->at, from->at);
+        return;
+    }
+    if (to->form == TL_ENTRY_LIST)
+        copied = copy_list(to, from);
+    else if (to->form == TL_ENTRY_TABLE)
+        copied = copy_table(to, from);
+    else
+        memcpy(to->at, from->at, to->size);
+    copy->failed = copy->failed || !copied;
+}
+
+void tl_column_chunk(const char *table_name, const tl_table *table, size_t k,
+                     char name[TL_COLUMN_CHUNK])
+{
+    const char *own = table->columns[k].name;
+    size_t before = 0;
+    for (size_t i = 0; i < k; i++)
+        before += strcmp(table->columns[i].name, own) == 0;
+    if (before)
+        snprintf(name, TL_COLUMN_CHUNK, "%s.%s.%zu", table_name, own, before);
+    else
+        snprintf(name, TL_COLUMN_CHUNK, "%s.%s", table_name, own);
+}

@@ -1,0 +1,36 @@
+/* entries.h - all entries of one owner copied to another (entries.c). */
+#ifndef TL_STATE_ENTRIES_H
+#define TL_STATE_ENTRIES_H
+
+#include "base/walk.h"
+
+/* Entries that one owner may have. */
+#define TL_MOST_ENTRIES 96
+
+/* The entries of an owner in the order of its walk. */
+typedef struct tl_entries {
+    tl_entry list[TL_MOST_ENTRIES];
+    size_t count;
+} tl_entries;
+
+/* Lists entries: the function of a walk whose user is a tl_entries. */
+void tl_entries_note(void *user, const tl_entry *entry);
+
+/* Copies to the entry of another owner: a pair of walks, the first with tl_entries_note. */
+typedef struct tl_entries_copy {
+    const tl_entries *from;
+    size_t next;
+    bool failed; /* out of memory: what could not be copied is empty */
+} tl_entries_copy;
+
+/* The function of the second walk, whose user is a tl_entries_copy. */
+void tl_entries_take(void *user, const tl_entry *entry);
+
+/* Room for the name under which a file keeps a column. */
+#define TL_COLUMN_CHUNK 96
+
+/* The name of column `k` of a table: "bodies.mass"; of several columns of one name each has its number, "detect.points.p[k].2". */
+void tl_column_chunk(const char *table_name, const tl_table *table, size_t k,
+                     char name[TL_COLUMN_CHUNK]);
+
+#endif

@@ -1,0 +1,290 @@
+/* kinds.c - laws and damping in an archive.
+ *
+ *     PREFIX.kind      name of the law or damping, "coulomb"
+ *     PREFIX.plugin    id and version of its plugin, "talus.coulomb 1.0"
+ *     PREFIX.param.X   parameter X: numbers, or the name of its choice
+ *     PREFIX.states    names of its states, a line each
+ *
+ * PREFIX is "damping", or "law.0", "law.1", ... with PREFIX.tag, the joint that it rules. Parameters are checked as those of a
+ * script are. */
+#include "state/kinds.h"
+
+#include "base/params.h"
+#include "contact/points.h"
+#include "cycle/cycle_room.h"
+#include "force/materials.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Longest prefix. */
+#define PREFIX 24
+/* Parameters that a law or damping may have in a file. */
+#define MOST_PARAMS 64
+/* Longest list of names of states, and longest name of a plugin with its version. */
+#define NAMES 1024
+#define PLUGIN_NAME 256
+
+static void plugin_text(const tl_kind *kind, char text[PLUGIN_NAME])
+{
+    const tl_plugin *plugin = tl_plugin_of(kind, NULL);
+    snprintf(text, PLUGIN_NAME, "%s %s", plugin ? plugin->id : "?", plugin ? plugin->version : "?");
+}
+
+static void state_names(const tl_kind *kind, char text[NAMES])
+{
+    size_t length = 0;
+    text[0] = '\0';
+    for (uint32_t k = 0; k < kind->state_count && length < NAMES; k++)
+        length +=
+            (size_t)snprintf(text + length, NAMES - length, "%s\n", tl_kind_state(kind, k)->name);
+}
+
+/* ---------------------------------------------------------------- saving ----------------- */
+
+static void put_text(tl_archive_writer *w, const char *prefix, const char *name, const char *text)
+{
+    char full[TL_CHUNK_NAME];
+    snprintf(full, sizeof full, "%s.%s", prefix, name);
+    tl_archive_put(w, full, text, 1, strlen(text));
+}
+
+static void put_param(tl_archive_writer *w, const char *prefix, const tl_param *p,
+                      const void *params)
+{
+    char full[TL_CHUNK_NAME];
+    int length = snprintf(full, sizeof full, "%s.param.%s", prefix, p->name);
+    if (length < 0 || (size_t)length >= sizeof full)
+        return; /* it will be asked for in vain */
+    const char *at = (const char *)params + p->offset;
+    int32_t choice;
+    if (p->type == TL_PARAM_ENUM) {
+        memcpy(&choice, at, sizeof choice);
+        tl_archive_put(w, full, p->choices[choice], 1, strlen(p->choices[choice]));
+    } else {
+        tl_archive_put(w, full, at, tl_param_bytes(p->type), 1);
+    }
+}
+
+static void put_kind(tl_archive_writer *w, const char *prefix, const tl_kind *kind,
+                     const void *params)
+{
+    char text[NAMES], plugin[PLUGIN_NAME];
+    put_text(w, prefix, "kind", kind->name);
+    plugin_text(kind, plugin);
+    put_text(w, prefix, "plugin", plugin);
+    state_names(kind, text);
+    put_text(w, prefix, "states", text);
+    for (uint32_t k = 0; k < kind->param_count; k++) {
+        tl_param p = tl_param_row(kind->params, k, kind->param_stride);
+        put_param(w, prefix, &p, params);
+    }
+}
+
+void tl_laws_save(const tl_model *m, tl_archive_writer *w)
+{
+    uint64_t count = m->material_count;
+    tl_archive_put(w, "laws", &count, sizeof count, 1);
+    for (size_t i = 0; i < m->material_count; i++) {
+        char prefix[PREFIX], full[TL_CHUNK_NAME];
+        snprintf(prefix, sizeof prefix, "law.%zu", i);
+        snprintf(full, sizeof full, "%s.tag", prefix);
+        tl_archive_put(w, full, &m->materials[i].tag, sizeof m->materials[i].tag, 1);
+        put_kind(w, prefix, m->materials[i].kind, m->materials[i].params);
+    }
+}
+
+void tl_damping_save(const tl_model *m, tl_archive_writer *w)
+{
+    if (!m->damping)
+        return;
+    put_kind(w, "damping", m->damping, m->damping_params);
+    tl_archive_put(w, "damping.state", m->damping_state, sizeof *m->damping_state,
+                   m->damping->state_count);
+}
+
+/* ---------------------------------------------------------------- restoring -------------- */
+
+/* The text of a chunk; NULL when there is none, or none so short. */
+static const char *get_text(const tl_archive *a, const char *prefix, const char *name, char *text,
+                            size_t room)
+{
+    char full[TL_CHUNK_NAME];
+    snprintf(full, sizeof full, "%s.%s", prefix, name);
+    const tl_chunk *chunk = tl_archive_find(a, full);
+    if (!chunk || chunk->items >= room || !tl_archive_get(a, full, text, 1, (size_t)chunk->items))
+        return NULL;
+    text[chunk->items] = '\0';
+    tl_text_clean(text);
+    return text;
+}
+
+/* Finds the law or damping of a prefix among the plugins, and sees that it is the same one. */
+static tl_status find_kind(tl_model *m, const tl_archive *a, const char *prefix, tl_kind_type type,
+                           const tl_kind **kind)
+{
+    char name[PLUGIN_NAME], plugin[PLUGIN_NAME], now[PLUGIN_NAME], states[NAMES], states_now[NAMES];
+    if (!get_text(a, prefix, "kind", name, sizeof name) ||
+        !get_text(a, prefix, "plugin", plugin, sizeof plugin))
+        return tl_archive_bad(a, &m->error, "'%s' is missing", prefix);
+    const char *what = type == TL_KIND_LAW ? "law" : "damping";
+    *kind = tl_plugin_find(type, name);
+    if (!*kind)
+        return tl_fail(
+            &m->error, TL_E_NOT_FOUND,
+            "cannot restore '%.200s': its %s '%.80s' is of the plugin %.120s, which is not "
+            "loaded: load it with --plugin, or name its folder in TALUS_PLUGIN_PATH",
+            a->path, what, name, plugin);
+    plugin_text(*kind, now);
+    if (strcmp(plugin, now) != 0)
+        return tl_fail(
+            &m->error, TL_E_STATE,
+            "cannot restore '%.200s': its %s '%.80s' is of the plugin %.120s, and %.120s is "
+            "loaded: load the plugin in the version that the file was saved with",
+            a->path, what, name, plugin, now);
+    state_names(*kind, states_now);
+    for (char *c = states_now; *c; c++)
+        *c = *c == '\n' ? ' ' : *c;
+    if (!get_text(a, prefix, "states", states, sizeof states) || strcmp(states, states_now) != 0)
+        return tl_archive_bad(a, &m->error, "%s '%s' has other states", what, name);
+    return TL_OK;
+}
+
+/* A parameter as read, and room for what it points to. */
+typedef struct read_param {
+    double numbers[3];
+    char text[PLUGIN_NAME];
+} read_param;
+
+/* Reads a parameter as a script would give it. false: it is not there. `*given` is false for one that was left out. */
+static bool read_one(const tl_archive *a, const char *prefix, const tl_param *p, read_param *r,
+                     tl_value *value, bool *given)
+{
+    char name[TL_CHUNK_NAME], full[TL_CHUNK_NAME];
+    int64_t whole;
+    int32_t yes;
+    snprintf(name, sizeof name, "param.%.80s", p->name);
+    snprintf(full, sizeof full, "%s.%.80s", prefix, name);
+    *given = true;
+    *value = (tl_value){.key = p->name, .type = TL_VALUE_NUMBER};
+    switch (p->type) {
+    case TL_PARAM_INT:
+        if (!tl_archive_get(a, full, &whole, sizeof whole, 1))
+            return false;
+        value->number = (double)whole;
+        return true;
+    case TL_PARAM_BOOL:
+        value->type = TL_VALUE_BOOL;
+        if (!tl_archive_get(a, full, &yes, sizeof yes, 1))
+            return false;
+        value->number = yes != 0;
+        return true;
+    case TL_PARAM_ENUM:
+        value->type = TL_VALUE_STRING;
+        value->text = get_text(a, prefix, name, r->text, sizeof r->text);
+        return value->text != NULL;
+    case TL_PARAM_VEC3:
+        value->type = TL_VALUE_NUMBERS;
+        value->data = r->numbers;
+        value->count = 3;
+        *given = tl_archive_get(a, full, r->numbers, sizeof r->numbers, 1);
+        break;
+    default:
+        *given = tl_archive_get(a, full, r->numbers, sizeof *r->numbers, 1);
+        value->number = r->numbers[0];
+    }
+    bool there = *given;
+    if (there && (p->flags & TL_PARAM_OPTIONAL) && isnan(r->numbers[0]))
+        *given = false;
+    return there;
+}
+
+static tl_status read_params(tl_model *m, const tl_archive *a, const char *prefix,
+                             const tl_kind *kind, read_param *room, tl_value *values, tl_args *args)
+{
+    *args = (tl_args){values, 0};
+    for (uint32_t k = 0; k < kind->param_count; k++) {
+        tl_param p = tl_param_row(kind->params, k, kind->param_stride);
+        bool given;
+        if (!read_one(a, prefix, &p, &room[k], &values[args->count], &given))
+            return tl_archive_bad(a, &m->error, "parameter '%s' of %s is missing", p.name,
+                                  kind->name);
+        args->count += given;
+    }
+    return TL_OK;
+}
+
+/* Puts the file's name before a sentence that does not bear it. */
+static tl_status tell_path(tl_model *m, const tl_archive *a, tl_status status)
+{
+    return status == TL_OK || status == TL_E_MEMORY
+               ? status
+               : tl_error_prefix(&m->error, "cannot restore '%.200s': ", a->path);
+}
+
+/* Makes the law or damping of a prefix: a law into `law`, or the model's damping. */
+static tl_status restore_kind(tl_model *m, const tl_archive *a, const char *prefix,
+                              tl_kind_type type, tl_tag tag, tl_material *law)
+{
+    const tl_kind *kind;
+    tl_status status = find_kind(m, a, prefix, type, &kind);
+    if (status != TL_OK)
+        return status;
+    read_param *room = kind->param_count <= MOST_PARAMS ? calloc(MOST_PARAMS, sizeof *room) : NULL;
+    if (!room)
+        return tl_fail_memory(&m->error);
+    tl_value values[MOST_PARAMS];
+    tl_args args;
+    status = read_params(m, a, prefix, kind, room, values, &args);
+    if (status == TL_OK && law) {
+        const char *joint = tag.joint ? tl_tag_name(m, tag) : "*";
+        status = tell_path(m, a, tl_material_make(m, tag, joint, kind, &args, NULL, law));
+    } else if (status == TL_OK) {
+        status = tell_path(m, a, tl_damping_make(m, kind, &args, NULL));
+    }
+    free(room);
+    return status;
+}
+
+static bool tag_is_sound(const tl_model *m, tl_tag tag)
+{
+    return tag.joint <= m->joint_count && (tag.joint > 0 || tag.plane == 0);
+}
+
+tl_status tl_laws_restore(tl_model *m, const tl_archive *a)
+{
+    uint64_t count;
+    if (!tl_archive_get(a, "laws", &count, sizeof count, 1) || count > a->chunk_count)
+        return tl_archive_bad(a, &m->error, "'laws' is missing");
+    m->materials = calloc((size_t)count + 1, sizeof *m->materials);
+    if (!m->materials)
+        return tl_fail_memory(&m->error);
+    while (m->material_count < count) {
+        char prefix[PREFIX], full[TL_CHUNK_NAME];
+        snprintf(prefix, sizeof prefix, "law.%zu", m->material_count);
+        snprintf(full, sizeof full, "%s.tag", prefix);
+        tl_tag tag;
+        if (!tl_archive_get(a, full, &tag, sizeof tag, 1) || !tag_is_sound(m, tag))
+            return tl_archive_bad(a, &m->error, "'%s' is missing", prefix);
+        tl_status status =
+            restore_kind(m, a, prefix, TL_KIND_LAW, tag, &m->materials[m->material_count]);
+        if (status != TL_OK)
+            return status;
+        m->material_count++;
+    }
+    return TL_OK;
+}
+
+tl_status tl_damping_restore(tl_model *m, const tl_archive *a)
+{
+    if (!tl_archive_find(a, "damping.kind"))
+        return TL_OK;
+    tl_status status = restore_kind(m, a, "damping", TL_KIND_DAMPING, (tl_tag){0, 0}, NULL);
+    if (status != TL_OK)
+        return status;
+    if (!tl_archive_get(a, "damping.state", m->damping_state, sizeof *m->damping_state,
+                        m->damping->state_count))
+        return tl_archive_bad(a, &m->error, "'damping.state' is missing");
+    return TL_OK;
+}

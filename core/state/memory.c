@@ -1,0 +1,65 @@
+/* memory.c - what a model holds, in bytes, by what it is for. Columns count with their spare rows, and so does the second set of
+ * tables that contacts are laid out in from time to time. The allocator's own bytes (some 16 an allocation, of which a block
+ * has one) are not counted. */
+#include "contact/walk.h"
+#include "cycle/walk.h"
+#include "model/walk.h"
+#include "narrow/field_lanes.h"
+
+#include <string.h>
+
+/* Adds the bytes of an entry to the field of tl_memory that it counts for. */
+static void add(void *user, const tl_entry *entry)
+{
+    if (entry->bytes == 0)
+        return;
+    char *field = (char *)user + entry->counts_for;
+    size_t sum;
+    memcpy(&sum, field, sizeof sum);
+    sum += entry->bytes;
+    memcpy(field, &sum, sizeof sum);
+}
+
+static size_t narrow_bytes(const tl_narrow *n)
+{
+    return sizeof *n + n->vertex_room * sizeof *n->vertex_b + n->normal_room * sizeof *n->normal_b +
+           (n->plane_room + n->press_room) * sizeof(double) +
+           n->field.lines * (sizeof(tl_field_line) + 2 * sizeof(tl_field_plane)) +
+           n->field.numbers * sizeof *n->field.number + n->face_room * sizeof *n->face +
+           n->manifold.point_room * sizeof *n->manifold.points +
+           n->patch.room * (4 * sizeof(double) + sizeof(uint32_t));
+}
+
+static size_t thread_bytes(const tl_detect *d)
+{
+    size_t sum = 0;
+    for (unsigned i = 0; i < d->threads; i++)
+        sum += narrow_bytes(&d->narrow[i]) + tl_table_bytes(&d->lanes[i].table);
+    return sum;
+}
+
+tl_memory tl_model_memory(const tl_model *m)
+{
+    tl_memory memory = {0};
+    const tl_walk walk = {add, &memory};
+    tl_model_walk((tl_model *)(uintptr_t)m, &walk);
+    memory.other += sizeof *m + m->joint_count * sizeof *m->joints +
+                    m->material_count * sizeof *m->materials + m->drive_count * sizeof *m->drives;
+    for (size_t row = 0; row < m->blocks.table.rows; row++)
+        memory.shapes += m->blocks.stays[row] ? tl_poly_bytes(m->blocks.shape[row]) : 0;
+    if (m->cycle) {
+        tl_cycle_walk(m->cycle, &walk);
+        memory.step += sizeof *m->cycle + tl_undo_bytes(m->cycle);
+    }
+    if (m->detect) {
+        tl_detect_walk(m->detect, &walk);
+        size_t facets = m->detect->contacts.table.capacity * sizeof *m->detect->contacts.facet;
+        memory.contacts -= facets;
+        memory.facets += facets;
+        memory.other += sizeof *m->detect + thread_bytes(m->detect);
+    }
+#define ADD(name, doc) memory.total += memory.name;
+    TL_MEMORY(ADD)
+#undef ADD
+    return memory;
+}

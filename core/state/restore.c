@@ -1,0 +1,354 @@
+/* restore.c - a model from a file that save.c has written. Whatever the file holds, nothing but a whole model or a sentence comes of
+ * it: what it says is put into fresh rows and looked at before anything uses it. */
+#include "state/restore.h"
+
+#include "contact/contacts.h"
+#include "contact/index.h"
+#include "contact/sound.h"
+#include "contact/store.h"
+#include "contact/walk.h"
+#include "cycle/walk.h"
+#include "model/walk.h"
+#include "state/drives.h"
+#include "state/entries.h"
+#include "state/kinds.h"
+#include "state/shapes.h"
+#include "state/sound.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Entries on their way from an archive. */
+typedef struct reader {
+    const tl_archive *archive;
+    const char *bad; /* the first entry that did not fit; NULL: none */
+    bool lacked;     /* memory */
+} reader;
+
+/* ---------------------------------------------------------------- entries ---------------- */
+
+static bool read_list(reader *r, const tl_entry *e)
+{
+    const tl_chunk *chunk = tl_archive_find(r->archive, e->name);
+    if (!chunk || chunk->size != e->size || chunk->items > SIZE_MAX / e->size)
+        return false;
+    size_t items = (size_t)chunk->items;
+    void *old, *list = items ? malloc(items * e->size) : NULL;
+    r->lacked = items && !list;
+    bool read = !r->lacked && tl_archive_get(r->archive, e->name, list, e->size, items);
+    if (!read) {
+        free(list);
+        return false;
+    }
+    memcpy(&old, e->at, sizeof old);
+    free(old);
+    memcpy(e->at, &list, sizeof list);
+    if (e->count)
+        *e->count = items;
+    if (e->room)
+        *e->room = items;
+    return true;
+}
+
+/* Whether the archive has all columns of a table, each with so many rows: before there is memory for them. */
+static bool has_columns(const reader *r, const char *name, const tl_table *table, uint64_t rows)
+{
+    for (size_t k = 0; k < table->column_count; k++) {
+        char full[TL_CHUNK_NAME];
+        tl_column_chunk(name, table, k, full);
+        const tl_chunk *chunk = tl_archive_find(r->archive, full);
+        if (!(table->columns[k].flags & TL_COLUMN_OWNED) &&
+            (!chunk || chunk->size != table->columns[k].size || chunk->items != rows))
+            return false;
+    }
+    return true;
+}
+
+static bool read_table(reader *r, const tl_entry *e)
+{
+    char full[TL_CHUNK_NAME];
+    tl_table *table = e->at;
+    uint64_t rows;
+    snprintf(full, sizeof full, "%s.rows", e->name);
+    if (!tl_archive_get(r->archive, full, &rows, sizeof rows, 1) || rows > UINT32_MAX ||
+        !has_columns(r, e->name, table, rows))
+        return false;
+    r->lacked = !tl_table_resize(table, (size_t)rows);
+    for (size_t k = 0; k < table->column_count && !r->lacked; k++) {
+        const tl_column *column = &table->columns[k];
+        tl_column_chunk(e->name, table, k, full);
+        if (!(column->flags & TL_COLUMN_OWNED) &&
+            !tl_archive_get(r->archive, full, tl_table_data(table, k), column->size, table->rows))
+            return false;
+    }
+    return !r->lacked;
+}
+
+static void read_entry(void *user, const tl_entry *e)
+{
+    reader *r = user;
+    bool read;
+    if (r->bad || (e->keep != TL_KEEP_STATE && e->keep != TL_KEEP_CACHE))
+        return;
+    if (e->form == TL_ENTRY_TABLE)
+        read = read_table(r, e);
+    else if (e->form == TL_ENTRY_LIST)
+        read = read_list(r, e);
+    else
+        read = tl_archive_get(r->archive, e->name, e->at, e->size, 1) &&
+               (e->form != TL_ENTRY_FLAG || tl_is_flag(e->at));
+    if (!read)
+        r->bad = e->name;
+}
+
+static tl_status told(const reader *r, tl_model *m)
+{
+    if (!r->bad)
+        return TL_OK;
+    return r->lacked
+               ? tl_fail_memory(&m->error)
+               : tl_archive_bad(r->archive, &m->error, "'%s' is missing or does not fit", r->bad);
+}
+
+static tl_status unsound(const tl_archive *a, tl_model *m, const char *what)
+{
+    return what ? tl_archive_bad(a, &m->error, "%s", what) : TL_OK;
+}
+
+/* ---------------------------------------------------------------- rows ------------------- */
+
+/* Columns that few models have. */
+static bool hold_columns(tl_model *m, const tl_archive *a)
+{
+    tl_table *blocks = &m->blocks.table, *bodies = &m->bodies.table;
+    bool held = true;
+    if (tl_archive_find(a, "blocks.local"))
+        held = held && TL_COLUMN_NEED(blocks, &m->blocks, local, 0);
+    if (tl_archive_find(a, "blocks.base"))
+        held = held && TL_COLUMN_NEED(blocks, &m->blocks, base, 0);
+    if (tl_archive_find(a, "bodies.load"))
+        held = held && TL_COLUMN_NEED(bodies, &m->bodies, load, 0);
+    if (tl_archive_find(a, "bodies.force_before"))
+        held = held && TL_COLUMN_NEED(bodies, &m->bodies, moment_before, TL_COLUMN_STEP) &&
+               TL_COLUMN_NEED(bodies, &m->bodies, force_before, TL_COLUMN_STEP);
+    return held;
+}
+
+/* The number of names in a chunk of them, and whether each is new. */
+static tl_status read_names(tl_model *m, const tl_archive *a, const char *chunk_name,
+                            bool take(tl_model *m, const char *name))
+{
+    const tl_chunk *chunk = tl_archive_find(a, chunk_name);
+    size_t bytes = chunk && chunk->size == 1 && chunk->items < SIZE_MAX ? (size_t)chunk->items : 0;
+    char *all = malloc(bytes + 1);
+    if (!all)
+        return tl_fail_memory(&m->error);
+    bool read = chunk && tl_archive_get(a, chunk_name, all, 1, bytes) &&
+                (bytes == 0 || all[bytes - 1] == '\0');
+    for (size_t at = 0; read && at < bytes; at += strlen(all + at) + 1)
+        read = tl_text_is_clean(all + at) && take(m, all + at);
+    free(all);
+    return read ? TL_OK
+                : tl_archive_bad(a, &m->error, "'%s' is missing or does not fit", chunk_name);
+}
+
+static bool take_group(tl_model *m, const char *name)
+{
+    size_t before = m->group_count;
+    return tl_group_intern(m, name) == before;
+}
+
+static bool take_joint(tl_model *m, const char *name)
+{
+    size_t before = m->joint_count;
+    return tl_joint_intern(m, name) == before + 1;
+}
+
+static tl_status read_planes(tl_model *m, const tl_archive *a)
+{
+    uint32_t *planes = malloc((m->joint_count + 1) * sizeof *planes);
+    if (!planes)
+        return tl_fail_memory(&m->error);
+    bool read = tl_archive_get(a, "joints.planes", planes, sizeof *planes, m->joint_count);
+    for (size_t i = 0; i < m->joint_count && read; i++)
+        m->joints[i].planes = planes[i];
+    free(planes);
+    return read ? TL_OK : tl_archive_bad(a, &m->error, "'joints.planes' does not fit the joints");
+}
+
+static size_t drives_in(const tl_archive *a)
+{
+    const tl_chunk *chunk = tl_archive_find(a, "drives");
+    return chunk && chunk->items < UINT32_MAX ? (size_t)chunk->items : 0;
+}
+
+/* The lists that follow from the rows. */
+static tl_status derive_rows(tl_model *m, const tl_archive *a)
+{
+    uint64_t structure = m->structure;
+    if (m->next_id > UINT32_MAX || !tl_rows_reserve(m, m->blocks.table.rows, m->next_id))
+        return m->next_id > UINT32_MAX
+                   ? tl_archive_bad(a, &m->error, "a block has an impossible number")
+                   : tl_fail_memory(&m->error);
+    tl_rows_refresh(m);
+    m->structure = structure;
+    return TL_OK;
+}
+
+static tl_status read_rows(tl_model *m, const tl_archive *a)
+{
+    reader r = {.archive = a};
+    if (!hold_columns(m, a))
+        return tl_fail_memory(&m->error);
+    tl_model_walk(m, &(tl_walk){read_entry, &r});
+    tl_status status = told(&r, m);
+    if (status == TL_OK)
+        status = read_names(m, a, "groups", take_group);
+    if (status == TL_OK)
+        status = read_names(m, a, "joints.names", take_joint);
+    if (status == TL_OK)
+        status = read_planes(m, a);
+    if (status == TL_OK)
+        status = unsound(a, m, tl_rows_unsound(m, m->group_count, drives_in(a)));
+    if (status == TL_OK)
+        status = tl_shapes_restore(m, a);
+    return status == TL_OK ? derive_rows(m, a) : status;
+}
+
+/* ---------------------------------------------------------------- the rest --------------- */
+
+static tl_status read_drives(tl_model *m, const tl_archive *a, tl_drive_again_fn again, void *user)
+{
+    size_t count = drives_in(a);
+    tl_drive_kept *kept = malloc((count + 1) * sizeof *kept);
+    if (!kept)
+        return tl_fail_memory(&m->error);
+    bool read = tl_archive_get(a, "drives", kept, sizeof *kept, count);
+    for (size_t i = 0; i < count && read; i++)
+        read = tl_v3_finite(kept[i].velocity) && tl_v3_finite(kept[i].angular_velocity) &&
+               tl_v3_finite(kept[i].velocity_now) && tl_v3_finite(kept[i].angular_velocity_now);
+    tl_status status = read ? tl_drives_make(m, kept, count, NULL, again, user)
+                            : tl_archive_bad(a, &m->error, "'drives' is missing or does not fit");
+    free(kept);
+    if (status == TL_E_STATE)
+        tl_error_prefix(&m->error, "cannot restore '%.200s': ", a->path);
+    return status;
+}
+
+/* The columns of contact points that laws and initial forces have. */
+static bool hold_points(tl_detect *d, const tl_archive *a)
+{
+    uint32_t columns;
+    bool initial;
+    return tl_archive_get(a, "detect.points.state_columns", &columns, sizeof columns, 1) &&
+           columns <= TL_STATE_COLUMNS &&
+           tl_archive_get(a, "detect.points.initial", &initial, sizeof initial, 1) &&
+           tl_is_flag(&initial) && tl_detect_hold_states(d, columns) &&
+           (!initial || tl_detect_hold_initial(d));
+}
+
+/* Columns of states that the laws need. */
+static uint32_t states_needed(const tl_model *m)
+{
+    uint32_t most = 0;
+    for (size_t i = 0; i < m->material_count; i++)
+        most = m->materials[i].columns > most ? m->materials[i].columns : most;
+    return most;
+}
+
+static tl_status read_detection(tl_model *m, const tl_archive *a)
+{
+    if (!tl_archive_find(a, "detect.structure"))
+        return TL_OK;
+    tl_detect *d = tl_detect_make((unsigned)m->config.threads);
+    if (!d)
+        return tl_fail_memory(&m->error);
+    m->detect = d;
+    m->detect_destroy = tl_detect_destroy;
+    if (!hold_points(d, a))
+        return tl_archive_bad(a, &m->error, "'detect.points' is missing or does not fit");
+    uint32_t columns = d->points.state_columns;
+    bool initial = d->points.initial;
+    reader r = {.archive = a};
+    tl_detect_walk(d, &(tl_walk){read_entry, &r});
+    tl_status status = told(&r, m);
+    if (status != TL_OK)
+        return status;
+    d->points.state_columns = columns;
+    d->points.initial = initial;
+    const char *bad = columns < states_needed(m)      ? "states of the laws are missing"
+                      : d->lane_room > TL_NO_ROW / 64 ? "a contact has too many points"
+                                                      : tl_detect_unsound(m, d);
+    if (bad)
+        return unsound(a, m, bad);
+    tl_contacts_unlist(d);
+    bool edited = d->structure != m->structure; /* all is listed anew before it is next used */
+    return tl_detect_hold_lanes(d, d->lane_room) && (edited || tl_contacts_index(m))
+               ? TL_OK
+               : tl_fail_memory(&m->error);
+}
+
+static tl_status read_cycle(tl_model *m, const tl_archive *a)
+{
+    if (!tl_archive_find(a, "cycle.rows"))
+        return TL_OK;
+    tl_status status = tl_cycle_prepare(m);
+    if (status != TL_OK)
+        return status;
+    size_t rows = m->cycle->table.rows;
+    reader r = {.archive = a};
+    tl_cycle_walk(m->cycle, &(tl_walk){read_entry, &r});
+    status = told(&r, m);
+    if (status != TL_OK)
+        return status;
+    if (m->cycle->table.rows != rows)
+        return unsound(a, m, "what a step keeps does not fit the bodies");
+    return unsound(a, m, tl_cycle_unsound(m, m->cycle));
+}
+
+static tl_status fill(tl_model *m, const tl_archive *a, tl_drive_again_fn again, void *user)
+{
+    tl_status status = read_rows(m, a);
+    if (status == TL_OK)
+        status = tl_laws_restore(m, a);
+    if (status == TL_OK)
+        status = tl_damping_restore(m, a);
+    if (status == TL_OK)
+        status = read_detection(m, a);
+    if (status == TL_OK)
+        status = read_cycle(m, a);
+    return status == TL_OK ? read_drives(m, a, again, user) : status;
+}
+
+tl_status tl_model_restore_archive(const tl_archive *a, int64_t threads, tl_drive_again_fn again,
+                                   void *user, tl_model **model, tl_error *error)
+{
+    tl_model *m;
+    *model = NULL;
+    tl_status status =
+        tl_model_create(&(tl_model_config){.gravity = {0, 0, 0}, .threads = threads}, &m, error);
+    if (status != TL_OK)
+        return status;
+    status = fill(m, a, again, user);
+    if (status != TL_OK) {
+        *error = m->error;
+        tl_model_destroy(m);
+        return status;
+    }
+    *model = m;
+    return TL_OK;
+}
+
+tl_status tl_model_restore(const char *path, int64_t threads, tl_drive_again_fn again, void *user,
+                           tl_model **model, tl_error *error)
+{
+    tl_archive a;
+    *model = NULL;
+    tl_status status = tl_archive_open(&a, path, error);
+    if (status != TL_OK)
+        return status;
+    status = tl_model_restore_archive(&a, threads, again, user, model, error);
+    tl_archive_close(&a);
+    return status;
+}

@@ -1,0 +1,12 @@
+/* restore.h - a model from an archive in memory (restore.c). */
+#ifndef TL_STATE_RESTORE_H
+#define TL_STATE_RESTORE_H
+
+#include "model/model.h"
+#include "state/archive.h"
+
+tl_status tl_model_restore_archive(const tl_archive *archive, int64_t threads,
+                                   tl_drive_again_fn again, void *user, tl_model **model,
+                                   tl_error *error);
+
+#endif

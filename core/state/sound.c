@@ -1,0 +1,142 @@
+/* sound.c - whether the rows of a model that were read from a file fit together: numbers of rows are those of rows that are
+ * there, choices are choices, bools are bools, and places are places. */
+#include "state/sound.h"
+
+#include "base/walk.h"
+
+/* Bits of `said`: one for each remark. */
+#define ALL_REMARKS ((2u << TL_REMARK_OVERLAP) - 1)
+
+static bool settings_are_sound(const tl_model *m)
+{
+    const tl_model_config *c = &m->config;
+    const tl_timestep *t = &m->timestep;
+    bool steps = (isnan(t->fraction) || (t->fraction > 0 && t->fraction <= 1)) &&
+                 (t->rule == TL_TIMESTEP_BODY || t->rule == TL_TIMESTEP_PAPER) &&
+                 (isnan(t->dt) || (t->dt > 0 && isfinite(t->dt)));
+    return tl_v3_finite(c->gravity) && c->rotation >= TL_ROTATION_EXACT &&
+           c->rotation <= TL_ROTATION_PAPER && c->reuse_geometry >= 0 && c->reuse_geometry <= 1 &&
+           c->contact_points >= 0 && c->contact_points <= TL_POINTS_CORNERS && steps &&
+           tl_v3_finite(m->origin) && isfinite(m->time) && isfinite(m->dt) && m->dt >= 0 &&
+           m->cycles >= 0 && m->gone == 0 && (m->said & ~ALL_REMARKS) == 0 && !(m->added_dt <= 0) &&
+           !(m->added_most < 0);
+}
+
+static bool measure_is_sound(double x)
+{
+    return x >= TL_LEAST_MEASURE && x <= TL_MOST_MEASURE;
+}
+
+static bool block_is_sound(const tl_model *m, uint32_t row, size_t groups)
+{
+    const tl_blocks *b = &m->blocks;
+    tl_id least = row ? b->id[row - 1] + 1 : 1;
+    return b->id[row] >= least && b->id[row] < m->next_id && b->body[row] < m->bodies.table.rows &&
+           b->group[row] < groups && b->density[row] > 0 && isfinite(b->density[row]) &&
+           measure_is_sound(b->volume[row]) && b->size[row] > 0 && isfinite(b->size[row]) &&
+           b->mean_face[row] > 0 && isfinite(b->mean_face[row]) && b->hidden[row] <= 1 &&
+           b->stays[row] == 1 && (!b->local || tl_v3_finite(b->local[row])) &&
+           (!b->base || tl_v3_finite(b->base[row]));
+}
+
+static bool is_place(tl_vec3 x)
+{
+    return tl_v3_finite(x) && tl_v3_norm(x) <= TL_FARTHEST;
+}
+
+static bool is_turn(tl_quat q)
+{
+    double norm2 = q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z;
+    return norm2 > 0.99 && norm2 < 1.01;
+}
+
+static bool matrix_is_sound(const tl_mat3 *r)
+{
+    double sum = 0;
+    for (int k = 0; k < 9; k++)
+        sum += fabs(r->m[k / 3][k % 3]);
+    return sum < 10;
+}
+
+static bool body_is_sound(const tl_model *m, uint32_t row, size_t drives)
+{
+    const tl_bodies *b = &m->bodies;
+    const tl_pose *p = &b->pose[row];
+    tl_id least = row ? b->id[row - 1] + 1 : 1;
+    bool placed = is_place(p->x_ref) && is_place(p->u) && matrix_is_sound(&p->r) &&
+                  is_turn(b->q[row]) && is_turn(b->axes[row]);
+    bool moving = tl_v3_finite(b->v[row]) && tl_v3_finite(b->w[row]) && tl_v3_finite(p->v_moved) &&
+                  tl_v3_finite(p->w_moved) && b->odometer[row] >= 0 && isfinite(b->odometer[row]);
+    tl_vec3 i = b->moments[row];
+    bool heavy = measure_is_sound(b->mass[row]) && measure_is_sound(i.x) && measure_is_sound(i.y) &&
+                 measure_is_sound(i.z) && measure_is_sound(b->round[row]) && b->radius[row] > 0 &&
+                 isfinite(b->radius[row]);
+    return b->id[row] >= least && placed && moving && heavy && b->fixed[row] <= TL_FIX_ALL &&
+           tl_v3_finite(b->force[row]) && tl_v3_finite(b->moment[row]) && b->drive[row] <= drives &&
+           (!b->load || (tl_v3_finite(b->load[row].force) && tl_v3_finite(b->load[row].moment) &&
+                         tl_v3_finite(b->load[row].arm)));
+}
+
+/* Whether every body is that of the block of its id, the lowest of its blocks. */
+static bool members_are_sound(const tl_model *m)
+{
+    uint32_t next = 0;
+    for (uint32_t row = 0; row < m->blocks.table.rows; row++) {
+        uint32_t body = m->blocks.body[row];
+        if (body > next)
+            return false;
+        if (body == next && m->blocks.id[row] != m->bodies.id[next++])
+            return false;
+    }
+    return next == m->bodies.table.rows;
+}
+
+const char *tl_rows_unsound(const tl_model *m, size_t groups, size_t drives)
+{
+    if (m->blocks.table.rows >= TL_NO_ROW || m->bodies.table.rows > m->blocks.table.rows)
+        return "it has too many rows";
+    if (!settings_are_sound(m))
+        return "a setting has an impossible value";
+    for (uint32_t row = 0; row < m->blocks.table.rows; row++)
+        if (!block_is_sound(m, row, groups))
+            return "a block has an impossible value";
+    for (uint32_t row = 0; row < m->bodies.table.rows; row++)
+        if (!body_is_sound(m, row, drives))
+            return "a body has an impossible value";
+    return members_are_sound(m) ? NULL : "blocks do not fit their bodies";
+}
+
+/* ---------------------------------------------------------------- step ------------------- */
+
+static bool is_row(uint32_t row, size_t rows)
+{
+    return row < rows || row == TL_NO_ROW;
+}
+
+/* Forgets what is known of rows that have gone since it was found, as it will be found again before it is used. */
+static void forget_stale(const tl_model *m, struct tl_cycle *c)
+{
+    size_t bodies = m->bodies.table.rows;
+    if (!is_row(c->sums.worst, bodies))
+        c->sums.worst = TL_NO_ROW;
+    if (!is_row(c->added.worst, bodies))
+        c->added.worst = TL_NO_ROW;
+    if (!is_row(c->counted.lightest, bodies))
+        c->counted.version = 0;
+    if (!is_row(c->rated.body, bodies))
+        c->rated.version = 0;
+    for (size_t body = 0; body < bodies; body++) {
+        if (c->reaction_of[body] < c->reaction_room)
+            continue;
+        if (c->reaction_of[body] != TL_NO_ROW || m->bodies.fixed[body])
+            c->reactions_for = 0;
+        c->reaction_of[body] = TL_NO_ROW;
+    }
+}
+
+const char *tl_cycle_unsound(const tl_model *m, struct tl_cycle *c)
+{
+    forget_stale(m, c);
+    bool sound = c->dt >= 0 && isfinite(c->dt) && (!c->ledger || tl_ledger_is_sound(c->ledger));
+    return sound ? NULL : "what a step keeps has an impossible value";
+}
