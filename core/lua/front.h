@@ -171,6 +171,9 @@ typedef struct tl_lua_kind {
     const char *item_type, *selection_type; /* names of the metatables */
     const tl_field *(*fields)(size_t *count);
     tl_status (*field)(tl_model *model, tl_id id, size_t index, tl_field_value *value);
+    /* Fields of many by name: tl_blocks_values, tl_contacts_values. */
+    tl_status (*values)(tl_model *model, const tl_id *ids, size_t count, const char *name,
+                        double *out, size_t *width);
     /* Pushes a field that `fields` cannot express; false when it has none of that name. The item is
      * at index 1 and its model's userdata at index 3. */
     bool (*extra)(lua_State *L, tl_model *model, tl_id id, const char *name);
@@ -212,7 +215,14 @@ tl_lua_selection *tl_lua_selection_of(lua_State *L, const char *type, const char
  * answers true. */
 void tl_lua_selection_filter(lua_State *L, int selection_index, int function_index);
 
-/* ---- blocks and contacts: block.c, contact.c ---- */
+/* selection:values(field): values.c */
+int tl_lua_selection_values(lua_State *L, const tl_lua_selection *selection);
+
+/* ---- blocks and contacts: block.c, contact.c, points.c ---- */
+
+/* Push the points of a contact, a list of tables, and the states of its law, a table. */
+void tl_lua_push_contact_points(lua_State *L, tl_model *model, tl_id contact);
+void tl_lua_push_contact_states(lua_State *L, tl_model *model, tl_id contact);
 
 extern const tl_lua_kind tl_lua_block_kind, tl_lua_contact_kind;
 extern const tl_lua_spec tl_lua_blocks_spec, tl_lua_contacts_spec, tl_lua_fix_spec, tl_lua_set_spec;

@@ -4,6 +4,7 @@
 
 #include <stdio.h>
 #include <string.h>
+#include <talus/fields.h>
 
 #define WIDTH 88
 #define NAME_COLUMNS 18
@@ -121,11 +122,11 @@ static void print_kinds(tl_kind_type type)
         print_row(kind->name, kind->doc);
 }
 
-static void print_fields(const tl_lua_kind *kind)
+static void print_fields(const char *item, const tl_field *(*list)(size_t *count))
 {
     size_t count;
-    const tl_field *fields = kind->fields(&count);
-    printf("\nFields of a %s:\n", kind->item);
+    const tl_field *fields = list(&count);
+    printf("\nFields of a %s:\n", item);
     for (size_t i = 0; i < count; i++) {
         char text[300];
         bool unit = fields[i].unit && fields[i].unit[0];
@@ -133,7 +134,6 @@ static void print_fields(const tl_lua_kind *kind)
                  unit ? fields[i].unit : "", unit ? ")" : "");
         print_row(fields[i].name, text);
     }
-    print_keys(kind->extra_keys);
 }
 
 static const char *plugin_word(tl_kind_type type)
@@ -155,8 +155,12 @@ static void print_topic(const tl_lua_topic *topic)
         puts("\nParameters:");
     print_params(params, count, sizeof(tl_param));
     print_keys(keys);
-    if (topic->kind)
-        print_fields(topic->kind);
+    if (topic->kind) {
+        print_fields(topic->kind->item, topic->kind->fields);
+        print_keys(topic->kind->extra_keys);
+    }
+    if (topic->kind == &tl_lua_contact_kind)
+        print_fields("contact point", tl_point_fields);
     if (topic->verbs) {
         printf("\n%s:\n", topic->title);
         print_keys(topic->verbs);
