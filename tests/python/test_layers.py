@@ -38,6 +38,7 @@ PUBLIC = {
     "output.h": {"types.h", "plugin.h"},
     "talus.h": {"types.h", "plugin.h", "plugins.h", "output.h"},
     "fields.h": {"talus.h"},
+    "views.h": {"talus.h"},
 }
 PLUGIN_HEADERS = {"talus/types.h", "talus/elementary.h", "talus/vmath.h", "talus/plugin.h"}
 # What a plugin may include besides: the headers of standard C.
