@@ -71,7 +71,9 @@ static void type_text(const tl_param *param, char *text, size_t size)
     static const char *const types[] = {"number", "whole number",   "true or false",  "one of",
                                         "vector", "text in quotes", "list of vectors"};
     char range[80] = "", given[120];
-    size_t n = (size_t)snprintf(text, size, "%s", types[param->type]);
+    bool flat = param->type == TL_PARAM_POINTS && param->flags & TL_PARAM_FLAT;
+    size_t n =
+        (size_t)snprintf(text, size, "%s", flat ? "list of {number, number}" : types[param->type]);
     for (size_t i = 0; param->type == TL_PARAM_ENUM && param->choices[i] && n < size; i++)
         n += (size_t)snprintf(text + n, size - n, "%s \"%s\"", i ? "," : "", param->choices[i]);
     tl_param_range(param, range, sizeof range);

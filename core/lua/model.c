@@ -206,7 +206,8 @@ static int model_damping(lua_State *L)
 
 const tl_lua_key tl_lua_insitu_keys[] = {
     {"stress", "{xx =, yy =, zz =, xy =, yz =, zx =}",
-     "stress at the height of `at`, Pa, tension positive; components left out are 0"},
+     "stress at the height of `at`, Pa, tension positive; components left out are 0. yx, zy and xz "
+     "are the same as xy, yz and zx"},
     {"gradient", "{xx =, yy =, zz =, xy =, yz =, zx =}",
      "change of the stress with height z, Pa/m; components left out are 0"},
     {NULL, NULL, NULL},
