@@ -157,6 +157,16 @@ lua_State *tl_lua_run_state(void);
 /* Pops the error on the top of its stack, to be raised again when the run has ended. */
 void tl_lua_run_keep_error(void);
 
+/* ---- what there is: lists.c ---- */
+
+extern const tl_lua_key tl_lua_joints_results[], tl_lua_laws_results[], tl_lua_groups_results[],
+    tl_lua_kinds_results[];
+int tl_lua_joints(lua_State *L);
+int tl_lua_laws(lua_State *L);
+int tl_lua_groups(lua_State *L);
+/* Puts talus.laws, talus.dampings and talus.generators into the module at the top of the stack. */
+void tl_lua_lists_open(lua_State *L);
+
 /* ---- what a model costs: cost.c ---- */
 
 extern const tl_lua_key tl_lua_profile_fields[], tl_lua_memory_fields[];

@@ -57,6 +57,35 @@ typedef struct tl_law_state {
  * The list is the caller's, to be freed with free(). */
 TL_API tl_status tl_states_list(tl_model *model, tl_id contact, tl_law_state **list, size_t *count);
 
+/* ---------------------------------------------------------------- what there is ---------- */
+
+/* A joint set. */
+typedef struct tl_joint_info {
+    const char *name; /* valid until the model changes */
+    uint32_t planes;
+    const tl_kind *law; /* that of the set as a whole, or NULL while it has none */
+} tl_joint_info;
+
+TL_API size_t tl_joint_count(const tl_model *model);
+/* Of joint set `index`, in the order they were made. */
+TL_API tl_joint_info tl_joint_at(const tl_model *model, size_t index);
+
+/* A law that was set. */
+typedef struct tl_law_info {
+    tl_tag joint; /* of a set (plane 0), of a plane, or of "*" (joint 0) */
+    const tl_kind *law;
+    const void *params; /* its parameters now, at the offsets of law->params */
+} tl_law_info;
+
+TL_API size_t tl_law_count(const tl_model *model);
+TL_API tl_law_info tl_law_at(const tl_model *model, size_t index);
+
+/* Names of groups, also of those that no block has any more. */
+TL_API size_t tl_group_count(const tl_model *model);
+TL_API const char *tl_group_name(const tl_model *model, size_t index);
+/* Counts the blocks, also hidden ones, of each group and adds up their volumes, m3: [tl_group_count] each. */
+TL_API void tl_groups_tally(tl_model *model, size_t *blocks, double *volumes);
+
 #ifdef __cplusplus
 }
 #endif
