@@ -367,6 +367,7 @@ static const luaL_Reg block_verbs[] = {
     {"set", blocks_set},
     {"load", tl_lua_blocks_load},
     {"drive", tl_lua_blocks_drive},
+    {"reaction", tl_lua_blocks_reaction},
     {"bounds", blocks_bounds},
     {NULL, NULL},
 };

@@ -157,6 +157,12 @@ lua_State *tl_lua_run_state(void);
 /* Pops the error on the top of its stack, to be raised again when the run has ended. */
 void tl_lua_run_keep_error(void);
 
+/* ---- outer faces: boundary.c ---- */
+
+extern const tl_lua_spec tl_lua_boundary_spec;
+extern const tl_lua_key tl_lua_boundary_results[];
+int tl_lua_boundary(lua_State *L);
+
 /* ---- what there is: lists.c ---- */
 
 extern const tl_lua_key tl_lua_joints_results[], tl_lua_laws_results[], tl_lua_groups_results[],
@@ -260,6 +266,9 @@ typedef struct tl_lua_anchor {
 extern const tl_lua_key tl_lua_drive_keys[];
 int tl_lua_blocks_load(lua_State *L);
 int tl_lua_blocks_drive(lua_State *L);
+int tl_lua_blocks_reaction(lua_State *L);
+/* Pushes the reaction of a selection; 1. */
+int tl_lua_push_reaction(lua_State *L, const tl_lua_selection *blocks);
 
 /* ---- help: help.c, topics.c ---- */
 

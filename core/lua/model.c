@@ -415,6 +415,7 @@ static const luaL_Reg model_methods[] = {
     {"generate", model_generate},
     {"blocks", tl_lua_blocks},
     {"contacts", tl_lua_contacts},
+    {"boundary", tl_lua_boundary},
     {"joint", model_joint},
     {"joints", tl_lua_joints},
     {"laws", tl_lua_laws},

@@ -24,6 +24,8 @@ static const tl_lua_key block_verbs[] = {
     {"sel:fix{x =, y =, z =, rotation =}", "",
      "holds components of the motion; all of it when nothing is named"},
     {"sel:free()", "", "lets fixed and driven blocks go"},
+    {"sel:reaction()", "",
+     "sum of the forces that hold their bodies, N: {x, y, z}, of held components only"},
     {"sel:reset_displacement()", "", "displacements count from now"},
     {"sel:set{density =, group =, velocity =, angular_velocity =}", "", "changes properties"},
     {NULL, NULL, NULL},
@@ -234,6 +236,18 @@ const tl_lua_topic tl_lua_topics[] = {
     {.name = "load",
      .usage = "selection:load{force = {0, 0, -1e3}, at = {x, y, z}}",
      .function = "load"},
+    {.name = "boundary",
+     .usage =
+         "result = model:boundary{xmin = \"roller\", zmin = \"fixed\", zmax = {pressure = 1e5}}  "
+         "or  model:boundary{side = \"xmax\", stress = {xx = -1e6}}",
+     .doc =
+         "Finds outer faces of the model: those, or parts of those, that lie on no other block. "
+         "Holds their bodies, or puts a traction on them as a load: its force and moment about "
+         "each body's centroid take the place of the load the body had, keep their direction and "
+         "go with the body. What one call puts on a body adds up.",
+     .spec = &tl_lua_boundary_spec,
+     .title = "Fields of the result, or with sides of result.xmin and so on",
+     .verbs = tl_lua_boundary_results},
     {.name = "drive",
      .usage = "selection:drive{velocity = function(t) return 0.1 * math.sin(t), 0, 0 end}",
      .doc =
