@@ -61,7 +61,7 @@ static const tl_lua_key boundary_keys[] = {
      "stress, Pa, tension positive: the traction on a face is stress times its outward normal"},
     {"gradient", "{xx =, yy =, zz =, xy =, yz =, zx =}",
      "change of the stress with height z, Pa/m"},
-    {"xmin, xmax, ymin, ymax, zmin, zmax", "\"roller\", \"fixed\" or a table of what is to be done",
+    {"xmin, ..., zmax", "\"roller\", \"fixed\" or a table of what is to be done",
      "several sides in one call"},
     {NULL, NULL, NULL},
 };
@@ -80,7 +80,7 @@ const tl_lua_key tl_lua_boundary_results[] = {
     {"area", "", "of the outer faces, or their outer parts, m2; without any the call is refused"},
     {"blocks", "", "a selection of their blocks, hidden ones, too"},
     {"faces", "",
-     "list of {block =, face =, area =, normal =, centroid =}; block.faces[face] is the face"},
+     "each a table {block =, face =, area =, normal =, centroid =}; block.faces[face] is the face"},
     {"force, moment", "", "of the load in all, N, and N m about {0, 0, 0}"},
     {"reaction", "", "now: the force that holds the bodies in their held components, N"},
     {NULL, NULL, NULL},
