@@ -110,6 +110,7 @@ static void describe_value(const tl_value *value, char *text, size_t size)
     case TL_VALUE_POINTS:
         snprintf(text, size, "a list of %zu point%s", value->count, value->count == 1 ? "" : "s");
         break;
+    case TL_VALUE_FLAT: snprintf(text, size, "a list whose row 1 has 2 numbers, not 3"); break;
     case TL_VALUE_OTHER:
     default:
         snprintf(text, size, "a %.100s", value->text ? value->text : "value of another type");
@@ -232,8 +233,10 @@ static tl_status read_points(const reader *r, void *to)
 {
     /* An empty list of points cannot be told from an empty list of numbers. */
     bool empty = r->value->type == TL_VALUE_NUMBERS && r->value->count == 0;
-    if (r->value->type != TL_VALUE_POINTS && !empty)
-        return wrong_type(r, "a list of points {{x, y, z}, ...}");
+    bool flat = r->param.flags & TL_PARAM_FLAT;
+    if (r->value->type != (flat ? TL_VALUE_FLAT : TL_VALUE_POINTS) && !empty)
+        return wrong_type(r, flat ? "a list of points in a plane, two numbers each, {{1, 2}, ...}"
+                                  : "a list of points {{x, y, z}, ...}");
     for (size_t i = 0; i < r->value->count; i++) {
         char part[120];
         snprintf(part, sizeof part, "%.60s, row %zu", r->param.name, i + 1);
@@ -318,12 +321,20 @@ static tl_status unknown_key(const tl_param *params, size_t count, size_t stride
     return tl_fail_unknown(error, TL_E_ARGUMENT, prefix, "parameter", key, names, n);
 }
 
-/* The same parameter given twice: by its name and by its alias. */
+/* Whether two values are the same number. */
+static bool same_number(const tl_value *a, const tl_value *b)
+{
+    return a->type == TL_VALUE_NUMBER && b->type == TL_VALUE_NUMBER && a->number <= b->number &&
+           a->number >= b->number;
+}
+
+/* The same parameter given twice, by its name and by its alias, and not with the same number. */
 static tl_status check_once(const tl_param *param, const tl_args *args, size_t index,
                             const char *context, tl_error *error)
 {
     for (size_t i = 0; i < index; i++)
-        if (answers_to(param, args->values[i].key))
+        if (answers_to(param, args->values[i].key) &&
+            !same_number(&args->values[i], &args->values[index]))
             return tl_fail(error, TL_E_ARGUMENT,
                            "%s%s%s and %s are the same parameter: give one of them", shown(context),
                            colon(context), args->values[i].key, args->values[index].key);

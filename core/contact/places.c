@@ -44,6 +44,20 @@ void tl_contact_places(const tl_model *m, uint32_t contact, const tl_point_lanes
     }
 }
 
+void tl_contact_point_places(const tl_model *m, uint32_t contact, tl_vec3 *place, double *gap)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    sight s = sight_of(m, contact);
+    tl_facing to = facing_of(&contacts->facet[contact], &s);
+    tl_vec3 from = tl_body_place(&m->bodies, m->blocks.body[contacts->a[contact]]);
+    for (size_t k = 0; k < contacts->point_count[contact]; k++) {
+        size_t row = tl_point_row(contacts, contact, k);
+        tl_vec3 x = tl_m3_mul(s.ra, tl_columns_get(m->detect->points.p, row));
+        place[k] = tl_v3_add(from, x);
+        gap[k] = tl_v3_dot(to.plane, x) - to.offset;
+    }
+}
+
 void tl_contact_begin(tl_model *m, uint32_t contact, const tl_point_lanes *l)
 {
     tl_facet *f = &m->detect->contacts.facet[contact];

@@ -7,7 +7,9 @@
 
 /* Arms, normals and closures of a contact's points in the present place, from lane 0 on. */
 void tl_contact_places(const tl_model *m, uint32_t contact, const tl_point_lanes *lanes);
-/* The same for a contact whose points are new: forces turn from here. */
+/* Places of a contact's points, relative to the model's origin, and the gaps of the walls there: [point_count] each. */
+void tl_contact_point_places(const tl_model *m, uint32_t contact, tl_vec3 *place, double *gap);
+/* The same as tl_contact_places for a contact whose points are new: forces turn from here. */
 void tl_contact_begin(tl_model *m, uint32_t contact, const tl_point_lanes *lanes);
 /* Area-weighted normal and point (coordinates relative to the origin), and the smallest gap. */
 void tl_contact_summary(const tl_model *m, uint32_t contact, tl_vec3 *normal, tl_vec3 *point,

@@ -8,6 +8,8 @@
  *             area           m2                          gap           m, overlap negative
  *             normal         unit vector, from the lower block id to the higher
  *             contact_id, block_a, block_b               ids
+ *             and each state of the laws by its name: the mean of the contact's points, weighted by their areas, or the
+ *             sum of a state that goes with the area; NaN where the contact's law has no such state
  *
  * All of a contact is asked for once and kept in the form of the file, array by array. */
 #include "base/error.h"
@@ -15,6 +17,7 @@
 #include "io/vtk_data.h"
 #include "io/vtk_file.h"
 #include "query/contact_fields.h"
+#include "query/law_states.h"
 
 #include <stdlib.h>
 
@@ -70,6 +73,8 @@ typedef struct contacts {
     uint32_t *rows;
     size_t count;
     unsigned char *memory, *at[ARRAYS]; /* of the arrays, as they are in the file */
+    tl_law_states states;
+    unsigned char *states_at; /* their arrays, one after the other */
 } contacts;
 
 static size_t bytes_of(size_t a)
@@ -91,6 +96,20 @@ static void put_vec3(const contacts *c, size_t a, size_t i, tl_vec3 value)
 static void put_int(const contacts *c, size_t a, size_t i, uint32_t value)
 {
     tl_vtk_put_int(c->at[a] + i * TL_VTK_INT_BYTES, (int32_t)value);
+}
+
+/* Puts the states of a contact, the i-th, into their arrays. */
+static void put_states(const contacts *c, size_t i)
+{
+    unsigned char *array = c->states_at;
+    for (size_t s = 0; s < c->states.count; s++) {
+        const tl_law_state *state = &c->states.at[s];
+        double value[3];
+        tl_law_state_of_contact(c->model, &c->states, state, c->rows[i], value);
+        for (size_t w = 0; w < state->width; w++)
+            tl_vtk_put_double(array + (i * state->width + w) * sizeof(double), value[w]);
+        array += c->count * state->width * sizeof(double);
+    }
 }
 
 static void fill_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
@@ -115,6 +134,7 @@ static void fill_range(void *user, size_t begin, size_t end, size_t chunk, unsig
         put_int(c, CONTACT_ID, i, facts.id);
         put_int(c, BLOCK_A, i, facts.a);
         put_int(c, BLOCK_B, i, facts.b);
+        put_states(c, i);
     }
 }
 
@@ -124,6 +144,8 @@ static bool fill_arrays(contacts *c, tl_model *m)
     size_t bytes = 0;
     for (size_t a = 0; a < ARRAYS; a++)
         bytes += c->count * bytes_of(a);
+    for (size_t s = 0; s < c->states.count; s++)
+        bytes += c->count * c->states.at[s].width * sizeof(double);
     c->memory = malloc(bytes + 1);
     if (!c->memory)
         return false;
@@ -133,6 +155,7 @@ static bool fill_arrays(contacts *c, tl_model *m)
         c->at[a] = at;
         at += c->count * bytes_of(a);
     }
+    c->states_at = at;
     tl_parallel_for(m->pool, c->count, CHUNK, fill_range, c);
     return true;
 }
@@ -143,6 +166,19 @@ static void put_array(const contacts *c, size_t a, tl_output *output)
         tl_vtk_array(output->file, arrays[a].name, arrays[a].components, c->count, arrays[a].type);
     tl_output_put(output, c->at[a], c->count * bytes_of(a));
     tl_vtk_line(output->file);
+}
+
+static void put_state_arrays(const contacts *c, tl_output *output)
+{
+    const unsigned char *array = c->states_at;
+    for (size_t s = 0; s < c->states.count; s++) {
+        const tl_law_state *state = &c->states.at[s];
+        size_t bytes = c->count * state->width * sizeof(double);
+        tl_vtk_array(output->file, state->name, state->width, c->count, TL_VTK_DOUBLE);
+        tl_output_put(output, array, bytes);
+        tl_vtk_line(output->file);
+        array += bytes;
+    }
 }
 
 static void put_contacts(const contacts *c, tl_output *output)
@@ -158,9 +194,10 @@ static void put_contacts(const contacts *c, tl_output *output)
     put_array(c, NORMAL_FORCE, output);
     fprintf(file, "VECTORS shear_force double\n");
     put_array(c, SHEAR_FORCE, output);
-    tl_vtk_field(file, "FieldData", ARRAYS - FIELDS);
+    tl_vtk_field(file, "FieldData", ARRAYS - FIELDS + c->states.count);
     for (size_t a = FIELDS; a < ARRAYS; a++)
         put_array(c, a, output);
+    put_state_arrays(c, output);
 }
 
 tl_status tl_vtk_contacts(tl_model *m, tl_pieces *out)
@@ -169,10 +206,13 @@ tl_status tl_vtk_contacts(tl_model *m, tl_pieces *out)
     tl_status status = tl_contacts_listed(m, &c.rows, &c.count);
     if (status == TL_OK)
         status = tl_vtk_countable(2 * c.count, "contacts", &m->error);
+    if (status == TL_OK)
+        status = tl_law_states_list(m, &c.states);
     if (status == TL_OK && !fill_arrays(&c, m))
         status = tl_fail_memory(&m->error);
     if (status == TL_OK)
         put_contacts(&c, out->output);
+    tl_law_states_free(&c.states);
     free(c.memory);
     free(c.rows);
     return status;

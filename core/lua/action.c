@@ -1,4 +1,4 @@
-/* action.c - what acts on blocks from outside: selection:load{...} and selection:drive{...}.
+/* action.c - what acts on blocks from outside: selection:load{...}, selection:drive{...} and selection:reaction().
  *
  * A drive given by functions of the script is kept as an *anchor*: a userdata in a table that is the
  * user value of the model's userdata, with the functions as its own user values. So a function that
@@ -10,6 +10,7 @@
 #include "front.h"
 
 #include <math.h>
+#include <talus/boundary.h>
 
 static const char *const key_names[] = {
     [TL_LUA_VELOCITY] = "velocity",
@@ -214,4 +215,18 @@ int tl_lua_blocks_drive(lua_State *L)
     if (status == TL_OK && b->count > 0)
         a->ended = false;
     return tl_lua_blocks_acted(L, b, "drive", "driven", status);
+}
+
+int tl_lua_push_reaction(lua_State *L, const tl_lua_selection *blocks)
+{
+    tl_model *model = tl_lua_living(L, blocks->owner);
+    tl_vec3 force;
+    tl_lua_ok(L, model, tl_blocks_reaction(model, blocks->ids, blocks->count, &force));
+    tl_lua_push_vec3(L, force);
+    return 1;
+}
+
+int tl_lua_blocks_reaction(lua_State *L)
+{
+    return tl_lua_push_reaction(L, tl_lua_blocks_self(L, 1, "reaction"));
 }

@@ -4,6 +4,7 @@
 
 #include <math.h>
 #include <string.h>
+#include <talus/fields.h>
 
 #define MESH_TYPE "talus.mesh"
 
@@ -366,6 +367,7 @@ static const luaL_Reg block_verbs[] = {
     {"set", blocks_set},
     {"load", tl_lua_blocks_load},
     {"drive", tl_lua_blocks_drive},
+    {"reaction", tl_lua_blocks_reaction},
     {"bounds", blocks_bounds},
     {NULL, NULL},
 };
@@ -385,6 +387,7 @@ const tl_lua_kind tl_lua_block_kind = {
     .selection_type = TL_LUA_BLOCKS,
     .fields = tl_block_fields,
     .field = tl_block_field,
+    .values = tl_blocks_values,
     .extra = block_extra,
     .extra_keys = block_extra_keys,
     .verbs = block_verbs,

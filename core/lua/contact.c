@@ -2,6 +2,7 @@
 #include "front.h"
 
 #include <string.h>
+#include <talus/fields.h>
 
 typedef struct contact_args {
     const char *joint;
@@ -83,9 +84,17 @@ int tl_lua_contacts(lua_State *L)
     return 1;
 }
 
-/* `blocks`: the pair of blocks, as blocks and not as numbers. */
+/* `blocks`: the pair of blocks, as blocks and not as numbers; `points` and `states`. */
 static bool contact_extra(lua_State *L, tl_model *model, tl_id id, const char *name)
 {
+    if (strcmp(name, "points") == 0) {
+        tl_lua_push_contact_points(L, model, id);
+        return true;
+    }
+    if (strcmp(name, "states") == 0) {
+        tl_lua_push_contact_states(L, model, id);
+        return true;
+    }
     if (strcmp(name, "blocks") != 0)
         return false;
     size_t count;
@@ -105,7 +114,16 @@ static bool contact_extra(lua_State *L, tl_model *model, tl_id id, const char *n
     return false;
 }
 
-static const tl_lua_key contact_extra_keys[] = {{NULL, NULL, NULL}};
+static const tl_lua_key contact_extra_keys[] = {
+    {"points", "list of {position =, area =, normal_force =, ...}",
+     "its points as they are now, each a table of the fields of a contact point and of the states "
+     "of the law by name. The forces of the points add up to those of the contact; edges, vertices "
+     "and tilted faces have one point"},
+    {"states", "{NAME = value}",
+     "the states of its law: the mean of the points, weighted by their areas; the sum of a state "
+     "that goes with the area"},
+    {NULL, NULL, NULL},
+};
 static const luaL_Reg contact_verbs[] = {{NULL, NULL}};
 
 const tl_lua_kind tl_lua_contact_kind = {
@@ -115,6 +133,7 @@ const tl_lua_kind tl_lua_contact_kind = {
     .selection_type = "talus.contacts",
     .fields = tl_contact_fields,
     .field = tl_contact_field,
+    .values = tl_contacts_values,
     .extra = contact_extra,
     .extra_keys = contact_extra_keys,
     .verbs = contact_verbs,

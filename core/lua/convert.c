@@ -34,18 +34,18 @@ static double number_at(lua_State *L, int index)
     return isnan(number) ? NAN : number;
 }
 
-/* Reads row `row` of the list at `index`: three numbers. false, with what it is instead in `value`. */
-static bool convert_row(lua_State *L, int index, int anchor, lua_Integer row, double *out,
-                        tl_value *value)
+/* Reads row `row` of the list at `index`: so many numbers. false, with what it is instead in `value`. */
+static bool convert_row(lua_State *L, int index, int anchor, lua_Integer row, int width,
+                        double *out, tl_value *value)
 {
     lua_rawgeti(L, index, row);
     const char *fault = NULL;
     if (lua_type(L, -1) != LUA_TTABLE)
         fault = lua_pushfstring(L, "list whose row %I is %s", row, tl_lua_describe(L, -1));
-    else if (lua_rawlen(L, -1) != 3)
-        fault = lua_pushfstring(L, "list whose row %I has %I numbers, not 3", row,
-                                (lua_Integer)lua_rawlen(L, -1));
-    for (int i = 0; i < 3 && !fault; i++) {
+    else if (lua_rawlen(L, -1) != (size_t)width)
+        fault = lua_pushfstring(L, "list whose row %I has %I numbers, not %d", row,
+                                (lua_Integer)lua_rawlen(L, -1), width);
+    for (int i = 0; i < width && !fault; i++) {
         if (lua_rawgeti(L, -1, i + 1) != LUA_TNUMBER)
             fault = lua_pushfstring(L, "list whose row %I has %s in place %d", row,
                                     tl_lua_describe(L, -1), i + 1);
@@ -90,20 +90,28 @@ static void convert_list(lua_State *L, int index, int anchor, tl_value *value)
         return;
     }
     bool rows = lua_rawgeti(L, index, 1) == LUA_TTABLE;
-    lua_pop(L, 1);
+    bool flat = rows && lua_rawlen(L, -1) == 2; /* points of a plane */
+    bool outlines = rows && lua_rawgeti(L, -1, 1) == LUA_TTABLE;
+    lua_pop(L, rows ? 2 : 1);
+    if (outlines) {
+        convert_other(L, anchor, value, "list of lists of points (holes cannot be given)");
+        return;
+    }
     size_t width = rows ? 3 : 1;
     double *data = lua_newuserdatauv(L, length * width * sizeof *data, 0);
     hold(L, anchor);
     for (size_t i = 0; i < length; i++) {
         int top = lua_gettop(L);
         lua_Integer place = (lua_Integer)i + 1;
-        bool good = rows ? convert_row(L, index, anchor, place, data + 3 * i, value)
+        if (flat)
+            data[3 * i + 2] = 0;
+        bool good = rows ? convert_row(L, index, anchor, place, flat ? 2 : 3, data + 3 * i, value)
                          : convert_number(L, index, anchor, place, data + i, value);
         lua_settop(L, top);
         if (!good)
             return;
     }
-    value->type = rows ? TL_VALUE_POINTS : TL_VALUE_NUMBERS;
+    value->type = flat ? TL_VALUE_FLAT : rows ? TL_VALUE_POINTS : TL_VALUE_NUMBERS;
     value->data = data;
     value->count = length;
 }

@@ -162,6 +162,22 @@ lua_State *tl_lua_run_state(void);
 /* Pops the error on the top of its stack, to be raised again when the run has ended. */
 void tl_lua_run_keep_error(void);
 
+/* ---- outer faces: boundary.c ---- */
+
+extern const tl_lua_spec tl_lua_boundary_spec;
+extern const tl_lua_key tl_lua_boundary_results[];
+int tl_lua_boundary(lua_State *L);
+
+/* ---- what there is: lists.c ---- */
+
+extern const tl_lua_key tl_lua_joints_results[], tl_lua_laws_results[], tl_lua_groups_results[],
+    tl_lua_kinds_results[];
+int tl_lua_joints(lua_State *L);
+int tl_lua_laws(lua_State *L);
+int tl_lua_groups(lua_State *L);
+/* Puts talus.laws, talus.dampings and talus.generators into the module at the top of the stack. */
+void tl_lua_lists_open(lua_State *L);
+
 /* ---- what a model costs: cost.c ---- */
 
 extern const tl_lua_key tl_lua_profile_fields[], tl_lua_memory_fields[];
@@ -176,6 +192,9 @@ typedef struct tl_lua_kind {
     const char *item_type, *selection_type; /* names of the metatables */
     const tl_field *(*fields)(size_t *count);
     tl_status (*field)(tl_model *model, tl_id id, size_t index, tl_field_value *value);
+    /* Fields of many by name: tl_blocks_values, tl_contacts_values. */
+    tl_status (*values)(tl_model *model, const tl_id *ids, size_t count, const char *name,
+                        double *out, size_t *width);
     /* Pushes a field that `fields` cannot express; false when it has none of that name. The item is
      * at index 1 and its model's userdata at index 3. */
     bool (*extra)(lua_State *L, tl_model *model, tl_id id, const char *name);
@@ -217,7 +236,14 @@ tl_lua_selection *tl_lua_selection_of(lua_State *L, const char *type, const char
  * answers true. */
 void tl_lua_selection_filter(lua_State *L, int selection_index, int function_index);
 
-/* ---- blocks and contacts: block.c, contact.c ---- */
+/* selection:values(field): values.c */
+int tl_lua_selection_values(lua_State *L, const tl_lua_selection *selection);
+
+/* ---- blocks and contacts: block.c, contact.c, points.c ---- */
+
+/* Push the points of a contact, a list of tables, and the states of its law, a table. */
+void tl_lua_push_contact_points(lua_State *L, tl_model *model, tl_id contact);
+void tl_lua_push_contact_states(lua_State *L, tl_model *model, tl_id contact);
 
 extern const tl_lua_kind tl_lua_block_kind, tl_lua_contact_kind;
 extern const tl_lua_spec tl_lua_blocks_spec, tl_lua_contacts_spec, tl_lua_fix_spec, tl_lua_set_spec;
@@ -245,6 +271,9 @@ typedef struct tl_lua_anchor {
 extern const tl_lua_key tl_lua_drive_keys[];
 int tl_lua_blocks_load(lua_State *L);
 int tl_lua_blocks_drive(lua_State *L);
+int tl_lua_blocks_reaction(lua_State *L);
+/* Pushes the reaction of a selection; 1. */
+int tl_lua_push_reaction(lua_State *L, const tl_lua_selection *blocks);
 
 /* Pushes a new anchor and hangs it on the model at `model_index`; it counts as ended until the kernel has taken it. */
 tl_lua_anchor *tl_lua_anchor_push(lua_State *L, int model_index);

@@ -4,6 +4,7 @@
 
 #include <stdio.h>
 #include <string.h>
+#include <talus/fields.h>
 
 #define WIDTH 88
 #define NAME_COLUMNS 18
@@ -70,7 +71,9 @@ static void type_text(const tl_param *param, char *text, size_t size)
     static const char *const types[] = {"number", "whole number",   "true or false",  "one of",
                                         "vector", "text in quotes", "list of vectors"};
     char range[80] = "", given[120];
-    size_t n = (size_t)snprintf(text, size, "%s", types[param->type]);
+    bool flat = param->type == TL_PARAM_POINTS && param->flags & TL_PARAM_FLAT;
+    size_t n =
+        (size_t)snprintf(text, size, "%s", flat ? "list of {number, number}" : types[param->type]);
     for (size_t i = 0; param->type == TL_PARAM_ENUM && param->choices[i] && n < size; i++)
         n += (size_t)snprintf(text + n, size - n, "%s \"%s\"", i ? "," : "", param->choices[i]);
     tl_param_range(param, range, sizeof range);
@@ -121,11 +124,11 @@ static void print_kinds(tl_kind_type type)
         print_row(kind->name, kind->doc);
 }
 
-static void print_fields(const tl_lua_kind *kind)
+static void print_fields(const char *item, const tl_field *(*list)(size_t *count))
 {
     size_t count;
-    const tl_field *fields = kind->fields(&count);
-    printf("\nFields of a %s:\n", kind->item);
+    const tl_field *fields = list(&count);
+    printf("\nFields of a %s:\n", item);
     for (size_t i = 0; i < count; i++) {
         char text[300];
         bool unit = fields[i].unit && fields[i].unit[0];
@@ -133,7 +136,6 @@ static void print_fields(const tl_lua_kind *kind)
                  unit ? fields[i].unit : "", unit ? ")" : "");
         print_row(fields[i].name, text);
     }
-    print_keys(kind->extra_keys);
 }
 
 static const char *plugin_word(tl_kind_type type)
@@ -155,8 +157,12 @@ static void print_topic(const tl_lua_topic *topic)
         puts("\nParameters:");
     print_params(params, count, sizeof(tl_param));
     print_keys(keys);
-    if (topic->kind)
-        print_fields(topic->kind);
+    if (topic->kind) {
+        print_fields(topic->kind->item, topic->kind->fields);
+        print_keys(topic->kind->extra_keys);
+    }
+    if (topic->kind == &tl_lua_contact_kind)
+        print_fields("contact point", tl_point_fields);
     if (topic->verbs) {
         printf("\n%s:\n", topic->title);
         print_keys(topic->verbs);

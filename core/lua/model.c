@@ -183,7 +183,8 @@ static int model_damping(lua_State *L)
 
 const tl_lua_key tl_lua_insitu_keys[] = {
     {"stress", "{xx =, yy =, zz =, xy =, yz =, zx =}",
-     "stress at the height of `at`, Pa, tension positive; components left out are 0"},
+     "stress at the height of `at`, Pa, tension positive; components left out are 0. yx, zy and xz "
+     "are the same as xy, yz and zx"},
     {"gradient", "{xx =, yy =, zz =, xy =, yz =, zx =}",
      "change of the stress with height z, Pa/m; components left out are 0"},
     {NULL, NULL, NULL},
@@ -391,7 +392,11 @@ static const luaL_Reg model_methods[] = {
     {"generate", model_generate},
     {"blocks", tl_lua_blocks},
     {"contacts", tl_lua_contacts},
+    {"boundary", tl_lua_boundary},
     {"joint", model_joint},
+    {"joints", tl_lua_joints},
+    {"laws", tl_lua_laws},
+    {"groups", tl_lua_groups},
     {"insitu", model_insitu},
     {"damping", model_damping},
     {"timestep", model_timestep},

@@ -26,6 +26,7 @@ int luaopen_talus(lua_State *L)
     lua_setfield(L, -2, "report");
     lua_pushcfunction(L, tl_lua_restore);
     lua_setfield(L, -2, "restore");
+    tl_lua_lists_open(L);
     lua_pushcfunction(L, module_help);
     lua_setfield(L, -2, "help");
     lua_pushliteral(L, TALUS_VERSION);

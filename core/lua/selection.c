@@ -135,6 +135,11 @@ static int selection_min(lua_State *L)
     return extreme(L, "min", -1.0);
 }
 
+static int selection_values(lua_State *L)
+{
+    return tl_lua_selection_values(L, self(L, "values"));
+}
+
 /* ---------------------------------------------------------------- filter ----------------- */
 
 void tl_lua_selection_filter(lua_State *L, int selection_index, int function_index)
@@ -177,8 +182,8 @@ static int selection_where(lua_State *L)
 /* ---------------------------------------------------------------- index ------------------ */
 
 static const luaL_Reg methods[] = {
-    {"sum", selection_sum},     {"max", selection_max}, {"min", selection_min},
-    {"where", selection_where}, {NULL, NULL},
+    {"sum", selection_sum},     {"max", selection_max},       {"min", selection_min},
+    {"where", selection_where}, {"values", selection_values}, {NULL, NULL},
 };
 
 static int unknown_method(lua_State *L, const tl_lua_kind *kind, const char *name)

@@ -9,6 +9,9 @@ static const tl_lua_key block_verbs[] = {
     {"#sel, sel[i], ipairs(sel)", "", "number of blocks, the i-th one, all in order of id"},
     {"sel:sum(field)", "", "sum of a field of numbers; of a vector field a vector"},
     {"sel:max(field), sel:min(field)", "", "largest and smallest value of a field of numbers"},
+    {"sel:values(field)", "",
+     "list of the field's values, in the order of the selection: much faster than one by one. A "
+     "vector is {x, y, z}; with \"flat\" after the field {x, y, z, x, y, z, ...}"},
     {"sel:bounds()", "", "{min = {x, y, z}, max = {x, y, z}} over all vertices"},
     {"sel:where(function(block) ... end)", "", "those for which the function answers true"},
     {"sel:hide(), sel:show()", "", "hidden blocks are not cut and not selected unless asked for"},
@@ -21,6 +24,8 @@ static const tl_lua_key block_verbs[] = {
     {"sel:fix{x =, y =, z =, rotation =}", "",
      "holds components of the motion; all of it when nothing is named"},
     {"sel:free()", "", "lets fixed and driven blocks go"},
+    {"sel:reaction()", "",
+     "sum of the forces that hold their bodies, N: {x, y, z}, of held components only"},
     {"sel:reset_displacement()", "", "displacements count from now"},
     {"sel:set{density =, group =, velocity =, angular_velocity =}", "", "changes properties"},
     {NULL, NULL, NULL},
@@ -30,6 +35,10 @@ static const tl_lua_key contact_verbs[] = {
     {"#sel, sel[i], ipairs(sel)", "", "number of contacts, the i-th one, all in order of id"},
     {"sel:sum(field)", "", "sum of a field of numbers; of a vector field a vector"},
     {"sel:max(field), sel:min(field)", "", "largest and smallest value of a field of numbers"},
+    {"sel:values(field)", "",
+     "list of the field's values, in the order of the selection; likewise a state of a law, by its "
+     "name, NaN where the contact's law has no such state. With \"flat\" after it vectors are not "
+     "lists of their own"},
     {"sel:where(function(contact) ... end)", "", "those for which the function answers true"},
     {NULL, NULL, NULL},
 };
@@ -196,6 +205,26 @@ const tl_lua_topic tl_lua_topics[] = {
          "Sets the law of a joint set (\"J1\"), of one of its planes (\"J1:3\") or of every joint "
          "not named otherwise (\"*\"); without a law's name it changes properties.",
      .type = &laws},
+    {.name = "joints",
+     .usage = "list = model:joints()",
+     .doc = "Lists the joint sets, in the order they were made.",
+     .title = "Fields of each joint set",
+     .verbs = tl_lua_joints_results},
+    {.name = "laws",
+     .usage = "list = model:laws()",
+     .doc = "Lists the laws that were set by model:joint, with their parameters.",
+     .title = "Fields of each law",
+     .verbs = tl_lua_laws_results},
+    {.name = "groups",
+     .usage = "list = model:groups()",
+     .doc = "Lists the groups that blocks have.",
+     .title = "Fields of each group",
+     .verbs = tl_lua_groups_results},
+    {.name = "kinds",
+     .usage = "list = talus.laws()  or  talus.dampings()  or  talus.generators()",
+     .doc = "Lists the laws, dampings or generators that are loaded.",
+     .title = "Fields of each",
+     .verbs = tl_lua_kinds_results},
     {.name = "insitu",
      .usage = "model:insitu{stress = {zz = -1e6}, gradient = {zz = 2e4}, at = {0, 0, 0}}",
      .function = "insitu",
@@ -207,6 +236,18 @@ const tl_lua_topic tl_lua_topics[] = {
     {.name = "load",
      .usage = "selection:load{force = {0, 0, -1e3}, at = {x, y, z}}",
      .function = "load"},
+    {.name = "boundary",
+     .usage =
+         "result = model:boundary{xmin = \"roller\", zmin = \"fixed\", zmax = {pressure = 1e5}}  "
+         "or  model:boundary{side = \"xmax\", stress = {xx = -1e6}}",
+     .doc =
+         "Finds outer faces of the model: those, or parts of those, that lie on no other block. "
+         "Holds their bodies, or puts a traction on them as a load: its force and moment about "
+         "each body's centroid take the place of the load the body had, keep their direction and "
+         "go with the body. What one call puts on a body adds up.",
+     .spec = &tl_lua_boundary_spec,
+     .title = "Fields of the result, or with sides of result.xmin and so on",
+     .verbs = tl_lua_boundary_results},
     {.name = "drive",
      .usage = "selection:drive{velocity = function(t) return 0.1 * math.sin(t), 0, 0 end}",
      .doc =

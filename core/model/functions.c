@@ -66,9 +66,12 @@ static const tl_param tensor_params[] = {
              .def = {0.0}),
     TL_PARAM(TL_PARAM_REAL, tl_sym3, zz, "Pa or Pa/m", "normal component, tension positive",
              .def = {0.0}),
-    TL_PARAM(TL_PARAM_REAL, tl_sym3, xy, "Pa or Pa/m", "shear component", .def = {0.0}),
-    TL_PARAM(TL_PARAM_REAL, tl_sym3, yz, "Pa or Pa/m", "shear component", .def = {0.0}),
-    TL_PARAM(TL_PARAM_REAL, tl_sym3, zx, "Pa or Pa/m", "shear component", .def = {0.0}),
+    TL_PARAM(TL_PARAM_REAL, tl_sym3, xy, "Pa or Pa/m", "shear component", .def = {0.0},
+             .alias = "yx"),
+    TL_PARAM(TL_PARAM_REAL, tl_sym3, yz, "Pa or Pa/m", "shear component", .def = {0.0},
+             .alias = "zy"),
+    TL_PARAM(TL_PARAM_REAL, tl_sym3, zx, "Pa or Pa/m", "shear component", .def = {0.0},
+             .alias = "xz"),
 };
 
 static const tl_param timestep_params[] = {

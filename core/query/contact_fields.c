@@ -9,6 +9,7 @@
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
+#include <talus/fields.h>
 
 enum {
     F_ID,
@@ -23,6 +24,7 @@ enum {
     F_NORMAL_STRESS,
     F_SHEAR_STRESS,
     F_STATE,
+    F_LAW,
     F_COUNT
 };
 
@@ -40,6 +42,7 @@ static const tl_field fields[F_COUNT] = {
     [F_NORMAL_STRESS] = {"normal_stress", TL_FIELD_SCALAR, "Pa", "normal force over area"},
     [F_SHEAR_STRESS] = {"shear_stress", TL_FIELD_SCALAR, "Pa", "length of shear force over area"},
     [F_STATE] = {"state", TL_FIELD_TEXT, "", "\"elastic\", \"slipping\", \"open\" or \"failed\""},
+    [F_LAW] = {"law", TL_FIELD_TEXT, "", "name of the law of its joint, or empty"},
 };
 
 const tl_field *tl_contact_fields(size_t *count)
@@ -48,16 +51,23 @@ const tl_field *tl_contact_fields(size_t *count)
     return fields;
 }
 
-/* The second point of a field contact has its torsion, and the normal force again. */
-static void forces(const tl_detect *d, uint32_t c, double *normal, tl_vec3 *shear)
+size_t tl_point_count(const tl_model *m, uint32_t contact)
 {
-    const tl_points_table *p = &d->points;
-    uint32_t count = d->contacts.point_count[c];
-    if (d->contacts.facet[c].kind == TL_FACET_FIELD && count > TL_FIELD_TORSION)
+    const tl_contacts *c = &m->detect->contacts;
+    size_t count = c->point_count[contact];
+    if (c->facet[contact].kind == TL_FACET_FIELD && count > TL_FIELD_TORSION)
         count = TL_FIELD_TORSION;
+    return count;
+}
+
+static void forces(const tl_model *m, uint32_t c, double *normal, tl_vec3 *shear)
+{
+    const tl_detect *d = m->detect;
+    const tl_points_table *p = &d->points;
+    size_t count = tl_point_count(m, c);
     *normal = 0;
     *shear = tl_v3(0, 0, 0);
-    for (uint32_t k = 0; k < count; k++) {
+    for (size_t k = 0; k < count; k++) {
         size_t i = tl_point_row(&d->contacts, c, k);
         *normal += p->f_n[i];
         *shear = tl_v3_add(*shear, tl_v3(p->f_s[0][i], p->f_s[1][i], p->f_s[2][i]));
@@ -65,6 +75,15 @@ static void forces(const tl_detect *d, uint32_t c, double *normal, tl_vec3 *shea
 }
 
 /* Open when every point is, slipping when some point slips, failed when some bond is lost. */
+tl_contact_state tl_contact_state_of_flags(uint32_t any, uint32_t all)
+{
+    if (all & TL_POINT_OPEN)
+        return TL_CONTACT_OPEN;
+    if (any & TL_POINT_SLIPPING)
+        return TL_CONTACT_SLIPPING;
+    return any & TL_POINT_FAILED ? TL_CONTACT_FAILED : TL_CONTACT_ELASTIC;
+}
+
 static tl_contact_state state_of(const tl_detect *d, uint32_t c)
 {
     uint32_t any = 0, all = TL_POINT_OPEN;
@@ -73,17 +92,17 @@ static tl_contact_state state_of(const tl_detect *d, uint32_t c)
         any |= flags;
         all &= flags;
     }
-    if (all & TL_POINT_OPEN)
-        return TL_CONTACT_OPEN;
-    if (any & TL_POINT_SLIPPING)
-        return TL_CONTACT_SLIPPING;
-    return any & TL_POINT_FAILED ? TL_CONTACT_FAILED : TL_CONTACT_ELASTIC;
+    return tl_contact_state_of_flags(any, all);
 }
 
-static const char *const state_names[] = {[TL_CONTACT_ELASTIC] = "elastic",
-                                          [TL_CONTACT_SLIPPING] = "slipping",
-                                          [TL_CONTACT_OPEN] = "open",
-                                          [TL_CONTACT_FAILED] = "failed"};
+const char *tl_state_name(size_t number)
+{
+    static const char *const names[] = {[TL_CONTACT_ELASTIC] = "elastic",
+                                        [TL_CONTACT_SLIPPING] = "slipping",
+                                        [TL_CONTACT_OPEN] = "open",
+                                        [TL_CONTACT_FAILED] = "failed"};
+    return number < sizeof names / sizeof names[0] ? names[number] : NULL;
+}
 
 tl_contact_facts tl_contact_facts_of(const tl_model *m, uint32_t contact)
 {
@@ -95,12 +114,18 @@ tl_contact_facts tl_contact_facts_of(const tl_model *m, uint32_t contact)
                             .area = c->area[contact],
                             .state = state_of(m->detect, contact)};
     tl_vec3 point;
-    forces(m->detect, contact, &out.normal_force, &out.shear_force);
+    forces(m, contact, &out.normal_force, &out.shear_force);
     tl_contact_summary(m, contact, &out.normal, &point, &out.gap);
     out.point = tl_v3_add(m->origin, point);
     out.normal_stress = out.area > 0 ? out.normal_force / out.area : 0;
     out.shear_stress = out.area > 0 ? tl_v3_norm(out.shear_force) / out.area : 0;
     return out;
+}
+
+static const tl_kind *law_of(const tl_model *m, uint32_t contact)
+{
+    uint32_t material = m->detect->contacts.material[contact];
+    return material == TL_NO_ROW ? NULL : m->materials[material].kind;
 }
 
 static void put_vector(tl_field_value *value, tl_vec3 v)
@@ -137,7 +162,8 @@ tl_status tl_contact_field(tl_model *m, tl_id contact, size_t index, tl_field_va
     case F_SHEAR_FORCE: put_vector(value, facts.shear_force); break;
     case F_NORMAL_STRESS: value->number[0] = facts.normal_stress; break;
     case F_SHEAR_STRESS: value->number[0] = facts.shear_stress; break;
-    case F_STATE: value->text = state_names[facts.state]; break;
+    case F_STATE: value->text = tl_state_name(facts.state); break;
+    case F_LAW: value->text = law_of(m, c) ? law_of(m, c)->name : ""; break;
     default: break;
     }
     return TL_OK;

@@ -23,6 +23,11 @@ typedef struct tl_contact_facts {
     tl_vec3 shear_force;                /* N, on b */
 } tl_contact_facts;
 
+/* Points of a contact that are told of: all of a patch, and of a field contact the one at the centre of its pressure. The
+ * other one, of torsion, has the same normal force once more. */
+size_t tl_point_count(const tl_model *m, uint32_t contact);
+/* What a law's flags mean: those that some point has, and those that all have. */
+tl_contact_state tl_contact_state_of_flags(uint32_t any, uint32_t all);
 /* Of a row of contacts that are up to date: tl_contacts_listed. Changes nothing, so several threads may ask. */
 tl_contact_facts tl_contact_facts_of(const tl_model *m, uint32_t contact);
 /* Brings the contacts up to date and gives the rows of those with points, in order of id; the caller frees the list. */

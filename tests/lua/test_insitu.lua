@@ -80,3 +80,24 @@ local function pieces(first)
     return table.concat(volumes, " ")
 end
 check.equal(pieces(true), pieces(false))
+
+-- The order of the letters of a shear stress does not matter.
+do
+    local function shear(stress)
+        local m = talus.model {}
+        m:generate("box", { min = { 0, 0, 0 }, max = { 2, 2, 2 }, density = 2000 })
+        m:generate("joint", { joint = "x", dip = 90, dip_direction = 90, origin = { 1, 0, 0 } })
+        m:generate("joint", { joint = "z", dip = 0, dip_direction = 0, origin = { 0, 0, 1 } })
+        m:joint("*", "elastic", { kn = 1e9, ks = 1e9 })
+        m:insitu { stress = stress }
+        return m:state_hash()
+    end
+    check.equal(shear { xx = -2e5, zx = 1e5, xy = 2e4, yz = 3e4 }, shear { xx = -2e5, xz = 1e5, yx = 2e4, zy = 3e4 })
+    check.equal(shear { zx = 1e5, xz = 1e5 }, shear { zx = 1e5 })
+    check.holds(shear { zx = 1e5 } ~= shear { zx = 2e5 }, "the stress is put on")
+    local m = talus.model {}
+    check.refused(m, function() m:insitu { stress = { xz = 1e5, zx = 2e5 } } end,
+        "xz and zx are the same parameter: give one of them")
+    check.refused(m, function() m:insitu { gradient = { zy = 1, yz = 2 } } end, "insitu, gradient: ")
+    check.refused(m, function() m:insitu { stress = { xw = 1 } } end, "unknown parameter 'xw'")
+end

@@ -106,16 +106,16 @@ refused("prism", { base = { { 0, 0, 0 }, { 1, 0, 0 }, { 1, 1, 0.1 }, { 0, 1, 0 }
     "the points must lie in one plane")
 refused("prism", { base = { { 0, 0, 0 }, { 1, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 } }, axis = { 0, 0, 1 } },
     "base: points 2 and 3 coincide")
--- a notch, a bow tie, and a star that turns the same way at every point
-refused("prism", { base = { { 0, 0, 0 }, { 2, 0, 0 }, { 1, 0.5, 0 }, { 2, 2, 0 } }, axis = { 0, 0, 1 } },
-    "base is not convex or crosses itself")
+-- a notch to a top, a bow tie, and a star that turns the same way at every point
+refused("prism", { base = { { 0, 0, 0 }, { 2, 0, 0 }, { 1, 0.5, 0 }, { 2, 2, 0 } },
+    top = { { 0, 0, 1 }, { 2, 0, 1 }, { 1, 0.5, 1 }, { 2, 2, 1 } } }, "base is not convex or crosses itself")
 refused("prism", { base = { { 0, 0, 0 }, { 3, 0, 0 }, { 0, 2, 0 }, { 2, 1, 0 } }, axis = { 0, 0, 1 } },
-    "base is not convex or crosses itself")
+    "base crosses or touches itself")
 local star = {}
 for i = 0, 4 do
     star[i + 1] = { math.cos(4 * math.pi * i / 5), math.sin(4 * math.pi * i / 5), 0 }
 end
-refused("prism", { base = star, axis = { 0, 0, 1 } }, "base is not convex or crosses itself")
+refused("prism", { base = star, axis = { 0, 0, 1 } }, "base crosses or touches itself")
 refused("prism", { base = square, top = { small[1], small[2], small[3] } },
     "top has 3 points and base 4")
 refused("prism", { base = square, top = { { 0, 0, 1 }, { 2, 0, 1 }, { 2, 2, -1 }, { 0, 2, -1 } } },

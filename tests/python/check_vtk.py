@@ -165,8 +165,20 @@ def check_contacts(path, expected):
         check(0 <= points.GetArray("joint").GetValue(i) < len(names), f"{path.name}: joint")
         check(points.GetArray("block_a").GetValue(i) < points.GetArray("block_b").GetValue(i),
               f"{path.name}: contact {i} does not order its blocks")
+    check_states(path.name, points, names, count)
     joints = {int(points.GetArray("joint").GetValue(i)) for i in range(count)}
     check(joints >= {1, 2, 3, 4}, f"{path.name}: contacts of joints {joints} only")
+
+
+def check_states(name, points, names, count):
+    """States of laws: bonds hold where the joint is bonded, NaN where its law has no such state."""
+    bond = points.GetArray("bond")
+    if not check(bond is not None and bond.GetNumberOfTuples() == count, f"{name}: no array bond"):
+        return
+    for i in range(count):
+        bonded = names[int(points.GetArray("joint").GetValue(i))] == "oblique"
+        value = bond.GetValue(i)
+        check(value == 1 if bonded else math.isnan(value), f"{name}: bond {value} of contact {i}")
 
 
 def check_joints(path):

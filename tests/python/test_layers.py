@@ -39,6 +39,9 @@ PUBLIC = {
     "output.h": {"types.h", "plugin.h"},
     "state.h": {"types.h", "plugin.h"},
     "talus.h": {"types.h", "plugin.h", "plugins.h", "output.h", "state.h"},
+    "fields.h": {"talus.h"},
+    "views.h": {"talus.h"},
+    "boundary.h": {"talus.h"},
 }
 PLUGIN_HEADERS = {"talus/types.h", "talus/elementary.h", "talus/vmath.h", "talus/plugin.h"}
 # What a plugin may include besides: the headers of standard C.
@@ -51,8 +54,8 @@ STANDARD_HEADERS = {
 LUA_HEADERS = {"lua.h", "lauxlib.h", "lualib.h", "luaconf.h", "lua.hpp"}
 KIND_FOLDERS = ("laws", "damping", "generators")
 # Kinds whose names are also words of the model (a joint is a thing, a field and a generator; a
-# contact's state may be elastic, a ratio local, energy kinetic): only a look-up or comparison with them is a fault.
-WORDS_OF_THE_MODEL = {"joint", "blocks", "elastic", "local", "kinetic"}
+# contact's state may be elastic, a ratio local, energy kinetic, a boundary in a box): only a look-up or comparison with them is a fault.
+WORDS_OF_THE_MODEL = {"joint", "blocks", "elastic", "local", "kinetic", "box"}
 
 MAX_FILE_LINES = 600
 MAX_FUNCTION_LINES = 70

@@ -88,6 +88,10 @@ static tl_model *cut_box(void)
     const tl_value law[] = {number("kn", 1e8), number("ks", 1e8)};
     const tl_args args = {law, 2};
     CHECK_INT(tl_joint_law(m, "*", "elastic", &args), TL_OK);
+    const tl_value bonded[] = {number("kn", 1e8), number("ks", 1e8), number("tension", 1e9),
+                               number("cohesion", 1e9)};
+    const tl_args strong = {bonded, 4};
+    CHECK_INT(tl_joint_law(m, "oblique", "coulomb_tensile", &strong), TL_OK);
     return m;
 }
 

@@ -28,7 +28,7 @@ extern "C" {
 #endif
 
 #define TL_ABI_MAJOR 1u
-#define TL_ABI_MINOR 5u
+#define TL_ABI_MINOR 6u
 
 #if defined(__GNUC__)
 #define TL_PLUGIN_EXPORT __attribute__((visibility("default")))
@@ -85,6 +85,8 @@ enum {
     TL_PARAM_OPTIONAL = 2, /* may be missing, and has no default */
     TL_PARAM_MIN_OPEN = 4, /* value > min instead of >= */
     TL_PARAM_MAX_OPEN = 8, /* value < max instead of <= */
+    TL_PARAM_FLAT =
+        128, /* since 1.6, of points: rows of two numbers, {{1, 2}, ...}; the third is 0 */
     TL_PARAM_FILE =
         16 /* since 1.3, of a string: a file that is read. The host refuses pipes, devices and folders, so that
                           opening it does not wait */

@@ -34,6 +34,7 @@ typedef enum tl_value_type {
     TL_VALUE_STRING,  /* text */
     TL_VALUE_NUMBERS, /* data: count numbers (a vector when count is 3) */
     TL_VALUE_POINTS,  /* data: count rows of 3 numbers */
+    TL_VALUE_FLAT,    /* the same, given as rows of 2 numbers: the third is 0 */
     TL_VALUE_OTHER    /* text says what it is ("function", "list whose row 4 has 2 numbers") */
 } tl_value_type;
 

@@ -1,10 +1,12 @@
-/* prism.c - generator "prism": one block between two convex polygons. The second is the first moved by
- * a vector, or given by itself with as many points; the block is the convex hull of both.
+/* prism.c - generator "prism": one body between two polygons. The second is the first moved by a vector, or given by
+ * itself with as many points. Between convex polygons it is one block, the convex hull of both. A polygon that is not convex
+ * is divided, and moved by a vector only (extrude.c).
  *
- * A polygon is sound when its points lie in one plane, no two neighbours coincide, and every point lies on
- * the inner side of every edge, which also refuses one that crosses itself. Its normal follows from the
- * fan of triangles about its first point, whichever way round it is given. */
-#include <talus/plugin.h>
+ * A convex polygon is sound when its points lie in one plane, no two neighbours coincide, and every point lies on
+ * the inner side of every edge. Its normal follows from the fan of triangles about its first point, whichever way round it
+ * is given. */
+#include "prism.h"
+
 #include <talus/vmath.h>
 
 #include <stdbool.h>
@@ -12,7 +14,6 @@
 /* Points may miss a polygon's plane, or an edge its line, by this times the polygon's extent: what is lost
  * when coordinates are written with seven digits. */
 #define FLAT 1e-6
-#define MOST_SIDES 1000
 
 typedef struct params {
     tl_points base, top;
@@ -22,8 +23,8 @@ typedef struct params {
 } params;
 
 static const tl_param param_table[] = {
-    TL_PARAM(TL_PARAM_POINTS, params, base, "m", "corners of a convex polygon, in order",
-             .flags = TL_PARAM_REQUIRED),
+    TL_PARAM(TL_PARAM_POINTS, params, base, "m",
+             "corners of a polygon, in order; with top a convex one", .flags = TL_PARAM_REQUIRED),
     TL_PARAM(TL_PARAM_POINTS, params, top, "m", "corners of the other end, as many; or give axis",
              .flags = TL_PARAM_OPTIONAL),
     TL_PARAM(TL_PARAM_VEC3, params, axis, "m", "from the base to the other end; or give top",
@@ -65,32 +66,69 @@ static tl_status measure(const tl_host *host, polygon *g)
     return TL_OK;
 }
 
-static tl_status check_shape(const tl_host *host, const polygon *g)
+/* The points lie in one plane, and no two neighbours coincide. */
+static tl_status check_points(const tl_host *host, const polygon *g)
 {
     size_t count = g->points.count;
     const tl_vec3 *at = g->points.at;
     double tolerance = FLAT * g->extent;
     for (size_t i = 0; i < count; i++) {
         double off = tl_v3_dot(g->normal, tl_v3_sub(at[i], at[0]));
-        tl_vec3 edge = tl_v3_sub(at[(i + 1) % count], at[i]);
-        double length = tl_v3_norm(edge);
         if (fabs(off) > tolerance)
             return host->fail(host, TL_E_GEOMETRY,
                               "%s: point %zu lies %.3g m outside the plane of the others; the "
                               "points must lie in one plane",
                               g->name, i + 1, fabs(off));
-        if (length <= tolerance)
+        if (tl_v3_norm(tl_v3_sub(at[(i + 1) % count], at[i])) <= tolerance)
             return host->fail(host, TL_E_GEOMETRY, "%s: points %zu and %zu coincide; leave one out",
                               g->name, i + 1, (i + 1) % count + 1);
-        tl_vec3 inward = tl_v3_scale(1 / length, tl_v3_cross(g->normal, edge));
-        for (size_t j = 0; j < count; j++)
-            if (tl_v3_dot(inward, tl_v3_sub(at[j], at[i])) < -tolerance)
-                return host->fail(host, TL_E_GEOMETRY,
-                                  "%s is not convex or crosses itself: point %zu lies outside the "
-                                  "edge from point %zu to %zu; give a convex polygon in order",
-                                  g->name, j + 1, i + 1, (i + 1) % count + 1);
     }
     return TL_OK;
+}
+
+/* Whether no point lies outside an edge; else the point and the edge. */
+static bool is_convex(const polygon *g, size_t *point, size_t *edge)
+{
+    size_t count = g->points.count;
+    const tl_vec3 *at = g->points.at;
+    for (size_t i = 0; i < count; i++) {
+        tl_vec3 inward = tl_v3_unit(tl_v3_cross(g->normal, tl_v3_sub(at[(i + 1) % count], at[i])));
+        for (size_t j = 0; j < count; j++)
+            if (tl_v3_dot(inward, tl_v3_sub(at[j], at[i])) < -FLAT * g->extent) {
+                *point = j;
+                *edge = i;
+                return false;
+            }
+    }
+    return true;
+}
+
+static tl_status check_shape(const tl_host *host, const polygon *g)
+{
+    size_t point, edge;
+    tl_status status = check_points(host, g);
+    if (status != TL_OK || is_convex(g, &point, &edge))
+        return status;
+    return host->fail(
+        host, TL_E_GEOMETRY,
+        "%s is not convex or crosses itself: point %zu lies outside the edge from "
+        "point %zu to %zu; give a convex polygon in order, or axis in the place of top",
+        g->name, point + 1, edge + 1, (edge + 1) % g->points.count + 1);
+}
+
+/* Makes the parts of a base that is not convex, moved by the axis. */
+static tl_status divide(const tl_host *host, const params *p, const polygon *base)
+{
+    flat at[MOST_SIDES];
+    tl_vec3 t1 = tl_v3_perpendicular(base->normal), t2 = tl_v3_cross(base->normal, t1);
+    if (fabs(tl_v3_dot(base->normal, p->axis)) <= FLAT * base->extent)
+        return host->fail(host, TL_E_GEOMETRY,
+                          "the ends meet or cross: axis lies in the plane of the base");
+    for (size_t i = 0; i < base->points.count; i++) {
+        tl_vec3 arm = tl_v3_sub(base->points.at[i], base->points.at[0]);
+        at[i] = (flat){tl_v3_dot(arm, t1), tl_v3_dot(arm, t2)};
+    }
+    return prism_extrude(host, "base", base->points, at, p->axis, p->density, p->group);
 }
 
 /* The points of one end lie on one side of the plane of the other, and none in it. */
@@ -133,7 +171,13 @@ static tl_status generate(const tl_host *host, const void *given)
     polygon base = {.name = "base", .points = p->base};
     tl_status status = measure(host, &base);
     if (status == TL_OK)
-        status = check_shape(host, &base);
+        status = check_points(host, &base);
+    if (status != TL_OK)
+        return status;
+    size_t point, edge;
+    if (!is_convex(&base, &point, &edge) && p->top.count == 0 && !isnan(p->axis.x))
+        return divide(host, p, &base);
+    status = check_shape(host, &base);
     if (status != TL_OK)
         return status;
     tl_vec3 corner[2 * MOST_SIDES];
@@ -158,33 +202,14 @@ static tl_status generate(const tl_host *host, const void *given)
 
 static const tl_generator_ops ops = {.size = sizeof ops, .generate = generate};
 
-static const tl_kind kind = {
-    .size = sizeof kind,
+const tl_kind prism_kind = {
+    .size = sizeof prism_kind,
     .type = TL_KIND_GENERATOR,
     .name = "prism",
-    .doc = "Creates one block between two polygons.",
+    .doc = "Creates one body between two polygons.",
     .params_size = sizeof(params),
     .params = param_table,
     .param_count = sizeof param_table / sizeof *param_table,
     .param_stride = sizeof *param_table,
     .ops = &ops,
 };
-
-static const tl_plugin plugin = {
-    .size = sizeof plugin,
-    .abi_major = TL_ABI_MAJOR,
-    .abi_minor = TL_ABI_MINOR,
-    .id = "talus.prism",
-    .version = "0.1.0",
-    .doc = "Prism generator.",
-    .licence = "BSD-3-Clause",
-    .kinds = &kind,
-    .kind_count = 1,
-    .kind_stride = sizeof kind,
-};
-
-TL_PLUGIN_EXPORT const tl_plugin *tl_plugin_entry(uint32_t host_major, uint32_t host_minor)
-{
-    (void)host_minor;
-    return host_major == TL_ABI_MAJOR ? &plugin : NULL;
-}

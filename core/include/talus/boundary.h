@@ -1,0 +1,80 @@
+/* talus/boundary.h - the outer faces of a model: which they are, holding their blocks, loading them.
+ *
+ * A face is an outer face as far as it lies neither on a block of another body nor on one of its own body. All blocks count,
+ * hidden ones, too. Faces that are not flush, and gaps wider than contacts reach, leave both sides bare. */
+#ifndef TALUS_BOUNDARY_H
+#define TALUS_BOUNDARY_H
+
+#include <talus/talus.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef enum tl_side {
+    TL_SIDE_ANY,
+    TL_SIDE_XMIN,
+    TL_SIDE_XMAX,
+    TL_SIDE_YMIN,
+    TL_SIDE_YMAX,
+    TL_SIDE_ZMIN,
+    TL_SIDE_ZMAX
+} tl_side;
+
+/* Which outer faces; all that is given must hold. */
+typedef struct tl_boundary_where {
+    int32_t side; /* tl_side: in that plane of the box about all blocks, looking outward */
+    tl_vec3 normal,
+        at;        /* in the plane through `at`, looking along `normal` (of any length); NaN: any */
+    tl_bounds box; /* with all corners in the box; NaN: any */
+    tl_vec3 facing;   /* looking so, within an angle; NaN: any */
+    double within;    /* degrees */
+    double tolerance; /* m, off the plane or out of the box; NaN: 1e-3 of the block's size */
+} tl_boundary_where;
+
+/* What is done at these faces. */
+typedef struct tl_boundary_action {
+    tl_boundary_where where;
+    bool fixed;    /* the bodies are held in all components */
+    bool roller;   /* they are held across their faces, which must look along an axis */
+    bool rotation; /* with roller: they do not turn either */
+    /* the traction (stress + gradient (z - at.z)) n + traction, Pa, on outward normals n; tension positive */
+    bool loads;
+    tl_sym3 stress, gradient;
+    tl_vec3 at, traction;
+} tl_boundary_action;
+
+typedef struct tl_boundary_face {
+    tl_id block;
+    uint32_t face; /* of tl_block_mesh */
+    double area;   /* of its outer part, m2 */
+    tl_vec3 normal, centroid;
+} tl_boundary_face;
+
+typedef struct tl_boundary_result {
+    tl_boundary_face *faces; /* in order of block and face */
+    size_t face_count;
+    tl_id *blocks; /* ascending */
+    size_t block_count;
+    double area;
+    tl_vec3 force;  /* of the load, N */
+    tl_vec3 moment; /* of the load about {0, 0, 0}, N m */
+} tl_boundary_result;
+
+/* Finds the faces of each action, TL_E_NOT_FOUND when there is none, and does what they say: all of them or none. What the
+ * actions put on one body adds up; it takes the place of the load the body had or, with `add`, is added to that. As with
+ * tl_blocks_load the force keeps its direction and its point goes with the body. Free the results with tl_boundary_free, one
+ * by one; a failed call leaves them empty. */
+TL_API tl_status tl_model_boundary(tl_model *model, const tl_boundary_action *actions, size_t count,
+                                   bool add, tl_boundary_result *results);
+TL_API void tl_boundary_free(tl_boundary_result *result);
+
+/* Sum of the forces with which the bodies of blocks are held, in their held components, N: what contacts, in the last step,
+ * weight and load put on them, the other way. Each body counts once; inertia of driven ones does not. */
+TL_API tl_status tl_blocks_reaction(tl_model *model, const tl_id *ids, size_t count,
+                                    tl_vec3 *force);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

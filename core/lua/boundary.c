@@ -1,0 +1,399 @@
+/* boundary.c - model:boundary{...}: outer faces of the model, selected, held or loaded. */
+#include "front.h"
+
+#include <math.h>
+#include <string.h>
+#include <talus/boundary.h>
+
+#define COUNT(table) (sizeof(table) / sizeof(table)[0])
+#define HOLDER_TYPE "talus.boundary_holder"
+#define RESULT_TYPE "talus.boundary"
+#define SIDES 6
+
+static const char *const side_names[] = {"xmin", "xmax", "ymin", "ymax", "zmin", "zmax", NULL};
+
+typedef struct boundary_args {
+    const char *side;
+    tl_vec3 facing;
+    double within, tolerance;
+    int32_t fixed, roller, rotation;
+    double pressure;
+    tl_vec3 traction, at;
+    int32_t add;
+} boundary_args;
+
+static const tl_param boundary_params[] = {
+    TL_PARAM(TL_PARAM_STRING, boundary_args, side, "",
+             "faces in this plane of the box about all blocks: \"xmin\", \"xmax\", \"ymin\", "
+             "\"ymax\", \"zmin\" or \"zmax\"",
+             .flags = TL_PARAM_OPTIONAL),
+    TL_PARAM(TL_PARAM_VEC3, boundary_args, facing, "",
+             "faces that look so: their normal is within an angle of this vector",
+             .flags = TL_PARAM_OPTIONAL),
+    TL_PARAM(TL_PARAM_REAL, boundary_args, within, "deg", "this angle", .def = {45.0}, .min = 0.0,
+             .max = 180.0),
+    TL_PARAM(TL_PARAM_REAL, boundary_args, tolerance, "m",
+             "how far off the plane, or out of the box, a corner may be; 1e-3 of the block's size "
+             "when left out",
+             .min = 0.0, .max = INFINITY, .flags = TL_PARAM_OPTIONAL | TL_PARAM_MAX_OPEN),
+    TL_PARAM(TL_PARAM_BOOL, boundary_args, fixed, "", "holds the bodies in all components",
+             .def = {0.0}),
+    TL_PARAM(TL_PARAM_BOOL, boundary_args, roller, "",
+             "holds the bodies across their faces, which must look along x, y or z", .def = {0.0}),
+    TL_PARAM(TL_PARAM_BOOL, boundary_args, rotation, "", "with roller: holds their rotation, too",
+             .def = {0.0}),
+    TL_PARAM(TL_PARAM_REAL, boundary_args, pressure, "Pa", "pressure on the faces, inward",
+             .flags = TL_PARAM_OPTIONAL),
+    TL_PARAM(TL_PARAM_VEC3, boundary_args, traction, "Pa", "force per area on the faces",
+             .flags = TL_PARAM_OPTIONAL),
+    TL_PARAM(TL_PARAM_VEC3, boundary_args, at, "m",
+             "point at whose height stress holds; the gradient counts from there",
+             .def = {0.0, 0.0, 0.0}),
+    TL_PARAM(TL_PARAM_BOOL, boundary_args, add, "",
+             "adds to the loads that the bodies have, in the place of taking it", .def = {0.0}),
+};
+
+static const tl_lua_key boundary_keys[] = {
+    {"plane", "{normal = {x, y, z}, at = {x, y, z}}",
+     "faces in this plane that look along its normal"},
+    {"box", "{min = {x, y, z}, max = {x, y, z}}", "faces with all corners in this box"},
+    {"stress", "{xx =, yy =, zz =, xy =, yz =, zx =}",
+     "stress, Pa, tension positive: the traction on a face is stress times its outward normal"},
+    {"gradient", "{xx =, yy =, zz =, xy =, yz =, zx =}",
+     "change of the stress with height z, Pa/m"},
+    {"xmin, ..., zmax", "\"roller\", \"fixed\" or a table of what is to be done",
+     "several sides in one call"},
+    {NULL, NULL, NULL},
+};
+
+/* The keys as they stand in a table. */
+static const tl_lua_key table_keys[] = {
+    {"plane", "", ""}, {"box", "", ""},  {"stress", "", ""}, {"gradient", "", ""},
+    {"xmin", "", ""},  {"xmax", "", ""}, {"ymin", "", ""},   {"ymax", "", ""},
+    {"zmin", "", ""},  {"zmax", "", ""}, {NULL, NULL, NULL},
+};
+
+const tl_lua_spec tl_lua_boundary_spec = {"boundary", boundary_params, COUNT(boundary_params),
+                                          boundary_keys};
+
+const tl_lua_key tl_lua_boundary_results[] = {
+    {"area", "", "of the outer faces, or their outer parts, m2; without any the call is refused"},
+    {"blocks", "", "a selection of their blocks, hidden ones, too"},
+    {"faces", "",
+     "each a table {block =, face =, area =, normal =, centroid =}; block.faces[face] is the face"},
+    {"force, moment", "", "of the load in all, N, and N m about {0, 0, 0}"},
+    {"reaction", "", "now: the force that holds the bodies in their held components, N"},
+    {NULL, NULL, NULL},
+};
+
+/* ---------------------------------------------------------------- results ---------------- */
+
+/* What the kernel has found, freed with the Lua object. */
+typedef struct holder {
+    tl_boundary_result result[SIDES];
+} holder;
+
+static int holder_collect(lua_State *L)
+{
+    holder *h = luaL_checkudata(L, 1, HOLDER_TYPE);
+    for (size_t i = 0; i < SIDES; i++)
+        tl_boundary_free(&h->result[i]);
+    return 0;
+}
+
+static holder *push_holder(lua_State *L)
+{
+    holder *h = lua_newuserdatauv(L, sizeof *h, 0);
+    memset(h, 0, sizeof *h);
+    if (luaL_newmetatable(L, HOLDER_TYPE)) {
+        lua_pushcfunction(L, holder_collect);
+        lua_setfield(L, -2, "__gc");
+    }
+    lua_setmetatable(L, -2);
+    return h;
+}
+
+/* result.reaction, and names that a result does not have. */
+static int result_index(lua_State *L)
+{
+    static const char *const names[] = {"area",   "blocks",   "faces", "force",
+                                        "moment", "reaction", NULL};
+    if (lua_type(L, 2) != LUA_TSTRING)
+        return tl_lua_fail(L, "the result of boundary has no field %s", tl_lua_describe(L, 2));
+    if (strcmp(lua_tostring(L, 2), "reaction") != 0) {
+        tl_lua_names known = {0};
+        tl_lua_names_list(&known, names);
+        return tl_lua_unknown(L, "the result of boundary has no field", lua_tostring(L, 2), &known);
+    }
+    lua_pushliteral(L, "blocks");
+    lua_rawget(L, 1);
+    return tl_lua_push_reaction(L, luaL_checkudata(L, -1, TL_LUA_BLOCKS));
+}
+
+static void push_face(lua_State *L, const tl_boundary_face *face)
+{
+    lua_createtable(L, 0, 5);
+    tl_lua_item_push(L, TL_LUA_BLOCK, 1, face->block);
+    lua_setfield(L, -2, "block");
+    lua_pushinteger(L, (lua_Integer)face->face + 1);
+    lua_setfield(L, -2, "face");
+    lua_pushnumber(L, face->area);
+    lua_setfield(L, -2, "area");
+    tl_lua_push_vec3(L, face->normal);
+    lua_setfield(L, -2, "normal");
+    tl_lua_push_vec3(L, face->centroid);
+    lua_setfield(L, -2, "centroid");
+}
+
+/* Pushes the table of one result; the model's userdata is at index 1. */
+static void push_result(lua_State *L, tl_boundary_result *r)
+{
+    lua_createtable(L, 0, 6);
+    lua_pushnumber(L, r->area);
+    lua_setfield(L, -2, "area");
+    tl_lua_push_vec3(L, r->force);
+    lua_setfield(L, -2, "force");
+    tl_lua_push_vec3(L, r->moment);
+    lua_setfield(L, -2, "moment");
+    lua_createtable(L, (int)r->face_count, 0);
+    for (size_t i = 0; i < r->face_count; i++) {
+        push_face(L, &r->faces[i]);
+        lua_rawseti(L, -2, (lua_Integer)i + 1);
+    }
+    lua_setfield(L, -2, "faces");
+    tl_lua_selection *blocks = tl_lua_selection_push(L, &tl_lua_block_kind, 1);
+    blocks->ids = r->blocks;
+    blocks->count = r->block_count;
+    r->blocks = NULL;
+    lua_setfield(L, -2, "blocks");
+    if (luaL_newmetatable(L, RESULT_TYPE)) {
+        lua_pushcfunction(L, result_index);
+        lua_setfield(L, -2, "__index");
+    }
+    lua_setmetatable(L, -2);
+}
+
+/* ---------------------------------------------------------------- arguments -------------- */
+
+/* The side of a name; TL_SIDE_ANY when there is none of that name. */
+static int32_t side_of(const char *name)
+{
+    for (int32_t i = 0; i < SIDES; i++)
+        if (strcmp(side_names[i], name) == 0)
+            return TL_SIDE_XMIN + i;
+    return TL_SIDE_ANY;
+}
+
+static int32_t read_side(lua_State *L, const char *name)
+{
+    int32_t side = side_of(name);
+    if (side == TL_SIDE_ANY) {
+        tl_lua_names known = {0};
+        tl_lua_names_list(&known, side_names);
+        tl_lua_unknown(L, "boundary: unknown side", name, &known);
+    }
+    return side;
+}
+
+/* Reads the tensor `key` of the table at `index`; true when it is given. */
+static bool read_tensor(lua_State *L, int index, const char *key, tl_sym3 *out)
+{
+    if (lua_getfield(L, index, key) == LUA_TNIL)
+        return false;
+    tl_lua_spec tensor = tl_lua_spec_of("tensor", NULL);
+    tensor.context = lua_pushfstring(L, "boundary, %s", key);
+    tl_lua_read(L, -2, &tensor, false, out);
+    return true;
+}
+
+typedef struct plane_args {
+    tl_vec3 normal, at;
+} plane_args;
+
+static void read_plane(lua_State *L, int index, tl_boundary_where *where)
+{
+    static const tl_param params[] = {
+        TL_PARAM(TL_PARAM_VEC3, plane_args, normal, "", "outward normal, of any length",
+                 .flags = TL_PARAM_REQUIRED),
+        TL_PARAM(TL_PARAM_VEC3, plane_args, at, "m", "a point of the plane",
+                 .flags = TL_PARAM_REQUIRED),
+    };
+    if (lua_getfield(L, index, "plane") == LUA_TNIL)
+        return;
+    plane_args plane;
+    tl_lua_spec spec = {"boundary, plane", params, COUNT(params), NULL};
+    tl_lua_read(L, -1, &spec, false, &plane);
+    where->normal = plane.normal;
+    where->at = plane.at;
+}
+
+static void read_box(lua_State *L, int index, tl_bounds *box)
+{
+    static const tl_param params[] = {
+        TL_PARAM(TL_PARAM_VEC3, tl_bounds, min, "m", "lowest corner", .flags = TL_PARAM_REQUIRED),
+        TL_PARAM(TL_PARAM_VEC3, tl_bounds, max, "m", "highest corner", .flags = TL_PARAM_REQUIRED),
+    };
+    if (lua_getfield(L, index, "box") == LUA_TNIL)
+        return;
+    tl_lua_spec spec = {"boundary, box", params, COUNT(params), NULL};
+    tl_lua_read(L, -1, &spec, false, box);
+    if (box->min.x > box->max.x || box->min.y > box->max.y || box->min.z > box->max.z)
+        tl_lua_fail(L, "boundary, box: every component of min must be at most that of max");
+}
+
+static tl_boundary_action no_action(void)
+{
+    const tl_vec3 none = {NAN, NAN, NAN};
+    return (tl_boundary_action){.where = {.side = TL_SIDE_ANY,
+                                          .normal = none,
+                                          .at = none,
+                                          .box = {none, none},
+                                          .facing = none,
+                                          .within = NAN,
+                                          .tolerance = NAN}};
+}
+
+/* What is to be done, of the table at `index` and the parameters read of it. */
+static void read_deeds(lua_State *L, int index, const boundary_args *args, tl_boundary_action *a)
+{
+    a->fixed = args->fixed;
+    a->roller = args->roller;
+    a->rotation = args->rotation;
+    a->at = args->at;
+    if (a->rotation && !a->roller)
+        tl_lua_fail(L, "boundary: rotation is held with roller = true, or by fixed = true");
+    a->loads = read_tensor(L, index, "stress", &a->stress);
+    a->loads = read_tensor(L, index, "gradient", &a->gradient) || a->loads;
+    if (!isnan(args->pressure)) {
+        a->stress.xx -= args->pressure;
+        a->stress.yy -= args->pressure;
+        a->stress.zz -= args->pressure;
+        a->loads = true;
+    }
+    if (!isnan(args->traction.x)) {
+        a->traction = args->traction;
+        a->loads = true;
+    }
+}
+
+/* Reads the table at `index`, which says where and what. */
+static void read_action(lua_State *L, int index, boundary_args *args, tl_boundary_action *a)
+{
+    *a = no_action();
+    tl_lua_spec spec = tl_lua_boundary_spec;
+    spec.keys = table_keys;
+    tl_lua_read(L, index, &spec, false, args);
+    if (args->side)
+        a->where.side = read_side(L, args->side);
+    read_plane(L, index, &a->where);
+    read_box(L, index, &a->where.box);
+    a->where.facing = args->facing;
+    a->where.within = args->within;
+    a->where.tolerance = args->tolerance;
+    read_deeds(L, index, args, a);
+}
+
+static bool is_anywhere(const tl_boundary_where *w)
+{
+    return w->side == TL_SIDE_ANY && isnan(w->normal.x) && isnan(w->box.min.x) &&
+           isnan(w->facing.x);
+}
+
+/* Reads what the value at the top of the stack says of a side: "roller", "fixed" or a table. */
+static void read_side_value(lua_State *L, int32_t side, double tolerance, tl_boundary_action *a)
+{
+    const char *name = side_names[side - TL_SIDE_XMIN];
+    const char *word = lua_type(L, -1) == LUA_TSTRING ? lua_tostring(L, -1) : "";
+    boundary_args args;
+    *a = no_action();
+    if (lua_istable(L, -1)) {
+        read_action(L, lua_gettop(L), &args, a);
+        if (!is_anywhere(&a->where))
+            tl_lua_fail(L, "boundary: %s says where; side, plane, box and facing do not go with it",
+                        name);
+        if (args.add)
+            tl_lua_fail(L, "boundary: add stands beside %s, for all sides", name);
+    } else if (strcmp(word, "roller") == 0)
+        a->roller = true;
+    else if (strcmp(word, "fixed") == 0)
+        a->fixed = true;
+    else
+        tl_lua_fail(L,
+                    "boundary: %s must be \"roller\", \"fixed\" or a table of what is to be done, "
+                    "not %s",
+                    name, tl_lua_describe(L, -1));
+    a->where.side = side;
+    if (isnan(a->where.tolerance))
+        a->where.tolerance = tolerance;
+}
+
+/* Reads the sides of the table at index 2; returns their number. */
+static size_t read_sides(lua_State *L, double tolerance, tl_boundary_action *actions)
+{
+    size_t count = 0;
+    for (int32_t i = 0; i < SIDES; i++) {
+        int top = lua_gettop(L);
+        if (lua_getfield(L, 2, side_names[i]) != LUA_TNIL)
+            read_side_value(L, TL_SIDE_XMIN + i, tolerance, &actions[count++]);
+        lua_settop(L, top);
+    }
+    return count;
+}
+
+/* ---------------------------------------------------------------- the call --------------- */
+
+static bool does_nothing(const tl_boundary_action *a)
+{
+    return !a->loads && !a->fixed && !a->roller;
+}
+
+/* Reads the argument at index 2; returns the number of sides, or 0 for one action that says itself where. */
+static size_t read_call(lua_State *L, tl_boundary_action *actions, bool *add)
+{
+    *add = false;
+    if (lua_type(L, 2) == LUA_TSTRING) {
+        actions[0] = no_action();
+        actions[0].where.side = read_side(L, lua_tostring(L, 2));
+        return 0;
+    }
+    if (!lua_istable(L, 2))
+        tl_lua_fail(L, "boundary: a side (\"xmin\") or a table is expected, not %s",
+                    tl_lua_describe(L, 2));
+    boundary_args args;
+    tl_boundary_action one;
+    read_action(L, 2, &args, &one);
+    *add = args.add;
+    size_t count = read_sides(L, args.tolerance, actions);
+    if (count && (!is_anywhere(&one.where) || !does_nothing(&one)))
+        tl_lua_fail(L, "boundary: with xmin and the like only tolerance and add are given beside; "
+                       "what is to be done goes into their tables");
+    if (!count && is_anywhere(&one.where))
+        tl_lua_fail(L, "boundary: say where: side, plane, box or facing, or sides as in "
+                       "{xmin = \"roller\"}");
+    if (!count)
+        actions[0] = one;
+    return count;
+}
+
+int tl_lua_boundary(lua_State *L)
+{
+    tl_model *model = tl_lua_model_of(L, "boundary");
+    tl_lua_arity(L, 2, "boundary");
+    lua_settop(L, 2);
+    luaL_checkstack(L, 64, "too many values");
+    tl_boundary_action actions[SIDES];
+    bool add;
+    size_t sides = read_call(L, actions, &add);
+    holder *h = push_holder(L);
+    tl_lua_ok(L, model, tl_model_boundary(model, actions, sides ? sides : 1, add, h->result));
+    if (sides == 0) {
+        push_result(L, &h->result[0]);
+        return 1;
+    }
+    lua_createtable(L, 0, (int)sides);
+    for (size_t i = 0; i < sides; i++) {
+        push_result(L, &h->result[i]);
+        lua_setfield(L, -2, side_names[actions[i].where.side - TL_SIDE_XMIN]);
+    }
+    return 1;
+}

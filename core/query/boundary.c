@@ -1,0 +1,372 @@
+/* boundary.c - the outer faces of a model by side, plane, box or direction; holding their blocks and loading them.
+ *
+ * A traction t = t_o + b z that is linear in the height z gives the body of a face, with r from the body's centroid,
+ *
+ *     F = int t dS,    M = int r x t dS
+ *
+ * both exact (outer.c). What all faces put on a body becomes one load: the force F acts at the mean place of the faces,
+ * weighted by the lengths of their forces, and goes with the body; what is left of M is a constant moment. */
+#include <talus/boundary.h>
+
+#include "base/error.h"
+#include "contact/detection.h"
+#include "detect/detect.h"
+#include "query/outer.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <talus/elementary.h>
+
+/* Off the plane, or out of the box, by less than this times the block's size a corner is in it: what contacts take for
+ * touching (TL_CONTACT_TOLERANCE). */
+#define TOLERANCE 1e-3
+/* Largest component across an axis of the normal of a face whose roller is held along that axis. */
+#define ALONG 1e-2
+/* By this a cosine may be smaller than that of the angle given: at 45 degrees from {1, 0, 1} lies {1, 0, 0}. */
+#define ROUNDED 1e-12
+#define DEGREE (3.14159265358979323846 / 180)
+
+/* Where faces are looked for, once the model's bounds are known. */
+typedef struct search {
+    const tl_boundary_where *where;
+    bool plane, box, facing;
+    tl_vec3 normal, at;  /* of the plane, relative to the origin */
+    tl_bounds bounds;    /* of the box, likewise */
+    tl_vec3 direction;   /* unit */
+    double least_cosine; /* with it */
+} search;
+
+/* What is put on a body: about its centroid. */
+typedef struct body_sum {
+    tl_vec3 force, moment;
+    tl_vec3 arm; /* weighted by the length of the forces */
+    double weight;
+} body_sum;
+
+/* ---------------------------------------------------------------- which faces ------------ */
+
+static tl_vec3 side_normal(int32_t side)
+{
+    static const tl_vec3 normals[] = {
+        [TL_SIDE_XMIN] = {-1, 0, 0}, [TL_SIDE_XMAX] = {1, 0, 0},  [TL_SIDE_YMIN] = {0, -1, 0},
+        [TL_SIDE_YMAX] = {0, 1, 0},  [TL_SIDE_ZMIN] = {0, 0, -1}, [TL_SIDE_ZMAX] = {0, 0, 1}};
+    return normals[side];
+}
+
+static tl_vec3 vertex_at(const tl_model *m, uint32_t row, uint32_t vertex)
+{
+    uint32_t body = m->blocks.body[row];
+    return tl_v3_add(tl_body_place(&m->bodies, body),
+                     tl_m3_mul(&m->bodies.pose[body].r, m->blocks.shape[row]->vertex[vertex]));
+}
+
+/* The farthest place of a vertex along a direction, relative to the origin. */
+static double farthest(const tl_model *m, tl_vec3 direction)
+{
+    double most = -INFINITY;
+    for (uint32_t row = 0; row < m->blocks.table.rows; row++)
+        for (uint32_t i = 0; i < m->blocks.shape[row]->vertex_count; i++)
+            most = fmax(most, tl_v3_dot(direction, vertex_at(m, row, i)));
+    return most;
+}
+
+static tl_status begin_search(tl_model *m, const tl_boundary_where *where, search *s)
+{
+    *s = (search){.where = where};
+    s->box = !isnan(where->box.min.x);
+    s->facing = !isnan(where->facing.x);
+    s->plane = where->side != TL_SIDE_ANY || !isnan(where->normal.x);
+    if (where->side != TL_SIDE_ANY) {
+        s->normal = side_normal(where->side);
+        s->at = tl_v3_scale(farthest(m, s->normal), s->normal);
+    } else if (s->plane) {
+        if (!(tl_v3_norm(where->normal) > 0))
+            return tl_fail(&m->error, TL_E_ARGUMENT,
+                           "boundary: the normal of the plane must not be zero");
+        s->normal = tl_v3_unit(where->normal);
+        s->at = tl_v3_sub(where->at, m->origin);
+    }
+    if (s->facing && !(tl_v3_norm(where->facing) > 0))
+        return tl_fail(&m->error, TL_E_ARGUMENT, "boundary: facing must not be zero");
+    if (s->facing) {
+        s->direction = tl_v3_unit(where->facing);
+        s->least_cosine = tl_cos(where->within * DEGREE) - ROUNDED;
+    }
+    if (s->box)
+        s->bounds =
+            (tl_bounds){tl_v3_sub(where->box.min, m->origin), tl_v3_sub(where->box.max, m->origin)};
+    return TL_OK;
+}
+
+static bool in_box(const tl_bounds *box, tl_vec3 p, double slack)
+{
+    return p.x >= box->min.x - slack && p.x <= box->max.x + slack && p.y >= box->min.y - slack &&
+           p.y <= box->max.y + slack && p.z >= box->min.z - slack && p.z <= box->max.z + slack;
+}
+
+/* Whether a face is where it is looked for; it may be no outer one. */
+static bool is_there(const tl_model *m, const search *s, uint32_t row, uint32_t face)
+{
+    const tl_poly *shape = m->blocks.shape[row];
+    tl_vec3 n = tl_m3_mul(&m->bodies.pose[m->blocks.body[row]].r, shape->plane[face].normal);
+    double slack =
+        isnan(s->where->tolerance) ? TOLERANCE * m->blocks.size[row] : s->where->tolerance;
+    if ((s->plane && tl_v3_dot(n, s->normal) <= 0) ||
+        (s->facing && tl_v3_dot(n, s->direction) < s->least_cosine))
+        return false;
+    for (uint32_t i = shape->start[face]; i < shape->start[face + 1]; i++) {
+        tl_vec3 p = vertex_at(m, row, shape->loop[i]);
+        if ((s->plane && fabs(tl_v3_dot(s->normal, tl_v3_sub(p, s->at))) > slack) ||
+            (s->box && !in_box(&s->bounds, p, slack)))
+            return false;
+    }
+    return true;
+}
+
+typedef struct found {
+    tl_outer_face *at;
+    size_t count, room;
+} found;
+
+static tl_status find_faces(tl_model *m, const tl_boundary_where *where, found *faces)
+{
+    search s;
+    tl_status status = begin_search(m, where, &s);
+    for (uint32_t row = 0; row < m->blocks.table.rows; row++)
+        for (uint32_t f = 0; f < m->blocks.shape[row]->face_count && status == TL_OK; f++) {
+            if (!is_there(m, &s, row, f))
+                continue;
+            if (!tl_grow(&faces->at, &faces->room, faces->count + 1, sizeof *faces->at))
+                return tl_fail_memory(&m->error);
+            status = tl_outer_measure(m, row, f, &faces->at[faces->count]);
+            faces->count += status == TL_OK && faces->at[faces->count].sums.a > 0;
+        }
+    if (status == TL_OK && faces->count == 0)
+        return tl_fail(
+            &m->error, TL_E_NOT_FOUND,
+            "boundary: no outer face is there%s; model:blocks():bounds() tells where the "
+            "model ends, tolerance (m) how far off a face may be",
+            m->blocks.table.rows ? "" : ", for the model has no blocks");
+    return status;
+}
+
+/* ---------------------------------------------------------------- what is done ----------- */
+
+/* Force and moment, about the body's centroid, of the traction on a face. */
+static void face_load(const tl_model *m, const tl_boundary_action *a, const tl_outer_face *f,
+                      tl_vec3 *force, tl_vec3 *moment)
+{
+    const tl_area_sums *s = &f->sums;
+    double height = f->o.z + m->origin.z - a->at.z;
+    tl_vec3 b = tl_s3_mul(a->gradient, f->normal);
+    tl_vec3 t = tl_v3_madd(tl_v3_add(tl_s3_mul(a->stress, f->normal), a->traction), height, b);
+    tl_vec3 tu = tl_v3_scale(f->t1.z, b), tv = tl_v3_scale(f->t2.z, b);
+    /* int t dS, int u t dS, int v t dS */
+    tl_vec3 sum = tl_v3_madd(tl_v3_madd(tl_v3_scale(s->a, t), s->u, tu), s->v, tv);
+    tl_vec3 sum_u = tl_v3_madd(tl_v3_madd(tl_v3_scale(s->u, t), s->uu, tu), s->uv, tv);
+    tl_vec3 sum_v = tl_v3_madd(tl_v3_madd(tl_v3_scale(s->v, t), s->uv, tu), s->vv, tv);
+    tl_vec3 arm = tl_v3_sub(f->o, tl_body_place(&m->bodies, m->blocks.body[f->row]));
+    *force = sum;
+    *moment = tl_v3_add(tl_v3_cross(arm, sum),
+                        tl_v3_add(tl_v3_cross(f->t1, sum_u), tl_v3_cross(f->t2, sum_v)));
+}
+
+static void add_load(const tl_model *m, const tl_boundary_action *a, const tl_outer_face *f,
+                     body_sum *sums, tl_boundary_result *result)
+{
+    uint32_t body = m->blocks.body[f->row];
+    tl_vec3 force, moment, place = tl_body_place(&m->bodies, body);
+    face_load(m, a, f, &force, &moment);
+    body_sum *sum = &sums[body];
+    double weight = tl_v3_norm(force);
+    sum->force = tl_v3_add(sum->force, force);
+    sum->moment = tl_v3_add(sum->moment, moment);
+    sum->arm = tl_v3_madd(sum->arm, weight, tl_v3_sub(tl_outer_centroid(f), place));
+    sum->weight += weight;
+    result->force = tl_v3_add(result->force, force);
+    tl_vec3 about = tl_v3_cross(tl_v3_add(m->origin, place), force);
+    result->moment = tl_v3_add(result->moment, tl_v3_add(moment, about));
+}
+
+/* The components in which a roller at a face holds its body; 0 when it looks along no axis. */
+static unsigned roller_of(tl_vec3 n)
+{
+    double x = fabs(n.x), y = fabs(n.y), z = fabs(n.z);
+    if (fmax(y, z) < ALONG)
+        return TL_FIX_X;
+    if (fmax(x, z) < ALONG)
+        return TL_FIX_Y;
+    return fmax(x, y) < ALONG ? TL_FIX_Z : 0;
+}
+
+static tl_status add_fixing(tl_model *m, const tl_boundary_action *a, const tl_outer_face *f,
+                            uint8_t *fix)
+{
+    unsigned what = a->fixed ? TL_FIX_ALL : 0;
+    if (a->roller && !a->fixed) {
+        what = roller_of(f->normal);
+        if (!what)
+            return tl_fail(
+                &m->error, TL_E_ARGUMENT,
+                "boundary: a roller is held along x, y or z, but face %u of block %u "
+                "looks along {%.3g, %.3g, %.3g}; use fixed, or a box or side whose faces "
+                "look along an axis",
+                f->face + 1, m->blocks.id[f->row], f->normal.x, f->normal.y, f->normal.z);
+        what |= a->rotation ? TL_FIX_ROTATION : 0;
+    }
+    fix[f->row] |= (uint8_t)what;
+    return TL_OK;
+}
+
+/* Writes what was found; false when out of memory. Faces are in order of rows, and so of ids. */
+static bool fill_result(const tl_model *m, const found *faces, tl_boundary_result *r)
+{
+    r->faces = malloc((faces->count + 1) * sizeof *r->faces);
+    r->blocks = malloc((faces->count + 1) * sizeof *r->blocks);
+    for (size_t i = 0; i < faces->count && r->faces && r->blocks; i++) {
+        const tl_outer_face *f = &faces->at[i];
+        tl_id id = m->blocks.id[f->row];
+        r->faces[r->face_count++] = (tl_boundary_face){id, f->face, f->sums.a, f->normal,
+                                                       tl_v3_add(m->origin, tl_outer_centroid(f))};
+        if (r->block_count == 0 || r->blocks[r->block_count - 1] != id)
+            r->blocks[r->block_count++] = id;
+        r->area += f->sums.a;
+    }
+    return r->faces && r->blocks;
+}
+
+/* Finds the faces of one action and notes what is to be done. */
+static tl_status plan(tl_model *m, const tl_boundary_action *a, uint8_t *fix, body_sum *sums,
+                      tl_boundary_result *result)
+{
+    found faces = {0};
+    tl_status status = find_faces(m, &a->where, &faces);
+    for (size_t i = 0; i < faces.count && status == TL_OK; i++) {
+        status = add_fixing(m, a, &faces.at[i], fix);
+        if (a->loads)
+            add_load(m, a, &faces.at[i], sums, result);
+    }
+    if (status == TL_OK && !fill_result(m, &faces, result))
+        status = tl_fail_memory(&m->error);
+    if (status == TL_OK && (!tl_v3_finite(result->force) || !tl_v3_finite(result->moment)))
+        status = tl_fail(&m->error, TL_E_NUMERIC, "boundary: the load is not finite");
+    free(faces.at);
+    return status;
+}
+
+/* Puts on a body what was summed: the force at the mean place of the faces, and the moment that is left. */
+static tl_status put_load(tl_model *m, uint32_t body, const body_sum *sum, bool add)
+{
+    tl_vec3 arm = sum->weight > 0 ? tl_v3_scale(1 / sum->weight, sum->arm) : tl_v3(0, 0, 0);
+    tl_load load = {.force = sum->force, .moment = sum->moment};
+    if (add) {
+        tl_body_load had = tl_load_of(&m->bodies, body);
+        tl_vec3 at = tl_m3_mul(&m->bodies.pose[body].r, had.arm);
+        load.force = tl_v3_add(load.force, had.force);
+        load.moment = tl_v3_add(load.moment, tl_v3_add(had.moment, tl_v3_cross(at, had.force)));
+        double before = tl_v3_norm(had.force), all = sum->weight + before;
+        if (all > 0)
+            arm = tl_v3_scale(1 / all, tl_v3_madd(sum->arm, before, at));
+    }
+    load.moment = tl_v3_sub(load.moment, tl_v3_cross(arm, load.force));
+    load.at = tl_v3_add(m->origin, tl_v3_add(tl_body_place(&m->bodies, body), arm));
+    return tl_blocks_load(m, &m->bodies.id[body], 1, &load);
+}
+
+static tl_status carry_out(tl_model *m, const uint8_t *fix, const body_sum *sums, bool add)
+{
+    tl_status status = TL_OK;
+    size_t replaced = 0;
+    for (uint32_t body = 0; body < m->bodies.table.rows && status == TL_OK; body++) {
+        if (!(sums[body].weight > 0))
+            continue;
+        replaced += !add && tl_body_loaded(&m->bodies, body);
+        status = put_load(m, body, &sums[body], add);
+    }
+    for (uint32_t row = 0; row < m->blocks.table.rows && status == TL_OK; row++)
+        if (fix[row])
+            status = tl_blocks_fix(m, &m->blocks.id[row], 1, fix[row]);
+    if (replaced)
+        tl_model_say(m,
+                     "boundary: %zu bod%s had a load, which this one takes the place of; give all "
+                     "sides in one call, or add = true",
+                     replaced, replaced == 1 ? "y" : "ies");
+    return status;
+}
+
+tl_status tl_model_boundary(tl_model *m, const tl_boundary_action *actions, size_t count, bool add,
+                            tl_boundary_result *results)
+{
+    bool acts = false, loads = false;
+    for (size_t i = 0; i < count; i++) {
+        results[i] = (tl_boundary_result){0};
+        loads = loads || actions[i].loads;
+        acts = acts || loads || actions[i].fixed || actions[i].roller;
+    }
+    tl_status status = acts ? tl_model_may_set(m, "hold or load a boundary") : TL_OK;
+    if (status == TL_OK)
+        status = tl_detect_refresh(m);
+    if (status != TL_OK)
+        return status;
+    uint8_t *fix = calloc(m->blocks.table.rows + 1, sizeof *fix);
+    body_sum *sums = calloc(m->bodies.table.rows + 1, sizeof *sums);
+    if (!fix || !sums || (loads && !TL_COLUMN_NEED(&m->bodies.table, &m->bodies, load, 0)))
+        status = tl_fail_memory(&m->error);
+    for (size_t i = 0; i < count && status == TL_OK; i++)
+        status = plan(m, &actions[i], fix, sums, &results[i]);
+    if (status == TL_OK)
+        status = carry_out(m, fix, sums, add);
+    for (size_t i = 0; i < count && status != TL_OK; i++)
+        tl_boundary_free(&results[i]);
+    free(fix);
+    free(sums);
+    return status;
+}
+
+void tl_boundary_free(tl_boundary_result *r)
+{
+    free(r->faces);
+    free(r->blocks);
+    *r = (tl_boundary_result){0};
+}
+
+/* What contacts, weight and load put on a body, as of the last step. */
+static tl_vec3 acting_on(const tl_model *m, uint32_t body)
+{
+    const tl_detect *d = m->detect;
+    tl_body_load load = tl_load_of(&m->bodies, body);
+    tl_vec3 force = tl_v3_madd(load.force, m->bodies.mass[body], m->config.gravity);
+    for (uint32_t k = 0; k < m->bodies.member_count[body]; k++) {
+        uint32_t row = m->members[m->bodies.member_start[body] + k];
+        for (uint32_t e = d->by_block_start[row]; e < d->by_block_start[row + 1]; e++) {
+            uint32_t i = d->by_block[e];
+            force = tl_v3_madd(force, d->contacts.b[i] == row ? 1 : -1, d->contacts.force[i]);
+        }
+    }
+    return force;
+}
+
+tl_status tl_blocks_reaction(tl_model *m, const tl_id *ids, size_t count, tl_vec3 *force)
+{
+    *force = tl_v3(0, 0, 0);
+    tl_status status = tl_detect_refresh(m);
+    unsigned char *seen = calloc(m->bodies.table.rows + 1, 1);
+    if (status == TL_OK && !seen)
+        status = tl_fail_memory(&m->error);
+    for (size_t i = 0; i < count && status == TL_OK; i++) {
+        uint32_t row = tl_block_row(m, ids[i]);
+        if (row == TL_NO_ROW) {
+            status = m->error.status;
+            continue;
+        }
+        uint32_t body = m->blocks.body[row];
+        unsigned fixed = m->bodies.fixed[body];
+        tl_vec3 f = fixed && !seen[body] ? acting_on(m, body) : tl_v3(0, 0, 0);
+        seen[body] = 1;
+        force->x -= fixed & TL_FIX_X ? f.x : 0;
+        force->y -= fixed & TL_FIX_Y ? f.y : 0;
+        force->z -= fixed & TL_FIX_Z ? f.z : 0;
+    }
+    free(seen);
+    return status;
+}

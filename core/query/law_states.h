@@ -1,0 +1,34 @@
+/* law_states.h - the states of the laws in use, by name, and their values at contacts and points (law_states.c). */
+#ifndef TL_QUERY_LAW_STATES_H
+#define TL_QUERY_LAW_STATES_H
+
+#include "model/model.h"
+
+#include <talus/fields.h>
+
+typedef struct tl_law_states {
+    tl_law_state *at;
+    size_t count;
+    uint32_t *
+        column; /* [material * count + state]: first column, or TL_NO_ROW where the law has no such state */
+} tl_law_states;
+
+/* Lists the states of all laws that the model's joints have, in the order of the laws. Freed by tl_law_states_free, also after
+ * a failure. */
+tl_status tl_law_states_list(tl_model *m, tl_law_states *states);
+void tl_law_states_free(tl_law_states *states);
+/* The entry of a name, or NULL. */
+const tl_law_state *tl_law_states_find(const tl_law_states *states, const char *name);
+
+/* Whether the law of a contact has the state. */
+bool tl_law_states_has(const tl_model *m, const tl_law_states *states, const tl_law_state *of,
+                       uint32_t contact);
+/* Value of an entry at point k of a contact; NaN where the contact's law has no such state. Changes nothing. */
+void tl_law_state_at_point(const tl_model *m, const tl_law_states *states, const tl_law_state *of,
+                           uint32_t contact, size_t k, double value[3]);
+/* The same of the whole contact: the mean of its points, weighted by their areas, or the sum where a state goes with the
+ * area. */
+void tl_law_state_of_contact(const tl_model *m, const tl_law_states *states, const tl_law_state *of,
+                             uint32_t contact, double value[3]);
+
+#endif

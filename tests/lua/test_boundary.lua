@@ -1,0 +1,263 @@
+-- Outer faces of the model: by side, plane, box and direction; holding them, loading them.
+local talus = require "talus"
+local check = require "check"
+
+local function empty(gravity)
+    return talus.model { gravity = gravity or { 0, 0, -10 } }
+end
+
+-- A 4 x 4 x 4 cube cut into 4 x 1 x 4 bars.
+local function bars()
+    local model = empty()
+    model:generate("box", { min = { 0, 0, 0 }, max = { 4, 4, 4 }, density = 2500 })
+    model:generate("jointset", { joint = "A", dip = 0, dip_direction = 0, spacing = 1, number = 3, origin = { 2, 2, 2 } })
+    model:generate("jointset", { joint = "B", dip = 90, dip_direction = 90, spacing = 1, number = 3, origin = { 2, 2, 2 } })
+    model:joint("*", "elastic", { kn = 1e9, ks = 1e9 })
+    return model
+end
+
+-- ---------------------------------------------------------------- which faces
+
+do
+    local model = bars()
+    local out = { xmin = { -1, 0, 0 }, xmax = { 1, 0, 0 }, ymin = { 0, -1, 0 }, ymax = { 0, 1, 0 }, zmin = { 0, 0, -1 }, zmax = { 0, 0, 1 } }
+    for side, normal in pairs(out) do
+        local found = model:boundary(side)
+        check.near(found.area, 16, 1e-12)
+        check.equal(#found.blocks, side:sub(1, 1) == "y" and 16 or 4)
+        check.equal(#found.faces, #found.blocks)
+        check.near(found.force, { 0, 0, 0 }, 0)
+        for i, face in ipairs(found.faces) do
+            check.near(face.normal, normal, 1e-12)
+            check.near(face.block.faces[face.face].normal, face.normal, 1e-12)
+            check.equal(face.block, found.blocks[i])
+        end
+    end
+    check.near(model:boundary("zmax").faces[1].centroid[3], 4, 1e-12)
+    -- by a plane, along its normal of any length only; the inner planes are no outer faces
+    check.near(model:boundary { plane = { normal = { 0, 0, 7 }, at = { 1, 2, 4 } } }.area, 16, 1e-12)
+    check.refused(model, function() model:boundary { plane = { normal = { 0, 0, -1 }, at = { 1, 2, 4 } } } end, "no outer face is there")
+    check.refused(model, function() model:boundary { plane = { normal = { 1, 0, 0 }, at = { 2, 0, 0 } } } end, "no outer face is there")
+    -- in a box: the four faces of the upper end of the first column of bars, and two at its ends
+    check.near(model:boundary { box = { min = { 0, 0, 3 }, max = { 1, 4, 4 } } }.area, 4 + 4 + 1 + 1, 1e-12)
+    check.near(model:boundary { box = { min = { 0, 0, 3 }, max = { 1, 4, 4 } }, facing = { 0, 0, 1 } }.area, 4, 1e-12)
+    check.near(model:boundary { facing = { 1, 0, 0.1 }, within = 30 }.area, 16, 1e-12)
+    check.near(model:boundary { facing = { 1, 0, 1 } }.area, 32, 1e-12)
+    check.near(model:boundary { facing = { 1, 0, 1 }, within = 180 }.area, 96, 1e-12)
+    check.near(model:boundary { side = "xmax", box = { min = { 3, 0, 0 }, max = { 4, 4, 2 } } }.area, 8, 1e-12)
+    -- asking changes nothing
+    local hash = model:state_hash()
+    model:boundary("xmin")
+    check.equal(model:state_hash(), hash)
+    -- hidden ones count
+    model:blocks {}:hide()
+    check.equal(#model:boundary("zmin").blocks, 4)
+end
+
+-- A cube that stands on a larger one leaves a ring bare; and so does one that is joined to it.
+for _, joined in ipairs { false, true } do
+    local model = empty()
+    model:generate("box", { min = { 0, 0, 0 }, max = { 3, 3, 1 }, density = 2500 })
+    model:generate("box", { min = { 0, 0, 1 }, max = { 1, 1, 2 }, density = 2500 })
+    model:joint("*", "elastic", { kn = 1e9, ks = 1e9 })
+    if joined then
+        model:blocks {}:join()
+    end
+    local up = model:boundary { facing = { 0, 0, 1 } }
+    check.near(up.area, 9, 1e-12)
+    check.near(up.faces[1].area, 8, 1e-12)
+    -- centroid of the ring: (9 * 1.5 - 0.5) / 8
+    check.near(up.faces[1].centroid, { 13 / 8, 13 / 8, 1 }, 1e-12)
+    check.equal(#model:boundary { facing = { 0, 0, -1 } }.faces, 1)
+end
+
+-- ---------------------------------------------------------------- holding
+
+do
+    local model = bars()
+    local held = model:boundary { xmin = "roller", xmax = "roller", zmin = "fixed" }
+    check.near(held.zmin.area, 16, 1e-12)
+    local fixed = 0
+    for _, block in ipairs(model:blocks {}) do
+        fixed = fixed + (block.fixed and 1 or 0)
+    end
+    check.equal(fixed, 4)
+    model:damping("local")
+    model:solve { ratio = 1e-7 }
+    -- the base carries the weight of all that is not held up elsewhere: rollers at the sides carry none
+    check.near(held.zmin.reaction[3], 64 * 25000, 64 * 25000 * 1e-5)
+    check.near(held.zmin.blocks:reaction(), held.zmin.reaction, 0)
+    check.near(model:blocks {}:reaction()[3], held.zmin.reaction[3], 1e-3)
+    for _, face in ipairs(held.xmin.faces) do
+        check.near(face.block.displacement[1], 0, 0)
+    end
+    check.holds(math.abs(held.xmax.blocks[4].displacement[3]) > 1e-7, "a roller lets it settle")
+    check.holds(not held.xmax.blocks[4].fixed, "held along x only")
+end
+do
+    local model = bars()
+    model:boundary { side = "ymin", roller = true, rotation = true }
+    check.equal(#model:blocks { fixed = true }, 0)
+    model.gravity = { 1, 1, 1 }
+    model:cycle(50)
+    for _, block in ipairs(model:blocks {}) do
+        check.near(block.displacement[2], 0, 0)
+        check.near(block.angular_velocity, { 0, 0, 0 }, 0)
+        check.holds(block.displacement[1] > 0, "free along x")
+    end
+end
+
+-- ---------------------------------------------------------------- loading
+
+-- A pressure on a free cube: F = p A, and no moment where it acts in the middle.
+do
+    local model = empty { 0, 0, 0 }
+    model:generate("box", { min = { 10, 0, 0 }, max = { 12, 2, 2 }, density = 1000 })
+    local load = model:boundary { side = "xmin", pressure = 3e3 }
+    check.near(load.force, { 12e3, 0, 0 }, 1e-9)
+    check.near(load.moment, { 0, 12e3, -12e3 }, 1e-8) -- about zero: {10, 1, 1} x F
+    model:timestep { dt = 1e-3 }
+    model:cycle(100)
+    local block = model:blocks {}[1]
+    check.near(block.force, { 12e3, 0, 0 }, 1e-9)
+    check.near(block.moment, { 0, 0, 0 }, 1e-9)
+    check.near(block.displacement[1], 0.5 * 12e3 / 8e3 * model.time ^ 2, 1e-4)
+    -- a stress says the same
+    check.near(model:boundary { side = "xmin", stress = { xx = -3e3 } }.force, { 12e3, 0, 0 }, 1e-9)
+    check.near(model:boundary { side = "xmin", traction = { 1, 2, 3 } }.force, { 4, 8, 12 }, 1e-12)
+    check.near(model:boundary { side = "xmin", stress = { xz = 5 } }.force, { 0, 0, -20 }, 1e-12)
+    -- all sides of a body: no force in all
+    check.near(model:boundary { facing = { 1, 0, 0 }, within = 180, pressure = 1e5 }.force, { 0, 0, 0 }, 1e-9)
+    check.near(block.force, { 12e3, 0, 0 }, 1e-9) -- of the last step
+    model:cycle(1)
+    check.near(block.force, { 0, 0, 0 }, 1e-9)
+end
+
+-- A stress that grows with depth, on a tetrahedron and all around it: buoyancy, gamma V upward through the centroid.
+do
+    local model = empty { 0, 0, 0 }
+    model:generate("tetrahedron", { vertices = { { 0, 0, -5 }, { 3, 0, -4 }, { 1, 4, -4.5 }, { 1, 1, -1 } }, density = 1000 })
+    local block = model:blocks {}[1]
+    local water = { xx = 9810, yy = 9810, zz = 9810 }
+    local load = model:boundary { facing = { 0, 0, 1 }, within = 180, gradient = water }
+    local lift = 9810 * block.volume
+    check.near(load.force, { 0, 0, lift }, 1e-9 * lift)
+    local c = block.centroid
+    check.near(load.moment, { c[2] * lift, -c[1] * lift, 0 }, 1e-9 * lift)
+    model:timestep { dt = 1e-6 }
+    model:cycle(1)
+    check.near(block.force, { 0, 0, lift }, 1e-9 * lift)
+    check.near(block.moment, { 0, 0, 0 }, 1e-9 * lift)
+    -- at another level
+    local deeper = model:boundary { facing = { 0, 0, 1 }, within = 180, gradient = water, at = { 0, 0, 7 } }
+    check.near(deeper.force, { 0, 0, lift }, 1e-8 * lift)
+    -- one face: the pressure at its centroid times its area, for it is linear
+    local face = model:boundary { facing = { 0, 0, -1 }, within = 60 }.faces[1]
+    local one = model:boundary { facing = { 0, 0, -1 }, within = 60, gradient = water }
+    local p = -9810 * face.centroid[3]
+    check.near(one.force, { -p * face.area * face.normal[1], -p * face.area * face.normal[2], -p * face.area * face.normal[3] }, 1e-8 * p)
+end
+
+-- Moment of a triangular pressure on a wall about its foot: gamma h^3 / 6 a metre.
+do
+    local model = empty { 0, 0, 0 }
+    model:generate("box", { min = { 0, 0, 0 }, max = { 1, 1, 6 }, density = 2400 })
+    local load = model:boundary { side = "xmin", gradient = { xx = 9810 }, at = { 0, 0, 6 } }
+    check.near(load.force, { 9810 * 36 / 2, 0, 0 }, 1e-6)
+    check.near(load.moment[2], 9810 * 216 / 6, 1e-6)
+end
+
+-- One call adds up on corner blocks; the next takes the place of the load, or is added to it. The first step tells the load
+-- alone: contacts have not been pressed yet.
+local function corner_force(...)
+    local model = bars()
+    model.gravity = { 0, 0, 0 }
+    for _, call in ipairs { ... } do
+        model:boundary(call)
+    end
+    model:cycle(1)
+    local corner = model:blocks { containing = { 3.5, 2, 3.5 } }[1]
+    return corner.force, corner.moment
+end
+local both = { zmin = "fixed", xmax = { pressure = 1e5 }, zmax = { pressure = 2e5 } }
+check.near(corner_force(both), { -4e5, 0, -8e5 }, 1e-6)
+check.near(corner_force(both, { side = "zmax", pressure = 1e5, add = true }), { -4e5, 0, -12e5 }, 1e-6)
+check.near(corner_force(both, { side = "zmax", pressure = 1e5 }), { 0, 0, -4e5 }, 1e-6)
+check.near(corner_force(both, { zmax = { pressure = 1e5 }, xmax = { traction = { 1, 2, 3 } }, add = true }),
+    { -4e5 + 4, 8, -12e5 + 12 }, 1e-6)
+-- whichever way a load is put together, its moment is the same
+local half = { min = { 3, 0, 0 }, max = { 4, 4, 4 } }
+local first = { side = "zmax", box = half, gradient = { zz = 1e5, yz = 3e4 } }
+local second = { side = "xmax", box = half, stress = { xx = 1e5, xy = 4e4 }, gradient = { xx = 1e4 }, add = true }
+local _, one_way = corner_force(first, second)
+first.add, second.add = true, false
+local _, other_way = corner_force(second, first)
+check.holds(math.abs(one_way[3]) > 1e4, "there is a moment")
+check.near(one_way, other_way, 1e-6)
+
+-- In situ stress and the same at the sides: nothing moves.
+do
+    local model = empty { 0, 0, 0 }
+    model:generate("box", { min = { 0, 0, 0 }, max = { 3, 3, 3 }, density = 2500 })
+    for i, dip in ipairs { { 0, 0 }, { 90, 90 }, { 90, 0 } } do
+        model:generate("jointset", { joint = "J" .. i, dip = dip[1], dip_direction = dip[2], spacing = 1, number = 2,
+            origin = { 1.5, 1.5, 1.5 } })
+    end
+    model:joint("*", "coulomb", { kn = 1e10, ks = 1e10, friction = 30 })
+    local stress = { xx = -2e6, yy = -3e6, zz = -4e6, xz = 5e5 }
+    model:insitu { stress = stress }
+    local deed = { stress = stress }
+    local all = model:boundary { xmin = deed, xmax = deed, ymin = deed, ymax = deed, zmin = deed, zmax = deed }
+    check.near(all.xmin.force, { 18e6, 0, -4.5e6 }, 1e-3)
+    model:damping("local")
+    model:cycle(200)
+    for _, block in ipairs(model:blocks {}) do
+        check.near(block.displacement, { 0, 0, 0 }, 1e-9)
+    end
+end
+
+-- ---------------------------------------------------------------- mistakes
+
+local model = bars()
+local function refused(f, part)
+    check.refused(model, f, part)
+end
+refused(function() model:boundary("xmon") end, "unknown side 'xmon'; did you mean 'xmin'?")
+refused(function() model:boundary() end, "a side (\"xmin\") or a table is expected, not nil")
+refused(function() model:boundary {} end, "say where")
+refused(function() model:boundary { fixed = true } end, "say where")
+refused(function() model:boundary { side = "left" } end, "unknown side 'left'")
+refused(function() model:boundary { xmin = "rolled" } end, "xmin must be \"roller\", \"fixed\" or a table")
+refused(function() model:boundary { xmin = { side = "xmax" } } end, "xmin says where")
+refused(function() model:boundary { xmin = "fixed", pressure = 3 } end, "what is to be done goes into their tables")
+refused(function() model:boundary { xmim = "fixed" } end, "did you mean 'xmi")
+refused(function() model:boundary { side = "xmin", presure = 3 } end, "did you mean 'pressure'?")
+refused(function() model:boundary { side = "xmin", pressure = "3" } end, "pressure must be a number")
+refused(function() model:boundary { side = "xmin", stress = { xw = 3 } } end, "boundary, stress: unknown parameter 'xw'")
+refused(function() model:boundary { side = "xmin", rotation = true } end, "rotation is held with roller")
+refused(function() model:boundary { plane = { normal = { 0, 0, 0 }, at = { 0, 0, 0 } } } end, "must not be zero")
+refused(function() model:boundary { plane = { normal = { 0, 0, 1 } } } end, "parameter 'at' is missing")
+refused(function() model:boundary { box = { min = { 1, 0, 0 }, max = { 0, 1, 1 } } } end, "every component of min")
+refused(function() model:boundary { box = { min = { 10, 10, 10 }, max = { 11, 11, 11 } }, fixed = true } end, "no outer face is there")
+refused(function() model:boundary { side = "xmin", tolerance = -1 } end, "tolerance")
+-- of several sides none is done when one is wrong
+refused(function()
+    model:boundary { xmin = "fixed", zmax = { box = { min = { 0, 0, 0 }, max = { 1, 1, 1 } } } }
+end, "zmax says where")
+refused(function() model:boundary { facing = { 0, 0, 1 }, within = 180, roller = true, side = "left" } end, "unknown side")
+do
+    local tilted = empty()
+    tilted:generate("tetrahedron", { vertices = { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } }, density = 2000 })
+    check.refused(tilted, function() tilted:boundary { facing = { 1, 1, 1 }, roller = true } end,
+        "a roller is held along x, y or z, but face")
+    check.refused(empty(), function() empty():boundary("xmin") end, "for the model has no blocks")
+end
+check.raises(function() return model:boundary("xmin").aera end, "did you mean 'area'?")
+local seen
+model:blocks { containing = { 0.5, 2, 3.5 } }:drive { velocity = function()
+    seen = select(2, pcall(model.boundary, model, { side = "xmin", fixed = true }))
+    check.near(model:boundary("xmin").area, 16, 1e-6)
+    return 0, 0, 0
+end }
+model:cycle(1)
+check.holds(seen and seen:find("hold or load a boundary", 1, true), "refused in a drive's function")
