@@ -35,6 +35,8 @@ TL_API int luaopen_talus(lua_State *L);
 int tl_lua_fail(lua_State *L, const char *format, ...);
 /* Pushes "file:line: " of the nearest Lua code up the stack, or "". */
 void tl_lua_push_where(lua_State *L);
+/* The same, but at the line where the Lua function at `index` is defined. */
+int tl_lua_fail_in(lua_State *L, int index, const char *format, ...);
 /* Raises the sentence of a failed kernel call. */
 int tl_lua_raise(lua_State *L, const tl_error *error);
 
@@ -99,7 +101,12 @@ void tl_lua_push_field(lua_State *L, tl_field_kind kind, const tl_field_value *v
 
 typedef struct tl_lua_model {
     tl_model *model;
+    int64_t next_sample; /* cycle at which a history is due: history.c */
+    bool sampling;       /* a history's function runs */
 } tl_lua_model;
+
+/* User values of a model's userdata: the functions of drives (action.c), the histories (history.c). */
+enum { TL_LUA_DRIVES = 1, TL_LUA_HISTORIES, TL_LUA_USER_VALUES = 2 };
 
 /* Pushes the function talus.model and makes the metatable of models. */
 void tl_lua_model_open(lua_State *L);
@@ -149,13 +156,25 @@ bool tl_lua_interrupted(const char *message);
 /* Where a run keeps the model on the Lua stack. */
 #define TL_LUA_AT_MODEL 1
 
-extern const tl_lua_key tl_lua_solve_keys[];
+extern const tl_lua_key tl_lua_cycle_keys[], tl_lua_solve_keys[];
 int tl_lua_cycle(lua_State *L);
 int tl_lua_solve(lua_State *L);
 /* The Lua state of the run whose step is being made. */
 lua_State *tl_lua_run_state(void);
 /* Pops the error on the top of its stack, to be raised again when the run has ended. */
 void tl_lua_run_keep_error(void);
+
+/* ---- histories: history.c ---- */
+
+extern const tl_lua_spec tl_lua_history_spec;
+extern const tl_lua_key tl_lua_histories_fields[];
+int tl_lua_history(lua_State *L);
+int tl_lua_histories(lua_State *L);
+int tl_lua_write_histories(lua_State *L);
+/* Finds when the next sample of the model at `model_index` is due. */
+void tl_lua_histories_due(lua_State *L, int model_index);
+/* Takes the samples that are due; false, with the error on the top of the stack, when one fails. */
+bool tl_lua_histories_sample(lua_State *L, int model_index);
 
 /* ---- what a model costs: cost.c ---- */
 
@@ -178,9 +197,11 @@ typedef struct tl_lua_kind {
     const luaL_Reg *verbs; /* methods of selections beyond those both types have */
 } tl_lua_kind;
 
-/* Types of items and selections of blocks. */
+/* Types of items and selections. */
 #define TL_LUA_BLOCK "talus.block"
 #define TL_LUA_BLOCKS "talus.blocks"
+#define TL_LUA_CONTACT "talus.contact"
+#define TL_LUA_CONTACTS "talus.contacts"
 
 typedef struct tl_lua_item {
     const tl_lua_kind *kind;

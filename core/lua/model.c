@@ -36,10 +36,12 @@ static int model_create(lua_State *L)
     tl_lua_read(L, 1, &spec, false, &config);
     if (!lua_istable(L, 1) || lua_getfield(L, 1, "threads") == LUA_TNIL)
         default_threads(L, &config.threads);
-    tl_lua_model *object = lua_newuserdatauv(L, sizeof *object, 1);
-    object->model = NULL;
-    lua_newtable(L); /* of the drives' functions: action.c */
-    lua_setiuservalue(L, -2, 1);
+    tl_lua_model *object = lua_newuserdatauv(L, sizeof *object, TL_LUA_USER_VALUES);
+    *object = (tl_lua_model){.next_sample = INT64_MAX};
+    lua_newtable(L);
+    lua_setiuservalue(L, -2, TL_LUA_DRIVES);
+    lua_newtable(L);
+    lua_setiuservalue(L, -2, TL_LUA_HISTORIES);
     luaL_setmetatable(L, TL_LUA_MODEL_TYPE);
     tl_error error;
     if (tl_model_create(&config, &object->model, &error) != TL_OK)
@@ -422,6 +424,9 @@ static const luaL_Reg model_methods[] = {
     {"contact_area", model_contact_area},
     {"cycle", tl_lua_cycle},
     {"solve", tl_lua_solve},
+    {"history", tl_lua_history},
+    {"histories", tl_lua_histories},
+    {"write_histories", tl_lua_write_histories},
     {"energy", model_energy},
     {"profile", tl_lua_profile},
     {"memory", tl_lua_memory},

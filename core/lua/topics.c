@@ -229,8 +229,9 @@ const tl_lua_topic tl_lua_topics[] = {
      .usage = "model:contact_area{fraction = 0.01}",
      .function = "contact_area"},
     {.name = "cycle",
-     .usage = "result = model:cycle(1000)",
+     .usage = "result = model:cycle(1000)  or  model:cycle(1000, {every = 100, on_progress = f})",
      .function = "cycle",
+     .keys = tl_lua_cycle_keys,
      .title = "Fields of the result",
      .verbs = run_results},
     {.name = "solve",
@@ -239,6 +240,24 @@ const tl_lua_topic tl_lua_topics[] = {
      .keys = tl_lua_solve_keys,
      .title = "Fields of the result",
      .verbs = run_results},
+    {.name = "history",
+     .usage = "model:history{name = \"roof\", every = 10, value = function(m) ... end}  or  "
+              "model:history{name = \"roof\", of = selection, field = \"displacement\"}",
+     .doc =
+         "Samples a value at once and then every so many steps of all runs, until it is removed.",
+     .spec = &tl_lua_history_spec},
+    {.name = "histories",
+     .usage = "list = model:histories().roof",
+     .doc = "Gives a table with the samples of each history, by name: copies of them.",
+     .title = "Fields of each history",
+     .verbs = tl_lua_histories_fields},
+    {.name = "write_histories",
+     .usage = "model:write_histories(\"out/run.csv\")",
+     .doc = "Writes the samples of all histories into a CSV file: the columns cycle, time and one "
+            "for each history, in "
+            "the order in which they were made, or name.x, name.y and name.z. A cell is empty "
+            "where a history has no "
+            "sample of that cycle. Folders are made; the file is written whole or not at all."},
     {.name = "energy",
      .usage = "energy = model:energy()",
      .doc = "The energy of the bodies that are free to move, at the last force evaluation, counted "

@@ -80,6 +80,21 @@ static tl_contact_state state_of(const tl_detect *d, uint32_t c)
     return any & TL_POINT_FAILED ? TL_CONTACT_FAILED : TL_CONTACT_ELASTIC;
 }
 
+tl_contact_counts tl_model_contact_counts(const tl_model *m)
+{
+    tl_contact_counts counts = {0, 0, 0};
+    size_t rows = m->detect ? m->detect->contacts.table.rows : 0;
+    for (uint32_t row = 0; row < rows; row++) {
+        if (m->detect->contacts.point_count[row] == 0)
+            continue;
+        tl_contact_state state = state_of(m->detect, row);
+        counts.contacts++;
+        counts.slipping += state == TL_CONTACT_SLIPPING;
+        counts.open += state == TL_CONTACT_OPEN;
+    }
+    return counts;
+}
+
 static const char *const state_names[] = {[TL_CONTACT_ELASTIC] = "elastic",
                                           [TL_CONTACT_SLIPPING] = "slipping",
                                           [TL_CONTACT_OPEN] = "open",
