@@ -14,6 +14,13 @@
 #include <lua.h>
 #include <talus/talus.h>
 
+/* A key of a table of arguments that a tl_param cannot express. */
+typedef struct tl_lua_key {
+    const char *name; /* NULL ends a list */
+    const char *type; /* "function(model)" */
+    const char *doc;
+} tl_lua_key;
+
 /* ---- what a state was asked to do by options or environment: living.c ---- */
 
 typedef struct tl_lua_options {
@@ -27,6 +34,16 @@ tl_lua_options *tl_lua_options_of(lua_State *L);
 void tl_lua_log(void *user, const char *text);
 /* Opens the module `talus`. */
 TL_API int luaopen_talus(lua_State *L);
+
+/* ---- modules written in Lua: library.c ---- */
+
+extern const tl_lua_key tl_lua_plot_keys[], tl_lua_stereonet_keys[];
+/* Lets `require` find them; once a state. */
+void tl_lua_library_open(lua_State *L);
+/* Has the table at the top of the stack, the module `talus`, load them when they are first used. */
+void tl_lua_library_attach(lua_State *L);
+/* talus.write_file(path, text) */
+int tl_lua_write_file(lua_State *L);
 
 /* ---- errors: fail.c ---- */
 
@@ -54,13 +71,6 @@ void tl_lua_names_fields(tl_lua_names *names, const tl_field *fields, size_t cou
 int tl_lua_unknown(lua_State *L, const char *what, const char *word, const tl_lua_names *names);
 
 /* ---- conversion: convert.c ---- */
-
-/* A key of a table of arguments that a tl_param cannot express. */
-typedef struct tl_lua_key {
-    const char *name; /* NULL ends a list */
-    const char *type; /* "function(model)" */
-    const char *doc;
-} tl_lua_key;
 
 /* A table of arguments: what may stand in it, and how it is called in messages. */
 typedef struct tl_lua_spec {

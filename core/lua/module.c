@@ -24,9 +24,12 @@ int luaopen_talus(lua_State *L)
     lua_setfield(L, -2, "model");
     lua_pushcfunction(L, tl_lua_report);
     lua_setfield(L, -2, "report");
+    lua_pushcfunction(L, tl_lua_write_file);
+    lua_setfield(L, -2, "write_file");
     lua_pushcfunction(L, module_help);
     lua_setfield(L, -2, "help");
     lua_pushliteral(L, TALUS_VERSION);
     lua_setfield(L, -2, "version");
+    tl_lua_library_attach(L);
     return 1;
 }

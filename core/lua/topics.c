@@ -258,6 +258,17 @@ const tl_lua_topic tl_lua_topics[] = {
             "the order in which they were made, or name.x, name.y and name.z. A cell is empty "
             "where a history has no "
             "sample of that cycle. Folders are made; the file is written whole or not at all."},
+    {.name = "plot",
+     .usage = "talus.plot{file = \"out/run.svg\", model = model, histories = {\"roof\"}, y_axis = "
+              "{name = \"subsidence\", unit = "
+              "\"m\"}}",
+     .doc = "Draws lists and histories as lines, with axes, ticks and a legend, into an SVG file.",
+     .keys = tl_lua_plot_keys},
+    {.name = "stereonet",
+     .usage = "talus.stereonet{file = \"out/joints.svg\", model = model, keyblocks = list}",
+     .doc =
+         "Draws joint sets by poles and great circles on the lower hemisphere, into an SVG file.",
+     .keys = tl_lua_stereonet_keys},
     {.name = "energy",
      .usage = "energy = model:energy()",
      .doc = "The energy of the bodies that are free to move, at the last force evaluation, counted "
@@ -301,6 +312,10 @@ const tl_lua_topic tl_lua_topics[] = {
     {.name = "write_blocks",
      .usage = "model:write_blocks(\"out/blocks.json\")",
      .function = "write_blocks"},
+    {.name = "write_file",
+     .usage = "talus.write_file(\"out/table.csv\", text)",
+     .doc = "Writes a text into a file, whole or not at all. Folders are made; only a regular file "
+            "is replaced."},
     {.name = "state_hash",
      .usage = "text = model:state_hash()",
      .doc = "A digest of all that what comes next depends on, settings too: models with the same "
