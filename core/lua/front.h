@@ -25,7 +25,7 @@ typedef struct tl_lua_key {
 
 typedef struct tl_lua_options {
     int64_t threads; /* default of talus.model; 0: not set */
-    bool quiet;      /* no status line, no remarks */
+    bool quiet;      /* no progress line, no remarks */
 } tl_lua_options;
 
 /* The options of a Lua state, made when first asked for; lives as long as the state. */

@@ -1,17 +1,9 @@
-/* run.c - cycle and solve: callbacks into Lua, and the line that shows how a run goes.
+/* run.c - cycle and solve: callbacks into Lua.
  *
  * No Lua error may jump over the kernel's frames: callbacks run in protected calls, an error is kept
  * on the stack, the run ends after the step, and only then is the error raised again, as it was. */
 #include "front.h"
-
-#include <stdio.h>
-#include <time.h>
-#include <unistd.h>
-
-/* The line is written anew at most so often, s. */
-#define SHOW_PERIOD 0.1
-/* Columns of the line; more would wrap on a terminal of 80. */
-#define SHOW_COLUMNS 79
+#include "progress.h"
 
 /* Places on the Lua stack during a run. */
 enum {
@@ -31,34 +23,20 @@ typedef struct run {
     const tl_lua_model *owner;
     struct run *outer; /* the run whose callback started this one, of another model */
     tl_lua_watch watch;
-    bool failed, show;
-    double began, shown; /* s */
-    int64_t first_cycle;
-    int64_t shown_cycle; /* when the line was last written */
-    double shown_time;
+    bool failed;
+    tl_solve limits; /* what is run */
+    tl_lua_progress line;
     tl_solve_result result;
 } run;
 
 static run *current;
-
-#define NANOSECOND 1e-9
-
-static double now(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + NANOSECOND * (double)t.tv_nsec;
-}
 
 static void run_begin(run *r, lua_State *L, tl_model *model)
 {
     *r = (run){.L = L, .model = model, .outer = current};
     r->owner = lua_touserdata(L, AT_MODEL);
     tl_lua_histories_due(L, AT_MODEL);
-    r->show = !tl_lua_options_of(L)->quiet && isatty(STDERR_FILENO);
-    r->began = r->shown = now();
-    r->first_cycle = r->shown_cycle = tl_model_cycles(model);
-    r->shown_time = tl_model_time(model);
+    tl_lua_progress_begin(L, &r->line, model);
     r->watch = tl_lua_watch_begin(L);
     current = r;
 }
@@ -66,41 +44,10 @@ static void run_begin(run *r, lua_State *L, tl_model *model)
 static void run_end(run *r)
 {
     current = r->outer;
-    if (r->show)
-        fputs("\r\033[K", stderr);
+    tl_lua_progress_clear(&r->line);
 }
 
-/* ---------------------------------------------------------------- showing ---------------- */
-
-/* The ratio that may end the run. */
-static double ratio_of(const tl_solve_result *r)
-{
-    switch (r->measure) {
-    case TL_RATIO_AVERAGE: return r->ratio;
-    case TL_RATIO_MAXIMUM: return r->ratio_maximum;
-    default: return r->ratio_local;
-    }
-}
-
-/* Writes the line anew when it is time to. It asks nothing that could make the kernel compute: a run
- * gives the same with it and without. So dt is the mean step since the last time. */
-static void show(run *r)
-{
-    double t = now(), time = tl_model_time(r->model);
-    int64_t cycle = tl_model_cycles(r->model), steps = cycle - r->shown_cycle;
-    if (!r->show || t - r->shown < SHOW_PERIOD || steps == 0)
-        return;
-    char line[160];
-    snprintf(line, sizeof line,
-             "cycle %lld  t %.4g s  dt %.2g s  ratio %.1e  velocity %.1e  %.0f/s", (long long)cycle,
-             time, (time - r->shown_time) / (double)steps, ratio_of(&r->result),
-             r->result.max_velocity, (double)(cycle - r->first_cycle) / (t - r->began));
-    fprintf(stderr, "\r\033[K%.*s", SHOW_COLUMNS, line);
-    fflush(stderr);
-    r->shown = t;
-    r->shown_cycle = cycle;
-    r->shown_time = time;
-}
+/* ---------------------------------------------------------------- results ---------------- */
 
 /* Writes numbers into the table at the top of the stack. */
 static void set_numbers(lua_State *L, const tl_solve_result *result)
@@ -198,7 +145,7 @@ static tl_status on_each(void *user, tl_model *model)
     run *r = user;
     if (r->failed) /* a drive's function */
         return TL_E_CANCELLED;
-    show(r);
+    tl_lua_progress_run(&r->line, model, &r->limits, &r->result);
     if (tl_model_cycles(model) < r->owner->next_sample || tl_lua_histories_sample(r->L, AT_MODEL))
         return TL_OK;
     keep_error(r);
@@ -212,6 +159,7 @@ static tl_status on_progress(void *user, tl_model *model)
     lua_State *L = r->L;
     if (r->failed)
         return TL_E_CANCELLED;
+    tl_lua_progress_clear(&r->line); /* the function may print */
     lua_pushcfunction(L, call_progress);
     lua_pushvalue(L, AT_PROGRESS);
     lua_pushvalue(L, AT_MODEL);
@@ -301,6 +249,7 @@ int tl_lua_solve(lua_State *L)
     solve.progress = progress ? on_progress : NULL;
     solve.stop = stop ? on_stop : NULL;
     solve.user = &r;
+    r.limits = solve;
     return finish(L, &r, "solve", tl_model_solve(model, &solve, &r.result));
 }
 
@@ -319,7 +268,7 @@ int tl_lua_cycle(lua_State *L)
     spec.params++;    /* besides the first, which was given alone */
     spec.count--;
     tl_lua_read(L, AT_ARGS, &spec, false, &args);
-    tl_solve calls = {.each = on_each, .every = args.every};
+    tl_solve calls = {.each = on_each, .every = args.every, .max_cycles = args.cycles};
     lua_settop(L, AT_ANCHOR);
     push_callback(L, "cycle", "stop"); /* nil: it takes none */
     calls.progress = push_callback(L, "cycle", "on_progress") ? on_progress : NULL;
@@ -327,5 +276,6 @@ int tl_lua_cycle(lua_State *L)
     run r;
     run_begin(&r, L, model);
     calls.user = &r;
+    r.limits = calls;
     return finish(L, &r, "cycle", tl_model_cycle_calling(model, args.cycles, &calls, &r.result));
 }

@@ -45,6 +45,18 @@ typedef struct tl_contact_counts {
 } tl_contact_counts;
 TL_API tl_contact_counts tl_model_contact_counts(const struct tl_model *model);
 
+/* How far a generator has come. */
+typedef struct tl_generate_progress {
+    const char *generator;
+    double share;          /* of all its work, as it says itself; 0: it has not said yet */
+    size_t entry, entries; /* of a list of sets of parameters, from 1 */
+    size_t cuts, blocks;   /* cuts made; blocks there are, of the model and new ones */
+} tl_generate_progress;
+/* From now on `show` is called often while a generator works, on the caller's thread. NULL: no more. */
+TL_API void tl_model_watch_generate(struct tl_model *model,
+                                    void (*show)(void *user, const tl_generate_progress *done),
+                                    void *user);
+
 #ifdef __cplusplus
 }
 #endif
