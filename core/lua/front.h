@@ -186,6 +186,11 @@ void tl_lua_histories_due(lua_State *L, int model_index);
 /* Takes the samples that are due; false, with the error on the top of the stack, when one fails. */
 bool tl_lua_histories_sample(lua_State *L, int model_index);
 
+/* ---- parameters in force: parameters.c ---- */
+
+extern const tl_lua_key tl_lua_parameters_fields[];
+int tl_lua_parameters(lua_State *L);
+
 /* ---- what a model costs: cost.c ---- */
 
 extern const tl_lua_key tl_lua_profile_fields[], tl_lua_memory_fields[];

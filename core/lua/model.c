@@ -430,6 +430,7 @@ static const luaL_Reg model_methods[] = {
     {"contact_area", model_contact_area},
     {"cycle", tl_lua_cycle},
     {"solve", tl_lua_solve},
+    {"parameters", tl_lua_parameters},
     {"history", tl_lua_history},
     {"histories", tl_lua_histories},
     {"write_histories", tl_lua_write_histories},

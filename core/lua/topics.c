@@ -228,6 +228,12 @@ const tl_lua_topic tl_lua_topics[] = {
     {.name = "contact_area",
      .usage = "model:contact_area{fraction = 0.01}",
      .function = "contact_area"},
+    {.name = "parameters",
+     .usage = "table = model:parameters()",
+     .doc = "Tells all parameters the model has now, with defaults and units, as a table, and "
+            "prints them (not with --quiet).",
+     .title = "Fields of the table",
+     .verbs = tl_lua_parameters_fields},
     {.name = "cycle",
      .usage = "result = model:cycle(1000)  or  model:cycle(1000, {every = 100, on_progress = f})",
      .function = "cycle",

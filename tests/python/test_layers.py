@@ -37,7 +37,8 @@ PUBLIC = {
     "plugins.h": {"types.h", "plugin.h"},
     "output.h": {"types.h", "plugin.h"},
     "watch.h": {"types.h", "plugin.h"},
-    "talus.h": {"types.h", "plugin.h", "plugins.h", "output.h", "watch.h"},
+    "settings.h": {"types.h", "plugin.h"},
+    "talus.h": {"types.h", "plugin.h", "plugins.h", "output.h", "watch.h", "settings.h"},
 }
 PLUGIN_HEADERS = {"talus/types.h", "talus/elementary.h", "talus/vmath.h", "talus/plugin.h"}
 # What a plugin may include besides: the headers of standard C.

@@ -14,6 +14,7 @@
 #include <talus/output.h>
 #include <talus/plugin.h>
 #include <talus/plugins.h>
+#include <talus/settings.h>
 #include <talus/types.h>
 #include <talus/watch.h>
 
