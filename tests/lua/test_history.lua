@@ -2,8 +2,8 @@
 local talus = require "talus"
 local check = require "check"
 
-local folder = (os.getenv("TALUS_TEST_TMP") or "/tmp") .. "/history"
-os.execute("rm -rf '" .. folder .. "'")
+local folder = string.format("%s/history_%s", assert(os.getenv("TALUS_TEST_TMP")),
+    tostring({}):match("0x(%x+)") or "0")
 
 -- Cubes in a row on a fixed slab that are let go; one slides.
 local function scene(cubes)
@@ -291,3 +291,5 @@ model, slider, cubes, cube = nil, nil, nil, nil
 collectgarbage()
 collectgarbage()
 check.equal(weak[1], nil)
+
+os.execute("rm -rf '" .. folder .. "'")

@@ -101,7 +101,8 @@ check.raises(function() model:parameters(1) end, "1 argument too many")
 
 -- The page.
 local program = os.getenv("TALUS_PROGRAM")
-local script = (os.getenv("TALUS_TEST_TMP") or "/tmp") .. "/parameters.lua"
+local script = string.format("%s/parameters_%s.lua", assert(os.getenv("TALUS_TEST_TMP")),
+    tostring({}):match("0x(%x+)") or "0")
 local file = assert(io.open(script, "w"))
 file:write([[
 local talus = require "talus"
@@ -133,3 +134,4 @@ for _, row in ipairs { "gravity             {0, 0, -9.81} m/s2 (default)\n", "se
     at = found
 end
 check.equal(page("--quiet"), "")
+os.remove(script)

@@ -2,8 +2,8 @@
 local talus = require "talus"
 local check = require "check"
 
-local folder = (os.getenv("TALUS_TEST_TMP") or "/tmp") .. "/plot"
-os.execute("rm -rf '" .. folder .. "'")
+local folder = string.format("%s/plot_%s", assert(os.getenv("TALUS_TEST_TMP")),
+    tostring({}):match("0x(%x+)") or "0")
 local path = folder .. "/deep/er/picture.svg"
 
 local function read(name)
@@ -248,3 +248,5 @@ for _, topic in ipairs { "plot", "stereonet" } do
     local message = select(2, pcall(talus[topic], { file = empty, qqqqqqqqqqqqqqqqqqqqqq = 1 }))
     check.equal(message:match("%(known: (.*)%)$"), table.concat(names, ", "))
 end
+
+os.execute("rm -rf '" .. folder .. "'")

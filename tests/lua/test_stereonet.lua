@@ -2,8 +2,8 @@
 local talus = require "talus"
 local check = require "check"
 
-local folder = (os.getenv("TALUS_TEST_TMP") or "/tmp") .. "/stereonet"
-os.execute("rm -rf '" .. folder .. "'")
+local folder = string.format("%s/stereonet_%s", assert(os.getenv("TALUS_TEST_TMP")),
+    tostring({}):match("0x(%x+)") or "0")
 local path = folder .. "/new/net.svg"
 local rad = math.rad
 
@@ -159,3 +159,5 @@ refused({ sets = { set }, projection = "equal_are" }, "did you mean 'equal_area'
 refused({ sets = { set }, great_circles = true }, "great_circles must be text, not true")
 refused({ sets = { set }, size = 1 }, "size = 1 is outside [150, 10000]")
 refused({ sets = { set }, file = folder }, "stereonet: cannot write")
+
+os.execute("rm -rf '" .. folder .. "'")
