@@ -6,6 +6,7 @@
  *     HERE/../../../../share/lua/5.4          the same in lib/MACHINE/lua/5.4
  *
  * As with plugins, a file is taken only when nobody but the owner of the program can have put it there (trust.c). */
+#define _GNU_SOURCE /* realpath with stat of POSIX */
 #include "plugin/registry.h"
 
 #include <stdio.h>
