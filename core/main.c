@@ -152,6 +152,7 @@ static int prepare(lua_State *L)
     luaL_getsubtable(L, LUA_REGISTRYINDEX, LUA_PRELOAD_TABLE);
     lua_pushcfunction(L, luaopen_talus);
     lua_setfield(L, -2, "talus");
+    tl_lua_library_open(L);
     *tl_lua_options_of(L) = o->lua;
     set_arguments(L, argc, argv, o->next < argc ? o->next : 0);
     tl_lua_strict(L);

@@ -56,12 +56,27 @@ static bool at_rest(tl_model *m, const progress *p)
     return rests;
 }
 
+/* Calls the function of every step; false when it ends the run. */
+static bool call_each(tl_model *m, const progress *p, tl_status *status)
+{
+    if (!p->solve->each)
+        return true;
+    m->running = true;
+    *status = p->solve->each(p->solve->user, m);
+    m->running = false;
+    return *status == TL_OK;
+}
+
 /* True when the run is over; sets the reason. */
 static bool ended(tl_model *m, const progress *p, tl_status *status)
 {
     const tl_solve *s = p->solve;
     int64_t done = m->cycles - p->cycles_0;
     tl_solve_reason *reason = &p->result->reason;
+    if (!call_each(m, p, status)) {
+        *reason = TL_SOLVE_STOP;
+        return true;
+    }
     if ((s->progress || s->stop) && s->every > 0 && done % s->every == 0 && call_back(m, p, status))
         return true;
     if (tl_model_interrupted(m))
@@ -96,7 +111,7 @@ static tl_status run(tl_model *m, const tl_solve *solve, tl_solve_result *result
     tl_rows_tidy(m);
     *result =
         (tl_solve_result){.reason = TL_SOLVE_CYCLES, .time = m->time, .measure = solve->measure};
-    if (m->running)
+    if (m->running || m->reading)
         return tl_fail(&m->error, TL_E_STATE,
                        "cycle and solve cannot be called from a function that a run has called");
     progress p = {solve, result, m->cycles, m->time, tl_clock()};
@@ -130,11 +145,34 @@ tl_status tl_model_solve(tl_model *m, const tl_solve *solve, tl_solve_result *re
     return run(m, solve, result);
 }
 
-tl_status tl_model_cycle(tl_model *m, int64_t cycles, tl_solve_result *result)
+tl_status tl_model_cycle_calling(tl_model *m, int64_t cycles, const tl_solve *calls,
+                                 tl_solve_result *result)
 {
     if (cycles < 0)
         return tl_fail(&m->error, TL_E_ARGUMENT, "cycle: %lld must be >= 0", (long long)cycles);
-    const tl_solve plain = {
-        .max_cycles = cycles, .max_time = NAN, .velocity = NAN, .measure = TL_RATIO_LOCAL};
+    const tl_solve plain = {.max_cycles = cycles,
+                            .max_time = NAN,
+                            .velocity = NAN,
+                            .measure = TL_RATIO_LOCAL,
+                            .every = calls->every,
+                            .each = calls->each,
+                            .progress = calls->progress,
+                            .stop = calls->stop,
+                            .user = calls->user};
     return run(m, &plain, result);
+}
+
+tl_status tl_model_cycle(tl_model *m, int64_t cycles, tl_solve_result *result)
+{
+    return tl_model_cycle_calling(m, cycles, &(const tl_solve){0}, result);
+}
+
+tl_balance tl_model_balance(const tl_model *m)
+{
+    if (!m->cycle || m->cycles == 0)
+        return (tl_balance){NAN, NAN, NAN, NAN};
+    return (tl_balance){.ratio = tl_unbalanced_ratio(m, TL_RATIO_AVERAGE),
+                        .ratio_maximum = tl_unbalanced_ratio(m, TL_RATIO_MAXIMUM),
+                        .ratio_local = tl_unbalanced_ratio(m, TL_RATIO_LOCAL),
+                        .max_velocity = sqrt(m->cycle->sums.max_speed2)};
 }

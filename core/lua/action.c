@@ -57,16 +57,8 @@ typedef struct call {
 /* Raises at the place where the function at index 2 is defined. */
 static int bad_velocity(lua_State *L, const call *c, const char *what)
 {
-    lua_Debug record;
-    lua_pushvalue(L, 2);
-    lua_getinfo(L, ">S", &record);
-    const char *name = key_names[c->key];
-    if (record.linedefined <= 0)
-        return tl_lua_fail(L, "drive: %s(%f) must give three finite numbers, not %s", name, c->t,
-                           what);
-    lua_pushfstring(L, "%s:%d: drive: %s(%f) must give three finite numbers, not %s",
-                    record.short_src, record.linedefined, name, c->t, what);
-    return lua_error(L);
+    return tl_lua_fail_in(L, 2, "drive: %s(%f) must give three finite numbers, not %s",
+                          key_names[c->key], c->t, what);
 }
 
 /* Three numbers from index `first` on. */

@@ -30,6 +30,24 @@ int tl_lua_fail(lua_State *L, const char *format, ...)
     return lua_error(L);
 }
 
+int tl_lua_fail_in(lua_State *L, int index, const char *format, ...)
+{
+    luaL_checkstack(L, 8, "too many values");
+    lua_Debug record;
+    lua_pushvalue(L, index);
+    lua_getinfo(L, ">S", &record);
+    if (record.linedefined > 0)
+        lua_pushfstring(L, "%s:%d: ", record.short_src, record.linedefined);
+    else
+        tl_lua_push_where(L); /* of a function in C, the line that led to its call */
+    va_list arguments;
+    va_start(arguments, format);
+    lua_pushvfstring(L, format, arguments);
+    va_end(arguments);
+    lua_concat(L, 2);
+    return lua_error(L);
+}
+
 int tl_lua_raise(lua_State *L, const tl_error *error)
 {
     return tl_lua_fail(L, "%s", error->text);

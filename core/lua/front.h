@@ -14,11 +14,18 @@
 #include <lua.h>
 #include <talus/talus.h>
 
+/* A key of a table of arguments that a tl_param cannot express. */
+typedef struct tl_lua_key {
+    const char *name; /* NULL ends a list */
+    const char *type; /* "function(model)" */
+    const char *doc;
+} tl_lua_key;
+
 /* ---- what a state was asked to do by options or environment: living.c ---- */
 
 typedef struct tl_lua_options {
     int64_t threads; /* default of talus.model; 0: not set */
-    bool quiet;      /* no status line, no remarks */
+    bool quiet;      /* no progress line, no remarks */
 } tl_lua_options;
 
 /* The options of a Lua state, made when first asked for; lives as long as the state. */
@@ -28,6 +35,16 @@ void tl_lua_log(void *user, const char *text);
 /* Opens the module `talus`. */
 TL_API int luaopen_talus(lua_State *L);
 
+/* ---- modules written in Lua: library.c ---- */
+
+extern const tl_lua_key tl_lua_plot_keys[], tl_lua_stereonet_keys[];
+/* Lets `require` find them; once a state. */
+void tl_lua_library_open(lua_State *L);
+/* Has the table at the top of the stack, the module `talus`, load them when they are first used. */
+void tl_lua_library_attach(lua_State *L);
+/* talus.write_file(path, text) */
+int tl_lua_write_file(lua_State *L);
+
 /* ---- errors: fail.c ---- */
 
 /* Raises "file:line: " (of the nearest Lua code up the stack) and a formatted sentence; formats as
@@ -35,6 +52,8 @@ TL_API int luaopen_talus(lua_State *L);
 int tl_lua_fail(lua_State *L, const char *format, ...);
 /* Pushes "file:line: " of the nearest Lua code up the stack, or "". */
 void tl_lua_push_where(lua_State *L);
+/* The same, but at the line where the Lua function at `index` is defined. */
+int tl_lua_fail_in(lua_State *L, int index, const char *format, ...);
 /* Raises the sentence of a failed kernel call. */
 int tl_lua_raise(lua_State *L, const tl_error *error);
 
@@ -52,13 +71,6 @@ void tl_lua_names_fields(tl_lua_names *names, const tl_field *fields, size_t cou
 int tl_lua_unknown(lua_State *L, const char *what, const char *word, const tl_lua_names *names);
 
 /* ---- conversion: convert.c ---- */
-
-/* A key of a table of arguments that a tl_param cannot express. */
-typedef struct tl_lua_key {
-    const char *name; /* NULL ends a list */
-    const char *type; /* "function(model)" */
-    const char *doc;
-} tl_lua_key;
 
 /* A table of arguments: what may stand in it, and how it is called in messages. */
 typedef struct tl_lua_spec {
@@ -99,7 +111,12 @@ void tl_lua_push_field(lua_State *L, tl_field_kind kind, const tl_field_value *v
 
 typedef struct tl_lua_model {
     tl_model *model;
+    int64_t next_sample; /* cycle at which a history is due: history.c */
+    bool sampling;       /* a history's function runs */
 } tl_lua_model;
+
+/* User values of a model's userdata: the functions of drives (action.c), the histories (history.c). */
+enum { TL_LUA_DRIVES = 1, TL_LUA_HISTORIES, TL_LUA_USER_VALUES = 2 };
 
 /* Pushes the function talus.model and makes the metatable of models. */
 void tl_lua_model_open(lua_State *L);
@@ -154,7 +171,7 @@ bool tl_lua_interrupted(const char *message);
 /* Where a run keeps the model on the Lua stack. */
 #define TL_LUA_AT_MODEL 1
 
-extern const tl_lua_key tl_lua_solve_keys[];
+extern const tl_lua_key tl_lua_cycle_keys[], tl_lua_solve_keys[];
 int tl_lua_cycle(lua_State *L);
 int tl_lua_solve(lua_State *L);
 /* The Lua state of the run whose step is being made. */
@@ -177,6 +194,22 @@ int tl_lua_laws(lua_State *L);
 int tl_lua_groups(lua_State *L);
 /* Puts talus.laws, talus.dampings and talus.generators into the module at the top of the stack. */
 void tl_lua_lists_open(lua_State *L);
+/* ---- histories: history.c ---- */
+
+extern const tl_lua_spec tl_lua_history_spec;
+extern const tl_lua_key tl_lua_histories_fields[];
+int tl_lua_history(lua_State *L);
+int tl_lua_histories(lua_State *L);
+int tl_lua_write_histories(lua_State *L);
+/* Finds when the next sample of the model at `model_index` is due. */
+void tl_lua_histories_due(lua_State *L, int model_index);
+/* Takes the samples that are due; false, with the error on the top of the stack, when one fails. */
+bool tl_lua_histories_sample(lua_State *L, int model_index);
+
+/* ---- parameters in force: parameters.c ---- */
+
+extern const tl_lua_key tl_lua_parameters_fields[];
+int tl_lua_parameters(lua_State *L);
 
 /* ---- what a model costs: cost.c ---- */
 
@@ -202,9 +235,11 @@ typedef struct tl_lua_kind {
     const luaL_Reg *verbs; /* methods of selections beyond those both types have */
 } tl_lua_kind;
 
-/* Types of items and selections of blocks. */
+/* Types of items and selections. */
 #define TL_LUA_BLOCK "talus.block"
 #define TL_LUA_BLOCKS "talus.blocks"
+#define TL_LUA_CONTACT "talus.contact"
+#define TL_LUA_CONTACTS "talus.contacts"
 
 typedef struct tl_lua_item {
     const tl_lua_kind *kind;

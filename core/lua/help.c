@@ -201,7 +201,7 @@ static void print_overview(void)
          "  talus --version                  version, plugin interface, compiler, build\n"
          "\n"
          "  --threads N      threads of a model that does not say itself\n"
-         "  --quiet          no status line and no remarks\n"
+         "  --quiet          no progress line and no remarks\n"
          "  --plugin PATH    load one more plugin\n"
          "  -v               show the calls that led to an error\n"
          "\nFunctions:");

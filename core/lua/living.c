@@ -47,10 +47,12 @@ void tl_lua_default_threads(lua_State *L, int64_t *threads)
 
 tl_lua_model *tl_lua_model_push(lua_State *L)
 {
-    tl_lua_model *object = lua_newuserdatauv(L, sizeof *object, 1);
-    object->model = NULL;
-    lua_newtable(L); /* of the drives' functions: action.c */
-    lua_setiuservalue(L, -2, 1);
+    tl_lua_model *object = lua_newuserdatauv(L, sizeof *object, TL_LUA_USER_VALUES);
+    *object = (tl_lua_model){.next_sample = INT64_MAX};
+    lua_newtable(L);
+    lua_setiuservalue(L, -2, TL_LUA_DRIVES);
+    lua_newtable(L);
+    lua_setiuservalue(L, -2, TL_LUA_HISTORIES);
     luaL_setmetatable(L, TL_LUA_MODEL_TYPE);
     return object;
 }

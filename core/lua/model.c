@@ -1,5 +1,6 @@
 /* model.c - the model as a Lua object: talus.model, its fields and its short methods. */
 #include "front.h"
+#include "progress.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -139,9 +140,14 @@ static int model_generate(lua_State *L)
     set_summary(
         L,
         &summary); /* all memory is had before blocks are made: a call that fails changes nothing */
+    tl_lua_progress progress;
+    tl_lua_progress_begin(L, &progress, model);
+    tl_model_watch_generate(model, tl_lua_progress_generate, &progress);
     tl_lua_watch watch = tl_lua_watch_begin(L);
     tl_status status = count ? tl_generate_list(model, generator, args, count, &summary)
                              : tl_generate(model, generator, args, &summary);
+    tl_model_watch_generate(model, NULL, NULL);
+    tl_lua_progress_clear(&progress);
     finish_call(L, model, &watch, what, "the model is as it was", status);
     set_summary(L, &summary);
     return 1;
@@ -404,6 +410,10 @@ static const luaL_Reg model_methods[] = {
     {"contact_area", model_contact_area},
     {"cycle", tl_lua_cycle},
     {"solve", tl_lua_solve},
+    {"parameters", tl_lua_parameters},
+    {"history", tl_lua_history},
+    {"histories", tl_lua_histories},
+    {"write_histories", tl_lua_write_histories},
     {"energy", model_energy},
     {"profile", tl_lua_profile},
     {"memory", tl_lua_memory},

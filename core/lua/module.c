@@ -27,9 +27,12 @@ int luaopen_talus(lua_State *L)
     lua_pushcfunction(L, tl_lua_restore);
     lua_setfield(L, -2, "restore");
     tl_lua_lists_open(L);
+    lua_pushcfunction(L, tl_lua_write_file);
+    lua_setfield(L, -2, "write_file");
     lua_pushcfunction(L, module_help);
     lua_setfield(L, -2, "help");
     lua_pushliteral(L, TALUS_VERSION);
     lua_setfield(L, -2, "version");
+    tl_lua_library_attach(L);
     return 1;
 }

@@ -1,19 +1,9 @@
-/* run.c - cycle and solve: callbacks into Lua, and the line that shows how a run goes.
+/* run.c - cycle and solve: callbacks into Lua.
  *
  * No Lua error may jump over the kernel's frames: callbacks run in protected calls, an error is kept
  * on the stack, the run ends after the step, and only then is the error raised again, as it was. */
 #include "front.h"
-
-#include <stdio.h>
-#include <time.h>
-#include <unistd.h>
-
-/* The line is written anew at most so often, s. */
-#define SHOW_PERIOD 0.1
-/* Columns of the line; more would wrap on a terminal of 80. */
-#define SHOW_COLUMNS 79
-/* While the line is shown `cycle` runs in pieces of so many steps, and writes it between them. */
-#define PIECE 10
+#include "progress.h"
 
 /* Places on the Lua stack during a run. */
 enum {
@@ -30,34 +20,23 @@ enum {
 typedef struct run {
     lua_State *L;
     tl_model *model;
+    const tl_lua_model *owner;
     struct run *outer; /* the run whose callback started this one, of another model */
     tl_lua_watch watch;
-    bool progress, failed, show;
-    double began, shown; /* s */
-    int64_t first_cycle;
-    int64_t shown_cycle; /* when the line was last written */
-    double shown_time;
+    bool failed;
+    tl_solve limits; /* what is run */
+    tl_lua_progress line;
     tl_solve_result result;
 } run;
 
 static run *current;
 
-#define NANOSECOND 1e-9
-
-static double now(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + NANOSECOND * (double)t.tv_nsec;
-}
-
 static void run_begin(run *r, lua_State *L, tl_model *model)
 {
     *r = (run){.L = L, .model = model, .outer = current};
-    r->show = !tl_lua_options_of(L)->quiet && isatty(STDERR_FILENO);
-    r->began = r->shown = now();
-    r->first_cycle = r->shown_cycle = tl_model_cycles(model);
-    r->shown_time = tl_model_time(model);
+    r->owner = lua_touserdata(L, AT_MODEL);
+    tl_lua_histories_due(L, AT_MODEL);
+    tl_lua_progress_begin(L, &r->line, model);
     r->watch = tl_lua_watch_begin(L);
     current = r;
 }
@@ -65,41 +44,10 @@ static void run_begin(run *r, lua_State *L, tl_model *model)
 static void run_end(run *r)
 {
     current = r->outer;
-    if (r->show)
-        fputs("\r\033[K", stderr);
+    tl_lua_progress_clear(&r->line);
 }
 
-/* ---------------------------------------------------------------- showing ---------------- */
-
-/* The ratio that may end the run. */
-static double ratio_of(const tl_solve_result *r)
-{
-    switch (r->measure) {
-    case TL_RATIO_AVERAGE: return r->ratio;
-    case TL_RATIO_MAXIMUM: return r->ratio_maximum;
-    default: return r->ratio_local;
-    }
-}
-
-/* Writes the line anew when it is time to. It asks nothing that could make the kernel compute: a run
- * gives the same with it and without. So dt is the mean step since the last time. */
-static void show(run *r)
-{
-    double t = now(), time = tl_model_time(r->model);
-    int64_t cycle = tl_model_cycles(r->model), steps = cycle - r->shown_cycle;
-    if (!r->show || t - r->shown < SHOW_PERIOD || steps == 0)
-        return;
-    char line[160];
-    snprintf(line, sizeof line,
-             "cycle %lld  t %.4g s  dt %.2g s  ratio %.1e  velocity %.1e  %.0f/s", (long long)cycle,
-             time, (time - r->shown_time) / (double)steps, ratio_of(&r->result),
-             r->result.max_velocity, (double)(cycle - r->first_cycle) / (t - r->began));
-    fprintf(stderr, "\r\033[K%.*s", SHOW_COLUMNS, line);
-    fflush(stderr);
-    r->shown = t;
-    r->shown_cycle = cycle;
-    r->shown_time = time;
-}
+/* ---------------------------------------------------------------- results ---------------- */
 
 /* Writes numbers into the table at the top of the stack. */
 static void set_numbers(lua_State *L, const tl_solve_result *result)
@@ -191,6 +139,19 @@ static int call_progress(lua_State *L)
     return 0;
 }
 
+/* After every step: the line, and the samples that are due. */
+static tl_status on_each(void *user, tl_model *model)
+{
+    run *r = user;
+    if (r->failed) /* a drive's function */
+        return TL_E_CANCELLED;
+    tl_lua_progress_run(&r->line, model, &r->limits, &r->result);
+    if (tl_model_cycles(model) < r->owner->next_sample || tl_lua_histories_sample(r->L, AT_MODEL))
+        return TL_OK;
+    keep_error(r);
+    return TL_E_CANCELLED;
+}
+
 static tl_status on_progress(void *user, tl_model *model)
 {
     (void)model;
@@ -198,9 +159,7 @@ static tl_status on_progress(void *user, tl_model *model)
     lua_State *L = r->L;
     if (r->failed)
         return TL_E_CANCELLED;
-    show(r);
-    if (!r->progress)
-        return TL_OK;
+    tl_lua_progress_clear(&r->line); /* the function may print */
     lua_pushcfunction(L, call_progress);
     lua_pushvalue(L, AT_PROGRESS);
     lua_pushvalue(L, AT_MODEL);
@@ -231,6 +190,11 @@ static bool on_stop(void *user, tl_model *model)
 
 /* ---------------------------------------------------------------- solve and cycle -------- */
 
+const tl_lua_key tl_lua_cycle_keys[] = {
+    {"on_progress", "function(model, result)", "called every `every` steps"},
+    {NULL, NULL, NULL},
+};
+
 const tl_lua_key tl_lua_solve_keys[] = {
     {"stop", "function(model)", "called every `every` steps; ends the run when it answers true"},
     {"on_progress", "function(model, result)", "called every `every` steps"},
@@ -238,7 +202,7 @@ const tl_lua_key tl_lua_solve_keys[] = {
 };
 
 /* Pushes the function of that key, or nil; true when there is one. */
-static bool push_callback(lua_State *L, const char *key)
+static bool push_callback(lua_State *L, const char *what, const char *key)
 {
     if (!lua_istable(L, AT_ARGS)) {
         lua_pushnil(L);
@@ -246,7 +210,7 @@ static bool push_callback(lua_State *L, const char *key)
     }
     int type = lua_getfield(L, AT_ARGS, key);
     if (type != LUA_TNIL && type != LUA_TFUNCTION)
-        tl_lua_fail(L, "solve: %s must be a function, not %s", key, tl_lua_describe(L, -1));
+        tl_lua_fail(L, "%s: %s must be a function, not %s", what, key, tl_lua_describe(L, -1));
     return type == LUA_TFUNCTION;
 }
 
@@ -276,44 +240,42 @@ int tl_lua_solve(lua_State *L)
     tl_lua_spec spec = tl_lua_spec_of("solve", tl_lua_solve_keys);
     tl_lua_read(L, AT_ARGS, &spec, false, &solve);
     lua_settop(L, AT_ANCHOR);
-    bool stop = push_callback(L, "stop"), progress = push_callback(L, "on_progress");
+    bool stop = push_callback(L, "solve", "stop");
+    bool progress = push_callback(L, "solve", "on_progress");
     push_answer_room(L, solve.measure);
     run r;
     run_begin(&r, L, model);
-    r.progress = progress;
-    solve.progress = on_progress;
+    solve.each = on_each;
+    solve.progress = progress ? on_progress : NULL;
     solve.stop = stop ? on_stop : NULL;
     solve.user = &r;
+    r.limits = solve;
     return finish(L, &r, "solve", tl_model_solve(model, &solve, &r.result));
 }
 
-/* tl_model_cycle, with the line written now and then. */
-static tl_status cycle_showing(run *r, int64_t cycles)
-{
-    tl_status status = TL_OK;
-    int64_t done = 0;
-    do {
-        int64_t piece = cycles - done < PIECE ? cycles - done : PIECE;
-        status = tl_model_cycle(r->model, piece, &r->result);
-        done += r->result.cycles;
-        show(r);
-    } while (status == TL_OK && r->result.reason == TL_SOLVE_CYCLES && done < cycles);
-    r->result.cycles = done;
-    r->result.wall = now() - r->began;
-    return status;
-}
-
+/* cycle(cycles, {every =, on_progress =}) */
 int tl_lua_cycle(lua_State *L)
 {
     tl_model *model = tl_lua_model_of(L, "cycle");
-    tl_lua_arity(L, 2, "cycle");
-    lua_settop(L, 2);
-    int64_t cycles;
-    tl_lua_spec spec = tl_lua_spec_of("cycle", NULL);
-    tl_lua_read_one(L, 2, &spec, "cycles", &cycles);
+    tl_lua_arity(L, 3, "cycle");
+    lua_settop(L, 3);
+    luaL_checkstack(L, LUA_MINSTACK, "too many values");
+    tl_cycle_args args;
+    tl_lua_spec spec = tl_lua_spec_of("cycle", tl_lua_cycle_keys);
+    tl_lua_read_one(L, 2, &spec, "cycles", &args);
+    lua_settop(L, 3);
+    lua_remove(L, 2); /* as in solve the table of arguments is at index 2 */
+    spec.params++;    /* besides the first, which was given alone */
+    spec.count--;
+    tl_lua_read(L, AT_ARGS, &spec, false, &args);
+    tl_solve calls = {.each = on_each, .every = args.every, .max_cycles = args.cycles};
+    lua_settop(L, AT_ANCHOR);
+    push_callback(L, "cycle", "stop"); /* nil: it takes none */
+    calls.progress = push_callback(L, "cycle", "on_progress") ? on_progress : NULL;
     push_answer_room(L, TL_RATIO_LOCAL);
     run r;
     run_begin(&r, L, model);
-    return finish(L, &r, "cycle",
-                  r.show ? cycle_showing(&r, cycles) : tl_model_cycle(model, cycles, &r.result));
+    calls.user = &r;
+    r.limits = calls;
+    return finish(L, &r, "cycle", tl_model_cycle_calling(model, args.cycles, &calls, &r.result));
 }

@@ -58,7 +58,7 @@ static givens *push_givens(lua_State *L)
 /* Twins, hanging on the model at `to`, of all anchors of the model at `from`. */
 static givens *push_twins(lua_State *L, int from, int to)
 {
-    lua_getiuservalue(L, from, 1);
+    lua_getiuservalue(L, from, TL_LUA_DRIVES);
     int anchors = lua_gettop(L);
     givens *all = push_givens(L);
     for (lua_pushnil(L); lua_next(L, anchors);) {

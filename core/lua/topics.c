@@ -269,9 +269,16 @@ const tl_lua_topic tl_lua_topics[] = {
     {.name = "contact_area",
      .usage = "model:contact_area{fraction = 0.01}",
      .function = "contact_area"},
+    {.name = "parameters",
+     .usage = "table = model:parameters()",
+     .doc = "Tells all parameters the model has now, with defaults and units, as a table, and "
+            "prints them (not with --quiet).",
+     .title = "Fields of the table",
+     .verbs = tl_lua_parameters_fields},
     {.name = "cycle",
-     .usage = "result = model:cycle(1000)",
+     .usage = "result = model:cycle(1000)  or  model:cycle(1000, {every = 100, on_progress = f})",
      .function = "cycle",
+     .keys = tl_lua_cycle_keys,
      .title = "Fields of the result",
      .verbs = run_results},
     {.name = "solve",
@@ -280,6 +287,35 @@ const tl_lua_topic tl_lua_topics[] = {
      .keys = tl_lua_solve_keys,
      .title = "Fields of the result",
      .verbs = run_results},
+    {.name = "history",
+     .usage = "model:history{name = \"roof\", every = 10, value = function(m) ... end}  or  "
+              "model:history{name = \"roof\", of = selection, field = \"displacement\"}",
+     .doc =
+         "Samples a value at once and then every so many steps of all runs, until it is removed.",
+     .spec = &tl_lua_history_spec},
+    {.name = "histories",
+     .usage = "list = model:histories().roof",
+     .doc = "Gives a table with the samples of each history, by name: copies of them.",
+     .title = "Fields of each history",
+     .verbs = tl_lua_histories_fields},
+    {.name = "write_histories",
+     .usage = "model:write_histories(\"out/run.csv\")",
+     .doc = "Writes the samples of all histories into a CSV file: the columns cycle, time and one "
+            "for each history, in "
+            "the order in which they were made, or name.x, name.y and name.z. A cell is empty "
+            "where a history has no "
+            "sample of that cycle. Folders are made; the file is written whole or not at all."},
+    {.name = "plot",
+     .usage = "talus.plot{file = \"out/run.svg\", model = model, histories = {\"roof\"}, y_axis = "
+              "{name = \"subsidence\", unit = "
+              "\"m\"}}",
+     .doc = "Draws lists and histories as lines, with axes, ticks and a legend, into an SVG file.",
+     .keys = tl_lua_plot_keys},
+    {.name = "stereonet",
+     .usage = "talus.stereonet{file = \"out/joints.svg\", model = model, keyblocks = list}",
+     .doc =
+         "Draws joint sets by poles and great circles on the lower hemisphere, into an SVG file.",
+     .keys = tl_lua_stereonet_keys},
     {.name = "energy",
      .usage = "energy = model:energy()",
      .doc = "The energy of the bodies that are free to move, at the last force evaluation, counted "
@@ -323,6 +359,10 @@ const tl_lua_topic tl_lua_topics[] = {
     {.name = "write_blocks",
      .usage = "model:write_blocks(\"out/blocks.json\")",
      .function = "write_blocks"},
+    {.name = "write_file",
+     .usage = "talus.write_file(\"out/table.csv\", text)",
+     .doc = "Writes a text into a file, whole or not at all. Folders are made; only a regular file "
+            "is replaced."},
     {.name = "state_hash",
      .usage = "text = model:state_hash()",
      .doc = "A digest of all that what comes next depends on, settings too: models with the same "

@@ -10,10 +10,6 @@
 #include <string.h>
 #include <talus/talus.h>
 
-typedef struct tl_cycle_args {
-    int64_t cycles;
-} tl_cycle_args;
-
 typedef struct tl_profile_args {
     int32_t on;
 } tl_profile_args;
@@ -135,6 +131,8 @@ static const tl_param contact_area_params[] = {
 static const tl_param cycle_params[] = {
     TL_PARAM(TL_PARAM_INT, tl_cycle_args, cycles, "", "number of steps to run",
              .flags = TL_PARAM_REQUIRED | TL_PARAM_MAX_OPEN, .min = 0.0, .max = INFINITY),
+    TL_PARAM(TL_PARAM_INT, tl_cycle_args, every, "", "steps between calls of on_progress",
+             .def = {500.0}, .min = 1.0, .max = INFINITY, .flags = TL_PARAM_MAX_OPEN),
 };
 
 static const char *const ratio_measures[] = {[TL_RATIO_AVERAGE] = "average",

@@ -56,7 +56,7 @@ bool tl_model_says(tl_model *m, tl_remark remark)
 
 tl_status tl_model_may_change(tl_model *m, const char *what)
 {
-    if (m->running)
+    if (m->running || m->reading)
         return tl_fail(&m->error, TL_E_STATE,
                        "cannot %s while the model is running: end the run with a stop function and "
                        "do it after",
@@ -64,8 +64,18 @@ tl_status tl_model_may_change(tl_model *m, const char *what)
     return TL_OK;
 }
 
+void tl_model_only_read(tl_model *m, bool on)
+{
+    m->reading = on;
+}
+
 tl_status tl_model_may_set(tl_model *m, const char *what)
 {
+    if (m->reading)
+        return tl_fail(&m->error, TL_E_STATE,
+                       "cannot %s from a history's function, which may read the model only: do it "
+                       "between two runs, or in on_progress",
+                       what);
     if (m->driving)
         return tl_fail(
             &m->error, TL_E_STATE,

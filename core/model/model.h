@@ -217,9 +217,12 @@ struct tl_model {
     double dt; /* of the last step; 0 before the first */
     int64_t cycles;
     atomic_bool interrupted;
-    bool (*interrupt_asked)(void); /* or NULL */
-    bool running;                  /* inside a callback: no blocks may be made or deleted */
+    bool (*interrupt_asked)(void);                                       /* or NULL */
+    void (*show_generate)(void *user, const tl_generate_progress *done); /* or NULL */
+    void *show_generate_user;
+    bool running;      /* inside a callback: no blocks may be made or deleted */
     bool driving;      /* inside a drive's function: nothing that a step depends on may be set */
+    bool reading;      /* the same, and no run may begin: tl_model_only_read */
     uint32_t said;     /* bit r: remark r has been made */
     uint64_t remarked; /* changes of blocks and laws at the last look at their numbers */
     bool mass_scaling; /* of all free bodies */

@@ -208,10 +208,10 @@ static void load_path_list(searched *seen, const char *list)
 
 /* The file of the program or library this function is in. The name of the main program may be a bare
  * word found through PATH; then the system knows where it is. */
-static bool own_file(char file[PATH_MAX])
+bool tl_own_file(char file[PATH_MAX])
 {
     Dl_info info;
-    bool named = dladdr((void *)(uintptr_t)&own_file, &info) != 0 && info.dli_fname &&
+    bool named = dladdr((void *)(uintptr_t)&tl_own_file, &info) != 0 && info.dli_fname &&
                  strchr(info.dli_fname, '/') && realpath(info.dli_fname, file);
     return named || realpath("/proc/self/exe", file);
 }
@@ -222,7 +222,7 @@ static void load_everything(void)
     searched seen = {.count = 0};
     char own[PATH_MAX], here[PATH_MAX], folder[PATH_MAX + 64], plain[PATH_MAX];
     load_path_list(&seen, getenv("TALUS_PLUGIN_PATH"));
-    if (!own_file(own))
+    if (!tl_own_file(own))
         return;
     snprintf(here, sizeof here, "%.*s", (int)(strrchr(own, '/') - own), own);
     snprintf(folder, sizeof folder, "%s/plugins", here);

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 
+#include <limits.h>
 #include <talus/talus.h>
 
 /* ---- descriptor.c ---- */
@@ -34,6 +35,11 @@ tl_status tl_registry_add(const char *path, tl_plugin *plugin, const char *note,
 void tl_registry_refused(const char *path, const char *reason);
 /* Keeps a remark on a folder. */
 void tl_registry_noted(const char *path, const char *note);
+
+/* ---- loader.c ---- */
+
+/* The file of the program or library that this code is in, without links; false when the system does not tell. */
+bool tl_own_file(char file[PATH_MAX]);
 
 /* ---- trust.c ---- */
 

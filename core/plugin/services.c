@@ -25,6 +25,8 @@ typedef struct service {
     tl_model *model;
     tl_stage stage;
     const char *generator;
+    size_t entry, entries; /* of a list, from 0 */
+    double share;          /* of the entry's work that is done */
 } service;
 
 static service *service_of(const tl_host *host)
@@ -53,10 +55,32 @@ static void say(const tl_host *host, const char *format, ...)
     tl_model_say(service_of(host)->model, "generator '%s': %s", service_of(host)->generator, text);
 }
 
+static void tell_progress(const service *s)
+{
+    const tl_model *m = s->model;
+    if (!m->show_generate)
+        return;
+    tl_generate_progress done = {.generator = s->generator,
+                                 .share = ((double)s->entry + s->share) / (double)s->entries,
+                                 .entry = s->entry + 1,
+                                 .entries = s->entries,
+                                 .cuts = s->stage.summary.cuts,
+                                 .blocks = s->stage.count};
+    m->show_generate(m->show_generate_user, &done);
+}
+
+void tl_model_watch_generate(tl_model *m, void (*fn)(void *user, const tl_generate_progress *done),
+                             void *user)
+{
+    m->show_generate = fn;
+    m->show_generate_user = user;
+}
+
 /* Not TL_OK when the user asked to stop. Every service that makes or cuts blocks looks, so that a plugin that shows
  * no progress ends, too. */
 static tl_status go_on(const tl_host *host)
 {
+    tell_progress(service_of(host));
     if (tl_model_interrupted(service_of(host)->model))
         return fail(host, TL_E_CANCELLED, "%s", tl_status_text(TL_E_CANCELLED));
     return TL_OK;
@@ -405,7 +429,8 @@ static double draw_uniform(const tl_host *host, uint32_t number, int64_t plane, 
 
 static tl_status progress(const tl_host *host, double fraction)
 {
-    (void)fraction;
+    service *s = service_of(host);
+    s->share = fraction >= 0 && fraction <= 1 ? fraction : s->share;
     return go_on(host);
 }
 
@@ -505,6 +530,8 @@ static tl_status run(service *s, const tl_kind *kind, const tl_args *args, size_
     }
     for (size_t i = 0; i < count && status == TL_OK; i++) {
         char entry[40] = "";
+        s->entry = i;
+        s->share = 0;
         if (list)
             snprintf(entry, sizeof entry, ", entry %zu", i + 1);
         status = call(s, kind, &args[i], params, entry);
@@ -530,7 +557,7 @@ static tl_status generate(tl_model *m, const char *generator, const tl_args *arg
     const tl_kind *kind = tl_plugin_find(TL_KIND_GENERATOR, generator);
     if (!kind)
         return tl_unknown_kind(m, TL_KIND_GENERATOR, generator);
-    service s = {.model = m, .generator = kind->name};
+    service s = {.model = m, .generator = kind->name, .entries = count};
     atomic_store(&m->interrupted, false);
     status = run(&s, kind, args, count, list);
     if (status == TL_OK && summary)

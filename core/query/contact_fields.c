@@ -103,6 +103,20 @@ const char *tl_state_name(size_t number)
                                         [TL_CONTACT_FAILED] = "failed"};
     return number < sizeof names / sizeof names[0] ? names[number] : NULL;
 }
+tl_contact_counts tl_model_contact_counts(const tl_model *m)
+{
+    tl_contact_counts counts = {0, 0, 0};
+    size_t rows = m->detect ? m->detect->contacts.table.rows : 0;
+    for (uint32_t row = 0; row < rows; row++) {
+        if (m->detect->contacts.point_count[row] == 0)
+            continue;
+        tl_contact_state state = state_of(m->detect, row);
+        counts.contacts++;
+        counts.slipping += state == TL_CONTACT_SLIPPING;
+        counts.open += state == TL_CONTACT_OPEN;
+    }
+    return counts;
+}
 
 tl_contact_facts tl_contact_facts_of(const tl_model *m, uint32_t contact)
 {

@@ -59,6 +59,26 @@ result = model:solve { ratio = 0, max_cycles = 100, every = 10, on_progress = fu
 end }
 check.holds(calls >= 9 and calls <= 11, "one call every ten steps")
 check.holds(last >= 90, "the last call at the end")
+-- cycle calls back, too.
+calls = 0
+result = model:cycle(100, { every = 25, on_progress = function(m, r)
+    check.equal(m, model)
+    calls = calls + 1
+    check.equal(r.cycles, 25 * calls)
+    check.equal(r.measure, "local")
+    check.holds(r.ratio >= 0 and r.time == m.time and r.wall >= 0 and r.max_velocity >= 0, "a full result")
+end })
+check.equal(calls, 4)
+check.equal(result.reason, "cycles")
+check.equal(result.cycles, 100)
+calls = 0
+model:cycle(1000, { on_progress = function() calls = calls + 1 end }) -- every 500 steps when it is not told
+check.equal(calls, 2)
+local started = model.cycles
+check.raises(function()
+    model:cycle(1000, { every = 10, on_progress = function() error("enough") end })
+end, "enough")
+check.equal(model.cycles, started + 10)
 local target = model.cycles + 30
 result = model:solve { ratio = 0, max_cycles = 1000, every = 10,
     stop = function(m) return m.cycles >= target end }
@@ -129,7 +149,13 @@ refused(function() model:cycle(-1) end, "cycles = -1")
 refused(function() model:cycle(1.5) end, "whole number, not the number 1.5")
 refused(function() model:cycle("10") end, "not the string '10'")
 refused(function() model:cycle(0 / 0) end, "cycles = nan")
-refused(function() model:cycle(1, 2) end, "1 argument too many")
+refused(function() model:cycle(1, 2) end, "cycle: the parameters must be a table, not the number 2")
+refused(function() model:cycle(1, {}, 3) end, "1 argument too many")
+refused(function() model:cycle(1, { evry = 3 }) end, "cycle: unknown parameter 'evry'; did you mean 'every'?")
+refused(function() model:cycle(1, { cycles = 3 }) end, "cycle: unknown parameter 'cycles'")
+refused(function() model:cycle(1, { every = 0 }) end, "every = 0")
+refused(function() model:cycle(1, { on_progress = 3 }) end, "cycle: on_progress must be a function, not the number 3")
+refused(function() model:cycle(1, { stop = function() end }) end, "unknown parameter 'stop'")
 refused(function() model:solve { ratoi = 1 } end, "solve: unknown parameter 'ratoi'; did you mean 'ratio'?")
 refused(function() model:solve { stopp = 1 } end, "did you mean 'stop'?")
 refused(function() model:solve { ratio = -1 } end, "ratio = -1")

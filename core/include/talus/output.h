@@ -33,6 +33,9 @@ TL_API tl_status tl_write_vtk(struct tl_model *model, const char *prefix,
  * that format makes them again. */
 TL_API tl_status tl_write_blocks(struct tl_model *model, const char *path);
 
+/* Writes a file of `length` bytes, whole or not at all, making the folders on the way. Only a regular file is replaced. */
+TL_API tl_status tl_write_file(const char *path, const void *data, size_t length, tl_error *error);
+
 #ifdef __cplusplus
 }
 #endif

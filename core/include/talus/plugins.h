@@ -42,6 +42,10 @@ typedef struct tl_plugin_record {
 TL_API size_t tl_plugin_record_count(void);
 TL_API tl_plugin_record tl_plugin_record_at(size_t index);
 
+/* Finds a file of Talus's own library of scripts ("talus/plot.lua"): beside a build, or in share/lua/5.4 of an installed
+ * Talus, wherever it was moved to. TL_E_NOT_FOUND when there is none, TL_E_PLUGIN when others could have put it there. */
+TL_API tl_status tl_library_find(const char *file, char *path, size_t size, tl_error *error);
+
 #ifdef __cplusplus
 }
 #endif

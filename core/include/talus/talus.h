@@ -14,8 +14,10 @@
 #include <talus/output.h>
 #include <talus/plugin.h>
 #include <talus/plugins.h>
+#include <talus/settings.h>
 #include <talus/state.h>
 #include <talus/types.h>
+#include <talus/watch.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -287,6 +289,7 @@ typedef struct tl_solve {
     int64_t max_cycles;      /* of this call */
     double max_time;         /* s of this call; NaN: no limit */
     int64_t every;           /* steps between calls of `progress` and `stop` */
+    tl_step_fn each;         /* called after every step, before these; or NULL */
     tl_step_fn progress;
     bool (*stop)(void *user, tl_model *model);
     void *user;
@@ -588,4 +591,5 @@ TL_API tl_status tl_state_hash(tl_model *model, char text[33]);
 #ifdef __cplusplus
 }
 #endif
+
 #endif

@@ -1,0 +1,54 @@
+/* settings.c - tells the parameters that a model has now. */
+#include "cycle/cycle_room.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* "*", "J1" or "J1:3"; valid until the next call. */
+static const char *pattern_name(tl_model *m, tl_tag tag)
+{
+    if (tag.joint == 0)
+        return "*";
+    return tag.plane == 0 ? m->joints[tag.joint - 1].name : tl_tag_name(m, tag);
+}
+
+bool tl_model_law_at(tl_model *m, size_t i, const char **joint, tl_plugin_setting *law)
+{
+    if (i >= m->material_count)
+        return false;
+    *joint = pattern_name(m, m->materials[i].tag);
+    *law = (tl_plugin_setting){m->materials[i].kind, m->materials[i].params};
+    return true;
+}
+
+bool tl_model_joint_at(tl_model *m, size_t i, const char **name, const char **ruled_by)
+{
+    if (i >= m->joint_count)
+        return false;
+    *name = m->joints[i].name;
+    const tl_material *law = tl_material_of(m, (tl_tag){(uint32_t)i + 1, 0});
+    *ruled_by = law ? pattern_name(m, law->tag) : NULL;
+    return true;
+}
+
+tl_plugin_setting tl_model_damping_now(const tl_model *m)
+{
+    return (tl_plugin_setting){m->damping, m->damping_params};
+}
+
+tl_timestep tl_model_timestep_now(const tl_model *m)
+{
+    tl_timestep now = m->timestep;
+    now.fraction = tl_timestep_fraction(m);
+    return now;
+}
+
+bool tl_model_contact_area_at(tl_model *m, size_t i, tl_contact_area *rule)
+{
+    if (i > m->area_count)
+        return false;
+    const tl_area_rule *from = i ? &m->areas[i - 1].rule : &m->area;
+    *rule = (tl_contact_area){from->fraction, from->absolute,
+                              i ? pattern_name(m, m->areas[i - 1].tag) : NULL};
+    return true;
+}

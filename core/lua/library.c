@@ -1,0 +1,183 @@
+/* library.c - the modules of Talus that are written in Lua (scripts/lib/talus), and files for them.
+ *
+ * `require "talus.plot"` finds them beside the program or the library talus.so, wherever these lie: by a searcher of its
+ * own, which comes before the search path of scripts, so that the modules are of the same Talus. Where talus.so has not
+ * been loaded yet, Lua's search for C modules loads it for its function luaopen_talus_NAME. */
+#include "front.h"
+
+#include <limits.h>
+#include <string.h>
+
+#define PREFIX "talus."
+
+/* Modules that the table `talus` holds, each a function; loaded when first used. */
+static const char *const functions[] = {"plot", "stereonet", NULL};
+
+/* Pushes the loader of a module and its path; or one sentence why there is none, and returns 1. */
+static int push_loader(lua_State *L, const char *name)
+{
+    char file[128], path[PATH_MAX];
+    size_t length = strlen(name);
+    if (length + sizeof ".lua" > sizeof file ||
+        strspn(name, "abcdefghijklmnopqrstuvwxyz_.") != length)
+        return 0;
+    strcpy(file, name);
+    for (char *c = file; *c; c++)
+        *c = *c == '.' ? '/' : *c;
+    strcat(file, ".lua");
+    tl_error error;
+    if (tl_library_find(file, path, sizeof path, &error) != TL_OK) {
+        lua_pushstring(L, error.text);
+        return 1;
+    }
+    if (luaL_loadfilex(L, path, "t") != LUA_OK)
+        return lua_error(L);
+    lua_pushstring(L, path);
+    return 2;
+}
+
+/* One of package.searchers. */
+static int search(lua_State *L)
+{
+    const char *name = luaL_checkstring(L, 1);
+    return strncmp(name, PREFIX, sizeof PREFIX - 1) == 0 ? push_loader(L, name) : 0;
+}
+
+/* What luaopen_talus_NAME does. */
+static int open_module(lua_State *L, const char *name)
+{
+    tl_lua_library_open(L);
+    if (push_loader(L, name) != 2)
+        return tl_lua_fail(L, "%s", lua_tostring(L, -1));
+    lua_pushstring(L, name);
+    lua_insert(L, -2);
+    lua_call(L, 2, 1);
+    return 1;
+}
+
+TL_API int luaopen_talus_plot(lua_State *L);
+TL_API int luaopen_talus_stereonet(lua_State *L);
+
+int luaopen_talus_plot(lua_State *L)
+{
+    return open_module(L, PREFIX "plot");
+}
+
+int luaopen_talus_stereonet(lua_State *L)
+{
+    return open_module(L, PREFIX "stereonet");
+}
+
+void tl_lua_library_open(lua_State *L)
+{
+    static const char key; /* its address is where the registry keeps that it is done */
+    bool done = lua_rawgetp(L, LUA_REGISTRYINDEX, &key) != LUA_TNIL;
+    lua_pop(L, 1);
+    if (done || lua_getglobal(L, "package") != LUA_TTABLE) {
+        lua_settop(L, done ? lua_gettop(L) : lua_gettop(L) - 1);
+        return;
+    }
+    if (lua_getfield(L, -1, "searchers") == LUA_TTABLE) {
+        for (lua_Integer i = (lua_Integer)lua_rawlen(L, -1); i >= 2; i--) {
+            lua_rawgeti(L, -1, i);
+            lua_rawseti(L, -2, i + 1);
+        }
+        lua_pushcfunction(L, search);
+        lua_rawseti(L, -2, 2); /* after package.preload */
+        lua_pushboolean(L, true);
+        lua_rawsetp(L, LUA_REGISTRYINDEX, &key);
+    }
+    lua_pop(L, 2);
+}
+
+/* __index of the table `talus`: the modules it holds. Upvalue 1 is `require`. */
+static int module_index(lua_State *L)
+{
+    lua_settop(L, 2);
+    const char *name = lua_type(L, 2) == LUA_TSTRING ? lua_tostring(L, 2) : "";
+    for (const char *const *known = functions; *known; known++) {
+        if (strcmp(*known, name) != 0)
+            continue;
+        lua_pushvalue(L, lua_upvalueindex(1));
+        lua_pushfstring(L, PREFIX "%s", name);
+        lua_call(L, 1, 1);
+        lua_pushvalue(L, 2);
+        lua_pushvalue(L, -2);
+        lua_rawset(L, 1);
+        return 1;
+    }
+    return 0;
+}
+
+void tl_lua_library_attach(lua_State *L)
+{
+    tl_lua_library_open(L);
+    lua_createtable(L, 0, 1);
+    lua_getglobal(L, "require");
+    lua_pushcclosure(L, module_index, 1);
+    lua_setfield(L, -2, "__index");
+    lua_setmetatable(L, -2);
+}
+
+int tl_lua_write_file(lua_State *L)
+{
+    tl_lua_arity(L, 2, "talus.write_file");
+    const char *path = tl_lua_text(L, 1, "talus.write_file", "the file's name");
+    if (lua_type(L, 2) != LUA_TSTRING)
+        return tl_lua_fail(L, "talus.write_file: the text must be a string, not %s",
+                           tl_lua_describe(L, 2));
+    size_t length;
+    const char *text = lua_tolstring(L, 2, &length);
+    tl_error error;
+    if (tl_write_file(path, text, length, &error) != TL_OK)
+        return tl_lua_fail(L, "talus.write_file: %s", error.text);
+    return 0;
+}
+
+/* ---------------------------------------------------------------- help ------------------- */
+
+const tl_lua_key tl_lua_plot_keys[] = {
+    {"file", "text in quotes, required", "name of the SVG file; folders are made"},
+    {"series", "list of {x =, y =, name =, style =, colour =}",
+     "lines: lists of numbers x (1, 2, 3, ... when left out) and y; style is \"line\", \"points\" "
+     "or \"both\", colour "
+     "\"#0072b2\". Numbers that are not finite make a gap. Or {history =, component =, against =, "
+     "name =}: history is one "
+     "of model:histories(), component \"x\", \"y\", \"z\" or a number (all when left out), against "
+     "\"time\" or \"cycle\""},
+    {"model", "model", "draws histories of this model"},
+    {"histories", "list of names", "which of them, in this order; all when left out"},
+    {"x_axis, y_axis", "text or {name =, unit =, log =, range =}",
+     "name and unit of the axis; log = true is a logarithmic one, which leaves out numbers not "
+     "above 0; range = {from, "
+     "to} when left out takes in all"},
+    {"title", "text in quotes, may be left out", "stands above the picture"},
+    {"legend", "true or false",
+     "whether a list of the lines stands beside; left out: when there are several, or names"},
+    {"grid", "true or false, default true", "whether ticks have lines across"},
+    {"width, height", "numbers, default 720 and 440", "of the picture, pixels"},
+    {NULL, NULL, NULL},
+};
+
+const tl_lua_key tl_lua_stereonet_keys[] = {
+    {"file", "text in quotes, required", "name of the SVG file; folders are made"},
+    {"model", "model",
+     "draws the joint sets of this model, from the faces of its blocks as they lie now"},
+    {"joints", "list of names",
+     "which of its joint sets (\"J1\"), in this order; all when left out"},
+    {"sets", "list of {name =, dip =, dip_direction =}",
+     "further sets, degrees; or {name =, planes = {{dip, dip_direction}, ...}} for several planes"},
+    {"keyblocks", "list of keyblocks",
+     "what model:keyblocks{...} gave: a cross for the direction of each movement"},
+    {"projection", "\"equal_area\" or \"equal_angle\"",
+     "of Schmidt and Lambert, the default, or of Wulff"},
+    {"great_circles", "\"mean\", \"all\" or \"none\"",
+     "of the mean plane of each set, the default, of every plane, or of none"},
+    {"title", "text in quotes, may be left out", "stands above the picture"},
+    {"legend", "true or false, default true",
+     "whether a list of the sets stands beside, with mean dip/dip direction"},
+    {"grid", "true or false, default true",
+     "whether plunges of 30 and 60 degrees and every 30 degrees of trend are drawn"},
+    {"size", "number, default 480", "of the square picture without the legend, pixels"},
+    {NULL, NULL, NULL},
+};
