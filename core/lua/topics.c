@@ -196,6 +196,14 @@ const tl_lua_topic tl_lua_topics[] = {
          "Sets the law of a joint set (\"J1\"), of one of its planes (\"J1:3\") or of every joint "
          "not named otherwise (\"*\"); without a law's name it changes properties.",
      .type = &laws},
+    {.name = "law_test",
+     .usage = "curve = talus.law_test{law = \"coulomb\", params = {...}, normal_stress = 1e6, path "
+              "= {0.005, "
+              "-0.005}}",
+     .function = "law_test",
+     .keys = tl_lua_law_test_keys,
+     .title = "Fields of the curve",
+     .verbs = tl_lua_law_test_results},
     {.name = "insitu",
      .usage = "model:insitu{stress = {zz = -1e6}, gradient = {zz = 2e4}, at = {0, 0, 0}}",
      .function = "insitu",
