@@ -51,6 +51,10 @@ static const tl_value exponential[] = {NUMBER("kn", KN),
                                        NUMBER("distance", 3e-3),
                                        WORD("form", "exponential")};
 
+static const tl_value mortar[] = {
+    NUMBER("kn", KN),  NUMBER("ks", KS), NUMBER("tension", TENSION),  NUMBER("cohesion", COHESION),
+    NUMBER("gi", 0.3), NUMBER("gii", 2), NUMBER("friction", FRICTION)};
+
 typedef struct law_case {
     const char *name;
     tl_args args;
@@ -73,6 +77,7 @@ static const law_case law_cases[] = {
     CASE("coulomb_tensile", bonded_dilating),
     CASE("slip_weakening", weakening),
     CASE("slip_weakening", exponential),
+    CASE("cohesive", mortar),
 };
 
 enum { LAWS = sizeof law_cases / sizeof law_cases[0] };
