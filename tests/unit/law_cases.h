@@ -55,6 +55,10 @@ static const tl_value mortar[] = {
     NUMBER("kn", KN),  NUMBER("ks", KS), NUMBER("tension", TENSION),  NUMBER("cohesion", COHESION),
     NUMBER("gi", 0.3), NUMBER("gii", 2), NUMBER("friction", FRICTION)};
 
+static const tl_value rough[] = {
+    NUMBER("kni", 4e8), NUMBER("ks", KS),          NUMBER("vm", 5e-4),  NUMBER("jrc", 10),
+    NUMBER("jcs", 2e7), NUMBER("phi_r", FRICTION), NUMBER("length", 1), NUMBER("linear_from", 1e6)};
+
 typedef struct law_case {
     const char *name;
     tl_args args;
@@ -78,6 +82,7 @@ static const law_case law_cases[] = {
     CASE("slip_weakening", weakening),
     CASE("slip_weakening", exponential),
     CASE("cohesive", mortar),
+    CASE("barton_bandis", rough),
 };
 
 enum { LAWS = sizeof law_cases / sizeof law_cases[0] };
