@@ -14,28 +14,22 @@
 #include <stdlib.h>
 #include <string.h>
 
-tl_status tl_material_make(tl_model *m, tl_tag tag, const char *joint, const tl_kind *kind,
-                           const tl_args *args, const tl_material *from, tl_material *out)
+/* A law and its properties from what `out` has: those not given stay, with `keep`. */
+static tl_status make(tl_material *out, const tl_args *args, bool keep, const char *context,
+                      tl_error *error)
 {
+    const tl_kind *kind = out->kind;
     const tl_law_ops *ops = kind->ops;
-    *out = (tl_material){.tag = tag, .kind = kind};
-    out->params = calloc(1, kind->params_size + 1);
-    if (!out->params)
-        return tl_fail_memory(&m->error);
-    if (from)
-        memcpy(out->params, from->params, kind->params_size);
-    char context[TL_ERROR_TEXT / 2];
-    snprintf(context, sizeof context, "joint '%.80s', law '%.40s'", joint, kind->name);
     tl_report report = {.size = sizeof report};
-    tl_status status = tl_args_read(kind->params, kind->param_count, kind->param_stride, args,
-                                    from != NULL, out->params, context, &m->error);
+    tl_status status = tl_args_read(kind->params, kind->param_count, kind->param_stride, args, keep,
+                                    out->params, context, error);
     out->self = out->params;
     if (status == TL_OK && ops->create) {
         tl_enter(kind, "create");
         status = ops->create(out->params, &out->self, &report);
         tl_leave();
         if (status != TL_OK)
-            tl_fail(&m->error, status, "%s of plugin '%s': %s", context, tl_plugin_id(kind),
+            tl_fail(error, status, "%s of plugin '%s': %s", context, tl_plugin_id(kind),
                     tl_report_text(&report, status));
     }
     if (status != TL_OK) {
@@ -47,7 +41,7 @@ tl_status tl_material_make(tl_model *m, tl_tag tag, const char *joint, const tl_
     ops->stiffness(out->self, &out->kn, &out->ks);
     tl_leave();
     if (!(out->kn >= 0 && out->ks >= 0 && isfinite(out->kn) && isfinite(out->ks))) {
-        tl_fail(&m->error, TL_E_PLUGIN,
+        tl_fail(error, TL_E_PLUGIN,
                 "%s of plugin '%s': its stiffness() gives kn = %g and ks = %g Pa/m; both must be "
                 "finite and >= 0",
                 context, tl_plugin_id(kind), out->kn, out->ks);
@@ -68,6 +62,26 @@ tl_status tl_material_make(tl_model *m, tl_tag tag, const char *joint, const tl_
     out->pulls = ops->pulls ? ops->pulls(out->self) : TL_PULL_ANY;
     tl_leave();
     return TL_OK;
+}
+
+tl_status tl_law_make(const tl_kind *kind, const tl_args *args, const char *context,
+                      tl_error *error, tl_material *out)
+{
+    *out = (tl_material){.kind = kind, .params = calloc(1, kind->params_size + 1)};
+    return out->params ? make(out, args, false, context, error) : tl_fail_memory(error);
+}
+
+tl_status tl_material_make(tl_model *m, tl_tag tag, const char *joint, const tl_kind *kind,
+                           const tl_args *args, const tl_material *from, tl_material *out)
+{
+    char context[TL_ERROR_TEXT / 2];
+    *out = (tl_material){.tag = tag, .kind = kind, .params = calloc(1, kind->params_size + 1)};
+    if (!out->params)
+        return tl_fail_memory(&m->error);
+    if (from)
+        memcpy(out->params, from->params, kind->params_size);
+    snprintf(context, sizeof context, "joint '%.80s', law '%.40s'", joint, kind->name);
+    return make(out, args, from != NULL, context, &m->error);
 }
 
 static void rebase_point(tl_points_table *p, size_t i, double closure, double old_kn)

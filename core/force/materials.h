@@ -10,6 +10,9 @@ static inline double tl_law_stiffness(const tl_material *law)
     return law->kn > law->ks ? law->kn : law->ks;
 }
 
+/* A law and its properties that belong to no model; `context` begins the sentence of an error. */
+tl_status tl_law_make(const tl_kind *kind, const tl_args *args, const char *context,
+                      tl_error *error, tl_material *out);
 /* Makes a material from a law and arguments; with `from`, properties not given are taken from it. */
 tl_status tl_material_make(tl_model *m, tl_tag tag, const char *joint, const tl_kind *kind,
                            const tl_args *args, const tl_material *from, tl_material *out);

@@ -217,6 +217,11 @@ extern const tl_lua_key tl_lua_profile_fields[], tl_lua_memory_fields[];
 int tl_lua_profile(lua_State *L);
 int tl_lua_memory(lua_State *L);
 
+/* ---- a joint law alone: law_test.c ---- */
+
+extern const tl_lua_key tl_lua_law_test_keys[], tl_lua_law_test_results[];
+int tl_lua_law_test(lua_State *L);
+
 /* ---- items and selections: item.c, selection.c ---- */
 
 /* What differs between blocks and contacts. */

@@ -19,7 +19,7 @@ int luaopen_talus(lua_State *L)
     tl_lua_item_open(L, &tl_lua_contact_kind);
     tl_lua_selection_open(L, &tl_lua_block_kind);
     tl_lua_selection_open(L, &tl_lua_contact_kind);
-    lua_createtable(L, 0, 4);
+    lua_createtable(L, 0, 5);
     tl_lua_model_open(L);
     lua_setfield(L, -2, "model");
     lua_pushcfunction(L, tl_lua_report);
@@ -29,6 +29,8 @@ int luaopen_talus(lua_State *L)
     tl_lua_lists_open(L);
     lua_pushcfunction(L, tl_lua_write_file);
     lua_setfield(L, -2, "write_file");
+    lua_pushcfunction(L, tl_lua_law_test);
+    lua_setfield(L, -2, "law_test");
     lua_pushcfunction(L, module_help);
     lua_setfield(L, -2, "help");
     lua_pushliteral(L, TALUS_VERSION);

@@ -225,6 +225,14 @@ const tl_lua_topic tl_lua_topics[] = {
      .doc = "Lists the laws, dampings or generators that are loaded.",
      .title = "Fields of each",
      .verbs = tl_lua_kinds_results},
+    {.name = "law_test",
+     .usage = "curve = talus.law_test{law = \"coulomb\", params = {...}, normal_stress = 1e6, path "
+              "= {0.005, "
+              "-0.005}}",
+     .function = "law_test",
+     .keys = tl_lua_law_test_keys,
+     .title = "Fields of the curve",
+     .verbs = tl_lua_law_test_results},
     {.name = "insitu",
      .usage = "model:insitu{stress = {zz = -1e6}, gradient = {zz = 2e4}, at = {0, 0, 0}}",
      .function = "insitu",

@@ -212,6 +212,45 @@ static const tl_param keyblocks_params[] = {
              .flags = TL_PARAM_OPTIONAL),
 };
 
+static const tl_param law_test_params[] = {
+    TL_PARAM(TL_PARAM_STRING, tl_law_test, law, "", "name of the law", .flags = TL_PARAM_REQUIRED),
+    TL_PARAM(TL_PARAM_REAL, tl_law_test, normal_stress, "Pa",
+             "normal stress, compression positive, which is held by closing and opening; when left "
+             "out the closure is given, and begins at 0",
+             .flags = TL_PARAM_OPTIONAL),
+    TL_PARAM(TL_PARAM_REAL, tl_law_test, stiffness, "Pa/m",
+             "normal stiffness of the surroundings: normal_stress is that of the start, and rises "
+             "by so much a metre of dilation",
+             .flags = TL_PARAM_OPTIONAL, .min = 0.0, .max = INFINITY),
+    TL_PARAM(TL_PARAM_REAL, tl_law_test, speed, "m/s",
+             "speed of shear, or of closing where nothing is sheared", .def = {1e-5}, .min = 0.0,
+             .max = INFINITY, .flags = TL_PARAM_MIN_OPEN),
+    TL_PARAM(TL_PARAM_INT, tl_law_test, steps, "", "steps of each leg of the path", .def = {200.0},
+             .min = 1.0, .max = TL_LAW_TEST_STEPS),
+    TL_PARAM(TL_PARAM_INT, tl_law_test, every, "",
+             "steps from one point of the curve to the next; the end of a leg is always one",
+             .def = {1.0}, .min = 1.0, .max = TL_LAW_TEST_STEPS),
+};
+
+static const tl_param law_leg_params[] = {
+    TL_PARAM(TL_PARAM_REAL, tl_law_leg, shear, "m", "shear displacement at the end of the leg",
+             .flags = TL_PARAM_OPTIONAL),
+    TL_PARAM(TL_PARAM_REAL, tl_law_leg, closure, "m",
+             "closure at its end, opening negative; without normal_stress of the test only",
+             .flags = TL_PARAM_OPTIONAL),
+    TL_PARAM(TL_PARAM_REAL, tl_law_leg, normal_stress, "Pa",
+             "normal stress at its end; with normal_stress and without stiffness of the test only",
+             .flags = TL_PARAM_OPTIONAL),
+    TL_PARAM(TL_PARAM_REAL, tl_law_leg, time, "s",
+             "how long the leg takes; when left out its length over the speed, or 1 s of one "
+             "without length",
+             .min = 0.0, .max = INFINITY, .flags = TL_PARAM_OPTIONAL | TL_PARAM_MIN_OPEN),
+    TL_PARAM(TL_PARAM_REAL, tl_law_leg, speed, "m/s", "in the place of the test's", .min = 0.0,
+             .max = INFINITY, .flags = TL_PARAM_OPTIONAL | TL_PARAM_MIN_OPEN),
+    TL_PARAM(TL_PARAM_INT, tl_law_leg, steps, "", "in the place of the test's", .min = 1.0,
+             .max = TL_LAW_TEST_STEPS, .flags = TL_PARAM_OPTIONAL),
+};
+
 typedef struct tl_function {
     const char *name, *doc;
     const tl_param *params;
@@ -266,6 +305,11 @@ static const tl_function functions[] = {
      "Finds the bodies that a translation can move out of the others (Shi's theorem), how they "
      "move, and their factor of safety in limit equilibrium.",
      PARAMS(keyblocks_params)},
+    {"law_test",
+     "Tries a joint law on one contact point, without a model: direct shear under a constant "
+     "normal stress, or in surroundings of constant normal stiffness, and closure tests.",
+     PARAMS(law_test_params)},
+    {"law_leg", "One leg of the path of a law_test.", PARAMS(law_leg_params)},
 };
 
 #define FUNCTION_COUNT (sizeof functions / sizeof functions[0])
@@ -286,9 +330,9 @@ const tl_param *tl_function_params(const char *function, size_t *count, const ch
 
 const char *const *tl_function_names(void)
 {
-    static const char *const names[] = {"model",        "insitu",  "tensor",       "timestep",
-                                        "mass_scaling", "load",    "contact_area", "cycle",
-                                        "solve",        "profile", "write_vtk",    "write_section",
-                                        "write_blocks", "filter",  "keyblocks",    NULL};
+    static const char *const names[] = {
+        "model",        "insitu", "tensor",    "timestep", "mass_scaling", "load",
+        "contact_area", "cycle",  "solve",     "profile",  "write_vtk",    "write_section",
+        "write_blocks", "filter", "keyblocks", "law_test", "law_leg",      NULL};
     return names;
 }

@@ -14,24 +14,29 @@ const char *tl_plugin_id(const tl_kind *kind)
     return plugin ? plugin->id : "?";
 }
 
-tl_status tl_unknown_kind(tl_model *m, tl_kind_type type, const char *name)
+tl_status tl_kind_unknown(tl_error *error, tl_kind_type type, const char *name)
 {
     size_t count = 0;
     while (tl_plugin_kind(type, count))
         count++;
     if (count == 0)
         return tl_fail(
-            &m->error, TL_E_NOT_FOUND,
+            error, TL_E_NOT_FOUND,
             "unknown %s '%.80s': no %s is loaded; TALUS_PLUGIN_PATH may name the folder of "
             "the plugins",
             type_names[type], name, type_names[type]);
     const char **names = malloc(count * sizeof *names);
     if (!names)
-        return tl_fail_memory(&m->error);
+        return tl_fail_memory(error);
     for (size_t i = 0; i < count; i++)
         names[i] = tl_plugin_kind(type, i)->name;
     tl_status status =
-        tl_fail_unknown(&m->error, TL_E_NOT_FOUND, "", type_names[type], name, names, count);
+        tl_fail_unknown(error, TL_E_NOT_FOUND, "", type_names[type], name, names, count);
     free(names);
     return status;
+}
+
+tl_status tl_unknown_kind(tl_model *m, tl_kind_type type, const char *name)
+{
+    return tl_kind_unknown(&m->error, type, name);
 }

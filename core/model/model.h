@@ -308,6 +308,7 @@ uint32_t tl_block_row(tl_model *m, tl_id id);
 uint32_t tl_block_row_quiet(const tl_model *m, tl_id id);
 
 /* TL_E_NOT_FOUND: "unknown law 'coulom'; did you mean ...": kinds.c. */
+tl_status tl_kind_unknown(tl_error *error, tl_kind_type type, const char *name);
 tl_status tl_unknown_kind(tl_model *m, tl_kind_type type, const char *name);
 /* Points farther from zero than this, m, are refused: the fifth power of a length, which inertia needs, must be finite
  * with room for densities and sums over bodies. */

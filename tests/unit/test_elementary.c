@@ -6,6 +6,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 #include <talus/elementary.h>
+#include <talus/plugin.h>
 #include <talus/vmath.h>
 
 #define CASES 300000
@@ -13,6 +14,9 @@
 /* The bits of CASES results of each function, summed up; obtained once. Any other number means that some machine or
  * compiler computes something else. */
 #define BITS UINT64_C(0x8a4dbe3fc21aa5f1)
+
+/* The same of the functions for loops over columns. */
+#define LANE_BITS UINT64_C(0xc8ac5e79ad11bdc8)
 
 static uint64_t seed, bits;
 
@@ -76,6 +80,18 @@ typedef struct function {
         (void)y;                                                                                   \
         return name##l(x);                                                                         \
     }
+/* Of tl_lane_NAME. */
+#define OF_LANE(name)                                                                              \
+    static double our_lane_##name(double x, double y)                                              \
+    {                                                                                              \
+        (void)y;                                                                                   \
+        return tl_lane_##name(x);                                                                  \
+    }                                                                                              \
+    static long double exact_lane_##name(long double x, long double y)                             \
+    {                                                                                              \
+        (void)y;                                                                                   \
+        return name##l(x);                                                                         \
+    }
 OF_ONE(sin)
 OF_ONE(cos)
 OF_ONE(tan)
@@ -110,6 +126,46 @@ static double exponent(void)
     return spread(-60, 9);
 }
 
+OF_LANE(exp)
+OF_LANE(log)
+OF_LANE(log1p)
+OF_LANE(asinh)
+OF_LANE(tan)
+
+static double positive(void)
+{
+    return fabs(spread(-1000, 1000));
+}
+
+static double near_one(void)
+{
+    return 0.5 + uniform();
+}
+
+static double acute(void)
+{
+    return uniform() < 0.5 ? fabs(spread(-60, 0)) : 1.5707 * uniform();
+}
+
+static double in_exp(void)
+{
+    return uniform() < 0.5 ? spread(-60, 0) : 708 * (2 * uniform() - 1);
+}
+
+static double in_asinh(void)
+{
+    return spread(-60, 490);
+}
+
+static const function lane_functions[] = {
+    {"lane exp", our_lane_exp, exact_lane_exp, 1, in_exp, half_turn},
+    {"lane log", our_lane_log, exact_lane_log, 1, positive, half_turn},
+    {"lane log, 1", our_lane_log, exact_lane_log, 1, near_one, half_turn},
+    {"lane log1p", our_lane_log1p, exact_lane_log1p, 1.5, above_minus_one, half_turn},
+    {"lane asinh", our_lane_asinh, exact_lane_asinh, 2, in_asinh, half_turn},
+    {"lane tan", our_lane_tan, exact_lane_tan, 2.5, acute, half_turn},
+};
+
 static const function functions[] = {
     {"sin", our_sin, exact_sin, 0.85, angle, half_turn},
     {"cos", our_cos, exact_cos, 0.85, angle, half_turn},
@@ -122,31 +178,77 @@ static const function functions[] = {
     {"cbrt", our_cbrt, exact_cbrt, 0.51, any, half_turn},
 };
 
+static void check_errors(const function *g)
+{
+    double worst = 0, at = 0;
+    for (int i = 0; i < CASES; i++) {
+        double x = g->x(), y = g->y(), got = g->ours(x, y);
+        note(got);
+        double error = ulps(got, g->exact(x, y));
+        if (!(error <= worst)) {
+            worst = error;
+            at = x;
+        }
+    }
+    /* where long double is no longer than double, the reference itself is off by its own error */
+    double bound = g->bound + (LDBL_MANT_DIG > DBL_MANT_DIG ? 0 : 1);
+    printf("%-12s %.3f ulp, at %.17g\n", g->name, worst, at);
+    CHECK(worst <= bound);
+}
+
 TEST(errors_are_within_their_bounds)
 {
-    for (size_t f = 0; f < sizeof functions / sizeof *functions; f++) {
-        const function *g = &functions[f];
-        double worst = 0, at = 0;
-        for (int i = 0; i < CASES; i++) {
-            double x = g->x(), y = g->y(), got = g->ours(x, y);
-            note(got);
-            double error = ulps(got, g->exact(x, y));
-            if (!(error <= worst)) {
-                worst = error;
-                at = x;
-            }
-        }
-        /* where long double is no longer than double, the reference itself is off by its own error */
-        double bound = g->bound + (LDBL_MANT_DIG > DBL_MANT_DIG ? 0 : 1);
-        printf("%-12s %.3f ulp, at %.17g\n", g->name, worst, at);
-        CHECK(worst <= bound);
-    }
+    for (size_t f = 0; f < sizeof functions / sizeof *functions; f++)
+        check_errors(&functions[f]);
 }
 
 TEST(bits_are_the_same_everywhere)
 {
     printf("bits 0x%016llx\n", (unsigned long long)bits);
     CHECK(bits == BITS);
+}
+
+TEST(lanes)
+{
+    bits = 0;
+    for (size_t f = 0; f < sizeof lane_functions / sizeof *lane_functions; f++)
+        check_errors(&lane_functions[f]);
+    printf("bits 0x%016llx\n", (unsigned long long)bits);
+    CHECK(bits == LANE_BITS);
+    CHECK(tl_lane_exp(0) == 1 && tl_lane_log(1) == 0 && tl_lane_tan(0) == 0 &&
+          tl_lane_asinh(0) == 0);
+    CHECK(tl_lane_exp(-1e9) == tl_lane_exp(-708) && tl_lane_exp(1e9) == tl_lane_exp(709));
+    CHECK(isnan(tl_lane_exp(NAN)) && isnan(tl_lane_log(NAN)) && isnan(tl_lane_tan(NAN)));
+    CHECK(isnan(tl_lane_log1p(NAN)) && isnan(tl_lane_asinh(NAN)) && isnan(tl_lane_log(INFINITY)));
+}
+
+enum { COLUMN = 4096 };
+
+/* Vectors of whatever width give the bits of numbers one by one. */
+TL_VECTORIZED static void fill_columns(const double *restrict x, double (*restrict out)[COLUMN])
+{
+#pragma omp simd
+    for (int i = 0; i < COLUMN; i++) {
+        out[0][i] = tl_lane_exp(x[i]);
+        out[1][i] = tl_lane_log(1e-3 + fabs(x[i]));
+        out[2][i] = tl_lane_log1p(fabs(x[i]));
+        out[3][i] = tl_lane_asinh(x[i]);
+        out[4][i] = tl_lane_tan(fabs(x[i]) * (1. / 512));
+    }
+}
+
+TEST(columns_have_the_bits_of_numbers)
+{
+    static double x[COLUMN], out[5][COLUMN];
+    for (int i = 0; i < COLUMN; i++)
+        x[i] = 700 * (2 * uniform() - 1);
+    fill_columns(x, out);
+    for (int i = 0; i < COLUMN; i++) {
+        volatile double one = x[i];
+        CHECK(out[0][i] == tl_lane_exp(one) && out[1][i] == tl_lane_log(1e-3 + fabs(one)));
+        CHECK(out[2][i] == tl_lane_log1p(fabs(one)) && out[3][i] == tl_lane_asinh(one));
+        CHECK(out[4][i] == tl_lane_tan(fabs(one) * (1. / 512)));
+    }
 }
 
 /* Equal, and of the same sign where both are zero. */
@@ -196,6 +298,8 @@ int main(void)
 {
     RUN(errors_are_within_their_bounds);
     RUN(bits_are_the_same_everywhere);
+    RUN(lanes);
+    RUN(columns_have_the_bits_of_numbers);
     RUN(special_values);
     RUN(many_turns);
     RUN(degrees);

@@ -1,45 +1,6 @@
 /* test_laws.c - what every contact law must keep to, and what each of ours must do. The laws come
  * through the real loader, as a model gets them. */
-#include "law_lanes.h"
-
-/* kn, ks and strengths of a stiff joint, in SI units. */
-#define KN 1e9
-#define KS 4e8
-#define FRICTION 30.0
-#define COHESION 2e4
-#define TENSION 1e4
-#define DILATION 12.0
-
-#define NUMBER(name, value)                                                                        \
-    {                                                                                              \
-        .key = (name), .type = TL_VALUE_NUMBER, .number = (value)                                  \
-    }
-
-static const tl_value stiffnesses[] = {NUMBER("kn", KN), NUMBER("ks", KS)};
-static const tl_value frictional[] = {NUMBER("kn", KN), NUMBER("ks", KS),
-                                      NUMBER("friction", FRICTION), NUMBER("cohesion", COHESION)};
-static const tl_value bonded[] = {NUMBER("kn", KN), NUMBER("ks", KS), NUMBER("friction", FRICTION),
-                                  NUMBER("cohesion", COHESION), NUMBER("tension", TENSION)};
-
-static const tl_value dilating[] = {NUMBER("kn", KN), NUMBER("ks", KS),
-                                    NUMBER("friction", FRICTION), NUMBER("cohesion", COHESION),
-                                    NUMBER("dilation", DILATION)};
-static const tl_value bonded_dilating[] = {
-    NUMBER("kn", KN),           NUMBER("ks", KS),
-    NUMBER("friction", 45),     NUMBER("residual_friction", FRICTION),
-    NUMBER("tension", TENSION), NUMBER("cohesion", COHESION),
-    NUMBER("dilation", 20),     NUMBER("dilation_limit", 2e-4)};
-
-enum { LAWS = 5 };
-
-static law open_number(int number)
-{
-    static const char *const names[LAWS] = {"elastic", "coulomb", "coulomb_tensile", "coulomb",
-                                            "coulomb_tensile"};
-    const tl_args args[LAWS] = {
-        {stiffnesses, 2}, {frictional, 4}, {bonded, 5}, {dilating, 5}, {bonded_dilating, 8}};
-    return law_open(names[number], &args[number]);
-}
+#include "law_cases.h"
 
 static double limit_of(double area, double f_n)
 {

@@ -1,4 +1,4 @@
-/* talus/elementary.h - sines, arc tangents, logarithms and roots that give the same bits everywhere.
+/* talus/elementary.h - sines, arc tangents, logarithms, exponentials and roots that give the same bits everywhere.
  *
  * Those of the C library differ in their last bit between versions of the library and between processors with
  * and without FMA. The functions here use only +, -, *, /, sqrt, fma, floor, fmod and frexp, which IEEE 754 and C
@@ -8,12 +8,17 @@
  * rounding of its largest term in a second number. Each function states its largest error in units in the last
  * place (ulp), which tests/unit/test_elementary.c measures against long double.
  *
+ * The functions tl_lane_* are for loops over columns: they have no branch, no call and no fma, so that compilers make
+ * vectors of them, and each says which arguments it takes.
+ *
  * Limits: a sine, cosine or tangent of more than TL_TURNS_EXACT rad takes its argument modulo the double
  * nearest to 2 pi. Not-a-number and infinite arguments give what C's functions give; errno is not set. */
 #ifndef TALUS_ELEMENTARY_H
 #define TALUS_ELEMENTARY_H
 
 #include <math.h>
+#include <stdint.h>
+#include <string.h>
 
 /* Largest argument, rad, that is reduced without error: products of its quarter turns with 33 bits of pi/2 are
  * exact below it. */
@@ -276,6 +281,114 @@ static inline double tl_cbrt(double x)
     double over = (y3 - m) + (fma(y2, y, -y3) + fma(y, y, -y2) * y);
     y -= over / (3 * y2);
     return copysign(ldexp(y, third), x);
+}
+
+/* ---------------------------------------------------------------- in loops over columns -- */
+
+static inline uint64_t tl_bits_of(double x)
+{
+    uint64_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    return bits;
+}
+
+static inline double tl_of_bits(uint64_t bits)
+{
+    double x;
+    memcpy(&x, &bits, sizeof x);
+    return x;
+}
+
+/* exp(x), within 1 ulp. Arguments beyond [-708, 709] count as the nearer of the two. */
+static inline double tl_lane_exp(double x)
+{
+    x = x < -708 ? -708 : x;
+    x = x > 709 ? 709 : x;
+    /* adding 1.5 2^52 rounds to a whole number, which is then in the last bits */
+    double k = x * 0x1.71547652b82fep+0 + 0x1.8p52, n = k - 0x1.8p52;
+    double scale = tl_of_bits((tl_bits_of(k) + 1023) << 52);
+    double high = x - n * 0x1.62e42feep-1, low = n * 0x1.a39ef35793c76p-33;
+    double r = high - low, e = (high - r) - low;
+    double p = 1. / 6 +
+               r * (1. / 24 +
+                    r * (1. / 120 +
+                         r * (1. / 720 +
+                              r * (1. / 5040 +
+                                   r * (1. / 40320 +
+                                        r * (1. / 362880 +
+                                             r * (1. / 3628800 +
+                                                  r * (1. / 39916800 +
+                                                       r * (1. / 479001600 +
+                                                            r * (1. / 6227020800 +
+                                                                 r * (1. / 87178291200.)))))))))));
+    double s = 1 + r, lost = (1 - s) + r;
+    return scale * (s + (lost + (e + r * r * (0.5 + r * p))));
+}
+
+/* log x, within 1 ulp, for positive normal x; NaN of an infinite x. */
+static inline double tl_lane_log(double x)
+{
+    /* x = m 2^e with m in [sqrt(1/2), sqrt 2) */
+    uint64_t bits = tl_bits_of(x);
+    uint64_t k = (bits - 0x3fe6a09e667f3bcdu + ((uint64_t)1024 << 52)) >> 52; /* e + 1024 */
+    double e = tl_of_bits(k | 0x4330000000000000u) - (0x1p52 + 1024);
+    double f = tl_of_bits(bits - (k << 52) + ((uint64_t)1024 << 52)) - 1;
+    double s = f / (2 + f), z = s * s;
+    /* log(1 + f) = 2 artanh s = f - s (f - r) */
+    double r =
+        z * (2. / 3 +
+             z * (2. / 5 +
+                  z * (2. / 7 +
+                       z * (2. / 9 +
+                            z * (2. / 11 +
+                                 z * (2. / 13 +
+                                      z * (2. / 15 +
+                                           z * (2. / 17 + z * (2. / 19 + z * (2. / 21))))))))));
+    double log = e * 0x1.62e42feep-1 + (f - (s * (f - r) - e * 0x1.a39ef35793c76p-33));
+    return log + (x - x); /* not-a-number stays one */
+}
+
+/* log(1 + x), within 1.5 ulp, for -1 < x < 1e300. */
+static inline double tl_lane_log1p(double x)
+{
+    double w = 1 + x, lost = x > 1 ? 1 - (w - x) : x - (w - 1);
+    return tl_lane_log(w) + lost / w;
+}
+
+/* arsinh x, within 2 ulp, for |x| < 1e150. */
+static inline double tl_lane_asinh(double x)
+{
+    double a = x < 0 ? -x : x, a2 = a * a;
+    double y = tl_lane_log1p(a + a2 / (1 + sqrt(1 + a2)));
+    return x < 0 ? -y : y;
+}
+
+/* tan x, within 2.5 ulp, for 0 <= x < pi/2 and no nearer to pi/2 than 1e-8. */
+static inline double tl_lane_tan(double x)
+{
+    /* of more than pi/4 the cotangent of what is left to pi/2 */
+    double rest = 0x1.921fb54442d18p+0 - x, rest_lo = 0x1.1a62633145c07p-54;
+    const double quarter = 0x1.921fb54442d18p-1;
+    double y = x > quarter ? rest : x, lo = x > quarter ? rest_lo : 0;
+    double z = y * y;
+    double s =
+        -1. / 6 +
+        z * (1. / 120 + z * (-1. / 5040 +
+                             z * (1. / 362880 +
+                                  z * (-1. / 39916800 +
+                                       z * (1. / 6227020800 + z * (-1. / 1307674368000 +
+                                                                   z * (1. / 355687428096000)))))));
+    double c = 1. / 24 +
+               z * (-1. / 720 +
+                    z * (1. / 40320 +
+                         z * (-1. / 3628800 +
+                              z * (1. / 479001600 +
+                                   z * (-1. / 87178291200 + z * (1. / 20922789888000 -
+                                                                 z * (1. / 6402373705728000.)))))));
+    double half = 0.5 * z, one = 1 - half;
+    double sine = y + (y * z * s + lo * one);
+    double cosine = one + (((1 - one) - half) + (z * z * c - y * lo));
+    return (x > quarter ? cosine : sine) / (x > quarter ? sine : cosine);
 }
 
 #endif

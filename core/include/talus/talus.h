@@ -1,4 +1,5 @@
-/* talus/talus.h - the kernel's C interface: build a model, run it, ask it; output.h, write it; state.h, keep it.
+/* talus/talus.h - the kernel's C interface: build a model, run it, ask it; output.h,
+ * write it; state.h, keep it; law_test.h, try a joint law alone.
  *
  * Conventions. Coordinates x east, y north, z up; any consistent units (SI in the examples).
  * Stress tensors are tension positive, joint stresses and forces compression positive. Angles of
@@ -11,6 +12,7 @@
 #define TALUS_TALUS_H
 
 #include <stdbool.h>
+#include <talus/law_test.h>
 #include <talus/output.h>
 #include <talus/plugin.h>
 #include <talus/plugins.h>

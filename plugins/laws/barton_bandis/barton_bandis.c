@@ -1,0 +1,430 @@
+/* barton_bandis.c - law "barton_bandis": rough joints, by roughness (JRC), wall strength (JCS) and residual friction.
+ *
+ *     s = kni v / (1 - v / vm)                       normal stress; v = v0 + closure + opening, s(v0) A = f_n0
+ *     JRC = JRC0 (L / L0)^(-0.02 JRC0),  JCS = JCS0 (L / L0)^(-0.03 JRC0)
+ *     i = JRC log10(JCS / s),  from 0 to 70 deg - phi_r
+ *     |f_s| <= A s tan(phi_r + m(u / u_peak) i) / reduction,    u_peak = L / 500 (JRC / L)^0.33
+ *     opening += tan(m i / 2) slip                   while m > 0
+ *
+ * m is JRC_mob / JRC, a line through the points of `mobilised`; below u = 0.3 u_peak the angle rises from 0 to phi_r. The
+ * displacement u is the length of the slip and the stretch of the shear spring, so a step of whatever length ends on the curve.
+ * Beyond the stress `linear_from` closure is linear with the tangent there, which is the stiffness that the time step
+ * needs.
+ *
+ * Source: Barton and Choubey, Rock Mech. 10 (1977) 1-54; Bandis, Lumsden and Barton, Int. J. Rock Mech. Min. Sci. 18 (1981) 1-21
+ * and 20 (1983) 249-268; Barton, Bandis and Bakhtar, ibid. 22 (1985) 121-140.
+ *
+ * Energy turned to heat: the work of slip, less what it stores in the normal spring by opening the joint.
+ *
+ * Limits: slip back opens the joint further, and wears it as slip forth does. The normal spring is not linear: the stored energy
+ * of field contacts, which the host has from a linear pressure, is not its own there. */
+#include <talus/elementary.h>
+#include <talus/plugin.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#define DEGREE (3.14159265358979323846 / 180)
+#define LN10 2.30258509299404568402
+/* Lanes worked on at a time: what is noted of them stays in the nearest cache. */
+#define STRIDE 64u
+/* Scaling a force down to its limit, and the slip that follows from it, leave it within some roundings of the limit; without
+ * this margin a point at rest would be scaled down by them in every step. */
+#define ROUNDING 1e-14
+/* Newton's passes for the slip that opens the joint and so raises its own strength. Those that have not met after them, as after
+ * a step of many u_peak, do not open in that step. */
+#define PASSES 5
+/* Largest angle of friction with roughness, deg: Barton and Choubey. */
+#define STEEPEST 70
+/* Normal stress, Pa, whose logarithm is taken for those below. */
+#define FAINT 1e-200
+/* Closure over vm up to which the stored energy is summed as a series: its closed form is a difference of like numbers. */
+#define SERIES 0.03125
+
+typedef struct params {
+    double jrc, jcs, phi_r, lab_length, length, kni, vm, ks, linear_from, reduction;
+    int32_t dilation;
+} params;
+
+static const tl_param param_table[] = {
+    TL_PARAM(TL_PARAM_REAL, params, jrc, "", "joint roughness coefficient of the length lab_length",
+             .flags = TL_PARAM_REQUIRED, .min = 0, .max = 30),
+    TL_PARAM(TL_PARAM_REAL, params, jcs, "Pa",
+             "joint wall compressive strength of the length lab_length",
+             .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
+    TL_PARAM(TL_PARAM_REAL, params, phi_r, "deg", "residual angle of friction",
+             .flags = TL_PARAM_REQUIRED | TL_PARAM_MAX_OPEN, .min = 0, .max = STEEPEST),
+    TL_PARAM(TL_PARAM_REAL, params, lab_length, "m", "length L0 of the specimen of jrc and jcs",
+             .def = {0.1}, .flags = TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
+    TL_PARAM(TL_PARAM_REAL, params, length, "m",
+             "length L of the joint between crossings; not given: lab_length",
+             .flags = TL_PARAM_OPTIONAL | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
+    TL_PARAM(TL_PARAM_REAL, params, kni, "Pa/m", "normal stiffness of the unloaded joint",
+             .alias = "kn", .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0,
+             .max = INFINITY),
+    TL_PARAM(TL_PARAM_REAL, params, vm, "m", "largest closure, from the unloaded joint",
+             .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
+    TL_PARAM(TL_PARAM_REAL, params, ks, "Pa/m", "shear stiffness where nothing slips",
+             .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
+    TL_PARAM(TL_PARAM_REAL, params, linear_from, "Pa",
+             "normal stress beyond which closure is linear; a smaller one allows a longer time "
+             "step; not given: the wall strength of the joint's length",
+             .flags = TL_PARAM_OPTIONAL | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
+    TL_PARAM(TL_PARAM_REAL, params, reduction, "", "the shear strength is divided by it",
+             .def = {1}, .flags = TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
+    TL_PARAM(TL_PARAM_BOOL, params, dilation, "", "whether slip opens the joint", .def = {1}),
+};
+
+static const tl_state state_table[] = {
+    {.size = sizeof(tl_state),
+     .kind = TL_STATE_SCALAR,
+     .transfer = TL_TRANSFER_COPY,
+     .name = "slip",
+     .unit = "m",
+     .doc = "length of the slip so far",
+     .initial = 0},
+    {.size = sizeof(tl_state),
+     .kind = TL_STATE_SCALAR,
+     .transfer = TL_TRANSFER_COPY,
+     .name = "opening",
+     .unit = "m",
+     .doc = "how far slip has opened the joint",
+     .initial = 0},
+};
+
+typedef struct rough {
+    double kni, vm, ks;
+    double v_linear, s_linear,
+        k_linear;    /* where closure becomes linear: closure, stress, stiffness */
+    double jrc, jcs; /* of the joint's length */
+    double residual; /* rad */
+    double per_peak; /* 1 / u_peak */
+    double per_reduction, dilation;
+} rough;
+
+static double power(double x, double exponent)
+{
+    return x > 0 ? tl_lane_exp(exponent * tl_lane_log(x)) : 0;
+}
+
+static tl_status create(const void *given, void **self, tl_report *report)
+{
+    const params *p = given;
+    double length = isnan(p->length) ? p->lab_length : p->length, ratio = length / p->lab_length;
+    double jrc = p->jrc * power(ratio, -0.02 * p->jrc), jcs = p->jcs * power(ratio, -0.03 * p->jrc);
+    double linear = isnan(p->linear_from) ? jcs : p->linear_from, unit = p->kni * p->vm;
+    double k = p->kni * (1 + linear / unit) * (1 + linear / unit);
+    double peak = length / 500 * power(jrc / length, 0.33);
+    if (!isfinite(k)) {
+        snprintf(
+            report->text, sizeof report->text,
+            "linear_from = %g Pa is too much for kni vm = %g Pa: the stiffness there, kni (1 + "
+            "linear_from / (kni vm))^2, is no number",
+            linear, unit);
+        return TL_E_ARGUMENT;
+    }
+    rough *law = malloc(sizeof *law);
+    if (!law) {
+        snprintf(report->text, sizeof report->text, "out of memory");
+        return TL_E_MEMORY;
+    }
+    *law = (rough){.kni = p->kni,
+                   .vm = p->vm,
+                   .ks = p->ks,
+                   .v_linear = linear * p->vm / (unit + linear),
+                   .s_linear = linear,
+                   .k_linear = k,
+                   .jrc = jrc,
+                   .jcs = jcs,
+                   .residual = p->phi_r * DEGREE,
+                   .per_peak = peak > 0 ? 1 / peak : 1e300, /* smooth: all at once */
+                   .per_reduction = 1 / p->reduction,
+                   .dilation = p->dilation ? 1 : 0};
+    *self = law;
+    return TL_OK;
+}
+
+/* ---------------------------------------------------------------- closure ---------------- */
+
+/* Normal stress at a closure from the unloaded joint; 0 where it is open. */
+static inline double stress_at(const rough *law, double v)
+{
+    double curved = v < law->v_linear ? v : law->v_linear, beyond = v - curved;
+    double stress = law->kni * curved / (1 - curved / law->vm) + law->k_linear * beyond;
+    return v < 0 ? 0 : stress;
+}
+
+/* Its slope. */
+static inline double slope_at(const rough *law, double v)
+{
+    double curved = v < law->v_linear ? v : law->v_linear, open = 1 - curved / law->vm;
+    return v < 0 ? 0 : law->kni / (open * open);
+}
+
+/* The closure of a stress, that of an initial force; one that pulls goes on with the stiffness kni. */
+static inline double closure_of(const rough *law, double stress)
+{
+    double curved = stress < law->s_linear ? stress : law->s_linear;
+    double pressed = curved > 0 ? curved : 0;
+    double v = pressed * law->vm / (law->kni * law->vm + pressed);
+    return v + (curved - pressed) / law->kni + (stress - curved) / law->k_linear;
+}
+
+/* Energy stored per area. */
+static inline double energy_at(const rough *law, double v)
+{
+    double curved = v < law->v_linear ? v : law->v_linear, beyond = v - curved;
+    double x = curved > 0 ? curved / law->vm : 0;
+    double y = x < SERIES ? x : SERIES;
+    double series =
+        y * y *
+        (1. / 2 +
+         y * (1. / 3 +
+              y * (1. / 4 +
+                   y * (1. / 5 +
+                        y * (1. / 6 +
+                             y * (1. / 7 + y * (1. / 8 + y * (1. / 9 + y * (1. / 10)))))))));
+    double closed = -(x + tl_lane_log1p(-x));
+    double hyperbola = law->kni * law->vm * law->vm * (x < SERIES ? series : closed);
+    return hyperbola + beyond * (law->s_linear + 0.5 * law->k_linear * beyond);
+}
+
+/* ---------------------------------------------------------------- strength --------------- */
+
+/* JRC_mob / JRC at x = u / u_peak; 0 up to 0.3. */
+static inline double mobilised(double x)
+{
+    double m = x > 0.3 ? (x - 0.3) * (0.75 / 0.3) : 0;
+    m = x > 0.6 ? 0.75 + (x - 0.6) * (0.25 / 0.4) : m;
+    m = x > 1 ? 1 - (x - 1) * 0.15 : m;
+    m = x > 2 ? 0.85 - (x - 2) * (0.15 / 2) : m;
+    m = x > 4 ? 0.7 - (x - 4) * (0.2 / 6) : m;
+    m = x > 10 ? 0.5 - (x - 10) * (0.1 / 15) : m;
+    m = x > 25 ? 0.4 - (x - 25) * (0.4 / 75) : m;
+    return x >= 100 ? 0 : m;
+}
+
+/* The part i of the angle that is due to roughness, rad, before m. */
+static inline double roughness(const rough *law, double stress)
+{
+    double s = stress > FAINT ? stress : FAINT, most = STEEPEST * DEGREE - law->residual;
+    double i = law->jrc * DEGREE / LN10 * tl_lane_log(law->jcs / s);
+    i = i > 0 ? i : 0;
+    return i < most ? i : most;
+}
+
+/* Strength at a normal stress, with `m` mobilised and the share `base` of the residual angle. */
+static inline double strength_at(const rough *law, double stress, double m, double base)
+{
+    double angle = base * law->residual + m * roughness(law, stress);
+    return stress * tl_lane_tan(angle) * law->per_reduction;
+}
+
+/* How fast it rises with the stress. */
+static inline double rise_at(const rough *law, double stress, double m, double base)
+{
+    double i = roughness(law, stress), most = STEEPEST * DEGREE - law->residual;
+    double tangent = tl_lane_tan(base * law->residual + m * i);
+    double falls = ((i > 0) & (i < most)) ? m * law->jrc * DEGREE / LN10 : 0;
+    return (tangent - falls * (1 + tangent * tangent)) * law->per_reduction;
+}
+
+/* ---------------------------------------------------------------- update ----------------- */
+
+/* What a step comes to: stresses are those of the area. */
+typedef struct trial {
+    double walls[STRIDE], opening[STRIDE]; /* closure v is their sum */
+    double v[STRIDE], x[STRIDE], y[STRIDE], z[STRIDE], shear[STRIDE], stress[STRIDE];
+    double before[STRIDE], m[STRIDE], base[STRIDE], limit[STRIDE], slip[STRIDE], lift[STRIDE];
+} trial;
+
+/* Stresses as if nothing slipped, and the strength; whether some lane is beyond its own. */
+static inline __attribute__((always_inline)) double press(const rough *given,
+                                                          const tl_law_batch *batch, uint32_t begin,
+                                                          uint32_t lanes, trial *restrict t)
+{
+    const double *restrict area = batch->area + begin, *restrict closure = batch->closure + begin;
+    const double *restrict f_n0 = batch->f_n0 + begin, *restrict slip = batch->state[0] + begin;
+    const double *restrict opening = batch->state[1] + begin;
+    const double *restrict du_x = batch->du_s[0] + begin, *restrict du_y = batch->du_s[1] + begin;
+    const double *restrict du_z = batch->du_s[2] + begin;
+    const double *restrict f_x = batch->f_s[0] + begin, *restrict f_y = batch->f_s[1] + begin;
+    const double *restrict f_z = batch->f_s[2] + begin, *restrict f_n = batch->f_n + begin;
+    const rough law = *given;
+    double beyond = 0;
+#pragma omp simd reduction(+ : beyond)
+    for (uint32_t i = 0; i < lanes; i++) {
+        double per = area[i] > 0 ? 1 / area[i] : 0, spring = law.ks * area[i];
+        double x = f_x[i] - spring * du_x[i];
+        double y = f_y[i] - spring * du_y[i];
+        double z = f_z[i] - spring * du_z[i];
+        double shear = sqrt(x * x + y * y + z * z) * per;
+        double walls = closure_of(&law, f_n0[i] * per) + closure[i], v = walls + opening[i];
+        double stress = stress_at(&law, v);
+        double u = (slip[i] + shear / law.ks) * law.per_peak;
+        double base = u < 0.3 ? u / 0.3 : 1, m = mobilised(u);
+        double limit = strength_at(&law, stress, m, base);
+        beyond += shear > limit * (1 + ROUNDING) ? 1 : 0;
+        t->walls[i] = walls;
+        t->opening[i] = opening[i];
+        t->v[i] = v;
+        t->x[i] = x;
+        t->y[i] = y;
+        t->z[i] = z;
+        t->shear[i] = shear;
+        t->stress[i] = stress;
+        t->before[i] = f_n[i] * per;
+        t->m[i] = m;
+        t->base[i] = base;
+        t->limit[i] = limit;
+        t->slip[i] = 0;
+        t->lift[i] = 0;
+    }
+    return beyond;
+}
+
+/* Slip of the lanes that are beyond their strength, how far it opens the joint, and the strength after it:
+ * shear - ks slip = strength(s(v + d slip)). */
+static inline __attribute__((always_inline)) void rub(const rough *given, uint32_t lanes,
+                                                      trial *restrict t)
+{
+    const rough law = *given;
+    double opens[STRIDE], slip[STRIDE];
+#pragma omp simd
+    for (uint32_t i = 0; i < lanes; i++) {
+        /* walls that were pressed ride up from there, those that meet now from what presses them now */
+        double pressed = t->before[i] > 0 ? t->before[i] : t->stress[i];
+        opens[i] = law.dilation * tl_lane_tan(0.5 * t->m[i] * roughness(&law, pressed));
+        slip[i] = 0;
+    }
+    for (int k = 0; k < PASSES; k++)
+#pragma omp simd
+        for (uint32_t i = 0; i < lanes; i++) {
+            double v = t->v[i] + opens[i] * slip[i], stress = stress_at(&law, v);
+            double strength = strength_at(&law, stress, t->m[i], t->base[i]);
+            double over = t->shear[i] - law.ks * slip[i] - strength;
+            double rise = rise_at(&law, stress, t->m[i], t->base[i]) * slope_at(&law, v) * opens[i];
+            double next = slip[i] + over / (law.ks + (rise > 0 ? rise : 0));
+            slip[i] = next > 0 ? next : 0;
+        }
+#pragma omp simd
+    for (uint32_t i = 0; i < lanes; i++) {
+        double limit = t->limit[i], shear = t->shear[i], lift = opens[i] * slip[i];
+        double stress = stress_at(&law, t->walls[i] + (t->opening[i] + lift));
+        double after = strength_at(&law, stress, t->m[i], t->base[i]);
+        double meets = ((t->v[i] >= 0) | ((t->before[i] > 0) & (stress > 0))) ? 1 : 0;
+        double slips = shear > limit * (1 + ROUNDING) ? meets : 0;
+        double opened = slips * (after < shear ? 1 : 0);
+        double reached = opened > 0 ? after : limit;
+        t->lift[i] = opened > 0 ? lift : 0;
+        t->stress[i] = opened > 0 ? stress : t->stress[i];
+        t->limit[i] = reached;
+        t->slip[i] = slips > 0 ? (shear - reached) / law.ks : 0;
+    }
+}
+
+/* Forces, states, energies and flags; `mark` takes the flags as doubles: a loop over lanes of two widths is not vectorised for
+ * every machine. */
+static inline __attribute__((always_inline)) void settle(const rough *given,
+                                                         const tl_law_batch *batch, uint32_t begin,
+                                                         uint32_t lanes, const trial *restrict t,
+                                                         double *restrict mark,
+                                                         double *restrict stored,
+                                                         double *restrict dissipated)
+{
+    const double *restrict area = batch->area + begin;
+    double *restrict f_n = batch->f_n + begin, *restrict f_x = batch->f_s[0] + begin;
+    double *restrict f_y = batch->f_s[1] + begin, *restrict f_z = batch->f_s[2] + begin;
+    double *restrict slip = batch->state[0] + begin, *restrict opening = batch->state[1] + begin;
+    const rough law = *given;
+    const double half_s = 0.5 / law.ks;
+#pragma omp simd
+    for (uint32_t i = 0; i < lanes; i++) {
+        double limit = t->limit[i], shear = t->shear[i], opened = t->opening[i] + t->lift[i];
+        double v = t->walls[i] + opened;
+        double slips = shear > limit * (1 + ROUNDING) ? 1 : 0, whole = shear * area[i];
+        double scale = slips > 0 ? limit / (slips > 0 ? shear : 1) : 1, after = scale * shear;
+        double held = energy_at(&law, v), before = energy_at(&law, t->v[i]);
+        double along = f_x[i] * t->x[i] + f_y[i] * t->y[i] + f_z[i] * t->z[i];
+        double mean = 0.5 * (along / (whole > 0 ? whole : 1) + limit * area[i]);
+        double work = mean * (shear - limit) / law.ks;
+        double heat = slips > 0 ? work - (held - before) * area[i] : 0;
+        dissipated[i] = heat > 0 ? heat : 0;
+        stored[i] = area[i] * (held + half_s * after * after);
+        mark[i] = v < 0 ? TL_POINT_OPEN : slips * TL_POINT_SLIPPING;
+        f_n[i] = area[i] * t->stress[i];
+        f_x[i] = scale * t->x[i];
+        f_y[i] = scale * t->y[i];
+        f_z[i] = scale * t->z[i];
+        slip[i] = slip[i] + t->slip[i];
+        opening[i] = opened;
+    }
+}
+
+TL_VECTORIZED static tl_status update(const void *self, const tl_law_batch *batch,
+                                      tl_report *report)
+{
+    (void)report;
+    double mark[STRIDE], stored[STRIDE], dissipated[STRIDE];
+    trial t;
+    for (uint32_t begin = 0; begin < batch->count; begin += STRIDE) {
+        uint32_t left = batch->count - begin, lanes = left < STRIDE ? left : STRIDE;
+        if (press(self, batch, begin, lanes, &t) > 0)
+            rub(self, lanes, &t);
+        settle(self, batch, begin, lanes, &t, mark, batch->stored ? batch->stored + begin : stored,
+               batch->dissipated ? batch->dissipated + begin : dissipated);
+        for (uint32_t i = 0; i < lanes; i++)
+            batch->flags[begin + i] = (uint32_t)(int32_t)mark[i];
+    }
+    return TL_OK;
+}
+
+static void stiffness(const void *self, double *kn, double *ks)
+{
+    const rough *law = self;
+    *kn = law->k_linear;
+    *ks = law->ks;
+}
+
+static const tl_law_ops ops = {.size = sizeof ops,
+                               .create = create,
+                               .update = update,
+                               .stiffness = stiffness,
+                               .destroy = free,
+                               .never_fails = true};
+
+static const tl_kind kind = {
+    .size = sizeof kind,
+    .type = TL_KIND_LAW,
+    .name = "barton_bandis",
+    .doc = "Rough joints: hyperbolic closure, and friction from roughness and wall strength that "
+           "slip wears down.",
+    .params_size = sizeof(params),
+    .params = param_table,
+    .param_count = sizeof param_table / sizeof *param_table,
+    .param_stride = sizeof *param_table,
+    .states = state_table,
+    .state_count = sizeof state_table / sizeof *state_table,
+    .state_stride = sizeof *state_table,
+    .ops = &ops,
+};
+
+static const tl_plugin plugin = {
+    .size = sizeof plugin,
+    .abi_major = TL_ABI_MAJOR,
+    .abi_minor = TL_ABI_MINOR,
+    .id = "talus.barton_bandis",
+    .version = "0.1.0",
+    .doc = "Joint law of Barton and Bandis.",
+    .licence = "BSD-3-Clause",
+    .kinds = &kind,
+    .kind_count = 1,
+    .kind_stride = sizeof kind,
+};
+
+TL_PLUGIN_EXPORT const tl_plugin *tl_plugin_entry(uint32_t host_major, uint32_t host_minor)
+{
+    (void)host_minor;
+    return host_major == TL_ABI_MAJOR ? &plugin : NULL;
+}

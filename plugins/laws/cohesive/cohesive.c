@@ -1,0 +1,316 @@
+/* cohesive.c - law "cohesive": a bond that softens in tension and shear until it is broken, and friction on what is broken.
+ *
+ * Of the area a share D, the damage, is broken; the bonded rest is elastic:
+ *
+ *     s = kn closure + f_n0 / A                         normal stress, compression positive
+ *     t_n = max(0, -s),  t_s = shear stress of the bonded share (ks times its displacement)
+ *     e^2 = (t_n / T)^2 + (t_s / c)^2                   onset of damage at e = 1
+ *     h = t_n^2 / (2 kn GI) + t_s^2 / (2 ks GII),  r = e^2 / h
+ *     D = r (e - 1) / (e (r - 1)),  never less          linear softening, broken at e = r
+ *     f_n = A s  where s >= 0,  (1 - D) A s  where it pulls
+ *     f_s = A ((1 - D) t_s + D q),  |q| <= tan(friction) max(0, s)
+ *
+ * r is the displacement at failure over that at onset. Of a path of one mode mix, the work of tension over GI and that of shear
+ * over GII then add up to 1. What breaks keeps the stress it had, up to the friction, and q is the mean over the broken share.
+ *
+ * Energy turned to heat: of the damage, and of slip of the broken share. Both are what the walls' work, by mean forces, leaves of
+ * the stored energy: dD k x0 x1 / 2 of a bonded spring that goes from x0 to x1 while dD breaks. Averaging q only loses energy.
+ *
+ * Source: Camanho and Davila, NASA/TM-2002-211737 (2002), with the linear criterion of failure; friction on the broken share
+ * after Bisoffi-Sauve, Morel and Dubois, Eng. Struct. 182 (2019) 89-104, and Alfano and Sacco, Int. J. Numer. Meth. Engng 68
+ * (2006) 542-582. Walls that come near each other from afar have no bond.
+ *
+ * Limits: compression does not raise c; it does not crush. Damage is that of a point's own closure. */
+#include <talus/elementary.h>
+#include <talus/plugin.h>
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#define DEGREE (3.14159265358979323846 / 180)
+/* Lanes worked on at a time: their flags stay in the nearest cache. */
+#define STRIDE 64u
+/* Scaling a stress down to its limit, mixing it with another and taking it out of the force again leaves it within some
+ * roundings of the limit; without this margin a point at rest would be scaled down by them in every step. */
+#define ROUNDING 1e-14
+/* Damage that leaves less than this share bonded is whole: the stress of the rest could not be told from rounding. */
+#define REST 1e-6
+/* Damage that is found anew from the forces differs by roundings over the share left, and by less than this. */
+#define NOISE 1e-9
+
+typedef struct params {
+    double kn, ks, tension, cohesion, energy_tension, energy_shear, friction;
+} params;
+
+static const tl_param param_table[] = {
+    TL_PARAM(TL_PARAM_REAL, params, kn, "Pa/m", "normal stiffness of the joint",
+             .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
+    TL_PARAM(TL_PARAM_REAL, params, ks, "Pa/m", "shear stiffness of the joint",
+             .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
+    TL_PARAM(TL_PARAM_REAL, params, tension, "Pa", "tensile strength of the bond",
+             .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
+    TL_PARAM(TL_PARAM_REAL, params, cohesion, "Pa", "shear strength of the bond",
+             .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
+    TL_PARAM(TL_PARAM_REAL, params, energy_tension, "J/m2",
+             "work of fracture in tension, more than tension^2 / (2 kn)", .alias = "gi",
+             .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
+    TL_PARAM(TL_PARAM_REAL, params, energy_shear, "J/m2",
+             "work of fracture in shear, more than cohesion^2 / (2 ks)", .alias = "gii",
+             .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
+    TL_PARAM(TL_PARAM_REAL, params, friction, "deg", "angle of friction of what is broken",
+             .flags = TL_PARAM_MAX_OPEN, .min = 0, .max = 90),
+};
+
+static const tl_state state_table[] = {
+    {.size = sizeof(tl_state),
+     .kind = TL_STATE_SCALAR,
+     .transfer = TL_TRANSFER_COPY,
+     .name = "damage",
+     .unit = "",
+     .doc = "share of the bond that is broken: 0 whole, 1 lost",
+     .initial = 0},
+    {.size = sizeof(tl_state),
+     .kind = TL_STATE_TANGENT,
+     .transfer = TL_TRANSFER_COPY,
+     .name = "friction_stress",
+     .unit = "Pa",
+     .doc = "shear stress on block B of the broken share",
+     .initial = 0},
+};
+
+typedef struct cohesive {
+    double kn, ks, tangent;
+    double per_tension2, per_cohesion2; /* 1 / T^2, 1 / c^2 */
+    double per_normal, per_shear;       /* 1 / (2 kn GI), 1 / (2 ks GII) */
+} cohesive;
+
+/* A work of fracture no larger than the spring holds at onset would snap back. */
+static bool snaps(const char *energy, double given, const char *strength, double stress, double k,
+                  tl_report *report)
+{
+    double least = 0.5 * stress * stress / k;
+    if (given > least)
+        return false;
+    snprintf(report->text, sizeof report->text,
+             "%s = %g J/m2 must be > %s^2 / (2 k) = %g J/m2, what the spring holds when damage "
+             "begins",
+             energy, given, strength, least);
+    return true;
+}
+
+static tl_status create(const void *given, void **self, tl_report *report)
+{
+    const params *p = given;
+    if (snaps("energy_tension", p->energy_tension, "tension", p->tension, p->kn, report) ||
+        snaps("energy_shear", p->energy_shear, "cohesion", p->cohesion, p->ks, report))
+        return TL_E_ARGUMENT;
+    cohesive *law = malloc(sizeof *law);
+    if (!law) {
+        snprintf(report->text, sizeof report->text, "out of memory");
+        return TL_E_MEMORY;
+    }
+    *law = (cohesive){.kn = p->kn,
+                      .ks = p->ks,
+                      .tangent = tl_tan(p->friction * DEGREE),
+                      .per_tension2 = 1 / (p->tension * p->tension),
+                      .per_cohesion2 = 1 / (p->cohesion * p->cohesion),
+                      .per_normal = 0.5 / (p->kn * p->energy_tension),
+                      .per_shear = 0.5 / (p->ks * p->energy_shear)};
+    *self = law;
+    return TL_OK;
+}
+
+/* The factor that brings a stress of this size down to its limit; 1 where it is below. */
+static inline double down_to(double size, double limit)
+{
+    double beyond = size > limit * (1 + ROUNDING) ? 1 : 0;
+    return beyond > 0 ? limit / (beyond > 0 ? size : 1) : 1;
+}
+
+/* Damage that belongs to elastic stresses of the bond, squared: see the head of the file. */
+static inline double damage_of(const cohesive *law, double tension2, double shear2)
+{
+    double e2 = tension2 * law->per_tension2 + shear2 * law->per_cohesion2;
+    double h = tension2 * law->per_normal + shear2 * law->per_shear;
+    double e = sqrt(e2), r = e2 / (h > 0 ? h : 1);
+    double damage = r * (e - 1) / (e * (r - 1) > 0 ? e * (r - 1) : 1);
+    damage = damage < 1 - REST ? damage : 1;
+    return e > 1 ? damage : 0;
+}
+
+static inline double dot(double ax, double ay, double az, double bx, double by, double bz)
+{
+    return ax * bx + ay * by + az * bz;
+}
+
+/* Heat of the slip of a spring of unit stiffness that is brought down from a trial stress; `along`: its product with that before. */
+static inline double slip_heat(double along, double trial, double limit)
+{
+    double size = trial > limit ? trial : 1;
+    return 0.5 * (along / size + limit) * (trial - limit);
+}
+
+/* Flags, as a number. */
+static inline double flag_of(double total, double lost, double anew, double breaks)
+{
+    double rubs = (anew > 0 ? 1 : 0) + (1 - lost) * breaks;
+    double flag = lost * TL_POINT_FAILED + rubs * TL_POINT_SLIPPING;
+    double apart = total < 0 ? lost : 0;
+    return apart > 0 ? TL_POINT_FAILED + TL_POINT_OPEN : flag;
+}
+
+/* The law for up to STRIDE lanes from `begin`. A NaN goes through all comparisons to the forces, where the host finds it. `mark`
+ * takes the flags as doubles: a loop over lanes of two widths is not vectorised for every machine. */
+static inline __attribute__((always_inline)) void move(const cohesive *given,
+                                                       const tl_law_batch *batch, uint32_t begin,
+                                                       uint32_t lanes, double *restrict mark,
+                                                       double *restrict stored,
+                                                       double *restrict dissipated)
+{
+    const double *restrict area = batch->area + begin, *restrict closure = batch->closure + begin;
+    const double *restrict f_n0 = batch->f_n0 + begin, *restrict du_n = batch->du_n + begin;
+    const double *restrict du_x = batch->du_s[0] + begin, *restrict du_y = batch->du_s[1] + begin;
+    const double *restrict du_z = batch->du_s[2] + begin;
+    double *restrict f_n = batch->f_n + begin, *restrict f_x = batch->f_s[0] + begin;
+    double *restrict f_y = batch->f_s[1] + begin, *restrict f_z = batch->f_s[2] + begin;
+    double *restrict damage = batch->state[0] + begin, *restrict rub_x = batch->state[1] + begin;
+    double *restrict rub_y = batch->state[2] + begin, *restrict rub_z = batch->state[3] + begin;
+    const cohesive law = *given;
+    const double kn = law.kn, ks = law.ks, half_n = 0.5 / kn, half_s = 0.5 / ks;
+#pragma omp simd
+    for (uint32_t i = 0; i < lanes; i++) {
+        double per = area[i] > 0 ? 1 / area[i] : 0;
+        double total = kn * area[i] * closure[i] + f_n0[i], stress = total * per;
+        double before = stress + kn * du_n[i];
+        double pull0 = before < 0 ? -before : 0, pull1 = stress < 0 ? -stress : 0;
+        double was = damage[i], left = 1 - was, has = left > 0 ? 1 : 0;
+        double dx = du_x[i], dy = du_y[i], dz = du_z[i];
+        /* a bond that is lost has all of its stress from friction, whatever the state says */
+        double qx = left > 0 ? rub_x[i] : f_x[i] * per;
+        double qy = left > 0 ? rub_y[i] : f_y[i] * per;
+        double qz = left > 0 ? rub_z[i] : f_z[i] * per;
+        /* shear of the bonded share, before and now */
+        double inverse = has / (left > 0 ? left : 1), spring = has * ks;
+        double ax = (f_x[i] * per - was * qx) * inverse, bx = ax - spring * dx;
+        double ay = (f_y[i] * per - was * qy) * inverse, by = ay - spring * dy;
+        double az = (f_z[i] * per - was * qz) * inverse, bz = az - spring * dz;
+        double shear2 = dot(bx, by, bz, bx, by, bz);
+        double found = damage_of(&law, pull1 * pull1, shear2);
+        double is = found - was > NOISE ? found : was, right = 1 - is, broken = is - was;
+        /* friction of what was broken, and of what breaks now */
+        double limit = stress > 0 ? law.tangent * stress : 0, glide = was > 0 ? ks : 0;
+        double tx = qx - glide * dx, ty = qy - glide * dy, tz = qz - glide * dz;
+        double trial = sqrt(dot(tx, ty, tz, tx, ty, tz));
+        double by_old = down_to(trial, limit), by_new = down_to(sqrt(shear2), limit);
+        double share = broken > 0 ? broken / is : 0, o = (1 - share) * by_old, n = share * by_new;
+        double rx = o * tx + n * bx, ry = o * ty + n * by, rz = o * tz + n * bz;
+        double rub2 = dot(rx, ry, rz, rx, ry, rz);
+        /* heat: of the bond and of new friction, or of slip alone */
+        double bond = broken * (half_n * pull0 * pull1 + half_s * dot(ax, ay, az, bx, by, bz));
+        double work =
+            0.5 * was * dot(qx, qy, qz, dx, dy, dz) + 0.5 * is * dot(rx, ry, rz, dx, dy, dz);
+        double kept = half_s * (is * rub2 - was * dot(qx, qy, qz, qx, qy, qz));
+        double slides = trial > limit * (1 + ROUNDING) ? 1 : 0;
+        double sliding = slides * was * slip_heat(dot(qx, qy, qz, tx, ty, tz), trial, limit) / ks;
+        double heat = broken > 0 ? bond - work - kept : sliding;
+        dissipated[i] = heat > 0 ? area[i] * heat : 0;
+        /* changes, so that a point at rest keeps its force to the bit */
+        double cx = f_x[i] + area[i] * ((right * bx - left * ax) + (is * rx - was * qx));
+        double cy = f_y[i] + area[i] * ((right * by - left * ay) + (is * ry - was * qy));
+        double cz = f_z[i] + area[i] * ((right * bz - left * az) + (is * rz - was * qz));
+        double breaks = broken > 0 ? 1 : 0, lost = right > 0 ? 0 : 1;
+        /* 0 is added, for -0 would become 0 in the next step */
+        double anew = lost * (breaks + slides);
+        cx = anew > 0 ? 0 + area[i] * rx : cx;
+        cy = anew > 0 ? 0 + area[i] * ry : cy;
+        cz = anew > 0 ? 0 + area[i] * rz : cz;
+        mark[i] = flag_of(total, lost, anew, breaks);
+        double press = stress > 0 ? stress : 0;
+        double held = right * (half_n * pull1 * pull1 + half_s * shear2);
+        stored[i] = area[i] * (held + half_n * press * press + is * half_s * rub2);
+        f_n[i] = total < 0 ? right * total : total;
+        f_x[i] = cx;
+        f_y[i] = cy;
+        f_z[i] = cz;
+        damage[i] = is;
+        rub_x[i] = right > 0 ? rx : cx * per;
+        rub_y[i] = right > 0 ? ry : cy * per;
+        rub_z[i] = right > 0 ? rz : cz * per;
+    }
+}
+
+TL_VECTORIZED static tl_status update(const void *self, const tl_law_batch *batch,
+                                      tl_report *report)
+{
+    (void)report;
+    double mark[STRIDE], stored[STRIDE], dissipated[STRIDE];
+    for (uint32_t begin = 0; begin < batch->count; begin += STRIDE) {
+        uint32_t left = batch->count - begin, lanes = left < STRIDE ? left : STRIDE;
+        /* walls that came near from afar were never bonded */
+        for (uint32_t i = begin; i < begin + lanes; i++)
+            batch->state[0][i] = batch->flags[i] & TL_POINT_APART ? 1 : batch->state[0][i];
+        move(self, batch, begin, lanes, mark, batch->stored ? batch->stored + begin : stored,
+             batch->dissipated ? batch->dissipated + begin : dissipated);
+        for (uint32_t i = 0; i < lanes; i++)
+            batch->flags[begin + i] = (uint32_t)(int32_t)mark[i];
+    }
+    return TL_OK;
+}
+
+static void stiffness(const void *self, double *kn, double *ks)
+{
+    const cohesive *law = self;
+    *kn = law->kn;
+    *ks = law->ks;
+}
+
+static uint32_t pulls(const void *self)
+{
+    (void)self;
+    return TL_PULL_BONDED;
+}
+
+static const tl_law_ops ops = {.size = sizeof ops,
+                               .create = create,
+                               .update = update,
+                               .stiffness = stiffness,
+                               .destroy = free,
+                               .never_fails = true,
+                               .pulls = pulls};
+
+static const tl_kind kind = {
+    .size = sizeof kind,
+    .type = TL_KIND_LAW,
+    .name = "cohesive",
+    .doc = "A bond that softens and breaks in tension and shear (mixed mode), with friction on "
+           "what is broken.",
+    .params_size = sizeof(params),
+    .params = param_table,
+    .param_count = sizeof param_table / sizeof *param_table,
+    .param_stride = sizeof *param_table,
+    .states = state_table,
+    .state_count = sizeof state_table / sizeof *state_table,
+    .state_stride = sizeof *state_table,
+    .ops = &ops,
+};
+
+static const tl_plugin plugin = {
+    .size = sizeof plugin,
+    .abi_major = TL_ABI_MAJOR,
+    .abi_minor = TL_ABI_MINOR,
+    .id = "talus.cohesive",
+    .version = "0.1.0",
+    .doc = "Cohesive joint law of mixed mode.",
+    .licence = "BSD-3-Clause",
+    .kinds = &kind,
+    .kind_count = 1,
+    .kind_stride = sizeof kind,
+};
+
+TL_PLUGIN_EXPORT const tl_plugin *tl_plugin_entry(uint32_t host_major, uint32_t host_minor)
+{
+    (void)host_minor;
+    return host_major == TL_ABI_MAJOR ? &plugin : NULL;
+}

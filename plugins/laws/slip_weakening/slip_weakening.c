@@ -1,0 +1,408 @@
+/* slip_weakening.c - law "slip_weakening": a joint that loses strength while it slips, and may heal.
+ *
+ *     f_n = max(0, kn A closure + f_n0)                      total, compression positive
+ *     f_t = f_s - ks A du_s                                  on block B
+ *     strength(s) = c_r A + f_n tan(phi_r) + w(s) ((c - c_r) A + f_n (tan phi - tan phi_r))
+ *     w(s) = max(0, 1 - s / D_c)  or  exp(-s / D_c)          linear, exponential
+ *     |f_t| > strength:  |f_s| = strength(s + ds) = |f_t| - ks A ds,   s += ds
+ *
+ * The slip s of a step is the one at whose end the strength is met, so the force lies on the curve at any length of step. Where
+ * the strength falls faster than the spring, ks < (c - c_r + s_n (tan phi - tan phi_r)) / D_c, it cannot: the point then falls
+ * to the next crossing of the two within the step, and what the spring gives off beyond the strength is heat.
+ *
+ * Healing of a point that does not slip: s goes back to 0 at once, or shrinks by exp(-t / healing_time). With healing s is no
+ * more than D_c in the linear form. It changes the strength only, so it makes no energy.
+ *
+ * Source: Ida, J. Geophys. Res. 77 (1972) 3796-3805; Andrews, J. Geophys. Res. 81 (1976) 5679-5687; stability after Rice,
+ * Pure Appl. Geophys. 121 (1983) 443-475. */
+#include <talus/elementary.h>
+#include <talus/plugin.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#define DEGREE (3.14159265358979323846 / 180)
+/* Lanes worked on at a time: what is noted of them stays in the nearest cache. */
+#define STRIDE 64u
+/* Scaling a force down to its limit leaves it within 2 roundings of it; without this margin a point at
+ * rest would be scaled down by a rounding in every step. */
+#define ROUNDING 1e-15
+/* Newton's passes for the slip of the exponential form: the start is within a quarter of it, and the error is squared. */
+#define PASSES 6
+/* Share of D_c below which slip that heals is gone: its strength is lost in rounding. */
+#define HEALED 1e-16
+
+enum { LINEAR, EXPONENTIAL };
+enum { HEAL_NONE, HEAL_INSTANT, HEAL_TIME };
+static const char *const forms[] = {[LINEAR] = "linear", [EXPONENTIAL] = "exponential", NULL};
+static const char *const healings[] = {
+    [HEAL_NONE] = "none", [HEAL_INSTANT] = "instant", [HEAL_TIME] = "time", NULL};
+
+typedef struct params {
+    double kn, ks, friction, cohesion, residual_friction, residual_cohesion, distance;
+    int32_t form, healing;
+    double healing_time;
+} params;
+
+static const tl_param param_table[] = {
+    TL_PARAM(TL_PARAM_REAL, params, kn, "Pa/m", "normal stiffness of the joint",
+             .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
+    TL_PARAM(TL_PARAM_REAL, params, ks, "Pa/m", "shear stiffness of the joint",
+             .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
+    TL_PARAM(TL_PARAM_REAL, params, friction, "deg", "angle of friction before slip",
+             .flags = TL_PARAM_REQUIRED | TL_PARAM_MAX_OPEN, .min = 0, .max = 90),
+    TL_PARAM(TL_PARAM_REAL, params, cohesion, "Pa", "cohesion before slip", .min = 0,
+             .max = INFINITY),
+    TL_PARAM(TL_PARAM_REAL, params, residual_friction, "deg",
+             "angle of friction after slip, at most friction; not given: friction",
+             .flags = TL_PARAM_OPTIONAL | TL_PARAM_MAX_OPEN, .min = 0, .max = 90),
+    TL_PARAM(TL_PARAM_REAL, params, residual_cohesion, "Pa",
+             "cohesion after slip, at most cohesion", .min = 0, .max = INFINITY),
+    TL_PARAM(TL_PARAM_REAL, params, distance, "m",
+             "slip D_c over which the strength falls: all of it, or in the exponential form all "
+             "but 1/e",
+             .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
+    TL_PARAM(TL_PARAM_ENUM, params, form, "", "how the strength falls with slip", .def = {LINEAR},
+             .choices = forms),
+    TL_PARAM(TL_PARAM_ENUM, params, healing, "",
+             "whether strength comes back where slip has ended: never, at once, or in time",
+             .def = {HEAL_NONE}, .choices = healings),
+    TL_PARAM(TL_PARAM_REAL, params, healing_time, "s",
+             "for healing = \"time\": time in which all but 1/e of the lost strength comes back",
+             .flags = TL_PARAM_OPTIONAL | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
+};
+
+static const tl_state state_table[] = {
+    {.size = sizeof(tl_state),
+     .kind = TL_STATE_SCALAR,
+     .transfer = TL_TRANSFER_COPY,
+     .name = "slip",
+     .unit = "m",
+     .doc = "length of the slip so far, less what has healed",
+     .initial = 0},
+};
+
+typedef struct weakening {
+    double kn, ks;
+    double tangent, cohesion;           /* residual */
+    double tangent_drop, cohesion_drop; /* what is lost */
+    double distance, healing_time;
+    int form, healing;
+} weakening;
+
+static tl_status create(const void *given, void **self, tl_report *report)
+{
+    const params *p = given;
+    double residual = isnan(p->residual_friction) ? p->friction : p->residual_friction;
+    if (residual > p->friction || p->residual_cohesion > p->cohesion) {
+        int angle = residual > p->friction;
+        snprintf(report->text, sizeof report->text, "residual_%s = %g %s must be <= %s = %g %s",
+                 angle ? "friction" : "cohesion", angle ? residual : p->residual_cohesion,
+                 angle ? "deg" : "Pa", angle ? "friction" : "cohesion",
+                 angle ? p->friction : p->cohesion, angle ? "deg" : "Pa");
+        return TL_E_ARGUMENT;
+    }
+    if ((p->healing == HEAL_TIME) == (isnan(p->healing_time) != 0)) {
+        snprintf(report->text, sizeof report->text,
+                 p->healing == HEAL_TIME ? "healing = \"time\" needs healing_time, in s"
+                                         : "healing_time is given, but healing is \"%s\"",
+                 healings[p->healing]);
+        return TL_E_ARGUMENT;
+    }
+    weakening *law = malloc(sizeof *law);
+    if (!law) {
+        snprintf(report->text, sizeof report->text, "out of memory");
+        return TL_E_MEMORY;
+    }
+    double tangent = tl_tan(residual * DEGREE);
+    *law = (weakening){.kn = p->kn,
+                       .ks = p->ks,
+                       .tangent = tangent,
+                       .cohesion = p->residual_cohesion,
+                       .tangent_drop = tl_tan(p->friction * DEGREE) - tangent,
+                       .cohesion_drop = p->cohesion - p->residual_cohesion,
+                       .distance = p->distance,
+                       .healing_time = p->healing_time,
+                       .form = p->form,
+                       .healing = p->healing};
+    *self = law;
+    return TL_OK;
+}
+
+/* Elastic energy of both springs; 0 for a lane of no area. */
+static void store_energy(const weakening *law, const tl_law_batch *batch)
+{
+    const double *restrict area = batch->area, *restrict f_n = batch->f_n;
+    const double *restrict f_x = batch->f_s[0], *restrict f_y = batch->f_s[1];
+    const double *restrict f_z = batch->f_s[2];
+    double *restrict stored = batch->stored;
+    const double half_n = 0.5 / law->kn, half_s = 0.5 / law->ks;
+#pragma omp simd
+    for (uint32_t i = 0; i < batch->count; i++) {
+        double inverse = area[i] > 0 ? 1 / (area[i] > 0 ? area[i] : 1) : 0;
+        double shear2 = f_x[i] * f_x[i] + f_y[i] * f_y[i] + f_z[i] * f_z[i];
+        stored[i] = (half_n * f_n[i] * f_n[i] + half_s * shear2) * inverse;
+    }
+}
+
+/* Share of the drop that is left after a slip. */
+static inline double left_of(const int form, double per_distance, double slip)
+{
+    double linear = 1 - slip * per_distance;
+    if (form == EXPONENTIAL)
+        return tl_lane_exp(-slip * per_distance);
+    return linear > 0 ? linear : 0;
+}
+
+/* Slip over D_c at which the linear strength meets the spring. Both are over the spring's force of D_c: `above` is the
+ * spring less the residual, `drop` what is left to lose, and above > drop. */
+static inline double linear_slip(double above, double drop, double room, double slope)
+{
+    double steep = 1 - slope;
+    double soon = steep > 0 ? (above - drop) / (steep > 0 ? steep : 1) : above;
+    return ((steep > 0) & (soon <= room)) ? soon : above;
+}
+
+/* Where Newton's search for the same of the exponential strength begins. It is the root of
+ * g(x) = above - x - drop exp(-x), which is concave, so that steps from beyond the root stay beyond it. The start replaces
+ * exp(-x) by 1 - x + x^2/3, which is less up to x = 1. */
+static inline double exponential_start(double above, double drop)
+{
+    double b = 1 - drop, over = above - drop, q = drop * (1. / 3);
+    over = over > 0 ? over : 0;
+    double root = sqrt(b * b + 4 * q * over), sum = b + root;
+    double by_sum = 2 * over / (sum > 0 ? sum : 1);
+    double by_difference = (root - b) / (q > 0 ? 2 * q : 1);
+    double near = b > 0 ? by_sum : by_difference;
+    return ((near <= 1) & (near < above)) ? near : above;
+}
+
+/* One of its passes. */
+static inline double exponential_pass(double above, double drop, double x)
+{
+    double falls = drop * tl_lane_exp(-x), slope = falls - 1;
+    double next = x - (above - x - falls) / (slope < 0 ? slope : -1);
+    return ((slope < 0) & (next > 0)) ? next : x;
+}
+
+/* What a step comes to before slip is looked at. */
+typedef struct trial {
+    double total[STRIDE], x[STRIDE], y[STRIDE], z[STRIDE], shear[STRIDE];
+    double residual[STRIDE], drop[STRIDE], limit[STRIDE], slip[STRIDE];
+} trial;
+
+/* Forces as if nothing slipped, and the strength; whether some lane is beyond its own. */
+static inline __attribute__((always_inline)) double press(const weakening *law,
+                                                          const tl_law_batch *batch, uint32_t begin,
+                                                          uint32_t lanes, trial *restrict t,
+                                                          const int form)
+{
+    const double *restrict area = batch->area + begin, *restrict closure = batch->closure + begin;
+    const double *restrict f_n0 = batch->f_n0 + begin, *restrict slip = batch->state[0] + begin;
+    const double *restrict du_x = batch->du_s[0] + begin, *restrict du_y = batch->du_s[1] + begin;
+    const double *restrict du_z = batch->du_s[2] + begin;
+    const double *restrict f_x = batch->f_s[0] + begin, *restrict f_y = batch->f_s[1] + begin;
+    const double *restrict f_z = batch->f_s[2] + begin;
+    const double kn = law->kn, ks = law->ks, tangent = law->tangent, cohesion = law->cohesion;
+    const double tangent_drop = law->tangent_drop, cohesion_drop = law->cohesion_drop;
+    const double per_distance = 1 / law->distance;
+    double beyond = 0;
+#pragma omp simd reduction(+ : beyond)
+    for (uint32_t i = 0; i < lanes; i++) {
+        double stiffness = ks * area[i], total = kn * area[i] * closure[i] + f_n0[i];
+        double x = f_x[i] - stiffness * du_x[i];
+        double y = f_y[i] - stiffness * du_y[i];
+        double z = f_z[i] - stiffness * du_z[i];
+        double shear = sqrt(x * x + y * y + z * z);
+        double normal = total < 0 ? 0 : total;
+        double residual = total < 0 ? 0 : cohesion * area[i] + normal * tangent;
+        double drop = total < 0 ? 0 : cohesion_drop * area[i] + normal * tangent_drop;
+        double limit = residual + left_of(form, per_distance, slip[i]) * drop;
+        beyond += shear > limit * (1 + ROUNDING) ? 1 : 0;
+        t->total[i] = total;
+        t->x[i] = x;
+        t->y[i] = y;
+        t->z[i] = z;
+        t->shear[i] = shear;
+        t->residual[i] = residual;
+        t->drop[i] = drop;
+        t->limit[i] = limit;
+        t->slip[i] = slip[i];
+    }
+    return beyond;
+}
+
+/* Slip of the lanes that are beyond their strength, and the strength after it. Open points do not rub. */
+static inline __attribute__((always_inline)) void rub(const weakening *law,
+                                                      const double *restrict area, uint32_t lanes,
+                                                      trial *restrict t, const int form)
+{
+    const double distance = law->distance, per_distance = 1 / law->distance, ks = law->ks;
+    double above[STRIDE], drop[STRIDE], grown[STRIDE];
+#pragma omp simd
+    for (uint32_t i = 0; i < lanes; i++) {
+        double spring = ks * area[i] * distance,
+               per = spring > 0 ? 1 / (spring > 0 ? spring : 1) : 0;
+        double left = left_of(form, per_distance, t->slip[i]), most = t->drop[i] * per;
+        above[i] = (t->shear[i] - t->residual[i]) * per;
+        drop[i] = most * left;
+        grown[i] = form == EXPONENTIAL ? exponential_start(above[i], drop[i])
+                                       : linear_slip(above[i], drop[i], left, left > 0 ? most : 0);
+    }
+    for (int k = 0; form == EXPONENTIAL && k < PASSES; k++)
+#pragma omp simd
+        for (uint32_t i = 0; i < lanes; i++)
+            grown[i] = exponential_pass(above[i], drop[i], grown[i]);
+#pragma omp simd
+    for (uint32_t i = 0; i < lanes; i++) {
+        double limit = t->limit[i], slip = t->slip[i] + grown[i] * distance;
+        double after = t->residual[i] + left_of(form, per_distance, slip) * t->drop[i];
+        double slips = ((t->shear[i] > limit * (1 + ROUNDING)) & (t->total[i] >= 0)) ? 1 : 0;
+        t->slip[i] = slips > 0 ? slip : t->slip[i];
+        t->limit[i] = slips > 0 ? after : limit;
+    }
+}
+
+/* Forces, heat and flags; `mark` takes the flags as doubles: a loop over lanes of two widths is not vectorised for every
+ * machine. */
+static inline __attribute__((always_inline)) void settle(const weakening *law,
+                                                         const tl_law_batch *batch, uint32_t begin,
+                                                         uint32_t lanes, const trial *restrict t,
+                                                         double *restrict mark, const int heat)
+{
+    const double *restrict area = batch->area + begin;
+    double *restrict f_n = batch->f_n + begin, *restrict f_x = batch->f_s[0] + begin;
+    double *restrict f_y = batch->f_s[1] + begin, *restrict f_z = batch->f_s[2] + begin;
+    double *restrict slip = batch->state[0] + begin;
+    double *restrict dissipated = heat ? batch->dissipated + begin : NULL;
+    const double ks = law->ks;
+#pragma omp simd
+    for (uint32_t i = 0; i < lanes; i++) {
+        double limit = t->limit[i], shear = t->shear[i], most = limit * (1 + ROUNDING);
+        double whole = shear > most ? shear : 1, scale = shear > most ? limit / whole : 1;
+        if (heat) {
+            double along = f_x[i] * t->x[i] + f_y[i] * t->y[i] + f_z[i] * t->z[i];
+            double mean = 0.5 * (along / whole + limit), stiffness = ks * area[i];
+            double work = mean * (shear - limit) / (stiffness > 0 ? stiffness : 1);
+            work = ((shear > most) & (stiffness > 0)) ? work : 0;
+            dissipated[i] = work > 0 ? work : 0;
+        }
+        double flag = shear > most ? TL_POINT_SLIPPING : 0;
+        mark[i] = t->total[i] < 0 ? TL_POINT_OPEN : flag;
+        f_n[i] = t->total[i] < 0 ? 0 : t->total[i];
+        f_x[i] = scale * t->x[i];
+        f_y[i] = scale * t->y[i];
+        f_z[i] = scale * t->z[i];
+        slip[i] = t->slip[i];
+    }
+}
+
+/* Strength that comes back in a step: slip of points that do not slip in it. */
+static void heal(const weakening *law, const tl_law_batch *batch, uint32_t begin, uint32_t lanes,
+                 const double *restrict mark)
+{
+    double *restrict slip = batch->state[0] + begin;
+    const double factor =
+        law->healing == HEAL_TIME ? tl_lane_exp(-batch->dt / law->healing_time) : 0;
+    const double most = law->form == LINEAR ? law->distance : INFINITY;
+    const double least = HEALED * law->distance;
+#pragma omp simd
+    for (uint32_t i = 0; i < lanes; i++) {
+        double kept = slip[i] < most ? slip[i] : most;
+        double healed = kept * factor;
+        healed = healed > least ? healed : 0;
+        slip[i] = mark[i] == TL_POINT_SLIPPING ? kept : healed;
+    }
+}
+
+static inline __attribute__((always_inline)) void update_lanes(const weakening *law,
+                                                               const tl_law_batch *batch,
+                                                               uint32_t begin, uint32_t lanes,
+                                                               const int form)
+{
+    trial t;
+    double mark[STRIDE];
+    if (press(law, batch, begin, lanes, &t, form) > 0)
+        rub(law, batch->area + begin, lanes, &t, form);
+    if (batch->dissipated)
+        settle(law, batch, begin, lanes, &t, mark, 1);
+    else
+        settle(law, batch, begin, lanes, &t, mark, 0);
+    if (law->healing != HEAL_NONE)
+        heal(law, batch, begin, lanes, mark);
+    for (uint32_t i = 0; i < lanes; i++)
+        batch->flags[begin + i] = (uint32_t)(int32_t)mark[i];
+}
+
+TL_VECTORIZED static tl_status update(const void *self, const tl_law_batch *batch,
+                                      tl_report *report)
+{
+    (void)report;
+    const weakening *law = self;
+    for (uint32_t begin = 0; begin < batch->count; begin += STRIDE) {
+        uint32_t left = batch->count - begin, lanes = left < STRIDE ? left : STRIDE;
+        if (law->form == EXPONENTIAL)
+            update_lanes(law, batch, begin, lanes, EXPONENTIAL);
+        else
+            update_lanes(law, batch, begin, lanes, LINEAR);
+    }
+    if (batch->stored)
+        store_energy(law, batch);
+    return TL_OK;
+}
+
+static void stiffness(const void *self, double *kn, double *ks)
+{
+    const weakening *law = self;
+    *kn = law->kn;
+    *ks = law->ks;
+}
+
+static uint32_t pulls(const void *self)
+{
+    (void)self;
+    return TL_PULL_NONE;
+}
+
+static const tl_law_ops ops = {.size = sizeof ops,
+                               .create = create,
+                               .update = update,
+                               .stiffness = stiffness,
+                               .destroy = free,
+                               .never_fails = true,
+                               .pulls = pulls};
+
+static const tl_kind kind = {
+    .size = sizeof kind,
+    .type = TL_KIND_LAW,
+    .name = "slip_weakening",
+    .doc = "Friction and cohesion that fall with slip, and may heal where it ends.",
+    .params_size = sizeof(params),
+    .params = param_table,
+    .param_count = sizeof param_table / sizeof *param_table,
+    .param_stride = sizeof *param_table,
+    .states = state_table,
+    .state_count = sizeof state_table / sizeof *state_table,
+    .state_stride = sizeof *state_table,
+    .ops = &ops,
+};
+
+static const tl_plugin plugin = {
+    .size = sizeof plugin,
+    .abi_major = TL_ABI_MAJOR,
+    .abi_minor = TL_ABI_MINOR,
+    .id = "talus.slip_weakening",
+    .version = "0.1.0",
+    .doc = "Slip-weakening joint law.",
+    .licence = "BSD-3-Clause",
+    .kinds = &kind,
+    .kind_count = 1,
+    .kind_stride = sizeof kind,
+};
+
+TL_PLUGIN_EXPORT const tl_plugin *tl_plugin_entry(uint32_t host_major, uint32_t host_minor)
+{
+    (void)host_minor;
+    return host_major == TL_ABI_MAJOR ? &plugin : NULL;
+}
