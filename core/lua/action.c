@@ -144,7 +144,7 @@ int tl_lua_blocks_load(lua_State *L)
 {
     tl_lua_selection *b = tl_lua_blocks_self(L, 2, "load");
     tl_lua_spec spec = tl_lua_spec_of("load", NULL);
-    tl_load load;
+    tl_load load = tl_load_default();
     tl_lua_read(L, 2, &spec, false, &load);
     if (!lua_istable(L, 2))
         return tl_lua_fail(L,
@@ -193,7 +193,9 @@ int tl_lua_blocks_drive(lua_State *L)
     lua_getiuservalue(L, 1, 1);
     tl_lua_anchor *a = anchor_push(L, 3);
     a->ended = true; /* until the kernel has taken it */
-    tl_drive drive = {.user = a, .release = on_release};
+    tl_drive drive = tl_drive_default();
+    drive.user = a;
+    drive.release = on_release;
     bool moves = false;
     if (lua_istable(L, 2)) {
         moves = read_motion(L, VELOCITY, &drive.velocity, &drive.velocity_at, velocity_at);

@@ -36,7 +36,9 @@ PUBLIC = {
     "plugin.h": {"types.h"},
     "plugins.h": {"types.h", "plugin.h"},
     "output.h": {"types.h", "plugin.h"},
-    "talus.h": {"types.h", "plugin.h", "plugins.h", "output.h"},
+    "values.h": {"types.h", "plugin.h"},
+    "talus.h": {"types.h", "plugin.h", "plugins.h", "output.h", "values.h", "version.h", "defaults.h"},
+    "defaults.h": {"talus.h"},
 }
 PLUGIN_HEADERS = {"talus/types.h", "talus/elementary.h", "talus/vmath.h", "talus/plugin.h"}
 # What a plugin may include besides: the headers of standard C.
