@@ -30,3 +30,4 @@ install(FILES "${PROJECT_BINARY_DIR}/talusConfig.cmake" "${PROJECT_BINARY_DIR}/t
 install(FILES "${PROJECT_BINARY_DIR}/talus.pc" DESTINATION lib/pkgconfig)
 
 install(DIRECTORY scripts/examples DESTINATION share/talus)
+install(DIRECTORY plugins/template/ DESTINATION share/talus/templates)

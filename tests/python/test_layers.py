@@ -23,6 +23,7 @@ ROOMS = {
     "cycle": {"base", "geometry", "narrow", "model", "contact", "detect", "force", "cycle"},
     "io": {"base", "geometry", "narrow", "model", "contact", "detect", "force", "query", "cycle", "io"},
     "plugin": {"base", "model", "plugin"},
+    "check": {"base", "check"},
     "lua": {"lua"},
 }
 # Rooms of which a header declares the functions of the source of its name, or types only, in fewer lines than
@@ -37,6 +38,7 @@ PUBLIC = {
     "plugins.h": {"types.h", "plugin.h"},
     "output.h": {"types.h", "plugin.h"},
     "values.h": {"types.h", "plugin.h"},
+    "check.h": {"plugins.h", "values.h"},
     "talus.h": {"types.h", "plugin.h", "plugins.h", "output.h", "values.h", "version.h", "defaults.h"},
     "defaults.h": {"talus.h"},
 }
