@@ -6,6 +6,7 @@
 #   lib/talus/plugins-ABI/*.so         the plugins
 #   lib/cmake/talus, lib/pkgconfig     for those who build upon it
 #   include/talus, share/talus         headers; examples, templates
+#   share/doc/talus, share/man         pages, talus(1)
 #
 # The folder is lib everywhere, not lib64 or one of the architecture's name: the loader of plugins seeks from the program, the
 # module and the library (core/plugin/loader.c).
@@ -31,3 +32,15 @@ install(FILES "${PROJECT_BINARY_DIR}/talus.pc" DESTINATION lib/pkgconfig)
 
 install(DIRECTORY scripts/examples DESTINATION share/talus)
 install(DIRECTORY plugins/template/ DESTINATION share/talus/templates)
+
+# The pages lie as they do in the source tree, so their links hold.
+set(doc_dir share/doc/talus)
+install(FILES README.md CHANGELOG.md CONTRIBUTING.md SECURITY.md LICENSE DESTINATION ${doc_dir})
+install(FILES LICENSE DESTINATION ${doc_dir} RENAME copyright) # where Debian looks for it
+install(DIRECTORY docs DESTINATION ${doc_dir} PATTERN "*.in" EXCLUDE)
+install(CODE "set(to \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${doc_dir}/scripts\")
+  file(MAKE_DIRECTORY \"\${to}\")
+  file(REMOVE \"\${to}/examples\")
+  file(CREATE_LINK ../../../talus/examples \"\${to}/examples\" SYMBOLIC)")
+configure_file(docs/talus.1.in "${PROJECT_BINARY_DIR}/talus.1" @ONLY)
+install(FILES "${PROJECT_BINARY_DIR}/talus.1" DESTINATION share/man/man1)

@@ -42,7 +42,7 @@ PUBLIC = {
     "talus.h": {"types.h", "plugin.h", "plugins.h", "output.h", "values.h", "version.h", "defaults.h"},
     "defaults.h": {"talus.h"},
 }
-PLUGIN_HEADERS = {"talus/types.h", "talus/elementary.h", "talus/vmath.h", "talus/plugin.h"}
+PLUGIN_HEADERS = {"talus/version.h", "talus/types.h", "talus/elementary.h", "talus/vmath.h", "talus/plugin.h"}
 # What a plugin may include besides: the headers of standard C.
 STANDARD_HEADERS = {
     name + ".h"

@@ -5,6 +5,7 @@
  * the inner side of every edge, which also refuses one that crosses itself. Its normal follows from the
  * fan of triangles about its first point, whichever way round it is given. */
 #include <talus/plugin.h>
+#include <talus/version.h>
 #include <talus/vmath.h>
 
 #include <stdbool.h>
@@ -175,7 +176,7 @@ static const tl_plugin plugin = {
     .abi_major = TL_ABI_MAJOR,
     .abi_minor = TL_ABI_MINOR,
     .id = "talus.prism",
-    .version = "0.1.0",
+    .version = TALUS_VERSION,
     .doc = "Prism generator.",
     .licence = "BSD-3-Clause",
     .kinds = &kind,
