@@ -184,6 +184,34 @@ static int write_project(const project *p)
     return 0;
 }
 
+/* A name as a shell takes it for one word. */
+static void print_word(const char *text)
+{
+    bool plain = text[strcspn(text, " \t\n\"'\\$`!&|;<>()[]{}*?#~")] == '\0';
+    if (plain) {
+        fputs(text, stdout);
+        return;
+    }
+    putchar('\'');
+    for (; *text; text++)
+        *text == '\'' ? fputs("'\\''", stdout) : putchar(*text);
+    putchar('\'');
+}
+
+/* A line for the shell, with names in the places of %s. */
+static void print_command(const char *format, const char *a, const char *b)
+{
+    const char *names[] = {a, a, b};
+    size_t next = 0;
+    for (const char *c = format; *c; c++)
+        if (*c == '%' && next < 3) {
+            print_word(names[next++]);
+            c++;
+        } else {
+            putchar(*c);
+        }
+}
+
 static void tell_next(const project *p)
 {
     printf("made %s:\n", p->folder);
@@ -194,11 +222,11 @@ static void tell_next(const project *p)
     }
     if (!p->prefix[0])
         printf("To build it, install Talus first: cmake --install BUILD --prefix PREFIX\n");
-    printf("Next:\n"
-           "  cmake -S %s -B %s/build -DCMAKE_PREFIX_PATH=%s\n"
-           "  cmake --build %s/build\n"
-           "  ctest --test-dir %s/build --output-on-failure\n",
-           p->folder, p->folder, p->prefix[0] ? p->prefix : "PREFIX", p->folder, p->folder);
+    puts("Next:");
+    print_command("  cmake -S %s -B %s/build -DCMAKE_PREFIX_PATH=%s\n", p->folder,
+                  p->prefix[0] ? p->prefix : "PREFIX");
+    print_command("  cmake --build %s/build\n", p->folder, "");
+    print_command("  ctest --test-dir %s/build --output-on-failure\n", p->folder, "");
 }
 
 int tl_command_new(int argc, char **argv)

@@ -43,7 +43,7 @@ def check_project(prefix, folder, kind, name):
     program = prefix / "bin/talus"
     said = run([program, "new", kind, name], cwd=folder).stdout
     made = folder / name
-    expect(f"-DCMAKE_PREFIX_PATH={prefix}" in said, f"new {kind}: {said}")
+    expect(f"-DCMAKE_PREFIX_PATH='{prefix}'\n" in said, f"new {kind}: {said}")
     files = sorted(path.name for path in made.iterdir())
     expect(files == sorted(["CMakeLists.txt", f"{name}.c", f"test_{name}.lua", "README.md"]), f"{name}: {files}")
     for path in made.iterdir():
