@@ -1,4 +1,5 @@
 /* main.c - the program `talus`: options, sub-commands, and a Lua state to run scripts in. */
+#include "commands.h"
 #include "lua/front.h"
 #include "lua/repl.h"
 
@@ -224,6 +225,10 @@ int main(int argc, char **argv)
         tl_lua_help_plugins();
         return EXIT_SUCCESS;
     }
+    if (strcmp(command, "check") == 0)
+        return tl_command_check(argc - o.next - 1, argv + o.next + 1);
+    if (strcmp(command, "new") == 0)
+        return tl_command_new(argc - o.next - 1, argv + o.next + 1);
     lua_State *L = luaL_newstate();
     if (!L)
         return fail("%s", "not enough memory to start Lua");

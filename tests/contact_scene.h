@@ -169,7 +169,8 @@ SCENE_UNUSED static tl_model *scene_model(int64_t threads)
                 printf("%s\n", error.text);
         }
     }
-    tl_model_config config = {.seed = 1, .threads = threads, .reuse_geometry = 1};
+    tl_model_config config = {
+        .size = sizeof(tl_model_config), .seed = 1, .threads = threads, .reuse_geometry = 1};
     tl_model *m;
     if (tl_model_create(&config, &m, &error) != TL_OK)
         exit(1);

@@ -11,6 +11,8 @@
  * work (energy.c), as when velocities are set. */
 #include "cycle/added_mass.h"
 
+#include "model/options.h"
+
 #include "contact/detection.h"
 
 /* Halvings in the search for the longest step that would do. */
@@ -115,9 +117,13 @@ tl_status tl_added_find(tl_model *m, double limit)
     return TL_OK;
 }
 
-tl_status tl_model_mass_scaling(tl_model *m, const tl_mass_scaling *scaling)
+tl_status tl_model_mass_scaling(tl_model *m, const tl_mass_scaling *given)
 {
-    tl_status status = tl_model_may_set(m, "set mass_scaling");
+    tl_mass_scaling read;
+    const tl_mass_scaling *scaling = &read;
+    tl_status status = TL_OPTIONS_READ(tl_mass_scaling, given, &read, &m->error);
+    if (status == TL_OK)
+        status = tl_model_may_set(m, "set mass_scaling");
     if (status != TL_OK)
         return status;
     bool adds = !isnan(scaling->dt);
@@ -156,8 +162,11 @@ tl_status tl_model_mass_scaling(tl_model *m, const tl_mass_scaling *scaling)
 
 tl_mass_added tl_model_mass_added(const tl_model *m)
 {
-    tl_mass_added out = {
-        .scaling = {tl_mass_scaled(m), m->added_dt, m->added_most}, .worst = TL_NO_ID, .factor = 1};
+    tl_mass_added out = {.on = tl_mass_scaled(m),
+                         .dt = m->added_dt,
+                         .most = m->added_most,
+                         .worst = TL_NO_ID,
+                         .factor = 1};
     if (m->cycle && tl_adds_mass(m)) {
         out.share = m->cycle->added.share;
         out.bodies = m->cycle->added.bodies;

@@ -1,6 +1,8 @@
 /* insitu.c - initial stress put on the contacts of a model (stress.c), and what is improbable about it. */
 #include "cycle/cycle_room.h"
 
+#include "model/options.h"
+
 #include "contact/held.h"
 #include "contact/store.h"
 #include "detect/detect.h"
@@ -153,9 +155,13 @@ static bool finite_tensor(tl_sym3 t)
            isfinite(t.zx);
 }
 
-tl_status tl_model_insitu(tl_model *m, const tl_insitu *insitu)
+tl_status tl_model_insitu(tl_model *m, const tl_insitu *given)
 {
-    tl_status status = tl_model_may_set(m, "put stress on contacts");
+    tl_insitu read;
+    const tl_insitu *insitu = &read;
+    tl_status status = TL_OPTIONS_READ(tl_insitu, given, &read, &m->error);
+    if (status == TL_OK)
+        status = tl_model_may_set(m, "put stress on contacts");
     if (status != TL_OK)
         return status;
     if (!finite_tensor(insitu->stress) || !finite_tensor(insitu->gradient) ||

@@ -1,6 +1,8 @@
 /* solve.c - many steps: until a limit is met, the user interrupts, or a callback says so. */
 #include "cycle/cycle_room.h"
 
+#include "model/options.h"
+
 #include "base/clock.h"
 
 static const char *const reason_names[] = {
@@ -137,12 +139,16 @@ static tl_status run(tl_model *m, const tl_solve *solve, tl_solve_result *result
     return status;
 }
 
-tl_status tl_model_solve(tl_model *m, const tl_solve *solve, tl_solve_result *result)
+tl_status tl_model_solve(tl_model *m, const tl_solve *given, tl_solve_result *result)
 {
+    tl_solve solve;
+    tl_status status = TL_OPTIONS_READ(tl_solve, given, &solve, &m->error);
+    if (status != TL_OK)
+        return status;
     if (!m->damping && tl_model_says(m, TL_REMARK_UNDAMPED))
         tl_model_say(m, "solve: the model has no damping and may never come to rest; "
                         "model:damping(\"local\") or another one helps");
-    return run(m, solve, result);
+    return run(m, &solve, result);
 }
 
 tl_status tl_model_cycle_calling(tl_model *m, int64_t cycles, const tl_solve *calls,

@@ -7,7 +7,9 @@
  * Mass scaling gives every free body the bound of the one that has the most; with a step asked for it adds inertia to the
  * bodies that need it (added_mass.c), and that step is taken. */
 #include "cycle/added_mass.h"
+
 #include "cycle/rates.h"
+#include "model/options.h"
 
 #include "contact/detection.h"
 #include "detect/detect.h"
@@ -235,9 +237,13 @@ tl_status tl_timestep_choose(tl_model *m, double *dt)
     return choose(m, dt, NULL);
 }
 
-tl_status tl_model_timestep(tl_model *m, const tl_timestep *timestep)
+tl_status tl_model_timestep(tl_model *m, const tl_timestep *given)
 {
-    tl_status status = tl_model_may_set(m, "set timestep");
+    tl_timestep read;
+    const tl_timestep *timestep = &read;
+    tl_status status = TL_OPTIONS_READ(tl_timestep, given, &read, &m->error);
+    if (status == TL_OK)
+        status = tl_model_may_set(m, "set timestep");
     if (status != TL_OK)
         return status;
     if (!isnan(timestep->fraction) &&

@@ -4,10 +4,12 @@
  * The files of a frame are all written under temporary names before the first is renamed, so
  * that a full disk or a folder without permission leaves the series as it was. */
 #include "base/error.h"
+
 #include "base/signals.h"
 #include "io/output_file.h"
 #include "io/vtk_data.h"
 #include "io/vtk_index.h"
+#include "model/options.h"
 
 #include <assert.h>
 #include <stdlib.h>
@@ -146,7 +148,11 @@ static tl_status write_frame(tl_model *m, const char *prefix, const frame *f)
 
 tl_status tl_write_vtk(tl_model *m, const char *prefix, const tl_vtk_parts *parts)
 {
-    const tl_vtk_parts all = {1, 1, 1}, *of = parts ? parts : &all;
+    tl_vtk_parts read;
+    const tl_vtk_parts *of = &read;
+    tl_status status = TL_OPTIONS_READ(tl_vtk_parts, parts, &read, &m->error);
+    if (status != TL_OK)
+        return status;
     frame f = {.function = "write_vtk", .parts = frame_parts, .count = PART_COUNT};
     f.wanted = (unsigned)(of->blocks != 0) << BLOCKS | (unsigned)(of->contacts != 0) << CONTACTS |
                (unsigned)(of->joints != 0) << JOINTS;

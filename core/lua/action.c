@@ -133,10 +133,11 @@ void tl_lua_anchor_drive(lua_State *L, tl_lua_anchor *a, tl_drive *drive)
     bool moves = lua_getiuservalue(L, -1, TL_LUA_VELOCITY) == LUA_TFUNCTION;
     bool turns = lua_getiuservalue(L, -2, TL_LUA_ANGULAR_VELOCITY) == LUA_TFUNCTION;
     lua_pop(L, 2);
-    *drive = (tl_drive){.velocity_at = moves ? velocity_at : NULL,
-                        .angular_velocity_at = turns ? angular_velocity_at : NULL,
-                        .user = a,
-                        .release = on_release};
+    *drive = tl_drive_default();
+    drive->velocity_at = moves ? velocity_at : NULL;
+    drive->angular_velocity_at = turns ? angular_velocity_at : NULL;
+    drive->user = a;
+    drive->release = on_release;
 }
 
 /* ---------------------------------------------------------------- verbs ------------------ */
@@ -145,7 +146,7 @@ int tl_lua_blocks_load(lua_State *L)
 {
     tl_lua_selection *b = tl_lua_blocks_self(L, 2, "load");
     tl_lua_spec spec = tl_lua_spec_of("load", NULL);
-    tl_load load;
+    tl_load load = tl_load_default();
     tl_lua_read(L, 2, &spec, false, &load);
     if (!lua_istable(L, 2))
         return tl_lua_fail(L,
@@ -193,7 +194,9 @@ int tl_lua_blocks_drive(lua_State *L)
     lua_settop(L, 2);
     lua_getiuservalue(L, 1, 1);
     tl_lua_anchor *a = tl_lua_anchor_push(L, 3);
-    tl_drive drive = {.user = a, .release = on_release};
+    tl_drive drive = tl_drive_default();
+    drive.user = a;
+    drive.release = on_release;
     bool moves = false;
     if (lua_istable(L, 2)) {
         moves = read_motion(L, TL_LUA_VELOCITY, &drive.velocity, &drive.velocity_at, velocity_at);

@@ -191,8 +191,11 @@ static void read_filter(lua_State *L, block_args *args, block_nested *nested,
                         tl_block_filter *filter)
 {
     tl_lua_read(L, 2, &tl_lua_blocks_spec, true, args);
-    *filter = (tl_block_filter){
-        .id = (tl_id)args->id, .group = args->group, .joint = args->joint, .fixed = args->fixed};
+    *filter = tl_block_filter_default();
+    filter->id = (tl_id)args->id;
+    filter->group = args->group;
+    filter->joint = args->joint;
+    filter->fixed = args->fixed;
     if (!isnan(args->containing.x))
         filter->containing = &args->containing;
     if (!lua_istable(L, 2))
@@ -321,7 +324,7 @@ const tl_lua_spec tl_lua_set_spec = {"set", set_params, COUNT(set_params), NULL}
 static int blocks_set(lua_State *L)
 {
     tl_lua_selection *b = tl_lua_blocks_self(L, 2, "set");
-    tl_block_set set;
+    tl_block_set set = tl_block_set_default();
     tl_lua_read(L, 2, &tl_lua_set_spec, false, &set);
     if (isnan(set.density) && !set.group && isnan(set.velocity.x) && isnan(set.angular_velocity.x))
         return tl_lua_fail(L, "set: give density, group, velocity or angular_velocity");

@@ -67,7 +67,8 @@ int tl_lua_contacts(lua_State *L)
     luaL_checkstack(L, 32, "too many values");
     contact_args args;
     tl_lua_read(L, 2, &tl_lua_contacts_spec, false, &args);
-    tl_contact_filter filter = {.joint = args.joint};
+    tl_contact_filter filter = tl_contact_filter_default();
+    filter.joint = args.joint;
     int where = 0;
     if (lua_istable(L, 2)) {
         read_between(L, &filter);

@@ -15,7 +15,7 @@ static int model_create(lua_State *L)
     lua_settop(L, 1);
     tl_lua_spec spec = tl_lua_spec_of("model", NULL);
     spec.context = "talus.model";
-    tl_model_config config;
+    tl_model_config config = tl_model_config_default();
     tl_lua_read(L, 1, &spec, false, &config);
     if (!lua_istable(L, 1) || lua_getfield(L, 1, "threads") == LUA_TNIL)
         tl_lua_default_threads(L, &config.threads);
@@ -201,7 +201,7 @@ static int model_insitu(lua_State *L)
     tl_model *model = tl_lua_model_of(L, "insitu");
     tl_lua_arity(L, 2, "insitu");
     lua_settop(L, 2);
-    tl_insitu insitu = {0};
+    tl_insitu insitu = tl_insitu_default();
     tl_lua_spec spec = tl_lua_spec_of("insitu", tl_lua_insitu_keys);
     tl_lua_read(L, 2, &spec, false, &insitu);
     if (!lua_istable(L, 2))
@@ -258,7 +258,7 @@ static int model_timestep(lua_State *L)
     lua_settop(L, 2);
     if (lua_isnil(L, 2))
         return push_timestep_report(L, model);
-    tl_timestep timestep;
+    tl_timestep timestep = tl_timestep_default();
     tl_lua_spec spec = tl_lua_spec_of("timestep", NULL);
     tl_lua_read(L, 2, &spec, false, &timestep);
     tl_lua_ok(L, model, tl_model_timestep(model, &timestep));
@@ -270,14 +270,14 @@ static int push_mass_added(lua_State *L, const tl_model *model)
 {
     tl_mass_added added = tl_model_mass_added(model);
     lua_createtable(L, 0, 6);
-    lua_pushboolean(L, added.scaling.on);
+    lua_pushboolean(L, added.on);
     lua_setfield(L, -2, "on");
-    if (isnan(added.scaling.dt))
+    if (isnan(added.dt))
         return 1;
     const struct {
         const char *name;
         double number;
-    } numbers[] = {{"dt", added.scaling.dt}, {"most", added.scaling.most}, {"added", added.share}};
+    } numbers[] = {{"dt", added.dt}, {"most", added.most}, {"added", added.share}};
     for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++) {
         lua_pushnumber(L, numbers[i].number);
         lua_setfield(L, -2, numbers[i].name);
@@ -302,7 +302,7 @@ static int model_mass_scaling(lua_State *L)
     lua_settop(L, 2);
     if (lua_isnil(L, 2))
         return push_mass_added(L, model);
-    tl_mass_scaling scaling = {.dt = NAN, .most = NAN};
+    tl_mass_scaling scaling = tl_mass_scaling_default();
     tl_lua_spec spec = tl_lua_spec_of("mass_scaling", NULL);
     if (lua_istable(L, 2))
         tl_lua_read(L, 2, &spec, false, &scaling);
@@ -338,7 +338,7 @@ static int model_contact_area(lua_State *L)
     tl_model *model = tl_lua_model_of(L, "contact_area");
     tl_lua_arity(L, 2, "contact_area");
     lua_settop(L, 2);
-    tl_contact_area rule;
+    tl_contact_area rule = tl_contact_area_default();
     tl_lua_spec spec = tl_lua_spec_of("contact_area", NULL);
     tl_lua_read(L, 2, &spec, false, &rule);
     tl_lua_ok(L, model, tl_model_contact_area(model, &rule));
@@ -351,7 +351,7 @@ static int model_write_vtk(lua_State *L)
     tl_lua_arity(L, 3, "write_vtk");
     lua_settop(L, 3);
     const char *prefix = tl_lua_text(L, 2, "write_vtk", "the prefix");
-    tl_vtk_parts parts;
+    tl_vtk_parts parts = tl_vtk_parts_default();
     tl_lua_spec spec = tl_lua_spec_of("write_vtk", NULL);
     tl_lua_read(L, 3, &spec, false, &parts);
     tl_lua_watch watch = tl_lua_watch_begin(L);
@@ -491,7 +491,7 @@ static int model_index(lua_State *L)
     else if (strcmp(name, "cycles") == 0)
         lua_pushinteger(L, (lua_Integer)tl_model_cycles(model));
     else if (strcmp(name, "mass_scaled") == 0)
-        lua_pushboolean(L, tl_model_mass_added(model).scaling.on);
+        lua_pushboolean(L, tl_model_mass_added(model).on);
     else if (strcmp(name, "dt") == 0) {
         double dt;
         tl_lua_ok(L, model, tl_model_dt(model, &dt));

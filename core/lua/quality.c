@@ -241,7 +241,7 @@ int tl_lua_filter(lua_State *L)
     tl_model *model = tl_lua_model_of(L, "filter");
     tl_lua_arity(L, 2, "filter");
     lua_settop(L, 2);
-    tl_filter limits;
+    tl_filter limits = tl_filter_default();
     tl_lua_spec spec = tl_lua_spec_of("filter", NULL);
     tl_lua_read(L, 2, &spec, false, &limits);
     tl_filter report = limits;
@@ -375,7 +375,7 @@ int tl_lua_keyblocks(lua_State *L)
     tl_model *model = tl_lua_model_of(L, "keyblocks");
     tl_lua_arity(L, 2, "keyblocks");
     lua_settop(L, 2);
-    tl_keyblock_query query;
+    tl_keyblock_query query = tl_keyblock_query_default();
     tl_lua_spec spec = tl_lua_spec_of("keyblocks", tl_lua_keyblocks_keys);
     tl_lua_read(L, 2, &spec, false, &query);
     if (!lua_istable(L, 2))

@@ -236,7 +236,7 @@ int tl_lua_solve(lua_State *L)
     tl_lua_arity(L, 2, "solve");
     lua_settop(L, 2);
     luaL_checkstack(L, LUA_MINSTACK, "too many values");
-    tl_solve solve = {0};
+    tl_solve solve = tl_solve_default();
     tl_lua_spec spec = tl_lua_spec_of("solve", tl_lua_solve_keys);
     tl_lua_read(L, AT_ARGS, &spec, false, &solve);
     lua_settop(L, AT_ANCHOR);

@@ -1,5 +1,6 @@
 /* joints.c - names of groups and joint sets, and which rule holds for which joint. */
 #include "model/model.h"
+#include "model/options.h"
 
 #include "base/inside.h"
 
@@ -185,9 +186,13 @@ static bool set_joint_area(tl_model *m, const tl_joint_area *entry)
     return true;
 }
 
-tl_status tl_model_contact_area(tl_model *m, const tl_contact_area *area)
+tl_status tl_model_contact_area(tl_model *m, const tl_contact_area *given)
 {
-    tl_status status = tl_model_may_set(m, "set contact_area");
+    tl_contact_area read;
+    const tl_contact_area *area = &read;
+    tl_status status = TL_OPTIONS_READ(tl_contact_area, given, &read, &m->error);
+    if (status == TL_OK)
+        status = tl_model_may_set(m, "set contact_area");
     if (status != TL_OK)
         return status;
     if (!(area->fraction >= 0) || !isfinite(area->fraction))

@@ -1,5 +1,6 @@
 /* life.c - a model is made and destroyed. */
 #include "model/model.h"
+#include "model/options.h"
 
 #include <stdlib.h>
 
@@ -46,9 +47,14 @@ static void bodies_init(tl_bodies *b)
     TL_COLUMN(t, b, face_turn, 0);
 }
 
-tl_status tl_model_create(const tl_model_config *config, tl_model **model, tl_error *error)
+tl_status tl_model_create(const tl_model_config *given, tl_model **model, tl_error *error)
 {
     *model = NULL;
+    tl_model_config read;
+    const tl_model_config *config = &read;
+    tl_status status = TL_OPTIONS_READ(tl_model_config, given, &read, error);
+    if (status != TL_OK)
+        return status;
     if (config->threads < 1 || config->threads > TL_MAX_THREADS)
         return tl_fail(error, TL_E_ARGUMENT, "model: threads = %lld is outside [1, %d]",
                        (long long)config->threads, TL_MAX_THREADS);
@@ -65,7 +71,7 @@ tl_status tl_model_create(const tl_model_config *config, tl_model **model, tl_er
     m->pool = pool;
     m->next_id = 1;
     m->area = (tl_area_rule){TL_AREA_FRACTION, NAN};
-    m->timestep = (tl_timestep){NAN, TL_TIMESTEP_BODY, NAN};
+    m->timestep = tl_timestep_default();
     m->added_dt = m->added_most = NAN;
     atomic_init(&m->interrupted, false);
     blocks_init(&m->blocks);

@@ -1,5 +1,6 @@
 /* loads.c - what acts on bodies from outside: loads, and prescribed motion (drives). */
 #include "model/model.h"
+#include "model/options.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -12,9 +13,13 @@ static tl_status check_blocks(tl_model *m, const tl_id *ids, size_t count)
     return TL_OK;
 }
 
-tl_status tl_blocks_load(tl_model *m, const tl_id *ids, size_t count, const tl_load *load)
+tl_status tl_blocks_load(tl_model *m, const tl_id *ids, size_t count, const tl_load *given)
 {
-    tl_status status = tl_model_may_set(m, "load blocks");
+    tl_load read;
+    const tl_load *load = &read;
+    tl_status status = TL_OPTIONS_READ(tl_load, given, &read, &m->error);
+    if (status == TL_OK)
+        status = tl_model_may_set(m, "load blocks");
     if (status != TL_OK)
         return status;
     bool placed = !isnan(load->at.x);
@@ -108,9 +113,13 @@ static tl_drive_record *new_record(tl_model *m)
     return &m->drives[m->drive_count++];
 }
 
-tl_status tl_blocks_drive(tl_model *m, const tl_id *ids, size_t count, const tl_drive *drive)
+tl_status tl_blocks_drive(tl_model *m, const tl_id *ids, size_t count, const tl_drive *given)
 {
-    tl_status status = tl_model_may_set(m, "drive blocks");
+    tl_drive read;
+    const tl_drive *drive = &read;
+    tl_status status = TL_OPTIONS_READ(tl_drive, given, &read, &m->error);
+    if (status == TL_OK)
+        status = tl_model_may_set(m, "drive blocks");
     if (status != TL_OK)
         return status;
     if (!tl_v3_finite(drive->velocity) || !tl_v3_finite(drive->angular_velocity))

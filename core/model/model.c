@@ -5,6 +5,7 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 void tl_damping_clear(tl_model *m)
 {
@@ -85,9 +86,12 @@ tl_status tl_model_may_set(tl_model *m, const char *what)
     return TL_OK;
 }
 
-tl_model_config tl_model_settings(const tl_model *m)
+void tl_model_settings_get(const tl_model *m, tl_model_config *config, size_t size)
 {
-    return m->config;
+    uint32_t own = (uint32_t)size;
+    memset(config, 0, size);
+    memcpy(config, &m->config, size < sizeof m->config ? size : sizeof m->config);
+    memcpy(config, &own, sizeof own);
 }
 
 tl_status tl_model_set_gravity(tl_model *m, tl_vec3 gravity)

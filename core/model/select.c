@@ -1,6 +1,7 @@
 /* select.c - which blocks: the filters of a selection. Positions are the present ones and boundaries
  * are included. */
 #include "model/model.h"
+#include "model/options.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -63,13 +64,18 @@ static bool passes(const tl_model *m, const tl_block_filter *f, tl_tag joint, ui
     return !f->containing || contains(m, row, *f->containing);
 }
 
-tl_status tl_blocks_select(tl_model *m, const tl_block_filter *filter, tl_id **ids, size_t *count)
+tl_status tl_blocks_select(tl_model *m, const tl_block_filter *given, tl_id **ids, size_t *count)
 {
     *ids = NULL;
     *count = 0;
     tl_tag joint = {0, 0};
+    tl_block_filter read;
+    const tl_block_filter *filter = &read;
+    tl_status status = TL_OPTIONS_READ(tl_block_filter, given, &read, &m->error);
+    if (status != TL_OK)
+        return status;
     if (filter->joint) {
-        tl_status status = tl_joint_parse(m, filter->joint, &joint);
+        status = tl_joint_parse(m, filter->joint, &joint);
         if (status != TL_OK)
             return status;
     }

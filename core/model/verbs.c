@@ -1,6 +1,7 @@
 /* verbs.c - what can be done to a set of blocks. A stale id or a bad value fails the whole call before
  * anything is changed. */
 #include "model/model.h"
+#include "model/options.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -195,9 +196,13 @@ static bool some_joined(const tl_model *m, const tl_id *ids, size_t count)
     return false;
 }
 
-tl_status tl_blocks_set(tl_model *m, const tl_id *ids, size_t count, const tl_block_set *set)
+tl_status tl_blocks_set(tl_model *m, const tl_id *ids, size_t count, const tl_block_set *values)
 {
-    tl_status status = tl_model_may_set(m, "set properties of blocks");
+    tl_block_set read;
+    const tl_block_set *set = &read;
+    tl_status status = TL_OPTIONS_READ(tl_block_set, values, &read, &m->error);
+    if (status == TL_OK)
+        status = tl_model_may_set(m, "set properties of blocks");
     if (status == TL_OK)
         status = check_ids(m, ids, count);
     if (status == TL_OK)

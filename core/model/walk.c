@@ -16,7 +16,9 @@ static void walk_settings(tl_model *m, const tl_walk *walk)
     VALUE(STATE, config.contact_points);
     VALUE(STATE, area);
     LIST(STATE, areas, area_count, area_count);
-    VALUE(STATE, timestep);
+    VALUE(STATE, timestep.fraction);
+    VALUE(STATE, timestep.rule);
+    VALUE(STATE, timestep.dt);
     FLAG(STATE, mass_scaling);
     VALUE(STATE, added_dt);
     VALUE(STATE, added_most);

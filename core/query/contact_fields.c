@@ -2,6 +2,8 @@
  * neighbours. Values are those of the last step's forces. */
 #include "query/contact_fields.h"
 
+#include "model/options.h"
+
 #include "contact/index.h"
 #include "contact/places.h"
 #include "detect/detect.h"
@@ -263,13 +265,17 @@ static bool is_between(const unsigned char *ma, const unsigned char *mb, uint32_
     return !ma || !mb || (ma[a] && mb[b]) || (ma[b] && mb[a]);
 }
 
-tl_status tl_contacts_select(tl_model *m, const tl_contact_filter *filter, tl_id **ids,
+tl_status tl_contacts_select(tl_model *m, const tl_contact_filter *given, tl_id **ids,
                              size_t *count)
 {
     *ids = NULL;
     *count = 0;
     tl_tag joint = {0, 0};
-    tl_status status = tl_detect_refresh(m);
+    tl_contact_filter read;
+    const tl_contact_filter *filter = &read;
+    tl_status status = TL_OPTIONS_READ(tl_contact_filter, given, &read, &m->error);
+    if (status == TL_OK)
+        status = tl_detect_refresh(m);
     if (status == TL_OK && filter->joint)
         status = tl_joint_parse(m, filter->joint, &joint);
     unsigned char *ma = NULL, *mb = NULL;

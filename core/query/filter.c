@@ -10,6 +10,8 @@
  * A block is a sliver only when every block of its body is one: what hangs on a sound block has been
  * dealt with. Hidden blocks are left alone. */
 #include "detect/detect.h"
+
+#include "model/options.h"
 #include "query/touching.h"
 
 #include <stdlib.h>
@@ -163,15 +165,19 @@ static tl_status delete (filter *f, tl_filter_result *result)
     return status;
 }
 
-tl_status tl_model_filter(tl_model *m, const tl_filter *limits, tl_filter_result *result)
+tl_status tl_model_filter(tl_model *m, const tl_filter *given, tl_filter_result *result)
 {
     *result = (tl_filter_result){0};
+    tl_filter read;
+    const tl_filter *limits = &read;
+    tl_status status = TL_OPTIONS_READ(tl_filter, given, &read, &m->error);
+    if (status != TL_OK)
+        return status;
     tl_rows_tidy(m);
     if (!is_given(limits->volume) && !is_given(limits->edge) && !is_given(limits->aspect))
         return tl_fail(&m->error, TL_E_ARGUMENT,
                        "filter: give a limit: the smallest volume, the shortest edge or the worst "
                        "aspect");
-    tl_status status = TL_OK;
     if (limits->action != TL_FILTER_REPORT)
         status = tl_model_may_change(m, "filter blocks");
     if (status != TL_OK)

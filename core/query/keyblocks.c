@@ -21,7 +21,9 @@
  * Limits: translations only; each body alone, all others at rest; a body of several blocks is
  * judged by its contact faces alone, which is exact only when it is convex. */
 #include "base/error.h"
+
 #include "detect/detect.h"
+#include "model/options.h"
 #include "query/touching.h"
 
 #include <stdlib.h>
@@ -314,11 +316,14 @@ void tl_keyblocks_free(tl_keyblocks *keyblocks)
     *keyblocks = (tl_keyblocks){0};
 }
 
-tl_status tl_model_keyblocks(tl_model *m, const tl_keyblock_query *query, tl_keyblocks *result)
+tl_status tl_model_keyblocks(tl_model *m, const tl_keyblock_query *given, tl_keyblocks *result)
 {
     *result = (tl_keyblocks){0};
-    work w = {.model = m, .query = query, .result = result};
-    tl_status status = tl_detect_refresh(m);
+    tl_keyblock_query query;
+    work w = {.model = m, .query = &query, .result = result};
+    tl_status status = TL_OPTIONS_READ(tl_keyblock_query, given, &query, &m->error);
+    if (status == TL_OK)
+        status = tl_detect_refresh(m);
     if (status == TL_OK)
         status = parse_strength(&w);
     for (uint32_t body = 0; body < m->bodies.table.rows && status == TL_OK; body++)

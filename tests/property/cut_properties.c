@@ -218,7 +218,7 @@ TEST(topology_in_coordinates_of_a_million)
 
 static tl_model *model_of_a_box(tl_vec3 min)
 {
-    tl_model_config config = {.seed = 1, .threads = 1};
+    tl_model_config config = {.size = sizeof(tl_model_config), .seed = 1, .threads = 1};
     tl_error error;
     tl_model *m;
     tl_stage stage;

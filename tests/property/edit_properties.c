@@ -257,9 +257,11 @@ static void edit(tl_model *m, uint64_t *seed)
     case 5: add_box(m); break;
     case 6: scene_law(m, "coulomb", KN, 0.5 * KN, scene_between(seed, 20, 40)); break;
     case 7:
-        scene_ok(m, tl_model_contact_area(m, &(tl_contact_area){1e-3, NAN, NULL}));
+        scene_ok(m, tl_model_contact_area(
+                        m, &(tl_contact_area){sizeof(tl_contact_area), 1e-3, NAN, NULL}));
         compare(m);
-        scene_ok(m, tl_model_contact_area(m, &(tl_contact_area){0, NAN, NULL}));
+        scene_ok(
+            m, tl_model_contact_area(m, &(tl_contact_area){sizeof(tl_contact_area), 0, NAN, NULL}));
         break;
     case 8: scene_ok(m, tl_blocks_fix(m, &id, 1, TL_FIX_ALL)); break;
     default: scene_ok(m, tl_blocks_free(m, &id, 1)); break;

@@ -47,7 +47,7 @@ static tl_id add_box(tl_model *m, int which)
 
 static scene open_scene(int64_t seed)
 {
-    tl_model_config config = {.seed = seed, .threads = 1};
+    tl_model_config config = {.size = sizeof(tl_model_config), .seed = seed, .threads = 1};
     tl_error error;
     scene s;
     if (tl_model_create(&config, &s.model, &error) != TL_OK)
@@ -169,7 +169,10 @@ TEST(separate_blocks_are_cut_in_any_order)
             hide(&s, second, false);
             tl_id *ids;
             size_t count;
-            tl_block_filter rest = {.group = order == 0 ? "a" : "b", .fixed = -1, .hidden = -1};
+            tl_block_filter rest = {.size = sizeof(tl_block_filter),
+                                    .group = order == 0 ? "a" : "b",
+                                    .fixed = -1,
+                                    .hidden = -1};
             CHECK_INT(tl_blocks_select(s.model, &rest, &ids, &count), TL_OK);
             CHECK_INT(tl_blocks_hide(s.model, ids, count, true), TL_OK);
             cut(&s, 1 - order, 0.5);

@@ -84,8 +84,9 @@ static tl_model *build(recipe r, scale s)
     (r.rock ? add_rock : add_hulls)(&stage, m, &seed, size, density);
     scene_ok(m, tl_stage_commit(&stage));
     scene_law(m, "elastic", r.kn * s.stiffness, 0.5 * r.kn * s.stiffness, -1);
-    scene_ok(m, tl_model_contact_area(m, &(tl_contact_area){r.minimum_area, NAN, NULL}));
-    scene_ok(m, tl_model_timestep(m, &(tl_timestep){FRACTION, r.rule, NAN}));
+    scene_ok(m, tl_model_contact_area(
+                    m, &(tl_contact_area){sizeof(tl_contact_area), r.minimum_area, NAN, NULL}));
+    scene_ok(m, tl_model_timestep(m, &(tl_timestep){sizeof(tl_timestep), FRACTION, r.rule, NAN}));
     tl_id first = m->blocks.id[0];
     if (check_random(&seed) < 0.5)
         scene_ok(m, tl_blocks_fix(m, &first, 1, TL_FIX_ALL));
@@ -137,7 +138,8 @@ TEST(no_step_is_longer_than_its_floor_allows)
         double dt = step_of(m);
         CHECK(dt > 0 && dt <= shortest * (1 + ROUNDING));
         /* mass scaling makes all as slow as the slowest, which has that bound, too */
-        scene_ok(m, tl_model_mass_scaling(m, &(tl_mass_scaling){1, NAN, NAN}));
+        scene_ok(
+            m, tl_model_mass_scaling(m, &(tl_mass_scaling){sizeof(tl_mass_scaling), 1, NAN, NAN}));
         double scaled = step_of(m);
         if (r.rule == TL_TIMESTEP_BODY)
             CHECK(scaled >= dt * (1 - ROUNDING));
@@ -178,8 +180,10 @@ TEST(a_contact_that_vanishes_never_makes_the_step_long)
         scene_block(m, scene_box_shape(side.x, side.y, side.z), scene_turn(tl_v3(0, 0, 1), 0),
                     tl_v3(0, 0, 0.5 * side.z - depth));
         scene_law(m, "elastic", r.kn, r.kn, -1);
-        scene_ok(m, tl_model_contact_area(m, &(tl_contact_area){r.minimum_area, NAN, NULL}));
-        scene_ok(m, tl_model_timestep(m, &(tl_timestep){FRACTION, r.rule, NAN}));
+        scene_ok(m, tl_model_contact_area(
+                        m, &(tl_contact_area){sizeof(tl_contact_area), r.minimum_area, NAN, NULL}));
+        scene_ok(m,
+                 tl_model_timestep(m, &(tl_timestep){sizeof(tl_timestep), FRACTION, r.rule, NAN}));
         scene_ok(m, tl_blocks_fix(m, &m->blocks.id[0], 1, TL_FIX_ALL));
         face_steps(m, r.kn, &shortest, &longest);
         scene_put(m, 1, tl_v3(0, 0, 5 * r.size), scene_turn(tl_v3(0, 0, 1), 0));

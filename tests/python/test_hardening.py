@@ -51,7 +51,7 @@ def check_marks(build):
     library's own objects do."""
     if platform.machine() != "x86_64":
         return
-    archive = build / "libtalus_kernel.a"
+    archive = build / "libtalus.a"
     objects = readelf(archive, "-n").split("\nFile: ")[1:]
     for text in objects:
         if not re.search(r"x86 feature: .*IBT.*SHSTK", text):

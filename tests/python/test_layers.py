@@ -24,6 +24,7 @@ ROOMS = {
     "io": {"base", "geometry", "narrow", "model", "contact", "detect", "force", "query", "cycle", "io"},
     "state": {"base", "geometry", "narrow", "model", "contact", "detect", "force", "cycle", "io", "state"},
     "plugin": {"base", "model", "plugin"},
+    "check": {"base", "check"},
     "lua": {"lua"},
 }
 # Rooms of which a header declares the functions of the source of its name, or types only, in fewer lines than
@@ -41,12 +42,16 @@ PUBLIC = {
     "watch.h": {"types.h", "plugin.h"},
     "settings.h": {"types.h", "plugin.h"},
     "law_test.h": {"types.h", "plugin.h"},
-    "talus.h": {"types.h", "plugin.h", "plugins.h", "law_test.h", "output.h", "state.h", "watch.h", "settings.h"},
+    "values.h": {"types.h", "plugin.h"},
+    "check.h": {"plugins.h", "values.h"},
+    "talus.h": {"types.h", "plugin.h", "plugins.h", "law_test.h", "output.h", "state.h", "watch.h", "settings.h", "values.h",
+                "version.h", "defaults.h"},
+    "defaults.h": {"talus.h"},
     "fields.h": {"talus.h"},
     "views.h": {"talus.h"},
     "boundary.h": {"talus.h"},
 }
-PLUGIN_HEADERS = {"talus/types.h", "talus/elementary.h", "talus/vmath.h", "talus/plugin.h"}
+PLUGIN_HEADERS = {"talus/version.h", "talus/types.h", "talus/elementary.h", "talus/vmath.h", "talus/plugin.h"}
 # What a plugin may include besides: the headers of standard C.
 STANDARD_HEADERS = {
     name + ".h"

@@ -422,7 +422,7 @@ static void run_changing(int ask, char *hash)
             double x = 0.9 * round - 5;
             scene_box(m, tl_v3(x, 3, 4e-4), tl_v3(x + 0.8, 3.8, 0.8));
         }
-        tl_contact_filter all = {.joint = NULL};
+        tl_contact_filter all = {.size = sizeof(tl_contact_filter), .joint = NULL};
         tl_id *ids = NULL;
         size_t count = 0;
         for (int again = 0; again < 2 && ask; again++) {

@@ -74,17 +74,22 @@ static void meddle(tl_model *m, uint64_t seed)
     case 3: let_go(m, row); break;
     case 4:
         scene_ok(m, tl_blocks_drive(m, &id, 1,
-                                    &(tl_drive){.velocity = v, .angular_velocity = tl_v3_neg(v)}));
+                                    &(tl_drive){.size = sizeof(tl_drive),
+                                                .velocity = v,
+                                                .angular_velocity = tl_v3_neg(v)}));
         break;
     case 5:
-        scene_ok(m, tl_blocks_set(m, &id, 1, &(tl_block_set){NAN, NULL, v, tl_v3(NAN, NAN, NAN)}));
+        scene_ok(m, tl_blocks_set(
+                        m, &id, 1,
+                        &(tl_block_set){sizeof(tl_block_set), NAN, NULL, v, tl_v3(NAN, NAN, NAN)}));
         break;
     case 6:
         scene_law(m, "coulomb", 1e8 * (1 + check_random(&seed)), 1e8,
                   20 + 20 * check_random(&seed));
         break;
     default:
-        scene_ok(m, tl_model_insitu(m, &(tl_insitu){.stress = {.xx = -2e5 * check_random(&seed),
+        scene_ok(m, tl_model_insitu(m, &(tl_insitu){.size = sizeof(tl_insitu),
+                                                    .stress = {.xx = -2e5 * check_random(&seed),
                                                                .yy = -1e5,
                                                                .zz = -1e5,
                                                                .xy = 1e5 * check_random(&seed)}}));

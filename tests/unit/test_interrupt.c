@@ -56,7 +56,8 @@ static tl_status tunnel(tl_model *m)
 
 static tl_model *rock(void)
 {
-    tl_model_config config = {.seed = 3, .threads = 1, .gravity = {0, 0, -10}};
+    tl_model_config config = {
+        .size = sizeof(tl_model_config), .seed = 3, .threads = 1, .gravity = {0, 0, -10}};
     tl_error error;
     tl_model *m;
     tl_value values[] = {vector("min", zero), vector("max", size), number("density", 2000)};

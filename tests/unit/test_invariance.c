@@ -342,7 +342,7 @@ TEST(eight_blocks_under_isotropic_stress)
     }
     CHECK_INT(m->blocks.table.rows, 8);
     scene_law(m, "coulomb", KN, KN, 30);
-    tl_insitu insitu = {.stress = {.xx = -1e6, .yy = -1e6, .zz = -1e6}};
+    tl_insitu insitu = {.size = sizeof(tl_insitu), .stress = {.xx = -1e6, .yy = -1e6, .zz = -1e6}};
     scene_ok(m, tl_model_insitu(m, &insitu));
     for (int pass = 0; pass < 2; pass++) {
         scene_forces(m);

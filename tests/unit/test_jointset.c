@@ -46,7 +46,7 @@ static tl_generate_summary generate(tl_model *m, const char *name, const tl_valu
 
 static tl_model *model_with_box(int64_t seed, const double *min, const double *max)
 {
-    tl_model_config config = {.seed = seed, .threads = 1};
+    tl_model_config config = {.size = sizeof(tl_model_config), .seed = seed, .threads = 1};
     tl_error error;
     tl_model *m;
     if (tl_model_create(&config, &m, &error) != TL_OK)

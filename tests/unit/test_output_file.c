@@ -142,7 +142,7 @@ TEST(paths_that_are_none)
         path[i - 1] = '/';
     memcpy(path, FOLDER, strlen(FOLDER));
     path[strlen(FOLDER)] = '/';
-    tl_model_config config = {.threads = 1};
+    tl_model_config config = {.size = sizeof(tl_model_config), .threads = 1};
     tl_model *m = NULL;
     CHECK_INT(tl_model_create(&config, &m, &error), TL_OK);
     CHECK_INT(tl_write_blocks(m, path), TL_E_IO);

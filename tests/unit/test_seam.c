@@ -131,8 +131,11 @@ static double field(tl_model *m, tl_id block, const char *name, int component)
 static double slide(int pieces, double kn, double *place)
 {
     tl_model *m;
-    const tl_model_config config = {
-        .gravity = {0, 0, -10}, .seed = 1, .threads = 1, .reuse_geometry = 1};
+    const tl_model_config config = {.size = sizeof(tl_model_config),
+                                    .gravity = {0, 0, -10},
+                                    .seed = 1,
+                                    .threads = 1,
+                                    .reuse_geometry = 1};
     CHECK_INT(tl_model_create(&config, &m, &error), TL_OK);
     if (pieces == 2) {
         make_box(m, tl_v3(0, 0, 0), tl_v3(2, 1, 1));
@@ -150,13 +153,15 @@ static double slide(int pieces, double kn, double *place)
     const tl_args args = {law, 3};
     CHECK_INT(tl_joint_law(m, "*", "coulomb", &args), TL_OK);
     CHECK_INT(tl_blocks_fix(m, &base, 1, TL_FIX_ALL), TL_OK);
-    tl_block_set set = {
-        .density = NAN, .velocity = {0.5, 0, 0}, .angular_velocity = {NAN, NAN, NAN}};
+    tl_block_set set = {.size = sizeof(tl_block_set),
+                        .density = NAN,
+                        .velocity = {0.5, 0, 0},
+                        .angular_velocity = {NAN, NAN, NAN}};
     CHECK_INT(tl_blocks_set(m, &slider, 1, &set), TL_OK);
     double worst = 0;
     tl_solve_result result;
     const int cycles = (int)(10 * sqrt(kn / 1e7));
-    const tl_timestep step = {0.1, TL_TIMESTEP_PAPER, 1e-2 / cycles};
+    const tl_timestep step = {sizeof(tl_timestep), 0.1, TL_TIMESTEP_PAPER, 1e-2 / cycles};
     CHECK_INT(tl_model_timestep(m, &step), TL_OK);
     for (int k = 0; k < 200; k++) {
         CHECK_INT(tl_model_cycle(m, cycles, &result), TL_OK);

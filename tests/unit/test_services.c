@@ -28,7 +28,7 @@ static void keep_remark(void *user, const char *line)
 
 static tl_model *model_new(int64_t seed)
 {
-    tl_model_config config = {.seed = seed, .threads = 1};
+    tl_model_config config = {.size = sizeof(tl_model_config), .seed = seed, .threads = 1};
     tl_error error;
     tl_model *m;
     if (tl_model_create(&config, &m, &error) != TL_OK)

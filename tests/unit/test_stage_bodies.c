@@ -6,7 +6,7 @@
 /* Runs the test generator in a new model. */
 static tl_model *run(const char *mode, tl_status expected, tl_generate_summary *summary)
 {
-    tl_model_config config = {.seed = 1, .threads = 1};
+    tl_model_config config = {.size = sizeof(tl_model_config), .seed = 1, .threads = 1};
     tl_error error;
     tl_model *m;
     if (tl_model_create(&config, &m, &error) != TL_OK)

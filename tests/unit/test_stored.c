@@ -49,7 +49,8 @@ static rig rig_of(tl_poly *still, tl_poly *moved, bool swapped, double least)
     if (!swapped)
         scene_block(r.m, moved, none, away);
     scene_law(r.m, "elastic", KN, KN, -1);
-    tl_contact_area area = {.fraction = 0, .absolute = least > 0 ? least : NAN};
+    tl_contact_area area = {
+        .size = sizeof(tl_contact_area), .fraction = 0, .absolute = least > 0 ? least : NAN};
     scene_ok(r.m, tl_model_contact_area(r.m, &area));
     return r;
 }

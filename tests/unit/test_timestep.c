@@ -51,8 +51,10 @@ static double compare_step(tl_model *m, double *copy)
 TEST(kept_rates_are_those_of_the_present_contacts)
 {
     tl_model *m = shower();
-    scene_ok(m, tl_model_timestep(
-                    m, &(tl_timestep){.rule = TL_TIMESTEP_BODY, .fraction = 0.5, .dt = NAN}));
+    scene_ok(m, tl_model_timestep(m, &(tl_timestep){.size = sizeof(tl_timestep),
+                                                    .rule = TL_TIMESTEP_BODY,
+                                                    .fraction = 0.5,
+                                                    .dt = NAN}));
     double copy[BLOCKS + 1], worst = 0;
     size_t most = 0;
     for (int i = 0; i < STEPS; i++) {
@@ -69,7 +71,7 @@ TEST(kept_rates_are_those_of_the_present_contacts)
 TEST(mass_scaling_knows_which_bodies_have_contacts)
 {
     tl_model *m = shower();
-    scene_ok(m, tl_model_mass_scaling(m, &(tl_mass_scaling){1, NAN, NAN}));
+    scene_ok(m, tl_model_mass_scaling(m, &(tl_mass_scaling){sizeof(tl_mass_scaling), 1, NAN, NAN}));
     double copy[BLOCKS + 1];
     int missed = 0;
     for (int i = 0; i < STEPS; i++) {
@@ -101,7 +103,7 @@ TEST(a_body_without_contacts_stands_on_its_largest_face)
     scene_law(m, "elastic", kn / 3, kn, -1);
     double dt, least = mass * fmin(a * a + c * c, b * b + c * c) / 12;
     double r2 = (a * a + b * b) / 12 + c * c / 4;
-    tl_timestep timestep = {fraction, TL_TIMESTEP_BODY, NAN};
+    tl_timestep timestep = {sizeof(tl_timestep), fraction, TL_TIMESTEP_BODY, NAN};
     scene_ok(m, tl_model_timestep(m, &timestep));
     scene_ok(m, tl_model_dt(m, &dt));
     CHECK_REL(dt, fraction * 2 * sqrt(1 / (k * (1 / mass + r2 / least))), 1e-12);
@@ -160,12 +162,16 @@ TEST(time_stands_where_nothing_can_move)
     scene_ok(m, tl_model_dt(m, &dt));
     CHECK(m->time == 0 && dt == 0);
     /* what is held but moves needs a step */
-    tl_block_set moves = {.density = NAN, .velocity = {1, 0, 0}, .angular_velocity = {0, 0, 0}};
+    tl_block_set moves = {.size = sizeof(tl_block_set),
+                          .density = NAN,
+                          .velocity = {1, 0, 0},
+                          .angular_velocity = {0, 0, 0}};
     scene_ok(m, tl_blocks_set(m, &m->blocks.id[0], 1, &moves));
     CHECK_INT(ten_steps(m), TL_E_STATE);
     CHECK_CONTAINS(tl_model_error(m)->text, "no law says how stiff a contact is");
     /* and where the user gives one, time goes on */
-    scene_ok(m, tl_model_timestep(m, &(tl_timestep){NAN, TL_TIMESTEP_BODY, 0.25}));
+    scene_ok(
+        m, tl_model_timestep(m, &(tl_timestep){sizeof(tl_timestep), NAN, TL_TIMESTEP_BODY, 0.25}));
     scene_ok(m, ten_steps(m));
     CHECK_NEAR(m->time, 2.5, 1e-15);
     CHECK_NEAR(m->bodies.pose[0].u.x, 2.5, 1e-15);
@@ -181,7 +187,8 @@ TEST(a_fall_begins_after_steps_without_time)
     scene_ok(m, tl_blocks_fix(m, &m->blocks.id[0], 1, TL_FIX_ALL));
     scene_ok(m, ten_steps(m));
     scene_ok(m, tl_blocks_free(m, &m->blocks.id[0], 1));
-    scene_ok(m, tl_model_timestep(m, &(tl_timestep){NAN, TL_TIMESTEP_BODY, 0.125}));
+    scene_ok(
+        m, tl_model_timestep(m, &(tl_timestep){sizeof(tl_timestep), NAN, TL_TIMESTEP_BODY, 0.125}));
     scene_ok(m, ten_steps(m));
     CHECK_NEAR(m->bodies.pose[0].u.z, -5 * 1.25 * 1.25, 1e-14);
     tl_model_destroy(m);
@@ -243,7 +250,7 @@ static tl_model *eight_cubes(double size, double share, heard *h)
 /* The filter that the remark names, with joining. */
 static tl_filter named_filter(const char *text)
 {
-    tl_filter filter = {NAN, NAN, NAN, TL_FILTER_JOIN};
+    tl_filter filter = {sizeof(tl_filter), NAN, NAN, NAN, TL_FILTER_JOIN};
     const char *volume = strstr(text, "model:filter{ volume = "),
                *aspect = strstr(text, "model:filter{ aspect = ");
     if (volume)
@@ -257,7 +264,7 @@ static void check_sliver(double size, double share, int32_t rule)
 {
     heard h = {0, ""};
     tl_model *m = eight_cubes(size, share, &h);
-    scene_ok(m, tl_model_timestep(m, &(tl_timestep){NAN, rule, NAN}));
+    scene_ok(m, tl_model_timestep(m, &(tl_timestep){sizeof(tl_timestep), NAN, rule, NAN}));
     scene_ok(m, ten_steps(m));
     scene_ok(m, ten_steps(m));
     if (!CHECK_INT(h.remarks, 1))
@@ -294,9 +301,10 @@ static int remarks_of(double share, double density, bool scaling)
 {
     heard h = {0, ""};
     tl_model *m = eight_cubes(1, share, &h);
-    tl_block_set lighter = {density, NULL, {NAN, NAN, NAN}, {NAN, NAN, NAN}};
+    tl_block_set lighter = {sizeof(tl_block_set), density, NULL, {NAN, NAN, NAN}, {NAN, NAN, NAN}};
     scene_ok(m, tl_blocks_set(m, &m->blocks.id[2], 1, &lighter));
-    scene_ok(m, tl_model_mass_scaling(m, &(tl_mass_scaling){scaling, NAN, NAN}));
+    scene_ok(m, tl_model_mass_scaling(
+                    m, &(tl_mass_scaling){sizeof(tl_mass_scaling), scaling, NAN, NAN}));
     scene_ok(m, ten_steps(m));
     tl_model_destroy(m);
     return h.remarks;

@@ -291,7 +291,8 @@ TEST(uniform_stress_stays_uniform)
     scene_box(m, tl_v3(0, 0, 0), tl_v3(1, 1, 1));
     scene_block(m, scene_box_shape(1, 1, 1), scene_turn(tl_v3(0, 0, 1), 0.3), tl_v3(0.5, 0.5, 1.5));
     scene_law(m, "elastic", KN, KN, -1);
-    tl_insitu insitu = {.stress = {.xx = -1e6, .yy = -2e6, .zz = -3e6, .zx = 2e5, .yz = -1e5}};
+    tl_insitu insitu = {.size = sizeof(tl_insitu),
+                        .stress = {.xx = -1e6, .yy = -2e6, .zz = -3e6, .zx = 2e5, .yz = -1e5}};
     scene_ok(m, tl_model_insitu(m, &insitu));
     for (int i = 0; i < 300; i++) {
         scene_forces(m);

@@ -47,7 +47,8 @@ static tl_model *scene(int64_t threads, uint64_t seed, const char *law, const ch
     else
         scene_ok(m, set_law(m, law, number("kn", KN), number("ks", KS)));
     for (tl_id id = 2; id <= 17; id++) {
-        const tl_block_set set = {.density = NAN,
+        const tl_block_set set = {.size = sizeof(tl_block_set),
+                                  .density = NAN,
                                   .velocity = {0.2 * (id % 3), 0.1 * (id % 4), -0.1},
                                   .angular_velocity = {0.1, 0.2 * (id % 2), 0.1}};
         scene_ok(m, tl_blocks_set(m, &id, 1, &set));
@@ -175,8 +176,10 @@ TEST(a_force_beyond_all_numbers_is_undone)
             m[k] = scene(2, 5, laws[law], NULL);
             run(m[k], STEPS);
             const double all = -1.7e308;
-            const tl_insitu wild = {.stress = {all, all, all, all, all, all}};
-            const tl_insitu tame = {.stress = {.xx = -1e3, .yy = -1e3, .zz = -1e3}};
+            const tl_insitu wild = {.size = sizeof(tl_insitu),
+                                    .stress = {all, all, all, all, all, all}};
+            const tl_insitu tame = {.size = sizeof(tl_insitu),
+                                    .stress = {.xx = -1e3, .yy = -1e3, .zz = -1e3}};
             scene_ok(m[k], tl_model_insitu(m[k], &wild));
             if (k == 0)
                 fail(m[k], "the force is not a finite number");
@@ -190,8 +193,8 @@ TEST(a_force_beyond_all_numbers_is_undone)
 /* A step that is too long, step by step, until a block would be flung: cured by a shorter one. */
 TEST(a_step_that_would_fling_a_block_is_undone)
 {
-    const tl_timestep longer = {.fraction = 0.1, .dt = 2e-2},
-                      shorter = {.fraction = 0.1, .dt = 1e-4};
+    const tl_timestep longer = {.size = sizeof(tl_timestep), .fraction = 0.1, .dt = 2e-2},
+                      shorter = {.size = sizeof(tl_timestep), .fraction = 0.1, .dt = 1e-4};
     int64_t made = 0;
     tl_model *m[2];
     for (int k = 0; k < 2; k++) {
@@ -228,7 +231,7 @@ TEST(nothing_goes_on_from_a_step_that_cannot_be_undone)
     run(m, STEPS);
     /* a stone is pressed down, and some steps later the law fails */
     const tl_id stone = 14;
-    const tl_drive down = {.velocity = {0, 0, -1}};
+    const tl_drive down = {.size = sizeof(tl_drive), .velocity = {0, 0, -1}};
     scene_ok(m, tl_blocks_drive(m, &stone, 1, &down));
     scene_ok(m, set_law(m, NULL, truth("fails", 1), number("beyond", 0.2)));
     run(m, 2);

@@ -22,6 +22,7 @@ TL_API tl_status tl_write_section(struct tl_model *model, const char *prefix,
 
 /* The files of a frame. */
 typedef struct tl_vtk_parts {
+    uint32_t size; /* sizeof(tl_vtk_parts) */
     int32_t blocks, contacts, joints;
 } tl_vtk_parts;
 /* Writes the next frame of the series PREFIX: PREFIX_blocks_NNNNNN.vtk, _contacts_ and _joints_, or those of `parts`, and

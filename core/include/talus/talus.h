@@ -5,6 +5,10 @@
  * Stress tensors are tension positive, joint stresses and forces compression positive. Angles of
  * planes in degrees, angular velocities in rad/s.
  *
+ * Options. A struct of options begins with its `size`, and `tl_NAME_default()` gives it with the defaults of the library that
+ * runs: tl_solve s = tl_solve_default(). A program then stays right when a later library of the same soname appends members.
+ * NULL in the place of options means the defaults. Structs of results do not grow within one soname.
+ *
  * Errors. A function that can fail returns a tl_status; the sentence is then in
  * tl_model_error(model). A failed call leaves the model as it was. Functions are called from one
  * thread per model. */
@@ -19,61 +23,18 @@
 #include <talus/settings.h>
 #include <talus/state.h>
 #include <talus/types.h>
+#include <talus/values.h>
+#include <talus/version.h>
 #include <talus/watch.h>
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-#define TALUS_VERSION "0.1.0"
+/* The version of the library that runs; TALUS_VERSION is that of the headers. */
+TL_API const char *tl_version(void);
 
 typedef struct tl_model tl_model;
-
-/* ---------------------------------------------------------------- named values ----------- */
-
-/* A value as a script gives it, before it is checked against a tl_param table. */
-typedef enum tl_value_type {
-    TL_VALUE_NUMBER,  /* number; `integral` tells whether it is a whole number */
-    TL_VALUE_BOOL,    /* number is 0 or 1 */
-    TL_VALUE_STRING,  /* text */
-    TL_VALUE_NUMBERS, /* data: count numbers (a vector when count is 3) */
-    TL_VALUE_POINTS,  /* data: count rows of 3 numbers */
-    TL_VALUE_FLAT,    /* the same, given as rows of 2 numbers: the third is 0 */
-    TL_VALUE_OTHER    /* text says what it is ("function", "list whose row 4 has 2 numbers") */
-} tl_value_type;
-
-typedef struct tl_value {
-    const char *key;
-    tl_value_type type;
-    double number;
-    const char *text;
-    const double *data;
-    size_t count;
-} tl_value;
-
-typedef struct tl_args {
-    const tl_value *values;
-    size_t count;
-} tl_args;
-
-/* Checks `args` against a table of parameters and fills the struct `out`: unknown keys (with the nearest known name),
- * wrong types, values out of range, NaN and infinity, and missing required parameters are refused with a sentence that
- * starts with `context` ("joint 'J1', law 'coulomb'"). With `keep` true only the given parameters are written (a change
- * of one property) and nothing is required. On failure `out` is unspecified. Strings and points stay the caller's. */
-TL_API tl_status tl_args_read(const tl_param *params, size_t count, size_t stride,
-                              const tl_args *args, bool keep, void *out, const char *context,
-                              tl_error *error);
-
-/* The range of a parameter as text: "[0, 90)", "> 0", ">= 0"; "" when it has none. */
-TL_API void tl_param_range(const tl_param *param, char *text, size_t size);
-/* The name nearest to `word` (a typing error or the beginning of a name), or NULL when none is near. */
-TL_API const char *tl_nearest_name(const char *word, const char *const *names, size_t count);
-
-/* The parameter tables of the kernel's own functions ("model", "solve", "insitu", ...), for
- * checking and for help. NULL when there is none of that name. */
-TL_API const tl_param *tl_function_params(const char *function, size_t *count, const char **doc);
-/* The names of those functions, NULL terminated, in the order of the reference. */
-TL_API const char *const *tl_function_names(void);
 
 /* ---------------------------------------------------------------- model ------------------ */
 
@@ -91,6 +52,7 @@ typedef enum tl_contact_points {
 } tl_contact_points;
 
 typedef struct tl_model_config {
+    uint32_t size; /* sizeof(tl_model_config) */
     tl_vec3 gravity;
     int64_t seed;
     int64_t threads;  /* 1 .. 256 */
@@ -110,7 +72,14 @@ TL_API void tl_model_destroy(tl_model *model);
 TL_API const tl_error *tl_model_error(const tl_model *model);
 TL_API void tl_model_log(tl_model *model, tl_log_fn log, void *user);
 
-TL_API tl_model_config tl_model_settings(const tl_model *model);
+/* Writes the settings, the first `size` bytes of them, and that size. */
+TL_API void tl_model_settings_get(const tl_model *model, tl_model_config *config, size_t size);
+static inline tl_model_config tl_model_settings(const tl_model *model)
+{
+    tl_model_config config;
+    tl_model_settings_get(model, &config, sizeof config);
+    return config;
+}
 TL_API tl_status tl_model_set_gravity(tl_model *model, tl_vec3 gravity);
 TL_API tl_status tl_model_set_rotation(tl_model *model, tl_rotation_rule rule);
 TL_API tl_status tl_model_set_reuse_geometry(tl_model *model, bool reuse);
@@ -126,7 +95,7 @@ typedef struct tl_generate_summary {
     double volume_error; /* |volume after - volume before - volume created| / volume after */
 } tl_generate_summary;
 
-/* Runs a generator plugin on the visible blocks; commits its work whole or not at all. */
+/* Runs a generator plugin on the visible blocks; commits its work whole or not at all. `summary` may be NULL. */
 TL_API tl_status tl_generate(tl_model *model, const char *generator, const tl_args *args,
                              tl_generate_summary *summary);
 /* The same for several sets of parameters, one after the other on the blocks as the ones before have left them: all or none.
@@ -169,6 +138,7 @@ typedef enum tl_filter_action {
 } tl_filter_action;
 
 typedef struct tl_filter {
+    uint32_t size;               /* sizeof(tl_filter) */
     double volume, edge, aspect; /* smallest volume, m3, and edge, m; worst aspect; NaN: no limit */
     int32_t action;              /* tl_filter_action */
 } tl_filter;
@@ -197,6 +167,7 @@ TL_API tl_status tl_joint_law(tl_model *model, const char *joint, const char *la
                               const tl_args *args);
 
 typedef struct tl_insitu {
+    uint32_t size;            /* sizeof(tl_insitu) */
     tl_sym3 stress, gradient; /* tension positive, Pa and Pa/m over z */
     tl_vec3 at;
 } tl_insitu;
@@ -216,6 +187,7 @@ typedef enum tl_timestep_rule { TL_TIMESTEP_PAPER, TL_TIMESTEP_BODY } tl_timeste
 #define TL_STEP_LEAST 1e-100
 
 typedef struct tl_timestep {
+    uint32_t size;   /* sizeof(tl_timestep) */
     double fraction; /* FRAC of (27); NaN: that of the rule */
     int32_t rule;    /* tl_timestep_rule */
     double dt;       /* fixed step, s; NaN: by the rule */
@@ -239,6 +211,7 @@ TL_API tl_status tl_model_timestep_report(tl_model *model, tl_timestep_report *r
  * longest stable step, for finding equilibria: paths, times and velocities then mean nothing. With `dt` of those in contact
  * whose own stable step is shorter, so that it is `dt`; a step that would add more than the share `most` fails. */
 typedef struct tl_mass_scaling {
+    uint32_t size; /* sizeof(tl_mass_scaling) */
     int32_t on;
     double dt;   /* s, or NaN */
     double most; /* of the mass of the bodies that can move, or NaN: 0.05 */
@@ -247,15 +220,17 @@ TL_API tl_status tl_model_mass_scaling(tl_model *model, const tl_mass_scaling *s
 
 /* What the last step has added, with `dt`. */
 typedef struct tl_mass_added {
-    tl_mass_scaling scaling;
-    double share;  /* of the mass of the bodies that can move */
-    size_t bodies; /* that have been given some */
-    tl_id worst;   /* a block of the one that has the highest factor, or TL_NO_ID */
-    double factor; /* its inertia over its own */
+    int32_t on;      /* whether mass scaling is, of either way */
+    double dt, most; /* as given: s, or NaN; share */
+    double share;    /* of the mass of the bodies that can move */
+    size_t bodies;   /* that have been given some */
+    tl_id worst;     /* a block of the one that has the highest factor, or TL_NO_ID */
+    double factor;   /* its inertia over its own */
 } tl_mass_added;
 TL_API tl_mass_added tl_model_mass_added(const tl_model *model);
 
 typedef struct tl_contact_area {
+    uint32_t size;     /* sizeof(tl_contact_area) */
     double fraction;   /* of the smaller block's mean face area; >= 0. 0: no minimum area */
     double absolute;   /* m2; NaN: by the fraction */
     const char *joint; /* NULL: every joint */
@@ -283,6 +258,7 @@ typedef enum tl_ratio_measure {
 } tl_ratio_measure;
 
 typedef struct tl_solve {
+    uint32_t size;           /* sizeof(tl_solve) */
     double ratio;            /* ends when the unbalanced force ratio falls below, and that of the
                                 moments, each over its body's radius, too; 0: never */
     int32_t measure;         /* tl_ratio_measure */
@@ -384,6 +360,7 @@ typedef struct tl_halfspace {
 
 /* Which blocks; all that is set must hold. */
 typedef struct tl_block_filter {
+    uint32_t size;     /* sizeof(tl_block_filter) */
     tl_id id;          /* 0: any */
     const char *group; /* NULL: any */
     const char *joint; /* has a face of this joint ("J1" or "J1:3"); NULL: any */
@@ -458,6 +435,7 @@ TL_API tl_status tl_blocks_free(tl_model *model, const tl_id *ids, size_t count)
 TL_API tl_status tl_blocks_reset_displacement(tl_model *model, const tl_id *ids, size_t count);
 
 typedef struct tl_block_set {
+    uint32_t size;                      /* sizeof(tl_block_set) */
     double density;                     /* NaN: unchanged */
     const char *group;                  /* NULL: unchanged */
     tl_vec3 velocity, angular_velocity; /* NaN: unchanged */
@@ -473,6 +451,7 @@ TL_API tl_status tl_blocks_join(tl_model *model, const tl_id *ids, size_t count)
 TL_API tl_status tl_blocks_unjoin(tl_model *model, const tl_id *ids, size_t count);
 
 typedef struct tl_load {
+    uint32_t size;  /* sizeof(tl_load) */
     tl_vec3 force;  /* N */
     tl_vec3 moment; /* N m */
     tl_vec3
@@ -487,6 +466,7 @@ TL_API tl_status tl_blocks_load(tl_model *model, const tl_id *ids, size_t count,
 typedef bool (*tl_drive_fn)(void *user, double t, tl_vec3 *velocity);
 
 typedef struct tl_drive {
+    uint32_t size;                                /* sizeof(tl_drive) */
     tl_vec3 velocity, angular_velocity;           /* constant parts; all zero where not given */
     tl_drive_fn velocity_at, angular_velocity_at; /* in their place, or NULL */
     void *user;
@@ -517,6 +497,7 @@ TL_API tl_status tl_model_energy(tl_model *model, tl_energy *energy);
 /* ---------------------------------------------------------------- contacts --------------- */
 
 typedef struct tl_contact_filter {
+    uint32_t size;                      /* sizeof(tl_contact_filter) */
     const char *joint;                  /* NULL: any */
     const tl_id *between_a, *between_b; /* NULL: any; one block of each list, either way round */
     size_t count_a, count_b;
@@ -540,6 +521,7 @@ typedef struct tl_joint_strength {
 } tl_joint_strength;
 
 typedef struct tl_keyblock_query {
+    uint32_t size;   /* sizeof(tl_keyblock_query) */
     tl_vec3 gravity; /* NaN: the model's */
     const tl_joint_strength *strength;
     size_t count;
@@ -593,5 +575,7 @@ TL_API tl_status tl_state_hash(tl_model *model, char text[33]);
 #ifdef __cplusplus
 }
 #endif
+
+#include <talus/defaults.h>
 
 #endif

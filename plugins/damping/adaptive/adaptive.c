@@ -11,6 +11,7 @@
  * the servo is ours. The bounds on alpha that are not given follow the time step, which makes them fit
  * models of any size: see the table. State `alpha` is 0 before the first step. */
 #include <talus/plugin.h>
+#include <talus/version.h>
 
 #include <math.h>
 #include <stdio.h>
@@ -143,7 +144,7 @@ static const tl_plugin plugin = {
     .abi_major = TL_ABI_MAJOR,
     .abi_minor = TL_ABI_MINOR,
     .id = "talus.adaptive",
-    .version = "0.1.0",
+    .version = TALUS_VERSION,
     .doc = "Adaptive global damping.",
     .licence = "BSD-3-Clause",
     .kinds = &kind,

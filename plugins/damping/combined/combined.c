@@ -12,6 +12,7 @@
  * effective stiffness rises by (1 + alpha) at the most, so the stable time step shrinks by
  * 1 / sqrt(1 + alpha). The forces of the step before are the host's. */
 #include <talus/plugin.h>
+#include <talus/version.h>
 
 #include <math.h>
 
@@ -82,7 +83,7 @@ static const tl_plugin plugin = {
     .abi_major = TL_ABI_MAJOR,
     .abi_minor = TL_ABI_MINOR,
     .id = "talus.combined",
-    .version = "0.1.0",
+    .version = TALUS_VERSION,
     .doc = "Combined damping.",
     .licence = "BSD-3-Clause",
     .kinds = &kind,

@@ -15,6 +15,7 @@
  * Velocities are stopped by the viscous coefficient 2 / dt, with which (23) leaves nothing of them, whatever the inertia,
  * and takes half of the kick. So the half step after a stop is that of a motion that begins. */
 #include <talus/plugin.h>
+#include <talus/version.h>
 
 static const tl_state state_table[] = {
     {.size = sizeof(tl_state),
@@ -75,7 +76,7 @@ static const tl_plugin plugin = {
     .abi_major = TL_ABI_MAJOR,
     .abi_minor = TL_ABI_MINOR,
     .id = "talus.kinetic",
-    .version = "0.1.0",
+    .version = TALUS_VERSION,
     .doc = "Kinetic damping.",
     .licence = "BSD-3-Clause",
     .kinds = &kind,

@@ -11,6 +11,7 @@
  * Computational Methods in Engineering Rock Mechanics (1987). It raises the effective stiffness by
  * (1 + alpha), so the stable time step shrinks by 1 / sqrt(1 + alpha). */
 #include <talus/plugin.h>
+#include <talus/version.h>
 
 #include <math.h>
 
@@ -74,7 +75,7 @@ static const tl_plugin plugin = {
     .abi_major = TL_ABI_MAJOR,
     .abi_minor = TL_ABI_MINOR,
     .id = "talus.local",
-    .version = "0.1.0",
+    .version = TALUS_VERSION,
     .doc = "Local (non-viscous) damping.",
     .licence = "BSD-3-Clause",
     .kinds = &kind,

@@ -1,5 +1,6 @@
 /* none.c - damping "none": takes no energy out. The motion is that of the undamped equations. */
 #include <talus/plugin.h>
+#include <talus/version.h>
 
 /* The host has preset every output to zero, which is what this damping gives. */
 static tl_status update(const void *self, const tl_damping_batch *batch, tl_report *report)
@@ -32,7 +33,7 @@ static const tl_plugin plugin = {
     .abi_major = TL_ABI_MAJOR,
     .abi_minor = TL_ABI_MINOR,
     .id = "talus.none",
-    .version = "0.1.0",
+    .version = TALUS_VERSION,
     .doc = "The absence of damping.",
     .licence = "BSD-3-Clause",
     .kinds = &kind,

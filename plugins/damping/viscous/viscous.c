@@ -6,6 +6,7 @@
  * it by the central difference (23), whose bound on the time step does not depend on alpha. Critical for
  * a mode of circular frequency omega: alpha = 2 omega. Terminal velocity under gravity: g / alpha. */
 #include <talus/plugin.h>
+#include <talus/version.h>
 
 #include <math.h>
 
@@ -53,7 +54,7 @@ static const tl_plugin plugin = {
     .abi_major = TL_ABI_MAJOR,
     .abi_minor = TL_ABI_MINOR,
     .id = "talus.viscous",
-    .version = "0.1.0",
+    .version = TALUS_VERSION,
     .doc = "Viscous damping.",
     .licence = "BSD-3-Clause",
     .kinds = &kind,

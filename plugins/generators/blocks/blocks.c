@@ -6,6 +6,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <talus/version.h>
 
 #define FORMAT "talus block model"
 #define VERSION 1
@@ -363,7 +364,7 @@ static const tl_plugin plugin = {
     .abi_major = TL_ABI_MAJOR,
     .abi_minor = TL_ABI_MINOR,
     .id = "talus.blocks",
-    .version = "0.1.0",
+    .version = TALUS_VERSION,
     .doc = "Block model generator.",
     .licence = "BSD-3-Clause",
     .kinds = &kind,

@@ -1,5 +1,6 @@
 /* box.c - generator "box": one block, an axis-aligned box. */
 #include <talus/plugin.h>
+#include <talus/version.h>
 
 #include <math.h>
 
@@ -48,7 +49,7 @@ static const tl_plugin plugin = {
     .abi_major = TL_ABI_MAJOR,
     .abi_minor = TL_ABI_MINOR,
     .id = "talus.box",
-    .version = "0.1.0",
+    .version = TALUS_VERSION,
     .doc = "Box generator.",
     .licence = "BSD-3-Clause",
     .kinds = &kind,

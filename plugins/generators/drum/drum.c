@@ -1,6 +1,7 @@
 /* drum.c - generator "drum": one block, an upright prism whose ends are regular polygons inscribed in
  * circles about an axis. Its volume is sides/2 radius^2 sin(360 deg / sides) height. */
 #include <talus/plugin.h>
+#include <talus/version.h>
 #include <talus/vmath.h>
 
 /* Most sides: more would make edges that no time step likes. */
@@ -70,7 +71,7 @@ static const tl_plugin plugin = {
     .abi_major = TL_ABI_MAJOR,
     .abi_minor = TL_ABI_MINOR,
     .id = "talus.drum",
-    .version = "0.1.0",
+    .version = TALUS_VERSION,
     .doc = "Drum generator.",
     .licence = "BSD-3-Clause",
     .kinds = &kind,

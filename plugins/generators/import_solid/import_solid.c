@@ -4,6 +4,7 @@
 #include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
+#include <talus/version.h>
 #include <talus/vmath.h>
 
 typedef struct params {
@@ -79,7 +80,7 @@ static const tl_plugin plugin = {
     .abi_major = TL_ABI_MAJOR,
     .abi_minor = TL_ABI_MINOR,
     .id = "talus.import_solid",
-    .version = "0.1.0",
+    .version = TALUS_VERSION,
     .doc = "Import of closed convex solids.",
     .licence = "BSD-3-Clause",
     .kinds = &kind,

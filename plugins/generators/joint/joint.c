@@ -4,6 +4,7 @@
  * block in its path is cut with the probability `persistence`. The plane gets the next number of
  * its joint set. */
 #include <talus/plugin.h>
+#include <talus/version.h>
 #include <talus/vmath.h>
 
 typedef struct params {
@@ -67,7 +68,7 @@ static const tl_plugin plugin = {
     .abi_major = TL_ABI_MAJOR,
     .abi_minor = TL_ABI_MINOR,
     .id = "talus.joint",
-    .version = "0.1.0",
+    .version = TALUS_VERSION,
     .doc = "Joint generator.",
     .licence = "BSD-3-Clause",
     .kinds = &kind,

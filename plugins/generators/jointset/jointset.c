@@ -17,6 +17,7 @@
  * Rock Mech. Min. Sci. 25 (1988) 117-125, section on model generation, for the six parameters). */
 #include "draw.h"
 
+#include <talus/version.h>
 #include <talus/vmath.h>
 
 /* Normal deviations end here, in standard deviations, so that a rare draw cannot turn a plane over. */
@@ -190,7 +191,7 @@ static const tl_plugin plugin = {
     .abi_major = TL_ABI_MAJOR,
     .abi_minor = TL_ABI_MINOR,
     .id = "talus.jointset",
-    .version = "0.1.0",
+    .version = TALUS_VERSION,
     .doc = "Joint set generator.",
     .licence = "BSD-3-Clause",
     .kinds = &kind,

@@ -1,6 +1,7 @@
 /* polyhedron.c - generator "polyhedron": one block, the convex hull of its vertices. The host refuses
  * vertices that span no volume, and a vertex that is no corner of the hull because it lies inside. */
 #include <talus/plugin.h>
+#include <talus/version.h>
 
 #include <math.h>
 
@@ -43,7 +44,7 @@ static const tl_plugin plugin = {
     .abi_major = TL_ABI_MAJOR,
     .abi_minor = TL_ABI_MINOR,
     .id = "talus.polyhedron",
-    .version = "0.1.0",
+    .version = TALUS_VERSION,
     .doc = "Polyhedron generator.",
     .licence = "BSD-3-Clause",
     .kinds = &kind,

@@ -1,6 +1,8 @@
 /* plugin.c - the plugin of the generators "prism" and "profile". */
 #include "prism.h"
 
+#include <talus/version.h>
+
 static tl_kind kinds[2];
 
 static const tl_plugin plugin = {
@@ -8,7 +10,7 @@ static const tl_plugin plugin = {
     .abi_major = TL_ABI_MAJOR,
     .abi_minor = TL_ABI_MINOR,
     .id = "talus.prism",
-    .version = "0.1.0",
+    .version = TALUS_VERSION,
     .doc = "Generators of prisms and of sections moved across their plane.",
     .licence = "BSD-3-Clause",
     .kinds = kinds,

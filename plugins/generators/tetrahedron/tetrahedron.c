@@ -1,6 +1,7 @@
 /* tetrahedron.c - generator "tetrahedron": one block from its four corners, in any order. The host refuses
  * corners that span no volume. */
 #include <talus/plugin.h>
+#include <talus/version.h>
 
 #include <math.h>
 
@@ -48,7 +49,7 @@ static const tl_plugin plugin = {
     .abi_major = TL_ABI_MAJOR,
     .abi_minor = TL_ABI_MINOR,
     .id = "talus.tetrahedron",
-    .version = "0.1.0",
+    .version = TALUS_VERSION,
     .doc = "Tetrahedron generator.",
     .licence = "BSD-3-Clause",
     .kinds = &kind,

@@ -14,6 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <talus/plugin.h>
+#include <talus/version.h>
 #include <talus/vmath.h>
 
 typedef struct params {
@@ -389,7 +390,7 @@ static const tl_plugin plugin = {
     .abi_major = TL_ABI_MAJOR,
     .abi_minor = TL_ABI_MINOR,
     .id = "talus.tunnel",
-    .version = "0.1.0",
+    .version = TALUS_VERSION,
     .doc = "Tunnel generator.",
     .licence = "BSD-3-Clause",
     .kinds = &kind,

@@ -20,6 +20,7 @@
  * of field contacts, which the host has from a linear pressure, is not its own there. */
 #include <talus/elementary.h>
 #include <talus/plugin.h>
+#include <talus/version.h>
 
 #include <math.h>
 #include <stdio.h>
@@ -415,7 +416,7 @@ static const tl_plugin plugin = {
     .abi_major = TL_ABI_MAJOR,
     .abi_minor = TL_ABI_MINOR,
     .id = "talus.barton_bandis",
-    .version = "0.1.0",
+    .version = TALUS_VERSION,
     .doc = "Joint law of Barton and Bandis.",
     .licence = "BSD-3-Clause",
     .kinds = &kind,

@@ -23,6 +23,7 @@
  * Limits: compression does not raise c; it does not crush. Damage is that of a point's own closure. */
 #include <talus/elementary.h>
 #include <talus/plugin.h>
+#include <talus/version.h>
 
 #include <math.h>
 #include <stdbool.h>
@@ -301,7 +302,7 @@ static const tl_plugin plugin = {
     .abi_major = TL_ABI_MAJOR,
     .abi_minor = TL_ABI_MINOR,
     .id = "talus.cohesive",
-    .version = "0.1.0",
+    .version = TALUS_VERSION,
     .doc = "Cohesive joint law of mixed mode.",
     .licence = "BSD-3-Clause",
     .kinds = &kind,

@@ -27,6 +27,7 @@
  * before slip has opened the joint. */
 #include <talus/elementary.h>
 #include <talus/plugin.h>
+#include <talus/version.h>
 
 #include <math.h>
 #include <stdbool.h>
@@ -318,7 +319,7 @@ static const tl_plugin plugin = {
     .abi_major = TL_ABI_MAJOR,
     .abi_minor = TL_ABI_MINOR,
     .id = "talus.coulomb",
-    .version = "0.1.0",
+    .version = TALUS_VERSION,
     .doc = "Coulomb joint law.",
     .licence = "BSD-3-Clause",
     .kinds = &kind,

@@ -24,6 +24,7 @@
  * Limit: as for "coulomb", changes of kn and ks and insitu belong before slip has opened the joint. */
 #include <talus/elementary.h>
 #include <talus/plugin.h>
+#include <talus/version.h>
 
 #include <math.h>
 #include <stdbool.h>
@@ -304,7 +305,7 @@ static const tl_plugin plugin = {
     .abi_major = TL_ABI_MAJOR,
     .abi_minor = TL_ABI_MINOR,
     .id = "talus.coulomb_tensile",
-    .version = "0.1.0",
+    .version = TALUS_VERSION,
     .doc = "Coulomb joint law with a brittle bond.",
     .licence = "BSD-3-Clause",
     .kinds = &kind,

@@ -7,6 +7,7 @@
  * follows the total closure, not increments, so that an opened contact does not reload before its gap
  * is closed again. No flag is ever set, nothing is dissipated. */
 #include <talus/plugin.h>
+#include <talus/version.h>
 
 #include <math.h>
 
@@ -99,7 +100,7 @@ static const tl_plugin plugin = {
     .abi_major = TL_ABI_MAJOR,
     .abi_minor = TL_ABI_MINOR,
     .id = "talus.elastic",
-    .version = "0.1.0",
+    .version = TALUS_VERSION,
     .doc = "Elastic joint law.",
     .licence = "BSD-3-Clause",
     .kinds = &kind,

@@ -17,6 +17,7 @@
  * Pure Appl. Geophys. 121 (1983) 443-475. */
 #include <talus/elementary.h>
 #include <talus/plugin.h>
+#include <talus/version.h>
 
 #include <math.h>
 #include <stdio.h>
@@ -393,7 +394,7 @@ static const tl_plugin plugin = {
     .abi_major = TL_ABI_MAJOR,
     .abi_minor = TL_ABI_MINOR,
     .id = "talus.slip_weakening",
-    .version = "0.1.0",
+    .version = TALUS_VERSION,
     .doc = "Slip-weakening joint law.",
     .licence = "BSD-3-Clause",
     .kinds = &kind,

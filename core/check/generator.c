@@ -1,0 +1,319 @@
+/* generator.c - the conformance check of generators.
+ *
+ * A generator is run on a cube of 10 m, or in an empty model where it does not work on that. It runs with the host's services
+ * and watched ones alike: each call goes through a function here, which counts it and can let it fail. */
+#include "check/check.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Calls that are let fail, one in each run: the first ones, and then ever fewer. */
+#define FIRST_CALLS 40
+
+enum { REPEATS, KEEPS, PASSES_ON };
+
+const tl_check_rule tl_check_generator_rules[] = {
+    [REPEATS] = {"repeats", "the same parameters and seed give the same model"},
+    [KEEPS] = {"parameters", "parameters are not written to"},
+    [PASSES_ON] = {"failures", "a failure of a service is passed on at once"},
+    {NULL, NULL},
+};
+
+/* What one run is to do and has done. The functions of a tl_host know it by `impl`. */
+typedef struct watch {
+    const tl_host *host;
+    const tl_generator_ops *ops;
+    size_t params_size;
+    bool prepare;   /* make the cube, and nothing else */
+    size_t fail_at; /* let this call fail, counted from 1; 0: none */
+    size_t calls;   /* of services that can fail */
+    size_t after;   /* calls after the one that failed */
+    bool wrote;     /* to its parameters */
+    tl_status gave; /* of the generator */
+} watch;
+
+/* The generator being watched by this thread: the function in the place of its own has no other way to know. */
+static _Thread_local watch *current;
+
+static watch *watch_of(const tl_host *h)
+{
+    return h->impl;
+}
+
+/* Counts a call; not TL_OK when it is to fail. */
+static tl_status count(const tl_host *h)
+{
+    watch *w = watch_of(h);
+    w->after += w->fail_at > 0 && w->calls >= w->fail_at;
+    if (++w->calls == w->fail_at)
+        return w->host->fail(w->host, TL_E_MEMORY, "let fail by the check");
+    return TL_OK;
+}
+
+#define FORWARD(h, name, ...)                                                                      \
+    tl_status status = count(h);                                                                   \
+    return status != TL_OK ? status : watch_of(h)->host->name(watch_of(h)->host, __VA_ARGS__)
+
+static tl_status create_hull(const tl_host *h, const tl_vec3 *vertices, size_t n, double density,
+                             const char *group)
+{
+    FORWARD(h, create_hull, vertices, n, density, group);
+}
+
+static tl_status create_box(const tl_host *h, tl_vec3 min, tl_vec3 max, double density,
+                            const char *group)
+{
+    FORWARD(h, create_box, min, max, density, group);
+}
+
+static tl_status create_block(const tl_host *h, const tl_block_shape *shape)
+{
+    FORWARD(h, create_block, shape);
+}
+
+static tl_status joint(const tl_host *h, const char *name, uint32_t *number)
+{
+    FORWARD(h, joint, name, number);
+}
+
+static uint32_t next_plane(const tl_host *h, uint32_t number)
+{
+    return watch_of(h)->host->next_plane(watch_of(h)->host, number);
+}
+
+static tl_status cut(const tl_host *h, tl_vec3 normal, tl_vec3 point, tl_tag tag,
+                     double persistence)
+{
+    FORWARD(h, cut, normal, point, tag, persistence);
+}
+
+static tl_status cut_disc(const tl_host *h, tl_vec3 normal, tl_vec3 point, double radius,
+                          tl_tag tag, double persistence, size_t *met)
+{
+    FORWARD(h, cut_disc, normal, point, radius, tag, persistence, met);
+}
+
+static size_t block_count(const tl_host *h)
+{
+    return watch_of(h)->host->block_count(watch_of(h)->host);
+}
+
+static void block_info(const tl_host *h, size_t index, tl_block_info *info)
+{
+    watch_of(h)->host->block_info(watch_of(h)->host, index, info);
+}
+
+static double uniform(const tl_host *h, uint32_t number, int64_t plane, uint32_t draw)
+{
+    return watch_of(h)->host->random(watch_of(h)->host, number, plane, draw);
+}
+
+static tl_status progress(const tl_host *h, double fraction)
+{
+    FORWARD(h, progress, fraction);
+}
+
+static void say(const tl_host *h, const char *format, ...)
+{
+    (void)h; /* remarks are for users of the model */
+    (void)format;
+}
+
+static tl_status fail(const tl_host *h, tl_status status, const char *format, ...)
+{
+    char text[TL_ERROR_TEXT];
+    va_list list;
+    va_start(list, format);
+    vsnprintf(text, sizeof text, format, list);
+    va_end(list);
+    return watch_of(h)->host->fail(watch_of(h)->host, status, "%s", text);
+}
+
+static tl_status meets(const tl_host *h, size_t index, const tl_half_space *spaces, size_t n,
+                       bool *answer)
+{
+    FORWARD(h, meets, index, spaces, n, answer);
+}
+
+static tl_status cut_block(const tl_host *h, size_t index, tl_vec3 normal, tl_vec3 point,
+                           size_t *above)
+{
+    FORWARD(h, cut_block, index, normal, point, above);
+}
+
+static tl_status set_group(const tl_host *h, size_t index, const char *group)
+{
+    FORWARD(h, set_group, index, group);
+}
+
+static tl_status part(const tl_host *h, const size_t *indices, size_t n)
+{
+    FORWARD(h, part, indices, n);
+}
+
+static tl_status join(const tl_host *h, const size_t *indices, size_t n)
+{
+    FORWARD(h, join, indices, n);
+}
+
+static tl_status remove_block(const tl_host *h, size_t index)
+{
+    FORWARD(h, remove, index);
+}
+
+static tl_status hide(const tl_host *h, size_t index)
+{
+    FORWARD(h, hide, index);
+}
+
+static tl_status show(const tl_host *h)
+{
+    tl_status status = count(h);
+    return status != TL_OK ? status : watch_of(h)->host->show(watch_of(h)->host);
+}
+
+/* In the place of the generator's own function. */
+static tl_status watched(const tl_host *host, const void *params)
+{
+    watch *w = current;
+    tl_host own = {.size = sizeof own,
+                   .impl = w,
+                   .seed = host->seed,
+                   .create_hull = create_hull,
+                   .create_box = create_box,
+                   .joint = joint,
+                   .next_plane = next_plane,
+                   .cut = cut,
+                   .block_count = block_count,
+                   .block_info = block_info,
+                   .random = uniform,
+                   .progress = progress,
+                   .log = say,
+                   .fail = fail,
+                   .cut_disc = cut_disc,
+                   .meets = meets,
+                   .cut_block = cut_block,
+                   .set_group = set_group,
+                   .part = part,
+                   .join = join,
+                   .remove = remove_block,
+                   .hide = hide,
+                   .show = show,
+                   .create_block = create_block};
+    w->host = host;
+    if (w->prepare)
+        return host->create_box(host, tl_v3(-5, -5, -5), tl_v3(5, 5, 5), 2500, NULL);
+    void *copy = malloc(w->params_size + 1);
+    if (!copy)
+        return host->fail(host, TL_E_MEMORY, "out of memory");
+    memcpy(copy, params, w->params_size);
+    w->gave = w->ops->generate(&own, params);
+    w->wrote = memcmp(copy, params, w->params_size) != 0;
+    free(copy);
+    return w->gave;
+}
+
+/* ---------------------------------------------------------------- runs ------------------- */
+
+typedef struct trial {
+    tl_checker *c;
+    tl_args args;
+    bool cube; /* begin with a cube */
+    watch w;
+} trial;
+
+static void hush(void *user, const char *text)
+{
+    (void)user;
+    (void)text;
+}
+
+/* One run in a model of its own; the state of the model after it goes to `hash`. */
+static tl_status run(trial *t, size_t fail_at, char hash[33])
+{
+    tl_model *m;
+    tl_status status = tl_model_create(NULL, &m, t->c->error);
+    if (status != TL_OK)
+        return status;
+    tl_model_log(m, hush, NULL);
+    t->w.fail_at = t->w.calls = t->w.after = 0;
+    t->w.wrote = false;
+    t->w.prepare = true;
+    if (t->cube)
+        status = tl_generate(m, t->c->kind->name, &t->args, NULL);
+    t->w.prepare = false;
+    t->w.fail_at = fail_at;
+    if (status == TL_OK)
+        status = tl_generate(m, t->c->kind->name, &t->args, NULL);
+    if (status != TL_OK)
+        *t->c->error = *tl_model_error(m);
+    else
+        status = tl_state_hash(m, hash);
+    tl_model_destroy(m);
+    return status;
+}
+
+static void check_failures(trial *t, size_t calls)
+{
+    char hash[33];
+    for (size_t at = 1; at <= calls; at += at < FIRST_CALLS ? 1 : at / 4) {
+        tl_status status = run(t, at, hash);
+        if (status == TL_OK)
+            tl_check_note(t->c, PASSES_ON,
+                          "call %zu of a service fails, and generate() gives TL_OK", at);
+        else if (t->w.after > 0)
+            tl_check_note(t->c, PASSES_ON, "call %zu of a service fails, and %zu more follow", at,
+                          t->w.after);
+    }
+}
+
+static tl_status run_trial(trial *t)
+{
+    char first[33], second[33];
+    t->cube = true;
+    tl_status status = run(t, 0, first);
+    if (status != TL_OK) {
+        t->cube = false;
+        status = run(t, 0, first);
+    }
+    if (status != TL_OK)
+        return status;
+    size_t calls = t->w.calls;
+    if (t->w.wrote)
+        tl_check_note(t->c, KEEPS, "generate() writes to its parameters");
+    status = run(t, 0, second);
+    if (status != TL_OK)
+        tl_check_note(t->c, REPEATS, "a second run fails: %s", t->c->error->text);
+    else if (strcmp(first, second) != 0)
+        tl_check_note(t->c, REPEATS, "two runs give models of the hashes %s and %s", first, second);
+    check_failures(t, calls);
+    return TL_OK;
+}
+
+tl_status tl_check_generator_kind(tl_checker *c)
+{
+    trial t = {.c = c};
+    tl_kind *kind =
+        (tl_kind *)(uintptr_t)c->kind; /* the host's copy, which no other thread uses here */
+    tl_generator_ops own = {.size = sizeof own, .generate = watched};
+    const void *ops = kind->ops;
+    void *held;
+    tl_value *values;
+    tl_status status = tl_check_values(c, 0, &values, &t.args.count, &held);
+    t.args.values = values;
+    t.w.ops = ops;
+    t.w.params_size = kind->params_size;
+    if (status == TL_OK) {
+        current = &t.w;
+        kind->ops = &own;
+        status = run_trial(&t);
+        kind->ops = ops;
+        current = NULL;
+    }
+    free(values);
+    free(held);
+    return status;
+}

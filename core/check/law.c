@@ -1,0 +1,448 @@
+/* law.c - the conformance check of contact laws.
+ *
+ * With each set of parameters 64 points of random areas and directions go through random motions: closing and opening,
+ * shear that sticks and shear that slips. Every step is computed as a whole, in parts, point by point and turned in space;
+ * from the place it leads to, the points are moved a little for the stiffness, and not at all. Closed cycles are in
+ * law_cycle.c. Forces are compared relative to those that the point has, or had on average. */
+#include "check/law.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Steps of the random motion. */
+#define STEPS 24
+/* Relative error of forces that rounding explains: some thousand roundings. */
+#define ROUNDING 1e-11
+/* Share of the motion by which points are moved for the stiffness. */
+#define SMALL (1. / 16)
+
+const tl_check_rule tl_check_law_rules[] = {
+    [TL_LAW_RUNS] = {"runs", "update() returns TL_OK, always when never_fails is set"},
+    [TL_LAW_REPEATS] = {"repeats", "the same call gives the same bits"},
+    [TL_LAW_ALONE] = {"one by one", "a point alone gets the bits that it gets in a batch"},
+    [TL_LAW_SPLIT] = {"split", "batches of other sizes and orders give the same bits"},
+    [TL_LAW_ENERGIES] = {"energies", "forces do not depend on whether energies are asked for"},
+    [TL_LAW_WRITES] = {"writes",
+                       "nothing is written but forces, flags, energies and declared states"},
+    [TL_LAW_PADDING] = {"padding", "lanes of no area carry nothing"},
+    [TL_LAW_FINITE] = {"finite", "forces, states and energies are finite numbers"},
+    [TL_LAW_PLANE] = {"plane", "the shear force lies in the common plane"},
+    [TL_LAW_STILL] = {"no motion", "without motion and time the forces stay as they are"},
+    [TL_LAW_TURNED] = {"turned", "a turned point gets the turned forces"},
+    [TL_LAW_STIFFNESS] = {"stiffness", "no point is stiffer than stiffness() says"},
+    [TL_LAW_CYCLE] = {"closed cycle", "a closed path of motion gives no energy"},
+    [TL_LAW_STATES] = {"states",
+                       "each declared state is written, and none while stateless() says so"},
+    [TL_LAW_PULLS] = {"pulls", "no normal force across a gap where pulls() says so"},
+    {NULL, NULL},
+};
+
+/* ---------------------------------------------------------------- a law to try ----------- */
+
+/* One set of parameters, and the points as they are. */
+typedef struct trial {
+    tl_checker *c;
+    tl_check_law law;
+    tl_check_points now, in, out;
+    double scale[TL_CHECK_POINTS]; /* N, of a point's forces */
+    uint32_t *written;             /* bit k: state column k has been written */
+} trial;
+
+static uint64_t key_of(const trial *t, uint64_t step, uint64_t point)
+{
+    return tl_key(tl_key(tl_key(1988, (uint64_t)t->c->set), step), point);
+}
+
+/* A vector in the common plane. */
+static tl_vec3 tangent(uint64_t key, tl_vec3 normal, double size)
+{
+    tl_vec3 any = tl_check_direction(key);
+    return tl_v3_scale(size, tl_v3_sub(any, tl_v3_scale(tl_v3_dot(any, normal), normal)));
+}
+
+static void begin_points(trial *t)
+{
+    tl_check_points *p = &t->now;
+    memset(p, 0, sizeof *p);
+    for (size_t i = 0; i < TL_CHECK_POINTS; i++) {
+        uint64_t key = key_of(t, 0, i);
+        double area = tl_check_scale(tl_key(key, 1), -2, 1);
+        p->c[TL_AT_AREA][i] = area;
+        p->c[TL_AT_F_N0][i] =
+            i % 2 ? 0 : area * t->law.stress * tl_check_between(tl_key(key, 2), 0, 1);
+        tl_check_put(p, TL_AT_NORMAL, i, tl_check_direction(tl_key(key, 3)));
+        for (uint32_t k = 0; k < t->law.of.columns; k++)
+            p->c[TL_AT_STATE + k][i] = t->law.of.initial[k];
+        if (i % 4 == 3) { /* made while the walls were apart */
+            p->flags[i] = TL_POINT_APART;
+            p->c[TL_AT_CLOSURE][i] = -t->law.closure;
+        }
+        t->scale[i] = area * t->law.stress;
+    }
+}
+
+/* The next motion of all points, of which one in five rests. */
+static void next_motion(trial *t, int step)
+{
+    tl_check_points *in = &t->in;
+    *in = t->now;
+    in->dt = step == 0 ? 0 : TL_CHECK_DT;
+    for (size_t i = 0; i < TL_CHECK_POINTS; i++) {
+        uint64_t key = key_of(t, (uint64_t)step + 1, i);
+        tl_vec3 normal = tl_check_vec(in, TL_AT_NORMAL, i);
+        bool rests = step == 0 || tl_uniform(tl_key(key, 1)) < 0.2;
+        double size = tl_check_scale(tl_key(key, 2), -1, 1.5);
+        double to = t->law.closure * tl_check_between(tl_key(key, 3), -0.4, 1);
+        double before = in->c[TL_AT_CLOSURE][i], closure = rests ? before : to;
+        in->c[TL_AT_CLOSURE][i] = closure;
+        in->c[TL_AT_EDGE][i] =
+            closure - (i % 3 ? 0.05 * t->law.closure * tl_uniform(tl_key(key, 5)) : 0);
+        in->c[TL_AT_DU_N][i] = before - closure;
+        tl_vec3 slide = tangent(tl_key(key, 4), normal, rests ? 0 : size * t->law.slide);
+        tl_check_put(in, TL_AT_DU_S, i, slide);
+    }
+}
+
+/* ---------------------------------------------------------------- what a call gave ------- */
+
+static bool same_bits(const tl_check_points *a, const tl_check_points *b, size_t i, bool energies)
+{
+    for (int k = TL_AT_F_N; k < TL_AT_COUNT; k++)
+        if ((energies || (k != TL_AT_STORED && k != TL_AT_DISSIPATED)) &&
+            memcmp(&a->c[k][i], &b->c[k][i], sizeof a->c[k][i]) != 0)
+            return false;
+    return a->flags[i] == b->flags[i];
+}
+
+static void compare_bits(trial *t, int check, const tl_check_points *other, bool energies,
+                         const char *how)
+{
+    for (size_t i = 0; i < TL_CHECK_POINTS; i++)
+        if (!same_bits(&t->out, other, i, energies)) {
+            tl_vec3 a = tl_check_vec(&t->out, TL_AT_F_S, i), b = tl_check_vec(other, TL_AT_F_S, i);
+            tl_check_note(
+                t->c, check,
+                "f_n = %.17g N, |f_s| = %.17g N, flags %u in a batch of 64 points; %.17g, "
+                "%.17g, %u %s",
+                t->out.c[TL_AT_F_N][i], tl_v3_norm(a), t->out.flags[i], other->c[TL_AT_F_N][i],
+                tl_v3_norm(b), other->flags[i], how);
+            return;
+        }
+}
+
+/* Calls the law and notes what every call must keep to; false when it failed. */
+static bool call_law(trial *t, const tl_check_points *in, tl_check_points *out, const size_t *order,
+                     size_t begin, size_t count, bool energies)
+{
+    tl_check_call call = {.no_energies = !energies};
+    tl_check_call_law(&t->law.of, in, out, order, begin, count, &call);
+    if (call.overwrote)
+        tl_check_note(t->c, TL_LAW_WRITES, "update() writes to %s", call.overwrote);
+    if (call.padding)
+        tl_check_note(t->c, TL_LAW_PADDING, "a lane of no area has a force or an energy");
+    if (call.status != TL_OK)
+        tl_check_note(t->c, TL_LAW_RUNS, "update() fails%s: %s",
+                      t->law.of.ops->never_fails ? ", though never_fails is set" : "",
+                      tl_report_text(&call.report, call.status));
+    return call.status == TL_OK;
+}
+
+static bool call_in_parts(trial *t, tl_check_points *out, const size_t *order, const size_t *parts)
+{
+    size_t begin = 0;
+    for (size_t k = 0; begin < TL_CHECK_POINTS; begin += parts[k++])
+        if (!call_law(t, &t->in, out, order, begin, parts[k], true))
+            return false;
+    return true;
+}
+
+/* The step as a whole, again, point by point, in parts of another order, without energies. */
+static bool compare_batches(trial *t, int step)
+{
+    static const size_t ones[TL_CHECK_POINTS] = {1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1,
+                                                 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1,
+                                                 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1,
+                                                 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
+    static const size_t parts[] = {8, 3, 40, 13};
+    tl_check_points other = t->in;
+    size_t order[TL_CHECK_POINTS];
+    for (size_t i = 0; i < TL_CHECK_POINTS; i++) /* a step that 64 has no factor of */
+        order[i] = (i * 37 + (size_t)step) % TL_CHECK_POINTS;
+    t->out = t->in;
+    if (!call_law(t, &t->in, &t->out, NULL, 0, TL_CHECK_POINTS, true))
+        return false;
+    if (call_in_parts(t, &other, NULL, ones))
+        compare_bits(t, TL_LAW_ALONE, &other, true, "alone");
+    if (call_in_parts(t, &other, order, parts))
+        compare_bits(t, TL_LAW_SPLIT, &other, true,
+                     "in batches of 8, 3, 40 and 13 in another order");
+    if (call_law(t, &t->in, &other, NULL, 0, TL_CHECK_POINTS, false))
+        compare_bits(t, TL_LAW_ENERGIES, &other, false, "without energies");
+    if (call_law(t, &t->in, &other, NULL, 0, TL_CHECK_POINTS, true))
+        compare_bits(t, TL_LAW_REPEATS, &other, true, "when called again");
+    return true;
+}
+
+static void check_numbers(trial *t)
+{
+    for (size_t i = 0; i < TL_CHECK_POINTS; i++) {
+        tl_vec3 n = tl_check_vec(&t->out, TL_AT_NORMAL, i), f = tl_check_vec(&t->out, TL_AT_F_S, i);
+        for (int k = TL_AT_F_N; k < TL_AT_COUNT; k++)
+            if (!isfinite(t->out.c[k][i]))
+                tl_check_note(t->c, TL_LAW_FINITE, "%s is %g at a closure of %g m, dt = %g s",
+                              k < TL_AT_STORED  ? "a force"
+                              : k < TL_AT_STATE ? "an energy"
+                                                : "a state",
+                              t->out.c[k][i], t->in.c[TL_AT_CLOSURE][i], t->in.dt);
+        double along = fabs(tl_v3_dot(n, f));
+        if (along > ROUNDING * (t->scale[i] + tl_v3_norm(f)))
+            tl_check_note(t->c, TL_LAW_PLANE, "|f_s| = %g N has %g N along the normal",
+                          tl_v3_norm(f), along);
+    }
+}
+
+static void check_gaps(trial *t)
+{
+    const tl_law_ops *ops = t->law.of.ops;
+    uint32_t pulls = ops->pulls ? ops->pulls(t->law.of.self) : TL_PULL_ANY;
+    for (size_t i = 0; i < TL_CHECK_POINTS && pulls != TL_PULL_ANY; i++) {
+        bool may = pulls == TL_PULL_BONDED && !(t->out.flags[i] & TL_POINT_FAILED);
+        if (!may && t->in.c[TL_AT_CLOSURE][i] < 0 && t->in.c[TL_AT_F_N0][i] == 0 &&
+            t->out.c[TL_AT_F_N][i] != 0)
+            tl_check_note(t->c, TL_LAW_PULLS, "f_n = %g N across a gap of %g m",
+                          t->out.c[TL_AT_F_N][i], -t->in.c[TL_AT_CLOSURE][i]);
+    }
+}
+
+static void check_states(trial *t)
+{
+    const tl_law_ops *ops = t->law.of.ops;
+    bool stateless = ops->stateless && ops->stateless(t->law.of.self);
+    for (uint32_t k = 0; k < t->law.of.columns; k++)
+        for (size_t i = 0; i < TL_CHECK_POINTS; i++) {
+            if (t->out.c[TL_AT_STATE + k][i] == t->in.c[TL_AT_STATE + k][i])
+                continue;
+            *t->written |= 1u << k;
+            if (stateless)
+                tl_check_note(t->c, TL_LAW_STATES,
+                              "state column %u is written, though stateless() is 1", k + 1);
+        }
+}
+
+/* ---------------------------------------------------------------- other steps ------------ */
+
+/* Rotation of all vectors: by 1 rad or so about some axis. */
+static void turn_points(const trial *t, tl_mat3 r, tl_check_points *p)
+{
+    static const int vectors[] = {TL_AT_NORMAL, TL_AT_DU_S, TL_AT_F_S};
+    for (size_t i = 0; i < TL_CHECK_POINTS; i++) {
+        for (size_t k = 0; k < sizeof vectors / sizeof *vectors; k++)
+            tl_check_put(p, vectors[k], i, tl_m3_mul(&r, tl_check_vec(p, vectors[k], i)));
+        for (uint32_t k = 0; k < t->law.of.columns; k++)
+            if (t->law.of.tangent[k])
+                tl_check_put(p, TL_AT_STATE + (int)k, i,
+                             tl_m3_mul(&r, tl_check_vec(p, TL_AT_STATE + (int)k, i)));
+    }
+}
+
+static void check_turned(trial *t, int step)
+{
+    tl_vec3 axis = tl_check_direction(key_of(t, (uint64_t)step, 77));
+    tl_mat3 r = tl_q_matrix((tl_quat){0.6, 0.8 * axis.x, 0.8 * axis.y, 0.8 * axis.z});
+    tl_check_points in = t->in, out, expected = t->out;
+    turn_points(t, r, &in);
+    out = in;
+    if (!call_law(t, &in, &out, NULL, 0, TL_CHECK_POINTS, true))
+        return;
+    turn_points(t, r, &expected);
+    for (size_t i = 0; i < TL_CHECK_POINTS; i++) {
+        tl_vec3 a = tl_check_vec(&out, TL_AT_F_S, i), b = tl_check_vec(&expected, TL_AT_F_S, i);
+        double error =
+            fmax(tl_v3_norm(tl_v3_sub(a, b)), fabs(out.c[TL_AT_F_N][i] - expected.c[TL_AT_F_N][i]));
+        if (error > 1e3 * ROUNDING * (t->scale[i] + tl_v3_norm(b)))
+            tl_check_note(t->c, TL_LAW_TURNED,
+                          "the forces of a turned point differ by %g N of %g N", error,
+                          t->scale[i] + tl_v3_norm(b));
+    }
+}
+
+/* The points as the step has left them, at rest. */
+static tl_check_points rest_of(const trial *t)
+{
+    tl_check_points rest = t->out;
+    for (size_t i = 0; i < TL_CHECK_POINTS; i++) {
+        rest.c[TL_AT_DU_N][i] = 0;
+        tl_check_put(&rest, TL_AT_DU_S, i, tl_v3(0, 0, 0));
+    }
+    return rest;
+}
+
+static void check_still(trial *t)
+{
+    tl_check_points rest = rest_of(t), out = rest;
+    rest.dt = 0;
+    if (!call_law(t, &rest, &out, NULL, 0, TL_CHECK_POINTS, true))
+        return;
+    for (size_t i = 0; i < TL_CHECK_POINTS; i++) {
+        tl_vec3 a = tl_check_vec(&rest, TL_AT_F_S, i), b = tl_check_vec(&out, TL_AT_F_S, i);
+        double before = rest.c[TL_AT_F_N][i], after = out.c[TL_AT_F_N][i];
+        double error = fmax(fabs(before - after), tl_v3_norm(tl_v3_sub(a, b)));
+        if (error > ROUNDING * (t->scale[i] + tl_v3_norm(a)))
+            tl_check_note(t->c, TL_LAW_STILL,
+                          "f_n goes from %g to %g N and f_s by %g N, without any motion", before,
+                          after, tl_v3_norm(tl_v3_sub(a, b)));
+    }
+}
+
+/* Moves each point a little, across the joint or along it, and compares the rise of the force with the stiffness. What
+ * falls is no matter: it does not shorten the time step. */
+static void check_stiffness(trial *t, int step, bool along)
+{
+    tl_check_points rest = rest_of(t), out;
+    for (size_t i = 0; i < TL_CHECK_POINTS; i++) {
+        uint64_t key = key_of(t, (uint64_t)step, 1000 + i);
+        double move = SMALL * t->law.closure * tl_check_between(key, -1, 1);
+        if (along) {
+            tl_vec3 n = tl_check_vec(&rest, TL_AT_NORMAL, i);
+            tl_check_put(&rest, TL_AT_DU_S, i, tangent(key, n, SMALL * t->law.slide));
+        } else {
+            rest.c[TL_AT_CLOSURE][i] += move;
+            rest.c[TL_AT_EDGE][i] += move;
+            rest.c[TL_AT_DU_N][i] = -move;
+        }
+    }
+    out = rest;
+    if (!call_law(t, &rest, &out, NULL, 0, TL_CHECK_POINTS, true))
+        return;
+    for (size_t i = 0; i < TL_CHECK_POINTS; i++) {
+        tl_vec3 slide = tl_check_vec(&rest, TL_AT_DU_S, i);
+        tl_vec3 change =
+            tl_v3_sub(tl_check_vec(&out, TL_AT_F_S, i), tl_check_vec(&rest, TL_AT_F_S, i));
+        double area = rest.c[TL_AT_AREA][i], closing = -rest.c[TL_AT_DU_N][i];
+        double moved = along ? tl_v3_norm(slide) : fabs(closing);
+        double rise = along ? -tl_v3_dot(change, slide) / (moved > 0 ? moved : 1)
+                            : (out.c[TL_AT_F_N][i] - rest.c[TL_AT_F_N][i]) * (closing < 0 ? -1 : 1);
+        double bound = along ? t->law.ks : t->law.kn;
+        /* a bond that breaks drops its force at once, and walls that meet are where the closure says */
+        if ((out.flags[i] ^ rest.flags[i]) & (TL_POINT_OPEN | TL_POINT_FAILED | TL_POINT_APART))
+            continue;
+        if (rise > bound * area * moved * (1 + 1e-6) + ROUNDING * t->scale[i])
+            tl_check_note(t->c, TL_LAW_STIFFNESS, "%s = %g Pa/m, but stiffness() says %g Pa/m",
+                          along ? "ks" : "kn", rise / (area * moved), bound);
+    }
+}
+
+/* ---------------------------------------------------------------- all of it -------------- */
+
+static void run_trial(trial *t)
+{
+    begin_points(t);
+    for (int step = 0; step < STEPS; step++) {
+        next_motion(t, step);
+        if (!compare_batches(t, step))
+            return;
+        check_numbers(t);
+        if (tl_check_failed(t->c, TL_LAW_FINITE))
+            return;
+        check_gaps(t);
+        check_states(t);
+        check_turned(t, step);
+        check_still(t);
+        check_stiffness(t, step, false);
+        check_stiffness(t, step, true);
+        t->now = t->out;
+    }
+    tl_check_cycles(t->c, &t->law);
+}
+
+/* Columns of the declared states. */
+static void read_states(const tl_kind *kind, tl_check_law_of *of)
+{
+    for (uint32_t i = 0; i < kind->state_count; i++) {
+        bool turns = kind->states[i].kind == TL_STATE_TANGENT;
+        of->tangent[of->columns] = turns;
+        for (int k = 0; k < (turns ? 3 : 1) && of->columns < TL_STATE_COLUMNS; k++)
+            of->initial[of->columns++] = kind->states[i].initial;
+    }
+}
+
+/* Makes the law with a set of parameters; not TL_OK when the law refuses them. */
+static tl_status open_law(tl_checker *c, void *params, tl_check_law *law)
+{
+    const tl_law_ops *ops = c->kind->ops;
+    tl_report report = {.size = sizeof report};
+    *law = (tl_check_law){.of = {.kind = c->kind, .ops = ops, .self = params}};
+    read_states(c->kind, &law->of);
+    if (ops->create) {
+        void *self = NULL;
+        tl_status status = ops->create(params, &self, &report);
+        if (status != TL_OK)
+            return tl_fail(c->error, status, "'%s' cannot be tried: %s", c->kind->name,
+                           tl_report_text(&report, status));
+        law->of.self = self;
+    }
+    law->kn = law->ks = NAN;
+    ops->stiffness(law->of.self, &law->kn, &law->ks);
+    if (!(law->kn >= 0 && law->ks >= 0 && isfinite(law->kn) && isfinite(law->ks)))
+        tl_check_note(c, TL_LAW_STIFFNESS,
+                      "stiffness() says kn = %g, ks = %g Pa/m: both must be finite and >= 0",
+                      law->kn, law->ks);
+    law->stress = tl_check_scale(tl_key(88, (uint64_t)c->set), 4, 6.5);
+    double soft = law->kn > 0 && isfinite(law->kn) ? law->kn : 1e9;
+    law->closure = law->stress / soft;
+    law->slide = law->ks > 0 && isfinite(law->ks) ? law->stress / law->ks : law->closure;
+    return TL_OK;
+}
+
+static void close_law(tl_check_law *law)
+{
+    if (law->of.ops->destroy)
+        law->of.ops->destroy((void *)(uintptr_t)law->of.self);
+}
+
+static void tell_unwritten(tl_checker *c, uint32_t written)
+{
+    uint32_t column = 0;
+    c->params_text[0] = '\0';
+    for (uint32_t i = 0; i < c->kind->state_count; i++) {
+        uint32_t width = c->kind->states[i].kind == TL_STATE_TANGENT ? 3 : 1;
+        if (!(written >> column & ((1u << width) - 1)))
+            tl_check_note(c, TL_LAW_STATES,
+                          "state '%s' is declared and was never written, with any of %d sets of "
+                          "parameters",
+                          c->kind->states[i].name, TL_CHECK_SETS);
+        column += width;
+    }
+}
+
+tl_status tl_check_law_kind(tl_checker *c)
+{
+    trial *t = malloc(sizeof *t);
+    void *params = malloc(c->kind->params_size + 1), *held;
+    uint32_t written = 0;
+    int tried = 0, most = 8 * TL_CHECK_SETS; /* laws refuse some drawn sets */
+    tl_status status = t && params ? TL_OK : tl_fail_memory(c->error);
+    for (int set = 0; status == TL_OK && set < most && tried < TL_CHECK_SETS; set++) {
+        tl_status read = tl_check_params(c, set, params, &held);
+        if (read == TL_OK && (read = open_law(c, params, &t->law)) == TL_OK) {
+            t->c = c;
+            t->written = &written;
+            if (!tl_check_failed(c, TL_LAW_STIFFNESS) || isfinite(t->law.kn + t->law.ks))
+                run_trial(t);
+            close_law(&t->law);
+            tried++;
+        }
+        free(held);
+        if (set == 0 && c->args && c->args->count > 0)
+            status = read; /* given by the user: what is wrong with them is to be told */
+    }
+    if (status == TL_OK && tried == 0)
+        status = TL_E_ARGUMENT; /* with the sentence of the last attempt */
+    else if (status == TL_OK && !tl_check_failed(c, TL_LAW_RUNS))
+        tell_unwritten(c, written);
+    free(t);
+    free(params);
+    return status;
+}

@@ -1,0 +1,154 @@
+/* params.c - the parameters a kind is tried with: given, default, plausible by their units, or drawn within their ranges. */
+#include "check/check.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Share of the parameters with a default that a drawn set changes. */
+#define CHANGED 0.7
+/* Bounds beyond which a range counts as open. */
+#define OPEN 1e12
+
+/* Where the values of a set are, as long as its parameters are used. */
+typedef struct drawn {
+    tl_value value;
+    tl_vec3 vector;
+} drawn;
+
+/* Powers of ten between which a quantity of that unit is drawn. */
+static void scale_of(const char *unit, double *low, double *high)
+{
+    static const struct {
+        const char *unit;
+        double low, high;
+    } known[] = {{"Pa/m", 8, 10}, {"Pa", 4, 6.5}, {"m", -4, -1},   {"N/m", 8, 10},
+                 {"kg/m3", 3, 4}, {"1/s", -1, 1}, {"deg", 0, 1.6}, {"m/s", -3, 0}};
+    *low = -2;
+    *high = 0.5;
+    for (size_t i = 0; i < sizeof known / sizeof *known; i++)
+        if (strcmp(known[i].unit, unit) == 0) {
+            *low = known[i].low;
+            *high = known[i].high;
+        }
+}
+
+/* A number within the parameter's range; the middle of what is drawn when `drawn` is false. */
+static double number_of(const tl_param *p, uint64_t key, bool draw)
+{
+    double low, high;
+    bool ranged = p->min != 0 || p->max != 0;
+    scale_of(p->unit ? p->unit : "", &low, &high);
+    double at = draw ? tl_uniform(key) : 0.5;
+    double size = tl_check_scale(0, low + at * (high - low), low + at * (high - low));
+    if (!ranged)
+        return size;
+    if (p->min > -OPEN && p->max < OPEN)
+        /* not the ends, which may be open; the lower part of a wide range of numbers of things */
+        return p->min +
+               (0.05 + 0.9 * at) * fmin(p->max - p->min, p->type == TL_PARAM_INT ? 20 : OPEN);
+    if (p->min > -OPEN)
+        return p->min + size;
+    return p->max < OPEN ? p->max - size : size;
+}
+
+static double choice_of(const tl_param *p, uint64_t key)
+{
+    int count = 0;
+    while (p->choices && p->choices[count])
+        count++;
+    return floor(tl_uniform(key) * count);
+}
+
+/* A plausible value. `vectors` counts those of a set: the first is the origin, the second the other corner of a cube. */
+static void make(const tl_param *p, uint64_t key, bool draw, int *vectors, drawn *d)
+{
+    static const double corners[] = {0, 0, 0, 2, 0, 0, 0, 2, 0, 0, 0, 2};
+    double number = number_of(p, key, draw);
+    switch (p->type) {
+    case TL_PARAM_BOOL: d->value = tl_arg_bool(p->name, tl_uniform(key) < 0.5); break;
+    case TL_PARAM_INT: d->value = tl_arg_number(p->name, floor(number) + 1); break;
+    case TL_PARAM_ENUM: d->value = tl_arg_text(p->name, p->choices[(int)choice_of(p, key)]); break;
+    case TL_PARAM_VEC3:
+        number = 2.0 * (*vectors)++;
+        d->vector = draw ? tl_check_direction(key) : tl_v3(number, number, number);
+        d->value = tl_arg_numbers(p->name, &d->vector.x, 3);
+        break;
+    case TL_PARAM_STRING: d->value = tl_arg_text(p->name, "check"); break;
+    case TL_PARAM_POINTS:
+        d->value = tl_arg_numbers(p->name, corners, 4);
+        d->value.type = TL_VALUE_POINTS;
+        break;
+    default: d->value = tl_arg_number(p->name, number); break;
+    }
+}
+
+static const tl_value *given_value(const tl_args *args, const tl_param *p)
+{
+    for (size_t i = 0; args && i < args->count; i++)
+        if (strcmp(args->values[i].key, p->name) == 0 ||
+            (p->alias && strcmp(args->values[i].key, p->alias) == 0))
+            return &args->values[i];
+    return NULL;
+}
+
+static void add_text(tl_checker *c, const tl_value *v)
+{
+    size_t used = strlen(c->params_text), room = sizeof c->params_text - used;
+    char *to = c->params_text + used;
+    const char *comma = used ? ", " : "";
+    if (v->type == TL_VALUE_NUMBER)
+        snprintf(to, room, "%s%s = %.6g", comma, v->key, v->number);
+    else if (v->type == TL_VALUE_BOOL)
+        snprintf(to, room, "%s%s = %s", comma, v->key, v->number != 0 ? "true" : "false");
+    else if (v->type == TL_VALUE_STRING)
+        snprintf(to, room, "%s%s = %s", comma, v->key, v->text);
+}
+
+tl_status tl_check_values(tl_checker *c, int set, tl_value **values, size_t *count, void **held)
+{
+    const tl_kind *kind = c->kind;
+    drawn *all = calloc(kind->param_count + 1, sizeof *all);
+    int vectors = 0;
+    *count = 0;
+    *held = all;
+    *values = calloc(kind->param_count + 1, sizeof **values);
+    if (!all || !*values)
+        return tl_fail_memory(c->error);
+    c->set = set;
+    c->params_text[0] = '\0';
+    for (uint32_t i = 0; i < kind->param_count; i++) {
+        const tl_param *p = &kind->params[i];
+        const tl_value *given = given_value(c->args, p);
+        uint64_t key = tl_key(tl_key_text((uint64_t)set, kind->name), i);
+        bool draw = set > 0, required = (p->flags & TL_PARAM_REQUIRED) != 0;
+        bool changed = draw && tl_uniform(tl_key(key, 1)) < CHANGED;
+        if (given)
+            all[i].value = *given;
+        else if (required ? !(p->flags & TL_PARAM_FILE) : changed)
+            make(p, tl_key(key, 2), draw, &vectors, &all[i]);
+        else
+            continue;
+        (*values)[(*count)++] = all[i].value;
+        add_text(c, &all[i].value);
+    }
+    return TL_OK;
+}
+
+tl_status tl_check_params(tl_checker *c, int set, void *params, void **held)
+{
+    const tl_kind *kind = c->kind;
+    char context[160];
+    tl_value *values;
+    size_t count;
+    tl_status status = tl_check_values(c, set, &values, &count, held);
+    snprintf(context, sizeof context, "'%s' cannot be tried", kind->name);
+    memset(params, 0, kind->params_size);
+    const tl_args args = {values, count};
+    if (status == TL_OK)
+        status = tl_args_read(kind->params, kind->param_count, kind->param_stride, &args, false,
+                              params, context, c->error);
+    free(values);
+    return status;
+}

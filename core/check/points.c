@@ -1,0 +1,106 @@
+/* points.c - calls a law on a batch as the host would, and watches what it writes to.
+ *
+ * Behind the padded batch lie lanes that hold a certain number, and so do the columns behind the declared states. A law that
+ * writes there, or to what is const, has overwritten what belongs to others. */
+#include "check/points.h"
+
+#include "base/inside.h"
+
+#include <string.h>
+
+/* Lanes behind the batch that nobody may write to. */
+#define GUARD TL_LANES
+#define MOST (TL_CHECK_POINTS + TL_LANES + GUARD)
+/* The number there. */
+#define UNTOUCHED (-7.25e77)
+#define UNTOUCHED_FLAGS 0xa5a50000u
+
+typedef struct buffer {
+    _Alignas(TL_ALIGN) double c[TL_AT_COUNT][MOST];
+    _Alignas(TL_ALIGN) uint32_t flags[MOST];
+} buffer;
+
+static void fill(const tl_check_law_of *law, const tl_check_points *in, const size_t *order,
+                 size_t begin, size_t count, size_t padded, buffer *b)
+{
+    for (size_t l = 0; l < MOST; l++) {
+        size_t i = l < count ? (order ? order[begin + l] : begin + l) : 0;
+        for (int k = 0; k < TL_AT_COUNT; k++) {
+            int state = k - TL_AT_STATE;
+            double padding = state >= 0 ? law->initial[state] : k == TL_AT_NORMAL + 2 ? 1.0 : 0;
+            bool open = l < padded && state < (int)law->columns;
+            b->c[k][l] = !open ? UNTOUCHED : l < count ? in->c[k][i] : padding;
+        }
+        b->flags[l] = l >= padded ? UNTOUCHED_FLAGS : l < count ? in->flags[i] : 0;
+    }
+}
+
+static const char *find_overwritten(const tl_check_law_of *law, const buffer *now,
+                                    const buffer *before, size_t padded)
+{
+    for (int k = 0; k < TL_AT_COUNT; k++) {
+        const size_t whole = sizeof now->c[k], inside = padded * sizeof now->c[k][0];
+        if (k < TL_AT_F_N && memcmp(now->c[k], before->c[k], whole) != 0)
+            return "a column of what it is given";
+        if (k >= TL_AT_STATE + (int)law->columns && memcmp(now->c[k], before->c[k], whole) != 0)
+            return "a state that it does not declare";
+        if (memcmp((const char *)now->c[k] + inside, (const char *)before->c[k] + inside,
+                   whole - inside) != 0)
+            return "what lies behind the batch";
+    }
+    if (memcmp(now->flags + padded, before->flags + padded,
+               sizeof now->flags - padded * sizeof now->flags[0]) != 0)
+        return "the flags behind the batch";
+    return NULL;
+}
+
+static bool padding_carries(const buffer *b, size_t count, size_t padded)
+{
+    for (size_t l = count; l < padded; l++)
+        for (int k = TL_AT_F_N; k < TL_AT_STATE; k++)
+            if (!(b->c[k][l] == 0))
+                return true;
+    return false;
+}
+
+void tl_check_call_law(const tl_check_law_of *law, const tl_check_points *in, tl_check_points *out,
+                       const size_t *order, size_t begin, size_t count, tl_check_call *call)
+{
+    size_t padded = (count + TL_LANES - 1) / TL_LANES * TL_LANES;
+    buffer now, before;
+    double *state[2 * TL_STATE_COLUMNS];
+    fill(law, in, order, begin, count, padded, &now);
+    memcpy(&before, &now, sizeof now);
+    for (int k = 0; k < 2 * TL_STATE_COLUMNS; k++)
+        state[k] = now.c[k < TL_STATE_COLUMNS ? TL_AT_STATE + k : TL_AT_COUNT - 1];
+    tl_law_batch batch = {.size = sizeof batch,
+                          .count = (uint32_t)padded,
+                          .dt = in->dt,
+                          .area = now.c[TL_AT_AREA],
+                          .closure = now.c[TL_AT_CLOSURE],
+                          .f_n0 = now.c[TL_AT_F_N0],
+                          .du_n = now.c[TL_AT_DU_N],
+                          .f_n = now.c[TL_AT_F_N],
+                          .state = state,
+                          .flags = now.flags,
+                          .stored = call->no_energies ? NULL : now.c[TL_AT_STORED],
+                          .dissipated = call->no_energies ? NULL : now.c[TL_AT_DISSIPATED],
+                          .closure_edge = now.c[TL_AT_EDGE]};
+    for (int k = 0; k < 3; k++) {
+        batch.normal[k] = now.c[TL_AT_NORMAL + k];
+        batch.du_s[k] = now.c[TL_AT_DU_S + k];
+        batch.f_s[k] = now.c[TL_AT_F_S + k];
+    }
+    call->report = (tl_report){.size = sizeof call->report};
+    tl_enter(law->kind, "update");
+    call->status = law->ops->update(law->self, &batch, &call->report);
+    tl_leave();
+    call->overwrote = find_overwritten(law, &now, &before, padded);
+    call->padding = padding_carries(&now, count, padded);
+    for (size_t l = 0; l < count; l++) {
+        size_t i = order ? order[begin + l] : begin + l;
+        for (int k = TL_AT_F_N; k < TL_AT_COUNT; k++)
+            out->c[k][i] = k - TL_AT_STATE < (int)law->columns ? now.c[k][l] : 0;
+        out->flags[i] = now.flags[l];
+    }
+}

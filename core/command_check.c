@@ -1,0 +1,113 @@
+/* command_check.c - `talus check FILE.so [NAME=VALUE...]`: the conformance check of a plugin, told line by line. */
+#include "commands.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <talus/check.h>
+
+#define USAGE                                                                                      \
+    "talus: usage: talus check FILE.so [NAME=VALUE...]\n"                                          \
+    "Tries each law, damping and generator of the file, with its defaults, the values given and\n" \
+    "drawn ones: a number, true, false, a list as 1,2,3, points as 0,0,0;1,0,0 or a text.\n"
+
+/* Numbers of a list. */
+#define MOST_NUMBERS 64
+
+/* A value with the room that its key and its list need. */
+typedef struct word {
+    char key[64];
+    double numbers[MOST_NUMBERS];
+} word;
+
+/* Reads "1,2,3", or "0,0,0;1,0,0" in rows; the count, or 0 when the text is something else. */
+static size_t read_numbers(const char *text, double *numbers)
+{
+    size_t count = 0;
+    while (count < MOST_NUMBERS) {
+        char *end;
+        numbers[count] = strtod(text, &end);
+        count++;
+        if (end == text || (*end && *end != ',' && *end != ';') || (*end == ';' && count % 3 != 0))
+            return 0;
+        if (!*end)
+            return count;
+        text = end + 1;
+    }
+    return 0;
+}
+
+static int read_word(const char *text, word *w, tl_value *value)
+{
+    const char *equals = strchr(text, '=');
+    if (!equals || equals == text || (size_t)(equals - text) >= sizeof w->key) {
+        fprintf(stderr, "talus: check: '%s' is not NAME=VALUE\n", text);
+        return 0;
+    }
+    memcpy(w->key, text, (size_t)(equals - text));
+    w->key[equals - text] = '\0';
+    size_t count = read_numbers(equals + 1, w->numbers);
+    if (count == 1)
+        *value = tl_arg_number(w->key, w->numbers[0]);
+    else if (count > 1 && !strchr(equals, ';'))
+        *value = tl_arg_numbers(w->key, w->numbers, count);
+    else if (count > 1 && count % 3 == 0) {
+        *value = tl_arg_numbers(w->key, w->numbers, count / 3);
+        value->type = TL_VALUE_POINTS;
+    } else if (strcmp(equals + 1, "true") == 0 || strcmp(equals + 1, "false") == 0)
+        *value = tl_arg_bool(w->key, equals[1] == 't');
+    else
+        *value = tl_arg_text(w->key, equals + 1);
+    return 1;
+}
+
+typedef struct listing {
+    const tl_kind *kind; /* whose heading was written last */
+    size_t checks;
+} listing;
+
+static void tell(void *user, const tl_check_finding *f)
+{
+    static const char *const types[] = {"law", "damping", "generator"};
+    listing *list = user;
+    if (list->kind != f->kind) {
+        const char *path;
+        const tl_plugin *plugin = tl_plugin_of(f->kind, &path);
+        printf("%s '%s' of plugin '%s' (%s)\n", types[f->kind->type], f->kind->name,
+               plugin ? plugin->id : "", path ? path : "");
+        list->kind = f->kind;
+    }
+    list->checks++;
+    printf("  %-6s %-13s %s\n", f->fault ? "FAULT" : "ok", f->check, f->doc);
+    if (f->fault)
+        printf("         %s\n", f->fault);
+}
+
+int tl_command_check(int argc, char **argv)
+{
+    if (argc < 1) {
+        fputs(USAGE, stderr);
+        return EXIT_FAILURE;
+    }
+    int given = argc - 1;
+    word *words = calloc((size_t)given + 1, sizeof *words);
+    tl_value *values = calloc((size_t)given + 1, sizeof *values);
+    int readable = words && values;
+    for (int i = 0; i < given && readable; i++)
+        readable = read_word(argv[i + 1], &words[i], &values[i]);
+    tl_error error = {TL_OK, "out of memory"};
+    listing list = {NULL, 0};
+    size_t faults = 0;
+    const tl_args args = {values, (size_t)given};
+    tl_status status = TL_E_ARGUMENT;
+    if (readable) {
+        status = tl_plugin_check(argv[0], &args, tell, &list, &faults, &error);
+        if (status == TL_OK)
+            printf("%zu checks, %zu fault%s\n", list.checks, faults, faults == 1 ? "" : "s");
+        else
+            fprintf(stderr, "talus: check: %s; values are given as NAME=VALUE\n", error.text);
+    }
+    free(words);
+    free(values);
+    return status == TL_OK && faults == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+}

@@ -1,0 +1,86 @@
+/* my_damping.c - damping "my_damping": drag that grows with the square of the velocity.
+ *
+ *     F_d = -c m |v| v        M_d = -c_w I |w| w
+ *
+ * c is in 1/m, c_w without a unit. A body that falls reaches the velocity sqrt(g / c). The force is a pure function of the
+ * body, so the host may give bodies in batches of any size, to several threads. */
+#include <talus/plugin.h>
+
+#include <math.h>
+
+/* What a script gives; the host fills it in from the table below, checked and with defaults. */
+typedef struct params {
+    double drag, spin_drag;
+} params;
+
+static const tl_param param_table[] = {
+    TL_PARAM(TL_PARAM_REAL, params, drag, "1/m", "drag per mass and square of the velocity",
+             .flags = TL_PARAM_REQUIRED, .min = 0, .max = INFINITY),
+    TL_PARAM(TL_PARAM_REAL, params, spin_drag, "",
+             "drag per moment of inertia and square of the angular velocity", .def = {0}, .min = 0,
+             .max = INFINITY),
+};
+
+/* -c times the size of the vector, times the vector, for all bodies of the batch. */
+static void drag(double c, const tl_damping_batch *batch, const double *inertia,
+                 const double *const motion[3], double *const out[3])
+{
+    for (uint32_t i = 0; i < batch->count; i++) {
+        double x = motion[0][i], y = motion[1][i], z = motion[2][i];
+        double factor = -c * inertia[i] * sqrt(x * x + y * y + z * z);
+        out[0][i] = factor * x;
+        out[1][i] = factor * y;
+        out[2][i] = factor * z;
+    }
+}
+
+/* Called by several threads at once. */
+static tl_status update(const void *self, const tl_damping_batch *batch, tl_report *report)
+{
+    (void)report;
+    const params *p = self;
+    drag(p->drag, batch, batch->mass, batch->velocity, batch->damping_force);
+    drag(p->spin_drag, batch, batch->inertia, batch->angular_velocity, batch->damping_moment);
+    return TL_OK;
+}
+
+/* How much shorter the stable time step becomes: not at all. */
+static double step_factor(const void *self)
+{
+    (void)self;
+    return 1;
+}
+
+static const tl_damping_ops ops = {
+    .size = sizeof ops, .update = update, .step_factor = step_factor, .never_fails = 1};
+
+static const tl_kind kind = {
+    .size = sizeof kind,
+    .type = TL_KIND_DAMPING,
+    .name = "my_damping",
+    .doc = "Drag that grows with the square of the velocity.",
+    .params_size = sizeof(params),
+    .params = param_table,
+    .param_count = sizeof param_table / sizeof *param_table,
+    .param_stride = sizeof *param_table,
+    .ops = &ops,
+};
+
+static const tl_plugin plugin = {
+    .size = sizeof plugin,
+    .abi_major = TL_ABI_MAJOR,
+    .abi_minor = TL_ABI_MINOR,
+    .id = "example.my_damping",
+    .version = "1.0",
+    .doc = "Quadratic drag.",
+    .licence = "BSD-3-Clause",
+    .kinds = &kind,
+    .kind_count = 1,
+    .kind_stride = sizeof kind,
+};
+
+TL_PLUGIN_EXPORT const tl_plugin *tl_plugin_entry(uint32_t host_major, uint32_t host_minor)
+{
+    (void)host_minor;
+    return host_major == TL_ABI_MAJOR ? &plugin : NULL;
+}

@@ -1,0 +1,166 @@
+/* test_check.c - the conformance check passes all plugins of Talus, and each of its checks finds the plugin that breaks it. */
+#include "check.h"
+
+#include <talus/check.h>
+#include <talus/talus.h>
+
+#define UNFIT TALUS_BAD_PLUGIN_DIR "/unfit.so"
+
+/* What was told of one run. */
+typedef struct heard {
+    size_t checks, faults;
+    char list[400];  /* checks that found something, each with a blank behind */
+    char fault[700]; /* the last one's sentence */
+} heard;
+
+static void hear(void *user, const tl_check_finding *f)
+{
+    heard *h = user;
+    h->checks++;
+    CHECK(f->kind && f->doc[0]);
+    if (!f->fault)
+        return;
+    h->faults++;
+    snprintf(h->list + strlen(h->list), sizeof h->list - strlen(h->list), "%s; ", f->check);
+    snprintf(h->fault, sizeof h->fault, "%s", f->fault);
+}
+
+/* One fault of the plugin that has them all, in the law, the damping or the generator; the other two behave. */
+static heard run_unfit(const char *param, const char *fault)
+{
+    static const char *const params[] = {"law_fault", "damping_fault", "generator_fault"};
+    heard h = {0};
+    tl_value values[3];
+    size_t faults;
+    tl_error error;
+    for (int i = 0; i < 3; i++)
+        values[i] = tl_arg_text(params[i], strcmp(params[i], param) == 0 ? fault : "none");
+    const tl_args args = {values, 3};
+    if (!CHECK_INT(tl_plugin_check(UNFIT, &args, hear, &h, &faults, &error), TL_OK))
+        printf("  %s\n", error.text);
+    CHECK_INT(faults, h.faults);
+    return h;
+}
+
+TEST(each_check_finds_what_breaks_it)
+{
+    /* what is broken; the checks that must find it, and no others */
+    static const struct {
+        const char *param, *fault, *found;
+    } cases[] = {
+        {"law_fault", "none", ""},
+        {"law_fault", "runs", "runs; "},
+        {"law_fault", "alone", "one by one; split; "},
+        {"law_fault", "split", "one by one; split; "},
+        {"law_fault", "energies", "energies; "},
+        {"law_fault", "writes_input", "writes; "},
+        {"law_fault", "writes_behind", "writes; "},
+        {"law_fault", "writes_state", "writes; "},
+        {"law_fault", "plane", "plane; no motion; "},
+        {"law_fault", "turned", "turned; "},
+        {"law_fault", "softer", "stiffness; "},
+        {"law_fault", "shear_softer", "stiffness; "},
+        {"law_fault", "cycle", "closed cycle; "},
+        {"law_fault", "states", "states; "},
+        {"law_fault", "stateless", "states; "},
+        {"law_fault", "pulls", "pulls; "},
+        {"damping_fault", "runs", "runs; "},
+        {"damping_fault", "alone", "one by one; split; "},
+        {"damping_fault", "split", "one by one; split; "},
+        {"damping_fault", "writes", "writes; "},
+        {"damping_fault", "brakes", "one by one; split; brakes; "},
+        {"damping_fault", "alpha", "brakes; "},
+        {"damping_fault", "rests", "rests; "},
+        {"damping_fault", "factor", "step factor; "},
+        {"damping_fault", "states", "states; "},
+        {"generator_fault", "repeats", "repeats; "},
+        {"generator_fault", "parameters", "parameters; "},
+        {"generator_fault", "failures", "failures; "},
+        {"generator_fault", "goes_on", "failures; "},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        heard h = run_unfit(cases[i].param, cases[i].fault);
+        if (!CHECK_TEXT(h.list, cases[i].found))
+            printf("  %s = %s: %s\n", cases[i].param, cases[i].fault, h.fault);
+    }
+}
+
+/* Those that go wrong in more than one way. */
+TEST(others_are_found_among_the_rest)
+{
+    static const char *const cases[][3] = {
+        {"law_fault", "repeats", "repeats; "},     {"law_fault", "padding", "padding; "},
+        {"law_fault", "finite", "finite; "},       {"law_fault", "still", "no motion; "},
+        {"damping_fault", "repeats", "repeats; "}, {"damping_fault", "state", "writes; "},
+        {"damping_fault", "finite", "finite; "},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        heard h = run_unfit(cases[i][0], cases[i][1]);
+        CHECK_CONTAINS(h.list, cases[i][2]);
+    }
+}
+
+TEST(a_fault_tells_its_parameters)
+{
+    heard h = run_unfit("law_fault", "softer");
+    CHECK_CONTAINS(h.fault, "law_fault = softer");
+    CHECK_CONTAINS(h.fault, "but stiffness() says");
+}
+
+TEST(the_plugins_of_talus_pass)
+{
+    static const struct {
+        const char *name;
+        size_t checks;
+    } plugins[] = {{"elastic", 15}, {"coulomb", 15}, {"coulomb_tensile", 15}, {"none", 10},
+                   {"local", 10},   {"viscous", 10}, {"adaptive", 10},        {"combined", 10},
+                   {"kinetic", 10}, {"box", 3},      {"tetrahedron", 3},      {"polyhedron", 3},
+                   {"drum", 3},     {"joint", 3},    {"jointset", 3}};
+    for (size_t i = 0; i < sizeof plugins / sizeof *plugins; i++) {
+        char path[1024];
+        heard h = {0};
+        size_t faults = 1;
+        tl_error error;
+        snprintf(path, sizeof path, "%s/%s.so", TALUS_TEST_PLUGIN_DIR, plugins[i].name);
+        CHECK_INT(tl_plugin_check(path, NULL, hear, &h, &faults, &error), TL_OK);
+        CHECK_INT(h.checks, plugins[i].checks);
+        if (!CHECK_INT(faults, 0))
+            printf("  %s: %s%s\n", plugins[i].name, h.list, h.fault);
+    }
+}
+
+TEST(points_are_parameters_too)
+{
+    static const double base[] = {0, 0, 0, 2, 0, 0, 0, 2, 0}, axis[] = {0, 0, 1};
+    tl_value values[] = {tl_arg_numbers("base", base, 3), tl_arg_numbers("axis", axis, 3)};
+    size_t faults;
+    tl_error error;
+    values[0].type = TL_VALUE_POINTS;
+    const tl_args args = {values, 2};
+    CHECK_INT(
+        tl_plugin_check(TALUS_TEST_PLUGIN_DIR "/prism.so", &args, NULL, NULL, &faults, &error),
+        TL_OK);
+    CHECK_INT(faults, 0);
+}
+
+TEST(what_cannot_be_tried_is_told)
+{
+    size_t faults;
+    tl_error error;
+    const tl_value odd[] = {tl_arg_number("weight", 3)}, wrong[] = {tl_arg_number("kn", -3)};
+    const tl_args odd_args = {odd, 1}, wrong_args = {wrong, 1};
+    CHECK_INT(tl_plugin_check("no/such.so", NULL, NULL, NULL, &faults, &error), TL_E_PLUGIN);
+    CHECK_CONTAINS(error.text, "no/such.so");
+    CHECK_INT(tl_plugin_check(UNFIT, &odd_args, NULL, NULL, &faults, &error), TL_E_ARGUMENT);
+    CHECK_CONTAINS(error.text, "no kind of plugin 'bad.unfit' has a parameter 'weight'");
+    CHECK_INT(tl_plugin_check(UNFIT, &wrong_args, NULL, NULL, &faults, &error), TL_E_ARGUMENT);
+    CHECK_CONTAINS(error.text, "kn = -3");
+    /* a generator that needs a file */
+    CHECK(tl_plugin_check(TALUS_TEST_PLUGIN_DIR "/import_solid.so", NULL, NULL, NULL, &faults,
+                          &error) != TL_OK);
+    CHECK_CONTAINS(error.text, "file");
+}
+
+TEST_MAIN(RUN(each_check_finds_what_breaks_it), RUN(others_are_found_among_the_rest),
+          RUN(a_fault_tells_its_parameters), RUN(the_plugins_of_talus_pass),
+          RUN(points_are_parameters_too), RUN(what_cannot_be_tried_is_told))

@@ -1,0 +1,132 @@
+/* test_options.c - structs of options: their defaults are those of the tables, and callers of older and newer headers are
+ * told apart by the size. */
+#include "check.h"
+#include "model/options.h"
+
+/* The defaults of a table, written over `own`, must be those that are there already. */
+static void compare(const char *function, const void *defaults, size_t bytes)
+{
+    unsigned char own[512];
+    size_t count;
+    tl_error error;
+    const tl_args none = {NULL, 0};
+    const tl_param *params = tl_function_params(function, &count, NULL);
+    CHECK(params != NULL && bytes <= sizeof own);
+    memcpy(own, defaults, bytes);
+    CHECK_INT(tl_args_read(params, count, sizeof *params, &none, false, own, function, &error),
+              TL_OK);
+    if (!CHECK(memcmp(own, defaults, bytes) == 0))
+        printf("  the defaults of %s are not those of its table\n", function);
+}
+
+#define COMPARE(function, type)                                                                    \
+    do {                                                                                           \
+        type defaults = type##_default();                                                          \
+        CHECK_INT(defaults.size, sizeof(type));                                                    \
+        compare(function, &defaults, sizeof defaults);                                             \
+    } while (0)
+
+TEST(defaults_are_those_of_the_tables)
+{
+    COMPARE("model", tl_model_config);
+    COMPARE("filter", tl_filter);
+    COMPARE("insitu", tl_insitu);
+    COMPARE("timestep", tl_timestep);
+    COMPARE("mass_scaling", tl_mass_scaling);
+    COMPARE("contact_area", tl_contact_area);
+    COMPARE("solve", tl_solve);
+    COMPARE("load", tl_load);
+    COMPARE("keyblocks", tl_keyblock_query);
+    COMPARE("write_vtk", tl_vtk_parts);
+}
+
+TEST(defaults_without_a_table)
+{
+    tl_block_filter blocks = tl_block_filter_default();
+    CHECK(blocks.fixed == -1 && blocks.hidden == 0 && !blocks.group && !blocks.inside);
+    tl_block_set set = tl_block_set_default();
+    CHECK(isnan(set.density) && isnan(set.velocity.z) && isnan(set.angular_velocity.x));
+    CHECK(!set.group);
+    tl_drive drive = tl_drive_default();
+    CHECK(drive.velocity.x == 0 && !drive.velocity_at && !drive.release);
+    tl_contact_filter contacts = tl_contact_filter_default();
+    CHECK(!contacts.joint && !contacts.between_a);
+}
+
+/* As a program that was built when tl_solve ended with `measure` would have it. */
+TEST(an_older_struct_is_filled_up)
+{
+    tl_error error;
+    tl_solve own, old;
+    memset(&old, 0xff, sizeof old); /* what lies behind it is another thing of the program's */
+    tl_options_default(TL_OPTIONS_OF_tl_solve, &old, offsetof(tl_solve, velocity));
+    old.ratio = 0.25;
+    CHECK_INT(old.size, offsetof(tl_solve, velocity));
+    CHECK(old.stop_at_failure == -1);
+    CHECK_INT(TL_OPTIONS_READ(tl_solve, &old, &own, &error), TL_OK);
+    CHECK(own.ratio == 0.25 && isnan(own.velocity) && own.every == 500 && !own.progress);
+    CHECK_INT(own.stop_at_failure, 0);
+    CHECK_INT(own.size, sizeof own);
+}
+
+TEST(nothing_means_the_defaults)
+{
+    tl_error error;
+    tl_model *m;
+    CHECK_INT(tl_model_create(NULL, &m, &error), TL_OK);
+    CHECK(tl_model_settings(m).gravity.z == -9.81);
+    CHECK_INT(tl_model_settings(m).size, sizeof(tl_model_config));
+    tl_id *ids;
+    size_t count;
+    CHECK_INT(tl_blocks_select(m, NULL, &ids, &count), TL_OK);
+    CHECK_INT(count, 0);
+    free(ids);
+    tl_model_destroy(m);
+}
+
+TEST(a_wrong_size_is_refused)
+{
+    tl_error error;
+    tl_model *m = NULL;
+    tl_model_config config = tl_model_config_default();
+    config.size = 0;
+    CHECK_INT(tl_model_create(&config, &m, &error), TL_E_ARGUMENT);
+    CHECK_CONTAINS(error.text, "tl_model_config: size = 0");
+    CHECK_CONTAINS(error.text, "tl_model_config_default()");
+    CHECK(m == NULL);
+    config.size = sizeof config + 8;
+    CHECK_INT(tl_model_create(&config, &m, &error), TL_E_ARGUMENT);
+    CHECK_CONTAINS(error.text, "headers of a newer one");
+    /* every function that takes options looks at the size */
+    CHECK_INT(tl_model_create(NULL, &m, &error), TL_OK);
+    static const uint64_t zeros[64];
+    tl_id *ids;
+    size_t count;
+    tl_filter_result filtered;
+    tl_keyblocks keyblocks;
+    tl_solve_result solved;
+    const tl_status refused[] = {
+        tl_blocks_select(m, (const void *)zeros, &ids, &count),
+        tl_contacts_select(m, (const void *)zeros, &ids, &count),
+        tl_blocks_set(m, NULL, 0, (const void *)zeros),
+        tl_blocks_load(m, NULL, 0, (const void *)zeros),
+        tl_blocks_drive(m, NULL, 0, (const void *)zeros),
+        tl_model_filter(m, (const void *)zeros, &filtered),
+        tl_model_keyblocks(m, (const void *)zeros, &keyblocks),
+        tl_model_insitu(m, (const void *)zeros),
+        tl_model_timestep(m, (const void *)zeros),
+        tl_model_mass_scaling(m, (const void *)zeros),
+        tl_model_contact_area(m, (const void *)zeros),
+        tl_model_solve(m, (const void *)zeros, &solved),
+        tl_write_vtk(m, TALUS_TEST_TMP "/options", (const void *)zeros),
+    };
+    for (size_t i = 0; i < sizeof refused / sizeof *refused; i++)
+        if (!CHECK_INT(refused[i], TL_E_ARGUMENT))
+            printf("  function %zu\n", i);
+    CHECK_CONTAINS(tl_model_error(m)->text, "tl_vtk_parts: size = 0");
+    tl_model_destroy(m);
+}
+
+TEST_MAIN(RUN(defaults_are_those_of_the_tables), RUN(defaults_without_a_table),
+          RUN(an_older_struct_is_filled_up), RUN(nothing_means_the_defaults),
+          RUN(a_wrong_size_is_refused))
