@@ -40,22 +40,9 @@ LANGUAGES = {"lua", "sh", "console", "c", "json", "text"}
 BETWEEN = "----8<---- end of a block"
 COMMAND = re.compile(r"\s+(?:\$ |\./bootstrap |(?:[A-Z_]+=\S* )*(?:build/release/)?(?:talus|lua5\.4|cmake|gcc|xvfb-run) )")
 
-# What the usage lines of the reference find: a block on a held one, at rest, and a plane through x, y, z.
-USAGE_MODEL = """
-talus = require "talus"
-local function build()
-local model = talus.model{gravity = {0, 0, -10}}
-model:generate("box", {{min = {0, 0, 0}, max = {4, 4, 1}, density = 2000, group = "base"},
-    {min = {1, 1, 1}, max = {3, 3, 3}, density = 2000}})
-model:generate("joint", {joint = "J1", dip = 0, dip_direction = 0, origin = {0, 0, 2}})
-model:joint("*", "coulomb", {kn = 1e8, ks = 1e8, friction = 30})
-model:joint("J1", "coulomb", {kn = 1e8, ks = 1e8, friction = 30})
-model:damping "local"
-model:blocks{group = "base"}:fix()
-model:cycle(10)
-return setmetatable({model = model, selection = model:blocks{fixed = false}, block = model:blocks()[2],
-    contact = model:contacts()[1], x = 2, y = 2, z = 2}, {__index = _G})
-end
+# scripts/tools/usage_model.lua makes the model of each usage line.
+TRY_USAGES = """
+local build = require "usage_model"
 local function try(usage)
     local good, message = pcall(assert(load(usage, "=usage", "t", build())))
     if not good then
@@ -243,7 +230,7 @@ class Page:
     def run_usages(self):
         """The usage lines of the reference, each on a model of its own; gives how many."""
         usages = re.findall(r"^### (.*)\n\n```lua\n(.*)\n```$", self.reference, flags=re.M)
-        lines = [USAGE_MODEL]
+        lines = ['package.path = "scripts/tools/?.lua;" .. package.path', TRY_USAGES]
         for _, usage in usages:
             for call in usage.split("  or  "):
                 call = call.strip()
