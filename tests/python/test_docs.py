@@ -275,11 +275,34 @@ def check_links(pages):
         for word in re.findall(r"\./bootstrap (\w+)", text):
             if not re.search(rf"^{word}\)", (ROOT / "bootstrap").read_text(encoding="utf-8"), flags=re.M):
                 fault(name, f"./bootstrap has no word '{word}'")
+    check_names(texts)
     readme = texts["README.md"]
     for name in pages:
         if name != "README.md" and f"({name})" not in readme:
             fault("README.md", f"does not link {name}")
     return count
+
+
+def check_names(texts):
+    """Functions and fields that a page names in its text exist: `model:solve`, `sel:fix`, `block.mass`, `talus.report`."""
+    known = {}
+    owner = None
+    for line in (ROOT / "scripts/meta/talus.d.lua").read_text(encoding="utf-8").split("\n"):
+        owner_line = re.match(r"---@class (?:\(exact\) )?(?:talus\.)?(\w+)$", line)
+        name = re.match(r"---@field (\w+)", line)
+        function = re.match(r"function (\w+)[:.](\w+)\(", line)
+        owner = owner_line[1] if owner_line else owner
+        if function:
+            known.setdefault(function[1], set()).add(function[2])
+        elif name:
+            known.setdefault(owner, set()).add(name[1])
+    owners = {"model": {"Model"}, "sel": {"Blocks", "Contacts"}, "selection": {"Blocks", "Contacts"}, "block": {"Block"},
+              "contact": {"Contact"}, "talus": {"talus"}}
+    for page, text in texts.items():
+        for code in re.findall(r"`([^`\n]+)`", re.sub(r"^```.*?^```", "", text, flags=re.M | re.S)):
+            for of, name in re.findall(r"(?<![\w./])(model|sel|selection|block|contact|talus)[:.](\w+)(?![\w/]*\.\w)", code):
+                if not any(name in known[owner] for owner in owners[of]) and name not in ("so", "h", "d", "lua", "c"):
+                    fault(page, f"`{code}`: {of} has no '{name}'")
 
 
 def check_itself(folder):
@@ -295,9 +318,10 @@ def check_itself(folder):
     page.environment = dict(os.environ)
     page.blocks = [block for block in read_blocks("sample", sample) if block.language in LANGUAGES]
     page.run_blocks()
+    check_names({"sample": "`model:solv{...}`, `model:solve`, `block.masses`"})
     here, faults[:] = faults[len(before):], before
     for what in ("sample:32: a command", "language 'perl'", "sample:6: the page gives\n2", "sample:13: ended", "sample:17: the comp",
-                 "no JSON", "the page gives\ntwo", "ended with status 1"):
+                 "no JSON", "model has no 'solv'", "block has no 'masses'", "the page gives\ntwo", "ended with status 1"):
         if not any(what in text for text in here):
             fault("test_docs", f"'{what}' was not found in the bad sample: {here}")
     if not pattern_of("a ... c\n...\nz\n").fullmatch("a b c\n1\n2\nz\n") or pattern_of("a\n").fullmatch("ab\n"):
