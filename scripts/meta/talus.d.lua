@@ -423,7 +423,7 @@ function Blocks:fix(options) end
 ---@field velocity? talus.Vector m/s: velocity of the centroid
 ---@field angular_velocity? talus.Vector rad/s: angular velocity
 
---- Changes properties of blocks, of a member of a rigid body the body's velocities.
+--- Changes properties of blocks; what is not named stays.
 ---
 ---     selection:set{group = "wedge", velocity = {0, 0, -1}}
 ---@param options? talus.SetOptions
@@ -477,7 +477,7 @@ function Model:timestep(options) end
 ---@class (exact) talus.MassScalingOptions
 ---@field on? boolean default true: whether the inertia is scaled
 ---@field dt? number s, in [1e-100, 1e+100]: for motion that is to be right: the step. Only bodies in contact whose own stable step is shorter get inertia, as much as they need for it
----@field most? number >= 0, default 0.05: with dt: mass that may be added, as a share of the mass of all bodies that can move; a step that would need more fails
+---@field most? number >= 0: with dt: mass that may be added, as a share of the mass of all bodies that can move; a step that would need more fails. Left out, 0.05
 
 ---@class (exact) talus.MassScalingResult
 ---@field on boolean whether inertia is scaled; the other fields are there after mass_scaling{dt =} only
