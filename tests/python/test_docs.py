@@ -250,14 +250,23 @@ def slug(heading):
     return re.sub(r"[^\w\- ]", "", text).replace(" ", "-")
 
 
+def anchors_of(text):
+    """Of all headings of a page; the second of the same heading ends with -1."""
+    seen, anchors = {}, set()
+    for heading in re.findall(r"^#+ (.*)$", re.sub(r"^```.*?^```", "", text, flags=re.M | re.S), flags=re.M):
+        name = slug(heading)
+        anchors.add(f"{name}-{seen[name]}" if name in seen else name)
+        seen[name] = seen.get(name, 0) + 1
+    return anchors
+
+
 def without_code(text):
     return re.sub(r"`[^`\n]*`", "", re.sub(r"^```.*?^```", "", text, flags=re.M | re.S))
 
 
 def check_links(pages):
     texts = {name: (ROOT / name).read_text(encoding="utf-8") for name in pages}
-    anchors = {name: {slug(h) for h in re.findall(r"^#+ (.*)$", re.sub(r"^```.*?^```", "", text, flags=re.M | re.S),
-                                                  flags=re.M)} for name, text in texts.items()}
+    anchors = {name: anchors_of(text) for name, text in texts.items()}
     count = 0
     for name, text in texts.items():
         for target in re.findall(r"\]\(([^)\s]+)\)", without_code(text)):
