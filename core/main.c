@@ -192,7 +192,8 @@ static int run(lua_State *L, int argc, char **argv, options *o)
     exit_status = give_module(L, o);
     if (exit_status != EXIT_SUCCESS)
         return exit_status;
-    printf("Talus %s. talus.help() tells what there is; Ctrl-D ends.\n", TALUS_VERSION);
+    printf("Talus %s. `help` tells what there is, Tab completes names, `exit` ends.\n",
+           TALUS_VERSION);
     tl_repl_run(L, o->verbose);
     return EXIT_SUCCESS;
 }

@@ -124,17 +124,34 @@ static void print_kinds(tl_kind_type type)
         print_row(kind->name, kind->doc);
 }
 
+/* What a field is as Lua sees it: tl_lua_push_field. */
+static const char *field_type(tl_field_kind kind)
+{
+    switch (kind) {
+    case TL_FIELD_SCALAR: return "number";
+    case TL_FIELD_COUNT: return "whole number";
+    case TL_FIELD_BOOL: return "true or false";
+    case TL_FIELD_VEC3: return "vector";
+    case TL_FIELD_QUAT: return "list of 4 numbers";
+    case TL_FIELD_SYM3: return "{xx =, yy =, zz =, xy =, yz =, zx =}";
+    case TL_FIELD_TEXT: return "text";
+    case TL_FIELD_IDS: return "list of 2 blocks";
+    }
+    return "";
+}
+
 static void print_fields(const char *item, const tl_field *(*list)(size_t *count))
 {
     size_t count;
     const tl_field *fields = list(&count);
     printf("\nFields of a %s:\n", item);
     for (size_t i = 0; i < count; i++) {
-        char text[300];
+        char text[80];
         bool unit = fields[i].unit && fields[i].unit[0];
-        snprintf(text, sizeof text, "%s%s%s%s", fields[i].doc, unit ? " (" : "",
-                 unit ? fields[i].unit : "", unit ? ")" : "");
+        snprintf(text, sizeof text, "%s%s%s", field_type(fields[i].kind), unit ? ", " : "",
+                 unit ? fields[i].unit : "");
         print_row(fields[i].name, text);
+        print_wrapped(fields[i].doc, NAME_COLUMNS + 2, 0);
     }
 }
 

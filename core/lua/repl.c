@@ -1,11 +1,16 @@
-/* repl.c - the read-eval-print loop, on libedit's line editing. */
+/* repl.c - the read-eval-print loop, on libedit's line editing. Besides Lua it knows the words help, help TOPIC, exit and
+ * quit, as long as no global variable has that name. */
 #include "repl.h"
 
 #include "front.h"
+#include "repl_complete.h"
+#include "repl_history.h"
+#include "repl_scan.h"
 
 #include <editline/readline.h>
 #include <errno.h>
 #include <lauxlib.h>
+#include <locale.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -124,22 +129,10 @@ static line_end read_line(lua_State *L, const char *prompt)
         putchar('\n');
     if (!line.text)
         return line.done ? LINE_END_OF_INPUT : LINE_STOPPED;
-    if (line.text[0])
-        add_history(line.text);
+    tl_repl_history_add(line.text);
     lua_pushstring(L, line.text);
     free(line.text);
     return LINE_READ;
-}
-
-/* Compiles the text at index `text` as an expression, so that `return` may be left out. */
-static bool load_expression(lua_State *L, int text)
-{
-    const char *chunk = lua_pushfstring(L, "return %s", lua_tostring(L, text));
-    bool good = luaL_loadbuffer(L, chunk, strlen(chunk), "=stdin") == LUA_OK;
-    lua_remove(L, -2);
-    if (!good)
-        lua_pop(L, 1);
-    return good;
 }
 
 /* True when the error on the top of the stack says that the chunk goes on in the next line. */
@@ -151,6 +144,59 @@ static bool is_incomplete(lua_State *L)
     return length >= sizeof mark - 1 && strcmp(message + length - (sizeof mark - 1), mark) == 0;
 }
 
+/* Compiles the text at index `text`, as an expression, so that `return` may be left out, or as it is. Leaves the function or
+ * the error; `more` tells whether the chunk goes on in the next line. */
+static int load_chunk(lua_State *L, int text, bool *more)
+{
+    const char *chunk = lua_pushfstring(L, "return %s", lua_tostring(L, text));
+    int status = luaL_loadbuffer(L, chunk, strlen(chunk), "=stdin");
+    lua_remove(L, -2);
+    *more = false;
+    if (status == LUA_OK)
+        return status;
+    *more = status == LUA_ERRSYNTAX && is_incomplete(L);
+    lua_pop(L, 1);
+    size_t length;
+    chunk = lua_tolstring(L, text, &length);
+    status = luaL_loadbuffer(L, chunk, length, "=stdin");
+    *more = status == LUA_ERRSYNTAX && (*more || is_incomplete(L));
+    return status;
+}
+
+/* ---------------------------------------------------------------- words ------------------ */
+
+typedef enum word_kind { WORD_NONE, WORD_DONE, WORD_END } word_kind;
+
+static bool is_global(lua_State *L, const char *name)
+{
+    lua_pushglobaltable(L);
+    lua_pushstring(L, name);
+    bool found = lua_rawget(L, -2) != LUA_TNIL;
+    lua_pop(L, 2);
+    return found;
+}
+
+/* Does what the words of the loop say, when the line is made of them. */
+static word_kind obey_word(lua_State *L, const char *text)
+{
+    char word[16] = "", topic[64] = "", more[2] = "";
+    int count = sscanf(text, " %15s %63s %1s", word, topic, more);
+    const char *at = topic;
+    while (tl_scan_is_name(*at))
+        at++;
+    bool ends = count == 1 && (strcmp(word, "exit") == 0 || strcmp(word, "quit") == 0);
+    bool helps = strcmp(word, "help") == 0 && (count == 1 || (count == 2 && !*at));
+    if ((!ends && !helps) || is_global(L, word))
+        return WORD_NONE;
+    tl_error error;
+    if (helps && !tl_lua_help(count == 2 ? topic : NULL, &error))
+        fprintf(stderr, "talus: %s\n", error.text);
+    fflush(stdout);
+    return ends ? WORD_END : WORD_DONE;
+}
+
+/* ---------------------------------------------------------------- chunks ----------------- */
+
 /* Reads one chunk of as many lines as it takes and leaves its function on the stack, or the error, with the status of the
  * loading in `status`. */
 static line_end read_chunk(lua_State *L, int *status)
@@ -158,22 +204,24 @@ static line_end read_chunk(lua_State *L, int *status)
     lua_settop(L, 0);
     line_end end = read_line(L, "> ");
     *status = LUA_OK;
-    if (end != LINE_READ || load_expression(L, 1))
+    if (end != LINE_READ)
         return end;
-    for (;;) {
-        size_t length;
-        const char *text = lua_tolstring(L, 1, &length);
-        *status = luaL_loadbuffer(L, text, length, "=stdin");
-        if (*status != LUA_ERRSYNTAX || !is_incomplete(L))
-            return LINE_READ;
-        lua_pop(L, 1);
+    word_kind word = obey_word(L, lua_tostring(L, 1));
+    if (word != WORD_NONE)
+        return word == WORD_END ? LINE_END_OF_INPUT : LINE_STOPPED;
+    bool more;
+    while (*status = load_chunk(L, 1, &more), more) {
+        lua_settop(L, 1);
+        tl_repl_complete_after(lua_tostring(L, 1));
         end = read_line(L, ">> ");
+        tl_repl_complete_after(NULL);
         if (end != LINE_READ)
             return end;
         lua_pushliteral(L, "\n");
         lua_insert(L, 2);
         lua_concat(L, 3);
     }
+    return LINE_READ;
 }
 
 /* Prints the value at `index` as it would be written in a script, tables by their address. */
@@ -232,6 +280,10 @@ void tl_repl_run(lua_State *L, bool verbose)
 {
     int status;
     line_end end;
+    setlocale(LC_CTYPE,
+              ""); /* so that letters beyond ASCII can be typed; numbers stay as they are */
+    tl_repl_history_open(tl_lua_options_of(L)->quiet);
+    tl_repl_complete_with(L);
     while ((end = read_chunk(L, &status)) != LINE_END_OF_INPUT) {
         if (end == LINE_STOPPED)
             continue;

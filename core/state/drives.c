@@ -36,7 +36,7 @@ static tl_status ask(tl_model *m, size_t index, const tl_drive_kept *kept,
     asked.velocity = kept->velocity_asked;
     asked.angular_velocity = kept->angular_velocity_asked;
     asked.from = from ? &from[index - 1].drive : NULL;
-    tl_drive given = {.velocity_at = NULL};
+    tl_drive given = tl_drive_default();
     bool found = again && again(user, &asked, &given);
     drive->velocity_at = given.velocity_at;
     drive->angular_velocity_at = given.angular_velocity_at;
@@ -68,6 +68,7 @@ tl_status tl_drives_make(tl_model *m, const tl_drive_kept *kept, size_t count,
         tl_drive_record *record = &m->drives[i];
         if (record->bodies == 0)
             continue;
+        record->drive = tl_drive_default();
         record->drive.velocity = kept[i].velocity;
         record->drive.angular_velocity = kept[i].angular_velocity;
         record->velocity = kept[i].velocity_now;

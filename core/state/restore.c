@@ -326,8 +326,9 @@ tl_status tl_model_restore_archive(const tl_archive *a, int64_t threads, tl_driv
 {
     tl_model *m;
     *model = NULL;
-    tl_status status =
-        tl_model_create(&(tl_model_config){.gravity = {0, 0, 0}, .threads = threads}, &m, error);
+    tl_model_config config = tl_model_config_default();
+    config.threads = threads;
+    tl_status status = tl_model_create(&config, &m, error);
     if (status != TL_OK)
         return status;
     status = fill(m, a, again, user);

@@ -219,7 +219,8 @@ class Prompt:
         self.seen = ""  # and not taken yet
         self.pid, self.terminal = os.forkpty()
         if self.pid == 0:
-            os.environ["TERM"] = "dumb"
+            os.environ.update(TERM="dumb", HOME="")  # no history
+            os.environ.pop("XDG_STATE_HOME", None)
             os.execv(PROGRAM, [PROGRAM, "--quiet"])
 
     def read_to(self, end):

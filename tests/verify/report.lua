@@ -6,6 +6,8 @@
 -- verification.md and verification/*.svg (it must exist), then come the tests that should have left
 -- results: one that did not is reported as failed. Prints the figures that failed; exit status 1
 -- when there are any. The same results give the same text.
+package.path = arg[0]:match("^(.-)[^/]*$") .. "?.lua;" .. package.path
+local title_of = require "report_titles"
 local results, docs = arg[1], arg[2]
 
 -- A case with more figures shows those with the largest share of their tolerance.
@@ -124,12 +126,21 @@ local function rows_shown(case)
     return shown, #rows - #shown
 end
 
-local function anchor(id)
-    return (id:lower():gsub("[^%w%-_ ]", ""):gsub(" ", "-"))
+-- "Free fall (D.freefall)", or the id where there is no title.
+local function heading(id)
+    local title = title_of(id)
+    return title and ("%s%s (%s)"):format(title:sub(1, 1):upper(), title:sub(2), id) or id
+end
+
+-- What the heading is linked by; the second of the same heading ends with -1, as hosts have it.
+local function anchor(id, seen)
+    local name = heading(id):lower():gsub("[^%w%-_ ]", ""):gsub(" ", "-")
+    seen[name] = (seen[name] or -1) + 1
+    return seen[name] == 0 and name or name .. "-" .. seen[name]
 end
 
 local function describe(out, case)
-    out[#out + 1] = "## " .. case.id .. "\n"
+    out[#out + 1] = "## " .. heading(case.id) .. "\n"
     if case.sentence ~= "" then
         out[#out + 1] = case.sentence .. "\n"
     end
@@ -159,8 +170,9 @@ local function page(cases, checks, failed)
             .. "what is expected.\n",
         string.format("%d cases, %d figures, %d failed.\n", #cases, checks, failed),
         "| case | figures | worst error / tolerance | |", "| --- | ---: | ---: | --- |" }
+    local seen = {}
     for _, case in ipairs(cases) do
-        out[#out + 1] = string.format("| [%s](#%s) | %d | %.2g | %s |", case.id, anchor(case.id),
+        out[#out + 1] = string.format("| [%s](#%s) | %d | %.2g | %s |", heading(case.id), anchor(case.id, seen),
             #case.checks, case.worst, case.failed == 0 and "pass" or "**FAIL**")
     end
     out[#out + 1] = ""

@@ -1,0 +1,472 @@
+/* repl_complete.c - completion of names at the prompt.
+ *
+ * What may stand at the cursor follows from what stands before it (repl_scan.c):
+ *   after `x.` or `x:`     fields and methods of what x is
+ *   in `f{`, `f("..", {`   keys of the table of options of f, or parameters of the plugin that is named
+ *   in quotes              plugins of generate, joint and damping, choices of an option, fields for sum and the like
+ *   else                   globals and Lua's words
+ * Names come from the tables that check a script. Nothing of the script is run for it: x is found by looking up names
+ * without metamethods, and what a call gives by the name of its function. */
+#include "repl_complete.h"
+
+#include "front.h"
+#include "repl_scan.h"
+
+#include <editline/readline.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define LONGEST 16384 /* characters of a chunk, for `resolve` calls itself for each `.` of it */
+
+static struct {
+    lua_State *L;
+    const char *above; /* lines of the chunk above this one, or NULL */
+    char **names;      /* matches, from malloc */
+    size_t count, capacity, next;
+} completion;
+
+/* ---------------------------------------------------------------- matches ---------------- */
+
+static void forget_matches(void)
+{
+    for (size_t i = 0; i < completion.count; i++)
+        free(completion.names[i]);
+    completion.count = completion.next = 0;
+}
+
+/* Adds a name that begins with the word; one for which there is no memory is left out. */
+static void add(const char *word, const char *name)
+{
+    if (strncmp(name, word, strlen(word)) != 0)
+        return;
+    for (size_t i = 0; i < completion.count; i++)
+        if (strcmp(completion.names[i], name) == 0)
+            return;
+    if (completion.count == completion.capacity) {
+        size_t capacity = completion.capacity ? 2 * completion.capacity : 64;
+        char **names = realloc(completion.names, capacity * sizeof *names);
+        if (!names)
+            return;
+        completion.names = names;
+        completion.capacity = capacity;
+    }
+    completion.names[completion.count] = strdup(name);
+    completion.count += completion.names[completion.count] != NULL;
+}
+
+/* The next match, as libedit asks for them. */
+static char *next_match(const char *word, int state)
+{
+    (void)word;
+    if (state == 0)
+        completion.next = 0;
+    return completion.next < completion.count ? strdup(completion.names[completion.next++]) : NULL;
+}
+
+/* ---------------------------------------------------------------- what is declared ------- */
+
+static const tl_lua_topic *find_topic(const char *name)
+{
+    for (const tl_lua_topic *topic = tl_lua_topics; topic->name; topic++)
+        if (strcmp(topic->name, name) == 0)
+            return topic;
+    return NULL;
+}
+
+typedef struct params {
+    const tl_param *first;
+    size_t count, stride;
+} params;
+
+static params params_of_topic(const tl_lua_topic *topic)
+{
+    params p = {NULL, 0, sizeof(tl_param)};
+    if (topic->function)
+        p.first = tl_function_params(topic->function, &p.count, NULL);
+    else if (topic->spec) {
+        p.first = topic->spec->params;
+        p.count = topic->spec->count;
+    }
+    return p;
+}
+
+static params params_of_kind(const tl_kind *kind)
+{
+    return (params){kind->params, kind->param_count, kind->param_stride};
+}
+
+static const tl_param *param_at(params p, size_t i)
+{
+    return (const tl_param *)(const void *)((const char *)p.first + i * p.stride);
+}
+
+static void add_params(const char *word, params p)
+{
+    for (size_t i = 0; i < p.count; i++) {
+        add(word, param_at(p, i)->name);
+        if (param_at(p, i)->alias)
+            add(word, param_at(p, i)->alias);
+    }
+}
+
+/* The choices of the parameter of that name. */
+static void add_choices(const char *word, params p, const char *name)
+{
+    for (size_t i = 0; i < p.count; i++)
+        if (param_at(p, i)->type == TL_PARAM_ENUM && strcmp(param_at(p, i)->name, name) == 0)
+            for (const char *const *choice = param_at(p, i)->choices; *choice; choice++)
+                add(word, *choice);
+}
+
+static void add_plugins(const char *word, tl_kind_type type)
+{
+    const tl_kind *kind;
+    for (size_t i = 0; (kind = tl_plugin_kind(type, i)) != NULL; i++)
+        add(word, kind->name);
+}
+
+static void add_keys(const char *word, const tl_lua_key *keys)
+{
+    for (; keys && keys->name; keys++)
+        add(word, keys->name);
+}
+
+static void add_fields(const char *word, const tl_lua_kind *kind)
+{
+    size_t count;
+    const tl_field *fields = kind->fields(&count);
+    for (size_t i = 0; i < count; i++)
+        add(word, fields[i].name);
+    add_keys(word, kind->extra_keys);
+}
+
+/* Fields of the model, which its topic tells as "model.time, model.cycles". */
+static void add_model_fields(const char *word)
+{
+    static const char mark[] = "model.";
+    const tl_lua_topic *topic = find_topic("model");
+    for (const tl_lua_key *key = topic ? topic->verbs : NULL; key && key->name; key++)
+        for (const char *at = key->name; (at = strstr(at, mark)) != NULL;) {
+            char name[TL_SCAN_NAME] = "";
+            at += sizeof mark - 1;
+            for (size_t i = 0; tl_scan_is_name(*at) && i + 1 < sizeof name; at++)
+                name[i++] = *at;
+            add(word, name);
+        }
+}
+
+/* ---------------------------------------------------------------- what an expression is -- */
+
+/* What stands before a point or colon; VALUE is on the top of the stack, and only then is anything. */
+typedef enum thing { UNKNOWN, VALUE, MODEL, BLOCKS, CONTACTS, BLOCK, CONTACT } thing;
+
+static const char *const type_names[] = {[MODEL] = TL_LUA_MODEL_TYPE,
+                                         [BLOCKS] = TL_LUA_BLOCKS,
+                                         [CONTACTS] = "talus.contacts",
+                                         [BLOCK] = TL_LUA_BLOCK,
+                                         [CONTACT] = "talus.contact"};
+
+static thing resolve(lua_State *L, const char *text, size_t end);
+
+/* Pops a value of one of our own types and says which it is; leaves any other. */
+static thing classify(lua_State *L)
+{
+    for (thing t = MODEL; t <= CONTACT; t++)
+        if (luaL_testudata(L, -1, type_names[t])) {
+            lua_pop(L, 1);
+            return t;
+        }
+    return VALUE;
+}
+
+/* Replaces the table on the top of the stack by what it has under the key there. */
+static thing look_up(lua_State *L)
+{
+    if (!lua_istable(L, -2)) {
+        lua_pop(L, 2);
+        return UNKNOWN;
+    }
+    lua_rawget(L, -2);
+    lua_remove(L, -2);
+    return classify(L);
+}
+
+static size_t name_begin(const char *text, size_t end)
+{
+    while (end > 0 && tl_scan_is_name(text[end - 1]))
+        end--;
+    return end;
+}
+
+/* A name, alone or after a point: text[begin] to text[end - 1]. */
+static thing resolve_name(lua_State *L, const char *text, size_t begin, size_t end)
+{
+    bool member = begin > 0 && text[begin - 1] == '.';
+    if (begin > 0 && text[begin - 1] == ':')
+        return UNKNOWN;
+    if (!member)
+        lua_pushglobaltable(L);
+    else if (resolve(L, text, begin - 1) != VALUE)
+        return UNKNOWN;
+    lua_pushlstring(L, text + begin, end - begin);
+    return look_up(L);
+}
+
+/* The call whose brackets begin at `begin`: by the function's name. A method of a selection that is no topic of its own gives
+ * the selection. */
+static thing resolve_call(lua_State *L, const char *text, size_t begin)
+{
+    char name[TL_SCAN_NAME];
+    while (begin > 0 && text[begin - 1] == ' ')
+        begin--;
+    size_t at = name_begin(text, begin);
+    if (at == begin || begin - at >= sizeof name)
+        return UNKNOWN;
+    memcpy(name, text + at, begin - at);
+    name[begin - at] = 0;
+    const tl_lua_topic *topic = find_topic(name);
+    if (topic && topic->kind)
+        return topic->kind == &tl_lua_block_kind ? BLOCKS : CONTACTS;
+    if (topic && strncmp(topic->usage, "model = ", 8) == 0)
+        return MODEL;
+    if (at == 0 || text[at - 1] != ':')
+        return UNKNOWN;
+    thing of = resolve(L, text, at - 1);
+    if (of == VALUE)
+        lua_pop(L, 1);
+    return of == BLOCKS || of == CONTACTS ? of : UNKNOWN;
+}
+
+static thing resolve_index(lua_State *L, const char *text, size_t begin, size_t end)
+{
+    thing of = resolve(L, text, begin);
+    if (of == BLOCKS || of == CONTACTS)
+        return of == BLOCKS ? BLOCK : CONTACT;
+    if (of != VALUE)
+        return UNKNOWN;
+    char *rest;
+    long index = strtol(text + begin + 1, &rest, 10);
+    if (rest != text + end - 1) {
+        lua_pop(L, 1);
+        return UNKNOWN;
+    }
+    lua_pushinteger(L, index);
+    return look_up(L);
+}
+
+/* What the expression that ends before `end` is. */
+static thing resolve(lua_State *L, const char *text, size_t end)
+{
+    luaL_checkstack(L, 8, "completion");
+    while (end > 0 && text[end - 1] == ' ')
+        end--;
+    if (end == 0)
+        return UNKNOWN;
+    size_t begin = name_begin(text, end);
+    if (begin < end)
+        return resolve_name(L, text, begin, end);
+    begin = tl_scan_back(text, end);
+    if (begin == end)
+        return UNKNOWN;
+    return text[end - 1] == ']' ? resolve_index(L, text, begin, end) : resolve_call(L, text, begin);
+}
+
+/* ---------------------------------------------------------------- places ----------------- */
+
+/* The names that a table on the top of the stack has, which is popped. */
+static void add_table(lua_State *L, const char *word)
+{
+    if (lua_istable(L, -1))
+        for (lua_pushnil(L); lua_next(L, -2); lua_pop(L, 1))
+            if (lua_type(L, -2) == LUA_TSTRING)
+                add(word, lua_tostring(L, -2));
+    lua_pop(L, 1);
+}
+
+/* Methods of a type: its __index has a table of them among its upvalues. */
+static void add_methods(lua_State *L, const char *word, const char *type)
+{
+    luaL_getmetatable(L, type);
+    if (lua_istable(L, -1) && lua_getfield(L, -1, "__index") == LUA_TFUNCTION) {
+        for (int i = 1; lua_getupvalue(L, -1, i); i++)
+            add_table(L, word);
+        lua_pop(L, 1);
+    }
+    lua_pop(L, 1);
+}
+
+static void complete_member(lua_State *L, const char *word, const char *text, size_t end, char sign)
+{
+    thing of = resolve(L, text, end);
+    if (of == VALUE && lua_isstring(L, -1) && sign == ':') {
+        lua_getglobal(L, "string");
+        add_table(L, word);
+    } else if (of == VALUE)
+        add_table(L, word);
+    else if (sign == ':' && (of == MODEL || of == BLOCKS || of == CONTACTS))
+        add_methods(L, word, type_names[of]);
+    else if (sign == '.' && of == MODEL)
+        add_model_fields(word);
+    else if (sign == '.' && (of == BLOCK || of == CONTACT))
+        add_fields(word, of == BLOCK ? &tl_lua_block_kind : &tl_lua_contact_kind);
+}
+
+static void complete_global(lua_State *L, const char *word)
+{
+    static const char *const words[] = {
+        "and",      "break",  "do",   "else", "elseif", "end",   "false", "for",
+        "function", "goto",   "if",   "in",   "local",  "nil",   "not",   "or",
+        "repeat",   "return", "then", "true", "until",  "while",
+    };
+    for (size_t i = 0; i < sizeof words / sizeof *words; i++)
+        add(word, words[i]);
+    lua_pushglobaltable(L);
+    add_table(L, word);
+}
+
+/* The call in whose table of options the cursor is, directly or in a list of such tables, and the plugin it names. */
+static const tl_lua_topic *options_of(const tl_scan *scan, const tl_kind **kind)
+{
+    int depth = scan->depth;
+    const tl_scan_level *level = &scan->levels[depth];
+    *kind = NULL;
+    if (level->bracket != '{')
+        return NULL;
+    while (level->bracket == '{' && !level->callee[0] && !level->of[0])
+        level = &scan->levels[--depth];
+    const tl_lua_topic *topic = level->callee[0] ? find_topic(level->callee) : NULL;
+    if (topic && topic->type)
+        *kind = tl_plugin_find(*topic->type, level->quoted);
+    return topic;
+}
+
+/* A key of the options; false when the cursor is in none. */
+static bool complete_key(const char *word, const tl_scan *scan)
+{
+    const tl_kind *kind;
+    const tl_lua_topic *topic = options_of(scan, &kind);
+    if (!topic || (scan->before != '{' && scan->before != ',' && scan->before != ';'))
+        return false;
+    add_params(word, params_of_topic(topic));
+    add_keys(word, topic->spec ? topic->spec->keys : topic->keys);
+    if (kind)
+        add_params(word, params_of_kind(kind));
+    const tl_kind *any;
+    bool all = topic->type && !kind && *topic->type == TL_KIND_LAW; /* joint("J1", {...}) */
+    for (size_t i = 0; all && (any = tl_plugin_kind(*topic->type, i)) != NULL; i++)
+        add_params(word, params_of_kind(any));
+    return true;
+}
+
+static void complete_quotes(const char *word, const tl_scan *scan)
+{
+    const tl_scan_level *level = &scan->levels[scan->depth];
+    const tl_kind *kind;
+    const tl_lua_topic *topic = options_of(scan, &kind);
+    if (topic && scan->before == '=') {
+        add_choices(word, params_of_topic(topic), level->key);
+        if (kind)
+            add_choices(word, params_of_kind(kind), level->key);
+        return;
+    }
+    static const char *const of_fields[] = {"sum", "max", "min", "values"};
+    const char *callee = scan->name[0] ? scan->name : level->bracket == '(' ? level->callee : "";
+    topic = find_topic(callee);
+    if (topic && topic->type)
+        add_plugins(word, *topic->type);
+    for (size_t i = 0; i < sizeof of_fields / sizeof *of_fields; i++)
+        if (strcmp(callee, of_fields[i]) == 0) {
+            add_fields(word, &tl_lua_block_kind);
+            add_fields(word, &tl_lua_contact_kind);
+        }
+}
+
+/* The word after `help`. */
+static void complete_topic(const char *word)
+{
+    for (const tl_lua_topic *topic = tl_lua_topics; topic->name; topic++)
+        add(word, topic->name);
+    for (int type = TL_KIND_LAW; type <= TL_KIND_GENERATOR; type++)
+        add_plugins(word, (tl_kind_type)type);
+}
+
+/* Whether the line is `help WORD`, or talus.help "WORD". */
+static bool asks_help(const char *text, const tl_scan *scan)
+{
+    const tl_scan_level *level = &scan->levels[scan->depth];
+    if (scan->in_quotes)
+        return strcmp(scan->name[0] ? scan->name : level->callee, "help") == 0;
+    return scan->depth == 0 && scan->before == 'a' && strcmp(scan->name, "help") == 0 &&
+           strncmp(text, "help ", 5) == 0;
+}
+
+/* Runs protected. Arguments: the text before the word, the word. */
+static int complete(lua_State *L)
+{
+    size_t length;
+    const char *text = lua_tolstring(L, 1, &length), *word = lua_tostring(L, 2);
+    tl_scan scan;
+    if (length > LONGEST)
+        return 0;
+    tl_scan_text(text, length, &scan);
+    if (asks_help(text, &scan))
+        complete_topic(word);
+    else if (scan.in_quotes)
+        complete_quotes(word, &scan);
+    else if (scan.in_comment)
+        return 0;
+    else if (scan.before == '.' || scan.before == ':')
+        complete_member(L, word, text, length - 1, scan.before);
+    else if (!complete_key(word, &scan))
+        complete_global(L, word);
+    return 0;
+}
+
+/* ---------------------------------------------------------------- libedit ---------------- */
+
+/* Pushes the arguments of `complete` and calls it; runs protected. Argument: the word, as a light userdata. */
+static int complete_line(lua_State *L)
+{
+    const char *word = lua_touserdata(L, 1);
+    lua_pushcfunction(L, complete);
+    lua_pushstring(L, completion.above ? completion.above : "");
+    lua_pushstring(L, completion.above ? "\n" : "");
+    lua_pushlstring(L, rl_line_buffer, (size_t)(rl_point - (int)strlen(word)));
+    lua_concat(L, 3);
+    lua_pushstring(L, word);
+    lua_call(L, 2, 0);
+    return 0;
+}
+
+static char **on_tabulator(const char *word, int start, int end)
+{
+    (void)start;
+    (void)end;
+    lua_State *L = completion.L;
+    int top = lua_gettop(L);
+    forget_matches();
+    if (!lua_checkstack(L, 8))
+        return NULL;
+    lua_pushcfunction(L, complete_line);
+    lua_pushlightuserdata(L, (void *)(uintptr_t)word);
+    lua_pcall(L, 1, 0, 0); /* for want of memory there are fewer names */
+    lua_settop(L, top);
+    rl_attempted_completion_over = 1; /* no names of files */
+    return completion.count ? rl_completion_matches(word, next_match) : NULL;
+}
+
+void tl_repl_complete_with(lua_State *L)
+{
+    /* whatever no name is made of */
+    static char breaks[] = " \t\n\"'`\\@$><=;|&{}()[],.:+-*/%^#~!?";
+    completion.L = L;
+    rl_attempted_completion_function = on_tabulator;
+    rl_basic_word_break_characters = breaks;
+    rl_completer_word_break_characters = breaks;
+    rl_completion_append_character = '\0';
+}
+
+void tl_repl_complete_after(const char *text)
+{
+    completion.above = text;
+}

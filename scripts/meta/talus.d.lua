@@ -1,0 +1,718 @@
+---@meta talus
+
+-- Talus for the Lua language server: every function, option and field, with units.
+-- Written by scripts/tools/meta.lua from what `talus help` prints; do not edit.
+
+--- {x, y, z}
+---@alias talus.Vector number[]
+
+--- Components left out are 0.
+---@class (exact) talus.Tensor
+---@field xx? number
+---@field yy? number
+---@field zz? number
+---@field xy? number
+---@field yz? number
+---@field zx? number
+
+---@class talus
+---@field version string
+local talus = {}
+
+--- Prints what `talus help TOPIC` prints: the overview, a function or a plugin.
+---@param topic? string
+function talus.help(topic) end
+
+--- Coulomb friction with cohesion and dilation, and no tensile strength.
+---@class (exact) talus.law.Coulomb
+---@field kn number Pa/m, > 0: normal stiffness of the joint
+---@field ks number Pa/m, > 0: shear stiffness of the joint
+---@field friction? number deg, in [0, 90), default 0: angle of friction
+---@field cohesion? number Pa, >= 0, default 0: shear strength at zero normal stress
+---@field dilation? number deg, in [0, 90), default 0: angle of dilation: slip opens the joint; at most the friction
+---@field dilation_limit? number m, >= 0: slip after which dilation ends
+
+--- Coulomb friction with a bond that breaks in tension or shear and does not heal.
+---@class (exact) talus.law.CoulombTensile
+---@field kn number Pa/m, > 0: normal stiffness of the joint
+---@field ks number Pa/m, > 0: shear stiffness of the joint
+---@field friction? number deg, in [0, 90), default 0: angle of friction
+---@field cohesion? number Pa, >= 0, default 0: cohesion of the bond
+---@field tension? number Pa, >= 0, default 0: tensile strength of the bond
+---@field residual_friction? number deg, in [0, 90): angle of friction after the bond is lost; not given: friction
+---@field residual_cohesion? number Pa, >= 0, default 0: cohesion after the bond is lost
+---@field residual_tension? number Pa, >= 0, default 0: tensile strength after the bond is lost
+---@field dilation? number deg, in [0, 90), default 0: angle of dilation: slip opens the joint; at most the friction, whole and residual
+---@field dilation_limit? number m, >= 0: slip after which dilation ends
+
+--- Linear springs across the joint, without strength limits; carries tension.
+---@class (exact) talus.law.Elastic
+---@field kn number Pa/m, > 0: normal stiffness of the joint
+---@field ks number Pa/m, > 0: shear stiffness of the joint
+
+--- Viscous damping that follows the rate of kinetic energy; vanishes at rest and in steady motion.
+---@class (exact) talus.damping.Adaptive
+---@field target? number in (0, 1), default 0.5: share of the rate of kinetic energy that damping absorbs
+---@field start? number 1/s, > 0: first coefficient; not given: 0.01 / time step
+---@field minimum? number 1/s, > 0: smallest coefficient; not given: 1e-8 / time step
+---@field maximum? number 1/s, > 0: largest coefficient; not given: 1 / time step
+---@field factor? number in (1, 10], default 1.1: largest change of the coefficient in one step
+
+--- Local damping that also damps vibration about a steady motion; for slow sliding and flow.
+---@class (exact) talus.damping.Combined
+---@field alpha? number in [0, 1), default 0.8: share of the unbalanced force that opposes motion
+
+--- Stops all bodies whenever the kinetic energy of the model has been at its peak; the fastest way to an equilibrium of many blocks.
+---@class (exact) talus.damping.Kinetic
+
+--- Opposes motion by a share of the unbalanced force; for statics.
+---@class (exact) talus.damping.Local
+---@field alpha? number in [0, 1), default 0.8: share of the unbalanced force that opposes motion
+
+--- No damping.
+---@class (exact) talus.damping.None
+
+--- Constant viscous damping of all velocities.
+---@class (exact) talus.damping.Viscous
+---@field alpha number 1/s, >= 0: damping coefficient
+
+--- Creates the blocks of a block model in JSON.
+---@class (exact) talus.generator.Blocks
+---@field file string block model in JSON
+
+--- Creates one block, an axis-aligned box.
+---@class (exact) talus.generator.Box
+---@field min talus.Vector m: lowest corner
+---@field max talus.Vector m: highest corner
+---@field density number kg/m3, > 0: density of the block
+---@field group? string default "rock": group of the block
+
+--- Creates one block: a cylinder of flat sides.
+---@class (exact) talus.generator.Drum
+---@field center? talus.Vector m, default {0, 0, 0}: middle of the drum
+---@field axis? talus.Vector default {0, 0, 1}: direction of its axis, of any length
+---@field radius number m, > 0: from the axis to the corners
+---@field height number m, > 0: along the axis
+---@field sides? integer in [3, 1000], default 12: number of flat sides
+---@field density number kg/m3, > 0: density of the block
+---@field group? string default "rock": group of the block
+
+--- Creates a block of each closed convex solid in an STL or OBJ file.
+---@class (exact) talus.generator.Import
+---@field file string file of solids, ending in .stl or .obj
+---@field scale? number > 0, default 1: factor on coordinates: 0.001 for millimetres
+---@field translate? talus.Vector m, default {0, 0, 0}: added to the scaled coordinates
+---@field density number kg/m3, > 0: density of the blocks
+---@field group? string default "rock": group of the blocks
+
+--- Cuts the visible blocks by one plane.
+---@class (exact) talus.generator.Joint
+---@field joint string name of the joint set the plane belongs to
+---@field dip number deg, in [0, 90]: dip below horizontal
+---@field dip_direction number deg, in [0, 360]: dip direction, clockwise from north (+y)
+---@field origin? talus.Vector m, default {0, 0, 0}: point on the plane
+---@field persistence? number in [0, 1], default 1: probability that a block in the plane's path is cut
+---@field radius? number m, > 0: of a disc about the origin in the place of the plane: a block is in its path when the disc meets its section
+
+--- Cuts the visible blocks by a set of nearly parallel planes.
+---@class (exact) talus.generator.Jointset
+---@field joint string name of the joint set
+---@field dip number deg, in [0, 90]: mean dip below horizontal
+---@field dip_dev? number deg, in [0, 90], default 0: deviation of the dip: largest, or standard when normal
+---@field dip_direction number deg, in [0, 360]: mean dip direction, clockwise from north (+y)
+---@field dip_direction_dev? number deg, in [0, 180], default 0: deviation of the dip direction
+---@field spacing number m, > 0: mean distance between planes
+---@field spacing_dev? number m, >= 0, default 0: deviation of the spacing; less than the spacing
+---@field number? integer in [1, 10000], default 1: number of planes
+---@field origin? talus.Vector m, default {0, 0, 0}: point the planes lie symmetrically about
+---@field persistence? number in [0, 1], default 1: probability that a block in a plane's path is cut
+---@field distribution? "uniform"|"normal"|"fisher" default "uniform": of the deviations: uniform within them, normal with them as standard deviations, or fisher about the mean pole
+---@field fisher_k? number in (0, 1e+09]: concentration of the poles by fisher
+---@field radius? number m, > 0: of discs in the place of planes: a block is in a disc's path when the disc meets its section
+
+--- Creates one convex block from its vertices.
+---@class (exact) talus.generator.Polyhedron
+---@field vertices talus.Vector[] m: corners of the block, in any order
+---@field density number kg/m3, > 0: density of the block
+---@field group? string default "rock": group of the block
+
+--- Creates one block between two polygons.
+---@class (exact) talus.generator.Prism
+---@field base talus.Vector[] m: corners of a convex polygon, in order
+---@field top? talus.Vector[] m: corners of the other end, as many; or give axis
+---@field axis? talus.Vector m: from the base to the other end; or give top
+---@field density number kg/m3, > 0: density of the block
+---@field group? string default "rock": group of the block
+
+--- Creates one block from its four corners.
+---@class (exact) talus.generator.Tetrahedron
+---@field vertices talus.Vector[] m: the four corners, in any order
+---@field density number kg/m3, > 0: density of the block
+---@field group? string default "rock": group of the block
+
+--- Cuts the visible blocks in the way of a tunnel along its surface.
+---@class (exact) talus.generator.Tunnel
+---@field face1 talus.Vector[] m: corners of one end, in order around it
+---@field face2 talus.Vector[] m: corners of the other end, in the order of those of face1 they are connected with
+---@field group? string default "tunnel": group of what lies inside
+
+---@class (exact) talus.Model
+---@field gravity talus.Vector acceleration of gravity {x, y, z}, m/s2; may be assigned
+---@field rotation string "exact" or "paper"; may be assigned
+---@field contact_points string "consistent" or "corners"; may be assigned
+---@field reuse_geometry boolean true or false; may be assigned
+---@field time number simulated time, s, and steps so far
+---@field cycles integer simulated time, s, and steps so far
+---@field mass_scaled boolean whether mass scaling is on
+---@field dt number the step the next cycle will use, s
+---@field threads integer as given when it was made
+---@field seed integer as given when it was made
+local Model = {}
+
+---@class (exact) talus.Block
+---@field id integer number of the block, never used again
+---@field group string name of its group
+---@field density number kg/m3: mass per volume
+---@field volume number m3: volume of the block alone
+---@field mass number kg: mass of the block alone
+---@field inertia talus.Tensor kg m2: inertia of the block about its centroid, in the axes of the model
+---@field centroid talus.Vector m: present place of the centroid
+---@field displacement talus.Vector m: of the centroid, since creation or reset_displacement
+---@field rotation number[] unit quaternion w, x, y, z of its body
+---@field velocity talus.Vector m/s: of the centroid, half a step ago
+---@field angular_velocity talus.Vector rad/s: of its body
+---@field force talus.Vector N: unbalanced force on its body
+---@field moment talus.Vector N m: unbalanced moment about its body's centroid
+---@field fixed boolean whether its body is held in every component
+---@field hidden boolean hidden blocks are not cut
+---@field body integer id of its rigid body: the lowest id of its blocks
+---@field speed number m/s: length of the velocity
+---@field kinetic_energy number J: of the block alone
+---@field vertices talus.Vector[] vertices in their present place
+---@field faces { vertices: integer[], normal: talus.Vector, joint: string? }[] faces: vertex numbers from 1, outward normal, name of the joint plane or nil
+---@field neighbours talus.Block[] blocks it is in contact with
+local Block = {}
+
+--- A selection of blocks: a snapshot, in ascending order of id.
+---@class (exact) talus.Blocks
+---@field [integer] talus.Block
+---@operator len: integer
+local Blocks = {}
+
+--- sum of a field of numbers; of a vector field a vector
+---@param field string
+---@return number|talus.Vector
+function Blocks:sum(field) end
+
+--- largest and smallest value of a field of numbers
+---@param field string
+---@return number
+function Blocks:max(field) end
+
+--- largest and smallest value of a field of numbers
+---@param field string
+---@return number
+function Blocks:min(field) end
+
+--- {min = {x, y, z}, max = {x, y, z}} over all vertices
+---@return { min: talus.Vector, max: talus.Vector }
+function Blocks:bounds() end
+
+--- those for which the function answers true
+---@param keep fun(item: talus.Block): any
+---@return talus.Blocks
+function Blocks:where(keep) end
+
+--- hidden blocks are not cut and not selected unless asked for
+---@return talus.Blocks
+function Blocks:hide() end
+
+--- hidden blocks are not cut and not selected unless asked for
+---@return talus.Blocks
+function Blocks:show() end
+
+--- removes the blocks
+---@return talus.Blocks
+function Blocks:delete() end
+
+--- makes one rigid body of the blocks and of what they were joined to; makes each a body of its own. Momentum and angular momentum are kept
+---@return talus.Blocks
+function Blocks:join() end
+
+--- makes one rigid body of the blocks and of what they were joined to; makes each a body of its own. Momentum and angular momentum are kept
+---@return talus.Blocks
+function Blocks:unjoin() end
+
+--- lets fixed and driven blocks go
+---@return talus.Blocks
+function Blocks:free() end
+
+--- displacements count from now
+---@return talus.Blocks
+function Blocks:reset_displacement() end
+
+---@class (exact) talus.Contact
+---@field id integer number of the contact, never used again
+---@field blocks talus.Block[] its two blocks, the older first
+---@field joint string joint and plane ("J1:3"), or empty
+---@field area number m2: of the common polygon of two faces, or of the surface of pressure
+---@field normal talus.Vector unit normal from the first block to the second
+---@field point talus.Vector m: centroid of the polygon, or centre of pressure
+---@field gap number m: smallest gap, negative when overlapping
+---@field normal_force number N: compression positive
+---@field shear_force talus.Vector N: on the second block
+---@field normal_stress number Pa: normal force over area
+---@field shear_stress number Pa: length of shear force over area
+---@field state string "elastic", "slipping", "open" or "failed"
+local Contact = {}
+
+--- A selection of contacts: a snapshot, in ascending order of id.
+---@class (exact) talus.Contacts
+---@field [integer] talus.Contact
+---@operator len: integer
+local Contacts = {}
+
+--- sum of a field of numbers; of a vector field a vector
+---@param field string
+---@return number|talus.Vector
+function Contacts:sum(field) end
+
+--- largest and smallest value of a field of numbers
+---@param field string
+---@return number
+function Contacts:max(field) end
+
+--- largest and smallest value of a field of numbers
+---@param field string
+---@return number
+function Contacts:min(field) end
+
+--- those for which the function answers true
+---@param keep fun(item: talus.Contact): any
+---@return talus.Contacts
+function Contacts:where(keep) end
+
+---@class (exact) talus.ModelOptions
+---@field gravity? talus.Vector m/s2, default {0, 0, -9.81}: acceleration of gravity
+---@field seed? integer >= 0, default 1: seed of every random draw: the same seed gives the same model
+---@field threads? integer in [1, 256], default 1: number of threads; results do not depend on it
+---@field rotation? "exact"|"paper" default "exact": how blocks turn: Euler's equations, or the paper's single moment of inertia
+---@field reuse_geometry? boolean default true: whether a contact that hardly moved keeps its contact polygon, or goes by slopes of its force
+---@field contact_points? "consistent"|"corners" default "consistent": where the points of a face-face contact lie: also inside, exact for linear gaps, or at the corners only
+
+--- Makes an empty model.
+---
+---     model = talus.model{gravity = {0, 0, -9.81}, ...}
+---@param options? talus.ModelOptions
+---@return talus.Model
+function talus.model(options) end
+
+---@class (exact) talus.GenerateResult
+---@field before integer number of blocks before and after
+---@field after integer number of blocks before and after
+---@field cuts integer cuts made, refused because a side would be too thin, and fallen on an existing face
+---@field refused integer cuts made, refused because a side would be too thin, and fallen on an existing face
+---@field coincident integer cuts made, refused because a side would be too thin, and fallen on an existing face
+---@field smallest_volume number of the model after, m3, m and m2
+---@field smallest_edge number of the model after, m3, m and m2
+---@field smallest_face number of the model after, m3, m and m2
+---@field volume_error number relative change of the volume that is not accounted for
+
+--- Creates or cuts blocks; acts on visible blocks only, wholly or not at all. A list of tables, {{...}, {...}}, in the place of one: once for each, in their order and in one go.
+---
+---     summary = model:generate("GENERATOR", {...})
+---@param generator string
+---@param options? table
+---@return talus.GenerateResult
+---@overload fun(self: talus.Model, generator: "blocks", options: talus.generator.Blocks|talus.generator.Blocks[]): talus.GenerateResult
+---@overload fun(self: talus.Model, generator: "box", options: talus.generator.Box|talus.generator.Box[]): talus.GenerateResult
+---@overload fun(self: talus.Model, generator: "drum", options: talus.generator.Drum|talus.generator.Drum[]): talus.GenerateResult
+---@overload fun(self: talus.Model, generator: "import", options: talus.generator.Import|talus.generator.Import[]): talus.GenerateResult
+---@overload fun(self: talus.Model, generator: "joint", options: talus.generator.Joint|talus.generator.Joint[]): talus.GenerateResult
+---@overload fun(self: talus.Model, generator: "jointset", options: talus.generator.Jointset|talus.generator.Jointset[]): talus.GenerateResult
+---@overload fun(self: talus.Model, generator: "polyhedron", options: talus.generator.Polyhedron|talus.generator.Polyhedron[]): talus.GenerateResult
+---@overload fun(self: talus.Model, generator: "prism", options: talus.generator.Prism|talus.generator.Prism[]): talus.GenerateResult
+---@overload fun(self: talus.Model, generator: "tetrahedron", options: talus.generator.Tetrahedron|talus.generator.Tetrahedron[]): talus.GenerateResult
+---@overload fun(self: talus.Model, generator: "tunnel", options: talus.generator.Tunnel|talus.generator.Tunnel[]): talus.GenerateResult
+function Model:generate(generator, options) end
+
+---@class (exact) talus.BlocksOptions
+---@field id? integer in [1, 4294967295]: the block of this id
+---@field group? string blocks of this group
+---@field containing? talus.Vector m: blocks that contain this point
+---@field joint? string blocks with a face on this joint or plane
+---@field fixed? boolean fixed blocks, or free ones
+---@field inside? { min: talus.Vector, max: talus.Vector } blocks whose centroid is in this box
+---@field above? { dip: number, dip_direction: number, origin: talus.Vector } blocks whose centroid is above this plane
+---@field below? { dip: number, dip_direction: number, origin: talus.Vector } blocks whose centroid is below this plane
+---@field hidden? boolean|"any" hidden blocks, visible ones (the default), or both
+---@field where? fun(block: talus.Block): any blocks for which the function answers true
+
+--- Selects blocks, visible ones unless asked otherwise; all conditions must hold.
+---
+---     selection = model:blocks{...}
+---@param options? talus.BlocksOptions
+---@return talus.Blocks
+function Model:blocks(options) end
+
+---@class (exact) talus.ContactsOptions
+---@field joint? string contacts on this joint or plane
+---@field between? (talus.Blocks|talus.Block)[] contacts of a block of the first with one of the second; a single block serves too
+---@field where? fun(contact: talus.Contact): any contacts for which the function answers true
+
+--- Selects contacts; all conditions must hold.
+---
+---     selection = model:contacts{...}
+---@param options? talus.ContactsOptions
+---@return talus.Contacts
+function Model:contacts(options) end
+
+--- Sets the law of a joint set ("J1"), of one of its planes ("J1:3") or of every joint not named otherwise ("*"); without a law's name it changes properties.
+---
+---     model:joint("J1", "LAW", {...})  or  model:joint("J1", {friction = 30})
+---@param joint string
+---@param law string
+---@param options? table
+---@overload fun(self: talus.Model, joint: string, law: "coulomb", options: talus.law.Coulomb)
+---@overload fun(self: talus.Model, joint: string, law: "coulomb_tensile", options: talus.law.CoulombTensile)
+---@overload fun(self: talus.Model, joint: string, law: "elastic", options: talus.law.Elastic)
+---@overload fun(self: talus.Model, joint: string, options?: table)
+function Model:joint(joint, law, options) end
+
+---@class (exact) talus.InsituOptions
+---@field at? talus.Vector m, default {0, 0, 0}: point at whose height the stress holds; the gradient counts from there
+---@field stress? talus.Tensor stress at the height of `at`, Pa, tension positive; components left out are 0
+---@field gradient? talus.Tensor change of the stress with height z, Pa/m; components left out are 0
+
+--- Puts an initial stress on the face contacts that exist now, once.
+---
+---     model:insitu{stress = {zz = -1e6}, gradient = {zz = 2e4}, at = {0, 0, 0}}
+---@param options? talus.InsituOptions
+function Model:insitu(options) end
+
+--- Chooses how motion is damped; "none" is no damping, and the default.
+---
+---     model:damping("DAMPING", {...})
+---@param damping string
+---@param options? table
+---@overload fun(self: talus.Model, damping: "adaptive", options?: talus.damping.Adaptive)
+---@overload fun(self: talus.Model, damping: "combined", options?: talus.damping.Combined)
+---@overload fun(self: talus.Model, damping: "kinetic", options?: talus.damping.Kinetic)
+---@overload fun(self: talus.Model, damping: "local", options?: talus.damping.Local)
+---@overload fun(self: talus.Model, damping: "none", options?: talus.damping.None)
+---@overload fun(self: talus.Model, damping: "viscous", options: talus.damping.Viscous)
+function Model:damping(damping, options) end
+
+---@class (exact) talus.FixOptions
+---@field x? boolean default false: hold the motion along x
+---@field y? boolean default false: hold the motion along y
+---@field z? boolean default false: hold the motion along z
+---@field rotation? boolean default false: hold the rotation
+
+--- Holds components of the motion of the blocks' bodies, besides what is held already; all of it when nothing is named.
+---
+---     selection:fix{x = true, rotation = true}  or  selection:fix()
+---@param options? talus.FixOptions
+---@return talus.Blocks
+---@overload fun(self: talus.Blocks): talus.Blocks
+function Blocks:fix(options) end
+
+---@class (exact) talus.SetOptions
+---@field density? number kg/m3, > 0: density
+---@field group? string name of the group
+---@field velocity? talus.Vector m/s: velocity of the centroid
+---@field angular_velocity? talus.Vector rad/s: angular velocity
+
+--- Changes properties of blocks; what is not named stays.
+---
+---     selection:set{group = "wedge", velocity = {0, 0, -1}}
+---@param options? talus.SetOptions
+---@return talus.Blocks
+function Blocks:set(options) end
+
+---@class (exact) talus.LoadOptions
+---@field force? talus.Vector N, default {0, 0, 0}: force on the body of each block
+---@field moment? talus.Vector N m, default {0, 0, 0}: moment on the body of each block
+---@field at? talus.Vector m: point where the force acts, which goes with the body; its centroid when left out
+
+--- Puts a force and a moment, along the axes of the model, on the bodies of blocks, in the place of what they had; none at all takes the load off.
+---
+---     selection:load{force = {0, 0, -1e3}, at = {x, y, z}}
+---@param options? talus.LoadOptions
+---@return talus.Blocks
+function Blocks:load(options) end
+
+---@class (exact) talus.DriveOptions
+---@field velocity? talus.Vector|(fun(t: number): number|talus.Vector, number?, number?) velocity of the centroid, m/s; the function gives {x, y, z} or three numbers for a time t, s: the middle of each step. Zero when left out
+---@field angular_velocity? talus.Vector|(fun(t: number): number|talus.Vector, number?, number?) angular velocity, rad/s, likewise
+
+--- Prescribes the motion of the blocks' bodies, in the place of any fixing, until selection:free(). A function is called in the middle of a step: it may read the model, but not change it.
+---
+---     selection:drive{velocity = function(t) return 0.1 * math.sin(t), 0, 0 end}
+---@param options? talus.DriveOptions
+---@return talus.Blocks
+function Blocks:drive(options) end
+
+---@class (exact) talus.TimestepOptions
+---@field fraction? number in [1e-09, 2]: share of the critical step that is used, FRAC of (27); when left out 0.5, by the rule paper 0.1
+---@field rule? "paper"|"body" default "body": critical step from the lightest block and the stiffest contact (paper), or from each body's own mass and stiffness (body)
+---@field dt? number s, in [1e-100, 1e+100]: a fixed time step instead of the rule
+
+---@class (exact) talus.TimestepResult
+---@field dt number the step the next cycle will use, s; 0 where nothing can move and no law is set
+---@field block talus.Block? the block that controls it, or nil
+---@field partner talus.Block? the block at the stiffest contact, or nil
+---@field mass number of the block's body, kg; of the contact, of all its contacts or of the part of its largest face that counts, N/m
+---@field stiffness number of the block's body, kg; of the contact, of all its contacts or of the part of its largest face that counts, N/m
+---@field message string the same in a sentence
+
+--- Chooses how the time step is found.
+---
+---     model:timestep{fraction = 0.3}  or  report = model:timestep()
+---@param options? talus.TimestepOptions
+---@return talus.TimestepResult
+---@overload fun(self: talus.Model): talus.TimestepResult
+function Model:timestep(options) end
+
+---@class (exact) talus.MassScalingOptions
+---@field on? boolean default true: whether the inertia is scaled
+---@field dt? number s, in [1e-100, 1e+100]: for motion that is to be right: the step. Only bodies in contact whose own stable step is shorter get inertia, as much as they need for it
+---@field most? number >= 0: with dt: mass that may be added, as a share of the mass of all bodies that can move; a step that would need more fails. Left out, 0.05
+
+---@class (exact) talus.MassScalingResult
+---@field on boolean whether inertia is scaled; the other fields are there after mass_scaling{dt =} only
+---@field dt number the step, s, and the largest share, as given
+---@field most number the step, s, and the largest share, as given
+---@field added number mass that the last step has added, as a share of that of the bodies that can move
+---@field bodies integer how many have got some
+---@field worst { block: integer, factor: number }? {block =, factor =}: the number of the block with the highest factor, and its inertia over its own; nil when none has got any
+
+--- Scales the inertia, not the weight, of free bodies up to that of the one with the longest stable step, for finding equilibria: times and velocities then mean nothing. With dt it is for dynamics: inertia is added to the few bodies that need it. Without arguments it tells what the last step has added.
+---
+---     model:mass_scaling(true)  or  model:mass_scaling{dt = 1e-4}  or  added = model:mass_scaling()
+---@param on? boolean whether the inertia is scaled
+---@return talus.MassScalingResult
+---@overload fun(self: talus.Model, options?: talus.MassScalingOptions): talus.MassScalingResult
+---@overload fun(self: talus.Model): talus.MassScalingResult
+function Model:mass_scaling(on) end
+
+---@class (exact) talus.ContactAreaOptions
+---@field fraction? number in [0, 1], default 0: minimum area of field contacts, as a share of the smaller block's mean face area; with 0 they have no more than their own
+---@field absolute? number m2, >= 0: minimum area in square metres instead of the share
+---@field joint? string the joint ("J1") or plane ("J1:3") it applies to; every joint when left out
+
+--- Sets the minimum area of field contacts: those of edges, vertices and tilted faces. None by default.
+---
+---     model:contact_area{fraction = 0.01}
+---@param options? talus.ContactAreaOptions
+function Model:contact_area(options) end
+
+---@class (exact) talus.CycleResult
+---@field reason string why it ended: "ratio", "velocity", "failure", "cycles", "time", "stop" or "interrupt" (Ctrl-C at the prompt; in a script it raises an error)
+---@field ratio number mean unbalanced force over mean contact force
+---@field ratio_maximum number largest unbalanced force over mean contact force
+---@field ratio_local number largest unbalanced force of a block over its own contact forces, or its weight and load where these are more
+---@field measure string the measure that may end the run
+---@field worst talus.Block? the block farthest from rest by the measure "local": nil when there is none that can move, or no force on any
+---@field failing talus.Block? a block that fails steadily: it moves on in one direction without slowing down, and the force that pushes it stays; nil when none does
+---@field cycles integer steps of this call
+---@field time number the model's time at the end, s
+---@field wall number seconds it took
+---@field max_velocity number largest speed of a block that forces move, m/s
+
+--- Runs a number of steps.
+---
+---     result = model:cycle(1000)
+---@param cycles integer number of steps to run
+---@return talus.CycleResult
+function Model:cycle(cycles) end
+
+---@class (exact) talus.SolveOptions
+---@field ratio? number in [0, 1], default 1e-05: ends when the unbalanced force ratio falls below this; 0 for never
+---@field measure? "average"|"maximum"|"local" default "local": which unbalanced force ratio ends the run: see theory.md, Convergence
+---@field velocity? number m/s, >= 0: ends when no block is faster than this
+---@field stop_at_failure? boolean default false: ends when some block is seen to fail steadily
+---@field max_cycles? integer >= 0, default 1000000: largest number of steps of this call
+---@field max_time? number s, > 0: longest simulated time of this call
+---@field every? integer >= 1, default 500: steps between calls of on_progress and stop
+---@field stop? fun(model: talus.Model): any called every `every` steps; ends the run when it answers true
+---@field on_progress? fun(model: talus.Model, result: talus.SolveResult) called every `every` steps
+
+---@class (exact) talus.SolveResult
+---@field reason string why it ended: "ratio", "velocity", "failure", "cycles", "time", "stop" or "interrupt" (Ctrl-C at the prompt; in a script it raises an error)
+---@field ratio number mean unbalanced force over mean contact force
+---@field ratio_maximum number largest unbalanced force over mean contact force
+---@field ratio_local number largest unbalanced force of a block over its own contact forces, or its weight and load where these are more
+---@field measure string the measure that may end the run
+---@field worst talus.Block? the block farthest from rest by the measure "local": nil when there is none that can move, or no force on any
+---@field failing talus.Block? a block that fails steadily: it moves on in one direction without slowing down, and the force that pushes it stays; nil when none does
+---@field cycles integer steps of this call
+---@field time number the model's time at the end, s
+---@field wall number seconds it took
+---@field max_velocity number largest speed of a block that forces move, m/s
+
+--- Runs until the forces balance or a limit is met.
+---
+---     result = model:solve{ratio = 1e-5, ...}
+---@param options? talus.SolveOptions
+---@return talus.SolveResult
+function Model:solve(options) end
+
+---@class (exact) talus.EnergyResult
+---@field kinetic number of motion, J
+---@field potential number minus the work of gravity, J
+---@field stored number elastic, in all contacts, those of held blocks, too, J
+---@field friction number turned to heat by slip, J
+---@field damping number taken out by the damping, J
+---@field external number work of loads and driven bodies, and given by setting velocities, J
+---@field balance number error of the sum over the largest change of a term so far
+
+--- The energy of the bodies that are free to move, at the last force evaluation, counted from the first step.
+---
+---     energy = model:energy()
+---@return talus.EnergyResult
+function Model:energy() end
+
+---@class (exact) talus.ReportResult
+---@field blocks integer number of blocks, and of bodies they make
+---@field bodies integer number of blocks, and of bodies they make
+---@field volume number of all blocks, m3; and its relative difference from what was created less what was deleted
+---@field volume_error number of all blocks, m3; and its relative difference from what was created less what was deleted
+---@field smallest_volume number m3, m and m2; smallest_volume_block and so on are the blocks that have them
+---@field smallest_edge number m3, m and m2; smallest_volume_block and so on are the blocks that have them
+---@field smallest_face number m3, m and m2; smallest_volume_block and so on are the blocks that have them
+---@field worst_aspect number largest aspect of a block: its diameter (largest distance between two vertices) over its thickness (smallest extent along the normal of a face); 1.73 for a cube
+---@field worst_aspect_block talus.Block largest aspect of a block: its diameter (largest distance between two vertices) over its thickness (smallest extent along the normal of a face); 1.73 for a cube
+---@field cuts integer cuts made, refused because a side would be too thin, and fallen on existing faces, since the model was made
+---@field refused integer cuts made, refused because a side would be too thin, and fallen on existing faces, since the model was made
+---@field coincident integer cuts made, refused because a side would be too thin, and fallen on existing faces, since the model was made
+---@field refused_cuts table the first 1000 refused cuts, each a table: joint, normal and point of the plane, block (its number), thickness and limit of the thinner side, and the reason as a sentence
+---@field dt number the time step, s, the block that controls it, and the same in a sentence; when some contact has no law yet, there is only the sentence
+---@field timestep_block talus.Block the time step, s, the block that controls it, and the same in a sentence; when some contact has no law yet, there is only the sentence
+---@field timestep_message string the time step, s, the block that controls it, and the same in a sentence; when some contact has no law yet, there is only the sentence
+
+--- Tells how good the blocks are that cutting made, and prints it on a page (not with --quiet).
+---
+---     table = talus.report(model)
+---@param model talus.Model
+---@return talus.ReportResult
+function talus.report(model) end
+
+---@class (exact) talus.FilterOptions
+---@field volume? number m3, > 0: blocks smaller than this are slivers
+---@field edge? number m, > 0: blocks with a shorter edge are slivers
+---@field aspect? number > 1: blocks whose diameter is more than this times their thickness are slivers
+---@field action? "report"|"delete"|"join" default "report": what is done with them: nothing; they are deleted; or each is joined to the block it shares the largest face with
+
+---@class (exact) talus.FilterResult
+---@field found integer number of slivers, and what was done with them
+---@field deleted integer number of slivers, and what was done with them
+---@field joined integer number of slivers, and what was done with them
+---@field volume number of all slivers, m3
+---@field slivers table each a table: block (its number), volume, edge, aspect, beyond (which limits: "volume", "edge", "aspect") and joined_to (a block, or nil)
+
+--- Finds slivers, the visible blocks beyond the limits, and deletes them or joins them to neighbours.
+---
+---     result = model:filter{volume = 1e-6, aspect = 100, action = "join"}
+---@param options? talus.FilterOptions
+---@return talus.FilterResult
+function Model:filter(options) end
+
+---@class (exact) talus.KeyblocksOptions
+---@field gravity? talus.Vector m/s2: acceleration that acts on the blocks; that of the model when left out
+---@field friction? number|table<string, number> friction angle of the joints, degrees, in [0, 90): one for all, or by joint: {["*"] = 35, J1 = 30, ["J1:3"] = 25}; the closest name counts
+---@field cohesion? number|table<string, number> cohesion of the joints, Pa, likewise; 0 where none is given
+
+---@class (exact) talus.Keyblock
+---@field block talus.Block the block, the oldest one of a body of several
+---@field mode string "falling", "sliding" (on one face), "sliding on two", or "stable": removable, but pressed in by its weight
+---@field safety number factor of safety: 0 falling, math.huge stable
+---@field faces { area: number, joint: string, normal: talus.Vector, normal_force: number }[] the faces it slides on, none to two: {joint =, normal = (outward), area =, normal_force =}
+---@field direction talus.Vector of the motion, and the force along it, N
+---@field driving_force number of the motion, and the force along it, N
+---@field force talus.Vector weight and load, N; of the body, kg and m3
+---@field mass number weight and load, N; of the body, kg and m3
+---@field volume number weight and load, N; of the body, kg and m3
+---@field pyramid talus.Vector[] edges of the joint pyramid, unit vectors: it can move in all directions between them
+
+--- Finds the bodies that a translation can move out of the others (Shi's theorem), how they move, and their factor of safety in limit equilibrium.
+---
+---     list = model:keyblocks{friction = 35}
+---@param options? talus.KeyblocksOptions
+---@return talus.Keyblock[]
+function Model:keyblocks(options) end
+
+---@class (exact) talus.ProfileResult
+---@field seconds { damping: number, detect: number, energy: number, gather: number, laws: number, move: number, timestep: number }
+---@field steps integer steps since profiling began
+---@field pairs integer candidate pairs of the broad phase, now
+---@field contacts integer contacts there are, and those that carry a force
+---@field loaded integer contacts there are, and those that carry a force
+---@field points integer contact points
+
+--- Times the phases of the steps, and tells what a step works on.
+---
+---     model:profile(true); model:cycle(100); result = model:profile()
+---@param on? boolean begins to time the phases of each step, from zero, or ends it; left out, gives the result so far
+---@return talus.ProfileResult
+---@overload fun(self: talus.Model): talus.ProfileResult
+function Model:profile(on) end
+
+---@class (exact) talus.MemoryResult
+---@field blocks integer columns of the blocks
+---@field shapes integer polyhedra
+---@field bodies integer columns of the bodies
+---@field step integer columns of the bodies that live through a step only
+---@field broad integer how far blocks have moved since pairs were listed
+---@field pairs integer candidate pairs
+---@field contacts integer columns of the contacts
+---@field facets integer faces of the contacts, and what field contacts keep beside their points
+---@field points integer columns of the contact points
+---@field index integer lists of each block's contacts, and of contacts by number
+---@field spare integer second set of tables of contacts and points
+---@field other integer rows by number, scratch of the threads, joints and laws
+---@field total integer all of them
+
+--- Bytes the model holds, by what they are for, room for growth included.
+---
+---     bytes = model:memory()
+---@return talus.MemoryResult
+function Model:memory() end
+
+---@class (exact) talus.WriteVtkOptions
+---@field blocks? boolean default true: whether the frame has a file of the blocks
+---@field contacts? boolean default true: whether the frame has a file of the contacts
+---@field joints? boolean default true: whether the frame has a file of the faces that joints made
+
+--- Writes the next frame of a series of VTK files for ParaView, all of it or some of its files. Their names begin with the folder and the name given first.
+---
+---     model:write_vtk("out/run", {contacts = false, joints = false})
+---@param path string
+---@param options? talus.WriteVtkOptions
+function Model:write_vtk(path, options) end
+
+---@class (exact) talus.WriteSectionOptions
+---@field dip number deg, in [0, 90]: dip of the plane below horizontal
+---@field dip_direction? number deg, in [0, 360], default 0: its dip direction, clockwise from north (+y)
+---@field origin? talus.Vector m, default {0, 0, 0}: a point on the plane
+
+--- Writes the next frame of a section: the polygons in which a plane cuts the blocks, with their displacements.
+---
+---     model:write_section("out/cut", {dip = 90, dip_direction = 90, origin = {0, 0, 0}})
+---@param path string
+---@param options talus.WriteSectionOptions
+function Model:write_section(path, options) end
+
+--- Writes all blocks as they stand into a JSON file.
+---
+---     model:write_blocks("out/blocks.json")
+---@param path string name of the file
+function Model:write_blocks(path) end
+
+--- A digest of all that what comes next depends on, settings too: models with the same text go on alike, to the last bit. Takes about as long as a step.
+---
+---     text = model:state_hash()
+---@return string
+function Model:state_hash() end
+
+return talus

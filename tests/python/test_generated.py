@@ -1,0 +1,102 @@
+#!/usr/bin/env python3
+"""What tools write from the help is up to date and whole: the reference in docs/lua.md, scripts/meta/talus.d.lua and
+.luarc.json, which leads an editor to it."""
+import json
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+PROGRAM = pathlib.Path(os.environ.get("TALUS_PROGRAM", ROOT / "build/release/talus")).resolve()
+META = "scripts/meta/talus.d.lua"
+WRITTEN = {"scripts/tools/reference.lua": "docs/lua.md", "scripts/tools/meta.lua": META}
+
+# Every name that the program knows, as its own errors list them.
+NAMES = """
+package.path = "scripts/tools/?.lua;" .. package.path
+local found = require "usage_model"()
+local function known(object, what)
+    local _, message = pcall(function() return object.no_such_name_at_all end)
+    for name in assert(tostring(message):match("known: (.*)%)")):gmatch("[%w_]+") do
+        print(what, name)
+    end
+end
+known(found.model, "Model")
+known(found.selection, "Blocks")
+known(found.model:contacts(), "Contacts")
+known(found.block, "Block")
+known(found.contact, "Contact")
+for name in pairs(require "talus") do
+    print("talus", name)
+end
+"""
+
+faults = []
+
+
+def run(*arguments):
+    environment = dict(os.environ, TALUS_PROGRAM=str(PROGRAM))
+    environment.pop("TALUS_PLUGIN_PATH", None)
+    return subprocess.run([PROGRAM, "--quiet", *arguments], cwd=ROOT, env=environment, stdin=subprocess.DEVNULL, text=True,
+                          capture_output=True, check=False)
+
+
+def check_fresh(folder):
+    for tool, path in WRITTEN.items():
+        done = run(tool, path, "--check")
+        if done.returncode != 0:
+            faults.append(f"{path}: {done.stderr.strip()}")
+        stale = folder / "stale"
+        text = (ROOT / path).read_text(encoding="utf-8")
+        stale.write_text(text.rstrip("\n") + " \n", encoding="utf-8")
+        done = run(tool, str(stale), "--check")
+        if done.returncode == 0 or "out of date" not in done.stderr:
+            faults.append(f"{tool} --check does not see that a file is out of date")
+        if run(tool, str(stale)).returncode != 0 or stale.read_text(encoding="utf-8") != text:
+            faults.append(f"{tool} does not renew a file that is out of date")
+
+
+def check_whole():
+    """Every method and field of the program is in the file for editors, and only these."""
+    text = (ROOT / META).read_text(encoding="utf-8")
+    done = run("-e", NAMES)
+    names = {tuple(line.split("\t")) for line in done.stdout.splitlines()}
+    if len(names) < 80:
+        faults.append(f"the program does not list its names: {done.stdout}{done.stderr}")
+    told = set()
+    for name, body in re.findall(r"^---@class (?:\(exact\) )?(?:talus\.)?(\w+)\n((?:---.*\n)*)", text, flags=re.M):
+        told |= {(name, field) for field in re.findall(r"^---@field (\w+)", body, flags=re.M)}
+    told |= set(re.findall(r"^function (\w+)[:.](\w+)\(", text, flags=re.M))
+    for owner, name in sorted(names - told):
+        faults.append(f"{META}: {owner} has no '{name}': has it a topic in core/lua/topics.c?")
+    for owner, name in sorted(told - names):
+        if owner in ("Model", "Blocks", "Contacts", "Block", "Contact", "talus"):
+            faults.append(f"{META}: {owner} has a '{name}' that the program does not know")
+    if re.search(r"^---@field \w+\?? any\b", text, flags=re.M):
+        faults.append(f"{META}: a field without a type")
+
+
+def check_settings():
+    settings = json.loads((ROOT / ".luarc.json").read_text(encoding="utf-8"))
+    if not any((ROOT / folder / "talus.d.lua").exists() for folder in settings["workspace.library"]):
+        faults.append(".luarc.json does not lead to talus.d.lua")
+    if not settings["runtime.version"].endswith("5.4"):
+        faults.append(".luarc.json: another Lua")
+
+
+def main():
+    with tempfile.TemporaryDirectory() as folder:
+        check_fresh(pathlib.Path(folder))
+    check_whole()
+    check_settings()
+    for text in faults:
+        print(text)
+    print(f"generated: {len(faults)} faults")
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
