@@ -48,7 +48,9 @@ bool tl_model_contact_area_at(tl_model *m, size_t i, tl_contact_area *rule)
     if (i > m->area_count)
         return false;
     const tl_area_rule *from = i ? &m->areas[i - 1].rule : &m->area;
-    *rule = (tl_contact_area){from->fraction, from->absolute,
-                              i ? pattern_name(m, m->areas[i - 1].tag) : NULL};
+    *rule = tl_contact_area_default();
+    rule->fraction = from->fraction;
+    rule->absolute = from->absolute;
+    rule->joint = i ? pattern_name(m, m->areas[i - 1].tag) : NULL;
     return true;
 }

@@ -101,14 +101,14 @@ static void put_int(const contacts *c, size_t a, size_t i, uint32_t value)
 /* Puts the states of a contact, the i-th, into their arrays. */
 static void put_states(const contacts *c, size_t i)
 {
-    unsigned char *array = c->states_at;
+    unsigned char *values = c->states_at;
     for (size_t s = 0; s < c->states.count; s++) {
         const tl_law_state *state = &c->states.at[s];
         double value[3];
         tl_law_state_of_contact(c->model, &c->states, state, c->rows[i], value);
         for (size_t w = 0; w < state->width; w++)
-            tl_vtk_put_double(array + (i * state->width + w) * sizeof(double), value[w]);
-        array += c->count * state->width * sizeof(double);
+            tl_vtk_put_double(values + (i * state->width + w) * sizeof(double), value[w]);
+        values += c->count * state->width * sizeof(double);
     }
 }
 
@@ -170,14 +170,14 @@ static void put_array(const contacts *c, size_t a, tl_output *output)
 
 static void put_state_arrays(const contacts *c, tl_output *output)
 {
-    const unsigned char *array = c->states_at;
+    const unsigned char *values = c->states_at;
     for (size_t s = 0; s < c->states.count; s++) {
         const tl_law_state *state = &c->states.at[s];
         size_t bytes = c->count * state->width * sizeof(double);
         tl_vtk_array(output->file, state->name, state->width, c->count, TL_VTK_DOUBLE);
-        tl_output_put(output, array, bytes);
+        tl_output_put(output, values, bytes);
         tl_vtk_line(output->file);
-        array += bytes;
+        values += bytes;
     }
 }
 

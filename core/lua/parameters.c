@@ -202,7 +202,7 @@ static void add_timestep(lua_State *L, tl_model *model, bool prints)
 
 static void add_mass_scaling(lua_State *L, const tl_model *model, bool prints)
 {
-    tl_mass_scaling scaling = tl_model_mass_added(model).scaling;
+    const tl_mass_added scaling = tl_model_mass_added(model);
     bool partial = !isnan(scaling.dt);
     char text[VALUE_TEXT];
     lua_createtable(L, 0, 3);

@@ -19,7 +19,7 @@
 #include <string.h>
 
 /* Longest prefix. */
-#define PREFIX 24
+#define PREFIX 32
 /* Parameters that a law or damping may have in a file. */
 #define MOST_PARAMS 64
 /* Longest list of names of states, and longest name of a plugin with its version. */
@@ -46,7 +46,7 @@ static void state_names(const tl_kind *kind, char text[NAMES])
 static void put_text(tl_archive_writer *w, const char *prefix, const char *name, const char *text)
 {
     char full[TL_CHUNK_NAME];
-    snprintf(full, sizeof full, "%s.%s", prefix, name);
+    snprintf(full, sizeof full, "%.30s.%.64s", prefix, name);
     tl_archive_put(w, full, text, 1, strlen(text));
 }
 
@@ -89,7 +89,7 @@ void tl_laws_save(const tl_model *m, tl_archive_writer *w)
     for (size_t i = 0; i < m->material_count; i++) {
         char prefix[PREFIX], full[TL_CHUNK_NAME];
         snprintf(prefix, sizeof prefix, "law.%zu", i);
-        snprintf(full, sizeof full, "%s.tag", prefix);
+        snprintf(full, sizeof full, "%.30s.tag", prefix);
         tl_archive_put(w, full, &m->materials[i].tag, sizeof m->materials[i].tag, 1);
         put_kind(w, prefix, m->materials[i].kind, m->materials[i].params);
     }
@@ -111,7 +111,7 @@ static const char *get_text(const tl_archive *a, const char *prefix, const char 
                             size_t room)
 {
     char full[TL_CHUNK_NAME];
-    snprintf(full, sizeof full, "%s.%s", prefix, name);
+    snprintf(full, sizeof full, "%.30s.%.64s", prefix, name);
     const tl_chunk *chunk = tl_archive_find(a, full);
     if (!chunk || chunk->items >= room || !tl_archive_get(a, full, text, 1, (size_t)chunk->items))
         return NULL;
@@ -227,7 +227,7 @@ static tl_status tell_path(tl_model *m, const tl_archive *a, tl_status status)
 static tl_status restore_kind(tl_model *m, const tl_archive *a, const char *prefix,
                               tl_kind_type type, tl_tag tag, tl_material *law)
 {
-    const tl_kind *kind;
+    const tl_kind *kind = NULL;
     tl_status status = find_kind(m, a, prefix, type, &kind);
     if (status != TL_OK)
         return status;
@@ -263,7 +263,7 @@ tl_status tl_laws_restore(tl_model *m, const tl_archive *a)
     while (m->material_count < count) {
         char prefix[PREFIX], full[TL_CHUNK_NAME];
         snprintf(prefix, sizeof prefix, "law.%zu", m->material_count);
-        snprintf(full, sizeof full, "%s.tag", prefix);
+        snprintf(full, sizeof full, "%.30s.tag", prefix);
         tl_tag tag;
         if (!tl_archive_get(a, full, &tag, sizeof tag, 1) || !tag_is_sound(m, tag))
             return tl_archive_bad(a, &m->error, "'%s' is missing", prefix);

@@ -23,6 +23,37 @@ local talus = {}
 ---@param topic? string
 function talus.help(topic) end
 
+--- Rough joints: hyperbolic closure, and friction from roughness and wall strength that slip wears down.
+---@class (exact) talus.law.BartonBandis
+---@field jrc number in [0, 30]: joint roughness coefficient of the length lab_length
+---@field jcs number Pa, > 0: joint wall compressive strength of the length lab_length
+---@field phi_r number deg, in [0, 70): residual angle of friction
+---@field lab_length? number m, > 0, default 0.1: length L0 of the specimen of jrc and jcs
+---@field length? number m, > 0: length L of the joint between crossings; not given: lab_length
+---@field kni? number Pa/m, > 0: normal stiffness of the unloaded joint
+---@field kn? number Pa/m, > 0: normal stiffness of the unloaded joint
+---@field vm number m, > 0: largest closure, from the unloaded joint
+---@field ks number Pa/m, > 0: shear stiffness where nothing slips
+---@field linear_from? number Pa, > 0: normal stress beyond which closure is linear; a smaller one allows a longer time step; not given: the wall strength of the joint's length
+---@field reduction? number > 0, default 1: the shear strength is divided by it
+---@field dilation? boolean default true: whether slip opens the joint
+
+--- A bond that softens and breaks in tension and shear (mixed mode), with friction on what is broken.
+---@class (exact) talus.law.Cohesive
+---@field kn number Pa/m, > 0: normal stiffness of the joint
+---@field ks number Pa/m, > 0: shear stiffness of the joint
+---@field tension number Pa, > 0: tensile strength of the bond
+---@field cohesion number Pa, > 0: shear strength of the bond
+---@field energy_tension? any more than tension^2 / (2 kn):
+---@field ginumber? any more than tension^2 / (2 kn):  (another name)
+---@field J? any more than tension^2 / (2 kn):  (another name)
+---@field m2? any more than tension^2 / (2 kn):  (another name)
+---@field 0? any more than tension^2 / (2 kn):  (another name)
+---@field required? any more than tension^2 / (2 kn):  (another name)
+---@field energy_shear? number J/m2, > 0: work of fracture in shear, more than cohesion^2 / (2 ks)
+---@field gii? number J/m2, > 0: work of fracture in shear, more than cohesion^2 / (2 ks) (another name)
+---@field friction? number deg, in [0, 90), default 0: angle of friction of what is broken
+
 --- Coulomb friction with cohesion and dilation, and no tensile strength.
 ---@class (exact) talus.law.Coulomb
 ---@field kn number Pa/m, > 0: normal stiffness of the joint
@@ -49,6 +80,19 @@ function talus.help(topic) end
 ---@class (exact) talus.law.Elastic
 ---@field kn number Pa/m, > 0: normal stiffness of the joint
 ---@field ks number Pa/m, > 0: shear stiffness of the joint
+
+--- Friction and cohesion that fall with slip, and may heal where it ends.
+---@class (exact) talus.law.SlipWeakening
+---@field kn number Pa/m, > 0: normal stiffness of the joint
+---@field ks number Pa/m, > 0: shear stiffness of the joint
+---@field friction number deg, in [0, 90): angle of friction before slip
+---@field cohesion? number Pa, >= 0, default 0: cohesion before slip
+---@field residual_friction? number deg, in [0, 90): angle of friction after slip, at most friction; not given: friction
+---@field residual_cohesion? number Pa, >= 0, default 0: cohesion after slip, at most cohesion
+---@field distance number m, > 0: slip D_c over which the strength falls: all of it, or in the exponential form all but 1/e
+---@field form? "linear"|"exponential" default "linear": how the strength falls with slip
+---@field healing? "none"|"instant"|"time" default "none": whether strength comes back where slip has ended: never, at once, or in time
+---@field healing_time? number s, > 0: for healing = "time": time in which all but 1/e of the lost strength comes back
 
 --- Viscous damping that follows the rate of kinetic energy; vanishes at rest and in steady motion.
 ---@class (exact) talus.damping.Adaptive
@@ -136,11 +180,21 @@ function talus.help(topic) end
 ---@field density number kg/m3, > 0: density of the block
 ---@field group? string default "rock": group of the block
 
---- Creates one block between two polygons.
+--- Creates one body between two polygons.
 ---@class (exact) talus.generator.Prism
----@field base talus.Vector[] m: corners of a convex polygon, in order
+---@field base talus.Vector[] m: corners of a polygon, in order; with top a convex one
 ---@field top? talus.Vector[] m: corners of the other end, as many; or give axis
 ---@field axis? talus.Vector m: from the base to the other end; or give top
+---@field density number kg/m3, > 0: density of the block
+---@field group? string default "rock": group of the block
+
+--- Creates one body of a section in a plane, moved across it: a slope, a dam, a wall.
+---@class (exact) talus.generator.Profile
+---@field section? any corners of the section, in order, two numbers each
+---@field points? any corners of the section, in order, two numbers each (another name)
+---@field plane? "xz"|"yz"|"xy"|"zx"|"zy"|"yx" default "xz": plane of the section: its letters say what the two numbers of a corner are
+---@field from? number m, default 0: where the section begins on the axis across its plane
+---@field to number m: where it ends there, > from
 ---@field density number kg/m3, > 0: density of the block
 ---@field group? string default "rock": group of the block
 
@@ -214,6 +268,11 @@ function Blocks:max(field) end
 ---@return number
 function Blocks:min(field) end
 
+--- list of the field's values, in the order of the selection: much faster than one by one. A vector is {x, y, z}; with "flat" after the field {x, y, z, x, y, z, ...}
+---@param field string
+---@return any
+function Blocks:values(field) end
+
 --- {min = {x, y, z}, max = {x, y, z}} over all vertices
 ---@return { min: talus.Vector, max: talus.Vector }
 function Blocks:bounds() end
@@ -247,6 +306,10 @@ function Blocks:unjoin() end
 ---@return talus.Blocks
 function Blocks:free() end
 
+--- sum of the forces that hold their bodies, N: {x, y, z}, of held components only
+---@return talus.Blocks
+function Blocks:reaction() end
+
 --- displacements count from now
 ---@return talus.Blocks
 function Blocks:reset_displacement() end
@@ -264,6 +327,9 @@ function Blocks:reset_displacement() end
 ---@field normal_stress number Pa: normal force over area
 ---@field shear_stress number Pa: length of shear force over area
 ---@field state string "elastic", "slipping", "open" or "failed"
+---@field law string name of the law of its joint, or empty
+---@field points { position: number, area: number, normal_force: number }[] its points as they are now, each a table of the fields of a contact point and of the states of the law by name. The forces of the points add up to those of the contact; edges, vertices and tilted faces have one point
+---@field states { NAME: number } the states of its law: the mean of the points, weighted by their areas; the sum of a state that goes with the area
 local Contact = {}
 
 --- A selection of contacts: a snapshot, in ascending order of id.
@@ -286,6 +352,11 @@ function Contacts:max(field) end
 ---@param field string
 ---@return number
 function Contacts:min(field) end
+
+--- list of the field's values, in the order of the selection; likewise a state of a law, by its name, NaN where the contact's law has no such state. With "flat" after it vectors are not lists of their own
+---@param field string
+---@return any
+function Contacts:values(field) end
 
 --- those for which the function answers true
 ---@param keep fun(item: talus.Contact): any
@@ -332,6 +403,7 @@ function talus.model(options) end
 ---@overload fun(self: talus.Model, generator: "jointset", options: talus.generator.Jointset|talus.generator.Jointset[]): talus.GenerateResult
 ---@overload fun(self: talus.Model, generator: "polyhedron", options: talus.generator.Polyhedron|talus.generator.Polyhedron[]): talus.GenerateResult
 ---@overload fun(self: talus.Model, generator: "prism", options: talus.generator.Prism|talus.generator.Prism[]): talus.GenerateResult
+---@overload fun(self: talus.Model, generator: "profile", options: talus.generator.Profile|talus.generator.Profile[]): talus.GenerateResult
 ---@overload fun(self: talus.Model, generator: "tetrahedron", options: talus.generator.Tetrahedron|talus.generator.Tetrahedron[]): talus.GenerateResult
 ---@overload fun(self: talus.Model, generator: "tunnel", options: talus.generator.Tunnel|talus.generator.Tunnel[]): talus.GenerateResult
 function Model:generate(generator, options) end
@@ -373,15 +445,67 @@ function Model:contacts(options) end
 ---@param joint string
 ---@param law string
 ---@param options? table
+---@overload fun(self: talus.Model, joint: string, law: "barton_bandis", options: talus.law.BartonBandis)
+---@overload fun(self: talus.Model, joint: string, law: "cohesive", options: talus.law.Cohesive)
 ---@overload fun(self: talus.Model, joint: string, law: "coulomb", options: talus.law.Coulomb)
 ---@overload fun(self: talus.Model, joint: string, law: "coulomb_tensile", options: talus.law.CoulombTensile)
 ---@overload fun(self: talus.Model, joint: string, law: "elastic", options: talus.law.Elastic)
+---@overload fun(self: talus.Model, joint: string, law: "slip_weakening", options: talus.law.SlipWeakening)
 ---@overload fun(self: talus.Model, joint: string, options?: table)
 function Model:joint(joint, law, options) end
 
+---@class (exact) talus.JointsResult
+---@field name any of the joint set; number of its planes so far
+---@field planes any of the joint set; number of its planes so far
+---@field law any name of the law of the set as a whole; nil while it has none
+
+--- Lists the joint sets, in the order they were made.
+---
+---     list = model:joints()
+---@return talus.JointsResult
+function Model:joints() end
+
+---@class (exact) talus.Law
+---@field joint string "*", "J1" or "J1:3", and the name of the law that was set for it
+---@field law string "*", "J1" or "J1:3", and the name of the law that was set for it
+---@field parameters { cohesion: number, dilation: number, friction: number, kn: number, ks: number }? {NAME = value}, as they are now; one that may be left out and was is nil
+
+--- Lists the laws that were set by model:joint, with their parameters.
+---
+---     list = model:laws()
+---@return talus.Law[]
+function Model:laws() end
+
+---@class (exact) talus.Group
+---@field name string of the group
+---@field blocks integer number of its blocks, hidden ones, too, and their volume, m3
+---@field volume number number of its blocks, hidden ones, too, and their volume, m3
+
+--- Lists the groups that blocks have.
+---
+---     list = model:groups()
+---@return talus.Group[]
+function Model:groups() end
+
+---@class (exact) talus.LawTestOptions
+---@field law string name of the law
+---@field normal_stress? number Pa: normal stress, compression positive, which is held by closing and opening; when left out the closure is given, and begins at 0
+---@field stiffness? number Pa/m, >= 0: normal stiffness of the surroundings: normal_stress is that of the start, and rises by so much a metre of dilation
+---@field speed? number m/s, > 0, default 1e-05: speed of shear, or of closing where nothing is sheared
+---@field steps? integer in [1, 1e+07], default 200: steps of each leg of the path
+---@field every? integer in [1, 1e+07], default 1: steps from one point of the curve to the next; the end of a leg is always one
+---@field params? any parameters of the law, as for model:joint
+---@field path? any the legs: shear displacements, m, one after the other from 0, or tables {shear = m, closure = m, normal_stress = Pa, time = s, speed = m/s, steps =}: values at the end of the leg, what is not named stays; a leg with only a time waits
+
+--- Tries a joint law on one contact point, without a model: direct shear under a constant normal stress, or in surroundings of constant normal stiffness, and closure tests.
+---
+---     curve = talus.law_test{law = "coulomb", params = {...}, normal_stress = 1e6, path = {0.005, -0.005}}
+---@param options talus.LawTestOptions
+function talus.law_test(options) end
+
 ---@class (exact) talus.InsituOptions
 ---@field at? talus.Vector m, default {0, 0, 0}: point at whose height the stress holds; the gradient counts from there
----@field stress? talus.Tensor stress at the height of `at`, Pa, tension positive; components left out are 0
+---@field stress? talus.Tensor stress at the height of `at`, Pa, tension positive; components left out are 0. yx, zy and xz are the same as xy, yz and zx
 ---@field gradient? talus.Tensor change of the stress with height z, Pa/m; components left out are 0
 
 --- Puts an initial stress on the face contacts that exist now, once.
@@ -441,6 +565,32 @@ function Blocks:set(options) end
 ---@param options? talus.LoadOptions
 ---@return talus.Blocks
 function Blocks:load(options) end
+
+---@class (exact) talus.BoundaryOptions
+---@field side? string faces in this plane of the box about all blocks: "xmin", "xmax", "ymin", "ymax", "zmin" or "zmax"
+---@field facing? talus.Vector faces that look so: their normal is within an angle of this vector
+---@field within? number deg, in [0, 180], default 45: this angle
+---@field tolerance? number m, >= 0: how far off the plane, or out of the box, a corner may be; 1e-3 of the block's size when left out
+---@field fixed? boolean default false: holds the bodies in all components
+---@field roller? boolean default false: holds the bodies across their faces, which must look along x, y or z
+---@field rotation? boolean default false: with roller: holds their rotation, too
+---@field pressure? number Pa: pressure on the faces, inward
+---@field traction? talus.Vector Pa: force per area on the faces
+---@field at? talus.Vector m, default {0, 0, 0}: point at whose height stress holds; the gradient counts from there
+---@field add? boolean default false: adds to the loads that the bodies have, in the place of taking it
+---@field plane? { normal: talus.Vector, at: talus.Vector } faces in this plane that look along its normal
+---@field box? { min: talus.Vector, max: talus.Vector } faces with all corners in this box
+---@field stress? talus.Tensor stress, Pa, tension positive: the traction on a face is stress times its outward normal
+---@field gradient? talus.Tensor change of the stress with height z, Pa/m
+---@field xmin? "roller" several sides in one call
+---@field zmax? "roller" several sides in one call (another name)
+
+--- Finds outer faces of the model: those, or parts of those, that lie on no other block. Holds their bodies, or puts a traction on them as a load: its force and moment about each body's centroid take the place of the load the body had, keep their direction and go with the body. What one call puts on a body adds up.
+---
+---     result = model:boundary{xmin = "roller", zmin = "fixed", zmax = {pressure = 1e5}}  or  model:boundary{side = "xmax", stress = {xx = -1e6}}
+---@param options? talus.BoundaryOptions
+---@overload fun(self: talus.Model, options?: talus.BoundaryOptions)
+function Model:boundary(options) end
 
 ---@class (exact) talus.DriveOptions
 ---@field velocity? talus.Vector|(fun(t: number): number|talus.Vector, number?, number?) velocity of the centroid, m/s; the function gives {x, y, z} or three numbers for a time t, s: the middle of each step. Zero when left out
@@ -507,6 +657,27 @@ function Model:mass_scaling(on) end
 ---@param options? talus.ContactAreaOptions
 function Model:contact_area(options) end
 
+---@class (exact) talus.ParametersResult
+---@field gravity talus.Vector and all others that talus.model{...} takes
+---@field seed integer and all others that talus.model{...} takes
+---@field timestep { dt: number, fraction: number, rule: string }? rule and fraction; given: the step that was given, s, or nil; dt: the step the next cycle will use, s, or message: why it is not known
+---@field mass_scaling { on: boolean } on; dt and most, where they were given
+---@field damping { name: string, parameters: { alpha: number } }? name, nil where none was chosen; parameters: a table of them by name
+---@field laws { *: { law: string, parameters: { cohesion: number, dilation: number, friction: number, kn: number, ks: number } }, J1: { law: string, parameters: { cohesion: number, dilation: number, friction: number, kn: number, ks: number } } } by joint ("*", "J1", "J1:3"): law, its name; parameters: a table of them by name
+---@field joints { J1: string } by joint set: the joint whose law it has, "" for none
+---@field contact_area { *: { fraction: number } } by joint, "*" for all others: fraction, or absolute, m2
+
+--- Tells all parameters the model has now, with defaults and units, as a table, and prints them (not with --quiet).
+---
+---     table = model:parameters()
+---@return talus.ParametersResult
+function Model:parameters() end
+
+---@class (exact) talus.CycleOptions
+---@field cycles integer >= 0: number of steps to run
+---@field every? integer >= 1, default 500: steps between calls of on_progress
+---@field on_progress? fun(model: talus.Model, result: talus.SolveResult) called every `every` steps
+
 ---@class (exact) talus.CycleResult
 ---@field reason string why it ended: "ratio", "velocity", "failure", "cycles", "time", "stop" or "interrupt" (Ctrl-C at the prompt; in a script it raises an error)
 ---@field ratio number mean unbalanced force over mean contact force
@@ -522,9 +693,10 @@ function Model:contact_area(options) end
 
 --- Runs a number of steps.
 ---
----     result = model:cycle(1000)
+---     result = model:cycle(1000)  or  model:cycle(1000, {every = 100, on_progress = f})
 ---@param cycles integer number of steps to run
 ---@return talus.CycleResult
+---@overload fun(self: talus.Model, cycles: integer, options: talus.CycleOptions): talus.CycleResult
 function Model:cycle(cycles) end
 
 ---@class (exact) talus.SolveOptions
@@ -557,6 +729,66 @@ function Model:cycle(cycles) end
 ---@param options? talus.SolveOptions
 ---@return talus.SolveResult
 function Model:solve(options) end
+
+---@class (exact) talus.HistoryOptions
+---@field name string what it is called, one of its own
+---@field every? integer >= 1, default 10: steps between two samples; the first is taken at once
+---@field field? string field of numbers of what `of` gives ("displacement", "normal_force")
+---@field take? "mean"|"sum"|"min"|"max" default "mean": of a selection: what is made of the values of its blocks or contacts
+---@field remove? boolean default false: ends the history of that name, with all its samples
+---@field value? fun(model: talus.Model): any|string gives a number, a list of numbers ({x, y, z}) or several numbers, as many each time; it may read the model, but not change it. Or one of "kinetic", "potential", "stored", "friction", "damping", "external" (J), "balance", "ratio", "ratio_maximum", "ratio_local", "max_velocity" (m/s), "contacts", "slipping", "open" (numbers of contacts)
+---@field of? any what the field is sampled of, in the place of `value`. Blocks and contacts that no longer exist are left out; where none is left the value is nan
+
+--- Samples a value at once and then every so many steps of all runs, until it is removed.
+---
+---     model:history{name = "roof", every = 10, value = function(m) ... end}  or  model:history{name = "roof", of = selection, field = "displacement"}
+---@param options talus.HistoryOptions
+---@overload fun(self: talus.Model, options: talus.HistoryOptions)
+function Model:history(options) end
+
+--- Writes the samples of all histories into a CSV file: the columns cycle, time and one for each history, in the order in which they were made, or name.x, name.y and name.z. A cell is empty where a history has no sample of that cycle. Folders are made; the file is written whole or not at all.
+---
+---     model:write_histories("out/run.csv")
+---@param path string
+function Model:write_histories(path) end
+
+---@class (exact) talus.PlotOptions
+---@field file string name of the SVG file; folders are made
+---@field series? { x: number, y: number, name: number, style: number, colour: number }[] lines: lists of numbers x (1, 2, 3, ... when left out) and y; style is "line", "points" or "both", colour "#0072b2". Numbers that are not finite make a gap. Or {history =, component =, against =, name =}: history is one of model:histories(), component "x", "y", "z" or a number (all when left out), against "time" or "cycle"
+---@field model? any draws histories of this model
+---@field histories? any which of them, in this order; all when left out
+---@field x_axis? string|{ name: number, unit: number, log: number, range: number } name and unit of the axis; log = true is a logarithmic one, which leaves out numbers not above 0; range = {from, to} when left out takes in all
+---@field y_axis? string|{ name: number, unit: number, log: number, range: number } name and unit of the axis; log = true is a logarithmic one, which leaves out numbers not above 0; range = {from, to} when left out takes in all (another name)
+---@field title? string stands above the picture
+---@field legend? boolean whether a list of the lines stands beside; left out: when there are several, or names
+---@field grid? boolean default true: whether ticks have lines across
+---@field width? any default 720 and 440: of the picture, pixels
+---@field height? any default 720 and 440: of the picture, pixels (another name)
+
+--- Draws lists and histories as lines, with axes, ticks and a legend, into an SVG file.
+---
+---     talus.plot{file = "out/run.svg", model = model, histories = {"roof"}, y_axis = {name = "subsidence", unit = "m"}}
+---@param options talus.PlotOptions
+function talus.plot(options) end
+
+---@class (exact) talus.StereonetOptions
+---@field file string name of the SVG file; folders are made
+---@field model? any draws the joint sets of this model, from the faces of its blocks as they lie now
+---@field joints? any which of its joint sets ("J1"), in this order; all when left out
+---@field sets? { name: number, dip: number, dip_direction: number }[] further sets, degrees; or {name =, planes = {{dip, dip_direction}, ...}} for several planes
+---@field keyblocks? any what model:keyblocks{...} gave: a cross for the direction of each movement
+---@field projection? "equal_area"|"equal_angle" of Schmidt and Lambert, the default, or of Wulff
+---@field great_circles? "mean" of the mean plane of each set, the default, of every plane, or of none
+---@field title? string stands above the picture
+---@field legend? boolean default true: whether a list of the sets stands beside, with mean dip/dip direction
+---@field grid? boolean default true: whether plunges of 30 and 60 degrees and every 30 degrees of trend are drawn
+---@field size? number default 480: of the square picture without the legend, pixels
+
+--- Draws joint sets by poles and great circles on the lower hemisphere, into an SVG file.
+---
+---     talus.stereonet{file = "out/joints.svg", model = model, keyblocks = list}
+---@param options talus.StereonetOptions
+function talus.stereonet(options) end
 
 ---@class (exact) talus.EnergyResult
 ---@field kinetic number of motion, J
@@ -709,10 +941,41 @@ function Model:write_section(path, options) end
 ---@param path string name of the file
 function Model:write_blocks(path) end
 
+--- Writes a text into a file, whole or not at all. Folders are made; only a regular file is replaced.
+---
+---     talus.write_file("out/table.csv", text)
+---@param path string
+---@param text any
+function talus.write_file(path, text) end
+
 --- A digest of all that what comes next depends on, settings too: models with the same text go on alike, to the last bit. Takes about as long as a step.
 ---
 ---     text = model:state_hash()
 ---@return string
 function Model:state_hash() end
+
+--- The same model once more in memory: equal state, and equal bits after equal calls from then on. The functions of drives are shared; VTK frames of the copy begin with 0.
+---
+---     twin = model:copy()
+---@return talus.Model
+function Model:copy() end
+
+--- Saves all that the next steps depend on, to the bit, compressed and with checksums. The file appears whole or not at all, in the place of an older one, and outlives a crash of the machine; folders are made. The model goes on as if it had not been saved. Functions of drives are not saved.
+---
+---     model:save("out/run.talus")
+---@param path string
+function Model:save(path) end
+
+---@class (exact) talus.RestoreOptions
+---@field threads? integer threads, in [1, 256]; default: as of talus.model. Results are the same bits for any number
+---@field drives? any what functions drive, by the lowest block of each drive: a function(t) for its velocity, or {velocity = function(t), angular_velocity = function(t)}
+
+--- The model that a file holds: it goes on as the saved one does, to the bit, on any number of threads. Laws and damping must be loaded in the version that it was saved with. A damaged file, and one of another format, is refused.
+---
+---     model = talus.restore("out/run.talus", {threads = 2, drives = {[7] = function(t) ... end}})
+---@param path string
+---@param options? talus.RestoreOptions
+---@return talus.Model
+function talus.restore(path, options) end
 
 return talus

@@ -164,11 +164,14 @@ TEST(the_structure_tells_of_rows)
     tl_solve_result result;
     CHECK_INT(tl_model_cycle(m, 5, &result), TL_OK);
     const tl_id top = 3, pair[] = {2, 3};
-    const tl_load load = {{1, 0, 0}, {0, 0, 0}, {NAN, NAN, NAN}};
+    tl_load load = tl_load_default();
+    load.force = tl_v3(1, 0, 0);
     CHECK_INT(tl_blocks_load(m, &top, 1, &load), TL_OK);
     CHECK_INT(tl_blocks_hide(m, &top, 1, false), TL_OK);
     CHECK(tl_structure(m) == was);
-    CHECK_INT(tl_blocks_load(m, &top, 1, &(tl_load){{0, 0, 0}, {0, 0, 0}, {NAN, NAN, NAN}}), TL_OK);
+    CHECK_INT(tl_blocks_load(m, &top, 1,
+                             &(tl_load){sizeof(tl_load), {0, 0, 0}, {0, 0, 0}, {NAN, NAN, NAN}}),
+              TL_OK);
     CHECK_INT(tl_blocks_join(m, pair, 2), TL_OK);
     CHECK(tl_structure(m) != was);
     tl_block_views blocks = tl_view_blocks(m);
