@@ -258,7 +258,9 @@ static tl_status plan(tl_model *m, const tl_boundary_action *a, uint8_t *fix, bo
 static tl_status put_load(tl_model *m, uint32_t body, const body_sum *sum, bool add)
 {
     tl_vec3 arm = sum->weight > 0 ? tl_v3_scale(1 / sum->weight, sum->arm) : tl_v3(0, 0, 0);
-    tl_load load = {.force = sum->force, .moment = sum->moment};
+    tl_load load = tl_load_default();
+    load.force = sum->force;
+    load.moment = sum->moment;
     if (add) {
         tl_body_load had = tl_load_of(&m->bodies, body);
         tl_vec3 at = tl_m3_mul(&m->bodies.pose[body].r, had.arm);

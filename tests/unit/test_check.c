@@ -132,11 +132,13 @@ TEST(the_plugins_of_talus_pass)
 TEST(points_are_parameters_too)
 {
     static const double base[] = {0, 0, 0, 2, 0, 0, 0, 2, 0}, axis[] = {0, 0, 1};
-    tl_value values[] = {tl_arg_numbers("base", base, 3), tl_arg_numbers("axis", axis, 3)};
+    tl_value values[] = {tl_arg_numbers("base", base, 3), tl_arg_numbers("axis", axis, 3),
+                         tl_arg_numbers("section", base, 3), tl_arg_number("to", 1)};
     size_t faults;
     tl_error error;
     values[0].type = TL_VALUE_POINTS;
-    const tl_args args = {values, 2};
+    values[2].type = TL_VALUE_FLAT;
+    const tl_args args = {values, 4};
     CHECK_INT(
         tl_plugin_check(TALUS_TEST_PLUGIN_DIR "/prism.so", &args, NULL, NULL, &faults, &error),
         TL_OK);
