@@ -5,6 +5,7 @@
 
 #include <errno.h>
 #include <lualib.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -57,6 +58,19 @@ static bool read_threads(const char *text, int64_t *threads)
     return true;
 }
 
+/* Minutes as seconds. */
+static bool read_minutes(const char *text, double *seconds)
+{
+    char *end;
+    double minutes = strtod(text, &end);
+    if (end == text || *end || !(minutes > 0 && minutes <= 1e6)) {
+        fail("--autosave: '%s' is not a number of minutes in (0, 1e6]", text);
+        return false;
+    }
+    *seconds = 60 * minutes;
+    return true;
+}
+
 static bool load_plugin(const char *path)
 {
     tl_error error;
@@ -69,8 +83,8 @@ static bool load_plugin(const char *path)
 
 static bool unknown_option(const char *word)
 {
-    static const char *const known[] = {"--threads", "--quiet", "--plugin", "--version",
-                                        "--help",    "-v",      "-e"};
+    static const char *const known[] = {"--threads", "--quiet", "--plugin",   "--version", "--help",
+                                        "-v",        "-e",      "--autosave", "--resume"};
     const char *nearest = tl_nearest_name(word, known, sizeof known / sizeof known[0]);
     if (nearest)
         fprintf(stderr, "talus: unknown option '%s'; did you mean '%s'?\n", word, nearest);
@@ -83,10 +97,12 @@ static bool unknown_option(const char *word)
 static bool read_option(int argc, char **argv, options *o)
 {
     const char *word = argv[o->next++];
-    bool takes_value =
-        strcmp(word, "--threads") == 0 || strcmp(word, "--plugin") == 0 || strcmp(word, "-e") == 0;
+    bool takes_value = strcmp(word, "--threads") == 0 || strcmp(word, "--plugin") == 0 ||
+                       strcmp(word, "-e") == 0 || strcmp(word, "--autosave") == 0;
     if (strcmp(word, "--quiet") == 0)
         o->lua.quiet = true;
+    else if (strcmp(word, "--resume") == 0)
+        o->lua.resume = true;
     else if (strcmp(word, "-v") == 0)
         o->verbose = true;
     else if (!takes_value)
@@ -96,6 +112,8 @@ static bool read_option(int argc, char **argv, options *o)
         return false;
     } else if (strcmp(word, "--threads") == 0)
         return read_threads(argv[o->next++], &o->lua.threads);
+    else if (strcmp(word, "--autosave") == 0)
+        return read_minutes(argv[o->next++], &o->lua.autosave);
     else if (strcmp(word, "--plugin") == 0)
         return load_plugin(argv[o->next++]);
     else
@@ -205,19 +223,49 @@ static int help(const char *topic)
     return tl_lua_help(topic, &error) ? EXIT_SUCCESS : fail("%s", error.text);
 }
 
+/* Reads the options that come next. false: the program ends, with that status. */
+static bool read_options(int argc, char **argv, options *o, int *status)
+{
+    while (o->next < argc && argv[o->next][0] == '-' && argv[o->next][1]) {
+        const char *word = argv[o->next];
+        bool version = strcmp(word, "--version") == 0;
+        if (version || strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0) {
+            *status = version ? print_version() : help(NULL);
+            return false;
+        }
+        *status = EXIT_FAILURE;
+        if (!read_option(argc, argv, o))
+            return false;
+    }
+    return true;
+}
+
+/* `talus run`: saves belong to a script in a file. */
+static bool prepare_saves(int argc, char **argv, options *o, bool runs)
+{
+    bool script = o->next < argc && !o->chunk && strcmp(argv[o->next], "-") != 0;
+    if (runs && !script) {
+        fail("%s", "run: name the script: talus run [--autosave MINUTES] [--resume] SCRIPT.lua");
+        return false;
+    }
+    if (!script && (o->lua.autosave > 0 || o->lua.resume)) {
+        fail("%s", "--autosave and --resume are for a script in a file, beside which it saves");
+        return false;
+    }
+    if (script && !(o->lua.save_path = tl_lua_autosave_path(argv[o->next]))) {
+        fail("%s", "not enough memory");
+        return false;
+    }
+    return true;
+}
+
 int main(int argc, char **argv)
 {
     options o = {.next = 1};
+    int status;
     tl_plugin_name_crashes();
-    while (o.next < argc && argv[o.next][0] == '-' && argv[o.next][1]) {
-        const char *word = argv[o.next];
-        if (strcmp(word, "--version") == 0)
-            return print_version();
-        if (strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0)
-            return help(NULL);
-        if (!read_option(argc, argv, &o))
-            return EXIT_FAILURE;
-    }
+    if (!read_options(argc, argv, &o, &status))
+        return status;
     const char *command = o.next < argc && !o.chunk ? argv[o.next] : "";
     if (strcmp(command, "help") == 0)
         return help(o.next + 1 < argc ? argv[o.next + 1] : NULL);
@@ -230,10 +278,17 @@ int main(int argc, char **argv)
         return tl_command_check(argc - o.next - 1, argv + o.next + 1);
     if (strcmp(command, "new") == 0)
         return tl_command_new(argc - o.next - 1, argv + o.next + 1);
+    bool runs = strcmp(command, "run") == 0;
+    o.next += runs;
+    if (runs && !read_options(argc, argv, &o, &status))
+        return status;
+    if (!prepare_saves(argc, argv, &o, runs))
+        return EXIT_FAILURE;
     lua_State *L = luaL_newstate();
     if (!L)
         return fail("%s", "not enough memory to start Lua");
     int exit_status = run(L, argc, argv, &o);
     lua_close(L);
+    free((char *)(uintptr_t)o.lua.save_path);
     return exit_status;
 }

@@ -26,6 +26,11 @@ typedef struct tl_lua_key {
 typedef struct tl_lua_options {
     int64_t threads; /* default of talus.model; 0: not set */
     bool quiet;      /* no progress line, no remarks */
+    /* autosave.c */
+    double autosave;       /* s between two saves of a run's model; 0: none */
+    double save_due;       /* s, of the clock */
+    const char *save_path; /* the file of the script's saves; NULL: it has none */
+    bool resume;           /* talus.resumed gives the model that was saved last */
 } tl_lua_options;
 
 /* The options of a Lua state, made when first asked for; lives as long as the state. */
@@ -328,6 +333,14 @@ extern const tl_lua_key tl_lua_restore_keys[];
 int tl_lua_copy(lua_State *L);
 int tl_lua_save(lua_State *L);
 int tl_lua_restore(lua_State *L);
+
+/* ---- runs that are saved as they go: autosave.c ---- */
+
+/* The file of a script's saves, SCRIPT without .lua and with .autosave.talus, from malloc; NULL when out of memory. */
+char *tl_lua_autosave_path(const char *script);
+/* Between two steps of a run: saves the model when it is time to. */
+void tl_lua_autosave(tl_lua_options *options, tl_model *model);
+int tl_lua_resumed(lua_State *L);
 
 /* ---- help: help.c, topics.c ---- */
 

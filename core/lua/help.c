@@ -211,6 +211,8 @@ static void print_overview(void)
 {
     printf("Talus %s: three-dimensional distinct elements for jointed rock\n\n", TALUS_VERSION);
     puts("  talus SCRIPT.lua [ARGUMENT...]   run a script\n"
+         "  talus run [--autosave MINUTES] [--resume] SCRIPT.lua [ARGUMENT...]\n"
+         "                                   the same, saved as it goes: talus help resumed\n"
          "  talus                            type Lua line by line\n"
          "  talus -e CHUNK                   run a piece of Lua\n"
          "  talus help [TOPIC]               this page, a function, or a plugin\n"

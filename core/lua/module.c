@@ -24,6 +24,8 @@ int luaopen_talus(lua_State *L)
     lua_setfield(L, -2, "model");
     lua_pushcfunction(L, tl_lua_report);
     lua_setfield(L, -2, "report");
+    lua_pushcfunction(L, tl_lua_resumed);
+    lua_setfield(L, -2, "resumed");
     lua_pushcfunction(L, tl_lua_restore);
     lua_setfield(L, -2, "restore");
     tl_lua_lists_open(L);

@@ -21,6 +21,7 @@ typedef struct run {
     lua_State *L;
     tl_model *model;
     const tl_lua_model *owner;
+    tl_lua_options *options;
     struct run *outer; /* the run whose callback started this one, of another model */
     tl_lua_watch watch;
     bool failed;
@@ -35,6 +36,7 @@ static void run_begin(run *r, lua_State *L, tl_model *model)
 {
     *r = (run){.L = L, .model = model, .outer = current};
     r->owner = lua_touserdata(L, AT_MODEL);
+    r->options = tl_lua_options_of(L);
     tl_lua_histories_due(L, AT_MODEL);
     tl_lua_progress_begin(L, &r->line, model);
     r->watch = tl_lua_watch_begin(L);
@@ -146,6 +148,7 @@ static tl_status on_each(void *user, tl_model *model)
     if (r->failed) /* a drive's function */
         return TL_E_CANCELLED;
     tl_lua_progress_run(&r->line, model, &r->limits, &r->result);
+    tl_lua_autosave(r->options, model);
     if (tl_model_cycles(model) < r->owner->next_sample || tl_lua_histories_sample(r->L, AT_MODEL))
         return TL_OK;
     keep_error(r);

@@ -406,5 +406,12 @@ const tl_lua_topic tl_lua_topics[] = {
          "of threads. Laws and damping must be loaded in the version that it was saved with. A "
          "damaged file, and one of another format, is refused.",
      .keys = tl_lua_restore_keys},
+    {.name = "resumed",
+     .usage = "model = talus.resumed()",
+     .doc =
+         "The model that `talus run --autosave MINUTES SCRIPT` saved last, after `talus run "
+         "--resume "
+         "SCRIPT`; nil when the script is not resumed, or nothing was saved. Takes the options of "
+         "talus.restore. The file lies beside the script: SCRIPT.autosave.talus without .lua."},
     {.name = NULL},
 };

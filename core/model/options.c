@@ -29,7 +29,7 @@ static const tl_insitu insitu = {SIZED(tl_insitu)};
 static const tl_timestep timestep = {SIZED(tl_timestep), .fraction = NAN, .rule = TL_TIMESTEP_BODY,
                                      .dt = NAN};
 static const tl_mass_scaling mass_scaling = {SIZED(tl_mass_scaling), .on = 1, .dt = NAN,
-                                             .most = TL_MOST_ADDED};
+                                             .most = NAN};
 static const tl_contact_area contact_area = {SIZED(tl_contact_area), .fraction = TL_AREA_FRACTION,
                                              .absolute = NAN};
 static const tl_solve solve = {SIZED(tl_solve), .ratio = 1e-5,         .measure = TL_RATIO_LOCAL,

@@ -1,12 +1,9 @@
-/* fuzz_file.c - files of blocks with anything in them: FUZZ_GENERATOR reads each, and makes blocks that can be run or a sentence.
+/* fuzz_file.c - files of blocks with anything in them: the generator FUZZ_GENERATOR reads each, and makes blocks or a sentence.
  *
- * The bytes go into a file in memory, which generators read like any other. */
-#define _GNU_SOURCE /* memfd_create */
+ * The bytes go into a file of the folder that the target runs in. */
 #include <stdint.h>
 #include <stdio.h>
-#include <sys/mman.h>
 #include <talus/talus.h>
-#include <unistd.h>
 
 int LLVMFuzzerInitialize(int *count, char ***arguments);
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
@@ -25,27 +22,27 @@ int LLVMFuzzerInitialize(int *count, char ***arguments)
     return 0;
 }
 
+static bool write_bytes(const uint8_t *data, size_t size)
+{
+    FILE *file = fopen(FUZZ_FILE, "wb");
+    if (!file)
+        return false;
+    bool written = fwrite(data, 1, size, file) == size;
+    return fclose(file) == 0 && written;
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     tl_error error;
     tl_model *m;
-    char path[64];
-    int file = memfd_create("fuzz" FUZZ_ENDING, 0);
-    snprintf(path, sizeof path, "/proc/self/fd/%d", file);
     tl_model_config config = tl_model_config_default();
-    if (file < 0 || write(file, data, size) != (ssize_t)size ||
-        tl_model_create(&config, &m, &error) != TL_OK)
+    if (!write_bytes(data, size) || tl_model_create(&config, &m, &error) != TL_OK)
         return 0;
     tl_model_log(m, say_nothing, NULL);
     tl_generate_summary summary;
-    const tl_value values[] = {tl_arg_text("file", path)
-#ifdef FUZZ_DENSITY
-                                   ,
-                               tl_arg_number("density", 2500), tl_arg_text("format", FUZZ_FORMAT)
-#endif
-    };
-    tl_generate(m, FUZZ_GENERATOR, &(tl_args){values, sizeof values / sizeof *values}, &summary);
+    const tl_value values[] = {tl_arg_text("file", FUZZ_FILE), tl_arg_number("density", 2500)};
+    const tl_args args = {values, FUZZ_VALUES};
+    tl_generate(m, FUZZ_GENERATOR, &args, &summary);
     tl_model_destroy(m);
-    close(file);
     return 0;
 }

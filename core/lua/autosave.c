@@ -1,0 +1,65 @@
+/* autosave.c - runs that are saved as they go: `talus run --autosave MINUTES SCRIPT` saves the model that runs, from time to time, in a
+ * file beside the script, and after `talus run --resume SCRIPT` talus.resumed() gives it back. When a save happens goes by the
+ * clock, which is no harm: saving does not change a run. */
+#include "front.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#define ENDING ".autosave.talus"
+
+char *tl_lua_autosave_path(const char *script)
+{
+    size_t length = strlen(script);
+    if (length > 4 && strcmp(script + length - 4, ".lua") == 0)
+        length -= 4;
+    char *path = malloc(length + sizeof ENDING);
+    if (path)
+        snprintf(path, length + sizeof ENDING, "%.*s%s", (int)length, script, ENDING);
+    return path;
+}
+
+static double clock_now(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+void tl_lua_autosave(tl_lua_options *options, tl_model *model)
+{
+    if (!(options->autosave > 0) || !options->save_path)
+        return;
+    double now = clock_now();
+    if (options->save_due == 0) /* the first step of all */
+        options->save_due = now + options->autosave;
+    if (now < options->save_due)
+        return;
+    options->save_due = now + options->autosave;
+    if (tl_model_save(model, options->save_path) !=
+        TL_OK) { /* the run is worth more than its save */
+        char text[TL_ERROR_TEXT + 32];
+        snprintf(text, sizeof text, "autosave: %s", tl_model_error(model)->text);
+        tl_lua_log(options, text);
+    }
+}
+
+/* talus.resumed(options): as talus.restore of the script's last save; nil without --resume, or when nothing was saved. */
+int tl_lua_resumed(lua_State *L)
+{
+    tl_lua_arity(L, 1, "talus.resumed");
+    lua_settop(L, 1);
+    const tl_lua_options *options = tl_lua_options_of(L);
+    if (!options->resume || !options->save_path || access(options->save_path, F_OK) != 0) {
+        lua_pushnil(L);
+        return 1;
+    }
+    lua_pushcfunction(L, tl_lua_restore);
+    lua_pushstring(L, options->save_path);
+    lua_pushvalue(L, 1);
+    lua_call(L, 2, 1);
+    return 1;
+}

@@ -1,0 +1,69 @@
+-- seeds.lua FOLDER: writes what the fuzz targets begin with, into FOLDER/restore, json, obj and stl.
+local talus = require "talus"
+local folder = arg[1]
+
+local function model(options)
+    local m = talus.model { gravity = { 0, 0, -10 } }
+    m:generate("box", { min = { -1, -1, -1 }, max = { 3, 3, 0 }, density = 2000, group = "floor" })
+    m:blocks():fix()
+    for i = 1, options.hulls or 0 do
+        m:generate("polyhedron", { density = 2000, vertices = { { 0, 0, i - 0.9 }, { 1, 0.1, i - 1 }, { 0.9, 1, i - 0.95 }, { 0.1, 0.9, i - 0.9 },
+            { 0.5, 0.4, i - 0.1 } } })
+    end
+    if options.rock then
+        m:generate("box", { min = { 0, 0, 0 }, max = { 2, 1, 1 }, density = 2000, group = "rock" })
+        m:generate("joint", { joint = "J1", dip = 60, dip_direction = 90, origin = { 1, 0, 0.5 } })
+        m:generate("joint", { joint = "J2", dip = 10, dip_direction = 10, origin = { 1, 0, 0.5 } })
+    end
+    m:joint("*", options.law or "coulomb", options.law == "coulomb_tensile" and { kn = 1e8, ks = 1e8, friction = 30, tension = 1e4, dilation = 3 } or
+        { kn = 1e8, ks = 1e8, friction = 30 })
+    if options.damping then
+        m:damping(options.damping)
+    end
+    return m
+end
+
+local saved = {
+    model { hulls = 2, damping = "local" },
+    model { hulls = 1, damping = "kinetic" },
+    model { rock = true, law = "coulomb_tensile", damping = "adaptive" },
+    model { rock = true },
+    talus.model {},
+}
+saved[3]:blocks { group = "rock" }:where(function(b) return b.centroid[1] < 1 end):join()
+saved[3]:blocks { group = "rock" }:load { force = { 100, 0, 0 } }
+saved[4]:blocks { group = "rock" }:drive { velocity = { 0, 0, 0.1 } }
+for k, m in ipairs(saved) do
+    if k < 5 then
+        m:cycle(4 * k)
+    end
+    if k == 2 then
+        m:blocks { fixed = false }:delete() -- what was found of contacts is out of date
+    end
+    m:save(string.format("%s/restore/%d.talus", folder, k))
+    m:write_blocks(string.format("%s/json/%d.json", folder, k))
+end
+
+local function write(name, text)
+    local file = assert(io.open(folder .. "/" .. name, "wb"))
+    file:write(text)
+    file:close()
+end
+for _, kind in ipairs { "obj", "stl" } do -- makes the folders
+    saved[5]:write_blocks(string.format("%s/%s/0", folder, kind))
+end
+write("obj/1", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\ng a\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n")
+write("obj/2", "o b\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\nf 4/1 3/2 2/3 1/4\nf 5 6 7 8\nf 1 2 6 5\n" ..
+    "f 2 3 7 6\nf -6 -5 -1 -2\nf 4 1 5 8\n")
+write("stl/1", "solid a\n" .. string.rep("facet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 0 1 0\nvertex 1 0 0\nendloop\nendfacet\n", 4) ..
+    "endsolid a\n")
+local corners = { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } }
+local triangles = ""
+for _, t in ipairs { { 1, 3, 2 }, { 1, 2, 4 }, { 2, 3, 4 }, { 3, 1, 4 } } do
+    triangles = triangles .. string.pack("<fff", 0, 0, 0)
+    for _, c in ipairs(t) do
+        triangles = triangles .. string.pack("<fff", table.unpack(corners[c]))
+    end
+    triangles = triangles .. string.pack("<I2", 0)
+end
+write("stl/2", string.rep(" ", 80) .. string.pack("<I4", 4) .. triangles)
