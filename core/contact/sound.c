@@ -6,8 +6,6 @@
 #include "base/walk.h"
 #include "narrow/narrow.h"
 
-#include <stdlib.h>
-
 /* A face number that every block may have had which has gone, or has another shape now. */
 #define ANY_FACES UINT32_MAX
 
@@ -151,11 +149,10 @@ static bool press_is_sound(const tl_model *m, const tl_detect *d, const tl_press
 }
 
 /* The rows of presses: each is a contact's, or in the list of free ones. */
-static bool presses_are_sound(const tl_model *m, const tl_detect *d)
+static bool presses_are_sound(const tl_model *m, const tl_detect *d, unsigned char *used)
 {
     size_t count = d->press_count, rows = 0, free_rows = 0;
-    unsigned char *used = calloc(count + 1, 1);
-    bool sound = used != NULL;
+    bool sound = true;
     for (uint32_t c = 0; c < d->contacts.table.rows && sound; c++) {
         uint32_t row = d->contacts.press[c];
         if (row == TL_NO_ROW)
@@ -174,7 +171,6 @@ static bool presses_are_sound(const tl_model *m, const tl_detect *d)
         used[row] = 1;
         free_rows++;
     }
-    free(used);
     return sound && rows + free_rows == count;
 }
 
@@ -266,7 +262,7 @@ static bool layout_is_sound(const tl_model *m, const tl_detect *d)
     return taken == wanted;
 }
 
-const char *tl_detect_unsound(const tl_model *m, const tl_detect *d)
+const char *tl_detect_unsound(const tl_model *m, const tl_detect *d, unsigned char *used)
 {
     if (d->contacts.table.rows >= TL_PAIR_APART || d->contacts.table.rows > d->pair_count)
         return "contacts do not fit their pairs";
@@ -277,7 +273,7 @@ const char *tl_detect_unsound(const tl_model *m, const tl_detect *d)
             return "a contact does not fit its blocks";
     if (!pairs_are_sound(m, d))
         return "pairs do not fit the blocks";
-    if (!presses_are_sound(m, d))
+    if (!presses_are_sound(m, d, used))
         return "what field contacts keep does not fit them";
     if (!layout_is_sound(m, d))
         return "the points do not fit their contacts";

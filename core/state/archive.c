@@ -205,7 +205,8 @@ tl_status tl_archive_of_bytes(tl_archive *a, const char *path, unsigned char *by
                               tl_error *error)
 {
     *a = (tl_archive){.path = strdup(path), .bytes = bytes, .length = length};
-    tl_status status = a->path ? check_file_head(a, error) : tl_fail_memory(error);
+    a->unpacker = ZSTD_createDCtx(); /* unpacking then needs no memory of its own */
+    tl_status status = a->path && a->unpacker ? check_file_head(a, error) : tl_fail_memory(error);
     if (status == TL_OK)
         status = list_chunks(a, error);
     if (status != TL_OK)
@@ -266,6 +267,7 @@ void tl_archive_close(tl_archive *a)
     free(a->path);
     free(a->bytes);
     free(a->chunks);
+    ZSTD_freeDCtx(a->unpacker);
     *a = (tl_archive){.path = NULL};
 }
 
@@ -290,5 +292,6 @@ bool tl_archive_get(const tl_archive *a, const char *name, void *to, size_t size
             memcpy(to, chunk->data, bytes);
         return true;
     }
-    return bytes && ZSTD_decompress(to, bytes, chunk->data, chunk->stored) == bytes;
+    return bytes &&
+           ZSTD_decompressDCtx(a->unpacker, to, bytes, chunk->data, chunk->stored) == bytes;
 }

@@ -48,6 +48,7 @@ typedef struct tl_archive {
     size_t length;
     tl_chunk *chunks;
     size_t chunk_count;
+    struct ZSTD_DCtx_s *unpacker;
 } tl_archive;
 
 /* Reads a file and checks its checksums. TL_E_IO: it cannot be read; TL_E_ARGUMENT: it is no archive, of another format, cut

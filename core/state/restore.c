@@ -135,9 +135,19 @@ static bool hold_columns(tl_model *m, const tl_archive *a)
     return held;
 }
 
-/* The number of names in a chunk of them, and whether each is new. */
+/* Takes one name: TL_E_ARGUMENT when it is there already. */
+typedef tl_status take_name(tl_model *m, const char *name);
+
+static tl_status take_names(tl_model *m, const char *all, size_t bytes, take_name *take)
+{
+    tl_status status = TL_OK;
+    for (size_t at = 0; at < bytes && status == TL_OK; at += strlen(all + at) + 1)
+        status = tl_text_is_clean(all + at) ? take(m, all + at) : TL_E_ARGUMENT;
+    return status;
+}
+
 static tl_status read_names(tl_model *m, const tl_archive *a, const char *chunk_name,
-                            bool take(tl_model *m, const char *name))
+                            take_name *take)
 {
     const tl_chunk *chunk = tl_archive_find(a, chunk_name);
     size_t bytes = chunk && chunk->size == 1 && chunk->items < SIZE_MAX ? (size_t)chunk->items : 0;
@@ -146,23 +156,27 @@ static tl_status read_names(tl_model *m, const tl_archive *a, const char *chunk_
         return tl_fail_memory(&m->error);
     bool read = chunk && tl_archive_get(a, chunk_name, all, 1, bytes) &&
                 (bytes == 0 || all[bytes - 1] == '\0');
-    for (size_t at = 0; read && at < bytes; at += strlen(all + at) + 1)
-        read = tl_text_is_clean(all + at) && take(m, all + at);
+    tl_status status = read ? take_names(m, all, bytes, take) : TL_E_ARGUMENT;
     free(all);
-    return read ? TL_OK
-                : tl_archive_bad(a, &m->error, "'%s' is missing or does not fit", chunk_name);
+    if (status == TL_E_MEMORY)
+        return tl_fail_memory(&m->error);
+    return status == TL_OK
+               ? TL_OK
+               : tl_archive_bad(a, &m->error, "'%s' is missing or does not fit", chunk_name);
 }
 
-static bool take_group(tl_model *m, const char *name)
+static tl_status take_group(tl_model *m, const char *name)
 {
     size_t before = m->group_count;
-    return tl_group_intern(m, name) == before;
+    uint32_t group = tl_group_intern(m, name);
+    return group == UINT32_MAX ? TL_E_MEMORY : group == before ? TL_OK : TL_E_ARGUMENT;
 }
 
-static bool take_joint(tl_model *m, const char *name)
+static tl_status take_joint(tl_model *m, const char *name)
 {
     size_t before = m->joint_count;
-    return tl_joint_intern(m, name) == before + 1;
+    uint32_t joint = tl_joint_intern(m, name);
+    return joint == 0 ? TL_E_MEMORY : joint == before + 1 ? TL_OK : TL_E_ARGUMENT;
 }
 
 static tl_status read_planes(tl_model *m, const tl_archive *a)
@@ -236,16 +250,18 @@ static tl_status read_drives(tl_model *m, const tl_archive *a, tl_drive_again_fn
     return status;
 }
 
-/* The columns of contact points that laws and initial forces have. */
-static bool hold_points(tl_detect *d, const tl_archive *a)
+/* Makes the columns of contact points that laws and initial forces have. */
+static tl_status hold_points(tl_model *m, tl_detect *d, const tl_archive *a)
 {
     uint32_t columns;
     bool initial;
-    return tl_archive_get(a, "detect.points.state_columns", &columns, sizeof columns, 1) &&
-           columns <= TL_STATE_COLUMNS &&
-           tl_archive_get(a, "detect.points.initial", &initial, sizeof initial, 1) &&
-           tl_is_flag(&initial) && tl_detect_hold_states(d, columns) &&
-           (!initial || tl_detect_hold_initial(d));
+    if (!tl_archive_get(a, "detect.points.state_columns", &columns, sizeof columns, 1) ||
+        columns > TL_STATE_COLUMNS ||
+        !tl_archive_get(a, "detect.points.initial", &initial, sizeof initial, 1) ||
+        !tl_is_flag(&initial))
+        return tl_archive_bad(a, &m->error, "'detect.points' is missing or does not fit");
+    bool held = tl_detect_hold_states(d, columns) && (!initial || tl_detect_hold_initial(d));
+    return held ? TL_OK : tl_fail_memory(&m->error);
 }
 
 /* Columns of states that the laws need. */
@@ -266,20 +282,25 @@ static tl_status read_detection(tl_model *m, const tl_archive *a)
         return tl_fail_memory(&m->error);
     m->detect = d;
     m->detect_destroy = tl_detect_destroy;
-    if (!hold_points(d, a))
-        return tl_archive_bad(a, &m->error, "'detect.points' is missing or does not fit");
+    tl_status status = hold_points(m, d, a);
+    if (status != TL_OK)
+        return status;
     uint32_t columns = d->points.state_columns;
     bool initial = d->points.initial;
     reader r = {.archive = a};
     tl_detect_walk(d, &(tl_walk){read_entry, &r});
-    tl_status status = told(&r, m);
+    status = told(&r, m);
     if (status != TL_OK)
         return status;
     d->points.state_columns = columns;
     d->points.initial = initial;
+    unsigned char *used = calloc(d->press_count + 1, 1);
+    if (!used)
+        return tl_fail_memory(&m->error);
     const char *bad = columns < states_needed(m)      ? "states of the laws are missing"
                       : d->lane_room > TL_NO_ROW / 64 ? "a contact has too many points"
-                                                      : tl_detect_unsound(m, d);
+                                                      : tl_detect_unsound(m, d, used);
+    free(used);
     if (bad)
         return unsound(a, m, bad);
     tl_contacts_unlist(d);
