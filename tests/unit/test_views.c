@@ -150,6 +150,7 @@ TEST(meshes_move_with_their_bodies)
     for (size_t f = 0; f < local.face_count; f++)
         CHECK_NEAR(tl_v3_norm(tl_v3_sub(tl_m3_mul(&r, local.normals[f]), placed.normals[f])), 0,
                    1e-12);
+    tl_block_mesh_free(&placed);
     CHECK_INT(tl_block_mesh_local(m, 99, &placed), TL_E_STALE);
     tl_block_mesh_free(&first);
     tl_block_mesh_free(&local);
