@@ -1,0 +1,95 @@
+#!/usr/bin/env python3
+"""The numbers that docs/theory.md gives are those of the code. What forces and energies follow from its formulas is measured by
+tests/lua/test_theory.lua and tests/verify."""
+import math
+import pathlib
+import re
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+THEORY = re.sub(r"\s+", " ", (ROOT / "docs/theory.md").read_text(encoding="utf-8"))
+DEGREE = math.pi / 180
+
+# Source, name, value there, and how the page says it.
+NUMBERS = [
+    ("core/narrow/press.h", "TL_FLUSH_TILT", 0.05 * DEGREE, "S(sin tilt; 0.05°, 0.15°)"),
+    ("core/narrow/press.h", "TL_FLUSH_TILT", 0.05 * DEGREE, "tilt < 0.05°"),
+    ("core/narrow/press.h", "TL_FIELD_TILT", 0.15 * DEGREE, "S(sin tilt; 0.05°, 0.15°)"),
+    ("core/narrow/press.h", "TL_FLUSH_DEPTH", 0.004, "S(q; 0.004, 0.01)"),
+    ("core/narrow/press.h", "TL_FLUSH_DEPTH", 0.004, "below 0.004 √A_c"),
+    ("core/narrow/press.h", "TL_FIELD_DEPTH", 0.01, "S(q; 0.004, 0.01)"),
+    ("core/narrow/region.c", "FACING", math.cos(15 * DEGREE), "Faces of nearly the direction of a or b, within 15°"),
+    ("core/narrow/manifold.c", "BACK", 0.5, "half of both for a field contact that is to become a patch"),
+    ("core/narrow/manifold.c", "BLUNT", 2000, "at least 2000 o + 1e-3 size more"),
+    ("core/narrow/manifold.c", "LEAST", 0.05, "A_m is at most 0.05 A_c"),
+    ("core/narrow/view.h", "TL_STILL", 1e-6, "the pair moves by less than 1e-6 size"),
+    ("core/narrow/view.h", "TL_CONTACT_TOLERANCE", 1e-3, "at least 4 o + 1e-3 size more"),
+    ("core/narrow/view.h", "TL_CONTACT_RELEASE", 1.5, "apart by more than 1.5e-3 size"),
+    ("core/geometry/polyhedron.h", "TL_POLY_FLAT", 1e-6, "off its plane by less than 1e-6 size is one face"),
+    ("core/narrow/press_slope.h", "TL_PRESS_NEAR", 1e-4, "up to |u| = 1e-4 o"),
+    ("core/narrow/press_slope.h", "TL_PRESS_SLOPE_COST", 12, "within 5e-5 o for twelve steps"),
+    ("core/narrow/frame2.h", "TL_STRAIGHT", 1e-4, "turns by less than 1e-4 rad"),
+    ("core/narrow/frame2.h", "TL_CORNER", 2e-3, "Between 1e-4 and 2e-3 rad"),
+    ("core/force/partly_open.c", "MOST_CORNERS", 16, "patches of up to 16 corners"),
+    ("core/model/bodies.c", "ROUND_COEFFICIENT", 0.4, "I = 0.4 m r̄²"),
+    ("core/cycle/rates.c", "FLOOR", 0.15, "min(1, max(0.15, s)) ω²"),
+    ("core/cycle/rates.c", "TWICE_AS_DEEP", 4, "k = 4 max(kn, ks) max("),
+    ("core/cycle/rates.c", "LOOK_EVERY", 64, "and every 64 steps"),
+    ("core/cycle/timestep.c", "STEP_GROWTH", 1.1, "only when it is 1.1 times the one in use"),
+    (None, "TL_BODY_FRACTION", 0.5, 'FRAC is 0.5 with `"body"`'),
+    (None, "TL_PAPER_FRACTION", 0.1, 'and 0.1 with `"paper"`'),
+    ("core/cycle/sliver.c", "SHORTENS", 3, "more than three times smaller than the rest allow"),
+    ("core/cycle/sliver.c", "FEW", 0.01, "no more than one in a hundred"),
+    ("core/model/model.h", "TL_MOST_ADDED", 0.05, "`most`, 0.05 when left out"),
+    ("core/cycle/rest.c", "SOFTER", 1e3, "min(ρ, 10³ ρ²) B² / (2 K)"),
+    ("core/cycle/rest.c", "ROUNDED_OVERLAP", 1e-10, "1e-10 r K"),
+    ("core/cycle/watch.c", "LEGS", 5, "it has gone five legs in one direction"),
+    ("core/cycle/watch.c", "FAILED_SHARE", 0.05, "after 5 % of its size"),
+    ("core/cycle/watch.c", "LANDED_SHARE", 1, "in legs of a fifth of its size"),
+    ("core/cycle/watch.c", "SETTLED_SHARE", 3, "at least 3/5 of the closure of the loaded contacts"),
+    ("core/cycle/watch.c", "NO_SLOWER", 0.95, "less than 0.95 of the speed of the one before"),
+    ("core/cycle/watch.c", "ONE_WAY", 0.7, "in one direction (within 45°)"),
+    ("core/cycle/watch.c", "SUPPORTED", 0.5, "(|F| < B / 2)"),
+    ("core/cycle/watch.c", "LEAST_PUSH", 1e-4, "is more than 1e-4 of what it bears"),
+]
+# Shares and places of a patch's points, in the order of tl_point_rule.
+POINT_RULE = ("16/75 (a₋ + a₊)", "12/25 a", "7/75 A_c", "5/8 of the way", "5/6 of the way")
+
+faults = []
+
+
+def fault(*text):
+    faults.append(" ".join(text))
+
+
+def value_of(path, name):
+    files = [ROOT / path] if path else sorted((ROOT / "core").rglob("*.[ch]"))
+    for file in files:
+        found = re.search(rf"(?:#define {name} |\b{name} = )\(?([-\d.e]+)", file.read_text(encoding="utf-8"))
+        if found:
+            return float(found[1])
+    return None
+
+
+def main():
+    for path, name, expected, words in NUMBERS:
+        value = value_of(path, name)
+        if value is None or abs(value - expected) > 1e-4 * abs(expected):
+            fault(f"{path}: {name} is {value}; docs/theory.md and this test have {expected:g}: '{words}'")
+        if words not in THEORY:
+            fault(f"docs/theory.md does not say '{words}' ({path}: {name}): correct this test with it")
+    rule = re.search(r"\(tl_point_rule\)\{(16[^}]*)\}", (ROOT / "core/narrow/frame2.h").read_text(encoding="utf-8"))
+    code = [re.sub(r"[. ]", "", part) for part in rule[1].split(",")] if rule else []
+    if code != [words.split(" ")[0] for words in POINT_RULE]:
+        fault(f"core/narrow/frame2.h: the rule of a patch's points is {code}")
+    for words in POINT_RULE:
+        if words not in THEORY:
+            fault(f"docs/theory.md does not say '{words}'")
+    for text in faults:
+        print(text)
+    print(f"theory: {len(NUMBERS) + len(POINT_RULE)} numbers, {len(faults)} faults")
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
