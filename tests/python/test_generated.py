@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""What tools write from the help is up to date and whole: the reference in docs/lua.md, scripts/meta/talus.d.lua and
-.luarc.json, which leads an editor to it."""
+"""What tools write is up to date and whole: from the help the reference in docs/lua.md, scripts/meta/talus.d.lua and
+.luarc.json, which leads an editor to it; from the tutorial its pictures."""
 import json
 import os
 import pathlib
@@ -8,6 +8,7 @@ import re
 import subprocess
 import sys
 import tempfile
+import xml.etree.ElementTree
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PROGRAM = pathlib.Path(os.environ.get("TALUS_PROGRAM", ROOT / "build/release/talus")).resolve()
@@ -37,10 +38,10 @@ end
 faults = []
 
 
-def run(*arguments):
+def run(*arguments, folder=ROOT):
     environment = dict(os.environ, TALUS_PROGRAM=str(PROGRAM))
     environment.pop("TALUS_PLUGIN_PATH", None)
-    return subprocess.run([PROGRAM, "--quiet", *arguments], cwd=ROOT, env=environment, stdin=subprocess.DEVNULL, text=True,
+    return subprocess.run([PROGRAM, "--quiet", *arguments], cwd=folder, env=environment, stdin=subprocess.DEVNULL, text=True,
                           capture_output=True, check=False)
 
 
@@ -79,6 +80,21 @@ def check_whole():
         faults.append(f"{META}: a field without a type")
 
 
+def check_pictures(folder):
+    """The tool for the pictures of the tutorial still draws every script of the page, and the page shows each."""
+    page = (ROOT / "docs/tutorial.md").read_text(encoding="utf-8")
+    done = run(str(ROOT / "scripts/tools/tutorial_pictures.lua"), str(ROOT / "docs/tutorial.md"), ".", folder=folder)
+    if done.returncode != 0:
+        faults.append(f"tutorial_pictures.lua: {done.stderr}")
+        return
+    for name in re.findall(r"<!-- file: (\w+)\.lua -->", page):
+        drawn = xml.etree.ElementTree.parse(folder / f"tutorial_{name}.svg")
+        if len(drawn.findall(".//{http://www.w3.org/2000/svg}polygon")) < 3:
+            faults.append(f"tutorial_pictures.lua: too little in the picture of {name}")
+        if f"(pictures/tutorial_{name}.svg)" not in page:
+            faults.append(f"docs/tutorial.md does not show {name}")
+
+
 def check_settings():
     settings = json.loads((ROOT / ".luarc.json").read_text(encoding="utf-8"))
     if not any((ROOT / folder / "talus.d.lua").exists() for folder in settings["workspace.library"]):
@@ -90,6 +106,7 @@ def check_settings():
 def main():
     with tempfile.TemporaryDirectory() as folder:
         check_fresh(pathlib.Path(folder))
+        check_pictures(pathlib.Path(folder))
     check_whole()
     check_settings()
     for text in faults:
