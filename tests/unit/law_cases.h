@@ -59,9 +59,13 @@ static const tl_value rough[] = {
     NUMBER("kni", 4e8), NUMBER("ks", KS),          NUMBER("vm", 5e-4),  NUMBER("jrc", 10),
     NUMBER("jcs", 2e7), NUMBER("phi_r", FRICTION), NUMBER("length", 1), NUMBER("linear_from", 1e6)};
 
+static const tl_value creeping[] = {NUMBER("kn", KN), NUMBER("ks", KS), NUMBER("a", 0.01),
+                                    NUMBER("b", 0.02), NUMBER("dc", 1e-4)};
+
 typedef struct law_case {
     const char *name;
     tl_args args;
+    int ages; /* changes without motion, in time */
 } law_case;
 
 #define CASE(name, values)                                                                         \
@@ -83,6 +87,7 @@ static const law_case law_cases[] = {
     CASE("slip_weakening", exponential),
     CASE("cohesive", mortar),
     CASE("barton_bandis", rough),
+    {"rate_state", {creeping, 5}, 1},
 };
 
 enum { LAWS = sizeof law_cases / sizeof law_cases[0] };

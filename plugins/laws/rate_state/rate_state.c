@@ -1,0 +1,376 @@
+/* rate_state.c - law "rate_state": friction that depends on the rate of slip and on a state of the surface.
+ *
+ *     f_n = max(0, kn A closure + f_n0)                      total, compression positive
+ *     |f_s| / A = s mu(V, theta) + eta V,  s = f_n / A       V: rate of slip, along the shear force
+ *     mu = a arsinh(V / (2 V0) exp((mu0 + b ln(V0 theta / D_c)) / a))
+ *     theta' = 1 - V theta / D_c              aging;     theta' = -(V theta / D_c) ln(V theta / D_c)      slip
+ *     f_s <- f_s - ks A (du_s - V dt)
+ *
+ * For V > 0 this is mu0 + a ln(V / V0) + b ln(V0 theta / D_c), regularised at V = 0. A state goes on by the exact solution at
+ * its V. The force of a step is that of the state in its middle, reached with the rate of the step itself, so that slip of many
+ * D_c in a step keeps to steady friction. V follows from y, with E = (mu0 + b ln(V0 theta / D_c)) / a at the beginning:
+ *
+ *     V = V0 (exp(y - E) - exp(-y - E)),    s mu + (ks dt + eta) V = |f_t| / A
+ *
+ * by Newton's steps from the rate of the step before, kept between bounds that close in on a root.
+ *
+ * Source: Dieterich, J. Geophys. Res. 84 (1979) 2161-2168; Ruina, J. Geophys. Res. 88 (1983) 10359-10370; the form with arsinh
+ * after Rice and Ben-Zion, Proc. Natl. Acad. Sci. 93 (1996) 3811-3818; eta: Rice, J. Geophys. Res. 98 (1993) 9885-9907.
+ *
+ * Limit: slip never ends, so a joint under shear stress creeps. Scaled masses falsify the rates. */
+#include <talus/elementary.h>
+#include <talus/plugin.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+/* Lanes worked on at a time: what is noted of them stays in the nearest cache. */
+#define STRIDE 64u
+/* Newton's passes at most: 4 do in steady slip, and some 50 halve the bounds to nothing. A lane that has found its root stays
+ * there, so that it does not matter which others it is with. */
+#define PASSES 60
+/* Step of y, which is about ln V, that is no step. */
+#define FOUND 1e-12
+/* Slip of a half step over D_c below which the exact solution is summed as a series. */
+#define SERIES 1e-3
+/* Least rate over V0 whose logarithm is taken. */
+#define SLOWEST 1e-100
+
+enum { AGING, SLIP };
+static const char *const evolutions[] = {[AGING] = "aging", [SLIP] = "slip", NULL};
+
+typedef struct params {
+    double kn, ks, mu0, a, b, distance, velocity, damping, theta;
+    int32_t evolution;
+} params;
+
+static const tl_param param_table[] = {
+    TL_PARAM(TL_PARAM_REAL, params, kn, "Pa/m", "normal stiffness of the joint",
+             .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
+    TL_PARAM(TL_PARAM_REAL, params, ks, "Pa/m", "shear stiffness of the joint",
+             .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
+    TL_PARAM(TL_PARAM_REAL, params, mu0, "", "coefficient of friction in steady slip at `velocity`",
+             .def = {0.6}, .flags = TL_PARAM_MIN_OPEN, .min = 0, .max = 10),
+    TL_PARAM(TL_PARAM_REAL, params, a, "", "direct effect of the rate",
+             .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = 1),
+    TL_PARAM(TL_PARAM_REAL, params, b, "", "effect of the state; b > a weakens with the rate",
+             .flags = TL_PARAM_REQUIRED, .min = 0, .max = 1),
+    TL_PARAM(TL_PARAM_REAL, params, distance, "m", "slip D_c over which the state changes",
+             .alias = "dc", .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0,
+             .max = INFINITY),
+    TL_PARAM(TL_PARAM_REAL, params, velocity, "m/s", "reference rate V0", .alias = "v0",
+             .def = {1e-6}, .flags = TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
+    TL_PARAM(TL_PARAM_REAL, params, damping, "Pa s/m",
+             "viscous part eta: shear modulus over twice the speed of shear waves, where blocks do "
+             "not radiate themselves",
+             .min = 0, .max = INFINITY),
+    TL_PARAM(TL_PARAM_REAL, params, theta, "s",
+             "state of a new contact; not given: distance / velocity, that of steady slip",
+             .flags = TL_PARAM_OPTIONAL | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
+    TL_PARAM(TL_PARAM_ENUM, params, evolution, "",
+             "how the state changes: it also ages at rest, or with slip only", .def = {AGING},
+             .choices = evolutions),
+};
+
+static const tl_state state_table[] = {
+    {.size = sizeof(tl_state),
+     .kind = TL_STATE_SCALAR,
+     .transfer = TL_TRANSFER_COPY,
+     .name = "theta",
+     .unit = "s",
+     .doc = "state of the surface; 0 before the first step",
+     .initial = 0},
+    {.size = sizeof(tl_state),
+     .kind = TL_STATE_SCALAR,
+     .transfer = TL_TRANSFER_COPY,
+     .name = "slip_rate",
+     .unit = "m/s",
+     .doc = "rate of slip in the last step",
+     .initial = 0},
+};
+
+static tl_status create(const void *given, void **self, tl_report *report)
+{
+    params *law = malloc(sizeof *law);
+    if (!law) {
+        snprintf(report->text, sizeof report->text, "out of memory");
+        return TL_E_MEMORY;
+    }
+    *law = *(const params *)given;
+    if (isnan(law->theta))
+        law->theta = law->distance / law->velocity;
+    *self = law;
+    return TL_OK;
+}
+
+/* (1 - exp(-x)) / x */
+static inline double mean_decay(double x, double decay)
+{
+    double series = 1 - x * (1. / 2 - x * (1. / 6 - x * (1. / 24 - x * (1. / 120))));
+    return x < SERIES ? series : (1 - decay) / (x < SERIES ? 1 : x);
+}
+
+/* The state after `time` at a rate of slip. */
+static inline double go_on(const int evolution, double distance, double theta, double rate,
+                           double time)
+{
+    double x = rate * time / distance, decay = tl_lane_exp(-x);
+    if (evolution == AGING)
+        return theta * decay + time * mean_decay(x, decay);
+    double least = SLOWEST, ratio = rate * theta / distance;
+    ratio = ratio > least ? ratio : least;
+    return theta * tl_lane_exp((decay - 1) * tl_lane_log(ratio));
+}
+
+/* d ln theta / d ln V of that, from -1 in steady slip to 0. */
+static inline double answer(const int evolution, double distance, double theta, double rate,
+                            double time)
+{
+    double x = rate * time / distance, decay = tl_lane_exp(-x);
+    if (evolution == AGING) {
+        double mean = mean_decay(x, decay);
+        double near = x < SERIES ? x * (1. / 2 - x * (1. / 3 - x * (1. / 8))) : mean - decay;
+        return -(x * theta * decay + time * near) / (theta * decay + time * mean);
+    }
+    double least = SLOWEST, ratio = rate * theta / distance;
+    ratio = ratio > least ? ratio : least;
+    return decay - 1 - x * decay * tl_lane_log(ratio);
+}
+
+/* What a step comes to before slip; stresses are those of the area. */
+typedef struct trial {
+    double total[STRIDE], x[STRIDE], y[STRIDE], z[STRIDE], shear[STRIDE];
+    double theta[STRIDE], effect[STRIDE], exponent[STRIDE], rate[STRIDE];
+    double root[STRIDE], low[STRIDE], high[STRIDE], found[STRIDE];
+} trial;
+
+/* Forces as if nothing slipped, and the bounds of y: no slip, and as much as leaves no stress. */
+static inline __attribute__((always_inline)) void press(const params *given,
+                                                        const tl_law_batch *batch, uint32_t begin,
+                                                        uint32_t lanes, trial *restrict t)
+{
+    const double *restrict area = batch->area + begin, *restrict closure = batch->closure + begin;
+    const double *restrict f_n0 = batch->f_n0 + begin, *restrict state = batch->state[0] + begin;
+    const double *restrict rate = batch->state[1] + begin;
+    const double *restrict du_x = batch->du_s[0] + begin, *restrict du_y = batch->du_s[1] + begin;
+    const double *restrict du_z = batch->du_s[2] + begin;
+    const double *restrict f_x = batch->f_s[0] + begin, *restrict f_y = batch->f_s[1] + begin;
+    const double *restrict f_z = batch->f_s[2] + begin;
+    const params law = *given;
+    const double slows = law.ks * batch->dt + law.damping;
+    const double per_velocity = law.velocity / law.distance;
+#pragma omp simd
+    for (uint32_t i = 0; i < lanes; i++) {
+        double per = area[i] > 0 ? 1 / area[i] : 0, spring = law.ks * area[i];
+        double total = law.kn * area[i] * closure[i] + f_n0[i];
+        double x = f_x[i] - spring * du_x[i];
+        double y = f_y[i] - spring * du_y[i];
+        double z = f_z[i] - spring * du_z[i];
+        double shear = sqrt(x * x + y * y + z * z) * per;
+        double theta = state[i] > 0 ? state[i] : law.theta;
+        double effect = total > 0 ? law.a * total * per : 0;
+        double exponent = (law.mu0 + law.b * tl_lane_log(theta * per_velocity)) / law.a;
+        /* arsinh(z exp E), for the bound and for the rate of the step before */
+        double viscous = 0.5 * shear / (slows > 0 ? slows * law.velocity : 1);
+        double before = 0.5 * rate[i] / law.velocity, small = tl_lane_exp(-2 * exponent);
+        double most = viscous + sqrt(viscous * viscous + small);
+        double last = before + sqrt(before * before + small);
+        double high = exponent + tl_lane_log(most > SLOWEST ? most : SLOWEST);
+        double root = exponent + tl_lane_log(last > SLOWEST ? last : SLOWEST);
+        high = high > 0 ? high : 0;
+        root = root > 0 ? root : 0;
+        t->total[i] = total;
+        t->x[i] = x;
+        t->y[i] = y;
+        t->z[i] = z;
+        t->shear[i] = shear;
+        t->theta[i] = theta;
+        t->effect[i] = effect;
+        t->exponent[i] = exponent;
+        t->low[i] = 0;
+        t->high[i] = high;
+        t->root[i] = root < high ? root : high;
+        t->found[i] = ((effect > 0) & (shear > 0)) ? 0 : 1;
+    }
+}
+
+/* One of Newton's passes; how many lanes have not found their root. */
+static inline __attribute__((always_inline)) double pass(const params *given, double dt,
+                                                         uint32_t lanes, trial *restrict t,
+                                                         const int evolution)
+{
+    const params law = *given;
+    const double slows = law.ks * dt + law.damping, half = 0.5 * dt, share = law.b / law.a;
+    double left = 0;
+#pragma omp simd reduction(+ : left)
+    for (uint32_t i = 0; i < lanes; i++) {
+        double y = t->root[i], e = t->exponent[i], start = t->theta[i];
+        double up = tl_lane_exp(y - e), down = tl_lane_exp(-y - e);
+        double rate = law.velocity * (up - down);
+        double theta = go_on(evolution, law.distance, start, rate, half);
+        double aged = share * tl_lane_log(theta / start);
+        /* arsinh(exp(aged) sinh y) */
+        double twice = tl_lane_exp(-2 * y), sine = 0.5 * (1 - twice);
+        double sum = sqrt(sine * sine + tl_lane_exp(-2 * (y + aged)));
+        double arsinh = y + aged + tl_lane_log(sine + sum);
+        double over = t->effect[i] * arsinh + slows * rate - t->shear[i];
+        double rise = 1 + share * answer(evolution, law.distance, start, rate, half);
+        double slope =
+            t->effect[i] * 0.5 * (1 + twice) * rise / sum + slows * law.velocity * (up + down);
+        double low = over < 0 ? y : t->low[i], high = over < 0 ? t->high[i] : y;
+        double next = y - over / (slope > 0 ? slope : 1);
+        double inside = ((next >= low) & (next <= high)) ? (slope > 0 ? 1 : 0) : 0;
+        next = inside > 0 ? next : 0.5 * (low + high);
+        double step = next > y ? next - y : y - next;
+        double moves = t->found[i] > 0 ? 0 : 1;
+        t->root[i] = moves > 0 ? next : y;
+        t->low[i] = low;
+        t->high[i] = high;
+        t->found[i] = step > FOUND ? t->found[i] : 1;
+        left += t->found[i] > 0 ? 0 : 1;
+    }
+    return left;
+}
+
+/* The rate of slip of each lane; 0 of open ones and in a step without time. */
+static inline __attribute__((always_inline)) void find_rates(const params *given, double dt,
+                                                             uint32_t lanes, trial *restrict t,
+                                                             const int evolution)
+{
+    const double velocity = given->velocity, slows = given->ks * dt + given->damping;
+    const double moves = dt > 0 ? 1 : 0, most = slows > 0 ? 1 / slows : 0;
+    for (int k = 0; k < PASSES && dt > 0; k++)
+        if (!(pass(given, dt, lanes, t, evolution) > 0))
+            break;
+#pragma omp simd
+    for (uint32_t i = 0; i < lanes; i++) {
+        double y = t->root[i], e = t->exponent[i], slides = t->shear[i] > 0 ? moves : 0;
+        double rate = slides * velocity * (tl_lane_exp(y - e) - tl_lane_exp(-y - e));
+        double limit = t->shear[i] * most;
+        rate = rate < limit ? rate : limit; /* the stress does not change its sign */
+        t->rate[i] = t->effect[i] > 0 ? rate : 0;
+    }
+}
+
+/* Forces, states, energies and flags; `mark` takes the flags as doubles: a loop over lanes of two widths is not vectorised for
+ * every machine. */
+static inline __attribute__((always_inline)) void settle(
+    const params *given, const tl_law_batch *batch, uint32_t begin, uint32_t lanes,
+    const trial *restrict t, double *restrict mark, double *restrict stored,
+    double *restrict dissipated, const int evolution)
+{
+    const double *restrict area = batch->area + begin;
+    double *restrict f_n = batch->f_n + begin, *restrict f_x = batch->f_s[0] + begin;
+    double *restrict f_y = batch->f_s[1] + begin, *restrict f_z = batch->f_s[2] + begin;
+    double *restrict state = batch->state[0] + begin, *restrict rates = batch->state[1] + begin;
+    const params law = *given;
+    const double dt = batch->dt, half_n = 0.5 / law.kn, half_s = 0.5 / law.ks;
+#pragma omp simd
+    for (uint32_t i = 0; i < lanes; i++) {
+        double per = area[i] > 0 ? 1 / area[i] : 0, total = t->total[i];
+        double shear = t->shear[i], slip = t->rate[i] * dt;
+        double left = total < 0 ? 0 : shear - law.ks * slip;
+        double scale = shear > 0 ? left / (shear > 0 ? shear : 1) : 1;
+        double whole = shear * area[i];
+        double along = f_x[i] * t->x[i] + f_y[i] * t->y[i] + f_z[i] * t->z[i];
+        double mean = 0.5 * (along / (whole > 0 ? whole : 1) + left * area[i]);
+        double heat = mean * (shear - left) / law.ks;
+        double press = total < 0 ? 0 : total;
+        dissipated[i] = heat > 0 ? heat : 0;
+        stored[i] = half_n * press * press * per + half_s * left * left * area[i];
+        double slips = t->rate[i] >= law.velocity ? TL_POINT_SLIPPING : 0;
+        mark[i] = total < 0 ? TL_POINT_OPEN : slips;
+        f_n[i] = total < 0 ? 0 : total;
+        f_x[i] = scale * t->x[i];
+        f_y[i] = scale * t->y[i];
+        f_z[i] = scale * t->z[i];
+        state[i] = go_on(evolution, law.distance, t->theta[i], t->rate[i], dt);
+        rates[i] = dt > 0 ? t->rate[i] : rates[i];
+    }
+}
+
+static inline __attribute__((always_inline)) void update_lanes(const params *law,
+                                                               const tl_law_batch *batch,
+                                                               uint32_t begin, uint32_t lanes,
+                                                               const int evolution)
+{
+    double mark[STRIDE], stored[STRIDE], dissipated[STRIDE];
+    trial t;
+    press(law, batch, begin, lanes, &t);
+    find_rates(law, batch->dt, lanes, &t, evolution);
+    settle(law, batch, begin, lanes, &t, mark, batch->stored ? batch->stored + begin : stored,
+           batch->dissipated ? batch->dissipated + begin : dissipated, evolution);
+    for (uint32_t i = 0; i < lanes; i++)
+        batch->flags[begin + i] = (uint32_t)(int32_t)mark[i];
+}
+
+TL_VECTORIZED static tl_status update(const void *self, const tl_law_batch *batch,
+                                      tl_report *report)
+{
+    (void)report;
+    const params *law = self;
+    for (uint32_t begin = 0; begin < batch->count; begin += STRIDE) {
+        uint32_t left = batch->count - begin, lanes = left < STRIDE ? left : STRIDE;
+        if (law->evolution == AGING)
+            update_lanes(law, batch, begin, lanes, AGING);
+        else
+            update_lanes(law, batch, begin, lanes, SLIP);
+    }
+    return TL_OK;
+}
+
+static void stiffness(const void *self, double *kn, double *ks)
+{
+    const params *law = self;
+    *kn = law->kn;
+    *ks = law->ks;
+}
+
+static uint32_t pulls(const void *self)
+{
+    (void)self;
+    return TL_PULL_NONE;
+}
+
+static const tl_law_ops ops = {.size = sizeof ops,
+                               .create = create,
+                               .update = update,
+                               .stiffness = stiffness,
+                               .destroy = free,
+                               .never_fails = true,
+                               .pulls = pulls};
+
+static const tl_kind kind = {
+    .size = sizeof kind,
+    .type = TL_KIND_LAW,
+    .name = "rate_state",
+    .doc = "Friction that depends on the rate of slip and on a state of the surface that ages.",
+    .params_size = sizeof(params),
+    .params = param_table,
+    .param_count = sizeof param_table / sizeof *param_table,
+    .param_stride = sizeof *param_table,
+    .states = state_table,
+    .state_count = sizeof state_table / sizeof *state_table,
+    .state_stride = sizeof *state_table,
+    .ops = &ops,
+};
+
+static const tl_plugin plugin = {
+    .size = sizeof plugin,
+    .abi_major = TL_ABI_MAJOR,
+    .abi_minor = TL_ABI_MINOR,
+    .id = "talus.rate_state",
+    .version = "0.1.0",
+    .doc = "Rate-and-state joint law.",
+    .licence = "BSD-3-Clause",
+    .kinds = &kind,
+    .kind_count = 1,
+    .kind_stride = sizeof kind,
+};
+
+TL_PLUGIN_EXPORT const tl_plugin *tl_plugin_entry(uint32_t host_major, uint32_t host_minor)
+{
+    (void)host_minor;
+    return host_major == TL_ABI_MAJOR ? &plugin : NULL;
+}
