@@ -62,6 +62,13 @@ static const tl_value rough[] = {
 static const tl_value creeping[] = {NUMBER("kn", KN), NUMBER("ks", KS), NUMBER("a", 0.01),
                                     NUMBER("b", 0.02), NUMBER("dc", 1e-4)};
 
+static const tl_value yielding[] = {NUMBER("an", KN), NUMBER("as", KS), NUMBER("phi_i", 45),
+                                    NUMBER("phi", FRICTION), NUMBER("roughness", 2e-3)};
+static const tl_value curved_yielding[] = {
+    NUMBER("an", 2e7),   NUMBER("en", 0.4),        NUMBER("as", 1e7),
+    NUMBER("es", 0.3),   NUMBER("kn_max", 2 * KN), NUMBER("ks_max", KS),
+    NUMBER("phi_i", 45), NUMBER("phi", FRICTION),  NUMBER("roughness", 2e-3)};
+
 typedef struct law_case {
     const char *name;
     tl_args args;
@@ -87,6 +94,8 @@ static const law_case law_cases[] = {
     CASE("slip_weakening", exponential),
     CASE("cohesive", mortar),
     CASE("barton_bandis", rough),
+    CASE("continuously_yielding", yielding),
+    CASE("continuously_yielding", curved_yielding),
     {"rate_state", {creeping, 5}, 1},
 };
 
