@@ -375,6 +375,34 @@ static size_t read_call(lua_State *L, tl_boundary_action *actions, bool *add)
     return count;
 }
 
+/* Writes a vector over the one in the field `name` of the table at the top of the stack; needs no memory. */
+static void rewrite(lua_State *L, const char *name, tl_vec3 v)
+{
+    const double number[3] = {v.x, v.y, v.z};
+    lua_getfield(L, -1, name);
+    for (int k = 0; k < 3; k++) {
+        lua_pushnumber(L, number[k]);
+        lua_rawseti(L, -2, k + 1);
+    }
+    lua_pop(L, 1);
+}
+
+/* Does what is to be done, now that the tables of the results are made: a call that fails changes nothing. They are at the top
+ * of the stack, one or, of sides, a table of them. */
+static void act(lua_State *L, tl_model *model, const tl_boundary_action *actions, size_t sides,
+                bool add, holder *done)
+{
+    tl_lua_ok(L, model, tl_model_boundary(model, actions, sides ? sides : 1, add, done->result));
+    for (size_t i = 0; i < (sides ? sides : 1); i++) {
+        if (sides)
+            lua_getfield(L, -1, side_names[actions[i].where.side - TL_SIDE_XMIN]);
+        rewrite(L, "force", done->result[i].force);
+        rewrite(L, "moment", done->result[i].moment);
+        if (sides)
+            lua_pop(L, 1);
+    }
+}
+
 int tl_lua_boundary(lua_State *L)
 {
     tl_model *model = tl_lua_model_of(L, "boundary");
@@ -384,16 +412,24 @@ int tl_lua_boundary(lua_State *L)
     tl_boundary_action actions[SIDES];
     bool add;
     size_t sides = read_call(L, actions, &add);
-    holder *h = push_holder(L);
-    tl_lua_ok(L, model, tl_model_boundary(model, actions, sides ? sides : 1, add, h->result));
-    if (sides == 0) {
-        push_result(L, &h->result[0]);
-        return 1;
+    tl_boundary_action found[SIDES];
+    size_t count = sides ? sides : 1;
+    bool acts = false;
+    for (size_t i = 0; i < count; i++) {
+        acts = acts || !does_nothing(&actions[i]);
+        found[i] = actions[i];
+        found[i].loads = found[i].fixed = found[i].roller = false;
     }
-    lua_createtable(L, 0, (int)sides);
-    for (size_t i = 0; i < sides; i++) {
+    holder *h = push_holder(L), *done = push_holder(L);
+    tl_lua_ok(L, model, tl_model_boundary(model, found, count, add, h->result));
+    if (sides)
+        lua_createtable(L, 0, (int)sides);
+    for (size_t i = 0; i < count; i++) {
         push_result(L, &h->result[i]);
-        lua_setfield(L, -2, side_names[actions[i].where.side - TL_SIDE_XMIN]);
+        if (sides)
+            lua_setfield(L, -2, side_names[actions[i].where.side - TL_SIDE_XMIN]);
     }
+    if (acts)
+        act(L, model, actions, sides, add, done);
     return 1;
 }

@@ -59,6 +59,10 @@ local calls = {
         end
         return m.model:generate("prism", list).after
     end },
+    { "section", function(m)
+        return m.model:generate("profile", { section = { { 20, 0 }, { 22, 0 }, { 22, 1 }, { 21, 1 }, { 21, 2 }, { 20, 2 } },
+            to = 1, density = 2000, group = "wall" }).after
+    end },
     { "delete", function(m) m.model:blocks { group = "tunnel" }:delete() end },
     { "delete a single one", function(m) m.model:blocks { group = "row" }:where(function(b) return b.centroid[1] > 12 end):delete() end },
     { "law", function(m) m.model:joint("*", "coulomb", COULOMB) end },
@@ -115,6 +119,18 @@ local calls = {
         local block = m.model:blocks()[1]
         return sum + #block.vertices + #block.faces + #block.neighbours
     end },
+    { "points", function(m)
+        local contact, sum = m.model:contacts {}[1], 0
+        for _, point in ipairs(contact.points) do sum = sum + point.area end
+        return sum + #contact.states
+    end },
+    { "values", function(m) return #m.model:blocks():values("velocity") + #m.model:contacts():values("opening", "flat") end },
+    { "lists", function(m) return #m.model:joints() + #m.model:laws() + #m.model:groups() + #talus.laws() end },
+    { "outer faces", function(m) return m.model:boundary { facing = { 0, 0, 1 } }.area end },
+    { "boundary", function(m)
+        return m.model:boundary { facing = { 0, 0, 1 }, within = 60, pressure = 1e3, fixed = true }.force[3]
+    end },
+    { "cycle with boundary", function(m) return m.model:cycle(2).ratio end, run = true },
     { "write_vtk", function(m)
         local function written() return text_of(TMP .. "/vtk_blocks.vtk.series") end
         m.model:write_vtk(TMP .. "/vtk") -- the last that needs memory
