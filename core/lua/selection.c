@@ -4,6 +4,7 @@
  * so they are the same bits every time. */
 #include "front.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -88,9 +89,67 @@ static void field_value(lua_State *L, const tl_lua_selection *selection, size_t 
     tl_lua_ok(L, model, selection->kind->field(model, selection->ids[i], field, value));
 }
 
+/* Values of the state of a law named at stack index 2, which it pushes in their order, NaN where a law has none of that name;
+ * NULL when it is no state. */
+static const double *state_values(lua_State *L, const tl_lua_selection *selection,
+                                  const char *method, size_t *width)
+{
+    const tl_lua_kind *kind = selection->kind;
+    const char *name = tl_lua_text(L, 2, method, "the field's name");
+    size_t count;
+    const tl_field *fields = kind->fields(&count);
+    for (size_t i = 0; i < count; i++)
+        if (strcmp(fields[i].name, name) == 0)
+            return NULL;
+    tl_model *model = tl_lua_living(L, selection->owner);
+    if (kind->values(model, NULL, 0, name, NULL, width) == TL_E_NOT_FOUND)
+        return NULL;
+    tl_lua_arity(L, 2, method);
+    double *values = lua_newuserdatauv(L, (selection->count * *width + 1) * sizeof *values, 0);
+    tl_lua_ok(L, model, kind->values(model, selection->ids, selection->count, name, values, width));
+    return values;
+}
+
+/* Pushes the sum of a state over the items that have it. */
+static int sum_states(lua_State *L, const double *values, size_t count, size_t width)
+{
+    double sum[3] = {0, 0, 0};
+    for (size_t i = 0; i < count; i++)
+        for (size_t k = 0; k < width; k++)
+            sum[k] += isnan(values[i * width]) ? 0 : values[i * width + k];
+    if (width == 1)
+        lua_pushnumber(L, sum[0]);
+    else
+        tl_lua_push_numbers(L, sum, width);
+    return 1;
+}
+
+/* Pushes the largest (sign 1) or smallest (sign -1) value of a state. */
+static int extreme_state(lua_State *L, const char *method, double sign, const double *values,
+                         size_t count, size_t width)
+{
+    const char *name = lua_tostring(L, 2);
+    if (width > 1)
+        tl_lua_fail(L, "%s: the state '%s' is a vector; only single numbers are compared", method,
+                    name);
+    double best = NAN;
+    for (size_t i = 0; i < count; i++)
+        if (!isnan(values[i]) && !(sign * values[i] <= sign * best))
+            best = values[i];
+    if (isnan(best))
+        tl_lua_fail(L, "%s: no contact of the selection has a law with the state '%s'", method,
+                    name);
+    lua_pushnumber(L, best);
+    return 1;
+}
+
 static int selection_sum(lua_State *L)
 {
     tl_lua_selection *selection = self(L, "sum");
+    size_t width;
+    const double *values = state_values(L, selection, "sum", &width);
+    if (values)
+        return sum_states(L, values, selection->count, width);
     size_t field = number_field(L, selection->kind, "sum"), count;
     tl_field_kind kind = selection->kind->fields(&count)[field].kind;
     tl_field_value sum = {{0}, NULL}, value;
@@ -107,6 +166,10 @@ static int selection_sum(lua_State *L)
 static int extreme(lua_State *L, const char *method, double sign)
 {
     tl_lua_selection *selection = self(L, method);
+    size_t width;
+    const double *values = state_values(L, selection, method, &width);
+    if (values)
+        return extreme_state(L, method, sign, values, selection->count, width);
     size_t field = number_field(L, selection->kind, method), count;
     const tl_field *f = &selection->kind->fields(&count)[field];
     if (f->kind == TL_FIELD_VEC3 || f->kind == TL_FIELD_BOOL)

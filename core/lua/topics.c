@@ -34,8 +34,10 @@ static const tl_lua_key block_verbs[] = {
 
 static const tl_lua_key contact_verbs[] = {
     {"#sel, sel[i], ipairs(sel)", "", "number of contacts, the i-th one, all in order of id"},
-    {"sel:sum(field)", "", "sum of a field of numbers; of a vector field a vector"},
-    {"sel:max(field), sel:min(field)", "", "largest and smallest value of a field of numbers"},
+    {"sel:sum(field)", "",
+     "sum of a field of numbers, or of a state of a law by its name; of a vector a vector"},
+    {"sel:max(field), sel:min(field)", "",
+     "largest and smallest value of a field of numbers, or of a state, where the law has it"},
     {"sel:values(field)", "",
      "list of the field's values, in the order of the selection; likewise a state of a law, by its "
      "name, NaN where the contact's law has no such state. With \"flat\" after it vectors are not "

@@ -97,6 +97,7 @@ check.equal(contacts:values("state")[1], contact.state)
 check.equal(contacts:values("blocks")[1][2], contact.blocks[2].id)
 check.equal(contacts:values("blocks", "flat")[1], contact.blocks[1].id)
 check.near(contacts:values("opening")[1], contact.states.opening, 0)
+check.near(contacts:max("opening"), contact.states.opening, 0)
 check.near(contacts:values("normal_force")[1], contact.normal_force, 0)
 check.equal(#model:blocks { group = "none" }:values("displacement"), 0)
 check.equal(#model:blocks { group = "none" }:values("displacement", "flat"), 0)
@@ -121,6 +122,13 @@ do
         bond[m:contacts {}[i].joint] = value
     end
     check.equal(bond["b:1"], 1)
+    check.equal(m:contacts {}:sum("bond"), 1)
+    check.equal(m:contacts {}:min("bond"), 1)
+    check.equal(m:contacts {}:max("opening"), 0)
+    check.refused(m, function() m:contacts { joint = "a" }:max("bond") end, "no contact of the selection has a law with the state 'bond'")
+    check.refused(m, function() m:contacts {}:sum("bnod") end, "a contact has no field of numbers")
+    check.refused(m, function() m:contacts {}:sum("bond", 2) end, "1 argument too many")
+    check.equal(m:contacts { joint = "a" }:sum("bond"), 0)
     check.holds(bond["a:1"] ~= bond["a:1"], "NaN where the law has no bond")
 end
 
