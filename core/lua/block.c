@@ -4,6 +4,7 @@
 
 #include <math.h>
 #include <string.h>
+#include <talus/boundary.h>
 #include <talus/fields.h>
 
 #define MESH_TYPE "talus.mesh"
@@ -98,7 +99,7 @@ static bool block_extra(lua_State *L, tl_model *model, tl_id id, const char *nam
 
 typedef struct block_args {
     int64_t id;
-    const char *group, *joint;
+    const char *group, *joint, *boundary;
     tl_vec3 containing;
     int32_t fixed;
 } block_args;
@@ -111,6 +112,9 @@ static const tl_param block_params[] = {
     TL_PARAM(TL_PARAM_VEC3, block_args, containing, "m", "blocks that contain this point",
              .flags = TL_PARAM_OPTIONAL),
     TL_PARAM(TL_PARAM_STRING, block_args, joint, "", "blocks with a face on this joint or plane",
+             .flags = TL_PARAM_OPTIONAL),
+    TL_PARAM(TL_PARAM_STRING, block_args, boundary, "",
+             "blocks with an outer face on this side of the model: \"xmin\", \"xmax\" ... \"zmax\"",
              .flags = TL_PARAM_OPTIONAL),
     TL_PARAM(TL_PARAM_BOOL, block_args, fixed, "", "fixed blocks, or free ones",
              .flags = TL_PARAM_OPTIONAL),
@@ -206,6 +210,42 @@ static void read_filter(lua_State *L, block_args *args, block_nested *nested,
     filter->hidden = read_hidden(L);
 }
 
+int32_t tl_lua_side(lua_State *L, const char *context, const char *name)
+{
+    tl_side side = tl_side_named(name);
+    if (side == TL_SIDE_ANY) {
+        tl_lua_names known = {0};
+        tl_lua_names_list(&known, tl_side_names());
+        tl_lua_unknown(L, lua_pushfstring(L, "%s: unknown side", context), name, &known);
+    }
+    return (int32_t)side;
+}
+
+/* Keeps the blocks with an outer face on a side. Both lists ascend. */
+static tl_status keep_on_side(tl_model *model, tl_lua_selection *found, int32_t side)
+{
+    const tl_vec3 none = {NAN, NAN, NAN};
+    const tl_boundary_action find = {.where = {side, none, none, {none, none}, none, NAN, NAN}};
+    tl_boundary_result result;
+    tl_status status = found->count ? tl_model_boundary(model, &find, 1, false, &result) : TL_OK;
+    if (status == TL_E_NOT_FOUND) /* a corner is the farthest on that side, and no face */
+        found->count = 0;
+    if (found->count == 0)
+        return TL_OK;
+    if (status != TL_OK)
+        return status;
+    size_t kept = 0, k = 0;
+    for (size_t i = 0; i < found->count; i++) {
+        while (k < result.block_count && result.blocks[k] < found->ids[i])
+            k++;
+        if (k < result.block_count && result.blocks[k] == found->ids[i])
+            found->ids[kept++] = found->ids[i];
+    }
+    found->count = kept;
+    tl_boundary_free(&result);
+    return TL_OK;
+}
+
 int tl_lua_blocks(lua_State *L)
 {
     tl_model *model = tl_lua_model_of(L, "blocks");
@@ -216,6 +256,7 @@ int tl_lua_blocks(lua_State *L)
     tl_block_filter filter;
     luaL_checkstack(L, 32, "too many values");
     read_filter(L, &args, &nested, &filter);
+    int32_t side = args.boundary ? tl_lua_side(L, "blocks", args.boundary) : TL_SIDE_ANY;
     int where = 0;
     if (lua_istable(L, 2) && lua_getfield(L, 2, "where") != LUA_TNIL) {
         where = lua_gettop(L);
@@ -225,6 +266,10 @@ int tl_lua_blocks(lua_State *L)
     }
     tl_lua_selection *found = tl_lua_selection_push(L, &tl_lua_block_kind, 1);
     tl_lua_ok(L, model, tl_blocks_select(model, &filter, &found->ids, &found->count));
+    if (side != TL_SIDE_ANY) {
+        tl_status status = keep_on_side(model, found, side);
+        tl_lua_ok(L, model, status);
+    }
     if (where)
         tl_lua_selection_filter(L, lua_gettop(L), where);
     return 1;

@@ -10,8 +10,6 @@
 #define RESULT_TYPE "talus.boundary"
 #define SIDES 6
 
-static const char *const side_names[] = {"xmin", "xmax", "ymin", "ymax", "zmin", "zmax", NULL};
-
 typedef struct boundary_args {
     const char *side;
     tl_vec3 facing;
@@ -175,24 +173,9 @@ static void push_result(lua_State *L, tl_boundary_result *r)
 
 /* ---------------------------------------------------------------- arguments -------------- */
 
-/* The side of a name; TL_SIDE_ANY when there is none of that name. */
-static int32_t side_of(const char *name)
+static const char *name_of(int32_t side)
 {
-    for (int32_t i = 0; i < SIDES; i++)
-        if (strcmp(side_names[i], name) == 0)
-            return TL_SIDE_XMIN + i;
-    return TL_SIDE_ANY;
-}
-
-static int32_t read_side(lua_State *L, const char *name)
-{
-    int32_t side = side_of(name);
-    if (side == TL_SIDE_ANY) {
-        tl_lua_names known = {0};
-        tl_lua_names_list(&known, side_names);
-        tl_lua_unknown(L, "boundary: unknown side", name, &known);
-    }
-    return side;
+    return tl_side_names()[side - TL_SIDE_XMIN];
 }
 
 /* Reads the tensor `key` of the table at `index`; true when it is given. */
@@ -284,7 +267,7 @@ static void read_action(lua_State *L, int index, boundary_args *args, tl_boundar
     spec.keys = table_keys;
     tl_lua_read(L, index, &spec, false, args);
     if (args->side)
-        a->where.side = read_side(L, args->side);
+        a->where.side = tl_lua_side(L, "boundary", args->side);
     read_plane(L, index, &a->where);
     read_box(L, index, &a->where.box);
     a->where.facing = args->facing;
@@ -302,7 +285,7 @@ static bool is_anywhere(const tl_boundary_where *w)
 /* Reads what the value at the top of the stack says of a side: "roller", "fixed" or a table. */
 static void read_side_value(lua_State *L, int32_t side, double tolerance, tl_boundary_action *a)
 {
-    const char *name = side_names[side - TL_SIDE_XMIN];
+    const char *name = name_of(side);
     const char *word = lua_type(L, -1) == LUA_TSTRING ? lua_tostring(L, -1) : "";
     boundary_args args;
     *a = no_action();
@@ -333,7 +316,7 @@ static size_t read_sides(lua_State *L, double tolerance, tl_boundary_action *act
     size_t count = 0;
     for (int32_t i = 0; i < SIDES; i++) {
         int top = lua_gettop(L);
-        if (lua_getfield(L, 2, side_names[i]) != LUA_TNIL)
+        if (lua_getfield(L, 2, name_of(TL_SIDE_XMIN + i)) != LUA_TNIL)
             read_side_value(L, TL_SIDE_XMIN + i, tolerance, &actions[count++]);
         lua_settop(L, top);
     }
@@ -353,7 +336,7 @@ static size_t read_call(lua_State *L, tl_boundary_action *actions, bool *add)
     *add = false;
     if (lua_type(L, 2) == LUA_TSTRING) {
         actions[0] = no_action();
-        actions[0].where.side = read_side(L, lua_tostring(L, 2));
+        actions[0].where.side = tl_lua_side(L, "boundary", lua_tostring(L, 2));
         return 0;
     }
     if (!lua_istable(L, 2))
@@ -395,7 +378,7 @@ static void act(lua_State *L, tl_model *model, const tl_boundary_action *actions
     tl_lua_ok(L, model, tl_model_boundary(model, actions, sides ? sides : 1, add, done->result));
     for (size_t i = 0; i < (sides ? sides : 1); i++) {
         if (sides)
-            lua_getfield(L, -1, side_names[actions[i].where.side - TL_SIDE_XMIN]);
+            lua_getfield(L, -1, name_of(actions[i].where.side));
         rewrite(L, "force", done->result[i].force);
         rewrite(L, "moment", done->result[i].moment);
         if (sides)
@@ -427,7 +410,7 @@ int tl_lua_boundary(lua_State *L)
     for (size_t i = 0; i < count; i++) {
         push_result(L, &h->result[i]);
         if (sides)
-            lua_setfield(L, -2, side_names[actions[i].where.side - TL_SIDE_XMIN]);
+            lua_setfield(L, -2, name_of(actions[i].where.side));
     }
     if (acts)
         act(L, model, actions, sides, add, done);

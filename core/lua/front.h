@@ -189,6 +189,8 @@ void tl_lua_run_keep_error(void);
 extern const tl_lua_spec tl_lua_boundary_spec;
 extern const tl_lua_key tl_lua_boundary_results[];
 int tl_lua_boundary(lua_State *L);
+/* The tl_side of a name; raises, beginning with `context`, when there is none. In block.c. */
+int32_t tl_lua_side(lua_State *L, const char *context, const char *name);
 
 /* ---- what there is: lists.c ---- */
 

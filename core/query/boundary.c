@@ -15,6 +15,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 #include <talus/elementary.h>
 
 /* Off the plane, or out of the box, by less than this times the block's size a corner is in it: what contacts take for
@@ -44,6 +45,21 @@ typedef struct body_sum {
 } body_sum;
 
 /* ---------------------------------------------------------------- which faces ------------ */
+
+const char *const *tl_side_names(void)
+{
+    static const char *const names[] = {"xmin", "xmax", "ymin", "ymax", "zmin", "zmax", NULL};
+    return names;
+}
+
+tl_side tl_side_named(const char *name)
+{
+    const char *const *names = tl_side_names();
+    for (int i = 0; names[i]; i++)
+        if (strcmp(names[i], name) == 0)
+            return (tl_side)(TL_SIDE_XMIN + i);
+    return TL_SIDE_ANY;
+}
 
 static tl_vec3 side_normal(int32_t side)
 {

@@ -49,9 +49,26 @@ do
     local hash = model:state_hash()
     model:boundary("xmin")
     check.equal(model:state_hash(), hash)
+    -- as a condition of blocks
+    check.equal(#model:blocks { boundary = "zmin" }, 4)
+    check.equal(#model:blocks { boundary = "zmin", inside = { min = { 0, 0, 0 }, max = { 2, 4, 4 } } }, 2)
+    check.equal(model:blocks { boundary = "xmax" }[1], model:boundary("xmax").blocks[1])
+    check.equal(#model:blocks { boundary = "zmin", group = "none" }, 0)
+    check.refused(model, function() model:blocks { boundary = "zmim" } end, "blocks: unknown side 'zmim'; did you mean 'zmin'?")
     -- hidden ones count
     model:blocks {}:hide()
     check.equal(#model:boundary("zmin").blocks, 4)
+    check.equal(#model:blocks { boundary = "zmin" }, 0)
+    check.equal(#model:blocks { boundary = "zmin", hidden = true }, 4)
+end
+
+-- Of a body of several blocks its surface is outer, and no seam.
+do
+    local model = empty()
+    model:generate("profile", { section = { { 0, 0 }, { 3, 0 }, { 3, 1 }, { 2, 1 }, { 2, 3 }, { 1, 3 }, { 1, 1 }, { 0, 1 } },
+        to = 2, density = 2000 })
+    check.holds(#model:blocks() > 1, "several")
+    check.near(model:boundary { facing = { 0, 0, 1 }, within = 180 }.area, 12 * 2 + 2 * 5, 1e-9)
 end
 
 -- A cube that stands on a larger one leaves a ring bare; and so does one that is joined to it.
@@ -248,6 +265,9 @@ refused(function() model:boundary { facing = { 0, 0, 1 }, within = 180, roller =
 do
     local tilted = empty()
     tilted:generate("tetrahedron", { vertices = { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } }, density = 2000 })
+    check.refused(tilted, function() tilted:boundary("zmax") end, "no outer face is there")
+    check.equal(#tilted:blocks { boundary = "zmax" }, 0)
+    check.equal(#tilted:blocks { boundary = "zmin" }, 1)
     check.refused(tilted, function() tilted:boundary { facing = { 1, 1, 1 }, roller = true } end,
         "a roller is held along x, y or z, but face")
     check.refused(empty(), function() empty():boundary("xmin") end, "for the model has no blocks")

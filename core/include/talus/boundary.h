@@ -21,6 +21,11 @@ typedef enum tl_side {
     TL_SIDE_ZMAX
 } tl_side;
 
+/* The side of a name, "xmin" to "zmax"; TL_SIDE_ANY for another. */
+TL_API tl_side tl_side_named(const char *name);
+/* The names, NULL terminated, from TL_SIDE_XMIN on. */
+TL_API const char *const *tl_side_names(void);
+
 /* Which outer faces; all that is given must hold. */
 typedef struct tl_boundary_where {
     int32_t side; /* tl_side: in that plane of the box about all blocks, looking outward */
