@@ -21,6 +21,7 @@
  * the host has from a linear pressure, is not its own with en > 0. */
 #include <talus/elementary.h>
 #include <talus/plugin.h>
+#include <talus/version.h>
 
 #include <math.h>
 #include <stdio.h>
@@ -395,7 +396,7 @@ static const tl_plugin plugin = {
     .abi_major = TL_ABI_MAJOR,
     .abi_minor = TL_ABI_MINOR,
     .id = "talus.continuously_yielding",
-    .version = "0.1.0",
+    .version = TALUS_VERSION,
     .doc = "Continuously yielding joint law.",
     .licence = "BSD-3-Clause",
     .kinds = &kind,

@@ -20,6 +20,7 @@
  * Limit: slip never ends, so a joint under shear stress creeps. Scaled masses falsify the rates. */
 #include <talus/elementary.h>
 #include <talus/plugin.h>
+#include <talus/version.h>
 
 #include <math.h>
 #include <stdio.h>
@@ -361,7 +362,7 @@ static const tl_plugin plugin = {
     .abi_major = TL_ABI_MAJOR,
     .abi_minor = TL_ABI_MINOR,
     .id = "talus.rate_state",
-    .version = "0.1.0",
+    .version = TALUS_VERSION,
     .doc = "Rate-and-state joint law.",
     .licence = "BSD-3-Clause",
     .kinds = &kind,
