@@ -114,7 +114,8 @@ static void cut(tl_model *m, const char *joint, double z)
 /* A column of three blocks: two contacts, the lower with the law "first", the upper with "second". */
 static tl_model *column(void)
 {
-    tl_model_config config = {.gravity = {0, 0, -10}, .seed = 1, .threads = 1, .reuse_geometry = 1};
+    tl_model_config config = tl_model_config_default();
+    config.gravity = (tl_vec3){0, 0, -10};
     tl_model *m = NULL;
     tl_error error = {TL_OK, ""};
     tl_plugins_load_default();
@@ -138,7 +139,9 @@ static tl_model *column(void)
 static tl_id *contacts_of(tl_model *m, const char *joint, size_t *count)
 {
     tl_id *ids = NULL;
-    CHECK_INT(tl_contacts_select(m, &(tl_contact_filter){.joint = joint}, &ids, count), TL_OK);
+    tl_contact_filter filter = tl_contact_filter_default();
+    filter.joint = joint;
+    CHECK_INT(tl_contacts_select(m, &filter, &ids, count), TL_OK);
     return ids;
 }
 
@@ -251,7 +254,8 @@ TEST(blocks_in_the_order_asked_for)
     tl_model *m = column();
     tl_id *ids = NULL;
     size_t count, width;
-    CHECK_INT(tl_blocks_select(m, &(tl_block_filter){.fixed = -1}, &ids, &count), TL_OK);
+    const tl_block_filter filter = tl_block_filter_default();
+    CHECK_INT(tl_blocks_select(m, &filter, &ids, &count), TL_OK);
     CHECK_INT(count, 3);
     const tl_id turned[] = {ids[2], ids[0], ids[2]};
     double mass[3], centroid[9], inertia[18];

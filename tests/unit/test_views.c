@@ -20,7 +20,8 @@ static void create_box(tl_model *m, double x, double z)
 /* Three stacked boxes far from zero, the lowest held. */
 static tl_model *stack(void)
 {
-    tl_model_config config = {.gravity = {1, 0, -10}, .seed = 1, .threads = 1, .reuse_geometry = 1};
+    tl_model_config config = tl_model_config_default();
+    config.gravity = (tl_vec3){1, 0, -10};
     tl_model *m = NULL;
     tl_error error = {TL_OK, ""};
     tl_plugins_load_default();
@@ -191,7 +192,7 @@ TEST(the_structure_tells_of_rows)
 
 TEST(an_empty_model_has_empty_views)
 {
-    tl_model_config config = {.gravity = {0, 0, -10}, .seed = 1, .threads = 1};
+    tl_model_config config = tl_model_config_default();
     tl_model *m = NULL;
     tl_error error = {TL_OK, ""};
     CHECK_INT(tl_model_create(&config, &m, &error), TL_OK);
