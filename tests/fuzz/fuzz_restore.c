@@ -56,8 +56,8 @@ static void free_parts(parts *p)
 static bool unpack(const chunk_head *head, const uint8_t *stored, part *out)
 {
     size_t bytes = head->packed ? (size_t)(head->size * head->items) : (size_t)head->stored;
-    if (head->packed && (head->size > MOST_UNPACKED || head->items > MOST_UNPACKED ||
-                         bytes > MOST_UNPACKED))
+    if (head->packed &&
+        (head->size > MOST_UNPACKED || head->items > MOST_UNPACKED || bytes > MOST_UNPACKED))
         return false;
     out->data = malloc(bytes + 1);
     out->bytes = bytes;
@@ -104,7 +104,12 @@ static size_t put_together(const parts *p, uint8_t *data, size_t most)
     memcpy(data, &file, sizeof file);
     for (size_t i = 0; i <= p->count; i++) {
         bool last = i == p->count;
-        const part *one = last ? &(part){.name = "end", .name_bytes = 3, .size = 8, .items = 1, .bytes = 8, .data = (uint8_t *)&sum}
+        const part *one = last ? &(part){.name = "end",
+                                         .name_bytes = 3,
+                                         .size = 8,
+                                         .items = 1,
+                                         .bytes = 8,
+                                         .data = (uint8_t *)&sum}
                                : &p->list[i];
         if (!last && strcmp(one->name, "end") == 0)
             continue;
@@ -142,8 +147,20 @@ static size_t any(size_t below)
 static void put_number(part *p)
 {
     static const double reals[] = {0, -1, 1, 1e-300, 1e300, -1e300, 1e9, 0.5};
-    uint64_t numbers[] = {0, 1, 2, 7, 255, 65535, 0xffffffffu, 0x7fffffffu, 0x80000000u, UINT64_MAX,
-                          0x7ff8000000000000u, 0x7ff0000000000000u, p->items, p->items - 1};
+    uint64_t numbers[] = {0,
+                          1,
+                          2,
+                          7,
+                          255,
+                          65535,
+                          0xffffffffu,
+                          0x7fffffffu,
+                          0x80000000u,
+                          UINT64_MAX,
+                          0x7ff8000000000000u,
+                          0x7ff0000000000000u,
+                          p->items,
+                          p->items - 1};
     size_t width = (size_t)1 << any(4), which = any(22);
     uint64_t number = numbers[which % 14];
     if (which >= 14)
@@ -180,9 +197,7 @@ static void change(parts *p)
             one->bytes = one->items * one->size;
         break;
     case 2:
-    case 3:
-        mutate_bytes(one);
-        break;
+    case 3: mutate_bytes(one); break;
     default:
         for (size_t k = 1 + any(3); k-- > 0;)
             put_number(one);

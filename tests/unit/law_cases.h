@@ -77,10 +77,7 @@ typedef struct law_case {
 
 #define CASE(name, values)                                                                         \
     {                                                                                              \
-        (name),                                                                                    \
-        {                                                                                          \
-            (values), sizeof(values) / sizeof(values)[0]                                           \
-        }                                                                                          \
+        (name), {(values), sizeof(values) / sizeof(values)[0]}, 0                                  \
     }
 
 /* The first five are known by their numbers. */
