@@ -7,7 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
-#include <unistd.h>
 
 #define ENDING ".autosave.talus"
 
@@ -45,21 +44,4 @@ void tl_lua_autosave(tl_lua_options *options, tl_model *model)
         snprintf(text, sizeof text, "autosave: %s", tl_model_error(model)->text);
         tl_lua_log(options, text);
     }
-}
-
-/* talus.resumed(options): as talus.restore of the script's last save; nil without --resume, or when nothing was saved. */
-int tl_lua_resumed(lua_State *L)
-{
-    tl_lua_arity(L, 1, "talus.resumed");
-    lua_settop(L, 1);
-    const tl_lua_options *options = tl_lua_options_of(L);
-    if (!options->resume || !options->save_path || access(options->save_path, F_OK) != 0) {
-        lua_pushnil(L);
-        return 1;
-    }
-    lua_pushcfunction(L, tl_lua_restore);
-    lua_pushstring(L, options->save_path);
-    lua_pushvalue(L, 1);
-    lua_call(L, 2, 1);
-    return 1;
 }

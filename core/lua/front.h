@@ -335,6 +335,7 @@ extern const tl_lua_key tl_lua_restore_keys[];
 int tl_lua_copy(lua_State *L);
 int tl_lua_save(lua_State *L);
 int tl_lua_restore(lua_State *L);
+int tl_lua_resumed(lua_State *L);
 
 /* ---- runs that are saved as they go: autosave.c ---- */
 
@@ -342,7 +343,6 @@ int tl_lua_restore(lua_State *L);
 char *tl_lua_autosave_path(const char *script);
 /* Between two steps of a run: saves the model when it is time to. */
 void tl_lua_autosave(tl_lua_options *options, tl_model *model);
-int tl_lua_resumed(lua_State *L);
 
 /* ---- help: help.c, topics.c ---- */
 

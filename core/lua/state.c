@@ -5,6 +5,7 @@
 #include "front.h"
 
 #include <string.h>
+#include <unistd.h>
 
 const tl_lua_key tl_lua_restore_keys[] = {
     {"threads", "whole number",
@@ -180,5 +181,22 @@ int tl_lua_restore(lua_State *L)
         return tl_lua_raise(L, &error);
     tl_lua_model_begin(L, object);
     lua_settop(L, 3);
+    return 1;
+}
+
+/* talus.resumed(options): as talus.restore of the script's last save; nil without --resume, or when nothing was saved. */
+int tl_lua_resumed(lua_State *L)
+{
+    tl_lua_arity(L, 1, "talus.resumed");
+    lua_settop(L, 1);
+    const tl_lua_options *options = tl_lua_options_of(L);
+    if (!options->resume || !options->save_path || access(options->save_path, F_OK) != 0) {
+        lua_pushnil(L);
+        return 1;
+    }
+    lua_pushcfunction(L, tl_lua_restore);
+    lua_pushstring(L, options->save_path);
+    lua_pushvalue(L, 1);
+    lua_call(L, 2, 1);
     return 1;
 }
