@@ -59,8 +59,10 @@ static const tl_lua_key boundary_keys[] = {
      "stress, Pa, tension positive: the traction on a face is stress times its outward normal"},
     {"gradient", "{xx =, yy =, zz =, xy =, yz =, zx =}",
      "change of the stress with height z, Pa/m"},
-    {"xmin, ..., zmax", "\"roller\", \"fixed\" or a table of what is to be done",
+    {"xmin, xmax", "\"roller\", \"fixed\" or a table of what is to be done",
      "several sides in one call"},
+    {"ymin, ymax", "\"roller\", \"fixed\" or a table of what is to be done", "likewise"},
+    {"zmin, zmax", "\"roller\", \"fixed\" or a table of what is to be done", "likewise"},
     {NULL, NULL, NULL},
 };
 
@@ -81,6 +83,9 @@ const tl_lua_key tl_lua_boundary_results[] = {
      "each a table {block =, face =, area =, normal =, centroid =}; block.faces[face] is the face"},
     {"force, moment", "", "of the load in all, N, and N m about {0, 0, 0}"},
     {"reaction", "", "now: the force that holds the bodies in their held components, N"},
+    {"xmin, xmax", "", "where sides are given: these fields of each, in the place of those above"},
+    {"ymin, ymax", "", "where sides are given: these fields of each, likewise"},
+    {"zmin, zmax", "", "where sides are given: these fields of each, likewise"},
     {NULL, NULL, NULL},
 };
 

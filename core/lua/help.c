@@ -32,7 +32,7 @@ static void print_wrapped(const char *text, int indent, int at)
 static void print_row(const char *name, const char *text)
 {
     int at = printf("  %-*s", NAME_COLUMNS, name);
-    if (at > NAME_COLUMNS + 2) {
+    if (strlen(name) >= NAME_COLUMNS) {
         putchar('\n');
         at = 0;
     }

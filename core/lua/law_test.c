@@ -8,14 +8,11 @@
 #define AT_TABLE 1
 
 const tl_lua_key tl_lua_law_test_keys[] = {
-    {"params", "table", "parameters of the law, as for model:joint"},
-    {"path", "list",
-     "the legs: shear displacements, m, one after the other from 0, or tables {shear = m, closure "
-     "= "
-     "m, "
-     "normal_stress = Pa, time = s, speed = m/s, steps =}: values at the end of the leg, what is "
-     "not "
-     "named stays; a leg with only a time waits"},
+    {"params", "{NAME = value}", "parameters of the law, as for model:joint"},
+    {"path", "list of numbers or legs",
+     "shear displacements, m, one after the other from 0; or legs, tables {shear = m, closure = "
+     "m, normal_stress = Pa, time = s, speed = m/s, steps =}: values at the end of the leg, what "
+     "is not named stays; a leg with only a time waits"},
     {NULL, NULL, NULL},
 };
 

@@ -155,7 +155,7 @@ const tl_lua_key tl_lua_plot_keys[] = {
     {"legend", "true or false",
      "whether a list of the lines stands beside; left out: when there are several, or names"},
     {"grid", "true or false, default true", "whether ticks have lines across"},
-    {"width, height", "numbers, default 720 and 440", "of the picture, pixels"},
+    {"width, height", "number, default 720 and 440", "of the picture, pixels"},
     {NULL, NULL, NULL},
 };
 

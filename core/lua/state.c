@@ -10,7 +10,7 @@
 const tl_lua_key tl_lua_restore_keys[] = {
     {"threads", "whole number",
      "threads, in [1, 256]; default: as of talus.model. Results are the same bits for any number"},
-    {"drives", "table",
+    {"drives", "{BLOCK = function(t)}",
      "what functions drive, by the lowest block of each drive: a function(t) for its velocity, or "
      "{velocity = function(t), angular_velocity = function(t)}"},
     {NULL, NULL, NULL},

@@ -224,14 +224,13 @@ const tl_lua_topic tl_lua_topics[] = {
      .title = "Fields of each group",
      .verbs = tl_lua_groups_results},
     {.name = "kinds",
-     .usage = "list = talus.laws()  or  talus.dampings()  or  talus.generators()",
+     .usage = "list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()",
      .doc = "Lists the laws, dampings or generators that are loaded.",
-     .title = "Fields of each",
+     .title = "Fields of each kind",
      .verbs = tl_lua_kinds_results},
     {.name = "law_test",
-     .usage = "curve = talus.law_test{law = \"coulomb\", params = {...}, normal_stress = 1e6, path "
-              "= {0.005, "
-              "-0.005}}",
+     .usage = "curve = talus.law_test{law = \"coulomb\", params = {kn = 1e10, ks = 1e9, friction = "
+              "30}, normal_stress = 1e6, path = {0.005, -0.005}}",
      .function = "law_test",
      .keys = tl_lua_law_test_keys,
      .title = "Fields of the curve",
@@ -257,16 +256,15 @@ const tl_lua_topic tl_lua_topics[] = {
      .usage = "selection:load{force = {0, 0, -1e3}, at = {x, y, z}}",
      .function = "load"},
     {.name = "boundary",
-     .usage =
-         "result = model:boundary{xmin = \"roller\", zmin = \"fixed\", zmax = {pressure = 1e5}}  "
-         "or  model:boundary{side = \"xmax\", stress = {xx = -1e6}}",
+     .usage = "result = model:boundary{side = \"xmax\", stress = {xx = -1e6}}  or  "
+              "model:boundary{xmin = \"roller\", zmin = \"fixed\", zmax = {pressure = 1e5}}",
      .doc =
          "Finds outer faces of the model: those, or parts of those, that lie on no other block. "
          "Holds their bodies, or puts a traction on them as a load: its force and moment about "
          "each body's centroid take the place of the load the body had, keep their direction and "
          "go with the body. What one call puts on a body adds up.",
      .spec = &tl_lua_boundary_spec,
-     .title = "Fields of the result, or with sides of result.xmin and so on",
+     .title = "Fields of the result",
      .verbs = tl_lua_boundary_results},
     {.name = "drive",
      .usage = "selection:drive{velocity = function(t) return 0.1 * math.sin(t), 0, 0 end}",
@@ -308,13 +306,14 @@ const tl_lua_topic tl_lua_topics[] = {
      .title = "Fields of the result",
      .verbs = run_results},
     {.name = "history",
-     .usage = "model:history{name = \"roof\", every = 10, value = function(m) ... end}  or  "
-              "model:history{name = \"roof\", of = selection, field = \"displacement\"}",
+     .usage = "model:history{name = \"gap\", every = 10, value = function(m) return "
+              "m:contacts():max(\"gap\") end}  or  model:history{name = \"wedge\", of = selection, "
+              "field = \"displacement\"}",
      .doc =
          "Samples a value at once and then every so many steps of all runs, until it is removed.",
      .spec = &tl_lua_history_spec},
     {.name = "histories",
-     .usage = "list = model:histories().roof",
+     .usage = "histories = model:histories()",
      .doc = "Gives a table with the samples of each history, by name: copies of them.",
      .title = "Fields of each history",
      .verbs = tl_lua_histories_fields},
@@ -332,7 +331,8 @@ const tl_lua_topic tl_lua_topics[] = {
      .doc = "Draws lists and histories as lines, with axes, ticks and a legend, into an SVG file.",
      .keys = tl_lua_plot_keys},
     {.name = "stereonet",
-     .usage = "talus.stereonet{file = \"out/joints.svg\", model = model, keyblocks = list}",
+     .usage = "talus.stereonet{file = \"out/joints.svg\", model = model, keyblocks = "
+              "model:keyblocks{friction = 30}}",
      .doc =
          "Draws joint sets by poles and great circles on the lower hemisphere, into an SVG file.",
      .keys = tl_lua_stereonet_keys},
@@ -400,9 +400,7 @@ const tl_lua_topic tl_lua_topics[] = {
          "of the machine; folders are made. The model goes on as if it had not been saved. "
          "Functions of drives are not saved."},
     {.name = "restore",
-     .usage =
-         "model = talus.restore(\"out/run.talus\", {threads = 2, drives = {[7] = function(t) ... "
-         "end}})",
+     .usage = "model = talus.restore(\"out/run.talus\", {threads = 2})",
      .doc =
          "The model that a file holds: it goes on as the saved one does, to the bit, on any number "
          "of threads. Laws and damping must be loaded in the version that it was saved with. A "

@@ -44,12 +44,8 @@ function talus.help(topic) end
 ---@field ks number Pa/m, > 0: shear stiffness of the joint
 ---@field tension number Pa, > 0: tensile strength of the bond
 ---@field cohesion number Pa, > 0: shear strength of the bond
----@field energy_tension? any more than tension^2 / (2 kn):
----@field ginumber? any more than tension^2 / (2 kn):  (another name)
----@field J? any more than tension^2 / (2 kn):  (another name)
----@field m2? any more than tension^2 / (2 kn):  (another name)
----@field 0? any more than tension^2 / (2 kn):  (another name)
----@field required? any more than tension^2 / (2 kn):  (another name)
+---@field energy_tension? number J/m2, > 0: work of fracture in tension, more than tension^2 / (2 kn)
+---@field gi? number J/m2, > 0: work of fracture in tension, more than tension^2 / (2 kn) (another name)
 ---@field energy_shear? number J/m2, > 0: work of fracture in shear, more than cohesion^2 / (2 ks)
 ---@field gii? number J/m2, > 0: work of fracture in shear, more than cohesion^2 / (2 ks) (another name)
 ---@field friction? number deg, in [0, 90), default 0: angle of friction of what is broken
@@ -190,8 +186,8 @@ function talus.help(topic) end
 
 --- Creates one body of a section in a plane, moved across it: a slope, a dam, a wall.
 ---@class (exact) talus.generator.Profile
----@field section? any corners of the section, in order, two numbers each
----@field points? any corners of the section, in order, two numbers each (another name)
+---@field section? number[][] corners of the section, in order, two numbers each
+---@field points? number[][] corners of the section, in order, two numbers each (another name)
 ---@field plane? "xz"|"yz"|"xy"|"zx"|"zy"|"yx" default "xz": plane of the section: its letters say what the two numbers of a corner are
 ---@field from? number m, default 0: where the section begins on the axis across its plane
 ---@field to number m: where it ends there, > from
@@ -328,8 +324,8 @@ function Blocks:reset_displacement() end
 ---@field shear_stress number Pa: length of shear force over area
 ---@field state string "elastic", "slipping", "open" or "failed"
 ---@field law string name of the law of its joint, or empty
----@field points { position: number, area: number, normal_force: number }[] its points as they are now, each a table of the fields of a contact point and of the states of the law by name. The forces of the points add up to those of the contact; edges, vertices and tilted faces have one point
----@field states { NAME: number } the states of its law: the mean of the points, weighted by their areas; the sum of a state that goes with the area
+---@field points { position: talus.Vector, area: number, normal_force: number }[] its points as they are now, each a table of the fields of a contact point and of the states of the law by name. The forces of the points add up to those of the contact; edges, vertices and tilted faces have one point
+---@field states table<string, number|string|boolean|talus.Vector> the states of its law: the mean of the points, weighted by their areas; the sum of a state that goes with the area
 local Contact = {}
 
 --- A selection of contacts: a snapshot, in ascending order of id.
@@ -454,15 +450,15 @@ function Model:contacts(options) end
 ---@overload fun(self: talus.Model, joint: string, options?: table)
 function Model:joint(joint, law, options) end
 
----@class (exact) talus.JointsResult
----@field name any of the joint set; number of its planes so far
----@field planes any of the joint set; number of its planes so far
----@field law any name of the law of the set as a whole; nil while it has none
+---@class (exact) talus.JointSet
+---@field name string of the joint set; number of its planes so far
+---@field planes integer of the joint set; number of its planes so far
+---@field law string? name of the law of the set as a whole; nil while it has none
 
 --- Lists the joint sets, in the order they were made.
 ---
 ---     list = model:joints()
----@return talus.JointsResult
+---@return talus.JointSet[]
 function Model:joints() end
 
 ---@class (exact) talus.Law
@@ -487,6 +483,31 @@ function Model:laws() end
 ---@return talus.Group[]
 function Model:groups() end
 
+---@class (exact) talus.Kind
+---@field name string its name, what it does, the plugin it is of
+---@field doc string its name, what it does, the plugin it is of
+---@field plugin string its name, what it does, the plugin it is of
+---@field parameters string[] list of the names of its parameters
+---@field states string[] list of the names of its states
+
+--- Lists the laws, dampings or generators that are loaded.
+---
+---     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()
+---@return talus.Kind[]
+function talus.laws() end
+
+--- Lists the laws, dampings or generators that are loaded.
+---
+---     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()
+---@return talus.Kind[]
+function talus.dampings() end
+
+--- Lists the laws, dampings or generators that are loaded.
+---
+---     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()
+---@return talus.Kind[]
+function talus.generators() end
+
 ---@class (exact) talus.LawTestOptions
 ---@field law string name of the law
 ---@field normal_stress? number Pa: normal stress, compression positive, which is held by closing and opening; when left out the closure is given, and begins at 0
@@ -494,13 +515,30 @@ function Model:groups() end
 ---@field speed? number m/s, > 0, default 1e-05: speed of shear, or of closing where nothing is sheared
 ---@field steps? integer in [1, 1e+07], default 200: steps of each leg of the path
 ---@field every? integer in [1, 1e+07], default 1: steps from one point of the curve to the next; the end of a leg is always one
----@field params? any parameters of the law, as for model:joint
----@field path? any the legs: shear displacements, m, one after the other from 0, or tables {shear = m, closure = m, normal_stress = Pa, time = s, speed = m/s, steps =}: values at the end of the leg, what is not named stays; a leg with only a time waits
+---@field params? table<string, number|string|boolean|talus.Vector> parameters of the law, as for model:joint
+---@field path? (number|{ shear: number?, closure: number?, normal_stress: number?, time: number?, speed: number?, steps: integer? })[] shear displacements, m, one after the other from 0; or legs, tables {shear = m, closure = m, normal_stress = Pa, time = s, speed = m/s, steps =}: values at the end of the leg, what is not named stays; a leg with only a time waits
+
+---@class (exact) talus.LawTestResult
+---@field time number[] lists: seconds, and shear displacement, m; the first point is the start
+---@field shear number[] lists: seconds, and shear displacement, m; the first point is the start
+---@field shear_stress number[] lists, Pa, compression positive
+---@field normal_stress number[] lists, Pa, compression positive
+---@field closure number[] lists, m: how far the walls have approached, and how far they have parted since the start
+---@field dilation number[] lists, m: how far the walls have approached, and how far they have parted since the start
+---@field work number[] list, J/m2: work of the walls, and what was stored at the start
+---@field stored number[] lists, J/m2: elastic energy, and energy turned to heat, as the law tells them. Work - stored - heat is the error of the law's energies and of the steps
+---@field heat number[] lists, J/m2: elastic energy, and energy turned to heat, as the law tells them. Work - stored - heat is the error of the law's energies and of the steps
+---@field slipping boolean[] lists of true and false, as the law flags the point
+---@field open boolean[] lists of true and false, as the law flags the point
+---@field failed boolean[] lists of true and false, as the law flags the point
+---@field states { opening: number[] } a list for each state of the law, by its name; of vectors where it is one
+---@field ends integer[] for each leg, the place of its last point in the lists
 
 --- Tries a joint law on one contact point, without a model: direct shear under a constant normal stress, or in surroundings of constant normal stiffness, and closure tests.
 ---
----     curve = talus.law_test{law = "coulomb", params = {...}, normal_stress = 1e6, path = {0.005, -0.005}}
+---     curve = talus.law_test{law = "coulomb", params = {kn = 1e10, ks = 1e9, friction = 30}, normal_stress = 1e6, path = {0.005, -0.005}}
 ---@param options talus.LawTestOptions
+---@return talus.LawTestResult
 function talus.law_test(options) end
 
 ---@class (exact) talus.InsituOptions
@@ -582,14 +620,33 @@ function Blocks:load(options) end
 ---@field box? { min: talus.Vector, max: talus.Vector } faces with all corners in this box
 ---@field stress? talus.Tensor stress, Pa, tension positive: the traction on a face is stress times its outward normal
 ---@field gradient? talus.Tensor change of the stress with height z, Pa/m
----@field xmin? "roller" several sides in one call
----@field zmax? "roller" several sides in one call (another name)
+---@field xmin? "roller"|"fixed"|talus.BoundaryOptions several sides in one call
+---@field xmax? "roller"|"fixed"|talus.BoundaryOptions several sides in one call
+---@field ymin? "roller"|"fixed"|talus.BoundaryOptions likewise
+---@field ymax? "roller"|"fixed"|talus.BoundaryOptions likewise
+---@field zmin? "roller"|"fixed"|talus.BoundaryOptions likewise
+---@field zmax? "roller"|"fixed"|talus.BoundaryOptions likewise
+
+---@class (exact) talus.BoundaryResult
+---@field area number of the outer faces, or their outer parts, m2; without any the call is refused
+---@field blocks talus.Blocks a selection of their blocks, hidden ones, too
+---@field faces { area: number, block: talus.Block, centroid: talus.Vector, face: integer, normal: talus.Vector }[] each a table {block =, face =, area =, normal =, centroid =}; block.faces[face] is the face
+---@field force talus.Vector of the load in all, N, and N m about {0, 0, 0}
+---@field moment talus.Vector of the load in all, N, and N m about {0, 0, 0}
+---@field reaction talus.Vector now: the force that holds the bodies in their held components, N
+---@field xmin talus.BoundaryResult? where sides are given: these fields of each, in the place of those above
+---@field xmax talus.BoundaryResult? where sides are given: these fields of each, in the place of those above
+---@field ymin talus.BoundaryResult? where sides are given: these fields of each, likewise
+---@field ymax talus.BoundaryResult? where sides are given: these fields of each, likewise
+---@field zmin talus.BoundaryResult? where sides are given: these fields of each, likewise
+---@field zmax talus.BoundaryResult? where sides are given: these fields of each, likewise
 
 --- Finds outer faces of the model: those, or parts of those, that lie on no other block. Holds their bodies, or puts a traction on them as a load: its force and moment about each body's centroid take the place of the load the body had, keep their direction and go with the body. What one call puts on a body adds up.
 ---
----     result = model:boundary{xmin = "roller", zmin = "fixed", zmax = {pressure = 1e5}}  or  model:boundary{side = "xmax", stress = {xx = -1e6}}
+---     result = model:boundary{side = "xmax", stress = {xx = -1e6}}  or  model:boundary{xmin = "roller", zmin = "fixed", zmax = {pressure = 1e5}}
 ---@param options? talus.BoundaryOptions
----@overload fun(self: talus.Model, options?: talus.BoundaryOptions)
+---@return talus.BoundaryResult
+---@overload fun(self: talus.Model, options?: talus.BoundaryOptions): talus.BoundaryResult
 function Model:boundary(options) end
 
 ---@class (exact) talus.DriveOptions
@@ -737,14 +794,28 @@ function Model:solve(options) end
 ---@field take? "mean"|"sum"|"min"|"max" default "mean": of a selection: what is made of the values of its blocks or contacts
 ---@field remove? boolean default false: ends the history of that name, with all its samples
 ---@field value? fun(model: talus.Model): any|string gives a number, a list of numbers ({x, y, z}) or several numbers, as many each time; it may read the model, but not change it. Or one of "kinetic", "potential", "stored", "friction", "damping", "external" (J), "balance", "ratio", "ratio_maximum", "ratio_local", "max_velocity" (m/s), "contacts", "slipping", "open" (numbers of contacts)
----@field of? any what the field is sampled of, in the place of `value`. Blocks and contacts that no longer exist are left out; where none is left the value is nan
+---@field of? talus.Block|talus.Contact|talus.Blocks|talus.Contacts what the field is sampled of, in the place of `value`. Blocks and contacts that no longer exist are left out; where none is left the value is nan
 
 --- Samples a value at once and then every so many steps of all runs, until it is removed.
 ---
----     model:history{name = "roof", every = 10, value = function(m) ... end}  or  model:history{name = "roof", of = selection, field = "displacement"}
+---     model:history{name = "gap", every = 10, value = function(m) return m:contacts():max("gap") end}  or  model:history{name = "wedge", of = selection, field = "displacement"}
 ---@param options talus.HistoryOptions
 ---@overload fun(self: talus.Model, options: talus.HistoryOptions)
 function Model:history(options) end
+
+---@class (exact) talus.History
+---@field cycle integer[] list of the steps at which it was sampled
+---@field time number[] list of the times, s
+---@field value (number|number[])[] list of the values, each a number or a list of numbers
+---@field x number[] lists of the components, where each value is a list of three
+---@field y number[] lists of the components, where each value is a list of three
+---@field z number[] lists of the components, where each value is a list of three
+
+--- Gives a table with the samples of each history, by name: copies of them.
+---
+---     histories = model:histories()
+---@return table<string, talus.History>
+function Model:histories() end
 
 --- Writes the samples of all histories into a CSV file: the columns cycle, time and one for each history, in the order in which they were made, or name.x, name.y and name.z. A cell is empty where a history has no sample of that cycle. Folders are made; the file is written whole or not at all.
 ---
@@ -754,16 +825,16 @@ function Model:write_histories(path) end
 
 ---@class (exact) talus.PlotOptions
 ---@field file string name of the SVG file; folders are made
----@field series? { x: number, y: number, name: number, style: number, colour: number }[] lines: lists of numbers x (1, 2, 3, ... when left out) and y; style is "line", "points" or "both", colour "#0072b2". Numbers that are not finite make a gap. Or {history =, component =, against =, name =}: history is one of model:histories(), component "x", "y", "z" or a number (all when left out), against "time" or "cycle"
----@field model? any draws histories of this model
----@field histories? any which of them, in this order; all when left out
----@field x_axis? string|{ name: number, unit: number, log: number, range: number } name and unit of the axis; log = true is a logarithmic one, which leaves out numbers not above 0; range = {from, to} when left out takes in all
----@field y_axis? string|{ name: number, unit: number, log: number, range: number } name and unit of the axis; log = true is a logarithmic one, which leaves out numbers not above 0; range = {from, to} when left out takes in all (another name)
+---@field series? { x: number[]?, y: number[]?, name: string?, style: string?, colour: string? }[] lines: lists of numbers x (1, 2, 3, ... when left out) and y; style is "line", "points" or "both", colour "#0072b2". Numbers that are not finite make a gap. Or {history =, component =, against =, name =}: history is one of model:histories(), component "x", "y", "z" or a number (all when left out), against "time" or "cycle"
+---@field model? talus.Model draws histories of this model
+---@field histories? string[] which of them, in this order; all when left out
+---@field x_axis? string|{ name: string?, unit: string?, log: boolean?, range: number[]? } name and unit of the axis; log = true is a logarithmic one, which leaves out numbers not above 0; range = {from, to} when left out takes in all
+---@field y_axis? string|{ name: string?, unit: string?, log: boolean?, range: number[]? } name and unit of the axis; log = true is a logarithmic one, which leaves out numbers not above 0; range = {from, to} when left out takes in all
 ---@field title? string stands above the picture
 ---@field legend? boolean whether a list of the lines stands beside; left out: when there are several, or names
 ---@field grid? boolean default true: whether ticks have lines across
----@field width? any default 720 and 440: of the picture, pixels
----@field height? any default 720 and 440: of the picture, pixels (another name)
+---@field width? number default 720 and 440: of the picture, pixels
+---@field height? number default 720 and 440: of the picture, pixels
 
 --- Draws lists and histories as lines, with axes, ticks and a legend, into an SVG file.
 ---
@@ -773,12 +844,12 @@ function talus.plot(options) end
 
 ---@class (exact) talus.StereonetOptions
 ---@field file string name of the SVG file; folders are made
----@field model? any draws the joint sets of this model, from the faces of its blocks as they lie now
----@field joints? any which of its joint sets ("J1"), in this order; all when left out
----@field sets? { name: number, dip: number, dip_direction: number }[] further sets, degrees; or {name =, planes = {{dip, dip_direction}, ...}} for several planes
----@field keyblocks? any what model:keyblocks{...} gave: a cross for the direction of each movement
+---@field model? talus.Model draws the joint sets of this model, from the faces of its blocks as they lie now
+---@field joints? string[] which of its joint sets ("J1"), in this order; all when left out
+---@field sets? { name: string?, dip: number, dip_direction: number }[] further sets, degrees; or {name =, planes = {{dip, dip_direction}, ...}} for several planes
+---@field keyblocks? talus.Keyblock[] what model:keyblocks{...} gave: a cross for the direction of each movement
 ---@field projection? "equal_area"|"equal_angle" of Schmidt and Lambert, the default, or of Wulff
----@field great_circles? "mean" of the mean plane of each set, the default, of every plane, or of none
+---@field great_circles? "mean"|"all"|"none" of the mean plane of each set, the default, of every plane, or of none
 ---@field title? string stands above the picture
 ---@field legend? boolean default true: whether a list of the sets stands beside, with mean dip/dip direction
 ---@field grid? boolean default true: whether plunges of 30 and 60 degrees and every 30 degrees of trend are drawn
@@ -786,7 +857,7 @@ function talus.plot(options) end
 
 --- Draws joint sets by poles and great circles on the lower hemisphere, into an SVG file.
 ---
----     talus.stereonet{file = "out/joints.svg", model = model, keyblocks = list}
+---     talus.stereonet{file = "out/joints.svg", model = model, keyblocks = model:keyblocks{friction = 30}}
 ---@param options talus.StereonetOptions
 function talus.stereonet(options) end
 
@@ -968,11 +1039,11 @@ function Model:save(path) end
 
 ---@class (exact) talus.RestoreOptions
 ---@field threads? integer threads, in [1, 256]; default: as of talus.model. Results are the same bits for any number
----@field drives? any what functions drive, by the lowest block of each drive: a function(t) for its velocity, or {velocity = function(t), angular_velocity = function(t)}
+---@field drives? table<integer, function|{ velocity: function?, angular_velocity: function? }> what functions drive, by the lowest block of each drive: a function(t) for its velocity, or {velocity = function(t), angular_velocity = function(t)}
 
 --- The model that a file holds: it goes on as the saved one does, to the bit, on any number of threads. Laws and damping must be loaded in the version that it was saved with. A damaged file, and one of another format, is refused.
 ---
----     model = talus.restore("out/run.talus", {threads = 2, drives = {[7] = function(t) ... end}})
+---     model = talus.restore("out/run.talus", {threads = 2})
 ---@param path string
 ---@param options? talus.RestoreOptions
 ---@return talus.Model

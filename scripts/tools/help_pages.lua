@@ -112,6 +112,7 @@ function pages.plugin(type, name)
     local lines, first = pages.print(name), 1
     while lines[first] ~= ("%s '%s'"):format(type, name) do
         first = first + 1
+        assert(lines[first], ("talus help %s tells of no %s"):format(name, type))
     end
     local last = first
     while lines[last + 1] and not is_kind(lines[last + 1]) do

@@ -1,8 +1,8 @@
 -- meta.lua - writes scripts/meta/talus.d.lua, which tells an editor's Lua language server (LuaLS) every function, option and
 -- field with its type, unit and meaning.
 --
---     build/release/talus scripts/tools/meta.lua scripts/meta/talus.d.lua            writes it anew
---     build/release/talus scripts/tools/meta.lua scripts/meta/talus.d.lua --check    fails when it is out of date
+--     build/release/talus --quiet scripts/tools/meta.lua scripts/meta/talus.d.lua            writes it anew
+--     build/release/talus --quiet scripts/tools/meta.lua scripts/meta/talus.d.lua --check    fails when it is out of date
 --
 -- Functions, options and meanings are those that `talus help` prints. The types of options and of fields of blocks and
 -- contacts are printed there, too. Those of results are seen from the results: every usage line is run on a small model.
@@ -30,7 +30,9 @@ end
 local to_type
 
 -- Types of named fields that are no numbers.
-local FIELDS = { vertices = "integer[]", normal = "talus.Vector", joint = "string?" }
+local FIELDS = { vertices = "integer[]", normal = "talus.Vector", joint = "string?", position = "talus.Vector", at = "talus.Vector", min = "talus.Vector",
+    max = "talus.Vector", name = "string?", unit = "string?", log = "boolean?", range = "number[]?",
+    style = "string?", colour = "string?", x = "number[]?", y = "number[]?" }
 
 -- The type of {a =, b = {x, y, z}, ...}; nil when the text is none.
 local function table_type(text)
@@ -40,6 +42,8 @@ local function table_type(text)
         return "talus.Tensor"
     elseif text == "{selection, selection}" then
         return "(talus.Blocks|talus.Block)[]"
+    elseif text == "{number, number}" then
+        return "number[]"
     end
     local fields = {}
     local inner = text:match("^{(.*)}$") or ""
@@ -63,12 +67,21 @@ local WORDS = {
     ["list of 2 blocks"] = "talus.Block[]",
     ["list of 4 numbers"] = "number[]",
     ["list of numbers"] = "number[]",
+    ["list of numbers or legs"] = "(number|{ shear: number?, closure: number?, normal_stress: number?, time: number?, " ..
+        "speed: number?, steps: integer? })[]",
+    ["list of names"] = "string[]",
+    ["list of keyblocks"] = "talus.Keyblock[]",
+    ["model"] = "talus.Model",
+    ["block, contact or selection"] = "talus.Block|talus.Contact|talus.Blocks|talus.Contacts",
+    ["a table of what is to be done"] = "talus.BoundaryOptions",
     ["function(block)"] = "fun(block: talus.Block): any",
     ["function(contact)"] = "fun(contact: talus.Contact): any",
     ["function(model)"] = "fun(model: talus.Model): any",
     ["function(model, result)"] = "fun(model: talus.Model, result: talus.SolveResult)",
     ["function(t)"] = "(fun(t: number): number|talus.Vector, number?, number?)",
     ["{JOINT = number}"] = "table<string, number>",
+    ["{NAME = value}"] = "table<string, number|string|boolean|talus.Vector>",
+    ["{BLOCK = function(t)}"] = "table<integer, function|{ velocity: function?, angular_velocity: function? }>",
 }
 
 -- The type of one word of the help; nil when it is unknown.
@@ -77,6 +90,8 @@ local function simple_type(text)
         return WORDS[text]
     elseif text:match('^"[^"]*"$') then
         return text
+    elseif (text .. ", "):gsub('"[^"]*", ', "") == "" then -- "a", "b"
+        return (text:gsub(", ", "|"))
     elseif text:match("^list of {") then
         local inner = table_type(text:match("^list of (.*)$"))
         return inner and inner .. "[]"
@@ -134,8 +149,19 @@ local function seen_type(value)
     return #names > 0 and "{ " .. table.concat(fields, ", ") .. " }" or "table"
 end
 
+-- A field of a result; nil where it has none, which some results refuse to tell.
+local function field_of(value, name)
+    local good, field = pcall(function() return value[name] end)
+    return good and field or nil
+end
+
 -- The type of a field of a result with this value and meaning. What may be nil says so.
-local function field_type(value, meaning)
+local function field_type(value, meaning, class)
+    if meaning:match("^where %a+ are given: these fields") then
+        return class .. "?"
+    elseif meaning:match("each a number or a list of numbers") then
+        return "(number|number[])[]"
+    end
     local may_be_nil = meaning:match("%f[%w]nil%f[%W]") ~= nil
     local type = seen_type(value)
     if not type then
@@ -162,6 +188,9 @@ local function limits_of(kind)
     return #text > 0 and text .. ": " or ""
 end
 
+-- Second names of a row that are no aliases.
+local PAIRS = { height = true, y_axis = true, xmax = true, ymax = true, zmax = true }
+
 -- A row of parameters "name, alias" as fields of an open class.
 local function put_options(rows)
     for _, row in ipairs(rows) do
@@ -169,7 +198,7 @@ local function put_options(rows)
         local optional = kind:match("required$") and "" or "?"
         local type = to_type(kind)
         for name in row.name:gmatch("[%w_]+") do
-            local alias = row.name:match("^" .. name) and "" or " (another name)"
+            local alias = (PAIRS[name] or row.name:match("^" .. name)) and "" or " (another name)"
             put("---@field %s%s %s %s%s%s", name, row.name:match(",") and "?" or optional, type, limits_of(kind), meaning, alias)
         end
     end
@@ -193,9 +222,9 @@ local function put_result(class, rows, value)
             local outer = name:match("^([%w_]+)%.")
             if outer and not nested[outer] then
                 nested[outer] = true
-                put("---@field %s %s", outer, seen_type(value[outer]) or "table")
+                put("---@field %s %s", outer, seen_type(field_of(value, outer)) or "table")
             elseif not outer then
-                put("---@field %s %s %s", name, field_type(value[name], meaning), meaning)
+                put("---@field %s %s %s", name, field_type(field_of(value, name), meaning, class), meaning)
             end
         end
     end
@@ -219,6 +248,16 @@ local function calls_of(name, usage)
         end
     end
     return calls
+end
+
+-- The functions that a topic tells of: the one of its name, or those of its usage line.
+local function functions_of(name, usage)
+    local names, seen = {}, {}
+    for word in usage:gmatch("%a+[:.]([%a_]+)%(") do
+        names[#names + 1] = not seen[word] and word or nil
+        seen[word] = true
+    end
+    return (#calls_of(name, usage) > 0 or #names == 0) and { name } or names
 end
 
 local function split_arguments(text)
@@ -277,7 +316,9 @@ end
 -- What the call gives on the small model; the topic's first call that gives something.
 local function try(calls)
     for _, call in ipairs(calls) do
-        if call.result and not call.text:match('"%u%u+"') then
+        if call.result and call.arguments:match('^"out/') then -- there is no such file
+            return nil, call.result
+        elseif call.result and not call.text:match('"%u%u+"') then
             local environment = build()
             for _, before in ipairs(calls) do -- as in "model:profile(true); result = model:profile()"
                 if before == call then
@@ -339,8 +380,25 @@ local function put_plugin_overloads(class, call, result)
     end
 end
 
-local function put_function(name)
-    local topic = pages.topic(name)
+-- The class of what a function gives, and the type of what it gives: one, a list or a table by name of them.
+local function put_result_of(name, fields, value, known)
+    local each = fields.title:match("^Fields of each ([%a ]+)$")
+    local class = each and "talus." .. camel(each) or "talus." .. camel(name) .. "Result"
+    if not known[class] then
+        local one = value
+        if each then
+            one = assert(value[1] or value[next(value)], "the small model has no " .. each)
+        end
+        put_result(class, fields.rows, one)
+        known[class] = true
+    end
+    return not each and class or (#value > 0 and class .. "[]" or "table<string, " .. class .. ">")
+end
+
+local result_classes = {}
+
+-- A function `name` as the topic tells it.
+local function put_function(name, topic)
     local calls = calls_of(name, topic.head[1])
     if not calls[1] or not OWNERS[calls[1].owner] then
         warn_of(("cannot read the usage of %s: %s"):format(name, topic.head[1]))
@@ -357,10 +415,7 @@ local function put_function(name)
     local value, of = try(calls)
     local result = value ~= nil and seen_type(value) or RESULT_WORDS[of]
     if fields and type(value) == "table" then
-        local each = fields.title:match("^Fields of each (%w+)$")
-        result = each and "talus." .. camel(each) or "talus." .. camel(name) .. "Result"
-        put_result(result, fields.rows, each and assert(value[1], "the small model has no " .. each) or value)
-        result = result .. (each and "[]" or "")
+        result = put_result_of(name, fields, value, result_classes)
     end
     local class = OWNERS[calls[1].owner]
     put("")
@@ -480,7 +535,10 @@ local function whole()
     put_items("blocks", "Block", "Blocks", functions)
     put_items("contacts", "Contact", "Contacts", functions)
     for _, name in ipairs(names) do
-        put_function(name)
+        local topic = pages.topic(name)
+        for _, of in ipairs(functions_of(name, topic.head[1])) do
+            put_function(of, topic)
+        end
     end
     put("\nreturn talus")
     return (table.concat(out, "\n"):gsub("[ \t]+\n", "\n"):gsub("%-%-%-\n%-%-%-     ", "---\n---     ")) .. "\n"

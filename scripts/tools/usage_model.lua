@@ -1,9 +1,9 @@
 -- usage_model.lua - a small model on which the usage lines of the help can be run: meta.lua looks at what they give, and
 -- tests/python/test_docs.py runs them all.
 --
--- A function that gives a fresh environment: model, and of it selection, block and contact; a point x, y, z. The model has a
--- held base, two free blocks above it with the joint J1 between them, down which the upper can slide, and has made a few
--- steps.
+-- A function that gives a fresh environment: model, and of it selection, block and contact; a point x, y, z; a text and a
+-- function f. The model has a held base, two free blocks above it with the joint J1 between them, down which the upper can
+-- slide, a history "roof", and has made a few steps.
 local talus = require "talus"
 
 return function()
@@ -15,8 +15,9 @@ return function()
     model:joint("J1", "coulomb", { kn = 1e8, ks = 1e8, friction = 30 })
     model:damping "local"
     model:blocks { group = "base" }:fix()
-    model:cycle(10)
     local free = model:blocks { fixed = false }
+    model:history { name = "roof", of = free, field = "displacement" }
+    model:cycle(10)
     return setmetatable({ talus = talus, model = model, selection = free, block = free[1],
-        contact = model:contacts()[1], x = 2, y = 2, z = 2 }, { __index = _G })
+        contact = model:contacts()[1], x = 2, y = 2, z = 2, text = "", f = function() end }, { __index = _G })
 end

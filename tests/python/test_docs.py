@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Runs every code block of README.md and docs/*.md and compares what it prints with the page; follows the pages' links.
+"""Runs every code block of README.md, docs/*.md and the other pages beside README.md and compares what it prints with the page; follows the pages' links.
 
 A block is fenced and says its language. Each page has a scratch folder of its own, in which all its blocks run:
 
@@ -16,6 +16,8 @@ A line `...` of an output stands for any lines, and `...` within a line for any 
     <!-- continues -->       this Lua block goes on with the state of the one before
     <!-- file: NAME -->      the block is written to this file of the scratch folder; a Lua block that a command further
                              down the page runs is run there only
+    <!-- plugin: NAME.so --> the C block is a plugin: it is linked, too, into this file of the scratch folder
+    <!-- run by: TEST -->    it needs an installed Talus or the like, and this other test runs the same commands
     <!-- fails -->           the block, or its last command, ends with an error, which belongs to what it prints
     <!-- not run: REASON --> it is only read; MOST_NOT_RUN tells how many there may be
 
@@ -35,7 +37,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 PROGRAM = pathlib.Path(os.environ.get("TALUS_PROGRAM", ROOT / "build/release/talus")).resolve()
 STOCK_LUA = os.environ.get("TALUS_STOCK_LUA", "")
 MARK = "<!-- Below this line: written by scripts/tools/reference.lua. -->"
-MOST_NOT_RUN = 4
+MOST_NOT_RUN = 5
 LANGUAGES = {"lua", "sh", "console", "c", "json", "text"}
 BETWEEN = "----8<---- end of a block"
 COMMAND = re.compile(r"\s+(?:\$ |\./bootstrap |(?:[A-Z_]+=\S* )*(?:build/release/)?(?:talus|lua5\.4|cmake|gcc|xvfb-run) )")
@@ -44,7 +46,11 @@ COMMAND = re.compile(r"\s+(?:\$ |\./bootstrap |(?:[A-Z_]+=\S* )*(?:build/release
 TRY_USAGES = """
 local build = require "usage_model"
 local function try(usage)
-    local good, message = pcall(assert(load(usage, "=usage", "t", build())))
+    local chunk, message = load(usage, "=usage", "t", build())
+    local good = chunk ~= nil
+    if good then
+        good, message = pcall(chunk)
+    end
     if not good then
         print(usage .. " :", message)
     end
@@ -65,6 +71,8 @@ class Block:
         self.continues = "continues" in notes
         self.fails = "fails" in notes
         self.file = next((n[5:].strip() for n in notes if n.startswith("file:")), None)
+        self.plugin = next((n[7:].strip() for n in notes if n.startswith("plugin:")), None)
+        self.run_by = next((n[7:].strip() for n in notes if n.startswith("run by:")), None)
         self.not_run = next((n[8:].strip() for n in notes if n.startswith("not run:")), None)
 
     @property
@@ -137,7 +145,8 @@ class Page:
         for name in ("core", "scripts", "plugins"):
             (folder / name).symlink_to(ROOT / name)
         self.environment = {name: value for name, value in os.environ.items() if not name.startswith(("TALUS_", "LUA_"))}
-        self.environment.update(HOME=str(folder / "home"), PATH=f"{folder / 'bin'}:{os.environ['PATH']}")
+        self.environment.update(HOME=str(folder / "home"), TALUS_PROGRESS="1e6",  # no line that depends on the clock
+                                 PATH=f"{folder / 'bin'}:{os.environ['PATH']}")
 
     def run(self, command, both=True):
         return subprocess.run(command, cwd=self.folder, env=self.environment, stdin=subprocess.DEVNULL, text=True,
@@ -182,11 +191,15 @@ class Page:
 
     def run_c(self, block):
         source = self.folder / (block.file or f"line_{block.line}.c")
+        source.parent.mkdir(parents=True, exist_ok=True)
         source.write_text(block.text, encoding="utf-8")
         compiler = os.environ.get("CC", "cc")
         done = self.run([compiler, "-std=c17", "-Wall", "-Wextra", "-Wpedantic", "-Wshadow", "-Wconversion", "-Werror", "-fPIC",
-                         "-O1", "-Icore/include", "-c", source.name, "-o", source.stem + ".o"])
-        self.expect_status(block, done, "the compiler ")
+                         "-O1", "-ffp-contract=off", "-Icore/include", "-c", source, "-o", source.stem + ".o"])
+        if self.expect_status(block, done, "the compiler ") and block.plugin:
+            (self.folder / block.plugin).parent.mkdir(parents=True, exist_ok=True)
+            done = self.run([compiler, "-shared", source.stem + ".o", "-o", block.plugin, "-lm"])
+            self.expect_status(block, done, "the linker ")
 
     def run_json(self, block):
         try:
@@ -194,9 +207,21 @@ class Page:
         except ValueError as error:
             fault(block.place, f"no JSON: {error}")
 
+    def write(self, block):
+        (self.folder / block.file).parent.mkdir(parents=True, exist_ok=True)
+        (self.folder / block.file).write_text(block.text, encoding="utf-8")
+
+    def check_run_by(self, block):
+        """The other test has each command of the block: its first two words."""
+        other = ROOT / block.run_by
+        test = other.read_text(encoding="utf-8") if other.exists() else ""
+        for line in block.text.splitlines():
+            if " ".join(line.split()[:2]) not in test:
+                fault(block.place, f"{block.run_by} does not run `{line}`")
+
     def run_block(self, block):
         if block.file:
-            (self.folder / block.file).write_text(block.text, encoding="utf-8")
+            self.write(block)
         getattr(self, "run_" + block.language)(block)
 
     def is_run_later(self, i):
@@ -211,9 +236,12 @@ class Page:
         for i, block in enumerate(self.blocks):
             if block.not_run is not None:
                 continue
+            if block.run_by:
+                self.check_run_by(block)
+                continue
             counts[block.language] = counts.get(block.language, 0) + 1
             if block.file and block.language == "lua" and self.is_run_later(i):
-                (self.folder / block.file).write_text(block.text, encoding="utf-8")
+                self.write(block)
                 continue
             if block.language != "lua":
                 if block.continues:
@@ -338,7 +366,7 @@ def check_itself(folder):
 
 
 def main():
-    pages = ["README.md"] + sorted(f"docs/{path.name}" for path in (ROOT / "docs").glob("*.md"))
+    pages = ["README.md", "CHANGELOG.md", "CONTRIBUTING.md", "SECURITY.md"] + sorted(f"docs/{path.name}" for path in (ROOT / "docs").glob("*.md"))
     if len(sys.argv) > 1:
         pages = sys.argv[1:]
     counts, not_run = {}, []

@@ -30,8 +30,12 @@ known(found.selection, "Blocks")
 known(found.model:contacts(), "Contacts")
 known(found.block, "Block")
 known(found.contact, "Contact")
-for name in pairs(require "talus") do
+local talus = require "talus"
+for name in pairs(talus) do
     print("talus", name)
+end
+for _, name in ipairs { "plot", "stereonet" } do -- loaded when they are first used
+    print("talus", talus[name] and not rawget(_G, name) and name)
 end
 """
 
