@@ -50,6 +50,21 @@ function talus.help(topic) end
 ---@field gii? number J/m2, > 0: work of fracture in shear, more than cohesion^2 / (2 ks) (another name)
 ---@field friction? number deg, in [0, 90), default 0: angle of friction of what is broken
 
+--- A joint that yields from the first slip on, and whose friction wears down: for cyclic loading.
+---@class (exact) talus.law.ContinuouslyYielding
+---@field an number Pa^(1-en)/m, > 0: normal stiffness at a normal stress of 1 Pa
+---@field en? number in [0, 1), default 0: exponent of the normal stress in it
+---@field as number Pa^(1-es)/m, > 0: shear stiffness at a normal stress of 1 Pa
+---@field es? number in [0, 1], default 0: exponent of the normal stress in it
+---@field kn_max? number Pa/m, > 0: largest normal stiffness, for the time step; needed with en > 0
+---@field ks_max? number Pa/m, > 0: largest shear stiffness, for the time step; needed with es > 0
+---@field phi_i number deg, in (0, 90): angle of friction of the fresh joint
+---@field phi? number deg, in (0, 90): angle of friction of the worn joint, at most phi_i
+---@field friction? number deg, in (0, 90): angle of friction of the worn joint, at most phi_i (another name)
+---@field roughness number m, > 0: slip R in which all but 1/e of the difference wears off
+---@field softening? boolean default true: whether the stress falls after the strength that wears
+---@field dilation? boolean default true: whether slip opens the joint
+
 --- Coulomb friction with cohesion and dilation, and no tensile strength.
 ---@class (exact) talus.law.Coulomb
 ---@field kn number Pa/m, > 0: normal stiffness of the joint
@@ -76,6 +91,21 @@ function talus.help(topic) end
 ---@class (exact) talus.law.Elastic
 ---@field kn number Pa/m, > 0: normal stiffness of the joint
 ---@field ks number Pa/m, > 0: shear stiffness of the joint
+
+--- Friction that depends on the rate of slip and on a state of the surface that ages.
+---@class (exact) talus.law.RateState
+---@field kn number Pa/m, > 0: normal stiffness of the joint
+---@field ks number Pa/m, > 0: shear stiffness of the joint
+---@field mu0? number in (0, 10], default 0.6: coefficient of friction in steady slip at `velocity`
+---@field a number in (0, 1]: direct effect of the rate
+---@field b number in [0, 1]: effect of the state; b > a weakens with the rate
+---@field distance? number m, > 0: slip D_c over which the state changes
+---@field dc? number m, > 0: slip D_c over which the state changes (another name)
+---@field velocity? number m/s, > 0, default 1e-06: reference rate V0
+---@field v0? number m/s, > 0, default 1e-06: reference rate V0 (another name)
+---@field damping? number Pa s/m, >= 0, default 0: viscous part eta: shear modulus over twice the speed of shear waves, where blocks do not radiate themselves
+---@field theta? number s, > 0: state of a new contact; not given: distance / velocity, that of steady slip
+---@field evolution? "aging"|"slip" default "aging": how the state changes: it also ages at rest, or with slip only
 
 --- Friction and cohesion that fall with slip, and may heal where it ends.
 ---@class (exact) talus.law.SlipWeakening
@@ -334,17 +364,17 @@ local Contact = {}
 ---@operator len: integer
 local Contacts = {}
 
---- sum of a field of numbers; of a vector field a vector
+--- sum of a field of numbers, or of a state of a law by its name; of a vector a vector
 ---@param field string
 ---@return number|talus.Vector
 function Contacts:sum(field) end
 
---- largest and smallest value of a field of numbers
+--- largest and smallest value of a field of numbers, or of a state, where the law has it
 ---@param field string
 ---@return number
 function Contacts:max(field) end
 
---- largest and smallest value of a field of numbers
+--- largest and smallest value of a field of numbers, or of a state, where the law has it
 ---@param field string
 ---@return number
 function Contacts:min(field) end
@@ -409,6 +439,7 @@ function Model:generate(generator, options) end
 ---@field group? string blocks of this group
 ---@field containing? talus.Vector m: blocks that contain this point
 ---@field joint? string blocks with a face on this joint or plane
+---@field boundary? string blocks with an outer face on this side of the model: "xmin", "xmax" ... "zmax"
 ---@field fixed? boolean fixed blocks, or free ones
 ---@field inside? { min: talus.Vector, max: talus.Vector } blocks whose centroid is in this box
 ---@field above? { dip: number, dip_direction: number, origin: talus.Vector } blocks whose centroid is above this plane
@@ -443,9 +474,11 @@ function Model:contacts(options) end
 ---@param options? table
 ---@overload fun(self: talus.Model, joint: string, law: "barton_bandis", options: talus.law.BartonBandis)
 ---@overload fun(self: talus.Model, joint: string, law: "cohesive", options: talus.law.Cohesive)
+---@overload fun(self: talus.Model, joint: string, law: "continuously_yielding", options: talus.law.ContinuouslyYielding)
 ---@overload fun(self: talus.Model, joint: string, law: "coulomb", options: talus.law.Coulomb)
 ---@overload fun(self: talus.Model, joint: string, law: "coulomb_tensile", options: talus.law.CoulombTensile)
 ---@overload fun(self: talus.Model, joint: string, law: "elastic", options: talus.law.Elastic)
+---@overload fun(self: talus.Model, joint: string, law: "rate_state", options: talus.law.RateState)
 ---@overload fun(self: talus.Model, joint: string, law: "slip_weakening", options: talus.law.SlipWeakening)
 ---@overload fun(self: talus.Model, joint: string, options?: table)
 function Model:joint(joint, law, options) end
@@ -1048,5 +1081,10 @@ function Model:save(path) end
 ---@param options? talus.RestoreOptions
 ---@return talus.Model
 function talus.restore(path, options) end
+
+--- The model that `talus run --autosave MINUTES SCRIPT` saved last, after `talus run --resume SCRIPT`; nil when the script is not resumed, or nothing was saved. Takes the options of talus.restore. The file lies beside the script: SCRIPT.autosave.talus without .lua.
+---
+---     model = talus.resumed()
+function talus.resumed() end
 
 return talus
