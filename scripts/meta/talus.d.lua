@@ -1085,6 +1085,7 @@ function talus.restore(path, options) end
 --- The model that `talus run --autosave MINUTES SCRIPT` saved last, after `talus run --resume SCRIPT`; nil when the script is not resumed, or nothing was saved. Takes the options of talus.restore. The file lies beside the script: SCRIPT.autosave.talus without .lua.
 ---
 ---     model = talus.resumed()
+---@return talus.Model?
 function talus.resumed() end
 
 return talus

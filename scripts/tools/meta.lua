@@ -331,7 +331,7 @@ local function try(calls)
             if not good then
                 warn_of(("'%s' cannot be run on the small model: %s"):format(call.text, message))
             end
-            return good and rawget(environment, call.result) or nil, good or call.result
+            return good and rawget(environment, call.result) or nil, call.result
         elseif call.result then
             return build().model:generate("box", { min = { 9, 9, 9 }, max = { 10, 10, 10 }, density = 1 })
         end
@@ -414,6 +414,9 @@ local function put_function(name, topic)
     end
     local value, of = try(calls)
     local result = value ~= nil and seen_type(value) or RESULT_WORDS[of]
+    if value == nil and result and table.concat(topic.head, " "):match("; nil when") then
+        result = result .. "?"
+    end
     if fields and type(value) == "table" then
         result = put_result_of(name, fields, value, result_classes)
     end

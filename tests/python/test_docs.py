@@ -249,7 +249,8 @@ class Page:
                 self.run_block(block)
                 continue
             chain.append(block)
-            following = next((b for b in self.blocks[i + 1:] if b.language == "lua"), None)
+            following = next((b for j, b in enumerate(self.blocks[i + 1:], i + 1)
+                              if b.language == "lua" and not (b.file and self.is_run_later(j))), None)
             if not (following and following.continues):
                 self.run_lua(chain)
                 chain = []
