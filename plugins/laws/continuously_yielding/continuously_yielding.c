@@ -117,12 +117,12 @@ static inline double stress_at(const yielding *law, double v)
 static inline double closure_of(const yielding *law, double stress)
 {
     double below = stress < law->stress_max ? stress : law->stress_max;
-    double pressed = below > FAINT ? below : FAINT, rest = 1 - law->en;
-    double curved = tl_lane_exp(rest * tl_lane_log(pressed)) / (rest * law->an);
-    double linear = (below > 0 ? below : 0) / law->an;
-    double v = law->en > 0 ? (below > FAINT ? curved : 0) : linear;
-    double pull = below < 0 ? below : 0;
-    return v + (pull + (stress - below)) / law->kn_max;
+    double pressed = below > 0 ? below : 0, safe = pressed > FAINT ? pressed : FAINT;
+    double rest = 1 - law->en;
+    double v = tl_lane_exp(rest * tl_lane_log(safe)) / (rest * law->an);
+    v = pressed > FAINT ? v : 0;
+    v = law->en > 0 ? v : pressed / law->an;
+    return v + (stress - pressed) / law->kn_max;
 }
 
 /* Energy of the normal spring per area. */
@@ -241,10 +241,11 @@ static inline __attribute__((always_inline)) void slide(const yielding *given,
         double back = ex * way_x[i] + ey * way_y[i] + ez * way_z[i];
         double share = along / (most > FAINT ? most : 1);
         share = share < MOST_RATIO ? share : MOST_RATIO;
-        double ratio = back < 0 ? (most > FAINT ? share : 0) : last[i];
+        double was = worn[i], ratio = last[i], reversed = most > FAINT ? share : 0;
+        ratio = back < 0 ? reversed : ratio;
         /* the angle of dilation is that of the stresses before; walls that meet now had none */
-        double held = f_n[i] > 0 ? f_n[i] * per : stress,
-               slope = before / (held > FAINT ? held : 1);
+        double press = f_n[i] * per, held = press > 0 ? press : stress;
+        double slope = before / (held > FAINT ? held : 1);
         double tangent = (slope - law.tangent) / (1 + slope * law.tangent);
         tangent = tangent > 0 ? law.dilation * tangent : 0;
         /* twice: with the angle before, and with the mean of it and of what that comes to */
@@ -255,13 +256,15 @@ static inline __attribute__((always_inline)) void slide(const yielding *given,
         double mean = law.residual + (angle - law.residual) * 0.5 * (1 + left);
         up = rise(&law, along, stress * tl_lane_tan(mean), ratio, ks, d);
         slip = d - up / (ks > 0 ? ks : 1);
-        slip = stress > 0 ? (slip > 0 ? slip : 0) : 0;
+        slip = slip > 0 ? slip : 0;
+        slip = stress > 0 ? slip : 0;
         left = tl_lane_exp(-slip * law.per_roughness);
         double after = law.residual + (angle - law.residual) * left;
         double x = f_x[i] * per - up * ex, y = f_y[i] * per - up * ey, z = f_z[i] * per - up * ez;
         double size = sqrt(x * x + y * y + z * z), bound = before > most ? before : most;
         double peak = stress * law.tangent_i;
         bound = bound < peak ? bound : peak;
+        double yields = slip > 0.5 * d ? 1 : 0, changes = up < 0 ? 1 : up;
         double over = size > bound * (1 + ROUNDING) ? 1 : 0;
         double scale = over > 0 ? bound / (over > 0 ? size : 1) : 1;
         double dot = (f_x[i] * per + scale * x) * du_x[i] + (f_y[i] * per + scale * y) * du_y[i] +
@@ -273,13 +276,13 @@ static inline __attribute__((always_inline)) void slide(const yielding *given,
         t->y[i] = scale * y;
         t->z[i] = scale * z;
         t->size[i] = scale * size;
-        t->moved[i] = ((up != 0) | (over > 0)) ? 1 : 0;
+        t->moved[i] = over + changes == 0 ? 0 : 1; /* not-a-number has moved */
         t->work[i] = -0.5 * dot;
         t->angle[i] = after;
         t->ratio[i] = ratio;
-        t->wear[i] = slip > 0 ? (law.initial - after) / DEGREE : worn[i];
+        t->wear[i] = slip > 0 ? (law.initial - after) / DEGREE : was;
         t->lift[i] = tangent * slip;
-        t->slides[i] = over > 0 ? 1 : (slip > 0.5 * d ? 1 : 0);
+        t->slides[i] = over + yields > 0 ? 1 : 0;
     }
 }
 
