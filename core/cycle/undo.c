@@ -59,14 +59,15 @@ static void shadow_copy(const shadow *s, const tl_table *table, size_t first, si
                         bool back)
 {
     char *column = s->memory;
+    if (count == 0)
+        return;
     for (size_t i = 0; i < table->column_count; i++) {
         size_t size = table->columns[i].size;
         if (!(table->columns[i].flags & TL_COLUMN_STEP))
             continue;
         char *kept = column + first * size;
         char *here = (char *)tl_table_data(table, i) + first * size;
-        if (count > 0)
-            memcpy(back ? here : kept, back ? kept : here, count * size);
+        memcpy(back ? here : kept, back ? kept : here, count * size);
         column += table->capacity * size;
     }
 }

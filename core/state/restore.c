@@ -19,6 +19,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Numbers of blocks that a model may have had: a file of some bytes shall not cost a machine its memory. */
+#define MOST_IDS (1u << 28)
+/* Points that a rank may have room for, of contacts of 65535 points. */
+#define MOST_LANES (1u << 19)
+
 /* Entries on their way from an archive. */
 typedef struct reader {
     const tl_archive *archive;
@@ -201,8 +206,8 @@ static size_t drives_in(const tl_archive *a)
 static tl_status derive_rows(tl_model *m, const tl_archive *a)
 {
     uint64_t structure = m->structure;
-    if (m->next_id > UINT32_MAX || !tl_rows_reserve(m, m->blocks.table.rows, m->next_id))
-        return m->next_id > UINT32_MAX
+    if (m->next_id > MOST_IDS || !tl_rows_reserve(m, m->blocks.table.rows, m->next_id))
+        return m->next_id > MOST_IDS
                    ? tl_archive_bad(a, &m->error, "a block has an impossible number")
                    : tl_fail_memory(&m->error);
     tl_rows_refresh(m);
@@ -298,7 +303,7 @@ static tl_status read_detection(tl_model *m, const tl_archive *a)
     if (!used)
         return tl_fail_memory(&m->error);
     const char *bad = columns < states_needed(m)      ? "states of the laws are missing"
-                      : d->lane_room > TL_NO_ROW / 64 ? "a contact has too many points"
+                      : d->lane_room > MOST_LANES ? "a contact has too many points"
                                                       : tl_detect_unsound(m, d, used);
     free(used);
     if (bad)

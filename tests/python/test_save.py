@@ -1,0 +1,148 @@
+#!/usr/bin/python3
+"""Saved models from one process to another.
+
+    TALUS_MODULE_DIR=BUILD_FOLDER tests/python/test_save.py [KILLS]
+
+A process that is killed while it saves leaves the last model that was saved whole, which goes on as the one that was not killed:
+KILLS times, at random moments (default 20). So does a run under `talus run --autosave` that is killed and resumed. A law's plugin that is missing, or there in another version, is named in one sentence."""
+import os
+import pathlib
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+MODEL = """
+local model = talus.model { gravity = {0, 0, -10} }
+model:generate("box", { min = {-3, -3, -1}, max = {9, 9, 0}, density = 2500, group = "floor" })
+model:blocks():fix()
+for i = 0, 39 do
+    local x, y, z = i % 4 * 1.2, i // 4 % 4 * 1.2, i // 16 * 1.1 + 0.05
+    model:generate("polyhedron", { density = 2500, vertices = { {x, y, z}, {x + 1, y + 0.1, z}, {x + 0.9, y + 1, z + 0.1},
+        {x + 0.1, y + 0.9, z}, {x + 0.5, y + 0.5, z + 0.9}, {x + 0.8, y + 0.2, z + 0.8} } })
+end
+model:joint("*", "coulomb", { kn = 1e8, ks = 5e7, friction = 30 })
+"""
+STEPS, SAVES = 7, 60
+# What the program says after each run of STEPS steps; the same, saving each.
+RUN = MODEL + f"for _ = 1, {SAVES} do model:cycle({STEPS}) print(model.cycles, model:state_hash()) end"
+SAVE = MODEL + f"""
+io.stdout:setvbuf "line"
+while true do
+    model:cycle({STEPS})
+    model:save(arg[1])
+    print(model.cycles)
+    if model.cycles == {STEPS * SAVES} then os.exit(0) end
+end"""
+RESTORE = """
+local model = talus.restore(arg[1])
+print(model.cycles, model:state_hash())
+if model.cycles < tonumber(arg[2]) then
+    model:cycle(tonumber(arg[2]) - model.cycles)
+end
+print(model.cycles, model:state_hash())"""
+
+faults = []
+
+
+def run(program, script, *arguments, folder, options=(), **variables):
+    environment = {name: value for name, value in os.environ.items() if not name.startswith("TALUS_")}
+    path = folder / "script.lua"
+    path.write_text('local talus = require "talus"\n' + script)
+    return subprocess.run([program, "--quiet", *options, path, *map(str, arguments)], capture_output=True, text=True, check=False,
+                          env={**environment, **variables})
+
+
+def check_kills(program, folder, kills):
+    expected = dict(line.split() for line in run(program, RUN, folder=folder).stdout.splitlines())
+    last, saved = STEPS * SAVES, folder / "run.talus"
+    path = folder / "save.lua"
+    path.write_text('local talus = require "talus"\n' + SAVE)
+    chance = random.Random(1)
+    began = time.monotonic()
+    subprocess.run([program, "--quiet", path, saved], check=True, stdout=subprocess.DEVNULL)
+    whole = time.monotonic() - began
+    for kill in range(kills):
+        saved.unlink(missing_ok=True)
+        process = subprocess.Popen([program, "--quiet", path, saved], stdout=subprocess.PIPE, text=True)
+        told = process.stdout.readline()  # the first save is whole
+        time.sleep(whole * chance.random())
+        process.send_signal(signal.SIGKILL)
+        told = int((told + process.communicate()[0]).split()[-1])
+        done = run(program, RESTORE, saved, last, folder=folder)
+        lines = [line.split() for line in done.stdout.splitlines()]
+        if done.returncode or int(lines[0][0]) < told or any(expected[cycle] != hash_ for cycle, hash_ in lines):
+            faults.append(f"kill {kill}: {told} steps were saved; restored: {done.stdout}{done.stderr}")
+
+
+def check_autosave(program, folder):
+    """A run that is killed again and again, and resumed each time, ends as one that was not."""
+    path = folder / "long run.lua"
+    path.write_text('local talus = require "talus"\nlocal model = talus.resumed()\nif not model then\n' + MODEL.replace("local model", "model") +
+                    f"end\nprint(model.cycles)\nmodel:cycle({STEPS * SAVES} - model.cycles)\nprint(model:state_hash())")
+
+    def start(*options):
+        return subprocess.Popen([program, "--quiet", "run", *options, path.name], cwd=folder, stdout=subprocess.PIPE, text=True)
+
+    whole = start().communicate()[0].split()[1]
+    saved, chance, begun = folder / "long run.autosave.talus", random.Random(2), []
+    for _ in range(8):
+        process = start("--resume", "--autosave", "0.0003")
+        deadline = time.monotonic() + 60
+        while not saved.exists() and time.monotonic() < deadline:
+            time.sleep(0.01)
+        time.sleep(0.1 * chance.random())
+        process.send_signal(signal.SIGKILL)
+        begun.append(process.communicate()[0].split()[:1])
+    done = start("--resume").communicate()[0].split()
+    if done[-1] != whole or done[0] == "0" or not saved.exists():
+        faults.append(f"resumed from {begun} and {done[0]}: {done}, in one go {whole}")
+    for words, sentence in ((["run"], "name the script"), (["--autosave", "0", "x.lua"], "number of minutes"),
+                            (["--resume", "-e", "print(1)"], "for a script in a file")):
+        bad = subprocess.run([program, *words], capture_output=True, text=True, check=False)
+        if bad.returncode != 1 or sentence not in bad.stderr:
+            faults.append(f"{words}: {bad.returncode} {bad.stderr}")
+
+
+def check_plugins(program, build, folder):
+    saved = folder / "law.talus"
+    law = 'model:joint("*", "crasher", { how = "never" }) model:save(arg[1])'
+    crasher = build / "bad_plugins" / "crasher.so"
+    run(program, MODEL + law, saved, folder=folder, options=("--plugin", crasher))
+    done = run(program, RESTORE, saved, 1, folder=folder)
+    if done.returncode != 1 or "which is not loaded" not in done.stderr or "crasher" not in done.stderr:
+        faults.append(f"a law that is not loaded: {done.returncode} {done.stdout}{done.stderr}")
+    if run(program, RESTORE, saved, 1, folder=folder, options=("--plugin", crasher)).returncode:
+        faults.append("the same law, loaded, is refused")
+
+    run(program, MODEL + 'model:joint("*", "elastic", { kn = 1e8, ks = 1e8 }) model:save(arg[1])', saved, folder=folder)
+    other = folder / "plugins"
+    other.mkdir()
+    elastic = (build / "plugins" / "elastic.so").read_bytes()
+    at = elastic.index(b"0.1.0\0")
+    (other / "elastic.so").write_bytes(elastic[:at] + b"0.9.9\0" + elastic[at + 6:])
+    done = run(program, RESTORE, saved, 1, folder=folder, TALUS_PLUGIN_PATH=str(other))
+    if done.returncode != 1 or "talus.elastic 0.1.0, and talus.elastic 0.9.9 is loaded" not in done.stderr:
+        faults.append(f"another version: {done.returncode} {done.stdout}{done.stderr}")
+
+
+def main():
+    build = pathlib.Path(os.environ["TALUS_MODULE_DIR"]).resolve()
+    kills = int(sys.argv[1]) if len(sys.argv) > 1 else 20
+    folder = pathlib.Path(tempfile.mkdtemp(prefix="save_", dir=build / "tests" / "tmp"))
+    try:
+        check_kills(build / "talus", folder, kills)
+        check_autosave(build / "talus", folder)
+        check_plugins(build / "talus", build, folder)
+    finally:
+        shutil.rmtree(folder)
+    for fault in faults:
+        print(fault)
+    print(f"save: {kills} kills, {len(faults)} faults")
+    sys.exit(1 if faults else 0)
+
+
+main()
