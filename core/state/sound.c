@@ -137,6 +137,6 @@ static void forget_stale(const tl_model *m, struct tl_cycle *c)
 const char *tl_cycle_unsound(const tl_model *m, struct tl_cycle *c)
 {
     forget_stale(m, c);
-    bool sound = c->dt >= 0 && isfinite(c->dt) && (!c->ledger || tl_ledger_is_sound(c->ledger));
+    bool sound = c->dt >= 0 && isfinite(c->dt) && c->ledger && tl_ledger_is_sound(c->ledger);
     return sound ? NULL : "what a step keeps has an impossible value";
 }

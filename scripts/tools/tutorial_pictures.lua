@@ -3,11 +3,12 @@
 --     build/release/talus --quiet scripts/tools/tutorial_pictures.lua docs/tutorial.md docs/pictures
 --
 -- Runs the scripts as they stand on the page. Writes tutorial_NAME.svg: a section along x and z, or all blocks seen from the
--- south. Held blocks are grey, those that have moved by more than MOVED red.
+-- south. Held blocks are grey, those that have moved by more than MOVED red. Below it stand a scale, where one looks, and the time.
 local talus = require "talus"
 
 local MOVED = 0.05        -- m
 local SIZE, MARGIN = 560, 8 -- of a picture, pixels
+local FOOT = 30             -- strip below it with scale, direction and time, pixels
 
 -- Name of a script: which of its models is drawn, where the section lies (y, m; nil: seen from the south), what of it (x and z, m).
 local PICTURES = {
@@ -70,10 +71,29 @@ local function colour(block)
     return d[1] ^ 2 + d[2] ^ 2 + d[3] ^ 2 > MOVED ^ 2 and "#d6382a" or "#e9d9b8"
 end
 
+-- The longest of 1, 2 and 5 times a power of ten that is no longer than `most`.
+local function round_length(most)
+    local power = 10 ^ math.floor(math.log(most, 10))
+    return (most >= 5 * power and 5 or most >= 2 * power and 2 or 1) * power
+end
+
+local function foot(model, picture, scale, height)
+    local left, _, right = table.unpack(picture.box)
+    local length, y = round_length((right - left) / 5), height - FOOT / 2
+    local from, to = MARGIN, MARGIN + scale * length
+    local where = picture.y and ("section at y = %g m"):format(picture.y) or "seen from the south"
+    return table.concat({
+        ('<path d="M%.1f %.1fv6h%.1fv-6" fill="none" stroke="#262626"/>'):format(from, y - 3, to - from),
+        '<g font-family="sans-serif" font-size="12" fill="#262626">',
+        ('<text x="%.1f" y="%.1f">%g m</text>'):format(to + 6, y + 4, length),
+        ('<text x="%d" y="%.1f" text-anchor="end">%s, west left, east right; t = %.3g s</text>'):format(SIZE - MARGIN, y + 4, where, model.time),
+        "</g>" }, "\n")
+end
+
 local function draw(model, picture)
     local left, low, right, high = table.unpack(picture.box)
     local scale = (SIZE - 2 * MARGIN) / (right - left)
-    local height = scale * (high - low) + 2 * MARGIN
+    local height = scale * (high - low) + 2 * MARGIN + FOOT
     local out = { ('<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 %d %.0f" width="%d" height="%.0f">'):format(SIZE,
         height, SIZE, height), '<rect width="100%" height="100%" fill="#ffffff"/>',
         '<g stroke="#262626" stroke-width="1" stroke-linejoin="round">' }
@@ -86,7 +106,9 @@ local function draw(model, picture)
             out[#out + 1] = ('<polygon points="%s" fill="%s"/>'):format(table.concat(corners, " "), colour(block))
         end
     end
-    out[#out + 1] = "</g>\n</svg>\n"
+    out[#out + 1] = "</g>"
+    out[#out + 1] = foot(model, picture, scale, height)
+    out[#out + 1] = "</svg>\n"
     return table.concat(out, "\n")
 end
 
