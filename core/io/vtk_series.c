@@ -10,6 +10,7 @@ static void series_destroy(tl_vtk_series *series)
     while (series) {
         tl_vtk_series *next = series->next;
         free(series->prefix);
+        free(series->kind);
         free(series->frames);
         free(series);
         series = next;
@@ -39,11 +40,11 @@ tl_vtk_series *tl_vtk_series_of(tl_model *m, const char *prefix, const char *kin
         if (!series)
             return NULL;
         series->prefix = strdup(prefix);
-        if (!series->prefix) {
-            free(series);
+        series->kind = strdup(kind);
+        if (!series->prefix || !series->kind) {
+            series_destroy(series);
             return NULL;
         }
-        series->kind = kind;
         series->next = m->vtk;
         m->vtk = series;
         m->vtk_destroy = series_destroy;

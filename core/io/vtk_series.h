@@ -33,15 +33,14 @@ typedef struct tl_vtk_frame {
 typedef struct tl_vtk_series {
     struct tl_vtk_series *next;
     char *prefix;
-    const char *kind;
+    char *kind;
     tl_vtk_frame *frames;
     size_t count, capacity;
     size_t written[TL_VTK_PARTS]; /* frames that have the file */
     tl_vtk_index index[TL_VTK_PARTS];
 } tl_vtk_series;
 
-/* Finds or makes the series of a prefix and a kind of frame (a string that lives as long as the
- * program), with room for one more frame; NULL when out of memory. */
+/* Finds or makes the series of a prefix and a kind of frame, with room for one more frame; NULL when out of memory. */
 tl_vtk_series *tl_vtk_series_of(tl_model *m, const char *prefix, const char *kind);
 
 /* Name of a file of the series: PREFIX_CONTENT_NNNNNN.vtk, and of its index:

@@ -6,6 +6,7 @@
 #include "model/walk.h"
 #include "state/drives.h"
 #include "state/entries.h"
+#include "state/frames.h"
 #include "state/kinds.h"
 #include "state/shapes.h"
 
@@ -103,6 +104,7 @@ static void save_all(tl_archive_writer *w, tl_model *m)
                  save_names(w, "joints.names", m->joint_count, joint_name, m) &&
                  save_planes(w, m) && save_drives(w, m);
     w->lost = w->lost || !saved;
+    w->lost = !tl_frames_save(m, w) || w->lost;
     tl_laws_save(m, w);
     tl_damping_save(m, w);
     if (m->detect)

@@ -1064,7 +1064,7 @@ function Model:state_hash() end
 ---@return talus.Model
 function Model:copy() end
 
---- Saves all that the next steps depend on, to the bit, compressed and with checksums. The file appears whole or not at all, in the place of an older one, and outlives a crash of the machine; folders are made. The model goes on as if it had not been saved. Functions of drives are not saved.
+--- Saves all that the next steps depend on, to the bit, compressed and with checksums. The file appears whole or not at all, in the place of an older one, and outlives a crash of the machine; folders are made. The model goes on as if it had not been saved. Functions of drives and histories are not saved; frames of files go on with the next number.
 ---
 ---     model:save("out/run.talus")
 ---@param path string

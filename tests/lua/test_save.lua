@@ -125,6 +125,27 @@ do
     check.equal(talus.report(r).cuts, talus.report(m).cuts)
 end
 
+-- Frames of files go on with the next number, and those of before stay in the index.
+do
+    local m = pile(1)
+    for _ = 1, 3 do
+        m:write_vtk(TMP .. "/frames", { joints = false })
+        m:cycle(2)
+    end
+    m:write_section(TMP .. "/cut", { dip = 90, dip_direction = 0, origin = { 0.5, 0.5, 0 } })
+    m:save(FILE)
+    local r = talus.restore(FILE)
+    r:write_vtk(TMP .. "/frames")
+    r:write_section(TMP .. "/cut", { dip = 90, dip_direction = 0, origin = { 0.5, 0.5, 0 } })
+    for _, name in ipairs { "frames_blocks_000003.vtk", "frames_joints_000003.vtk", "cut_section_000001.vtk" } do
+        check.holds(io.open(TMP .. "/" .. name), name)
+    end
+    check.equal(io.open(TMP .. "/frames_blocks_000004.vtk"), nil)
+    local index = assert(io.open(TMP .. "/frames_blocks.vtk.series")):read "a"
+    check.equal(select(2, index:gsub("frames_blocks_", "")), 4)
+    check.equal(select(2, assert(io.open(TMP .. "/frames_joints.vtk.series")):read "a":gsub("frames_joints_", "")), 1)
+end
+
 -- An empty model, and one that never ran.
 for _, fill in ipairs { function() end, function(m) m:generate("box", { min = { 0, 0, 0 }, max = { 1, 1, 1 }, density = 1 }) end } do
     local m = talus.model { gravity = { 0, 1, 0 }, seed = 3 }
