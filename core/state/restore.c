@@ -303,9 +303,9 @@ static tl_status read_detection(tl_model *m, const tl_archive *a)
     unsigned char *used = calloc(d->press_count + 1, 1);
     if (!used)
         return tl_fail_memory(&m->error);
-    const char *bad = columns < states_needed(m)      ? "states of the laws are missing"
+    const char *bad = columns < states_needed(m)  ? "states of the laws are missing"
                       : d->lane_room > MOST_LANES ? "a contact has too many points"
-                                                      : tl_detect_unsound(m, d, used);
+                                                  : tl_detect_unsound(m, d, used);
     free(used);
     if (bad)
         return unsound(a, m, bad);

@@ -131,13 +131,14 @@ static bool loops_are_sound(const tl_poly *p)
     return true;
 }
 
-static bool numbers_are_sound(const tl_poly *p)
+static bool numbers_are_sound(const tl_poly *p, size_t joints)
 {
     for (uint32_t v = 0; v < p->vertex_count; v++)
         if (!tl_v3_finite(p->vertex[v]) || tl_v3_norm(p->vertex[v]) > TL_FARTHEST)
             return false;
     for (uint32_t f = 0; f < p->face_count; f++)
-        if (!tl_v3_finite(p->plane[f].normal) || !isfinite(p->plane[f].offset))
+        if (!tl_v3_finite(p->plane[f].normal) || !isfinite(p->plane[f].offset) ||
+            p->tag[f].joint > joints)
             return false;
     for (uint32_t k = 0; p->seams && k < p->face_count + p->edge_count; k++)
         if (p->covered[k] > (k < p->face_count ? TL_SEAM : 1))
@@ -170,7 +171,7 @@ static tl_status restore_shape(tl_model *m, uint32_t row, const shape_counts *c,
         return tl_fail_memory(&m->error);
     m->blocks.shape[row] = p;
     tl_error why = {.status = TL_OK};
-    if (!loops_are_sound(p) || !numbers_are_sound(p))
+    if (!loops_are_sound(p) || !numbers_are_sound(p, m->joint_count))
         return tl_archive_bad(archive, &m->error, "the shape of block %llu is none",
                               (unsigned long long)m->blocks.id[row]);
     tl_bounds bounds = tl_poly_bounds(p);

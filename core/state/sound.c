@@ -22,6 +22,23 @@ static bool settings_are_sound(const tl_model *m)
            !(m->added_most < 0);
 }
 
+static bool rule_is_sound(const tl_area_rule *rule)
+{
+    return rule->fraction >= 0 && isfinite(rule->fraction) &&
+           (isnan(rule->absolute) || (rule->absolute >= 0 && isfinite(rule->absolute)));
+}
+
+/* What names joints: rules of minimum areas, and cuts that were refused. */
+static bool joints_are_sound(const tl_model *m)
+{
+    bool sound = rule_is_sound(&m->area);
+    for (size_t i = 0; i < m->area_count && sound; i++)
+        sound = m->areas[i].tag.joint <= m->joint_count && rule_is_sound(&m->areas[i].rule);
+    for (size_t i = 0; i < m->record.listed && sound; i++)
+        sound = m->record.list[i].joint.joint <= m->joint_count;
+    return sound && m->record.listed <= TL_REFUSED_LISTED;
+}
+
 static bool measure_is_sound(double x)
 {
     return x >= TL_LEAST_MEASURE && x <= TL_MOST_MEASURE;
@@ -95,7 +112,7 @@ const char *tl_rows_unsound(const tl_model *m, size_t groups, size_t drives)
 {
     if (m->blocks.table.rows >= TL_NO_ROW || m->bodies.table.rows > m->blocks.table.rows)
         return "it has too many rows";
-    if (!settings_are_sound(m))
+    if (!settings_are_sound(m) || !joints_are_sound(m))
         return "a setting has an impossible value";
     for (uint32_t row = 0; row < m->blocks.table.rows; row++)
         if (!block_is_sound(m, row, groups))
