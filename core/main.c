@@ -5,6 +5,7 @@
 
 #include <errno.h>
 #include <lualib.h>
+#include <signal.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -264,6 +265,7 @@ int main(int argc, char **argv)
     options o = {.next = 1};
     int status;
     tl_plugin_name_crashes();
+    signal(SIGXFSZ, SIG_IGN); /* a file beyond the limit is told like a full disk */
     if (!read_options(argc, argv, &o, &status))
         return status;
     const char *command = o.next < argc && !o.chunk ? argv[o.next] : "";

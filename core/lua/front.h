@@ -116,6 +116,7 @@ void tl_lua_push_field(lua_State *L, tl_field_kind kind, const tl_field_value *v
 
 typedef struct tl_lua_model {
     tl_model *model;
+    bool probe;          /* a copy: a run of it is not saved as it goes */
     int64_t next_sample; /* cycle at which a history is due: history.c */
     bool sampling;       /* a history's function runs */
 } tl_lua_model;

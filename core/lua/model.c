@@ -544,6 +544,7 @@ void tl_lua_model_open(lua_State *L)
         lua_setfield(L, -2, "__index");
         const luaL_Reg meta[] = {{"__newindex", model_assign},
                                  {"__gc", model_collect},
+                                 {"__close", model_collect},
                                  {"__tostring", model_text},
                                  {NULL, NULL}};
         luaL_setfuncs(L, meta, 0);

@@ -148,7 +148,8 @@ static tl_status on_each(void *user, tl_model *model)
     if (r->failed) /* a drive's function */
         return TL_E_CANCELLED;
     tl_lua_progress_run(&r->line, model, &r->limits, &r->result);
-    tl_lua_autosave(r->options, model);
+    if (!r->owner->probe)
+        tl_lua_autosave(r->options, model);
     if (tl_model_cycles(model) < r->owner->next_sample || tl_lua_histories_sample(r->L, AT_MODEL))
         return TL_OK;
     keep_error(r);

@@ -4,6 +4,7 @@
  * way the anchors they hang on (action.c) are made before the kernel asks for them, for it must not be left by a Lua error. */
 #include "front.h"
 
+#include <limits.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -21,6 +22,7 @@ typedef struct given {
     const void *anchor;
     tl_id block;
     tl_drive drive;
+    bool taken;
 } given;
 
 typedef struct givens {
@@ -30,11 +32,12 @@ typedef struct givens {
 
 static bool give(void *user, const tl_drive_asked *asked, tl_drive *drive)
 {
-    const givens *all = user;
+    givens *all = user;
     for (size_t i = 0; i < all->count; i++) {
-        const given *g = &all->list[i];
+        given *g = &all->list[i];
         if (asked->from ? g->anchor == asked->from->user : g->block == asked->block) {
             *drive = g->drive;
+            g->taken = true;
             /* the kernel has it now, and says when it ends */
             ((tl_lua_anchor *)drive->user)->ended = false;
             return true;
@@ -78,6 +81,13 @@ static givens *push_twins(lua_State *L, int from, int to)
     return all;
 }
 
+/* Lua sees a few bytes of a model only: lets its collector go on as if it had made all of it. */
+static void tell_weight(lua_State *L, const tl_model *model)
+{
+    size_t kilobytes = tl_model_memory(model).total / 1024;
+    lua_gc(L, LUA_GCSTEP, kilobytes < INT_MAX / 2 ? (int)kilobytes : INT_MAX / 2);
+}
+
 int tl_lua_copy(lua_State *L)
 {
     tl_model *model = tl_lua_model_of(L, "copy");
@@ -86,6 +96,8 @@ int tl_lua_copy(lua_State *L)
     givens *all = push_twins(L, 1, 2);
     tl_lua_ok(L, model, tl_model_copy(model, give, all, &object->model));
     tl_lua_model_begin(L, object);
+    object->probe = true;
+    tell_weight(L, object->model);
     lua_settop(L, 2);
     return 1;
 }
@@ -115,6 +127,9 @@ static void take_functions(lua_State *L, int value)
 {
     int anchor = lua_gettop(L);
     if (lua_istable(L, value)) {
+        const tl_lua_spec spec = {"talus.restore: drives", NULL, 0, tl_lua_drive_keys};
+        tl_lua_read(L, value, &spec, false, NULL);
+        lua_settop(L, anchor);
         lua_getfield(L, value, "velocity");
         take_function(L, anchor, TL_LUA_VELOCITY, "velocity");
         lua_getfield(L, value, "angular_velocity");
@@ -163,23 +178,35 @@ static void read_threads(lua_State *L, int64_t *threads)
     *threads = lua_tointeger(L, -1);
 }
 
+/* Checks the options at index 2, and pushes an object without a model, and what they give for its drives. */
+static givens *read_options(lua_State *L, int64_t *threads, tl_lua_model **object)
+{
+    const tl_lua_spec spec = {"talus.restore", NULL, 0, tl_lua_restore_keys};
+    tl_lua_read(L, 2, &spec, false, NULL);
+    lua_settop(L, 2);
+    read_threads(L, threads);
+    lua_settop(L, 2);
+    *object = tl_lua_model_push(L);
+    return push_given(L, 3);
+}
+
 int tl_lua_restore(lua_State *L)
 {
     tl_lua_arity(L, 2, "talus.restore");
     lua_settop(L, 2);
     const char *path = tl_lua_text(L, 1, "talus.restore", "the file");
-    tl_lua_spec spec = {"talus.restore", NULL, 0, tl_lua_restore_keys};
-    tl_lua_read(L, 2, &spec, false, NULL);
-    lua_settop(L, 2);
     int64_t threads;
-    read_threads(L, &threads);
-    lua_settop(L, 2);
-    tl_lua_model *object = tl_lua_model_push(L);
-    givens *all = push_given(L, 3);
+    tl_lua_model *object;
+    givens *all = read_options(L, &threads, &object);
     tl_error error;
     if (tl_model_restore(path, threads, give, all, &object->model, &error) != TL_OK)
         return tl_lua_raise(L, &error);
+    for (size_t i = 0; i < all->count; i++)
+        if (!all->list[i].taken)
+            tl_lua_fail(L, "talus.restore: no function drove block %I when the model was saved",
+                        (lua_Integer)all->list[i].block);
     tl_lua_model_begin(L, object);
+    tell_weight(L, object->model);
     lua_settop(L, 3);
     return 1;
 }
@@ -190,13 +217,19 @@ int tl_lua_resumed(lua_State *L)
     tl_lua_arity(L, 1, "talus.resumed");
     lua_settop(L, 1);
     const tl_lua_options *options = tl_lua_options_of(L);
+    lua_pushnil(L); /* the options, at index 2 as of restore, are looked at in any case */
+    lua_insert(L, 1);
+    int64_t threads;
+    tl_lua_model *object;
+    read_options(L, &threads, &object);
+    lua_settop(L, 2);
     if (!options->resume || !options->save_path || access(options->save_path, F_OK) != 0) {
         lua_pushnil(L);
         return 1;
     }
     lua_pushcfunction(L, tl_lua_restore);
     lua_pushstring(L, options->save_path);
-    lua_pushvalue(L, 1);
+    lua_pushvalue(L, 2);
     lua_call(L, 2, 1);
     return 1;
 }

@@ -148,7 +148,7 @@ static tl_status take_names(tl_model *m, const char *all, size_t bytes, take_nam
 {
     tl_status status = TL_OK;
     for (size_t at = 0; at < bytes && status == TL_OK; at += strlen(all + at) + 1)
-        status = tl_text_is_clean(all + at) ? take(m, all + at) : TL_E_ARGUMENT;
+        status = take(m, all + at);
     return status;
 }
 

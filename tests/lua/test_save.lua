@@ -105,6 +105,28 @@ do
     twin:cycle(5)
 end
 
+-- Any name that a model takes comes back; and copies in a loop are let go of.
+do
+    local m = talus.model {}
+    m:generate("box", { min = { 0, 0, 0 }, max = { 1, 1, 1 }, density = 1, group = "a\nb\1\127" })
+    m:generate("joint", { joint = "a\127", dip = 0, dip_direction = 0, origin = { 0.5, 0.5, 0.5 } })
+    m:save(FILE)
+    local r <close> = talus.restore(FILE)
+    check.equal(r:blocks()[1].group, "a\nb\1\127")
+    check.equal(#r:blocks { joint = "a\127" }, 2)
+    local big, most, ended = rock(1), 0, 0
+    local ballast = {}
+    for k = 1, 500000 do
+        ballast[k] = k
+    end
+    for k = 1, 400 do
+        local copies = setmetatable({}, { __gc = function() ended = ended + 1 end })
+        copies[1] = big:copy()
+        most = math.max(most, k - ended)
+    end
+    check.holds(most < 300, "copies are collected while others are made")
+end
+
 -- Names, ids, groups, fields and what is only told come back.
 do
     local m = rock(1)
@@ -172,6 +194,12 @@ do
     check.raises(function() talus.restore(FILE, { drives = { base = swing } }) end, "the number of no block")
     check.raises(function() talus.restore(FILE, { drive = {} }) end, "did you mean 'drives'")
     check.raises(function() talus.restore(FILE, { threads = 0 }) end, "threads = 0")
+    check.raises(function() talus.restore(FILE, { drives = { [driven.id] = { velocty = swing } } }) end, "did you mean 'velocity'")
+    check.raises(function() talus.resumed { drives = 7 } end, "drives must be a table")
+    check.raises(function() talus.resumed(3) end, "talus.restore")
+    check.equal(talus.resumed { threads = 2 }, nil)
+    local turning = { velocity = swing, angular_velocity = function(t) return 0, t, 0 end }
+    check.raises(function() talus.restore(FILE, { drives = { [driven.id] = turning, [99] = swing } }) end, "no function drove block 99")
     local r = talus.restore(FILE, { drives = { [driven.id] = { velocity = swing, angular_velocity = function(t) return 0, t, 0 end } } })
     m:cycle(30)
     r:cycle(30)
