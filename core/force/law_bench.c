@@ -239,6 +239,11 @@ tl_status tl_law_test_points(const tl_law_test *test, size_t *points, tl_error *
                            "law_test, path[%zu]: nothing is to happen: give shear, closure, "
                            "normal_stress or a time",
                            k + 1);
+        if (!isnan(leg->time) && !isnan(leg->speed))
+            return tl_fail(error, TL_E_ARGUMENT,
+                           "law_test, path[%zu]: time and speed both say how long it takes; leave "
+                           "one of them out",
+                           k + 1);
         steps += (double)steps_of(test, leg);
         if (steps > TL_LAW_TEST_STEPS)
             return tl_fail(error, TL_E_ARGUMENT,
@@ -306,7 +311,13 @@ static tl_status walk(bench *b, const tl_law_leg *leg, tl_law_point **points)
     double slid = isnan(leg->shear) ? slide : leg->shear;
     double closed = isnan(leg->closure) ? close : leg->closure;
     double pressed = isnan(leg->normal_stress) ? press : leg->normal_stress;
-    motion by = {.dt = time_of(b->test, leg, slid - slide, closed - close) / (double)steps};
+    double time = time_of(b->test, leg, slid - slide, closed - close);
+    motion by = {.dt = time / (double)steps};
+    if (!isfinite(b->time + time))
+        return tl_fail(b->error, TL_E_ARGUMENT,
+                       "law_test: a leg takes %g s, too long to be told: give a higher speed or a "
+                       "shorter time",
+                       time);
     for (int64_t k = 1; k <= steps; k++) {
         double shear = part(slide, slid, k, steps);
         by.du = shear - b->shear;

@@ -94,6 +94,8 @@ static void check_name(lua_State *L, const char *name)
     if (length == 0 || length > TL_HISTORY_NAME)
         tl_lua_fail(L, "history: name must have 1 to %d letters, not %d", TL_HISTORY_NAME,
                     (int)length);
+    if (strcmp(name, "cycle") == 0 || strcmp(name, "time") == 0)
+        tl_lua_fail(L, "history: the name '%s' is that of a column which all files have", name);
     for (const char *c = name; *c; c++)
         if ((unsigned char)*c < ' ' || *c == 127)
             tl_lua_fail(L, "history: name must be in one line, without control characters");
@@ -196,6 +198,10 @@ static void read_source(lua_State *L, tl_history *h, const history_args *args)
     int object = lua_gettop(L);
     bool value = lua_getfield(L, 2, "value") != LUA_TNIL;
     bool of = lua_getfield(L, 2, "of") != LUA_TNIL;
+    if (!of && lua_getfield(L, 2, "take") != LUA_TNIL)
+        tl_lua_fail(L, "history '%s': take is for a history of blocks or contacts, with of",
+                    h->name);
+    lua_settop(L, object + 2);
     if (value == of)
         tl_lua_fail(L,
                     "history '%s': give either value = function(model) ... end or of = a selection "

@@ -270,8 +270,8 @@ static tl_status plan(tl_model *m, const tl_boundary_action *a, uint8_t *fix, bo
     return status;
 }
 
-/* Puts on a body what was summed: the force at the mean place of the faces, and the moment that is left. */
-static tl_status put_load(tl_model *m, uint32_t body, const body_sum *sum, bool add)
+/* What was summed, as a load of a body: the force at the mean place of the faces, and the moment that is left. */
+static tl_load load_of(const tl_model *m, uint32_t body, const body_sum *sum, bool add)
 {
     tl_vec3 arm = sum->weight > 0 ? tl_v3_scale(1 / sum->weight, sum->arm) : tl_v3(0, 0, 0);
     tl_load load = tl_load_default();
@@ -288,18 +288,34 @@ static tl_status put_load(tl_model *m, uint32_t body, const body_sum *sum, bool 
     }
     load.moment = tl_v3_sub(load.moment, tl_v3_cross(arm, load.force));
     load.at = tl_v3_add(m->origin, tl_v3_add(tl_body_place(&m->bodies, body), arm));
-    return tl_blocks_load(m, &m->bodies.id[body], 1, &load);
+    return load;
+}
+
+/* Before any of them is put on: none may be refused half-way. */
+static tl_status check_loads(tl_model *m, const body_sum *sums, bool add)
+{
+    for (uint32_t body = 0; body < m->bodies.table.rows; body++) {
+        if (!(sums[body].weight > 0))
+            continue;
+        tl_load load = load_of(m, body, &sums[body], add);
+        if (!tl_v3_finite(load.force) || !tl_v3_finite(load.moment) || !tl_v3_finite(load.at))
+            return tl_fail(&m->error, TL_E_NUMERIC,
+                           "boundary: the load on block %u is not finite: give smaller numbers",
+                           m->bodies.id[body]);
+    }
+    return TL_OK;
 }
 
 static tl_status carry_out(tl_model *m, const uint8_t *fix, const body_sum *sums, bool add)
 {
-    tl_status status = TL_OK;
+    tl_status status = check_loads(m, sums, add);
     size_t replaced = 0;
     for (uint32_t body = 0; body < m->bodies.table.rows && status == TL_OK; body++) {
         if (!(sums[body].weight > 0))
             continue;
         replaced += !add && tl_body_loaded(&m->bodies, body);
-        status = put_load(m, body, &sums[body], add);
+        tl_load load = load_of(m, body, &sums[body], add);
+        status = tl_blocks_load(m, &m->bodies.id[body], 1, &load);
     }
     for (uint32_t row = 0; row < m->blocks.table.rows && status == TL_OK; row++)
         if (fix[row])

@@ -29,7 +29,7 @@ function talus.help(topic) end
 ---@field jcs number Pa, > 0: joint wall compressive strength of the length lab_length
 ---@field phi_r number deg, in [0, 70): residual angle of friction
 ---@field lab_length? number m, > 0, default 0.1: length L0 of the specimen of jrc and jcs
----@field length? number m, > 0: length L of the joint between crossings; not given: lab_length
+---@field length? number m, > 0: length L of the joint between crossings, in metres whatever the other units, for the peak's slip is an empirical formula; not given: lab_length
 ---@field kni? number Pa/m, > 0: normal stiffness of the unloaded joint
 ---@field kn? number Pa/m, > 0: normal stiffness of the unloaded joint
 ---@field vm number m, > 0: largest closure, from the unloaded joint

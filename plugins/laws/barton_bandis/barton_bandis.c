@@ -59,7 +59,8 @@ static const tl_param param_table[] = {
     TL_PARAM(TL_PARAM_REAL, params, lab_length, "m", "length L0 of the specimen of jrc and jcs",
              .def = {0.1}, .flags = TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
     TL_PARAM(TL_PARAM_REAL, params, length, "m",
-             "length L of the joint between crossings; not given: lab_length",
+             "length L of the joint between crossings, in metres whatever the other units, for the "
+             "peak's slip is an empirical formula; not given: lab_length",
              .flags = TL_PARAM_OPTIONAL | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
     TL_PARAM(TL_PARAM_REAL, params, kni, "Pa/m", "normal stiffness of the unloaded joint",
              .alias = "kn", .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0,

@@ -26,6 +26,7 @@ end
 
 -- The largest n with 10^n <= value.
 local function magnitude(value)
+    value = math.max(1e-307, math.min(value, 1e308)) -- powers of ten that are numbers with all digits
     local n = math.floor(math.log(value, 10) + 0.5)
     while ten(n) > value do
         n = n - 1
