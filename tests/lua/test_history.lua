@@ -34,7 +34,9 @@ model:history { name = "x", every = 4, value = function(m)
     check.equal(m, model)
     return cube.displacement[1]
 end }
-model:history { name = "cycle", every = 1, value = function(m) return m.cycles end }
+model:history { name = "steps", every = 1, value = function(m) return m.cycles end }
+check.raises(function() model:history { name = "time", value = "kinetic" } end, "a column which all files have")
+check.raises(function() model:history { name = "k", value = "kinetic", take = "max" } end, "with of")
 model:history { name = "vector", every = 5, value = function() return cube.displacement end }
 model:history { name = "several", every = 5, value = function(m) return m.time, 2 * m.time end }
 local wanted = { [3] = { cube.displacement[1], model.time } }
@@ -51,8 +53,8 @@ for i, cycle in ipairs(h.x.cycle) do
     check.equal(h.x.time[i], wanted[cycle][2])
 end
 check.equal(h.x.x, nil)
-check.equal(table.concat(h.cycle.cycle, " "), "3 4 5 6 7 8 9 10 11 12 13 14")
-check.equal(table.concat(h.cycle.value, " "), "3.0 4.0 5.0 6.0 7.0 8.0 9.0 10.0 11.0 12.0 13.0 14.0")
+check.equal(table.concat(h.steps.cycle, " "), "3 4 5 6 7 8 9 10 11 12 13 14")
+check.equal(table.concat(h.steps.value, " "), "3.0 4.0 5.0 6.0 7.0 8.0 9.0 10.0 11.0 12.0 13.0 14.0")
 check.equal(table.concat(h.vector.cycle, " "), "3 8 13")
 check.equal(#h.vector.value[2], 3)
 for k, axis in ipairs { "x", "y", "z" } do
