@@ -4,7 +4,7 @@
     TALUS_MODULE_DIR=BUILD_FOLDER tests/python/test_save.py [KILLS]
 
 A process that is killed while it saves leaves the last model that was saved whole, which goes on as the one that was not killed:
-KILLS times, at random moments (default 20). So does a run under `talus run --autosave` that is killed and resumed. A law's plugin that is missing, or there in another version, is named in one sentence."""
+KILLS times, at random moments (default 8; ./bootstrap soak: 200). So does a run under `talus run --autosave` that is killed and resumed. A law's plugin that is missing, or there in another version, is named in one sentence."""
 import os
 import pathlib
 import random
@@ -129,7 +129,7 @@ def check_plugins(program, build, folder):
 
 def main():
     build = pathlib.Path(os.environ["TALUS_MODULE_DIR"]).resolve()
-    kills = int(sys.argv[1]) if len(sys.argv) > 1 else 20
+    kills = int(sys.argv[1]) if len(sys.argv) > 1 else 8
     folder = pathlib.Path(tempfile.mkdtemp(prefix="save_", dir=build / "tests" / "tmp"))
     try:
         check_kills(build / "talus", folder, kills)
