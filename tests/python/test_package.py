@@ -69,6 +69,11 @@ def check_embedding(prefix, folder, plugins):
 
     listing = (source / "CMakeLists.txt").read_text(encoding="utf-8")
     (source / "CMakeLists.txt").write_text(listing.replace("talus::talus", "talus::static"), encoding="utf-8")
+    # it saves, too: that takes libraries of its own out of the archive
+    code = (source / "slide.c").read_text(encoding="utf-8")
+    saving = code.replace("    tl_model_destroy(model);", '    must(model, tl_model_save(model, "slide.talus"));\n    tl_model_destroy(model);', 1)
+    expect(saving != code, "slide.c does not destroy its model")
+    (source / "slide.c").write_text(saving, encoding="utf-8")
     build_project(source, folder / "static", prefix)
     needed = run(["readelf", "-d", folder / "static/slide"]).stdout
     expect("libtalus" not in needed, "the archive's program needs the library")
@@ -78,6 +83,9 @@ def check_embedding(prefix, folder, plugins):
     command = f"cc -std=c17 -O2 slide.c $(pkg-config --cflags --libs talus) -Wl,-rpath,'{prefix}/lib' -o by_hand"
     run(["sh", "-c", f'eval "{command}"'], cwd=source, **path)  # eval: the prefix has a blank in it
     check_example(source / "by_hand", folder, "pkg-config")
+    command = "cc -std=c17 -O2 slide.c $(pkg-config --static --cflags --libs talus | sed s/-ltalus/-l:libtalus.a/) -o from_archive"
+    run(["sh", "-c", f'eval "{command}"'], cwd=source, **path)
+    check_example(source / "from_archive", folder, "archive by pkg-config", TALUS_PLUGIN_PATH=str(plugins))
     given = run(["pkg-config", "--variable=plugindir", "talus"], **path).stdout.strip().replace("\\", "")
     expect(os.path.samefile(given, plugins), f"plugindir = {given}")
 
