@@ -4,8 +4,8 @@
  *
  *     const tl_plugin *tl_plugin_entry(uint32_t host_major, uint32_t host_minor);
  *
- * which returns a descriptor of pure data (or NULL to refuse the host). Scanning a plugin creates
- * nothing. The descriptor lists *kinds*: laws, dampings and generators, each with its parameters
+ * which returns a descriptor of pure data (or NULL to refuse the host); TL_PLUGIN writes it. Scanning a
+ * plugin creates nothing. The descriptor lists *kinds*: laws, dampings and generators, each with its parameters
  * (checked, defaulted and documented by the host from one table), its states (owned, carried over,
  * saved and written by the host) and its operations.
  *
@@ -417,6 +417,36 @@ typedef struct tl_plugin {
 } tl_plugin;
 
 typedef const tl_plugin *(*tl_plugin_entry_fn)(uint32_t host_major, uint32_t host_minor);
+
+/* Members of a tl_kind: its parameters, written to a struct `owner`, and its states. `table` is an array. */
+#define TL_KIND_PARAMS(owner, table)                                                               \
+    .params_size = sizeof(owner), .params = (table),                                               \
+    .param_count = sizeof(table) / sizeof(tl_param), .param_stride = sizeof(tl_param)
+#define TL_KIND_STATES(table)                                                                      \
+    .states = (table), .state_count = sizeof(table) / sizeof(tl_state),                            \
+    .state_stride = sizeof(tl_state)
+
+/* The descriptor and the entry of a plugin with the tl_kind, or the array of them, `kinds_`:
+ *
+ *     TL_PLUGIN(kind, .id = "example.drag", .version = "1.0", .doc = "Quadratic drag.", .licence = "MIT");
+ *
+ * It refuses hosts of another major version. TL_PLUGIN_SINCE also refuses those of a minor version below `least`, for a
+ * plugin that cannot do without what came with it. Once in a plugin, in C, at file scope. */
+#define TL_PLUGIN(kinds_, ...) TL_PLUGIN_SINCE(0, kinds_, __VA_ARGS__)
+#define TL_PLUGIN_SINCE(least, kinds_, ...)                                                        \
+    TL_PLUGIN_EXPORT const tl_plugin *tl_plugin_entry(uint32_t host_major, uint32_t host_minor)    \
+    {                                                                                              \
+        static const tl_plugin plugin = {.size = sizeof plugin,                                    \
+                                         .abi_major = TL_ABI_MAJOR,                                \
+                                         .abi_minor = TL_ABI_MINOR,                                \
+                                         .kinds = (const tl_kind *)&(kinds_),                      \
+                                         .kind_count = sizeof(kinds_) / sizeof(tl_kind),           \
+                                         .kind_stride = sizeof(tl_kind),                           \
+                                         __VA_ARGS__};                                             \
+        static const uint32_t least_minor = (least);                                               \
+        return host_major == TL_ABI_MAJOR && host_minor >= least_minor ? &plugin : NULL;           \
+    }                                                                                              \
+    _Static_assert(sizeof(kinds_) % sizeof(tl_kind) == 0, "give the kinds, not their address")
 
 #ifdef __cplusplus
 }

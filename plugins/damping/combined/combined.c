@@ -71,28 +71,10 @@ static const tl_kind kind = {
     .name = "combined",
     .doc =
         "Local damping that also damps vibration about a steady motion; for slow sliding and flow.",
-    .params_size = sizeof(params),
-    .params = param_table,
-    .param_count = sizeof param_table / sizeof *param_table,
-    .param_stride = sizeof *param_table,
+    TL_KIND_PARAMS(params, param_table),
     .ops = &ops,
 };
 
-static const tl_plugin plugin = {
-    .size = sizeof plugin,
-    .abi_major = TL_ABI_MAJOR,
-    .abi_minor = TL_ABI_MINOR,
-    .id = "talus.combined",
-    .version = TALUS_VERSION,
-    .doc = "Combined damping.",
-    .licence = "BSD-3-Clause",
-    .kinds = &kind,
-    .kind_count = 1,
-    .kind_stride = sizeof kind,
-};
-
 /* Hosts give the forces of the step before since minor version 1, but since 2 to those that ask. */
-TL_PLUGIN_EXPORT const tl_plugin *tl_plugin_entry(uint32_t host_major, uint32_t host_minor)
-{
-    return host_major == TL_ABI_MAJOR && host_minor >= 1 ? &plugin : NULL;
-}
+TL_PLUGIN_SINCE(1, kind, .id = "talus.combined", .version = TALUS_VERSION,
+                .doc = "Combined damping.", .licence = "BSD-3-Clause");

@@ -65,27 +65,10 @@ static const tl_kind kind = {
     .name = "kinetic",
     .doc = "Stops all bodies whenever the kinetic energy of the model has been at its peak; the "
            "fastest way to an equilibrium of many blocks.",
-    .states = state_table,
-    .state_count = sizeof state_table / sizeof *state_table,
-    .state_stride = sizeof *state_table,
+    TL_KIND_STATES(state_table),
     .ops = &ops,
 };
 
-static const tl_plugin plugin = {
-    .size = sizeof plugin,
-    .abi_major = TL_ABI_MAJOR,
-    .abi_minor = TL_ABI_MINOR,
-    .id = "talus.kinetic",
-    .version = TALUS_VERSION,
-    .doc = "Kinetic damping.",
-    .licence = "BSD-3-Clause",
-    .kinds = &kind,
-    .kind_count = 1,
-    .kind_stride = sizeof kind,
-};
-
 /* Hosts give the power of the forces since minor version 5. */
-TL_PLUGIN_EXPORT const tl_plugin *tl_plugin_entry(uint32_t host_major, uint32_t host_minor)
-{
-    return host_major == TL_ABI_MAJOR && host_minor >= 5 ? &plugin : NULL;
-}
+TL_PLUGIN_SINCE(5, kind, .id = "talus.kinetic", .version = TALUS_VERSION, .doc = "Kinetic damping.",
+                .licence = "BSD-3-Clause");

@@ -28,21 +28,5 @@ static const tl_kind kind = {
     .ops = &ops,
 };
 
-static const tl_plugin plugin = {
-    .size = sizeof plugin,
-    .abi_major = TL_ABI_MAJOR,
-    .abi_minor = TL_ABI_MINOR,
-    .id = "talus.none",
-    .version = TALUS_VERSION,
-    .doc = "The absence of damping.",
-    .licence = "BSD-3-Clause",
-    .kinds = &kind,
-    .kind_count = 1,
-    .kind_stride = sizeof kind,
-};
-
-TL_PLUGIN_EXPORT const tl_plugin *tl_plugin_entry(uint32_t host_major, uint32_t host_minor)
-{
-    (void)host_minor;
-    return host_major == TL_ABI_MAJOR ? &plugin : NULL;
-}
+TL_PLUGIN(kind, .id = "talus.none", .version = TALUS_VERSION, .doc = "The absence of damping.",
+          .licence = "BSD-3-Clause");

@@ -207,9 +207,6 @@ const tl_kind prism_kind = {
     .type = TL_KIND_GENERATOR,
     .name = "prism",
     .doc = "Creates one body between two polygons.",
-    .params_size = sizeof(params),
-    .params = param_table,
-    .param_count = sizeof param_table / sizeof *param_table,
-    .param_stride = sizeof *param_table,
+    TL_KIND_PARAMS(params, param_table),
     .ops = &ops,
 };

@@ -72,9 +72,6 @@ const tl_kind profile_kind = {
     .type = TL_KIND_GENERATOR,
     .name = "profile",
     .doc = "Creates one body of a section in a plane, moved across it: a slope, a dam, a wall.",
-    .params_size = sizeof(params),
-    .params = param_table,
-    .param_count = sizeof param_table / sizeof *param_table,
-    .param_stride = sizeof *param_table,
+    TL_KIND_PARAMS(params, param_table),
     .ops = &ops,
 };

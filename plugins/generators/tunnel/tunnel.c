@@ -378,28 +378,10 @@ static const tl_kind kind = {
     .type = TL_KIND_GENERATOR,
     .name = "tunnel",
     .doc = "Cuts the visible blocks in the way of a tunnel along its surface.",
-    .params_size = sizeof(params),
-    .params = param_table,
-    .param_count = sizeof param_table / sizeof *param_table,
-    .param_stride = sizeof *param_table,
+    TL_KIND_PARAMS(params, param_table),
     .ops = &ops,
 };
 
-static const tl_plugin plugin = {
-    .size = sizeof plugin,
-    .abi_major = TL_ABI_MAJOR,
-    .abi_minor = TL_ABI_MINOR,
-    .id = "talus.tunnel",
-    .version = TALUS_VERSION,
-    .doc = "Tunnel generator.",
-    .licence = "BSD-3-Clause",
-    .kinds = &kind,
-    .kind_count = 1,
-    .kind_stride = sizeof kind,
-};
-
 /* It needs the services for single blocks, which came with minor 1. */
-TL_PLUGIN_EXPORT const tl_plugin *tl_plugin_entry(uint32_t host_major, uint32_t host_minor)
-{
-    return host_major == TL_ABI_MAJOR && host_minor >= 1 ? &plugin : NULL;
-}
+TL_PLUGIN_SINCE(1, kind, .id = "talus.tunnel", .version = TALUS_VERSION, .doc = "Tunnel generator.",
+                .licence = "BSD-3-Clause");

@@ -402,31 +402,10 @@ static const tl_kind kind = {
     .name = "barton_bandis",
     .doc = "Rough joints: hyperbolic closure, and friction from roughness and wall strength that "
            "slip wears down.",
-    .params_size = sizeof(params),
-    .params = param_table,
-    .param_count = sizeof param_table / sizeof *param_table,
-    .param_stride = sizeof *param_table,
-    .states = state_table,
-    .state_count = sizeof state_table / sizeof *state_table,
-    .state_stride = sizeof *state_table,
+    TL_KIND_PARAMS(params, param_table),
+    TL_KIND_STATES(state_table),
     .ops = &ops,
 };
 
-static const tl_plugin plugin = {
-    .size = sizeof plugin,
-    .abi_major = TL_ABI_MAJOR,
-    .abi_minor = TL_ABI_MINOR,
-    .id = "talus.barton_bandis",
-    .version = TALUS_VERSION,
-    .doc = "Joint law of Barton and Bandis.",
-    .licence = "BSD-3-Clause",
-    .kinds = &kind,
-    .kind_count = 1,
-    .kind_stride = sizeof kind,
-};
-
-TL_PLUGIN_EXPORT const tl_plugin *tl_plugin_entry(uint32_t host_major, uint32_t host_minor)
-{
-    (void)host_minor;
-    return host_major == TL_ABI_MAJOR ? &plugin : NULL;
-}
+TL_PLUGIN(kind, .id = "talus.barton_bandis", .version = TALUS_VERSION,
+          .doc = "Joint law of Barton and Bandis.", .licence = "BSD-3-Clause");

@@ -58,28 +58,9 @@ static const tl_kind kind = {
     .type = TL_KIND_GENERATOR,
     .name = "my_generator",
     .doc = "Creates a wall of bricks.",
-    .params_size = sizeof(params),
-    .params = param_table,
-    .param_count = sizeof param_table / sizeof *param_table,
-    .param_stride = sizeof *param_table,
+    TL_KIND_PARAMS(params, param_table),
     .ops = &ops,
 };
 
-static const tl_plugin plugin = {
-    .size = sizeof plugin,
-    .abi_major = TL_ABI_MAJOR,
-    .abi_minor = TL_ABI_MINOR,
-    .id = "example.my_generator",
-    .version = "1.0",
-    .doc = "Brick walls.",
-    .licence = "BSD-3-Clause",
-    .kinds = &kind,
-    .kind_count = 1,
-    .kind_stride = sizeof kind,
-};
-
-TL_PLUGIN_EXPORT const tl_plugin *tl_plugin_entry(uint32_t host_major, uint32_t host_minor)
-{
-    (void)host_minor;
-    return host_major == TL_ABI_MAJOR ? &plugin : NULL;
-}
+TL_PLUGIN(kind, .id = "example.my_generator", .version = "1.0", .doc = "Brick walls.",
+          .licence = "BSD-3-Clause");
