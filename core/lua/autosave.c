@@ -6,7 +6,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #define ENDING ".autosave.talus"
 
@@ -21,18 +20,11 @@ char *tl_lua_autosave_path(const char *script)
     return path;
 }
 
-static double clock_now(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 void tl_lua_autosave(tl_lua_options *options, tl_model *model)
 {
     if (!(options->autosave > 0) || !options->save_path)
         return;
-    double now = clock_now();
+    double now = tl_lua_clock();
     if (options->save_due == 0) /* the first step of all */
         options->save_due = now + options->autosave;
     if (now < options->save_due)

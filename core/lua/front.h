@@ -37,6 +37,8 @@ typedef struct tl_lua_options {
 tl_lua_options *tl_lua_options_of(lua_State *L);
 /* Prints a remark of the kernel on standard error, unless the options, its user data, say quiet. */
 void tl_lua_log(void *user, const char *text);
+/* Seconds of a clock that never goes back, from a start of its own: only differences mean something. */
+double tl_lua_clock(void);
 /* Opens the module `talus`. */
 TL_API int luaopen_talus(lua_State *L);
 

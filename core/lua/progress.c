@@ -10,7 +10,6 @@
 #include <string.h>
 #include <sys/ioctl.h>
 #include <talus/elementary.h>
-#include <time.h>
 #include <unistd.h>
 
 /* Seconds between two lines on a terminal and in a log, unless TALUS_PROGRESS says. */
@@ -22,13 +21,6 @@
 #define LOG_COLUMNS 160
 /* A trend of the logarithm of the ratio that is less than this in the time looked at is none. */
 #define TREND 0.1
-
-static double now(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 /* The period that the environment asks for, s, or NaN. */
 static double read_period(lua_State *L)
@@ -52,7 +44,7 @@ void tl_lua_progress_begin(lua_State *L, tl_lua_progress *p, const tl_model *mod
     p->terminal = isatty(STDERR_FILENO) == 1;
     double period = read_period(L);
     p->period = !isnan(period) ? period : p->terminal ? TERMINAL_PERIOD : LOG_PERIOD;
-    p->began = p->shown = now();
+    p->began = p->shown = tl_lua_clock();
     p->first_cycle = p->shown_cycle = tl_model_cycles(model);
     p->first_time = p->shown_time = tl_model_time(model);
 }
@@ -117,7 +109,7 @@ static void write_line(tl_lua_progress *p, const line *l)
     fprintf(stderr, p->terminal ? "\r\033[K%.*s" : "talus: %.*s\n", width, text);
     fflush(stderr);
     p->drawn = p->terminal;
-    p->shown = now();
+    p->shown = tl_lua_clock();
 }
 
 static void add_time_left(line *l, double seconds)
@@ -238,7 +230,7 @@ static void count_contacts(tl_lua_progress *p, const tl_model *model, double t)
     if (p->period > 0 && t < p->next_count)
         return;
     p->counts = tl_model_contact_counts(model);
-    double after = now();
+    double after = tl_lua_clock();
     p->next_count = after + (after - t) / COUNTING;
 }
 
@@ -247,7 +239,7 @@ void tl_lua_progress_run(tl_lua_progress *p, const tl_model *model, const tl_sol
 {
     if (!p->on)
         return;
-    double t = now(), time = tl_model_time(model);
+    double t = tl_lua_clock(), time = tl_model_time(model);
     int64_t cycle = tl_model_cycles(model), steps = cycle - p->shown_cycle;
     if (t - p->shown < p->period || steps == 0)
         return;
@@ -273,7 +265,7 @@ void tl_lua_progress_run(tl_lua_progress *p, const tl_model *model, const tl_sol
 void tl_lua_progress_generate(void *user, const tl_generate_progress *done)
 {
     tl_lua_progress *p = user;
-    double t = p->on ? now() : 0;
+    double t = p->on ? tl_lua_clock() : 0;
     if (!p->on || t - p->shown < p->period)
         return;
     line l = {.count = 0};
