@@ -223,14 +223,19 @@ static double points_moved(const tl_model *m, uint32_t c)
     return tl_spot_moved(m, &contacts->spot[c], a, b, m->bodies.radius[m->blocks.body[b]]);
 }
 
+/* How far from the centroid of B's body the points of either block may lie. */
+static double reach_of(const tl_model *m, uint32_t c)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    uint32_t a = m->blocks.body[contacts->a[c]], b = m->blocks.body[contacts->b[c]];
+    double away = tl_v3_norm(tl_body_apart(&m->bodies, a, b));
+    return fmax(m->bodies.radius[b], away + m->bodies.radius[a]);
+}
+
 static double faces_moved(const tl_model *m, uint32_t c)
 {
     const tl_contacts *contacts = &m->detect->contacts;
-    uint32_t a = contacts->a[c], b = contacts->b[c];
-    uint32_t body_a = m->blocks.body[a], body_b = m->blocks.body[b];
-    double away = tl_v3_norm(tl_body_apart(&m->bodies, body_a, body_b));
-    double radius = fmax(m->bodies.radius[body_b], away + m->bodies.radius[body_a]);
-    return tl_spot_moved(m, &contacts->spot[c], a, b, radius);
+    return tl_spot_moved(m, &contacts->spot[c], contacts->a[c], contacts->b[c], reach_of(m, c));
 }
 
 void tl_contact_allow_reuse(tl_model *m, uint32_t c)
@@ -247,8 +252,8 @@ void tl_contact_allow_reuse(tl_model *m, uint32_t c)
         contacts->points_valid_to[c] = -INFINITY;
         return;
     }
-    double left = (double)contacts->spot[c].left - faces_moved(m, c);
-    contacts->spot[c] = tl_spot_of(m, contacts->a[c], contacts->b[c], left);
+    contacts->spot[c] =
+        tl_spot_on(m, &contacts->spot[c], contacts->a[c], contacts->b[c], reach_of(m, c));
 }
 
 /* Whether the odometers have not run out, or the blocks have moved less than that against each other. -INFINITY: all is to be
