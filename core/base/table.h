@@ -16,8 +16,8 @@
 
 enum {
     TL_COLUMN_STATE = 1, /* part of the mechanical state: hashed and saved */
-    TL_COLUMN_OWNED = 4, /* pointers to what has an owner of its own: saved otherwise */
-    TL_COLUMN_STEP = 2 /* overwritten by laws or gather: kept where a step may have to be undone */
+    TL_COLUMN_STEP = 2, /* overwritten by laws or gather: kept where a step may have to be undone */
+    TL_COLUMN_OWNED = 4 /* pointers to what has an owner of its own: saved otherwise */
 };
 
 typedef struct tl_column {

@@ -11,7 +11,7 @@
 
 /* What becomes of an entry. */
 typedef enum tl_keep {
-    TL_KEEP_STATE, /* the next step depends on it: copied, saved */
+    TL_KEEP_STATE, /* what the next steps depend on, and what is told of the model: copied, saved */
     TL_KEEP_CACHE, /* saves work; without it the next steps would be the same but for rounding: copied, saved */
     TL_KEEP_DERIVED, /* follows from the rest to the bit: copied, not saved */
     TL_KEEP_SCRATCH  /* means nothing between two calls: neither */
@@ -30,9 +30,9 @@ typedef struct tl_entry {
     tl_keep keep;
     void *at;
     size_t size, items;
-    size_t bytes; /* of a list: of the room that it has */
-    size_t *count,
-        *room; /* of a list: where its number of items, and of items it has room for, are noted; or NULL */
+    size_t bytes;      /* of a table, and of the room that a list has */
+    size_t *count;     /* of a list: where its number of items is noted, */
+    size_t *room;      /* and of those it has room for, or NULL */
     size_t counts_for; /* offset in tl_memory of what its bytes count for */
 } tl_entry;
 
@@ -63,7 +63,7 @@ static inline void tl_walk_flag(const tl_walk *w, tl_keep keep, const char *name
     w->visit(w->user, &e);
 }
 
-/* A list; one whose room is noted nowhere has room for its items. */
+/* A list; one whose room is noted nowhere, NULL, has room for its items. */
 static inline void tl_walk_list(const tl_walk *w, tl_keep keep, const char *name, void *slot,
                                 size_t size, size_t *count, size_t *room, size_t counts_for)
 {
@@ -72,10 +72,8 @@ static inline void tl_walk_list(const tl_walk *w, tl_keep keep, const char *name
                         .keep = keep,
                         .at = slot,
                         .size = size,
-                        .items = count ? *count : 0,
-                        .bytes = size * (room    ? *room
-                                         : count ? *count
-                                                 : 0),
+                        .items = *count,
+                        .bytes = size * (room ? *room : *count),
                         .count = count,
                         .room = room,
                         .counts_for = counts_for};

@@ -251,8 +251,7 @@ static bool run_is_sound(const tl_model *m, const tl_detect *d, const tl_run *ru
 static bool layout_is_sound(const tl_model *m, const tl_detect *d)
 {
     size_t taken = 0, wanted = 0;
-    if (d->points.table.rows > UINT32_MAX ||
-        d->layout.rank_room > d->points.table.rows + 1024 * (d->layout.run_count + 1))
+    if (d->points.table.rows > UINT32_MAX)
         return false;
     for (size_t k = 0; k < d->layout.run_count; k++)
         if (!run_is_sound(m, d, &d->layout.runs[k], k ? &d->layout.runs[k - 1] : NULL, &taken))

@@ -24,7 +24,8 @@ static const char magic[8] = {'T', 'A', 'L', 'U', 'S', '\r', '\n', '\x1a'};
 /* Format of the file, and of what the chunks hold: another is refused. */
 #define FORMAT 1
 #define ORDER 0x01020304u
-/* Level of compression: half the size of the columns at 300 MB/s; higher levels take longer than the disk. */
+/* Level of compression: a third of the size at some 600 MB/s, for a hundred thousand blocks of rock; higher levels take longer than
+ * a disk. */
 #define LEVEL 1
 /* Data of fewer bytes is stored as it is. */
 #define SHORT_DATA 128
@@ -294,4 +295,13 @@ bool tl_archive_get(const tl_archive *a, const char *name, void *to, size_t size
     }
     return bytes &&
            ZSTD_decompressDCtx(a->unpacker, to, bytes, chunk->data, chunk->stored) == bytes;
+}
+
+bool tl_archive_text(const tl_archive *a, const char *name, char *text, size_t room)
+{
+    const tl_chunk *chunk = tl_archive_find(a, name);
+    if (!chunk || chunk->items >= room || !tl_archive_get(a, name, text, 1, (size_t)chunk->items))
+        return false;
+    text[chunk->items] = '\0';
+    return strlen(text) == chunk->items;
 }

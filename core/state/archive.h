@@ -65,6 +65,8 @@ const tl_chunk *tl_archive_find(const tl_archive *archive, const char *name);
  * number of them, or does not unpack to them. */
 bool tl_archive_get(const tl_archive *archive, const char *name, void *to, size_t size,
                     size_t items);
+/* The bytes of a chunk as a text with its terminating zero; false: it is not there, has not so much room or holds a zero. */
+bool tl_archive_text(const tl_archive *archive, const char *name, char *text, size_t room);
 /* "cannot restore 'path': the file is damaged: ..." */
 tl_status tl_archive_bad(const tl_archive *archive, tl_error *error, const char *format, ...)
     TL_PRINTF(3, 4);

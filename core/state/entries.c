@@ -13,15 +13,13 @@ void tl_entries_note(void *user, const tl_entry *entry)
     entries->list[entries->count++] = *entry;
 }
 
-/* Puts a list in the place of the one at a slot. */
-static void put_list(const tl_entry *to, void *list, size_t items)
+void tl_entry_put_list(const tl_entry *to, void *list, size_t items)
 {
     void *old;
     memcpy(&old, to->at, sizeof old);
     free(old);
     memcpy(to->at, &list, sizeof list);
-    if (to->count)
-        *to->count = items;
+    *to->count = items;
     if (to->room)
         *to->room = items;
 }
@@ -35,7 +33,7 @@ static bool copy_list(const tl_entry *to, const tl_entry *from)
     bool copied = list || !items;
     if (list)
         memcpy(list, source, items * from->size);
-    put_list(to, list, copied ? items : 0);
+    tl_entry_put_list(to, list, copied ? items : 0);
     return copied;
 }
 

@@ -26,6 +26,9 @@ typedef struct tl_entries_copy {
 /* The function of the second walk, whose user is a tl_entries_copy. */
 void tl_entries_take(void *user, const tl_entry *entry);
 
+/* Puts a list of so many items, from malloc, in the place of the one of an entry, which is freed. */
+void tl_entry_put_list(const tl_entry *to, void *list, size_t items);
+
 /* Room for the name under which a file keeps a column. */
 #define TL_COLUMN_CHUNK 96
 

@@ -56,16 +56,6 @@ bool tl_frames_save(const tl_model *m, tl_archive_writer *w)
     return true;
 }
 
-/* The text of an entry; false: it is missing or too long. */
-static bool get_text(const tl_archive *a, const char *name, char *text, size_t room)
-{
-    const tl_chunk *chunk = tl_archive_find(a, name);
-    if (!chunk || chunk->items >= room || !tl_archive_get(a, name, text, 1, (size_t)chunk->items))
-        return false;
-    text[chunk->items] = '\0';
-    return strlen(text) == chunk->items && tl_text_is_clean(text);
-}
-
 static tl_status add_frames(tl_model *m, const char *prefix, const char *kind, const double *times,
                             const uint32_t *parts, size_t count)
 {
@@ -95,8 +85,8 @@ static tl_status restore_series(tl_model *m, size_t k, const tl_archive *a)
     uint32_t *parts = malloc((count + 1) * sizeof *parts);
     tl_status status = times && parts ? TL_OK : tl_fail_memory(&m->error);
     if (status == TL_OK &&
-        !(get_text(a, entry(name, k, "prefix"), prefix, sizeof prefix) &&
-          get_text(a, entry(name, k, "kind"), kind, sizeof kind) &&
+        !(tl_archive_text(a, entry(name, k, "prefix"), prefix, sizeof prefix) &&
+          tl_archive_text(a, entry(name, k, "kind"), kind, sizeof kind) &&
           tl_archive_get(a, entry(name, k, "times"), times, sizeof *times, count) &&
           tl_archive_get(a, entry(name, k, "parts"), parts, sizeof *parts, count) &&
           frames_are_sound(times, parts, count)))

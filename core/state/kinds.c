@@ -20,8 +20,6 @@
 
 /* Longest prefix. */
 #define PREFIX 32
-/* Parameters that a law or damping may have in a file. */
-#define MOST_PARAMS 64
 /* Longest list of names of states, and longest name of a plugin with its version. */
 #define NAMES 1024
 #define PLUGIN_NAME 256
@@ -112,10 +110,8 @@ static const char *get_text(const tl_archive *a, const char *prefix, const char 
 {
     char full[TL_CHUNK_NAME];
     snprintf(full, sizeof full, "%.30s.%.64s", prefix, name);
-    const tl_chunk *chunk = tl_archive_find(a, full);
-    if (!chunk || chunk->items >= room || !tl_archive_get(a, full, text, 1, (size_t)chunk->items))
+    if (!tl_archive_text(a, full, text, room))
         return NULL;
-    text[chunk->items] = '\0';
     tl_text_clean(text);
     return text;
 }
@@ -231,12 +227,11 @@ static tl_status restore_kind(tl_model *m, const tl_archive *a, const char *pref
     tl_status status = find_kind(m, a, prefix, type, &kind);
     if (status != TL_OK)
         return status;
-    read_param *room = kind->param_count <= MOST_PARAMS ? calloc(MOST_PARAMS, sizeof *room) : NULL;
-    if (!room)
-        return tl_fail_memory(&m->error);
-    tl_value values[MOST_PARAMS];
+    read_param *room = calloc(kind->param_count + 1u, sizeof *room);
+    tl_value *values = calloc(kind->param_count + 1u, sizeof *values);
     tl_args args;
-    status = read_params(m, a, prefix, kind, room, values, &args);
+    status = room && values ? read_params(m, a, prefix, kind, room, values, &args)
+                            : tl_fail_memory(&m->error);
     if (status == TL_OK && law) {
         const char *joint = tag.joint ? tl_tag_name(m, tag) : "*";
         status = tell_path(m, a, tl_material_make(m, tag, joint, kind, &args, NULL, law));
@@ -244,6 +239,7 @@ static tl_status restore_kind(tl_model *m, const tl_archive *a, const char *pref
         status = tell_path(m, a, tl_damping_make(m, kind, &args, NULL));
     }
     free(room);
+    free(values);
     return status;
 }
 

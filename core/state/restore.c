@@ -40,20 +40,14 @@ static bool read_list(reader *r, const tl_entry *e)
     if (!chunk || chunk->size != e->size || chunk->items > SIZE_MAX / e->size)
         return false;
     size_t items = (size_t)chunk->items;
-    void *old, *list = items ? malloc(items * e->size) : NULL;
+    void *list = items ? malloc(items * e->size) : NULL;
     r->lacked = items && !list;
     bool read = !r->lacked && tl_archive_get(r->archive, e->name, list, e->size, items);
     if (!read) {
         free(list);
         return false;
     }
-    memcpy(&old, e->at, sizeof old);
-    free(old);
-    memcpy(e->at, &list, sizeof list);
-    if (e->count)
-        *e->count = items;
-    if (e->room)
-        *e->room = items;
+    tl_entry_put_list(e, list, items);
     return true;
 }
 

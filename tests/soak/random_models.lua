@@ -238,11 +238,17 @@ function Maker:take_again(k)
     end
     -- asked of copies, for to ask is to find contacts that the other model finds after its next edit only
     local hash = { pcall(function() return m:copy():state_hash() end) }
-    local good, restored = pcall(talus.restore, path, { threads = 1 + k % 3, drives = self.drives })
-    if not good and restored:find("has to be given again", 1, true) then
-        self.model = m:copy()
-        return
-    end
+    local drives, good, restored, asked = {}
+    repeat -- functions are given when they are asked for: who drives what after cuts and joins is the model's to tell
+        good, restored = pcall(talus.restore, path, { threads = 1 + k % 3, drives = drives })
+        asked = not good and tonumber(restored:match "block (%d+).* is driven by a function")
+        if asked and (drives[asked] or not self.drives[asked]) then
+            self.model = m:copy()
+            return
+        elseif asked then
+            drives[asked] = self.drives[asked]
+        end
+    until not asked
     assert(good, restored)
     assert(not hash[1] or hash[2] == restored:copy():state_hash(), "what was restored is another model")
     self.model = restored
