@@ -1,0 +1,132 @@
+/* contact_polygons.c - the polygons on which contacts act, found anew from where the blocks are. */
+#include "query/contact_polygons.h"
+
+#include "contact/detection.h"
+#include "contact/pair_view.h"
+#include "narrow/place.h"
+#include "narrow/surface.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Contacts that a thread takes at a time: what it finds is kept until all is put in order. */
+#define CHUNK 256
+
+/* What was found of the contacts of a chunk. */
+typedef struct part {
+    tl_surface surface;
+    bool failed; /* out of memory */
+} part;
+
+typedef struct job {
+    tl_model *model;
+    const uint32_t *rows;
+    tl_contact_polygons *out;
+    part *parts;
+} job;
+
+/* Adds a contact's polygons in the frame of its first block's body. */
+static bool add_polygons(tl_model *m, uint32_t c, tl_narrow *room, tl_surface *surface)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    const tl_facet *facet = &contacts->facet[c];
+    tl_pair_view view = tl_pair_view_of(m, contacts->a[c], contacts->b[c]);
+    if (!tl_pair_place(&view, room))
+        return false;
+    if (facet->kind == TL_FACET_PATCH)
+        return tl_surface_add_patch(&view, facet->ia, facet->ib, surface);
+    tl_region region;
+    return tl_region_find(&view, 0, room, &region) && tl_surface_add_field(&view, &region, surface);
+}
+
+/* From the frame of a block's body to places relative to the model's origin. */
+static void place(const tl_model *m, uint32_t block, tl_vec3 *x, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        x[i] = tl_v3_sub(tl_model_point(m, m->blocks.body[block], x[i]), m->origin);
+}
+
+static void find_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
+{
+    const job *j = user;
+    tl_detect *d = j->model->detect;
+    part *p = &j->parts[chunk];
+    for (size_t i = begin; i < end && !p->failed; i++) {
+        size_t polygons = p->surface.polygons, corners = p->surface.corners;
+        p->failed = !add_polygons(j->model, j->rows[i], &d->narrow[thread], &p->surface);
+        if (p->failed)
+            break;
+        place(j->model, d->contacts.a[j->rows[i]], p->surface.corner + corners,
+              p->surface.corners - corners);
+        j->out->first[i] = (uint32_t)(p->surface.polygons - polygons);
+    }
+}
+
+/* Turns the counts in a list into the places where what they count begins. */
+static size_t begin_each(uint32_t *counts, size_t count)
+{
+    size_t next = 0;
+    for (size_t i = 0; i < count; i++) {
+        size_t here = counts[i];
+        counts[i] = (uint32_t)next;
+        next += here;
+    }
+    counts[count] = (uint32_t)next;
+    return next;
+}
+
+/* Puts the chunks' findings one behind the other. */
+static bool join(const part *parts, size_t chunks, tl_contact_polygons *out)
+{
+    for (size_t k = 0; k < chunks; k++) {
+        if (parts[k].failed)
+            return false;
+        out->polygons += parts[k].surface.polygons;
+        out->corners += parts[k].surface.corners;
+    }
+    if (out->corners > UINT32_MAX)
+        return false;
+    out->start = malloc((out->polygons + 1) * sizeof *out->start);
+    out->corner = malloc((out->corners + 1) * sizeof *out->corner);
+    if (!out->start || !out->corner)
+        return false;
+    size_t polygon = 0, corner = 0;
+    for (size_t k = 0; k < chunks; k++) {
+        const tl_surface *s = &parts[k].surface;
+        if (s->polygons == 0)
+            continue;
+        memcpy(out->start + polygon, s->size, s->polygons * sizeof *s->size);
+        memcpy(out->corner + corner, s->corner, s->corners * sizeof *s->corner);
+        polygon += s->polygons;
+        corner += s->corners;
+    }
+    begin_each(out->first, out->contacts);
+    begin_each(out->start, out->polygons);
+    return true;
+}
+
+tl_status tl_contact_polygons_find(tl_model *m, const uint32_t *rows, size_t count,
+                                   tl_contact_polygons *out)
+{
+    size_t chunks = (count + CHUNK - 1) / CHUNK;
+    *out = (tl_contact_polygons){.contacts = count};
+    out->first = calloc(count + 1, sizeof *out->first);
+    job j = {m, rows, out, calloc(chunks + 1, sizeof *j.parts)};
+    bool found = out->first && j.parts;
+    if (found) {
+        tl_parallel_for(m->pool, count, CHUNK, find_range, &j);
+        found = join(j.parts, chunks, out);
+    }
+    for (size_t k = 0; j.parts && k < chunks; k++)
+        tl_surface_free(&j.parts[k].surface);
+    free(j.parts);
+    return found ? TL_OK : tl_fail_memory(&m->error);
+}
+
+void tl_contact_polygons_free(tl_contact_polygons *polygons)
+{
+    free(polygons->first);
+    free(polygons->start);
+    free(polygons->corner);
+    *polygons = (tl_contact_polygons){0};
+}
