@@ -95,7 +95,7 @@ static tl_status check_prefix(const char *function, const char *prefix, tl_error
 }
 
 /* The data first, then the indices, so that no index ever names a file that is not there. */
-static tl_status write_files(tl_model *m, tl_vtk_series *series, const frame *f)
+static tl_status write_files(tl_model *m, tl_vtk_series *series, const frame *f, double time)
 {
     tl_output data[PART_COUNT] = {{0}};
     tl_vtk_index_change indices[PART_COUNT] = {{.file = 0}};
@@ -108,7 +108,7 @@ static tl_status write_files(tl_model *m, tl_vtk_series *series, const frame *f)
     for (size_t i = 0; status == TL_OK && i < f->count; i++)
         if (wants(f, i))
             status =
-                tl_vtk_index_open(&indices[i], series, i, f->parts[i].content, m->time, &m->error);
+                tl_vtk_index_open(&indices[i], series, i, f->parts[i].content, time, &m->error);
     if (status == TL_OK)
         status = tl_output_go_on(m);
     for (size_t i = 0; status == TL_OK && i < f->count; i++)
@@ -137,10 +137,11 @@ static tl_status write_frame(tl_model *m, const char *prefix, const frame *f)
     sigset_t before;
     tl_signals_hold(&before, false);
     atomic_store(&m->interrupted, false);
-    status = write_files(m, series, f);
+    double time = tl_vtk_series_time(series, m->time);
+    status = write_files(m, series, f, time);
     tl_signals_release(&before);
     if (status == TL_OK)
-        tl_vtk_series_add(series, (tl_vtk_frame){m->time, f->wanted});
+        tl_vtk_series_add(series, (tl_vtk_frame){time, f->wanted});
     else if (status == TL_E_IO)
         tl_error_prefix(&m->error, "%s: ", f->function);
     return status;

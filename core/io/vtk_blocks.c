@@ -8,7 +8,10 @@
  *             velocity  of the block's centroid, m/s
  *             group     index into the field group_names
  *             body      id of its body
- *             volume    m3          density   kg/m3
+ *             volume    m3          density   kg/m3       mass      kg
+ *             displacement      of its centroid since creation or the last reset, m
+ *             rotation          of its body since creation, axis times angle, rad
+ *             unbalanced_force  on its body in the last step, N
  *             fixed     1 when its body is held whole         hidden    1 when hidden
  * Point data  displacement  m, since creation or the last reset
  *             explode       from the model's centre to the block's centroid, m: ParaView's Warp By
@@ -198,6 +201,21 @@ static double density_of(const tl_model *m, uint32_t row)
     return m->blocks.density[row];
 }
 
+static double mass_of(const tl_model *m, uint32_t row)
+{
+    return m->blocks.density[row] * m->blocks.volume[row];
+}
+
+static tl_vec3 rotation_of(const tl_model *m, uint32_t row)
+{
+    return tl_q_vector(m->bodies.q[m->blocks.body[row]]);
+}
+
+static tl_vec3 unbalanced_of(const tl_model *m, uint32_t row)
+{
+    return m->bodies.force[m->blocks.body[row]];
+}
+
 /* Of a block's centroid: its body's, and what the body's turning adds off the body's centroid. */
 static tl_vec3 velocity_of(const tl_model *m, uint32_t row)
 {
@@ -210,8 +228,11 @@ static tl_vec3 velocity_of(const tl_model *m, uint32_t row)
 static const cell_array types = {.whole = cell_type}, ids = {.whole = id_of},
                         velocities = {.vector = velocity_of};
 static const cell_array fields[] = {
-    {"group", .whole = group_of},    {"body", .whole = body_of},   {"volume", .real = volume_of},
-    {"density", .real = density_of}, {"fixed", .whole = is_fixed}, {"hidden", .whole = is_hidden},
+    {"group", .whole = group_of},        {"body", .whole = body_of},
+    {"volume", .real = volume_of},       {"density", .real = density_of},
+    {"mass", .real = mass_of},           {"displacement", .vector = tl_block_displacement},
+    {"rotation", .vector = rotation_of}, {"unbalanced_force", .vector = unbalanced_of},
+    {"fixed", .whole = is_fixed},        {"hidden", .whole = is_hidden},
 };
 
 enum { FIELDS = sizeof fields / sizeof *fields };
@@ -235,7 +256,8 @@ static tl_status put_cell_data(tl_model *m, tl_pieces *out)
         status = put_array(m, out, &velocities);
     tl_vtk_field(file, "FieldData", FIELDS);
     for (size_t i = 0; i < FIELDS && status == TL_OK; i++) {
-        tl_vtk_array(file, fields[i].name, 1, rows, fields[i].whole ? TL_VTK_INT : TL_VTK_DOUBLE);
+        tl_vtk_array(file, fields[i].name, fields[i].vector ? 3 : 1, rows,
+                     fields[i].whole ? TL_VTK_INT : TL_VTK_DOUBLE);
         status = put_array(m, out, &fields[i]);
     }
     return status;

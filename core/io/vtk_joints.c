@@ -1,65 +1,265 @@
-/* vtk_joints.c - the joint faces of a frame: POLYDATA of polygons, one for each block face that a
- * joint made (so two for each place where two blocks still touch).
+/* vtk_joints.c - the joints of a frame: POLYDATA of polygons, one for each place where two blocks touch (contacts that are not
+ * flush have several), and one for each face that a joint made and on which no contact lies any more. So what joints do shows
+ * once and where it happens.
  *
- * Cell data  joint     index into the field joint_names
+ * Cell data  joint     index into the field joint_names; 0 where neither face was made by a joint
  *            plane     number of the plane within its joint set
- *            block_id  id of the block the face belongs to
- * Point data displacement  m, as in the file of the blocks */
+ *            block_id, block_b   the blocks, the older first; block_b 0: a face without contact, of block_id
+ *            contact_id          0: a face without contact
+ *            state     0 elastic, 1 slipping, 2 open, 3 failed; 4 a face without contact
+ *            normal_stress, shear_stress   Pa      normal_force   N, compression positive
+ *            shear_force         N, vector, on block_b
+ *            shear_displacement  m, vector: of block_b against block_id since creation or the last reset
+ *            slip      its length, m               area   m2 of the contact, of the face where there is none
+ *            and each state of the laws by its name; NaN where there is none
+ * Point data displacement  m, that of block_id, as in the file of the blocks
+ *
+ * Without contact, stresses, forces and slip are 0. */
 #include "base/error.h"
+#include "contact/detection.h"
+#include "io/vtk_columns.h"
 #include "io/vtk_data.h"
-#include "io/vtk_file.h"
+#include "query/contact_fields.h"
+#include "query/contact_polygons.h"
 
 #include <stdlib.h>
 
-/* Of which blocks the polygons are. */
-typedef struct faces {
-    const tl_model *model;
-    const tl_blocks *blocks;
-    uint32_t *polygon, *point; /* [rows + 1] index of the block's first */
-} faces;
+/* Polygons that a thread takes at a time. */
+#define CHUNK 512
+/* `state` of a face without contact. */
+#define NO_CONTACT 4u
 
-static size_t polygons_of(const faces *f, size_t begin, size_t end)
+/* The columns of polygons, in the order of the file. */
+enum {
+    JOINT,
+    FIELDS,
+    PLANE = FIELDS,
+    BLOCK_A,
+    BLOCK_B,
+    CONTACT,
+    STATE,
+    NORMAL_STRESS,
+    SHEAR_STRESS,
+    NORMAL_FORCE,
+    SHEAR_FORCE,
+    SHEAR_DISPLACEMENT,
+    SLIP,
+    AREA,
+    COLUMNS
+};
+
+static const tl_vtk_column columns[COLUMNS] = {
+    [JOINT] = {NULL, TL_VTK_INT, 1},
+    [PLANE] = {"plane", TL_VTK_INT, 1},
+    [BLOCK_A] = {"block_id", TL_VTK_INT, 1},
+    [BLOCK_B] = {"block_b", TL_VTK_INT, 1},
+    [CONTACT] = {"contact_id", TL_VTK_INT, 1},
+    [STATE] = {"state", TL_VTK_INT, 1},
+    [NORMAL_STRESS] = {"normal_stress", TL_VTK_DOUBLE, 1},
+    [SHEAR_STRESS] = {"shear_stress", TL_VTK_DOUBLE, 1},
+    [NORMAL_FORCE] = {"normal_force", TL_VTK_DOUBLE, 1},
+    [SHEAR_FORCE] = {"shear_force", TL_VTK_DOUBLE, 3},
+    [SHEAR_DISPLACEMENT] = {"shear_displacement", TL_VTK_DOUBLE, 3},
+    [SLIP] = {"slip", TL_VTK_DOUBLE, 1},
+    [AREA] = {"area", TL_VTK_DOUBLE, 1},
+};
+
+/* A face that a joint made. */
+typedef struct face {
+    uint32_t block, face;
+} face;
+
+/* The polygons of the contacts, then the faces without one. */
+typedef struct joints {
+    const tl_model *model;
+    uint32_t *rows; /* of contacts */
+    size_t contacts;
+    tl_contact_polygons of;
+    uint32_t *contact; /* [of.polygons] number of its contact in rows */
+    face *faces;
+    size_t face_count;
+    uint32_t
+        *corner; /* [face_count + 1] number of a face's first corner, after those of the contacts */
+    tl_vtk_columns columns;
+} joints;
+
+/* ---------------------------------------------------------------- what there is ---------- */
+
+/* Bits of faces with a flush contact, face by face of all blocks; `first` is where a block's begin. NULL: out of memory. */
+static unsigned char *mark_touching(const joints *j, const size_t *first, size_t faces)
 {
-    return f->polygon[end] - f->polygon[begin];
+    const tl_contacts *c = &j->model->detect->contacts;
+    unsigned char *touching = calloc(faces + 1, 1);
+    for (size_t i = 0; touching && i < j->contacts; i++) {
+        uint32_t row = j->rows[i];
+        if (c->facet[row].kind != TL_FACET_PATCH)
+            continue;
+        touching[first[c->a[row]] + c->facet[row].ia] = 1;
+        touching[first[c->b[row]] + c->facet[row].ib] = 1;
+    }
+    return touching;
 }
 
-static size_t points_of(const faces *f, size_t begin, size_t end)
+/* Lists the joints' faces that are not marked. */
+static bool list_faces(joints *j, const size_t *first, const unsigned char *touching, size_t faces)
 {
-    return f->point[end] - f->point[begin];
+    const tl_blocks *b = &j->model->blocks;
+    size_t count = 0, corner = 0;
+    j->faces = malloc((faces + 1) * sizeof *j->faces);
+    j->corner = malloc((faces + 1) * sizeof *j->corner);
+    if (!j->faces || !j->corner)
+        return false;
+    for (uint32_t row = 0; row < b->table.rows; row++)
+        for (uint32_t f = 0; f < b->shape[row]->face_count; f++)
+            if (b->shape[row]->tag[f].joint != 0 && !touching[first[row] + f]) {
+                j->faces[count] = (face){row, f};
+                j->corner[count++] = (uint32_t)corner;
+                corner += tl_poly_face_size(b->shape[row], f);
+            }
+    j->corner[count] = (uint32_t)corner;
+    j->face_count = count;
+    return true;
+}
+
+static bool find_faces(joints *j)
+{
+    const tl_blocks *b = &j->model->blocks;
+    size_t *first = malloc((b->table.rows + 1) * sizeof *first), faces = 0;
+    if (!first)
+        return false;
+    for (size_t row = 0; row < b->table.rows; row++) {
+        first[row] = faces;
+        faces += b->shape[row]->face_count;
+    }
+    unsigned char *touching = mark_touching(j, first, faces);
+    bool found = touching && list_faces(j, first, touching, faces);
+    free(touching);
+    free(first);
+    return found;
+}
+
+/* Notes of each polygon its contact. */
+static bool note_contacts(joints *j)
+{
+    j->contact = malloc((j->of.polygons + 1) * sizeof *j->contact);
+    for (size_t i = 0; j->contact && i < j->contacts; i++)
+        for (uint32_t p = j->of.first[i]; p < j->of.first[i + 1]; p++)
+            j->contact[p] = (uint32_t)i;
+    return j->contact;
+}
+
+static size_t polygons_of(const joints *j)
+{
+    return j->of.polygons + j->face_count;
+}
+
+static size_t corners_of(const joints *j)
+{
+    return j->of.corners + j->corner[j->face_count];
+}
+
+/* ---------------------------------------------------------------- cell data -------------- */
+
+static void fill_contact(const joints *j, size_t i)
+{
+    const tl_vtk_columns *c = &j->columns;
+    uint32_t row = j->rows[j->contact[i]];
+    tl_contact_facts facts = tl_contact_facts_of(j->model, row);
+    tl_vtk_set_int(c, JOINT, i, facts.tag.joint);
+    tl_vtk_set_int(c, PLANE, i, facts.tag.plane);
+    tl_vtk_set_int(c, BLOCK_A, i, facts.a);
+    tl_vtk_set_int(c, BLOCK_B, i, facts.b);
+    tl_vtk_set_int(c, CONTACT, i, facts.id);
+    tl_vtk_set_int(c, STATE, i, facts.state);
+    tl_vtk_set_double(c, NORMAL_STRESS, i, facts.normal_stress);
+    tl_vtk_set_double(c, SHEAR_STRESS, i, facts.shear_stress);
+    tl_vtk_set_double(c, NORMAL_FORCE, i, facts.normal_force);
+    tl_vtk_set_vec3(c, SHEAR_FORCE, i, facts.shear_force);
+    tl_vtk_set_vec3(c, SHEAR_DISPLACEMENT, i, facts.shear_displacement);
+    tl_vtk_set_double(c, SLIP, i, tl_v3_norm(facts.shear_displacement));
+    tl_vtk_set_double(c, AREA, i, facts.area);
+    tl_vtk_set_states(c, j->model, i, row);
+}
+
+static void fill_face(const joints *j, size_t i)
+{
+    const tl_vtk_columns *c = &j->columns;
+    const face *of = &j->faces[i - j->of.polygons];
+    const tl_poly *shape = j->model->blocks.shape[of->block];
+    tl_vtk_set_int(c, JOINT, i, shape->tag[of->face].joint);
+    tl_vtk_set_int(c, PLANE, i, shape->tag[of->face].plane);
+    tl_vtk_set_int(c, BLOCK_A, i, j->model->blocks.id[of->block]);
+    tl_vtk_set_int(c, BLOCK_B, i, 0);
+    tl_vtk_set_int(c, CONTACT, i, 0);
+    tl_vtk_set_int(c, STATE, i, NO_CONTACT);
+    for (size_t k = NORMAL_STRESS; k < AREA; k++)
+        for (unsigned w = 0; w < columns[k].width; w++)
+            tl_vtk_set_double(c, k, columns[k].width * i + w, 0);
+    tl_vtk_set_double(c, AREA, i, tl_poly_face_area(shape, of->face));
+    tl_vtk_set_states(c, j->model, i, TL_NO_ROW);
+}
+
+static void fill_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
+{
+    (void)chunk, (void)thread;
+    const joints *j = user;
+    for (size_t i = begin; i < end; i++)
+        if (i < j->of.polygons)
+            fill_contact(j, i);
+        else
+            fill_face(j, i);
 }
 
 /* ---------------------------------------------------------------- points ----------------- */
 
-typedef tl_vec3 (*point_fn)(const faces *f, uint32_t row, tl_vec3 local);
+/* Where a corner of a polygon is, or how far it has moved with the first block. */
+typedef tl_vec3 (*corner_fn)(const tl_model *m, uint32_t block, tl_vec3 local);
 
-/* A vector of each corner of rows. */
-static inline void fill_corners(const faces *f, size_t begin, size_t end, tl_piece *piece,
-                                point_fn of)
+static tl_vec3 place_of(const tl_model *m, uint32_t block, tl_vec3 local)
 {
-    size_t bytes = points_of(f, begin, end) * TL_VTK_VEC3_BYTES;
-    unsigned char *to = tl_piece_room(piece, bytes);
-    if (!to)
-        return;
-    for (uint32_t row = (uint32_t)begin; row < end; row++) {
-        const tl_poly *shape = f->blocks->shape[row];
-        for (uint32_t face = 0; face < shape->face_count; face++) {
-            if (shape->tag[face].joint == 0)
-                continue;
-            for (uint32_t i = shape->start[face]; i < shape->start[face + 1]; i++)
-                to = tl_vtk_put_vec3(to, of(f, row, shape->vertex[shape->loop[i]]));
-        }
+    return tl_model_point(m, m->blocks.body[block], local);
+}
+
+static tl_vec3 displacement_of(const tl_model *m, uint32_t block, tl_vec3 local)
+{
+    return tl_block_point_displacement(m, block, local);
+}
+
+static unsigned char *put_contact(const joints *j, size_t i, corner_fn of, unsigned char *to)
+{
+    const tl_model *m = j->model;
+    uint32_t block = m->detect->contacts.a[j->rows[j->contact[i]]], body = m->blocks.body[block];
+    for (uint32_t k = j->of.start[i]; k < j->of.start[i + 1]; k++) {
+        tl_vec3 arm = tl_v3_sub(j->of.corner[k], tl_body_place(&m->bodies, body));
+        to = tl_vtk_put_vec3(to, of(m, block, tl_m3_tmul(&m->bodies.pose[body].r, arm)));
     }
-    piece->length += bytes;
+    return to;
 }
 
-static tl_vec3 place_of(const faces *f, uint32_t row, tl_vec3 local)
+static unsigned char *put_face(const joints *j, size_t i, corner_fn of, unsigned char *to)
 {
-    return tl_model_point(f->model, f->blocks->body[row], local);
+    const face *one = &j->faces[i - j->of.polygons];
+    const tl_poly *shape = j->model->blocks.shape[one->block];
+    for (uint32_t k = shape->start[one->face]; k < shape->start[one->face + 1]; k++)
+        to = tl_vtk_put_vec3(to, of(j->model, one->block, shape->vertex[shape->loop[k]]));
+    return to;
 }
 
-static tl_vec3 displacement_of(const faces *f, uint32_t row, tl_vec3 local)
+/* Number of a polygon's first corner. */
+static size_t first_corner(const joints *j, size_t i)
 {
-    return tl_block_point_displacement(f->model, row, local);
+    return i < j->of.polygons ? j->of.start[i] : j->of.corners + j->corner[i - j->of.polygons];
+}
+
+/* A vector of each corner of polygons. */
+static inline void fill_corners(const joints *j, size_t begin, size_t end, tl_piece *piece,
+                                corner_fn of)
+{
+    size_t bytes = (first_corner(j, end) - first_corner(j, begin)) * TL_VTK_VEC3_BYTES;
+    unsigned char *to = tl_piece_room(piece, bytes);
+    for (size_t i = begin; to && i < end; i++)
+        to = i < j->of.polygons ? put_contact(j, i, of, to) : put_face(j, i, of, to);
+    piece->length += to ? bytes : 0;
 }
 
 static void fill_places(const void *user, size_t begin, size_t end, tl_piece *piece)
@@ -72,148 +272,76 @@ static void fill_displacements(const void *user, size_t begin, size_t end, tl_pi
     fill_corners(user, begin, end, piece, displacement_of);
 }
 
-/* ---------------------------------------------------------------- polygons --------------- */
-
 static void fill_polygons(const void *user, size_t begin, size_t end, tl_piece *piece)
 {
-    const faces *f = user;
-    size_t numbers = polygons_of(f, begin, end) + points_of(f, begin, end);
+    const joints *j = user;
+    size_t numbers = end - begin + first_corner(j, end) - first_corner(j, begin);
     unsigned char *to = tl_piece_room(piece, numbers * TL_VTK_INT_BYTES);
-    if (!to)
-        return;
-    int32_t next = (int32_t)f->point[begin];
-    for (size_t row = begin; row < end; row++) {
-        const tl_poly *shape = f->blocks->shape[row];
-        for (uint32_t face = 0; face < shape->face_count; face++) {
-            if (shape->tag[face].joint == 0)
-                continue;
-            int32_t size = (int32_t)tl_poly_face_size(shape, face);
-            to = tl_vtk_put_int(to, size);
-            for (int32_t i = 0; i < size; i++)
-                to = tl_vtk_put_int(to, next++);
-        }
+    for (size_t i = begin; to && i < end; i++) {
+        size_t first = first_corner(j, i), next = first_corner(j, i + 1);
+        to = tl_vtk_put_int(to, (int32_t)(next - first));
+        for (size_t k = first; k < next; k++)
+            to = tl_vtk_put_int(to, (int32_t)k);
     }
-    piece->length += numbers * TL_VTK_INT_BYTES;
-}
-
-typedef int32_t (*polygon_fn)(const faces *f, size_t row, uint32_t face);
-
-/* A number of each polygon of rows. */
-static inline void fill_numbers(const faces *f, size_t begin, size_t end, tl_piece *piece,
-                                polygon_fn of)
-{
-    size_t bytes = polygons_of(f, begin, end) * TL_VTK_INT_BYTES;
-    unsigned char *to = tl_piece_room(piece, bytes);
-    if (!to)
-        return;
-    for (size_t row = begin; row < end; row++) {
-        const tl_poly *shape = f->blocks->shape[row];
-        for (uint32_t face = 0; face < shape->face_count; face++)
-            if (shape->tag[face].joint != 0)
-                to = tl_vtk_put_int(to, of(f, row, face));
-    }
-    piece->length += bytes;
-}
-
-static int32_t joint_of(const faces *f, size_t row, uint32_t face)
-{
-    return (int32_t)f->blocks->shape[row]->tag[face].joint;
-}
-
-static int32_t plane_of(const faces *f, size_t row, uint32_t face)
-{
-    return (int32_t)f->blocks->shape[row]->tag[face].plane;
-}
-
-static int32_t block_of(const faces *f, size_t row, uint32_t face)
-{
-    (void)face;
-    return (int32_t)f->blocks->id[row];
-}
-
-static void fill_joints(const void *user, size_t begin, size_t end, tl_piece *piece)
-{
-    fill_numbers(user, begin, end, piece, joint_of);
-}
-
-static void fill_planes(const void *user, size_t begin, size_t end, tl_piece *piece)
-{
-    fill_numbers(user, begin, end, piece, plane_of);
-}
-
-static void fill_ids(const void *user, size_t begin, size_t end, tl_piece *piece)
-{
-    fill_numbers(user, begin, end, piece, block_of);
+    piece->length += to ? numbers * TL_VTK_INT_BYTES : 0;
 }
 
 /* ---------------------------------------------------------------- the file --------------- */
 
-/* A list that is made of the blocks, `bytes` in all. */
-static tl_status put_list(const faces *f, tl_pieces *out, size_t bytes, tl_piece_fn fn)
+/* A list that is made of the polygons, `bytes` in all. */
+static tl_status put_list(const joints *j, tl_pieces *out, size_t bytes, tl_piece_fn fn)
 {
-    size_t rows = f->blocks->table.rows;
-    tl_status status = tl_pieces_write(out, rows, 1 + bytes / (rows + 1), fn, f);
+    size_t polygons = polygons_of(j);
+    tl_status status = tl_pieces_write(out, polygons, 1 + bytes / (polygons + 1), fn, j);
     tl_vtk_line(out->output->file);
     return status;
 }
 
-static tl_status put_faces(tl_model *m, const faces *f, tl_pieces *out)
+static tl_status put_joints(const joints *j, tl_pieces *out)
 {
     FILE *file = out->output->file;
-    size_t rows = m->blocks.table.rows, polygons = f->polygon[rows], points = f->point[rows];
-    size_t numbers = polygons * TL_VTK_INT_BYTES, vectors = points * TL_VTK_VEC3_BYTES;
-    tl_vtk_header(file, m, "joint faces", "POLYDATA");
+    size_t polygons = polygons_of(j), points = corners_of(j);
+    size_t vectors = points * TL_VTK_VEC3_BYTES;
+    tl_vtk_header(file, j->model, "joints", "POLYDATA");
     fprintf(file, "POINTS %zu double\n", points);
-    tl_status status = put_list(f, out, vectors, fill_places);
+    tl_status status = put_list(j, out, vectors, fill_places);
     fprintf(file, "POLYGONS %zu %zu\n", polygons, polygons + points);
     if (status == TL_OK)
-        status = put_list(f, out, numbers + points * TL_VTK_INT_BYTES, fill_polygons);
+        status = put_list(j, out, (polygons + points) * TL_VTK_INT_BYTES, fill_polygons);
     fprintf(file, "CELL_DATA %zu\nSCALARS joint int 1\nLOOKUP_TABLE default\n", polygons);
-    if (status == TL_OK)
-        status = put_list(f, out, numbers, fill_joints);
-    tl_vtk_field(file, "FieldData", 2);
-    tl_vtk_array(file, "plane", 1, polygons, TL_VTK_INT);
-    if (status == TL_OK)
-        status = put_list(f, out, numbers, fill_planes);
-    tl_vtk_array(file, "block_id", 1, polygons, TL_VTK_INT);
-    if (status == TL_OK)
-        status = put_list(f, out, numbers, fill_ids);
+    tl_vtk_put_column(&j->columns, JOINT, out->output);
+    tl_vtk_put_columns(&j->columns, FIELDS, out->output);
     fprintf(file, "POINT_DATA %zu\nVECTORS displacement double\n", points);
-    return status == TL_OK ? put_list(f, out, vectors, fill_displacements) : status;
+    return status == TL_OK ? put_list(j, out, vectors, fill_displacements) : status;
 }
 
-/* Counts each block's polygons and points; gives the numbers that a file of them has. */
-static size_t count_faces(const faces *f)
+static tl_status find_polygons(tl_model *m, joints *j)
 {
-    size_t polygons = 0, points = 0;
-    for (size_t row = 0; row < f->blocks->table.rows; row++) {
-        const tl_poly *shape = f->blocks->shape[row];
-        f->polygon[row] = (uint32_t)polygons;
-        f->point[row] = (uint32_t)points;
-        for (uint32_t face = 0; face < shape->face_count; face++) {
-            if (shape->tag[face].joint == 0)
-                continue;
-            polygons++;
-            points += tl_poly_face_size(shape, face);
-        }
-    }
-    f->polygon[f->blocks->table.rows] = (uint32_t)polygons;
-    f->point[f->blocks->table.rows] = (uint32_t)points;
-    return polygons + points;
+    tl_status status = tl_contacts_listed(m, &j->rows, &j->contacts);
+    if (status == TL_OK)
+        status = tl_contact_polygons_find(m, j->rows, j->contacts, &j->of);
+    if (status == TL_OK && !(note_contacts(j) && find_faces(j)))
+        status = tl_fail_memory(&m->error);
+    return status;
 }
 
 tl_status tl_vtk_joints(tl_model *m, tl_pieces *out)
 {
-    size_t rows = m->blocks.table.rows;
-    faces f = {.model = m, .blocks = &m->blocks};
-    f.polygon = malloc((rows + 1) * sizeof *f.polygon);
-    f.point = malloc((rows + 1) * sizeof *f.point);
-    tl_status status = f.polygon && f.point ? TL_OK : tl_fail_memory(&m->error);
+    joints j = {.model = m};
+    tl_status status = find_polygons(m, &j);
     if (status == TL_OK)
-        status = tl_vtk_countable(count_faces(&f), "joint faces", &m->error);
+        status = tl_vtk_countable(polygons_of(&j) + corners_of(&j), "joints", &m->error);
     if (status == TL_OK)
-        status = put_faces(m, &f, out);
-    free(f.polygon);
-    free(f.point);
+        status = tl_vtk_columns_make(&j.columns, m, columns, COLUMNS, polygons_of(&j));
+    if (status == TL_OK) {
+        tl_parallel_for(m->pool, polygons_of(&j), CHUNK, fill_range, &j);
+        status = put_joints(&j, out);
+    }
+    tl_vtk_columns_free(&j.columns);
+    tl_contact_polygons_free(&j.of);
+    free(j.contact);
+    free(j.faces);
+    free(j.corner);
+    free(j.rows);
     return status;
 }

@@ -1,9 +1,13 @@
 /* vtk_series.c - the frames of each prefix, and the names of their files. */
 #include "io/vtk_series.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* Frames of one time are listed this far apart, s, or this part of the time: too little to see, enough to tell them apart. */
+#define STAGE 1e-9
 
 static void series_destroy(tl_vtk_series *series)
 {
@@ -68,6 +72,14 @@ char *tl_vtk_index_name(const tl_vtk_series *series, const char *content)
     if (name)
         snprintf(name, room, "%s_%s.vtk.series", series->prefix, content);
     return name;
+}
+
+double tl_vtk_series_time(const tl_vtk_series *series, double time)
+{
+    if (series->count == 0)
+        return time;
+    double last = series->frames[series->count - 1].time;
+    return fmax(time, last + STAGE * fmax(1, fabs(last)));
 }
 
 void tl_vtk_series_add(tl_vtk_series *series, tl_vtk_frame frame)

@@ -23,7 +23,7 @@ typedef struct tl_vtk_index {
     tl_vtk_file_id written;
 } tl_vtk_index;
 
-/* A frame: its time, and which of its files were written, bit k for number k. */
+/* A frame: its time in the indices, and which of its files were written, bit k for number k. */
 typedef struct tl_vtk_frame {
     double time;
     unsigned parts;
@@ -48,6 +48,9 @@ tl_vtk_series *tl_vtk_series_of(tl_model *m, const char *prefix, const char *kin
 char *tl_vtk_frame_name(const tl_vtk_series *series, const char *content, size_t frame);
 char *tl_vtk_index_name(const tl_vtk_series *series, const char *content);
 
+/* The time under which the next frame is listed: that of the model, or a little more than that of the frame before. Readers take
+ * frames of one time for one frame, so stages without a step between them would not be seen. */
+double tl_vtk_series_time(const tl_vtk_series *series, double time);
 /* Notes that the frame is written. */
 void tl_vtk_series_add(tl_vtk_series *series, tl_vtk_frame frame);
 

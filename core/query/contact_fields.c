@@ -25,6 +25,7 @@ enum {
     F_SHEAR_FORCE,
     F_NORMAL_STRESS,
     F_SHEAR_STRESS,
+    F_SHEAR_DISPLACEMENT,
     F_STATE,
     F_LAW,
     F_COUNT
@@ -43,6 +44,9 @@ static const tl_field fields[F_COUNT] = {
     [F_SHEAR_FORCE] = {"shear_force", TL_FIELD_VEC3, "N", "on the second block"},
     [F_NORMAL_STRESS] = {"normal_stress", TL_FIELD_SCALAR, "Pa", "normal force over area"},
     [F_SHEAR_STRESS] = {"shear_stress", TL_FIELD_SCALAR, "Pa", "length of shear force over area"},
+    [F_SHEAR_DISPLACEMENT] = {"shear_displacement", TL_FIELD_VEC3, "m",
+                              "of the second block against the first at the point, along the "
+                              "contact: difference of their displacements"},
     [F_STATE] = {"state", TL_FIELD_TEXT, "", "\"elastic\", \"slipping\", \"open\" or \"failed\""},
     [F_LAW] = {"law", TL_FIELD_TEXT, "", "name of the law of its joint, or empty"},
 };
@@ -120,6 +124,14 @@ tl_contact_counts tl_model_contact_counts(const tl_model *m)
     return counts;
 }
 
+/* Displacement of a block's point that is now at x, relative to the model's origin. */
+static tl_vec3 displacement_at(const tl_model *m, uint32_t block, tl_vec3 x)
+{
+    uint32_t body = m->blocks.body[block];
+    tl_vec3 arm = tl_v3_sub(x, tl_body_place(&m->bodies, body));
+    return tl_block_point_displacement(m, block, tl_m3_tmul(&m->bodies.pose[body].r, arm));
+}
+
 tl_contact_facts tl_contact_facts_of(const tl_model *m, uint32_t contact)
 {
     const tl_contacts *c = &m->detect->contacts;
@@ -133,6 +145,9 @@ tl_contact_facts tl_contact_facts_of(const tl_model *m, uint32_t contact)
     forces(m, contact, &out.normal_force, &out.shear_force);
     tl_contact_summary(m, contact, &out.normal, &point, &out.gap);
     out.point = tl_v3_add(m->origin, point);
+    tl_vec3 passed = tl_v3_sub(displacement_at(m, c->b[contact], point),
+                               displacement_at(m, c->a[contact], point));
+    out.shear_displacement = tl_v3_madd(passed, -tl_v3_dot(passed, out.normal), out.normal);
     out.normal_stress = out.area > 0 ? out.normal_force / out.area : 0;
     out.shear_stress = out.area > 0 ? tl_v3_norm(out.shear_force) / out.area : 0;
     return out;
@@ -178,6 +193,7 @@ tl_status tl_contact_field(tl_model *m, tl_id contact, size_t index, tl_field_va
     case F_SHEAR_FORCE: put_vector(value, facts.shear_force); break;
     case F_NORMAL_STRESS: value->number[0] = facts.normal_stress; break;
     case F_SHEAR_STRESS: value->number[0] = facts.shear_stress; break;
+    case F_SHEAR_DISPLACEMENT: put_vector(value, facts.shear_displacement); break;
     case F_STATE: value->text = tl_state_name(facts.state); break;
     case F_LAW: value->text = law_of(m, c) ? law_of(m, c)->name : ""; break;
     default: break;

@@ -98,6 +98,60 @@ check.holds(content_of(stem .. "_one_joints_000000.vtk") == content_of(stem .. "
     "the same file of the joints")
 check.equal(content_of(stem .. "_one_blocks_000000.vtk"), nil)
 
+-- ---------------------------------------------------------------- stages
+
+-- Frames without a step between them are listed at times of their own; the file has the model's.
+local stages = stem .. "_stages"
+for _, dip in ipairs { 30, 50, 70 } do
+    model:write_vtk(stages)
+    model:generate("joint", { joint = "S", dip = dip, dip_direction = 0, origin = { 1, 0.5, 0.5 } })
+end
+model:cycle(1)
+model:write_vtk(stages)
+local times = {}
+for time in content_of(stages .. "_blocks.vtk.series"):gmatch '"time": ([^}]+)}' do
+    times[#times + 1] = tonumber(time)
+end
+check.equal(#times, 4)
+for i = 2, 4 do
+    check.holds(times[i] > times[i - 1], "times of frames ascend")
+    check.near(times[i], i < 4 and times[1] or model.time, 1e-6)
+    local number = content_of(("%s_blocks_%06d.vtk"):format(stages, i - 1)):match "TIME 1 1 double\n(........)"
+    check.equal((string.unpack(">d", number)), i < 4 and times[1] or model.time)
+end
+
+-- ---------------------------------------------------------------- joints
+
+-- A block slides on another: the joint tells it once, and the faces that it has left stand for themselves.
+local slide = talus.model { gravity = { 5, 0, -10 } }
+slide:generate("box", { min = { 0, 0, 0 }, max = { 1, 1, 2 }, density = 2500 })
+slide:generate("joint", { joint = "J", dip = 0, dip_direction = 0, origin = { 0, 0, 1 } })
+slide:generate("joint", { joint = "K", dip = 90, dip_direction = 90, origin = { 0.5, 0, 0 } })
+slide:joint("*", "coulomb", { kn = 1e10, ks = 1e10, friction = 10 }) -- stiff, so that it stays flush
+slide:blocks { above = { dip = 90, dip_direction = 90, origin = { 0.5, 0, 0 } } }:delete()
+slide:blocks { below = { dip = 0, dip_direction = 0, origin = { 0, 0, 1 } } }:fix()
+slide:solve { max_time = 0.1, ratio = 0 }
+slide:write_vtk(stem .. "_slide", { blocks = false, contacts = false })
+local text = content_of(stem .. "_slide_joints_000000.vtk")
+local polygons = tonumber(text:match "POLYGONS (%d+)")
+check.equal(polygons, 3) -- the contact, and one face of K on either block
+local function cells(name, form)
+    local at = select(2, text:find("\n" .. name .. " %d+ %d+ %a+\n")) or
+        select(2, text:find("SCALARS " .. name .. " int 1\nLOOKUP_TABLE default\n", 1, true))
+    return { string.unpack(">" .. form:rep(polygons), text, at + 1) }
+end
+local contact = slide:contacts()[1]
+local slip = contact.shear_displacement
+check.near(slip[1], slide:blocks()[2].displacement[1], 5e-5) -- that of the centroid, half a metre higher
+check.near(slip[3], 0, 1e-4 * slip[1]) -- along the contact, which has turned a little with the block
+check.holds(slip[1] > 0.01, "it slides")
+check.equal(table.concat(cells("joint", "i4"), " ", 1, 3), "1 2 2")
+check.equal(table.concat(cells("state", "i4"), " ", 1, 3), "1 4 4")
+check.equal(table.concat(cells("block_b", "i4"), " ", 1, 3), contact.blocks[2].id .. " 0 0")
+check.near(cells("slip", "d")[1], math.sqrt(slip[1] ^ 2 + slip[2] ^ 2 + slip[3] ^ 2), 1e-12)
+check.near(cells("normal_stress", "d")[1], contact.normal_stress, 1e-12 * contact.normal_stress)
+check.near(cells("area", "d")[2], 1, 1e-12)
+
 -- ---------------------------------------------------------------- mistakes
 
 check.refused(model, function() model:write_vtk(prefix, { contact = false }) end, "did you mean 'contacts'?")

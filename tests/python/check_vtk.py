@@ -13,12 +13,15 @@ VOLUME_TOLERANCE = 1e-6  # relative; the writer loses no digits, the sum here lo
 UNIT_TOLERANCE = 1e-12   # of unit vectors
 
 BLOCK_ARRAYS = {"block_id": 1, "group": 1, "body": 1, "volume": 1, "velocity": 3, "fixed": 1,
-                "hidden": 1, "density": 1}
+                "hidden": 1, "density": 1, "mass": 1, "displacement": 3, "rotation": 3,
+                "unbalanced_force": 3}
 BLOCK_POINT_ARRAYS = {"displacement": 3, "explode": 3}
 CONTACT_ARRAYS = {"normal_force": 1, "shear_force": 3, "normal_stress": 1, "shear_stress": 1,
                   "state": 1, "joint": 1, "plane": 1, "area": 1, "normal": 3, "gap": 1,
                   "contact_id": 1, "block_a": 1, "block_b": 1}
-JOINT_ARRAYS = {"joint": 1, "plane": 1, "block_id": 1}
+JOINT_ARRAYS = {"joint": 1, "plane": 1, "block_id": 1, "block_b": 1, "contact_id": 1, "state": 1,
+                "normal_stress": 1, "shear_stress": 1, "normal_force": 1, "shear_force": 3,
+                "shear_displacement": 3, "slip": 1, "area": 1}
 SECTION_ARRAYS = {"block_id": 1, "group": 1, "body": 1, "hidden": 1, "displacement": 3,
                   "displacement_in_plane": 3}
 SECTION_POINT_ARRAYS = {"displacement": 3, "displacement_in_plane": 3}
@@ -168,6 +171,7 @@ def check_contacts(path, expected):
     check_states(path.name, points, names, count)
     joints = {int(points.GetArray("joint").GetValue(i)) for i in range(count)}
     check(joints >= {1, 2, 3, 4}, f"{path.name}: contacts of joints {joints} only")
+    return data
 
 
 def check_states(name, points, names, count):
@@ -181,16 +185,39 @@ def check_states(name, points, names, count):
         check(value == 1 if bonded else math.isnan(value), f"{name}: bond {value} of contact {i}")
 
 
-def check_joints(path):
+def check_joints(path, contacts):
+    """Every flush contact is shown once, by a polygon of its area and state that faces its normal."""
     data = read(path, vtk.vtkPolyDataReader)
-    check(data.GetNumberOfPolys() > 0, f"{path.name}: no polygons")
-    check_arrays(path.name, data.GetCellData(), JOINT_ARRAYS, data.GetNumberOfPolys())
-    joints, corners = data.GetCellData().GetArray("joint"), vtk.vtkIdList()
-    check({int(joints.GetValue(i)) for i in range(data.GetNumberOfPolys())} == {1, 2, 3, 4},
-          f"{path.name}: not all joints have faces")
-    for cell in range(data.GetNumberOfCells()):
-        data.GetCellPoints(cell, corners)
-        check(corners.GetNumberOfIds() >= 3, f"{path.name}: polygon {cell} has no area")
+    name, cells, polygons = path.name, data.GetCellData(), data.GetNumberOfPolys()
+    check(polygons > 0, f"{name}: no polygons")
+    check_arrays(name, cells, JOINT_ARRAYS, polygons)
+    check({int(cells.GetArray("joint").GetValue(i)) for i in range(polygons)} == {1, 2, 3, 4},
+          f"{name}: not all joints have faces")
+    points = contacts.GetPointData()
+    of_contact = {int(points.GetArray("contact_id").GetValue(i)): i
+                  for i in range(contacts.GetNumberOfPoints())}
+    shown = []
+    for cell in range(polygons):
+        contact = int(cells.GetArray("contact_id").GetValue(cell))
+        if contact == 0:
+            check(cells.GetArray("state").GetValue(cell) == 4, f"{name}: state without a contact")
+            check(cells.GetArray("block_b").GetValue(cell) == 0, f"{name}: block without a contact")
+            continue
+        shown.append(contact)
+        row = of_contact[contact]
+        normal = points.GetArray("normal").GetTuple(row)
+        area = points.GetArray("area").GetValue(row)
+        # VTK keeps points in single precision
+        check(abs(polygon_area(data, cell, normal) - area) <= 1e-5 * area,
+              f"{name}: area of polygon {cell}")
+        for array in ("state", "joint", "normal_force", "shear_stress"):
+            check(cells.GetArray(array).GetValue(cell) == points.GetArray(array).GetValue(row),
+                  f"{name}: {array} of polygon {cell}")
+        slip = cells.GetArray("shear_displacement").GetTuple(cell)
+        check(abs(math.hypot(*slip) - cells.GetArray("slip").GetValue(cell)) < 1e-15,
+              f"{name}: slip of polygon {cell}")
+    check(sorted(shown) == sorted(of_contact), f"{name}: contacts shown {shown}")
+    check(cells.GetArray("bond") is not None, f"{name}: no states of laws")
 
 
 def polygon_area(data, cell, normal):
@@ -280,7 +307,7 @@ def check_series(folder, prefix, content, frames):
     check(index["file-series-version"] == "1.0", f"{path.name}: version")
     times = [f["time"] for f in index["files"]]
     check(len(times) == frames, f"{path.name}: {len(times)} frames, expected {frames}")
-    check(times == sorted(times), f"{path.name}: times do not ascend")
+    check(times == sorted(set(times)), f"{path.name}: times do not ascend")
     for i, f in enumerate(index["files"]):
         check(f["name"] == f"{prefix}_{content}_{i:06d}.vtk", f"{path.name}: names {f['name']}")
         check((folder / f["name"]).exists(), f"{path.name}: {f['name']} does not exist")
@@ -313,8 +340,8 @@ def main():
     for i, data in enumerate(frames):
         check(scalar(data, "TIME") == times[i], f"frame {i}: TIME")
         check_explode(f"frame {i}", data)
-        check_contacts(folder / f"run_contacts_{i:06d}.vtk", expected)
-        check_joints(folder / f"run_joints_{i:06d}.vtk")
+        contacts = check_contacts(folder / f"run_contacts_{i:06d}.vtk", expected)
+        check_joints(folder / f"run_joints_{i:06d}.vtk", contacts)
     check(moved(frames[0]) == 0, "frame 0: displaced")
     check(moved(frames[1]) > 0, "frame 1: nothing has moved")
     check_series(folder, 'quote"b', "blocks", 1)

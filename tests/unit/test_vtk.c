@@ -274,14 +274,15 @@ static char *squeezed(const char *path)
     return text;
 }
 
-/* What the index of the blocks is to be, for so many frames at time 0. */
+/* What the index of the blocks is to be, for so many frames at time 0: each listed a nanosecond after the one before. */
 static char *index_of(const char *name, int frames)
 {
     char *text = malloc(100 + 100 * (size_t)frames), *end = text;
+    double time = 0;
     end += sprintf(end, "{\"file-series-version\":\"1.0\",\"files\":[");
-    for (int i = 0; i < frames; i++)
-        end +=
-            sprintf(end, "%s{\"name\":\"%s_blocks_%06d.vtk\",\"time\":0}", i ? "," : "", name, i);
+    for (int i = 0; i < frames; i++, time += 1e-9)
+        end += sprintf(end, "%s{\"name\":\"%s_blocks_%06d.vtk\",\"time\":%.17g}", i ? "," : "",
+                       name, i, time);
     sprintf(end, "]}");
     return text;
 }

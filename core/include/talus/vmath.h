@@ -148,6 +148,15 @@ static inline tl_quat tl_q_unit(tl_quat a)
     return (tl_quat){s * a.w, s * a.x, s * a.y, s * a.z};
 }
 
+/* Axis times angle, rad, at most pi. */
+static inline tl_vec3 tl_q_vector(tl_quat q)
+{
+    tl_vec3 v = {q.x, q.y, q.z};
+    double sine = tl_v3_norm(v), sign = q.w < 0 ? -1 : 1;
+    double angle = 2 * tl_atan2(sine, sign * q.w);
+    return tl_v3_scale(sine > 0 ? sign * angle / sine : 2, v);
+}
+
 /* The rotation matrix of a unit quaternion: world = R local. Exactly the identity for (1,0,0,0). */
 static inline tl_mat3 tl_q_matrix(tl_quat q)
 {

@@ -1,0 +1,52 @@
+/* vtk_columns.h - arrays of a file that are filled row by row, by several threads, and written one after the other
+ * (vtk_columns.c). */
+#ifndef TL_IO_VTK_COLUMNS_H
+#define TL_IO_VTK_COLUMNS_H
+
+#include "io/vtk_file.h"
+#include "query/law_states.h"
+
+/* An array: its name, or NULL where the file gives it none, its type in the file, and the numbers of a row. */
+typedef struct tl_vtk_column {
+    const char *name, *type;
+    unsigned width;
+} tl_vtk_column;
+
+/* Given columns, and after them one for each state of the laws. Zero at first. */
+typedef struct tl_vtk_columns {
+    tl_vtk_column *list;
+    size_t given, count, rows;
+    unsigned char **at, *memory; /* as they are in the file */
+    tl_law_states states;
+} tl_vtk_columns;
+
+/* Makes room for `rows` rows of `given` columns and of all states of the laws. Freed by tl_vtk_columns_free, also after a
+ * failure. */
+tl_status tl_vtk_columns_make(tl_vtk_columns *columns, tl_model *m, const tl_vtk_column *list,
+                              size_t given, size_t rows);
+void tl_vtk_columns_free(tl_vtk_columns *columns);
+
+/* The states of a contact, or NaN for TL_NO_ROW, into a row. */
+void tl_vtk_set_states(const tl_vtk_columns *columns, const tl_model *m, size_t row,
+                       uint32_t contact);
+/* Writes a column, with its heading if it has a name. */
+void tl_vtk_put_column(const tl_vtk_columns *columns, size_t column, tl_output *output);
+/* Writes a field of the columns from `first` on. */
+void tl_vtk_put_columns(const tl_vtk_columns *columns, size_t first, tl_output *output);
+
+static inline void tl_vtk_set_double(const tl_vtk_columns *c, size_t column, size_t i, double value)
+{
+    tl_vtk_put_double(c->at[column] + i * sizeof value, value);
+}
+
+static inline void tl_vtk_set_vec3(const tl_vtk_columns *c, size_t column, size_t i, tl_vec3 value)
+{
+    tl_vtk_put_vec3(c->at[column] + i * TL_VTK_VEC3_BYTES, value);
+}
+
+static inline void tl_vtk_set_int(const tl_vtk_columns *c, size_t column, size_t i, uint32_t value)
+{
+    tl_vtk_put_int(c->at[column] + i * TL_VTK_INT_BYTES, (int32_t)value);
+}
+
+#endif
