@@ -1,22 +1,37 @@
 /* look.c - the first look at a candidate pair, by libccd: is it near enough to be worth the exact
  * search? Both blocks are grown by a ball. Only the yes or no is used: libccd's depths, normals and
- * positions are not reliable for faces that nearly touch. */
+ * positions are not reliable for faces that nearly touch.
+ *
+ * Its portals may go round in a circle for ever where roundings decide. Nothing in libccd ends that, so a block that has been asked
+ * for MOST_CALLS points answers from then on with one on the wrong side, which ends any search; what it gives counts for nothing
+ * then, and the pair is near. */
 #include "narrow/look.h"
 
 #include <ccd/ccd.h>
 #include <talus/vmath.h>
+
+/* Points of a block that a search asks for: some tens. */
+#define MOST_CALLS 1000
 
 typedef struct grown {
     const tl_vec3 *vertex;
     uint32_t count;
     tl_vec3 center;
     double ball;
+    uint32_t calls; /* points asked for */
+    double far;     /* beyond both blocks, m */
 } grown;
 
+/* The object is ours, and not const. */
 static void support(const void *object, const ccd_vec3_t *direction, ccd_vec3_t *out)
 {
-    const grown *g = object;
+    grown *g = (grown *)(uintptr_t)object;
     tl_vec3 d = {direction->v[0], direction->v[1], direction->v[2]};
+    if (++g->calls > MOST_CALLS) {
+        tl_vec3 x = tl_v3_scale(-g->far, tl_v3_unit(d));
+        ccdVec3Set(out, x.x, x.y, x.z);
+        return;
+    }
     uint32_t best = 0;
     double most = tl_v3_dot(d, g->vertex[0]);
     for (uint32_t i = 1; i < g->count; i++) {
@@ -46,14 +61,17 @@ static tl_vec3 mean(const tl_vec3 *vertex, uint32_t count)
 
 bool tl_look_near(const tl_pair_view *view, double reach)
 {
-    grown a = {view->a->vertex, view->a->vertex_count, {0, 0, 0}, 0.5 * reach};
-    grown b = {view->vertex_b, view->b->vertex_count, {0, 0, 0}, 0.5 * reach};
+    grown a = {.vertex = view->a->vertex, .count = view->a->vertex_count, .ball = 0.5 * reach};
+    grown b = {.vertex = view->vertex_b, .count = view->b->vertex_count, .ball = 0.5 * reach};
     a.center = mean(a.vertex, a.count);
     b.center = mean(b.vertex, b.count);
+    a.far = b.far =
+        1e3 * (tl_v3_norm(tl_v3_sub(b.center, a.center)) + view->a->size + view->b->size + reach);
     ccd_t ccd;
     CCD_INIT(&ccd);
     ccd.support1 = ccd.support2 = support;
     ccd.center1 = ccd.center2 = center;
     ccd.mpr_tolerance = TL_STILL * view->size; /* m; its default of 1e-4 misses pairs */
-    return ccdMPRIntersect(&a, &b, &ccd) != 0;
+    bool met = ccdMPRIntersect(&a, &b, &ccd) != 0;
+    return met || a.calls > MOST_CALLS || b.calls > MOST_CALLS;
 }
