@@ -45,56 +45,57 @@ static size_t vertices_of(const grid *g, size_t begin, size_t end)
 
 /* ---------------------------------------------------------------- points ----------------- */
 
-typedef tl_vec3 (*point_fn)(const grid *g, uint32_t row, tl_vec3 local);
+typedef unsigned char *(*point_fn)(const grid *g, uint32_t row, tl_vec3 local, unsigned char *to);
 
 /* A vector of each vertex of rows. */
 static inline void fill_vertices(const grid *g, size_t begin, size_t end, tl_piece *piece,
-                                 point_fn of)
+                                 point_fn of, size_t each)
 {
-    size_t bytes = vertices_of(g, begin, end) * TL_VTK_VEC3_BYTES;
+    size_t bytes = vertices_of(g, begin, end) * each;
     unsigned char *to = tl_piece_room(piece, bytes);
     if (!to)
         return;
     for (uint32_t row = (uint32_t)begin; row < end; row++) {
         const tl_poly *shape = g->blocks->shape[row];
         for (uint32_t v = 0; v < shape->vertex_count; v++)
-            to = tl_vtk_put_vec3(to, of(g, row, shape->vertex[v]));
+            to = of(g, row, shape->vertex[v], to);
     }
     piece->length += bytes;
 }
 
-static tl_vec3 place_of(const grid *g, uint32_t row, tl_vec3 local)
+static unsigned char *put_place(const grid *g, uint32_t row, tl_vec3 local, unsigned char *to)
 {
-    return tl_model_point(g->model, g->blocks->body[row], local);
+    return tl_vtk_put_vec3(to, tl_model_point(g->model, g->blocks->body[row], local));
 }
 
-static tl_vec3 displacement_of(const grid *g, uint32_t row, tl_vec3 local)
+static unsigned char *put_displacement(const grid *g, uint32_t row, tl_vec3 local,
+                                       unsigned char *to)
 {
-    return tl_block_point_displacement(g->model, row, local);
+    return tl_vtk_put_float3(to, tl_block_point_displacement(g->model, row, local));
 }
 
 static void fill_places(const void *user, size_t begin, size_t end, tl_piece *piece)
 {
-    fill_vertices(user, begin, end, piece, place_of);
+    fill_vertices(user, begin, end, piece, put_place, TL_VTK_VEC3_BYTES);
 }
 
 static void fill_displacements(const void *user, size_t begin, size_t end, tl_piece *piece)
 {
-    fill_vertices(user, begin, end, piece, displacement_of);
+    fill_vertices(user, begin, end, piece, put_displacement, TL_VTK_FLOAT3_BYTES);
 }
 
 /* From the model's centre to the block's: the same for all its vertices. */
 static void fill_explode(const void *user, size_t begin, size_t end, tl_piece *piece)
 {
     const grid *g = user;
-    size_t bytes = vertices_of(g, begin, end) * TL_VTK_VEC3_BYTES;
+    size_t bytes = vertices_of(g, begin, end) * TL_VTK_FLOAT3_BYTES;
     unsigned char *to = tl_piece_room(piece, bytes);
     if (!to)
         return;
     for (uint32_t row = (uint32_t)begin; row < end; row++) {
         tl_vec3 away = tl_v3_sub(tl_block_centroid(g->model, row), g->centre);
         for (uint32_t v = g->first[row]; v < g->first[row + 1]; v++)
-            to = tl_vtk_put_vec3(to, away);
+            to = tl_vtk_put_float3(to, away);
     }
     piece->length += bytes;
 }
@@ -292,10 +293,9 @@ static tl_status put_grid(tl_model *m, const grid *g, size_t stream, tl_pieces *
 {
     FILE *file = out->output->file;
     size_t rows = m->blocks.table.rows, points = g->first[rows];
-    size_t bytes = points * TL_VTK_VEC3_BYTES;
     tl_vtk_header(file, m, "blocks", "UNSTRUCTURED_GRID");
     fprintf(file, "POINTS %zu double\n", points);
-    tl_status status = put_list(g, out, bytes, fill_places);
+    tl_status status = put_list(g, out, points * TL_VTK_VEC3_BYTES, fill_places);
     fprintf(file, "CELLS %zu %zu\n", rows, stream);
     if (status == TL_OK)
         status = put_list(g, out, stream * TL_VTK_INT_BYTES, fill_cells);
@@ -304,12 +304,12 @@ static tl_status put_grid(tl_model *m, const grid *g, size_t stream, tl_pieces *
         status = put_array(m, out, &types);
     if (status == TL_OK)
         status = put_cell_data(m, out);
-    fprintf(file, "POINT_DATA %zu\nVECTORS displacement double\n", points);
+    fprintf(file, "POINT_DATA %zu\nVECTORS displacement float\n", points);
     if (status == TL_OK)
-        status = put_list(g, out, bytes, fill_displacements);
+        status = put_list(g, out, points * TL_VTK_FLOAT3_BYTES, fill_displacements);
     tl_vtk_field(file, "FieldData", 1);
-    tl_vtk_array(file, "explode", 3, points, TL_VTK_DOUBLE);
-    return status == TL_OK ? put_list(g, out, bytes, fill_explode) : status;
+    tl_vtk_array(file, "explode", 3, points, TL_VTK_FLOAT);
+    return status == TL_OK ? put_list(g, out, points * TL_VTK_FLOAT3_BYTES, fill_explode) : status;
 }
 
 tl_status tl_vtk_blocks(tl_model *m, tl_pieces *out)

@@ -9,12 +9,11 @@
 
 static size_t bytes_of(const tl_vtk_column *column)
 {
-    size_t number = column->type[0] == 'i' ? TL_VTK_INT_BYTES : sizeof(double);
-    return column->width * number;
+    return column->width * (column->type[0] == 'd' ? sizeof(double) : sizeof(float));
 }
 
 /* Lists the given columns and those of the states. */
-static bool list_columns(tl_vtk_columns *c, const tl_vtk_column *list)
+static bool list_columns(tl_vtk_columns *c, const tl_vtk_column *list, const char *state_type)
 {
     c->count = c->given + c->states.count;
     c->list = malloc((c->count + 1) * sizeof *c->list);
@@ -24,7 +23,7 @@ static bool list_columns(tl_vtk_columns *c, const tl_vtk_column *list)
     memcpy(c->list, list, c->given * sizeof *list);
     for (size_t s = 0; s < c->states.count; s++)
         c->list[c->given + s] =
-            (tl_vtk_column){c->states.at[s].name, TL_VTK_DOUBLE, (unsigned)c->states.at[s].width};
+            (tl_vtk_column){c->states.at[s].name, state_type, (unsigned)c->states.at[s].width};
     return true;
 }
 
@@ -46,11 +45,11 @@ static bool make_memory(tl_vtk_columns *c)
 }
 
 tl_status tl_vtk_columns_make(tl_vtk_columns *columns, tl_model *m, const tl_vtk_column *list,
-                              size_t given, size_t rows)
+                              size_t given, const char *state_type, size_t rows)
 {
     *columns = (tl_vtk_columns){.given = given, .rows = rows};
     tl_status status = tl_law_states_list(m, &columns->states);
-    if (status == TL_OK && !(list_columns(columns, list) && make_memory(columns)))
+    if (status == TL_OK && !(list_columns(columns, list, state_type) && make_memory(columns)))
         status = tl_fail_memory(&m->error);
     return status;
 }
@@ -73,7 +72,7 @@ void tl_vtk_set_states(const tl_vtk_columns *columns, const tl_model *m, size_t 
         if (contact != TL_NO_ROW)
             tl_law_state_of_contact(m, &columns->states, state, contact, value);
         for (size_t w = 0; w < state->width; w++)
-            tl_vtk_set_double(columns, columns->given + s, row * state->width + w, value[w]);
+            tl_vtk_set_real(columns, columns->given + s, row * state->width + w, value[w]);
     }
 }
 

@@ -20,10 +20,10 @@ typedef struct tl_vtk_columns {
     tl_law_states states;
 } tl_vtk_columns;
 
-/* Makes room for `rows` rows of `given` columns and of all states of the laws. Freed by tl_vtk_columns_free, also after a
+/* Makes room for `rows` rows of `given` columns and of all states of the laws, the latter doubles or floats. Freed by tl_vtk_columns_free, also after a
  * failure. */
 tl_status tl_vtk_columns_make(tl_vtk_columns *columns, tl_model *m, const tl_vtk_column *list,
-                              size_t given, size_t rows);
+                              size_t given, const char *state_type, size_t rows);
 void tl_vtk_columns_free(tl_vtk_columns *columns);
 
 /* The states of a contact, or NaN for TL_NO_ROW, into a row. */
@@ -34,14 +34,20 @@ void tl_vtk_put_column(const tl_vtk_columns *columns, size_t column, tl_output *
 /* Writes a field of the columns from `first` on. */
 void tl_vtk_put_columns(const tl_vtk_columns *columns, size_t first, tl_output *output);
 
-static inline void tl_vtk_set_double(const tl_vtk_columns *c, size_t column, size_t i, double value)
+/* A number, or number k of a row of several, of a column of doubles or of floats. */
+static inline void tl_vtk_set_real(const tl_vtk_columns *c, size_t column, size_t k, double value)
 {
-    tl_vtk_put_double(c->at[column] + i * sizeof value, value);
+    if (c->list[column].type[0] == 'd')
+        tl_vtk_put_double(c->at[column] + k * sizeof(double), value);
+    else
+        tl_vtk_put_float(c->at[column] + k * sizeof(float), value);
 }
 
 static inline void tl_vtk_set_vec3(const tl_vtk_columns *c, size_t column, size_t i, tl_vec3 value)
 {
-    tl_vtk_put_vec3(c->at[column] + i * TL_VTK_VEC3_BYTES, value);
+    tl_vtk_set_real(c, column, 3 * i, value.x);
+    tl_vtk_set_real(c, column, 3 * i + 1, value.y);
+    tl_vtk_set_real(c, column, 3 * i + 2, value.z);
 }
 
 static inline void tl_vtk_set_int(const tl_vtk_columns *c, size_t column, size_t i, uint32_t value)

@@ -78,13 +78,13 @@ static void fill_range(void *user, size_t begin, size_t end, size_t chunk, unsig
         tl_vtk_set_vec3(c, POINTS, i, facts.point);
         tl_vtk_set_int(c, VERTICES, 2 * i, 1);
         tl_vtk_set_int(c, VERTICES, 2 * i + 1, (uint32_t)i);
-        tl_vtk_set_double(c, NORMAL_FORCE, i, facts.normal_force);
+        tl_vtk_set_real(c, NORMAL_FORCE, i, facts.normal_force);
         tl_vtk_set_vec3(c, SHEAR_FORCE, i, facts.shear_force);
-        tl_vtk_set_double(c, NORMAL_STRESS, i, facts.normal_stress);
-        tl_vtk_set_double(c, SHEAR_STRESS, i, facts.shear_stress);
-        tl_vtk_set_double(c, AREA, i, facts.area);
+        tl_vtk_set_real(c, NORMAL_STRESS, i, facts.normal_stress);
+        tl_vtk_set_real(c, SHEAR_STRESS, i, facts.shear_stress);
+        tl_vtk_set_real(c, AREA, i, facts.area);
         tl_vtk_set_vec3(c, NORMAL, i, facts.normal);
-        tl_vtk_set_double(c, GAP, i, facts.gap);
+        tl_vtk_set_real(c, GAP, i, facts.gap);
         tl_vtk_set_int(c, STATE, i, facts.state);
         tl_vtk_set_int(c, JOINT, i, facts.tag.joint);
         tl_vtk_set_int(c, PLANE, i, facts.tag.plane);
@@ -118,7 +118,7 @@ tl_status tl_vtk_contacts(tl_model *m, tl_pieces *out)
     if (status == TL_OK)
         status = tl_vtk_countable(2 * c.count, "contacts", &m->error);
     if (status == TL_OK)
-        status = tl_vtk_columns_make(&c.columns, m, columns, ARRAYS, c.count);
+        status = tl_vtk_columns_make(&c.columns, m, columns, ARRAYS, TL_VTK_DOUBLE, c.count);
     if (status == TL_OK) {
         tl_parallel_for(m->pool, c.count, CHUNK, fill_range, &c);
         put_contacts(&c, out->output);

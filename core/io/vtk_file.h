@@ -11,6 +11,7 @@
 #include <string.h>
 
 #define TL_VTK_DOUBLE "double"
+#define TL_VTK_FLOAT "float"
 #define TL_VTK_INT "int"
 #define TL_VTK_STRING "string"
 
@@ -41,6 +42,22 @@ static inline unsigned char *tl_vtk_put_int(unsigned char *to, int32_t value)
     return to + 4;
 }
 
+/* In single precision: pictures need no more of what is not a place, and files are half as long. */
+static inline unsigned char *tl_vtk_put_float(unsigned char *to, double value)
+{
+    float single = (float)value;
+    int32_t bits;
+    memcpy(&bits, &single, sizeof bits);
+    return tl_vtk_put_int(to, bits);
+}
+
+static inline unsigned char *tl_vtk_put_float3(unsigned char *to, tl_vec3 value)
+{
+    to = tl_vtk_put_float(to, value.x);
+    to = tl_vtk_put_float(to, value.y);
+    return tl_vtk_put_float(to, value.z);
+}
+
 static inline unsigned char *tl_vtk_put_double(unsigned char *to, double value)
 {
     uint64_t bits;
@@ -57,8 +74,9 @@ static inline unsigned char *tl_vtk_put_vec3(unsigned char *to, tl_vec3 value)
     return tl_vtk_put_double(to, value.z);
 }
 
-/* Bytes of a vector, and of a whole number. */
+/* Bytes of a vector, of one in single precision, and of a whole number. */
 #define TL_VTK_VEC3_BYTES 24
+#define TL_VTK_FLOAT3_BYTES 12
 #define TL_VTK_INT_BYTES 4
 
 /* Legacy files count in 32 bits: TL_E_IO with a sentence when `count` numbers are too many. */

@@ -55,13 +55,13 @@ static const tl_vtk_column columns[COLUMNS] = {
     [BLOCK_B] = {"block_b", TL_VTK_INT, 1},
     [CONTACT] = {"contact_id", TL_VTK_INT, 1},
     [STATE] = {"state", TL_VTK_INT, 1},
-    [NORMAL_STRESS] = {"normal_stress", TL_VTK_DOUBLE, 1},
-    [SHEAR_STRESS] = {"shear_stress", TL_VTK_DOUBLE, 1},
-    [NORMAL_FORCE] = {"normal_force", TL_VTK_DOUBLE, 1},
-    [SHEAR_FORCE] = {"shear_force", TL_VTK_DOUBLE, 3},
-    [SHEAR_DISPLACEMENT] = {"shear_displacement", TL_VTK_DOUBLE, 3},
-    [SLIP] = {"slip", TL_VTK_DOUBLE, 1},
-    [AREA] = {"area", TL_VTK_DOUBLE, 1},
+    [NORMAL_STRESS] = {"normal_stress", TL_VTK_FLOAT, 1},
+    [SHEAR_STRESS] = {"shear_stress", TL_VTK_FLOAT, 1},
+    [NORMAL_FORCE] = {"normal_force", TL_VTK_FLOAT, 1},
+    [SHEAR_FORCE] = {"shear_force", TL_VTK_FLOAT, 3},
+    [SHEAR_DISPLACEMENT] = {"shear_displacement", TL_VTK_FLOAT, 3},
+    [SLIP] = {"slip", TL_VTK_FLOAT, 1},
+    [AREA] = {"area", TL_VTK_FLOAT, 1},
 };
 
 /* A face that a joint made. */
@@ -171,13 +171,13 @@ static void fill_contact(const joints *j, size_t i)
     tl_vtk_set_int(c, BLOCK_B, i, facts.b);
     tl_vtk_set_int(c, CONTACT, i, facts.id);
     tl_vtk_set_int(c, STATE, i, facts.state);
-    tl_vtk_set_double(c, NORMAL_STRESS, i, facts.normal_stress);
-    tl_vtk_set_double(c, SHEAR_STRESS, i, facts.shear_stress);
-    tl_vtk_set_double(c, NORMAL_FORCE, i, facts.normal_force);
+    tl_vtk_set_real(c, NORMAL_STRESS, i, facts.normal_stress);
+    tl_vtk_set_real(c, SHEAR_STRESS, i, facts.shear_stress);
+    tl_vtk_set_real(c, NORMAL_FORCE, i, facts.normal_force);
     tl_vtk_set_vec3(c, SHEAR_FORCE, i, facts.shear_force);
     tl_vtk_set_vec3(c, SHEAR_DISPLACEMENT, i, facts.shear_displacement);
-    tl_vtk_set_double(c, SLIP, i, tl_v3_norm(facts.shear_displacement));
-    tl_vtk_set_double(c, AREA, i, facts.area);
+    tl_vtk_set_real(c, SLIP, i, tl_v3_norm(facts.shear_displacement));
+    tl_vtk_set_real(c, AREA, i, facts.area);
     tl_vtk_set_states(c, j->model, i, row);
 }
 
@@ -194,8 +194,8 @@ static void fill_face(const joints *j, size_t i)
     tl_vtk_set_int(c, STATE, i, NO_CONTACT);
     for (size_t k = NORMAL_STRESS; k < AREA; k++)
         for (unsigned w = 0; w < columns[k].width; w++)
-            tl_vtk_set_double(c, k, columns[k].width * i + w, 0);
-    tl_vtk_set_double(c, AREA, i, tl_poly_face_area(shape, of->face));
+            tl_vtk_set_real(c, k, columns[k].width * i + w, 0);
+    tl_vtk_set_real(c, AREA, i, tl_poly_face_area(shape, of->face));
     tl_vtk_set_states(c, j->model, i, TL_NO_ROW);
 }
 
@@ -212,17 +212,19 @@ static void fill_range(void *user, size_t begin, size_t end, size_t chunk, unsig
 
 /* ---------------------------------------------------------------- points ----------------- */
 
-/* Where a corner of a polygon is, or how far it has moved with the first block. */
-typedef tl_vec3 (*corner_fn)(const tl_model *m, uint32_t block, tl_vec3 local);
+/* Puts where a corner of a polygon is, or how far it has moved with the first block. */
+typedef unsigned char *(*corner_fn)(const tl_model *m, uint32_t block, tl_vec3 local,
+                                    unsigned char *to);
 
-static tl_vec3 place_of(const tl_model *m, uint32_t block, tl_vec3 local)
+static unsigned char *put_place(const tl_model *m, uint32_t block, tl_vec3 local, unsigned char *to)
 {
-    return tl_model_point(m, m->blocks.body[block], local);
+    return tl_vtk_put_vec3(to, tl_model_point(m, m->blocks.body[block], local));
 }
 
-static tl_vec3 displacement_of(const tl_model *m, uint32_t block, tl_vec3 local)
+static unsigned char *put_displacement(const tl_model *m, uint32_t block, tl_vec3 local,
+                                       unsigned char *to)
 {
-    return tl_block_point_displacement(m, block, local);
+    return tl_vtk_put_float3(to, tl_block_point_displacement(m, block, local));
 }
 
 static unsigned char *put_contact(const joints *j, size_t i, corner_fn of, unsigned char *to)
@@ -231,7 +233,7 @@ static unsigned char *put_contact(const joints *j, size_t i, corner_fn of, unsig
     uint32_t block = m->detect->contacts.a[j->rows[j->contact[i]]], body = m->blocks.body[block];
     for (uint32_t k = j->of.start[i]; k < j->of.start[i + 1]; k++) {
         tl_vec3 arm = tl_v3_sub(j->of.corner[k], tl_body_place(&m->bodies, body));
-        to = tl_vtk_put_vec3(to, of(m, block, tl_m3_tmul(&m->bodies.pose[body].r, arm)));
+        to = of(m, block, tl_m3_tmul(&m->bodies.pose[body].r, arm), to);
     }
     return to;
 }
@@ -241,7 +243,7 @@ static unsigned char *put_face(const joints *j, size_t i, corner_fn of, unsigned
     const face *one = &j->faces[i - j->of.polygons];
     const tl_poly *shape = j->model->blocks.shape[one->block];
     for (uint32_t k = shape->start[one->face]; k < shape->start[one->face + 1]; k++)
-        to = tl_vtk_put_vec3(to, of(j->model, one->block, shape->vertex[shape->loop[k]]));
+        to = of(j->model, one->block, shape->vertex[shape->loop[k]], to);
     return to;
 }
 
@@ -253,9 +255,9 @@ static size_t first_corner(const joints *j, size_t i)
 
 /* A vector of each corner of polygons. */
 static inline void fill_corners(const joints *j, size_t begin, size_t end, tl_piece *piece,
-                                corner_fn of)
+                                corner_fn of, size_t each)
 {
-    size_t bytes = (first_corner(j, end) - first_corner(j, begin)) * TL_VTK_VEC3_BYTES;
+    size_t bytes = (first_corner(j, end) - first_corner(j, begin)) * each;
     unsigned char *to = tl_piece_room(piece, bytes);
     for (size_t i = begin; to && i < end; i++)
         to = i < j->of.polygons ? put_contact(j, i, of, to) : put_face(j, i, of, to);
@@ -264,12 +266,12 @@ static inline void fill_corners(const joints *j, size_t begin, size_t end, tl_pi
 
 static void fill_places(const void *user, size_t begin, size_t end, tl_piece *piece)
 {
-    fill_corners(user, begin, end, piece, place_of);
+    fill_corners(user, begin, end, piece, put_place, TL_VTK_VEC3_BYTES);
 }
 
 static void fill_displacements(const void *user, size_t begin, size_t end, tl_piece *piece)
 {
-    fill_corners(user, begin, end, piece, displacement_of);
+    fill_corners(user, begin, end, piece, put_displacement, TL_VTK_FLOAT3_BYTES);
 }
 
 static void fill_polygons(const void *user, size_t begin, size_t end, tl_piece *piece)
@@ -301,18 +303,18 @@ static tl_status put_joints(const joints *j, tl_pieces *out)
 {
     FILE *file = out->output->file;
     size_t polygons = polygons_of(j), points = corners_of(j);
-    size_t vectors = points * TL_VTK_VEC3_BYTES;
     tl_vtk_header(file, j->model, "joints", "POLYDATA");
     fprintf(file, "POINTS %zu double\n", points);
-    tl_status status = put_list(j, out, vectors, fill_places);
+    tl_status status = put_list(j, out, points * TL_VTK_VEC3_BYTES, fill_places);
     fprintf(file, "POLYGONS %zu %zu\n", polygons, polygons + points);
     if (status == TL_OK)
         status = put_list(j, out, (polygons + points) * TL_VTK_INT_BYTES, fill_polygons);
     fprintf(file, "CELL_DATA %zu\nSCALARS joint int 1\nLOOKUP_TABLE default\n", polygons);
     tl_vtk_put_column(&j->columns, JOINT, out->output);
     tl_vtk_put_columns(&j->columns, FIELDS, out->output);
-    fprintf(file, "POINT_DATA %zu\nVECTORS displacement double\n", points);
-    return status == TL_OK ? put_list(j, out, vectors, fill_displacements) : status;
+    fprintf(file, "POINT_DATA %zu\nVECTORS displacement float\n", points);
+    return status == TL_OK ? put_list(j, out, points * TL_VTK_FLOAT3_BYTES, fill_displacements)
+                           : status;
 }
 
 static tl_status find_polygons(tl_model *m, joints *j)
@@ -332,7 +334,8 @@ tl_status tl_vtk_joints(tl_model *m, tl_pieces *out)
     if (status == TL_OK)
         status = tl_vtk_countable(polygons_of(&j) + corners_of(&j), "joints", &m->error);
     if (status == TL_OK)
-        status = tl_vtk_columns_make(&j.columns, m, columns, COLUMNS, polygons_of(&j));
+        status =
+            tl_vtk_columns_make(&j.columns, m, columns, COLUMNS, TL_VTK_FLOAT, polygons_of(&j));
     if (status == TL_OK) {
         tl_parallel_for(m->pool, polygons_of(&j), CHUNK, fill_range, &j);
         status = put_joints(&j, out);

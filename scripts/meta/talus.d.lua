@@ -352,6 +352,7 @@ function Blocks:reset_displacement() end
 ---@field shear_force talus.Vector N: on the second block
 ---@field normal_stress number Pa: normal force over area
 ---@field shear_stress number Pa: length of shear force over area
+---@field shear_displacement talus.Vector m: of the second block against the first at the point, along the contact: difference of their displacements
 ---@field state string "elastic", "slipping", "open" or "failed"
 ---@field law string name of the law of its joint, or empty
 ---@field points { position: talus.Vector, area: number, normal_force: number }[] its points as they are now, each a table of the fields of a contact point and of the states of the law by name. The forces of the points add up to those of the contact; edges, vertices and tilted faces have one point

@@ -148,9 +148,9 @@ check.holds(slip[1] > 0.01, "it slides")
 check.equal(table.concat(cells("joint", "i4"), " ", 1, 3), "1 2 2")
 check.equal(table.concat(cells("state", "i4"), " ", 1, 3), "1 4 4")
 check.equal(table.concat(cells("block_b", "i4"), " ", 1, 3), contact.blocks[2].id .. " 0 0")
-check.near(cells("slip", "d")[1], math.sqrt(slip[1] ^ 2 + slip[2] ^ 2 + slip[3] ^ 2), 1e-12)
-check.near(cells("normal_stress", "d")[1], contact.normal_stress, 1e-12 * contact.normal_stress)
-check.near(cells("area", "d")[2], 1, 1e-12)
+check.near(cells("slip", "f")[1], math.sqrt(slip[1] ^ 2 + slip[2] ^ 2 + slip[3] ^ 2), 1e-8) -- in single precision
+check.near(cells("normal_stress", "f")[1], contact.normal_stress, 1e-7 * contact.normal_stress)
+check.near(cells("area", "f")[2], 1, 1e-7)
 
 -- ---------------------------------------------------------------- mistakes
 
