@@ -1,59 +1,11 @@
 /* bad_default.c - a parameter whose default lies outside its own range. */
-#include <talus/plugin.h>
-
-typedef struct params {
-    double value;
-} params;
+#include "plain.h"
 
 static const tl_param param_table[] = {
     TL_PARAM(TL_PARAM_REAL, params, value, "Pa", "some value", .def = {2},
              .flags = TL_PARAM_MAX_OPEN, .min = 0, .max = 2),
 };
+static const tl_law_ops ops = PLAIN_OPS;
+static const tl_kind kind = PLAIN_KIND("bad_default", TL_KIND_PARAMS(params, param_table));
 
-static tl_status update(const void *self, const tl_law_batch *batch, tl_report *report)
-{
-    (void)self;
-    (void)batch;
-    (void)report;
-    return TL_OK;
-}
-
-static void stiffness(const void *self, double *kn, double *ks)
-{
-    (void)self;
-    *kn = *ks = 1;
-}
-
-static const tl_law_ops ops = {.size = sizeof ops, .update = update, .stiffness = stiffness};
-
-static const tl_kind kind = {
-    .size = sizeof kind,
-    .type = TL_KIND_LAW,
-    .name = "bad_default",
-    .doc = "A law for the loader's test.",
-    .params_size = sizeof(params),
-    .params = param_table,
-    .param_count = sizeof param_table / sizeof *param_table,
-    .param_stride = sizeof *param_table,
-    .ops = &ops,
-};
-
-static const tl_plugin plugin = {
-    .size = sizeof plugin,
-    .abi_major = TL_ABI_MAJOR,
-    .abi_minor = TL_ABI_MINOR,
-    .id = "bad.bad_default",
-    .version = "1",
-    .doc = "A plugin for the loader's test.",
-    .licence = "BSD-3-Clause",
-    .kinds = &kind,
-    .kind_count = 1,
-    .kind_stride = sizeof kind,
-};
-
-TL_PLUGIN_EXPORT const tl_plugin *tl_plugin_entry(uint32_t host_major, uint32_t host_minor)
-{
-    (void)host_major;
-    (void)host_minor;
-    return &plugin;
-}
+PLAIN_PLUGIN("bad.bad_default");

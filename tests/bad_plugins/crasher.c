@@ -98,31 +98,13 @@ static const tl_generator_ops generator_ops = {.size = sizeof generator_ops, .ge
 #define KIND(type_, ops_)                                                                          \
     {                                                                                              \
         .size = sizeof(tl_kind), .type = (type_), .name = "crasher",                               \
-        .doc = "A kind for the test of crashes.", .params_size = sizeof(params),                   \
-        .params = param_table, .param_count = sizeof param_table / sizeof *param_table,            \
-        .param_stride = sizeof *param_table, .ops = (ops_)                                         \
+        .doc = "A kind for the test of crashes.", TL_KIND_PARAMS(params, param_table),             \
+        .ops = (ops_)                                                                              \
     }
 
 static const tl_kind kinds[] = {KIND(TL_KIND_LAW, &law_ops), KIND(17, NULL),
                                 KIND(TL_KIND_DAMPING, &damping_ops),
                                 KIND(TL_KIND_GENERATOR, &generator_ops)};
 
-static const tl_plugin plugin = {
-    .size = sizeof plugin,
-    .abi_major = TL_ABI_MAJOR,
-    .abi_minor = TL_ABI_MINOR,
-    .id = "bad.crasher",
-    .version = "1",
-    .doc = "A plugin for the test of crashes.",
-    .licence = "BSD-3-Clause",
-    .kinds = kinds,
-    .kind_count = sizeof kinds / sizeof *kinds,
-    .kind_stride = sizeof *kinds,
-};
-
-TL_PLUGIN_EXPORT const tl_plugin *tl_plugin_entry(uint32_t host_major, uint32_t host_minor)
-{
-    (void)host_major;
-    (void)host_minor;
-    return &plugin;
-}
+TL_PLUGIN(kinds, .id = "bad.crasher", .version = "1", .doc = "A plugin for the test of crashes.",
+          .licence = "BSD-3-Clause");

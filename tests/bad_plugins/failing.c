@@ -22,18 +22,8 @@ static const tl_param law_table[] = {
 
 /* Springs that remember how often they were asked and how far they have slid. */
 static const tl_state law_states[] = {
-    {.size = sizeof(tl_state),
-     .kind = TL_STATE_SCALAR,
-     .transfer = TL_TRANSFER_COPY,
-     .name = "calls",
-     .unit = "",
-     .doc = "steps made"},
-    {.size = sizeof(tl_state),
-     .kind = TL_STATE_TANGENT,
-     .transfer = TL_TRANSFER_COPY,
-     .name = "slid",
-     .unit = "m",
-     .doc = "way in the common plane"},
+    TL_STATE(TL_STATE_SCALAR, "calls", "", "steps made"),
+    TL_STATE(TL_STATE_TANGENT, "slid", "m", "way in the common plane"),
 };
 
 static tl_status update_law(const void *self, const tl_law_batch *b, tl_report *report)
@@ -84,12 +74,7 @@ static const tl_param damping_table[] = {
 };
 
 static const tl_state damping_states[] = {
-    {.size = sizeof(tl_state),
-     .kind = TL_STATE_SCALAR,
-     .transfer = TL_TRANSFER_COPY,
-     .name = "calls",
-     .unit = "",
-     .doc = "steps made"},
+    TL_STATE(TL_STATE_SCALAR, "calls", "", "steps made"),
 };
 
 static tl_status begin_damping(const void *self, const tl_damping_totals *totals,
@@ -131,45 +116,16 @@ static const tl_damping_ops damping_ops = {.size = sizeof damping_ops,
 #define LAW(name_, ops_)                                                                           \
     {                                                                                              \
         .size = sizeof(tl_kind), .type = TL_KIND_LAW, .name = (name_),                             \
-        .doc = "Springs that fail.", .params_size = sizeof(law_params), .params = law_table,       \
-        .param_count = sizeof law_table / sizeof *law_table, .param_stride = sizeof *law_table,    \
-        .states = law_states, .state_count = sizeof law_states / sizeof *law_states,               \
-        .state_stride = sizeof *law_states, .ops = &(ops_),                                        \
+        .doc = "Springs that fail.", TL_KIND_PARAMS(law_params, law_table),                        \
+        TL_KIND_STATES(law_states), .ops = &(ops_),                                                \
     }
 
 static const tl_kind kinds[] = {
     LAW("failing", law_ops),
     LAW("failing_silently", liar_ops),
-    {.size = sizeof(tl_kind),
-     .type = TL_KIND_DAMPING,
-     .name = "failing_damping",
-     .doc = "A damping that fails.",
-     .params_size = sizeof(damping_params),
-     .params = damping_table,
-     .param_count = sizeof damping_table / sizeof *damping_table,
-     .param_stride = sizeof *damping_table,
-     .states = damping_states,
-     .state_count = 1,
-     .state_stride = sizeof *damping_states,
-     .ops = &damping_ops},
+    TL_KIND(TL_KIND_DAMPING, damping_ops, .name = "failing_damping", .doc = "A damping that fails.",
+            TL_KIND_PARAMS(damping_params, damping_table), TL_KIND_STATES(damping_states)),
 };
 
-static const tl_plugin plugin = {
-    .size = sizeof plugin,
-    .abi_major = TL_ABI_MAJOR,
-    .abi_minor = TL_ABI_MINOR,
-    .id = "bad.failing",
-    .version = "1",
-    .doc = "A plugin for the test of steps that are undone.",
-    .licence = "BSD-3-Clause",
-    .kinds = kinds,
-    .kind_count = sizeof kinds / sizeof *kinds,
-    .kind_stride = sizeof *kinds,
-};
-
-TL_PLUGIN_EXPORT const tl_plugin *tl_plugin_entry(uint32_t host_major, uint32_t host_minor)
-{
-    (void)host_major;
-    (void)host_minor;
-    return &plugin;
-}
+TL_PLUGIN(kinds, .id = "bad.failing", .version = "1",
+          .doc = "A plugin for the test of steps that are undone.", .licence = "BSD-3-Clause");

@@ -66,34 +66,9 @@ static tl_status generate(const tl_host *host, const void *given)
 
 static const tl_generator_ops ops = {.size = sizeof ops, .generate = generate};
 
-static const tl_kind kind = {
-    .size = sizeof kind,
-    .type = TL_KIND_GENERATOR,
-    .name = "half_way",
-    .doc = "A generator that never succeeds.",
-    .params_size = sizeof(params),
-    .params = param_table,
-    .param_count = sizeof param_table / sizeof *param_table,
-    .param_stride = sizeof *param_table,
-    .ops = &ops,
-};
+static const tl_kind kind =
+    TL_KIND(TL_KIND_GENERATOR, ops, .name = "half_way", .doc = "A generator that never succeeds.",
+            TL_KIND_PARAMS(params, param_table));
 
-static const tl_plugin plugin = {
-    .size = sizeof plugin,
-    .abi_major = TL_ABI_MAJOR,
-    .abi_minor = TL_ABI_MINOR,
-    .id = "bad.half_way",
-    .version = "1",
-    .doc = "A plugin for the test of the host's services.",
-    .licence = "BSD-3-Clause",
-    .kinds = &kind,
-    .kind_count = 1,
-    .kind_stride = sizeof kind,
-};
-
-TL_PLUGIN_EXPORT const tl_plugin *tl_plugin_entry(uint32_t host_major, uint32_t host_minor)
-{
-    (void)host_major;
-    (void)host_minor;
-    return &plugin;
-}
+TL_PLUGIN(kind, .id = "bad.half_way", .version = "1",
+          .doc = "A plugin for the test of the host's services.", .licence = "BSD-3-Clause");

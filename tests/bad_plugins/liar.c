@@ -74,37 +74,9 @@ static void stiffness(const void *self, double *kn, double *ks)
 
 static const tl_law_ops ops = {.size = sizeof ops, .update = update, .stiffness = stiffness};
 
-static const tl_kind kind = {
-    .size = sizeof kind,
-    .type = TL_KIND_LAW,
-    .name = "liar",
-    .doc = "A law for the tests of the step.",
-    .params_size = sizeof(params),
-    .params = param_table,
-    .param_count = sizeof param_table / sizeof *param_table,
-    .param_stride = sizeof *param_table,
-    .states = state_table,
-    .state_count = sizeof state_table / sizeof *state_table,
-    .state_stride = sizeof *state_table,
-    .ops = &ops,
-};
+static const tl_kind kind =
+    TL_KIND(TL_KIND_LAW, ops, .name = "liar", .doc = "A law for the tests of the step.",
+            TL_KIND_PARAMS(params, param_table), TL_KIND_STATES(state_table));
 
-static const tl_plugin plugin = {
-    .size = sizeof plugin,
-    .abi_major = TL_ABI_MAJOR,
-    .abi_minor = TL_ABI_MINOR,
-    .id = "bad.liar",
-    .version = "1",
-    .doc = "A plugin for the tests of the step.",
-    .licence = "BSD-3-Clause",
-    .kinds = &kind,
-    .kind_count = 1,
-    .kind_stride = sizeof kind,
-};
-
-TL_PLUGIN_EXPORT const tl_plugin *tl_plugin_entry(uint32_t host_major, uint32_t host_minor)
-{
-    (void)host_major;
-    (void)host_minor;
-    return &plugin;
-}
+TL_PLUGIN(kind, .id = "bad.liar", .version = "1", .doc = "A plugin for the tests of the step.",
+          .licence = "BSD-3-Clause");

@@ -1,68 +1,12 @@
 /* many_states.c - a law whose states take nine columns: three tangents of three. */
-#include <talus/plugin.h>
+#include "plain_law.h"
 
-typedef struct params {
-    double value;
-} params;
-
-static const tl_param param_table[] = {
-    TL_PARAM(TL_PARAM_REAL, params, value, "Pa", "some value", .def = {1}, .min = 0, .max = 2),
+static const tl_state state_table[] = {
+    TL_STATE(TL_STATE_TANGENT, "one", "m", "some vector"),
+    TL_STATE(TL_STATE_TANGENT, "two", "m", "some vector"),
+    TL_STATE(TL_STATE_TANGENT, "three", "m", "some vector"),
 };
+static const tl_kind kind =
+    PLAIN_KIND("many_states", TL_KIND_PARAMS(params, param_table), TL_KIND_STATES(state_table));
 
-#define TANGENT(name_)                                                                             \
-    {                                                                                              \
-        .size = sizeof(tl_state), .kind = TL_STATE_TANGENT, .name = (name_), .unit = "m",          \
-        .doc = "some vector"                                                                       \
-    }
-static const tl_state state_table[] = {TANGENT("one"), TANGENT("two"), TANGENT("three")};
-
-static tl_status update(const void *self, const tl_law_batch *batch, tl_report *report)
-{
-    (void)self;
-    (void)batch;
-    (void)report;
-    return TL_OK;
-}
-
-static void stiffness(const void *self, double *kn, double *ks)
-{
-    (void)self;
-    *kn = *ks = 1;
-}
-
-static const tl_law_ops ops = {.size = sizeof ops, .update = update, .stiffness = stiffness};
-
-static const tl_kind kind = {
-    .size = sizeof kind,
-    .type = TL_KIND_LAW,
-    .name = "many_states",
-    .doc = "A law for the loader's test.",
-    .params_size = sizeof(params),
-    .params = param_table,
-    .param_count = sizeof param_table / sizeof *param_table,
-    .param_stride = sizeof *param_table,
-    .states = state_table,
-    .state_count = sizeof state_table / sizeof *state_table,
-    .state_stride = sizeof *state_table,
-    .ops = &ops,
-};
-
-static const tl_plugin plugin = {
-    .size = sizeof plugin,
-    .abi_major = TL_ABI_MAJOR,
-    .abi_minor = TL_ABI_MINOR,
-    .id = "bad.many_states",
-    .version = "1",
-    .doc = "A plugin for the loader's test.",
-    .licence = "BSD-3-Clause",
-    .kinds = &kind,
-    .kind_count = 1,
-    .kind_stride = sizeof kind,
-};
-
-TL_PLUGIN_EXPORT const tl_plugin *tl_plugin_entry(uint32_t host_major, uint32_t host_minor)
-{
-    (void)host_major;
-    (void)host_minor;
-    return &plugin;
-}
+PLAIN_PLUGIN("bad.many_states");

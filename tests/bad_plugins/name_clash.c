@@ -1,34 +1,6 @@
 /* name_clash.c - offers a law of a name that is taken. */
 #include "plain_law.h"
 
-static const tl_kind kind = {
-    .size = sizeof kind,
-    .type = TL_KIND_LAW,
-    .name = "coulomb",
-    .doc = "A law for the loader's test.",
-    .params_size = sizeof(params),
-    .params = param_table,
-    .param_count = sizeof param_table / sizeof *param_table,
-    .param_stride = sizeof *param_table,
-    .ops = &ops,
-};
+static const tl_kind kind = PLAIN_KIND("coulomb", TL_KIND_PARAMS(params, param_table));
 
-static const tl_plugin plugin = {
-    .size = sizeof plugin,
-    .abi_major = TL_ABI_MAJOR,
-    .abi_minor = TL_ABI_MINOR,
-    .id = "bad.name_clash",
-    .version = "1",
-    .doc = "A plugin for the loader's test.",
-    .licence = "BSD-3-Clause",
-    .kinds = &kind,
-    .kind_count = 1,
-    .kind_stride = sizeof kind,
-};
-
-TL_PLUGIN_EXPORT const tl_plugin *tl_plugin_entry(uint32_t host_major, uint32_t host_minor)
-{
-    (void)host_major;
-    (void)host_minor;
-    return &plugin;
-}
+PLAIN_PLUGIN("bad.name_clash");

@@ -19,13 +19,8 @@ static double step_factor(const void *self)
 static const tl_damping_ops ops = {
     .size = offsetof(tl_damping_ops, before), .update = update, .step_factor = step_factor};
 
-static const tl_kind kind = {
-    .size = sizeof kind,
-    .type = TL_KIND_DAMPING,
-    .name = "older_minor",
-    .doc = "A damping for the loader's test.",
-    .ops = &ops,
-};
+static const tl_kind kind =
+    TL_KIND(TL_KIND_DAMPING, ops, .name = "older_minor", .doc = "A damping for the loader's test.");
 
 static const tl_plugin plugin = {
     .size = sizeof plugin,

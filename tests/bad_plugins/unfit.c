@@ -259,50 +259,17 @@ static const tl_generator_ops generator_ops = {.size = sizeof generator_ops, .ge
 
 /* ---------------------------------------------------------------- descriptor ------------- */
 
-#define PARAMS(type, table)                                                                        \
-    .params_size = sizeof(type), .params = table, .param_count = sizeof table / sizeof *table,     \
-    .param_stride = sizeof *table
-#define STATES_OF(table)                                                                           \
-    .states = table, .state_count = sizeof table / sizeof *table, .state_stride = sizeof *table
-
 static const tl_kind kinds[] = {
-    {.size = sizeof(tl_kind),
-     .type = TL_KIND_LAW,
-     .name = "unfit",
-     .doc = "A law for the tests of the conformance check.",
-     PARAMS(law_params, law_table),
-     STATES_OF(law_state),
-     .ops = &law_ops},
-    {.size = sizeof(tl_kind),
-     .type = TL_KIND_DAMPING,
-     .name = "unfit",
-     .doc = "A damping for the tests of the conformance check.",
-     PARAMS(damping_params, damping_table),
-     STATES_OF(damping_state),
-     .ops = &damping_ops},
-    {.size = sizeof(tl_kind),
-     .type = TL_KIND_GENERATOR,
-     .name = "unfit",
-     .doc = "A generator for the tests of the conformance check.",
-     PARAMS(generator_params, generator_table),
-     .ops = &generator_ops},
+    TL_KIND(TL_KIND_LAW, law_ops, .name = "unfit",
+            .doc = "A law for the tests of the conformance check.",
+            TL_KIND_PARAMS(law_params, law_table), TL_KIND_STATES(law_state)),
+    TL_KIND(TL_KIND_DAMPING, damping_ops, .name = "unfit",
+            .doc = "A damping for the tests of the conformance check.",
+            TL_KIND_PARAMS(damping_params, damping_table), TL_KIND_STATES(damping_state)),
+    TL_KIND(TL_KIND_GENERATOR, generator_ops, .name = "unfit",
+            .doc = "A generator for the tests of the conformance check.",
+            TL_KIND_PARAMS(generator_params, generator_table)),
 };
 
-static const tl_plugin plugin = {
-    .size = sizeof plugin,
-    .abi_major = TL_ABI_MAJOR,
-    .abi_minor = TL_ABI_MINOR,
-    .id = "bad.unfit",
-    .version = "1",
-    .doc = "A plugin for the tests of the conformance check.",
-    .licence = "BSD-3-Clause",
-    .kinds = kinds,
-    .kind_count = sizeof kinds / sizeof *kinds,
-    .kind_stride = sizeof *kinds,
-};
-
-TL_PLUGIN_EXPORT const tl_plugin *tl_plugin_entry(uint32_t host_major, uint32_t host_minor)
-{
-    (void)host_minor;
-    return host_major == TL_ABI_MAJOR ? &plugin : NULL;
-}
+TL_PLUGIN(kinds, .id = "bad.unfit", .version = "1",
+          .doc = "A plugin for the tests of the conformance check.", .licence = "BSD-3-Clause");

@@ -36,6 +36,7 @@ PUBLIC = {
     "elementary.h": set(),
     "vmath.h": {"elementary.h", "types.h"},
     "plugin.h": {"types.h"},
+    "kit.h": {"elementary.h", "plugin.h", "vmath.h"},
     "plugins.h": {"types.h", "plugin.h"},
     "output.h": {"types.h", "plugin.h"},
     "state.h": {"types.h", "plugin.h"},
@@ -51,7 +52,8 @@ PUBLIC = {
     "views.h": {"talus.h"},
     "boundary.h": {"talus.h"},
 }
-PLUGIN_HEADERS = {"talus/version.h", "talus/types.h", "talus/elementary.h", "talus/vmath.h", "talus/plugin.h"}
+PLUGIN_HEADERS = {"talus/version.h", "talus/types.h", "talus/elementary.h", "talus/vmath.h", "talus/plugin.h",
+                  "talus/kit.h"}
 # What a plugin may include besides: the headers of standard C.
 STANDARD_HEADERS = {
     name + ".h"

@@ -144,6 +144,14 @@ typedef struct tl_state {
     double initial;
 } tl_state;
 
+/* Declares one row of a state table: TL_STATE(TL_STATE_SCALAR, "slip", "m", "length of the slip so far"). It is copied from the
+ * nearest old point and begins at 0, unless .transfer or .initial follow the sentence. */
+#define TL_STATE(kind_, name_, unit_, ...)                                                         \
+    {                                                                                              \
+        .size = sizeof(tl_state), .kind = (kind_), .name = (name_), .unit = (unit_),               \
+        .doc = __VA_ARGS__                                                                         \
+    }
+
 /* ---------------------------------------------------------------- reports ---------------- */
 
 typedef struct tl_report {
@@ -418,6 +426,13 @@ typedef struct tl_plugin {
 
 typedef const tl_plugin *(*tl_plugin_entry_fn)(uint32_t host_major, uint32_t host_minor);
 
+/* One kind with its operations, for a `static const tl_kind` or an array of them:
+ *
+ *     TL_KIND(TL_KIND_LAW, ops, .name = "my_law", .doc = "Falling friction.", TL_KIND_PARAMS(params, param_table)) */
+#define TL_KIND(type_, ops_, ...)                                                                  \
+    {                                                                                              \
+        .size = sizeof(tl_kind), .type = (type_), .ops = &(ops_), __VA_ARGS__                      \
+    }
 /* Members of a tl_kind: its parameters, written to a struct `owner`, and its states. `table` is an array. */
 #define TL_KIND_PARAMS(owner, table)                                                               \
     .params_size = sizeof(owner), .params = (table),                                               \

@@ -10,12 +10,8 @@
  * Source: Hart, Cundall and Lemos, Int. J. Rock Mech. Min. Sci. 25 (1988) 117-125, who give the ratio;
  * the servo is ours. The bounds on alpha that are not given follow the time step, which makes them fit
  * models of any size: see the table. State `alpha` is 0 before the first step. */
-#include <talus/plugin.h>
+#include <talus/kit.h>
 #include <talus/version.h>
-
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
 
 /* Bounds and start of alpha dt where the user gives none. Above 1 (23) would reverse velocities;
  * 1e-8 lies below any alpha that matters within a hundred million steps, and the servo climbs back from
@@ -44,13 +40,7 @@ static const tl_param param_table[] = {
 };
 
 static const tl_state state_table[] = {
-    {.size = sizeof(tl_state),
-     .kind = TL_STATE_SCALAR,
-     .transfer = TL_TRANSFER_COPY,
-     .name = "alpha",
-     .unit = "1/s",
-     .doc = "damping coefficient; 0 before the first step",
-     .initial = 0},
+    TL_STATE(TL_STATE_SCALAR, "alpha", "1/s", "damping coefficient; 0 before the first step"),
 };
 
 static tl_status create(const void *given, void **self, tl_report *report)
@@ -61,14 +51,7 @@ static tl_status create(const void *given, void **self, tl_report *report)
                  p->minimum, p->maximum);
         return TL_E_ARGUMENT;
     }
-    params *copy = malloc(sizeof *copy);
-    if (!copy) {
-        snprintf(report->text, sizeof report->text, "out of memory");
-        return TL_E_MEMORY;
-    }
-    *copy = *p;
-    *self = copy;
-    return TL_OK;
+    return tl_keep(p, sizeof *p, self, report);
 }
 
 static double clamp(double x, double low, double high)
@@ -99,40 +82,19 @@ static tl_status begin(const void *self, const tl_damping_totals *totals, double
     return TL_OK;
 }
 
-static tl_status update(const void *self, const tl_damping_batch *batch, tl_report *report)
-{
-    (void)self;
-    (void)report;
-    double alpha = *batch->state[0];
-    for (uint32_t i = 0; i < batch->count; i++)
-        batch->alpha[i] = alpha;
-    return TL_OK;
-}
-
-static double step_factor(const void *self)
-{
-    (void)self;
-    return 1;
-}
-
 static const tl_damping_ops ops = {.size = sizeof ops,
                                    .create = create,
                                    .begin = begin,
-                                   .update = update,
-                                   .step_factor = step_factor,
+                                   .update = tl_update_alpha_state,
+                                   .step_factor = tl_step_factor_one,
                                    .destroy = free,
                                    .never_fails = true};
 
-static const tl_kind kind = {
-    .size = sizeof kind,
-    .type = TL_KIND_DAMPING,
-    .name = "adaptive",
+static const tl_kind kind = TL_KIND(
+    TL_KIND_DAMPING, ops, .name = "adaptive",
     .doc = "Viscous damping that follows the rate of kinetic energy; vanishes at rest and in "
            "steady motion.",
-    TL_KIND_PARAMS(params, param_table),
-    TL_KIND_STATES(state_table),
-    .ops = &ops,
-};
+    TL_KIND_PARAMS(params, param_table), TL_KIND_STATES(state_table));
 
 TL_PLUGIN(kind, .id = "talus.adaptive", .version = TALUS_VERSION, .doc = "Adaptive global damping.",
           .licence = "BSD-3-Clause");

@@ -65,15 +65,11 @@ static const tl_damping_ops ops = {.size = sizeof ops,
                                    .before = true,
                                    .never_fails = true};
 
-static const tl_kind kind = {
-    .size = sizeof kind,
-    .type = TL_KIND_DAMPING,
-    .name = "combined",
+static const tl_kind kind = TL_KIND(
+    TL_KIND_DAMPING, ops, .name = "combined",
     .doc =
         "Local damping that also damps vibration about a steady motion; for slow sliding and flow.",
-    TL_KIND_PARAMS(params, param_table),
-    .ops = &ops,
-};
+    TL_KIND_PARAMS(params, param_table));
 
 /* Hosts give the forces of the step before since minor version 1, but since 2 to those that ask. */
 TL_PLUGIN_SINCE(1, kind, .id = "talus.combined", .version = TALUS_VERSION,

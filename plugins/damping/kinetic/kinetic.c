@@ -14,17 +14,11 @@
  *
  * Velocities are stopped by the viscous coefficient 2 / dt, with which (23) leaves nothing of them, whatever the inertia,
  * and takes half of the kick. So the half step after a stop is that of a motion that begins. */
-#include <talus/plugin.h>
+#include <talus/kit.h>
 #include <talus/version.h>
 
 static const tl_state state_table[] = {
-    {.size = sizeof(tl_state),
-     .kind = TL_STATE_SCALAR,
-     .transfer = TL_TRANSFER_COPY,
-     .name = "alpha",
-     .unit = "1/s",
-     .doc = "2 / dt in a step that stops all bodies, else 0",
-     .initial = 0},
+    TL_STATE(TL_STATE_SCALAR, "alpha", "1/s", "2 / dt in a step that stops all bodies, else 0"),
 };
 
 /* Once a step. */
@@ -37,37 +31,17 @@ static tl_status begin(const void *self, const tl_damping_totals *totals, double
     return TL_OK;
 }
 
-static tl_status update(const void *self, const tl_damping_batch *batch, tl_report *report)
-{
-    (void)self;
-    (void)report;
-    double alpha = *batch->state[0];
-    for (uint32_t i = 0; i < batch->count; i++)
-        batch->alpha[i] = alpha;
-    return TL_OK;
-}
-
-static double step_factor(const void *self)
-{
-    (void)self;
-    return 1;
-}
-
 static const tl_damping_ops ops = {.size = sizeof ops,
                                    .begin = begin,
-                                   .update = update,
-                                   .step_factor = step_factor,
+                                   .update = tl_update_alpha_state,
+                                   .step_factor = tl_step_factor_one,
                                    .never_fails = true};
 
-static const tl_kind kind = {
-    .size = sizeof kind,
-    .type = TL_KIND_DAMPING,
-    .name = "kinetic",
+static const tl_kind kind = TL_KIND(
+    TL_KIND_DAMPING, ops, .name = "kinetic",
     .doc = "Stops all bodies whenever the kinetic energy of the model has been at its peak; the "
            "fastest way to an equilibrium of many blocks.",
-    TL_KIND_STATES(state_table),
-    .ops = &ops,
-};
+    TL_KIND_STATES(state_table));
 
 /* Hosts give the power of the forces since minor version 5. */
 TL_PLUGIN_SINCE(5, kind, .id = "talus.kinetic", .version = TALUS_VERSION, .doc = "Kinetic damping.",

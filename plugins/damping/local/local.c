@@ -58,14 +58,10 @@ static double step_factor(const void *self)
 static const tl_damping_ops ops = {
     .size = sizeof ops, .update = update, .step_factor = step_factor, .never_fails = true};
 
-static const tl_kind kind = {
-    .size = sizeof kind,
-    .type = TL_KIND_DAMPING,
-    .name = "local",
-    .doc = "Opposes motion by a share of the unbalanced force; for statics.",
-    TL_KIND_PARAMS(params, param_table),
-    .ops = &ops,
-};
+static const tl_kind kind =
+    TL_KIND(TL_KIND_DAMPING, ops, .name = "local",
+            .doc = "Opposes motion by a share of the unbalanced force; for statics.",
+            TL_KIND_PARAMS(params, param_table));
 
 TL_PLUGIN(kind, .id = "talus.local", .version = TALUS_VERSION,
           .doc = "Local (non-viscous) damping.", .licence = "BSD-3-Clause");

@@ -5,10 +5,8 @@
  * Source: Hart, Cundall and Lemos, Int. J. Rock Mech. Min. Sci. 25 (1988) 117-125. The host integrates
  * it by the central difference (23), whose bound on the time step does not depend on alpha. Critical for
  * a mode of circular frequency omega: alpha = 2 omega. Terminal velocity under gravity: g / alpha. */
-#include <talus/plugin.h>
+#include <talus/kit.h>
 #include <talus/version.h>
-
-#include <math.h>
 
 typedef struct params {
     double alpha;
@@ -28,23 +26,12 @@ static tl_status update(const void *self, const tl_damping_batch *batch, tl_repo
     return TL_OK;
 }
 
-static double step_factor(const void *self)
-{
-    (void)self;
-    return 1;
-}
-
 static const tl_damping_ops ops = {
-    .size = sizeof ops, .update = update, .step_factor = step_factor, .never_fails = true};
+    .size = sizeof ops, .update = update, .step_factor = tl_step_factor_one, .never_fails = true};
 
-static const tl_kind kind = {
-    .size = sizeof kind,
-    .type = TL_KIND_DAMPING,
-    .name = "viscous",
-    .doc = "Constant viscous damping of all velocities.",
-    TL_KIND_PARAMS(params, param_table),
-    .ops = &ops,
-};
+static const tl_kind kind = TL_KIND(TL_KIND_DAMPING, ops, .name = "viscous",
+                                    .doc = "Constant viscous damping of all velocities.",
+                                    TL_KIND_PARAMS(params, param_table));
 
 TL_PLUGIN(kind, .id = "talus.viscous", .version = TALUS_VERSION, .doc = "Viscous damping.",
           .licence = "BSD-3-Clause");

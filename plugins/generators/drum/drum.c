@@ -54,14 +54,9 @@ static tl_status generate(const tl_host *host, const void *given)
 
 static const tl_generator_ops ops = {.size = sizeof ops, .generate = generate};
 
-static const tl_kind kind = {
-    .size = sizeof kind,
-    .type = TL_KIND_GENERATOR,
-    .name = "drum",
-    .doc = "Creates one block: a cylinder of flat sides.",
-    TL_KIND_PARAMS(params, param_table),
-    .ops = &ops,
-};
+static const tl_kind kind = TL_KIND(TL_KIND_GENERATOR, ops, .name = "drum",
+                                    .doc = "Creates one block: a cylinder of flat sides.",
+                                    TL_KIND_PARAMS(params, param_table));
 
 TL_PLUGIN(kind, .id = "talus.drum", .version = TALUS_VERSION, .doc = "Drum generator.",
           .licence = "BSD-3-Clause");

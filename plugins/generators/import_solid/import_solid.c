@@ -63,14 +63,10 @@ static tl_status generate(const tl_host *host, const void *given)
 
 static const tl_generator_ops ops = {.size = sizeof ops, .generate = generate};
 
-static const tl_kind kind = {
-    .size = sizeof kind,
-    .type = TL_KIND_GENERATOR,
-    .name = "import",
-    .doc = "Creates a block of each closed convex solid in an STL or OBJ file.",
-    TL_KIND_PARAMS(params, param_table),
-    .ops = &ops,
-};
+static const tl_kind kind =
+    TL_KIND(TL_KIND_GENERATOR, ops, .name = "import",
+            .doc = "Creates a block of each closed convex solid in an STL or OBJ file.",
+            TL_KIND_PARAMS(params, param_table));
 
 TL_PLUGIN(kind, .id = "talus.import_solid", .version = TALUS_VERSION,
           .doc = "Import of closed convex solids.", .licence = "BSD-3-Clause");

@@ -202,11 +202,6 @@ static tl_status generate(const tl_host *host, const void *given)
 
 static const tl_generator_ops ops = {.size = sizeof ops, .generate = generate};
 
-const tl_kind prism_kind = {
-    .size = sizeof prism_kind,
-    .type = TL_KIND_GENERATOR,
-    .name = "prism",
-    .doc = "Creates one body between two polygons.",
-    TL_KIND_PARAMS(params, param_table),
-    .ops = &ops,
-};
+const tl_kind prism_kind =
+    TL_KIND(TL_KIND_GENERATOR, ops, .name = "prism",
+            .doc = "Creates one body between two polygons.", TL_KIND_PARAMS(params, param_table));

@@ -67,11 +67,7 @@ static tl_status generate(const tl_host *host, const void *given)
 
 static const tl_generator_ops ops = {.size = sizeof ops, .generate = generate};
 
-const tl_kind profile_kind = {
-    .size = sizeof profile_kind,
-    .type = TL_KIND_GENERATOR,
-    .name = "profile",
+const tl_kind profile_kind = TL_KIND(
+    TL_KIND_GENERATOR, ops, .name = "profile",
     .doc = "Creates one body of a section in a plane, moved across it: a slope, a dam, a wall.",
-    TL_KIND_PARAMS(params, param_table),
-    .ops = &ops,
-};
+    TL_KIND_PARAMS(params, param_table));

@@ -32,14 +32,9 @@ static tl_status generate(const tl_host *host, const void *given)
 
 static const tl_generator_ops ops = {.size = sizeof ops, .generate = generate};
 
-static const tl_kind kind = {
-    .size = sizeof kind,
-    .type = TL_KIND_GENERATOR,
-    .name = "tetrahedron",
-    .doc = "Creates one block from its four corners.",
-    TL_KIND_PARAMS(params, param_table),
-    .ops = &ops,
-};
+static const tl_kind kind =
+    TL_KIND(TL_KIND_GENERATOR, ops, .name = "tetrahedron",
+            .doc = "Creates one block from its four corners.", TL_KIND_PARAMS(params, param_table));
 
 TL_PLUGIN(kind, .id = "talus.tetrahedron", .version = TALUS_VERSION,
           .doc = "Tetrahedron generator.", .licence = "BSD-3-Clause");

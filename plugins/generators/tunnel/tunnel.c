@@ -373,14 +373,10 @@ static tl_status generate(const tl_host *host, const void *given)
 
 static const tl_generator_ops ops = {.size = sizeof ops, .generate = generate};
 
-static const tl_kind kind = {
-    .size = sizeof kind,
-    .type = TL_KIND_GENERATOR,
-    .name = "tunnel",
-    .doc = "Cuts the visible blocks in the way of a tunnel along its surface.",
-    TL_KIND_PARAMS(params, param_table),
-    .ops = &ops,
-};
+static const tl_kind kind =
+    TL_KIND(TL_KIND_GENERATOR, ops, .name = "tunnel",
+            .doc = "Cuts the visible blocks in the way of a tunnel along its surface.",
+            TL_KIND_PARAMS(params, param_table));
 
 /* It needs the services for single blocks, which came with minor 1. */
 TL_PLUGIN_SINCE(1, kind, .id = "talus.tunnel", .version = TALUS_VERSION, .doc = "Tunnel generator.",

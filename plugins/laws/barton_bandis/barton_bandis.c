@@ -18,15 +18,9 @@
  *
  * Limits: slip back opens the joint further, and wears it as slip forth does. The normal spring is not linear: the stored energy
  * of field contacts, which the host has from a linear pressure, is not its own there. */
-#include <talus/elementary.h>
-#include <talus/plugin.h>
+#include <talus/kit.h>
 #include <talus/version.h>
 
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-
-#define DEGREE (3.14159265358979323846 / 180)
 #define LN10 2.30258509299404568402
 /* Lanes worked on at a time: what is noted of them stays in the nearest cache. */
 #define STRIDE 64u
@@ -79,20 +73,8 @@ static const tl_param param_table[] = {
 };
 
 static const tl_state state_table[] = {
-    {.size = sizeof(tl_state),
-     .kind = TL_STATE_SCALAR,
-     .transfer = TL_TRANSFER_COPY,
-     .name = "slip",
-     .unit = "m",
-     .doc = "length of the slip so far",
-     .initial = 0},
-    {.size = sizeof(tl_state),
-     .kind = TL_STATE_SCALAR,
-     .transfer = TL_TRANSFER_COPY,
-     .name = "opening",
-     .unit = "m",
-     .doc = "how far slip has opened the joint",
-     .initial = 0},
+    TL_STATE(TL_STATE_SCALAR, "slip", "m", "length of the slip so far"),
+    TL_STATE(TL_STATE_SCALAR, "opening", "m", "how far slip has opened the joint"),
 };
 
 typedef struct rough {
@@ -126,31 +108,25 @@ static tl_status create(const void *given, void **self, tl_report *report)
             linear, unit);
         return TL_E_ARGUMENT;
     }
-    rough *law = malloc(sizeof *law);
-    if (!law) {
-        snprintf(report->text, sizeof report->text, "out of memory");
-        return TL_E_MEMORY;
-    }
-    *law = (rough){.kni = p->kni,
-                   .vm = p->vm,
-                   .ks = p->ks,
-                   .v_linear = linear * p->vm / (unit + linear),
-                   .s_linear = linear,
-                   .k_linear = k,
-                   .jrc = jrc,
-                   .jcs = jcs,
-                   .residual = p->phi_r * DEGREE,
-                   .per_peak = peak > 0 ? 1 / peak : 1e300, /* smooth: all at once */
-                   .per_reduction = 1 / p->reduction,
-                   .dilation = p->dilation ? 1 : 0};
-    *self = law;
-    return TL_OK;
+    const rough law = {.kni = p->kni,
+                       .vm = p->vm,
+                       .ks = p->ks,
+                       .v_linear = linear * p->vm / (unit + linear),
+                       .s_linear = linear,
+                       .k_linear = k,
+                       .jrc = jrc,
+                       .jcs = jcs,
+                       .residual = p->phi_r * TL_DEGREE,
+                       .per_peak = peak > 0 ? 1 / peak : 1e300, /* smooth: all at once */
+                       .per_reduction = 1 / p->reduction,
+                       .dilation = p->dilation ? 1 : 0};
+    return tl_keep(&law, sizeof law, self, report);
 }
 
 /* ---------------------------------------------------------------- closure ---------------- */
 
 /* Normal stress at a closure from the unloaded joint; 0 where it is open. */
-static inline double stress_at(const rough *law, double v)
+TL_IN_LOOP double stress_at(const rough *law, double v)
 {
     double curved = v < law->v_linear ? v : law->v_linear, beyond = v - curved;
     double stress = law->kni * curved / (1 - curved / law->vm) + law->k_linear * beyond;
@@ -158,14 +134,14 @@ static inline double stress_at(const rough *law, double v)
 }
 
 /* Its slope. */
-static inline double slope_at(const rough *law, double v)
+TL_IN_LOOP double slope_at(const rough *law, double v)
 {
     double curved = v < law->v_linear ? v : law->v_linear, open = 1 - curved / law->vm;
     return v < 0 ? 0 : law->kni / (open * open);
 }
 
 /* The closure of a stress, that of an initial force; one that pulls goes on with the stiffness kni. */
-static inline double closure_of(const rough *law, double stress)
+TL_IN_LOOP double closure_of(const rough *law, double stress)
 {
     double curved = stress < law->s_linear ? stress : law->s_linear;
     double pressed = curved > 0 ? curved : 0;
@@ -174,7 +150,7 @@ static inline double closure_of(const rough *law, double stress)
 }
 
 /* Energy stored per area. */
-static inline double energy_at(const rough *law, double v)
+TL_IN_LOOP double energy_at(const rough *law, double v)
 {
     double curved = v < law->v_linear ? v : law->v_linear, beyond = v - curved;
     double x = curved > 0 ? curved / law->vm : 0;
@@ -195,7 +171,7 @@ static inline double energy_at(const rough *law, double v)
 /* ---------------------------------------------------------------- strength --------------- */
 
 /* JRC_mob / JRC at x = u / u_peak; 0 up to 0.3. */
-static inline double mobilised(double x)
+TL_IN_LOOP double mobilised(double x)
 {
     double m = x > 0.3 ? (x - 0.3) * (0.75 / 0.3) : 0;
     m = x > 0.6 ? 0.75 + (x - 0.6) * (0.25 / 0.4) : m;
@@ -208,27 +184,27 @@ static inline double mobilised(double x)
 }
 
 /* The part i of the angle that is due to roughness, rad, before m. */
-static inline double roughness(const rough *law, double stress)
+TL_IN_LOOP double roughness(const rough *law, double stress)
 {
-    double s = stress > FAINT ? stress : FAINT, most = STEEPEST * DEGREE - law->residual;
-    double i = law->jrc * DEGREE / LN10 * tl_lane_log(law->jcs / s);
+    double s = stress > FAINT ? stress : FAINT, most = STEEPEST * TL_DEGREE - law->residual;
+    double i = law->jrc * TL_DEGREE / LN10 * tl_lane_log(law->jcs / s);
     i = i > 0 ? i : 0;
     return i < most ? i : most;
 }
 
 /* Strength at a normal stress, with `m` mobilised and the share `base` of the residual angle. */
-static inline double strength_at(const rough *law, double stress, double m, double base)
+TL_IN_LOOP double strength_at(const rough *law, double stress, double m, double base)
 {
     double angle = base * law->residual + m * roughness(law, stress);
     return stress * tl_lane_tan(angle) * law->per_reduction;
 }
 
 /* How fast it rises with the stress. */
-static inline double rise_at(const rough *law, double stress, double m, double base)
+TL_IN_LOOP double rise_at(const rough *law, double stress, double m, double base)
 {
-    double i = roughness(law, stress), most = STEEPEST * DEGREE - law->residual;
+    double i = roughness(law, stress), most = STEEPEST * TL_DEGREE - law->residual;
     double tangent = tl_lane_tan(base * law->residual + m * i);
-    double falls = ((i > 0) & (i < most)) ? m * law->jrc * DEGREE / LN10 : 0;
+    double falls = ((i > 0) & (i < most)) ? m * law->jrc * TL_DEGREE / LN10 : 0;
     return (tangent - falls * (1 + tangent * tangent)) * law->per_reduction;
 }
 
@@ -242,27 +218,20 @@ typedef struct trial {
 } trial;
 
 /* Stresses as if nothing slipped, and the strength; whether some lane is beyond its own. */
-static inline __attribute__((always_inline)) double press(const rough *given,
-                                                          const tl_law_batch *batch, uint32_t begin,
-                                                          uint32_t lanes, trial *restrict t)
+TL_IN_LOOP double press(const rough *given, const tl_law_batch *batch, uint32_t begin,
+                        uint32_t lanes, trial *restrict t)
 {
-    const double *restrict area = batch->area + begin, *restrict closure = batch->closure + begin;
-    const double *restrict f_n0 = batch->f_n0 + begin, *restrict slip = batch->state[0] + begin;
+    const tl_law_columns c = tl_law_columns_from(batch, begin);
+    const double *restrict slip = batch->state[0] + begin;
     const double *restrict opening = batch->state[1] + begin;
-    const double *restrict du_x = batch->du_s[0] + begin, *restrict du_y = batch->du_s[1] + begin;
-    const double *restrict du_z = batch->du_s[2] + begin;
-    const double *restrict f_x = batch->f_s[0] + begin, *restrict f_y = batch->f_s[1] + begin;
-    const double *restrict f_z = batch->f_s[2] + begin, *restrict f_n = batch->f_n + begin;
     const rough law = *given;
     double beyond = 0;
 #pragma omp simd reduction(+ : beyond)
     for (uint32_t i = 0; i < lanes; i++) {
-        double per = area[i] > 0 ? 1 / area[i] : 0, spring = law.ks * area[i];
-        double x = f_x[i] - spring * du_x[i];
-        double y = f_y[i] - spring * du_y[i];
-        double z = f_z[i] - spring * du_z[i];
-        double shear = sqrt(x * x + y * y + z * z) * per;
-        double walls = closure_of(&law, f_n0[i] * per) + closure[i], v = walls + opening[i];
+        double per = c.area[i] > 0 ? 1 / c.area[i] : 0, spring = law.ks * c.area[i];
+        tl_vec3 f = TL_TRIAL_AT(c, i, spring);
+        double shear = tl_v3_norm(f) * per;
+        double walls = closure_of(&law, c.f_n0[i] * per) + c.closure[i], v = walls + opening[i];
         double stress = stress_at(&law, v);
         double u = (slip[i] + shear / law.ks) * law.per_peak;
         double base = u < 0.3 ? u / 0.3 : 1, m = mobilised(u);
@@ -271,12 +240,12 @@ static inline __attribute__((always_inline)) double press(const rough *given,
         t->walls[i] = walls;
         t->opening[i] = opening[i];
         t->v[i] = v;
-        t->x[i] = x;
-        t->y[i] = y;
-        t->z[i] = z;
+        t->x[i] = f.x;
+        t->y[i] = f.y;
+        t->z[i] = f.z;
         t->shear[i] = shear;
         t->stress[i] = stress;
-        t->before[i] = f_n[i] * per;
+        t->before[i] = c.f_n[i] * per;
         t->m[i] = m;
         t->base[i] = base;
         t->limit[i] = limit;
@@ -288,8 +257,7 @@ static inline __attribute__((always_inline)) double press(const rough *given,
 
 /* Slip of the lanes that are beyond their strength, how far it opens the joint, and the strength after it:
  * shear - ks slip = strength(s(v + d slip)). */
-static inline __attribute__((always_inline)) void rub(const rough *given, uint32_t lanes,
-                                                      trial *restrict t)
+TL_IN_LOOP void rub(const rough *given, uint32_t lanes, trial *restrict t)
 {
     const rough law = *given;
     double opens[STRIDE], slip[STRIDE];
@@ -328,16 +296,11 @@ static inline __attribute__((always_inline)) void rub(const rough *given, uint32
 
 /* Forces, states, energies and flags; `mark` takes the flags as doubles: a loop over lanes of two widths is not vectorised for
  * every machine. */
-static inline __attribute__((always_inline)) void settle(const rough *given,
-                                                         const tl_law_batch *batch, uint32_t begin,
-                                                         uint32_t lanes, const trial *restrict t,
-                                                         double *restrict mark,
-                                                         double *restrict stored,
-                                                         double *restrict dissipated)
+TL_IN_LOOP void settle(const rough *given, const tl_law_batch *batch, uint32_t begin,
+                       uint32_t lanes, const trial *restrict t, double *restrict mark,
+                       double *restrict stored, double *restrict dissipated)
 {
-    const double *restrict area = batch->area + begin;
-    double *restrict f_n = batch->f_n + begin, *restrict f_x = batch->f_s[0] + begin;
-    double *restrict f_y = batch->f_s[1] + begin, *restrict f_z = batch->f_s[2] + begin;
+    const tl_law_columns c = tl_law_columns_from(batch, begin);
     double *restrict slip = batch->state[0] + begin, *restrict opening = batch->state[1] + begin;
     const rough law = *given;
     const double half_s = 0.5 / law.ks;
@@ -345,20 +308,19 @@ static inline __attribute__((always_inline)) void settle(const rough *given,
     for (uint32_t i = 0; i < lanes; i++) {
         double limit = t->limit[i], shear = t->shear[i], opened = t->opening[i] + t->lift[i];
         double v = t->walls[i] + opened;
-        double slips = shear > limit * (1 + ROUNDING) ? 1 : 0, whole = shear * area[i];
+        double slips = shear > limit * (1 + ROUNDING) ? 1 : 0, whole = shear * c.area[i];
         double scale = slips > 0 ? limit / (slips > 0 ? shear : 1) : 1, after = scale * shear;
         double held = energy_at(&law, v), before = energy_at(&law, t->v[i]);
-        double along = f_x[i] * t->x[i] + f_y[i] * t->y[i] + f_z[i] * t->z[i];
-        double mean = 0.5 * (along / (whole > 0 ? whole : 1) + limit * area[i]);
+        tl_vec3 f = {t->x[i], t->y[i], t->z[i]};
+        double along = tl_v3_dot(TL_SHEAR_AT(c, i), f);
+        double mean = 0.5 * (along / (whole > 0 ? whole : 1) + limit * c.area[i]);
         double work = mean * (shear - limit) / law.ks;
-        double heat = slips > 0 ? work - (held - before) * area[i] : 0;
+        double heat = slips > 0 ? work - (held - before) * c.area[i] : 0;
         dissipated[i] = heat > 0 ? heat : 0;
-        stored[i] = area[i] * (held + half_s * after * after);
+        stored[i] = c.area[i] * (held + half_s * after * after);
         mark[i] = v < 0 ? TL_POINT_OPEN : slips * TL_POINT_SLIPPING;
-        f_n[i] = area[i] * t->stress[i];
-        f_x[i] = scale * t->x[i];
-        f_y[i] = scale * t->y[i];
-        f_z[i] = scale * t->z[i];
+        c.f_n[i] = c.area[i] * t->stress[i];
+        TL_PUT_SHEAR(c, i, scale, f);
         slip[i] = slip[i] + t->slip[i];
         opening[i] = opened;
     }
@@ -376,36 +338,20 @@ TL_VECTORIZED static tl_status update(const void *self, const tl_law_batch *batc
             rub(self, lanes, &t);
         settle(self, batch, begin, lanes, &t, mark, batch->stored ? batch->stored + begin : stored,
                batch->dissipated ? batch->dissipated + begin : dissipated);
-        for (uint32_t i = 0; i < lanes; i++)
-            batch->flags[begin + i] = (uint32_t)(int32_t)mark[i];
+        tl_law_put_flags(batch, begin, lanes, mark);
     }
     return TL_OK;
 }
 
-static void stiffness(const void *self, double *kn, double *ks)
-{
-    const rough *law = self;
-    *kn = law->k_linear;
-    *ks = law->ks;
-}
+TL_LAW_STIFFNESS(rough, k_linear, ks);
 
-static const tl_law_ops ops = {.size = sizeof ops,
-                               .create = create,
-                               .update = update,
-                               .stiffness = stiffness,
-                               .destroy = free,
-                               .never_fails = true};
+static const tl_law_ops ops = TL_LAW_OPS(.pulls = tl_pulls_any);
 
-static const tl_kind kind = {
-    .size = sizeof kind,
-    .type = TL_KIND_LAW,
-    .name = "barton_bandis",
+static const tl_kind kind = TL_KIND(
+    TL_KIND_LAW, ops, .name = "barton_bandis",
     .doc = "Rough joints: hyperbolic closure, and friction from roughness and wall strength that "
            "slip wears down.",
-    TL_KIND_PARAMS(params, param_table),
-    TL_KIND_STATES(state_table),
-    .ops = &ops,
-};
+    TL_KIND_PARAMS(params, param_table), TL_KIND_STATES(state_table));
 
 TL_PLUGIN(kind, .id = "talus.barton_bandis", .version = TALUS_VERSION,
           .doc = "Joint law of Barton and Bandis.", .licence = "BSD-3-Clause");

@@ -21,16 +21,9 @@
  * (2006) 542-582. Walls that come near each other from afar have no bond.
  *
  * Limits: compression does not raise c; it does not crush. Damage is that of a point's own closure. */
-#include <talus/elementary.h>
-#include <talus/plugin.h>
+#include <talus/kit.h>
 #include <talus/version.h>
 
-#include <math.h>
-#include <stdbool.h>
-#include <stdio.h>
-#include <stdlib.h>
-
-#define DEGREE (3.14159265358979323846 / 180)
 /* Lanes worked on at a time: their flags stay in the nearest cache. */
 #define STRIDE 64u
 /* Scaling a stress down to its limit, mixing it with another and taking it out of the force again leaves it within some
@@ -46,10 +39,8 @@ typedef struct params {
 } params;
 
 static const tl_param param_table[] = {
-    TL_PARAM(TL_PARAM_REAL, params, kn, "Pa/m", "normal stiffness of the joint",
-             .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
-    TL_PARAM(TL_PARAM_REAL, params, ks, "Pa/m", "shear stiffness of the joint",
-             .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
+    TL_PARAM_KN(params),
+    TL_PARAM_KS(params),
     TL_PARAM(TL_PARAM_REAL, params, tension, "Pa", "tensile strength of the bond",
              .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
     TL_PARAM(TL_PARAM_REAL, params, cohesion, "Pa", "shear strength of the bond",
@@ -65,20 +56,9 @@ static const tl_param param_table[] = {
 };
 
 static const tl_state state_table[] = {
-    {.size = sizeof(tl_state),
-     .kind = TL_STATE_SCALAR,
-     .transfer = TL_TRANSFER_COPY,
-     .name = "damage",
-     .unit = "",
-     .doc = "share of the bond that is broken: 0 whole, 1 lost",
-     .initial = 0},
-    {.size = sizeof(tl_state),
-     .kind = TL_STATE_TANGENT,
-     .transfer = TL_TRANSFER_COPY,
-     .name = "friction_stress",
-     .unit = "Pa",
-     .doc = "shear stress on block B of the broken share",
-     .initial = 0},
+    TL_STATE(TL_STATE_SCALAR, "damage", "", "share of the bond that is broken: 0 whole, 1 lost"),
+    TL_STATE(TL_STATE_TANGENT, "friction_stress", "Pa",
+             "shear stress on block B of the broken share"),
 };
 
 typedef struct cohesive {
@@ -107,31 +87,25 @@ static tl_status create(const void *given, void **self, tl_report *report)
     if (snaps("energy_tension", p->energy_tension, "tension", p->tension, p->kn, report) ||
         snaps("energy_shear", p->energy_shear, "cohesion", p->cohesion, p->ks, report))
         return TL_E_ARGUMENT;
-    cohesive *law = malloc(sizeof *law);
-    if (!law) {
-        snprintf(report->text, sizeof report->text, "out of memory");
-        return TL_E_MEMORY;
-    }
-    *law = (cohesive){.kn = p->kn,
-                      .ks = p->ks,
-                      .tangent = tl_tan(p->friction * DEGREE),
-                      .per_tension2 = 1 / (p->tension * p->tension),
-                      .per_cohesion2 = 1 / (p->cohesion * p->cohesion),
-                      .per_normal = 0.5 / (p->kn * p->energy_tension),
-                      .per_shear = 0.5 / (p->ks * p->energy_shear)};
-    *self = law;
-    return TL_OK;
+    const cohesive law = {.kn = p->kn,
+                          .ks = p->ks,
+                          .tangent = tl_tan(p->friction * TL_DEGREE),
+                          .per_tension2 = 1 / (p->tension * p->tension),
+                          .per_cohesion2 = 1 / (p->cohesion * p->cohesion),
+                          .per_normal = 0.5 / (p->kn * p->energy_tension),
+                          .per_shear = 0.5 / (p->ks * p->energy_shear)};
+    return tl_keep(&law, sizeof law, self, report);
 }
 
 /* The factor that brings a stress of this size down to its limit; 1 where it is below. */
-static inline double down_to(double size, double limit)
+TL_IN_LOOP double down_to(double size, double limit)
 {
     double beyond = size > limit * (1 + ROUNDING) ? 1 : 0;
     return beyond > 0 ? limit / (beyond > 0 ? size : 1) : 1;
 }
 
 /* Damage that belongs to elastic stresses of the bond, squared: see the head of the file. */
-static inline double damage_of(const cohesive *law, double tension2, double shear2)
+TL_IN_LOOP double damage_of(const cohesive *law, double tension2, double shear2)
 {
     double e2 = tension2 * law->per_tension2 + shear2 * law->per_cohesion2;
     double h = tension2 * law->per_normal + shear2 * law->per_shear;
@@ -141,20 +115,20 @@ static inline double damage_of(const cohesive *law, double tension2, double shea
     return e > 1 ? damage : 0;
 }
 
-static inline double dot(double ax, double ay, double az, double bx, double by, double bz)
+TL_IN_LOOP double dot(double ax, double ay, double az, double bx, double by, double bz)
 {
     return ax * bx + ay * by + az * bz;
 }
 
 /* Heat of the slip of a spring of unit stiffness that is brought down from a trial stress; `along`: its product with that before. */
-static inline double slip_heat(double along, double trial, double limit)
+TL_IN_LOOP double slip_heat(double along, double trial, double limit)
 {
     double size = trial > limit ? trial : 1;
     return 0.5 * (along / size + limit) * (trial - limit);
 }
 
 /* Flags, as a number. */
-static inline double flag_of(double total, double lost, double anew, double breaks)
+TL_IN_LOOP double flag_of(double total, double lost, double anew, double breaks)
 {
     double rubs = (anew > 0 ? 1 : 0) + (1 - lost) * breaks;
     double flag = lost * TL_POINT_FAILED + rubs * TL_POINT_SLIPPING;
@@ -164,39 +138,32 @@ static inline double flag_of(double total, double lost, double anew, double brea
 
 /* The law for up to STRIDE lanes from `begin`. A NaN goes through all comparisons to the forces, where the host finds it. `mark`
  * takes the flags as doubles: a loop over lanes of two widths is not vectorised for every machine. */
-static inline __attribute__((always_inline)) void move(const cohesive *given,
-                                                       const tl_law_batch *batch, uint32_t begin,
-                                                       uint32_t lanes, double *restrict mark,
-                                                       double *restrict stored,
-                                                       double *restrict dissipated)
+TL_IN_LOOP void move(const cohesive *given, const tl_law_batch *batch, uint32_t begin,
+                     uint32_t lanes, double *restrict mark, double *restrict stored,
+                     double *restrict dissipated)
 {
-    const double *restrict area = batch->area + begin, *restrict closure = batch->closure + begin;
-    const double *restrict f_n0 = batch->f_n0 + begin, *restrict du_n = batch->du_n + begin;
-    const double *restrict du_x = batch->du_s[0] + begin, *restrict du_y = batch->du_s[1] + begin;
-    const double *restrict du_z = batch->du_s[2] + begin;
-    double *restrict f_n = batch->f_n + begin, *restrict f_x = batch->f_s[0] + begin;
-    double *restrict f_y = batch->f_s[1] + begin, *restrict f_z = batch->f_s[2] + begin;
+    const tl_law_columns c = tl_law_columns_from(batch, begin);
     double *restrict damage = batch->state[0] + begin, *restrict rub_x = batch->state[1] + begin;
     double *restrict rub_y = batch->state[2] + begin, *restrict rub_z = batch->state[3] + begin;
     const cohesive law = *given;
     const double kn = law.kn, ks = law.ks, half_n = 0.5 / kn, half_s = 0.5 / ks;
 #pragma omp simd
     for (uint32_t i = 0; i < lanes; i++) {
-        double per = area[i] > 0 ? 1 / area[i] : 0;
-        double total = kn * area[i] * closure[i] + f_n0[i], stress = total * per;
-        double before = stress + kn * du_n[i];
+        double per = c.area[i] > 0 ? 1 / c.area[i] : 0;
+        double total = kn * c.area[i] * c.closure[i] + c.f_n0[i], stress = total * per;
+        double before = stress + kn * c.du_n[i];
         double pull0 = before < 0 ? -before : 0, pull1 = stress < 0 ? -stress : 0;
         double was = damage[i], left = 1 - was, has = left > 0 ? 1 : 0;
-        double dx = du_x[i], dy = du_y[i], dz = du_z[i];
+        double dx = c.du_x[i], dy = c.du_y[i], dz = c.du_z[i];
         /* a bond that is lost has all of its stress from friction, whatever the state says */
-        double qx = left > 0 ? rub_x[i] : f_x[i] * per;
-        double qy = left > 0 ? rub_y[i] : f_y[i] * per;
-        double qz = left > 0 ? rub_z[i] : f_z[i] * per;
+        double qx = left > 0 ? rub_x[i] : c.f_x[i] * per;
+        double qy = left > 0 ? rub_y[i] : c.f_y[i] * per;
+        double qz = left > 0 ? rub_z[i] : c.f_z[i] * per;
         /* shear of the bonded share, before and now */
         double inverse = has / (left > 0 ? left : 1), spring = has * ks;
-        double ax = (f_x[i] * per - was * qx) * inverse, bx = ax - spring * dx;
-        double ay = (f_y[i] * per - was * qy) * inverse, by = ay - spring * dy;
-        double az = (f_z[i] * per - was * qz) * inverse, bz = az - spring * dz;
+        double ax = (c.f_x[i] * per - was * qx) * inverse, bx = ax - spring * dx;
+        double ay = (c.f_y[i] * per - was * qy) * inverse, by = ay - spring * dy;
+        double az = (c.f_z[i] * per - was * qz) * inverse, bz = az - spring * dz;
         double shear2 = dot(bx, by, bz, bx, by, bz);
         double found = damage_of(&law, pull1 * pull1, shear2);
         double is = found - was > NOISE ? found : was, right = 1 - is, broken = is - was;
@@ -216,25 +183,25 @@ static inline __attribute__((always_inline)) void move(const cohesive *given,
         double slides = trial > limit * (1 + ROUNDING) ? 1 : 0;
         double sliding = slides * was * slip_heat(dot(qx, qy, qz, tx, ty, tz), trial, limit) / ks;
         double heat = broken > 0 ? bond - work - kept : sliding;
-        dissipated[i] = heat > 0 ? area[i] * heat : 0;
+        dissipated[i] = heat > 0 ? c.area[i] * heat : 0;
         /* changes, so that a point at rest keeps its force to the bit */
-        double cx = f_x[i] + area[i] * ((right * bx - left * ax) + (is * rx - was * qx));
-        double cy = f_y[i] + area[i] * ((right * by - left * ay) + (is * ry - was * qy));
-        double cz = f_z[i] + area[i] * ((right * bz - left * az) + (is * rz - was * qz));
+        double cx = c.f_x[i] + c.area[i] * ((right * bx - left * ax) + (is * rx - was * qx));
+        double cy = c.f_y[i] + c.area[i] * ((right * by - left * ay) + (is * ry - was * qy));
+        double cz = c.f_z[i] + c.area[i] * ((right * bz - left * az) + (is * rz - was * qz));
         double breaks = broken > 0 ? 1 : 0, lost = right > 0 ? 0 : 1;
         /* 0 is added, for -0 would become 0 in the next step */
         double anew = lost * (breaks + slides);
-        cx = anew > 0 ? 0 + area[i] * rx : cx;
-        cy = anew > 0 ? 0 + area[i] * ry : cy;
-        cz = anew > 0 ? 0 + area[i] * rz : cz;
+        cx = anew > 0 ? 0 + c.area[i] * rx : cx;
+        cy = anew > 0 ? 0 + c.area[i] * ry : cy;
+        cz = anew > 0 ? 0 + c.area[i] * rz : cz;
         mark[i] = flag_of(total, lost, anew, breaks);
         double press = stress > 0 ? stress : 0;
         double held = right * (half_n * pull1 * pull1 + half_s * shear2);
-        stored[i] = area[i] * (held + half_n * press * press + is * half_s * rub2);
-        f_n[i] = total < 0 ? right * total : total;
-        f_x[i] = cx;
-        f_y[i] = cy;
-        f_z[i] = cz;
+        stored[i] = c.area[i] * (held + half_n * press * press + is * half_s * rub2);
+        c.f_n[i] = total < 0 ? right * total : total;
+        c.f_x[i] = cx;
+        c.f_y[i] = cy;
+        c.f_z[i] = cz;
         damage[i] = is;
         rub_x[i] = right > 0 ? rx : cx * per;
         rub_y[i] = right > 0 ? ry : cy * per;
@@ -254,43 +221,20 @@ TL_VECTORIZED static tl_status update(const void *self, const tl_law_batch *batc
             batch->state[0][i] = batch->flags[i] & TL_POINT_APART ? 1 : batch->state[0][i];
         move(self, batch, begin, lanes, mark, batch->stored ? batch->stored + begin : stored,
              batch->dissipated ? batch->dissipated + begin : dissipated);
-        for (uint32_t i = 0; i < lanes; i++)
-            batch->flags[begin + i] = (uint32_t)(int32_t)mark[i];
+        tl_law_put_flags(batch, begin, lanes, mark);
     }
     return TL_OK;
 }
 
-static void stiffness(const void *self, double *kn, double *ks)
-{
-    const cohesive *law = self;
-    *kn = law->kn;
-    *ks = law->ks;
-}
+TL_LAW_STIFFNESS(cohesive, kn, ks);
 
-static uint32_t pulls(const void *self)
-{
-    (void)self;
-    return TL_PULL_BONDED;
-}
+static const tl_law_ops ops = TL_LAW_OPS(.pulls = tl_pulls_bonded);
 
-static const tl_law_ops ops = {.size = sizeof ops,
-                               .create = create,
-                               .update = update,
-                               .stiffness = stiffness,
-                               .destroy = free,
-                               .never_fails = true,
-                               .pulls = pulls};
-
-static const tl_kind kind = {
-    .size = sizeof kind,
-    .type = TL_KIND_LAW,
-    .name = "cohesive",
+static const tl_kind kind = TL_KIND(
+    TL_KIND_LAW, ops, .name = "cohesive",
     .doc = "A bond that softens and breaks in tension and shear (mixed mode), with friction on "
            "what is broken.",
-    TL_KIND_PARAMS(params, param_table),
-    TL_KIND_STATES(state_table),
-    .ops = &ops,
-};
+    TL_KIND_PARAMS(params, param_table), TL_KIND_STATES(state_table));
 
 TL_PLUGIN(kind, .id = "talus.cohesive", .version = TALUS_VERSION,
           .doc = "Cohesive joint law of mixed mode.", .licence = "BSD-3-Clause");

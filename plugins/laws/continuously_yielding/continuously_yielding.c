@@ -19,15 +19,9 @@
  *
  * Limits: the normal spring is elastic. Trembling about a point counts as reversals. The stored energy of field contacts, which
  * the host has from a linear pressure, is not its own with en > 0. */
-#include <talus/elementary.h>
-#include <talus/plugin.h>
+#include <talus/kit.h>
 #include <talus/version.h>
 
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-
-#define DEGREE (3.14159265358979323846 / 180)
 /* Lanes worked on at a time: what is noted of them stays in the nearest cache. */
 #define STRIDE 64u
 /* Scaling a stress down to its limit leaves it within some roundings of it. */
@@ -75,18 +69,13 @@ static const tl_param param_table[] = {
     TL_PARAM(TL_PARAM_BOOL, params, dilation, "", "whether slip opens the joint", .def = {1}),
 };
 
-#define STATE(kind_, name_, unit_, doc_)                                                           \
-    {                                                                                              \
-        .size = sizeof(tl_state), .kind = (kind_), .transfer = TL_TRANSFER_COPY, .name = (name_),  \
-        .unit = (unit_), .doc = (doc_), .initial = 0                                               \
-    }
-
 static const tl_state state_table[] = {
-    STATE(TL_STATE_SCALAR, "wear", "deg", "how far the angle of friction has fallen from phi_i"),
-    STATE(TL_STATE_SCALAR, "reversal", "", "share of the strength at the last reversal, r"),
-    STATE(TL_STATE_SCALAR, "opening", "m", "how far slip has opened the joint"),
-    STATE(TL_STATE_SCALAR, "shear_energy", "J/m2", "what shear has put in and not turned to heat"),
-    STATE(TL_STATE_TANGENT, "way", "", "direction of the last motion"),
+    TL_STATE(TL_STATE_SCALAR, "wear", "deg", "how far the angle of friction has fallen from phi_i"),
+    TL_STATE(TL_STATE_SCALAR, "reversal", "", "share of the strength at the last reversal, r"),
+    TL_STATE(TL_STATE_SCALAR, "opening", "m", "how far slip has opened the joint"),
+    TL_STATE(TL_STATE_SCALAR, "shear_energy", "J/m2",
+             "what shear has put in and not turned to heat"),
+    TL_STATE(TL_STATE_TANGENT, "way", "", "direction of the last motion"),
 };
 
 typedef struct yielding {
@@ -98,7 +87,7 @@ typedef struct yielding {
 } yielding;
 
 /* s(v) of the power law, without its bound. */
-static inline double curved_stress(const yielding *law, double v)
+TL_IN_LOOP double curved_stress(const yielding *law, double v)
 {
     double rest = 1 - law->en, x = rest * law->an * v;
     double power = tl_lane_exp(tl_lane_log(x > FAINT ? x : FAINT) / rest);
@@ -106,7 +95,7 @@ static inline double curved_stress(const yielding *law, double v)
     return law->en > 0 ? power : law->an * v;
 }
 
-static inline double stress_at(const yielding *law, double v)
+TL_IN_LOOP double stress_at(const yielding *law, double v)
 {
     double below = v < law->closure_max ? v : law->closure_max;
     double stress = curved_stress(law, below) + law->kn_max * (v - below);
@@ -114,7 +103,7 @@ static inline double stress_at(const yielding *law, double v)
 }
 
 /* The closure of an initial stress; one that pulls goes on with the stiffness kn_max. */
-static inline double closure_of(const yielding *law, double stress)
+TL_IN_LOOP double closure_of(const yielding *law, double stress)
 {
     double below = stress < law->stress_max ? stress : law->stress_max;
     double pressed = below > 0 ? below : 0, safe = pressed > FAINT ? pressed : FAINT;
@@ -126,7 +115,7 @@ static inline double closure_of(const yielding *law, double stress)
 }
 
 /* Energy of the normal spring per area. */
-static inline double energy_at(const yielding *law, double v)
+TL_IN_LOOP double energy_at(const yielding *law, double v)
 {
     double below = v < law->closure_max ? v : law->closure_max, beyond = v - below;
     double stress = stress_at(law, below), rest = 1 - law->en;
@@ -134,7 +123,7 @@ static inline double energy_at(const yielding *law, double v)
     return (v > 0 ? curved : 0) + beyond * (stress + 0.5 * law->kn_max * beyond);
 }
 
-static inline double shear_stiffness(const yielding *law, double stress)
+TL_IN_LOOP double shear_stiffness(const yielding *law, double stress)
 {
     double s = stress > FAINT ? stress : FAINT;
     double power = law->as * tl_lane_exp(law->es * tl_lane_log(s));
@@ -142,10 +131,10 @@ static inline double shear_stiffness(const yielding *law, double stress)
     return stress > 0 ? power : 0;
 }
 
-static tl_status fail(tl_report *report, tl_status status, const char *text)
+static tl_status fail(tl_report *report, const char *text)
 {
     snprintf(report->text, sizeof report->text, "%s", text);
-    return status;
+    return TL_E_ARGUMENT;
 }
 
 static tl_status create(const void *given, void **self, tl_report *report)
@@ -157,36 +146,32 @@ static tl_status create(const void *given, void **self, tl_report *report)
         return TL_E_ARGUMENT;
     }
     if (p->en > 0 && isnan(p->kn_max))
-        return fail(report, TL_E_ARGUMENT,
+        return fail(report,
                     "en > 0 needs kn_max, the largest normal stiffness, Pa/m, which the time step "
                     "follows from");
     if (p->es > 0 && isnan(p->ks_max))
-        return fail(report, TL_E_ARGUMENT,
+        return fail(report,
                     "es > 0 needs ks_max, the largest shear stiffness, Pa/m, which the time step "
                     "follows from");
-    yielding *law = malloc(sizeof *law);
-    if (!law)
-        return fail(report, TL_E_MEMORY, "out of memory");
-    *law = (yielding){.an = p->an,
-                      .en = p->en,
-                      .as = p->as,
-                      .es = p->es,
-                      .kn_max = p->en > 0 ? p->kn_max : p->an,
-                      .ks_max = p->es > 0 ? p->ks_max : p->as,
-                      .stress_max = INFINITY,
-                      .closure_max = INFINITY,
-                      .initial = p->phi_i * DEGREE,
-                      .residual = p->phi * DEGREE,
-                      .tangent_i = tl_tan(p->phi_i * DEGREE),
-                      .tangent = tl_tan(p->phi * DEGREE),
-                      .per_roughness = 1 / p->roughness,
-                      .dilation = p->dilation ? 1 : 0,
-                      .softening = p->softening ? 1 : 0};
+    yielding law = {.an = p->an,
+                    .en = p->en,
+                    .as = p->as,
+                    .es = p->es,
+                    .kn_max = p->en > 0 ? p->kn_max : p->an,
+                    .ks_max = p->es > 0 ? p->ks_max : p->as,
+                    .stress_max = INFINITY,
+                    .closure_max = INFINITY,
+                    .initial = p->phi_i * TL_DEGREE,
+                    .residual = p->phi * TL_DEGREE,
+                    .tangent_i = tl_tan(p->phi_i * TL_DEGREE),
+                    .tangent = tl_tan(p->phi * TL_DEGREE),
+                    .per_roughness = 1 / p->roughness,
+                    .dilation = p->dilation ? 1 : 0,
+                    .softening = p->softening ? 1 : 0};
     double most = p->en > 0 ? tl_lane_exp(tl_lane_log(p->kn_max / p->an) / p->en) : 1e300;
-    law->closure_max = p->en > 0 ? closure_of(law, most) : 1e300;
-    law->stress_max = most;
-    *self = law;
-    return TL_OK;
+    law.closure_max = p->en > 0 ? closure_of(&law, most) : 1e300;
+    law.stress_max = most;
+    return tl_keep(&law, sizeof law, self, report);
 }
 
 /* ---------------------------------------------------------------- update ----------------- */
@@ -200,8 +185,8 @@ typedef struct trial {
 } trial;
 
 /* Rise of the stress `t` along the way `d`, when the strength is `most`. */
-static inline double rise(const yielding *law, double t, double most, double ratio, double ks,
-                          double d)
+TL_IN_LOOP double rise(const yielding *law, double t, double most, double ratio, double ks,
+                       double d)
 {
     double gap = most - t, reach = most * (1 - ratio);
     double exact = gap * (1 - tl_lane_exp(-ks * d / (reach > FAINT ? reach : FAINT)));
@@ -210,17 +195,11 @@ static inline double rise(const yielding *law, double t, double most, double rat
 }
 
 /* Closure, shear stress and wear. */
-static inline __attribute__((always_inline)) void slide(const yielding *given,
-                                                        const tl_law_batch *batch, uint32_t begin,
-                                                        uint32_t lanes, trial *restrict t)
+TL_IN_LOOP void slide(const yielding *given, const tl_law_batch *batch, uint32_t begin,
+                      uint32_t lanes, trial *restrict t)
 {
-    const double *restrict area = batch->area + begin, *restrict closure = batch->closure + begin;
-    const double *restrict f_n0 = batch->f_n0 + begin;
-    const double *restrict du_x = batch->du_s[0] + begin, *restrict du_y = batch->du_s[1] + begin;
-    const double *restrict du_z = batch->du_s[2] + begin;
-    const double *restrict f_x = batch->f_s[0] + begin, *restrict f_y = batch->f_s[1] + begin;
-    const double *restrict f_n = batch->f_n + begin;
-    const double *restrict f_z = batch->f_s[2] + begin, *restrict worn = batch->state[0] + begin;
+    const tl_law_columns c = tl_law_columns_from(batch, begin);
+    const double *restrict worn = batch->state[0] + begin;
     const double *restrict last = batch->state[1] + begin, *restrict opened =
                                                                batch->state[2] + begin;
     const double *restrict way_x = batch->state[4] + begin, *restrict way_y =
@@ -229,22 +208,22 @@ static inline __attribute__((always_inline)) void slide(const yielding *given,
     const yielding law = *given;
 #pragma omp simd
     for (uint32_t i = 0; i < lanes; i++) {
-        double per = area[i] > 0 ? 1 / area[i] : 0;
-        double walls = closure_of(&law, f_n0[i] * per) + closure[i], v = walls + opened[i];
+        double per = c.area[i] > 0 ? 1 / c.area[i] : 0;
+        double walls = closure_of(&law, c.f_n0[i] * per) + c.closure[i], v = walls + opened[i];
         double stress = stress_at(&law, v), ks = shear_stiffness(&law, stress);
-        double d = sqrt(du_x[i] * du_x[i] + du_y[i] * du_y[i] + du_z[i] * du_z[i]);
+        double d = sqrt(c.du_x[i] * c.du_x[i] + c.du_y[i] * c.du_y[i] + c.du_z[i] * c.du_z[i]);
         double per_way = d > 0 ? 1 / (d > 0 ? d : 1) : 0;
-        double ex = du_x[i] * per_way, ey = du_y[i] * per_way, ez = du_z[i] * per_way;
-        double before = sqrt(f_x[i] * f_x[i] + f_y[i] * f_y[i] + f_z[i] * f_z[i]) * per;
-        double along = -(f_x[i] * ex + f_y[i] * ey + f_z[i] * ez) * per;
-        double angle = law.initial - worn[i] * DEGREE, most = stress * tl_lane_tan(angle);
+        double ex = c.du_x[i] * per_way, ey = c.du_y[i] * per_way, ez = c.du_z[i] * per_way;
+        double before = sqrt(c.f_x[i] * c.f_x[i] + c.f_y[i] * c.f_y[i] + c.f_z[i] * c.f_z[i]) * per;
+        double along = -(c.f_x[i] * ex + c.f_y[i] * ey + c.f_z[i] * ez) * per;
+        double angle = law.initial - worn[i] * TL_DEGREE, most = stress * tl_lane_tan(angle);
         double back = ex * way_x[i] + ey * way_y[i] + ez * way_z[i];
         double share = along / (most > FAINT ? most : 1);
         share = share < MOST_RATIO ? share : MOST_RATIO;
         double was = worn[i], ratio = last[i], reversed = most > FAINT ? share : 0;
         ratio = back < 0 ? reversed : ratio;
         /* the angle of dilation is that of the stresses before; walls that meet now had none */
-        double press = f_n[i] * per, held = press > 0 ? press : stress;
+        double press = c.f_n[i] * per, held = press > 0 ? press : stress;
         double slope = before / (held > FAINT ? held : 1);
         double tangent = (slope - law.tangent) / (1 + slope * law.tangent);
         tangent = tangent > 0 ? law.dilation * tangent : 0;
@@ -260,15 +239,17 @@ static inline __attribute__((always_inline)) void slide(const yielding *given,
         slip = stress > 0 ? slip : 0;
         left = tl_lane_exp(-slip * law.per_roughness);
         double after = law.residual + (angle - law.residual) * left;
-        double x = f_x[i] * per - up * ex, y = f_y[i] * per - up * ey, z = f_z[i] * per - up * ez;
+        double x = c.f_x[i] * per - up * ex, y = c.f_y[i] * per - up * ey,
+               z = c.f_z[i] * per - up * ez;
         double size = sqrt(x * x + y * y + z * z), bound = before > most ? before : most;
         double peak = stress * law.tangent_i;
         bound = bound < peak ? bound : peak;
         double yields = slip > 0.5 * d ? 1 : 0, changes = up < 0 ? 1 : up;
         double over = size > bound * (1 + ROUNDING) ? 1 : 0;
         double scale = over > 0 ? bound / (over > 0 ? size : 1) : 1;
-        double dot = (f_x[i] * per + scale * x) * du_x[i] + (f_y[i] * per + scale * y) * du_y[i] +
-                     (f_z[i] * per + scale * z) * du_z[i];
+        double dot = (c.f_x[i] * per + scale * x) * c.du_x[i] +
+                     (c.f_y[i] * per + scale * y) * c.du_y[i] +
+                     (c.f_z[i] * per + scale * z) * c.du_z[i];
         t->walls[i] = walls;
         t->v[i] = v;
         t->spring[i] = ks;
@@ -280,14 +261,14 @@ static inline __attribute__((always_inline)) void slide(const yielding *given,
         t->work[i] = -0.5 * dot;
         t->angle[i] = after;
         t->ratio[i] = ratio;
-        t->wear[i] = slip > 0 ? (law.initial - after) / DEGREE : was;
+        t->wear[i] = slip > 0 ? (law.initial - after) / TL_DEGREE : was;
         t->lift[i] = tangent * slip;
         t->slides[i] = over + yields > 0 ? 1 : 0;
     }
 }
 
 /* What unloading can give back, over t_m^2 / ks: 3 (1 + x) (x - log(1 + x)). */
-static inline double elastic(double x)
+TL_IN_LOOP double elastic(double x)
 {
     double series = x * x * (1. / 2 - x * (1. / 3 - x * (1. / 4 - x * (1. / 5))));
     double closed = x - tl_lane_log1p(x);
@@ -296,17 +277,11 @@ static inline double elastic(double x)
 
 /* Dilation, forces, states, energies and flags; `mark` takes the flags as doubles: a loop over lanes of two widths is not
  * vectorised for every machine. */
-static inline __attribute__((always_inline)) void settle(const yielding *given,
-                                                         const tl_law_batch *batch, uint32_t begin,
-                                                         uint32_t lanes, const trial *restrict t,
-                                                         double *restrict mark,
-                                                         double *restrict stored,
-                                                         double *restrict dissipated)
+TL_IN_LOOP void settle(const yielding *given, const tl_law_batch *batch, uint32_t begin,
+                       uint32_t lanes, const trial *restrict t, double *restrict mark,
+                       double *restrict stored, double *restrict dissipated)
 {
-    const double *restrict area = batch->area + begin, *restrict du_x = batch->du_s[0] + begin;
-    const double *restrict du_y = batch->du_s[1] + begin, *restrict du_z = batch->du_s[2] + begin;
-    double *restrict f_n = batch->f_n + begin, *restrict f_x = batch->f_s[0] + begin;
-    double *restrict f_y = batch->f_s[1] + begin, *restrict f_z = batch->f_s[2] + begin;
+    const tl_law_columns c = tl_law_columns_from(batch, begin);
     double *restrict wear = batch->state[0] + begin, *restrict reversal = batch->state[1] + begin;
     double *restrict opening = batch->state[2] + begin, *restrict put_in = batch->state[3] + begin;
     double *restrict way_x = batch->state[4] + begin, *restrict way_y = batch->state[5] + begin;
@@ -314,7 +289,7 @@ static inline __attribute__((always_inline)) void settle(const yielding *given,
     const yielding law = *given;
 #pragma omp simd
     for (uint32_t i = 0; i < lanes; i++) {
-        double d = sqrt(du_x[i] * du_x[i] + du_y[i] * du_y[i] + du_z[i] * du_z[i]);
+        double d = sqrt(c.du_x[i] * c.du_x[i] + c.du_y[i] * c.du_y[i] + c.du_z[i] * c.du_z[i]);
         double per_way = d > 0 ? 1 / (d > 0 ? d : 1) : 0, lift = t->lift[i];
         /* shear pays for it, or the walls do not part */
         double rest = energy_at(&law, t->v[i]), paid = put_in[i] + t->work[i];
@@ -330,20 +305,20 @@ static inline __attribute__((always_inline)) void settle(const yielding *given,
         double sum = paid - lifted;
         double kept = sum > bound * (1 + SPARE) ? bound : (sum > 0 ? sum : 0);
         double heat = sum > kept ? sum - kept : 0;
-        dissipated[i] = area[i] > 0 ? area[i] * heat : 0;
-        stored[i] = area[i] > 0 ? area[i] * (kept + rest + lifted) : 0;
+        dissipated[i] = c.area[i] > 0 ? c.area[i] * heat : 0;
+        stored[i] = c.area[i] > 0 ? c.area[i] * (kept + rest + lifted) : 0;
         mark[i] = v < 0 ? TL_POINT_OPEN : t->slides[i] * TL_POINT_SLIPPING;
-        f_n[i] = area[i] * pressed;
-        f_x[i] = t->moved[i] > 0 ? area[i] * t->x[i] : f_x[i];
-        f_y[i] = t->moved[i] > 0 ? area[i] * t->y[i] : f_y[i];
-        f_z[i] = t->moved[i] > 0 ? area[i] * t->z[i] : f_z[i];
+        c.f_n[i] = c.area[i] * pressed;
+        c.f_x[i] = t->moved[i] > 0 ? c.area[i] * t->x[i] : c.f_x[i];
+        c.f_y[i] = t->moved[i] > 0 ? c.area[i] * t->y[i] : c.f_y[i];
+        c.f_z[i] = t->moved[i] > 0 ? c.area[i] * t->z[i] : c.f_z[i];
         wear[i] = t->wear[i];
         reversal[i] = t->ratio[i];
         opening[i] = opened;
         put_in[i] = kept;
-        way_x[i] = d > 0 ? du_x[i] * per_way : way_x[i];
-        way_y[i] = d > 0 ? du_y[i] * per_way : way_y[i];
-        way_z[i] = d > 0 ? du_z[i] * per_way : way_z[i];
+        way_x[i] = d > 0 ? c.du_x[i] * per_way : way_x[i];
+        way_y[i] = d > 0 ? c.du_y[i] * per_way : way_y[i];
+        way_z[i] = d > 0 ? c.du_z[i] * per_way : way_z[i];
     }
 }
 
@@ -358,36 +333,20 @@ TL_VECTORIZED static tl_status update(const void *self, const tl_law_batch *batc
         slide(self, batch, begin, lanes, &t);
         settle(self, batch, begin, lanes, &t, mark, batch->stored ? batch->stored + begin : stored,
                batch->dissipated ? batch->dissipated + begin : dissipated);
-        for (uint32_t i = 0; i < lanes; i++)
-            batch->flags[begin + i] = (uint32_t)(int32_t)mark[i];
+        tl_law_put_flags(batch, begin, lanes, mark);
     }
     return TL_OK;
 }
 
-static void stiffness(const void *self, double *kn, double *ks)
-{
-    const yielding *law = self;
-    *kn = law->kn_max;
-    *ks = law->ks_max;
-}
+TL_LAW_STIFFNESS(yielding, kn_max, ks_max);
 
-static const tl_law_ops ops = {.size = sizeof ops,
-                               .create = create,
-                               .update = update,
-                               .stiffness = stiffness,
-                               .destroy = free,
-                               .never_fails = true};
+static const tl_law_ops ops = TL_LAW_OPS(.pulls = tl_pulls_any);
 
-static const tl_kind kind = {
-    .size = sizeof kind,
-    .type = TL_KIND_LAW,
-    .name = "continuously_yielding",
+static const tl_kind kind = TL_KIND(
+    TL_KIND_LAW, ops, .name = "continuously_yielding",
     .doc = "A joint that yields from the first slip on, and whose friction wears down: for cyclic "
            "loading.",
-    TL_KIND_PARAMS(params, param_table),
-    TL_KIND_STATES(state_table),
-    .ops = &ops,
-};
+    TL_KIND_PARAMS(params, param_table), TL_KIND_STATES(state_table));
 
 TL_PLUGIN(kind, .id = "talus.continuously_yielding", .version = TALUS_VERSION,
           .doc = "Continuously yielding joint law.", .licence = "BSD-3-Clause");

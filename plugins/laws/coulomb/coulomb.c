@@ -25,17 +25,9 @@
  *
  * Limit: a change of kn or ks, and insitu, take the present force as the one at closure 0; they belong
  * before slip has opened the joint. */
-#include <talus/elementary.h>
-#include <talus/plugin.h>
+#include <talus/kit.h>
 #include <talus/version.h>
 
-#include <math.h>
-#include <stdbool.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-#define DEGREE (3.14159265358979323846 / 180)
 /* Lanes worked on at a time: none of them slips, or all are looked at for slip. */
 #define STRIDE TL_LANES
 /* Scaling a force down to its limit leaves it within 2 roundings of it; without this margin a point at
@@ -47,10 +39,8 @@ typedef struct params {
 } params;
 
 static const tl_param param_table[] = {
-    TL_PARAM(TL_PARAM_REAL, params, kn, "Pa/m", "normal stiffness of the joint",
-             .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
-    TL_PARAM(TL_PARAM_REAL, params, ks, "Pa/m", "shear stiffness of the joint",
-             .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
+    TL_PARAM_KN(params),
+    TL_PARAM_KS(params),
     TL_PARAM(TL_PARAM_REAL, params, friction, "deg", "angle of friction",
              .flags = TL_PARAM_MAX_OPEN, .min = 0, .max = 90),
     TL_PARAM(TL_PARAM_REAL, params, cohesion, "Pa", "shear strength at zero normal stress",
@@ -63,13 +53,7 @@ static const tl_param param_table[] = {
 };
 
 static const tl_state state_table[] = {
-    {.size = sizeof(tl_state),
-     .kind = TL_STATE_SCALAR,
-     .transfer = TL_TRANSFER_COPY,
-     .name = "opening",
-     .unit = "m",
-     .doc = "how far slip has opened the joint",
-     .initial = 0},
+    TL_STATE(TL_STATE_SCALAR, "opening", "m", "how far slip has opened the joint"),
 };
 
 typedef struct coulomb {
@@ -86,65 +70,37 @@ static tl_status create(const void *given, void **self, tl_report *report)
                  p->dilation, p->friction);
         return TL_E_ARGUMENT;
     }
-    coulomb *law = malloc(sizeof *law);
-    if (!law) {
-        snprintf(report->text, sizeof report->text, "out of memory");
-        return TL_E_MEMORY;
-    }
-    *law = (coulomb){
+    const coulomb law = {
         .kn = p->kn,
         .ks = p->ks,
-        .tangent = tl_tan(p->friction * DEGREE),
+        .tangent = tl_tan(p->friction * TL_DEGREE),
         .cohesion = p->cohesion,
-        .dilation = tl_tan(p->dilation * DEGREE),
-        .most_opening =
-            isnan(p->dilation_limit) ? INFINITY : tl_tan(p->dilation * DEGREE) * p->dilation_limit,
+        .dilation = tl_tan(p->dilation * TL_DEGREE),
+        .most_opening = isnan(p->dilation_limit)
+                            ? INFINITY
+                            : tl_tan(p->dilation * TL_DEGREE) * p->dilation_limit,
     };
-    *self = law;
-    return TL_OK;
-}
-
-/* Elastic energy of both springs; 0 for a lane of no area. */
-static inline __attribute__((always_inline)) void store_energy(const coulomb *law,
-                                                               const tl_law_batch *batch,
-                                                               uint32_t begin, uint32_t lanes)
-{
-    const double *restrict area = batch->area + begin, *restrict f_n = batch->f_n + begin;
-    const double *restrict f_x = batch->f_s[0] + begin, *restrict f_y = batch->f_s[1] + begin;
-    const double *restrict f_z = batch->f_s[2] + begin;
-    double *restrict stored = batch->stored + begin;
-    const double half_n = 0.5 / law->kn, half_s = 0.5 / law->ks;
-#pragma omp simd
-    for (uint32_t i = 0; i < lanes; i++) {
-        double inverse = area[i] > 0 ? 1 / (area[i] > 0 ? area[i] : 1) : 0;
-        double shear2 = f_x[i] * f_x[i] + f_y[i] * f_y[i] + f_z[i] * f_z[i];
-        stored[i] = (half_n * f_n[i] * f_n[i] + half_s * shear2) * inverse;
-    }
+    return tl_keep(&law, sizeof law, self, report);
 }
 
 /* The law where nothing slips, for TL_LANES lanes from `begin`: most of a rock mass at most times, and
  * without its roots and divisions. false, and nothing done, when some lane slips; the results are those of
  * `move` to the bit. */
-static inline __attribute__((always_inline)) bool stick(const coulomb *law,
-                                                        const tl_law_batch *batch, uint32_t begin)
+TL_IN_LOOP bool stick(const coulomb *law, const tl_law_batch *batch, uint32_t begin)
 {
-    const double *restrict area = batch->area + begin, *restrict closure = batch->closure + begin;
-    const double *restrict f_n0 = batch->f_n0 + begin, *restrict opening = batch->state[0] + begin;
-    const double *restrict du_x = batch->du_s[0] + begin, *restrict du_y = batch->du_s[1] + begin;
-    const double *restrict du_z = batch->du_s[2] + begin;
-    double *restrict f_n = batch->f_n + begin, *restrict f_x = batch->f_s[0] + begin;
-    double *restrict f_y = batch->f_s[1] + begin, *restrict f_z = batch->f_s[2] + begin;
+    const tl_law_columns c = tl_law_columns_from(batch, begin);
+    const double *restrict opening = batch->state[0] + begin;
     const double kn = law->kn, ks = law->ks, tangent = law->tangent, cohesion = law->cohesion;
     double total[TL_LANES], tx[TL_LANES], ty[TL_LANES], tz[TL_LANES], mark[TL_LANES];
     uint64_t beyond[TL_LANES], any = 0;
 #pragma omp simd
     for (uint32_t i = 0; i < TL_LANES; i++) {
-        double stiffness = ks * area[i];
-        total[i] = kn * area[i] * (closure[i] + opening[i]) + f_n0[i];
-        tx[i] = f_x[i] - stiffness * du_x[i];
-        ty[i] = f_y[i] - stiffness * du_y[i];
-        tz[i] = f_z[i] - stiffness * du_z[i];
-        double limit = total[i] < 0 ? 0 : cohesion * area[i] + total[i] * tangent;
+        double stiffness = ks * c.area[i];
+        total[i] = kn * c.area[i] * (c.closure[i] + opening[i]) + c.f_n0[i];
+        tx[i] = c.f_x[i] - stiffness * c.du_x[i];
+        ty[i] = c.f_y[i] - stiffness * c.du_y[i];
+        tz[i] = c.f_z[i] - stiffness * c.du_z[i];
+        double limit = total[i] < 0 ? 0 : cohesion * c.area[i] + total[i] * tangent;
         double trial2 = tx[i] * tx[i] + ty[i] * ty[i] + tz[i] * tz[i];
         beyond[i] = trial2 > limit * limit ? 1 : 0;
     }
@@ -155,10 +111,10 @@ static inline __attribute__((always_inline)) bool stick(const coulomb *law,
         return false;
 #pragma omp simd
     for (uint32_t i = 0; i < TL_LANES; i++) {
-        f_n[i] = total[i] < 0 ? 0 : total[i];
-        f_x[i] = tx[i];
-        f_y[i] = ty[i];
-        f_z[i] = tz[i];
+        c.f_n[i] = total[i] < 0 ? 0 : total[i];
+        c.f_x[i] = tx[i];
+        c.f_y[i] = ty[i];
+        c.f_z[i] = tz[i];
         mark[i] = total[i] < 0 ? TL_POINT_OPEN : 0;
     }
     uint32_t *restrict flags = batch->flags + begin;
@@ -175,32 +131,23 @@ static inline __attribute__((always_inline)) bool stick(const coulomb *law,
  * slip in the past still counts. A NaN goes through
  * all comparisons to the forces, where the host finds it. `mark` takes the flags as doubles: a loop
  * over lanes of two widths is not vectorised for every machine. */
-static inline __attribute__((always_inline)) void move(const coulomb *law,
-                                                       const tl_law_batch *batch, uint32_t begin,
-                                                       uint32_t lanes, double *restrict mark,
-                                                       const int heat, const int dilates)
+TL_IN_LOOP void move(const coulomb *law, const tl_law_batch *batch, uint32_t begin, uint32_t lanes,
+                     double *restrict mark, const int heat, const int dilates)
 {
-    const double *restrict area = batch->area + begin, *restrict closure = batch->closure + begin;
-    const double *restrict f_n0 = batch->f_n0 + begin;
-    const double *restrict du_x = batch->du_s[0] + begin, *restrict du_y = batch->du_s[1] + begin;
-    const double *restrict du_z = batch->du_s[2] + begin;
-    double *restrict f_n = batch->f_n + begin, *restrict f_x = batch->f_s[0] + begin;
-    double *restrict f_y = batch->f_s[1] + begin, *restrict f_z = batch->f_s[2] + begin;
+    const tl_law_columns c = tl_law_columns_from(batch, begin);
     double *restrict opening = batch->state[0] + begin;
     double *restrict dissipated = heat ? batch->dissipated + begin : NULL;
     const double kn = law->kn, ks = law->ks, tangent = law->tangent, cohesion = law->cohesion;
     const double dilation = law->dilation, most_opening = law->most_opening;
 #pragma omp simd
     for (uint32_t i = 0; i < lanes; i++) {
-        double stiffness = ks * area[i], opened = opening[i], lift = 0;
-        double total = kn * area[i] * (closure[i] + opened) + f_n0[i];
-        double tx = f_x[i] - stiffness * du_x[i];
-        double ty = f_y[i] - stiffness * du_y[i];
-        double tz = f_z[i] - stiffness * du_z[i];
-        double trial = sqrt(tx * tx + ty * ty + tz * tz);
+        double stiffness = ks * c.area[i], opened = opening[i], lift = 0;
+        double total = kn * c.area[i] * (c.closure[i] + opened) + c.f_n0[i];
+        tl_vec3 f = TL_TRIAL_AT(c, i, stiffness);
+        double trial = tl_v3_norm(f);
         if (dilates) {
-            double strength = cohesion * area[i] + total * tangent;
-            double yield = stiffness + kn * area[i] * dilation * tangent;
+            double strength = cohesion * c.area[i] + total * tangent;
+            double yield = stiffness + kn * c.area[i] * dilation * tangent;
             double grown = dilation * (trial - strength) / (yield > 0 ? yield : 1);
             double room = most_opening > opened ? most_opening - opened : 0;
             grown = grown < room ? grown : room;
@@ -208,35 +155,32 @@ static inline __attribute__((always_inline)) void move(const coulomb *law,
             lift = trial > strength * (1 + ROUNDING) ? grown : 0;
             opened = opened + lift;
             opening[i] = opened;
-            total = kn * area[i] * (closure[i] + opened) + f_n0[i];
+            total = kn * c.area[i] * (c.closure[i] + opened) + c.f_n0[i];
         }
         double normal = total < 0 ? 0 : total;
-        double limit = total < 0 ? 0 : cohesion * area[i] + normal * tangent;
+        double limit = total < 0 ? 0 : cohesion * c.area[i] + normal * tangent;
         double most = limit * (1 + ROUNDING);
         double whole = trial > most ? trial : 1;
         double scale = trial > most ? limit / whole : 1;
         if (heat) {
-            double mean = 0.5 * ((f_x[i] * tx + f_y[i] * ty + f_z[i] * tz) / whole + limit);
-            double slip = (trial - limit) / (stiffness > 0 ? stiffness : 1);
-            double work = trial > most ? mean * slip : 0;
+            double along = tl_v3_dot(TL_SHEAR_AT(c, i), f);
+            double work = tl_law_slip_work(along, whole, limit, stiffness);
+            work = trial > most ? work : 0;
             if (dilates)
-                work = work - 0.5 * (f_n[i] + normal) * lift;
+                work = work - 0.5 * (c.f_n[i] + normal) * lift;
             work = work > 0 ? work : 0;
             dissipated[i] = stiffness > 0 ? work : 0;
         }
         double flag = trial > most ? TL_POINT_SLIPPING : 0;
         mark[i] = total < 0 ? TL_POINT_OPEN : flag;
-        f_n[i] = normal;
-        f_x[i] = scale * tx;
-        f_y[i] = scale * ty;
-        f_z[i] = scale * tz;
+        c.f_n[i] = normal;
+        TL_PUT_SHEAR(c, i, scale, f);
     }
 }
 
 /* The law for up to STRIDE lanes from `begin`; a constant number of them at each call. */
-static inline __attribute__((always_inline)) void update_lanes(const coulomb *law,
-                                                               const tl_law_batch *batch,
-                                                               uint32_t begin, uint32_t lanes)
+TL_IN_LOOP void update_lanes(const coulomb *law, const tl_law_batch *batch, uint32_t begin,
+                             uint32_t lanes)
 {
     double mark[STRIDE];
     if (law->dilation > 0 && batch->dissipated)
@@ -247,8 +191,7 @@ static inline __attribute__((always_inline)) void update_lanes(const coulomb *la
         move(law, batch, begin, lanes, mark, 1, 0);
     else
         move(law, batch, begin, lanes, mark, 0, 0);
-    for (uint32_t i = 0; i < lanes; i++)
-        batch->flags[begin + i] = (uint32_t)(int32_t)mark[i];
+    tl_law_put_flags(batch, begin, lanes, mark);
 }
 
 /* Energies at once, not in a loop of their own: their divisions are made while the next lanes are worked on. */
@@ -261,23 +204,16 @@ TL_VECTORIZED static tl_status update(const void *self, const tl_law_batch *batc
     for (; begin + STRIDE <= batch->count; begin += STRIDE) {
         if (!stick(law, batch, begin))
             update_lanes(law, batch, begin, STRIDE);
-        if (batch->stored)
-            store_energy(law, batch, begin, STRIDE);
+        tl_law_store_energy(batch, begin, STRIDE, law->kn, law->ks);
     }
     if (begin < batch->count) {
         update_lanes(law, batch, begin, batch->count - begin);
-        if (batch->stored)
-            store_energy(law, batch, begin, batch->count - begin);
+        tl_law_store_energy(batch, begin, batch->count - begin, law->kn, law->ks);
     }
     return TL_OK;
 }
 
-static void stiffness(const void *self, double *kn, double *ks)
-{
-    const coulomb *law = self;
-    *kn = law->kn;
-    *ks = law->ks;
-}
+TL_LAW_STIFFNESS(coulomb, kn, ks);
 
 static int stateless(const void *self)
 {
@@ -290,24 +226,12 @@ static uint32_t pulls(const void *self)
     return ((const coulomb *)self)->dilation > 0 ? TL_PULL_ANY : TL_PULL_NONE;
 }
 
-static const tl_law_ops ops = {.size = sizeof ops,
-                               .create = create,
-                               .update = update,
-                               .stiffness = stiffness,
-                               .destroy = free,
-                               .stateless = stateless,
-                               .never_fails = true,
-                               .pulls = pulls};
+static const tl_law_ops ops = TL_LAW_OPS(.pulls = pulls, .stateless = stateless);
 
-static const tl_kind kind = {
-    .size = sizeof kind,
-    .type = TL_KIND_LAW,
-    .name = "coulomb",
-    .doc = "Coulomb friction with cohesion and dilation, and no tensile strength.",
-    TL_KIND_PARAMS(params, param_table),
-    TL_KIND_STATES(state_table),
-    .ops = &ops,
-};
+static const tl_kind kind =
+    TL_KIND(TL_KIND_LAW, ops, .name = "coulomb",
+            .doc = "Coulomb friction with cohesion and dilation, and no tensile strength.",
+            TL_KIND_PARAMS(params, param_table), TL_KIND_STATES(state_table));
 
 TL_PLUGIN(kind, .id = "talus.coulomb", .version = TALUS_VERSION, .doc = "Coulomb joint law.",
           .licence = "BSD-3-Clause");

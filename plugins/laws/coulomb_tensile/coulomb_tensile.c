@@ -22,17 +22,9 @@
  * closed cycle of opening: it lets go and takes hold again at the same gap.
  *
  * Limit: as for "coulomb", changes of kn and ks and insitu belong before slip has opened the joint. */
-#include <talus/elementary.h>
-#include <talus/plugin.h>
+#include <talus/kit.h>
 #include <talus/version.h>
 
-#include <math.h>
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdio.h>
-#include <stdlib.h>
-
-#define DEGREE (3.14159265358979323846 / 180)
 /* Lanes worked on at a time: their flags stay in the nearest cache. */
 #define STRIDE 64u
 /* Scaling a force down to its limit leaves it within 2 roundings of it; without this margin a point at
@@ -48,10 +40,8 @@ typedef struct params {
 } params;
 
 static const tl_param param_table[] = {
-    TL_PARAM(TL_PARAM_REAL, params, kn, "Pa/m", "normal stiffness of the joint",
-             .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
-    TL_PARAM(TL_PARAM_REAL, params, ks, "Pa/m", "shear stiffness of the joint",
-             .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
+    TL_PARAM_KN(params),
+    TL_PARAM_KS(params),
     TL_PARAM(TL_PARAM_REAL, params, friction, "deg", "angle of friction",
              .flags = TL_PARAM_MAX_OPEN, .min = 0, .max = 90),
     TL_PARAM(TL_PARAM_REAL, params, cohesion, "Pa", "cohesion of the bond", .min = 0,
@@ -73,20 +63,9 @@ static const tl_param param_table[] = {
 };
 
 static const tl_state state_table[] = {
-    {.size = sizeof(tl_state),
-     .kind = TL_STATE_SCALAR,
-     .transfer = TL_TRANSFER_COPY,
-     .name = "bond",
-     .unit = "",
-     .doc = "1 while the bond holds, 0 when it is lost",
-     .initial = 1},
-    {.size = sizeof(tl_state),
-     .kind = TL_STATE_SCALAR,
-     .transfer = TL_TRANSFER_COPY,
-     .name = "opening",
-     .unit = "m",
-     .doc = "how far slip has opened the joint",
-     .initial = 0},
+    TL_STATE(TL_STATE_SCALAR, "bond", "", "1 while the bond holds, 0 when it is lost",
+             .initial = 1),
+    TL_STATE(TL_STATE_SCALAR, "opening", "m", "how far slip has opened the joint"),
 };
 
 /* Strength of a joint: with the bond, or without. */
@@ -111,38 +90,17 @@ static tl_status create(const void *given, void **self, tl_report *report)
                  least < p->friction ? "residual_friction" : "friction", least);
         return TL_E_ARGUMENT;
     }
-    bonded *law = malloc(sizeof *law);
-    if (!law) {
-        snprintf(report->text, sizeof report->text, "out of memory");
-        return TL_E_MEMORY;
-    }
-    *law = (bonded){
+    const bonded law = {
         .kn = p->kn,
         .ks = p->ks,
-        .peak = {tl_tan(p->friction * DEGREE), p->cohesion, p->tension},
-        .residual = {tl_tan(residual * DEGREE), p->residual_cohesion, p->residual_tension},
-        .dilation = tl_tan(p->dilation * DEGREE),
-        .most_opening =
-            isnan(p->dilation_limit) ? INFINITY : tl_tan(p->dilation * DEGREE) * p->dilation_limit,
+        .peak = {tl_tan(p->friction * TL_DEGREE), p->cohesion, p->tension},
+        .residual = {tl_tan(residual * TL_DEGREE), p->residual_cohesion, p->residual_tension},
+        .dilation = tl_tan(p->dilation * TL_DEGREE),
+        .most_opening = isnan(p->dilation_limit)
+                            ? INFINITY
+                            : tl_tan(p->dilation * TL_DEGREE) * p->dilation_limit,
     };
-    *self = law;
-    return TL_OK;
-}
-
-/* Elastic energy of both springs; 0 for a lane of no area. */
-static void store_energy(const bonded *law, const tl_law_batch *batch)
-{
-    const double *restrict area = batch->area, *restrict f_n = batch->f_n;
-    const double *restrict f_x = batch->f_s[0], *restrict f_y = batch->f_s[1];
-    const double *restrict f_z = batch->f_s[2];
-    double *restrict stored = batch->stored;
-    const double half_n = 0.5 / law->kn, half_s = 0.5 / law->ks;
-#pragma omp simd
-    for (uint32_t i = 0; i < batch->count; i++) {
-        double inverse = area[i] > 0 ? 1 / (area[i] > 0 ? area[i] : 1) : 0;
-        double shear2 = f_x[i] * f_x[i] + f_y[i] * f_y[i] + f_z[i] * f_z[i];
-        stored[i] = (half_n * f_n[i] * f_n[i] + half_s * shear2) * inverse;
-    }
+    return tl_keep(&law, sizeof law, self, report);
 }
 
 /* Closures at the outermost fibres; a host of an older interface knows none. */
@@ -157,18 +115,11 @@ static inline const double *edges(const tl_law_batch *batch)
  * slip in the past still counts. A NaN goes through
  * all comparisons to the forces, where the host finds it. `mark` takes the flags as doubles: a loop
  * over lanes of two widths is not vectorised for every machine. */
-static inline __attribute__((always_inline)) void move(const bonded *law, const tl_law_batch *batch,
-                                                       uint32_t begin, uint32_t lanes,
-                                                       double *restrict mark, const int heat,
-                                                       const int dilates)
+TL_IN_LOOP void move(const bonded *law, const tl_law_batch *batch, uint32_t begin, uint32_t lanes,
+                     double *restrict mark, const int heat, const int dilates)
 {
-    const double *restrict area = batch->area + begin, *restrict closure = batch->closure + begin;
+    const tl_law_columns c = tl_law_columns_from(batch, begin);
     const double *restrict edge = edges(batch) + begin;
-    const double *restrict f_n0 = batch->f_n0 + begin;
-    const double *restrict du_x = batch->du_s[0] + begin, *restrict du_y = batch->du_s[1] + begin;
-    const double *restrict du_z = batch->du_s[2] + begin;
-    double *restrict f_n = batch->f_n + begin, *restrict f_x = batch->f_s[0] + begin;
-    double *restrict f_y = batch->f_s[1] + begin, *restrict f_z = batch->f_s[2] + begin;
     double *restrict bond = batch->state[0] + begin, *restrict opening = batch->state[1] + begin;
     double *restrict dissipated = heat ? batch->dissipated + begin : NULL;
     const double kn = law->kn, ks = law->ks;
@@ -176,26 +127,24 @@ static inline __attribute__((always_inline)) void move(const bonded *law, const 
     const strength peak = law->peak, residual = law->residual;
 #pragma omp simd
     for (uint32_t i = 0; i < lanes; i++) {
-        double stiffness = ks * area[i], opened = opening[i], lift = 0;
-        double total = kn * area[i] * (closure[i] + opened) + f_n0[i];
-        double tx = f_x[i] - stiffness * du_x[i];
-        double ty = f_y[i] - stiffness * du_y[i];
-        double tz = f_z[i] - stiffness * du_z[i];
-        double trial = sqrt(tx * tx + ty * ty + tz * tz);
+        double stiffness = ks * c.area[i], opened = opening[i], lift = 0;
+        double total = kn * c.area[i] * (c.closure[i] + opened) + c.f_n0[i];
+        tl_vec3 f = TL_TRIAL_AT(c, i, stiffness);
+        double trial = tl_v3_norm(f);
 
         /* Does the bond hold this step? */
-        double bound = peak.cohesion * area[i] + total * peak.tangent;
+        double bound = peak.cohesion * c.area[i] + total * peak.tangent;
         double before = bond[i];
         double after = trial > (bound < 0 ? 0 : bound) ? 0 : before;
-        double fibre = kn * area[i] * (edge[i] + opened) + f_n0[i];
-        after = fibre < -peak.tension * area[i] ? 0 : after;
+        double fibre = kn * c.area[i] * (edge[i] + opened) + c.f_n0[i];
+        after = fibre < -peak.tension * c.area[i] ? 0 : after;
         /* The strength that is left. */
         double tangent = after > BOND_HOLDS ? peak.tangent : residual.tangent;
         double cohesion = after > BOND_HOLDS ? peak.cohesion : residual.cohesion;
         double tension = after > BOND_HOLDS ? peak.tension : residual.tension;
         if (dilates) {
-            double strong = cohesion * area[i] + total * tangent;
-            double yield = stiffness + kn * area[i] * dilation * tangent;
+            double strong = cohesion * c.area[i] + total * tangent;
+            double yield = stiffness + kn * c.area[i] * dilation * tangent;
             double grown = dilation * (trial - strong) / (yield > 0 ? yield : 1);
             double room = most_opening > opened ? most_opening - opened : 0;
             grown = grown < room ? grown : room;
@@ -203,33 +152,31 @@ static inline __attribute__((always_inline)) void move(const bonded *law, const 
             lift = trial > strong * (1 + ROUNDING) ? grown : 0;
             opened = opened + lift;
             opening[i] = opened;
-            total = kn * area[i] * (closure[i] + opened) + f_n0[i];
+            total = kn * c.area[i] * (c.closure[i] + opened) + c.f_n0[i];
         }
-        double lowest = -tension * area[i];
-        double limit = cohesion * area[i] + total * tangent;
+        double lowest = -tension * c.area[i];
+        double limit = cohesion * c.area[i] + total * tangent;
         limit = ((limit < 0) | (total < lowest)) ? 0 : limit;
         double most = limit * (1 + ROUNDING);
         double whole = trial > most ? trial : 1;
         double scale = trial > most ? limit / whole : 1;
         if (heat) {
-            double mean = 0.5 * ((f_x[i] * tx + f_y[i] * ty + f_z[i] * tz) / whole + limit);
-            double slip = (trial - limit) / (stiffness > 0 ? stiffness : 1);
-            double work = trial > most ? mean * slip : 0;
+            double along = tl_v3_dot(TL_SHEAR_AT(c, i), f);
+            double work = tl_law_slip_work(along, whole, limit, stiffness);
+            work = trial > most ? work : 0;
             if (dilates)
-                work = work - 0.5 * (f_n[i] + total) * lift;
+                work = work - 0.5 * (c.f_n[i] + total) * lift;
             work = work > 0 && stiffness > 0 ? work : 0;
             /* A bond that snaps gives up its tensile spring. */
-            double spring = 0.5 * total * total / (area[i] > 0 ? kn * area[i] : 1);
-            spring = total < lowest && area[i] > 0 ? spring : 0;
+            double spring = 0.5 * total * total / (c.area[i] > 0 ? kn * c.area[i] : 1);
+            spring = total < lowest && c.area[i] > 0 ? spring : 0;
             dissipated[i] = work + (before > BOND_HOLDS ? spring : 0);
         }
         double flag = trial > most ? TL_POINT_SLIPPING : 0;
         flag = total < lowest ? TL_POINT_OPEN : flag;
         mark[i] = after > BOND_HOLDS ? flag : flag + TL_POINT_FAILED;
-        f_n[i] = total < lowest ? 0 : total;
-        f_x[i] = scale * tx;
-        f_y[i] = scale * ty;
-        f_z[i] = scale * tz;
+        c.f_n[i] = total < lowest ? 0 : total;
+        TL_PUT_SHEAR(c, i, scale, f);
         bond[i] = after;
     }
 }
@@ -253,20 +200,13 @@ TL_VECTORIZED static tl_status update(const void *self, const tl_law_batch *batc
             move(law, batch, begin, lanes, mark, 1, 0);
         else
             move(law, batch, begin, lanes, mark, 0, 0);
-        for (uint32_t i = 0; i < lanes; i++)
-            batch->flags[begin + i] = (uint32_t)mark[i];
+        tl_law_put_flags(batch, begin, lanes, mark);
+        tl_law_store_energy(batch, begin, lanes, law->kn, law->ks);
     }
-    if (batch->stored)
-        store_energy(law, batch);
     return TL_OK;
 }
 
-static void stiffness(const void *self, double *kn, double *ks)
-{
-    const bonded *law = self;
-    *kn = law->kn;
-    *ks = law->ks;
-}
+TL_LAW_STIFFNESS(bonded, kn, ks);
 
 /* Open points carry nothing without tensile strength, unless slip has lifted them. */
 static uint32_t pulls(const void *self)
@@ -277,23 +217,12 @@ static uint32_t pulls(const void *self)
     return law->peak.tension > 0 ? TL_PULL_BONDED : TL_PULL_NONE;
 }
 
-static const tl_law_ops ops = {.size = sizeof ops,
-                               .create = create,
-                               .update = update,
-                               .stiffness = stiffness,
-                               .destroy = free,
-                               .never_fails = true,
-                               .pulls = pulls};
+static const tl_law_ops ops = TL_LAW_OPS(.pulls = pulls);
 
-static const tl_kind kind = {
-    .size = sizeof kind,
-    .type = TL_KIND_LAW,
-    .name = "coulomb_tensile",
+static const tl_kind kind = TL_KIND(
+    TL_KIND_LAW, ops, .name = "coulomb_tensile",
     .doc = "Coulomb friction with a bond that breaks in tension or shear and does not heal.",
-    TL_KIND_PARAMS(params, param_table),
-    TL_KIND_STATES(state_table),
-    .ops = &ops,
-};
+    TL_KIND_PARAMS(params, param_table), TL_KIND_STATES(state_table));
 
 TL_PLUGIN(kind, .id = "talus.coulomb_tensile", .version = TALUS_VERSION,
           .doc = "Coulomb joint law with a brittle bond.", .licence = "BSD-3-Clause");

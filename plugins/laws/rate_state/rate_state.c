@@ -18,13 +18,8 @@
  * after Rice and Ben-Zion, Proc. Natl. Acad. Sci. 93 (1996) 3811-3818; eta: Rice, J. Geophys. Res. 98 (1993) 9885-9907.
  *
  * Limit: slip never ends, so a joint under shear stress creeps. Scaled masses falsify the rates. */
-#include <talus/elementary.h>
-#include <talus/plugin.h>
+#include <talus/kit.h>
 #include <talus/version.h>
-
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
 
 /* Lanes worked on at a time: what is noted of them stays in the nearest cache. */
 #define STRIDE 64u
@@ -47,10 +42,8 @@ typedef struct params {
 } params;
 
 static const tl_param param_table[] = {
-    TL_PARAM(TL_PARAM_REAL, params, kn, "Pa/m", "normal stiffness of the joint",
-             .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
-    TL_PARAM(TL_PARAM_REAL, params, ks, "Pa/m", "shear stiffness of the joint",
-             .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
+    TL_PARAM_KN(params),
+    TL_PARAM_KS(params),
     TL_PARAM(TL_PARAM_REAL, params, mu0, "", "coefficient of friction in steady slip at `velocity`",
              .def = {0.6}, .flags = TL_PARAM_MIN_OPEN, .min = 0, .max = 10),
     TL_PARAM(TL_PARAM_REAL, params, a, "", "direct effect of the rate",
@@ -75,46 +68,28 @@ static const tl_param param_table[] = {
 };
 
 static const tl_state state_table[] = {
-    {.size = sizeof(tl_state),
-     .kind = TL_STATE_SCALAR,
-     .transfer = TL_TRANSFER_COPY,
-     .name = "theta",
-     .unit = "s",
-     .doc = "state of the surface; 0 before the first step",
-     .initial = 0},
-    {.size = sizeof(tl_state),
-     .kind = TL_STATE_SCALAR,
-     .transfer = TL_TRANSFER_COPY,
-     .name = "slip_rate",
-     .unit = "m/s",
-     .doc = "rate of slip in the last step",
-     .initial = 0},
+    TL_STATE(TL_STATE_SCALAR, "theta", "s", "state of the surface; 0 before the first step"),
+    TL_STATE(TL_STATE_SCALAR, "slip_rate", "m/s", "rate of slip in the last step"),
 };
 
 static tl_status create(const void *given, void **self, tl_report *report)
 {
-    params *law = malloc(sizeof *law);
-    if (!law) {
-        snprintf(report->text, sizeof report->text, "out of memory");
-        return TL_E_MEMORY;
-    }
-    *law = *(const params *)given;
-    if (isnan(law->theta))
-        law->theta = law->distance / law->velocity;
-    *self = law;
-    return TL_OK;
+    params law = *(const params *)given;
+    if (isnan(law.theta))
+        law.theta = law.distance / law.velocity;
+    return tl_keep(&law, sizeof law, self, report);
 }
 
 /* (1 - exp(-x)) / x */
-static inline double mean_decay(double x, double decay)
+TL_IN_LOOP double mean_decay(double x, double decay)
 {
     double series = 1 - x * (1. / 2 - x * (1. / 6 - x * (1. / 24 - x * (1. / 120))));
     return x < SERIES ? series : (1 - decay) / (x < SERIES ? 1 : x);
 }
 
 /* The state after `time` at a rate of slip. */
-static inline double go_on(const int evolution, double distance, double theta, double rate,
-                           double time)
+TL_IN_LOOP double go_on(const int evolution, double distance, double theta, double rate,
+                        double time)
 {
     double x = rate * time / distance, decay = tl_lane_exp(-x);
     if (evolution == AGING)
@@ -125,8 +100,8 @@ static inline double go_on(const int evolution, double distance, double theta, d
 }
 
 /* d ln theta / d ln V of that, from -1 in steady slip to 0. */
-static inline double answer(const int evolution, double distance, double theta, double rate,
-                            double time)
+TL_IN_LOOP double answer(const int evolution, double distance, double theta, double rate,
+                         double time)
 {
     double x = rate * time / distance, decay = tl_lane_exp(-x);
     if (evolution == AGING) {
@@ -147,28 +122,21 @@ typedef struct trial {
 } trial;
 
 /* Forces as if nothing slipped, and the bounds of y: no slip, and as much as leaves no stress. */
-static inline __attribute__((always_inline)) void press(const params *given,
-                                                        const tl_law_batch *batch, uint32_t begin,
-                                                        uint32_t lanes, trial *restrict t)
+TL_IN_LOOP void press(const params *given, const tl_law_batch *batch, uint32_t begin,
+                      uint32_t lanes, trial *restrict t)
 {
-    const double *restrict area = batch->area + begin, *restrict closure = batch->closure + begin;
-    const double *restrict f_n0 = batch->f_n0 + begin, *restrict state = batch->state[0] + begin;
+    const tl_law_columns c = tl_law_columns_from(batch, begin);
+    const double *restrict state = batch->state[0] + begin;
     const double *restrict rate = batch->state[1] + begin;
-    const double *restrict du_x = batch->du_s[0] + begin, *restrict du_y = batch->du_s[1] + begin;
-    const double *restrict du_z = batch->du_s[2] + begin;
-    const double *restrict f_x = batch->f_s[0] + begin, *restrict f_y = batch->f_s[1] + begin;
-    const double *restrict f_z = batch->f_s[2] + begin;
     const params law = *given;
     const double slows = law.ks * batch->dt + law.damping;
     const double per_velocity = law.velocity / law.distance;
 #pragma omp simd
     for (uint32_t i = 0; i < lanes; i++) {
-        double per = area[i] > 0 ? 1 / area[i] : 0, spring = law.ks * area[i];
-        double total = law.kn * area[i] * closure[i] + f_n0[i];
-        double x = f_x[i] - spring * du_x[i];
-        double y = f_y[i] - spring * du_y[i];
-        double z = f_z[i] - spring * du_z[i];
-        double shear = sqrt(x * x + y * y + z * z) * per;
+        double per = c.area[i] > 0 ? 1 / c.area[i] : 0, spring = law.ks * c.area[i];
+        double total = law.kn * c.area[i] * c.closure[i] + c.f_n0[i];
+        tl_vec3 f = TL_TRIAL_AT(c, i, spring);
+        double shear = tl_v3_norm(f) * per;
         double theta = state[i] > 0 ? state[i] : law.theta;
         double effect = total > 0 ? law.a * total * per : 0;
         double exponent = (law.mu0 + law.b * tl_lane_log(theta * per_velocity)) / law.a;
@@ -182,9 +150,9 @@ static inline __attribute__((always_inline)) void press(const params *given,
         high = high > 0 ? high : 0;
         root = root > 0 ? root : 0;
         t->total[i] = total;
-        t->x[i] = x;
-        t->y[i] = y;
-        t->z[i] = z;
+        t->x[i] = f.x;
+        t->y[i] = f.y;
+        t->z[i] = f.z;
         t->shear[i] = shear;
         t->theta[i] = theta;
         t->effect[i] = effect;
@@ -197,9 +165,8 @@ static inline __attribute__((always_inline)) void press(const params *given,
 }
 
 /* One of Newton's passes; how many lanes have not found their root. */
-static inline __attribute__((always_inline)) double pass(const params *given, double dt,
-                                                         uint32_t lanes, trial *restrict t,
-                                                         const int evolution)
+TL_IN_LOOP double pass(const params *given, double dt, uint32_t lanes, trial *restrict t,
+                       const int evolution)
 {
     const params law = *given;
     const double slows = law.ks * dt + law.damping, half = 0.5 * dt, share = law.b / law.a;
@@ -235,9 +202,8 @@ static inline __attribute__((always_inline)) double pass(const params *given, do
 }
 
 /* The rate of slip of each lane; 0 of open ones and in a step without time. */
-static inline __attribute__((always_inline)) void find_rates(const params *given, double dt,
-                                                             uint32_t lanes, trial *restrict t,
-                                                             const int evolution)
+TL_IN_LOOP void find_rates(const params *given, double dt, uint32_t lanes, trial *restrict t,
+                           const int evolution)
 {
     const double velocity = given->velocity, slows = given->ks * dt + given->damping;
     const double moves = dt > 0 ? 1 : 0, most = slows > 0 ? 1 / slows : 0;
@@ -256,45 +222,39 @@ static inline __attribute__((always_inline)) void find_rates(const params *given
 
 /* Forces, states, energies and flags; `mark` takes the flags as doubles: a loop over lanes of two widths is not vectorised for
  * every machine. */
-static inline __attribute__((always_inline)) void settle(
-    const params *given, const tl_law_batch *batch, uint32_t begin, uint32_t lanes,
-    const trial *restrict t, double *restrict mark, double *restrict stored,
-    double *restrict dissipated, const int evolution)
+TL_IN_LOOP void settle(const params *given, const tl_law_batch *batch, uint32_t begin,
+                       uint32_t lanes, const trial *restrict t, double *restrict mark,
+                       double *restrict stored, double *restrict dissipated, const int evolution)
 {
-    const double *restrict area = batch->area + begin;
-    double *restrict f_n = batch->f_n + begin, *restrict f_x = batch->f_s[0] + begin;
-    double *restrict f_y = batch->f_s[1] + begin, *restrict f_z = batch->f_s[2] + begin;
+    const tl_law_columns c = tl_law_columns_from(batch, begin);
     double *restrict state = batch->state[0] + begin, *restrict rates = batch->state[1] + begin;
     const params law = *given;
     const double dt = batch->dt, half_n = 0.5 / law.kn, half_s = 0.5 / law.ks;
 #pragma omp simd
     for (uint32_t i = 0; i < lanes; i++) {
-        double per = area[i] > 0 ? 1 / area[i] : 0, total = t->total[i];
+        double per = c.area[i] > 0 ? 1 / c.area[i] : 0, total = t->total[i];
         double shear = t->shear[i], slip = t->rate[i] * dt;
         double left = total < 0 ? 0 : shear - law.ks * slip;
         double scale = shear > 0 ? left / (shear > 0 ? shear : 1) : 1;
-        double whole = shear * area[i];
-        double along = f_x[i] * t->x[i] + f_y[i] * t->y[i] + f_z[i] * t->z[i];
-        double mean = 0.5 * (along / (whole > 0 ? whole : 1) + left * area[i]);
+        double whole = shear * c.area[i];
+        tl_vec3 f = {t->x[i], t->y[i], t->z[i]};
+        double along = tl_v3_dot(TL_SHEAR_AT(c, i), f);
+        double mean = 0.5 * (along / (whole > 0 ? whole : 1) + left * c.area[i]);
         double heat = mean * (shear - left) / law.ks;
         double press = total < 0 ? 0 : total;
         dissipated[i] = heat > 0 ? heat : 0;
-        stored[i] = half_n * press * press * per + half_s * left * left * area[i];
+        stored[i] = half_n * press * press * per + half_s * left * left * c.area[i];
         double slips = t->rate[i] >= law.velocity ? TL_POINT_SLIPPING : 0;
         mark[i] = total < 0 ? TL_POINT_OPEN : slips;
-        f_n[i] = total < 0 ? 0 : total;
-        f_x[i] = scale * t->x[i];
-        f_y[i] = scale * t->y[i];
-        f_z[i] = scale * t->z[i];
+        c.f_n[i] = total < 0 ? 0 : total;
+        TL_PUT_SHEAR(c, i, scale, f);
         state[i] = go_on(evolution, law.distance, t->theta[i], t->rate[i], dt);
         rates[i] = dt > 0 ? t->rate[i] : rates[i];
     }
 }
 
-static inline __attribute__((always_inline)) void update_lanes(const params *law,
-                                                               const tl_law_batch *batch,
-                                                               uint32_t begin, uint32_t lanes,
-                                                               const int evolution)
+TL_IN_LOOP void update_lanes(const params *law, const tl_law_batch *batch, uint32_t begin,
+                             uint32_t lanes, const int evolution)
 {
     double mark[STRIDE], stored[STRIDE], dissipated[STRIDE];
     trial t;
@@ -302,8 +262,7 @@ static inline __attribute__((always_inline)) void update_lanes(const params *law
     find_rates(law, batch->dt, lanes, &t, evolution);
     settle(law, batch, begin, lanes, &t, mark, batch->stored ? batch->stored + begin : stored,
            batch->dissipated ? batch->dissipated + begin : dissipated, evolution);
-    for (uint32_t i = 0; i < lanes; i++)
-        batch->flags[begin + i] = (uint32_t)(int32_t)mark[i];
+    tl_law_put_flags(batch, begin, lanes, mark);
 }
 
 TL_VECTORIZED static tl_status update(const void *self, const tl_law_batch *batch,
@@ -321,36 +280,14 @@ TL_VECTORIZED static tl_status update(const void *self, const tl_law_batch *batc
     return TL_OK;
 }
 
-static void stiffness(const void *self, double *kn, double *ks)
-{
-    const params *law = self;
-    *kn = law->kn;
-    *ks = law->ks;
-}
+TL_LAW_STIFFNESS(params, kn, ks);
 
-static uint32_t pulls(const void *self)
-{
-    (void)self;
-    return TL_PULL_NONE;
-}
+static const tl_law_ops ops = TL_LAW_OPS(.pulls = tl_pulls_none);
 
-static const tl_law_ops ops = {.size = sizeof ops,
-                               .create = create,
-                               .update = update,
-                               .stiffness = stiffness,
-                               .destroy = free,
-                               .never_fails = true,
-                               .pulls = pulls};
-
-static const tl_kind kind = {
-    .size = sizeof kind,
-    .type = TL_KIND_LAW,
-    .name = "rate_state",
+static const tl_kind kind = TL_KIND(
+    TL_KIND_LAW, ops, .name = "rate_state",
     .doc = "Friction that depends on the rate of slip and on a state of the surface that ages.",
-    TL_KIND_PARAMS(params, param_table),
-    TL_KIND_STATES(state_table),
-    .ops = &ops,
-};
+    TL_KIND_PARAMS(params, param_table), TL_KIND_STATES(state_table));
 
 TL_PLUGIN(kind, .id = "talus.rate_state", .version = TALUS_VERSION,
           .doc = "Rate-and-state joint law.", .licence = "BSD-3-Clause");

@@ -15,15 +15,9 @@
  *
  * Source: Ida, J. Geophys. Res. 77 (1972) 3796-3805; Andrews, J. Geophys. Res. 81 (1976) 5679-5687; stability after Rice,
  * Pure Appl. Geophys. 121 (1983) 443-475. */
-#include <talus/elementary.h>
-#include <talus/plugin.h>
+#include <talus/kit.h>
 #include <talus/version.h>
 
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-
-#define DEGREE (3.14159265358979323846 / 180)
 /* Lanes worked on at a time: what is noted of them stays in the nearest cache. */
 #define STRIDE 64u
 /* Scaling a force down to its limit leaves it within 2 roundings of it; without this margin a point at
@@ -47,10 +41,8 @@ typedef struct params {
 } params;
 
 static const tl_param param_table[] = {
-    TL_PARAM(TL_PARAM_REAL, params, kn, "Pa/m", "normal stiffness of the joint",
-             .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
-    TL_PARAM(TL_PARAM_REAL, params, ks, "Pa/m", "shear stiffness of the joint",
-             .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
+    TL_PARAM_KN(params),
+    TL_PARAM_KS(params),
     TL_PARAM(TL_PARAM_REAL, params, friction, "deg", "angle of friction before slip",
              .flags = TL_PARAM_REQUIRED | TL_PARAM_MAX_OPEN, .min = 0, .max = 90),
     TL_PARAM(TL_PARAM_REAL, params, cohesion, "Pa", "cohesion before slip", .min = 0,
@@ -75,13 +67,7 @@ static const tl_param param_table[] = {
 };
 
 static const tl_state state_table[] = {
-    {.size = sizeof(tl_state),
-     .kind = TL_STATE_SCALAR,
-     .transfer = TL_TRANSFER_COPY,
-     .name = "slip",
-     .unit = "m",
-     .doc = "length of the slip so far, less what has healed",
-     .initial = 0},
+    TL_STATE(TL_STATE_SCALAR, "slip", "m", "length of the slip so far, less what has healed"),
 };
 
 typedef struct weakening {
@@ -111,44 +97,22 @@ static tl_status create(const void *given, void **self, tl_report *report)
                  healings[p->healing]);
         return TL_E_ARGUMENT;
     }
-    weakening *law = malloc(sizeof *law);
-    if (!law) {
-        snprintf(report->text, sizeof report->text, "out of memory");
-        return TL_E_MEMORY;
-    }
-    double tangent = tl_tan(residual * DEGREE);
-    *law = (weakening){.kn = p->kn,
-                       .ks = p->ks,
-                       .tangent = tangent,
-                       .cohesion = p->residual_cohesion,
-                       .tangent_drop = tl_tan(p->friction * DEGREE) - tangent,
-                       .cohesion_drop = p->cohesion - p->residual_cohesion,
-                       .distance = p->distance,
-                       .healing_time = p->healing_time,
-                       .form = p->form,
-                       .healing = p->healing};
-    *self = law;
-    return TL_OK;
-}
-
-/* Elastic energy of both springs; 0 for a lane of no area. */
-static void store_energy(const weakening *law, const tl_law_batch *batch)
-{
-    const double *restrict area = batch->area, *restrict f_n = batch->f_n;
-    const double *restrict f_x = batch->f_s[0], *restrict f_y = batch->f_s[1];
-    const double *restrict f_z = batch->f_s[2];
-    double *restrict stored = batch->stored;
-    const double half_n = 0.5 / law->kn, half_s = 0.5 / law->ks;
-#pragma omp simd
-    for (uint32_t i = 0; i < batch->count; i++) {
-        double inverse = area[i] > 0 ? 1 / (area[i] > 0 ? area[i] : 1) : 0;
-        double shear2 = f_x[i] * f_x[i] + f_y[i] * f_y[i] + f_z[i] * f_z[i];
-        stored[i] = (half_n * f_n[i] * f_n[i] + half_s * shear2) * inverse;
-    }
+    double tangent = tl_tan(residual * TL_DEGREE);
+    const weakening law = {.kn = p->kn,
+                           .ks = p->ks,
+                           .tangent = tangent,
+                           .cohesion = p->residual_cohesion,
+                           .tangent_drop = tl_tan(p->friction * TL_DEGREE) - tangent,
+                           .cohesion_drop = p->cohesion - p->residual_cohesion,
+                           .distance = p->distance,
+                           .healing_time = p->healing_time,
+                           .form = p->form,
+                           .healing = p->healing};
+    return tl_keep(&law, sizeof law, self, report);
 }
 
 /* Share of the drop that is left after a slip. */
-static inline double left_of(const int form, double per_distance, double slip)
+TL_IN_LOOP double left_of(const int form, double per_distance, double slip)
 {
     double linear = 1 - slip * per_distance;
     if (form == EXPONENTIAL)
@@ -158,7 +122,7 @@ static inline double left_of(const int form, double per_distance, double slip)
 
 /* Slip over D_c at which the linear strength meets the spring. Both are over the spring's force of D_c: `above` is the
  * spring less the residual, `drop` what is left to lose, and above > drop. */
-static inline double linear_slip(double above, double drop, double room, double slope)
+TL_IN_LOOP double linear_slip(double above, double drop, double room, double slope)
 {
     double steep = 1 - slope;
     double soon = steep > 0 ? (above - drop) / (steep > 0 ? steep : 1) : above;
@@ -168,7 +132,7 @@ static inline double linear_slip(double above, double drop, double room, double 
 /* Where Newton's search for the same of the exponential strength begins. It is the root of
  * g(x) = above - x - drop exp(-x), which is concave, so that steps from beyond the root stay beyond it. The start replaces
  * exp(-x) by 1 - x + x^2/3, which is less up to x = 1. */
-static inline double exponential_start(double above, double drop)
+TL_IN_LOOP double exponential_start(double above, double drop)
 {
     double b = 1 - drop, over = above - drop, q = drop * (1. / 3);
     over = over > 0 ? over : 0;
@@ -180,7 +144,7 @@ static inline double exponential_start(double above, double drop)
 }
 
 /* One of its passes. */
-static inline double exponential_pass(double above, double drop, double x)
+TL_IN_LOOP double exponential_pass(double above, double drop, double x)
 {
     double falls = drop * tl_lane_exp(-x), slope = falls - 1;
     double next = x - (above - x - falls) / (slope < 0 ? slope : -1);
@@ -194,37 +158,29 @@ typedef struct trial {
 } trial;
 
 /* Forces as if nothing slipped, and the strength; whether some lane is beyond its own. */
-static inline __attribute__((always_inline)) double press(const weakening *law,
-                                                          const tl_law_batch *batch, uint32_t begin,
-                                                          uint32_t lanes, trial *restrict t,
-                                                          const int form)
+TL_IN_LOOP double press(const weakening *law, const tl_law_batch *batch, uint32_t begin,
+                        uint32_t lanes, trial *restrict t, const int form)
 {
-    const double *restrict area = batch->area + begin, *restrict closure = batch->closure + begin;
-    const double *restrict f_n0 = batch->f_n0 + begin, *restrict slip = batch->state[0] + begin;
-    const double *restrict du_x = batch->du_s[0] + begin, *restrict du_y = batch->du_s[1] + begin;
-    const double *restrict du_z = batch->du_s[2] + begin;
-    const double *restrict f_x = batch->f_s[0] + begin, *restrict f_y = batch->f_s[1] + begin;
-    const double *restrict f_z = batch->f_s[2] + begin;
+    const tl_law_columns c = tl_law_columns_from(batch, begin);
+    const double *restrict slip = batch->state[0] + begin;
     const double kn = law->kn, ks = law->ks, tangent = law->tangent, cohesion = law->cohesion;
     const double tangent_drop = law->tangent_drop, cohesion_drop = law->cohesion_drop;
     const double per_distance = 1 / law->distance;
     double beyond = 0;
 #pragma omp simd reduction(+ : beyond)
     for (uint32_t i = 0; i < lanes; i++) {
-        double stiffness = ks * area[i], total = kn * area[i] * closure[i] + f_n0[i];
-        double x = f_x[i] - stiffness * du_x[i];
-        double y = f_y[i] - stiffness * du_y[i];
-        double z = f_z[i] - stiffness * du_z[i];
-        double shear = sqrt(x * x + y * y + z * z);
+        double stiffness = ks * c.area[i], total = kn * c.area[i] * c.closure[i] + c.f_n0[i];
+        tl_vec3 f = TL_TRIAL_AT(c, i, stiffness);
+        double shear = tl_v3_norm(f);
         double normal = total < 0 ? 0 : total;
-        double residual = total < 0 ? 0 : cohesion * area[i] + normal * tangent;
-        double drop = total < 0 ? 0 : cohesion_drop * area[i] + normal * tangent_drop;
+        double residual = total < 0 ? 0 : cohesion * c.area[i] + normal * tangent;
+        double drop = total < 0 ? 0 : cohesion_drop * c.area[i] + normal * tangent_drop;
         double limit = residual + left_of(form, per_distance, slip[i]) * drop;
         beyond += shear > limit * (1 + ROUNDING) ? 1 : 0;
         t->total[i] = total;
-        t->x[i] = x;
-        t->y[i] = y;
-        t->z[i] = z;
+        t->x[i] = f.x;
+        t->y[i] = f.y;
+        t->z[i] = f.z;
         t->shear[i] = shear;
         t->residual[i] = residual;
         t->drop[i] = drop;
@@ -235,9 +191,8 @@ static inline __attribute__((always_inline)) double press(const weakening *law,
 }
 
 /* Slip of the lanes that are beyond their strength, and the strength after it. Open points do not rub. */
-static inline __attribute__((always_inline)) void rub(const weakening *law,
-                                                      const double *restrict area, uint32_t lanes,
-                                                      trial *restrict t, const int form)
+TL_IN_LOOP void rub(const weakening *law, const double *restrict area, uint32_t lanes,
+                    trial *restrict t, const int form)
 {
     const double distance = law->distance, per_distance = 1 / law->distance, ks = law->ks;
     double above[STRIDE], drop[STRIDE], grown[STRIDE];
@@ -267,14 +222,11 @@ static inline __attribute__((always_inline)) void rub(const weakening *law,
 
 /* Forces, heat and flags; `mark` takes the flags as doubles: a loop over lanes of two widths is not vectorised for every
  * machine. */
-static inline __attribute__((always_inline)) void settle(const weakening *law,
-                                                         const tl_law_batch *batch, uint32_t begin,
-                                                         uint32_t lanes, const trial *restrict t,
-                                                         double *restrict mark, const int heat)
+TL_IN_LOOP void settle(const weakening *law, const tl_law_batch *batch, uint32_t begin,
+                       uint32_t lanes, const trial *restrict t, double *restrict mark,
+                       const int heat)
 {
-    const double *restrict area = batch->area + begin;
-    double *restrict f_n = batch->f_n + begin, *restrict f_x = batch->f_s[0] + begin;
-    double *restrict f_y = batch->f_s[1] + begin, *restrict f_z = batch->f_s[2] + begin;
+    const tl_law_columns c = tl_law_columns_from(batch, begin);
     double *restrict slip = batch->state[0] + begin;
     double *restrict dissipated = heat ? batch->dissipated + begin : NULL;
     const double ks = law->ks;
@@ -282,19 +234,18 @@ static inline __attribute__((always_inline)) void settle(const weakening *law,
     for (uint32_t i = 0; i < lanes; i++) {
         double limit = t->limit[i], shear = t->shear[i], most = limit * (1 + ROUNDING);
         double whole = shear > most ? shear : 1, scale = shear > most ? limit / whole : 1;
+        tl_vec3 f = {t->x[i], t->y[i], t->z[i]};
         if (heat) {
-            double along = f_x[i] * t->x[i] + f_y[i] * t->y[i] + f_z[i] * t->z[i];
-            double mean = 0.5 * (along / whole + limit), stiffness = ks * area[i];
+            double along = tl_v3_dot(TL_SHEAR_AT(c, i), f);
+            double mean = 0.5 * (along / whole + limit), stiffness = ks * c.area[i];
             double work = mean * (shear - limit) / (stiffness > 0 ? stiffness : 1);
             work = ((shear > most) & (stiffness > 0)) ? work : 0;
             dissipated[i] = work > 0 ? work : 0;
         }
         double flag = shear > most ? TL_POINT_SLIPPING : 0;
         mark[i] = t->total[i] < 0 ? TL_POINT_OPEN : flag;
-        f_n[i] = t->total[i] < 0 ? 0 : t->total[i];
-        f_x[i] = scale * t->x[i];
-        f_y[i] = scale * t->y[i];
-        f_z[i] = scale * t->z[i];
+        c.f_n[i] = t->total[i] < 0 ? 0 : t->total[i];
+        TL_PUT_SHEAR(c, i, scale, f);
         slip[i] = t->slip[i];
     }
 }
@@ -317,10 +268,8 @@ static void heal(const weakening *law, const tl_law_batch *batch, uint32_t begin
     }
 }
 
-static inline __attribute__((always_inline)) void update_lanes(const weakening *law,
-                                                               const tl_law_batch *batch,
-                                                               uint32_t begin, uint32_t lanes,
-                                                               const int form)
+TL_IN_LOOP void update_lanes(const weakening *law, const tl_law_batch *batch, uint32_t begin,
+                             uint32_t lanes, const int form)
 {
     trial t;
     double mark[STRIDE];
@@ -332,8 +281,7 @@ static inline __attribute__((always_inline)) void update_lanes(const weakening *
         settle(law, batch, begin, lanes, &t, mark, 0);
     if (law->healing != HEAL_NONE)
         heal(law, batch, begin, lanes, mark);
-    for (uint32_t i = 0; i < lanes; i++)
-        batch->flags[begin + i] = (uint32_t)(int32_t)mark[i];
+    tl_law_put_flags(batch, begin, lanes, mark);
 }
 
 TL_VECTORIZED static tl_status update(const void *self, const tl_law_batch *batch,
@@ -347,42 +295,19 @@ TL_VECTORIZED static tl_status update(const void *self, const tl_law_batch *batc
             update_lanes(law, batch, begin, lanes, EXPONENTIAL);
         else
             update_lanes(law, batch, begin, lanes, LINEAR);
+        tl_law_store_energy(batch, begin, lanes, law->kn, law->ks);
     }
-    if (batch->stored)
-        store_energy(law, batch);
     return TL_OK;
 }
 
-static void stiffness(const void *self, double *kn, double *ks)
-{
-    const weakening *law = self;
-    *kn = law->kn;
-    *ks = law->ks;
-}
+TL_LAW_STIFFNESS(weakening, kn, ks);
 
-static uint32_t pulls(const void *self)
-{
-    (void)self;
-    return TL_PULL_NONE;
-}
+static const tl_law_ops ops = TL_LAW_OPS(.pulls = tl_pulls_none);
 
-static const tl_law_ops ops = {.size = sizeof ops,
-                               .create = create,
-                               .update = update,
-                               .stiffness = stiffness,
-                               .destroy = free,
-                               .never_fails = true,
-                               .pulls = pulls};
-
-static const tl_kind kind = {
-    .size = sizeof kind,
-    .type = TL_KIND_LAW,
-    .name = "slip_weakening",
-    .doc = "Friction and cohesion that fall with slip, and may heal where it ends.",
-    TL_KIND_PARAMS(params, param_table),
-    TL_KIND_STATES(state_table),
-    .ops = &ops,
-};
+static const tl_kind kind =
+    TL_KIND(TL_KIND_LAW, ops, .name = "slip_weakening",
+            .doc = "Friction and cohesion that fall with slip, and may heal where it ends.",
+            TL_KIND_PARAMS(params, param_table), TL_KIND_STATES(state_table));
 
 TL_PLUGIN(kind, .id = "talus.slip_weakening", .version = TALUS_VERSION,
           .doc = "Slip-weakening joint law.", .licence = "BSD-3-Clause");

@@ -4,9 +4,7 @@
  *
  * c is in 1/m, c_w without a unit. A body that falls reaches the velocity sqrt(g / c). The force is a pure function of the
  * body, so the host may give bodies in batches of any size, to several threads. */
-#include <talus/plugin.h>
-
-#include <math.h>
+#include <talus/kit.h>
 
 /* What a script gives; the host fills it in from the table below, checked and with defaults. */
 typedef struct params {
@@ -44,24 +42,13 @@ static tl_status update(const void *self, const tl_damping_batch *batch, tl_repo
     return TL_OK;
 }
 
-/* How much shorter the stable time step becomes: not at all. */
-static double step_factor(const void *self)
-{
-    (void)self;
-    return 1;
-}
-
+/* The stable time step becomes no shorter. */
 static const tl_damping_ops ops = {
-    .size = sizeof ops, .update = update, .step_factor = step_factor, .never_fails = 1};
+    .size = sizeof ops, .update = update, .step_factor = tl_step_factor_one, .never_fails = 1};
 
-static const tl_kind kind = {
-    .size = sizeof kind,
-    .type = TL_KIND_DAMPING,
-    .name = "my_damping",
-    .doc = "Drag that grows with the square of the velocity.",
-    TL_KIND_PARAMS(params, param_table),
-    .ops = &ops,
-};
+static const tl_kind kind = TL_KIND(TL_KIND_DAMPING, ops, .name = "my_damping",
+                                    .doc = "Drag that grows with the square of the velocity.",
+                                    TL_KIND_PARAMS(params, param_table));
 
 TL_PLUGIN(kind, .id = "example.my_damping", .version = "1.0", .doc = "Quadratic drag.",
           .licence = "BSD-3-Clause");

@@ -53,14 +53,9 @@ static tl_status generate(const tl_host *host, const void *given)
 
 static const tl_generator_ops ops = {.size = sizeof ops, .generate = generate};
 
-static const tl_kind kind = {
-    .size = sizeof kind,
-    .type = TL_KIND_GENERATOR,
-    .name = "my_generator",
-    .doc = "Creates a wall of bricks.",
-    TL_KIND_PARAMS(params, param_table),
-    .ops = &ops,
-};
+static const tl_kind kind =
+    TL_KIND(TL_KIND_GENERATOR, ops, .name = "my_generator", .doc = "Creates a wall of bricks.",
+            TL_KIND_PARAMS(params, param_table));
 
 TL_PLUGIN(kind, .id = "example.my_generator", .version = "1.0", .doc = "Brick walls.",
           .licence = "BSD-3-Clause");

@@ -8,10 +8,7 @@
  * limit = f_n tan phi at its beginning and soft = f_n (tan peak - tan residual) / distance, slip grows by
  * (|f_t| - limit) / (ks A - soft). Where the friction falls faster than the spring unloads, it falls to the residual one at
  * once. */
-#include <talus/elementary.h>
-#include <talus/plugin.h>
-
-#define DEGREE (3.14159265358979323846 / 180)
+#include <talus/kit.h>
 
 /* What a script gives; the host fills it in from the table below, checked and with defaults. */
 typedef struct params {
@@ -19,10 +16,8 @@ typedef struct params {
 } params;
 
 static const tl_param param_table[] = {
-    TL_PARAM(TL_PARAM_REAL, params, kn, "Pa/m", "normal stiffness of the joint",
-             .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
-    TL_PARAM(TL_PARAM_REAL, params, ks, "Pa/m", "shear stiffness of the joint",
-             .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
+    TL_PARAM_KN(params),
+    TL_PARAM_KS(params),
     TL_PARAM(TL_PARAM_REAL, params, peak, "deg", "angle of friction before slip",
              .alias = "friction", .flags = TL_PARAM_REQUIRED | TL_PARAM_MAX_OPEN, .min = 0,
              .max = 90),
@@ -34,13 +29,7 @@ static const tl_param param_table[] = {
 
 /* What a contact point remembers; the host owns it, carries it over and writes it into files. */
 static const tl_state state_table[] = {
-    {.size = sizeof(tl_state),
-     .kind = TL_STATE_SCALAR,
-     .transfer = TL_TRANSFER_COPY,
-     .name = "slip",
-     .unit = "m",
-     .doc = "length of the slip so far",
-     .initial = 0},
+    TL_STATE(TL_STATE_SCALAR, "slip", "m", "length of the slip so far"),
 };
 
 /* Slip of a step in which the spring alone would take the force `trial`, above `limit`, N. `soft`: by how much the limit
@@ -59,8 +48,8 @@ static tl_status update(const void *self, const tl_law_batch *batch, tl_report *
 {
     (void)report;
     const params *p = self;
-    const double low = tl_tan(p->residual * DEGREE);
-    const double drop = fmax(0, tl_tan(p->peak * DEGREE) - low);
+    const double low = tl_tan(p->residual * TL_DEGREE);
+    const double drop = fmax(0, tl_tan(p->peak * TL_DEGREE) - low);
     double *slip = batch->state[0];
     for (uint32_t i = 0; i < batch->count; i++) {
         double area = batch->area[i], stiffness = p->ks * area;
@@ -102,24 +91,15 @@ static void stiffness(const void *self, double *kn, double *ks)
 }
 
 /* No normal force across a gap. */
-static uint32_t pulls(const void *self)
-{
-    (void)self;
-    return TL_PULL_NONE;
-}
+static const tl_law_ops ops = {.size = sizeof ops,
+                               .update = update,
+                               .stiffness = stiffness,
+                               .never_fails = 1,
+                               .pulls = tl_pulls_none};
 
-static const tl_law_ops ops = {
-    .size = sizeof ops, .update = update, .stiffness = stiffness, .never_fails = 1, .pulls = pulls};
-
-static const tl_kind kind = {
-    .size = sizeof kind,
-    .type = TL_KIND_LAW,
-    .name = "my_law",
-    .doc = "Coulomb friction that falls with slip.",
-    TL_KIND_PARAMS(params, param_table),
-    TL_KIND_STATES(state_table),
-    .ops = &ops,
-};
+static const tl_kind kind =
+    TL_KIND(TL_KIND_LAW, ops, .name = "my_law", .doc = "Coulomb friction that falls with slip.",
+            TL_KIND_PARAMS(params, param_table), TL_KIND_STATES(state_table));
 
 TL_PLUGIN(kind, .id = "example.my_law", .version = "1.0", .doc = "A slip-weakening joint law.",
           .licence = "BSD-3-Clause");

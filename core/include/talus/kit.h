@@ -1,0 +1,193 @@
+/* kit.h - what contact laws and dampings have in common, for whoever writes one.
+ *
+ * A plugin can do without: everything here is made of what plugin.h declares. Functions over columns take `lanes` points
+ * from `begin` on; a loop with a constant number of them is vectorised best. */
+#ifndef TALUS_KIT_H
+#define TALUS_KIT_H
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <talus/elementary.h>
+#include <talus/plugin.h>
+#include <talus/vmath.h>
+
+/* rad */
+#define TL_DEGREE (3.14159265358979323846 / 180)
+
+/* Before a function that a loop over columns calls: it becomes part of the loop, in each of the forms that TL_VECTORIZED
+ * makes of it. */
+#if defined(__GNUC__)
+#define TL_IN_LOOP static inline __attribute__((always_inline))
+#else
+#define TL_IN_LOOP static inline
+#endif
+
+/* Before a loop whose passes do not depend on each other. Compilers know of it with -fopenmp-simd. */
+#if defined(__cplusplus)
+#define TL_EACH_ALONE
+#else
+#define TL_EACH_ALONE _Pragma("omp simd")
+#endif
+#if defined(__GNUC__)
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunknown-pragmas"
+#endif
+
+/* ---------------------------------------------------------------- create ----------------- */
+
+/* The end of a `create`: *self is a copy of `size` bytes, which C's `free` destroys. */
+static inline tl_status tl_keep(const void *made, size_t size, void **self, tl_report *report)
+{
+    void *copy = malloc(size);
+    if (!copy) {
+        snprintf(report->text, sizeof report->text, "out of memory");
+        return TL_E_MEMORY;
+    }
+    memcpy(copy, made, size);
+    *self = copy;
+    return TL_OK;
+}
+
+/* ---------------------------------------------------------------- joint laws ------------- */
+
+/* Rows of the table of parameters of a struct `owner` with the members kn and ks. */
+#define TL_PARAM_KN(owner)                                                                         \
+    TL_PARAM(TL_PARAM_REAL, owner, kn, "Pa/m", "normal stiffness of the joint",                    \
+             .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY)
+#define TL_PARAM_KS(owner)                                                                         \
+    TL_PARAM(TL_PARAM_REAL, owner, ks, "Pa/m", "shear stiffness of the joint",                     \
+             .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY)
+
+/* Defines `stiffness`, for which the members kn_ and ks_ of the struct `type` are the bounds. */
+#define TL_LAW_STIFFNESS(type, kn_, ks_)                                                           \
+    static void stiffness(const void *self, double *kn, double *ks)                                \
+    {                                                                                              \
+        *kn = ((const type *)self)->kn_;                                                           \
+        *ks = ((const type *)self)->ks_;                                                           \
+    }                                                                                              \
+    _Static_assert(sizeof(type) > 0, "a struct")
+
+/* `pulls` of a law whose parameters do not change the answer. */
+static inline uint32_t tl_pulls_any(const void *self)
+{
+    (void)self;
+    return TL_PULL_ANY;
+}
+
+static inline uint32_t tl_pulls_bonded(const void *self)
+{
+    (void)self;
+    return TL_PULL_BONDED;
+}
+
+static inline uint32_t tl_pulls_none(const void *self)
+{
+    (void)self;
+    return TL_PULL_NONE;
+}
+
+/* Operations of a law that never fails and has made itself with tl_keep: `create`, `update`, `stiffness` and what is given. */
+#define TL_LAW_OPS(...)                                                                            \
+    {                                                                                              \
+        .size = sizeof(tl_law_ops), .create = create, .update = update, .stiffness = stiffness,    \
+        .destroy = free, .never_fails = 1, __VA_ARGS__                                             \
+    }
+
+/* Columns of a batch from one point on. */
+typedef struct tl_law_columns {
+    const double *area, *closure, *f_n0, *du_n, *du_x, *du_y, *du_z;
+    double *f_n, *f_x, *f_y, *f_z;
+} tl_law_columns;
+
+TL_IN_LOOP tl_law_columns tl_law_columns_from(const tl_law_batch *batch, uint32_t begin)
+{
+    tl_law_columns c;
+    c.area = batch->area + begin;
+    c.closure = batch->closure + begin;
+    c.f_n0 = batch->f_n0 + begin;
+    c.du_n = batch->du_n + begin;
+    c.du_x = batch->du_s[0] + begin;
+    c.du_y = batch->du_s[1] + begin;
+    c.du_z = batch->du_s[2] + begin;
+    c.f_n = batch->f_n + begin;
+    c.f_x = batch->f_s[0] + begin;
+    c.f_y = batch->f_s[1] + begin;
+    c.f_z = batch->f_s[2] + begin;
+    return c;
+}
+
+/* Reading and writing columns. Macros, not functions: what `omp simd` says of a loop holds, for clang, of accesses that stand
+ * in the loop itself. */
+
+/* Shear force of a point, N, on block B. */
+#define TL_SHEAR_AT(c, i) tl_v3((c).f_x[i], (c).f_y[i], (c).f_z[i])
+/* The same after the motion of the step, if nothing slips: f_s - spring du_s, eq. (7). `spring`: ks A, N/m. */
+#define TL_TRIAL_AT(c, i, spring)                                                                  \
+    tl_v3((c).f_x[i] - (spring) * (c).du_x[i], (c).f_y[i] - (spring) * (c).du_y[i],                \
+          (c).f_z[i] - (spring) * (c).du_z[i])
+/* Puts `scale` times a force into the columns. */
+#define TL_PUT_SHEAR(c, i, scale, force)                                                           \
+    ((c).f_x[i] = (scale) * (force).x, (c).f_y[i] = (scale) * (force).y,                           \
+     (c).f_z[i] = (scale) * (force).z)
+
+/* Work of slip, J, of a spring that would be at the force `trial`, of size `size`, and is brought down to `limit`: the mean
+ * of the forces before (`along`: their product with the trial) and after, times the slip. `spring`: ks A. */
+TL_IN_LOOP double tl_law_slip_work(double along, double size, double limit, double spring)
+{
+    double mean = 0.5 * (along / size + limit);
+    return mean * ((size - limit) / (spring > 0 ? spring : 1));
+}
+
+/* Puts flags that were noted as numbers into the batch: a loop over columns of two widths is not vectorised for every
+ * machine. */
+TL_IN_LOOP void tl_law_put_flags(const tl_law_batch *batch, uint32_t begin, uint32_t lanes,
+                                 const double *mark)
+{
+    for (uint32_t i = 0; i < lanes; i++)
+        batch->flags[begin + i] = (uint32_t)(int32_t)mark[i];
+}
+
+/* Puts the elastic energy, J, of linear springs kn and ks into the batch, if it is asked for; 0 for a lane of no area. */
+TL_IN_LOOP void tl_law_store_energy(const tl_law_batch *batch, uint32_t begin, uint32_t lanes,
+                                    double kn, double ks)
+{
+    if (!batch->stored)
+        return;
+    const tl_law_columns c = tl_law_columns_from(batch, begin);
+    double *stored = batch->stored + begin;
+    const double half_n = 0.5 / kn, half_s = 0.5 / ks;
+    TL_EACH_ALONE
+    for (uint32_t i = 0; i < lanes; i++) {
+        double inverse = c.area[i] > 0 ? 1 / (c.area[i] > 0 ? c.area[i] : 1) : 0;
+        double shear2 = tl_v3_norm2(TL_SHEAR_AT(c, i));
+        stored[i] = (half_n * c.f_n[i] * c.f_n[i] + half_s * shear2) * inverse;
+    }
+}
+
+/* ---------------------------------------------------------------- dampings --------------- */
+
+/* `step_factor` of a damping that leaves the stable time step as it is. */
+static inline double tl_step_factor_one(const void *self)
+{
+    (void)self;
+    return 1;
+}
+
+/* `update` of a viscous damping whose coefficient, the same for all bodies, is its first state. */
+static inline tl_status tl_update_alpha_state(const void *self, const tl_damping_batch *batch,
+                                              tl_report *report)
+{
+    (void)self;
+    (void)report;
+    double alpha = *batch->state[0];
+    for (uint32_t i = 0; i < batch->count; i++)
+        batch->alpha[i] = alpha;
+    return TL_OK;
+}
+
+#if defined(__GNUC__)
+#pragma GCC diagnostic pop
+#endif
+#endif
