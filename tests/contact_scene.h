@@ -302,4 +302,15 @@ static inline tl_vec3 scene_arm(const tl_model *m, size_t point)
     return tl_columns_get(lanes->arm, (point - m->detect->contacts.point_start[0]) / TL_LANES);
 }
 
+/* Cuts all visible blocks by the plane through a point, the next one of its joint set. */
+SCENE_UNUSED static void scene_cut(tl_model *m, const char *joint, tl_vec3 normal, tl_vec3 point)
+{
+    tl_stage stage;
+    scene_ok(m, tl_stage_begin(m, &stage));
+    uint32_t number = tl_joint_intern(m, joint);
+    tl_tag tag = {number, ++m->joints[number - 1].planes};
+    scene_ok(m, tl_stage_cut(&stage, tl_v3_unit(normal), point, tag, 1));
+    scene_ok(m, tl_stage_commit(&stage));
+}
+
 #endif

@@ -11,23 +11,14 @@ local function row(count)
     return model
 end
 
-local function bodies(model)
-    local seen, count = {}, 0
-    for _, block in ipairs(model:blocks()) do
-        if not seen[block.body] then
-            seen[block.body] = true
-            count = count + 1
-        end
-    end
-    return count
-end
+local bodies = require "bodies"
 
 -- The middle of five goes: two bodies of two remain.
 local model = row(5)
 model:blocks():join()
-check.equal(bodies(model), 1)
+check.equal(bodies(model:blocks()), 1)
 model:blocks { id = 3 }:delete()
-check.equal(bodies(model), 2)
+check.equal(bodies(model:blocks()), 2)
 check.equal(model:blocks { id = 1 }[1].body, 1)
 check.equal(model:blocks { id = 2 }[1].body, 1)
 check.equal(model:blocks { id = 5 }[1].body, 4)
@@ -44,7 +35,7 @@ model = row(4)
 model:blocks():join()
 model:blocks():set { angular_velocity = { 0, 0, 1 } }
 model:blocks { id = 4 }:delete()
-check.equal(bodies(model), 1)
+check.equal(bodies(model:blocks()), 1)
 -- each block still has the velocity it had as a part of the turning body: about x = 2, then x = 1.5
 check.near(model:blocks { id = 2 }[1].velocity[2], -0.5, 1e-12)
 check.near(model:blocks { id = 3 }[1].velocity[2], 0.5, 1e-12)
@@ -64,7 +55,7 @@ model = row(3)
 model:blocks():join()
 model:generate("joint", { joint = "J", dip = 90, dip_direction = 90, origin = { 1.5, 0, 0 } })
 check.equal(#model:blocks(), 4)
-check.equal(bodies(model), 2)
+check.equal(bodies(model:blocks()), 2)
 check.near(model:blocks():sum("mass"), 6000, 1e-9)
 local west = model:blocks { where = function(b) return b.centroid[1] < 1.5 end }
 check.equal(#west, 2)
@@ -75,7 +66,7 @@ model = row(3)
 model:blocks():join()
 model:generate("joint", { joint = "J", dip = 90, dip_direction = 90, origin = { 2, 0, 0 } })
 check.equal(#model:blocks(), 3)
-check.equal(bodies(model), 2)
+check.equal(bodies(model:blocks()), 2)
 
 -- Blocks joined across a joint stay so when another joint cuts them.
 model = talus.model {}
@@ -84,7 +75,7 @@ model:generate("joint", { joint = "J", dip = 90, dip_direction = 90, origin = { 
 model:blocks():join()
 model:generate("joint", { joint = "K", dip = 0, dip_direction = 0, origin = { 0, 0, 0.5 } })
 check.equal(#model:blocks(), 4)
-check.equal(bodies(model), 2)
+check.equal(bodies(model:blocks()), 2)
 
 -- A plane through a body that hides a member leaves a crack: the body hangs together around it.
 model = talus.model {}
@@ -95,7 +86,7 @@ model:blocks { id = 2 }:hide()
 model:generate("joint", { joint = "J", dip = 90, dip_direction = 90, origin = { 1, 0, 0 } })
 model:blocks { hidden = true }:show()
 check.equal(#model:blocks(), 3)
-check.equal(bodies(model), 1)
+check.equal(bodies(model:blocks()), 1)
 
 -- Persistence is drawn once for a body and a plane: both members are cut, or none.
 local cut, whole = 0, 0
@@ -106,7 +97,7 @@ for seed = 1, 40 do
     model:blocks():join()
     model:generate("joint",
         { joint = "J", dip = 0, dip_direction = 0, origin = { 0, 0, 0.5 }, persistence = 0.5 })
-    check.equal(bodies(model), #model:blocks() / 2)
+    check.equal(bodies(model:blocks()), #model:blocks() / 2)
     cut = cut + (#model:blocks() == 4 and 1 or 0)
     whole = whole + (#model:blocks() == 2 and 1 or 0)
 end

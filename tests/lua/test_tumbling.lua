@@ -2,6 +2,7 @@
 -- changes how blocks tumble. Hulls fall on each other and on a floor, all of it by edges, vertices and faces; as long as
 -- the motion is not chaotic, the places agree. Nothing that falls gains energy.
 local check = require "check"
+local shapes = require "shapes"
 local talus = require "talus"
 
 local HULLS = 54
@@ -33,17 +34,7 @@ local function rotation(p, q, r)
         m[axis][axis], m[i][i], m[j][j], m[i][j], m[j][i] = 1, c, c, -s, s
         return m
     end
-    local function times(a, b)
-        local m = {}
-        for i = 1, 3 do
-            m[i] = {}
-            for j = 1, 3 do
-                m[i][j] = a[i][1] * b[1][j] + a[i][2] * b[2][j] + a[i][3] * b[3][j]
-            end
-        end
-        return m
-    end
-    return times(about(1, p), times(about(2, q), about(3, r)))
+    return shapes.product(about(1, p), shapes.product(about(2, q), about(3, r)))
 end
 
 local none = { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } }

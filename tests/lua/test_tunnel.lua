@@ -2,16 +2,7 @@
 local talus = require "talus"
 local check = require "check"
 
-local function bodies(selection)
-    local seen, count = {}, 0
-    for _, block in ipairs(selection) do
-        if not seen[block.body] then
-            seen[block.body] = true
-            count = count + 1
-        end
-    end
-    return count
-end
+local bodies = require "bodies"
 
 local function rock(low, high)
     local model = talus.model { gravity = { 0, 0, -10 } }

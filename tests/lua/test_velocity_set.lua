@@ -7,12 +7,7 @@ local KN = 1e8
 
 -- A cube pressed on a fixed block by 1e-4 m and sheared by 5e-5 m.
 local function loaded()
-    local model = talus.model { gravity = { 0, 0, 0 } }
-    model:generate("box", { min = { -2, -2, -1 }, max = { 3, 3, 0 }, density = 2000,
-        group = "base" })
-    model:generate("box", { min = { 0, 0, 0 }, max = { 1, 1, 1 }, density = 2000, group = "cube" })
-    local base, cube = model:blocks { group = "base" }, model:blocks { group = "cube" }
-    base:fix()
+    local model, base, cube = require "cube_on_block"({ -2, -2, -1 }, { 3, 3, 0 })
     model:joint("*", "coulomb", { kn = KN, ks = KN, friction = 45 })
     model:timestep { dt = 1e-3 }
     cube:drive { velocity = { 5e-4, 0, -1e-3 } }

@@ -137,16 +137,6 @@ TEST(contacts_survive_changes_of_other_blocks)
 
 /* ---------------------------------------------------------------- joints ----------------- */
 
-static void cut(tl_model *m, const char *joint, tl_vec3 normal, tl_vec3 point)
-{
-    tl_stage stage;
-    scene_ok(m, tl_stage_begin(m, &stage));
-    uint32_t number = tl_joint_intern(m, joint);
-    tl_tag tag = {number, ++m->joints[number - 1].planes};
-    scene_ok(m, tl_stage_cut(&stage, tl_v3_unit(normal), point, tag, 1));
-    scene_ok(m, tl_stage_commit(&stage));
-}
-
 static const char *joint_between(tl_model *m, uint32_t a, uint32_t b)
 {
     uint32_t c = scene_contact(m, a, b);
@@ -158,8 +148,8 @@ TEST(contact_takes_the_joint_of_the_touching_faces)
 {
     tl_model *m = scene_model(1);
     scene_box(m, tl_v3(0, 0, 0), tl_v3(1, 1, 2));
-    cut(m, "bed", tl_v3(0, 0, 1), tl_v3(0, 0, 1));
-    cut(m, "bed", tl_v3(0, 0, 1), tl_v3(0, 0, 1.5));
+    scene_cut(m, "bed", tl_v3(0, 0, 1), tl_v3(0, 0, 1));
+    scene_cut(m, "bed", tl_v3(0, 0, 1), tl_v3(0, 0, 1.5));
     scene_box(m, tl_v3(0, 0, 2), tl_v3(1, 1, 3));  /* on the uncut top: nothing */
     scene_box(m, tl_v3(0, 0, -1), tl_v3(1, 1, 0)); /* below the uncut bottom */
     scene_law(m, "coulomb", KN, KN, 30);
@@ -180,7 +170,7 @@ TEST(contact_takes_the_joint_of_the_touching_faces)
     /* a block made on a cut face takes the cut's joint */
     m = scene_model(1);
     scene_box(m, tl_v3(0, 0, 0), tl_v3(1, 1, 2));
-    cut(m, "fault", tl_v3(0, 0, 1), tl_v3(0, 0, 1));
+    scene_cut(m, "fault", tl_v3(0, 0, 1), tl_v3(0, 0, 1));
     uint32_t top = tl_block_centroid(m, 0).z > 1 ? 0U : 1U;
     tl_id id = m->blocks.id[top];
     scene_ok(m, tl_blocks_delete(m, &id, 1));
@@ -199,8 +189,8 @@ TEST(of_two_joints_the_older_one_rules)
         tl_model *m = scene_model(1);
         scene_box(m, tl_v3(0, 0, 0), tl_v3(1, 1, 2));
         scene_box(m, tl_v3(5, 0, 3), tl_v3(6, 1, 5));
-        cut(m, "older", tl_v3(0, 0, 1), tl_v3(0, 0, order ? 4 : 1));
-        cut(m, "younger", tl_v3(0, 0, 1), tl_v3(0, 0, order ? 1 : 4));
+        scene_cut(m, "older", tl_v3(0, 0, 1), tl_v3(0, 0, order ? 4 : 1));
+        scene_cut(m, "younger", tl_v3(0, 0, 1), tl_v3(0, 0, order ? 1 : 4));
         scene_law(m, "coulomb", KN, KN, 30);
         /* the lower half of the first box below the upper half of the second */
         tl_id gone[2];

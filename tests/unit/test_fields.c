@@ -1,5 +1,6 @@
 /* test_fields.c - fields and states of many contacts and points at once, with laws whose states clash in their names. */
 #include "check.h"
+#include "values.h"
 
 #include "plugin/registry.h"
 
@@ -90,10 +91,7 @@ static tl_plugin plugin = {.size = sizeof plugin,
 static void create_box(tl_model *m, double x, double y, double z, double width)
 {
     const double min[] = {x, y, z}, max[] = {x + width, y + width, z + 1};
-    const tl_value values[] = {
-        {.key = "min", .type = TL_VALUE_NUMBERS, .data = min, .count = 3},
-        {.key = "max", .type = TL_VALUE_NUMBERS, .data = max, .count = 3},
-        {.key = "density", .type = TL_VALUE_NUMBER, .number = 1000, .text = NULL}};
+    const tl_value values[] = {vector("min", min), vector("max", max), number("density", 1000)};
     tl_args args = {values, 3};
     tl_generate_summary summary;
     CHECK_INT(tl_generate(m, "box", &args, &summary), TL_OK);
@@ -102,10 +100,8 @@ static void create_box(tl_model *m, double x, double y, double z, double width)
 static void cut(tl_model *m, const char *joint, double z)
 {
     const double at[] = {0, 0, z};
-    const tl_value values[] = {{.key = "joint", .type = TL_VALUE_STRING, .text = joint},
-                               {.key = "dip", .type = TL_VALUE_NUMBER, .number = 0},
-                               {.key = "dip_direction", .type = TL_VALUE_NUMBER, .number = 0},
-                               {.key = "origin", .type = TL_VALUE_NUMBERS, .data = at, .count = 3}};
+    const tl_value values[] = {text("joint", joint), number("dip", 0), number("dip_direction", 0),
+                               vector("origin", at)};
     tl_args args = {values, 4};
     tl_generate_summary summary;
     CHECK_INT(tl_generate(m, "joint", &args, &summary), TL_OK);

@@ -3,6 +3,7 @@
 #include "base/random.h"
 #include "check.h"
 #include "model/model.h"
+#include "values.h"
 
 #include <talus/vmath.h>
 
@@ -10,29 +11,6 @@ enum { SEEDS = 200, PLANES = 15 };
 
 /* A mean is right within three standard errors. */
 #define ERRORS 3
-
-static tl_value number(const char *key, double value)
-{
-    return (tl_value){.key = key, .type = TL_VALUE_NUMBER, .number = value};
-}
-
-static tl_value text(const char *key, const char *value)
-{
-    return (tl_value){.key = key, .type = TL_VALUE_STRING, .text = value};
-}
-
-static tl_value vector(const char *key, const double *data)
-{
-    return (tl_value){.key = key, .type = TL_VALUE_NUMBERS, .data = data, .count = 3};
-}
-
-static char remark[512];
-
-static void keep_remark(void *user, const char *line)
-{
-    (void)user;
-    snprintf(remark, sizeof remark, "%s", line);
-}
 
 static tl_generate_summary generate(tl_model *m, const char *name, const tl_value *values,
                                     size_t count)

@@ -106,12 +106,7 @@ TEST(parallel_faces_that_do_not_meet_change_nothing)
 
 static uint32_t cut(tl_model *m, const char *joint, tl_vec3 normal, tl_vec3 point, bool keep_below)
 {
-    tl_stage stage;
-    scene_ok(m, tl_stage_begin(m, &stage));
-    uint32_t number = tl_joint_intern(m, joint);
-    tl_tag tag = {number, ++m->joints[number - 1].planes};
-    scene_ok(m, tl_stage_cut(&stage, tl_v3_unit(normal), point, tag, 1));
-    scene_ok(m, tl_stage_commit(&stage));
+    scene_cut(m, joint, normal, point);
     /* the part on the wrong side goes */
     for (uint32_t row = 0; row < m->blocks.table.rows; row++) {
         double side = tl_v3_dot(normal, tl_v3_sub(tl_block_centroid(m, row), point));
@@ -122,7 +117,7 @@ static uint32_t cut(tl_model *m, const char *joint, tl_vec3 normal, tl_vec3 poin
             break;
         }
     }
-    return number;
+    return tl_joint_intern(m, joint);
 }
 
 /* A vertex whose own faces are steep, and a nearly level face of a joint that lies higher: the level one

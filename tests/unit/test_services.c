@@ -2,29 +2,7 @@
  * leaves no trace. */
 #include "check.h"
 #include "model/model.h"
-
-static tl_value number(const char *key, double value)
-{
-    return (tl_value){.key = key, .type = TL_VALUE_NUMBER, .number = value};
-}
-
-static tl_value text(const char *key, const char *value)
-{
-    return (tl_value){.key = key, .type = TL_VALUE_STRING, .text = value};
-}
-
-static tl_value vector(const char *key, const double *data)
-{
-    return (tl_value){.key = key, .type = TL_VALUE_NUMBERS, .data = data, .count = 3};
-}
-
-static char remark[512];
-
-static void keep_remark(void *user, const char *line)
-{
-    (void)user;
-    snprintf(remark, sizeof remark, "%s", line);
-}
+#include "values.h"
 
 static tl_model *model_new(int64_t seed)
 {

@@ -1,5 +1,6 @@
 /* test_views.c - columns without a copy: they hold what the fields tell, and the structure tells when rows change. */
 #include "check.h"
+#include "values.h"
 
 #include <stdlib.h>
 #include <talus/views.h>
@@ -8,10 +9,8 @@
 static void create_box(tl_model *m, double x, double z)
 {
     const double min[] = {x, 0, z}, max[] = {x + 1, 1, z + 1};
-    const tl_value values[] = {
-        {.key = "min", .type = TL_VALUE_NUMBERS, .data = min, .count = 3},
-        {.key = "max", .type = TL_VALUE_NUMBERS, .data = max, .count = 3},
-        {.key = "density", .type = TL_VALUE_NUMBER, .number = 2000 + 100 * z}};
+    const tl_value values[] = {vector("min", min), vector("max", max),
+                               number("density", 2000 + 100 * z)};
     tl_args args = {values, 3};
     tl_generate_summary summary;
     CHECK_INT(tl_generate(m, "box", &args, &summary), TL_OK);

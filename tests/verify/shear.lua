@@ -1,6 +1,5 @@
 -- Direct shear of a joint under constant normal stress, there and back again.
-package.path = "tests/verify/?.lua;scripts/?.lua;" .. package.path -- run in the source root
-local talus = require "talus"
+package.path = "tests/verify/?.lua;tests/lua/?.lua;scripts/?.lua;" .. package.path -- run in the source root
 local figures = require "check_figures"
 local case = require("reference_statics")["S.shear"]
 
@@ -12,12 +11,7 @@ local SHOWN = 10      -- points of the figure between two points of the path
 -- The upper cube of 1 m lies within the lower block, so that their common area stays; a load holds
 -- the normal stress. The lower block is driven, the upper one can only move up and down.
 local function build(row)
-    local model = talus.model { gravity = { 0, 0, 0 } }
-    model:generate("box", { min = { -1, -1, -1 }, max = { 2, 2, 0 }, density = 2000,
-        group = "lower" })
-    model:generate("box", { min = { 0, 0, 0 }, max = { 1, 1, 1 }, density = 2000, group = "upper" })
-    local lower, upper = model:blocks { group = "lower" }, model:blocks { group = "upper" }
-    lower:fix()
+    local model, lower, upper = require "cube_on_block"({ -1, -1, -1 }, { 2, 2, 0 })
     upper:fix { x = true, y = true, rotation = true }
     upper:load { force = { 0, 0, -row.sigma } }
     model:joint("*", "coulomb", { kn = row.ks, ks = row.ks, friction = row.phi_deg,

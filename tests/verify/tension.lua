@@ -1,6 +1,5 @@
 -- A bonded joint is pulled apart: it carries tension up to its strength, then nothing for good.
-package.path = "tests/verify/?.lua;scripts/?.lua;" .. package.path -- run in the source root
-local talus = require "talus"
+package.path = "tests/verify/?.lua;tests/lua/?.lua;scripts/?.lua;" .. package.path -- run in the source root
 local figures = require "check_figures"
 local case = require("reference_statics")["S.tension"]
 
@@ -11,12 +10,7 @@ local DT = 1e-4         -- s; everything is driven, so any step will do
 local STEPS = 100       -- from one opening to the next
 
 local function build()
-    local model = talus.model { gravity = { 0, 0, 0 } }
-    model:generate("box", { min = { -1, -1, -1 }, max = { 2, 2, 0 }, density = 2000,
-        group = "lower" })
-    model:generate("box", { min = { 0, 0, 0 }, max = { 1, 1, 1 }, density = 2000, group = "upper" })
-    local lower, upper = model:blocks { group = "lower" }, model:blocks { group = "upper" }
-    lower:fix()
+    local model, lower, upper = require "cube_on_block"({ -1, -1, -1 }, { 2, 2, 0 })
     -- The cohesion is out of reach: the joint fails in tension.
     model:joint("*", "coulomb_tensile", { kn = case.kn, ks = case.kn, friction = 30,
         cohesion = 100 * case.tension, tension = case.tension })

@@ -1,7 +1,6 @@
 -- Two blocks with a loaded joint turn together as one rigid piece: the forces of the joint turn
 -- with them.
-package.path = "tests/verify/?.lua;scripts/?.lua;" .. package.path -- run in the source root
-local talus = require "talus"
+package.path = "tests/verify/?.lua;tests/lua/?.lua;scripts/?.lua;" .. package.path -- run in the source root
 local figures = require "check_figures"
 
 local FORCE = 1e-9             -- relative; the paper's own formula grows by 1.2e-3 in STEPS steps
@@ -25,12 +24,7 @@ end
 
 -- Presses and shears a joint with normal z, along x.
 local function build()
-    local model = talus.model { gravity = { 0, 0, 0 } }
-    model:generate("box", { min = { -2, -2, -2 }, max = { 2, 2, 0 }, density = 2000,
-        group = "lower" })
-    model:generate("box", { min = { 0, 0, 0 }, max = { 1, 1, 1 }, density = 2000, group = "upper" })
-    local lower, upper = model:blocks { group = "lower" }, model:blocks { group = "upper" }
-    lower:fix()
+    local model, lower, upper = require "cube_on_block"({ -2, -2, -2 }, { 2, 2, 0 })
     model:joint("*", "coulomb", { kn = STIFFNESS, ks = STIFFNESS, friction = 45 })
     model:timestep { dt = DT }
     upper:drive { velocity = { 0, 0, -CLOSURE / (100 * DT) } }

@@ -1,4 +1,4 @@
-/* kit.h - what contact laws and dampings have in common, for whoever writes one.
+/* kit.h - what contact laws, dampings and generators have in common, for whoever writes one.
  *
  * A plugin can do without: everything here is made of what plugin.h declares. Functions over columns take `lanes` points
  * from `begin` on; a loop with a constant number of them is vectorised best. */
@@ -186,6 +186,20 @@ static inline tl_status tl_update_alpha_state(const void *self, const tl_damping
         batch->alpha[i] = alpha;
     return TL_OK;
 }
+
+/* ---------------------------------------------------------------- generators ------------- */
+
+/* Rows of the table of parameters of a struct `owner` with the members density and group, of "block" or "blocks". */
+#define TL_PARAMS_ROCK(owner, made)                                                                \
+    TL_PARAM(TL_PARAM_REAL, owner, density, "kg/m3", "density of the " made,                       \
+             .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),           \
+        TL_PARAM(TL_PARAM_STRING, owner, group, "", "group of the " made, .def_text = "rock")
+
+/* A tl_kind, as TL_KIND, of a generator that is the function `generate_`. */
+#define TL_GENERATOR_KIND(generate_, ...)                                                          \
+    TL_KIND(TL_KIND_GENERATOR,                                                                     \
+            ((const tl_generator_ops){.size = sizeof(tl_generator_ops), .generate = generate_}),   \
+            __VA_ARGS__)
 
 #if defined(__GNUC__)
 #pragma GCC diagnostic pop

@@ -6,6 +6,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <talus/kit.h>
 #include <talus/version.h>
 
 #define FORMAT "talus block model"
@@ -345,11 +346,9 @@ static tl_status generate(const tl_host *host, const void *given)
     return status;
 }
 
-static const tl_generator_ops ops = {.size = sizeof ops, .generate = generate};
-
-static const tl_kind kind = TL_KIND(TL_KIND_GENERATOR, ops, .name = "blocks",
-                                    .doc = "Creates the blocks of a block model in JSON.",
-                                    TL_KIND_PARAMS(params, param_table));
+static const tl_kind kind = TL_GENERATOR_KIND(generate, .name = "blocks",
+                                              .doc = "Creates the blocks of a block model in JSON.",
+                                              TL_KIND_PARAMS(params, param_table));
 
 TL_PLUGIN(kind, .id = "talus.blocks", .version = TALUS_VERSION, .doc = "Block model generator.",
           .licence = "BSD-3-Clause");

@@ -1,5 +1,5 @@
 /* box.c - generator "box": one block, an axis-aligned box. */
-#include <talus/plugin.h>
+#include <talus/kit.h>
 #include <talus/version.h>
 
 #include <math.h>
@@ -13,9 +13,7 @@ typedef struct params {
 static const tl_param param_table[] = {
     TL_PARAM(TL_PARAM_VEC3, params, min, "m", "lowest corner", .flags = TL_PARAM_REQUIRED),
     TL_PARAM(TL_PARAM_VEC3, params, max, "m", "highest corner", .flags = TL_PARAM_REQUIRED),
-    TL_PARAM(TL_PARAM_REAL, params, density, "kg/m3", "density of the block",
-             .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
-    TL_PARAM(TL_PARAM_STRING, params, group, "", "group of the block", .def_text = "rock"),
+    TL_PARAMS_ROCK(params, "block"),
 };
 
 static tl_status generate(const tl_host *host, const void *given)
@@ -30,11 +28,9 @@ static tl_status generate(const tl_host *host, const void *given)
     return host->create_box(host, p->min, p->max, p->density, p->group);
 }
 
-static const tl_generator_ops ops = {.size = sizeof ops, .generate = generate};
-
 static const tl_kind kind =
-    TL_KIND(TL_KIND_GENERATOR, ops, .name = "box", .doc = "Creates one block, an axis-aligned box.",
-            TL_KIND_PARAMS(params, param_table));
+    TL_GENERATOR_KIND(generate, .name = "box", .doc = "Creates one block, an axis-aligned box.",
+                      TL_KIND_PARAMS(params, param_table));
 
 TL_PLUGIN(kind, .id = "talus.box", .version = TALUS_VERSION, .doc = "Box generator.",
           .licence = "BSD-3-Clause");

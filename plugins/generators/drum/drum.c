@@ -1,6 +1,6 @@
 /* drum.c - generator "drum": one block, an upright prism whose ends are regular polygons inscribed in
  * circles about an axis. Its volume is sides/2 radius^2 sin(360 deg / sides) height. */
-#include <talus/plugin.h>
+#include <talus/kit.h>
 #include <talus/version.h>
 #include <talus/vmath.h>
 
@@ -25,9 +25,7 @@ static const tl_param param_table[] = {
              .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
     TL_PARAM(TL_PARAM_INT, params, sides, "", "number of flat sides", .def = {12}, .min = 3,
              .max = MOST_SIDES),
-    TL_PARAM(TL_PARAM_REAL, params, density, "kg/m3", "density of the block",
-             .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
-    TL_PARAM(TL_PARAM_STRING, params, group, "", "group of the block", .def_text = "rock"),
+    TL_PARAMS_ROCK(params, "block"),
 };
 
 static tl_status generate(const tl_host *host, const void *given)
@@ -52,11 +50,9 @@ static tl_status generate(const tl_host *host, const void *given)
     return host->create_hull(host, corner, 2 * sides, p->density, p->group);
 }
 
-static const tl_generator_ops ops = {.size = sizeof ops, .generate = generate};
-
-static const tl_kind kind = TL_KIND(TL_KIND_GENERATOR, ops, .name = "drum",
-                                    .doc = "Creates one block: a cylinder of flat sides.",
-                                    TL_KIND_PARAMS(params, param_table));
+static const tl_kind kind = TL_GENERATOR_KIND(generate, .name = "drum",
+                                              .doc = "Creates one block: a cylinder of flat sides.",
+                                              TL_KIND_PARAMS(params, param_table));
 
 TL_PLUGIN(kind, .id = "talus.drum", .version = TALUS_VERSION, .doc = "Drum generator.",
           .licence = "BSD-3-Clause");

@@ -4,6 +4,7 @@
 #include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
+#include <talus/kit.h>
 #include <talus/version.h>
 #include <talus/vmath.h>
 
@@ -22,9 +23,7 @@ static const tl_param param_table[] = {
              .def = {1}, .flags = TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
     TL_PARAM(TL_PARAM_VEC3, params, translate, "m", "added to the scaled coordinates",
              .def = {0, 0, 0}),
-    TL_PARAM(TL_PARAM_REAL, params, density, "kg/m3", "density of the blocks",
-             .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
-    TL_PARAM(TL_PARAM_STRING, params, group, "", "group of the blocks", .def_text = "rock"),
+    TL_PARAMS_ROCK(params, "blocks"),
 };
 
 /* Whether a file's name ends in `ending`, in letters of any case. */
@@ -61,12 +60,10 @@ static tl_status generate(const tl_host *host, const void *given)
     return status;
 }
 
-static const tl_generator_ops ops = {.size = sizeof ops, .generate = generate};
-
 static const tl_kind kind =
-    TL_KIND(TL_KIND_GENERATOR, ops, .name = "import",
-            .doc = "Creates a block of each closed convex solid in an STL or OBJ file.",
-            TL_KIND_PARAMS(params, param_table));
+    TL_GENERATOR_KIND(generate, .name = "import",
+                      .doc = "Creates a block of each closed convex solid in an STL or OBJ file.",
+                      TL_KIND_PARAMS(params, param_table));
 
 TL_PLUGIN(kind, .id = "talus.import_solid", .version = TALUS_VERSION,
           .doc = "Import of closed convex solids.", .licence = "BSD-3-Clause");

@@ -3,7 +3,7 @@
  * The plane's upward normal is (sin dip sin dd, sin dip cos dd, cos dip), dd clockwise from north. Each
  * block in its path is cut with the probability `persistence`. The plane gets the next number of
  * its joint set. */
-#include <talus/plugin.h>
+#include <talus/kit.h>
 #include <talus/version.h>
 #include <talus/vmath.h>
 
@@ -49,11 +49,9 @@ static tl_status generate(const tl_host *host, const void *given)
     return status;
 }
 
-static const tl_generator_ops ops = {.size = sizeof ops, .generate = generate};
-
 static const tl_kind kind =
-    TL_KIND(TL_KIND_GENERATOR, ops, .name = "joint", .doc = "Cuts the visible blocks by one plane.",
-            TL_KIND_PARAMS(params, param_table));
+    TL_GENERATOR_KIND(generate, .name = "joint", .doc = "Cuts the visible blocks by one plane.",
+                      TL_KIND_PARAMS(params, param_table));
 
 TL_PLUGIN(kind, .id = "talus.joint", .version = TALUS_VERSION, .doc = "Joint generator.",
           .licence = "BSD-3-Clause");

@@ -17,6 +17,7 @@
  * Rock Mech. Min. Sci. 25 (1988) 117-125, section on model generation, for the six parameters). */
 #include "draw.h"
 
+#include <talus/kit.h>
 #include <talus/version.h>
 #include <talus/vmath.h>
 
@@ -172,12 +173,10 @@ static tl_status generate(const tl_host *host, const void *given)
     return status;
 }
 
-static const tl_generator_ops ops = {.size = sizeof ops, .generate = generate};
-
 static const tl_kind kind =
-    TL_KIND(TL_KIND_GENERATOR, ops, .name = "jointset",
-            .doc = "Cuts the visible blocks by a set of nearly parallel planes.",
-            TL_KIND_PARAMS(params, param_table));
+    TL_GENERATOR_KIND(generate, .name = "jointset",
+                      .doc = "Cuts the visible blocks by a set of nearly parallel planes.",
+                      TL_KIND_PARAMS(params, param_table));
 
 TL_PLUGIN(kind, .id = "talus.jointset", .version = TALUS_VERSION, .doc = "Joint set generator.",
           .licence = "BSD-3-Clause");

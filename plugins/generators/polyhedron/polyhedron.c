@@ -1,6 +1,6 @@
 /* polyhedron.c - generator "polyhedron": one block, the convex hull of its vertices. The host refuses
  * vertices that span no volume, and a vertex that is no corner of the hull because it lies inside. */
-#include <talus/plugin.h>
+#include <talus/kit.h>
 #include <talus/version.h>
 
 #include <math.h>
@@ -14,9 +14,7 @@ typedef struct params {
 static const tl_param param_table[] = {
     TL_PARAM(TL_PARAM_POINTS, params, vertices, "m", "corners of the block, in any order",
              .flags = TL_PARAM_REQUIRED),
-    TL_PARAM(TL_PARAM_REAL, params, density, "kg/m3", "density of the block",
-             .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
-    TL_PARAM(TL_PARAM_STRING, params, group, "", "group of the block", .def_text = "rock"),
+    TL_PARAMS_ROCK(params, "block"),
 };
 
 static tl_status generate(const tl_host *host, const void *given)
@@ -25,11 +23,9 @@ static tl_status generate(const tl_host *host, const void *given)
     return host->create_hull(host, p->vertices.at, p->vertices.count, p->density, p->group);
 }
 
-static const tl_generator_ops ops = {.size = sizeof ops, .generate = generate};
-
-static const tl_kind kind = TL_KIND(TL_KIND_GENERATOR, ops, .name = "polyhedron",
-                                    .doc = "Creates one convex block from its vertices.",
-                                    TL_KIND_PARAMS(params, param_table));
+static const tl_kind kind = TL_GENERATOR_KIND(generate, .name = "polyhedron",
+                                              .doc = "Creates one convex block from its vertices.",
+                                              TL_KIND_PARAMS(params, param_table));
 
 TL_PLUGIN(kind, .id = "talus.polyhedron", .version = TALUS_VERSION, .doc = "Polyhedron generator.",
           .licence = "BSD-3-Clause");

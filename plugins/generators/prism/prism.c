@@ -29,9 +29,7 @@ static const tl_param param_table[] = {
              .flags = TL_PARAM_OPTIONAL),
     TL_PARAM(TL_PARAM_VEC3, params, axis, "m", "from the base to the other end; or give top",
              .flags = TL_PARAM_OPTIONAL),
-    TL_PARAM(TL_PARAM_REAL, params, density, "kg/m3", "density of the block",
-             .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
-    TL_PARAM(TL_PARAM_STRING, params, group, "", "group of the block", .def_text = "rock"),
+    TL_PARAMS_ROCK(params, "block"),
 };
 
 /* A sound polygon. */
@@ -200,8 +198,6 @@ static tl_status generate(const tl_host *host, const void *given)
     return host->create_hull(host, corner, 2 * count, p->density, p->group);
 }
 
-static const tl_generator_ops ops = {.size = sizeof ops, .generate = generate};
-
 const tl_kind prism_kind =
-    TL_KIND(TL_KIND_GENERATOR, ops, .name = "prism",
-            .doc = "Creates one body between two polygons.", TL_KIND_PARAMS(params, param_table));
+    TL_GENERATOR_KIND(generate, .name = "prism", .doc = "Creates one body between two polygons.",
+                      TL_KIND_PARAMS(params, param_table));

@@ -4,7 +4,7 @@
 
 #include "convex.h"
 
-#include <talus/plugin.h>
+#include <talus/kit.h>
 
 #define MOST_SIDES 1000
 

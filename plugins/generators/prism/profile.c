@@ -28,9 +28,7 @@ static const tl_param param_table[] = {
              "where the section begins on the axis across its plane", .def = {0}),
     TL_PARAM(TL_PARAM_REAL, params, to, "m", "where it ends there, > from",
              .flags = TL_PARAM_REQUIRED),
-    TL_PARAM(TL_PARAM_REAL, params, density, "kg/m3", "density of the block",
-             .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
-    TL_PARAM(TL_PARAM_STRING, params, group, "", "group of the block", .def_text = "rock"),
+    TL_PARAMS_ROCK(params, "block"),
 };
 
 /* The point of three coordinates given by the numbers of their axes. */
@@ -65,9 +63,7 @@ static tl_status generate(const tl_host *host, const void *given)
                          point_of(axis, 0, 0, p->to - p->from), p->density, p->group);
 }
 
-static const tl_generator_ops ops = {.size = sizeof ops, .generate = generate};
-
-const tl_kind profile_kind = TL_KIND(
-    TL_KIND_GENERATOR, ops, .name = "profile",
+const tl_kind profile_kind = TL_GENERATOR_KIND(
+    generate, .name = "profile",
     .doc = "Creates one body of a section in a plane, moved across it: a slope, a dam, a wall.",
     TL_KIND_PARAMS(params, param_table));

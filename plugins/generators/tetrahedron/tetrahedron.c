@@ -1,6 +1,6 @@
 /* tetrahedron.c - generator "tetrahedron": one block from its four corners, in any order. The host refuses
  * corners that span no volume. */
-#include <talus/plugin.h>
+#include <talus/kit.h>
 #include <talus/version.h>
 
 #include <math.h>
@@ -16,9 +16,7 @@ typedef struct params {
 static const tl_param param_table[] = {
     TL_PARAM(TL_PARAM_POINTS, params, vertices, "m", "the four corners, in any order",
              .flags = TL_PARAM_REQUIRED),
-    TL_PARAM(TL_PARAM_REAL, params, density, "kg/m3", "density of the block",
-             .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
-    TL_PARAM(TL_PARAM_STRING, params, group, "", "group of the block", .def_text = "rock"),
+    TL_PARAMS_ROCK(params, "block"),
 };
 
 static tl_status generate(const tl_host *host, const void *given)
@@ -30,11 +28,9 @@ static tl_status generate(const tl_host *host, const void *given)
     return host->create_hull(host, p->vertices.at, CORNERS, p->density, p->group);
 }
 
-static const tl_generator_ops ops = {.size = sizeof ops, .generate = generate};
-
-static const tl_kind kind =
-    TL_KIND(TL_KIND_GENERATOR, ops, .name = "tetrahedron",
-            .doc = "Creates one block from its four corners.", TL_KIND_PARAMS(params, param_table));
+static const tl_kind kind = TL_GENERATOR_KIND(generate, .name = "tetrahedron",
+                                              .doc = "Creates one block from its four corners.",
+                                              TL_KIND_PARAMS(params, param_table));
 
 TL_PLUGIN(kind, .id = "talus.tetrahedron", .version = TALUS_VERSION,
           .doc = "Tetrahedron generator.", .licence = "BSD-3-Clause");

@@ -13,7 +13,7 @@
 
 #include <stdlib.h>
 #include <string.h>
-#include <talus/plugin.h>
+#include <talus/kit.h>
 #include <talus/version.h>
 #include <talus/vmath.h>
 
@@ -371,12 +371,10 @@ static tl_status generate(const tl_host *host, const void *given)
     return status;
 }
 
-static const tl_generator_ops ops = {.size = sizeof ops, .generate = generate};
-
 static const tl_kind kind =
-    TL_KIND(TL_KIND_GENERATOR, ops, .name = "tunnel",
-            .doc = "Cuts the visible blocks in the way of a tunnel along its surface.",
-            TL_KIND_PARAMS(params, param_table));
+    TL_GENERATOR_KIND(generate, .name = "tunnel",
+                      .doc = "Cuts the visible blocks in the way of a tunnel along its surface.",
+                      TL_KIND_PARAMS(params, param_table));
 
 /* It needs the services for single blocks, which came with minor 1. */
 TL_PLUGIN_SINCE(1, kind, .id = "talus.tunnel", .version = TALUS_VERSION, .doc = "Tunnel generator.",

@@ -4,13 +4,9 @@ local talus = require "talus"
 local check = require "check"
 
 local KNI, VM, KS, JRC, JCS, PHI = 2e9, 5e-4, 2e10, 8, 5e7, 28
-local function params(more)
-    local p = { jrc = JRC, jcs = JCS, phi_r = PHI, kni = KNI, vm = VM, ks = KS }
-    for key, value in pairs(more or {}) do
-        p[key] = value
-    end
-    return p
-end
+local params, refused = require "law_tests".of("barton_bandis", {
+    jrc = JRC, jcs = JCS, phi_r = PHI, kni = KNI, vm = VM, ks = KS
+})
 local function closure(stress)
     return stress * VM / (KNI * VM + stress)
 end
@@ -84,10 +80,6 @@ for seed = 1, 20 do
 end
 
 -- Refusals.
-local function refused(part, more)
-    local p = params(more)
-    check.raises(function() talus.law_test { law = "barton_bandis", params = p, path = { 0.001 } } end, part)
-end
 refused("phi_r = 70 deg is outside [0, 70)", { phi_r = 70 })
 refused("jrc = 31 is outside [0, 30]", { jrc = 31 })
 refused("jcs = 0 Pa must be > 0", { jcs = 0 })

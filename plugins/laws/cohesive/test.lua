@@ -5,13 +5,9 @@ local check = require "check"
 
 local KN, KS, T, C, GI, GII, PHI = 4e10, 1.6e10, 0.25e6, 0.35e6, 18, 125, 35
 local MU = math.tan(math.rad(PHI))
-local function params(more)
-    local p = { kn = KN, ks = KS, tension = T, cohesion = C, gi = GI, gii = GII, friction = PHI }
-    for key, value in pairs(more or {}) do
-        p[key] = value
-    end
-    return p
-end
+local params, refused = require "law_tests".of("cohesive", {
+    kn = KN, ks = KS, tension = T, cohesion = C, gi = GI, gii = GII, friction = PHI
+})
 local function test(more)
     more.law, more.params = "cohesive", more.params or params()
     return talus.law_test(more)
@@ -65,10 +61,6 @@ for seed = 1, 20 do
 end
 
 -- Refusals.
-local function refused(part, more)
-    local p = params(more)
-    check.raises(function() talus.law_test { law = "cohesive", params = p, path = { 0.001 } } end, part)
-end
 refused("energy_tension = 0.5 J/m2 must be > tension^2 / (2 k) = 0.78125 J/m2", { gi = 0.5 })
 refused("energy_shear = 3 J/m2 must be > cohesion^2 / (2 k) = 3.82812 J/m2", { gii = 3 })
 refused("tension = 0 Pa must be > 0", { tension = 0 })

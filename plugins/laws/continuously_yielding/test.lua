@@ -5,13 +5,10 @@ local check = require "check"
 
 local AN, EN, AS, ES, PHI_I, PHI, R = 2e7, 0.5, 1e6, 0.5, 50, 30, 2e-3
 local KN_MAX, KS_MAX = AN * 1e3, AS * 1e3 -- at 1 MPa
-local function params(more)
-    local p = { an = AN, en = EN, as = AS, es = ES, kn_max = KN_MAX, ks_max = KS_MAX, phi_i = PHI_I, phi = PHI, roughness = R }
-    for key, value in pairs(more or {}) do
-        p[key] = value
-    end
-    return p
-end
+local params = require "law_tests".of("continuously_yielding", {
+    an = AN, en = EN, as = AS, es = ES, kn_max = KN_MAX, ks_max = KS_MAX,
+    phi_i = PHI_I, phi = PHI, roughness = R
+})
 
 -- Closure: ds/dv = an s^en up to kn_max, a line beyond; elastic.
 local function closure(stress)

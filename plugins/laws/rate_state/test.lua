@@ -4,13 +4,9 @@ local talus = require "talus"
 local check = require "check"
 
 local SN, MU0, A, B, DC, V0, KS = 1e7, 0.6, 0.01, 0.015, 1e-5, 1e-6, 1e13
-local function params(more)
-    local p = { kn = 1e11, ks = KS, mu0 = MU0, a = A, b = B, dc = DC, v0 = V0 }
-    for key, value in pairs(more or {}) do
-        p[key] = value
-    end
-    return p
-end
+local params, refused = require "law_tests".of("rate_state", {
+    kn = 1e11, ks = KS, mu0 = MU0, a = A, b = B, dc = DC, v0 = V0
+})
 
 -- A rest after steady slip: the surface ages by its length, and the friction of the next slip begins higher by b ln of it.
 local REST = 1e4
@@ -65,10 +61,6 @@ check.equal(opened.shear_stress[n] == 0 and opened.normal_stress[n] == 0 and ope
 check.equal(opened.states.slip_rate[n], 0.0)
 
 -- Refusals.
-local function refused(part, more)
-    local p = params(more)
-    check.raises(function() talus.law_test { law = "rate_state", params = p, path = { 0.001 } } end, part)
-end
 refused("a = 0 is outside (0, 1]", { a = 0 })
 refused("b = 2 is outside [0, 1]", { b = 2 })
 refused("distance = -1 m must be > 0", { dc = -1 })

@@ -3,13 +3,9 @@ local talus = require "talus"
 local check = require "check"
 
 local SN, DC, MU, MU_R = 1e6, 1e-3, math.tan(math.rad(35)), math.tan(math.rad(25))
-local function params(more)
-    local p = { kn = 1e10, ks = 1e10, friction = 35, residual_friction = 25, distance = DC }
-    for key, value in pairs(more or {}) do
-        p[key] = value
-    end
-    return p
-end
+local params, refused = require "law_tests".of("slip_weakening", {
+    kn = 1e10, ks = 1e10, friction = 35, residual_friction = 25, distance = DC
+})
 local function test(more, path, steps)
     return talus.law_test { law = "slip_weakening", params = params(more), normal_stress = SN, path = path, steps = steps }
 end
@@ -70,10 +66,6 @@ end
 check.holds(fell, "the stress falls at once")
 
 -- Refusals.
-local function refused(part, more)
-    local p = params(more)
-    check.raises(function() talus.law_test { law = "slip_weakening", params = p, path = { 0.001 } } end, part)
-end
 refused("residual_friction = 40 deg must be <= friction = 35 deg", { residual_friction = 40 })
 refused("residual_cohesion = 1 Pa must be <= cohesion = 0 Pa", { residual_cohesion = 1 })
 refused("healing = \"time\" needs healing_time, in s", { healing = "time" })
