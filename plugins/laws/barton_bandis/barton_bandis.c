@@ -204,7 +204,8 @@ TL_IN_LOOP double rise_at(const rough *law, double stress, double m, double base
 {
     double i = roughness(law, stress), most = STEEPEST * TL_DEGREE - law->residual;
     double tangent = tl_lane_tan(base * law->residual + m * i);
-    double falls = ((i > 0) & (i < most)) ? m * law->jrc * TL_DEGREE / LN10 : 0;
+    double falls = i < most ? m * law->jrc * TL_DEGREE / LN10 : 0;
+    falls = i > 0 ? falls : 0;
     return (tangent - falls * (1 + tangent * tangent)) * law->per_reduction;
 }
 
@@ -283,7 +284,8 @@ TL_IN_LOOP void rub(const rough *given, uint32_t lanes, trial *restrict t)
         double limit = t->limit[i], shear = t->shear[i], lift = opens[i] * slip[i];
         double stress = stress_at(&law, t->walls[i] + (t->opening[i] + lift));
         double after = strength_at(&law, stress, t->m[i], t->base[i]);
-        double meets = ((t->v[i] >= 0) | ((t->before[i] > 0) & (stress > 0))) ? 1 : 0;
+        double met = t->before[i] > 0 ? 1 : 0, still = stress > 0 ? met : 0;
+        double meets = t->v[i] >= 0 ? 1 : still;
         double slips = shear > limit * (1 + ROUNDING) ? meets : 0;
         double opened = slips * (after < shear ? 1 : 0);
         double reached = opened > 0 ? after : limit;

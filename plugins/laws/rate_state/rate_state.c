@@ -160,7 +160,8 @@ TL_IN_LOOP void press(const params *given, const tl_law_batch *batch, uint32_t b
         t->low[i] = 0;
         t->high[i] = high;
         t->root[i] = root < high ? root : high;
-        t->found[i] = ((effect > 0) & (shear > 0)) ? 0 : 1;
+        double idle = effect > 0 ? 0 : 1;
+        t->found[i] = shear > 0 ? idle : 1;
     }
 }
 
@@ -188,7 +189,9 @@ TL_IN_LOOP double pass(const params *given, double dt, uint32_t lanes, trial *re
             t->effect[i] * 0.5 * (1 + twice) * rise / sum + slows * law.velocity * (up + down);
         double low = over < 0 ? y : t->low[i], high = over < 0 ? t->high[i] : y;
         double next = y - over / (slope > 0 ? slope : 1);
-        double inside = ((next >= low) & (next <= high)) ? (slope > 0 ? 1 : 0) : 0;
+        double inside = slope > 0 ? 1 : 0;
+        inside = next >= low ? inside : 0;
+        inside = next <= high ? inside : 0;
         next = inside > 0 ? next : 0.5 * (low + high);
         double step = next > y ? next - y : y - next;
         double moves = t->found[i] > 0 ? 0 : 1;
@@ -249,8 +252,10 @@ TL_IN_LOOP void settle(const params *given, const tl_law_batch *batch, uint32_t 
         c.f_n[i] = total < 0 ? 0 : total;
         TL_PUT_SHEAR(c, i, scale, f);
         state[i] = go_on(evolution, law.distance, t->theta[i], t->rate[i], dt);
-        rates[i] = dt > 0 ? t->rate[i] : rates[i];
     }
+    if (dt > 0)
+        for (uint32_t i = 0; i < lanes; i++)
+            rates[i] = t->rate[i];
 }
 
 TL_IN_LOOP void update_lanes(const params *law, const tl_law_batch *batch, uint32_t begin,

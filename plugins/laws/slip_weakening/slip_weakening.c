@@ -126,7 +126,8 @@ TL_IN_LOOP double linear_slip(double above, double drop, double room, double slo
 {
     double steep = 1 - slope;
     double soon = steep > 0 ? (above - drop) / (steep > 0 ? steep : 1) : above;
-    return ((steep > 0) & (soon <= room)) ? soon : above;
+    soon = soon <= room ? soon : above;
+    return steep > 0 ? soon : above;
 }
 
 /* Where Newton's search for the same of the exponential strength begins. It is the root of
@@ -140,7 +141,8 @@ TL_IN_LOOP double exponential_start(double above, double drop)
     double by_sum = 2 * over / (sum > 0 ? sum : 1);
     double by_difference = (root - b) / (q > 0 ? 2 * q : 1);
     double near = b > 0 ? by_sum : by_difference;
-    return ((near <= 1) & (near < above)) ? near : above;
+    double start = near < above ? near : above;
+    return near <= 1 ? start : above;
 }
 
 /* One of its passes. */
@@ -148,7 +150,8 @@ TL_IN_LOOP double exponential_pass(double above, double drop, double x)
 {
     double falls = drop * tl_lane_exp(-x), slope = falls - 1;
     double next = x - (above - x - falls) / (slope < 0 ? slope : -1);
-    return ((slope < 0) & (next > 0)) ? next : x;
+    next = next > 0 ? next : x;
+    return slope < 0 ? next : x;
 }
 
 /* What a step comes to before slip is looked at. */
@@ -214,7 +217,8 @@ TL_IN_LOOP void rub(const weakening *law, const double *restrict area, uint32_t 
     for (uint32_t i = 0; i < lanes; i++) {
         double limit = t->limit[i], slip = t->slip[i] + grown[i] * distance;
         double after = t->residual[i] + left_of(form, per_distance, slip) * t->drop[i];
-        double slips = ((t->shear[i] > limit * (1 + ROUNDING)) & (t->total[i] >= 0)) ? 1 : 0;
+        double slips = t->total[i] >= 0 ? 1 : 0;
+        slips = t->shear[i] > limit * (1 + ROUNDING) ? slips : 0;
         t->slip[i] = slips > 0 ? slip : t->slip[i];
         t->limit[i] = slips > 0 ? after : limit;
     }
@@ -239,7 +243,8 @@ TL_IN_LOOP void settle(const weakening *law, const tl_law_batch *batch, uint32_t
             double along = tl_v3_dot(TL_SHEAR_AT(c, i), f);
             double mean = 0.5 * (along / whole + limit), stiffness = ks * c.area[i];
             double work = mean * (shear - limit) / (stiffness > 0 ? stiffness : 1);
-            work = ((shear > most) & (stiffness > 0)) ? work : 0;
+            work = stiffness > 0 ? work : 0;
+            work = shear > most ? work : 0;
             dissipated[i] = work > 0 ? work : 0;
         }
         double flag = shear > most ? TL_POINT_SLIPPING : 0;
