@@ -27,6 +27,10 @@
 /* Scaling a force down to its limit, and the slip that follows from it, leave it within some roundings of the limit; without
  * this margin a point at rest would be scaled down by them in every step. */
 #define ROUNDING 1e-14
+/* What the strength without roughness, which needs no logarithm, must exceed the shear stress by to be believed. */
+#define SURE (1 - 1e-12)
+/* Step of such a slip, over it, that is no step: the error is squared in each. */
+#define FOUND 1e-9
 /* Newton's passes for the slip that opens the joint and so raises its own strength. Those that have not met after them, as after
  * a step of many u_peak, do not open in that step. */
 #define PASSES 5
@@ -83,6 +87,7 @@ typedef struct rough {
         k_linear;    /* where closure becomes linear: closure, stress, stiffness */
     double jrc, jcs; /* of the joint's length */
     double residual; /* rad */
+    double tangent;  /* of it */
     double per_peak; /* 1 / u_peak */
     double per_reduction, dilation;
 } rough;
@@ -117,6 +122,7 @@ static tl_status create(const void *given, void **self, tl_report *report)
                        .jrc = jrc,
                        .jcs = jcs,
                        .residual = p->phi_r * TL_DEGREE,
+                       .tangent = tl_lane_tan(p->phi_r * TL_DEGREE),
                        .per_peak = peak > 0 ? 1 / peak : 1e300, /* smooth: all at once */
                        .per_reduction = 1 / p->reduction,
                        .dilation = p->dilation ? 1 : 0};
@@ -218,7 +224,8 @@ typedef struct trial {
     double before[STRIDE], m[STRIDE], base[STRIDE], limit[STRIDE], slip[STRIDE], lift[STRIDE];
 } trial;
 
-/* Stresses as if nothing slipped, and the strength; whether some lane is beyond its own. */
+/* Stresses as if nothing slipped; whether some lane might be beyond its strength, of which this is the part without
+ * roughness: tan x >= x below the residual angle. `limit` is that of lanes that do not slip. */
 TL_IN_LOOP double press(const rough *given, const tl_law_batch *batch, uint32_t begin,
                         uint32_t lanes, trial *restrict t)
 {
@@ -226,8 +233,8 @@ TL_IN_LOOP double press(const rough *given, const tl_law_batch *batch, uint32_t 
     const double *restrict slip = batch->state[0] + begin;
     const double *restrict opening = batch->state[1] + begin;
     const rough law = *given;
-    double beyond = 0;
-#pragma omp simd reduction(+ : beyond)
+    double near = 0;
+#pragma omp simd reduction(+ : near)
     for (uint32_t i = 0; i < lanes; i++) {
         double per = c.area[i] > 0 ? 1 / c.area[i] : 0, spring = law.ks * c.area[i];
         tl_vec3 f = TL_TRIAL_AT(c, i, spring);
@@ -236,8 +243,8 @@ TL_IN_LOOP double press(const rough *given, const tl_law_batch *batch, uint32_t 
         double stress = stress_at(&law, v);
         double u = (slip[i] + shear / law.ks) * law.per_peak;
         double base = u < 0.3 ? u / 0.3 : 1, m = mobilised(u);
-        double limit = strength_at(&law, stress, m, base);
-        beyond += shear > limit * (1 + ROUNDING) ? 1 : 0;
+        double tangent = u < 0.3 ? base * law.residual : law.tangent;
+        near += shear > stress * tangent * law.per_reduction * SURE ? 1 : 0;
         t->walls[i] = walls;
         t->opening[i] = opening[i];
         t->v[i] = v;
@@ -249,11 +256,48 @@ TL_IN_LOOP double press(const rough *given, const tl_law_batch *batch, uint32_t 
         t->before[i] = c.f_n[i] * per;
         t->m[i] = m;
         t->base[i] = base;
-        t->limit[i] = limit;
+        t->limit[i] = shear;
         t->slip[i] = 0;
         t->lift[i] = 0;
     }
+    return near;
+}
+
+/* The strength; whether some lane is beyond its own. */
+TL_IN_LOOP double resist(const rough *given, uint32_t lanes, trial *restrict t)
+{
+    const rough law = *given;
+    double beyond = 0;
+#pragma omp simd reduction(+ : beyond)
+    for (uint32_t i = 0; i < lanes; i++) {
+        double limit = strength_at(&law, t->stress[i], t->m[i], t->base[i]);
+        beyond += t->shear[i] > limit * (1 + ROUNDING) ? 1 : 0;
+        t->limit[i] = limit;
+    }
     return beyond;
+}
+
+/* One of Newton's passes for the slip of lanes that open by `opens` of it; how many have not found theirs. */
+TL_IN_LOOP double pass(const rough *given, uint32_t lanes, const trial *restrict t,
+                       const double *restrict opens, double *restrict slip, double *restrict found)
+{
+    const rough law = *given;
+    double left = 0;
+#pragma omp simd reduction(+ : left)
+    for (uint32_t i = 0; i < lanes; i++) {
+        double v = t->v[i] + opens[i] * slip[i], stress = stress_at(&law, v);
+        double strength = strength_at(&law, stress, t->m[i], t->base[i]);
+        double over = t->shear[i] - law.ks * slip[i] - strength;
+        double rise = rise_at(&law, stress, t->m[i], t->base[i]) * slope_at(&law, v) * opens[i];
+        double next = slip[i] + over / (law.ks + (rise > 0 ? rise : 0));
+        next = next > 0 ? next : 0;
+        double step = next > slip[i] ? next - slip[i] : slip[i] - next;
+        double same = step > FOUND * next ? 0 : 1;
+        slip[i] = found[i] > 0 ? slip[i] : next;
+        found[i] = found[i] > 0 ? 1 : same;
+        left += found[i] > 0 ? 0 : 1;
+    }
+    return left;
 }
 
 /* Slip of the lanes that are beyond their strength, how far it opens the joint, and the strength after it:
@@ -261,24 +305,18 @@ TL_IN_LOOP double press(const rough *given, const tl_law_batch *batch, uint32_t 
 TL_IN_LOOP void rub(const rough *given, uint32_t lanes, trial *restrict t)
 {
     const rough law = *given;
-    double opens[STRIDE], slip[STRIDE];
+    double opens[STRIDE], slip[STRIDE], found[STRIDE];
 #pragma omp simd
     for (uint32_t i = 0; i < lanes; i++) {
         /* walls that were pressed ride up from there, those that meet now from what presses them now */
         double pressed = t->before[i] > 0 ? t->before[i] : t->stress[i];
         opens[i] = law.dilation * tl_lane_tan(0.5 * t->m[i] * roughness(&law, pressed));
         slip[i] = 0;
+        found[i] = t->shear[i] > t->limit[i] * (1 + ROUNDING) ? 0 : 1;
     }
-    for (int k = 0; k < PASSES; k++)
-#pragma omp simd
-        for (uint32_t i = 0; i < lanes; i++) {
-            double v = t->v[i] + opens[i] * slip[i], stress = stress_at(&law, v);
-            double strength = strength_at(&law, stress, t->m[i], t->base[i]);
-            double over = t->shear[i] - law.ks * slip[i] - strength;
-            double rise = rise_at(&law, stress, t->m[i], t->base[i]) * slope_at(&law, v) * opens[i];
-            double next = slip[i] + over / (law.ks + (rise > 0 ? rise : 0));
-            slip[i] = next > 0 ? next : 0;
-        }
+    for (int k = 0; k < PASSES && law.dilation > 0; k++)
+        if (!(pass(given, lanes, t, opens, slip, found) > 0))
+            break;
 #pragma omp simd
     for (uint32_t i = 0; i < lanes; i++) {
         double limit = t->limit[i], shear = t->shear[i], lift = opens[i] * slip[i];
@@ -300,7 +338,8 @@ TL_IN_LOOP void rub(const rough *given, uint32_t lanes, trial *restrict t)
  * every machine. */
 TL_IN_LOOP void settle(const rough *given, const tl_law_batch *batch, uint32_t begin,
                        uint32_t lanes, const trial *restrict t, double *restrict mark,
-                       double *restrict stored, double *restrict dissipated)
+                       double *restrict stored, double *restrict dissipated, const int slid,
+                       const int energy)
 {
     const tl_law_columns c = tl_law_columns_from(batch, begin);
     double *restrict slip = batch->state[0] + begin, *restrict opening = batch->state[1] + begin;
@@ -312,14 +351,16 @@ TL_IN_LOOP void settle(const rough *given, const tl_law_batch *batch, uint32_t b
         double v = t->walls[i] + opened;
         double slips = shear > limit * (1 + ROUNDING) ? 1 : 0, whole = shear * c.area[i];
         double scale = slips > 0 ? limit / (slips > 0 ? shear : 1) : 1, after = scale * shear;
-        double held = energy_at(&law, v), before = energy_at(&law, t->v[i]);
         tl_vec3 f = {t->x[i], t->y[i], t->z[i]};
-        double along = tl_v3_dot(TL_SHEAR_AT(c, i), f);
-        double mean = 0.5 * (along / (whole > 0 ? whole : 1) + limit * c.area[i]);
-        double work = mean * (shear - limit) / law.ks;
-        double heat = slips > 0 ? work - (held - before) * c.area[i] : 0;
-        dissipated[i] = heat > 0 ? heat : 0;
-        stored[i] = c.area[i] * (held + half_s * after * after);
+        if (energy) {
+            double held = energy_at(&law, v), before = slid ? energy_at(&law, t->v[i]) : held;
+            double along = tl_v3_dot(TL_SHEAR_AT(c, i), f);
+            double mean = 0.5 * (along / (whole > 0 ? whole : 1) + limit * c.area[i]);
+            double work = mean * (shear - limit) / law.ks;
+            double heat = slips > 0 ? work - (held - before) * c.area[i] : 0;
+            dissipated[i] = heat > 0 ? heat : 0;
+            stored[i] = c.area[i] * (held + half_s * after * after);
+        }
         mark[i] = v < 0 ? TL_POINT_OPEN : slips * TL_POINT_SLIPPING;
         c.f_n[i] = c.area[i] * t->stress[i];
         TL_PUT_SHEAR(c, i, scale, f);
@@ -336,10 +377,21 @@ TL_VECTORIZED static tl_status update(const void *self, const tl_law_batch *batc
     trial t;
     for (uint32_t begin = 0; begin < batch->count; begin += STRIDE) {
         uint32_t left = batch->count - begin, lanes = left < STRIDE ? left : STRIDE;
-        if (press(self, batch, begin, lanes, &t) > 0)
+        double *held = batch->stored ? batch->stored + begin : stored;
+        double *heat = batch->dissipated ? batch->dissipated + begin : dissipated;
+        bool near = press(self, batch, begin, lanes, &t) > 0;
+        bool slid = near && resist(self, lanes, &t) > 0,
+             energy = batch->stored || batch->dissipated;
+        if (slid)
             rub(self, lanes, &t);
-        settle(self, batch, begin, lanes, &t, mark, batch->stored ? batch->stored + begin : stored,
-               batch->dissipated ? batch->dissipated + begin : dissipated);
+        if (slid && energy)
+            settle(self, batch, begin, lanes, &t, mark, held, heat, 1, 1);
+        else if (slid)
+            settle(self, batch, begin, lanes, &t, mark, held, heat, 1, 0);
+        else if (energy)
+            settle(self, batch, begin, lanes, &t, mark, held, heat, 0, 1);
+        else
+            settle(self, batch, begin, lanes, &t, mark, held, heat, 0, 0);
         tl_law_put_flags(batch, begin, lanes, mark);
     }
     return TL_OK;

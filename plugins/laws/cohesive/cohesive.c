@@ -24,8 +24,6 @@
 #include <talus/kit.h>
 #include <talus/version.h>
 
-/* Lanes worked on at a time: their flags stay in the nearest cache. */
-#define STRIDE 64u
 /* Scaling a stress down to its limit, mixing it with another and taking it out of the force again leaves it within some
  * roundings of the limit; without this margin a point at rest would be scaled down by them in every step. */
 #define ROUNDING 1e-14
@@ -136,7 +134,7 @@ TL_IN_LOOP double flag_of(double total, double lost, double anew, double breaks)
     return apart > 0 ? TL_POINT_FAILED + TL_POINT_OPEN : flag;
 }
 
-/* The law for up to STRIDE lanes from `begin`. A NaN goes through all comparisons to the forces, where the host finds it. `mark`
+/* The law for up to TL_LANES points from `begin`. A NaN goes through all comparisons to the forces, where the host finds it. `mark`
  * takes the flags as doubles: a loop over lanes of two widths is not vectorised for every machine. */
 TL_IN_LOOP void move(const cohesive *given, const tl_law_batch *batch, uint32_t begin,
                      uint32_t lanes, double *restrict mark, double *restrict stored,
@@ -209,20 +207,79 @@ TL_IN_LOOP void move(const cohesive *given, const tl_law_batch *batch, uint32_t 
     }
 }
 
+/* The same of points that have never been damaged nor rubbed, for TL_LANES lanes from `begin`, without roots and most
+ * divisions. false, and nothing done, when some lane is or has been; the results are those of `move` to the bit. */
+TL_IN_LOOP bool hold(const cohesive *given, const tl_law_batch *batch, uint32_t begin)
+{
+    const tl_law_columns c = tl_law_columns_from(batch, begin);
+    const double *restrict damage = batch->state[0] + begin;
+    const double *restrict rub_x = batch->state[1] + begin, *restrict rub_y =
+                                                                batch->state[2] + begin;
+    const double *restrict rub_z = batch->state[3] + begin;
+    const cohesive law = *given;
+    const double kn = law.kn, ks = law.ks, half_n = 0.5 / kn, half_s = 0.5 / ks;
+    double force[TL_LANES], x[TL_LANES], y[TL_LANES], z[TL_LANES], held[TL_LANES];
+    double broken = 0;
+#pragma omp simd reduction(+ : broken)
+    for (uint32_t i = 0; i < TL_LANES; i++) {
+        double per = c.area[i] > 0 ? 1 / c.area[i] : 0;
+        double total = kn * c.area[i] * c.closure[i] + c.f_n0[i], stress = total * per;
+        double pull = stress < 0 ? -stress : 0, press = stress > 0 ? stress : 0;
+        double ax = c.f_x[i] * per, bx = ax - ks * c.du_x[i];
+        double ay = c.f_y[i] * per, by = ay - ks * c.du_y[i];
+        double az = c.f_z[i] * per, bz = az - ks * c.du_z[i];
+        double shear2 = dot(bx, by, bz, bx, by, bz),
+               rub2 = dot(rub_x[i], rub_y[i], rub_z[i], rub_x[i], rub_y[i], rub_z[i]);
+        double e2 = pull * pull * law.per_tension2 + shear2 * law.per_cohesion2;
+        double beyond = e2 > 1 ? 1 : 0, was = damage[i] + rub2;
+        /* not-a-number is for `move` */
+        broken += was == 0 ? beyond : 1;
+        broken += e2 >= 0 ? 0 : 1;
+        force[i] = total;
+        x[i] = c.f_x[i] + c.area[i] * (bx - ax);
+        y[i] = c.f_y[i] + c.area[i] * (by - ay);
+        z[i] = c.f_z[i] + c.area[i] * (bz - az);
+        held[i] = c.area[i] * (half_n * pull * pull + half_s * shear2 + half_n * press * press);
+    }
+    if (broken > 0)
+        return false;
+    for (uint32_t i = 0; i < TL_LANES; i++) {
+        c.f_n[i] = force[i];
+        c.f_x[i] = x[i];
+        c.f_y[i] = y[i];
+        c.f_z[i] = z[i];
+    }
+    memset(batch->flags + begin, 0, TL_LANES * sizeof *batch->flags);
+    if (batch->stored)
+        memcpy(batch->stored + begin, held, sizeof held);
+    if (batch->dissipated)
+        memset(batch->dissipated + begin, 0, TL_LANES * sizeof *batch->dissipated);
+    return true;
+}
+
+/* The law for `lanes` points from `begin`; a constant number of them at each call. */
+TL_IN_LOOP void update_lanes(const cohesive *law, const tl_law_batch *batch, uint32_t begin,
+                             uint32_t lanes)
+{
+    double mark[TL_LANES], stored[TL_LANES], dissipated[TL_LANES];
+    move(law, batch, begin, lanes, mark, batch->stored ? batch->stored + begin : stored,
+         batch->dissipated ? batch->dissipated + begin : dissipated);
+    tl_law_put_flags(batch, begin, lanes, mark);
+}
+
 TL_VECTORIZED static tl_status update(const void *self, const tl_law_batch *batch,
                                       tl_report *report)
 {
     (void)report;
-    double mark[STRIDE], stored[STRIDE], dissipated[STRIDE];
-    for (uint32_t begin = 0; begin < batch->count; begin += STRIDE) {
-        uint32_t left = batch->count - begin, lanes = left < STRIDE ? left : STRIDE;
-        /* walls that came near from afar were never bonded */
-        for (uint32_t i = begin; i < begin + lanes; i++)
-            batch->state[0][i] = batch->flags[i] & TL_POINT_APART ? 1 : batch->state[0][i];
-        move(self, batch, begin, lanes, mark, batch->stored ? batch->stored + begin : stored,
-             batch->dissipated ? batch->dissipated + begin : dissipated);
-        tl_law_put_flags(batch, begin, lanes, mark);
-    }
+    uint32_t begin = 0;
+    /* walls that came near from afar were never bonded */
+    for (uint32_t i = 0; i < batch->count; i++)
+        batch->state[0][i] = batch->flags[i] & TL_POINT_APART ? 1 : batch->state[0][i];
+    for (; begin + TL_LANES <= batch->count; begin += TL_LANES)
+        if (!hold(self, batch, begin))
+            update_lanes(self, batch, begin, TL_LANES);
+    if (begin < batch->count)
+        update_lanes(self, batch, begin, batch->count - begin);
     return TL_OK;
 }
 

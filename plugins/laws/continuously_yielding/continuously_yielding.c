@@ -81,50 +81,60 @@ static const tl_state state_table[] = {
 typedef struct yielding {
     double an, en, as, es, kn_max, ks_max;
     double stress_max, closure_max; /* where the normal stiffness is kn_max */
+    double stress_top;              /* s(closure_max), as it is computed */
     double initial, residual;       /* rad */
     double tangent_i, tangent;      /* of the two */
     double per_roughness, dilation, softening;
 } yielding;
 
+/* `curved` is a constant at each call: whether stiffness depends on the stress, which takes logarithms and exponentials. */
+
 /* s(v) of the power law, without its bound. */
-TL_IN_LOOP double curved_stress(const yielding *law, double v)
+TL_IN_LOOP double curved_stress(const int curved, const yielding *law, double v)
 {
+    if (!curved)
+        return law->an * v;
     double rest = 1 - law->en, x = rest * law->an * v;
     double power = tl_lane_exp(tl_lane_log(x > FAINT ? x : FAINT) / rest);
     power = x > FAINT ? power : 0;
     return law->en > 0 ? power : law->an * v;
 }
 
-TL_IN_LOOP double stress_at(const yielding *law, double v)
+TL_IN_LOOP double stress_at(const int curved, const yielding *law, double v)
 {
     double below = v < law->closure_max ? v : law->closure_max;
-    double stress = curved_stress(law, below) + law->kn_max * (v - below);
+    double stress = curved_stress(curved, law, below) + law->kn_max * (v - below);
     return v < 0 ? 0 : stress;
 }
 
 /* The closure of an initial stress; one that pulls goes on with the stiffness kn_max. */
-TL_IN_LOOP double closure_of(const yielding *law, double stress)
+TL_IN_LOOP double closure_of(const int curved, const yielding *law, double stress)
 {
     double below = stress < law->stress_max ? stress : law->stress_max;
     double pressed = below > 0 ? below : 0, safe = pressed > FAINT ? pressed : FAINT;
     double rest = 1 - law->en;
-    double v = tl_lane_exp(rest * tl_lane_log(safe)) / (rest * law->an);
-    v = pressed > FAINT ? v : 0;
-    v = law->en > 0 ? v : pressed / law->an;
+    double v = pressed / law->an;
+    if (curved) {
+        double power = tl_lane_exp(rest * tl_lane_log(safe)) / (rest * law->an);
+        power = pressed > FAINT ? power : 0;
+        v = law->en > 0 ? power : v;
+    }
     return v + (stress - pressed) / law->kn_max;
 }
 
-/* Energy of the normal spring per area. */
-TL_IN_LOOP double energy_at(const yielding *law, double v)
+/* Energy of the normal spring per area, at the stress that belongs to v. */
+TL_IN_LOOP double energy_at(const yielding *law, double v, double stress)
 {
     double below = v < law->closure_max ? v : law->closure_max, beyond = v - below;
-    double stress = stress_at(law, below), rest = 1 - law->en;
-    double curved = stress * below * rest / (1 + rest);
-    return (v > 0 ? curved : 0) + beyond * (stress + 0.5 * law->kn_max * beyond);
+    double from = v < law->closure_max ? stress : law->stress_top, rest = 1 - law->en;
+    double work = from * below * rest / (1 + rest);
+    return (v > 0 ? work : 0) + beyond * (from + 0.5 * law->kn_max * beyond);
 }
 
-TL_IN_LOOP double shear_stiffness(const yielding *law, double stress)
+TL_IN_LOOP double shear_stiffness(const int curved, const yielding *law, double stress)
 {
+    if (!curved)
+        return stress > 0 ? law->as : 0;
     double s = stress > FAINT ? stress : FAINT;
     double power = law->as * tl_lane_exp(law->es * tl_lane_log(s));
     power = power < law->ks_max ? power : law->ks_max;
@@ -169,8 +179,9 @@ static tl_status create(const void *given, void **self, tl_report *report)
                     .dilation = p->dilation ? 1 : 0,
                     .softening = p->softening ? 1 : 0};
     double most = p->en > 0 ? tl_lane_exp(tl_lane_log(p->kn_max / p->an) / p->en) : 1e300;
-    law.closure_max = p->en > 0 ? closure_of(&law, most) : 1e300;
+    law.closure_max = p->en > 0 ? closure_of(1, &law, most) : 1e300;
     law.stress_max = most;
+    law.stress_top = stress_at(1, &law, law.closure_max);
     return tl_keep(&law, sizeof law, self, report);
 }
 
@@ -182,6 +193,7 @@ typedef struct trial {
     double x[STRIDE], y[STRIDE], z[STRIDE], size[STRIDE], work[STRIDE];
     double angle[STRIDE], ratio[STRIDE], wear[STRIDE], lift[STRIDE], slides[STRIDE];
     double moved[STRIDE]; /* 0: the force stays, to the bit */
+    double pressed[STRIDE], held[STRIDE], bound[STRIDE];
 } trial;
 
 /* Rise of the stress `t` along the way `d`, when the strength is `most`. */
@@ -194,9 +206,66 @@ TL_IN_LOOP double rise(const yielding *law, double t, double most, double ratio,
     return (gap < 0 ? law->softening : 1) * up;
 }
 
-/* Closure, shear stress and wear. */
-TL_IN_LOOP void slide(const yielding *given, const tl_law_batch *batch, uint32_t begin,
-                      uint32_t lanes, trial *restrict t)
+/* Puts the closures of initial forces into `walls`; most joints have none. */
+TL_IN_LOOP void press(const yielding *given, const tl_law_batch *batch, uint32_t begin,
+                      uint32_t lanes, trial *restrict t, const int curved)
+{
+    const tl_law_columns c = tl_law_columns_from(batch, begin);
+    const yielding law = *given;
+    double forces = 0;
+#pragma omp simd reduction(+ : forces)
+    for (uint32_t i = 0; i < lanes; i++) {
+        forces += c.f_n0[i] == 0 ? 0 : 1;
+        t->walls[i] = 0;
+    }
+    if (!(forces > 0))
+        return;
+#pragma omp simd
+    for (uint32_t i = 0; i < lanes; i++) {
+        double per = c.area[i] > 0 ? 1 / c.area[i] : 0;
+        t->walls[i] = closure_of(curved, &law, c.f_n0[i] * per);
+    }
+}
+
+/* How many lanes move along the joint. */
+TL_IN_LOOP double moving(const tl_law_batch *batch, uint32_t begin, uint32_t lanes)
+{
+    const tl_law_columns c = tl_law_columns_from(batch, begin);
+    double sum = 0;
+#pragma omp simd reduction(+ : sum)
+    for (uint32_t i = 0; i < lanes; i++) {
+        double way2 = c.du_x[i] * c.du_x[i] + c.du_y[i] * c.du_y[i] + c.du_z[i] * c.du_z[i];
+        sum += way2 == 0 ? 0 : 1; /* not-a-number moves */
+    }
+    return sum;
+}
+
+/* Rise of the stress along the way, slip, and the share of roughness that it leaves. */
+typedef struct wearing {
+    double up, slip, left;
+} wearing;
+
+/* Found twice: with the angle before, and with the mean of it and of what that comes to. */
+TL_IN_LOOP wearing wear_off(const yielding *law, double along, double angle, double stress,
+                            double most, double ratio, double ks, double d)
+{
+    wearing w = {.up = rise(law, along, most, ratio, ks, d)};
+    w.slip = d - w.up / (ks > 0 ? ks : 1);
+    w.slip = w.slip > 0 ? w.slip : 0;
+    w.left = tl_lane_exp(-w.slip * law->per_roughness);
+    double mean = law->residual + (angle - law->residual) * 0.5 * (1 + w.left);
+    w.up = rise(law, along, stress * tl_lane_tan(mean), ratio, ks, d);
+    w.slip = d - w.up / (ks > 0 ? ks : 1);
+    w.slip = w.slip > 0 ? w.slip : 0;
+    w.slip = stress > 0 ? w.slip : 0;
+    w.left = tl_lane_exp(-w.slip * law->per_roughness);
+    return w;
+}
+
+/* Closure, shear stress and wear. `moves`, a constant: 0 if no lane moves along the joint; then no angle is needed, and the
+ * results are the same to the bit. How many lanes slip opens. */
+TL_IN_LOOP double slide(const yielding *given, const tl_law_batch *batch, uint32_t begin,
+                        uint32_t lanes, trial *restrict t, const int curved, const int moves)
 {
     const tl_law_columns c = tl_law_columns_from(batch, begin);
     const double *restrict worn = batch->state[0] + begin;
@@ -206,17 +275,19 @@ TL_IN_LOOP void slide(const yielding *given, const tl_law_batch *batch, uint32_t
                                                                 batch->state[5] + begin;
     const double *restrict way_z = batch->state[6] + begin;
     const yielding law = *given;
-#pragma omp simd
+    double opens = 0;
+#pragma omp simd reduction(+ : opens)
     for (uint32_t i = 0; i < lanes; i++) {
         double per = c.area[i] > 0 ? 1 / c.area[i] : 0;
-        double walls = closure_of(&law, c.f_n0[i] * per) + c.closure[i], v = walls + opened[i];
-        double stress = stress_at(&law, v), ks = shear_stiffness(&law, stress);
+        double walls = t->walls[i] + c.closure[i], v = walls + opened[i];
+        double stress = stress_at(curved, &law, v), ks = shear_stiffness(curved, &law, stress);
         double d = sqrt(c.du_x[i] * c.du_x[i] + c.du_y[i] * c.du_y[i] + c.du_z[i] * c.du_z[i]);
         double per_way = d > 0 ? 1 / (d > 0 ? d : 1) : 0;
         double ex = c.du_x[i] * per_way, ey = c.du_y[i] * per_way, ez = c.du_z[i] * per_way;
         double before = sqrt(c.f_x[i] * c.f_x[i] + c.f_y[i] * c.f_y[i] + c.f_z[i] * c.f_z[i]) * per;
         double along = -(c.f_x[i] * ex + c.f_y[i] * ey + c.f_z[i] * ez) * per;
-        double angle = law.initial - worn[i] * TL_DEGREE, most = stress * tl_lane_tan(angle);
+        double angle = law.initial - worn[i] * TL_DEGREE,
+               most = moves ? stress * tl_lane_tan(angle) : 0;
         double back = ex * way_x[i] + ey * way_y[i] + ez * way_z[i];
         double share = along / (most > FAINT ? most : 1);
         share = share < MOST_RATIO ? share : MOST_RATIO;
@@ -227,18 +298,11 @@ TL_IN_LOOP void slide(const yielding *given, const tl_law_batch *batch, uint32_t
         double slope = before / (held > FAINT ? held : 1);
         double tangent = (slope - law.tangent) / (1 + slope * law.tangent);
         tangent = tangent > 0 ? law.dilation * tangent : 0;
-        /* twice: with the angle before, and with the mean of it and of what that comes to */
-        double up = rise(&law, along, most, ratio, ks, d);
-        double slip = d - up / (ks > 0 ? ks : 1);
-        slip = slip > 0 ? slip : 0;
-        double left = tl_lane_exp(-slip * law.per_roughness);
-        double mean = law.residual + (angle - law.residual) * 0.5 * (1 + left);
-        up = rise(&law, along, stress * tl_lane_tan(mean), ratio, ks, d);
-        slip = d - up / (ks > 0 ? ks : 1);
-        slip = slip > 0 ? slip : 0;
-        slip = stress > 0 ? slip : 0;
-        left = tl_lane_exp(-slip * law.per_roughness);
-        double after = law.residual + (angle - law.residual) * left;
+        wearing w = {.left = 1};
+        if (moves)
+            w = wear_off(&law, along, angle, stress, most, ratio, ks, d);
+        double up = w.up, slip = w.slip;
+        double after = law.residual + (angle - law.residual) * w.left;
         double x = c.f_x[i] * per - up * ex, y = c.f_y[i] * per - up * ey,
                z = c.f_z[i] * per - up * ez;
         double size = sqrt(x * x + y * y + z * z), bound = before > most ? before : most;
@@ -253,6 +317,7 @@ TL_IN_LOOP void slide(const yielding *given, const tl_law_batch *batch, uint32_t
         t->walls[i] = walls;
         t->v[i] = v;
         t->spring[i] = ks;
+        t->pressed[i] = stress;
         t->x[i] = scale * x;
         t->y[i] = scale * y;
         t->z[i] = scale * z;
@@ -263,9 +328,14 @@ TL_IN_LOOP void slide(const yielding *given, const tl_law_batch *batch, uint32_t
         t->ratio[i] = ratio;
         t->wear[i] = slip > 0 ? (law.initial - after) / TL_DEGREE : was;
         t->lift[i] = tangent * slip;
+        opens += t->lift[i] == 0 ? 0 : 1;
         t->slides[i] = over + yields > 0 ? 1 : 0;
     }
+    return opens;
 }
+
+/* The least of what unloading can give back, over size^2 / ks: 3 (1 + x) (x - log(1 + x)) >= 1.5 x^2, less rounding. */
+#define LEAST 1.499999
 
 /* What unloading can give back, over t_m^2 / ks: 3 (1 + x) (x - log(1 + x)). */
 TL_IN_LOOP double elastic(double x)
@@ -275,46 +345,84 @@ TL_IN_LOOP double elastic(double x)
     return 3 * (1 + x) * (x < 1e-3 ? series : closed);
 }
 
-/* Dilation, forces, states, energies and flags; `mark` takes the flags as doubles: a loop over lanes of two widths is not
- * vectorised for every machine. */
-TL_IN_LOOP void settle(const yielding *given, const tl_law_batch *batch, uint32_t begin,
-                       uint32_t lanes, const trial *restrict t, double *restrict mark,
-                       double *restrict stored, double *restrict dissipated)
+/* Dilation, and what it leaves of the energy that shear has put in; whether some of that might be more than unloading can give
+ * back. `opens`, a constant: 0 if no lane is opened by slip. */
+TL_IN_LOOP double lift(const yielding *given, const tl_law_batch *batch, uint32_t begin,
+                       uint32_t lanes, trial *restrict t, const int curved, const int opens)
+{
+    const double *restrict opening = batch->state[2] + begin, *restrict put_in =
+                                                                  batch->state[3] + begin;
+    const yielding law = *given;
+    double near = 0;
+#pragma omp simd reduction(+ : near)
+    for (uint32_t i = 0; i < lanes; i++) {
+        double size2 = t->size[i] * t->size[i], ks = t->spring[i];
+        double opened = opening[i], v = t->v[i], pressed = t->pressed[i], lifted = 0;
+        double rest = energy_at(&law, v, pressed), paid = put_in[i] + t->work[i];
+        if (opens) {
+            /* shear pays for it, or the walls do not part */
+            double spring = 0.5 * t->size[i] * t->size[i] / (ks > 0 ? ks : 1), up = t->lift[i];
+            double above = t->walls[i] + (opened + up);
+            lifted = energy_at(&law, above, stress_at(curved, &law, above)) - rest;
+            up = paid - lifted >= spring ? up : 0;
+            lifted = up > 0 ? lifted : 0;
+            opened = opened + up;
+            v = t->walls[i] + opened;
+            pressed = stress_at(curved, &law, v);
+            ks = shear_stiffness(curved, &law, pressed);
+        }
+        double sum = paid - lifted;
+        t->v[i] = v;
+        t->lift[i] = opened;
+        t->pressed[i] = pressed;
+        t->spring[i] = ks;
+        t->work[i] = sum;
+        t->held[i] = rest + lifted;
+        t->bound[i] = INFINITY;
+        double room = ks > 0 ? LEAST * size2 / (ks > 0 ? ks : 1) : 0;
+        near += sum <= room ? 0 : 1;
+    }
+    return near;
+}
+
+/* What unloading can give back. */
+TL_IN_LOOP void bound(uint32_t lanes, trial *restrict t)
+{
+#pragma omp simd
+    for (uint32_t i = 0; i < lanes; i++) {
+        double most = t->pressed[i] * tl_lane_tan(t->angle[i]), ks = t->spring[i];
+        double x = t->size[i] / (most > FAINT ? most : 1);
+        t->bound[i] = ks > 0 ? most * most / (ks > 0 ? ks : 1) * elastic(x) : 0;
+    }
+}
+
+/* Forces, states, energies and flags; `mark` takes the flags as doubles. */
+TL_IN_LOOP void settle(const tl_law_batch *batch, uint32_t begin, uint32_t lanes,
+                       const trial *restrict t, double *restrict mark, double *restrict stored,
+                       double *restrict dissipated)
 {
     const tl_law_columns c = tl_law_columns_from(batch, begin);
     double *restrict wear = batch->state[0] + begin, *restrict reversal = batch->state[1] + begin;
     double *restrict opening = batch->state[2] + begin, *restrict put_in = batch->state[3] + begin;
     double *restrict way_x = batch->state[4] + begin, *restrict way_y = batch->state[5] + begin;
     double *restrict way_z = batch->state[6] + begin;
-    const yielding law = *given;
 #pragma omp simd
     for (uint32_t i = 0; i < lanes; i++) {
         double d = sqrt(c.du_x[i] * c.du_x[i] + c.du_y[i] * c.du_y[i] + c.du_z[i] * c.du_z[i]);
-        double per_way = d > 0 ? 1 / (d > 0 ? d : 1) : 0, lift = t->lift[i];
-        /* shear pays for it, or the walls do not part */
-        double rest = energy_at(&law, t->v[i]), paid = put_in[i] + t->work[i];
-        double lifted = energy_at(&law, t->walls[i] + (opening[i] + lift)) - rest;
-        double ks = t->spring[i], spring = 0.5 * t->size[i] * t->size[i] / (ks > 0 ? ks : 1);
-        lift = paid - lifted >= spring ? lift : 0;
-        lifted = lift > 0 ? lifted : 0;
-        double opened = opening[i] + lift, v = t->walls[i] + opened, pressed = stress_at(&law, v);
-        double most = pressed * tl_lane_tan(t->angle[i]);
-        double x = t->size[i] / (most > FAINT ? most : 1);
-        ks = shear_stiffness(&law, pressed);
-        double bound = ks > 0 ? most * most / (ks > 0 ? ks : 1) * elastic(x) : 0;
-        double sum = paid - lifted;
-        double kept = sum > bound * (1 + SPARE) ? bound : (sum > 0 ? sum : 0);
+        double per_way = d > 0 ? 1 / (d > 0 ? d : 1) : 0, sum = t->work[i], most = t->bound[i];
+        double kept = sum > 0 ? sum : 0;
+        kept = sum > most * (1 + SPARE) ? most : kept;
         double heat = sum > kept ? sum - kept : 0;
         dissipated[i] = c.area[i] > 0 ? c.area[i] * heat : 0;
-        stored[i] = c.area[i] > 0 ? c.area[i] * (kept + rest + lifted) : 0;
-        mark[i] = v < 0 ? TL_POINT_OPEN : t->slides[i] * TL_POINT_SLIPPING;
-        c.f_n[i] = c.area[i] * pressed;
+        stored[i] = c.area[i] > 0 ? c.area[i] * (kept + t->held[i]) : 0;
+        mark[i] = t->v[i] < 0 ? TL_POINT_OPEN : t->slides[i] * TL_POINT_SLIPPING;
+        c.f_n[i] = c.area[i] * t->pressed[i];
         c.f_x[i] = t->moved[i] > 0 ? c.area[i] * t->x[i] : c.f_x[i];
         c.f_y[i] = t->moved[i] > 0 ? c.area[i] * t->y[i] : c.f_y[i];
         c.f_z[i] = t->moved[i] > 0 ? c.area[i] * t->z[i] : c.f_z[i];
         wear[i] = t->wear[i];
         reversal[i] = t->ratio[i];
-        opening[i] = opened;
+        opening[i] = t->lift[i];
         put_in[i] = kept;
         way_x[i] = d > 0 ? c.du_x[i] * per_way : way_x[i];
         way_y[i] = d > 0 ? c.du_y[i] * per_way : way_y[i];
@@ -322,18 +430,34 @@ TL_IN_LOOP void settle(const yielding *given, const tl_law_batch *batch, uint32_
     }
 }
 
+TL_IN_LOOP void update_lanes(const yielding *law, const tl_law_batch *batch, uint32_t begin,
+                             uint32_t lanes, const int curved)
+{
+    double mark[STRIDE], stored[STRIDE], dissipated[STRIDE];
+    trial t;
+    press(law, batch, begin, lanes, &t, curved);
+    double opens = moving(batch, begin, lanes) > 0 ? slide(law, batch, begin, lanes, &t, curved, 1)
+                                                   : slide(law, batch, begin, lanes, &t, curved, 0);
+    double near = opens > 0 ? lift(law, batch, begin, lanes, &t, curved, 1)
+                            : lift(law, batch, begin, lanes, &t, curved, 0);
+    if (near > 0)
+        bound(lanes, &t);
+    settle(batch, begin, lanes, &t, mark, batch->stored ? batch->stored + begin : stored,
+           batch->dissipated ? batch->dissipated + begin : dissipated);
+    tl_law_put_flags(batch, begin, lanes, mark);
+}
+
 TL_VECTORIZED static tl_status update(const void *self, const tl_law_batch *batch,
                                       tl_report *report)
 {
     (void)report;
-    double mark[STRIDE], stored[STRIDE], dissipated[STRIDE];
-    trial t;
+    const yielding *law = self;
     for (uint32_t begin = 0; begin < batch->count; begin += STRIDE) {
         uint32_t left = batch->count - begin, lanes = left < STRIDE ? left : STRIDE;
-        slide(self, batch, begin, lanes, &t);
-        settle(self, batch, begin, lanes, &t, mark, batch->stored ? batch->stored + begin : stored,
-               batch->dissipated ? batch->dissipated + begin : dissipated);
-        tl_law_put_flags(batch, begin, lanes, mark);
+        if (law->en > 0 || law->es > 0)
+            update_lanes(law, batch, begin, lanes, 1);
+        else
+            update_lanes(law, batch, begin, lanes, 0);
     }
     return TL_OK;
 }

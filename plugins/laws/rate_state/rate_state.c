@@ -28,6 +28,8 @@
 #define PASSES 60
 /* Step of y, which is about ln V, that is no step. */
 #define FOUND 1e-12
+/* Step of Newton that squares to no step. */
+#define NEAR 1e-7
 /* Slip of a half step over D_c below which the exact solution is summed as a series. */
 #define SERIES 1e-3
 /* Least rate over V0 whose logarithm is taken. */
@@ -121,9 +123,9 @@ typedef struct trial {
     double root[STRIDE], low[STRIDE], high[STRIDE], found[STRIDE];
 } trial;
 
-/* Forces as if nothing slipped, and the bounds of y: no slip, and as much as leaves no stress. */
-TL_IN_LOOP void press(const params *given, const tl_law_batch *batch, uint32_t begin,
-                      uint32_t lanes, trial *restrict t)
+/* Forces as if nothing slipped, and the bounds of y: no slip, and as much as leaves no stress. How many lanes carry shear. */
+TL_IN_LOOP double press(const params *given, const tl_law_batch *batch, uint32_t begin,
+                        uint32_t lanes, trial *restrict t)
 {
     const tl_law_columns c = tl_law_columns_from(batch, begin);
     const double *restrict state = batch->state[0] + begin;
@@ -131,7 +133,8 @@ TL_IN_LOOP void press(const params *given, const tl_law_batch *batch, uint32_t b
     const params law = *given;
     const double slows = law.ks * batch->dt + law.damping;
     const double per_velocity = law.velocity / law.distance;
-#pragma omp simd
+    double busy = 0;
+#pragma omp simd reduction(+ : busy)
     for (uint32_t i = 0; i < lanes; i++) {
         double per = c.area[i] > 0 ? 1 / c.area[i] : 0, spring = law.ks * c.area[i];
         double total = law.kn * c.area[i] * c.closure[i] + c.f_n0[i];
@@ -159,10 +162,15 @@ TL_IN_LOOP void press(const params *given, const tl_law_batch *batch, uint32_t b
         t->exponent[i] = exponent;
         t->low[i] = 0;
         t->high[i] = high;
+        /* no more than would carry the stress without slip in this step: a point at rest has slowed down since the last */
+        double still = shear / (effect > 0 ? effect : 1);
+        root = root < still ? root : still;
         t->root[i] = root < high ? root : high;
         double idle = effect > 0 ? 0 : 1;
         t->found[i] = shear > 0 ? idle : 1;
+        busy += t->found[i] > 0 ? 0 : 1;
     }
+    return busy;
 }
 
 /* One of Newton's passes; how many lanes have not found their root. */
@@ -175,12 +183,12 @@ TL_IN_LOOP double pass(const params *given, double dt, uint32_t lanes, trial *re
 #pragma omp simd reduction(+ : left)
     for (uint32_t i = 0; i < lanes; i++) {
         double y = t->root[i], e = t->exponent[i], start = t->theta[i];
-        double up = tl_lane_exp(y - e), down = tl_lane_exp(-y - e);
+        double twice = tl_lane_exp(-2 * y), up = tl_lane_exp(y - e), down = up * twice;
         double rate = law.velocity * (up - down);
         double theta = go_on(evolution, law.distance, start, rate, half);
         double aged = share * tl_lane_log(theta / start);
         /* arsinh(exp(aged) sinh y) */
-        double twice = tl_lane_exp(-2 * y), sine = 0.5 * (1 - twice);
+        double sine = 0.5 * (1 - twice);
         double sum = sqrt(sine * sine + tl_lane_exp(-2 * (y + aged)));
         double arsinh = y + aged + tl_lane_log(sine + sum);
         double over = t->effect[i] * arsinh + slows * rate - t->shear[i];
@@ -198,21 +206,17 @@ TL_IN_LOOP double pass(const params *given, double dt, uint32_t lanes, trial *re
         t->root[i] = moves > 0 ? next : y;
         t->low[i] = low;
         t->high[i] = high;
-        t->found[i] = step > FOUND ? t->found[i] : 1;
+        t->found[i] = step > (inside > 0 ? NEAR : FOUND) ? t->found[i] : 1;
         left += t->found[i] > 0 ? 0 : 1;
     }
     return left;
 }
 
 /* The rate of slip of each lane; 0 of open ones and in a step without time. */
-TL_IN_LOOP void find_rates(const params *given, double dt, uint32_t lanes, trial *restrict t,
-                           const int evolution)
+TL_IN_LOOP void find_rates(const params *given, double dt, uint32_t lanes, trial *restrict t)
 {
     const double velocity = given->velocity, slows = given->ks * dt + given->damping;
     const double moves = dt > 0 ? 1 : 0, most = slows > 0 ? 1 / slows : 0;
-    for (int k = 0; k < PASSES && dt > 0; k++)
-        if (!(pass(given, dt, lanes, t, evolution) > 0))
-            break;
 #pragma omp simd
     for (uint32_t i = 0; i < lanes; i++) {
         double y = t->root[i], e = t->exponent[i], slides = t->shear[i] > 0 ? moves : 0;
@@ -263,8 +267,10 @@ TL_IN_LOOP void update_lanes(const params *law, const tl_law_batch *batch, uint3
 {
     double mark[STRIDE], stored[STRIDE], dissipated[STRIDE];
     trial t;
-    press(law, batch, begin, lanes, &t);
-    find_rates(law, batch->dt, lanes, &t, evolution);
+    double left = press(law, batch, begin, lanes, &t);
+    for (int k = 0; k < PASSES && batch->dt > 0 && left > 0; k++)
+        left = pass(law, batch->dt, lanes, &t, evolution);
+    find_rates(law, batch->dt, lanes, &t);
     settle(law, batch, begin, lanes, &t, mark, batch->stored ? batch->stored + begin : stored,
            batch->dissipated ? batch->dissipated + begin : dissipated, evolution);
     tl_law_put_flags(batch, begin, lanes, mark);

@@ -23,6 +23,10 @@
 /* Scaling a force down to its limit leaves it within 2 roundings of it; without this margin a point at
  * rest would be scaled down by a rounding in every step. */
 #define ROUNDING 1e-15
+/* Share of the strength that a bound of it is trusted by: their roundings differ. */
+#define SURE (1 - 1e-12)
+/* Step of Newton's search, over D_c, that is no step: the error is squared in each. */
+#define FOUND 1e-9
 /* Newton's passes for the slip of the exponential form: the start is within a quarter of it, and the error is squared. */
 #define PASSES 6
 /* Share of D_c below which slip that heals is gone: its strength is lost in rounding. */
@@ -145,13 +149,24 @@ TL_IN_LOOP double exponential_start(double above, double drop)
     return near <= 1 ? start : above;
 }
 
-/* One of its passes. */
-TL_IN_LOOP double exponential_pass(double above, double drop, double x)
+/* One of its passes; how many lanes have not found their root. They stay at one that they have found, so that it does not
+ * matter which others they are with. */
+TL_IN_LOOP double exponential_pass(const double *restrict above, const double *restrict drop,
+                                   double *restrict x, double *restrict found, uint32_t lanes)
 {
-    double falls = drop * tl_lane_exp(-x), slope = falls - 1;
-    double next = x - (above - x - falls) / (slope < 0 ? slope : -1);
-    next = next > 0 ? next : x;
-    return slope < 0 ? next : x;
+    double left = 0;
+#pragma omp simd reduction(+ : left)
+    for (uint32_t i = 0; i < lanes; i++) {
+        double falls = drop[i] * tl_lane_exp(-x[i]), slope = falls - 1;
+        double next = x[i] - (above[i] - x[i] - falls) / (slope < 0 ? slope : -1);
+        next = next > 0 ? next : x[i];
+        next = slope < 0 ? next : x[i];
+        double step = next > x[i] ? next - x[i] : x[i] - next, same = step > FOUND * next ? 0 : 1;
+        x[i] = found[i] > 0 ? x[i] : next;
+        found[i] = found[i] > 0 ? 1 : same;
+        left += found[i] > 0 ? 0 : 1;
+    }
+    return left;
 }
 
 /* What a step comes to before slip is looked at. */
@@ -160,7 +175,14 @@ typedef struct trial {
     double residual[STRIDE], drop[STRIDE], limit[STRIDE], slip[STRIDE];
 } trial;
 
-/* Forces as if nothing slipped, and the strength; whether some lane is beyond its own. */
+/* Share of the drop that is left, or less: exp(-x) >= 1 - x needs no exponential. */
+TL_IN_LOOP double least_left_of(const int form, double per_distance, double slip)
+{
+    double least = left_of(LINEAR, per_distance, slip);
+    return form == EXPONENTIAL ? SURE * least : least;
+}
+
+/* Forces as if nothing slipped, and the least strength; whether some lane is beyond it. */
 TL_IN_LOOP double press(const weakening *law, const tl_law_batch *batch, uint32_t begin,
                         uint32_t lanes, trial *restrict t, const int form)
 {
@@ -178,7 +200,7 @@ TL_IN_LOOP double press(const weakening *law, const tl_law_batch *batch, uint32_
         double normal = total < 0 ? 0 : total;
         double residual = total < 0 ? 0 : cohesion * c.area[i] + normal * tangent;
         double drop = total < 0 ? 0 : cohesion_drop * c.area[i] + normal * tangent_drop;
-        double limit = residual + left_of(form, per_distance, slip[i]) * drop;
+        double limit = residual + least_left_of(form, per_distance, slip[i]) * drop;
         beyond += shear > limit * (1 + ROUNDING) ? 1 : 0;
         t->total[i] = total;
         t->x[i] = f.x;
@@ -193,12 +215,26 @@ TL_IN_LOOP double press(const weakening *law, const tl_law_batch *batch, uint32_
     return beyond;
 }
 
+/* The strength of the exponential form; whether some lane is beyond it. */
+TL_IN_LOOP double resist(const weakening *law, uint32_t lanes, trial *restrict t)
+{
+    const double per_distance = 1 / law->distance;
+    double beyond = 0;
+#pragma omp simd reduction(+ : beyond)
+    for (uint32_t i = 0; i < lanes; i++) {
+        double limit = t->residual[i] + left_of(EXPONENTIAL, per_distance, t->slip[i]) * t->drop[i];
+        beyond += t->shear[i] > limit * (1 + ROUNDING) ? 1 : 0;
+        t->limit[i] = limit;
+    }
+    return beyond;
+}
+
 /* Slip of the lanes that are beyond their strength, and the strength after it. Open points do not rub. */
 TL_IN_LOOP void rub(const weakening *law, const double *restrict area, uint32_t lanes,
                     trial *restrict t, const int form)
 {
     const double distance = law->distance, per_distance = 1 / law->distance, ks = law->ks;
-    double above[STRIDE], drop[STRIDE], grown[STRIDE];
+    double above[STRIDE], drop[STRIDE], grown[STRIDE], found[STRIDE];
 #pragma omp simd
     for (uint32_t i = 0; i < lanes; i++) {
         double spring = ks * area[i] * distance,
@@ -208,11 +244,11 @@ TL_IN_LOOP void rub(const weakening *law, const double *restrict area, uint32_t 
         drop[i] = most * left;
         grown[i] = form == EXPONENTIAL ? exponential_start(above[i], drop[i])
                                        : linear_slip(above[i], drop[i], left, left > 0 ? most : 0);
+        found[i] = t->shear[i] > t->limit[i] * (1 + ROUNDING) ? 0 : 1;
     }
     for (int k = 0; form == EXPONENTIAL && k < PASSES; k++)
-#pragma omp simd
-        for (uint32_t i = 0; i < lanes; i++)
-            grown[i] = exponential_pass(above[i], drop[i], grown[i]);
+        if (!(exponential_pass(above, drop, grown, found, lanes) > 0))
+            break;
 #pragma omp simd
     for (uint32_t i = 0; i < lanes; i++) {
         double limit = t->limit[i], slip = t->slip[i] + grown[i] * distance;
@@ -256,8 +292,8 @@ TL_IN_LOOP void settle(const weakening *law, const tl_law_batch *batch, uint32_t
 }
 
 /* Strength that comes back in a step: slip of points that do not slip in it. */
-static void heal(const weakening *law, const tl_law_batch *batch, uint32_t begin, uint32_t lanes,
-                 const double *restrict mark)
+TL_IN_LOOP void heal(const weakening *law, const tl_law_batch *batch, uint32_t begin,
+                     uint32_t lanes, const double *restrict mark)
 {
     double *restrict slip = batch->state[0] + begin;
     const double factor =
@@ -278,7 +314,8 @@ TL_IN_LOOP void update_lanes(const weakening *law, const tl_law_batch *batch, ui
 {
     trial t;
     double mark[STRIDE];
-    if (press(law, batch, begin, lanes, &t, form) > 0)
+    bool near = press(law, batch, begin, lanes, &t, form) > 0;
+    if (near && (form == LINEAR || resist(law, lanes, &t) > 0))
         rub(law, batch->area + begin, lanes, &t, form);
     if (batch->dissipated)
         settle(law, batch, begin, lanes, &t, mark, 1);
