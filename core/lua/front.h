@@ -123,7 +123,7 @@ typedef struct tl_lua_model {
     bool sampling;       /* a history's function runs */
 } tl_lua_model;
 
-/* User values of a model's userdata: the functions of drives (action.c), the histories (history.c). */
+/* User values of a model's userdata: the functions of drives (action.c), those of histories by their names (history.c). */
 enum { TL_LUA_DRIVES = 1, TL_LUA_HISTORIES, TL_LUA_USER_VALUES = 2 };
 
 /* Pushes the function talus.model and makes the metatable of models. */
@@ -215,6 +215,13 @@ int tl_lua_write_histories(lua_State *L);
 void tl_lua_histories_due(lua_State *L, int model_index);
 /* Takes the samples that are due; false, with the error on the top of the stack, when one fails. */
 bool tl_lua_histories_sample(lua_State *L, int model_index);
+/* The functions that histories of the model at `from` sample are those of its copy at `to` as well: history_again.c. */
+void tl_lua_histories_share(lua_State *L, int from, int to);
+/* Checks the option `histories` of the table at index 2, if there is one: functions by name. */
+void tl_lua_histories_given(lua_State *L);
+/* Gives the histories of the restored model at `model_index` their functions, of that option, or raises: what a history asks
+ * for is not there. */
+void tl_lua_histories_again(lua_State *L, const char *path, int model_index);
 
 /* ---- parameters in force: parameters.c ---- */
 
@@ -272,6 +279,8 @@ typedef struct tl_lua_selection {
 /* Makes the metatables of a kind's items and selections. */
 void tl_lua_item_open(lua_State *L, const tl_lua_kind *kind);
 void tl_lua_selection_open(lua_State *L, const tl_lua_kind *kind);
+/* The kind of the items of an open type. */
+const tl_lua_kind *tl_lua_item_kind(lua_State *L, const char *type);
 /* Pushes an item of an open type; `model_index` is where the model's userdata is. */
 void tl_lua_item_push(lua_State *L, const char *type, int model_index, tl_id id);
 /* The table at the top of the stack has a block in the field `name`, pushed before a call: makes it the one of that id,

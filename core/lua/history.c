@@ -1,14 +1,10 @@
 /* history.c - values of a model that runs sample: model:history{...}.
  *
- * A history is a userdata in a list that is the second user value of the model's userdata. Its samples lie in columns
- * from malloc. Its own user values are the script's function, and the block, contact or selection it follows.
- *
  * run.c asks after every step whether a sample is due, and takes it in a protected call. While a history's function runs
  * the kernel refuses whatever would change the model, so a run gives the same bits with histories and without. */
 #include "history.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* ---------------------------------------------------------------- what is asked ---------- */
@@ -60,30 +56,23 @@ static const tl_lua_key history_keys[] = {
 const tl_lua_spec tl_lua_history_spec = {
     "history", history_params, sizeof history_params / sizeof *history_params, history_keys};
 
-#define HISTORY_TYPE "talus.history"
-
 /* ---------------------------------------------------------------- the list --------------- */
 
-static int history_collect(lua_State *L)
+size_t tl_history_find(const tl_model *model, const char *name)
 {
-    tl_history *h = luaL_checkudata(L, 1, HISTORY_TYPE);
-    free(h->cycles);
-    free(h->times);
-    free(h->values);
-    h->cycles = NULL;
-    h->times = h->values = NULL;
-    h->count = h->room = 0;
-    return 0;
+    size_t i = 0;
+    const tl_history *h;
+    while ((h = tl_history_at(model, i)) != NULL && strcmp(h->name, name) != 0)
+        i++;
+    return i;
 }
 
-/* The place in the list at `list` of the history of that name, or 0. */
-static lua_Integer find(lua_State *L, int list, const char *name)
+void tl_history_set_function(lua_State *L, int model_index, const char *name)
 {
-    lua_Integer count = (lua_Integer)lua_rawlen(L, list);
-    for (lua_Integer i = 1; i <= count; i++)
-        if (strcmp(tl_history_at(L, list, i)->name, name) == 0)
-            return i;
-    return 0;
+    lua_getiuservalue(L, model_index, TL_LUA_HISTORIES);
+    lua_rotate(L, -2, 1);
+    lua_setfield(L, -2, name);
+    lua_pop(L, 1);
 }
 
 /* ---------------------------------------------------------------- model:history ---------- */
@@ -101,22 +90,22 @@ static void check_name(lua_State *L, const char *name)
             tl_lua_fail(L, "history: name must be in one line, without control characters");
 }
 
-static int remove_history(lua_State *L, int list, const char *name)
+static int remove_history(lua_State *L, tl_model *model, const char *name)
 {
-    lua_Integer at = find(L, list, name), count = (lua_Integer)lua_rawlen(L, list);
-    if (!at) {
+    size_t at = tl_history_find(model, name);
+    if (!tl_history_at(model, at)) {
         tl_lua_names names = {0};
-        for (lua_Integer i = 1; i <= count; i++)
-            tl_lua_names_add(&names, tl_history_at(L, list, i)->name);
-        if (!count)
+        const tl_history *h;
+        for (size_t i = 0; (h = tl_history_at(model, i)) != NULL; i++)
+            tl_lua_names_add(&names, h->name);
+        if (at == 0)
             return tl_lua_fail(
                 L, "history: there is none of the name '%s': the model has no history", name);
         return tl_lua_unknown(L, "history: there is none of the name", name, &names);
     }
-    for (; at <= count; at++) {
-        lua_rawgeti(L, list, at + 1);
-        lua_rawseti(L, list, at);
-    }
+    lua_pushnil(L);
+    tl_history_set_function(L, 1, name);
+    tl_history_end(model, at);
     tl_lua_histories_due(L, 1);
     return 0;
 }
@@ -138,7 +127,7 @@ static void read_value(lua_State *L, tl_history *h)
     const char *known;
     for (size_t i = 0; (known = tl_history_quantity(i)) != NULL; i++) {
         if (strcmp(known, name) == 0) {
-            h->index = i;
+            strcpy(h->asked, name);
             return;
         }
         tl_lua_names_add(&names, known);
@@ -146,86 +135,88 @@ static void read_value(lua_State *L, tl_history *h)
     tl_lua_unknown(L, lua_pushfstring(L, "history '%s': there is no value", h->name), name, &names);
 }
 
-/* Reads `of`, at the top of the stack, and which field of it is wanted. */
+/* Raises unless the field that is asked for is one of numbers, and what is made of several can be made of it. */
+static void check_field(lua_State *L, const tl_history *h, const char *name)
+{
+    const tl_lua_kind *kind = tl_history_kind(L, h);
+    size_t count, index;
+    const tl_field *fields = kind->fields(&count), *field = tl_history_field(L, h, &index);
+    tl_lua_names names = {0};
+    for (size_t i = 0; i < count; i++)
+        if (fields[i].kind <= TL_FIELD_VEC3)
+            tl_lua_names_add(&names, fields[i].name);
+    if (!field)
+        tl_lua_unknown(
+            L,
+            lua_pushfstring(L, "history '%s': a %s has no field of numbers", h->name, kind->item),
+            name, &names);
+    else if (field->kind == TL_FIELD_VEC3 && h->take >= TL_TAKE_MIN)
+        tl_lua_fail(L, "history '%s': the field '%s' is a vector; only single numbers are compared",
+                    h->name, name);
+}
+
+/* Reads `of`, at the top of the stack, and which field of it is wanted. The ids stay those of the object. */
 static void read_items(lua_State *L, tl_history *h, const history_args *args)
 {
     static const char *const item_types[] = {TL_LUA_BLOCK, TL_LUA_CONTACT};
     static const char *const selection_types[] = {TL_LUA_BLOCKS, TL_LUA_CONTACTS};
-    const tl_lua_kind *kind = NULL;
+    static const tl_history_source sources[] = {TL_FROM_BLOCKS, TL_FROM_CONTACTS};
     const tl_lua_model *owner = NULL;
-    h->source = TL_FROM_ITEMS;
     h->take = (tl_history_take)args->take;
     for (size_t i = 0; i < 2; i++) {
-        const tl_lua_item *item = luaL_testudata(L, -1, item_types[i]);
+        tl_lua_item *item = luaL_testudata(L, -1, item_types[i]);
         const tl_lua_selection *selection = luaL_testudata(L, -1, selection_types[i]);
-        h->selection = h->selection || selection;
-        kind = item ? item->kind : selection ? selection->kind : kind;
-        owner = item ? item->owner : selection ? selection->owner : owner;
+        if (!item && !selection)
+            continue;
+        h->source = sources[i];
+        h->selection = selection != NULL;
+        owner = item ? item->owner : selection->owner;
+        h->ids = item ? &item->id : selection->ids;
+        h->id_count = item ? 1 : selection->count;
     }
-    if (!kind)
+    if (!owner)
         tl_lua_fail(L, "history '%s': of must be a block, a contact or a selection of them, not %s",
                     h->name, tl_lua_describe(L, -1));
     if (owner != lua_touserdata(L, 1))
         tl_lua_fail(L, "history '%s': of is a part of another model", h->name);
-    if (h->selection && ((const tl_lua_selection *)lua_touserdata(L, -1))->count == 0)
+    if (h->id_count == 0)
         tl_lua_fail(L, "history '%s': the selection that of gives is empty", h->name);
     if (!args->field)
         tl_lua_fail(L, "history '%s': say which field is to be sampled: field = \"%s\"", h->name,
-                    strcmp(kind->item_type, TL_LUA_BLOCK) == 0 ? "displacement" : "normal_force");
-    size_t count;
-    const tl_field *fields = kind->fields(&count);
-    tl_lua_names names = {0};
-    for (size_t i = 0; i < count; i++) {
-        if (fields[i].kind > TL_FIELD_VEC3)
-            continue;
-        tl_lua_names_add(&names, fields[i].name);
-        h->index = strcmp(fields[i].name, args->field) == 0 ? i + 1 : h->index;
-    }
-    if (!h->index)
-        tl_lua_unknown(
-            L,
-            lua_pushfstring(L, "history '%s': a %s has no field of numbers", h->name, kind->item),
-            args->field, &names);
-    h->index--;
-    if (fields[h->index].kind == TL_FIELD_VEC3 && h->take >= TL_TAKE_MIN)
-        tl_lua_fail(L, "history '%s': the field '%s' is a vector; only single numbers are compared",
-                    h->name, args->field);
+                    h->source == TL_FROM_BLOCKS ? "displacement" : "normal_force");
+    strncpy(h->asked, args->field, TL_HISTORY_NAME);
+    check_field(L, h, args->field);
 }
 
-/* Makes the history at the top of the stack what the table at index 2 asks for. */
+/* Makes the history what the table at index 2 asks for, and leaves its value or what it is of on the stack. */
 static void read_source(lua_State *L, tl_history *h, const history_args *args)
 {
-    int object = lua_gettop(L);
-    bool value = lua_getfield(L, 2, "value") != LUA_TNIL;
     bool of = lua_getfield(L, 2, "of") != LUA_TNIL;
     if (!of && lua_getfield(L, 2, "take") != LUA_TNIL)
         tl_lua_fail(L, "history '%s': take is for a history of blocks or contacts, with of",
                     h->name);
-    lua_settop(L, object + 2);
+    bool value = lua_getfield(L, 2, "value") != LUA_TNIL;
     if (value == of)
         tl_lua_fail(L,
                     "history '%s': give either value = function(model) ... end or of = a selection "
                     "with field",
                     h->name);
+    if (value && args->field)
+        tl_lua_fail(
+            L, "history '%s': field = '%s' is the field of what `of` gives, and there is no of",
+            h->name, args->field);
     if (value) {
-        if (args->field)
-            tl_lua_fail(
-                L, "history '%s': field = '%s' is the field of what `of` gives, and there is no of",
-                h->name, args->field);
-        lua_pop(L, 1);
         read_value(L, h);
-        lua_setiuservalue(L, object, TL_HISTORY_FUNCTION);
     } else {
+        lua_pop(L, 1);
         read_items(L, h, args);
-        lua_setiuservalue(L, object, TL_HISTORY_FOLLOWED);
     }
-    lua_settop(L, object);
 }
 
 int tl_lua_history(lua_State *L)
 {
     tl_model *model = tl_lua_model_of(L, "history");
-    tl_lua_model *owner = lua_touserdata(L, 1);
+    const tl_lua_model *owner = lua_touserdata(L, 1);
     tl_lua_arity(L, 2, "history");
     lua_settop(L, 2);
     history_args args = {0};
@@ -234,28 +225,26 @@ int tl_lua_history(lua_State *L)
     if (owner->sampling)
         return tl_lua_fail(L, "history '%s': a history's function may only read the model",
                            args.name);
-    lua_Integer count = tl_histories_push(L);
-    int list = lua_gettop(L);
     if (args.remove)
-        return remove_history(L, list, args.name);
-    if (find(L, list, args.name))
+        return remove_history(L, model, args.name);
+    size_t at = tl_history_find(model, args.name);
+    if (tl_history_at(model, at))
         return tl_lua_fail(L,
                            "history '%s': there is one of that name; model:history{name = '%s', "
                            "remove = true} ends it",
                            args.name, args.name);
-    tl_history *h = lua_newuserdatauv(L, sizeof *h, TL_HISTORY_USER_VALUES);
-    *h = (tl_history){.every = args.every, .first = tl_model_cycles(model)};
-    strcpy(h->name, args.name);
-    if (luaL_newmetatable(L, HISTORY_TYPE)) {
-        lua_pushcfunction(L, history_collect);
-        lua_setfield(L, -2, "__gc");
-    }
-    lua_setmetatable(L, -2);
-    read_source(L, h, &args);
-    lua_pushvalue(L, -1);
-    if (tl_history_sample(L, 1) != LUA_OK)
+    tl_history what = {.every = args.every}, *h;
+    strcpy(what.name, args.name);
+    read_source(L, &what, &args);
+    if (what.source == TL_FROM_FUNCTION)
+        tl_history_set_function(L, 1, what.name);
+    tl_lua_ok(L, model, tl_history_add(model, &what, &h));
+    if (tl_lua_history_take(L, 1, h) != LUA_OK) {
+        tl_history_end(model, at);
+        lua_pushnil(L);
+        tl_history_set_function(L, 1, what.name);
         return lua_error(L);
-    lua_rawseti(L, list, count + 1);
+    }
     tl_lua_histories_due(L, 1);
     return 0;
 }

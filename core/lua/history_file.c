@@ -48,14 +48,13 @@ static void push_samples(lua_State *L, const tl_history *h)
 
 int tl_lua_histories(lua_State *L)
 {
-    tl_lua_model_of(L, "histories");
+    const tl_model *model = tl_lua_model_of(L, "histories");
     tl_lua_arity(L, 1, "histories");
-    lua_Integer count = tl_histories_push(L);
-    lua_createtable(L, 0, (int)count);
-    for (lua_Integer i = 1; i <= count; i++) {
-        const tl_history *h = tl_history_at(L, 2, i);
+    const tl_history *h;
+    lua_newtable(L);
+    for (size_t i = 0; (h = tl_history_at(model, i)) != NULL; i++) {
         push_samples(L, h);
-        lua_setfield(L, 3, h->name);
+        lua_setfield(L, 2, h->name);
     }
     return 1;
 }
@@ -114,7 +113,7 @@ static void add_head(luaL_Buffer *b, const tl_history *h)
 }
 
 /* One line: every history that has a sample of the lowest cycle that is left. false when none is left. */
-static bool add_line(luaL_Buffer *b, tl_history *const *all, size_t *at, size_t count)
+static bool add_line(luaL_Buffer *b, const tl_history *const *all, size_t *at, size_t count)
 {
     int64_t cycle = INT64_MAX;
     double time = 0;
@@ -144,23 +143,23 @@ static bool add_line(luaL_Buffer *b, tl_history *const *all, size_t *at, size_t 
 
 int tl_lua_write_histories(lua_State *L)
 {
-    tl_model *model = tl_lua_model_of(L, "write_histories");
+    const tl_model *model = tl_lua_model_of(L, "write_histories");
     tl_lua_arity(L, 2, "write_histories");
     const char *path = tl_lua_text(L, 2, "write_histories", "the file's name");
     lua_settop(L, 2);
-    size_t count = (size_t)tl_histories_push(L);
+    size_t count = 0;
+    while (tl_history_at(model, count))
+        count++;
     if (count == 0)
         return tl_lua_fail(
             L, "write_histories: the model has no history; make one with model:history{...}");
-    tl_history **all = lua_newuserdatauv(L, count * sizeof *all, 0);
+    const tl_history **all = lua_newuserdatauv(L, count * sizeof *all, 0);
     size_t *at = lua_newuserdatauv(L, count * sizeof *at, 0);
     luaL_Buffer b;
     luaL_buffinit(L, &b);
     luaL_addstring(&b, "cycle,time");
     for (size_t i = 0; i < count; i++) {
-        lua_rawgeti(L, 3, (lua_Integer)i + 1);
-        all[i] = lua_touserdata(L, -1);
-        lua_pop(L, 1);
+        all[i] = tl_history_at(model, i);
         at[i] = 0;
         add_head(&b, all[i]);
     }
@@ -170,7 +169,6 @@ int tl_lua_write_histories(lua_State *L)
     luaL_pushresult(&b);
     size_t length;
     const char *text = lua_tolstring(L, -1, &length);
-    (void)model;
     tl_error error;
     if (tl_write_file(path, text, length, &error) != TL_OK)
         return tl_lua_fail(L, "write_histories: %s", error.text);

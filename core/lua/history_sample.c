@@ -3,22 +3,7 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-
-lua_Integer tl_histories_push(lua_State *L)
-{
-    lua_getiuservalue(L, 1, TL_LUA_HISTORIES);
-    return (lua_Integer)lua_rawlen(L, -1);
-}
-
-tl_history *tl_history_at(lua_State *L, int list, lua_Integer i)
-{
-    lua_rawgeti(L, list, i);
-    tl_history *h = lua_touserdata(L, -1);
-    lua_pop(L, 1);
-    return h;
-}
 
 /* What a model can be asked for by name. */
 typedef enum origin { OF_ENERGY, OF_BALANCE, OF_CONTACTS } origin;
@@ -53,8 +38,34 @@ const char *tl_history_quantity(size_t i)
 
 /* ---------------------------------------------------------------- one sample ------------- */
 
+const tl_lua_kind *tl_history_kind(lua_State *L, const tl_history *h)
+{
+    return tl_lua_item_kind(L, h->source == TL_FROM_BLOCKS ? TL_LUA_BLOCK : TL_LUA_CONTACT);
+}
+
+const tl_field *tl_history_field(lua_State *L, const tl_history *h, size_t *index)
+{
+    size_t count;
+    const tl_field *fields = tl_history_kind(L, h)->fields(&count);
+    for (size_t i = 0; i < count; i++)
+        if (fields[i].kind <= TL_FIELD_VEC3 && strcmp(fields[i].name, h->asked) == 0) {
+            *index = i;
+            return &fields[i];
+        }
+    return NULL;
+}
+
+/* ---------------------------------------------------------------- one sample ------------- */
+
 /* Places on the stack while the function of a history is called. */
 enum { AT_MODEL = 1, AT_HISTORY, AT_FUNCTION, AT_VALUES };
+
+/* What is being sampled. */
+typedef struct latest {
+    double number[TL_HISTORY_WIDEST];
+    size_t width;
+    bool list;
+} latest;
 
 static double read_number(lua_State *L, const tl_history *h, int index)
 {
@@ -65,9 +76,13 @@ static double read_number(lua_State *L, const tl_history *h, int index)
     return lua_tonumber(L, index);
 }
 
-/* Calls the function with the model and reads what it gives; returns how many numbers. */
-static size_t ask_function(lua_State *L, tl_history *h)
+/* Calls the function with the model and reads what it gives. */
+static void ask_function(lua_State *L, const tl_history *h, latest *now)
 {
+    lua_getiuservalue(L, AT_MODEL, TL_LUA_HISTORIES);
+    lua_getfield(L, -1, h->name);
+    lua_replace(L, AT_FUNCTION);
+    lua_settop(L, AT_FUNCTION);
     lua_pushvalue(L, AT_FUNCTION);
     lua_pushvalue(L, AT_MODEL);
     lua_call(L, 1, LUA_MULTRET);
@@ -90,51 +105,54 @@ static size_t ask_function(lua_State *L, tl_history *h)
             lua_rawgeti(L, AT_VALUES, (lua_Integer)i + 1);
             index = lua_gettop(L);
         }
-        h->latest[i] = read_number(L, h, index);
+        now->number[i] = read_number(L, h, index);
         if (list)
             lua_pop(L, 1);
     }
-    if (h->width && (count != h->width || (list || given > 1) != h->list))
+    now->width = count;
+    now->list = list || given > 1;
+    if (h->count && (count != h->width || now->list != h->list))
         tl_lua_fail_in(
             L, AT_FUNCTION,
             "history '%s': the function gives %d numbers, before it gave %d: it must give "
             "as many each time",
             h->name, (int)count, (int)h->width);
-    h->list = list || given > 1;
-    return count;
 }
 
-static size_t ask_model(lua_State *L, tl_model *model, tl_history *h)
+static void ask_model(lua_State *L, tl_model *model, const tl_history *h, latest *now)
 {
-    size_t offset = quantities[h->index].offset;
-    if (quantities[h->index].origin == OF_CONTACTS) {
+    size_t index = 0;
+    while (strcmp(quantities[index].name, h->asked) != 0)
+        index++;
+    size_t offset = quantities[index].offset;
+    now->width = 1;
+    if (quantities[index].origin == OF_CONTACTS) {
         tl_contact_counts counts = tl_model_contact_counts(model);
         size_t count;
         memcpy(&count, (const char *)&counts + offset, sizeof count);
-        h->latest[0] = (double)count;
-        return 1;
+        now->number[0] = (double)count;
+        return;
     }
     tl_energy energy;
     tl_balance balance = tl_model_balance(model);
     const void *from = &balance;
-    if (quantities[h->index].origin == OF_ENERGY) {
+    if (quantities[index].origin == OF_ENERGY) {
         tl_lua_ok(L, model, tl_model_energy(model, &energy));
         from = &energy;
     }
-    memcpy(h->latest, (const char *)from + offset, sizeof *h->latest);
-    return 1;
+    memcpy(now->number, (const char *)from + offset, sizeof *now->number);
 }
 
 /* Tells once that blocks of a history are no longer there: `gone` of `count`, the last of them `id`. */
-static void tell_lost(lua_State *L, tl_model *model, tl_history *h, const tl_lua_kind *kind,
-                      tl_id id, size_t gone, size_t count)
+static void tell_lost(lua_State *L, tl_model *model, tl_history *h, tl_id id, size_t gone)
 {
-    if (h->lost || strcmp(kind->item_type, TL_LUA_BLOCK) != 0) /* contacts come and go */
+    const tl_lua_kind *kind = tl_history_kind(L, h);
+    if (h->lost || h->source != TL_FROM_BLOCKS) /* contacts come and go */
         return;
     h->lost = true;
     char text[300];
     long long cycle = tl_model_cycles(model);
-    if (gone < count)
+    if (gone < h->id_count)
         snprintf(text, sizeof text,
                  "history '%s': %s %u no longer exists; from cycle %lld on its values are of the "
                  "%s that are left",
@@ -146,97 +164,75 @@ static void tell_lost(lua_State *L, tl_model *model, tl_history *h, const tl_lua
     tl_lua_log(tl_lua_options_of(L), text);
 }
 
-static void take_in(tl_history *h, const double *number, size_t width, bool begins)
+static void take_in(tl_history_take take, latest *now, const double *number, bool begins)
 {
-    for (size_t k = 0; k < width; k++) {
-        double *to = &h->latest[k];
-        if (begins || (h->take == TL_TAKE_MIN && number[k] < *to) ||
-            (h->take == TL_TAKE_MAX && number[k] > *to))
+    for (size_t k = 0; k < now->width; k++) {
+        double *to = &now->number[k];
+        if (begins || (take == TL_TAKE_MIN && number[k] < *to) ||
+            (take == TL_TAKE_MAX && number[k] > *to))
             *to = number[k];
-        else if (h->take == TL_TAKE_MEAN || h->take == TL_TAKE_SUM)
+        else if (take == TL_TAKE_MEAN || take == TL_TAKE_SUM)
             *to += number[k];
     }
 }
 
-/* The field of the block, contact or selection at the top of the stack. */
-static size_t ask_items(lua_State *L, tl_model *model, tl_history *h)
+/* The field of the blocks or contacts. */
+static void ask_items(lua_State *L, tl_model *model, tl_history *h, latest *now)
 {
-    const tl_lua_item *item = lua_touserdata(L, -1);
-    const tl_lua_selection *selection = lua_touserdata(L, -1);
-    const tl_lua_kind *kind = h->selection ? selection->kind : item->kind;
-    const tl_id *ids = h->selection ? selection->ids : &item->id;
-    size_t count = h->selection ? selection->count : 1, gone = 0, fields;
-    size_t width = kind->fields(&fields)[h->index].kind == TL_FIELD_VEC3 ? 3 : 1;
+    size_t index, gone = 0;
+    const tl_lua_kind *kind = tl_history_kind(L, h);
+    bool vector = tl_history_field(L, h, &index)->kind == TL_FIELD_VEC3;
     tl_id lost = TL_NO_ID;
-    for (size_t i = 0; i < count; i++) {
+    now->width = vector ? 3 : 1;
+    now->list = vector;
+    for (size_t i = 0; i < h->id_count; i++) {
         tl_field_value value;
-        tl_status status = kind->field(model, ids[i], h->index, &value);
-        if (status == TL_E_STALE && h->width) { /* not at the first sample */
+        tl_status status = kind->field(model, h->ids[i], index, &value);
+        if (status == TL_E_STALE && h->count) { /* not at the first sample */
             gone++;
-            lost = ids[i];
+            lost = h->ids[i];
             continue;
         }
         tl_lua_ok(L, model, status);
-        take_in(h, value.number, width, i == gone);
+        take_in(h->take, now, value.number, i == gone);
     }
     if (gone)
-        tell_lost(L, model, h, kind, lost, gone, count);
-    for (size_t k = 0; k < width; k++)
-        if (gone == count)
-            h->latest[k] = NAN;
+        tell_lost(L, model, h, lost, gone);
+    for (size_t k = 0; k < now->width; k++)
+        if (gone == h->id_count)
+            now->number[k] = NAN;
         else if (h->take == TL_TAKE_MEAN)
-            h->latest[k] /= (double)(count - gone);
-    h->list = width > 1;
-    return width;
+            now->number[k] /= (double)(h->id_count - gone);
 }
 
-/* Room for one more sample. */
-static void make_room(lua_State *L, tl_history *h, size_t width)
-{
-    if (h->count < h->room)
-        return;
-    size_t room = h->room ? 2 * h->room : 64;
-    int64_t *cycles = realloc(h->cycles, room * sizeof *cycles);
-    h->cycles = cycles ? cycles : h->cycles;
-    double *times = realloc(h->times, room * sizeof *times);
-    h->times = times ? times : h->times;
-    double *values = realloc(h->values, room * width * sizeof *values);
-    h->values = values ? values : h->values;
-    if (!cycles || !times || !values)
-        tl_lua_fail(L, "history '%s': out of memory after %I samples", h->name,
-                    (lua_Integer)h->count);
-    h->room = room;
-}
-
-/* Runs protected. Arguments: the model, the history. */
+/* Runs protected. Arguments: the model, the history, a place for its function. */
 static int sample(lua_State *L)
 {
     tl_history *h = lua_touserdata(L, AT_HISTORY);
     tl_model *model = ((tl_lua_model *)lua_touserdata(L, AT_MODEL))->model;
-    lua_getiuservalue(L, AT_HISTORY,
-                      h->source == TL_FROM_ITEMS ? TL_HISTORY_FOLLOWED : TL_HISTORY_FUNCTION);
-    size_t width = h->source == TL_FROM_FUNCTION ? ask_function(L, h)
-                   : h->source == TL_FROM_MODEL  ? ask_model(L, model, h)
-                                                 : ask_items(L, model, h);
-    make_room(L, h, width);
-    h->width = width;
-    h->cycles[h->count] = tl_model_cycles(model);
-    h->times[h->count] = tl_model_time(model);
-    memcpy(h->values + h->count * width, h->latest, width * sizeof *h->values);
-    h->count++;
+    latest now = {.width = 0};
+    if (h->source == TL_FROM_FUNCTION)
+        ask_function(L, h, &now);
+    else if (h->source == TL_FROM_MODEL)
+        ask_model(L, model, h, &now);
+    else
+        ask_items(L, model, h, &now);
+    tl_lua_ok(L, model, tl_history_sample(model, h, now.number, now.width));
+    h->list = now.list;
     return 0;
 }
 
-int tl_history_sample(lua_State *L, int model_index)
+int tl_lua_history_take(lua_State *L, int model_index, tl_history *h)
 {
     tl_lua_model *owner = lua_touserdata(L, model_index);
     model_index = lua_absindex(L, model_index);
     lua_pushcfunction(L, sample);
     lua_pushvalue(L, model_index);
-    lua_rotate(L, -3, 2);
+    lua_pushlightuserdata(L, h);
+    lua_pushnil(L);
     owner->sampling = true;
     tl_model_only_read(owner->model, true);
-    int status = lua_pcall(L, 2, 0, 0);
+    int status = lua_pcall(L, 3, 0, 0);
     tl_model_only_read(owner->model, false);
     owner->sampling = false;
     return status;
@@ -244,45 +240,37 @@ int tl_history_sample(lua_State *L, int model_index)
 
 /* ---------------------------------------------------------------- when ------------------- */
 
+/* The next cycle after that one at which a sample is due. */
 static int64_t next_sample(const tl_history *h, int64_t cycle)
 {
     int64_t since = cycle - h->first;
-    return since < 0 ? h->first : h->first + (since / h->every + 1) * h->every;
+    if (since < 0)
+        return h->first;
+    int64_t wait = h->every - since % h->every;
+    return wait <= INT64_MAX - cycle ? cycle + wait : INT64_MAX;
 }
 
 void tl_lua_histories_due(lua_State *L, int model_index)
 {
     tl_lua_model *owner = lua_touserdata(L, model_index);
     int64_t cycle = tl_model_cycles(owner->model);
+    const tl_history *h;
     owner->next_sample = INT64_MAX;
-    lua_getiuservalue(L, model_index, TL_LUA_HISTORIES);
-    int list = lua_gettop(L);
-    lua_Integer count = (lua_Integer)lua_rawlen(L, list);
-    for (lua_Integer i = 1; i <= count; i++) {
-        int64_t next = next_sample(tl_history_at(L, list, i), cycle);
+    for (size_t i = 0; (h = tl_history_at(owner->model, i)) != NULL; i++) {
+        int64_t next = next_sample(h, cycle);
         owner->next_sample = next < owner->next_sample ? next : owner->next_sample;
     }
-    lua_pop(L, 1);
 }
 
 bool tl_lua_histories_sample(lua_State *L, int model_index)
 {
-    tl_lua_model *owner = lua_touserdata(L, model_index);
+    const tl_lua_model *owner = lua_touserdata(L, model_index);
     int64_t cycle = tl_model_cycles(owner->model);
-    lua_getiuservalue(L, model_index, TL_LUA_HISTORIES);
-    int list = lua_gettop(L);
-    lua_Integer count = (lua_Integer)lua_rawlen(L, list);
-    for (lua_Integer i = 1; i <= count; i++) {
-        const tl_history *h = tl_history_at(L, list, i);
-        if (cycle < h->first || (cycle - h->first) % h->every != 0)
-            continue;
-        lua_rawgeti(L, list, i);
-        if (tl_history_sample(L, model_index) != LUA_OK) {
-            lua_remove(L, list);
+    tl_history *h;
+    for (size_t i = 0; (h = tl_history_at(owner->model, i)) != NULL; i++)
+        if (cycle >= h->first && (cycle - h->first) % h->every == 0 &&
+            tl_lua_history_take(L, model_index, h) != LUA_OK)
             return false;
-        }
-    }
-    lua_pop(L, 1);
     tl_lua_histories_due(L, model_index);
     return true;
 }

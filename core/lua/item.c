@@ -15,15 +15,21 @@ static tl_lua_item *item_of(lua_State *L, int index, const char *type)
     return item;
 }
 
+const tl_lua_kind *tl_lua_item_kind(lua_State *L, const char *type)
+{
+    luaL_getmetatable(L, type);
+    lua_rawgetp(L, -1, &kind_key);
+    const tl_lua_kind *kind = lua_touserdata(L, -1);
+    lua_pop(L, 2);
+    return kind;
+}
+
 void tl_lua_item_push(lua_State *L, const char *type, int model_index, tl_id id)
 {
     model_index = lua_absindex(L, model_index);
     tl_lua_item *item = lua_newuserdatauv(L, sizeof *item, 1);
-    luaL_getmetatable(L, type);
-    lua_rawgetp(L, -1, &kind_key);
-    *item = (tl_lua_item){lua_touserdata(L, -1), lua_touserdata(L, model_index), id};
-    lua_pop(L, 1);
-    lua_setmetatable(L, -2);
+    *item = (tl_lua_item){tl_lua_item_kind(L, type), lua_touserdata(L, model_index), id};
+    luaL_setmetatable(L, type);
     lua_pushvalue(L, model_index);
     lua_setiuservalue(L, -2, 1);
 }

@@ -141,19 +141,21 @@ static int call_progress(lua_State *L)
     return 0;
 }
 
-/* After every step: the line, and the samples that are due. */
+/* After every step: the line, the samples that are due, and then a save, which has them. */
 static tl_status on_each(void *user, tl_model *model)
 {
     run *r = user;
     if (r->failed) /* a drive's function */
         return TL_E_CANCELLED;
     tl_lua_progress_run(&r->line, model, &r->limits, &r->result);
+    if (tl_model_cycles(model) >= r->owner->next_sample &&
+        !tl_lua_histories_sample(r->L, AT_MODEL)) {
+        keep_error(r);
+        return TL_E_CANCELLED;
+    }
     if (!r->owner->probe)
         tl_lua_autosave(r->options, model);
-    if (tl_model_cycles(model) < r->owner->next_sample || tl_lua_histories_sample(r->L, AT_MODEL))
-        return TL_OK;
-    keep_error(r);
-    return TL_E_CANCELLED;
+    return TL_OK;
 }
 
 static tl_status on_progress(void *user, tl_model *model)

@@ -1,7 +1,7 @@
 /* state.c - a model once more: model:copy(), model:save(path), talus.restore(path).
  *
- * A drive's functions belong to the script. A copy shares them; no file keeps them, so they are given again to restore. Either
- * way the anchors they hang on (action.c) are made before the kernel asks for them, for it must not be left by a Lua error. */
+ * The functions of drives and histories belong to the script. A copy shares them; no file keeps them, so they are given again to
+ * restore (those of histories: history_again.c). Either way the anchors they hang on (action.c) are made before the kernel asks for them, for it must not be left by a Lua error. */
 #include "front.h"
 
 #include <limits.h>
@@ -14,6 +14,8 @@ const tl_lua_key tl_lua_restore_keys[] = {
     {"drives", "{BLOCK = function(t)}",
      "what functions drive, by the lowest block of each drive: a function(t) for its velocity, or "
      "{velocity = function(t), angular_velocity = function(t)}"},
+    {"histories", "{NAME = function(model)}",
+     "what functions sample, by the name of each history; false ends the history of that name"},
     {NULL, NULL, NULL},
 };
 
@@ -96,6 +98,7 @@ int tl_lua_copy(lua_State *L)
     givens *all = push_twins(L, 1, 2);
     tl_lua_ok(L, model, tl_model_copy(model, give, all, &object->model));
     tl_lua_model_begin(L, object);
+    tl_lua_histories_share(L, 1, 2);
     object->probe = true;
     tell_weight(L, object->model);
     lua_settop(L, 2);
@@ -186,6 +189,7 @@ static givens *read_options(lua_State *L, int64_t *threads, tl_lua_model **objec
     lua_settop(L, 2);
     read_threads(L, threads);
     lua_settop(L, 2);
+    tl_lua_histories_given(L);
     *object = tl_lua_model_push(L);
     return push_given(L, 3);
 }
@@ -206,6 +210,7 @@ int tl_lua_restore(lua_State *L)
             tl_lua_fail(L, "talus.restore: no function drove block %I when the model was saved",
                         (lua_Integer)all->list[i].block);
     tl_lua_model_begin(L, object);
+    tl_lua_histories_again(L, path, 3);
     tell_weight(L, object->model);
     lua_settop(L, 3);
     return 1;

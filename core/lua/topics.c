@@ -398,8 +398,8 @@ const tl_lua_topic tl_lua_topics[] = {
          "Saves all that the next steps depend on, to the bit, compressed and with checksums. The "
          "file appears whole or not at all, in the place of an older one, and outlives a crash "
          "of the machine; folders are made. The model goes on as if it had not been saved. "
-         "Functions of drives and histories are not saved; frames of files go on with the next "
-         "number."},
+         "Histories are saved with all their samples; functions of drives and histories are not. "
+         "Frames of files go on with the next number."},
     {.name = "restore",
      .usage = "model = talus.restore(\"out/run.talus\", {threads = 2})",
      .doc =

@@ -102,6 +102,9 @@ void tl_model_destroy(tl_model *m)
         tl_material_clear(&m->materials[i]);
     tl_damping_clear(m);
     tl_drives_clear(m);
+    for (size_t i = 0; i < m->history_count; i++)
+        tl_history_free(m->histories[i]);
+    free(m->histories);
     free(m->record.list);
     free(m->groups);
     free(m->joints);

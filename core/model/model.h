@@ -208,6 +208,9 @@ struct tl_model {
     tl_drive_record *drives;
     size_t drive_count;
 
+    tl_history **histories;
+    size_t history_count;
+
     tl_timestep timestep;
     const tl_kind *damping;
     void *damping_params, *damping_self;
@@ -526,5 +529,14 @@ void tl_drives_recount(tl_model *m);
 /* Keeps the drives in use though no body follows them, or ends those that none follows any more. */
 void tl_drives_hold(tl_model *m);
 void tl_drives_settle(tl_model *m);
+
+/* ---- histories.c ---- */
+
+/* What of a history, beside its samples, cannot be one of this model, as a part of a sentence; NULL: nothing. */
+const char *tl_history_unsound(const tl_model *m, const tl_history *h);
+/* Adds a history that is sound, with room for its ids and for so many samples of its width; NULL: out of memory. */
+tl_history *tl_history_hold(tl_model *m, const tl_history *what, size_t samples);
+void tl_history_free(tl_history *h);
+size_t tl_history_bytes(const tl_history *h);
 
 #endif

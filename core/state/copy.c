@@ -9,6 +9,7 @@
 #include "model/walk.h"
 #include "state/drives.h"
 #include "state/entries.h"
+#include "state/histories.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -132,7 +133,7 @@ static tl_status fill(tl_model *to, tl_model *from, tl_drive_again_fn again, voi
         status = copy_cycle(to, from);
     if (status == TL_OK)
         status = tl_drives_copy(to, from, again, user);
-    return status;
+    return status == TL_OK ? tl_histories_copy(to, from) : status;
 }
 
 tl_status tl_model_copy(tl_model *m, tl_drive_again_fn again, void *user, tl_model **copy)

@@ -7,6 +7,7 @@
 #include "state/drives.h"
 #include "state/entries.h"
 #include "state/frames.h"
+#include "state/histories.h"
 #include "state/kinds.h"
 #include "state/shapes.h"
 
@@ -105,6 +106,7 @@ static void save_all(tl_archive_writer *w, tl_model *m)
                  save_planes(w, m) && save_drives(w, m);
     w->lost = w->lost || !saved;
     w->lost = !tl_frames_save(m, w) || w->lost;
+    w->lost = !tl_histories_save(m, w) || w->lost;
     tl_laws_save(m, w);
     tl_damping_save(m, w);
     if (m->detect)

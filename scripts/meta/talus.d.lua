@@ -1065,7 +1065,7 @@ function Model:state_hash() end
 ---@return talus.Model
 function Model:copy() end
 
---- Saves all that the next steps depend on, to the bit, compressed and with checksums. The file appears whole or not at all, in the place of an older one, and outlives a crash of the machine; folders are made. The model goes on as if it had not been saved. Functions of drives and histories are not saved; frames of files go on with the next number.
+--- Saves all that the next steps depend on, to the bit, compressed and with checksums. The file appears whole or not at all, in the place of an older one, and outlives a crash of the machine; folders are made. The model goes on as if it had not been saved. Histories are saved with all their samples; functions of drives and histories are not. Frames of files go on with the next number.
 ---
 ---     model:save("out/run.talus")
 ---@param path string
@@ -1074,6 +1074,7 @@ function Model:save(path) end
 ---@class (exact) talus.RestoreOptions
 ---@field threads? integer threads, in [1, 256]; default: as of talus.model. Results are the same bits for any number
 ---@field drives? table<integer, function|{ velocity: function?, angular_velocity: function? }> what functions drive, by the lowest block of each drive: a function(t) for its velocity, or {velocity = function(t), angular_velocity = function(t)}
+---@field histories? { NAME: number } what functions sample, by the name of each history; false ends the history of that name
 
 --- The model that a file holds: it goes on as the saved one does, to the bit, on any number of threads. Laws and damping must be loaded in the version that it was saved with. A damaged file, and one of another format, is refused.
 ---

@@ -33,6 +33,10 @@ local saved = {
 saved[3]:blocks { group = "rock" }:where(function(b) return b.centroid[1] < 1 end):join()
 saved[3]:blocks { group = "rock" }:load { force = { 100, 0, 0 } }
 saved[4]:blocks { group = "rock" }:drive { velocity = { 0, 0, 0.1 } }
+saved[1]:history { name = "kinetic", every = 2, value = "kinetic" }
+saved[1]:history { name = "hulls", every = 1, of = saved[1]:blocks { fixed = false }, field = "displacement" }
+saved[4]:history { name = "press", every = 3, of = saved[4]:contacts(), field = "normal_force", take = "max" }
+saved[4]:history { name = "steps", every = 5, value = function(m) return m.cycles, m.time end }
 for k, m in ipairs(saved) do
     if k < 5 then
         m:cycle(4 * k)

@@ -4,7 +4,8 @@
     TALUS_MODULE_DIR=BUILD_FOLDER tests/python/test_save.py [KILLS]
 
 A process that is killed while it saves leaves the last model that was saved whole, which goes on as the one that was not killed:
-KILLS times, at random moments (default 8; ./bootstrap soak: 200). So does a run under `talus run --autosave` that is killed and resumed. A law's plugin that is missing, or there in another version, is named in one sentence."""
+KILLS times, at random moments (default 8; ./bootstrap soak: 200). So does a run under `talus run --autosave` that is killed and resumed, with its histories. A law's plugin that is missing, or there in another version, is named in one sentence."""
+import ctypes
 import os
 import pathlib
 import random
@@ -26,6 +27,15 @@ for i = 0, 39 do
 end
 model:joint("*", "coulomb", { kn = 1e8, ks = 5e7, friction = 30 })
 """
+# Histories, and what they have sampled.
+WATCH = """
+model:history { name = "kinetic", every = 1, value = "kinetic" }
+model:history { name = "hulls", every = 3, of = model:blocks { fixed = false }, field = "displacement" }
+model:history { name = "clock", every = 2, value = time }
+"""
+SAMPLES = """
+model:write_histories(arg[0] .. ".csv")
+for line in io.lines(arg[0] .. ".csv") do print(line) end"""
 STEPS, SAVES = 7, 60
 # What the program says after each run of STEPS steps; the same, saving each.
 RUN = MODEL + f"for _ = 1, {SAVES} do model:cycle({STEPS}) print(model.cycles, model:state_hash()) end"
@@ -78,13 +88,15 @@ def check_kills(program, folder, kills):
 def check_autosave(program, folder):
     """A run that is killed again and again, and resumed each time, ends as one that was not."""
     path = folder / "long run.lua"
-    path.write_text('local talus = require "talus"\nlocal model = talus.resumed()\nif not model then\n' + MODEL.replace("local model", "model") +
-                    f"end\nprint(model.cycles)\nmodel:cycle({STEPS * SAVES} - model.cycles)\nprint(model:state_hash())")
+    path.write_text('local talus = require "talus"\nlocal function time(m) return m.time end\n'
+                    "local model = talus.resumed { histories = { clock = time } }\nif not model then\n" +
+                    MODEL.replace("local model", "model") + WATCH + f"end\nprint(model.cycles)\nmodel:cycle({STEPS * SAVES} - model.cycles)\n" +
+                    SAMPLES + "\nprint(model:state_hash())")
 
     def start(*options):
         return subprocess.Popen([program, "--quiet", "run", *options, path.name], cwd=folder, stdout=subprocess.PIPE, text=True)
 
-    whole = start().communicate()[0].split()[1]
+    whole = start().communicate()[0].split()[1:]
     saved, chance, begun = folder / "long run.autosave.talus", random.Random(2), []
     for _ in range(8):
         process = start("--resume", "--autosave", "0.0003")
@@ -94,13 +106,34 @@ def check_autosave(program, folder):
         process.send_signal(signal.SIGKILL)
         begun.append(process.communicate()[0].split()[:1])
     done = start("--resume").communicate()[0].split()
-    if done[-1] != whole or done[0] == "0" or not saved.exists():
+    if done[1:] != whole or len(whole) != STEPS * SAVES + 3 or done[0] == "0" or not saved.exists():
         faults.append(f"resumed from {begun} and {done[0]}: {done}, in one go {whole}")
     for words, sentence in ((["run"], "name the script"), (["--autosave", "0", "x.lua"], "number of minutes"),
                             (["--resume", "-e", "print(1)"], "for a script in a file")):
         bad = subprocess.run([program, *words], capture_output=True, text=True, check=False)
         if bad.returncode != 1 or sentence not in bad.stderr:
             faults.append(f"{words}: {bad.returncode} {bad.stderr}")
+
+
+def check_unknown(program, build, folder):
+    """A file may hold a history of what this version cannot sample."""
+    saved = folder / "histories.talus"
+    run(program, MODEL + 'model:history { name = "k", value = "kinetic" } model:save(arg[1])', saved, folder=folder)
+    kernel = ctypes.CDLL(build / "libtalus.so")
+    kernel.tl_history_at.restype = ctypes.c_void_p
+    kernel.tl_plugins_load_default()
+    model, error = ctypes.c_void_p(), ctypes.create_string_buffer(1 << 16)
+    if kernel.tl_model_restore(bytes(saved), ctypes.c_int64(1), None, None, ctypes.byref(model), error):
+        faults.append("a model with a history is not restored")
+        return
+    history = kernel.tl_history_at(model, ctypes.c_size_t(0))
+    name, asked = ctypes.string_at(history), ctypes.string_at(history + 64)
+    ctypes.memmove(history + 64, b"magic", 6)
+    kernel.tl_model_save(model, bytes(saved))
+    kernel.tl_model_destroy(model)
+    done = run(program, RESTORE, saved, 1, folder=folder)
+    if (name, asked, done.returncode) != (b"k", b"kinetic", 1) or "history 'k' asks for 'magic', which cannot be sampled" not in done.stderr:
+        faults.append(f"an unknown value of {name}: {asked}: {done.returncode} {done.stdout}{done.stderr}")
 
 
 def check_plugins(program, build, folder):
@@ -134,6 +167,7 @@ def main():
     try:
         check_kills(build / "talus", folder, kills)
         check_autosave(build / "talus", folder)
+        check_unknown(build / "talus", build, folder)
         check_plugins(build / "talus", build, folder)
     finally:
         shutil.rmtree(folder)

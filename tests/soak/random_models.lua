@@ -217,6 +217,37 @@ function acts.ask(self)
     end)
 end
 
+-- What functions sample, by name: given again to what is restored.
+local sampled = {
+    steps = function(m) return m.cycles, m.time end,
+    blocks = function(m) return #m:blocks() end,
+}
+
+function acts.watch(self)
+    local m, every = self.model, self:random(1, 9)
+    local name = self:pick { "steps", "blocks", "kinetic", "slipping", "ratio" }
+    if self:random() < 0.4 then
+        local items = self:random() < 0.5 and self:some_blocks() or m:contacts()
+        local one = self:random() < 0.3 and items[1]
+        local field = self:pick { "displacement", "velocity", "volume", "normal_force", "area", "id" }
+        self:try("history of " .. field, m.history, m, { name = field, every = every, of = one or items, field = field,
+            take = self:pick { "mean", "sum", "min", "max" } })
+    else
+        self:try("history " .. name, m.history, m, { name = name, every = every, value = sampled[name] or name })
+    end
+    if self:random() < 0.1 then
+        self:try("history ended", m.history, m, { name = name, remove = true })
+    end
+    local names, all = {}, m:histories()
+    for known, h in pairs(all) do
+        local last = h.value[#h.value]
+        names[#names + 1] = string.format("%s %d at %d: %s", known, #h.value, h.cycle[#h.cycle],
+            type(last) == "table" and table.concat(last, ",") or last)
+    end
+    table.sort(names)
+    self.log[#self.log + 1] = table.concat(names, "; ")
+end
+
 function acts.write(self)
     local m = self.model
     self:try("write_vtk", m.write_vtk, m, stem)
@@ -226,7 +257,7 @@ function acts.write(self)
 end
 
 local order = { "block", "cut", "cut", "tunnel", "law", "settings", "damping", "bodies", "motion", "run", "run", "run",
-    "ask", "write" }
+    "ask", "watch", "write" }
 
 -- Goes on with a copy of the model, or with what comes out of a file. What cannot be saved or restored, for its contacts cannot be
 -- found or a drive's function is not at hand, is copied.
@@ -239,8 +270,12 @@ function Maker:take_again(k)
     -- asked of copies, for to ask is to find contacts that the other model finds after its next edit only
     local hash = { pcall(function() return m:copy():state_hash() end) }
     local drives, good, restored, asked = {}
+    local histories = {}
+    for name, f in pairs(sampled) do
+        histories[name] = m:histories()[name] and f
+    end
     repeat -- functions are given when they are asked for: who drives what after cuts and joins is the model's to tell
-        good, restored = pcall(talus.restore, path, { threads = 1 + k % 3, drives = drives })
+        good, restored = pcall(talus.restore, path, { threads = 1 + k % 3, drives = drives, histories = histories })
         asked = not good and tonumber(restored:match "block (%d+).* is driven by a function")
         if asked and (drives[asked] or not self.drives[asked]) then
             self.model = m:copy()

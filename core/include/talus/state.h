@@ -37,7 +37,7 @@ TL_API tl_status tl_model_copy(tl_model *model, tl_drive_again_fn again, void *u
 
 /* Saves the model: all that the next steps depend on, to the bit, so that a restored model goes on as this one. The file appears
  * whole or not at all, durably, in the place of an older one; folders are made. The run goes on as if it had not been saved. What
- * no file keeps: functions of drives, histories, the number of threads. */
+ * no file keeps: functions of drives and of histories, the number of threads. */
 TL_API tl_status tl_model_save(tl_model *model, const char *path);
 /* The model that a file holds, for so many threads. TL_E_IO: it cannot be read; TL_E_ARGUMENT: it is no such file, of another
  * format, cut off or damaged; TL_E_NOT_FOUND, TL_E_STATE: a plugin it needs is not loaded, or in another version, or `again`

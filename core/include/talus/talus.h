@@ -16,6 +16,7 @@
 #define TALUS_TALUS_H
 
 #include <stdbool.h>
+#include <talus/history.h>
 #include <talus/law_test.h>
 #include <talus/output.h>
 #include <talus/plugin.h>

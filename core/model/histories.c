@@ -1,0 +1,138 @@
+/* histories.c - the histories of a model: names, what they sample, and samples in columns from malloc. */
+#include "model/model.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Samples that a new history has room for. */
+#define FIRST_ROOM 64
+
+static bool is_text(const char *text, size_t room)
+{
+    const char *end = memchr(text, '\0', room);
+    for (const char *c = text; end && c < end; c++)
+        if ((unsigned char)*c < ' ' || *c == 127)
+            return false;
+    return end != NULL;
+}
+
+const char *tl_history_unsound(const tl_model *m, const tl_history *h)
+{
+    if (!is_text(h->name, sizeof h->name) || h->name[0] == '\0')
+        return "a history has no name of one line";
+    if (!is_text(h->asked, sizeof h->asked))
+        return "a history asks for what has no name of one line";
+    if (h->source > TL_FROM_CONTACTS || h->take > TL_TAKE_MAX || h->every < 1)
+        return "a history has an impossible setting";
+    if ((h->id_count > 0) != (h->source >= TL_FROM_BLOCKS) || (!h->selection && h->id_count > 1))
+        return "a history has too few or too many blocks or contacts";
+    for (size_t i = 0; i < m->history_count; i++)
+        if (strcmp(m->histories[i]->name, h->name) == 0)
+            return "two histories have one name";
+    return m->history_count < TL_MOST_HISTORIES ? NULL : "it has too many histories";
+}
+
+void tl_history_free(tl_history *h)
+{
+    if (!h)
+        return;
+    free(h->ids);
+    free(h->cycles);
+    free(h->times);
+    free(h->values);
+    free(h);
+}
+
+/* Room in the columns of a history for so many samples of its width; false: out of memory, and they are as they were. */
+static bool hold_samples(tl_history *h, size_t room)
+{
+    int64_t *cycles = realloc(h->cycles, room * sizeof *cycles);
+    h->cycles = cycles ? cycles : h->cycles;
+    double *times = realloc(h->times, room * sizeof *times);
+    h->times = times ? times : h->times;
+    double *values = realloc(h->values, room * h->width * sizeof *values);
+    h->values = values ? values : h->values;
+    if (!cycles || !times || !values)
+        return false;
+    h->room = room;
+    return true;
+}
+
+tl_history *tl_history_hold(tl_model *m, const tl_history *what, size_t samples)
+{
+    tl_history **list = realloc(m->histories, (m->history_count + 1) * sizeof *list);
+    m->histories = list ? list : m->histories;
+    tl_history *h = list ? malloc(sizeof *h) : NULL;
+    if (!h)
+        return NULL;
+    *h = *what;
+    h->ids = h->id_count ? malloc(h->id_count * sizeof *h->ids) : NULL;
+    h->cycles = NULL;
+    h->times = h->values = NULL;
+    h->room = 0;
+    if ((h->id_count && !h->ids) || (samples && !hold_samples(h, samples))) {
+        tl_history_free(h);
+        return NULL;
+    }
+    m->histories[m->history_count++] = h;
+    return h;
+}
+
+tl_status tl_history_add(tl_model *m, const tl_history *what, tl_history **made)
+{
+    *made = NULL;
+    const char *bad = tl_history_unsound(m, what);
+    if (bad)
+        return tl_fail(&m->error, TL_E_ARGUMENT, "history '%.*s': %s", TL_HISTORY_NAME, what->name,
+                       bad);
+    tl_history fresh = *what;
+    fresh.first = m->cycles;
+    fresh.lost = fresh.list = false;
+    fresh.width = fresh.count = 0;
+    tl_history *h = tl_history_hold(m, &fresh, 0);
+    if (!h)
+        return tl_fail_memory(&m->error);
+    if (h->ids)
+        memcpy(h->ids, what->ids, h->id_count * sizeof *h->ids);
+    *made = h;
+    return TL_OK;
+}
+
+void tl_history_end(tl_model *m, size_t i)
+{
+    if (i >= m->history_count)
+        return;
+    tl_history_free(m->histories[i]);
+    m->history_count--;
+    memmove(m->histories + i, m->histories + i + 1, (m->history_count - i) * sizeof *m->histories);
+}
+
+tl_history *tl_history_at(const tl_model *m, size_t i)
+{
+    return i < m->history_count ? m->histories[i] : NULL;
+}
+
+tl_status tl_history_sample(tl_model *m, tl_history *h, const double *values, size_t width)
+{
+    if (width < 1 || width > TL_HISTORY_WIDEST || (h->count && width != h->width))
+        return tl_fail(&m->error, TL_E_ARGUMENT,
+                       "history '%s': a sample of %zu numbers, where there must be %zu", h->name,
+                       width, h->count ? h->width : 1);
+    if (h->count && h->cycles[h->count - 1] >= m->cycles)
+        return tl_fail(&m->error, TL_E_ARGUMENT, "history '%s': cycle %lld is sampled already",
+                       h->name, (long long)m->cycles);
+    h->width = width;
+    if (h->count == h->room && !hold_samples(h, h->room ? 2 * h->room : FIRST_ROOM))
+        return tl_fail_memory(&m->error);
+    h->cycles[h->count] = m->cycles;
+    h->times[h->count] = m->time;
+    memcpy(h->values + h->count * width, values, width * sizeof *values);
+    h->count++;
+    return TL_OK;
+}
+
+size_t tl_history_bytes(const tl_history *h)
+{
+    return sizeof *h + h->id_count * sizeof *h->ids +
+           h->room * (sizeof *h->cycles + sizeof *h->times + h->width * sizeof *h->values);
+}

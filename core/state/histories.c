@@ -1,0 +1,190 @@
+/* histories.c - the histories of a model in an archive, and in a copy.
+ *
+ *     histories             what each samples, and how many samples it has; without histories it is not there
+ *     histories.K.ids       of its blocks or contacts
+ *     histories.K.cycles    of its samples
+ *     histories.K.times     s
+ *     histories.K.values    width numbers for each sample
+ *
+ * Whether there is a value or field of the name that is asked for is looked at by who samples. */
+#include "state/histories.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A history without its lists, as a file keeps it. */
+typedef struct history_kept {
+    char name[TL_HISTORY_NAME + 1], asked[TL_HISTORY_NAME + 1];
+    int64_t every, first;
+    uint64_t ids, width, count;
+    uint8_t source, take, selection, lost, list, spare[3];
+} history_kept;
+
+/* The name of a list of history `k`. */
+static const char *entry(char name[TL_CHUNK_NAME], size_t k, const char *what)
+{
+    snprintf(name, TL_CHUNK_NAME, "histories.%zu.%.16s", k, what);
+    return name;
+}
+
+/* ---------------------------------------------------------------- saving ----------------- */
+
+static void keep(const tl_history *h, history_kept *kept)
+{
+    memcpy(kept->name, h->name, strlen(h->name));
+    memcpy(kept->asked, h->asked, strlen(h->asked));
+    kept->every = h->every;
+    kept->first = h->first;
+    kept->ids = h->id_count;
+    kept->width = h->width;
+    kept->count = h->count;
+    kept->source = (uint8_t)h->source;
+    kept->take = (uint8_t)h->take;
+    kept->selection = h->selection;
+    kept->lost = h->lost;
+    kept->list = h->list;
+}
+
+bool tl_histories_save(const tl_model *m, tl_archive_writer *w)
+{
+    if (m->history_count == 0)
+        return true;
+    history_kept *kept = calloc(m->history_count, sizeof *kept);
+    if (!kept)
+        return false;
+    for (size_t k = 0; k < m->history_count; k++) {
+        const tl_history *h = m->histories[k];
+        char name[TL_CHUNK_NAME];
+        keep(h, &kept[k]);
+        tl_archive_put(w, entry(name, k, "ids"), h->ids, sizeof *h->ids, h->id_count);
+        tl_archive_put(w, entry(name, k, "cycles"), h->cycles, sizeof *h->cycles, h->count);
+        tl_archive_put(w, entry(name, k, "times"), h->times, sizeof *h->times, h->count);
+        tl_archive_put(w, entry(name, k, "values"), h->values, sizeof *h->values,
+                       h->count * h->width);
+    }
+    tl_archive_put(w, "histories", kept, sizeof *kept, m->history_count);
+    free(kept);
+    return true;
+}
+
+/* ---------------------------------------------------------------- restoring -------------- */
+
+static bool kept_is_sound(const tl_model *m, const history_kept *kept)
+{
+    return kept->selection <= 1 && kept->lost <= 1 && kept->list <= 1 && kept->first >= 0 &&
+           kept->first <= m->cycles && kept->ids <= UINT32_MAX &&
+           kept->width <= TL_HISTORY_WIDEST && (kept->width > 0 || kept->count == 0) &&
+           (kept->list || kept->width <= 1) &&
+           (kept->count == 0 || kept->count - 1 <= (uint64_t)(m->cycles - kept->first));
+}
+
+static tl_history history_of(const history_kept *kept)
+{
+    tl_history h = {.every = kept->every,
+                    .first = kept->first,
+                    .source = (tl_history_source)kept->source,
+                    .take = (tl_history_take)kept->take,
+                    .selection = kept->selection,
+                    .lost = kept->lost,
+                    .list = kept->list,
+                    .id_count = (size_t)kept->ids,
+                    .width = (size_t)kept->width,
+                    .count = (size_t)kept->count};
+    memcpy(h.name, kept->name, sizeof h.name);
+    memcpy(h.asked, kept->asked, sizeof h.asked);
+    return h;
+}
+
+/* Whether an archive has a list of so many items: before there is memory for them. */
+static bool has_list(const tl_archive *a, size_t k, const char *what, size_t size, size_t items)
+{
+    char name[TL_CHUNK_NAME];
+    const tl_chunk *chunk = tl_archive_find(a, entry(name, k, what));
+    return chunk && chunk->size == size && chunk->items == items;
+}
+
+static bool has_lists(const tl_archive *a, size_t k, const tl_history *h)
+{
+    return has_list(a, k, "ids", sizeof *h->ids, h->id_count) &&
+           has_list(a, k, "cycles", sizeof *h->cycles, h->count) &&
+           has_list(a, k, "times", sizeof *h->times, h->count) &&
+           has_list(a, k, "values", sizeof *h->values, h->count * h->width);
+}
+
+static bool samples_are_sound(const tl_model *m, const tl_history *h)
+{
+    for (size_t i = 0; i < h->count; i++)
+        if ((i ? h->cycles[i] <= h->cycles[i - 1] : h->cycles[i] < h->first) ||
+            h->cycles[i] > m->cycles || !isfinite(h->times[i]))
+            return false;
+    return true;
+}
+
+static bool read_lists(const tl_model *m, const tl_archive *a, size_t k, tl_history *h)
+{
+    char name[TL_CHUNK_NAME];
+    return tl_archive_get(a, entry(name, k, "ids"), h->ids, sizeof *h->ids, h->id_count) &&
+           tl_archive_get(a, entry(name, k, "cycles"), h->cycles, sizeof *h->cycles, h->count) &&
+           tl_archive_get(a, entry(name, k, "times"), h->times, sizeof *h->times, h->count) &&
+           tl_archive_get(a, entry(name, k, "values"), h->values, sizeof *h->values,
+                          h->count * h->width) &&
+           samples_are_sound(m, h);
+}
+
+static tl_status restore_one(tl_model *m, const tl_archive *a, size_t k, const history_kept *kept)
+{
+    if (!kept_is_sound(m, kept))
+        return tl_archive_bad(a, &m->error, "a history has an impossible value");
+    const tl_history what = history_of(kept);
+    const char *bad = tl_history_unsound(m, &what);
+    if (bad)
+        return tl_archive_bad(a, &m->error, "%s", bad);
+    if (!has_lists(a, k, &what))
+        return tl_archive_bad(a, &m->error, "a list of history '%s' is missing or does not fit",
+                              what.name);
+    tl_history *h = tl_history_hold(m, &what, what.count);
+    if (!h)
+        return tl_fail_memory(&m->error);
+    return read_lists(m, a, k, h)
+               ? TL_OK
+               : tl_archive_bad(a, &m->error, "the samples of history '%s' do not fit", h->name);
+}
+
+tl_status tl_histories_restore(tl_model *m, const tl_archive *a)
+{
+    const tl_chunk *chunk = tl_archive_find(a, "histories");
+    if (!chunk)
+        return TL_OK;
+    size_t count = chunk->items <= TL_MOST_HISTORIES ? (size_t)chunk->items : 0;
+    history_kept *kept = calloc(count + 1, sizeof *kept);
+    if (!kept)
+        return tl_fail_memory(&m->error);
+    tl_status status = count && tl_archive_get(a, "histories", kept, sizeof *kept, count)
+                           ? TL_OK
+                           : tl_archive_bad(a, &m->error, "'histories' does not fit");
+    for (size_t k = 0; k < count && status == TL_OK; k++)
+        status = restore_one(m, a, k, &kept[k]);
+    free(kept);
+    return status;
+}
+
+/* ---------------------------------------------------------------- copying ---------------- */
+
+tl_status tl_histories_copy(tl_model *to, const tl_model *from)
+{
+    for (size_t k = 0; k < from->history_count; k++) {
+        const tl_history *h = from->histories[k];
+        tl_history *copy = tl_history_hold(to, h, h->count);
+        if (!copy)
+            return tl_fail_memory(&to->error);
+        if (h->id_count)
+            memcpy(copy->ids, h->ids, h->id_count * sizeof *h->ids);
+        if (h->count == 0)
+            continue;
+        memcpy(copy->cycles, h->cycles, h->count * sizeof *h->cycles);
+        memcpy(copy->times, h->times, h->count * sizeof *h->times);
+        memcpy(copy->values, h->values, h->count * h->width * sizeof *h->values);
+    }
+    return TL_OK;
+}
