@@ -122,10 +122,9 @@ tl_status tl_blocks_drive(tl_model *m, const tl_id *ids, size_t count, const tl_
         status = tl_model_may_set(m, "drive blocks");
     if (status != TL_OK)
         return status;
-    if (!tl_v3_finite(drive->velocity) || !tl_v3_finite(drive->angular_velocity))
-        return tl_fail(&m->error, TL_E_ARGUMENT,
-                       "drive: velocity and angular_velocity must be finite numbers");
-    status = check_blocks(m, ids, count);
+    status = tl_check_motion(&m->error, "drive", drive->velocity, drive->angular_velocity);
+    if (status == TL_OK)
+        status = check_blocks(m, ids, count);
     if (status != TL_OK)
         return status;
     if (count == 0) {

@@ -320,6 +320,14 @@ tl_status tl_unknown_kind(tl_model *m, tl_kind_type type, const char *name);
  * has, and sums over bodies, stay finite, and so do their reciprocals. */
 #define TL_LEAST_MEASURE 1e-250
 #define TL_MOST_MEASURE 1e250
+/* Faster motion, m/s or rad/s, is not set, driven or parted: momentum and angular momentum stay finite, and no step is so short that
+ * a model could run with it. */
+#define TL_FASTEST 1e50
+/* Whether each component is a number that motion may have. */
+bool tl_is_motion(tl_vec3 v);
+/* TL_E_ARGUMENT with a sentence, after the name of a verb, unless both are motions. */
+tl_status tl_check_motion(tl_error *error, const char *verb, tl_vec3 velocity,
+                          tl_vec3 angular_velocity);
 /* TL_E_NUMERIC with a sentence when volume, mass or inertia of a block of this density cannot be computed with. */
 tl_status tl_check_measures(tl_error *error, const tl_poly *shape, double density);
 /* The id of the plugin that a kind is of, for sentences. */

@@ -482,8 +482,26 @@ tl_status tl_blocks_join(tl_model *m, const tl_id *ids, size_t count)
     return status == TL_OK && count > 1 ? regroup_by(m, ids, count, join_groups) : status;
 }
 
+/* Refuses bodies whose parts could fly off faster than any model can run with. */
+static tl_status check_spin(tl_model *m, const tl_id *ids, size_t count)
+{
+    const tl_bodies *b = &m->bodies;
+    for (size_t i = 0; i < count; i++) {
+        uint32_t body = m->blocks.body[m->row_of[ids[i]]];
+        double speed = tl_v3_norm(b->v[body]) + tl_v3_norm(b->w[body]) * b->radius[body];
+        if (b->member_count[body] > 1 && !(speed <= TL_FASTEST))
+            return tl_fail(&m->error, TL_E_NUMERIC,
+                           "cannot unjoin blocks: parts of the body of block %u move at up to %g "
+                           "m/s, and no model can run with more than %g: set its velocities first",
+                           ids[i], speed, TL_FASTEST);
+    }
+    return TL_OK;
+}
+
 tl_status tl_blocks_unjoin(tl_model *m, const tl_id *ids, size_t count)
 {
     tl_status status = check_parts(m, ids, count, "unjoin blocks");
+    if (status == TL_OK)
+        status = check_spin(m, ids, count);
     return status == TL_OK && count > 0 ? regroup_by(m, ids, count, part_groups) : status;
 }

@@ -162,6 +162,30 @@ tl_status tl_blocks_reset_displacement(tl_model *m, const tl_id *ids, size_t cou
     return TL_OK;
 }
 
+bool tl_is_motion(tl_vec3 v)
+{
+    return fabs(v.x) <= TL_FASTEST && fabs(v.y) <= TL_FASTEST && fabs(v.z) <= TL_FASTEST;
+}
+
+static tl_status bad_motion(tl_error *error, const char *verb, const char *name, tl_vec3 v,
+                            const char *unit)
+{
+    return tl_fail(error, TL_E_ARGUMENT,
+                   "%s: %s = {%g, %g, %g} %s must be three finite numbers of at most %g: no model "
+                   "can run with more",
+                   verb, name, v.x, v.y, v.z, unit, TL_FASTEST);
+}
+
+tl_status tl_check_motion(tl_error *error, const char *verb, tl_vec3 velocity,
+                          tl_vec3 angular_velocity)
+{
+    if (!tl_is_motion(velocity))
+        return bad_motion(error, verb, "velocity", velocity, "m/s");
+    if (!tl_is_motion(angular_velocity))
+        return bad_motion(error, verb, "angular_velocity", angular_velocity, "rad/s");
+    return TL_OK;
+}
+
 static bool given(tl_vec3 v)
 {
     return !(isnan(v.x) && isnan(v.y) && isnan(v.z));
@@ -179,12 +203,9 @@ static tl_status check_set(tl_model *m, const tl_id *ids, size_t count, const tl
             return tl_error_prefix(&m->error, "set: density = %g kg/m3, block %u: ", set->density,
                                    ids[i]);
     }
-    if (given(set->velocity) && !tl_v3_finite(set->velocity))
-        return tl_fail(&m->error, TL_E_ARGUMENT, "set: velocity must be three finite numbers");
-    if (given(set->angular_velocity) && !tl_v3_finite(set->angular_velocity))
-        return tl_fail(&m->error, TL_E_ARGUMENT,
-                       "set: angular_velocity must be three finite numbers");
-    return TL_OK;
+    const tl_vec3 none = {0, 0, 0};
+    return tl_check_motion(&m->error, "set", given(set->velocity) ? set->velocity : none,
+                           given(set->angular_velocity) ? set->angular_velocity : none);
 }
 
 /* Whether some of the blocks are parts of bodies of several. */

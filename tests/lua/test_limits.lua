@@ -59,16 +59,33 @@ local function refuses(change, part)
     end
 end
 
-for _, x in ipairs { 1e9, 1e80, 1e160, 1e305, 1.7e308 } do
+-- Motion that no model can run with is refused when it is given; what some could, by the step that would follow.
+local function motion(verb, values)
+    local name = next(values)
+    local most = 0
+    for _, x in ipairs(values[name]) do
+        most = math.max(most, math.abs(x))
+    end
+    if most <= 1e50 then
+        refuses(function(_, top) top[verb](top, values) end, "block 2 would move")
+        return
+    end
+    local m, top = stack(1)
+    check.refused(m, function() top[verb](top, values) end, string.format("%s: %s = {", verb, name))
+    check.refused(m, function() top[verb](top, values) end, "must be three finite numbers of at most 1e+50: no model can run")
+    m:cycle(3)
+end
+
+for _, x in ipairs { 1e9, 1e50, 1e80, 1e160, 1e305, 1.7e308 } do
     for _, sign in ipairs { 1, -1 } do
         refuses(function(m) m.gravity = { 0, 0, -sign * x } end, "block 2 would move")
         refuses(function(m) m.gravity = { x, sign * x, 0 } end, "block 2 would move")
-        refuses(function(_, top) top:drive { velocity = { sign * x, 0, 0 } } end, "block 2 would move")
-        refuses(function(_, top) top:drive { angular_velocity = { x, sign * x, x } } end, "block 2 would move")
+        motion("drive", { velocity = { sign * x, 0, 0 } })
+        motion("drive", { angular_velocity = { x, sign * x, x } })
         refuses(function(_, top) top:drive { velocity = function() return { 0, sign * x, 0 } end } end,
             "block 2 would move")
-        refuses(function(_, top) top:set { velocity = { 0, 0, sign * x } } end, "block 2 would move")
-        refuses(function(_, top) top:set { angular_velocity = { 0, sign * x, 0 } } end, "block 2 would move")
+        motion("set", { velocity = { 0, 0, sign * x } })
+        motion("set", { angular_velocity = { 0, sign * x, 0 } })
         refuses(function(_, top) top:load { force = { sign * math.min(x * 1e3, 1e308), 0, 0 } } end, "block 2 would move")
         refuses(function(_, top) top:load { moment = { 0, 0, sign * math.min(x * 1e3, 1e308) } } end, "block 2 would move")
     end
@@ -78,6 +95,34 @@ refuses(function(_, top) top:set { density = 1e240 } end, "block 2 would move")
 refuses(function(m) m:damping("viscous", { alpha = 0.1 }) m.gravity = { 0, 0, 1e300 } end, "block 2 would move")
 refuses(function(m) m:damping("local", { alpha = 0.8 }) m.gravity = { 0, 0, 1e300 } end, "block 2 would move")
 refuses(function(m) m.rotation = "paper" m.gravity = { 0, 0, 1e300 } end, "block 2 would move")
+
+for _, bad in ipairs { 0 / 0, 1 / 0, -1 / 0 } do
+    for _, verb in ipairs { "set", "drive" } do
+        for _, name in ipairs { "velocity", "angular_velocity" } do
+            local m, top = stack(1)
+            check.refused(m, function() top[verb](top, { [name] = { 0, bad, 0 } }) end, name)
+            check.refused(m, function() top[verb](top, { [name] = { bad, bad, bad } }) end, name)
+        end
+    end
+end
+
+-- Parts of a body that spins as fast as that.
+do
+    local m, top = stack(1)
+    m:generate("box", { min = { 1, 1, 2 }, max = { 2, 2, 3 }, density = 2000, group = "top" })
+    local both = m:blocks { group = "top" }
+    both:join()
+    both:set { angular_velocity = { 0, 9e49, 0 } }
+    check.refused(m, function() both:unjoin() end, "cannot unjoin blocks: parts of the body of block 2 move at up to ")
+    check.refused(m, function() top:unjoin() end, "set its velocities first")
+    both:set { angular_velocity = { 0, 9e9, 0 } }
+    both:unjoin()
+    is_usable(m)
+    both:join()
+    both:set { velocity = { 0, 0, 0 }, angular_velocity = { 0, 0, 0 } }
+    both:unjoin()
+    m:cycle(3)
+end
 
 -- A given step that is too long makes motion grow from small to wild without anything being set: such a step is undone,
 -- too, and with the step that the program chooses the run goes on.
