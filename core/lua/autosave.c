@@ -11,12 +11,10 @@
 
 char *tl_lua_autosave_path(const char *script)
 {
-    size_t length = strlen(script);
-    if (length > 4 && strcmp(script + length - 4, ".lua") == 0)
-        length -= 4;
-    char *path = malloc(length + sizeof ENDING);
+    size_t room = strlen(script) + sizeof ENDING;
+    char *path = malloc(room);
     if (path)
-        snprintf(path, length + sizeof ENDING, "%.*s%s", (int)length, script, ENDING);
+        snprintf(path, room, "%s%s", script, ENDING);
     return path;
 }
 

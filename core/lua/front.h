@@ -351,7 +351,7 @@ int tl_lua_resumed(lua_State *L);
 
 /* ---- runs that are saved as they go: autosave.c ---- */
 
-/* The file of a script's saves, SCRIPT without .lua and with .autosave.talus, from malloc; NULL when out of memory. */
+/* The file of a script's saves, SCRIPT.autosave.talus, from malloc; NULL when out of memory. */
 char *tl_lua_autosave_path(const char *script);
 /* Between two steps of a run: saves the model when it is time to. */
 void tl_lua_autosave(tl_lua_options *options, tl_model *model);

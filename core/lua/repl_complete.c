@@ -118,6 +118,33 @@ static void add_choices(const char *word, params p, const char *name)
                 add(word, *choice);
 }
 
+/* The names that a text has in quotes: "one of \"line\", \"points\"". */
+static void add_quoted(const char *word, const char *text)
+{
+    for (const char *at = text; (at = strchr(at, '"')) != NULL;) {
+        char name[TL_SCAN_NAME] = "";
+        size_t length = 0;
+        for (at++; tl_scan_is_name(*at) && length + 1 < sizeof name; at++)
+            name[length++] = *at;
+        if (*at == '"' && length > 0)
+            add(word, name);
+        at = strchr(at, '"');
+        if (!at)
+            return;
+        at++;
+    }
+}
+
+/* The choices of a key, which its type or description tells. */
+static void add_told(const char *word, const tl_lua_key *keys, const char *name)
+{
+    for (; keys && keys->name; keys++)
+        if (strcmp(keys->name, name) == 0) {
+            add_quoted(word, keys->type);
+            add_quoted(word, keys->doc);
+        }
+}
+
 static void add_plugins(const char *word, tl_kind_type type)
 {
     const tl_kind *kind;
@@ -358,6 +385,12 @@ static bool complete_key(const char *word, const tl_scan *scan)
     return true;
 }
 
+static void add_all_fields(const char *word)
+{
+    add_fields(word, &tl_lua_block_kind);
+    add_fields(word, &tl_lua_contact_kind);
+}
+
 static void complete_quotes(const char *word, const tl_scan *scan)
 {
     const tl_scan_level *level = &scan->levels[scan->depth];
@@ -365,6 +398,9 @@ static void complete_quotes(const char *word, const tl_scan *scan)
     const tl_lua_topic *topic = options_of(scan, &kind);
     if (topic && scan->before == '=') {
         add_choices(word, params_of_topic(topic), level->key);
+        add_told(word, topic->spec ? topic->spec->keys : topic->keys, level->key);
+        if (strcmp(level->key, "field") == 0)
+            add_all_fields(word);
         if (kind)
             add_choices(word, params_of_kind(kind), level->key);
         return;
@@ -375,10 +411,8 @@ static void complete_quotes(const char *word, const tl_scan *scan)
     if (topic && topic->type)
         add_plugins(word, *topic->type);
     for (size_t i = 0; i < sizeof of_fields / sizeof *of_fields; i++)
-        if (strcmp(callee, of_fields[i]) == 0) {
-            add_fields(word, &tl_lua_block_kind);
-            add_fields(word, &tl_lua_contact_kind);
-        }
+        if (strcmp(callee, of_fields[i]) == 0)
+            add_all_fields(word);
 }
 
 /* The word after `help`. */

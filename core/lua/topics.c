@@ -158,7 +158,8 @@ static const tl_lua_key keyblock_results[] = {
     {"safety", "", "factor of safety: 0 falling, math.huge stable"},
     {"faces", "",
      "the faces it slides on, none to two: {joint =, normal = (outward), area =, normal_force =}"},
-    {"direction, driving_force", "", "of the motion, and the force along it, N"},
+    {"direction, driving_force", "",
+     "of the motion, and the force along it, N; a stable one has no direction"},
     {"force, mass, volume", "", "weight and load, N; of the body, kg and m3"},
     {"pyramid", "",
      "edges of the joint pyramid, unit vectors: it can move in all directions between them"},
@@ -413,6 +414,6 @@ const tl_lua_topic tl_lua_topics[] = {
          "The model that `talus run --autosave MINUTES SCRIPT` saved last, after `talus run "
          "--resume "
          "SCRIPT`; nil when the script is not resumed, or nothing was saved. Takes the options of "
-         "talus.restore. The file lies beside the script: SCRIPT.autosave.talus without .lua."},
+         "talus.restore. The file lies beside the script: SCRIPT.autosave.talus."},
     {.name = NULL},
 };

@@ -965,8 +965,8 @@ function Model:filter(options) end
 ---@field mode string "falling", "sliding" (on one face), "sliding on two", or "stable": removable, but pressed in by its weight
 ---@field safety number factor of safety: 0 falling, math.huge stable
 ---@field faces { area: number, joint: string, normal: talus.Vector, normal_force: number }[] the faces it slides on, none to two: {joint =, normal = (outward), area =, normal_force =}
----@field direction talus.Vector of the motion, and the force along it, N
----@field driving_force number of the motion, and the force along it, N
+---@field direction talus.Vector of the motion, and the force along it, N; a stable one has no direction
+---@field driving_force number of the motion, and the force along it, N; a stable one has no direction
 ---@field force talus.Vector weight and load, N; of the body, kg and m3
 ---@field mass number weight and load, N; of the body, kg and m3
 ---@field volume number weight and load, N; of the body, kg and m3
@@ -1084,7 +1084,7 @@ function Model:save(path) end
 ---@return talus.Model
 function talus.restore(path, options) end
 
---- The model that `talus run --autosave MINUTES SCRIPT` saved last, after `talus run --resume SCRIPT`; nil when the script is not resumed, or nothing was saved. Takes the options of talus.restore. The file lies beside the script: SCRIPT.autosave.talus without .lua.
+--- The model that `talus run --autosave MINUTES SCRIPT` saved last, after `talus run --resume SCRIPT`; nil when the script is not resumed, or nothing was saved. Takes the options of talus.restore. The file lies beside the script: SCRIPT.autosave.talus.
 ---
 ---     model = talus.resumed()
 ---@return talus.Model?

@@ -250,3 +250,29 @@ for _, topic in ipairs { "plot", "stereonet" } do
 end
 
 os.execute("rm -rf '" .. folder .. "'")
+
+-- Numbers at the ends of what numbers are, on axes of both kinds, end in a picture of numbers or in a sentence.
+local pictures, sentences = 0, 0
+local ends = { 0, 1, -1, 0.1, 1e300, -1e300, 9.9e299, 1e301, 1.7e308, -1.7e308, 5e-324, 1e-320, 2.3e-308, 1e-307, 1e-300, 1e16 + 2,
+    math.maxinteger, math.mininteger, 1 / 0, -1 / 0, 0 / 0 }
+local function try(arguments)
+    arguments.file = path
+    local good, message = pcall(function() talus.plot(arguments) end)
+    pictures, sentences = pictures + (good and 1 or 0), sentences + (good and 0 or 1)
+    if good then
+        local svg = read(path)
+        check.holds(not svg:find "nan" and not svg:find "inf" and #svg < 100000, svg:sub(1, 400))
+    else
+        check.holds(message:find "^[^\n]+test_plot.lua:%d+: plot[^\n]+$", message)
+    end
+end
+for _, a in ipairs(ends) do
+    for _, b in ipairs(ends) do
+        for _, log in ipairs { false, true } do
+            try { series = { { y = { a, b }, style = "both" } }, y_axis = { log = log } }
+            try { series = { { y = { a, b }, x = { b, a } } }, x_axis = { log = log } }
+            try { series = { { y = { 1, 2, a } } }, y_axis = { log = log, range = { a, b } } }
+        end
+    end
+end
+check.holds(pictures > 900 and sentences > 900, pictures .. " pictures, " .. sentences .. " sentences")

@@ -62,6 +62,13 @@ for _, projection in ipairs { "equal_area", "equal_angle" } do
         local circle = circles(svg)[1]
         local deepest = radius(90 - dip)
         check.near(circle[46], { deepest * math.sin(rad(direction)), deepest * math.cos(rad(direction)) }, TWO_DECIMALS)
+        -- That of a horizontal plane goes all round, the others half.
+        check.equal(#circle, dip == 0 and 181 or 91)
+        local least = 1
+        for _, point in ipairs(circle) do
+            least = math.min(least, point[1] * math.sin(rad(direction)) + point[2] * math.cos(rad(direction)))
+        end
+        check.near(least, dip == 0 and -1 or 0, 1e-3)
         for _, at in ipairs { 1, #circle } do
             check.near(circle[at][1] ^ 2 + circle[at][2] ^ 2, 1, 1e-4)
             check.near(circle[at][1] * math.sin(rad(direction)) + circle[at][2] * math.cos(rad(direction)), 0, 1e-4)

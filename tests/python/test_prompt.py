@@ -103,6 +103,12 @@ def check_completion(folder):
             ('m:generate("joints', 'm:generate("jointset'), ('m:damping "adap', 'm:damping "adaptive'),
             ('m:joint("J1", "coulomb_', 'm:joint("J1", "coulomb_tensile'), ('m:timestep{rule = "bo', 'm:timestep{rule = "body'),
             ('m:generate("jointset", {distribution = "fi', 'm:generate("jointset", {distribution = "fisher'),
+            ('m:history{name = "k", value = "fric', 'm:history{name = "k", value = "friction'),
+            ('m:history{of = s, field = "displ', 'm:history{of = s, field = "displacement'),
+            ('m:history{take = "me', 'm:history{take = "mean'), ('m:solve{measure = "loc', 'm:solve{measure = "local'),
+            ('talus.stereonet{projection = "equal_an', 'talus.stereonet{projection = "equal_angle'),
+            ('talus.stereonet{great_circles = "no', 'talus.stereonet{great_circles = "none'),
+            ('m:history{name = "fric', 'm:history{name = "fric'),
             ('s:sum "kin', 's:sum "kinetic_energy'), ('talus.help "solv', 'talus.help "solve'), ('print("tal', 'print("tal'),
             ("help mass_", "help mass_scaling"), ("-- tal", "-- tal")):
         got = completed(prompt, file, text)

@@ -97,7 +97,7 @@ def check_autosave(program, folder):
         return subprocess.Popen([program, "--quiet", "run", *options, path.name], cwd=folder, stdout=subprocess.PIPE, text=True)
 
     whole = start().communicate()[0].split()[1:]
-    saved, chance, begun = folder / "long run.autosave.talus", random.Random(2), []
+    saved, chance, begun = folder / "long run.lua.autosave.talus", random.Random(2), []
     for _ in range(8):
         process = start("--resume", "--autosave", "0.0003")
         while not saved.exists() and process.poll() is None:
@@ -108,6 +108,15 @@ def check_autosave(program, folder):
     done = start("--resume").communicate()[0].split()
     if done[1:] != whole or len(whole) != STEPS * SAVES + 3 or done[0] == "0" or not saved.exists():
         faults.append(f"resumed from {begun} and {done[0]}: {done}, in one go {whole}")
+    for name in ("twin", "twin.lua"):  # each has a file of its own
+        (folder / name).write_text('local talus = require "talus"\nlocal model = talus.resumed()\nprint(model and model:blocks()[1].group)\n'
+                                   'model = talus.model {}\nmodel:timestep { dt = 1e-3 }\nmodel:generate("box", { min = {0, 0, 0}, max = {1, 1, 1}, density = 1, group = arg[0] })\n'
+                                   "for _ = 1, 50 do model:cycle(10) end")
+    for _ in range(2):
+        told = [subprocess.run([program, "--quiet", "run", "--resume", "--autosave", "0.000001", name], cwd=folder, capture_output=True,
+                               text=True, check=False).stdout for name in ("twin", "twin.lua")]
+    if told != ["twin\n", "twin.lua\n"]:
+        faults.append(f"scripts twin and twin.lua resume as {told}")
     for words, sentence in ((["run"], "name the script"), (["--autosave", "0", "x.lua"], "number of minutes"),
                             (["--resume", "-e", "print(1)"], "for a script in a file")):
         bad = subprocess.run([program, *words], capture_output=True, text=True, check=False)

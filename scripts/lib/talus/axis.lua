@@ -9,6 +9,8 @@ axis.__index = axis
 local KEYS = { "log", "name", "range", "unit" }
 -- Largest numbers that are drawn: differences of larger ones may not be finite.
 local FARTHEST = 1e300
+-- A logarithmic axis ends there: smaller numbers have fewer digits.
+local LEAST = 1e-307
 -- Values out of the range are drawn at most so many ranges away.
 local FAR = 1000
 
@@ -58,12 +60,12 @@ function axis.read(where, given, key, default)
         if type(range) ~= "table" or #range ~= 2 or type(range[1]) ~= "number" or type(range[2]) ~= "number" then
             fail("%s: range must be a list of two numbers", where)
         end
-        self.low, self.high = range[1], range[2]
+        self.low, self.high = range[1] + 0.0, range[2] + 0.0
         if not (self.low < self.high and self.low >= -FARTHEST and self.high <= FARTHEST) then
             fail("%s: range = {%s, %s} must ascend and be finite", where, range[1], range[2])
         end
-        if self.log and self.low <= 0 then
-            fail("%s: range = {%s, %s} of a logarithmic axis must be above 0", where, range[1], range[2])
+        if self.log and self.low < LEAST then
+            fail("%s: range = {%s, %s} of a logarithmic axis must be above 0, from %s on", where, range[1], range[2], LEAST)
         end
         self.given = true
     end
@@ -73,7 +75,7 @@ end
 
 -- Whether a number can be drawn on the axis.
 function axis:takes(value)
-    return value == value and value >= -FARTHEST and value <= FARTHEST and (not self.log or value > 0)
+    return value == value and value >= -FARTHEST and value <= FARTHEST and (not self.log or value >= LEAST)
 end
 
 -- ------------------------------------------------------------------ range
@@ -89,9 +91,9 @@ function axis:pad(share)
     end
     low, high = low - room, high + room
     if self.log then
-        low, high = 10.0 ^ low, 10.0 ^ high
+        low, high = math.max(10.0 ^ low, LEAST), 10.0 ^ high
     end
-    self.low, self.high = low, high
+    self.low, self.high = math.max(low, -FARTHEST), math.min(high, FARTHEST)
 end
 
 -- Finds the ranges from all points that can be drawn on both axes.

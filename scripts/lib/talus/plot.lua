@@ -17,12 +17,14 @@ local COMPONENTS = { "x", "y", "z" }
 -- A list of numbers; of histories the components, where their values are lists.
 local function numbers(where, what, list)
     arguments.table(where, list, what)
+    local floats = {} -- differences of whole numbers may wrap around
     for i = 1, #list do
         if type(list[i]) ~= "number" then
             fail("%s: %s[%d] must be a number, not %s", where, what, i, arguments.describe(list[i]))
         end
+        floats[i] = list[i] + 0.0
     end
-    return list
+    return floats
 end
 
 local function is_history(value)

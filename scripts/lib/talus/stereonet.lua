@@ -18,6 +18,8 @@ local KEYS = { "file", "great_circles", "grid", "joints", "keyblocks", "legend",
 local SET_KEYS = { "dip", "dip_direction", "name", "planes" }
 local FONT_SIZE, TITLE_SIZE = 12, 14
 local LEGEND_WIDTH, MARGIN = 230, 34
+-- Dip, degrees, below which a plane is drawn as a horizontal one.
+local HORIZONTAL = 1e-6
 local rad, deg, sin, cos = math.rad, math.deg, math.sin, math.cos
 
 -- ------------------------------------------------------------------ directions
@@ -229,14 +231,14 @@ function net:place(v)
     return self.x + self.radius * r * v[1] / across, self.y - self.radius * r * v[2] / across
 end
 
--- The great circle of the plane with a downward normal, from one end of its strike to the other.
+-- The great circle of the plane with a downward normal, from one end of its strike to the other; of a horizontal plane all round.
 function net:great_circle(page, normal, style)
     local dip, direction = orientation(normal)
     local d, a = rad(dip), rad(direction)
     local strike = { -cos(a), sin(a), 0 }
     local down = { cos(d) * sin(a), cos(d) * cos(a), -sin(d) }
     local points = {}
-    for i = 0, 90 do
+    for i = 0, dip < HORIZONTAL and 180 or 90 do
         local t = rad(2 * i)
         local v = {}
         for k = 1, 3 do
