@@ -1,7 +1,7 @@
 # Packages: `cpack -G DEB` or `cpack -G TGZ` in a build folder. Debian's tools find out which libraries a .deb depends on.
 set(CPACK_PACKAGE_NAME talus)
 set(CPACK_PACKAGE_VENDOR "The Talus authors")
-set(CPACK_PACKAGE_CONTACT "The Talus authors <talus@localhost>")
+set(CPACK_PACKAGE_CONTACT "The Talus authors <noreply@talus.invalid>")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")
 set(CPACK_PACKAGE_DESCRIPTION
   "Talus computes how jointed rock moves: rigid convex blocks that touch, slide, rock and fall. With the program, the module for

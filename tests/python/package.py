@@ -32,6 +32,13 @@ def install(build, folder):
     return prefix
 
 
+def make_package(build, folder):
+    """The Debian package of a build, made in `folder`."""
+    run(["cpack", "-G", "DEB", "--config", build / "CPackConfig.cmake", "-B", folder], cwd=folder)
+    package, = folder.glob("*.deb")
+    return package
+
+
 def build_project(source, build, prefix, *options):
     """Configures and builds a project against the prefix, as its README says; the compiler's warnings."""
     run(["cmake", "-S", source, "-B", build, f"-DCMAKE_PREFIX_PATH={prefix}", *options])

@@ -12,7 +12,7 @@ import subprocess
 import sys
 import tempfile
 
-from package import ROOT, build_project, run
+from package import ROOT, build_project, make_package, run
 
 faults = []
 
@@ -39,8 +39,7 @@ def check_one_version():
 
 
 def pack(build, folder):
-    run(["cpack", "-G", "DEB", "--config", build / "CPackConfig.cmake", "-B", folder], cwd=folder)
-    package, = folder.glob("*.deb")
+    package = make_package(build, folder)
     expect(re.fullmatch(rf"talus_{re.escape(version())}_\w+\.deb", package.name), package.name)
     run(["dpkg-deb", "-x", package, folder / "root"])
     return package, folder / "root/usr"
@@ -90,6 +89,8 @@ def check_files(package, usr):
                  "share/doc/talus/copyright", "share/doc/talus/README.md", "share/doc/talus/SECURITY.md",
                  "share/talus/templates/law/my_law.c", "share/talus/examples/quickstart.lua"):
         expect((usr / name).exists(), f"{name} is missing")
+    maintainer = run(["dpkg-deb", "-f", package, "Maintainer"])
+    expect(re.fullmatch(r"[\w ]+ <[\w.]+@[\w.]+\.\w+>\n", maintainer.stdout) and not maintainer.stderr, f"maintainer: {maintainer.stdout}")
     control = run(["dpkg-deb", "-I", package, "triggers", "shlibs"]).stdout
     soname = re.search(r"SONAME.*\[libtalus\.so\.(.*)\]", run(["readelf", "-d", usr / "lib/libtalus.so"]).stdout)[1]
     expect(control == f"activate-noawait ldconfig\nlibtalus {soname} talus (>= {version()})\n", f"control files: {control}")
