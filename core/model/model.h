@@ -323,9 +323,7 @@ tl_status tl_unknown_kind(tl_model *m, tl_kind_type type, const char *name);
 /* Faster motion, m/s or rad/s, is not set, driven or parted: momentum and angular momentum stay finite, and no step is so short that
  * a model could run with it. */
 #define TL_FASTEST 1e50
-/* Whether each component is a number that motion may have. */
-bool tl_is_motion(tl_vec3 v);
-/* TL_E_ARGUMENT with a sentence, after the name of a verb, unless both are motions. */
+/* TL_E_ARGUMENT with a sentence, after the name of a verb, unless both are finite and no component is above that: fastest.c. */
 tl_status tl_check_motion(tl_error *error, const char *verb, tl_vec3 velocity,
                           tl_vec3 angular_velocity);
 /* TL_E_NUMERIC with a sentence when volume, mass or inertia of a block of this density cannot be computed with. */
