@@ -136,28 +136,21 @@ static int result_index(lua_State *L)
 static void push_face(lua_State *L, const tl_boundary_face *face)
 {
     lua_createtable(L, 0, 5);
-    tl_lua_item_push(L, TL_LUA_BLOCK, 1, face->block);
-    lua_setfield(L, -2, "block");
+    tl_lua_set_block(L, "block", face->block);
     lua_pushinteger(L, (lua_Integer)face->face + 1);
     lua_setfield(L, -2, "face");
-    lua_pushnumber(L, face->area);
-    lua_setfield(L, -2, "area");
-    tl_lua_push_vec3(L, face->normal);
-    lua_setfield(L, -2, "normal");
-    tl_lua_push_vec3(L, face->centroid);
-    lua_setfield(L, -2, "centroid");
+    tl_lua_set_number(L, "area", face->area);
+    tl_lua_set_vec3(L, "normal", face->normal);
+    tl_lua_set_vec3(L, "centroid", face->centroid);
 }
 
 /* Pushes the table of one result; the model's userdata is at index 1. */
 static void push_result(lua_State *L, tl_boundary_result *r)
 {
     lua_createtable(L, 0, 6);
-    lua_pushnumber(L, r->area);
-    lua_setfield(L, -2, "area");
-    tl_lua_push_vec3(L, r->force);
-    lua_setfield(L, -2, "force");
-    tl_lua_push_vec3(L, r->moment);
-    lua_setfield(L, -2, "moment");
+    tl_lua_set_number(L, "area", r->area);
+    tl_lua_set_vec3(L, "force", r->force);
+    tl_lua_set_vec3(L, "moment", r->moment);
     lua_createtable(L, (int)r->face_count, 0);
     for (size_t i = 0; i < r->face_count; i++) {
         push_face(L, &r->faces[i]);

@@ -333,3 +333,29 @@ void tl_lua_push_field(lua_State *L, tl_field_kind kind, const tl_field_value *v
         break;
     }
 }
+
+/* ---------------------------------------------------------------- results ---------------- */
+
+void tl_lua_set_number(lua_State *L, const char *name, double number)
+{
+    lua_pushnumber(L, number);
+    lua_setfield(L, -2, name);
+}
+
+void tl_lua_set_count(lua_State *L, const char *name, size_t count)
+{
+    lua_pushinteger(L, (lua_Integer)count);
+    lua_setfield(L, -2, name);
+}
+
+void tl_lua_set_text(lua_State *L, const char *name, const char *text)
+{
+    lua_pushstring(L, text);
+    lua_setfield(L, -2, name);
+}
+
+void tl_lua_set_vec3(lua_State *L, const char *name, tl_vec3 v)
+{
+    tl_lua_push_vec3(L, v);
+    lua_setfield(L, -2, name);
+}

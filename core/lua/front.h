@@ -108,6 +108,11 @@ const char *tl_lua_describe(lua_State *L, int index);
 
 void tl_lua_push_numbers(lua_State *L, const double *numbers, size_t count);
 void tl_lua_push_vec3(lua_State *L, tl_vec3 v);
+/* Set a field of the table at the top of the stack. */
+void tl_lua_set_number(lua_State *L, const char *name, double number);
+void tl_lua_set_count(lua_State *L, const char *name, size_t count);
+void tl_lua_set_text(lua_State *L, const char *name, const char *text);
+void tl_lua_set_vec3(lua_State *L, const char *name, tl_vec3 v);
 /* Pushes a field's value as Lua sees it. */
 void tl_lua_push_field(lua_State *L, tl_field_kind kind, const tl_field_value *value);
 
@@ -283,6 +288,8 @@ void tl_lua_selection_open(lua_State *L, const tl_lua_kind *kind);
 const tl_lua_kind *tl_lua_item_kind(lua_State *L, const char *type);
 /* Pushes an item of an open type; `model_index` is where the model's userdata is. */
 void tl_lua_item_push(lua_State *L, const char *type, int model_index, tl_id id);
+/* Sets a field of the table at the top of the stack to a block of the model at index 1; of TL_NO_ID there is none. */
+void tl_lua_set_block(lua_State *L, const char *name, tl_id id);
 /* The table at the top of the stack has a block in the field `name`, pushed before a call: makes it the one of that id,
  * without needing memory; TL_NO_ID: takes it out. */
 void tl_lua_item_rename(lua_State *L, const char *name, tl_id id);

@@ -34,6 +34,14 @@ void tl_lua_item_push(lua_State *L, const char *type, int model_index, tl_id id)
     lua_setiuservalue(L, -2, 1);
 }
 
+void tl_lua_set_block(lua_State *L, const char *name, tl_id id)
+{
+    if (id == TL_NO_ID)
+        return;
+    tl_lua_item_push(L, TL_LUA_BLOCK, 1, id);
+    lua_setfield(L, -2, name);
+}
+
 void tl_lua_item_rename(lua_State *L, const char *name, tl_id id)
 {
     lua_getfield(L, -1, name);

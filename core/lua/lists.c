@@ -91,12 +91,9 @@ int tl_lua_joints(lua_State *L)
     for (size_t i = 0; i < count; i++) {
         tl_joint_info joint = tl_joint_at(model, i);
         lua_createtable(L, 0, 3);
-        lua_pushstring(L, joint.name);
-        lua_setfield(L, -2, "name");
-        lua_pushinteger(L, (lua_Integer)joint.planes);
-        lua_setfield(L, -2, "planes");
-        lua_pushstring(L, joint.law ? joint.law->name : NULL);
-        lua_setfield(L, -2, "law");
+        tl_lua_set_text(L, "name", joint.name);
+        tl_lua_set_count(L, "planes", joint.planes);
+        tl_lua_set_text(L, "law", joint.law ? joint.law->name : NULL);
         lua_rawseti(L, -2, (lua_Integer)i + 1);
     }
     return 1;
@@ -124,8 +121,7 @@ int tl_lua_laws(lua_State *L)
         lua_createtable(L, 0, 3);
         push_pattern(L, model, law.joint);
         lua_setfield(L, -2, "joint");
-        lua_pushstring(L, law.law->name);
-        lua_setfield(L, -2, "law");
+        tl_lua_set_text(L, "law", law.law->name);
         lua_createtable(L, 0, (int)law.law->param_count);
         for (uint32_t k = 0; k < law.law->param_count; k++) {
             push_param(L, param_at(law.law, k), law.params);
@@ -150,12 +146,9 @@ int tl_lua_groups(lua_State *L)
         if (blocks[i] == 0)
             continue;
         lua_createtable(L, 0, 3);
-        lua_pushstring(L, tl_group_name(model, i));
-        lua_setfield(L, -2, "name");
-        lua_pushinteger(L, (lua_Integer)blocks[i]);
-        lua_setfield(L, -2, "blocks");
-        lua_pushnumber(L, volumes[i]);
-        lua_setfield(L, -2, "volume");
+        tl_lua_set_text(L, "name", tl_group_name(model, i));
+        tl_lua_set_count(L, "blocks", blocks[i]);
+        tl_lua_set_number(L, "volume", volumes[i]);
         lua_rawseti(L, -2, (lua_Integer)++listed);
     }
     return 1;
@@ -166,13 +159,10 @@ int tl_lua_groups(lua_State *L)
 static void push_kind(lua_State *L, const tl_kind *kind)
 {
     lua_createtable(L, 0, 5);
-    lua_pushstring(L, kind->name);
-    lua_setfield(L, -2, "name");
-    lua_pushstring(L, kind->doc ? kind->doc : "");
-    lua_setfield(L, -2, "doc");
+    tl_lua_set_text(L, "name", kind->name);
+    tl_lua_set_text(L, "doc", kind->doc ? kind->doc : "");
     const tl_plugin *plugin = tl_plugin_of(kind, NULL);
-    lua_pushstring(L, plugin ? plugin->id : NULL);
-    lua_setfield(L, -2, "plugin");
+    tl_lua_set_text(L, "plugin", plugin ? plugin->id : NULL);
     lua_createtable(L, (int)kind->param_count, 0);
     for (uint32_t i = 0; i < kind->param_count; i++) {
         lua_pushstring(L, param_at(kind, i)->name);

@@ -64,12 +64,10 @@ static void set_summary(lua_State *L, const tl_generate_summary *summary)
                    {"smallest_face", summary->smallest_face},
                    {"volume_error", summary->volume_error}};
     for (size_t i = 0; i < sizeof counts / sizeof counts[0]; i++) {
-        lua_pushinteger(L, (lua_Integer)counts[i].count);
-        lua_setfield(L, -2, counts[i].name);
+        tl_lua_set_count(L, counts[i].name, counts[i].count);
     }
     for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++) {
-        lua_pushnumber(L, numbers[i].number);
-        lua_setfield(L, -2, numbers[i].name);
+        tl_lua_set_number(L, numbers[i].name, numbers[i].number);
     }
 }
 
@@ -234,17 +232,14 @@ static int push_timestep_report(lua_State *L, tl_model *model)
     tl_timestep_report report;
     tl_lua_ok(L, model, tl_model_timestep_report(model, &report));
     lua_createtable(L, 0, 6);
-    lua_pushnumber(L, report.dt);
-    lua_setfield(L, -2, "dt");
+    tl_lua_set_number(L, "dt", report.dt);
     push_block(L, report.block);
     lua_setfield(L, -2, "block");
     push_block(L, report.partner);
     lua_setfield(L, -2, "partner");
     if (report.block != TL_NO_ID) {
-        lua_pushnumber(L, report.mass);
-        lua_setfield(L, -2, "mass");
-        lua_pushnumber(L, report.stiffness);
-        lua_setfield(L, -2, "stiffness");
+        tl_lua_set_number(L, "mass", report.mass);
+        tl_lua_set_number(L, "stiffness", report.stiffness);
     }
     tl_lua_push_timestep(L, &report);
     lua_setfield(L, -2, "message");
@@ -279,17 +274,14 @@ static int push_mass_added(lua_State *L, const tl_model *model)
         double number;
     } numbers[] = {{"dt", added.dt}, {"most", added.most}, {"added", added.share}};
     for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++) {
-        lua_pushnumber(L, numbers[i].number);
-        lua_setfield(L, -2, numbers[i].name);
+        tl_lua_set_number(L, numbers[i].name, numbers[i].number);
     }
-    lua_pushinteger(L, (lua_Integer)added.bodies);
-    lua_setfield(L, -2, "bodies");
+    tl_lua_set_count(L, "bodies", added.bodies);
     if (added.worst != TL_NO_ID) {
         lua_createtable(L, 0, 2);
         lua_pushinteger(L, (lua_Integer)added.worst); /* it may have been deleted */
         lua_setfield(L, -2, "block");
-        lua_pushnumber(L, added.factor);
-        lua_setfield(L, -2, "factor");
+        tl_lua_set_number(L, "factor", added.factor);
         lua_setfield(L, -2, "worst");
     }
     return 1;
@@ -327,8 +319,7 @@ static int model_energy(lua_State *L)
                  {"balance", energy.balance}};
     lua_createtable(L, 0, 7);
     for (size_t i = 0; i < sizeof terms / sizeof terms[0]; i++) {
-        lua_pushnumber(L, terms[i].number);
-        lua_setfield(L, -2, terms[i].name);
+        tl_lua_set_number(L, terms[i].name, terms[i].number);
     }
     return 1;
 }

@@ -16,38 +16,6 @@ static int push_protected(lua_State *L, lua_CFunction push, void *data)
     return lua_pcall(L, 2, 1, 0);
 }
 
-static void set_number(lua_State *L, const char *name, double number)
-{
-    lua_pushnumber(L, number);
-    lua_setfield(L, -2, name);
-}
-
-static void set_count(lua_State *L, const char *name, size_t count)
-{
-    lua_pushinteger(L, (lua_Integer)count);
-    lua_setfield(L, -2, name);
-}
-
-static void set_block(lua_State *L, const char *name, tl_id id)
-{
-    if (id == TL_NO_ID)
-        return;
-    tl_lua_item_push(L, TL_LUA_BLOCK, 1, id);
-    lua_setfield(L, -2, name);
-}
-
-static void set_text(lua_State *L, const char *name, const char *text)
-{
-    lua_pushstring(L, text);
-    lua_setfield(L, -2, name);
-}
-
-static void set_vec3(lua_State *L, const char *name, tl_vec3 v)
-{
-    tl_lua_push_vec3(L, v);
-    lua_setfield(L, -2, name);
-}
-
 void tl_lua_push_timestep(lua_State *L, const tl_timestep_report *r)
 {
     char numbers[120];
@@ -105,12 +73,13 @@ static void set_refused_cuts(lua_State *L, tl_model *model, const tl_quality *q)
     for (size_t i = 0; i < q->refused_listed; i++) {
         const tl_refused_cut *cut = &q->refused_cuts[i];
         lua_createtable(L, 0, 7);
-        set_text(L, "joint", tl_tag_name(model, cut->joint));
-        set_count(L, "block", cut->block); /* a number: the block may be cut or deleted since */
-        set_vec3(L, "normal", cut->normal);
-        set_vec3(L, "point", cut->point);
-        set_number(L, "thickness", cut->thickness);
-        set_number(L, "limit", cut->limit);
+        tl_lua_set_text(L, "joint", tl_tag_name(model, cut->joint));
+        tl_lua_set_count(L, "block",
+                         cut->block); /* a number: the block may be cut or deleted since */
+        tl_lua_set_vec3(L, "normal", cut->normal);
+        tl_lua_set_vec3(L, "point", cut->point);
+        tl_lua_set_number(L, "thickness", cut->thickness);
+        tl_lua_set_number(L, "limit", cut->limit);
         push_reason(L, model, cut);
         lua_setfield(L, -2, "reason");
         lua_rawseti(L, -2, (lua_Integer)i + 1);
@@ -149,11 +118,11 @@ static void set_timestep(lua_State *L, tl_model *model)
 {
     tl_timestep_report step;
     if (tl_model_timestep_report(model, &step) != TL_OK) {
-        set_text(L, "timestep_message", tl_model_error(model)->text);
+        tl_lua_set_text(L, "timestep_message", tl_model_error(model)->text);
         return;
     }
-    set_number(L, "dt", step.dt);
-    set_block(L, "timestep_block", step.block);
+    tl_lua_set_number(L, "dt", step.dt);
+    tl_lua_set_block(L, "timestep_block", step.block);
     tl_lua_push_timestep(L, &step);
     lua_setfield(L, -2, "timestep_message");
 }
@@ -167,18 +136,18 @@ int tl_lua_report(lua_State *L)
     tl_quality q;
     tl_lua_ok(L, model, tl_model_quality(model, &q));
     lua_createtable(L, 0, 20);
-    set_count(L, "blocks", q.blocks);
-    set_count(L, "bodies", q.bodies);
-    set_number(L, "volume", q.volume);
-    set_number(L, "volume_error", q.volume_error);
+    tl_lua_set_count(L, "blocks", q.blocks);
+    tl_lua_set_count(L, "bodies", q.bodies);
+    tl_lua_set_number(L, "volume", q.volume);
+    tl_lua_set_number(L, "volume_error", q.volume_error);
     for (size_t i = 0; i < EXTREMES; i++) {
         tl_extreme e = extreme_of(&q, &extremes[i]);
-        set_number(L, extremes[i].field, e.value);
-        set_block(L, extremes[i].block_field, e.block);
+        tl_lua_set_number(L, extremes[i].field, e.value);
+        tl_lua_set_block(L, extremes[i].block_field, e.block);
     }
-    set_count(L, "cuts", q.cuts);
-    set_count(L, "refused", q.refused);
-    set_count(L, "coincident", q.coincident);
+    tl_lua_set_count(L, "cuts", q.cuts);
+    tl_lua_set_count(L, "refused", q.refused);
+    tl_lua_set_count(L, "coincident", q.coincident);
     set_refused_cuts(L, model, &q);
     set_timestep(L, model);
     if (!tl_lua_options_of(L)->quiet)
@@ -193,18 +162,18 @@ static int push_filter(lua_State *L)
 {
     const tl_filter_result *r = lua_touserdata(L, 2);
     lua_createtable(L, 0, 5);
-    set_count(L, "found", r->count);
-    set_count(L, "deleted", r->deleted);
-    set_count(L, "joined", r->joined);
-    set_number(L, "volume", r->volume);
+    tl_lua_set_count(L, "found", r->count);
+    tl_lua_set_count(L, "deleted", r->deleted);
+    tl_lua_set_count(L, "joined", r->joined);
+    tl_lua_set_number(L, "volume", r->volume);
     lua_createtable(L, (int)r->count, 0);
     for (size_t i = 0; i < r->count; i++) {
         const tl_sliver *s = &r->slivers[i];
         lua_createtable(L, 0, 6);
-        set_count(L, "block", s->block); /* a number: it may have been deleted */
-        set_number(L, "volume", s->volume);
-        set_number(L, "edge", s->edge);
-        set_number(L, "aspect", s->aspect);
+        tl_lua_set_count(L, "block", s->block); /* a number: it may have been deleted */
+        tl_lua_set_number(L, "volume", s->volume);
+        tl_lua_set_number(L, "edge", s->edge);
+        tl_lua_set_number(L, "aspect", s->aspect);
         const char *which[] = {s->small ? "volume" : NULL, s->short_edge ? "edge" : NULL,
                                s->thin ? "aspect" : NULL};
         lua_createtable(L, 3, 0);
@@ -214,7 +183,7 @@ static int push_filter(lua_State *L)
                 lua_rawseti(L, -2, (lua_Integer)lua_rawlen(L, -2) + 1);
             }
         lua_setfield(L, -2, "beyond");
-        set_block(L, "joined_to", s->block);
+        tl_lua_set_block(L, "joined_to", s->block);
         lua_rawseti(L, -2, (lua_Integer)i + 1);
     }
     lua_setfield(L, -2, "slivers");
@@ -224,8 +193,8 @@ static int push_filter(lua_State *L)
 /* Writes what the action did into the table at the top of the stack, without needing memory. */
 static void set_filtered(lua_State *L, const tl_filter_result *r)
 {
-    set_count(L, "deleted", r->deleted);
-    set_count(L, "joined", r->joined);
+    tl_lua_set_count(L, "deleted", r->deleted);
+    tl_lua_set_count(L, "joined", r->joined);
     lua_getfield(L, -1, "slivers");
     for (size_t i = 0; i < r->count; i++) {
         lua_rawgeti(L, -1, (lua_Integer)i + 1);
@@ -328,10 +297,10 @@ static void set_faces(lua_State *L, tl_model *model, const tl_keyblock *block)
     for (size_t k = 0; k < block->face_count; k++) {
         const tl_keyblock_face *face = &block->faces[k];
         lua_createtable(L, 0, 4);
-        set_text(L, "joint", tl_tag_name(model, face->joint));
-        set_vec3(L, "normal", face->normal);
-        set_number(L, "area", face->area);
-        set_number(L, "normal_force", face->normal_force);
+        tl_lua_set_text(L, "joint", tl_tag_name(model, face->joint));
+        tl_lua_set_vec3(L, "normal", face->normal);
+        tl_lua_set_number(L, "area", face->area);
+        tl_lua_set_number(L, "normal_force", face->normal_force);
         lua_rawseti(L, -2, (lua_Integer)k + 1);
     }
     lua_setfield(L, -2, "faces");
@@ -349,15 +318,15 @@ static int push_keyblocks(lua_State *L)
     for (size_t i = 0; i < all->count; i++) {
         const tl_keyblock *block = &all->blocks[i];
         lua_createtable(L, 0, 10);
-        set_block(L, "block", block->block);
-        set_text(L, "mode", modes[block->mode]);
-        set_number(L, "safety", block->safety);
-        set_number(L, "volume", block->volume);
-        set_number(L, "mass", block->mass);
-        set_vec3(L, "force", block->force);
-        set_number(L, "driving_force", block->driving);
+        tl_lua_set_block(L, "block", block->block);
+        tl_lua_set_text(L, "mode", modes[block->mode]);
+        tl_lua_set_number(L, "safety", block->safety);
+        tl_lua_set_number(L, "volume", block->volume);
+        tl_lua_set_number(L, "mass", block->mass);
+        tl_lua_set_vec3(L, "force", block->force);
+        tl_lua_set_number(L, "driving_force", block->driving);
         if (block->mode != TL_KEYBLOCK_STABLE)
-            set_vec3(L, "direction", block->direction);
+            tl_lua_set_vec3(L, "direction", block->direction);
         set_faces(L, view->model, block);
         lua_createtable(L, (int)block->edge_count, 0);
         for (size_t k = 0; k < block->edge_count; k++) {

@@ -63,11 +63,9 @@ static void set_numbers(lua_State *L, const tl_solve_result *result)
                    {"time", result->time},
                    {"wall", result->wall},
                    {"max_velocity", result->max_velocity}};
-    lua_pushinteger(L, (lua_Integer)result->cycles);
-    lua_setfield(L, -2, "cycles");
+    tl_lua_set_count(L, "cycles", result->cycles);
     for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++) {
-        lua_pushnumber(L, numbers[i].number);
-        lua_setfield(L, -2, numbers[i].name);
+        tl_lua_set_number(L, numbers[i].name, numbers[i].number);
     }
 }
 
@@ -81,8 +79,7 @@ static void push_result_room(lua_State *L, int model_index, int32_t measure)
     model_index = lua_absindex(L, model_index);
     lua_newtable(L);
     set_numbers(L, &none);
-    lua_pushstring(L, tl_ratio_measure_name((tl_ratio_measure)measure));
-    lua_setfield(L, -2, "measure");
+    tl_lua_set_text(L, "measure", tl_ratio_measure_name((tl_ratio_measure)measure));
     for (size_t i = 0; i < sizeof result_blocks / sizeof result_blocks[0]; i++) {
         tl_lua_item_push(L, TL_LUA_BLOCK, model_index, TL_NO_ID);
         lua_setfield(L, -2, result_blocks[i]);

@@ -117,13 +117,10 @@ static tl_status write_contact(tl_model *m, writer *w, tl_id id)
 tl_status tl_points_values(tl_model *m, const tl_id *contacts, size_t count, const char *name,
                            double *out, size_t *width)
 {
-    tl_law_states states = {0};
-    tl_status status = tl_detect_refresh(m);
-    if (status == TL_OK)
-        status = tl_law_states_list(m, &states);
+    tl_law_states states;
     tl_value_of of;
-    if (status == TL_OK)
-        status = tl_value_find(m, "contact point", fields, F_COUNT, &states, name, &of);
+    tl_status status =
+        tl_contact_value_find(m, "contact point", fields, F_COUNT, &states, name, &of);
     if (status == TL_OK) {
         writer w = {
             .model = m, .field = of.field, .states = &states, .state = of.state, .out = out};

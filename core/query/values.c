@@ -61,6 +61,16 @@ tl_status tl_value_find(tl_model *m, const char *item, const tl_field *fields, s
     return TL_OK;
 }
 
+tl_status tl_contact_value_find(tl_model *m, const char *item, const tl_field *fields, size_t count,
+                                tl_law_states *states, const char *name, tl_value_of *of)
+{
+    *states = (tl_law_states){0};
+    tl_status status = tl_detect_refresh(m);
+    if (status == TL_OK)
+        status = tl_law_states_list(m, states);
+    return status == TL_OK ? tl_value_find(m, item, fields, count, states, name, of) : status;
+}
+
 tl_status tl_contact_find(tl_model *m, tl_id contact, uint32_t *row)
 {
     *row = tl_contact_row(m->detect, contact);
@@ -118,13 +128,9 @@ tl_status tl_contacts_values(tl_model *m, const tl_id *ids, size_t count, const 
 {
     size_t all;
     const tl_field *fields = tl_contact_fields(&all);
-    tl_law_states states = {0};
-    tl_status status = tl_detect_refresh(m);
-    if (status == TL_OK)
-        status = tl_law_states_list(m, &states);
+    tl_law_states states;
     tl_value_of of;
-    if (status == TL_OK)
-        status = tl_value_find(m, "contact", fields, all, &states, name, &of);
+    tl_status status = tl_contact_value_find(m, "contact", fields, all, &states, name, &of);
     if (status == TL_OK) {
         *width = of.width;
         bool is_state = strcmp(name, "state") == 0;

@@ -14,6 +14,9 @@ typedef struct tl_value_of {
  * texts are refused. */
 tl_status tl_value_find(tl_model *m, const char *item, const tl_field *fields, size_t count,
                         const tl_law_states *states, const char *name, tl_value_of *of);
+/* The same of contacts or their points, which it brings up to date: lists the states of their laws, to be freed in any case. */
+tl_status tl_contact_value_find(tl_model *m, const char *item, const tl_field *fields, size_t count,
+                                tl_law_states *states, const char *name, tl_value_of *of);
 /* Row of the contact of an id, or TL_E_STALE with a sentence; contacts are up to date. */
 tl_status tl_contact_find(tl_model *m, tl_id contact, uint32_t *row);
 

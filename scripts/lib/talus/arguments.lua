@@ -1,4 +1,5 @@
 -- arguments.lua - checks the tables that Talus's own Lua modules are called with, and raises at the caller's line.
+local talus = require "talus"
 local arguments = {}
 
 -- Number of insertions, deletions and changes of a letter that lead from one word to the other.
@@ -135,6 +136,14 @@ function arguments.choice(where, given, key, default, choices)
     local name = nearest(value, choices)
     fail("%s: %s = '%s' is none of '%s'%s", where, key, value, table.concat(choices, "', '"),
         name and string.format("; did you mean '%s'?", name) or "")
+end
+
+-- Writes a picture, whole or not at all.
+function arguments.write(where, file, text)
+    local good, message = pcall(talus.write_file, file, text)
+    if not good then
+        fail("%s: %s", where, (message:gsub("^.-write_file: ", "")))
+    end
 end
 
 return arguments

@@ -1,5 +1,4 @@
 -- plot.lua - talus.plot{...}: lines of lists and histories as a picture in SVG.
-local talus = require "talus"
 local arguments = require "talus.arguments"
 local axis = require "talus.axis"
 local svg = require "talus.svg"
@@ -341,10 +340,7 @@ local function draw(given)
     if legend then
         draw_legend(page, area, series)
     end
-    local good, message = pcall(talus.write_file, file, page:finish())
-    if not good then
-        fail("plot: %s", (message:gsub("^.-write_file: ", "")))
-    end
+    arguments.write("plot", file, page:finish())
 end
 
 return arguments.call(draw)

@@ -379,10 +379,7 @@ local function draw(given)
         page:text(size + 10, size + top - 14, 11, "start", (projection == "equal_angle" and "equal angle" or "equal area") ..
             ", lower hemisphere", 'fill="#444444"')
     end
-    local good, message = pcall(talus.write_file, file, page:finish())
-    if not good then
-        fail("stereonet: %s", (message:gsub("^.-write_file: ", "")))
-    end
+    arguments.write("stereonet", file, page:finish())
 end
 
 return arguments.call(draw)
