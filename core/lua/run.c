@@ -63,7 +63,8 @@ static void set_numbers(lua_State *L, const tl_solve_result *result)
                    {"time", result->time},
                    {"wall", result->wall},
                    {"max_velocity", result->max_velocity}};
-    tl_lua_set_count(L, "cycles", result->cycles);
+    lua_pushinteger(L, (lua_Integer)result->cycles);
+    lua_setfield(L, -2, "cycles");
     for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++) {
         tl_lua_set_number(L, numbers[i].name, numbers[i].number);
     }
