@@ -1,6 +1,6 @@
 /* contacts.c - the tables of contacts and contact points, and how they are laid out.
  *
- * The points of a material are one run of columns, so a law is called on the columns themselves (ranks.c); a run
+ * The points of a material are one run of columns, so a law is called on the columns themselves (simd_groups.c); a run
  * has room for a few contacts more. Laying out anew sorts the contacts by material, apart those between bodies that are held
  * still, and by blocks. */
 #include "contact/contacts.h"
@@ -10,7 +10,7 @@
 #include "contact/pair_view.h"
 #include "contact/points.h"
 #include "contact/presses.h"
-#include "contact/ranks.h"
+#include "contact/simd_groups.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -237,13 +237,13 @@ static size_t larger(size_t a, size_t b)
     return a > b ? a : b;
 }
 
-/* Lanes for a page, or the largest rank, for every thread. */
+/* Lanes for a page, or the largest SIMD group, for every thread. */
 static bool make_lanes(tl_detect *d, const tl_layout *layout)
 {
     size_t room = LEAST_LANES;
     for (size_t r = 0; r < layout->run_count; r++)
-        for (size_t i = layout->runs[r].rank_begin; i < layout->runs[r].rank_end; i++)
-            room = larger(room, (size_t)layout->ranks[i].slots * TL_LANES);
+        for (size_t i = layout->runs[r].group_begin; i < layout->runs[r].group_end; i++)
+            room = larger(room, (size_t)layout->groups[i].slots * TL_LANES);
     if (!tl_detect_hold_lanes(d, room))
         return false;
     d->lane_room = larger(room, d->lane_room);
@@ -311,7 +311,7 @@ tl_status tl_contacts_repack(tl_model *m)
 /* Leaves a contact's lane empty. */
 static void clear_points(tl_detect *d, uint32_t contact)
 {
-    tl_rank_note(d, contact, TL_NO_ROW);
+    tl_simd_group_note(d, contact, TL_NO_ROW);
     for (size_t k = 0; k < d->contacts.point_room[contact]; k++)
         tl_point_clear(&d->points, tl_point_row(&d->contacts, contact, k));
 }
@@ -325,14 +325,14 @@ bool tl_contact_place(tl_detect *d, uint32_t row)
         c->point_room[row] = 0;
         return true;
     }
-    const tl_rank *rank = tl_rank_take(d, points, row, &lane);
-    if (!rank)
+    const tl_simd_group *group = tl_simd_group_take(d, points, row, &lane);
+    if (!group)
         return false;
-    copy_points(&d->points, c->point_start[row], &d->points, rank->start + lane,
+    copy_points(&d->points, c->point_start[row], &d->points, group->start + lane,
                 c->point_count[row]);
     clear_points(d, row);
-    c->point_start[row] = rank->start + lane;
-    c->point_room[row] = (uint16_t)rank->slots;
+    c->point_start[row] = group->start + lane;
+    c->point_room[row] = (uint16_t)group->slots;
     return true;
 }
 
@@ -348,7 +348,7 @@ void tl_contact_remove(tl_detect *d, uint32_t row)
     if (row != last) {
         tl_table_move(&c->table, row, last);
         d->pairs[c->pair[row]].contact = row;
-        tl_rank_note(d, row, row);
+        tl_simd_group_note(d, row, row);
     }
     c->table.rows = last;
 }

@@ -1,6 +1,6 @@
 /* held.c - contacts between two bodies that are held still: told apart from the others, and left alone at rest.
  *
- * Such contacts have runs of their own (ranks.c). Their gaps and areas do not change, so they are followed only until a
+ * Such contacts have runs of their own (simd_groups.c). Their gaps and areas do not change, so they are followed only until a
  * step finds that their laws leave them exactly as they were. Laws are functions of their points' parameters, states and
  * motion, so every later step would find the same, and the whole run is passed over. A law that goes on with time at rest
  * keeps its run followed. Whatever could change that wakes all such runs: blocks that are fixed, freed, driven or

@@ -19,23 +19,23 @@ typedef struct tl_point_lanes {
     uint32_t *flags_before;
 } tl_point_lanes;
 
-/* Contacts of one material whose points lie side by side: point k of the contact in lane l is row start + TL_LANES k
- * + l. What has to be done for each contact is done for all of a rank at once, one in each lane of the
+/* A SIMD group: TL_LANES contacts of one material whose points lie side by side. Point k of the contact in lane l is row
+ * start + TL_LANES k + l. What has to be done for each contact is done for all of a SIMD group at once, one in each lane of the
  * processor's vectors, and so is what has to be done for each point. Lanes without a contact, and rows beyond a
  * contact's points, are inert: area 0. */
-typedef struct tl_rank {
+typedef struct tl_simd_group {
     uint32_t start, slots;      /* points there is room for in each lane */
     uint32_t contact[TL_LANES]; /* row, or TL_NO_ROW */
-} tl_rank;
+} tl_simd_group;
 
-/* Points that are worked on as a whole while they are in the nearest cache, from gaps to sums: as many ranks as
+/* Points that are worked on as a whole while they are in the nearest cache, from gaps to sums: as many SIMD groups as
  * have room for so many, or one. */
 #define TL_PAGE 144
 
 /* Whether the contacts of a run are passed over: held.c. */
 enum { TL_RUN_WOKEN, TL_RUN_FOLLOWED, TL_RUN_RESTS };
 
-/* The ranks of one material, one after the other: in the list of ranks, and their points from `begin`, used up to
+/* The SIMD groups of one material, one after the other: in the list of SIMD groups, and their points from `begin`, used up to
  * `end`, with room up to `limit`. Contacts between bodies that are held still have runs of their own. */
 typedef struct tl_run {
     uint32_t material;
@@ -45,15 +45,15 @@ typedef struct tl_run {
     bool
         changed; /* of one that is held: some point or sum was not what it had been, in the last step */
     size_t begin, end, limit;
-    size_t rank_begin, rank_end, rank_limit;
+    size_t group_begin, group_end, group_limit;
 } tl_run;
 
 /* Where the points of all contacts are. */
 typedef struct tl_layout {
     tl_run *runs;
     size_t run_count, run_room;
-    tl_rank *ranks;
-    size_t rank_room;
+    tl_simd_group *groups;
+    size_t group_room;
 } tl_layout;
 
 #endif

@@ -1,4 +1,4 @@
-/* prefetch.c - prefetches what a rank will need, some ranks before: its contacts' bodies, facets and shapes, and its
+/* prefetch.c - prefetches what a SIMD group will need, some SIMD groups before: its contacts' bodies, facets and shapes, and its
  * points, a little of each of some twenty columns. The processor's own prefetchers do not foresee these addresses: without
  * this a step out of cache would wait for memory most of the time. */
 #include "contact/prefetch.h"
@@ -50,22 +50,22 @@ static bool prefetch_bodies(const tl_model *m, uint32_t contact)
     return true;
 }
 
-void tl_rank_prefetch(const tl_model *m, const tl_rank *rank)
+void tl_simd_group_prefetch(const tl_model *m, const tl_simd_group *group)
 {
     const tl_points_table *p = &m->detect->points;
-    size_t count = (size_t)rank->slots * TL_LANES;
+    size_t count = (size_t)group->slots * TL_LANES;
     for (size_t l = 0; l < TL_LANES; l++)
-        if (rank->contact[l] != TL_NO_ROW)
-            prefetch_bodies(m, rank->contact[l]);
-    prefetch_points(p, rank->start, count);
-    prefetch(p->flags + rank->start, count * sizeof *p->flags);
+        if (group->contact[l] != TL_NO_ROW)
+            prefetch_bodies(m, group->contact[l]);
+    prefetch_points(p, group->start, count);
+    prefetch(p->flags + group->start, count * sizeof *p->flags);
 }
 
-void tl_rank_prefetch_contacts(const tl_detect *d, const tl_rank *rank)
+void tl_simd_group_prefetch_contacts(const tl_detect *d, const tl_simd_group *group)
 {
     const tl_contacts *c = &d->contacts;
     for (size_t l = 0; l < TL_LANES; l++) {
-        uint32_t i = rank->contact[l];
+        uint32_t i = group->contact[l];
         if (i == TL_NO_ROW)
             continue;
         prefetch(&c->a[i], sizeof *c->a);
@@ -79,18 +79,18 @@ void tl_rank_prefetch_contacts(const tl_detect *d, const tl_rank *rank)
     }
 }
 
-void tl_rank_prefetch_shapes(const tl_model *m, const tl_rank *rank)
+void tl_simd_group_prefetch_shapes(const tl_model *m, const tl_simd_group *group)
 {
     const tl_points_table *p = &m->detect->points;
     const tl_contacts *contacts = &m->detect->contacts;
-    size_t count = (size_t)rank->slots * TL_LANES;
+    size_t count = (size_t)group->slots * TL_LANES;
     for (size_t l = 0; l < TL_LANES; l++) {
-        uint32_t contact = rank->contact[l];
+        uint32_t contact = group->contact[l];
         if (contact == TL_NO_ROW || !prefetch_bodies(m, contact))
             continue;
         prefetch(m->blocks.shape[contacts->a[contact]], SHAPE);
         prefetch(m->blocks.shape[contacts->b[contact]], SHAPE);
     }
-    prefetch_points(p, rank->start, count);
-    prefetch(p->key + rank->start, count * sizeof *p->key);
+    prefetch_points(p, group->start, count);
+    prefetch(p->key + group->start, count * sizeof *p->key);
 }

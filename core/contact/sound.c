@@ -205,16 +205,17 @@ static bool contact_is_sound(const tl_model *m, const tl_detect *d, uint32_t row
 
 /* ---------------------------------------------------------------- layout ----------------- */
 
-/* The lanes of a rank: those that are taken belong to contacts of its run that know so. */
-static bool rank_is_sound(const tl_detect *d, const tl_run *run, const tl_rank *rank, size_t *taken)
+/* The lanes of a SIMD group: those that are taken belong to contacts of its run that know so. */
+static bool group_is_sound(const tl_detect *d, const tl_run *run, const tl_simd_group *group,
+                           size_t *taken)
 {
     const tl_contacts *c = &d->contacts;
     for (uint32_t l = 0; l < TL_LANES; l++) {
-        uint32_t row = rank->contact[l];
+        uint32_t row = group->contact[l];
         if (row == TL_NO_ROW)
             continue;
-        if (row >= c->table.rows || c->point_start[row] != rank->start + l ||
-            c->point_room[row] != rank->slots || c->material[row] != run->material ||
+        if (row >= c->table.rows || c->point_start[row] != group->start + l ||
+            c->point_room[row] != group->slots || c->material[row] != run->material ||
             c->held[row] != run->held || c->field[row] != run->field)
             return false;
         ++*taken;
@@ -222,7 +223,7 @@ static bool rank_is_sound(const tl_detect *d, const tl_run *run, const tl_rank *
     return true;
 }
 
-/* A run's ranks lie one after the other in its rows, which begin behind those of the run before. */
+/* A run's SIMD groups lie one after the other in its rows, which begin behind those of the run before. */
 static bool run_is_sound(const tl_model *m, const tl_detect *d, const tl_run *run,
                          const tl_run *before, size_t *taken)
 {
@@ -232,16 +233,16 @@ static bool run_is_sound(const tl_model *m, const tl_detect *d, const tl_run *ru
         return false;
     if (run->begin < (before ? before->limit : 0) || run->begin % TL_LANES ||
         run->end < run->begin || run->limit < run->end || run->limit > d->points.table.rows ||
-        run->limit % TL_LANES || run->rank_begin < (before ? before->rank_limit : 0) ||
-        run->rank_end < run->rank_begin || run->rank_limit < run->rank_end ||
-        run->rank_limit > d->layout.rank_room)
+        run->limit % TL_LANES || run->group_begin < (before ? before->group_limit : 0) ||
+        run->group_end < run->group_begin || run->group_limit < run->group_end ||
+        run->group_limit > d->layout.group_room)
         return false;
     size_t at = run->begin;
-    for (size_t r = run->rank_begin; r < run->rank_end; r++) {
-        const tl_rank *rank = &d->layout.ranks[r];
-        size_t rows = (size_t)rank->slots * TL_LANES;
-        if (rank->start != at || rank->slots == 0 || rows > d->lane_room || rows > run->end - at ||
-            !rank_is_sound(d, run, rank, taken))
+    for (size_t r = run->group_begin; r < run->group_end; r++) {
+        const tl_simd_group *group = &d->layout.groups[r];
+        size_t rows = (size_t)group->slots * TL_LANES;
+        if (group->start != at || group->slots == 0 || rows > d->lane_room ||
+            rows > run->end - at || !group_is_sound(d, run, group, taken))
             return false;
         at += rows;
     }

@@ -4,7 +4,7 @@
 #include "contact/contacts.h"
 #include "contact/index.h"
 #include "contact/points.h"
-#include "contact/ranks.h"
+#include "contact/simd_groups.h"
 #include "narrow/room.h"
 
 #include <stdlib.h>

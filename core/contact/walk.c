@@ -44,7 +44,7 @@ static void walk_contacts(tl_detect *d, const tl_walk *walk)
     VALUE(CACHE, laid_at);
     VALUE(CACHE, spare_share);
     LIST(CACHE, layout.runs, layout.run_count, layout.run_room, other);
-    LIST(CACHE, layout.ranks, layout.rank_room, layout.rank_room, index);
+    LIST(CACHE, layout.groups, layout.group_room, layout.group_room, index);
     VALUE(CACHE, lane_room);
     TABLE(SCRATCH, spare, spare);
     TABLE(SCRATCH, spare_points, spare);

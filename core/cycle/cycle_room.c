@@ -11,7 +11,7 @@ static void cycle_destroy(struct tl_cycle *cycle)
     tl_table_free(&cycle->table);
     free(cycle->reaction);
     free(cycle->chunk_sums);
-    free(cycle->rank_energy);
+    free(cycle->group_energy);
     free(cycle->chunk_ledger);
     free(cycle->ledger);
     tl_undo_free(cycle->undo);
@@ -76,12 +76,12 @@ bool tl_model_moves(const tl_model *m)
 tl_status tl_laws_prepare(tl_model *m)
 {
     struct tl_cycle *c = m->cycle;
-    bool room = tl_grow(&c->rank_energy, &c->rank_room, m->detect->layout.rank_room,
-                        sizeof *c->rank_energy);
+    bool room = tl_grow(&c->group_energy, &c->group_room, m->detect->layout.group_room,
+                        sizeof *c->group_energy);
     return room ? TL_OK : tl_fail_memory(&m->error);
 }
 
 tl_law_phase tl_law_phase_of(struct tl_cycle *c)
 {
-    return (tl_law_phase){&c->failure, c->rank_energy, tl_undo_keep_ranks};
+    return (tl_law_phase){&c->failure, c->group_energy, tl_undo_keep_groups};
 }

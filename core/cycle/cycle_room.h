@@ -119,8 +119,8 @@ struct tl_cycle {
     tl_sums *chunk_sums;
     size_t chunk_room;
     tl_sums sums;
-    tl_rank_energy *rank_energy; /* of the contacts */
-    size_t rank_room;
+    tl_group_energy *group_energy; /* of each SIMD group of contacts */
+    size_t group_room;
     struct tl_ledger *chunk_ledger, *ledger; /* energy.c */
     double kinetic_before;                   /* of the last step, for its rate */
     double dt;                               /* the step in use */
@@ -215,8 +215,8 @@ tl_law_phase tl_law_phase_of(struct tl_cycle *c);
 tl_status tl_undo_begin(tl_model *m);
 /* ... gets room, before laws change anything, where something may fail, ... */
 tl_status tl_undo_reserve(tl_model *m);
-/* ... keeps what laws and gather overwrite (of some ranks, on any thread; of the bodies), ... */
-void tl_undo_keep_ranks(tl_model *m, const tl_rank *ranks, size_t count);
+/* ... keeps what laws and gather overwrite (of some SIMD groups, on any thread; of the bodies), ... */
+void tl_undo_keep_groups(tl_model *m, const tl_simd_group *groups, size_t count);
 void tl_undo_keep_bodies(tl_model *m);
 /* ... and puts it back after a failure, or ends with the step. What is not kept is lost: no step is made after that. */
 void tl_undo_step(tl_model *m);

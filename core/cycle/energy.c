@@ -188,7 +188,7 @@ void tl_energy_chunk(tl_model *m, size_t chunk, const tl_work *work)
     }
 }
 
-/* Elastic energy and slip of the contact points, in the order of their ranks. */
+/* Elastic energy and slip of the contact points, in the order of their SIMD groups. */
 static void sum_points(tl_model *m, struct tl_ledger *l)
 {
     const tl_layout *layout = &m->detect->layout;
@@ -196,9 +196,9 @@ static void sum_points(tl_model *m, struct tl_ledger *l)
     m->detect->parted = 0;
     for (size_t k = 0; k < layout->run_count; k++) {
         const tl_run *run = &layout->runs[k];
-        for (size_t r = run->rank_begin; r < run->rank_end && run->material != TL_NO_ROW; r++) {
-            l->stored += m->cycle->rank_energy[r].stored;
-            l->friction += m->cycle->rank_energy[r].dissipated;
+        for (size_t r = run->group_begin; r < run->group_end && run->material != TL_NO_ROW; r++) {
+            l->stored += m->cycle->group_energy[r].stored;
+            l->friction += m->cycle->group_energy[r].dissipated;
         }
     }
 }

@@ -74,30 +74,30 @@ static void shadow_copy(const shadow *s, const tl_table *table, size_t first, si
 
 /* ---------------------------------------------------------------- what is kept ----------- */
 
-/* Of the points of some ranks that follow each other, and of their contacts. */
-static void copy_ranks(tl_model *m, const tl_rank *ranks, size_t count, bool back)
+/* Of the points of some SIMD groups that follow each other, and of their contacts. */
+static void copy_groups(tl_model *m, const tl_simd_group *groups, size_t count, bool back)
 {
     struct tl_undo *u = m->cycle->undo;
     tl_detect *d = m->detect;
     const tl_contacts *c = &d->contacts;
     size_t points = 0;
     for (size_t r = 0; r < count; r++) {
-        points += (size_t)ranks[r].slots * TL_LANES;
+        points += (size_t)groups[r].slots * TL_LANES;
         for (size_t l = 0; l < TL_LANES; l++) {
-            uint32_t contact = ranks[r].contact[l];
+            uint32_t contact = groups[r].contact[l];
             if (contact == TL_NO_ROW)
                 continue;
             shadow_copy(&u->contacts, &c->table, contact, 1, back);
         }
     }
     if (count > 0)
-        shadow_copy(&u->points, &d->points.table, ranks->start, points, back);
+        shadow_copy(&u->points, &d->points.table, groups->start, points, back);
 }
 
-void tl_undo_keep_ranks(tl_model *m, const tl_rank *ranks, size_t count)
+void tl_undo_keep_groups(tl_model *m, const tl_simd_group *groups, size_t count)
 {
     if (m->cycle->undo->keeps)
-        copy_ranks(m, ranks, count, false);
+        copy_groups(m, groups, count, false);
 }
 
 /* Of the bodies, and of the sums over them. */
@@ -212,8 +212,8 @@ void tl_undo_step(tl_model *m)
         const tl_run *run = &layout->runs[r];
         if (run->material == TL_NO_ROW || tl_run_rests(m, run))
             continue; /* the laws have passed it over */
-        for (size_t k = run->rank_begin; k < run->rank_end; k++)
-            copy_ranks(m, &layout->ranks[k], 1, true);
+        for (size_t k = run->group_begin; k < run->group_end; k++)
+            copy_groups(m, &layout->groups[k], 1, true);
     }
     if (u->gathered)
         copy_bodies(m, true);

@@ -37,7 +37,7 @@ void tl_cycle_walk(struct tl_cycle *c, const tl_walk *walk)
     tl_walk_list(walk, TL_KEEP_STATE, "cycle.ledger", &c->ledger, tl_ledger_size(), &one, NULL,
                  offsetof(tl_memory, step));
     LIST(SCRATCH, chunk_sums, &c->chunk_room, &c->chunk_room, step);
-    LIST(CACHE, rank_energy, &c->rank_room, &c->rank_room, step);
+    LIST(CACHE, group_energy, &c->group_room, &c->group_room, step);
     tl_walk_list(walk, TL_KEEP_SCRATCH, "cycle.chunk_ledger", &c->chunk_ledger, tl_ledger_size(),
                  &c->chunk_room, NULL, offsetof(tl_memory, step));
 }

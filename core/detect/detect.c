@@ -29,8 +29,8 @@
 
 /* Rows a worker takes at a time. */
 #define CONTACT_CHUNK 256
-#define RANK_CHUNK 8
-/* Ranks from one for which the memory is asked to the present one, and from one whose contacts' rows are asked for. */
+#define GROUP_CHUNK 8
+/* SIMD groups from one for which the memory is asked to the present one, and from one whose contacts' rows are asked for. */
 #define AHEAD 2
 #define FAR_AHEAD 6
 
@@ -56,29 +56,29 @@ static tl_status ensure(tl_model *m)
 
 /* ---------------------------------------------------------------- phases ----------------- */
 
-/* Ranks of a run. */
+/* SIMD groups of a run. */
 typedef struct update_job {
     tl_model *m;
-    const tl_rank *ranks;
+    const tl_simd_group *groups;
     size_t count;
 } update_job;
 
-static void update_ranks(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
+static void update_groups(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
 {
     (void)chunk;
     const update_job *job = user;
     bool far = tl_points_are_far(job->m->detect), moved = false;
     for (size_t r = begin; r < end; r++) {
-        bool alike = far && moved; /* as ranks side by side are */
+        bool alike = far && moved; /* as SIMD groups side by side are */
         if (alike && r + FAR_AHEAD < job->count)
-            tl_rank_prefetch_contacts(job->m->detect, &job->ranks[r + FAR_AHEAD]);
+            tl_simd_group_prefetch_contacts(job->m->detect, &job->groups[r + FAR_AHEAD]);
         if (alike && r + AHEAD < job->count)
-            tl_rank_prefetch_shapes(job->m, &job->ranks[r + AHEAD]);
-        moved = tl_rank_update(job->m, &job->ranks[r], thread);
+            tl_simd_group_prefetch_shapes(job->m, &job->groups[r + AHEAD]);
+        moved = tl_simd_group_update(job->m, &job->groups[r], thread);
     }
 }
 
-/* Contacts without points are in no rank. */
+/* Contacts without points are in no SIMD group. */
 static void update_others(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
 {
     (void)chunk;
@@ -95,8 +95,9 @@ static void update_contacts(tl_model *m)
         const tl_run *run = &layout->runs[k];
         if (tl_run_rests(m, run))
             continue;
-        update_job job = {m, layout->ranks + run->rank_begin, run->rank_end - run->rank_begin};
-        tl_parallel_for(m->pool, run->rank_end - run->rank_begin, RANK_CHUNK, update_ranks, &job);
+        update_job job = {m, layout->groups + run->group_begin, run->group_end - run->group_begin};
+        tl_parallel_for(m->pool, run->group_end - run->group_begin, GROUP_CHUNK, update_groups,
+                        &job);
     }
     if (m->detect->bare)
         tl_parallel_for(m->pool, m->detect->contacts.table.rows, CONTACT_CHUNK, update_others, m);

@@ -1,7 +1,7 @@
-/* renew.c - the patches of a rank made anew at once, a contact in each lane.
+/* renew.c - the patches of a SIMD group made anew at once, a contact in each lane.
  *
  * Most contacts are two faces on each other and stay so. What eight of them need is laid side by side (patch_batch.c)
- * and comes out as the rank has its points: slot by slot. Lanes whose polygon has changed, and contacts that are
+ * and comes out as the SIMD group has its points: slot by slot. Lanes whose polygon has changed, and contacts that are
  * something else, are brought up to date one by one (update.c). */
 #include "detect/renew.h"
 
@@ -83,7 +83,7 @@ static void refit(tl_points_table *p, size_t row, const tl_patch_batch *batch, t
         refit_slot(p, row, &batch->centroid, t);
 }
 
-/* The shear of the points of a rank, summed over those of each lane: energy times 2 ks, and force. */
+/* The shear of the points of a SIMD group, summed over those of each lane: energy times 2 ks, and force. */
 typedef struct shear_lanes {
     double energy[TL_LANES];
     tl_lanes3 force;
@@ -108,13 +108,13 @@ TL_VECTORIZED static void sum_shear(const tl_points_table *p, size_t row, uint32
 }
 
 /* Lanes whose area is to change, a bit each. */
-static uint32_t changing(const tl_contacts *contacts, const tl_rank *rank,
+static uint32_t changing(const tl_contacts *contacts, const tl_simd_group *group,
                          const tl_patch_batch *batch, uint32_t now)
 {
     uint32_t changed = 0;
     for (uint32_t l = 0; l < TL_LANES; l++)
         if (now >> l & 1) {
-            double area = contacts->area[rank->contact[l]];
+            double area = contacts->area[group->contact[l]];
             changed |= (uint32_t)(fabs(batch->area[l] - area) > TL_SAME_AREA * area) << l;
         }
     return changed;
@@ -140,20 +140,20 @@ static void note_patch(tl_model *m, uint32_t c, double area)
 }
 
 /* Puts the patches of some lanes, a bit each, into the place of their contacts'. */
-static void take_lanes(tl_model *m, const tl_rank *rank, const tl_patch_batch *batch,
+static void take_lanes(tl_model *m, const tl_simd_group *group, const tl_patch_batch *batch,
                        tl_batch_counts n, uint32_t now, taken *t)
 {
     tl_contacts *contacts = &m->detect->contacts;
     tl_points_table *p = &m->detect->points;
-    uint32_t changed = changing(contacts, rank, batch, now);
+    uint32_t changed = changing(contacts, group, batch, now);
     shear_lanes before, after;
     if (changed)
-        sum_shear(p, rank->start, n.all, &before);
-    refit(p, rank->start, batch, n, t);
+        sum_shear(p, group->start, n.all, &before);
+    refit(p, group->start, batch, n, t);
     if (changed)
-        sum_shear(p, rank->start, n.all, &after);
+        sum_shear(p, group->start, n.all, &after);
     for (uint32_t l = 0; l < TL_LANES; l++) {
-        uint32_t c = rank->contact[l];
+        uint32_t c = group->contact[l];
         if (changed >> l & 1) {
             tl_shear old = shear_in(&before, batch, l, contacts->area[c]);
             tl_shear fresh = shear_in(&after, batch, l, t->area[l]);
@@ -164,9 +164,9 @@ static void take_lanes(tl_model *m, const tl_rank *rank, const tl_patch_batch *b
     }
 }
 
-/* Puts patches into the place of those of the rank that have the same points, and takes their lanes out of `in`: lanes
+/* Puts patches into the place of those of the SIMD group that have the same points, and takes their lanes out of `in`: lanes
  * of as many points together. */
-static void take_patches(tl_model *m, const tl_rank *rank, const tl_patch_batch *batch,
+static void take_patches(tl_model *m, const tl_simd_group *group, const tl_patch_batch *batch,
                          uint32_t *in)
 {
     const tl_contacts *contacts = &m->detect->contacts;
@@ -177,8 +177,8 @@ static void take_patches(tl_model *m, const tl_rank *rank, const tl_patch_batch 
         if (!(*in >> l & 1) || !batch->laid[l])
             continue;
         n[l] = tl_batch_count(batch, l);
-        if (n[l].all == contacts->point_count[rank->contact[l]] &&
-            tl_batch_has_keys(batch, l, n[l], p->key + rank->start + l, TL_LANES))
+        if (n[l].all == contacts->point_count[group->contact[l]] &&
+            tl_batch_has_keys(batch, l, n[l], p->key + group->start + l, TL_LANES))
             same |= 1u << l;
     }
     *in &= ~same;
@@ -193,18 +193,18 @@ static void take_patches(tl_model *m, const tl_rank *rank, const tl_patch_batch 
         }
         if (!now)
             continue;
-        take_lanes(m, rank, batch, n[l], now, &t);
+        take_lanes(m, group, batch, n[l], now, &t);
         same &= ~now;
     }
 }
 
-bool tl_rank_update(tl_model *m, const tl_rank *rank, unsigned thread)
+bool tl_simd_group_update(tl_model *m, const tl_simd_group *group, unsigned thread)
 {
     tl_patch_batch *batch = NULL;
     bool any = false;
     uint32_t in = 0, others = 0, fields[TL_LANES], field_count = 0;
     for (uint32_t l = 0; l < TL_LANES; l++) {
-        uint32_t c = rank->contact[l];
+        uint32_t c = group->contact[l];
         if (c == TL_NO_ROW || tl_contact_stands(m, c))
             continue;
         any = true;
@@ -225,11 +225,11 @@ bool tl_rank_update(tl_model *m, const tl_rank *rank, unsigned thread)
     }
     if (in & (in - 1)) { /* one alone is no batch */
         tl_batch_lay(batch);
-        take_patches(m, rank, batch, &in);
+        take_patches(m, group, batch, &in);
     }
     for (uint32_t l = 0; l < TL_LANES; l++)
         if ((in | others) >> l & 1)
-            tl_contact_update(m, rank->contact[l], thread);
+            tl_contact_update(m, group->contact[l], thread);
     if (field_count)
         tl_contacts_follow(m, fields, field_count, thread);
     return any;

@@ -5,7 +5,7 @@
  * about it; (5) of Hart, Cundall and Lemos (1988) is the first order of this. Two bodies that turn as one make no
  * slip, and their forces turn with them.
  *
- * Eight contacts are worked on side by side (tl_rank). What is the same for all points of a contact is brought into
+ * Eight contacts are worked on side by side (tl_simd_group). What is the same for all points of a contact is brought into
  * matrices first, one in each lane (frames.c), so that what is left for a point are a few products, in loops over
  * columns without a branch. */
 #include "force/follow.h"
@@ -20,7 +20,7 @@
 
 /* ---------------------------------------------------------------- points ----------------- */
 
-/* Columns of points and lanes, row 0 of both the first of a rank. */
+/* Columns of points and lanes, row 0 of both the first of a SIMD group. */
 typedef struct columns {
     const double *reference;
     double *p[3], *f_s[3];
@@ -110,7 +110,7 @@ TL_VECTORIZED static void follow_torsion(const columns *c, const tl_frames *rest
     }
 }
 
-/* ---------------------------------------------------------------- ranks ------------------ */
+/* ---------------------------------------------------------------- SIMD groups ------------ */
 
 /* Turns the tangent states of a contact's points. */
 static void turn_states(tl_model *m, uint32_t contact, tl_vec3 before, tl_vec3 now, tl_vec3 half,
@@ -127,17 +127,18 @@ static void turn_states(tl_model *m, uint32_t contact, tl_vec3 before, tl_vec3 n
     }
 }
 
-/* The bodies and facets of the contacts of a rank; lanes without one do as another. false when there are none. */
-static bool look_up(const tl_model *m, const tl_rank *rank, tl_frame_rows *rows, double *radius)
+/* The bodies and facets of the contacts of a SIMD group; lanes without one do as another. false when there are none. */
+static bool look_up(const tl_model *m, const tl_simd_group *group, tl_frame_rows *rows,
+                    double *radius)
 {
     const tl_contacts *c = &m->detect->contacts;
     const tl_pose *pose = m->bodies.pose;
     size_t some = 0;
-    while (some < TL_LANES && rank->contact[some] == TL_NO_ROW)
+    while (some < TL_LANES && group->contact[some] == TL_NO_ROW)
         some++;
     rows->dt = m->dt;
     for (size_t l = 0; l < TL_LANES && some < TL_LANES; l++) {
-        uint32_t contact = rank->contact[rank->contact[l] == TL_NO_ROW ? some : l];
+        uint32_t contact = group->contact[group->contact[l] == TL_NO_ROW ? some : l];
         rows->a[l] = &pose[m->blocks.body[c->a[contact]]].r.m[0][0];
         rows->b[l] = &pose[m->blocks.body[c->b[contact]]].r.m[0][0];
         rows->facet[l] = &c->facet[contact].na.x;
@@ -147,26 +148,26 @@ static bool look_up(const tl_model *m, const tl_rank *rank, tl_frame_rows *rows,
     return some < TL_LANES;
 }
 
-void tl_rank_follow(tl_model *m, const tl_rank *rank, bool field, const tl_point_lanes *t,
-                    size_t lane, uint32_t tangents)
+void tl_simd_group_follow(tl_model *m, const tl_simd_group *group, bool field,
+                          const tl_point_lanes *t, size_t lane, uint32_t tangents)
 {
     tl_contacts *contacts = &m->detect->contacts;
-    columns c = columns_at(&m->detect->points, rank->start, t, lane);
+    columns c = columns_at(&m->detect->points, group->start, t, lane);
     tl_frame_rows rows;
     tl_frames f;
     double radius[TL_LANES];
     torsions torsion;
-    if (look_up(m, rank, &rows, radius))
+    if (look_up(m, group, &rows, radius))
         tl_frames_put(&f, &rows, field);
     else
         memset(&f, 0, sizeof f); /* inert, but finite */
     if (field)
         read_torsion(&c, &f, &torsion);
-    follow_points(&c, rank->slots, &f);
+    follow_points(&c, group->slots, &f);
     if (field)
         follow_torsion(&c, &f, radius, &torsion);
     for (size_t l = 0; l < TL_LANES; l++) {
-        uint32_t contact = rank->contact[l];
+        uint32_t contact = group->contact[l];
         if (contact == TL_NO_ROW)
             continue;
         tl_vec3 n = tl_lanes3_get(&f.n, l);

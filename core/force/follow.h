@@ -1,13 +1,13 @@
-/* follow.h - the contacts of a rank in the present place (follow.c). */
+/* follow.h - the contacts of a SIMD group in the present place (follow.c). */
 #ifndef TL_FORCE_FOLLOW_H
 #define TL_FORCE_FOLLOW_H
 
 #include "contact/layout.h"
 #include "model/model.h"
 
-/* Gaps, normals and relative motion of the contacts of a rank of patches, or of field contacts, its first point's into lane
+/* Gaps, normals and relative motion of the contacts of a SIMD group of patches, or of field contacts, its first point's into lane
  * `lane`; turns shear forces with the common plane, and the states of which `tangents` has a bit. */
-void tl_rank_follow(tl_model *m, const tl_rank *rank, bool field, const tl_point_lanes *lanes,
-                    size_t lane, uint32_t tangents);
+void tl_simd_group_follow(tl_model *m, const tl_simd_group *group, bool field,
+                          const tl_point_lanes *lanes, size_t lane, uint32_t tangents);
 
 #endif

@@ -1,4 +1,4 @@
-/* frames.c - how bodies moved in the last step, and facets in the lanes of a rank.
+/* frames.c - how bodies moved in the last step, and facets in the lanes of a SIMD group.
  *
  * What eight contacts need is scattered over their bodies and facets: it is read as rows and transposed, and then
  * worked out for all of them at once. */

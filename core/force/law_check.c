@@ -30,7 +30,7 @@
 /* Motion of the trial, of the closure and last motion of the point: small against what the force came about by. */
 #define TRIAL (1. / 16)
 
-/* Copies of what a law gets and gives, of the points of a rank side by side. */
+/* Copies of what a law gets and gives, of the points of a SIMD group side by side. */
 typedef struct trial {
     _Alignas(TL_ALIGN) double area[TL_LANES];
     double closure[TL_LANES], f_n0[TL_LANES], normal[3][TL_LANES];
@@ -39,7 +39,7 @@ typedef struct trial {
     _Alignas(TL_ALIGN) uint32_t flags[TL_LANES];
 } trial;
 
-/* One place of each contact of a rank: the row of its first point, and its lane. */
+/* One place of each contact of a SIMD group: the row of its first point, and its lane. */
 typedef struct place {
     const tl_model *m;
     const tl_material *law;
@@ -142,8 +142,8 @@ static bool measure(const place *at, const double *move, const tl_vec3 *slide, s
 }
 
 /* Names the first point that is far stiffer than its law says. */
-static void compare(tl_failure *failure, const tl_material *law, const tl_rank *rank, size_t row,
-                    const slopes *found)
+static void compare(tl_failure *failure, const tl_material *law, const tl_simd_group *group,
+                    size_t row, const slopes *found)
 {
     for (size_t l = 0; l < TL_LANES; l++) {
         bool shear = found->shear[l] > found->normal[l];
@@ -156,16 +156,16 @@ static void compare(tl_failure *failure, const tl_material *law, const tl_rank *
                  "= %.3g Pa/m, from "
                  "which the time step follows: they must be upper bounds, or the step is unstable",
                  shear ? "shear" : "normal", stiffness, law->kn, law->ks);
-        tl_failure_note(failure, rank->start, TL_E_PLUGIN, row + l, text);
+        tl_failure_note(failure, group->start, TL_E_PLUGIN, row + l, text);
     }
 }
 
 void tl_law_check_stiffness(const tl_model *m, tl_failure *failure, const tl_material *law,
-                            const tl_rank *rank, const tl_point_lanes *lanes, size_t lane,
+                            const tl_simd_group *group, const tl_point_lanes *lanes, size_t lane,
                             unsigned begins)
 {
-    for (size_t k = 0; k < rank->slots; k++) {
-        place at = {m, law, lanes, rank->start + k * TL_LANES, lane + k * TL_LANES};
+    for (size_t k = 0; k < group->slots; k++) {
+        place at = {m, law, lanes, group->start + k * TL_LANES, lane + k * TL_LANES};
         double move[TL_LANES];
         tl_vec3 slide[TL_LANES];
         slopes found;
@@ -180,7 +180,7 @@ void tl_law_check_stiffness(const tl_model *m, tl_failure *failure, const tl_mat
                           : 0;
         }
         if (measure(&at, move, slide, &found))
-            compare(failure, law, rank, at.row, &found);
+            compare(failure, law, group, at.row, &found);
     }
 }
 
@@ -220,12 +220,12 @@ static bool is_out_of_plane(const tl_model *m, const tl_material *law, uint32_t 
 }
 
 void tl_law_check_shear(const tl_model *m, tl_failure *failure, const tl_material *law,
-                        const tl_rank *rank, const tl_point_lanes *lanes, size_t lane)
+                        const tl_simd_group *group, const tl_point_lanes *lanes, size_t lane)
 {
     const tl_points_table *p = &m->detect->points;
-    for (size_t i = 0; i < rank->slots * TL_LANES; i++) {
-        size_t l = i % TL_LANES, row = rank->start + i;
-        uint32_t c = rank->contact[l];
+    for (size_t i = 0; i < group->slots * TL_LANES; i++) {
+        size_t l = i % TL_LANES, row = group->start + i;
+        uint32_t c = group->contact[l];
         if (c == TL_NO_ROW || !(p->area[row] > 0))
             continue;
         tl_vec3 f = tl_columns_get(p->f_s, row);
@@ -240,7 +240,7 @@ void tl_law_check_shear(const tl_model *m, tl_failure *failure, const tl_materia
                  "its shear force of %.3g N has a component of %.3g N along the normal: it must "
                  "lie in the common plane, to %g of the force",
                  tl_v3_norm(f), along, TL_OUT_OF_PLANE);
-        tl_failure_note(failure, rank->start, TL_E_PLUGIN, row, text);
+        tl_failure_note(failure, group->start, TL_E_PLUGIN, row, text);
     }
 }
 

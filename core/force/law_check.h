@@ -10,13 +10,13 @@
  * before they are looked at one by one. The host's own reaches 4e-7 where normals change from point to point. */
 #define TL_OUT_OF_PLANE 1e-4
 
-/* Of the points of a rank, whose first is in lane `lane`: whether they are stiffer than the law says, those in the lanes of the
+/* Of the points of a SIMD group, whose first is in lane `lane`: whether they are stiffer than the law says, those in the lanes of the
  * mask `begins`, and whether shear forces leave the common plane. */
 void tl_law_check_stiffness(const tl_model *m, tl_failure *failure, const tl_material *law,
-                            const tl_rank *rank, const tl_point_lanes *lanes, size_t lane,
+                            const tl_simd_group *group, const tl_point_lanes *lanes, size_t lane,
                             unsigned begins);
 void tl_law_check_shear(const tl_model *m, tl_failure *failure, const tl_material *law,
-                        const tl_rank *rank, const tl_point_lanes *lanes, size_t lane);
+                        const tl_simd_group *group, const tl_point_lanes *lanes, size_t lane);
 /* Of `count` points from row `first`: whether their states are numbers. */
 void tl_law_check_states(const tl_model *m, tl_failure *failure, const tl_material *law,
                          size_t first, size_t count);

@@ -21,8 +21,8 @@
  * the time, and every step would cost 3 % of its instructions. */
 #define SHEAR_EVERY 8
 
-/* Ranks a worker takes at a time. */
-#define RANK_CHUNK 12
+/* SIMD groups a worker takes at a time. */
+#define GROUP_CHUNK 12
 
 typedef struct run_job {
     tl_model *m;
@@ -75,18 +75,18 @@ static bool call_law(const run_job *job, size_t first, size_t count, const tl_po
     return status == TL_OK;
 }
 
-/* Of each contact of a rank: force on B of its points, their moment about A's centroid, and the energies of
+/* Of each contact of a SIMD group: force on B of its points, their moment about A's centroid, and the energies of
  * their springs and slip. */
-typedef struct rank_sums {
+typedef struct group_sums {
     double force[3][TL_LANES], moment[3][TL_LANES], stored[TL_LANES], dissipated[TL_LANES];
     double across[TL_LANES]; /* above 0 when a force acts across a gap */
     double odd
         [TL_LANES]; /* 0, NaN when the force or moment is not finite, 1 when shear forces may leave their planes */
-} rank_sums;
+} group_sums;
 
 /* Point after point: the same order for every width of the processor's vectors. */
 TL_VECTORIZED static void sum_points(const tl_points_table *p, const tl_point_lanes *t, size_t row,
-                                     size_t lane, size_t slots, rank_sums *restrict out)
+                                     size_t lane, size_t slots, group_sums *restrict out)
 {
     const double *f_n = p->f_n + row, *f_x = p->f_s[0] + row, *f_y = p->f_s[1] + row;
     const double *f_z = p->f_s[2] + row, *n_x = t->normal[0] + lane, *n_y = t->normal[1] + lane;
@@ -94,7 +94,7 @@ TL_VECTORIZED static void sum_points(const tl_points_table *p, const tl_point_la
     const double *z = t->arm[2] + lane, *stored = t->stored + lane, *heat = t->dissipated + lane;
     const double *closure = t->closure + lane;
     const double *reference = p->reference ? p->reference + row : t->zero + lane;
-    rank_sums s = {0};
+    group_sums s = {0};
     for (size_t at = 0; at < slots * TL_LANES; at += TL_LANES)
 #pragma omp simd
         for (size_t l = 0; l < TL_LANES; l++) {
@@ -124,7 +124,7 @@ TL_VECTORIZED static void sum_points(const tl_points_table *p, const tl_point_la
 /* Adds 1 to what is odd of a contact whose shear forces may leave their planes. A loop of its own: sum_points has no
  * register left. */
 TL_VECTORIZED static void sum_tilts(const tl_points_table *p, const tl_point_lanes *t, size_t row,
-                                    size_t lane, size_t slots, rank_sums *restrict out)
+                                    size_t lane, size_t slots, group_sums *restrict out)
 {
     const double *f_x = p->f_s[0] + row, *f_y = p->f_s[1] + row, *f_z = p->f_s[2] + row;
     const double *n_x = t->normal[0] + lane, *n_y = t->normal[1] + lane, *n_z = t->normal[2] + lane;
@@ -165,30 +165,30 @@ static double across(const double *lane)
            ((lane[4] + lane[5]) + (lane[6] + lane[7]));
 }
 
-/* Names what is wrong in a rank of which a sum is odd. */
-static void report_odd(const run_job *job, const tl_rank *rank, const rank_sums *sum,
+/* Names what is wrong in a SIMD group of which a sum is odd. */
+static void report_odd(const run_job *job, const tl_simd_group *group, const group_sums *sum,
                        const tl_point_lanes *t, size_t lane)
 {
     for (size_t l = 0; l < TL_LANES; l++)
-        if (isnan(sum->odd[l]) && rank->contact[l] != TL_NO_ROW)
-            tl_failure_note(job->phase->failure, rank->start, TL_E_NUMERIC, rank->start + l,
+        if (isnan(sum->odd[l]) && group->contact[l] != TL_NO_ROW)
+            tl_failure_note(job->phase->failure, group->start, TL_E_NUMERIC, group->start + l,
                             "the force is not a finite number: is the time step too large, or a "
                             "property out of proportion?");
-    tl_law_check_shear(job->m, job->phase->failure, job->material, rank, t, lane);
+    tl_law_check_shear(job->m, job->phase->failure, job->material, group, t, lane);
 }
 
-/* Of the field contacts of a rank. The first point carries the normal force, the point of torsion the same again. What the
+/* Of the field contacts of a SIMD group. The first point carries the normal force, the point of torsion the same again. What the
  * springs of the law hold pressed is not what the field holds: see tl_press. */
-static void sum_fields(const run_job *job, const tl_rank *rank, const tl_point_lanes *t,
-                       size_t lane, rank_sums *out)
+static void sum_fields(const run_job *job, const tl_simd_group *group, const tl_point_lanes *t,
+                       size_t lane, group_sums *out)
 {
     const tl_detect *d = job->m->detect;
     const tl_contacts *contacts = &d->contacts;
     const tl_points_table *p = &d->points;
     memset(out, 0, sizeof *out);
     for (size_t l = 0; l < TL_LANES; l++) {
-        uint32_t c = rank->contact[l];
-        size_t i = rank->start + l, k = lane + l, torsion = TL_FIELD_TORSION * TL_LANES;
+        uint32_t c = group->contact[l];
+        size_t i = group->start + l, k = lane + l, torsion = TL_FIELD_TORSION * TL_LANES;
         if (c == TL_NO_ROW || !(p->area[i] > 0))
             continue;
         const tl_press_row *row = &d->press[contacts->press[c]];
@@ -219,7 +219,7 @@ static void sum_fields(const run_job *job, const tl_rank *rank, const tl_point_l
 }
 
 /* Adds what partly open patches have besides their points. */
-static void add_parts(const run_job *job, const tl_partly_open *open, rank_sums *sum)
+static void add_parts(const run_job *job, const tl_partly_open *open, group_sums *sum)
 {
     for (size_t l = 0; l < TL_LANES && open->any; l++) {
         sum->moment[0][l] += job->material->kn * open->moment[l].x;
@@ -229,24 +229,24 @@ static void add_parts(const run_job *job, const tl_partly_open *open, rank_sums 
     }
 }
 
-/* Forces of the contacts of a rank, whose first point is in lane `lane`. */
-static void sum_rank(const run_job *job, const tl_rank *rank, const tl_point_lanes *t, size_t lane,
-                     const tl_partly_open *open)
+/* Forces of the contacts of a SIMD group, whose first point is in lane `lane`. */
+static void sum_group(const run_job *job, const tl_simd_group *group, const tl_point_lanes *t,
+                      size_t lane, const tl_partly_open *open)
 {
     tl_model *m = job->m;
     tl_contacts *contacts = &m->detect->contacts;
     unsigned begins = 0; /* lanes of contacts that carried nothing in the step before */
-    rank_sums sum;
+    group_sums sum;
     if (job->run->field)
-        sum_fields(job, rank, t, lane, &sum);
+        sum_fields(job, group, t, lane, &sum);
     else
-        sum_points(&m->detect->points, t, rank->start, lane, rank->slots, &sum);
+        sum_points(&m->detect->points, t, group->start, lane, group->slots, &sum);
     add_parts(job, open, &sum);
     if (m->cycles % SHEAR_EVERY == 0 && !job->run->field)
-        sum_tilts(&m->detect->points, t, rank->start, lane, rank->slots, &sum);
-    tl_rank_energy energy = {0, 0};
+        sum_tilts(&m->detect->points, t, group->start, lane, group->slots, &sum);
+    tl_group_energy energy = {0, 0};
     for (size_t l = 0; l < TL_LANES; l++) {
-        uint32_t c = rank->contact[l];
+        uint32_t c = group->contact[l];
         if (c == TL_NO_ROW)
             continue; /* what its rows hold means nothing, after a step that failed not even a number */
         energy.stored += sum.stored[l];
@@ -262,12 +262,12 @@ static void sum_rank(const run_job *job, const tl_rank *rank, const tl_point_lan
         contacts->moment[c] = tl_v3(sum.moment[0][l], sum.moment[1][l], sum.moment[2][l]);
     }
     if (across(sum.odd) != 0)
-        report_odd(job, rank, &sum, t, lane);
+        report_odd(job, group, &sum, t, lane);
     if (begins) {
-        tl_law_check_shear(m, job->phase->failure, job->material, rank, t, lane);
-        tl_law_check_stiffness(m, job->phase->failure, job->material, rank, t, lane, begins);
+        tl_law_check_shear(m, job->phase->failure, job->material, group, t, lane);
+        tl_law_check_stiffness(m, job->phase->failure, job->material, group, t, lane, begins);
     }
-    job->phase->energy[rank - m->detect->layout.ranks] = energy;
+    job->phase->energy[group - m->detect->layout.groups] = energy;
 }
 
 /* ---------------------------------------------------------------- rest ------------------- */
@@ -304,58 +304,60 @@ static bool as_noted(const tl_points_table *p, size_t first, size_t count, const
 
 /* ---------------------------------------------------------------- pages ------------------ */
 
-static size_t page_points(const tl_rank *ranks, size_t count)
+static size_t page_points(const tl_simd_group *groups, size_t count)
 {
-    return ranks[count - 1].start + (size_t)ranks[count - 1].slots * TL_LANES - ranks->start;
+    return groups[count - 1].start + (size_t)groups[count - 1].slots * TL_LANES - groups->start;
 }
 
-/* From the places of the bodies to the forces of the contacts of some ranks, which follow each other. `soon`: how many
+/* From the places of the bodies to the forces of the contacts of some SIMD groups, which follow each other. `soon`: how many
  * come next, for which the memory is asked on the way. */
-static void force_page(const run_job *job, const tl_rank *ranks, size_t count, size_t soon,
+static void force_page(const run_job *job, const tl_simd_group *groups, size_t count, size_t soon,
                        const tl_point_lanes *t)
 {
-    size_t first = ranks->start, points = 0;
-    tl_partly_open open[RANK_CHUNK];
+    size_t first = groups->start, points = 0;
+    tl_partly_open open[GROUP_CHUNK];
     bool parts = !job->run->field && tl_part_applies(job->m, job->material);
-    job->phase->keep(job->m, ranks, count);
+    job->phase->keep(job->m, groups, count);
     if (job->changed)
-        note_points(&job->m->detect->points, first, page_points(ranks, count), t);
+        note_points(&job->m->detect->points, first, page_points(groups, count), t);
     for (size_t r = 0; r < count; r++) {
         if (r < soon)
-            tl_rank_prefetch(job->m, &ranks[count + r]);
-        tl_rank_follow(job->m, &ranks[r], job->run->field, t, points, job->material->tangents);
+            tl_simd_group_prefetch(job->m, &groups[count + r]);
+        tl_simd_group_follow(job->m, &groups[r], job->run->field, t, points,
+                             job->material->tangents);
         open[r].any = false;
         if (!job->run->field && job->material->pulls == TL_PULL_BONDED)
-            tl_rank_edges(job->m, &ranks[r], t, points);
+            tl_simd_group_edges(job->m, &groups[r], t, points);
         if (parts)
-            tl_rank_part(job->m, job->material, &ranks[r], t, points, &open[r]);
-        points += (size_t)ranks[r].slots * TL_LANES;
+            tl_simd_group_part(job->m, job->material, &groups[r], t, points, &open[r]);
+        points += (size_t)groups[r].slots * TL_LANES;
     }
     if (!call_law(job, first, points, t))
         return;
     if (odd_states(&job->m->detect->points, job->material->columns, first, points) != 0)
         tl_law_check_states(job->m, job->phase->failure, job->material, first, points);
     for (size_t r = 0; r < count; r++)
-        sum_rank(job, &ranks[r], t, ranks[r].start - first, &open[r]);
+        sum_group(job, &groups[r], t, groups[r].start - first, &open[r]);
     if (job->changed && !as_noted(&job->m->detect->points, first, points, t))
         atomic_store_explicit(job->changed, true, memory_order_relaxed);
 }
 
-/* Ranks in pages, as many as fit. */
+/* SIMD groups in pages, as many as fit. */
 static void force_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
 {
     (void)chunk;
     const run_job *job = user;
-    const tl_rank *ranks = job->m->detect->layout.ranks + job->run->rank_begin;
+    const tl_simd_group *groups = job->m->detect->layout.groups + job->run->group_begin;
     const tl_point_lanes *t = &job->m->detect->lanes[thread];
     size_t asked =
-        tl_points_are_far(job->m->detect) ? job->run->rank_end - job->run->rank_begin : 0;
+        tl_points_are_far(job->m->detect) ? job->run->group_end - job->run->group_begin : 0;
     while (begin < end) {
-        size_t count = 1, points = (size_t)ranks[begin].slots * TL_LANES;
+        size_t count = 1, points = (size_t)groups[begin].slots * TL_LANES;
         while (begin + count < end &&
-               (points += (size_t)ranks[begin + count].slots * TL_LANES) <= TL_PAGE)
+               (points += (size_t)groups[begin + count].slots * TL_LANES) <= TL_PAGE)
             count++;
-        force_page(job, &ranks[begin], count, asked > begin + count ? asked - begin - count : 0, t);
+        force_page(job, &groups[begin], count, asked > begin + count ? asked - begin - count : 0,
+                   t);
         begin += count;
     }
 }
@@ -366,12 +368,12 @@ typedef struct failed_at {
     uint32_t contact;
 } failed_at;
 
-/* The contact in a lane of a rank or, where that is padding, the first one of the rank; TL_NO_ROW: all are. */
-static uint32_t contact_near(const tl_rank *rank, size_t lane)
+/* The contact in a lane of a SIMD group or, where that is padding, the first one of the SIMD group; TL_NO_ROW: all are. */
+static uint32_t contact_near(const tl_simd_group *group, size_t lane)
 {
-    uint32_t c = rank->contact[lane];
+    uint32_t c = group->contact[lane];
     for (size_t l = 0; c == TL_NO_ROW && l < TL_LANES; l++)
-        c = rank->contact[l];
+        c = group->contact[l];
     return c;
 }
 
@@ -381,11 +383,11 @@ static failed_at find_failed(const tl_model *m, size_t point)
     const tl_run *run = layout->runs;
     while (point >= run->end)
         run++;
-    size_t k = run->rank_begin;
-    while (point - layout->ranks[k].start >= (size_t)layout->ranks[k].slots * TL_LANES)
+    size_t k = run->group_begin;
+    while (point - layout->groups[k].start >= (size_t)layout->groups[k].slots * TL_LANES)
         k++;
-    const tl_rank *rank = &layout->ranks[k];
-    uint32_t contact = contact_near(rank, (point - rank->start) % TL_LANES);
+    const tl_simd_group *group = &layout->groups[k];
+    uint32_t contact = contact_near(group, (point - group->start) % TL_LANES);
     return (failed_at){&m->materials[run->material], contact};
 }
 
@@ -416,7 +418,7 @@ tl_status tl_laws_apply(tl_model *m, const tl_law_phase *phase)
             continue;
         atomic_bool changed = false;
         run_job job = {m, phase, &m->materials[run->material], run, run->held ? &changed : NULL};
-        tl_parallel_for(m->pool, run->rank_end - run->rank_begin, RANK_CHUNK, force_range, &job);
+        tl_parallel_for(m->pool, run->group_end - run->group_begin, GROUP_CHUNK, force_range, &job);
         run->changed = changed;
     }
     return report_failure(m, phase->failure);

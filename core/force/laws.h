@@ -6,17 +6,17 @@
 #include "contact/layout.h"
 #include "model/model.h"
 
-/* Energy in the contact points of a rank, and turned to heat in this step. */
-typedef struct tl_rank_energy {
+/* Energy in the contact points of a SIMD group, and turned to heat in this step. */
+typedef struct tl_group_energy {
     double stored, dissipated;
-} tl_rank_energy;
+} tl_group_energy;
 
 /* What the laws give the step besides forces, and what the step does before they overwrite anything. */
 typedef struct tl_law_phase {
     tl_failure *failure;
-    tl_rank_energy *energy; /* of each rank of the layout */
-    /* keeps what the points of some ranks and their contacts carry; on any thread */
-    void (*keep)(tl_model *m, const tl_rank *ranks, size_t count);
+    tl_group_energy *energy; /* of each SIMD group of the layout */
+    /* keeps what the points of some SIMD groups and their contacts carry; on any thread */
+    void (*keep)(tl_model *m, const tl_simd_group *groups, size_t count);
 } tl_law_phase;
 
 /* Calls the laws on their runs of contact points and sums forces per contact. */

@@ -164,7 +164,7 @@ static void part(const patch *of, tl_partly_open *out, size_t l)
 }
 
 /* Lanes some of whose points, or of whose corners beyond them, may be closed and others apart: a bit each. */
-static uint32_t mixed(const tl_points_table *p, const tl_rank *rank, const tl_point_lanes *t,
+static uint32_t mixed(const tl_points_table *p, const tl_simd_group *group, const tl_point_lanes *t,
                       size_t lane)
 {
     double low[TL_LANES], high[TL_LANES];
@@ -173,11 +173,11 @@ static uint32_t mixed(const tl_points_table *p, const tl_rank *rank, const tl_po
         low[l] = INFINITY;
         high[l] = -INFINITY;
     }
-    for (size_t at = 0; at < (size_t)rank->slots * TL_LANES; at += TL_LANES)
+    for (size_t at = 0; at < (size_t)group->slots * TL_LANES; at += TL_LANES)
 #pragma omp simd
         for (size_t l = 0; l < TL_LANES; l++) {
             double o = t->closure[lane + at + l];
-            bool there = p->area[rank->start + at + l] > 0;
+            bool there = p->area[group->start + at + l] > 0;
             low[l] = (there & (o < low[l])) ? o : low[l];
             high[l] = (there & (o > high[l])) ? o : high[l];
         }
@@ -208,14 +208,14 @@ static bool closes(const tl_model *m, const tl_material *law, uint32_t c)
     return true;
 }
 
-void tl_rank_part(const tl_model *m, const tl_material *law, const tl_rank *rank,
-                  const tl_point_lanes *t, size_t lane, tl_partly_open *out)
+void tl_simd_group_part(const tl_model *m, const tl_material *law, const tl_simd_group *group,
+                        const tl_point_lanes *t, size_t lane, tl_partly_open *out)
 {
     const tl_points_table *p = &m->detect->points;
     out->any = false;
-    for (uint32_t left = mixed(p, rank, t, lane); left; left &= left - 1) {
+    for (uint32_t left = mixed(p, group, t, lane); left; left &= left - 1) {
         size_t l = (size_t)__builtin_ctz(left);
-        uint32_t c = rank->contact[l];
+        uint32_t c = group->contact[l];
         if (c == TL_NO_ROW || !closes(m, law, c))
             continue;
         if (!out->any)
@@ -227,7 +227,7 @@ void tl_rank_part(const tl_model *m, const tl_material *law, const tl_rank *rank
         const patch of = {.p = p,
                           .lanes = t,
                           .lane = lane + l,
-                          .row = rank->start + l,
+                          .row = group->start + l,
                           .count = m->detect->contacts.point_count[c],
                           .faces = tl_key_of(0, f->ia, f->ib)};
         part(&of, out, l);
@@ -246,13 +246,14 @@ static bool has_centroid(const tl_model *m, uint32_t c)
            tl_centroid_key(f->ia, f->ib);
 }
 
-void tl_rank_edges(const tl_model *m, const tl_rank *rank, const tl_point_lanes *t, size_t lane)
+void tl_simd_group_edges(const tl_model *m, const tl_simd_group *group, const tl_point_lanes *t,
+                         size_t lane)
 {
     const tl_point_rule rule = tl_point_rule_of(false);
-    size_t rows = (size_t)rank->slots * TL_LANES;
+    size_t rows = (size_t)group->slots * TL_LANES;
     memcpy(t->edge + lane, t->closure + lane, rows * sizeof *t->edge);
     for (size_t l = 0; l < TL_LANES; l++) {
-        uint32_t c = rank->contact[l];
+        uint32_t c = group->contact[l];
         if (c == TL_NO_ROW || !has_centroid(m, c))
             continue;
         size_t last = m->detect->contacts.point_count[c] - 1u, corners = last / 2;

@@ -22,7 +22,7 @@
 static const char magic[8] = {'T', 'A', 'L', 'U', 'S', '\r', '\n', '\x1a'};
 
 /* Format of the file, and of what the chunks hold: another is refused. */
-#define FORMAT 1
+#define FORMAT 2
 #define ORDER 0x01020304u
 /* Level of compression: a third of the size at some 600 MB/s, for a hundred thousand blocks of rock; higher levels take longer than
  * a disk. */

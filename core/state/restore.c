@@ -23,7 +23,7 @@
 
 /* Numbers of blocks that a model may have had: a file of some bytes shall not cost a machine its memory. */
 #define MOST_IDS (1u << 28)
-/* Points that a rank may have room for, of contacts of 65535 points. */
+/* Points that a SIMD group may have room for, of contacts of 65535 points. */
 #define MOST_LANES (1u << 19)
 
 /* Entries on their way from an archive. */

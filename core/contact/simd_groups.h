@@ -1,6 +1,6 @@
-/* ranks.h - the lanes of contacts in runs and ranks (ranks.c). */
-#ifndef TL_CONTACT_RANKS_H
-#define TL_CONTACT_RANKS_H
+/* simd_groups.h - the lanes of contacts in runs and SIMD groups (simd_groups.c). */
+#ifndef TL_CONTACT_SIMD_GROUPS_H
+#define TL_CONTACT_SIMD_GROUPS_H
 
 #include "contact/detection.h"
 
@@ -16,8 +16,8 @@ static inline size_t tl_with_spare(size_t need, size_t share, size_t least)
 bool tl_layout_make(tl_layout *layout, tl_contacts *contacts, size_t share, size_t *points);
 void tl_layout_free(tl_layout *layout);
 /* A free lane of a contact's run with room for so many points, taken for it; NULL when there is none. */
-tl_rank *tl_rank_take(tl_detect *d, uint32_t points, uint32_t contact, uint32_t *lane);
+tl_simd_group *tl_simd_group_take(tl_detect *d, uint32_t points, uint32_t contact, uint32_t *lane);
 /* Notes that a contact's lane belongs to that row, or to none. */
-void tl_rank_note(tl_detect *d, uint32_t contact, uint32_t row);
+void tl_simd_group_note(tl_detect *d, uint32_t contact, uint32_t row);
 
 #endif

@@ -1,11 +1,10 @@
-/* ranks.c - which contacts lie side by side, in the lanes of which rank, and where their points begin.
+/* simd_groups.c - which contacts lie side by side, in the lanes of which SIMD group, and where their points begin.
  *
- * Contacts of about as many points share a rank, for a rank has room for as many as its largest. They are looked for among
- * neighbours in the order of blocks, so that what a rank needs lies close together in memory.
- * Each material has a run of ranks for patches and one for field contacts, and others for contacts between bodies that are
- * held still. New contacts get a free lane near the end of the run, or the first lane of a
- * new rank there. */
-#include "contact/ranks.h"
+ * Contacts of about as many points share a SIMD group, which has room in each lane for as many points as its largest contact.
+ * They are looked for among neighbours in the order of blocks, so that what a group needs lies close together in memory.
+ * Each material has a run of SIMD groups for patches and one for field contacts, and others for contacts between bodies
+ * that are held still. New contacts get a free lane near the end of the run, or the first lane of a new group there. */
+#include "contact/simd_groups.h"
 
 #include "model/model.h"
 
@@ -13,15 +12,15 @@
 
 /* Contacts, one after the other, among which those of as many points are put together. */
 #define WINDOW 1024
-/* Ranks at the end of a run that are looked through for a free lane, ... */
+/* SIMD groups at the end of a run that are looked through for a free lane, ... */
 #define LOOK_BACK 16
 /* ... in which no more than so many points are left to spare. */
 #define MOST_SPARE 8
-/* Points more than it needs that a contact may grow by in a rank that is begun for it. */
+/* Points more than it needs that a contact may grow by in a SIMD group that is begun for it. */
 #define GROWTH 2
-/* Rows and ranks that are left to spare in a run at least. */
+/* Rows and SIMD groups that are left to spare in a run at least. */
 #define SPARE_POINTS 1024
-#define SPARE_RANKS 16
+#define SPARE_GROUPS 16
 
 typedef struct seat {
     uint32_t points, row;
@@ -36,14 +35,14 @@ static int compare_seats(const void *x, const void *y)
     return (p->row > q->row) - (p->row < q->row);
 }
 
-static tl_rank *begin_rank(tl_layout *layout, tl_run *run, uint32_t slots)
+static tl_simd_group *begin_group(tl_layout *layout, tl_run *run, uint32_t slots)
 {
-    tl_rank *rank = &layout->ranks[run->rank_end++];
-    *rank = (tl_rank){.start = (uint32_t)run->end, .slots = slots};
+    tl_simd_group *group = &layout->groups[run->group_end++];
+    *group = (tl_simd_group){.start = (uint32_t)run->end, .slots = slots};
     for (uint32_t l = 0; l < TL_LANES; l++)
-        rank->contact[l] = TL_NO_ROW;
+        group->contact[l] = TL_NO_ROW;
     run->end += (size_t)slots * TL_LANES;
-    return rank;
+    return group;
 }
 
 /* Gives a window of contacts their lanes. */
@@ -51,14 +50,14 @@ static void seat_window(tl_layout *layout, tl_contacts *c, tl_run *run, seat *se
 {
     if (count > 1)
         qsort(seats, count, sizeof *seats, compare_seats);
-    tl_rank *rank = NULL;
+    tl_simd_group *group = NULL;
     for (size_t i = 0; i < count; i++) {
         uint32_t lane = (uint32_t)(i % TL_LANES), row = seats[i].row;
         if (lane == 0)
-            rank = begin_rank(layout, run, seats[i].points);
-        rank->contact[lane] = row;
-        c->point_start[row] = rank->start + lane;
-        c->point_room[row] = (uint16_t)rank->slots;
+            group = begin_group(layout, run, seats[i].points);
+        group->contact[lane] = row;
+        c->point_start[row] = group->start + lane;
+        c->point_room[row] = (uint16_t)group->slots;
     }
 }
 
@@ -90,7 +89,7 @@ bool tl_layout_make(tl_layout *layout, tl_contacts *c, size_t share, size_t *poi
 {
     uint32_t rows = (uint32_t)c->table.rows;
     *points = 0;
-    size_t ranks = 0;
+    size_t groups = 0;
     for (uint32_t row = 0; row < rows;) {
         if (!tl_grow(&layout->runs, &layout->run_room, layout->run_count + 1, sizeof *layout->runs))
             return false;
@@ -99,16 +98,16 @@ bool tl_layout_make(tl_layout *layout, tl_contacts *c, size_t share, size_t *poi
                         .held = c->held[row],
                         .field = c->field[row],
                         .begin = *points,
-                        .rank_begin = ranks};
+                        .group_begin = groups};
         size_t count = 0;
         for (uint32_t i = row; i < rows && is_of_run(c, i, run); i++)
             count += c->point_room[i] > 0;
         run->end = run->begin;
-        run->rank_end = ranks;
+        run->group_end = groups;
         /* every window but the last of a run is full */
         size_t full = (count + TL_LANES - 1) / TL_LANES;
-        run->rank_limit = ranks = ranks + tl_with_spare(full, share, SPARE_RANKS);
-        if (!tl_grow(&layout->ranks, &layout->rank_room, ranks, sizeof *layout->ranks))
+        run->group_limit = groups = groups + tl_with_spare(full, share, SPARE_GROUPS);
+        if (!tl_grow(&layout->groups, &layout->group_room, groups, sizeof *layout->groups))
             return false;
         row = lay_run(layout, c, run, row);
         run->limit = run->begin + tl_with_spare(run->end - run->begin, share, SPARE_POINTS);
@@ -121,7 +120,7 @@ bool tl_layout_make(tl_layout *layout, tl_contacts *c, size_t share, size_t *poi
 void tl_layout_free(tl_layout *layout)
 {
     free(layout->runs);
-    free(layout->ranks);
+    free(layout->groups);
     *layout = (tl_layout){0};
 }
 
@@ -133,58 +132,58 @@ static tl_run *run_of(tl_detect *d, uint32_t contact)
     return NULL;
 }
 
-static bool take_lane(tl_rank *rank, uint32_t contact, uint32_t *lane)
+static bool take_lane(tl_simd_group *group, uint32_t contact, uint32_t *lane)
 {
     for (uint32_t l = 0; l < TL_LANES; l++)
-        if (rank->contact[l] == TL_NO_ROW) {
-            rank->contact[l] = contact;
+        if (group->contact[l] == TL_NO_ROW) {
+            group->contact[l] = contact;
             *lane = l;
             return true;
         }
     return false;
 }
 
-tl_rank *tl_rank_take(tl_detect *d, uint32_t points, uint32_t contact, uint32_t *lane)
+tl_simd_group *tl_simd_group_take(tl_detect *d, uint32_t points, uint32_t contact, uint32_t *lane)
 {
     tl_run *run = run_of(d, contact);
     if (!run)
         return NULL;
     run->rest = TL_RUN_WOKEN;
-    for (size_t r = run->rank_end, back = 0; r-- > run->rank_begin && back < LOOK_BACK; back++) {
-        tl_rank *rank = &d->layout.ranks[r];
-        if (rank->slots >= points && rank->slots <= points + MOST_SPARE &&
-            take_lane(rank, contact, lane))
-            return rank;
+    for (size_t r = run->group_end, back = 0; r-- > run->group_begin && back < LOOK_BACK; back++) {
+        tl_simd_group *group = &d->layout.groups[r];
+        if (group->slots >= points && group->slots <= points + MOST_SPARE &&
+            take_lane(group, contact, lane))
+            return group;
     }
     size_t rows = (size_t)(points + GROWTH) * TL_LANES;
-    if (run->rank_end == run->rank_limit || run->end + rows > run->limit || rows > d->lane_room)
+    if (run->group_end == run->group_limit || run->end + rows > run->limit || rows > d->lane_room)
         return NULL;
-    tl_rank *rank = begin_rank(&d->layout, run, points + GROWTH);
-    take_lane(rank, contact, lane);
-    return rank;
+    tl_simd_group *group = begin_group(&d->layout, run, points + GROWTH);
+    take_lane(group, contact, lane);
+    return group;
 }
 
-/* The rank a contact has a lane of, by where its points begin. */
-static tl_rank *rank_at(tl_detect *d, uint32_t start)
+/* The SIMD group a contact has a lane of, by where its points begin. */
+static tl_simd_group *group_at(tl_detect *d, uint32_t start)
 {
     const tl_run *run = d->layout.runs;
     while (start >= run->end)
         run++;
-    size_t low = run->rank_begin,
-           high = run->rank_end - 1; /* the last that begins there or before */
+    size_t low = run->group_begin,
+           high = run->group_end - 1; /* the last that begins there or before */
     while (low < high) {
         size_t middle = (low + high + 1) / 2;
-        if (d->layout.ranks[middle].start <= start)
+        if (d->layout.groups[middle].start <= start)
             low = middle;
         else
             high = middle - 1;
     }
-    return &d->layout.ranks[low];
+    return &d->layout.groups[low];
 }
 
-void tl_rank_note(tl_detect *d, uint32_t contact, uint32_t row)
+void tl_simd_group_note(tl_detect *d, uint32_t contact, uint32_t row)
 {
     uint32_t start = d->contacts.point_start[contact];
     if (d->contacts.point_room[contact])
-        rank_at(d, start)->contact[start % TL_LANES] = row;
+        group_at(d, start)->contact[start % TL_LANES] = row;
 }
