@@ -1,7 +1,7 @@
 /* contacts.c - the tables of contacts and contact points, and how they are laid out.
  *
- * The points of a material are one run of columns, so a law is called on the columns themselves (simd_groups.c); a run
- * has room for a few contacts more. Laying out anew sorts the contacts by material, apart those between bodies that are held
+ * The points of a joint law are one run of columns, so a law is called on the columns themselves (simd_groups.c); a run
+ * has room for a few contacts more. Laying out anew sorts the contacts by joint law, apart those between bodies that are held
  * still, and by blocks. */
 #include "contact/contacts.h"
 
@@ -37,7 +37,7 @@ void tl_contacts_init(tl_contacts *c, tl_points_table *p)
     TL_COLUMN(t, c, b, 0);
     TL_COLUMN(t, c, pair, 0);
     TL_COLUMN(t, c, tag, TL_COLUMN_STATE);
-    TL_COLUMN(t, c, material, 0);
+    TL_COLUMN(t, c, law, 0);
     TL_COLUMN(t, c, facet, TL_COLUMN_STEP);
     TL_COLUMN(t, c, field, 0);
     TL_COLUMN(t, c, press, 0);
@@ -98,10 +98,10 @@ bool tl_detect_hold_lanes(tl_detect *d, size_t room)
     return true;
 }
 
-uint32_t tl_material_row(const tl_model *m, tl_tag tag)
+uint32_t tl_law_row(const tl_model *m, tl_tag tag)
 {
-    const tl_material *material = tl_material_of(m, tag);
-    return material ? (uint32_t)(material - m->materials) : TL_NO_ROW;
+    const tl_law *law = tl_law_of(m, tag);
+    return law ? (uint32_t)(law - m->joint_laws) : TL_NO_ROW;
 }
 
 bool tl_contact_append(tl_model *m, uint32_t pair, bool field, double valid, tl_tag tag,
@@ -119,7 +119,7 @@ bool tl_contact_append(tl_model *m, uint32_t pair, bool field, double valid, tl_
     c->b[row] = p->b;
     c->pair[row] = pair;
     c->tag[row] = tag;
-    c->material[row] = tl_material_row(m, tag);
+    c->law[row] = tl_law_row(m, tag);
     c->facet[row] = (tl_facet){.kind = field ? TL_FACET_FIELD : TL_FACET_PATCH};
     c->field[row] = field;
     c->press[row] = TL_NO_ROW;
@@ -136,14 +136,14 @@ bool tl_contact_append(tl_model *m, uint32_t pair, bool field, double valid, tl_
 }
 
 typedef struct place {
-    uint32_t material, held, field, a, b, row;
+    uint32_t law, held, field, a, b, row;
 } place;
 
 static int compare_place(const void *x, const void *y)
 {
     const place *p = x, *q = y;
-    if (p->material != q->material)
-        return p->material < q->material ? -1 : 1;
+    if (p->law != q->law)
+        return p->law < q->law ? -1 : 1;
     if (p->held != q->held)
         return p->held < q->held ? -1 : 1;
     if (p->field != q->field)
@@ -161,7 +161,7 @@ static place *sorted(const tl_contacts *c, size_t *count)
     for (uint32_t row = 0; list && row < c->table.rows; row++)
         if (c->pending[row] != TL_PENDING_DIE)
             list[(*count)++] =
-                (place){c->material[row], c->held[row], c->field[row], c->a[row], c->b[row], row};
+                (place){c->law[row], c->held[row], c->field[row], c->a[row], c->b[row], row};
     if (list && *count > 1)
         qsort(list, *count, sizeof *list, compare_place);
     return list;
@@ -320,7 +320,7 @@ bool tl_contact_place(tl_detect *d, uint32_t row)
 {
     tl_contacts *c = &d->contacts;
     uint32_t points = wanted_points(d, row), lane;
-    if (!points) { /* its lane may be another material's */
+    if (!points) { /* its lane may be another law's */
         clear_points(d, row);
         c->point_room[row] = 0;
         return true;

@@ -13,7 +13,7 @@ bool tl_detect_hold_lanes(tl_detect *d, size_t room);
  * false when out of memory. */
 bool tl_contact_append(tl_model *m, uint32_t pair, bool field, double valid, tl_tag tag,
                        size_t want_points);
-/* Lays contacts and points out anew: without those with TL_PENDING_DIE, sorted by material and blocks,
+/* Lays contacts and points out anew: without those with TL_PENDING_DIE, sorted by joint law and blocks,
  * each with the room it wants at least. */
 tl_status tl_contacts_repack(tl_model *m);
 /* Gives back the room that contacts came from when they were laid out anew last, once the layout has lasted. */
@@ -23,8 +23,8 @@ void tl_contacts_free_spare(tl_detect *d, int64_t cycles);
 bool tl_contact_place(tl_detect *d, uint32_t contact);
 /* Takes a contact out; the last one gets its row. */
 void tl_contact_remove(tl_detect *d, uint32_t contact);
-/* Index of the material that rules a tag, or TL_NO_ROW. */
-uint32_t tl_material_row(const tl_model *m, tl_tag tag);
+/* Index of the joint law that rules a tag, or TL_NO_ROW. */
+uint32_t tl_law_row(const tl_model *m, tl_tag tag);
 /* "contact of blocks 3 and 7, joint J1:2" */
 void tl_contact_name(tl_model *m, uint32_t contact, char *text, size_t size);
 /* Moment of a contact's forces on A, or on B, about that block's body's centroid. */

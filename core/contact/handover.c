@@ -104,14 +104,14 @@ static double shift_of(const tl_model *m, uint32_t c)
 {
     const tl_contacts *contacts = &m->detect->contacts;
     const tl_points_table *p = &m->detect->points;
-    uint32_t material = contacts->material[c];
+    uint32_t law = contacts->law[c];
     double area = 0, shift = 0;
-    if (!p->f_n0 || material == TL_NO_ROW)
+    if (!p->f_n0 || law == TL_NO_ROW)
         return 0;
     for (size_t k = 0; k < contacts->point_count[c]; k++) {
         size_t i = tl_point_row(contacts, c, k);
         area += p->area[i];
-        shift += p->f_n0[i] / m->materials[material].kn - p->area[i] * p->reference[i];
+        shift += p->f_n0[i] / m->joint_laws[law].kn - p->area[i] * p->reference[i];
     }
     return area > 0 ? shift / area : 0;
 }
@@ -140,8 +140,8 @@ static void write_points(tl_model *m, uint32_t c, const tl_manifold *g, const la
 {
     tl_contacts *contacts = &m->detect->contacts;
     tl_points_table *p = &m->detect->points;
-    uint32_t material = contacts->material[c];
-    const tl_kind *kind = material == TL_NO_ROW ? NULL : m->materials[material].kind;
+    uint32_t law = contacts->law[c];
+    const tl_kind *kind = law == TL_NO_ROW ? NULL : m->joint_laws[law].kind;
     for (size_t k = g->point_count; k < contacts->point_room[c]; k++)
         tl_point_clear(p, tl_point_row(contacts, c, k));
     contacts->point_count[c] = (uint16_t)g->point_count;
@@ -238,7 +238,7 @@ void tl_contact_hand_over(tl_model *m, uint32_t c, const tl_manifold *g, bool re
     if (field)
         row->press = g->press;
     tl_contact_begin(m, c, lanes);
-    double ks = contacts->material[c] == TL_NO_ROW ? 0 : m->materials[contacts->material[c]].ks;
+    double ks = contacts->law[c] == TL_NO_ROW ? 0 : m->joint_laws[contacts->law[c]].ks;
     if (!held || g->point_count == 0) {
         contacts->released[c] += ks > 0 ? 0.5 * old.energy / ks : 0;
         return;
@@ -297,7 +297,7 @@ static void refit_springs(tl_model *m, uint32_t c, const tl_manifold *g)
     tl_vec3 du = tl_v3_add(by_step.way, tl_v3_cross(by_step.turn, arm));
     double work =
         (1 - stays) * tl_v3_dot(force, du) + (1 - stays_turned) * tl_v3_dot(twist, by_step.turn);
-    double ks = contacts->material[c] == TL_NO_ROW ? 0 : m->materials[contacts->material[c]].ks;
+    double ks = contacts->law[c] == TL_NO_ROW ? 0 : m->joint_laws[contacts->law[c]].ks;
     contacts->released[c] += ks > 0 ? 0.5 * (lost / ks - work) : 0;
     tl_columns_put(p->f_s, first, tl_v3_scale(stays, force));
     tl_columns_put(p->f_s, torsion, tl_v3_scale(r1 > 0 ? stays_turned / r1 : 0, twist));
@@ -324,8 +324,8 @@ void tl_contact_refit_field(tl_model *m, uint32_t c, const tl_manifold *g)
 double tl_contact_sheared(const tl_model *m, uint32_t c)
 {
     const tl_contacts *contacts = &m->detect->contacts;
-    if (contacts->facet[c].kind != TL_FACET_FIELD || contacts->material[c] == TL_NO_ROW)
+    if (contacts->facet[c].kind != TL_FACET_FIELD || contacts->law[c] == TL_NO_ROW)
         return 0;
-    double ks = m->materials[contacts->material[c]].ks;
+    double ks = m->joint_laws[contacts->law[c]].ks;
     return ks > 0 ? 0.5 * shear_of(m, c, NULL).energy / ks : 0;
 }

@@ -19,7 +19,7 @@ typedef struct tl_point_lanes {
     uint32_t *flags_before;
 } tl_point_lanes;
 
-/* A SIMD group: TL_LANES contacts of one material whose points lie side by side. Point k of the contact in lane l is row
+/* A SIMD group: TL_LANES contacts of one joint law whose points lie side by side. Point k of the contact in lane l is row
  * start + TL_LANES k + l. What has to be done for each contact is done for all of a SIMD group at once, one in each lane of the
  * processor's vectors, and so is what has to be done for each point. Lanes without a contact, and rows beyond a
  * contact's points, are inert: area 0. */
@@ -35,10 +35,10 @@ typedef struct tl_simd_group {
 /* Whether the contacts of a run are passed over: held.c. */
 enum { TL_RUN_WOKEN, TL_RUN_FOLLOWED, TL_RUN_RESTS };
 
-/* The SIMD groups of one material, one after the other: in the list of SIMD groups, and their points from `begin`, used up to
+/* The SIMD groups of one joint law, one after the other: in the list of SIMD groups, and their points from `begin`, used up to
  * `end`, with room up to `limit`. Contacts between bodies that are held still have runs of their own. */
 typedef struct tl_run {
-    uint32_t material;
+    uint32_t law;
     bool held;    /* between bodies that are held still */
     bool field;   /* of field contacts, else of patches */
     uint8_t rest; /* of one that is held: TL_RUN_* */

@@ -71,7 +71,7 @@ void tl_simd_group_prefetch_contacts(const tl_detect *d, const tl_simd_group *gr
         prefetch(&c->a[i], sizeof *c->a);
         prefetch(&c->b[i], sizeof *c->b);
         prefetch(&c->tag[i], sizeof *c->tag);
-        prefetch(&c->material[i], sizeof *c->material);
+        prefetch(&c->law[i], sizeof *c->law);
         prefetch(&c->faces_valid_to[i], sizeof *c->faces_valid_to);
         prefetch(&c->points_valid_to[i], sizeof *c->points_valid_to);
         prefetch(&c->facet[i], sizeof *c->facet);

@@ -35,8 +35,8 @@ tl_shear tl_shear_of(const tl_model *m, uint32_t c)
 void tl_shear_release(tl_model *m, uint32_t c, const tl_shear *before, const tl_shear *now)
 {
     tl_contacts *contacts = &m->detect->contacts;
-    uint32_t material = contacts->material[c];
-    double ks = material == TL_NO_ROW ? 0 : m->materials[material].ks;
+    uint32_t law = contacts->law[c];
+    double ks = law == TL_NO_ROW ? 0 : m->joint_laws[law].ks;
     if (!(ks > 0))
         return;
     tl_contact_motion moved = tl_contact_moved(m, c);

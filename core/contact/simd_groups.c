@@ -2,7 +2,7 @@
  *
  * Contacts of about as many points share a SIMD group, which has room in each lane for as many points as its largest contact.
  * They are looked for among neighbours in the order of blocks, so that what a group needs lies close together in memory.
- * Each material has a run of SIMD groups for patches and one for field contacts, and others for contacts between bodies
+ * Each joint law has a run of SIMD groups for patches and one for field contacts, and others for contacts between bodies
  * that are held still. New contacts get a free lane near the end of the run, or the first lane of a new group there. */
 #include "contact/simd_groups.h"
 
@@ -63,8 +63,7 @@ static void seat_window(tl_layout *layout, tl_contacts *c, tl_run *run, seat *se
 
 static bool is_of_run(const tl_contacts *c, uint32_t row, const tl_run *run)
 {
-    return c->material[row] == run->material && c->held[row] == run->held &&
-           c->field[row] == run->field;
+    return c->law[row] == run->law && c->held[row] == run->held && c->field[row] == run->field;
 }
 
 /* Lays the run of the contacts from `row` on that are of it; returns the row behind them. */
@@ -94,7 +93,7 @@ bool tl_layout_make(tl_layout *layout, tl_contacts *c, size_t share, size_t *poi
         if (!tl_grow(&layout->runs, &layout->run_room, layout->run_count + 1, sizeof *layout->runs))
             return false;
         tl_run *run = &layout->runs[layout->run_count++];
-        *run = (tl_run){.material = c->material[row],
+        *run = (tl_run){.law = c->law[row],
                         .held = c->held[row],
                         .field = c->field[row],
                         .begin = *points,

@@ -196,7 +196,7 @@ static bool contact_is_sound(const tl_model *m, const tl_detect *d, uint32_t row
     return c->id[row] != 0 && c->id[row] <= d->next_contact && c->a[row] < c->b[row] &&
            c->b[row] < d->seen_count && c->pair[row] < d->pair_count &&
            d->pairs[c->pair[row]].contact == row &&
-           (c->material[row] < m->material_count || c->material[row] == TL_NO_ROW) &&
+           (c->law[row] < m->joint_law_count || c->law[row] == TL_NO_ROW) &&
            c->tag[row].joint <= m->joint_count && c->field[row] <= 1 && c->held[row] <= 1 &&
            c->across[row] <= 1 && c->fresh[row] <= 1 && c->pending[row] <= TL_PENDING_MOVE &&
            c->deep[row] <= TL_DEEP_SUNK && c->point_count[row] <= c->point_room[row] &&
@@ -215,7 +215,7 @@ static bool group_is_sound(const tl_detect *d, const tl_run *run, const tl_simd_
         if (row == TL_NO_ROW)
             continue;
         if (row >= c->table.rows || c->point_start[row] != group->start + l ||
-            c->point_room[row] != group->slots || c->material[row] != run->material ||
+            c->point_room[row] != group->slots || c->law[row] != run->law ||
             c->held[row] != run->held || c->field[row] != run->field)
             return false;
         ++*taken;
@@ -228,8 +228,7 @@ static bool run_is_sound(const tl_model *m, const tl_detect *d, const tl_run *ru
                          const tl_run *before, size_t *taken)
 {
     if (!tl_is_flag(&run->held) || !tl_is_flag(&run->field) || !tl_is_flag(&run->changed) ||
-        run->rest > TL_RUN_RESTS ||
-        (run->material != TL_NO_ROW && run->material >= m->material_count))
+        run->rest > TL_RUN_RESTS || (run->law != TL_NO_ROW && run->law >= m->joint_law_count))
         return false;
     if (run->begin < (before ? before->limit : 0) || run->begin % TL_LANES ||
         run->end < run->begin || run->limit < run->end || run->limit > d->points.table.rows ||

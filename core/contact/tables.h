@@ -12,7 +12,7 @@ typedef struct tl_contacts {
     uint32_t *a, *b; /* block rows */
     uint32_t *pair;  /* index of its pair */
     tl_tag *tag;
-    uint32_t *material; /* index of the model's materials, or TL_NO_ROW */
+    uint32_t *law; /* index into the model's joint_laws, or TL_NO_ROW */
     tl_facet *facet;
     uint8_t *field;          /* its points belong into a run of field contacts */
     uint32_t *press;         /* row of what a field contact keeps, or TL_NO_ROW */

@@ -364,8 +364,8 @@ static void write_points(tl_model *m, uint32_t c, const tl_manifold *g, const ol
 {
     tl_contacts *contacts = &m->detect->contacts;
     tl_points_table *p = &m->detect->points;
-    uint32_t material = contacts->material[c];
-    const tl_kind *kind = material == TL_NO_ROW ? NULL : m->materials[material].kind;
+    uint32_t law = contacts->law[c];
+    const tl_kind *kind = law == TL_NO_ROW ? NULL : m->joint_laws[law].kind;
     for (size_t k = 0; k < g->point_count; k++) {
         size_t i = tl_point_row(contacts, c, k);
         const tl_contact_point *point = &g->points[k];

@@ -196,7 +196,7 @@ static void sum_points(tl_model *m, struct tl_ledger *l)
     m->detect->parted = 0;
     for (size_t k = 0; k < layout->run_count; k++) {
         const tl_run *run = &layout->runs[k];
-        for (size_t r = run->group_begin; r < run->group_end && run->material != TL_NO_ROW; r++) {
+        for (size_t r = run->group_begin; r < run->group_end && run->law != TL_NO_ROW; r++) {
             l->stored += m->cycle->group_energy[r].stored;
             l->friction += m->cycle->group_energy[r].dissipated;
         }

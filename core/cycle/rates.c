@@ -20,7 +20,7 @@
 
 #include "base/columns.h"
 #include "contact/detection.h"
-#include "force/materials.h"
+#include "force/joint_laws.h"
 
 #include <string.h>
 
@@ -35,8 +35,8 @@
 double tl_stiffest_law(const tl_model *m)
 {
     double k = 0;
-    for (size_t i = 0; i < m->material_count; i++)
-        k = fmax(k, tl_law_stiffness(&m->materials[i]));
+    for (size_t i = 0; i < m->joint_law_count; i++)
+        k = fmax(k, tl_law_stiffness(&m->joint_laws[i]));
     return k;
 }
 
@@ -216,9 +216,9 @@ static contact_sums add_contacts(const tl_model *m, uint32_t body, bool points)
         uint32_t row = m->members[m->bodies.member_start[body] + j];
         for (uint32_t e = d->by_block_start[row]; e < d->by_block_start[row + 1]; e++) {
             uint32_t i = d->by_block[e];
-            if (c->material[i] == TL_NO_ROW)
+            if (c->law[i] == TL_NO_ROW)
                 continue;
-            double law = tl_law_stiffness(&m->materials[c->material[i]]);
+            double law = tl_law_stiffness(&m->joint_laws[c->law[i]]);
             out.law = fmax(out.law, law);
             if (points && c->point_count[i] > 0) {
                 area_sums next = points_of(m, i, c->b[i] == row);
@@ -246,9 +246,9 @@ static double highest_approach(const tl_model *m, uint32_t body)
         uint32_t row = m->members[m->bodies.member_start[body] + j];
         for (uint32_t e = d->by_block_start[row]; e < d->by_block_start[row + 1]; e++) {
             uint32_t i = d->by_block[e];
-            if (c->material[i] == TL_NO_ROW || c->point_count[i] == 0)
+            if (c->law[i] == TL_NO_ROW || c->point_count[i] == 0)
                 continue;
-            out = fmax(out, approach_of(m, i, tl_law_stiffness(&m->materials[c->material[i]])));
+            out = fmax(out, approach_of(m, i, tl_law_stiffness(&m->joint_laws[c->law[i]])));
         }
     }
     return out;

@@ -56,7 +56,7 @@ static bool is_density(double density)
 }
 
 /* "J1:3", "J1", or "*" for the law of all joints that have none of their own. */
-static const char *joint_name(tl_model *m, const tl_material *law)
+static const char *joint_name(tl_model *m, const tl_law *law)
 {
     if (law->tag.joint == 0)
         return "*";
@@ -77,7 +77,7 @@ static void remark_density(tl_model *m, const densities *d, double g)
                  m->blocks.density[row], m->blocks.id[row], g);
 }
 
-static void remark_stiffness(tl_model *m, const densities *d, double g, const tl_material *law)
+static void remark_stiffness(tl_model *m, const densities *d, double g, const tl_law *law)
 {
     double sunk = d->most * g / law->kn, least = d->least * g / law->kn;
     bool tonnes =
@@ -114,12 +114,12 @@ void tl_remark_units(tl_model *m)
     if (d.densest == TL_NO_ROW || !(g > 0))
         return;
     remark_density(m, &d, g);
-    for (size_t i = 0; i < m->material_count; i++)
-        if (m->materials[i].kn > 0)
-            remark_stiffness(m, &d, g, &m->materials[i]);
+    for (size_t i = 0; i < m->joint_law_count; i++)
+        if (m->joint_laws[i].kn > 0)
+            remark_stiffness(m, &d, g, &m->joint_laws[i]);
 }
 
-void tl_remark_friction(tl_model *m, const char *joint, const tl_material *law)
+void tl_remark_friction(tl_model *m, const char *joint, const tl_law *law)
 {
     for (uint32_t i = 0; i < law->kind->param_count; i++) {
         tl_param p = tl_param_row(law->kind->params, i, law->kind->param_stride);

@@ -15,7 +15,7 @@
 #include "cycle/cycle_room.h"
 
 #include "contact/detection.h"
-#include "force/materials.h"
+#include "force/joint_laws.h"
 
 #include <stdatomic.h>
 
@@ -37,9 +37,9 @@ static double stiffness_of(const tl_model *m, uint32_t body)
         uint32_t row = m->members[m->bodies.member_start[body] + j];
         for (uint32_t e = d->by_block_start[row]; e < d->by_block_start[row + 1]; e++) {
             uint32_t i = d->by_block[e];
-            if (c->material[i] == TL_NO_ROW || c->point_count[i] == 0)
+            if (c->law[i] == TL_NO_ROW || c->point_count[i] == 0)
                 continue;
-            sum += tl_law_stiffness(&m->materials[c->material[i]]) * c->area[i];
+            sum += tl_law_stiffness(&m->joint_laws[c->law[i]]) * c->area[i];
         }
     }
     return sum;

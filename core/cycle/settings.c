@@ -14,10 +14,10 @@ static const char *pattern_name(tl_model *m, tl_tag tag)
 
 bool tl_model_law_at(tl_model *m, size_t i, const char **joint, tl_plugin_setting *law)
 {
-    if (i >= m->material_count)
+    if (i >= m->joint_law_count)
         return false;
-    *joint = pattern_name(m, m->materials[i].tag);
-    *law = (tl_plugin_setting){m->materials[i].kind, m->materials[i].params};
+    *joint = pattern_name(m, m->joint_laws[i].tag);
+    *law = (tl_plugin_setting){m->joint_laws[i].kind, m->joint_laws[i].params};
     return true;
 }
 
@@ -26,7 +26,7 @@ bool tl_model_joint_at(tl_model *m, size_t i, const char **name, const char **ru
     if (i >= m->joint_count)
         return false;
     *name = m->joints[i].name;
-    const tl_material *law = tl_material_of(m, (tl_tag){(uint32_t)i + 1, 0});
+    const tl_law *law = tl_law_of(m, (tl_tag){(uint32_t)i + 1, 0});
     *ruled_by = law ? pattern_name(m, law->tag) : NULL;
     return true;
 }

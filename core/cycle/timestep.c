@@ -13,7 +13,7 @@
 
 #include "contact/detection.h"
 #include "detect/detect.h"
-#include "force/materials.h"
+#include "force/joint_laws.h"
 
 #include <string.h>
 
@@ -43,9 +43,9 @@ static void stiffest_range(void *user, size_t begin, size_t end, size_t chunk, u
     const tl_contacts *c = &m->detect->contacts;
     tl_row_value found = {0, TL_NO_ROW};
     for (uint32_t i = (uint32_t)begin; i < end; i++) {
-        if (c->material[i] == TL_NO_ROW)
+        if (c->law[i] == TL_NO_ROW)
             continue;
-        double k = tl_law_stiffness(&m->materials[c->material[i]]) * c->area[i];
+        double k = tl_law_stiffness(&m->joint_laws[c->law[i]]) * c->area[i];
         /* most are not stiffer: what is dearer to know is asked last */
         if (k > found.value && (tl_body_counts(m, m->blocks.body[c->a[i]]) ||
                                 tl_body_counts(m, m->blocks.body[c->b[i]])))
@@ -117,7 +117,7 @@ static tl_status check_factor(tl_model *m)
 static tl_status no_step(tl_model *m, double dt)
 {
     const char *way_out = "a step with model:timestep{ dt = ... }";
-    if (m->material_count == 0)
+    if (m->joint_law_count == 0)
         return tl_fail(
             &m->error, TL_E_STATE,
             "no time step follows from the model: no law says how stiff a contact is; set "

@@ -151,9 +151,9 @@ static bool may_fail(const tl_model *m)
     bool tame = last->contact_force < TAME && last->max_speed2 < TAME &&
                 tl_v3_norm2(m->config.gravity) < TAME;
     bool sure = !m->damping || ((const tl_damping_ops *)m->damping->ops)->never_fails;
-    for (size_t i = 0; i < m->material_count; i++) {
-        tame = tame && m->materials[i].kn < TAME && m->materials[i].ks < TAME;
-        sure = sure && ((const tl_law_ops *)m->materials[i].kind->ops)->never_fails;
+    for (size_t i = 0; i < m->joint_law_count; i++) {
+        tame = tame && m->joint_laws[i].kn < TAME && m->joint_laws[i].ks < TAME;
+        sure = sure && ((const tl_law_ops *)m->joint_laws[i].kind->ops)->never_fails;
     }
     return !tame || !sure;
 }
@@ -210,7 +210,7 @@ void tl_undo_step(tl_model *m)
     }
     for (size_t r = 0; r < layout->run_count; r++) {
         const tl_run *run = &layout->runs[r];
-        if (run->material == TL_NO_ROW || tl_run_rests(m, run))
+        if (run->law == TL_NO_ROW || tl_run_rests(m, run))
             continue; /* the laws have passed it over */
         for (size_t k = run->group_begin; k < run->group_end; k++)
             copy_groups(m, &layout->groups[k], 1, true);

@@ -198,7 +198,7 @@ static double settlement(const tl_watch *w, const tl_model *m)
         double f = tl_v3_norm(c->force[i]);
         if (!(f > 0) || c->held[i])
             continue;
-        const tl_material *law = &m->materials[c->material[i]];
+        const tl_law *law = &m->joint_laws[c->law[i]];
         double k = law->ks > 0 && law->ks < law->kn ? law->ks : law->kn;
         force += f;
         force_closure += k > 0 && c->area[i] > 0 ? f * f / (k * c->area[i]) : 0;

@@ -39,8 +39,8 @@ static tl_status ensure(tl_model *m)
     if (m->detect)
         return TL_OK;
     uint32_t columns = 0;
-    for (size_t i = 0; i < m->material_count; i++) {
-        uint32_t wanted = m->materials[i].columns;
+    for (size_t i = 0; i < m->joint_law_count; i++) {
+        uint32_t wanted = m->joint_laws[i].columns;
         columns = wanted > columns ? wanted : columns;
     }
     tl_detect *d = tl_detect_make(tl_pool_threads(m->pool));
@@ -168,13 +168,13 @@ static tl_status give_births(tl_model *m, size_t *born)
 
 /* A contact that comes under another law begins with that law's states; under the same law with other
  * properties it keeps them. */
-static void change_material(tl_model *m, uint32_t c)
+static void change_law(tl_model *m, uint32_t c)
 {
     tl_detect *d = m->detect;
-    uint32_t old = d->contacts.material[c], material = tl_material_row(m, d->contacts.tag[c]);
-    d->contacts.material[c] = material;
-    const tl_kind *kind = material == TL_NO_ROW ? NULL : m->materials[material].kind;
-    if (old != TL_NO_ROW && m->materials[old].kind == kind)
+    uint32_t old = d->contacts.law[c], law = tl_law_row(m, d->contacts.tag[c]);
+    d->contacts.law[c] = law;
+    const tl_kind *kind = law == TL_NO_ROW ? NULL : m->joint_laws[law].kind;
+    if (old != TL_NO_ROW && m->joint_laws[old].kind == kind)
         return;
     for (uint32_t k = 0; k < d->contacts.point_count[c]; k++)
         tl_point_begin(&d->points, tl_point_row(&d->contacts, c, k), kind);
@@ -213,8 +213,8 @@ static bool settle_rows(tl_model *m)
         if (c->pending[row] == TL_PENDING_MOVE) {
             d->pairs[pair].want_points = c->point_room[row];
         }
-        if (tl_material_row(m, c->tag[row]) != c->material[row])
-            change_material(m, row);
+        if (tl_law_row(m, c->tag[row]) != c->law[row])
+            change_law(m, row);
         room = room && tl_contact_place(d, row);
     }
     return room;
@@ -262,7 +262,7 @@ static bool lacked_memory(tl_detect *d)
     return lacked;
 }
 
-/* Births, deaths, growth and changes of material, in the order of pairs. */
+/* Births, deaths, growth and changes of joint law, in the order of pairs. */
 static tl_status settle(tl_model *m)
 {
     tl_detect *d = m->detect;

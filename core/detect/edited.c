@@ -137,13 +137,12 @@ tl_status tl_edited_rows(tl_model *m)
 
 /* ---------------------------------------------------------------- laws ------------------- */
 
-/* Contacts under another material belong in another run. */
-static void find_materials(tl_model *m)
+/* Contacts under another joint law belong in another run. */
+static void find_laws(tl_model *m)
 {
     tl_contacts *c = &m->detect->contacts;
     for (uint32_t row = 0; row < c->table.rows; row++)
-        if (c->pending[row] == TL_PENDING_NONE &&
-            tl_material_row(m, c->tag[row]) != c->material[row])
+        if (c->pending[row] == TL_PENDING_NONE && tl_law_row(m, c->tag[row]) != c->law[row])
             c->pending[row] = TL_PENDING_MOVE;
 }
 
@@ -209,7 +208,7 @@ void tl_edited_laws(tl_model *m)
     if (d->rules != m->rules) /* before contacts note the room they want in the place of faces */
         find_rules(m);
     if (d->laws != m->laws)
-        find_materials(m);
+        find_laws(m);
 }
 
 /* ---------------------------------------------------------------- frames ----------------- */

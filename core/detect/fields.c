@@ -19,8 +19,8 @@
 static bool may_hold(const tl_model *m, uint32_t c)
 {
     const tl_contacts *contacts = &m->detect->contacts;
-    uint32_t material = contacts->material[c];
-    if (material == TL_NO_ROW || m->materials[material].pulls == TL_PULL_NONE)
+    uint32_t law = contacts->law[c];
+    if (law == TL_NO_ROW || m->joint_laws[law].pulls == TL_PULL_NONE)
         return false;
     for (uint32_t k = 0; k < contacts->point_count[c]; k++) {
         uint32_t flags = m->detect->points.flags[tl_point_row(contacts, c, k)];

@@ -67,10 +67,10 @@ static void refit(tl_model *m, uint32_t c, const tl_manifold *g)
     tl_vec3 last = d->contacts.facet[c].last;
     d->contacts.facet[c] = g->facet;
     d->contacts.facet[c].last = last;
-    uint32_t material = d->contacts.material[c];
+    uint32_t law = d->contacts.law[c];
     const tl_kind *kind = NULL; /* of states that go with the area */
-    if (material != TL_NO_ROW && m->materials[material].splits)
-        kind = m->materials[material].kind;
+    if (law != TL_NO_ROW && m->joint_laws[law].splits)
+        kind = m->joint_laws[law].kind;
     for (size_t k = 0; k < g->point_count; k++) {
         size_t i = tl_point_row(&d->contacts, c, k);
         double old = p->area[i], state[TL_STATE_COLUMNS];
@@ -110,7 +110,7 @@ static void note_tag(tl_model *m, uint32_t c, tl_tag tag)
     if (tag.joint == contacts->tag[c].joint && tag.plane == contacts->tag[c].plane)
         return;
     contacts->tag[c] = tag;
-    if (tl_material_row(m, tag) != contacts->material[c])
+    if (tl_law_row(m, tag) != contacts->law[c])
         contacts->pending[c] = TL_PENDING_MOVE;
 }
 
@@ -308,9 +308,9 @@ static bool same_keys(const tl_points_table *p, size_t begin, const tl_patch_poi
 bool tl_contact_is_patch(tl_model *m, uint32_t c)
 {
     tl_contacts *contacts = &m->detect->contacts;
-    uint32_t material = contacts->material[c];
+    uint32_t law = contacts->law[c];
     return contacts->facet[c].kind == TL_FACET_PATCH && contacts->point_count[c] > 0 &&
-           material != TL_NO_ROW && !m->materials[material].splits &&
+           law != TL_NO_ROW && !m->joint_laws[law].splits &&
            is_valid(m, c, &contacts->faces_valid_to[c], (double)contacts->spot[c].left,
                     faces_moved);
 }

@@ -9,7 +9,7 @@
 #include <talus/law_test.h>
 
 #include "contact/points.h"
-#include "force/materials.h"
+#include "force/joint_laws.h"
 #include "model/model.h"
 
 #include "base/inside.h"
@@ -28,7 +28,7 @@ typedef struct sample {
 
 typedef struct bench {
     const tl_law_test *test;
-    tl_material law;
+    tl_law law;
     tl_error *error;
     sample now;           /* as the last step has left it */
     size_t leg;           /* counted from 1; 0: the start */
@@ -380,7 +380,7 @@ tl_status tl_law_test_run(const tl_law_test *test, tl_law_point *points, size_t 
         if (ends)
             ends[k] = (size_t)(at - points) - 1;
     }
-    tl_material_clear(&b.law);
+    tl_law_clear(&b.law);
     if (law)
         *law = kind;
     return status;

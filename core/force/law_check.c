@@ -16,7 +16,7 @@
 #include "base/inside.h"
 #include "contact/detection.h"
 #include "contact/points.h"
-#include "force/materials.h"
+#include "force/joint_laws.h"
 
 #include <stdio.h>
 
@@ -42,7 +42,7 @@ typedef struct trial {
 /* One place of each contact of a SIMD group: the row of its first point, and its lane. */
 typedef struct place {
     const tl_model *m;
-    const tl_material *law;
+    const tl_law *law;
     const tl_point_lanes *lanes;
     size_t row, lane;
 } place;
@@ -142,8 +142,8 @@ static bool measure(const place *at, const double *move, const tl_vec3 *slide, s
 }
 
 /* Names the first point that is far stiffer than its law says. */
-static void compare(tl_failure *failure, const tl_material *law, const tl_simd_group *group,
-                    size_t row, const slopes *found)
+static void compare(tl_failure *failure, const tl_law *law, const tl_simd_group *group, size_t row,
+                    const slopes *found)
 {
     for (size_t l = 0; l < TL_LANES; l++) {
         bool shear = found->shear[l] > found->normal[l];
@@ -160,7 +160,7 @@ static void compare(tl_failure *failure, const tl_material *law, const tl_simd_g
     }
 }
 
-void tl_law_check_stiffness(const tl_model *m, tl_failure *failure, const tl_material *law,
+void tl_law_check_stiffness(const tl_model *m, tl_failure *failure, const tl_law *law,
                             const tl_simd_group *group, const tl_point_lanes *lanes, size_t lane,
                             unsigned begins)
 {
@@ -208,7 +208,7 @@ static bool try_in_plane(const place *at, double along[TL_LANES])
 }
 
 /* Whether `along` N is a component along the normal that a shear force in point `row` of contact c must not have. */
-static bool is_out_of_plane(const tl_model *m, const tl_material *law, uint32_t c, size_t row,
+static bool is_out_of_plane(const tl_model *m, const tl_law *law, uint32_t c, size_t row,
                             double along)
 {
     const tl_points_table *p = &m->detect->points;
@@ -219,7 +219,7 @@ static bool is_out_of_plane(const tl_model *m, const tl_material *law, uint32_t 
     return along > TL_OUT_OF_PLANE * force && along > ROUNDING_FORCE * spring;
 }
 
-void tl_law_check_shear(const tl_model *m, tl_failure *failure, const tl_material *law,
+void tl_law_check_shear(const tl_model *m, tl_failure *failure, const tl_law *law,
                         const tl_simd_group *group, const tl_point_lanes *lanes, size_t lane)
 {
     const tl_points_table *p = &m->detect->points;
@@ -256,8 +256,8 @@ static const char *state_name(const tl_kind *kind, uint32_t column)
     return "?";
 }
 
-void tl_law_check_states(const tl_model *m, tl_failure *failure, const tl_material *law,
-                         size_t first, size_t count)
+void tl_law_check_states(const tl_model *m, tl_failure *failure, const tl_law *law, size_t first,
+                         size_t count)
 {
     const tl_points_table *p = &m->detect->points;
     for (uint32_t c = 0; c < law->columns; c++)

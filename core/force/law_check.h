@@ -12,13 +12,13 @@
 
 /* Of the points of a SIMD group, whose first is in lane `lane`: whether they are stiffer than the law says, those in the lanes of the
  * mask `begins`, and whether shear forces leave the common plane. */
-void tl_law_check_stiffness(const tl_model *m, tl_failure *failure, const tl_material *law,
+void tl_law_check_stiffness(const tl_model *m, tl_failure *failure, const tl_law *law,
                             const tl_simd_group *group, const tl_point_lanes *lanes, size_t lane,
                             unsigned begins);
-void tl_law_check_shear(const tl_model *m, tl_failure *failure, const tl_material *law,
+void tl_law_check_shear(const tl_model *m, tl_failure *failure, const tl_law *law,
                         const tl_simd_group *group, const tl_point_lanes *lanes, size_t lane);
 /* Of `count` points from row `first`: whether their states are numbers. */
-void tl_law_check_states(const tl_model *m, tl_failure *failure, const tl_material *law,
-                         size_t first, size_t count);
+void tl_law_check_states(const tl_model *m, tl_failure *failure, const tl_law *law, size_t first,
+                         size_t count);
 
 #endif

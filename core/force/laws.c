@@ -1,6 +1,6 @@
 /* laws.c - contact forces: gaps and motion of contact points, the laws' plugins, and the sum per contact.
  *
- * A law gets the points of a page at once, all of one material, as the columns themselves; gaps and
+ * A law gets the points of a page at once, all of one joint law, as the columns themselves; gaps and
  * motion are in the thread's lanes, which stay in the nearest cache from one end to the other. */
 
 #include "force/laws.h"
@@ -27,7 +27,7 @@
 typedef struct run_job {
     tl_model *m;
     const tl_law_phase *phase;
-    const tl_material *material;
+    const tl_law *law;
     const tl_run *run;
     /* of a run of bodies held still: some of it is not what it was; else NULL */
     atomic_bool *changed;
@@ -56,16 +56,15 @@ static bool call_law(const run_job *job, size_t first, size_t count, const tl_po
         .flags = p->flags + first,
         .stored = l->stored,
         .dissipated = l->dissipated,
-        .closure_edge =
-            job->run->field || job->material->pulls != TL_PULL_BONDED ? l->closure : l->edge,
+        .closure_edge = job->run->field || job->law->pulls != TL_PULL_BONDED ? l->closure : l->edge,
     };
     /* a law need not write its energies: those of the page before are not its own */
     memset(l->stored, 0, count * sizeof *l->stored);
     memset(l->dissipated, 0, count * sizeof *l->dissipated);
-    const tl_law_ops *ops = job->material->kind->ops;
+    const tl_law_ops *ops = job->law->kind->ops;
     tl_report report = {.size = sizeof report};
-    tl_enter(job->material->kind, "update");
-    tl_status status = ops->update(job->material->self, &batch, &report);
+    tl_enter(job->law->kind, "update");
+    tl_status status = ops->update(job->law->self, &batch, &report);
     tl_leave();
     /* the plugin's word: there need not be such a point */
     size_t bad = report.first_bad < count ? report.first_bad : 0;
@@ -174,7 +173,7 @@ static void report_odd(const run_job *job, const tl_simd_group *group, const gro
             tl_failure_note(job->phase->failure, group->start, TL_E_NUMERIC, group->start + l,
                             "the force is not a finite number: is the time step too large, or a "
                             "property out of proportion?");
-    tl_law_check_shear(job->m, job->phase->failure, job->material, group, t, lane);
+    tl_law_check_shear(job->m, job->phase->failure, job->law, group, t, lane);
 }
 
 /* Of the field contacts of a SIMD group. The first point carries the normal force, the point of torsion the same again. What the
@@ -202,8 +201,8 @@ static void sum_fields(const run_job *job, const tl_simd_group *group, const tl_
         tl_vec3 couple = tl_v3_sub(press->moment, tl_v3_cross(press->point, press->force));
         tl_vec3 moment = tl_v3_madd(tl_v3_cross(x, force), f_n * per, tl_m3_mul(turn, couple));
         moment = tl_v3_madd(moment, press->radius, twist);
-        double springs = f_n * f_n / (job->material->kn * p->area[i]);
-        double ks = job->material->ks;
+        double springs = f_n * f_n / (job->law->kn * p->area[i]);
+        double ks = job->law->ks;
         double spare = ks > 0 ? 0.5 * (row->spare[0] + row->spare[1]) / ks : 0;
         for (int axis = 0; axis < 3; axis++) {
             out->force[axis][l] = (&force.x)[axis];
@@ -222,10 +221,10 @@ static void sum_fields(const run_job *job, const tl_simd_group *group, const tl_
 static void add_parts(const run_job *job, const tl_partly_open *open, group_sums *sum)
 {
     for (size_t l = 0; l < TL_LANES && open->any; l++) {
-        sum->moment[0][l] += job->material->kn * open->moment[l].x;
-        sum->moment[1][l] += job->material->kn * open->moment[l].y;
-        sum->moment[2][l] += job->material->kn * open->moment[l].z;
-        sum->stored[l] += job->material->kn * open->energy[l];
+        sum->moment[0][l] += job->law->kn * open->moment[l].x;
+        sum->moment[1][l] += job->law->kn * open->moment[l].y;
+        sum->moment[2][l] += job->law->kn * open->moment[l].z;
+        sum->stored[l] += job->law->kn * open->energy[l];
     }
 }
 
@@ -264,8 +263,8 @@ static void sum_group(const run_job *job, const tl_simd_group *group, const tl_p
     if (across(sum.odd) != 0)
         report_odd(job, group, &sum, t, lane);
     if (begins) {
-        tl_law_check_shear(m, job->phase->failure, job->material, group, t, lane);
-        tl_law_check_stiffness(m, job->phase->failure, job->material, group, t, lane, begins);
+        tl_law_check_shear(m, job->phase->failure, job->law, group, t, lane);
+        tl_law_check_stiffness(m, job->phase->failure, job->law, group, t, lane, begins);
     }
     job->phase->energy[group - m->detect->layout.groups] = energy;
 }
@@ -316,26 +315,25 @@ static void force_page(const run_job *job, const tl_simd_group *groups, size_t c
 {
     size_t first = groups->start, points = 0;
     tl_partly_open open[GROUP_CHUNK];
-    bool parts = !job->run->field && tl_part_applies(job->m, job->material);
+    bool parts = !job->run->field && tl_part_applies(job->m, job->law);
     job->phase->keep(job->m, groups, count);
     if (job->changed)
         note_points(&job->m->detect->points, first, page_points(groups, count), t);
     for (size_t r = 0; r < count; r++) {
         if (r < soon)
             tl_simd_group_prefetch(job->m, &groups[count + r]);
-        tl_simd_group_follow(job->m, &groups[r], job->run->field, t, points,
-                             job->material->tangents);
+        tl_simd_group_follow(job->m, &groups[r], job->run->field, t, points, job->law->tangents);
         open[r].any = false;
-        if (!job->run->field && job->material->pulls == TL_PULL_BONDED)
+        if (!job->run->field && job->law->pulls == TL_PULL_BONDED)
             tl_simd_group_edges(job->m, &groups[r], t, points);
         if (parts)
-            tl_simd_group_part(job->m, job->material, &groups[r], t, points, &open[r]);
+            tl_simd_group_part(job->m, job->law, &groups[r], t, points, &open[r]);
         points += (size_t)groups[r].slots * TL_LANES;
     }
     if (!call_law(job, first, points, t))
         return;
-    if (odd_states(&job->m->detect->points, job->material->columns, first, points) != 0)
-        tl_law_check_states(job->m, job->phase->failure, job->material, first, points);
+    if (odd_states(&job->m->detect->points, job->law->columns, first, points) != 0)
+        tl_law_check_states(job->m, job->phase->failure, job->law, first, points);
     for (size_t r = 0; r < count; r++)
         sum_group(job, &groups[r], t, groups[r].start - first, &open[r]);
     if (job->changed && !as_noted(&job->m->detect->points, first, points, t))
@@ -364,7 +362,7 @@ static void force_range(void *user, size_t begin, size_t end, size_t chunk, unsi
 
 /* Where a step failed: the law, and the contact or TL_NO_ROW. */
 typedef struct failed_at {
-    const tl_material *material;
+    const tl_law *law;
     uint32_t contact;
 } failed_at;
 
@@ -388,7 +386,7 @@ static failed_at find_failed(const tl_model *m, size_t point)
         k++;
     const tl_simd_group *group = &layout->groups[k];
     uint32_t contact = contact_near(group, (point - group->start) % TL_LANES);
-    return (failed_at){&m->materials[run->material], contact};
+    return (failed_at){&m->joint_laws[run->law], contact};
 }
 
 /* Turns a failure in a parallel phase into the model's error, with the contact it came from. */
@@ -398,7 +396,7 @@ static tl_status report_failure(tl_model *m, tl_failure *failure)
         return TL_OK;
     char name[320] = "a point of no contact";
     failed_at at = find_failed(m, failure->point);
-    const tl_kind *kind = at.material->kind;
+    const tl_kind *kind = at.law->kind;
     const tl_plugin *plugin = tl_plugin_of(kind, NULL);
     if (at.contact != TL_NO_ROW)
         tl_contact_name(m, at.contact, name, sizeof name);
@@ -414,10 +412,10 @@ tl_status tl_laws_apply(tl_model *m, const tl_law_phase *phase)
     tl_detect *d = m->detect;
     for (size_t r = 0; r < d->layout.run_count; r++) {
         tl_run *run = &d->layout.runs[r];
-        if (run->material == TL_NO_ROW || tl_run_rests(m, run))
+        if (run->law == TL_NO_ROW || tl_run_rests(m, run))
             continue;
         atomic_bool changed = false;
-        run_job job = {m, phase, &m->materials[run->material], run, run->held ? &changed : NULL};
+        run_job job = {m, phase, &m->joint_laws[run->law], run, run->held ? &changed : NULL};
         tl_parallel_for(m->pool, run->group_end - run->group_begin, GROUP_CHUNK, force_range, &job);
         run->changed = changed;
     }
@@ -430,9 +428,9 @@ tl_status tl_laws_check(tl_model *m)
     const tl_contacts *c = &d->contacts;
     bool lawless = false; /* almost never: the contacts are then looked through for one to name */
     for (size_t r = 0; r < d->layout.run_count; r++)
-        lawless = lawless || d->layout.runs[r].material == TL_NO_ROW;
+        lawless = lawless || d->layout.runs[r].law == TL_NO_ROW;
     for (uint32_t i = 0; lawless && i < c->table.rows; i++) {
-        if (c->material[i] != TL_NO_ROW || c->point_count[i] == 0 || c->held[i])
+        if (c->law[i] != TL_NO_ROW || c->point_count[i] == 0 || c->held[i])
             continue;
         char name[320];
         tl_contact_name(m, i, name, sizeof name);

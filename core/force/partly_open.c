@@ -188,13 +188,13 @@ static uint32_t mixed(const tl_points_table *p, const tl_simd_group *group, cons
     return out;
 }
 
-bool tl_part_applies(const tl_model *m, const tl_material *law)
+bool tl_part_applies(const tl_model *m, const tl_law *law)
 {
     return m->config.contact_points != TL_POINTS_CORNERS && law->pulls != TL_PULL_ANY;
 }
 
 /* Whether no point of a contact may carry a force across a gap. */
-static bool closes(const tl_model *m, const tl_material *law, uint32_t c)
+static bool closes(const tl_model *m, const tl_law *law, uint32_t c)
 {
     const tl_contacts *contacts = &m->detect->contacts;
     const tl_points_table *p = &m->detect->points;
@@ -208,7 +208,7 @@ static bool closes(const tl_model *m, const tl_material *law, uint32_t c)
     return true;
 }
 
-void tl_simd_group_part(const tl_model *m, const tl_material *law, const tl_simd_group *group,
+void tl_simd_group_part(const tl_model *m, const tl_law *law, const tl_simd_group *group,
                         const tl_point_lanes *t, size_t lane, tl_partly_open *out)
 {
     const tl_points_table *p = &m->detect->points;

@@ -13,10 +13,10 @@ typedef struct tl_partly_open {
 } tl_partly_open;
 
 /* Whether the points of contacts of a law carry nothing where the faces are apart, as long as no bond of them holds. */
-bool tl_part_applies(const tl_model *m, const tl_material *law);
+bool tl_part_applies(const tl_model *m, const tl_law *law);
 /* After a SIMD group of patches has been followed: gives points of contacts that are partly open closures that add up to the
  * force of the closed part, and tells what else there is. */
-void tl_simd_group_part(const tl_model *m, const tl_material *law, const tl_simd_group *group,
+void tl_simd_group_part(const tl_model *m, const tl_law *law, const tl_simd_group *group,
                         const tl_point_lanes *lanes, size_t lane, tl_partly_open *out);
 
 /* The closures at the outermost fibres of the points of a SIMD group. */

@@ -123,11 +123,11 @@ static int closeness(tl_tag pattern)
     return pattern.joint == 0 ? 0 : pattern.plane == 0 ? 1 : 2;
 }
 
-const tl_material *tl_material_of(const tl_model *m, tl_tag tag)
+const tl_law *tl_law_of(const tl_model *m, tl_tag tag)
 {
-    const tl_material *best = NULL;
-    for (size_t i = 0; i < m->material_count; i++) {
-        const tl_material *one = &m->materials[i];
+    const tl_law *best = NULL;
+    for (size_t i = 0; i < m->joint_law_count; i++) {
+        const tl_law *one = &m->joint_laws[i];
         if (tl_tag_matches(one->tag, tag) && (!best || closeness(one->tag) > closeness(best->tag)))
             best = one;
     }
@@ -146,18 +146,18 @@ tl_area_rule tl_area_rule_of(const tl_model *m, tl_tag tag)
     return rule;
 }
 
-void tl_material_clear(tl_material *material)
+void tl_law_clear(tl_law *law)
 {
-    if (!material->kind)
+    if (!law->kind)
         return;
-    const tl_law_ops *ops = material->kind->ops;
-    if (ops->destroy && material->self != material->params) {
-        tl_enter(material->kind, "destroy");
-        ops->destroy(material->self);
+    const tl_law_ops *ops = law->kind->ops;
+    if (ops->destroy && law->self != law->params) {
+        tl_enter(law->kind, "destroy");
+        ops->destroy(law->self);
         tl_leave();
     }
-    free(material->params);
-    *material = (tl_material){0};
+    free(law->params);
+    *law = (tl_law){0};
 }
 
 const char *tl_tag_name(tl_model *m, tl_tag tag)

@@ -98,8 +98,8 @@ void tl_model_destroy(tl_model *m)
         free(m->groups[i]);
     for (size_t i = 0; i < m->joint_count; i++)
         free(m->joints[i].name);
-    for (size_t i = 0; i < m->material_count; i++)
-        tl_material_clear(&m->materials[i]);
+    for (size_t i = 0; i < m->joint_law_count; i++)
+        tl_law_clear(&m->joint_laws[i]);
     tl_damping_clear(m);
     tl_drives_clear(m);
     for (size_t i = 0; i < m->history_count; i++)
@@ -108,7 +108,7 @@ void tl_model_destroy(tl_model *m)
     free(m->record.list);
     free(m->groups);
     free(m->joints);
-    free(m->materials);
+    free(m->joint_laws);
     free(m->areas);
     free(m->members);
     free(m->row_of);

@@ -10,21 +10,21 @@ size_t tl_joint_count(const tl_model *m)
 
 tl_joint_info tl_joint_at(const tl_model *m, size_t index)
 {
-    const tl_material *material = tl_material_of(m, (tl_tag){(uint32_t)index + 1, 0});
+    const tl_law *law = tl_law_of(m, (tl_tag){(uint32_t)index + 1, 0});
     return (tl_joint_info){.name = m->joints[index].name,
                            .planes = m->joints[index].planes,
-                           .law = material ? material->kind : NULL};
+                           .law = law ? law->kind : NULL};
 }
 
 size_t tl_law_count(const tl_model *m)
 {
-    return m->material_count;
+    return m->joint_law_count;
 }
 
 tl_law_info tl_law_at(const tl_model *m, size_t index)
 {
-    const tl_material *material = &m->materials[index];
-    return (tl_law_info){.joint = material->tag, .law = material->kind, .params = material->params};
+    const tl_law *law = &m->joint_laws[index];
+    return (tl_law_info){.joint = law->tag, .law = law->kind, .params = law->params};
 }
 
 size_t tl_group_count(const tl_model *m)

@@ -108,8 +108,8 @@ typedef struct tl_joint_set {
     uint32_t planes; /* number of planes so far */
 } tl_joint_set;
 
-/* The law of a joint: of "*" (joint 0), of a set (plane 0) or of one plane. */
-typedef struct tl_material {
+/* A law with its properties, for a joint: for "*" (joint 0), for a set (plane 0) or for one plane. */
+typedef struct tl_law {
     tl_tag tag;
     const tl_kind *kind;
     void *params; /* the plugin's params struct */
@@ -119,7 +119,7 @@ typedef struct tl_material {
     uint32_t columns;  /* of states that are to be kept */
     bool splits;       /* some state goes with the area */
     uint32_t pulls;    /* TL_PULL_* */
-} tl_material;
+} tl_law;
 
 /* A prescribed motion, shared by the bodies of one call. */
 typedef struct tl_drive_record {
@@ -197,9 +197,9 @@ struct tl_model {
     tl_cut_record record;
     tl_extremes extremes;
 
-    tl_material *materials;
-    size_t material_count;
-    uint64_t laws;  /* counts changes of the materials */
+    tl_law *joint_laws;
+    size_t joint_law_count;
+    uint64_t laws;  /* counts changes of the joint laws */
     uint64_t rules; /* counts changes of minimum areas and of contact_points */
     tl_area_rule area;
     tl_joint_area *areas;
@@ -355,10 +355,10 @@ uint32_t tl_joint_intern(tl_model *m, const char *name);
 tl_status tl_joint_parse(tl_model *m, const char *text, tl_tag *tag);
 /* True when `pattern` ("*": 0,0; set: j,0; plane: j,p) covers `tag`. */
 bool tl_tag_matches(tl_tag pattern, tl_tag tag);
-/* The material that rules a contact of this tag, or NULL. */
-const tl_material *tl_material_of(const tl_model *m, tl_tag tag);
+/* The joint law that rules a contact of this tag, or NULL. */
+const tl_law *tl_law_of(const tl_model *m, tl_tag tag);
 tl_area_rule tl_area_rule_of(const tl_model *m, tl_tag tag);
-void tl_material_clear(tl_material *material);
+void tl_law_clear(tl_law *law);
 
 /* ---- staging: stage.c ---- */
 

@@ -155,8 +155,8 @@ tl_contact_facts tl_contact_facts_of(const tl_model *m, uint32_t contact)
 
 static const tl_kind *law_of(const tl_model *m, uint32_t contact)
 {
-    uint32_t material = m->detect->contacts.material[contact];
-    return material == TL_NO_ROW ? NULL : m->materials[material].kind;
+    uint32_t law = m->detect->contacts.law[contact];
+    return law == TL_NO_ROW ? NULL : m->joint_laws[law].kind;
 }
 
 static void put_vector(tl_field_value *value, tl_vec3 v)

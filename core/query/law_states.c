@@ -54,11 +54,11 @@ static uint32_t column_in(const tl_kind *kind, const tl_law_state *of)
     return TL_NO_ROW;
 }
 
-/* Whether an earlier material has this law. */
-static bool seen_before(const tl_model *m, size_t material)
+/* Whether an earlier joint law is of this kind. */
+static bool seen_before(const tl_model *m, size_t law)
 {
-    for (size_t i = 0; i < material; i++)
-        if (m->materials[i].kind == m->materials[material].kind)
+    for (size_t i = 0; i < law; i++)
+        if (m->joint_laws[i].kind == m->joint_laws[law].kind)
             return true;
     return false;
 }
@@ -87,25 +87,26 @@ tl_status tl_law_states_list(tl_model *m, tl_law_states *states)
 {
     *states = (tl_law_states){0};
     size_t most = 0;
-    for (size_t i = 0; i < m->material_count; i++)
+    for (size_t i = 0; i < m->joint_law_count; i++)
         if (!seen_before(m, i))
-            most += m->materials[i].kind->state_count;
+            most += m->joint_laws[i].kind->state_count;
     if (most == 0)
         return TL_OK;
     states->at = malloc(most * sizeof *states->at);
     if (!states->at)
         return tl_fail_memory(&m->error);
-    for (size_t i = 0; i < m->material_count; i++)
-        for (uint32_t k = 0; k < m->materials[i].kind->state_count && !seen_before(m, i); k++)
-            add(states, m->materials[i].kind, state_at(m->materials[i].kind, k));
-    states->column = malloc(m->material_count * states->count * sizeof *states->column);
+    for (size_t i = 0; i < m->joint_law_count; i++)
+        for (uint32_t k = 0; k < m->joint_laws[i].kind->state_count && !seen_before(m, i); k++)
+            add(states, m->joint_laws[i].kind, state_at(m->joint_laws[i].kind, k));
+    states->column = malloc(m->joint_law_count * states->count * sizeof *states->column);
     if (!states->column) {
         tl_law_states_free(states);
         return tl_fail_memory(&m->error);
     }
-    for (size_t i = 0; i < m->material_count; i++)
+    for (size_t i = 0; i < m->joint_law_count; i++)
         for (size_t s = 0; s < states->count; s++)
-            states->column[i * states->count + s] = column_in(m->materials[i].kind, &states->at[s]);
+            states->column[i * states->count + s] =
+                column_in(m->joint_laws[i].kind, &states->at[s]);
     return TL_OK;
 }
 
@@ -130,10 +131,10 @@ const tl_law_state *tl_law_states_find(const tl_law_states *states, const char *
 static uint32_t column_of(const tl_model *m, const tl_law_states *states, const tl_law_state *of,
                           uint32_t contact)
 {
-    uint32_t material = m->detect->contacts.material[contact];
-    if (material == TL_NO_ROW)
+    uint32_t law = m->detect->contacts.law[contact];
+    if (law == TL_NO_ROW)
         return TL_NO_ROW;
-    return states->column[material * states->count + (size_t)(of - states->at)];
+    return states->column[law * states->count + (size_t)(of - states->at)];
 }
 
 bool tl_law_states_has(const tl_model *m, const tl_law_states *states, const tl_law_state *of,

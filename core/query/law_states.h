@@ -10,7 +10,7 @@ typedef struct tl_law_states {
     tl_law_state *at;
     size_t count;
     uint32_t *
-        column; /* [material * count + state]: first column, or TL_NO_ROW where the law has no such state */
+        column; /* [joint law * count + state]: first column, or TL_NO_ROW where the law has no such state */
 } tl_law_states;
 
 /* Lists the states of all laws that the model's joints have, in the order of the laws. Freed by tl_law_states_free, also after

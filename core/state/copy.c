@@ -5,7 +5,7 @@
 #include "contact/store.h"
 #include "contact/walk.h"
 #include "cycle/walk.h"
-#include "force/materials.h"
+#include "force/joint_laws.h"
 #include "model/walk.h"
 #include "state/drives.h"
 #include "state/entries.h"
@@ -68,19 +68,19 @@ static bool copy_names(tl_model *to, const tl_model *from)
 
 static tl_status copy_laws(tl_model *to, const tl_model *from)
 {
-    if (from->material_count == 0)
+    if (from->joint_law_count == 0)
         return TL_OK;
-    to->materials = calloc(from->material_count, sizeof *to->materials);
-    if (!to->materials)
+    to->joint_laws = calloc(from->joint_law_count, sizeof *to->joint_laws);
+    if (!to->joint_laws)
         return tl_fail_memory(&to->error);
-    for (size_t i = 0; i < from->material_count; i++) {
-        const tl_material *law = &from->materials[i];
+    for (size_t i = 0; i < from->joint_law_count; i++) {
+        const tl_law *law = &from->joint_laws[i];
         const char *joint = law->tag.joint ? tl_tag_name(to, law->tag) : "*";
-        tl_status status = tl_material_make(to, law->tag, joint, law->kind, &(tl_args){NULL, 0},
-                                            law, &to->materials[to->material_count]);
+        tl_status status = tl_law_make_for(to, law->tag, joint, law->kind, &(tl_args){NULL, 0}, law,
+                                           &to->joint_laws[to->joint_law_count]);
         if (status != TL_OK)
             return status;
-        to->material_count++;
+        to->joint_law_count++;
     }
     return TL_OK;
 }

@@ -12,7 +12,7 @@
 #include "base/params.h"
 #include "contact/points.h"
 #include "cycle/cycle_room.h"
-#include "force/materials.h"
+#include "force/joint_laws.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -82,14 +82,14 @@ static void put_kind(tl_archive_writer *w, const char *prefix, const tl_kind *ki
 
 void tl_laws_save(const tl_model *m, tl_archive_writer *w)
 {
-    uint64_t count = m->material_count;
+    uint64_t count = m->joint_law_count;
     tl_archive_put(w, "laws", &count, sizeof count, 1);
-    for (size_t i = 0; i < m->material_count; i++) {
+    for (size_t i = 0; i < m->joint_law_count; i++) {
         char prefix[PREFIX], full[TL_CHUNK_NAME];
         snprintf(prefix, sizeof prefix, "law.%zu", i);
         snprintf(full, sizeof full, "%.30s.tag", prefix);
-        tl_archive_put(w, full, &m->materials[i].tag, sizeof m->materials[i].tag, 1);
-        put_kind(w, prefix, m->materials[i].kind, m->materials[i].params);
+        tl_archive_put(w, full, &m->joint_laws[i].tag, sizeof m->joint_laws[i].tag, 1);
+        put_kind(w, prefix, m->joint_laws[i].kind, m->joint_laws[i].params);
     }
 }
 
@@ -221,7 +221,7 @@ static tl_status tell_path(tl_model *m, const tl_archive *a, tl_status status)
 
 /* Makes the law or damping of a prefix: a law into `law`, or the model's damping. */
 static tl_status restore_kind(tl_model *m, const tl_archive *a, const char *prefix,
-                              tl_kind_type type, tl_tag tag, tl_material *law)
+                              tl_kind_type type, tl_tag tag, tl_law *law)
 {
     const tl_kind *kind = NULL;
     tl_status status = find_kind(m, a, prefix, type, &kind);
@@ -234,7 +234,7 @@ static tl_status restore_kind(tl_model *m, const tl_archive *a, const char *pref
                             : tl_fail_memory(&m->error);
     if (status == TL_OK && law) {
         const char *joint = tag.joint ? tl_tag_name(m, tag) : "*";
-        status = tell_path(m, a, tl_material_make(m, tag, joint, kind, &args, NULL, law));
+        status = tell_path(m, a, tl_law_make_for(m, tag, joint, kind, &args, NULL, law));
     } else if (status == TL_OK) {
         status = tell_path(m, a, tl_damping_make(m, kind, &args, NULL));
     }
@@ -253,21 +253,21 @@ tl_status tl_laws_restore(tl_model *m, const tl_archive *a)
     uint64_t count;
     if (!tl_archive_get(a, "laws", &count, sizeof count, 1) || count > a->chunk_count)
         return tl_archive_bad(a, &m->error, "'laws' is missing");
-    m->materials = calloc((size_t)count + 1, sizeof *m->materials);
-    if (!m->materials)
+    m->joint_laws = calloc((size_t)count + 1, sizeof *m->joint_laws);
+    if (!m->joint_laws)
         return tl_fail_memory(&m->error);
-    while (m->material_count < count) {
+    while (m->joint_law_count < count) {
         char prefix[PREFIX], full[TL_CHUNK_NAME];
-        snprintf(prefix, sizeof prefix, "law.%zu", m->material_count);
+        snprintf(prefix, sizeof prefix, "law.%zu", m->joint_law_count);
         snprintf(full, sizeof full, "%.30s.tag", prefix);
         tl_tag tag;
         if (!tl_archive_get(a, full, &tag, sizeof tag, 1) || !tag_is_sound(m, tag))
             return tl_archive_bad(a, &m->error, "'%s' is missing", prefix);
         tl_status status =
-            restore_kind(m, a, prefix, TL_KIND_LAW, tag, &m->materials[m->material_count]);
+            restore_kind(m, a, prefix, TL_KIND_LAW, tag, &m->joint_laws[m->joint_law_count]);
         if (status != TL_OK)
             return status;
-        m->material_count++;
+        m->joint_law_count++;
     }
     return TL_OK;
 }

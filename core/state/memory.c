@@ -44,7 +44,7 @@ tl_memory tl_model_memory(const tl_model *m)
     const tl_walk walk = {add, &memory};
     tl_model_walk((tl_model *)(uintptr_t)m, &walk);
     memory.other += sizeof *m + m->joint_count * sizeof *m->joints +
-                    m->material_count * sizeof *m->materials + m->drive_count * sizeof *m->drives;
+                    m->joint_law_count * sizeof *m->joint_laws + m->drive_count * sizeof *m->drives;
     for (size_t i = 0; i < m->history_count; i++)
         memory.other += tl_history_bytes(m->histories[i]);
     for (size_t row = 0; row < m->blocks.table.rows; row++)

@@ -269,8 +269,8 @@ static tl_status hold_points(tl_model *m, tl_detect *d, const tl_archive *a)
 static uint32_t states_needed(const tl_model *m)
 {
     uint32_t most = 0;
-    for (size_t i = 0; i < m->material_count; i++)
-        most = m->materials[i].columns > most ? m->materials[i].columns : most;
+    for (size_t i = 0; i < m->joint_law_count; i++)
+        most = m->joint_laws[i].columns > most ? m->joint_laws[i].columns : most;
     return most;
 }
 

@@ -109,9 +109,9 @@ static void hash_contacts(tl_hash *hash, const tl_model *m)
             uint32_t contact = d->by_block[e];
             if (c->a[contact] != block)
                 continue; /* it comes with its other block */
-            uint32_t material = c->material[contact], columns = 0;
-            if (material != TL_NO_ROW)
-                columns = tl_kind_state_columns(m->materials[material].kind);
+            uint32_t law = c->law[contact], columns = 0;
+            if (law != TL_NO_ROW)
+                columns = tl_kind_state_columns(m->joint_laws[law].kind);
             tl_hash_word(hash, (uint64_t)m->blocks.id[block] << 32 | m->blocks.id[c->b[contact]]);
             hash_row(hash, &c->table, contact);
             hash_press(hash, d, contact);
@@ -213,8 +213,8 @@ static void hash_blocks(tl_hash *hash, const tl_model *m)
 static void hash_laws(tl_hash *hash, const tl_model *m)
 {
     tl_hash sum = {0, 0};
-    for (size_t i = 0; i < m->material_count; i++) {
-        const tl_material *law = &m->materials[i];
+    for (size_t i = 0; i < m->joint_law_count; i++) {
+        const tl_law *law = &m->joint_laws[i];
         tl_hash one = tl_hash_start();
         hash_tag(&one, law->tag);
         hash_text(&one, law->kind->name);

@@ -228,7 +228,7 @@ static tl_kind ageing_kind(tl_model *m, const tl_law_ops *ops)
 {
     static const tl_state states[] = {
         {.name = "age", .kind = TL_STATE_SCALAR, .transfer = TL_TRANSFER_COPY}};
-    tl_kind kind = *m->materials[0].kind;
+    tl_kind kind = *m->joint_laws[0].kind;
     kind.states = states;
     kind.state_count = 1;
     kind.state_stride = sizeof *states;
@@ -236,7 +236,7 @@ static tl_kind ageing_kind(tl_model *m, const tl_law_ops *ops)
     scene_ok(m, tl_detect_refresh(m));
     CHECK(tl_points_hold_states(&m->detect->points, 1) &&
           tl_points_hold_states(&m->detect->spare_points, 1));
-    m->materials[0].columns = 1;
+    m->joint_laws[0].columns = 1;
     return kind;
 }
 
@@ -246,7 +246,7 @@ static size_t points_a_step(double age, double warm, double *least, size_t *all)
     static const tl_law_ops ops = {
         .size = sizeof ops, .update = ageing_update, .stiffness = ageing_stiffness};
     tl_model *m = wall(1);
-    tl_material *law = &m->materials[0];
+    tl_law *law = &m->joint_laws[0];
     const tl_kind *kind = law->kind;
     tl_kind ageing = ageing_kind(m, &ops);
     law->kind = &ageing;

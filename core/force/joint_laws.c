@@ -1,9 +1,9 @@
-/* materials.c - a law and its properties, for a joint, and what becomes of the contacts that come under it.
+/* joint_laws.c - a law and its properties, for a joint, and what becomes of the contacts that come under it.
  *
  * A new law, kn or ks leaves the forces of its contacts as they are: the present normal force becomes
  * the initial one at the present closure. A point that is open keeps the gap at which it closes. */
 
-#include "force/materials.h"
+#include "force/joint_laws.h"
 
 #include "base/inside.h"
 #include "contact/places.h"
@@ -15,7 +15,7 @@
 #include <string.h>
 
 /* A law and its properties from what `out` has: those not given stay, with `keep`. */
-static tl_status make(tl_material *out, const tl_args *args, bool keep, const char *context,
+static tl_status make(tl_law *out, const tl_args *args, bool keep, const char *context,
                       tl_error *error)
 {
     const tl_kind *kind = out->kind;
@@ -34,7 +34,7 @@ static tl_status make(tl_material *out, const tl_args *args, bool keep, const ch
     }
     if (status != TL_OK) {
         free(out->params);
-        *out = (tl_material){0};
+        *out = (tl_law){0};
         return status;
     }
     tl_enter(kind, "stiffness");
@@ -45,7 +45,7 @@ static tl_status make(tl_material *out, const tl_args *args, bool keep, const ch
                 "%s of plugin '%s': its stiffness() gives kn = %g and ks = %g Pa/m; both must be "
                 "finite and >= 0",
                 context, tl_plugin_id(kind), out->kn, out->ks);
-        tl_material_clear(out);
+        tl_law_clear(out);
         return TL_E_PLUGIN;
     }
     uint32_t column = 0;
@@ -65,17 +65,17 @@ static tl_status make(tl_material *out, const tl_args *args, bool keep, const ch
 }
 
 tl_status tl_law_make(const tl_kind *kind, const tl_args *args, const char *context,
-                      tl_error *error, tl_material *out)
+                      tl_error *error, tl_law *out)
 {
-    *out = (tl_material){.kind = kind, .params = calloc(1, kind->params_size + 1)};
+    *out = (tl_law){.kind = kind, .params = calloc(1, kind->params_size + 1)};
     return out->params ? make(out, args, false, context, error) : tl_fail_memory(error);
 }
 
-tl_status tl_material_make(tl_model *m, tl_tag tag, const char *joint, const tl_kind *kind,
-                           const tl_args *args, const tl_material *from, tl_material *out)
+tl_status tl_law_make_for(tl_model *m, tl_tag tag, const char *joint, const tl_kind *kind,
+                          const tl_args *args, const tl_law *from, tl_law *out)
 {
     char context[TL_ERROR_TEXT / 2];
-    *out = (tl_material){.tag = tag, .kind = kind, .params = calloc(1, kind->params_size + 1)};
+    *out = (tl_law){.tag = tag, .kind = kind, .params = calloc(1, kind->params_size + 1)};
     if (!out->params)
         return tl_fail_memory(&m->error);
     if (from)
@@ -111,41 +111,40 @@ static bool has_forces(const tl_detect *d, uint32_t c)
     return false;
 }
 
-/* Whether a contact comes under another stiffness or law by a material, and has forces that stay. */
-static bool is_rebased(const tl_model *m, const tl_material *material, uint32_t c)
+/* Whether a contact comes under another stiffness or plugin by a joint law, and has forces that stay. */
+static bool is_rebased(const tl_model *m, const tl_law *law, uint32_t c)
 {
     const tl_detect *d = m->detect;
-    uint32_t old = d->contacts.material[c];
-    if (old == TL_NO_ROW || !tl_tag_matches(material->tag, d->contacts.tag[c]))
+    uint32_t old = d->contacts.law[c];
+    if (old == TL_NO_ROW || !tl_tag_matches(law->tag, d->contacts.tag[c]))
         return false;
-    const tl_material *before = &m->materials[old];
-    const tl_material *ruling = tl_material_of(m, d->contacts.tag[c]);
+    const tl_law *before = &m->joint_laws[old];
+    const tl_law *ruling = tl_law_of(m, d->contacts.tag[c]);
     /* a law set for a plane of the joint goes before one set for the whole */
-    if (ruling->tag.joint > 0 && material->tag.joint == 0)
+    if (ruling->tag.joint > 0 && law->tag.joint == 0)
         return false;
-    if (ruling->tag.plane > 0 && material->tag.plane == 0)
+    if (ruling->tag.plane > 0 && law->tag.plane == 0)
         return false;
-    bool same =
-        before->kind == material->kind && before->kn == material->kn && before->ks == material->ks;
+    bool same = before->kind == law->kind && before->kn == law->kn && before->ks == law->ks;
     return !same && has_forces(d, c);
 }
 
-bool tl_material_reserve(tl_model *m, const tl_material *material)
+bool tl_law_reserve(tl_model *m, const tl_law *law)
 {
     bool rebased = false;
     for (uint32_t c = 0; c < m->detect->contacts.table.rows && !rebased; c++)
-        rebased = is_rebased(m, material, c);
-    return tl_detect_hold_states(m->detect, material->columns) &&
+        rebased = is_rebased(m, law, c);
+    return tl_detect_hold_states(m->detect, law->columns) &&
            (!rebased || tl_detect_hold_initial(m->detect));
 }
 
-void tl_material_rebase(tl_model *m, const tl_material *material)
+void tl_law_rebase(tl_model *m, const tl_law *law)
 {
     tl_detect *d = m->detect;
     for (uint32_t c = 0; d && c < d->contacts.table.rows; c++) {
-        if (!is_rebased(m, material, c))
+        if (!is_rebased(m, law, c))
             continue;
-        double old_kn = m->materials[d->contacts.material[c]].kn;
+        double old_kn = m->joint_laws[d->contacts.law[c]].kn;
         tl_contact_places(m, c, &d->lanes[0]);
         for (uint32_t i = 0; i < d->contacts.point_count[c]; i++)
             rebase_point(&d->points, tl_point_row(&d->contacts, c, i), d->lanes[0].closure[i],
@@ -153,11 +152,11 @@ void tl_material_rebase(tl_model *m, const tl_material *material)
     }
 }
 
-void tl_material_reset(tl_model *m, uint32_t material, const tl_kind *kind)
+void tl_law_reset(tl_model *m, uint32_t law, const tl_kind *kind)
 {
     tl_detect *d = m->detect;
     for (uint32_t c = 0; d && c < d->contacts.table.rows; c++) {
-        if (d->contacts.material[c] != material)
+        if (d->contacts.law[c] != law)
             continue;
         for (uint32_t k = 0; k < d->contacts.point_count[c]; k++)
             tl_point_begin(&d->points, tl_point_row(&d->contacts, c, k), kind);

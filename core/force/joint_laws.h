@@ -1,0 +1,26 @@
+/* joint_laws.h - a law and its properties, for a joint (joint_laws.c). */
+#ifndef TL_FORCE_JOINT_LAWS_H
+#define TL_FORCE_JOINT_LAWS_H
+
+#include "model/model.h"
+
+/* The larger of a law's kn and ks, Pa/m. */
+static inline double tl_law_stiffness(const tl_law *law)
+{
+    return law->kn > law->ks ? law->kn : law->ks;
+}
+
+/* A law and its properties that belong to no model; `context` begins the sentence of an error. */
+tl_status tl_law_make(const tl_kind *kind, const tl_args *args, const char *context,
+                      tl_error *error, tl_law *out);
+/* Makes the law of a joint from a plugin's law and arguments; with `from`, properties not given are taken from it. */
+tl_status tl_law_make_for(tl_model *m, tl_tag tag, const char *joint, const tl_kind *kind,
+                          const tl_args *args, const tl_law *from, tl_law *out);
+/* Makes room for what a law needs of the points of contacts; false when out of memory. */
+bool tl_law_reserve(tl_model *m, const tl_law *law);
+/* Keeps the forces of the contacts that come under another stiffness or law by it. */
+void tl_law_rebase(tl_model *m, const tl_law *law);
+/* Points whose joint law becomes one of another kind begin with the new kind's states. */
+void tl_law_reset(tl_model *m, uint32_t law, const tl_kind *kind);
+
+#endif
