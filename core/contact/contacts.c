@@ -1,6 +1,6 @@
 /* contacts.c - the tables of contacts and contact points, and how they are laid out.
  *
- * The points of a joint law are one run of columns, so a law is called on the columns themselves (simd_groups.c); a run
+ * The points of a joint law are one span of rows, so a law is called on the columns themselves (simd_groups.c); a span
  * has room for a few contacts more. Laying out anew sorts the contacts by joint law, apart those between bodies that are held
  * still, and by blocks. */
 #include "contact/contacts.h"
@@ -16,7 +16,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Where contacts are laid out anew, there is room for a share more of them, of points of each run, and of facets
+/* Where contacts are laid out anew, there is room for a share more of them, of points of each span, and of facets
  * than is needed, and for some more at least: 1 / SPARE_CALM first, and from then on twice the share each time
  * that a layout did not last LAYOUT_LASTS steps, as of blocks that fall or slide, up to 1 / SPARE_BUSY, and
  * half of it each time that it did. */
@@ -241,8 +241,8 @@ static size_t larger(size_t a, size_t b)
 static bool make_lanes(tl_detect *d, const tl_layout *layout)
 {
     size_t room = LEAST_LANES;
-    for (size_t r = 0; r < layout->run_count; r++)
-        for (size_t i = layout->runs[r].group_begin; i < layout->runs[r].group_end; i++)
+    for (size_t r = 0; r < layout->span_count; r++)
+        for (size_t i = layout->spans[r].group_begin; i < layout->spans[r].group_end; i++)
             room = larger(room, (size_t)layout->groups[i].slots * TL_LANES);
     if (!tl_detect_hold_lanes(d, room))
         return false;

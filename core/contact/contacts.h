@@ -9,7 +9,7 @@ void tl_contacts_init(tl_contacts *contacts, tl_points_table *points);
 void tl_point_lanes_init(tl_point_lanes *lanes);
 /* Gives the threads' lanes room for `room` points; false when out of memory. */
 bool tl_detect_hold_lanes(tl_detect *d, size_t room);
-/* Adds a patch or a field contact of a pair, without points, wanting room for some, whose faces stand for a run of `valid`;
+/* Adds a patch or a field contact of a pair, without points, wanting room for some, whose faces stand for a path length of `valid`;
  * false when out of memory. */
 bool tl_contact_append(tl_model *m, uint32_t pair, bool field, double valid, tl_tag tag,
                        size_t want_points);
@@ -18,7 +18,7 @@ bool tl_contact_append(tl_model *m, uint32_t pair, bool field, double valid, tl_
 tl_status tl_contacts_repack(tl_model *m);
 /* Gives back the room that contacts came from when they were laid out anew last, once the layout has lasted. */
 void tl_contacts_free_spare(tl_detect *d, int64_t cycles);
-/* Moves a contact's points, if it has or wants any, to a lane with the room it wants, in its run;
+/* Moves a contact's points, if it has or wants any, to a lane with the room it wants, in its span;
  * false when there is none: lay all out anew. */
 bool tl_contact_place(tl_detect *d, uint32_t contact);
 /* Takes a contact out; the last one gets its row. */

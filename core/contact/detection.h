@@ -26,9 +26,9 @@ typedef struct tl_detect {
     tl_seen *
         seen; /* of each block, when rows were last looked at: finds it again after they have changed */
     size_t seen_count, seen_room;
-    float *run; /* of each block: how far it can have moved since then, rounded up */
-    size_t run_of_room;
-    float ran;        /* the farthest of them */
+    float *path; /* of each block: how far it can have moved since then, rounded up */
+    size_t path_room;
+    float longest_path; /* the farthest of them */
     uint8_t *touched; /* bodies whose contacts came, went or grew since the time step was chosen */
     size_t touched_room;
     bool any_touched;

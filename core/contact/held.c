@@ -1,10 +1,10 @@
 /* held.c - contacts between two bodies that are held still: told apart from the others, and left alone at rest.
  *
- * Such contacts have runs of their own (simd_groups.c). Their gaps and areas do not change, so they are followed only until a
+ * Such contacts have spans of their own (simd_groups.c). Their gaps and areas do not change, so they are followed only until a
  * step finds that their laws leave them exactly as they were. Laws are functions of their points' parameters, states and
- * motion, so every later step would find the same, and the whole run is passed over. A law that goes on with time at rest
- * keeps its run followed. Whatever could change that wakes all such runs: blocks that are fixed, freed, driven or
- * given a velocity, that come or go, another law or initial stress, another contact in the run. */
+ * motion, so every later step would find the same, and the whole span is passed over. A law that goes on with time at rest
+ * keeps its span followed. Whatever could change that wakes all such spans: blocks that are fixed, freed, driven or
+ * given a velocity, that come or go, another law or initial stress, another contact in the span. */
 #include "contact/held.h"
 
 #include "contact/detection.h"
@@ -38,8 +38,8 @@ static void find_idle(tl_model *m)
 void tl_held_wake(tl_model *m)
 {
     tl_detect *d = m->detect;
-    for (size_t r = 0; r < d->layout.run_count; r++)
-        d->layout.runs[r].rest = TL_RUN_WOKEN;
+    for (size_t r = 0; r < d->layout.span_count; r++)
+        d->layout.spans[r].rest = TL_SPAN_WOKEN;
     d->any_idle = false;
 }
 
@@ -61,14 +61,15 @@ void tl_held_followed(tl_model *m)
 {
     tl_detect *d = m->detect;
     bool rests = false, all = true;
-    for (size_t r = 0; r < d->layout.run_count; r++) {
-        tl_run *run = &d->layout.runs[r];
-        if (!run->held || run->rest == TL_RUN_RESTS)
+    for (size_t r = 0; r < d->layout.span_count; r++) {
+        tl_span *span = &d->layout.spans[r];
+        if (!span->held || span->rest == TL_SPAN_RESTS)
             continue;
         /* the first step may still have met motion from before the bodies were held */
-        run->rest = run->rest == TL_RUN_WOKEN || run->changed ? TL_RUN_FOLLOWED : TL_RUN_RESTS;
-        rests = rests || run->rest == TL_RUN_RESTS;
-        all = all && run->rest == TL_RUN_RESTS;
+        span->rest =
+            span->rest == TL_SPAN_WOKEN || span->changed ? TL_SPAN_FOLLOWED : TL_SPAN_RESTS;
+        rests = rests || span->rest == TL_SPAN_RESTS;
+        all = all && span->rest == TL_SPAN_RESTS;
     }
     if (!rests || !all)
         return;

@@ -7,16 +7,16 @@
 
 /* Whether the bodies of two blocks are held still. */
 bool tl_blocks_held_still(const tl_model *m, uint32_t a, uint32_t b);
-/* Notes which contacts are between bodies that are held still, and wakes their runs. */
+/* Notes which contacts are between bodies that are held still, and wakes their spans. */
 void tl_held_sort(tl_model *m);
 /* All such contacts are followed again, until they are found to rest. */
 void tl_held_wake(tl_model *m);
-/* After a step whose laws have not failed: which runs rest from now on. */
+/* After a step whose laws have not failed: which spans rest from now on. */
 void tl_held_followed(tl_model *m);
-/* Whether a run is passed over. */
-static inline bool tl_run_rests(const tl_model *m, const tl_run *run)
+/* Whether a span is passed over. */
+static inline bool tl_span_rests(const tl_model *m, const tl_span *span)
 {
-    return run->rest == TL_RUN_RESTS && m->config.reuse_geometry;
+    return span->rest == TL_SPAN_RESTS && m->config.reuse_geometry;
 }
 
 #endif

@@ -32,26 +32,27 @@ typedef struct tl_simd_group {
  * have room for so many, or one. */
 #define TL_PAGE 144
 
-/* Whether the contacts of a run are passed over: held.c. */
-enum { TL_RUN_WOKEN, TL_RUN_FOLLOWED, TL_RUN_RESTS };
+/* Whether the contacts of a span are passed over: held.c. */
+enum { TL_SPAN_WOKEN, TL_SPAN_FOLLOWED, TL_SPAN_RESTS };
 
-/* The SIMD groups of one joint law, one after the other: in the list of SIMD groups, and their points from `begin`, used up to
- * `end`, with room up to `limit`. Contacts between bodies that are held still have runs of their own. */
-typedef struct tl_run {
+/* A span: the SIMD groups of one joint law, one after the other in the list of SIMD groups, and their points, in rows from `begin`,
+ * used up to `end`, with room up to `limit`. Patches and field contacts have spans apart. Contacts between
+ * bodies that are held still have spans of their own. */
+typedef struct tl_span {
     uint32_t law;
     bool held;    /* between bodies that are held still */
     bool field;   /* of field contacts, else of patches */
-    uint8_t rest; /* of one that is held: TL_RUN_* */
+    uint8_t rest; /* of one that is held: TL_SPAN_* */
     bool
         changed; /* of one that is held: some point or sum was not what it had been, in the last step */
     size_t begin, end, limit;
     size_t group_begin, group_end, group_limit;
-} tl_run;
+} tl_span;
 
 /* Where the points of all contacts are. */
 typedef struct tl_layout {
-    tl_run *runs;
-    size_t run_count, run_room;
+    tl_span *spans;
+    size_t span_count, span_room;
     tl_simd_group *groups;
     size_t group_room;
 } tl_layout;

@@ -18,7 +18,7 @@ typedef struct tl_pair {
     uint32_t contact;
     union {
         float
-            wake; /* without a contact: sum of the blocks' runs at which to look again, or TL_PAIR_FOUND */
+            wake; /* without a contact: sum of the blocks' path lengths at which to look again, or TL_PAIR_FOUND */
         uint16_t want_points; /* of a contact that must grow: room */
         uint32_t faces;       /* of one that has no points */
     };

@@ -2,8 +2,8 @@
  *
  * Contacts of about as many points share a SIMD group, which has room in each lane for as many points as its largest contact.
  * They are looked for among neighbours in the order of blocks, so that what a group needs lies close together in memory.
- * Each joint law has a run of SIMD groups for patches and one for field contacts, and others for contacts between bodies
- * that are held still. New contacts get a free lane near the end of the run, or the first lane of a new group there. */
+ * Each joint law has a span of SIMD groups for patches and one for field contacts, and others for contacts between bodies
+ * that are held still. New contacts get a free lane near the end of the span, or the first lane of a new group there. */
 #include "contact/simd_groups.h"
 
 #include "model/model.h"
@@ -12,13 +12,13 @@
 
 /* Contacts, one after the other, among which those of as many points are put together. */
 #define WINDOW 1024
-/* SIMD groups at the end of a run that are looked through for a free lane, ... */
+/* SIMD groups at the end of a span that are looked through for a free lane, ... */
 #define LOOK_BACK 16
 /* ... in which no more than so many points are left to spare. */
 #define MOST_SPARE 8
 /* Points more than it needs that a contact may grow by in a SIMD group that is begun for it. */
 #define GROWTH 2
-/* Rows and SIMD groups that are left to spare in a run at least. */
+/* Rows and SIMD groups that are left to spare in a span at least. */
 #define SPARE_POINTS 1024
 #define SPARE_GROUPS 16
 
@@ -35,18 +35,18 @@ static int compare_seats(const void *x, const void *y)
     return (p->row > q->row) - (p->row < q->row);
 }
 
-static tl_simd_group *begin_group(tl_layout *layout, tl_run *run, uint32_t slots)
+static tl_simd_group *begin_group(tl_layout *layout, tl_span *span, uint32_t slots)
 {
-    tl_simd_group *group = &layout->groups[run->group_end++];
-    *group = (tl_simd_group){.start = (uint32_t)run->end, .slots = slots};
+    tl_simd_group *group = &layout->groups[span->group_end++];
+    *group = (tl_simd_group){.start = (uint32_t)span->end, .slots = slots};
     for (uint32_t l = 0; l < TL_LANES; l++)
         group->contact[l] = TL_NO_ROW;
-    run->end += (size_t)slots * TL_LANES;
+    span->end += (size_t)slots * TL_LANES;
     return group;
 }
 
 /* Gives a window of contacts their lanes. */
-static void seat_window(tl_layout *layout, tl_contacts *c, tl_run *run, seat *seats, size_t count)
+static void seat_window(tl_layout *layout, tl_contacts *c, tl_span *span, seat *seats, size_t count)
 {
     if (count > 1)
         qsort(seats, count, sizeof *seats, compare_seats);
@@ -54,33 +54,33 @@ static void seat_window(tl_layout *layout, tl_contacts *c, tl_run *run, seat *se
     for (size_t i = 0; i < count; i++) {
         uint32_t lane = (uint32_t)(i % TL_LANES), row = seats[i].row;
         if (lane == 0)
-            group = begin_group(layout, run, seats[i].points);
+            group = begin_group(layout, span, seats[i].points);
         group->contact[lane] = row;
         c->point_start[row] = group->start + lane;
         c->point_room[row] = (uint16_t)group->slots;
     }
 }
 
-static bool is_of_run(const tl_contacts *c, uint32_t row, const tl_run *run)
+static bool is_of_span(const tl_contacts *c, uint32_t row, const tl_span *span)
 {
-    return c->law[row] == run->law && c->held[row] == run->held && c->field[row] == run->field;
+    return c->law[row] == span->law && c->held[row] == span->held && c->field[row] == span->field;
 }
 
-/* Lays the run of the contacts from `row` on that are of it; returns the row behind them. */
-static uint32_t lay_run(tl_layout *layout, tl_contacts *c, tl_run *run, uint32_t row)
+/* Lays the span of the contacts from `row` on that are of it; returns the row behind them. */
+static uint32_t lay_span(tl_layout *layout, tl_contacts *c, tl_span *span, uint32_t row)
 {
     seat seats[WINDOW];
     size_t count = 0;
-    for (; row < c->table.rows && is_of_run(c, row, run); row++) {
+    for (; row < c->table.rows && is_of_span(c, row, span); row++) {
         c->point_start[row] = 0;
         if (c->point_room[row])
             seats[count++] = (seat){c->point_room[row], row};
         if (count == WINDOW) {
-            seat_window(layout, c, run, seats, count);
+            seat_window(layout, c, span, seats, count);
             count = 0;
         }
     }
-    seat_window(layout, c, run, seats, count);
+    seat_window(layout, c, span, seats, count);
     return row;
 }
 
@@ -90,44 +90,45 @@ bool tl_layout_make(tl_layout *layout, tl_contacts *c, size_t share, size_t *poi
     *points = 0;
     size_t groups = 0;
     for (uint32_t row = 0; row < rows;) {
-        if (!tl_grow(&layout->runs, &layout->run_room, layout->run_count + 1, sizeof *layout->runs))
+        if (!tl_grow(&layout->spans, &layout->span_room, layout->span_count + 1,
+                     sizeof *layout->spans))
             return false;
-        tl_run *run = &layout->runs[layout->run_count++];
-        *run = (tl_run){.law = c->law[row],
-                        .held = c->held[row],
-                        .field = c->field[row],
-                        .begin = *points,
-                        .group_begin = groups};
+        tl_span *span = &layout->spans[layout->span_count++];
+        *span = (tl_span){.law = c->law[row],
+                          .held = c->held[row],
+                          .field = c->field[row],
+                          .begin = *points,
+                          .group_begin = groups};
         size_t count = 0;
-        for (uint32_t i = row; i < rows && is_of_run(c, i, run); i++)
+        for (uint32_t i = row; i < rows && is_of_span(c, i, span); i++)
             count += c->point_room[i] > 0;
-        run->end = run->begin;
-        run->group_end = groups;
-        /* every window but the last of a run is full */
+        span->end = span->begin;
+        span->group_end = groups;
+        /* every window but the last of a span is full */
         size_t full = (count + TL_LANES - 1) / TL_LANES;
-        run->group_limit = groups = groups + tl_with_spare(full, share, SPARE_GROUPS);
+        span->group_limit = groups = groups + tl_with_spare(full, share, SPARE_GROUPS);
         if (!tl_grow(&layout->groups, &layout->group_room, groups, sizeof *layout->groups))
             return false;
-        row = lay_run(layout, c, run, row);
-        run->limit = run->begin + tl_with_spare(run->end - run->begin, share, SPARE_POINTS);
-        run->limit = (run->limit + TL_LANES - 1) / TL_LANES * TL_LANES;
-        *points = run->limit;
+        row = lay_span(layout, c, span, row);
+        span->limit = span->begin + tl_with_spare(span->end - span->begin, share, SPARE_POINTS);
+        span->limit = (span->limit + TL_LANES - 1) / TL_LANES * TL_LANES;
+        *points = span->limit;
     }
     return true;
 }
 
 void tl_layout_free(tl_layout *layout)
 {
-    free(layout->runs);
+    free(layout->spans);
     free(layout->groups);
     *layout = (tl_layout){0};
 }
 
-static tl_run *run_of(tl_detect *d, uint32_t contact)
+static tl_span *span_of(tl_detect *d, uint32_t contact)
 {
-    for (size_t r = 0; r < d->layout.run_count; r++)
-        if (is_of_run(&d->contacts, contact, &d->layout.runs[r]))
-            return &d->layout.runs[r];
+    for (size_t r = 0; r < d->layout.span_count; r++)
+        if (is_of_span(&d->contacts, contact, &d->layout.spans[r]))
+            return &d->layout.spans[r];
     return NULL;
 }
 
@@ -144,20 +145,22 @@ static bool take_lane(tl_simd_group *group, uint32_t contact, uint32_t *lane)
 
 tl_simd_group *tl_simd_group_take(tl_detect *d, uint32_t points, uint32_t contact, uint32_t *lane)
 {
-    tl_run *run = run_of(d, contact);
-    if (!run)
+    tl_span *span = span_of(d, contact);
+    if (!span)
         return NULL;
-    run->rest = TL_RUN_WOKEN;
-    for (size_t r = run->group_end, back = 0; r-- > run->group_begin && back < LOOK_BACK; back++) {
+    span->rest = TL_SPAN_WOKEN;
+    for (size_t r = span->group_end, back = 0; r-- > span->group_begin && back < LOOK_BACK;
+         back++) {
         tl_simd_group *group = &d->layout.groups[r];
         if (group->slots >= points && group->slots <= points + MOST_SPARE &&
             take_lane(group, contact, lane))
             return group;
     }
     size_t rows = (size_t)(points + GROWTH) * TL_LANES;
-    if (run->group_end == run->group_limit || run->end + rows > run->limit || rows > d->lane_room)
+    if (span->group_end == span->group_limit || span->end + rows > span->limit ||
+        rows > d->lane_room)
         return NULL;
-    tl_simd_group *group = begin_group(&d->layout, run, points + GROWTH);
+    tl_simd_group *group = begin_group(&d->layout, span, points + GROWTH);
     take_lane(group, contact, lane);
     return group;
 }
@@ -165,11 +168,11 @@ tl_simd_group *tl_simd_group_take(tl_detect *d, uint32_t points, uint32_t contac
 /* The SIMD group a contact has a lane of, by where its points begin. */
 static tl_simd_group *group_at(tl_detect *d, uint32_t start)
 {
-    const tl_run *run = d->layout.runs;
-    while (start >= run->end)
-        run++;
-    size_t low = run->group_begin,
-           high = run->group_end - 1; /* the last that begins there or before */
+    const tl_span *span = d->layout.spans;
+    while (start >= span->end)
+        span++;
+    size_t low = span->group_begin,
+           high = span->group_end - 1; /* the last that begins there or before */
     while (low < high) {
         size_t middle = (low + high + 1) / 2;
         if (d->layout.groups[middle].start <= start)

@@ -53,7 +53,7 @@ static bool seen_are_sound(const tl_model *m, const tl_detect *d)
     size_t blocks = m->blocks.table.rows;
     if (d->listed && d->structure == m->structure && d->seen_count != blocks)
         return false;
-    if (d->listed && (d->run_of_room < d->seen_count || d->structure > m->structure))
+    if (d->listed && (d->path_room < d->seen_count || d->structure > m->structure))
         return false;
     for (size_t row = 0; row < d->seen_count; row++) {
         const tl_seen *s = &d->seen[row];
@@ -205,8 +205,8 @@ static bool contact_is_sound(const tl_model *m, const tl_detect *d, uint32_t row
 
 /* ---------------------------------------------------------------- layout ----------------- */
 
-/* The lanes of a SIMD group: those that are taken belong to contacts of its run that know so. */
-static bool group_is_sound(const tl_detect *d, const tl_run *run, const tl_simd_group *group,
+/* The lanes of a SIMD group: those that are taken belong to contacts of its span that know so. */
+static bool group_is_sound(const tl_detect *d, const tl_span *span, const tl_simd_group *group,
                            size_t *taken)
 {
     const tl_contacts *c = &d->contacts;
@@ -215,37 +215,37 @@ static bool group_is_sound(const tl_detect *d, const tl_run *run, const tl_simd_
         if (row == TL_NO_ROW)
             continue;
         if (row >= c->table.rows || c->point_start[row] != group->start + l ||
-            c->point_room[row] != group->slots || c->law[row] != run->law ||
-            c->held[row] != run->held || c->field[row] != run->field)
+            c->point_room[row] != group->slots || c->law[row] != span->law ||
+            c->held[row] != span->held || c->field[row] != span->field)
             return false;
         ++*taken;
     }
     return true;
 }
 
-/* A run's SIMD groups lie one after the other in its rows, which begin behind those of the run before. */
-static bool run_is_sound(const tl_model *m, const tl_detect *d, const tl_run *run,
-                         const tl_run *before, size_t *taken)
+/* A span's SIMD groups lie one after the other in its rows, which begin behind those of the span before. */
+static bool span_is_sound(const tl_model *m, const tl_detect *d, const tl_span *span,
+                          const tl_span *before, size_t *taken)
 {
-    if (!tl_is_flag(&run->held) || !tl_is_flag(&run->field) || !tl_is_flag(&run->changed) ||
-        run->rest > TL_RUN_RESTS || (run->law != TL_NO_ROW && run->law >= m->joint_law_count))
+    if (!tl_is_flag(&span->held) || !tl_is_flag(&span->field) || !tl_is_flag(&span->changed) ||
+        span->rest > TL_SPAN_RESTS || (span->law != TL_NO_ROW && span->law >= m->joint_law_count))
         return false;
-    if (run->begin < (before ? before->limit : 0) || run->begin % TL_LANES ||
-        run->end < run->begin || run->limit < run->end || run->limit > d->points.table.rows ||
-        run->limit % TL_LANES || run->group_begin < (before ? before->group_limit : 0) ||
-        run->group_end < run->group_begin || run->group_limit < run->group_end ||
-        run->group_limit > d->layout.group_room)
+    if (span->begin < (before ? before->limit : 0) || span->begin % TL_LANES ||
+        span->end < span->begin || span->limit < span->end || span->limit > d->points.table.rows ||
+        span->limit % TL_LANES || span->group_begin < (before ? before->group_limit : 0) ||
+        span->group_end < span->group_begin || span->group_limit < span->group_end ||
+        span->group_limit > d->layout.group_room)
         return false;
-    size_t at = run->begin;
-    for (size_t r = run->group_begin; r < run->group_end; r++) {
+    size_t at = span->begin;
+    for (size_t r = span->group_begin; r < span->group_end; r++) {
         const tl_simd_group *group = &d->layout.groups[r];
         size_t rows = (size_t)group->slots * TL_LANES;
         if (group->start != at || group->slots == 0 || rows > d->lane_room ||
-            rows > run->end - at || !group_is_sound(d, run, group, taken))
+            rows > span->end - at || !group_is_sound(d, span, group, taken))
             return false;
         at += rows;
     }
-    return at == run->end;
+    return at == span->end;
 }
 
 static bool layout_is_sound(const tl_model *m, const tl_detect *d)
@@ -253,8 +253,8 @@ static bool layout_is_sound(const tl_model *m, const tl_detect *d)
     size_t taken = 0, wanted = 0;
     if (d->points.table.rows > UINT32_MAX)
         return false;
-    for (size_t k = 0; k < d->layout.run_count; k++)
-        if (!run_is_sound(m, d, &d->layout.runs[k], k ? &d->layout.runs[k - 1] : NULL, &taken))
+    for (size_t k = 0; k < d->layout.span_count; k++)
+        if (!span_is_sound(m, d, &d->layout.spans[k], k ? &d->layout.spans[k - 1] : NULL, &taken))
             return false;
     for (uint32_t row = 0; row < d->contacts.table.rows; row++)
         wanted += d->contacts.point_room[row] > 0;

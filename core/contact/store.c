@@ -47,7 +47,7 @@ void tl_detect_destroy(tl_detect *d)
     free(d->odometer_0);
     free(d->seen);
     tl_layout_free(&d->layout);
-    free(d->run);
+    free(d->path);
     free(d->touched);
     free(d->idle);
     free(d->by_block);

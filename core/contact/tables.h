@@ -14,7 +14,7 @@ typedef struct tl_contacts {
     tl_tag *tag;
     uint32_t *law; /* index into the model's joint_laws, or TL_NO_ROW */
     tl_facet *facet;
-    uint8_t *field;          /* its points belong into a run of field contacts */
+    uint8_t *field;          /* its points belong into a span of field contacts */
     uint32_t *press;         /* row of what a field contact keeps, or TL_NO_ROW */
     double *faces_valid_to;  /* sum of odometers up to which the choice of its faces stands */
     double *points_valid_to; /* sum of odometers up to which its points may be reused */
@@ -66,7 +66,7 @@ typedef struct tl_press_row {
 } tl_press_row;
 
 /* GROW: it waits for room for its points; REFRAME: besides, its old points are in frames that are no more. MOVE: its points
- * belong in another run. */
+ * belong in another span. */
 enum { TL_PENDING_NONE, TL_PENDING_GROW, TL_PENDING_REFRAME, TL_PENDING_DIE, TL_PENDING_MOVE };
 
 /* Whether a contact waits for room for its points. */

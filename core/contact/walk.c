@@ -21,8 +21,8 @@ static void walk_pairs(tl_detect *d, const tl_walk *walk)
     VALUE(CACHE, reach);
     LIST(CACHE, odometer_0, odometer_room, odometer_room, broad);
     LIST(CACHE, seen, seen_count, seen_room, broad);
-    LIST(CACHE, run, run_of_room, run_of_room, broad);
-    VALUE(CACHE, ran);
+    LIST(CACHE, path, path_room, path_room, broad);
+    VALUE(CACHE, longest_path);
     LIST(CACHE, touched, touched_room, touched_room, broad);
     FLAG(CACHE, any_touched);
     LIST(CACHE, idle, idle_room, idle_room, broad);
@@ -43,7 +43,7 @@ static void walk_contacts(tl_detect *d, const tl_walk *walk)
     VALUE(STATE, parted);
     VALUE(CACHE, laid_at);
     VALUE(CACHE, spare_share);
-    LIST(CACHE, layout.runs, layout.run_count, layout.run_room, other);
+    LIST(CACHE, layout.spans, layout.span_count, layout.span_room, other);
     LIST(CACHE, layout.groups, layout.group_room, layout.group_room, index);
     VALUE(CACHE, lane_room);
     TABLE(SCRATCH, spare, spare);

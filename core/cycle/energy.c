@@ -194,9 +194,9 @@ static void sum_points(tl_model *m, struct tl_ledger *l)
     const tl_layout *layout = &m->detect->layout;
     l->friction += m->detect->parted;
     m->detect->parted = 0;
-    for (size_t k = 0; k < layout->run_count; k++) {
-        const tl_run *run = &layout->runs[k];
-        for (size_t r = run->group_begin; r < run->group_end && run->law != TL_NO_ROW; r++) {
+    for (size_t k = 0; k < layout->span_count; k++) {
+        const tl_span *span = &layout->spans[k];
+        for (size_t r = span->group_begin; r < span->group_end && span->law != TL_NO_ROW; r++) {
             l->stored += m->cycle->group_energy[r].stored;
             l->friction += m->cycle->group_energy[r].dissipated;
         }

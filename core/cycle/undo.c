@@ -208,11 +208,11 @@ void tl_undo_step(tl_model *m)
         u->lost = true;
         return;
     }
-    for (size_t r = 0; r < layout->run_count; r++) {
-        const tl_run *run = &layout->runs[r];
-        if (run->law == TL_NO_ROW || tl_run_rests(m, run))
+    for (size_t r = 0; r < layout->span_count; r++) {
+        const tl_span *span = &layout->spans[r];
+        if (span->law == TL_NO_ROW || tl_span_rests(m, span))
             continue; /* the laws have passed it over */
-        for (size_t k = run->group_begin; k < run->group_end; k++)
+        for (size_t k = span->group_begin; k < span->group_end; k++)
             copy_groups(m, &layout->groups[k], 1, true);
     }
     if (u->gathered)

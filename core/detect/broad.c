@@ -312,7 +312,7 @@ static tl_status merge(tl_model *m, struct tl_broad *g, size_t fresh)
             j++;
         if (j < fresh && compare_pair(&g->next[j], old) == 0) {
             g->next[j] = *old;
-            if (tl_pair_is_apart(old)) /* runs begin anew */
+            if (tl_pair_is_apart(old)) /* path lengths begin anew */
                 tl_pair_rebase(d, &g->next[j]);
         } else if (!tl_pair_is_apart(old)) {
             if (!push(g, &count, old->a, old->b))

@@ -56,7 +56,7 @@ static tl_status ensure(tl_model *m)
 
 /* ---------------------------------------------------------------- phases ----------------- */
 
-/* SIMD groups of a run. */
+/* SIMD groups of a span. */
 typedef struct update_job {
     tl_model *m;
     const tl_simd_group *groups;
@@ -91,12 +91,13 @@ static void update_others(void *user, size_t begin, size_t end, size_t chunk, un
 static void update_contacts(tl_model *m)
 {
     const tl_layout *layout = &m->detect->layout;
-    for (size_t k = 0; k < layout->run_count; k++) {
-        const tl_run *run = &layout->runs[k];
-        if (tl_run_rests(m, run))
+    for (size_t k = 0; k < layout->span_count; k++) {
+        const tl_span *span = &layout->spans[k];
+        if (tl_span_rests(m, span))
             continue;
-        update_job job = {m, layout->groups + run->group_begin, run->group_end - run->group_begin};
-        tl_parallel_for(m->pool, run->group_end - run->group_begin, GROUP_CHUNK, update_groups,
+        update_job job = {m, layout->groups + span->group_begin,
+                          span->group_end - span->group_begin};
+        tl_parallel_for(m->pool, span->group_end - span->group_begin, GROUP_CHUNK, update_groups,
                         &job);
     }
     if (m->detect->bare)
@@ -303,7 +304,7 @@ static tl_status find_contacts(tl_model *m)
         if (status != TL_OK)
             return status;
     }
-    tl_pairs_run(m);
+    tl_pairs_measure_paths(m);
     tl_edited_laws(m);
     if (rows)
         tl_edited_frames(m);
@@ -311,7 +312,7 @@ static tl_status find_contacts(tl_model *m)
         return tl_fail_memory(&m->error);
     if (rows || d->laws != m->laws || d->constraints != m->constraints)
         tl_held_sort(m);
-    if (!d->listed || (double)d->ran > d->reach)
+    if (!d->listed || (double)d->longest_path > d->reach)
         status = tl_broad_update(m);
     else if (rows)
         status = tl_broad_add(m);

@@ -38,7 +38,7 @@ static bool make_room(const tl_model *m, rows_room *room)
                         .seen = malloc((blocks + 1) * sizeof *room->seen)};
     if (room->row && room->odometer_0 && room->touched && room->seen &&
         tl_fit(&d->idle, &d->idle_room, bodies + 1, sizeof *d->idle) &&
-        tl_fit(&d->run, &d->run_of_room, blocks + 1, sizeof *d->run))
+        tl_fit(&d->path, &d->path_room, blocks + 1, sizeof *d->path))
         return true;
     free(room->row);
     free(room->odometer_0);
@@ -137,7 +137,7 @@ tl_status tl_edited_rows(tl_model *m)
 
 /* ---------------------------------------------------------------- laws ------------------- */
 
-/* Contacts under another joint law belong in another run. */
+/* Contacts under another joint law belong in another span. */
 static void find_laws(tl_model *m)
 {
     tl_contacts *c = &m->detect->contacts;

@@ -1,10 +1,10 @@
 /* pairs.c - when pairs without a contact are looked at.
  *
  * A pair that was looked at and is not near sleeps until its blocks, together, may have moved as far as they are apart. How
- * far a block can have moved is told by its body's odometer: by what that has run since the broad phase was made, so
- * that single precision is enough. Roundings are upward for runs and downward for the pairs' wakes: a pair is looked at
- * too early by them, never too late. Most pairs sleep in most steps, and of a whole chunk that sleeps longer than any two
- * blocks have run nothing is read. */
+ * far a block can have moved is told by its body's odometer: by the path length since the broad phase was made, so
+ * that single precision is enough. Path lengths are rounded up and wake-up distances down, so rounding can only make a pair be
+ * tested too early. Most pairs sleep in most steps, and of a whole chunk that sleeps longer than any two
+ * blocks have moved nothing is read. */
 #include "detect/pairs.h"
 
 #include "base/inline.h"
@@ -17,7 +17,7 @@
 #include <string.h>
 #include <talus/plugin.h>
 
-/* Below any run: look at the pair in the next step. */
+/* Below any path length: look at the pair in the next step. */
 #define AWAKE (-1.f)
 /* Blocks a worker takes at a time: there is little to do with each. */
 #define BLOCK_CHUNK 4096
@@ -44,73 +44,74 @@ tl_status tl_pairs_restart(tl_model *m)
     if (!tl_fit(&d->odometer_0, &d->odometer_room, bodies + 1, sizeof *d->odometer_0) ||
         !tl_fit(&d->touched, &d->touched_room, bodies + 1, sizeof *d->touched) ||
         !tl_fit(&d->idle, &d->idle_room, bodies + 1, sizeof *d->idle) ||
-        !tl_fit(&d->run, &d->run_of_room, blocks + 1, sizeof *d->run))
+        !tl_fit(&d->path, &d->path_room, blocks + 1, sizeof *d->path))
         return tl_fail_memory(&m->error);
     for (size_t body = 0; body < bodies; body++)
         d->odometer_0[body] = m->bodies.odometer[body];
     for (size_t row = 0; row < blocks; row++)
-        d->run[row] = 0;
-    d->ran = 0;
+        d->path[row] = 0;
+    d->longest_path = 0;
     return TL_OK;
 }
 
-typedef struct run_job {
+typedef struct path_job {
     tl_model *m;
-    float ran[TL_MAX_THREADS];
-} run_job;
+    float longest[TL_MAX_THREADS];
+} path_job;
 
-/* How far blocks have run; the farthest of them. Floats that are not negative are in the order of their bits. */
-TL_VECTORIZED static float run_blocks(float *restrict run, const uint32_t *restrict body,
-                                      const double *restrict odometer,
-                                      const double *restrict odometer_0, size_t count)
+/* Path lengths of blocks; the longest of them. Floats that are not negative are in the order of their bits. */
+TL_VECTORIZED static float measure_paths(float *restrict path, const uint32_t *restrict body,
+                                         const double *restrict odometer,
+                                         const double *restrict odometer_0, size_t count)
 {
     uint32_t most = 0;
     float farthest;
     for (size_t i = 0; i < count; i++) {
         uint32_t bits = rounded_up(odometer[body[i]] - odometer_0[body[i]]);
-        memcpy(&run[i], &bits, sizeof bits);
+        memcpy(&path[i], &bits, sizeof bits);
         most = bits > most ? bits : most;
     }
     memcpy(&farthest, &most, sizeof farthest);
     return farthest;
 }
 
-static void run_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
+static void path_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
 {
     (void)chunk;
-    run_job *job = user;
+    path_job *job = user;
     const tl_model *m = job->m;
     tl_detect *d = m->detect;
-    float farthest = run_blocks(d->run + begin, m->blocks.body + begin, m->bodies.odometer,
-                                d->odometer_0, end - begin);
-    job->ran[thread] = farthest > job->ran[thread] ? farthest : job->ran[thread];
+    float farthest = measure_paths(d->path + begin, m->blocks.body + begin, m->bodies.odometer,
+                                   d->odometer_0, end - begin);
+    job->longest[thread] = farthest > job->longest[thread] ? farthest : job->longest[thread];
 }
 
-void tl_pairs_run(tl_model *m)
+void tl_pairs_measure_paths(tl_model *m)
 {
-    run_job job = {.m = m};
+    path_job job = {.m = m};
     unsigned threads = tl_pool_threads(m->pool);
     for (unsigned i = 0; i < threads; i++)
-        job.ran[i] = 0;
-    tl_parallel_for(m->pool, m->blocks.table.rows, BLOCK_CHUNK, run_range, &job);
-    m->detect->ran = 0;
+        job.longest[i] = 0;
+    tl_parallel_for(m->pool, m->blocks.table.rows, BLOCK_CHUNK, path_range, &job);
+    m->detect->longest_path = 0;
     for (unsigned i = 0; i < threads; i++)
-        m->detect->ran = job.ran[i] > m->detect->ran ? job.ran[i] : m->detect->ran;
+        m->detect->longest_path =
+            job.longest[i] > m->detect->longest_path ? job.longest[i] : m->detect->longest_path;
 }
 
-static double run_of(const tl_detect *d, const tl_pair *p)
+static double path_of(const tl_detect *d, const tl_pair *p)
 {
-    return (double)d->run[p->a] + (double)d->run[p->b];
+    return (double)d->path[p->a] + (double)d->path[p->b];
 }
 
 void tl_pair_sleep(tl_detect *d, tl_pair *pair, double way)
 {
-    pair->wake = rounded_down(run_of(d, pair) + way);
+    pair->wake = rounded_down(path_of(d, pair) + way);
 }
 
 void tl_pair_rebase(const tl_detect *d, tl_pair *pair)
 {
-    pair->wake = rounded_down((double)pair->wake - run_of(d, pair));
+    pair->wake = rounded_down((double)pair->wake - path_of(d, pair));
 }
 
 void tl_pair_parted(tl_detect *d, uint32_t pair)
@@ -211,10 +212,10 @@ static void look_at(tl_model *m, tl_pair *p, tl_narrow *room)
     tl_pair_sleep(d, p, TL_STILL * view.size); /* edges part the blocks by next to nothing */
 }
 
-/* None of its pairs without a contact can have come near, whichever two blocks have run the farthest. */
+/* None of its pairs without a contact can have come near, whichever two blocks have moved the farthest. */
 static bool sleeps(const tl_detect *d, const tl_pair_chunk *chunk)
 {
-    return 2 * (double)d->ran < (double)chunk->wake;
+    return 2 * (double)d->longest_path < (double)chunk->wake;
 }
 
 static void look_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
@@ -229,7 +230,7 @@ static void look_range(void *user, size_t begin, size_t end, size_t chunk, unsig
         tl_pair *p = &d->pairs[i];
         if (!tl_pair_is_apart(p))
             continue;
-        if (run_of(d, p) >= (double)p->wake) {
+        if (path_of(d, p) >= (double)p->wake) {
             look_at(m, p, &d->narrow[thread]);
             all->found = all->found || p->wake == TL_PAIR_FOUND;
         }

@@ -5,15 +5,15 @@
 #include "contact/detection.h"
 #include "model/model.h"
 
-/* Makes room for what is kept of the model's blocks and bodies; their runs begin here. */
+/* Makes room for what is kept of the model's blocks and bodies; their path lengths begin at 0. */
 tl_status tl_pairs_restart(tl_model *m);
-/* Notes how far blocks have run. */
-void tl_pairs_run(tl_model *m);
+/* Notes how far each block can have moved since the broad phase was made. */
+void tl_pairs_measure_paths(tl_model *m);
 /* Looks at the pairs without a contact that may have come near: chunks and pairs tell which were found. */
 void tl_pairs_look(tl_model *m);
-/* Lets a pair sleep until its blocks have run `way` more. */
+/* Lets a pair sleep until its blocks, together, have moved `way` more. */
 void tl_pair_sleep(tl_detect *d, tl_pair *pair, double way);
-/* The wake of a pair, without a contact, whose runs are to begin anew. */
+/* The wake of a pair, without a contact, whose blocks' path lengths are to begin anew. */
 void tl_pair_rebase(const tl_detect *d, tl_pair *pair);
 /* Forgets what shows that a pair touches without area; without a contact it is looked at again. */
 void tl_pair_wake(tl_detect *d, uint32_t pair);

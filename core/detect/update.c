@@ -174,7 +174,7 @@ static void note_manifold(tl_contacts *contacts, uint32_t c, const tl_manifold *
     contacts->fresh[c] = true;
 }
 
-/* Asks for room for a manifold, or for a place in another run, unless the contact has them. */
+/* Asks for room for a manifold, or for a place in another span, unless the contact has them. */
 static bool wants_room(tl_detect *d, uint32_t c, const tl_manifold *g, bool reframed)
 {
     tl_contacts *contacts = &d->contacts;

@@ -24,17 +24,17 @@
 /* SIMD groups a worker takes at a time. */
 #define GROUP_CHUNK 12
 
-typedef struct run_job {
+typedef struct span_job {
     tl_model *m;
     const tl_law_phase *phase;
     const tl_law *law;
-    const tl_run *run;
-    /* of a run of bodies held still: some of it is not what it was; else NULL */
+    const tl_span *span;
+    /* of a span of bodies held still: some of it is not what it was; else NULL */
     atomic_bool *changed;
-} run_job;
+} span_job;
 
 /* Calls the law on `count` points from `first`; false when it failed. */
-static bool call_law(const run_job *job, size_t first, size_t count, const tl_point_lanes *l)
+static bool call_law(const span_job *job, size_t first, size_t count, const tl_point_lanes *l)
 {
     tl_points_table *p = &job->m->detect->points;
     double *state[TL_STATE_COLUMNS];
@@ -56,7 +56,8 @@ static bool call_law(const run_job *job, size_t first, size_t count, const tl_po
         .flags = p->flags + first,
         .stored = l->stored,
         .dissipated = l->dissipated,
-        .closure_edge = job->run->field || job->law->pulls != TL_PULL_BONDED ? l->closure : l->edge,
+        .closure_edge =
+            job->span->field || job->law->pulls != TL_PULL_BONDED ? l->closure : l->edge,
     };
     /* a law need not write its energies: those of the page before are not its own */
     memset(l->stored, 0, count * sizeof *l->stored);
@@ -165,7 +166,7 @@ static double across(const double *lane)
 }
 
 /* Names what is wrong in a SIMD group of which a sum is odd. */
-static void report_odd(const run_job *job, const tl_simd_group *group, const group_sums *sum,
+static void report_odd(const span_job *job, const tl_simd_group *group, const group_sums *sum,
                        const tl_point_lanes *t, size_t lane)
 {
     for (size_t l = 0; l < TL_LANES; l++)
@@ -178,7 +179,7 @@ static void report_odd(const run_job *job, const tl_simd_group *group, const gro
 
 /* Of the field contacts of a SIMD group. The first point carries the normal force, the point of torsion the same again. What the
  * springs of the law hold pressed is not what the field holds: see tl_press. */
-static void sum_fields(const run_job *job, const tl_simd_group *group, const tl_point_lanes *t,
+static void sum_fields(const span_job *job, const tl_simd_group *group, const tl_point_lanes *t,
                        size_t lane, group_sums *out)
 {
     const tl_detect *d = job->m->detect;
@@ -218,7 +219,7 @@ static void sum_fields(const run_job *job, const tl_simd_group *group, const tl_
 }
 
 /* Adds what partly open patches have besides their points. */
-static void add_parts(const run_job *job, const tl_partly_open *open, group_sums *sum)
+static void add_parts(const span_job *job, const tl_partly_open *open, group_sums *sum)
 {
     for (size_t l = 0; l < TL_LANES && open->any; l++) {
         sum->moment[0][l] += job->law->kn * open->moment[l].x;
@@ -229,19 +230,19 @@ static void add_parts(const run_job *job, const tl_partly_open *open, group_sums
 }
 
 /* Forces of the contacts of a SIMD group, whose first point is in lane `lane`. */
-static void sum_group(const run_job *job, const tl_simd_group *group, const tl_point_lanes *t,
+static void sum_group(const span_job *job, const tl_simd_group *group, const tl_point_lanes *t,
                       size_t lane, const tl_partly_open *open)
 {
     tl_model *m = job->m;
     tl_contacts *contacts = &m->detect->contacts;
     unsigned begins = 0; /* lanes of contacts that carried nothing in the step before */
     group_sums sum;
-    if (job->run->field)
+    if (job->span->field)
         sum_fields(job, group, t, lane, &sum);
     else
         sum_points(&m->detect->points, t, group->start, lane, group->slots, &sum);
     add_parts(job, open, &sum);
-    if (m->cycles % SHEAR_EVERY == 0 && !job->run->field)
+    if (m->cycles % SHEAR_EVERY == 0 && !job->span->field)
         sum_tilts(&m->detect->points, t, group->start, lane, group->slots, &sum);
     tl_group_energy energy = {0, 0};
     for (size_t l = 0; l < TL_LANES; l++) {
@@ -310,21 +311,21 @@ static size_t page_points(const tl_simd_group *groups, size_t count)
 
 /* From the places of the bodies to the forces of the contacts of some SIMD groups, which follow each other. `soon`: how many
  * come next, for which the memory is asked on the way. */
-static void force_page(const run_job *job, const tl_simd_group *groups, size_t count, size_t soon,
+static void force_page(const span_job *job, const tl_simd_group *groups, size_t count, size_t soon,
                        const tl_point_lanes *t)
 {
     size_t first = groups->start, points = 0;
     tl_partly_open open[GROUP_CHUNK];
-    bool parts = !job->run->field && tl_part_applies(job->m, job->law);
+    bool parts = !job->span->field && tl_part_applies(job->m, job->law);
     job->phase->keep(job->m, groups, count);
     if (job->changed)
         note_points(&job->m->detect->points, first, page_points(groups, count), t);
     for (size_t r = 0; r < count; r++) {
         if (r < soon)
             tl_simd_group_prefetch(job->m, &groups[count + r]);
-        tl_simd_group_follow(job->m, &groups[r], job->run->field, t, points, job->law->tangents);
+        tl_simd_group_follow(job->m, &groups[r], job->span->field, t, points, job->law->tangents);
         open[r].any = false;
-        if (!job->run->field && job->law->pulls == TL_PULL_BONDED)
+        if (!job->span->field && job->law->pulls == TL_PULL_BONDED)
             tl_simd_group_edges(job->m, &groups[r], t, points);
         if (parts)
             tl_simd_group_part(job->m, job->law, &groups[r], t, points, &open[r]);
@@ -344,11 +345,11 @@ static void force_page(const run_job *job, const tl_simd_group *groups, size_t c
 static void force_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
 {
     (void)chunk;
-    const run_job *job = user;
-    const tl_simd_group *groups = job->m->detect->layout.groups + job->run->group_begin;
+    const span_job *job = user;
+    const tl_simd_group *groups = job->m->detect->layout.groups + job->span->group_begin;
     const tl_point_lanes *t = &job->m->detect->lanes[thread];
     size_t asked =
-        tl_points_are_far(job->m->detect) ? job->run->group_end - job->run->group_begin : 0;
+        tl_points_are_far(job->m->detect) ? job->span->group_end - job->span->group_begin : 0;
     while (begin < end) {
         size_t count = 1, points = (size_t)groups[begin].slots * TL_LANES;
         while (begin + count < end &&
@@ -378,15 +379,15 @@ static uint32_t contact_near(const tl_simd_group *group, size_t lane)
 static failed_at find_failed(const tl_model *m, size_t point)
 {
     const tl_layout *layout = &m->detect->layout;
-    const tl_run *run = layout->runs;
-    while (point >= run->end)
-        run++;
-    size_t k = run->group_begin;
+    const tl_span *span = layout->spans;
+    while (point >= span->end)
+        span++;
+    size_t k = span->group_begin;
     while (point - layout->groups[k].start >= (size_t)layout->groups[k].slots * TL_LANES)
         k++;
     const tl_simd_group *group = &layout->groups[k];
     uint32_t contact = contact_near(group, (point - group->start) % TL_LANES);
-    return (failed_at){&m->joint_laws[run->law], contact};
+    return (failed_at){&m->joint_laws[span->law], contact};
 }
 
 /* Turns a failure in a parallel phase into the model's error, with the contact it came from. */
@@ -410,14 +411,15 @@ static tl_status report_failure(tl_model *m, tl_failure *failure)
 tl_status tl_laws_apply(tl_model *m, const tl_law_phase *phase)
 {
     tl_detect *d = m->detect;
-    for (size_t r = 0; r < d->layout.run_count; r++) {
-        tl_run *run = &d->layout.runs[r];
-        if (run->law == TL_NO_ROW || tl_run_rests(m, run))
+    for (size_t r = 0; r < d->layout.span_count; r++) {
+        tl_span *span = &d->layout.spans[r];
+        if (span->law == TL_NO_ROW || tl_span_rests(m, span))
             continue;
         atomic_bool changed = false;
-        run_job job = {m, phase, &m->joint_laws[run->law], run, run->held ? &changed : NULL};
-        tl_parallel_for(m->pool, run->group_end - run->group_begin, GROUP_CHUNK, force_range, &job);
-        run->changed = changed;
+        span_job job = {m, phase, &m->joint_laws[span->law], span, span->held ? &changed : NULL};
+        tl_parallel_for(m->pool, span->group_end - span->group_begin, GROUP_CHUNK, force_range,
+                        &job);
+        span->changed = changed;
     }
     return report_failure(m, phase->failure);
 }
@@ -427,8 +429,8 @@ tl_status tl_laws_check(tl_model *m)
     const tl_detect *d = m->detect;
     const tl_contacts *c = &d->contacts;
     bool lawless = false; /* almost never: the contacts are then looked through for one to name */
-    for (size_t r = 0; r < d->layout.run_count; r++)
-        lawless = lawless || d->layout.runs[r].law == TL_NO_ROW;
+    for (size_t r = 0; r < d->layout.span_count; r++)
+        lawless = lawless || d->layout.spans[r].law == TL_NO_ROW;
     for (uint32_t i = 0; lawless && i < c->table.rows; i++) {
         if (c->law[i] != TL_NO_ROW || c->point_count[i] == 0 || c->held[i])
             continue;

@@ -19,7 +19,7 @@ typedef struct tl_law_phase {
     void (*keep)(tl_model *m, const tl_simd_group *groups, size_t count);
 } tl_law_phase;
 
-/* Calls the laws on their runs of contact points and sums forces per contact. */
+/* Calls the laws on their spans of contact points and sums forces per contact. */
 tl_status tl_laws_apply(tl_model *m, const tl_law_phase *phase);
 /* Every contact has a law, or a sentence that names one that has not. */
 tl_status tl_laws_check(tl_model *m);

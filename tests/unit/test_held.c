@@ -55,9 +55,9 @@ static size_t resting_points(const tl_model *m)
 {
     size_t points = 0;
     const tl_layout *layout = &m->detect->layout;
-    for (size_t r = 0; r < layout->run_count; r++)
-        if (tl_run_rests(m, &layout->runs[r]))
-            points += layout->runs[r].end - layout->runs[r].begin;
+    for (size_t r = 0; r < layout->span_count; r++)
+        if (tl_span_rests(m, &layout->spans[r]))
+            points += layout->spans[r].end - layout->spans[r].begin;
     return points;
 }
 
