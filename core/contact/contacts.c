@@ -237,7 +237,7 @@ static size_t larger(size_t a, size_t b)
     return a > b ? a : b;
 }
 
-/* Lanes for a page, or the largest SIMD group, for every thread. */
+/* Lanes for a tile, or the largest SIMD group, for every thread. */
 static bool make_lanes(tl_detect *d, const tl_layout *layout)
 {
     size_t room = LEAST_LANES;

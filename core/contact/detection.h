@@ -55,7 +55,7 @@ typedef struct tl_detect {
     bool by_id_fresh;
     tl_id next_contact;
     tl_narrow *narrow;     /* [threads] */
-    tl_point_lanes *lanes; /* [threads]: a page, or the largest SIMD group */
+    tl_point_lanes *lanes; /* [threads]: a tile, or the largest SIMD group */
     size_t lane_room;
     unsigned threads;
 } tl_detect;

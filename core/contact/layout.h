@@ -28,9 +28,9 @@ typedef struct tl_simd_group {
     uint32_t contact[TL_LANES]; /* row, or TL_NO_ROW */
 } tl_simd_group;
 
-/* Points that are worked on as a whole while they are in the nearest cache, from gaps to sums: as many SIMD groups as
- * have room for so many, or one. */
-#define TL_PAGE 144
+/* Most points of a tile, which is worked on as a whole, from gaps to sums, while it is in the nearest cache: as many SIMD
+ * groups as have room for so many points, or one group. */
+#define TL_TILE 144
 
 /* Whether the contacts of a span are passed over: held.c. */
 enum { TL_SPAN_WOKEN, TL_SPAN_FOLLOWED, TL_SPAN_RESTS };

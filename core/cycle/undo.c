@@ -2,7 +2,7 @@
  *
  * Laws work on the columns of points in place, so by the time one of them fails others have added the step's motion to
  * their shear forces, and the same step made again would add it twice. What laws and gather overwrite is kept for that,
- * page by page on the way, in steps in which something can fail: a plugin that does not say that it never does, numbers
+ * tile by tile on the way, in steps in which something can fail: a plugin that does not say that it never does, numbers
  * so large that a force may not be finite, something that was set by hand since the last step, a body that came near
  * the limit of motion, or a given time step that is not stable. A step of the laws and dampings that come with the program costs nothing more. Detection and the
  * choice of the step need no undoing, for made again in the same places they change nothing; the move cannot fail. */

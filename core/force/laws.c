@@ -1,6 +1,6 @@
 /* laws.c - contact forces: gaps and motion of contact points, the laws' plugins, and the sum per contact.
  *
- * A law gets the points of a page at once, all of one joint law, as the columns themselves; gaps and
+ * A law gets the points of a tile at once, all of one joint law, as the columns themselves; gaps and
  * motion are in the thread's lanes, which stay in the nearest cache from one end to the other. */
 
 #include "force/laws.h"
@@ -59,7 +59,7 @@ static bool call_law(const span_job *job, size_t first, size_t count, const tl_p
         .closure_edge =
             job->span->field || job->law->pulls != TL_PULL_BONDED ? l->closure : l->edge,
     };
-    /* a law need not write its energies: those of the page before are not its own */
+    /* a law need not write its energies: those of the tile before are not its own */
     memset(l->stored, 0, count * sizeof *l->stored);
     memset(l->dissipated, 0, count * sizeof *l->dissipated);
     const tl_law_ops *ops = job->law->kind->ops;
@@ -282,7 +282,7 @@ static double *carried(const tl_points_table *p, size_t k)
     return k - 4 < p->state_columns ? p->state[k - 4] : NULL;
 }
 
-/* Notes what the points of a page carry before they are followed. */
+/* Notes what the points of a tile carry before they are followed. */
 static void note_points(const tl_points_table *p, size_t first, size_t count,
                         const tl_point_lanes *t)
 {
@@ -302,16 +302,16 @@ static bool as_noted(const tl_points_table *p, size_t first, size_t count, const
     return same;
 }
 
-/* ---------------------------------------------------------------- pages ------------------ */
+/* ---------------------------------------------------------------- tiles ------------------ */
 
-static size_t page_points(const tl_simd_group *groups, size_t count)
+static size_t tile_points(const tl_simd_group *groups, size_t count)
 {
     return groups[count - 1].start + (size_t)groups[count - 1].slots * TL_LANES - groups->start;
 }
 
 /* From the places of the bodies to the forces of the contacts of some SIMD groups, which follow each other. `soon`: how many
  * come next, for which the memory is asked on the way. */
-static void force_page(const span_job *job, const tl_simd_group *groups, size_t count, size_t soon,
+static void force_tile(const span_job *job, const tl_simd_group *groups, size_t count, size_t soon,
                        const tl_point_lanes *t)
 {
     size_t first = groups->start, points = 0;
@@ -319,7 +319,7 @@ static void force_page(const span_job *job, const tl_simd_group *groups, size_t 
     bool parts = !job->span->field && tl_part_applies(job->m, job->law);
     job->phase->keep(job->m, groups, count);
     if (job->changed)
-        note_points(&job->m->detect->points, first, page_points(groups, count), t);
+        note_points(&job->m->detect->points, first, tile_points(groups, count), t);
     for (size_t r = 0; r < count; r++) {
         if (r < soon)
             tl_simd_group_prefetch(job->m, &groups[count + r]);
@@ -341,7 +341,7 @@ static void force_page(const span_job *job, const tl_simd_group *groups, size_t 
         atomic_store_explicit(job->changed, true, memory_order_relaxed);
 }
 
-/* SIMD groups in pages, as many as fit. */
+/* SIMD groups in tiles, as many as fit. */
 static void force_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
 {
     (void)chunk;
@@ -353,9 +353,9 @@ static void force_range(void *user, size_t begin, size_t end, size_t chunk, unsi
     while (begin < end) {
         size_t count = 1, points = (size_t)groups[begin].slots * TL_LANES;
         while (begin + count < end &&
-               (points += (size_t)groups[begin + count].slots * TL_LANES) <= TL_PAGE)
+               (points += (size_t)groups[begin + count].slots * TL_LANES) <= TL_TILE)
             count++;
-        force_page(job, &groups[begin], count, asked > begin + count ? asked - begin - count : 0,
+        force_tile(job, &groups[begin], count, asked > begin + count ? asked - begin - count : 0,
                    t);
         begin += count;
     }
