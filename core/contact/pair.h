@@ -32,7 +32,7 @@ static inline bool tl_pair_is_apart(const tl_pair *p)
     return p->contact >= TL_PAIR_APART;
 }
 
-/* Two faces that show whether a pair still touches without area (beside.c), twice the number and one more for a
+/* Two faces that show whether a pair still touches without area (grazing.c), twice the number and one more for a
  * face of B; the same: none. */
 typedef struct tl_pair_faces {
     uint32_t one, other;

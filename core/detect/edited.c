@@ -7,7 +7,7 @@
 #include "contact/contacts.h"
 #include "contact/index.h"
 #include "contact/pair_view.h"
-#include "detect/beside.h"
+#include "detect/grazing.h"
 #include "detect/pairs.h"
 #include "detect/update.h"
 
@@ -172,7 +172,7 @@ static void wake_pairs(void *user, size_t begin, size_t end, size_t chunk, unsig
             continue;
         }
         tl_pair_view view = tl_pair_view_of(m, p->a, p->b);
-        if (!tl_beside_only_touches(&view, p)) {
+        if (!tl_grazing_only_touches(&view, p)) {
             tl_pair_wake(d, i);
             continue;
         }

@@ -9,7 +9,7 @@
 
 #include "base/inline.h"
 #include "contact/pair_view.h"
-#include "detect/beside.h"
+#include "detect/grazing.h"
 #include "narrow/look.h"
 #include "narrow/manifold.h"
 #include "narrow/place.h"
@@ -160,7 +160,7 @@ static void look_at(tl_model *m, tl_pair *p, tl_narrow *room)
 {
     tl_detect *d = m->detect;
     tl_pair_view view = tl_pair_view_of(m, p->a, p->b);
-    double gap, margin = tl_beside_margin(&view, p, &gap);
+    double gap, margin = tl_grazing_margin(&view, p, &gap);
     if (margin >= 0) {
         tl_pair_sleep(d, p, margin);
         return;
@@ -187,8 +187,8 @@ static void look_at(tl_model *m, tl_pair *p, tl_narrow *room)
     }
     tl_touch_rule rule = tl_touch_rule_of(m, &view, tl_touching_tag(&view, region.n), false);
     if (!(rule.least > 0)) {
-        tl_beside_note(&view, p);
-        margin = tl_beside_margin(&view, p, &gap);
+        tl_grazing_choose_faces(&view, p);
+        margin = tl_grazing_margin(&view, p, &gap);
         if (margin >= 0) {
             tl_pair_sleep(d, p, margin);
             return;

@@ -13,8 +13,8 @@
 #include "contact/presses.h"
 #include "contact/shear.h"
 #include "contact/transfer.h"
-#include "detect/beside.h"
 #include "detect/fields.h"
+#include "detect/grazing.h"
 #include "detect/overlap.h"
 #include "detect/pairs.h"
 #include "narrow/look.h"
@@ -352,10 +352,10 @@ static bool touches_still(tl_model *m, uint32_t c)
     if (tl_touch_rule_of(m, &view, contacts->tag[c], false).least > 0)
         return false;
     tl_pair *p = &m->detect->pairs[contacts->pair[c]];
-    double gap, margin = tl_beside_margin(&view, p, &gap);
+    double gap, margin = tl_grazing_margin(&view, p, &gap);
     if (margin < 0) {
-        tl_beside_note(&view, p);
-        margin = tl_beside_margin(&view, p, &gap);
+        tl_grazing_choose_faces(&view, p);
+        margin = tl_grazing_margin(&view, p, &gap);
     }
     if (margin < 0 || gap > TL_CONTACT_TOLERANCE * view.size)
         return false;

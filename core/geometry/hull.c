@@ -258,11 +258,11 @@ static bool group_triangles(builder *b)
         while (waiting) {
             const tl_hull_triangle *t = &h->triangle[b->pending[--waiting]];
             for (int side = 0; side < 3; side++) {
-                tl_hull_triangle *next = &h->triangle[t->beside[side]];
+                tl_hull_triangle *next = &h->triangle[t->adjacent[side]];
                 if (next->face != NO_FACE || !joins(b, seed, next))
                     continue;
                 next->face = face;
-                b->pending[waiting++] = t->beside[side];
+                b->pending[waiting++] = t->adjacent[side];
             }
         }
     }
@@ -271,7 +271,7 @@ static bool group_triangles(builder *b)
 
 static bool is_border(const tl_hull *h, uint32_t t, int side)
 {
-    return h->triangle[t].face != h->triangle[h->triangle[t].beside[side]].face;
+    return h->triangle[t].face != h->triangle[h->triangle[t].adjacent[side]].face;
 }
 
 /* Counts the faces that meet in every point. */
@@ -290,9 +290,9 @@ static void next_border(const tl_hull *h, uint32_t *t, int *side)
 {
     *side = (*side + 1) % 3;
     while (!is_border(h, *t, *side)) {
-        uint32_t to = h->triangle[*t].beside[*side];
-        const uint32_t *beside = h->triangle[to].beside;
-        int back = beside[0] == *t ? 0 : beside[1] == *t ? 1 : 2;
+        uint32_t to = h->triangle[*t].adjacent[*side];
+        const uint32_t *adjacent = h->triangle[to].adjacent;
+        int back = adjacent[0] == *t ? 0 : adjacent[1] == *t ? 1 : 2;
         *t = to;
         *side = (back + 1) % 3;
     }
@@ -339,7 +339,7 @@ static void find_borders(builder *b)
 static void absorb(builder *b, uint32_t from, uint32_t border)
 {
     tl_hull *h = &b->hull;
-    uint32_t to = h->triangle[h->triangle[border / 3].beside[border % 3]].face;
+    uint32_t to = h->triangle[h->triangle[border / 3].adjacent[border % 3]].face;
     for (uint32_t t = 0; t < h->triangle_count; t++)
         if (h->triangle[t].face == from)
             h->triangle[t].face = to;

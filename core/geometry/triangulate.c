@@ -75,18 +75,18 @@ static void start_tetrahedron(tl_hull *h, const uint32_t corner[4])
     }
     /* Below the first face lies v[3]; side i of a triangle runs from vertex i to the next. */
     tl_hull_triangle *t = new_triangle(h, v[0], v[1], v[2], &index);
-    memcpy(t->beside, (uint32_t[]){1, 2, 3}, sizeof t->beside);
+    memcpy(t->adjacent, (uint32_t[]){1, 2, 3}, sizeof t->adjacent);
     t = new_triangle(h, v[1], v[0], v[3], &index);
-    memcpy(t->beside, (uint32_t[]){0, 3, 2}, sizeof t->beside);
+    memcpy(t->adjacent, (uint32_t[]){0, 3, 2}, sizeof t->adjacent);
     t = new_triangle(h, v[2], v[1], v[3], &index);
-    memcpy(t->beside, (uint32_t[]){0, 1, 3}, sizeof t->beside);
+    memcpy(t->adjacent, (uint32_t[]){0, 1, 3}, sizeof t->adjacent);
     t = new_triangle(h, v[0], v[2], v[3], &index);
-    memcpy(t->beside, (uint32_t[]){0, 2, 1}, sizeof t->beside);
+    memcpy(t->adjacent, (uint32_t[]){0, 2, 1}, sizeof t->adjacent);
 }
 
 static int side_towards(const tl_hull_triangle *t, uint32_t neighbour)
 {
-    return t->beside[0] == neighbour ? 0 : t->beside[1] == neighbour ? 1 : 2;
+    return t->adjacent[0] == neighbour ? 0 : t->adjacent[1] == neighbour ? 1 : 2;
 }
 
 /* Marks the triangles that see point p; whether there are any. */
@@ -111,11 +111,12 @@ static void add_point(tl_hull *h, uint32_t p)
     for (uint32_t i = 0; i < before; i++) {
         tl_hull_triangle *t = &h->triangle[i];
         for (int side = 0; t->visible && side < 3; side++) {
-            const tl_hull_triangle *beyond = &h->triangle[t->beside[side]];
+            const tl_hull_triangle *beyond = &h->triangle[t->adjacent[side]];
             if (beyond->visible)
                 continue;
             uint32_t a = t->vertex[side], b = t->vertex[(side + 1) % 3];
-            h->horizon[edges++] = (tl_hull_edge){a, b, t->beside[side], side_towards(beyond, i), 0};
+            h->horizon[edges++] =
+                (tl_hull_edge){a, b, t->adjacent[side], side_towards(beyond, i), 0};
         }
     }
     for (uint32_t i = 0; i < before; i++)
@@ -126,14 +127,14 @@ static void add_point(tl_hull *h, uint32_t p)
     for (uint32_t e = 0; e < edges; e++) {
         tl_hull_edge *edge = &h->horizon[e];
         tl_hull_triangle *t = new_triangle(h, edge->a, edge->b, p, &edge->triangle);
-        t->beside[0] = edge->beyond;
-        h->triangle[edge->beyond].beside[edge->side] = edge->triangle;
+        t->adjacent[0] = edge->beyond;
+        h->triangle[edge->beyond].adjacent[edge->side] = edge->triangle;
         h->at[edge->a] = e;
     }
     for (uint32_t e = 0; e < edges; e++) {
         uint32_t here = h->horizon[e].triangle, next = h->horizon[h->at[h->horizon[e].b]].triangle;
-        h->triangle[here].beside[1] = next;
-        h->triangle[next].beside[2] = here;
+        h->triangle[here].adjacent[1] = next;
+        h->triangle[next].adjacent[2] = here;
     }
 }
 

@@ -9,10 +9,10 @@
 #define TL_HULL_BITS 40
 
 typedef struct tl_hull_triangle {
-    uint32_t vertex[3]; /* counter-clockwise from outside */
-    uint32_t beside[3]; /* triangle across the side from vertex i to the next */
-    double normal[3];   /* area vector in grid units, rounded */
-    uint32_t face;      /* for the caller */
+    uint32_t vertex[3];   /* counter-clockwise from outside */
+    uint32_t adjacent[3]; /* triangle across the side from vertex i to the next */
+    double normal[3];     /* area vector in grid units, rounded */
+    uint32_t face;        /* for the caller */
     bool alive, visible;
 } tl_hull_triangle;
 

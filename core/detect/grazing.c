@@ -1,4 +1,4 @@
-/* beside.c - pairs that touch without area: in a lattice a block meets most of its neighbours in an edge or a corner
+/* grazing.c - grazing pairs, which touch without area: in a lattice a block meets most of its neighbours in an edge or a corner
  * only, and nothing is carried there.
  *
  * Two faces that are far from parallel show it. What the blocks have in common lies under both, in a prism as wide as
@@ -6,7 +6,7 @@
  * o1 o2 = u^2 with u = UNSEEN times the size: the force of a share UNSEEN of a face that overlaps by u. After
  * motion m it is (o1 + m) (o2 + m) at most. Both faces are flush with one of the other block, or else edges and
  * corners would carry more than the area in common does. */
-#include "detect/beside.h"
+#include "detect/grazing.h"
 
 #include "narrow/press.h"
 
@@ -16,7 +16,7 @@
  * millionth of what a face stores that overlaps by as much as 1e-3. */
 #define UNSEEN 2e-4
 
-/* Product of the blocks' numbers of faces up to which they may be of a lattice: others are hardly ever flush. */
+/* Product of the blocks' numbers of faces up to which they may be of a lattice: others hardly ever have flush faces. */
 #define FEW 400
 
 /* Whether two faces look at each other with a tilt at which they may still be a patch's. */
@@ -54,34 +54,34 @@ static double gap_from(const tl_pair_view *view, uint32_t number)
     return low + shift - plane.offset;
 }
 
-/* What a face sees of the other block. */
-typedef struct sight {
+/* The gap from a face to the other block. */
+typedef struct face_gap {
     tl_vec3 n; /* in A's frame */
     double gap;
     bool flush; /* with some face of the other; neither lies on a seam */
-} sight;
+} face_gap;
 
-static sight look_from(const tl_pair_view *view, uint32_t number)
+static face_gap gap_of_face(const tl_pair_view *view, uint32_t number)
 {
     bool of_b = number & 1;
     const tl_poly *other = of_b ? view->a : view->b;
     const tl_poly *own = of_b ? view->b : view->a;
     tl_plane plane = own->plane[number >> 1];
     tl_vec3 n = of_b ? tl_m3_mul(&view->turn, plane.normal) : tl_m3_tmul(&view->turn, plane.normal);
-    sight out = {.n = of_b ? n : plane.normal, .gap = gap_from(view, number)};
+    face_gap out = {.n = of_b ? n : plane.normal, .gap = gap_from(view, number)};
     for (uint32_t f = 0; f < other->face_count && !own->covered[number >> 1] && !out.flush; f++)
         out.flush = are_flush(n, other->plane[f].normal) && !other->covered[f];
     return out;
 }
 
 /* The flush face with the largest gap that is across `than`. */
-static bool widest(const tl_pair_view *view, tl_vec3 than, uint32_t *number, sight *best)
+static bool widest(const tl_pair_view *view, tl_vec3 than, uint32_t *number, face_gap *best)
 {
     best->gap = -INFINITY;
     for (int of_b = 0; of_b < 2; of_b++) {
         uint32_t count = (of_b ? view->b : view->a)->face_count;
         for (uint32_t f = 0; f < count; f++) {
-            sight one = look_from(view, face_number(of_b, f));
+            face_gap one = gap_of_face(view, face_number(of_b, f));
             if (one.gap > best->gap && one.flush && is_across(one.n, than)) {
                 *best = one;
                 *number = face_number(of_b, f);
@@ -91,7 +91,7 @@ static bool widest(const tl_pair_view *view, tl_vec3 than, uint32_t *number, sig
     return best->gap > -INFINITY;
 }
 
-bool tl_beside_only_touches(const tl_pair_view *view, const tl_pair *p)
+bool tl_grazing_only_touches(const tl_pair_view *view, const tl_pair *p)
 {
     tl_pair_faces faces = tl_pair_faces_of(p);
     double least = -TL_TOUCHING * view->size;
@@ -99,9 +99,9 @@ bool tl_beside_only_touches(const tl_pair_view *view, const tl_pair *p)
            gap_from(view, faces.other) >= least;
 }
 
-void tl_beside_note(const tl_pair_view *view, tl_pair *p)
+void tl_grazing_choose_faces(const tl_pair_view *view, tl_pair *p)
 {
-    sight first, second;
+    face_gap first, second;
     uint32_t one, other;
     tl_pair_forget_faces(p);
     if (view->a->face_count * view->b->face_count > FEW)
@@ -110,13 +110,13 @@ void tl_beside_note(const tl_pair_view *view, tl_pair *p)
         tl_pair_set_faces(p, (tl_pair_faces){one, other});
 }
 
-double tl_beside_margin(const tl_pair_view *view, const tl_pair *p, double *gap)
+double tl_grazing_margin(const tl_pair_view *view, const tl_pair *p, double *gap)
 {
     *gap = -INFINITY;
     tl_pair_faces faces = tl_pair_faces_of(p);
     if (faces.one == faces.other)
         return -INFINITY;
-    sight first = look_from(view, faces.one), second = look_from(view, faces.other);
+    face_gap first = gap_of_face(view, faces.one), second = gap_of_face(view, faces.other);
     double tolerance = TL_CONTACT_TOLERANCE * view->size, unseen = UNSEEN * view->size;
     *gap = fmax(first.gap, second.gap);
     if (*gap > tolerance)

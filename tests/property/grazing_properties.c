@@ -1,12 +1,12 @@
-/* beside_properties.c - pairs that touch without area: as long as two faces say that nothing is carried, a look at all
+/* grazing_properties.c - grazing pairs, which touch without area: as long as two faces say that nothing is carried, a look at all
  * faces finds no more than that.
  *
  * Boxes, some of them sheared, meet in an edge or a corner, or nearly; then B moves as far as it may, in any way. */
 #include "contact_scene.h"
-#include "detect/beside.h"
+#include "detect/grazing.h"
 #include "narrow/manifold.h"
 
-/* Overlap along both of two directions that may go unseen, over the size, as in beside.c. */
+/* Overlap along both of two directions that may go unseen, over the size, as in grazing.c. */
 #define UNSEEN 2e-4
 /* The prism in common may be skew (sine of its angle, 0.7), and s is that of the deepest point: bound on force over
  * stiffness, in units of (UNSEEN size)^2 times the blocks' largest diameter. */
@@ -97,8 +97,8 @@ TEST(what_goes_unseen_is_little)
         scene_pair p = touching_pair(&seed);
         tl_pair pair = {0};
         double gap, unseen = UNSEEN * scene_place(&p)->size;
-        tl_beside_note(&p.view, &pair);
-        double margin = tl_beside_margin(&p.view, &pair, &gap);
+        tl_grazing_choose_faces(&p.view, &pair);
+        double margin = tl_grazing_margin(&p.view, &pair, &gap);
         silent += margin >= 0;
         tl_vec3 shift = p.shift;
         tl_quat turn = p.turn;
@@ -128,13 +128,13 @@ TEST(sliding_over_an_edge_is_seen)
         scene_pair p = touching_pair(&seed);
         tl_pair pair = {0};
         double gap;
-        tl_beside_note(scene_place(&p), &pair);
+        tl_grazing_choose_faces(scene_place(&p), &pair);
         p.shift.x -= scene_between(&seed, 0.01, 0.2);
         scene_place(&p);
         double carries = carried(&p), u = UNSEEN * p.view.size;
         bool much = carries > SKEW * u * u * 2 * fmax(far(p.a), far(p.b));
         carrying += much;
-        unseen += much && tl_beside_margin(&p.view, &pair, &gap) >= 0;
+        unseen += much && tl_grazing_margin(&p.view, &pair, &gap) >= 0;
         scene_pair_free(&p);
     }
     if (getenv("TALUS_TEST_VERBOSE"))
