@@ -18,7 +18,7 @@ typedef struct tl_pair {
     uint32_t contact;
     union {
         float
-            wake; /* without a contact: sum of the blocks' path lengths at which to look again, or TL_PAIR_FOUND */
+            wake; /* without a contact: sum of the blocks' path lengths at which to test again, or TL_PAIR_FOUND */
         uint16_t want_points; /* of a contact that must grow: room */
         uint32_t faces;       /* of one that has no points */
     };
@@ -58,7 +58,7 @@ static inline void tl_pair_forget_faces(tl_pair *p)
     tl_pair_set_faces(p, (tl_pair_faces){0, 0});
 }
 
-/* A pair that was looked at and is near enough to become a contact. */
+/* A pair that was tested and is near enough to become a contact. */
 #define TL_PAIR_FOUND (-INFINITY)
 
 /* Pairs a worker takes at a time, and what is known of them together. */

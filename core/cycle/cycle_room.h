@@ -9,9 +9,9 @@
 #include "force/laws.h"
 #include "model/model.h"
 
-/* Rows a worker takes at a time. Of bodies that are only looked at, and of contacts, there is little to do with each. */
+/* Rows a worker takes at a time. Of bodies that are only read, and of contacts, there is little to do with each. */
 #define TL_BODY_CHUNK 32
-#define TL_LOOK_CHUNK 256
+#define TL_READ_CHUNK 256
 #define TL_CONTACT_CHUNK 1024
 
 /* Sums over the free bodies, made per chunk and added in chunk order. */
@@ -44,7 +44,7 @@ struct tl_counted {
 /* For what the rates of the bodies are known, and the extreme one. */
 struct tl_rated {
     uint64_t version; /* of the bodies and laws; 0: no rates are known */
-    int64_t look;     /* of mass scaling: steps over LOOK_EVERY */
+    int64_t recheck;  /* of mass scaling: steps over RECHECK_STEPS */
     int32_t rotation;
     double extreme; /* the highest rate, with mass scaling the lowest */
     uint32_t body;  /* row, or TL_NO_ROW */

@@ -93,13 +93,13 @@ typedef struct damping_job {
 } damping_job;
 
 /* Bodies as a damping plugin sees them: columns, whole lanes. */
-typedef struct seen {
+typedef struct body_columns {
     _Alignas(TL_ALIGN) double velocity[3][TL_BODY_CHUNK];
     double angular_velocity[3][TL_BODY_CHUNK];
     double force[3][TL_BODY_CHUNK], moment[3][TL_BODY_CHUNK];
     double force_before[3][TL_BODY_CHUNK], moment_before[3][TL_BODY_CHUNK];
     double mass[TL_BODY_CHUNK], inertia[TL_BODY_CHUNK];
-} seen;
+} body_columns;
 
 /* The vectors of `count` bodies from `first` on as columns; 0 beyond them, up to `lanes`. */
 TL_INLINE void put(double (*restrict columns)[TL_BODY_CHUNK], const tl_vec3 *restrict first,
@@ -114,8 +114,8 @@ TL_INLINE void put(double (*restrict columns)[TL_BODY_CHUNK], const tl_vec3 *res
         columns[0][i] = columns[1][i] = columns[2][i] = 0;
 }
 
-TL_VECTORIZED static void look_at(seen *s, const tl_bodies *b, size_t begin, size_t count,
-                                  size_t lanes)
+TL_VECTORIZED static void fill_columns(body_columns *s, const tl_bodies *b, size_t begin,
+                                       size_t count, size_t lanes)
 {
     put(s->velocity, b->v + begin, count, lanes);
     put(s->angular_velocity, b->w + begin, count, lanes);
@@ -162,8 +162,8 @@ static void damp_range(void *user, size_t begin, size_t end, size_t chunk, unsig
     tl_bodies *b = &m->bodies;
     const tl_damping_ops *ops = m->damping->ops;
     size_t last = end < b->table.rows ? end : b->table.rows;
-    seen s;
-    look_at(&s, b, begin, last - begin, end - begin);
+    body_columns s;
+    fill_columns(&s, b, begin, last - begin, end - begin);
     if (ops->before) {
         put(s.force_before, b->force_before + begin, last - begin, end - begin);
         put(s.moment_before, b->moment_before + begin, last - begin, end - begin);

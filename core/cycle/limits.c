@@ -129,7 +129,7 @@ static bool stands(const tl_bodies *b, uint32_t body)
     return !b->drive[body] && tl_v3_norm2(b->v[body]) + tl_v3_norm2(b->w[body]) == 0;
 }
 
-static void look_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
+static void check_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
 {
     (void)thread;
     limit_job *job = user;
@@ -201,7 +201,7 @@ static tl_status check(tl_model *m, double dt, bool held)
     struct tl_cycle *c = m->cycle;
     limit_job job = {.m = m, .kick = {dt, 0.5 * (m->dt + dt)}, .held = held};
     atomic_init(&job.fast, false);
-    tl_parallel_for(m->pool, m->bodies.table.rows, TL_BODY_CHUNK, look_range, &job);
+    tl_parallel_for(m->pool, m->bodies.table.rows, TL_BODY_CHUNK, check_range, &job);
     if (!held)
         c->fast = atomic_load(&job.fast);
     if (c->failure.error.status == TL_OK)

@@ -30,7 +30,7 @@
 #define TWICE_AS_DEEP 4
 /* Steps after which mass scaling rates all bodies again, even when no contact has come or gone: areas may have
  * grown. */
-#define LOOK_EVERY 64
+#define RECHECK_STEPS 64
 
 double tl_stiffest_law(const tl_model *m)
 {
@@ -408,9 +408,9 @@ tl_row_value tl_rates_keep(tl_model *m)
     struct tl_cycle *c = m->cycle;
     tl_detect *d = m->detect;
     struct tl_rated now = {.version = 1 + m->structure + m->constraints + m->laws,
-                           .look = m->mass_scaling ? m->cycles / LOOK_EVERY : 0,
+                           .recheck = m->mass_scaling ? m->cycles / RECHECK_STEPS : 0,
                            .rotation = m->config.rotation};
-    bool all = now.version != c->rated.version || now.look != c->rated.look ||
+    bool all = now.version != c->rated.version || now.recheck != c->rated.recheck ||
                now.rotation != c->rated.rotation;
     bool some = tl_rates_points(m) && !m->mass_scaling && touch_fresh(m);
     if (all || some || d->any_touched) {

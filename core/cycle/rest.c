@@ -127,7 +127,7 @@ static bool stands_still(tl_model *m, double ratio)
                     .gravity = tl_v3_norm(m->config.gravity),
                     .stored = mass > 0 ? energy.stored / mass : 0,
                     .moving = TL_NO_ROW};
-    tl_parallel_for(m->pool, m->bodies.table.rows, TL_LOOK_CHUNK, rest_range, &job);
+    tl_parallel_for(m->pool, m->bodies.table.rows, TL_READ_CHUNK, rest_range, &job);
     if (job.moving == TL_NO_ROW)
         return true;
     m->cycle->sums.worst = job.moving;

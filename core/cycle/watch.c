@@ -18,8 +18,8 @@
 #include <stdatomic.h>
 #include <stdlib.h>
 
-/* Steps between two looks at the bodies: few of them make a leg of a body that moves. */
-#define LOOK_STEPS 5
+/* Steps between two samples of the bodies: few of them make a leg of a body that moves. */
+#define SAMPLE_STEPS 5
 /* Legs in a row, and how long they are together, relative to the size of the body. */
 #define LEGS 5
 #define FAILED_SHARE 0.05
@@ -44,7 +44,7 @@ typedef struct leg {
     double speed;
     uint8_t legs; /* gone, one no slower than the other */
     tl_vec3
-        force; /* sum over the looks at these legs of the unbalanced force, and of what the body bore */
+        force; /* sum over the samples of these legs of the unbalanced force, and of what the body bore */
     double borne;
     bool touched; /* something, when the run began */
     bool reached; /* has gone as far as its size asks: the leg may be at its end */
@@ -123,7 +123,7 @@ void tl_watch_end(tl_watch *w)
     free(w);
 }
 
-/* ---------------------------------------------------------------- looks ------------------ */
+/* ---------------------------------------------------------------- samples ---------------- */
 
 /* Whether a block of the body has contact points, in the first step. */
 static bool touches(const tl_model *m, uint32_t body)
@@ -144,14 +144,14 @@ static double borne_by(const tl_model *m, uint32_t body)
     return tl_borne(m, body, tl_weight_of(&m->bodies, body, tl_v3_norm(m->config.gravity)));
 }
 
-typedef struct look_job {
+typedef struct sample_job {
     tl_watch *w;
     const tl_model *m;
     atomic_bool reached; /* by some body */
-} look_job;
+} sample_job;
 
-/* Adds what a look tells to the leg of a body. */
-static void look_at(leg *l, double least, const tl_model *m, uint32_t body)
+/* Adds a sample to the leg of a body. */
+static void add_sample(leg *l, double least, const tl_model *m, uint32_t body)
 {
     double unbalanced = tl_v3_norm(m->bodies.force[body]), borne = borne_by(m, body);
     bool judged =
@@ -172,17 +172,17 @@ static void look_at(leg *l, double least, const tl_model *m, uint32_t body)
     l->reached = far >= length;
 }
 
-static void look_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
+static void sample_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
 {
     (void)chunk;
     (void)thread;
-    look_job *job = user;
+    sample_job *job = user;
     const tl_model *m = job->m;
     bool reached = false;
     for (uint32_t body = (uint32_t)begin; body < end; body++) {
         if (m->bodies.fixed[body] == TL_FIX_ALL)
             continue;
-        look_at(&job->w->leg[body], job->w->least, m, body);
+        add_sample(&job->w->leg[body], job->w->least, m, body);
         reached = reached || job->w->leg[body].reached;
     }
     if (reached)
@@ -250,10 +250,10 @@ tl_id tl_watch_step(tl_watch *w, const tl_model *m)
     if (w->steps++ == 0)
         for (uint32_t body = 0; body < w->bodies; body++)
             w->leg[body].touched = touches(m, body);
-    if (w->steps % LOOK_STEPS != 0)
+    if (w->steps % SAMPLE_STEPS != 0)
         return w->failing;
-    look_job job = {.w = w, .m = m};
-    tl_parallel_for(m->pool, w->bodies, TL_LOOK_CHUNK, look_range, &job);
+    sample_job job = {.w = w, .m = m};
+    tl_parallel_for(m->pool, w->bodies, TL_READ_CHUNK, sample_range, &job);
     if (job.reached)
         w->least = SETTLED_SHARE / LEGS * settlement(w, m);
     for (uint32_t body = 0; body < w->bodies && job.reached; body++)

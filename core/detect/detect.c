@@ -323,7 +323,7 @@ static tl_status find_contacts(tl_model *m)
     d->rules = m->rules;
     d->contact_points = m->config.contact_points;
     d->constraints = m->constraints;
-    tl_pairs_look(m);
+    tl_pairs_test(m);
     return TL_OK;
 }
 

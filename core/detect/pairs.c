@@ -1,6 +1,6 @@
-/* pairs.c - when pairs without a contact are looked at.
+/* pairs.c - when pairs without a contact are tested.
  *
- * A pair that was looked at and is not near sleeps until its blocks, together, may have moved as far as they are apart. How
+ * A pair that was tested and is not near sleeps until its blocks, together, may have moved as far as they are apart. How
  * far a block can have moved is told by its body's odometer: by the path length since the broad phase was made, so
  * that single precision is enough. Path lengths are rounded up and wake-up distances down, so rounding can only make a pair be
  * tested too early. Most pairs sleep in most steps, and of a whole chunk that sleeps longer than any two
@@ -10,14 +10,14 @@
 #include "base/inline.h"
 #include "contact/pair_view.h"
 #include "detect/grazing.h"
-#include "narrow/look.h"
+#include "narrow/coarse_test.h"
 #include "narrow/manifold.h"
 #include "narrow/place.h"
 
 #include <string.h>
 #include <talus/plugin.h>
 
-/* Below any path length: look at the pair in the next step. */
+/* Below any path length: the pair is tested in the next step. */
 #define AWAKE (-1.f)
 /* Blocks a worker takes at a time: there is little to do with each. */
 #define BLOCK_CHUNK 4096
@@ -144,19 +144,19 @@ static double way_to_contact(const tl_pair_view *view, const tl_region *r)
     return r->gap > 0 && !level ? r->gap : -1;
 }
 
-/* How far a pair may move that only edges part before it may touch; 0: it may touch already. By looks with reaches twice as long
+/* How far a pair may move that only edges part before it may touch; 0: it may touch already. By coarse tests with reaches twice as long
  * each, up to the longest with which it is known to be near. */
 static double way_to_edges(const tl_pair_view *view, double longest)
 {
     double tolerance = TL_CONTACT_TOLERANCE * view->size, reach = tolerance;
-    if (tl_look_near(view, reach))
+    if (tl_coarse_test(view, reach))
         return 0;
-    while (2 * reach < longest && !tl_look_near(view, 2 * reach))
+    while (2 * reach < longest && !tl_coarse_test(view, 2 * reach))
         reach *= 2;
     return fmax(reach - tolerance, tolerance);
 }
 
-static void look_at(tl_model *m, tl_pair *p, tl_narrow *room)
+static void test_pair(tl_model *m, tl_pair *p, tl_narrow *room)
 {
     tl_detect *d = m->detect;
     tl_pair_view view = tl_pair_view_of(m, p->a, p->b);
@@ -171,7 +171,7 @@ static void look_at(tl_model *m, tl_pair *p, tl_narrow *room)
         return;
     }
     double tolerance = TL_CONTACT_TOLERANCE * view.size;
-    if (!tl_look_near(&view, tolerance + d->reach)) {
+    if (!tl_coarse_test(&view, tolerance + d->reach)) {
         tl_pair_sleep(d, p, d->reach);
         return;
     }
@@ -202,7 +202,7 @@ static void look_at(tl_model *m, tl_pair *p, tl_narrow *room)
     }
     const tl_manifold_before none = {.facet = {.kind = TL_FACET_PATCH}};
     if (!tl_manifold_find(&view, &region, &rule, &none, room)) {
-        room->failed = true; /* what was found is not all there is: look again */
+        room->failed = true; /* what was found is not all there is: test again */
         return;
     }
     if (room->manifold.point_count > 0) {
@@ -218,7 +218,7 @@ static bool sleeps(const tl_detect *d, const tl_pair_chunk *chunk)
     return 2 * (double)d->longest_path < (double)chunk->wake;
 }
 
-static void look_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
+static void test_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
 {
     tl_model *m = user;
     tl_detect *d = m->detect;
@@ -231,7 +231,7 @@ static void look_range(void *user, size_t begin, size_t end, size_t chunk, unsig
         if (!tl_pair_is_apart(p))
             continue;
         if (path_of(d, p) >= (double)p->wake) {
-            look_at(m, p, &d->narrow[thread]);
+            test_pair(m, p, &d->narrow[thread]);
             all->found = all->found || p->wake == TL_PAIR_FOUND;
         }
         wake = p->wake < wake ? p->wake : wake;
@@ -239,12 +239,12 @@ static void look_range(void *user, size_t begin, size_t end, size_t chunk, unsig
     all->wake = wake;
 }
 
-void tl_pairs_look(tl_model *m)
+void tl_pairs_test(tl_model *m)
 {
     const tl_detect *d = m->detect;
     bool all_sleep = true;
     for (size_t chunk = 0; all_sleep && chunk * TL_PAIR_CHUNK < d->pair_count; chunk++)
         all_sleep = sleeps(d, &d->chunks[chunk]);
     if (!all_sleep) /* a loop of the threads costs more than to see that there is nothing to do */
-        tl_parallel_for(m->pool, d->pair_count, TL_PAIR_CHUNK, look_range, m);
+        tl_parallel_for(m->pool, d->pair_count, TL_PAIR_CHUNK, test_range, m);
 }

@@ -9,13 +9,13 @@
 tl_status tl_pairs_restart(tl_model *m);
 /* Notes how far each block can have moved since the broad phase was made. */
 void tl_pairs_measure_paths(tl_model *m);
-/* Looks at the pairs without a contact that may have come near: chunks and pairs tell which were found. */
-void tl_pairs_look(tl_model *m);
+/* Tests the pairs without a contact that may have come near: chunks and pairs tell which were found. */
+void tl_pairs_test(tl_model *m);
 /* Lets a pair sleep until its blocks, together, have moved `way` more. */
 void tl_pair_sleep(tl_detect *d, tl_pair *pair, double way);
 /* The wake of a pair, without a contact, whose blocks' path lengths are to begin anew. */
 void tl_pair_rebase(const tl_detect *d, tl_pair *pair);
-/* Forgets what shows that a pair touches without area; without a contact it is looked at again. */
+/* Forgets what shows that a pair touches without area; without a contact it is tested again. */
 void tl_pair_wake(tl_detect *d, uint32_t pair);
 /* Notes that a pair has lost its contact. */
 void tl_pair_parted(tl_detect *d, uint32_t pair);

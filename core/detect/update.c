@@ -17,7 +17,7 @@
 #include "detect/grazing.h"
 #include "detect/overlap.h"
 #include "detect/pairs.h"
-#include "narrow/look.h"
+#include "narrow/coarse_test.h"
 #include "narrow/manifold.h"
 #include "narrow/patch.h"
 #include "narrow/place.h"
@@ -101,7 +101,7 @@ static bool is_near(const tl_pair_view *view, double gap, double *way)
 {
     double reach = TL_CONTACT_TOLERANCE * TL_CONTACT_RELEASE * view->size;
     *way = fmax(gap, reach) - TL_CONTACT_TOLERANCE * view->size;
-    return gap <= reach && tl_look_near(view, reach);
+    return gap <= reach && tl_coarse_test(view, reach);
 }
 
 static void note_tag(tl_model *m, uint32_t c, tl_tag tag)

@@ -125,7 +125,7 @@ typedef struct search {
     sample *out; /* of the last closure tried */
 } search;
 
-static tl_status look(const search *s, double closure, side *at)
+static tl_status evaluate(const search *s, double closure, side *at)
 {
     const bench *b = s->b;
     tl_status status = try_closure(b, s->by, closure, s->out);
@@ -156,7 +156,7 @@ static tl_status close_in(const search *s, side low, side high)
         side at;
         if (!(closure > low.closure && closure < high.closure))
             break;
-        tl_status status = look(s, closure, &at);
+        tl_status status = evaluate(s, closure, &at);
         if (status != TL_OK || fabs(at.excess) <= s->enough)
             return status;
         last = at.excess;
@@ -168,7 +168,7 @@ static tl_status close_in(const search *s, side low, side high)
     /* no number is left between the sides: good enough where the law is merely stiff, not where it jumps */
     double slope = (high.excess - low.excess) / (high.closure - low.closure);
     side at;
-    tl_status status = look(s, -low.excess < high.excess ? low.closure : high.closure, &at);
+    tl_status status = evaluate(s, -low.excess < high.excess ? low.closure : high.closure, &at);
     if (status != TL_OK)
         return status;
     return slope <= 2 * (tl_law_stiffness(&s->b->law) + s->b->stiffness) ? TL_OK : not_held(s->b);
@@ -180,13 +180,13 @@ static tl_status balance(const bench *b, const motion *by, sample *out)
     double kn = b->law.kn + b->stiffness;
     const search s = {b, by, STRESS_ERROR * fabs(b->stress) + CLOSURE_ERROR * kn, out};
     side from, to;
-    tl_status status = look(&s, b->now.closure[0], &from);
+    tl_status status = evaluate(&s, b->now.closure[0], &from);
     if (status != TL_OK || fabs(from.excess) <= s.enough)
         return status;
     /* the stiffness is the law's largest, so this goes no farther than the closure that is sought */
     double step = kn > 0 ? -from.excess / kn : 0;
     for (int k = 0; k < MOST_DOUBLINGS && step != 0 && isfinite(from.closure + step); k++) {
-        status = look(&s, from.closure + step, &to);
+        status = evaluate(&s, from.closure + step, &to);
         if (status != TL_OK || fabs(to.excess) <= s.enough)
             return status;
         if ((to.excess < 0) != (from.excess < 0))

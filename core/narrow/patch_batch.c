@@ -187,7 +187,7 @@ TL_INLINE void project_b(tl_patch_batch *b, work *w, uint32_t j)
 
 /* Notes which corners of a face, from row `first` on, lie inside the line from row `from` to row `to`, in bit `bit` of
  * each corner's byte; those on the line do unless it is `strict`. */
-TL_INLINE void look_inside(const tl_patch_batch *b, work *w, uint32_t first, uint32_t count,
+TL_INLINE void note_inside(const tl_patch_batch *b, work *w, uint32_t first, uint32_t count,
                            uint32_t from, uint32_t to, uint32_t bit, bool strict)
 {
     uint64_t *restrict inside = strict ? w->inside_b : w->inside_a;
@@ -219,7 +219,7 @@ TL_INLINE void look_inside(const tl_patch_batch *b, work *w, uint32_t first, uin
 
 /* Which corners lie inside which lines. Lines beyond a face's last have no length; rows beyond the last corner
  * of any lane are not looked at. */
-TL_VECTORIZED static void look(tl_patch_batch *b, work *w)
+TL_VECTORIZED static void find_inside(tl_patch_batch *b, work *w)
 {
     view(b);
     lay_frames(b, w);
@@ -235,9 +235,9 @@ TL_VECTORIZED static void look(tl_patch_batch *b, work *w)
     for (uint32_t j = 0; j < w->nb; j++)
         project_b(b, w, j);
     for (uint32_t j = 0; j < w->nb; j++)
-        look_inside(b, w, 0, w->na, CORNERS + j, CORNERS + (j + 1 < w->nb ? j + 1 : 0), j, false);
+        note_inside(b, w, 0, w->na, CORNERS + j, CORNERS + (j + 1 < w->nb ? j + 1 : 0), j, false);
     for (uint32_t i = 0; i < w->na; i++)
-        look_inside(b, w, CORNERS, w->nb, i, i + 1 < w->na ? i + 1 : 0, i, true);
+        note_inside(b, w, CORNERS, w->nb, i, i + 1 < w->na ? i + 1 : 0, i, true);
 }
 
 /* The outlines; lanes without one are not laid. */
@@ -504,7 +504,7 @@ void tl_batch_lay(tl_patch_batch *batch)
         fill_face(batch->a, l, batch->na[l], w.na);
         fill_face(batch->b, l, batch->nb[l], w.nb);
     }
-    look(batch, &w);
+    find_inside(batch, &w);
     find_outlines(batch, &w);
     find_ends(batch, &w);
     lay(batch, &w);

@@ -87,8 +87,8 @@ static void fill_columns(planes *a, planes *b, const tl_pair_view *view)
 }
 
 /* How high the vertices of a block lie over eight planes, from number g on, of the other block. */
-TL_VECTORIZED static void look_from(const planes *restrict q, size_t g, const tl_vec3 *vertex,
-                                    size_t count, double (*restrict height)[TL_LANES])
+TL_VECTORIZED static void vertex_heights(const planes *restrict q, size_t g, const tl_vec3 *vertex,
+                                         size_t count, double (*restrict height)[TL_LANES])
 {
     const double *restrict x = q->x + g, *restrict y = q->y + g, *restrict z = q->z + g;
     const double *restrict c = q->c + g;
@@ -126,12 +126,12 @@ TL_VECTORIZED static void find_outside(const tl_poly *poly, size_t faces,
 }
 
 /* Where the faces of p lie over the planes of q. `height` has room for p's vertices. */
-static void look_over(const planes *p, const planes *q, double (*height)[TL_LANES])
+static void find_heights(const planes *p, const planes *q, double (*height)[TL_LANES])
 {
     for (size_t f = 0; f < p->count; f++)
         p->outside[f] = -INFINITY;
     for (size_t g = 0; g < q->count; g += TL_LANES) {
-        look_from(q, g, p->vertex, p->poly->vertex_count, height);
+        vertex_heights(q, g, p->vertex, p->poly->vertex_count, height);
         find_outside(p->poly, p->count, (const double(*)[TL_LANES])height, p->outside);
     }
 }
@@ -261,8 +261,8 @@ bool tl_region_find(const tl_pair_view *view, double margin, tl_narrow *room, tl
     set_columns(&b, room->plane + 7 * rows_a);
     double(*height)[TL_LANES] = (double(*)[TL_LANES])(room->plane + 7 * (rows_a + rows_b));
     fill_columns(&a, &b, view);
-    look_over(&a, &b, height);
-    look_over(&b, &a, height);
+    find_heights(&a, &b, height);
+    find_heights(&b, &a, height);
     find_gap(&a, &b, out);
     uint16_t *face = room->face;
     bool seams = view->a->seams || view->b->seams;

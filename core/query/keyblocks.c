@@ -280,7 +280,7 @@ static void find_mode(const work *w, tl_vec3 r, tl_keyblock *block)
 
 /* ---------------------------------------------------------------- all -------------------- */
 
-static tl_status look_at(work *w, uint32_t body)
+static tl_status test_body(work *w, uint32_t body)
 {
     tl_model *m = w->model;
     tl_keyblocks *result = w->result;
@@ -328,7 +328,7 @@ tl_status tl_model_keyblocks(tl_model *m, const tl_keyblock_query *given, tl_key
         status = parse_strength(&w);
     for (uint32_t body = 0; body < m->bodies.table.rows && status == TL_OK; body++)
         if (!m->bodies.fixed[body] && !m->bodies.drive[body])
-            status = look_at(&w, body);
+            status = test_body(&w, body);
     free(w.strength);
     free(w.touches.at);
     free(w.faces);

@@ -145,7 +145,7 @@ local REUSED = 2e-6
 -- ... and a patch is what two faces have in common in projection. At an acute edge that overlaps by o, blocks may be o
 -- apart beside it.
 -- A contact's overlap is measured along a wall that may not be the nearest one: from how many times the true one on, and
--- how much more relative to the smaller block's size, it is false (BESIDE).
+-- how much more relative to the smaller block's size, it is false (TIMES, MORE).
 local TIMES, MORE = 10, 0.002
 
 -- Contacts that press although their blocks have no common volume, and those with a false overlap; a sentence on

@@ -1,8 +1,8 @@
 /* field_properties.c - the pressure field of random pairs of shapes: force and moment are the gradient of the energy,
  * and the energy is that of a brute-force sum. Overlaps go from touching to 0.4 of the size; faces may be borders. */
 #include "exact_axis.h"
+#include "narrow/coarse_test.h"
 #include "narrow/field.h"
-#include "narrow/look.h"
 
 /* How many random cases are made, of those that an optimised build makes. */
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
@@ -81,7 +81,7 @@ static void list_scene(scene *s)
 {
     const tl_pair_view *view = scene_place(&s->pair);
     /* faces that cannot meet may be left out of blocks that do; of blocks that are apart all are needed to tell */
-    s->planes.all = s->borders || s->apart || !tl_look_near(view, 0);
+    s->planes.all = s->borders || s->apart || !tl_coarse_test(view, 0);
     list_planes(&s->planes, view, s->borders ? s->border_a : NULL, s->borders ? s->border_b : NULL,
                 s->origin);
 }

@@ -34,7 +34,7 @@ NUMBERS = [
     ("core/model/bodies.c", "ROUND_COEFFICIENT", 0.4, "I = 0.4 m r̄²"),
     ("core/cycle/rates.c", "FLOOR", 0.15, "min(1, max(0.15, s)) ω²"),
     ("core/cycle/rates.c", "TWICE_AS_DEEP", 4, "k = 4 max(kn, ks) max("),
-    ("core/cycle/rates.c", "LOOK_EVERY", 64, "and every 64 steps"),
+    ("core/cycle/rates.c", "RECHECK_STEPS", 64, "and every 64 steps"),
     ("core/cycle/timestep.c", "STEP_GROWTH", 1.1, "only when it is 1.1 times the one in use"),
     (None, "TL_BODY_FRACTION", 0.5, 'FRAC is 0.5 with `"body"`'),
     (None, "TL_PAPER_FRACTION", 0.1, 'and 0.1 with `"paper"`'),

@@ -1,6 +1,6 @@
-/* test_look.c - the first look at a pair ends, whatever the roundings are. */
+/* test_coarse_test.c - the coarse test of a pair ends, whatever the roundings are. */
 #include "contact_scene.h"
-#include "narrow/look.h"
+#include "narrow/coarse_test.h"
 
 /* Two blocks of a rock cut by three joint sets that meet in two corners: libccd's search for their common part goes round in a
  * circle. */
@@ -29,11 +29,11 @@ TEST(a_search_without_end_is_ended)
         scene_pair_of(scene_hull_shape(a, sizeof a / sizeof *a),
                       scene_hull_shape(b, sizeof b / sizeof *b), tl_q_identity(), tl_v3(0, 0, 0));
     tl_pair_view *view = scene_place(&pair);
-    CHECK(tl_look_near(view, reach));
-    CHECK(tl_look_near(view, 10 * reach));
+    CHECK(tl_coarse_test(view, reach));
+    CHECK(tl_coarse_test(view, 10 * reach));
     /* and one that is apart is told so still */
     pair.shift = tl_v3(0, 0, 1);
-    CHECK(!tl_look_near(scene_place(&pair), reach));
+    CHECK(!tl_coarse_test(scene_place(&pair), reach));
     scene_pair_free(&pair);
 }
 

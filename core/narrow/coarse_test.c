@@ -1,11 +1,11 @@
-/* look.c - the first look at a candidate pair, by libccd: is it near enough to be worth the exact
- * search? Both blocks are grown by a ball. Only the yes or no is used: libccd's depths, normals and
- * positions are not reliable for faces that nearly touch.
+/* coarse_test.c - the coarse test of a candidate pair, by libccd: is it near enough to be worth finding its region? Both
+ * blocks are grown by a ball. Only the yes or no is used: libccd's depths, normals and positions are not reliable for
+ * faces that nearly touch.
  *
  * Its portals may go round in a circle for ever where roundings decide. Nothing in libccd ends that, so a block that has been asked
  * for MOST_CALLS points answers from then on with one on the wrong side, which ends any search; what it gives counts for nothing
  * then, and the pair is near. */
-#include "narrow/look.h"
+#include "narrow/coarse_test.h"
 
 #include <ccd/ccd.h>
 #include <talus/vmath.h>
@@ -13,19 +13,20 @@
 /* Points of a block that a search asks for: some tens. */
 #define MOST_CALLS 1000
 
-typedef struct grown {
+/* A block grown by a ball. */
+typedef struct grown_block {
     const tl_vec3 *vertex;
     uint32_t count;
     tl_vec3 center;
     double ball;
     uint32_t calls; /* points asked for */
     double far;     /* beyond both blocks, m */
-} grown;
+} grown_block;
 
 /* The object is ours, and not const. */
 static void support(const void *object, const ccd_vec3_t *direction, ccd_vec3_t *out)
 {
-    grown *g = (grown *)(uintptr_t)object;
+    grown_block *g = (grown_block *)(uintptr_t)object;
     tl_vec3 d = {direction->v[0], direction->v[1], direction->v[2]};
     if (++g->calls > MOST_CALLS) {
         tl_vec3 x = tl_v3_scale(-g->far, tl_v3_unit(d));
@@ -47,7 +48,7 @@ static void support(const void *object, const ccd_vec3_t *direction, ccd_vec3_t 
 
 static void center(const void *object, ccd_vec3_t *out)
 {
-    const grown *g = object;
+    const grown_block *g = object;
     ccdVec3Set(out, g->center.x, g->center.y, g->center.z);
 }
 
@@ -59,10 +60,11 @@ static tl_vec3 mean(const tl_vec3 *vertex, uint32_t count)
     return tl_v3_scale(1.0 / count, sum);
 }
 
-bool tl_look_near(const tl_pair_view *view, double reach)
+bool tl_coarse_test(const tl_pair_view *view, double reach)
 {
-    grown a = {.vertex = view->a->vertex, .count = view->a->vertex_count, .ball = 0.5 * reach};
-    grown b = {.vertex = view->vertex_b, .count = view->b->vertex_count, .ball = 0.5 * reach};
+    grown_block a = {
+        .vertex = view->a->vertex, .count = view->a->vertex_count, .ball = 0.5 * reach};
+    grown_block b = {.vertex = view->vertex_b, .count = view->b->vertex_count, .ball = 0.5 * reach};
     a.center = mean(a.vertex, a.count);
     b.center = mean(b.vertex, b.count);
     a.far = b.far =
