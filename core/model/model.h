@@ -373,18 +373,18 @@ typedef struct tl_stage_block {
     uint64_t lineage;
     uint32_t body; /* blocks of one number are one body */
     uint32_t
-        left; /* a body it was taken out of and that has not been looked at since, or TL_NO_ROW */
+        detached_from; /* a body it was taken out of and that has not been settled since, or TL_NO_ROW */
     uint64_t draw; /* key of the body's draws: the least of its blocks' lineages */
     bool owned, retagged, hidden;
-    bool conceal;  /* to be hidden when committed */
-    uint8_t fixed; /* of a new block: what of its motion is held */
-    bool veiled;   /* hidden by the generator, while it runs */
-    bool joined;   /* its body may have other blocks */
-    bool torn;     /* its body has been cut since it was last known to hang together */
+    bool hide_on_commit;
+    uint8_t fixed;            /* of a new block: what of its motion is held */
+    bool hidden_by_generator; /* while it runs */
+    bool multi_block;         /* its body may have other blocks */
+    bool needs_reconnect;     /* its body has been cut since it was last known to hang together */
 } tl_stage_block;
 
-/* A ball about a staged block, relative to the model's origin: the quick look of a cut. Kept apart from
- * the blocks, for a plane looks at all of them and cuts few. */
+/* A ball about a staged block, relative to the model's origin: the coarse test of a cut. Kept apart from
+ * the blocks, for a plane is tested against all of them and cuts few. */
 typedef struct tl_stage_ball {
     tl_vec3 center;
     double radius;
@@ -398,10 +398,10 @@ typedef struct tl_stage {
     size_t *visible; /* [capacity] indices of the blocks that generators see, ascending */
     size_t visible_count;
     uint32_t next_body;
-    bool opened;   /* the model's blocks are in it */
-    bool lost;     /* there was no memory for that when a service asked that cannot say so */
-    bool torn;     /* some block is */
-    bool regroups; /* bodies of several blocks are made or changed */
+    bool opened;          /* the model's blocks are in it */
+    bool lost;            /* there was no memory for that when a service asked that cannot say so */
+    bool needs_reconnect; /* some block does */
+    bool regroups;        /* bodies of several blocks are made or changed */
     tl_generate_summary summary;
     double created_volume;   /* less what was deleted */
     double changed_volume;   /* of what a commit has made, less what it replaced */
@@ -459,7 +459,7 @@ void tl_stage_join(tl_stage *stage, const size_t *indices, size_t count);
 void tl_stage_delete(tl_stage *stage, size_t index);
 /* Makes the list of visible blocks anew. */
 void tl_stage_list_visible(tl_stage *stage);
-/* Gives every body that was torn the numbers of the parts it falls into. */
+/* Gives every body that needs it the numbers of the parts it falls into. */
 tl_status tl_stage_settle(tl_stage *stage);
 /* group[row] of the rows whose blocks have the given ids, as tl_bodies_regroup wants it; `first` has room
  * for stage->next_body numbers. */

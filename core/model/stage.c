@@ -59,7 +59,7 @@ bool tl_stage_push(tl_stage *stage, const tl_stage_block *block)
         stage->visible = visible;
         stage->capacity = capacity;
     }
-    if (!block->hidden && !block->veiled)
+    if (!block->hidden && !block->hidden_by_generator)
         stage->visible[stage->visible_count++] = stage->count;
     stage->balls[stage->count] = ball_of(stage->model, block);
     stage->blocks[stage->count++] = *block;
@@ -121,8 +121,8 @@ tl_status tl_stage_open(tl_stage *stage)
                                 .lineage = b->lineage[row],
                                 .draw = b->lineage[row],
                                 .body = b->body[row],
-                                .left = TL_NO_ROW,
-                                .joined = m->bodies.member_count[b->body[row]] > 1,
+                                .detached_from = TL_NO_ROW,
+                                .multi_block = m->bodies.member_count[b->body[row]] > 1,
                                 .hidden = b->hidden[row] != 0};
         room = tl_stage_push(&fresh, &block);
     }
@@ -224,9 +224,9 @@ static tl_status retag(tl_stage *stage, tl_stage_block *block, uint32_t face, tl
     }
     block->shape->tag[face] = tag;
     /* a joint on a face over which the body may hang together */
-    block->torn = block->joined;
-    stage->torn = stage->torn || block->joined;
-    stage->regroups = stage->regroups || block->joined;
+    block->needs_reconnect = block->multi_block;
+    stage->needs_reconnect = stage->needs_reconnect || block->multi_block;
+    stage->regroups = stage->regroups || block->multi_block;
     return TL_OK;
 }
 
@@ -243,13 +243,14 @@ static tl_status replace(tl_stage *stage, size_t index, const tl_cut *cut, uint6
     above.shape = cut->above;
     above.lineage = tl_key(tl_key(below.lineage, key), 1);
     below.lineage = tl_key(tl_key(below.lineage, key), 0);
-    if (joint && !below.joined) {
+    if (joint && !below.multi_block) {
         above.body = stage->next_body++;
         below.draw = below.lineage;
         above.draw = above.lineage;
     } else {
-        below.joined = above.joined = below.torn = above.torn = true;
-        stage->torn = stage->regroups = true;
+        below.multi_block = above.multi_block = below.needs_reconnect = above.needs_reconnect =
+            true;
+        stage->needs_reconnect = stage->regroups = true;
     }
     stage->blocks[index] = below;
     stage->balls[index] = ball_of(stage->model, &below);
@@ -347,7 +348,7 @@ tl_status tl_stage_cut_disc(tl_stage *stage, tl_vec3 normal, tl_vec3 point, doub
         if (!may_meet(&global, stage->balls[i]))
             continue;
         tl_stage_block *block = &stage->blocks[i];
-        if (block->hidden || block->veiled)
+        if (block->hidden || block->hidden_by_generator)
             continue;
         crossing x = crossing_in_frame(m, block, normal, local, radius);
         tl_cut cut;

@@ -2,7 +2,7 @@
  *
  * Every staged block bears the number of its body. A cut without a joint leaves both sides in the body.
  * A joint that cuts a body of several blocks or runs along a face between two of them, and a block taken
- * out of it, tear the body: it falls into the parts that hang together over shared faces. Faces of
+ * out of it, may divide the body: it falls into the parts that hang together over shared faces. Faces of
  * joints made before this staging set was begun still hold a body together, since its blocks were
  * joined across them. */
 #include "model/model.h"
@@ -82,8 +82,8 @@ static void number_parts(tl_stage *stage, const member *members, size_t count,
 {
     for (size_t i = 0; i < count; i++) {
         tl_stage_block *block = &stage->blocks[members[i].index];
-        block->joined = block->torn = false;
-        block->left = TL_NO_ROW;
+        block->multi_block = block->needs_reconnect = false;
+        block->detached_from = TL_NO_ROW;
         block->draw = block->lineage;
         if (label[i] == i) {
             block->body = i == 0 ? block->body : stage->next_body++;
@@ -91,7 +91,7 @@ static void number_parts(tl_stage *stage, const member *members, size_t count,
         }
         tl_stage_block *first = &stage->blocks[members[label[i]].index];
         block->body = first->body;
-        block->joined = first->joined = true;
+        block->multi_block = first->multi_block = true;
         first->draw = block->draw < first->draw ? block->draw : first->draw;
     }
     for (size_t i = 0; i < count; i++)
@@ -117,32 +117,33 @@ static int compare_body(const void *x, const void *y)
     return (a > b) - (a < b);
 }
 
-/* Lists the bodies that have a torn block or that one has left, ascending; returns how many. */
-static size_t list_torn(const tl_stage *stage, uint32_t *torn)
+/* Lists the bodies with a block that needs reconnecting, and those from which one was detached, ascending; returns how many. */
+static size_t list_marked(const tl_stage *stage, uint32_t *bodies)
 {
     size_t count = 0, kept = 0;
     for (size_t i = 0; i < stage->count; i++) {
         const tl_stage_block *block = &stage->blocks[i];
-        if (block->torn)
-            torn[count++] = block->body;
-        if (block->left != TL_NO_ROW)
-            torn[count++] = block->left;
+        if (block->needs_reconnect)
+            bodies[count++] = block->body;
+        if (block->detached_from != TL_NO_ROW)
+            bodies[count++] = block->detached_from;
     }
-    qsort(torn, count, sizeof *torn, compare_body);
+    qsort(bodies, count, sizeof *bodies, compare_body);
     for (size_t i = 0; i < count; i++)
-        if (i == 0 || torn[i] != torn[i - 1])
-            torn[kept++] = torn[i];
+        if (i == 0 || bodies[i] != bodies[i - 1])
+            bodies[kept++] = bodies[i];
     return kept;
 }
 
 /* The blocks of listed bodies, body by body; returns how many. */
-static size_t list_members(const tl_stage *stage, const uint32_t *torn, size_t torn_count,
+static size_t list_members(const tl_stage *stage, const uint32_t *bodies, size_t body_count,
                            member *members)
 {
     size_t count = 0;
     for (size_t i = 0; i < stage->count; i++) {
         const tl_stage_block *block = &stage->blocks[i];
-        if (block->joined && bsearch(&block->body, torn, torn_count, sizeof *torn, compare_body))
+        if (block->multi_block &&
+            bsearch(&block->body, bodies, body_count, sizeof *bodies, compare_body))
             members[count++] = (member){block->body, i};
     }
     qsort(members, count, sizeof *members, compare_member);
@@ -151,32 +152,32 @@ static size_t list_members(const tl_stage *stage, const uint32_t *torn, size_t t
 
 tl_status tl_stage_settle(tl_stage *stage)
 {
-    if (!stage->torn)
+    if (!stage->needs_reconnect)
         return TL_OK;
     member *members = malloc((stage->count + 1) * sizeof *members);
-    uint32_t *torn = malloc((2 * stage->count + 1) * sizeof *torn);
-    tl_status status = members && torn ? TL_OK : tl_fail_memory(&stage->model->error);
+    uint32_t *bodies = malloc((2 * stage->count + 1) * sizeof *bodies);
+    tl_status status = members && bodies ? TL_OK : tl_fail_memory(&stage->model->error);
     size_t count = 0;
     if (status == TL_OK)
-        count = list_members(stage, torn, list_torn(stage, torn), members);
+        count = list_members(stage, bodies, list_marked(stage, bodies), members);
     for (size_t from = 0, to; from < count && status == TL_OK; from = to) {
         for (to = from; to < count && members[to].body == members[from].body;)
             to++;
         status = settle_body(stage, members + from, to - from);
     }
     free(members);
-    free(torn);
-    stage->torn = status != TL_OK;
+    free(bodies);
+    stage->needs_reconnect = status != TL_OK;
     return status;
 }
 
-/* Marks a body to be looked at again. */
-static void tear(tl_stage *stage, uint32_t body)
+/* Marks the blocks of a body: it is to be found which of them hang together. */
+static void mark_body(tl_stage *stage, uint32_t body)
 {
     for (size_t i = 0; i < stage->count; i++)
         if (stage->blocks[i].body == body)
-            stage->blocks[i].torn = true;
-    stage->torn = stage->regroups = true;
+            stage->blocks[i].needs_reconnect = true;
+    stage->needs_reconnect = stage->regroups = true;
 }
 
 void tl_stage_part(tl_stage *stage, const size_t *indices, size_t count)
@@ -186,13 +187,13 @@ void tl_stage_part(tl_stage *stage, const size_t *indices, size_t count)
         tl_stage_block *block = &stage->blocks[indices[i]];
         if (block->body == body)
             continue;
-        if (block->left != TL_NO_ROW)
-            tear(stage, block->left);
-        block->left = block->body;
+        if (block->detached_from != TL_NO_ROW)
+            mark_body(stage, block->detached_from);
+        block->detached_from = block->body;
         block->body = body;
-        block->joined = block->torn = true;
+        block->multi_block = block->needs_reconnect = true;
     }
-    stage->torn = stage->regroups = true;
+    stage->needs_reconnect = stage->regroups = true;
 }
 
 /* Gives the blocks of body `from` to body `to`. */
@@ -201,7 +202,7 @@ static void move_members(tl_stage *stage, uint32_t from, uint32_t to)
     for (size_t i = 0; i < stage->count; i++)
         if (stage->blocks[i].body == from) {
             stage->blocks[i].body = to;
-            stage->blocks[i].joined = true;
+            stage->blocks[i].multi_block = true;
         }
 }
 
@@ -243,7 +244,7 @@ static void list_visible(tl_stage *stage, size_t from)
     while (stage->visible_count > 0 && stage->visible[stage->visible_count - 1] >= from)
         stage->visible_count--;
     for (size_t i = from; i < stage->count; i++)
-        if (!stage->blocks[i].hidden && !stage->blocks[i].veiled)
+        if (!stage->blocks[i].hidden && !stage->blocks[i].hidden_by_generator)
             stage->visible[stage->visible_count++] = i;
 }
 
@@ -259,8 +260,8 @@ void tl_stage_delete(tl_stage *stage, size_t index)
     memmove(&stage->balls[index], &stage->balls[index + 1],
             (stage->count - index) * sizeof *stage->balls);
     forget_refused(stage, index);
-    if (gone.joined)
-        tear(stage, gone.body);
+    if (gone.multi_block)
+        mark_body(stage, gone.body);
     list_visible(stage, index);
 }
 

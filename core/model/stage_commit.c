@@ -54,7 +54,7 @@ static void put(tl_model *m, const tl_stage_block *block, const source *from, ui
     blocks->group[row] = block->group;
     blocks->density[row] = block->density;
     blocks->lineage[row] = block->lineage;
-    blocks->hidden[row] = block->hidden || block->conceal;
+    blocks->hidden[row] = block->hidden || block->hide_on_commit;
     blocks->stays[row] = true;
     tl_block_changes(m, row);
     tl_block_measure(m, row, mass.volume);

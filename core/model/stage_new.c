@@ -56,7 +56,7 @@ static tl_status add_shape(tl_stage *stage, tl_poly *shape, double density, cons
     block.group = tl_group_intern(m, group ? group : "");
     block.lineage = block.draw = shape_key(m, shape);
     block.body = stage->next_body++;
-    block.left = TL_NO_ROW;
+    block.detached_from = TL_NO_ROW;
     if (block.group == UINT32_MAX || !tl_stage_push(stage, &block)) {
         tl_poly_free(shape);
         return tl_fail_memory(&m->error);
@@ -158,6 +158,6 @@ tl_status tl_stage_add_faces(tl_stage *stage, const tl_block_shape *given)
     if (status != TL_OK)
         return status;
     stage->blocks[stage->count - 1].fixed = (uint8_t)given->fixed;
-    stage->blocks[stage->count - 1].conceal = given->hidden != 0;
+    stage->blocks[stage->count - 1].hide_on_commit = given->hidden != 0;
     return TL_OK;
 }

@@ -344,7 +344,7 @@ static tl_status hide(const tl_host *host, size_t index)
     tl_status status = check_index(host, index);
     if (status != TL_OK)
         return status;
-    stage->blocks[stage->visible[index]].veiled = true;
+    stage->blocks[stage->visible[index]].hidden_by_generator = true;
     tl_stage_list_visible(stage);
     return TL_OK;
 }
@@ -353,7 +353,7 @@ static tl_status show(const tl_host *host)
 {
     tl_stage *stage = &service_of(host)->stage;
     for (size_t i = 0; i < stage->count; i++)
-        stage->blocks[i].veiled = false;
+        stage->blocks[i].hidden_by_generator = false;
     tl_stage_list_visible(stage);
     return TL_OK;
 }

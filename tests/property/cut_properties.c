@@ -231,7 +231,7 @@ static tl_model *model_of_a_box(tl_vec3 min)
     return m;
 }
 
-/* Cuts the block of one row by a plane given in its frame, with the others veiled. */
+/* Cuts the block of one row by a plane given in its frame, with the others hidden. */
 static void cut_in_model(tl_model *m, uint32_t row, tl_plane plane, double accuracy, tally *t)
 {
     const tl_blocks *b = &m->blocks;
@@ -240,7 +240,7 @@ static void cut_in_model(tl_model *m, uint32_t row, tl_plane plane, double accur
     tl_stage stage;
     CHECK_INT(tl_stage_begin(m, &stage), TL_OK);
     for (size_t i = 0; i < stage.count; i++)
-        stage.blocks[i].veiled = i != row;
+        stage.blocks[i].hidden_by_generator = i != row;
     CHECK_INT(tl_stage_cut(&stage, plane.normal, point, (tl_tag){1, 1}, 1), TL_OK);
     CHECK_INT(tl_stage_commit(&stage), TL_OK);
     const tl_generate_summary *s = &stage.summary;
