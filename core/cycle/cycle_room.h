@@ -30,9 +30,9 @@ typedef struct tl_sums {
     double max_speed2; /* largest v.v */
 } tl_sums;
 
-/* What the rules of the time step ask of the bodies that count, as long as none comes, goes or is held: with it the column
- * face_rate of the bodies. */
-struct tl_counted {
+/* Cached for the rules of the time step: the lightest mass of the bodies that count and, with the column face_rate of the bodies,
+ * what each asks on its largest face. Valid for one `version` of the bodies. */
+struct tl_step_bounds {
     uint64_t version;     /* of the bodies; 0: none */
     uint64_t constraints; /* of the model */
     int32_t rotation;
@@ -41,8 +41,8 @@ struct tl_counted {
     uint32_t lightest; /* row, or TL_NO_ROW */
 };
 
-/* For what the rates of the bodies are known, and the extreme one. */
-struct tl_rated {
+/* Cached: the state of the model for which the rates of the bodies (stiffness over mass, 1/s2) hold, and the extreme one. */
+struct tl_stiffness_rates {
     uint64_t version; /* of the bodies and laws; 0: no rates are known */
     int64_t recheck;  /* of mass scaling: steps over RECHECK_STEPS */
     int32_t rotation;
@@ -66,8 +66,8 @@ typedef struct tl_group {
     tl_lanes3 moments, per; /* per: 1 / moments */
     double mass[TL_LANES], alpha[TL_LANES];
     double scale[TL_LANES],
-        turn_scale[TL_LANES]; /* of mass and moments that forces meet, by mass scaling */
-    double counted[TL_LANES]; /* and of that which energies count */
+        turn_scale[TL_LANES];      /* of mass and moments that forces meet, by mass scaling */
+    double energy_scale[TL_LANES]; /* and of that which energies count */
     tl_lanes3 force, moment, damping_force, damping_moment;
     tl_lanes3 moved;                               /* velocity of the last step's motion */
     tl_lanes3 v0, w0, spin0, momentum0;            /* before the kick */
@@ -121,16 +121,16 @@ struct tl_cycle {
     tl_sums sums;
     tl_group_energy *group_energy; /* of each SIMD group of contacts */
     size_t group_room;
-    struct tl_ledger *chunk_ledger, *ledger; /* energy.c */
-    double kinetic_before;                   /* of the last step, for its rate */
-    double dt;                               /* the step in use */
-    struct tl_counted counted;               /* rates.c */
-    bool all_held;                           /* no body can move */
-    struct tl_rated rated;                   /* rates.c */
+    struct tl_ledger *chunk_ledger, *ledger;   /* energy.c */
+    double kinetic_before;                     /* of the last step, for its rate */
+    double dt;                                 /* the step in use */
+    struct tl_step_bounds step_bounds;         /* rates.c */
+    bool all_held;                             /* no body can move */
+    struct tl_stiffness_rates stiffness_rates; /* rates.c */
     uint64_t sliver_structure; /* 1 + that of the model when slivers were looked for: sliver.c */
     tl_id sliver;              /* the one that was told of last */
     size_t contacts;           /* the most there have been, for the remark on the step */
-    double scaled;             /* 1 / (2 rate) of all free bodies, by mass scaling; 0 without it */
+    double mass_scale;         /* 1 / (2 rate) of all free bodies, by mass scaling; 0 without it */
     struct tl_added added;     /* in the last step: added_mass.c */
     tl_id added_block;         /* that of added.worst then, or TL_NO_ID */
     double told_share;         /* of mass added, for the remark on it */
@@ -142,7 +142,7 @@ struct tl_cycle {
 };
 
 /* What partial mass scaling makes of a body's inertia: energies count it. */
-static inline double tl_counted_scale(const struct tl_cycle *c, uint32_t body)
+static inline double tl_energy_scale(const struct tl_cycle *c, uint32_t body)
 {
     return c->adds ? c->inertia[body] : 1;
 }
@@ -150,15 +150,15 @@ static inline double tl_counted_scale(const struct tl_cycle *c, uint32_t body)
 /* What mass scaling of either kind makes of a body's mass ... */
 static inline double tl_inertia_scale(const struct tl_cycle *c, uint32_t body)
 {
-    if (c->scaled > 0)
-        return c->rate[body] > 0 ? 2 * c->scaled * c->rate[body] : 1;
-    return tl_counted_scale(c, body);
+    if (c->mass_scale > 0)
+        return c->rate[body] > 0 ? 2 * c->mass_scale * c->rate[body] : 1;
+    return tl_energy_scale(c, body);
 }
 
 /* Whether it may make anything of any. */
 static inline bool tl_inertia_scaled(const struct tl_cycle *c)
 {
-    return c->scaled > 0 || c->adds;
+    return c->mass_scale > 0 || c->adds;
 }
 
 /* Whether inertia is to be added for a step that was asked for. */
@@ -176,9 +176,9 @@ static inline bool tl_mass_scaled(const tl_model *m)
 /* ... and of its moments of inertia, which it does not make less. */
 static inline double tl_turn_scale(const struct tl_cycle *c, uint32_t body)
 {
-    if (!(c->scaled > 0))
-        return tl_counted_scale(c, body);
-    double scale = c->rate[body] > 0 ? 2 * c->scaled * c->turn_rate[body] : 1;
+    if (!(c->mass_scale > 0))
+        return tl_energy_scale(c, body);
+    double scale = c->rate[body] > 0 ? 2 * c->mass_scale * c->turn_rate[body] : 1;
     return scale > 1 ? scale : 1;
 }
 

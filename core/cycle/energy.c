@@ -73,7 +73,7 @@ TL_INLINE void book(tl_work *work, size_t i, int kind, const tl_group *g, tl_vec
  * step before in both half steps; what two unequal halves spread about it is taken out. */
 TL_INLINE void book_kinetic(tl_work *work, size_t i, const tl_group *g, double share)
 {
-    double scale = g->counted[i], mass = scale * g->mass[i], spread = share * (1 - share);
+    double scale = g->energy_scale[i], mass = scale * g->mass[i], spread = share * (1 - share);
     tl_vec3 v0 = tl_lanes3_get(&g->v0, i), v1 = tl_lanes3_get(&g->v1, i), dv = tl_v3_sub(v1, v0);
     tl_vec3 w0 = tl_lanes3_get(&g->spin0, i), dw = tl_v3_sub(tl_lanes3_get(&g->spin1, i), w0);
     tl_vec3 l0 = tl_lanes3_get(&g->momentum0, i);

@@ -94,7 +94,7 @@ static void gather_range(void *user, size_t begin, size_t end, size_t chunk, uns
         sum_ratios(m, body, weight, &sums);
         sums.bodies++;
         if (totals) {
-            sums.kinetic += 0.5 * tl_counted_scale(m->cycle, body) *
+            sums.kinetic += 0.5 * tl_energy_scale(m->cycle, body) *
                             (b->mass[body] * v2 + tl_spin_energy2(m, body));
             sums.power +=
                 tl_v3_dot(b->force[body], b->v[body]) + tl_v3_dot(b->moment[body], b->w[body]);

@@ -206,7 +206,7 @@ static void load_lane(tl_group *g, size_t i, const tl_model *m)
     g->mass[i] = b->mass[body];
     g->radius[i] = b->radius[body];
     g->scale[i] = tl_inertia_scale(c, body);
-    g->counted[i] = tl_counted_scale(c, body);
+    g->energy_scale[i] = tl_energy_scale(c, body);
     g->turn_scale[i] = tl_turn_scale(c, body);
     bool damped = m->damping != NULL;
     const tl_vec3 none = {0, 0, 0};
@@ -235,7 +235,7 @@ TL_VECTORIZED static void load_row(tl_group *restrict g, const tl_model *m, size
         tl_lanes3_put(&g->moved, i, b->pose[first + i].v_moved);
         g->mass[i] = b->mass[first + i];
         g->radius[i] = b->radius[first + i];
-        g->scale[i] = g->turn_scale[i] = g->counted[i] = 1;
+        g->scale[i] = g->turn_scale[i] = g->energy_scale[i] = 1;
     }
     for (size_t i = 0; damped && i < TL_LANES; i++) {
         tl_lanes3_put(&g->damping_force, i, tl_columns_get(c->damping_force, first + i));
@@ -260,7 +260,7 @@ static void rest_lane(tl_group *g, size_t i)
         &g->force, &g->moment, &g->damping_force, &g->damping_moment, &g->moved, &g->v0, &g->w0};
     for (size_t k = 0; k < sizeof still / sizeof *still; k++)
         tl_lanes3_put(still[k], i, none);
-    g->mass[i] = g->scale[i] = g->turn_scale[i] = g->counted[i] = g->radius[i] = 1;
+    g->mass[i] = g->scale[i] = g->turn_scale[i] = g->energy_scale[i] = g->radius[i] = 1;
     g->alpha[i] = 0;
 }
 

@@ -326,13 +326,13 @@ static void face_range(void *user, size_t begin, size_t end, size_t chunk, unsig
 void tl_rates_count(tl_model *m)
 {
     struct tl_cycle *c = m->cycle;
-    struct tl_counted *to = &c->counted;
-    struct tl_counted now = {.version = 1 + m->structure + m->constraints,
-                             .constraints = m->constraints,
-                             .rotation = m->config.rotation,
-                             .points = tl_rates_points(m),
-                             .least_mass = INFINITY,
-                             .lightest = TL_NO_ROW};
+    struct tl_step_bounds *to = &c->step_bounds;
+    struct tl_step_bounds now = {.version = 1 + m->structure + m->constraints,
+                                 .constraints = m->constraints,
+                                 .rotation = m->config.rotation,
+                                 .points = tl_rates_points(m),
+                                 .least_mass = INFINITY,
+                                 .lightest = TL_NO_ROW};
     if (to->version == now.version && to->rotation == now.rotation && to->points == now.points)
         return;
     const tl_bodies *b = &m->bodies;
@@ -407,11 +407,12 @@ tl_row_value tl_rates_keep(tl_model *m)
 {
     struct tl_cycle *c = m->cycle;
     tl_detect *d = m->detect;
-    struct tl_rated now = {.version = 1 + m->structure + m->constraints + m->laws,
-                           .recheck = m->mass_scaling ? m->cycles / RECHECK_STEPS : 0,
-                           .rotation = m->config.rotation};
-    bool all = now.version != c->rated.version || now.recheck != c->rated.recheck ||
-               now.rotation != c->rated.rotation;
+    struct tl_stiffness_rates now = {.version = 1 + m->structure + m->constraints + m->laws,
+                                     .recheck = m->mass_scaling ? m->cycles / RECHECK_STEPS : 0,
+                                     .rotation = m->config.rotation};
+    bool all = now.version != c->stiffness_rates.version ||
+               now.recheck != c->stiffness_rates.recheck ||
+               now.rotation != c->stiffness_rates.rotation;
     bool some = tl_rates_points(m) && !m->mass_scaling && touch_fresh(m);
     if (all || some || d->any_touched) {
         rate_search s = {.search.m = m, .stiffest = tl_stiffest_law(m), .kept = true, .all = all};
@@ -421,9 +422,9 @@ tl_row_value tl_rates_keep(tl_model *m)
         d->any_touched = false;
         now.extreme = fabs(found.value);
         now.body = found.row;
-        c->rated = now;
+        c->stiffness_rates = now;
     }
-    return (tl_row_value){c->rated.extreme, c->rated.body};
+    return (tl_row_value){c->stiffness_rates.extreme, c->stiffness_rates.body};
 }
 
 bool tl_rates_are_state(const tl_model *m)
@@ -434,7 +435,7 @@ bool tl_rates_are_state(const tl_model *m)
 void tl_rates_try(tl_model *m, double *rate, double *turn_rate)
 {
     struct tl_cycle *c = m->cycle;
-    struct tl_rated rated = c->rated;
+    struct tl_stiffness_rates kept = c->stiffness_rates;
     double *own = c->rate, *own_turn = c->turn_rate;
     tl_rates_count(m);
     for (size_t body = 0; body < m->bodies.table.rows; body++)
@@ -444,7 +445,7 @@ void tl_rates_try(tl_model *m, double *rate, double *turn_rate)
     tl_rates_keep(m);
     c->rate = own;
     c->turn_rate = own_turn;
-    c->rated = rated;
+    c->stiffness_rates = kept;
 }
 
 tl_row_value tl_rates_anew(tl_model *m)

@@ -76,7 +76,7 @@ static double kinetic_energy(const tl_model *m, uint32_t body)
     tl_vec3 v = b->v[body];
     v = tl_v3(fixed & TL_FIX_X ? 0 : v.x, fixed & TL_FIX_Y ? 0 : v.y, fixed & TL_FIX_Z ? 0 : v.z);
     double spin = fixed & TL_FIX_ROTATION ? 0 : tl_spin_energy2(m, body);
-    return 0.5 * tl_counted_scale(m->cycle, body) * (b->mass[body] * tl_v3_norm2(v) + spin);
+    return 0.5 * tl_energy_scale(m->cycle, body) * (b->mass[body] * tl_v3_norm2(v) + spin);
 }
 
 typedef struct rest_job {

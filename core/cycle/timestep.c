@@ -57,13 +57,13 @@ static void stiffest_range(void *user, size_t begin, size_t end, size_t chunk, u
 /* M_min / (2 K_max), with K_max over the contacts of free bodies; no bound where none has an area. */
 static bound paper_rule(tl_model *m)
 {
-    const struct tl_counted *counted = &m->cycle->counted;
+    const struct tl_step_bounds *bounds = &m->cycle->step_bounds;
     tl_row_search s = {.m = m};
     tl_row_value stiffest =
         tl_row_search_run(&s, m->detect->contacts.table.rows, TL_CONTACT_CHUNK, stiffest_range);
     if (stiffest.row == TL_NO_ROW)
         return (bound){INFINITY, TL_NO_ROW, TL_NO_ROW, 0};
-    return (bound){counted->least_mass / (2 * stiffest.value), counted->lightest, stiffest.row,
+    return (bound){bounds->least_mass / (2 * stiffest.value), bounds->lightest, stiffest.row,
                    stiffest.value};
 }
 
@@ -179,7 +179,7 @@ static tl_status choose_added(tl_model *m, double *dt, bool report)
         tl_status status = tl_added_find(m, 2 * share * share);
         if (status != TL_OK)
             return status;
-        c->scaled = 0;
+        c->mass_scale = 0;
         c->long_step = false;
     }
     *dt = c->dt = isnan(given) ? wanted : given;
@@ -208,9 +208,9 @@ static tl_status choose(tl_model *m, double *dt, bound *by)
         least = by->least;
     } else if (m->mass_scaling || !given) {
         least = controlling(m, false).least;
-        c->scaled = m->mass_scaling && isfinite(least) ? least : 0;
+        c->mass_scale = m->mass_scaling && isfinite(least) ? least : 0;
     } else {
-        c->scaled = 0;
+        c->mass_scale = 0;
     }
     if (given) {
         if (!by)
@@ -257,7 +257,7 @@ tl_status tl_model_timestep(tl_model *m, const tl_timestep *given)
     m->timestep = *timestep;
     if (m->cycle) {
         m->cycle->dt = 0;
-        m->cycle->rated.version = 0; /* another rule asks something else of contacts */
+        m->cycle->stiffness_rates.version = 0; /* another rule asks something else of contacts */
     }
     return TL_OK;
 }

@@ -142,10 +142,10 @@ static void forget_stale(const tl_model *m, struct tl_cycle *c)
         c->sums.worst = TL_NO_ROW;
     if (!is_row(c->added.worst, bodies))
         c->added.worst = TL_NO_ROW;
-    if (!is_row(c->counted.lightest, bodies))
-        c->counted.version = 0;
-    if (!is_row(c->rated.body, bodies))
-        c->rated.version = 0;
+    if (!is_row(c->step_bounds.lightest, bodies))
+        c->step_bounds.version = 0;
+    if (!is_row(c->stiffness_rates.body, bodies))
+        c->stiffness_rates.version = 0;
     for (size_t body = 0; body < bodies; body++) {
         if (c->reaction_of[body] < c->reaction_room)
             continue;

@@ -36,13 +36,13 @@ static double compare_step(tl_model *m, double *copy)
     scene_ok(m, tl_detect_update(m));
     scene_ok(m, tl_timestep_choose(m, &dt));
     struct tl_cycle *c = m->cycle;
-    struct tl_rated rated = c->rated;
+    struct tl_stiffness_rates kept = c->stiffness_rates;
     memcpy(copy, c->rate, bytes);
-    c->rated.version = 0;
+    c->stiffness_rates.version = 0;
     scene_ok(m, tl_timestep_choose(m, &dt));
     for (size_t body = 0; body < m->bodies.table.rows; body++)
         worst = fmax(worst, fabs(copy[body] - c->rate[body]) / fmax(c->rate[body], 1e-300));
-    c->rated = rated;
+    c->stiffness_rates = kept;
     memcpy(c->rate, copy, bytes);
     scene_ok(m, tl_step(m));
     return worst;
