@@ -50,12 +50,12 @@ static const uint64_t tens[MOST_DIGITS + 1] = {
 };
 
 /* A double times a power of ten: a whole part and the rest, over 2^shift. */
-typedef struct scaled {
+typedef struct scaled_value {
     uint64_t whole, rest;
     uint64_t step;       /* between doubles, in the unit of the rest */
     int shift, exponent; /* decimal, of the first digit */
     bool even;           /* the double's mantissa */
-} scaled;
+} scaled_value;
 
 /* Decimal digits, and the exponent of the first. */
 typedef struct decimal {
@@ -71,10 +71,10 @@ static uint64_t power_of_five(int power)
     return out;
 }
 
-static scaled scale(uint64_t mantissa, int binary, int exponent)
+static scaled_value scale(uint64_t mantissa, int binary, int exponent)
 {
     int k = MOST_DIGITS - 1 - exponent;
-    scaled out = {.step = power_of_five(k), .shift = -(binary + k), .exponent = exponent};
+    scaled_value out = {.step = power_of_five(k), .shift = -(binary + k), .exponent = exponent};
     wide all = (wide)mantissa * out.step;
     out.whole = (uint64_t)(all >> out.shift);
     out.rest = (uint64_t)(all & (((wide)1 << out.shift) - 1));
@@ -83,7 +83,7 @@ static scaled scale(uint64_t mantissa, int binary, int exponent)
 }
 
 /* Rounds to so many digits, ties to even; says whether they read back as the double. */
-static bool round_to(const scaled *of, int count, decimal *out)
+static bool round_to(const scaled_value *of, int count, decimal *out)
 {
     uint64_t unit = tens[MOST_DIGITS - count], digits = of->whole / unit, over = of->whole % unit;
     /* twice what is cut off, and the unit, in the unit of the rest */
@@ -99,7 +99,7 @@ static bool round_to(const scaled *of, int count, decimal *out)
 }
 
 /* The fewest digits that read back. */
-static decimal fewest(const scaled *of)
+static decimal fewest(const scaled_value *of)
 {
     decimal out, fewer;
     round_to(of, MOST_DIGITS, &out);
@@ -187,7 +187,7 @@ size_t tl_number_text(double value, char text[TL_NUMBER_TEXT])
         int binary = (int)(bits >> 52 & 2047) - 1023; /* size is between 2^binary and twice that */
         uint64_t mantissa = fraction | (uint64_t)1 << 52;
         int exponent = (int)floor(binary * 0.30103); /* of ten, or one less */
-        scaled of = scale(mantissa, binary - 52, exponent);
+        scaled_value of = scale(mantissa, binary - 52, exponent);
         if (of.whole >= tens[MOST_DIGITS])
             of = scale(mantissa, binary - 52, exponent + 1);
         to = put_decimal(to, fewest(&of));

@@ -12,10 +12,10 @@
 #define OPEN 1e12
 
 /* Where the values of a set are, as long as its parameters are used. */
-typedef struct drawn {
+typedef struct param_storage {
     tl_value value;
     tl_vec3 vector;
-} drawn;
+} param_storage;
 
 /* Powers of ten between which a quantity of that unit is drawn. */
 static void scale_of(const char *unit, double *low, double *high)
@@ -62,7 +62,7 @@ static double choice_of(const tl_param *p, uint64_t key)
 }
 
 /* A plausible value. `vectors` counts those of a set: the first is the origin, the second the other corner of a cube. */
-static void make(const tl_param *p, uint64_t key, bool draw, int *vectors, drawn *d)
+static void make(const tl_param *p, uint64_t key, bool draw, int *vectors, param_storage *d)
 {
     static const double corners[] = {0, 0, 0, 2, 0, 0, 0, 2, 0, 0, 0, 2};
     double number = number_of(p, key, draw);
@@ -109,7 +109,7 @@ static void add_text(tl_checker *c, const tl_value *v)
 tl_status tl_check_values(tl_checker *c, int set, tl_value **values, size_t *count, void **held)
 {
     const tl_kind *kind = c->kind;
-    drawn *all = calloc(kind->param_count + 1, sizeof *all);
+    param_storage *all = calloc(kind->param_count + 1, sizeof *all);
     int vectors = 0;
     *count = 0;
     *held = all;

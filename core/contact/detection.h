@@ -6,11 +6,11 @@
 #include "contact/pair.h"
 #include "contact/tables.h"
 
-/* A block, and the row of its body. */
-typedef struct tl_seen {
+/* A block that detection knows, and the row of its body. */
+typedef struct tl_known_block {
     tl_id id;
     uint32_t body;
-} tl_seen;
+} tl_known_block;
 
 typedef struct tl_detect {
     tl_pair *pairs;
@@ -23,12 +23,13 @@ typedef struct tl_detect {
     double reach;       /* half the skin of the broad phase */
     double *odometer_0; /* of each body, when the broad phase was made */
     size_t odometer_room;
-    tl_seen *
-        seen; /* of each block, when rows were last looked at: finds it again after they have changed */
-    size_t seen_count, seen_room;
-    float *path; /* of each block: how far it can have moved since then, rounded up */
+    tl_known_block *
+        known_blocks; /* of each row of blocks, at the last update: finds the block again after rows have changed */
+    size_t known_block_count, known_block_room;
+    float *
+        path; /* of each block: path length since the broad phase was made, rounded up: no vertex has moved farther */
     size_t path_room;
-    float longest_path; /* the farthest of them */
+    float longest_path; /* of them */
     uint8_t *touched; /* bodies whose contacts came, went or grew since the time step was chosen */
     size_t touched_room;
     bool any_touched;

@@ -7,37 +7,38 @@
 #include "contact/facing.h"
 #include "narrow/frame2.h"
 
-/* Two bodies as a contact sees them: axes of the model, A's centroid as zero. */
-typedef struct sight {
+/* The frames of a contact's two bodies: axes of the model, A's centroid as zero. */
+typedef struct body_frames {
     const tl_mat3 *ra, *rb;
     tl_vec3 d; /* from A's centroid to B's */
-} sight;
+} body_frames;
 
-static sight sight_of(const tl_model *m, uint32_t c)
+static body_frames body_frames_of(const tl_model *m, uint32_t c)
 {
     const tl_contacts *contacts = &m->detect->contacts;
     uint32_t a = m->blocks.body[contacts->a[c]], b = m->blocks.body[contacts->b[c]];
-    return (sight){.ra = &m->bodies.pose[a].r,
-                   .rb = &m->bodies.pose[b].r,
-                   .d = tl_body_apart(&m->bodies, a, b)};
+    return (body_frames){.ra = &m->bodies.pose[a].r,
+                         .rb = &m->bodies.pose[b].r,
+                         .d = tl_body_apart(&m->bodies, a, b)};
 }
 
-static tl_facing facing_of(const tl_facet *f, const sight *s)
+static tl_facing facing_of(const tl_facet *f, const body_frames *frames)
 {
     if (f->kind == TL_FACET_FIELD)
-        return tl_facing_field(tl_m3_mul(s->ra, f->na), f->offset);
-    return tl_facing_patch(tl_m3_mul(s->ra, f->na), tl_m3_mul(s->rb, f->nb), s->d, f->offset);
+        return tl_facing_field(tl_m3_mul(frames->ra, f->na), f->offset);
+    return tl_facing_patch(tl_m3_mul(frames->ra, f->na), tl_m3_mul(frames->rb, f->nb), frames->d,
+                           f->offset);
 }
 
 void tl_contact_places(const tl_model *m, uint32_t contact, const tl_point_lanes *l)
 {
     const tl_contacts *contacts = &m->detect->contacts;
     const tl_points_table *p = &m->detect->points;
-    sight s = sight_of(m, contact);
-    tl_facing to = facing_of(&contacts->facet[contact], &s);
+    body_frames frames = body_frames_of(m, contact);
+    tl_facing to = facing_of(&contacts->facet[contact], &frames);
     for (size_t k = 0; k < contacts->point_count[contact]; k++) {
         size_t row = tl_point_row(contacts, contact, k);
-        tl_vec3 x = tl_m3_mul(s.ra, tl_columns_get(p->p, row));
+        tl_vec3 x = tl_m3_mul(frames.ra, tl_columns_get(p->p, row));
         tl_columns_put(l->arm, k, x);
         tl_columns_put(l->normal, k, to.n);
         l->closure[k] = to.offset - tl_v3_dot(to.plane, x) - (p->reference ? p->reference[row] : 0);
@@ -47,12 +48,12 @@ void tl_contact_places(const tl_model *m, uint32_t contact, const tl_point_lanes
 void tl_contact_point_places(const tl_model *m, uint32_t contact, tl_vec3 *place, double *gap)
 {
     const tl_contacts *contacts = &m->detect->contacts;
-    sight s = sight_of(m, contact);
-    tl_facing to = facing_of(&contacts->facet[contact], &s);
+    body_frames frames = body_frames_of(m, contact);
+    tl_facing to = facing_of(&contacts->facet[contact], &frames);
     tl_vec3 from = tl_body_place(&m->bodies, m->blocks.body[contacts->a[contact]]);
     for (size_t k = 0; k < contacts->point_count[contact]; k++) {
         size_t row = tl_point_row(contacts, contact, k);
-        tl_vec3 x = tl_m3_mul(s.ra, tl_columns_get(m->detect->points.p, row));
+        tl_vec3 x = tl_m3_mul(frames.ra, tl_columns_get(m->detect->points.p, row));
         place[k] = tl_v3_add(from, x);
         gap[k] = tl_v3_dot(to.plane, x) - to.offset;
     }
@@ -61,15 +62,15 @@ void tl_contact_point_places(const tl_model *m, uint32_t contact, tl_vec3 *place
 void tl_contact_begin(tl_model *m, uint32_t contact, const tl_point_lanes *l)
 {
     tl_facet *f = &m->detect->contacts.facet[contact];
-    sight s = sight_of(m, contact);
+    body_frames frames = body_frames_of(m, contact);
     tl_contact_places(m, contact, l);
-    f->last = facing_of(f, &s).n;
+    f->last = facing_of(f, &frames).n;
 }
 
 /* The smallest gap at a corner of a patch whose points are drawn in towards its centroid, the last of them; else that of its
  * points. */
-static double corner_gap(const tl_model *m, uint32_t contact, const tl_facing *to, const sight *s,
-                         double gap)
+static double corner_gap(const tl_model *m, uint32_t contact, const tl_facing *to,
+                         const body_frames *frames, double gap)
 {
     const tl_contacts *contacts = &m->detect->contacts;
     const tl_points_table *p = &m->detect->points;
@@ -78,10 +79,10 @@ static double corner_gap(const tl_model *m, uint32_t contact, const tl_facing *t
            last = tl_point_row(contacts, contact, count - 1);
     if (f->kind != TL_FACET_PATCH || count < 2 || p->key[last] != tl_centroid_key(f->ia, f->ib))
         return gap;
-    double centre = tl_v3_dot(to->plane, tl_m3_mul(s->ra, tl_columns_get(p->p, last)));
+    double centre = tl_v3_dot(to->plane, tl_m3_mul(frames->ra, tl_columns_get(p->p, last)));
     for (size_t k = count / 2; k < count - 1; k++) {
         size_t i = tl_point_row(contacts, contact, k);
-        double at = tl_v3_dot(to->plane, tl_m3_mul(s->ra, tl_columns_get(p->p, i)));
+        double at = tl_v3_dot(to->plane, tl_m3_mul(frames->ra, tl_columns_get(p->p, i)));
         gap = fmin(gap, centre + (at - centre) / tl_point_rule_of(false).reach - to->offset);
     }
     return gap;
@@ -94,20 +95,20 @@ void tl_contact_summary(const tl_model *m, uint32_t contact, tl_vec3 *normal, tl
     const tl_points_table *p = &m->detect->points;
     const tl_facet *f = &contacts->facet[contact];
     uint32_t body = m->blocks.body[contacts->a[contact]];
-    sight s = sight_of(m, contact);
-    tl_facing to = facing_of(f, &s);
+    body_frames frames = body_frames_of(m, contact);
+    tl_facing to = facing_of(f, &frames);
     tl_vec3 x = {0, 0, 0};
     double area = 0;
     size_t count = contacts->point_count[contact];
     *gap = INFINITY;
     for (size_t k = 0; k < count; k++) {
         size_t i = tl_point_row(contacts, contact, k);
-        tl_vec3 at = tl_m3_mul(s.ra, tl_columns_get(p->p, i));
+        tl_vec3 at = tl_m3_mul(frames.ra, tl_columns_get(p->p, i));
         x = tl_v3_madd(x, p->area[i], at);
         area += p->area[i];
         *gap = fmin(*gap, tl_v3_dot(to.plane, at) - to.offset);
     }
-    *gap = corner_gap(m, contact, &to, &s, *gap);
+    *gap = corner_gap(m, contact, &to, &frames, *gap);
     if (f->kind == TL_FACET_FIELD && contacts->point_count[contact] > 0)
         *gap = -m->detect->press[contacts->press[contact]].press.deepest;
     *normal = f->last;

@@ -22,14 +22,15 @@
 #define SPARE_POINTS 1024
 #define SPARE_GROUPS 16
 
-typedef struct seat {
+/* A contact that is to get a lane, and the points that it wants room for. */
+typedef struct lane_request {
     uint32_t points, row;
-} seat;
+} lane_request;
 
 /* By room, largest first, then by row. */
-static int compare_seats(const void *x, const void *y)
+static int compare_requests(const void *x, const void *y)
 {
-    const seat *p = x, *q = y;
+    const lane_request *p = x, *q = y;
     if (p->points != q->points)
         return p->points > q->points ? -1 : 1;
     return (p->row > q->row) - (p->row < q->row);
@@ -46,15 +47,16 @@ static tl_simd_group *begin_group(tl_layout *layout, tl_span *span, uint32_t slo
 }
 
 /* Gives a window of contacts their lanes. */
-static void seat_window(tl_layout *layout, tl_contacts *c, tl_span *span, seat *seats, size_t count)
+static void assign_lanes(tl_layout *layout, tl_contacts *c, tl_span *span, lane_request *requests,
+                         size_t count)
 {
     if (count > 1)
-        qsort(seats, count, sizeof *seats, compare_seats);
+        qsort(requests, count, sizeof *requests, compare_requests);
     tl_simd_group *group = NULL;
     for (size_t i = 0; i < count; i++) {
-        uint32_t lane = (uint32_t)(i % TL_LANES), row = seats[i].row;
+        uint32_t lane = (uint32_t)(i % TL_LANES), row = requests[i].row;
         if (lane == 0)
-            group = begin_group(layout, span, seats[i].points);
+            group = begin_group(layout, span, requests[i].points);
         group->contact[lane] = row;
         c->point_start[row] = group->start + lane;
         c->point_room[row] = (uint16_t)group->slots;
@@ -69,18 +71,18 @@ static bool is_of_span(const tl_contacts *c, uint32_t row, const tl_span *span)
 /* Lays the span of the contacts from `row` on that are of it; returns the row behind them. */
 static uint32_t lay_span(tl_layout *layout, tl_contacts *c, tl_span *span, uint32_t row)
 {
-    seat seats[WINDOW];
+    lane_request requests[WINDOW];
     size_t count = 0;
     for (; row < c->table.rows && is_of_span(c, row, span); row++) {
         c->point_start[row] = 0;
         if (c->point_room[row])
-            seats[count++] = (seat){c->point_room[row], row};
+            requests[count++] = (lane_request){c->point_room[row], row};
         if (count == WINDOW) {
-            seat_window(layout, c, span, seats, count);
+            assign_lanes(layout, c, span, requests, count);
             count = 0;
         }
     }
-    seat_window(layout, c, span, seats, count);
+    assign_lanes(layout, c, span, requests, count);
     return row;
 }
 

@@ -12,7 +12,7 @@
 /* Faces of the block that had a row when the detection last looked. */
 static uint32_t faces_of(const tl_model *m, const tl_detect *d, uint32_t seen)
 {
-    uint32_t row = tl_block_row_quiet(m, d->seen[seen].id);
+    uint32_t row = tl_block_row_quiet(m, d->known_blocks[seen].id);
     if (row == TL_NO_ROW || m->blocks.changed[row] > d->structure)
         return ANY_FACES;
     return m->blocks.shape[row]->face_count;
@@ -38,7 +38,7 @@ static bool pair_faces_are_sound(const tl_model *m, const tl_detect *d, const tl
 static bool pair_is_sound(const tl_model *m, const tl_detect *d, uint32_t index)
 {
     const tl_pair *p = &d->pairs[index];
-    if (p->a >= p->b || p->b >= d->seen_count)
+    if (p->a >= p->b || p->b >= d->known_block_count)
         return false;
     if (!tl_pair_is_apart(p) &&
         (p->contact >= d->contacts.table.rows || d->contacts.pair[p->contact] != index ||
@@ -51,14 +51,14 @@ static bool pair_is_sound(const tl_model *m, const tl_detect *d, uint32_t index)
 static bool seen_are_sound(const tl_model *m, const tl_detect *d)
 {
     size_t blocks = m->blocks.table.rows;
-    if (d->listed && d->structure == m->structure && d->seen_count != blocks)
+    if (d->listed && d->structure == m->structure && d->known_block_count != blocks)
         return false;
-    if (d->listed && (d->path_room < d->seen_count || d->structure > m->structure))
+    if (d->listed && (d->path_room < d->known_block_count || d->structure > m->structure))
         return false;
-    for (size_t row = 0; row < d->seen_count; row++) {
-        const tl_seen *s = &d->seen[row];
+    for (size_t row = 0; row < d->known_block_count; row++) {
+        const tl_known_block *s = &d->known_blocks[row];
         if (s->body >= d->odometer_room || s->body >= d->touched_room || s->body >= d->idle_room ||
-            s->id <= (row ? d->seen[row - 1].id : 0))
+            s->id <= (row ? d->known_blocks[row - 1].id : 0))
             return false;
         if (d->structure == m->structure &&
             (s->id != m->blocks.id[row] || s->body != m->blocks.body[row]))
@@ -194,7 +194,7 @@ static bool contact_is_sound(const tl_model *m, const tl_detect *d, uint32_t row
 {
     const tl_contacts *c = &d->contacts;
     return c->id[row] != 0 && c->id[row] <= d->next_contact && c->a[row] < c->b[row] &&
-           c->b[row] < d->seen_count && c->pair[row] < d->pair_count &&
+           c->b[row] < d->known_block_count && c->pair[row] < d->pair_count &&
            d->pairs[c->pair[row]].contact == row &&
            (c->law[row] < m->joint_law_count || c->law[row] == TL_NO_ROW) &&
            c->tag[row].joint <= m->joint_count && c->field[row] <= 1 && c->held[row] <= 1 &&

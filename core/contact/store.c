@@ -45,7 +45,7 @@ void tl_detect_destroy(tl_detect *d)
     free(d->pairs);
     free(d->chunks);
     free(d->odometer_0);
-    free(d->seen);
+    free(d->known_blocks);
     tl_layout_free(&d->layout);
     free(d->path);
     free(d->touched);

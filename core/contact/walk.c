@@ -20,7 +20,7 @@ static void walk_pairs(tl_detect *d, const tl_walk *walk)
     FLAG(CACHE, listed);
     VALUE(CACHE, reach);
     LIST(CACHE, odometer_0, odometer_room, odometer_room, broad);
-    LIST(CACHE, seen, seen_count, seen_room, broad);
+    LIST(CACHE, known_blocks, known_block_count, known_block_room, broad);
     LIST(CACHE, path, path_room, path_room, broad);
     VALUE(CACHE, longest_path);
     LIST(CACHE, touched, touched_room, touched_room, broad);

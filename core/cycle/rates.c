@@ -262,11 +262,11 @@ static double least_part(const tl_model *m, uint32_t body, const contact_sums *o
 }
 
 /* What a body asks of the step: in all or, with mass scaling, by translation and by rotation, each for itself. */
-typedef struct asked {
+typedef struct step_rates {
     double rate, turn;
-} asked;
+} step_rates;
 
-static asked body_rate(const tl_model *m, uint32_t body, double stiffest)
+static step_rates body_rate(const tl_model *m, uint32_t body, double stiffest)
 {
     contact_sums of = add_contacts(m, body, tl_rates_points(m));
     inverse_inertia per = inverse_of(m, body);
@@ -278,8 +278,8 @@ static asked body_rate(const tl_model *m, uint32_t body, double stiffest)
     if (more)
         part = least_part(m, body, &of, face);
     if (!m->mass_scaling)
-        return (asked){fmax(pushed + turned, part * face), 0};
-    return (asked){2 * fmax(pushed, part * (face - turn)), 2 * fmax(turned, part * turn)};
+        return (step_rates){fmax(pushed + turned, part * face), 0};
+    return (step_rates){2 * fmax(pushed, part * (face - turn)), 2 * fmax(turned, part * turn)};
 }
 
 double tl_rate_stiffness(const tl_model *m, uint32_t body)
@@ -301,12 +301,12 @@ double tl_rate_law(const tl_model *m, uint32_t body)
 
 /* The rate of a body that stands on its largest face, for a stiffness per area of 1. Where points do not count, as by the
  * paper's rule, turning does not either. */
-static asked rate_on_face(const tl_model *m, uint32_t body)
+static step_rates rate_on_face(const tl_model *m, uint32_t body)
 {
     area_sums face = largest_face(m, body);
     inverse_inertia per = inverse_of(m, body);
-    return (asked){tl_rates_points(m) ? rate_of(face, per) : face.area * per.mass,
-                   face.area_r2 * per.moment};
+    return (step_rates){tl_rates_points(m) ? rate_of(face, per) : face.area * per.mass,
+                        face.area_r2 * per.moment};
 }
 
 /* Of the bodies of which it is not known: those that have come or changed. */
@@ -317,7 +317,7 @@ static void face_range(void *user, size_t begin, size_t end, size_t chunk, unsig
     for (uint32_t body = (uint32_t)begin; body < end; body++) {
         if (m->bodies.face_rate[body] != 0)
             continue;
-        asked on_face = rate_on_face(m, body);
+        step_rates on_face = rate_on_face(m, body);
         m->bodies.face_rate[body] = on_face.rate;
         m->bodies.face_turn[body] = on_face.turn;
     }
@@ -370,9 +370,9 @@ static void rate_range(void *user, size_t begin, size_t end, size_t chunk, unsig
     const uint8_t *touched = m->detect->touched;
     tl_row_value found = {-INFINITY, TL_NO_ROW};
     for (uint32_t body = (uint32_t)begin; body < end; body++) {
-        asked of = {kept[body], m->cycle->turn_rate[body]};
+        step_rates of = {kept[body], m->cycle->turn_rate[body]};
         if (!s->kept || s->all || touched[body])
-            of = tl_body_counts(m, body) ? body_rate(m, body, s->stiffest) : (asked){0, 0};
+            of = tl_body_counts(m, body) ? body_rate(m, body, s->stiffest) : (step_rates){0, 0};
         if (s->kept) {
             kept[body] = of.rate;
             m->cycle->turn_rate[body] = of.turn;

@@ -22,28 +22,28 @@
 
 /* What is made before anything is changed. */
 typedef struct rows_room {
-    uint32_t *row;      /* [blocks seen] the present row, or TL_NO_ROW */
-    double *odometer_0; /* [bodies] */
-    uint8_t *touched;   /* [bodies] */
-    tl_seen *seen;      /* [blocks] */
+    uint32_t *row;                /* [blocks seen] the present row, or TL_NO_ROW */
+    double *odometer_0;           /* [bodies] */
+    uint8_t *touched;             /* [bodies] */
+    tl_known_block *known_blocks; /* [blocks] */
 } rows_room;
 
 static bool make_room(const tl_model *m, rows_room *room)
 {
     tl_detect *d = m->detect;
     size_t blocks = m->blocks.table.rows, bodies = m->bodies.table.rows;
-    *room = (rows_room){.row = malloc((d->seen_count + 1) * sizeof *room->row),
+    *room = (rows_room){.row = malloc((d->known_block_count + 1) * sizeof *room->row),
                         .odometer_0 = malloc((bodies + 1) * sizeof *room->odometer_0),
                         .touched = malloc(bodies + 1),
-                        .seen = malloc((blocks + 1) * sizeof *room->seen)};
-    if (room->row && room->odometer_0 && room->touched && room->seen &&
+                        .known_blocks = malloc((blocks + 1) * sizeof *room->known_blocks)};
+    if (room->row && room->odometer_0 && room->touched && room->known_blocks &&
         tl_fit(&d->idle, &d->idle_room, bodies + 1, sizeof *d->idle) &&
         tl_fit(&d->path, &d->path_room, blocks + 1, sizeof *d->path))
         return true;
     free(room->row);
     free(room->odometer_0);
     free(room->touched);
-    free(room->seen);
+    free(room->known_blocks);
     return false;
 }
 
@@ -55,8 +55,8 @@ static void keep_bodies(tl_model *m, const rows_room *room)
         room->odometer_0[body] = m->bodies.odometer[body];
         room->touched[body] = true;
     }
-    for (size_t old = 0; old < d->seen_count; old++) {
-        uint32_t row = room->row[old], before = d->seen[old].body;
+    for (size_t old = 0; old < d->known_block_count; old++) {
+        uint32_t row = room->row[old], before = d->known_blocks[old].body;
         if (row == TL_NO_ROW || tl_block_is_new(m, row))
             continue;
         room->odometer_0[m->blocks.body[row]] = d->odometer_0[before];
@@ -114,22 +114,22 @@ tl_status tl_edited_rows(tl_model *m)
     rows_room room;
     if (!make_room(m, &room))
         return tl_fail_memory(&m->error);
-    for (size_t old = 0; old < d->seen_count; old++)
-        room.row[old] = tl_block_row_quiet(m, d->seen[old].id);
+    for (size_t old = 0; old < d->known_block_count; old++)
+        room.row[old] = tl_block_row_quiet(m, d->known_blocks[old].id);
     keep_bodies(m, &room);
     keep_pairs(m, &room);
     for (size_t row = 0; row < blocks; row++)
-        room.seen[row] = (tl_seen){m->blocks.id[row], m->blocks.body[row]};
+        room.known_blocks[row] = (tl_known_block){m->blocks.id[row], m->blocks.body[row]};
     free(room.row);
     free(d->odometer_0);
     free(d->touched);
-    free(d->seen);
+    free(d->known_blocks);
     d->odometer_0 = room.odometer_0;
     d->touched = room.touched;
-    d->seen = room.seen;
+    d->known_blocks = room.known_blocks;
     d->odometer_room = d->touched_room = bodies + 1;
-    d->seen_room = blocks + 1;
-    d->seen_count = blocks;
+    d->known_block_room = blocks + 1;
+    d->known_block_count = blocks;
     d->any_touched = true;
     tl_contacts_unlist(d);
     return TL_OK;

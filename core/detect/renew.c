@@ -33,9 +33,9 @@ static bool add_to_batch(tl_model *m, uint32_t c, uint32_t lane, tl_patch_batch 
 }
 
 /* Lanes whose patch takes the place of the contact's, 1 or 0, and the area it gets. */
-typedef struct taken {
+typedef struct patch_choice {
     double mine[TL_LANES], area[TL_LANES];
-} taken;
+} patch_choice;
 
 TL_INLINE double choose(double yes, double a, double b)
 {
@@ -44,7 +44,7 @@ TL_INLINE double choose(double yes, double a, double b)
 
 /* Puts a point of each lane that is taken in the place of the table's: stress stays, force follows the area. */
 TL_VECTORIZED static void refit_slot(tl_points_table *p, size_t row, const tl_batch_point *point,
-                                     taken *restrict t)
+                                     patch_choice *restrict t)
 {
     double *restrict x = p->p[0] + row, *restrict y = p->p[1] + row, *restrict z = p->p[2] + row;
     double *restrict f_x = p->f_s[0] + row, *restrict f_y = p->f_s[1] + row;
@@ -71,7 +71,7 @@ TL_VECTORIZED static void refit_slot(tl_points_table *p, size_t row, const tl_ba
 
 /* Puts the patches of the lanes that are taken, which all have so many points, in the place of the contacts'. */
 static void refit(tl_points_table *p, size_t row, const tl_patch_batch *batch, tl_batch_counts n,
-                  taken *t)
+                  patch_choice *t)
 {
     for (uint32_t l = 0; l < TL_LANES; l++)
         t->area[l] = 0;
@@ -141,7 +141,7 @@ static void note_patch(tl_model *m, uint32_t c, double area)
 
 /* Puts the patches of some lanes, a bit each, into the place of their contacts'. */
 static void take_lanes(tl_model *m, const tl_simd_group *group, const tl_patch_batch *batch,
-                       tl_batch_counts n, uint32_t now, taken *t)
+                       tl_batch_counts n, uint32_t now, patch_choice *t)
 {
     tl_contacts *contacts = &m->detect->contacts;
     tl_points_table *p = &m->detect->points;
@@ -183,7 +183,7 @@ static void take_patches(tl_model *m, const tl_simd_group *group, const tl_patch
     }
     *in &= ~same;
     for (uint32_t l = 0; same; l++) {
-        taken t;
+        patch_choice t;
         uint32_t now = 0;
         for (uint32_t k = 0; k < TL_LANES; k++) {
             bool like = same >> k & 1 && same >> l & 1 && n[k].all == n[l].all &&

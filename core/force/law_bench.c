@@ -118,14 +118,14 @@ typedef struct side {
     double closure, excess;
 } side;
 
-typedef struct search {
+typedef struct closure_search {
     const bench *b;
     const motion *by;
     double enough;
     sample *out; /* of the last closure tried */
-} search;
+} closure_search;
 
-static tl_status evaluate(const search *s, double closure, side *at)
+static tl_status evaluate(const closure_search *s, double closure, side *at)
 {
     const bench *b = s->b;
     tl_status status = try_closure(b, s->by, closure, s->out);
@@ -143,7 +143,7 @@ static tl_status not_held(const bench *b)
 }
 
 /* From two sides of the wanted stress to the closure that has it. */
-static tl_status close_in(const search *s, side low, side high)
+static tl_status close_in(const closure_search *s, side low, side high)
 {
     double last = 0;
     for (int pass = 0; pass < MOST_PASSES; pass++) {
@@ -178,7 +178,7 @@ static tl_status close_in(const search *s, side low, side high)
 static tl_status balance(const bench *b, const motion *by, sample *out)
 {
     double kn = b->law.kn + b->stiffness;
-    const search s = {b, by, STRESS_ERROR * fabs(b->stress) + CLOSURE_ERROR * kn, out};
+    const closure_search s = {b, by, STRESS_ERROR * fabs(b->stress) + CLOSURE_ERROR * kn, out};
     side from, to;
     tl_status status = evaluate(&s, b->now.closure[0], &from);
     if (status != TL_OK || fabs(from.excess) <= s.enough)

@@ -185,7 +185,7 @@ static void add_model_fields(const char *word)
 /* ---------------------------------------------------------------- what an expression is -- */
 
 /* What stands before a point or colon; VALUE is on the top of the stack, and only then is anything. */
-typedef enum thing { UNKNOWN, VALUE, MODEL, BLOCKS, CONTACTS, BLOCK, CONTACT } thing;
+typedef enum object_type { UNKNOWN, VALUE, MODEL, BLOCKS, CONTACTS, BLOCK, CONTACT } object_type;
 
 static const char *const type_names[] = {[MODEL] = TL_LUA_MODEL_TYPE,
                                          [BLOCKS] = TL_LUA_BLOCKS,
@@ -193,12 +193,12 @@ static const char *const type_names[] = {[MODEL] = TL_LUA_MODEL_TYPE,
                                          [BLOCK] = TL_LUA_BLOCK,
                                          [CONTACT] = "talus.contact"};
 
-static thing resolve(lua_State *L, const char *text, size_t end);
+static object_type resolve(lua_State *L, const char *text, size_t end);
 
 /* Pops a value of one of our own types and says which it is; leaves any other. */
-static thing classify(lua_State *L)
+static object_type classify(lua_State *L)
 {
-    for (thing t = MODEL; t <= CONTACT; t++)
+    for (object_type t = MODEL; t <= CONTACT; t++)
         if (luaL_testudata(L, -1, type_names[t])) {
             lua_pop(L, 1);
             return t;
@@ -207,7 +207,7 @@ static thing classify(lua_State *L)
 }
 
 /* Replaces the table on the top of the stack by what it has under the key there. */
-static thing look_up(lua_State *L)
+static object_type look_up(lua_State *L)
 {
     if (!lua_istable(L, -2)) {
         lua_pop(L, 2);
@@ -226,7 +226,7 @@ static size_t name_begin(const char *text, size_t end)
 }
 
 /* A name, alone or after a point: text[begin] to text[end - 1]. */
-static thing resolve_name(lua_State *L, const char *text, size_t begin, size_t end)
+static object_type resolve_name(lua_State *L, const char *text, size_t begin, size_t end)
 {
     bool member = begin > 0 && text[begin - 1] == '.';
     if (begin > 0 && text[begin - 1] == ':')
@@ -241,7 +241,7 @@ static thing resolve_name(lua_State *L, const char *text, size_t begin, size_t e
 
 /* The call whose brackets begin at `begin`: by the function's name. A method of a selection that is no topic of its own gives
  * the selection. */
-static thing resolve_call(lua_State *L, const char *text, size_t begin)
+static object_type resolve_call(lua_State *L, const char *text, size_t begin)
 {
     char name[TL_SCAN_NAME];
     while (begin > 0 && text[begin - 1] == ' ')
@@ -258,15 +258,15 @@ static thing resolve_call(lua_State *L, const char *text, size_t begin)
         return MODEL;
     if (at == 0 || text[at - 1] != ':')
         return UNKNOWN;
-    thing of = resolve(L, text, at - 1);
+    object_type of = resolve(L, text, at - 1);
     if (of == VALUE)
         lua_pop(L, 1);
     return of == BLOCKS || of == CONTACTS ? of : UNKNOWN;
 }
 
-static thing resolve_index(lua_State *L, const char *text, size_t begin, size_t end)
+static object_type resolve_index(lua_State *L, const char *text, size_t begin, size_t end)
 {
-    thing of = resolve(L, text, begin);
+    object_type of = resolve(L, text, begin);
     if (of == BLOCKS || of == CONTACTS)
         return of == BLOCKS ? BLOCK : CONTACT;
     if (of != VALUE)
@@ -282,7 +282,7 @@ static thing resolve_index(lua_State *L, const char *text, size_t begin, size_t 
 }
 
 /* What the expression that ends before `end` is. */
-static thing resolve(lua_State *L, const char *text, size_t end)
+static object_type resolve(lua_State *L, const char *text, size_t end)
 {
     luaL_checkstack(L, 8, "completion");
     while (end > 0 && text[end - 1] == ' ')
@@ -324,7 +324,7 @@ static void add_methods(lua_State *L, const char *word, const char *type)
 
 static void complete_member(lua_State *L, const char *word, const char *text, size_t end, char sign)
 {
-    thing of = resolve(L, text, end);
+    object_type of = resolve(L, text, end);
     if (of == VALUE && lua_isstring(L, -1) && sign == ':') {
         lua_getglobal(L, "string");
         add_table(L, word);

@@ -20,23 +20,23 @@ const tl_lua_key tl_lua_restore_keys[] = {
 };
 
 /* Anchors by whom they are for: an anchor of the model that is copied, or a block. */
-typedef struct given {
+typedef struct drive_binding {
     const void *anchor;
     tl_id block;
     tl_drive drive;
     bool taken;
-} given;
+} drive_binding;
 
-typedef struct givens {
+typedef struct drive_bindings {
     size_t count;
-    given list[];
-} givens;
+    drive_binding list[];
+} drive_bindings;
 
 static bool give(void *user, const tl_drive_asked *asked, tl_drive *drive)
 {
-    givens *all = user;
+    drive_bindings *all = user;
     for (size_t i = 0; i < all->count; i++) {
-        given *g = &all->list[i];
+        drive_binding *g = &all->list[i];
         if (asked->from ? g->anchor == asked->from->user : g->block == asked->block) {
             *drive = g->drive;
             g->taken = true;
@@ -49,12 +49,12 @@ static bool give(void *user, const tl_drive_asked *asked, tl_drive *drive)
 }
 
 /* Pushes an empty list with room for as many anchors as the table at the top of the stack has entries. */
-static givens *push_givens(lua_State *L)
+static drive_bindings *push_bindings(lua_State *L)
 {
     size_t count = 0;
     for (lua_pushnil(L); lua_next(L, -2); lua_pop(L, 1))
         count++;
-    givens *all = lua_newuserdatauv(L, sizeof *all + count * sizeof all->list[0], 0);
+    drive_bindings *all = lua_newuserdatauv(L, sizeof *all + count * sizeof all->list[0], 0);
     all->count = 0;
     return all;
 }
@@ -62,20 +62,20 @@ static givens *push_givens(lua_State *L)
 /* ---------------------------------------------------------------- copy ------------------- */
 
 /* Twins, hanging on the model at `to`, of all anchors of the model at `from`. */
-static givens *push_twins(lua_State *L, int from, int to)
+static drive_bindings *push_twins(lua_State *L, int from, int to)
 {
     lua_getiuservalue(L, from, TL_LUA_DRIVES);
     int anchors = lua_gettop(L);
-    givens *all = push_givens(L);
+    drive_bindings *all = push_bindings(L);
     for (lua_pushnil(L); lua_next(L, anchors);) {
         int old = lua_gettop(L);
-        given *g = &all->list[all->count];
+        drive_binding *g = &all->list[all->count];
         tl_lua_anchor *twin = tl_lua_anchor_push(L, to);
         for (int k = 1; k <= TL_LUA_MOTIONS; k++) {
             lua_getiuservalue(L, old, k);
             lua_setiuservalue(L, -2, k);
         }
-        *g = (given){.anchor = lua_touserdata(L, old), .block = TL_NO_ID};
+        *g = (drive_binding){.anchor = lua_touserdata(L, old), .block = TL_NO_ID};
         tl_lua_anchor_drive(L, twin, &g->drive);
         all->count++;
         lua_settop(L, old - 1);
@@ -95,7 +95,7 @@ int tl_lua_copy(lua_State *L)
     tl_model *model = tl_lua_model_of(L, "copy");
     tl_lua_arity(L, 1, "copy");
     tl_lua_model *object = tl_lua_model_push(L);
-    givens *all = push_twins(L, 1, 2);
+    drive_bindings *all = push_twins(L, 1, 2);
     tl_lua_ok(L, model, tl_model_copy(model, give, all, &object->model));
     tl_lua_model_begin(L, object);
     tl_lua_histories_share(L, 1, 2);
@@ -144,7 +144,7 @@ static void take_functions(lua_State *L, int value)
 }
 
 /* Anchors, hanging on the model at `to`, of what the option `drives` of the table at index 2 gives. */
-static givens *push_given(lua_State *L, int to)
+static drive_bindings *push_block_bindings(lua_State *L, int to)
 {
     if (!lua_istable(L, 2) || lua_getfield(L, 2, "drives") == LUA_TNIL)
         lua_newtable(L);
@@ -152,16 +152,16 @@ static givens *push_given(lua_State *L, int to)
     if (!lua_istable(L, drives))
         tl_lua_fail(L, "talus.restore: drives must be a table of functions by block, not %s",
                     tl_lua_describe(L, drives));
-    givens *all = push_givens(L);
+    drive_bindings *all = push_bindings(L);
     for (lua_pushnil(L); lua_next(L, drives);) {
         int value = lua_gettop(L);
         if (!lua_isinteger(L, value - 1))
             tl_lua_fail(L, "talus.restore: drives has the key %s, which is the number of no block",
                         tl_lua_describe(L, value - 1));
-        given *g = &all->list[all->count];
+        drive_binding *g = &all->list[all->count];
         tl_lua_anchor *anchor = tl_lua_anchor_push(L, to);
         take_functions(L, value);
-        *g = (given){.block = (tl_id)lua_tointeger(L, value - 1)};
+        *g = (drive_binding){.block = (tl_id)lua_tointeger(L, value - 1)};
         tl_lua_anchor_drive(L, anchor, &g->drive);
         all->count++;
         lua_settop(L, value - 1);
@@ -182,7 +182,7 @@ static void read_threads(lua_State *L, int64_t *threads)
 }
 
 /* Checks the options at index 2, and pushes an object without a model, and what they give for its drives. */
-static givens *read_options(lua_State *L, int64_t *threads, tl_lua_model **object)
+static drive_bindings *read_options(lua_State *L, int64_t *threads, tl_lua_model **object)
 {
     const tl_lua_spec spec = {"talus.restore", NULL, 0, tl_lua_restore_keys};
     tl_lua_read(L, 2, &spec, false, NULL);
@@ -191,7 +191,7 @@ static givens *read_options(lua_State *L, int64_t *threads, tl_lua_model **objec
     lua_settop(L, 2);
     tl_lua_histories_given(L);
     *object = tl_lua_model_push(L);
-    return push_given(L, 3);
+    return push_block_bindings(L, 3);
 }
 
 int tl_lua_restore(lua_State *L)
@@ -201,7 +201,7 @@ int tl_lua_restore(lua_State *L)
     const char *path = tl_lua_text(L, 1, "talus.restore", "the file");
     int64_t threads;
     tl_lua_model *object;
-    givens *all = read_options(L, &threads, &object);
+    drive_bindings *all = read_options(L, &threads, &object);
     tl_error error;
     if (tl_model_restore(path, threads, give, all, &object->model, &error) != TL_OK)
         return tl_lua_raise(L, &error);

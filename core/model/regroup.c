@@ -118,24 +118,24 @@ typedef struct member {
     tl_vec3 displacement; /* before */
 } member;
 
-/* A body that is made anew, of the members from `start` on. */
-typedef struct made {
+/* A new body, of the members from `start` on. */
+typedef struct new_body {
     parts parts;
     uint32_t start, count;
     uint32_t body; /* its new row */
-} made;
+} new_body;
 
 /* What changes: bodies that stay as they are are only moved to other rows. */
 typedef struct regroup {
     uint32_t *of;         /* [blocks] of the lowest block of a group: its size, then its number */
-    unsigned char *stays; /* [bodies + made] */
+    unsigned char *stays; /* [bodies + new bodies] */
     uint32_t *now;        /* [bodies] new rows of those that stay */
     member *members;      /* [member_count] body by body */
     tl_poly **shapes;     /* [member_count] theirs, in the frames of the new bodies */
     size_t member_count;
-    made *made; /* in the order of their lowest blocks */
+    new_body *new_bodies; /* in the order of their lowest blocks */
     uint32_t *at;
-    size_t made_count;
+    size_t new_body_count;
 } regroup;
 
 static void regroup_free(regroup *r)
@@ -147,7 +147,7 @@ static void regroup_free(regroup *r)
     free(r->now);
     free(r->members);
     free(r->shapes);
-    free(r->made);
+    free(r->new_bodies);
     free(r->at);
 }
 
@@ -191,7 +191,7 @@ static bool sort_bodies(const tl_model *m, const uint32_t *group, regroup *r)
     for (uint32_t row = 0; row < blocks; row++) {
         bool changes = !r->stays[m->blocks.body[row]];
         r->member_count += changes;
-        r->made_count += changes && group[row] == row;
+        r->new_body_count += changes && group[row] == row;
     }
     return true;
 }
@@ -202,9 +202,9 @@ static bool list_made(const tl_model *m, const uint32_t *group, regroup *r)
     uint32_t kept = 0, count = 0, start = 0;
     r->members = malloc((r->member_count + 1) * sizeof *r->members);
     r->shapes = calloc(r->member_count + 1, sizeof *r->shapes);
-    r->made = calloc(r->made_count + 1, sizeof *r->made);
-    r->at = malloc((r->made_count + 1) * sizeof *r->at);
-    if (!r->members || !r->shapes || !r->made || !r->at)
+    r->new_bodies = calloc(r->new_body_count + 1, sizeof *r->new_bodies);
+    r->at = malloc((r->new_body_count + 1) * sizeof *r->at);
+    if (!r->members || !r->shapes || !r->new_bodies || !r->at)
         return false;
     for (uint32_t row = 0; row < m->blocks.table.rows; row++) {
         uint32_t body = m->blocks.body[row];
@@ -214,12 +214,12 @@ static bool list_made(const tl_model *m, const uint32_t *group, regroup *r)
             continue;
         }
         if (group[row] == row) {
-            r->made[count].start = start;
-            r->made[count].body = r->at[count] = count + kept;
+            r->new_bodies[count].start = start;
+            r->new_bodies[count].body = r->at[count] = count + kept;
             start += r->of[row];
             r->of[row] = count++;
         }
-        made *one = &r->made[r->of[group[row]]];
+        new_body *one = &r->new_bodies[r->of[group[row]]];
         r->members[one->start + one->count++] = (member){row, tl_block_displacement(m, row)};
     }
     memset(r->stays + m->bodies.table.rows, 1, count);
@@ -227,7 +227,7 @@ static bool list_made(const tl_model *m, const uint32_t *group, regroup *r)
 }
 
 /* What a new body is made of, and the shapes of its blocks in its frame, with their seams. */
-static tl_status make_body(tl_model *m, regroup *r, made *one)
+static tl_status make_body(tl_model *m, regroup *r, new_body *one)
 {
     uint32_t *rows = malloc((one->count + 1) * sizeof *rows);
     if (!rows)
@@ -263,7 +263,7 @@ static void write_body(tl_model *m, const parts *sum, uint32_t body)
 static bool make_room(tl_model *m, const regroup *r)
 {
     tl_blocks *blocks = &m->blocks;
-    return tl_table_reserve(&m->bodies.table, m->bodies.table.rows + 2 * r->made_count) &&
+    return tl_table_reserve(&m->bodies.table, m->bodies.table.rows + 2 * r->new_body_count) &&
            TL_COLUMN_NEED(&blocks->table, blocks, local, 0) &&
            TL_COLUMN_NEED(&blocks->table, blocks, base, 0);
 }
@@ -274,9 +274,9 @@ static void write_rows(tl_model *m, regroup *r)
     tl_blocks *blocks = &m->blocks;
     tl_table *bodies = &m->bodies.table;
     size_t old = bodies->rows;
-    tl_table_resize(bodies, old + r->made_count);
-    for (size_t i = 0; i < r->made_count; i++) {
-        const made *one = &r->made[i];
+    tl_table_resize(bodies, old + r->new_body_count);
+    for (size_t i = 0; i < r->new_body_count; i++) {
+        const new_body *one = &r->new_bodies[i];
         uint32_t lowest = r->members[one->start].row;
         tl_table_move(bodies, old + i, blocks->body[lowest]);
         write_body(m, &one->parts, (uint32_t)(old + i));
@@ -285,11 +285,11 @@ static void write_rows(tl_model *m, regroup *r)
     for (uint32_t row = 0; row < blocks->table.rows; row++)
         if (r->stays[blocks->body[row]])
             blocks->body[row] = r->now[blocks->body[row]];
-    for (size_t i = 0; i < r->made_count; i++)
-        for (uint32_t k = 0; k < r->made[i].count; k++)
-            blocks->body[r->members[r->made[i].start + k].row] = r->made[i].body;
+    for (size_t i = 0; i < r->new_body_count; i++)
+        for (uint32_t k = 0; k < r->new_bodies[i].count; k++)
+            blocks->body[r->members[r->new_bodies[i].start + k].row] = r->new_bodies[i].body;
     tl_table_keep(bodies, r->stays);
-    tl_table_insert(bodies, r->at, r->made_count);
+    tl_table_insert(bodies, r->at, r->new_body_count);
 }
 
 /* Puts the new shapes into the place of the old ones. */
@@ -307,7 +307,7 @@ static void write_shapes(tl_model *m, regroup *r)
 }
 
 /* Mass, inertia and motion of a new body, and what its blocks have been displaced by. */
-static void finish_body(tl_model *m, const regroup *r, const made *one)
+static void finish_body(tl_model *m, const regroup *r, const new_body *one)
 {
     tl_blocks *blocks = &m->blocks;
     tl_bodies *bodies = &m->bodies;
@@ -330,17 +330,17 @@ tl_status tl_bodies_regroup(tl_model *m, const uint32_t *group)
 {
     regroup r = {0};
     tl_status status = sort_bodies(m, group, &r) ? TL_OK : tl_fail_memory(&m->error);
-    bool changes = status == TL_OK && r.made_count > 0;
+    bool changes = status == TL_OK && r.new_body_count > 0;
     if (changes && !(list_made(m, group, &r) && make_room(m, &r)))
         status = tl_fail_memory(&m->error);
-    for (size_t i = 0; i < r.made_count && status == TL_OK; i++)
-        status = make_body(m, &r, &r.made[i]);
+    for (size_t i = 0; i < r.new_body_count && status == TL_OK; i++)
+        status = make_body(m, &r, &r.new_bodies[i]);
     if (changes && status == TL_OK) { /* from here on nothing can fail */
         write_rows(m, &r);
         write_shapes(m, &r);
         tl_rows_refresh(m);
-        for (size_t i = 0; i < r.made_count; i++)
-            finish_body(m, &r, &r.made[i]);
+        for (size_t i = 0; i < r.new_body_count; i++)
+            finish_body(m, &r, &r.new_bodies[i]);
         tl_drives_recount(m);
     }
     regroup_free(&r);

@@ -263,16 +263,16 @@ static tl_status replace(tl_stage *stage, size_t index, const tl_cut *cut, uint6
 }
 
 /* A joint's plane, or disc, as it meets one staged block. */
-typedef struct crossing {
+typedef struct plane_in_block {
     tl_plane plane; /* in the block's frame */
     tl_vec3 center; /* of the disc */
     double radius;  /* INFINITY: the whole plane */
-} crossing;
+} plane_in_block;
 
-static crossing crossing_in_frame(const tl_model *m, const tl_stage_block *block, tl_vec3 normal,
-                                  tl_vec3 point, double radius)
+static plane_in_block plane_in_block_of(const tl_model *m, const tl_stage_block *block,
+                                        tl_vec3 normal, tl_vec3 point, double radius)
 {
-    crossing x = {plane_in_frame(m, block, normal, point), point, radius};
+    plane_in_block x = {plane_in_frame(m, block, normal, point), point, radius};
     if (block->source != TL_NO_ROW && !isinf(radius)) {
         uint32_t body = m->blocks.body[block->source];
         tl_vec3 relative =
@@ -284,7 +284,7 @@ static crossing crossing_in_frame(const tl_model *m, const tl_stage_block *block
 
 /* False when the ball about a block shows that the plane or disc, relative to the model's origin, passes
  * it by. */
-static bool may_meet(const crossing *x, tl_stage_ball ball)
+static bool may_meet(const plane_in_block *x, tl_stage_ball ball)
 {
     double rounding = BALL_ROUNDINGS * fabs(x->plane.offset);
     if (fabs(tl_v3_dot(x->plane.normal, ball.center) - x->plane.offset) > ball.radius + rounding)
@@ -295,7 +295,7 @@ static bool may_meet(const crossing *x, tl_stage_ball ball)
 
 /* Whether a block that the plane crosses is in the path of the disc: the disc reaches the section of the
  * block with the plane, or the face that the plane falls on. */
-static bool in_path(const crossing *x, const tl_stage_block *block, const tl_cut *cut)
+static bool in_path(const plane_in_block *x, const tl_stage_block *block, const tl_cut *cut)
 {
     if (cut->result == TL_CUT_MISS)
         return false;
@@ -343,14 +343,14 @@ tl_status tl_stage_cut_disc(tl_stage *stage, tl_vec3 normal, tl_vec3 point, doub
         tl_key_text(tl_key(0, (uint64_t)m->config.seed), m->joints[tag.joint - 1].name), tag.plane);
     bool coincident = false;
     size_t count = stage->count; /* children of this cut are not cut by it again */
-    const crossing global = {{normal, tl_v3_dot(normal, local)}, local, radius};
+    const plane_in_block global = {{normal, tl_v3_dot(normal, local)}, local, radius};
     for (size_t i = 0; i < count; i++) {
         if (!may_meet(&global, stage->balls[i]))
             continue;
         tl_stage_block *block = &stage->blocks[i];
         if (block->hidden || block->hidden_by_generator)
             continue;
-        crossing x = crossing_in_frame(m, block, normal, local, radius);
+        plane_in_block x = plane_in_block_of(m, block, normal, local, radius);
         tl_cut cut;
         tl_status status =
             tl_poly_cut(block->shape, x.plane, plane_reach(m, block, local), tag, &cut, &m->error);

@@ -83,21 +83,21 @@ tl_status tl_blocks_delete(tl_model *m, const tl_id *ids, size_t count)
 }
 
 /* In what way a body is held, and the motion that holding it may end. */
-typedef struct held {
+typedef struct constraint {
     uint8_t fixed;
     uint32_t drive;
     tl_vec3 v, w;
-} held;
+} constraint;
 
-static held held_as(const tl_model *m, uint32_t body)
+static constraint constraint_of(const tl_model *m, uint32_t body)
 {
     const tl_bodies *b = &m->bodies;
-    return (held){b->fixed[body], b->drive[body], b->v[body], b->w[body]};
+    return (constraint){b->fixed[body], b->drive[body], b->v[body], b->w[body]};
 }
 
-static bool is_held_as(const tl_model *m, uint32_t body, held before)
+static bool has_constraint(const tl_model *m, uint32_t body, constraint before)
 {
-    held now = held_as(m, body);
+    constraint now = constraint_of(m, body);
     double faster =
         tl_v3_norm2(tl_v3_sub(now.v, before.v)) + tl_v3_norm2(tl_v3_sub(now.w, before.w));
     return now.fixed == before.fixed && now.drive == before.drive && faster == 0;
@@ -114,7 +114,7 @@ tl_status tl_blocks_fix(tl_model *m, const tl_id *ids, size_t count, unsigned wh
     for (size_t i = 0; i < count; i++) {
         uint32_t body = m->blocks.body[m->row_of[ids[i]]];
         tl_vec3 *v = &m->bodies.v[body];
-        held before = held_as(m, body);
+        constraint before = constraint_of(m, body);
         tl_drive_leave(m, body);
         m->bodies.fixed[body] = (uint8_t)(m->bodies.fixed[body] | (what & TL_FIX_ALL));
         v->x = what & TL_FIX_X ? 0 : v->x;
@@ -122,7 +122,7 @@ tl_status tl_blocks_fix(tl_model *m, const tl_id *ids, size_t count, unsigned wh
         v->z = what & TL_FIX_Z ? 0 : v->z;
         if (what & TL_FIX_ROTATION)
             m->bodies.w[body] = tl_v3(0, 0, 0);
-        changed = changed || !is_held_as(m, body, before);
+        changed = changed || !has_constraint(m, body, before);
     }
     m->constraints += changed;
     return TL_OK;
@@ -138,10 +138,10 @@ tl_status tl_blocks_free(tl_model *m, const tl_id *ids, size_t count)
     bool changed = false;
     for (size_t i = 0; i < count; i++) {
         uint32_t body = m->blocks.body[m->row_of[ids[i]]];
-        held before = held_as(m, body);
+        constraint before = constraint_of(m, body);
         tl_drive_leave(m, body);
         m->bodies.fixed[body] = 0;
-        changed = changed || !is_held_as(m, body, before);
+        changed = changed || !has_constraint(m, body, before);
     }
     m->constraints += changed;
     return TL_OK;

@@ -126,9 +126,9 @@ static bool stands(const tl_field_faces *f, corners *at)
 /* ---------------------------------------------------------------- polygons --------------- */
 
 /* A corner of each of eight polygons. */
-typedef struct spot {
+typedef struct polygon_corner {
     double x[3][LANES], d[LANES];
-} spot;
+} polygon_corner;
 
 /* Integrals over polygons: of 1, d, d^2, x, d x, x . x. */
 typedef struct integrals {
@@ -146,7 +146,7 @@ typedef struct polygons {
 } polygons;
 
 /* The k-th corners of eight polygons; of one that has fewer, its last. */
-TL_INLINE void take_spot(const corners *at, const polygons *p, uint32_t k, spot *out)
+TL_INLINE void take_corner(const corners *at, const polygons *p, uint32_t k, polygon_corner *out)
 {
     for (uint32_t l = 0; l < LANES; l++) {
         uint32_t corner = p->loop[l][k < p->sides[l] ? k : p->sides[l] - 1];
@@ -158,8 +158,8 @@ TL_INLINE void take_spot(const corners *at, const polygons *p, uint32_t k, spot 
 }
 
 /* Adds a triangle of each polygon. */
-TL_INLINE void add_triangle(const polygons *p, const spot *u, const spot *v, const spot *w,
-                            integrals *s)
+TL_INLINE void add_triangle(const polygons *p, const polygon_corner *u, const polygon_corner *v,
+                            const polygon_corner *w, integrals *s)
 {
 #pragma omp simd
     for (uint32_t l = 0; l < LANES; l++) {
@@ -190,7 +190,7 @@ TL_INLINE void add_triangle(const polygons *p, const spot *u, const spot *v, con
 /* Integrates over eight polygons by triangles from their first corners. */
 TL_VECTORIZED static void integrate_polygons(const corners *restrict at, polygons *restrict p)
 {
-    spot u, v, w;
+    polygon_corner u, v, w;
     integrals s;
     memset(&s, 0, sizeof s);
 #pragma omp simd
@@ -202,10 +202,10 @@ TL_VECTORIZED static void integrate_polygons(const corners *restrict at, polygon
         p->n[1][l] = y * per;
         p->n[2][l] = z * per;
     }
-    take_spot(at, p, 0, &u);
-    take_spot(at, p, 1, &v);
+    take_corner(at, p, 0, &u);
+    take_corner(at, p, 1, &v);
     for (uint32_t k = 2; k < p->most; k++) {
-        take_spot(at, p, k, &w);
+        take_corner(at, p, k, &w);
         add_triangle(p, &u, &v, &w, &s);
         v = w;
     }

@@ -73,9 +73,9 @@ typedef struct frames {
 } frames;
 
 /* What a corner of the polygon is placed by: see tl_outline_corner. */
-typedef struct ends {
+typedef struct corner_source {
     tl_batch1 px, py, qx, qy, h, g;
-} ends;
+} corner_source;
 
 /* What is computed on the way. Corners of A in the plane of the patch come first, then those of B; heights of
  * corner i of A over line j of B are in row CORNERS j + i. */
@@ -87,7 +87,7 @@ typedef struct work {
     /* of the polygon: corners, the first once more after the last; edges from corner k - 1 to k in row k */
     tl_batch1 count, px[CORNERS + 1], py[CORNERS + 1], fan[CORNERS + 1];
     tl_batch1 cx, cy, area; /* centroid; area in the plane */
-    ends ends[CORNERS];
+    corner_source source[CORNERS];
     uint32_t na, nb, corners; /* most of any lane */
 } work;
 
@@ -274,7 +274,7 @@ static void find_outlines(tl_patch_batch *b, work *w)
 /* Looks up what corner k is placed by where it is of the same features in all lanes. */
 static void find_row(const tl_outline_corner *c, work *w, uint32_t k)
 {
-    ends *e = &w->ends[k];
+    corner_source *e = &w->source[k];
     memcpy(e->px, w->x[c->from], sizeof e->px);
     memcpy(e->py, w->y[c->from], sizeof e->py);
     memcpy(e->qx, w->x[c->to], sizeof e->qx);
@@ -291,7 +291,7 @@ static void find_ends(const tl_patch_batch *b, work *w)
     for (uint32_t l = 0; l < TL_LANES && !b->alike; l++)
         for (uint32_t k = 0; k < w->corners; k++) {
             const tl_outline_corner *c = &b->outline[l].corner[k];
-            ends *e = &w->ends[k];
+            corner_source *e = &w->source[k];
             e->px[l] = w->x[c->from][l];
             e->py[l] = w->y[c->from][l];
             e->qx[l] = w->x[c->to][l];
@@ -304,7 +304,7 @@ static void find_ends(const tl_patch_batch *b, work *w)
 /* Places corner k of the polygons. */
 TL_INLINE void place(work *w, uint32_t k)
 {
-    const ends *e = &w->ends[k];
+    const corner_source *e = &w->source[k];
 #pragma omp simd
     EACH_LANE(l)
     {

@@ -168,23 +168,23 @@ static bool is_noise(const tl_press_query *of, const planes *p, const tl_field_s
 /* ---------------------------------------------------------------- energies --------------- */
 
 /* An energy, the force and moment of it: minus the gradient, and what passes through seams. */
-typedef struct stored {
+typedef struct potential {
     double energy;
     tl_vec3 force, moment;
-} stored;
+} potential;
 
 /* G_m of the minimum area. */
-static stored with_least(const tl_field_sums *f, double least)
+static potential with_least(const tl_field_sums *f, double least)
 {
     tl_vec3 force = tl_v3_add(f->force, f->through);
     tl_vec3 moment = tl_v3_add(f->moment, f->through_moment);
     if (!(least > 0))
-        return (stored){f->energy, force, moment};
+        return (potential){f->energy, force, moment};
     double g = f->energy, v = f->volume, s = 4 * g / v, area = 0.25 * v * v / g;
     double r = sqrt(area * area + least * least), ds = 0.5 * s * r, dr = 0.25 * s * s * area / r;
     double by_g = ds * 4 / v - dr * area / g, by_v = -ds * s / v + dr * 2 * area / v;
-    return (stored){0.25 * s * s * r, tl_v3_madd(tl_v3_scale(by_g, force), by_v, f->swept),
-                    tl_v3_madd(tl_v3_scale(by_g, moment), by_v, f->swept_moment)};
+    return (potential){0.25 * s * s * r, tl_v3_madd(tl_v3_scale(by_g, force), by_v, f->swept),
+                       tl_v3_madd(tl_v3_scale(by_g, moment), by_v, f->swept_moment)};
 }
 
 /* Smoothstep from 0 at `low` to 1 at `high`, and its slope. */
@@ -197,9 +197,9 @@ static double step(double x, double low, double high, double *slope)
 
 /* Blends the field with the patch of the flush faces; the share of the patch. Both have the minimum area. */
 static double blend(const tl_press_query *of, const tl_field_sums *patch, double least,
-                    stored *field)
+                    potential *field)
 {
-    const stored flat = with_least(patch, least);
+    const potential flat = with_least(patch, least);
     tl_vec3 na = of->view->a->plane[of->region->flush_a].normal;
     tl_vec3 nb = of->view->normal_b[of->region->flush_b], hinge = tl_v3_cross(na, nb);
     double sine = tl_v3_norm(hinge), g = patch->energy, v = patch->volume, by_tilt, by_q;
@@ -249,7 +249,7 @@ static bool press_of(const tl_press_query *of, planes *p, const tl_field_sums *s
             region->mesh->bounding = region->mesh->polygons = 0;
         return true;
     }
-    stored field = with_least(sums, of->least);
+    potential field = with_least(sums, of->least);
     if (region->flush && tl_region_tilt(view, region->flush_a, region->flush_b) < TL_FIELD_TILT) {
         list_patch(p, of);
         p->faces.mesh = NULL;

@@ -41,11 +41,11 @@
 #define MOST_FOLDERS 64
 
 /* Folders that were searched, by identity, so that two names of one folder count once. */
-typedef struct searched {
+typedef struct searched_folders {
     dev_t device[MOST_FOLDERS];
     ino_t inode[MOST_FOLDERS];
     size_t count;
-} searched;
+} searched_folders;
 
 /* ISO C has no conversion from an object pointer to a function; POSIX promises this one works. */
 static tl_plugin_entry_fn find_entry(void *handle)
@@ -138,16 +138,16 @@ static int by_name(const struct dirent **a, const struct dirent **b)
 }
 
 /* True the first time an existing folder is seen. */
-static bool is_new_folder(searched *seen, const char *folder)
+static bool is_new_folder(searched_folders *folders, const char *folder)
 {
     struct stat info;
-    if (stat(folder, &info) != 0 || !S_ISDIR(info.st_mode) || seen->count == MOST_FOLDERS)
+    if (stat(folder, &info) != 0 || !S_ISDIR(info.st_mode) || folders->count == MOST_FOLDERS)
         return false;
-    for (size_t i = 0; i < seen->count; i++)
-        if (seen->device[i] == info.st_dev && seen->inode[i] == info.st_ino)
+    for (size_t i = 0; i < folders->count; i++)
+        if (folders->device[i] == info.st_dev && folders->inode[i] == info.st_ino)
             return false;
-    seen->device[seen->count] = info.st_dev;
-    seen->inode[seen->count++] = info.st_ino;
+    folders->device[folders->count] = info.st_dev;
+    folders->inode[folders->count++] = info.st_ino;
     return true;
 }
 
@@ -164,10 +164,10 @@ static void load_found(const char *path, const char *program)
 }
 
 /* `program`: the file whose owner is trusted, or NULL where the user has named the folder. */
-static void load_folder(searched *seen, const char *folder, const char *program)
+static void load_folder(searched_folders *folders, const char *folder, const char *program)
 {
     char why[PATH_MAX + 128], text[PATH_MAX + 256];
-    if (!is_new_folder(seen, folder))
+    if (!is_new_folder(folders, folder))
         return;
     if (!tl_path_is_trusted(folder, program ? program : folder, why, sizeof why)) {
         snprintf(text, sizeof text,
@@ -192,7 +192,7 @@ static void load_folder(searched *seen, const char *folder, const char *program)
         free(entries);
 }
 
-static void load_path_list(searched *seen, const char *list)
+static void load_path_list(searched_folders *folders, const char *list)
 {
     while (list && *list) {
         size_t length = strcspn(list, ":");
@@ -200,7 +200,7 @@ static void load_path_list(searched *seen, const char *list)
         if (length > 0 && length < sizeof folder) {
             memcpy(folder, list, length);
             folder[length] = '\0';
-            load_folder(seen, folder, NULL);
+            load_folder(folders, folder, NULL);
         }
         list += length + (list[length] == ':');
     }
@@ -219,19 +219,19 @@ bool tl_own_file(char file[PATH_MAX])
 static void load_everything(void)
 {
     static const char *const installed[] = {"../lib/talus", "../../talus", "talus"};
-    searched seen = {.count = 0};
+    searched_folders folders = {.count = 0};
     char own[PATH_MAX], here[PATH_MAX], folder[PATH_MAX + 64], plain[PATH_MAX];
-    load_path_list(&seen, getenv("TALUS_PLUGIN_PATH"));
+    load_path_list(&folders, getenv("TALUS_PLUGIN_PATH"));
     if (!tl_own_file(own))
         return;
     snprintf(here, sizeof here, "%.*s", (int)(strrchr(own, '/') - own), own);
     snprintf(folder, sizeof folder, "%s/plugins", here);
-    load_folder(&seen, folder, own);
+    load_folder(&folders, folder, own);
     for (size_t i = 0; i < sizeof installed / sizeof *installed; i++) {
         snprintf(folder, sizeof folder, "%s/%s/plugins-%u", here, installed[i], TL_ABI_MAJOR);
         /* Without the "..", as a user would write it. */
         if (realpath(folder, plain))
-            load_folder(&seen, plain, own);
+            load_folder(&folders, plain, own);
     }
 }
 

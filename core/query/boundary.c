@@ -27,15 +27,15 @@
 #define ROUNDED 1e-12
 #define DEGREE (3.14159265358979323846 / 180)
 
-/* Where faces are looked for, once the model's bounds are known. */
-typedef struct search {
+/* Which faces are meant, once the model's bounds are known. */
+typedef struct face_filter {
     const tl_boundary_where *where;
     bool plane, box, facing;
     tl_vec3 normal, at;  /* of the plane, relative to the origin */
     tl_bounds bounds;    /* of the box, likewise */
     tl_vec3 direction;   /* unit */
     double least_cosine; /* with it */
-} search;
+} face_filter;
 
 /* What is put on a body: about its centroid. */
 typedef struct body_sum {
@@ -86,9 +86,9 @@ static double farthest(const tl_model *m, tl_vec3 direction)
     return most;
 }
 
-static tl_status begin_search(tl_model *m, const tl_boundary_where *where, search *s)
+static tl_status begin_filter(tl_model *m, const tl_boundary_where *where, face_filter *s)
 {
-    *s = (search){.where = where};
+    *s = (face_filter){.where = where};
     s->box = !isnan(where->box.min.x);
     s->facing = !isnan(where->facing.x);
     s->plane = where->side != TL_SIDE_ANY || !isnan(where->normal.x);
@@ -121,7 +121,7 @@ static bool in_box(const tl_bounds *box, tl_vec3 p, double slack)
 }
 
 /* Whether a face is where it is looked for; it may be no outer one. */
-static bool is_there(const tl_model *m, const search *s, uint32_t row, uint32_t face)
+static bool is_there(const tl_model *m, const face_filter *s, uint32_t row, uint32_t face)
 {
     const tl_poly *shape = m->blocks.shape[row];
     tl_vec3 n = tl_m3_mul(&m->bodies.pose[m->blocks.body[row]].r, shape->plane[face].normal);
@@ -139,15 +139,15 @@ static bool is_there(const tl_model *m, const search *s, uint32_t row, uint32_t 
     return true;
 }
 
-typedef struct found {
+typedef struct face_list {
     tl_outer_face *at;
     size_t count, room;
-} found;
+} face_list;
 
-static tl_status find_faces(tl_model *m, const tl_boundary_where *where, found *faces)
+static tl_status find_faces(tl_model *m, const tl_boundary_where *where, face_list *faces)
 {
-    search s;
-    tl_status status = begin_search(m, where, &s);
+    face_filter s;
+    tl_status status = begin_filter(m, where, &s);
     for (uint32_t row = 0; row < m->blocks.table.rows; row++)
         for (uint32_t f = 0; f < m->blocks.shape[row]->face_count && status == TL_OK; f++) {
             if (!is_there(m, &s, row, f))
@@ -235,7 +235,7 @@ static tl_status add_fixing(tl_model *m, const tl_boundary_action *a, const tl_o
 }
 
 /* Writes what was found; false when out of memory. Faces are in order of rows, and so of ids. */
-static bool fill_result(const tl_model *m, const found *faces, tl_boundary_result *r)
+static bool fill_result(const tl_model *m, const face_list *faces, tl_boundary_result *r)
 {
     r->faces = malloc((faces->count + 1) * sizeof *r->faces);
     r->blocks = malloc((faces->count + 1) * sizeof *r->blocks);
@@ -255,7 +255,7 @@ static bool fill_result(const tl_model *m, const found *faces, tl_boundary_resul
 static tl_status plan(tl_model *m, const tl_boundary_action *a, uint8_t *fix, body_sum *sums,
                       tl_boundary_result *result)
 {
-    found faces = {0};
+    face_list faces = {0};
     tl_status status = find_faces(m, &a->where, &faces);
     for (size_t i = 0; i < faces.count && status == TL_OK; i++) {
         status = add_fixing(m, a, &faces.at[i], fix);
