@@ -45,12 +45,12 @@ tl_timestep tl_model_timestep_now(const tl_model *m)
 
 bool tl_model_contact_area_at(tl_model *m, size_t i, tl_contact_area *rule)
 {
-    if (i > m->area_count)
+    if (i > m->joint_min_area_count)
         return false;
-    const tl_area_rule *from = i ? &m->areas[i - 1].rule : &m->area;
+    const tl_min_area_rule *from = i ? &m->joint_min_areas[i - 1].rule : &m->min_area;
     *rule = tl_contact_area_default();
     rule->fraction = from->fraction;
     rule->absolute = from->absolute;
-    rule->joint = i ? pattern_name(m, m->areas[i - 1].tag) : NULL;
+    rule->joint = i ? pattern_name(m, m->joint_min_areas[i - 1].tag) : NULL;
     return true;
 }

@@ -15,8 +15,8 @@
 
 /* Rows a worker takes at a time. */
 #define CONTACT_CHUNK 256
-/* Minimum area over that of a patch from which the patch may be none: below LEAST of narrow/manifold.c. */
-#define PATCH_STANDS 0.01
+/* Minimum area over that of a patch from which the patch may be none: below MOST_MIN_AREA of narrow/manifold.c. */
+#define SURE_MIN_AREA 0.01
 
 /* ---------------------------------------------------------------- rows ------------------- */
 
@@ -152,10 +152,10 @@ static bool stays_patch(const tl_model *m, uint32_t row)
     const tl_contacts *c = &m->detect->contacts;
     if (c->point_count[row] == 0 || c->facet[row].kind == TL_FACET_FIELD)
         return false;
-    tl_area_rule rule = tl_area_rule_of(m, c->tag[row]);
+    tl_min_area_rule rule = tl_min_area_of(m, c->tag[row]);
     double mean = fmin(m->blocks.mean_face[c->a[row]], m->blocks.mean_face[c->b[row]]);
-    double least = isnan(rule.absolute) ? rule.fraction * mean : rule.absolute;
-    return least <= PATCH_STANDS * c->area[row];
+    double min_area = isnan(rule.absolute) ? rule.fraction * mean : rule.absolute;
+    return min_area <= SURE_MIN_AREA * c->area[row];
 }
 
 /* Pairs that touch without area are looked at again, but for those that have nothing in common. */

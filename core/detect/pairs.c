@@ -186,7 +186,7 @@ static void test_pair(tl_model *m, tl_pair *p, tl_narrow *room)
         return;
     }
     tl_touch_rule rule = tl_touch_rule_of(m, &view, tl_touching_tag(&view, region.n), false);
-    if (!(rule.least > 0)) {
+    if (!(rule.min_area > 0)) {
         tl_grazing_choose_faces(&view, p);
         margin = tl_grazing_margin(&view, p, &gap);
         if (margin >= 0) {

@@ -335,7 +335,7 @@ static bool renew_patch(tl_model *m, uint32_t c, unsigned thread)
         contacts->fresh[c] = true;
         return true;
     }
-    if (rule.least > 0) /* it may be too small for a patch now */
+    if (rule.min_area > 0) /* it may be too small for a patch now */
         return false;
     room->manifold.failed = !take_manifold(m, c, room, &m->detect->lanes[thread]);
     return !room->manifold.failed;
@@ -349,7 +349,7 @@ static bool touches_still(tl_model *m, uint32_t c)
     if (contacts->point_count[c] || contacts->points_valid_to[c] == -INFINITY)
         return false;
     tl_pair_view view = tl_pair_view_of(m, contacts->a[c], contacts->b[c]);
-    if (tl_touch_rule_of(m, &view, contacts->tag[c], false).least > 0)
+    if (tl_touch_rule_of(m, &view, contacts->tag[c], false).min_area > 0)
         return false;
     tl_pair *p = &m->detect->pairs[contacts->pair[c]];
     double gap, margin = tl_grazing_margin(&view, p, &gap);

@@ -134,14 +134,15 @@ const tl_law *tl_law_of(const tl_model *m, tl_tag tag)
     return best;
 }
 
-tl_area_rule tl_area_rule_of(const tl_model *m, tl_tag tag)
+tl_min_area_rule tl_min_area_of(const tl_model *m, tl_tag tag)
 {
-    tl_area_rule rule = m->area;
+    tl_min_area_rule rule = m->min_area;
     int best = 0;
-    for (size_t i = 0; i < m->area_count; i++)
-        if (tl_tag_matches(m->areas[i].tag, tag) && closeness(m->areas[i].tag) > best) {
-            best = closeness(m->areas[i].tag);
-            rule = m->areas[i].rule;
+    for (size_t i = 0; i < m->joint_min_area_count; i++)
+        if (tl_tag_matches(m->joint_min_areas[i].tag, tag) &&
+            closeness(m->joint_min_areas[i].tag) > best) {
+            best = closeness(m->joint_min_areas[i].tag);
+            rule = m->joint_min_areas[i].rule;
         }
     return rule;
 }
@@ -170,19 +171,20 @@ const char *tl_tag_name(tl_model *m, tl_tag tag)
 }
 
 /* Puts the rule of a joint in the place of the one it has, or adds it; false when out of memory. */
-static bool set_joint_area(tl_model *m, const tl_joint_area *entry)
+static bool set_joint_area(tl_model *m, const tl_joint_min_area *entry)
 {
-    for (size_t i = 0; i < m->area_count; i++)
-        if (m->areas[i].tag.joint == entry->tag.joint &&
-            m->areas[i].tag.plane == entry->tag.plane) {
-            m->areas[i] = *entry;
+    for (size_t i = 0; i < m->joint_min_area_count; i++)
+        if (m->joint_min_areas[i].tag.joint == entry->tag.joint &&
+            m->joint_min_areas[i].tag.plane == entry->tag.plane) {
+            m->joint_min_areas[i] = *entry;
             return true;
         }
-    tl_joint_area *areas = realloc(m->areas, (m->area_count + 1) * sizeof *areas);
-    if (!areas)
+    tl_joint_min_area *joint_min_areas =
+        realloc(m->joint_min_areas, (m->joint_min_area_count + 1) * sizeof *joint_min_areas);
+    if (!joint_min_areas)
         return false;
-    m->areas = areas;
-    m->areas[m->area_count++] = *entry;
+    m->joint_min_areas = joint_min_areas;
+    m->joint_min_areas[m->joint_min_area_count++] = *entry;
     return true;
 }
 
@@ -201,12 +203,12 @@ tl_status tl_model_contact_area(tl_model *m, const tl_contact_area *given)
     if (!isnan(area->absolute) && !(area->absolute >= 0 && isfinite(area->absolute)))
         return tl_fail(&m->error, TL_E_ARGUMENT, "contact_area: absolute = %g must be >= 0",
                        area->absolute);
-    tl_joint_area entry = {.rule = {area->fraction, area->absolute}};
+    tl_joint_min_area entry = {.rule = {area->fraction, area->absolute}};
     status = tl_joint_parse(m, area->joint ? area->joint : "*", &entry.tag);
     if (status != TL_OK)
         return status;
     if (entry.tag.joint == 0)
-        m->area = entry.rule;
+        m->min_area = entry.rule;
     else if (!set_joint_area(m, &entry))
         return tl_fail_memory(&m->error);
     m->laws++;

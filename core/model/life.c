@@ -70,7 +70,7 @@ tl_status tl_model_create(const tl_model_config *given, tl_model **model, tl_err
     m->config = *config;
     m->pool = pool;
     m->next_id = 1;
-    m->area = (tl_area_rule){TL_AREA_FRACTION, NAN};
+    m->min_area = (tl_min_area_rule){TL_AREA_FRACTION, NAN};
     m->timestep = tl_timestep_default();
     m->added_dt = m->added_most = NAN;
     atomic_init(&m->interrupted, false);
@@ -109,7 +109,7 @@ void tl_model_destroy(tl_model *m)
     free(m->groups);
     free(m->joints);
     free(m->joint_laws);
-    free(m->areas);
+    free(m->joint_min_areas);
     free(m->members);
     free(m->row_of);
     tl_pool_destroy(m->pool);

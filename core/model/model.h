@@ -130,15 +130,15 @@ typedef struct tl_drive_record {
 } tl_drive_record;
 
 /* A rule for the minimum area of field contacts. */
-typedef struct tl_area_rule {
+typedef struct tl_min_area_rule {
     double fraction;
     double absolute; /* NaN: by the fraction */
-} tl_area_rule;
+} tl_min_area_rule;
 
-typedef struct tl_joint_area {
+typedef struct tl_joint_min_area {
     tl_tag tag;
-    tl_area_rule rule;
-} tl_joint_area;
+    tl_min_area_rule rule;
+} tl_joint_min_area;
 
 /* What has been done to the blocks since the model was made, for its report. */
 typedef struct tl_cut_record {
@@ -201,9 +201,9 @@ struct tl_model {
     size_t joint_law_count;
     uint64_t laws;  /* counts changes of the joint laws */
     uint64_t rules; /* counts changes of minimum areas and of contact_points */
-    tl_area_rule area;
-    tl_joint_area *areas;
-    size_t area_count;
+    tl_min_area_rule min_area;
+    tl_joint_min_area *joint_min_areas;
+    size_t joint_min_area_count;
 
     tl_drive_record *drives;
     size_t drive_count;
@@ -357,7 +357,7 @@ tl_status tl_joint_parse(tl_model *m, const char *text, tl_tag *tag);
 bool tl_tag_matches(tl_tag pattern, tl_tag tag);
 /* The joint law that rules a contact of this tag, or NULL. */
 const tl_law *tl_law_of(const tl_model *m, tl_tag tag);
-tl_area_rule tl_area_rule_of(const tl_model *m, tl_tag tag);
+tl_min_area_rule tl_min_area_of(const tl_model *m, tl_tag tag);
 void tl_law_clear(tl_law *law);
 
 /* ---- staging: stage.c ---- */

@@ -14,8 +14,8 @@ static void walk_settings(tl_model *m, const tl_walk *walk)
     VALUE(STATE, config.rotation);
     VALUE(STATE, config.reuse_geometry);
     VALUE(STATE, config.contact_points);
-    VALUE(STATE, area);
-    LIST(STATE, areas, area_count, area_count);
+    VALUE(STATE, min_area);
+    LIST(STATE, joint_min_areas, joint_min_area_count, joint_min_area_count);
     VALUE(STATE, timestep.fraction);
     VALUE(STATE, timestep.rule);
     VALUE(STATE, timestep.dt);

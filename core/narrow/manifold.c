@@ -15,7 +15,7 @@
  * too: by this share of the patch's force. */
 #define BLUNT 2000.0
 /* Minimum area over that of a patch up to which it makes no difference: by less than 2e-3 of the force. */
-#define LEAST 0.05
+#define MOST_MIN_AREA 0.05
 
 /* ---------------------------------------------------------------- patches ---------------- */
 
@@ -33,7 +33,7 @@ static bool is_patch(const tl_pair_view *view, const tl_region *r, const tl_touc
     if (!(behind > 0 && level > 0))
         return false;
     double area = tl_patch_add(view, r->flush_a, r->flush_b, rule, room);
-    if (!(area > 0) || rule->least > LEAST * area)
+    if (!(area > 0) || rule->min_area > MOST_MIN_AREA * area)
         return false;
     double shallow = part * TL_FLUSH_DEPTH * sqrt(area) + room->patch.gap;
     if (!(shallow > 0))
@@ -69,7 +69,7 @@ tl_press_query tl_manifold_query(const tl_pair_view *view, const tl_region *regi
 {
     return (tl_press_query){.view = view,
                             .region = region,
-                            .least = rule->least,
+                            .min_area = rule->min_area,
                             .shift = before->shift,
                             .shifted = before->shift > 0 ? before->shifted : UINT32_MAX};
 }

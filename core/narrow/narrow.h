@@ -50,9 +50,9 @@ typedef struct tl_narrow {
 
 /* How a pair is to touch. */
 typedef struct tl_touch_rule {
-    double least; /* minimum area of a field contact, m2 */
-    bool corners; /* points of patches at corners only */
-    double reach; /* patches with every gap beyond this are left out */
+    double min_area; /* of a field contact, m2 */
+    bool corners;    /* points of patches at corners only */
+    double reach;    /* patches with every gap beyond this are left out */
 } tl_touch_rule;
 
 #endif

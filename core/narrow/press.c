@@ -161,7 +161,7 @@ static bool is_noise(const tl_press_query *of, const planes *p, const tl_field_s
     if (sums->deepest > FAINT * size)
         return false;
     tl_vec3 centre = tl_v3_madd(p->origin, 1 / sums->pressure, sums->pressed);
-    bool deeper = of->least > 0 && !(sums->energy <= 2 * sums->deepest * sums->volume);
+    bool deeper = of->min_area > 0 && !(sums->energy <= 2 * sums->deepest * sums->volume);
     return deeper || !in_both(of, centre, TL_TOUCHING / INSIDE * size);
 }
 
@@ -174,14 +174,15 @@ typedef struct potential {
 } potential;
 
 /* G_m of the minimum area. */
-static potential with_least(const tl_field_sums *f, double least)
+static potential with_min_area(const tl_field_sums *f, double min_area)
 {
     tl_vec3 force = tl_v3_add(f->force, f->through);
     tl_vec3 moment = tl_v3_add(f->moment, f->through_moment);
-    if (!(least > 0))
+    if (!(min_area > 0))
         return (potential){f->energy, force, moment};
     double g = f->energy, v = f->volume, s = 4 * g / v, area = 0.25 * v * v / g;
-    double r = sqrt(area * area + least * least), ds = 0.5 * s * r, dr = 0.25 * s * s * area / r;
+    double r = sqrt(area * area + min_area * min_area), ds = 0.5 * s * r,
+           dr = 0.25 * s * s * area / r;
     double by_g = ds * 4 / v - dr * area / g, by_v = -ds * s / v + dr * 2 * area / v;
     return (potential){0.25 * s * s * r, tl_v3_madd(tl_v3_scale(by_g, force), by_v, f->swept),
                        tl_v3_madd(tl_v3_scale(by_g, moment), by_v, f->swept_moment)};
@@ -196,10 +197,10 @@ static double step(double x, double low, double high, double *slope)
 }
 
 /* Blends the field with the patch of the flush faces; the share of the patch. Both have the minimum area. */
-static double blend(const tl_press_query *of, const tl_field_sums *patch, double least,
+static double blend(const tl_press_query *of, const tl_field_sums *patch, double min_area,
                     potential *field)
 {
-    const potential flat = with_least(patch, least);
+    const potential flat = with_min_area(patch, min_area);
     tl_vec3 na = of->view->a->plane[of->region->flush_a].normal;
     tl_vec3 nb = of->view->normal_b[of->region->flush_b], hinge = tl_v3_cross(na, nb);
     double sine = tl_v3_norm(hinge), g = patch->energy, v = patch->volume, by_tilt, by_q;
@@ -249,7 +250,7 @@ static bool press_of(const tl_press_query *of, planes *p, const tl_field_sums *s
             region->mesh->bounding = region->mesh->polygons = 0;
         return true;
     }
-    potential field = with_least(sums, of->least);
+    potential field = with_min_area(sums, of->min_area);
     if (region->flush && tl_region_tilt(view, region->flush_a, region->flush_b) < TL_FIELD_TILT) {
         list_patch(p, of);
         p->faces.mesh = NULL;
@@ -257,14 +258,14 @@ static bool press_of(const tl_press_query *of, planes *p, const tl_field_sums *s
         if (!tl_field_integrate(&p->faces, &room->field, &patch))
             return false;
         if (patch.energy > 0 && patch.volume > 0)
-            press->patch = blend(of, &patch, of->least, &field);
+            press->patch = blend(of, &patch, of->min_area, &field);
     }
     double force = tl_v3_norm(field.force), area = tl_v3_norm(sums->area);
     press->energy = field.energy;
     press->force = field.force;
     press->moment = tl_v3_add(field.moment, tl_v3_cross(p->origin, field.force));
     press->normal = tl_v3_scale(1 / force, field.force);
-    press->area = sqrt(area * area + of->least * of->least);
+    press->area = sqrt(area * area + of->min_area * of->min_area);
     press->overlap = 2 * force / press->area;
     press->deepest = 2 * sums->deepest;
     press->stiffness = fmax(sums->stiffness, press->area);
@@ -281,7 +282,7 @@ static void begin(const tl_press_query *of, tl_vec3 origin, planes *p)
 {
     p->origin = origin;
     list_field(p, of);
-    p->faces.energy_only = !(of->least > 0);
+    p->faces.energy_only = !(of->min_area > 0);
     p->faces.mesh = of->region->mesh;
     p->faces.inner = NULL;
 }

@@ -20,8 +20,8 @@
 typedef struct tl_press_query {
     const tl_pair_view *view;
     const tl_region *region;
-    double least; /* minimum area, m^2 */
-    double shift; /* how far face `shifted` of A is moved out by an initial stress, m */
+    double min_area; /* m^2 */
+    double shift;    /* how far face `shifted` of A is moved out by an initial stress, m */
     uint32_t shifted;
 } tl_press_query;
 

@@ -27,7 +27,7 @@ static bool settings_are_sound(const tl_model *m)
            !(m->added_most < 0);
 }
 
-static bool rule_is_sound(const tl_area_rule *rule)
+static bool rule_is_sound(const tl_min_area_rule *rule)
 {
     return rule->fraction >= 0 && isfinite(rule->fraction) &&
            (isnan(rule->absolute) || (rule->absolute >= 0 && isfinite(rule->absolute)));
@@ -36,9 +36,10 @@ static bool rule_is_sound(const tl_area_rule *rule)
 /* What names joints: rules of minimum areas, and cuts that were refused. */
 static bool joints_are_sound(const tl_model *m)
 {
-    bool sound = rule_is_sound(&m->area);
-    for (size_t i = 0; i < m->area_count && sound; i++)
-        sound = m->areas[i].tag.joint <= m->joint_count && rule_is_sound(&m->areas[i].rule);
+    bool sound = rule_is_sound(&m->min_area);
+    for (size_t i = 0; i < m->joint_min_area_count && sound; i++)
+        sound = m->joint_min_areas[i].tag.joint <= m->joint_count &&
+                rule_is_sound(&m->joint_min_areas[i].rule);
     for (size_t i = 0; i < m->record.listed && sound; i++)
         sound = m->record.list[i].joint.joint <= m->joint_count;
     return sound && m->record.listed <= TL_REFUSED_LISTED;

@@ -221,10 +221,12 @@ static void hash_laws(tl_hash *hash, const tl_model *m)
         tl_hash_bytes(&one, law->params, law->kind->params_size);
         hash_any_order(&sum, &one);
     }
-    for (size_t i = 0; i < m->area_count; i++) {
+    for (size_t i = 0; i < m->joint_min_area_count; i++) {
         tl_hash one = tl_hash_start();
-        hash_tag(&one, m->areas[i].tag);
-        hash_numbers(&one, (const double[]){m->areas[i].rule.fraction, m->areas[i].rule.absolute},
+        hash_tag(&one, m->joint_min_areas[i].tag);
+        hash_numbers(&one,
+                     (const double[]){m->joint_min_areas[i].rule.fraction,
+                                      m->joint_min_areas[i].rule.absolute},
                      2);
         hash_any_order(&sum, &one);
     }
@@ -262,8 +264,8 @@ static void hash_settings(tl_hash *hash, const tl_model *m)
         config->gravity.z,
         tl_timestep_fraction(m),
         m->timestep.dt,
-        m->area.fraction,
-        m->area.absolute,
+        m->min_area.fraction,
+        m->min_area.absolute,
     };
     const int64_t words[] = {m->cycles,
                              m->next_id,

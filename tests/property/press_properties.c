@@ -260,12 +260,14 @@ TEST(faces_that_bounded_before_change_nothing)
                 k % 4 == 0 && check_random(&seed) < 0.3 ? 0.01 * view->size * view->size : 0;
             view = scene_place(&s.pair);
             region.mesh = NULL;
-            CHECK(tl_press_find(&(tl_press_query){.view = view, .region = &region, .least = least},
-                                1, &s.pair.room, &without));
+            CHECK(
+                tl_press_find(&(tl_press_query){.view = view, .region = &region, .min_area = least},
+                              1, &s.pair.room, &without));
             region.mesh = &mesh;
             forgotten += before && !tl_region_corners_agree(view, &region);
-            CHECK(tl_press_find(&(tl_press_query){.view = view, .region = &region, .least = least},
-                                1, &s.pair.room, &with));
+            CHECK(
+                tl_press_find(&(tl_press_query){.view = view, .region = &region, .min_area = least},
+                              1, &s.pair.room, &with));
             /* a plate that sticks out on both sides as far is pressed by nothing, but for roundings */
             if (tl_v3_norm(without.force) < 1e-9 * without.energy / without.deepest)
                 continue;

@@ -21,7 +21,7 @@ NUMBERS = [
     ("core/narrow/region.c", "FACING", math.cos(15 * DEGREE), "Faces of nearly the direction of a or b, within 15°"),
     ("core/narrow/manifold.c", "BACK", 0.5, "half of both for a field contact that is to become a patch"),
     ("core/narrow/manifold.c", "BLUNT", 2000, "at least 2000 o + 1e-3 size more"),
-    ("core/narrow/manifold.c", "LEAST", 0.05, "A_m is at most 0.05 A_c"),
+    ("core/narrow/manifold.c", "MOST_MIN_AREA", 0.05, "A_m is at most 0.05 A_c"),
     ("core/narrow/view.h", "TL_STILL", 1e-6, "the pair moves by less than 1e-6 size"),
     ("core/narrow/view.h", "TL_CONTACT_TOLERANCE", 1e-3, "at least 4 o + 1e-3 size more"),
     ("core/narrow/view.h", "TL_CONTACT_RELEASE", 1.5, "apart by more than 1.5e-3 size"),

@@ -396,7 +396,7 @@ TEST(faces_that_share_only_an_edge_have_no_points)
         scene_pair p =
             scene_pair_of(scene_box_shape(1, 1, 1), scene_box_shape(1, 1, 1), tl_q_identity(),
                           tl_v3(shifts[i][0], shifts[i][1], shifts[i][2]));
-        const tl_touch_rule rule = {.least = 0.01, .reach = 1.5e-3};
+        const tl_touch_rule rule = {.min_area = 0.01, .reach = 1.5e-3};
         CHECK_INT(build_by(&p, &rule)->point_count, 0);
         scene_pair_free(&p);
     }
