@@ -133,15 +133,15 @@ void tl_pair_wake(tl_detect *d, uint32_t i)
 }
 
 /* How far a pair may move that is apart by the gap of its region before it may become a contact; below 0: it may be one. Only
- * a patch is born across a gap, of faces that are level by then. */
+ * a patch is born across a gap, of faces that are parallel by then. */
 static double way_to_contact(const tl_pair_view *view, const tl_region *r)
 {
     double tolerance = TL_CONTACT_TOLERANCE * view->size;
     if (r->gap > tolerance)
         return r->gap - tolerance;
     double tilt = r->flush ? tl_region_tilt(view, r->flush_a, r->flush_b) : INFINITY;
-    bool level = (tilt - TL_FLUSH_TILT) * view->size <= 2 * r->gap;
-    return r->gap > 0 && !level ? r->gap : -1;
+    bool parallel = (tilt - TL_FLUSH_TILT) * view->size <= 2 * r->gap;
+    return r->gap > 0 && !parallel ? r->gap : -1;
 }
 
 /* How far a pair may move that only edges part before it may touch; 0: it may touch already. By coarse tests with reaches twice as long

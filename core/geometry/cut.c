@@ -26,7 +26,7 @@
 
 /* One child while it is made. */
 typedef struct child {
-    uint16_t *map;  /* [vertices + crossings] its vertex index, or NONE */
+    uint16_t *map;  /* [vertices + cut edges] its vertex index, or NONE */
     uint16_t *face; /* [faces + 1] end of each of its loops */
     uint16_t *from; /* [faces] the parent's face of each of its own but the cap */
     uint16_t *loop; /* the loops, in the parent's numbering */
@@ -37,13 +37,13 @@ typedef struct cutter {
     const tl_poly *poly;
     tl_plane plane;
     double reach;      /* the farthest coordinate that distances were computed from */
-    tl_vec3 *point;    /* [crossings] */
+    tl_vec3 *point;    /* [cut edges] where the plane cuts each */
     double *distance;  /* [vertices] */
     signed char *side; /* [vertices] */
     uint16_t
-        *cap_next; /* [vertices + crossings] the cap's half-edges as seen from the lower child */
-    uint16_t *crossed; /* [crossings] the edge of each */
-    uint32_t crossings;
+        *cap_next; /* [vertices + cut edges] the cap's half-edges as seen from the lower child */
+    uint16_t *cut_edge; /* edges with vertices on both sides of the plane */
+    uint32_t cut_edge_count;
     uint32_t cap_edges;
     child child[2]; /* below, above */
 } cutter;
@@ -63,7 +63,7 @@ static void lay_out(cutter *c, void *scratch)
     c->distance = (double *)(c->point + e);
     uint16_t *next = (uint16_t *)(c->distance + v);
     c->cap_next = next, next += v + e;
-    c->crossed = next, next += e;
+    c->cut_edge = next, next += e;
     for (int i = 0; i < 2; i++) {
         c->child[i].map = next, next += v + e;
         c->child[i].face = next, next += f + 1;
@@ -153,7 +153,7 @@ static bool before(tl_vec3 a, tl_vec3 b)
 
 /* Where edge number `e` meets the plane. The last step takes the rounding off the plane, which
  * makes coordinates exact where the plane is normal to an axis. */
-static tl_vec3 crossing_point(const cutter *c, uint32_t e)
+static tl_vec3 cut_edge_point(const cutter *c, uint32_t e)
 {
     tl_edge edge = c->poly->edge[e];
     uint16_t from = edge.a, to = edge.b;
@@ -168,20 +168,20 @@ static tl_vec3 crossing_point(const cutter *c, uint32_t e)
     return tl_v3_madd(x, -off, c->plane.normal);
 }
 
-static void find_crossings(cutter *c)
+static void find_cut_edges(cutter *c)
 {
     const tl_poly *p = c->poly;
-    c->crossings = 0;
+    c->cut_edge_count = 0;
     for (uint32_t e = 0; e < p->edge_count; e++)
         if (c->side[p->edge[e].a] * c->side[p->edge[e].b] < 0)
-            c->crossed[c->crossings++] = (uint16_t)e;
+            c->cut_edge[c->cut_edge_count++] = (uint16_t)e;
 }
 
-/* The crossing on the edge between two neighbouring vertices. */
-static uint16_t crossing_between(const cutter *c, uint16_t a, uint16_t b)
+/* The new vertex on the edge between two neighbouring vertices. */
+static uint16_t cut_vertex_between(const cutter *c, uint16_t a, uint16_t b)
 {
-    for (uint32_t i = 0; i < c->crossings; i++) {
-        tl_edge edge = c->poly->edge[c->crossed[i]];
+    for (uint32_t i = 0; i < c->cut_edge_count; i++) {
+        tl_edge edge = c->poly->edge[c->cut_edge[i]];
         if ((edge.a == a && edge.b == b) || (edge.a == b && edge.b == a))
             return (uint16_t)(c->poly->vertex_count + i);
     }
@@ -257,8 +257,8 @@ static bool split_face(cutter *c, uint32_t face)
     uint16_t head = loop[below.first], tail = loop[below.last < n ? below.last : below.last - n];
     uint16_t ahead = loop[previous < n ? previous : previous - n];
     uint16_t behind = loop[next < n ? next : next - n];
-    uint16_t in = c->side[ahead] ? crossing_between(c, ahead, head) : ahead;
-    uint16_t out = c->side[behind] ? crossing_between(c, tail, behind) : behind;
+    uint16_t in = c->side[ahead] ? cut_vertex_between(c, ahead, head) : ahead;
+    uint16_t out = c->side[behind] ? cut_vertex_between(c, tail, behind) : behind;
     /* The run above lies between, without vertices on the plane that serve as ways in and out. */
     run above = {c->side[behind] ? next : next + 1, c->side[ahead] ? previous : previous - 1};
     if (above.last < above.first ||
@@ -330,7 +330,7 @@ static bool split_faces(cutter *c)
  * vertex, so that both make the same fan of triangles, to the upper one. */
 static bool close_cap(cutter *c)
 {
-    uint32_t all = c->poly->vertex_count + c->crossings, v = 0, corners = 0;
+    uint32_t all = c->poly->vertex_count + c->cut_edge_count, v = 0, corners = 0;
     while (v < all && c->cap_next[v] == NONE)
         v++;
     if (v == all || c->cap_edges < 3)
@@ -363,7 +363,7 @@ static void number_vertices(cutter *c)
         int other = i ? -1 : 1;
         for (uint32_t v = 0; v < n; v++)
             ch->map[v] = c->side[v] == other ? NONE : (uint16_t)ch->vertices++;
-        for (uint32_t k = 0; k < c->crossings; k++)
+        for (uint32_t k = 0; k < c->cut_edge_count; k++)
             ch->map[n + k] = (uint16_t)ch->vertices++;
     }
 }
@@ -383,7 +383,8 @@ static tl_status make_child(const cutter *c, int which, tl_tag tag, tl_poly **re
     for (uint32_t v = 0; v < parent->vertex_count; v++)
         if (ch->map[v] != NONE)
             p->vertex[ch->map[v]] = parent->vertex[v];
-    memcpy(p->vertex + ch->vertices - c->crossings, c->point, c->crossings * sizeof *c->point);
+    memcpy(p->vertex + ch->vertices - c->cut_edge_count, c->point,
+           c->cut_edge_count * sizeof *c->point);
     uint32_t cap = ch->faces - 1;
     p->start[0] = 0;
     for (uint32_t f = 0; f < cap; f++) {
@@ -408,8 +409,8 @@ static tl_status make_child(const cutter *c, int which, tl_tag tag, tl_poly **re
 static tl_status make_children(cutter *c, tl_tag tag, tl_cut *cut, tl_error *error)
 {
     number_vertices(c);
-    for (uint32_t k = 0; k < c->crossings; k++)
-        c->point[k] = crossing_point(c, c->crossed[k]);
+    for (uint32_t k = 0; k < c->cut_edge_count; k++)
+        c->point[k] = cut_edge_point(c, c->cut_edge[k]);
     tl_status status = make_child(c, 0, tag, &cut->below, error);
     if (!status)
         status = make_child(c, 1, tag, &cut->above, error);
@@ -441,8 +442,8 @@ static tl_status cut_with(cutter *c, tl_tag tag, tl_cut *cut, tl_error *error)
     }
     classify(c);
     settle_brushed(c);
-    find_crossings(c);
-    for (uint32_t v = 0; v < c->poly->vertex_count + c->crossings; v++)
+    find_cut_edges(c);
+    for (uint32_t v = 0; v < c->poly->vertex_count + c->cut_edge_count; v++)
         c->cap_next[v] = NONE;
     tl_status status = TL_E_GEOMETRY;
     if (split_faces(c) && close_cap(c))

@@ -322,7 +322,7 @@ static void draw(work *w, int lane, size_t lines)
 }
 
 /* Integrates the polygons in the lanes. */
-static void flush(work *w)
+static void integrate_batch(work *w)
 {
     tl_field_lanes *p = &w->lanes;
     if (!w->filled)
@@ -383,7 +383,7 @@ static void put(work *w, pair *of, tl_vec3 n, double h, uint32_t i, uint32_t j, 
     w->j[l] = j;
     take_out(w, l, of, i, j);
     if (w->filled == (int)LANES)
-        flush(w);
+        integrate_batch(w);
 }
 
 /* The surface between the cells of two faces, where both are the nearest. */
@@ -433,7 +433,7 @@ static void integrate(work *w, pair *of, const uint64_t *mask)
 {
     choose(of, mask);
     put_pair(w, of, mask);
-    flush(w);
+    integrate_batch(w);
     end_pair(of);
 }
 
@@ -446,7 +446,7 @@ static uint64_t find_bounding(work *w, pair *of)
     of->found = 0;
     for (uint32_t i = 0; i < real_faces(f); i++)
         put(w, of, tl_field_normal(f, i), f->c[i], i, i, false, 0);
-    flush(w);
+    integrate_batch(w);
     w->flat = false;
     return of->found;
 }
@@ -533,7 +533,7 @@ bool tl_field_integrate_all(const tl_field_faces *const faces[], tl_field_sums *
         choose(&pairs[k], &faces[k]->mesh->bounding);
         put_pair(&w, &pairs[k], true);
     }
-    flush(&w);
+    integrate_batch(&w);
     for (uint32_t k = 0; k < count; k++) {
         bool known = is_known(faces[k]);
         if (known)

@@ -20,7 +20,7 @@
  * the sine, then becomes as large as what the wrong one of two such lines encloses. */
 #define PARALLEL 1e-8
 /* Length of a face's normal, within the polygon's plane, below which the face is parallel to the plane. */
-#define LEVEL 1e-9
+#define PARALLEL_FACE 1e-9
 /* Place beyond the end of any line. */
 #define FAR TL_FIELD_FAR
 /* Length of a line that has no end: where it is crossed at all, by parallel lines far away. */
@@ -71,10 +71,10 @@ TL_VECTORIZED static void draw_line(tl_field_lanes *restrict p, const tl_field_p
         double s = x * p->s[0][l] + y * p->s[1][l] + z * p->s[2][l];
         o -= p->h[l] * (x * p->n[0][l] + y * p->n[1][l] + z * p->n[2][l]);
         double length = sqrt(t * t + s * s), per = 1 / length;
-        double none = h->c[l] >= FAR ? 1.0 : 0.0, level = length < LEVEL ? 1.0 : 0.0;
+        double none = h->c[l] >= FAR ? 1.0 : 0.0, parallel = length < PARALLEL_FACE ? 1.0 : 0.0;
         double part = o > p->one_plane[l] ? 1.0 : 0.5;
         part = o < -p->one_plane[l] ? 0.0 : part;
-        double kept = level > 0 ? part : 1.0, gone = none + level;
+        double kept = parallel > 0 ? part : 1.0, gone = none + parallel;
         p->share[l] *= none > 0 ? 1.0 : kept;
         line->gt[l] = gone > 0 ? 0.0 : t * per;
         line->gs[l] = gone > 0 ? 0.0 : s * per;
@@ -90,11 +90,11 @@ TL_VECTORIZED static void draw_own_line(tl_field_lanes *restrict p, tl_field_lin
 #pragma omp simd
     for (unsigned l = 0; l < LANES; l++) {
         double length = sqrt(p->dt[l] * p->dt[l] + p->ds[l] * p->ds[l]), per = 1 / length;
-        double level = length < LEVEL ? 1.0 : 0.0;
-        p->share[l] *= level > 0 ? (p->d0[l] > 0 ? 1.0 : 0.0) : 1.0;
-        line->gt[l] = level > 0 ? 0.0 : -p->dt[l] * per;
-        line->gs[l] = level > 0 ? 0.0 : -p->ds[l] * per;
-        line->c[l] = level > 0 ? FAR : p->d0[l] * per;
+        double parallel = length < PARALLEL_FACE ? 1.0 : 0.0;
+        p->share[l] *= parallel > 0 ? (p->d0[l] > 0 ? 1.0 : 0.0) : 1.0;
+        line->gt[l] = parallel > 0 ? 0.0 : -p->dt[l] * per;
+        line->gs[l] = parallel > 0 ? 0.0 : -p->ds[l] * per;
+        line->c[l] = parallel > 0 ? FAR : p->d0[l] * per;
         line->from[l] = -FAR;
         line->to[l] = FAR;
     }
@@ -116,9 +116,9 @@ TL_VECTORIZED static void cross_lines(tl_field_line *line, size_t count)
                 double sine = i->gt[l] * j->gs[l] - i->gs[l] * j->gt[l];
                 double cosine = i->gt[l] * j->gt[l] + i->gs[l] * j->gs[l];
                 double least = sine < 0 ? -1 / FAR : 1 / FAR, whole = cosine < 0 ? -1.0 : 1.0;
-                bool level = fabs(sine) < PARALLEL;
-                double per = 1 / (level ? least : sine);
-                cosine = level ? whole : cosine; /* so that both agree which is the nearer */
+                bool parallel = fabs(sine) < PARALLEL;
+                double per = 1 / (parallel ? least : sine);
+                cosine = parallel ? whole : cosine; /* so that both agree which is the nearer */
                 double ri = (j->c[l] - cosine * i->c[l]) * per;
                 double rj = (cosine * j->c[l] - i->c[l]) * per;
                 double to_i = per > 0 ? ri : FAR, from_i = per > 0 ? -FAR : ri;

@@ -29,8 +29,8 @@ static bool is_patch(const tl_pair_view *view, const tl_region *r, const tl_touc
         return false;
     double overlap = fmax(0, -r->flush_gap), away = TL_CONTACT_TOLERANCE * size;
     double behind = fmin(r->flush_lead - away, (r->blunt_lead - BLUNT * overlap - away) / BLUNT);
-    double level = part * TL_FLUSH_TILT - tl_region_tilt(view, r->flush_a, r->flush_b);
-    if (!(behind > 0 && level > 0))
+    double tilt_margin = part * TL_FLUSH_TILT - tl_region_tilt(view, r->flush_a, r->flush_b);
+    if (!(behind > 0 && tilt_margin > 0))
         return false;
     double area = tl_patch_add(view, r->flush_a, r->flush_b, rule, room);
     if (!(area > 0) || rule->min_area > MOST_MIN_AREA * area)
@@ -39,7 +39,7 @@ static bool is_patch(const tl_pair_view *view, const tl_region *r, const tl_touc
     if (!(shallow > 0))
         return false;
     /* when the pair moves, none of these changes by more than twice the way */
-    double way = 0.5 * fmin(fmin(behind, shallow), level * size);
+    double way = 0.5 * fmin(fmin(behind, shallow), tilt_margin * size);
     m->valid = fmin(way, TL_LIST_MARGIN * size);
     return true;
 }
