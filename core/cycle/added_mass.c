@@ -23,7 +23,7 @@
 #define TELL_AGAIN 2
 
 /* Whether a body has contact points: something that a longer step would make unstable. */
-static bool stands(const tl_model *m, uint32_t body)
+static bool is_still(const tl_model *m, uint32_t body)
 {
     const tl_detect *d = m->detect;
     for (uint32_t k = 0; k < m->bodies.member_count[body]; k++) {
@@ -38,7 +38,7 @@ static bool stands(const tl_model *m, uint32_t body)
 static double factor_of(const tl_model *m, uint32_t body, double limit)
 {
     double rate = m->cycle->rate[body];
-    bool more = rate > limit && m->bodies.fixed[body] != TL_FIX_ALL && stands(m, body);
+    bool more = rate > limit && m->bodies.fixed[body] != TL_FIX_ALL && is_still(m, body);
     return more ? rate / limit : 1;
 }
 

@@ -124,7 +124,7 @@ static double load_travel(const tl_model *m, uint32_t body, const kick *k)
     return (force / b->mass[body] + turn * r) * k->span * k->dt;
 }
 
-static bool stands(const tl_bodies *b, uint32_t body)
+static bool is_still(const tl_bodies *b, uint32_t body)
 {
     return !b->drive[body] && tl_v3_norm2(b->v[body]) + tl_v3_norm2(b->w[body]) == 0;
 }
@@ -140,7 +140,7 @@ static void check_range(void *user, size_t begin, size_t end, size_t chunk, unsi
             too_far(m, body, load_travel(m, body, &job->kick) / TL_FAST))
             atomic_store(&job->fast, true);
         if (held != job->held ||
-            (held ? stands(&m->bodies, body) : surely_slow(m, body, &job->kick)))
+            (held ? is_still(&m->bodies, body) : surely_slow(m, body, &job->kick)))
             continue;
         double travel = travel_of(m, body, &job->kick);
         if (too_far(m, body, travel / TL_FAST))

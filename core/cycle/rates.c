@@ -168,7 +168,7 @@ static area_sums points_of(const tl_model *m, uint32_t c, bool of_b)
 typedef struct contact_sums {
     area_sums stiffness;
     double law;
-    bool stands; /* some have points */
+    bool has_points; /* some have points */
 } contact_sums;
 
 /* Where a contact presses in A's frame, and its overlap there. A patch, whose area counts before it touches, has besides its
@@ -222,7 +222,7 @@ static contact_sums add_contacts(const tl_model *m, uint32_t body, bool points)
             out.law = fmax(out.law, law);
             if (points && c->point_count[i] > 0) {
                 area_sums next = points_of(m, i, c->b[i] == row);
-                out.stands = true;
+                out.has_points = true;
                 out.stiffness.area += law * next.area;
                 out.stiffness.area_r2 += law * next.area_r2;
             }
@@ -257,7 +257,7 @@ static double highest_approach(const tl_model *m, uint32_t body)
 /* The part of its largest face on which a body stands at least, for the rate on all of it. */
 static double least_part(const tl_model *m, uint32_t body, const contact_sums *of, double face)
 {
-    double more = of->stands ? highest_approach(m, body) / sqrt(face) : 1;
+    double more = of->has_points ? highest_approach(m, body) / sqrt(face) : 1;
     return fmin(fmax(more, FLOOR), 1);
 }
 

@@ -115,7 +115,7 @@ static void rest_range(void *user, size_t begin, size_t end, size_t chunk, unsig
 
 /* Whether no body moves any more than `ratio` allows; the first that does is the worst. Looked at only when forces are in
  * equilibrium. */
-static bool stands_still(tl_model *m, double ratio)
+static bool all_rest(tl_model *m, double ratio)
 {
     double mass = 0;
     for (size_t body = 0; body < m->bodies.table.rows; body++)
@@ -137,7 +137,7 @@ static bool stands_still(tl_model *m, double ratio)
 bool tl_at_rest(tl_model *m, tl_ratio_measure measure, double ratio)
 {
     if (measure == TL_RATIO_LOCAL)
-        return m->cycle->sums.worst_ratio < ratio && stands_still(m, ratio);
+        return m->cycle->sums.worst_ratio < ratio && all_rest(m, ratio);
     return tl_unbalanced_ratio(m, measure) < ratio && turning_ratio(m) < ratio;
 }
 

@@ -84,7 +84,7 @@ static void update_others(void *user, size_t begin, size_t end, size_t chunk, un
     (void)chunk;
     tl_model *m = user;
     for (uint32_t c = (uint32_t)begin; c < end; c++)
-        if (m->detect->contacts.point_room[c] == 0 && !tl_contact_stands(m, c))
+        if (m->detect->contacts.point_room[c] == 0 && !tl_contact_points_hold(m, c))
             tl_contact_update(m, c, thread);
 }
 

@@ -205,7 +205,7 @@ bool tl_simd_group_update(tl_model *m, const tl_simd_group *group, unsigned thre
     uint32_t in = 0, others = 0, fields[TL_LANES], field_count = 0;
     for (uint32_t l = 0; l < TL_LANES; l++) {
         uint32_t c = group->contact[l];
-        if (c == TL_NO_ROW || tl_contact_stands(m, c))
+        if (c == TL_NO_ROW || tl_contact_points_hold(m, c))
             continue;
         any = true;
         if (tl_field_goes_on(m, c)) {

@@ -363,7 +363,7 @@ static bool touches_still(tl_model *m, uint32_t c)
     return true;
 }
 
-bool tl_contact_stands(tl_model *m, uint32_t c)
+bool tl_contact_points_hold(tl_model *m, uint32_t c)
 {
     tl_contacts *contacts = &m->detect->contacts;
     double way = TL_STILL * fmin(m->blocks.size[contacts->a[c]], m->blocks.size[contacts->b[c]]);

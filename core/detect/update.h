@@ -5,7 +5,7 @@
 #include "model/model.h"
 
 /* Whether a contact's points are still good. */
-bool tl_contact_stands(tl_model *m, uint32_t contact);
+bool tl_contact_points_hold(tl_model *m, uint32_t contact);
 /* Whether a contact is a patch and stays one. */
 bool tl_contact_is_patch(tl_model *m, uint32_t contact);
 /* Lets a contact whose points have just been made move a little before they are made anew. */

@@ -81,10 +81,10 @@ TL_VECTORIZED static void place_corners(const tl_field_faces *restrict f,
 }
 
 /* Whether no plane is nearer to any of eight corners than its own, by more than a slack that grows with the roundings. */
-TL_VECTORIZED static bool stand_in(const tl_field_faces *restrict f, uint32_t planes,
-                                   const double *restrict x, const double *restrict y,
-                                   const double *restrict z, const double *restrict d,
-                                   const double *restrict blur, double slack)
+TL_VECTORIZED static bool corners_hold(const tl_field_faces *restrict f, uint32_t planes,
+                                       const double *restrict x, const double *restrict y,
+                                       const double *restrict z, const double *restrict d,
+                                       const double *restrict blur, double slack)
 {
     double least[LANES];
     for (uint32_t l = 0; l < LANES; l++)
@@ -104,7 +104,7 @@ TL_VECTORIZED static bool stand_in(const tl_field_faces *restrict f, uint32_t pl
 }
 
 /* Whether the mesh stands; then its corners are in `at`. */
-static bool stands(const tl_field_faces *f, corners *at)
+static bool mesh_holds(const tl_field_faces *f, corners *at)
 {
     const tl_field_mesh *mesh = f->mesh;
     const uint32_t planes = f->a + f->b;
@@ -117,7 +117,7 @@ static bool stands(const tl_field_faces *f, corners *at)
     for (uint32_t i = 0; i < mesh->corners; i += LANES) {
         double *x = at->x[0] + i, *y = at->x[1] + i, *z = at->x[2] + i, *d = at->d + i;
         place_corners(f, mesh->plane[0] + i, x, y, z, d, blur);
-        if (!stand_in(f, planes, x, y, z, d, blur, SLACK * largest))
+        if (!corners_hold(f, planes, x, y, z, d, blur, SLACK * largest))
             return false;
     }
     return true;
@@ -346,7 +346,7 @@ bool tl_mesh_integrate(const tl_field_faces *f, tl_field_sums *sums)
     if (!mesh || mesh->polygons == 0)
         return false;
     bool strays = mesh->apex[0].strays || mesh->apex[1].strays;
-    if ((strays && !f->energy_only) || !stands(f, &at)) /* their cells tell no volume */
+    if ((strays && !f->energy_only) || !mesh_holds(f, &at)) /* their cells tell no volume */
         return false;
     const uint8_t *loop = mesh->loop;
     tl_apex apex[] = {tl_apex_find(f, &mesh->apex[0]), tl_apex_find(f, &mesh->apex[1])};
