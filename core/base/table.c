@@ -38,9 +38,9 @@ static void put(const tl_table *table, const tl_column *column, void *data)
     memcpy((char *)table->owner + column->offset, &data, sizeof data);
 }
 
-bool tl_fit(void *slot, size_t *room, size_t need, size_t size)
+bool tl_fit(void *slot, size_t *capacity, size_t need, size_t size)
 {
-    if (need <= *room)
+    if (need <= *capacity)
         return true;
     void *data;
     memcpy(&data, slot, sizeof data);
@@ -48,13 +48,13 @@ bool tl_fit(void *slot, size_t *room, size_t need, size_t size)
     if (!data)
         return false;
     memcpy(slot, &data, sizeof data);
-    *room = need;
+    *capacity = need;
     return true;
 }
 
-bool tl_grow(void *slot, size_t *room, size_t need, size_t size)
+bool tl_grow(void *slot, size_t *capacity, size_t need, size_t size)
 {
-    return need <= *room || tl_fit(slot, room, need + need / 2 + 16, size);
+    return need <= *capacity || tl_fit(slot, capacity, need + need / 2 + 16, size);
 }
 
 static size_t column_bytes(const tl_column *column, size_t capacity)

@@ -78,8 +78,8 @@ size_t tl_table_bytes(const tl_table *table);
 
 /* Makes room for `need` items of `size` bytes in the array whose pointer is at `slot`, with some to spare;
  * what is there stays. false when out of memory (nothing changed). */
-bool tl_grow(void *slot, size_t *room, size_t need, size_t size);
+bool tl_grow(void *slot, size_t *capacity, size_t need, size_t size);
 /* The same without any to spare: for what has a place for each block or body. */
-bool tl_fit(void *slot, size_t *room, size_t need, size_t size);
+bool tl_fit(void *slot, size_t *capacity, size_t need, size_t size);
 
 #endif

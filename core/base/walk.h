@@ -32,7 +32,7 @@ typedef struct tl_entry {
     size_t size, items;
     size_t bytes;      /* of a table, and of the room that a list has */
     size_t *count;     /* of a list: where its number of items is noted, */
-    size_t *room;      /* and of those it has room for, or NULL */
+    size_t *capacity;  /* and of those it has room for, or NULL */
     size_t counts_for; /* offset in tl_memory of what its bytes count for */
 } tl_entry;
 
@@ -65,7 +65,7 @@ static inline void tl_walk_flag(const tl_walk *w, tl_keep keep, const char *name
 
 /* A list; one whose room is noted nowhere, NULL, has room for its items. */
 static inline void tl_walk_list(const tl_walk *w, tl_keep keep, const char *name, void *slot,
-                                size_t size, size_t *count, size_t *room, size_t counts_for)
+                                size_t size, size_t *count, size_t *capacity, size_t counts_for)
 {
     const tl_entry e = {.name = name,
                         .form = TL_ENTRY_LIST,
@@ -73,9 +73,9 @@ static inline void tl_walk_list(const tl_walk *w, tl_keep keep, const char *name
                         .at = slot,
                         .size = size,
                         .items = *count,
-                        .bytes = size * (room ? *room : *count),
+                        .bytes = size * (capacity ? *capacity : *count),
                         .count = count,
-                        .room = room,
+                        .capacity = capacity,
                         .counts_for = counts_for};
     w->visit(w->user, &e);
 }
@@ -97,8 +97,8 @@ static inline void tl_walk_table(const tl_walk *w, tl_keep keep, const char *nam
     tl_walk_value((walk), (keep), prefix #member, &(owner)->member, sizeof(owner)->member)
 #define TL_WALK_FLAG(walk, keep, prefix, owner, member)                                            \
     tl_walk_flag((walk), (keep), prefix #member, &(owner)->member)
-#define TL_WALK_LIST(walk, keep, prefix, owner, member, count, room, counts_for)                   \
+#define TL_WALK_LIST(walk, keep, prefix, owner, member, count, capacity, counts_for)               \
     tl_walk_list((walk), (keep), prefix #member, &(owner)->member, sizeof *(owner)->member,        \
-                 (count), (room), (counts_for))
+                 (count), (capacity), (counts_for))
 
 #endif

@@ -46,7 +46,7 @@ void tl_contacts_init(tl_contacts *c, tl_points_table *p)
     TL_COLUMN(t, c, spot, 0);
     TL_COLUMN(t, c, point_start, 0);
     TL_COLUMN(t, c, point_count, TL_COLUMN_STATE);
-    TL_COLUMN(t, c, point_room, 0);
+    TL_COLUMN(t, c, point_capacity, 0);
     TL_COLUMN(t, c, area, 0);
     TL_COLUMN(t, c, released, TL_COLUMN_STEP);
     TL_COLUMN(t, c, force, TL_COLUMN_STEP);
@@ -90,10 +90,10 @@ void tl_point_lanes_init(tl_point_lanes *l)
     TL_COLUMN(t, l, flags_before, 0);
 }
 
-bool tl_detect_hold_lanes(tl_detect *d, size_t room)
+bool tl_detect_hold_lanes(tl_detect *d, size_t capacity)
 {
     for (unsigned i = 0; i < d->threads; i++)
-        if (!tl_table_resize(&d->lanes[i].table, room))
+        if (!tl_table_resize(&d->lanes[i].table, capacity))
             return false;
     return true;
 }
@@ -201,8 +201,8 @@ static void copy_contact(tl_detect *d, uint32_t from, uint32_t to)
         tl_pending_waits(c->pending[from]) ? wanted_points(d, from) : c->point_count[from];
     bool busy = d->spare_share < SPARE_CALM; /* what has grown may grow again */
     bool keeps = busy && c->point_count[from] > 0 && c->pending[from] != TL_PENDING_MOVE;
-    uint32_t room = keeps && c->point_room[from] > want ? c->point_room[from] : want;
-    fresh->point_room[to] = (uint16_t)room;
+    uint32_t capacity = keeps && c->point_capacity[from] > want ? c->point_capacity[from] : want;
+    fresh->point_capacity[to] = (uint16_t)capacity;
 }
 
 static void swap_tables(tl_detect *d)
@@ -240,13 +240,13 @@ static size_t larger(size_t a, size_t b)
 /* Lanes for a tile, or the largest SIMD group, for every thread. */
 static bool make_lanes(tl_detect *d, const tl_layout *layout)
 {
-    size_t room = LEAST_LANES;
+    size_t capacity = LEAST_LANES;
     for (size_t r = 0; r < layout->span_count; r++)
         for (size_t i = layout->spans[r].group_begin; i < layout->spans[r].group_end; i++)
-            room = larger(room, (size_t)layout->groups[i].slots * TL_LANES);
-    if (!tl_detect_hold_lanes(d, room))
+            capacity = larger(capacity, (size_t)layout->groups[i].slots * TL_LANES);
+    if (!tl_detect_hold_lanes(d, capacity))
         return false;
-    d->lane_room = larger(room, d->lane_room);
+    d->lane_capacity = larger(capacity, d->lane_capacity);
     return true;
 }
 
@@ -312,7 +312,7 @@ tl_status tl_contacts_repack(tl_model *m)
 static void clear_points(tl_detect *d, uint32_t contact)
 {
     tl_simd_group_note(d, contact, TL_NO_ROW);
-    for (size_t k = 0; k < d->contacts.point_room[contact]; k++)
+    for (size_t k = 0; k < d->contacts.point_capacity[contact]; k++)
         tl_point_clear(&d->points, tl_point_row(&d->contacts, contact, k));
 }
 
@@ -322,7 +322,7 @@ bool tl_contact_place(tl_detect *d, uint32_t row)
     uint32_t points = wanted_points(d, row), lane;
     if (!points) { /* its lane may be another law's */
         clear_points(d, row);
-        c->point_room[row] = 0;
+        c->point_capacity[row] = 0;
         return true;
     }
     const tl_simd_group *group = tl_simd_group_take(d, points, row, &lane);
@@ -332,7 +332,7 @@ bool tl_contact_place(tl_detect *d, uint32_t row)
                 c->point_count[row]);
     clear_points(d, row);
     c->point_start[row] = group->start + lane;
-    c->point_room[row] = (uint16_t)group->slots;
+    c->point_capacity[row] = (uint16_t)group->slots;
     return true;
 }
 

@@ -14,34 +14,34 @@ typedef struct tl_known_block {
 
 typedef struct tl_detect {
     tl_pair *pairs;
-    size_t pair_count, pair_room;
+    size_t pair_count, pair_capacity;
     tl_pair_chunk *chunks;
-    size_t chunk_room;
+    size_t chunk_capacity;
     bool listed;        /* pairs have been listed */
     bool rows_changed;  /* since contacts were laid out */
     bool bare;          /* there may be contacts without room for points */
     double reach;       /* half the skin of the broad phase */
     double *odometer_0; /* of each body, when the broad phase was made */
-    size_t odometer_room;
+    size_t odometer_capacity;
     tl_known_block *
         known_blocks; /* of each row of blocks, at the last update: finds the block again after rows have changed */
-    size_t known_block_count, known_block_room;
+    size_t known_block_count, known_block_capacity;
     float *
         path; /* of each block: path length since the broad phase was made, rounded up: no vertex has moved farther */
-    size_t path_room;
+    size_t path_capacity;
     float longest_path; /* of them */
     uint8_t *touched; /* bodies whose contacts came, went or grew since the time step was chosen */
-    size_t touched_room;
+    size_t touched_capacity;
     bool any_touched;
     uint64_t structure, laws, rules, constraints; /* of the model, when last seen */
     int32_t contact_points;                       /* likewise */
     /* bodies held still all of whose contacts rest, so that the sums of their forces stand; `any_idle` false: none */
     uint8_t *idle;
-    size_t idle_room;
+    size_t idle_capacity;
     bool any_idle;
     tl_contacts contacts, spare;
     tl_press_row *press; /* of field contacts: presses.c */
-    size_t press_count, press_room;
+    size_t press_count, press_capacity;
     uint32_t press_free; /* the first free row; valid when there are rows */
     tl_points_table points, spare_points;
     double parted;   /* shear energy of contacts that ended since the ledger was closed, J: heat */
@@ -49,15 +49,15 @@ typedef struct tl_detect {
     size_t spare_share; /* 1 / this of rows, points and facets were added to spare; 0: never yet */
     tl_layout layout;
     uint32_t *by_block, *by_block_start; /* contacts of each block: index.c */
-    size_t by_block_room, by_start_room;
+    size_t by_block_capacity, by_start_capacity;
     uint32_t indexed; /* rows of contacts that are listed; TL_NO_ROW: the lists are out of date */
     uint32_t *by_id;  /* contact rows by ascending id; made when asked for */
-    size_t by_id_room;
+    size_t by_id_capacity;
     bool by_id_fresh;
     tl_id next_contact;
     tl_narrow *narrow;     /* [threads] */
     tl_point_lanes *lanes; /* [threads]: a tile, or the largest SIMD group */
-    size_t lane_room;
+    size_t lane_capacity;
     unsigned threads;
 } tl_detect;
 

@@ -142,7 +142,7 @@ static void write_points(tl_model *m, uint32_t c, const tl_manifold *g, const la
     tl_points_table *p = &m->detect->points;
     uint32_t law = contacts->law[c];
     const tl_kind *kind = law == TL_NO_ROW ? NULL : m->joint_laws[law].kind;
-    for (size_t k = g->point_count; k < contacts->point_room[c]; k++)
+    for (size_t k = g->point_count; k < contacts->point_capacity[c]; k++)
         tl_point_clear(p, tl_point_row(contacts, c, k));
     contacts->point_count[c] = (uint16_t)g->point_count;
     for (size_t k = 0; k < g->point_count; k++) {

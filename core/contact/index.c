@@ -95,8 +95,9 @@ bool tl_contacts_index(tl_model *m)
     tl_detect *d = m->detect;
     const tl_contacts *c = &d->contacts;
     size_t blocks = m->blocks.table.rows;
-    if (!tl_fit(&d->by_block_start, &d->by_start_room, blocks + 2, sizeof *d->by_block_start) ||
-        !tl_fit(&d->by_block, &d->by_block_room, 2 * c->table.capacity + 1, sizeof *d->by_block))
+    if (!tl_fit(&d->by_block_start, &d->by_start_capacity, blocks + 2, sizeof *d->by_block_start) ||
+        !tl_fit(&d->by_block, &d->by_block_capacity, 2 * c->table.capacity + 1,
+                sizeof *d->by_block))
         return false;
     if (d->indexed == TL_NO_ROW)
         list_all(d, blocks);
@@ -105,7 +106,7 @@ bool tl_contacts_index(tl_model *m)
     d->indexed = (uint32_t)c->table.rows;
     d->bare = false;
     for (size_t row = 0; row < c->table.rows; row++)
-        d->bare = d->bare || c->point_room[row] == 0;
+        d->bare = d->bare || c->point_capacity[row] == 0;
     return true;
 }
 
@@ -121,7 +122,7 @@ static int compare_id(const void *x, const void *y)
 static bool index_by_id(tl_detect *d)
 {
     size_t count = d->contacts.table.rows;
-    if (!tl_grow(&d->by_id, &d->by_id_room, 2 * count + 2, sizeof *d->by_id))
+    if (!tl_grow(&d->by_id, &d->by_id_capacity, 2 * count + 2, sizeof *d->by_id))
         return false;
     for (uint32_t row = 0; row < count; row++) {
         d->by_id[2 * row] = d->contacts.id[row];

@@ -52,9 +52,9 @@ typedef struct tl_span {
 /* Where the points of all contacts are. */
 typedef struct tl_layout {
     tl_span *spans;
-    size_t span_count, span_room;
+    size_t span_count, span_capacity;
     tl_simd_group *groups;
-    size_t group_room;
+    size_t group_capacity;
 } tl_layout;
 
 #endif

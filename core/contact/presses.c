@@ -20,7 +20,7 @@ uint32_t tl_press_take(tl_detect *d)
     if (row != TL_NO_ROW) {
         d->press_free = d->press[row].next_free;
     } else {
-        if (!tl_grow(&d->press, &d->press_room, d->press_count + 1, sizeof *d->press))
+        if (!tl_grow(&d->press, &d->press_capacity, d->press_count + 1, sizeof *d->press))
             return TL_NO_ROW;
         row = (uint32_t)d->press_count++;
     }

@@ -59,7 +59,7 @@ static void assign_lanes(tl_layout *layout, tl_contacts *c, tl_span *span, lane_
             group = begin_group(layout, span, requests[i].points);
         group->contact[lane] = row;
         c->point_start[row] = group->start + lane;
-        c->point_room[row] = (uint16_t)group->slots;
+        c->point_capacity[row] = (uint16_t)group->slots;
     }
 }
 
@@ -75,8 +75,8 @@ static uint32_t lay_span(tl_layout *layout, tl_contacts *c, tl_span *span, uint3
     size_t count = 0;
     for (; row < c->table.rows && is_of_span(c, row, span); row++) {
         c->point_start[row] = 0;
-        if (c->point_room[row])
-            requests[count++] = (lane_request){c->point_room[row], row};
+        if (c->point_capacity[row])
+            requests[count++] = (lane_request){c->point_capacity[row], row};
         if (count == WINDOW) {
             assign_lanes(layout, c, span, requests, count);
             count = 0;
@@ -92,7 +92,7 @@ bool tl_layout_make(tl_layout *layout, tl_contacts *c, size_t share, size_t *poi
     *points = 0;
     size_t groups = 0;
     for (uint32_t row = 0; row < rows;) {
-        if (!tl_grow(&layout->spans, &layout->span_room, layout->span_count + 1,
+        if (!tl_grow(&layout->spans, &layout->span_capacity, layout->span_count + 1,
                      sizeof *layout->spans))
             return false;
         tl_span *span = &layout->spans[layout->span_count++];
@@ -103,13 +103,13 @@ bool tl_layout_make(tl_layout *layout, tl_contacts *c, size_t share, size_t *poi
                           .group_begin = groups};
         size_t count = 0;
         for (uint32_t i = row; i < rows && is_of_span(c, i, span); i++)
-            count += c->point_room[i] > 0;
+            count += c->point_capacity[i] > 0;
         span->end = span->begin;
         span->group_end = groups;
         /* every window but the last of a span is full */
         size_t full = (count + TL_LANES - 1) / TL_LANES;
         span->group_limit = groups = groups + tl_with_spare(full, share, SPARE_GROUPS);
-        if (!tl_grow(&layout->groups, &layout->group_room, groups, sizeof *layout->groups))
+        if (!tl_grow(&layout->groups, &layout->group_capacity, groups, sizeof *layout->groups))
             return false;
         row = lay_span(layout, c, span, row);
         span->limit = span->begin + tl_with_spare(span->end - span->begin, share, SPARE_POINTS);
@@ -160,7 +160,7 @@ tl_simd_group *tl_simd_group_take(tl_detect *d, uint32_t points, uint32_t contac
     }
     size_t rows = (size_t)(points + GROWTH) * TL_LANES;
     if (span->group_end == span->group_limit || span->end + rows > span->limit ||
-        rows > d->lane_room)
+        rows > d->lane_capacity)
         return NULL;
     tl_simd_group *group = begin_group(&d->layout, span, points + GROWTH);
     take_lane(group, contact, lane);
@@ -188,6 +188,6 @@ static tl_simd_group *group_at(tl_detect *d, uint32_t start)
 void tl_simd_group_note(tl_detect *d, uint32_t contact, uint32_t row)
 {
     uint32_t start = d->contacts.point_start[contact];
-    if (d->contacts.point_room[contact])
+    if (d->contacts.point_capacity[contact])
         group_at(d, start)->contact[start % TL_LANES] = row;
 }

@@ -53,12 +53,12 @@ static bool seen_are_sound(const tl_model *m, const tl_detect *d)
     size_t blocks = m->blocks.table.rows;
     if (d->listed && d->structure == m->structure && d->known_block_count != blocks)
         return false;
-    if (d->listed && (d->path_room < d->known_block_count || d->structure > m->structure))
+    if (d->listed && (d->path_capacity < d->known_block_count || d->structure > m->structure))
         return false;
     for (size_t row = 0; row < d->known_block_count; row++) {
         const tl_known_block *s = &d->known_blocks[row];
-        if (s->body >= d->odometer_room || s->body >= d->touched_room || s->body >= d->idle_room ||
-            s->id <= (row ? d->known_blocks[row - 1].id : 0))
+        if (s->body >= d->odometer_capacity || s->body >= d->touched_capacity ||
+            s->body >= d->idle_capacity || s->id <= (row ? d->known_blocks[row - 1].id : 0))
             return false;
         if (d->structure == m->structure &&
             (s->id != m->blocks.id[row] || s->body != m->blocks.body[row]))
@@ -70,12 +70,12 @@ static bool seen_are_sound(const tl_model *m, const tl_detect *d)
 static bool pairs_are_sound(const tl_model *m, const tl_detect *d)
 {
     size_t chunks = (d->pair_count + TL_PAIR_CHUNK - 1) / TL_PAIR_CHUNK;
-    if (d->pair_count >= TL_PAIR_APART || d->chunk_room < chunks)
+    if (d->pair_count >= TL_PAIR_APART || d->chunk_capacity < chunks)
         return false;
     for (uint32_t i = 0; i < d->pair_count; i++)
         if (!pair_is_sound(m, d, i))
             return false;
-    for (size_t i = 0; i < d->chunk_room; i++)
+    for (size_t i = 0; i < d->chunk_capacity; i++)
         if (!tl_is_flag(&d->chunks[i].found))
             return false;
     return true;
@@ -199,7 +199,7 @@ static bool contact_is_sound(const tl_model *m, const tl_detect *d, uint32_t row
            (c->law[row] < m->joint_law_count || c->law[row] == TL_NO_ROW) &&
            c->tag[row].joint <= m->joint_count && c->field[row] <= 1 && c->held[row] <= 1 &&
            c->across[row] <= 1 && c->fresh[row] <= 1 && c->pending[row] <= TL_PENDING_MOVE &&
-           c->deep[row] <= TL_DEEP_SUNK && c->point_count[row] <= c->point_room[row] &&
+           c->deep[row] <= TL_DEEP_SUNK && c->point_count[row] <= c->point_capacity[row] &&
            facet_is_sound(m, d, row);
 }
 
@@ -215,7 +215,7 @@ static bool group_is_sound(const tl_detect *d, const tl_span *span, const tl_sim
         if (row == TL_NO_ROW)
             continue;
         if (row >= c->table.rows || c->point_start[row] != group->start + l ||
-            c->point_room[row] != group->slots || c->law[row] != span->law ||
+            c->point_capacity[row] != group->slots || c->law[row] != span->law ||
             c->held[row] != span->held || c->field[row] != span->field)
             return false;
         ++*taken;
@@ -234,13 +234,13 @@ static bool span_is_sound(const tl_model *m, const tl_detect *d, const tl_span *
         span->end < span->begin || span->limit < span->end || span->limit > d->points.table.rows ||
         span->limit % TL_LANES || span->group_begin < (before ? before->group_limit : 0) ||
         span->group_end < span->group_begin || span->group_limit < span->group_end ||
-        span->group_limit > d->layout.group_room)
+        span->group_limit > d->layout.group_capacity)
         return false;
     size_t at = span->begin;
     for (size_t r = span->group_begin; r < span->group_end; r++) {
         const tl_simd_group *group = &d->layout.groups[r];
         size_t rows = (size_t)group->slots * TL_LANES;
-        if (group->start != at || group->slots == 0 || rows > d->lane_room ||
+        if (group->start != at || group->slots == 0 || rows > d->lane_capacity ||
             rows > span->end - at || !group_is_sound(d, span, group, taken))
             return false;
         at += rows;
@@ -257,7 +257,7 @@ static bool layout_is_sound(const tl_model *m, const tl_detect *d)
         if (!span_is_sound(m, d, &d->layout.spans[k], k ? &d->layout.spans[k - 1] : NULL, &taken))
             return false;
     for (uint32_t row = 0; row < d->contacts.table.rows; row++)
-        wanted += d->contacts.point_room[row] > 0;
+        wanted += d->contacts.point_capacity[row] > 0;
     return taken == wanted;
 }
 

@@ -21,7 +21,7 @@ typedef struct tl_contacts {
     /* of patches: where their points were laid or, without reuse, their faces chosen */
     tl_spot *spot;
     uint32_t *point_start; /* row of the first point; the next are TL_LANES rows apart */
-    uint16_t *point_count, *point_room;
+    uint16_t *point_count, *point_capacity;
     double *area;
     double *released; /* shear energy that went with area since the last step, J: heat */
     tl_vec3 *force;   /* on B */

@@ -39,7 +39,7 @@ typedef struct tl_old_point old_point;
 /* Makes room for `count` old points and as many values. */
 static bool reserve(tl_narrow *room, size_t count)
 {
-    if (count <= room->old_room)
+    if (count <= room->old_capacity)
         return true;
     old_point *old = realloc(room->old, 2 * count * sizeof *old);
     if (old)
@@ -49,7 +49,7 @@ static bool reserve(tl_narrow *room, size_t count)
         room->value = value;
     if (!old || !value)
         return false;
-    room->old_room = 2 * count;
+    room->old_capacity = 2 * count;
     return true;
 }
 
@@ -493,7 +493,7 @@ bool tl_contact_transfer(tl_model *m, uint32_t c, tl_narrow *room, const tl_poin
 
     contacts->facet[c] = g->facet;
     contacts->point_count[c] = (uint16_t)g->point_count;
-    for (size_t k = g->point_count; k < contacts->point_room[c]; k++)
+    for (size_t k = g->point_count; k < contacts->point_capacity[c]; k++)
         tl_point_clear(p, tl_point_row(contacts, c, k));
     double place = TL_MERGE * fmin(m->blocks.size[contacts->a[c]], m->blocks.size[contacts->b[c]]);
     plane_fit fit = {.made = false};

@@ -5,8 +5,8 @@
 
 #define VALUE(keep, member) TL_WALK_VALUE(walk, TL_KEEP_##keep, "detect.", d, member)
 #define FLAG(keep, member) TL_WALK_FLAG(walk, TL_KEEP_##keep, "detect.", d, member)
-#define LIST(keep, member, count, room, bytes)                                                     \
-    TL_WALK_LIST(walk, TL_KEEP_##keep, "detect.", d, member, &d->count, &d->room,                  \
+#define LIST(keep, member, count, capacity, bytes)                                                 \
+    TL_WALK_LIST(walk, TL_KEEP_##keep, "detect.", d, member, &d->count, &d->capacity,              \
                  offsetof(tl_memory, bytes))
 #define TABLE(keep, member, bytes)                                                                 \
     tl_walk_table(walk, TL_KEEP_##keep, "detect." #member, &d->member.table,                       \
@@ -15,17 +15,17 @@
 /* Pairs, and how far blocks have moved since they were listed. */
 static void walk_pairs(tl_detect *d, const tl_walk *walk)
 {
-    LIST(CACHE, pairs, pair_count, pair_room, pairs);
-    LIST(CACHE, chunks, chunk_room, chunk_room, pairs);
+    LIST(CACHE, pairs, pair_count, pair_capacity, pairs);
+    LIST(CACHE, chunks, chunk_capacity, chunk_capacity, pairs);
     FLAG(CACHE, listed);
     VALUE(CACHE, reach);
-    LIST(CACHE, odometer_0, odometer_room, odometer_room, broad);
-    LIST(CACHE, known_blocks, known_block_count, known_block_room, broad);
-    LIST(CACHE, path, path_room, path_room, broad);
+    LIST(CACHE, odometer_0, odometer_capacity, odometer_capacity, broad);
+    LIST(CACHE, known_blocks, known_block_count, known_block_capacity, broad);
+    LIST(CACHE, path, path_capacity, path_capacity, broad);
     VALUE(CACHE, longest_path);
-    LIST(CACHE, touched, touched_room, touched_room, broad);
+    LIST(CACHE, touched, touched_capacity, touched_capacity, broad);
     FLAG(CACHE, any_touched);
-    LIST(CACHE, idle, idle_room, idle_room, broad);
+    LIST(CACHE, idle, idle_capacity, idle_capacity, broad);
     FLAG(CACHE, any_idle);
 }
 
@@ -38,20 +38,20 @@ static void walk_contacts(tl_detect *d, const tl_walk *walk)
     VALUE(STATE, points.state_columns);
     FLAG(STATE, points.initial);
     TABLE(STATE, points, points);
-    LIST(STATE, press, press_count, press_room, facets);
+    LIST(STATE, press, press_count, press_capacity, facets);
     VALUE(CACHE, press_free);
     VALUE(STATE, parted);
     VALUE(CACHE, laid_at);
     VALUE(CACHE, spare_share);
-    LIST(CACHE, layout.spans, layout.span_count, layout.span_room, other);
-    LIST(CACHE, layout.groups, layout.group_room, layout.group_room, index);
-    VALUE(CACHE, lane_room);
+    LIST(CACHE, layout.spans, layout.span_count, layout.span_capacity, other);
+    LIST(CACHE, layout.groups, layout.group_capacity, layout.group_capacity, index);
+    VALUE(CACHE, lane_capacity);
     TABLE(SCRATCH, spare, spare);
     TABLE(SCRATCH, spare_points, spare);
-    LIST(DERIVED, by_block, by_block_room, by_block_room, index);
-    LIST(DERIVED, by_block_start, by_start_room, by_start_room, index);
+    LIST(DERIVED, by_block, by_block_capacity, by_block_capacity, index);
+    LIST(DERIVED, by_block_start, by_start_capacity, by_start_capacity, index);
     VALUE(DERIVED, indexed);
-    LIST(DERIVED, by_id, by_id_room, by_id_room, index);
+    LIST(DERIVED, by_id, by_id_capacity, by_id_capacity, index);
     FLAG(DERIVED, by_id_fresh);
 }
 

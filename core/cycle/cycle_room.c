@@ -46,7 +46,7 @@ tl_status tl_cycle_prepare(tl_model *m)
     }
     struct tl_cycle *c = m->cycle;
     size_t bodies = m->bodies.table.rows, chunks = bodies / TL_BODY_CHUNK + 1;
-    if (chunks > c->chunk_room) {
+    if (chunks > c->chunk_capacity) {
         tl_sums *sums = realloc(c->chunk_sums, chunks * sizeof *sums);
         if (!sums)
             return tl_fail_memory(&m->error);
@@ -54,7 +54,7 @@ tl_status tl_cycle_prepare(tl_model *m)
         tl_status status = tl_energy_prepare(m, chunks);
         if (status != TL_OK)
             return status;
-        c->chunk_room = chunks;
+        c->chunk_capacity = chunks;
     }
     /* whole lanes: the damping plugins' loops run to a multiple of TL_LANES */
     return tl_table_resize(&c->table, (bodies + TL_LANES - 1) / TL_LANES * TL_LANES)
@@ -76,9 +76,9 @@ bool tl_model_moves(const tl_model *m)
 tl_status tl_laws_prepare(tl_model *m)
 {
     struct tl_cycle *c = m->cycle;
-    bool room = tl_grow(&c->group_energy, &c->group_room, m->detect->layout.group_room,
-                        sizeof *c->group_energy);
-    return room ? TL_OK : tl_fail_memory(&m->error);
+    bool enough = tl_grow(&c->group_energy, &c->group_capacity, m->detect->layout.group_capacity,
+                          sizeof *c->group_energy);
+    return enough ? TL_OK : tl_fail_memory(&m->error);
 }
 
 tl_law_phase tl_law_phase_of(struct tl_cycle *c)

@@ -114,13 +114,13 @@ struct tl_cycle {
     uint32_t
         *reaction_of; /* index of the reaction on a body that is held in some way, or TL_NO_ROW */
     tl_reaction *reaction;
-    size_t reaction_room;
+    size_t reaction_capacity;
     uint64_t reactions_for; /* version of the bodies; 0: none */
     tl_sums *chunk_sums;
-    size_t chunk_room;
+    size_t chunk_capacity;
     tl_sums sums;
     tl_group_energy *group_energy; /* of each SIMD group of contacts */
-    size_t group_room;
+    size_t group_capacity;
     struct tl_ledger *chunk_ledger, *ledger;   /* energy.c */
     double kinetic_before;                     /* of the last step, for its rate */
     double dt;                                 /* the step in use */

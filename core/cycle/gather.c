@@ -113,7 +113,7 @@ bool tl_gather_prepare(tl_model *m)
     uint32_t held = 0;
     for (size_t body = 0; body < m->bodies.table.rows; body++)
         c->reaction_of[body] = m->bodies.fixed[body] ? held++ : TL_NO_ROW;
-    if (!tl_fit(&c->reaction, &c->reaction_room, held, sizeof *c->reaction))
+    if (!tl_fit(&c->reaction, &c->reaction_capacity, held, sizeof *c->reaction))
         return false;
     c->reactions_for = version;
     return true;

@@ -24,7 +24,7 @@
 /* The columns of a table that a step overwrites (TL_COLUMN_STEP), one after the other, each of the table's capacity. */
 typedef struct shadow {
     char *memory;
-    size_t room; /* bytes */
+    size_t capacity; /* bytes */
 } shadow;
 
 struct tl_undo {
@@ -38,7 +38,7 @@ struct tl_undo {
     tl_vec3 gravity;  /* then */
     shadow points, contacts, bodies, loads;
     tl_reaction *reaction;
-    size_t reaction_room;
+    size_t reaction_capacity;
     tl_sums sums;
     double damping_state[TL_STATE_COLUMNS];
 };
@@ -51,7 +51,7 @@ static bool shadow_reserve(shadow *s, const tl_table *table)
     for (size_t i = 0; i < table->column_count; i++)
         if (table->columns[i].flags & TL_COLUMN_STEP)
             row += table->columns[i].size;
-    return tl_fit(&s->memory, &s->room, row * table->capacity, 1);
+    return tl_fit(&s->memory, &s->capacity, row * table->capacity, 1);
 }
 
 /* Copies rows of the table to its shadow, or back. */
@@ -168,7 +168,7 @@ static void forget(struct tl_undo *u)
     }
     free(u->reaction);
     u->reaction = NULL;
-    u->reaction_room = 0;
+    u->reaction_capacity = 0;
 }
 
 tl_status tl_undo_begin(tl_model *m)
@@ -191,12 +191,12 @@ tl_status tl_undo_reserve(tl_model *m)
     if (u->once && !set_by_hand(m) && !m->cycle->fast && !m->cycle->long_step)
         return TL_OK;
     const tl_detect *d = m->detect;
-    u->keeps =
-        shadow_reserve(&u->points, &d->points.table) &&
-        shadow_reserve(&u->contacts, &d->contacts.table) &&
-        shadow_reserve(&u->bodies, &m->bodies.table) &&
-        shadow_reserve(&u->loads, &m->cycle->table) &&
-        tl_fit(&u->reaction, &u->reaction_room, m->cycle->reaction_room, sizeof *u->reaction);
+    u->keeps = shadow_reserve(&u->points, &d->points.table) &&
+               shadow_reserve(&u->contacts, &d->contacts.table) &&
+               shadow_reserve(&u->bodies, &m->bodies.table) &&
+               shadow_reserve(&u->loads, &m->cycle->table) &&
+               tl_fit(&u->reaction, &u->reaction_capacity, m->cycle->reaction_capacity,
+                      sizeof *u->reaction);
     return u->keeps ? TL_OK : tl_fail_memory(&m->error);
 }
 
@@ -247,8 +247,8 @@ size_t tl_undo_bytes(const struct tl_cycle *c)
     const struct tl_undo *u = c->undo;
     if (!u)
         return 0;
-    return sizeof *u + u->points.room + u->contacts.room + u->bodies.room + u->loads.room +
-           u->reaction_room * sizeof *u->reaction;
+    return sizeof *u + u->points.capacity + u->contacts.capacity + u->bodies.capacity +
+           u->loads.capacity + u->reaction_capacity * sizeof *u->reaction;
 }
 
 void tl_undo_free(struct tl_undo *u)

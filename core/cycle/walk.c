@@ -3,14 +3,14 @@
 
 #define VALUE(keep, member) TL_WALK_VALUE(walk, TL_KEEP_##keep, "cycle.", c, member)
 #define FLAG(keep, member) TL_WALK_FLAG(walk, TL_KEEP_##keep, "cycle.", c, member)
-#define LIST(keep, member, count, room, bytes)                                                     \
-    TL_WALK_LIST(walk, TL_KEEP_##keep, "cycle.", c, member, (count), (room),                       \
+#define LIST(keep, member, count, capacity, bytes)                                                 \
+    TL_WALK_LIST(walk, TL_KEEP_##keep, "cycle.", c, member, (count), (capacity),                   \
                  offsetof(tl_memory, bytes))
 
 void tl_cycle_walk(struct tl_cycle *c, const tl_walk *walk)
 {
     tl_walk_table(walk, TL_KEEP_CACHE, "cycle", &c->table, offsetof(tl_memory, step));
-    LIST(CACHE, reaction, &c->reaction_room, &c->reaction_room, step);
+    LIST(CACHE, reaction, &c->reaction_capacity, &c->reaction_capacity, step);
     VALUE(CACHE, reactions_for);
     VALUE(CACHE, sums);
     VALUE(STATE, kinetic_before);
@@ -36,8 +36,8 @@ void tl_cycle_walk(struct tl_cycle *c, const tl_walk *walk)
     size_t one = c->ledger ? 1 : 0;
     tl_walk_list(walk, TL_KEEP_STATE, "cycle.ledger", &c->ledger, tl_ledger_size(), &one, NULL,
                  offsetof(tl_memory, step));
-    LIST(SCRATCH, chunk_sums, &c->chunk_room, &c->chunk_room, step);
-    LIST(CACHE, group_energy, &c->group_room, &c->group_room, step);
+    LIST(SCRATCH, chunk_sums, &c->chunk_capacity, &c->chunk_capacity, step);
+    LIST(CACHE, group_energy, &c->group_capacity, &c->group_capacity, step);
     tl_walk_list(walk, TL_KEEP_SCRATCH, "cycle.chunk_ledger", &c->chunk_ledger, tl_ledger_size(),
-                 &c->chunk_room, NULL, offsetof(tl_memory, step));
+                 &c->chunk_capacity, NULL, offsetof(tl_memory, step));
 }

@@ -27,9 +27,9 @@ struct tl_broad {
     tl_bounds *bounds; /* of each, grown */
     double *extent;
     uint32_t *cell_start, *entries; /* entries: numbers of blocks that are entered */
-    size_t cell_room, entry_room;
+    size_t cell_capacity, entry_capacity;
     tl_pair *next; /* the list being made */
-    size_t next_room;
+    size_t next_capacity;
     tl_bounds all;
     double reach, cell;
     uint32_t n[3];
@@ -167,7 +167,7 @@ static tl_status measure(tl_model *m, struct tl_broad *g, bool whole)
 static tl_status fill(tl_model *m, struct tl_broad *g)
 {
     size_t cells = (size_t)g->n[0] * g->n[1] * g->n[2], total = 0;
-    if (!tl_grow(&g->cell_start, &g->cell_room, cells + 2, sizeof *g->cell_start))
+    if (!tl_grow(&g->cell_start, &g->cell_capacity, cells + 2, sizeof *g->cell_start))
         return tl_fail_memory(&m->error);
     memset(g->cell_start, 0, (cells + 2) * sizeof *g->cell_start);
     uint32_t *start = g->cell_start + 1; /* shifted: filling moves each start to its end */
@@ -191,7 +191,7 @@ static tl_status fill(tl_model *m, struct tl_broad *g)
             start[cell] = (uint32_t)total;
             total += here;
         }
-        if (!tl_grow(&g->entries, &g->entry_room, total + 1, sizeof *g->entries))
+        if (!tl_grow(&g->entries, &g->entry_capacity, total + 1, sizeof *g->entries))
             return tl_fail_memory(&m->error);
     }
     return TL_OK; /* now entries of cell c are [cell_start[c], cell_start[c + 1]) */
@@ -205,7 +205,7 @@ static bool overlap(const tl_bounds *a, const tl_bounds *b)
 
 static bool push(struct tl_broad *g, size_t *count, uint32_t a, uint32_t b)
 {
-    if (!tl_grow(&g->next, &g->next_room, *count + 1, sizeof *g->next))
+    if (!tl_grow(&g->next, &g->next_capacity, *count + 1, sizeof *g->next))
         return false;
     g->next[(*count)++] = (tl_pair){.a = a, .b = b, .contact = TL_PAIR_APART, .wake = -1};
     return true;
@@ -276,13 +276,13 @@ static int compare_pair(const void *a, const void *b)
 static tl_status list_pairs(tl_model *m, struct tl_broad *g, bool whole, size_t *count)
 {
     *count = 0;
-    bool room =
-        tl_grow(&g->next, &g->next_room, whole ? m->detect->pair_count : 1, sizeof *g->next);
-    for (uint32_t i = 0; i < g->count && room; i++)
-        room = pairs_of(m, g, g->row[i], &g->bounds[i], true, count);
-    if (room && !whole)
-        room = pairs_with_others(m, g, count);
-    if (!room)
+    bool enough =
+        tl_grow(&g->next, &g->next_capacity, whole ? m->detect->pair_count : 1, sizeof *g->next);
+    for (uint32_t i = 0; i < g->count && enough; i++)
+        enough = pairs_of(m, g, g->row[i], &g->bounds[i], true, count);
+    if (enough && !whole)
+        enough = pairs_with_others(m, g, count);
+    if (!enough)
         return tl_fail_memory(&m->error);
     if (*count > 1)
         qsort(g->next, *count, sizeof *g->next, compare_pair);
@@ -295,7 +295,7 @@ static void trim(struct tl_broad *g, size_t count)
     tl_pair *list = count ? realloc(g->next, count * sizeof *list) : NULL;
     if (list) {
         g->next = list;
-        g->next_room = count;
+        g->next_capacity = count;
     }
 }
 
@@ -323,17 +323,17 @@ static tl_status merge(tl_model *m, struct tl_broad *g, size_t fresh)
     if (count > fresh)
         qsort(g->next, count, sizeof *g->next, compare_pair);
     size_t chunks = count / TL_PAIR_CHUNK + 1;
-    if (!tl_fit(&d->chunks, &d->chunk_room, chunks, sizeof *d->chunks))
+    if (!tl_fit(&d->chunks, &d->chunk_capacity, chunks, sizeof *d->chunks))
         return tl_fail_memory(&m->error);
     for (size_t i = 0; i < chunks; i++)
         d->chunks[i] = (tl_pair_chunk){.wake = -INFINITY};
     trim(g, count);
     free(d->pairs);
     d->pairs = g->next;
-    d->pair_room = g->next_room;
+    d->pair_capacity = g->next_capacity;
     d->pair_count = count;
     g->next = NULL;
-    g->next_room = 0;
+    g->next_capacity = 0;
     for (uint32_t i = 0; i < count; i++)
         if (!tl_pair_is_apart(&d->pairs[i]))
             d->contacts.pair[d->pairs[i].contact] = i;
@@ -357,8 +357,8 @@ static tl_status insert(tl_model *m, struct tl_broad *g, size_t fresh)
     tl_detect *d = m->detect;
     fresh = unknown_pairs(d, g->next, fresh);
     size_t from = d->pair_count, to = from + fresh, chunks = to / TL_PAIR_CHUNK + 1;
-    if (!tl_fit(&d->pairs, &d->pair_room, to, sizeof *d->pairs) ||
-        !tl_fit(&d->chunks, &d->chunk_room, chunks, sizeof *d->chunks))
+    if (!tl_fit(&d->pairs, &d->pair_capacity, to, sizeof *d->pairs) ||
+        !tl_fit(&d->chunks, &d->chunk_capacity, chunks, sizeof *d->chunks))
         return tl_fail_memory(&m->error);
     while (fresh) {
         bool old = from && compare_pair(&d->pairs[from - 1], &g->next[fresh - 1]) > 0;

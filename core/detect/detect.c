@@ -84,7 +84,7 @@ static void update_others(void *user, size_t begin, size_t end, size_t chunk, un
     (void)chunk;
     tl_model *m = user;
     for (uint32_t c = (uint32_t)begin; c < end; c++)
-        if (m->detect->contacts.point_room[c] == 0 && !tl_contact_points_hold(m, c))
+        if (m->detect->contacts.point_capacity[c] == 0 && !tl_contact_points_hold(m, c))
             tl_contact_update(m, c, thread);
 }
 
@@ -199,7 +199,7 @@ static bool settle_rows(tl_model *m)
 {
     tl_detect *d = m->detect;
     tl_contacts *c = &d->contacts;
-    bool room = true;
+    bool enough = true;
     for (uint32_t row = (uint32_t)c->table.rows; row-- > 0;) {
         if (c->pending[row] == TL_PENDING_NONE)
             continue;
@@ -212,13 +212,13 @@ static bool settle_rows(tl_model *m)
             continue;
         }
         if (c->pending[row] == TL_PENDING_MOVE) {
-            d->pairs[pair].want_points = c->point_room[row];
+            d->pairs[pair].want_points = c->point_capacity[row];
         }
         if (tl_law_row(m, c->tag[row]) != c->law[row])
             change_law(m, row);
-        room = room && tl_contact_place(d, row);
+        enough = enough && tl_contact_place(d, row);
     }
-    return room;
+    return enough;
 }
 
 /* Builds the facets of the contacts that have been given their room; *more: some want more still. */

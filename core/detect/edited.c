@@ -37,8 +37,8 @@ static bool make_room(const tl_model *m, rows_room *room)
                         .touched = malloc(bodies + 1),
                         .known_blocks = malloc((blocks + 1) * sizeof *room->known_blocks)};
     if (room->row && room->odometer_0 && room->touched && room->known_blocks &&
-        tl_fit(&d->idle, &d->idle_room, bodies + 1, sizeof *d->idle) &&
-        tl_fit(&d->path, &d->path_room, blocks + 1, sizeof *d->path))
+        tl_fit(&d->idle, &d->idle_capacity, bodies + 1, sizeof *d->idle) &&
+        tl_fit(&d->path, &d->path_capacity, blocks + 1, sizeof *d->path))
         return true;
     free(room->row);
     free(room->odometer_0);
@@ -127,8 +127,8 @@ tl_status tl_edited_rows(tl_model *m)
     d->odometer_0 = room.odometer_0;
     d->touched = room.touched;
     d->known_blocks = room.known_blocks;
-    d->odometer_room = d->touched_room = bodies + 1;
-    d->known_block_room = blocks + 1;
+    d->odometer_capacity = d->touched_capacity = bodies + 1;
+    d->known_block_capacity = blocks + 1;
     d->known_block_count = blocks;
     d->any_touched = true;
     tl_contacts_unlist(d);

@@ -41,10 +41,10 @@ tl_status tl_pairs_restart(tl_model *m)
 {
     tl_detect *d = m->detect;
     size_t blocks = m->blocks.table.rows, bodies = m->bodies.table.rows;
-    if (!tl_fit(&d->odometer_0, &d->odometer_room, bodies + 1, sizeof *d->odometer_0) ||
-        !tl_fit(&d->touched, &d->touched_room, bodies + 1, sizeof *d->touched) ||
-        !tl_fit(&d->idle, &d->idle_room, bodies + 1, sizeof *d->idle) ||
-        !tl_fit(&d->path, &d->path_room, blocks + 1, sizeof *d->path))
+    if (!tl_fit(&d->odometer_0, &d->odometer_capacity, bodies + 1, sizeof *d->odometer_0) ||
+        !tl_fit(&d->touched, &d->touched_capacity, bodies + 1, sizeof *d->touched) ||
+        !tl_fit(&d->idle, &d->idle_capacity, bodies + 1, sizeof *d->idle) ||
+        !tl_fit(&d->path, &d->path_capacity, blocks + 1, sizeof *d->path))
         return tl_fail_memory(&m->error);
     for (size_t body = 0; body < bodies; body++)
         d->odometer_0[body] = m->bodies.odometer[body];

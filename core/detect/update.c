@@ -182,7 +182,7 @@ static bool wants_room(tl_detect *d, uint32_t c, const tl_manifold *g, bool refr
     bool bare =
         field && contacts->press[c] == TL_NO_ROW; /* it has not got the room for its press yet */
     bool moves = g->point_count > 0 && (contacts->field[c] != field || bare);
-    if (!moves && g->point_count <= contacts->point_room[c])
+    if (!moves && g->point_count <= contacts->point_capacity[c])
         return false;
     contacts->field[c] = field;
     d->pairs[contacts->pair[c]].want_points = (uint16_t)g->point_count;

@@ -23,17 +23,17 @@ typedef struct batch {
 
 unsigned char *tl_piece_room(tl_piece *piece, size_t bytes)
 {
-    if (piece->length + bytes > piece->room) {
-        size_t room = piece->room ? piece->room : PIECE_BYTES;
-        while (room < piece->length + bytes)
-            room *= 2;
-        unsigned char *data = piece->failed ? NULL : realloc(piece->data, room);
+    if (piece->length + bytes > piece->capacity) {
+        size_t capacity = piece->capacity ? piece->capacity : PIECE_BYTES;
+        while (capacity < piece->length + bytes)
+            capacity *= 2;
+        unsigned char *data = piece->failed ? NULL : realloc(piece->data, capacity);
         if (!data) {
             piece->failed = true;
             return NULL;
         }
         piece->data = data;
-        piece->room = room;
+        piece->capacity = capacity;
     }
     return piece->data + piece->length;
 }

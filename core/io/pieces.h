@@ -12,7 +12,7 @@
 /* Bytes that are to be written, and room for more. */
 typedef struct tl_piece {
     unsigned char *data;
-    size_t length, room;
+    size_t length, capacity;
     bool failed; /* out of memory */
 } tl_piece;
 

@@ -26,14 +26,14 @@ typedef struct section {
     tl_vec3 normal;
     corner *corners;
     uint32_t *row, *end; /* [polygons] block row; end of its corners */
-    size_t points, point_room, polygons, row_room, end_room;
+    size_t points, point_capacity, polygons, row_capacity, end_capacity;
 } section;
 
 static bool make_room(section *s, size_t corners)
 {
-    return tl_grow(&s->corners, &s->point_room, s->points + corners, sizeof *s->corners) &&
-           tl_grow(&s->row, &s->row_room, s->polygons + 1, sizeof *s->row) &&
-           tl_grow(&s->end, &s->end_room, s->polygons + 1, sizeof *s->end);
+    return tl_grow(&s->corners, &s->point_capacity, s->points + corners, sizeof *s->corners) &&
+           tl_grow(&s->row, &s->row_capacity, s->polygons + 1, sizeof *s->row) &&
+           tl_grow(&s->end, &s->end_capacity, s->polygons + 1, sizeof *s->end);
 }
 
 static int by_angle(const void *a, const void *b)

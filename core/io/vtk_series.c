@@ -58,19 +58,19 @@ tl_vtk_series *tl_vtk_series_of(tl_model *m, const char *prefix, const char *kin
 
 char *tl_vtk_frame_name(const tl_vtk_series *series, const char *content, size_t frame)
 {
-    size_t room = strlen(series->prefix) + strlen(content) + 32;
-    char *name = malloc(room);
+    size_t capacity = strlen(series->prefix) + strlen(content) + 32;
+    char *name = malloc(capacity);
     if (name)
-        snprintf(name, room, "%s_%s_%06zu.vtk", series->prefix, content, frame);
+        snprintf(name, capacity, "%s_%s_%06zu.vtk", series->prefix, content, frame);
     return name;
 }
 
 char *tl_vtk_index_name(const tl_vtk_series *series, const char *content)
 {
-    size_t room = strlen(series->prefix) + strlen(content) + 32;
-    char *name = malloc(room);
+    size_t capacity = strlen(series->prefix) + strlen(content) + 32;
+    char *name = malloc(capacity);
     if (name)
-        snprintf(name, room, "%s_%s.vtk.series", series->prefix, content);
+        snprintf(name, capacity, "%s_%s.vtk.series", series->prefix, content);
     return name;
 }
 

@@ -349,8 +349,8 @@ int tl_lua_keyblocks(lua_State *L)
     tl_lua_read(L, 2, &spec, false, &query);
     if (!lua_istable(L, 2))
         return tl_lua_fail(L, "keyblocks: give the parameters in a table: {friction = 35}");
-    size_t room = count_strength(L, "friction") + count_strength(L, "cohesion");
-    tl_joint_strength *list = lua_newuserdatauv(L, (room + 1) * sizeof *list, 0);
+    size_t capacity = count_strength(L, "friction") + count_strength(L, "cohesion");
+    tl_joint_strength *list = lua_newuserdatauv(L, (capacity + 1) * sizeof *list, 0);
     size_t count = fill_strength(L, "friction", list, 0);
     count = fill_strength(L, "cohesion", list, count);
     query.strength = list;

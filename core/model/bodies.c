@@ -15,10 +15,10 @@ bool tl_rows_reserve(tl_model *m, size_t count, tl_id next_id)
         return false;
     /* by an eighth more than is needed: blocks may come one by one */
     size_t ids = (size_t)next_id + 1;
-    return (count + 1 <= m->member_room ||
-            tl_fit(&m->members, &m->member_room, count + count / 8 + 1, sizeof *m->members)) &&
-           (ids <= m->row_of_room ||
-            tl_fit(&m->row_of, &m->row_of_room, ids + ids / 8, sizeof *m->row_of));
+    return (count + 1 <= m->member_capacity ||
+            tl_fit(&m->members, &m->member_capacity, count + count / 8 + 1, sizeof *m->members)) &&
+           (ids <= m->row_of_capacity ||
+            tl_fit(&m->row_of, &m->row_of_capacity, ids + ids / 8, sizeof *m->row_of));
 }
 
 void tl_rows_refresh(tl_model *m)

@@ -112,8 +112,8 @@ tl_status tl_stage_open(tl_stage *stage)
         return TL_OK;
     tl_rows_tidy(m);
     tl_stage fresh = {.model = m};
-    bool room = true;
-    for (uint32_t row = 0; row < b->table.rows && room; row++) {
+    bool enough = true;
+    for (uint32_t row = 0; row < b->table.rows && enough; row++) {
         tl_stage_block block = {.shape = b->shape[row],
                                 .source = row,
                                 .group = b->group[row],
@@ -124,11 +124,11 @@ tl_status tl_stage_open(tl_stage *stage)
                                 .detached_from = TL_NO_ROW,
                                 .multi_block = m->bodies.member_count[b->body[row]] > 1,
                                 .hidden = b->hidden[row] != 0};
-        room = tl_stage_push(&fresh, &block);
+        enough = tl_stage_push(&fresh, &block);
     }
-    for (size_t i = 0; i < stage->count && room; i++)
-        room = tl_stage_push(&fresh, &stage->blocks[i]);
-    if (!room) {
+    for (size_t i = 0; i < stage->count && enough; i++)
+        enough = tl_stage_push(&fresh, &stage->blocks[i]);
+    if (!enough) {
         free_lists(&fresh);
         return tl_fail_memory(&m->error);
     }

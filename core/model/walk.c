@@ -3,8 +3,8 @@
 
 #define VALUE(keep, member) TL_WALK_VALUE(walk, TL_KEEP_##keep, "model.", m, member)
 #define FLAG(keep, member) TL_WALK_FLAG(walk, TL_KEEP_##keep, "model.", m, member)
-#define LIST(keep, member, count, room)                                                            \
-    TL_WALK_LIST(walk, TL_KEEP_##keep, "model.", m, member, &m->count, &m->room,                   \
+#define LIST(keep, member, count, capacity)                                                        \
+    TL_WALK_LIST(walk, TL_KEEP_##keep, "model.", m, member, &m->count, &m->capacity,               \
                  offsetof(tl_memory, other))
 
 static void walk_settings(tl_model *m, const tl_walk *walk)
@@ -42,8 +42,8 @@ void tl_model_walk(tl_model *m, const tl_walk *walk)
     VALUE(CACHE, rules);
     tl_walk_table(walk, TL_KEEP_STATE, "blocks", &m->blocks.table, offsetof(tl_memory, blocks));
     tl_walk_table(walk, TL_KEEP_STATE, "bodies", &m->bodies.table, offsetof(tl_memory, bodies));
-    LIST(DERIVED, members, member_room, member_room);
-    LIST(DERIVED, row_of, row_of_room, row_of_room);
+    LIST(DERIVED, members, member_capacity, member_capacity);
+    LIST(DERIVED, row_of, row_of_capacity, row_of_capacity);
     VALUE(STATE, record.cuts);
     VALUE(STATE, record.refused);
     VALUE(STATE, record.coincident);

@@ -39,7 +39,7 @@ typedef struct tl_contact_point {
 typedef struct tl_patch_points {
     double *p[3], *area;
     uint32_t *key;
-    size_t count, room;
+    size_t count, capacity;
     double gap; /* the smallest, at a corner */
 } tl_patch_points;
 

@@ -486,29 +486,29 @@ void tl_mesh_make(const tl_mesh_draft *draft, const tl_field_faces *faces, tl_fi
     mesh->bounding = bounding;
     if (draft->full || draft->polygons == 0 || !faces->inner || faces->inner->count > TL_MESH_INNER)
         return;
-    bool room = true;
-    for (uint32_t k = 0; k < draft->polygons && room; k++) {
+    bool fits = true;
+    for (uint32_t k = 0; k < draft->polygons && fits; k++) {
         uint32_t sides = draft->sides[k];
         memcpy(mesh->own[k], draft->own[k], sizeof mesh->own[k]);
         mesh->sides[k] = (uint8_t)sides;
-        room = sides > 2;
-        for (uint32_t i = 0; i < sides && room; i++) {
+        fits = sides > 2;
+        for (uint32_t i = 0; i < sides && fits; i++) {
             uint32_t corner =
                 corner_of(mesh, draft->own[k], label[i], label[i + 1 < sides ? i + 1 : 0]);
-            room = corner < TL_MESH_CORNERS;
+            fits = corner < TL_MESH_CORNERS;
             *loop++ = (uint8_t)corner;
         }
         label += sides;
     }
-    for (uint32_t k = 0; k < faces->inner->count && room; k++) {
+    for (uint32_t k = 0; k < faces->inner->count && fits; k++) {
         const uint8_t *face = faces->inner->face[k];
-        room = corner_of(mesh, face, face[2], TL_MESH_ZERO) < TL_MESH_CORNERS;
+        fits = corner_of(mesh, face, face[2], TL_MESH_ZERO) < TL_MESH_CORNERS;
     }
     for (uint32_t i = mesh->corners; i % LANES; i++) /* what is left of eight is the first again */
         for (int k = 0; k < 4; k++)
             mesh->plane[k][i] = mesh->plane[k][0];
     mesh->polygons = draft->polygons;
-    if (!room || !hangs_together(mesh, draft, faces)) {
+    if (!fits || !hangs_together(mesh, draft, faces)) {
         memset(mesh, 0, sizeof *mesh);
         mesh->bounding = bounding;
     }

@@ -23,7 +23,7 @@ typedef struct tl_press {
 typedef struct tl_manifold {
     tl_facet facet;
     tl_contact_point *points;
-    size_t point_count, point_room;
+    size_t point_count, point_capacity;
     tl_press press; /* of a field */
     double valid;   /* way that the pair may move before the kind and the faces are chosen anew */
     bool failed;    /* out of memory */
@@ -32,7 +32,7 @@ typedef struct tl_manifold {
 /* Per-thread room for the narrow phase. */
 typedef struct tl_narrow {
     tl_vec3 *vertex_b, *normal_b;
-    size_t vertex_room, normal_room;
+    size_t vertex_capacity, normal_capacity;
     struct tl_polygon *polygon; /* patch.c */
     tl_patch_points patch;
     tl_manifold manifold;
@@ -41,10 +41,10 @@ typedef struct tl_narrow {
     bool deep;                /* met a contact whose blocks overlap too deeply: overlap.c */
     struct tl_old_point *old; /* transfer.c */
     double *value;
-    size_t old_room;
+    size_t old_capacity;
     double *plane, *press; /* region.c, press.c */
     uint16_t *face;        /* of a region */
-    size_t plane_room, press_room, face_room;
+    size_t plane_capacity, press_capacity, face_capacity;
     tl_field_room field;
 } tl_narrow;
 

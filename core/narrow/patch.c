@@ -195,19 +195,19 @@ static size_t clip_faces(const tl_pair_view *view, uint32_t fa, uint32_t fb, con
 /* Makes room for `count` points. */
 static bool reserve(tl_patch_points *out, size_t count)
 {
-    if (count <= out->room)
+    if (count <= out->capacity)
         return true;
-    size_t room = 2 * count;
+    size_t capacity = 2 * count;
     double *block =
-        room > UINT16_MAX ? NULL : malloc(room * (4 * sizeof(double) + sizeof(uint32_t)));
+        capacity > UINT16_MAX ? NULL : malloc(capacity * (4 * sizeof(double) + sizeof(uint32_t)));
     if (!block)
         return false;
     free(out->p[0]);
     for (int k = 0; k < 3; k++)
-        out->p[k] = block + (size_t)k * room;
-    out->area = block + 3 * room;
-    out->key = (uint32_t *)(void *)(block + 4 * room);
-    out->room = room;
+        out->p[k] = block + (size_t)k * capacity;
+    out->area = block + 3 * capacity;
+    out->key = (uint32_t *)(void *)(block + 4 * capacity);
+    out->capacity = capacity;
     return true;
 }
 

@@ -29,8 +29,8 @@ bool tl_pairs_place(tl_pair_view view[], uint32_t count, tl_narrow *room)
         vertices += view[k].b->vertex_count;
         faces += view[k].b->face_count;
     }
-    if (!tl_grow(&room->vertex_b, &room->vertex_room, vertices, sizeof(tl_vec3)) ||
-        !tl_grow(&room->normal_b, &room->normal_room, faces, sizeof(tl_vec3)))
+    if (!tl_grow(&room->vertex_b, &room->vertex_capacity, vertices, sizeof(tl_vec3)) ||
+        !tl_grow(&room->normal_b, &room->normal_capacity, faces, sizeof(tl_vec3)))
         return false;
     tl_vec3 *vertex = room->vertex_b, *normal = room->normal_b;
     for (tl_pair_view *v = view; v < view + count; v++) {
@@ -70,8 +70,8 @@ double tl_pair_moved(const tl_pair_view *view, const tl_pair_pose *since)
 bool tl_pair_place_face(tl_pair_view *view, uint32_t face, tl_narrow *room)
 {
     const tl_poly *b = view->b;
-    if (!tl_grow(&room->vertex_b, &room->vertex_room, b->vertex_count, sizeof(tl_vec3)) ||
-        !tl_grow(&room->normal_b, &room->normal_room, b->face_count, sizeof(tl_vec3)))
+    if (!tl_grow(&room->vertex_b, &room->vertex_capacity, b->vertex_count, sizeof(tl_vec3)) ||
+        !tl_grow(&room->normal_b, &room->normal_capacity, b->face_count, sizeof(tl_vec3)))
         return false;
     view->vertex_b = room->vertex_b;
     view->normal_b = room->normal_b;

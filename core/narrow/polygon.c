@@ -27,20 +27,20 @@ struct tl_polygon *tl_polygon_room(tl_narrow *room, size_t na, size_t nb)
     struct tl_polygon *p = room->polygon;
     /* each clip adds a corner, or two where rounding makes it cross a straight run of corners twice */
     size_t corners = na + 2 * nb + 4;
-    if (corners > p->room) {
+    if (corners > p->capacity) {
         free(p->now);
         free(p->next);
         p->now = malloc(2 * corners * sizeof *p->now);
         p->next = malloc(2 * corners * sizeof *p->next);
-        p->room = p->now && p->next ? 2 * corners : 0;
+        p->capacity = p->now && p->next ? 2 * corners : 0;
     }
-    if (na + nb > p->face_room) {
+    if (na + nb > p->face_capacity) {
         free(p->face);
         p->face = malloc(2 * (na + nb) * sizeof *p->face);
-        p->face_room = p->face ? 2 * (na + nb) : 0;
+        p->face_capacity = p->face ? 2 * (na + nb) : 0;
     }
     p->clip = p->face + na;
-    return corners <= p->room && na + nb <= p->face_room ? p : NULL;
+    return corners <= p->capacity && na + nb <= p->face_capacity ? p : NULL;
 }
 
 /* What the corner is where edges `one` and `other` of B meet at `cut`: B's own, if they are neighbours. */

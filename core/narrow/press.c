@@ -48,12 +48,12 @@ static bool reserve(tl_narrow *room, const tl_press_query query[], uint32_t coun
         faces[k] = faces[k] > TL_FIELD_KNOWN ? faces[k] : TL_FIELD_KNOWN + 1; /* field_mesh.c */
         all += faces[k];
     }
-    if (4 * all > room->press_room) {
+    if (4 * all > room->press_capacity) {
         double *press = realloc(room->press, 8 * all * sizeof *press);
         if (!press)
             return false;
         room->press = press;
-        room->press_room = 8 * all;
+        room->press_capacity = 8 * all;
     }
     double *at = room->press;
     for (uint32_t k = 0; k < count; k++) {

@@ -45,20 +45,20 @@ static void set_columns(planes *p, double *at)
 
 static bool reserve(tl_narrow *room, size_t doubles, size_t faces)
 {
-    if (doubles > room->plane_room) {
+    if (doubles > room->plane_capacity) {
         double *plane = aligned_alloc(TL_ALIGN, 2 * doubles * sizeof *plane);
         if (!plane)
             return false;
         free(room->plane);
         room->plane = plane;
-        room->plane_room = 2 * doubles;
+        room->plane_capacity = 2 * doubles;
     }
-    if (faces > room->face_room) {
+    if (faces > room->face_capacity) {
         uint16_t *face = realloc(room->face, 2 * faces * sizeof *face);
         if (!face)
             return false;
         room->face = face;
-        room->face_room = 2 * faces;
+        room->face_capacity = 2 * faces;
     }
     return true;
 }

@@ -21,15 +21,16 @@ void tl_narrow_free(tl_narrow *n)
 
 bool tl_manifold_reserve(tl_manifold *m, size_t count)
 {
-    if (m->point_count + count <= m->point_room)
+    if (m->point_count + count <= m->point_capacity)
         return true;
-    size_t room = 2 * (m->point_count + count);
-    tl_contact_point *points = room > UINT16_MAX ? NULL : realloc(m->points, room * sizeof *points);
+    size_t capacity = 2 * (m->point_count + count);
+    tl_contact_point *points =
+        capacity > UINT16_MAX ? NULL : realloc(m->points, capacity * sizeof *points);
     if (!points) {
         m->failed = true;
         return false;
     }
     m->points = points;
-    m->point_room = room;
+    m->point_capacity = capacity;
     return true;
 }

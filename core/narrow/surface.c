@@ -31,21 +31,21 @@ static half_space face_of(const tl_pair_view *view, bool of_b, uint32_t face)
 /* Room for `corners` more corners and one more polygon. */
 static bool reserve(tl_surface *s, size_t corners)
 {
-    if (s->corners + corners > s->corner_room) {
-        size_t room = 2 * (s->corners + corners);
-        tl_vec3 *corner = realloc(s->corner, room * sizeof *corner);
+    if (s->corners + corners > s->corner_capacity) {
+        size_t capacity = 2 * (s->corners + corners);
+        tl_vec3 *corner = realloc(s->corner, capacity * sizeof *corner);
         if (!corner)
             return false;
         s->corner = corner;
-        s->corner_room = room;
+        s->corner_capacity = capacity;
     }
-    if (s->polygons == s->polygon_room) {
-        size_t room = 2 * s->polygon_room + 8;
-        uint32_t *size = realloc(s->size, room * sizeof *size);
+    if (s->polygons == s->polygon_capacity) {
+        size_t capacity = 2 * s->polygon_capacity + 8;
+        uint32_t *size = realloc(s->size, capacity * sizeof *size);
         if (!size)
             return false;
         s->size = size;
-        s->polygon_room = room;
+        s->polygon_capacity = capacity;
     }
     return true;
 }

@@ -9,7 +9,7 @@
 typedef struct tl_surface {
     tl_vec3 *corner;
     uint32_t *size; /* [polygons] corners of each */
-    size_t corners, polygons, corner_room, polygon_room;
+    size_t corners, polygons, corner_capacity, polygon_capacity;
 } tl_surface;
 
 /* Adds the common polygon of two faces, halfway between them. false: out of memory, as below. */

@@ -141,7 +141,7 @@ static bool is_there(const tl_model *m, const face_filter *s, uint32_t row, uint
 
 typedef struct face_list {
     tl_outer_face *at;
-    size_t count, room;
+    size_t count, capacity;
 } face_list;
 
 static tl_status find_faces(tl_model *m, const tl_boundary_where *where, face_list *faces)
@@ -152,7 +152,7 @@ static tl_status find_faces(tl_model *m, const tl_boundary_where *where, face_li
         for (uint32_t f = 0; f < m->blocks.shape[row]->face_count && status == TL_OK; f++) {
             if (!is_there(m, &s, row, f))
                 continue;
-            if (!tl_grow(&faces->at, &faces->room, faces->count + 1, sizeof *faces->at))
+            if (!tl_grow(&faces->at, &faces->capacity, faces->count + 1, sizeof *faces->at))
                 return tl_fail_memory(&m->error);
             status = tl_outer_measure(m, row, f, &faces->at[faces->count]);
             faces->count += status == TL_OK && faces->at[faces->count].sums.a > 0;

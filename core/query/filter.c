@@ -187,10 +187,10 @@ tl_status tl_model_filter(tl_model *m, const tl_filter *given, tl_filter_result 
                 .limits = limits,
                 .bad = calloc(blocks + 1, sizeof *f.bad),
                 .group = malloc((blocks + 1) * sizeof *f.group)};
-    bool room = f.bad && f.group;
-    if (room)
+    bool enough = f.bad && f.group;
+    if (enough)
         find_bad(&f);
-    if (!room || !list_bad(&f, result))
+    if (!enough || !list_bad(&f, result))
         status = tl_fail_memory(&m->error);
     if (status == TL_OK && limits->action == TL_FILTER_DELETE)
         status = delete (&f, result);

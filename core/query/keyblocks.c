@@ -48,8 +48,8 @@ typedef struct work {
     tl_tag *strength; /* the parsed joints of the query */
     tl_touches touches;
     constraint *faces;
-    size_t count, room;
-    size_t block_room, edge_room;
+    size_t count, capacity;
+    size_t block_capacity, edge_capacity;
     tl_keyblocks *result;
 } work;
 
@@ -122,7 +122,7 @@ static tl_status add_face(work *w, const tl_touch *touch)
     while (i < w->count && !(tl_v3_norm(tl_v3_sub(w->faces[i].normal, touch->normal)) <= ALONG))
         i++;
     if (i == w->count) {
-        if (!tl_grow(&w->faces, &w->room, w->count + 1, sizeof *w->faces))
+        if (!tl_grow(&w->faces, &w->capacity, w->count + 1, sizeof *w->faces))
             return tl_fail_memory(&w->model->error);
         w->faces[w->count++] = (constraint){.normal = touch->normal};
     }
@@ -168,7 +168,7 @@ static tl_status add_edge(work *w, size_t first, tl_vec3 d)
     for (size_t i = first; i < r->edge_count; i++)
         if (tl_v3_norm(tl_v3_sub(r->edges[i], d)) <= ALONG)
             return TL_OK;
-    if (!tl_grow(&r->edges, &w->edge_room, r->edge_count + 1, sizeof *r->edges))
+    if (!tl_grow(&r->edges, &w->edge_capacity, r->edge_count + 1, sizeof *r->edges))
         return tl_fail_memory(&w->model->error);
     r->edges[r->edge_count++] = d;
     return TL_OK;
@@ -291,7 +291,7 @@ static tl_status test_body(work *w, uint32_t body)
         status = find_pyramid(w, first, &empty);
     if (status != TL_OK || empty)
         return status;
-    if (!tl_grow(&result->blocks, &w->block_room, result->count + 1, sizeof *result->blocks))
+    if (!tl_grow(&result->blocks, &w->block_capacity, result->count + 1, sizeof *result->blocks))
         return tl_fail_memory(&m->error);
     uint32_t lowest = m->members[m->bodies.member_start[body]];
     tl_keyblock block = {.block = m->blocks.id[lowest],

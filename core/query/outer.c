@@ -78,8 +78,8 @@ static tl_status take_away(tl_model *m, tl_outer_face *f, uint32_t row, uint32_t
 {
     uint32_t mine = tl_poly_face_size(m->blocks.shape[f->row], f->face);
     uint32_t its = tl_poly_face_size(m->blocks.shape[row], face);
-    size_t room = mine + its;
-    flat *now = malloc(2 * room * sizeof *now), *next = now + room;
+    size_t capacity = mine + its;
+    flat *now = malloc(2 * capacity * sizeof *now), *next = now + capacity;
     if (!now)
         return tl_fail_memory(&m->error);
     flat *memory = now;

@@ -53,7 +53,7 @@ typedef struct writer {
     const tl_law_state *state;
     tl_vec3 *place;
     double *gap;
-    size_t room;
+    size_t capacity;
     double *out;
 } writer;
 
@@ -68,14 +68,14 @@ static double *put_vector(double *out, tl_vec3 v)
 /* Makes room for the places of so many points; false when out of memory. */
 static bool reserve(writer *w, size_t count)
 {
-    if (count <= w->room)
+    if (count <= w->capacity)
         return true;
     free(w->place);
     free(w->gap);
     w->place = malloc(count * sizeof *w->place);
     w->gap = malloc(count * sizeof *w->gap);
-    w->room = w->place && w->gap ? count : 0;
-    return w->room > 0;
+    w->capacity = w->place && w->gap ? count : 0;
+    return w->capacity > 0;
 }
 
 static void write_point(writer *w, uint32_t contact, size_t k)

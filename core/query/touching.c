@@ -7,7 +7,7 @@
 
 static bool add(tl_touches *touches, const tl_touch *touch)
 {
-    if (!tl_grow(&touches->at, &touches->room, touches->count + 1, sizeof *touches->at))
+    if (!tl_grow(&touches->at, &touches->capacity, touches->count + 1, sizeof *touches->at))
         return false;
     touches->at[touches->count++] = *touch;
     return true;

@@ -14,7 +14,7 @@ typedef struct tl_touch {
 
 typedef struct tl_touches {
     tl_touch *at;
-    size_t count, room;
+    size_t count, capacity;
 } tl_touches;
 
 /* Adds what the block in `row` touches, in the order of the other blocks' ids, after a

@@ -46,7 +46,7 @@ typedef struct chunk_head {
 
 tl_status tl_archive_begin(tl_archive_writer *w, const char *path, tl_error *error)
 {
-    *w = (tl_archive_writer){.room = NULL};
+    *w = (tl_archive_writer){.buffer = NULL};
     tl_status status = tl_output_open(&w->out, path, error);
     if (status != TL_OK)
         return status;
@@ -61,15 +61,15 @@ tl_status tl_archive_begin(tl_archive_writer *w, const char *path, tl_error *err
 static size_t pack(tl_archive_writer *w, const void *data, size_t bytes)
 {
     size_t bound = ZSTD_compressBound(bytes);
-    if (bound > w->room_bytes) {
-        free(w->room);
-        w->room = malloc(bound);
-        w->room_bytes = w->room ? bound : 0;
-        w->lost = w->lost || !w->room;
+    if (bound > w->buffer_bytes) {
+        free(w->buffer);
+        w->buffer = malloc(bound);
+        w->buffer_bytes = w->buffer ? bound : 0;
+        w->lost = w->lost || !w->buffer;
     }
-    if (!w->room)
+    if (!w->buffer)
         return 0;
-    size_t packed = ZSTD_compress(w->room, bound, data, bytes, LEVEL);
+    size_t packed = ZSTD_compress(w->buffer, bound, data, bytes, LEVEL);
     return ZSTD_isError(packed) || packed >= bytes ? 0 : packed;
 }
 
@@ -84,7 +84,7 @@ void tl_archive_put(tl_archive_writer *w, const char *name, const void *data, si
 {
     size_t bytes = size * items;
     size_t packed = bytes < SHORT_DATA ? 0 : pack(w, data, bytes);
-    const void *stored = packed ? w->room : data;
+    const void *stored = packed ? w->buffer : data;
     chunk_head head = {.name_bytes = (uint32_t)strlen(name),
                        .packed = packed > 0,
                        .size = size,
@@ -107,7 +107,7 @@ tl_status tl_archive_end(tl_archive_writer *w, tl_error *error)
     if (status == TL_OK)
         status = tl_output_commit(&w->out, error);
     tl_output_drop(&w->out);
-    free(w->room);
+    free(w->buffer);
     return status;
 }
 
@@ -178,7 +178,7 @@ static bool is_named(const tl_chunk *chunk, const char *name)
 /* Lists the chunks. The last must be the end, with nothing behind it. */
 static tl_status list_chunks(tl_archive *a, tl_error *error)
 {
-    size_t at = sizeof(file_head), room = 0;
+    size_t at = sizeof(file_head), capacity = 0;
     uint64_t sum = 0, before;
     tl_chunk chunk;
     do {
@@ -187,9 +187,9 @@ static tl_status list_chunks(tl_archive *a, tl_error *error)
             return tl_archive_bad(a, error,
                                   "chunk %zu of it is not whole, or its checksum is wrong",
                                   a->chunk_count + 1);
-        if (a->chunk_count == room) {
-            room = room ? 2 * room : 256;
-            tl_chunk *chunks = realloc(a->chunks, room * sizeof *chunks);
+        if (a->chunk_count == capacity) {
+            capacity = capacity ? 2 * capacity : 256;
+            tl_chunk *chunks = realloc(a->chunks, capacity * sizeof *chunks);
             if (!chunks)
                 return tl_fail_memory(error);
             a->chunks = chunks;
@@ -224,19 +224,19 @@ static tl_status cannot_read(tl_error *error, const char *path, const char *why)
 static unsigned char *read_all(FILE *file, size_t *length)
 {
     unsigned char *bytes = NULL;
-    size_t room = 0;
+    size_t capacity = 0;
     *length = 0;
     do {
-        if (*length == room) {
-            room = room ? 2 * room : 1 << 20;
-            unsigned char *more = realloc(bytes, room);
+        if (*length == capacity) {
+            capacity = capacity ? 2 * capacity : 1 << 20;
+            unsigned char *more = realloc(bytes, capacity);
             if (!more) {
                 free(bytes);
                 return NULL;
             }
             bytes = more;
         }
-        *length += fread(bytes + *length, 1, room - *length, file);
+        *length += fread(bytes + *length, 1, capacity - *length, file);
     } while (!feof(file) && !ferror(file));
     if (!ferror(file))
         return bytes;
@@ -297,10 +297,11 @@ bool tl_archive_get(const tl_archive *a, const char *name, void *to, size_t size
            ZSTD_decompressDCtx(a->unpacker, to, bytes, chunk->data, chunk->stored) == bytes;
 }
 
-bool tl_archive_text(const tl_archive *a, const char *name, char *text, size_t room)
+bool tl_archive_text(const tl_archive *a, const char *name, char *text, size_t capacity)
 {
     const tl_chunk *chunk = tl_archive_find(a, name);
-    if (!chunk || chunk->items >= room || !tl_archive_get(a, name, text, 1, (size_t)chunk->items))
+    if (!chunk || chunk->items >= capacity ||
+        !tl_archive_get(a, name, text, 1, (size_t)chunk->items))
         return false;
     text[chunk->items] = '\0';
     return strlen(text) == chunk->items;

@@ -16,8 +16,8 @@
 
 typedef struct tl_archive_writer {
     tl_output out;
-    void *room; /* for what is compressed */
-    size_t room_bytes;
+    void *buffer; /* for what is compressed */
+    size_t buffer_bytes;
     uint64_t sum; /* of the checksums so far */
     uint64_t chunks;
     bool lost; /* out of memory */
@@ -66,7 +66,7 @@ const tl_chunk *tl_archive_find(const tl_archive *archive, const char *name);
 bool tl_archive_get(const tl_archive *archive, const char *name, void *to, size_t size,
                     size_t items);
 /* The bytes of a chunk as a text with its terminating zero; false: it is not there, has not so much room or holds a zero. */
-bool tl_archive_text(const tl_archive *archive, const char *name, char *text, size_t room);
+bool tl_archive_text(const tl_archive *archive, const char *name, char *text, size_t capacity);
 /* "cannot restore 'path': the file is damaged: ..." */
 tl_status tl_archive_bad(const tl_archive *archive, tl_error *error, const char *format, ...)
     TL_PRINTF(3, 4);

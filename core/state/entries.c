@@ -20,8 +20,8 @@ void tl_entry_put_list(const tl_entry *to, void *list, size_t items)
     free(old);
     memcpy(to->at, &list, sizeof list);
     *to->count = items;
-    if (to->room)
-        *to->room = items;
+    if (to->capacity)
+        *to->capacity = items;
 }
 
 static bool copy_list(const tl_entry *to, const tl_entry *from)

@@ -30,12 +30,12 @@ static bool save_series(const tl_vtk_series *series, size_t k, tl_archive_writer
     char name[TL_CHUNK_NAME];
     double *times = malloc((series->count + 1) * sizeof *times);
     uint32_t *parts = malloc((series->count + 1) * sizeof *parts);
-    bool room = times && parts;
-    for (size_t i = 0; room && i < series->count; i++) {
+    bool enough = times && parts;
+    for (size_t i = 0; enough && i < series->count; i++) {
         times[i] = series->frames[i].time;
         parts[i] = series->frames[i].parts;
     }
-    if (room) {
+    if (enough) {
         tl_archive_put(w, entry(name, k, "prefix"), series->prefix, 1, strlen(series->prefix));
         tl_archive_put(w, entry(name, k, "kind"), series->kind, 1, strlen(series->kind));
         tl_archive_put(w, entry(name, k, "times"), times, sizeof *times, series->count);
@@ -43,7 +43,7 @@ static bool save_series(const tl_vtk_series *series, size_t k, tl_archive_writer
     }
     free(times);
     free(parts);
-    return room;
+    return enough;
 }
 
 bool tl_frames_save(const tl_model *m, tl_archive_writer *w)

@@ -106,11 +106,11 @@ void tl_damping_save(const tl_model *m, tl_archive_writer *w)
 
 /* The text of a chunk; NULL when there is none, or none so short. */
 static const char *get_text(const tl_archive *a, const char *prefix, const char *name, char *text,
-                            size_t room)
+                            size_t capacity)
 {
     char full[TL_CHUNK_NAME];
     snprintf(full, sizeof full, "%.30s.%.64s", prefix, name);
-    if (!tl_archive_text(a, full, text, room))
+    if (!tl_archive_text(a, full, text, capacity))
         return NULL;
     tl_text_clean(text);
     return text;
@@ -197,13 +197,14 @@ static bool read_one(const tl_archive *a, const char *prefix, const tl_param *p,
 }
 
 static tl_status read_params(tl_model *m, const tl_archive *a, const char *prefix,
-                             const tl_kind *kind, read_param *room, tl_value *values, tl_args *args)
+                             const tl_kind *kind, read_param *storage, tl_value *values,
+                             tl_args *args)
 {
     *args = (tl_args){values, 0};
     for (uint32_t k = 0; k < kind->param_count; k++) {
         tl_param p = tl_param_row(kind->params, k, kind->param_stride);
         bool given;
-        if (!read_one(a, prefix, &p, &room[k], &values[args->count], &given))
+        if (!read_one(a, prefix, &p, &storage[k], &values[args->count], &given))
             return tl_archive_bad(a, &m->error, "parameter '%s' of %s is missing", p.name,
                                   kind->name);
         args->count += given;
@@ -227,18 +228,18 @@ static tl_status restore_kind(tl_model *m, const tl_archive *a, const char *pref
     tl_status status = find_kind(m, a, prefix, type, &kind);
     if (status != TL_OK)
         return status;
-    read_param *room = calloc(kind->param_count + 1u, sizeof *room);
+    read_param *storage = calloc(kind->param_count + 1u, sizeof *storage);
     tl_value *values = calloc(kind->param_count + 1u, sizeof *values);
     tl_args args;
-    status = room && values ? read_params(m, a, prefix, kind, room, values, &args)
-                            : tl_fail_memory(&m->error);
+    status = storage && values ? read_params(m, a, prefix, kind, storage, values, &args)
+                               : tl_fail_memory(&m->error);
     if (status == TL_OK && law) {
         const char *joint = tag.joint ? tl_tag_name(m, tag) : "*";
         status = tell_path(m, a, tl_law_make_for(m, tag, joint, kind, &args, NULL, law));
     } else if (status == TL_OK) {
         status = tell_path(m, a, tl_damping_make(m, kind, &args, NULL));
     }
-    free(room);
+    free(storage);
     free(values);
     return status;
 }

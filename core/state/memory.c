@@ -22,12 +22,13 @@ static void add(void *user, const tl_entry *entry)
 
 static size_t narrow_bytes(const tl_narrow *n)
 {
-    return sizeof *n + n->vertex_room * sizeof *n->vertex_b + n->normal_room * sizeof *n->normal_b +
-           (n->plane_room + n->press_room) * sizeof(double) +
+    return sizeof *n + n->vertex_capacity * sizeof *n->vertex_b +
+           n->normal_capacity * sizeof *n->normal_b +
+           (n->plane_capacity + n->press_capacity) * sizeof(double) +
            n->field.lines * (sizeof(tl_field_line) + 2 * sizeof(tl_field_plane)) +
-           n->field.numbers * sizeof *n->field.number + n->face_room * sizeof *n->face +
-           n->manifold.point_room * sizeof *n->manifold.points +
-           n->patch.room * (4 * sizeof(double) + sizeof(uint32_t));
+           n->field.numbers * sizeof *n->field.number + n->face_capacity * sizeof *n->face +
+           n->manifold.point_capacity * sizeof *n->manifold.points +
+           n->patch.capacity * (4 * sizeof(double) + sizeof(uint32_t));
 }
 
 static size_t thread_bytes(const tl_detect *d)

@@ -298,15 +298,15 @@ static tl_status read_detection(tl_model *m, const tl_archive *a)
     unsigned char *used = calloc(d->press_count + 1, 1);
     if (!used)
         return tl_fail_memory(&m->error);
-    const char *bad = columns < states_needed(m)  ? "states of the laws are missing"
-                      : d->lane_room > MOST_LANES ? "a contact has too many points"
-                                                  : tl_detect_unsound(m, d, used);
+    const char *bad = columns < states_needed(m)      ? "states of the laws are missing"
+                      : d->lane_capacity > MOST_LANES ? "a contact has too many points"
+                                                      : tl_detect_unsound(m, d, used);
     free(used);
     if (bad)
         return unsound(a, m, bad);
     tl_contacts_unlist(d);
     bool edited = d->structure != m->structure; /* all is listed anew before it is next used */
-    return tl_detect_hold_lanes(d, d->lane_room) && (edited || tl_contacts_index(m))
+    return tl_detect_hold_lanes(d, d->lane_capacity) && (edited || tl_contacts_index(m))
                ? TL_OK
                : tl_fail_memory(&m->error);
 }

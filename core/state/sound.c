@@ -148,7 +148,7 @@ static void forget_stale(const tl_model *m, struct tl_cycle *c)
     if (!is_row(c->stiffness_rates.body, bodies))
         c->stiffness_rates.version = 0;
     for (size_t body = 0; body < bodies; body++) {
-        if (c->reaction_of[body] < c->reaction_room)
+        if (c->reaction_of[body] < c->reaction_capacity)
             continue;
         if (c->reaction_of[body] != TL_NO_ROW || m->bodies.fixed[body])
             c->reactions_for = 0;

@@ -450,7 +450,7 @@ TEST(growing_contacts_have_room_for_what_they_had)
             CHECK_INT(tl_contacts_repack(m), TL_OK);
         else
             CHECK(tl_contact_place(m->detect, 0));
-        CHECK(c->point_room[0] >= (fewer ? points : points + 8));
+        CHECK(c->point_capacity[0] >= (fewer ? points : points + 8));
         CHECK_INT(c->point_count[0], points);
         c->pending[0] = TL_PENDING_NONE;
         tl_model_destroy(m);

@@ -22,7 +22,7 @@ static void check_lists(const tl_model *m)
     for (uint32_t i = 0; i < c->table.rows; i++) {
         count[c->a[i]]++;
         count[c->b[i]]++;
-        bare += c->point_room[i] == 0;
+        bare += c->point_capacity[i] == 0;
     }
     CHECK_INT(d->by_block_start[0], 0);
     for (uint32_t row = 0; row < rows; row++) {

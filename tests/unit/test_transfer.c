@@ -163,7 +163,7 @@ TEST(totals_stay_with_fewer_points)
     check_totals(&now, &before, 1e-12);
     /* lanes no longer used are inert */
     const tl_detect *d = m->detect;
-    for (uint32_t k = 4; k < d->contacts.point_room[0]; k++) {
+    for (uint32_t k = 4; k < d->contacts.point_capacity[0]; k++) {
         CHECK_NEAR(d->points.area[tl_point_row(&d->contacts, 0, k)], 0, 0);
         CHECK_NEAR(d->points.f_n[tl_point_row(&d->contacts, 0, k)], 0, 0);
     }

@@ -262,9 +262,9 @@ TEST(a_full_disk_is_noticed)
 static char *squeezed(const char *path)
 {
     FILE *file = fopen(path, "rb");
-    size_t room = 1 << 20, count = 0;
-    char *text = malloc(room);
-    for (int c; file && text && count + 1 < room && (c = fgetc(file)) != EOF;)
+    size_t capacity = 1 << 20, count = 0;
+    char *text = malloc(capacity);
+    for (int c; file && text && count + 1 < capacity && (c = fgetc(file)) != EOF;)
         if (c != ' ' && c != '\n')
             text[count++] = (char)c;
     if (text)

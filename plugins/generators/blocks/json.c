@@ -48,13 +48,13 @@ static void skip_space(parser *p)
 static size_t add_node(parser *p)
 {
     json_tree *t = p->tree;
-    if (t->count + 1 >= t->room) {
-        size_t room = t->room ? 2 * t->room : 1024;
-        json *nodes = realloc(t->nodes, room * sizeof *nodes);
+    if (t->count + 1 >= t->capacity) {
+        size_t capacity = t->capacity ? 2 * t->capacity : 1024;
+        json *nodes = realloc(t->nodes, capacity * sizeof *nodes);
         if (!nodes)
             return 0;
         t->nodes = nodes;
-        t->room = room;
+        t->capacity = capacity;
     }
     t->nodes[++t->count] = (json){.line = p->line};
     return t->count;

@@ -29,7 +29,7 @@ typedef struct json_tree {
     const tl_host *host;
     const char *file;
     json *nodes;
-    size_t count, room;
+    size_t count, capacity;
 } json_tree;
 
 /* Reads a file. `text` holds what the tree's texts point to. Both are the caller's to free, also after a

@@ -12,16 +12,16 @@
 
 static tl_status read_all(const tl_host *host, const char *file, FILE *stream, bytes *data)
 {
-    size_t room = 0;
+    size_t capacity = 0;
     while (!feof(stream)) {
-        if (data->count + 1 >= room) {
-            room = room ? 2 * room : FIRST_BYTES;
-            char *more = realloc(data->at, room);
+        if (data->count + 1 >= capacity) {
+            capacity = capacity ? 2 * capacity : FIRST_BYTES;
+            char *more = realloc(data->at, capacity);
             if (!more)
                 return host->fail(host, TL_E_MEMORY, "file '%.200s': out of memory", file);
             data->at = more;
         }
-        data->count += fread(data->at + data->count, 1, room - 1 - data->count, stream);
+        data->count += fread(data->at + data->count, 1, capacity - 1 - data->count, stream);
         if (ferror(stream))
             return host->fail(host, TL_E_IO, "file '%.200s' cannot be read: %s", file,
                               strerror(errno));

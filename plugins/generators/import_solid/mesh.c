@@ -23,17 +23,17 @@ tl_status mesh_no_memory(const mesh *m)
 }
 
 /* Makes room for one more item. */
-static bool grow(void **items, size_t *room, size_t needed, size_t bytes_each)
+static bool grow(void **items, size_t *capacity, size_t needed, size_t bytes_each)
 {
-    if (needed <= *room)
+    if (needed <= *capacity)
         return true;
-    size_t more = *room ? 2 * *room : 1024;
+    size_t more = *capacity ? 2 * *capacity : 1024;
     more = more < needed ? needed : more;
     void *moved = realloc(*items, more * bytes_each);
     if (!moved)
         return false;
     *items = moved;
-    *room = more;
+    *capacity = more;
     return true;
 }
 
@@ -47,10 +47,10 @@ tl_status mesh_add_vertex(mesh *m, tl_vec3 at, const char *place, size_t number)
             "%g; the file is damaged",
             m->file, place, number, at.x, at.y, at.z, LARGEST_COORDINATE);
     void *items = m->vertex;
-    bool room = m->vertices < MOST_CORNERS &&
-                grow(&items, &m->vertex_room, m->vertices + 1, sizeof *m->vertex);
+    bool enough = m->vertices < MOST_CORNERS &&
+                  grow(&items, &m->vertex_capacity, m->vertices + 1, sizeof *m->vertex);
     m->vertex = items;
-    if (!room)
+    if (!enough)
         return mesh_no_memory(m);
     m->vertex[m->vertices++] = at;
     m->reach = fmax(m->reach, largest);
@@ -60,12 +60,12 @@ tl_status mesh_add_vertex(mesh *m, tl_vec3 at, const char *place, size_t number)
 tl_status mesh_add_face(mesh *m, const uint32_t *corner, size_t count)
 {
     void *corners = m->corner, *starts = m->start;
-    bool room = m->corners + count < MOST_CORNERS &&
-                grow(&corners, &m->corner_room, m->corners + count, sizeof *m->corner);
+    bool enough = m->corners + count < MOST_CORNERS &&
+                  grow(&corners, &m->corner_capacity, m->corners + count, sizeof *m->corner);
     m->corner = corners;
-    room = room && grow(&starts, &m->face_room, m->faces + 2, sizeof *m->start);
+    enough = enough && grow(&starts, &m->face_capacity, m->faces + 2, sizeof *m->start);
     m->start = starts;
-    if (!room)
+    if (!enough)
         return mesh_no_memory(m);
     memcpy(m->corner + m->corners, corner, count * sizeof *corner);
     m->start[m->faces++] = (uint32_t)m->corners;

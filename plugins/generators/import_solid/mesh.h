@@ -19,11 +19,11 @@ typedef struct mesh {
     const tl_host *host;
     const char *file;
     tl_vec3 *vertex;
-    size_t vertices, vertex_room;
+    size_t vertices, vertex_capacity;
     uint32_t *corner;
-    size_t corners, corner_room;
+    size_t corners, corner_capacity;
     uint32_t *start;
-    size_t faces, face_room;
+    size_t faces, face_capacity;
     double reach; /* largest coordinate */
     /* after mesh_close */
     uint32_t *face_of; /* [corners] */

@@ -153,7 +153,7 @@ typedef struct piece {
 } piece;
 
 /* Joins b to a over an edge they share when the whole is convex; a has room for both. */
-static bool join_pieces(const flat *at, piece *a, piece *b, size_t *room, double near)
+static bool join_pieces(const flat *at, piece *a, piece *b, size_t *scratch, double near)
 {
     for (size_t i = 0; i < a->count; i++)
         for (size_t j = 0; j < b->count; j++) {
@@ -162,12 +162,12 @@ static bool join_pieces(const flat *at, piece *a, piece *b, size_t *room, double
                 continue;
             size_t count = 0;
             for (size_t k = 0; k < a->count; k++) /* from `to` all the way round to `from` */
-                room[count++] = a->corner[(i + 1 + k) % a->count];
+                scratch[count++] = a->corner[(i + 1 + k) % a->count];
             for (size_t k = 2; k < b->count; k++) /* those of b between `from` and `to` */
-                room[count++] = b->corner[(j + k) % b->count];
-            if (!is_convex(at, room, count, near))
+                scratch[count++] = b->corner[(j + k) % b->count];
+            if (!is_convex(at, scratch, count, near))
                 return false;
-            memcpy(a->corner, room, count * sizeof *room);
+            memcpy(a->corner, scratch, count * sizeof *scratch);
             a->count = count;
             b->count = 0;
             return true;
@@ -196,7 +196,8 @@ static size_t clip_ears(const outline *section, double near, size_t *rest, piece
     return made;
 }
 
-static void join_all(const outline *section, double near, piece *pieces, size_t count, size_t *room)
+static void join_all(const outline *section, double near, piece *pieces, size_t count,
+                     size_t *scratch)
 {
     bool joined = true;
     while (joined) {
@@ -204,7 +205,7 @@ static void join_all(const outline *section, double near, piece *pieces, size_t 
         for (size_t i = 0; i < count; i++)
             for (size_t j = i + 1; j < count; j++)
                 if (pieces[i].count && pieces[j].count &&
-                    join_pieces(section->at, &pieces[i], &pieces[j], room, near))
+                    join_pieces(section->at, &pieces[i], &pieces[j], scratch, near))
                     joined = true;
     }
 }
@@ -234,8 +235,8 @@ bool outline_divide(const outline *section, double near, division *parts)
                         .start = malloc((n + 1) * sizeof *parts->start)};
     size_t *rest = malloc(2 * n * sizeof *rest), *store = malloc(n * n * sizeof *store);
     piece *pieces = malloc(n * sizeof *pieces);
-    bool room = parts->corner && parts->start && rest && store && pieces;
-    if (room) {
+    bool enough = parts->corner && parts->start && rest && store && pieces;
+    if (enough) {
         for (size_t i = 0; i < n; i++) {
             rest[i] = i;
             pieces[i] = (piece){store + i * n, 0};
@@ -253,5 +254,5 @@ bool outline_divide(const outline *section, double near, division *parts)
     free(rest);
     free(store);
     free(pieces);
-    return room;
+    return enough;
 }

@@ -234,20 +234,20 @@ typedef struct inner {
 
 typedef struct carving {
     size_t *outer; /* pieces of the block in hand that may meet parts to come */
-    size_t outer_count, outer_room;
+    size_t outer_count, outer_capacity;
     inner *inside;
-    size_t inside_count, inside_room;
+    size_t inside_count, inside_capacity;
 } carving;
 
 static bool add_outer(carving *c, size_t index)
 {
-    if (c->outer_count == c->outer_room) {
-        size_t room = c->outer_room ? 2 * c->outer_room : 64;
-        size_t *outer = realloc(c->outer, room * sizeof *outer);
+    if (c->outer_count == c->outer_capacity) {
+        size_t capacity = c->outer_capacity ? 2 * c->outer_capacity : 64;
+        size_t *outer = realloc(c->outer, capacity * sizeof *outer);
         if (!outer)
             return false;
         c->outer = outer;
-        c->outer_room = room;
+        c->outer_capacity = capacity;
     }
     c->outer[c->outer_count++] = index;
     return true;
@@ -255,13 +255,13 @@ static bool add_outer(carving *c, size_t index)
 
 static bool add_inside(carving *c, uint32_t body, size_t index)
 {
-    if (c->inside_count == c->inside_room) {
-        size_t room = c->inside_room ? 2 * c->inside_room : 64;
-        inner *inside = realloc(c->inside, room * sizeof *inside);
+    if (c->inside_count == c->inside_capacity) {
+        size_t capacity = c->inside_capacity ? 2 * c->inside_capacity : 64;
+        inner *inside = realloc(c->inside, capacity * sizeof *inside);
         if (!inside)
             return false;
         c->inside = inside;
-        c->inside_room = room;
+        c->inside_capacity = capacity;
     }
     c->inside[c->inside_count++] = (inner){body, index};
     return true;
