@@ -7,10 +7,10 @@
 #include "check.h"
 #include "contact/detection.h"
 #include "contact/places.h"
-#include "cycle/cycle_room.h"
+#include "cycle/cycle_data.h"
 #include "detect/detect.h"
 #include "narrow/place.h"
-#include "narrow/room.h"
+#include "narrow/scratch.h"
 
 #define SCENE_UNUSED __attribute__((unused))
 
@@ -96,7 +96,7 @@ typedef struct scene_pair {
     tl_poly *a, *b;
     tl_quat turn;
     tl_vec3 shift;
-    tl_narrow room;
+    tl_narrow_scratch scratch;
     tl_pair_view view;
 } scene_pair;
 
@@ -116,7 +116,7 @@ SCENE_UNUSED static tl_pair_view *scene_place(scene_pair *p)
     p->view.shift = p->shift;
     p->view.size = cbrt(fmin(tl_poly_mass(p->a).volume, tl_poly_mass(p->b).volume));
     p->view.mean_face = fmin(scene_mean_face(p->a), scene_mean_face(p->b));
-    if (!tl_pair_place(&p->view, &p->room))
+    if (!tl_pair_place(&p->view, &p->scratch))
         exit(1);
     return &p->view;
 }
@@ -128,7 +128,7 @@ SCENE_UNUSED static scene_pair scene_pair_of(tl_poly *a, tl_poly *b, tl_quat tur
 
 SCENE_UNUSED static void scene_pair_free(scene_pair *p)
 {
-    tl_narrow_free(&p->room);
+    tl_narrow_scratch_free(&p->scratch);
     tl_poly_free(p->a);
     tl_poly_free(p->b);
 }

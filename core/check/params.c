@@ -95,15 +95,15 @@ static const tl_value *given_value(const tl_args *args, const tl_param *p)
 
 static void add_text(tl_checker *c, const tl_value *v)
 {
-    size_t used = strlen(c->params_text), room = sizeof c->params_text - used;
+    size_t used = strlen(c->params_text), free_bytes = sizeof c->params_text - used;
     char *to = c->params_text + used;
     const char *comma = used ? ", " : "";
     if (v->type == TL_VALUE_NUMBER)
-        snprintf(to, room, "%s%s = %.6g", comma, v->key, v->number);
+        snprintf(to, free_bytes, "%s%s = %.6g", comma, v->key, v->number);
     else if (v->type == TL_VALUE_BOOL)
-        snprintf(to, room, "%s%s = %s", comma, v->key, v->number != 0 ? "true" : "false");
+        snprintf(to, free_bytes, "%s%s = %s", comma, v->key, v->number != 0 ? "true" : "false");
     else if (v->type == TL_VALUE_STRING)
-        snprintf(to, room, "%s%s = %s", comma, v->key, v->text);
+        snprintf(to, free_bytes, "%s%s = %s", comma, v->key, v->text);
 }
 
 tl_status tl_check_values(tl_checker *c, int set, tl_value **values, size_t *count, void **held)

@@ -7,7 +7,7 @@
 
 void tl_contacts_init(tl_contacts *contacts, tl_points_table *points);
 void tl_point_lanes_init(tl_point_lanes *lanes);
-/* Gives the threads' lanes room for `room` points; false when out of memory. */
+/* Gives the threads' lanes room for `capacity` points; false when out of memory. */
 bool tl_detect_hold_lanes(tl_detect *d, size_t capacity);
 /* Adds a patch or a field contact of a pair, without points, wanting room for some, whose faces stand for a path length of `valid`;
  * false when out of memory. */

@@ -55,8 +55,8 @@ typedef struct tl_detect {
     size_t by_id_capacity;
     bool by_id_fresh;
     tl_id next_contact;
-    tl_narrow *narrow;     /* [threads] */
-    tl_point_lanes *lanes; /* [threads]: a tile, or the largest SIMD group */
+    tl_narrow_scratch *narrow; /* [threads] */
+    tl_point_lanes *lanes;     /* [threads]: a tile, or the largest SIMD group */
     size_t lane_capacity;
     unsigned threads;
 } tl_detect;

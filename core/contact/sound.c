@@ -112,7 +112,7 @@ static bool mesh_is_sound(const tl_field_mesh *mesh, uint32_t faces)
         !planes_are_sound(mesh->own[0], 2u * mesh->polygons, faces))
         return false;
     for (int k = 0; k < 4; k++)
-        if (!planes_are_sound(mesh->plane[k], tl_mesh_room(mesh), faces))
+        if (!planes_are_sound(mesh->plane[k], tl_mesh_lanes(mesh), faces))
             return false;
     uint32_t sides = 0;
     for (uint32_t k = 0; k < mesh->polygons; k++) {

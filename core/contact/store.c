@@ -5,7 +5,7 @@
 #include "contact/index.h"
 #include "contact/points.h"
 #include "contact/simd_groups.h"
-#include "narrow/room.h"
+#include "narrow/scratch.h"
 
 #include <stdlib.h>
 
@@ -36,7 +36,7 @@ void tl_detect_destroy(tl_detect *d)
     tl_table_free(&d->points.table);
     tl_table_free(&d->spare_points.table);
     for (unsigned i = 0; d->narrow && i < d->threads; i++)
-        tl_narrow_free(&d->narrow[i]);
+        tl_narrow_scratch_free(&d->narrow[i]);
     for (unsigned i = 0; d->lanes && i < d->threads; i++)
         tl_table_free(&d->lanes[i].table);
     free(d->narrow);

@@ -37,24 +37,25 @@ struct tl_old_point {
 typedef struct tl_old_point old_point;
 
 /* Makes room for `count` old points and as many values. */
-static bool reserve(tl_narrow *room, size_t count)
+static bool reserve(tl_narrow_scratch *scratch, size_t count)
 {
-    if (count <= room->old_capacity)
+    if (count <= scratch->old_capacity)
         return true;
-    old_point *old = realloc(room->old, 2 * count * sizeof *old);
+    old_point *old = realloc(scratch->old, 2 * count * sizeof *old);
     if (old)
-        room->old = old;
-    double *value = realloc(room->value, 2 * count * sizeof *value);
+        scratch->old = old;
+    double *value = realloc(scratch->value, 2 * count * sizeof *value);
     if (value)
-        room->value = value;
+        scratch->value = value;
     if (!old || !value)
         return false;
-    room->old_capacity = 2 * count;
+    scratch->old_capacity = 2 * count;
     return true;
 }
 
 /* Old points have gone along with A, in whose frame they are. */
-static void read_old(const tl_model *m, uint32_t c, tl_narrow *room, const tl_point_lanes *lanes)
+static void read_old(const tl_model *m, uint32_t c, tl_narrow_scratch *scratch,
+                     const tl_point_lanes *lanes)
 {
     const tl_contacts *contacts = &m->detect->contacts;
     const tl_points_table *p = &m->detect->points;
@@ -62,7 +63,7 @@ static void read_old(const tl_model *m, uint32_t c, tl_narrow *room, const tl_po
     for (size_t k = 0; k < contacts->point_count[c]; k++) {
         size_t i = tl_point_row(contacts, c, k);
         double per_area = p->area[i] > 0 ? 1 / p->area[i] : 0;
-        old_point *o = &room->old[k];
+        old_point *o = &scratch->old[k];
         o->arm = tl_columns_get(lanes->arm, k);
         o->normal = contacts->facet[c].last;
         o->shear = tl_v3_scale(per_area, tl_columns_get(p->f_s, i));
@@ -438,19 +439,19 @@ static totals shear_wanted(const totals *before, const totals *now)
 }
 
 /* Corrects the scalar fields so that their integrals and moments follow the area. */
-static void correct_fields(tl_model *m, uint32_t c, size_t old_count, tl_narrow *room,
+static void correct_fields(tl_model *m, uint32_t c, size_t old_count, tl_narrow_scratch *scratch,
                            const tl_point_lanes *lanes, const totals *before, const totals *now,
                            double place)
 {
     tl_points_table *p = &m->detect->points;
     const tl_contacts *contacts = &m->detect->contacts;
     size_t begin = contacts->point_start[c], count = contacts->point_count[c];
-    double *value = room->value, follow = now->area / before->area;
+    double *value = scratch->value, follow = now->area / before->area;
     for (int field = 0; field < FIELD_COUNT && p->f_n0; field++) {
-        moments keep = field_moments(room->old, old_count, field, before, now->normal);
+        moments keep = field_moments(scratch->old, old_count, field, before, now->normal);
         double largest = 0;
-        for (size_t k = 0; k < old_count && !room->reframed; k++)
-            largest = fmax(largest, fabs(room->old[k].field[field]));
+        for (size_t k = 0; k < old_count && !scratch->reframed; k++)
+            largest = fmax(largest, fabs(scratch->old[k].field[field]));
         keep.sum *= follow;
         keep.along1 *= follow;
         keep.along2 *= follow;
@@ -479,16 +480,17 @@ static void release(tl_model *m, uint32_t c, const totals *before, const totals 
     tl_shear_release(m, c, &old, &fresh);
 }
 
-bool tl_contact_transfer(tl_model *m, uint32_t c, tl_narrow *room, const tl_point_lanes *lanes)
+bool tl_contact_transfer(tl_model *m, uint32_t c, tl_narrow_scratch *scratch,
+                         const tl_point_lanes *lanes)
 {
     tl_contacts *contacts = &m->detect->contacts;
     tl_points_table *p = &m->detect->points;
-    const tl_manifold *g = &room->manifold;
+    const tl_manifold *g = &scratch->manifold;
     size_t begin = contacts->point_start[c], old_count = contacts->point_count[c];
-    if (!reserve(room, old_count > g->point_count ? old_count : g->point_count))
+    if (!reserve(scratch, old_count > g->point_count ? old_count : g->point_count))
         return false;
-    read_old(m, c, room, lanes);
-    const old_point *old = room->old;
+    read_old(m, c, scratch, lanes);
+    const old_point *old = scratch->old;
     totals before = old_totals(old, old_count), now = {0};
 
     contacts->facet[c] = g->facet;
@@ -497,11 +499,11 @@ bool tl_contact_transfer(tl_model *m, uint32_t c, tl_narrow *room, const tl_poin
         tl_point_clear(p, tl_point_row(contacts, c, k));
     double place = TL_MERGE * fmin(m->blocks.size[contacts->a[c]], m->blocks.size[contacts->b[c]]);
     plane_fit fit = {.made = false};
-    if (before.area > 0 && !room->reframed)
+    if (before.area > 0 && !scratch->reframed)
         fit = fit_plane(old, old_count, &before, place);
     write_points(m, c, g, old, old_count, &fit, lanes);
     if (old_count == 0 || g->point_count == 0 || !(before.area > 0)) {
-        release(m, c, &before, &now, room->reframed);
+        release(m, c, &before, &now, scratch->reframed);
         return true;
     }
 
@@ -512,10 +514,10 @@ bool tl_contact_transfer(tl_model *m, uint32_t c, tl_narrow *room, const tl_poin
     sum_shear(p, lanes, begin, g->point_count, &now); /* for its second moment */
     totals want = shear_wanted(&before, &now);
     double largest = 0;
-    for (size_t k = 0; k < old_count && !room->reframed; k++)
+    for (size_t k = 0; k < old_count && !scratch->reframed; k++)
         largest = fmax(largest, tl_v3_norm(old[k].shear));
     correct_shear(p, lanes, begin, g->point_count, &now, &want, largest, place);
-    release(m, c, &before, &now, room->reframed);
-    correct_fields(m, c, old_count, room, lanes, &before, &now, place);
+    release(m, c, &before, &now, scratch->reframed);
+    correct_fields(m, c, old_count, scratch, lanes, &before, &now, place);
     return true;
 }

@@ -8,7 +8,7 @@
 
 /* Puts the manifold's points in the place of the contact's, carrying over state so that total force
  * and moment follow the area; the points fit into the contact's room. */
-bool tl_contact_transfer(tl_model *m, uint32_t contact, tl_narrow *room,
+bool tl_contact_transfer(tl_model *m, uint32_t contact, tl_narrow_scratch *scratch,
                          const tl_point_lanes *lanes);
 
 #endif

@@ -2,7 +2,7 @@
 #ifndef TL_CYCLE_ADDED_MASS_H
 #define TL_CYCLE_ADDED_MASS_H
 
-#include "cycle/cycle_room.h"
+#include "cycle/cycle_data.h"
 
 /* Finds the inertia that the bodies need to be stable at a step that allows rates up to `limit`, from the rates that are
  * kept. A failure changes nothing. */

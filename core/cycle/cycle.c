@@ -19,7 +19,7 @@
  *
  * Everything computed in parallel is either a pure function of one contact or one body, or a sum made
  * in fixed chunks, so the bits do not depend on the number of threads. */
-#include "cycle/cycle_room.h"
+#include "cycle/cycle_data.h"
 
 #include "contact/held.h"
 #include "detect/detect.h"

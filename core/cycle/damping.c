@@ -3,7 +3,7 @@
  * The plugin's states are numbers of the model, kept here and given to it, as are, where it asks for them, the forces
  * of the step before, which a change of damping begins with those of the last step; the kinetic energy and its
  * rate are sums made by gather.c. */
-#include "cycle/cycle_room.h"
+#include "cycle/cycle_data.h"
 
 #include "contact/points.h"
 

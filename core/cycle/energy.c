@@ -13,7 +13,7 @@
  * that step lacks.
  *
  * The move books its bodies group by group (motion.c), while all that is needed is at hand. */
-#include "cycle/cycle_room.h"
+#include "cycle/cycle_data.h"
 
 #include "base/walk.h"
 #include "contact/detection.h"

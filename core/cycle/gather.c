@@ -1,7 +1,7 @@
 /* gather.c - forces on bodies: each adds its blocks' contacts in order of the partner's id (13-17 of
  * Hart, Cundall and Lemos 1988), its weight and its load. Components that are held carry no unbalanced force.
  * What the measures of convergence ask (rest.c) is summed on the way. */
-#include "cycle/cycle_room.h"
+#include "cycle/cycle_data.h"
 
 #include "contact/contacts.h"
 

@@ -1,5 +1,5 @@
 /* insitu.c - initial stress put on the contacts of a model (stress.c), and what is improbable about it. */
-#include "cycle/cycle_room.h"
+#include "cycle/cycle_data.h"
 
 #include "model/options.h"
 

@@ -1,5 +1,5 @@
 /* joint_law.c - setting the law of a joint. */
-#include "cycle/cycle_room.h"
+#include "cycle/cycle_data.h"
 
 #include "detect/detect.h"
 #include "force/joint_laws.h"

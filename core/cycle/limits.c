@@ -6,7 +6,7 @@
  * (|v| + |w| r) dt, v and w the velocities that the kick would give (motion.c), r the farthest vertex.
  *
  * All bodies are looked at in every step: a test without roots sorts out those that are far from the limit. */
-#include "cycle/cycle_room.h"
+#include "cycle/cycle_data.h"
 
 #include "base/columns.h"
 #include "contact/contacts.h"

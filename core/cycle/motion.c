@@ -16,7 +16,7 @@
  * turn all of them, stage by stage; the energy ledger books what happened, and the lanes are copied back. Bodies held in
  * some components, and all with the paper's rotation, get their rotation one by one; those held in every component are
  * in no group and cost nothing as long as they stand. */
-#include "cycle/cycle_room.h"
+#include "cycle/cycle_data.h"
 
 #include "base/columns.h"
 #include "cycle/kick.h"

@@ -2,7 +2,7 @@
 #ifndef TL_CYCLE_RATES_H
 #define TL_CYCLE_RATES_H
 
-#include "cycle/cycle_room.h"
+#include "cycle/cycle_data.h"
 
 /* A row of contacts or bodies and what was looked for in it; TL_NO_ROW: there is none. */
 typedef struct tl_row_value {

@@ -1,5 +1,5 @@
 /* settings.c - tells the parameters that a model has now. */
-#include "cycle/cycle_room.h"
+#include "cycle/cycle_data.h"
 
 #include <stdio.h>
 #include <string.h>

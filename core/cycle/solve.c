@@ -1,5 +1,5 @@
 /* solve.c - many steps: until a limit is met, the user interrupts, or a callback says so. */
-#include "cycle/cycle_room.h"
+#include "cycle/cycle_data.h"
 
 #include "model/options.h"
 

@@ -3,7 +3,7 @@
 #define TL_CYCLE_WALK_H
 
 #include "base/walk.h"
-#include "cycle/cycle_room.h"
+#include "cycle/cycle_data.h"
 
 void tl_cycle_walk(struct tl_cycle *c, const tl_walk *walk);
 

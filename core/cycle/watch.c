@@ -11,7 +11,7 @@
  *
  * Bodies that touched nothing when the run began fall until they land, and tumble on. They are followed only while
  * something bears them, and in longer legs: what is poured has not failed. */
-#include "cycle/cycle_room.h"
+#include "cycle/cycle_data.h"
 
 #include "contact/detection.h"
 

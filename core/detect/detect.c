@@ -114,18 +114,18 @@ typedef struct overlaps {
 static tl_status give_birth(tl_model *m, uint32_t pair, overlaps *deep)
 {
     tl_detect *d = m->detect;
-    tl_narrow *room = &d->narrow[0];
+    tl_narrow_scratch *scratch = &d->narrow[0];
     tl_pair_view view = tl_pair_view_of(m, d->pairs[pair].a, d->pairs[pair].b);
-    if (!tl_pair_place(&view, room))
+    if (!tl_pair_place(&view, scratch))
         return tl_fail_memory(&m->error);
     tl_region region;
-    if (!tl_region_find(&view, TL_LIST_MARGIN * view.size, room, &region))
+    if (!tl_region_find(&view, TL_LIST_MARGIN * view.size, scratch, &region))
         return tl_fail_memory(&m->error);
     tl_tag tag = tl_touching_tag(&view, region.n);
     tl_touch_rule rule = tl_touch_rule_of(m, &view, tag, false);
     const tl_manifold_before none = {.facet = {.kind = TL_FACET_PATCH}};
-    const tl_manifold *g = &room->manifold;
-    if (!tl_manifold_find(&view, &region, &rule, &none, room) ||
+    const tl_manifold *g = &scratch->manifold;
+    if (!tl_manifold_find(&view, &region, &rule, &none, scratch) ||
         !tl_contact_append(m, pair, g->facet.kind == TL_FACET_FIELD, g->valid, tag, g->point_count))
         return tl_fail_memory(&m->error);
     double overlap = g->facet.kind == TL_FACET_FIELD ? g->press.deepest : -region.gap;
@@ -133,7 +133,7 @@ static tl_status give_birth(tl_model *m, uint32_t pair, overlaps *deep)
         deep->pair = pair;
     if (tl_overlap_is_deep(m, &view, &region, d->pairs[pair].a, d->pairs[pair].b, true)) {
         tl_overlap_mark(&d->contacts, (uint32_t)d->contacts.table.rows - 1, true);
-        room->deep = true;
+        scratch->deep = true;
     }
     return TL_OK;
 }

@@ -21,82 +21,82 @@
 /* ---------------------------------------------------------------- rows ------------------- */
 
 /* What is made before anything is changed. */
-typedef struct rows_room {
+typedef struct rows_scratch {
     uint32_t *row;                /* [blocks seen] the present row, or TL_NO_ROW */
     double *odometer_0;           /* [bodies] */
     uint8_t *touched;             /* [bodies] */
     tl_known_block *known_blocks; /* [blocks] */
-} rows_room;
+} rows_scratch;
 
-static bool make_room(const tl_model *m, rows_room *room)
+static bool reserve_scratch(const tl_model *m, rows_scratch *scratch)
 {
     tl_detect *d = m->detect;
     size_t blocks = m->blocks.table.rows, bodies = m->bodies.table.rows;
-    *room = (rows_room){.row = malloc((d->known_block_count + 1) * sizeof *room->row),
-                        .odometer_0 = malloc((bodies + 1) * sizeof *room->odometer_0),
-                        .touched = malloc(bodies + 1),
-                        .known_blocks = malloc((blocks + 1) * sizeof *room->known_blocks)};
-    if (room->row && room->odometer_0 && room->touched && room->known_blocks &&
+    *scratch = (rows_scratch){.row = malloc((d->known_block_count + 1) * sizeof *scratch->row),
+                              .odometer_0 = malloc((bodies + 1) * sizeof *scratch->odometer_0),
+                              .touched = malloc(bodies + 1),
+                              .known_blocks = malloc((blocks + 1) * sizeof *scratch->known_blocks)};
+    if (scratch->row && scratch->odometer_0 && scratch->touched && scratch->known_blocks &&
         tl_fit(&d->idle, &d->idle_capacity, bodies + 1, sizeof *d->idle) &&
         tl_fit(&d->path, &d->path_capacity, blocks + 1, sizeof *d->path))
         return true;
-    free(room->row);
-    free(room->odometer_0);
-    free(room->touched);
-    free(room->known_blocks);
+    free(scratch->row);
+    free(scratch->odometer_0);
+    free(scratch->touched);
+    free(scratch->known_blocks);
     return false;
 }
 
 /* Runs of bodies that have come or changed begin here, and their contacts are not what they were; others keep both. */
-static void keep_bodies(tl_model *m, const rows_room *room)
+static void keep_bodies(tl_model *m, const rows_scratch *scratch)
 {
     const tl_detect *d = m->detect;
     for (size_t body = 0; body < m->bodies.table.rows; body++) {
-        room->odometer_0[body] = m->bodies.odometer[body];
-        room->touched[body] = true;
+        scratch->odometer_0[body] = m->bodies.odometer[body];
+        scratch->touched[body] = true;
     }
     for (size_t old = 0; old < d->known_block_count; old++) {
-        uint32_t row = room->row[old], before = d->known_blocks[old].body;
+        uint32_t row = scratch->row[old], before = d->known_blocks[old].body;
         if (row == TL_NO_ROW || tl_block_is_new(m, row))
             continue;
-        room->odometer_0[m->blocks.body[row]] = d->odometer_0[before];
-        room->touched[m->blocks.body[row]] = d->touched[before];
+        scratch->odometer_0[m->blocks.body[row]] = d->odometer_0[before];
+        scratch->touched[m->blocks.body[row]] = d->touched[before];
     }
 }
 
 /* Ends a contact: a block of it has gone, or both have become one body. */
-static void end_contact(tl_model *m, const rows_room *room, uint32_t contact, uint32_t a,
+static void end_contact(tl_model *m, const rows_scratch *scratch, uint32_t contact, uint32_t a,
                         uint32_t b)
 {
     m->detect->contacts.pending[contact] = TL_PENDING_DIE;
     if (a != TL_NO_ROW)
-        room->touched[m->blocks.body[a]] = true;
+        scratch->touched[m->blocks.body[a]] = true;
     if (b != TL_NO_ROW)
-        room->touched[m->blocks.body[b]] = true;
+        scratch->touched[m->blocks.body[b]] = true;
 }
 
 /* Pairs, in their order, with their present rows: ids ascend with rows before and after. */
-static void keep_pairs(tl_model *m, const rows_room *room)
+static void keep_pairs(tl_model *m, const rows_scratch *scratch)
 {
     tl_detect *d = m->detect;
     tl_contacts *c = &d->contacts;
     size_t kept = 0;
     for (size_t i = 0; i < d->pair_count; i++) {
         tl_pair p = d->pairs[i];
-        uint32_t a = room->row[p.a], b = room->row[p.b];
+        uint32_t a = scratch->row[p.a], b = scratch->row[p.b];
         bool parted = a == TL_NO_ROW || b == TL_NO_ROW || m->blocks.body[a] == m->blocks.body[b];
         if (tl_pair_is_apart(&p)) {
             if (parted || tl_block_is_new(m, a) || tl_block_is_new(m, b))
                 continue; /* the broad phase lists it anew */
         } else if (parted) {
-            end_contact(m, room, p.contact, a, b);
+            end_contact(m, scratch, p.contact, a, b);
             continue;
         } else {
             c->a[p.contact] = a;
             c->b[p.contact] = b;
             c->pair[p.contact] = (uint32_t)kept;
             if (c->pending[p.contact] == TL_PENDING_DIE)
-                end_contact(m, room, p.contact, a, b);
+                end_contact(m, scratch, p.contact, a, b);
         }
         p.a = a;
         p.b = b;
@@ -111,22 +111,22 @@ tl_status tl_edited_rows(tl_model *m)
 {
     tl_detect *d = m->detect;
     size_t blocks = m->blocks.table.rows, bodies = m->bodies.table.rows;
-    rows_room room;
-    if (!make_room(m, &room))
+    rows_scratch scratch;
+    if (!reserve_scratch(m, &scratch))
         return tl_fail_memory(&m->error);
     for (size_t old = 0; old < d->known_block_count; old++)
-        room.row[old] = tl_block_row_quiet(m, d->known_blocks[old].id);
-    keep_bodies(m, &room);
-    keep_pairs(m, &room);
+        scratch.row[old] = tl_block_row_quiet(m, d->known_blocks[old].id);
+    keep_bodies(m, &scratch);
+    keep_pairs(m, &scratch);
     for (size_t row = 0; row < blocks; row++)
-        room.known_blocks[row] = (tl_known_block){m->blocks.id[row], m->blocks.body[row]};
-    free(room.row);
+        scratch.known_blocks[row] = (tl_known_block){m->blocks.id[row], m->blocks.body[row]};
+    free(scratch.row);
     free(d->odometer_0);
     free(d->touched);
     free(d->known_blocks);
-    d->odometer_0 = room.odometer_0;
-    d->touched = room.touched;
-    d->known_blocks = room.known_blocks;
+    d->odometer_0 = scratch.odometer_0;
+    d->touched = scratch.touched;
+    d->known_blocks = scratch.known_blocks;
     d->odometer_capacity = d->touched_capacity = bodies + 1;
     d->known_block_capacity = blocks + 1;
     d->known_block_count = blocks;

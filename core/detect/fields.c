@@ -96,7 +96,7 @@ tl_field_mesh tl_field_listed_anew(const tl_press_row *row, const tl_region *r)
         return (tl_field_mesh){0};
     bool all = renumber(mesh.own[0], 2u * mesh.polygons, now);
     for (int k = 0; k < 4; k++)
-        all = all && renumber(mesh.plane[k], tl_mesh_room(&mesh), now);
+        all = all && renumber(mesh.plane[k], tl_mesh_lanes(&mesh), now);
     for (int k = 0; k < 2; k++)
         all = all && renumber(mesh.apex[k].held, mesh.apex[k].holds, now) &&
               renumber(mesh.apex[k].stray, mesh.apex[k].strays, now);
@@ -176,7 +176,7 @@ static bool is_near(const tl_model *m, uint32_t c, const tl_press_row *row,
 /* Finds the slopes of the press just found when the contact has stayed where it is for as many steps as that costs. They go
  * by the count of steps, not of looks: a step made again finds the same. false: out of memory. */
 static bool watch(const tl_model *m, const tl_press_query *query, const tl_press *press,
-                  tl_press_row *row, tl_narrow *room)
+                  tl_press_row *row, tl_narrow_scratch *scratch)
 {
     const tl_pair_pose place = {query->view->turn, query->view->shift};
     bool stays = tl_press_moved(press, &row->place, &place) <= 0.5 * TL_PRESS_NEAR;
@@ -188,7 +188,7 @@ static bool watch(const tl_model *m, const tl_press_query *query, const tl_press
         !m->config.reuse_geometry)
         return true;
     tl_press_slope slope;
-    if (!tl_press_slope_find(query, press, room, &slope))
+    if (!tl_press_slope_find(query, press, scratch, &slope))
         return false;
     row->place = place;
     if (slope.known) { /* it takes the place of the mesh */
@@ -214,7 +214,7 @@ static void ask(tl_model *m, tl_field_batch *b, uint32_t c, const tl_pair_view *
     b->query[k] = tl_manifold_query(&b->view[k], &b->region[k], &rule, &b->before[k]);
 }
 
-void tl_fields_follow(tl_model *m, tl_field_batch *b, tl_narrow *room)
+void tl_fields_follow(tl_model *m, tl_field_batch *b, tl_narrow_scratch *scratch)
 {
     const tl_contacts *contacts = &m->detect->contacts;
     tl_press found[TL_FIELD_PAIRS];
@@ -230,19 +230,20 @@ void tl_fields_follow(tl_model *m, tl_field_batch *b, tl_narrow *room)
         else
             ask(m, b, c, &view);
     }
-    b->failed = !tl_pairs_place(b->view, b->asked, room);
+    b->failed = !tl_pairs_place(b->view, b->asked, scratch);
     if (b->failed)
         return;
     for (uint32_t k = 0; k < b->asked; k++)
         tl_region_choose_flush(&b->view[k], &b->region[k]);
-    b->failed = !tl_press_find(b->query, b->asked, room, found);
+    b->failed = !tl_press_find(b->query, b->asked, scratch, found);
     for (uint32_t k = 0, i = 0; k < b->count; k++)
         if (!b->near[k])
             b->press[k] = found[i++];
     b->asked = 0;
 }
 
-tl_field_result tl_field_take(tl_model *m, tl_field_batch *b, uint32_t k, tl_narrow *room)
+tl_field_result tl_field_take(tl_model *m, tl_field_batch *b, uint32_t k,
+                              tl_narrow_scratch *scratch)
 {
     uint32_t c = b->contact[k];
     tl_press_row *row = tl_press_row_of(m, c);
@@ -254,9 +255,9 @@ tl_field_result tl_field_take(tl_model *m, tl_field_batch *b, uint32_t k, tl_nar
         uint32_t i = b->asked++;
         if (!(press->area > 0) || (press->patch >= 1 && b->before[i].calm))
             return TL_FIELD_LOST; /* it may be a patch or nothing now */
-        if (!watch(m, &b->query[i], press, row, room))
+        if (!watch(m, &b->query[i], press, row, scratch))
             return TL_FIELD_FAILED;
         faces = (tl_facet){.ia = b->region[i].flush_a, .ib = b->region[i].flush_b};
     }
-    return tl_manifold_press(press, &faces, room) ? TL_FIELD_FOUND : TL_FIELD_FAILED;
+    return tl_manifold_press(press, &faces, scratch) ? TL_FIELD_FOUND : TL_FIELD_FAILED;
 }

@@ -38,8 +38,9 @@ typedef struct tl_field_batch {
 } tl_field_batch;
 
 /* Finds the presses of the contacts of a batch, which go on. */
-void tl_fields_follow(tl_model *m, tl_field_batch *batch, tl_narrow *room);
+void tl_fields_follow(tl_model *m, tl_field_batch *batch, tl_narrow_scratch *scratch);
 /* What its k-th contact is now, into the thread's manifold; in ascending order. */
-tl_field_result tl_field_take(tl_model *m, tl_field_batch *batch, uint32_t k, tl_narrow *room);
+tl_field_result tl_field_take(tl_model *m, tl_field_batch *batch, uint32_t k,
+                              tl_narrow_scratch *scratch);
 
 #endif

@@ -89,9 +89,9 @@ static tl_status report(tl_model *m, uint32_t contact)
     const tl_contacts *c = &m->detect->contacts;
     uint32_t a = c->a[contact], b = c->b[contact];
     tl_pair_view view = tl_pair_view_of(m, a, b);
-    tl_narrow *room = &m->detect->narrow[0];
+    tl_narrow_scratch *scratch = &m->detect->narrow[0];
     tl_region region;
-    if (!tl_pair_place(&view, room) || !tl_region_find(&view, 0, room, &region))
+    if (!tl_pair_place(&view, scratch) || !tl_region_find(&view, 0, scratch, &region))
         return tl_fail_memory(&m->error);
     char name[320];
     tl_contact_name(m, contact, name, sizeof name);

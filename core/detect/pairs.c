@@ -156,7 +156,7 @@ static double way_to_edges(const tl_pair_view *view, double longest)
     return fmax(reach - tolerance, tolerance);
 }
 
-static void test_pair(tl_model *m, tl_pair *p, tl_narrow *room)
+static void test_pair(tl_model *m, tl_pair *p, tl_narrow_scratch *scratch)
 {
     tl_detect *d = m->detect;
     tl_pair_view view = tl_pair_view_of(m, p->a, p->b);
@@ -166,8 +166,8 @@ static void test_pair(tl_model *m, tl_pair *p, tl_narrow *room)
         return;
     }
     tl_pair_forget_faces(p);
-    if (!tl_pair_place(&view, room)) {
-        room->failed = true;
+    if (!tl_pair_place(&view, scratch)) {
+        scratch->failed = true;
         return;
     }
     double tolerance = TL_CONTACT_TOLERANCE * view.size;
@@ -176,8 +176,8 @@ static void test_pair(tl_model *m, tl_pair *p, tl_narrow *room)
         return;
     }
     tl_region region;
-    if (!tl_region_find(&view, TL_LIST_MARGIN * view.size, room, &region)) {
-        room->failed = true;
+    if (!tl_region_find(&view, TL_LIST_MARGIN * view.size, scratch, &region)) {
+        scratch->failed = true;
         return;
     }
     double way = way_to_contact(&view, &region);
@@ -201,11 +201,11 @@ static void test_pair(tl_model *m, tl_pair *p, tl_narrow *room)
         return;
     }
     const tl_manifold_before none = {.facet = {.kind = TL_FACET_PATCH}};
-    if (!tl_manifold_find(&view, &region, &rule, &none, room)) {
-        room->failed = true; /* what was found is not all there is: test again */
+    if (!tl_manifold_find(&view, &region, &rule, &none, scratch)) {
+        scratch->failed = true; /* what was found is not all there is: test again */
         return;
     }
-    if (room->manifold.point_count > 0) {
+    if (scratch->manifold.point_count > 0) {
         p->wake = TL_PAIR_FOUND;
         return;
     }

@@ -212,9 +212,9 @@ bool tl_simd_group_update(tl_model *m, const tl_simd_group *group, unsigned thre
             fields[field_count++] = c;
             continue;
         }
-        if (!batch && !(batch = tl_batch_room(&m->detect->narrow[thread],
-                                              m->config.contact_points == TL_POINTS_CORNERS,
-                                              TL_FLUSH_TILT * TL_FLUSH_TILT))) {
+        if (!batch && !(batch = tl_batch_begin(&m->detect->narrow[thread],
+                                               m->config.contact_points == TL_POINTS_CORNERS,
+                                               TL_FLUSH_TILT * TL_FLUSH_TILT))) {
             m->detect->narrow[thread].failed = true;
             return true;
         }

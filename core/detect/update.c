@@ -115,7 +115,7 @@ static void note_tag(tl_model *m, uint32_t c, tl_tag tag)
 }
 
 static void check_depth(tl_model *m, uint32_t c, const tl_pair_view *view, const tl_region *region,
-                        tl_narrow *room)
+                        tl_narrow_scratch *scratch)
 {
     tl_contacts *contacts = &m->detect->contacts;
     bool born = contacts->deep[c] == TL_DEEP_BORN;
@@ -123,39 +123,40 @@ static void check_depth(tl_model *m, uint32_t c, const tl_pair_view *view, const
     if (!tl_overlap_is_deep(m, view, region, contacts->a[c], contacts->b[c], born))
         return;
     tl_overlap_mark(contacts, c, born);
-    room->deep = true;
+    scratch->deep = true;
 }
 
 /* All that the contact is in the present place, into the thread's manifold. false: out of memory. */
-static bool find(tl_model *m, uint32_t c, tl_narrow *room)
+static bool find(tl_model *m, uint32_t c, tl_narrow_scratch *scratch)
 {
     tl_contacts *contacts = &m->detect->contacts;
     double odometer = tl_pair_odometer(m, contacts->a[c], contacts->b[c]), way;
     tl_pair_view view = tl_pair_view_of(m, contacts->a[c], contacts->b[c]);
     tl_region region;
-    if (!tl_pair_place(&view, room) ||
-        !tl_region_find(&view, TL_LIST_MARGIN * view.size, room, &region))
+    if (!tl_pair_place(&view, scratch) ||
+        !tl_region_find(&view, TL_LIST_MARGIN * view.size, scratch, &region))
         return false;
     const tl_press_row *row = tl_press_row_of(m, c);
     tl_field_mesh mesh;
     if (row)
         mesh = (tl_field_mesh){0};
-    if (row && contacts->point_count[c] && !room->reframed) /* else faces may have other numbers */
+    if (row && contacts->point_count[c] &&
+        !scratch->reframed) /* else faces may have other numbers */
         mesh = tl_field_listed_anew(row, &region);
     region.mesh = row ? &mesh : NULL;
-    tl_manifold_before before = tl_contact_before(m, c, room->reframed);
+    tl_manifold_before before = tl_contact_before(m, c, scratch->reframed);
     tl_tag tag = tl_touching_tag(&view, region.n);
     tl_touch_rule rule = tl_touch_rule_of(m, &view, tag, before.holds);
-    const tl_manifold *g = &room->manifold;
-    if (!tl_manifold_find(&view, &region, &rule, &before, room))
+    const tl_manifold *g = &scratch->manifold;
+    if (!tl_manifold_find(&view, &region, &rule, &before, scratch))
         return false;
-    contacts->faces_valid_to[c] = room->reframed ? -INFINITY : odometer + g->valid;
+    contacts->faces_valid_to[c] = scratch->reframed ? -INFINITY : odometer + g->valid;
     contacts->spot[c] = tl_spot_of(m, contacts->a[c], contacts->b[c], g->valid);
     if (g->point_count == 0 && !is_near(&view, region.gap, &way)) {
         part(m, c, way);
         return true;
     }
-    check_depth(m, c, &view, &region, room);
+    check_depth(m, c, &view, &region, scratch);
     note_tag(m, c, tag);
     if (tl_press_row_of(m, c))
         tl_field_keep(tl_press_row_of(m, c), &view, &region);
@@ -175,7 +176,7 @@ static void note_manifold(tl_contacts *contacts, uint32_t c, const tl_manifold *
 }
 
 /* Asks for room for a manifold, or for a place in another span, unless the contact has them. */
-static bool wants_room(tl_detect *d, uint32_t c, const tl_manifold *g, bool reframed)
+static bool wants_place(tl_detect *d, uint32_t c, const tl_manifold *g, bool reframed)
 {
     tl_contacts *contacts = &d->contacts;
     bool field = g->facet.kind == TL_FACET_FIELD;
@@ -191,12 +192,13 @@ static bool wants_room(tl_detect *d, uint32_t c, const tl_manifold *g, bool refr
 }
 
 /* Puts the built manifold in the place of the contact's points, or asks for room. */
-static bool take_manifold(tl_model *m, uint32_t c, tl_narrow *room, const tl_point_lanes *lanes)
+static bool take_manifold(tl_model *m, uint32_t c, tl_narrow_scratch *scratch,
+                          const tl_point_lanes *lanes)
 {
     tl_detect *d = m->detect;
-    tl_manifold *g = &room->manifold;
+    tl_manifold *g = &scratch->manifold;
     note_manifold(&d->contacts, c, g);
-    if (wants_room(d, c, g, room->reframed))
+    if (wants_place(d, c, g, scratch->reframed))
         return true;
     if (g->point_count == 0)
         g->facet = d->contacts.facet[c];
@@ -204,8 +206,8 @@ static bool take_manifold(tl_model *m, uint32_t c, tl_narrow *room, const tl_poi
         bool fields =
             g->facet.kind == TL_FACET_FIELD || d->contacts.facet[c].kind == TL_FACET_FIELD;
         if (!fields)
-            return tl_contact_transfer(m, c, room, lanes);
-        tl_contact_hand_over(m, c, g, room->reframed, lanes);
+            return tl_contact_transfer(m, c, scratch, lanes);
+        tl_contact_hand_over(m, c, g, scratch->reframed, lanes);
     } else if (g->facet.kind == TL_FACET_FIELD) {
         if (g->point_count > 0)
             tl_contact_refit_field(m, c, g);
@@ -319,16 +321,16 @@ bool tl_contact_is_patch(tl_model *m, uint32_t c)
 static bool renew_patch(tl_model *m, uint32_t c, unsigned thread)
 {
     tl_contacts *contacts = &m->detect->contacts;
-    tl_narrow *room = &m->detect->narrow[thread];
+    tl_narrow_scratch *scratch = &m->detect->narrow[thread];
     const tl_facet *f = &contacts->facet[c];
     if (!tl_contact_is_patch(m, c))
         return false;
     tl_pair_view view = tl_pair_view_of(m, contacts->a[c], contacts->b[c]);
     tl_touch_rule rule = tl_touch_rule_of(m, &view, contacts->tag[c], contacts->across[c]);
-    room->manifold.failed = !tl_pair_place_face(&view, f->ib, room);
-    if (room->manifold.failed || !(tl_patch_add(&view, f->ia, f->ib, &rule, room) > 0))
+    scratch->manifold.failed = !tl_pair_place_face(&view, f->ib, scratch);
+    if (scratch->manifold.failed || !(tl_patch_add(&view, f->ia, f->ib, &rule, scratch) > 0))
         return false;
-    const tl_patch_points *g = &room->patch;
+    const tl_patch_points *g = &scratch->patch;
     size_t begin = contacts->point_start[c];
     if (g->count == contacts->point_count[c] && same_keys(&m->detect->points, begin, g)) {
         refit_patch(m, c, g);
@@ -337,8 +339,8 @@ static bool renew_patch(tl_model *m, uint32_t c, unsigned thread)
     }
     if (rule.min_area > 0) /* it may be too small for a patch now */
         return false;
-    room->manifold.failed = !take_manifold(m, c, room, &m->detect->lanes[thread]);
-    return !room->manifold.failed;
+    scratch->manifold.failed = !take_manifold(m, c, scratch, &m->detect->lanes[thread]);
+    return !scratch->manifold.failed;
 }
 
 /* Whether a contact without points still overlaps by no more than may go unseen. */
@@ -378,13 +380,13 @@ bool tl_contact_points_hold(tl_model *m, uint32_t c)
 static bool make_anew(tl_model *m, uint32_t c, unsigned thread)
 {
     tl_contacts *contacts = &m->detect->contacts;
-    tl_narrow *room = &m->detect->narrow[thread];
+    tl_narrow_scratch *scratch = &m->detect->narrow[thread];
     double faces_valid_to = contacts->faces_valid_to[c];
     tl_spot spot = contacts->spot[c];
     tl_tag tag = contacts->tag[c];
     uint8_t field = contacts->field[c], pending = contacts->pending[c], deep = contacts->deep[c];
-    if (find(m, c, room) && (contacts->pending[c] == TL_PENDING_DIE ||
-                             take_manifold(m, c, room, &m->detect->lanes[thread])))
+    if (find(m, c, scratch) && (contacts->pending[c] == TL_PENDING_DIE ||
+                                take_manifold(m, c, scratch, &m->detect->lanes[thread])))
         return true;
     contacts->faces_valid_to[c] = faces_valid_to;
     contacts->spot[c] = spot;
@@ -392,53 +394,53 @@ static bool make_anew(tl_model *m, uint32_t c, unsigned thread)
     contacts->field[c] = field;
     contacts->pending[c] = pending;
     contacts->deep[c] = deep;
-    room->failed = true;
+    scratch->failed = true;
     return false;
 }
 
 void tl_contact_update(tl_model *m, uint32_t c, unsigned thread)
 {
-    tl_narrow *room = &m->detect->narrow[thread];
+    tl_narrow_scratch *scratch = &m->detect->narrow[thread];
     if (touches_still(m, c))
         return;
-    room->manifold.failed = false;
+    scratch->manifold.failed = false;
     if (tl_field_goes_on(m, c))
         tl_contacts_follow(m, &c, 1, thread);
-    else if (renew_patch(m, c, thread) || (!room->manifold.failed && make_anew(m, c, thread)))
+    else if (renew_patch(m, c, thread) || (!scratch->manifold.failed && make_anew(m, c, thread)))
         tl_contact_allow_reuse(m, c);
     else
-        room->failed = true; /* to be tried again, and not in another way */
+        scratch->failed = true; /* to be tried again, and not in another way */
 }
 
 void tl_contacts_follow(tl_model *m, const uint32_t contact[], uint32_t count, unsigned thread)
 {
-    tl_narrow *room = &m->detect->narrow[thread];
+    tl_narrow_scratch *scratch = &m->detect->narrow[thread];
     tl_field_batch batch;
     batch.count = count;
     memcpy(batch.contact, contact, count * sizeof *contact);
-    tl_fields_follow(m, &batch, room);
+    tl_fields_follow(m, &batch, scratch);
     for (uint32_t k = 0; k < count; k++) {
-        tl_field_result result = tl_field_take(m, &batch, k, room);
+        tl_field_result result = tl_field_take(m, &batch, k, scratch);
         bool done = result == TL_FIELD_FOUND &&
-                    take_manifold(m, contact[k], room, &m->detect->lanes[thread]);
+                    take_manifold(m, contact[k], scratch, &m->detect->lanes[thread]);
         done = done || (result == TL_FIELD_LOST && make_anew(m, contact[k], thread));
         if (done)
             tl_contact_allow_reuse(m, contact[k]);
         else
-            room->failed = true;
+            scratch->failed = true;
     }
 }
 
 void tl_contact_reframe(tl_model *m, uint32_t c, unsigned thread)
 {
     tl_contacts *contacts = &m->detect->contacts;
-    tl_narrow *room = &m->detect->narrow[thread];
+    tl_narrow_scratch *scratch = &m->detect->narrow[thread];
     if (contacts->pending[c] == TL_PENDING_DIE)
         return;
-    room->reframed = true;
+    scratch->reframed = true;
     if (make_anew(m, c, thread))
         tl_contact_allow_reuse(m, c); /* by the odometers of the bodies as they are now */
-    room->reframed = false;
+    scratch->reframed = false;
 }
 
 bool tl_contact_fill(tl_model *m, uint32_t c)

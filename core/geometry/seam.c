@@ -64,15 +64,16 @@ static double flat_area(const flat *c, size_t count)
     return area;
 }
 
-/* Area common to face fa of a and face fb of b, which face each other in one plane. `room` holds twice
+/* Area common to face fa of a and face fb of b, which face each other in one plane. `scratch` holds twice
  * as many corners as both faces have. */
-static double common_area(const tl_poly *a, uint32_t fa, const tl_poly *b, uint32_t fb, flat *room)
+static double common_area(const tl_poly *a, uint32_t fa, const tl_poly *b, uint32_t fb,
+                          flat *scratch)
 {
     uint32_t na = tl_poly_face_size(a, fa), nb = tl_poly_face_size(b, fb);
     tl_vec3 n = a->plane[fa].normal;
     frame f = {.o = a->vertex[a->loop[a->start[fa]]], .t1 = tl_v3_perpendicular(n)};
     f.t2 = tl_v3_cross(n, f.t1);
-    flat *now = room, *next = room + na + nb;
+    flat *now = scratch, *next = scratch + na + nb;
     size_t count = na;
     for (uint32_t i = 0; i < na; i++)
         now[i] = flatten(&f, a->vertex[a->loop[a->start[fa] + i]]);
@@ -102,11 +103,11 @@ bool tl_poly_shared_area(const tl_poly *a, uint32_t fa, const tl_poly *b, uint32
     if (!face_each_other(a, fa, b, fb))
         return true;
     size_t corners = tl_poly_face_size(a, fa) + tl_poly_face_size(b, fb);
-    flat *room = malloc(4 * corners * sizeof *room);
-    if (!room)
+    flat *scratch = malloc(4 * corners * sizeof *scratch);
+    if (!scratch)
         return false;
-    *area = common_area(a, fa, b, fb, room);
-    free(room);
+    *area = common_area(a, fa, b, fb, scratch);
+    free(scratch);
     return true;
 }
 

@@ -13,7 +13,7 @@
 
 static void put_bytes(tl_piece *to, const char *text, size_t length)
 {
-    unsigned char *at = tl_piece_room(to, length);
+    unsigned char *at = tl_piece_reserve(to, length);
     if (!at)
         return;
     memcpy(at, text, length);
@@ -27,7 +27,7 @@ static void put(tl_piece *to, const char *text)
 
 static void put_number(tl_piece *to, double value)
 {
-    unsigned char *at = tl_piece_room(to, TL_NUMBER_TEXT);
+    unsigned char *at = tl_piece_reserve(to, TL_NUMBER_TEXT);
     if (at)
         to->length += tl_number_text(value, (char *)at);
 }

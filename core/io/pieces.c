@@ -21,7 +21,7 @@ typedef struct batch {
     const void *user;
 } batch;
 
-unsigned char *tl_piece_room(tl_piece *piece, size_t bytes)
+unsigned char *tl_piece_reserve(tl_piece *piece, size_t bytes)
 {
     if (piece->length + bytes > piece->capacity) {
         size_t capacity = piece->capacity ? piece->capacity : PIECE_BYTES;

@@ -24,7 +24,7 @@ typedef struct tl_pieces {
 
 /* Room for `bytes` at the end of the piece; who writes there adds to its length. NULL: out of memory, which the piece
  * notes. */
-unsigned char *tl_piece_room(tl_piece *piece, size_t bytes);
+unsigned char *tl_piece_reserve(tl_piece *piece, size_t bytes);
 
 /* Puts what rows [begin, end) are in the file at the end of the piece; on any thread. */
 typedef void (*tl_piece_fn)(const void *user, size_t begin, size_t end, tl_piece *piece);

@@ -52,7 +52,7 @@ static inline void fill_vertices(const grid *g, size_t begin, size_t end, tl_pie
                                  point_fn of, size_t each)
 {
     size_t bytes = vertices_of(g, begin, end) * each;
-    unsigned char *to = tl_piece_room(piece, bytes);
+    unsigned char *to = tl_piece_reserve(piece, bytes);
     if (!to)
         return;
     for (uint32_t row = (uint32_t)begin; row < end; row++) {
@@ -89,7 +89,7 @@ static void fill_explode(const void *user, size_t begin, size_t end, tl_piece *p
 {
     const grid *g = user;
     size_t bytes = vertices_of(g, begin, end) * TL_VTK_FLOAT3_BYTES;
-    unsigned char *to = tl_piece_room(piece, bytes);
+    unsigned char *to = tl_piece_reserve(piece, bytes);
     if (!to)
         return;
     for (uint32_t row = (uint32_t)begin; row < end; row++) {
@@ -108,7 +108,7 @@ static void fill_cells(const void *user, size_t begin, size_t end, tl_piece *pie
     for (size_t row = begin; row < end; row++) {
         const tl_poly *shape = g->blocks->shape[row];
         size_t bytes = stream_of(shape) * TL_VTK_INT_BYTES;
-        unsigned char *to = tl_piece_room(piece, bytes);
+        unsigned char *to = tl_piece_reserve(piece, bytes);
         if (!to)
             return;
         to = tl_vtk_put_int(to, (int32_t)stream_of(shape) - 1);
@@ -147,7 +147,7 @@ static void fill_array(const void *user, size_t begin, size_t end, tl_piece *pie
     const cell_job *job = user;
     const cell_array *a = job->array;
     size_t bytes = (end - begin) * bytes_of(a);
-    unsigned char *to = tl_piece_room(piece, bytes);
+    unsigned char *to = tl_piece_reserve(piece, bytes);
     if (!to)
         return;
     for (uint32_t row = (uint32_t)begin; row < end; row++) {

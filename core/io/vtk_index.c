@@ -89,11 +89,11 @@ static tl_status write_whole(tl_vtk_index_change *change, const tl_vtk_series *s
             fputs(before_entry, file);
     }
     off_t end = ftello(file);
-    off_t room = series->written[part] >= LEAST_ROOMY && end > 0 ? end : 0;
-    for (off_t i = 0; i < room; i++)
+    off_t blank = series->written[part] >= LEAST_ROOMY && end > 0 ? end : 0;
+    for (off_t i = 0; i < blank; i++)
         fputc(' ', file);
     fputs(tail, file);
-    change->next = (tl_vtk_index){series->written[part] + 1, end, end + room, {0}};
+    change->next = (tl_vtk_index){series->written[part] + 1, end, end + blank, {0}};
     return tl_output_finish(&change->whole, error);
 }
 
@@ -114,7 +114,7 @@ static char *entry_text(const tl_vtk_series *series, const char *content, double
 }
 
 /* Opens the index for an entry that goes into its room; false when the whole is to be written anew. */
-static bool open_room(tl_vtk_index_change *change, size_t written)
+static bool open_reserved(tl_vtk_index_change *change, size_t written)
 {
     const tl_vtk_index *index = change->index;
     off_t length = (off_t)change->length, at = index->place, next = (at / PAGE + 1) * PAGE;
@@ -151,7 +151,7 @@ tl_status tl_vtk_index_open(tl_vtk_index_change *change, tl_vtk_series *series, 
     change->entry = entry_text(series, content, time, &change->length);
     if (!change->path || !change->entry)
         return tl_fail_memory(error);
-    if (open_room(change, series->written[part]))
+    if (open_reserved(change, series->written[part]))
         return TL_OK;
     return write_whole(change, series, part, content, time, error);
 }

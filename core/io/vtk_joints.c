@@ -258,7 +258,7 @@ static inline void fill_corners(const joints *j, size_t begin, size_t end, tl_pi
                                 corner_fn of, size_t each)
 {
     size_t bytes = (first_corner(j, end) - first_corner(j, begin)) * each;
-    unsigned char *to = tl_piece_room(piece, bytes);
+    unsigned char *to = tl_piece_reserve(piece, bytes);
     for (size_t i = begin; to && i < end; i++)
         to = i < j->of.polygons ? put_contact(j, i, of, to) : put_face(j, i, of, to);
     piece->length += to ? bytes : 0;
@@ -278,7 +278,7 @@ static void fill_polygons(const void *user, size_t begin, size_t end, tl_piece *
 {
     const joints *j = user;
     size_t numbers = end - begin + first_corner(j, end) - first_corner(j, begin);
-    unsigned char *to = tl_piece_room(piece, numbers * TL_VTK_INT_BYTES);
+    unsigned char *to = tl_piece_reserve(piece, numbers * TL_VTK_INT_BYTES);
     for (size_t i = begin; to && i < end; i++) {
         size_t first = first_corner(j, i), next = first_corner(j, i + 1);
         to = tl_vtk_put_int(to, (int32_t)(next - first));

@@ -29,7 +29,7 @@ typedef struct section {
     size_t points, point_capacity, polygons, row_capacity, end_capacity;
 } section;
 
-static bool make_room(section *s, size_t corners)
+static bool reserve_corners(section *s, size_t corners)
 {
     return tl_grow(&s->corners, &s->point_capacity, s->points + corners, sizeof *s->corners) &&
            tl_grow(&s->row, &s->row_capacity, s->polygons + 1, sizeof *s->row) &&
@@ -90,7 +90,7 @@ static bool cut_blocks(const tl_model *m, tl_plane plane, section *s)
         const tl_poly *shape = b->shape[row];
         tl_plane local = {tl_m3_tmul(&m->bodies.pose[body].r, plane.normal),
                           plane.offset - tl_v3_dot(plane.normal, tl_body_place(&m->bodies, body))};
-        if (!make_room(s, shape->edge_count))
+        if (!reserve_corners(s, shape->edge_count))
             return false;
         corner *list = s->corners + s->points;
         size_t count = find_corners(shape, local, list);

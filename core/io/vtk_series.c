@@ -21,7 +21,7 @@ static void series_destroy(tl_vtk_series *series)
     }
 }
 
-static bool make_room(tl_vtk_series *series)
+static bool reserve_frame(tl_vtk_series *series)
 {
     if (series->count < series->capacity)
         return true;
@@ -53,7 +53,7 @@ tl_vtk_series *tl_vtk_series_of(tl_model *m, const char *prefix, const char *kin
         m->vtk = series;
         m->vtk_destroy = series_destroy;
     }
-    return make_room(series) ? series : NULL;
+    return reserve_frame(series) ? series : NULL;
 }
 
 char *tl_vtk_frame_name(const tl_vtk_series *series, const char *content, size_t frame)

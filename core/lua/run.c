@@ -74,7 +74,7 @@ static void set_numbers(lua_State *L, const tl_solve_result *result)
 static const char *const result_blocks[] = {"failing", "worst"};
 
 /* Pushes a table for a result, with a place for each field. The model's userdata is at `model_index`. */
-static void push_result_room(lua_State *L, int model_index, int32_t measure)
+static void push_empty_result(lua_State *L, int model_index, int32_t measure)
 {
     const tl_solve_result none = {0};
     model_index = lua_absindex(L, model_index);
@@ -96,7 +96,7 @@ static void set_result(lua_State *L, const tl_solve_result *result)
 }
 
 /* All memory for what a run will answer is had before the first step: a call that fails for want of it has made none. */
-static void push_answer_room(lua_State *L, int32_t measure)
+static void push_empty_answer(lua_State *L, int32_t measure)
 {
     lua_settop(L, AT_ERROR);
     lua_newtable(L);
@@ -104,7 +104,7 @@ static void push_answer_room(lua_State *L, int32_t measure)
         lua_pushstring(L, tl_solve_reason_name((tl_solve_reason)reason));
         lua_rawseti(L, AT_REASONS, reason + 1);
     }
-    push_result_room(L, AT_MODEL, measure);
+    push_empty_result(L, AT_MODEL, measure);
     lua_pushboolean(L, false);
     lua_setfield(L, AT_RESULT, "reason");
 }
@@ -133,7 +133,7 @@ static int call_progress(lua_State *L)
 {
     const run *r = lua_touserdata(L, 3);
     lua_settop(L, 2);
-    push_result_room(L, 2, r->result.measure);
+    push_empty_result(L, 2, r->result.measure);
     set_result(L, &r->result);
     lua_call(L, 2, 0);
     return 0;
@@ -246,7 +246,7 @@ int tl_lua_solve(lua_State *L)
     lua_settop(L, AT_ANCHOR);
     bool stop = push_callback(L, "solve", "stop");
     bool progress = push_callback(L, "solve", "on_progress");
-    push_answer_room(L, solve.measure);
+    push_empty_answer(L, solve.measure);
     run r;
     run_begin(&r, L, model);
     solve.each = on_each;
@@ -276,7 +276,7 @@ int tl_lua_cycle(lua_State *L)
     lua_settop(L, AT_ANCHOR);
     push_callback(L, "cycle", "stop"); /* nil: it takes none */
     calls.progress = push_callback(L, "cycle", "on_progress") ? on_progress : NULL;
-    push_answer_room(L, TL_RATIO_LOCAL);
+    push_empty_answer(L, TL_RATIO_LOCAL);
     run r;
     run_begin(&r, L, model);
     calls.user = &r;

@@ -235,11 +235,11 @@ struct tl_model {
     double phase_began; /* s, of the clock */
     tl_profile profile; /* so far; the counts of contacts are made when asked for */
 
-    struct tl_detect *detect; /* of the contact room */
+    struct tl_detect *detect; /* of the module contact */
     void (*detect_destroy)(struct tl_detect *);
-    struct tl_cycle *cycle; /* of the cycle room */
+    struct tl_cycle *cycle; /* of the module cycle */
     void (*cycle_destroy)(struct tl_cycle *);
-    struct tl_vtk_series *vtk; /* of the io room: the frames written so far */
+    struct tl_vtk_series *vtk; /* of the module io: the frames written so far */
     void (*vtk_destroy)(struct tl_vtk_series *);
 };
 

@@ -260,7 +260,7 @@ static void write_body(tl_model *m, const parts *sum, uint32_t body)
 }
 
 /* Room for bodies, and for what only blocks of joined bodies have. */
-static bool make_room(tl_model *m, const regroup *r)
+static bool reserve_rows(tl_model *m, const regroup *r)
 {
     tl_blocks *blocks = &m->blocks;
     return tl_table_reserve(&m->bodies.table, m->bodies.table.rows + 2 * r->new_body_count) &&
@@ -331,7 +331,7 @@ tl_status tl_bodies_regroup(tl_model *m, const uint32_t *group)
     regroup r = {0};
     tl_status status = sort_bodies(m, group, &r) ? TL_OK : tl_fail_memory(&m->error);
     bool changes = status == TL_OK && r.new_body_count > 0;
-    if (changes && !(list_made(m, group, &r) && make_room(m, &r)))
+    if (changes && !(list_made(m, group, &r) && reserve_rows(m, &r)))
         status = tl_fail_memory(&m->error);
     for (size_t i = 0; i < r.new_body_count && status == TL_OK; i++)
         status = make_body(m, &r, &r.new_bodies[i]);

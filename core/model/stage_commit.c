@@ -115,7 +115,7 @@ static void keep_record(const tl_stage *stage, const tl_id *ids)
 }
 
 /* What a commit needs before it changes anything. */
-typedef struct commit_room {
+typedef struct commit_scratch {
     unsigned char *keep; /* [rows before] */
     uint32_t *slot;      /* [rows before] of blocks that were cut: place in sources */
     source *sources;     /* of the blocks that were cut */
@@ -126,39 +126,39 @@ typedef struct commit_room {
     tl_aside aside;  /* where there are bodies of several blocks */
     uint32_t *first; /* [staged bodies] */
     uint32_t *group; /* [rows] */
-} commit_room;
+} commit_scratch;
 
-static void free_room(commit_room *room)
+static void free_scratch(commit_scratch *scratch)
 {
-    free(room->keep);
-    free(room->slot);
-    free(room->sources);
-    free(room->ids);
-    free(room->gone);
-    free(room->first);
-    free(room->group);
+    free(scratch->keep);
+    free(scratch->slot);
+    free(scratch->sources);
+    free(scratch->ids);
+    free(scratch->gone);
+    free(scratch->first);
+    free(scratch->group);
 }
 
 /* Finds the blocks that stay and those that were cut. */
-static bool sort_rows(const tl_stage *stage, size_t old, commit_room *room)
+static bool sort_rows(const tl_stage *stage, size_t old, commit_scratch *scratch)
 {
-    room->keep = calloc(old + 1, 1);
-    room->slot = malloc((old + 1) * sizeof *room->slot);
-    if (!room->keep || !room->slot)
+    scratch->keep = calloc(old + 1, 1);
+    scratch->slot = malloc((old + 1) * sizeof *scratch->slot);
+    if (!scratch->keep || !scratch->slot)
         return false;
     for (size_t row = 0; row < old; row++)
-        room->slot[row] = TL_NO_ROW;
+        scratch->slot[row] = TL_NO_ROW;
     for (size_t i = 0; i < stage->count; i++) {
         const tl_stage_block *block = &stage->blocks[i];
         if (block->source == TL_NO_ROW)
             continue;
         if (!is_made(block))
-            room->keep[block->source] = 1;
-        else if (room->slot[block->source] == TL_NO_ROW)
-            room->slot[block->source] = (uint32_t)room->source_count++;
+            scratch->keep[block->source] = 1;
+        else if (scratch->slot[block->source] == TL_NO_ROW)
+            scratch->slot[block->source] = (uint32_t)scratch->source_count++;
     }
-    room->sources = malloc((room->source_count + 1) * sizeof *room->sources);
-    return room->sources != NULL;
+    scratch->sources = malloc((scratch->source_count + 1) * sizeof *scratch->sources);
+    return scratch->sources != NULL;
 }
 
 /* Room in the model's record for the cuts that were refused. */
@@ -175,59 +175,59 @@ static bool reserve_record(const tl_stage *stage)
 }
 
 /* `old`: rows that the stage may replace, none of one that has not been opened. */
-static bool make_room(tl_stage *stage, size_t old, size_t made, commit_room *room)
+static bool reserve_scratch(tl_stage *stage, size_t old, size_t made, commit_scratch *scratch)
 {
     size_t rows = stage->model->blocks.table.rows + made;
-    room->ids = malloc((stage->count + 1) * sizeof *room->ids);
-    room->gone = malloc((old + 1) * sizeof *room->gone);
+    scratch->ids = malloc((stage->count + 1) * sizeof *scratch->ids);
+    scratch->gone = malloc((old + 1) * sizeof *scratch->gone);
     if (stage->regroups) {
-        room->first = malloc((stage->next_body + (size_t)1) * sizeof *room->first);
-        room->group = malloc((old + made + 1) * sizeof *room->group);
+        scratch->first = malloc((stage->next_body + (size_t)1) * sizeof *scratch->first);
+        scratch->group = malloc((old + made + 1) * sizeof *scratch->group);
     }
-    return sort_rows(stage, old, room) && room->ids && room->gone &&
-           (!stage->regroups || (room->first && room->group)) && rows < TL_NO_ROW &&
+    return sort_rows(stage, old, scratch) && scratch->ids && scratch->gone &&
+           (!stage->regroups || (scratch->first && scratch->group)) && rows < TL_NO_ROW &&
            reserve_record(stage) &&
            tl_rows_reserve(stage->model, rows, stage->model->next_id + (tl_id)made) &&
-           (!stage->regroups || tl_rows_set_aside(stage->model, &room->aside));
+           (!stage->regroups || tl_rows_set_aside(stage->model, &scratch->aside));
 }
 
 /* Writes what the stage changed of the blocks that stay, and drops those it replaces; what their
  * children take over is kept aside. So new rows are written where they stay. */
-static void drop_replaced(tl_stage *stage, size_t old, commit_room *room)
+static void drop_replaced(tl_stage *stage, size_t old, commit_scratch *scratch)
 {
     tl_model *m = stage->model;
     for (size_t i = 0; i < stage->count; i++) {
         tl_stage_block *block = &stage->blocks[i];
         if (is_made(block))
             continue;
-        room->ids[i] = m->blocks.id[block->source];
+        scratch->ids[i] = m->blocks.id[block->source];
         m->blocks.group[block->source] = block->group;
         if (block->retagged) {
-            room->gone[room->gone_count++] = m->blocks.shape[block->source];
+            scratch->gone[scratch->gone_count++] = m->blocks.shape[block->source];
             m->blocks.shape[block->source] = block->shape;
             tl_block_changes(m, block->source);
         }
     }
     /* a drive goes on for the children though none of its bodies is left in between */
     for (uint32_t row = 0; row < old; row++)
-        if (room->slot[row] != TL_NO_ROW) {
-            room->sources[room->slot[row]] = source_of(m, row);
+        if (scratch->slot[row] != TL_NO_ROW) {
+            scratch->sources[scratch->slot[row]] = source_of(m, row);
             uint32_t drive = m->bodies.drive[m->blocks.body[row]];
             if (drive)
                 m->drives[drive - 1].bodies++;
         }
     for (uint32_t row = 0; row < old; row++)
-        if (!room->keep[row]) {
-            room->gone[room->gone_count++] = m->blocks.shape[row];
+        if (!scratch->keep[row]) {
+            scratch->gone[scratch->gone_count++] = m->blocks.shape[row];
             stage->changed_volume -= m->blocks.volume[row];
             tl_extremes_drop(m, row);
         }
     if (old)
-        tl_rows_keep(m, room->keep);
+        tl_rows_keep(m, scratch->keep);
 }
 
 /* Adds the blocks that were made, each as a body of its own. */
-static void add_made(tl_stage *stage, size_t made, commit_room *room)
+static void add_made(tl_stage *stage, size_t made, commit_scratch *scratch)
 {
     tl_model *m = stage->model;
     uint32_t row = (uint32_t)m->blocks.table.rows, body = (uint32_t)m->bodies.table.rows;
@@ -238,16 +238,16 @@ static void add_made(tl_stage *stage, size_t made, commit_room *room)
         const tl_stage_block *block = &stage->blocks[i];
         if (!is_made(block))
             continue;
-        room->ids[i] = m->next_id;
+        scratch->ids[i] = m->next_id;
         const source *from =
-            block->source == TL_NO_ROW ? NULL : &room->sources[room->slot[block->source]];
+            block->source == TL_NO_ROW ? NULL : &scratch->sources[scratch->slot[block->source]];
         put(m, block, from, row, body++);
         stage->changed_volume += m->blocks.volume[row];
         tl_extremes_add(m, row++);
     }
-    for (size_t i = 0; i < room->source_count; i++)
-        if (room->sources[i].drive)
-            m->drives[room->sources[i].drive - 1].bodies--;
+    for (size_t i = 0; i < scratch->source_count; i++)
+        if (scratch->sources[i].drive)
+            m->drives[scratch->sources[i].drive - 1].bodies--;
     if (stage->opened)
         tl_rows_refresh(m);
     else
@@ -260,35 +260,35 @@ tl_status tl_stage_commit(tl_stage *stage)
     size_t old = stage->opened ? m->blocks.table.rows : 0, made = 0;
     for (size_t i = 0; i < stage->count; i++)
         made += is_made(&stage->blocks[i]);
-    commit_room room = {0};
+    commit_scratch scratch = {0};
     tl_status status = tl_stage_settle(stage);
-    if (status == TL_OK && !make_room(stage, old, made, &room))
+    if (status == TL_OK && !reserve_scratch(stage, old, made, &scratch))
         status = tl_fail_memory(&m->error);
     if (status != TL_OK) {
-        free_room(&room);
+        free_scratch(&scratch);
         tl_stage_drop(stage);
         return status;
     }
     /* From here on nothing can fail but the grouping of blocks into bodies, for want of memory. */
-    drop_replaced(stage, old, &room);
-    add_made(stage, made, &room);
+    drop_replaced(stage, old, &scratch);
+    add_made(stage, made, &scratch);
     summarize(stage);
     if (stage->regroups) {
-        tl_stage_groups(stage, room.ids, room.first, room.group);
-        status = tl_bodies_regroup(m, room.group);
+        tl_stage_groups(stage, scratch.ids, scratch.first, scratch.group);
+        status = tl_bodies_regroup(m, scratch.group);
         if (status == TL_OK)
-            tl_rows_settle(m, &room.aside);
+            tl_rows_settle(m, &scratch.aside);
         else
-            tl_rows_take_back(m, &room.aside);
+            tl_rows_take_back(m, &scratch.aside);
     }
     if (status == TL_OK) {
-        keep_record(stage, room.ids);
-        for (size_t i = 0; i < room.gone_count; i++)
-            tl_poly_free(room.gone[i]);
+        keep_record(stage, scratch.ids);
+        for (size_t i = 0; i < scratch.gone_count; i++)
+            tl_poly_free(scratch.gone[i]);
         tl_stage_end(stage);
     } else {
         tl_stage_drop(stage);
     }
-    free_room(&room);
+    free_scratch(&scratch);
     return status;
 }

@@ -86,27 +86,27 @@ typedef struct work {
     uint32_t i[LANES], j[LANES];       /* the same as numbers of those that bound polygons */
 } work;
 
-static bool make_room(tl_field_room *room, uint32_t lines, uint32_t numbers)
+static bool make_room(tl_field_scratch *scratch, uint32_t lines, uint32_t numbers)
 {
-    if (lines <= room->lines && numbers <= room->numbers)
+    if (lines <= scratch->lines && numbers <= scratch->numbers)
         return true;
-    tl_field_free(room);
-    room->line = aligned_alloc(TL_ALIGN, 2u * lines * sizeof *room->line);
-    room->plane = aligned_alloc(TL_ALIGN, 4u * lines * sizeof *room->plane);
-    room->number = malloc(2u * numbers * sizeof *room->number);
-    if (!room->line || !room->plane || !room->number)
+    tl_field_free(scratch);
+    scratch->line = aligned_alloc(TL_ALIGN, 2u * lines * sizeof *scratch->line);
+    scratch->plane = aligned_alloc(TL_ALIGN, 4u * lines * sizeof *scratch->plane);
+    scratch->number = malloc(2u * numbers * sizeof *scratch->number);
+    if (!scratch->line || !scratch->plane || !scratch->number)
         return false;
-    room->lines = 2 * lines;
-    room->numbers = 2 * numbers;
+    scratch->lines = 2 * lines;
+    scratch->numbers = 2 * numbers;
     return true;
 }
 
-void tl_field_free(tl_field_room *room)
+void tl_field_free(tl_field_scratch *scratch)
 {
-    free(room->line);
-    free(room->plane);
-    free(room->number);
-    *room = (tl_field_room){0};
+    free(scratch->line);
+    free(scratch->plane);
+    free(scratch->number);
+    *scratch = (tl_field_scratch){0};
 }
 
 /* Takes the faces of a mask, or all, and the borders for the planes that bound polygons. */
@@ -492,7 +492,7 @@ static void integrate_anew(work *w, pair *of, tl_mesh_draft *draft)
 
 /* An empty work for pairs of so many planes. false: out of memory. */
 static bool begin_work(work *w, const tl_field_faces *const faces[], uint32_t count,
-                       tl_field_room *room)
+                       tl_field_scratch *scratch)
 {
     uint32_t most = 0, all = 0;
     w->flat = false;
@@ -504,27 +504,27 @@ static bool begin_work(work *w, const tl_field_faces *const faces[], uint32_t co
         most = planes > most ? planes : most;
         all += planes;
     }
-    if (!make_room(room, most + 1, all))
+    if (!make_room(scratch, most + 1, all))
         return false;
-    w->line = room->line;
-    w->planes.row = room->plane;
-    w->others.row = room->plane + room->lines;
+    w->line = scratch->line;
+    w->planes.row = scratch->plane;
+    w->others.row = scratch->plane + scratch->lines;
     return true;
 }
 
 bool tl_field_integrate_all(const tl_field_faces *const faces[], tl_field_sums *const sums[],
-                            uint32_t count, tl_field_room *room)
+                            uint32_t count, tl_field_scratch *scratch)
 {
     pair pairs[TL_FIELD_PAIRS];
     tl_mesh_draft drafts[TL_FIELD_PAIRS];
     work w; /* the lanes are filled before they are read */
-    if (!begin_work(&w, faces, count, room))
+    if (!begin_work(&w, faces, count, scratch))
         return false;
     uint32_t all = 0;
     for (uint32_t k = 0; k < count; k++) {
         pairs[k].faces = faces[k];
         pairs[k].sums = sums[k];
-        pairs[k].number = room->number + all;
+        pairs[k].number = scratch->number + all;
         pairs[k].draft = NULL;
         all += all_faces(faces[k]);
         if (!is_known(faces[k]))
@@ -549,7 +549,7 @@ bool tl_field_integrate_all(const tl_field_faces *const faces[], tl_field_sums *
     return true;
 }
 
-bool tl_field_integrate(const tl_field_faces *faces, tl_field_room *room, tl_field_sums *sums)
+bool tl_field_integrate(const tl_field_faces *faces, tl_field_scratch *scratch, tl_field_sums *sums)
 {
-    return tl_field_integrate_all(&faces, &sums, 1, room);
+    return tl_field_integrate_all(&faces, &sums, 1, scratch);
 }

@@ -29,21 +29,22 @@
 #include <talus/plugin.h>
 
 /* Memory that the functions below work in; zero at first. */
-typedef struct tl_field_room {
+typedef struct tl_field_scratch {
     struct tl_field_line *line;
     struct tl_field_plane *plane;
     uint16_t *number;
     uint32_t lines, numbers;
-} tl_field_room;
+} tl_field_scratch;
 
 /* Pairs that are integrated together. */
 #define TL_FIELD_PAIRS TL_LANES
 
 /* All integrals, and a new mesh. false: out of memory. */
 bool tl_field_integrate_all(const tl_field_faces *const faces[], tl_field_sums *const sums[],
-                            uint32_t count, tl_field_room *room);
+                            uint32_t count, tl_field_scratch *scratch);
 /* The same of one pair. */
-bool tl_field_integrate(const tl_field_faces *faces, tl_field_room *room, tl_field_sums *sums);
-void tl_field_free(tl_field_room *room);
+bool tl_field_integrate(const tl_field_faces *faces, tl_field_scratch *scratch,
+                        tl_field_sums *sums);
+void tl_field_free(tl_field_scratch *scratch);
 
 #endif

@@ -46,7 +46,7 @@ typedef struct tl_field_mesh {
 } tl_field_mesh;
 
 /* Corners of a mesh with those that fill up the last lanes. */
-static inline uint32_t tl_mesh_room(const tl_field_mesh *mesh)
+static inline uint32_t tl_mesh_lanes(const tl_field_mesh *mesh)
 {
     return (mesh->corners + TL_LANES - 1) / TL_LANES * TL_LANES;
 }

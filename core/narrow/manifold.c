@@ -7,7 +7,7 @@
 #include "narrow/manifold.h"
 
 #include "narrow/patch.h"
-#include "narrow/room.h"
+#include "narrow/scratch.h"
 
 /* Part of the limits of a patch within which a field contact becomes one: so none changes to and fro. */
 #define BACK 0.5
@@ -21,9 +21,9 @@
 
 /* Whether the flush faces of the region are a patch and nothing else is there. */
 static bool is_patch(const tl_pair_view *view, const tl_region *r, const tl_touch_rule *rule,
-                     bool was_field, tl_narrow *room)
+                     bool was_field, tl_narrow_scratch *scratch)
 {
-    tl_manifold *m = &room->manifold;
+    tl_manifold *m = &scratch->manifold;
     double size = view->size, part = was_field ? BACK : 1;
     if (!r->flush || r->gap > rule->reach)
         return false;
@@ -32,10 +32,10 @@ static bool is_patch(const tl_pair_view *view, const tl_region *r, const tl_touc
     double tilt_margin = part * TL_FLUSH_TILT - tl_region_tilt(view, r->flush_a, r->flush_b);
     if (!(behind > 0 && tilt_margin > 0))
         return false;
-    double area = tl_patch_add(view, r->flush_a, r->flush_b, rule, room);
+    double area = tl_patch_add(view, r->flush_a, r->flush_b, rule, scratch);
     if (!(area > 0) || rule->min_area > MOST_MIN_AREA * area)
         return false;
-    double shallow = part * TL_FLUSH_DEPTH * sqrt(area) + room->patch.gap;
+    double shallow = part * TL_FLUSH_DEPTH * sqrt(area) + scratch->patch.gap;
     if (!(shallow > 0))
         return false;
     /* when the pair moves, none of these changes by more than twice the way */
@@ -46,9 +46,9 @@ static bool is_patch(const tl_pair_view *view, const tl_region *r, const tl_touc
 
 /* ---------------------------------------------------------------- fields ----------------- */
 
-bool tl_manifold_press(const tl_press *press, const tl_facet *faces, tl_narrow *room)
+bool tl_manifold_press(const tl_press *press, const tl_facet *faces, tl_narrow_scratch *scratch)
 {
-    tl_manifold *m = &room->manifold;
+    tl_manifold *m = &scratch->manifold;
     m->point_count = 0;
     m->press = *press;
     if (!tl_manifold_reserve(m, TL_FIELD_POINTS))
@@ -75,34 +75,34 @@ tl_press_query tl_manifold_query(const tl_pair_view *view, const tl_region *regi
 }
 
 static bool find_field(const tl_pair_view *view, const tl_region *r, const tl_touch_rule *rule,
-                       const tl_manifold_before *before, tl_narrow *room)
+                       const tl_manifold_before *before, tl_narrow_scratch *scratch)
 {
     const tl_press_query query = tl_manifold_query(view, r, rule, before);
     const tl_facet faces = {.ia = r->flush_a, .ib = r->flush_b};
     tl_press press;
-    room->manifold.point_count = 0;
-    room->manifold.valid = TL_LIST_MARGIN * view->size;
-    return tl_press_find(&query, 1, room, &press) && tl_manifold_press(&press, &faces, room);
+    scratch->manifold.point_count = 0;
+    scratch->manifold.valid = TL_LIST_MARGIN * view->size;
+    return tl_press_find(&query, 1, scratch, &press) && tl_manifold_press(&press, &faces, scratch);
 }
 
 /* ---------------------------------------------------------------- all of it -------------- */
 
 bool tl_manifold_find(const tl_pair_view *view, const tl_region *r, const tl_touch_rule *rule,
-                      const tl_manifold_before *before, tl_narrow *room)
+                      const tl_manifold_before *before, tl_narrow_scratch *scratch)
 {
-    tl_manifold *m = &room->manifold;
+    tl_manifold *m = &scratch->manifold;
     bool was_field = before->facet.kind == TL_FACET_FIELD;
     m->failed = false;
     m->point_count = 0;
     m->valid = TL_LIST_MARGIN * view->size;
-    if (before->holds && tl_patch_add(view, before->facet.ia, before->facet.ib, rule, room) > 0)
+    if (before->holds && tl_patch_add(view, before->facet.ia, before->facet.ib, rule, scratch) > 0)
         return true;
-    if (m->failed || ((before->calm || !was_field) && is_patch(view, r, rule, was_field, room)))
+    if (m->failed || ((before->calm || !was_field) && is_patch(view, r, rule, was_field, scratch)))
         return !m->failed;
     m->point_count = 0;
     if (m->failed || r->gap > 0)
         return !m->failed;
-    return find_field(view, r, rule, before, room);
+    return find_field(view, r, rule, before, scratch);
 }
 
 /* ---------------------------------------------------------------- joint ------------------ */

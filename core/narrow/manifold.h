@@ -17,15 +17,15 @@ typedef struct tl_manifold_before {
 /* Way that a list of faces holds for, over the size. */
 #define TL_LIST_MARGIN 0.01
 
-/* Facet and points of a pair that has been placed, into room->manifold. The region was found with a margin of
+/* Facet and points of a pair that has been placed, into scratch->manifold. The region was found with a margin of
  * TL_LIST_MARGIN times the size. false: out of memory. */
 bool tl_manifold_find(const tl_pair_view *view, const tl_region *region, const tl_touch_rule *rule,
-                      const tl_manifold_before *before, tl_narrow *room);
+                      const tl_manifold_before *before, tl_narrow_scratch *scratch);
 /* What the press of a field contact is found for. */
 tl_press_query tl_manifold_query(const tl_pair_view *view, const tl_region *region,
                                  const tl_touch_rule *rule, const tl_manifold_before *before);
-/* A field contact of a press, and of the flush faces of a facet, into room->manifold. false: out of memory. */
-bool tl_manifold_press(const tl_press *press, const tl_facet *faces, tl_narrow *room);
+/* A field contact of a press, and of the flush faces of a facet, into scratch->manifold. false: out of memory. */
+bool tl_manifold_press(const tl_press *press, const tl_facet *faces, tl_narrow_scratch *scratch);
 /* The joint of the faces that touch along a direction from A to B. */
 tl_tag tl_touching_tag(const tl_pair_view *view, tl_vec3 n);
 

@@ -29,8 +29,8 @@ typedef struct tl_manifold {
     bool failed;    /* out of memory */
 } tl_manifold;
 
-/* Per-thread room for the narrow phase. */
-typedef struct tl_narrow {
+/* Scratch memory of a thread for the narrow phase. */
+typedef struct tl_narrow_scratch {
     tl_vec3 *vertex_b, *normal_b;
     size_t vertex_capacity, normal_capacity;
     struct tl_polygon *polygon; /* patch.c */
@@ -45,8 +45,8 @@ typedef struct tl_narrow {
     double *plane, *press; /* region.c, press.c */
     uint16_t *face;        /* of a region */
     size_t plane_capacity, press_capacity, face_capacity;
-    tl_field_room field;
-} tl_narrow;
+    tl_field_scratch field;
+} tl_narrow_scratch;
 
 /* How a pair is to touch. */
 typedef struct tl_touch_rule {

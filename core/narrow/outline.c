@@ -146,13 +146,13 @@ static void find(tl_outline *o, uint32_t na, uint32_t nb)
         o->middle_key[k] = tl_key_of(TL_POINT_MIDDLE, o->key[k], o->key[next_of(k, count)]);
 }
 
-const tl_outline *tl_outline_of(tl_outline *room, uint32_t na, uint32_t nb, uint64_t inside_a,
+const tl_outline *tl_outline_of(tl_outline *cache, uint32_t na, uint32_t nb, uint64_t inside_a,
                                 uint64_t inside_b)
 {
     uint32_t sides = na << 8 | nb;
     uint64_t mix =
         (inside_a ^ sides) * UINT64_C(0x9e3779b97f4a7c15) ^ inside_b * UINT64_C(0xd6e8feb86659fd93);
-    tl_outline *o = &room[(mix ^ mix >> 29) * UINT64_C(0xd6e8feb86659fd93) >> 57];
+    tl_outline *o = &cache[(mix ^ mix >> 29) * UINT64_C(0xd6e8feb86659fd93) >> 57];
     if (o->sides == sides && o->inside_a == inside_a && o->inside_b == inside_b)
         return o;
     *o = (tl_outline){.sides = sides, .inside_a = inside_a, .inside_b = inside_b};

@@ -26,10 +26,10 @@ typedef struct tl_outline {
     uint32_t key[TL_OUTLINE_CORNERS], middle_key[TL_OUTLINE_CORNERS];
 } tl_outline;
 
-/* Remembers what it finds in `room`, a table of TL_OUTLINES. Byte i of `inside_a`: the lines of B, a bit
+/* Remembers what it finds in `cache`, a table of TL_OUTLINES. Byte i of `inside_a`: the lines of B, a bit
  * each, which corner i of A lies inside; the same with `inside_b`. */
 #define TL_OUTLINES 128
-const tl_outline *tl_outline_of(tl_outline *room, uint32_t na, uint32_t nb, uint64_t inside_a,
+const tl_outline *tl_outline_of(tl_outline *cache, uint32_t na, uint32_t nb, uint64_t inside_a,
                                 uint64_t inside_b);
 
 #endif

@@ -22,7 +22,7 @@
 #include "base/columns.h"
 #include "narrow/frame2.h"
 #include "narrow/polygon.h"
-#include "narrow/room.h"
+#include "narrow/scratch.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -240,7 +240,7 @@ static bool add_points(patch *one, struct tl_polygon *p, size_t count, double ar
 }
 
 double tl_patch_lay(const tl_pair_view *view, uint32_t fa, uint32_t fb, const tl_touch_rule *rule,
-                    tl_narrow *room)
+                    tl_narrow_scratch *scratch)
 {
     const tl_poly *a = view->a, *b = view->b;
     patch one = {.rule = tl_point_rule_of(rule->corners),
@@ -248,16 +248,16 @@ double tl_patch_lay(const tl_pair_view *view, uint32_t fa, uint32_t fb, const tl
                  .least = TL_MERGE * fmax(a->size, b->size) * view->size,
                  .reach = rule->reach,
                  .faces = tl_key_of(0, fa, fb),
-                 .out = &room->patch,
+                 .out = &scratch->patch,
                  .a = a->plane[fa],
                  .b = tl_plane_placed(&view->turn, view->shift, b->plane[fb])};
     one.frame = tl_frame2_of(one.a.normal, one.b.normal, a->vertex[a->loop[a->start[fa]]]);
     one.weight = one.frame.secant;
     struct tl_polygon *p =
-        tl_polygon_room(room, tl_poly_face_size(a, fa), tl_poly_face_size(b, fb));
-    room->patch.count = 0;
+        tl_polygon_reserve(scratch, tl_poly_face_size(a, fa), tl_poly_face_size(b, fb));
+    scratch->patch.count = 0;
     if (!p) {
-        room->manifold.failed = true;
+        scratch->manifold.failed = true;
         return 0;
     }
     size_t count = clip_faces(view, fa, fb, &one, p);
@@ -265,23 +265,23 @@ double tl_patch_lay(const tl_pair_view *view, uint32_t fa, uint32_t fb, const tl
     if (!(area > one.least))
         return 0;
     tl_frame2_move(&one.frame, one.a, one.b, one.centroid);
-    room->patch.gap = least_gap(&one, p->now, count);
-    if (room->patch.gap > one.reach)
+    scratch->patch.gap = least_gap(&one, p->now, count);
+    if (scratch->patch.gap > one.reach)
         return 0;
     if (!add_points(&one, p, count, area)) {
-        room->manifold.failed = true;
+        scratch->manifold.failed = true;
         return 0;
     }
     return one.weight * area;
 }
 
 double tl_patch_add(const tl_pair_view *view, uint32_t fa, uint32_t fb, const tl_touch_rule *rule,
-                    tl_narrow *room)
+                    tl_narrow_scratch *scratch)
 {
-    tl_manifold *m = &room->manifold;
+    tl_manifold *m = &scratch->manifold;
     m->point_count = 0;
-    double area = tl_patch_lay(view, fa, fb, rule, room);
-    const tl_patch_points *from = &room->patch;
+    double area = tl_patch_lay(view, fa, fb, rule, scratch);
+    const tl_patch_points *from = &scratch->patch;
     if (!(area > 0) || !tl_manifold_reserve(m, from->count))
         return 0;
     tl_plane plane = view->b->plane[fb];

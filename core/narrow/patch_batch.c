@@ -17,9 +17,9 @@
 #define CORNERS TL_OUTLINE_CORNERS
 #define EACH_LANE(l) for (uint32_t l = 0; l < TL_LANES; l++)
 
-tl_patch_batch *tl_batch_room(tl_narrow *room, bool corners, double steep)
+tl_patch_batch *tl_batch_begin(tl_narrow_scratch *scratch, bool corners, double steep)
 {
-    struct tl_polygon *p = tl_polygon_room(room, CORNERS, CORNERS);
+    struct tl_polygon *p = tl_polygon_reserve(scratch, CORNERS, CORNERS);
     if (!p)
         return NULL;
     if (!p->batch && (p->batch = aligned_alloc(64, (sizeof *p->batch + 63) / 64 * 64)))

@@ -45,7 +45,7 @@ typedef struct tl_patch_batch {
 
 /* The thread's batch, empty; NULL when out of memory. Points are at corners only, or not; faces tilted so that
  * the square of the sine between them is more than `steep` have no patch. */
-tl_patch_batch *tl_batch_room(tl_narrow *room, bool corners, double steep);
+tl_patch_batch *tl_batch_begin(tl_narrow_scratch *scratch, bool corners, double steep);
 /* Whether two faces are for a batch. */
 static inline bool tl_batch_takes(const tl_poly *a, uint32_t fa, const tl_poly *b, uint32_t fb)
 {

@@ -22,17 +22,17 @@ TL_VECTORIZED static void place(const tl_mat3 *turn, tl_vec3 shift, const tl_vec
     }
 }
 
-bool tl_pairs_place(tl_pair_view view[], uint32_t count, tl_narrow *room)
+bool tl_pairs_place(tl_pair_view view[], uint32_t count, tl_narrow_scratch *scratch)
 {
     size_t vertices = 1, faces = 1;
     for (uint32_t k = 0; k < count; k++) {
         vertices += view[k].b->vertex_count;
         faces += view[k].b->face_count;
     }
-    if (!tl_grow(&room->vertex_b, &room->vertex_capacity, vertices, sizeof(tl_vec3)) ||
-        !tl_grow(&room->normal_b, &room->normal_capacity, faces, sizeof(tl_vec3)))
+    if (!tl_grow(&scratch->vertex_b, &scratch->vertex_capacity, vertices, sizeof(tl_vec3)) ||
+        !tl_grow(&scratch->normal_b, &scratch->normal_capacity, faces, sizeof(tl_vec3)))
         return false;
-    tl_vec3 *vertex = room->vertex_b, *normal = room->normal_b;
+    tl_vec3 *vertex = scratch->vertex_b, *normal = scratch->normal_b;
     for (tl_pair_view *v = view; v < view + count; v++) {
         const tl_poly *b = v->b;
         v->vertex_b = vertex;
@@ -46,9 +46,9 @@ bool tl_pairs_place(tl_pair_view view[], uint32_t count, tl_narrow *room)
     return true;
 }
 
-bool tl_pair_place(tl_pair_view *view, tl_narrow *room)
+bool tl_pair_place(tl_pair_view *view, tl_narrow_scratch *scratch)
 {
-    return tl_pairs_place(view, 1, room);
+    return tl_pairs_place(view, 1, scratch);
 }
 
 double tl_pair_moved(const tl_pair_view *view, const tl_pair_pose *since)
@@ -67,14 +67,14 @@ double tl_pair_moved(const tl_pair_view *view, const tl_pair_pose *since)
     return sqrt(most);
 }
 
-bool tl_pair_place_face(tl_pair_view *view, uint32_t face, tl_narrow *room)
+bool tl_pair_place_face(tl_pair_view *view, uint32_t face, tl_narrow_scratch *scratch)
 {
     const tl_poly *b = view->b;
-    if (!tl_grow(&room->vertex_b, &room->vertex_capacity, b->vertex_count, sizeof(tl_vec3)) ||
-        !tl_grow(&room->normal_b, &room->normal_capacity, b->face_count, sizeof(tl_vec3)))
+    if (!tl_grow(&scratch->vertex_b, &scratch->vertex_capacity, b->vertex_count, sizeof(tl_vec3)) ||
+        !tl_grow(&scratch->normal_b, &scratch->normal_capacity, b->face_count, sizeof(tl_vec3)))
         return false;
-    view->vertex_b = room->vertex_b;
-    view->normal_b = room->normal_b;
+    view->vertex_b = scratch->vertex_b;
+    view->normal_b = scratch->normal_b;
     for (uint32_t i = b->start[face]; i < b->start[face + 1]; i++) {
         uint32_t v = b->loop[i];
         view->vertex_b[v] = tl_v3_add(tl_m3_mul(&view->turn, b->vertex[v]), view->shift);

@@ -20,11 +20,11 @@ void tl_polygon_free(struct tl_polygon *polygon, tl_patch_points *points)
     free(polygon);
 }
 
-struct tl_polygon *tl_polygon_room(tl_narrow *room, size_t na, size_t nb)
+struct tl_polygon *tl_polygon_reserve(tl_narrow_scratch *scratch, size_t na, size_t nb)
 {
-    if (!room->polygon && !(room->polygon = calloc(1, sizeof *room->polygon)))
+    if (!scratch->polygon && !(scratch->polygon = calloc(1, sizeof *scratch->polygon)))
         return NULL;
-    struct tl_polygon *p = room->polygon;
+    struct tl_polygon *p = scratch->polygon;
     /* each clip adds a corner, or two where rounding makes it cross a straight run of corners twice */
     size_t corners = na + 2 * nb + 4;
     if (corners > p->capacity) {

@@ -16,7 +16,7 @@ struct tl_polygon {
 };
 
 /* Room for faces of `na` and `nb` corners; NULL when out of memory. */
-struct tl_polygon *tl_polygon_room(tl_narrow *capacity, size_t na, size_t nb);
+struct tl_polygon *tl_polygon_reserve(tl_narrow_scratch *capacity, size_t na, size_t nb);
 /* Clips `face` by `clip`: into `now`, beginning with the corner whose edge has the lowest number; corners nearer
  * than `near` are one. Returns their number. */
 size_t tl_polygon_clip(struct tl_polygon *p, uint32_t na, uint32_t nb, double near);

@@ -38,7 +38,8 @@ typedef struct planes {
 } planes;
 
 /* Room for planes of so many pairs, each of which has no more than its region. */
-static bool reserve(tl_narrow *room, const tl_press_query query[], uint32_t count, planes p[])
+static bool reserve(tl_narrow_scratch *scratch, const tl_press_query query[], uint32_t count,
+                    planes p[])
 {
     size_t all = 0;
     uint32_t faces[TL_FIELD_PAIRS];
@@ -48,14 +49,14 @@ static bool reserve(tl_narrow *room, const tl_press_query query[], uint32_t coun
         faces[k] = faces[k] > TL_FIELD_KNOWN ? faces[k] : TL_FIELD_KNOWN + 1; /* field_mesh.c */
         all += faces[k];
     }
-    if (4 * all > room->press_capacity) {
-        double *press = realloc(room->press, 8 * all * sizeof *press);
+    if (4 * all > scratch->press_capacity) {
+        double *press = realloc(scratch->press, 8 * all * sizeof *press);
         if (!press)
             return false;
-        room->press = press;
-        room->press_capacity = 8 * all;
+        scratch->press = press;
+        scratch->press_capacity = 8 * all;
     }
-    double *at = room->press;
+    double *at = scratch->press;
     for (uint32_t k = 0; k < count; k++) {
         for (uint32_t axis = 0; axis < 3; axis++, at += faces[k])
             p[k].faces.n[axis] = at;
@@ -237,7 +238,7 @@ static bool is_of_use(const tl_press_query *of)
 
 /* The press of a pair from the integrals of its field. `same`: over faces that have enclosed the common volume before. */
 static bool press_of(const tl_press_query *of, planes *p, const tl_field_sums *sums, bool same,
-                     tl_narrow *room, tl_press *press)
+                     tl_narrow_scratch *scratch, tl_press *press)
 {
     const tl_pair_view *view = of->view;
     const tl_region *region = of->region;
@@ -255,7 +256,7 @@ static bool press_of(const tl_press_query *of, planes *p, const tl_field_sums *s
         list_patch(p, of);
         p->faces.mesh = NULL;
         p->faces.energy_only = false;
-        if (!tl_field_integrate(&p->faces, &room->field, &patch))
+        if (!tl_field_integrate(&p->faces, &scratch->field, &patch))
             return false;
         if (patch.energy > 0 && patch.volume > 0)
             press->patch = blend(of, &patch, of->min_area, &field);
@@ -329,7 +330,8 @@ static void begin_anew(const tl_press_query *of, planes *p, tl_mesh_inner *inner
     p->faces.inner = inner;
 }
 
-bool tl_press_find(const tl_press_query query[], uint32_t count, tl_narrow *room, tl_press press[])
+bool tl_press_find(const tl_press_query query[], uint32_t count, tl_narrow_scratch *scratch,
+                   tl_press press[])
 {
     planes p[TL_FIELD_PAIRS];
     uint64_t known[TL_FIELD_PAIRS];
@@ -337,7 +339,7 @@ bool tl_press_find(const tl_press_query query[], uint32_t count, tl_narrow *room
     tl_field_sums sums[TL_FIELD_PAIRS], *to[TL_FIELD_PAIRS] = {NULL};
     const tl_field_faces *faces[TL_FIELD_PAIRS] = {NULL};
     uint32_t left = 0, anew[TL_FIELD_PAIRS];
-    if (!reserve(room, query, count, p))
+    if (!reserve(scratch, query, count, p))
         return false;
     for (uint32_t k = 0; k < count; k++) {
         bool found = follow(&query[k], &p[k], &sums[k]);
@@ -350,13 +352,13 @@ bool tl_press_find(const tl_press_query query[], uint32_t count, tl_narrow *room
         to[left] = &sums[k];
         anew[left++] = k;
     }
-    if (left && !tl_field_integrate_all(faces, to, left, &room->field))
+    if (left && !tl_field_integrate_all(faces, to, left, &scratch->field))
         return false;
     for (uint32_t k = 0; k < left; k++)
         begin_mesh(&query[anew[k]], &p[anew[k]], &sums[anew[k]]);
     for (uint32_t k = 0; k < count; k++) {
         bool same = known[k] && p[k].faces.mesh->bounding == known[k];
-        if (!press_of(&query[k], &p[k], &sums[k], same, room, &press[k]))
+        if (!press_of(&query[k], &p[k], &sums[k], same, scratch, &press[k]))
             return false;
     }
     return true;

@@ -26,6 +26,7 @@ typedef struct tl_press_query {
 } tl_press_query;
 
 /* The presses of some pairs, up to TL_FIELD_PAIRS: 0 where the blocks have nothing in common. false: out of memory. */
-bool tl_press_find(const tl_press_query query[], uint32_t count, tl_narrow *room, tl_press press[]);
+bool tl_press_find(const tl_press_query query[], uint32_t count, tl_narrow_scratch *scratch,
+                   tl_press press[]);
 
 #endif

@@ -72,8 +72,8 @@ static tl_vec3 difference(tl_vec3 to, tl_vec3 from, double per)
     return tl_v3_scale(per, tl_v3_sub(to, from));
 }
 
-bool tl_press_slope_find(const tl_press_query *query, const tl_press *at, tl_narrow *room,
-                         tl_press_slope *slope)
+bool tl_press_slope_find(const tl_press_query *query, const tl_press *at,
+                         tl_narrow_scratch *scratch, tl_press_slope *slope)
 {
     const tl_region *region = query->region;
     slope->known = true;
@@ -92,7 +92,7 @@ bool tl_press_slope_find(const tl_press_query *query, const tl_press *at, tl_nar
             there[k].region = &same[k];
             there[k].view = &view[k];
         }
-        if (!tl_pairs_place(view, 2, room) || !tl_press_find(there, 2, room, side))
+        if (!tl_pairs_place(view, 2, scratch) || !tl_press_find(there, 2, scratch, side))
             return false;
         slope->known = slope->known && side[0].area > 0 && side[1].area > 0;
         slope->force[axis] = difference(side[1].force, side[0].force, per);

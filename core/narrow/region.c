@@ -43,22 +43,22 @@ static void set_columns(planes *p, double *at)
     p->outside = at + 6 * step;
 }
 
-static bool reserve(tl_narrow *room, size_t doubles, size_t faces)
+static bool reserve(tl_narrow_scratch *scratch, size_t doubles, size_t faces)
 {
-    if (doubles > room->plane_capacity) {
+    if (doubles > scratch->plane_capacity) {
         double *plane = aligned_alloc(TL_ALIGN, 2 * doubles * sizeof *plane);
         if (!plane)
             return false;
-        free(room->plane);
-        room->plane = plane;
-        room->plane_capacity = 2 * doubles;
+        free(scratch->plane);
+        scratch->plane = plane;
+        scratch->plane_capacity = 2 * doubles;
     }
-    if (faces > room->face_capacity) {
-        uint16_t *face = realloc(room->face, 2 * faces * sizeof *face);
+    if (faces > scratch->face_capacity) {
+        uint16_t *face = realloc(scratch->face, 2 * faces * sizeof *face);
         if (!face)
             return false;
-        room->face = face;
-        room->face_capacity = 2 * faces;
+        scratch->face = face;
+        scratch->face_capacity = 2 * faces;
     }
     return true;
 }
@@ -247,7 +247,8 @@ static void find_leads(const planes *a, const planes *b, tl_region *out, uint16_
                     fmin(out->flush_lead, out->flush_gap - fmax(a->low[face[k]], b->low[of_b[m]]));
 }
 
-bool tl_region_find(const tl_pair_view *view, double margin, tl_narrow *room, tl_region *out)
+bool tl_region_find(const tl_pair_view *view, double margin, tl_narrow_scratch *scratch,
+                    tl_region *out)
 {
     planes a = {.poly = view->a, .vertex = view->a->vertex, .count = view->a->face_count};
     planes b = {.poly = view->b, .vertex = view->vertex_b, .count = view->b->face_count};
@@ -255,16 +256,16 @@ bool tl_region_find(const tl_pair_view *view, double margin, tl_narrow *room, tl
     *out = (tl_region){0};
     uint32_t vertices = view->a->vertex_count > view->b->vertex_count ? view->a->vertex_count
                                                                       : view->b->vertex_count;
-    if (!reserve(room, 7 * (rows_a + rows_b) + TL_LANES * (size_t)vertices, a.count + b.count))
+    if (!reserve(scratch, 7 * (rows_a + rows_b) + TL_LANES * (size_t)vertices, a.count + b.count))
         return false;
-    set_columns(&a, room->plane);
-    set_columns(&b, room->plane + 7 * rows_a);
-    double(*height)[TL_LANES] = (double(*)[TL_LANES])(room->plane + 7 * (rows_a + rows_b));
+    set_columns(&a, scratch->plane);
+    set_columns(&b, scratch->plane + 7 * rows_a);
+    double(*height)[TL_LANES] = (double(*)[TL_LANES])(scratch->plane + 7 * (rows_a + rows_b));
     fill_columns(&a, &b, view);
     find_heights(&a, &b, height);
     find_heights(&b, &a, height);
     find_gap(&a, &b, out);
-    uint16_t *face = room->face;
+    uint16_t *face = scratch->face;
     bool seams = view->a->seams || view->b->seams;
     double deepest = fmax(-out->gap, 0);
     out->face = face;
@@ -274,7 +275,7 @@ bool tl_region_find(const tl_pair_view *view, double margin, tl_narrow *room, tl
     out->border_b = list(&b, true, seams, margin, deepest, face += out->border_a);
     find_flush(&a, &b, out);
     if (out->flush)
-        find_leads(&a, &b, out, room->face);
+        find_leads(&a, &b, out, scratch->face);
     return true;
 }
 

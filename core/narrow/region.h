@@ -10,7 +10,7 @@
 typedef struct tl_region {
     /* the listed faces of A, of B, the borders of A and of B: faces on seams */
     uint32_t a, b, border_a, border_b;
-    const uint16_t *face; /* their numbers, one after the other; in the thread's room */
+    const uint16_t *face; /* their numbers, one after the other; in the thread's scratch */
     tl_field_mesh *mesh;  /* what is known of the field at another place; NULL: nobody keeps it */
     /* the face along whose normal the blocks are farthest apart, or overlap the least: min over B - max over A */
     double gap;
@@ -27,7 +27,8 @@ typedef struct tl_region {
 
 /* Fills the region of a pair that has been placed. Faces that stay away from the other block while the pair moves by
  * `margin` are not listed; with a border all real faces are that may be the nearest to some point. false: out of memory. */
-bool tl_region_find(const tl_pair_view *view, double margin, tl_narrow *room, tl_region *region);
+bool tl_region_find(const tl_pair_view *view, double margin, tl_narrow_scratch *scratch,
+                    tl_region *region);
 /* Chooses the flush faces of a region anew, when the pair has moved. */
 void tl_region_choose_flush(const tl_pair_view *view, tl_region *region);
 /* Whether the faces marked in `bounding` are all that bound the common volume, as far as the corners of one block tell that lie

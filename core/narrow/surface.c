@@ -26,7 +26,7 @@ static half_space face_of(const tl_pair_view *view, bool of_b, uint32_t face)
     return (half_space){n, view->b->plane[face].offset + tl_v3_dot(n, view->shift)};
 }
 
-/* ---------------------------------------------------------------- room ------------------- */
+/* ---------------------------------------------------------------- memory ----------------- */
 
 /* Room for `corners` more corners and one more polygon. */
 static bool reserve(tl_surface *s, size_t corners)

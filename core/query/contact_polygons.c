@@ -26,17 +26,18 @@ typedef struct job {
 } job;
 
 /* Adds a contact's polygons in the frame of its first block's body. */
-static bool add_polygons(tl_model *m, uint32_t c, tl_narrow *room, tl_surface *surface)
+static bool add_polygons(tl_model *m, uint32_t c, tl_narrow_scratch *scratch, tl_surface *surface)
 {
     const tl_contacts *contacts = &m->detect->contacts;
     const tl_facet *facet = &contacts->facet[c];
     tl_pair_view view = tl_pair_view_of(m, contacts->a[c], contacts->b[c]);
-    if (!tl_pair_place(&view, room))
+    if (!tl_pair_place(&view, scratch))
         return false;
     if (facet->kind == TL_FACET_PATCH)
         return tl_surface_add_patch(&view, facet->ia, facet->ib, surface);
     tl_region region;
-    return tl_region_find(&view, 0, room, &region) && tl_surface_add_field(&view, &region, surface);
+    return tl_region_find(&view, 0, scratch, &region) &&
+           tl_surface_add_field(&view, &region, surface);
 }
 
 /* From the frame of a block's body to places relative to the model's origin. */

@@ -57,7 +57,7 @@ tl_status tl_archive_begin(tl_archive_writer *w, const char *path, tl_error *err
     return TL_OK;
 }
 
-/* Compresses into the writer's room; 0: not shorter. */
+/* Compresses into the writer's buffer; 0: not shorter. */
 static size_t pack(tl_archive_writer *w, const void *data, size_t bytes)
 {
     size_t bound = ZSTD_compressBound(bytes);

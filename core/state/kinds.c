@@ -11,7 +11,7 @@
 
 #include "base/params.h"
 #include "contact/points.h"
-#include "cycle/cycle_room.h"
+#include "cycle/cycle_data.h"
 #include "force/joint_laws.h"
 
 #include <stdio.h>
@@ -147,7 +147,7 @@ static tl_status find_kind(tl_model *m, const tl_archive *a, const char *prefix,
     return TL_OK;
 }
 
-/* A parameter as read, and room for what it points to. */
+/* A parameter as read, and storage for what it points to. */
 typedef struct read_param {
     double numbers[3];
     char text[PLUGIN_NAME];

@@ -20,7 +20,7 @@ static void add(void *user, const tl_entry *entry)
     memcpy(field, &sum, sizeof sum);
 }
 
-static size_t narrow_bytes(const tl_narrow *n)
+static size_t narrow_bytes(const tl_narrow_scratch *n)
 {
     return sizeof *n + n->vertex_capacity * sizeof *n->vertex_b +
            n->normal_capacity * sizeof *n->normal_b +

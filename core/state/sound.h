@@ -2,7 +2,7 @@
 #ifndef TL_STATE_SOUND_H
 #define TL_STATE_SOUND_H
 
-#include "cycle/cycle_room.h"
+#include "cycle/cycle_data.h"
 #include "model/model.h"
 
 /* What is wrong with settings, blocks and bodies, before there are polyhedra; NULL: nothing. */

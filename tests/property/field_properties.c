@@ -73,7 +73,7 @@ typedef struct scene {
     planes planes;
     uint8_t border_a[256], border_b[256];
     bool borders, apart;
-    tl_field_room room;
+    tl_field_scratch scratch;
     tl_vec3 origin; /* near the common volume */
 } scene;
 
@@ -90,7 +90,7 @@ static double energy(scene *s)
 {
     tl_field_sums sums;
     list_scene(s);
-    CHECK(tl_field_integrate(&s->planes.faces, &s->room, &sums));
+    CHECK(tl_field_integrate(&s->planes.faces, &s->scratch, &sums));
     return sums.energy;
 }
 
@@ -186,7 +186,7 @@ static void make_scene(scene *s, int one, int other, double depth, bool flush, u
 
 static void free_scene(scene *s)
 {
-    tl_field_free(&s->room);
+    tl_field_free(&s->scratch);
     scene_pair_free(&s->pair);
 }
 
@@ -212,7 +212,7 @@ static bool check_gradient(scene *s, double depth, uint64_t seed)
 {
     tl_field_sums sums;
     list_scene(s);
-    CHECK(tl_field_integrate(&s->planes.faces, &s->room, &sums));
+    CHECK(tl_field_integrate(&s->planes.faces, &s->scratch, &sums));
     if (!(tl_v3_norm(sums.force) > LEAST * pow(depth * s->pair.view.size, 3)))
         return false;
     double off = INFINITY;
@@ -284,7 +284,7 @@ static tl_field_sums sums_of_part(scene *s, tl_vec3 n, double offset, double sid
         p->number[3][i] = side * offset;
         p->faces.border_a = p->faces.seam_a = 1;
     }
-    CHECK(tl_field_integrate(&p->faces, &s->room, &sums));
+    CHECK(tl_field_integrate(&p->faces, &s->scratch, &sums));
     return sums;
 }
 
@@ -372,7 +372,7 @@ TEST(volume_is_that_of_what_is_left_by_cuts)
                    false, &seed);
         list_scene(&s);
         tl_field_sums found;
-        CHECK(tl_field_integrate(&s.planes.faces, &s.room, &found));
+        CHECK(tl_field_integrate(&s.planes.faces, &s.scratch, &found));
         double volume = volume_in_common(&s);
         if (!isnan(volume)) {
             CHECK_NEAR(found.volume, volume, 1e-9 * volume);
@@ -394,7 +394,7 @@ TEST(energy_is_that_of_a_sum)
         make_scene(&s, random_kind(&seed) % 2, random_kind(&seed) % 2, 0.3, false, &seed);
         list_scene(&s);
         tl_field_sums found;
-        CHECK(tl_field_integrate(&s.planes.faces, &s.room, &found));
+        CHECK(tl_field_integrate(&s.planes.faces, &s.scratch, &found));
         double sum = 0;
         for (int i = 0; i < CELLS * CELLS * CELLS; i++) {
             tl_vec3 at = tl_v3(i % CELLS + 0.5, i / CELLS % CELLS + 0.5, i / CELLS / CELLS + 0.5);
@@ -420,10 +420,10 @@ TEST(energy_from_the_surface_is_that_from_all)
         list_scene(&s);
         tl_field_sums all, few;
         tl_field_faces *f = &s.planes.faces;
-        CHECK(tl_field_integrate(f, &s.room, &all));
+        CHECK(tl_field_integrate(f, &s.scratch, &all));
         f->mesh = &mesh;
         f->energy_only = k % 2;
-        CHECK(tl_field_integrate(f, &s.room, &few));
+        CHECK(tl_field_integrate(f, &s.scratch, &few));
         if (all.deepest > 0 && mesh.bounding) {
             CHECK_REL(few.energy, all.energy, 1e-9);
             if (!f->energy_only)
@@ -454,10 +454,10 @@ TEST(a_far_origin_moves_nothing)
         tl_field_sums near, far;
         tl_vec3 by = scene_direction(&seed);
         list_scene(&s);
-        CHECK(tl_field_integrate(&s.planes.faces, &s.room, &near));
+        CHECK(tl_field_integrate(&s.planes.faces, &s.scratch, &near));
         s.origin = tl_v3_add(s.origin, by);
         list_scene(&s);
-        CHECK(tl_field_integrate(&s.planes.faces, &s.room, &far));
+        CHECK(tl_field_integrate(&s.planes.faces, &s.scratch, &far));
         double force = tl_v3_norm(near.force), length = cbrt(near.volume);
         if (near.volume > 0) {
             double off = FAR_ORIGIN / length;
@@ -488,7 +488,7 @@ TEST(flush_faces_have_the_force_of_springs)
         s.origin = tl_v3(0.1, 0, 0.5);
         list_scene(&s);
         tl_field_sums sums;
-        CHECK(tl_field_integrate(&s.planes.faces, &s.room, &sums));
+        CHECK(tl_field_integrate(&s.planes.faces, &s.scratch, &sums));
         CHECK_REL(sums.volume, o, 1e-9);
         CHECK_REL(2 * sums.energy, 0.5 * o * o, 2 * o);
         CHECK_REL(2 * sums.force.z, o, 2 * o);
@@ -509,7 +509,7 @@ TEST(blocks_that_only_touch_have_no_force)
         make_scene(&s, random_kind(&seed) % 5, random_kind(&seed) % 5, -1e-9, k % 2, &seed);
         list_scene(&s);
         tl_field_sums sums;
-        CHECK(tl_field_integrate(&s.planes.faces, &s.room, &sums));
+        CHECK(tl_field_integrate(&s.planes.faces, &s.scratch, &sums));
         CHECK_NEAR(tl_v3_norm(sums.force), 0, 0);
         free_scene(&s);
     }

@@ -77,9 +77,9 @@ static double carried(scene_pair *p)
     const tl_pair_view *view = scene_place(p);
     tl_touch_rule rule = {.reach = TL_CONTACT_TOLERANCE * TL_CONTACT_RELEASE * view->size};
     tl_region region;
-    CHECK(tl_region_find(view, TL_LIST_MARGIN * view->size, &p->room, &region));
-    CHECK(tl_manifold_find(view, &region, &rule, &none, &p->room));
-    const tl_manifold *m = &p->room.manifold;
+    CHECK(tl_region_find(view, TL_LIST_MARGIN * view->size, &p->scratch, &region));
+    CHECK(tl_manifold_find(view, &region, &rule, &none, &p->scratch));
+    const tl_manifold *m = &p->scratch.manifold;
     double area = 0;
     for (size_t i = 0; i < m->point_count; i++)
         area += m->points[i].area;

@@ -47,7 +47,7 @@ static void settle(laid *p)
                                  p->r_a.m[2][i] * p->r_b.m[2][j];
     view->shift = tl_m3_tmul(&p->r_a, p->apart);
     view->size = fmin(p->pair.a->size, p->pair.b->size);
-    CHECK(tl_pair_place(view, &p->pair.room));
+    CHECK(tl_pair_place(view, &p->pair.scratch));
 }
 
 /* B over A by turn and shift in A's frame, both turned in the model. */
@@ -153,7 +153,7 @@ static void add(tl_patch_batch *batch, uint32_t lane, const laid *p)
 static double lay_one(laid *p, bool corners)
 {
     tl_touch_rule rule = {.corners = corners, .reach = 1.5e-3};
-    return tl_patch_lay(&p->pair.view, p->fa, p->fb, &rule, &p->pair.room);
+    return tl_patch_lay(&p->pair.view, p->fa, p->fb, &rule, &p->pair.scratch);
 }
 
 static int same_bits(double a, double b)
@@ -186,10 +186,10 @@ static void same_patch(const tl_patch_batch *batch, uint32_t lane, const tl_patc
 }
 
 /* Lays the pairs in one batch and one by one. Returns how many the batch has laid. */
-static int compare(laid *p, uint32_t count, bool corners, tl_narrow *room)
+static int compare(laid *p, uint32_t count, bool corners, tl_narrow_scratch *scratch)
 {
     int found = 0;
-    tl_patch_batch *batch = tl_batch_room(room, corners, STEEP);
+    tl_patch_batch *batch = tl_batch_begin(scratch, corners, STEEP);
     for (uint32_t i = 0; i < count; i++)
         add(batch, i, &p[i]);
     tl_batch_lay(batch);
@@ -201,7 +201,7 @@ static int compare(laid *p, uint32_t count, bool corners, tl_narrow *room)
         double reach = p[i].pair.a->size + p[i].pair.b->size;
         CHECK_NEAR(batch->area[i], area, undecided(&p[i]) ? 4 * TL_MERGE * reach * reach : 0);
         if (!undecided(&p[i]))
-            same_patch(batch, i, &p[i].pair.room.patch);
+            same_patch(batch, i, &p[i].pair.scratch.patch);
     }
     return found;
 }
@@ -209,7 +209,7 @@ static int compare(laid *p, uint32_t count, bool corners, tl_narrow *room)
 TEST(batches_lay_what_is_laid_one_by_one)
 {
     uint64_t seed = 20;
-    tl_narrow room = {0};
+    tl_narrow_scratch scratch = {0};
     int found[KINDS] = {0}, made[KINDS] = {0};
     for (int round = 0; round < 1500; round++) {
         laid p[TL_LANES];
@@ -218,7 +218,7 @@ TEST(batches_lay_what_is_laid_one_by_one)
         for (uint32_t i = 0; i < count; i++)
             p[i] = make(&seed, kind);
         for (int move = 0; move < 3; move++) {
-            found[kind] += compare(p, count, round % 5 == 0, &room);
+            found[kind] += compare(p, count, round % 5 == 0, &scratch);
             made[kind] += (int)count;
             for (uint32_t i = 0; i < count; i++) {
                 tl_quat turn = scene_turn(scene_direction(&seed), small(&seed, 4, 8));
@@ -229,7 +229,7 @@ TEST(batches_lay_what_is_laid_one_by_one)
         for (uint32_t i = 0; i < count; i++)
             scene_pair_free(&p[i].pair);
     }
-    tl_narrow_free(&room);
+    tl_narrow_scratch_free(&scratch);
     if (getenv("TALUS_TEST_VERBOSE"))
         for (int kind = 0; kind < KINDS; kind++)
             printf("  kind %d: %d of %d laid\n", kind, found[kind], made[kind]);
@@ -241,17 +241,17 @@ TEST(batches_lay_what_is_laid_one_by_one)
 TEST(lanes_do_not_know_each_other)
 {
     uint64_t seed = 21;
-    tl_narrow alone = {0}, together = {0};
+    tl_narrow_scratch alone = {0}, together = {0};
     for (int round = 0; round < 200; round++) {
         laid p[TL_LANES];
-        tl_patch_batch *batch = tl_batch_room(&together, false, STEEP);
+        tl_patch_batch *batch = tl_batch_begin(&together, false, STEEP);
         for (uint32_t i = 0; i < TL_LANES; i++) {
             p[i] = make(&seed, ANYHOW);
             add(batch, i, &p[i]);
         }
         tl_batch_lay(batch);
         for (uint32_t i = 0; i < TL_LANES; i++) {
-            tl_patch_batch *one = tl_batch_room(&alone, false, STEEP);
+            tl_patch_batch *one = tl_batch_begin(&alone, false, STEEP);
             add(one, 0, &p[i]);
             tl_batch_lay(one);
             CHECK_INT(one->laid[0], batch->laid[i]);
@@ -262,20 +262,20 @@ TEST(lanes_do_not_know_each_other)
             scene_pair_free(&p[i].pair);
         }
     }
-    tl_narrow_free(&alone);
-    tl_narrow_free(&together);
+    tl_narrow_scratch_free(&alone);
+    tl_narrow_scratch_free(&together);
 }
 
 /* A contact whose polygon has other features than before does not take it for the same. */
 TEST(other_features_have_other_keys)
 {
     uint64_t seed = 22;
-    tl_narrow room = {0};
+    tl_narrow_scratch scratch = {0};
     int changed = 0, stayed = 0;
     for (int round = 0; round < 2000; round++) {
         laid p = make(&seed, ANYHOW);
         if (lay_one(&p, false) > 0) {
-            const tl_patch_points *g = &p.pair.room.patch;
+            const tl_patch_points *g = &p.pair.scratch.patch;
             size_t count = g->count;
             uint32_t key[64];
             memcpy(key, g->key, (count < 64 ? count : 64) * sizeof *key);
@@ -283,7 +283,7 @@ TEST(other_features_have_other_keys)
             place(&p, p.pair.turn, tl_v3_add(p.pair.shift, way));
             bool same = lay_one(&p, false) > 0 && g->count == count &&
                         memcmp(g->key, key, count * sizeof *key) == 0;
-            tl_patch_batch *batch = tl_batch_room(&room, false, STEEP);
+            tl_patch_batch *batch = tl_batch_begin(&scratch, false, STEEP);
             add(batch, 0, &p);
             tl_batch_lay(batch);
             if (batch->laid[0] && !undecided(&p)) {
@@ -296,7 +296,7 @@ TEST(other_features_have_other_keys)
         scene_pair_free(&p.pair);
     }
     CHECK(changed > 100 && stayed > 100);
-    tl_narrow_free(&room);
+    tl_narrow_scratch_free(&scratch);
 }
 
 TEST_MAIN(RUN(batches_lay_what_is_laid_one_by_one), RUN(lanes_do_not_know_each_other),

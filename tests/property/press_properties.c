@@ -23,10 +23,10 @@ static tl_press press_of(scene *s)
     const tl_pair_view *view = scene_place(&s->pair);
     tl_region region;
     tl_press press;
-    CHECK(tl_region_find(view, s->margin * view->size, &s->pair.room, &region));
+    CHECK(tl_region_find(view, s->margin * view->size, &s->pair.scratch, &region));
     CHECK(tl_press_find(
         &(tl_press_query){view, &region, s->least, s->shift, region.flush ? region.flush_a : 0}, 1,
-        &s->pair.room, &press));
+        &s->pair.scratch, &press));
     return press;
 }
 
@@ -148,11 +148,11 @@ TEST(slopes_go_on_with_the_press)
         tl_region region;
         const tl_pair_view *view = scene_place(&s.pair);
         const tl_pair_pose from = place_of(&s);
-        CHECK(tl_region_find(view, s.margin * view->size, &s.pair.room, &region));
+        CHECK(tl_region_find(view, s.margin * view->size, &s.pair.scratch, &region));
         uint32_t shifted = region.flush ? region.flush_a : 0;
         if (at.area > 0) {
             CHECK(tl_press_slope_find(&(tl_press_query){view, &region, s.least, s.shift, shifted},
-                                      &at, &s.pair.room, &slope));
+                                      &at, &s.pair.scratch, &slope));
             CHECK(slope.known);
             nudge(&s, &at, 0.5 * TL_PRESS_NEAR, &seed);
             tl_press found = press_of(&s);
@@ -205,10 +205,10 @@ TEST(faces_left_out_do_not_matter)
         tl_region region;
         tl_press some, all;
         double margin = 0.01 * view->size;
-        CHECK(tl_region_find(view, margin, &s.pair.room, &region));
+        CHECK(tl_region_find(view, margin, &s.pair.scratch, &region));
         s.pair.shift = tl_v3_madd(s.pair.shift, margin, scene_direction(&seed));
         view = scene_place(&s.pair);
-        CHECK(tl_press_find(&(tl_press_query){.view = view, .region = &region}, 1, &s.pair.room,
+        CHECK(tl_press_find(&(tl_press_query){.view = view, .region = &region}, 1, &s.pair.scratch,
                             &some));
         s.margin = 1e3;
         all = press_of(&s);
@@ -251,7 +251,7 @@ TEST(faces_that_bounded_before_change_nothing)
         tl_region region;
         tl_press with, without;
         double left = (k % 2 ? 0.02 : 0.3) * view->size;
-        CHECK(tl_region_find(view, left, &s.pair.room, &region));
+        CHECK(tl_region_find(view, left, &s.pair.scratch, &region));
         for (double way = 0; left > 0; way = wander(&s, 0.2 * view->size, &seed), left -= way) {
             uint64_t before = mesh.bounding;
             const tl_field_mesh mesh_before = mesh;
@@ -262,12 +262,12 @@ TEST(faces_that_bounded_before_change_nothing)
             region.mesh = NULL;
             CHECK(
                 tl_press_find(&(tl_press_query){.view = view, .region = &region, .min_area = least},
-                              1, &s.pair.room, &without));
+                              1, &s.pair.scratch, &without));
             region.mesh = &mesh;
             forgotten += before && !tl_region_corners_agree(view, &region);
             CHECK(
                 tl_press_find(&(tl_press_query){.view = view, .region = &region, .min_area = least},
-                              1, &s.pair.room, &with));
+                              1, &s.pair.scratch, &with));
             /* a plate that sticks out on both sides as far is pressed by nothing, but for roundings */
             if (tl_v3_norm(without.force) < 1e-9 * without.energy / without.deepest)
                 continue;
@@ -326,12 +326,12 @@ TEST(faces_that_become_flush_are_found_in_an_old_list)
         tl_press some, all;
         const tl_pair_view *view = scene_place(&s.pair);
         s.margin = 0.005;
-        CHECK(tl_region_find(view, s.margin * view->size, &s.pair.room, &region));
+        CHECK(tl_region_find(view, s.margin * view->size, &s.pair.scratch, &region));
         s.pair.turn = swapped ? tl_q_conj(is) : is;
         s.pair.shift = swapped ? tl_q_rotate(tl_q_conj(is), up) : up;
         view = scene_place(&s.pair);
         tl_region_choose_flush(view, &region);
-        CHECK(tl_press_find(&(tl_press_query){.view = view, .region = &region}, 1, &s.pair.room,
+        CHECK(tl_press_find(&(tl_press_query){.view = view, .region = &region}, 1, &s.pair.scratch,
                             &some));
         all = press_of(&s);
         double force = tl_v3_norm(all.force);

@@ -47,7 +47,7 @@ static sums sums_of(const tl_surface *s, const tl_poly *a)
 static void integrate(const tl_pair_view *view, tl_field_sums *out)
 {
     static double number[4][512];
-    static tl_field_room room;
+    static tl_field_scratch scratch;
     tl_field_faces faces = {.a = view->a->face_count, .b = view->b->face_count};
     for (int k = 0; k < 3; k++)
         faces.n[k] = number[k];
@@ -62,8 +62,8 @@ static void integrate(const tl_pair_view *view, tl_field_sums *out)
         number[3][i] =
             of_b ? view->b->plane[f].offset + tl_v3_dot(n, view->shift) : view->a->plane[f].offset;
     }
-    CHECK(tl_field_integrate(&faces, &room, out));
-    tl_field_free(&room);
+    CHECK(tl_field_integrate(&faces, &scratch, out));
+    tl_field_free(&scratch);
 }
 
 static tl_poly *random_shape(uint64_t *seed)
@@ -90,7 +90,7 @@ TEST(field_polygons_are_those_that_are_integrated)
         tl_region region;
         tl_surface surface = {0};
         tl_field_sums field;
-        CHECK(tl_region_find(view, 0, &pair.room, &region));
+        CHECK(tl_region_find(view, 0, &pair.scratch, &region));
         CHECK(tl_surface_add_field(view, &region, &surface));
         sums found = sums_of(&surface, view->a);
         integrate(view, &field);
@@ -133,7 +133,7 @@ TEST(a_patch_has_the_area_of_its_points)
         for (uint32_t f = 0; f < view->b->face_count; f++)
             fb = view->normal_b[f].z < view->normal_b[fb].z ? f : fb;
         tl_touch_rule rule = {.reach = INFINITY};
-        double area = tl_patch_lay(view, fa, fb, &rule, &pair.room);
+        double area = tl_patch_lay(view, fa, fb, &rule, &pair.scratch);
         tl_surface surface = {0};
         CHECK(tl_surface_add_patch(view, fa, fb, &surface));
         sums found = sums_of(&surface, view->a);

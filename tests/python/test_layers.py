@@ -10,8 +10,8 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
-# Room of core -> rooms whose headers it may include (with quotes, relative to core/).
-ROOMS = {
+# Module of core -> modules whose headers it may include (with quotes, relative to core/).
+MAY_INCLUDE = {
     "base": {"base"},
     "geometry": {"base", "geometry"},
     "narrow": {"base", "geometry", "narrow"},
@@ -105,18 +105,18 @@ def includes(text):
 
 
 def check_core_includes(path, parts, text):
-    room = parts[1] if len(parts) > 2 else "main"
+    module = parts[1] if len(parts) > 2 else "main"
     for quoted, name in includes(text):
-        if name in LUA_HEADERS and room not in ("lua", "main"):
+        if name in LUA_HEADERS and module not in ("lua", "main"):
             yield f"includes {name}: only core/lua and core/main.c know Lua"
-        if quoted and room == "include":
+        if quoted and module == "include":
             yield f'includes "{name}": public headers include only <talus/...>'
         elif quoted:
-            target = name.split("/")[0] if "/" in name else room
-            allowed = {"lua"} if room == "main" else ROOMS.get(room, set())
-            if target not in allowed and not (room == "main" and "/" not in name):
-                yield f'room {room} includes "{name}": it may know {sorted(allowed)}'
-        elif room == "include" and name.startswith("talus/"):
+            target = name.split("/")[0] if "/" in name else module
+            allowed = {"lua"} if module == "main" else MAY_INCLUDE.get(module, set())
+            if target not in allowed and not (module == "main" and "/" not in name):
+                yield f'module {module} includes "{name}": it may know {sorted(allowed)}'
+        elif module == "include" and name.startswith("talus/"):
             if name[len("talus/"):] not in PUBLIC.get(path.name, set()):
                 yield f"public header {path.name} includes <{name}>"
 
@@ -188,11 +188,11 @@ def check_module_header(path, text):
             yield f"declares {name}, which {source.name} does not define"
 
 
-def room_graph(folder):
-    """Of the files of a room, a source and its header as one: which others each one needs.
+def module_graph(folder):
+    """Of the files of a module, a source and its header as one: which others each one needs.
 
     A source needs those whose functions it names. In MODULES so does a header, and both need those whose headers they
-    include; in other rooms a header may declare the functions of several sources."""
+    include; in other modules a header may declare the functions of several sources."""
     texts, defined = {}, {}
     for path in sorted(folder.glob("*.[ch]" if folder.name in MODULES else "*.c")):
         text = path.read_text(encoding="utf-8", errors="replace")
@@ -229,8 +229,8 @@ def circles(graph):
 
 def check_circles(root):
     for folder in sorted((root / "core").glob("*")):
-        if folder.name in ROOMS and folder.is_dir():
-            for circle in sorted(circles(room_graph(folder))):
+        if folder.name in MAY_INCLUDE and folder.is_dir():
+            for circle in sorted(circles(module_graph(folder))):
                 yield f"core/{folder.name}", f"files that need each other: {circle}"
 
 
@@ -278,20 +278,20 @@ def check_tree(root):
 
 # One bad sample for each rule, and a part of the sentence it must bring about.
 BAD = [
-    ("core/base/a.c", '#include "model/model.h"\n', "room base includes"),
-    ("core/geometry/a.c", '#include "model/model.h"\n', "room geometry includes"),
-    ("core/narrow/a.c", '#include "model/model.h"\n', "room narrow includes"),
-    ("core/model/a.c", '#include "detect/detect.h"\n', "room model includes"),
-    ("core/contact/a.c", '#include "detect/detect.h"\n', "room contact includes"),
-    ("core/detect/a.c", '#include "cycle/cycle.h"\n', "room detect includes"),
-    ("core/force/a.c", '#include "detect/detect.h"\n', "room force includes"),
-    ("core/query/a.c", '#include "cycle/cycle_room.h"\n', "room query includes"),
-    ("core/cycle/e.c", '#include "query/touching.h"\n', "room cycle includes"),
-    ("core/cycle/a.c", '#include "io/vtk_file.h"\n', "room cycle includes"),
-    ("core/io/a.c", '#include "plugin/loader.h"\n', "room io includes"),
-    ("core/plugin/a.c", '#include "cycle/cycle.h"\n', "room plugin includes"),
-    ("core/lua/a.c", '#include "model/model.h"\n', "room lua includes"),
-    ("core/main.c", '#include "model/model.h"\n', "room main includes"),
+    ("core/base/a.c", '#include "model/model.h"\n', "module base includes"),
+    ("core/geometry/a.c", '#include "model/model.h"\n', "module geometry includes"),
+    ("core/narrow/a.c", '#include "model/model.h"\n', "module narrow includes"),
+    ("core/model/a.c", '#include "detect/detect.h"\n', "module model includes"),
+    ("core/contact/a.c", '#include "detect/detect.h"\n', "module contact includes"),
+    ("core/detect/a.c", '#include "cycle/cycle.h"\n', "module detect includes"),
+    ("core/force/a.c", '#include "detect/detect.h"\n', "module force includes"),
+    ("core/query/a.c", '#include "cycle/cycle_data.h"\n', "module query includes"),
+    ("core/cycle/e.c", '#include "query/touching.h"\n', "module cycle includes"),
+    ("core/cycle/a.c", '#include "io/vtk_file.h"\n', "module cycle includes"),
+    ("core/io/a.c", '#include "plugin/loader.h"\n', "module io includes"),
+    ("core/plugin/a.c", '#include "cycle/cycle.h"\n', "module plugin includes"),
+    ("core/lua/a.c", '#include "model/model.h"\n', "module lua includes"),
+    ("core/main.c", '#include "model/model.h"\n', "module main includes"),
     ("core/io/b.c", "#include <lua.h>\n", "know Lua"),
     ("core/include/talus/plugin.h", "#include <talus/talus.h>\n", "public header plugin.h"),
     ("core/include/talus/talus.h", '#include "base/error.h"\n', "public headers include only"),

@@ -63,14 +63,14 @@ static size_t check_pairs(tl_model *m)
     return d->pair_count;
 }
 
-static void random_boxes(tl_model *m, uint64_t *seed, int count, double room, double decades)
+static void random_boxes(tl_model *m, uint64_t *seed, int count, double extent, double decades)
 {
     tl_stage stage;
     scene_ok(m, tl_stage_begin(m, &stage));
     for (int i = 0; i < count; i++) {
         double size = pow(10, scene_between(seed, -decades, 0));
-        tl_vec3 low = {scene_between(seed, 0, room), scene_between(seed, 0, room),
-                       scene_between(seed, 0, room)};
+        tl_vec3 low = {scene_between(seed, 0, extent), scene_between(seed, 0, extent),
+                       scene_between(seed, 0, extent)};
         tl_vec3 far = {size * scene_between(seed, 0.3, 1), size * scene_between(seed, 0.3, 1),
                        size * scene_between(seed, 0.3, 1)};
         scene_ok(m, tl_stage_add_box(&stage, low, tl_v3_add(low, far), 2000, "box"));
@@ -165,30 +165,31 @@ static bool as_found(const tl_model *m, uint32_t c, const tl_manifold *found)
 
 /* All pairs against the contacts there are, those that are far apart along some face left out; the band between the
  * tolerances of birth and death, too. */
-static void check_contacts(tl_model *m, tl_narrow *room, int *closed, int *lost, int *stale)
+static void check_contacts(tl_model *m, tl_narrow_scratch *scratch, int *closed, int *lost,
+                           int *stale)
 {
     const tl_manifold_before none = {.facet = {.kind = TL_FACET_PATCH}};
     for (uint32_t a = 0; a < MOVING; a++)
         for (uint32_t b = a + 1; b < MOVING; b++) {
             tl_pair_view view = tl_pair_view_of(m, a, b);
-            if (!tl_pair_place(&view, room))
+            if (!tl_pair_place(&view, scratch))
                 exit(1);
             double tolerance = TL_CONTACT_TOLERANCE * view.size;
             uint32_t c = scene_contact(m, a, b);
             tl_region region;
-            if (!tl_region_find(&view, TL_LIST_MARGIN * view.size, room, &region))
+            if (!tl_region_find(&view, TL_LIST_MARGIN * view.size, scratch, &region))
                 exit(1);
             double apart = region.gap > 2 * tolerance ? region.gap : (double)brute_force(&view).s;
             *stale += c != TL_NO_ROW && apart > 1.501 * tolerance;
             if (apart > 0.99 * tolerance)
                 continue;
             tl_touch_rule rule = {.reach = TL_CONTACT_RELEASE * tolerance};
-            if (!tl_manifold_find(&view, &region, &rule, &none, room))
+            if (!tl_manifold_find(&view, &region, &rule, &none, scratch))
                 exit(1);
             *closed += apart < 0;
-            *lost += c == TL_NO_ROW && room->manifold.point_count > 0;
-            *lost += apart < 0 && room->manifold.point_count == 0;
-            *stale += c != TL_NO_ROW && !as_found(m, c, &room->manifold);
+            *lost += c == TL_NO_ROW && scratch->manifold.point_count > 0;
+            *lost += apart < 0 && scratch->manifold.point_count == 0;
+            *stale += c != TL_NO_ROW && !as_found(m, c, &scratch->manifold);
         }
 }
 
@@ -197,7 +198,7 @@ static void move_about(int64_t threads, double most_step, int steps, int *closed
 {
     tl_model *m = scene_model(threads);
     uint64_t seed = 21;
-    tl_narrow room = {0};
+    tl_narrow_scratch scratch = {0};
     for (int i = 0; i < MOVING; i++) {
         tl_poly *p = i % 3 ? scene_random_hull(&seed, 10, tl_v3(0.5, 0.5, 0.5))
                            : scene_box_shape(1, 0.2 + 0.025 * i, 0.7);
@@ -226,9 +227,9 @@ static void move_about(int64_t threads, double most_step, int steps, int *closed
         }
         scene_forces(m);
         if (step % 50 == 0)
-            check_contacts(m, &room, closed, lost, stale);
+            check_contacts(m, &scratch, closed, lost, stale);
     }
-    tl_narrow_free(&room);
+    tl_narrow_scratch_free(&scratch);
     tl_model_destroy(m);
 }
 

@@ -49,7 +49,7 @@ static tl_model *random_pair(uint64_t seed, bool swapped, tl_quat turn, tl_vec3 
         scene_block(m, p.a, turn, shift);
         scene_block(m, p.b, second, there);
     }
-    tl_narrow_free(&p.room);
+    tl_narrow_scratch_free(&p.scratch);
     scene_law(m, "coulomb", KN, KN, 30);
     scene_forces(m);
     return m;

@@ -108,9 +108,9 @@ static tl_manifold *build_by(scene_pair *p, const tl_touch_rule *rule)
     const tl_manifold_before none = {.facet = {.kind = TL_FACET_PATCH}};
     const tl_pair_view *view = scene_place(p);
     tl_region region;
-    CHECK(tl_region_find(view, TL_LIST_MARGIN * view->size, &p->room, &region));
-    CHECK(tl_manifold_find(view, &region, rule, &none, &p->room));
-    return &p->room.manifold;
+    CHECK(tl_region_find(view, TL_LIST_MARGIN * view->size, &p->scratch, &region));
+    CHECK(tl_manifold_find(view, &region, rule, &none, &p->scratch));
+    return &p->scratch.manifold;
 }
 
 /* Builds the manifold of B standing on A, both prisms along z of height 1. */
@@ -434,9 +434,9 @@ TEST(what_presses_beyond_a_blunt_edge_counts)
         double found = patch ? o * point_moments(m).area : 2 * tl_v3_norm(m->press.force);
         tl_region region;
         tl_press all;
-        CHECK(tl_region_find(&p.view, TL_LIST_MARGIN * p.view.size, &p.room, &region));
-        CHECK(
-            tl_press_find(&(tl_press_query){.view = &p.view, .region = &region}, 1, &p.room, &all));
+        CHECK(tl_region_find(&p.view, TL_LIST_MARGIN * p.view.size, &p.scratch, &region));
+        CHECK(tl_press_find(&(tl_press_query){.view = &p.view, .region = &region}, 1, &p.scratch,
+                            &all));
         CHECK_REL(found, 2 * tl_v3_norm(all.force), 1e-3);
         patches += patch;
         scene_pair_free(&p);

@@ -215,7 +215,7 @@ TEST(hulls_press_by_the_slope_of_what_they_store)
                                      tl_v3_scale(1.2, scene_direction(&seed)));
         double depth = pow(10, scene_between(&seed, -4, -1));
         place at = pressed(&p, depth);
-        tl_narrow_free(&p.room);
+        tl_narrow_scratch_free(&p.scratch);
         rig r = rig_of(shape[0], shape[1], s % 2, s % 3 ? 0 : 0.01);
         double off = worst_slope(&r, at, depth, &worst);
         if (!CHECK(off < SLOPE))
@@ -367,7 +367,7 @@ TEST(hulls_at_random_do_not_jump)
         p.turn = tl_q_mul(scene_turn(scene_direction(&seed), 4 * degree), p.turn);
         p.shift = tl_v3_madd(p.shift, 0.1, scene_direction(&seed));
         w.to = pressed(&p, scene_between(&seed, 1e-3, 2e-2));
-        tl_narrow_free(&p.room);
+        tl_narrow_scratch_free(&p.scratch);
         rig r = rig_of(shape[0], shape[1], s % 2, s % 3 ? 0 : 0.01);
         uint32_t kinds;
         double jump = worst_jump(&r, &w, &kinds);

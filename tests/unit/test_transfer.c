@@ -79,16 +79,16 @@ static void load_points(tl_model *m, uint64_t *seed)
 
 static void transfer(tl_model *m, const tl_contact_point *points, size_t count)
 {
-    tl_narrow room = {0};
+    tl_narrow_scratch scratch = {0};
     const tl_detect *d = m->detect;
-    room.manifold.facet = d->contacts.facet[0];
-    room.manifold.points = malloc(count * sizeof *points);
-    memcpy(room.manifold.points, points, count * sizeof *points);
-    room.manifold.point_count = count;
-    CHECK(tl_contact_transfer(m, 0, &room, &d->lanes[0]));
-    free(room.manifold.points);
-    free(room.old);
-    free(room.value);
+    scratch.manifold.facet = d->contacts.facet[0];
+    scratch.manifold.points = malloc(count * sizeof *points);
+    memcpy(scratch.manifold.points, points, count * sizeof *points);
+    scratch.manifold.point_count = count;
+    CHECK(tl_contact_transfer(m, 0, &scratch, &d->lanes[0]));
+    free(scratch.manifold.points);
+    free(scratch.old);
+    free(scratch.value);
 }
 
 /* The contact's points as they are, and as a rule for another polygon of the same area and centroid: the

@@ -199,12 +199,12 @@ static tl_status read_file(const json_tree *t, char **text, size_t *count)
         return t->host->fail(t->host, TL_E_IO, "file '%.200s' cannot be opened: %s", t->file,
                              strerror(errno));
     tl_status status = TL_OK;
-    size_t room = 0;
+    size_t capacity = 0;
     while (status == TL_OK && !feof(stream)) {
-        if (*count + 1 >= room) {
-            room = room ? 2 * room : FIRST_BYTES;
-            bool large = room > MOST_BYTES;
-            char *more = large ? NULL : realloc(*text, room);
+        if (*count + 1 >= capacity) {
+            capacity = capacity ? 2 * capacity : FIRST_BYTES;
+            bool large = capacity > MOST_BYTES;
+            char *more = large ? NULL : realloc(*text, capacity);
             if (!more) {
                 status = t->host->fail(t->host, TL_E_MEMORY,
                                        large ? "file '%.200s' is too large"
@@ -214,7 +214,7 @@ static tl_status read_file(const json_tree *t, char **text, size_t *count)
             }
             *text = more;
         }
-        *count += fread(*text + *count, 1, room - 1 - *count, stream);
+        *count += fread(*text + *count, 1, capacity - 1 - *count, stream);
         if (ferror(stream))
             status = t->host->fail(t->host, TL_E_IO, "file '%.200s' cannot be read: %s", t->file,
                                    strerror(errno));

@@ -149,8 +149,8 @@ TL_IN_LOOP void move(const coulomb *law, const tl_law_batch *batch, uint32_t beg
             double strength = cohesion * c.area[i] + total * tangent;
             double yield = stiffness + kn * c.area[i] * dilation * tangent;
             double grown = dilation * (trial - strength) / (yield > 0 ? yield : 1);
-            double room = most_opening > opened ? most_opening - opened : 0;
-            grown = grown < room ? grown : room;
+            double headroom = most_opening > opened ? most_opening - opened : 0;
+            grown = grown < headroom ? grown : headroom;
             grown = total < 0 ? 0 : grown;
             lift = trial > strength * (1 + ROUNDING) ? grown : 0;
             opened = opened + lift;

@@ -146,8 +146,8 @@ TL_IN_LOOP void move(const bonded *law, const tl_law_batch *batch, uint32_t begi
             double strong = cohesion * c.area[i] + total * tangent;
             double yield = stiffness + kn * c.area[i] * dilation * tangent;
             double grown = dilation * (trial - strong) / (yield > 0 ? yield : 1);
-            double room = most_opening > opened ? most_opening - opened : 0;
-            grown = grown < room ? grown : room;
+            double headroom = most_opening > opened ? most_opening - opened : 0;
+            grown = grown < headroom ? grown : headroom;
             grown = total < 0 ? 0 : grown;
             lift = trial > strong * (1 + ROUNDING) ? grown : 0;
             opened = opened + lift;

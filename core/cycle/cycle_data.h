@@ -1,6 +1,6 @@
-/* cycle_room.h - the phases of a step, and what they keep between them. cycle.c puts them in order. */
-#ifndef TL_CYCLE_CYCLE_ROOM_H
-#define TL_CYCLE_CYCLE_ROOM_H
+/* cycle_data.h - the phases of a step, and what they keep between them. cycle.c puts them in order. */
+#ifndef TL_CYCLE_CYCLE_DATA_H
+#define TL_CYCLE_CYCLE_DATA_H
 
 #include "base/failure.h"
 #include "base/inline.h"

@@ -1,5 +1,5 @@
-/* cycle_room.c - what the phases of a step keep between them: made, given room for the bodies, and let go of. */
-#include "cycle/cycle_room.h"
+/* cycle_data.c - what the phases of a step keep between them: made, given room for the bodies, and let go of. */
+#include "cycle/cycle_data.h"
 
 #include "contact/detection.h"
 

@@ -1,11 +1,11 @@
-/* room.c - the memory that the geometry of a pair works in. */
-#include "narrow/room.h"
+/* scratch.c - the memory that the geometry of a pair works in. */
+#include "narrow/scratch.h"
 
 #include "narrow/polygon.h"
 
 #include <stdlib.h>
 
-void tl_narrow_free(tl_narrow *n)
+void tl_narrow_scratch_free(tl_narrow_scratch *n)
 {
     free(n->vertex_b);
     free(n->normal_b);
