@@ -51,8 +51,8 @@ void tl_contacts_init(tl_contacts *c, tl_points_table *p)
     TL_COLUMN(t, c, released, TL_COLUMN_STEP);
     TL_COLUMN(t, c, force, TL_COLUMN_STEP);
     TL_COLUMN(t, c, moment, TL_COLUMN_STEP);
-    TL_COLUMN(t, c, across, TL_COLUMN_STATE | TL_COLUMN_STEP);
-    TL_COLUMN(t, c, fresh, TL_COLUMN_STEP);
+    TL_COLUMN(t, c, holds_over_gap, TL_COLUMN_STATE | TL_COLUMN_STEP);
+    TL_COLUMN(t, c, new_points, TL_COLUMN_STEP);
     TL_COLUMN(t, c, pending, 0);
     TL_COLUMN(t, c, deep, 0);
     TL_COLUMN(t, c, held, 0);

@@ -17,11 +17,11 @@ typedef struct tl_detect {
     size_t pair_count, pair_capacity;
     tl_pair_chunk *chunks;
     size_t chunk_capacity;
-    bool listed;        /* pairs have been listed */
-    bool rows_changed;  /* since contacts were laid out */
-    bool bare;          /* there may be contacts without room for points */
-    double reach;       /* half the skin of the broad phase */
-    double *odometer_0; /* of each body, when the broad phase was made */
+    bool listed;           /* pairs have been listed */
+    bool rows_changed;     /* since contacts were laid out */
+    bool any_without_rows; /* there may be contacts without rows for points */
+    double reach;          /* half the skin of the broad phase */
+    double *odometer_0;    /* of each body, when the broad phase was made */
     size_t odometer_capacity;
     tl_known_block *
         known_blocks; /* of each row of blocks, at the last update: finds the block again after rows have changed */

@@ -104,9 +104,9 @@ bool tl_contacts_index(tl_model *m)
     else if (!list_new(d, blocks))
         return false;
     d->indexed = (uint32_t)c->table.rows;
-    d->bare = false;
+    d->any_without_rows = false;
     for (size_t row = 0; row < c->table.rows; row++)
-        d->bare = d->bare || c->point_capacity[row] == 0;
+        d->any_without_rows = d->any_without_rows || c->point_capacity[row] == 0;
     return true;
 }
 

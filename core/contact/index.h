@@ -5,7 +5,7 @@
 #include "contact/detection.h"
 #include "model/model.h"
 
-/* Lists the contacts of each block, and notes whether some are bare; after contacts have come, gone or been given
+/* Lists the contacts of each block, and notes whether some have no rows for points; after contacts have come, gone or been given
  * room. false when out of memory. */
 bool tl_contacts_index(tl_model *m);
 /* Contacts have gone, or rows of contacts or blocks have changed: all are to be listed anew. */

@@ -14,6 +14,6 @@ static inline double tl_pair_odometer(const tl_model *m, uint32_t a, uint32_t b)
 }
 /* How a pair of a joint is to touch; pairs that carry a force across a gap keep all their points. */
 tl_touch_rule tl_touch_rule_of(const tl_model *m, const tl_pair_view *view, tl_tag tag,
-                               bool across);
+                               bool holds_over_gap);
 
 #endif

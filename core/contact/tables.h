@@ -28,11 +28,11 @@ typedef struct tl_contacts {
     tl_vec3 *moment;  /* of the forces on B, about A's body's centroid */
     /* some point carried a force across a gap in the last step: a bond in tension, or an initial stress not yet
      * relieved. Such a contact ends only with that force */
-    uint8_t *across;
-    uint8_t *fresh;   /* its points were placed in this step */
-    uint8_t *pending; /* what the parallel phase leaves to the serial one: TL_PENDING_* */
-    uint8_t *held;    /* both its bodies are held still: held.c */
-    uint8_t *deep;    /* its blocks overlap too deeply: TL_DEEP_*, overlap.c */
+    uint8_t *holds_over_gap;
+    uint8_t *new_points; /* its points were placed in this step */
+    uint8_t *pending;    /* what the parallel phase leaves to the serial one: TL_PENDING_* */
+    uint8_t *held;       /* both its bodies are held still: held.c */
+    uint8_t *deep;       /* its blocks overlap too deeply: TL_DEEP_*, overlap.c */
 } tl_contacts;
 
 /* Faces that a field contact remembers; of one with more the faces are listed in every step. */

@@ -33,7 +33,7 @@ static void walk_contacts(tl_detect *d, const tl_walk *walk)
 {
     VALUE(STATE, next_contact);
     FLAG(CACHE, rows_changed);
-    FLAG(CACHE, bare);
+    FLAG(CACHE, any_without_rows);
     TABLE(STATE, contacts, contacts);
     VALUE(STATE, points.state_columns);
     FLAG(STATE, points.initial);

@@ -385,18 +385,18 @@ static void rate_range(void *user, size_t begin, size_t end, size_t chunk, unsig
 }
 
 /* Notes the bodies whose contacts have other points than in the step before; true when there are any. */
-static bool touch_fresh(tl_model *m)
+static bool touch_new_points(tl_model *m)
 {
     tl_detect *d = m->detect;
     tl_contacts *c = &d->contacts;
     bool any = false;
     for (size_t i = 0; i < c->table.rows; i++) {
-        if (!c->fresh[i])
+        if (!c->new_points[i])
             continue;
         d->touched[m->blocks.body[c->a[i]]] = true;
         d->touched[m->blocks.body[c->b[i]]] = true;
         any = true;
-        c->fresh[i] = c->point_count[i] > 0; /* without points the laws will not see it */
+        c->new_points[i] = c->point_count[i] > 0; /* without points the laws will not see it */
     }
     return any;
 }
@@ -413,7 +413,7 @@ tl_row_value tl_rates_keep(tl_model *m)
     bool all = now.version != c->stiffness_rates.version ||
                now.recheck != c->stiffness_rates.recheck ||
                now.rotation != c->stiffness_rates.rotation;
-    bool some = tl_rates_points(m) && !m->mass_scaling && touch_fresh(m);
+    bool some = tl_rates_points(m) && !m->mass_scaling && touch_new_points(m);
     if (all || some || d->any_touched) {
         rate_search s = {.search.m = m, .stiffest = tl_stiffest_law(m), .kept = true, .all = all};
         tl_row_value found =

@@ -100,7 +100,7 @@ static void update_contacts(tl_model *m)
         tl_parallel_for(m->pool, span->group_end - span->group_begin, GROUP_CHUNK, update_groups,
                         &job);
     }
-    if (m->detect->bare)
+    if (m->detect->any_without_rows)
         tl_parallel_for(m->pool, m->detect->contacts.table.rows, CONTACT_CHUNK, update_others, m);
 }
 
@@ -275,7 +275,7 @@ static tl_status settle(tl_model *m)
         return status;
     if (born == 0 && !d->rows_changed && !some_pending(c))
         return TL_OK;
-    d->bare = true; /* until they are listed anew */
+    d->any_without_rows = true; /* until they are listed anew */
     for (bool more = true; more && status == TL_OK;) {
         if (!settle_rows(m))
             status = tl_contacts_repack(m);

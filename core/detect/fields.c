@@ -48,7 +48,7 @@ tl_manifold_before tl_contact_before(const tl_model *m, uint32_t c, bool reframe
     const tl_press_row *row = tl_press_row_of(m, c);
     tl_manifold_before out = {.facet = contacts->facet[c]};
     bool patch = out.facet.kind == TL_FACET_PATCH && contacts->point_count[c] > 0;
-    out.holds = patch && (reframed || contacts->across[c] || may_hold(m, c));
+    out.holds = patch && (reframed || contacts->holds_over_gap[c] || may_hold(m, c));
     if (row) {
         out.calm = !reframed && is_calm(m, c, row);
         out.shift = row->shift;

@@ -25,7 +25,8 @@ static bool add_to_batch(tl_model *m, uint32_t c, uint32_t lane, tl_patch_batch 
         return false;
     double size = m->blocks.size[a] < m->blocks.size[b] ? m->blocks.size[a] : m->blocks.size[b];
     tl_batch_add(batch, lane, m->blocks.shape[a], f->ia, m->blocks.shape[b], f->ib, size,
-                 contacts->across[c] ? INFINITY : TL_CONTACT_TOLERANCE * TL_CONTACT_RELEASE * size);
+                 contacts->holds_over_gap[c] ? INFINITY
+                                             : TL_CONTACT_TOLERANCE * TL_CONTACT_RELEASE * size);
     uint32_t body_a = m->blocks.body[a], body_b = m->blocks.body[b];
     tl_batch_between(batch, lane, &m->bodies.pose[body_a].r, &m->bodies.pose[body_b].r,
                      tl_body_apart(&m->bodies, body_a, body_b));
@@ -135,7 +136,7 @@ static void note_patch(tl_model *m, uint32_t c, double area)
 {
     tl_contacts *contacts = &m->detect->contacts;
     contacts->area[c] = area;
-    contacts->fresh[c] = true;
+    contacts->new_points[c] = true;
     tl_contact_allow_reuse(m, c);
 }
 

@@ -172,7 +172,7 @@ static void note_manifold(tl_contacts *contacts, uint32_t c, const tl_manifold *
     for (size_t k = 0; k < g->point_count && (k == 0 || !field); k++)
         area += g->points[k].area;
     contacts->area[c] = area;
-    contacts->fresh[c] = true;
+    contacts->new_points[c] = true;
 }
 
 /* Asks for room for a manifold, or for a place in another span, unless the contact has them. */
@@ -180,9 +180,9 @@ static bool wants_place(tl_detect *d, uint32_t c, const tl_manifold *g, bool ref
 {
     tl_contacts *contacts = &d->contacts;
     bool field = g->facet.kind == TL_FACET_FIELD;
-    bool bare =
+    bool lacks_press =
         field && contacts->press[c] == TL_NO_ROW; /* it has not got the room for its press yet */
-    bool moves = g->point_count > 0 && (contacts->field[c] != field || bare);
+    bool moves = g->point_count > 0 && (contacts->field[c] != field || lacks_press);
     if (!moves && g->point_count <= contacts->point_capacity[c])
         return false;
     contacts->field[c] = field;
@@ -326,7 +326,7 @@ static bool renew_patch(tl_model *m, uint32_t c, unsigned thread)
     if (!tl_contact_is_patch(m, c))
         return false;
     tl_pair_view view = tl_pair_view_of(m, contacts->a[c], contacts->b[c]);
-    tl_touch_rule rule = tl_touch_rule_of(m, &view, contacts->tag[c], contacts->across[c]);
+    tl_touch_rule rule = tl_touch_rule_of(m, &view, contacts->tag[c], contacts->holds_over_gap[c]);
     scratch->manifold.failed = !tl_pair_place_face(&view, f->ib, scratch);
     if (scratch->manifold.failed || !(tl_patch_add(&view, f->ia, f->ib, &rule, scratch) > 0))
         return false;
@@ -334,7 +334,7 @@ static bool renew_patch(tl_model *m, uint32_t c, unsigned thread)
     size_t begin = contacts->point_start[c];
     if (g->count == contacts->point_count[c] && same_keys(&m->detect->points, begin, g)) {
         refit_patch(m, c, g);
-        contacts->fresh[c] = true;
+        contacts->new_points[c] = true;
         return true;
     }
     if (rule.min_area > 0) /* it may be too small for a patch now */

@@ -79,7 +79,7 @@ static bool call_law(const span_job *job, size_t first, size_t count, const tl_p
  * their springs and slip. */
 typedef struct group_sums {
     double force[3][TL_LANES], moment[3][TL_LANES], stored[TL_LANES], dissipated[TL_LANES];
-    double across[TL_LANES]; /* above 0 when a force acts across a gap */
+    double holds_over_gap[TL_LANES]; /* above 0 when a force acts across a gap */
     double odd
         [TL_LANES]; /* 0, NaN when the force or moment is not finite, 1 when shear forces may leave their planes */
 } group_sums;
@@ -109,7 +109,7 @@ TL_VECTORIZED static void sum_points(const tl_points_table *p, const tl_point_la
             s.moment[1][l] += z[i] * gx - x[i] * gz;
             s.moment[2][l] += x[i] * gy - y[i] * gx;
             double push = closure[i] + reference[i] < 0 ? f_n[i] : 0;
-            s.across[l] += f_n[i] < 0 ? -f_n[i] : push;
+            s.holds_over_gap[l] += f_n[i] < 0 ? -f_n[i] : push;
             s.stored[l] += stored[i];
             s.dissipated[l] += heat[i];
         }
@@ -159,7 +159,7 @@ TL_VECTORIZED static double odd_states(const tl_points_table *p, uint32_t column
     return sum;
 }
 
-static double across(const double *lane)
+static double sum_over_lanes(const double *lane)
 {
     return ((lane[0] + lane[1]) + (lane[2] + lane[3])) +
            ((lane[4] + lane[5]) + (lane[6] + lane[7]));
@@ -254,14 +254,14 @@ static void sum_group(const span_job *job, const tl_simd_group *group, const tl_
         if (job->changed && contacts->released[c] != 0) /* heat of this step only */
             atomic_store_explicit(job->changed, true, memory_order_relaxed);
         contacts->released[c] = 0;
-        contacts->across[c] = sum.across[l] > 0;
+        contacts->holds_over_gap[c] = sum.holds_over_gap[l] > 0;
         tl_vec3 force = tl_v3(sum.force[0][l], sum.force[1][l], sum.force[2][l]);
         if (tl_v3_is_zero(contacts->force[c]) && !tl_v3_is_zero(force))
             begins |= 1u << l;
         contacts->force[c] = force;
         contacts->moment[c] = tl_v3(sum.moment[0][l], sum.moment[1][l], sum.moment[2][l]);
     }
-    if (across(sum.odd) != 0)
+    if (sum_over_lanes(sum.odd) != 0)
         report_odd(job, group, &sum, t, lane);
     if (begins) {
         tl_law_check_shear(m, job->phase->failure, job->law, group, t, lane);

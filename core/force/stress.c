@@ -56,7 +56,7 @@ void tl_insitu_load(tl_model *m, const tl_insitu *s, uint32_t c)
     const tl_point_lanes *lanes = &m->detect->lanes[0];
     double centroid_z = m->origin.z + tl_body_place(&m->bodies, m->blocks.body[contacts->a[c]]).z;
     tl_contact_places(m, c, lanes);
-    m->detect->contacts.across[c] = true; /* perhaps: the next step tells */
+    m->detect->contacts.holds_over_gap[c] = true; /* perhaps: the next step tells */
     if (contacts->facet[c].kind != TL_FACET_PATCH || !faces_meet(m, c))
         return;
     for (size_t i = 0; i < contacts->point_count[c]; i++)

@@ -37,7 +37,7 @@ static void check_lists(const tl_model *m)
         }
     }
     CHECK_INT(wrong, 0);
-    CHECK_INT(d->bare, bare > 0);
+    CHECK_INT(d->any_without_rows, bare > 0);
     free(count);
 }
 
