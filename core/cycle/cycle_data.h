@@ -61,7 +61,7 @@ struct tl_added {
 /* Bodies that can move, on their way through a step: the kick, which changes velocities, and the drift,
  * which changes places. The lanes beyond `count` are inert. Spins and angular momenta are in principal axes
  * at the forces' time, or where there is one moment of inertia in the model's: only their products count. */
-typedef struct tl_group {
+typedef struct tl_body_group {
     _Alignas(TL_ALIGN) tl_lanes4 q, axes;
     tl_lanes3 moments, per; /* per: 1 / moments */
     double mass[TL_LANES], alpha[TL_LANES];
@@ -79,7 +79,7 @@ typedef struct tl_group {
     double reach[TL_LANES];                        /* of the turn: see turn.h */
     uint32_t body[TL_LANES];
     unsigned count;
-} tl_group;
+} tl_body_group;
 
 /* Energies of a chunk of bodies, summed lane by lane, lanes last. */
 typedef enum tl_work_kind {
@@ -287,7 +287,7 @@ size_t tl_ledger_size(void);
 bool tl_ledger_is_sound(const struct tl_ledger *ledger);
 /* The energy ledger: the move books what its bodies have and what is done to them, chunk by chunk, ... */
 tl_status tl_energy_prepare(tl_model *m, size_t chunks);
-void tl_energy_book(const tl_model *m, const tl_group *g, tl_work *work);
+void tl_energy_book(const tl_model *m, const tl_body_group *g, tl_work *work);
 void tl_energy_book_held(const tl_model *m, uint32_t body, tl_vec3 moved, tl_vec3 turned,
                          tl_work *work);
 void tl_energy_chunk(tl_model *m, size_t chunk, const tl_work *work);

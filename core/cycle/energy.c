@@ -60,7 +60,7 @@ tl_status tl_energy_prepare(tl_model *m, size_t chunks)
 }
 
 /* What a force and a moment on a body do, each in the half step before and the one after. */
-TL_INLINE void book(tl_work *work, size_t i, int kind, const tl_group *g, tl_vec3 force,
+TL_INLINE void book(tl_work *work, size_t i, int kind, const tl_body_group *g, tl_vec3 force,
                     tl_vec3 moment)
 {
     work->work_until[kind][i] += work->until * (tl_v3_dot(force, tl_lanes3_get(&g->moved, i)) +
@@ -71,7 +71,7 @@ TL_INLINE void book(tl_work *work, size_t i, int kind, const tl_group *g, tl_vec
 
 /* Kinetic energies. With v- and v+ the mean at the forces' time is v- + s (v+ - v-), s the share of the
  * step before in both half steps; what two unequal halves spread about it is taken out. */
-TL_INLINE void book_kinetic(tl_work *work, size_t i, const tl_group *g, double share)
+TL_INLINE void book_kinetic(tl_work *work, size_t i, const tl_body_group *g, double share)
 {
     double scale = g->energy_scale[i], mass = scale * g->mass[i], spread = share * (1 - share);
     tl_vec3 v0 = tl_lanes3_get(&g->v0, i), v1 = tl_lanes3_get(&g->v1, i), dv = tl_v3_sub(v1, v0);
@@ -95,7 +95,7 @@ TL_INLINE void book_kinetic(tl_work *work, size_t i, const tl_group *g, double s
 
 /* (23) takes out alpha m (v- + v+) / 2 over the kick, m as mass scaling makes it, besides what the damping's force
  * does. */
-TL_INLINE void book_damping(tl_work *work, size_t i, const tl_group *g)
+TL_INLINE void book_damping(tl_work *work, size_t i, const tl_body_group *g)
 {
     double alpha = 0.5 * g->alpha[i] * g->scale[i], turning = 0.5 * g->alpha[i] * g->turn_scale[i];
     tl_vec3 slowed = tl_v3_add(tl_lanes3_get(&g->v0, i), tl_lanes3_get(&g->v1, i));
@@ -116,7 +116,7 @@ static tl_vec3 load_moment(const tl_bodies *b, uint32_t body)
 }
 
 /* The work of loads, and of what holds some components of a body's motion at a velocity. */
-static void book_load(tl_work *work, size_t i, const tl_group *g, const tl_model *m)
+static void book_load(tl_work *work, size_t i, const tl_body_group *g, const tl_model *m)
 {
     const tl_bodies *b = &m->bodies;
     uint32_t body = g->body[i];
@@ -136,7 +136,7 @@ static void book_load(tl_work *work, size_t i, const tl_group *g, const tl_model
          fixed & TL_FIX_ROTATION ? tl_v3_neg(moment) : tl_v3(0, 0, 0));
 }
 
-TL_VECTORIZED static void book_lanes(tl_work *restrict work, const tl_group *restrict g,
+TL_VECTORIZED static void book_lanes(tl_work *restrict work, const tl_body_group *restrict g,
                                      tl_vec3 gravity, bool damped)
 {
     double share = work->until / (work->until + work->after);
@@ -148,7 +148,7 @@ TL_VECTORIZED static void book_lanes(tl_work *restrict work, const tl_group *res
         book_damping(work, i, g);
 }
 
-void tl_energy_book(const tl_model *m, const tl_group *g, tl_work *work)
+void tl_energy_book(const tl_model *m, const tl_body_group *g, tl_work *work)
 {
     book_lanes(work, g, m->config.gravity, m->damping != NULL);
     for (size_t i = 0; i < g->count; i++)

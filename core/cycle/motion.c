@@ -40,7 +40,7 @@ TL_INLINE tl_mat3 attitude_of(tl_quat q, tl_quat axes)
 }
 
 /* The velocity by (23). */
-TL_INLINE void kick_lane(tl_group *g, size_t i, double kick)
+TL_INLINE void kick_lane(tl_body_group *g, size_t i, double kick)
 {
     double per_mass =
         kick / (g->mass[i] * g->scale[i]); /* mass scaling: less motion for the same force */
@@ -49,14 +49,14 @@ TL_INLINE void kick_lane(tl_group *g, size_t i, double kick)
     tl_lanes3_put(&g->v1, i, tl_kick(v0, force, per_mass, g->alpha[i], kick));
 }
 
-TL_INLINE double speed_of(const tl_group *g, size_t i)
+TL_INLINE double speed_of(const tl_body_group *g, size_t i)
 {
     return tl_v3_norm(tl_lanes3_get(&g->v1, i)) +
            tl_v3_norm(tl_lanes3_get(&g->w2, i)) * g->radius[i];
 }
 
 /* Exact rotation: the kick of the angular momentum, in principal axes. */
-TL_INLINE void kick_spin(tl_group *g, size_t i, double kick)
+TL_INLINE void kick_spin(tl_body_group *g, size_t i, double kick)
 {
     tl_vec3 moments = tl_lanes3_get(&g->moments, i);
     tl_vec3 moment = tl_v3_add(tl_lanes3_get(&g->moment, i), tl_lanes3_get(&g->damping_moment, i));
@@ -76,7 +76,7 @@ TL_INLINE void kick_spin(tl_group *g, size_t i, double kick)
 }
 
 /* The drift. */
-TL_INLINE void turn_freely(tl_group *g, size_t i, double drift, bool series)
+TL_INLINE void turn_freely(tl_body_group *g, size_t i, double drift, bool series)
 {
     tl_free_turn free =
         tl_turn_freely(tl_lanes3_get(&g->momentum1, i), tl_lanes3_get(&g->per, i), drift, series);
@@ -86,7 +86,7 @@ TL_INLINE void turn_freely(tl_group *g, size_t i, double drift, bool series)
 }
 
 /* The same turn in the body's frame, exactly none when nothing turned, and what spins in the new attitude. */
-TL_INLINE void put_attitude(tl_group *g, size_t i, double drift, bool series)
+TL_INLINE void put_attitude(tl_body_group *g, size_t i, double drift, bool series)
 {
     tl_quat axes = tl_lanes4_get(&g->axes, i), made = tl_lanes4_get(&g->made, i);
     tl_vec3 moments = tl_lanes3_get(&g->moments, i), l2 = tl_lanes3_get(&g->momentum2, i);
@@ -108,7 +108,8 @@ TL_INLINE void put_attitude(tl_group *g, size_t i, double drift, bool series)
 
 /* Kicks and turns groups of bodies by the exact rule. Stage by stage: what follows from each other in one group is worked
  * out while that of the next is under way. */
-TL_VECTORIZED static void advance_lanes(tl_group *groups, size_t count, double kick, double drift)
+TL_VECTORIZED static void advance_lanes(tl_body_group *groups, size_t count, double kick,
+                                        double drift)
 {
     for (size_t k = 0; k < count; k++)
         for (size_t i = 0; i < TL_LANES; i++) {
@@ -125,7 +126,7 @@ TL_VECTORIZED static void advance_lanes(tl_group *groups, size_t count, double k
 
 /* What the ledger needs of a body's spin before the kick and after it, in the attitude before, and after the
  * drift. The paper's rotation has one moment of inertia in all directions. */
-static void put_spins(tl_group *g, size_t i, bool paper)
+static void put_spins(tl_body_group *g, size_t i, bool paper)
 {
     tl_vec3 moments = tl_lanes3_get(&g->moments, i),
             spin[3] = {tl_lanes3_get(&g->w0, i), tl_lanes3_get(&g->w1, i),
@@ -147,7 +148,7 @@ static void put_spins(tl_group *g, size_t i, bool paper)
 }
 
 /* A body that turns about its angular velocity: by the paper's rule or, when its rotation is held, as it did. */
-static void turn_about(tl_group *g, size_t i, const move_job *job, bool paper, bool held)
+static void turn_about(tl_body_group *g, size_t i, const move_job *job, bool paper, bool held)
 {
     tl_vec3 w = tl_lanes3_get(&g->w0, i);
     if (!held) {
@@ -166,7 +167,7 @@ static void turn_about(tl_group *g, size_t i, const move_job *job, bool paper, b
 }
 
 /* The bodies of a group that the loop over its lanes does not do justice to. */
-static void mend_lanes(tl_group *g, const move_job *job)
+static void mend_lanes(tl_body_group *g, const move_job *job)
 {
     const tl_model *m = job->m;
     const double limit = TL_SERIES_HALF_ANGLE * TL_SERIES_HALF_ANGLE;
@@ -187,7 +188,7 @@ static void mend_lanes(tl_group *g, const move_job *job)
     }
 }
 
-static void load_lane(tl_group *g, size_t i, const tl_model *m)
+static void load_lane(tl_body_group *g, size_t i, const tl_model *m)
 {
     const tl_bodies *b = &m->bodies;
     const struct tl_cycle *c = m->cycle;
@@ -216,7 +217,7 @@ static void load_lane(tl_group *g, size_t i, const tl_model *m)
 }
 
 /* The same of bodies that are side by side from `first` on, without mass scaling. */
-TL_VECTORIZED static void load_row(tl_group *restrict g, const tl_model *m, size_t first)
+TL_VECTORIZED static void load_row(tl_body_group *restrict g, const tl_model *m, size_t first)
 {
     const tl_bodies *b = &m->bodies;
     const struct tl_cycle *c = m->cycle;
@@ -250,7 +251,7 @@ TL_VECTORIZED static void load_row(tl_group *restrict g, const tl_model *m, size
 }
 
 /* A lane without a body: one that rests, and to which nothing happens. */
-static void rest_lane(tl_group *g, size_t i)
+static void rest_lane(tl_body_group *g, size_t i)
 {
     const tl_vec3 none = {0, 0, 0};
     tl_lanes4_put(&g->q, i, tl_q_identity());
@@ -264,7 +265,7 @@ static void rest_lane(tl_group *g, size_t i)
     g->alpha[i] = 0;
 }
 
-TL_INLINE void store_pose(const tl_group *restrict g, size_t i, const tl_mat3 *r, double dt,
+TL_INLINE void store_pose(const tl_body_group *restrict g, size_t i, const tl_mat3 *r, double dt,
                           tl_pose *restrict pose)
 {
     pose->r = *r;
@@ -273,7 +274,7 @@ TL_INLINE void store_pose(const tl_group *restrict g, size_t i, const tl_mat3 *r
     pose->u = tl_v3_madd(pose->u, dt, pose->v_moved);
 }
 
-static void store_lane(const tl_group *g, size_t i, tl_bodies *b, double dt)
+static void store_lane(const tl_body_group *g, size_t i, tl_bodies *b, double dt)
 {
     uint32_t body = g->body[i];
     b->v[body] = tl_lanes3_get(&g->v1, i);
@@ -285,8 +286,8 @@ static void store_lane(const tl_group *g, size_t i, tl_bodies *b, double dt)
 }
 
 /* The same of bodies that are side by side. */
-TL_VECTORIZED static void store_row(const tl_group *restrict g, const tl_bodies *b, size_t first,
-                                    double dt)
+TL_VECTORIZED static void store_row(const tl_body_group *restrict g, const tl_bodies *b,
+                                    size_t first, double dt)
 {
     double *restrict odometer = b->odometer + first;
     tl_lanes9 r;
@@ -304,12 +305,12 @@ TL_VECTORIZED static void store_row(const tl_group *restrict g, const tl_bodies 
     }
 }
 
-static bool side_by_side(const tl_group *g)
+static bool side_by_side(const tl_body_group *g)
 {
     return g->count == TL_LANES && g->body[TL_LANES - 1] - g->body[0] == TL_LANES - 1;
 }
 
-static void load_group(tl_group *g, const tl_model *m)
+static void load_group(tl_body_group *g, const tl_model *m)
 {
     if (side_by_side(g) && !tl_inertia_scaled(m->cycle)) {
         load_row(g, m, g->body[0]);
@@ -321,7 +322,7 @@ static void load_group(tl_group *g, const tl_model *m)
         rest_lane(g, i);
 }
 
-static void store_group(const tl_group *g, const move_job *job)
+static void store_group(const tl_body_group *g, const move_job *job)
 {
     if (side_by_side(g)) {
         store_row(g, &job->m->bodies, g->body[0], job->drift);
@@ -361,14 +362,14 @@ static void move_range(void *user, size_t begin, size_t end, size_t chunk, unsig
     const move_job *job = user;
     tl_model *m = job->m;
     tl_work work = {.until = 0.5 * m->dt, .after = 0.5 * job->drift};
-    tl_group groups[TL_BODY_CHUNK / TL_LANES];
+    tl_body_group groups[TL_BODY_CHUNK / TL_LANES];
     size_t free = 0;
     for (uint32_t body = (uint32_t)begin; body < end; body++) {
         if (m->bodies.fixed[body] == TL_FIX_ALL) {
             carry_body(job, body, &work);
             continue;
         }
-        tl_group *g = &groups[free / TL_LANES];
+        tl_body_group *g = &groups[free / TL_LANES];
         g->body[free % TL_LANES] = body;
         g->count = 1 + (unsigned)(free++ % TL_LANES);
     }
