@@ -6,15 +6,15 @@
 
 /* B's body in the frame of A's: its centroid and its rotation, each to seven digits. */
 typedef struct tl_spot {
-    float way[3], turn[4];
+    float centroid[3], turn[4];
     /* of a contact: from here its blocks may move so far against each other, m, before its faces are to be chosen anew */
-    float left;
+    float remaining;
 } tl_spot;
 
 struct tl_model;
 /* Where the blocks are. */
-tl_spot tl_spot_of(const struct tl_model *m, uint32_t block_a, uint32_t block_b, double left);
-/* The same, on the way from another spot: its `left` is less by how far points have moved that lie within `radius`. */
+tl_spot tl_spot_of(const struct tl_model *m, uint32_t block_a, uint32_t block_b, double remaining);
+/* The same, on the way from another spot: its `remaining` is less by how far points have moved that lie within `radius`. */
 tl_spot tl_spot_on(const struct tl_model *m, const tl_spot *then, uint32_t block_a,
                    uint32_t block_b, double radius);
 /* How far points have moved since then that lie within `radius` of the centroid of B's body, at the most: what the rounding of

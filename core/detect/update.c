@@ -313,7 +313,7 @@ bool tl_contact_is_patch(tl_model *m, uint32_t c)
     uint32_t law = contacts->law[c];
     return contacts->facet[c].kind == TL_FACET_PATCH && contacts->point_count[c] > 0 &&
            law != TL_NO_ROW && !m->joint_laws[law].splits &&
-           is_valid(m, c, &contacts->faces_valid_to[c], (double)contacts->spot[c].left,
+           is_valid(m, c, &contacts->faces_valid_to[c], (double)contacts->spot[c].remaining,
                     faces_moved);
 }
 

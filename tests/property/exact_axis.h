@@ -124,14 +124,14 @@ SCENE_UNUSED static best_axis brute_force(const tl_pair_view *view)
 }
 
 /* The way along a direction until some axis parts the blocks. */
-typedef struct leaving {
+typedef struct exit_along {
     lvec way;
     real far;
-} leaving;
+} exit_along;
 
 static void leave_along(const exact *e, lvec n, void *user)
 {
-    leaving *out = user;
+    exit_along *out = user;
     real by = ldot(n, out->way) / sqrtl(ldot(n, n));
     if (by > 0)
         out->far = fminl(out->far, -separation(e, n) / by);
@@ -151,7 +151,7 @@ SCENE_UNUSED static void exact_press(scene_pair *p, double depth)
 /* How far B, which overlaps A, must go along a direction until they only touch. */
 SCENE_UNUSED static double exact_way_out(const tl_pair_view *view, tl_vec3 way)
 {
-    leaving out = {.way = lv(way), .far = INFINITY};
+    exit_along out = {.way = lv(way), .far = INFINITY};
     try_all(view, leave_along, &out);
     return (double)out.far;
 }

@@ -13,12 +13,12 @@
 /* Heights of corners over lines this near the snap distance, TL_MERGE times the size, may fall on either side. */
 #define UNDECIDED 1e-2
 
-typedef struct laid {
+typedef struct face_pair {
     scene_pair pair;
     uint32_t fa, fb;
     tl_mat3 r_a, r_b; /* of the bodies, in the model */
     tl_vec3 apart;
-} laid;
+} face_pair;
 
 enum { ALIGNED, TURNED, OFFSET, SLIVER, NEAR_EDGE, ANYHOW, KINDS };
 
@@ -38,7 +38,7 @@ static double small(uint64_t *seed, double a, double b)
 }
 
 /* The turn and shift of B in A's frame as the kernel has them, from places in the model. */
-static void settle(laid *p)
+static void settle(face_pair *p)
 {
     tl_pair_view *view = scene_place(&p->pair);
     for (int i = 0; i < 3; i++)
@@ -51,7 +51,7 @@ static void settle(laid *p)
 }
 
 /* B over A by turn and shift in A's frame, both turned in the model. */
-static void place(laid *p, tl_quat turn, tl_vec3 shift)
+static void place(face_pair *p, tl_quat turn, tl_vec3 shift)
 {
     tl_mat3 r = tl_q_matrix(turn);
     for (int i = 0; i < 3; i++)
@@ -64,7 +64,7 @@ static void place(laid *p, tl_quat turn, tl_vec3 shift)
     settle(p);
 }
 
-static laid make(uint64_t *seed, int kind)
+static face_pair make(uint64_t *seed, int kind)
 {
     size_t na = 3 + (size_t)(6 * check_random(seed)), nb = 3 + (size_t)(6 * check_random(seed));
     double ra = scene_between(seed, 0.5, 2), rb = scene_between(seed, 0.5, 2);
@@ -88,7 +88,7 @@ static laid make(uint64_t *seed, int kind)
         edge = phase + TL_PI / (double)na;
         x = far * cos(edge) + small(seed, 3, 9), y = far * sin(edge);
     }
-    laid p = {.r_a = tl_q_matrix(scene_any_turn(seed))};
+    face_pair p = {.r_a = tl_q_matrix(scene_any_turn(seed))};
     p.pair = scene_pair_of(scene_drum(na, ra, 1, phase),
                            scene_drum(nb, rb, 1, kind == ANYHOW || kind == NEAR_EDGE ? 0 : phase),
                            tl_q_identity(), tl_v3(0, 0, 0));
@@ -121,7 +121,7 @@ static bool hangs(const tl_vec3 *vertex, const uint16_t *loop, uint32_t count, u
 }
 
 /* Whether that is so of some corner. */
-static bool undecided(const laid *p)
+static bool undecided(const face_pair *p)
 {
     const tl_poly *poly[2] = {p->pair.a, p->pair.b};
     const tl_vec3 *vertex[2] = {p->pair.a->vertex, p->pair.view.vertex_b};
@@ -143,14 +143,14 @@ static bool undecided(const laid *p)
     return false;
 }
 
-static void add(tl_patch_batch *batch, uint32_t lane, const laid *p)
+static void add(tl_patch_batch *batch, uint32_t lane, const face_pair *p)
 {
     CHECK(tl_batch_takes(p->pair.a, p->fa, p->pair.b, p->fb));
     tl_batch_add(batch, lane, p->pair.a, p->fa, p->pair.b, p->fb, p->pair.view.size, 1.5e-3);
     tl_batch_between(batch, lane, &p->r_a, &p->r_b, p->apart);
 }
 
-static double lay_one(laid *p, bool corners)
+static double lay_one(face_pair *p, bool corners)
 {
     tl_touch_rule rule = {.corners = corners, .reach = 1.5e-3};
     return tl_patch_lay(&p->pair.view, p->fa, p->fb, &rule, &p->pair.scratch);
@@ -186,7 +186,7 @@ static void same_patch(const tl_patch_batch *batch, uint32_t lane, const tl_patc
 }
 
 /* Lays the pairs in one batch and one by one. Returns how many the batch has laid. */
-static int compare(laid *p, uint32_t count, bool corners, tl_narrow_scratch *scratch)
+static int compare(face_pair *p, uint32_t count, bool corners, tl_narrow_scratch *scratch)
 {
     int found = 0;
     tl_patch_batch *batch = tl_batch_begin(scratch, corners, STEEP);
@@ -212,7 +212,7 @@ TEST(batches_lay_what_is_laid_one_by_one)
     tl_narrow_scratch scratch = {0};
     int found[KINDS] = {0}, made[KINDS] = {0};
     for (int round = 0; round < 1500; round++) {
-        laid p[TL_LANES];
+        face_pair p[TL_LANES];
         int kind = round % KINDS;
         uint32_t count = round % 7 == 0 ? 1 + (uint32_t)(7 * check_random(&seed)) : TL_LANES;
         for (uint32_t i = 0; i < count; i++)
@@ -243,7 +243,7 @@ TEST(lanes_do_not_know_each_other)
     uint64_t seed = 21;
     tl_narrow_scratch alone = {0}, together = {0};
     for (int round = 0; round < 200; round++) {
-        laid p[TL_LANES];
+        face_pair p[TL_LANES];
         tl_patch_batch *batch = tl_batch_begin(&together, false, STEEP);
         for (uint32_t i = 0; i < TL_LANES; i++) {
             p[i] = make(&seed, ANYHOW);
@@ -273,7 +273,7 @@ TEST(other_features_have_other_keys)
     tl_narrow_scratch scratch = {0};
     int changed = 0, stayed = 0;
     for (int round = 0; round < 2000; round++) {
-        laid p = make(&seed, ANYHOW);
+        face_pair p = make(&seed, ANYHOW);
         if (lay_one(&p, false) > 0) {
             const tl_patch_points *g = &p.pair.scratch.patch;
             size_t count = g->count;

@@ -7,15 +7,15 @@
 #define UNFIT TALUS_BAD_PLUGIN_DIR "/unfit.so"
 
 /* What was told of one run. */
-typedef struct heard {
+typedef struct findings {
     size_t checks, faults;
     char list[400];  /* checks that found something, each with a blank behind */
     char fault[700]; /* the last one's sentence */
-} heard;
+} findings;
 
 static void hear(void *user, const tl_check_finding *f)
 {
-    heard *h = user;
+    findings *h = user;
     h->checks++;
     CHECK(f->kind && f->doc[0]);
     if (!f->fault)
@@ -26,10 +26,10 @@ static void hear(void *user, const tl_check_finding *f)
 }
 
 /* One fault of the plugin that has them all, in the law, the damping or the generator; the other two behave. */
-static heard run_unfit(const char *param, const char *fault)
+static findings run_unfit(const char *param, const char *fault)
 {
     static const char *const params[] = {"law_fault", "damping_fault", "generator_fault"};
-    heard h = {0};
+    findings h = {0};
     tl_value values[3];
     size_t faults;
     tl_error error;
@@ -79,7 +79,7 @@ TEST(each_check_finds_what_breaks_it)
         {"generator_fault", "goes_on", "failures; "},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        heard h = run_unfit(cases[i].param, cases[i].fault);
+        findings h = run_unfit(cases[i].param, cases[i].fault);
         if (!CHECK_TEXT(h.list, cases[i].found))
             printf("  %s = %s: %s\n", cases[i].param, cases[i].fault, h.fault);
     }
@@ -95,14 +95,14 @@ TEST(others_are_found_among_the_rest)
         {"damping_fault", "finite", "finite; "},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        heard h = run_unfit(cases[i][0], cases[i][1]);
+        findings h = run_unfit(cases[i][0], cases[i][1]);
         CHECK_CONTAINS(h.list, cases[i][2]);
     }
 }
 
 TEST(a_fault_tells_its_parameters)
 {
-    heard h = run_unfit("law_fault", "softer");
+    findings h = run_unfit("law_fault", "softer");
     CHECK_CONTAINS(h.fault, "law_fault = softer");
     CHECK_CONTAINS(h.fault, "but stiffness() says");
 }
@@ -118,7 +118,7 @@ TEST(the_plugins_of_talus_pass)
                    {"drum", 3},     {"joint", 3},    {"jointset", 3}};
     for (size_t i = 0; i < sizeof plugins / sizeof *plugins; i++) {
         char path[1024];
-        heard h = {0};
+        findings h = {0};
         size_t faults = 1;
         tl_error error;
         snprintf(path, sizeof path, "%s/%s.so", TALUS_TEST_PLUGIN_DIR, plugins[i].name);

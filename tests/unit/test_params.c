@@ -4,7 +4,7 @@
 #include "base/params.h"
 #include "check.h"
 
-typedef struct thing {
+typedef struct sample_params {
     double friction, spacing, scale;
     double limit;
     int64_t number;
@@ -12,27 +12,27 @@ typedef struct thing {
     tl_vec3 origin, at;
     const char *name, *label;
     tl_points vertices;
-} thing;
+} sample_params;
 
 static const char *const rules[] = {"paper", "body", NULL};
 
 static const tl_param table[] = {
-    TL_PARAM(TL_PARAM_REAL, thing, friction, "deg", "angle of friction", .alias = "phi",
+    TL_PARAM(TL_PARAM_REAL, sample_params, friction, "deg", "angle of friction", .alias = "phi",
              .flags = TL_PARAM_MAX_OPEN, .def = {30}, .min = 0, .max = 90),
-    TL_PARAM(TL_PARAM_REAL, thing, spacing, "m", "distance between planes",
+    TL_PARAM(TL_PARAM_REAL, sample_params, spacing, "m", "distance between planes",
              .flags = TL_PARAM_REQUIRED | TL_PARAM_MIN_OPEN, .min = 0, .max = INFINITY),
-    TL_PARAM(TL_PARAM_REAL, thing, scale, "", "some factor", .def = {-2}, .min = -INFINITY,
+    TL_PARAM(TL_PARAM_REAL, sample_params, scale, "", "some factor", .def = {-2}, .min = -INFINITY,
              .max = 0),
-    TL_PARAM(TL_PARAM_REAL, thing, limit, "s", "longest time", .flags = TL_PARAM_OPTIONAL, .min = 0,
-             .max = INFINITY),
-    TL_PARAM(TL_PARAM_INT, thing, number, "", "how many", .def = {7}, .min = 1, .max = 100),
-    TL_PARAM(TL_PARAM_BOOL, thing, on, "", "whether", .def = {1}),
-    TL_PARAM(TL_PARAM_ENUM, thing, rule, "", "which rule", .def = {1}, .choices = rules),
-    TL_PARAM(TL_PARAM_VEC3, thing, origin, "m", "a point", .def = {1, 2, 3}),
-    TL_PARAM(TL_PARAM_VEC3, thing, at, "m", "another point", .flags = TL_PARAM_OPTIONAL),
-    TL_PARAM(TL_PARAM_STRING, thing, name, "", "its name", .def_text = "rock"),
-    TL_PARAM(TL_PARAM_STRING, thing, label, "", "a label", .flags = TL_PARAM_OPTIONAL),
-    TL_PARAM(TL_PARAM_POINTS, thing, vertices, "m", "corners", .flags = TL_PARAM_OPTIONAL),
+    TL_PARAM(TL_PARAM_REAL, sample_params, limit, "s", "longest time", .flags = TL_PARAM_OPTIONAL,
+             .min = 0, .max = INFINITY),
+    TL_PARAM(TL_PARAM_INT, sample_params, number, "", "how many", .def = {7}, .min = 1, .max = 100),
+    TL_PARAM(TL_PARAM_BOOL, sample_params, on, "", "whether", .def = {1}),
+    TL_PARAM(TL_PARAM_ENUM, sample_params, rule, "", "which rule", .def = {1}, .choices = rules),
+    TL_PARAM(TL_PARAM_VEC3, sample_params, origin, "m", "a point", .def = {1, 2, 3}),
+    TL_PARAM(TL_PARAM_VEC3, sample_params, at, "m", "another point", .flags = TL_PARAM_OPTIONAL),
+    TL_PARAM(TL_PARAM_STRING, sample_params, name, "", "its name", .def_text = "rock"),
+    TL_PARAM(TL_PARAM_STRING, sample_params, label, "", "a label", .flags = TL_PARAM_OPTIONAL),
+    TL_PARAM(TL_PARAM_POINTS, sample_params, vertices, "m", "corners", .flags = TL_PARAM_OPTIONAL),
 };
 
 enum { ROWS = sizeof table / sizeof *table };
@@ -54,7 +54,7 @@ static tl_value list(const char *key, tl_value_type type, const double *data, si
     return (tl_value){.key = key, .type = type, .data = data, .count = count};
 }
 
-static tl_status read_all(thing *t, const tl_value *values, size_t count, bool keep)
+static tl_status read_all(sample_params *t, const tl_value *values, size_t count, bool keep)
 {
     error = (tl_error){TL_OK, ""};
     tl_args args = {values, count};
@@ -64,7 +64,7 @@ static tl_status read_all(thing *t, const tl_value *values, size_t count, bool k
 /* One value beside the required one is refused with exactly this sentence. */
 static void refused(tl_value value, const char *sentence)
 {
-    thing t;
+    sample_params t;
     tl_value values[] = {number("spacing", 1), value};
     char whole[TL_ERROR_TEXT];
     snprintf(whole, sizeof whole, "joint 'J1', law 'x': %s", sentence);
@@ -72,7 +72,7 @@ static void refused(tl_value value, const char *sentence)
     CHECK_TEXT(error.text, whole);
 }
 
-static void accepted(tl_value value, thing *t)
+static void accepted(tl_value value, sample_params *t)
 {
     tl_value values[] = {number("spacing", 1), value};
     if (!CHECK_INT(read_all(t, values, 2, false), TL_OK))
@@ -81,7 +81,7 @@ static void accepted(tl_value value, thing *t)
 
 TEST(defaults_fill_what_is_not_given)
 {
-    thing t;
+    sample_params t;
     tl_value values[] = {number("spacing", 0.25)};
     CHECK_INT(read_all(&t, values, 1, false), TL_OK);
     CHECK(t.friction == 30 && t.spacing == 0.25 && t.scale == -2 && isnan(t.limit));
@@ -94,7 +94,7 @@ TEST(defaults_fill_what_is_not_given)
 TEST(values_of_every_type_arrive)
 {
     static const double point[] = {4, 5, 6}, points[] = {0, 0, 0, 1, 2, 3};
-    thing t;
+    sample_params t;
     accepted(number("phi", 89.5), &t);
     CHECK(t.friction == 89.5);
     accepted(number("number", 100), &t);
@@ -115,7 +115,7 @@ TEST(values_of_every_type_arrive)
 
 TEST(ranges_with_open_and_missing_ends)
 {
-    thing t;
+    sample_params t;
     accepted(number("friction", 0), &t);
     refused(number("friction", 90), "friction = 90 deg is outside [0, 90)");
     refused(number("friction", 95), "friction = 95 deg is outside [0, 90)");
@@ -187,7 +187,7 @@ TEST(unknown_keys_get_the_nearest_name)
 
 TEST(missing_and_double_parameters)
 {
-    thing t;
+    sample_params t;
     CHECK_INT(read_all(&t, NULL, 0, false), TL_E_ARGUMENT);
     CHECK_TEXT(
         error.text,
@@ -202,7 +202,7 @@ TEST(missing_and_double_parameters)
 
 TEST(keep_writes_only_what_is_given)
 {
-    thing t;
+    sample_params t;
     memset(&t, 0, sizeof t);
     t.spacing = 8;
     t.number = 9;
@@ -224,7 +224,7 @@ TEST(tables_of_other_versions_are_read)
         wide[i].param = table[i];
         wide[i].param.size = sizeof wide[i];
     }
-    thing t;
+    sample_params t;
     tl_value values[] = {number("spacing", 3)};
     tl_args args = {values, 1};
     CHECK_INT(tl_args_read(&wide[0].param, 2, sizeof *wide, &args, false, &t, "", &error), TL_OK);
@@ -308,7 +308,7 @@ TEST(long_texts_are_cut)
     char longer[2000];
     memset(longer, 'z', sizeof longer - 1);
     longer[sizeof longer - 1] = '\0';
-    thing t;
+    sample_params t;
     tl_value values[] = {number(longer, 1)};
     CHECK_INT(read_all(&t, values, 1, false), TL_E_ARGUMENT);
     CHECK_CONTAINS(error.text, "unknown parameter 'zzzz");

@@ -232,7 +232,7 @@ TEST(hulls_press_by_the_slope_of_what_they_store)
 
 /* Length by which moments compare with forces. */
 #define ARM 0.4
-/* Steps on a way, share of the way below which what still changes is a jump, and what of the force is looked into: a patch that
+/* Steps on a path, share of the path below which what still changes is a jump, and what of the force is looked into: a patch that
  * takes over where faces lie flush knows nothing of the load along their borders, half of their overlap over the root of their
  * area. */
 #define STEPS 300
@@ -244,14 +244,14 @@ static double apart(load a, load b)
     return fmax(scene_apart(a.f, b.f), scene_apart(a.moment, b.moment) / ARM);
 }
 
-/* A way: the place at t from 0 to 1. */
-typedef struct way {
-    place (*at)(const struct way *, double t);
+/* A path: the place at t from 0 to 1. */
+typedef struct motion_path {
+    place (*at)(const struct motion_path *, double t);
     place from, to;
     double roll, yaw, along, depth, value[2];
-} way;
+} motion_path;
 
-static place straight(const way *w, double t)
+static place straight(const motion_path *w, double t)
 {
     tl_quat d = tl_q_mul(w->to.q, tl_q_conj(w->from.q));
     tl_vec3 v = {d.x, d.y, d.z};
@@ -260,8 +260,8 @@ static place straight(const way *w, double t)
     return (place){tl_v3_madd(w->from.u, t, tl_v3_sub(w->to.u, w->from.u)), tl_q_unit(q)};
 }
 
-/* The largest jump of force and moment on a way, over the largest force; -1 when there is none. `kinds`: kinds met. */
-static double worst_jump(rig *r, const way *w, uint32_t *kinds)
+/* The largest jump of force and moment on a path, over the largest force; -1 when there is none. `kinds`: kinds met. */
+static double worst_jump(rig *r, const motion_path *w, uint32_t *kinds)
 {
     load last = rig_fresh(r, w->at(w, 0));
     double worst = 0, most = tl_v3_norm(last.f);
@@ -290,21 +290,21 @@ static double worst_jump(rig *r, const way *w, uint32_t *kinds)
 }
 
 /* The tilt goes from value[0] to value[1], by far slower near 0. */
-static place rocking(const way *w, double t)
+static place rocking(const motion_path *w, double t)
 {
     double x = 2 * t - 1, tilt = x * x * x * w->value[1];
     return stand(w->along, 0.03, w->yaw, w->roll, tilt, w->depth);
 }
 
-static place sliding(const way *w, double t)
+static place sliding(const motion_path *w, double t)
 {
     double s = w->value[0] + (w->value[1] - w->value[0]) * t;
     return stand(0.5 + s * cos(w->yaw), 0.03 + s * sin(w->yaw), w->yaw, w->roll, w->along,
                  w->depth);
 }
 
-/* Checks that nothing jumps on a way; what jumps, with the value that tells the way from others. */
-static double no_jump(rig *r, const way *w, const char *name, double value, int swapped)
+/* Checks that nothing jumps on a path; what jumps, with the value that tells the path from others. */
+static double no_jump(rig *r, const motion_path *w, const char *name, double value, int swapped)
 {
     uint32_t kinds;
     double jump = worst_jump(r, w, &kinds);
@@ -320,7 +320,7 @@ TEST(an_edge_over_a_border_rocks_without_a_jump)
         rig r = rig_of(scene_box_shape(1, 1, 1), roof(), swapped, 0);
         for (int turn = -3; turn <= 3; turn++)
             for (double along_x = 0.25; along_x < 0.7; along_x += 0.2) {
-                way w = {.at = rocking, .along = along_x, .depth = 1e-3};
+                motion_path w = {.at = rocking, .along = along_x, .depth = 1e-3};
                 w.yaw = 20 * turn * degree;
                 w.roll = 3 * (turn + 1) * degree;
                 w.value[1] = 6 * degree;
@@ -340,7 +340,7 @@ TEST(an_end_passes_over_a_border_without_a_jump)
         rig r = rig_of(scene_box_shape(1, 1, 1), roof(), swapped, 0);
         for (int turn = -3; turn <= 3; turn++)
             for (size_t k = 0; k < sizeof tilts / sizeof *tilts; k++) {
-                way w = {.at = sliding, .along = tilts[k] * degree, .depth = 5e-3};
+                motion_path w = {.at = sliding, .along = tilts[k] * degree, .depth = 5e-3};
                 w.yaw = 20 * turn * degree;
                 w.roll = 5 * degree;
                 w.value[0] = -0.45;
@@ -363,7 +363,7 @@ TEST(hulls_at_random_do_not_jump)
             shape[k] = scene_random_hull(&seed, 12 + s % 8, tl_v3(0.5, 0.45, 0.4));
         scene_pair p = scene_pair_of(shape[0], shape[1], scene_any_turn(&seed),
                                      tl_v3_scale(1.2, scene_direction(&seed)));
-        way w = {.at = straight, .from = pressed(&p, scene_between(&seed, 1e-3, 2e-2))};
+        motion_path w = {.at = straight, .from = pressed(&p, scene_between(&seed, 1e-3, 2e-2))};
         p.turn = tl_q_mul(scene_turn(scene_direction(&seed), 4 * degree), p.turn);
         p.shift = tl_v3_madd(p.shift, 0.1, scene_direction(&seed));
         w.to = pressed(&p, scene_between(&seed, 1e-3, 2e-2));
@@ -382,7 +382,7 @@ TEST(hulls_at_random_do_not_jump)
 
 /* A box lies on a blunt ridge and rocks from one side of it to the other: it lies flush on one side, on the ridge, and on the
  * other side. */
-static place over_ridge(const way *w, double t)
+static place over_ridge(const motion_path *w, double t)
 {
     double tilt = w->value[0] + (w->value[1] - w->value[0]) * t;
     tl_quat q = scene_turn(tl_v3(0, 0, 1), w->yaw);
@@ -404,7 +404,7 @@ TEST(patches_come_in_without_a_jump)
                                 {1, -0.6, -drop}, {-1, 0.6, -drop}, {1, 0.6, -drop},
                                 {-1, 0, -1},      {1, 0, -1}};
                 rig r = rig_of(scene_hull_shape(p, 8), scene_box_shape(0.6, 0.6, 0.5), turn % 2, 0);
-                way w = {.at = over_ridge, .yaw = 0.25 * turn, .depth = depths[deep]};
+                motion_path w = {.at = over_ridge, .yaw = 0.25 * turn, .depth = depths[deep]};
                 w.along = turn % 3 ? 0.1 : 1.27;
                 w.value[0] = -(w.value[1] = (slope + 2) * degree);
                 uint32_t kinds;

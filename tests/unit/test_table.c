@@ -5,14 +5,14 @@
 
 #include <stdint.h>
 
-typedef struct things {
+typedef struct sample_table {
     tl_table table;
     double *size;
     uint32_t *count;
     double *late;
-} things;
+} sample_table;
 
-static void make(things *t, size_t rows)
+static void make(sample_table *t, size_t rows)
 {
     memset(t, 0, sizeof *t);
     tl_table_init(&t->table, t);
@@ -25,7 +25,7 @@ static void make(things *t, size_t rows)
     }
 }
 
-static bool widen(things *t)
+static bool widen(sample_table *t)
 {
     const tl_column late = TL_COLUMN_NEW(t, late, TL_COLUMN_STATE);
     return tl_table_widen(&t->table, &late, 1);
@@ -34,7 +34,7 @@ static bool widen(things *t)
 static void a_late_column_is_zero_and_the_rest_stays(void)
 {
     enum { ROWS = 37 };
-    things t;
+    sample_table t;
     make(&t, ROWS);
     size_t bytes = tl_table_bytes(&t.table), capacity = t.table.capacity;
     CHECK(widen(&t));
@@ -54,7 +54,7 @@ static void a_late_column_is_zero_and_the_rest_stays(void)
 
 static void an_empty_table_takes_a_late_column(void)
 {
-    things t;
+    sample_table t;
     make(&t, 0);
     CHECK(widen(&t));
     CHECK(t.late == NULL);
@@ -65,7 +65,7 @@ static void an_empty_table_takes_a_late_column(void)
 
 static void rows_that_come_back_are_zero(void)
 {
-    things t;
+    sample_table t;
     make(&t, 20);
     CHECK(tl_table_resize(&t.table, 5));
     CHECK(tl_table_resize(&t.table, 20));

@@ -211,20 +211,20 @@ TEST(the_reason_for_no_step_is_the_true_one)
 
 /* ---------------------------------------------------------------- slivers ---------------- */
 
-typedef struct heard {
+typedef struct remark_log {
     int remarks;
     char last[512];
-} heard;
+} remark_log;
 
 static void listen(void *user, const char *text)
 {
-    heard *h = user;
+    remark_log *h = user;
     h->remarks++;
     snprintf(h->last, sizeof h->last, "%s", text);
 }
 
 /* Eight cubes of `size`, one of them in two, the thinner one by `share` of it; 0: whole. */
-static tl_model *eight_cubes(double size, double share, heard *h)
+static tl_model *eight_cubes(double size, double share, remark_log *h)
 {
     tl_model *m = scene_model(1);
     tl_stage stage;
@@ -262,7 +262,7 @@ static tl_filter named_filter(const char *text)
 
 static void check_sliver(double size, double share, int32_t rule)
 {
-    heard h = {0, ""};
+    remark_log h = {0, ""};
     tl_model *m = eight_cubes(size, share, &h);
     scene_ok(m, tl_model_timestep(m, &(tl_timestep){sizeof(tl_timestep), NAN, rule, NAN}));
     scene_ok(m, ten_steps(m));
@@ -299,7 +299,7 @@ TEST(a_sliver_is_told_of_once_with_its_remedy)
 
 static int remarks_of(double share, double density, bool scaling)
 {
-    heard h = {0, ""};
+    remark_log h = {0, ""};
     tl_model *m = eight_cubes(1, share, &h);
     tl_block_set lighter = {sizeof(tl_block_set), density, NULL, {NAN, NAN, NAN}, {NAN, NAN, NAN}};
     scene_ok(m, tl_blocks_set(m, &m->blocks.id[2], 1, &lighter));
@@ -313,7 +313,7 @@ static int remarks_of(double share, double density, bool scaling)
 /* Cubes in a row; the second is on a stiff joint with the first, which is held. */
 static int remarks_of_a_stiff_joint(void)
 {
-    heard h = {0, ""};
+    remark_log h = {0, ""};
     tl_model *m = scene_model(1);
     tl_stage stage;
     tl_joint_intern(m, "stiff");
@@ -345,7 +345,7 @@ static int remarks_of_a_stiff_joint(void)
 /* A column among held blocks, on which both ends and all sides press, and a cube that stands on one face. */
 static int remarks_of_a_crowded_column(void)
 {
-    heard h = {0, ""};
+    remark_log h = {0, ""};
     tl_model *m = scene_model(1);
     scene_box(m, tl_v3(0, 0, 0), tl_v3(1, 1, 1.8));
     scene_box(m, tl_v3(8, 0, 0), tl_v3(9.5, 1.5, 1.5));
