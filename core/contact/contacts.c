@@ -320,7 +320,7 @@ bool tl_contact_place(tl_detect *d, uint32_t row)
 {
     tl_contacts *c = &d->contacts;
     uint32_t points = wanted_points(d, row), lane;
-    if (!points) { /* its lane may be another law's */
+    if (!points) { /* its lane may be of another span */
         clear_points(d, row);
         c->point_capacity[row] = 0;
         return true;

@@ -29,7 +29,7 @@ typedef struct tl_detect {
     float *
         path; /* of each block: path length since the broad phase was made, rounded up: no vertex has moved farther */
     size_t path_capacity;
-    float longest_path; /* of them */
+    float longest_path; /* of all blocks */
     uint8_t *touched; /* bodies whose contacts came, went or grew since the time step was chosen */
     size_t touched_capacity;
     bool any_touched;

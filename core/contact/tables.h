@@ -16,7 +16,7 @@ typedef struct tl_contacts {
     tl_facet *facet;
     uint8_t *field;          /* its points belong into a span of field contacts */
     uint32_t *press;         /* row of what a field contact keeps, or TL_NO_ROW */
-    double *faces_valid_to;  /* sum of odometers up to which the choice of its faces stands */
+    double *faces_valid_to;  /* sum of odometers up to which the choice of its faces holds */
     double *points_valid_to; /* sum of odometers up to which its points may be reused */
     /* of patches: where their points were laid or, without reuse, their faces chosen */
     tl_spot *spot;

@@ -172,8 +172,8 @@ enum {
                               were never bonded. The law clears it, or keeps it until they meet */
 };
 
-/* A run of contact points under the law of one joint, with one set of properties. Every column has `count` entries, a multiple of
- * TL_LANES, aligned to TL_ALIGN bytes, padded with inert lanes (area 0), so loops need no tail.
+/* Contact points under the law of one joint, with one set of properties, as columns. Every column has `count` entries, a
+ * multiple of TL_LANES, aligned to TL_ALIGN bytes, padded with inert lanes (area 0), so loops need no tail.
  *
  * Signs: the unit normal n points from block A to block B; forces are those on B. Normal force and
  * closure are compression positive; closure is how far the walls have approached since the
