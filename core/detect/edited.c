@@ -1,7 +1,7 @@
 /* edited.c - what edits of the model leave of pairs and contacts.
  *
  * A block bears the count of structure with which it came, or got another shape, frame or tags. What is newer than the
- * count that detection has seen is looked at as if it were new; all else that is known of pairs and contacts stays. */
+ * count that detection has seen is treated as if it were new; all else that is known of pairs and contacts stays. */
 #include "detect/edited.h"
 
 #include "contact/contacts.h"
@@ -158,7 +158,7 @@ static bool stays_patch(const tl_model *m, uint32_t row)
     return min_area <= SURE_MIN_AREA * c->area[row];
 }
 
-/* Pairs that touch without area are looked at again, but for those that have nothing in common. */
+/* Pairs that touch without area are tested again, but for those that have nothing in common. */
 static void wake_pairs(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
 {
     (void)thread;

@@ -19,7 +19,7 @@
 /* Product of the blocks' numbers of faces up to which they may be of a lattice: others hardly ever have flush faces. */
 #define FEW 400
 
-/* Whether two faces look at each other with a tilt at which they may still be a patch's. */
+/* Whether two faces face each other with a tilt at which they may still be a patch's. */
 static bool are_flush(tl_vec3 n, tl_vec3 other)
 {
     return 1 + tl_v3_dot(n, other) <= 0.5 * TL_FIELD_TILT * TL_FIELD_TILT;

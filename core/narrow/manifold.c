@@ -1,7 +1,7 @@
 /* manifold.c - what touches: two flush faces make a patch (patch.c), all else a field contact (press.c).
  *
  * A patch is the fast form of the energy of press.c where that is the energy of the patch alone: the faces are nearly
- * parallel, overlap by little, and no other faces look at each other nearby. A patch whose bond or initial stress acts
+ * parallel, overlap by little, and no other faces face each other nearby. A patch whose bond or initial stress acts
  * across a gap stays one however its faces turn. A field contact has two points at the centre of its pressure
  * (facet.h). */
 #include "narrow/manifold.h"

@@ -13,7 +13,7 @@
 #include <string.h>
 #include <talus/plugin.h>
 
-/* Cosine of the angle, 15 degrees, within which two faces look at each other. Two of one block meet in a blunt edge. */
+/* Cosine of the angle, 15 degrees, within which two faces face each other. Two of one block meet in a blunt edge. */
 #define FACING 0.96592582628906831
 
 /* The planes of a block in A's frame, as columns, and where the other block lies along each of them. */
@@ -232,7 +232,7 @@ static uint32_t gather_blunt(const planes *p, uint16_t *face, uint32_t count, ui
     return blunt;
 }
 
-/* By how much all other faces that look at each other fall behind the flush ones. */
+/* By how much all other faces that face each other fall behind the flush ones. */
 static void find_leads(const planes *a, const planes *b, tl_region *out, uint16_t *face)
 {
     uint16_t *of_b = face + out->a;

@@ -21,7 +21,7 @@ typedef struct tl_region {
     /* how many listed faces of A, and of B, have nearly their direction: the first ones, them among these */
     uint32_t blunt_a, blunt_b;
     double flush_gap;
-    double flush_lead; /* by how much all other pairs that look at each other overlap more */
+    double flush_lead; /* by how much all other pairs that face each other overlap more */
     double blunt_lead; /* the same of those among the first */
 } tl_region;
 

@@ -118,7 +118,7 @@ static tl_status take_contacts(tl_model *m, tl_outer_face *f)
     return status;
 }
 
-/* Whether two faces of a body's blocks, in the body's frame, lie in one plane and look at each other. */
+/* Whether two faces of a body's blocks, in the body's frame, lie in one plane and face each other. */
 static bool face_each_other(const tl_poly *a, uint32_t fa, const tl_poly *b, uint32_t fb)
 {
     tl_plane p = a->plane[fa], q = b->plane[fb];
