@@ -10,37 +10,24 @@
 #include "state/archive.h"
 
 #include "base/regular.h"
+#include "state/archive_format.h"
 
 #include <errno.h>
 #include <stdarg.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <xxhash.h>
 #include <zstd.h>
 
-static const char magic[8] = {'T', 'A', 'L', 'U', 'S', '\r', '\n', '\x1a'};
+static const char magic[8] = TL_ARCHIVE_MAGIC;
 
-/* Format of the file, and of what the chunks hold: another is refused. */
-#define FORMAT 2
-#define ORDER 0x01020304u
 /* Level of compression: a third of the size at some 600 MB/s, for a hundred thousand blocks of rock; higher levels take longer than
  * a disk. */
 #define LEVEL 1
 /* Data of fewer bytes is stored as it is. */
 #define SHORT_DATA 128
-
-typedef struct file_head {
-    char magic[8];
-    uint32_t format, order;
-} file_head;
-
-typedef struct chunk_head {
-    uint32_t name_bytes, packed;
-    uint64_t size, items, stored, sum, head_sum;
-} chunk_head;
-
-#define HEAD_SUMMED offsetof(chunk_head, head_sum)
 
 /* ---------------------------------------------------------------- writing ---------------- */
 
@@ -51,7 +38,7 @@ tl_status tl_archive_begin(tl_archive_writer *w, const char *path, tl_error *err
     if (status != TL_OK)
         return status;
     w->out.durable = true;
-    file_head head = {.format = FORMAT, .order = ORDER};
+    tl_archive_head head = {.format = TL_ARCHIVE_FORMAT, .order = TL_ARCHIVE_ORDER};
     memcpy(head.magic, magic, sizeof magic);
     tl_output_put(&w->out, &head, sizeof head);
     return TL_OK;
@@ -85,13 +72,13 @@ void tl_archive_put(tl_archive_writer *w, const char *name, const void *data, si
     size_t bytes = size * items;
     size_t packed = bytes < SHORT_DATA ? 0 : pack(w, data, bytes);
     const void *stored = packed ? w->buffer : data;
-    chunk_head head = {.name_bytes = (uint32_t)strlen(name),
-                       .packed = packed > 0,
-                       .size = size,
-                       .items = items,
-                       .stored = packed ? packed : bytes};
+    tl_chunk_head head = {.name_bytes = (uint32_t)strlen(name),
+                          .packed = packed > 0,
+                          .size = size,
+                          .items = items,
+                          .stored = packed ? packed : bytes};
     head.sum = sum_of(name, head.name_bytes, stored, head.stored);
-    head.head_sum = XXH64(&head, HEAD_SUMMED, 0);
+    head.head_sum = XXH64(&head, TL_CHUNK_HEAD_SUMMED, 0);
     w->sum = XXH64(&head.sum, sizeof head.sum, w->sum);
     w->chunks++;
     tl_output_put(&w->out, &head, sizeof head);
@@ -126,34 +113,34 @@ tl_status tl_archive_bad(const tl_archive *a, tl_error *error, const char *forma
 
 static tl_status check_file_head(const tl_archive *a, tl_error *error)
 {
-    file_head head;
+    tl_archive_head head;
     if (a->length < sizeof head || memcmp(a->bytes, magic, sizeof magic) != 0)
         return tl_fail(error, TL_E_ARGUMENT,
                        "cannot restore '%.200s': it is no file that model:save has written",
                        a->path);
     memcpy(&head, a->bytes, sizeof head);
-    if (head.order != ORDER)
+    if (head.order != TL_ARCHIVE_ORDER)
         return tl_fail(error, TL_E_ARGUMENT,
                        "cannot restore '%.200s': it was written by a machine of another byte order",
                        a->path);
-    if (head.format != FORMAT)
+    if (head.format != TL_ARCHIVE_FORMAT)
         return tl_fail(error, TL_E_ARGUMENT,
                        "cannot restore '%.200s': it has format %u, and this version of Talus reads "
                        "format %d: use the version that has written it",
-                       a->path, head.format, FORMAT);
+                       a->path, head.format, TL_ARCHIVE_FORMAT);
     return TL_OK;
 }
 
 /* Reads the chunk at `*at`, and moves that on; false: there is no whole one. */
 static bool read_chunk(const tl_archive *a, size_t *at, tl_chunk *chunk, uint64_t *sum)
 {
-    chunk_head head;
+    tl_chunk_head head;
     size_t left = a->length - *at;
     if (left < sizeof head)
         return false;
     memcpy(&head, a->bytes + *at, sizeof head);
     left -= sizeof head;
-    if (XXH64(&head, HEAD_SUMMED, 0) != head.head_sum || head.packed > 1 ||
+    if (XXH64(&head, TL_CHUNK_HEAD_SUMMED, 0) != head.head_sum || head.packed > 1 ||
         head.name_bytes > TL_CHUNK_NAME || head.name_bytes > left ||
         head.stored > left - head.name_bytes)
         return false;
@@ -178,7 +165,7 @@ static bool is_named(const tl_chunk *chunk, const char *name)
 /* Lists the chunks. The last must be the end, with nothing behind it. */
 static tl_status list_chunks(tl_archive *a, tl_error *error)
 {
-    size_t at = sizeof(file_head), capacity = 0;
+    size_t at = sizeof(tl_archive_head), capacity = 0;
     uint64_t sum = 0, before;
     tl_chunk chunk;
     do {

@@ -3,6 +3,7 @@
  * Checksums would refuse what was changed at random before anything looks at it. So the chunks of a file are taken apart, one is
  * changed, and the file is put together anew with right checksums, as by somebody who means harm. */
 #include "state/archive.h"
+#include "state/archive_format.h"
 #include "state/restore.h"
 
 #include <stdlib.h>
@@ -10,18 +11,6 @@
 #include <xxhash.h>
 #include <zstd.h>
 
-/* As archive.c writes them. */
-typedef struct file_head {
-    char magic[8];
-    uint32_t format, order;
-} file_head;
-
-typedef struct chunk_head {
-    uint32_t name_bytes, packed;
-    uint64_t size, items, stored, sum, head_sum;
-} chunk_head;
-
-#define HEAD_SUMMED offsetof(chunk_head, head_sum)
 #define MOST_CHUNKS 1024
 /* Chunks of more bytes are left as they are stored. */
 #define MOST_UNPACKED (1 << 20)
@@ -53,7 +42,7 @@ static void free_parts(parts *p)
     p->count = 0;
 }
 
-static bool unpack(const chunk_head *head, const uint8_t *stored, part *out)
+static bool unpack(const tl_chunk_head *head, const uint8_t *stored, part *out)
 {
     size_t bytes = head->packed ? (size_t)(head->size * head->items) : (size_t)head->stored;
     if (head->packed &&
@@ -71,8 +60,8 @@ static bool unpack(const chunk_head *head, const uint8_t *stored, part *out)
 static void take_apart(const uint8_t *data, size_t size, parts *p)
 {
     p->count = 0;
-    for (size_t at = sizeof(file_head); p->count < MOST_CHUNKS;) {
-        chunk_head head;
+    for (size_t at = sizeof(tl_archive_head); p->count < MOST_CHUNKS;) {
+        tl_chunk_head head;
         if (size < at + sizeof head)
             return;
         memcpy(&head, data + at, sizeof head);
@@ -96,7 +85,7 @@ static void take_apart(const uint8_t *data, size_t size, parts *p)
 /* Puts it together, not compressed; 0: there is no room. */
 static size_t put_together(const parts *p, uint8_t *data, size_t most)
 {
-    file_head file = {{'T', 'A', 'L', 'U', 'S', '\r', '\n', '\x1a'}, 1, 0x01020304u};
+    tl_archive_head file = {TL_ARCHIVE_MAGIC, TL_ARCHIVE_FORMAT, TL_ARCHIVE_ORDER};
     size_t at = sizeof file;
     uint64_t sum = 0;
     if (most < at)
@@ -113,16 +102,16 @@ static size_t put_together(const parts *p, uint8_t *data, size_t most)
                                : &p->list[i];
         if (!last && strcmp(one->name, "end") == 0)
             continue;
-        chunk_head head = {.name_bytes = (uint32_t)one->name_bytes,
-                           .size = one->size,
-                           .items = one->items,
-                           .stored = one->bytes};
+        tl_chunk_head head = {.name_bytes = (uint32_t)one->name_bytes,
+                              .size = one->size,
+                              .items = one->items,
+                              .stored = one->bytes};
         if (most - at < sizeof head + one->name_bytes + one->bytes)
             return 0;
         head.sum = XXH64(one->name, one->name_bytes, 0);
         if (one->bytes)
             head.sum = XXH64(one->data, one->bytes, head.sum);
-        head.head_sum = XXH64(&head, HEAD_SUMMED, 0);
+        head.head_sum = XXH64(&head, TL_CHUNK_HEAD_SUMMED, 0);
         memcpy(data + at, &head, sizeof head);
         memcpy(data + at + sizeof head, one->name, one->name_bytes);
         if (one->bytes)

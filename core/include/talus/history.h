@@ -14,10 +14,6 @@
 extern "C" {
 #endif
 
-#ifndef TL_API
-#define TL_API __attribute__((visibility("default")))
-#endif
-
 struct tl_model;
 
 /* Longest name; most numbers of a sample; most histories of a model. */

@@ -14,10 +14,6 @@
 extern "C" {
 #endif
 
-#ifndef TL_API
-#define TL_API __attribute__((visibility("default")))
-#endif
-
 typedef struct tl_args tl_args;
 
 /* Most steps of a test: some seconds of work. */

@@ -9,10 +9,6 @@
 extern "C" {
 #endif
 
-#ifndef TL_API
-#define TL_API __attribute__((visibility("default")))
-#endif
-
 struct tl_model;
 struct tl_halfspace;
 

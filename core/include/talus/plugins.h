@@ -12,10 +12,6 @@
 extern "C" {
 #endif
 
-#ifndef TL_API
-#define TL_API __attribute__((visibility("default")))
-#endif
-
 /* Loads the plugins found in TALUS_PLUGIN_PATH, beside the library and in the installed place.
  * Done once a process; later calls do nothing. Refused files are kept with their reasons. */
 TL_API void tl_plugins_load_default(void);

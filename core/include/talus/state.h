@@ -10,10 +10,6 @@
 extern "C" {
 #endif
 
-#ifndef TL_API
-#define TL_API __attribute__((visibility("default")))
-#endif
-
 typedef struct tl_model tl_model;
 typedef struct tl_drive tl_drive;
 

@@ -7,6 +7,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
+/* A function of the library that programs call. */
+#define TL_API __attribute__((visibility("default")))
+
 /* Status codes and what each means, once. A function that can fail for a reason outside the
  * programmer's control returns one of these and puts a sentence into a tl_error or tl_report. */
 #define TL_STATUS_LIST(X)                                                                          \

@@ -14,10 +14,6 @@
 extern "C" {
 #endif
 
-#ifndef TL_API
-#define TL_API __attribute__((visibility("default")))
-#endif
-
 /* A value as a script gives it, before it is checked against a tl_param table. */
 typedef enum tl_value_type {
     TL_VALUE_NUMBER,  /* number */
