@@ -285,4 +285,20 @@ do
     os.execute("chmod 755 " .. TMP)
     check.equal(bytes_of(FILE), whole)
 end
+-- ---------------------------------------------------------------- a model that cannot go on
+
+-- Blocks that lie in each other are told of in the first step, by a copy and a restored model as well.
+do
+    local m = talus.model { gravity = { 0, 0, -10 } }
+    m:generate("box", { min = { 0, 0, 0 }, max = { 1, 1, 1 }, density = 2500 })
+    m:generate("box", { min = { 0.1, 0.2, 0.3 }, max = { 1.1, 1.2, 1.3 }, density = 2500 })
+    m:joint("*", "coulomb", { kn = 1e8, ks = 1e8, friction = 30 })
+    check.equal(#m:contacts(), 1)
+    m:save(FILE)
+    local copy, restored = m:copy(), talus.restore(FILE)
+    for _, one in ipairs { m, copy, restored } do
+        check.raises(function() one:cycle(3) end, "cycle 1, contact of blocks 1 and 2")
+        check.equal(one.cycles, 0)
+    end
+end
 os.execute("rm -r " .. TMP)
