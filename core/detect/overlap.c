@@ -29,6 +29,7 @@
 /* Deepest overlap of any contact over the diameter of the smaller block. Stones that fall on soft edge contacts (kn 1e7)
  * come to 1.06. */
 #define TL_DEEPEST 1.25
+
 /* Whether no force can move either block. More than tl_blocks_held_still (held.h): bodies that a drive carries along, or
  * that still have a velocity, do not feel what their overlap would do. */
 static bool both_held(const tl_model *m, uint32_t a, uint32_t b)

@@ -291,7 +291,7 @@ end
 do
     local m = talus.model { gravity = { 0, 0, -10 } }
     m:generate("box", { min = { 0, 0, 0 }, max = { 1, 1, 1 }, density = 2500 })
-    m:generate("box", { min = { 0.1, 0.2, 0.3 }, max = { 1.1, 1.2, 1.3 }, density = 2500 })
+    m:generate("box", { min = { 0.01, 0.02, 0.05 }, max = { 1.01, 1.02, 1.05 }, density = 2500 })
     m:joint("*", "coulomb", { kn = 1e8, ks = 1e8, friction = 30 })
     check.equal(#m:contacts(), 1)
     m:save(FILE)
