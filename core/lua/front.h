@@ -125,7 +125,7 @@ typedef struct tl_lua_model {
     tl_model *model;
     bool probe;          /* a copy: a run of it is not saved as it goes */
     int64_t next_sample; /* cycle at which a history is due: history.c */
-    bool sampling;       /* a history's function runs */
+    bool sampling;       /* a function of a history or of an extra field runs */
 } tl_lua_model;
 
 /* User values of a model's userdata: the functions of drives (action.c), those of histories by their names (history.c). */
@@ -155,6 +155,8 @@ extern const tl_lua_key tl_lua_keyblocks_keys[];
 int tl_lua_report(lua_State *L);
 int tl_lua_filter(lua_State *L);
 int tl_lua_keyblocks(lua_State *L);
+/* With the arguments of the method, pushes a userdata that holds a tl_keyblocks as long as it lives; 1. */
+int tl_lua_keyblocks_find(lua_State *L);
 
 /* ---- Ctrl-C: interrupt.c ---- */
 
@@ -362,6 +364,18 @@ int tl_lua_resumed(lua_State *L);
 char *tl_lua_autosave_path(const char *script);
 /* Between two steps of a run: saves the model when it is time to. */
 void tl_lua_autosave(tl_lua_options *options, tl_model *model);
+
+/* ---- pages: page.c; extra fields of files and pages: extra_fields.c ---- */
+
+extern const tl_lua_key tl_lua_page_keys[];
+int tl_lua_write_html(lua_State *L);
+
+/* The extra fields that the table at `table` asks for under `key`: {"field", name = "field", name = function(item) ... end}, of
+ * all blocks or all contacts (`kind`) of the model at index 1. `context` names the method. Pushes one value, which must stay on
+ * the stack as long as they are used. */
+const tl_extra_field *tl_lua_extra_fields(lua_State *L, int table, const char *key,
+                                          const char *context, const tl_lua_kind *kind,
+                                          size_t *count);
 
 /* ---- help: help.c, topics.c ---- */
 

@@ -409,6 +409,7 @@ static const luaL_Reg model_methods[] = {
     {"profile", tl_lua_profile},
     {"memory", tl_lua_memory},
     {"write_vtk", model_write_vtk},
+    {"write_html", tl_lua_write_html},
     {"write_blocks", model_write_blocks},
     {"write_section", model_write_section},
     {"filter", tl_lua_filter},

@@ -229,6 +229,8 @@ int tl_lua_filter(lua_State *L)
 
 /* ---------------------------------------------------------------- keyblocks -------------- */
 
+#define KEYBLOCKS_TYPE "talus.keyblocks"
+
 const tl_lua_key tl_lua_keyblocks_keys[] = {
     {"friction", "number or {JOINT = number}",
      "friction angle of the joints, degrees, in [0, 90): one for all, or by joint: "
@@ -286,11 +288,6 @@ static size_t fill_strength(lua_State *L, const char *key, tl_joint_strength *li
     return count;
 }
 
-typedef struct keyblocks_view {
-    tl_model *model;
-    const tl_keyblocks *all;
-} keyblocks_view;
-
 static void set_faces(lua_State *L, tl_model *model, const tl_keyblock *block)
 {
     lua_createtable(L, (int)block->face_count, 0);
@@ -306,14 +303,13 @@ static void set_faces(lua_State *L, tl_model *model, const tl_keyblock *block)
     lua_setfield(L, -2, "faces");
 }
 
-static int push_keyblocks(lua_State *L)
+/* Pushes the list of the keyblocks; the model's userdata is at index 1. */
+static void push_keyblocks(lua_State *L, tl_model *model, const tl_keyblocks *all)
 {
     static const char *const modes[] = {[TL_KEYBLOCK_FALLING] = "falling",
                                         [TL_KEYBLOCK_SLIDING] = "sliding",
                                         [TL_KEYBLOCK_SLIDING_ON_TWO] = "sliding on two",
                                         [TL_KEYBLOCK_STABLE] = "stable"};
-    const keyblocks_view *view = lua_touserdata(L, 2);
-    const tl_keyblocks *all = view->all;
     lua_createtable(L, (int)all->count, 0);
     for (size_t i = 0; i < all->count; i++) {
         const tl_keyblock *block = &all->blocks[i];
@@ -327,7 +323,7 @@ static int push_keyblocks(lua_State *L)
         tl_lua_set_number(L, "driving_force", block->driving);
         if (block->mode != TL_KEYBLOCK_STABLE)
             tl_lua_set_vec3(L, "direction", block->direction);
-        set_faces(L, view->model, block);
+        set_faces(L, model, block);
         lua_createtable(L, (int)block->edge_count, 0);
         for (size_t k = 0; k < block->edge_count; k++) {
             tl_lua_push_vec3(L, all->edges[block->edge_start + k]);
@@ -336,10 +332,15 @@ static int push_keyblocks(lua_State *L)
         lua_setfield(L, -2, "pyramid");
         lua_rawseti(L, -2, (lua_Integer)i + 1);
     }
-    return 1;
 }
 
-int tl_lua_keyblocks(lua_State *L)
+static int collect_keyblocks(lua_State *L)
+{
+    tl_keyblocks_free(luaL_checkudata(L, 1, KEYBLOCKS_TYPE));
+    return 0;
+}
+
+int tl_lua_keyblocks_find(lua_State *L)
 {
     tl_model *model = tl_lua_model_of(L, "keyblocks");
     tl_lua_arity(L, 2, "keyblocks");
@@ -355,10 +356,20 @@ int tl_lua_keyblocks(lua_State *L)
     count = fill_strength(L, "cohesion", list, count);
     query.strength = list;
     query.count = count;
-    tl_keyblocks all;
-    tl_lua_ok(L, model, tl_model_keyblocks(model, &query, &all));
-    keyblocks_view view = {model, &all};
-    int status = push_protected(L, push_keyblocks, &view);
-    tl_keyblocks_free(&all);
-    return status == LUA_OK ? 1 : lua_error(L);
+    tl_keyblocks *all = lua_newuserdatauv(L, sizeof *all, 0);
+    *all = (tl_keyblocks){0};
+    if (luaL_newmetatable(L, KEYBLOCKS_TYPE)) {
+        lua_pushcfunction(L, collect_keyblocks);
+        lua_setfield(L, -2, "__gc");
+    }
+    lua_setmetatable(L, -2);
+    tl_lua_ok(L, model, tl_model_keyblocks(model, &query, all));
+    return 1;
+}
+
+int tl_lua_keyblocks(lua_State *L)
+{
+    tl_lua_keyblocks_find(L);
+    push_keyblocks(L, tl_lua_model_of(L, "keyblocks"), lua_touserdata(L, -1));
+    return 1;
 }

@@ -377,6 +377,11 @@ const tl_lua_topic tl_lua_topics[] = {
      .usage =
          "model:write_section(\"out/cut\", {dip = 90, dip_direction = 90, origin = {0, 0, 0}})",
      .function = "write_section"},
+    {.name = "write_html",
+     .usage = "model:write_html(\"out/run\", {title = \"Slope\", block_fields = "
+              "{\"kinetic_energy\"}})",
+     .function = "write_html",
+     .keys = tl_lua_page_keys},
     {.name = "write_blocks",
      .usage = "model:write_blocks(\"out/blocks.json\")",
      .function = "write_blocks"},

@@ -174,6 +174,12 @@ static const tl_param write_vtk_params[] = {
              "whether the frame has a file of the faces that joints made", .def = {1.0}),
 };
 
+static const tl_param write_html_params[] = {
+    TL_PARAM(TL_PARAM_STRING, tl_html, title, "",
+             "title of the page; the name at the end of its path when left out",
+             .flags = TL_PARAM_OPTIONAL),
+};
+
 static const tl_param write_blocks_params[] = {
     TL_PARAM(TL_PARAM_STRING, tl_write_blocks_args, path, "", "name of the file",
              .flags = TL_PARAM_REQUIRED),
@@ -295,6 +301,10 @@ static const tl_function functions[] = {
      "their "
      "displacements.",
      PARAMS(write_section_params)},
+    {"write_html",
+     "Adds a frame to a page for a browser: one file that shows the blocks, in every frame so far. "
+     "The folder and the name without .html are given first.",
+     PARAMS(write_html_params)},
     {"write_blocks", "Writes all blocks as they stand into a JSON file.",
      PARAMS(write_blocks_params)},
     {"filter",
@@ -330,9 +340,24 @@ const tl_param *tl_function_params(const char *function, size_t *count, const ch
 
 const char *const *tl_function_names(void)
 {
-    static const char *const names[] = {
-        "model",        "insitu", "tensor",    "timestep", "mass_scaling", "load",
-        "contact_area", "cycle",  "solve",     "profile",  "write_vtk",    "write_section",
-        "write_blocks", "filter", "keyblocks", "law_test", "law_leg",      NULL};
+    static const char *const names[] = {"model",
+                                        "insitu",
+                                        "tensor",
+                                        "timestep",
+                                        "mass_scaling",
+                                        "load",
+                                        "contact_area",
+                                        "cycle",
+                                        "solve",
+                                        "profile",
+                                        "write_vtk",
+                                        "write_section",
+                                        "write_html",
+                                        "write_blocks",
+                                        "filter",
+                                        "keyblocks",
+                                        "law_test",
+                                        "law_leg",
+                                        NULL};
     return names;
 }

@@ -90,6 +90,8 @@ void tl_model_destroy(tl_model *m)
         m->cycle_destroy(m->cycle);
     if (m->vtk)
         m->vtk_destroy(m->vtk);
+    if (m->pages)
+        m->pages_destroy(m->pages);
     for (size_t i = 0; i < m->blocks.table.rows; i++)
         tl_poly_free(m->blocks.shape[i]);
     tl_table_free(&m->blocks.table);

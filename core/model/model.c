@@ -74,7 +74,8 @@ tl_status tl_model_may_set(tl_model *m, const char *what)
 {
     if (m->reading)
         return tl_fail(&m->error, TL_E_STATE,
-                       "cannot %s from a history's function, which may read the model only: do it "
+                       "cannot %s from the function of a history or of a field, which may read the "
+                       "model only: do it "
                        "between two runs, or in on_progress",
                        what);
     if (m->driving)

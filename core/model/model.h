@@ -241,6 +241,8 @@ struct tl_model {
     void (*cycle_destroy)(struct tl_cycle *);
     struct tl_vtk_series *vtk; /* of the module io: the frames written so far */
     void (*vtk_destroy)(struct tl_vtk_series *);
+    struct tl_page *pages; /* of the io room: the pages written so far */
+    void (*pages_destroy)(struct tl_page *);
 };
 
 /* Whether the user wants the call of the kernel to end that is being made. */

@@ -44,6 +44,7 @@ static const tl_contact_filter contact_filter = {SIZED(tl_contact_filter)};
 static const tl_keyblock_query keyblock_query = {SIZED(tl_keyblock_query), .gravity = UNSET};
 static const tl_vtk_parts vtk_parts = {SIZED(tl_vtk_parts), .blocks = 1, .contacts = 1,
                                        .joints = 1};
+static const tl_html html = {SIZED(tl_html)};
 
 static const struct {
     const char *name;
@@ -66,6 +67,7 @@ static const struct {
     [TL_OPTIONS_OF_tl_keyblock_query] = {"tl_keyblock_query", &keyblock_query,
                                          sizeof keyblock_query},
     [TL_OPTIONS_OF_tl_vtk_parts] = {"tl_vtk_parts", &vtk_parts, sizeof vtk_parts},
+    [TL_OPTIONS_OF_tl_html] = {"tl_html", &html, sizeof html},
 };
 
 void tl_options_default(tl_options which, void *options, size_t size)

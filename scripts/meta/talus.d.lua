@@ -1040,6 +1040,20 @@ function Model:write_vtk(path, options) end
 ---@param options talus.WriteSectionOptions
 function Model:write_section(path, options) end
 
+---@class (exact) talus.WriteHtmlOptions
+---@field title? string title of the page; the name at the end of its path when left out
+---@field contacts? boolean|"slipping" which contacts the frame has; when left out all, where there are 20000 at the most, and else those that slip
+---@field block_fields? string[]|table<string, string|fun(block: talus.Block): number?> numbers of each block to colour by: fields of blocks, and functions that give a number, or nil for none
+---@field contact_fields? string[]|table<string, string|fun(contact: talus.Contact): number?> numbers of each contact, likewise: fields of contacts, states of their laws, functions
+---@field keyblocks? talus.KeyblocksOptions parameters of model:keyblocks, whose modes and factors of safety are shown as well
+
+--- Adds a frame to a page for a browser: one file that shows the blocks, in every frame so far. The folder and the name without .html are given first.
+---
+---     model:write_html("out/run", {title = "Slope", block_fields = {"kinetic_energy"}})
+---@param path string
+---@param options? talus.WriteHtmlOptions
+function Model:write_html(path, options) end
+
 --- Writes all blocks as they stand into a JSON file.
 ---
 ---     model:write_blocks("out/blocks.json")

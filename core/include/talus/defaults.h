@@ -27,7 +27,8 @@ extern "C" {
     X(tl_drive)                                                                                    \
     X(tl_contact_filter)                                                                           \
     X(tl_keyblock_query)                                                                           \
-    X(tl_vtk_parts)
+    X(tl_vtk_parts)                                                                                \
+    X(tl_html)
 
 typedef enum tl_options {
 #define TL_OPTIONS_ITEM(type) TL_OPTIONS_OF_##type,

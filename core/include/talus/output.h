@@ -11,6 +11,7 @@ extern "C" {
 
 struct tl_model;
 struct tl_halfspace;
+struct tl_keyblocks;
 
 /* Writes the next frame of the section of all blocks by a plane: PREFIX_section_NNNNNN.vtk and its index. */
 TL_API tl_status tl_write_section(struct tl_model *model, const char *prefix,
@@ -25,6 +26,35 @@ typedef struct tl_vtk_parts {
  * PREFIX_{blocks,contacts,joints}.vtk.series. Folders are made as needed. Files of one number are of one frame. */
 TL_API tl_status tl_write_vtk(struct tl_model *model, const char *prefix,
                               const tl_vtk_parts *parts);
+
+/* A number of each block or of each contact, beside their fields. */
+typedef struct tl_extra_field {
+    const char *name, *unit; /* unit: NULL or "" for none */
+    const double *values;    /* of all blocks or contacts, in ascending order of id; NaN: none */
+    size_t count;
+} tl_extra_field;
+
+/* Which contacts a frame of a page has. */
+typedef enum tl_html_contacts {
+    TL_HTML_CONTACTS_FEW, /* all, where there are 20,000 at the most, else those that slip */
+    TL_HTML_CONTACTS_ALL,
+    TL_HTML_CONTACTS_SLIPPING, /* those in the state "slipping" */
+    TL_HTML_CONTACTS_NONE
+} tl_html_contacts;
+
+/* What a page shows beside the blocks and the histories of the model. */
+typedef struct tl_html {
+    uint32_t size;     /* sizeof(tl_html) */
+    int32_t contacts;  /* tl_html_contacts */
+    const char *title; /* NULL: the name at the end of the prefix */
+    const tl_extra_field *block_fields, *contact_fields;
+    size_t block_field_count, contact_field_count;
+    const struct tl_keyblocks *keyblocks; /* NULL: none */
+} tl_html;
+/* Adds a frame to the page PREFIX.html, for a browser (docs/screen.md). The first frame of a model replaces what is there.
+ * Later ones go on with the page where it is as the model left it, else they begin it anew. A page of more than 200 MB is
+ * refused (TL_E_ARGUMENT). */
+TL_API tl_status tl_write_html(struct tl_model *model, const char *prefix, const tl_html *options);
 
 /* Writes all blocks as they stand into a JSON file (docs/block_model.md), from which the generator of
  * that format makes them again. */

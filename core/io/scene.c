@@ -1,0 +1,211 @@
+/* scene.c - a frame: what a reader does not know yet of head and blocks, and what is new in every frame.
+ *
+ * The blocks that were sent are kept in order of id, as rows are, so one walk through both tells what has come, changed
+ * and gone. */
+#include "io/scene.h"
+
+#include "io/scene_parts.h"
+#include "io/scene_put.h"
+
+#include <stdlib.h>
+
+/* ---------------------------------------------------------------- what is new ------------ */
+
+/* What has come or changed, by row, and gone, by id. */
+typedef struct news {
+    uint32_t *rows;
+    tl_id *gone;
+    size_t row_count, gone_count;
+} news;
+
+static tl_scene_block block_of(const tl_model *m, uint32_t row)
+{
+    const tl_blocks *b = &m->blocks;
+    return (tl_scene_block){.id = b->id[row],
+                            .body = m->bodies.id[b->body[row]],
+                            .group = b->group[row],
+                            .changed = b->changed[row],
+                            .density = b->density[row]};
+}
+
+static bool same(const tl_scene_block *a, const tl_scene_block *b)
+{
+    return a->id == b->id && a->body == b->body && a->group == b->group &&
+           a->changed == b->changed && a->density == b->density;
+}
+
+/* Lists the blocks as they are in `next`, and what differs from those that were sent. */
+static bool compare(tl_scene *scene, const tl_model *m, news *found)
+{
+    const tl_scene_known *sent = &scene->sent;
+    tl_scene_known *next = &scene->next;
+    size_t rows = m->blocks.table.rows;
+    found->rows = malloc((rows + 1) * sizeof *found->rows);
+    found->gone = malloc((sent->count + 1) * sizeof *found->gone);
+    if (rows > next->capacity) {
+        tl_scene_block *blocks = realloc(next->blocks, rows * sizeof *blocks);
+        next->capacity = blocks ? rows : next->capacity;
+        next->blocks = blocks ? blocks : next->blocks;
+    }
+    if (!found->rows || !found->gone || rows > next->capacity)
+        return false;
+    size_t k = 0;
+    for (uint32_t row = 0; row < rows; row++) {
+        tl_scene_block now = next->blocks[row] = block_of(m, row);
+        while (k < sent->count && sent->blocks[k].id < now.id)
+            found->gone[found->gone_count++] = sent->blocks[k++].id;
+        bool known = k < sent->count && sent->blocks[k].id == now.id;
+        if (!known || !same(&sent->blocks[k], &now))
+            found->rows[found->row_count++] = row;
+        k += known;
+    }
+    while (k < sent->count)
+        found->gone[found->gone_count++] = sent->blocks[k++].id;
+    next->count = rows;
+    return true;
+}
+
+static int compare_sizes(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* The median of the blocks' sizes, m; 0 of none. False when out of memory. */
+static bool find_median(const tl_model *m, double *median)
+{
+    size_t n = m->blocks.table.rows;
+    double *sizes = malloc((n + 1) * sizeof *sizes);
+    if (!sizes)
+        return false;
+    if (n)
+        memcpy(sizes, m->blocks.size, n * sizeof *sizes);
+    qsort(sizes, n, sizeof *sizes, compare_sizes);
+    *median = n ? sizes[n / 2] : 0;
+    free(sizes);
+    return true;
+}
+
+/* ---------------------------------------------------------------- chunks ----------------- */
+
+static tl_status put_bytes(tl_model *m, const char letters[5], const void *data, size_t bytes,
+                           tl_piece *out)
+{
+    size_t before = out->length;
+    unsigned char *to = tl_chunk_add(out, letters, tl_column_bytes(bytes, 1), &m->error);
+    if (!to)
+        return m->error.status;
+    tl_put_u32(out->data + before + 4, (uint32_t)bytes); /* what follows is no more of it */
+    memcpy(to, data, bytes);
+    return TL_OK;
+}
+
+/* HEAD where it is not the one that was sent. */
+static tl_status put_head(tl_scene *scene, tl_model *m, const tl_html *options, tl_piece *out)
+{
+    const tl_piece *sent = &scene->sent.head;
+    tl_piece *head = &scene->next.head;
+    tl_scene_head(m, options, scene->next.median, head);
+    if (head->failed) {
+        head->failed = false; /* another frame may have the memory */
+        return tl_fail_memory(&m->error);
+    }
+    if (sent->length == head->length && memcmp(sent->data, head->data, head->length) == 0)
+        return TL_OK;
+    return put_bytes(m, "HEAD", head->data, head->length, out);
+}
+
+static tl_status put_gone(tl_model *m, const news *found, tl_piece *out)
+{
+    size_t n = found->gone_count;
+    unsigned char *to = tl_chunk_add(out, "GONE", 4 + 4 * n, &m->error);
+    if (!to)
+        return m->error.status;
+    to = tl_put_u32(to, (uint32_t)n);
+    for (size_t i = 0; i < n; i++)
+        to = tl_put_u32(to, found->gone[i]);
+    return TL_OK;
+}
+
+static tl_status put_news(tl_scene *scene, tl_model *m, const tl_html *options, tl_piece *out)
+{
+    news found = {0};
+    tl_status status = compare(scene, m, &found) ? TL_OK : tl_fail_memory(&m->error);
+    if (status == TL_OK)
+        status = put_head(scene, m, options, out);
+    if (status == TL_OK && found.row_count)
+        status = tl_scene_shapes(m, found.rows, found.row_count, out);
+    if (status == TL_OK && found.gone_count)
+        status = put_gone(m, &found, out);
+    free(found.rows);
+    free(found.gone);
+    return status;
+}
+
+static tl_status put_block_fields(tl_model *m, const tl_html *options, tl_piece *out)
+{
+    size_t rows = m->blocks.table.rows;
+    for (size_t i = 0; i < options->block_field_count; i++) {
+        const tl_extra_field *field = &options->block_fields[i];
+        if (field->count != rows)
+            return tl_fail(&m->error, TL_E_ARGUMENT,
+                           "block_fields: '%s' has %zu values, and there are %zu blocks",
+                           field->name, field->count, rows);
+        tl_status status = tl_scene_field(&m->error, 0, i, field->values, NULL, rows, out);
+        if (status != TL_OK)
+            return status;
+    }
+    return TL_OK;
+}
+
+/* ---------------------------------------------------------------- the frame -------------- */
+
+tl_status tl_scene_write(tl_scene *scene, tl_model *m, const tl_html *options, tl_piece *out,
+                         tl_scene_facts *facts)
+{
+    tl_rows_tidy(m);
+    tl_scene_known *next = &scene->next;
+    size_t begin = out->length;
+    next->frames = scene->sent.frames + 1;
+    next->median = scene->sent.median;
+    if ((scene->sent.frames == 0 || scene->sent.structure != m->structure) &&
+        !find_median(m, &next->median))
+        return tl_fail_memory(&m->error);
+    next->structure = m->structure;
+    *facts = (tl_scene_facts){.time = m->time, .cycle = m->cycles};
+    tl_status status = put_news(scene, m, options, out);
+    facts->model = out->length > begin;
+    if (status == TL_OK)
+        status = tl_scene_blocks(m, out, &facts->largest);
+    if (status == TL_OK)
+        status = put_block_fields(m, options, out);
+    if (status == TL_OK && options->contacts != TL_HTML_CONTACTS_NONE)
+        status = tl_scene_contacts(m, options, out);
+    if (status == TL_OK)
+        status = tl_scene_run(m, options, out);
+    unsigned char *to = status == TL_OK ? tl_chunk_add(out, "DONE", 4, &m->error) : NULL;
+    if (!to)
+        return m->error.status;
+    tl_put_u32(to, scene->sent.frames);
+    return TL_OK;
+}
+
+void tl_scene_accept(tl_scene *scene)
+{
+    tl_scene_known sent = scene->sent;
+    scene->sent = scene->next;
+    scene->next = sent;
+}
+
+static void free_known(tl_scene_known *known)
+{
+    free(known->blocks);
+    free(known->head.data);
+}
+
+void tl_scene_free(tl_scene *scene)
+{
+    free_known(&scene->sent);
+    free_known(&scene->next);
+    *scene = (tl_scene){0};
+}

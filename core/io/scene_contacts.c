@@ -1,0 +1,154 @@
+/* scene_contacts.c - CONT and the extra fields of contacts. */
+#include "io/scene_parts.h"
+#include "io/scene_put.h"
+
+#include "contact/detection.h"
+#include "query/contact_fields.h"
+#include "query/law_states.h"
+
+#include <stdlib.h>
+
+/* Contacts that a thread takes at a time. */
+#define CHUNK 512
+/* Where there are more contacts, a frame has those that slip. */
+#define FEW 20000
+
+typedef struct contacts {
+    tl_model *model;
+    uint32_t *rows;          /* of contacts with points, in order of id */
+    tl_contact_facts *facts; /* of each */
+    size_t listed;
+    uint32_t *picked; /* of these, the contacts of the frame */
+    size_t count;
+    tl_law_states states;
+    unsigned char *id, *a, *b, *joint, *plane, *point, *normal, *force, *area, *gap, *slip, *state;
+} contacts;
+
+/* ---------------------------------------------------------------- which ------------------ */
+
+static void find_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
+{
+    (void)chunk, (void)thread;
+    const contacts *c = user;
+    for (size_t i = begin; i < end; i++)
+        c->facts[i] = tl_contact_facts_of(c->model, c->rows[i]);
+}
+
+static void pick(contacts *c, int32_t choice)
+{
+    bool all =
+        choice == TL_HTML_CONTACTS_ALL || (choice == TL_HTML_CONTACTS_FEW && c->listed <= FEW);
+    for (size_t i = 0; i < c->listed; i++)
+        if (all || c->facts[i].state == TL_CONTACT_SLIPPING)
+            c->picked[c->count++] = (uint32_t)i;
+}
+
+/* ---------------------------------------------------------------- columns ---------------- */
+
+/* The state "slip" of the contact's law, m: the mean over its points, weighted by their areas; NaN where it has none. */
+static double slip_of(const contacts *c, uint32_t row)
+{
+    for (size_t i = 0; i < c->states.count; i++) {
+        const tl_law_state *state = &c->states.at[i];
+        double value[3];
+        if (state->width != 1 || strcmp(state->state->name, "slip") != 0 ||
+            !tl_law_states_has(c->model, &c->states, state, row))
+            continue;
+        tl_law_state_of_contact(c->model, &c->states, state, row, value);
+        return value[0];
+    }
+    return NAN;
+}
+
+static void put_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
+{
+    (void)chunk, (void)thread;
+    const contacts *c = user;
+    for (size_t i = begin; i < end; i++) {
+        const tl_contact_facts *facts = &c->facts[c->picked[i]];
+        uint32_t row = c->rows[c->picked[i]];
+        tl_vec3 force = tl_v3_madd(facts->shear_force, facts->normal_force, facts->normal);
+        tl_put_u32(c->id + 4 * i, facts->id);
+        tl_put_u32(c->a + 4 * i, facts->a);
+        tl_put_u32(c->b + 4 * i, facts->b);
+        tl_put_u32(c->joint + 4 * i, facts->tag.joint);
+        tl_put_u32(c->plane + 4 * i, facts->tag.plane);
+        tl_put_vec3(c->point + 12 * i, tl_v3_sub(facts->point, c->model->origin));
+        tl_put_vec3(c->normal + 12 * i, facts->normal);
+        tl_put_vec3(c->force + 12 * i, force);
+        tl_put_f32(c->area + 4 * i, facts->area);
+        tl_put_f32(c->gap + 4 * i, facts->gap);
+        tl_put_f32(c->slip + 4 * i, slip_of(c, row));
+        tl_put_u8(c->state + i, (uint32_t)facts->state);
+    }
+}
+
+/* The contacts with the polygons in which their blocks touch: none are written yet, so a reader draws a disc of the area. */
+static tl_status put_contacts(contacts *c, tl_piece *out)
+{
+    size_t n = c->count, polygons = 0, corners = 0;
+    size_t bytes = 12 + 68 * n + tl_column_bytes(n, 1) + 8 * polygons + 12 * corners;
+    unsigned char *to = tl_chunk_add(out, "CONT", bytes, &c->model->error);
+    if (!to)
+        return c->model->error.status;
+    to = tl_put_u32(to, (uint32_t)n);
+    to = tl_put_u32(to, (uint32_t)polygons);
+    to = tl_put_u32(to, (uint32_t)corners);
+    c->id = tl_scene_column(&to, n, 4);
+    c->a = tl_scene_column(&to, n, 4);
+    c->b = tl_scene_column(&to, n, 4);
+    c->joint = tl_scene_column(&to, n, 4);
+    c->plane = tl_scene_column(&to, n, 4);
+    c->point = tl_scene_column(&to, n, 12);
+    c->normal = tl_scene_column(&to, n, 12);
+    c->force = tl_scene_column(&to, n, 12);
+    c->area = tl_scene_column(&to, n, 4);
+    c->gap = tl_scene_column(&to, n, 4);
+    c->slip = tl_scene_column(&to, n, 4);
+    c->state = tl_scene_column(&to, n, 1);
+    tl_parallel_for(c->model->pool, n, CHUNK, put_range, c);
+    return TL_OK;
+}
+
+static tl_status put_fields(const contacts *c, const tl_html *options, tl_piece *out)
+{
+    tl_error *error = &c->model->error;
+    for (size_t i = 0; i < options->contact_field_count; i++) {
+        const tl_extra_field *field = &options->contact_fields[i];
+        if (field->count != c->listed)
+            return tl_fail(error, TL_E_ARGUMENT,
+                           "contact_fields: '%s' has %zu values, and there are %zu contacts",
+                           field->name, field->count, c->listed);
+        tl_status status = tl_scene_field(error, 1, options->block_field_count + i, field->values,
+                                          c->picked, c->count, out);
+        if (status != TL_OK)
+            return status;
+    }
+    return TL_OK;
+}
+
+tl_status tl_scene_contacts(tl_model *m, const tl_html *options, tl_piece *out)
+{
+    contacts c = {.model = m};
+    tl_status status = tl_contacts_listed(m, &c.rows, &c.listed);
+    if (status == TL_OK)
+        status = tl_law_states_list(m, &c.states);
+    if (status == TL_OK) {
+        c.facts = malloc((c.listed + 1) * sizeof *c.facts);
+        c.picked = malloc((c.listed + 1) * sizeof *c.picked);
+        if (!c.facts || !c.picked)
+            status = tl_fail_memory(&m->error);
+    }
+    if (status == TL_OK) {
+        tl_parallel_for(m->pool, c.listed, CHUNK, find_range, &c);
+        pick(&c, options->contacts);
+        status = put_contacts(&c, out);
+    }
+    if (status == TL_OK)
+        status = put_fields(&c, options, out);
+    tl_law_states_free(&c.states);
+    free(c.picked);
+    free(c.facts);
+    free(c.rows);
+    return status;
+}

@@ -1,0 +1,80 @@
+/* scene_head.c - HEAD: what does not change with the blocks, as JSON. */
+#include "io/json.h"
+#include "io/scene_parts.h"
+
+static void put_vector(tl_piece *to, tl_vec3 v)
+{
+    const double numbers[3] = {v.x, v.y, v.z};
+    for (int i = 0; i < 3; i++) {
+        tl_json_put(to, i ? ", " : "[");
+        tl_json_number(to, numbers[i]);
+    }
+    tl_json_put(to, "]");
+}
+
+/* "name": NAME, "unit": UNIT */
+static void put_named(tl_piece *to, const char *name, const char *unit)
+{
+    tl_json_put(to, "\"name\": ");
+    tl_json_text(to, name);
+    tl_json_put(to, ", \"unit\": ");
+    tl_json_text(to, unit ? unit : "");
+}
+
+static void put_fields(tl_piece *to, const tl_html *options)
+{
+    size_t blocks = options->block_field_count, count = blocks + options->contact_field_count;
+    tl_json_put(to, ", \"fields\": [");
+    for (size_t i = 0; i < count; i++) {
+        const tl_extra_field *field =
+            i < blocks ? &options->block_fields[i] : &options->contact_fields[i - blocks];
+        tl_json_put(to, i ? ", {" : "{");
+        put_named(to, field->name, field->unit);
+        tl_json_put(to, i < blocks ? ", \"of\": \"blocks\"}" : ", \"of\": \"contacts\"}");
+    }
+    tl_json_put(to, "]");
+}
+
+/* A list that is begun, of named things with units. */
+typedef struct list {
+    tl_piece *to;
+    bool begun;
+} list;
+
+static void put_history(void *user, const char *name, const char *unit, double value)
+{
+    (void)value;
+    list *l = user;
+    tl_json_put(l->to, l->begun ? ", {" : "{");
+    put_named(l->to, name, unit);
+    tl_json_put(l->to, "}");
+    l->begun = true;
+}
+
+void tl_scene_head(const tl_model *m, const tl_html *options, double size, tl_piece *text)
+{
+    text->length = 0;
+    tl_json_put(text, "{\"format\": 1, \"program\": \"Talus " TALUS_VERSION "\", \"title\": ");
+    tl_json_text(text, options->title ? options->title : "");
+    tl_json_put(text, ", \"origin\": ");
+    put_vector(text, m->origin);
+    tl_json_put(text, ", \"gravity\": ");
+    put_vector(text, m->config.gravity);
+    tl_json_put(text, ", \"size\": ");
+    tl_json_number(text, size);
+    tl_json_put(text, ", \"groups\": [");
+    for (size_t i = 0; i < m->group_count; i++) {
+        tl_json_put(text, i ? ", " : "");
+        tl_json_text(text, m->groups[i]);
+    }
+    tl_json_put(text, "], \"joints\": [\"\"");
+    for (size_t i = 0; i < m->joint_count; i++) {
+        tl_json_put(text, ", ");
+        tl_json_text(text, m->joints[i].name);
+    }
+    tl_json_put(text, "]");
+    put_fields(text, options);
+    tl_json_put(text, ", \"histories\": [");
+    tl_scene_histories(m, put_history, &(list){text, false});
+    tl_json_put(text, "]}");
+}
