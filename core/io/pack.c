@@ -16,6 +16,11 @@
 /* Bytes whose text a thread writes at a time: a multiple of three, so the texts join. */
 #define TEXT_CHUNK ((size_t)3 << 16)
 
+/* Bytes of a piece that are tried, and the share of the length without looking for what repeats above which it is not looked
+ * for. */
+#define PROBE ((size_t)8 << 10)
+#define WORTH 0.9
+
 /* A stream begins with its method (deflate, a window of 32 kB) and level (fastest), and ends with a checksum. */
 #define HEAD_BYTES 2
 #define SUM_BYTES 4
@@ -33,23 +38,47 @@ static size_t piece_bytes(const packer *p, size_t i)
     return i + 1 < p->pieces ? PIECE : p->bytes - i * PIECE;
 }
 
-/* Packs one piece; 0 when out of memory. */
-static size_t pack_piece(const packer *p, size_t i)
+/* Compresses bytes into the place of piece i and ends at a whole byte, or ends the stream; how many bytes come of it, or 0
+ * when out of memory. */
+static size_t compress_bytes(const packer *p, size_t i, const unsigned char *from, size_t bytes,
+                             int strategy, int end)
 {
     z_stream z = {.next_in = NULL};
     /* Level 1 with a window of 2^15 bytes; the minus leaves out head and checksum. */
-    if (deflateInit2(&z, 1, Z_DEFLATED, -15, 8, Z_DEFAULT_STRATEGY) != Z_OK)
+    if (deflateInit2(&z, 1, Z_DEFLATED, -15, 8, strategy) != Z_OK)
         return 0;
-    z.next_in = (unsigned char *)(uintptr_t)(p->data + i * PIECE);
-    z.avail_in = (uInt)piece_bytes(p, i);
+    z.next_in = (unsigned char *)(uintptr_t)from;
+    z.avail_in = (uInt)bytes;
     z.next_out = p->packed + i * PACKED;
     z.avail_out = (uInt)PACKED;
-    bool last = i + 1 == p->pieces;
-    int code = deflate(&z, last ? Z_FINISH : Z_FULL_FLUSH);
-    bool good = z.avail_in == 0 && z.avail_out > 0 && code == (last ? Z_STREAM_END : Z_OK);
+    int code = deflate(&z, end);
+    bool good =
+        z.avail_in == 0 && z.avail_out > 0 && code == (end == Z_FINISH ? Z_STREAM_END : Z_OK);
     size_t length = good ? PACKED - z.avail_out : 0;
     deflateEnd(&z);
     return length;
+}
+
+/* Whether looking for what repeats is worth its time, three times that of coding alone: not in most numbers of moving blocks.
+ * A part of the piece tells. */
+static int strategy_of(const packer *p, size_t i, const unsigned char *from, size_t bytes)
+{
+    if (bytes < 4 * PROBE)
+        return Z_DEFAULT_STRATEGY;
+    from += (bytes - PROBE) / 2;
+    size_t repeats = compress_bytes(p, i, from, PROBE, Z_DEFAULT_STRATEGY, Z_FINISH);
+    size_t codes = compress_bytes(p, i, from, PROBE, Z_RLE, Z_FINISH);
+    return (double)repeats > WORTH * (double)codes ? Z_RLE : Z_DEFAULT_STRATEGY;
+}
+
+/* Packs one piece; 0 when out of memory. */
+static size_t pack_piece(const packer *p, size_t i)
+{
+    const unsigned char *from = p->data + i * PIECE;
+    size_t bytes = piece_bytes(p, i);
+    int strategy = strategy_of(p, i, from, bytes);
+    return compress_bytes(p, i, from, bytes, strategy,
+                          i + 1 == p->pieces ? Z_FINISH : Z_FULL_FLUSH);
 }
 
 static void pack_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)

@@ -14,6 +14,7 @@
 #include "state/frames.h"
 #include "state/histories.h"
 #include "state/kinds.h"
+#include "state/pages.h"
 #include "state/shapes.h"
 #include "state/sound.h"
 
@@ -344,6 +345,8 @@ static tl_status fill(tl_model *m, const tl_archive *a, tl_drive_again_fn again,
         status = tl_frames_restore(m, a);
     if (status == TL_OK)
         status = tl_histories_restore(m, a);
+    if (status == TL_OK)
+        status = tl_pages_restore(m, a);
     return status == TL_OK ? read_drives(m, a, again, user) : status;
 }
 

@@ -9,6 +9,7 @@
 #include "state/frames.h"
 #include "state/histories.h"
 #include "state/kinds.h"
+#include "state/pages.h"
 #include "state/shapes.h"
 
 #include <stdio.h>
@@ -107,6 +108,7 @@ static void save_all(tl_archive_writer *w, tl_model *m)
     w->lost = w->lost || !saved;
     w->lost = !tl_frames_save(m, w) || w->lost;
     w->lost = !tl_histories_save(m, w) || w->lost;
+    tl_pages_save(m, w);
     tl_laws_save(m, w);
     tl_damping_save(m, w);
     if (m->detect)

@@ -1,5 +1,5 @@
--- output.lua - how long files of a large model take: a frame for ParaView, each of its files, and the block model in JSON
--- to and fro.
+-- output.lua - how long files of a large model take: a frame for ParaView, each of its files, a frame of a page for a
+-- browser, the first one of all the model and those that follow, and the block model in JSON to and fro.
 --
 --     talus tests/bench/output.lua blocks=100000 threads=1,2 reps=5 folder=/dev/shm
 --
@@ -54,6 +54,18 @@ local function measure(count, threads, given)
         end
         frames("vtk_" .. part, only)
     end
+    local page = stem .. ".html"
+    local function pages(what, options, first)
+        if not first then
+            model:write_html(stem, options)
+        end
+        row(what, seconds(threads, given.reps, function() model:write_html(stem, options) end,
+            function() return first and os.remove(page) end))
+        os.remove(page)
+    end
+    pages("html_first", { contacts = false }, true)
+    pages("html", { contacts = false })
+    pages("html_contacts", { contacts = true })
     local file = stem .. ".json"
     row("write_blocks", seconds(threads, given.reps, function() model:write_blocks(file) end,
         function() end))

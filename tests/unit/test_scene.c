@@ -1,0 +1,332 @@
+/* test_scene.c - the chunks of a frame: what is sent once, what is sent again, and how long each is.
+ *
+ * tests/python/test_scene.py reads what is in them, with a reader of its own. */
+#include "check.h"
+
+#include "io/pack.h"
+#include "io/scene.h"
+
+#include <talus/talus.h>
+#include <zlib.h>
+
+/* ---------------------------------------------------------------- models ----------------- */
+
+static tl_model *empty_model(int64_t threads)
+{
+    tl_model_config config = tl_model_config_default();
+    config.threads = threads;
+    tl_model *m = NULL;
+    tl_error error = {TL_OK, ""};
+    tl_plugins_load_default();
+    CHECK_INT(tl_model_create(&config, &m, &error), TL_OK);
+    return m;
+}
+
+static void add_box(tl_model *m, double x, double size)
+{
+    const double min[] = {x, 0, 0}, max[] = {x + size, size, size};
+    const tl_value values[] = {{.key = "min", .type = TL_VALUE_NUMBERS, .data = min, .count = 3},
+                               {.key = "max", .type = TL_VALUE_NUMBERS, .data = max, .count = 3},
+                               {.key = "density", .type = TL_VALUE_NUMBER, .number = 2500}};
+    const tl_args args = {values, 3};
+    tl_generate_summary summary;
+    CHECK_INT(tl_generate(m, "box", &args, &summary), TL_OK);
+}
+
+static void cut(tl_model *m, const char *joint, double x)
+{
+    const double origin[] = {x, 0, 0};
+    const tl_value values[] = {
+        {.key = "joint", .type = TL_VALUE_STRING, .text = joint},
+        {.key = "dip", .type = TL_VALUE_NUMBER, .number = 90},
+        {.key = "dip_direction", .type = TL_VALUE_NUMBER, .number = 90},
+        {.key = "origin", .type = TL_VALUE_NUMBERS, .data = origin, .count = 3}};
+    const tl_args args = {values, 4};
+    tl_generate_summary summary;
+    CHECK_INT(tl_generate(m, "joint", &args, &summary), TL_OK);
+}
+
+static void set_law(tl_model *m)
+{
+    const tl_value law[] = {{.key = "kn", .type = TL_VALUE_NUMBER, .number = 1e8},
+                            {.key = "ks", .type = TL_VALUE_NUMBER, .number = 1e8}};
+    const tl_args args = {law, 2};
+    CHECK_INT(tl_joint_law(m, "*", "elastic", &args), TL_OK);
+}
+
+/* ---------------------------------------------------------------- chunks ----------------- */
+
+#define MOST_CHUNKS 32
+
+typedef struct frame {
+    char letters[MOST_CHUNKS][5];
+    const unsigned char *payload[MOST_CHUNKS];
+    uint32_t length[MOST_CHUNKS];
+    size_t count;
+    tl_piece bytes;
+    tl_scene_facts facts;
+} frame;
+
+static uint32_t u32(const unsigned char *at)
+{
+    return (uint32_t)at[0] | (uint32_t)at[1] << 8 | (uint32_t)at[2] << 16 | (uint32_t)at[3] << 24;
+}
+
+static void free_frame(frame *f)
+{
+    free(f->bytes.data);
+    *f = (frame){.count = 0};
+}
+
+/* Writes the next frame and finds its chunks, which fill it. */
+static tl_status write_frame(frame *f, tl_scene *scene, tl_model *m, const tl_html *options)
+{
+    const tl_html none = tl_html_default();
+    free_frame(f);
+    tl_status status = tl_scene_write(scene, m, options ? options : &none, &f->bytes, &f->facts);
+    size_t at = 0;
+    while (status == TL_OK && at + 8 <= f->bytes.length && f->count < MOST_CHUNKS) {
+        memcpy(f->letters[f->count], f->bytes.data + at, 4);
+        f->length[f->count] = u32(f->bytes.data + at + 4);
+        f->payload[f->count] = f->bytes.data + at + 8;
+        at += 8 + ((size_t)f->length[f->count] + 3) / 4 * 4;
+        f->count++;
+    }
+    if (status == TL_OK)
+        CHECK_INT(at, f->bytes.length);
+    return status;
+}
+
+/* "HEAD SHAP FRAM" ... */
+static const char *names_of(const frame *f)
+{
+    static char text[6 * MOST_CHUNKS];
+    text[0] = '\0';
+    for (size_t i = 0; i < f->count; i++) {
+        strcat(text, i ? " " : "");
+        strcat(text, f->letters[i]);
+    }
+    return text;
+}
+
+/* The first number of a chunk, which is how many things it has; 0 where there is no such chunk. */
+static uint32_t first_of(const frame *f, const char *letters)
+{
+    for (size_t i = 0; i < f->count; i++)
+        if (strcmp(f->letters[i], letters) == 0)
+            return u32(f->payload[i] + (strcmp(letters, "FRAM") == 0 ? 16 : 0));
+    return 0;
+}
+
+static uint32_t length_of(const frame *f, const char *letters)
+{
+    for (size_t i = 0; i < f->count; i++)
+        if (strcmp(f->letters[i], letters) == 0)
+            return f->length[i];
+    return 0;
+}
+
+TEST(what_is_sent_once)
+{
+    tl_model *m = empty_model(1);
+    tl_scene scene = {0};
+    frame f = {.count = 0};
+    add_box(m, 0, 4);
+    cut(m, "east", 1);
+    set_law(m);
+    CHECK_INT(write_frame(&f, &scene, m, NULL), TL_OK);
+    CHECK_TEXT(names_of(&f), "HEAD SHAP FRAM CONT LINE DONE");
+    CHECK(f.facts.model);
+    CHECK_INT(first_of(&f, "SHAP"), 2);
+    CHECK_INT(first_of(&f, "FRAM"), 2);
+    CHECK_INT(first_of(&f, "CONT"), 1);
+    CHECK_INT(first_of(&f, "DONE"), 0);
+    /* two boxes: 8 vertices, 6 faces, 24 corners each */
+    CHECK_INT(length_of(&f, "SHAP"), 16 + 2 * 40 + 16 * 12 + 12 * 10 + 48 * 2);
+    CHECK_INT(length_of(&f, "FRAM"), 20 + 2 * 84 + 4);
+    CHECK_INT(length_of(&f, "CONT"), 12 + 68 + 4);
+    CHECK_INT(length_of(&f, "LINE"), 64 + 4);
+
+    CHECK_INT(write_frame(&f, &scene, m, NULL), TL_OK); /* the one before was not sent */
+    CHECK_TEXT(names_of(&f), "HEAD SHAP FRAM CONT LINE DONE");
+    tl_scene_accept(&scene);
+    const tl_html without = {.size = sizeof without, .contacts = TL_HTML_CONTACTS_NONE};
+    CHECK_INT(write_frame(&f, &scene, m, &without), TL_OK);
+    CHECK_TEXT(names_of(&f), "FRAM LINE DONE");
+    CHECK(!f.facts.model);
+    CHECK_INT(first_of(&f, "DONE"), 1);
+    tl_scene_accept(&scene);
+    tl_model_set_gravity(m, (tl_vec3){0, 1, -9});
+    CHECK_INT(write_frame(&f, &scene, m, &without), TL_OK);
+    CHECK_TEXT(names_of(&f), "HEAD FRAM LINE DONE");
+    CHECK(f.facts.model);
+    free_frame(&f);
+    tl_scene_free(&scene);
+    tl_model_destroy(m);
+}
+
+/* Writes and sends a frame without contacts; its chunks. */
+static const char *next_frame(frame *f, tl_scene *scene, tl_model *m)
+{
+    const tl_html without = {.size = sizeof without, .contacts = TL_HTML_CONTACTS_NONE};
+    CHECK_INT(write_frame(f, scene, m, &without), TL_OK);
+    tl_scene_accept(scene);
+    return names_of(f);
+}
+
+TEST(what_has_changed_is_sent_again)
+{
+    tl_model *m = empty_model(1);
+    tl_scene scene = {0};
+    frame f = {.count = 0};
+    add_box(m, 0, 4);
+    add_box(m, 6, 1);
+    CHECK_TEXT(next_frame(&f, &scene, m), "HEAD SHAP FRAM LINE DONE");
+    CHECK_TEXT(next_frame(&f, &scene, m), "FRAM LINE DONE");
+
+    cut(m, "east", 2); /* two blocks in the place of the first */
+    next_frame(&f, &scene, m);
+    CHECK_INT(first_of(&f, "SHAP"), 2);
+    CHECK_INT(first_of(&f, "FRAM"), 3);
+    CHECK_INT(first_of(&f, "GONE"), 1);
+
+    const tl_id parts[] = {3, 4};
+    CHECK_INT(tl_blocks_join(m, parts, 2), TL_OK);
+    CHECK_TEXT(next_frame(&f, &scene, m), "SHAP FRAM LINE DONE");
+    CHECK_INT(first_of(&f, "SHAP"), 2);
+
+    const tl_id small = 2;
+    const tl_vec3 unchanged = {NAN, NAN, NAN};
+    tl_block_set set = {sizeof(tl_block_set), NAN, "small", unchanged, unchanged};
+    CHECK_INT(tl_blocks_set(m, &small, 1, &set), TL_OK);
+    CHECK_TEXT(next_frame(&f, &scene, m), "HEAD SHAP FRAM LINE DONE");
+    CHECK_INT(first_of(&f, "SHAP"), 1);
+    set.group = NULL;
+    set.density = 1000;
+    CHECK_INT(tl_blocks_set(m, &small, 1, &set), TL_OK);
+    CHECK_TEXT(next_frame(&f, &scene, m), "SHAP FRAM LINE DONE");
+
+    CHECK_INT(tl_blocks_delete(m, &small, 1), TL_OK);
+    next_frame(&f, &scene, m);
+    CHECK_INT(first_of(&f, "GONE"), 1);
+    CHECK_INT(first_of(&f, "SHAP"), 0);
+    CHECK_INT(first_of(&f, "FRAM"), 2);
+    CHECK_TEXT(next_frame(&f, &scene, m), "FRAM LINE DONE");
+    free_frame(&f);
+    tl_scene_free(&scene);
+    tl_model_destroy(m);
+}
+
+TEST(an_empty_model_is_a_frame)
+{
+    tl_model *m = empty_model(1);
+    tl_scene scene = {0};
+    frame f = {.count = 0};
+    CHECK_TEXT(next_frame(&f, &scene, m), "HEAD FRAM LINE DONE");
+    CHECK_INT(first_of(&f, "FRAM"), 0);
+    CHECK(f.facts.largest == 0);
+    CHECK_INT(write_frame(&f, &scene, m, NULL), TL_OK);
+    CHECK_INT(first_of(&f, "CONT"), 0);
+    free_frame(&f);
+    tl_scene_free(&scene);
+    tl_model_destroy(m);
+}
+
+TEST(fields_have_a_value_for_each)
+{
+    tl_model *m = empty_model(1);
+    tl_scene scene = {0};
+    frame f = {.count = 0};
+    add_box(m, 0, 4);
+    cut(m, "east", 1);
+    const double values[] = {1, NAN, 3};
+    tl_extra_field field = {.name = "safety", .unit = "m", .values = values, .count = 2};
+    tl_html html = {.size = sizeof html, .block_fields = &field, .block_field_count = 1};
+    CHECK_INT(write_frame(&f, &scene, m, &html), TL_OK);
+    CHECK_TEXT(names_of(&f), "HEAD SHAP FRAM FIEL CONT LINE DONE");
+    CHECK_INT(length_of(&f, "FIEL"), 12 + 8);
+    field.count = 3;
+    CHECK_INT(write_frame(&f, &scene, m, &html), TL_E_ARGUMENT);
+    CHECK_CONTAINS(tl_model_error(m)->text, "'safety' has 3 values, and there are 2 blocks");
+    html.block_field_count = 0;
+    html.contact_fields = &field;
+    html.contact_field_count = 1;
+    CHECK_INT(write_frame(&f, &scene, m, &html), TL_E_ARGUMENT);
+    CHECK_CONTAINS(tl_model_error(m)->text, "'safety' has 3 values, and there are 1 contacts");
+    free_frame(&f);
+    tl_scene_free(&scene);
+    tl_model_destroy(m);
+}
+
+/* ---------------------------------------------------------------- packing ---------------- */
+
+static int digit_of(unsigned char letter)
+{
+    static const char letters[] =
+        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    const char *at = letter ? strchr(letters, letter) : NULL;
+    return at ? (int)(at - letters) : -1;
+}
+
+/* The bytes of a text; the caller's. */
+static unsigned char *decoded(const tl_piece *text, size_t *bytes)
+{
+    unsigned char *out = malloc(text->length + 1);
+    *bytes = 0;
+    for (size_t i = 0; i + 3 < text->length; i += 4) {
+        uint32_t bits = 0;
+        int fill = (text->data[i + 2] == '=') + (text->data[i + 3] == '=');
+        for (int k = 0; k < 4; k++)
+            bits = bits << 6 | (uint32_t)(k >= 4 - fill ? 0 : digit_of(text->data[i + (size_t)k]));
+        for (int k = 0; k < 3 - fill; k++)
+            out[(*bytes)++] = (unsigned char)(bits >> (16 - 8 * k));
+    }
+    return out;
+}
+
+/* Bytes of all kinds: zeros, noise, texts, numbers that count. */
+static void fill(unsigned char *data, size_t bytes, uint64_t *state)
+{
+    for (size_t i = 0; i < bytes; i++)
+        switch (i >> 15 & 3) {
+        case 0: data[i] = 0; break;
+        case 1: data[i] = (unsigned char)(check_random(state) * 256); break;
+        case 2: data[i] = (unsigned char)"some words again and again; "[i % 28]; break;
+        default: data[i] = (unsigned char)(i >> 2 >> (8 * (i & 3))); break;
+        }
+}
+
+TEST(what_is_packed_unpacks)
+{
+    static const size_t sizes[] = {0,      1,      2,      3,      4,      5,
+                                   100,    32768,  32769,  196607, 262143, 262144,
+                                   262145, 524288, 524289, 700001, 3000000};
+    tl_model *one = empty_model(1), *three = empty_model(3);
+    uint64_t state = 7;
+    for (size_t k = 0; k < sizeof sizes / sizeof sizes[0]; k++) {
+        unsigned char *data = malloc(sizes[k] + 1), *out = malloc(sizes[k] + 1);
+        tl_piece text = {0}, again = {0};
+        fill(data, sizes[k], &state);
+        CHECK_INT(tl_pack(one, data, sizes[k], &text), TL_OK);
+        CHECK_INT(tl_pack(three, data, sizes[k], &again), TL_OK);
+        CHECK(text.length == again.length && memcmp(text.data, again.data, text.length) == 0);
+        size_t packed;
+        unsigned char *stream = decoded(&text, &packed);
+        uLongf length = (uLongf)sizes[k] + 1;
+        CHECK_INT(uncompress(out, &length, stream, (uLong)packed), Z_OK);
+        CHECK_INT(length, sizes[k]);
+        CHECK(memcmp(data, out, sizes[k]) == 0);
+        CHECK(sizes[k] < 100000 || packed < sizes[k]);
+        free(stream);
+        free(text.data);
+        free(again.data);
+        free(data);
+        free(out);
+    }
+    tl_model_destroy(one);
+    tl_model_destroy(three);
+}
+
+TEST_MAIN(RUN(what_is_sent_once), RUN(what_has_changed_is_sent_again),
+          RUN(an_empty_model_is_a_frame), RUN(fields_have_a_value_for_each),
+          RUN(what_is_packed_unpacks))
