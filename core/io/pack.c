@@ -20,6 +20,8 @@
  * for. */
 #define PROBE ((size_t)8 << 10)
 #define WORTH 0.9
+/* No strategy. */
+#define NO_MEMORY (-1)
 
 /* A stream begins with its method (deflate, a window of 32 kB) and level (fastest), and ends with a checksum. */
 #define HEAD_BYTES 2
@@ -60,7 +62,7 @@ static size_t compress_bytes(const packer *p, size_t i, const unsigned char *fro
 }
 
 /* Whether looking for what repeats is worth its time, three times that of coding alone: not in most numbers of moving blocks.
- * A part of the piece tells. */
+ * A part of the piece tells. NO_MEMORY: nothing does. */
 static int strategy_of(const packer *p, size_t i, const unsigned char *from, size_t bytes)
 {
     if (bytes < 4 * PROBE)
@@ -68,6 +70,8 @@ static int strategy_of(const packer *p, size_t i, const unsigned char *from, siz
     from += (bytes - PROBE) / 2;
     size_t repeats = compress_bytes(p, i, from, PROBE, Z_DEFAULT_STRATEGY, Z_FINISH);
     size_t codes = compress_bytes(p, i, from, PROBE, Z_RLE, Z_FINISH);
+    if (repeats == 0 || codes == 0)
+        return NO_MEMORY;
     return (double)repeats > WORTH * (double)codes ? Z_RLE : Z_DEFAULT_STRATEGY;
 }
 
@@ -77,6 +81,8 @@ static size_t pack_piece(const packer *p, size_t i)
     const unsigned char *from = p->data + i * PIECE;
     size_t bytes = piece_bytes(p, i);
     int strategy = strategy_of(p, i, from, bytes);
+    if (strategy == NO_MEMORY)
+        return 0;
     return compress_bytes(p, i, from, bytes, strategy,
                           i + 1 == p->pieces ? Z_FINISH : Z_FULL_FLUSH);
 }

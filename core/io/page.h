@@ -9,6 +9,9 @@
 /* Longest page, bytes: what a browser opens without trouble. */
 #define TL_PAGE_MOST 200000000
 
+/* Most bytes at the end of a page that are compared. */
+#define TL_PAGE_CHECKED 4096
+
 /* How a page was left: it goes on only where it still is so. */
 typedef struct tl_page_end {
     uint64_t frames;

@@ -28,8 +28,6 @@ static const char opening[] = "<!--", closing[] = "-->\n", blank[] = "    ";
 
 enum { HALF = 4 };
 
-/* Most bytes at the end of a page that are compared. */
-#define CHECKED ((uint64_t)65536)
 /* Bytes that are copied at a time. */
 #define COPIED ((size_t)1 << 18)
 
@@ -55,14 +53,12 @@ static bool read_at(int file, void *to, size_t bytes, uint64_t at)
 /* The digest of the last bytes of what ends at `at`; false when they are not there. */
 static bool digest_of(int file, uint64_t at, uint64_t checked, tl_hash *digest)
 {
-    unsigned char *bytes = malloc(checked + 1);
-    bool good = bytes && checked <= at && read_at(file, bytes, checked, at - checked);
-    if (good) {
-        *digest = tl_hash_start();
-        tl_hash_bytes(digest, bytes, checked);
-    }
-    free(bytes);
-    return good;
+    unsigned char bytes[TL_PAGE_CHECKED];
+    if (checked > sizeof bytes || checked > at || !read_at(file, bytes, checked, at - checked))
+        return false;
+    *digest = tl_hash_start();
+    tl_hash_bytes(digest, bytes, checked);
+    return true;
 }
 
 tl_page_stand tl_page_look(const char *path, const tl_page_end *end)
@@ -75,8 +71,8 @@ tl_page_stand tl_page_look(const char *path, const tl_page_end *end)
     tl_hash digest;
     char tail[2 * HALF];
     if (fstat(file, &info) == 0 && S_ISREG(info.st_mode) && (uint64_t)info.st_size >= end->at &&
-        end->checked <= CHECKED && digest_of(file, end->at, end->checked, &digest) &&
-        digest.a == end->digest.a && digest.b == end->digest.b)
+        digest_of(file, end->at, end->checked, &digest) && digest.a == end->digest.a &&
+        digest.b == end->digest.b)
         stand = (uint64_t)info.st_size == end->at + sizeof tail &&
                         read_at(file, tail, sizeof tail, end->at) &&
                         memcmp(tail, "<!---->\n", sizeof tail) == 0
@@ -89,7 +85,7 @@ tl_page_stand tl_page_look(const char *path, const tl_page_end *end)
 /* Notes that a page ends with this element, in front of `at`. */
 static void note_end(tl_page_end *end, uint64_t at, const tl_piece *element)
 {
-    size_t checked = element->length < CHECKED ? element->length : (size_t)CHECKED;
+    size_t checked = element->length < TL_PAGE_CHECKED ? element->length : TL_PAGE_CHECKED;
     end->at = at;
     end->checked = checked;
     end->digest = tl_hash_start();

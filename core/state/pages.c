@@ -11,10 +11,9 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Longest prefix, page and part that is compared, bytes, in a file. */
+/* Longest prefix and page, bytes, in a file. */
 #define LONGEST_PREFIX 4096
 #define LONGEST_PAGE ((uint64_t)1 << 40)
-#define MOST_CHECKED ((uint64_t)1 << 20)
 
 enum { FRAMES, AT, CHECKED, DIGEST_A, DIGEST_B, NUMBERS };
 
@@ -45,7 +44,7 @@ void tl_pages_save(const tl_model *m, tl_archive_writer *w)
 static bool end_is_sound(const tl_page_end *end)
 {
     return end->frames > 0 && end->frames <= UINT32_MAX && end->at <= LONGEST_PAGE &&
-           end->checked <= MOST_CHECKED && end->checked <= end->at;
+           end->checked <= TL_PAGE_CHECKED && end->checked <= end->at;
 }
 
 static tl_status restore_page(tl_model *m, size_t k, const tl_archive *a)

@@ -25,6 +25,15 @@ local function text_of(name)
     return text
 end
 
+-- The frames of a page, without what is in them: ids of contacts depend on what was asked before.
+local function frames_of(name)
+    local frames = {}
+    for frame in text_of(name):gmatch '<script type="text/talus"[^>]*>[^<]+</script>' do
+        frames[#frames + 1] = frame:match "^[^>]*"
+    end
+    return table.concat(frames, "\n")
+end
+
 local COULOMB = { kn = 1e8, ks = 1e8, friction = 30 }
 
 -- Name and work of each call, in order; what a call answers is compared, too (a function: what that answers when there is
@@ -137,6 +146,17 @@ local calls = {
         return written
     end },
     { "write_section", function(m) m.model:write_section(TMP .. "/cut", { dip = 90, dip_direction = 0, origin = { 3, 3, 3 } }) end },
+    { "write_html", function(m)
+        local function written() return frames_of(TMP .. "/page.html") end
+        m.model:write_html(TMP .. "/page", { block_fields = { "speed", id = function(block) return block.id end },
+            contact_fields = { "gap" }, keyblocks = { friction = 30 } })
+        return written
+    end },
+    { "write_html again", function(m)
+        local function written() return frames_of(TMP .. "/page.html") end
+        m.model:write_html(TMP .. "/page", { title = "page" })
+        return written
+    end },
     { "write_blocks", function(m) m.model:write_blocks(TMP .. "/blocks.json") end },
     { "last cycles", function(m) return m.model:cycle(3).ratio end, run = true },
     { "blocks", function(m)
