@@ -92,7 +92,7 @@ static tl_status put_bytes(tl_model *m, const char letters[5], const void *data,
                            tl_piece *out)
 {
     size_t before = out->length;
-    unsigned char *to = tl_chunk_add(out, letters, tl_column_bytes(bytes, 1), &m->error);
+    unsigned char *to = tl_chunk_add(out, letters, tl_scene_column_bytes(bytes, 1), &m->error);
     if (!to)
         return m->error.status;
     tl_put_u32(out->data + before + 4, (uint32_t)bytes); /* what follows is no more of it */

@@ -4,6 +4,7 @@
 
 #include "contact/detection.h"
 #include "query/contact_fields.h"
+#include "query/contact_polygons.h"
 #include "query/law_states.h"
 
 #include <stdlib.h>
@@ -83,17 +84,28 @@ static void put_range(void *user, size_t begin, size_t end, size_t chunk, unsign
     }
 }
 
-/* The contacts with the polygons in which their blocks touch: none are written yet, so a reader draws a disc of the area. */
-static tl_status put_contacts(contacts *c, tl_piece *out)
+/* The polygons, contact by contact. */
+static void put_polygons(const tl_contact_polygons *p, unsigned char *to)
 {
-    size_t n = c->count, polygons = 0, corners = 0;
-    size_t bytes = 12 + 68 * n + tl_column_bytes(n, 1) + 8 * polygons + 12 * corners;
+    for (size_t i = 0; i < p->contacts; i++)
+        for (uint32_t k = p->first[i]; k < p->first[i + 1]; k++)
+            to = tl_put_u32(to, (uint32_t)i);
+    for (size_t k = 0; k < p->polygons; k++)
+        to = tl_put_u32(to, p->start[k + 1] - p->start[k]);
+    for (size_t k = 0; k < p->corners; k++)
+        to = tl_put_vec3(to, p->corner[k]);
+}
+
+static tl_status put_columns(contacts *c, const tl_contact_polygons *p, tl_piece *out)
+{
+    size_t n = c->count;
+    size_t bytes = 12 + 68 * n + tl_scene_column_bytes(n, 1) + 8 * p->polygons + 12 * p->corners;
     unsigned char *to = tl_chunk_add(out, "CONT", bytes, &c->model->error);
     if (!to)
         return c->model->error.status;
     to = tl_put_u32(to, (uint32_t)n);
-    to = tl_put_u32(to, (uint32_t)polygons);
-    to = tl_put_u32(to, (uint32_t)corners);
+    to = tl_put_u32(to, (uint32_t)p->polygons);
+    to = tl_put_u32(to, (uint32_t)p->corners);
     c->id = tl_scene_column(&to, n, 4);
     c->a = tl_scene_column(&to, n, 4);
     c->b = tl_scene_column(&to, n, 4);
@@ -107,7 +119,23 @@ static tl_status put_contacts(contacts *c, tl_piece *out)
     c->slip = tl_scene_column(&to, n, 4);
     c->state = tl_scene_column(&to, n, 1);
     tl_parallel_for(c->model->pool, n, CHUNK, put_range, c);
+    put_polygons(p, to);
     return TL_OK;
+}
+
+static tl_status put_contacts(contacts *c, tl_piece *out)
+{
+    tl_contact_polygons polygons = {0};
+    uint32_t *rows = malloc((c->count + 1) * sizeof *rows);
+    for (size_t i = 0; rows && i < c->count; i++)
+        rows[i] = c->rows[c->picked[i]];
+    tl_status status = rows ? tl_contact_polygons_find(c->model, rows, c->count, &polygons)
+                            : tl_fail_memory(&c->model->error);
+    if (status == TL_OK)
+        status = put_columns(c, &polygons, out);
+    tl_contact_polygons_free(&polygons);
+    free(rows);
+    return status;
 }
 
 static tl_status put_fields(const contacts *c, const tl_html *options, tl_piece *out)

@@ -57,7 +57,7 @@ static inline unsigned char *tl_put_vec3(unsigned char *to, tl_vec3 value)
 /* ---- chunks ---- */
 
 /* Bytes of a column, up to the next multiple of four. */
-static inline size_t tl_column_bytes(size_t count, size_t bytes)
+static inline size_t tl_scene_column_bytes(size_t count, size_t bytes)
 {
     return (count * bytes + 3) / 4 * 4;
 }
@@ -66,7 +66,7 @@ static inline size_t tl_column_bytes(size_t count, size_t bytes)
 static inline unsigned char *tl_scene_column(unsigned char **next, size_t count, size_t bytes)
 {
     unsigned char *column = *next;
-    *next += tl_column_bytes(count, bytes);
+    *next += tl_scene_column_bytes(count, bytes);
     return column;
 }
 

@@ -353,8 +353,21 @@ def check_contact(head, c, told, size):
     expect(near(c["gap"], told["gap"], EXACT * abs(told["gap"])), f"{name}: gap")
     expect(near(c["slip"], told["slip"], 1e-6 * abs(told["slip"])), f"{name}: slip {c['slip']}, not {told['slip']}")
     expect(STATES[c["state"]] == told["state"], f"{name}: state")
+    check_polygons(name, c, told, size)
+
+
+def check_polygons(name, c, told, size):
+    """A patch is one polygon of the contact's area, square to its normal; a field contact has those of its surface."""
+    expect(c["polygons"], f"{name}: no polygon")
+    whole = (0.0, 0.0, 0.0)
     for polygon in c["polygons"]:
         expect(len(polygon) >= 3, f"{name}: a polygon of {len(polygon)} corners")
+        for b, d in zip(polygon[1:], polygon[2:]):
+            whole = add(whole, cross(add(b, polygon[0], -1), add(d, polygon[0], -1)), 0.5)
+        expect(min(math.dist(corner, c["point"]) for corner in polygon) < size / 10, f"{name}: a polygon far from it")
+    expect(dot(whole, c["normal"]) > 0, f"{name}: its polygons are clockwise")
+    if len(c["polygons"]) == 1:
+        expect(near(dot(whole, c["normal"]), told["area"], 1e-3 * told["area"]), f"{name}: a polygon of {dot(whole, c['normal'])} m2")
 
 
 def check_fields(head, frame, told):
