@@ -397,7 +397,7 @@ const tl_lua_topic tl_lua_topics[] = {
      .usage = "twin = model:copy()",
      .doc =
          "The same model once more in memory: equal state, and equal bits after equal calls from "
-         "then on. The functions of drives are shared; VTK frames of the copy begin with 0."},
+         "then on. The functions of drives are shared; frames of the copy begin with 0."},
     {.name = "save",
      .usage = "model:save(\"out/run.talus\")",
      .doc =

@@ -1073,7 +1073,7 @@ function talus.write_file(path, text) end
 ---@return string
 function Model:state_hash() end
 
---- The same model once more in memory: equal state, and equal bits after equal calls from then on. The functions of drives are shared; VTK frames of the copy begin with 0.
+--- The same model once more in memory: equal state, and equal bits after equal calls from then on. The functions of drives are shared; frames of the copy begin with 0.
 ---
 ---     twin = model:copy()
 ---@return talus.Model
