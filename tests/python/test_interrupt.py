@@ -55,6 +55,8 @@ ENDLESS = {
     "block model": 'rock(12):write_blocks("out/rock.json") say "ready" while true do '
                    'talus.model {}:generate("blocks", { file = "out/rock.json" }) end',
     "VTK": 'local m = rock(9) m:cycle(1) say "ready" while true do m:write_vtk("out/run") end',
+    "page": 'local m = rock(9) m:cycle(1) say "ready" while true do m:write_html("out/run", { block_fields = { '
+            'twice = function(block) return 2 * block.volume end } }) end',
     "blocks to a file": 'local m = rock(12) say "ready" while true do m:write_blocks("out/rock.json") end',
     "coroutine": 'local m = rock(3) local go = coroutine.wrap(function() while true do m:cycle(2) end end) say "ready" go()',
 }
@@ -95,6 +97,17 @@ def check_series(what, folder):
                 fault(what, "half a file", name)
 
 
+def check_pages(what, folder):
+    for page in glob.glob(f"{folder}/out/*.html"):
+        with open(page, encoding="utf-8") as file:
+            text = file.read()
+        frames = re.findall(r'<script type="text/talus" data-frame="(\d+)"', text)
+        if not re.search(r"</script>\n+<!---->\n$", text):
+            fault(what, "a page without its end", text[-80:])
+        if frames != [str(i) for i in range(len(frames))]:
+            fault(what, "frames of a page", frames)
+
+
 def check_endless(draw):
     """Uncaught, the error ends the program with status 130 and one sentence with its place."""
     for what, script in ENDLESS.items():
@@ -111,6 +124,7 @@ def check_endless(draw):
                     r"talus: script\.lua:\d+: [^\n]*stopped by Ctrl-C[^\n]*\n", errors):
                 fault(what, process.returncode, errors)
             check_series(what, folder)
+            check_pages(what, folder)
 
 
 CAUGHT = """

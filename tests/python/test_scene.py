@@ -88,6 +88,8 @@ m:joint("K", "slip_weakening", { kn = 1e8, ks = 5e7, friction = 25, residual_fri
 m:damping("local", { alpha = 0.3 })
 m:history { name = "largest", every = 50, value = function(one) return one:blocks():max("volume") end }
 m:history { name = "pair", every = 50, value = function() return { 1.5, 2.5 } end }
+m:history { name = "energy", every = 50, value = "kinetic" }
+m:history { name = "way", every = 50, of = m:blocks { group = "rock" }, field = "displacement", take = "mean" }
 
 local fields = { title = hostile, block_fields = { "kinetic_energy", odd = function(b) return b.id % 2 == 1 and b.id / 8 or nil end },
     contact_fields = { width = function(c) return c.area ^ 0.5 end, gap = "gap" } }
@@ -450,8 +452,10 @@ def main():
         expect(given["data-model"] == str(int(bool(frame["news"]))), f"frame {number}: whether it has news of the model")
         check_frame(number, reader, frame, told[number])
         if number in (0, 5):
-            expect([h["name"] for h in reader.head["histories"]] == ["largest", "pair 1", "pair 2"], "names of histories")
-            expect(frame["histories"][1:] == (1.5, 2.5), "values of histories")
+            names = [(h["name"], h["unit"]) for h in reader.head["histories"]]
+            expect(names == [("largest", ""), ("pair 1", ""), ("pair 2", ""), ("energy", "J"), ("way 1", "m"), ("way 2", "m"), ("way 3", "m")],
+                   f"names of histories: {names}")
+            expect(frame["histories"][1:3] == (1.5, 2.5), "values of histories")
     expect(news[:3] == [["HEAD", "SHAP"], [], []], f"what is new in the first frames: {news}")
     expect("SHAP" in news[3] and "GONE" in news[3] and "GONE" in news[4], f"what is new after cuts: {news}")
     expect(JOINT in reader.head["joints"] and HOSTILE in reader.head["groups"], "names in HEAD")
