@@ -22,8 +22,12 @@ IMPORT = re.compile(r'^import\s*\{([^}]*)\}\s*from\s*"\./([\w.-]+\.js)";[ \t]*\n
 EXPORT = re.compile(r"^export (?=(?:async )?function\b|const\b|let\b|class\b)", re.M)
 TOP = re.compile(r"^(?:export )?(?:(?:async )?function\*?|const|let|class) +(\w+)", re.M)
 LEFT = re.compile(r"^(?:import|export)\b.*|\bimport\(.*", re.M)
-COMMENT = re.compile(r"^[ \t]*/\*.*?\*/[ \t]*\n", re.S | re.M)
+COMMENT = re.compile(r"^[ \t]*/\*(?:(?!\*/).)*\*/[ \t]*\n", re.S | re.M)
+TYPE_COMMENT = re.compile(r"/\*\* @\w+ [^`\n]*?\*/ ?")
 LINE_COMMENT = re.compile(r"^[ \t]*//.*\n", re.M)
+REGULAR = re.compile(r"/(?:[^/\\\n\[]|\\.|\[[^\]\n]*\])+/\w*")
+ONE_PARAMETER = re.compile(r"\((\w+)\) ?=>")
+WORD = "".join(map(chr, [*range(48, 58), *range(65, 91), *range(97, 123)])) + "_$"
 # Bytes of a string in C that every compiler takes, with room for what is escaped.
 LONGEST = 1000
 
@@ -33,15 +37,81 @@ class Unfit(Exception):
 
 
 def without_comments(text):
-    return LINE_COMMENT.sub("", COMMENT.sub("", text))
+    return LINE_COMMENT.sub("", TYPE_COMMENT.sub("", COMMENT.sub("", text)))
 
 
 def squeezed(text):
-    """Without blank lines; indentation is kept where a template literal may need it."""
-    lines = [line.rstrip() for line in text.splitlines()]
-    if "`" not in text:
-        lines = [line.lstrip() for line in lines]
-    return "".join(line + "\n" for line in lines if line)
+    """Without blank lines and indentation, also of template literals: those over several lines are programs for the picture."""
+    return "".join(line.strip() + "\n" for line in text.splitlines() if line.strip())
+
+
+def tightened_program(text):
+    """A program for the picture (GLSL), without comments and spaces; the preprocessor's lines stay."""
+    lines = [line.split("//")[0].rstrip() for line in text.split("\n")]
+    lines = [line if line.startswith("#") else re.sub(r" ?([-+*/=<>(){},;:?&|]) ?", r"\1", line) for line in lines]
+    return re.sub(r"\n+", "\n", "\n".join(lines))
+
+
+def tightened(code):
+    """A script without comments, and without the spaces, ends of lines, brackets and semicolons that part nothing. Strings, templates and regular expressions stay as they are."""
+    out, ends, at = [], [], 0  # ends: what ends the literals and blocks that are open
+    while at < len(code):
+        char = code[at]
+        quote = ends[-1] if ends and ends[-1] in "`'\"" else None
+        if quote:
+            if char == "\\":
+                out.append(code[at:at + 2])
+                at += 2
+                continue
+            if quote == "`" and code.startswith("${", at):
+                out.append("${")
+                ends.append("}")
+                at += 2
+                continue
+            if char == quote:
+                ends.pop()
+        elif char == "`" and "\n" in (program := code[at + 1:code.index("`", at + 1)]) and "${" not in program:
+            out.append(f"`{tightened_program(program)}`")
+            at += len(program) + 2
+            continue
+        elif char in "`'\"":
+            ends.append(char)
+        elif code.startswith("const ", at) and (not out or out[-1][-1] not in WORD + "."):
+            out.append("let ")  # shorter, and no more than that
+            at += len("const ")
+            continue
+        elif code.startswith("//", at):
+            at = code.index("\n", at)
+            continue
+        elif code.startswith("/*", at):
+            at = code.index("*/", at) + 2
+            continue
+        elif char == "/" and (found := REGULAR.match(code, at)) and out and out[-1][-1] in "(,=:&|!?;{[":
+            out.append(found.group(0))
+            at = found.end()
+            continue
+        elif char == "(" and (found := ONE_PARAMETER.match(code, at)) and out[-1][-1] not in WORD:
+            out.append(found.group(1))
+            at = found.end() - len("=>")
+            continue
+        elif char == "{":
+            ends.append("}")
+        elif char == "}" and ends:
+            ends.pop()
+            if out[-1] == ";" and out[-2][-1] in WORD + "])":  # no loop has an empty body
+                out.pop()
+        elif char == "\n" and out and (out[-1][-1] in ";{,(" or code[at + 1:at + 2] == "}"):
+            at += 1
+            continue
+        elif char == " ":
+            before, after = out[-1][-1], code[at + 1]
+            needed = (before in WORD and after in WORD) or (before == after and before in "+-")
+            if not needed:
+                at += 1
+                continue
+        out.append(char)
+        at += 1
+    return "".join(out)
 
 
 class Bundle:
@@ -108,7 +178,7 @@ def page_of(folder):
     style = squeezed(re.sub(r"/\*.*?\*/", "", (folder / "style.css").read_text(encoding="utf-8"), flags=re.S))
     bundle = Bundle(folder)
     bundle.add("main.js")
-    script = "".join(bundle.parts)
+    script = tightened("".join(bundle.parts))
     check_text("the script", script)
     check_text("style.css", style)
     unused = {path.name for path in folder.glob("*.js")} - set(bundle.exports)

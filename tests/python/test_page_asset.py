@@ -13,8 +13,12 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 TOOL = ROOT / "scripts/tools/page_asset.py"
 
 # Modules of a small page, and what each mistake in them is to be told with.
-GOOD = {"main.js": '// Starts.\nimport { one } from "./one.js";\nimport {\n    two,\n    Three,\n} from "./two.js";\none(two, new Three());\n',
+GOOD = {"main.js": '// Starts.\nimport { one } from "./one.js";\nimport { half, text } from "./text.js";\nimport {\n    two,\n    Three,\n} from "./two.js";\none(two, new Three(half(text)));\n',
         "one.js": "/** Says it. */\nexport function one(x) { console.log(x, `\u00fc?? \\\\ \"`); }\n",
+        "text.js": "/** @type {string[]} */ export const text = [];\nfor (const a of [1, 2]) {\n    text.push(`a - ${a + `, b  ${ a }` + \"} \"}  // c`); // it's last\n"
+                   "    if (a / 2 > 1 && /[/ '] x/.test(text[0])) text.push('const  a  ;  ' + + a);\n}\n"
+                   "/** @param {number} a */\nexport function half(a) { return [a].map((x) => x /* by */ / 2)[0]; }\n"
+                   "export const PROGRAM = `\n#define A  1\nvec2 f(float x) { return vec2(x, 1.0 - x); } // GLSL\n`;\n",
         "two.js": "export const two = 2;\n\nexport class Three { }\nexport async function later() { }\nlet inner = 1;\n"}
 BAD = [({"one.js": "export default function one(x) { }\n"}, "one"),
        ({"one.js": "export { one };\nfunction one() { }\n"}, "export"),
@@ -30,6 +34,11 @@ BAD = [({"one.js": "export default function one(x) { }\n"}, "one"),
        ({"alone.js": "export const alone = 1;\n"}, "alone.js"),
        ({"page.html": "<!doctype html>\n"}, "page.html"),
        ({"style.css": "p { content: '</style>'; }\n"}, "</style")]
+
+# The script of it: comments and spaces that part nothing are left out, texts stay as they are.
+TIGHT = ("function one(x){console.log(x,`\u00fc?? \\\\ \"`)}\nlet text=[];for(let a of[1,2]){text.push(`a - ${a+`, b  ${a}`+\"} \"}  // c`);"
+         "if(a/2>1&&/[/ '] x/.test(text[0]))text.push('const  a  ;  '+ +a)}\nfunction half(a){return[a].map(x=>x/2)[0]}\n"
+         "let PROGRAM=`\n#define A  1\nvec2 f(float x){return vec2(x,1.0-x);}\n`;let two=2;class Three{}\nasync function later(){}\nlet inner=1;one(two,new Three(half(text)));")
 
 faults = []
 
@@ -62,10 +71,8 @@ def check_good(folder):
         return
     page = text_of(out.read_text(encoding="ascii"), "tl_page_before") + text_of(out.read_text(encoding="ascii"), "tl_page_after")
     script = re.search(r'<script type="module">(.*?)</script>', page, re.S)[1]
-    wanted = 'function one(x) { console.log(x, `\u00fc?? \\\\ "`); }\nconst two = 2;\nclass Three { }\nasync function later() { }\n' \
-        "let inner = 1;\none(two, new Three());\n"
-    if "".join(script.split()) != "".join(wanted.split()):  # how it is spaced is the tool's
-        faults.append(f"the modules became {script!r}, not {wanted!r}")
+    if script != TIGHT:
+        faults.append(f"the modules became {script!r}, not {TIGHT!r}")
     for name, text in (("script", script), ("style", re.search(r"<style>(.*?)</style>", page, re.S)[1])):
         digest = base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()
         if f"{name}-src 'sha256-{digest}'" not in page:
