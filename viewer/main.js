@@ -1,8 +1,94 @@
-/** Lists the frames of a page. */
-const table = document.getElementById("frames");
-document.getElementById("title").textContent = document.title;
-for (const element of document.querySelectorAll('script[type="text/talus"]')) {
-    const row = table.insertRow();
-    for (const name of ["frame", "time", "cycle", "largest"])
-        row.insertCell().textContent = name + " " + element.dataset[name];
+// Starts the page: reads its frames, or those of a running program, and shows the first picture.
+// @ts-check
+import { toPixel } from "./camera.js";
+import { makeControls } from "./controls.js";
+import { byId, say } from "./dom.js";
+import { firstView } from "./first.js";
+import { makeHistory } from "./history.js";
+import { makeImage } from "./image.js";
+import { listen } from "./input.js";
+import { readRun, takeToken } from "./net.js";
+import { Page } from "./page.js";
+import { tightBox } from "./poses.js";
+import { CAP_FACE } from "./section.js";
+import { makeStereonet } from "./stereonet.js";
+import { makeTable } from "./table.js";
+
+const LIVE = 400; // frames of a run that are kept
+
+/** @param {Page} app */
+function listenAll(app) {
+    const history = makeHistory(app);
+    app.parts = [makeTable(app), history, makeStereonet(app), makeControls(app)];
+    listen(app, history);
+    new ResizeObserver(() => app.resize()).observe(app.canvas);
+    app.canvas.addEventListener("webglcontextlost", (e) => { e.preventDefault(); say("The graphics driver has let go of the picture: load the page again.", true); });
+    window.addEventListener("hashchange", () => { if (location.hash !== app.address) app.fromAddress(); });
+    const more = byId("more");
+    more.onclick = () => more.setAttribute("aria-expanded", String(byId("controls").classList.toggle("open")));
+    app.resize();
+    return history;
 }
+
+/** Looks at all frames that have not been looked at, for the scales of all frames. @param {Page} app */
+async function readRest(app) {
+    for (const [i, frame] of app.model.frames.entries()) {
+        if (frame.whole) continue;
+        await new Promise((done) => setTimeout(done));
+        await app.model.frame(i);
+        if (i % 20 === 0) app.change("look");
+    }
+    app.change("colour");
+}
+
+/** @param {Page} app */
+async function begin(app) {
+    const packed = /** @type {HTMLElement[]} */ ([...document.querySelectorAll('script[type="text/talus"]')]);
+    const opened = async () => {
+        const first = app.home, box = app.shown && tightBox(app.model, app.shown, () => true);
+        app.home = box ?? first;
+    };
+    app.view.dark = matchMedia("(prefers-color-scheme: dark)").matches;
+    app.reading = packed.length > 0;
+    app.live = packed.length === 0 && location.protocol.startsWith("http");
+    const history = listenAll(app);
+    if (app.live) {
+        app.token = takeToken();
+        await readRun(app.token, async (buffer) => {
+            const following = app.view.frame === app.model.frames.length - 1;
+            const seen = app.model.frames[app.view.frame];
+            app.model.addFrame(buffer, null);
+            app.model.thin(LIVE);
+            app.view.frame = Math.max(0, app.model.frames.indexOf(seen));
+            if (following) await app.goTo(app.model.frames.length - 1);
+            if (app.model.frames.length === 1) { app.refresh(); await opened(); firstView(app); }
+            else if (!following) history.update();
+        });
+        return say("The run has ended.");
+    }
+    if (!packed.length) throw new Error("This page holds no frames.");
+    for (const [i, script] of packed.entries()) {
+        const text = script.textContent ?? "", d = script.dataset, numbers = [d.bytes, d.time, d.cycle, d.largest].map(Number);
+        if (d.model === "0" && i > 0 && i < packed.length - 1 && numbers.every(Number.isFinite)) app.model.addLater(text, numbers[0], numbers[1], numbers[2], numbers[3]);
+        else await app.model.addPacked(text, numbers[0]);
+    }
+    await app.goTo(0);
+    app.refresh();
+    await opened();
+    const given = location.hash.length > 1, found = await app.fromAddress();
+    app.refresh();
+    if (!found) { firstView(app, given); app.change("pose"); }
+    readRest(app).catch((error) => say(error.message, true)).finally(() => { app.reading = false; });
+}
+
+document.addEventListener("DOMContentLoaded", async () => {
+    /** @type {any} */ const page = globalThis;
+    try {
+        const app = new Page();
+        // For scripts and tests: talus.app is the state, talus.ready is kept when the first picture can be drawn.
+        page.talus = { app, toPixel, makeImage: (/** @type {number} */ f) => makeImage(app, f), CAP_FACE, ready: begin(app) };
+        await page.talus.ready;
+    } catch (error) {
+        say(String(/** @type {Error} */ (error).message), true);
+    }
+});

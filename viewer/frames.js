@@ -1,0 +1,221 @@
+// The model over time: a row for each block that ever was, and the frames, packed until they are looked at.
+// @ts-check
+import { readFrame } from "./scene.js";
+import { dot, norm, scale, sub, triple } from "./math.js";
+
+/** @typedef {import("./scene.js").FrameData} FrameData */
+/** @typedef {{largest: Record<string, number>, least: Record<string, number>, time: number, cycle: number, most: number, mover: number, slipping: number,
+ *   contacts: number, line: import("./scene.js").Line | null, blocks: number}} Summary */
+/** @typedef {{packed: string | null, length: number, buffer: ArrayBuffer | null, used: number, head: import("./scene.js").Head, since: number, summary: Summary, whole: boolean}} Stored whole: the summary is of the frame itself */
+/** @typedef {{index: number, since: number, data: FrameData, head: import("./scene.js").Head, poses: import("./scene.js").Poses, rows: Int32Array, at: Int32Array, summary: Summary}} Frame */
+
+const UNPACKED = 256 * 1024 * 1024; // bytes of unpacked frames that are kept
+
+/** Base64 of a zlib stream to bytes. @param {string} text @param {number} length @returns {Promise<ArrayBuffer>} */
+async function unpack(text, length) {
+    if (!(length >= 0 && length <= 1 << 30)) throw new Error("A frame of this page has no length of at most 1 GB.");
+    let bytes;
+    try {
+        const raw = atob(text.trim());
+        bytes = new Uint8Array(raw.length);
+        for (let i = 0; i < raw.length; i++) bytes[i] = raw.charCodeAt(i);
+    } catch {
+        throw new Error("A frame of this page is no base64 text: the file was changed or cut off.");
+    }
+    const out = new Uint8Array(length), reader = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate")).getReader();
+    let at = 0;
+    try {
+        for (let part = await reader.read(); !part.done; part = await reader.read()) {
+            if (at + part.value.length > length) throw new Error();
+            out.set(part.value, at);
+            at += part.value.length;
+        }
+    } catch {
+        throw new Error("A frame of this page cannot be unpacked: the file was changed or cut off.");
+    }
+    if (at !== length) throw new Error(`A frame of this page has ${at} bytes instead of ${length}.`);
+    return out.buffer;
+}
+
+/** Lengths of the vectors of a column. @param {Float32Array} column @returns {Float32Array} */
+export function lengths(column) {
+    const out = new Float32Array(column.length / 3);
+    for (let i = 0; i < out.length; i++) out[i] = norm(triple(column, i));
+    return out;
+}
+
+/** The numbers of a frame that a colour can show: of its blocks, or of its contacts. @param {FrameData} data @param {import("./scene.js").Head} head @param {string} name @returns {Float32Array | null} */
+export function column(data, head, name) {
+    const p = data.poses, k = data.contacts;
+    if (!p) return null;
+    if (name === "displacement") return lengths(p.displacement);
+    if (name === "velocity") return lengths(p.velocity);
+    if (name === "rotation") return lengths(p.rotation).map((x) => x * 180 / Math.PI);
+    if (name === "unbalanced") return p.unbalanced;
+    if (name.startsWith("field:") || name.startsWith("contact field:")) {
+        const of = name.startsWith("field:") ? 0 : 1, wanted = name.slice(name.indexOf(":") + 1);
+        return data.extras.find((e) => e.of === of && head.fields[e.field].name === wanted)?.value ?? null;
+    }
+    if (!k) return null;
+    const out = new Float32Array(k.n);
+    for (let i = 0; i < k.n; i++) {
+        const f = triple(k.force, i), n = triple(k.normal, i), push = dot(f, n);
+        if (name === "slip") out[i] = k.slip[i];
+        else if (name === "normal stress") out[i] = k.area[i] > 0 ? push / k.area[i] : NaN;
+        else if (name === "shear stress") out[i] = k.area[i] > 0 ? norm(sub(f, scale(n, push))) / k.area[i] : NaN;
+        else if (name === "force") out[i] = norm(f);
+        else return null;
+    }
+    return out;
+}
+
+/** Names of the columns of a frame. @param {FrameData} data @param {import("./scene.js").Head} head */
+export function columnNames(data, head) {
+    const extra = data.extras.map((e) => (e.of ? "contact field:" : "field:") + head.fields[e.field].name);
+    return ["displacement", "velocity", "rotation", "unbalanced", ...(data.contacts ? ["slip", "normal stress", "shear stress", "force"] : []), ...extra];
+}
+
+/** @param {FrameData} data @param {import("./scene.js").Head} head @returns {Summary} */
+function summarise(data, head) {
+    const poses = /** @type {import("./scene.js").Poses} */ (data.poses);
+    /** @type {Record<string, number>} */ const largest = {};
+    /** @type {Record<string, number>} */ const least = {};
+    let most = 0, mover = -1, slipping = 0;
+    for (const name of columnNames(data, head)) {
+        const values = column(data, head, name) ?? new Float32Array(0);
+        let low = Infinity, high = -Infinity;
+        for (let i = 0; i < values.length; i++) {
+            if (values[i] < low) low = values[i];
+            if (values[i] > high) {
+                high = values[i];
+                if (name === "displacement") { most = high; mover = poses.id[i]; }
+            }
+        }
+        if (high >= low) { largest[name] = high; least[name] = low; }
+    }
+    for (const state of data.contacts?.state ?? []) slipping += state === 1 ? 1 : 0;
+    return { largest, least, time: poses.time, cycle: poses.cycle, most, mover, slipping, contacts: data.contacts?.n ?? 0, line: data.line, blocks: poses.n };
+}
+
+/** All frames of a page or of a run, and the blocks' shapes by row. */
+export class Model {
+    constructor() {
+        /** @type {Stored[]} */ this.frames = [];
+        /** @type {import("./scene.js").Head | null} */ this.head = null;
+        this.density = 0;     // of the first block, kg/m³
+        this.keys = false;    // whether any frame has keyblocks
+        this.rows = 0;
+        this.triangles = 0;
+        /** @type {{shapes: import("./scene.js").Shapes, block: number, vertex: number, face: number, corner: number, radius: number}[]} */ this.shape = [];
+        /** @type {Map<number, {row: number, since: number}[]>} */ this.versions = new Map();
+        this.version = 0; // of the shapes
+        this.serial = 0;  // of the frames, also of those let go
+        this.clock = 0;
+    }
+
+    /** A frame as the page holds it. @param {string} text @param {number} length */
+    async addPacked(text, length) {
+        this.addFrame(await unpack(text, length), text);
+    }
+
+    /** A frame that sends no shapes: it is unpacked when it is looked at. @param {string} text @param {number} length @param {number} time @param {number} cycle @param {number} most largest displacement */
+    addLater(text, length, time, cycle, most) {
+        const head = /** @type {import("./scene.js").Head} */ (this.head);
+        this.frames.push({ packed: text, length, buffer: null, used: 0, head, since: this.serial++, whole: false,
+            summary: { largest: { displacement: most }, least: { displacement: 0 }, time, cycle, most, mover: -1, slipping: 0, contacts: 0, line: null, blocks: 0 } });
+    }
+
+    /** A frame's chunks; without `packed` it stays unpacked. @param {ArrayBuffer} buffer @param {string | null} packed */
+    addFrame(buffer, packed) {
+        const data = readFrame(buffer, this.head), serial = this.serial++;
+        if (data.head) this.head = data.head;
+        const head = /** @type {import("./scene.js").Head} */ (this.head);
+        for (const shapes of data.shapes) this.addShapes(shapes, serial);
+        this.density ||= data.shapes[0]?.density[0] ?? 0;
+        this.keys ||= data.keys !== null;
+        this.frames.push({ packed, length: buffer.byteLength, buffer, used: ++this.clock, head, since: serial, summary: summarise(data, head), whole: true });
+        this.forget();
+    }
+
+    /** @param {import("./scene.js").Shapes} shapes @param {number} since */
+    addShapes(shapes, since) {
+        let vertex = 0, face = 0, corner = 0;
+        for (let block = 0; block < shapes.n; block++) {
+            let radius = 0;
+            for (let v = vertex; v < vertex + shapes.vertices[block]; v++) {
+                radius = Math.max(radius, norm(triple(shapes.vertex, v)));
+            }
+            const list = this.versions.get(shapes.id[block]) ?? [];
+            list.push({ row: this.rows, since });
+            this.versions.set(shapes.id[block], list);
+            this.shape.push({ shapes, block, vertex, face, corner, radius });
+            vertex += shapes.vertices[block];
+            for (const last = face + shapes.faces[block]; face < last; face++) {
+                corner += shapes.corners[face];
+                this.triangles += Math.max(0, shapes.corners[face] - 2);
+            }
+            this.rows++;
+        }
+        this.version++;
+    }
+
+    /** Frames that were not used for long are packed again: their text is still there. */
+    forget() {
+        let total = 0;
+        for (const f of [...this.frames].sort((a, b) => b.used - a.used)) {
+            if (!f.buffer) continue;
+            total += f.length;
+            if (total > UNPACKED && f.packed !== null) f.buffer = null;
+        }
+    }
+
+    /** Of a run: lets go of old frames but every second, when there are more than `limit`. @param {number} limit */
+    thin(limit) {
+        if (this.frames.length > limit) this.frames = this.frames.filter((f, i) => i % 2 === 0 || i > this.frames.length - 3);
+    }
+
+    /** Row of a block in a frame, or -1. @param {number} id @param {number} since */
+    rowOf(id, since) {
+        let row = -1;
+        for (const v of this.versions.get(id) ?? []) if (v.since <= since) row = v.row;
+        return row;
+    }
+
+    /** @param {number} index @returns {Promise<Frame>} */
+    async frame(index) {
+        const stored = this.frames[index];
+        stored.used = ++this.clock;
+        if (!stored.buffer) {
+            const { packed, length } = stored;
+            stored.buffer = await unpack(packed ?? "", length);
+            this.forget();
+        }
+        const data = readFrame(stored.buffer, stored.head);
+        if (!stored.whole) stored.summary = summarise(data, stored.head);
+        stored.whole = true;
+        this.keys ||= data.keys !== null;
+        const poses = /** @type {import("./scene.js").Poses} */ (data.poses);
+        const rows = new Int32Array(poses.n), at = new Int32Array(this.rows).fill(-1);
+        for (let i = 0; i < poses.n; i++) {
+            rows[i] = this.rowOf(poses.id[i], stored.since);
+            if (rows[i] < 0) throw new Error(`Frame ${index} shows block ${poses.id[i]}, whose shape was not sent.`);
+            at[rows[i]] = i;
+        }
+        return { index, since: stored.since, data, head: stored.head, poses, rows, at, summary: stored.summary };
+    }
+
+    /** Largest value of a column over all frames. @param {string} name */
+    largest(name) { return this.frames.reduce((m, f) => Math.max(m, f.summary.largest[name] ?? -Infinity), -Infinity); }
+
+    /** Least value of a column over all frames. @param {string} name */
+    least(name) { return this.frames.reduce((m, f) => Math.min(m, f.summary.least[name] ?? Infinity), Infinity); }
+
+    /** Faces of a row, with the place of their first corner. @param {number} row @param {(face: number, corner: number, corners: number, joint: number, plane: number) => void} see */
+    eachFace(row, see) {
+        const { shapes, block, face, corner } = this.shape[row];
+        for (let f = face, c = corner; f < face + shapes.faces[block]; f++) {
+            see(f - face, c, shapes.corners[f], shapes.joint[f], shapes.plane[f]);
+            c += shapes.corners[f];
+        }
+    }
+}

@@ -1,0 +1,200 @@
+// Reads the scene stream (docs/scene_format.md). It knows nothing of pictures. Every count is compared with the length of its
+// chunk before anything is taken; what is wrong ends in a sentence (an Error), never in a crash.
+// @ts-check
+
+/** @typedef {{name: string, unit: string, of: string}} Field */
+/** @typedef {{format: number, program: string, title: string, origin: number[], gravity: number[], size: number, groups: string[],
+ *   joints: string[], fields: Field[], histories: string[], live: boolean, commands: boolean}} Head */
+/** @typedef {{n: number, id: Uint32Array, body: Uint32Array, group: Uint32Array, vertices: Uint32Array, faces: Uint32Array,
+ *   volume: Float32Array, density: Float32Array, centroid: Float32Array, vertex: Float32Array, joint: Uint32Array, plane: Uint32Array,
+ *   corners: Uint16Array, loop: Uint16Array}} Shapes */
+/** @typedef {{n: number, time: number, cycle: number, id: Uint32Array, place: Float32Array, turn: Float32Array, velocity: Float32Array,
+ *   displacement: Float32Array, rotation: Float32Array, spin: Float32Array, unbalanced: Float32Array, flags: Uint8Array}} Poses */
+/** @typedef {{n: number, id: Uint32Array, a: Uint32Array, b: Uint32Array, joint: Uint32Array, plane: Uint32Array, point: Float32Array,
+ *   normal: Float32Array, force: Float32Array, area: Float32Array, gap: Float32Array, slip: Float32Array, state: Uint8Array,
+ *   contact: Uint32Array, corners: Uint32Array, corner: Float32Array}} Contacts */
+/** @typedef {{of: number, field: number, value: Float32Array}} Extra */
+/** @typedef {{numbers: number[], histories: Float64Array}} Line */
+/** @typedef {{n: number, id: Uint32Array, mode: Uint32Array, factor: Float32Array, direction: Float32Array}} Keys */
+/** @typedef {{head: Head | null, shapes: Shapes[], gone: Uint32Array[], poses: Poses | null, contacts: Contacts | null, extras: Extra[],
+ *   line: Line | null, keys: Keys | null, number: number}} FrameData */
+
+/** Takes columns one after the other from a payload. */
+class Columns {
+    /** @param {string} name @param {ArrayBuffer} buffer @param {number} at @param {number} bytes */
+    constructor(name, buffer, at, bytes) {
+        this.name = name;
+        this.buffer = buffer;
+        this.at = at;
+        this.end = at + bytes;
+    }
+
+    /** @param {string} what @returns {Error} */
+    bad(what) { return new Error(`The chunk ${this.name} of the scene is damaged: ${what}.`); }
+
+    /** @param {number} count @param {number} width @param {string} what */
+    take(count, width, what) {
+        const at = this.at;
+        if (count === 0) return 0;
+        if (!(count * width <= this.end - at)) throw this.bad(`${count} values of ${what} do not fit into it`);
+        this.at = at + ((count * width + 3) & ~3);
+        return at;
+    }
+
+    /** @param {number} count @param {string} what */
+    u32(count, what) { return new Uint32Array(this.buffer, this.take(count, 4, what), count); }
+
+    /** @param {number} count @param {string} what */
+    u16(count, what) { return new Uint16Array(this.buffer, this.take(count, 2, what), count); }
+
+    /** @param {number} count @param {string} what */
+    u8(count, what) { return new Uint8Array(this.buffer, this.take(count, 1, what), count); }
+
+    /** Finite numbers; with `none` also NaN, for "there is none". @param {number} count @param {string} what @param {boolean} [none] */
+    f32(count, what, none) {
+        const out = new Float32Array(this.buffer, this.take(count, 4, what), count);
+        for (let i = 0; i < count; i++) {
+            if (!Number.isFinite(out[i]) && !(none && Number.isNaN(out[i]))) throw this.bad(`value ${i} of ${what} is not a number`);
+        }
+        return out;
+    }
+
+    /** @param {number} count @param {string} what @param {boolean} [none] */
+    f64(count, what, none) {
+        const view = new DataView(this.buffer, this.take(count, 8, what), count * 8), out = new Float64Array(count);
+        for (let i = 0; i < count; i++) {
+            out[i] = view.getFloat64(8 * i, true);
+            if (!Number.isFinite(out[i]) && !(none && Number.isNaN(out[i]))) throw this.bad(`value ${i} of ${what} is not a number`);
+        }
+        return out;
+    }
+
+    /** @param {Uint32Array | Uint16Array | Uint8Array} list @param {number} limit @param {string} what */
+    below(list, limit, what) {
+        for (let i = 0; i < list.length; i++) {
+            if (list[i] >= limit) throw this.bad(`value ${i} of ${what} is ${list[i]}, and must be less than ${limit}`);
+        }
+    }
+
+    /** @param {Uint32Array | Uint16Array} list @param {number} total @param {string} what */
+    sum(list, total, what) {
+        let sum = 0;
+        for (let i = 0; i < list.length; i++) sum += list[i];
+        if (sum !== total) throw this.bad(`the numbers of ${what} add up to ${sum} instead of ${total}`);
+    }
+}
+
+/** @param {any} value @param {string} name @returns {string[]} */
+function names(value, name) {
+    if (!Array.isArray(value) || !value.every((v) => typeof v === "string")) throw new Error(`The chunk HEAD of the scene is damaged: ${name} is no list of texts.`);
+    return value;
+}
+
+/** @param {Columns} c @returns {Head} */
+function readHead(c) {
+    let h;
+    try {
+        h = JSON.parse(new TextDecoder("utf-8", { fatal: true }).decode(new Uint8Array(c.buffer, c.at, c.end - c.at)));
+    } catch {
+        throw c.bad("its text is no JSON");
+    }
+    if (typeof h !== "object" || h === null) throw c.bad("its text is no object");
+    if (h.format !== 1) throw new Error(`The scene has format ${String(h.format)}; this page reads format 1.`);
+    const triple = (/** @type {any} */ v) => Array.isArray(v) && v.length === 3 && v.every(Number.isFinite);
+    if (!triple(h.origin) || !triple(h.gravity)) throw c.bad("origin and gravity must be lists of three numbers");
+    if (!(Number.isFinite(h.size) && h.size > 0)) throw c.bad("the size must be a positive number");
+    const fields = Array.isArray(h.fields) ? h.fields : [];
+    return { format: 1, program: String(h.program), title: String(h.title ?? ""), origin: h.origin, gravity: h.gravity, size: h.size,
+        groups: names(h.groups, "groups"), joints: names(h.joints, "joints"), histories: names(h.histories ?? [], "histories"),
+        fields: fields.map((/** @type {any} */ f) => ({ name: String(f?.name), unit: String(f?.unit ?? ""), of: String(f?.of) })),
+        live: h.live === true, commands: h.commands === true };
+}
+
+/** @param {Columns} c @param {Head} head @returns {Shapes} */
+function readShapes(c, head) {
+    const [n, V, F, L] = c.u32(4, "counts");
+    const s = { n, id: c.u32(n, "id"), body: c.u32(n, "body"), group: c.u32(n, "group"), vertices: c.u32(n, "vertices"), faces: c.u32(n, "faces"),
+        volume: c.f32(n, "volume"), density: c.f32(n, "density"), centroid: c.f32(3 * n, "centroid"), vertex: c.f32(3 * V, "vertex"),
+        joint: c.u32(F, "joint"), plane: c.u32(F, "plane"), corners: c.u16(F, "corners"), loop: c.u16(L, "loop") };
+    c.sum(s.vertices, V, "vertices");
+    c.sum(s.faces, F, "faces");
+    c.sum(s.corners, L, "corners");
+    c.below(s.group, Math.max(1, head.groups.length), "group");
+    c.below(s.joint, Math.max(1, head.joints.length), "joint");
+    for (let block = 0, face = 0, corner = 0; block < n; block++) {
+        for (const last = face + s.faces[block]; face < last; face++) {
+            for (const end = corner + s.corners[face]; corner < end; corner++) {
+                if (s.loop[corner] >= s.vertices[block]) throw c.bad(`a face of block ${s.id[block]} names vertex ${s.loop[corner]} of ${s.vertices[block]}`);
+            }
+        }
+    }
+    return s;
+}
+
+/** @param {Columns} c @returns {Poses} */
+function readPoses(c) {
+    const [time, cycle] = c.f64(2, "time and cycle"), n = c.u32(1, "count")[0];
+    return { n, time, cycle, id: c.u32(n, "id"), place: c.f32(3 * n, "place"), turn: c.f32(4 * n, "turn"), velocity: c.f32(3 * n, "velocity"),
+        displacement: c.f32(3 * n, "displacement"), rotation: c.f32(3 * n, "rotation"), spin: c.f32(3 * n, "spin"),
+        unbalanced: c.f32(n, "unbalanced"), flags: c.u8(n, "flags") };
+}
+
+/** @param {Columns} c @param {Head} head @returns {Contacts} */
+function readContacts(c, head) {
+    const [n, P, C] = c.u32(3, "counts");
+    const k = { n, id: c.u32(n, "id"), a: c.u32(n, "a"), b: c.u32(n, "b"), joint: c.u32(n, "joint"), plane: c.u32(n, "plane"),
+        point: c.f32(3 * n, "point"), normal: c.f32(3 * n, "normal"), force: c.f32(3 * n, "force"), area: c.f32(n, "area"),
+        gap: c.f32(n, "gap"), slip: c.f32(n, "slip", true), state: c.u8(n, "state"), contact: c.u32(P, "contact"),
+        corners: c.u32(P, "corners"), corner: c.f32(3 * C, "corner") };
+    c.sum(k.corners, C, "corners");
+    c.below(k.contact, n, "contact");
+    c.below(k.joint, Math.max(1, head.joints.length), "joint");
+    c.below(k.state, 4, "state");
+    return k;
+}
+
+/** @param {Columns} c @param {FrameData} frame @param {Head} head @returns {Extra} */
+function readExtra(c, frame, head) {
+    const [of, field, n] = c.u32(3, "counts");
+    const rows = of === 0 ? frame.poses?.n : of === 1 ? frame.contacts?.n : undefined;
+    if (rows !== n) throw c.bad(`it has ${n} values for ${rows ?? "no"} rows`);
+    if (field >= head.fields.length) throw c.bad(`field ${field} has no name`);
+    return { of, field, value: c.f32(n, "value", true) };
+}
+
+/** @param {Columns} c @returns {Keys} */
+function readKeys(c) {
+    const n = c.u32(1, "count")[0];
+    const k = { n, id: c.u32(n, "id"), mode: c.u32(n, "mode"), factor: c.f32(n, "factor", true), direction: c.f32(3 * n, "direction") };
+    c.below(k.mode, 4, "mode");
+    return k;
+}
+
+/**
+ * Reads the chunks of one frame. `head` is the last one read before.
+ * @param {ArrayBuffer} buffer @param {Head | null} head @returns {FrameData}
+ */
+export function readFrame(buffer, head) {
+    /** @type {FrameData} */
+    const frame = { head: null, shapes: [], gone: [], poses: null, contacts: null, extras: [], line: null, keys: null, number: -1 };
+    const view = new DataView(buffer);
+    for (let at = 0; at < buffer.byteLength;) {
+        if (at + 8 > buffer.byteLength) throw new Error("The scene ends within the head of a chunk.");
+        const name = String.fromCharCode(...new Uint8Array(buffer, at, 4)).replace(/[^A-Za-z0-9 ]/g, "?"), bytes = view.getUint32(at + 4, true);
+        if (bytes > buffer.byteLength - at - 8) throw new Error(`The scene ends within the chunk ${name}.`);
+        const c = new Columns(name, buffer, at + 8, bytes);
+        at += 8 + ((bytes + 3) & ~3);
+        if (name === "HEAD") frame.head = head = readHead(c);
+        else if (!head) throw new Error(`The scene begins with the chunk ${name} instead of HEAD.`);
+        else if (name === "SHAP") frame.shapes.push(readShapes(c, head));
+        else if (name === "GONE") frame.gone.push(c.u32(c.u32(1, "count")[0], "id"));
+        else if (name === "FRAM") frame.poses = readPoses(c);
+        else if (name === "CONT") frame.contacts = readContacts(c, head);
+        else if (name === "FIEL") frame.extras.push(readExtra(c, frame, head));
+        else if (name === "LINE") frame.line = { numbers: Array.from(c.f64(8, "numbers", true)), histories: c.f64(c.u32(1, "count")[0], "histories", true) };
+        else if (name === "KEYS") frame.keys = readKeys(c);
+        else if (name === "DONE") frame.number = c.u32(1, "number")[0];
+    }
+    if (!frame.poses || frame.number < 0) throw new Error("A frame of the scene has no FRAM or no DONE.");
+    return frame;
+}
