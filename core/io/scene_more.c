@@ -25,8 +25,11 @@ static tl_status put_keyblocks(tl_model *m, const tl_keyblocks *keys, tl_piece *
     to = tl_put_u32(to, (uint32_t)n);
     for (size_t i = 0; i < n; i++)
         to = tl_put_u32(to, keys->blocks[i].block);
+    /* in the stream 0 is stable, then the order of tl_keyblock_mode */
     for (size_t i = 0; i < n; i++)
-        to = tl_put_u32(to, (uint32_t)keys->blocks[i].mode);
+        to = tl_put_u32(to, keys->blocks[i].mode == TL_KEYBLOCK_STABLE
+                                ? 0u
+                                : (uint32_t)keys->blocks[i].mode + 1u);
     for (size_t i = 0; i < n; i++) /* a stable one has none */
         to = tl_put_f32(to, isfinite(keys->blocks[i].safety) ? keys->blocks[i].safety : NAN);
     for (size_t i = 0; i < n; i++)
