@@ -1,0 +1,203 @@
+"""Drives a headless Chromium over its DevTools protocol, with the standard library only.
+
+    with Chrome() as chrome:
+        chrome.open("/path/page.html")
+        chrome.run("document.title")
+
+A page is evaluated with software graphics (SwiftShader), so that pictures do not depend on the machine's graphics card.
+"""
+import base64
+import json
+import os
+import pathlib
+import shutil
+import socket
+import struct
+import subprocess
+import tempfile
+import time
+import urllib.parse
+import zlib
+
+PATIENCE = 120  # seconds until an answer counts as missing
+
+
+def program():
+    """Path of the browser, or None."""
+    return next((p for p in map(shutil.which, ("chromium", "chromium-browser", "google-chrome")) if p), None)
+
+
+class WebSocket:
+    """A client's end of a WebSocket (RFC 6455) without extensions."""
+
+    def __init__(self, url):
+        parts = urllib.parse.urlsplit(url)
+        self.socket = socket.create_connection((parts.hostname, parts.port), timeout=PATIENCE)
+        key = base64.b64encode(os.urandom(16)).decode()
+        self.socket.sendall(
+            f"GET {parts.path} HTTP/1.1\r\nHost: {parts.netloc}\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
+            f"Sec-WebSocket-Key: {key}\r\nSec-WebSocket-Version: 13\r\n\r\n".encode())
+        self.stream = self.socket.makefile("rb")
+        if b" 101 " not in self.stream.readline():
+            raise RuntimeError("the browser refuses the connection")
+        while self.stream.readline().strip():
+            pass
+
+    def send(self, text):
+        data, mask = text.encode(), os.urandom(4)
+        length = bytes([0x80 | len(data)]) if len(data) < 126 else \
+            b"\xfe" + struct.pack(">H", len(data)) if len(data) < 65536 else b"\xff" + struct.pack(">Q", len(data))
+        pad = (mask * (len(data) // 4 + 1))[:len(data)]
+        masked = (int.from_bytes(data, "big") ^ int.from_bytes(pad, "big")).to_bytes(len(data), "big")
+        self.socket.sendall(b"\x81" + length + mask + masked)
+
+    def receive(self):
+        text = b""
+        while True:
+            first, second = self.stream.read(2)
+            length = second & 127
+            if length > 125:
+                length = int.from_bytes(self.stream.read(2 if length == 126 else 8), "big")
+            data = self.stream.read(length)
+            if first & 15 == 8:
+                raise RuntimeError("the browser has closed the connection")
+            if first & 15 in (0, 1):
+                text += data
+                if first & 128:
+                    return text.decode()
+
+
+class Chrome:
+    """A browser with one page. `log` collects what the page reports: exceptions, refused resources, console messages."""
+
+    def __init__(self, width=1440, height=900, path=None, arguments=()):
+        self.folder = tempfile.mkdtemp(prefix="talus_chrome_")
+        self.errors = open(os.path.join(self.folder, "stderr"), "w+")
+        self.process = subprocess.Popen(
+            [path or program(), "--headless=new", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
+             "--remote-debugging-port=0", f"--user-data-dir={self.folder}/profile", "--no-first-run", "--disable-extensions",
+             "--disable-background-networking", "--disable-component-update", "--disable-dev-shm-usage", "--force-device-scale-factor=1",
+             "--hide-scrollbars", f"--window-size={width},{height}", *arguments, "about:blank"],
+            stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=self.errors)
+        port_file, end = pathlib.Path(self.folder, "profile", "DevToolsActivePort"), time.monotonic() + PATIENCE
+        while not (port_file.exists() and port_file.read_text().count("\n")):
+            if time.monotonic() > end or self.process.poll() is not None:
+                self.errors.seek(0)
+                raise RuntimeError("the browser does not start: " + self.errors.read()[-2000:])
+            time.sleep(0.05)
+        port, path = port_file.read_text().split("\n")[:2]
+        self.socket, self.number, self.session, self.log = WebSocket(f"ws://127.0.0.1:{port}{path}"), 0, None, []
+        target = self.call("Target.createTarget", url="about:blank")["targetId"]
+        self.session = self.call("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
+        for domain in ("Page", "Runtime", "Log"):
+            self.call(domain + ".enable")
+        self.resize(width, height)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        try:
+            self.session = None
+            self.call("Browser.close")
+            self.process.wait(10)
+        except (OSError, RuntimeError, subprocess.TimeoutExpired):
+            self.process.kill()
+        self.errors.close()
+        shutil.rmtree(self.folder, ignore_errors=True)
+
+    def call(self, method, **parameters):
+        self.number += 1
+        message = {"id": self.number, "method": method, "params": parameters}
+        if self.session:
+            message["sessionId"] = self.session
+        self.socket.send(json.dumps(message))
+        while True:
+            answer = json.loads(self.socket.receive())
+            if answer.get("id") == self.number:
+                if "error" in answer:
+                    raise RuntimeError(f"{method}: {answer['error']['message']}")
+                return answer["result"]
+            self.note(answer)
+
+    def note(self, event):
+        name, p = event.get("method"), event.get("params", {})
+        if name == "Runtime.exceptionThrown":
+            d = p["exceptionDetails"]
+            self.log.append(d.get("exception", {}).get("description") or d["text"])
+        elif name == "Log.entryAdded":
+            self.log.append(p["entry"]["text"])
+        elif name == "Runtime.consoleAPICalled":
+            self.log.append(" ".join(str(a.get("value", a.get("description"))) for a in p["args"]))
+
+    def resize(self, width, height):
+        self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False)
+
+    def open(self, path, fragment=""):
+        """Opens a file, or an address of http; returns when its script has run."""
+        address = path if str(path).startswith("http") else pathlib.Path(path).resolve().as_uri()
+        self.call("Page.navigate", url="about:blank")
+        self.call("Page.navigate", url=address + fragment)
+        end = time.monotonic() + PATIENCE
+        while self.run("location.protocol + document.readyState") != address.split("/")[0] + "complete":
+            if time.monotonic() > end:
+                raise RuntimeError("the page does not load")
+            time.sleep(0.02)
+
+    def run(self, expression):
+        """Value of an expression in the page, a promise's when it is kept."""
+        result = self.call("Runtime.evaluate", expression=expression, awaitPromise=True, returnByValue=True)
+        if "exceptionDetails" in result:
+            d = result["exceptionDetails"]
+            raise RuntimeError(d.get("exception", {}).get("description") or d["text"])
+        return result["result"].get("value")
+
+    def picture(self):
+        """The window as rows of (r, g, b)."""
+        return read_png(base64.b64decode(self.call("Page.captureScreenshot", format="png")["data"]))
+
+    def key(self, key, code=0, text="", modifiers=0):
+        for kind in ("keyDown", "keyUp"):
+            self.call("Input.dispatchKeyEvent", type=kind, key=key, windowsVirtualKeyCode=code, modifiers=modifiers, text=text if kind == "keyDown" else "")
+
+    def click(self, x, y):
+        for kind in ("mousePressed", "mouseReleased"):
+            self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", clickCount=1)
+
+
+def read_png(data):
+    """Rows of (r, g, b), over white, of a PNG of 8 bits, colour type 2 or 6, not interlaced."""
+    at, packed, width, height, channels = 8, b"", 0, 0, 3
+    while at < len(data):
+        length, kind = struct.unpack_from(">I4s", data, at)
+        body = data[at + 8:at + 8 + length]
+        if kind == b"IHDR":
+            width, height, depth, colour = struct.unpack_from(">IIBB", body)
+            channels = {2: 3, 6: 4}[colour]
+            assert depth == 8, "only PNG of 8 bits are read"
+        elif kind == b"IDAT":
+            packed += body
+        at += 12 + length
+    raw, stride = zlib.decompress(packed), width * channels
+    before, rows = bytearray(stride), []
+    for y in range(height):
+        kind, line = raw[y * (stride + 1)], bytearray(raw[y * (stride + 1) + 1:(y + 1) * (stride + 1)])
+        for i in range(stride) if kind else ():
+            a = line[i - channels] if i >= channels else 0
+            b, c = before[i], before[i - channels] if i >= channels else 0
+            if kind == 1:
+                add = a
+            elif kind == 2:
+                add = b
+            elif kind == 3:
+                add = (a + b) >> 1
+            else:
+                pa, pb, pc = abs(b - c), abs(a - c), abs(a + b - 2 * c)
+                add = a if pa <= pb and pa <= pc else b if pb <= pc else c
+            line[i] = (line[i] + add) & 255
+        before = line
+        if channels == 4:  # over white
+            rows.append([tuple(255 + (v - 255) * line[i + 3] // 255 for v in line[i:i + 3]) for i in range(0, stride, 4)])
+        else:
+            rows.append([tuple(line[i:i + 3]) for i in range(0, stride, 3)])
+    return rows
