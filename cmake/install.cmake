@@ -30,7 +30,7 @@ install(FILES "${PROJECT_BINARY_DIR}/talusConfig.cmake" "${PROJECT_BINARY_DIR}/t
   cmake/talus_add_plugin.cmake DESTINATION ${config_dir})
 install(FILES "${PROJECT_BINARY_DIR}/talus.pc" DESTINATION lib/pkgconfig)
 
-install(DIRECTORY scripts/examples scripts/meta DESTINATION share/talus) # meta: for editors
+install(DIRECTORY scripts/examples scripts/meta scripts/paraview DESTINATION share/talus) # meta: for editors
 install(DIRECTORY plugins/template/ DESTINATION share/talus/templates)
 
 # The pages lie as they do in the source tree, so their links hold.

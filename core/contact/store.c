@@ -25,7 +25,8 @@ tl_detect *tl_detect_make(unsigned threads)
     }
     for (unsigned i = 0; i < threads; i++)
         tl_point_lanes_init(&d->lanes[i]);
-    d->narrow[0].deep = true; /* contacts that are copied or read into it may be marked: overlap.c */
+    d->narrow[0].deep =
+        true; /* contacts that are copied or read into it may be marked: overlap.c */
     tl_contacts_unlist(d);
     return d;
 }

@@ -4,6 +4,7 @@
  * file only: a model remembers what a reader of the page knows, and how the file ended, so that it goes on with its own
  * page and with no other. */
 #include "io/page.h"
+#include "io/extra_fields.h"
 
 #include "base/error.h"
 #include "base/signals.h"
@@ -158,16 +159,6 @@ static tl_status add_frame(tl_model *m, tl_page *page, const char *path, const t
 
 /* ---------------------------------------------------------------- what was asked --------- */
 
-static tl_status check_fields(const char *what, const tl_extra_field *fields, size_t count,
-                              tl_error *error)
-{
-    for (size_t i = 0; i < count; i++)
-        if (!fields[i].name || !*fields[i].name || (!fields[i].values && fields[i].count))
-            return tl_fail(error, TL_E_ARGUMENT, "write_html: %s %zu must have a name and values",
-                           what, i + 1);
-    return TL_OK;
-}
-
 static tl_status check(const char *prefix, const tl_html *options, tl_error *error)
 {
     size_t length = strlen(prefix);
@@ -179,11 +170,11 @@ static tl_status check(const char *prefix, const tl_html *options, tl_error *err
         return tl_fail(error, TL_E_ARGUMENT,
                        "write_html: contacts = %d must be one of tl_html_contacts, 0 to %d",
                        options->contacts, TL_HTML_CONTACTS_NONE);
-    tl_status status =
-        check_fields("field of blocks", options->block_fields, options->block_field_count, error);
+    tl_status status = tl_extra_fields_check("write_html: block_fields", options->block_fields,
+                                             options->block_field_count, TL_ANY_ITEMS, error);
     if (status == TL_OK)
-        status = check_fields("field of contacts", options->contact_fields,
-                              options->contact_field_count, error);
+        status = tl_extra_fields_check("write_html: contact_fields", options->contact_fields,
+                                       options->contact_field_count, TL_ANY_ITEMS, error);
     return status;
 }
 

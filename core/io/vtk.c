@@ -15,32 +15,41 @@
 #include <stdlib.h>
 #include <string.h>
 
+typedef struct frame frame;
+
 typedef struct part {
     const char *content; /* in the file's name */
-    tl_status (*write)(tl_model *m, const tl_plane *section, tl_pieces *out);
+    tl_status (*write)(tl_model *m, const frame *f, tl_pieces *out);
 } part;
 
-static tl_status write_blocks(tl_model *m, const tl_plane *section, tl_pieces *out)
+/* What is written: the parts of a kind of frame whose bits are set. */
+struct frame {
+    const char *function; /* of the user's */
+    const part *parts;
+    size_t count;
+    unsigned wanted;
+    const tl_plane *section;    /* of a section */
+    const tl_vtk_parts *fields; /* of a whole frame: what is added to its arrays */
+};
+
+static tl_status write_blocks(tl_model *m, const frame *f, tl_pieces *out)
 {
-    (void)section;
-    return tl_vtk_blocks(m, out);
+    return tl_vtk_blocks(m, f->fields, out);
 }
 
-static tl_status write_contacts(tl_model *m, const tl_plane *section, tl_pieces *out)
+static tl_status write_contacts(tl_model *m, const frame *f, tl_pieces *out)
 {
-    (void)section;
-    return tl_vtk_contacts(m, out);
+    return tl_vtk_contacts(m, f->fields, out);
 }
 
-static tl_status write_joints(tl_model *m, const tl_plane *section, tl_pieces *out)
+static tl_status write_joints(tl_model *m, const frame *f, tl_pieces *out)
 {
-    (void)section;
-    return tl_vtk_joints(m, out);
+    return tl_vtk_joints(m, f->fields, out);
 }
 
-static tl_status write_section(tl_model *m, const tl_plane *section, tl_pieces *out)
+static tl_status write_section(tl_model *m, const frame *f, tl_pieces *out)
 {
-    return tl_vtk_section(m, *section, out);
+    return tl_vtk_section(m, *f->section, out);
 }
 
 enum { BLOCKS, CONTACTS, JOINTS, PART_COUNT };
@@ -54,15 +63,6 @@ static const part frame_parts[PART_COUNT] = {
 static const part section_part = {"section", write_section};
 
 static_assert(PART_COUNT <= TL_VTK_PARTS, "a series has an index for each file of a frame");
-
-/* What is written: the parts of a kind of frame whose bits are set. */
-typedef struct frame {
-    const char *function; /* of the user's */
-    const part *parts;
-    size_t count;
-    unsigned wanted;
-    const tl_plane *section;
-} frame;
 
 static bool wants(const frame *f, size_t i)
 {
@@ -80,7 +80,7 @@ static tl_status write_part(tl_model *m, const tl_vtk_series *series, const fram
         status = tl_output_go_on(m);
     pieces->output = output;
     if (status == TL_OK)
-        status = p->write(m, f->section, pieces);
+        status = p->write(m, f, pieces);
     return status == TL_OK ? tl_output_finish(output, &m->error) : status;
 }
 
@@ -154,7 +154,7 @@ tl_status tl_write_vtk(tl_model *m, const char *prefix, const tl_vtk_parts *part
     tl_status status = TL_OPTIONS_READ(tl_vtk_parts, parts, &read, &m->error);
     if (status != TL_OK)
         return status;
-    frame f = {.function = "write_vtk", .parts = frame_parts, .count = PART_COUNT};
+    frame f = {.function = "write_vtk", .parts = frame_parts, .count = PART_COUNT, .fields = of};
     f.wanted = (unsigned)(of->blocks != 0) << BLOCKS | (unsigned)(of->contacts != 0) << CONTACTS |
                (unsigned)(of->joints != 0) << JOINTS;
     if (f.wanted == 0)
@@ -176,6 +176,6 @@ tl_status tl_write_section(tl_model *m, const char *prefix, const tl_halfspace *
             plane->dip);
     tl_vec3 normal = tl_plane_normal(plane->dip, plane->dip_direction);
     tl_plane section = {normal, tl_v3_dot(normal, tl_v3_sub(plane->origin, m->origin))};
-    const frame f = {"write_section", &section_part, 1, 1, &section};
+    const frame f = {"write_section", &section_part, 1, 1, &section, NULL};
     return write_frame(m, prefix, &f);
 }

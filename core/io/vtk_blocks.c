@@ -19,6 +19,7 @@
  *
  * The model's centre is the mean of the blocks' centroids weighted by volume. */
 #include "base/error.h"
+#include "io/extra_fields.h"
 #include "io/vtk_data.h"
 #include "io/vtk_file.h"
 
@@ -246,7 +247,27 @@ static tl_status put_array(tl_model *m, tl_pieces *out, const cell_array *a)
     return status;
 }
 
-static tl_status put_cell_data(tl_model *m, tl_pieces *out)
+/* A field that the program adds. */
+static void fill_field(const void *user, size_t begin, size_t end, tl_piece *piece)
+{
+    const tl_extra_field *field = user;
+    size_t bytes = (end - begin) * sizeof(double);
+    unsigned char *to = tl_piece_reserve(piece, bytes);
+    for (size_t row = begin; to && row < end; row++)
+        to = tl_vtk_put_double(to, field->values[row]);
+    piece->length += to ? bytes : 0;
+}
+
+static tl_status put_field(tl_model *m, tl_pieces *out, const tl_extra_field *field)
+{
+    size_t rows = m->blocks.table.rows;
+    tl_vtk_array(out->output->file, field->name, 1, rows, TL_VTK_DOUBLE);
+    tl_status status = tl_pieces_write(out, rows, sizeof(double), fill_field, field);
+    tl_vtk_line(out->output->file);
+    return status;
+}
+
+static tl_status put_cell_data(tl_model *m, const tl_vtk_parts *parts, tl_pieces *out)
 {
     FILE *file = out->output->file;
     size_t rows = m->blocks.table.rows;
@@ -255,12 +276,14 @@ static tl_status put_cell_data(tl_model *m, tl_pieces *out)
     fprintf(file, "VECTORS velocity double\n");
     if (status == TL_OK)
         status = put_array(m, out, &velocities);
-    tl_vtk_field(file, "FieldData", FIELDS);
+    tl_vtk_field(file, "FieldData", FIELDS + parts->block_field_count);
     for (size_t i = 0; i < FIELDS && status == TL_OK; i++) {
         tl_vtk_array(file, fields[i].name, fields[i].vector ? 3 : 1, rows,
                      fields[i].whole ? TL_VTK_INT : TL_VTK_DOUBLE);
         status = put_array(m, out, &fields[i]);
     }
+    for (size_t i = 0; i < parts->block_field_count && status == TL_OK; i++)
+        status = put_field(m, out, &parts->block_fields[i]);
     return status;
 }
 
@@ -289,7 +312,8 @@ static tl_status put_list(const grid *g, tl_pieces *out, size_t bytes, tl_piece_
     return status;
 }
 
-static tl_status put_grid(tl_model *m, const grid *g, size_t stream, tl_pieces *out)
+static tl_status put_grid(tl_model *m, const grid *g, size_t stream, const tl_vtk_parts *parts,
+                          tl_pieces *out)
 {
     FILE *file = out->output->file;
     size_t rows = m->blocks.table.rows, points = g->first[rows];
@@ -303,7 +327,7 @@ static tl_status put_grid(tl_model *m, const grid *g, size_t stream, tl_pieces *
     if (status == TL_OK)
         status = put_array(m, out, &types);
     if (status == TL_OK)
-        status = put_cell_data(m, out);
+        status = put_cell_data(m, parts, out);
     fprintf(file, "POINT_DATA %zu\nVECTORS displacement float\n", points);
     if (status == TL_OK)
         status = put_list(g, out, points * TL_VTK_FLOAT3_BYTES, fill_displacements);
@@ -312,13 +336,29 @@ static tl_status put_grid(tl_model *m, const grid *g, size_t stream, tl_pieces *
     return status == TL_OK ? put_list(g, out, points * TL_VTK_FLOAT3_BYTES, fill_explode) : status;
 }
 
-tl_status tl_vtk_blocks(tl_model *m, tl_pieces *out)
+static tl_status check_fields(tl_model *m, const tl_vtk_parts *parts)
+{
+    static const char context[] = "write_vtk: block_fields";
+    tl_status status = tl_extra_fields_check(context, parts->block_fields, parts->block_field_count,
+                                             m->blocks.table.rows, &m->error);
+    if (status == TL_OK)
+        status = tl_extra_fields_differ(context, parts->block_fields, parts->block_field_count,
+                                        "block_id", &m->error);
+    for (size_t i = 0; status == TL_OK && i < FIELDS; i++)
+        status = tl_extra_fields_differ(context, parts->block_fields, parts->block_field_count,
+                                        fields[i].name, &m->error);
+    return status;
+}
+
+tl_status tl_vtk_blocks(tl_model *m, const tl_vtk_parts *parts, tl_pieces *out)
 {
     const tl_blocks *b = &m->blocks;
     size_t stream = 0;
     for (size_t row = 0; row < b->table.rows; row++)
         stream += stream_of(b->shape[row]);
     tl_status status = tl_vtk_countable(stream, "blocks", &m->error);
+    if (status == TL_OK)
+        status = check_fields(m, parts);
     if (status != TL_OK)
         return status;
     grid g = {.model = m, .blocks = b, .centre = model_centre(m)};
@@ -328,7 +368,7 @@ tl_status tl_vtk_blocks(tl_model *m, tl_pieces *out)
     g.first[0] = 0;
     for (size_t row = 0; row < b->table.rows; row++)
         g.first[row + 1] = g.first[row] + b->shape[row]->vertex_count;
-    status = put_grid(m, &g, stream, out);
+    status = put_grid(m, &g, stream, parts, out);
     free(g.first);
     return status;
 }

@@ -3,9 +3,12 @@
 
 #include "base/error.h"
 #include "base/pages.h"
+#include "io/extra_fields.h"
 
 #include <math.h>
 #include <stdlib.h>
+
+#define CONTEXT "write_vtk: contact_fields"
 
 static size_t bytes_of(const tl_vtk_column *column)
 {
@@ -15,7 +18,7 @@ static size_t bytes_of(const tl_vtk_column *column)
 /* Lists the given columns and those of the states. */
 static bool list_columns(tl_vtk_columns *c, const tl_vtk_column *list, const char *state_type)
 {
-    c->count = c->given + c->states.count;
+    c->count = c->given + c->states.count + c->field_count;
     c->list = malloc((c->count + 1) * sizeof *c->list);
     c->at = malloc((c->count + 1) * sizeof *c->at);
     if (!c->list || !c->at)
@@ -24,6 +27,9 @@ static bool list_columns(tl_vtk_columns *c, const tl_vtk_column *list, const cha
     for (size_t s = 0; s < c->states.count; s++)
         c->list[c->given + s] =
             (tl_vtk_column){c->states.at[s].name, state_type, (unsigned)c->states.at[s].width};
+    for (size_t f = 0; f < c->field_count; f++)
+        c->list[c->given + c->states.count + f] =
+            (tl_vtk_column){c->fields[f].name, TL_VTK_DOUBLE, 1};
     return true;
 }
 
@@ -45,10 +51,18 @@ static bool make_memory(tl_vtk_columns *c)
 }
 
 tl_status tl_vtk_columns_make(tl_vtk_columns *columns, tl_model *m, const tl_vtk_column *list,
-                              size_t given, const char *state_type, size_t rows)
+                              size_t given, const char *state_type, size_t rows,
+                              const tl_extra_field *fields, size_t field_count)
 {
-    *columns = (tl_vtk_columns){.given = given, .rows = rows};
+    *columns = (tl_vtk_columns){
+        .given = given, .rows = rows, .fields = fields, .field_count = field_count};
     tl_status status = tl_law_states_list(m, &columns->states);
+    for (size_t k = 0; status == TL_OK && k < given; k++)
+        if (list[k].name)
+            status = tl_extra_fields_differ(CONTEXT, fields, field_count, list[k].name, &m->error);
+    for (size_t k = 0; status == TL_OK && k < columns->states.count; k++)
+        status = tl_extra_fields_differ(CONTEXT, fields, field_count, columns->states.at[k].name,
+                                        &m->error);
     if (status == TL_OK && !(list_columns(columns, list, state_type) && make_memory(columns)))
         status = tl_fail_memory(&m->error);
     return status;
@@ -63,8 +77,8 @@ void tl_vtk_columns_free(tl_vtk_columns *columns)
     *columns = (tl_vtk_columns){0};
 }
 
-void tl_vtk_set_states(const tl_vtk_columns *columns, const tl_model *m, size_t row,
-                       uint32_t contact)
+void tl_vtk_set_rest(const tl_vtk_columns *columns, const tl_model *m, size_t row, uint32_t contact,
+                     size_t number)
 {
     for (size_t s = 0; s < columns->states.count; s++) {
         const tl_law_state *state = &columns->states.at[s];
@@ -73,6 +87,10 @@ void tl_vtk_set_states(const tl_vtk_columns *columns, const tl_model *m, size_t 
             tl_law_state_of_contact(m, &columns->states, state, contact, value);
         for (size_t w = 0; w < state->width; w++)
             tl_vtk_set_real(columns, columns->given + s, row * state->width + w, value[w]);
+    }
+    for (size_t f = 0; f < columns->field_count; f++) {
+        double value = contact == TL_NO_ROW ? NAN : columns->fields[f].values[number];
+        tl_vtk_set_real(columns, columns->given + columns->states.count + f, row, value);
     }
 }
 

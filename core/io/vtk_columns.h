@@ -12,23 +12,26 @@ typedef struct tl_vtk_column {
     unsigned width;
 } tl_vtk_column;
 
-/* Given columns, and after them one for each state of the laws. Zero at first. */
+/* Given columns, after them one for each state of the laws, and then one for each field that the program adds. Zero at first. */
 typedef struct tl_vtk_columns {
     tl_vtk_column *list;
     size_t given, count, rows;
     unsigned char **at, *memory; /* as they are in the file */
     tl_law_states states;
+    const tl_extra_field *fields;
+    size_t field_count;
 } tl_vtk_columns;
 
-/* Makes room for `rows` rows of `given` columns and of all states of the laws, the latter doubles or floats. Freed by tl_vtk_columns_free, also after a
+/* Makes room for `rows` rows of `given` columns and of all states of the laws, the latter doubles or floats, and adds fields of all contacts. Freed by tl_vtk_columns_free, also after a
  * failure. */
 tl_status tl_vtk_columns_make(tl_vtk_columns *columns, tl_model *m, const tl_vtk_column *list,
-                              size_t given, const char *state_type, size_t rows);
+                              size_t given, const char *state_type, size_t rows,
+                              const tl_extra_field *fields, size_t field_count);
 void tl_vtk_columns_free(tl_vtk_columns *columns);
 
-/* The states of a contact, or NaN for TL_NO_ROW, into a row. */
-void tl_vtk_set_states(const tl_vtk_columns *columns, const tl_model *m, size_t row,
-                       uint32_t contact);
+/* The states and the added fields of a contact, or NaN for TL_NO_ROW, into a row; `number` is that of the contact among all. */
+void tl_vtk_set_rest(const tl_vtk_columns *columns, const tl_model *m, size_t row, uint32_t contact,
+                     size_t number);
 /* Writes a column, with its heading if it has a name. */
 void tl_vtk_put_column(const tl_vtk_columns *columns, size_t column, tl_output *output);
 /* Writes a field of the columns from `first` on. */

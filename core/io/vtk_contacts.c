@@ -13,6 +13,7 @@
  *
  * All of a contact is asked for once and kept in the form of the file, array by array. */
 #include "base/error.h"
+#include "io/extra_fields.h"
 #include "io/vtk_columns.h"
 #include "io/vtk_data.h"
 #include "query/contact_fields.h"
@@ -91,7 +92,7 @@ static void fill_range(void *user, size_t begin, size_t end, size_t chunk, unsig
         tl_vtk_set_int(c, CONTACT_ID, i, facts.id);
         tl_vtk_set_int(c, BLOCK_A, i, facts.a);
         tl_vtk_set_int(c, BLOCK_B, i, facts.b);
-        tl_vtk_set_states(c, all->model, i, all->rows[i]);
+        tl_vtk_set_rest(c, all->model, i, all->rows[i], i);
     }
 }
 
@@ -111,14 +112,18 @@ static void put_contacts(const contacts *c, tl_output *output)
     tl_vtk_put_columns(&c->columns, FIELDS, output);
 }
 
-tl_status tl_vtk_contacts(tl_model *m, tl_pieces *out)
+tl_status tl_vtk_contacts(tl_model *m, const tl_vtk_parts *parts, tl_pieces *out)
 {
     contacts c = {.model = m};
     tl_status status = tl_contacts_listed(m, &c.rows, &c.count);
     if (status == TL_OK)
         status = tl_vtk_countable(2 * c.count, "contacts", &m->error);
     if (status == TL_OK)
-        status = tl_vtk_columns_make(&c.columns, m, columns, ARRAYS, TL_VTK_DOUBLE, c.count);
+        status = tl_extra_fields_check("write_vtk: contact_fields", parts->contact_fields,
+                                       parts->contact_field_count, c.count, &m->error);
+    if (status == TL_OK)
+        status = tl_vtk_columns_make(&c.columns, m, columns, ARRAYS, TL_VTK_DOUBLE, c.count,
+                                     parts->contact_fields, parts->contact_field_count);
     if (status == TL_OK) {
         tl_parallel_for(m->pool, c.count, CHUNK, fill_range, &c);
         put_contacts(&c, out->output);

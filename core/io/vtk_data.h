@@ -7,9 +7,11 @@
 
 #include "io/pieces.h"
 
-tl_status tl_vtk_blocks(tl_model *m, tl_pieces *out);
-tl_status tl_vtk_contacts(tl_model *m, tl_pieces *out);
-tl_status tl_vtk_joints(tl_model *m, tl_pieces *out);
+#include <talus/output.h>
+
+tl_status tl_vtk_blocks(tl_model *m, const tl_vtk_parts *parts, tl_pieces *out);
+tl_status tl_vtk_contacts(tl_model *m, const tl_vtk_parts *parts, tl_pieces *out);
+tl_status tl_vtk_joints(tl_model *m, const tl_vtk_parts *parts, tl_pieces *out);
 /* The section of the blocks by the plane, relative to the model's origin. */
 tl_status tl_vtk_section(tl_model *m, tl_plane plane, tl_pieces *out);
 

@@ -17,6 +17,7 @@
  * Without contact, stresses, forces and slip are 0. */
 #include "base/error.h"
 #include "contact/detection.h"
+#include "io/extra_fields.h"
 #include "io/vtk_columns.h"
 #include "io/vtk_data.h"
 #include "query/contact_fields.h"
@@ -178,7 +179,7 @@ static void fill_contact(const joints *j, size_t i)
     tl_vtk_set_vec3(c, SHEAR_DISPLACEMENT, i, facts.shear_displacement);
     tl_vtk_set_real(c, SLIP, i, tl_v3_norm(facts.shear_displacement));
     tl_vtk_set_real(c, AREA, i, facts.area);
-    tl_vtk_set_states(c, j->model, i, row);
+    tl_vtk_set_rest(c, j->model, i, row, j->contact[i]);
 }
 
 static void fill_face(const joints *j, size_t i)
@@ -196,7 +197,7 @@ static void fill_face(const joints *j, size_t i)
         for (unsigned w = 0; w < columns[k].width; w++)
             tl_vtk_set_real(c, k, columns[k].width * i + w, 0);
     tl_vtk_set_real(c, AREA, i, tl_poly_face_area(shape, of->face));
-    tl_vtk_set_states(c, j->model, i, TL_NO_ROW);
+    tl_vtk_set_rest(c, j->model, i, TL_NO_ROW, 0);
 }
 
 static void fill_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
@@ -327,15 +328,15 @@ static tl_status find_polygons(tl_model *m, joints *j)
     return status;
 }
 
-tl_status tl_vtk_joints(tl_model *m, tl_pieces *out)
+tl_status tl_vtk_joints(tl_model *m, const tl_vtk_parts *parts, tl_pieces *out)
 {
     joints j = {.model = m};
     tl_status status = find_polygons(m, &j);
     if (status == TL_OK)
         status = tl_vtk_countable(polygons_of(&j) + corners_of(&j), "joints", &m->error);
     if (status == TL_OK)
-        status =
-            tl_vtk_columns_make(&j.columns, m, columns, COLUMNS, TL_VTK_FLOAT, polygons_of(&j));
+        status = tl_vtk_columns_make(&j.columns, m, columns, COLUMNS, TL_VTK_FLOAT, polygons_of(&j),
+                                     parts->contact_fields, parts->contact_field_count);
     if (status == TL_OK) {
         tl_parallel_for(m->pool, polygons_of(&j), CHUNK, fill_range, &j);
         status = put_joints(&j, out);

@@ -10,6 +10,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+const tl_lua_key tl_lua_field_keys[] = {
+    TL_LUA_FIELD_KEYS,
+    {NULL, NULL, NULL},
+};
+
 /* Longest name of a field. */
 #define LONGEST 63
 

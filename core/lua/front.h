@@ -367,7 +367,19 @@ void tl_lua_autosave(tl_lua_options *options, tl_model *model);
 
 /* ---- pages: page.c; extra fields of files and pages: extra_fields.c ---- */
 
+/* Keys of a table with fields that a script adds. */
+#define TL_LUA_FIELD_KEYS                                                                          \
+    {"block_fields", "{\"FIELD\", NAME = \"FIELD\" or function(block)}",                           \
+     "numbers of each block to colour by: fields of blocks, and functions that give a number, or " \
+     "nil for none"},                                                                              \
+    {                                                                                              \
+        "contact_fields", "{\"FIELD\", NAME = \"FIELD\" or function(contact)}",                    \
+            "numbers of each contact, likewise: fields of contacts, states of their laws, "        \
+            "functions"                                                                            \
+    }
+
 extern const tl_lua_key tl_lua_page_keys[];
+extern const tl_lua_key tl_lua_field_keys[];
 int tl_lua_write_html(lua_State *L);
 
 /* The extra fields that the table at `table` asks for under `key`: {"field", name = "field", name = function(item) ... end}, of

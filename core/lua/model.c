@@ -343,8 +343,13 @@ static int model_write_vtk(lua_State *L)
     lua_settop(L, 3);
     const char *prefix = tl_lua_text(L, 2, "write_vtk", "the prefix");
     tl_vtk_parts parts = tl_vtk_parts_default();
-    tl_lua_spec spec = tl_lua_spec_of("write_vtk", NULL);
+    tl_lua_spec spec = tl_lua_spec_of("write_vtk", tl_lua_field_keys);
     tl_lua_read(L, 3, &spec, false, &parts);
+    luaL_checkstack(L, 32, "too many values");
+    parts.block_fields = tl_lua_extra_fields(L, 3, "block_fields", "write_vtk", &tl_lua_block_kind,
+                                             &parts.block_field_count);
+    parts.contact_fields = tl_lua_extra_fields(L, 3, "contact_fields", "write_vtk",
+                                               &tl_lua_contact_kind, &parts.contact_field_count);
     tl_lua_watch watch = tl_lua_watch_begin(L);
     finish_call(L, model, &watch, "write_vtk", NO_FILE, tl_write_vtk(model, prefix, &parts));
     return 0;

@@ -7,11 +7,7 @@ const tl_lua_key tl_lua_page_keys[] = {
     {"contacts", "true, false or \"slipping\"",
      "which contacts the frame has; when left out all, where there are 20000 at the most, and else "
      "those that slip"},
-    {"block_fields", "{\"FIELD\", NAME = \"FIELD\" or function(block)}",
-     "numbers of each block to colour by: fields of blocks, and functions that give a number, or "
-     "nil for none"},
-    {"contact_fields", "{\"FIELD\", NAME = \"FIELD\" or function(contact)}",
-     "numbers of each contact, likewise: fields of contacts, states of their laws, functions"},
+    TL_LUA_FIELD_KEYS,
     {"keyblocks", "{friction =, cohesion =, gravity =}",
      "parameters of model:keyblocks, whose modes and factors of safety are shown as well"},
     {NULL, NULL, NULL},

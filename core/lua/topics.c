@@ -371,8 +371,10 @@ const tl_lua_topic tl_lua_topics[] = {
      .title = "Fields of the result",
      .verbs = tl_lua_memory_fields},
     {.name = "write_vtk",
-     .usage = "model:write_vtk(\"out/run\", {contacts = false, joints = false})",
-     .function = "write_vtk"},
+     .usage = "model:write_vtk(\"out/run\", {contacts = false, block_fields = {height = "
+              "function(b) return b.centroid[3] end}})",
+     .function = "write_vtk",
+     .keys = tl_lua_field_keys},
     {.name = "write_section",
      .usage =
          "model:write_section(\"out/cut\", {dip = 90, dip_direction = 90, origin = {0, 0, 0}})",

@@ -1020,10 +1020,12 @@ function Model:memory() end
 ---@field blocks? boolean default true: whether the frame has a file of the blocks
 ---@field contacts? boolean default true: whether the frame has a file of the contacts
 ---@field joints? boolean default true: whether the frame has a file of the faces that joints made
+---@field block_fields? string[]|table<string, string|fun(block: talus.Block): number?> numbers of each block to colour by: fields of blocks, and functions that give a number, or nil for none
+---@field contact_fields? string[]|table<string, string|fun(contact: talus.Contact): number?> numbers of each contact, likewise: fields of contacts, states of their laws, functions
 
 --- Writes the next frame of a series of VTK files for ParaView, all of it or some of its files. Their names begin with the folder and the name given first.
 ---
----     model:write_vtk("out/run", {contacts = false, joints = false})
+---     model:write_vtk("out/run", {contacts = false, block_fields = {height = function(b) return b.centroid[3] end}})
 ---@param path string
 ---@param options? talus.WriteVtkOptions
 function Model:write_vtk(path, options) end

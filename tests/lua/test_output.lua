@@ -152,6 +152,38 @@ check.near(cells("slip", "f")[1], math.sqrt(slip[1] ^ 2 + slip[2] ^ 2 + slip[3] 
 check.near(cells("normal_stress", "f")[1], contact.normal_stress, 1e-7 * contact.normal_stress)
 check.near(cells("area", "f")[2], 1, 1e-7)
 
+-- ---------------------------------------------------------------- fields of a script
+
+-- Numbers of blocks and of contacts, by the name of a field and by functions.
+slide:write_vtk(stem .. "_fields", {
+    block_fields = { "kinetic_energy", height = function(b) return b.id == 4 and b.centroid[3] or nil end },
+    contact_fields = { twice = function(c) return 2 * c.area end },
+})
+local function numbers(part, name, count)
+    local content = content_of(stem .. "_fields_" .. part .. "_000000.vtk")
+    local at = select(2, content:find("\n" .. name .. " 1 " .. count .. " %a+\n"))
+    check.holds(at, "an array " .. name .. " of the " .. part)
+    return { string.unpack((part == "joints" and ">ddd" or ">dd"):sub(1, count + 1), content, at + 1) }
+end
+local height = numbers("blocks", "height", 2)
+check.near(height[1], slide:blocks()[1].centroid[3], 1e-12)
+check.holds(height[2] ~= height[2], "no number is NaN")
+check.near(numbers("blocks", "kinetic_energy", 2)[2], slide:blocks()[2].kinetic_energy, 1e-9)
+check.near(numbers("contacts", "twice", 1)[1], 2 * contact.area, 1e-12)
+check.near(numbers("joints", "twice", 3)[1], 2 * contact.area, 1e-12)
+check.holds(numbers("joints", "twice", 3)[2] ~= numbers("joints", "twice", 3)[2], "none without a contact")
+for _, case in ipairs {
+    { { block_fields = { volume = "mass" } }, "the file has an array 'volume' already" },
+    { { contact_fields = { opening = "gap" } }, "the file has an array 'opening' already" },
+    { { block_fields = { f = function() return {} end } }, "it must give a number or nil, not" },
+    { { block_fields = { "nothing" } }, "nothing" },
+    { { block_fields = 3 }, "must be a table" },
+    { { blockfields = {} }, "block_fields" },
+} do
+    check.refused(slide, function() slide:write_vtk(stem .. "_refused", case[1]) end, case[2])
+end
+check.equal(content_of(stem .. "_refused_blocks_000000.vtk"), nil)
+
 -- ---------------------------------------------------------------- mistakes
 
 check.refused(model, function() model:write_vtk(prefix, { contact = false }) end, "did you mean 'contacts'?")

@@ -161,7 +161,7 @@ TEST(what_is_refused)
     html.block_fields = &nameless;
     html.block_field_count = 1;
     CHECK_INT(tl_write_html(m, FOLDER "/no", &html), TL_E_ARGUMENT);
-    CHECK_CONTAINS(tl_model_error(m)->text, "field of blocks 1 must have a name");
+    CHECK_CONTAINS(tl_model_error(m)->text, "block_fields: field 1 must have a name");
     CHECK_INT(files_with("no"), 0);
 
     FILE *file = fopen(FOLDER "/plain", "w");

@@ -17,22 +17,24 @@ struct tl_keyblocks;
 TL_API tl_status tl_write_section(struct tl_model *model, const char *prefix,
                                   const struct tl_halfspace *plane);
 
-/* The files of a frame. */
-typedef struct tl_vtk_parts {
-    uint32_t size; /* sizeof(tl_vtk_parts) */
-    int32_t blocks, contacts, joints;
-} tl_vtk_parts;
-/* Writes the next frame of the series PREFIX: PREFIX_blocks_NNNNNN.vtk, _contacts_ and _joints_, or those of `parts`, and
- * PREFIX_{blocks,contacts,joints}.vtk.series. Folders are made as needed. Files of one number are of one frame. */
-TL_API tl_status tl_write_vtk(struct tl_model *model, const char *prefix,
-                              const tl_vtk_parts *parts);
-
 /* A number of each block or of each contact, beside their fields. */
 typedef struct tl_extra_field {
     const char *name, *unit; /* unit: NULL or "" for none */
     const double *values;    /* of all blocks or contacts, in ascending order of id; NaN: none */
     size_t count;
 } tl_extra_field;
+
+/* The files of a frame, and what is added to their arrays. */
+typedef struct tl_vtk_parts {
+    uint32_t size; /* sizeof(tl_vtk_parts) */
+    int32_t blocks, contacts, joints;
+    const tl_extra_field *block_fields, *contact_fields; /* the latter go to contacts and joints */
+    size_t block_field_count, contact_field_count;
+} tl_vtk_parts;
+/* Writes the next frame of the series PREFIX: PREFIX_blocks_NNNNNN.vtk, _contacts_ and _joints_, or those of `parts`, and
+ * PREFIX_{blocks,contacts,joints}.vtk.series. Folders are made as needed. Files of one number are of one frame. */
+TL_API tl_status tl_write_vtk(struct tl_model *model, const char *prefix,
+                              const tl_vtk_parts *parts);
 
 /* Which contacts a frame of a page has. */
 typedef enum tl_html_contacts {
