@@ -99,7 +99,7 @@ def check_autosave(program, folder):
     whole = start().communicate()[0].split()[1:]
     saved, chance, begun = folder / "long run.lua.autosave.talus", random.Random(2), []
     for _ in range(8):
-        process = start("--resume", "--autosave", "0.0003")
+        process = start("--resume", "--autosave", "0.00001")
         while not saved.exists() and process.poll() is None:
             time.sleep(0.01)
         time.sleep(0.1 * chance.random())
