@@ -30,7 +30,7 @@ def write_run(build, folder):
 
 
 def try_macros(root, run):
-    place = root.path / "srv/paraview"
+    place = root.path / "srv" / "paraview"
     shutil.copytree(ROOT / "scripts/paraview", place)
     shutil.copytree(run, place / "run")
     (place / "pictures").mkdir()
@@ -42,7 +42,7 @@ def try_macros(root, run):
             f"GetAnimationScene().GoToLast()\nSetActiveSource(source)\nexec(open('{macro}.py').read())\nprint('{macro}: done')\n")
         commands.append(f"pvpython {macro}.menu.py")
     (place / "all.sh").write_text("set -e\n" + "\n".join(commands) + "\n")
-    told = root.go("xvfb-run", "-a", "-s", "-screen 0 1280x1024x24", "sh", "all.sh", cwd="/srv/paraview").stdout
+    told = root.go("xvfb-run", "-a", "-s", "-screen 0 1280x1024x24", "sh", "all.sh", cwd=f"/srv/{place.name}").stdout
     made = sorted(path.name for path in (place / "pictures").iterdir())
     assert len(made) == 5 and told.count(" bytes") == 5 and all(f"{macro}: done" in told for macro in MACROS), told
     return place / "pictures"
