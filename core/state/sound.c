@@ -9,6 +9,9 @@
 #define TURN_SLACK 0.01
 #define MOST_MATRIX (5.2 + TURN_SLACK)
 
+/* Changes that a model may have counted; no run comes near, and sums of such numbers do not overflow. */
+#define MOST_CHANGES (UINT64_MAX / 8)
+
 /* Bits of `said`: one for each remark. */
 #define ALL_REMARKS ((2u << TL_REMARK_OVERLAP) - 1)
 
@@ -24,7 +27,8 @@ static bool settings_are_sound(const tl_model *m)
            c->contact_points >= 0 && c->contact_points <= TL_POINTS_CORNERS && steps &&
            tl_v3_finite(m->origin) && isfinite(m->time) && isfinite(m->dt) && m->dt >= 0 &&
            m->cycles >= 0 && m->gone == 0 && (m->said & ~ALL_REMARKS) == 0 && !(m->added_dt <= 0) &&
-           !(m->added_most < 0);
+           !(m->added_most < 0) && m->structure <= MOST_CHANGES && m->constraints <= MOST_CHANGES &&
+           m->laws <= MOST_CHANGES;
 }
 
 static bool rule_is_sound(const tl_min_area_rule *rule)
@@ -147,12 +151,14 @@ static void forget_stale(const tl_model *m, struct tl_cycle *c)
         c->step_bounds.version = 0;
     if (!is_row(c->stiffness_rates.body, bodies))
         c->stiffness_rates.version = 0;
+    uint32_t held = 0;
     for (size_t body = 0; body < bodies; body++) {
-        if (c->reaction_of[body] < c->reaction_capacity)
-            continue;
-        if (c->reaction_of[body] != TL_NO_ROW || m->bodies.fixed[body])
-            c->reactions_for = 0;
-        c->reaction_of[body] = TL_NO_ROW;
+        uint32_t *row = &c->reaction_of[body], listed = m->bodies.fixed[body] ? held++ : TL_NO_ROW;
+        bool there = *row == TL_NO_ROW || *row < c->reaction_capacity;
+        if (*row != listed || !there)
+            c->reactions_for = 0; /* list them anew */
+        if (!there)
+            *row = TL_NO_ROW;
     }
 }
 
