@@ -6,16 +6,15 @@
 #include "base/walk.h"
 #include "narrow/narrow.h"
 
-/* A face number that every block may have had which has gone, or has another shape now. */
+/* A face number that every block may have had which has gone. */
 #define ANY_FACES UINT32_MAX
 
-/* Faces of the block that had a row when the detection last looked. */
+/* Faces of the block that had a row when the detection last looked: as long as a block lives it keeps them, though not their
+ * places and tags. */
 static uint32_t faces_of(const tl_model *m, const tl_detect *d, uint32_t seen)
 {
     uint32_t row = tl_block_row_quiet(m, d->known_blocks[seen].id);
-    if (row == TL_NO_ROW || m->blocks.changed[row] > d->structure)
-        return ANY_FACES;
-    return m->blocks.shape[row]->face_count;
+    return row == TL_NO_ROW ? ANY_FACES : m->blocks.shape[row]->face_count;
 }
 
 /* ---------------------------------------------------------------- pairs ------------------ */
