@@ -6,7 +6,7 @@
 #include "io/scene_put.h"
 
 #include <stdlib.h>
-#include <talus/elementary.h>
+#include <talus/vmath.h>
 
 /* Blocks that a thread takes at a time. */
 #define CHUNK 1024
@@ -93,17 +93,6 @@ typedef struct frame {
 
 enum { HELD = 1, HIDDEN = 2 };
 
-/* The vector along the axis of a unit quaternion, as long as its angle, at most pi. */
-static tl_vec3 rotation_vector(tl_quat q)
-{
-    tl_vec3 axis = {q.x, q.y, q.z};
-    double sine = tl_v3_norm(axis);
-    if (!(sine > 0))
-        return tl_v3(0, 0, 0);
-    double half = tl_atan2(sine, q.w < 0 ? -q.w : q.w);
-    return tl_v3_scale((q.w < 0 ? -2 : 2) * half / sine, axis);
-}
-
 static void put_block(const frame *f, size_t i)
 {
     const tl_model *m = f->model;
@@ -120,7 +109,7 @@ static void put_block(const frame *f, size_t i)
     tl_put_f32(turn, q.w);
     tl_put_vec3(f->velocity + 12 * i, tl_block_velocity(m, row));
     tl_put_vec3(f->displacement + 12 * i, tl_block_displacement(m, row));
-    tl_put_vec3(f->rotation + 12 * i, rotation_vector(q));
+    tl_put_vec3(f->rotation + 12 * i, tl_q_vector(q));
     tl_put_vec3(f->spin + 12 * i, bodies->w[body]);
     tl_put_f32(f->unbalanced + 4 * i, tl_v3_norm(bodies->force[body]));
     tl_put_u8(f->flags + i, (bodies->fixed[body] == TL_FIX_ALL ? HELD : 0u) |

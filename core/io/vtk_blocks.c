@@ -218,17 +218,8 @@ static tl_vec3 unbalanced_of(const tl_model *m, uint32_t row)
     return m->bodies.force[m->blocks.body[row]];
 }
 
-/* Of a block's centroid: its body's, and what the body's turning adds off the body's centroid. */
-static tl_vec3 velocity_of(const tl_model *m, uint32_t row)
-{
-    const tl_bodies *bodies = &m->bodies;
-    uint32_t body = m->blocks.body[row];
-    tl_vec3 arm = tl_m3_mul(&bodies->pose[body].r, tl_block_local(m, row));
-    return tl_v3_add(bodies->v[body], tl_v3_cross(bodies->w[body], arm));
-}
-
 static const cell_array types = {.whole = cell_type}, ids = {.whole = id_of},
-                        velocities = {.vector = velocity_of};
+                        velocities = {.vector = tl_block_velocity};
 static const cell_array fields[] = {
     {"group", .whole = group_of},        {"body", .whole = body_of},
     {"volume", .real = volume_of},       {"density", .real = density_of},
