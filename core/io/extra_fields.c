@@ -4,15 +4,15 @@
 #include <string.h>
 
 tl_status tl_extra_fields_check(const char *context, const tl_extra_field *fields, size_t count,
-                                size_t items, tl_error *error)
+                                size_t items, const char *of, tl_error *error)
 {
     for (size_t i = 0; i < count; i++) {
         if (!fields[i].name || !*fields[i].name || (!fields[i].values && fields[i].count))
             return tl_fail(error, TL_E_ARGUMENT, "%s: field %zu must have a name and values",
                            context, i + 1);
         if (items != TL_ANY_ITEMS && fields[i].count != items)
-            return tl_fail(error, TL_E_ARGUMENT, "%s: '%s' has %zu values, and there are %zu",
-                           context, fields[i].name, fields[i].count, items);
+            return tl_fail(error, TL_E_ARGUMENT, "%s: '%s' has %zu values, and there are %zu %s",
+                           context, fields[i].name, fields[i].count, items, of);
     }
     return TL_OK;
 }

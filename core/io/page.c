@@ -171,10 +171,10 @@ static tl_status check(const char *prefix, const tl_html *options, tl_error *err
                        "write_html: contacts = %d must be one of tl_html_contacts, 0 to %d",
                        options->contacts, TL_HTML_CONTACTS_NONE);
     tl_status status = tl_extra_fields_check("write_html: block_fields", options->block_fields,
-                                             options->block_field_count, TL_ANY_ITEMS, error);
+                                             options->block_field_count, TL_ANY_ITEMS, "", error);
     if (status == TL_OK)
         status = tl_extra_fields_check("write_html: contact_fields", options->contact_fields,
-                                       options->contact_field_count, TL_ANY_ITEMS, error);
+                                       options->contact_field_count, TL_ANY_ITEMS, "", error);
     return status;
 }
 

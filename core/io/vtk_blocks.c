@@ -331,7 +331,7 @@ static tl_status check_fields(tl_model *m, const tl_vtk_parts *parts)
 {
     static const char context[] = "write_vtk: block_fields";
     tl_status status = tl_extra_fields_check(context, parts->block_fields, parts->block_field_count,
-                                             m->blocks.table.rows, &m->error);
+                                             m->blocks.table.rows, "blocks", &m->error);
     if (status == TL_OK)
         status = tl_extra_fields_differ(context, parts->block_fields, parts->block_field_count,
                                         "block_id", &m->error);

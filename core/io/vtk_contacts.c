@@ -120,7 +120,7 @@ tl_status tl_vtk_contacts(tl_model *m, const tl_vtk_parts *parts, tl_pieces *out
         status = tl_vtk_countable(2 * c.count, "contacts", &m->error);
     if (status == TL_OK)
         status = tl_extra_fields_check("write_vtk: contact_fields", parts->contact_fields,
-                                       parts->contact_field_count, c.count, &m->error);
+                                       parts->contact_field_count, c.count, "contacts", &m->error);
     if (status == TL_OK)
         status = tl_vtk_columns_make(&c.columns, m, columns, ARRAYS, TL_VTK_DOUBLE, c.count,
                                      parts->contact_fields, parts->contact_field_count);
