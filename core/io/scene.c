@@ -4,6 +4,7 @@
  * and gone. */
 #include "io/scene.h"
 
+#include "io/extra_fields.h"
 #include "io/scene_parts.h"
 #include "io/scene_put.h"
 
@@ -145,17 +146,11 @@ static tl_status put_news(tl_scene *scene, tl_model *m, const tl_html *options, 
 static tl_status put_block_fields(tl_model *m, const tl_html *options, tl_piece *out)
 {
     size_t rows = m->blocks.table.rows;
-    for (size_t i = 0; i < options->block_field_count; i++) {
-        const tl_extra_field *field = &options->block_fields[i];
-        if (field->count != rows)
-            return tl_fail(&m->error, TL_E_ARGUMENT,
-                           "block_fields: '%s' has %zu values, and there are %zu blocks",
-                           field->name, field->count, rows);
-        tl_status status = tl_scene_field(&m->error, 0, i, field->values, NULL, rows, out);
-        if (status != TL_OK)
-            return status;
-    }
-    return TL_OK;
+    tl_status status = tl_extra_fields_check("write_html: block_fields", options->block_fields,
+                                             options->block_field_count, rows, "blocks", &m->error);
+    for (size_t i = 0; status == TL_OK && i < options->block_field_count; i++)
+        status = tl_scene_field(&m->error, 0, i, options->block_fields[i].values, NULL, rows, out);
+    return status;
 }
 
 /* ---------------------------------------------------------------- the frame -------------- */

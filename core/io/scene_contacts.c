@@ -1,4 +1,5 @@
 /* scene_contacts.c - CONT and the extra fields of contacts. */
+#include "io/extra_fields.h"
 #include "io/scene_parts.h"
 #include "io/scene_put.h"
 
@@ -142,18 +143,13 @@ static tl_status put_contacts(contacts *c, tl_piece *out)
 static tl_status put_fields(const contacts *c, const tl_html *options, tl_piece *out)
 {
     tl_error *error = &c->model->error;
-    for (size_t i = 0; i < options->contact_field_count; i++) {
-        const tl_extra_field *field = &options->contact_fields[i];
-        if (field->count != c->listed)
-            return tl_fail(error, TL_E_ARGUMENT,
-                           "contact_fields: '%s' has %zu values, and there are %zu contacts",
-                           field->name, field->count, c->listed);
-        tl_status status = tl_scene_field(error, 1, options->block_field_count + i, field->values,
-                                          c->picked, c->count, out);
-        if (status != TL_OK)
-            return status;
-    }
-    return TL_OK;
+    size_t first = options->block_field_count, count = options->contact_field_count;
+    tl_status status = tl_extra_fields_check("write_html: contact_fields", options->contact_fields,
+                                             count, c->listed, "contacts", error);
+    for (size_t i = 0; status == TL_OK && i < count; i++)
+        status = tl_scene_field(error, 1, first + i, options->contact_fields[i].values, c->picked,
+                                c->count, out);
+    return status;
 }
 
 tl_status tl_scene_contacts(tl_model *m, const tl_html *options, tl_piece *out)

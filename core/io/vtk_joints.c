@@ -335,6 +335,10 @@ tl_status tl_vtk_joints(tl_model *m, const tl_vtk_parts *parts, tl_pieces *out)
     if (status == TL_OK)
         status = tl_vtk_countable(polygons_of(&j) + corners_of(&j), "joints", &m->error);
     if (status == TL_OK)
+        status =
+            tl_extra_fields_check("write_vtk: contact_fields", parts->contact_fields,
+                                  parts->contact_field_count, j.contacts, "contacts", &m->error);
+    if (status == TL_OK)
         status = tl_vtk_columns_make(&j.columns, m, columns, COLUMNS, TL_VTK_FLOAT, polygons_of(&j),
                                      parts->contact_fields, parts->contact_field_count);
     if (status == TL_OK) {

@@ -154,6 +154,31 @@ TEST(two_frames_for_the_reader)
     tl_model_destroy(m);
 }
 
+/* Numbers of a program's own are as many as there are blocks or contacts, whatever files are written. */
+TEST(added_fields_fit_the_model)
+{
+    tl_model *m = cut_box();
+    const double few[] = {1, 2, 3};
+    const tl_extra_field field = {.name = "mine", .values = few, .count = 3};
+    tl_vtk_parts parts = tl_vtk_parts_default();
+    parts.contact_fields = &field;
+    parts.contact_field_count = 1;
+    for (int k = 0; k < 2; k++) { /* joints alone, then contacts alone */
+        parts.blocks = 0;
+        parts.contacts = k;
+        parts.joints = !k;
+        CHECK_INT(tl_write_vtk(m, FOLDER "/few", &parts), TL_E_ARGUMENT);
+        CHECK_CONTAINS(tl_model_error(m)->text, "contact_fields: 'mine' has 3 values, and there");
+    }
+    parts = tl_vtk_parts_default();
+    parts.block_fields = &field;
+    parts.block_field_count = 1;
+    CHECK_INT(tl_write_vtk(m, FOLDER "/few", &parts), TL_E_ARGUMENT);
+    CHECK_CONTAINS(tl_model_error(m)->text, "block_fields: 'mine' has 3 values, and there");
+    CHECK(!exists(FOLDER "/few_blocks_000000.vtk") && !exists(FOLDER "/few_joints_000000.vtk"));
+    tl_model_destroy(m);
+}
+
 /* Across blocks, along a joint's faces and outside the model. The series count for themselves. */
 TEST(sections_for_the_reader)
 {
@@ -381,9 +406,9 @@ static void clean_folder(void)
     files_with("plain", 1);
 }
 
-TEST_MAIN(RUN(clean_folder), RUN(two_frames_for_the_reader), RUN(sections_for_the_reader),
-          RUN(an_empty_model_has_files_too), RUN(prefixes_count_their_own_frames),
-          RUN(a_prefix_names_files), RUN(a_file_is_no_folder), RUN(a_failed_frame_leaves_nothing),
-          RUN(a_full_disk_is_noticed), RUN(an_index_is_kept_in_its_place),
-          RUN(an_index_that_was_changed_is_written_anew),
+TEST_MAIN(RUN(clean_folder), RUN(two_frames_for_the_reader), RUN(added_fields_fit_the_model),
+          RUN(sections_for_the_reader), RUN(an_empty_model_has_files_too),
+          RUN(prefixes_count_their_own_frames), RUN(a_prefix_names_files), RUN(a_file_is_no_folder),
+          RUN(a_failed_frame_leaves_nothing), RUN(a_full_disk_is_noticed),
+          RUN(an_index_is_kept_in_its_place), RUN(an_index_that_was_changed_is_written_anew),
           RUN(a_killed_writer_leaves_a_whole_series))
