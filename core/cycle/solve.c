@@ -98,6 +98,22 @@ static bool ended(tl_model *m, const progress *p, tl_status *status)
     return true;
 }
 
+/* Calls the function before a step; false when the run is over. What it makes or takes away is watched anew. */
+static bool call_between(tl_model *m, const progress *p, tl_watch **watch, tl_status *status)
+{
+    uint64_t structure = m->structure;
+    *status = p->solve->between(p->solve->user, m);
+    p->result->reason = TL_SOLVE_STOP;
+    if (*status == TL_OK && *watch && m->structure != structure) {
+        tl_watch_end(*watch);
+        *watch = tl_watch_begin(m);
+        *status = *watch ? TL_OK : tl_fail_memory(&m->error);
+    }
+    if (*status == TL_OK && tl_model_interrupted(m))
+        p->result->reason = TL_SOLVE_INTERRUPT;
+    return *status == TL_OK && !tl_model_interrupted(m);
+}
+
 static void say_failure(tl_model *m, const tl_solve_result *r)
 {
     uint32_t row = tl_block_row_quiet(m, r->failing);
@@ -124,6 +140,8 @@ static tl_status run(tl_model *m, const tl_solve *solve, tl_solve_result *result
     tl_remark_units(m);
     tl_status status = TL_OK;
     while (result->cycles < solve->max_cycles) {
+        if (solve->between && !call_between(m, &p, &watch, &status))
+            break;
         status = tl_step(m);
         if (status != TL_OK)
             break;
@@ -164,7 +182,8 @@ tl_status tl_model_cycle_calling(tl_model *m, int64_t cycles, const tl_solve *ca
                             .each = calls->each,
                             .progress = calls->progress,
                             .stop = calls->stop,
-                            .user = calls->user};
+                            .user = calls->user,
+                            .between = calls->between};
     return run(m, &plain, result);
 }
 

@@ -272,6 +272,8 @@ typedef struct tl_solve {
     tl_step_fn progress;
     bool (*stop)(void *user, tl_model *model);
     void *user;
+    /* called before every step, or NULL: it may change the model, as between two runs */
+    tl_step_fn between;
 } tl_solve;
 
 typedef struct tl_solve_result {
