@@ -93,7 +93,7 @@ static tl_status put_bytes(tl_model *m, const char letters[5], const void *data,
                            tl_piece *out)
 {
     size_t before = out->length;
-    unsigned char *to = tl_chunk_add(out, letters, tl_scene_column_bytes(bytes, 1), &m->error);
+    unsigned char *to = tl_scene_chunk(out, letters, tl_scene_column_bytes(bytes, 1), &m->error);
     if (!to)
         return m->error.status;
     tl_put_u32(out->data + before + 4, (uint32_t)bytes); /* what follows is no more of it */
@@ -119,7 +119,7 @@ static tl_status put_head(tl_scene *scene, tl_model *m, const tl_html *options, 
 static tl_status put_gone(tl_model *m, const news *found, tl_piece *out)
 {
     size_t n = found->gone_count;
-    unsigned char *to = tl_chunk_add(out, "GONE", 4 + 4 * n, &m->error);
+    unsigned char *to = tl_scene_chunk(out, "GONE", 4 + 4 * n, &m->error);
     if (!to)
         return m->error.status;
     to = tl_put_u32(to, (uint32_t)n);
@@ -178,7 +178,7 @@ tl_status tl_scene_write(tl_scene *scene, tl_model *m, const tl_html *options, t
         status = tl_scene_contacts(m, options, out);
     if (status == TL_OK)
         status = tl_scene_run(m, options, out);
-    unsigned char *to = status == TL_OK ? tl_chunk_add(out, "DONE", 4, &m->error) : NULL;
+    unsigned char *to = status == TL_OK ? tl_scene_chunk(out, "DONE", 4, &m->error) : NULL;
     if (!to)
         return m->error.status;
     tl_put_u32(to, scene->sent.frames);

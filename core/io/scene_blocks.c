@@ -57,7 +57,7 @@ tl_status tl_scene_shapes(tl_model *m, const uint32_t *rows, size_t count, tl_pi
     }
     size_t bytes = 16 + count * 40 + n.vertices * 12 + n.faces * 8 +
                    tl_scene_column_bytes(n.faces, 2) + tl_scene_column_bytes(n.corners, 2);
-    unsigned char *to = tl_chunk_add(out, "SHAP", bytes, &m->error);
+    unsigned char *to = tl_scene_chunk(out, "SHAP", bytes, &m->error);
     if (!to)
         return m->error.status;
     to = tl_put_u32(to, (uint32_t)count);
@@ -135,7 +135,7 @@ tl_status tl_scene_blocks(tl_model *m, tl_piece *out, double *largest)
     if (!f.largest)
         return tl_fail_memory(&m->error);
     unsigned char *to =
-        tl_chunk_add(out, "FRAM", 20 + 84 * n + tl_scene_column_bytes(n, 1), &m->error);
+        tl_scene_chunk(out, "FRAM", 20 + 84 * n + tl_scene_column_bytes(n, 1), &m->error);
     if (!to) {
         free(f.largest);
         return m->error.status;

@@ -102,7 +102,7 @@ static tl_status put_columns(contacts *c, const tl_contact_polygons *p, tl_piece
 {
     size_t n = c->count;
     size_t bytes = 12 + 68 * n + tl_scene_column_bytes(n, 1) + 8 * p->polygons + 12 * p->corners;
-    unsigned char *to = tl_chunk_add(out, "CONT", bytes, &c->model->error);
+    unsigned char *to = tl_scene_chunk(out, "CONT", bytes, &c->model->error);
     if (!to)
         return c->model->error.status;
     to = tl_put_u32(to, (uint32_t)n);

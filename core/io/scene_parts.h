@@ -1,4 +1,4 @@
-/* scene_parts.h - the parts of a frame: scene_head.c, scene_blocks.c, scene_contacts.c, scene_more.c,
+/* scene_parts.h - the parts of a frame: scene_head.c, scene_blocks.c, scene_contacts.c, scene_numbers.c,
  * scene_histories.c. */
 #ifndef TL_IO_SCENE_PARTS_H
 #define TL_IO_SCENE_PARTS_H

@@ -1,11 +1,11 @@
-/* scene_more.c - FIEL, LINE and KEYS: extra fields, the numbers of the run, keyblocks. */
+/* scene_numbers.c - FIEL, LINE and KEYS: extra fields, the numbers of the run, keyblocks. */
 #include "io/scene_parts.h"
 #include "io/scene_put.h"
 
 tl_status tl_scene_field(tl_error *error, uint32_t of, size_t number, const double *values,
                          const uint32_t *picked, size_t count, tl_piece *out)
 {
-    unsigned char *to = tl_chunk_add(out, "FIEL", 12 + 4 * count, error);
+    unsigned char *to = tl_scene_chunk(out, "FIEL", 12 + 4 * count, error);
     if (!to)
         return error->status;
     to = tl_put_u32(to, of);
@@ -19,7 +19,7 @@ tl_status tl_scene_field(tl_error *error, uint32_t of, size_t number, const doub
 static tl_status put_keyblocks(tl_model *m, const tl_keyblocks *keys, tl_piece *out)
 {
     size_t n = keys->count;
-    unsigned char *to = tl_chunk_add(out, "KEYS", 4 + 24 * n, &m->error);
+    unsigned char *to = tl_scene_chunk(out, "KEYS", 4 + 24 * n, &m->error);
     if (!to)
         return m->error.status;
     to = tl_put_u32(to, (uint32_t)n);
@@ -62,7 +62,7 @@ tl_status tl_scene_run(tl_model *m, const tl_html *options, tl_piece *out)
                               energy.damping, energy.friction};
     size_t count = sizeof numbers / sizeof numbers[0], k = 0;
     tl_scene_histories(m, count_history, &k);
-    unsigned char *to = tl_chunk_add(out, "LINE", 8 * count + 4 + 8 * k, &m->error);
+    unsigned char *to = tl_scene_chunk(out, "LINE", 8 * count + 4 + 8 * k, &m->error);
     if (!to)
         return m->error.status;
     for (size_t i = 0; i < count; i++)
