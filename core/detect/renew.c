@@ -224,7 +224,7 @@ bool tl_simd_group_update(tl_model *m, const tl_simd_group *group, unsigned thre
         else
             others |= 1u << l;
     }
-    if (in & (in - 1)) { /* one alone is no batch */
+    if (in) {
         tl_batch_lay(batch);
         take_patches(m, group, batch, &in);
     }
