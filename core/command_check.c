@@ -8,7 +8,8 @@
 
 #define USAGE                                                                                      \
     "talus: usage: talus check FILE.so [NAME=VALUE...]\n"                                          \
-    "Tries each law, damping and generator of the file, with its defaults, the values given and\n" \
+    "Tries each law, damping, generator and screen of the file, with its defaults, the values "    \
+    "given and\n"                                                                                  \
     "drawn ones: a number, true, false, a list as 1,2,3, points as 0,0,0;1,0,0 or a text.\n"
 
 /* Numbers of a list. */
@@ -68,7 +69,7 @@ typedef struct listing {
 
 static void tell(void *user, const tl_check_finding *f)
 {
-    static const char *const types[] = {"law", "damping", "generator"};
+    static const char *const types[] = {"law", "damping", "generator", "screen"};
     listing *list = user;
     if (list->kind != f->kind) {
         const char *path;

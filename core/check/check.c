@@ -74,6 +74,8 @@ tl_status tl_plugin_check(const char *path, const tl_args *args, tl_check_fn tel
         status = check_given(plugin, args, error);
     for (uint32_t i = 0; status == TL_OK && i < plugin->kind_count; i++) {
         const tl_kind *kind = &plugin->kinds[i];
+        if (kind->type >= sizeof of / sizeof *of)
+            continue;
         tl_checker *c = calloc(1, sizeof *c);
         if (!c)
             return tl_fail_memory(error);

@@ -157,7 +157,7 @@ static void print_fields(const char *item, const tl_field *(*list)(size_t *count
 
 static const char *plugin_word(tl_kind_type type)
 {
-    static const char *const words[] = {"law", "damping", "generator"};
+    static const char *const words[] = {"law", "damping", "generator", "screen"};
     return words[type];
 }
 
@@ -232,8 +232,8 @@ static void print_overview(void)
          "\nFunctions:");
     for (const tl_lua_topic *topic = tl_lua_topics; topic->name; topic++)
         print_row(topic->name, topic_doc(topic));
-    for (int type = TL_KIND_LAW; type <= TL_KIND_GENERATOR; type++) {
-        static const char *const titles[] = {"Laws", "Dampings", "Generators"};
+    for (int type = TL_KIND_LAW; type <= TL_KIND_SCREEN; type++) {
+        static const char *const titles[] = {"Laws", "Dampings", "Generators", "Screens"};
         printf("\n%s:\n", titles[type]);
         print_kinds((tl_kind_type)type);
     }
@@ -246,7 +246,7 @@ static bool unknown_topic(const char *word, tl_error *error)
     tl_lua_names names = {0};
     for (const tl_lua_topic *topic = tl_lua_topics; topic->name; topic++)
         tl_lua_names_add(&names, topic->name);
-    for (int type = TL_KIND_LAW; type <= TL_KIND_GENERATOR; type++) {
+    for (int type = TL_KIND_LAW; type <= TL_KIND_SCREEN; type++) {
         const tl_kind *kind;
         for (size_t i = 0; (kind = tl_plugin_kind((tl_kind_type)type, i)) != NULL; i++)
             tl_lua_names_add(&names, kind->name);
@@ -269,7 +269,7 @@ bool tl_lua_help(const char *word, tl_error *error)
     for (const tl_lua_topic *topic = tl_lua_topics; topic->name; topic++)
         if (strcmp(topic->name, word) == 0 && ++found)
             print_topic(topic);
-    for (int type = TL_KIND_LAW; type <= TL_KIND_GENERATOR; type++) {
+    for (int type = TL_KIND_LAW; type <= TL_KIND_SCREEN; type++) {
         const tl_kind *kind = tl_plugin_find((tl_kind_type)type, word);
         if (kind && found++)
             putchar('\n');

@@ -420,7 +420,7 @@ static void complete_topic(const char *word)
 {
     for (const tl_lua_topic *topic = tl_lua_topics; topic->name; topic++)
         add(word, topic->name);
-    for (int type = TL_KIND_LAW; type <= TL_KIND_GENERATOR; type++)
+    for (int type = TL_KIND_LAW; type <= TL_KIND_SCREEN; type++)
         add_plugins(word, (tl_kind_type)type);
 }
 

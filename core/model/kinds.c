@@ -5,8 +5,10 @@
 
 #include <stdlib.h>
 
-static const char *const type_names[] = {
-    [TL_KIND_LAW] = "law", [TL_KIND_DAMPING] = "damping", [TL_KIND_GENERATOR] = "generator"};
+static const char *const type_names[] = {[TL_KIND_LAW] = "law",
+                                         [TL_KIND_DAMPING] = "damping",
+                                         [TL_KIND_GENERATOR] = "generator",
+                                         [TL_KIND_SCREEN] = "screen"};
 
 const char *tl_plugin_id(const tl_kind *kind)
 {

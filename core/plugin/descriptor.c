@@ -28,7 +28,8 @@ enum {
     FIRST_STATE_SIZE = sizeof(tl_state),
     FIRST_LAW_SIZE = offsetof(tl_law_ops, stateless),
     FIRST_DAMPING_SIZE = offsetof(tl_damping_ops, before),
-    FIRST_GENERATOR_SIZE = sizeof(tl_generator_ops)
+    FIRST_GENERATOR_SIZE = sizeof(tl_generator_ops),
+    FIRST_SCREEN_SIZE = sizeof(tl_screen_ops)
 };
 
 /* Room for the operations of any type of kind. */
@@ -37,6 +38,7 @@ typedef union any_ops {
     tl_law_ops law;
     tl_damping_ops damping;
     tl_generator_ops generator;
+    tl_screen_ops screen;
 } any_ops;
 
 /* A plugin's headers, as it states them. */
@@ -47,7 +49,7 @@ typedef struct version {
 
 const char *tl_kind_type_name(uint32_t type)
 {
-    static const char *const names[] = {"law", "damping", "generator"};
+    static const char *const names[] = {"law", "damping", "generator", "screen"};
     return type < sizeof names / sizeof *names ? names[type] : "kind of unknown type";
 }
 
@@ -246,6 +248,19 @@ static tl_status check_pair(bool create, bool destroy, tl_error *error)
     return create == destroy ? TL_OK : missing(error, create ? "destroy" : "create");
 }
 
+static tl_status check_screen_ops(const tl_screen_ops *ops, tl_error *error)
+{
+    const struct {
+        bool there;
+        const char *name;
+    } all[] = {{ops->open, "open"}, {ops->address, "address"}, {ops->watchers, "watchers"},
+               {ops->put, "put"},   {ops->take, "take"},       {ops->close, "close"}};
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++)
+        if (!all[i].there)
+            return missing(error, all[i].name);
+    return TL_OK;
+}
+
 static tl_status check_ops(uint32_t type, const any_ops *ops, tl_error *error)
 {
     switch (type) {
@@ -257,16 +272,18 @@ static tl_status check_ops(uint32_t type, const any_ops *ops, tl_error *error)
         if (!ops->damping.update || !ops->damping.step_factor)
             return missing(error, ops->damping.update ? "step_factor" : "update");
         return check_pair(ops->damping.create != NULL, ops->damping.destroy != NULL, error);
-    default: return ops->generator.generate ? TL_OK : missing(error, "generate");
+    case TL_KIND_GENERATOR: return ops->generator.generate ? TL_OK : missing(error, "generate");
+    default: return check_screen_ops(&ops->screen, error);
     }
 }
 
 /* Copies the operations into a block of their own. */
 static tl_status copy_ops(const version *v, tl_kind *kind)
 {
-    static const size_t first[] = {FIRST_LAW_SIZE, FIRST_DAMPING_SIZE, FIRST_GENERATOR_SIZE};
+    static const size_t first[] = {FIRST_LAW_SIZE, FIRST_DAMPING_SIZE, FIRST_GENERATOR_SIZE,
+                                   FIRST_SCREEN_SIZE};
     static const size_t ours[] = {sizeof(tl_law_ops), sizeof(tl_damping_ops),
-                                  sizeof(tl_generator_ops)};
+                                  sizeof(tl_generator_ops), sizeof(tl_screen_ops)};
     const void *given = kind->ops;
     kind->ops = NULL;
     if (!given)
@@ -296,9 +313,9 @@ static tl_status check_rows(const tl_kind *kind, tl_error *error)
         if (status != TL_OK)
             return status;
     }
-    if (kind->type == TL_KIND_GENERATOR && kind->state_count > 0)
-        return tl_fail(error, TL_E_PLUGIN, "a generator has no states, this one declares %u",
-                       kind->state_count);
+    if (kind->type >= TL_KIND_GENERATOR && kind->state_count > 0)
+        return tl_fail(error, TL_E_PLUGIN, "a %s has no states, this one declares %u",
+                       tl_kind_type_name(kind->type), kind->state_count);
     for (uint32_t i = 0; i < kind->state_count; i++) {
         tl_status status = check_state(kind, i, error);
         if (status != TL_OK)
@@ -366,15 +383,15 @@ static void drop_unknown(tl_plugin *plugin, tl_kind *kinds, char note[TL_NOTE_TE
 {
     uint32_t kept = 0, given = plugin->kind_count;
     for (uint32_t i = 0; i < given; i++) {
-        if (kinds[i].type <= TL_KIND_GENERATOR)
+        if (kinds[i].type <= TL_KIND_SCREEN)
             kinds[kept++] = kinds[i];
         else if (i == kept)
             snprintf(
                 note, TL_NOTE_TEXT,
                 "kind %u, '%.60s', is of the unknown type %u and is left out: this Talus knows "
-                "laws (%d), dampings (%d) and generators (%d)",
+                "laws (%d), dampings (%d), generators (%d) and screens (%d)",
                 i + 1, kinds[i].name ? kinds[i].name : "", kinds[i].type, TL_KIND_LAW,
-                TL_KIND_DAMPING, TL_KIND_GENERATOR);
+                TL_KIND_DAMPING, TL_KIND_GENERATOR, TL_KIND_SCREEN);
     }
     size_t length = strlen(note);
     if (given - kept > 1)
@@ -438,7 +455,7 @@ tl_status tl_descriptor_read(const tl_plugin *given, tl_plugin **plugin, char no
             "its id, version, doc or licence has a control character in it; its id is '%.60s'",
             given->id);
     if (given->kind_count == 0)
-        return tl_fail(error, TL_E_PLUGIN, "it holds no law, damping or generator");
+        return tl_fail(error, TL_E_PLUGIN, "it holds no law, damping, generator or screen");
     void *kinds;
     status = copy_rows(&v, "a kind", given->kinds, given->kind_count, given->kind_stride,
                        FIRST_KIND_SIZE, sizeof(tl_kind), &kinds);

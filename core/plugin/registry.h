@@ -23,7 +23,7 @@ tl_status tl_descriptor_read(const tl_plugin *given, tl_plugin **plugin, char no
                              tl_error *error);
 void tl_descriptor_free(tl_plugin *plugin);
 
-/* "law", "damping" or "generator". */
+/* "law", "damping", "generator" or "screen". */
 const char *tl_kind_type_name(uint32_t type);
 
 /* ---- registry.c ---- */

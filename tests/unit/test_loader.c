@@ -61,15 +61,16 @@ static size_t kinds_of(tl_kind_type type)
 }
 
 /* Kinds found by the search, to be compared with those at the end. */
-static size_t found[3];
+static size_t found[TL_KIND_SCREEN + 1];
 
 TEST(default_search_finds_every_plugin_once_in_order)
 {
-    static const char *const known[] = {"coulomb", "adaptive", "box"};
-    for (int type = TL_KIND_LAW; type <= TL_KIND_GENERATOR; type++) {
+    static const char *const known[] = {"coulomb", "adaptive",
+                                        "box"}; /* a screen need not be there */
+    for (int type = TL_KIND_LAW; type <= TL_KIND_SCREEN; type++) {
         found[type] = kinds_of((tl_kind_type)type);
-        CHECK(found[type] >= 3);
-        CHECK(tl_plugin_find((tl_kind_type)type, known[type]) != NULL);
+        CHECK(found[type] >= 3 || type == TL_KIND_SCREEN);
+        CHECK(type == TL_KIND_SCREEN || tl_plugin_find((tl_kind_type)type, known[type]) != NULL);
         for (size_t i = 1; i < found[type]; i++)
             CHECK(strcmp(tl_plugin_kind((tl_kind_type)type, i - 1)->name,
                          tl_plugin_kind((tl_kind_type)type, i)->name) < 0);
@@ -84,7 +85,7 @@ TEST(default_search_finds_every_plugin_once_in_order)
         kinds += r.plugin ? r.plugin->kind_count : 0;
         CHECK(strncmp(r.path, good_folder, strlen(good_folder)) == 0);
     }
-    CHECK_INT(found[0] + found[1] + found[2], kinds);
+    CHECK_INT(found[0] + found[1] + found[2] + found[3], kinds);
     tl_plugins_load_default();
     CHECK_INT(tl_plugin_record_count(), files);
     CHECK(tl_plugin_record_at(files).path == NULL);
@@ -100,10 +101,10 @@ TEST(a_search_for_nothing_is_no_error)
 
 TEST(broken_plugins_are_refused_with_the_reason)
 {
-    refused(bad_folder, "wrong_major", "it was built for plugin ABI 2.6, this Talus has 1.6");
+    refused(bad_folder, "wrong_major", "it was built for plugin ABI 2.7, this Talus has 1.7");
     refused(bad_folder, "newer_minor", "law 'newer_minor': ops has size");
     refused(bad_folder, "no_entry", "it does not export tl_plugin_entry");
-    refused(bad_folder, "refuses", "it refuses this Talus (plugin ABI 1.6)");
+    refused(bad_folder, "refuses", "it refuses this Talus (plugin ABI 1.7)");
     refused(bad_folder, "duplicate_id", "plugin 'talus.coulomb' is already loaded from ");
     refused(bad_folder, "name_clash",
             "law 'coulomb' is already provided by plugin 'talus.coulomb' from ");
@@ -125,6 +126,8 @@ TEST(broken_plugins_are_refused_with_the_reason)
             "law 'large_params' has a params_size of 100000000000 bytes; 1048576 at the most");
     refused(bad_folder, "only_unknown",
             "it holds nothing of use: kind 1, 'only_unknown', is of the unknown type 23");
+    refused(bad_folder, "deaf_screen", "screen 'deaf': its operation 'take' is missing");
+    refused(bad_folder, "screen_states", "a screen has no states, this one declares 1");
     refused(bad_folder, "snapped", "its descriptor has size 0: not a Talus plugin");
 }
 
@@ -140,6 +143,20 @@ TEST(a_kind_of_unknown_type_is_left_out_and_the_others_are_used)
     tl_plugin_record r = record_of(path);
     CHECK(r.plugin && !r.reason && r.plugin->kind_count == 3);
     CHECK_CONTAINS(r.note, "kind 2, 'crasher', is of the unknown type 17 and is left out");
+}
+
+TEST(a_screen_is_taken)
+{
+    char path[1024];
+    snprintf(path, sizeof path, "%s/blank_screen.so", bad_folder);
+    tl_error error = {TL_OK, ""};
+    CHECK_INT(tl_plugin_load(path, &error), TL_OK);
+    const tl_kind *kind = tl_plugin_find(TL_KIND_SCREEN, "blank");
+    const tl_screen_ops *ops = kind ? kind->ops : NULL;
+    CHECK(ops && ops->size == sizeof *ops && ops->open && ops->take && ops->close);
+    CHECK(tl_plugin_find(TL_KIND_GENERATOR, "blank") == NULL);
+    tl_plugin_record r = record_of(path);
+    CHECK(r.plugin && !r.note);
 }
 
 TEST(dampings_that_could_not_ask_get_the_forces_of_the_step_before)
@@ -186,7 +203,7 @@ TEST(a_pipe_is_refused_and_not_waited_for)
 
 TEST(refusals_leave_the_kinds_as_they_were)
 {
-    for (int type = TL_KIND_LAW; type <= TL_KIND_GENERATOR; type++)
+    for (int type = TL_KIND_LAW; type <= TL_KIND_SCREEN; type++)
         CHECK_INT(kinds_of((tl_kind_type)type), found[type]);
 }
 
@@ -205,6 +222,7 @@ int main(void)
     RUN(a_text_file_is_refused);
     RUN(a_pipe_is_refused_and_not_waited_for);
     RUN(refusals_leave_the_kinds_as_they_were);
+    RUN(a_screen_is_taken);
     RUN(a_kind_of_unknown_type_is_left_out_and_the_others_are_used);
     RUN(dampings_that_could_not_ask_get_the_forces_of_the_step_before);
     printf("%s: %d checks, %d failed\n", __FILE__, check_count, check_failed);

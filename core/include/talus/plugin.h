@@ -1,11 +1,11 @@
-/* talus/plugin.h - the plugin interface: contact laws, dampings and generators as shared objects.
+/* talus/plugin.h - the plugin interface: contact laws, dampings, generators and screens as shared objects.
  *
  * A plugin is a shared object that exports one function,
  *
  *     const tl_plugin *tl_plugin_entry(uint32_t host_major, uint32_t host_minor);
  *
  * which returns a descriptor of pure data (or NULL to refuse the host); TL_PLUGIN writes it. Scanning a
- * plugin creates nothing. The descriptor lists *kinds*: laws, dampings and generators, each with its parameters
+ * plugin creates nothing. The descriptor lists *kinds*: laws, dampings, generators and screens, each with its parameters
  * (checked, defaulted and documented by the host from one table), its states (owned, carried over,
  * saved and written by the host) and its operations.
  *
@@ -28,7 +28,7 @@ extern "C" {
 #endif
 
 #define TL_ABI_MAJOR 1u
-#define TL_ABI_MINOR 6u
+#define TL_ABI_MINOR 7u
 
 #if defined(__GNUC__)
 #define TL_PLUGIN_EXPORT __attribute__((visibility("default")))
@@ -395,11 +395,65 @@ typedef struct tl_generator_ops {
     tl_status (*generate)(const tl_host *host, const void *params); /* [main] */
 } tl_generator_ops;
 
+/* ---------------------------------------------------------------- screens ---------------- */
+
+/* Since 1.7: a screen shows a model while it runs, and hands on what those who look ask for. */
+
+/* Room for a command, bytes with the 0 at its end. */
+#define TL_SCREEN_COMMAND 512
+
+/* The page in which the frames are seen. What it points to is valid during `open`; `check` is valid for ever. */
+typedef struct tl_screen_page {
+    uint32_t size;
+    const char *
+        text; /* HTML in UTF-8. It asks for the frames and posts commands as docs/scene_format.md tells */
+    size_t length;
+    uint32_t commands; /* 0: the screen only shows, and refuses commands */
+    /* [worker] 1 when the text, which need not end in a 0, is a command; else 0, with a sentence in `why`, of `room`
+     * bytes. A pure function. */
+    int (*check)(const char *text, size_t length, char *why, size_t room);
+} tl_screen_page;
+
+/* What there is to see after a step. Valid during `put`. */
+typedef struct tl_screen_frame {
+    uint32_t size;
+    uint32_t begin;   /* 1: `news` tells the whole model; all `news` before it is needed no more */
+    const void *news; /* chunks that each watcher gets once, in the order of `put` */
+    size_t news_length;
+    const void *now; /* chunks of this moment, to their DONE; a newer frame's take their place */
+    size_t now_length;
+} tl_screen_frame;
+
+/* Operations of a screen; all must be there. */
+typedef struct tl_screen_ops {
+    uint32_t size;
+    /* [main] Begins to show. The first `put` has `begin`. */
+    tl_status (*open)(const tl_screen_page *page, const void *params, void **self,
+                      tl_report *report);
+    /* [main] Where to look: an address for a browser, its token in it. Valid until `close`. */
+    const char *(*address)(const void *self);
+    /* [main] How many look now. Asked after every step, so it is a read of a number. */
+    uint32_t (*watchers)(const void *self);
+    /* [main] Shows a frame. It takes a copy and waits for nobody who looks. On failure what was put before stays. */
+    tl_status (*put)(void *self, const tl_screen_frame *frame, tl_report *report);
+    /* [main] Takes the next command into `text`, of `room` bytes (TL_SCREEN_COMMAND are enough for any), with a 0 at its
+     * end. Without one it waits `seconds` at the most; with 0 s, as it is asked after every step, it is a read of a number.
+     * 1: there was one. 0: there was none, or somebody has begun to look, which ends the waiting. */
+    int (*take)(void *self, char *text, size_t room, double seconds);
+    /* [main] Ends. Those who look get what they have not got yet, if they take it within a second. */
+    void (*close)(void *self);
+} tl_screen_ops;
+
 /* ---------------------------------------------------------------- descriptors ------------ */
 
-typedef enum tl_kind_type { TL_KIND_LAW, TL_KIND_DAMPING, TL_KIND_GENERATOR } tl_kind_type;
+typedef enum tl_kind_type {
+    TL_KIND_LAW,
+    TL_KIND_DAMPING,
+    TL_KIND_GENERATOR,
+    TL_KIND_SCREEN /* since 1.7 */
+} tl_kind_type;
 
-/* One law, damping or generator. `ops` points to tl_law_ops, tl_damping_ops or tl_generator_ops. */
+/* One law, damping, generator or screen. `ops` points to tl_law_ops, tl_damping_ops, tl_generator_ops or tl_screen_ops. */
 typedef struct tl_kind {
     uint32_t size;
     uint32_t type;    /* tl_kind_type */
