@@ -62,8 +62,11 @@ STANDARD_HEADERS = {
     "signal stdalign stdarg stdatomic stdbool stddef stdint stdio stdlib stdnoreturn string tgmath "
     "threads time uchar wchar wctype".split()
 }
+# What a screen may include besides: the system's headers of threads and sockets, and of its server.
+SCREEN_HEADERS = {"pthread.h", "unistd.h", "poll.h", "strings.h", "netinet/in.h", "sys/eventfd.h", "sys/random.h", "sys/socket.h",
+                  "microhttpd.h"}
 LUA_HEADERS = {"lua.h", "lauxlib.h", "lualib.h", "luaconf.h", "lua.hpp"}
-KIND_FOLDERS = ("laws", "damping", "generators")
+KIND_FOLDERS = ("laws", "damping", "generators", "screens")
 # Kinds whose names are also words of the model (a joint is a thing, a field and a generator; a
 # contact's state may be elastic, a ratio local, energy kinetic, a boundary in a box): only a look-up or comparison with them is a fault.
 WORDS_OF_THE_MODEL = {"joint", "blocks", "elastic", "local", "kinetic", "box"}
@@ -121,11 +124,12 @@ def check_core_includes(path, parts, text):
                 yield f"public header {path.name} includes <{name}>"
 
 
-def check_plugin_includes(path, text):
+def check_plugin_includes(path, parts, text):
+    allowed = PLUGIN_HEADERS | STANDARD_HEADERS | (SCREEN_HEADERS if "screens" in parts else set())
     for quoted, name in includes(text):
         if quoted and ("/" in name or not (path.parent / name).exists()):
             yield f'a plugin includes "{name}", which is not of its own folder'
-        if not quoted and name not in PLUGIN_HEADERS | STANDARD_HEADERS:
+        if not quoted and name not in allowed:
             yield f"a plugin includes <{name}>"
 
 
@@ -271,7 +275,7 @@ def check_tree(root):
         if is_c and parts[0] in ("core", "plugins"):
             found += check_functions(text)
         if is_c and parts[0] == "plugins" and len(parts) > 2 and parts[1] in KIND_FOLDERS:
-            found += check_plugin_includes(path, text)
+            found += check_plugin_includes(path, parts, text)
         faults += [("/".join(parts), fault) for fault in found]
     return faults + [*check_circles(root)]
 
@@ -330,6 +334,7 @@ GOOD = [
     ("core/model/fine.c", 'int f = 0; /* "springy" is a law */ const char *s = "joint";\n'),
     ("plugins/laws/springy/springy.c", "#include <math.h>\n#include <talus/plugin.h>\n"),
     ("plugins/generators/joint/joint.c", "#include <talus/plugin.h>\n"),
+    ("plugins/screens/glass/glass.c", "#include <pthread.h>\n#include <talus/plugin.h>\n"),
     ("core/model/f.c", 'double x = tl_sin(y) + sqrt(y) + m->log(fma(y, y, y)); /* sin(y) */ char *s = "sin(y)";\n'),
     ("docs/a.md", "kn in Pa/m, https://example.org/a/b, /usr/bin/python3, a/b/c\n"),
 ]
