@@ -64,7 +64,8 @@ tl_status tl_plugin_check(const char *path, const tl_args *args, tl_check_fn tel
     static const checks of[] = {
         [TL_KIND_LAW] = {tl_check_law_rules, tl_check_law_kind},
         [TL_KIND_DAMPING] = {tl_check_damping_rules, tl_check_damping_kind},
-        [TL_KIND_GENERATOR] = {tl_check_generator_rules, tl_check_generator_kind}};
+        [TL_KIND_GENERATOR] = {tl_check_generator_rules, tl_check_generator_kind},
+        [TL_KIND_SCREEN] = {tl_check_screen_rules, tl_check_screen_kind}};
     *faults = 0;
     const tl_plugin *plugin = loaded_from(path);
     tl_status status = plugin ? TL_OK : tl_plugin_load(path, error);
@@ -74,8 +75,6 @@ tl_status tl_plugin_check(const char *path, const tl_args *args, tl_check_fn tel
         status = check_given(plugin, args, error);
     for (uint32_t i = 0; status == TL_OK && i < plugin->kind_count; i++) {
         const tl_kind *kind = &plugin->kinds[i];
-        if (kind->type >= sizeof of / sizeof *of)
-            continue;
         tl_checker *c = calloc(1, sizeof *c);
         if (!c)
             return tl_fail_memory(error);

@@ -1,4 +1,4 @@
-/* check.h - what the conformance checks of the three types of plugins share. */
+/* check.h - what the conformance checks of the four types of plugins share. */
 #ifndef TL_CHECK_CHECK_H
 #define TL_CHECK_CHECK_H
 
@@ -54,11 +54,12 @@ double tl_check_scale(uint64_t key, double low, double high);
 /* A unit vector of a key. */
 tl_vec3 tl_check_direction(uint64_t key);
 
-/* The three checks, one set of rules each. They fail when the kind cannot be tried at all. */
+/* The four checks, one set of rules each. They fail when the kind cannot be tried at all. */
 extern const tl_check_rule tl_check_law_rules[], tl_check_damping_rules[],
-    tl_check_generator_rules[];
+    tl_check_generator_rules[], tl_check_screen_rules[];
 tl_status tl_check_law_kind(tl_checker *c);
 tl_status tl_check_damping_kind(tl_checker *c);
 tl_status tl_check_generator_kind(tl_checker *c);
+tl_status tl_check_screen_kind(tl_checker *c);
 
 #endif

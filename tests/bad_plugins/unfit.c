@@ -1,9 +1,10 @@
-/* unfit.c - a law, a damping and a generator that each break one rule of the conformance check, which a parameter names. */
+/* unfit.c - a law, a damping, a generator and a screen that each break one rule of the conformance check, which a parameter names. */
 #include <talus/plugin.h>
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+#include <time.h>
 
 /* ---------------------------------------------------------------- law -------------------- */
 
@@ -257,6 +258,85 @@ static tl_status generate(const tl_host *host, const void *given)
 
 static const tl_generator_ops generator_ops = {.size = sizeof generator_ops, .generate = generate};
 
+/* ---------------------------------------------------------------- screen ----------------- */
+
+enum { S_NONE, S_OPENS, S_ADDRESS, S_NOBODY, S_SHOWS, S_HASTY, S_MADE_UP, S_PARAMETERS, S_BEHIND };
+
+typedef struct screen_params {
+    int32_t screen_fault;
+} screen_params;
+
+static const char *const screen_faults[] = {"none",  "opens",   "address",    "nobody", "shows",
+                                            "hasty", "made_up", "parameters", "behind", NULL};
+
+static const tl_param screen_table[] = {
+    TL_PARAM(TL_PARAM_ENUM, screen_params, screen_fault, "", "what is wrong with the screen",
+             .choices = screen_faults),
+};
+
+static tl_status open_screen(const tl_screen_page *page, const void *given, void **self,
+                             tl_report *report)
+{
+    static int32_t fault;
+    (void)page;
+    if (((const screen_params *)given)->screen_fault == S_OPENS && fault == S_OPENS) {
+        snprintf(report->text, sizeof report->text, "it is open already");
+        return TL_E_STATE;
+    }
+    fault = ((const screen_params *)given)->screen_fault;
+    if (fault == S_PARAMETERS)
+        ((screen_params *)(uintptr_t)given)->screen_fault = S_NONE;
+    *self = &fault;
+    return TL_OK;
+}
+
+static int32_t fault_of(const void *self)
+{
+    return *(const int32_t *)self;
+}
+
+static const char *address(const void *self)
+{
+    return fault_of(self) == S_ADDRESS ? "" : "nowhere";
+}
+
+static uint32_t watchers(const void *self)
+{
+    return fault_of(self) == S_NOBODY;
+}
+
+static tl_status put(void *self, const tl_screen_frame *frame, tl_report *report)
+{
+    if (fault_of(self) != S_SHOWS || frame->news_length > 0)
+        return TL_OK;
+    snprintf(report->text, sizeof report->text, "nothing is new");
+    return TL_E_ARGUMENT;
+}
+
+static int take(void *self, char *text, size_t room, double seconds)
+{
+    const struct timespec wait = {0, (long)(1e9 * seconds) + 1000};
+    int32_t fault = fault_of(self);
+    if (fault != S_HASTY)
+        nanosleep(&wait, NULL);
+    if (fault == S_BEHIND)
+        text[room] = '\0';
+    return fault == S_MADE_UP;
+}
+
+static void close_screen(void *self)
+{
+    (void)self;
+}
+
+static const tl_screen_ops screen_ops = {.size = sizeof screen_ops,
+                                         .open = open_screen,
+                                         .address = address,
+                                         .watchers = watchers,
+                                         .put = put,
+                                         .take = take,
+                                         .close = close_screen};
+
 /* ---------------------------------------------------------------- descriptor ------------- */
 
 static const tl_kind kinds[] = {
@@ -269,6 +349,9 @@ static const tl_kind kinds[] = {
     TL_KIND(TL_KIND_GENERATOR, generator_ops, .name = "unfit",
             .doc = "A generator for the tests of the conformance check.",
             TL_KIND_PARAMS(generator_params, generator_table)),
+    TL_KIND(TL_KIND_SCREEN, screen_ops, .name = "unfit",
+            .doc = "A screen for the tests of the conformance check.",
+            TL_KIND_PARAMS(screen_params, screen_table)),
 };
 
 TL_PLUGIN(kinds, .id = "bad.unfit", .version = "1",

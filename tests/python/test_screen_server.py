@@ -322,16 +322,19 @@ def check_crowd(run):
 
 def check_end(run, first, second):
     """Who looks gets the newest, and a proper end."""
-    stuck = run.dial(run.scene_request())
-    expect(run.tell("wait 3") == "watchers 3", "one more, who will not read")
+    stuck, slow = run.dial(run.scene_request()), Watcher(run, later=True)
+    expect(run.tell("wait 4") == "watchers 4", "one who will not read, and one who will begin late")
     idle = run.dial()
     run.put(0, 4, 8000000)
-    last = run.put(0, 4, 3000000)
-    closed = float(run.tell("close").split()[1])
+    last = run.put(0, 4, 20000000)
+    run.ask("close")
+    time.sleep(0.2)
+    slow.goes_on.set()
+    closed = float(run.hear().split()[1])
     expect(closed < 3000, f"close takes {closed} ms")
-    expect(first.done() and second.done(), f"the ends: {first.fault} {second.fault}")
-    ends = [watcher.frames[-1][1] for watcher in (first, second)]
-    expect(ends == [last] * 2, f"the newest frame came before the end: {ends}, {last}")
+    expect(first.done() and second.done() and slow.done(), f"the ends: {first.fault} {second.fault} {slow.fault}")
+    ends = [watcher.frames[-1][1] for watcher in (first, second, slow)]
+    expect(ends == [last] * 3, f"the newest frame came before the end: {ends}, {last}")
     try:
         socket.create_connection(("127.0.0.1", run.port), timeout=5).close()
         expect(False, "the port is free after the end")

@@ -25,17 +25,18 @@ static void hear(void *user, const tl_check_finding *f)
     snprintf(h->fault, sizeof h->fault, "%s", f->fault);
 }
 
-/* One fault of the plugin that has them all, in the law, the damping or the generator; the other two behave. */
+/* One fault of the plugin that has them all, in the law, the damping, the generator or the screen; the others behave. */
 static findings run_unfit(const char *param, const char *fault)
 {
-    static const char *const params[] = {"law_fault", "damping_fault", "generator_fault"};
+    static const char *const params[] = {"law_fault", "damping_fault", "generator_fault",
+                                         "screen_fault"};
     findings h = {0};
-    tl_value values[3];
+    tl_value values[4];
     size_t faults;
     tl_error error;
-    for (int i = 0; i < 3; i++)
+    for (int i = 0; i < 4; i++)
         values[i] = tl_arg_text(params[i], strcmp(params[i], param) == 0 ? fault : "none");
-    const tl_args args = {values, 3};
+    const tl_args args = {values, 4};
     if (!CHECK_INT(tl_plugin_check(UNFIT, &args, hear, &h, &faults, &error), TL_OK))
         printf("  %s\n", error.text);
     CHECK_INT(faults, h.faults);
@@ -77,6 +78,14 @@ TEST(each_check_finds_what_breaks_it)
         {"generator_fault", "parameters", "parameters; "},
         {"generator_fault", "failures", "failures; "},
         {"generator_fault", "goes_on", "failures; "},
+        {"screen_fault", "opens", "opens; "},
+        {"screen_fault", "address", "address; "},
+        {"screen_fault", "nobody", "nobody looks; "},
+        {"screen_fault", "shows", "shows; "},
+        {"screen_fault", "hasty", "waits; "},
+        {"screen_fault", "made_up", "waits; "},
+        {"screen_fault", "parameters", "writes; "},
+        {"screen_fault", "behind", "writes; "},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         findings h = run_unfit(cases[i].param, cases[i].fault);
@@ -129,6 +138,24 @@ TEST(the_plugins_of_talus_pass)
     }
 }
 
+TEST(a_screen_that_is_there_passes)
+{
+    findings h = {0};
+    size_t faults = 1;
+    tl_error error;
+    if (!tl_plugin_find(TL_KIND_SCREEN, "browser")) /* not built without its library */
+        return;
+    const tl_value given[] = {tl_arg_number("port", 0)}, wrong[] = {tl_arg_number("port", 65536)};
+    const tl_args args = {given, 1}, wrong_args = {wrong, 1};
+    const char *path = TALUS_TEST_PLUGIN_DIR "/browser.so";
+    CHECK_INT(tl_plugin_check(path, &args, hear, &h, &faults, &error), TL_OK);
+    CHECK_INT(h.checks, 6);
+    if (!CHECK_INT(faults, 0))
+        printf("  %s%s\n", h.list, h.fault);
+    CHECK_INT(tl_plugin_check(path, &wrong_args, NULL, NULL, &faults, &error), TL_E_ARGUMENT);
+    CHECK_CONTAINS(error.text, "port = 65536");
+}
+
 TEST(points_are_parameters_too)
 {
     static const double base[] = {0, 0, 0, 2, 0, 0, 0, 2, 0}, axis[] = {0, 0, 1};
@@ -165,4 +192,5 @@ TEST(what_cannot_be_tried_is_told)
 
 TEST_MAIN(RUN(each_check_finds_what_breaks_it), RUN(others_are_found_among_the_rest),
           RUN(a_fault_tells_its_parameters), RUN(the_plugins_of_talus_pass),
-          RUN(points_are_parameters_too), RUN(what_cannot_be_tried_is_told))
+          RUN(a_screen_that_is_there_passes), RUN(points_are_parameters_too),
+          RUN(what_cannot_be_tried_is_told))

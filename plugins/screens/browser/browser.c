@@ -66,10 +66,8 @@ static void let_in(browser *b)
             accept4(b->listener, (struct sockaddr *)&from, &length, SOCK_CLOEXEC | SOCK_NONBLOCK);
         if (socket < 0)
             return;
-        if (b->s.connections >= 2 * MOST_CONNECTIONS)
-            close(socket);
-        else
-            MHD_add_connection(b->s.daemon, socket, (const struct sockaddr *)&from, length);
+        /* the library closes it where there are as many as may be */
+        MHD_add_connection(b->s.daemon, socket, (const struct sockaddr *)&from, length);
     }
 }
 
