@@ -196,8 +196,10 @@ void tl_lua_lists_open(lua_State *L)
     static const struct {
         const char *name;
         tl_kind_type type;
-    } lists[] = {
-        {"laws", TL_KIND_LAW}, {"dampings", TL_KIND_DAMPING}, {"generators", TL_KIND_GENERATOR}};
+    } lists[] = {{"laws", TL_KIND_LAW},
+                 {"dampings", TL_KIND_DAMPING},
+                 {"generators", TL_KIND_GENERATOR},
+                 {"screens", TL_KIND_SCREEN}};
     for (size_t i = 0; i < sizeof lists / sizeof lists[0]; i++) {
         lua_pushinteger(L, lists[i].type);
         lua_pushfstring(L, "talus.%s", lists[i].name);

@@ -225,8 +225,10 @@ const tl_lua_topic tl_lua_topics[] = {
      .title = "Fields of each group",
      .verbs = tl_lua_groups_results},
     {.name = "kinds",
-     .usage = "list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()",
-     .doc = "Lists the laws, dampings or generators that are loaded.",
+     .usage =
+         "list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or  "
+         "list = talus.screens()",
+     .doc = "Lists the laws, dampings, generators or screens that are loaded.",
      .title = "Fields of each kind",
      .verbs = tl_lua_kinds_results},
     {.name = "law_test",

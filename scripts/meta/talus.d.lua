@@ -236,6 +236,10 @@ function talus.help(topic) end
 ---@field face2 talus.Vector[] m: corners of the other end, in the order of those of face1 they are connected with
 ---@field group? string default "tunnel": group of what lies inside
 
+--- Serves the page to browsers on this machine, at 127.0.0.1.
+---@class (exact) talus.screen.Browser
+---@field port? integer in [0, 65535], default 0: port of 127.0.0.1; 0: any that is free, which the address tells
+
 ---@class (exact) talus.Model
 ---@field gravity talus.Vector acceleration of gravity {x, y, z}, m/s2; may be assigned
 ---@field rotation string "exact" or "paper"; may be assigned
@@ -524,23 +528,29 @@ function Model:groups() end
 ---@field parameters string[] list of the names of its parameters
 ---@field states string[] list of the names of its states
 
---- Lists the laws, dampings or generators that are loaded.
+--- Lists the laws, dampings, generators or screens that are loaded.
 ---
----     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()
+---     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or  list = talus.screens()
 ---@return talus.Kind[]
 function talus.laws() end
 
---- Lists the laws, dampings or generators that are loaded.
+--- Lists the laws, dampings, generators or screens that are loaded.
 ---
----     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()
+---     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or  list = talus.screens()
 ---@return talus.Kind[]
 function talus.dampings() end
 
---- Lists the laws, dampings or generators that are loaded.
+--- Lists the laws, dampings, generators or screens that are loaded.
 ---
----     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()
+---     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or  list = talus.screens()
 ---@return talus.Kind[]
 function talus.generators() end
+
+--- Lists the laws, dampings, generators or screens that are loaded.
+---
+---     list = talus.laws()  or  list = talus.dampings()  or  list = talus.generators()  or  list = talus.screens()
+---@return talus.Kind[]
+function talus.screens() end
 
 ---@class (exact) talus.LawTestOptions
 ---@field law string name of the law

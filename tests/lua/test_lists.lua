@@ -1,4 +1,4 @@
--- What there is: joints, laws and groups of a model; laws, dampings and generators of the program.
+-- What there is: joints, laws and groups of a model; laws, dampings, generators and screens of the program.
 local talus = require "talus"
 local check = require "check"
 
@@ -71,6 +71,9 @@ check.equal(names(talus.laws()).coulomb_tensile.states[1], "bond")
 check.equal(names(talus.laws()).elastic.parameters[1], "kn")
 check.holds(names(talus.dampings()).adaptive, "adaptive is loaded")
 check.holds(names(talus.generators()).profile, "profile is loaded")
+local browser = names(talus.screens()).browser -- where its library is
+check.equal(browser and browser.plugin or "talus.browser", "talus.browser")
+check.equal(browser and browser.parameters[1] or "port", "port")
 check.equal(names(talus.laws()).box, nil)
 
 check.refused(model, function() model:joints("J1") end, "1 argument too many")

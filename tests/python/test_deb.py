@@ -50,6 +50,8 @@ def check_dependencies(package, usr):
     field = run(["dpkg-deb", "-f", package, "Depends"]).stdout
     depends = {word.split()[0] for word in field.split(",")}
     expect({"libc6", "libccd2", "liblua5.4-0", "libedit2"} <= depends, f"Depends: {field}")
+    screen = next(usr.rglob("browser.so"), None)
+    expect(not screen or "libmicrohttpd12" in depends, f"Depends, with the screen: {field}")
     for path in [usr / "bin/talus", *usr.rglob("*.so*")]:
         if path.is_symlink():
             continue

@@ -96,10 +96,10 @@ def check_refusals(prefix, folder):
 def check_a_fault(build, prefix):
     """The exit status tells that a check has found something."""
     done = run([prefix / "bin/talus", "check", build / "bad_plugins/unfit.so", "law_fault=softer", "damping_fault=none",
-                "generator_fault=none", "kn=1e8"], check=False)
-    expect(done.returncode == 1 and done.stdout.endswith("28 checks, 1 fault\n"), f"a fault: {done.stdout}{done.stderr}")
+                "generator_fault=none", "screen_fault=none", "kn=1e8"], check=False)
+    expect(done.returncode == 1 and done.stdout.endswith("34 checks, 1 fault\n"), f"a fault: {done.stdout}{done.stderr}")
     expect("FAULT  stiffness" in done.stdout and "kn = 1e+08" in done.stdout, f"a fault: {done.stdout}")
-    expect(done.stdout.count("\n  ok ") == 27, f"a fault: {done.stdout}")
+    expect(done.stdout.count("\n  ok ") == 33, f"a fault: {done.stdout}")
 
 
 def main():

@@ -395,6 +395,21 @@ def cpu_seconds(process):
     return (int(words[11]) + int(words[12])) / os.sysconf("SC_CLK_TCK")
 
 
+def check_threads(run):
+    """The server's thread leaves signals to the others, and what it opens is closed in programs that are started."""
+    process = f"/proc/{run.process.pid}"
+    for task in os.listdir(f"{process}/task"):
+        with open(f"{process}/task/{task}/status", encoding="ascii") as file:
+            blocked = int(re.search(r"SigBlk:\s*(\w+)", file.read())[1], 16)
+        wanted = [signal.SIGINT, signal.SIGTERM, signal.SIGPIPE, signal.SIGALRM, signal.SIGCHLD, signal.SIGUSR1]
+        missing = [number.name for number in wanted if not blocked >> (number - 1) & 1]
+        expect(task == str(run.process.pid) or not missing, f"thread {task} takes {missing}")
+    for name in os.listdir(f"{process}/fd"):
+        with open(f"{process}/fdinfo/{name}", encoding="ascii") as file:
+            flags = int(re.search(r"flags:\s*(\w+)", file.read())[1], 8)
+        expect(int(name) <= 2 or flags & os.O_CLOEXEC, f"open in programs that are started: {os.readlink(f'{process}/fd/{name}')}")
+
+
 def check_rest(driver, plugin):
     """With nothing to do the server does nothing, whoever looks."""
     with Run(driver, plugin) as run:
@@ -406,6 +421,7 @@ def check_rest(driver, plugin):
         time.sleep(0.5)
         used = cpu_seconds(run.process) - before
         expect(used < 0.1, f"an idle server uses {used} s of 0.5")
+        check_threads(run)
         idle.close()
         run.tell("close")
 
