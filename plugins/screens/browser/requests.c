@@ -17,7 +17,7 @@
 /* Bytes of a body that are read, to be thrown away, where a request is refused. */
 #define MOST_READ 65536
 /* Room for a sentence of page.check. */
-#define WHY 256
+#define WHY 512
 /* Bytes of frames that are copied at once. */
 #define AT_ONCE 65536
 
