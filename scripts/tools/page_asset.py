@@ -5,7 +5,7 @@
     scripts/tools/page_asset.py --check    says whether it is up to date
 
 The modules become one script: main.js after all that it imports, without the words import and export. Lines of comments, blank
-lines and indentation are left out. The content security policy allows this script and this style by their hashes, and
+lines and indentation are left out, and names become shorter (short_names.py). The content security policy allows this script and this style by their hashes, and
 nothing else. docs/scene_format.md tells what modules may be like; what is not so is refused.
 """
 import argparse
@@ -14,6 +14,8 @@ import hashlib
 import pathlib
 import re
 import sys
+
+from short_names import REGULAR, shortened
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 ASSET = ROOT / "core/io/page_asset.c"
@@ -25,9 +27,10 @@ LEFT = re.compile(r"^(?:import|export)\b.*|\bimport\(.*", re.M)
 COMMENT = re.compile(r"^[ \t]*/\*(?:(?!\*/).)*\*/[ \t]*\n", re.S | re.M)
 TYPE_COMMENT = re.compile(r"/\*\* @\w+ [^`\n]*?\*/ ?")
 LINE_COMMENT = re.compile(r"^[ \t]*//.*\n", re.M)
-REGULAR = re.compile(r"/(?:[^/\\\n\[]|\\.|\[[^\]\n]*\])+/\w*")
 ONE_PARAMETER = re.compile(r"\((\w+)\) ?=>")
 WORD = "".join(map(chr, [*range(48, 58), *range(65, 91), *range(97, 123)])) + "_$"
+# What the program replaces in the page of a run that it serves: a string of its own.
+NO_CONNECTION = "connect-src 'none'"
 # Bytes of a string in C that every compiler takes, with room for what is escaped.
 LONGEST = 1000
 
@@ -162,7 +165,7 @@ def policy(style, script):
         return "'sha256-" + base64.b64encode(hashlib.sha256(text.encode()).digest()).decode() + "'"
 
     rules = ["default-src 'none'", f"script-src {hashed(script)}", f"style-src {hashed(style)}", "img-src data: blob:",
-             "connect-src 'none'", "base-uri 'none'", "form-action 'none'"]
+             NO_CONNECTION, "base-uri 'none'", "form-action 'none'"]
     return f'<meta http-equiv="Content-Security-Policy" content="{"; ".join(rules)}">\n'
 
 
@@ -178,7 +181,7 @@ def page_of(folder):
     style = squeezed(re.sub(r"/\*.*?\*/", "", (folder / "style.css").read_text(encoding="utf-8"), flags=re.S))
     bundle = Bundle(folder)
     bundle.add("main.js")
-    script = tightened("".join(bundle.parts))
+    script = shortened(tightened("".join(bundle.parts)), [tightened(part) for part in bundle.parts], bundle.owner)
     check_text("the script", script)
     check_text("style.css", style)
     unused = {path.name for path in folder.glob("*.js")} - set(bundle.exports)
@@ -218,7 +221,8 @@ def literal(line):
 def array(name, text):
     pieces = []
     for line in text.splitlines(keepends=True):
-        pieces += [line[i:i + LONGEST] for i in range(0, len(line), LONGEST)]
+        for part in re.split(f"({NO_CONNECTION})", line):
+            pieces += [part[i:i + LONGEST] for i in range(0, len(part), LONGEST)]
     return f"const char *const {name}[] = {{\n" + "".join(f"    {literal(piece)},\n" for piece in pieces) + "    NULL};\n"
 
 
