@@ -15,6 +15,8 @@ import { makeView, readView, viewText } from "./view.js";
 
 const STILL = 160;     // ms without a change after which pictures are averaged
 const SLOW = 80;       // ms of a draft from which it is drawn at half the resolution
+const TELLING = 200;   // ms between two states of the panels while frames of a run follow each other
+const PICKED = [10, 102, 242]; // colour of the picked blocks, where there are several
 const ORDER = ["camera", "look", "colour", "cut", "pose", "frame"]; // each makes anew what those before it do
 
 export class App {
@@ -32,7 +34,11 @@ export class App {
         /** @type {import("./colours.js").Legend[]} */ this.legends = [];
         this.note = "";
         this.live = false;
+        this.following = true; // the newest frame of a run
+        this.loud = true;      // something but the newest frame has changed
+        this.told = this.telling = 0;
         this.reading = false; // frames that the first picture does not need
+        /** @type {ReturnType<typeof import("./live.js").makeRun> | null} */ this.run = null;
         this.token = "";
         this.chart = "largest";
         this.speed = 1;
@@ -63,8 +69,9 @@ export class App {
         this.change("camera");
     }
 
-    /** @param {string} what one of ORDER */
-    change(what) {
+    /** @param {string} what one of ORDER @param {boolean} [loud] the panels tell it at once */
+    change(what, loud = true) {
+        this.loud ||= loud;
         this.dirty = Math.max(this.dirty, ORDER.indexOf(what));
         this.sample = 0;
         this.changed = performance.now();
@@ -74,16 +81,20 @@ export class App {
     /** Until the next picture is there. @returns {Promise<void>} */
     drawn() { return new Promise((done) => { this.waiting.push(done); this.change("camera"); }); }
 
+    /** Until the next picture that is asked for is there. @returns {Promise<void>} */
+    painted() { return new Promise((done) => { this.waiting.push(done); }); }
+
     /** Until the average is complete. */
     async settled() { do await new Promise((done) => setTimeout(done, 20)); while (this.sample < SAMPLES || this.asked || this.reading); }
 
-    /** @param {number} index */
-    async goTo(index) {
+    /** @param {number} index @param {boolean} [loud] */
+    async goTo(index, loud = true) {
         const last = this.model.frames.length - 1, at = Math.max(0, Math.min(last, Math.round(index)));
         this.view.frame = at;
+        this.following = at === last;
         try {
             const frame = await this.model.frame(at);
-            if (this.view.frame === at) { this.frame = frame; this.change("frame"); }
+            if (this.view.frame === at) { this.frame = frame; this.change("frame", loud); }
         } catch (error) {
             say(String(/** @type {Error} */ (error).message), true);
         }
@@ -129,18 +140,36 @@ export class App {
         if (level >= 1) this.recolour(frame, shown);
         this.camera.parallel = view.parallel;
         this.shadow = false;
-        if (level >= 1) {
-            for (const part of this.parts) part.update();
-            byId("title").textContent = model.head?.title ?? "";
-            byId("counts").textContent = this.counts();
-            this.tellFindings();
-        }
+        if (level >= 1) this.tellSoon();
+    }
+
+    /** Brings the panels up to date: now when something but the newest frame has changed, else some times a second. */
+    tellSoon() {
+        const wait = this.told + TELLING - performance.now();
+        if (this.loud || wait <= 0) this.tell();
+        else this.telling ||= setTimeout(() => this.tell(), wait);
+    }
+
+    /** Brings the panels up to date. */
+    tell() {
+        clearTimeout(this.telling);
+        this.telling = 0;
+        this.loud = false;
+        for (const part of this.parts) part.update();
+        byId("title").textContent = this.model.head?.title ?? "";
+        byId("counts").textContent = this.counts();
+        this.tellFindings();
+        this.told = performance.now();
     }
 
     /** @param {import("./frames.js").Frame} frame @param {import("./poses.js").Shown} shown */
     recolour(frame, shown) {
         const { model, view, gpu } = this, c = colourBlocks(model, frame, view.colour);
         if (view.joint !== "") c.palette = frame.head.joints.map((name, i) => (name === view.joint && i ? category(i - 1) : [214, 217, 221]));
+        for (const id of view.also) {
+            const row = model.rowOf(id, frame.since);
+            if (row >= 0 && view.picked >= 0) c.colours.set([...PICKED.map((p, i) => 0.7 * p + 0.3 * c.colours[4 * row + i]), 255], 4 * row);
+        }
         gpu.table("colour", c.colours);
         gpu.table("palette", new Uint8Array(c.palette.flatMap((p) => [...p, 255])), c.palette.length);
         gpu.caps.set(this.plane ? capSheets(this.cuts, c.colours, this.plane.normal) : []);

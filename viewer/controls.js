@@ -2,7 +2,7 @@
 // @ts-check
 import { blockColours, contactColours } from "./colours.js";
 import { button, byId, checkBox, choice, element, labelled, slider } from "./dom.js";
-import { capital, figure } from "./math.js";
+import { figure } from "./math.js";
 
 const MOTIONS = [0, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000];
 const STEPS = 100; // of the slider of least displacement: four powers of ten below the largest
@@ -31,7 +31,8 @@ export function makeControls(app) {
             keep(slider("motion", 0, MOTIONS.length - 1, 1, () => Math.max(0, MOTIONS.findIndex((m) => m >= view.motion)), (v) => { view.motion = MOTIONS[v]; app.change("pose"); }, () => `× ${figure(view.motion)}`)),
             checks(check("edges", "edges", "look"), check("shadows", "shadows", "look")),
             labelled("block", id, button("Find", find, "Find the block of this number")),
-            element("div", { className: "buttons" }, button("Hide", () => app.hidePicked(), "Hide the picked block"), button("Show all", () => app.showAll()))),
+            element("div", { className: "buttons" }, button("Add", () => { if (id.value !== "") app.pickMore(Number(id.value)); }, "Pick the block of this number as well, or let go of it"),
+                button("Hide", () => app.hidePicked(), "Hide the picked blocks"), button("Show all", () => app.showAll()))),
         ...group("Section", checks(check("cut", "cut", "pose"), check("other", "other side", "pose")),
             keep(slider("dip", 0, 90, 1, () => view.dip, (v) => { view.dip = v; app.change("cut"); }, () => `${figure(view.dip)}°`)),
             keep(slider("direction", 0, 360, 1, () => view.direction, (v) => { view.direction = v % 360; app.change("cut"); }, () => `${String(Math.round(view.direction)).padStart(3, "0")}°`)),
@@ -42,12 +43,6 @@ export function makeControls(app) {
             button("Image", () => app.saveImage(), "Save the picture as a PNG file")),
             checks(check("parallel", "parallel", "look"), check("net", "stereonet", "colour"), check("dark", "dark", "look"))),
     ];
-    if (app.live) {
-        const send = (/** @type {string} */ op) => button(capital(op), () => app.command({ op }));
-        const steps = element("input", { type: "number", min: 1, max: 1000000, value: "100" });
-        nodes.unshift(...group("Run", element("div", { className: "buttons" }, send("pause"), send("go")), labelled("steps", steps, button("Step", () => app.command({ op: "step", n: Math.max(1, Number(steps.value) || 1) }))),
-            element("div", { className: "buttons" }, send("snapshot"), button("VTK", () => app.command({ op: "write_vtk" }), "Write a frame for ParaView"))));
-    }
-    byId("controls").replaceChildren(...nodes);
+    byId("controls").replaceChildren(...(app.run ? [app.run.node] : []), ...nodes);
     return { update() { for (const c of all) c.update(); } };
 }

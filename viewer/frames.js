@@ -1,15 +1,18 @@
 // The model over time: a row for each block that ever was, and the frames, packed until they are looked at.
 // @ts-check
 import { readFrame } from "./scene.js";
-import { dot, norm, scale, sub, triple } from "./math.js";
+import { norm, triple } from "./math.js";
 
 /** @typedef {import("./scene.js").FrameData} FrameData */
 /** @typedef {{largest: Record<string, number>, least: Record<string, number>, time: number, cycle: number, most: number, mover: number, slipping: number,
  *   contacts: number, line: import("./scene.js").Line | null, blocks: number}} Summary */
-/** @typedef {{packed: string | null, length: number, buffer: ArrayBuffer | null, used: number, head: import("./scene.js").Head, since: number, summary: Summary, whole: boolean}} Stored whole: the summary is of the frame itself */
+/** @typedef {{packed: string | null, length: number, buffer: ArrayBuffer | null, used: number, head: import("./scene.js").Head, since: number, summary: Summary, whole: boolean,
+ *   rows: Int32Array | null, data: FrameData | null}} Stored whole: the summary is of the frame itself; rows and data: of the blocks and the chunks, while they are known */
 /** @typedef {{index: number, since: number, data: FrameData, head: import("./scene.js").Head, poses: import("./scene.js").Poses, rows: Int32Array, at: Int32Array, summary: Summary}} Frame */
 
 const UNPACKED = 256 * 1024 * 1024; // bytes of unpacked frames that are kept
+const FEW = 8;       // frames of a run that are kept whatever their size
+const SPARE = 1000;  // rows of blocks that are gone, and stay until there are more
 
 /** Base64 of a zlib stream to bytes. @param {string} text @param {number} length @returns {Promise<ArrayBuffer>} */
 async function unpack(text, length) {
@@ -40,7 +43,7 @@ async function unpack(text, length) {
 /** Lengths of the vectors of a column. @param {Float32Array} column @returns {Float32Array} */
 export function lengths(column) {
     const out = new Float32Array(column.length / 3);
-    for (let i = 0; i < out.length; i++) out[i] = norm(triple(column, i));
+    for (let i = 0, k = 0; i < out.length; i++, k += 3) out[i] = Math.sqrt(column[k] * column[k] + column[k + 1] * column[k + 1] + column[k + 2] * column[k + 2]);
     return out;
 }
 
@@ -57,14 +60,13 @@ export function column(data, head, name) {
         return data.extras.find((e) => e.of === of && head.fields[e.field].name === wanted)?.value ?? null;
     }
     if (!k) return null;
-    const out = new Float32Array(k.n);
-    for (let i = 0; i < k.n; i++) {
-        const f = triple(k.force, i), n = triple(k.normal, i), push = dot(f, n);
-        if (name === "slip") out[i] = k.slip[i];
-        else if (name === "normal stress") out[i] = k.area[i] > 0 ? push / k.area[i] : NaN;
-        else if (name === "shear stress") out[i] = k.area[i] > 0 ? norm(sub(f, scale(n, push))) / k.area[i] : NaN;
-        else if (name === "force") out[i] = norm(f);
-        else return null;
+    if (name === "slip") return k.slip;
+    if (name === "force") return lengths(k.force);
+    if (name !== "normal stress" && name !== "shear stress") return null;
+    const out = new Float32Array(k.n), shear = name === "shear stress", f = k.force, n = k.normal;
+    for (let i = 0, c = 0; i < k.n; i++, c += 3) {
+        const push = f[c] * n[c] + f[c + 1] * n[c + 1] + f[c + 2] * n[c + 2], x = f[c] - push * n[c], y = f[c + 1] - push * n[c + 1], z = f[c + 2] - push * n[c + 2];
+        out[i] = k.area[i] > 0 ? (shear ? Math.sqrt(x * x + y * y + z * z) : push) / k.area[i] : NaN;
     }
     return out;
 }
@@ -105,6 +107,9 @@ export class Model {
         this.density = 0;     // of the first block, kg/m³
         this.keys = false;    // whether any frame has keyblocks
         this.rows = 0;
+        this.kept = 0;        // rows after the last sweep
+        /** @type {Record<string, number>} */ this.most = {};   // of frames that were let go
+        /** @type {Record<string, number>} */ this.fewest = {};
         this.triangles = 0;
         /** @type {{shapes: import("./scene.js").Shapes, block: number, vertex: number, face: number, corner: number, radius: number}[]} */ this.shape = [];
         /** @type {Map<number, {row: number, since: number}[]>} */ this.versions = new Map();
@@ -121,20 +126,45 @@ export class Model {
     /** A frame that sends no shapes: it is unpacked when it is looked at. @param {string} text @param {number} length @param {number} time @param {number} cycle @param {number} most largest displacement */
     addLater(text, length, time, cycle, most) {
         const head = /** @type {import("./scene.js").Head} */ (this.head);
-        this.frames.push({ packed: text, length, buffer: null, used: 0, head, since: this.serial++, whole: false,
+        this.frames.push({ packed: text, length, buffer: null, used: 0, head, since: this.serial++, whole: false, rows: null, data: null,
             summary: { largest: { displacement: most }, least: { displacement: 0 }, time, cycle, most, mover: -1, slipping: 0, contacts: 0, line: null, blocks: 0 } });
     }
 
     /** A frame's chunks; without `packed` it stays unpacked. @param {ArrayBuffer} buffer @param {string | null} packed */
-    addFrame(buffer, packed) {
-        const data = readFrame(buffer, this.head), serial = this.serial++;
+    addFrame(buffer, packed) { this.store(readFrame(buffer, this.head), buffer, packed); }
+
+    /** A frame of a run; its rows are those of the frame before where no block has come, changed or gone. @param {ArrayBuffer} news @param {ArrayBuffer} now */
+    addLive(news, now) {
+        const data = readFrame(now, this.head, news), before = this.frames[this.frames.length - 1], stored = this.store(data, now, null), id = data.poses?.id, old = before?.data?.poses?.id;
+        const same = data.shapes.length === 0 && id?.length === old?.length && id?.every((v, i) => v === old?.[i]);
+        stored.rows = same ? before.rows : this.rowsOf(data, stored.since);
+        stored.data = data;
+        if (before) before.data = null;
+        return data;
+    }
+
+    /** @param {FrameData} data @param {ArrayBuffer} buffer @param {string | null} packed @returns {Stored} */
+    store(data, buffer, packed) {
+        const serial = this.serial++;
         if (data.head) this.head = data.head;
         const head = /** @type {import("./scene.js").Head} */ (this.head);
         for (const shapes of data.shapes) this.addShapes(shapes, serial);
         this.density ||= data.shapes[0]?.density[0] ?? 0;
         this.keys ||= data.keys !== null;
-        this.frames.push({ packed, length: buffer.byteLength, buffer, used: ++this.clock, head, since: serial, summary: summarise(data, head), whole: true });
+        /** @type {Stored} */ const stored = { packed, length: buffer.byteLength, buffer, used: ++this.clock, head, since: serial, summary: summarise(data, head), whole: true, rows: null, data: null };
+        this.frames.push(stored);
         this.forget();
+        return stored;
+    }
+
+    /** Rows of the blocks of a frame. @param {FrameData} data @param {number} since */
+    rowsOf(data, since) {
+        const { n, id } = /** @type {import("./scene.js").Poses} */ (data.poses), rows = new Int32Array(n);
+        for (let i = 0; i < n; i++) {
+            rows[i] = this.rowOf(id[i], since);
+            if (rows[i] < 0) throw new Error(`A frame shows block ${id[i]}, whose shape was not sent.`);
+        }
+        return rows;
     }
 
     /** @param {import("./scene.js").Shapes} shapes @param {number} since */
@@ -169,9 +199,41 @@ export class Model {
         }
     }
 
-    /** Of a run: lets go of old frames but every second, when there are more than `limit`. @param {number} limit */
-    thin(limit) {
-        if (this.frames.length > limit) this.frames = this.frames.filter((f, i) => i % 2 === 0 || i > this.frames.length - 3);
+    /** Of a run: lets go of every second frame but the newest and the one that is seen, when there are too many. @param {number} limit @param {Stored | undefined} seen */
+    thin(limit, seen) {
+        const end = this.frames.length, bytes = this.frames.reduce((n, f) => n + f.length, 0);
+        if (end <= limit && (bytes <= UNPACKED || end <= FEW)) return;
+        this.frames = this.frames.filter((f, i) => {
+            if (i % 2 === 0 || i > end - 3 || f === seen) return true;
+            for (const name in f.summary.largest) {
+                this.most[name] = Math.max(this.most[name] ?? -Infinity, f.summary.largest[name]);
+                this.fewest[name] = Math.min(this.fewest[name] ?? Infinity, f.summary.least[name]);
+            }
+            return false;
+        });
+    }
+
+    /** Of a run: lets go of the shapes that no kept frame shows, when they are many. Gives whether rows have other numbers now. */
+    sweep() {
+        if (this.rows < 2 * Math.max(this.kept, this.frames[this.frames.length - 1].summary.blocks) + SPARE) return false;
+        const lists = new Set(this.frames.map((f) => f.rows ?? new Int32Array(0))), place = new Int32Array(this.rows).fill(-1);
+        for (const list of lists) for (const row of list) place[row] = 0;
+        this.kept = 0;
+        for (let row = 0; row < this.rows; row++) if (place[row] === 0) place[row] = this.kept++;
+        if (this.kept === this.rows) return false;
+        for (const list of lists) list.forEach((row, i) => { list[i] = place[row]; });
+        for (const [id, list] of this.versions) {
+            const left = list.filter((v) => place[v.row] >= 0);
+            for (const v of left) v.row = place[v.row];
+            if (left.length) this.versions.set(id, left);
+            else this.versions.delete(id);
+        }
+        this.shape = this.shape.filter((_s, row) => place[row] >= 0);
+        this.rows = this.kept;
+        this.triangles = 0;
+        for (let row = 0; row < this.rows; row++) this.eachFace(row, (_f, _c, corners) => { this.triangles += Math.max(0, corners - 2); });
+        this.version++;
+        return true;
     }
 
     /** Row of a block in a frame, or -1. @param {number} id @param {number} since */
@@ -190,25 +252,21 @@ export class Model {
             stored.buffer = await unpack(packed ?? "", length);
             this.forget();
         }
-        const data = readFrame(stored.buffer, stored.head);
+        const data = stored.data ?? readFrame(stored.buffer, stored.head);
         if (!stored.whole) stored.summary = summarise(data, stored.head);
         stored.whole = true;
         this.keys ||= data.keys !== null;
         const poses = /** @type {import("./scene.js").Poses} */ (data.poses);
-        const rows = new Int32Array(poses.n), at = new Int32Array(this.rows).fill(-1);
-        for (let i = 0; i < poses.n; i++) {
-            rows[i] = this.rowOf(poses.id[i], stored.since);
-            if (rows[i] < 0) throw new Error(`Frame ${index} shows block ${poses.id[i]}, whose shape was not sent.`);
-            at[rows[i]] = i;
-        }
+        const rows = stored.rows ?? this.rowsOf(data, stored.since), at = new Int32Array(this.rows).fill(-1);
+        for (let i = 0; i < poses.n; i++) at[rows[i]] = i;
         return { index, since: stored.since, data, head: stored.head, poses, rows, at, summary: stored.summary };
     }
 
     /** Largest value of a column over all frames. @param {string} name */
-    largest(name) { return this.frames.reduce((m, f) => Math.max(m, f.summary.largest[name] ?? -Infinity), -Infinity); }
+    largest(name) { return this.frames.reduce((m, f) => Math.max(m, f.summary.largest[name] ?? -Infinity), this.most[name] ?? -Infinity); }
 
     /** Least value of a column over all frames. @param {string} name */
-    least(name) { return this.frames.reduce((m, f) => Math.min(m, f.summary.least[name] ?? Infinity), Infinity); }
+    least(name) { return this.frames.reduce((m, f) => Math.min(m, f.summary.least[name] ?? Infinity), this.fewest[name] ?? Infinity); }
 
     /** Faces of a row, with the place of their first corner. @param {number} row @param {(face: number, corner: number, corners: number, joint: number, plane: number) => void} see */
     eachFace(row, see) {

@@ -11,7 +11,7 @@ const LINE = ["", "", "time step, s", "unbalanced force ratio", "largest velocit
 /** @param {App} app */
 export function makeHistory(app) {
     const chart = element("canvas", { role: "img" }), text = element("div", { className: "unseen" });
-    const range = element("input", { type: "range", min: 0, step: 1, ariaLabel: "Frame", oninput: () => { stop(); app.goTo(Number(range.value)); } });
+    const range = element("input", { type: "range", min: 0, step: 1, ariaLabel: "Frame", oninput: () => { stop(); app.goTo(range.value === range.max ? Infinity : Number(range.value)); } });
     range.setAttribute("aria-label", "Frame");
     const out = element("output"), what = element("select", { onchange: () => { app.chart = what.value; update(); } });
     what.setAttribute("aria-label", "Chart of");

@@ -39,7 +39,7 @@ export function listen(app, time) {
     const up = (/** @type {PointerEvent} */ e) => {
         const one = fingers.size === 1;
         fingers.delete(e.pointerId);
-        if (one && way < 4 && e.type === "pointerup" && button === 0) app.pickAt(e.clientX, e.clientY);
+        if (one && way < 4 && e.type === "pointerup" && button === 0) app.pickAt(e.clientX, e.clientY, e.shiftKey || e.ctrlKey || e.metaKey);
     };
     picture.onpointerup = up;
     picture.onpointercancel = up;
@@ -50,9 +50,9 @@ export function listen(app, time) {
     }, { passive: false });
 
     document.addEventListener("keydown", (e) => {
-        const typing = e.target instanceof HTMLInputElement || e.target instanceof HTMLSelectElement || e.target instanceof HTMLButtonElement;
+        const on = /** @type {HTMLElement} */ (e.target), typing = on.matches?.("input, select, pre") || (e.key === " " && on.matches?.("button"));
         if (e.key === "Escape") return app.pick(-1);
-        if (typing || e.ctrlKey || e.metaKey || e.altKey) return;
+        if (typing || e.ctrlKey || e.metaKey || e.altKey || (app.run && app.run.key(e.key))) return;
         const by = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }[e.key];
         if (by) {
             if (e.shiftKey) app.camera.shift(by[0] * 30, by[1] * 30, app.height);

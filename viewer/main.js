@@ -7,19 +7,19 @@ import { firstView } from "./first.js";
 import { makeHistory } from "./history.js";
 import { makeImage } from "./image.js";
 import { listen } from "./input.js";
-import { readRun, takeToken } from "./net.js";
+import { makeRun } from "./live.js";
+import { takeToken } from "./net.js";
 import { Page } from "./page.js";
 import { tightBox } from "./poses.js";
 import { CAP_FACE } from "./section.js";
 import { makeStereonet } from "./stereonet.js";
 import { makeTable } from "./table.js";
 
-const LIVE = 400; // frames of a run that are kept
-
 /** @param {Page} app */
 function listenAll(app) {
     const history = makeHistory(app);
-    app.parts = [makeTable(app), history, makeStereonet(app), makeControls(app)];
+    if (app.live) app.run = makeRun(app);
+    app.parts = [makeTable(app), history, makeStereonet(app), makeControls(app), ...(app.run ? [app.run] : [])];
     listen(app, history);
     new ResizeObserver(() => app.resize()).observe(app.canvas);
     app.canvas.addEventListener("webglcontextlost", (e) => { e.preventDefault(); say("The graphics driver has let go of the picture: load the page again.", true); });
@@ -27,7 +27,6 @@ function listenAll(app) {
     const more = byId("more");
     more.onclick = () => more.setAttribute("aria-expanded", String(byId("controls").classList.toggle("open")));
     app.resize();
-    return history;
 }
 
 /** Looks at all frames that have not been looked at, for the scales of all frames. @param {Page} app */
@@ -44,26 +43,14 @@ async function readRest(app) {
 /** @param {Page} app */
 async function begin(app) {
     const packed = /** @type {HTMLElement[]} */ ([...document.querySelectorAll('script[type="text/talus"]')]);
-    const opened = async () => {
-        const first = app.home, box = app.shown && tightBox(app.model, app.shown, () => true);
-        app.home = box ?? first;
-    };
+    const opened = async () => { app.home = (app.shown && tightBox(app.model, app.shown, () => true)) ?? app.home; };
     app.view.dark = matchMedia("(prefers-color-scheme: dark)").matches;
     app.reading = packed.length > 0;
     app.live = packed.length === 0 && location.protocol.startsWith("http");
-    const history = listenAll(app);
-    if (app.live) {
+    listenAll(app);
+    if (app.run) {
         app.token = takeToken();
-        await readRun(app.token, async (buffer) => {
-            const following = app.view.frame === app.model.frames.length - 1;
-            const seen = app.model.frames[app.view.frame];
-            app.model.addFrame(buffer, null);
-            app.model.thin(LIVE);
-            app.view.frame = Math.max(0, app.model.frames.indexOf(seen));
-            if (following) await app.goTo(app.model.frames.length - 1);
-            if (app.model.frames.length === 1) { app.refresh(); await opened(); firstView(app); }
-            else if (!following) history.update();
-        });
+        await app.run.follow(async () => { app.refresh(); await opened(); firstView(app); app.change("pose"); });
         return say("The run has ended.");
     }
     if (!packed.length) throw new Error("This page holds no frames.");

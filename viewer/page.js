@@ -5,7 +5,6 @@ import { say } from "./dom.js";
 import { named } from "./glyphs.js";
 import { saveImage } from "./image.js";
 import { add, figure, planeNormal, scale, trendPlunge } from "./math.js";
-import { postCommand } from "./net.js";
 import { tightBox } from "./poses.js";
 
 /** The page's state with what can be done to it. */
@@ -19,10 +18,10 @@ export class Page extends App {
         return named(this.gpu.names(sight, look, w, h, [px, py, 1, 1], true)[0]);
     }
 
-    /** @param {number} x @param {number} y */
-    pickAt(x, y) {
+    /** @param {number} x @param {number} y @param {boolean} more picks the block as well, or lets go of it */
+    pickAt(x, y, more) {
         const what = this.at(x, y), i = what.kind === "block" && this.frame ? this.frame.at[what.index] : -1, k = this.frame?.data.contacts;
-        if (what.kind === "contact" && k) {
+        if (more) { if (i >= 0 && this.frame) this.pickMore(this.frame.poses.id[i]); } else if (what.kind === "contact" && k) {
             const n = what.index, a = k.area[n];
             say(`Contact ${k.id[n]} of blocks ${k.a[n]} and ${k.b[n]}: ${["elastic", "slipping", "open", "failed"][k.state[n]]}, area ${figure(a)} m², gap ${figure(k.gap[n])} m, slip ${figure(k.slip[n])} m`);
         } else this.pick(i >= 0 && this.frame ? this.frame.poses.id[i] : -1);
@@ -31,13 +30,31 @@ export class Page extends App {
     /** @param {number} id */
     pick(id) {
         this.view.picked = id;
+        this.view.also.clear();
         this.view.joint = "";
         this.chart = id >= 0 ? "picked" : "largest";
         say(id >= 0 ? `Block ${id}` : "");
         this.change("colour");
     }
 
-    hidePicked() { if (this.view.picked >= 0) { this.view.hidden.add(this.view.picked); this.pick(-1); this.change("pose"); } }
+    /** Picks a block beside those that are picked, or lets go of it. @param {number} id */
+    pickMore(id) {
+        const { view } = this, all = new Set(this.picks());
+        if (!all.delete(id)) all.add(id);
+        const last = [...all].pop() ?? -1;
+        if (last !== view.picked) this.pick(last);
+        view.also = all.size > 1 ? all : new Set();
+        say(all.size > 1 ? `${all.size} blocks are picked` : last >= 0 ? `Block ${last}` : "");
+        this.change("colour");
+    }
+
+    /** The picked blocks. @returns {number[]} */
+    picks() { return this.view.also.size ? [...this.view.also] : this.view.picked >= 0 ? [this.view.picked] : []; }
+
+    hidePicked() {
+        for (const id of this.picks()) this.view.hidden.add(id);
+        if (this.view.picked >= 0) { this.pick(-1); this.change("pose"); }
+    }
     showAll() { for (const s of [this.view.hidden, this.view.ghosts, this.view.only]) s.clear(); this.view.moved = 0; this.change("pose"); }
 
     fit(/** @type {import("./camera.js").Bounds | null} */ box = null) {
@@ -47,7 +64,7 @@ export class Page extends App {
     }
 
     zoomPicked() {
-        const row = this.frame ? this.model.rowOf(this.view.picked, this.frame.since) : -1, box = row >= 0 && this.shown ? tightBox(this.model, this.shown, (r) => r === row) : null;
+        const { frame } = this, rows = frame ? this.picks().map((id) => this.model.rowOf(id, frame.since)) : [], box = this.shown ? tightBox(this.model, this.shown, (r) => rows.includes(r)) : null;
         if (!box) return say("There is no such block in this frame, or it is hidden.");
         const out = box.max.map((v, c) => (v - box.min[c]) * 0.7);
         this.fit({ min: box.min.map((v, c) => v - out[c]), max: box.max.map((v, c) => v + out[c]) });
@@ -90,7 +107,4 @@ export class Page extends App {
     }
 
     saveImage() { saveImage(this).catch((e) => say(e.message, true)); }
-
-    /** @param {object} command */
-    async command(command) { const refused = await postCommand(this.token, command); if (refused) say(refused, true); }
 }

@@ -17,7 +17,8 @@
 /** @typedef {{numbers: number[], histories: Float64Array}} Line */
 /** @typedef {{n: number, id: Uint32Array, mode: Uint32Array, factor: Float32Array, direction: Float32Array}} Keys */
 /** @typedef {{head: Head | null, shapes: Shapes[], gone: Uint32Array[], poses: Poses | null, contacts: Contacts | null, extras: Extra[],
- *   line: Line | null, keys: Keys | null, number: number}} FrameData */
+ *   line: Line | null, keys: Keys | null, live: Live[], number: number}} FrameData */
+/** @typedef {{state: string, line: string, refused: string}} Live what a run does, and a line that was done or why it was not ("" where there is none) */
 
 /** Takes columns one after the other from a payload. */
 class Columns {
@@ -69,6 +70,18 @@ class Columns {
         return out;
     }
 
+    /** @returns {any} an object */
+    json() {
+        let h;
+        try {
+            h = JSON.parse(new TextDecoder("utf-8", { fatal: true }).decode(new Uint8Array(this.buffer, this.at, this.end - this.at)));
+        } catch {
+            throw this.bad("its text is no JSON");
+        }
+        if (typeof h !== "object" || h === null) throw this.bad("its text is no object");
+        return h;
+    }
+
     /** @param {Uint32Array | Uint16Array | Uint8Array} list @param {number} limit @param {string} what */
     below(list, limit, what) {
         for (let i = 0; i < list.length; i++) {
@@ -92,13 +105,7 @@ function names(value, name) {
 
 /** @param {Columns} c @returns {Head} */
 function readHead(c) {
-    let h;
-    try {
-        h = JSON.parse(new TextDecoder("utf-8", { fatal: true }).decode(new Uint8Array(c.buffer, c.at, c.end - c.at)));
-    } catch {
-        throw c.bad("its text is no JSON");
-    }
-    if (typeof h !== "object" || h === null) throw c.bad("its text is no object");
+    const h = c.json();
     if (h.format !== 1) throw new Error(`The scene has format ${String(h.format)}; this page reads format 1.`);
     const triple = (/** @type {any} */ v) => Array.isArray(v) && v.length === 3 && v.every(Number.isFinite);
     if (!triple(h.origin) || !triple(h.gravity)) throw c.bad("origin and gravity must be lists of three numbers");
@@ -170,13 +177,28 @@ function readKeys(c) {
     return k;
 }
 
+/** @param {Columns} c @returns {Live} */
+function readLive(c) {
+    const h = c.json(), text = (/** @type {any} */ v) => (typeof v === "string" ? v : "");
+    if (!["running", "paused", "waiting"].includes(h.state)) throw c.bad("the state must be running, paused or waiting");
+    return { state: h.state, line: text(h.line), refused: text(h.refused) };
+}
+
 /**
- * Reads the chunks of one frame. `head` is the last one read before.
- * @param {ArrayBuffer} buffer @param {Head | null} head @returns {FrameData}
+ * Reads the chunks of one frame. `head` is the last one read before; of a run, `news` has the chunks that are in front of the others.
+ * @param {ArrayBuffer} buffer @param {Head | null} head @param {ArrayBuffer} [news] @returns {FrameData}
  */
-export function readFrame(buffer, head) {
+export function readFrame(buffer, head, news) {
     /** @type {FrameData} */
-    const frame = { head: null, shapes: [], gone: [], poses: null, contacts: null, extras: [], line: null, keys: null, number: -1 };
+    const frame = { head: null, shapes: [], gone: [], poses: null, contacts: null, extras: [], line: null, keys: null, live: [], number: -1 };
+    if (news) readChunks(news, head, frame);
+    readChunks(buffer, frame.head ?? head, frame);
+    if (!frame.poses || frame.number < 0) throw new Error("A frame of the scene has no FRAM or no DONE.");
+    return frame;
+}
+
+/** @param {ArrayBuffer} buffer @param {Head | null} head @param {FrameData} frame */
+function readChunks(buffer, head, frame) {
     const view = new DataView(buffer);
     for (let at = 0; at < buffer.byteLength;) {
         if (at + 8 > buffer.byteLength) throw new Error("The scene ends within the head of a chunk.");
@@ -193,8 +215,7 @@ export function readFrame(buffer, head) {
         else if (name === "FIEL") frame.extras.push(readExtra(c, frame, head));
         else if (name === "LINE") frame.line = { numbers: Array.from(c.f64(8, "numbers", true)), histories: c.f64(c.u32(1, "count")[0], "histories", true) };
         else if (name === "KEYS") frame.keys = readKeys(c);
+        else if (name === "LIVE") frame.live.push(readLive(c));
         else if (name === "DONE") frame.number = c.u32(1, "number")[0];
     }
-    if (!frame.poses || frame.number < 0) throw new Error("A frame of the scene has no FRAM or no DONE.");
-    return frame;
 }

@@ -45,8 +45,8 @@ void main() {
     gl_Position = u_matrix * vec4(v_world, 1.0);
 #ifndef DEPTH
     v_normal = turn(q, a_normal);
-    v_colour = u_faces ? texelFetch(u_palette, ivec2(int(a_name.y) % textureSize(u_palette, 0).x, 0), 0)
-        : texelFetch(u_colour, at(row, u_colour), 0);
+    v_colour = texelFetch(u_colour, at(row, u_colour), 0); // w: its own colour, whatever its faces have
+    if (u_faces && v_colour.w < 0.5) v_colour = texelFetch(u_palette, ivec2(int(a_name.y) % textureSize(u_palette, 0).x, 0), 0);
     v_colour.w = clamp(second.w * u_pixels / gl_Position.w / 9.0, 0.0, 1.0);
     v_name = a_name.x;
 #endif

@@ -2,8 +2,9 @@
 // @ts-check
 import { plain } from "./colours.js";
 import { button, byId, element } from "./dom.js";
-import { capital, figure, norm, trendPlunge, triple } from "./math.js";
+import { figure, norm, trendPlunge, triple } from "./math.js";
 
+const LISTED = 12; // ids of several blocks that are listed
 const KEYS = ["stable", "falls", "slides on one face", "slides on two faces"];
 
 /** Trend and plunge as 270/33. @param {number[]} v */
@@ -45,23 +46,48 @@ export function blockRows(model, frame, id) {
     return rows;
 }
 
+/** Names and values of what is known of several blocks together. @param {import("./frames.js").Model} model @param {import("./frames.js").Frame} frame @param {number[]} ids @returns {[string, string][]} */
+export function togetherRows(model, frame, ids) {
+    let volume = 0, mass = 0, held = 0, most = 0, known = 0;
+    for (const id of ids) {
+        const i = frame.poses.id.indexOf(id);
+        if (i < 0) continue;
+        const { shapes, block } = model.shape[frame.rows[i]];
+        known++;
+        volume += shapes.volume[block];
+        mass += shapes.volume[block] * shapes.density[block];
+        held += frame.poses.flags[i] & 1;
+        most = Math.max(most, norm(triple(frame.poses.displacement, i)));
+    }
+    return [["volume", `${figure(volume)} m³`], ["mass", massText(mass)], ["held", String(held)], ["most displaced", `${figure(most)} m`],
+        ["ids", ids.slice(0, LISTED).join(", ") + (ids.length > LISTED ? " …" : "")], ...(known < ids.length ? /** @type {[string, string][]} */ ([["not in this frame", String(ids.length - known)]]) : [])];
+}
+
 /** @param {import("./page.js").Page} app */
 export function makeTable(app) {
-    const box = byId("picked");
-    let known = "";
+    const box = byId("picked"), title = element("h2"), body = element("tbody"), none = element("p", {}, "There is no such block in this frame.");
+    const set = (/** @type {Set<number>} */ s) => {
+        const ids = app.picks(), all = ids.every((id) => s.has(id));
+        for (const id of ids) all ? s.delete(id) : s.add(id);
+        app.change("pose");
+    };
+    const commands = element("div", { className: "buttons" });
+    box.replaceChildren(title, element("table", {}, body), none, element("div", { className: "buttons" }, button("Hide", () => app.hidePicked(), "Hide in the picture"), button("Only", () => set(app.view.only)),
+        button("Ghost", () => set(app.view.ghosts)), button("Zoom", () => app.zoomPicked()), button("Close", () => app.pick(-1))), commands);
     return { update() {
-        const id = app.view.picked, rows = id >= 0 && app.frame ? blockRows(app.model, app.frame, id) : null;
-        const now = JSON.stringify([id, rows]);
-        box.hidden = id < 0;
-        if (now === known) return;
-        known = now;
-        const focused = box.contains(document.activeElement) ? document.activeElement?.textContent : null;
-        const command = (/** @type {string} */ op) => button(capital(op), () => app.command({ op, blocks: [id] }));
-        const set = (/** @type {Set<number>} */ s) => { s.has(id) ? s.delete(id) : s.add(id); app.change("pose"); };
-        box.replaceChildren(element("h2", {}, `Block ${id}`), rows ? element("table", {}, ...rows.map(([name, value]) => element("tr", {}, element("th", { scope: "row" }, name), element("td", {}, value)))) :
-            element("p", {}, "There is no such block in this frame."), element("div", { className: "buttons" }, button("Hide", () => app.hidePicked()), button("Only", () => set(app.view.only)),
-            button("Ghost", () => set(app.view.ghosts)), button("Zoom", () => app.zoomPicked()), ...(app.model.head?.commands ? ["fix", "free", "delete"].map(command) : []),
-            button("Close", () => app.pick(-1))));
-        if (focused) for (const b of box.querySelectorAll("button")) if (b.textContent === focused) b.focus();
+        const ids = app.picks(), { frame } = app;
+        box.hidden = ids.length === 0;
+        if (!frame || box.hidden) return;
+        const rows = ids.length > 1 ? togetherRows(app.model, frame, ids) : blockRows(app.model, frame, ids[0]), known = rows ?? [];
+        title.textContent = ids.length > 1 ? `${ids.length} blocks` : `Block ${ids[0]}`;
+        none.hidden = rows !== null;
+        // buttons stay, and cells as far as they can: they are used while frames of a run come
+        while (body.rows.length > known.length) body.lastChild.remove();
+        known.forEach((row, i) => row.forEach((text, k) => {
+            const line = body.rows[i] ?? body.appendChild(element("tr", {}, element("th", { scope: "row" }), element("td"))), cell = line.cells[k];
+            if (cell.textContent !== text) cell.textContent = text;
+        }));
+        if (app.run && !commands.firstChild && app.run.takes()) commands.append(...app.run.blockButtons());
+        commands.hidden = !app.run?.takes();
     } };
 }

@@ -1,7 +1,7 @@
 """Shortens the names of a script that is put together of modules, for page_asset.py.
 
-A name becomes another one everywhere, whatever its scope, so that no scopes need be known: the new name is used nowhere, and the old
-one is declared by every module that uses it, or at the top level of one of them. Properties (`.word`), keys (`word:`), methods, strings and
+No scopes need be known: a name of the top level becomes another one everywhere, whatever it names, and one that is declared within a function or class
+of the top level becomes another one in the whole of that, where the new name names nothing else. Properties (`.word`), keys (`word:`), methods, strings and
 what a browser defines stay as they are; of a shorthand `{word}` the key stays: `{word:a}`.
 """
 import collections
@@ -71,11 +71,11 @@ def tokens(code):
 
 class Uses:
     """What the words of a script are: `names` has the numbers of the pieces that name something, `short` those among them that are a key as well,
-    `declared` the words that are declared."""
+    `declared` the words that are declared, and `top` those among them that may be at the top level."""
 
     def __init__(self, pieces):
         self.pieces = [(i, kind, text) for i, (kind, text) in enumerate(pieces) if kind != "space"]
-        self.names, self.short, self.declared = collections.defaultdict(list), set(), set()
+        self.names, self.short, self.declared, self.top = collections.defaultdict(list), set(), set(), set()
         self.closing = self.pairs()
         # brackets that are open, as (what, whether names directly in it are declared), and how many were open where a let stands
         self.open, self.let, self.of_class = [], [], False
@@ -130,32 +130,88 @@ class Uses:
         if text in ("let", "const", "var"):
             self.let.append(len(self.open))
         entry = around == "{" and last in ("{", ",")
-        method = after == "(" and self.text(self.closing[k + 1] + 1) == "{" and last not in ("function", "*")
+        named = last in ("function", "class") or (last == "*" and self.text(k - 2) == "function")
+        method = after == "(" and self.text(self.closing[k + 1] + 1) == "{" and not named
         if last in ACCESS or around == "class" or method or (entry and after == ":"):
             return
         if entry and after in (",", "}", "="):
             self.short.add(i)
-        if self.declares(k) or last in ("function", "class", "*") or after == "=>":
+        if self.declares(k) or named or after == "=>":
             self.declared.add(text)
+            if not self.open or self.let[:1] == [0]:
+                self.top.add(text)
         self.names[text].append(i)
 
 
-def shortened(code, modules, top):
-    """The script with shorter names. `modules` are its parts as they were, and `top` the names at their top level."""
+def parts_of(pieces):
+    """Of each piece the number of the part it is in: a part is a function, a class or another statement at the top level."""
+    out, depth, part, last = [], 0, 0, ";"
+    for i, (kind, text) in enumerate(pieces):
+        if depth == 0 and ((kind == "word" and last in (";", "}") and text in ("function", "class", "async", "let", "const")) or last == ";"):
+            part += 1
+        out.append(part)
+        if kind == "text":
+            depth += text.endswith("${") - (text[0] == "}")
+        elif kind == "sign":
+            depth += (text in "([{") - (text in ")]}")
+        if kind != "space":
+            last = text
+    return out
+
+
+def groups(parts):
+    """The numbers of the pieces of each part."""
+    return [[i for i, _part in group] for _number, group in itertools.groupby(enumerate(parts), key=lambda pair: pair[1])]
+
+
+def fresh_names(taken, least):
+    return (name for size in itertools.count(least) for name in map("".join, itertools.product(FIRST, repeat=size)) if name not in taken and name not in KNOWN)
+
+
+class Renaming:
+    """Words of some pieces that become others; places: word to the numbers of its pieces."""
+
+    def __init__(self, texts, short, places):
+        self.texts, self.short, self.places = texts, short, places
+        self.new = {}
+
+    def gain(self, word, length):
+        """Characters that a name of this length saves: a shorthand needs its key besides."""
+        return sum(len(word) - length - (len(word) + 1 if i in self.short else 0) for i in self.places[word])
+
+    def choose(self, words, names, length):
+        """Gives other names to the words for which that pays, to the most frequent first."""
+        for word in sorted(words, key=lambda word: (-len(self.places[word]), word)):
+            if self.gain(word, length) > 0 or (length == len(word) == 1 and self.gain(word, 1) == 0):
+                self.new[word] = next(names)
+
+    def apply(self):
+        for word, new in self.new.items():
+            for i in self.places[word]:
+                self.texts[i] = f"{word}:{new}" if i in self.short else new
+
+
+def shortened(code, modules, given):
+    """The script with shorter names. `modules` are its modules as they were, and `given` the names at their top level. These become other names of two
+    letters or more, the same ones everywhere. Those that are declared within a function or class at the top level become others in it."""
     pieces = tokens(code)
-    uses = Uses(pieces)
-    own = uses.declared - KNOWN
+    uses, parts = Uses(pieces), parts_of(pieces)
+    top, own = (set(given) | uses.top) & uses.declared, uses.declared - KNOWN
+    inside = [(list(group), Uses([pieces[i] for i in group])) for group in groups(parts)]
     for module in modules:
         of = Uses(tokens(module))
-        own -= set(of.names) - of.declared - set(top)
-    fresh = (name for size in itertools.count(1) for name in map("".join, itertools.product(FIRST, repeat=size)) if name not in uses.names and name not in KNOWN)
+        own -= set(of.names) - of.declared - set(given)
+    for _group, of in inside:
+        own -= set(of.names) - of.declared - top
     texts = [text for _kind, text in pieces]
-    for word in sorted(own, key=lambda word: (-len(uses.names[word]) * (len(word) - 2), word)):
-        places = uses.names[word]
-        new = next(fresh)
-        if (len(word) - len(new)) * len(places) <= sum(len(word) + 1 for i in places if i in uses.short):
-            fresh = itertools.chain([new], fresh)
-            continue
-        for i in places:
-            texts[i] = f"{word}:{new}" if i in uses.short else new
+    whole = Renaming(texts, uses.short, uses.names)
+    whole.choose(own & top, fresh_names(uses.names, 2), 2)
+    for group, of in inside:
+        local = (own - top) & set(of.names)
+        part = Renaming(texts, uses.short, {word: [group[i] for i in of.names[word]] for word in local})
+        kept = {word for word in local if part.gain(word, 1) <= 0 and (len(word) > 1 or part.gain(word, 1) < 0)}
+        taken = {whole.new.get(word, word) for word in set(of.names) - local} | kept
+        part.choose(local - kept, fresh_names(taken, 1), 1)
+        part.apply()
+    whole.apply()
     return "".join(texts)

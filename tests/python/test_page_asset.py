@@ -40,21 +40,26 @@ BAD = [({"one.js": "export default function one(x) { }\n"}, "one"),
        ({"style.css": "p { content: '</style>'; }\n"}, "</style")]
 
 # The script of it: comments and spaces that part nothing are left out, names are shorter, texts stay as they are.
-TIGHT = ("function h(x){console.log(x,`\u00fc?? \\\\ \"`)}\nlet b=[];for(let a of[1,2]){b.push(`a - ${a+`, b  ${a}`+\"} \"}  // c`);"
-         "if(a/2>1&&/[/ '] x/.test(b[0]))b.push('const  a  ;  '+ +a)}\nfunction e(a){return[a].map(x=>x/2)[0]}\n"
-         "let d=`\n#define A  1\nvec2 f(float x){return vec2(x,1.0-x);}\n`;let i=2;class c{}\nasync function g(){}\nlet f=1;h(i,new c(e(b)));")
+TIGHT = ("function ad(a){console.log(a,`\u00fc?? \\\\ \"`)}\nlet aa=[];for(let a of[1,2]){aa.push(`a - ${a+`, b  ${a}`+\"} \"}  // c`);"
+         "if(a/2>1&&/[/ '] x/.test(aa[0]))aa.push('const  a  ;  '+ +a)}\nfunction ac(a){return[a].map(b=>b/2)[0]}\n"
+         "let af=`\n#define A  1\nvec2 f(float x){return vec2(x,1.0-x);}\n`;let ae=2;class ab{}\nasync function ah(){}\nlet ag=1;ad(ae,new ab(ac(aa)));")
 
 # Scripts, and what they are with shorter names. What is no name, or perhaps not the script's own, stays.
-SHORT = [("let word=1;use(word,o.word,o?.word,word?.x,...word);", "let a=1;use(a,o.word,o?.word,a?.x,...a);"),
-         ("let word=1;f({word:word,b:word?word:2,word(){return word},c:{d:[word]}});", "let a=1;f({word:a,b:a?a:2,word(){return a},c:{d:[a]}});"),
-         ("let word=1;g(word,word+word);f({a,word});", "let b=1;g(b,b+b);f({a,word:b});"),
-         ("let{word,other=1,x:[inner]}=o;f(word+word+word+word,other+other+other+other+other,inner);", "let{word:b,other:a=1,x:[c]}=o;f(b+b+b+b,a+a+a+a+a,c);"),
-         ("let word=1;f(`word ${word+`word ${word}`} word`,'word',\"word\",/word'/);", "let a=1;f(`word ${a+`word ${a}`} word`,'word',\"word\",/word'/);"),
+SHORT = [("let word=1;use(word,o.word,o?.word,word?.x,...word);", "let aa=1;use(aa,o.word,o?.word,aa?.x,...aa);"),
+         ("let word=1;f({word:word,b:word?word:2,word(){return word},c:{d:[word]}});", "let aa=1;f({word:aa,b:aa?aa:2,word(){return aa},c:{d:[aa]}});"),
+         ("let word=1;g(word,word+word);f({a,word});", "let aa=1;g(aa,aa+aa);f({a,word:aa});"),
+         ("let{word,other=1,x:[inner]}=o;f(word+word+word+word,other+other+other+other+other,inner);",
+          "let{word:ab,other:aa=1,x:[ac]}=o;f(ab+ab+ab+ab,aa+aa+aa+aa+aa,ac);"),
+         ("let word=1;f(`word ${word+`word ${word}`} word`,'word',\"word\",/word'/);", "let aa=1;f(`word ${aa+`word ${aa}`} word`,'word',\"word\",/word'/);"),
          ("class Thing{word=1;constructor(word){this.word=word}static word(){}get word(){return Thing}}\nlet word=1;f(word,new Thing);",
-          "class a{word=1;constructor(b){this.word=b}static word(){}get word(){return a}}\nlet b=1;f(b,new a);"),
-         ("if(screen){word={a:word};}for(let[i,word]of o){f(word/2/word)}", "if(screen){a={a:a};}for(let[i,a]of o){f(a/2/a)}"),
+          "class ab{word=1;constructor(aa){this.word=aa}static word(){}get word(){return ab}}\nlet aa=1;f(aa,new ab);"),
+         ("if(screen){word={a:word};}for(let[i,word]of o){f(word/2/word)}", "if(screen){a={a:a};}for(let[b,a]of o){f(a/2/a)}"),
          ("let screen=1,name=2;f(document,Math.max(unknown,name));", "let screen=1,name=2;f(document,Math.max(unknown,name));"),
-         ("let one=(word,{key},...rest)=>word+key+key+key+key+rest;try{one()}catch(error){f(error)}", "let e=(d,{key:b},...c)=>d+b+b+b+b+c;try{e()}catch(a){f(a)}")]
+         ("let one=(word,{key},...rest)=>word+key+key+key+key+rest;try{one()}catch(error){f(error)}",
+          "let ab=(ad,{key:aa},...ac)=>ad+aa+aa+aa+aa+ac;try{ab()}catch(a){f(a)}"),
+         # in a function: no name that it uses from outside is taken
+         ("let outer=1,second=2;function f(word){let a=word,b;return()=>{b=a*outer*Math.max(word,x);return{a,word}}}\nf(second,outer);function g(second){return second+outer}",
+          "let aa=1,ab=2;function f(b){let a=b,c;return()=>{c=a*aa*Math.max(b,x);return{a,word:b}}}\nf(ab,aa);function g(ab){return ab+aa}")]
 
 faults = []
 
@@ -111,8 +116,8 @@ def check_short():
         if found != wanted:
             faults.append(f"with shorter names {code!r} became {found!r}")
     # a name that one module declares and another does not is a name of the browser's for all that is known
-    code = "function f(word){return word+word}\n", "f(word);"
-    if shortened("".join(code), code, ["f"]) != "".join(code):
+    code = "function inner(word){return word+word}\n", "inner(word);"
+    if shortened("".join(code), code, ["inner"]) != "".join(code).replace("inner", "aa"):
         faults.append("a name that a module uses without having declared it was changed")
 
 

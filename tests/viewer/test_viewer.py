@@ -9,7 +9,6 @@
 Pictures are drawn by SwiftShader, in software, the same on all machines.
 """
 import base64
-import http.server
 import json
 import math
 import os
@@ -20,9 +19,7 @@ import struct
 import subprocess
 import sys
 import tempfile
-import threading
 import time
-import zlib
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 from chrome import Chrome, program, read_png  # noqa: E402
@@ -406,7 +403,7 @@ def test_controls(chrome, folder):
             await use(e, e.ariaLabel, () => { e.value = was; });
         }
         for (const e of document.querySelectorAll('#controls input[type=checkbox]')) for (const twice of [0, 1]) await use(e, e.parentNode.textContent, () => { e.checked = !e.checked; });
-        for (const e of [...document.querySelectorAll('#controls button')].filter(b => !['Image', 'Find'].includes(b.textContent))) {
+        for (const e of [...document.querySelectorAll('#controls button')].filter(b => !['Image', 'Find', 'Add'].includes(b.textContent))) {
             a.view.hidden.add(88); a.pick(92); a.camera.turn(31, 17);
             await use(e, e.textContent, () => e.click());
         }
@@ -449,89 +446,6 @@ def test_image(chrome, folder):
     colours = {p for row in picture[-160:-20] for p in row[40:400]}
     check(any(r > g + 100 and r > b + 60 for r, g, b in colours), "the image has no legend")
     check(sum(sum(p) < 200 for row in picture[30:70] for p in row[40:500]) > 300, "the image has no title")
-
-
-# ---------------------------------------------------------------- a running program
-
-TOKEN = "0123456789abcdef"
-
-
-class Run(http.server.BaseHTTPRequestHandler):
-    """Serves a page, its frames as an endless answer, and takes commands, as a running program does."""
-
-    def log_message(self, *_):
-        pass
-
-    def answer(self, status, body=b"", kind="text/plain; charset=utf-8"):
-        self.send_response(status)
-        self.send_header("Content-Type", kind)
-        self.send_header("Content-Length", str(len(body)))
-        self.end_headers()
-        self.wfile.write(body)
-
-    def do_GET(self):
-        if self.path.startswith("/?token="):
-            return self.answer(200, self.server.page, "text/html")
-        if self.path != "/scene" or self.headers["X-Talus-Token"] != TOKEN:
-            return self.answer(403)
-        self.send_response(200)
-        self.end_headers()
-        for frame in self.server.frames:
-            for at in range(0, len(frame), 1000):  # frames come in pieces
-                self.wfile.write(frame[at:at + 1000])
-            self.wfile.flush()
-        self.server.over.wait(60)
-
-    def do_POST(self):
-        command = json.loads(self.rfile.read(int(self.headers["Content-Length"])))
-        self.server.commands.append((self.path, self.headers["X-Talus-Token"], command))
-        self.answer(200) if command["op"] != "free" else self.answer(409, b"Block 92 is not held.")
-
-
-def live_frames(page):
-    """The frames of a page unpacked, HEAD with what a run has in it."""
-    for text in re.findall(r"<script type=.text/talus.[^>]*>([^<]*)<", page):
-        data, out, at = zlib.decompress(base64.b64decode(text)), b"", 0
-        while at < len(data):
-            kind, length = struct.unpack_from("<4sI", data, at)
-            body = data[at + 8:at + 8 + length]
-            at += 8 + (length + 3) // 4 * 4
-            if kind == b"HEAD":
-                body = json.dumps({**json.loads(body), "live": True, "commands": True}).encode()
-            out += struct.pack("<4sI", kind, len(body)) + body + b"\0" * (-len(body) % 4)
-        yield out
-
-
-def test_live(chrome, folder):
-    """A running program's frames are shown as they come, and its commands are posted with the token, which leaves the address."""
-    page = (folder / "slope.html").read_text()
-    server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), Run)
-    server.daemon_threads, server.over, server.commands, server.frames = True, threading.Event(), [], list(live_frames(page))
-    server.page = re.sub(r"<script type=.text/talus.*?</script>", "", page, flags=re.S).replace("connect-src 'none'", "connect-src 'self'").encode()
-    threading.Thread(target=server.serve_forever, daemon=True).start()
-    try:
-        chrome.log.clear()
-        address = f"http://127.0.0.1:{server.server_port}/"
-        chrome.open(address + "?token=" + TOKEN)
-        count = chrome.run("new Promise(done => { const look = () => talus.app.model.frames.length === 4 && talus.app.view.frame === 3 ? done(4) : setTimeout(look, 20); look(); })")
-        check(count == len(server.frames), f"{count} frames have come")
-        check("token" not in chrome.run("location.href"), "the token stays in the address")
-        chrome.run("talus.app.pick(92), talus.app.drawn()")
-        chrome.run("""(press => { press('Pause'); press('Step'); press('Fix'); press('Delete'); press('Free'); })(
-            name => [...document.querySelectorAll('button')].find(b => b.textContent === name).click())""")
-        words = chrome.run("new Promise(done => setTimeout(() => done(document.getElementById('status').textContent), 300))")
-        wanted = [{"op": "pause"}, {"op": "step", "n": 100}, {"op": "fix", "blocks": [92]}, {"op": "delete", "blocks": [92]}, {"op": "free", "blocks": [92]}]
-        found = sorted(server.commands, key=lambda c: wanted.index(c[2]) if c[2] in wanted else 9)
-        check([c[2] for c in found] == wanted and all(c[:2] == ("/command", TOKEN) for c in found), f"the commands were {server.commands}")
-        check(words == "Block 92 is not held.", f"a refused command says: {words}")
-        check(chrome.log == [] or all("409" in line for line in chrome.log), f"the page reports {chrome.log}")
-        chrome.open(address + "?token=" + TOKEN[::-1])
-        words = chrome.run("new Promise(done => setTimeout(() => done(document.getElementById('status').textContent), 500))")
-        check(words.startswith("The program refuses this page"), f"with a wrong token the page says: {words}")
-    finally:
-        server.over.set()
-        server.shutdown()
-        server.server_close()
 
 
 TESTS = {name[5:]: value for name, value in list(globals().items()) if name.startswith("test_")}
