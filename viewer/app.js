@@ -165,7 +165,11 @@ export class App {
     /** @param {import("./frames.js").Frame} frame @param {import("./poses.js").Shown} shown */
     recolour(frame, shown) {
         const { model, view, gpu } = this, c = colourBlocks(model, frame, view.colour);
-        if (view.joint !== "") c.palette = frame.head.joints.map((name, i) => (name === view.joint && i ? category(i - 1) : [214, 217, 221]));
+        if (view.joint !== "") {
+            const rest = [214, 217, 221], at = frame.head.joints.indexOf(view.joint);
+            c.palette = frame.head.joints.map((_name, i) => (i === at ? category(i - 1) : rest));
+            c.legend = { title: "Joint", kind: "list", items: [{ name: view.joint, colour: c.palette[at] ?? rest }, { name: "other faces", colour: rest }] };
+        }
         for (const id of view.also) {
             const row = model.rowOf(id, frame.since);
             if (row >= 0 && view.picked >= 0) c.colours.set([...PICKED.map((p, i) => 0.7 * p + 0.3 * c.colours[4 * row + i]), 255], 4 * row);

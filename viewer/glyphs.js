@@ -1,12 +1,13 @@
 // Arrows and contact polygons.
 // @ts-check
-import { add, dot, norm, scale, sub, triple, unit } from "./math.js";
+import { add, cross, dot, norm, scale, sub, triple, unit } from "./math.js";
 import { offset } from "./poses.js";
 
 /** @typedef {import("./buffers.js").Arrow} Arrow */
 
 const CONTACT = 0x80000000, ARROW = 0xc0000000; // names in the picture: the highest bits tell contacts and arrows from blocks
 const INKS = [[16, 30, 66], [150, 205, 255]], PUSHES = [[120, 20, 90], [255, 150, 220]]; // light, dark
+const TRACE = 0.03; // width of a contact's trace in a section, as a share of the blocks' size
 const LEAST = 0.02; // arrows shorter than this share of the longest are left out
 
 /** What a name in the picture stands for. @param {number} name @returns {{kind: "none" | "block" | "contact" | "arrow", index: number, face: number}} */
@@ -28,7 +29,19 @@ function below(corners, plane) {
     return out;
 }
 
-/** The contacts' polygons. @param {import("./frames.js").Model} model @param {import("./frames.js").Frame} frame @param {import("./poses.js").Shown} shown
+/** Where a polygon goes through a plane: a strip in it, towards who looks. @param {number[][]} corners @param {import("./section.js").Plane} plane @param {number} wide */
+function trace(corners, plane, wide) {
+    /** @type {number[][]} */ const ends = [];
+    corners.forEach((a, i) => {
+        const b = corners[(i + 1) % corners.length], x = dot(plane.normal, a) - plane.position, y = dot(plane.normal, b) - plane.position;
+        if (x <= 0 !== y <= 0) ends.push(add(a, add(scale(sub(b, a), x / (x - y)), scale(plane.normal, wide / 20))));
+    });
+    if (ends.length !== 2) return [];
+    const side = scale(unit(cross(plane.normal, sub(ends[1], ends[0]))), wide / 2);
+    return [add(ends[0], side), sub(ends[0], side), sub(ends[1], side), add(ends[1], side)].flat();
+}
+
+/** The contacts' polygons, and their traces in a section. @param {import("./frames.js").Model} model @param {import("./frames.js").Frame} frame @param {import("./poses.js").Shown} shown
  * @param {(i: number) => number[]} colour @param {import("./section.js").Plane | null} plane what lies above it is left out
  * @param {string} joint of which, or "" @returns {import("./buffers.js").Sheet[]} */
 export function contactSheets(model, frame, shown, colour, plane, joint) {
@@ -40,6 +53,8 @@ export function contactSheets(model, frame, shown, colour, plane, joint) {
         for (let c = corner; c < corner + k.corners[p]; c++) whole.push(add(triple(k.corner, c), away));
         const place = plane ? below(whole, plane).flat() : whole.flat();
         if (place.length > 6) out.push({ place, normal: triple(k.normal, i), colour: colour(i), flat: false, name: CONTACT + i });
+        const strip = plane ? trace(whole, plane, frame.head.size * TRACE) : [];
+        if (strip.length) out.push({ place: strip, normal: /** @type {import("./section.js").Plane} */ (plane).normal, colour: colour(i), flat: true, name: CONTACT + i });
     }
     return out;
 }

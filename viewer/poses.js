@@ -25,11 +25,13 @@ export function showFrame(model, frame, view) {
         high[i % 3] = Math.max(high[i % 3], p.place[i]);
     }
     const middle = p.n ? scale(add(low, high), 0.5) : [0, 0, 0], threshold = view.moved;
+    // contacts lie within the model: unless a section shows them, blocks are transparent then
+    const clear = view.solid === "no" || (view.solid === "" && view.contacts !== "" && !view.cut && view.explode === 0);
     let ghosts = false;
     for (let i = 0; i < p.n; i++) {
         const row = frame.rows[i], id = p.id[i], k = 3 * i;
         const d = Math.hypot(p.displacement[k], p.displacement[k + 1], p.displacement[k + 2]);
-        const still = (threshold > 0 && d < threshold) || (view.contacts !== "" && view.explode === 0) || view.ghosts.has(id) || (view.only.size > 0 && !view.only.has(id));
+        const still = (threshold > 0 && d < threshold) || clear || view.ghosts.has(id) || (view.only.size > 0 && !view.only.has(id));
         const hidden = view.hidden.has(id) || (p.flags[i] & 2) > 0 || (still && view.opacity === 0);
         kind[row] = hidden ? 0 : still ? 2 : 1;
         ghosts ||= kind[row] === 2;

@@ -1,13 +1,13 @@
 // What is looked at and how: the state that the controls change and the address holds (#frame=3&cut=1&dip=60 ...).
 // @ts-check
 
-/** @typedef {{frame: number, colour: string, edges: boolean, contacts: string, arrows: string, opacity: number, moved: number, explode: number, motion: number,
+/** @typedef {{frame: number, colour: string, edges: boolean, contacts: string, arrows: string, solid: string, opacity: number, moved: number, explode: number, motion: number,
  *   cut: boolean, other: boolean, dip: number, direction: number, position: number, parallel: boolean, net: boolean, dark: boolean, shadows: boolean,
  *   picked: number, also: Set<number>, joint: string, hidden: Set<number>, ghosts: Set<number>, only: Set<number>}} View also: all picked blocks, where there are several */
 
 /** @returns {View} */
 export function makeView() {
-    return { frame: -1, colour: "displacement", edges: true, contacts: "", arrows: "", opacity: 0.12, moved: 0, explode: 0, motion: 1, cut: false, other: false, dip: 90,
+    return { frame: -1, colour: "displacement", edges: true, contacts: "", arrows: "", solid: "", opacity: 0.12, moved: 0, explode: 0, motion: 1, cut: false, other: false, dip: 90,
         direction: 90, position: 0, parallel: false, net: false, dark: false, shadows: true, picked: -1, also: new Set(), joint: "", hidden: new Set(), ghosts: new Set(), only: new Set() };
 }
 

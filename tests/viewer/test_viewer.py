@@ -236,6 +236,23 @@ def test_colours(chrome, folder):
     check(len(values) > 1, f"the section shows only the values {values}")
 
 
+def test_contacts(chrome, folder):
+    """Contacts are seen within transparent blocks, and as traces in a section of solid ones; a joint that is chosen has a legend of its own."""
+    seen = f"(n => [n.filter(v => v >= 0x80000000 && v < 0xc0000000).length, talus.app.shown.ghosts])({names_of()})"
+    found = {}
+    for solid in ("", "yes", "no"):
+        for cut in (0, 1):
+            show(chrome, folder / "slope.html", f"#frame=3&contacts=state&solid={solid}&cut={cut}&dip=90&direction=180&position=3&camera=20,15,40,28,20,13")
+            found[solid, cut] = chrome.run(seen)
+    for key, clear in {("", 0): True, ("", 1): False, ("yes", 0): False, ("yes", 1): False, ("no", 0): True, ("no", 1): True}.items():
+        check(found[key][1] == clear, f"contacts with blocks shown '{key[0]}' and cut {key[1]}: ghosts are {found[key][1]}")
+    check(found["", 0][0] > 5000 and found["no", 1][0] > 5000, f"pixels of contacts in transparent blocks: {found}")
+    check(300 < found["", 1][0] < 10000, f"pixels of contacts in a section: {found}")
+    show(chrome, folder / "slope.html", "#frame=3")
+    names = chrome.run("talus.app.view.joint = talus.app.frame.head.joints[2], talus.app.change('colour'), talus.app.drawn().then(() => [talus.app.view.joint, ...talus.app.legends[0].items.map(i => i.name)])")
+    check(names[1:] == [names[0], "other faces"], f"of the joint {names[0]} the legend has {names[1:]}")
+
+
 # ---------------------------------------------------------------- golden pictures
 
 GOLDEN = {
@@ -410,7 +427,7 @@ def test_controls(chrome, folder):
         return same;
     })()""")
     # the first of a list is chosen twice
-    check([s for s in same if s not in ("arrows", "contacts", "blocks")] == [], f"these change nothing: {same}")
+    check([s for s in same if s not in ("arrows", "contacts", "blocks", "shown")] == [], f"these change nothing: {same}")
     check(chrome.run("document.getElementById('status').className") == "" and chrome.log == [], f"the page reports {chrome.log}")
     check(chrome.run("talus.app.gpu.gl.getError()") == 0, "WebGL reports an error")
     chrome.run("talus.app.goTo(0)")
