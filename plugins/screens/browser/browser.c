@@ -24,8 +24,10 @@
 #include <time.h>
 #include <unistd.h>
 
-/* s, for those who look to take what they have not got yet, at the end. */
+/* s, for those who look to take what they have not got yet, at the end. The tests build it longer. */
+#ifndef LAST_LOOK
 #define LAST_LOOK 1.0
+#endif
 /* Bytes of memory of a connection: a request's headers, and a part of a frame. */
 #define CONNECTION_MEMORY 131072
 
