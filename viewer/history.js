@@ -22,7 +22,8 @@ export function makeHistory(app) {
     play.className = "play";
     byId("time").append(play, element("div", { className: "chart" }, chart, range), what, speed, out, text);
     let playing = 0, options = "";
-    /** @type {{id: number, frames: number, values: number[]} | null} */ let picked = null;
+    /** @type {{id: number, values: Map<number, number>}} */ let picked = { id: -1, values: new Map() }; // displacements, by the frames' numbers
+    let reading = false;
 
     function stop() {
         clearTimeout(playing);
@@ -49,25 +50,31 @@ export function makeHistory(app) {
         if (app.view.frame >= app.model.frames.length - 1) await app.goTo(0);
     }
 
-    /** Displacements of the picked block in all frames. */
+    /** Displacements of the picked block in the frames of which they are not known. */
     async function followPicked() {
-        const id = app.view.picked, frames = app.model.frames.length;
-        if (id < 0 || (picked?.id === id && picked.frames === frames)) return;
-        const values = [];
-        for (let i = 0; i < frames; i++) {
-            const f = await app.model.frame(i), k = f.poses.id.indexOf(id), d = f.poses.displacement;
-            values.push(k < 0 ? NaN : norm(triple(d, k)));
-            if (app.view.picked !== id) return;
+        const id = app.view.picked, { frames } = app.model;
+        if (picked.id !== id || picked.values.size > 2 * frames.length + 100) picked = { id, values: new Map() };
+        const { values } = picked, left = frames.filter((f) => !values.has(f.since));
+        if (reading || !left.length) return;
+        reading = true;
+        try {
+            for (const stored of left) {
+                const at = app.model.frames.indexOf(stored);
+                if (at < 0 || app.view.picked !== id) continue;
+                const f = await app.model.frame(at), k = f.poses.id.indexOf(id);
+                values.set(f.since, k < 0 ? NaN : norm(triple(f.poses.displacement, k)));
+            }
+        } finally {
+            reading = false;
         }
-        picked = { id, frames, values };
-        update();
+        if (app.view.picked >= 0) update();
     }
 
     function series() {
         const frames = app.model.frames;
         if (app.chart === "picked" && app.view.picked >= 0) {
             followPicked();
-            return { title: `displacement of block ${app.view.picked}, m`, values: picked?.id === app.view.picked ? picked.values : [] };
+            return { title: `displacement of block ${app.view.picked}, m`, values: picked.id === app.view.picked ? frames.map((f) => picked.values.get(f.since) ?? NaN) : [] };
         }
         const [kind, number] = app.chart.split(":");
         if (kind === "line") return { title: LINE[Number(number)], values: frames.map((f) => f.summary.line?.numbers[Number(number)] ?? NaN) };
