@@ -258,6 +258,11 @@ def test_picking(chrome, page):
         (ax, ay, a), (bx, by, b), (cx, cy, c) = places
         found = [click(ax, ay, 0), click(bx, by, CTRL), click(cx, cy, 8), click(ax, ay, CTRL), click(bx, by, CTRL)]
         check(found == [[a], [a, b], [a, b, c], [b, c], [c]], f"clicks pick {found}")
+        for colour in ("displacement", "joint"):
+            chrome.run(f"talus.app.view.colour = '{colour}', talus.app.pick({a}), talus.app.pickMore({b}), talus.app.drawn()")
+            picture = chrome.picture()
+            check(all(picture[y][x][2] > picture[y][x][0] + 50 for x, y in ((ax + 2, ay + 2), (bx + 2, by + 2))) and picture[cy + 2][cx + 2][2] < picture[cy + 2][cx + 2][0] + 50,
+                  f"picked blocks are not told by their colour: {[picture[y + 2][x + 2] for x, y, _id in places]}")
         check(click(ax, ay, 0) == [a], "a click alone does not pick one block")
         chrome.run(f"talus.app.pickMore({b}), talus.app.hidePicked(), talus.app.drawn()")
         check(chrome.run("[...talus.app.view.hidden]") == [a, b] and chrome.run("talus.app.picks()") == [], "not all picked blocks are hidden")
