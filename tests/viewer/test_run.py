@@ -61,6 +61,9 @@ class Run:
 
 
 def watch(chrome, run):
+    time.sleep(0.1)
+    if run.process.poll() is not None:
+        raise RuntimeError(f"the program has ended: {run.process.stderr.read()}")
     chrome.log.clear()
     chrome.open(run.address)
     until(chrome, "talus.app.model.frames.length")
