@@ -340,6 +340,8 @@ static bool renew_patch(tl_model *m, uint32_t c, unsigned thread)
     if (rule.min_area > 0) /* it may be too small for a patch now */
         return false;
     scratch->manifold.failed = !take_manifold(m, c, scratch, &m->detect->lanes[thread]);
+    if (contacts->pending[c] == TL_PENDING_GROW)
+        contacts->pending[c] = TL_PENDING_GROW_PATCH;
     return !scratch->manifold.failed;
 }
 
@@ -453,7 +455,9 @@ bool tl_contact_fill(tl_model *m, uint32_t c)
     uint8_t pending = contacts->pending[c];
     contacts->pending[c] = TL_PENDING_NONE;
     d->narrow[0].reframed = pending == TL_PENDING_REFRAME;
-    bool made = make_anew(m, c, 0);
+    d->narrow[0].manifold.failed = false;
+    bool made = (pending == TL_PENDING_GROW_PATCH && renew_patch(m, c, 0)) ||
+                (!d->narrow[0].manifold.failed && make_anew(m, c, 0));
     d->narrow[0].reframed = false;
     if (!made) {
         d->narrow[0].failed = false; /* the caller tells */
