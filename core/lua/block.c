@@ -3,6 +3,7 @@
 #include "front.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 #include <talus/boundary.h>
 #include <talus/fields.h>
@@ -98,15 +99,12 @@ static bool block_extra(lua_State *L, tl_model *model, tl_id id, const char *nam
 /* ---------------------------------------------------------------- filter ----------------- */
 
 typedef struct block_args {
-    int64_t id;
     const char *group, *joint, *boundary;
     tl_vec3 containing;
     int32_t fixed;
 } block_args;
 
 static const tl_param block_params[] = {
-    TL_PARAM(TL_PARAM_INT, block_args, id, "", "the block of this id", .flags = TL_PARAM_OPTIONAL,
-             .min = 1.0, .max = 4294967295.0),
     TL_PARAM(TL_PARAM_STRING, block_args, group, "", "blocks of this group",
              .flags = TL_PARAM_OPTIONAL),
     TL_PARAM(TL_PARAM_VEC3, block_args, containing, "m", "blocks that contain this point",
@@ -121,6 +119,7 @@ static const tl_param block_params[] = {
 };
 
 static const tl_lua_key block_keys[] = {
+    {"id", "whole number or list of whole numbers", "the blocks of these ids"},
     {"inside", "{min = {x, y, z}, max = {x, y, z}}", "blocks whose centroid is in this box"},
     {"above", "{dip =, dip_direction =, origin = {x, y, z}}",
      "blocks whose centroid is above this plane"},
@@ -176,6 +175,68 @@ static const tl_bounds *read_box(lua_State *L, tl_bounds *out)
     return out;
 }
 
+/* Ids that are asked for, ascending; `list` is NULL when any will do. */
+typedef struct block_ids {
+    tl_id *list;
+    size_t count;
+} block_ids;
+
+static int compare_ids(const void *a, const void *b)
+{
+    tl_id x = *(const tl_id *)a, y = *(const tl_id *)b;
+    return (x > y) - (x < y);
+}
+
+/* The id at `index`. */
+static tl_id read_id(lua_State *L, int index)
+{
+    static const tl_param id = {.size = sizeof id,
+                                .type = TL_PARAM_INT,
+                                .name = "id",
+                                .unit = "",
+                                .min = 1.0,
+                                .max = 4294967295.0};
+    static const tl_lua_spec spec = {"blocks", &id, 1, NULL};
+    int top = lua_gettop(L);
+    int64_t number;
+    tl_lua_read_one(L, index, &spec, "id", &number);
+    lua_settop(L, top);
+    return (tl_id)number;
+}
+
+/* Reads the filter's `id`; pushes what the list hangs on. */
+static block_ids read_ids(lua_State *L)
+{
+    block_ids ids = {NULL, 0};
+    if (lua_getfield(L, 2, "id") == LUA_TNIL)
+        return ids;
+    int given = lua_gettop(L);
+    bool many = lua_istable(L, given);
+    ids.count = many ? lua_rawlen(L, given) : 1;
+    ids.list = lua_newuserdatauv(L, (ids.count + 1) * sizeof *ids.list, 0);
+    for (size_t i = 0; i < ids.count; i++) {
+        if (many)
+            lua_rawgeti(L, given, (lua_Integer)i + 1);
+        ids.list[i] = read_id(L, many ? -1 : given);
+        lua_settop(L, given + 1);
+    }
+    qsort(ids.list, ids.count, sizeof *ids.list, compare_ids);
+    return ids;
+}
+
+/* Keeps those of the selection that are in the list. Both ascend. */
+static void keep_ids(tl_lua_selection *found, const block_ids *ids)
+{
+    size_t kept = 0, k = 0;
+    for (size_t i = 0; i < found->count; i++) {
+        while (k < ids->count && ids->list[k] < found->ids[i])
+            k++;
+        if (k < ids->count && ids->list[k] == found->ids[i])
+            found->ids[kept++] = found->ids[i];
+    }
+    found->count = kept;
+}
+
 /* The filter's `hidden`: -1 any, 0 visible, 1 hidden ones. */
 static int read_hidden(lua_State *L)
 {
@@ -196,7 +257,6 @@ static void read_filter(lua_State *L, block_args *args, block_nested *nested,
 {
     tl_lua_read(L, 2, &tl_lua_blocks_spec, true, args);
     *filter = tl_block_filter_default();
-    filter->id = (tl_id)args->id;
     filter->group = args->group;
     filter->joint = args->joint;
     filter->fixed = args->fixed;
@@ -234,14 +294,7 @@ static tl_status keep_on_side(tl_model *model, tl_lua_selection *found, int32_t 
         return TL_OK;
     if (status != TL_OK)
         return status;
-    size_t kept = 0, k = 0;
-    for (size_t i = 0; i < found->count; i++) {
-        while (k < result.block_count && result.blocks[k] < found->ids[i])
-            k++;
-        if (k < result.block_count && result.blocks[k] == found->ids[i])
-            found->ids[kept++] = found->ids[i];
-    }
-    found->count = kept;
+    keep_ids(found, &(block_ids){result.blocks, result.block_count});
     tl_boundary_free(&result);
     return TL_OK;
 }
@@ -256,6 +309,11 @@ int tl_lua_blocks(lua_State *L)
     tl_block_filter filter;
     luaL_checkstack(L, 32, "too many values");
     read_filter(L, &args, &nested, &filter);
+    block_ids ids = {NULL, 0};
+    if (lua_istable(L, 2))
+        ids = read_ids(L);
+    if (ids.list && ids.count == 1)
+        filter.id = ids.list[0];
     int32_t side = args.boundary ? tl_lua_side(L, "blocks", args.boundary) : TL_SIDE_ANY;
     int where = 0;
     if (lua_istable(L, 2) && lua_getfield(L, 2, "where") != LUA_TNIL) {
@@ -266,6 +324,8 @@ int tl_lua_blocks(lua_State *L)
     }
     tl_lua_selection *found = tl_lua_selection_push(L, &tl_lua_block_kind, 1);
     tl_lua_ok(L, model, tl_blocks_select(model, &filter, &found->ids, &found->count));
+    if (ids.list)
+        keep_ids(found, &ids);
     if (side != TL_SIDE_ANY) {
         tl_status status = keep_on_side(model, found, side);
         tl_lua_ok(L, model, status);
