@@ -95,7 +95,7 @@ static tl_status make_element(tl_model *m, tl_scene *scene, const tl_html *optio
         put_attribute(element, "time", facts.time);
         put_attribute(element, "cycle", (double)facts.cycle);
         put_attribute(element, "largest", facts.largest);
-        put_attribute(element, "model", facts.model);
+        put_attribute(element, "model", facts.news > 0);
         tl_json_put(element, ">");
         status = tl_pack(m, chunks.data, chunks.length, element);
     }

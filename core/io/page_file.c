@@ -28,6 +28,9 @@ static const char opening[] = "<!--", closing[] = "-->\n", blank[] = "    ";
 
 enum { HALF = 4 };
 
+/* What a page may connect to: a piece of the page's policy, and what stands there in a page that is served. */
+static const char nowhere[] = "connect-src 'none'", at_home[] = "connect-src 'self'";
+
 /* Bytes that are copied at a time. */
 #define COPIED ((size_t)1 << 18)
 
@@ -100,11 +103,11 @@ void tl_page_pad(tl_piece *element)
         tl_json_put(element, "\n");
 }
 
-/* The beginning of a page, up to its first frame. */
-static void put_beginning(tl_piece *to, const char *title)
+void tl_page_beginning(tl_piece *to, const char *title, bool live)
 {
     for (size_t i = 0; tl_page_before[i]; i++)
-        tl_json_put(to, tl_page_before[i]);
+        tl_json_put(to,
+                    live && strcmp(tl_page_before[i], nowhere) == 0 ? at_home : tl_page_before[i]);
     for (; *title; title++) {
         const char letter[2] = {*title, '\0'};
         tl_json_put(to, *title == '&'   ? "&amp;"
@@ -121,7 +124,7 @@ uint64_t tl_page_length(const char *title, uint64_t at, const tl_piece *element)
 {
     tl_piece beginning = {0};
     if (at == 0)
-        put_beginning(&beginning, title);
+        tl_page_beginning(&beginning, title, false);
     uint64_t before = at ? at + HALF : beginning.length;
     free(beginning.data);
     return before + element->length + 2 * HALF;
@@ -143,7 +146,7 @@ tl_status tl_page_begin(tl_model *m, const char *path, const char *title, const 
                         tl_page_end *end)
 {
     tl_piece beginning = {0};
-    put_beginning(&beginning, title);
+    tl_page_beginning(&beginning, title, false);
     tl_output output = {.path = NULL};
     tl_status status =
         beginning.failed ? tl_fail_memory(&m->error) : tl_output_open(&output, path, &m->error);

@@ -20,6 +20,8 @@ tl_status tl_page_begin(tl_model *m, const char *path, const char *title, const 
 /* Adds a frame, in place where the page stands whole; where it is longer, to a copy of what was left. */
 tl_status tl_page_add(tl_model *m, const char *path, tl_page_stand stand, const tl_piece *element,
                       tl_page_end *end);
+/* The beginning of a page, up to its first frame. `live`: of one that a running program serves, which it may ask. */
+void tl_page_beginning(tl_piece *to, const char *title, bool live);
 /* Pads an element so that the next thing in the file begins at a multiple of four bytes. */
 void tl_page_pad(tl_piece *element);
 

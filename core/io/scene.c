@@ -89,8 +89,8 @@ static bool find_median(const tl_model *m, double *median)
 
 /* ---------------------------------------------------------------- chunks ----------------- */
 
-static tl_status put_bytes(tl_model *m, const char letters[5], const void *data, size_t bytes,
-                           tl_piece *out)
+tl_status tl_scene_bytes(tl_model *m, const char letters[5], const void *data, size_t bytes,
+                         tl_piece *out)
 {
     size_t before = out->length;
     unsigned char *to = tl_scene_chunk(out, letters, tl_scene_column_bytes(bytes, 1), &m->error);
@@ -106,14 +106,14 @@ static tl_status put_head(tl_scene *scene, tl_model *m, const tl_html *options, 
 {
     const tl_piece *sent = &scene->sent.head;
     tl_piece *head = &scene->next.head;
-    tl_scene_head(m, options, scene->next.median, head);
+    tl_scene_head(m, options, scene, head);
     if (head->failed) {
         head->failed = false; /* another frame may have the memory */
         return tl_fail_memory(&m->error);
     }
     if (sent->length == head->length && memcmp(sent->data, head->data, head->length) == 0)
         return TL_OK;
-    return put_bytes(m, "HEAD", head->data, head->length, out);
+    return tl_scene_bytes(m, "HEAD", head->data, head->length, out);
 }
 
 static tl_status put_gone(tl_model *m, const news *found, tl_piece *out)
@@ -169,7 +169,7 @@ tl_status tl_scene_write(tl_scene *scene, tl_model *m, const tl_html *options, t
     next->structure = m->structure;
     *facts = (tl_scene_facts){.time = m->time, .cycle = m->cycles};
     tl_status status = put_news(scene, m, options, out);
-    facts->model = out->length > begin;
+    facts->news = out->length - begin;
     if (status == TL_OK)
         status = tl_scene_blocks(m, out, &facts->largest);
     if (status == TL_OK)
@@ -190,6 +190,12 @@ void tl_scene_accept(tl_scene *scene)
     tl_scene_known sent = scene->sent;
     scene->sent = scene->next;
     scene->next = sent;
+}
+
+void tl_scene_forget(tl_scene *scene)
+{
+    scene->sent.count = scene->sent.head.length = 0;
+    scene->sent.frames = 0;
 }
 
 static void free_known(tl_scene_known *known)

@@ -51,7 +51,7 @@ static void put_history(void *user, const char *name, const char *unit, double v
     l->begun = true;
 }
 
-void tl_scene_head(const tl_model *m, const tl_html *options, double size, tl_piece *text)
+void tl_scene_head(const tl_model *m, const tl_html *options, const tl_scene *scene, tl_piece *text)
 {
     text->length = 0;
     tl_json_put(text, "{\"format\": 1, \"program\": \"Talus " TALUS_VERSION "\", \"title\": ");
@@ -61,7 +61,7 @@ void tl_scene_head(const tl_model *m, const tl_html *options, double size, tl_pi
     tl_json_put(text, ", \"gravity\": ");
     put_vector(text, m->config.gravity);
     tl_json_put(text, ", \"size\": ");
-    tl_json_number(text, size);
+    tl_json_number(text, scene->next.median);
     tl_json_put(text, ", \"groups\": [");
     for (size_t i = 0; i < m->group_count; i++) {
         tl_json_put(text, i ? ", " : "");
@@ -76,5 +76,10 @@ void tl_scene_head(const tl_model *m, const tl_html *options, double size, tl_pi
     put_fields(text, options);
     tl_json_put(text, ", \"histories\": [");
     tl_scene_histories(m, put_history, &(list){text, false});
-    tl_json_put(text, "]}");
+    tl_json_put(text, "]");
+    if (scene->live)
+        tl_json_put(text, ", \"live\": true");
+    if (scene->live == TL_SCENE_COMMANDS)
+        tl_json_put(text, ", \"commands\": true");
+    tl_json_put(text, "}");
 }

@@ -5,8 +5,9 @@
 
 #include "io/scene.h"
 
-/* The JSON of the head, into `text`. */
-void tl_scene_head(const tl_model *m, const tl_html *options, double size, tl_piece *text);
+/* The JSON of the head of the scene's next frame, into `text`. */
+void tl_scene_head(const tl_model *m, const tl_html *options, const tl_scene *scene,
+                   tl_piece *text);
 
 /* A number of a history: a number of its last sample, NaN where it has none. */
 typedef void (*tl_scene_history_fn)(void *user, const char *name, const char *unit, double value);

@@ -123,13 +123,15 @@ void tl_lua_push_field(lua_State *L, tl_field_kind kind, const tl_field_value *v
 
 typedef struct tl_lua_model {
     tl_model *model;
-    bool probe;          /* a copy: a run of it is not saved as it goes */
-    int64_t next_sample; /* cycle at which a history is due: history.c */
-    bool sampling;       /* a function of a history or of an extra field runs */
+    bool probe;               /* a copy: a run of it is not saved as it goes */
+    int64_t next_sample;      /* cycle at which a history is due: history.c */
+    bool sampling;            /* a function of a history or of an extra field runs */
+    struct tl_lua_view *view; /* while it is shown: view.c */
 } tl_lua_model;
 
-/* User values of a model's userdata: the functions of drives (action.c), those of histories by their names (history.c). */
-enum { TL_LUA_DRIVES = 1, TL_LUA_HISTORIES, TL_LUA_USER_VALUES = 2 };
+/* User values of a model's userdata: the functions of drives (action.c), those of histories by their names (history.c), what a
+ * view shows (view.c). */
+enum { TL_LUA_DRIVES = 1, TL_LUA_HISTORIES, TL_LUA_VIEW, TL_LUA_USER_VALUES = 3 };
 
 /* Pushes the function talus.model and makes the metatable of models. */
 void tl_lua_model_open(lua_State *L);
@@ -378,9 +380,23 @@ void tl_lua_autosave(tl_lua_options *options, tl_model *model);
             "functions"                                                                            \
     }
 
+/* Keys of a table that says what a page shows. */
+#define TL_LUA_PAGE_KEYS                                                                           \
+    {"contacts", "true, false or \"slipping\"",                                                    \
+     "which contacts the frame has; when left out all, where there are 20000 at the most, and "    \
+     "else those that slip"},                                                                      \
+        TL_LUA_FIELD_KEYS,                                                                         \
+    {                                                                                              \
+        "keyblocks", "{friction =, cohesion =, gravity =}",                                        \
+            "parameters of model:keyblocks, whose modes and factors of safety are shown as well"   \
+    }
+
 extern const tl_lua_key tl_lua_page_keys[];
 extern const tl_lua_key tl_lua_field_keys[];
 int tl_lua_write_html(lua_State *L);
+/* Reads these of the table at `given`, if there is one, for a page of the model at index 1. Pushes values that must stay on the
+ * stack as long as they are used. */
+void tl_lua_page_read(lua_State *L, int given, const char *context, tl_html *html);
 
 /* The extra fields that the table at `table` asks for under `key`: {"field", name = "field", name = function(item) ... end}, of
  * all blocks or all contacts (`kind`) of the model at index 1. `context` names the method. Pushes one value, which must stay on
@@ -388,6 +404,18 @@ int tl_lua_write_html(lua_State *L);
 const tl_extra_field *tl_lua_extra_fields(lua_State *L, int table, const char *key,
                                           const char *context, const tl_lua_kind *kind,
                                           size_t *count);
+
+/* ---- seen while it runs: view.c ---- */
+
+extern const tl_lua_key tl_lua_view_keys[];
+int tl_lua_view(lua_State *L);
+/* After a step of the model at index 1: shows it when it is time to; `worth` as of tl_view_due. False, with the error on the
+ * top of the stack, when a function of the script fails. */
+bool tl_lua_view_step(lua_State *L, double worth);
+/* Before a step: does what those who look want, and waits while they want it to; false likewise. */
+bool tl_lua_view_between(lua_State *L);
+/* As the model goes, which is at index 1. */
+void tl_lua_view_end(lua_State *L, tl_lua_model *owner);
 
 /* ---- help: help.c, topics.c ---- */
 

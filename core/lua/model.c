@@ -31,6 +31,7 @@ static int model_create(lua_State *L)
 static int model_collect(lua_State *L)
 {
     tl_lua_model *object = luaL_checkudata(L, 1, TL_LUA_MODEL_TYPE);
+    tl_lua_view_end(L, object);
     tl_model_destroy(object->model);
     object->model = NULL;
     return 0;
@@ -415,6 +416,7 @@ static const luaL_Reg model_methods[] = {
     {"memory", tl_lua_memory},
     {"write_vtk", model_write_vtk},
     {"write_html", tl_lua_write_html},
+    {"view", tl_lua_view},
     {"write_blocks", model_write_blocks},
     {"write_section", model_write_section},
     {"filter", tl_lua_filter},

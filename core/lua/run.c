@@ -153,7 +153,24 @@ static tl_status on_each(void *user, tl_model *model)
     }
     if (!r->owner->probe)
         tl_lua_autosave(r->options, model);
+    if (r->owner->view && !tl_lua_view_step(r->L, 0)) {
+        keep_error(r);
+        return TL_E_CANCELLED;
+    }
     return TL_OK;
+}
+
+/* Before every step of a model that is seen: those who look may want something. */
+static tl_status on_between(void *user, tl_model *model)
+{
+    (void)model;
+    run *r = user;
+    if (r->failed)
+        return TL_E_CANCELLED;
+    if (tl_lua_view_between(r->L))
+        return TL_OK;
+    keep_error(r);
+    return TL_E_CANCELLED;
 }
 
 static tl_status on_progress(void *user, tl_model *model)
@@ -220,6 +237,8 @@ static bool push_callback(lua_State *L, const char *what, const char *key)
 
 static int finish(lua_State *L, run *r, const char *what, tl_status status)
 {
+    if (r->owner->view && !r->failed && !tl_lua_view_step(L, r->result.wall))
+        keep_error(r);
     run_end(r);
     tl_lua_watch_end_run(L, &r->watch, what);
     if (r->failed) {
@@ -250,6 +269,7 @@ int tl_lua_solve(lua_State *L)
     run r;
     run_begin(&r, L, model);
     solve.each = on_each;
+    solve.between = r.owner->view ? on_between : NULL;
     solve.progress = progress ? on_progress : NULL;
     solve.stop = stop ? on_stop : NULL;
     solve.user = &r;
@@ -280,6 +300,7 @@ int tl_lua_cycle(lua_State *L)
     run r;
     run_begin(&r, L, model);
     calls.user = &r;
+    calls.between = r.owner->view ? on_between : NULL;
     r.limits = calls;
     return finish(L, &r, "cycle", tl_model_cycle_calling(model, args.cycles, &calls, &r.result));
 }

@@ -3,7 +3,7 @@
 #include "front.h"
 
 static const tl_kind_type laws = TL_KIND_LAW, dampings = TL_KIND_DAMPING,
-                          generators = TL_KIND_GENERATOR;
+                          generators = TL_KIND_GENERATOR, screens = TL_KIND_SCREEN;
 
 static const tl_lua_key block_verbs[] = {
     {"#sel, sel[i], ipairs(sel)", "", "number of blocks, the i-th one, all in order of id"},
@@ -386,6 +386,11 @@ const tl_lua_topic tl_lua_topics[] = {
               "{\"kinetic_energy\"}})",
      .function = "write_html",
      .keys = tl_lua_page_keys},
+    {.name = "view",
+     .usage = "address = model:view{title = \"Slope\"}",
+     .function = "view",
+     .keys = tl_lua_view_keys,
+     .type = &screens},
     {.name = "write_blocks",
      .usage = "model:write_blocks(\"out/blocks.json\")",
      .function = "write_blocks"},

@@ -180,6 +180,16 @@ static const tl_param write_html_params[] = {
              .flags = TL_PARAM_OPTIONAL),
 };
 
+static const tl_param view_params[] = {
+    TL_PARAM(TL_PARAM_STRING, tl_view_options, title, "", "title of the page",
+             .flags = TL_PARAM_OPTIONAL),
+    TL_PARAM(TL_PARAM_BOOL, tl_view_options, commands, "",
+             "whether commands are taken; without, the page only shows", .def = {1.0}),
+    TL_PARAM(TL_PARAM_REAL, tl_view_options, share, "",
+             "most of the run's time that goes into frames", .def = {0.02}, .min = 0.0, .max = 1.0,
+             .flags = TL_PARAM_MIN_OPEN),
+};
+
 static const tl_param write_blocks_params[] = {
     TL_PARAM(TL_PARAM_STRING, tl_write_blocks_args, path, "", "name of the file",
              .flags = TL_PARAM_REQUIRED),
@@ -305,6 +315,10 @@ static const tl_function functions[] = {
      "Adds a frame to a page for a browser: one file that shows the blocks, in every frame so far. "
      "The folder and the name without .html are given first.",
      PARAMS(write_html_params)},
+    {"view",
+     "Shows the model in a browser while it runs, and takes commands from there. Gives the address "
+     "to open. The page shows the model whenever a run makes steps, and while view waits.",
+     PARAMS(view_params)},
     {"write_blocks", "Writes all blocks as they stand into a JSON file.",
      PARAMS(write_blocks_params)},
     {"filter",
@@ -340,24 +354,10 @@ const tl_param *tl_function_params(const char *function, size_t *count, const ch
 
 const char *const *tl_function_names(void)
 {
-    static const char *const names[] = {"model",
-                                        "insitu",
-                                        "tensor",
-                                        "timestep",
-                                        "mass_scaling",
-                                        "load",
-                                        "contact_area",
-                                        "cycle",
-                                        "solve",
-                                        "profile",
-                                        "write_vtk",
-                                        "write_section",
-                                        "write_html",
-                                        "write_blocks",
-                                        "filter",
-                                        "keyblocks",
-                                        "law_test",
-                                        "law_leg",
-                                        NULL};
+    static const char *const names[] = {"model",        "insitu",   "tensor",       "timestep",
+                                        "mass_scaling", "load",     "contact_area", "cycle",
+                                        "solve",        "profile",  "write_vtk",    "write_section",
+                                        "write_html",   "view",     "write_blocks", "filter",
+                                        "keyblocks",    "law_test", "law_leg",      NULL};
     return names;
 }

@@ -45,6 +45,7 @@ static const tl_keyblock_query keyblock_query = {SIZED(tl_keyblock_query), .grav
 static const tl_vtk_parts vtk_parts = {SIZED(tl_vtk_parts), .blocks = 1, .contacts = 1,
                                        .joints = 1};
 static const tl_html html = {SIZED(tl_html)};
+static const tl_view_options view = {SIZED(tl_view_options), .commands = 1, .share = 0.02};
 
 static const struct {
     const char *name;
@@ -68,6 +69,7 @@ static const struct {
                                          sizeof keyblock_query},
     [TL_OPTIONS_OF_tl_vtk_parts] = {"tl_vtk_parts", &vtk_parts, sizeof vtk_parts},
     [TL_OPTIONS_OF_tl_html] = {"tl_html", &html, sizeof html},
+    [TL_OPTIONS_OF_tl_view_options] = {"tl_view_options", &view, sizeof view},
 };
 
 void tl_options_default(tl_options which, void *options, size_t size)

@@ -440,12 +440,12 @@ function talus.model(options) end
 function Model:generate(generator, options) end
 
 ---@class (exact) talus.BlocksOptions
----@field id? integer in [1, 4294967295]: the block of this id
 ---@field group? string blocks of this group
 ---@field containing? talus.Vector m: blocks that contain this point
 ---@field joint? string blocks with a face on this joint or plane
 ---@field boundary? string blocks with an outer face on this side of the model: "xmin", "xmax" ... "zmax"
 ---@field fixed? boolean fixed blocks, or free ones
+---@field id? integer|integer[] the blocks of these ids
 ---@field inside? { min: talus.Vector, max: talus.Vector } blocks whose centroid is in this box
 ---@field above? { dip: number, dip_direction: number, origin: talus.Vector } blocks whose centroid is above this plane
 ---@field below? { dip: number, dip_direction: number, origin: talus.Vector } blocks whose centroid is below this plane
@@ -1065,6 +1065,26 @@ function Model:write_section(path, options) end
 ---@param path string
 ---@param options? talus.WriteHtmlOptions
 function Model:write_html(path, options) end
+
+---@class (exact) talus.ViewOptions
+---@field title? string title of the page
+---@field commands? boolean default true: whether commands are taken; without, the page only shows
+---@field share? number in (0, 1], default 0.02: most of the run's time that goes into frames
+---@field contacts? boolean|"slipping" which contacts the frame has; when left out all, where there are 20000 at the most, and else those that slip
+---@field block_fields? string[]|table<string, string|fun(block: talus.Block): number?> numbers of each block to colour by: fields of blocks, and functions that give a number, or nil for none
+---@field contact_fields? string[]|table<string, string|fun(contact: talus.Contact): number?> numbers of each contact, likewise: fields of contacts, states of their laws, functions
+---@field keyblocks? talus.KeyblocksOptions parameters of model:keyblocks, whose modes and factors of safety are shown as well
+---@field wait? boolean whether view waits, and does what is asked for on the page, until "go" is pressed there
+---@field prefix? string folder and name with which files begin that are written from the page; view when left out
+---@field log? string a file for the lines that repeat the work on the page
+---@field port? integer parameter of the screen "browser": port of 127.0.0.1, 0 for any that is free
+
+--- Shows the model in a browser while it runs, and takes commands from there. Gives the address to open. The page shows the model whenever a run makes steps, and while view waits.
+---
+---     address = model:view{title = "Slope"}
+---@param options? talus.ViewOptions
+---@return string
+function Model:view(options) end
 
 --- Writes all blocks as they stand into a JSON file.
 ---

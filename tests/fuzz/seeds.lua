@@ -1,4 +1,4 @@
--- seeds.lua FOLDER: writes what the fuzz targets begin with, into FOLDER/restore, json, obj and stl.
+-- seeds.lua FOLDER: writes what the fuzz targets begin with, into FOLDER/restore, json, obj, stl and command.
 local talus = require "talus"
 local folder = arg[1]
 
@@ -53,7 +53,7 @@ local function write(name, text)
     file:write(text)
     file:close()
 end
-for _, kind in ipairs { "obj", "stl" } do -- makes the folders
+for _, kind in ipairs { "obj", "stl", "command" } do -- makes the folders
     saved[5]:write_blocks(string.format("%s/%s/0", folder, kind))
 end
 write("obj/1", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\ng a\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n")
@@ -71,3 +71,7 @@ for _, t in ipairs { { 1, 3, 2 }, { 1, 2, 4 }, { 2, 3, 4 }, { 3, 1, 4 } } do
     triangles = triangles .. string.pack("<I2", 0)
 end
 write("stl/2", string.rep(" ", 80) .. string.pack("<I4", 4) .. triangles)
+for k, text in ipairs { '{"op":"step","n":100}', '{"op":"delete","blocks":[3,5]}', '{"op":"friction","joint":"J\\u00e91:3","value":-3.5e1}',
+    '{ "op" : "cut", "joint": "a\\"b", "dip": 60, "dip_direction": 90.5, "origin": [1, -2.5, 1e3] }' } do
+    write("command/" .. k, text)
+end

@@ -28,7 +28,8 @@ extern "C" {
     X(tl_contact_filter)                                                                           \
     X(tl_keyblock_query)                                                                           \
     X(tl_vtk_parts)                                                                                \
-    X(tl_html)
+    X(tl_html)                                                                                     \
+    X(tl_view_options)
 
 typedef enum tl_options {
 #define TL_OPTIONS_ITEM(type) TL_OPTIONS_OF_##type,

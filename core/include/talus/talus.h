@@ -26,6 +26,7 @@
 #include <talus/types.h>
 #include <talus/values.h>
 #include <talus/version.h>
+#include <talus/view.h>
 #include <talus/watch.h>
 
 #ifdef __cplusplus

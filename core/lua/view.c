@@ -1,0 +1,406 @@
+/* view.c - model:view{...}: a model that is seen, and worked on, while it runs.
+ *
+ * Frames are shown after steps, commands are done between two steps, and a run that is paused waits there. What is done is a line
+ * of Lua (view_line.c), which is logged: on standard error, on the page and, with `log`, in a file. In front of each line stand the
+ * steps made since the line before, so the lines one after the other repeat the work.
+ *
+ * What goes wrong in a command is told to those who look, and ends nothing. */
+#include "view.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* How long the program waits for a command before it looks whether somebody has pressed Ctrl-C, s. */
+#define PATIENCE 0.2
+/* Chunk name of commands, which is in front of their errors. */
+#define CHUNK "view"
+
+const tl_lua_key tl_lua_view_keys[] = {
+    TL_LUA_PAGE_KEYS,
+    {"wait", "true or false",
+     "whether view waits, and does what is asked for on the page, until \"go\" is pressed there"},
+    {"prefix", "text in quotes",
+     "folder and name with which files begin that are written from the page; view when left out"},
+    {"log", "text in quotes", "a file for the lines that repeat the work on the page"},
+    {"port", "whole number",
+     "parameter of the screen \"browser\": port of 127.0.0.1, 0 for any that is free"},
+    {NULL, NULL, NULL},
+};
+
+typedef struct tl_lua_view {
+    tl_view *view;
+    char *prefix;
+    FILE *log;
+    int64_t logged;     /* cycle up to which the log repeats the run */
+    int64_t steps;      /* left to make of those that were asked for */
+    bool paused, waits; /* in a run; in model:view */
+    bool commanded;     /* a line was logged */
+    tl_view_state told;
+} viewing;
+
+static viewing *view_of(lua_State *L)
+{
+    return ((tl_lua_model *)lua_touserdata(L, TL_LUA_AT_MODEL))->view;
+}
+
+static tl_model *model_of(lua_State *L)
+{
+    return ((tl_lua_model *)lua_touserdata(L, TL_LUA_AT_MODEL))->model;
+}
+
+/* ---------------------------------------------------------------- what is told ----------- */
+
+static void tell(lua_State *L, viewing *v, const char *line, const char *refused)
+{
+    if (tl_view_tell(v->view, v->told, line, refused) != TL_OK)
+        tl_lua_log(tl_lua_options_of(L), tl_model_error(model_of(L))->text);
+}
+
+static void tell_state(lua_State *L, viewing *v, tl_view_state state)
+{
+    if (v->told == state)
+        return;
+    v->told = state;
+    tell(L, v, NULL, NULL);
+}
+
+/* Tells a line that was done. */
+static void log_line(lua_State *L, viewing *v, const char *line)
+{
+    tl_lua_log(tl_lua_options_of(L), lua_pushfstring(L, "view: %s", line));
+    lua_pop(L, 1);
+    v->commanded = true;
+    tell(L, v, line, NULL);
+    if (v->log && (fprintf(v->log, "%s\n", line) < 0 || fflush(v->log) != 0)) {
+        tl_lua_log(tl_lua_options_of(L), "view: the log cannot be written any more");
+        fclose(v->log);
+        v->log = NULL;
+    }
+}
+
+/* Tells the steps that were made since the last line. */
+static void log_steps(lua_State *L, viewing *v)
+{
+    char line[64];
+    int64_t cycles = tl_model_cycles(model_of(L)), made = cycles - v->logged;
+    v->logged = cycles;
+    if (made <= 0)
+        return;
+    snprintf(line, sizeof line, "model:cycle(%lld)", (long long)made);
+    log_line(L, v, line);
+}
+
+/* Tells why the command was not done: the error on the top of the stack, which it pops. */
+static void tell_refused(lua_State *L, viewing *v)
+{
+    static const char place[] = CHUNK ":1: ";
+    const char *sentence = luaL_tolstring(L, -1, NULL);
+    if (strncmp(sentence, place, sizeof place - 1) == 0)
+        sentence += sizeof place - 1;
+    tl_lua_log(tl_lua_options_of(L), lua_pushfstring(L, "view: not done: %s", sentence));
+    tell(L, v, NULL, sentence);
+    lua_pop(L, 3);
+}
+
+/* ---------------------------------------------------------------- frames ----------------- */
+
+/* Runs protected, with the model. */
+static int show(lua_State *L)
+{
+    tl_html html = tl_html_default();
+    lua_settop(L, TL_LUA_AT_MODEL);
+    lua_getiuservalue(L, TL_LUA_AT_MODEL, TL_LUA_VIEW);
+    tl_lua_page_read(L, 2, "view", &html);
+    tl_lua_ok(L, model_of(L), tl_view_show(view_of(L)->view, &html));
+    return 0;
+}
+
+bool tl_lua_view_step(lua_State *L, double worth)
+{
+    viewing *v = view_of(L);
+    if (!v || !tl_view_due(v->view, worth))
+        return true;
+    lua_pushcfunction(L, show);
+    lua_pushvalue(L, TL_LUA_AT_MODEL);
+    return lua_pcall(L, 1, 0, 0) == LUA_OK;
+}
+
+/* ---------------------------------------------------------------- commands --------------- */
+
+/* Runs protected: finds the line of a command and does it. Arguments: the model, the command. Gives the line, nil when there is
+ * nothing to do. */
+static int do_line(lua_State *L)
+{
+    const tl_view_command *command = lua_touserdata(L, 2);
+    if (!tl_lua_view_line(L, model_of(L), command, view_of(L)->prefix))
+        return lua_error(L);
+    if (lua_isnil(L, -1))
+        return 1;
+    const char *text = lua_pushfstring(L, "local model = ... %s", lua_tostring(L, -1));
+    if (luaL_loadbuffer(L, text, strlen(text), "=" CHUNK) != LUA_OK)
+        return lua_error(L);
+    lua_pushvalue(L, TL_LUA_AT_MODEL);
+    lua_call(L, 1, 0);
+    lua_pop(L, 1);
+    return 1;
+}
+
+/* Runs protected: makes the steps that a command asks for while view waits. */
+static int do_steps(lua_State *L)
+{
+    lua_getfield(L, TL_LUA_AT_MODEL, "cycle");
+    lua_pushvalue(L, TL_LUA_AT_MODEL);
+    lua_pushinteger(L, (lua_Integer)((const tl_view_command *)lua_touserdata(L, 2))->steps);
+    lua_call(L, 2, 0);
+    return 0;
+}
+
+/* Calls a function with the model and the command. What it gives is then on the top of the stack, or the error that it raised. */
+static bool call(lua_State *L, lua_CFunction function, const tl_view_command *command, int results)
+{
+    lua_pushcfunction(L, function);
+    lua_pushvalue(L, TL_LUA_AT_MODEL);
+    lua_pushlightuserdata(L, (void *)(uintptr_t)command);
+    return lua_pcall(L, 2, results, 0) == LUA_OK;
+}
+
+/* Makes steps while view waits: a run, in which a pause is a pause. */
+static bool make_steps(lua_State *L, viewing *v, const tl_view_command *command)
+{
+    v->waits = false;
+    tell_state(L, v, TL_VIEW_RUNNING);
+    bool made = call(L, do_steps, command, 0);
+    v->waits = true;
+    v->paused = false;
+    return made;
+}
+
+/* Does the line of a command, and tells it. */
+static bool do_and_log(lua_State *L, viewing *v, const tl_view_command *command)
+{
+    log_steps(L, v);
+    if (!call(L, do_line, command, 1))
+        return false;
+    if (!lua_isnil(L, -1))
+        log_line(L, v, lua_tostring(L, -1));
+    lua_pop(L, 1);
+    return true;
+}
+
+/* Does a command, or tells why it is not done. False after a Ctrl-C, with its error on the top of the stack. */
+static bool do_command(lua_State *L, viewing *v, const tl_view_command *command)
+{
+    bool done = true;
+    if (command->op == TL_VIEW_PAUSE || (command->op == TL_VIEW_STEP && !v->waits)) {
+        v->paused = !v->waits;
+        v->steps = command->steps;
+    } else if (command->op == TL_VIEW_GO) {
+        v->paused = v->waits = false;
+    } else {
+        done = command->op == TL_VIEW_STEP ? make_steps(L, v, command) : do_and_log(L, v, command);
+    }
+    if (done)
+        return true;
+    if (lua_type(L, -1) == LUA_TSTRING && tl_lua_interrupted(lua_tostring(L, -1)))
+        return false;
+    tell_refused(L, v);
+    return true;
+}
+
+/* Does commands while there are any, or as long as the model waits: in a run until it may go on. False, with the error on the top
+ * of the stack, after a Ctrl-C, or when a frame cannot be shown. */
+static bool serve(lua_State *L, viewing *v)
+{
+    double patience = 0;
+    for (;;) {
+        tl_view_command command;
+        while (tl_view_take(v->view, patience, &command)) {
+            if (!do_command(L, v, &command))
+                return false;
+            patience = 0;
+        }
+        if ((v->paused && v->steps > 0) || !(v->paused || v->waits) || tl_lua_interrupt_asked())
+            break;
+        tell_state(L, v, v->waits ? TL_VIEW_WAITING : TL_VIEW_PAUSED);
+        if (!tl_lua_view_step(L, INFINITY))
+            return false;
+        patience = PATIENCE;
+    }
+    if (tl_lua_interrupt_asked())
+        v->paused = false; /* the run ends, and the next one is not to wait */
+    tell_state(L, v, TL_VIEW_RUNNING);
+    return true;
+}
+
+bool tl_lua_view_between(lua_State *L)
+{
+    viewing *v = view_of(L);
+    if (!v)
+        return true;
+    if (!serve(L, v))
+        return false;
+    if (v->paused && v->steps > 0)
+        v->steps--;
+    return true;
+}
+
+void tl_lua_view_end(lua_State *L, tl_lua_model *owner)
+{
+    viewing *v = owner->view;
+    if (!v)
+        return;
+    if (v->view && v->commanded)
+        log_steps(L, v);
+    if (v->view &&
+        tl_view_due(v->view,
+                    INFINITY)) { /* the last state; fields need functions that may be gone */
+        tl_html html = tl_html_default();
+        (void)tl_view_show(v->view, &html);
+    }
+    owner->view = NULL;
+    tl_view_close(v->view);
+    if (v->log)
+        fclose(v->log);
+    free(v->prefix);
+    free(v);
+}
+
+/* ---------------------------------------------------------------- model:view ------------- */
+
+/* Reads a key of the table at index 2 that is a text; NULL when it is left out. The text lives as long as the table. */
+static const char *read_text(lua_State *L, const char *key)
+{
+    const char *text = NULL;
+    if (lua_istable(L, 2) && lua_getfield(L, 2, key) != LUA_TNIL) {
+        text = tl_lua_text(L, -1, "view", key);
+        if (!text[0])
+            tl_lua_fail(L, "view: %s must not be empty", key);
+        lua_pop(L, 1);
+    } else {
+        lua_settop(L, 2);
+    }
+    return text;
+}
+
+static bool read_wait(lua_State *L)
+{
+    int type = lua_istable(L, 2) ? lua_getfield(L, 2, "wait") : LUA_TNIL;
+    bool wait = type == LUA_TBOOLEAN && lua_toboolean(L, -1);
+    if (type != LUA_TNIL && type != LUA_TBOOLEAN)
+        tl_lua_fail(L, "view: wait must be true or false, not %s", tl_lua_describe(L, -1));
+    lua_settop(L, 2);
+    return wait;
+}
+
+/* Opens the log; raises when it cannot be written. */
+static FILE *open_log(lua_State *L, const char *path)
+{
+    tl_error error;
+    static const char head[] =
+        "-- Work on a model that was seen while it ran: loadfile(THIS)(model) repeats it.\n"
+        "local model = ...\n";
+    if (tl_write_file(path, head, sizeof head - 1, &error) != TL_OK) /* makes the folders */
+        tl_lua_fail(L, "view: log: %s", error.text);
+    FILE *log = fopen(path, "a");
+    if (!log)
+        tl_lua_fail(L, "view: log: cannot write '%s'", path);
+    return log;
+}
+
+/* What the first call alone decides. */
+static const char *const first_only[] = {"title", "commands", "share", "prefix",
+                                         "log",   "port",     NULL};
+
+static void refuse_again(lua_State *L, const viewing *v)
+{
+    for (size_t i = 0; lua_istable(L, 2) && first_only[i]; i++) {
+        if (lua_getfield(L, 2, first_only[i]) != LUA_TNIL)
+            tl_lua_fail(L,
+                        "view: the model is shown already, at %s; %s is chosen with the first call",
+                        tl_view_address(v->view), first_only[i]);
+        lua_pop(L, 1);
+    }
+}
+
+/* Begins to show the model at index 1 as the table at index 2 says. */
+static void open_view(lua_State *L, tl_lua_model *owner, const tl_view_options *options)
+{
+    static const tl_lua_key own[] = {{"title", "", ""}, {"commands", "", ""}, {"share", "", ""},
+                                     TL_LUA_PAGE_KEYS,  {"wait", "", ""},     {"prefix", "", ""},
+                                     {"log", "", ""},   {NULL, NULL, NULL}};
+    tl_args params;
+    const char *prefix = read_text(L, "prefix"), *log = read_text(L, "log");
+    tl_lua_args(L, 2, "view", own, &params);
+    viewing *v = calloc(1, sizeof *v);
+    owner->view = v; /* from here on it goes with the model */
+    if (!v || !(v->prefix = strdup(prefix ? prefix : "view")))
+        tl_lua_fail(L, "view: out of memory");
+    v->logged = tl_model_cycles(owner->model);
+    tl_lua_ok(L, owner->model, tl_view_open(owner->model, NULL, &params, options, &v->view));
+    if (log)
+        v->log = open_log(L, log);
+    tell(L, v, NULL, NULL);
+}
+
+/* Runs protected, with the model, the table and the options: opens the view, and shows the first frame. */
+static int begin(lua_State *L)
+{
+    tl_lua_model *owner = lua_touserdata(L, TL_LUA_AT_MODEL);
+    open_view(L, owner, lua_touserdata(L, 3));
+    return show(L);
+}
+
+static void wait_for_go(lua_State *L, viewing *v)
+{
+    tl_lua_watch watch = tl_lua_watch_begin(L);
+    tl_lua_log(tl_lua_options_of(L), "view: waiting for \"go\" on the page");
+    v->waits = true;
+    bool shown = serve(L, v);
+    v->waits = v->paused = false;
+    if (v->commanded)
+        log_steps(L, v);
+    tl_lua_watch_end(L, &watch, "view", "");
+    if (!shown)
+        lua_error(L);
+}
+
+int tl_lua_view(lua_State *L)
+{
+    tl_lua_model *owner = lua_touserdata(L, TL_LUA_AT_MODEL);
+    tl_lua_model_of(L, "view");
+    tl_lua_arity(L, 2, "view");
+    lua_settop(L, 2);
+    luaL_checkstack(L, LUA_MINSTACK, "too many values");
+    tl_view_options options = tl_view_options_default();
+    tl_lua_spec spec = tl_lua_spec_of("view", tl_lua_view_keys);
+    tl_lua_read(L, 2, &spec, false, &options); /* texts stay with the table */
+    lua_settop(L, 2);
+    bool wait = read_wait(L), again = owner->view != NULL;
+    if (again)
+        refuse_again(L, owner->view);
+    lua_getiuservalue(L, TL_LUA_AT_MODEL, TL_LUA_VIEW);
+    lua_pushvalue(L, 2);
+    lua_setiuservalue(L, TL_LUA_AT_MODEL, TL_LUA_VIEW);
+    lua_pushcfunction(L, again ? show : begin);
+    lua_pushvalue(L, TL_LUA_AT_MODEL);
+    lua_pushvalue(L, 2);
+    lua_pushlightuserdata(L, &options);
+    if (lua_pcall(L, 3, 0, 0) != LUA_OK) {
+        lua_pushvalue(L, 3); /* a call that fails changes nothing */
+        lua_setiuservalue(L, TL_LUA_AT_MODEL, TL_LUA_VIEW);
+        if (!again)
+            tl_lua_view_end(L, owner);
+        return lua_error(L);
+    }
+    lua_pushstring(L, tl_view_address(owner->view->view));
+    if (!again) {
+        lua_pushfstring(L, "view: open %s in a browser", lua_tostring(L, -1));
+        tl_lua_log(tl_lua_options_of(L), lua_tostring(L, -1));
+        lua_pop(L, 1);
+    }
+    if (wait)
+        wait_for_go(L, owner->view);
+    return 1;
+}
