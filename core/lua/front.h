@@ -183,11 +183,20 @@ int tl_lua_watch_call(lua_State *L, int arguments, int results, int handler, boo
 /* True when the message of an error of the last such call tells of a Ctrl-C. */
 bool tl_lua_interrupted(const char *message);
 
-/* ---- running: run.c ---- */
+/* ---- running: running.c, run.c ---- */
 
-/* Where a run keeps the model on the Lua stack. */
-#define TL_LUA_AT_MODEL 1
+/* Where a run keeps the model on the Lua stack, and the error of a function that it has called. */
+enum { TL_LUA_AT_MODEL = 1, TL_LUA_AT_ERROR = 6 };
 
+/* A run of some model: they nest, as a function that one calls may begin a run of another model. */
+typedef struct tl_lua_running {
+    lua_State *L;
+    struct tl_lua_running *outer;
+    bool failed; /* a function has; the run is to end */
+} tl_lua_running;
+
+void tl_lua_running_begin(tl_lua_running *run, lua_State *L);
+void tl_lua_running_end(const tl_lua_running *run);
 extern const tl_lua_key tl_lua_cycle_keys[], tl_lua_solve_keys[];
 int tl_lua_cycle(lua_State *L);
 int tl_lua_solve(lua_State *L);

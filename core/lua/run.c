@@ -12,40 +12,37 @@ enum {
     AT_ANCHOR,
     AT_STOP,
     AT_PROGRESS,
-    AT_ERROR,
+    AT_ERROR = TL_LUA_AT_ERROR,
     AT_REASONS,
     AT_RESULT
 };
 
 typedef struct run {
+    tl_lua_running running;
     lua_State *L;
     tl_model *model;
     const tl_lua_model *owner;
     tl_lua_options *options;
-    struct run *outer; /* the run whose callback started this one, of another model */
     tl_lua_watch watch;
-    bool failed;
     tl_solve limits; /* what is run */
     tl_lua_progress line;
     tl_solve_result result;
 } run;
 
-static run *current;
-
 static void run_begin(run *r, lua_State *L, tl_model *model)
 {
-    *r = (run){.L = L, .model = model, .outer = current};
+    *r = (run){.L = L, .model = model};
     r->owner = lua_touserdata(L, AT_MODEL);
     r->options = tl_lua_options_of(L);
     tl_lua_histories_due(L, AT_MODEL);
     tl_lua_progress_begin(L, &r->line, model);
     r->watch = tl_lua_watch_begin(L);
-    current = r;
+    tl_lua_running_begin(&r->running, L);
 }
 
 static void run_end(run *r)
 {
-    current = r->outer;
+    tl_lua_running_end(&r->running);
     tl_lua_progress_clear(&r->line);
 }
 
@@ -111,23 +108,6 @@ static void push_empty_answer(lua_State *L, int32_t measure)
 
 /* ---------------------------------------------------------------- callbacks -------------- */
 
-/* Keeps the error on the top of the stack until the run has ended. */
-static void keep_error(run *r)
-{
-    lua_replace(r->L, AT_ERROR);
-    r->failed = true;
-}
-
-lua_State *tl_lua_run_state(void)
-{
-    return current->L;
-}
-
-void tl_lua_run_keep_error(void)
-{
-    keep_error(current);
-}
-
 /* Runs protected: on_progress(model, result). Arguments: function, model, run. */
 static int call_progress(lua_State *L)
 {
@@ -143,18 +123,18 @@ static int call_progress(lua_State *L)
 static tl_status on_each(void *user, tl_model *model)
 {
     run *r = user;
-    if (r->failed) /* a drive's function */
+    if (r->running.failed) /* a drive's function */
         return TL_E_CANCELLED;
     tl_lua_progress_run(&r->line, model, &r->limits, &r->result);
     if (tl_model_cycles(model) >= r->owner->next_sample &&
         !tl_lua_histories_sample(r->L, AT_MODEL)) {
-        keep_error(r);
+        tl_lua_run_keep_error();
         return TL_E_CANCELLED;
     }
     if (!r->owner->probe)
         tl_lua_autosave(r->options, model);
     if (r->owner->view && !tl_lua_view_step(r->L, 0)) {
-        keep_error(r);
+        tl_lua_run_keep_error();
         return TL_E_CANCELLED;
     }
     return TL_OK;
@@ -165,11 +145,11 @@ static tl_status on_between(void *user, tl_model *model)
 {
     (void)model;
     run *r = user;
-    if (r->failed)
+    if (r->running.failed)
         return TL_E_CANCELLED;
     if (tl_lua_view_between(r->L))
         return TL_OK;
-    keep_error(r);
+    tl_lua_run_keep_error();
     return TL_E_CANCELLED;
 }
 
@@ -178,7 +158,7 @@ static tl_status on_progress(void *user, tl_model *model)
     (void)model;
     run *r = user;
     lua_State *L = r->L;
-    if (r->failed)
+    if (r->running.failed)
         return TL_E_CANCELLED;
     tl_lua_progress_clear(&r->line); /* the function may print */
     lua_pushcfunction(L, call_progress);
@@ -187,7 +167,7 @@ static tl_status on_progress(void *user, tl_model *model)
     lua_pushlightuserdata(L, r);
     if (lua_pcall(L, 3, 0, 0) == LUA_OK)
         return TL_OK;
-    keep_error(r);
+    tl_lua_run_keep_error();
     return TL_E_CANCELLED;
 }
 
@@ -196,12 +176,12 @@ static bool on_stop(void *user, tl_model *model)
     (void)model;
     run *r = user;
     lua_State *L = r->L;
-    if (r->failed)
+    if (r->running.failed)
         return true;
     lua_pushvalue(L, AT_STOP);
     lua_pushvalue(L, AT_MODEL);
     if (lua_pcall(L, 1, 1, 0) != LUA_OK) {
-        keep_error(r);
+        tl_lua_run_keep_error();
         return true;
     }
     bool stop = lua_toboolean(L, -1);
@@ -237,11 +217,11 @@ static bool push_callback(lua_State *L, const char *what, const char *key)
 
 static int finish(lua_State *L, run *r, const char *what, tl_status status)
 {
-    if (r->owner->view && !r->failed && !tl_lua_view_step(L, r->result.wall))
-        keep_error(r);
+    if (r->owner->view && !r->running.failed && !tl_lua_view_step(L, r->result.wall))
+        tl_lua_run_keep_error();
     run_end(r);
     tl_lua_watch_end_run(L, &r->watch, what);
-    if (r->failed) {
+    if (r->running.failed) {
         lua_settop(L, AT_ERROR);
         return lua_error(L);
     }

@@ -7,8 +7,6 @@ import subprocess
 import threading
 import urllib.parse
 
-PATIENCE = 8  # s that a program which hangs is waited for
-
 
 class Program:
     """A script that runs, with the model that it shows."""
@@ -32,7 +30,7 @@ class Program:
         self.reader.start()
 
     def ask(self, method, path, body=None, headers=None):
-        connection = http.client.HTTPConnection(self.address.hostname, self.address.port, timeout=PATIENCE)
+        connection = http.client.HTTPConnection(self.address.hostname, self.address.port)
         connection.request(method, path, body, {"X-Talus-Token": self.token, **(headers or {})})
         return connection, connection.getresponse()
 
@@ -49,8 +47,8 @@ class Program:
     def end(self):
         """Waits for the script's end: its output and its status."""
         out = self.process.stdout.read()
-        status = self.process.wait(PATIENCE)
-        self.reader.join(PATIENCE)
+        status = self.process.wait()
+        self.reader.join()
         return out, status
 
 

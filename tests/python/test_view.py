@@ -43,7 +43,7 @@ def check(condition, sentence):
 
 
 def run(script, *arguments):
-    return subprocess.run([PROGRAM, "--quiet", "-", *arguments], input=script, capture_output=True, text=True, timeout=600, check=False)
+    return subprocess.run([PROGRAM, "--quiet", "-", *arguments], input=script, capture_output=True, text=True, check=False)
 
 
 def repeated(build, log):
