@@ -20,8 +20,6 @@
 
 /* Frames a second at most. */
 #define RATE 25.0
-/* A frame may take this share of the work that it ends. */
-#define WORTH 0.1
 /* News begins anew when it is so many times as long as at its beginning, and by so many bytes longer. */
 #define GROWN 2
 #define GROWN_BYTES ((size_t)16 << 20)
@@ -41,8 +39,9 @@ struct tl_view {
     uint32_t watchers;   /* when the last frame was put */
     int64_t cycle;       /* of the model then */
     uint64_t structure;
-    double begun, shown,
-        cost; /* clock when the frame was begun that is due, and when the last one was put; cost of that one, s */
+    double begun,
+        shown;   /* clock when the frame was begun that is due, and when the last one was put, s */
+    double cost; /* of that last one, s */
 };
 
 /* ---------------------------------------------------------------- opening ---------------- */
@@ -168,7 +167,7 @@ bool tl_view_due(tl_view *v, double worth)
         return false;
     }
     v->begun = tl_clock();
-    return v->cost < WORTH * worth ||
+    return v->cost < v->share * worth ||
            v->begun - v->shown >= fmax(1 / RATE, v->cost * (1 / v->share - 1));
 }
 

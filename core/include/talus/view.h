@@ -91,7 +91,7 @@ TL_API tl_status tl_view_open(struct tl_model *model, const tl_kind *screen, con
 TL_API const char *tl_view_address(const tl_view *view);
 /* Whether a frame is wanted: somebody looks, something has changed, and 1/25 s has passed since the last one, and so much more
  * that frames take no more than their share of the time. `worth`: seconds of work that end now, for which a frame is due at once
- * if it takes less than a tenth of them: 0 within a run, INFINITY when nothing else is to be done. */
+ * if it takes no more than that share of them: 0 within a run, INFINITY when nothing else is to be done. */
 TL_API bool tl_view_due(tl_view *view, double worth);
 /* Shows the model as it is. `html`: what of it; its title is not read. */
 TL_API tl_status tl_view_show(tl_view *view, const struct tl_html *html);
