@@ -54,9 +54,9 @@ typedef struct tl_detect {
     uint32_t *by_id;  /* contact rows by ascending id; made when asked for */
     size_t by_id_capacity;
     bool by_id_fresh;
-    tl_id next_contact;
-    tl_narrow_scratch *narrow; /* [threads] */
-    tl_point_lanes *lanes;     /* [threads]: a tile, or the largest SIMD group */
+    tl_id next_contact, stepped_contact; /* the last that was born; when the last step was made */
+    tl_narrow_scratch *narrow;           /* [threads] */
+    tl_point_lanes *lanes;               /* [threads]: a tile, or the largest SIMD group */
     size_t lane_capacity;
     unsigned threads;
 } tl_detect;

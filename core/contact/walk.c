@@ -32,6 +32,7 @@ static void walk_pairs(tl_detect *d, const tl_walk *walk)
 static void walk_contacts(tl_detect *d, const tl_walk *walk)
 {
     VALUE(STATE, next_contact);
+    VALUE(STATE, stepped_contact);
     FLAG(CACHE, rows_changed);
     FLAG(CACHE, any_without_rows);
     TABLE(STATE, contacts, contacts);

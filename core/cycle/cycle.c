@@ -21,6 +21,7 @@
  * in fixed chunks, so the bits do not depend on the number of threads. */
 #include "cycle/cycle_data.h"
 
+#include "contact/detection.h"
 #include "contact/held.h"
 #include "detect/detect.h"
 #include "detect/overlap.h"
@@ -91,6 +92,7 @@ tl_status tl_step(tl_model *m)
     tl_energy_close(m);
     tl_phase_ends(m, TL_PHASE_ENERGY);
     tl_undo_end(m);
+    m->detect->stepped_contact = m->detect->next_contact;
     /* velocities are half a step behind the places, but not when all is held and still, as if the model had not begun */
     m->dt = tl_model_moves(m) ? dt : 0;
     m->time += dt;

@@ -75,6 +75,13 @@ static void end_contact(tl_model *m, const rows_scratch *scratch, uint32_t conta
         scratch->touched[m->blocks.body[b]] = true;
 }
 
+/* Whether a contact is no more than an answer to somebody who has asked: it has been in no step, and bears no initial stress. Where
+ * a block of it changes it is found as if nobody had. */
+static bool is_fresh(const tl_detect *d, uint32_t contact)
+{
+    return d->contacts.id[contact] > d->stepped_contact && !d->points.initial;
+}
+
 /* Pairs, in their order, with their present rows: ids ascend with rows before and after. */
 static void keep_pairs(tl_model *m, const rows_scratch *scratch)
 {
@@ -85,10 +92,11 @@ static void keep_pairs(tl_model *m, const rows_scratch *scratch)
         tl_pair p = d->pairs[i];
         uint32_t a = scratch->row[p.a], b = scratch->row[p.b];
         bool parted = a == TL_NO_ROW || b == TL_NO_ROW || m->blocks.body[a] == m->blocks.body[b];
+        bool changed = !parted && (tl_block_is_new(m, a) || tl_block_is_new(m, b));
         if (tl_pair_is_apart(&p)) {
-            if (parted || tl_block_is_new(m, a) || tl_block_is_new(m, b))
+            if (parted || changed)
                 continue; /* the broad phase lists it anew */
-        } else if (parted) {
+        } else if (parted || (changed && is_fresh(d, p.contact))) {
             end_contact(m, scratch, p.contact, a, b);
             continue;
         } else {

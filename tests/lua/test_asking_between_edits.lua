@@ -61,3 +61,37 @@ for shift = 0, 3 do
         check.holds(asked:state_hash() == plain:state_hash(), "steeper by " .. shift .. " degrees: " .. name .. " are asked for, and nothing changes:")
     end
 end
+
+-- A cut that falls on the faces of another one gives them its joint; blocks that are joined and parted again are what they were.
+local function tag_and_join(look)
+    local model = talus.model {}
+    model:generate("box", { min = { -2, -2, -1 }, max = { 6, 6, 0 }, density = 2500, group = "floor" })
+    model:blocks():fix()
+    model:blocks():hide()
+    model:generate("box", { min = { 0, 0, 0 }, max = { 4, 4, 4 }, density = 2500 })
+    look(model)
+    model:generate("jointset", { joint = "slip", dip = 35, dip_direction = 90, spacing = 1.3, number = 3, origin = { 2, 2, 2 } })
+    model:generate("jointset", { joint = "steep", dip = 80, dip_direction = 200, spacing = 1.7, number = 2, origin = { 2, 2, 2 } })
+    model:blocks { hidden = true }:show()
+    model:joint("*", "coulomb", { kn = 1e8, ks = 1e8, friction = 25 })
+    model:damping("local")
+    look(model)
+    for _, joint in ipairs { "new", "new", "other" } do
+        model:generate("joint", { joint = joint, dip = 60, dip_direction = 10, origin = { 2, 2, 2 } })
+        look(model)
+    end
+    local some = model:blocks { where = function(block) return block.id % 3 == 0 end }
+    some:join()
+    look(model)
+    some:unjoin()
+    look(model)
+    return model
+end
+for name, look in pairs(looks) do
+    local plain, asked = tag_and_join(function() end), tag_and_join(look)
+    for _ = 1, 10 do
+        plain:cycle(50)
+        asked:cycle(50)
+        check.holds(asked:state_hash() == plain:state_hash(), "tags and bodies change, " .. name .. " are asked for, and nothing changes:")
+    end
+end
