@@ -329,13 +329,8 @@ static void close_screen(void *self)
     (void)self;
 }
 
-static const tl_screen_ops screen_ops = {.size = sizeof screen_ops,
-                                         .open = open_screen,
-                                         .address = address,
-                                         .watchers = watchers,
-                                         .put = put,
-                                         .take = take,
-                                         .close = close_screen};
+static const tl_screen_ops screen_ops = {
+    sizeof screen_ops, open_screen, address, watchers, put, take, close_screen};
 
 /* ---------------------------------------------------------------- descriptor ------------- */
 

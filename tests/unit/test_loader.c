@@ -126,7 +126,7 @@ TEST(broken_plugins_are_refused_with_the_reason)
             "law 'large_params' has a params_size of 100000000000 bytes; 1048576 at the most");
     refused(bad_folder, "only_unknown",
             "it holds nothing of use: kind 1, 'only_unknown', is of the unknown type 23");
-    refused(bad_folder, "deaf_screen", "screen 'deaf': its operation 'take' is missing");
+    refused(bad_folder, "deaf_screen", "screen 'deaf_screen': its operation 'take' is missing");
     refused(bad_folder, "screen_states", "a screen has no states, this one declares 1");
     refused(bad_folder, "snapped", "its descriptor has size 0: not a Talus plugin");
 }
@@ -151,10 +151,10 @@ TEST(a_screen_is_taken)
     snprintf(path, sizeof path, "%s/blank_screen.so", bad_folder);
     tl_error error = {TL_OK, ""};
     CHECK_INT(tl_plugin_load(path, &error), TL_OK);
-    const tl_kind *kind = tl_plugin_find(TL_KIND_SCREEN, "blank");
+    const tl_kind *kind = tl_plugin_find(TL_KIND_SCREEN, "blank_screen");
     const tl_screen_ops *ops = kind ? kind->ops : NULL;
     CHECK(ops && ops->size == sizeof *ops && ops->open && ops->take && ops->close);
-    CHECK(tl_plugin_find(TL_KIND_GENERATOR, "blank") == NULL);
+    CHECK(tl_plugin_find(TL_KIND_GENERATOR, "blank_screen") == NULL);
     tl_plugin_record r = record_of(path);
     CHECK(r.plugin && !r.note);
 }

@@ -289,13 +289,8 @@ static void close_browser(void *self)
     free_browser(b);
 }
 
-static const tl_screen_ops ops = {.size = sizeof ops,
-                                  .open = open_browser,
-                                  .address = address,
-                                  .watchers = watchers,
-                                  .put = put,
-                                  .take = take,
-                                  .close = close_browser};
+static const tl_screen_ops ops = {sizeof ops, open_browser, address,      watchers,
+                                  put,        take,         close_browser};
 
 static const tl_kind kind =
     TL_KIND(TL_KIND_SCREEN, ops, .name = "browser",
