@@ -2,6 +2,7 @@
 #include "io/json.h"
 
 #include "base/number.h"
+#include "io/utf8.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -37,16 +38,39 @@ void tl_json_whole(tl_piece *to, uint32_t value)
     tl_json_bytes(to, digits + at, sizeof digits - at);
 }
 
+/* A byte of a text, escaped where JSON wants it. */
+static void put_letter(tl_piece *to, unsigned char letter)
+{
+    char escaped[8] = {(char)letter, '\0'};
+    if (letter == '"' || letter == '\\')
+        snprintf(escaped, sizeof escaped, "\\%c", letter);
+    else if (letter < ' ')
+        snprintf(escaped, sizeof escaped, "\\u%04x", letter);
+    tl_json_put(to, escaped);
+}
+
 void tl_json_text(tl_piece *to, const char *text)
 {
     tl_json_put(to, "\"");
-    for (const unsigned char *c = (const unsigned char *)text; *c; c++) {
-        char escaped[8] = {(char)*c, '\0'};
-        if (*c == '"' || *c == '\\')
-            snprintf(escaped, sizeof escaped, "\\%c", *c);
-        else if (*c < ' ')
-            snprintf(escaped, sizeof escaped, "\\u%04x", *c);
-        tl_json_put(to, escaped);
+    for (const unsigned char *c = (const unsigned char *)text; *c; c++)
+        put_letter(to, *c);
+    tl_json_put(to, "\"");
+}
+
+void tl_json_shown(tl_piece *to, const char *text)
+{
+    tl_json_put(to, "\"");
+    while (*text) {
+        size_t bytes = tl_utf8_next(text);
+        if (bytes > 1) {
+            tl_json_bytes(to, text, bytes);
+        } else if (bytes == 0) {
+            tl_json_put(to, "\\ufffd");
+            bytes = 1;
+        } else {
+            put_letter(to, (unsigned char)*text);
+        }
+        text += bytes;
     }
     tl_json_put(to, "\"");
 }

@@ -12,5 +12,7 @@ void tl_json_number(tl_piece *to, double value);
 void tl_json_whole(tl_piece *to, uint32_t value);
 /* In quotes, escaped as JSON wants it. */
 void tl_json_text(tl_piece *to, const char *text);
+/* The same for those who want UTF-8: what is none of it becomes the replacement character. */
+void tl_json_shown(tl_piece *to, const char *text);
 
 #endif

@@ -418,8 +418,8 @@ const tl_extra_field *tl_lua_extra_fields(lua_State *L, int table, const char *k
 
 extern const tl_lua_key tl_lua_view_keys[];
 int tl_lua_view(lua_State *L);
-/* After a step of the model at index 1: shows it when it is time to; `worth` as of tl_view_due. False, with the error on the
- * top of the stack, when a function of the script fails. */
+/* After a step of the model at index 1: shows it when it is time to; `worth` as of tl_view_due. A function of the script that
+ * fails is told, and asked no more. False, with the error on the top of the stack, after a Ctrl-C. */
 bool tl_lua_view_step(lua_State *L, double worth);
 /* Before a step: does what those who look want, and waits while they want it to; false likewise. */
 bool tl_lua_view_between(lua_State *L);

@@ -140,7 +140,7 @@ static tl_status on_each(void *user, tl_model *model)
     return TL_OK;
 }
 
-/* Before every step of a model that is seen: those who look may want something. */
+/* Before every step: those who look at the model, if it is seen, may want something. */
 static tl_status on_between(void *user, tl_model *model)
 {
     (void)model;
@@ -249,7 +249,7 @@ int tl_lua_solve(lua_State *L)
     run r;
     run_begin(&r, L, model);
     solve.each = on_each;
-    solve.between = r.owner->view ? on_between : NULL;
+    solve.between = on_between;
     solve.progress = progress ? on_progress : NULL;
     solve.stop = stop ? on_stop : NULL;
     solve.user = &r;
@@ -280,7 +280,7 @@ int tl_lua_cycle(lua_State *L)
     run r;
     run_begin(&r, L, model);
     calls.user = &r;
-    calls.between = r.owner->view ? on_between : NULL;
+    calls.between = on_between;
     r.limits = calls;
     return finish(L, &r, "cycle", tl_model_cycle_calling(model, args.cycles, &calls, &r.result));
 }

@@ -96,9 +96,14 @@ static void log_steps(lua_State *L, viewing *v)
 static void tell_refused(lua_State *L, viewing *v)
 {
     static const char place[] = CHUNK ":1: ";
-    const char *sentence = luaL_tolstring(L, -1, NULL);
-    if (strncmp(sentence, place, sizeof place - 1) == 0)
-        sentence += sizeof place - 1;
+    char sentence[TL_ERROR_TEXT];
+    const char *text = luaL_tolstring(L, -1, NULL);
+    if (strncmp(text, place, sizeof place - 1) == 0)
+        text += sizeof place - 1;
+    snprintf(sentence, sizeof sentence, "%s", text);
+    for (char *c = sentence; *c; c++) /* names in it may be anything, and a terminal shows it */
+        if ((unsigned char)*c < ' ' || *c == 127)
+            *c = '?';
     tl_lua_log(tl_lua_options_of(L), lua_pushfstring(L, "view: not done: %s", sentence));
     tell(L, v, NULL, sentence);
     lua_pop(L, 3);
@@ -124,7 +129,16 @@ bool tl_lua_view_step(lua_State *L, double worth)
         return true;
     lua_pushcfunction(L, show);
     lua_pushvalue(L, TL_LUA_AT_MODEL);
-    return lua_pcall(L, 1, 0, 0) == LUA_OK;
+    if (lua_pcall(L, 1, 0, 0) == LUA_OK)
+        return true;
+    bool asks = lua_getiuservalue(L, TL_LUA_AT_MODEL, TL_LUA_VIEW) != LUA_TNIL;
+    lua_pop(L, 1);
+    if (!asks || (lua_type(L, -1) == LUA_TSTRING && tl_lua_interrupted(lua_tostring(L, -1))))
+        return false;
+    tell_refused(L, v); /* a run is worth more than its fields: it goes on without them */
+    lua_pushnil(L);
+    lua_setiuservalue(L, TL_LUA_AT_MODEL, TL_LUA_VIEW);
+    return true;
 }
 
 /* ---------------------------------------------------------------- commands --------------- */
@@ -172,6 +186,7 @@ static bool make_steps(lua_State *L, viewing *v, const tl_view_command *command)
     v->waits = false;
     tell_state(L, v, TL_VIEW_RUNNING);
     bool made = call(L, do_steps, command, 0);
+    v->commanded = true; /* the log tells these steps, too */
     v->waits = true;
     v->paused = false;
     return made;

@@ -305,13 +305,18 @@ def check_trouble(run, first):
 
 
 def check_crowd(run):
-    """Two look already: eight connections are served, and the others are told."""
+    """Two look already: eight may look, twelve connections are served, and the others are told."""
     six = [run.dial(run.scene_request()) for _ in range(6)]
     heads = [one.recv(15) for one in six]
     expect(heads == [b"HTTP/1.1 200 OK"] * 6 and run.tell("wait 8") == "watchers 8", f"eight watchers: {heads}")
+    status, _, body = run.request(path="/scene")
+    expect(status == 503 and b"8 pages" in body, f"a ninth that looks: {status}")
+    expect(run.request()[0] == 200, "those who look can still ask")
+    four = [run.dial() for _ in range(4)]
+    time.sleep(0.1)
     status, _, body = run.request()
-    expect(status == 503 and b"8 connections" in body, f"a ninth: {status}")
-    silent = [run.dial() for _ in range(8)]
+    expect(status == 503 and b"12 connections" in body, f"a thirteenth: {status}")
+    silent = four + [run.dial() for _ in range(12)]
     time.sleep(0.1)
     more = run.dial()
     try:

@@ -170,6 +170,39 @@ def test_waiting(folder):
     check(log.read_text().splitlines()[2:] == ["model:cycle(40)", f"model:blocks {{ id = {watcher.lines[1].split('= ')[1].split(' ')[0]} }}:delete()", "model:cycle(50)"], log.read_text())
 
 
+def test_what_a_script_may_do(folder):
+    """A log of steps alone repeats them; a field whose function fails is told, and the run goes on; a view that is begun in a run takes commands in it."""
+    log = folder / "steps.lua"
+    program = Program(PROGRAM, MODEL + f'local model = build() model:view {{ wait = true, log = "{log}" }} print(model.cycles, model:state_hash())')
+    watcher = program.look()
+    watcher.until(lambda w: w.state == "waiting")
+    program.command(op="step", n=30)
+    watcher.until(lambda w: w.state == "waiting" and w.cycle == 30)
+    program.command(op="go")
+    out, status = program.end()
+    check(status == 0 and repeated(MODEL, log) == out.strip(), f"steps alone: {status} {out} {log.read_text()}")
+    program = Program(PROGRAM, MODEL + """local model = build()
+        local first = model:blocks { where = function(b) return not b.fixed end }[1]
+        model:view { wait = true, block_fields = { rel = function(b) return b.centroid[1] - first.centroid[1] end } }
+        model:cycle(50)
+        print(model.cycles)""")
+    watcher = program.look()
+    watcher.until(lambda w: w.state == "waiting")
+    free = min(i for i in watcher.ids if i not in watcher.held)
+    program.command(op="delete", blocks=[free])
+    check(watcher.until(lambda w: w.refused) and "'rel'" in watcher.refused[0] and not watcher.head["fields"] or watcher.until(lambda w: not w.head["fields"]), f"told: {watcher.refused}")
+    program.command(op="go")
+    out, status = program.end()
+    check(status == 0 and out.split() == ["50"], f"the run goes on without the field: {status} {out} {program.log}")
+    program = Program(PROGRAM, MODEL + """local model = build()
+        model:cycle(1000000000, { every = 10, on_progress = function() model:view {} end })""")
+    watcher = program.look()
+    program.command(op="pause")
+    check(watcher.until(lambda w: w.state == "paused"), "a view begun in a run takes no commands")
+    program.process.send_signal(signal.SIGINT)
+    check(program.end()[1] == 130, "Ctrl-C does not end it")
+
+
 SLOPE = """
 local talus = require "talus"
 local function build()

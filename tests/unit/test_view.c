@@ -181,6 +181,24 @@ TEST(news_adds_up_to_all_there_is_to_know)
     end(m, view);
 }
 
+/* Whatever texts have in them, the page reads UTF-8. */
+TEST(texts_are_shown_in_utf8)
+{
+    tl_model *m = model_of_box();
+    tl_view *view = open_view(m);
+    tl_html html = tl_html_default();
+    CHECK_INT(tl_view_tell(view, TL_VIEW_RUNNING, "\xe6\x96\xad \xe6\x96", "\xff\x1b\n"), TL_OK);
+    CHECK_INT(tl_view_show(view, &html), TL_OK);
+    screen.news[screen.news_length] = '\0';
+    const char *live = NULL;
+    for (size_t i = 0; i + 4 < screen.news_length; i++)
+        if (memcmp(screen.news + i, "LIVE", 4) == 0)
+            live = (const char *)screen.news + i + 8;
+    CHECK_CONTAINS(
+        live, "\"line\": \"\xe6\x96\xad \\ufffd\\ufffd\", \"refused\": \"\\ufffd\\u001b\\u000a\"");
+    end(m, view);
+}
+
 TEST(a_frame_that_is_not_taken_is_shown_again)
 {
     tl_model *m = model_of_box();
@@ -291,7 +309,7 @@ TEST(a_view_that_cannot_begin_leaves_nothing)
     tl_model_destroy(m);
 }
 
-TEST_MAIN(RUN(news_adds_up_to_all_there_is_to_know), RUN(a_frame_that_is_not_taken_is_shown_again),
-          RUN(news_that_has_grown_begins_anew),
+TEST_MAIN(RUN(news_adds_up_to_all_there_is_to_know), RUN(texts_are_shown_in_utf8),
+          RUN(a_frame_that_is_not_taken_is_shown_again), RUN(news_that_has_grown_begins_anew),
           RUN(frames_are_due_when_somebody_looks_and_something_is_new),
           RUN(commands_come_as_they_are_meant), RUN(a_view_that_cannot_begin_leaves_nothing))

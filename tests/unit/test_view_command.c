@@ -61,6 +61,10 @@ TEST(texts_are_those_of_json)
     refused("{\"op\":\"friction\",\"value\":1,\"joint\":\"\\x\"}", "bad \\");
     refused("{\"op\":\"friction\",\"value\":1,\"joint\":\"a\nb\"}", "joint has no end");
     refused("{\"op\":\"friction\",\"value\":1,\"joint\":\"\"}", "joint must be the name");
+    refused("{\"op\":\"friction\",\"value\":1,\"joint\":\"a\xff\"}", "joint is no UTF-8");
+    refused("{\"op\":\"friction\",\"value\":1,\"joint\":\"\xe6\x96\"}", "joint is no UTF-8");
+    refused("{\"op\":\"friction\",\"value\":1,\"joint\":\"\xc0\x80\"}", "joint is no UTF-8");
+    refused("{\"op\":\"friction\",\"value\":1,\"joint\":\"\xed\xa0\x80\"}", "joint is no UTF-8");
 }
 
 TEST(what_is_no_command_is_refused)

@@ -76,7 +76,7 @@ static void let_in(browser *b)
 /* Watchers that wait go on when there is something for them. */
 static void wake_watchers(server *s)
 {
-    for (size_t i = 0; i < MOST_CONNECTIONS; i++) {
+    for (size_t i = 0; i < MOST_WATCHERS; i++) {
         seat *own = s->seats[i];
         if (own && own->waits && (own->gone || s->closing || mailbox_behind(s->mail, &own->w))) {
             own->waits = false;
@@ -90,12 +90,12 @@ static void wait_for_something(browser *b, double deadline)
 {
     enum { LISTENER, BELL, LIBRARY, WATCHERS };
     server *s = &b->s;
-    struct pollfd of[WATCHERS + MOST_CONNECTIONS] = {
+    struct pollfd of[WATCHERS + MOST_WATCHERS] = {
         [LISTENER] = {.fd = s->closing ? -1 : b->listener, .events = POLLIN},
         [BELL] = {.fd = b->bell, .events = POLLIN},
         [LIBRARY] = {.fd = MHD_get_daemon_info(s->daemon, MHD_DAEMON_INFO_EPOLL_FD)->epoll_fd,
                      .events = POLLIN}};
-    for (size_t i = 0; i < MOST_CONNECTIONS; i++) {
+    for (size_t i = 0; i < MOST_WATCHERS; i++) {
         bool waits = s->seats[i] && s->seats[i]->waits;
         of[WATCHERS + i] =
             (struct pollfd){.fd = waits ? s->seats[i]->socket : -1, .events = POLLRDHUP};
@@ -109,7 +109,7 @@ static void wait_for_something(browser *b, double deadline)
     eventfd_t count;
     if (of[BELL].revents)
         eventfd_read(b->bell, &count);
-    for (size_t i = 0; i < MOST_CONNECTIONS; i++)
+    for (size_t i = 0; i < MOST_WATCHERS; i++)
         if (of[WATCHERS + i].revents)
             s->seats[i]->gone = true;
     if (of[LISTENER].revents)

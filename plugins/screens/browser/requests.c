@@ -106,7 +106,7 @@ static seat *take_seat(server *s, struct MHD_Connection *connection)
 {
     const union MHD_ConnectionInfo *info =
         MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CONNECTION_FD);
-    for (size_t i = 0; info && i < MOST_CONNECTIONS; i++)
+    for (size_t i = 0; info && i < MOST_WATCHERS; i++)
         if (!s->seats[i]) {
             seat *own = calloc(1, sizeof *own);
             if (!own)
@@ -124,7 +124,7 @@ static seat *take_seat(server *s, struct MHD_Connection *connection)
 static void leave_seat(seat *own)
 {
     server *s = own->server;
-    for (size_t i = 0; i < MOST_CONNECTIONS; i++)
+    for (size_t i = 0; i < MOST_WATCHERS; i++)
         if (s->seats[i] == own)
             s->seats[i] = NULL;
     mailbox_leave(s->mail, &own->w);
@@ -135,7 +135,9 @@ static enum MHD_Result send_frames(server *s, struct MHD_Connection *connection,
 {
     r->seat = take_seat(s, connection);
     if (!r->seat)
-        return MHD_NO;
+        return say(connection, MHD_HTTP_SERVICE_UNAVAILABLE,
+                   "8 pages look at the run, which is the most it serves; close another one.",
+                   NULL);
     /* One who reads slowly, or has no news to read, is not silent. */
     MHD_set_connection_option(connection, MHD_CONNECTION_OPTION_TIMEOUT, 0U);
     struct MHD_Response *response =
@@ -236,7 +238,7 @@ static void judge(const server *s, struct MHD_Connection *connection, const char
     bool known = posts || strcmp(path, "/") == 0 || strcmp(path, "/scene") == 0;
     if (is_excess(connection))
         refuse(r, MHD_HTTP_SERVICE_UNAVAILABLE,
-               "The run has 8 connections, which is the most it serves; close another page.");
+               "The run has 12 connections, which is the most it serves; close another page.");
     else if (!comes_from_here(connection))
         refuse(r, MHD_HTTP_FORBIDDEN,
                "The run answers only to its own page, at 127.0.0.1 or localhost.");

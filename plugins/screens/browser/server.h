@@ -8,8 +8,10 @@
 
 #include <microhttpd.h>
 
-/* Connections that are served. As many more are let in and get 503 for an answer; the others are closed at once. */
-#define MOST_CONNECTIONS 8
+/* Who can look at once; connections that are served, so that those who look can also command. As many more are let in and get 503
+ * for an answer; the others are closed at once. */
+#define MOST_WATCHERS 8
+#define MOST_CONNECTIONS 12
 
 /* s without a byte after which a request is given up. The tests build it shorter. */
 #ifndef SILENCE
@@ -35,7 +37,7 @@ typedef struct server {
     mailbox *mail;
     struct MHD_Daemon *daemon;
     unsigned connections;
-    seat *seats[MOST_CONNECTIONS];
+    seat *seats[MOST_WATCHERS];
     bool closing; /* who has got all there is gets the end */
 } server;
 
