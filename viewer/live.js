@@ -114,7 +114,6 @@ export function makeRun(app) {
     const rubbed = element("select", { ariaLabel: "Joint of the friction" }), friction = number("Friction, degrees", 0, 89.9, "30");
     function setFriction() {
         const value = valueOf(friction, "The friction");
-        if (rubbed.value === "") return say("The model has no joint with a name.", true);
         if (Number.isFinite(value)) command({ op: "friction", joint: rubbed.value, value });
     }
 
@@ -143,8 +142,8 @@ export function makeRun(app) {
         if (key !== joints) {
             const before = rubbed.value;
             names.replaceChildren(...list.map((value) => element("option", { value })));
-            rubbed.replaceChildren(...list.map((value) => element("option", { value, textContent: value })));
-            if (list.includes(before)) rubbed.value = before;
+            rubbed.replaceChildren(...[...list, "*"].map((value) => element("option", { value, textContent: value === "*" ? "all" : value })));
+            if (before) rubbed.value = before;
             joints = key;
         }
         showSection();

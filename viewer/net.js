@@ -74,10 +74,13 @@ export class Feed {
     }
 }
 
+/** The sentence of a refusal. @param {Response} answer */
+async function saidBy(answer) { return (await answer.text()).slice(0, 300) || `The program answers with status ${answer.status}.`; }
+
 /** Reads until the program ends. @param {string} token @param {Feed} feed */
 export async function readRun(token, feed) {
     const answer = await fetch("scene", { headers: { "X-Talus-Token": token }, cache: "no-store", referrerPolicy: "no-referrer" });
-    if (!answer.ok || !answer.body) throw new Error(answer.status === 403 ? "The program refuses this page: open the address it has printed, with its token." : `The program answers with status ${answer.status}.`);
+    if (!answer.ok || !answer.body) throw new Error(answer.status === 403 ? "The program refuses this page: open the address it has printed, with its token." : await saidBy(answer));
     const reader = answer.body.getReader();
     let bytes = new Uint8Array(1 << 20), length = 0;
     const state = { begin: 0, at: 0, now: -1 };
@@ -110,7 +113,7 @@ export async function readRun(token, feed) {
 export async function postCommand(token, body) {
     try {
         const answer = await fetch("command", { method: "POST", headers: { "X-Talus-Token": token, "Content-Type": "application/json" }, body, referrerPolicy: "no-referrer" });
-        return { status: answer.status, refused: answer.ok ? "" : (await answer.text()).slice(0, 300) || `The program answers with status ${answer.status}.` };
+        return { status: answer.status, refused: answer.ok ? "" : await saidBy(answer) };
     } catch {
         return { status: 0, refused: "The program does not answer: has it ended?" };
     }
