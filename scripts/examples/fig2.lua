@@ -16,6 +16,8 @@ local talus = require "talus"
 
 local fig2 = {}
 
+fig2.page_every = 5 -- of so many frames the page gets one
+
 fig2.sets = {
     { joint = "J1", dip = 45, dip_direction = 220, spacing = 0.25, spacing_dev = 0.1, number = 15 },
     { joint = "J2", dip = 45, dip_direction = 70, spacing = 0.5, number = 15, persistence = 0.5 },
@@ -46,7 +48,7 @@ function fig2.build(low, high, options)
 end
 
 -- The base is held, the rest may slide out: `frames` pictures after the first, whole and in a
--- section from west to east through the middle.
+-- section from west to east through the middle, and every fifth as a page.
 function fig2.collapse(model, frames, name)
     model:blocks { where = function(block)
         for _, vertex in ipairs(block.vertices) do
@@ -65,6 +67,9 @@ function fig2.collapse(model, frames, name)
         end
         model:write_vtk(name)
         model:write_section(name, { dip = 90, dip_direction = 0 })
+        if frame % fig2.page_every == 0 or frame == frames then
+            model:write_html(name, { title = "A jointed cube" })
+        end
     end
 end
 
@@ -83,6 +88,7 @@ function fig2.main(folder)
     print(string.format("seed 1: %d blocks, volume kept to %.1e, the smallest %.2e m3",
         #model:blocks(), summary.volume_error, summary.smallest_volume))
     fig2.collapse(model, 20, folder .. "/fig2")
+    print(string.format("%s/fig2.html shows the collapse in a browser,", folder))
     print(string.format("%s/fig2_blocks.vtk.series shows the collapse,", folder))
     print(string.format("%s/fig2_section.vtk.series a section from west to east", folder))
 end

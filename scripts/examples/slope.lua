@@ -19,6 +19,8 @@ local talus = require "talus"
 
 local slope = {}
 
+slope.page_every = 5 -- of so many frames the page gets one
+
 slope.box = { min = { 0, 0, 0 }, max = { 60, 40, 28 } } -- m
 slope.toe = { 20, 20, 10 }
 slope.foliation = { dip = 76, dip_direction = 270, number = 5, spacing = 6 }
@@ -146,7 +148,8 @@ function slope.bracket(frictions, options)
     return held
 end
 
--- The collapse in `frames` pictures after the first, whole and in section, as files for ParaView.
+-- The collapse in `frames` pictures after the first, whole and in section, as files for ParaView, and
+-- every fifth as a page.
 function slope.film(friction, frames, name)
     local model = slope.build(friction)
     model:timestep { rule = "body", fraction = 0.3 }
@@ -157,6 +160,9 @@ function slope.film(friction, frames, name)
         end
         model:write_vtk(name)
         model:write_section(name, slope.section)
+        if frame % slope.page_every == 0 or frame == frames then
+            model:write_html(name, { title = "A slope with a wedge" })
+        end
     end
 end
 
@@ -175,6 +181,7 @@ function slope.main(folder)
     print(string.format("without D1 and D2 the slope holds at %g degrees and slides at %s; "
         .. "expected 12", held, failed or "none"))
     slope.film(20, 20, folder .. "/slope")
+    print(string.format("%s/slope.html shows the collapse in a browser,", folder))
     print(string.format("%s/slope_blocks.vtk.series shows the collapse at friction 20,", folder))
     print(string.format("%s/slope_section.vtk.series a section along the dip", folder))
 end

@@ -17,6 +17,8 @@ local talus = require "talus"
 
 local tunnel = {}
 
+tunnel.page_every = 5 -- of so many frames the page gets one
+
 tunnel.faults = { { 50, 320 }, { 40, 230 }, { 65, 270 } } -- dip, dip direction
 tunnel.apex = { 1.5, 0.5, 5 }                             -- where the faults meet
 tunnel.half = 3                                           -- half the width of the tunnel, m
@@ -99,7 +101,8 @@ function tunnel.identify(friction, options)
     return { model = model, wedge = wedge, failed = run.reason == "stop", run = run }
 end
 
--- The collapse in `frames` pictures after the first, whole and in section, as files for ParaView.
+-- The collapse in `frames` pictures after the first, whole and in section, as files for ParaView, and
+-- every fifth as a page.
 function tunnel.film(friction, frames, name)
     local model = tunnel.build(friction)
     model:timestep { rule = "body", fraction = 0.2 }
@@ -110,6 +113,9 @@ function tunnel.film(friction, frames, name)
         end
         model:write_vtk(name)
         model:write_section(name, tunnel.section)
+        if frame % tunnel.page_every == 0 or frame == frames then
+            model:write_html(name, { title = "A wedge in the roof of a tunnel" })
+        end
     end
 end
 
@@ -131,6 +137,7 @@ function tunnel.main(folder)
     r = tunnel.drop(45, 0.3, 5)
     print(string.format("friction 45: %s", r.fell and "the wedge comes down" or "the wedge holds"))
     tunnel.film(25, 20, folder .. "/tunnel")
+    print(string.format("%s/tunnel.html shows the collapse in a browser,", folder))
     print(string.format("%s/tunnel_blocks.vtk.series shows the collapse at friction 25,", folder))
     print(string.format("%s/tunnel_section.vtk.series a section across the tunnel", folder))
 end

@@ -22,14 +22,13 @@ import tempfile
 import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
-from chrome import Chrome, program, read_png  # noqa: E402
+from chrome import SIMILAR, Chrome, program, read_png, similarity  # noqa: E402
 
 HERE = pathlib.Path(__file__).parent
 PROGRAM = os.environ.get("TALUS_PROGRAM", "build/release/talus")
 SECTION = "#frame=3&cut=1&dip=70&direction=200"  # with tests/viewer/pages.lua
 SECTION_AT = (30, 20, 14)
 WIDTH, HEIGHT = 640, 400
-SIMILAR = 0.98    # structural similarity of golden pictures
 AREA = 1e-5       # relative difference of a section polygon's area
 COLOUR = 3        # of 255
 CONTRAST = 4.5    # of text (WCAG 2.1, level AA)
@@ -262,21 +261,6 @@ GOLDEN = {
     "exploded": "#frame=3&explode=0.4&colour=joint&dark=1&camera=130,30,70,28,20,12",
     "picked": "#frame=2&colour=group&picked=92&hidden=90&moved=0.001&camera=110,40,42,28,20,12",
 }
-
-
-def similarity(a, b):
-    """Mean structural similarity (Wang et al. 2004) of two pictures' brightness, in windows of 8 x 8."""
-    total = count = 0
-    for y in range(0, HEIGHT - 7, 8):
-        for x in range(0, WIDTH - 7, 8):
-            p = [sum(v) / 3 for row in a[y:y + 8] for v in row[x:x + 8]]
-            q = [sum(v) / 3 for row in b[y:y + 8] for v in row[x:x + 8]]
-            mp, mq = sum(p) / 64, sum(q) / 64
-            vp, vq = sum(v * v for v in p) / 64 - mp * mp, sum(v * v for v in q) / 64 - mq * mq
-            cov = sum(v * w for v, w in zip(p, q)) / 64 - mp * mq
-            total += (2 * mp * mq + 6.5) * (2 * cov + 58.5) / ((mp * mp + mq * mq + 6.5) * (vp + vq + 58.5))
-            count += 1
-    return total / count
 
 
 def test_golden(chrome, folder, renew=False):
