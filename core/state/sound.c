@@ -60,9 +60,9 @@ static bool block_is_sound(const tl_model *m, uint32_t row, size_t groups)
     tl_id least = row ? b->id[row - 1] + 1 : 1;
     return b->id[row] >= least && b->id[row] < m->next_id && b->body[row] < m->bodies.table.rows &&
            b->changed[row] <= m->structure && b->group[row] < groups && b->density[row] > 0 &&
-           isfinite(b->density[row]) && measure_is_sound(b->volume[row]) && b->size[row] > 0 &&
-           isfinite(b->size[row]) && b->mean_face[row] > 0 && isfinite(b->mean_face[row]) &&
-           b->hidden[row] <= 1 && b->stays[row] == 1 &&
+           isfinite(b->density[row]) && measure_is_sound(b->volume[row]) &&
+           b->size[row] == tl_cbrt(b->volume[row]) && b->mean_face[row] > 0 &&
+           isfinite(b->mean_face[row]) && b->hidden[row] <= 1 && b->stays[row] == 1 &&
            (!b->local || tl_v3_finite(b->local[row])) && (!b->base || tl_v3_finite(b->base[row]));
 }
 
