@@ -95,3 +95,14 @@ for name, look in pairs(looks) do
         check.holds(asked:state_hash() == plain:state_hash(), "tags and bodies change, " .. name .. " are asked for, and nothing changes:")
     end
 end
+
+-- An initial stress is no mere answer: it stays where a face gets another joint.
+local model = talus.model {}
+model:generate("box", { min = { 0, 0, 0 }, max = { 2, 2, 2 }, density = 2500 })
+model:generate("joint", { joint = "one", dip = 0, dip_direction = 0, origin = { 1, 1, 1 } })
+model:joint("*", "coulomb", { kn = 1e8, ks = 1e8, friction = 30 })
+model:insitu { stress = { zz = -1e6 }, at = { 1, 1, 1 } }
+model:generate("joint", { joint = "other", dip = 0, dip_direction = 0, origin = { 1, 1, 1 } })
+local contact = model:contacts()[1]
+check.equal(contact.joint, "other:1")
+check.near(contact.normal_stress, 1e6, 1)
