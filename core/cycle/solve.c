@@ -103,15 +103,15 @@ static bool call_between(tl_model *m, const progress *p, tl_watch **watch, tl_st
 {
     uint64_t structure = m->structure;
     *status = p->solve->between(p->solve->user, m);
-    p->result->reason = TL_SOLVE_STOP;
     if (*status == TL_OK && *watch && m->structure != structure) {
         tl_watch_end(*watch);
         *watch = tl_watch_begin(m);
         *status = *watch ? TL_OK : tl_fail_memory(&m->error);
     }
-    if (*status == TL_OK && tl_model_interrupted(m))
-        p->result->reason = TL_SOLVE_INTERRUPT;
-    return *status == TL_OK && !tl_model_interrupted(m);
+    if (*status == TL_OK && !tl_model_interrupted(m))
+        return true;
+    p->result->reason = *status == TL_OK ? TL_SOLVE_INTERRUPT : TL_SOLVE_STOP;
+    return false;
 }
 
 static void say_failure(tl_model *m, const tl_solve_result *r)
