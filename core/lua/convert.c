@@ -5,7 +5,9 @@
  * hangs on one anchor table, so an error raised on the way leaks nothing. */
 #include "front.h"
 
+#include <float.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -300,6 +302,15 @@ void tl_lua_push_numbers(lua_State *L, const double *numbers, size_t count)
         lua_pushnumber(L, numbers[i]);
         lua_rawseti(L, -2, (lua_Integer)i + 1);
     }
+}
+
+void tl_lua_add_number(luaL_Buffer *to, double number, int digits)
+{
+    char text[40];
+    do
+        snprintf(text, sizeof text, "%.*g", digits, number);
+    while (strtod(text, NULL) != number && digits++ < DBL_DECIMAL_DIG);
+    luaL_addstring(to, text);
 }
 
 void tl_lua_push_vec3(lua_State *L, tl_vec3 v)

@@ -113,6 +113,8 @@ void tl_lua_set_number(lua_State *L, const char *name, double number);
 void tl_lua_set_count(lua_State *L, const char *name, size_t count);
 void tl_lua_set_text(lua_State *L, const char *name, const char *text);
 void tl_lua_set_vec3(lua_State *L, const char *name, tl_vec3 v);
+/* Adds the shortest text, of so many digits or more, that reads back as the same number. */
+void tl_lua_add_number(luaL_Buffer *to, double number, int digits);
 /* Pushes a field's value as Lua sees it. */
 void tl_lua_push_field(lua_State *L, tl_field_kind kind, const tl_field_value *value);
 

@@ -1,6 +1,7 @@
 /* history_file.c - what histories have sampled: model:histories(), model:write_histories(path). */
 #include "history.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -69,20 +70,13 @@ const tl_lua_key tl_lua_histories_fields[] = {
 
 /* ---------------------------------------------------------------- the file --------------- */
 
-/* The shortest text that reads back as the same number; nan and inf as programs read them. */
+/* Numbers, nan and inf as programs read them. */
 static void add_number(luaL_Buffer *b, double value)
 {
-    char text[40];
-    if (isnan(value)) {
+    if (isnan(value))
         luaL_addstring(b, "nan");
-        return;
-    }
-    for (int digits = 15; digits <= 17; digits++) {
-        snprintf(text, sizeof text, "%.*g", digits, value);
-        if (strtod(text, NULL) == value)
-            break;
-    }
-    luaL_addstring(b, text);
+    else
+        tl_lua_add_number(b, value, DBL_DIG);
 }
 
 /* Names with a comma or a quotation mark are quoted. */

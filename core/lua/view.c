@@ -24,8 +24,13 @@ const tl_lua_key tl_lua_view_keys[] = {
     {"prefix", "text in quotes",
      "folder and name with which files begin that are written from the page; view when left out"},
     {"log", "text in quotes", "a file for the lines that repeat the work on the page"},
-    {"port", "whole number",
-     "parameter of the screen \"browser\": port of 127.0.0.1, 0 for any that is free"},
+    {NULL, NULL, NULL},
+};
+
+/* What another call may give again. */
+static const tl_lua_key again_keys[] = {
+    TL_LUA_PAGE_KEYS,
+    {"wait", "", ""},
     {NULL, NULL, NULL},
 };
 
@@ -324,36 +329,56 @@ static FILE *open_log(lua_State *L, const char *path)
     return log;
 }
 
-/* What the first call alone decides. */
-static const char *const first_only[] = {"title", "commands", "share", "prefix",
-                                         "log",   "port",     NULL};
-
+/* Refuses what the first call alone decides. */
 static void refuse_again(lua_State *L, const viewing *v)
 {
-    for (size_t i = 0; lua_istable(L, 2) && first_only[i]; i++) {
-        if (lua_getfield(L, 2, first_only[i]) != LUA_TNIL)
-            tl_lua_fail(L,
-                        "view: the model is shown already, at %s; %s is chosen with the first call",
-                        tl_view_address(v->view), first_only[i]);
-        lua_pop(L, 1);
-    }
+    tl_args given;
+    tl_lua_args(L, 2, "view", again_keys, &given);
+    if (given.count > 0)
+        tl_lua_fail(L, "view: the model is shown already, at %s; %s is chosen with the first call",
+                    tl_view_address(v->view), given.values[0].key);
+    lua_settop(L, 2);
+}
+
+/* Pushes the keys that a call may have: those of view, and the parameters of the screen. */
+static const tl_lua_key *push_keys(lua_State *L, const tl_kind *screen)
+{
+    size_t own = sizeof tl_lua_view_keys / sizeof tl_lua_view_keys[0] - 1,
+           more = screen ? screen->param_count : 0;
+    tl_lua_key *keys = lua_newuserdatauv(L, (own + more + 1) * sizeof *keys, 0);
+    memcpy(keys, tl_lua_view_keys, own * sizeof *keys);
+    for (size_t i = 0; i < more; i++)
+        keys[own + i] = (tl_lua_key){screen->params[i].name, "", ""};
+    keys[own + more] = (tl_lua_key){NULL, NULL, NULL};
+    return keys;
+}
+
+/* Reads what of the table at index 2 is a parameter of the screen; pushes what must stay. */
+static void read_params(lua_State *L, const tl_kind *screen, tl_args *params)
+{
+    tl_lua_args(L, 2, "view", NULL, params);
+    tl_value *values = (tl_value *)(uintptr_t)params->values; /* on the stack, and ours */
+    size_t kept = 0;
+    for (size_t i = 0; i < params->count; i++)
+        for (uint32_t k = 0; screen && k < screen->param_count; k++)
+            if (strcmp(values[i].key, screen->params[k].name) == 0)
+                values[kept++] = values[i];
+    params->count = kept;
 }
 
 /* Begins to show the model at index 1 as the table at index 2 says. */
 static void open_view(lua_State *L, tl_lua_model *owner, const tl_view_options *options)
 {
-    static const tl_lua_key own[] = {{"title", "", ""}, {"commands", "", ""}, {"share", "", ""},
-                                     TL_LUA_PAGE_KEYS,  {"wait", "", ""},     {"prefix", "", ""},
-                                     {"log", "", ""},   {NULL, NULL, NULL}};
     tl_args params;
+    const tl_kind *screen = tl_plugin_kind(TL_KIND_SCREEN, 0);
     const char *prefix = read_text(L, "prefix"), *log = read_text(L, "log");
-    tl_lua_args(L, 2, "view", own, &params);
+    read_params(L, screen, &params);
     viewing *v = calloc(1, sizeof *v);
     owner->view = v; /* from here on it goes with the model */
     if (!v || !(v->prefix = strdup(prefix ? prefix : "view")))
         tl_lua_fail(L, "view: out of memory");
     v->logged = tl_model_cycles(owner->model);
-    tl_lua_ok(L, owner->model, tl_view_open(owner->model, NULL, &params, options, &v->view));
+    tl_lua_ok(L, owner->model, tl_view_open(owner->model, screen, &params, options, &v->view));
     if (log)
         v->log = open_log(L, log);
     tell(L, v, NULL, NULL);
@@ -389,7 +414,7 @@ int tl_lua_view(lua_State *L)
     lua_settop(L, 2);
     luaL_checkstack(L, LUA_MINSTACK, "too many values");
     tl_view_options options = tl_view_options_default();
-    tl_lua_spec spec = tl_lua_spec_of("view", tl_lua_view_keys);
+    tl_lua_spec spec = tl_lua_spec_of("view", push_keys(L, tl_plugin_kind(TL_KIND_SCREEN, 0)));
     tl_lua_read(L, 2, &spec, false, &options); /* texts stay with the table */
     lua_settop(L, 2);
     bool wait = read_wait(L), again = owner->view != NULL;

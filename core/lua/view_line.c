@@ -6,6 +6,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+/* Digits of a number at least. */
+#define DIGITS 6
+
 /* A text in quotes, with what could end it or its line as numbers. */
 static void add_text(luaL_Buffer *line, const char *text)
 {
@@ -26,23 +29,12 @@ static void add_text(luaL_Buffer *line, const char *text)
     luaL_addchar(line, '"');
 }
 
-static void add_number(luaL_Buffer *line, double value)
-{
-    char text[40];
-    for (int digits = 6; digits <= 17; digits++) {
-        snprintf(text, sizeof text, "%.*g", digits, value);
-        if (strtod(text, NULL) == value)
-            break;
-    }
-    luaL_addstring(line, text);
-}
-
 static void add_numbers(luaL_Buffer *line, const double *values, size_t count)
 {
     luaL_addstring(line, "{ ");
     for (size_t i = 0; i < count; i++) {
         luaL_addstring(line, i ? ", " : "");
-        add_number(line, values[i]);
+        tl_lua_add_number(line, values[i], DIGITS);
     }
     luaL_addstring(line, " }");
 }
@@ -55,7 +47,7 @@ static void add_blocks(luaL_Buffer *line, const tl_view_command *command, bool h
         ids[i] = command->blocks[i];
     luaL_addstring(line, "model:blocks { id = ");
     if (command->block_count == 1)
-        add_number(line, ids[0]);
+        tl_lua_add_number(line, ids[0], DIGITS);
     else
         add_numbers(line, ids, command->block_count);
     luaL_addstring(line, hidden ? ", hidden = \"any\" }" : " }");
@@ -67,9 +59,9 @@ static void add_cut(luaL_Buffer *line, const tl_view_command *command)
     luaL_addstring(line, "model:generate(\"joint\", { joint = ");
     add_text(line, command->joint);
     luaL_addstring(line, ", dip = ");
-    add_number(line, command->dip);
+    tl_lua_add_number(line, command->dip, DIGITS);
     luaL_addstring(line, ", dip_direction = ");
-    add_number(line, command->dip_direction);
+    tl_lua_add_number(line, command->dip_direction, DIGITS);
     luaL_addstring(line, ", origin = ");
     add_numbers(line, origin, 3);
     luaL_addstring(line, " })");
@@ -80,7 +72,7 @@ static void add_friction(luaL_Buffer *line, const tl_view_command *command)
     luaL_addstring(line, "model:joint(");
     add_text(line, command->joint);
     luaL_addstring(line, ", { friction = ");
-    add_number(line, command->value);
+    tl_lua_add_number(line, command->value, DIGITS);
     luaL_addstring(line, " })");
 }
 

@@ -1077,7 +1077,6 @@ function Model:write_html(path, options) end
 ---@field wait? boolean whether view waits, and does what is asked for on the page, until "go" is pressed there
 ---@field prefix? string folder and name with which files begin that are written from the page; view when left out
 ---@field log? string a file for the lines that repeat the work on the page
----@field port? integer parameter of the screen "browser": port of 127.0.0.1, 0 for any that is free
 
 --- Shows the model in a browser while it runs, and takes commands from there. Gives the address to open. The page shows the model whenever a run makes steps, and while view waits.
 ---
