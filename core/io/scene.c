@@ -146,7 +146,7 @@ static tl_status put_news(tl_scene *scene, tl_model *m, const tl_html *options, 
 static tl_status put_block_fields(tl_model *m, const tl_html *options, tl_piece *out)
 {
     size_t rows = m->blocks.table.rows;
-    tl_status status = tl_extra_fields_check("write_html: block_fields", options->block_fields,
+    tl_status status = tl_extra_fields_check("block_fields", options->block_fields,
                                              options->block_field_count, rows, "blocks", &m->error);
     for (size_t i = 0; status == TL_OK && i < options->block_field_count; i++)
         status = tl_scene_field(&m->error, 0, i, options->block_fields[i].values, NULL, rows, out);

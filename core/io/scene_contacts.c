@@ -144,8 +144,8 @@ static tl_status put_fields(const contacts *c, const tl_html *options, tl_piece 
 {
     tl_error *error = &c->model->error;
     size_t first = options->block_field_count, count = options->contact_field_count;
-    tl_status status = tl_extra_fields_check("write_html: contact_fields", options->contact_fields,
-                                             count, c->listed, "contacts", error);
+    tl_status status = tl_extra_fields_check("contact_fields", options->contact_fields, count,
+                                             c->listed, "contacts", error);
     for (size_t i = 0; status == TL_OK && i < count; i++)
         status = tl_scene_field(error, 1, first + i, options->contact_fields[i].values, c->picked,
                                 c->count, out);

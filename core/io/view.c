@@ -20,9 +20,9 @@
 
 /* Frames a second at most. */
 #define RATE 25.0
-/* News begins anew when it is so many times as long as at its beginning, and by so many bytes longer. */
-#define GROWN 2
-#define GROWN_BYTES ((size_t)16 << 20)
+/* News begins anew when what has come since its beginning is longer than that by so many bytes: below, all of it again is no
+ * saving. */
+#define GROWN ((size_t)16 << 20)
 
 struct tl_view {
     tl_model *model;
@@ -39,9 +39,9 @@ struct tl_view {
     uint32_t watchers;   /* when the last frame was put */
     int64_t cycle;       /* of the model then */
     uint64_t structure;
-    double begun,
-        shown;   /* clock when the frame was begun that is due, and when the last one was put, s */
-    double cost; /* of that last one, s */
+    double begun; /* clock when the frame was begun that is due, s; 0: none */
+    double shown; /* clock when the last one was put, s */
+    double cost;  /* of that one, s */
 };
 
 /* ---------------------------------------------------------------- opening ---------------- */
@@ -51,6 +51,13 @@ static int check_command(const char *text, size_t length, char *why, size_t size
 {
     tl_view_command command;
     return tl_view_command_read(text, length, &command, why, size);
+}
+
+/* Puts what the screen has reported into the model's error. */
+static tl_status refused(const tl_view *v, tl_report *report, tl_status status)
+{
+    return tl_fail(&v->model->error, status, "view, screen '%s': %s", v->kind->name,
+                   tl_report_text(report, status));
 }
 
 /* Reads the screen's parameters into memory that it may keep during `open`. */
@@ -85,10 +92,8 @@ static tl_status begin(tl_view *v, const tl_args *given, bool commands)
         tl_enter(v->kind, "open");
         status = v->ops->open(&shown, params, &v->self, &report);
         tl_leave();
-        if (status != TL_OK) {
-            tl_text_clean(report.text);
-            tl_fail(&m->error, status, "view, screen '%s': %s", v->kind->name, report.text);
-        }
+        if (status != TL_OK)
+            refused(v, &report, status);
     }
     free(params);
     free(page.data);
@@ -174,7 +179,7 @@ bool tl_view_due(tl_view *v, double worth)
 /* Whether all news should be told anew, in the place of what has piled up. */
 static bool has_grown(const tl_view *v)
 {
-    return v->since > GROWN * v->first + GROWN_BYTES;
+    return v->since > v->first + GROWN;
 }
 
 /* Gives the screen the frame that was made, of which the first bytes are news. */
@@ -190,10 +195,7 @@ static tl_status put(tl_view *v, size_t news, bool first)
     tl_enter(v->kind, "put");
     tl_status status = v->ops->put(v->self, &frame, &report);
     tl_leave();
-    if (status == TL_OK)
-        return TL_OK;
-    tl_text_clean(report.text);
-    return tl_fail(&v->model->error, status, "view, screen '%s': %s", v->kind->name, report.text);
+    return status == TL_OK ? TL_OK : refused(v, &report, status);
 }
 
 /* Puts what was told between the news and the rest of the frame. */

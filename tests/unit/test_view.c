@@ -221,7 +221,7 @@ TEST(a_frame_that_is_not_taken_is_shown_again)
     end(m, view);
 }
 
-/* Told lines of 16 MB in all: then news begins anew, with all of them. */
+/* Told lines of 16 MB more than the beginning: then news begins anew, with all of them. */
 TEST(news_that_has_grown_begins_anew)
 {
     tl_model *m = model_of_box();
@@ -240,6 +240,12 @@ TEST(news_that_has_grown_begins_anew)
     CHECK_INT(screen.begun, 2);
     CHECK(told > 16 && told < 20);
     CHECK(screen.news_length > told << 20 && screen.news_length < (told << 20) + (1 << 16));
+    size_t again = 0;
+    for (; again < 80 && screen.begun == 2; again++) {
+        CHECK_INT(tl_view_tell(view, TL_VIEW_RUNNING, line, NULL), TL_OK);
+        CHECK_INT(tl_view_show(view, &html), TL_OK);
+    }
+    CHECK(again > 16 + told && again < 20 + told); /* what it began with counts */
     free(line);
     end(m, view);
 }
@@ -268,6 +274,40 @@ TEST(frames_are_due_when_somebody_looks_and_something_is_new)
     screen.watchers = 0;
     cut(m, 2);
     CHECK(!tl_view_due(view, INFINITY));
+    end(m, view);
+}
+
+/* However short frames are: most of many steps show none, and with a small share of the time not even the second one comes. */
+TEST(frames_take_their_share_and_no_more)
+{
+    tl_model *m = model_of_box();
+    tl_view *view = open_view(m);
+    tl_html html = tl_html_default();
+    screen.watchers = 1;
+    CHECK_INT(tl_view_show(view, &html), TL_OK);
+    int shown = 0;
+    for (int i = 0; i < 1000; i++) {
+        CHECK_INT(tl_view_tell(view, TL_VIEW_RUNNING, NULL, NULL), TL_OK);
+        if (tl_view_due(view, 0)) {
+            CHECK_INT(tl_view_show(view, &html), TL_OK);
+            shown++;
+        }
+    }
+    CHECK(shown < 500);
+    end(m, view);
+
+    m = model_of_box();
+    tl_view_options options = tl_view_options_default();
+    memset(&screen, 0, sizeof screen);
+    screen.watchers = 1;
+    options.share = 1e-9;
+    CHECK_INT(tl_view_open(m, &kind, NULL, &options, &view), TL_OK);
+    CHECK(tl_view_due(view, INFINITY));
+    CHECK_INT(tl_view_show(view, &html), TL_OK);
+    cut(m, 1);
+    CHECK(!tl_view_due(view, 0));
+    CHECK(!tl_view_due(view, 1e-3)); /* what ends is not worth it */
+    CHECK(tl_view_due(view, 1e12));
     end(m, view);
 }
 
@@ -312,4 +352,5 @@ TEST(a_view_that_cannot_begin_leaves_nothing)
 TEST_MAIN(RUN(news_adds_up_to_all_there_is_to_know), RUN(texts_are_shown_in_utf8),
           RUN(a_frame_that_is_not_taken_is_shown_again), RUN(news_that_has_grown_begins_anew),
           RUN(frames_are_due_when_somebody_looks_and_something_is_new),
-          RUN(commands_come_as_they_are_meant), RUN(a_view_that_cannot_begin_leaves_nothing))
+          RUN(frames_take_their_share_and_no_more), RUN(commands_come_as_they_are_meant),
+          RUN(a_view_that_cannot_begin_leaves_nothing))
