@@ -13,6 +13,8 @@
 
 /* Steps of the random motion. */
 #define STEPS 24
+/* Share by which a stiffness may be exceeded: that of differences of forces, of which six digits are left. */
+#define SLACK 1e-6
 /* Relative error of forces that rounding explains: some thousand roundings. */
 #define ROUNDING 1e-11
 /* Share of the motion by which points are moved for the stiffness. */
@@ -328,7 +330,7 @@ static void check_stiffness(trial *t, int step, bool along)
         /* a bond that breaks drops its force at once, and walls that meet are where the closure says */
         if ((out.flags[i] ^ rest.flags[i]) & (TL_POINT_OPEN | TL_POINT_FAILED | TL_POINT_APART))
             continue;
-        if (rise > bound * area * moved * (1 + 1e-6) + ROUNDING * t->scale[i])
+        if (rise > bound * area * moved * (1 + SLACK) + ROUNDING * t->scale[i])
             tl_check_note(t->c, TL_LAW_STIFFNESS, "%s = %g Pa/m, but stiffness() says %g Pa/m",
                           along ? "ks" : "kn", rise / (area * moved), bound);
     }

@@ -5,7 +5,7 @@
 #include <string.h>
 
 /* Samples that a new history has room for. */
-#define FIRST_ROOM 64
+#define FIRST_CAPACITY 64
 
 static bool is_text(const char *text, size_t room)
 {
@@ -44,17 +44,17 @@ void tl_history_free(tl_history *h)
 }
 
 /* Room in the columns of a history for so many samples of its width; false: out of memory, and they are as they were. */
-static bool hold_samples(tl_history *h, size_t room)
+static bool hold_samples(tl_history *h, size_t capacity)
 {
-    int64_t *cycles = realloc(h->cycles, room * sizeof *cycles);
+    int64_t *cycles = realloc(h->cycles, capacity * sizeof *cycles);
     h->cycles = cycles ? cycles : h->cycles;
-    double *times = realloc(h->times, room * sizeof *times);
+    double *times = realloc(h->times, capacity * sizeof *times);
     h->times = times ? times : h->times;
-    double *values = realloc(h->values, room * h->width * sizeof *values);
+    double *values = realloc(h->values, capacity * h->width * sizeof *values);
     h->values = values ? values : h->values;
     if (!cycles || !times || !values)
         return false;
-    h->room = room;
+    h->capacity = capacity;
     return true;
 }
 
@@ -69,7 +69,7 @@ tl_history *tl_history_hold(tl_model *m, const tl_history *what, size_t samples)
     h->ids = h->id_count ? malloc(h->id_count * sizeof *h->ids) : NULL;
     h->cycles = NULL;
     h->times = h->values = NULL;
-    h->room = 0;
+    h->capacity = 0;
     if ((h->id_count && !h->ids) || (samples && !hold_samples(h, samples))) {
         tl_history_free(h);
         return NULL;
@@ -122,7 +122,7 @@ tl_status tl_history_sample(tl_model *m, tl_history *h, const double *values, si
         return tl_fail(&m->error, TL_E_ARGUMENT, "history '%s': cycle %lld is sampled already",
                        h->name, (long long)m->cycles);
     h->width = width;
-    if (h->count == h->room && !hold_samples(h, h->room ? 2 * h->room : FIRST_ROOM))
+    if (h->count == h->capacity && !hold_samples(h, h->capacity ? 2 * h->capacity : FIRST_CAPACITY))
         return tl_fail_memory(&m->error);
     h->cycles[h->count] = m->cycles;
     h->times[h->count] = m->time;
@@ -134,5 +134,5 @@ tl_status tl_history_sample(tl_model *m, tl_history *h, const double *values, si
 size_t tl_history_bytes(const tl_history *h)
 {
     return sizeof *h + h->id_count * sizeof *h->ids +
-           h->room * (sizeof *h->cycles + sizeof *h->times + h->width * sizeof *h->values);
+           h->capacity * (sizeof *h->cycles + sizeof *h->times + h->width * sizeof *h->values);
 }

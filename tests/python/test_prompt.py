@@ -176,7 +176,7 @@ def check_history(folder):
             fault("history", variables, lines_of(file))
         if file.stat().st_mode & 0o777 != 0o600 or file.parent.stat().st_mode & 0o777 != 0o700:
             fault("others may read the history")
-        # the session after it has it at hand: twice upwards
+        # the next prompt has it at hand: twice upwards
         prompt = Prompt(HOME=str(home), **variables)
         prompt.read_to("> ")
         prompt.line("\x10\x10.. 'again'", "malformed number")

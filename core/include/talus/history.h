@@ -47,10 +47,10 @@ typedef struct tl_history {
     bool lost;      /* it was told that a block no longer exists */
     bool list;      /* a sample is a list, even of one number */
     size_t id_count;
-    tl_id *ids;                /* of the blocks or contacts */
-    size_t width, count, room; /* numbers of a sample; samples; room for them */
-    int64_t *cycles;           /* of each sample, ascending */
-    double *times, *values;    /* s; width numbers for each sample */
+    tl_id *ids;                    /* of the blocks or contacts */
+    size_t width, count, capacity; /* numbers of a sample; samples; room for them */
+    int64_t *cycles;               /* of each sample, ascending */
+    double *times, *values;        /* s; width numbers for each sample */
 } tl_history;
 
 /* Makes a history without samples at the end of the model's list: `what` gives its name, asked, every, source, take, selection

@@ -29,7 +29,7 @@ struct mailbox {
     /* What follows is read under the lock, and written under it. Frames are written by `put` alone, which therefore reads
      * them without it. */
     piece **news; /* since the last beginning */
-    size_t news_count, news_room;
+    size_t news_count, news_capacity;
     piece *now;
     uint64_t epoch, puts;
     command queue[MAILBOX_COMMANDS];
@@ -102,13 +102,13 @@ bool mailbox_put(mailbox *m, const tl_screen_frame *frame)
 {
     bool begin = frame->begin || m->puts == 0;
     size_t kept = begin ? 0 : m->news_count, added = frame->news_length > 0;
-    size_t room = begin ? 8 : m->news_room;
-    while (room < kept + added)
-        room *= 2;
-    bool grows = begin || room > m->news_room;
+    size_t capacity = begin ? 8 : m->news_capacity;
+    while (capacity < kept + added)
+        capacity *= 2;
+    bool grows = begin || capacity > m->news_capacity;
     piece *now = piece_of(frame->now, frame->now_length);
     piece *fresh = added ? piece_of(frame->news, frame->news_length) : NULL;
-    piece **list = grows ? malloc(room * sizeof *list) : m->news;
+    piece **list = grows ? malloc(capacity * sizeof *list) : m->news;
     if (!now || (added && !fresh) || !list) {
         drop(now);
         drop(fresh);
@@ -126,7 +126,7 @@ bool mailbox_put(mailbox *m, const tl_screen_frame *frame)
         list[kept] = fresh;
     m->news = list;
     m->news_count = kept + added;
-    m->news_room = room;
+    m->news_capacity = capacity;
     m->now = now;
     m->epoch += begin;
     m->puts++;
@@ -150,7 +150,7 @@ static int next_frame(mailbox *m, watcher *w)
             return 0;
         }
         size_t from = w->epoch == m->epoch ? w->news : 0, needed = m->news_count - from + 1;
-        if (needed <= w->room) {
+        if (needed <= w->capacity) {
             w->count = w->at = w->offset = 0;
             for (size_t i = from; i < m->news_count; i++)
                 w->pieces[w->count++] = hold(m->news[i]);
@@ -163,11 +163,11 @@ static int next_frame(mailbox *m, watcher *w)
         }
         pthread_mutex_unlock(&m->lock);
         free(w->pieces); /* nothing is on its way */
-        w->room = 0;
+        w->capacity = 0;
         w->pieces = malloc(2 * needed * sizeof *w->pieces);
         if (!w->pieces)
             return -1;
-        w->room = 2 * needed;
+        w->capacity = 2 * needed;
     }
 }
 

@@ -23,7 +23,7 @@ typedef struct watcher {
     uint64_t put;   /* of the frame that it was given last */
     size_t news;    /* of the epoch, that it was given */
     piece **pieces; /* of the frame on its way; those before `at` are let go */
-    size_t room, count, at;
+    size_t capacity, count, at;
     size_t offset; /* in the piece `at` */
 } watcher;
 
