@@ -268,6 +268,8 @@ void tl_remark_friction(tl_model *m, const char *joint, const tl_law *law);
 tl_status tl_timestep_choose(tl_model *m, double *dt);
 /* FRAC of (27): the user's, or that of the rule. */
 double tl_timestep_fraction(const tl_model *m);
+/* The highest rate that is stable at the step for which inertia is added, 1/s2; 0 where none is. */
+double tl_timestep_rate_limit(const tl_model *m);
 /* Says once of a model's blocks that one of them makes the step short: sliver.c. */
 void tl_sliver_remark(tl_model *m);
 /* Whether a body can move, or is held but moves. */

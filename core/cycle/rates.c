@@ -14,7 +14,8 @@
  * in twice as deep.
  *
  * Rates are kept from step to step and made anew where contacts have changed. Where nothing moves by more than areas are
- * reused for, they cost nothing. Kept ones follow from the contacts as they were when the body was rated, not as they are:
+ * reused for, they cost nothing. Who asks for the rates above some limit only is spared most of the rest: with the areas of
+ * its contacts taken as far away as its farthest corner, a body asks for no less. Kept ones follow from the contacts as they were when the body was rated, not as they are:
  * where the step follows from them they are part of the model's state. */
 #include "cycle/rates.h"
 
@@ -282,6 +283,35 @@ static step_rates body_rate(const tl_model *m, uint32_t body, double stiffest)
     return (step_rates){2 * fmax(pushed, part * (face - turn)), 2 * fmax(turned, part * turn)};
 }
 
+/* A contact presses no farther away than the farthest corner of the body, over the radius of that: overlaps come on top. */
+#define BEYOND 1.05
+
+/* What a body's rate is no higher than, from the areas of its contacts alone. */
+static double most_rate(const tl_model *m, uint32_t body, double stiffest)
+{
+    const tl_detect *d = m->detect;
+    const tl_contacts *c = &d->contacts;
+    area_sums stiffness = {0, 0};
+    double law = 0, radius = BEYOND * m->bodies.radius[body];
+    for (uint32_t j = 0; j < m->bodies.member_count[body]; j++) {
+        uint32_t row = m->members[m->bodies.member_start[body] + j];
+        for (uint32_t e = d->by_block_start[row]; e < d->by_block_start[row + 1]; e++) {
+            uint32_t i = d->by_block[e];
+            if (c->law[i] == TL_NO_ROW)
+                continue;
+            area_sums on = {c->area[i], c->area[i] * radius * radius};
+            if (c->facet[i].kind == TL_FACET_FIELD) /* what is known of it at once is closer */
+                on = points_of(m, i, c->b[i] == row);
+            double k = tl_law_stiffness(&m->joint_laws[c->law[i]]);
+            law = fmax(law, k);
+            stiffness.area += k * on.area;
+            stiffness.area_r2 += k * on.area_r2;
+        }
+    }
+    double on_face = (law > 0 ? law : stiffest) * m->bodies.face_rate[body];
+    return fmax(rate_of(stiffness, inverse_of(m, body)), on_face);
+}
+
 double tl_rate_stiffness(const tl_model *m, uint32_t body)
 {
     contact_sums of = add_contacts(m, body, tl_rates_points(m));
@@ -359,7 +389,18 @@ typedef struct rate_search {
     double stiffest; /* of the model's laws */
     bool kept; /* rates are kept in their column, and made anew only where contacts have changed */
     bool all;  /* all rates are made anew */
+    double
+        known; /* of a body that asks for no more than this, what it asks for at the most will do; 0: of none */
 } rate_search;
+
+static step_rates rate_for(const rate_search *s, uint32_t body)
+{
+    const tl_model *m = s->search.m;
+    if (!tl_body_counts(m, body))
+        return (step_rates){0, 0};
+    double most = s->known > 0 ? most_rate(m, body, s->stiffest) : INFINITY;
+    return most <= s->known ? (step_rates){most, 0} : body_rate(m, body, s->stiffest);
+}
 
 static void rate_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
 {
@@ -372,7 +413,7 @@ static void rate_range(void *user, size_t begin, size_t end, size_t chunk, unsig
     for (uint32_t body = (uint32_t)begin; body < end; body++) {
         step_rates of = {kept[body], m->cycle->turn_rate[body]};
         if (!s->kept || s->all || touched[body])
-            of = tl_body_counts(m, body) ? body_rate(m, body, s->stiffest) : (step_rates){0, 0};
+            of = rate_for(s, body);
         if (s->kept) {
             kept[body] = of.rate;
             m->cycle->turn_rate[body] = of.turn;
@@ -403,7 +444,7 @@ static bool touch_new_points(tl_model *m)
 
 /* Where contact points count, bodies are rated anew when one of their contacts has points that were placed in this step;
  * otherwise, and with mass scaling, when a contact has come, gone or grown; with mass scaling, all now and then. */
-tl_row_value tl_rates_keep(tl_model *m)
+tl_row_value tl_rates_keep(tl_model *m, double known)
 {
     struct tl_cycle *c = m->cycle;
     tl_detect *d = m->detect;
@@ -412,10 +453,15 @@ tl_row_value tl_rates_keep(tl_model *m)
                                      .rotation = m->config.rotation};
     bool all = now.version != c->stiffness_rates.version ||
                now.recheck != c->stiffness_rates.recheck ||
-               now.rotation != c->stiffness_rates.rotation;
+               now.rotation != c->stiffness_rates.rotation ||
+               (known > 0 && !(c->dt > 0)); /* it may be another one */
     bool some = tl_rates_points(m) && !m->mass_scaling && touch_new_points(m);
     if (all || some || d->any_touched) {
-        rate_search s = {.search.m = m, .stiffest = tl_stiffest_law(m), .kept = true, .all = all};
+        rate_search s = {.search.m = m,
+                         .stiffest = tl_stiffest_law(m),
+                         .kept = true,
+                         .all = all,
+                         .known = known};
         tl_row_value found =
             tl_row_search_run(&s.search, m->bodies.table.rows, TL_BODY_CHUNK, rate_range);
         memset(d->touched, 0, m->bodies.table.rows);
@@ -432,7 +478,7 @@ bool tl_rates_are_state(const tl_model *m)
     return tl_mass_scaled(m) || (tl_rates_points(m) && isnan(m->timestep.dt));
 }
 
-void tl_rates_try(tl_model *m, double *rate, double *turn_rate)
+void tl_rates_try(tl_model *m, double known, double *rate, double *turn_rate)
 {
     struct tl_cycle *c = m->cycle;
     struct tl_stiffness_rates kept = c->stiffness_rates;
@@ -442,15 +488,15 @@ void tl_rates_try(tl_model *m, double *rate, double *turn_rate)
         rate[body] = own[body], turn_rate[body] = own_turn[body];
     c->rate = rate;
     c->turn_rate = turn_rate;
-    tl_rates_keep(m);
+    tl_rates_keep(m, known);
     c->rate = own;
     c->turn_rate = own_turn;
     c->stiffness_rates = kept;
 }
 
-tl_row_value tl_rates_anew(tl_model *m)
+tl_row_value tl_rates_anew(tl_model *m, double known)
 {
-    rate_search s = {.search.m = m, .stiffest = tl_stiffest_law(m)};
+    rate_search s = {.search.m = m, .stiffest = tl_stiffest_law(m), .known = known};
     tl_row_value found =
         tl_row_search_run(&s.search, m->bodies.table.rows, TL_BODY_CHUNK, rate_range);
     return (tl_row_value){fabs(found.value), found.row};

@@ -35,13 +35,14 @@ static inline bool tl_body_counts(const tl_model *m, uint32_t body)
 
 /* Brings up to date what the rules know of the bodies without their contacts; first of all. */
 void tl_rates_count(tl_model *m);
-/* The highest rate, with mass scaling the lowest; brings the kept rates up to date. */
-tl_row_value tl_rates_keep(tl_model *m);
+/* The highest rate, with mass scaling the lowest; brings the kept rates up to date. Rates up to `known` are told from above only, as
+ * what the body asks for at the most: 0 where all count. */
+tl_row_value tl_rates_keep(tl_model *m, double known);
 /* The same, all looked at anew and nothing kept. */
-tl_row_value tl_rates_anew(tl_model *m);
+tl_row_value tl_rates_anew(tl_model *m, double known);
 /* The rates that the next step will keep, for the contacts as they are, of all bodies. Kept are those of before; noted in
  * m->detect, a copy that is thrown away, is that bodies have been rated. */
-void tl_rates_try(tl_model *m, double *rate, double *turn_rate);
+void tl_rates_try(tl_model *m, double known, double *rate, double *turn_rate);
 /* Whether the step follows from rates that were kept: these are then part of the model's state. */
 bool tl_rates_are_state(const tl_model *m);
 /* The stiffness that a body's rate comes from, N/m: of its contacts, or of the part of its largest face that counts. */

@@ -70,7 +70,7 @@ static bound paper_rule(tl_model *m)
 /* What controls the step. `report`: looked at anew, and the stiffness as well; nothing is kept then. */
 static bound controlling(tl_model *m, bool report)
 {
-    tl_row_value fastest = report ? tl_rates_anew(m) : tl_rates_keep(m);
+    tl_row_value fastest = report ? tl_rates_anew(m, 0) : tl_rates_keep(m, 0);
     bound out = {INFINITY, fastest.row, TL_NO_ROW, 0};
     if (fastest.row != TL_NO_ROW)
         out.least = 0.5 / fastest.value;
@@ -100,6 +100,12 @@ static double damping_factor(const tl_model *m)
     double factor = ops->step_factor ? ops->step_factor(m->damping_self) : 1;
     tl_leave();
     return factor;
+}
+
+double tl_timestep_rate_limit(const tl_model *m)
+{
+    double share = tl_timestep_fraction(m) * damping_factor(m) / m->added_dt;
+    return tl_adds_mass(m) ? 2 * share * share : 0;
 }
 
 /* A plugin's factor is its word: refused when it cannot be. */
@@ -155,9 +161,10 @@ static void judge_step(tl_model *m)
     c->contacts = contacts > c->contacts ? contacts : c->contacts;
     if (!due || c->all_held || m->mass_scaling)
         return;
-    tl_row_value fastest = tl_rates_anew(m);
+    double far_above = TOO_LONG / m->timestep.dt, bearable = 2 * far_above * far_above;
+    tl_row_value fastest = tl_rates_anew(m, bearable);
     double stable = 2 * sqrt(0.5 / fastest.value);
-    c->long_step = fastest.row != TL_NO_ROW && m->timestep.dt > TOO_LONG * stable;
+    c->long_step = fastest.row != TL_NO_ROW && fastest.value > bearable;
     if (c->long_step && tl_model_says(m, TL_REMARK_STEP))
         say_long(m, stable, fastest.row);
 }
@@ -174,9 +181,9 @@ static tl_status choose_added(tl_model *m, double *dt, bool report)
             "them only, or the longer one to mass_scaling",
             given, wanted);
     if (!report) {
-        double share = tl_timestep_fraction(m) * damping_factor(m) / wanted;
-        tl_rates_keep(m);
-        tl_status status = tl_added_find(m, 2 * share * share);
+        double limit = tl_timestep_rate_limit(m);
+        tl_rates_keep(m, limit);
+        tl_status status = tl_added_find(m, limit);
         if (status != TL_OK)
             return status;
         c->mass_scale = 0;

@@ -138,7 +138,7 @@ static tl_status hash_rates(tl_hash *hash, tl_model *m)
     double *rate = calloc(2 * bodies + 1, sizeof *rate);
     if (!rate)
         return tl_fail_memory(&m->error);
-    tl_rates_try(m, rate, rate + bodies);
+    tl_rates_try(m, tl_timestep_rate_limit(m), rate, rate + bodies);
     hash_numbers(hash, rate, m->mass_scaling ? 2 * bodies : bodies);
     free(rate);
     return TL_OK;

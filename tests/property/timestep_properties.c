@@ -2,8 +2,10 @@
  * kilometres, with stiffnesses over eight decades.
  *
  * However little its contacts cover, no free body is given a longer step than a contact on FLOOR of its largest face would
- * allow by (27); the step follows units, density and stiffness as it must. */
+ * allow by (27); the step follows units, density and stiffness as it must. Who asks for rates above some limit only gets the same
+ * highest one, and of no body less than it asks for. */
 #include "contact_scene.h"
+#include "cycle/rates.h"
 
 #define MODELS 300
 #define FLOOR 0.15
@@ -208,6 +210,41 @@ TEST(a_contact_that_vanishes_never_makes_the_step_long)
     }
 }
 
+/* Rates of all bodies, those up to `known` from above only. */
+static double *rates_of(tl_model *m, double known)
+{
+    double *rate = calloc(2 * m->bodies.table.rows + 1, sizeof *rate);
+    tl_rates_try(m, known, rate, rate + m->bodies.table.rows);
+    return rate;
+}
+
+TEST(rates_above_a_limit_are_those_of_all)
+{
+    uint64_t seed = 8;
+    int skipped = 0;
+    for (int i = 0; i < MODELS; i++) {
+        recipe r = draw(&seed);
+        tl_model *m = build(r, as_is);
+        step_of(m);
+        double *exact = rates_of(m, 0);
+        tl_row_value highest = tl_rates_anew(m, 0);
+        double known = highest.value * pow(10, scene_between(&seed, -2, 1));
+        double *told = rates_of(m, known);
+        tl_row_value found = tl_rates_anew(m, known);
+        CHECK(found.value > known ? found.value == highest.value && found.row == highest.row
+                                  : highest.value <= known);
+        for (uint32_t body = 0; body < m->bodies.table.rows; body++) {
+            CHECK(told[body] == exact[body] || (told[body] > exact[body] && told[body] <= known));
+            skipped += told[body] > exact[body];
+        }
+        free(exact);
+        free(told);
+        tl_model_destroy(m);
+    }
+    CHECK(skipped > MODELS);
+}
+
 TEST_MAIN(RUN(no_step_is_longer_than_its_floor_allows),
           RUN(the_step_follows_units_density_and_stiffness),
-          RUN(a_contact_that_vanishes_never_makes_the_step_long))
+          RUN(a_contact_that_vanishes_never_makes_the_step_long),
+          RUN(rates_above_a_limit_are_those_of_all))
