@@ -54,41 +54,41 @@ static double gap_from(const tl_pair_view *view, uint32_t number)
     return low + shift - plane.offset;
 }
 
-/* The gap from a face to the other block. */
-typedef struct face_gap {
-    tl_vec3 n; /* in A's frame */
-    double gap;
-    bool flush; /* with some face of the other; neither lies on a seam */
-} face_gap;
-
-static face_gap gap_of_face(const tl_pair_view *view, uint32_t number)
+/* The normal of a face in A's frame. */
+static tl_vec3 normal_of(const tl_pair_view *view, uint32_t number)
 {
-    bool of_b = number & 1;
-    const tl_poly *other = of_b ? view->a : view->b;
-    const tl_poly *own = of_b ? view->b : view->a;
-    tl_plane plane = own->plane[number >> 1];
-    tl_vec3 n = of_b ? tl_m3_mul(&view->turn, plane.normal) : tl_m3_tmul(&view->turn, plane.normal);
-    face_gap out = {.n = of_b ? n : plane.normal, .gap = gap_from(view, number)};
-    for (uint32_t f = 0; f < other->face_count && !own->covered[number >> 1] && !out.flush; f++)
-        out.flush = are_flush(n, other->plane[f].normal) && !other->covered[f];
+    tl_vec3 n = (number & 1 ? view->b : view->a)->plane[number >> 1].normal;
+    return number & 1 ? tl_m3_mul(&view->turn, n) : n;
+}
+
+/* Whether a face is flush with some face of the other block; neither lies on a seam. */
+static bool is_flush(const tl_pair_view *view, uint32_t number)
+{
+    bool of_b = number & 1, out = false;
+    const tl_poly *own = of_b ? view->b : view->a, *other = of_b ? view->a : view->b;
+    tl_vec3 n = own->plane[number >> 1].normal;
+    tl_vec3 there = of_b ? tl_m3_mul(&view->turn, n) : tl_m3_tmul(&view->turn, n);
+    for (uint32_t f = 0; f < other->face_count && !own->covered[number >> 1] && !out; f++)
+        out = are_flush(there, other->plane[f].normal) && !other->covered[f];
     return out;
 }
 
-/* The flush face with the largest gap that is across `than`. */
-static bool widest(const tl_pair_view *view, tl_vec3 than, uint32_t *number, face_gap *best)
+/* The flush face with the largest gap that is across `than`; false: there is none. */
+static bool widest(const tl_pair_view *view, tl_vec3 than, uint32_t *number)
 {
-    best->gap = -INFINITY;
+    double best = -INFINITY;
     for (int of_b = 0; of_b < 2; of_b++) {
         uint32_t count = (of_b ? view->b : view->a)->face_count;
         for (uint32_t f = 0; f < count; f++) {
-            face_gap one = gap_of_face(view, face_number(of_b, f));
-            if (one.gap > best->gap && one.flush && is_across(one.n, than)) {
-                *best = one;
-                *number = face_number(of_b, f);
+            uint32_t one = face_number(of_b, f);
+            double gap = is_across(normal_of(view, one), than) ? gap_from(view, one) : -INFINITY;
+            if (gap > best && is_flush(view, one)) {
+                best = gap;
+                *number = one;
             }
         }
     }
-    return best->gap > -INFINITY;
+    return best > -INFINITY;
 }
 
 bool tl_grazing_only_touches(const tl_pair_view *view, const tl_pair *p)
@@ -101,12 +101,11 @@ bool tl_grazing_only_touches(const tl_pair_view *view, const tl_pair *p)
 
 void tl_grazing_choose_faces(const tl_pair_view *view, tl_pair *p)
 {
-    face_gap first, second;
     uint32_t one, other;
     tl_pair_forget_faces(p);
     if (view->a->face_count * view->b->face_count > FEW)
         return;
-    if (widest(view, tl_v3(0, 0, 0), &one, &first) && widest(view, first.n, &other, &second))
+    if (widest(view, tl_v3(0, 0, 0), &one) && widest(view, normal_of(view, one), &other))
         tl_pair_set_faces(p, (tl_pair_faces){one, other});
 }
 
@@ -116,13 +115,14 @@ double tl_grazing_margin(const tl_pair_view *view, const tl_pair *p, double *gap
     tl_pair_faces faces = tl_pair_faces_of(p);
     if (faces.one == faces.other)
         return -INFINITY;
-    face_gap first = gap_of_face(view, faces.one), second = gap_of_face(view, faces.other);
+    double first = gap_from(view, faces.one), second = gap_from(view, faces.other);
     double tolerance = TL_CONTACT_TOLERANCE * view->size, unseen = UNSEEN * view->size;
-    *gap = fmax(first.gap, second.gap);
+    *gap = fmax(first, second);
     if (*gap > tolerance)
         return *gap - tolerance;
-    if (!first.flush || !second.flush || fmin(first.gap, second.gap) < -tolerance)
+    if (fmin(first, second) < -tolerance || !is_flush(view, faces.one) ||
+        !is_flush(view, faces.other))
         return -INFINITY;
-    double apart = first.gap - second.gap;
-    return 0.5 * (first.gap + second.gap + sqrt(apart * apart + 4 * unseen * unseen));
+    double apart = first - second;
+    return 0.5 * (first + second + sqrt(apart * apart + 4 * unseen * unseen));
 }
