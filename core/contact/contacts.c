@@ -188,6 +188,16 @@ static void copy_points(const tl_points_table *from, size_t row, tl_points_table
     }
 }
 
+/* A contact that has lost its points carries nothing. Without a lane for points no law will say so, nor book the heat. */
+static void leave_lane(tl_detect *d, tl_contacts *c, uint32_t row)
+{
+    c->point_capacity[row] = 0;
+    c->force[row] = c->moment[row] = tl_v3(0, 0, 0);
+    c->holds_over_gap[row] = false;
+    d->parted += c->released[row];
+    c->released[row] = 0;
+}
+
 /* Copies a contact into the spare table, with the room for points it is to get. */
 static void copy_contact(tl_detect *d, uint32_t from, uint32_t to)
 {
@@ -262,7 +272,7 @@ void tl_contacts_free_spare(tl_detect *d, int64_t cycles)
         free_spare(d);
 }
 
-/* Points of the contacts in their new order, in the spare table. */
+/* Points of the contacts in their new order, in the spare table; nothing can fail any more. */
 static void move_points(tl_detect *d, const place *list)
 {
     for (uint32_t i = 0; i < d->spare.table.rows; i++) {
@@ -270,6 +280,8 @@ static void move_points(tl_detect *d, const place *list)
         copy_points(&d->points, d->contacts.point_start[row], &d->spare_points,
                     d->spare.point_start[i], d->contacts.point_count[row]);
         d->pairs[d->spare.pair[i]].contact = i;
+        if (d->spare.point_capacity[i] == 0)
+            leave_lane(d, &d->spare, i);
     }
 }
 
@@ -322,7 +334,7 @@ bool tl_contact_place(tl_detect *d, uint32_t row)
     uint32_t points = wanted_points(d, row), lane;
     if (!points) { /* its lane may be of another span */
         clear_points(d, row);
-        c->point_capacity[row] = 0;
+        leave_lane(d, c, row);
         return true;
     }
     const tl_simd_group *group = tl_simd_group_take(d, points, row, &lane);
