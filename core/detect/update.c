@@ -400,6 +400,14 @@ static bool make_anew(tl_model *m, uint32_t c, unsigned thread)
     return false;
 }
 
+/* Notes from where the points of a contact that has been made may be reused. One that waits for room is made once more: noted twice,
+ * the rounding of its spot would count twice. */
+static void note_made(tl_model *m, uint32_t c)
+{
+    if (!tl_pending_waits(m->detect->contacts.pending[c]))
+        tl_contact_allow_reuse(m, c);
+}
+
 void tl_contact_update(tl_model *m, uint32_t c, unsigned thread)
 {
     tl_narrow_scratch *scratch = &m->detect->narrow[thread];
@@ -409,7 +417,7 @@ void tl_contact_update(tl_model *m, uint32_t c, unsigned thread)
     if (tl_field_goes_on(m, c))
         tl_contacts_follow(m, &c, 1, thread);
     else if (renew_patch(m, c, thread) || (!scratch->manifold.failed && make_anew(m, c, thread)))
-        tl_contact_allow_reuse(m, c);
+        note_made(m, c);
     else
         scratch->failed = true; /* to be tried again, and not in another way */
 }
@@ -427,7 +435,7 @@ void tl_contacts_follow(tl_model *m, const uint32_t contact[], uint32_t count, u
                     take_manifold(m, contact[k], scratch, &m->detect->lanes[thread]);
         done = done || (result == TL_FIELD_LOST && make_anew(m, contact[k], thread));
         if (done)
-            tl_contact_allow_reuse(m, contact[k]);
+            note_made(m, contact[k]);
         else
             scratch->failed = true;
     }
@@ -441,7 +449,7 @@ void tl_contact_reframe(tl_model *m, uint32_t c, unsigned thread)
         return;
     scratch->reframed = true;
     if (make_anew(m, c, thread))
-        tl_contact_allow_reuse(m, c); /* by the odometers of the bodies as they are now */
+        note_made(m, c); /* by the odometers of the bodies as they are now */
     scratch->reframed = false;
 }
 
@@ -464,7 +472,6 @@ bool tl_contact_fill(tl_model *m, uint32_t c)
         contacts->pending[c] = pending;
         return false;
     }
-    if (contacts->pending[c] == TL_PENDING_NONE)
-        tl_contact_allow_reuse(m, c);
+    note_made(m, c);
     return true;
 }
