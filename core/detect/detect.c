@@ -14,6 +14,7 @@
 #include "contact/points.h"
 #include "contact/prefetch.h"
 #include "contact/store.h"
+#include "detect/asked.h"
 #include "detect/broad.h"
 #include "detect/edited.h"
 #include "detect/overlap.h"
@@ -335,12 +336,16 @@ tl_status tl_detect_refresh(tl_model *m)
         d && !d->rows_changed && d->indexed == d->contacts.table.rows; /* no step failed */
     if (listed && d->structure == m->structure && d->laws == m->laws)
         return TL_OK;
-    tl_status status = find_contacts(m);
+    tl_status status = tl_asked_begin(m);
+    if (status == TL_OK)
+        status = find_contacts(m);
     return status == TL_OK ? settle(m) : status;
 }
 
 tl_status tl_detect_update(tl_model *m)
 {
+    tl_rows_tidy(m);
+    tl_asked_end(m);
     tl_status status = find_contacts(m);
     if (status != TL_OK)
         return status;

@@ -86,6 +86,8 @@ void tl_model_destroy(tl_model *m)
         return;
     if (m->detect)
         m->detect_destroy(m->detect);
+    if (m->stepped)
+        m->detect_destroy(m->stepped);
     if (m->cycle)
         m->cycle_destroy(m->cycle);
     if (m->vtk)

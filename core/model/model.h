@@ -236,6 +236,8 @@ struct tl_model {
     tl_profile profile; /* so far; the counts of contacts are made when asked for */
 
     struct tl_detect *detect; /* of the module contact */
+    struct tl_detect
+        *stepped; /* before somebody asked between edits: detect/asked.c. NULL: detect itself */
     void (*detect_destroy)(struct tl_detect *);
     struct tl_cycle *cycle; /* of the module cycle */
     void (*cycle_destroy)(struct tl_cycle *);

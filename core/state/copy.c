@@ -1,37 +1,18 @@
 /* copy.c - a model once more, in the same state: from the same next call on both go on alike, to the bit. */
-#include "state/copy.h"
-
-#include "contact/contacts.h"
-#include "contact/store.h"
+#include "contact/copy.h"
+#include "base/entries.h"
+#include "contact/detection.h"
 #include "contact/walk.h"
 #include "cycle/walk.h"
 #include "force/joint_laws.h"
 #include "model/walk.h"
 #include "state/drives.h"
-#include "state/entries.h"
 #include "state/histories.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 /* The copies' own lists are made with the room that is in use only, and grow when they have to. */
-
-tl_detect *tl_detect_copy(const tl_detect *from)
-{
-    tl_detect *d = tl_detect_make(from->threads);
-    if (!d)
-        return NULL;
-    tl_entries entries = {.count = 0};
-    tl_detect_walk((tl_detect *)(uintptr_t)from, &(tl_walk){tl_entries_note, &entries});
-    tl_entries_copy copy = {.from = &entries};
-    tl_detect_walk(d, &(tl_walk){tl_entries_take, &copy});
-    d->spare_points.state_columns = d->points.state_columns; /* it has the same columns */
-    d->spare_points.initial = d->points.initial;
-    if (!copy.failed && tl_detect_hold_lanes(d, d->lane_capacity))
-        return d;
-    tl_detect_destroy(d);
-    return NULL;
-}
 
 /* Columns of blocks and bodies, lists and values. The polyhedra are still to be copied. */
 static bool copy_rows(tl_model *to, tl_model *from)
@@ -99,10 +80,11 @@ static tl_status copy_damping(tl_model *to, const tl_model *from)
 
 static tl_status copy_detection(tl_model *to, const tl_model *from)
 {
-    if (!from->detect)
+    const tl_detect *lasting = tl_detect_lasting(from);
+    if (!lasting)
         return TL_OK;
     to->detect_destroy = from->detect_destroy;
-    to->detect = tl_detect_copy(from->detect);
+    to->detect = tl_detect_copy(lasting);
     return to->detect ? TL_OK : tl_fail_memory(&to->error);
 }
 

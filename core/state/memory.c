@@ -39,6 +39,15 @@ static size_t thread_bytes(const tl_detect *d)
     return sum;
 }
 
+static void add_detection(tl_detect *d, const tl_walk *walk, tl_memory *memory)
+{
+    tl_detect_walk(d, walk);
+    size_t facets = d->contacts.table.capacity * sizeof *d->contacts.facet;
+    memory->contacts -= facets;
+    memory->facets += facets;
+    memory->other += sizeof *d + thread_bytes(d);
+}
+
 tl_memory tl_model_memory(const tl_model *m)
 {
     tl_memory memory = {0};
@@ -54,13 +63,10 @@ tl_memory tl_model_memory(const tl_model *m)
         tl_cycle_walk(m->cycle, &walk);
         memory.step += sizeof *m->cycle + tl_undo_bytes(m->cycle);
     }
-    if (m->detect) {
-        tl_detect_walk(m->detect, &walk);
-        size_t facets = m->detect->contacts.table.capacity * sizeof *m->detect->contacts.facet;
-        memory.contacts -= facets;
-        memory.facets += facets;
-        memory.other += sizeof *m->detect + thread_bytes(m->detect);
-    }
+    if (m->detect)
+        add_detection(m->detect, &walk, &memory);
+    if (m->stepped)
+        add_detection(m->stepped, &walk, &memory);
 #define ADD(name, doc) memory.total += memory.name;
     TL_MEMORY(ADD)
 #undef ADD

@@ -2,6 +2,7 @@
  * it: what it says is put into fresh rows and looked at before anything uses it. */
 #include "state/restore.h"
 
+#include "base/entries.h"
 #include "contact/contacts.h"
 #include "contact/index.h"
 #include "contact/sound.h"
@@ -10,7 +11,6 @@
 #include "cycle/walk.h"
 #include "model/walk.h"
 #include "state/drives.h"
-#include "state/entries.h"
 #include "state/frames.h"
 #include "state/histories.h"
 #include "state/kinds.h"

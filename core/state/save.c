@@ -1,11 +1,12 @@
 /* save.c - a model into a file: all entries of its modules by their names, and what has owners of its own. Nothing in the model
  * changes by it, so that it makes no difference to a run when it is saved. */
+#include "base/entries.h"
 #include "base/signals.h"
+#include "contact/copy.h"
 #include "contact/walk.h"
 #include "cycle/walk.h"
 #include "model/walk.h"
 #include "state/drives.h"
-#include "state/entries.h"
 #include "state/frames.h"
 #include "state/histories.h"
 #include "state/kinds.h"
@@ -112,7 +113,7 @@ static void save_all(tl_archive_writer *w, tl_model *m)
     tl_laws_save(m, w);
     tl_damping_save(m, w);
     if (m->detect)
-        tl_detect_walk(m->detect, &walk);
+        tl_detect_walk(tl_detect_lasting(m), &walk);
     if (m->cycle)
         tl_cycle_walk(m->cycle, &walk);
 }

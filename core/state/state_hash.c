@@ -8,11 +8,11 @@
  * phase), for the results do not depend on it beyond the caches' margins. A column that few models need counts as zeros
  * where there is none. What follows from the rest and lies in a row with it (a pose's matrix) does no harm. */
 #include "base/hash.h"
+#include "contact/copy.h"
 #include "contact/points.h"
 #include "contact/store.h"
 #include "cycle/rates.h"
 #include "detect/detect.h"
-#include "state/copy.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -145,7 +145,7 @@ static tl_status hash_rates(tl_hash *hash, tl_model *m)
 }
 
 /* Hashes the contacts as the next step will find them. The first contacts of a model are found in the model itself, as by
- * any question; contacts that stand are brought up to date in a copy, for it would change what a later join does with them. */
+ * any question; contacts that stand are brought up to date in a copy, for only a step may do so. */
 static tl_status hash_next_contacts(tl_hash *hash, tl_model *m)
 {
     if (!m->detect || m->detect->contacts.table.rows == 0) {
@@ -153,12 +153,13 @@ static tl_status hash_next_contacts(tl_hash *hash, tl_model *m)
         if (status != TL_OK)
             return status;
     }
-    struct tl_detect *own = m->detect;
+    struct tl_detect *own = m->detect, *stepped = m->stepped;
+    struct tl_detect *copy = tl_detect_copy(tl_detect_lasting(m));
     tl_log_fn log = m->log;
-    if (!(m->detect = tl_detect_copy(own))) {
-        m->detect = own;
+    if (!copy)
         return tl_fail_memory(&m->error);
-    }
+    m->detect = copy;
+    m->stepped = NULL;
     m->log = say_nothing;
     tl_status status = tl_detect_update(m);
     if (status == TL_OK) {
@@ -166,8 +167,9 @@ static tl_status hash_next_contacts(tl_hash *hash, tl_model *m)
         status = hash_rates(hash, m);
     }
     m->log = log;
-    tl_detect_destroy(m->detect);
+    tl_detect_destroy(copy);
     m->detect = own;
+    m->stepped = stepped;
     return status;
 }
 

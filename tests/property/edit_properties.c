@@ -6,7 +6,7 @@
 #include "contact/places.h"
 #include "contact/presses.h"
 #include "contact/store.h"
-#include "state/copy.h"
+#include "contact/copy.h"
 
 #define MODELS 240
 #define EDITS 14

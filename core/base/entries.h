@@ -1,6 +1,6 @@
 /* entries.h - all entries of one owner copied to another (entries.c). */
-#ifndef TL_STATE_ENTRIES_H
-#define TL_STATE_ENTRIES_H
+#ifndef TL_BASE_ENTRIES_H
+#define TL_BASE_ENTRIES_H
 
 #include "base/walk.h"
 

@@ -1,5 +1,5 @@
 /* entries.c - all entries of one owner copied to another. */
-#include "state/entries.h"
+#include "base/entries.h"
 
 #include <assert.h>
 #include <stdio.h>

@@ -1,0 +1,17 @@
+/* copy.h - a second detection in the same state as the first (copy.c). */
+#ifndef TL_CONTACT_COPY_H
+#define TL_CONTACT_COPY_H
+
+#include "contact/detection.h"
+#include "model/model.h"
+
+/* What the next step goes on from: what was found since for somebody who asked follows from it. */
+static inline tl_detect *tl_detect_lasting(const tl_model *m)
+{
+    return m->stepped ? m->stepped : m->detect;
+}
+
+/* NULL when out of memory. */
+tl_detect *tl_detect_copy(const tl_detect *from);
+
+#endif
