@@ -15,6 +15,7 @@ import { makeView, readView, viewText } from "./view.js";
 
 const STILL = 160;     // ms without a change after which pictures are averaged
 const SLOW = 80;       // ms of a draft from which it is drawn at half the resolution
+const MANY = 200000;   // triangles from which the first draft is drawn at half the resolution
 const TELLING = 200;   // ms between two states of the panels while frames of a run follow each other
 const PICKED = [10, 102, 242]; // colour of the picked blocks, where there are several
 const ORDER = ["camera", "look", "colour", "cut", "pose", "frame"]; // each makes anew what those before it do
@@ -62,8 +63,10 @@ export class App {
         const ratio = Math.min(2, devicePixelRatio || 1);
         this.width = Math.max(1, this.canvas.clientWidth);
         this.height = Math.max(1, this.canvas.clientHeight);
-        this.canvas.width = Math.round(this.width * ratio);
-        this.canvas.height = Math.round(this.height * ratio);
+        const w = Math.round(this.width * ratio), h = Math.round(this.height * ratio);
+        // even the same number would empty it
+        if (this.canvas.width !== w) this.canvas.width = w;
+        if (this.canvas.height !== h) this.canvas.height = h;
         const wide = this.width > 700;
         this.camera.margins = { left: wide ? 220 : 0, right: wide ? 262 : 0, top: 84, bottom: 104 };
         this.change("camera");
@@ -227,9 +230,9 @@ export class App {
     tick() {
         this.asked = false;
         if (this.dirty >= 0) this.refresh();
-        const { canvas } = this, begun = performance.now(), full = begun - this.changed > STILL || (this.fullCost > 0 && this.fullCost < 20);
+        const { canvas } = this, begun = performance.now(), full = this.number > 0 && (begun - this.changed > STILL || (this.fullCost > 0 && this.fullCost < 20));
         if (this.sample < SAMPLES && this.frame) {
-            const half = !full && this.draftCost > SLOW ? 2 : 1;
+            const half = !full && (this.number ? this.draftCost > SLOW : this.model.triangles > MANY) ? 2 : 1;
             if (full || this.sample === 0) this.drawOne(Math.ceil(canvas.width / half), Math.ceil(canvas.height / half), full ? this.sample : 0, full);
             this.gpu.wait();
             const cost = performance.now() - begun;

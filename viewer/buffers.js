@@ -1,6 +1,5 @@
 // Vertex buffers of the picture: all blocks in one, sheets (polygons) and arrows in others.
 // @ts-check
-import { cross, unit } from "./math.js";
 
 /** @typedef {import("./frames.js").Model} Model */
 /** @typedef {{place: number[], normal: number[], colour: number[], flat: boolean, name: number}} Sheet corners x y z of a convex polygon */
@@ -8,53 +7,74 @@ import { cross, unit } from "./math.js";
 
 const BLOCK_BYTES = 28, SHEET_BYTES = 36;
 
-/** All blocks' faces as triangles. @param {WebGL2RenderingContext} gl @param {Model} model */
+/** All blocks' faces as triangles. The last corner of a triangle tells its normal and name, so faces share vertices: each has one of its own, and the rest of
+ * its corners are those of other faces. @param {WebGL2RenderingContext} gl @param {Model} model */
 export function blockBuffer(gl, model) {
-    let corners = 0;
-    for (let row = 0; row < model.rows; row++) model.eachFace(row, (_f, _c, count) => { corners += count; });
-    const data = new ArrayBuffer(corners * BLOCK_BYTES), f32 = new Float32Array(data), i16 = new Int16Array(data), u32 = new Uint32Array(data);
-    const index = new Uint32Array(3 * model.triangles), first = new Uint32Array(model.rows + 1);
-    let v = 0, k = 0;
+    let most = 0;
+    for (const { shapes, block } of model.shape) most += shapes.vertices[block] + shapes.faces[block];
+    const data = new ArrayBuffer(most * BLOCK_BYTES), f32 = new Float32Array(data), i16 = new Int16Array(data), u32 = new Uint32Array(data);
+    const index = new Uint32Array(3 * model.triangles), taken = new Uint32Array(65536);
+    let end = 0, k = 0;
+    // no lists and no functions in here: it is done for millions of corners while nothing is to be seen
     for (let row = 0; row < model.rows; row++) {
-        const s = model.shape[row], vertex = s.shapes.vertex, loop = s.shapes.loop;
-        first[row] = k;
-        model.eachFace(row, (face, corner, count, joint) => {
-            const at = (/** @type {number} */ i) => 3 * (s.vertex + loop[corner + i]);
+        const s = model.shape[row], { vertex, loop, corners, joint } = s.shapes, base = end, faces = s.shapes.faces[s.block];
+        for (let a = 3 * s.vertex; end < base + s.shapes.vertices[s.block]; end++, a += 3) {
+            f32[7 * end] = vertex[a];
+            f32[7 * end + 1] = vertex[a + 1];
+            f32[7 * end + 2] = vertex[a + 2];
+            u32[7 * end + 5] = row;
+        }
+        for (let face = 0, corner = s.corner; face < faces; face++) {
+            const count = corners[s.face + face];
+            let own = 0, v = end;
+            while (own < count && taken[loop[corner + own]] === row + 1) own++;
+            if (own === count) {
+                own = 0;
+                end++;
+                f32.copyWithin(7 * v, 7 * (base + loop[corner]), 7 * (base + loop[corner]) + 3);
+            } else {
+                v = base + loop[corner + own];
+                taken[loop[corner + own]] = row + 1;
+            }
             // Newell's normal: the sum over all corners, exact for flat faces, also with very short edges
-            let n = [0, 0, 0];
-            const o = at(0);
-            for (let i = 1; i + 1 < count; i++) {
-                const a = at(i), b = at(i + 1);
-                const c = cross([vertex[a] - vertex[o], vertex[a + 1] - vertex[o + 1], vertex[a + 2] - vertex[o + 2]],
-                    [vertex[b] - vertex[o], vertex[b + 1] - vertex[o + 1], vertex[b + 2] - vertex[o + 2]]);
-                n = [n[0] + c[0], n[1] + c[1], n[2] + c[2]];
-                index[k++] = v;
-                index[k++] = v + i;
-                index[k++] = v + i + 1;
+            const o = 7 * v, ox = f32[o], oy = f32[o + 1], oz = f32[o + 2];
+            let nx = 0, ny = 0, nz = 0, ax = 0, ay = 0, az = 0, before = 0;
+            for (let i = 1; i < count; i++) {
+                const next = base + loop[corner + (own + i) % count], b = 7 * next, bx = f32[b] - ox, by = f32[b + 1] - oy, bz = f32[b + 2] - oz;
+                if (i > 1) {
+                    nx += ay * bz - az * by;
+                    ny += az * bx - ax * bz;
+                    nz += ax * by - ay * bx;
+                    index[k++] = before;
+                    index[k++] = next;
+                    index[k++] = v;
+                }
+                ax = bx;
+                ay = by;
+                az = bz;
+                before = next;
             }
-            n = unit(n);
-            for (let i = 0; i < count; i++, v++) {
-                const a = at(i);
-                f32.set([vertex[a], vertex[a + 1], vertex[a + 2]], 7 * v);
-                i16.set([n[0] * 32767, n[1] * 32767, n[2] * 32767], 14 * v + 6);
-                u32[7 * v + 5] = faceName(row, face % 126);
-                u32[7 * v + 6] = joint;
-            }
-        });
+            const length = Math.sqrt(nx * nx + ny * ny + nz * nz), to = length > 0 ? 32767 / length : 0;
+            i16[14 * v + 6] = nx * to;
+            i16[14 * v + 7] = ny * to;
+            i16[14 * v + 8] = to ? nz * to : 32767;
+            u32[7 * v + 5] = faceName(row, face % 126);
+            u32[7 * v + 6] = joint[s.face + face];
+            corner += count;
+        }
     }
-    first[model.rows] = k;
     const array = gl.createVertexArray();
     gl.bindVertexArray(array);
     const buffer = gl.createBuffer(), elements = gl.createBuffer();
     gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
-    gl.bufferData(gl.ARRAY_BUFFER, data, gl.STATIC_DRAW);
+    gl.bufferData(gl.ARRAY_BUFFER, f32.subarray(0, 7 * end), gl.STATIC_DRAW);
     gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, elements);
-    gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, index, gl.DYNAMIC_DRAW);
+    gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, index, gl.STATIC_DRAW);
     attribute(gl, 0, 3, gl.FLOAT, BLOCK_BYTES, 0);
     attribute(gl, 1, 3, gl.SHORT, BLOCK_BYTES, 12);
     attribute(gl, 2, 2, gl.UNSIGNED_INT, BLOCK_BYTES, 20);
     gl.bindVertexArray(null);
-    return { array, buffer, elements, index, first, count: k };
+    return { array, buffer, elements, count: k };
 }
 
 /** Name of a face in the picture's names: 24 bits of row, 7 of face (modulo 126; 126 is a section polygon). @param {number} row @param {number} face */

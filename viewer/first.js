@@ -32,7 +32,7 @@ export function firstView(app, given = false) {
     for (let i = 0; i < frame.poses.n; i++) if (motion.ids.has(frame.poses.id[i])) moving[frame.rows[i]] = 1;
     const facing = (trendPlunge(motion.direction).trend + 180) % 360, few = model.triangles <= TRIED;
     let best = facing - 35, most = -1;
-    for (const by of few ? [-35, 35, -65, 65, -110, 110, 180] : [-35]) {
+    for (const by of few ? [-35, 35, -65, 65, -110, 110, 180] : []) {
         camera.bearing = ((facing + by) % 360 + 360) % 360;
         app.fit();
         const count = seen(app, moving) * (1.15 - Math.abs(by) / 600);

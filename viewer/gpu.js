@@ -85,11 +85,11 @@ function openGl(canvas) {
 export function makeGpu(canvas) {
     const gl = openGl(canvas);
     const sums = gl.getExtension("EXT_color_buffer_float") !== null || gl.getExtension("EXT_color_buffer_half_float") !== null;
-    const programs = { block: makeProgram(gl, blockVertex(""), blockFragment("")), cut: makeProgram(gl, blockVertex(""), blockFragment("#define CUT\n")),
-        depth: makeProgram(gl, blockVertex("#define DEPTH\n"), DEPTH_FRAGMENT), sheet: makeProgram(gl, SHEET_VERTEX, sheetFragment("flat")),
-        arrow: makeProgram(gl, ARROW_VERTEX, sheetFragment("")), show: makeProgram(gl, WHOLE_VERTEX, SHOW_FRAGMENT),
-        draft: makeProgram(gl, WHOLE_VERTEX, lightFragment("")), full: makeProgram(gl, WHOLE_VERTEX, lightFragment("#define FULL\n")),
-        draftGhost: makeProgram(gl, WHOLE_VERTEX, lightFragment("#define GHOST\n")), fullGhost: makeProgram(gl, WHOLE_VERTEX, lightFragment("#define GHOST\n#define FULL\n")) };
+    // programs are made when they are first needed: most of them not for the first picture
+    const texts = { block: [blockVertex(""), blockFragment("")], cut: [blockVertex(""), blockFragment("#define CUT\n")], depth: [blockVertex("#define DEPTH\n"), DEPTH_FRAGMENT],
+        sheet: [SHEET_VERTEX, sheetFragment("flat")], arrow: [ARROW_VERTEX, sheetFragment("")], show: [WHOLE_VERTEX, SHOW_FRAGMENT], draft: [WHOLE_VERTEX, lightFragment("")],
+        full: [WHOLE_VERTEX, lightFragment("#define FULL\n")], draftGhost: [WHOLE_VERTEX, lightFragment("#define GHOST\n")], fullGhost: [WHOLE_VERTEX, lightFragment("#define GHOST\n#define FULL\n")] };
+    /** @type {Partial<Record<keyof typeof texts, ReturnType<typeof makeProgram>>>} */ const programs = {};
     const caps = sheetBuffer(gl), sheets = sheetBuffer(gl), arrows = arrowBuffer(gl), empty = gl.createVertexArray();
     const shadow = makeTexture(gl, gl.DEPTH_COMPONENT24, SHADOW, SHADOW), shadowTarget = makeTarget(gl, [], shadow);
     gl.bindTexture(gl.TEXTURE_2D, shadow);
@@ -113,8 +113,9 @@ export function makeGpu(canvas) {
         if (rest) gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, whole, rest, 1, gl.RGBA, type, data.subarray(whole * wide * 4));
     }
 
-    /** @param {{program: WebGLProgram, at: Record<string, WebGLUniformLocation | null>}} p @param {[string, WebGLTexture | null][]} textures */
-    function use(p, textures) {
+    /** @param {keyof typeof texts} kind @param {[string, WebGLTexture | null][]} textures */
+    function use(kind, textures) {
+        const p = programs[kind] ??= makeProgram(gl, texts[kind][0], texts[kind][1]);
         gl.useProgram(p.program);
         textures.forEach(([name, texture], i) => {
             gl.activeTexture(gl.TEXTURE0 + i);
@@ -125,10 +126,10 @@ export function makeGpu(canvas) {
         return p.at;
     }
 
-    /** @param {keyof typeof programs} kind @param {Float32Array} matrix @param {number} pixels @param {Look} look @param {number} group */
+    /** @param {keyof typeof texts} kind @param {Float32Array} matrix @param {number} pixels @param {Look} look @param {number} group */
     function drawBlocks(kind, matrix, pixels, look, group) {
         if (!blocks || !tables.pose) return;
-        const at = use(programs[kind], [["u_pose", tables.pose.texture], ["u_colour", tables.colour.texture], ["u_palette", tables.palette.texture]]);
+        const at = use(kind, [["u_pose", tables.pose.texture], ["u_colour", tables.colour.texture], ["u_palette", tables.palette.texture]]);
         gl.uniformMatrix4fv(at.u_matrix, false, matrix);
         gl.uniform1f(at.u_class, group);
         if (at.u_pixels) gl.uniform1f(at.u_pixels, pixels);
@@ -140,9 +141,9 @@ export function makeGpu(canvas) {
         gl.disable(gl.CULL_FACE);
     }
 
-    /** @param {keyof typeof programs} kind @param {Sight} sight @param {Float32Array} matrix */
+    /** @param {keyof typeof texts} kind @param {Sight} sight @param {Float32Array} matrix */
     function useGlyphs(kind, sight, matrix) {
-        const at = use(programs[kind], []);
+        const at = use(kind, []);
         gl.uniformMatrix4fv(at.u_matrix, false, matrix);
         gl.uniform3fv(at.u_towards, sight.towards);
     }
@@ -160,9 +161,9 @@ export function makeGpu(canvas) {
         gl.clearBufferfv(gl.DEPTH, 0, [1]);
         drawBlocks(look.cut ? "cut" : "block", matrix, sight.pixels * stage.height, look, ghosts ? 2 : 1);
         if (ghosts) return;
-        useGlyphs("sheet", sight, matrix);
         for (const s of [caps, sheets]) {
             if (!s.count) continue;
+            useGlyphs("sheet", sight, matrix);
             gl.bindVertexArray(s.array);
             gl.drawArrays(gl.TRIANGLES, 0, s.count);
         }
@@ -175,7 +176,7 @@ export function makeGpu(canvas) {
     /** @param {ReturnType<typeof makeStage>} stage @param {Sight} sight @param {Float32Array} matrix @param {Look} look @param {boolean} ghosts @param {boolean} full @param {number} random */
     function lightLayer(stage, sight, matrix, look, ghosts, full, random) {
         const layer = ghosts ? stage.ghost() : stage.solid;
-        const at = use(programs[full ? (ghosts ? "fullGhost" : "full") : ghosts ? "draftGhost" : "draft"], [["u_colours", layer.colour], ["u_normals", layer.normal],
+        const at = use(full ? (ghosts ? "fullGhost" : "full") : ghosts ? "draftGhost" : "draft", [["u_colours", layer.colour], ["u_normals", layer.normal],
             ["u_names", layer.name], ["u_depth", layer.depth], ["u_before", stage.solid.depth], ["u_shadow", shadow]]);
         gl.uniformMatrix4fv(at.u_back, false, sight.back);
         gl.uniformMatrix4fv(at.u_forth, false, matrix);
@@ -197,7 +198,7 @@ export function makeGpu(canvas) {
     /** @param {WebGLTexture | null} texture @param {number} share @param {number} width @param {number} height */
     function show(texture, share, width, height) {
         gl.viewport(0, 0, width, height);
-        const at = use(programs.show, [["u_sum", texture]]);
+        const at = use("show", [["u_sum", texture]]);
         gl.uniform1f(at.u_share, share);
         gl.uniform2f(at.u_size, width, height);
         gl.bindVertexArray(empty);

@@ -10,7 +10,7 @@ import { listen } from "./input.js";
 import { makeRun } from "./live.js";
 import { takeToken } from "./net.js";
 import { Page } from "./page.js";
-import { tightBox } from "./poses.js";
+import { showFrame, tightBox } from "./poses.js";
 import { CAP_FACE } from "./section.js";
 import { makeStereonet } from "./stereonet.js";
 import { makeTable } from "./table.js";
@@ -43,14 +43,14 @@ async function readRest(app) {
 /** @param {Page} app */
 async function begin(app) {
     const packed = /** @type {HTMLElement[]} */ ([...document.querySelectorAll('script[type="text/talus"]')]);
-    const opened = async () => { app.home = (app.shown && tightBox(app.model, app.shown, () => true)) ?? app.home; };
+    const opened = () => { app.home = (app.shown && tightBox(app.model, app.shown, () => true)) ?? app.home; };
     app.view.dark = matchMedia("(prefers-color-scheme: dark)").matches;
     app.reading = packed.length > 0;
     app.live = packed.length === 0 && location.protocol.startsWith("http");
     listenAll(app);
     if (app.run) {
         app.token = takeToken();
-        await app.run.follow(async () => { app.refresh(); await opened(); firstView(app); app.change("pose"); });
+        await app.run.follow(async () => { app.refresh(); opened(); firstView(app); app.change("pose"); });
         return say("The run has ended.");
     }
     if (!packed.length) throw new Error("This page holds no frames.");
@@ -60,8 +60,8 @@ async function begin(app) {
         else await app.model.addPacked(text, numbers[0]);
     }
     await app.goTo(0);
-    app.refresh();
-    await opened();
+    if (app.frame) app.shown = showFrame(app.model, app.frame, app.view);
+    opened();
     const given = location.hash.length > 1, found = await app.fromAddress();
     app.refresh();
     if (!found) { firstView(app, given); app.change("pose"); }
