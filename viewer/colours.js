@@ -2,6 +2,7 @@
 // @ts-check
 import { column } from "./frames.js";
 import { capital, figure } from "./math.js";
+import { slimness } from "./slimness.js";
 
 /** @typedef {import("./frames.js").Frame} Frame */
 /** @typedef {import("./frames.js").Model} Model */
@@ -49,7 +50,7 @@ export function roundUp(x) {
 /** Ways to colour blocks: name and words. @param {Model} model @returns {[string, string][]} */
 export function blockColours(model) {
     const head = model.head, keys = model.keys;
-    return [["displacement", "displacement"], ["velocity", "velocity"], ["rotation", "rotation"], ["unbalanced", "unbalanced force"], ["volume", "volume"], ["group", "group"],
+    return [["displacement", "displacement"], ["velocity", "velocity"], ["rotation", "rotation"], ["unbalanced", "unbalanced force"], ["volume", "volume"], ["bulk", "volume over surface"], ["aspect", "aspect"], ["group", "group"],
         ["body", "body"], ["joint", "joint (faces)"], ["block", "block"], ["held", "held"],
         .../** @type {[string, string][]} */ (keys ? [["keys", "keyblocks"], ["safety", "factor of safety"]] : []),
         .../** @type {[string, string][]} */ ((head?.fields ?? []).filter((f) => f.of === "blocks").map((f) => [`field:${f.name}`, plain(f.name)]))];
@@ -120,11 +121,13 @@ export function colourBlocks(model, frame, by) {
         });
         return done(by === "safety" ? scale : { title: "Keyblocks", kind: "list", items: [...items, { name: "no keyblock", colour: NONE }] });
     }
-    if (by === "volume") {
+    if (by === "volume" || by === "bulk" || by === "aspect") { // slivers are dark in the last two
+        const slim = by === "volume" ? null : slimness(model)[by], value = (/** @type {number} */ row) => (slim ? slim[row] : of(row, "volume"));
         let low = Infinity, high = 0;
-        for (const s of model.shape) { low = Math.min(low, s.shapes.volume[s.block]); high = Math.max(high, s.shapes.volume[s.block]); }
-        /** @type {Extract<Legend, {kind: "scale"}>} */ const scale = { title: "Volume, m³", kind: "scale", low, high: Math.max(high, low * 1.01), log: true, ramp: COOL, none: false };
-        paint((_i, row) => scaled(scale, of(row, "volume")));
+        for (let row = 0; row < model.rows; row++) { low = Math.min(low, value(row)); high = Math.max(high, value(row)); }
+        /** @type {Extract<Legend, {kind: "scale"}>} */ const scale = { title: { volume: "Volume, m³", bulk: "Volume over surface, m", aspect: "Aspect: diameter over thickness" }[by], kind: "scale", low, high: Math.max(high, low * 1.01),
+            log: true, ramp: slim ? by === "bulk" ? [...WARM].reverse() : WARM : COOL, none: false };
+        paint((_i, row) => scaled(scale, value(row)));
         return done(scale);
     }
     const values = column(frame.data, head, by), scale = scaleOf(model, by);

@@ -2,6 +2,7 @@
 // @ts-check
 import { blockColours, contactColours } from "./colours.js";
 import { button, byId, checkBox, choice, element, labelled, slider } from "./dom.js";
+import { makeLists } from "./lists.js";
 import { figure } from "./math.js";
 
 const MOTIONS = [0, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000];
@@ -10,7 +11,7 @@ const STEPS = 100; // of the slider of least displacement: four powers of ten be
 /** @param {import("./page.js").Page} app */
 export function makeControls(app) {
     const { view } = app;
-    /** @type {{node: HTMLElement, update: () => void}[]} */ const all = [];
+    /** @type {{update: () => void}[]} */ const all = [];
     const keep = (/** @type {{node: HTMLElement, update: () => void}} */ c) => { all.push(c); return c.node; };
     /** @param {"edges" | "parallel" | "net" | "dark" | "cut" | "other" | "shadows"} name @param {string} words @param {string} change */
     const check = (name, words, change) => keep(checkBox(words, () => view[name], (on) => { view[name] = on; app.change(change); }));
@@ -19,6 +20,8 @@ export function makeControls(app) {
 
     const least = { get: () => (view.moved > 0 ? Math.max(1, Math.min(STEPS, Math.round(STEPS * (1 + Math.log10(view.moved / app.mostMoved()) / 4)))) : 0),
         set: (/** @type {number} */ v) => { view.moved = v > 0 ? app.mostMoved() * Math.pow(10, 4 * (v / STEPS - 1)) : 0; app.change("pose"); } };
+    const lists = makeLists(app);
+    all.push(lists);
     const id = element("input", { type: "number", min: 0, onkeydown: (/** @type {KeyboardEvent} */ e) => { if (e.key === "Enter") find(); } });
     const find = () => { if (id.value !== "") { app.pick(Number(id.value)); app.zoomPicked(); } };
     const nodes = [
@@ -33,7 +36,7 @@ export function makeControls(app) {
             checks(check("edges", "edges", "look"), check("shadows", "shadows", "look")),
             labelled("block", id, button("Find", find, "Find the block of this number")),
             element("div", { className: "buttons" }, button("Add", () => { if (id.value !== "") app.pickMore(Number(id.value)); }, "Pick the block of this number as well, or let go of it"),
-                button("Hide", () => app.hidePicked(), "Hide the picked blocks"), button("Show all", () => app.showAll()))),
+                button("Hide", () => app.hidePicked(), "Hide the picked blocks"), button("Show all", () => app.showAll())), ...lists.nodes),
         ...group("Section", checks(check("cut", "cut", "pose"), check("other", "other side", "pose")),
             keep(slider("dip", 0, 90, 1, () => view.dip, (v) => { view.dip = v; app.change("cut"); }, () => `${figure(view.dip)}°`)),
             keep(slider("direction", 0, 360, 1, () => view.direction, (v) => { view.direction = v % 360; app.change("cut"); }, () => `${String(Math.round(view.direction)).padStart(3, "0")}°`)),

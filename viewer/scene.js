@@ -16,7 +16,8 @@
 /** @typedef {{of: number, field: number, value: Float32Array}} Extra */
 /** @typedef {{numbers: number[], histories: Float64Array}} Line */
 /** @typedef {{n: number, id: Uint32Array, mode: Uint32Array, factor: Float32Array, direction: Float32Array}} Keys */
-/** @typedef {{head: Head | null, shapes: Shapes[], gone: Uint32Array[], poses: Poses | null, contacts: Contacts | null, extras: Extra[],
+/** @typedef {{total: number, joint: Uint32Array, plane: Uint32Array, block: Uint32Array, normal: Float32Array, point: Float32Array, thickness: Float32Array, limit: Float32Array}} Refused */
+/** @typedef {{head: Head | null, shapes: Shapes[], gone: Uint32Array[], refused: Refused | null, poses: Poses | null, contacts: Contacts | null, extras: Extra[],
  *   line: Line | null, keys: Keys | null, live: Live[], number: number}} FrameData */
 /** @typedef {{state: string, line: string, refused: string}} Live what a run does, and a line that was done or why it was not ("" where there is none) */
 
@@ -177,6 +178,15 @@ function readKeys(c) {
     return k;
 }
 
+/** @param {Columns} c @param {Head} head @returns {Refused} */
+function readRefused(c, head) {
+    const [total, n] = c.u32(2, "counts");
+    const r = { total, joint: c.u32(n, "joint"), plane: c.u32(n, "plane"), block: c.u32(n, "block"), normal: c.f32(3 * n, "normal"), point: c.f32(3 * n, "point"),
+        thickness: c.f32(n, "thickness"), limit: c.f32(n, "limit") };
+    c.below(r.joint, Math.max(1, head.joints.length), "joint");
+    return r;
+}
+
 /** @param {Columns} c @returns {Live} */
 function readLive(c) {
     const h = c.json(), text = (/** @type {any} */ v) => (typeof v === "string" ? v : "");
@@ -190,7 +200,7 @@ function readLive(c) {
  */
 export function readFrame(buffer, head, news) {
     /** @type {FrameData} */
-    const frame = { head: null, shapes: [], gone: [], poses: null, contacts: null, extras: [], line: null, keys: null, live: [], number: -1 };
+    const frame = { head: null, shapes: [], gone: [], refused: null, poses: null, contacts: null, extras: [], line: null, keys: null, live: [], number: -1 };
     if (news) readChunks(news, head, frame);
     readChunks(buffer, frame.head ?? head, frame);
     if (!frame.poses || frame.number < 0) throw new Error("A frame of the scene has no FRAM or no DONE.");
@@ -210,6 +220,7 @@ function readChunks(buffer, head, frame) {
         else if (!head) throw new Error(`The scene begins with the chunk ${name} instead of HEAD.`);
         else if (name === "SHAP") frame.shapes.push(readShapes(c, head));
         else if (name === "GONE") frame.gone.push(c.u32(c.u32(1, "count")[0], "id"));
+        else if (name === "REFU") frame.refused = readRefused(c, head);
         else if (name === "FRAM") frame.poses = readPoses(c);
         else if (name === "CONT") frame.contacts = readContacts(c, head);
         else if (name === "FIEL") frame.extras.push(readExtra(c, frame, head));

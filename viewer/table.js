@@ -3,6 +3,7 @@
 import { plain } from "./colours.js";
 import { button, byId, element } from "./dom.js";
 import { figure, norm, trendPlunge, triple } from "./math.js";
+import { slimness } from "./slimness.js";
 
 const LISTED = 12; // ids of several blocks that are listed
 const KEYS = ["stable", "falls", "slides on one face", "slides on two faces"];
@@ -30,7 +31,7 @@ export function blockRows(model, frame, id) {
         contacts++;
         slipping += k.state[c] === 1 ? 1 : 0;
     }
-    /** @type {[string, string][]} */ const rows = [["group", head.groups[shapes.group[block]] || "none"], ["volume", `${figure(shapes.volume[block])} m³`],
+    /** @type {[string, string][]} */ const rows = [["group", head.groups[shapes.group[block]] || "none"], ["volume", `${figure(shapes.volume[block])} m³`], ["aspect", figure(slimness(model).aspect[row])],
         ["mass", massText(shapes.volume[block] * shapes.density[block])], ["centroid", `${three(p.place).map((v, c) => (v + head.origin[c]).toFixed(2).replace("-", "−")).join(", ")} m`],
         ["displacement", `${figure(norm(moved))} m`], ["direction", norm(moved) > 0 ? directionText(moved) : "–"], ["velocity", `${figure(speed)} m/s`],
         ["turned", `${figure(norm(three(p.rotation)) * 180 / Math.PI)}°`], ["held", p.flags[i] & 1 ? "yes" : "no"], ["unbalanced", `${figure(p.unbalanced[i])} N`]];

@@ -138,6 +138,9 @@ static tl_status put_news(tl_scene *scene, tl_model *m, const tl_html *options, 
         status = tl_scene_shapes(m, found.rows, found.row_count, out);
     if (status == TL_OK && found.gone_count)
         status = put_gone(m, &found, out);
+    if (status == TL_OK && scene->sent.refused != m->record.refused)
+        status = tl_scene_refused(m, out);
+    scene->next.refused = m->record.refused;
     free(found.rows);
     free(found.gone);
     return status;
@@ -196,6 +199,7 @@ void tl_scene_forget(tl_scene *scene)
 {
     scene->sent.count = scene->sent.head.length = 0;
     scene->sent.frames = 0;
+    scene->sent.refused = 0;
 }
 
 static void free_known(tl_scene_known *known)

@@ -20,6 +20,7 @@ typedef struct tl_scene_known {
     uint64_t structure; /* of the model, when `median` was found */
     double median;      /* size of the blocks, m */
     uint32_t frames;
+    size_t refused; /* cuts, of all that were refused since the model was made */
 } tl_scene_known;
 
 /* Whether a run is seen as it goes, and whether it takes commands. */
@@ -36,7 +37,7 @@ typedef struct tl_scene {
 typedef struct tl_scene_facts {
     double time, largest; /* s; largest displacement of a block, m */
     int64_t cycle;
-    size_t news; /* bytes at its beginning of HEAD, SHAP and GONE; 0: it has none of them */
+    size_t news; /* bytes at its beginning of HEAD, SHAP, GONE and REFU; 0: it has none of them */
 } tl_scene_facts;
 
 /* Adds the next frame to `out`. The scene goes on with it only after tl_scene_accept. */

@@ -191,9 +191,47 @@ class Renaming:
                 self.texts[i] = f"{word}:{new}" if i in self.short else new
 
 
+def plain_words(code, used):
+    """A script with `!0` and `!1` for true and false, and names of its own (Math_max) for those functions and numbers of Math in `used`."""
+    pieces = [[kind, text] for kind, text in tokens(code)]
+    for i, (kind, text) in enumerate(pieces):
+        last, after = pieces[i - 1][1] if i else ";", pieces[i + 1][1] if i + 1 < len(pieces) else ";"
+        if kind != "word" or last in ACCESS:
+            continue
+        if text in ("true", "false") and after not in (":", "(", "="):
+            pieces[i][1] = "!0" if text == "true" else "!1"
+            if last == " " and i > 1:
+                pieces[i - 1][1] = ""
+        elif text == "Math" and after == "." and pieces[i + 2][1] in used:
+            pieces[i][1], pieces[i + 1][1], pieces[i + 2][1] = f"Math_{pieces[i + 2][1]}", "", ""
+    return "".join(text for _kind, text in pieces)
+
+
+def mathematics(code):
+    """Functions and numbers of Math that a script names so often that names of its own for them make it shorter."""
+    counts = collections.Counter(re.findall(r"\bMath\.(\w+)", code))
+    gains = {name: (len(name) + 3) * count - len(name) - 4 for name, count in counts.items()}
+    used = sorted(name for name, gain in gains.items() if gain > 0)
+    return used if sum(gains[name] for name in used) > len("let{}=Math;") else []
+
+
+def short_in_programs(code):
+    """A script with other names for what its programs for the picture call u_..., v_..., a_... and o_...: such names have a number, which none of the script's has."""
+    counts = collections.Counter(re.findall(r"\b[uvao]_[a-z]\w*", code))
+    new = {word: f"_{number}" for number, (word, _count) in enumerate(sorted(counts.items(), key=lambda item: (-item[1], item[0])))}
+    if re.search(r"\b_\d", code):
+        return code
+    return re.sub(r"\b[uvao]_[a-z]\w*", lambda match: new[match.group(0)], code)
+
+
 def shortened(code, modules, given):
     """The script with shorter names. `modules` are its modules as they were, and `given` the names at their top level. These become other names of two
     letters or more, the same ones everywhere. Those that are declared within a function or class at the top level become others in it."""
+    used = mathematics(code)
+    code, modules = plain_words(code, used), [plain_words(module, used) for module in modules]
+    if used:
+        code = f"let{{{','.join(f'{name}:Math_{name}' for name in used)}}}=Math;{code}"
+        given = {*given, *(f"Math_{name}" for name in used)}
     pieces = tokens(code)
     uses, parts = Uses(pieces), parts_of(pieces)
     top, own = (set(given) | uses.top) & uses.declared, uses.declared - KNOWN
@@ -214,4 +252,4 @@ def shortened(code, modules, given):
         part.choose(local - kept, fresh_names(taken, 1), 1)
         part.apply()
     whole.apply()
-    return "".join(texts)
+    return short_in_programs("".join(texts))

@@ -57,6 +57,14 @@ SHORT = [("let word=1;use(word,o.word,o?.word,word?.x,...word);", "let aa=1;use(
          ("let screen=1,name=2;f(document,Math.max(unknown,name));", "let screen=1,name=2;f(document,Math.max(unknown,name));"),
          ("let one=(word,{key},...rest)=>word+key+key+key+key+rest;try{one()}catch(error){f(error)}",
           "let ab=(ad,{key:aa},...ac)=>ad+aa+aa+aa+aa+ac;try{ab()}catch(a){f(a)}"),
+         # true and false, what is often used of Math, and names of programs for the picture
+         ("let far=true;f({true:false,a:true,b:o.true},far,far);if(far===false)f(`${true}`,'true',far);function g(){return true}",
+          "let aa=!0;f({true:!1,a:!0,b:o.true},aa,aa);if(aa===!1)f(`${!0}`,'true',aa);function g(){return!0}"),
+         ("let wide=(a,b)=>Math.max(Math.hypot(a,b),Math.hypot(a,1));f(Math.max(1,wide()),Math.max(2,3),o.Math.max(1),Math.round(2),Math.max,Math.max(5));",
+          "let{hypot:ab,max:aa}=Math;let ac=(a,b)=>aa(ab(a,b),ab(a,1));f(aa(1,ac()),aa(2,3),o.Math.max(1),Math.round(2),aa,aa(5));"),
+         ("let text=`uniform float u_size;in vec3 a_place;void main(){float y=u_size;v=a_place*u_size;}`;f(at.u_size,{u_size:1},'u_size');",
+          "let aa=`uniform float _0;in vec3 _1;void main(){float y=_0;v=_1*_0;}`;f(at._0,{_0:1},'_0');"),
+         ("f('u_size',_1);", "f('u_size',_1);"),
          # in a function: no name that it uses from outside is taken
          ("let outer=1,second=2;function f(word){let a=word,b;return()=>{b=a*outer*Math.max(word,x);return{a,word}}}\nf(second,outer);function g(second){return second+outer}",
           "let aa=1,ab=2;function f(b){let a=b,c;return()=>{c=a*aa*Math.max(b,x);return{a,word:b}}}\nf(ab,aa);function g(ab){return ab+aa}")]

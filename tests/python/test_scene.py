@@ -75,7 +75,7 @@ local function frame(m, options)
     end
     local energy = m:energy()
     told:write(text_of { time = m.time, cycle = m.cycles, blocks = blocks, contacts = contacts, kinetic = energy.kinetic,
-        damping = energy.damping, friction = energy.friction }, "\n")
+        damping = energy.damping, friction = energy.friction, refused = talus.report(m).refused_cuts }, "\n")
 end
 
 -- a slope of blocks far from zero, on a plane that is too steep for its friction
@@ -104,6 +104,7 @@ m:cycle(200)
 frame(m, fields)
 m:blocks { id = m:blocks { group = "rock" }[1].id }:hide()
 m:generate("joint", { joint = "new", dip = 70, dip_direction = 20, origin = { far[1] + 4, far[2] + 2, far[3] + 2 } })
+m:generate("joint", { joint = "new", dip = 70, dip_direction = 20, origin = { far[1] + 4, far[2] + 2, far[3] + 2 + 1e-6 } }) -- refused
 m:joint("new", "coulomb", { kn = 1e8, ks = 5e7, friction = 30 })
 m:cycle(100)
 frame(m, { contacts = false })
@@ -241,7 +242,7 @@ class Reader:
     """What a reader knows after some frames."""
 
     def __init__(self):
-        self.head, self.shapes, self.frames = None, {}, 0
+        self.head, self.shapes, self.frames, self.refused = None, {}, 0, []
 
     def read(self, data):
         frame = {"fields": [], "contacts": None, "keys": None, "news": []}
@@ -253,6 +254,15 @@ class Reader:
             elif name == "GONE":
                 for gone in struct.unpack_from(f"<{struct.unpack_from('<I', payload)[0]}I", payload, 4):
                     expect(self.shapes.pop(gone, None), f"GONE: block {gone} was not there")
+            elif name == "REFU":
+                c = Columns(payload)
+                total, n = c.take("I", 2)
+                columns = {of: c.take("I", n) for of in ("joint", "plane", "block")}
+                columns.update({of: c.vectors(n) for of in ("normal", "point")})
+                columns.update({of: c.take("f", n) for of in ("thickness", "limit")})
+                c.end("REFU")
+                self.refused = [{of: column[i] for of, column in columns.items()} for i in range(n)]
+                expect(total >= n, f"REFU: {total} cuts, {n} of them told")
             elif name == "FRAM":
                 frame["time"], frame["cycle"], frame["blocks"] = read_blocks(payload)
             elif name == "CONT":
@@ -272,7 +282,7 @@ class Reader:
                 c.end("KEYS")
             elif expect(name == "DONE", f"a chunk {name}"):
                 expect(struct.unpack("<I", payload)[0] == self.frames, "DONE: another number")
-            if name in ("HEAD", "SHAP", "GONE"):
+            if name in ("HEAD", "SHAP", "GONE", "REFU"):
                 frame["news"].append(name)
         self.frames += 1
         expect([b["id"] for b in frame["blocks"]] == sorted(self.shapes), "the blocks of FRAM are not those of SHAP")
@@ -430,6 +440,15 @@ def check_page(page, folder_text):
     expect(page.names.count("script") == 1 + len(page.frames), "more scripts than one")
 
 
+def check_refused(number, reader, told):
+    expect(len(reader.refused) == len(told) and (number < 3 or told), f"frame {number}: {len(reader.refused)} refused cuts instead of {len(told)}")
+    for got, cut in zip(reader.refused, told):
+        place = [p + o for p, o in zip(got["point"], reader.head["origin"])]
+        expect(f'{reader.head["joints"][got["joint"]]}:{got["plane"]}' == cut["joint"] and got["block"] == cut["block"] and near(got["normal"], cut["normal"], EXACT)
+               and near(place, cut["point"], 1e-5) and near(got["thickness"], cut["thickness"], EXACT * cut["limit"])
+               and near(got["limit"], cut["limit"], EXACT * cut["limit"]), f"frame {number}: a refused cut is {got} instead of {cut}")
+
+
 def main():
     with tempfile.TemporaryDirectory() as folder:
         at = pathlib.Path(folder)
@@ -455,6 +474,7 @@ def main():
         expect(near(float(given["data-largest"]), largest, 1e-9 * largest), f"frame {number}: largest displacement")
         expect(given["data-model"] == str(int(bool(frame["news"]))), f"frame {number}: whether it has news of the model")
         check_frame(number, reader, frame, told[number])
+        check_refused(number, reader, told[number]["refused"])
         if number in (0, 5):
             names = [(h["name"], h["unit"]) for h in reader.head["histories"]]
             expect(names == [("largest", ""), ("pair 1", ""), ("pair 2", ""), ("energy", "J"), ("way 1", "m"), ("way 2", "m"), ("way 3", "m")],

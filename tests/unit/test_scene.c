@@ -217,6 +217,53 @@ TEST(what_has_changed_is_sent_again)
     tl_model_destroy(m);
 }
 
+static float f32(const unsigned char *at)
+{
+    float value;
+    const uint32_t bits = u32(at);
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+TEST(refused_cuts_are_told_when_there_are_more)
+{
+    tl_model *m = empty_model(1);
+    tl_scene scene = {0};
+    frame f = {.count = 0};
+    add_box(m, 0, 4);
+    CHECK_TEXT(next_frame(&f, &scene, m), "HEAD SHAP FRAM LINE DONE");
+    cut(m, "east", 2);
+    cut(m, "thin", 2 + 1e-5); /* a sliver of the eastern half */
+    CHECK_TEXT(next_frame(&f, &scene, m), "HEAD SHAP GONE REFU FRAM LINE DONE");
+    CHECK_INT(first_of(&f, "REFU"), 1);
+    CHECK_INT(length_of(&f, "REFU"), 8 + 44);
+    tl_quality q;
+    CHECK_INT(tl_model_quality(m, &q), TL_OK);
+    CHECK_INT(q.refused_listed, 1);
+    const unsigned char *at = f.payload[3];
+    CHECK_INT(u32(at + 4), 1);
+    CHECK_INT(u32(at + 8), 2);  /* "thin" */
+    CHECK_INT(u32(at + 12), 1); /* its plane */
+    CHECK_INT(u32(at + 16), q.refused_cuts[0].block);
+    CHECK_NEAR(f32(at + 20), 1, 1e-6);                      /* normal */
+    CHECK_NEAR(f32(at + 32), 2 + 1e-5 - m->origin.x, 1e-6); /* point */
+    CHECK_NEAR(f32(at + 44), q.refused_cuts[0].thickness, 1e-11);
+    CHECK_NEAR(f32(at + 48), q.refused_cuts[0].limit, 1e-11);
+    CHECK(f.facts.news > 0);
+    CHECK_TEXT(next_frame(&f, &scene, m), "FRAM LINE DONE");
+    cut(m, "thin", 2 - 1e-5);
+    CHECK_INT(write_frame(&f, &scene, m, NULL), TL_OK); /* not sent: it is told again */
+    CHECK_INT(first_of(&f, "REFU"), 2);
+    CHECK_TEXT(next_frame(&f, &scene, m),
+               "SHAP REFU FRAM LINE DONE"); /* its face takes the joint */
+    CHECK_INT(first_of(&f, "REFU"), 2);
+    tl_scene_forget(&scene);
+    CHECK_TEXT(next_frame(&f, &scene, m), "HEAD SHAP REFU FRAM LINE DONE");
+    free_frame(&f);
+    tl_scene_free(&scene);
+    tl_model_destroy(m);
+}
+
 TEST(an_empty_model_is_a_frame)
 {
     tl_model *m = empty_model(1);
@@ -328,5 +375,5 @@ TEST(what_is_packed_unpacks)
 }
 
 TEST_MAIN(RUN(what_is_sent_once), RUN(what_has_changed_is_sent_again),
-          RUN(an_empty_model_is_a_frame), RUN(fields_have_a_value_for_each),
-          RUN(what_is_packed_unpacks))
+          RUN(refused_cuts_are_told_when_there_are_more), RUN(an_empty_model_is_a_frame),
+          RUN(fields_have_a_value_for_each), RUN(what_is_packed_unpacks))
