@@ -19,7 +19,7 @@ export function named(name) {
 }
 
 /** The part of a convex polygon below a plane. @param {number[][]} corners @param {import("./section.js").Plane} plane */
-function below(corners, plane) {
+export function below(corners, plane) {
     /** @type {number[][]} */ const out = [];
     corners.forEach((a, i) => {
         const b = corners[(i + 1) % corners.length], x = dot(plane.normal, a) - plane.position, y = dot(plane.normal, b) - plane.position;

@@ -11,6 +11,7 @@ import { makeRun } from "./live.js";
 import { takeToken } from "./net.js";
 import { Page } from "./page.js";
 import { showFrame, tightBox } from "./poses.js";
+import { pyramid, touchedFaces } from "./pyramid.js";
 import { CAP_FACE } from "./section.js";
 import { makeStereonet } from "./stereonet.js";
 import { makeTable } from "./table.js";
@@ -73,7 +74,7 @@ document.addEventListener("DOMContentLoaded", async () => {
     try {
         const app = new Page();
         // For scripts and tests: talus.app is the state, talus.ready is kept when the first picture can be drawn.
-        page.talus = { app, toPixel, makeImage: (/** @type {number} */ f) => makeImage(app, f), CAP_FACE, ready: begin(app) };
+        page.talus = { app, toPixel, makeImage: (/** @type {number} */ f) => makeImage(app, f), CAP_FACE, pyramid, touchedFaces, ready: begin(app) };
         await page.talus.ready;
     } catch (error) {
         say(String(/** @type {Error} */ (error).message), true);

@@ -32,6 +32,13 @@ export function unit(a) {
     return length > 0 ? scale(a, 1 / length) : [0, 0, 1];
 }
 
+/** Area times normal of a polygon, counter-clockwise seen against the normal. @param {number[][]} points */
+export function areaOf(points) {
+    let n = [0, 0, 0];
+    for (let i = 2; i < points.length; i++) n = add(n, scale(cross(sub(points[i - 1], points[0]), sub(points[i], points[0])), 0.5));
+    return n;
+}
+
 /** Unit quaternions multiplied: turn by b, then by a. @param {Vec} a @param {Vec} b @returns {number[]} */
 export function turnAfter(a, b) {
     return [a[3] * b[0] + a[0] * b[3] + a[1] * b[2] - a[2] * b[1], a[3] * b[1] - a[0] * b[2] + a[1] * b[3] + a[2] * b[0],

@@ -4,7 +4,7 @@
 
 /** @typedef {{name: string, unit: string, of: string}} Field */
 /** @typedef {{format: number, program: string, title: string, origin: number[], gravity: number[], size: number, groups: string[],
- *   joints: string[], fields: Field[], histories: string[], live: boolean, commands: boolean}} Head */
+ *   joints: string[], friction: number[], fields: Field[], histories: string[], live: boolean, commands: boolean}} Head */
 /** @typedef {{n: number, id: Uint32Array, body: Uint32Array, group: Uint32Array, vertices: Uint32Array, faces: Uint32Array,
  *   volume: Float32Array, density: Float32Array, centroid: Float32Array, vertex: Float32Array, joint: Uint32Array, plane: Uint32Array,
  *   corners: Uint16Array, loop: Uint16Array}} Shapes */
@@ -115,7 +115,7 @@ function readHead(c) {
     return { format: 1, program: String(h.program), title: String(h.title ?? ""), origin: h.origin, gravity: h.gravity, size: h.size,
         groups: names(h.groups, "groups"), joints: names(h.joints, "joints"), histories: names(h.histories ?? [], "histories"),
         fields: fields.map((/** @type {any} */ f) => ({ name: String(f?.name), unit: String(f?.unit ?? ""), of: String(f?.of) })),
-        live: h.live === true, commands: h.commands === true };
+        friction: Array.isArray(h.friction) ? h.friction.map((/** @type {any} */ x) => (Number.isFinite(x) ? x : NaN)) : [], live: h.live === true, commands: h.commands === true };
 }
 
 /** @param {Columns} c @param {Head} head @returns {Shapes} */

@@ -1,9 +1,11 @@
-// Stereonet, equal area, lower hemisphere: joint planes as great circles and poles, motions of the moving blocks, keyblocks.
+// Stereonet, equal area, lower hemisphere: joint planes as great circles and poles, motions of the moving blocks, keyblocks, the circle
+// of friction, and the joint pyramid of the picked block.
 // @ts-check
 import { byId } from "./dom.js";
 import { category } from "./colours.js";
 import { css, inks, penOf } from "./overlay.js";
-import { add, cross, dot, norm, scale, sub, trendPlunge, triple, turned, unit } from "./math.js";
+import { add, areaOf, cross, dot, figure, norm, scale, trendPlunge, triple, turned, unit } from "./math.js";
+import { pyramid, touchedFaces } from "./pyramid.js";
 
 /** @typedef {{joint: number, plane: number, pole: number[], area: number}} JointPlane */
 
@@ -17,11 +19,7 @@ export function jointPlanes(model, frame) {
         const row = frame.rows[i], s = model.shape[row], v = s.shapes.vertex, loop = s.shapes.loop;
         model.eachFace(row, (_f, corner, count, joint, plane) => {
             if (!joint) return;
-            let n = [0, 0, 0];
-            const at = (/** @type {number} */ c) => { const k = 3 * (s.vertex + loop[corner + c]); return [v[k], v[k + 1], v[k + 2]]; };
-            for (let c = 1; c + 1 < count; c++) n = add(n, cross(sub(at(c), at(0)), sub(at(c + 1), at(0))));
-            n = turned(frame.poses.turn, 4 * i, scale(n, 0.5));
-            const key = `${joint}:${plane}`, known = planes.get(key) ?? { joint, plane, pole: [0, 0, 0], area: 0 };
+            const n = turned(frame.poses.turn, 4 * i, areaOf(Array.from({ length: count }, (_p, c) => triple(v, s.vertex + loop[corner + c])))), key = `${joint}:${plane}`, known = planes.get(key) ?? { joint, plane, pole: [0, 0, 0], area: 0 };
             // both sides of a joint count: their normals are opposite
             known.pole = add(known.pole, dot(known.pole, n) < 0 || (norm(known.pole) === 0 && n[2] < 0) ? scale(n, -1) : n);
             known.area += norm(n) / 2;
@@ -42,9 +40,8 @@ function density(poles, side) {
     const out = new Float32Array(side * side), kappa = 2 * (1 + poles.length / 9);
     for (let y = 0; y < side; y++) {
         for (let x = 0; x < side; x++) {
-            const u = 2 * x / (side - 1) - 1, v = 2 * y / (side - 1) - 1, r2 = u * u + v * v;
-            if (r2 > 1) continue;
-            const s = Math.sqrt(2 - r2), d = [u * s, -v * s, r2 - 1];
+            const d = fromNet(2 * x / (side - 1) - 1, 2 * y / (side - 1) - 1);
+            if (!d) continue;
             for (const p of poles) out[y * side + x] += Math.exp(kappa * (Math.abs(dot(p, d)) - 1));
             out[y * side + x] *= kappa / poles.length;
         }
@@ -52,9 +49,55 @@ function density(poles, side) {
     return out;
 }
 
+/** The friction of a joint, or of all joints with faces where they agree; else NaN. @param {import("./scene.js").Head} head @param {JointPlane[]} planes @param {string} name */
+function frictionOf(head, planes, name) {
+    const all = new Set(name ? [head.friction[head.joints.indexOf(name)]] : planes.map((p) => head.friction[p.joint]));
+    return all.size === 1 ? [...all][0] ?? NaN : NaN;
+}
+
+/** A direction on the lower hemisphere at a place of the net, in radii; null beyond it. @param {number} u @param {number} v */
+function fromNet(u, v) {
+    const r2 = u * u + v * v, s = Math.sqrt(2 - r2);
+    return r2 > 1 ? null : [u * s, -v * s, r2 - 1];
+}
+
+/** The directions of a joint pyramid: shaded, the upward ones hatched, and bounded, degenerate ones by their bounds alone.
+ * @param {CanvasRenderingContext2D} pen @param {import("./pyramid.js").Pyramid} cone @param {number[][]} normals @param {number} ox @param {number} oy @param {number} R */
+function drawPyramid(pen, cone, normals, ox, oy, R) {
+    for (const up of [false, true]) {
+        for (let y = Math.ceil(-R); y < R; y += up ? 4 : 1) {
+            let from = NaN;
+            for (let x = Math.ceil(-R); x <= R + 1; x++) {
+                const d = fromNet(x / R, y / R), inside = d !== null && cone.holds(up ? scale(d, -1) : d);
+                if (inside && isNaN(from)) from = x;
+                if (inside || isNaN(from)) continue;
+                pen.globalAlpha = up ? 0.9 : 0.3;
+                pen.fillRect(ox + from, oy + y, x - from, 1);
+                from = NaN;
+            }
+        }
+    }
+    pen.globalAlpha = 1;
+    for (const n of normals) {
+        const a = unit(Math.abs(n[2]) < 0.9 ? cross(n, [0, 0, 1]) : cross(n, [1, 0, 0])), b = cross(n, a);
+        for (let i = 0; i < 360; i++) {
+            const t = i * Math.PI / 180, d = add(scale(a, Math.cos(t)), scale(b, Math.sin(t)));
+            if (!cone.holds(d) || (d[2] > 0 && i % 6 > 2)) continue;
+            const p = onNet(d);
+            pen.fillRect(ox + R * p[0] - 1, oy + R * p[1] - 1, 2, 2);
+        }
+    }
+    for (const d of cone.edges) {
+        const p = onNet(d);
+        pen.beginPath();
+        pen.arc(ox + R * p[0], oy + R * p[1], 2.5, 0, 7);
+        d[2] > 0 ? pen.stroke() : pen.fill();
+    }
+}
+
 /** @param {import("./page.js").Page} app */
 export function makeStereonet(app) {
-    const box = byId("net"), canvas = /** @type {HTMLCanvasElement} */ (box.querySelector("canvas")), text = byId("nettext");
+    const box = byId("net"), canvas = /** @type {HTMLCanvasElement} */ (box.querySelector("canvas")), text = byId("nettext"), rubbed = byId("netfriction");
     /** @type {{x: number, y: number, joint: number, words: string}[]} */ let marks = [];
     let chosen = -1;
 
@@ -107,11 +150,19 @@ export function makeStereonet(app) {
             }
             pen.globalAlpha = 1;
         }
+        const picked = app.picks(), normals = picked.length === 1 ? touchedFaces(app.model, frame, picked[0]) : null, cone = normals && pyramid(normals);
+        pen.fillStyle = pen.strokeStyle = c.accent;
+        if (cone && !cone.empty) drawPyramid(pen, cone, normals ?? [], ox, oy, R);
+        const phi = frictionOf(frame.head, planes, app.view.joint);
         pen.strokeStyle = c.ink;
         pen.lineWidth = 1.2;
-        pen.beginPath();
-        pen.arc(ox, oy, R, 0, 7);
-        pen.stroke();
+        for (const [angle, dash] of /** @type {[number, number[]][]} */ ([[90, []], [90 - phi, []], [phi, [3, 3]]])) {
+            pen.beginPath();
+            pen.setLineDash(dash);
+            if (angle > 0) pen.arc(ox, oy, R * Math.sqrt(2) * Math.sin(angle * Math.PI / 360), 0, 7);
+            pen.stroke();
+        }
+        pen.setLineDash([]);
         pen.fillStyle = c.ink;
         pen.font = "600 11px system-ui, sans-serif";
         pen.textAlign = "center";
@@ -164,8 +215,13 @@ export function makeStereonet(app) {
             pen.strokeStyle = c.ink;
             pen.strokeRect(at[0] - 4, at[1] - 4, 8, 8);
         }
+        const body = picked.length !== 1 ? "" : frame.poses.id.indexOf(picked[0]) < 0 ? "" : !normals?.length ? `Block ${picked[0]} lies on no other.` : cone?.empty ? `Block ${picked[0]} cannot move: its joint pyramid is empty.` :
+            `Block ${picked[0]} can move where it is shaded, upward where hatched.`;
+        const rub = phi >= 0 ? `Friction ${figure(phi)}°: steeper motions lie in the circle, poles of steeper planes out of the dashed one.` : "";
         const words = `${planes.length} joint planes, ${moving} moving blocks${keys ? `, ${keys.n} keyblocks` : ""}`;
-        canvas.setAttribute("aria-label", `Stereonet, lower hemisphere, equal area: ${words}. Arrow keys choose a pole.`);
-        if (!app.view.joint && chosen < 0) text.textContent = keys?.n ? "× motion, □ keyblock, ● pole" : "× motion, ● pole; lower hemisphere";
+        canvas.setAttribute("aria-label", `Stereonet, lower hemisphere, equal area: ${words}. ${rub} ${body} Arrow keys choose a pole.`);
+        canvas.title = rub;
+        if (!app.view.joint && chosen < 0) text.textContent = body || (keys?.n ? "× motion, □ keyblock, ● pole" : "× motion, ● pole; lower hemisphere");
+        rubbed.textContent = rub;
     } };
 }

@@ -1,6 +1,9 @@
 /* scene_head.c - HEAD: what does not change with the blocks, as JSON. */
+#include "base/params.h"
 #include "io/json.h"
 #include "io/scene_parts.h"
+
+#include <string.h>
 
 static void put_vector(tl_piece *to, tl_vec3 v)
 {
@@ -51,6 +54,47 @@ static void put_history(void *user, const char *name, const char *unit, double v
     l->begun = true;
 }
 
+/* The friction angle of a law, degrees; NaN where it has none. */
+static double friction_of(const tl_law *law)
+{
+    for (uint32_t i = 0; law && i < law->kind->param_count; i++) {
+        tl_param p = tl_param_row(law->kind->params, i, law->kind->param_stride);
+        double value;
+        if (p.type != TL_PARAM_REAL || strcmp(p.name, "friction") != 0 ||
+            strcmp(p.unit, "deg") != 0)
+            continue;
+        memcpy(&value, (const char *)law->params + p.offset, sizeof value);
+        return value;
+    }
+    return NAN;
+}
+
+/* That of all planes of a joint; NaN where they differ. */
+static double friction_of_joint(const tl_model *m, uint32_t joint)
+{
+    double friction = friction_of(tl_law_of(m, (tl_tag){joint, 0}));
+    for (size_t i = 0; i < m->joint_law_count; i++) {
+        const tl_law *law = &m->joint_laws[i];
+        if (law->tag.joint == joint && law->tag.plane != 0 && !(friction_of(law) == friction))
+            return NAN;
+    }
+    return friction;
+}
+
+static void put_friction(tl_piece *to, const tl_model *m)
+{
+    tl_json_put(to, ", \"friction\": [null");
+    for (size_t i = 0; i < m->joint_count; i++) {
+        double friction = friction_of_joint(m, (uint32_t)i + 1);
+        tl_json_put(to, ", ");
+        if (isfinite(friction))
+            tl_json_number(to, friction);
+        else
+            tl_json_put(to, "null");
+    }
+    tl_json_put(to, "]");
+}
+
 void tl_scene_head(const tl_model *m, const tl_html *options, const tl_scene *scene, tl_piece *text)
 {
     text->length = 0;
@@ -73,6 +117,7 @@ void tl_scene_head(const tl_model *m, const tl_html *options, const tl_scene *sc
         tl_json_shown(text, m->joints[i].name);
     }
     tl_json_put(text, "]");
+    put_friction(text, m);
     put_fields(text, options);
     tl_json_put(text, ", \"histories\": [");
     tl_scene_histories(m, put_history, &(list){text, false});

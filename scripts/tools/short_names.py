@@ -16,6 +16,8 @@ BEFORE_REGULAR = "(,=:&|!?;{["
 BEFORE_BLOCK = frozenset([")", "=>", ";", "{", "}", "else", "try", "finally", "do", "catch"])  # braces after these hold statements
 BEFORE_CONDITION = frozenset(["if", "for", "while", "switch", "with"])
 ACCESS = frozenset([".", "?.", "#", "get", "set", "static"])
+# Whose functions and numbers need not know whose they are, and what has them: of gl only the numbers, in capitals.
+OWNERS = {"Math": "Math", "Number": "Number", "Object": "Object", "gl": "globalThis.WebGL2RenderingContext??{}"}
 # Words of the language, and those that a browser defines and a script could use without saying so.
 KNOWN = frozenset("""
     arguments as async await break case catch class const continue debugger default delete do else enum eval export extends false finally for
@@ -192,7 +194,7 @@ class Renaming:
 
 
 def plain_words(code, used):
-    """A script with `!0` and `!1` for true and false, and names of its own (Math_max) for those functions and numbers of Math in `used`."""
+    """A script with `!0`, `!1` and `1/0` for true, false and Infinity, and names of its own (Math_max) for those functions and numbers in `used`, as ("Math", "max")."""
     pieces = [[kind, text] for kind, text in tokens(code)]
     for i, (kind, text) in enumerate(pieces):
         last, after = pieces[i - 1][1] if i else ";", pieces[i + 1][1] if i + 1 < len(pieces) else ";"
@@ -202,17 +204,19 @@ def plain_words(code, used):
             pieces[i][1] = "!0" if text == "true" else "!1"
             if last == " " and i > 1:
                 pieces[i - 1][1] = ""
-        elif text == "Math" and after == "." and pieces[i + 2][1] in used:
-            pieces[i][1], pieces[i + 1][1], pieces[i + 2][1] = f"Math_{pieces[i + 2][1]}", "", ""
+        elif text == "Infinity" and last not in ("*", "/", "%") and after not in (":", "(", "=", "*", "/", "%", "."):
+            pieces[i][1] = "1/0"
+        elif after == "." and (text, pieces[i + 2][1]) in used:
+            pieces[i][1], pieces[i + 1][1], pieces[i + 2][1] = f"{text}_{pieces[i + 2][1]}", "", ""
     return "".join(text for _kind, text in pieces)
 
 
-def mathematics(code):
-    """Functions and numbers of Math that a script names so often that names of its own for them make it shorter."""
-    counts = collections.Counter(re.findall(r"\bMath\.(\w+)", code))
-    gains = {name: (len(name) + 3) * count - len(name) - 4 for name, count in counts.items()}
+def often_used(code, owner):
+    """Functions and numbers of Math, say, that a script names so often that names of its own for them make it shorter."""
+    counts = collections.Counter(re.findall(rf"\b{owner}\.({'[A-Z][A-Z0-9_]+' if owner == 'gl' else '[A-Za-z]+'})\b", code))
+    gains = {name: (len(owner) + len(name) - 1) * count - len(name) - 4 for name, count in counts.items()}
     used = sorted(name for name, gain in gains.items() if gain > 0)
-    return used if sum(gains[name] for name in used) > len("let{}=Math;") else []
+    return [(owner, name) for name in used] if sum(gains[name] for name in used) > len(f"let{{}}={OWNERS[owner]};") else []
 
 
 def short_in_programs(code):
@@ -227,11 +231,13 @@ def short_in_programs(code):
 def shortened(code, modules, given):
     """The script with shorter names. `modules` are its modules as they were, and `given` the names at their top level. These become other names of two
     letters or more, the same ones everywhere. Those that are declared within a function or class at the top level become others in it."""
-    used = mathematics(code)
+    lists = {owner: often_used(code, owner) for owner in OWNERS}
+    used = {pair for pairs in lists.values() for pair in pairs}
     code, modules = plain_words(code, used), [plain_words(module, used) for module in modules]
-    if used:
-        code = f"let{{{','.join(f'{name}:Math_{name}' for name in used)}}}=Math;{code}"
-        given = {*given, *(f"Math_{name}" for name in used)}
+    for owner, pairs in lists.items():
+        if pairs:
+            code = f"let{{{','.join(f'{name}:{owner}_{name}' for _owner, name in pairs)}}}={OWNERS[owner]};{code}"
+    given = {*given, *(f"{owner}_{name}" for owner, name in used)}
     pieces = tokens(code)
     uses, parts = Uses(pieces), parts_of(pieces)
     top, own = (set(given) | uses.top) & uses.declared, uses.declared - KNOWN

@@ -105,6 +105,7 @@ frame(m, fields)
 m:blocks { id = m:blocks { group = "rock" }[1].id }:hide()
 m:generate("joint", { joint = "new", dip = 70, dip_direction = 20, origin = { far[1] + 4, far[2] + 2, far[3] + 2 } })
 m:generate("joint", { joint = "new", dip = 70, dip_direction = 20, origin = { far[1] + 4, far[2] + 2, far[3] + 2 + 1e-6 } }) -- refused
+m:joint("L:1", "coulomb", { kn = 1e8, ks = 5e7, friction = 28 })
 m:joint("new", "coulomb", { kn = 1e8, ks = 5e7, friction = 30 })
 m:cycle(100)
 frame(m, { contacts = false })
@@ -474,6 +475,8 @@ def main():
         expect(near(float(given["data-largest"]), largest, 1e-9 * largest), f"frame {number}: largest displacement")
         expect(given["data-model"] == str(int(bool(frame["news"]))), f"frame {number}: whether it has news of the model")
         check_frame(number, reader, frame, told[number])
+        frictions = [None, 25, 25] + ([None, 30] if number > 2 else [25])  # of L, one plane has another one
+        expect(reader.head["friction"] == frictions, f"frame {number}: frictions {reader.head['friction']}")
         check_refused(number, reader, told[number]["refused"])
         if number in (0, 5):
             names = [(h["name"], h["unit"]) for h in reader.head["histories"]]
