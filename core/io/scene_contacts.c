@@ -47,22 +47,6 @@ static void pick(contacts *c, int32_t choice)
 
 /* ---------------------------------------------------------------- columns ---------------- */
 
-/* The state "slip" of the contact's law, m, the mean over its points, weighted by their areas. Where it has none: how far its blocks
- * have moved along it against each other. */
-static double slip_of(const contacts *c, uint32_t row, const tl_contact_facts *facts)
-{
-    for (size_t i = 0; i < c->states.count; i++) {
-        const tl_law_state *state = &c->states.at[i];
-        double value[3];
-        if (state->width != 1 || strcmp(state->state->name, "slip") != 0 ||
-            !tl_law_states_has(c->model, &c->states, state, row))
-            continue;
-        tl_law_state_of_contact(c->model, &c->states, state, row, value);
-        return value[0];
-    }
-    return tl_v3_norm(facts->shear_displacement);
-}
-
 static void put_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
 {
     (void)chunk, (void)thread;
@@ -81,7 +65,8 @@ static void put_range(void *user, size_t begin, size_t end, size_t chunk, unsign
         tl_put_vec3(c->force + 12 * i, force);
         tl_put_f32(c->area + 4 * i, facts->area);
         tl_put_f32(c->gap + 4 * i, facts->gap);
-        tl_put_f32(c->slip + 4 * i, slip_of(c, row, facts));
+        tl_put_f32(c->slip + 4 * i,
+                   tl_law_states_slip(c->model, &c->states, row, facts->shear_displacement));
         tl_put_u8(c->state + i, (uint32_t)facts->state);
     }
 }

@@ -50,6 +50,17 @@ static bool make_memory(tl_vtk_columns *c)
     return true;
 }
 
+/* A state that is called as one of the given columns is called law_NAME here. */
+static void rename_states(tl_vtk_columns *c, const tl_vtk_column *list)
+{
+    for (size_t s = 0; s < c->states.count; s++)
+        for (size_t k = 0; k < c->given; k++) {
+            tl_law_state *state = &c->states.at[s];
+            if (list[k].name && strcmp(list[k].name, state->name) == 0)
+                snprintf(state->name, sizeof state->name, "law_%s", list[k].name);
+        }
+}
+
 tl_status tl_vtk_columns_make(tl_vtk_columns *columns, tl_model *m, const tl_vtk_column *list,
                               size_t given, const char *state_type, size_t rows,
                               const tl_extra_field *fields, size_t field_count)
@@ -57,6 +68,7 @@ tl_status tl_vtk_columns_make(tl_vtk_columns *columns, tl_model *m, const tl_vtk
     *columns = (tl_vtk_columns){
         .given = given, .rows = rows, .fields = fields, .field_count = field_count};
     tl_status status = tl_law_states_list(m, &columns->states);
+    rename_states(columns, list);
     for (size_t k = 0; status == TL_OK && k < given; k++)
         if (list[k].name)
             status = tl_extra_fields_differ(CONTEXT, fields, field_count, list[k].name, &m->error);

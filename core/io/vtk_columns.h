@@ -12,7 +12,7 @@ typedef struct tl_vtk_column {
     unsigned width;
 } tl_vtk_column;
 
-/* Given columns, after them one for each state of the laws, and then one for each field that the program adds. Zero at first. */
+/* Given columns, after them one for each state of the laws (law_NAME where a given one has its name), and then one for each field that the program adds. Zero at first. */
 typedef struct tl_vtk_columns {
     tl_vtk_column *list;
     size_t given, count, rows;

@@ -10,8 +10,9 @@
  *            normal_stress, shear_stress   Pa      normal_force   N, compression positive
  *            shear_force         N, vector, on block_b
  *            shear_displacement  m, vector: of block_b against block_id since creation or the last reset
- *            slip      its length, m               area   m2 of the contact, of the face where there is none
- *            and each state of the laws by its name; NaN where there is none
+ *            slip      m, the state "slip" of the contact's law, where it keeps one, else the length of shear_displacement
+ *            area      m2 of the contact, of the face where there is none
+ *            and each state of the laws by its name, one called as an array above with law_ in front; NaN where there is none
  * Point data displacement  m, that of block_id, as in the file of the blocks
  *
  * Without contact, stresses, forces and slip are 0. */
@@ -177,7 +178,8 @@ static void fill_contact(const joints *j, size_t i)
     tl_vtk_set_real(c, NORMAL_FORCE, i, facts.normal_force);
     tl_vtk_set_vec3(c, SHEAR_FORCE, i, facts.shear_force);
     tl_vtk_set_vec3(c, SHEAR_DISPLACEMENT, i, facts.shear_displacement);
-    tl_vtk_set_real(c, SLIP, i, tl_v3_norm(facts.shear_displacement));
+    tl_vtk_set_real(c, SLIP, i,
+                    tl_law_states_slip(j->model, &c->states, row, facts.shear_displacement));
     tl_vtk_set_real(c, AREA, i, facts.area);
     tl_vtk_set_rest(c, j->model, i, row, j->contact[i]);
 }

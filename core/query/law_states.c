@@ -177,3 +177,18 @@ void tl_law_state_of_contact(const tl_model *m, const tl_law_states *states, con
     for (size_t w = 0; w < of->width; w++)
         value[w] = column == TL_NO_ROW ? NAN : adds ? sum[w] : area > 0 ? sum[w] / area : 0;
 }
+
+double tl_law_states_slip(const tl_model *m, const tl_law_states *states, uint32_t contact,
+                          tl_vec3 shear_displacement)
+{
+    for (size_t i = 0; i < states->count; i++) {
+        const tl_law_state *state = &states->at[i];
+        double value[3];
+        if (state->width != 1 || strcmp(state->state->name, "slip") != 0 ||
+            !tl_law_states_has(m, states, state, contact))
+            continue;
+        tl_law_state_of_contact(m, states, state, contact, value);
+        return value[0];
+    }
+    return tl_v3_norm(shear_displacement);
+}

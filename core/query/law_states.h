@@ -30,5 +30,9 @@ void tl_law_state_at_point(const tl_model *m, const tl_law_states *states, const
  * area. */
 void tl_law_state_of_contact(const tl_model *m, const tl_law_states *states, const tl_law_state *of,
                              uint32_t contact, double value[3]);
+/* Slip of a contact, m, as pages and files tell it: its law's state "slip" or, where the law keeps none, the length of
+ * `shear_displacement`, how far its blocks have moved along it against each other. */
+double tl_law_states_slip(const tl_model *m, const tl_law_states *states, uint32_t contact,
+                          tl_vec3 shear_displacement);
 
 #endif

@@ -152,6 +152,24 @@ check.near(cells("slip", "f")[1], math.sqrt(slip[1] ^ 2 + slip[2] ^ 2 + slip[3] 
 check.near(cells("normal_stress", "f")[1], contact.normal_stress, 1e-7 * contact.normal_stress)
 check.near(cells("area", "f")[2], 1, 1e-7)
 
+-- Where a law keeps a slip of its own, the joints show that one: it grows whichever way the block moves. Where a law keeps none, how far the
+-- block has moved.
+slide:joint("J", "slip_weakening", { kn = 1e10, ks = 1e10, friction = 10, distance = 1e-3 })
+slide:solve { max_time = 0.005, ratio = 0 }
+slide:blocks():reset_displacement()
+slide:solve { max_time = 0.001, ratio = 0 }
+slide:write_vtk(stem .. "_slip", { blocks = false, contacts = false })
+text = content_of(stem .. "_slip_joints_000000.vtk")
+polygons = tonumber(text:match "POLYGONS (%d+)")
+contact = slide:contacts()[1]
+local kept, moved = contact.states.slip, contact.shear_displacement
+check.holds(kept > 2 * math.sqrt(moved[1] ^ 2 + moved[2] ^ 2 + moved[3] ^ 2), "the law's slip is not the motion")
+check.near(cells("slip", "f")[1], kept, 1e-7 * kept)
+check.near(cells("law_slip", "f")[1], kept, 1e-7 * kept)
+check.equal(cells("slip", "f")[2], 0)
+check.holds(cells("law_slip", "f")[2] ~= cells("law_slip", "f")[2], "a face without contact has no state")
+check.equal(select(2, text:gsub("\nslip %d+ %d+ %a+\n", "")), 1)
+
 -- ---------------------------------------------------------------- fields of a script
 
 -- Numbers of blocks and of contacts, by the name of a field and by functions.
