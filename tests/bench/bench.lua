@@ -14,7 +14,7 @@ bench.PHASES = { "detect", "timestep", "laws", "gather", "damping", "move", "ene
 -- A repetition takes at least this long (s): thousands of ticks of os.clock.
 local LEAST = 0.2
 
-local COLUMNS = { "workload", "size", "blocks", "contacts", "face_contacts", "threads", "reuse",
+local COLUMNS = { "workload", "size", "blocks", "contacts", "face_contacts", "points", "threads", "reuse",
     "rate", "unit", "block_steps_per_s", "ratio" }
 for _, phase in ipairs(bench.PHASES) do
     COLUMNS[#COLUMNS + 1] = phase .. "_ns" -- a contact update
@@ -117,7 +117,7 @@ function bench.measure(model, name, options)
     model.reuse_geometry = name.reuse == "on"
     local warm = time(model, options.warm or 5) / (options.warm or 5)
     local steps = options.steps or math.max(1, math.ceil(LEAST / warm))
-    local seconds, contacts, rates, phases, ratio = {}, {}, {}, {}, nil
+    local seconds, contacts, points, rates, phases, ratio = {}, {}, {}, {}, {}, nil
     local loaded = model:profile().loaded
     for i = 1, options.reps do
         model:profile(true)
@@ -126,6 +126,7 @@ function bench.measure(model, name, options)
         local cost = model:profile()
         seconds[i] = taken / steps
         contacts[i] = (loaded + cost.loaded) / 2
+        points[i] = cost.points
         rates[i] = contacts[i] / seconds[i]
         loaded = cost.loaded
         for _, phase in ipairs(bench.PHASES) do
@@ -137,7 +138,7 @@ function bench.measure(model, name, options)
     model:profile(false)
     local row = { workload = name.workload, size = name.size, blocks = blocks,
         contacts = math.floor(median(contacts) + 0.5), face_contacts = name.face_contacts,
-        threads = model.threads, reuse = name.reuse, rate = median(rates), unit = "contacts/s",
+        points = math.floor(median(points) + 0.5), threads = model.threads, reuse = name.reuse, rate = median(rates), unit = "contacts/s",
         block_steps_per_s = blocks / median(seconds), ratio = ratio }
     bench.weigh(row, model, blocks)
     for _, phase in ipairs(bench.PHASES) do

@@ -1,8 +1,10 @@
 -- collapse.lua - the pile of pile.lua when the walls around it are taken away: it falls apart on a wide floor.
 --
 --     talus tests/bench/collapse.lua file=pile.json threads=1,2
+--     talus tests/bench/collapse.lua file=pile.json write=collapse.json
 --
--- `file` is what pile.lua has written. Undamped, 1500 steps after the first 500.
+-- `file` is what pile.lua has written. Undamped, 1500 steps after the first 500. With `write` the blocks are written as they
+-- stand when the walls have gone, and nothing is measured.
 package.path = (arg[0]:match "^(.*)/" or ".") .. "/?.lua;" .. package.path
 local talus = require "talus"
 local bench = require "bench"
@@ -30,7 +32,11 @@ function collapse.build(file, threads)
 end
 
 function collapse.main()
-    local given = bench.arguments { file = "pile.json", threads = "1" }
+    local given = bench.arguments { file = "pile.json", threads = "1", write = "" }
+    if given.write ~= "" then
+        collapse.build(given.file, 1):write_blocks(given.write)
+        return
+    end
     for _, threads in ipairs(bench.list(given.threads)) do
         local function build()
             return collapse.build(given.file, threads)

@@ -71,8 +71,8 @@ function pile.laws(model)
     model:damping("local", { alpha = DAMPING })
 end
 
--- Drops the blocks and waits until they lie still.
-function pile.drop(count, threads)
+-- The blocks before they fall.
+function pile.hang(count, threads)
     math.randomseed(SEED)
     local model = talus.model { threads = threads }
     local side = math.max(2, math.floor((count / FULL) ^ (1 / 3) + 0.5))
@@ -84,6 +84,12 @@ function pile.drop(count, threads)
         model:generate("polyhedron", { density = DENSITY, group = "pile",
             vertices = corners { (x + 0.5) * APART, (y + 0.5) * APART, (z + 0.6) * APART } })
     end
+    return model
+end
+
+-- Drops the blocks and waits until they lie still.
+function pile.drop(count, threads)
+    local model = pile.hang(count, threads)
     pile.laws(model)
     local pieces = model:blocks { group = "pile" }
     local function run_until(speed)
