@@ -4,7 +4,7 @@
     tests/bench/run.py [--quick] [--renew] [--build FOLDER] [NAME...]
 
 NAME is a job below (limit wall bond pile rock collapse slope shake falling consolidate edits output examples yade
-million cuts); without names all run. --quick takes smaller models. --renew writes docs/performance/MACHINE.csv and
+beside million cuts); without names all run. --quick takes smaller models. --renew writes docs/performance/MACHINE.csv and
 the tables of docs/performance.md from the figures of this run; --page writes the tables from the CSV files there
 are.
 
@@ -14,6 +14,7 @@ is "workload"); what else it prints is let through. A row has any of these:
     workload, size            what was done
     blocks, contacts          free blocks; contacts that carry a force
     face_contacts             those of them over a face
+    points                    contact points
     threads, reuse            "on", "off" or nothing
     rate, unit                the figure: contacts/s, s, GB/s, ...
     block_steps_per_s         blocks times steps over seconds
@@ -28,7 +29,6 @@ import datetime
 import os
 import pathlib
 import resource
-import shutil
 import subprocess
 import sys
 import time
@@ -37,6 +37,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 BENCH = pathlib.Path("tests/bench")
 sys.path.insert(0, str(ROOT / BENCH))
 
+import peers  # noqa: E402
 import table  # noqa: E402
 
 # Share of the machine's memory that a model may take, by what a smaller one takes a block: laying contacts out
@@ -86,8 +87,9 @@ class Runner:
         self.talus = build / "talus"
         self.rows = []
 
-    def run(self, *command, env=None, cold=1):
-        """One program's rows; a row without a figure gets the median time of the whole process."""
+    def run(self, *command, env=None, cold=1, keep=True):
+        """One program's rows, which belong to the run's figures unless `keep` is false; a row without a figure gets the median
+        time of the whole process."""
         times = []
         for _ in range(cold):
             began = time.perf_counter()
@@ -103,11 +105,11 @@ class Runner:
             if not row.get("rate") and row.get("unit") == "s":
                 row["rate"] = f"{sorted(times)[len(times) // 2]:.4g}"
             print("    " + table.line(row), flush=True)
-        self.rows += rows
+        self.rows += rows if keep else []
         return rows
 
-    def script(self, name, *arguments, cold=1):
-        return self.run(self.talus, "--quiet", BENCH / f"{name}.lua", *arguments, cold=cold)
+    def script(self, name, *arguments, cold=1, keep=True):
+        return self.run(self.talus, "--quiet", BENCH / f"{name}.lua", *arguments, cold=cold, keep=keep)
 
     def program(self, name, *arguments):
         return self.run(self.build / "tests" / "bench" / name, *arguments)
@@ -196,23 +198,11 @@ def examples(r):
 
 
 def yade(r):
-    """The same blocks in Yade's polyhedra, where Debian's package is there."""
-    program = shutil.which("yade-double") or shutil.which("yade")
-    if not program:
-        print("    no yade here (Debian: apt-get install yade)")
-        return
-    count, path = pile_file(r)
-    cases = [("wall", 5, 10), ("bond", 10, 5)] if r.quick else [("wall", 5, 20), ("wall", 10, 5), ("wall", 20, 2),
-                                                                ("bond", 10, 10)]
-    for layout, n, steps in cases:
-        blocks = r.out / f"{layout}_{n}.json"
-        r.script("wall", f"layout={'bond' if layout == 'bond' else 'lattice'}", f"n={n}", f"write={blocks}")
-        r.run(program, "-n", "-x", "-j1", BENCH / "yade_blocks.py",
-              env={"BLOCKS": str(blocks), "WORKLOAD": f"yade {layout}", "SIZE": str(n ** 3), "STEPS": str(steps),
-                   "VERLET": "0.001" if layout == "bond" else "0.01", "OMP_NUM_THREADS": "1"})
-    r.run(program, "-n", "-x", "-j1", BENCH / "yade_blocks.py",
-          env={"BLOCKS": str(path), "WORKLOAD": "yade pile", "SIZE": str(count), "STEPS": "3" if r.quick else "10",
-               "DT": "5e-4", "DAMPING": "0.7", "VERLET": "0.02", "OMP_NUM_THREADS": "1"})
+    peers.yade(r, pile_file)
+
+
+def beside(r):
+    peers.beside(r, pile_file)
 
 
 def million(r):
@@ -228,7 +218,7 @@ def cuts(r):
 
 
 JOBS = {job.__name__: job for job in (limit, wall, bond, pile, rock, collapse, slope, shake, falling, consolidate, edits, output,
-                                      examples, yade, million, cuts)}
+                                      examples, yade, beside, million, cuts)}
 
 
 # ---------------------------------------------------------------------- figures

@@ -9,6 +9,8 @@ MEMORY = ("total", "points", "contacts", "facets", "pairs", "broad", "index", "s
           "shapes", "other")
 # Contacts up to which the columns of a step fit into a cache of 1 or 2 MiB.
 IN_CACHE = 30000
+# First words of workloads that have tables of their own.
+APART = ("limit", "yade", "talus", "rockable", "box3d")
 BEGIN, END = "<!-- Figures: begin. Written by tests/bench/run.py. -->", "<!-- Figures: end. -->"
 
 
@@ -69,7 +71,7 @@ def workload_table(rows):
             "B/block"]
     body = []
     for row in rows:
-        if row.get("unit") != "contacts/s" or row["workload"].split()[0] in ("limit", "yade"):
+        if row.get("unit") != "contacts/s" or row["workload"].split()[0] in APART:
             continue
         body.append([row["workload"], row.get("blocks", ""), row.get("contacts", ""), row.get("threads", ""),
                      row.get("reuse", ""), short(number(row, "rate")), short(number(row, "block_steps_per_s")),
@@ -81,7 +83,8 @@ def workload_table(rows):
 def memory_table(rows):
     """Bytes a block by what they are for."""
     body = [[row["workload"], row["blocks"], *(short(number(row, f"{part}_bytes")) for part in MEMORY)]
-            for row in rows if row.get("reuse") == "on" and row["threads"] == "1" and row.get("total_bytes")]
+            for row in rows if row.get("reuse") == "on" and row["threads"] == "1" and row.get("total_bytes")
+            and row["workload"].split()[0] not in APART]
     return ["B/block", "blocks", *MEMORY], body
 
 
@@ -95,7 +98,7 @@ def figure_table(rows):
     return (["workload", "what", "blocks", "threads", "figure", "unit"],
             [[row["workload"], row.get("size", ""), row.get("blocks", ""), row.get("threads", ""),
               short(number(row, "rate"), 4), row["unit"]]
-             for row in rows if row.get("unit") != "contacts/s" and not row["workload"].startswith("limit ")])
+             for row in rows if row.get("unit") != "contacts/s" and row["workload"].split()[0] not in APART])
 
 
 def peer_table(rows):
@@ -115,10 +118,53 @@ def peer_table(rows):
              "without reuse, faces", "all"], body)
 
 
+def pointwise(row):
+    """Updates a second of contact points."""
+    return number(row, "rate") * number(row, "points") / number(row, "contacts")
+
+
+def ratios(ours, theirs):
+    """Talus over another program: contacts, contact points and blocks; nothing where one was not measured."""
+    if not ours or not theirs:
+        return [float("nan")] * 3
+    if ours.get("unit") == "s":
+        return [float("nan")] * 2 + [number(theirs, "rate") / number(ours, "rate")]
+    return [number(ours, "rate") / number(theirs, "rate"), pointwise(ours) / pointwise(theirs),
+            number(ours, "block_steps_per_s") / number(theirs, "block_steps_per_s")]
+
+
+def beside_table(rows, peer):
+    """Talus beside a program that ran in turn with it, once with reuse and once without; one that knows no reuse is
+    compared with both."""
+    found = {}
+    for row in rows:
+        program, _, name = row["workload"].partition(" ")
+        if program in ("talus", peer):
+            found.setdefault((name, row["blocks"]), {})[program, row.get("reuse")] = row
+    body = []
+    for (name, blocks), group in found.items():
+        cells = []
+        for reuse in ("on", "off"):
+            ours, theirs = group.get(("talus", reuse)), group.get((peer, reuse)) or group.get((peer, ""))
+            cells.append((ours, theirs, ratios(ours, theirs)))
+        (ours, theirs, on), (_, other, off) = cells
+        if not ours or not theirs:
+            continue
+        timed = theirs["unit"] == "s"
+        rate = short(number(theirs, "rate")) + (" s" if timed else "")
+        slow = "" if timed or not other or other is theirs else short(number(other, "rate"))
+        body.append([name, blocks, f"{ours['contacts']}, {ours.get('points', '')}" if not timed else "",
+                     f"{theirs['contacts']}, {theirs['points']}" if not timed else "", rate, slow,
+                     short(number(theirs, "block_steps_per_s")), *map(short, on + off)])
+    return (["workload", "blocks", "contacts, points", "theirs", "contacts/s", "without reuse", "block-steps/s",
+             "Talus/it, contacts", "points", "blocks", "without reuse, contacts", "points", "blocks"], body)
+
+
 def text(rows):
     parts = []
     for head, body in (limit_table(rows), workload_table(rows), memory_table(rows),
-                       figure_table(rows), peer_table(rows)):
+                       figure_table(rows), peer_table(rows), beside_table(rows, "rockable"),
+                       beside_table(rows, "box3d")):
         if not body:
             continue
         widths = [max(len(cells[i]) for cells in [head, *body]) for i in range(len(head))]
@@ -152,7 +198,9 @@ def section(path):
             ("Contact updates; the phases in ns a contact update:", workload_table(rows)),
             ("Memory, bytes a block, one thread:", memory_table(rows)),
             ("Times and rates of whole runs:", figure_table(rows)),
-            ("The same blocks in Yade's polyhedra, one thread:", peer_table(rows))):
+            ("The same blocks in Yade's polyhedra, one thread:", peer_table(rows)),
+            ("Beside Rockable in the same run, one thread, in turn:", beside_table(rows, "rockable")),
+            ("Beside Box3D in the same run, one thread, in turn:", beside_table(rows, "box3d"))):
         if body:
             parts += [title, markdown(head, body)]
     return "\n\n".join(parts)
