@@ -88,8 +88,8 @@ def cases(quick, pile, count, falling):
                           ["--verlet=0.002", f"--settle={slow}", f"--steps={100000 // n ** 3}"],
                           [f"settle={fast}", f"steps={200000 // n ** 3}"]))
     found.append(Case("pile", count, ("pile", f"blocks={count}", f"write={pile}", "reps=3"), None,
-                      ["--dt=5e-4", "--damping=0.7", "--area=0.1", "--gap=0.008", "--verlet=0.05", "--settle=6000",
-                       "--still=5e-3", "--steps=200"],
+                      ["--dt=5e-4", "--damping=0.7", "--area=0.1", "--gap=0.008", "--verlet=0.05", "--settle=20000",
+                       "--still=5e-4", "--steps=500"],
                       ["dt=5e-4", "settle=10000", "steps=400"]))
     found.append(Case("collapse", count, ("collapse", f"file={pile}"), ("collapse", f"file={pile}"),
                       ["--damping=0", "--area=0.1", "--gap=0.008", "--verlet=0.05", "--settle=0", "--warm=500", "--steps=100",

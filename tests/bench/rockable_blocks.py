@@ -28,11 +28,12 @@ GRAVITY = 9.81
 RADIUS = 0.02  # m
 FIXED, FREE = 0, 1  # groups
 # Interaction in a file of Rockable: i j type isub jsub n dn pos vel fn ft mom damp, vectors in three.
-FIRST, SECOND, FORCE = 0, 1, 15
+FIRST, SECOND, UP, FORCE, SHEAR_UP = 0, 1, 7, 15, 18
 # Particle: shape group cluster size pos vel acc Q vrot arot.
 PLACE, VELOCITY, TURN = slice(4, 7), slice(7, 10), slice(13, 17)
 LOOSE = 2.0  # points of a pair where none touches at the start
-SETTLING_VERLET, SETTLING_RESTITUTION = 0.05, 0.05  # m; square of the coefficient of restitution: not timed
+BORNE = 0.25  # of the weight of all: jitter of blocks at rest
+SETTLING_VERLET = 0.05  # m: what is not timed
 OFTEN = 500  # steps between looks at whether blocks lie still
 
 
@@ -105,6 +106,7 @@ class Rockable:
         self.density = densities.pop()
         self.fixed = sum(block.fixed for block in found)
         self.free = len(found) - self.fixed
+        self.weight = sum(block.density * block.volume * GRAVITY for block in found if not block.fixed)
         particles = write_shapes(found, self.folder / "blocks.shp", gap=given.gap)
         self.state = "\n".join([f"Particles {len(particles)}", *particles]) + "\n"
         self.points = 1.0  # of a pair, on average
@@ -113,7 +115,7 @@ class Rockable:
         """What a file says before its particles. Lists of neighbours are made anew when a block has moved by a quarter of what
         they reach; how far blocks turn is left out, for that test of Rockable strikes at nearly every step."""
         given, kn = self.given, KN * self.given.area / self.points
-        verlet, restitution = (SETTLING_VERLET, SETTLING_RESTITUTION) if settling else (given.verlet, 1)
+        verlet = SETTLING_VERLET if settling else given.verlet
         lines = ["Rockable 21-08-2022", "t 0", f"tmax {(steps - 0.5) * given.dt:.17g}", f"dt {given.dt:.17g}", "interVerlet 1e9",
                  f"interConf {steps * given.dt:.17g}", f"DVerlet {2 * verlet}", f"dVerlet {verlet}",
                  "dynamicUpdateNL 1", f"dispUpdateNL {verlet / 4}", "angleUpdateNL 400",
@@ -121,7 +123,7 @@ class Rockable:
                  f"numericalDampingCoeff {damping}", "forceLaw Default", "AddOrRemoveInteractions bruteForce", "UpdateNL linkCells",
                  "Integrator velocityVerlet", "cellMinSizes 1.2 1.2 1.2", "boxForLinkCellsOpt 1", "ContactPartnership None"]
         for first in (FIXED, FREE):
-            for name, value in (("kn", kn), ("kt", kn * KS / KN), ("en2", restitution), ("mu", FRICTION), ("kr", 0), ("mur", 0)):
+            for name, value in (("kn", kn), ("kt", kn * KS / KN), ("en2", 1), ("mu", FRICTION), ("kr", 0), ("mur", 0)):
                 lines.append(f"{name}Contact {first} {FREE} {value:.17g}")
         return "\n".join([*lines, "iconf 0", f"nDriven {self.fixed}", "shapeFile blocks.shp", "precision 16", ""])
 
@@ -141,14 +143,27 @@ class Rockable:
             self.state = text[text.index("\nParticles ") + 1:]
         return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 
+    def interactions(self):
+        """Their lines in the state, none before the first step."""
+        if "\nInteractions " not in self.state:
+            return []
+        lines = self.state[self.state.index("\nInteractions ") + 1:].splitlines()
+        return [line.split() for line in lines[1:1 + int(lines[0].split()[1])]]
+
+    def borne(self):
+        """Part of the weight of the free blocks that the fixed ones bear: 1 at rest."""
+        force = 0.0
+        for cells in self.interactions():
+            first, second = int(cells[FIRST]) < self.fixed, int(cells[SECOND]) < self.fixed
+            if first != second:
+                up = float(cells[FORCE]) * float(cells[UP]) + float(cells[SHEAR_UP])
+                force += -up if first else up
+        return force / self.weight
+
     def carrying(self):
         """Pairs that bear a force, and their points that do; none before the first step."""
-        if "\nInteractions " not in self.state:
-            return 0, 0
-        lines = self.state[self.state.index("\nInteractions ") + 1:].splitlines()
         pairs, points = set(), 0
-        for line in lines[1:1 + int(lines[0].split()[1])]:
-            cells = line.split()
+        for cells in self.interactions():
             if float(cells[FORCE]) > 0:
                 points += 1
                 pairs.add((min(cells[FIRST], cells[SECOND]), max(cells[FIRST], cells[SECOND])))
@@ -163,7 +178,9 @@ class Rockable:
         for _ in range(0, self.given.settle, OFTEN):
             self.run(OFTEN, self.given.settling, settling=True)
             if self.speed() < self.given.still:
-                return
+                break
+        if not abs(self.borne() - 1) < BORNE:
+            sys.exit(f"rockable: the blocks are not at rest: what is fixed bears {self.borne():.3g} of their weight")
 
     def keep(self, path):
         """Writes the state, for other runs with the same options and for `start`."""

@@ -177,6 +177,7 @@ cp input.txt asked.txt
     equal("fixed ones asked for", int(asked["nDriven"]), model.fixed)
     equal("pairs that carry, and points", model.carrying(), (2, 3))
     near("mean speed", model.speed(), 5, 1e-12)
+    near("what the fixed blocks bear", model.borne() * model.weight, -1.0, 1e-9)
     model.keep(folder / "kept.txt")
     other = rockable_blocks.Rockable(str(program), given, found)
     other.resume(folder / "kept.txt")
