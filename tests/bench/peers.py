@@ -83,9 +83,10 @@ def cases(quick, pile, count, falling):
     found = []
     for layout, n in [("wall", 5), ("bond", 5)] if quick else [("wall", 5), ("wall", 10), ("wall", 20), ("bond", 10)]:
         script = ("wall", f"layout={'bond' if layout == 'bond' else 'lattice'}", f"n={n}")
-        slow, fast = {5: (2000, 10000), 10: (1000, 2000), 20: (200, 500)}[n]
+        slow, fast = {5: (2000, 10000), 10: (2000, 1000), 20: (1000, 200)}[n]
         found.append(Case(layout, n ** 3, (*script, "reps=3"), script,
-                          ["--verlet=0.002", f"--settle={slow}", f"--steps={100000 // n ** 3}"],
+                          ["--verlet=0.002", f"--area={0.3 if layout == 'bond' else 1}", f"--settle={slow}",
+                           f"--steps={100000 // n ** 3}"],
                           [f"settle={fast}", f"steps={200000 // n ** 3}"]))
     found.append(Case("pile", count, ("pile", f"blocks={count}", f"write={pile}", "reps=3"), None,
                       ["--dt=5e-4", "--damping=0.7", "--area=0.1", "--gap=0.008", "--verlet=0.05", "--settle=20000",

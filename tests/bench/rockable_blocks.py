@@ -33,7 +33,6 @@ FIRST, SECOND, UP, FORCE, SHEAR_UP = 0, 1, 7, 15, 18
 PLACE, VELOCITY, TURN = slice(4, 7), slice(7, 10), slice(13, 17)
 LOOSE = 2.0  # points of a pair where none touches at the start
 BORNE = 0.25  # of the weight of all: jitter of blocks at rest
-SETTLING_VERLET = 0.05  # m: what is not timed
 OFTEN = 500  # steps between looks at whether blocks lie still
 
 
@@ -111,14 +110,13 @@ class Rockable:
         self.state = "\n".join([f"Particles {len(particles)}", *particles]) + "\n"
         self.points = 1.0  # of a pair, on average
 
-    def head(self, steps, damping, settling=False):
+    def head(self, steps, damping):
         """What a file says before its particles. Lists of neighbours are made anew when a block has moved by a quarter of what
         they reach; how far blocks turn is left out, for that test of Rockable strikes at nearly every step."""
         given, kn = self.given, KN * self.given.area / self.points
-        verlet = SETTLING_VERLET if settling else given.verlet
         lines = ["Rockable 21-08-2022", "t 0", f"tmax {(steps - 0.5) * given.dt:.17g}", f"dt {given.dt:.17g}", "interVerlet 1e9",
-                 f"interConf {steps * given.dt:.17g}", f"DVerlet {2 * verlet}", f"dVerlet {verlet}",
-                 "dynamicUpdateNL 1", f"dispUpdateNL {verlet / 4}", "angleUpdateNL 400",
+                 f"interConf {steps * given.dt:.17g}", f"DVerlet {2 * given.verlet}", f"dVerlet {given.verlet}",
+                 "dynamicUpdateNL 1", f"dispUpdateNL {given.verlet / 4}", "angleUpdateNL 400",
                  f"density {FIXED} {self.density}", f"density {FREE} {self.density}", f"gravity 0 0 {-GRAVITY}",
                  f"numericalDampingCoeff {damping}", "forceLaw Default", "AddOrRemoveInteractions bruteForce", "UpdateNL linkCells",
                  "Integrator velocityVerlet", "cellMinSizes 1.2 1.2 1.2", "boxForLinkCellsOpt 1", "ContactPartnership None"]
@@ -127,9 +125,9 @@ class Rockable:
                 lines.append(f"{name}Contact {first} {FREE} {value:.17g}")
         return "\n".join([*lines, "iconf 0", f"nDriven {self.fixed}", "shapeFile blocks.shp", "precision 16", ""])
 
-    def run(self, steps, damping, keep=True, settling=False):
+    def run(self, steps, damping, keep=True):
         """Processor time of the program for so many steps. Goes on from where they lead, unless `keep` is false."""
-        (self.folder / "input.txt").write_text(self.head(steps, damping, settling) + self.state)
+        (self.folder / "input.txt").write_text(self.head(steps, damping) + self.state)
         last = self.folder / "conf1"
         last.unlink(missing_ok=True)
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -176,7 +174,7 @@ class Rockable:
     def settle(self):
         """Brings the blocks to rest, or near it: faces that lie corner on corner change the set of their points all the time."""
         for _ in range(0, self.given.settle, OFTEN):
-            self.run(OFTEN, self.given.settling, settling=True)
+            self.run(OFTEN, self.given.settling)
             if self.speed() < self.given.still:
                 break
         if not abs(self.borne() - 1) < BORNE:
