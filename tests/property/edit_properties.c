@@ -3,10 +3,10 @@
  * anew: what presses where, and by how much. */
 #include "contact_scene.h"
 
+#include "contact/copy.h"
 #include "contact/places.h"
 #include "contact/presses.h"
 #include "contact/store.h"
-#include "contact/copy.h"
 
 #define MODELS 240
 #define EDITS 14
