@@ -36,14 +36,16 @@ export function touchedFaces(model, frame, id) {
             if (norm(sub(triple(place, i), triple(place, k))) > shape(i).radius + shape(k).radius + GAP * size) continue;
             for (const b of placedFaces(model, frame, k)) {
                 for (const a of faces) {
-                    const gap = dot(a.normal, sub(b.points[0], a.points[0])) / size;
-                    if (dot(a.normal, b.normal) > -FLUSH || gap > GAP || gap < -OVERLAP || out.some((o) => norm(sub(o, a.normal)) <= ALONG)) continue;
+                    const cosine = dot(a.normal, b.normal);
+                    if (cosine > -FLUSH || out.some((o) => norm(sub(o, a.normal)) <= ALONG)) continue;
                     let rest = a.points;
                     b.points.forEach((p, c) => {
                         const normal = cross(sub(b.points[(c + 1) % b.points.length], p), b.normal);
                         rest = below(rest, { normal, position: dot(normal, p) });
                     });
-                    if (norm(areaOf(rest)) > SHARED * Math.min(a.area, b.area)) out.push(a.normal);
+                    // where they share area: other corners of large faces may be far apart
+                    const gap = Math.min(...rest.map((p) => dot(b.normal, sub(b.points[0], p)) / cosine / size));
+                    if (gap <= GAP && gap >= -OVERLAP && norm(areaOf(rest)) > SHARED * Math.min(a.area, b.area)) out.push(a.normal);
                 }
             }
         }

@@ -113,7 +113,7 @@ function readHead(c) {
     if (!(Number.isFinite(h.size) && h.size > 0)) throw c.bad("the size must be a positive number");
     const fields = Array.isArray(h.fields) ? h.fields : [];
     return { format: 1, program: String(h.program), title: String(h.title ?? ""), origin: h.origin, gravity: h.gravity, size: h.size,
-        groups: names(h.groups, "groups"), joints: names(h.joints, "joints"), histories: names(h.histories ?? [], "histories"),
+        groups: names(h.groups, "groups"), joints: names(h.joints, "joints"), histories: names(h.histories?.map?.((/** @type {any} */ x) => x.name + (x.unit && ", " + x.unit)) ?? [], "histories"),
         fields: fields.map((/** @type {any} */ f) => ({ name: String(f?.name), unit: String(f?.unit ?? ""), of: String(f?.of) })),
         friction: Array.isArray(h.friction) ? h.friction.map((/** @type {any} */ x) => (Number.isFinite(x) ? x : NaN)) : [], live: h.live === true, commands: h.commands === true };
 }

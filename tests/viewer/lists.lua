@@ -73,5 +73,9 @@ finish "slivers"
 model = talus.model {}
 model:generate("box", { min = { 0, 0, 0 }, max = { 2, 2, 2 }, density = 2600 })
 plane("one", 50, 90, { 1, 1, 1 })
+model:joint("*", "coulomb", { kn = 1e8, ks = 1e8, friction = 35 })
+model:history { name = "work", value = "kinetic" }
+model:history { name = "how <b>often</b>", value = function() return 7.5 end }
+model:cycle(1)
 frame "sound"
 finish "sound"

@@ -3,7 +3,7 @@
 --     talus tests/viewer/nets.lua FOLDER
 --
 -- plane.html: block 3 lies on a plane dipping 30 degrees to the east; wedge.html: a wedge on two planes; inside.html: 27 cubes;
--- rock.html: blocks of three sets, cut and at rest; slope.html: the wedge of examples/slope.lua, before it slides. NAME.json: bodies that can move, with
+-- rock.html: blocks of three sets, cut and at rest; tower.html: two cubes on each other, at rest on a wide base; slope.html: the wedge of examples/slope.lua, before it slides. NAME.json: bodies that can move, with
 -- the edges of their pyramids, and those that cannot.
 package.path = "scripts/?.lua;" .. package.path
 local talus = require "talus"
@@ -69,3 +69,12 @@ rock:blocks { below = { dip = 0, dip_direction = 0, origin = { 0, 0, 0.3 } } }:f
 write(rock, "rock")
 
 write(slope.build(20), "slope")
+
+local tower = box("base", { -30, -30, -5 }, { 30, 30, 0 })
+tower:blocks():fix()
+box("tower", { 0, 0, 0 }, { 1, 1, 1 }, tower)
+box("tower", { 0.35, 0.3, 1 }, { 1.35, 1.3, 2 }, tower)
+tower:joint("*", "coulomb", { kn = 1e9, ks = 1e9, friction = 35 })
+tower:damping "local"
+tower:solve { ratio = 1e-5, max_cycles = 50000 }
+write(tower, "tower")

@@ -77,6 +77,15 @@ def test_measures(chrome, folder):
         check(colour == [134, 19, 39], f"{name}: block {which} has the colour {colour}")
 
 
+def test_histories(chrome, folder):
+    """The histories of a model can be chosen by their names and units."""
+    show(chrome, folder / "sound.html")
+    names, offered, last = chrome.run("(a => [a.frame.head.histories, [...document.querySelectorAll('option')].map(o => o.textContent), [...a.frame.summary.line.histories]])(talus.app)")
+    check(len(names) == 2 and names[0].startswith("work, ") and names[1] == "how <b>often</b>", f"the histories are called {names}")
+    check(all(name in offered for name in names), f"{names} are not among {offered}")
+    check(len(last) == 2 and last[1] == 7.5, f"the last values of the histories are {last}")
+
+
 def test_refused(chrome, folder):
     """Refused cuts stand in the list with the report's sentences; a click picks the block and lays the section where the cut would be."""
     show(chrome, folder / "slivers.html")

@@ -138,6 +138,14 @@ def test_keyblocks(chrome, folder):
         check(free >= least and (name == "slope" or free < len(bodies)), f"{name}: {free} of {len(bodies)} bodies can move")
 
 
+def test_settled(chrome, folder):
+    """Cubes that have come to rest with a slight turn lie on the base and on each other, however far its corners are."""
+    show(chrome, folder / "tower.html")
+    for block, count in ((2, 2), (3, 1)):
+        words = net(chrome, block)[0]
+        check(len(faces(chrome, block)) == count and "lies on no other" not in words, f"block {block} lies on {len(faces(chrome, block))} faces instead of {count}: {words}")
+
+
 def test_apart(chrome, folder):
     """A block that has slid lies on its plane as long as they share an area, and no more when it is 1/10,000 of its size away; a turned one has turned normals."""
     show(chrome, folder / "plane.html")
