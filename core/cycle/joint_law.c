@@ -1,6 +1,7 @@
 /* joint_law.c - setting the law of a joint. */
 #include "cycle/cycle_data.h"
 
+#include "detect/asked.h"
 #include "detect/detect.h"
 #include "force/joint_laws.h"
 
@@ -10,6 +11,7 @@
  * law needs of their points: all that can fail before it takes its place. */
 static tl_status prepare_contacts(tl_model *m, const tl_law *law)
 {
+    tl_asked_end(m);
     if (!m->detect)
         return TL_OK;
     tl_status status = tl_detect_update(m);

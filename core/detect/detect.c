@@ -50,6 +50,7 @@ static tl_status ensure(tl_model *m)
             tl_detect_destroy(d);
         return tl_fail_memory(&m->error);
     }
+    d->next_contact = m->next_contact;
     m->detect = d;
     m->detect_destroy = tl_detect_destroy;
     return TL_OK;
@@ -339,7 +340,11 @@ tl_status tl_detect_refresh(tl_model *m)
     tl_status status = tl_asked_begin(m);
     if (status == TL_OK)
         status = find_contacts(m);
-    return status == TL_OK ? settle(m) : status;
+    if (status == TL_OK)
+        status = settle(m);
+    if (status == TL_OK)
+        tl_asked_name(m);
+    return status;
 }
 
 tl_status tl_detect_update(tl_model *m)
@@ -350,5 +355,8 @@ tl_status tl_detect_update(tl_model *m)
     if (status != TL_OK)
         return status;
     update_contacts(m);
-    return settle(m);
+    status = settle(m);
+    if (status == TL_OK)
+        tl_asked_name(m);
+    return status;
 }

@@ -82,22 +82,6 @@ static bool is_fresh(const tl_detect *d, uint32_t contact)
     return d->contacts.id[contact] > d->stepped_contact && !d->points.initial;
 }
 
-bool tl_edited_stepped(const tl_model *m)
-{
-    const tl_detect *d = m->detect;
-    const tl_contacts *c = &d->contacts;
-    if (d->structure == m->structure)
-        return false;
-    for (uint32_t i = 0; i < c->table.rows; i++) {
-        uint32_t a = tl_block_row_quiet(m, d->known_blocks[c->a[i]].id);
-        uint32_t b = tl_block_row_quiet(m, d->known_blocks[c->b[i]].id);
-        bool stays = c->pending[i] != TL_PENDING_DIE && a != TL_NO_ROW && b != TL_NO_ROW;
-        if (stays && !is_fresh(d, i) && (tl_block_is_new(m, a) || tl_block_is_new(m, b)))
-            return true;
-    }
-    return false;
-}
-
 /* Pairs, in their order, with their present rows: ids ascend with rows before and after. */
 static void keep_pairs(tl_model *m, const rows_scratch *scratch)
 {

@@ -8,8 +8,6 @@
 /* Finds the blocks of pairs and contacts again after rows have changed, and drops what was known of those that have come, gone
  * or changed: their pairs without a contact, and contacts of which a block has gone. TL_E_MEMORY: nothing has changed. */
 tl_status tl_edited_rows(tl_model *m);
-/* Whether that would make a contact anew that has been in a step. */
-bool tl_edited_stepped(const tl_model *m);
 /* Marks the contacts that come under another joint law, and those whose facets follow other rules than they did. */
 void tl_edited_laws(tl_model *m);
 /* Makes anew what contacts keep in the frames of bodies that have changed, before anything is computed from it. */

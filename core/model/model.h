@@ -170,6 +170,11 @@ typedef enum tl_remark {
     TL_REMARK_OVERLAP   /* blocks overlap when they come into contact */
 } tl_remark;
 
+/* A contact that somebody has asked for, by the ids of its blocks. */
+typedef struct tl_asked_id {
+    tl_id a, b, contact;
+} tl_asked_id;
+
 struct tl_model {
     tl_model_config config;
     tl_error error;
@@ -235,9 +240,12 @@ struct tl_model {
     double phase_began; /* s, of the clock */
     tl_profile profile; /* so far; the counts of contacts are made when asked for */
 
-    struct tl_detect *detect; /* of the module contact */
-    struct tl_detect
-        *stepped; /* before somebody asked between edits: detect/asked.c. NULL: detect itself */
+    struct tl_detect *detect;  /* of the module contact */
+    struct tl_detect *stepped; /* before somebody asked after edits: asked.c; or NULL */
+    bool only_asked;           /* no step has used it yet */
+    tl_asked_id *asked_ids; /* of contacts that were asked for and are to be found again: asked.c */
+    size_t asked_count;
+    tl_id next_contact; /* the last that was given to one of them */
     void (*detect_destroy)(struct tl_detect *);
     struct tl_cycle *cycle; /* of the module cycle */
     void (*cycle_destroy)(struct tl_cycle *);

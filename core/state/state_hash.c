@@ -155,11 +155,17 @@ static tl_status hash_next_contacts(tl_hash *hash, tl_model *m)
     }
     struct tl_detect *own = m->detect, *stepped = m->stepped;
     struct tl_detect *copy = tl_detect_copy(tl_detect_lasting(m));
+    bool only_asked = m->only_asked;
+    tl_asked_id *asked_ids = m->asked_ids;
+    size_t asked_count = m->asked_count;
+    tl_id next_contact = m->next_contact;
     tl_log_fn log = m->log;
     if (!copy)
         return tl_fail_memory(&m->error);
     m->detect = copy;
     m->stepped = NULL;
+    m->asked_ids = NULL;
+    m->asked_count = 0;
     m->log = say_nothing;
     tl_status status = tl_detect_update(m);
     if (status == TL_OK) {
@@ -167,9 +173,14 @@ static tl_status hash_next_contacts(tl_hash *hash, tl_model *m)
         status = hash_rates(hash, m);
     }
     m->log = log;
-    tl_detect_destroy(copy);
+    if (m->detect) /* it need not be the copy any more */
+        tl_detect_destroy(m->detect);
     m->detect = own;
     m->stepped = stepped;
+    m->only_asked = only_asked;
+    m->asked_ids = asked_ids;
+    m->asked_count = asked_count;
+    m->next_contact = next_contact;
     return status;
 }
 

@@ -1,4 +1,4 @@
--- Asking changes nothing, whatever is done: rock is cut, joined, parted, held, let go, deleted and run in any order. Where somebody has
+-- Asking changes nothing, whatever is done: rock is cut, joined, parted, held, let go, deleted, scaled and run in any order. Where somebody has
 -- asked after every act, or now and then, it comes to the same bits as where nobody has.
 local check = require "check"
 local talus = require "talus"
@@ -22,7 +22,7 @@ local function plane(draw, joint)
 end
 
 local function build(draw)
-    local model = talus.model { gravity = { 3, 0, -G } }
+    local model = talus.model { gravity = { 3, 0, -G }, reuse_geometry = draw(4) > 0 }
     model:generate("box", { min = { 0, 0, 0 }, max = { SIDE, SIDE, SIDE }, density = DENSITY })
     for _ = 1, 2 + draw(3) do
         model:generate("joint", plane(draw, "J" .. draw(2)))
@@ -57,7 +57,9 @@ local acts = {
         local chosen = some_blocks(draw, model)
         chosen[draw(2) == 0 and "fix" or "free"](chosen)
     end,
-    function(draw, model) model:joint("*", { friction = 20 + draw(20) }) end,
+    function(draw, model) model:joint("*", { friction = 20 + draw(20), kn = draw(3) == 0 and 2 * KN or KN }) end,
+    function(draw, model) model:contact_area { fraction = draw(3) / 100 } end,
+    function(draw, model) model:mass_scaling(draw(2) == 0) end,
     function(draw, model) model:cycle(1 + draw(60)) end,
 }
 
