@@ -273,7 +273,7 @@ const char *tl_detect_unsound(const tl_model *m, const tl_detect *d, unsigned ch
         return "pairs do not fit the blocks";
     if (!presses_are_sound(m, d, used))
         return "what field contacts keep does not fit them";
-    if (!layout_is_sound(m, d))
+    if (d->laid_at < 0 || d->laid_at > m->cycles || !layout_is_sound(m, d))
         return "the points do not fit their contacts";
     return NULL;
 }

@@ -79,6 +79,7 @@ static tl_status restored(tl_error *error)
 }
 
 static const uint64_t most = UINT64_MAX;
+static const int64_t long_ago = INT64_MIN;
 static const uint32_t far_row = 1000000, all_bits = UINT32_MAX;
 static const uint16_t far_vertex = 60000;
 static const uint8_t two = 2, many = 255;
@@ -144,6 +145,7 @@ static const lie lies[] = {
     LIE("detect.contacts.pending", 0, many),
     LIE("detect.contacts.field", 0, two),
     LIE("detect.layout.groups", 0, far_row),
+    LIE("detect.laid_at", 0, long_ago),
     /* the step */
     LIE("cycle.all_held", 0, two),
 };
