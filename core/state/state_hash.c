@@ -178,6 +178,7 @@ static tl_status hash_next_contacts(tl_hash *hash, tl_model *m)
     m->detect = own;
     m->stepped = stepped;
     m->only_asked = only_asked;
+    free(m->asked_ids); /* of a detection that failed */
     m->asked_ids = asked_ids;
     m->asked_count = asked_count;
     m->next_contact = next_contact;
