@@ -5,10 +5,10 @@
 #include "contact/detection.h"
 #include "model/model.h"
 
-/* What the next step goes on from: what was found since for somebody who asked follows from it. */
+/* What the next step goes on from, or NULL where that finds all anew: what was found for somebody who asked is no part of it. */
 static inline tl_detect *tl_detect_lasting(const tl_model *m)
 {
-    return m->stepped ? m->stepped : m->detect;
+    return m->only_asked ? NULL : m->stepped ? m->stepped : m->detect;
 }
 
 /* NULL when out of memory. */

@@ -14,8 +14,9 @@
  * in twice as deep.
  *
  * Rates are kept from step to step and made anew where contacts have changed. Where nothing moves by more than areas are
- * reused for, they cost nothing. Who asks for the rates above some limit only is spared most of the rest: with the areas of
- * its contacts taken as far away as its farthest corner, a body asks for no less. Kept ones follow from the contacts as they were when the body was rated, not as they are:
+ * reused for, they cost nothing. Who asks for the rates above some limit only is spared most of the rest: a body asks for no more
+ * than it would with the areas of its contacts as far away as its farthest corner. Kept rates follow from the contacts as they
+ * were when the body was rated, not as they are:
  * where the step follows from them they are part of the model's state. */
 #include "cycle/rates.h"
 

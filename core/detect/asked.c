@@ -74,7 +74,7 @@ void tl_asked_end(tl_model *m)
         tl_detect_destroy(m->detect);
         m->detect = m->stepped;
         m->stepped = NULL;
-    } else if (m->detect && m->only_asked && !has_begun(m)) {
+    } else if (m->detect && m->only_asked) {
         note_ids(m, 0);
         tl_detect_destroy(m->detect);
         m->detect = NULL;

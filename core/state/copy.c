@@ -85,7 +85,6 @@ static tl_status copy_detection(tl_model *to, const tl_model *from)
         return TL_OK;
     to->detect_destroy = from->detect_destroy;
     to->detect = tl_detect_copy(lasting);
-    to->only_asked = from->only_asked;
     return to->detect ? TL_OK : tl_fail_memory(&to->error);
 }
 

@@ -112,7 +112,7 @@ static void save_all(tl_archive_writer *w, tl_model *m)
     tl_pages_save(m, w);
     tl_laws_save(m, w);
     tl_damping_save(m, w);
-    if (m->detect)
+    if (tl_detect_lasting(m))
         tl_detect_walk(tl_detect_lasting(m), &walk);
     if (m->cycle)
         tl_cycle_walk(m->cycle, &walk);

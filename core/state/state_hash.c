@@ -154,13 +154,14 @@ static tl_status hash_next_contacts(tl_hash *hash, tl_model *m)
             return status;
     }
     struct tl_detect *own = m->detect, *stepped = m->stepped;
-    struct tl_detect *copy = tl_detect_copy(tl_detect_lasting(m));
+    const struct tl_detect *lasting = tl_detect_lasting(m);
+    struct tl_detect *copy = lasting ? tl_detect_copy(lasting) : NULL;
     bool only_asked = m->only_asked;
     tl_asked_id *asked_ids = m->asked_ids;
     size_t asked_count = m->asked_count;
     tl_id next_contact = m->next_contact;
     tl_log_fn log = m->log;
-    if (!copy)
+    if (lasting && !copy)
         return tl_fail_memory(&m->error);
     m->detect = copy;
     m->stepped = NULL;
