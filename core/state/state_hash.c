@@ -144,15 +144,10 @@ static tl_status hash_rates(tl_hash *hash, tl_model *m)
     return TL_OK;
 }
 
-/* Hashes the contacts as the next step will find them. The first contacts of a model are found in the model itself, as by
- * any question; contacts that stand are brought up to date in a copy, for only a step may do so. */
+/* Hashes the contacts as the next step will find them. They are found in a copy, or for the first time beside the model: only a
+ * step may bring those of the model up to date. */
 static tl_status hash_next_contacts(tl_hash *hash, tl_model *m)
 {
-    if (!m->detect || m->detect->contacts.table.rows == 0) {
-        tl_status status = tl_detect_refresh(m);
-        if (status != TL_OK)
-            return status;
-    }
     struct tl_detect *own = m->detect, *stepped = m->stepped;
     const struct tl_detect *lasting = tl_detect_lasting(m);
     struct tl_detect *copy = lasting ? tl_detect_copy(lasting) : NULL;
