@@ -47,7 +47,8 @@ tl_manifold_before tl_contact_before(const tl_model *m, uint32_t c, bool reframe
     const tl_contacts *contacts = &m->detect->contacts;
     const tl_press_row *row = tl_press_row_of(m, c);
     tl_manifold_before out = {.facet = contacts->facet[c]};
-    bool patch = out.facet.kind == TL_FACET_PATCH && contacts->point_count[c] > 0;
+    bool patch = out.facet.kind == TL_FACET_PATCH &&
+                 (contacts->point_count[c] > 0 || contacts->holds_over_gap[c]);
     out.holds = patch && (reframed || contacts->holds_over_gap[c] || may_hold(m, c));
     if (row) {
         out.calm = !reframed && is_calm(m, c, row);
@@ -100,8 +101,8 @@ tl_field_mesh tl_field_listed_anew(const tl_press_row *row, const tl_region *r)
     for (int k = 0; k < 2; k++)
         all = all && renumber(mesh.apex[k].held, mesh.apex[k].holds, now) &&
               renumber(mesh.apex[k].stray, mesh.apex[k].strays, now);
-    if (!all)
-        mesh.polygons = 0;
+    if (!all) /* nothing of what has the old numbers is left */
+        mesh = (tl_field_mesh){.bounding = mesh.bounding};
     return mesh;
 }
 
