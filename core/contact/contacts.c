@@ -148,9 +148,7 @@ static int compare_place(const void *x, const void *y)
         return p->held < q->held ? -1 : 1;
     if (p->field != q->field)
         return p->field < q->field ? -1 : 1;
-    if (p->a != q->a)
-        return p->a < q->a ? -1 : 1;
-    return (p->b > q->b) - (p->b < q->b);
+    return tl_pair_order(p->a, p->b, q->a, q->b);
 }
 
 /* Living contacts in their new order. */

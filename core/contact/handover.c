@@ -10,10 +10,13 @@
 
 #include "base/columns.h"
 #include "contact/detection.h"
+#include "contact/estate.h"
 #include "contact/places.h"
 #include "contact/points.h"
 #include "contact/presses.h"
 #include "contact/shear.h"
+
+#include <string.h>
 
 /* Shear of a contact: force, and torsion about its normal through a centre. */
 typedef struct shear {
@@ -215,11 +218,58 @@ static void put_on_field(tl_model *m, uint32_t c, const shear *s, double energy,
                    tl_v3_scale(radius > 0 ? torsion / radius : 0, s->normal));
 }
 
+/* A new field contact of parts of blocks takes its area's share over of what that of the whole carried, and what the law has kept of
+ * the point nearest to it. */
+static void take_share(tl_model *m, uint32_t c, const tl_manifold *g, const tl_estate *estate,
+                       const tl_point_lanes *lanes)
+{
+    tl_contacts *contacts = &m->detect->contacts;
+    tl_vec3 arm = tl_m3_mul(&m->bodies.pose[m->blocks.body[contacts->a[c]]].r, g->points[0].p);
+    shear whole = {.area = 0};
+    tl_old_point nearest = {.area = 0};
+    for (size_t k = 0; k < estate->count; k++) {
+        tl_old_point point = tl_estate_point(m, estate, c, k);
+        tl_vec3 force = tl_v3_scale(point.area, point.shear);
+        whole.normal = point.normal;
+        whole.area += point.area;
+        whole.force = tl_v3_add(whole.force, force);
+        whole.energy += energy_of(tl_v3_norm2(force), point.area);
+        if (k == 0 ||
+            tl_v3_norm2(tl_v3_sub(point.arm, arm)) < tl_v3_norm2(tl_v3_sub(nearest.arm, arm)))
+            nearest = point;
+    }
+    if (estate->field) {
+        whole.energy = estate->energy;
+        whole.torsion = estate->torsion;
+    }
+    law_state state = {
+        .area = nearest.area, .flags = nearest.flags, .known = tl_estate_is_of_law(m, estate, c)};
+    memcpy(state.state, nearest.state, sizeof state.state);
+    if (!state.known)
+        state.flags = 0;
+    contacts->facet[c] = g->facet;
+    write_points(m, c, g, &state, 0);
+    tl_press_row_of(m, c)->press = g->press;
+    tl_contact_begin(m, c, lanes);
+    double area = g->points[0].area, share = whole.area > 0 ? fmin(1, area / whole.area) : 0;
+    whole.force = tl_v3_scale(share, whole.force);
+    whole.torsion *= share * share;
+    whole.energy *= share;
+    shear now = carried(&whole, area, contacts->facet[c].last, tl_v3(0, 0, 0));
+    put_on_field(m, c, &now, whole.energy, g->press.radius);
+}
+
 void tl_contact_hand_over(tl_model *m, uint32_t c, const tl_manifold *g, bool reframed,
                           const tl_point_lanes *lanes)
 {
     tl_contacts *contacts = &m->detect->contacts;
     tl_press_row *row = tl_press_row_of(m, c);
+    const tl_estate *estate =
+        contacts->point_count[c] ? NULL : tl_estate_of(m, contacts->a[c], contacts->b[c]);
+    if (estate && g->point_count && g->facet.kind == TL_FACET_FIELD) {
+        take_share(m, c, g, estate, lanes);
+        return;
+    }
     bool was_patch = contacts->facet[c].kind == TL_FACET_PATCH;
     tl_contact_places(m, c, lanes);
     shear old = shear_of(m, c, lanes);

@@ -24,6 +24,14 @@ typedef struct tl_pair {
     };
 } tl_pair;
 
+/* The order of two pairs of blocks, for qsort and bsearch. */
+static inline int tl_pair_order(uint32_t a, uint32_t b, uint32_t other_a, uint32_t other_b)
+{
+    if (a != other_a)
+        return a < other_a ? -1 : 1;
+    return (b > other_b) - (b < other_b);
+}
+
 /* Without a contact. */
 #define TL_PAIR_APART 0x80000000u
 

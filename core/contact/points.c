@@ -3,6 +3,8 @@
  * A state is copied, split by area, or reset when the point's polygon changes, as its law declares. */
 #include "contact/points.h"
 
+#include "base/columns.h"
+
 const tl_state *tl_kind_state(const tl_kind *kind, uint32_t k)
 {
     return (const tl_state *)(const void *)((const char *)kind->states +
@@ -32,6 +34,36 @@ void tl_point_clear(tl_points_table *p, size_t i)
         p->p[k][i] = p->f_s[k][i] = 0;
     for (uint32_t k = 0; k < p->state_columns; k++)
         p->state[k][i] = 0;
+}
+
+tl_old_point tl_point_as_old(const tl_points_table *p, const tl_contacts *c, uint32_t contact,
+                             size_t k, tl_vec3 arm)
+{
+    size_t i = tl_point_row(c, contact, k);
+    double per_area = p->area[i] > 0 ? 1 / p->area[i] : 0;
+    tl_old_point out = {.arm = arm,
+                        .normal = c->facet[contact].last,
+                        .shear = tl_v3_scale(per_area, tl_columns_get(p->f_s, i)),
+                        .area = p->area[i],
+                        .f_n = per_area * p->f_n[i],
+                        .n0 = p->f_n0 ? per_area * p->f_n0[i] : 0,
+                        .reference = p->f_n0 ? p->reference[i] : 0,
+                        .key = p->key[i],
+                        .flags = p->flags[i]};
+    for (uint32_t s = 0; s < p->state_columns; s++)
+        out.state[s] = p->state[s][i];
+    return out;
+}
+
+void tl_point_load(tl_points_table *p, size_t i, const tl_sym3 *stress, tl_vec3 n, double closure)
+{
+    tl_vec3 traction = tl_s3_mul(*stress, n);
+    double normal = tl_v3_dot(n, traction);
+    tl_vec3 shear = tl_v3_madd(traction, -normal, n);
+    p->reference[i] += closure;
+    p->f_n0[i] = p->f_n[i] = -normal * p->area[i];
+    tl_columns_put(p->f_s, i, tl_v3_scale(-p->area[i], shear));
+    p->flags[i] = 0;
 }
 
 void tl_point_initial_state(tl_points_table *p, size_t i, const tl_kind *kind)

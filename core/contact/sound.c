@@ -202,6 +202,19 @@ static bool contact_is_sound(const tl_model *m, const tl_detect *d, uint32_t row
            c->point_count[row] <= c->point_capacity[row] && facet_is_sound(m, d, row);
 }
 
+/* What contacts of blocks that were cut have left. */
+static bool estates_are_sound(const tl_model *m, const tl_detect *d)
+{
+    for (size_t i = 0; i < d->estate_count; i++) {
+        const tl_estate *e = &d->estates[i];
+        if (e->first > d->left_count || e->count > d->left_count - e->first || e->field > 1 ||
+            e->holds_over_gap > 1 || e->reframed > 1 || (e->field && e->count != 1) ||
+            e->count > UINT16_MAX || (e->law != TL_NO_ROW && e->law >= m->joint_law_count))
+            return false;
+    }
+    return true;
+}
+
 /* ---------------------------------------------------------------- layout ----------------- */
 
 /* The lanes of a SIMD group: those that are taken belong to contacts of its span that know so. */
@@ -271,6 +284,8 @@ const char *tl_detect_unsound(const tl_model *m, const tl_detect *d, unsigned ch
             return "a contact does not fit its blocks";
     if (!pairs_are_sound(m, d))
         return "pairs do not fit the blocks";
+    if (!estates_are_sound(m, d) || (m->asked_count && d->next_contact > m->next_contact))
+        return "what was left or asked for does not fit the contacts";
     if (!presses_are_sound(m, d, used))
         return "what field contacts keep does not fit them";
     if (d->laid_at < 0 || d->laid_at > m->cycles || !layout_is_sound(m, d))

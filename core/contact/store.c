@@ -2,6 +2,7 @@
 #include "contact/store.h"
 
 #include "contact/contacts.h"
+#include "contact/estate.h"
 #include "contact/index.h"
 #include "contact/points.h"
 #include "contact/simd_groups.h"
@@ -55,6 +56,7 @@ void tl_detect_destroy(tl_detect *d)
     free(d->by_block);
     free(d->by_block_start);
     free(d->by_id);
+    tl_estates_end(d);
     free(d);
 }
 

@@ -13,9 +13,11 @@
 
 #include "base/columns.h"
 #include "contact/detection.h"
+#include "contact/estate.h"
 #include "contact/places.h"
 #include "contact/points.h"
 #include "contact/shear.h"
+#include "contact/stress_plane.h"
 #include "narrow/point2.h"
 #include "narrow/view.h"
 
@@ -23,18 +25,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Fields that are scalars per point: initial normal stress, reference overlap. */
-enum { FIELD_N0, FIELD_REFERENCE, FIELD_COUNT };
-
-struct tl_old_point {
-    tl_vec3 arm, normal, shear; /* shear stress */
-    double area, f_n;           /* f_n: normal stress */
-    double field[FIELD_COUNT];
-    double state[TL_STATE_COLUMNS];
-    uint32_t key, flags;
-};
-
-typedef struct tl_old_point old_point;
+typedef tl_old_point old_point;
 
 /* Makes room for `count` old points and as many values. */
 static bool reserve(tl_narrow_scratch *scratch, size_t count)
@@ -60,30 +51,24 @@ static void read_old(const tl_model *m, uint32_t c, tl_narrow_scratch *scratch,
     const tl_contacts *contacts = &m->detect->contacts;
     const tl_points_table *p = &m->detect->points;
     tl_contact_places(m, c, lanes);
-    for (size_t k = 0; k < contacts->point_count[c]; k++) {
-        size_t i = tl_point_row(contacts, c, k);
-        double per_area = p->area[i] > 0 ? 1 / p->area[i] : 0;
-        old_point *o = &scratch->old[k];
-        o->arm = tl_columns_get(lanes->arm, k);
-        o->normal = contacts->facet[c].last;
-        o->shear = tl_v3_scale(per_area, tl_columns_get(p->f_s, i));
-        o->area = p->area[i];
-        o->f_n = per_area * p->f_n[i];
-        o->field[FIELD_N0] = p->f_n0 ? per_area * p->f_n0[i] : 0;
-        o->field[FIELD_REFERENCE] = p->f_n0 ? p->reference[i] : 0;
-        for (uint32_t s = 0; s < p->state_columns; s++)
-            o->state[s] = p->state[s][i];
-        o->key = p->key[i];
-        o->flags = p->flags[i];
-    }
+    for (size_t k = 0; k < contacts->point_count[c]; k++)
+        scratch->old[k] = tl_point_as_old(p, contacts, c, k, tl_columns_get(lanes->arm, k));
 }
 
+/* What new points take over from. */
+typedef struct old_source {
+    const old_point *points;
+    size_t count;
+    bool keys;   /* the same features have the same keys */
+    bool states; /* are of the contact's law */
+} old_source;
+
 /* The old point of the same key, or the nearest. */
-static const old_point *match(const old_point *old, size_t count, uint32_t key, tl_vec3 arm)
+static const old_point *match(const old_source *from, uint32_t key, tl_vec3 arm)
 {
-    const old_point *best = &old[0];
-    for (size_t k = 0; k < count; k++) {
-        if (old[k].key == key)
+    const old_point *old = from->points, *best = &old[0];
+    for (size_t k = 0; k < from->count; k++) {
+        if (from->keys && old[k].key == key)
             return &old[k];
         if (tl_v3_norm2(tl_v3_sub(old[k].arm, arm)) < tl_v3_norm2(tl_v3_sub(best->arm, arm)))
             best = &old[k];
@@ -143,14 +128,6 @@ static void sum_shear(const tl_points_table *p, const tl_point_lanes *lanes, siz
 static double bounded(double value, double reach, double largest)
 {
     return fabs(value) * reach > largest ? copysign(largest / reach, value) : value;
-}
-
-/* Whether points span a plane, by the second moments of their areas about their centre: det of the moments, or 0 when
- * they lie within about `place` of a line through it, where slopes would be quotients of rounding. */
-static double spanned(double i11, double i12, double i22, double area, double place)
-{
-    double sum = i11 + i22, det = i11 * i22 - i12 * i12;
-    return det > area * place * place * sum ? det : 0;
 }
 
 /* How far points reach out from their centre. */
@@ -244,7 +221,7 @@ static void correct_field(const tl_points_table *p, const tl_point_lanes *lanes,
         i12 += a * x * y;
         i22 += a * y * y;
     }
-    double det = spanned(i11, i12, i22, now->area, place), g1 = 0, g2 = 0;
+    double det = tl_points_span(i11, i12, i22, now->area, place), g1 = 0, g2 = 0;
     if (det > 0) {
         g1 = bounded((want.along1 * i22 - want.along2 * i12) / det, reach, largest);
         g2 = bounded((want.along2 * i11 - want.along1 * i12) / det, reach, largest);
@@ -262,7 +239,7 @@ static moments field_moments(const old_point *old, size_t count, int field, cons
     moments out = {0, 0, 0};
     for (size_t k = 0; k < count; k++) {
         tl_vec3 arm = tl_v3_sub(old[k].arm, t->centre);
-        double v = old[k].area * old[k].field[field];
+        double v = old[k].area * tl_old_scalar(&old[k], field);
         out.sum += v;
         out.along1 += v * tl_v3_dot(arm, t1);
         out.along2 += v * tl_v3_dot(arm, t2);
@@ -270,98 +247,9 @@ static moments field_moments(const old_point *old, size_t count, int field, cons
     return out;
 }
 
-/* ---------------------------------------------------------------- stress between points -- */
-
-/* What is fitted: shear stress, normal stress, and the scalar fields. */
-enum { FIT_SHEAR, FIT_NORMAL = 3, FIT_FIELDS, FIT_COUNT = FIT_FIELDS + FIELD_COUNT };
-
-/* Area-weighted plane through the old points' stresses, and their range, which bounds it. */
-typedef struct plane_fit {
-    bool made; /* false: the old points lie on a line */
-    tl_vec3 centre, t1, t2;
-    double mean[FIT_COUNT], along1[FIT_COUNT], along2[FIT_COUNT], low[FIT_COUNT], high[FIT_COUNT];
-    double
-        spread; /* largest deviation of a shear stress from the mean: bounds of components would hang on the axes */
-} plane_fit;
-
-/* How far the shear stress among some values is from the mean. */
-static double shear_off(const plane_fit *fit, const double *value)
-{
-    double x = value[FIT_SHEAR] - fit->mean[FIT_SHEAR];
-    double y = value[FIT_SHEAR + 1] - fit->mean[FIT_SHEAR + 1];
-    double z = value[FIT_SHEAR + 2] - fit->mean[FIT_SHEAR + 2];
-    return sqrt(x * x + y * y + z * z);
-}
-
-static void fit_values(const old_point *o, double *value)
-{
-    value[FIT_SHEAR] = o->shear.x;
-    value[FIT_SHEAR + 1] = o->shear.y;
-    value[FIT_SHEAR + 2] = o->shear.z;
-    value[FIT_NORMAL] = o->f_n;
-    for (int k = 0; k < FIELD_COUNT; k++)
-        value[FIT_FIELDS + k] = o->field[k];
-}
-
-static plane_fit fit_plane(const old_point *old, size_t count, const totals *t, double place)
-{
-    plane_fit fit = {.centre = t->centre, .t1 = tl_v3_perpendicular(t->normal)};
-    fit.t2 = tl_v3_cross(t->normal, fit.t1);
-    double i11 = 0, i12 = 0, i22 = 0, value[FIT_COUNT];
-    for (int k = 0; k < FIT_COUNT; k++) {
-        fit.low[k] = INFINITY;
-        fit.high[k] = -INFINITY;
-    }
-    for (size_t i = 0; i < count; i++) {
-        tl_vec3 arm = tl_v3_sub(old[i].arm, t->centre);
-        double a = old[i].area / t->area, x = tl_v3_dot(arm, fit.t1), y = tl_v3_dot(arm, fit.t2);
-        i11 += a * x * x;
-        i12 += a * x * y;
-        i22 += a * y * y;
-        fit_values(&old[i], value);
-        for (int k = 0; k < FIT_COUNT; k++) {
-            fit.mean[k] += a * value[k];
-            fit.along1[k] += a * value[k] * x;
-            fit.along2[k] += a * value[k] * y;
-            fit.low[k] = fmin(fit.low[k], value[k]);
-            fit.high[k] = fmax(fit.high[k], value[k]);
-        }
-    }
-    for (size_t i = 0; i < count; i++) {
-        fit_values(&old[i], value);
-        fit.spread = fmax(fit.spread, shear_off(&fit, value));
-    }
-    double det = spanned(i11, i12, i22, 1, place);
-    fit.made = det > 0;
-    for (int k = 0; k < FIT_COUNT && fit.made; k++) {
-        double m1 = fit.along1[k], m2 = fit.along2[k];
-        fit.along1[k] = (m1 * i22 - m2 * i12) / det;
-        fit.along2[k] = (m2 * i11 - m1 * i12) / det;
-    }
-    return fit;
-}
-
-/* The old stresses at a place between the old points; those of `o` when there is no fit. */
-static void fitted(const plane_fit *fit, tl_vec3 arm, const old_point *o, double *value)
-{
-    fit_values(o, value);
-    if (!fit->made)
-        return;
-    tl_vec3 d = tl_v3_sub(arm, fit->centre);
-    double x = tl_v3_dot(d, fit->t1), y = tl_v3_dot(d, fit->t2);
-    for (int k = 0; k < FIT_COUNT; k++) {
-        value[k] = fit->mean[k] + x * fit->along1[k] + y * fit->along2[k];
-        if (k >= FIT_NORMAL)
-            value[k] = fmin(fit->high[k], fmax(fit->low[k], value[k]));
-    }
-    double off = shear_off(fit, value), part = off > fit->spread ? fit->spread / off : 1;
-    for (int k = FIT_SHEAR; k < FIT_NORMAL; k++)
-        value[k] = fit->mean[k] + part * (value[k] - fit->mean[k]);
-}
-
 /* Writes the points of the manifold, with what they take over from the old ones. */
-static void write_points(tl_model *m, uint32_t c, const tl_manifold *g, const old_point *old,
-                         size_t old_count, const plane_fit *fit, const tl_point_lanes *lanes)
+static void write_points(tl_model *m, uint32_t c, const tl_manifold *g, const old_source *from,
+                         const tl_stress_plane *fit, const tl_point_lanes *lanes)
 {
     tl_contacts *contacts = &m->detect->contacts;
     tl_points_table *p = &m->detect->points;
@@ -384,33 +272,35 @@ static void write_points(tl_model *m, uint32_t c, const tl_manifold *g, const ol
     /* positions and normals in the present place */
     tl_contact_begin(m, c, lanes);
     double size = fmin(m->blocks.size[contacts->a[c]], m->blocks.size[contacts->b[c]]);
-    for (size_t k = 0; k < g->point_count && old_count == 0; k++) {
+    for (size_t k = 0; k < g->point_count && from->count == 0; k++) {
         size_t i = tl_point_row(contacts, c, k);
         p->flags[i] = lanes->closure[k] < -TL_STILL * size ? TL_POINT_APART : 0;
     }
-    for (size_t k = 0; k < g->point_count && old_count; k++) {
+    for (size_t k = 0; k < g->point_count && from->count; k++) {
         size_t i = tl_point_row(contacts, c, k);
         tl_vec3 arm = tl_columns_get(lanes->arm, k);
-        const old_point *o = match(old, old_count, p->key[i], arm);
-        double value[FIT_COUNT];
-        if (o->key == p->key[i])
-            fit_values(o, value);
+        const old_point *o = match(from, p->key[i], arm);
+        double value[TL_STRESS_COUNT];
+        if (from->keys && o->key == p->key[i])
+            tl_stress_values(o, value);
         else
-            fitted(fit, arm, o, value);
+            tl_stress_at(fit, arm, o, !from->keys, value);
         tl_vec3 n = tl_columns_get(lanes->normal, k);
-        tl_vec3 shear = {value[FIT_SHEAR], value[FIT_SHEAR + 1], value[FIT_SHEAR + 2]};
+        tl_vec3 shear = {value[TL_STRESS_SHEAR], value[TL_STRESS_SHEAR + 1],
+                         value[TL_STRESS_SHEAR + 2]};
         tl_vec3 f = tl_v3_scale(p->area[i], tl_v3_turn(shear, o->normal, n));
         f = tl_v3_madd(f, -tl_v3_dot(f, n), n);
         p->f_s[0][i] = f.x;
         p->f_s[1][i] = f.y;
         p->f_s[2][i] = f.z;
-        p->f_n[i] = value[FIT_NORMAL] * p->area[i];
+        p->f_n[i] = value[TL_STRESS_NORMAL] * p->area[i];
         if (p->f_n0) {
-            p->f_n0[i] = value[FIT_FIELDS + FIELD_N0] * p->area[i];
-            p->reference[i] = value[FIT_FIELDS + FIELD_REFERENCE];
+            p->f_n0[i] = value[TL_STRESS_SCALARS + TL_SCALAR_N0] * p->area[i];
+            p->reference[i] = value[TL_STRESS_SCALARS + TL_SCALAR_REFERENCE];
         }
-        p->flags[i] = o->flags;
-        tl_point_take_state(p, i, kind, o->state, o->area);
+        p->flags[i] = from->states ? o->flags : 0;
+        if (from->states)
+            tl_point_take_state(p, i, kind, o->state, o->area);
     }
 }
 
@@ -424,6 +314,52 @@ static totals old_totals(const old_point *old, size_t count)
     for (size_t k = 0; k < count; k++)
         add_shear(&t, old[k].area, old[k].arm, tl_v3_scale(old[k].area, old[k].shear));
     return t;
+}
+
+/* Distance within which points are one. */
+static double place_of(const tl_model *m, uint32_t c)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    return TL_MERGE * fmin(m->blocks.size[contacts->a[c]], m->blocks.size[contacts->b[c]]);
+}
+
+static tl_stress_plane plane_of(const old_point *old, size_t count, const totals *t, double place)
+{
+    return tl_stress_plane_of(old, count, t->area, t->centre, t->normal, place);
+}
+
+/* Where the area has become more than that of an estate, of which nothing is known, it carries no more than there was. */
+static void limit_to_estate(tl_model *m, uint32_t c, const totals *before)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    tl_points_table *p = &m->detect->points;
+    double area = 0;
+    for (size_t k = 0; k < contacts->point_count[c]; k++)
+        area += p->area[tl_point_row(contacts, c, k)];
+    double keep = before->area < area ? before->area / area : 1;
+    for (size_t k = 0; keep < 1 && k < contacts->point_count[c]; k++) {
+        size_t i = tl_point_row(contacts, c, k);
+        p->f_n[i] *= keep;
+        if (p->f_n0)
+            p->f_n0[i] *= keep;
+        for (int s = 0; s < 3; s++)
+            p->f_s[s][i] *= keep;
+    }
+}
+
+/* A contact that was made for parts of a block takes its share over of what that of the whole carried: the stresses at its own
+ * points. */
+static void take_share(tl_model *m, uint32_t c, const tl_estate *estate, const tl_narrow_scratch *s,
+                       const tl_point_lanes *lanes)
+{
+    const old_source from = {
+        .points = s->old, .count = estate->count, .states = tl_estate_is_of_law(m, estate, c)};
+    totals before = old_totals(s->old, estate->count);
+    tl_stress_plane fit = {.made = false};
+    if (before.area > 0 && !estate->reframed)
+        fit = plane_of(s->old, estate->count, &before, place_of(m, c));
+    write_points(m, c, &s->manifold, &from, &fit, lanes);
+    limit_to_estate(m, c, &before);
 }
 
 /* What the shear of new points is to be: what comes into contact brings none, what goes takes its own with it; a
@@ -447,22 +383,22 @@ static void correct_fields(tl_model *m, uint32_t c, size_t old_count, tl_narrow_
     const tl_contacts *contacts = &m->detect->contacts;
     size_t begin = contacts->point_start[c], count = contacts->point_count[c];
     double *value = scratch->value, follow = now->area / before->area;
-    for (int field = 0; field < FIELD_COUNT && p->f_n0; field++) {
+    for (int field = 0; field < TL_SCALAR_COUNT && p->f_n0; field++) {
         moments keep = field_moments(scratch->old, old_count, field, before, now->normal);
         double largest = 0;
         for (size_t k = 0; k < old_count && !scratch->reframed; k++)
-            largest = fmax(largest, fabs(scratch->old[k].field[field]));
+            largest = fmax(largest, fabs(tl_old_scalar(&scratch->old[k], field)));
         keep.sum *= follow;
         keep.along1 *= follow;
         keep.along2 *= follow;
         for (size_t k = 0; k < count; k++) {
             size_t i = tl_point_row(contacts, c, k);
-            value[k] = field == FIELD_REFERENCE ? p->reference[i] : p->f_n0[i] / p->area[i];
+            value[k] = field == TL_SCALAR_REFERENCE ? p->reference[i] : p->f_n0[i] / p->area[i];
         }
         correct_field(p, lanes, value, begin, count, now, keep, largest, place);
         for (size_t k = 0; k < count; k++) {
             size_t i = tl_point_row(contacts, c, k);
-            if (field == FIELD_REFERENCE)
+            if (field == TL_SCALAR_REFERENCE)
                 p->reference[i] = value[k];
             else
                 p->f_n0[i] = value[k] * p->area[i];
@@ -480,6 +416,33 @@ static void release(tl_model *m, uint32_t c, const totals *before, const totals 
     tl_shear_release(m, c, &old, &fresh);
 }
 
+/* The points of a new contact. Parts of one block press on each other as the rock did that was whole. */
+static bool begin_points(tl_model *m, uint32_t c, tl_narrow_scratch *scratch,
+                         const tl_point_lanes *lanes)
+{
+    tl_contacts *contacts = &m->detect->contacts;
+    const tl_estate *estate = tl_estate_of(m, contacts->a[c], contacts->b[c]);
+    const tl_sym3 *stress = tl_estate_inner_stress(m, c);
+    if (estate && !reserve(scratch, estate->count))
+        return false;
+    contacts->facet[c] = scratch->manifold.facet;
+    contacts->point_count[c] = (uint16_t)scratch->manifold.point_count;
+    if (estate) {
+        for (size_t k = 0; k < estate->count; k++)
+            scratch->old[k] = tl_estate_point(m, estate, c, k);
+        take_share(m, c, estate, scratch, lanes);
+        return true;
+    }
+    const old_source from = {.count = 0};
+    write_points(m, c, &scratch->manifold, &from, NULL, lanes);
+    for (size_t k = 0; k < contacts->point_count[c] && stress; k++)
+        tl_point_load(&m->detect->points, tl_point_row(contacts, c, k), stress,
+                      tl_columns_get(lanes->normal, k), lanes->closure[k]);
+    contacts->holds_over_gap[c] =
+        contacts->holds_over_gap[c] || stress; /* perhaps: the next step tells */
+    return true;
+}
+
 bool tl_contact_transfer(tl_model *m, uint32_t c, tl_narrow_scratch *scratch,
                          const tl_point_lanes *lanes)
 {
@@ -487,6 +450,8 @@ bool tl_contact_transfer(tl_model *m, uint32_t c, tl_narrow_scratch *scratch,
     tl_points_table *p = &m->detect->points;
     const tl_manifold *g = &scratch->manifold;
     size_t begin = contacts->point_start[c], old_count = contacts->point_count[c];
+    if (old_count == 0)
+        return begin_points(m, c, scratch, lanes);
     if (!reserve(scratch, old_count > g->point_count ? old_count : g->point_count))
         return false;
     read_old(m, c, scratch, lanes);
@@ -497,12 +462,13 @@ bool tl_contact_transfer(tl_model *m, uint32_t c, tl_narrow_scratch *scratch,
     contacts->point_count[c] = (uint16_t)g->point_count;
     for (size_t k = g->point_count; k < contacts->point_capacity[c]; k++)
         tl_point_clear(p, tl_point_row(contacts, c, k));
-    double place = TL_MERGE * fmin(m->blocks.size[contacts->a[c]], m->blocks.size[contacts->b[c]]);
-    plane_fit fit = {.made = false};
+    double place = place_of(m, c);
+    tl_stress_plane fit = {.made = false};
     if (before.area > 0 && !scratch->reframed)
-        fit = fit_plane(old, old_count, &before, place);
-    write_points(m, c, g, old, old_count, &fit, lanes);
-    if (old_count == 0 || g->point_count == 0 || !(before.area > 0)) {
+        fit = plane_of(old, old_count, &before, place);
+    const old_source from = {.points = old, .count = old_count, .keys = true, .states = true};
+    write_points(m, c, g, &from, &fit, lanes);
+    if (g->point_count == 0 || !(before.area > 0)) {
         release(m, c, &before, &now, scratch->reframed);
         return true;
     }

@@ -9,7 +9,11 @@
 tl_status tl_asked_begin(tl_model *m);
 /* Before contacts are found for a step, or for what is put on them: from those of the last step, of which there may be none. */
 void tl_asked_end(tl_model *m);
-/* After contacts have been found: those that somebody has asked for have the ids that they had for them. */
-void tl_asked_name(tl_model *m);
+/* Notes the ids by which contacts were asked for, before they are found once more, or copied, or saved; false when out of memory:
+ * then only the ids above them are known. */
+bool tl_asked_note(tl_model *m);
+/* After contacts have been found: those that somebody has asked for get the ids that they had for them. false when out of
+ * memory: to be tried again. */
+bool tl_asked_name(tl_model *m);
 
 #endif

@@ -269,7 +269,7 @@ static bool pairs_with_others(const tl_model *m, struct tl_broad *g, size_t *cou
 static int compare_pair(const void *a, const void *b)
 {
     const tl_pair *x = a, *y = b;
-    return x->a != y->a ? (x->a > y->a) - (x->a < y->a) : (x->b > y->b) - (x->b < y->b);
+    return tl_pair_order(x->a, x->b, y->a, y->b);
 }
 
 /* Lists the candidate pairs, sorted. */

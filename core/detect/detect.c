@@ -7,6 +7,7 @@
 #include "detect/detect.h"
 
 #include "contact/contacts.h"
+#include "contact/estate.h"
 #include "contact/handover.h"
 #include "contact/held.h"
 #include "contact/index.h"
@@ -124,17 +125,22 @@ static tl_status give_birth(tl_model *m, uint32_t pair, overlaps *deep)
     if (!tl_region_find(&view, TL_LIST_MARGIN * view.size, scratch, &region))
         return tl_fail_memory(&m->error);
     tl_tag tag = tl_touching_tag(&view, region.n);
-    tl_touch_rule rule = tl_touch_rule_of(m, &view, tag, false);
-    const tl_manifold_before none = {.facet = {.kind = TL_FACET_PATCH}};
+    const tl_manifold_before before = tl_pair_before(m, &d->pairs[pair], &region);
+    tl_touch_rule rule = tl_touch_rule_of(m, &view, tag, before.holds);
     const tl_manifold *g = &scratch->manifold;
-    if (!tl_manifold_find(&view, &region, &rule, &none, scratch) ||
+    if (!tl_manifold_find(&view, &region, &rule, &before, scratch) ||
         !tl_contact_append(m, pair, g->facet.kind == TL_FACET_FIELD, g->valid, tag, g->point_count))
         return tl_fail_memory(&m->error);
+    uint32_t row = (uint32_t)d->contacts.table.rows - 1;
+    if (before.holds) { /* so that it is found once more when it has got its room */
+        d->contacts.facet[row] = g->facet;
+        d->contacts.holds_over_gap[row] = true;
+    }
     double overlap = g->facet.kind == TL_FACET_FIELD ? g->press.deepest : -region.gap;
     if (overlap > TL_SHALLOW * view.size && deep->count++ == 0)
         deep->pair = pair;
     if (tl_overlap_is_deep(m, &view, &region, d->pairs[pair].a, d->pairs[pair].b, true)) {
-        tl_overlap_mark(&d->contacts, (uint32_t)d->contacts.table.rows - 1, true);
+        tl_overlap_mark(&d->contacts, row, true);
         scratch->deep = true;
     }
     return TL_OK;
@@ -288,7 +294,17 @@ static tl_status settle(tl_model *m)
         d->rows_changed =
             status != TL_OK; /* contacts are not what they seem until all is settled */
     }
+    if (status == TL_OK) {
+        tl_estates_balance(m);
+        tl_estates_end(d);
+    }
     return status;
+}
+
+static tl_status settle_named(tl_model *m)
+{
+    tl_status status = settle(m);
+    return status == TL_OK && !tl_asked_name(m) ? tl_fail_memory(&m->error) : status;
 }
 
 /* Pairs and contacts after edits of the model, and new contacts; those that stand are not touched. */
@@ -340,11 +356,7 @@ tl_status tl_detect_refresh(tl_model *m)
     tl_status status = tl_asked_begin(m);
     if (status == TL_OK)
         status = find_contacts(m);
-    if (status == TL_OK)
-        status = settle(m);
-    if (status == TL_OK)
-        tl_asked_name(m);
-    return status;
+    return status == TL_OK ? settle_named(m) : status;
 }
 
 tl_status tl_detect_update(tl_model *m)
@@ -355,8 +367,8 @@ tl_status tl_detect_update(tl_model *m)
     if (status != TL_OK)
         return status;
     update_contacts(m);
-    status = settle(m);
+    status = settle_named(m);
     if (status == TL_OK)
-        tl_asked_name(m);
+        m->heir_count = 0; /* contacts know them now */
     return status;
 }

@@ -1,10 +1,12 @@
 /* edited.c - what edits of the model leave of pairs and contacts.
  *
  * A block bears the count of structure with which it came, or got another shape, frame or tags. What is newer than the
- * count that detection has seen is treated as if it were new; all else that is known of pairs and contacts stays. */
+ * count that detection has seen is treated as if it were new; all else that is known of pairs and contacts stays. What contacts of
+ * blocks that were cut carry is left to those of their parts (contact/estate.c). */
 #include "detect/edited.h"
 
 #include "contact/contacts.h"
+#include "contact/estate.h"
 #include "contact/index.h"
 #include "contact/pair_view.h"
 #include "detect/grazing.h"
@@ -22,9 +24,10 @@
 
 /* What is made before anything is changed. */
 typedef struct rows_scratch {
-    uint32_t *row;                /* [blocks seen] the present row, or TL_NO_ROW */
-    double *odometer_0;           /* [bodies] */
-    uint8_t *touched;             /* [bodies] */
+    uint32_t *row;      /* [blocks seen] the present row, or TL_NO_ROW */
+    uint32_t *heir;     /* [blocks seen] of one that was cut: one of its parts, or TL_NO_ROW */
+    double *odometer_0; /* [bodies] */
+    uint8_t *touched;   /* [bodies] */
     tl_known_block *known_blocks; /* [blocks] */
 } rows_scratch;
 
@@ -33,18 +36,24 @@ static bool reserve_scratch(const tl_model *m, rows_scratch *scratch)
     tl_detect *d = m->detect;
     size_t blocks = m->blocks.table.rows, bodies = m->bodies.table.rows;
     *scratch = (rows_scratch){.row = malloc((d->known_block_count + 1) * sizeof *scratch->row),
+                              .heir = malloc((d->known_block_count + 1) * sizeof *scratch->heir),
                               .odometer_0 = malloc((bodies + 1) * sizeof *scratch->odometer_0),
                               .touched = malloc(bodies + 1),
                               .known_blocks = malloc((blocks + 1) * sizeof *scratch->known_blocks)};
-    if (scratch->row && scratch->odometer_0 && scratch->touched && scratch->known_blocks &&
-        tl_fit(&d->idle, &d->idle_capacity, bodies + 1, sizeof *d->idle) &&
+    if (scratch->row && scratch->heir && scratch->odometer_0 && scratch->touched &&
+        scratch->known_blocks && tl_fit(&d->idle, &d->idle_capacity, bodies + 1, sizeof *d->idle) &&
         tl_fit(&d->path, &d->path_capacity, blocks + 1, sizeof *d->path))
         return true;
+    return false;
+}
+
+static void free_scratch(rows_scratch *scratch)
+{
     free(scratch->row);
+    free(scratch->heir);
     free(scratch->odometer_0);
     free(scratch->touched);
     free(scratch->known_blocks);
-    return false;
 }
 
 /* Runs of bodies that have come or changed begin here, and their contacts are not what they were; others keep both. */
@@ -62,6 +71,80 @@ static void keep_bodies(tl_model *m, const rows_scratch *scratch)
         scratch->odometer_0[m->blocks.body[row]] = d->odometer_0[before];
         scratch->touched[m->blocks.body[row]] = d->touched[before];
     }
+}
+
+static int compare_known(const void *x, const void *y)
+{
+    const tl_known_block *p = x, *q = y;
+    return (p->id > q->id) - (p->id < q->id);
+}
+
+/* Finds a part of each block that was cut. */
+static void find_heirs(const tl_model *m, const rows_scratch *scratch)
+{
+    const tl_detect *d = m->detect;
+    for (size_t old = 0; old < d->known_block_count; old++)
+        scratch->heir[old] = TL_NO_ROW;
+    for (size_t i = 0; i < m->heir_count && d->known_block_count; i++) {
+        tl_known_block root = {.id = m->heirs[i].root};
+        if (tl_block_row_quiet(m, m->heirs[i].id) == TL_NO_ROW)
+            continue;
+        const tl_known_block *known =
+            bsearch(&root, d->known_blocks, d->known_block_count, sizeof root, compare_known);
+        if (known)
+            scratch->heir[known - d->known_blocks] = (uint32_t)i;
+    }
+}
+
+/* Whether the contact of a pair, with the rows that detection has seen, ends because a block of it was cut. */
+static bool leaves(const tl_detect *d, const rows_scratch *scratch, const tl_pair *p)
+{
+    bool a_ends = scratch->row[p->a] == TL_NO_ROW, b_ends = scratch->row[p->b] == TL_NO_ROW;
+    return (a_ends || b_ends) && !tl_pair_is_apart(p) &&
+           (!a_ends || scratch->heir[p->a] != TL_NO_ROW) &&
+           (!b_ends || scratch->heir[p->b] != TL_NO_ROW) &&
+           d->contacts.pending[p->contact] != TL_PENDING_DIE &&
+           d->contacts.point_count[p->contact] > 0;
+}
+
+/* Keeps what contacts of blocks that were cut leave; false when out of memory (nothing changed). */
+static bool keep_estates(tl_model *m, const rows_scratch *scratch)
+{
+    tl_detect *d = m->detect;
+    size_t estates = 0, points = 0, before = d->estate_count, points_before = d->left_count;
+    for (size_t i = 0; i < d->pair_count && m->heir_count; i++)
+        if (leaves(d, scratch, &d->pairs[i])) {
+            estates++;
+            points += tl_estate_size(d, d->pairs[i].contact);
+        }
+    if (estates == 0)
+        return true;
+    if (!tl_estates_reserve(d, estates, points))
+        return false;
+    for (size_t i = 0; i < d->pair_count; i++) {
+        const tl_pair *p = &d->pairs[i];
+        if (!leaves(d, scratch, p))
+            continue;
+        tl_testator a = {.id = d->known_blocks[p->a].id};
+        uint32_t row = scratch->row[p->a];
+        if (row == TL_NO_ROW) {
+            a.r = &m->heirs[scratch->heir[p->a]].r;
+            a.place = m->heirs[scratch->heir[p->a]].place;
+        } else {
+            uint32_t body = m->blocks.body[row];
+            a.r = &m->bodies.pose[body].r;
+            a.place = tl_body_place(&m->bodies, body);
+            a.reframed = tl_block_is_new(m, row);
+        }
+        tl_estate_keep(m, p->contact, &a, d->known_blocks[p->b].id);
+    }
+    if (!tl_estates_find_stress(m)) {
+        d->estate_count = before;
+        d->left_count = points_before;
+        return false;
+    }
+    tl_estates_sort(d);
+    return true;
 }
 
 /* Ends a contact: a block of it has gone, or both have become one body. */
@@ -120,15 +203,21 @@ tl_status tl_edited_rows(tl_model *m)
     tl_detect *d = m->detect;
     size_t blocks = m->blocks.table.rows, bodies = m->bodies.table.rows;
     rows_scratch scratch;
-    if (!reserve_scratch(m, &scratch))
-        return tl_fail_memory(&m->error);
-    for (size_t old = 0; old < d->known_block_count; old++)
+    bool there = reserve_scratch(m, &scratch);
+    for (size_t old = 0; there && old < d->known_block_count; old++)
         scratch.row[old] = tl_block_row_quiet(m, d->known_blocks[old].id);
+    if (there)
+        find_heirs(m, &scratch);
+    if (!there || !keep_estates(m, &scratch)) {
+        free_scratch(&scratch);
+        return tl_fail_memory(&m->error);
+    }
     keep_bodies(m, &scratch);
     keep_pairs(m, &scratch);
     for (size_t row = 0; row < blocks; row++)
         scratch.known_blocks[row] = (tl_known_block){m->blocks.id[row], m->blocks.body[row]};
     free(scratch.row);
+    free(scratch.heir);
     free(d->odometer_0);
     free(d->touched);
     free(d->known_blocks);

@@ -8,6 +8,7 @@
 #include "detect/pairs.h"
 
 #include "base/inline.h"
+#include "contact/estate.h"
 #include "contact/pair_view.h"
 #include "detect/grazing.h"
 #include "narrow/coarse_test.h"
@@ -156,11 +157,19 @@ static double way_to_edges(const tl_pair_view *view, double longest)
     return fmax(reach - tolerance, tolerance);
 }
 
+tl_manifold_before tl_pair_before(const tl_model *m, const tl_pair *p, const tl_region *region)
+{
+    return (tl_manifold_before){
+        .facet = {.kind = TL_FACET_PATCH, .ia = region->flush_a, .ib = region->flush_b},
+        .holds = region->flush && tl_estate_holds(m, p->a, p->b)};
+}
+
 static void test_pair(tl_model *m, tl_pair *p, tl_narrow_scratch *scratch)
 {
     tl_detect *d = m->detect;
     tl_pair_view view = tl_pair_view_of(m, p->a, p->b);
-    double gap, margin = tl_grazing_margin(&view, p, &gap);
+    bool holds = tl_estate_holds(m, p->a, p->b);
+    double gap, margin = holds ? -1 : tl_grazing_margin(&view, p, &gap);
     if (margin >= 0) {
         tl_pair_sleep(d, p, margin);
         return;
@@ -171,7 +180,7 @@ static void test_pair(tl_model *m, tl_pair *p, tl_narrow_scratch *scratch)
         return;
     }
     double tolerance = TL_CONTACT_TOLERANCE * view.size;
-    if (!tl_coarse_test(&view, tolerance + d->reach)) {
+    if (!holds && !tl_coarse_test(&view, tolerance + d->reach)) {
         tl_pair_sleep(d, p, d->reach);
         return;
     }
@@ -180,13 +189,14 @@ static void test_pair(tl_model *m, tl_pair *p, tl_narrow_scratch *scratch)
         scratch->failed = true;
         return;
     }
-    double way = way_to_contact(&view, &region);
+    const tl_manifold_before before = tl_pair_before(m, p, &region);
+    double way = before.holds ? -1 : way_to_contact(&view, &region);
     if (way > 0) {
         tl_pair_sleep(d, p, way);
         return;
     }
-    tl_touch_rule rule = tl_touch_rule_of(m, &view, tl_touching_tag(&view, region.n), false);
-    if (!(rule.min_area > 0)) {
+    tl_touch_rule rule = tl_touch_rule_of(m, &view, tl_touching_tag(&view, region.n), before.holds);
+    if (!before.holds && !(rule.min_area > 0)) {
         tl_grazing_choose_faces(&view, p);
         margin = tl_grazing_margin(&view, p, &gap);
         if (margin >= 0) {
@@ -200,8 +210,7 @@ static void test_pair(tl_model *m, tl_pair *p, tl_narrow_scratch *scratch)
         tl_pair_sleep(d, p, way);
         return;
     }
-    const tl_manifold_before none = {.facet = {.kind = TL_FACET_PATCH}};
-    if (!tl_manifold_find(&view, &region, &rule, &none, scratch)) {
+    if (!tl_manifold_find(&view, &region, &rule, &before, scratch)) {
         scratch->failed = true; /* what was found is not all there is: test again */
         return;
     }

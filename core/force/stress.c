@@ -2,12 +2,14 @@
  *
  * sigma(z) = stress + gradient (z - at.z), tension positive. A point of area a and normal n (A to B) gets
  * f_n = -(n . sigma n) a and f_s = -(sigma n - (n . sigma n) n) a on B, and its closure counts from now.
- * Field contacts begin without force, and so do contacts made later, and faces with rock between them. */
+ * Field contacts begin without force, and so do contacts made later, but those of blocks that are cut (contact/estate.c), and faces
+ * with rock between them. */
 #include "force/stress.h"
 
 #include "base/columns.h"
 #include "contact/detection.h"
 #include "contact/places.h"
+#include "contact/points.h"
 
 #include <math.h>
 
@@ -17,21 +19,6 @@ tl_sym3 tl_insitu_stress(const tl_insitu *s, double z)
     return (tl_sym3){s->stress.xx + h * s->gradient.xx, s->stress.yy + h * s->gradient.yy,
                      s->stress.zz + h * s->gradient.zz, s->stress.xy + h * s->gradient.xy,
                      s->stress.yz + h * s->gradient.yz, s->stress.zx + h * s->gradient.zx};
-}
-
-static void load_point(tl_model *m, const tl_insitu *s, size_t i, tl_vec3 n, double z,
-                       double closure)
-{
-    tl_points_table *p = &m->detect->points;
-    tl_vec3 traction = tl_s3_mul(tl_insitu_stress(s, z), n);
-    double normal = tl_v3_dot(n, traction);
-    tl_vec3 shear = tl_v3_madd(traction, -normal, n);
-    p->reference[i] += closure;
-    p->f_n0[i] = p->f_n[i] = -normal * p->area[i];
-    p->f_s[0][i] = -shear.x * p->area[i];
-    p->f_s[1][i] = -shear.y * p->area[i];
-    p->f_s[2][i] = -shear.z * p->area[i];
-    p->flags[i] = 0;
 }
 
 /* Whether the faces of a patch are together: in the mean over its area not farther apart than blocks in contact are. Faces
@@ -59,7 +46,9 @@ void tl_insitu_load(tl_model *m, const tl_insitu *s, uint32_t c)
     m->detect->contacts.holds_over_gap[c] = true; /* perhaps: the next step tells */
     if (contacts->facet[c].kind != TL_FACET_PATCH || !faces_meet(m, c))
         return;
-    for (size_t i = 0; i < contacts->point_count[c]; i++)
-        load_point(m, s, tl_point_row(contacts, c, i), tl_columns_get(lanes->normal, i),
-                   centroid_z + lanes->arm[2][i], lanes->closure[i]);
+    for (size_t i = 0; i < contacts->point_count[c]; i++) {
+        tl_sym3 stress = tl_insitu_stress(s, centroid_z + lanes->arm[2][i]);
+        tl_point_load(&m->detect->points, tl_point_row(contacts, c, i), &stress,
+                      tl_columns_get(lanes->normal, i), lanes->closure[i]);
+    }
 }

@@ -110,6 +110,7 @@ void tl_model_destroy(tl_model *m)
         tl_history_free(m->histories[i]);
     free(m->histories);
     free(m->record.list);
+    free(m->heirs);
     free(m->groups);
     free(m->joints);
     free(m->joint_laws);

@@ -168,6 +168,19 @@ void tl_model_interrupt_if(tl_model *m, bool (*asked)(void))
 
 /* ---------------------------------------------------------------- rows ------------------- */
 
+static int compare_heir(const void *x, const void *y)
+{
+    const tl_heir *p = x, *q = y;
+    return (p->id > q->id) - (p->id < q->id);
+}
+
+const tl_heir *tl_heir_of(const tl_model *m, tl_id id)
+{
+    const tl_heir wanted = {.id = id};
+    return m->heir_count ? bsearch(&wanted, m->heirs, m->heir_count, sizeof wanted, compare_heir)
+                         : NULL;
+}
+
 uint32_t tl_block_row_quiet(const tl_model *m, tl_id id)
 {
     return id != TL_NO_ID && id < m->next_id ? m->row_of[id] : TL_NO_ROW;

@@ -148,6 +148,16 @@ typedef struct tl_cut_record {
     size_t listed;
 } tl_cut_record;
 
+/* A part of a block that was cut since contacts were brought up to date last: these know the whole, its root. */
+typedef struct tl_heir {
+    tl_id id, root;
+    tl_mat3 r;     /* rotation of the root's body, */
+    tl_vec3 place; /* and its centroid, relative to the origin */
+    double volume; /* of the root, m3 */
+    tl_sym3
+        stress; /* mean stress in the root under what its contacts carry, where there is an initial stress, Pa */
+} tl_heir;
+
 /* Most refused cuts that are listed; more are only counted. */
 #define TL_REFUSED_LISTED 1000
 
@@ -200,6 +210,8 @@ struct tl_model {
     tl_joint_set *joints; /* joint number j is joints[j - 1] */
     size_t joint_count;
     tl_cut_record record;
+    tl_heir *heirs; /* by ascending id */
+    size_t heir_count, heir_capacity;
     tl_extremes extremes;
 
     tl_law *joint_laws;
@@ -316,6 +328,9 @@ static inline void tl_block_changes(tl_model *m, uint32_t row)
 {
     m->blocks.changed[row] = m->structure + 1;
 }
+
+/* What a block was cut out of since contacts were brought up to date last, or NULL. */
+const tl_heir *tl_heir_of(const tl_model *m, tl_id id);
 
 /* Row of a block id, or TL_NO_ROW with a sentence in the model's error. */
 uint32_t tl_block_row(tl_model *m, tl_id id);

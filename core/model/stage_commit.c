@@ -18,6 +18,8 @@ static void centre_shape(tl_poly *shape, tl_vec3 centroid)
 
 /* What the children of a block take over from it and from its body. */
 typedef struct source {
+    tl_id id;
+    double volume;
     tl_pose pose;
     tl_vec3 base, v, w;
     tl_quat q;
@@ -29,7 +31,9 @@ static source source_of(const tl_model *m, uint32_t row)
 {
     const tl_bodies *b = &m->bodies;
     uint32_t body = m->blocks.body[row];
-    return (source){.base = m->blocks.base ? m->blocks.base[row] : tl_v3(0, 0, 0),
+    return (source){.id = m->blocks.id[row],
+                    .volume = m->blocks.volume[row],
+                    .base = m->blocks.base ? m->blocks.base[row] : tl_v3(0, 0, 0),
                     .pose = b->pose[body],
                     .v = b->v[body],
                     .w = b->w[body],
@@ -128,6 +132,32 @@ typedef struct commit_scratch {
     uint32_t *group; /* [rows] */
 } commit_scratch;
 
+/* Whether contacts are kept of blocks: those of their parts take them over. */
+static bool has_contacts(const tl_model *m)
+{
+    return m->detect && !m->only_asked;
+}
+
+/* Notes what blocks were cut out of, where there is room for it. */
+static void keep_heirs(const tl_stage *stage, const commit_scratch *scratch)
+{
+    tl_model *m = stage->model;
+    for (size_t i = 0; i < stage->count && has_contacts(m); i++) {
+        const tl_stage_block *block = &stage->blocks[i];
+        if (!is_made(block) || block->source == TL_NO_ROW)
+            continue;
+        const source *from = &scratch->sources[scratch->slot[block->source]];
+        const tl_heir *known = tl_heir_of(m, from->id);
+        tl_heir heir = {.root = from->id,
+                        .volume = from->volume,
+                        .r = from->pose.r,
+                        .place = tl_v3_add(from->pose.x_ref, from->pose.u)};
+        heir = known ? *known : heir;
+        heir.id = scratch->ids[i];
+        m->heirs[m->heir_count++] = heir;
+    }
+}
+
 static void free_scratch(commit_scratch *scratch)
 {
     free(scratch->keep);
@@ -187,6 +217,9 @@ static bool reserve_scratch(tl_stage *stage, size_t old, size_t made, commit_scr
     return sort_rows(stage, old, scratch) && scratch->ids && scratch->gone &&
            (!stage->regroups || (scratch->first && scratch->group)) && rows < TL_NO_ROW &&
            reserve_record(stage) &&
+           (!has_contacts(stage->model) ||
+            tl_grow(&stage->model->heirs, &stage->model->heir_capacity,
+                    stage->model->heir_count + made, sizeof *stage->model->heirs)) &&
            tl_rows_reserve(stage->model, rows, stage->model->next_id + (tl_id)made) &&
            (!stage->regroups || tl_rows_set_aside(stage->model, &scratch->aside));
 }
@@ -283,6 +316,7 @@ tl_status tl_stage_commit(tl_stage *stage)
     }
     if (status == TL_OK) {
         keep_record(stage, scratch.ids);
+        keep_heirs(stage, &scratch);
         for (size_t i = 0; i < scratch.gone_count; i++)
             tl_poly_free(scratch.gone[i]);
         tl_stage_end(stage);

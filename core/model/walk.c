@@ -50,6 +50,9 @@ void tl_model_walk(tl_model *m, const tl_walk *walk)
     VALUE(STATE, record.created);
     VALUE(STATE, record.deleted);
     LIST(STATE, record.list, record.listed, record.listed);
+    VALUE(STATE, next_contact);
+    LIST(STATE, asked_ids, asked_count, asked_count);
+    LIST(STATE, heirs, heir_count, heir_capacity);
     FLAG(CACHE, extremes.known);
     VALUE(CACHE, extremes.total);
     VALUE(CACHE, extremes.volume);

@@ -4,6 +4,7 @@
 
 #include "model/options.h"
 
+#include "contact/copy.h"
 #include "contact/index.h"
 #include "contact/places.h"
 #include "detect/detect.h"
@@ -112,11 +113,12 @@ const char *tl_state_name(size_t number)
 tl_contact_counts tl_model_contact_counts(const tl_model *m)
 {
     tl_contact_counts counts = {0, 0, 0};
-    size_t rows = m->detect ? m->detect->contacts.table.rows : 0;
+    const tl_detect *d = tl_detect_lasting(m);
+    size_t rows = d ? d->contacts.table.rows : 0;
     for (uint32_t row = 0; row < rows; row++) {
-        if (m->detect->contacts.point_count[row] == 0)
+        if (d->contacts.point_count[row] == 0)
             continue;
-        tl_contact_state state = state_of(m->detect, row);
+        tl_contact_state state = state_of(d, row);
         counts.contacts++;
         counts.slipping += state == TL_CONTACT_SLIPPING;
         counts.open += state == TL_CONTACT_OPEN;

@@ -4,6 +4,7 @@
 #include "contact/detection.h"
 #include "contact/walk.h"
 #include "cycle/walk.h"
+#include "detect/asked.h"
 #include "force/joint_laws.h"
 #include "model/walk.h"
 #include "state/drives.h"
@@ -125,6 +126,8 @@ tl_status tl_model_copy(tl_model *m, tl_drive_again_fn again, void *user, tl_mod
     if (status != TL_OK)
         return status;
     tl_rows_tidy(m);
+    if (!tl_asked_note(m))
+        return tl_fail_memory(&m->error);
     tl_model *to;
     status = tl_model_create(&m->config, &to, &m->error);
     if (status != TL_OK)

@@ -5,6 +5,7 @@
 #include "contact/copy.h"
 #include "contact/walk.h"
 #include "cycle/walk.h"
+#include "detect/asked.h"
 #include "model/walk.h"
 #include "state/drives.h"
 #include "state/frames.h"
@@ -131,6 +132,8 @@ static tl_status save_under(tl_model *m, const char *path)
 static tl_status prepare(tl_model *m)
 {
     tl_rows_tidy(m);
+    if (!tl_asked_note(m))
+        return tl_fail_memory(&m->error);
     if (!m->cycle)
         return TL_OK;
     if (tl_undo_lost(m->cycle))

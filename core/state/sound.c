@@ -12,6 +12,9 @@
 /* Changes that a model may have counted; no run comes near, and sums of such numbers do not overflow. */
 #define MOST_CHANGES (UINT64_MAX / 8)
 
+/* Contacts that a model may have had. */
+#define MOST_CONTACTS (UINT32_MAX / 2)
+
 /* Bits of `said`: one for each remark. */
 #define ALL_REMARKS ((2u << TL_REMARK_OVERLAP) - 1)
 
@@ -54,6 +57,40 @@ static bool measure_is_sound(double x)
     return x >= TL_LEAST_MEASURE && x <= TL_MOST_MEASURE;
 }
 
+static bool is_place(tl_vec3 x)
+{
+    return tl_v3_finite(x) && tl_v3_norm(x) <= TL_FARTHEST;
+}
+
+static bool matrix_is_sound(const tl_mat3 *r)
+{
+    double sum = 0;
+    for (int k = 0; k < 9; k++)
+        sum += fabs(r->m[k / 3][k % 3]);
+    return sum < MOST_MATRIX;
+}
+
+/* What blocks that were cut have left, and the ids by which contacts were asked for. */
+static bool edits_are_sound(const tl_model *m)
+{
+    for (size_t i = 0; i < m->heir_count; i++) {
+        const tl_heir *h = &m->heirs[i];
+        if (h->id >= m->next_id || h->root == TL_NO_ID || h->root >= h->id ||
+            (i && h->id <= h[-1].id) || !matrix_is_sound(&h->r) || !is_place(h->place) ||
+            !measure_is_sound(h->volume))
+            return false;
+    }
+    if (m->next_contact > MOST_CONTACTS)
+        return false;
+    for (size_t i = 0; i < m->asked_count; i++) {
+        const tl_asked_id *q = &m->asked_ids[i];
+        if (q->contact == 0 || q->contact > m->next_contact || q->a >= q->b ||
+            (i && (q->a < q[-1].a || (q->a == q[-1].a && q->b <= q[-1].b))))
+            return false;
+    }
+    return true;
+}
+
 static bool block_is_sound(const tl_model *m, uint32_t row, size_t groups)
 {
     const tl_blocks *b = &m->blocks;
@@ -66,23 +103,10 @@ static bool block_is_sound(const tl_model *m, uint32_t row, size_t groups)
            (!b->local || tl_v3_finite(b->local[row])) && (!b->base || tl_v3_finite(b->base[row]));
 }
 
-static bool is_place(tl_vec3 x)
-{
-    return tl_v3_finite(x) && tl_v3_norm(x) <= TL_FARTHEST;
-}
-
 static bool is_turn(tl_quat q)
 {
     double norm2 = q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z;
     return fabs(norm2 - 1) < TURN_SLACK;
-}
-
-static bool matrix_is_sound(const tl_mat3 *r)
-{
-    double sum = 0;
-    for (int k = 0; k < 9; k++)
-        sum += fabs(r->m[k / 3][k % 3]);
-    return sum < MOST_MATRIX;
 }
 
 /* Velocities and forces are any numbers: those of a model that overflows are saved as well, and the next step tells it. */
@@ -123,6 +147,8 @@ const char *tl_rows_unsound(const tl_model *m, size_t groups, size_t drives)
         return "it has too many rows";
     if (!settings_are_sound(m) || !joints_are_sound(m))
         return "a setting has an impossible value";
+    if (!edits_are_sound(m))
+        return "what was edited has an impossible value";
     for (uint32_t row = 0; row < m->blocks.table.rows; row++)
         if (!block_is_sound(m, row, groups))
             return "a block has an impossible value";

@@ -43,6 +43,9 @@ for k, m in ipairs(saved) do
     end
     if k == 2 then
         m:blocks { fixed = false }:delete() -- what was found of contacts is out of date
+    elseif k == 4 then
+        m:generate("joint", { joint = "J3", dip = 90, dip_direction = 0, origin = { 1, 0.5, 0.5 } })
+        assert(#m:contacts() > 0)
     end
     m:save(string.format("%s/restore/%d.talus", folder, k))
     m:write_blocks(string.format("%s/json/%d.json", folder, k))

@@ -9,6 +9,24 @@
 
 static const char truth[] = TALUS_TEST_TMP "/truth.talus", lie_path[] = TALUS_TEST_TMP "/lie.talus";
 
+/* As if block 2 had been cut out of block 1, and their contact had been asked for. */
+static void add_edits(tl_model *m)
+{
+    tl_detect *d = m->detect;
+    m->heirs = calloc(1, sizeof *m->heirs);
+    m->asked_ids = calloc(1, sizeof *m->asked_ids);
+    d->estates = calloc(1, sizeof *d->estates);
+    d->left_points = calloc(1, sizeof *d->left_points);
+    if (!CHECK(m->heirs && m->asked_ids && d->estates && d->left_points))
+        exit(1);
+    m->heirs[0] = (tl_heir){.id = 2, .root = 1, .r = tl_m3_identity(), .volume = 1};
+    m->asked_ids[0] = (tl_asked_id){1, 2, 1};
+    d->estates[0] = (tl_estate){.a = 1, .b = 2, .law = TL_NO_ROW, .count = 1};
+    m->heir_count = m->heir_capacity = m->asked_count = 1;
+    d->estate_count = d->estate_capacity = d->left_count = d->left_capacity = 1;
+    m->next_contact = d->next_contact;
+}
+
 /* Two boxes on each other, the lower one held, after some steps. */
 static void save_truth(void)
 {
@@ -19,6 +37,7 @@ static void save_truth(void)
     scene_ok(m, tl_blocks_fix(m, &m->blocks.id[0], 1, TL_FIX_ALL));
     tl_solve_result result;
     scene_ok(m, tl_model_cycle(m, 10, &result));
+    add_edits(m);
     scene_ok(m, tl_model_save(m, truth));
     tl_model_destroy(m);
 }
@@ -146,6 +165,22 @@ static const lie lies[] = {
     LIE("detect.contacts.field", 0, two),
     LIE("detect.layout.groups", 0, far_row),
     LIE("detect.laid_at", 0, long_ago),
+    /* edits */
+    LIE("model.heirs", offsetof(tl_heir, id), far_row),
+    LIE("model.heirs", offsetof(tl_heir, root), all_bits),
+    LIE("model.asked_ids", offsetof(tl_asked_id, a), far_row),
+    LIE("model.heirs", offsetof(tl_heir, r), huge),
+    LIE("model.next_contact", 0, all_bits),
+    LIE("model.heirs", offsetof(tl_heir, place), infinite),
+    LIE("detect.estates", offsetof(tl_estate, first), most),
+    LIE("detect.next_contact", 0, far_row),
+    LIE("model.heirs", offsetof(tl_heir, volume), none),
+    LIE("detect.estates", offsetof(tl_estate, count), far_row),
+    LIE("model.asked_ids", offsetof(tl_asked_id, contact), far_row),
+    LIE("detect.estates", offsetof(tl_estate, law), far_row),
+    LIE("detect.estates", offsetof(tl_estate, field), two),
+    LIE("detect.estates", offsetof(tl_estate, holds_over_gap), two),
+    LIE("detect.estates", offsetof(tl_estate, reframed), two),
     /* the step */
     LIE("cycle.all_held", 0, two),
 };

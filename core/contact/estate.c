@@ -1,0 +1,325 @@
+/* estate.c - what a contact leaves to those of its blocks' parts when a block of it is cut.
+ *
+ * A part of a wall carries what it carried before: stresses, law states, an initial stress. So a contact that ends because a block of
+ * it was cut leaves its points, and each contact between parts of the two blocks takes its share of them over when it is made,
+ * in the same detection. What a part is of, its root, the model tells (tl_heir). */
+#include "contact/estate.h"
+
+#include "base/columns.h"
+#include "contact/points.h"
+#include "contact/presses.h"
+
+#include <float.h>
+#include <stdlib.h>
+
+bool tl_estates_reserve(tl_detect *d, size_t estates, size_t points)
+{
+    return tl_fit(&d->estates, &d->estate_capacity, d->estate_count + estates,
+                  sizeof *d->estates) &&
+           tl_fit(&d->left_points, &d->left_capacity, d->left_count + points,
+                  sizeof *d->left_points);
+}
+
+static bool is_field(const tl_detect *d, uint32_t c)
+{
+    return d->contacts.facet[c].kind == TL_FACET_FIELD;
+}
+
+uint32_t tl_estate_size(const tl_detect *d, uint32_t c)
+{
+    uint32_t count = d->contacts.point_count[c];
+    return is_field(d, c) && count ? 1 : count;
+}
+
+/* The springs of a field contact, and how far an initial stress has moved its face, as a patch has that. */
+static void keep_field(tl_model *m, uint32_t c, tl_estate *estate, tl_old_point *point)
+{
+    const tl_detect *d = m->detect;
+    const tl_points_table *p = &d->points;
+    const tl_press_row *row = tl_press_row_of(m, c);
+    size_t torsion = tl_point_row(&d->contacts, c, TL_FIELD_TORSION);
+    estate->torsion = row->press.radius * tl_v3_dot(point->normal, tl_columns_get(p->f_s, torsion));
+    estate->energy = row->spare[0] + row->spare[1];
+    for (size_t k = 0; k < TL_FIELD_POINTS; k++) {
+        size_t i = tl_point_row(&d->contacts, c, k);
+        double area = p->area[i];
+        estate->energy += area > 0 ? tl_v3_norm2(tl_columns_get(p->f_s, i)) / area : 0;
+    }
+    point->n0 = 0;
+    point->reference = p->f_n0 ? -row->shift : 0;
+}
+
+void tl_estate_keep(tl_model *m, uint32_t c, const tl_testator *a, tl_id b)
+{
+    tl_detect *d = m->detect;
+    tl_estate *estate = &d->estates[d->estate_count++];
+    *estate = (tl_estate){.a = a->id,
+                          .b = b,
+                          .law = d->contacts.law[c],
+                          .count = tl_estate_size(d, c),
+                          .first = d->left_count,
+                          .field = is_field(d, c),
+                          .holds_over_gap = d->contacts.holds_over_gap[c],
+                          .reframed = a->reframed};
+    for (size_t k = 0; k < estate->count; k++) {
+        tl_vec3 p = tl_columns_get(d->points.p, tl_point_row(&d->contacts, c, k));
+        tl_vec3 place = tl_v3_add(a->place, tl_m3_mul(a->r, p));
+        d->left_points[d->left_count++] = tl_point_as_old(&d->points, &d->contacts, c, k, place);
+    }
+    if (estate->field)
+        keep_field(m, c, estate, &d->left_points[estate->first]);
+}
+
+static int compare(const void *x, const void *y)
+{
+    const tl_estate *p = x, *q = y;
+    return tl_pair_order(p->a, p->b, q->a, q->b);
+}
+
+void tl_estates_sort(tl_detect *d)
+{
+    if (d->estate_count > 1)
+        qsort(d->estates, d->estate_count, sizeof *d->estates, compare);
+}
+
+/* ---------------------------------------------------------------- stress in the whole ---- */
+
+/* Sum of x t over the contacts of a block, x from its body's centroid, t on it. */
+typedef struct root_sum {
+    tl_id root;
+    tl_sym3 sum;
+    tl_vec3 place;
+} root_sum;
+
+static int compare_root(const void *x, const void *y)
+{
+    return tl_pair_order(((const root_sum *)x)->root, 0, ((const root_sum *)y)->root, 0);
+}
+
+static void add_force(root_sum *roots, size_t count, tl_id id, tl_vec3 place, tl_vec3 force)
+{
+    root_sum wanted = {.root = id};
+    root_sum *at = bsearch(&wanted, roots, count, sizeof wanted, compare_root);
+    if (!at)
+        return;
+    tl_vec3 x = tl_v3_sub(place, at->place);
+    at->sum.xx += x.x * force.x;
+    at->sum.yy += x.y * force.y;
+    at->sum.zz += x.z * force.z;
+    at->sum.xy += 0.5 * (x.x * force.y + x.y * force.x);
+    at->sum.yz += 0.5 * (x.y * force.z + x.z * force.y);
+    at->sum.zx += 0.5 * (x.z * force.x + x.x * force.z);
+}
+
+bool tl_estates_find_stress(tl_model *m)
+{
+    const tl_detect *d = m->detect;
+    if (!d->points.initial || m->heir_count == 0)
+        return true;
+    root_sum *roots = malloc(m->heir_count * sizeof *roots);
+    if (!roots)
+        return false;
+    for (size_t i = 0; i < m->heir_count; i++)
+        roots[i] = (root_sum){.root = m->heirs[i].root, .place = m->heirs[i].place};
+    qsort(roots, m->heir_count, sizeof *roots, compare_root);
+    size_t count = 1;
+    for (size_t i = 1; i < m->heir_count; i++)
+        if (roots[i].root != roots[count - 1].root)
+            roots[count++] = roots[i];
+    for (size_t i = 0; i < d->estate_count; i++)
+        for (size_t k = 0; k < d->estates[i].count; k++) {
+            const tl_old_point *p = &d->left_points[d->estates[i].first + k];
+            tl_vec3 force =
+                tl_v3_scale(p->area, tl_v3_madd(p->shear, p->f_n, p->normal)); /* on B */
+            add_force(roots, count, d->estates[i].b, p->arm, force);
+            add_force(roots, count, d->estates[i].a, p->arm, tl_v3_neg(force));
+        }
+    for (size_t i = 0; i < m->heir_count; i++) {
+        tl_heir *heir = &m->heirs[i];
+        root_sum wanted = {.root = heir->root};
+        const root_sum *at = bsearch(&wanted, roots, count, sizeof wanted, compare_root);
+        double by = 1 / heir->volume;
+        heir->stress = (tl_sym3){by * at->sum.xx, by * at->sum.yy, by * at->sum.zz,
+                                 by * at->sum.xy, by * at->sum.yz, by * at->sum.zx};
+    }
+    free(roots);
+    return true;
+}
+
+const tl_sym3 *tl_estate_inner_stress(const tl_model *m, uint32_t c)
+{
+    const tl_detect *d = m->detect;
+    if (!d->points.initial || m->heir_count == 0)
+        return NULL;
+    const tl_heir *a = tl_heir_of(m, m->blocks.id[d->contacts.a[c]]);
+    const tl_heir *b = tl_heir_of(m, m->blocks.id[d->contacts.b[c]]);
+    return a && b && a->root == b->root ? &a->stress : NULL;
+}
+
+/* ---------------------------------------------------------------- taken over ------------- */
+
+static tl_id root_of(const tl_model *m, uint32_t row)
+{
+    const tl_heir *heir = tl_heir_of(m, m->blocks.id[row]);
+    return heir ? heir->root : m->blocks.id[row];
+}
+
+const tl_estate *tl_estate_of(const tl_model *m, uint32_t block_a, uint32_t block_b)
+{
+    const tl_detect *d = m->detect;
+    if (d->estate_count == 0)
+        return NULL;
+    tl_id a = root_of(m, block_a), b = root_of(m, block_b);
+    tl_estate wanted = {.a = a < b ? a : b, .b = a < b ? b : a};
+    return bsearch(&wanted, d->estates, d->estate_count, sizeof wanted, compare);
+}
+
+bool tl_estate_holds(const tl_model *m, uint32_t block_a, uint32_t block_b)
+{
+    const tl_estate *estate = tl_estate_of(m, block_a, block_b);
+    return estate && estate->holds_over_gap;
+}
+
+/* The same as the other block sees it. */
+static void turn_round(const tl_kind *kind, tl_old_point *point)
+{
+    point->normal = tl_v3_neg(point->normal);
+    point->shear = tl_v3_neg(point->shear);
+    uint32_t column = 0;
+    for (uint32_t k = 0; kind && k < kind->state_count; k++) {
+        bool vector = tl_kind_state(kind, k)->kind == TL_STATE_TANGENT;
+        for (uint32_t w = 0; w < (vector ? 3 : 1) && column < TL_STATE_COLUMNS; w++, column++)
+            if (vector)
+                point->state[column] = -point->state[column];
+    }
+}
+
+static const tl_kind *kind_of(const tl_model *m, uint32_t law)
+{
+    return law == TL_NO_ROW ? NULL : m->joint_laws[law].kind;
+}
+
+bool tl_estate_is_of_law(const tl_model *m, const tl_estate *estate, uint32_t c)
+{
+    return kind_of(m, estate->law) == kind_of(m, m->detect->contacts.law[c]);
+}
+
+tl_old_point tl_estate_point(const tl_model *m, const tl_estate *estate, uint32_t c, size_t k)
+{
+    const tl_detect *d = m->detect;
+    uint32_t a = d->contacts.a[c];
+    tl_old_point out = d->left_points[estate->first + k];
+    out.arm = tl_v3_sub(out.arm, tl_body_place(&m->bodies, m->blocks.body[a]));
+    if (root_of(m, a) != estate->a)
+        turn_round(kind_of(m, estate->law), &out);
+    return out;
+}
+
+/* ---------------------------------------------------------------- all parts -------------- */
+
+static void add_shear(tl_heritage *sum, double area, tl_vec3 force)
+{
+    sum->area += area;
+    sum->force = tl_v3_add(sum->force, force);
+    sum->energy += area > 0 ? tl_v3_norm2(force) / area : 0;
+}
+
+static tl_heritage left_by(const tl_detect *d, const tl_estate *estate)
+{
+    tl_heritage sum = {.area = 0};
+    for (size_t k = 0; k < estate->count; k++) {
+        const tl_old_point *p = &d->left_points[estate->first + k];
+        add_shear(&sum, p->area, tl_v3_scale(p->area, p->shear));
+    }
+    return sum;
+}
+
+/* The estate that a patch has taken a share of, or NULL. */
+static tl_estate *taken_by(const tl_model *m, uint32_t c)
+{
+    tl_detect *d = m->detect;
+    const tl_estate *estate = tl_estate_of(m, d->contacts.a[c], d->contacts.b[c]);
+    bool patch = estate && !estate->field && !is_field(d, c);
+    return patch ? &d->estates[estate - d->estates] : NULL;
+}
+
+/* Adds what the patches of the parts carry. */
+static void sum_taken(tl_model *m)
+{
+    tl_detect *d = m->detect;
+    for (size_t i = 0; i < d->estate_count; i++)
+        d->estates[i].taken = (tl_heritage){.area = 0};
+    for (uint32_t c = 0; c < d->contacts.table.rows; c++) {
+        tl_estate *estate = taken_by(m, c);
+        double sign = estate && root_of(m, d->contacts.a[c]) != estate->a ? -1 : 1;
+        for (size_t k = 0; estate && k < d->contacts.point_count[c]; k++) {
+            size_t i = tl_point_row(&d->contacts, c, k);
+            add_shear(&estate->taken, d->points.area[i],
+                      tl_v3_scale(sign, tl_columns_get(d->points.f_s, i)));
+        }
+    }
+}
+
+/* Adds a uniform traction to a patch, of which its share, in its plane, makes up for what the parts lack. */
+static void add_lacking(tl_model *m, uint32_t c, const tl_estate *estate)
+{
+    const tl_detect *d = m->detect;
+    tl_heritage whole = left_by(d, estate);
+    const tl_heritage *taken = &estate->taken;
+    double part = whole.area > 0 ? fmin(1, taken->area / whole.area) : 0;
+    tl_vec3 lacks = tl_v3_sub(tl_v3_scale(part, whole.force), taken->force), n;
+    if (root_of(m, d->contacts.a[c]) != estate->a)
+        lacks = tl_v3_neg(lacks);
+    n = d->contacts.facet[c].last;
+    lacks = tl_v3_madd(lacks, -tl_v3_dot(lacks, n), n);
+    for (size_t k = 0; taken->area > 0 && k < d->contacts.point_count[c]; k++) {
+        size_t i = tl_point_row(&d->contacts, c, k);
+        tl_vec3 force = tl_columns_get(d->points.f_s, i);
+        tl_columns_put(d->points.f_s, i, tl_v3_madd(force, d->points.area[i] / taken->area, lacks));
+    }
+}
+
+/* Where the parts' springs have more energy than the whole's had, brings their stresses nearer to the mean: of one force a uniform stress
+ * has the least. */
+static void limit_energy(tl_model *m, uint32_t c, const tl_estate *estate)
+{
+    const tl_detect *d = m->detect;
+    const tl_heritage whole = left_by(d, estate), *taken = &estate->taken;
+    double most = whole.energy * (whole.area > 0 ? fmin(1, taken->area / whole.area) : 0);
+    if (!(taken->energy > most))
+        return;
+    double least = tl_v3_norm2(taken->force) / taken->area;
+    double keep = sqrt(fmax(0, most - least) / fmax(taken->energy - least, DBL_MIN));
+    bool same_way = root_of(m, d->contacts.a[c]) == estate->a;
+    tl_vec3 mean = tl_v3_scale((same_way ? 1 : -1) * (1 - keep) / taken->area, taken->force);
+    for (size_t k = 0; k < d->contacts.point_count[c]; k++) {
+        size_t i = tl_point_row(&d->contacts, c, k);
+        tl_vec3 force = tl_v3_scale(keep, tl_columns_get(d->points.f_s, i));
+        tl_columns_put(d->points.f_s, i, tl_v3_madd(force, d->points.area[i], mean));
+    }
+}
+
+void tl_estates_balance(tl_model *m)
+{
+    const tl_detect *d = m->detect;
+    if (d->estate_count == 0)
+        return;
+    void (*const correct[])(tl_model *, uint32_t, const tl_estate *) = {add_lacking, limit_energy};
+    for (int step = 0; step < 2; step++) {
+        sum_taken(m);
+        for (uint32_t c = 0; c < d->contacts.table.rows; c++) {
+            const tl_estate *estate = taken_by(m, c);
+            if (estate)
+                correct[step](m, c, estate);
+        }
+    }
+}
+
+void tl_estates_end(tl_detect *d)
+{
+    free(d->estates);
+    free(d->left_points);
+    d->estates = NULL;
+    d->left_points = NULL;
+    d->estate_count = d->estate_capacity = d->left_count = d->left_capacity = 0;
+}

@@ -1,0 +1,46 @@
+/* old_point.h - contact points that new ones take over from: of a contact whose polygon has changed, or of one that has ended
+ * because a block of it was cut. */
+#ifndef TL_CONTACT_OLD_POINT_H
+#define TL_CONTACT_OLD_POINT_H
+
+#include <stdbool.h>
+#include <talus/plugin.h>
+
+/* Stresses, and what the law keeps. Axes of the model. */
+typedef struct tl_old_point {
+    tl_vec3 arm; /* from A's centroid; of one of an estate from the model's origin */
+    tl_vec3 normal, shear;
+    double area, f_n;     /* f_n: normal stress */
+    double n0, reference; /* initial normal stress, and the overlap it belongs to */
+    double state[TL_STATE_COLUMNS];
+    uint32_t key, flags;
+} tl_old_point;
+
+/* What is one number a point: initial normal stress, reference overlap. */
+enum { TL_SCALAR_N0, TL_SCALAR_REFERENCE, TL_SCALAR_COUNT };
+
+static inline double tl_old_scalar(const tl_old_point *old, int scalar)
+{
+    return scalar == TL_SCALAR_N0 ? old->n0 : old->reference;
+}
+
+/* Shear of points: on B. */
+typedef struct tl_heritage {
+    double area, energy; /* of the springs, times 2 ks */
+    tl_vec3 force;
+} tl_heritage;
+
+/* What a contact of a block that was cut has left: its points from `first` on in a list of all such. Of a field contact there is
+ * one, at the centre of its pressure. */
+typedef struct tl_estate {
+    tl_id a, b; /* its blocks, a < b */
+    uint32_t law, count;
+    uint64_t first;
+    double torsion, energy; /* of a field contact: about its normal; of its springs, times 2 ks */
+    tl_heritage taken;      /* by the patches of the parts */
+    uint8_t field;
+    uint8_t holds_over_gap;
+    uint8_t reframed; /* places of its points are in frames that are no more */
+} tl_estate;
+
+#endif

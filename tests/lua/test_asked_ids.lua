@@ -1,0 +1,94 @@
+-- The ids by which contacts were asked for stay theirs: after edits, from the first step on, in copies and in what is restored.
+local check = require "check"
+local talus = require "talus"
+
+local path = os.getenv "TALUS_TEST_TMP" .. "/asked_ids.talus"
+
+local function ids(model)
+    local out = {}
+    for _, contact in ipairs(model:contacts()) do
+        out[#out + 1] = ("%d-%d %d"):format(contact.blocks[1].id, contact.blocks[2].id, contact.id)
+    end
+    table.sort(out)
+    return table.concat(out, " ")
+end
+
+local function cut(model, k)
+    model:generate("joint", { joint = "J" .. k, dip = 13 * k, dip_direction = 50 * k, origin = { 1 + 0.2 * k, 1.5, 1 } })
+end
+
+-- What is done to all models alike; asking is part of it.
+local function go_on(model, k, steps)
+    local told = { ids(model) }
+    cut(model, k)
+    told[2] = ids(model)
+    model:cycle(steps)
+    told[3] = ids(model)
+    model:blocks { id = model:blocks()[#model:blocks()].id }:delete()
+    cut(model, k + 1)
+    told[4] = ids(model)
+    cut(model, k + 2)
+    told[5] = ids(model)
+    return table.concat(told, "\n")
+end
+
+for _, steps in ipairs { 0, 1, 40 } do
+    local function build()
+        local model = talus.model { gravity = { 0, 0, -10 } }
+        model:generate("box", { min = { 0, 0, 0 }, max = { 3, 3, 2 }, density = 2500 })
+        cut(model, 0)
+        model:joint("*", "coulomb", { kn = 1e9, ks = 1e9, friction = 30 })
+        cut(model, 1)
+        model:blocks { below = { dip = 0, dip_direction = 0, origin = { 0, 0, 1 } } }:fix()
+        ids(model)
+        cut(model, 2)
+        if steps > 0 then
+            model:cycle(steps)
+        end
+        cut(model, 3)
+        ids(model)
+        return model
+    end
+    local model = build()
+    model:save(path)
+    local copy, restored = model:copy(), talus.restore(path, { threads = 2 })
+    local told = go_on(model, 4, 3)
+    check.equal(go_on(copy, 4, 3), told)
+    check.equal(go_on(restored, 4, 3), told)
+end
+
+-- A contact that is asked for twice between two steps has one id, whatever has been cut elsewhere in between.
+do
+    local model = talus.model { gravity = { 0, 0, -10 } }
+    for k = 0, 2 do
+        model:generate("box", { min = { 3 * k, 0, 0 }, max = { 3 * k + 1, 1, 1 }, density = 2500 })
+        model:generate("box", { min = { 3 * k, 0, 1 }, max = { 3 * k + 1, 1, 2 }, density = 2500 })
+    end
+    model:joint("*", "coulomb", { kn = 1e9, ks = 1e9, friction = 30 })
+    model:cycle(2)
+    model:blocks { id = 6 }:delete()
+    model:generate("box", { min = { 6, 0, 1 }, max = { 7, 1, 2 }, density = 2500 })
+    local first = ids(model)
+    model:generate("box", { min = { 0, 0, 2 }, max = { 1, 1, 3 }, density = 2500 })
+    check.holds(ids(model):find(first:match "5%-7 %d+", 1, true), "the id that was told is still the contact's")
+end
+
+-- Counts of contacts are those of the last step, whoever has asked for contacts since.
+do
+    local model = talus.model { gravity = { 5, 0, -10 } }
+    model:generate("box", { min = { 0, 0, 0 }, max = { 3, 3, 2 }, density = 2500 })
+    cut(model, 0)
+    model:joint("*", "coulomb", { kn = 1e9, ks = 1e9, friction = 10 })
+    model:blocks { below = { dip = 0, dip_direction = 0, origin = { 0, 0, 1 } } }:fix()
+    model:cycle(30)
+    local function count(m, name)
+        m:history { name = name, every = 1, value = "slipping" }
+        return m:histories()[name].value[1]
+    end
+    local before = count(model, "before")
+    cut(model, 1)
+    local copy = model:copy()
+    ids(copy)
+    check.equal(count(copy, "after"), before)
+    check.equal(count(model, "after"), before)
+end

@@ -1,0 +1,205 @@
+-- A cut changes nothing of what blocks carry: the contacts of the parts take over the stresses, law states and initial stress of those of the
+-- whole, whatever is asked, saved or cut again before the next step.
+local check = require "check"
+local talus = require "talus"
+
+local G, DENSITY = 10, 2000
+local SEEDS = 12
+
+local function fastest(model)
+    local most = 0
+    for _, block in ipairs(model:blocks { fixed = false }) do
+        local v = block.velocity
+        most = math.max(most, math.sqrt(v[1] ^ 2 + v[2] ^ 2 + v[3] ^ 2))
+    end
+    return most
+end
+
+local function plane(joint, dip, direction, x, y, z)
+    return { joint = joint, dip = dip, dip_direction = direction, origin = { x, y, z } }
+end
+
+-- ---------------------------------------------------------------- cases
+
+-- A block that friction holds on a slope.
+do
+    local model = talus.model { gravity = { 0, 0, -G } }
+    model:generate("box", { min = { 0, 0, 0 }, max = { 4, 4, 3 }, density = DENSITY })
+    model:generate("joint", plane("bed", 20, 90, 2, 2, 1.5))
+    model:joint("*", "coulomb", { kn = 1e8, ks = 1e8, friction = 40 })
+    model:blocks { below = { dip = 20, dip_direction = 90, origin = { 2, 2, 1.5 } } }:fix()
+    model:damping("local")
+    model:solve { ratio = 1e-8, max_cycles = 20000 }
+    local at_rest = fastest(model)
+    model:generate("joint", plane("new", 90, 0, 1.3, 1.3, 1.5))
+    local most = 0
+    for _ = 1, 200 do
+        model:cycle(1)
+        most = math.max(most, fastest(model))
+    end
+    check.holds(#model:blocks { fixed = false } == 2, "the sliding block is cut")
+    check.near(most, 0, 2 * at_rest)
+end
+
+-- A block that a bond holds under a roof, with springs so soft that its gap is wider than that of new contacts.
+for _, kn in ipairs { 1e9, 1e7 } do
+    local model = talus.model { gravity = { 0, 0, -G } }
+    model:generate("box", { min = { -1, -1, 1 }, max = { 3, 3, 2 }, density = DENSITY })
+    model:blocks():fix()
+    model:generate("box", { min = { 0, 0, 0 }, max = { 2, 1, 1 }, density = DENSITY, group = "hanging" })
+    model:joint("*", "coulomb_tensile", { kn = kn, ks = kn, friction = 30, cohesion = 1e6, tension = 1e6 })
+    model:damping("local")
+    model:cycle(3000)
+    model:generate("joint", plane("new", 80, 90, 1.9, 0, 0.5))
+    model:cycle(2000)
+    local hanging = model:blocks { group = "hanging" }
+    check.holds(#hanging == 2, "the hanging block is cut")
+    for _, block in ipairs(hanging) do
+        check.near(-block.displacement[3] * kn / (DENSITY * G), 1, 0.2) -- as far as the whole
+    end
+end
+
+-- Rock under an initial stress: nothing moves, and the new faces press on each other as the rock did.
+do
+    local model = talus.model { gravity = { 0, 0, 0 } }
+    model:generate("box", { min = { 0, 0, 0 }, max = { 9, 9, 9 }, density = DENSITY })
+    for k = 1, 2 do
+        model:generate("joint", plane("a", 0, 0, 4, 4, 3 * k))
+        model:generate("joint", plane("b", 90, 0, 4, 3 * k, 4))
+        model:generate("joint", plane("c", 90, 90, 3 * k, 4, 4))
+    end
+    model:blocks { where = function(b)
+        local c = b.centroid
+        return math.max(math.abs(c[1] - 4.5), math.abs(c[2] - 4.5), math.abs(c[3] - 4.5)) > 1
+    end }:fix()
+    model:joint("*", "coulomb", { kn = 1e9, ks = 1e9, friction = 30 })
+    model:insitu { stress = { xx = -1e6, yy = -2e6, zz = -3e6 } }
+    for _, cut in ipairs { plane("n", 90, 90, 4.7, 4, 4), plane("n", 50, 90, 4, 4, 4.2) } do
+        model:cycle(5)
+        model:generate("joint", cut)
+        model:cycle(50)
+        check.near(fastest(model), 0, 1e-9)
+    end
+    local free = model:blocks { fixed = false }
+    local pressed = 0
+    check.holds(#free == 4, "the free block is cut twice")
+    for _, contact in ipairs(model:contacts { joint = "n" }) do
+        local n, one, other = contact.normal, contact.blocks[1], contact.blocks[2]
+        local stress = n[1] ^ 2 * 1e6 + n[2] ^ 2 * 2e6 + n[3] ^ 2 * 3e6
+        if one.fixed == other.fixed and not one.fixed then
+            pressed = pressed + 1
+            check.near(contact.normal_stress, stress, 1e-6 * stress)
+        end
+    end
+    check.holds(pressed >= 4, "the new faces touch")
+end
+
+-- ---------------------------------------------------------------- laws
+
+local function chance(seed)
+    local state = seed * 7919 + 13
+    return function()
+        state = (state * 1103515245 + 12345) % 2147483648
+        return (state >> 8) % 100000 / 100000
+    end
+end
+
+local function random_plane(draw, joint)
+    return plane(joint, 90 * draw(), 360 * draw(), 4 * draw(), 3 * draw(), 1 + 2 * draw())
+end
+
+-- Rock that has come to rest or is about to slide; each block has a group of its own, which its parts keep.
+local function build(seed)
+    local draw = chance(seed)
+    local model = talus.model { gravity = { 4 * draw() - 2, 4 * draw() - 2, -G } }
+    model:generate("box", { min = { 0, 0, 0 }, max = { 4, 3, 3 }, density = DENSITY })
+    for k = 1, 3 do
+        model:generate("joint", random_plane(draw, "J" .. k))
+    end
+    for _, block in ipairs(model:blocks()) do
+        model:blocks { id = block.id }:set { group = ("%03d"):format(block.id) }
+    end
+    model:blocks { below = { dip = 0, dip_direction = 0, origin = { 0, 0, 1 } } }:fix()
+    if draw() < 0.5 then
+        model:joint("*", "coulomb", { kn = 1e9, ks = 5e8, friction = 20 + 20 * draw() })
+    else
+        model:joint("*", "coulomb_tensile", { kn = 1e9, ks = 5e8, friction = 20 + 20 * draw(), cohesion = 1e5, tension = 1e5 })
+    end
+    if draw() < 0.3 then
+        model:insitu { stress = { xx = -2e5, yy = -1e5, zz = -1e5 } }
+    end
+    model:damping("local")
+    model:cycle(300 + math.floor(600 * draw()))
+    return model, draw
+end
+
+-- Shear forces between blocks as they were before the cut, and the energies of their springs times 2 ks; the largest force.
+local function sums(model)
+    local out, most = {}, 0
+    for _, contact in ipairs(model:contacts()) do
+        local a, b, sign = contact.blocks[1].group, contact.blocks[2].group, 1
+        if a > b then
+            a, b, sign = b, a, -1
+        end
+        local sum = out[a .. b] or { force = { 0, 0, 0 }, energy = 0, parts = 0, area = 0 }
+        out[a .. b] = a ~= b and sum or nil
+        sum.parts, sum.area = sum.parts + 1, sum.area + contact.area
+        for _, point in ipairs(contact.points) do
+            local f = point.shear_force
+            for k = 1, 3 do
+                sum.force[k] = sum.force[k] + sign * f[k]
+            end
+            most = math.max(most, math.abs(point.normal_force))
+            if point.area > 0 then
+                sum.energy = sum.energy + (f[1] ^ 2 + f[2] ^ 2 + f[3] ^ 2) / point.area
+            end
+        end
+    end
+    return out, most
+end
+
+local function cut(model, draw, look)
+    for k = 1, 1 + math.floor(2 * draw()) do
+        model:generate("joint", random_plane(draw, "new" .. k))
+        look(model)
+    end
+end
+
+local function quiet() end
+
+local function ask(model) return model:contacts():sum("area") end
+local function hash(model) return model:state_hash() end
+
+local split = 0
+for seed = 1, SEEDS do
+    local whole, draw = build(seed)
+    local parts = whole:copy()
+    cut(parts, draw, quiet)
+    local before, most = sums(whole)
+    local after = sums(parts)
+    for pair, sum in pairs(before) do
+        local now = after[pair]
+        if now and now.parts > sum.parts and math.abs(now.area - sum.area) < 1e-3 * sum.area then
+            split = split + 1
+            check.near(now.force, sum.force, 2e-3 * most)
+            check.holds(now.energy <= 1.001 * sum.energy + 1e-9, "energy of the parts' springs")
+        end
+    end
+    -- whatever is done between the cuts and the next step
+    parts:cycle(50)
+    for _, look in ipairs { ask, hash } do
+        local model, again = build(seed)
+        cut(model, again, look)
+        model:cycle(50)
+        check.equal(model:state_hash(), parts:state_hash())
+    end
+    local saved, again = build(seed)
+    local path = os.getenv "TALUS_TEST_TMP" .. "/cut_keeps.talus"
+    cut(saved, again, function(model) model:save(path) end)
+    local restored, copy = talus.restore(path, { threads = 2 }), saved:copy()
+    restored:cycle(50)
+    copy:cycle(50)
+    check.holds(restored:state_hash() == parts:state_hash(), ("seed %d, saved between the cuts and the next step"):format(seed))
+    check.holds(copy:state_hash() == parts:state_hash(), ("seed %d, copied"):format(seed))
+end
+check.holds(split > SEEDS, "contacts were split")
