@@ -29,7 +29,7 @@ typedef struct tl_contacts {
     /* some point carried a force across a gap in the last step: a bond in tension, or an initial stress not yet
      * relieved. Such a contact ends only with that force */
     uint8_t *holds_over_gap;
-    uint8_t *new_points; /* its points were placed in this step */
+    uint8_t *new_points; /* its points were placed in this step: TL_POINTS_* */
     uint8_t *pending;    /* what the parallel phase leaves to the serial one: TL_PENDING_* */
     uint8_t *held;       /* both its bodies are held still: held.c */
     uint8_t *deep;       /* its blocks overlap too deeply: TL_DEEP_*, overlap.c */
@@ -75,6 +75,9 @@ enum {
     TL_PENDING_MOVE,
     TL_PENDING_GROW_PATCH
 };
+
+/* What happened to the points of a contact in this step: nothing; placed anew; others are there than before. */
+enum { TL_POINTS_STAY, TL_POINTS_PLACED, TL_POINTS_OTHERS };
 
 /* Whether a contact waits for room for its points. */
 static inline bool tl_pending_waits(uint8_t pending)

@@ -426,25 +426,27 @@ static void rate_range(void *user, size_t begin, size_t end, size_t chunk, unsig
     tl_row_search_note(&s->search, thread, found);
 }
 
-/* Notes the bodies whose contacts have other points than in the step before; true when there are any. */
-static bool touch_new_points(tl_model *m)
+/* Notes the bodies whose contacts have points that were placed in this step or, beyond that, others than before; true when there are
+ * any. */
+static bool touch_new_points(tl_model *m, uint8_t least)
 {
     tl_detect *d = m->detect;
     tl_contacts *c = &d->contacts;
     bool any = false;
     for (size_t i = 0; i < c->table.rows; i++) {
-        if (!c->new_points[i])
+        if (c->new_points[i] < least)
             continue;
         d->touched[m->blocks.body[c->a[i]]] = true;
         d->touched[m->blocks.body[c->b[i]]] = true;
         any = true;
-        c->new_points[i] = c->point_count[i] > 0; /* without points the laws will not see it */
+        if (c->point_count[i] == 0) /* the laws will not see it */
+            c->new_points[i] = TL_POINTS_STAY;
     }
     return any;
 }
 
 /* Where contact points count, bodies are rated anew when one of their contacts has points that were placed in this step;
- * otherwise, and with mass scaling, when a contact has come, gone or grown; with mass scaling, all now and then. */
+ * otherwise, and with mass scaling, when a contact has gone or has other points; with mass scaling, all now and then. */
 tl_row_value tl_rates_keep(tl_model *m, double known)
 {
     struct tl_cycle *c = m->cycle;
@@ -456,7 +458,8 @@ tl_row_value tl_rates_keep(tl_model *m, double known)
                now.recheck != c->stiffness_rates.recheck ||
                now.rotation != c->stiffness_rates.rotation ||
                (known > 0 && !(c->dt > 0)); /* it may be another one */
-    bool some = tl_rates_points(m) && !m->mass_scaling && touch_new_points(m);
+    bool placed = tl_rates_points(m) && !m->mass_scaling;
+    bool some = touch_new_points(m, placed ? TL_POINTS_PLACED : TL_POINTS_OTHERS);
     if (all || some || d->any_touched) {
         rate_search s = {.search.m = m,
                          .stiffest = tl_stiffest_law(m),

@@ -137,10 +137,12 @@ static tl_status give_birth(tl_model *m, uint32_t pair, overlaps *deep)
         d->contacts.holds_over_gap[row] = true;
     }
     double overlap = g->facet.kind == TL_FACET_FIELD ? g->press.deepest : -region.gap;
-    if (overlap > TL_SHALLOW * view.size && deep->count++ == 0)
+    /* parts of blocks go on in the overlap of these */
+    bool meet = !tl_estate_of(m, d->pairs[pair].a, d->pairs[pair].b);
+    if (meet && overlap > TL_SHALLOW * view.size && deep->count++ == 0)
         deep->pair = pair;
-    if (tl_overlap_is_deep(m, &view, &region, d->pairs[pair].a, d->pairs[pair].b, true)) {
-        tl_overlap_mark(&d->contacts, row, true);
+    if (tl_overlap_is_deep(m, &view, &region, d->pairs[pair].a, d->pairs[pair].b, meet)) {
+        tl_overlap_mark(&d->contacts, row, meet);
         scratch->deep = true;
     }
     return TL_OK;
@@ -211,8 +213,10 @@ static bool settle_rows(tl_model *m)
     for (uint32_t row = (uint32_t)c->table.rows; row-- > 0;) {
         if (c->pending[row] == TL_PENDING_NONE)
             continue;
-        touch(m, row);
         uint32_t pair = c->pair[row];
+        if (!tl_pending_waits(
+                c->pending[row])) /* others are noted when they have got their points */
+            touch(m, row);
         if (c->pending[row] == TL_PENDING_DIE) {
             d->parted += tl_contact_sheared(m, row);
             tl_contact_remove(d, row);

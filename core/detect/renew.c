@@ -136,7 +136,7 @@ static void note_patch(tl_model *m, uint32_t c, double area)
 {
     tl_contacts *contacts = &m->detect->contacts;
     contacts->area[c] = area;
-    contacts->new_points[c] = true;
+    contacts->new_points[c] = TL_POINTS_PLACED;
     tl_contact_allow_reuse(m, c);
 }
 

@@ -172,7 +172,7 @@ static void note_manifold(tl_contacts *contacts, uint32_t c, const tl_manifold *
     for (size_t k = 0; k < g->point_count && (k == 0 || !field); k++)
         area += g->points[k].area;
     contacts->area[c] = area;
-    contacts->new_points[c] = true;
+    contacts->new_points[c] = TL_POINTS_PLACED;
 }
 
 /* Asks for room for a manifold, or for a place in another span, unless the contact has them. */
@@ -203,6 +203,7 @@ static bool take_manifold(tl_model *m, uint32_t c, tl_narrow_scratch *scratch,
     if (g->point_count == 0)
         g->facet = d->contacts.facet[c];
     if (!same_topology(d, c, g)) {
+        d->contacts.new_points[c] = TL_POINTS_OTHERS;
         bool fields =
             g->facet.kind == TL_FACET_FIELD || d->contacts.facet[c].kind == TL_FACET_FIELD;
         if (!fields)
@@ -334,7 +335,7 @@ static bool renew_patch(tl_model *m, uint32_t c, unsigned thread)
     size_t begin = contacts->point_start[c];
     if (g->count == contacts->point_count[c] && same_keys(&m->detect->points, begin, g)) {
         refit_patch(m, c, g);
-        contacts->new_points[c] = true;
+        contacts->new_points[c] = TL_POINTS_PLACED;
         return true;
     }
     if (rule.min_area > 0) /* it may be too small for a patch now */

@@ -175,6 +175,6 @@ void tl_simd_group_follow(tl_model *m, const tl_simd_group *group, bool field,
             turn_states(m, contact, contacts->facet[contact].last, n, tl_lanes3_get(&f.half, l),
                         tangents);
         contacts->facet[contact].last = n;
-        contacts->new_points[contact] = false;
+        contacts->new_points[contact] = TL_POINTS_STAY;
     }
 }
