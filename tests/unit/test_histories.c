@@ -157,8 +157,7 @@ TEST(clean)
 
 TEST(name_the_file)
 {
-    snprintf(path, sizeof path, "%s/test_histories_%d.talus", getenv("TALUS_TEST_TMP"),
-             (int)getpid());
+    snprintf(path, sizeof path, "%s/test_histories_%d.talus", TALUS_TEST_TMP, (int)getpid());
 }
 
 TEST_MAIN(RUN(name_the_file), RUN(a_list_of_histories), RUN(copies_and_files_have_them),
