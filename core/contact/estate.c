@@ -6,11 +6,15 @@
 #include "contact/estate.h"
 
 #include "base/columns.h"
+#include "contact/places.h"
 #include "contact/points.h"
 #include "contact/presses.h"
 
 #include <float.h>
 #include <stdlib.h>
+
+/* Normals of a part's face and of the whole's are off each other by rounding. */
+#define SAME_FACE 1e-9
 
 bool tl_estates_reserve(tl_detect *d, size_t estates, size_t points)
 {
@@ -49,18 +53,34 @@ static void keep_field(tl_model *m, uint32_t c, tl_estate *estate, tl_old_point 
     point->reference = p->f_n0 ? -row->shift : 0;
 }
 
-void tl_estate_keep(tl_model *m, uint32_t c, const tl_testator *a, tl_id b)
+void tl_estate_leave(tl_model *m, uint32_t c)
 {
     tl_detect *d = m->detect;
+    tl_press_row *row = tl_press_row_of(m, c);
+    for (size_t k = 0; k < d->contacts.point_count[c]; k++)
+        tl_columns_put(d->points.f_s, tl_point_row(&d->contacts, c, k), tl_v3(0, 0, 0));
+    if (row)
+        row->spare[0] = row->spare[1] = 0;
+    d->contacts.released[c] = 0;
+}
+
+void tl_estate_keep(tl_model *m, uint32_t c, const tl_testator *a, const tl_testator *b)
+{
+    tl_detect *d = m->detect;
+    const tl_facet *facet = &d->contacts.facet[c];
     tl_estate *estate = &d->estates[d->estate_count++];
     *estate = (tl_estate){.a = a->id,
-                          .b = b,
+                          .b = b->id,
                           .law = d->contacts.law[c],
                           .count = tl_estate_size(d, c),
                           .first = d->left_count,
                           .field = is_field(d, c),
                           .holds_over_gap = d->contacts.holds_over_gap[c],
                           .reframed = a->reframed};
+    if (!estate->field) {
+        estate->face[0] = tl_m3_mul(a->r, facet->na);
+        estate->face[1] = tl_m3_mul(b->r, facet->nb);
+    }
     for (size_t k = 0; k < estate->count; k++) {
         tl_vec3 p = tl_columns_get(d->points.p, tl_point_row(&d->contacts, c, k));
         tl_vec3 place = tl_v3_add(a->place, tl_m3_mul(a->r, p));
@@ -177,7 +197,30 @@ const tl_estate *tl_estate_of(const tl_model *m, uint32_t block_a, uint32_t bloc
 bool tl_estate_holds(const tl_model *m, uint32_t block_a, uint32_t block_b)
 {
     const tl_estate *estate = tl_estate_of(m, block_a, block_b);
-    return estate && estate->holds_over_gap;
+    return estate && estate->holds_over_gap && !estate->field;
+}
+
+/* The face of a block with an outward normal; TL_NO_ROW: it has none. A convex block has one at the most. */
+static uint32_t face_of(const tl_model *m, uint32_t block, tl_vec3 normal)
+{
+    const tl_poly *shape = m->blocks.shape[block];
+    tl_vec3 n = tl_m3_tmul(&m->bodies.pose[m->blocks.body[block]].r, normal);
+    for (uint32_t f = 0; f < shape->face_count; f++)
+        if (tl_v3_norm2(tl_v3_sub(shape->plane[f].normal, n)) < SAME_FACE * SAME_FACE)
+            return f;
+    return TL_NO_ROW;
+}
+
+bool tl_estate_faces(const tl_model *m, uint32_t block_a, uint32_t block_b, uint32_t *face_a,
+                     uint32_t *face_b)
+{
+    const tl_estate *estate = tl_estate_of(m, block_a, block_b);
+    if (!estate || estate->field)
+        return false;
+    bool other_way = root_of(m, block_a) != estate->a;
+    *face_a = face_of(m, block_a, estate->face[other_way]);
+    *face_b = face_of(m, block_b, estate->face[!other_way]);
+    return *face_a != TL_NO_ROW && *face_b != TL_NO_ROW;
 }
 
 /* The same as the other block sees it. */
@@ -239,8 +282,12 @@ static tl_estate *taken_by(const tl_model *m, uint32_t c)
 {
     tl_detect *d = m->detect;
     const tl_estate *estate = tl_estate_of(m, d->contacts.a[c], d->contacts.b[c]);
-    bool patch = estate && !estate->field && !is_field(d, c);
-    return patch ? &d->estates[estate - d->estates] : NULL;
+    uint32_t face_a, face_b;
+    if (!estate || is_field(d, c) ||
+        !tl_estate_faces(m, d->contacts.a[c], d->contacts.b[c], &face_a, &face_b) ||
+        face_a != d->contacts.facet[c].ia || face_b != d->contacts.facet[c].ib)
+        return NULL;
+    return &d->estates[estate - d->estates];
 }
 
 /* Adds what the patches of the parts carry. */
@@ -299,6 +346,29 @@ static void limit_energy(tl_model *m, uint32_t c, const tl_estate *estate)
     }
 }
 
+/* What new contacts carry from the beginning, until the laws say it. */
+static void sum_forces(tl_model *m)
+{
+    tl_contacts *contacts = &m->detect->contacts;
+    const tl_points_table *p = &m->detect->points;
+    const tl_point_lanes *lanes = &m->detect->lanes[0];
+    for (uint32_t c = 0; c < contacts->table.rows; c++) {
+        if (!tl_estate_of(m, contacts->a[c], contacts->b[c]) && !tl_estate_inner_stress(m, c))
+            continue;
+        tl_contact_places(m, c, lanes);
+        tl_vec3 force = {0, 0, 0}, moment = {0, 0, 0};
+        for (size_t k = 0; k < contacts->point_count[c]; k++) {
+            size_t i = tl_point_row(contacts, c, k);
+            tl_vec3 f =
+                tl_v3_madd(tl_columns_get(p->f_s, i), p->f_n[i], tl_columns_get(lanes->normal, k));
+            force = tl_v3_add(force, f);
+            moment = tl_v3_add(moment, tl_v3_cross(tl_columns_get(lanes->arm, k), f));
+        }
+        contacts->force[c] = force;
+        contacts->moment[c] = moment;
+    }
+}
+
 void tl_estates_balance(tl_model *m)
 {
     const tl_detect *d = m->detect;
@@ -313,6 +383,7 @@ void tl_estates_balance(tl_model *m)
                 correct[step](m, c, estate);
         }
     }
+    sum_forces(m);
 }
 
 void tl_estates_end(tl_detect *d)

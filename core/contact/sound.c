@@ -19,12 +19,14 @@ static uint32_t faces_of(const tl_model *m, const tl_detect *d, uint32_t seen)
 
 /* ---------------------------------------------------------------- pairs ------------------ */
 
-/* Whether the faces of a pair are there. A contact that has points, or waits for room, has something else in their place. */
+/* Whether the faces of a pair are there. A contact for which something is still to be done may have something else in their place; it
+ * forgets that when it is done. */
 static bool pair_faces_are_sound(const tl_model *m, const tl_detect *d, const tl_pair *p)
 {
     const tl_contacts *c = &d->contacts;
-    if (!tl_pair_is_apart(p) &&
-        (c->point_count[p->contact] || tl_pending_waits(c->pending[p->contact])))
+    uint8_t pending = tl_pair_is_apart(p) ? TL_PENDING_NONE : c->pending[p->contact];
+    if (tl_pending_waits(pending) || pending == TL_PENDING_DIE ||
+        (pending == TL_PENDING_MOVE && c->point_count[p->contact] > 0))
         return true;
     tl_pair_faces f = tl_pair_faces_of(p);
     const uint32_t faces[] = {f.one, f.other};

@@ -422,6 +422,12 @@ static bool begin_points(tl_model *m, uint32_t c, tl_narrow_scratch *scratch,
 {
     tl_contacts *contacts = &m->detect->contacts;
     const tl_estate *estate = tl_estate_of(m, contacts->a[c], contacts->b[c]);
+    const tl_facet *facet = &scratch->manifold.facet;
+    uint32_t face_a, face_b;
+    if (estate && !estate->field &&
+        !(tl_estate_faces(m, contacts->a[c], contacts->b[c], &face_a, &face_b) &&
+          face_a == facet->ia && face_b == facet->ib))
+        estate = NULL; /* other faces than those that carried it */
     const tl_sym3 *stress = tl_estate_inner_stress(m, c);
     if (estate && !reserve(scratch, estate->count))
         return false;

@@ -125,7 +125,7 @@ static tl_status give_birth(tl_model *m, uint32_t pair, overlaps *deep)
     if (!tl_region_find(&view, TL_LIST_MARGIN * view.size, scratch, &region))
         return tl_fail_memory(&m->error);
     tl_tag tag = tl_touching_tag(&view, region.n);
-    const tl_manifold_before before = tl_pair_before(m, &d->pairs[pair], &region);
+    const tl_manifold_before before = tl_pair_before(m, &d->pairs[pair], &view, scratch);
     tl_touch_rule rule = tl_touch_rule_of(m, &view, tag, before.holds);
     const tl_manifold *g = &scratch->manifold;
     if (!tl_manifold_find(&view, &region, &rule, &before, scratch) ||

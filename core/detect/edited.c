@@ -107,6 +107,21 @@ static bool leaves(const tl_detect *d, const rows_scratch *scratch, const tl_pai
            d->contacts.point_count[p->contact] > 0;
 }
 
+static tl_testator testator_of(const tl_model *m, const rows_scratch *scratch, uint32_t seen)
+{
+    tl_id id = m->detect->known_blocks[seen].id;
+    uint32_t row = scratch->row[seen];
+    if (row == TL_NO_ROW) {
+        const tl_heir *heir = &m->heirs[scratch->heir[seen]];
+        return (tl_testator){.id = id, .r = &heir->r, .place = heir->place};
+    }
+    uint32_t body = m->blocks.body[row];
+    return (tl_testator){.id = id,
+                         .r = &m->bodies.pose[body].r,
+                         .place = tl_body_place(&m->bodies, body),
+                         .reframed = tl_block_is_new(m, row)};
+}
+
 /* Keeps what contacts of blocks that were cut leave; false when out of memory (nothing changed). */
 static bool keep_estates(tl_model *m, const rows_scratch *scratch)
 {
@@ -125,18 +140,8 @@ static bool keep_estates(tl_model *m, const rows_scratch *scratch)
         const tl_pair *p = &d->pairs[i];
         if (!leaves(d, scratch, p))
             continue;
-        tl_testator a = {.id = d->known_blocks[p->a].id};
-        uint32_t row = scratch->row[p->a];
-        if (row == TL_NO_ROW) {
-            a.r = &m->heirs[scratch->heir[p->a]].r;
-            a.place = m->heirs[scratch->heir[p->a]].place;
-        } else {
-            uint32_t body = m->blocks.body[row];
-            a.r = &m->bodies.pose[body].r;
-            a.place = tl_body_place(&m->bodies, body);
-            a.reframed = tl_block_is_new(m, row);
-        }
-        tl_estate_keep(m, p->contact, &a, d->known_blocks[p->b].id);
+        tl_testator one = testator_of(m, scratch, p->a), other = testator_of(m, scratch, p->b);
+        tl_estate_keep(m, p->contact, &one, &other);
     }
     if (!tl_estates_find_stress(m)) {
         d->estate_count = before;
@@ -144,6 +149,9 @@ static bool keep_estates(tl_model *m, const rows_scratch *scratch)
         return false;
     }
     tl_estates_sort(d);
+    for (size_t i = 0; i < d->pair_count; i++)
+        if (leaves(d, scratch, &d->pairs[i]))
+            tl_estate_leave(m, d->pairs[i].contact);
     return true;
 }
 

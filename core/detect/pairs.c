@@ -13,6 +13,7 @@
 #include "detect/grazing.h"
 #include "narrow/coarse_test.h"
 #include "narrow/manifold.h"
+#include "narrow/patch.h"
 #include "narrow/place.h"
 
 #include <string.h>
@@ -157,11 +158,18 @@ static double way_to_edges(const tl_pair_view *view, double longest)
     return fmax(reach - tolerance, tolerance);
 }
 
-tl_manifold_before tl_pair_before(const tl_model *m, const tl_pair *p, const tl_region *region)
+tl_manifold_before tl_pair_before(const tl_model *m, const tl_pair *p, const tl_pair_view *view,
+                                  tl_narrow_scratch *scratch)
 {
-    return (tl_manifold_before){
-        .facet = {.kind = TL_FACET_PATCH, .ia = region->flush_a, .ib = region->flush_b},
-        .holds = region->flush && tl_estate_holds(m, p->a, p->b)};
+    tl_manifold_before out = {.facet = {.kind = TL_FACET_PATCH}};
+    uint32_t face_a, face_b;
+    if (!tl_estate_holds(m, p->a, p->b) || !tl_estate_faces(m, p->a, p->b, &face_a, &face_b))
+        return out;
+    tl_touch_rule rule = tl_touch_rule_of(m, view, view->a->tag[face_a], true);
+    out.holds = tl_patch_lay(view, face_a, face_b, &rule, scratch) > 0;
+    out.facet.ia = (uint16_t)face_a;
+    out.facet.ib = (uint16_t)face_b;
+    return out;
 }
 
 static void test_pair(tl_model *m, tl_pair *p, tl_narrow_scratch *scratch)
@@ -189,7 +197,7 @@ static void test_pair(tl_model *m, tl_pair *p, tl_narrow_scratch *scratch)
         scratch->failed = true;
         return;
     }
-    const tl_manifold_before before = tl_pair_before(m, p, &region);
+    const tl_manifold_before before = tl_pair_before(m, p, &view, scratch);
     double way = before.holds ? -1 : way_to_contact(&view, &region);
     if (way > 0) {
         tl_pair_sleep(d, p, way);
