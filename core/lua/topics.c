@@ -90,7 +90,9 @@ static const tl_lua_key energy_terms[] = {
     {"stored", "", "elastic, in all contacts, those of held blocks, too, J"},
     {"friction", "", "turned to heat by slip, J"},
     {"damping", "", "taken out by the damping, J"},
-    {"external", "", "work of loads and driven bodies, and given by setting velocities, J"},
+    {"external", "",
+     "work of loads and driven bodies, and given by setting velocities and by edits of blocks and "
+     "laws, J"},
     {"balance", "", "error of the sum over the largest change of a term so far"},
     {NULL, NULL, NULL},
 };

@@ -911,7 +911,7 @@ function talus.stereonet(options) end
 ---@field stored number elastic, in all contacts, those of held blocks, too, J
 ---@field friction number turned to heat by slip, J
 ---@field damping number taken out by the damping, J
----@field external number work of loads and driven bodies, and given by setting velocities, J
+---@field external number work of loads and driven bodies, and given by setting velocities and by edits of blocks and laws, J
 ---@field balance number error of the sum over the largest change of a term so far
 
 --- The energy of the bodies that are free to move, at the last force evaluation, counted from the first step.

@@ -491,8 +491,9 @@ typedef struct tl_energy {
     double stored;    /* elastic, in contacts */
     double friction;  /* turned to heat by slip */
     double damping;   /* taken out by the damping */
-    double external;  /* work of loads and driven bodies, and given by setting velocities */
-    double balance;   /* error of the sum, relative to the largest change of a term so far */
+    double
+        external; /* work of loads and driven bodies, and given by setting velocities and by edits of blocks and laws */
+    double balance; /* error of the sum, relative to the largest change of a term so far */
 } tl_energy;
 
 /* The ledger, as of the last force evaluation. */
