@@ -122,6 +122,7 @@ static double shift_of(const tl_model *m, uint32_t c)
 /* What the law keeps of a point. */
 typedef struct law_state {
     double state[TL_STATE_COLUMNS], area;
+    tl_vec3 normal;
     uint32_t flags;
     bool known;
 } law_state;
@@ -134,6 +135,7 @@ static law_state state_of(const tl_model *m, uint32_t c)
     for (uint32_t s = 0; s < p->state_columns && out.known; s++)
         out.state[s] = p->state[s][i];
     out.flags = out.known ? p->flags[i] : 0;
+    out.normal = m->detect->contacts.facet[c].last;
     out.area = out.known ? p->area[i] : 0;
     return out;
 }
@@ -163,6 +165,23 @@ static void write_points(tl_model *m, uint32_t c, const tl_manifold *g, const la
         tl_point_initial_state(p, i, kind);
         if (old->known)
             tl_point_take_state(p, i, kind, old->state, old->area);
+    }
+}
+
+/* Turns what laws keep of the points into the plane in which they are now. The torsion of a field contact begins without a vector:
+ * its plane is another one. */
+static void turn_states(tl_model *m, uint32_t c, const law_state *old)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    bool field = contacts->facet[c].kind == TL_FACET_FIELD;
+    uint32_t law = contacts->law[c];
+    const tl_kind *kind = law == TL_NO_ROW ? NULL : m->joint_laws[law].kind;
+    for (size_t k = 0; k < contacts->point_count[c] && old->known; k++) {
+        size_t i = tl_point_row(contacts, c, k);
+        if (field && k == TL_FIELD_TORSION)
+            tl_point_clear_vectors(&m->detect->points, i, kind);
+        else
+            tl_point_turn_states(&m->detect->points, i, kind, old->normal, contacts->facet[c].last);
     }
 }
 
@@ -251,6 +270,7 @@ static void take_share(tl_model *m, uint32_t c, const tl_manifold *g, const tl_e
     write_points(m, c, g, &state, 0);
     tl_press_row_of(m, c)->press = g->press;
     tl_contact_begin(m, c, lanes);
+    turn_states(m, c, &state);
     double area = g->points[0].area, share = whole.area > 0 ? fmin(1, area / whole.area) : 0;
     whole.force = tl_v3_scale(share, whole.force);
     whole.torsion *= share * share;
@@ -288,6 +308,7 @@ void tl_contact_hand_over(tl_model *m, uint32_t c, const tl_manifold *g, bool re
     if (field)
         row->press = g->press;
     tl_contact_begin(m, c, lanes);
+    turn_states(m, c, &state);
     double ks = contacts->law[c] == TL_NO_ROW ? 0 : m->joint_laws[contacts->law[c]].ks;
     if (!held || g->point_count == 0) {
         contacts->released[c] += ks > 0 ? 0.5 * old.energy / ks : 0;

@@ -115,6 +115,33 @@ void tl_point_keep_state(tl_points_table *p, size_t i, const tl_kind *kind, cons
     take_state(p, i, kind, old, old_area, false);
 }
 
+void tl_point_clear_vectors(tl_points_table *p, size_t i, const tl_kind *kind)
+{
+    uint32_t column = 0;
+    for (uint32_t k = 0; kind && k < kind->state_count && column < p->state_columns; k++) {
+        const tl_state *state = tl_kind_state(kind, k);
+        if (state->kind == TL_STATE_TANGENT)
+            tl_columns_put(&p->state[column], i, tl_v3(0, 0, 0));
+        column += state_width(state);
+    }
+}
+
+void tl_point_turn_states(tl_points_table *p, size_t i, const tl_kind *kind, tl_vec3 from,
+                          tl_vec3 to)
+{
+    uint32_t column = 0;
+    bool turned = from.x != to.x || from.y != to.y || from.z != to.z;
+    for (uint32_t k = 0; kind && turned && k < kind->state_count && column < p->state_columns;
+         k++) {
+        const tl_state *state = tl_kind_state(kind, k);
+        if (state->kind == TL_STATE_TANGENT) {
+            tl_vec3 v = tl_v3_turn(tl_columns_get(&p->state[column], i), from, to);
+            tl_columns_put(&p->state[column], i, tl_v3_madd(v, -tl_v3_dot(v, to), to));
+        }
+        column += state_width(state);
+    }
+}
+
 bool tl_points_hold_initial(tl_points_table *p)
 {
     if (p->initial)

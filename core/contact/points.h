@@ -21,6 +21,11 @@ void tl_point_take_state(tl_points_table *p, size_t point, const tl_kind *kind, 
 /* The same for a point that keeps its place: what is reset on a change of polygon stays. */
 void tl_point_keep_state(tl_points_table *p, size_t point, const tl_kind *kind, const double *old,
                          double old_area);
+/* Sets the vectors among a point's states to 0. */
+void tl_point_clear_vectors(tl_points_table *points, size_t point, const tl_kind *kind);
+/* Turns the vectors among a point's states with its normal, from the old one into the plane of the new. */
+void tl_point_turn_states(tl_points_table *points, size_t point, const tl_kind *kind, tl_vec3 from,
+                          tl_vec3 to);
 /* Columns of the states of a kind of law. */
 uint32_t tl_kind_state_columns(const tl_kind *kind);
 /* Makes sure that one table of points has that many state columns; false when out of memory (nothing changed). Both

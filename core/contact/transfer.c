@@ -301,6 +301,8 @@ static void write_points(tl_model *m, uint32_t c, const tl_manifold *g, const ol
         p->flags[i] = from->states ? o->flags : 0;
         if (from->states)
             tl_point_take_state(p, i, kind, o->state, o->area);
+        if (from->states)
+            tl_point_turn_states(p, i, kind, o->normal, n);
     }
 }
 

@@ -59,9 +59,22 @@ static void go_on_counting(tl_model *m)
 
 /* ---------------------------------------------------------------- life ------------------- */
 
+/* Contacts that follow other rules than the model's now are found anew. */
+static void drop_other_rules(tl_model *m)
+{
+    const tl_detect *d = m->detect;
+    if (!d || (d->rules == m->rules && d->contact_points == m->config.contact_points))
+        return;
+    tl_detect_destroy(m->detect);
+    m->detect = NULL;
+}
+
 tl_status tl_asked_begin(tl_model *m)
 {
     if (!m->detect || !has_begun(m)) {
+        if (!tl_asked_note(m))
+            return tl_fail_memory(&m->error);
+        drop_other_rules(m);
         m->only_asked = true;
         return TL_OK;
     }

@@ -355,7 +355,9 @@ tl_status tl_detect_refresh(tl_model *m)
     const tl_detect *d = m->detect;
     bool listed =
         d && !d->rows_changed && d->indexed == d->contacts.table.rows; /* no step failed */
-    if (listed && d->structure == m->structure && d->laws == m->laws)
+    bool ruled = !m->only_asked || !d ||
+                 (d->rules == m->rules && d->contact_points == m->config.contact_points);
+    if (listed && ruled && d->structure == m->structure && d->laws == m->laws)
         return TL_OK;
     tl_status status = tl_asked_begin(m);
     if (status == TL_OK)

@@ -45,7 +45,7 @@ static const tl_lua_key history_keys[] = {
      "\"external\" (J), "
      "\"balance\", \"ratio\", \"ratio_maximum\", \"ratio_local\", \"max_velocity\" (m/s), "
      "\"contacts\", \"slipping\", "
-     "\"open\" (numbers of contacts)"},
+     "\"open\" (numbers of contacts in the last step)"},
     {"of", "block, contact or selection",
      "what the field is sampled of, in the place of `value`. Blocks and contacts that no longer "
      "exist are left out; "

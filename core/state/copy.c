@@ -125,6 +125,10 @@ tl_status tl_model_copy(tl_model *m, tl_drive_again_fn again, void *user, tl_mod
     tl_status status = tl_model_may_set(m, "copy the model");
     if (status != TL_OK)
         return status;
+    if (m->cycle && tl_undo_lost(m->cycle))
+        return tl_fail(&m->error, TL_E_STATE,
+                       "copy: cycle %lld failed and could not be taken back: make the model anew",
+                       (long long)m->cycles + 1);
     tl_rows_tidy(m);
     if (!tl_asked_note(m))
         return tl_fail_memory(&m->error);

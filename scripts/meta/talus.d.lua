@@ -837,7 +837,7 @@ function Model:solve(options) end
 ---@field field? string field of numbers of what `of` gives ("displacement", "normal_force")
 ---@field take? "mean"|"sum"|"min"|"max" default "mean": of a selection: what is made of the values of its blocks or contacts
 ---@field remove? boolean default false: ends the history of that name, with all its samples
----@field value? fun(model: talus.Model): any|string gives a number, a list of numbers ({x, y, z}) or several numbers, as many each time; it may read the model, but not change it. Or one of "kinetic", "potential", "stored", "friction", "damping", "external" (J), "balance", "ratio", "ratio_maximum", "ratio_local", "max_velocity" (m/s), "contacts", "slipping", "open" (numbers of contacts)
+---@field value? fun(model: talus.Model): any|string gives a number, a list of numbers ({x, y, z}) or several numbers, as many each time; it may read the model, but not change it. Or one of "kinetic", "potential", "stored", "friction", "damping", "external" (J), "balance", "ratio", "ratio_maximum", "ratio_local", "max_velocity" (m/s), "contacts", "slipping", "open" (numbers of contacts in the last step)
 ---@field of? talus.Block|talus.Contact|talus.Blocks|talus.Contacts what the field is sampled of, in the place of `value`. Blocks and contacts that no longer exist are left out; where none is left the value is nan
 
 --- Samples a value at once and then every so many steps of all runs, until it is removed.

@@ -73,6 +73,40 @@ do
     check.holds(ids(model):find(first:match "5%-7 %d+", 1, true), "the id that was told is still the contact's")
 end
 
+-- Before the first step, too: what is joined elsewhere leaves a contact its id and its history, whoever has asked in between.
+do
+    local function told(look)
+        local model = talus.model {}
+        for x = 0, 3 do
+            model:generate("box", { min = { 2 * x, 0, 0 }, max = { 2 * x + 2, 2, 2 }, density = 2500 })
+        end
+        model:joint("*", "elastic", { kn = 1e8, ks = 1e8 })
+        model:history { name = "n", of = model:contacts()[2], field = "normal_force", every = 1 }
+        model:blocks { id = { 1, 2 } }:join()
+        look(model)
+        model:cycle(2)
+        return ids(model) .. " " .. table.concat(model:histories().n.value, " ")
+    end
+    local plain = told(function() end)
+    check.equal(told(ids), plain)
+    check.equal(told(function(model) model:copy() end), plain)
+    check.equal(told(function(model) model:save(path) end), plain)
+end
+
+-- Contacts that were asked for before the first step follow another rule as soon as it is set.
+do
+    local model = talus.model {}
+    for z = 0, 1 do
+        model:generate("box", { min = { 0, 0, z }, max = { 1, 1, z + 1 }, density = 2500 })
+    end
+    model:joint("*", "elastic", { kn = 1e8, ks = 1e8 })
+    local all = #model:contacts()[1].points
+    model.contact_points = "corners"
+    local corners = #model:contacts()[1].points
+    check.holds(corners < all, "points at corners are fewer")
+    check.equal(#model:copy():contacts()[1].points, corners)
+end
+
 -- Counts of contacts are those of the last step, whoever has asked for contacts since.
 do
     local model = talus.model { gravity = { 5, 0, -10 } }
