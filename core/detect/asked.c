@@ -110,8 +110,8 @@ void tl_asked_end(tl_model *m)
         go_on_counting(m);
 }
 
-/* What a contact is that was found since ids were noted. */
-enum { GONE = 0, UNKNOWN = UINT32_MAX };
+/* Stands for the id of a contact that was not known when ids were noted. */
+#define UNKNOWN UINT32_MAX
 
 bool tl_asked_name(tl_model *m)
 {
