@@ -223,6 +223,18 @@ bool tl_estate_faces(const tl_model *m, uint32_t block_a, uint32_t block_b, uint
     return *face_a != TL_NO_ROW && *face_b != TL_NO_ROW;
 }
 
+const tl_estate *tl_estate_on(const tl_model *m, uint32_t block_a, uint32_t block_b,
+                              const tl_facet *facet)
+{
+    const tl_estate *estate = tl_estate_of(m, block_a, block_b);
+    uint32_t face_a, face_b;
+    if (!estate || estate->field)
+        return estate;
+    bool same = tl_estate_faces(m, block_a, block_b, &face_a, &face_b) && face_a == facet->ia &&
+                face_b == facet->ib;
+    return same ? estate : NULL;
+}
+
 /* The same as the other block sees it. */
 static void turn_round(const tl_kind *kind, tl_old_point *point)
 {
@@ -281,13 +293,9 @@ static tl_heritage left_by(const tl_detect *d, const tl_estate *estate)
 static tl_estate *taken_by(const tl_model *m, uint32_t c)
 {
     tl_detect *d = m->detect;
-    const tl_estate *estate = tl_estate_of(m, d->contacts.a[c], d->contacts.b[c]);
-    uint32_t face_a, face_b;
-    if (!estate || is_field(d, c) ||
-        !tl_estate_faces(m, d->contacts.a[c], d->contacts.b[c], &face_a, &face_b) ||
-        face_a != d->contacts.facet[c].ia || face_b != d->contacts.facet[c].ib)
-        return NULL;
-    return &d->estates[estate - d->estates];
+    const tl_contacts *contacts = &d->contacts;
+    const tl_estate *estate = tl_estate_on(m, contacts->a[c], contacts->b[c], &contacts->facet[c]);
+    return estate && !estate->field && !is_field(d, c) ? &d->estates[estate - d->estates] : NULL;
 }
 
 /* Adds what the patches of the parts carry. */

@@ -32,6 +32,9 @@ bool tl_estate_holds(const tl_model *m, uint32_t block_a, uint32_t block_b);
 /* The faces of two blocks that are parts of the faces of the patch that they take over from; false: they have none. */
 bool tl_estate_faces(const tl_model *m, uint32_t block_a, uint32_t block_b, uint32_t *face_a,
                      uint32_t *face_b);
+/* The same for a contact on these faces: not of a patch, if they are no parts of its faces. */
+const tl_estate *tl_estate_on(const tl_model *m, uint32_t block_a, uint32_t block_b,
+                              const tl_facet *facet);
 /* The stress on which parts of one block press on each other, where there is an initial stress; or NULL. */
 const tl_sym3 *tl_estate_inner_stress(const tl_model *m, uint32_t contact);
 /* Point k of an estate as an old point of a contact. */

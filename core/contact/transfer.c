@@ -423,18 +423,15 @@ static bool begin_points(tl_model *m, uint32_t c, tl_narrow_scratch *scratch,
                          const tl_point_lanes *lanes)
 {
     tl_contacts *contacts = &m->detect->contacts;
-    const tl_estate *estate = tl_estate_of(m, contacts->a[c], contacts->b[c]);
-    const tl_facet *facet = &scratch->manifold.facet;
-    uint32_t face_a, face_b;
-    if (estate && !estate->field &&
-        !(tl_estate_faces(m, contacts->a[c], contacts->b[c], &face_a, &face_b) &&
-          face_a == facet->ia && face_b == facet->ib))
-        estate = NULL; /* other faces than those that carried it */
+    const tl_estate *estate =
+        tl_estate_on(m, contacts->a[c], contacts->b[c], &scratch->manifold.facet);
     const tl_sym3 *stress = tl_estate_inner_stress(m, c);
     if (estate && !reserve(scratch, estate->count))
         return false;
     contacts->facet[c] = scratch->manifold.facet;
     contacts->point_count[c] = (uint16_t)scratch->manifold.point_count;
+    for (size_t k = contacts->point_count[c]; k < contacts->point_capacity[c]; k++)
+        tl_point_clear(&m->detect->points, tl_point_row(contacts, c, k));
     if (estate) {
         for (size_t k = 0; k < estate->count; k++)
             scratch->old[k] = tl_estate_point(m, estate, c, k);

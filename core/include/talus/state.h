@@ -26,7 +26,7 @@ typedef bool (*tl_drive_again_fn)(void *user, const tl_drive_asked *asked, tl_dr
 
 /* The same model once more, in memory: an equal state, and from then on equal bits after equal calls. Its log goes where
  * that of the model goes; the frames of VTK files written so far are not the copy's. `again`, which may be NULL, is asked
- * for the functions of drives: TL_E_STATE when it has none. From a callback of a run it may be called, not from a drive's
+ * for the functions of drives: TL_E_STATE when it has none, and of a model whose last step failed and could not be taken back. From a callback of a run it may be called, not from a drive's
  * function. */
 TL_API tl_status tl_model_copy(tl_model *model, tl_drive_again_fn again, void *user,
                                tl_model **copy);
