@@ -85,7 +85,8 @@ void tl_check_call_law(const tl_check_law_of *law, const tl_check_points *in, tl
                           .flags = now.flags,
                           .stored = call->no_energies ? NULL : now.c[TL_AT_STORED],
                           .dissipated = call->no_energies ? NULL : now.c[TL_AT_DISSIPATED],
-                          .closure_edge = now.c[TL_AT_EDGE]};
+                          .closure_edge = now.c[TL_AT_EDGE],
+                          .closure_apart = now.c[TL_AT_APART]};
     for (int k = 0; k < 3; k++) {
         batch.normal[k] = now.c[TL_AT_NORMAL + k];
         batch.du_s[k] = now.c[TL_AT_DU_S + k];

@@ -16,6 +16,7 @@ enum {
     TL_AT_DU_N = TL_AT_NORMAL + 3,
     TL_AT_DU_S,
     TL_AT_EDGE = TL_AT_DU_S + 3,
+    TL_AT_APART,
     TL_AT_F_N, /* from here on the law writes */
     TL_AT_F_S,
     TL_AT_STORED = TL_AT_F_S + 3,

@@ -81,6 +81,10 @@ void tl_point_lanes_init(tl_point_lanes *l)
     }
     TL_COLUMN(t, l, closure, 0);
     TL_COLUMN(t, l, edge, 0);
+    TL_COLUMN(t, l, apart, 0);
+    TL_COLUMN(t, l, lift, 0);
+    TL_COLUMN(t, l, hold, 0);
+    TL_COLUMN(t, l, cell, 0);
     TL_COLUMN(t, l, du_n, 0);
     TL_COLUMN(t, l, stored, 0);
     TL_COLUMN(t, l, dissipated, 0);

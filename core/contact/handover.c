@@ -4,11 +4,12 @@
  * The shear of a field contact is one force and one torsion about the centre of its pressure, that of a patch a force at
  * each point. Force and moment are carried over; the moment no further than the energy of the springs goes. Area that comes
  * brings no shear. Of the area that is there that goes first which carries the least (resized). Neither makes energy. An
- * initial stress of a patch moves a face of A outward by as much as its springs would be pressed, f_n0 / (kn A) less the
- * overlap it belongs to. The face stays there. */
+ * initial stress of a patch, and slip that has opened its joint, move both faces outward, half each, by as much together as its
+ * springs would be pressed where the faces just meet: by its lift less the overlap that belongs to that. There the faces stay. */
 #include "contact/handover.h"
 
 #include "base/columns.h"
+#include "contact/across_gap.h"
 #include "contact/detection.h"
 #include "contact/estate.h"
 #include "contact/places.h"
@@ -102,24 +103,37 @@ static shear shear_of(const tl_model *m, uint32_t c, const tl_point_lanes *lanes
     return out;
 }
 
-/* How far the initial stress of a patch moves its face. */
-static double shift_of(const tl_model *m, uint32_t c)
+double tl_contact_lift_field(tl_model *m, uint32_t c)
+{
+    tl_press_row *row = tl_press_row_of(m, c);
+    const tl_contacts *contacts = &m->detect->contacts;
+    if (!row || contacts->facet[c].kind != TL_FACET_FIELD || contacts->point_count[c] == 0)
+        return 0;
+    double by = 0;
+    for (size_t k = 0; k < TL_FIELD_POINTS; k++) {
+        double opening = tl_contact_opening(m, c, k);
+        by += opening - row->opening[k];
+        row->opening[k] = opening;
+    }
+    row->shift += by;
+    return by;
+}
+
+/* The tension that bonds of a patch hold, J. */
+static double pulled_energy(const tl_model *m, uint32_t c)
 {
     const tl_contacts *contacts = &m->detect->contacts;
     const tl_points_table *p = &m->detect->points;
-    uint32_t law = contacts->law[c];
-    double area = 0, shift = 0;
-    if (!p->f_n0 || law == TL_NO_ROW)
-        return 0;
-    for (size_t k = 0; k < contacts->point_count[c]; k++) {
+    double sum = 0, kn = contacts->law[c] == TL_NO_ROW ? 0 : m->joint_laws[contacts->law[c]].kn;
+    for (size_t k = 0; k < contacts->point_count[c] && kn > 0; k++) {
         size_t i = tl_point_row(contacts, c, k);
-        area += p->area[i];
-        shift += p->f_n0[i] / m->joint_laws[law].kn - p->area[i] * p->reference[i];
+        double pull = fmin(0, p->f_n[i]);
+        sum += p->area[i] > 0 ? 0.5 * pull * pull / (kn * p->area[i]) : 0;
     }
-    return area > 0 ? shift / area : 0;
+    return sum;
 }
 
-/* What the law keeps of a point. */
+/* What the law keeps of a contact: means over what presses. */
 typedef struct law_state {
     double state[TL_STATE_COLUMNS], area;
     tl_vec3 normal;
@@ -130,13 +144,24 @@ typedef struct law_state {
 static law_state state_of(const tl_model *m, uint32_t c)
 {
     const tl_points_table *p = &m->detect->points;
-    law_state out = {.known = m->detect->contacts.point_count[c] > 0};
-    size_t i = out.known ? tl_point_row(&m->detect->contacts, c, 0) : 0;
-    for (uint32_t s = 0; s < p->state_columns && out.known; s++)
-        out.state[s] = p->state[s][i];
-    out.flags = out.known ? p->flags[i] : 0;
-    out.normal = m->detect->contacts.facet[c].last;
-    out.area = out.known ? p->area[i] : 0;
+    const tl_contacts *contacts = &m->detect->contacts;
+    size_t count = contacts->facet[c].kind == TL_FACET_PATCH ? contacts->point_count[c] : 1;
+    law_state out = {.known = contacts->point_count[c] > 0, .normal = contacts->facet[c].last};
+    double force = 0, sum = 0;
+    for (size_t k = 0; k < count && out.known; k++)
+        force += fmax(0, p->f_n[tl_point_row(contacts, c, k)]);
+    for (size_t k = 0; k < count && out.known; k++) {
+        size_t i = tl_point_row(contacts, c, k);
+        double share = force > 0 ? fmax(0, p->f_n[i]) : p->area[i];
+        sum += share;
+        out.area += share * p->area[i];
+        out.flags |= p->flags[i];
+        for (uint32_t s = 0; s < p->state_columns; s++)
+            out.state[s] += share * p->state[s][i];
+    }
+    out.area /= sum > 0 ? sum : 1;
+    for (uint32_t s = 0; s < p->state_columns && sum > 0; s++)
+        out.state[s] /= sum;
     return out;
 }
 
@@ -237,6 +262,16 @@ static void put_on_field(tl_model *m, uint32_t c, const shear *s, double energy,
                    tl_v3_scale(radius > 0 ? torsion / radius : 0, s->normal));
 }
 
+/* Notes the press of points that have been written. What slip has opened is in it, and the law adds it. */
+static void begin_field(tl_model *m, uint32_t c, const tl_manifold *g)
+{
+    tl_press_row *row = tl_press_row_of(m, c);
+    row->press = g->press;
+    for (size_t k = 0; k < TL_FIELD_POINTS; k++)
+        row->opening[k] = g->point_count ? tl_contact_opening(m, c, k) : 0;
+    m->detect->contacts.facet[c].offset -= row->opening[TL_FIELD_SHEAR];
+}
+
 /* A new field contact of parts of blocks takes its area's share over of what that of the whole carried, and what the law has kept of
  * the point nearest to it. */
 static void take_share(tl_model *m, uint32_t c, const tl_manifold *g, const tl_estate *estate,
@@ -268,7 +303,7 @@ static void take_share(tl_model *m, uint32_t c, const tl_manifold *g, const tl_e
         state.flags = 0;
     contacts->facet[c] = g->facet;
     write_points(m, c, g, &state, 0);
-    tl_press_row_of(m, c)->press = g->press;
+    begin_field(m, c, g);
     tl_contact_begin(m, c, lanes);
     turn_states(m, c, &state);
     double area = g->points[0].area, share = whole.area > 0 ? fmin(1, area / whole.area) : 0;
@@ -294,19 +329,23 @@ void tl_contact_hand_over(tl_model *m, uint32_t c, const tl_manifold *g, bool re
     tl_contact_places(m, c, lanes);
     shear old = shear_of(m, c, lanes);
     law_state state = state_of(m, c);
-    double shift = was_patch ? shift_of(m, c) : row->shift;
-    if (row && was_patch) {
-        row->shift = shift;
-        row->shifted = contacts->facet[c].ia;
-    }
     bool held = contacts->point_count[c] > 0;
     bool field = g->facet.kind == TL_FACET_FIELD;
+    if (row && was_patch && held) {
+        row->shift = tl_contact_across_gap(m, c).lift;
+        row->shifted = (tl_face_pair){contacts->facet[c].ia, contacts->facet[c].ib};
+    }
+    if (field && was_patch)
+        contacts->released[c] += pulled_energy(m, c);
+    state.flags |=
+        TL_POINT_APART; /* bonds end with their patch, and walls that meet at an edge have none */
     contacts->facet[c] = g->facet;
-    write_points(m, c, g, &state, field ? 0 : -shift);
+    double lift = row ? row->shift - row->opening[TL_FIELD_SHEAR] : 0;
+    write_points(m, c, g, &state, field ? 0 : -lift);
     if (row)
         row->spare[0] = row->spare[1] = 0;
     if (field)
-        row->press = g->press;
+        begin_field(m, c, g);
     tl_contact_begin(m, c, lanes);
     turn_states(m, c, &state);
     double ks = contacts->law[c] == TL_NO_ROW ? 0 : m->joint_laws[contacts->law[c]].ks;
@@ -359,6 +398,9 @@ static void refit_springs(tl_model *m, uint32_t c, const tl_manifold *g)
     tl_vec3 twist = tl_v3_scale(r0, tl_columns_get(p->f_s, torsion));
     double f2 = tl_v3_norm2(force), t2 = tl_v3_norm2(twist);
     double lost = energy_of(f2, old) + energy_of(t2, polar) + row->spare[0] + row->spare[1];
+    for (size_t k = 0; k < TL_FIELD_POINTS; k++) /* what slips is at its limit everywhere */
+        if (p->flags[tl_point_row(contacts, c, k)] & TL_POINT_SLIPPING)
+            row->spare[k] = 0;
     double stays = resized(f2, old, area, &row->spare[0]);
     double stays_turned = resized(t2, polar, now, &row->spare[1]);
     lost -= energy_of(stays * stays * f2, area) + energy_of(stays_turned * stays_turned * t2, now) +
@@ -389,6 +431,7 @@ void tl_contact_refit_field(tl_model *m, uint32_t c, const tl_manifold *g)
         tl_columns_put(p->p, tl_point_row(contacts, c, k), g->points[0].p);
     contacts->facet[c] = g->facet;
     contacts->facet[c].last = last;
+    contacts->facet[c].offset -= row->opening[TL_FIELD_SHEAR];
     row->press = g->press;
 }
 

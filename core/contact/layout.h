@@ -4,6 +4,17 @@
 
 #include "base/table.h"
 
+#include <talus/types.h>
+
+/* What is closed and what is apart of the cell of a point, over which the overlap is linear: force/partly_open.c. Beside the
+ * means that the law gets are moments about the point and half second moments of u. */
+typedef struct tl_cell {
+    tl_vec3 pressed, apart;               /* m^4 */
+    double pressed_volume, apart_volume;  /* area times the means, m^3 */
+    double pressed_second, apart_second;  /* m^4 */
+    double hold;                          /* share of tension that was held before the law */
+} tl_cell;
+
 /* What is known of points only while a step works on them. */
 typedef struct tl_point_lanes {
     tl_table table;
@@ -11,6 +22,9 @@ typedef struct tl_point_lanes {
     double *normal[3];
     double *closure; /* overlap less reference */
     double *edge;    /* the same at the outermost fibre of a point's area */
+    /* of patches that are partly open: tl_law_batch, tl_law_ops */
+    double *apart, *lift, *hold;
+    tl_cell *cell;
     double *du_n, *du_s[3];
     double *stored, *dissipated;
     double *zero; /* 0, for what points have no column of */

@@ -19,12 +19,12 @@ tl_pair_view tl_pair_view_of(const tl_model *m, uint32_t a, uint32_t b)
 }
 
 tl_touch_rule tl_touch_rule_of(const tl_model *m, const tl_pair_view *view, tl_tag tag,
-                               bool holds_over_gap)
+                               double over)
 {
     tl_min_area_rule rule = tl_min_area_of(m, tag);
     double tolerance = TL_CONTACT_TOLERANCE * TL_CONTACT_RELEASE * view->size;
     bool absolute = !isnan(rule.absolute);
     return (tl_touch_rule){.min_area = absolute ? rule.absolute : rule.fraction * view->mean_face,
                            .corners = m->config.contact_points == TL_POINTS_CORNERS,
-                           .reach = holds_over_gap ? INFINITY : tolerance};
+                           .reach = over + tolerance};
 }

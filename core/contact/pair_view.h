@@ -12,8 +12,8 @@ static inline double tl_pair_odometer(const tl_model *m, uint32_t a, uint32_t b)
 {
     return m->bodies.odometer[m->blocks.body[a]] + m->bodies.odometer[m->blocks.body[b]];
 }
-/* How a pair of a joint is to touch; pairs that carry a force across a gap keep all their points. */
+/* How a pair of a joint is to touch, whose faces may carry a force across a gap of `over`, m. */
 tl_touch_rule tl_touch_rule_of(const tl_model *m, const tl_pair_view *view, tl_tag tag,
-                               bool holds_over_gap);
+                               double over);
 
 #endif

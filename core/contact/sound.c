@@ -133,7 +133,7 @@ static bool press_is_sound(const tl_model *m, const tl_detect *d, const tl_press
                            uint32_t a, uint32_t b)
 {
     if (!tl_is_flag(&row->flush) || !tl_is_flag(&row->listed) || !tl_is_flag(&row->by_slope) ||
-        !(row->shift == 0 || row->shifted < faces_of(m, d, a)))
+        !(row->shifted.a < faces_of(m, d, a) && row->shifted.b < faces_of(m, d, b)))
         return false;
     uint32_t sum = 0;
     for (int k = 0; k < 4; k++)

@@ -4,6 +4,7 @@
 
 #include "base/table.h"
 #include "contact/spot.h"
+#include "narrow/press.h"
 #include "narrow/press_slope.h"
 
 typedef struct tl_contacts {
@@ -41,14 +42,18 @@ typedef struct tl_contacts {
 /* What a field contact keeps beside its points. Lengths and forces of the press in A's frame. */
 typedef struct tl_press_row {
     tl_press press;
-    double shift; /* how far face `shifted` of A is moved out by an initial stress, m */
-    uint32_t shifted;
+    double
+        shift; /* how far its faces `shifted` are moved out by an initial stress and by slip, m */
+    tl_face_pair shifted;
+    double opening
+        [TL_FIELD_POINTS]; /* of the points' law, m, as it is in the shift and in the overlap */
     uint32_t next_free;
     double spare
         [2]; /* energy, times 2 ks, of shear and of torsion beyond that of uniform stress: handover.c */
     /* the region: its faces, of the four kinds of tl_region */
     uint16_t count[4], face[TL_PRESS_FACES];
     tl_pair_pose listed_at; /* where they were listed */
+    double listed_shift;    /* and with which shift */
     uint16_t blunt_a, blunt_b;
     bool flush, listed;
     /* It has stayed near a place since some step. When it has stayed for long, its press there has slopes, and it goes by

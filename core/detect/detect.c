@@ -126,7 +126,7 @@ static tl_status give_birth(tl_model *m, uint32_t pair, overlaps *deep)
         return tl_fail_memory(&m->error);
     tl_tag tag = tl_touching_tag(&view, region.n);
     const tl_manifold_before before = tl_pair_before(m, &d->pairs[pair], &view, scratch);
-    tl_touch_rule rule = tl_touch_rule_of(m, &view, tag, before.holds);
+    tl_touch_rule rule = tl_touch_rule_of(m, &view, tag, before.over);
     const tl_manifold *g = &scratch->manifold;
     if (!tl_manifold_find(&view, &region, &rule, &before, scratch) ||
         !tl_contact_append(m, pair, g->facet.kind == TL_FACET_FIELD, g->valid, tag, g->point_count))

@@ -4,31 +4,21 @@
  * faces, while that holds. */
 #include "detect/fields.h"
 
+#include "contact/across_gap.h"
 #include "contact/contacts.h"
+#include "contact/handover.h"
 #include "contact/pair_view.h"
 #include "contact/presses.h"
 #include "contact/shear.h"
 #include "narrow/place.h"
 
+#include <math.h>
 #include <string.h>
 
 /* ---------------------------------------------------------------- before ----------------- */
 
-/* Whether some point may carry a force across a gap: the walls were together when it was made, and no bond of it has
- * failed. */
-static bool may_hold(const tl_model *m, uint32_t c)
-{
-    const tl_contacts *contacts = &m->detect->contacts;
-    uint32_t law = contacts->law[c];
-    if (law == TL_NO_ROW || m->joint_laws[law].pulls == TL_PULL_NONE)
-        return false;
-    for (uint32_t k = 0; k < contacts->point_count[c]; k++) {
-        uint32_t flags = m->detect->points.flags[tl_point_row(contacts, c, k)];
-        if (!(flags & (TL_POINT_FAILED | TL_POINT_APART)))
-            return true;
-    }
-    return false;
-}
+/* Tilt, as a sine, beyond which bonds of two faces end: 3 degrees. The overlap of a patch is that along one normal. */
+#define BONDED_TILT 0.05
 
 /* Whether the blocks of a field contact hardly moved against each other in the last step: only then may it become a patch.
  * A patch spreads the shear anew: where faces only pass by each other that would turn some of it into heat. */
@@ -42,6 +32,12 @@ static bool is_calm(const tl_model *m, uint32_t c, const tl_press_row *row)
     return tl_v3_norm(tl_v3_add(by.way, there)) + size * tl_v3_norm(by.turn) < TL_STILL * size;
 }
 
+static double bonded_tilt(const tl_model *m)
+{
+    return fmax(BONDED_TILT,
+                tl_flush_limits_of(m->config.contact_points == TL_POINTS_CORNERS).tilt);
+}
+
 tl_manifold_before tl_contact_before(const tl_model *m, uint32_t c, bool reframed)
 {
     const tl_contacts *contacts = &m->detect->contacts;
@@ -49,8 +45,15 @@ tl_manifold_before tl_contact_before(const tl_model *m, uint32_t c, bool reframe
     tl_manifold_before out = {.facet = contacts->facet[c]};
     bool patch = out.facet.kind == TL_FACET_PATCH &&
                  (contacts->point_count[c] > 0 || contacts->holds_over_gap[c]);
-    out.holds = patch && (reframed || contacts->holds_over_gap[c] || may_hold(m, c));
-    if (row) {
+    if (patch) {
+        tl_contact_across across = tl_contact_across_gap(m, c);
+        bool unseen = contacts->point_count[c] == 0; /* of an estate, until it has got its room */
+        out.holds = reframed || unseen || across.bonded;
+        out.most_tilt = across.bonded && !reframed ? bonded_tilt(m) : INFINITY;
+        out.over = out.holds ? INFINITY : across.most;
+        out.shift = fmax(0, across.lift);
+        out.shifted = (tl_face_pair){out.facet.ia, out.facet.ib};
+    } else if (row) {
         out.calm = !reframed && is_calm(m, c, row);
         out.shift = row->shift;
         out.shifted = row->shifted;
@@ -111,6 +114,7 @@ void tl_field_keep(tl_press_row *row, const tl_pair_view *view, const tl_region 
     uint32_t faces = r->a + r->b + r->border_a + r->border_b;
     row->by_slope = false;
     row->listed_at = (tl_pair_pose){view->turn, view->shift};
+    row->listed_shift = row->shift;
     row->listed = faces <= TL_PRESS_FACES;
     row->flush = r->flush;
     row->blunt_a = (uint16_t)r->blunt_a;
@@ -150,7 +154,8 @@ static bool is_listed(tl_model *m, uint32_t c, const tl_press_row *row)
     if (contacts->faces_valid_to[c] == -INFINITY) /* it is to be looked at in any case */
         return false;
     tl_pair_view view = tl_pair_view_of(m, contacts->a[c], contacts->b[c]);
-    double left = TL_LIST_MARGIN * view.size - tl_pair_moved(&view, &row->listed_at);
+    double moved = tl_pair_moved(&view, &row->listed_at) + fabs(row->shift - row->listed_shift);
+    double left = TL_LIST_MARGIN * view.size - moved;
     if (left > 0)
         contacts->faces_valid_to[c] = odometer + left;
     return left > 0;
@@ -200,6 +205,14 @@ static bool watch(const tl_model *m, const tl_press_query *query, const tl_press
     return true;
 }
 
+/* Moves faces apart by what slip has opened. true: it has, so what is known of the field at this place holds no more. */
+static bool lift(tl_model *m, uint32_t c)
+{
+    double by = tl_contact_lift_field(m, c);
+    m->detect->contacts.faces_valid_to[c] -= fabs(by);
+    return by != 0;
+}
+
 /* Adds a contact to those of which the presses are to be found. */
 static void ask(tl_model *m, tl_field_batch *b, uint32_t c, const tl_pair_view *view)
 {
@@ -208,7 +221,7 @@ static void ask(tl_model *m, tl_field_batch *b, uint32_t c, const tl_pair_view *
     if (row->by_slope)
         row->mesh = (tl_field_mesh){0};
     row->by_slope = false;
-    tl_touch_rule rule = tl_touch_rule_of(m, view, m->detect->contacts.tag[c], false);
+    tl_touch_rule rule = tl_touch_rule_of(m, view, m->detect->contacts.tag[c], 0);
     b->view[k] = *view;
     b->region[k] = kept_region(row);
     b->before[k] = tl_contact_before(m, c, false);
@@ -225,7 +238,7 @@ void tl_fields_follow(tl_model *m, tl_field_batch *b, tl_narrow_scratch *scratch
         const tl_press_row *row = tl_press_row_of(m, c);
         tl_pair_view view = tl_pair_view_of(m, contacts->a[c], contacts->b[c]);
         const tl_pair_pose place = {view.turn, view.shift};
-        b->near[k] = is_near(m, c, row, &place);
+        b->near[k] = !lift(m, c) && is_near(m, c, row, &place);
         if (b->near[k])
             b->press[k] = tl_press_near(&row->there, &row->slope, &row->place, &place);
         else

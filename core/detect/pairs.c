@@ -161,11 +161,12 @@ static double way_to_edges(const tl_pair_view *view, double longest)
 tl_manifold_before tl_pair_before(const tl_model *m, const tl_pair *p, const tl_pair_view *view,
                                   tl_narrow_scratch *scratch)
 {
-    tl_manifold_before out = {.facet = {.kind = TL_FACET_PATCH}};
+    tl_manifold_before out = {.facet = {.kind = TL_FACET_PATCH}, .most_tilt = INFINITY};
     uint32_t face_a, face_b;
     if (!tl_estate_holds(m, p->a, p->b) || !tl_estate_faces(m, p->a, p->b, &face_a, &face_b))
         return out;
-    tl_touch_rule rule = tl_touch_rule_of(m, view, view->a->tag[face_a], true);
+    tl_touch_rule rule = tl_touch_rule_of(m, view, view->a->tag[face_a], INFINITY);
+    out.over = INFINITY;
     out.holds = tl_patch_lay(view, face_a, face_b, &rule, scratch) > 0;
     out.facet.ia = (uint16_t)face_a;
     out.facet.ib = (uint16_t)face_b;
@@ -203,7 +204,7 @@ static void test_pair(tl_model *m, tl_pair *p, tl_narrow_scratch *scratch)
         tl_pair_sleep(d, p, way);
         return;
     }
-    tl_touch_rule rule = tl_touch_rule_of(m, &view, tl_touching_tag(&view, region.n), before.holds);
+    tl_touch_rule rule = tl_touch_rule_of(m, &view, tl_touching_tag(&view, region.n), before.over);
     if (!before.holds && !(rule.min_area > 0)) {
         tl_grazing_choose_faces(&view, p);
         margin = tl_grazing_margin(&view, p, &gap);

@@ -204,6 +204,8 @@ bool tl_simd_group_update(tl_model *m, const tl_simd_group *group, unsigned thre
     tl_patch_batch *batch = NULL;
     bool any = false;
     uint32_t in = 0, others = 0, fields[TL_LANES], field_count = 0;
+    bool corners = m->config.contact_points == TL_POINTS_CORNERS;
+    double tilt = tl_flush_limits_of(corners).tilt, steep = tilt * tilt;
     for (uint32_t l = 0; l < TL_LANES; l++) {
         uint32_t c = group->contact[l];
         if (c == TL_NO_ROW || tl_contact_points_hold(m, c))
@@ -213,9 +215,7 @@ bool tl_simd_group_update(tl_model *m, const tl_simd_group *group, unsigned thre
             fields[field_count++] = c;
             continue;
         }
-        if (!batch && !(batch = tl_batch_begin(&m->detect->narrow[thread],
-                                               m->config.contact_points == TL_POINTS_CORNERS,
-                                               TL_FLUSH_TILT * TL_FLUSH_TILT))) {
+        if (!batch && !(batch = tl_batch_begin(&m->detect->narrow[thread], corners, steep))) {
             m->detect->narrow[thread].failed = true;
             return true;
         }

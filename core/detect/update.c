@@ -97,9 +97,9 @@ static void part(tl_model *m, uint32_t c, double way)
 }
 
 /* Whether a pair without points is still near enough to stay a contact, so that it need not be born again. */
-static bool is_near(const tl_pair_view *view, double gap, double *way)
+static bool is_near(const tl_pair_view *view, double gap, double over, double *way)
 {
-    double reach = TL_CONTACT_TOLERANCE * TL_CONTACT_RELEASE * view->size;
+    double reach = over + TL_CONTACT_TOLERANCE * TL_CONTACT_RELEASE * view->size;
     *way = fmax(gap, reach) - TL_CONTACT_TOLERANCE * view->size;
     return gap <= reach && tl_coarse_test(view, reach);
 }
@@ -131,10 +131,12 @@ static bool find(tl_model *m, uint32_t c, tl_narrow_scratch *scratch)
 {
     tl_contacts *contacts = &m->detect->contacts;
     double odometer = tl_pair_odometer(m, contacts->a[c], contacts->b[c]), way;
+    tl_contact_lift_field(m, c);
     tl_pair_view view = tl_pair_view_of(m, contacts->a[c], contacts->b[c]);
+    tl_manifold_before before = tl_contact_before(m, c, scratch->reframed);
     tl_region region;
     if (!tl_pair_place(&view, scratch) ||
-        !tl_region_find(&view, TL_LIST_MARGIN * view.size, scratch, &region))
+        !tl_region_find(&view, TL_LIST_MARGIN * view.size + before.shift, scratch, &region))
         return false;
     const tl_press_row *row = tl_press_row_of(m, c);
     tl_field_mesh mesh;
@@ -144,15 +146,14 @@ static bool find(tl_model *m, uint32_t c, tl_narrow_scratch *scratch)
         !scratch->reframed) /* else faces may have other numbers */
         mesh = tl_field_listed_anew(row, &region);
     region.mesh = row ? &mesh : NULL;
-    tl_manifold_before before = tl_contact_before(m, c, scratch->reframed);
     tl_tag tag = tl_touching_tag(&view, region.n);
-    tl_touch_rule rule = tl_touch_rule_of(m, &view, tag, before.holds);
+    tl_touch_rule rule = tl_touch_rule_of(m, &view, tag, before.over);
     const tl_manifold *g = &scratch->manifold;
     if (!tl_manifold_find(&view, &region, &rule, &before, scratch))
         return false;
     contacts->faces_valid_to[c] = scratch->reframed ? -INFINITY : odometer + g->valid;
     contacts->spot[c] = tl_spot_of(m, contacts->a[c], contacts->b[c], g->valid);
-    if (g->point_count == 0 && !is_near(&view, region.gap, &way)) {
+    if (g->point_count == 0 && !is_near(&view, region.gap, before.holds ? 0 : before.over, &way)) {
         part(m, c, way);
         return true;
     }
@@ -160,6 +161,8 @@ static bool find(tl_model *m, uint32_t c, tl_narrow_scratch *scratch)
     note_tag(m, c, tag);
     if (tl_press_row_of(m, c))
         tl_field_keep(tl_press_row_of(m, c), &view, &region);
+    if (row && row->shift == 0 && g->point_count > 0 && g->facet.kind == TL_FACET_FIELD)
+        tl_press_row_of(m, c)->shifted = tl_touching_faces(&view, region.n);
     return true;
 }
 
@@ -247,7 +250,7 @@ void tl_contact_allow_reuse(tl_model *m, uint32_t c)
     double size_a = m->blocks.size[contacts->a[c]], size_b = m->blocks.size[contacts->b[c]];
     double most = TL_STILL * fmin(size_a, size_b);
     if (contacts->facet[c].kind == TL_FACET_FIELD && contacts->point_count[c])
-        most = REUSE_FIELD * contacts->facet[c].offset;
+        most = REUSE_FIELD * tl_press_row_of(m, c)->press.overlap;
     contacts->points_valid_to[c] = tl_pair_odometer(m, contacts->a[c], contacts->b[c]) + most;
     if (contacts->facet[c].kind != TL_FACET_PATCH || contacts->point_count[c] == 0)
         return;
@@ -327,7 +330,8 @@ static bool renew_patch(tl_model *m, uint32_t c, unsigned thread)
     if (!tl_contact_is_patch(m, c))
         return false;
     tl_pair_view view = tl_pair_view_of(m, contacts->a[c], contacts->b[c]);
-    tl_touch_rule rule = tl_touch_rule_of(m, &view, contacts->tag[c], contacts->holds_over_gap[c]);
+    tl_touch_rule rule =
+        tl_touch_rule_of(m, &view, contacts->tag[c], contacts->holds_over_gap[c] ? INFINITY : 0);
     scratch->manifold.failed = !tl_pair_place_face(&view, f->ib, scratch);
     if (scratch->manifold.failed || !(tl_patch_add(&view, f->ia, f->ib, &rule, scratch) > 0))
         return false;
@@ -354,7 +358,7 @@ static bool touches_still(tl_model *m, uint32_t c)
     if (contacts->point_count[c] || contacts->points_valid_to[c] == -INFINITY)
         return false;
     tl_pair_view view = tl_pair_view_of(m, contacts->a[c], contacts->b[c]);
-    if (tl_touch_rule_of(m, &view, contacts->tag[c], false).min_area > 0)
+    if (tl_touch_rule_of(m, &view, contacts->tag[c], 0).min_area > 0)
         return false;
     tl_pair *p = &m->detect->pairs[contacts->pair[c]];
     double gap, margin = tl_grazing_margin(&view, p, &gap);

@@ -86,11 +86,17 @@ TL_VECTORIZED static void read_torsion(const columns *c, const tl_frames *restri
     }
 }
 
+/* What a field contact keeps that its points of torsion are followed by: the radius, and by how much more than at those of shear
+ * slip has opened the joint there. Both carry the same normal force. */
+typedef struct field_rows {
+    double radius[TL_LANES], opened[TL_LANES];
+} field_rows;
+
 /* The points of torsion of field contacts: what is a shear to the law is the turn about the normal, times the radius. The
  * law is given a normal that is perpendicular to it. While the contact's own does not turn, the force is not made anew: it
  * would be off by a rounding, and never rest. */
 TL_VECTORIZED static void follow_torsion(const columns *c, const tl_frames *restrict f,
-                                         const double *restrict radius,
+                                         const field_rows *restrict rows,
                                          const torsions *restrict torsion)
 {
 #pragma omp simd
@@ -102,7 +108,8 @@ TL_VECTORIZED static void follow_torsion(const columns *c, const tl_frames *rest
             tl_v3(0.5 * (motion.m[2][1] - motion.m[1][2]), 0.5 * (motion.m[0][2] - motion.m[2][0]),
                   0.5 * (motion.m[1][0] - motion.m[0][1]));
         put(c->normal, i, tl_facing_aside(n));
-        put(c->du_s, i, tl_v3_scale(radius[l] * tl_v3_dot(turn, n), n));
+        c->closure[i] -= rows->opened[l];
+        put(c->du_s, i, tl_v3_scale(rows->radius[l] * tl_v3_dot(turn, n), n));
         tl_vec3 last = tl_lanes3_get(&f->last, l);
         bool still = (last.x == n.x) & (last.y == n.y) & (last.z == n.z);
         put(c->f_s, i,
@@ -129,7 +136,7 @@ static void turn_states(tl_model *m, uint32_t contact, tl_vec3 before, tl_vec3 n
 
 /* The bodies and facets of the contacts of a SIMD group; lanes without one do as another. false when there are none. */
 static bool look_up(const tl_model *m, const tl_simd_group *group, tl_frame_rows *rows,
-                    double *radius)
+                    field_rows *fields)
 {
     const tl_contacts *c = &m->detect->contacts;
     const tl_pose *pose = m->bodies.pose;
@@ -143,7 +150,9 @@ static bool look_up(const tl_model *m, const tl_simd_group *group, tl_frame_rows
         rows->b[l] = &pose[m->blocks.body[c->b[contact]]].r.m[0][0];
         rows->facet[l] = &c->facet[contact].na.x;
         uint32_t press = c->press[contact];
-        radius[l] = press == TL_NO_ROW ? 0 : m->detect->press[press].press.radius;
+        const tl_press_row *row = press == TL_NO_ROW ? NULL : &m->detect->press[press];
+        fields->radius[l] = row ? row->press.radius : 0;
+        fields->opened[l] = row ? row->opening[TL_FIELD_TORSION] - row->opening[TL_FIELD_SHEAR] : 0;
     }
     return some < TL_LANES;
 }
@@ -155,17 +164,19 @@ void tl_simd_group_follow(tl_model *m, const tl_simd_group *group, bool field,
     columns c = columns_at(&m->detect->points, group->start, t, lane);
     tl_frame_rows rows;
     tl_frames f;
-    double radius[TL_LANES];
+    field_rows fields;
     torsions torsion;
-    if (look_up(m, group, &rows, radius))
+    if (look_up(m, group, &rows, &fields)) {
         tl_frames_put(&f, &rows, field);
-    else
-        memset(&f, 0, sizeof f); /* inert, but finite */
+    } else { /* inert, but finite */
+        memset(&f, 0, sizeof f);
+        memset(&fields, 0, sizeof fields);
+    }
     if (field)
         read_torsion(&c, &f, &torsion);
     follow_points(&c, group->slots, &f);
     if (field)
-        follow_torsion(&c, &f, radius, &torsion);
+        follow_torsion(&c, &f, &fields, &torsion);
     for (size_t l = 0; l < TL_LANES; l++) {
         uint32_t contact = group->contact[l];
         if (contact == TL_NO_ROW)

@@ -23,6 +23,7 @@ typedef struct sample {
     double closure[TL_LANES], f_n0[TL_LANES], normal[3][TL_LANES];
     double du_n[TL_LANES], du_s[3][TL_LANES], f_n[TL_LANES], f_s[3][TL_LANES];
     double state[TL_STATE_COLUMNS][TL_LANES], stored[TL_LANES], heat[TL_LANES];
+    double apart[TL_LANES]; /* 0 */
     _Alignas(TL_ALIGN) uint32_t flags[TL_LANES];
 } sample;
 
@@ -83,7 +84,8 @@ static tl_status try_closure(const bench *b, const motion *by, double closure, s
                           .flags = out->flags,
                           .stored = out->stored,
                           .dissipated = out->heat,
-                          .closure_edge = out->closure};
+                          .closure_edge = out->closure,
+                          .closure_apart = out->apart};
     tl_report report = {.size = sizeof report};
     tl_enter(b->law.kind, "update");
     tl_status status = ops->update(b->law.self, &batch, &report);

@@ -36,6 +36,7 @@ typedef struct trial {
     double closure[TL_LANES], f_n0[TL_LANES], normal[3][TL_LANES];
     double du_n[TL_LANES], du_s[3][TL_LANES], f_n[TL_LANES], f_s[3][TL_LANES];
     double state[TL_STATE_COLUMNS][TL_LANES], stored[TL_LANES], dissipated[TL_LANES];
+    double apart[TL_LANES];
     _Alignas(TL_ALIGN) uint32_t flags[TL_LANES];
 } trial;
 
@@ -57,7 +58,7 @@ static void copy_points(const place *at, trial *t)
         t->f_n0[l] = p->f_n0 ? p->f_n0[i] : 0;
         t->f_n[l] = p->f_n[i];
         t->flags[l] = p->flags[i];
-        t->du_n[l] = t->stored[l] = t->dissipated[l] = 0;
+        t->du_n[l] = t->stored[l] = t->dissipated[l] = t->apart[l] = 0;
         for (int c = 0; c < 3; c++) {
             t->normal[c][l] = at->lanes->normal[c][k];
             t->f_s[c][l] = p->f_s[c][i];
@@ -96,7 +97,8 @@ static bool call(const place *at, trial *t)
                           .flags = t->flags,
                           .stored = t->stored,
                           .dissipated = t->dissipated,
-                          .closure_edge = t->closure};
+                          .closure_edge = t->closure,
+                          .closure_apart = t->apart};
     tl_report report = {.size = sizeof report};
     tl_enter(at->law->kind, "update");
     tl_status status = ops->update(at->law->self, &batch, &report);

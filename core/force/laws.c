@@ -33,8 +33,15 @@ typedef struct span_job {
     atomic_bool *changed;
 } span_job;
 
-/* Calls the law on `count` points from `first`; false when it failed. */
-static bool call_law(const span_job *job, size_t first, size_t count, const tl_point_lanes *l)
+/* Whether the law is given closures at outermost fibres: only what pulls can tell. */
+static bool has_edges(const span_job *job)
+{
+    return !job->span->field && job->law->pulls != TL_PULL_NONE;
+}
+
+/* Calls the law on `count` points from `first`, some of which are `partly` open; false when it failed. */
+static bool call_law(const span_job *job, size_t first, size_t count, bool partly,
+                     const tl_point_lanes *l)
 {
     tl_points_table *p = &job->m->detect->points;
     double *state[TL_STATE_COLUMNS];
@@ -56,8 +63,8 @@ static bool call_law(const span_job *job, size_t first, size_t count, const tl_p
         .flags = p->flags + first,
         .stored = l->stored,
         .dissipated = l->dissipated,
-        .closure_edge =
-            job->span->field || job->law->pulls != TL_PULL_BONDED ? l->closure : l->edge,
+        .closure_edge = has_edges(job) ? l->edge : l->closure,
+        .closure_apart = partly ? l->apart : l->zero,
     };
     /* a law need not write its energies: those of the tile before are not its own */
     memset(l->stored, 0, count * sizeof *l->stored);
@@ -177,6 +184,11 @@ static void report_odd(const span_job *job, const tl_simd_group *group, const gr
     tl_law_check_shear(job->m, job->phase->failure, job->law, group, t, lane);
 }
 
+static bool is_linear(const tl_law *law)
+{
+    return ((const tl_law_ops *)law->kind->ops)->linear != 0;
+}
+
 /* Of the field contacts of a SIMD group. The first point carries the normal force, the point of torsion the same again. What the
  * springs of the law hold pressed is not what the field holds: see tl_press. */
 static void sum_fields(const span_job *job, const tl_simd_group *group, const tl_point_lanes *t,
@@ -194,15 +206,21 @@ static void sum_fields(const span_job *job, const tl_simd_group *group, const tl
         const tl_press_row *row = &d->press[contacts->press[c]];
         const tl_press *press = &row->press;
         const tl_mat3 *turn = &job->m->bodies.pose[job->m->blocks.body[contacts->a[c]]].r;
-        double f_n = p->f_n[i], per = 1 / tl_v3_norm(press->force);
+        double f_n = p->f_n[i], same = p->f_n[i + torsion], kn = job->law->kn;
         tl_vec3 x = tl_columns_get(t->arm, k), n = tl_columns_get(t->normal, k);
         tl_vec3 shear = tl_columns_get(p->f_s, i);
         tl_vec3 twist = tl_columns_get(p->f_s, i + torsion);
-        tl_vec3 force = tl_v3_madd(shear, f_n, n);
+        double size = tl_v3_norm(press->force), lifted = 0;
+        double by = f_n / size, springs = (f_n * f_n + same * same) / (2 * kn * p->area[i]);
+        if (is_linear(job->law)) {
+            by = 2 * kn;
+            lifted = (f_n - by * size) + (same - by * size);
+            springs = by * size * by * size / (kn * p->area[i]);
+        }
+        tl_vec3 force = tl_v3_madd(shear, by * size + lifted, n);
         tl_vec3 couple = tl_v3_sub(press->moment, tl_v3_cross(press->point, press->force));
-        tl_vec3 moment = tl_v3_madd(tl_v3_cross(x, force), f_n * per, tl_m3_mul(turn, couple));
+        tl_vec3 moment = tl_v3_madd(tl_v3_cross(x, force), by, tl_m3_mul(turn, couple));
         moment = tl_v3_madd(moment, press->radius, twist);
-        double springs = f_n * f_n / (job->law->kn * p->area[i]);
         double ks = job->law->ks;
         double spare = ks > 0 ? 0.5 * (row->spare[0] + row->spare[1]) / ks : 0;
         for (int axis = 0; axis < 3; axis++) {
@@ -210,7 +228,7 @@ static void sum_fields(const span_job *job, const tl_simd_group *group, const tl
             out->moment[axis][l] = (&moment.x)[axis];
         }
         out->stored[l] =
-            t->stored[k] + t->stored[k + torsion] - springs + f_n * per * press->energy + spare;
+            t->stored[k] + t->stored[k + torsion] - springs + by * press->energy + spare;
         out->dissipated[l] = t->dissipated[k] + t->dissipated[k + torsion];
         out->odd[l] = 0 * (force.x + force.y + force.z + moment.x + moment.y + moment.z);
         if (fabs(tl_v3_dot(shear, n)) > TL_OUT_OF_PLANE * tl_v3_norm(force))
@@ -218,20 +236,25 @@ static void sum_fields(const span_job *job, const tl_simd_group *group, const tl
     }
 }
 
-/* Adds what partly open patches have besides their points. */
-static void add_parts(const span_job *job, const tl_partly_open *open, group_sums *sum)
+/* Adds what partly open patches have beside their points. */
+static void add_parts(const span_job *job, const tl_simd_group *group, const tl_point_lanes *t,
+                      size_t lane, uint32_t parts, group_sums *sum)
 {
-    for (size_t l = 0; l < TL_LANES && open->any; l++) {
-        sum->moment[0][l] += job->law->kn * open->moment[l].x;
-        sum->moment[1][l] += job->law->kn * open->moment[l].y;
-        sum->moment[2][l] += job->law->kn * open->moment[l].z;
-        sum->stored[l] += job->law->kn * open->energy[l];
+    tl_part_sums more[TL_LANES];
+    tl_simd_group_part_sum(job->m, job->law, group, t, lane, parts, more);
+    for (uint32_t left = parts; left; left &= left - 1) {
+        size_t l = (size_t)__builtin_ctz(left);
+        sum->moment[0][l] += more[l].moment.x;
+        sum->moment[1][l] += more[l].moment.y;
+        sum->moment[2][l] += more[l].moment.z;
+        sum->stored[l] += more[l].stored;
+        sum->dissipated[l] += more[l].dissipated;
     }
 }
 
 /* Forces of the contacts of a SIMD group, whose first point is in lane `lane`. */
 static void sum_group(const span_job *job, const tl_simd_group *group, const tl_point_lanes *t,
-                      size_t lane, const tl_partly_open *open)
+                      size_t lane, uint32_t parts)
 {
     tl_model *m = job->m;
     tl_contacts *contacts = &m->detect->contacts;
@@ -241,7 +264,8 @@ static void sum_group(const span_job *job, const tl_simd_group *group, const tl_
         sum_fields(job, group, t, lane, &sum);
     else
         sum_points(&m->detect->points, t, group->start, lane, group->slots, &sum);
-    add_parts(job, open, &sum);
+    if (parts)
+        add_parts(job, group, t, lane, parts, &sum);
     if (m->cycles % SHEAR_EVERY == 0 && !job->span->field)
         sum_tilts(&m->detect->points, t, group->start, lane, group->slots, &sum);
     tl_group_energy energy = {0, 0};
@@ -315,8 +339,8 @@ static void force_tile(const span_job *job, const tl_simd_group *groups, size_t 
                        const tl_point_lanes *t)
 {
     size_t first = groups->start, points = 0;
-    tl_partly_open open[GROUP_CHUNK];
-    bool parts = !job->span->field && tl_part_applies(job->m, job->law);
+    uint32_t parts[GROUP_CHUNK], any = 0;
+    bool cells = !job->span->field && tl_part_applies(job->m);
     job->phase->keep(job->m, groups, count);
     if (job->changed)
         note_points(&job->m->detect->points, first, tile_points(groups, count), t);
@@ -324,19 +348,22 @@ static void force_tile(const span_job *job, const tl_simd_group *groups, size_t 
         if (r < soon)
             tl_simd_group_prefetch(job->m, &groups[count + r]);
         tl_simd_group_follow(job->m, &groups[r], job->span->field, t, points, job->law->tangents);
-        open[r].any = false;
-        if (!job->span->field && job->law->pulls == TL_PULL_BONDED)
+        if (has_edges(job))
             tl_simd_group_edges(job->m, &groups[r], t, points);
-        if (parts)
-            tl_simd_group_part(job->m, job->law, &groups[r], t, points, &open[r]);
+        parts[r] = cells ? tl_simd_group_part(job->m, job->law, &groups[r], t, points) : 0;
+        any |= parts[r];
         points += (size_t)groups[r].slots * TL_LANES;
     }
-    if (!call_law(job, first, points, t))
+    for (size_t r = 0; any && r < count; r++)
+        if (!parts[r])
+            memset(t->apart + (groups[r].start - first), 0,
+                   (size_t)groups[r].slots * TL_LANES * sizeof *t->apart);
+    if (!call_law(job, first, points, any != 0, t))
         return;
     if (odd_states(&job->m->detect->points, job->law->columns, first, points) != 0)
         tl_law_check_states(job->m, job->phase->failure, job->law, first, points);
     for (size_t r = 0; r < count; r++)
-        sum_group(job, &groups[r], t, groups[r].start - first, &open[r]);
+        sum_group(job, &groups[r], t, groups[r].start - first, parts[r]);
     if (job->changed && !as_noted(&job->m->detect->points, first, points, t))
         atomic_store_explicit(job->changed, true, memory_order_relaxed);
 }

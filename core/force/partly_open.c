@@ -1,37 +1,47 @@
-/* partly_open.c - patches of which some corners are apart: their pressure integrated exactly.
+/* partly_open.c - patches of which a part is closed and a part apart: their pressure integrated exactly.
  *
- * Over the part of a patch that is closed, the overlap o is linear and the pressure kn o. Its force, moment and energy are
+ * The overlap o is linear over a patch. A point of it stands for a cell, a part of the polygon of the point's area. Over the
+ * cell the law's state is that of the point, so its walls press where o + lift > 0, and a bond pulls elsewhere. With
+ * u = o + lift the law gets the means
  *
- *     N = kn int o dA,    M = kn int o x dA cross n,    U = kn / 2 int o^2 dA
+ *     p = 1/A int max(0, u) dA,    q = 1/A int max(0, -u) dA
  *
- * by a fan of triangles of the polygon, clipped where o = 0. The points, which stay where they are and keep their shear, have
- * too little or too much of it. Their closures are scaled so that their forces add up to N; what the moment and the energy
- * differ by is added to those of the contact.
+ * as closure = p - lift and closure_apart = q, and gives the force of both parts, kn A (p - hold q) for a linear spring.
+ * What the cell has beside that force at its point is added to the contact:
  *
- * A patch of k corners has 2 k + 1 points drawn in towards the centroid: k between corners, k at corners, and the centroid
- * (patch.c). So its corners follow from its points. */
+ *     M = k [int_{u>0} u (x - x_p) dA + hold int_{u<0} u (x - x_p) dA] cross n
+ *     U = k/2 [int_{u>0} u^2 dA - A p^2 + hold (int_{u<0} u^2 dA - A q^2)]
+ *
+ * k is kn, or that of the force of the closed part over A p where a law is not linear. So force, moment and energy are the
+ * exact integrals over the polygon, whatever part of it is closed. A tension that a bond loses takes its part of U with it:
+ * that is heat.
+ *
+ * The cells. A patch of k corners has k points between corners, k at corners, and the centroid, all drawn in towards that
+ * (patch.c); so its corners follow from its points. In the triangle of an edge and the centroid, the centroid's cell is the
+ * triangle drawn in by INNER, 7/75 of its area. Beyond it the rays from the centroid through the shares SIDE and 1 - SIDE of
+ * the edge part the cells of the two corners, 16/75 each, from that of the edge, 36/75.
+ *
+ * The mean of u over a cell is not u at its point: they differ by r, and sum A r = 0 over the patch. While all is closed the
+ * points' own u serve, as exactly. The means take (1 - t) r less, where t grows from 0 to 1 while the first cell opens. So no
+ * point's closure jumps, and the sums are the same for any t. */
 #include "force/partly_open.h"
 
 #include "base/columns.h"
+#include "contact/across_gap.h"
 #include "contact/detection.h"
 #include "narrow/frame2.h"
 
 #include <math.h>
 #include <string.h>
 
-/* Corners of the patches that are looked at; others are left as they are. */
-#define MOST_CORNERS 16
-
-typedef struct corner {
-    tl_vec3 x;
-    double o;
-} corner;
+#define INNER 0.30550504633038933 /* sqrt(7 / 75) */
+#define SIDE (16.0 / 68)
 
 /* A lane's patch: where its points are in the lanes and in the table. */
 typedef struct patch {
     const tl_points_table *p;
     const tl_point_lanes *lanes;
-    size_t lane, row, count;
+    size_t lane, row, corners;
     uint32_t faces; /* their key, which is in all of its points' */
 } patch;
 
@@ -40,227 +50,394 @@ static tl_vec3 arm_of(const patch *of, size_t k)
     return tl_columns_get(of->lanes->arm, of->lane + k * TL_LANES);
 }
 
-static double closure_of(const patch *of, size_t k)
+static double area_of(const patch *of, size_t k)
 {
-    return of->lanes->closure[of->lane + k * TL_LANES];
+    return of->p->area[of->row + k * TL_LANES];
 }
 
-static uint32_t key_of(const patch *of, size_t k)
+/* The patch of a contact with points drawn in towards its centroid, the last of them. false: it is none. */
+static bool find_patch(const tl_model *m, const tl_simd_group *group, const tl_point_lanes *t,
+                       size_t lane, size_t l, patch *out)
 {
-    return of->p->key[of->row + k * TL_LANES] ^ of->faces;
+    uint32_t c = group->contact[l];
+    if (c == TL_NO_ROW)
+        return false;
+    const tl_facet *f = &m->detect->contacts.facet[c];
+    size_t count = m->detect->contacts.point_count[c], corners = count / 2;
+    if (f->kind != TL_FACET_PATCH || count % 2 == 0 || corners < 3)
+        return false;
+    *out = (patch){.p = &m->detect->points,
+                   .lanes = t,
+                   .lane = lane + l,
+                   .row = group->start + l,
+                   .corners = corners,
+                   .faces = tl_key_of(0, f->ia, f->ib)};
+    uint32_t last = out->p->key[out->row + 2 * corners * TL_LANES];
+    return last == tl_centroid_key(f->ia, f->ib);
 }
 
-/* Whether the points are those of the corners, of every two neighbours and of the centroid: some may have had no area. */
-static bool are_all(const patch *of, size_t corners)
+/* Whether the points are those of all corners and of every two neighbours: where faces hardly overlap some may have had no
+ * area. */
+static bool has_all_points(const patch *of)
 {
-    bool all = key_of(of, 2 * corners) == tl_key_of(TL_POINT_CENTROID, 0, 0);
-    for (size_t k = 0; k < corners && all; k++)
-        all = key_of(of, k) == tl_key_of(TL_POINT_MIDDLE, key_of(of, corners + k),
-                                         key_of(of, corners + (k + 1) % corners));
+    const uint32_t *key = of->p->key + of->row, faces = of->faces;
+    bool all = true;
+    for (size_t k = 0; k < of->corners && all; k++) {
+        size_t one = of->corners + k, next = of->corners + (k + 1) % of->corners;
+        all = (key[k * TL_LANES] ^ faces) == tl_key_of(TL_POINT_MIDDLE, key[one * TL_LANES] ^ faces,
+                                                       key[next * TL_LANES] ^ faces);
+    }
     return all;
 }
 
-/* The corners, in order, from the points; 0 for a patch whose points are others. */
-static size_t corners_of(const patch *of, corner *out)
+bool tl_part_applies(const tl_model *m)
 {
-    size_t corners = (of->count - 1) / 2;
-    if (of->count % 2 == 0 || corners < 3 || corners > MOST_CORNERS || !are_all(of, corners))
-        return 0;
+    return m->config.contact_points != TL_POINTS_CORNERS;
+}
+
+/* ---------------------------------------------------------------- edges ------------------ */
+
+/* The least of a linear closure over a cell whose outer side begins at the values given: it is there, or on its inner side. */
+static double lowest(double centre, double outer)
+{
+    return outer < centre ? outer : centre + INNER * (outer - centre);
+}
+
+static void put_edges(const patch *of)
+{
     const tl_point_rule rule = tl_point_rule_of(false);
-    double per = 1 / rule.reach, o = closure_of(of, of->count - 1);
-    tl_vec3 centre = arm_of(of, of->count - 1);
-    for (size_t k = 0; k < corners; k++) {
-        tl_vec3 out_there = tl_v3_sub(arm_of(of, corners + k), centre);
-        out[k].x = tl_v3_madd(centre, per, out_there);
-        out[k].o = o + per * (closure_of(of, corners + k) - o);
+    const double *closure = of->lanes->closure + of->lane, per = 1 / rule.reach;
+    double *edge = of->lanes->edge + of->lane;
+    size_t n = of->corners;
+    double centre = closure[2 * n * TL_LANES], least = centre;
+    for (size_t k = 0; k < n; k++)
+        edge[(n + k) * TL_LANES] = centre + per * (closure[(n + k) * TL_LANES] - centre);
+    double first = edge[n * TL_LANES], here = first;
+    double before = edge[(2 * n - 1) * TL_LANES];
+    for (size_t k = 0; k < n; k++) {
+        double next = k + 1 < n ? edge[(n + k + 1) * TL_LANES] : first;
+        double side = fmin(fmin(next, before) - here, 0), along = fabs(next - here);
+        double middle = 0.5 * (here + next) - (0.5 - SIDE) * along;
+        edge[(n + k) * TL_LANES] = lowest(centre, here + SIDE * side);
+        edge[k * TL_LANES] = lowest(centre, middle);
+        least = fmin(least, centre + INNER * (here - centre));
+        before = here;
+        here = next;
     }
-    return corners;
-}
-
-/* Keeps what is closed. */
-static size_t clip(const corner *in, size_t count, corner *out)
-{
-    size_t kept = 0;
-    for (size_t k = 0; k < count; k++) {
-        const corner *a = &in[k], *b = &in[(k + 1) % count];
-        if (a->o >= 0)
-            out[kept++] = *a;
-        if ((a->o < 0) != (b->o < 0)) {
-            double t = a->o / (a->o - b->o);
-            out[kept++] = (corner){tl_v3_madd(a->x, t, tl_v3_sub(b->x, a->x)), 0};
-        }
-    }
-    return kept;
-}
-
-/* Integrals of o, o x and o^2 / 2. */
-typedef struct integrals {
-    double o, half_o2, area;
-    tl_vec3 ox;
-} integrals;
-
-static integrals integrate(const corner *c, size_t count)
-{
-    integrals out = {0};
-    for (size_t k = 2; k < count; k++) {
-        const corner *p = &c[0], *q = &c[k - 1], *r = &c[k];
-        double area = 0.5 * tl_v3_norm(tl_v3_cross(tl_v3_sub(q->x, p->x), tl_v3_sub(r->x, p->x)));
-        double sum = p->o + q->o + r->o;
-        tl_vec3 all = tl_v3_add(p->x, tl_v3_add(q->x, r->x));
-        tl_vec3 own = tl_v3_madd(tl_v3_madd(tl_v3_scale(p->o, p->x), q->o, q->x), r->o, r->x);
-        out.area += area;
-        out.o += area / 3 * sum;
-        out.ox = tl_v3_madd(out.ox, area / 12, tl_v3_madd(own, sum, all));
-        out.half_o2 += area / 24 * (p->o * p->o + q->o * q->o + r->o * r->o + sum * sum);
-    }
-    return out;
-}
-
-/* The same of the points. */
-static integrals of_points(const patch *of)
-{
-    integrals out = {0};
-    for (size_t k = 0; k < of->count; k++) {
-        double area = of->p->area[of->row + k * TL_LANES], o = fmax(0, closure_of(of, k));
-        out.area += area;
-        out.o += area * o;
-        out.ox = tl_v3_madd(out.ox, area * o, arm_of(of, k));
-        out.half_o2 += 0.5 * area * o * o;
-    }
-    return out;
-}
-
-/* Gives the points the force of the closed part: scaled, or where none of them is closed all to the nearest. */
-static void share_force(const patch *of, double force, double points)
-{
-    double *closure = of->lanes->closure + of->lane;
-    size_t nearest = 0;
-    for (size_t k = 0; k < of->count; k++) {
-        nearest = closure[k * TL_LANES] > closure[nearest * TL_LANES] ? k : nearest;
-        closure[k * TL_LANES] *= points > 0 && closure[k * TL_LANES] > 0 ? force / points : 1;
-    }
-    if (!(points > 0))
-        closure[nearest * TL_LANES] = force / of->p->area[of->row + nearest * TL_LANES];
-}
-
-static void part(const patch *of, tl_partly_open *out, size_t l)
-{
-    corner all[MOST_CORNERS], closed[2 * MOST_CORNERS];
-    size_t corners = corners_of(of, all), open = 0;
-    for (size_t k = 0; k < corners; k++)
-        open += all[k].o < 0;
-    if (open == 0 || open == corners)
-        return;
-    integrals exact = integrate(closed, clip(all, corners, closed)), was = of_points(of);
-    /* areas are those on the faces */
-    double by = was.area / integrate(all, corners).area;
-    share_force(of, by * exact.o, was.o);
-    integrals now = of_points(of);
-    tl_vec3 n = tl_columns_get(of->lanes->normal, of->lane);
-    tl_vec3 more = tl_v3_sub(tl_v3_scale(by, exact.ox), now.ox);
-    out->any = true;
-    out->moment[l] = tl_v3_cross(more, n);
-    out->energy[l] = by * exact.half_o2 - now.half_o2;
-}
-
-/* Lanes some of whose points, or of whose corners beyond them, may be closed and others apart: a bit each. */
-static uint32_t mixed(const tl_points_table *p, const tl_simd_group *group, const tl_point_lanes *t,
-                      size_t lane)
-{
-    double low[TL_LANES], high[TL_LANES];
-    uint32_t out = 0;
-    for (size_t l = 0; l < TL_LANES; l++) {
-        low[l] = INFINITY;
-        high[l] = -INFINITY;
-    }
-    for (size_t at = 0; at < (size_t)group->slots * TL_LANES; at += TL_LANES)
-#pragma omp simd
-        for (size_t l = 0; l < TL_LANES; l++) {
-            double o = t->closure[lane + at + l];
-            bool there = p->area[group->start + at + l] > 0;
-            low[l] = (there & (o < low[l])) ? o : low[l];
-            high[l] = (there & (o > high[l])) ? o : high[l];
-        }
-    for (size_t l = 0; l < TL_LANES; l++) {
-        double beyond = (high[l] - low[l]) * (1 / tl_point_rule_of(false).reach - 1);
-        out |= (uint32_t)(low[l] - beyond < 0 && high[l] + beyond > 0) << l;
-    }
-    return out;
-}
-
-bool tl_part_applies(const tl_model *m, const tl_law *law)
-{
-    return m->config.contact_points != TL_POINTS_CORNERS && law->pulls != TL_PULL_ANY;
-}
-
-/* Whether no point of a contact may carry a force across a gap. */
-static bool closes(const tl_model *m, const tl_law *law, uint32_t c)
-{
-    const tl_contacts *contacts = &m->detect->contacts;
-    const tl_points_table *p = &m->detect->points;
-    for (size_t k = 0; k < contacts->point_count[c]; k++) {
-        size_t i = tl_point_row(contacts, c, k);
-        if (p->f_n0 && (p->f_n0[i] != 0 || p->reference[i] != 0))
-            return false;
-        if (law->pulls == TL_PULL_BONDED && !(p->flags[i] & TL_POINT_FAILED))
-            return false;
-    }
-    return true;
-}
-
-void tl_simd_group_part(const tl_model *m, const tl_law *law, const tl_simd_group *group,
-                        const tl_point_lanes *t, size_t lane, tl_partly_open *out)
-{
-    const tl_points_table *p = &m->detect->points;
-    out->any = false;
-    for (uint32_t left = mixed(p, group, t, lane); left; left &= left - 1) {
-        size_t l = (size_t)__builtin_ctz(left);
-        uint32_t c = group->contact[l];
-        if (c == TL_NO_ROW || !closes(m, law, c))
-            continue;
-        if (!out->any)
-            for (size_t k = 0; k < TL_LANES; k++) {
-                out->moment[k] = tl_v3(0, 0, 0);
-                out->energy[k] = 0;
-            }
-        const tl_facet *f = &m->detect->contacts.facet[c];
-        const patch of = {.p = p,
-                          .lanes = t,
-                          .lane = lane + l,
-                          .row = group->start + l,
-                          .count = m->detect->contacts.point_count[c],
-                          .faces = tl_key_of(0, f->ia, f->ib)};
-        part(&of, out, l);
-    }
-}
-
-/* Whether the points of a contact are drawn in from corners and edges towards the last of them. */
-static bool has_centroid(const tl_model *m, uint32_t c)
-{
-    const tl_contacts *contacts = &m->detect->contacts;
-    const tl_facet *f = &contacts->facet[c];
-    size_t count = contacts->point_count[c];
-    if (f->kind != TL_FACET_PATCH || count % 2 == 0 || count < 7)
-        return false;
-    return m->detect->points.key[tl_point_row(contacts, c, count - 1)] ==
-           tl_centroid_key(f->ia, f->ib);
+    edge[2 * n * TL_LANES] = least;
 }
 
 void tl_simd_group_edges(const tl_model *m, const tl_simd_group *group, const tl_point_lanes *t,
                          size_t lane)
 {
-    const tl_point_rule rule = tl_point_rule_of(false);
-    size_t rows = (size_t)group->slots * TL_LANES;
-    memcpy(t->edge + lane, t->closure + lane, rows * sizeof *t->edge);
+    memcpy(t->edge + lane, t->closure + lane, (size_t)group->slots * TL_LANES * sizeof *t->edge);
+    for (size_t l = 0; l < TL_LANES && tl_part_applies(m); l++) {
+        patch of;
+        if (find_patch(m, group, t, lane, l, &of))
+            put_edges(&of);
+    }
+}
+
+/* ---------------------------------------------------------------- which ------------------ */
+
+/* The least and the largest u of the points of each lane, and how far corners may be beyond. */
+typedef struct range {
+    double low[TL_LANES], high[TL_LANES], beyond[TL_LANES];
+} range;
+
+TL_VECTORIZED static void find_range(const double *restrict area, const double *restrict closure,
+                                     const double *restrict lift, size_t slots, range *restrict out)
+{
+    range r;
+    double first[TL_LANES], last[TL_LANES];
     for (size_t l = 0; l < TL_LANES; l++) {
-        uint32_t c = group->contact[l];
-        if (c == TL_NO_ROW || !has_centroid(m, c))
+        r.low[l] = first[l] = INFINITY;
+        r.high[l] = last[l] = -INFINITY;
+    }
+    for (size_t at = 0; at < slots * TL_LANES; at += TL_LANES)
+#pragma omp simd
+        for (size_t l = 0; l < TL_LANES; l++) {
+            double o = closure[at + l], u = o + lift[at + l], a = area[at + l];
+            double from = a > 0 ? o : INFINITY, to = a > 0 ? o : -INFINITY;
+            double under = a > 0 ? u : INFINITY, over = a > 0 ? u : -INFINITY;
+            first[l] = from < first[l] ? from : first[l];
+            last[l] = to > last[l] ? to : last[l];
+            r.low[l] = under < r.low[l] ? under : r.low[l];
+            r.high[l] = over > r.high[l] ? over : r.high[l];
+        }
+    const double more = 1 / tl_point_rule_of(false).reach - 1;
+    for (size_t l = 0; l < TL_LANES; l++)
+        r.beyond[l] = (last[l] - first[l]) * more;
+    *out = r;
+}
+
+/* Lanes where some part may be apart, a bit each. */
+static uint32_t opening_lanes(const range *r)
+{
+    uint32_t out = 0;
+    for (size_t l = 0; l < TL_LANES; l++)
+        out |= (uint32_t)(r->low[l] - r->beyond[l] < 0) << l;
+    return out;
+}
+
+/* Whether every point of a patch holds what is apart: then the points' own rule is exact. */
+static bool all_hold(const patch *of)
+{
+    bool all = true;
+    for (size_t k = 0; k <= 2 * of->corners && all; k++)
+        all = of->lanes->hold[of->lane + k * TL_LANES] >= 1;
+    return all;
+}
+
+/* ---------------------------------------------------------------- integrals -------------- */
+
+/* A place in a triangle of the fan: shares of the two corners beside that of the centroid. */
+typedef struct node {
+    double a, b;
+} node;
+
+/* Over a part of the triangle, times 1 over its area: integrals of u, of u times the place, and of u^2. */
+typedef struct integrals {
+    double u, ua, ub, uu;
+} integrals;
+
+/* Of a triangle of the share f of the area. */
+static inline integrals whole_of(const node n[3], const double u[3], double f)
+{
+    double sum = u[0] + u[1] + u[2], by = f / 12;
+    double a = n[0].a + n[1].a + n[2].a, b = n[0].b + n[1].b + n[2].b;
+    return (integrals){
+        .u = f / 3 * sum,
+        .ua = by * (sum * a + u[0] * n[0].a + u[1] * n[1].a + u[2] * n[2].a),
+        .ub = by * (sum * b + u[0] * n[0].b + u[1] * n[1].b + u[2] * n[2].b),
+        .uu = f / 6 * (0.5 * (u[0] * u[0] + u[1] * u[1] + u[2] * u[2]) + 0.5 * sum * sum),
+    };
+}
+
+/* Of the part of it at corner k where `sign` u > 0, when that is so at no other corner; u taken times the sign. */
+static inline integrals corner_of(const node n[3], const double u[3], double f, size_t k,
+                                  double sign)
+{
+    size_t i = (k + 1) % 3, j = (k + 2) % 3;
+    double top = sign * u[k], s = u[k] / (u[k] - u[i]), t = u[k] / (u[k] - u[j]);
+    double area = f * s * t, by = area * top / 12;
+    return (integrals){
+        .u = area * top / 3,
+        .ua = by * (4 * n[k].a + s * (n[i].a - n[k].a) + t * (n[j].a - n[k].a)),
+        .ub = by * (4 * n[k].b + s * (n[i].b - n[k].b) + t * (n[j].b - n[k].b)),
+        .uu = area * top * top / 6,
+    };
+}
+
+static inline integrals added(integrals x, integrals y)
+{
+    return (integrals){x.u + y.u, x.ua + y.ua, x.ub + y.ub, x.uu + y.uu};
+}
+
+/* What presses of a triangle or cell, and what is apart, u there taken positive. */
+typedef struct cell_parts {
+    integrals pressed, apart;
+} cell_parts;
+
+static inline void add_triangle(const node n[3], const double u[3], double f, cell_parts *to)
+{
+    integrals all = whole_of(n, u, f), some;
+    size_t above = (size_t)((u[0] > 0) + (u[1] > 0) + (u[2] > 0));
+    if (above == 3) {
+        to->pressed = added(to->pressed, all);
+        return;
+    }
+    const integrals minus = {-all.u, -all.ua, -all.ub, all.uu};
+    if (above == 0) {
+        to->apart = added(to->apart, minus);
+        return;
+    }
+    size_t k = above == 1 ? (u[0] > 0 ? 0 : u[1] > 0 ? 1 : 2) : (u[0] > 0 ? (u[1] > 0 ? 2 : 1) : 0);
+    some = corner_of(n, u, f, k, above == 1 ? 1 : -1);
+    const integrals less = {some.u, some.ua, some.ub, -some.uu};
+    to->pressed = added(to->pressed, above == 1 ? some : added(all, less));
+    to->apart = added(to->apart, above == 1 ? added(minus, less) : some);
+}
+
+/* ---------------------------------------------------------------- cells ------------------ */
+
+/* Shares of the area of a triangle of the fan in its cells: a corner's, the edge's, the centroid's. */
+static const double cell_share[3] = {16. / 75, 36. / 75, 7. / 75};
+static const double outer_side[4] = {0, SIDE, 1 - SIDE, 1};
+
+/* Adds a cell's part, whose volumes are those of a triangle of the fan of area `fan` with the sides e and f. */
+static void add_part(tl_cell *to, const cell_parts *part, double fan, tl_vec3 e, tl_vec3 f)
+{
+    const integrals *p = &part->pressed, *a = &part->apart;
+    to->pressed_volume += fan * p->u;
+    to->apart_volume += fan * a->u;
+    to->pressed_second += fan * p->uu;
+    to->apart_second += fan * a->uu;
+    to->pressed = tl_v3_madd(tl_v3_madd(to->pressed, fan * p->ua, e), fan * p->ub, f);
+    to->apart = tl_v3_madd(tl_v3_madd(to->apart, fan * a->ua, e), fan * a->ub, f);
+}
+
+/* The four cells of a triangle of the fan, of which `to` are the points: corner, edge, next corner, centroid. `o`: closures of
+ * the centroid, of the corner and of the next. */
+static void add_triangle_cells(const patch *of, const size_t to[4], const double o[3], tl_vec3 e,
+                               tl_vec3 f)
+{
+    tl_cell *cell = of->lanes->cell + of->lane;
+    const double *lift = of->lanes->lift + of->lane;
+    const double fan = area_of(of, to[1]) / cell_share[1];
+    const double inside = INNER * INNER;
+    node out[4], in[4];
+    double far[4], near[4];
+    for (size_t k = 0; k < 4; k++) {
+        out[k] = (node){1 - outer_side[k], outer_side[k]};
+        in[k] = (node){INNER * out[k].a, INNER * out[k].b};
+        far[k] = o[1] + outer_side[k] * (o[2] - o[1]);
+        near[k] = o[0] + INNER * (far[k] - o[0]);
+    }
+    for (size_t k = 0; k < 3; k++) {
+        double w = outer_side[k + 1] - outer_side[k], up = lift[to[k] * TL_LANES];
+        const node one[3] = {in[k], out[k], out[k + 1]}, two[3] = {in[k], out[k + 1], in[k + 1]};
+        const double u[3] = {near[k] + up, far[k] + up, far[k + 1] + up};
+        const double v[3] = {near[k] + up, far[k + 1] + up, near[k + 1] + up};
+        cell_parts part = {0};
+        add_triangle(one, u, w * (1 - INNER), &part);
+        add_triangle(two, v, w * (INNER - inside), &part);
+        add_part(&cell[to[k] * TL_LANES], &part, fan, e, f);
+    }
+    double up = lift[to[3] * TL_LANES];
+    const node last[3] = {{0, 0}, in[0], in[3]};
+    const double u[3] = {o[0] + up, near[0] + up, near[3] + up};
+    cell_parts part = {0};
+    add_triangle(last, u, inside, &part);
+    add_part(&cell[to[3] * TL_LANES], &part, fan, e, f);
+}
+
+/* Integrals of all cells; moments about the centroid. */
+static void integrate_cells(const patch *of)
+{
+    const tl_point_rule rule = tl_point_rule_of(false);
+    const double *closure = of->lanes->closure + of->lane, per = 1 / rule.reach;
+    size_t n = of->corners;
+    const double o = closure[2 * n * TL_LANES];
+    const tl_vec3 centre = arm_of(of, 2 * n);
+    for (size_t k = 0; k <= 2 * n; k++)
+        of->lanes->cell[of->lane + k * TL_LANES] = (tl_cell){0};
+    tl_vec3 e = tl_v3_scale(per, tl_v3_sub(arm_of(of, n), centre));
+    double here = o + per * (closure[n * TL_LANES] - o);
+    for (size_t k = 0; k < n; k++) {
+        size_t next = (k + 1) % n;
+        const size_t to[4] = {n + k, k, n + next, 2 * n};
+        tl_vec3 f = tl_v3_scale(per, tl_v3_sub(arm_of(of, n + next), centre));
+        double there = o + per * (closure[(n + next) * TL_LANES] - o);
+        const double at[3] = {o, here, there};
+        add_triangle_cells(of, to, at, e, f);
+        e = f;
+        here = there;
+    }
+}
+
+/* How far the means are those of the cells, and not of the points: t. */
+static double share_of_cells(const patch *of)
+{
+    double share = 0;
+    for (size_t k = 0; k <= 2 * of->corners; k++) {
+        const tl_cell *cell = &of->lanes->cell[of->lane + k * TL_LANES];
+        double sum = cell->pressed_volume + cell->apart_volume;
+        double loose = 1 - of->lanes->hold[of->lane + k * TL_LANES];
+        share = fmax(share, sum > 0 ? loose * (cell->apart_volume / sum) : 0);
+    }
+    return share;
+}
+
+/* Gives a point the means of its cell, which keeps what it has beside them. */
+static void put_means(const patch *of, size_t k, double share)
+{
+    const tl_point_lanes *t = of->lanes;
+    size_t i = of->lane + k * TL_LANES;
+    tl_cell *cell = &t->cell[i];
+    tl_vec3 arm = tl_v3_sub(arm_of(of, k), arm_of(of, 2 * of->corners));
+    double area = area_of(of, k), u = t->closure[i] + t->lift[i];
+    double more = (cell->pressed_volume - cell->apart_volume) / area - u;
+    double p = cell->pressed_volume / area - (1 - share) * more, q = cell->apart_volume / area;
+    if (!(cell->pressed_volume > 0) || (p < 0 && q > 0)) { /* apart as a whole */
+        p -= q;
+        q = 0;
+    }
+    double pressed = p > 0 ? area * p : 0, apart = p > 0 ? area * q : -area * p;
+    t->closure[i] = p - t->lift[i];
+    t->apart[i] = q;
+    cell->hold = t->hold[i];
+    cell->pressed_volume = pressed;
+    cell->apart_volume = apart;
+    cell->pressed = tl_v3_madd(cell->pressed, -pressed, arm);
+    cell->apart = tl_v3_madd(cell->apart, -apart, arm);
+    cell->pressed_second = 0.5 * (cell->pressed_second - pressed * pressed / area);
+    cell->apart_second = 0.5 * (cell->apart_second - apart * apart / area);
+}
+
+uint32_t tl_simd_group_part(const tl_model *m, const tl_law *law, const tl_simd_group *group,
+                            const tl_point_lanes *t, size_t lane)
+{
+    const tl_points_table *p = &m->detect->points;
+    size_t rows = (size_t)group->slots * TL_LANES;
+    range r;
+    find_range(p->area + group->start, t->closure + lane, t->zero + lane, group->slots, &r);
+    if (!p->f_n0 && !opening_lanes(&r))
+        return 0;
+    tl_points_across_gap(law, p, group->start, rows, t->lift + lane, t->hold + lane);
+    find_range(p->area + group->start, t->closure + lane, t->lift + lane, group->slots, &r);
+    uint32_t out = 0;
+    for (uint32_t left = opening_lanes(&r); left; left &= left - 1) {
+        size_t l = (size_t)__builtin_ctz(left);
+        patch of;
+        if (!(r.high[l] + r.beyond[l] > 0) || !find_patch(m, group, t, lane, l, &of) ||
+            all_hold(&of) || !has_all_points(&of))
             continue;
-        size_t last = m->detect->contacts.point_count[c] - 1u, corners = last / 2;
-        const double *closure = t->closure + lane + l;
-        double centre = closure[last * TL_LANES];
-        for (size_t k = 0; k < last; k++)
-            t->edge[lane + l + k * TL_LANES] =
-                centre + (closure[k * TL_LANES] - centre) / (k < corners ? rule.out : rule.reach);
+        if (!out)
+            memset(t->apart + lane, 0, rows * sizeof *t->apart);
+        out |= 1u << l;
+        integrate_cells(&of);
+        double share = share_of_cells(&of);
+        for (size_t k = 0; k <= 2 * of.corners; k++)
+            put_means(&of, k, share);
+    }
+    return out;
+}
+
+/* ---------------------------------------------------------------- sums ------------------- */
+
+static tl_part_sums sum_cells(const patch *of, const tl_law *law)
+{
+    const tl_point_lanes *t = of->lanes;
+    tl_part_sums out = {.stored = 0};
+    tl_vec3 sum = {0, 0, 0};
+    for (size_t k = 0; k <= 2 * of->corners; k++) {
+        size_t i = of->lane + k * TL_LANES;
+        const tl_cell *cell = &t->cell[i];
+        double pulls = law->kn * t->hold[i], lost = law->kn * (cell->hold - t->hold[i]);
+        double pressed = of->p->f_n[of->row + k * TL_LANES] + pulls * cell->apart_volume;
+        double spring = cell->pressed_volume > 0 ? pressed / cell->pressed_volume : 0;
+        sum = tl_v3_madd(tl_v3_madd(sum, spring, cell->pressed), -pulls, cell->apart);
+        out.stored += spring * cell->pressed_second + pulls * cell->apart_second;
+        out.dissipated += fmax(0, lost * cell->apart_second);
+    }
+    out.moment = tl_v3_cross(sum, tl_columns_get(t->normal, of->lane));
+    return out;
+}
+
+void tl_simd_group_part_sum(const tl_model *m, const tl_law *law, const tl_simd_group *group,
+                            const tl_point_lanes *t, size_t lane, uint32_t parts, tl_part_sums *out)
+{
+    if (law->pulls != TL_PULL_NONE)
+        tl_points_across_gap(law, &m->detect->points, group->start,
+                             (size_t)group->slots * TL_LANES, t->lift + lane, t->hold + lane);
+    for (uint32_t left = parts; left; left &= left - 1) {
+        size_t l = (size_t)__builtin_ctz(left);
+        const patch of = {.p = &m->detect->points,
+                          .lanes = t,
+                          .lane = lane + l,
+                          .row = group->start + l,
+                          .corners = m->detect->contacts.point_count[group->contact[l]] / 2u};
+        out[l] = sum_cells(&of, law);
     }
 }

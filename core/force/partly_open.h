@@ -1,26 +1,31 @@
-/* partly_open.h - patches of which some corners are apart: their pressure integrated exactly (partly_open.c). */
+/* partly_open.h - patches of which a part is closed and a part apart: their pressure integrated exactly (partly_open.c). */
 #ifndef TL_FORCE_PARTLY_OPEN_H
 #define TL_FORCE_PARTLY_OPEN_H
 
 #include "contact/layout.h"
 #include "model/model.h"
 
-/* What the points of a SIMD group lack, for a stiffness kn of 1, a contact in each lane. */
-typedef struct tl_partly_open {
-    bool any;
-    tl_vec3 moment[TL_LANES]; /* on B about A's centroid, m^4 */
-    double energy[TL_LANES];  /* m^4 */
-} tl_partly_open;
-
-/* Whether the points of contacts of a law carry nothing where the faces are apart, as long as no bond of them holds. */
-bool tl_part_applies(const tl_model *m, const tl_law *law);
-/* After a SIMD group of patches has been followed: gives points of contacts that are partly open closures that add up to the
- * force of the closed part, and tells what else there is. */
-void tl_simd_group_part(const tl_model *m, const tl_law *law, const tl_simd_group *group,
-                        const tl_point_lanes *lanes, size_t lane, tl_partly_open *out);
+/* Whether the points of a law's patches stand for cells: not for those at corners. */
+bool tl_part_applies(const tl_model *m);
 
 /* The closures at the outermost fibres of the points of a SIMD group. */
 void tl_simd_group_edges(const tl_model *m, const tl_simd_group *group, const tl_point_lanes *lanes,
                          size_t lane);
+
+/* After a SIMD group of patches has been followed: gives the points of patches that are partly open the mean closures of their
+ * cells. A bit for each lane of such a patch; `closure_apart` of the group's rows is valid when there is one. */
+uint32_t tl_simd_group_part(const tl_model *m, const tl_law *law, const tl_simd_group *group,
+                            const tl_point_lanes *lanes, size_t lane);
+
+/* What the forces of cells have beside those of their points. */
+typedef struct tl_part_sums {
+    tl_vec3 moment; /* on B, N m */
+    double stored, dissipated;
+} tl_part_sums;
+
+/* After the law: what the lanes `parts` have beside their points, into out[TL_LANES]. */
+void tl_simd_group_part_sum(const tl_model *m, const tl_law *law, const tl_simd_group *group,
+                            const tl_point_lanes *lanes, size_t lane, uint32_t parts,
+                            tl_part_sums *out);
 
 #endif

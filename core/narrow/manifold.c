@@ -1,9 +1,8 @@
 /* manifold.c - what touches: two flush faces make a patch (patch.c), all else a field contact (press.c).
  *
  * A patch is the fast form of the energy of press.c where that is the energy of the patch alone: the faces are nearly
- * parallel, overlap by little, and no other faces face each other nearby. A patch whose bond or initial stress acts
- * across a gap stays one however its faces turn. A field contact has two points at the centre of its pressure
- * (facet.h). */
+ * parallel, overlap by little, and no other faces face each other nearby. A patch with a bond stays one up to a larger
+ * tilt. A field contact has two points at the centre of its pressure (facet.h). */
 #include "narrow/manifold.h"
 
 #include "narrow/patch.h"
@@ -29,18 +28,34 @@ static bool is_patch(const tl_pair_view *view, const tl_region *r, const tl_touc
         return false;
     double overlap = fmax(0, -r->flush_gap), away = TL_CONTACT_TOLERANCE * size;
     double behind = fmin(r->flush_lead - away, (r->blunt_lead - BLUNT * overlap - away) / BLUNT);
-    double tilt_margin = part * TL_FLUSH_TILT - tl_region_tilt(view, r->flush_a, r->flush_b);
+    const tl_flush_limits limits = tl_flush_limits_of(rule->corners);
+    double tilt_margin = part * limits.tilt - tl_region_tilt(view, r->flush_a, r->flush_b);
     if (!(behind > 0 && tilt_margin > 0))
         return false;
     double area = tl_patch_add(view, r->flush_a, r->flush_b, rule, scratch);
     if (!(area > 0) || rule->min_area > MOST_MIN_AREA * area)
         return false;
-    double shallow = part * TL_FLUSH_DEPTH * sqrt(area) + scratch->patch.gap;
+    double shallow = part * limits.depth * sqrt(area) + scratch->patch.gap;
     if (!(shallow > 0))
         return false;
     /* when the pair moves, none of these changes by more than twice the way */
     double way = 0.5 * fmin(fmin(behind, shallow), tilt_margin * size);
     m->valid = fmin(way, TL_LIST_MARGIN * size);
+    return true;
+}
+
+/* Whether the faces of a patch with bonds are still one. */
+static bool stays_patch(const tl_pair_view *view, const tl_touch_rule *rule,
+                        const tl_manifold_before *before, tl_narrow_scratch *scratch)
+{
+    const tl_facet *f = &before->facet;
+    double left = INFINITY;
+    if (before->most_tilt < INFINITY)
+        left = before->most_tilt - tl_region_tilt(view, f->ia, f->ib);
+    if (!(left > 0) || !(tl_patch_add(view, f->ia, f->ib, rule, scratch) > 0))
+        return false;
+    tl_manifold *m = &scratch->manifold;
+    m->valid = fmin(m->valid, 0.5 * left * view->size);
     return true;
 }
 
@@ -70,8 +85,9 @@ tl_press_query tl_manifold_query(const tl_pair_view *view, const tl_region *regi
     return (tl_press_query){.view = view,
                             .region = region,
                             .min_area = rule->min_area,
+                            .corners = rule->corners,
                             .shift = before->shift,
-                            .shifted = before->shift > 0 ? before->shifted : UINT32_MAX};
+                            .shifted = before->shifted};
 }
 
 static bool find_field(const tl_pair_view *view, const tl_region *r, const tl_touch_rule *rule,
@@ -94,13 +110,14 @@ bool tl_manifold_find(const tl_pair_view *view, const tl_region *r, const tl_tou
     bool was_field = before->facet.kind == TL_FACET_FIELD;
     m->failed = false;
     m->point_count = 0;
+    m->press = (tl_press){0};
     m->valid = TL_LIST_MARGIN * view->size;
-    if (before->holds && tl_patch_add(view, before->facet.ia, before->facet.ib, rule, scratch) > 0)
+    if (before->holds && stays_patch(view, rule, before, scratch))
         return true;
     if (m->failed || ((before->calm || !was_field) && is_patch(view, r, rule, was_field, scratch)))
         return !m->failed;
     m->point_count = 0;
-    if (m->failed || r->gap > 0)
+    if (m->failed || r->gap > fmax(0, before->shift))
         return !m->failed;
     return find_field(view, r, rule, before, scratch);
 }
@@ -142,16 +159,30 @@ static bool has_joint(const tl_poly *p)
     return false;
 }
 
+/* The faces that touch along a direction from A to B, with the cosines between it and their normals. */
+static tl_face_pair touching_faces(const tl_pair_view *view, tl_vec3 n, double *ca, double *cb)
+{
+    double slack = TL_CONTACT_TOLERANCE * view->size;
+    uint32_t fa = touching_face(view->a, view->a->vertex, &view->a->plane[0].normal,
+                                sizeof(tl_plane), n, slack, ca);
+    uint32_t fb = touching_face(view->b, view->vertex_b, view->normal_b, sizeof(tl_vec3),
+                                tl_v3_neg(n), slack, cb);
+    return (tl_face_pair){(uint16_t)fa, (uint16_t)fb};
+}
+
+tl_face_pair tl_touching_faces(const tl_pair_view *view, tl_vec3 n)
+{
+    double ca, cb;
+    return touching_faces(view, n, &ca, &cb);
+}
+
 tl_tag tl_touching_tag(const tl_pair_view *view, tl_vec3 n)
 {
     if (!has_joint(view->a) && !has_joint(view->b))
         return (tl_tag){0, 0};
-    double ca, cb, slack = TL_CONTACT_TOLERANCE * view->size;
-    uint32_t fa = touching_face(view->a, view->a->vertex, &view->a->plane[0].normal,
-                                sizeof(tl_plane), n, slack, &ca);
-    uint32_t fb = touching_face(view->b, view->vertex_b, view->normal_b, sizeof(tl_vec3),
-                                tl_v3_neg(n), slack, &cb);
-    tl_tag a = view->a->tag[fa], b = view->b->tag[fb];
+    double ca, cb;
+    const tl_face_pair f = touching_faces(view, n, &ca, &cb);
+    tl_tag a = view->a->tag[f.a], b = view->b->tag[f.b];
     if (a.joint == 0 || b.joint == 0)
         return a.joint == 0 ? b : a;
     /* of flush faces both are equally near */

@@ -6,12 +6,13 @@
 
 /* What is known of the contact of a pair before it is looked at. */
 typedef struct tl_manifold_before {
-    bool
-        holds; /* it carries force across a gap, or may: its faces stay a patch however they turn */
-    bool calm; /* a field contact that hardly moves: only that becomes a patch */
-    tl_facet facet; /* its faces; without points: none */
-    double shift;   /* see tl_press_query */
-    uint32_t shifted;
+    bool holds;       /* bonds hold its faces: they stay a patch, up to the tilt `most_tilt` */
+    double most_tilt; /* as a sine */
+    bool calm;        /* a field contact that hardly moves: only that becomes a patch */
+    tl_facet facet;   /* its faces; without points: none */
+    double over;      /* gap across which its faces press, m; INFINITY where they hold */
+    double shift;     /* see tl_press_query */
+    tl_face_pair shifted;
 } tl_manifold_before;
 
 /* Way that a list of faces holds for, over the size. */
@@ -26,7 +27,8 @@ tl_press_query tl_manifold_query(const tl_pair_view *view, const tl_region *regi
                                  const tl_touch_rule *rule, const tl_manifold_before *before);
 /* A field contact of a press, and of the flush faces of a facet, into scratch->manifold. false: out of memory. */
 bool tl_manifold_press(const tl_press *press, const tl_facet *faces, tl_narrow_scratch *scratch);
-/* The joint of the faces that touch along a direction from A to B. */
+/* The faces that touch along a direction from A to B, and the joint of these. */
+tl_face_pair tl_touching_faces(const tl_pair_view *view, tl_vec3 n);
 tl_tag tl_touching_tag(const tl_pair_view *view, tl_vec3 n);
 
 #endif

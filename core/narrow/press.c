@@ -18,7 +18,10 @@
  * which is G without A_m. */
 #include "narrow/press.h"
 
+#include "base/columns.h"
 #include "narrow/field_mesh.h"
+#include "narrow/patch.h"
+#include "narrow/scratch.h"
 
 #include <stdlib.h>
 #include <talus/vmath.h>
@@ -82,10 +85,15 @@ static void add(planes *p, tl_plane plane)
     p->faces.c[p->count++] = plane.offset - tl_v3_dot(plane.normal, p->origin);
 }
 
+static double shift_of(const tl_press_query *of, bool of_b, uint32_t face)
+{
+    return face == (of_b ? of->shifted.b : of->shifted.a) ? fmax(0, 0.5 * of->shift) : 0;
+}
+
 static void add_face(planes *p, const tl_press_query *of, bool of_b, uint32_t face)
 {
     tl_plane plane = plane_of(of->view, of_b, face);
-    plane.offset += !of_b && face == of->shifted ? of->shift : 0;
+    plane.offset += shift_of(of, of_b, face);
     add(p, plane);
 }
 
@@ -146,8 +154,7 @@ static bool in_both(const tl_press_query *of, tl_vec3 x, double depth)
         uint32_t count = (of_b ? of->view->b : of->view->a)->face_count;
         for (uint32_t f = 0; f < count; f++) {
             tl_plane plane = plane_of(of->view, of_b, f);
-            double shift = !of_b && f == of->shifted ? of->shift : 0;
-            if (tl_v3_dot(plane.normal, x) > plane.offset + shift + INSIDE * depth)
+            if (tl_v3_dot(plane.normal, x) > plane.offset + shift_of(of, of_b, f) + INSIDE * depth)
                 return false;
         }
     }
@@ -206,8 +213,9 @@ static double blend(const tl_press_query *of, const tl_field_sums *patch, double
     tl_vec3 nb = of->view->normal_b[of->region->flush_b], hinge = tl_v3_cross(na, nb);
     double sine = tl_v3_norm(hinge), g = patch->energy, v = patch->volume, by_tilt, by_q;
     double q = 8 * g * sqrt(g) / (v * v);
-    double tilted = step(sine, TL_FLUSH_TILT, TL_FIELD_TILT, &by_tilt);
-    double deep = step(q, TL_FLUSH_DEPTH, TL_FIELD_DEPTH, &by_q);
+    const tl_flush_limits limits = tl_flush_limits_of(of->corners);
+    double tilted = step(sine, limits.tilt, limits.field_tilt, &by_tilt);
+    double deep = step(q, limits.depth, limits.field_depth, &by_q);
     double share = (1 - tilted) * (1 - deep), w = 1 - share;
     double more = field->energy - flat.energy;
     if (!(share > 0))
@@ -226,6 +234,47 @@ static double blend(const tl_press_query *of, const tl_field_sums *patch, double
     field->moment = tl_v3_madd(field->moment, more, turn);
     field->energy = w * field->energy + share * flat.energy;
     return share;
+}
+
+/* The integrals over the patch of the flush faces. false: out of memory. */
+static bool sum_patch(const tl_press_query *of, planes *p, tl_narrow_scratch *scratch,
+                      tl_field_sums *out)
+{
+    list_patch(p, of);
+    p->faces.mesh = NULL;
+    p->faces.energy_only = false;
+    return tl_field_integrate(&p->faces, &scratch->field, out);
+}
+
+/* The same where all of it is at the corners: sums over them. The overlap of a corner, which goes half with A and half with B, acts
+ * along the mean of both normals. */
+static bool sum_corners(const tl_press_query *of, tl_vec3 origin, tl_narrow_scratch *scratch,
+                        tl_field_sums *out)
+{
+    const uint32_t fa = of->region->flush_a, fb = of->region->flush_b;
+    const tl_touch_rule rule = {.corners = true, .reach = INFINITY};
+    const tl_plane a = plane_of(of->view, 0, fa), b = plane_of(of->view, 1, fb);
+    const tl_vec3 n = tl_v3_scale(0.5, tl_v3_sub(a.normal, b.normal));
+    const double offset = a.offset + b.offset + shift_of(of, 0, fa) + shift_of(of, 1, fb);
+    *out = (tl_field_sums){0};
+    scratch->manifold.failed = false;
+    if (!(tl_patch_lay(of->view, fa, fb, &rule, scratch) > 0))
+        return !scratch->manifold.failed;
+    const tl_patch_points *corner = &scratch->patch;
+    for (size_t i = 0; i < corner->count; i++) {
+        tl_vec3 x = tl_columns_get(corner->p, i), arm = tl_v3_cross(tl_v3_sub(x, origin), n);
+        double overlap = offset - tl_v3_dot(tl_v3_add(a.normal, b.normal), x);
+        double area = corner->area[i], half = 0.5 * area * overlap;
+        if (!(overlap > 0))
+            continue;
+        out->energy += 0.25 * area * overlap * overlap;
+        out->volume += area * overlap;
+        out->force = tl_v3_madd(out->force, half, n);
+        out->moment = tl_v3_madd(out->moment, half, arm);
+        out->swept = tl_v3_madd(out->swept, area, n);
+        out->swept_moment = tl_v3_madd(out->swept_moment, area, arm);
+    }
+    return true;
 }
 
 /* Whether what is known of the field at another place may be of use here. */
@@ -252,11 +301,10 @@ static bool press_of(const tl_press_query *of, planes *p, const tl_field_sums *s
         return true;
     }
     potential field = with_min_area(sums, of->min_area);
-    if (region->flush && tl_region_tilt(view, region->flush_a, region->flush_b) < TL_FIELD_TILT) {
-        list_patch(p, of);
-        p->faces.mesh = NULL;
-        p->faces.energy_only = false;
-        if (!tl_field_integrate(&p->faces, &scratch->field, &patch))
+    if (region->flush && tl_region_tilt(view, region->flush_a, region->flush_b) <
+                             tl_flush_limits_of(of->corners).field_tilt) {
+        if (!(of->corners ? sum_corners(of, p->origin, scratch, &patch)
+                          : sum_patch(of, p, scratch, &patch)))
             return false;
         if (patch.energy > 0 && patch.volume > 0)
             press->patch = blend(of, &patch, of->min_area, &field);

@@ -92,11 +92,13 @@ static void hash_press(tl_hash *hash, const tl_detect *d, uint32_t contact)
     const tl_press_row *row = &d->press[d->contacts.press[contact]];
     if (d->contacts.facet[contact].kind == TL_FACET_FIELD && d->contacts.point_count[contact] > 0)
         hash_place(hash, row);
-    const double numbers[] = {row->shift, row->spare[0], row->spare[1]};
+    const double numbers[] = {row->shift, row->spare[0], row->spare[1], row->opening[0],
+                              row->opening[1]};
     if (row->shift == 0 && row->spare[0] == 0 && row->spare[1] == 0)
         return;
     hash_numbers(hash, numbers, sizeof numbers / sizeof *numbers);
-    tl_hash_word(hash, row->shift != 0 ? row->shifted : 0);
+    uint32_t faces = row->shifted.a | (uint32_t)row->shifted.b << 16;
+    tl_hash_word(hash, row->shift != 0 ? faces : 0);
 }
 
 /* In the order of their blocks: which row and lane a contact has depends on when it was made. */

@@ -17,10 +17,14 @@ local function holds(condition, format, ...)
 end
 
 for i, kn in ipairs { 1e9, 1e10 } do
-    for _, case in ipairs { { 0, 4.54e-4, 4.66e-5 }, { 0.02, 6.44e-5, 6.66e-5 }, { 0.05, 5.07e-4, 5.66e-4 } } do
-        local way = sliding.creep(kn, case[1], 1)
-        holds(math.abs(way) < LESS * case[1 + i], "kn %.0e: creeps %.3e m, was %.3e, jolted by %g rad/s", kn, way,
-            case[1 + i], case[1])
+    -- how far it creeps differs by half from one jolt to the next that is like it
+    for _, case in ipairs { { { 0 }, 4.54e-4, 4.66e-5 }, { { 0.01, 0.02, 0.03, 0.04, 0.05 }, 1.68e-4, 1.86e-4 } } do
+        local way = 0
+        for _, spin in ipairs(case[1]) do
+            way = way + math.abs(sliding.creep(kn, spin, 1)) / #case[1]
+        end
+        holds(way < LESS * case[1 + i], "kn %.0e: creeps %.3e m, was %.3e, jolted by up to %g rad/s", kn, way, case[1 + i],
+            case[1][#case[1]])
     end
     local way, expected, balance = sliding.slide(kn, 1)
     holds(math.abs(way / expected - 1) < SLIDE[i] and balance < BALANCE, "kn %.0e: slides %.4f m, expected %.4f, balance %.1e",

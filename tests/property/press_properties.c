@@ -18,6 +18,12 @@ typedef struct scene {
     double least, margin, shift;
 } scene;
 
+/* The flush faces; where there are none, the first. */
+static tl_face_pair shifted_of(const tl_region *r)
+{
+    return r->flush ? (tl_face_pair){r->flush_a, r->flush_b} : (tl_face_pair){0, 0};
+}
+
 static tl_press press_of(scene *s)
 {
     const tl_pair_view *view = scene_place(&s->pair);
@@ -25,7 +31,7 @@ static tl_press press_of(scene *s)
     tl_press press;
     CHECK(tl_region_find(view, s->margin * view->size, &s->pair.scratch, &region));
     CHECK(tl_press_find(
-        &(tl_press_query){view, &region, s->least, s->shift, region.flush ? region.flush_a : 0}, 1,
+        &(tl_press_query){view, &region, s->least, s->shift, shifted_of(&region), false}, 1,
         &s->pair.scratch, &press));
     return press;
 }
@@ -149,7 +155,7 @@ TEST(slopes_go_on_with_the_press)
         const tl_pair_view *view = scene_place(&s.pair);
         const tl_pair_pose from = place_of(&s);
         CHECK(tl_region_find(view, s.margin * view->size, &s.pair.scratch, &region));
-        uint32_t shifted = region.flush ? region.flush_a : 0;
+        const tl_face_pair shifted = shifted_of(&region);
         if (at.area > 0) {
             CHECK(tl_press_slope_find(&(tl_press_query){view, &region, s.least, s.shift, shifted},
                                       &at, &s.pair.scratch, &slope));

@@ -13,6 +13,7 @@ enum { LANES = 64, STATES = 8 };
 typedef struct lanes {
     alignas(64) double area[LANES], closure[LANES], f_n0[LANES], normal[3][LANES];
     alignas(64) double du_n[LANES], du_s[3][LANES], f_n[LANES], f_s[3][LANES];
+    alignas(64) double apart[LANES]; /* 0 */
     alignas(64) double stored[LANES], dissipated[LANES], state[STATES][LANES];
     alignas(64) uint32_t flags[LANES];
 } lanes;
@@ -77,6 +78,8 @@ static inline void law_step(const law *l, lanes *p, uint32_t begin, uint32_t cou
         .dt = 1e-3,
         .area = p->area + begin,
         .closure = p->closure + begin,
+        .closure_edge = p->closure + begin,
+        .closure_apart = p->apart + begin,
         .f_n0 = p->f_n0 + begin,
         .normal = {p->normal[0] + begin, p->normal[1] + begin, p->normal[2] + begin},
         .du_n = p->du_n + begin,

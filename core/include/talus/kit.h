@@ -88,6 +88,23 @@ static inline uint32_t tl_pulls_none(const void *self)
     return TL_PULL_NONE;
 }
 
+/* For `across_gap`: the lift of points with linear springs kn whose slip has opened the joint by `opening`, m. */
+TL_IN_LOOP void tl_law_lift(const tl_law_batch *batch, double kn, const double *opening,
+                            double *lift)
+{
+    for (uint32_t i = 0; i < batch->count; i++) {
+        double spring = kn * batch->area[i];
+        lift[i] = opening[i] + batch->f_n0[i] / (spring > 0 ? spring : 1);
+    }
+}
+
+/* For `across_gap`: points that do not pull. */
+TL_IN_LOOP void tl_law_hold_none(const tl_law_batch *batch, double *hold)
+{
+    for (uint32_t i = 0; i < batch->count; i++)
+        hold[i] = 0;
+}
+
 /* Operations of a law that never fails and has made itself with tl_keep: `create`, `update`, `stiffness` and what is given. */
 #define TL_LAW_OPS(...)                                                                            \
     {                                                                                              \
@@ -149,7 +166,9 @@ TL_IN_LOOP void tl_law_put_flags(const tl_law_batch *batch, uint32_t begin, uint
         batch->flags[begin + i] = (uint32_t)(int32_t)mark[i];
 }
 
-/* Puts the elastic energy, J, of linear springs kn and ks into the batch, if it is asked for; 0 for a lane of no area. */
+/* Puts the elastic energy, J, of linear springs kn and ks into the batch, if it is asked for; 0 for a lane of no area. It is
+ * that of a law without tension: where one part of a point presses and another pulls, with the forces P and Q, the springs hold
+ * (P^2 + Q^2) / (2 kn A), which is P Q / (kn A) more. */
 TL_IN_LOOP void tl_law_store_energy(const tl_law_batch *batch, uint32_t begin, uint32_t lanes,
                                     double kn, double ks)
 {

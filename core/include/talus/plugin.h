@@ -28,7 +28,7 @@ extern "C" {
 #endif
 
 #define TL_ABI_MAJOR 1u
-#define TL_ABI_MINOR 7u
+#define TL_ABI_MINOR 8u
 
 #if defined(__GNUC__)
 #define TL_PLUGIN_EXPORT __attribute__((visibility("default")))
@@ -196,18 +196,25 @@ typedef struct tl_law_batch {
     uint32_t *flags;         /* in/out */
     double *stored;          /* out, or NULL: elastic energy, J */
     double *dissipated;      /* out, or NULL: energy turned to heat in this step, J */
-    /* since 1.4: m, closure at the outermost fibre of the area that a point stands for. Points of a patch are drawn in from
-     * its corners and edges; a bond begins to break there. The closure itself for points that stand alone. */
+    /* since 1.4: m, closure at the outermost fibre of the area that a point stands for, where that is least. Points of a patch
+     * are drawn in from its corners and edges; a bond begins to break there. The closure itself for points that stand alone. */
     const double *closure_edge;
+    /* since 1.8: m, >= 0. Where a joint opens from one side, the area of a point may be closed in part. Then `closure` is that
+     * of the closed part, and `closure_apart` how far the other part is apart, both as means over the whole area:
+     *
+     *     closure + lift = (1 / A) int max(0, o + lift) dA,    closure_apart = (1 / A) int max(0, -o - lift) dA
+     *
+     * with o the closure from place to place and the lift of `across_gap`. A law without tension has the right force from
+     * `closure` alone; one that pulls with a share `hold` of its area takes hold * closure_apart from it. 0 where the area is
+     * wholly closed or wholly apart. */
+    const double *closure_apart;
 } tl_law_batch;
 
-/* Which points of a law may carry a normal force where their walls are apart (closure < 0). Patches of points that carry
- * none there end at the line where the walls part, so that a linear pressure is integrated exactly. Points with an
- * initial normal force are kept whole whatever the law says. */
+/* Which points of a law may pull, that is carry a normal force below 0. */
 enum {
     TL_PULL_ANY,    /* any may */
     TL_PULL_BONDED, /* those without TL_POINT_FAILED may */
-    TL_PULL_NONE    /* none: no tension, and slip does not open the joint */
+    TL_PULL_NONE    /* none */
 };
 
 /* Operations of a law. `create` and `destroy` may both be NULL: then `self` is the host's own copy
@@ -230,6 +237,14 @@ typedef struct tl_law_ops {
     uint32_t never_fails;
     /* [main] since 1.4; may be NULL, which is TL_PULL_ANY. TL_PULL_*, with these parameters. */
     uint32_t (*pulls)(const void *self);
+    /* [worker] since 1.8; may be NULL. What points carry where their walls are apart, from the batch's area, f_n0, state and
+     * flags; its other columns are NULL. `lift`, m: a point carries no pressure at closures below -lift; NULL gives
+     * f_n0 / (kn A), so a law whose slip opens the joint, or whose initial force does not belong to that closure, has to tell.
+     * `hold`, 0 to 1: the share of the tension in a part apart that the point carries; NULL gives 1 to those that may pull
+     * and have no TL_POINT_APART, else 0. Padding lanes get any number. */
+    void (*across_gap)(const void *self, const tl_law_batch *batch, double *lift, double *hold);
+    /* since 1.8; not 0: what presses has the normal force kn A u, with the kn of stiffness() and u the closure and lift */
+    uint32_t linear;
 } tl_law_ops;
 
 /* ---------------------------------------------------------------- damping ---------------- */

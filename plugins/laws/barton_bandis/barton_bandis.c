@@ -399,7 +399,16 @@ TL_VECTORIZED static tl_status update(const void *self, const tl_law_batch *batc
 
 TL_LAW_STIFFNESS(rough, k_linear, ks);
 
-static const tl_law_ops ops = TL_LAW_OPS(.pulls = tl_pulls_any);
+static void across_gap(const void *self, const tl_law_batch *batch, double *lift, double *hold)
+{
+    for (uint32_t i = 0; i < batch->count; i++) {
+        double area = batch->area[i], stress = batch->f_n0[i] / (area > 0 ? area : 1);
+        lift[i] = closure_of(self, stress) + batch->state[1][i];
+    }
+    tl_law_hold_none(batch, hold);
+}
+
+static const tl_law_ops ops = TL_LAW_OPS(.pulls = tl_pulls_none, .across_gap = across_gap);
 
 static const tl_kind kind = TL_KIND(
     TL_KIND_LAW, ops, .name = "barton_bandis",

@@ -3,11 +3,12 @@
  * Of the area a share D, the damage, is broken; the bonded rest is elastic:
  *
  *     s = kn closure + f_n0 / A                         normal stress, compression positive
- *     t_n = max(0, -s),  t_s = shear stress of the bonded share (ks times its displacement)
+ *     t_n = max(0, -s) + kn apart                       tension, also that of a part apart beside one that is closed
+ *     t_s = shear stress of the bonded share (ks times its displacement)
  *     e^2 = (t_n / T)^2 + (t_s / c)^2                   onset of damage at e = 1
  *     h = t_n^2 / (2 kn GI) + t_s^2 / (2 ks GII),  r = e^2 / h
  *     D = r (e - 1) / (e (r - 1)),  never less          linear softening, broken at e = r
- *     f_n = A s  where s >= 0,  (1 - D) A s  where it pulls
+ *     f_n = A (max(0, s) - (1 - D) t_n)
  *     f_s = A ((1 - D) t_s + D q),  |q| <= tan(friction) max(0, s)
  *
  * r is the displacement at failure over that at onset. Of a path of one mode mix, the work of tension over GI and that of shear
@@ -20,7 +21,8 @@
  * after Bisoffi-Sauve, Morel and Dubois, Eng. Struct. 182 (2019) 89-104, and Alfano and Sacco, Int. J. Numer. Meth. Engng 68
  * (2006) 542-582. Walls that come near each other from afar have no bond.
  *
- * Limits: compression does not raise c; it does not crush. Damage is that of a point's own closure. */
+ * Limits: compression does not raise c; it does not crush. Damage begins where a point's area is pulled most, at its outermost
+ * fibre. */
 #include <talus/kit.h>
 #include <talus/version.h>
 
@@ -134,6 +136,13 @@ TL_IN_LOOP double flag_of(double total, double lost, double anew, double breaks)
     return apart > 0 ? TL_POINT_FAILED + TL_POINT_OPEN : flag;
 }
 
+/* Tension that damages: that of the outermost fibre, if it is more than the mean. */
+TL_IN_LOOP double most_pulled(double kn, double edge, double initial, double mean)
+{
+    double fibre = -(kn * edge + initial);
+    return fibre > mean ? fibre : mean;
+}
+
 /* The law for up to TL_LANES points from `begin`. A NaN goes through all comparisons to the forces, where the host finds it. `mark`
  * takes the flags as doubles: a loop over lanes of two widths is not vectorised for every machine. */
 TL_IN_LOOP void move(const cohesive *given, const tl_law_batch *batch, uint32_t begin,
@@ -143,14 +152,17 @@ TL_IN_LOOP void move(const cohesive *given, const tl_law_batch *batch, uint32_t 
     const tl_law_columns c = tl_law_columns_from(batch, begin);
     double *restrict damage = batch->state[0] + begin, *restrict rub_x = batch->state[1] + begin;
     double *restrict rub_y = batch->state[2] + begin, *restrict rub_z = batch->state[3] + begin;
+    const double *restrict edge = batch->closure_edge + begin;
+    const double *restrict apart = batch->closure_apart + begin;
     const cohesive law = *given;
     const double kn = law.kn, ks = law.ks, half_n = 0.5 / kn, half_s = 0.5 / ks;
 #pragma omp simd
     for (uint32_t i = 0; i < lanes; i++) {
         double per = c.area[i] > 0 ? 1 / c.area[i] : 0;
         double total = kn * c.area[i] * c.closure[i] + c.f_n0[i], stress = total * per;
-        double before = stress + kn * c.du_n[i];
-        double pull0 = before < 0 ? -before : 0, pull1 = stress < 0 ? -stress : 0;
+        double before = stress + kn * c.du_n[i], beside = kn * apart[i];
+        double pull1 = (stress < 0 ? -stress : 0) + beside;
+        double pull0 = beside > 0 ? pull1 : before < 0 ? -before : 0;
         double was = damage[i], left = 1 - was, has = left > 0 ? 1 : 0;
         double dx = c.du_x[i], dy = c.du_y[i], dz = c.du_z[i];
         /* a bond that is lost has all of its stress from friction, whatever the state says */
@@ -163,7 +175,8 @@ TL_IN_LOOP void move(const cohesive *given, const tl_law_batch *batch, uint32_t 
         double ay = (c.f_y[i] * per - was * qy) * inverse, by = ay - spring * dy;
         double az = (c.f_z[i] * per - was * qz) * inverse, bz = az - spring * dz;
         double shear2 = dot(bx, by, bz, bx, by, bz);
-        double found = damage_of(&law, pull1 * pull1, shear2);
+        double most = most_pulled(kn, edge[i], c.f_n0[i] * per, pull1);
+        double found = damage_of(&law, most * most, shear2);
         double is = found - was > NOISE ? found : was, right = 1 - is, broken = is - was;
         /* friction of what was broken, and of what breaks now */
         double limit = stress > 0 ? law.tangent * stress : 0, glide = was > 0 ? ks : 0;
@@ -196,7 +209,7 @@ TL_IN_LOOP void move(const cohesive *given, const tl_law_batch *batch, uint32_t 
         double press = stress > 0 ? stress : 0;
         double held = right * (half_n * pull1 * pull1 + half_s * shear2);
         stored[i] = c.area[i] * (held + half_n * press * press + is * half_s * rub2);
-        c.f_n[i] = total < 0 ? right * total : total;
+        c.f_n[i] = total < 0 ? right * total : total - right * (c.area[i] * beside);
         c.f_x[i] = cx;
         c.f_y[i] = cy;
         c.f_z[i] = cz;
@@ -216,6 +229,8 @@ TL_IN_LOOP bool hold(const cohesive *given, const tl_law_batch *batch, uint32_t 
     const double *restrict rub_x = batch->state[1] + begin, *restrict rub_y =
                                                                 batch->state[2] + begin;
     const double *restrict rub_z = batch->state[3] + begin;
+    const double *restrict edge = batch->closure_edge + begin;
+    const double *restrict apart = batch->closure_apart + begin;
     const cohesive law = *given;
     const double kn = law.kn, ks = law.ks, half_n = 0.5 / kn, half_s = 0.5 / ks;
     double force[TL_LANES], x[TL_LANES], y[TL_LANES], z[TL_LANES], held[TL_LANES];
@@ -224,18 +239,20 @@ TL_IN_LOOP bool hold(const cohesive *given, const tl_law_batch *batch, uint32_t 
     for (uint32_t i = 0; i < TL_LANES; i++) {
         double per = c.area[i] > 0 ? 1 / c.area[i] : 0;
         double total = kn * c.area[i] * c.closure[i] + c.f_n0[i], stress = total * per;
-        double pull = stress < 0 ? -stress : 0, press = stress > 0 ? stress : 0;
+        double beside = kn * apart[i];
+        double pull = (stress < 0 ? -stress : 0) + beside, press = stress > 0 ? stress : 0;
+        double most = most_pulled(kn, edge[i], c.f_n0[i] * per, pull);
         double ax = c.f_x[i] * per, bx = ax - ks * c.du_x[i];
         double ay = c.f_y[i] * per, by = ay - ks * c.du_y[i];
         double az = c.f_z[i] * per, bz = az - ks * c.du_z[i];
         double shear2 = dot(bx, by, bz, bx, by, bz),
                rub2 = dot(rub_x[i], rub_y[i], rub_z[i], rub_x[i], rub_y[i], rub_z[i]);
-        double e2 = pull * pull * law.per_tension2 + shear2 * law.per_cohesion2;
+        double e2 = most * most * law.per_tension2 + shear2 * law.per_cohesion2;
         double beyond = e2 > 1 ? 1 : 0, was = damage[i] + rub2;
         /* not-a-number is for `move` */
         broken += was == 0 ? beyond : 1;
         broken += e2 >= 0 ? 0 : 1;
-        force[i] = total;
+        force[i] = total - c.area[i] * beside;
         x[i] = c.f_x[i] + c.area[i] * (bx - ax);
         y[i] = c.f_y[i] + c.area[i] * (by - ay);
         z[i] = c.f_z[i] + c.area[i] * (bz - az);
@@ -285,7 +302,18 @@ TL_VECTORIZED static tl_status update(const void *self, const tl_law_batch *batc
 
 TL_LAW_STIFFNESS(cohesive, kn, ks);
 
-static const tl_law_ops ops = TL_LAW_OPS(.pulls = tl_pulls_bonded);
+static void across_gap(const void *self, const tl_law_batch *batch, double *lift, double *hold)
+{
+    const cohesive *law = self;
+    for (uint32_t i = 0; i < batch->count; i++) {
+        double spring = law->kn * batch->area[i];
+        lift[i] = batch->f_n0[i] / (spring > 0 ? spring : 1);
+        hold[i] = batch->flags[i] & TL_POINT_APART ? 0 : 1 - batch->state[0][i];
+    }
+}
+
+static const tl_law_ops ops =
+    TL_LAW_OPS(.linear = 1, .pulls = tl_pulls_bonded, .across_gap = across_gap);
 
 static const tl_kind kind = TL_KIND(
     TL_KIND_LAW, ops, .name = "cohesive",
@@ -293,5 +321,5 @@ static const tl_kind kind = TL_KIND(
            "what is broken.",
     TL_KIND_PARAMS(params, param_table), TL_KIND_STATES(state_table));
 
-TL_PLUGIN(kind, .id = "talus.cohesive", .version = TALUS_VERSION,
-          .doc = "Cohesive joint law of mixed mode.", .licence = "BSD-3-Clause");
+TL_PLUGIN_SINCE(8, kind, .id = "talus.cohesive", .version = TALUS_VERSION,
+                .doc = "Cohesive joint law of mixed mode.", .licence = "BSD-3-Clause");

@@ -220,13 +220,14 @@ static int stateless(const void *self)
     return ((const coulomb *)self)->dilation == 0;
 }
 
-/* Open points carry nothing, unless slip has lifted them. */
-static uint32_t pulls(const void *self)
+static void across_gap(const void *self, const tl_law_batch *batch, double *lift, double *hold)
 {
-    return ((const coulomb *)self)->dilation > 0 ? TL_PULL_ANY : TL_PULL_NONE;
+    tl_law_lift(batch, ((const coulomb *)self)->kn, batch->state[0], lift);
+    tl_law_hold_none(batch, hold);
 }
 
-static const tl_law_ops ops = TL_LAW_OPS(.pulls = pulls, .stateless = stateless);
+static const tl_law_ops ops = TL_LAW_OPS(.linear = 1, .pulls = tl_pulls_none,
+                                         .stateless = stateless, .across_gap = across_gap);
 
 static const tl_kind kind =
     TL_KIND(TL_KIND_LAW, ops, .name = "coulomb",

@@ -1,14 +1,15 @@
 /* coulomb_tensile.c - law "coulomb_tensile": a bonded Coulomb joint that breaks once and for all.
  *
- *     f_n = kn A (closure + opening) + f_n0         total, compression positive; after eq. (6)
+ *     f_n = kn A (closure + opening - apart) + f_n0 total, compression positive; after eq. (6)
  *     f_t = f_s - ks A du_s                         eq. (7), on block B
  *     fails when  f_e < -T A   or   |f_t| > max(0, c A + f_n tan(friction))       eq. (10)
  *     f_n < -T A:  f_n = 0, f_s = 0, open
  *     |f_t| > limit:  f_s = f_t limit / |f_t|       eq. (12), slipping
  *     opening += tan(dilation) slip                 up to dilation_limit tan(dilation)
  *
- * f_e is the normal force that the area A would have with the closure at its outermost fibre: a bond in bending breaks where
- * it is pulled most. T, c and the friction are those of the bond while it holds. At the first failure, in tension or
+ * Where a part of the area is closed and another apart, by `apart` in the mean, the bond pulls on the latter; without it
+ * only the closed part carries. f_e is the normal force that the area A would have with the closure at its outermost fibre: a
+ * bond in bending breaks where it is pulled most. T, c and the friction are those of the bond while it holds. At the first failure, in tension or
  * in shear, the bond is lost for good: T, c and the friction drop to their residual values within that
  * step (brittle), as 3DEC does. State `bond` is 1 while it holds, 0 when lost. Since the closure is a
  * total one, a point that has opened carries again only where its walls meet. Dilation and its state
@@ -103,23 +104,19 @@ static tl_status create(const void *given, void **self, tl_report *report)
     return tl_keep(&law, sizeof law, self, report);
 }
 
-/* Closures at the outermost fibres; a host of an older interface knows none. */
-static inline const double *edges(const tl_law_batch *batch)
-{
-    bool known = batch->size >= offsetof(tl_law_batch, closure_edge) + sizeof batch->closure_edge;
-    return known && batch->closure_edge ? batch->closure_edge : batch->closure;
-}
-
 /* The law itself, for up to STRIDE lanes from `begin`. `heat` and `dilates` are constants at each call,
  * so that the loop exists once for each and none has a branch in it; without dilation the opening of
  * slip in the past still counts. A NaN goes through
  * all comparisons to the forces, where the host finds it. `mark` takes the flags as doubles: a loop
- * over lanes of two widths is not vectorised for every machine. */
+ * over lanes of two widths is not vectorised for every machine. `both` takes P Q / (kn A) of points of which a part presses
+ * and another pulls. */
 TL_IN_LOOP void move(const bonded *law, const tl_law_batch *batch, uint32_t begin, uint32_t lanes,
-                     double *restrict mark, const int heat, const int dilates)
+                     double *restrict mark, double *restrict both, const int heat,
+                     const int dilates)
 {
     const tl_law_columns c = tl_law_columns_from(batch, begin);
-    const double *restrict edge = edges(batch) + begin;
+    const double *restrict edge = batch->closure_edge + begin;
+    const double *restrict apart = batch->closure_apart + begin;
     double *restrict bond = batch->state[0] + begin, *restrict opening = batch->state[1] + begin;
     double *restrict dissipated = heat ? batch->dissipated + begin : NULL;
     const double kn = law->kn, ks = law->ks;
@@ -128,12 +125,13 @@ TL_IN_LOOP void move(const bonded *law, const tl_law_batch *batch, uint32_t begi
 #pragma omp simd
     for (uint32_t i = 0; i < lanes; i++) {
         double stiffness = ks * c.area[i], opened = opening[i], lift = 0;
-        double total = kn * c.area[i] * (c.closure[i] + opened) + c.f_n0[i];
+        double pressed = kn * c.area[i] * (c.closure[i] + opened) + c.f_n0[i];
+        double pull = kn * c.area[i] * apart[i];
         tl_vec3 f = TL_TRIAL_AT(c, i, stiffness);
         double trial = tl_v3_norm(f);
 
         /* Does the bond hold this step? */
-        double bound = peak.cohesion * c.area[i] + total * peak.tangent;
+        double bound = peak.cohesion * c.area[i] + (pressed - pull) * peak.tangent;
         double before = bond[i];
         double after = trial > (bound < 0 ? 0 : bound) ? 0 : before;
         double fibre = kn * c.area[i] * (edge[i] + opened) + c.f_n0[i];
@@ -142,6 +140,7 @@ TL_IN_LOOP void move(const bonded *law, const tl_law_batch *batch, uint32_t begi
         double tangent = after > BOND_HOLDS ? peak.tangent : residual.tangent;
         double cohesion = after > BOND_HOLDS ? peak.cohesion : residual.cohesion;
         double tension = after > BOND_HOLDS ? peak.tension : residual.tension;
+        double pulls = after > BOND_HOLDS ? pull : 0, total = pressed - pulls;
         if (dilates) {
             double strong = cohesion * c.area[i] + total * tangent;
             double yield = stiffness + kn * c.area[i] * dilation * tangent;
@@ -152,7 +151,8 @@ TL_IN_LOOP void move(const bonded *law, const tl_law_batch *batch, uint32_t begi
             lift = trial > strong * (1 + ROUNDING) ? grown : 0;
             opened = opened + lift;
             opening[i] = opened;
-            total = kn * c.area[i] * (c.closure[i] + opened) + c.f_n0[i];
+            pressed = kn * c.area[i] * (c.closure[i] + opened) + c.f_n0[i];
+            total = pressed - pulls;
         }
         double lowest = -tension * c.area[i];
         double limit = cohesion * c.area[i] + total * tangent;
@@ -168,14 +168,15 @@ TL_IN_LOOP void move(const bonded *law, const tl_law_batch *batch, uint32_t begi
                 work = work - 0.5 * (c.f_n[i] + total) * lift;
             work = work > 0 && stiffness > 0 ? work : 0;
             /* A bond that snaps gives up its tensile spring. */
-            double spring = 0.5 * total * total / (c.area[i] > 0 ? kn * c.area[i] : 1);
-            spring = total < lowest && c.area[i] > 0 ? spring : 0;
+            double gone = pull - pulls - (total < lowest ? total : 0);
+            double spring = 0.5 * gone * gone / (c.area[i] > 0 ? kn * c.area[i] : 1);
             dissipated[i] = work + (before > BOND_HOLDS ? spring : 0);
         }
         double flag = trial > most ? TL_POINT_SLIPPING : 0;
         flag = total < lowest ? TL_POINT_OPEN : flag;
         mark[i] = after > BOND_HOLDS ? flag : flag + TL_POINT_FAILED;
         c.f_n[i] = total < lowest ? 0 : total;
+        both[i] = pulls * (pressed / (c.area[i] > 0 ? kn * c.area[i] : 1));
         TL_PUT_SHEAR(c, i, scale, f);
         bond[i] = after;
     }
@@ -186,43 +187,54 @@ TL_VECTORIZED static tl_status update(const void *self, const tl_law_batch *batc
 {
     (void)report;
     const bonded *law = self;
-    double mark[STRIDE];
+    double mark[STRIDE], both[STRIDE];
     for (uint32_t begin = 0; begin < batch->count; begin += STRIDE) {
         uint32_t left = batch->count - begin, lanes = left < STRIDE ? left : STRIDE;
         /* walls that came near from afar were never bonded */
         for (uint32_t i = begin; i < begin + lanes; i++)
             batch->state[0][i] = batch->flags[i] & TL_POINT_APART ? 0 : batch->state[0][i];
         if (law->dilation > 0 && batch->dissipated)
-            move(law, batch, begin, lanes, mark, 1, 1);
+            move(law, batch, begin, lanes, mark, both, 1, 1);
         else if (law->dilation > 0)
-            move(law, batch, begin, lanes, mark, 0, 1);
+            move(law, batch, begin, lanes, mark, both, 0, 1);
         else if (batch->dissipated)
-            move(law, batch, begin, lanes, mark, 1, 0);
+            move(law, batch, begin, lanes, mark, both, 1, 0);
         else
-            move(law, batch, begin, lanes, mark, 0, 0);
+            move(law, batch, begin, lanes, mark, both, 0, 0);
         tl_law_put_flags(batch, begin, lanes, mark);
         tl_law_store_energy(batch, begin, lanes, law->kn, law->ks);
+        for (uint32_t i = 0; i < lanes && batch->stored; i++)
+            batch->stored[begin + i] += both[i];
     }
     return TL_OK;
 }
 
 TL_LAW_STIFFNESS(bonded, kn, ks);
 
-/* Open points carry nothing without tensile strength, unless slip has lifted them. */
 static uint32_t pulls(const void *self)
 {
     const bonded *law = self;
-    if (law->dilation > 0 || law->residual.tension > 0)
+    if (law->residual.tension > 0)
         return TL_PULL_ANY;
     return law->peak.tension > 0 ? TL_PULL_BONDED : TL_PULL_NONE;
 }
 
-static const tl_law_ops ops = TL_LAW_OPS(.pulls = pulls);
+/* A residual strength is that of points that are apart as a whole. */
+static void across_gap(const void *self, const tl_law_batch *batch, double *lift, double *hold)
+{
+    const bonded *law = self;
+    const double *bond = batch->state[0], strong = law->peak.tension > 0 ? 1 : 0;
+    tl_law_lift(batch, law->kn, batch->state[1], lift);
+    for (uint32_t i = 0; i < batch->count; i++)
+        hold[i] = bond[i] > BOND_HOLDS && !(batch->flags[i] & TL_POINT_APART) ? strong : 0;
+}
+
+static const tl_law_ops ops = TL_LAW_OPS(.linear = 1, .pulls = pulls, .across_gap = across_gap);
 
 static const tl_kind kind = TL_KIND(
     TL_KIND_LAW, ops, .name = "coulomb_tensile",
     .doc = "Coulomb friction with a bond that breaks in tension or shear and does not heal.",
     TL_KIND_PARAMS(params, param_table), TL_KIND_STATES(state_table));
 
-TL_PLUGIN(kind, .id = "talus.coulomb_tensile", .version = TALUS_VERSION,
-          .doc = "Coulomb joint law with a brittle bond.", .licence = "BSD-3-Clause");
+TL_PLUGIN_SINCE(8, kind, .id = "talus.coulomb_tensile", .version = TALUS_VERSION,
+                .doc = "Coulomb joint law with a brittle bond.", .licence = "BSD-3-Clause");

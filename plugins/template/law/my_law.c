@@ -95,6 +95,7 @@ static const tl_law_ops ops = {.size = sizeof ops,
                                .update = update,
                                .stiffness = stiffness,
                                .never_fails = 1,
+                               .linear = 1,
                                .pulls = tl_pulls_none};
 
 static const tl_kind kind =

@@ -1,0 +1,155 @@
+/* across_gap.c - what contact points carry where their walls are apart.
+ *
+ * A point presses at closures above -lift. What lifts it is an initial force, f_n0 / (kn A), and what slip has opened; a law
+ * for which that is otherwise tells so itself. A bond holds a share of the tension beyond. */
+#include "contact/across_gap.h"
+
+#include "base/inside.h"
+#include "contact/detection.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Points gathered at a time. */
+#define SOME (2 * TL_LANES)
+
+static _Alignas(TL_ALIGN) const double zeros[SOME];
+
+/* Of a batch whose columns area, f_n0, state and flags are there. */
+static void across_gap(const tl_law *law, const tl_law_batch *batch, double *restrict lift,
+                       double *restrict hold)
+{
+    const tl_law_ops *ops = law->kind->ops;
+    if (ops->across_gap) {
+        tl_enter(law->kind, "across_gap");
+        ops->across_gap(law->self, batch, lift, hold);
+        tl_leave();
+        return;
+    }
+    const double *restrict area = batch->area, *restrict f_n0 = batch->f_n0;
+    const uint32_t *restrict flags = batch->flags;
+    const double kn = law->kn;
+    const uint32_t lost = law->pulls == TL_PULL_ANY ? TL_POINT_APART : TL_POINT_APART | TL_POINT_FAILED;
+    for (uint32_t i = 0; i < batch->count; i++) {
+        double spring = kn * area[i];
+        lift[i] = f_n0[i] / (spring > 0 ? spring : 1);
+        hold[i] = law->pulls == TL_PULL_NONE || flags[i] & lost ? 0 : 1;
+    }
+}
+
+void tl_points_across_gap(const tl_law *law, const tl_points_table *p, size_t first, size_t count,
+                          double *lift, double *hold)
+{
+    double *state[TL_STATE_COLUMNS];
+    for (size_t at = 0; at < count; at += SOME) {
+        size_t some = count - at < SOME ? count - at : SOME, row = first + at;
+        for (uint32_t k = 0; k < TL_STATE_COLUMNS; k++)
+            state[k] = k < p->state_columns ? p->state[k] + row : (double *)(uintptr_t)zeros;
+        const tl_law_batch batch = {.size = sizeof batch,
+                                    .count = (uint32_t)some,
+                                    .area = p->area + row,
+                                    .f_n0 = p->f_n0 ? p->f_n0 + row : zeros,
+                                    .state = state,
+                                    .flags = p->flags + row};
+        across_gap(law, &batch, lift + at, hold + at);
+    }
+}
+
+/* Some points of a contact as columns. */
+typedef struct sample {
+    _Alignas(TL_ALIGN) double area[TL_LANES];
+    double f_n0[TL_LANES], state[TL_STATE_COLUMNS][TL_LANES], lift[TL_LANES], hold[TL_LANES];
+    double f_n[TL_LANES], reference[TL_LANES];
+    _Alignas(TL_ALIGN) uint32_t flags[TL_LANES];
+} sample;
+
+static void read_points(const tl_points_table *p, const tl_contacts *contacts, uint32_t c,
+                        size_t first, sample *s)
+{
+    memset(s, 0, sizeof *s);
+    for (size_t l = 0; l < TL_LANES && first + l < contacts->point_count[c]; l++) {
+        size_t i = tl_point_row(contacts, c, first + l);
+        s->area[l] = p->area[i];
+        s->f_n[l] = p->f_n[i];
+        s->f_n0[l] = p->f_n0 ? p->f_n0[i] : 0;
+        s->reference[l] = p->reference ? p->reference[i] : 0;
+        s->flags[l] = p->flags[i];
+        for (uint32_t k = 0; k < p->state_columns; k++)
+            s->state[k][l] = p->state[k][i];
+    }
+}
+
+/* With the initial forces there are, or without. */
+static void ask(const tl_law *law, const double *f_n0, sample *s)
+{
+    double *state[TL_STATE_COLUMNS];
+    for (uint32_t k = 0; k < TL_STATE_COLUMNS; k++)
+        state[k] = s->state[k];
+    const tl_law_batch batch = {.size = sizeof batch,
+                                .count = TL_LANES,
+                                .area = s->area,
+                                .f_n0 = f_n0,
+                                .state = state,
+                                .flags = s->flags};
+    across_gap(law, &batch, s->lift, s->hold);
+}
+
+static const tl_law *law_of(const tl_model *m, uint32_t c)
+{
+    uint32_t row = m->detect->contacts.law[c];
+    return row == TL_NO_ROW ? NULL : &m->joint_laws[row];
+}
+
+/* Whether nothing can lift the points of a contact, nor hold them. */
+static bool is_plain(const tl_detect *d, const tl_law *law)
+{
+    const tl_law_ops *ops = law->kind->ops;
+    return law->pulls == TL_PULL_NONE && !d->points.f_n0 &&
+           (!ops->across_gap || d->points.state_columns == 0);
+}
+
+tl_contact_across tl_contact_across_gap(const tl_model *m, uint32_t c)
+{
+    const tl_detect *d = m->detect;
+    const tl_law *law = law_of(m, c);
+    tl_contact_across out = {.most = 0};
+    double pressed[3] = {0}, whole[3] = {0}; /* force or area, with it the lift, and the opening */
+    if (!law || d->contacts.point_count[c] == 0 || is_plain(d, law))
+        return out;
+    for (size_t first = 0; first < d->contacts.point_count[c]; first += TL_LANES) {
+        sample s;
+        double lift[TL_LANES];
+        read_points(&d->points, &d->contacts, c, first, &s);
+        ask(law, s.f_n0, &s);
+        memcpy(lift, s.lift, sizeof lift);
+        ask(law, zeros, &s);
+        for (size_t l = 0; l < TL_LANES && s.area[l] > 0; l++) {
+            double force = fmax(0, s.f_n[l]), by = lift[l] - s.reference[l];
+            pressed[0] += force;
+            pressed[1] += force * by;
+            pressed[2] += force * s.lift[l];
+            whole[0] += s.area[l];
+            whole[1] += s.area[l] * by;
+            whole[2] += s.area[l] * s.lift[l];
+            out.most = fmax(out.most, by);
+            out.bonded = out.bonded || s.hold[l] > 0;
+        }
+    }
+    const double *mean = pressed[0] > 0 ? pressed : whole;
+    double share = mean[0] > 0 ? 1 / mean[0] : 0;
+    out.lift = share * mean[1];
+    out.opening = share * mean[2];
+    return out;
+}
+
+double tl_contact_opening(const tl_model *m, uint32_t c, size_t k)
+{
+    const tl_detect *d = m->detect;
+    const tl_law *law = law_of(m, c);
+    if (!law || is_plain(d, law))
+        return 0;
+    sample s;
+    read_points(&d->points, &d->contacts, c, k, &s);
+    ask(law, zeros, &s);
+    return s.lift[0];
+}

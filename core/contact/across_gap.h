@@ -1,0 +1,26 @@
+/* across_gap.h - what contact points carry where their walls are apart: what slip and initial forces have lifted, and bonds
+ * (across_gap.c). */
+#ifndef TL_CONTACT_ACROSS_GAP_H
+#define TL_CONTACT_ACROSS_GAP_H
+
+#include "contact/tables.h"
+#include "model/model.h"
+
+/* The lift, m, and the share of tension that is held, 0 to 1, of `count` points from row `first`, a multiple of TL_LANES; see
+ * tl_law_ops. */
+void tl_points_across_gap(const tl_law *law, const tl_points_table *points, size_t first,
+                          size_t count, double *lift, double *hold);
+
+/* The same of a contact. */
+typedef struct tl_contact_across {
+    double lift;    /* m, from where its faces lie on each other: mean over what presses, or over all where nothing does */
+    double opening; /* the part of it that is there without an initial force: what slip has opened */
+    double most;    /* the largest lift of a point */
+    bool bonded;    /* some point pulls */
+} tl_contact_across;
+
+tl_contact_across tl_contact_across_gap(const tl_model *m, uint32_t contact);
+/* The opening by slip of point k of a contact, m. */
+double tl_contact_opening(const tl_model *m, uint32_t contact, size_t k);
+
+#endif
