@@ -14,6 +14,10 @@
  * and not TL_POLY_ON times its size, is the least distance that means anything. */
 #define TL_POLY_ROUNDINGS (16 * DBL_EPSILON)
 
+/* Depths below this times the thickness of a block change nothing of it: faces may be bent, and points be left out inside, by
+ * no more. */
+#define TL_POLY_SHALLOW 1e-2
+
 /* One allocation with the counts set and its arrays laid out but empty; NULL without memory. */
 tl_poly *tl_poly_allocate(uint32_t vertex_count, uint32_t face_count, uint32_t edge_count);
 
@@ -26,6 +30,12 @@ tl_status tl_poly_link(tl_poly *poly, tl_error *error);
  * faces, then the edges, in one list; NULL without memory. */
 void tl_poly_clear_seams(tl_poly *poly);
 uint8_t *tl_poly_open_seams(tl_poly *poly);
+
+/* The normal of a vector area, an axis to the bit where that lies along one; 0 for 0. */
+tl_vec3 tl_poly_normal(tl_vec3 area);
+
+/* The middle of two heights, that height to the bit where they are one. */
+double tl_poly_midway(double low, double high);
 
 /* The plane of a face from its vertices: Newell's normal, and the offset midway between the
  * extremes of normal . x, so that a face normal to an axis gets exactly that axis and its

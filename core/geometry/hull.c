@@ -1,15 +1,15 @@
 /* hull.c - the convex hull of points as a polyhedron.
  *
- * The points are put on a grid of 2^-40 of their extent and triangulate.c makes the exact hull of
- * the grid points. The grid is finer than TL_POLY_ON by 10^3 and coarser than the rounding of
- * coordinates by 10^3, so neither shows. Triangles within TL_POLY_FLAT times the extent of one plane
- * then become one face, the largest first, so that a sliver between two faces joins one of them:
- * else the corners of a face, rounded in a file, would make several of it, which a joint could not
- * bond. A vertex left with fewer than three faces lies on a face or an edge and is dropped.
- * Coordinates are never moved; planes are fitted to the coordinates given. Should that leave faces
- * that are no convex polygons, triangles are merged anew within TL_POLY_ON, or, when noise is as
- * large as that, with a wider tolerance up to TL_POLY_THIN. Every loop starts at its lowest vertex and the faces are in the order of their
- * loops, so that the result depends on the points alone. */
+ * The points are put on a grid of 2^-40 of their extent and triangulate.c makes the exact hull of the grid points.
+ * The grid is finer than TL_POLY_ON by 10^3 and coarser than the rounding of coordinates by 10^3, so neither
+ * shows. Triangles within TL_POLY_FLAT times the extent of one plane then become one face, the largest first, so
+ * that a sliver between two faces joins one of them: else the corners of a face, rounded in a file, would make
+ * several of it, which a joint could not bond. A vertex left with fewer than three faces lies on a face or an edge
+ * and is dropped. Coordinates are never moved; planes are fitted to the coordinates given. Should that leave faces
+ * that are no convex polygons, triangles are merged anew within TL_POLY_ON, or, when noise is as large as that,
+ * with a wider tolerance up to TL_POLY_THIN. Faces that miss a plane by more, but are one to tl_poly_flatten, it
+ * joins. Every loop starts at its lowest vertex and the faces are in the order of their loops, so that the result
+ * depends on the points alone. */
 #include "geometry/assemble.h"
 #include "geometry/triangulate.h"
 
@@ -454,6 +454,8 @@ static tl_status assemble(builder *b, tl_poly **poly, tl_error *error)
 /* Refuses a hull that is too thin and a point that is no corner but lies inside. */
 static tl_status check_hull(const builder *b, const tl_poly *p, tl_error *error)
 {
+    double shallow =
+        fmax(b->tolerance, fmin(TL_POLY_BENT * b->extent, TL_POLY_SHALLOW * tl_poly_thickness(p)));
     for (uint32_t f = 0; f < p->face_count; f++) {
         double depth = 0;
         for (uint32_t v = 0; v < p->vertex_count; v++)
@@ -467,7 +469,7 @@ static tl_status check_hull(const builder *b, const tl_poly *p, tl_error *error)
         double depth = INFINITY;
         for (uint32_t f = 0; f < p->face_count; f++)
             depth = fmin(depth, p->plane[f].offset - tl_v3_dot(p->plane[f].normal, b->point[i]));
-        if (depth > b->tolerance)
+        if (depth > shallow)
             return tl_fail(
                 error, TL_E_GEOMETRY,
                 "vertex %u lies %.3g inside the hull of the others; a block must be convex: "
@@ -527,6 +529,8 @@ static tl_status build(builder *b, tl_poly **poly, tl_error *error)
             "closer together than %.3g, or nearer than that to a face they do not belong to",
             b->hull.count, TL_POLY_THIN * b->extent);
     status = check_hull(b, p, error);
+    if (!status)
+        status = tl_poly_flatten(&p, error);
     if (status)
         tl_poly_free(p);
     else

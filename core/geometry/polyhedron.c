@@ -179,24 +179,33 @@ tl_status tl_poly_link(tl_poly *p, tl_error *error)
     return status;
 }
 
+tl_vec3 tl_poly_normal(tl_vec3 area)
+{
+    double length = tl_v3_norm(area);
+    /* Division keeps an axis an axis; adding zero turns -0 into 0. */
+    return length > 0 ? tl_v3(area.x / length + 0.0, area.y / length + 0.0, area.z / length + 0.0)
+                      : tl_v3(0, 0, 0);
+}
+
+double tl_poly_midway(double low, double high)
+{
+    return low == high ? low : 0.5 * (low + high);
+}
+
 tl_plane tl_poly_fit_plane(const tl_vec3 *vertices, const uint16_t *loop, size_t count)
 {
     tl_vec3 base = vertices[loop[0]], sum = {0, 0, 0};
     for (size_t i = 1; i + 1 < count; i++)
         sum = tl_v3_add(sum, tl_v3_cross(tl_v3_sub(vertices[loop[i]], base),
                                          tl_v3_sub(vertices[loop[i + 1]], base)));
-    double length = tl_v3_norm(sum);
-    /* Division keeps an axis an axis; adding zero turns -0 into 0. */
-    tl_plane plane = {.normal = length > 0 ? tl_v3(sum.x / length + 0.0, sum.y / length + 0.0,
-                                                   sum.z / length + 0.0)
-                                           : tl_v3(0, 0, 0)};
+    tl_plane plane = {.normal = tl_poly_normal(sum)};
     double low = INFINITY, high = -INFINITY;
     for (size_t i = 0; i < count; i++) {
         double height = tl_v3_dot(plane.normal, vertices[loop[i]]);
         low = height < low ? height : low;
         high = height > high ? height : high;
     }
-    plane.offset = low == high ? low : 0.5 * (low + high);
+    plane.offset = tl_poly_midway(low, high);
     return plane;
 }
 

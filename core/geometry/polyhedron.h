@@ -16,6 +16,11 @@
 #define TL_POLY_ON 1e-9
 /* Faces of points given by coordinates of six digits, for a block of about one: a face bent by less is one face. */
 #define TL_POLY_FLAT 1e-6
+/* The corners of a face miss its plane by less than this times its size: as far as meshes give faces off their planes. */
+#define TL_POLY_BENT 2e-4
+/* Sine of 0.025 degrees, half of what flush faces may tilt. A facet of a face may tilt its plane by less, so that two blocks
+ * lie flush on each other by such faces. */
+#define TL_POLY_TILT 4.3633e-4
 /* A cut that would leave a side thinner than this times the size is refused. */
 #define TL_POLY_THIN 1e-5
 /* Most vertices and most faces of one polyhedron. */
@@ -65,11 +70,16 @@ tl_status tl_poly_make(const tl_vec3 *vertices, size_t vertex_count, const tl_pl
 
 tl_status tl_poly_box(tl_vec3 min, tl_vec3 max, tl_poly **poly, tl_error *error);
 
-/* The convex hull of points. Points that lie on the hull within TL_POLY_ON times the extent but are
- * not corners of it are left out; coplanar triangles become one face. Fails (TL_E_GEOMETRY) for fewer
- * than four points, NaN, a flat or thinner than TL_POLY_THIN set, and for a point inside the hull of
- * the others: the sentence names the point, counted from 1. */
+/* The convex hull of points. Triangles that lie in one plane become one face (tl_poly_flatten), and points
+ * on the faces that are no corners are left out. Fails (TL_E_GEOMETRY) for fewer than four points, NaN, a
+ * flat or thinner than TL_POLY_THIN set, and for a point inside the hull of the others by more than
+ * TL_POLY_BENT: the sentence names the point, counted from 1. */
 tl_status tl_poly_hull(const tl_vec3 *points, size_t count, tl_poly **poly, tl_error *error);
+
+/* Makes one face of facets with one tag that lie in one plane as far as TL_POLY_BENT and TL_POLY_TILT tell, and fits the
+ * planes of faces whose corners miss them by more than TL_POLY_FLAT. What comes out keeps tl_poly_check within TL_POLY_BENT.
+ * A polyhedron that has no such faces, or would be no block with them, is left as it is. */
+tl_status tl_poly_flatten(tl_poly **poly, tl_error *error);
 
 void tl_poly_free(tl_poly *poly);
 /* Bytes of its allocation, and of its seams. */

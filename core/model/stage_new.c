@@ -127,11 +127,13 @@ static tl_status make_faces(tl_model *m, const tl_block_shape *given, const face
             face_plane(l->vertex, l->loop + given->start[f], given->start[f + 1] - given->start[f]);
     tl_status status = tl_poly_make(l->vertex, given->vertex_count, l->plane, given->tags,
                                     given->start, l->loop, given->face_count, shape, &m->error);
-    if (status == TL_OK) {
-        status = tl_poly_check(*shape, TL_POLY_FLAT, &m->error);
-        if (status != TL_OK)
-            tl_poly_free(*shape);
-    }
+    if (status != TL_OK)
+        return status;
+    status = tl_poly_flatten(shape, &m->error);
+    if (status == TL_OK)
+        status = tl_poly_check(*shape, TL_POLY_BENT, &m->error);
+    if (status != TL_OK)
+        tl_poly_free(*shape);
     return status;
 }
 

@@ -176,7 +176,7 @@ static tl_status restore_shape(tl_model *m, uint32_t row, const shape_counts *c,
                               (unsigned long long)m->blocks.id[row]);
     tl_bounds bounds = tl_poly_bounds(p);
     p->size = tl_v3_norm(tl_v3_sub(bounds.max, bounds.min));
-    if (tl_poly_check(p, TL_POLY_FLAT, &why) != TL_OK)
+    if (tl_poly_check(p, TL_POLY_BENT, &why) != TL_OK)
         return tl_archive_bad(archive, &m->error, "the shape of block %llu: %s",
                               (unsigned long long)m->blocks.id[row], why.text);
     return TL_OK;

@@ -374,7 +374,10 @@ TEST(volume_is_that_of_what_is_left_by_cuts)
         tl_field_sums found;
         CHECK(tl_field_integrate(&s.planes.faces, &s.scratch, &found));
         double volume = volume_in_common(&s);
-        if (!isnan(volume)) {
+        /* what is cut of a bent face is not what lies under its plane */
+        bool flat = tl_poly_check(s.pair.view.a, TL_POLY_ON, NULL) == TL_OK &&
+                    tl_poly_check(s.pair.view.b, TL_POLY_ON, NULL) == TL_OK;
+        if (!isnan(volume) && flat) {
             CHECK_NEAR(found.volume, volume, 1e-9 * volume);
             cases += volume > 0;
         }

@@ -26,6 +26,8 @@ NUMBERS = [
     ("core/narrow/view.h", "TL_CONTACT_TOLERANCE", 1e-3, "at least 4 o + 1e-3 size more"),
     ("core/narrow/view.h", "TL_CONTACT_RELEASE", 1.5, "apart by more than 1.5e-3 size"),
     ("core/geometry/polyhedron.h", "TL_POLY_FLAT", 1e-6, "off its plane by less than 1e-6 size is one face"),
+    ("core/geometry/polyhedron.h", "TL_POLY_BENT", 2e-4, "all their corners lie within 1e-4 of its size of one plane"),
+    ("core/geometry/polyhedron.h", "TL_POLY_TILT", 0.025 * DEGREE, "more than sin 0.025° of the face's area across"),
     ("core/narrow/press_slope.h", "TL_PRESS_NEAR", 1e-4, "up to |u| = 1e-4 o"),
     ("core/narrow/press_slope.h", "TL_PRESS_SLOPE_COST", 12, "within 5e-5 o for twelve steps"),
     ("core/narrow/frame2.h", "TL_STRAIGHT", 1e-4, "turns by less than 1e-4 rad"),

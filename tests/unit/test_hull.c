@@ -234,8 +234,10 @@ TEST(many_vertices)
             break;
         }
         tl_poly *p = hull_of(points, count);
-        expect_counts(p, count, 3 * count - 6, 2 * count - 4);
-        CHECK_INT(tl_poly_check(p, 1e-15, &error), TL_OK);
+        /* half way to the poles some pairs of triangles lie in one plane */
+        CHECK_INT(p->vertex_count, count);
+        CHECK(p->face_count > 2 * count - 20 && p->face_count <= 2 * count - 4);
+        CHECK_INT(tl_poly_check(p, TL_POLY_BENT, &error), TL_OK);
         CHECK_NEAR(tl_poly_mass(p).volume, 4 * TL_PI / 3, 0.03);
         tl_poly_free(p);
     }
