@@ -12,8 +12,9 @@
 /* A face whose height over its longest edge is below this times that edge has no area: what floats leave
  * of three points in a line. */
 #define SLENDER 1e-7
-/* Corners of a face may miss its plane by this times its longest edge: coordinates with six digits. */
-#define FLAT 1e-5
+/* Corners of a face may miss the plane through one of them by this times its longest edge: 1e-4 to either side of a plane
+ * between them. */
+#define FLAT 2e-4
 /* Faces along each other are a full turn apart, not none: less than this, in radians, is none. */
 #define SAME_SIDE 1e-6
 

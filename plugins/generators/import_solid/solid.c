@@ -14,6 +14,9 @@
 /* Faces that bend by more than this, over the longest edge, always bend: far from zero the rounding of the
  * coordinates cannot be told from a bend any more. */
 #define BEND 1e-3
+/* The surface may bend inward by less than this over the longest edge: so far the fourth corner of a face is above the plane
+ * of the others when all miss the plane of the face by 1e-4. */
+#define INWARD 4e-4
 /* Relative difference of the volumes of a surface and of the hull of its corners: what bends within the
  * tolerances above may add up to. */
 #define VOLUME 1e-3
@@ -103,6 +106,7 @@ static uint32_t side_root(const solids *s, uint32_t face)
 /* How far the corners of face `other` lie above and below the plane of `face`. */
 static void look_across(const mesh *m, uint32_t face, uint32_t other, double *above, double *below)
 {
+    *above = *below = 0;
     tl_vec3 on = m->vertex[m->corner[m->start[face]]];
     for (uint32_t h = m->start[other]; h < m->start[other + 1]; h++) {
         double off = tl_v3_dot(m->normal[face], tl_v3_sub(m->vertex[m->corner[h]], on));
@@ -116,16 +120,18 @@ static bool look_at_bend(const solids *s, uint32_t h)
 {
     const mesh *m = s->m;
     uint32_t a = m->face_of[h], b = m->face_of[m->mate[h]];
-    double above = 0, below = 0;
+    double above, below, above_b, below_b;
     look_across(m, a, b, &above, &below);
-    look_across(m, b, a, &above, &below);
+    look_across(m, b, a, &above_b, &below_b);
     double longest = fmax(m->longest[a], m->longest[b]), height = fmin(m->height[a], m->height[b]);
     /* a plane that is off at a low triangle is off by more at the far end of its neighbour */
     double rounding = ROUNDING * m->reach * (1 + longest / height);
     double tolerance = fmin(rounding, BEND * longest);
-    if (above > tolerance)
+    /* a sliver hardly knows its plane: how deep a bend is, the other face tells */
+    if (fmin(above, above_b) > fmax(tolerance, INWARD * longest))
         return false;
-    if (below >= -tolerance && tl_v3_dot(m->normal[a], m->normal[b]) > 0)
+    if (fmin(below, below_b) >= -tolerance && fmax(above, above_b) <= tolerance &&
+        tl_v3_dot(m->normal[a], m->normal[b]) > 0)
         s->side[side_root(s, b)] = side_root(s, a);
     return true;
 }
