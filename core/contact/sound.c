@@ -17,6 +17,15 @@ static uint32_t faces_of(const tl_model *m, const tl_detect *d, uint32_t seen)
     return row == TL_NO_ROW ? ANY_FACES : m->blocks.shape[row]->face_count;
 }
 
+/* The same of the planes (polyhedron.h), which a block that has come to another body has not kept; contacts of such are made
+ * anew. */
+static uint32_t planes_of(const tl_model *m, const tl_detect *d, uint32_t seen)
+{
+    uint32_t row = tl_block_row_quiet(m, d->known_blocks[seen].id);
+    bool kept = row != TL_NO_ROW && m->blocks.changed[row] <= d->structure;
+    return kept ? m->blocks.shape[row]->plane_count : ANY_FACES;
+}
+
 /* ---------------------------------------------------------------- pairs ------------------ */
 
 /* Whether the faces of a pair are there. A contact for which something is still to be done may have something else in their place; it
@@ -138,7 +147,7 @@ static bool press_is_sound(const tl_model *m, const tl_detect *d, const tl_press
     uint32_t sum = 0;
     for (int k = 0; k < 4; k++)
         for (uint32_t i = 0; i < row->count[k]; i++) {
-            if (sum == TL_PRESS_FACES || row->face[sum] >= faces_of(m, d, k % 2 ? b : a))
+            if (sum == TL_PRESS_FACES || row->face[sum] >= planes_of(m, d, k % 2 ? b : a))
                 return false;
             sum++;
         }

@@ -1,8 +1,9 @@
 /* overlap.c - blocks that overlap so deeply that no contact can tell how to part them.
  *
  * An overlap is measured along the normal of the face along which it is least (region.h). Two lengths limit what it means. At
- * half the sum of both blocks' widths along that normal their middles have met, and the way out is the one on the far side.
- * At the diameter of the smaller block that one is wholly inside the other.
+ * half the sum of both bodies' widths along that normal their middles have met, and the way out is the one on the far side.
+ * At the diameter of the smaller body that one is wholly inside the other. A seam is no way out. But where parts have only a
+ * sliver in common along one, they do not overlap deeply whatever the way along their faces.
  *
  * A contact that is born so deep comes of blocks that were placed into each other, or thrown into each other in one step:
  * nobody knows which way they came. One that was born at the surface and sinks in is followed on its way; soft contacts of
@@ -38,44 +39,38 @@ static bool both_held(const tl_model *m, uint32_t a, uint32_t b)
     return fixed[m->blocks.body[a]] == TL_FIX_ALL && fixed[m->blocks.body[b]] == TL_FIX_ALL;
 }
 
-static double width_along(tl_vec3 n, const tl_vec3 *vertex, uint32_t count)
+/* Extent of a body along a direction in its frame. */
+static double width_along(const tl_model *m, uint32_t body, tl_vec3 n)
 {
     double least = INFINITY, most = -INFINITY;
-    for (uint32_t i = 0; i < count; i++) {
-        double x = tl_v3_dot(n, vertex[i]);
-        least = fmin(least, x);
-        most = fmax(most, x);
+    for (uint32_t k = 0; k < m->bodies.member_count[body]; k++) {
+        const tl_poly *part = m->blocks.shape[m->members[m->bodies.member_start[body] + k]];
+        for (uint32_t i = 0; i < part->vertex_count; i++) {
+            double x = tl_v3_dot(n, part->vertex[i]);
+            least = fmin(least, x);
+            most = fmax(most, x);
+        }
     }
     return most - least;
 }
 
-/* Twice the distance of a block's farthest vertex from its centroid. */
-static double diameter_of(const tl_model *m, uint32_t row)
-{
-    const tl_poly *shape = m->blocks.shape[row];
-    tl_vec3 centre = tl_block_local(m, row);
-    double most = 0;
-    for (uint32_t i = 0; i < shape->vertex_count; i++)
-        most = fmax(most, tl_v3_norm2(tl_v3_sub(shape->vertex[i], centre)));
-    return 2 * sqrt(most);
-}
-
-/* How deep a pair may overlap. */
+/* How deep a pair may overlap. `n` is in the frame of A's body. */
 static double deepest(const tl_model *m, const tl_pair_view *view, tl_vec3 n, uint32_t a,
                       uint32_t b, bool born)
 {
-    double diameter = diameter_of(m, m->blocks.size[a] < m->blocks.size[b] ? a : b);
+    uint32_t body_a = m->blocks.body[a], body_b = m->blocks.body[b];
+    double diameter = 2 * fmin(m->bodies.radius[body_a], m->bodies.radius[body_b]);
     if (!born)
         return TL_DEEPEST * diameter;
-    double middles = 0.5 * (width_along(n, view->a->vertex, view->a->vertex_count) +
-                            width_along(n, view->vertex_b, view->b->vertex_count));
+    double middles =
+        0.5 * (width_along(m, body_a, n) + width_along(m, body_b, tl_m3_tmul(&view->turn, n)));
     return TL_DEEPEST_BORN * fmin(middles, diameter);
 }
 
 bool tl_overlap_is_deep(const tl_model *m, const tl_pair_view *view, const tl_region *region,
                         uint32_t a, uint32_t b, bool born)
 {
-    return region->gap < -TL_SHALLOW * view->size &&
+    return region->gap_with_borders < -TL_SHALLOW * view->size &&
            -region->gap > deepest(m, view, region->n, a, b, born);
 }
 

@@ -30,6 +30,8 @@ tl_status tl_poly_link(tl_poly *poly, tl_error *error);
  * faces, then the edges, in one list; NULL without memory. */
 void tl_poly_clear_seams(tl_poly *poly);
 uint8_t *tl_poly_open_seams(tl_poly *poly);
+/* Puts planes of other parts behind those of the faces; false without memory. With none there is nothing to allocate. */
+bool tl_poly_add_planes(tl_poly *poly, const tl_plane *planes, uint32_t count);
 
 /* The normal of a vector area, an axis to the bit where that lies along one; 0 for 0. */
 tl_vec3 tl_poly_normal(tl_vec3 area);

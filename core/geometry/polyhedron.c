@@ -28,11 +28,30 @@ static size_t allocation(size_t v, size_t f, size_t e)
 size_t tl_poly_bytes(const tl_poly *p)
 {
     return allocation(p->vertex_count, p->face_count, p->edge_count) +
-           (p->seams ? p->face_count + p->edge_count : 0);
+           (p->seams ? p->face_count + p->edge_count : 0) +
+           (p->plane_count > p->face_count ? p->plane_count * sizeof *p->plane : 0);
 }
 
 /* No face is covered and no edge hidden: of all polyhedra without seams. */
 static const uint8_t no_seams[TL_POLY_MAX_EDGES];
+
+/* The planes of the faces, in the allocation of the polyhedron. */
+static tl_plane *own_planes(tl_poly *p)
+{
+    return (tl_plane *)(p->vertex + p->vertex_count);
+}
+
+/* Keeps the planes of the faces only, where they are now. */
+static void forget_planes(tl_poly *p)
+{
+    tl_plane *own = own_planes(p);
+    if (p->plane != own) {
+        memcpy(own, p->plane, p->face_count * sizeof *own);
+        free(p->plane);
+    }
+    p->plane = own;
+    p->plane_count = p->face_count;
+}
 
 void tl_poly_clear_seams(tl_poly *p)
 {
@@ -40,6 +59,22 @@ void tl_poly_clear_seams(tl_poly *p)
         free((void *)(uintptr_t)p->covered);
     p->seams = false;
     p->covered = p->hidden = no_seams;
+    forget_planes(p);
+}
+
+bool tl_poly_add_planes(tl_poly *p, const tl_plane *planes, uint32_t count)
+{
+    forget_planes(p);
+    if (count == 0)
+        return true;
+    tl_plane *all = malloc(((size_t)p->face_count + count) * sizeof *all);
+    if (!all)
+        return false;
+    memcpy(all, p->plane, p->face_count * sizeof *all);
+    memcpy(all + p->face_count, planes, count * sizeof *all);
+    p->plane = all;
+    p->plane_count = p->face_count + count;
+    return true;
 }
 
 uint8_t *tl_poly_open_seams(tl_poly *p)
@@ -64,7 +99,8 @@ tl_poly *tl_poly_allocate(uint32_t vertex_count, uint32_t face_count, uint32_t e
     p->face_count = face_count;
     p->edge_count = edge_count;
     p->size = 0;
-    p->plane = (tl_plane *)(p->vertex + v);
+    p->plane_count = face_count;
+    p->plane = own_planes(p);
     p->tag = (tl_tag *)(p->plane + f);
     p->edge = (tl_edge *)(p->tag + f);
     p->loop = (uint16_t *)(p->edge + e);
@@ -325,6 +361,10 @@ tl_poly *tl_poly_copy(const tl_poly *poly)
     }
     if (marks)
         memcpy(marks, poly->covered, (size_t)p->face_count + p->edge_count);
+    if (!tl_poly_add_planes(p, poly->plane + p->face_count, poly->plane_count - p->face_count)) {
+        tl_poly_free(p);
+        return NULL;
+    }
     return p;
 }
 
@@ -339,7 +379,7 @@ tl_status tl_poly_transformed(const tl_poly *poly, const tl_mat3 *rotation, tl_v
         tl_vec3 x = poly->vertex[v];
         p->vertex[v] = tl_v3_add(rotation ? tl_m3_mul(rotation, x) : x, translation);
     }
-    for (uint32_t f = 0; f < p->face_count; f++) {
+    for (uint32_t f = 0; f < p->plane_count; f++) {
         tl_vec3 n = poly->plane[f].normal;
         p->plane[f].normal = rotation ? tl_m3_mul(rotation, n) : n;
         p->plane[f].offset = poly->plane[f].offset + tl_v3_dot(p->plane[f].normal, translation);

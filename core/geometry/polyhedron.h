@@ -36,9 +36,12 @@ typedef struct tl_edge {
 
 typedef struct tl_poly {
     uint32_t vertex_count, face_count, edge_count;
-    bool seams;      /* some face is covered */
-    double size;     /* diagonal of the bounds */
-    tl_plane *plane; /* [face_count] outward unit normal and offset */
+    uint32_t plane_count; /* of the faces, and of outer faces of other parts (seam_planes.c) */
+    bool seams;           /* some face is covered */
+    double size;          /* diagonal of the bounds */
+    /* [plane_count] Outward unit normal and offset: of the faces, and behind them of those outer faces of other parts of the
+     * body that may be nearer to some point of this part than its own. All of the part lies behind them. */
+    tl_plane *plane;
     tl_tag *tag;     /* [face_count] */
     uint16_t *start; /* [face_count + 1] into loop */
     tl_edge *edge;   /* [edge_count], a < b never assumed */
@@ -134,6 +137,8 @@ bool tl_poly_shared_area(const tl_poly *a, uint32_t fa, const tl_poly *b, uint32
 /* Marks the seams of a body made of `count` parts given in one frame: faces that lie on other parts over
  * their whole area, and edges of such faces where the body's surface goes on flat or turns inward. */
 tl_status tl_poly_mark_seams(tl_poly *const *parts, size_t count, tl_error *error);
+/* Gives parts whose seams are marked the planes of outer faces of the others that count for them. */
+tl_status tl_poly_share_planes(tl_poly *const *parts, size_t count, tl_error *error);
 
 /* Whether faces of this tag keep parts apart that share them. */
 typedef bool (*tl_sever_fn)(const void *user, tl_tag tag);

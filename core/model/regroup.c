@@ -239,7 +239,9 @@ static tl_status make_body(tl_model *m, regroup *r, new_body *one)
     for (uint32_t k = 0; k < one->count && status == TL_OK; k++)
         status = new_shape(m, &one->parts, rows[k], &r->shapes[one->start + k]);
     free(rows);
-    return status == TL_OK ? tl_poly_mark_seams(r->shapes + one->start, one->count, &m->error)
+    if (status == TL_OK)
+        status = tl_poly_mark_seams(r->shapes + one->start, one->count, &m->error);
+    return status == TL_OK ? tl_poly_share_planes(r->shapes + one->start, one->count, &m->error)
                            : status;
 }
 

@@ -27,7 +27,7 @@ bool tl_pairs_place(tl_pair_view view[], uint32_t count, tl_narrow_scratch *scra
     size_t vertices = 1, faces = 1;
     for (uint32_t k = 0; k < count; k++) {
         vertices += view[k].b->vertex_count;
-        faces += view[k].b->face_count;
+        faces += view[k].b->plane_count;
     }
     if (!tl_grow(&scratch->vertex_b, &scratch->vertex_capacity, vertices, sizeof(tl_vec3)) ||
         !tl_grow(&scratch->normal_b, &scratch->normal_capacity, faces, sizeof(tl_vec3)))
@@ -38,9 +38,9 @@ bool tl_pairs_place(tl_pair_view view[], uint32_t count, tl_narrow_scratch *scra
         v->vertex_b = vertex;
         v->normal_b = normal;
         vertex += b->vertex_count;
-        normal += b->face_count;
+        normal += b->plane_count;
         place(&v->turn, v->shift, b->vertex, sizeof(tl_vec3), b->vertex_count, &v->vertex_b->x);
-        place(&v->turn, tl_v3(0, 0, 0), &b->plane[0].normal, sizeof(tl_plane), b->face_count,
+        place(&v->turn, tl_v3(0, 0, 0), &b->plane[0].normal, sizeof(tl_plane), b->plane_count,
               &v->normal_b->x);
     }
     return true;

@@ -262,8 +262,9 @@ static bool sum_corners(const tl_press_query *of, tl_vec3 origin, tl_narrow_scra
         return !scratch->manifold.failed;
     const tl_patch_points *corner = &scratch->patch;
     for (size_t i = 0; i < corner->count; i++) {
-        tl_vec3 x = tl_columns_get(corner->p, i), arm = tl_v3_cross(tl_v3_sub(x, origin), n);
-        double overlap = offset - tl_v3_dot(tl_v3_add(a.normal, b.normal), x);
+        tl_vec3 place = tl_columns_get(corner->p, i), x = tl_v3_sub(place, origin);
+        tl_vec3 arm = tl_v3_cross(x, n);
+        double overlap = offset - tl_v3_dot(tl_v3_add(a.normal, b.normal), place);
         double area = corner->area[i], half = 0.5 * area * overlap;
         if (!(overlap > 0))
             continue;
@@ -273,8 +274,28 @@ static bool sum_corners(const tl_press_query *of, tl_vec3 origin, tl_narrow_scra
         out->moment = tl_v3_madd(out->moment, half, arm);
         out->swept = tl_v3_madd(out->swept, area, n);
         out->swept_moment = tl_v3_madd(out->swept_moment, area, arm);
+        out->area = tl_v3_madd(out->area, area, n);
+        out->pressure += half;
+        out->pressed = tl_v3_madd(out->pressed, half, x);
+        out->extent += area;
+        out->first = tl_v3_madd(out->first, area, x);
+        out->second += area * tl_v3_norm2(x);
+        out->stiffness += area;
     }
     return true;
+}
+
+/* Whether planes of other parts are listed: they may be the nearest to some point and bound nothing. */
+static bool has_shared_planes(const tl_press_query *of)
+{
+    const tl_region *r = of->region;
+    uint32_t own[] = {of->view->a->face_count, of->view->b->face_count};
+    if (of->view->a->plane_count == own[0] && of->view->b->plane_count == own[1])
+        return false;
+    for (uint32_t k = 0; k < r->a + r->b; k++)
+        if (r->face[k] >= own[k >= r->a])
+            return true;
+    return false;
 }
 
 /* Whether what is known of the field at another place may be of use here. */
@@ -282,11 +303,39 @@ static bool is_of_use(const tl_press_query *of)
 {
     const tl_region *r = of->region;
     return r->mesh && !(of->shift > 0) && r->border_a + r->border_b == 0 &&
-           r->a + r->b <= TL_FIELD_KNOWN;
+           r->a + r->b <= TL_FIELD_KNOWN && !has_shared_planes(of);
 }
 
-/* The press of a pair from the integrals of its field. `same`: over faces that have enclosed the common volume before. */
-static bool press_of(const tl_press_query *of, planes *p, const tl_field_sums *sums, bool same,
+/* Whether a number is so far above the smallest ones that its square is known to all digits. */
+static bool has_square(double x)
+{
+    return isnormal(x * x);
+}
+
+/* Nothing presses: nothing is known for another place. */
+static bool no_press(const tl_region *region)
+{
+    if (region->mesh)
+        region->mesh->bounding = region->mesh->polygons = 0;
+    return true;
+}
+
+/* The integrals that tell where and on what area something presses, of a field of which a share is that of a patch. */
+static void mix_places(tl_field_sums *field, const tl_field_sums *patch, double share)
+{
+    double w = 1 - share;
+    field->area = tl_v3_madd(tl_v3_scale(w, field->area), share, patch->area);
+    field->pressure = w * field->pressure + share * patch->pressure;
+    field->pressed = tl_v3_madd(tl_v3_scale(w, field->pressed), share, patch->pressed);
+    field->extent = w * field->extent + share * patch->extent;
+    field->first = tl_v3_madd(tl_v3_scale(w, field->first), share, patch->first);
+    field->second = w * field->second + share * patch->second;
+    field->stiffness = w * field->stiffness + share * patch->stiffness;
+}
+
+/* The press of a pair from the integrals of its field. `same`: over faces that have enclosed the common volume before. Nothing
+ * presses where a part only passes on through its seams what the next parts press with, to the last digit. */
+static bool press_of(const tl_press_query *of, planes *p, tl_field_sums *sums, bool same,
                      tl_narrow_scratch *scratch, tl_press *press)
 {
     const tl_pair_view *view = of->view;
@@ -295,21 +344,24 @@ static bool press_of(const tl_press_query *of, planes *p, const tl_field_sums *s
     *press = (tl_press){0};
     if (!(sums->deepest > TL_TOUCHING * view->size) || !(tl_v3_norm(sums->force) > 0) ||
         !(sums->energy > 0) || is_noise(of, p, sums) ||
-        !(same || in_both(of, tl_v3_add(p->origin, sums->deepest_at), sums->deepest))) {
-        if (region->mesh)
-            region->mesh->bounding = region->mesh->polygons = 0;
-        return true;
-    }
+        !(same || in_both(of, tl_v3_add(p->origin, sums->deepest_at), sums->deepest)))
+        return no_press(region);
     potential field = with_min_area(sums, of->min_area);
     if (region->flush && tl_region_tilt(view, region->flush_a, region->flush_b) <
                              tl_flush_limits_of(of->corners).field_tilt) {
         if (!(of->corners ? sum_corners(of, p->origin, scratch, &patch)
                           : sum_patch(of, p, scratch, &patch)))
             return false;
-        if (patch.energy > 0 && patch.volume > 0)
+        if (patch.energy > 0 && has_square(patch.volume))
             press->patch = blend(of, &patch, of->min_area, &field);
+        if (press->patch > 0)
+            mix_places(sums, &patch, press->patch);
     }
     double force = tl_v3_norm(field.force), area = tl_v3_norm(sums->area);
+    if (!has_square(force) || !has_square(area)) {
+        *press = (tl_press){0};
+        return no_press(region);
+    }
     press->energy = field.energy;
     press->force = field.force;
     press->moment = tl_v3_add(field.moment, tl_v3_cross(p->origin, field.force));
@@ -332,7 +384,7 @@ static void begin(const tl_press_query *of, tl_vec3 origin, planes *p)
     p->origin = origin;
     list_field(p, of);
     p->faces.energy_only = !(of->min_area > 0);
-    p->faces.mesh = of->region->mesh;
+    p->faces.mesh = has_shared_planes(of) ? NULL : of->region->mesh;
     p->faces.inner = NULL;
 }
 

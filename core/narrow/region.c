@@ -24,7 +24,14 @@ typedef struct planes {
     double *x, *y, *z, *c;
     double *low, *high; /* of the other block's vertices, over the plane */
     double *outside;    /* of each face: how far it lies outside one face of the other block */
+    size_t
+        faces; /* the first planes are those of faces, the others of faces of other parts (seam_planes.c) */
 } planes;
+
+static bool is_covered(const planes *p, size_t f)
+{
+    return f < p->faces && p->poly->covered[f];
+}
 
 static size_t padded(size_t faces)
 {
@@ -132,7 +139,7 @@ static void find_heights(const planes *p, const planes *q, double (*height)[TL_L
         p->outside[f] = -INFINITY;
     for (size_t g = 0; g < q->count; g += TL_LANES) {
         vertex_heights(q, g, p->vertex, p->poly->vertex_count, height);
-        find_outside(p->poly, p->count, (const double(*)[TL_LANES])height, p->outside);
+        find_outside(p->poly, p->faces, (const double(*)[TL_LANES])height, p->outside);
     }
 }
 
@@ -142,19 +149,20 @@ static double highest(const planes *p, bool borders, size_t *face)
 {
     double gap = -INFINITY;
     for (size_t f = 0; f < p->count; f++)
-        if (p->low[f] > gap && (borders || !p->poly->covered[f])) {
+        if (p->low[f] > gap && (borders || !is_covered(p, f))) {
             gap = p->low[f];
             *face = f;
         }
     return gap;
 }
 
-/* The gap, with its normal: apart by any face, or overlapping by the least along a real one. */
+/* The gap, with its normal: apart by any face, or overlapping by the least along a real one. Along a seam it may be less. */
 static void find_gap(const planes *a, const planes *b, tl_region *out)
 {
     size_t face_a = 0, face_b = 0;
     double gap_a = highest(a, true, &face_a), gap_b = highest(b, true, &face_b);
-    if (!(gap_a > 0 || gap_b > 0)) {
+    out->gap_with_borders = fmax(gap_a, gap_b);
+    if (!(out->gap_with_borders > 0)) {
         gap_a = highest(a, false, &face_a);
         gap_b = highest(b, false, &face_b);
     }
@@ -169,7 +177,7 @@ static uint32_t list(const planes *p, bool borders, bool seams, double margin, d
 {
     uint32_t count = 0;
     for (size_t f = 0; f < p->count; f++) {
-        if ((p->poly->covered[f] != 0) != borders)
+        if (is_covered(p, f) != borders)
             continue;
         bool away = seams && !borders ? -p->high[f] > deepest + 2 * margin : p->outside[f] > margin;
         if (!away)
@@ -184,7 +192,7 @@ static double cosine(const planes *p, size_t i, const planes *q, size_t j)
 }
 
 /* The flush faces: of the two that overlap the least and those that meet them in blunt edges the most parallel. So the
- * choice changes where two tilts are the same. */
+ * choice changes where two tilts are the same. Planes of other parts count, but are not chosen. */
 static void find_flush(const planes *a, const planes *b, tl_region *out)
 {
     const uint16_t *of_a = out->face, *of_b = out->face + out->a;
@@ -203,13 +211,14 @@ static void find_flush(const planes *a, const planes *b, tl_region *out)
     for (uint32_t k = 0; k < out->a && out->flush; k++)
         for (uint32_t m = 0; m < out->b; m++) {
             double c = -cosine(a, of_a[k], b, of_b[m]);
-            if (c <= most || cosine(a, of_a[k], a, first_a) < FACING ||
-                cosine(b, of_b[m], b, first_b) < FACING)
+            if (c <= most || of_a[k] >= a->faces || of_b[m] >= b->faces ||
+                cosine(a, of_a[k], a, first_a) < FACING || cosine(b, of_b[m], b, first_b) < FACING)
                 continue;
             most = c;
             out->flush_a = of_a[k];
             out->flush_b = of_b[m];
         }
+    out->flush = most > -1;
     out->flush_gap = fmax(a->low[out->flush_a], b->low[out->flush_b]);
 }
 
@@ -250,8 +259,10 @@ static void find_leads(const planes *a, const planes *b, tl_region *out, uint16_
 bool tl_region_find(const tl_pair_view *view, double margin, tl_narrow_scratch *scratch,
                     tl_region *out)
 {
-    planes a = {.poly = view->a, .vertex = view->a->vertex, .count = view->a->face_count};
-    planes b = {.poly = view->b, .vertex = view->vertex_b, .count = view->b->face_count};
+    planes a = {.poly = view->a, .vertex = view->a->vertex, .count = view->a->plane_count};
+    planes b = {.poly = view->b, .vertex = view->vertex_b, .count = view->b->plane_count};
+    a.faces = view->a->face_count;
+    b.faces = view->b->face_count;
     size_t rows_a = padded(a.count), rows_b = padded(b.count);
     *out = (tl_region){0};
     uint32_t vertices = view->a->vertex_count > view->b->vertex_count ? view->a->vertex_count
@@ -286,7 +297,8 @@ void tl_region_choose_flush(const tl_pair_view *view, tl_region *out)
         for (uint32_t m = 0; m < out->blunt_b; m++) {
             uint16_t i = out->face[k], j = out->face[out->a + m];
             double c = -tl_v3_dot(view->a->plane[i].normal, view->normal_b[j]);
-            if (c > most) {
+            bool faces = i < view->a->face_count && j < view->b->face_count;
+            if (faces && c > most) {
                 most = c;
                 out->flush_a = i;
                 out->flush_b = j;

@@ -6,7 +6,8 @@
 #include "narrow/narrow.h"
 #include "narrow/view.h"
 
-/* Faces of two blocks near what they have in common. */
+/* Faces of two blocks near what they have in common. Among the listed faces of a part are planes of faces of other parts, whose
+ * numbers begin with its face_count (seam_planes.c). */
 typedef struct tl_region {
     /* the listed faces of A, of B, the borders of A and of B: faces on seams */
     uint32_t a, b, border_a, border_b;
@@ -15,6 +16,8 @@ typedef struct tl_region {
     /* the face along whose normal the blocks are farthest apart, or overlap the least: min over B - max over A */
     double gap;
     tl_vec3 n; /* its normal, A to B, in A's frame */
+    double
+        gap_with_borders; /* the same with the faces on seams: what the parts have in common is no thicker */
     /* two nearly antiparallel faces along which they overlap the least; 0 and 0 when `flush` is false */
     bool flush;
     uint16_t flush_a, flush_b;

@@ -199,6 +199,22 @@ static size_t drives_in(const tl_archive *a)
     return chunk && chunk->items < UINT32_MAX ? (size_t)chunk->items : 0;
 }
 
+/* Planes that parts of bodies have of each other follow from their shapes. */
+static tl_status share_planes(tl_model *m)
+{
+    tl_poly **parts = malloc((m->blocks.table.rows + 1) * sizeof *parts);
+    tl_status status = parts ? TL_OK : tl_fail_memory(&m->error);
+    for (uint32_t body = 0; body < m->bodies.table.rows && status == TL_OK; body++) {
+        const uint32_t *members = &m->members[m->bodies.member_start[body]];
+        uint32_t count = m->bodies.member_count[body];
+        for (uint32_t k = 0; k < count; k++)
+            parts[k] = m->blocks.shape[members[k]];
+        status = tl_poly_share_planes(parts, count, &m->error);
+    }
+    free(parts);
+    return status;
+}
+
 /* The lists that follow from the rows. */
 static tl_status derive_rows(tl_model *m, const tl_archive *a)
 {
@@ -209,7 +225,7 @@ static tl_status derive_rows(tl_model *m, const tl_archive *a)
                    : tl_fail_memory(&m->error);
     tl_rows_refresh(m);
     m->structure = structure;
-    return TL_OK;
+    return share_planes(m);
 }
 
 static tl_status read_rows(tl_model *m, const tl_archive *a)

@@ -105,6 +105,52 @@ TEST(a_ridge_stays_an_edge)
 
 /* ---------------------------------------------------------------- sliding ---------------- */
 
+/* Depth of a point below the outer faces of a part and the planes it has of other parts. */
+static double depth_in(const tl_poly *p, tl_vec3 x)
+{
+    double least = INFINITY;
+    for (uint32_t f = 0; f < p->plane_count; f++)
+        if (f >= p->face_count || !p->covered[f])
+            least = fmin(least, p->plane[f].offset - tl_v3_dot(p->plane[f].normal, x));
+    return least;
+}
+
+TEST(the_depth_in_the_parts_of_a_box_is_that_in_the_box)
+{
+    tl_poly *whole = box(0, 2, 0, 1);
+    tl_poly *parts[] = {box(0, 0.2, 0, 1), box(0.2, 2, 0, 0.7), box(0.2, 2, 0.7, 1)};
+    CHECK_INT(tl_poly_mark_seams(parts, 3, &error), TL_OK);
+    CHECK_INT(tl_poly_share_planes(parts, 3, &error), TL_OK);
+    for (int i = 0; i < 3; i++) {
+        tl_bounds b = tl_poly_bounds(parts[i]);
+        for (int k = 0; k < 64; k++) {
+            tl_vec3 t = tl_v3((k % 4 + 0.5) / 4, (k / 4 % 4 + 0.5) / 4, (k / 16 + 0.5) / 4);
+            tl_vec3 x = tl_v3(b.min.x + t.x * (b.max.x - b.min.x), t.y,
+                              b.min.z + t.z * (b.max.z - b.min.z));
+            CHECK_NEAR(depth_in(parts[i], x), depth_in(whole, x), 1e-15);
+        }
+    }
+    for (int i = 0; i < 3; i++)
+        tl_poly_free(parts[i]);
+    tl_poly_free(whole);
+}
+
+TEST(a_part_gets_no_plane_that_cuts_it_nor_one_that_is_never_near)
+{
+    /* an L: the step's upper face cuts the column, and its far end is farther from the column than the column's own side */
+    tl_poly *parts[] = {box(0, 0.3, 0, 1), box(0.3, 1, 0, 0.3)};
+    CHECK_INT(tl_poly_mark_seams(parts, 2, &error), TL_OK);
+    CHECK_INT(tl_poly_share_planes(parts, 2, &error), TL_OK);
+    CHECK_INT(parts[0]->plane_count, parts[0]->face_count);
+    /* sharing anew changes nothing, nor does a copy lose any */
+    CHECK_INT(tl_poly_share_planes(parts, 2, &error), TL_OK);
+    tl_poly *copy = tl_poly_copy(parts[1]);
+    CHECK_INT(copy->plane_count, parts[1]->plane_count);
+    tl_poly_free(copy);
+    for (int i = 0; i < 2; i++)
+        tl_poly_free(parts[i]);
+}
+
 static void make_box(tl_model *m, tl_vec3 min, tl_vec3 max)
 {
     const tl_value values[] = {{.key = "min", .type = TL_VALUE_NUMBERS, .data = &min.x, .count = 3},
@@ -204,6 +250,8 @@ int main(void)
     RUN(a_step_covers_only_the_lower_box);
     RUN(two_boxes_cover_the_side_of_a_third);
     RUN(a_ridge_stays_an_edge);
+    RUN(the_depth_in_the_parts_of_a_box_is_that_in_the_box);
+    RUN(a_part_gets_no_plane_that_cuts_it_nor_one_that_is_never_near);
     RUN(a_block_slides_over_a_seam_as_over_one_piece);
     RUN(a_block_slides_over_a_seam_on_a_soft_joint);
     printf("%s: %d checks, %d failed\n", __FILE__, check_count, check_failed);
