@@ -60,9 +60,13 @@ struct tl_watch {
     tl_id failing;
 };
 
+/* Of the largest of its parts, whichever comes first. */
 static double size_of(const tl_model *m, uint32_t body)
 {
-    return m->blocks.size[m->members[m->bodies.member_start[body]]];
+    double most = 0;
+    for (uint32_t k = 0; k < m->bodies.member_count[body]; k++)
+        most = fmax(most, m->blocks.size[m->members[m->bodies.member_start[body] + k]]);
+    return most;
 }
 
 /* Number of blocks of the mean size across the free bodies. */
