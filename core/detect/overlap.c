@@ -8,7 +8,7 @@
  * A contact that is born so deep comes of blocks that were placed into each other, or thrown into each other in one step:
  * nobody knows which way they came. One that was born at the surface and sinks in is followed on its way; soft contacts of
  * vertices and edges let stones sink in by a diameter. Only when the smaller block is gone inside the larger is it given
- * up. A step that finds such an overlap fails before its forces are made. Two blocks that are both held may overlap as they
+ * up, as is one that lies wholly inside another, for nothing presses it. A step that finds such an overlap fails before its forces are made. Two blocks that are both held may overlap as they
  * like: nothing comes of it.
  *
  * The overlap is known wherever the faces of a pair are listed, which is after a motion of TL_LIST_MARGIN of the size at the
@@ -67,11 +67,38 @@ static double deepest(const tl_model *m, const tl_pair_view *view, tl_vec3 n, ui
     return TL_DEEPEST_BORN * fmin(middles, diameter);
 }
 
+/* Whether all corners of a block lie behind all faces of another, given as planes with these normals in the same frame; `origin` is
+ * that of the other block. */
+static bool lies_behind(const tl_vec3 *corner, uint32_t corners, const tl_poly *other,
+                        const tl_vec3 *normal, size_t stride, tl_vec3 origin)
+{
+    for (uint32_t f = 0; f < other->face_count; f++) {
+        tl_vec3 n = *(const tl_vec3 *)(const void *)((const char *)normal + f * stride);
+        double offset = other->plane[f].offset + tl_v3_dot(n, origin);
+        for (uint32_t i = 0; i < corners; i++)
+            if (tl_v3_dot(n, corner[i]) > offset)
+                return false;
+    }
+    return true;
+}
+
+bool tl_overlap_is_whole(const tl_pair_view *view, const tl_region *region)
+{
+    const tl_poly *a = view->a, *b = view->b;
+    if (!(region->gap_with_borders < 0))
+        return false;
+    return lies_behind(a->vertex, a->vertex_count, b, view->normal_b, sizeof(tl_vec3),
+                       view->shift) ||
+           lies_behind(view->vertex_b, b->vertex_count, a, &a->plane[0].normal, sizeof(tl_plane),
+                       tl_v3(0, 0, 0));
+}
+
 bool tl_overlap_is_deep(const tl_model *m, const tl_pair_view *view, const tl_region *region,
                         uint32_t a, uint32_t b, bool born)
 {
     return region->gap_with_borders < -TL_SHALLOW * view->size &&
-           -region->gap > deepest(m, view, region->n, a, b, born);
+           (-region->gap > deepest(m, view, region->n, a, b, born) ||
+            tl_overlap_is_whole(view, region));
 }
 
 void tl_overlap_mark(tl_contacts *contacts, uint32_t contact, bool born)
@@ -91,6 +118,13 @@ static tl_status report(tl_model *m, uint32_t contact)
         return tl_fail_memory(&m->error);
     char name[320];
     tl_contact_name(m, contact, name, sizeof name);
+    if (tl_overlap_is_whole(&view, &region))
+        return tl_fail(
+            &m->error, TL_E_NUMERIC,
+            "cycle %lld, %s: one lies wholly inside the other, so no contact can part "
+            "them: delete or move one if they were placed so, or give a higher stiffness "
+            "or a lower velocity if it was carried there",
+            (long long)m->cycles + 1, name);
     return tl_fail(&m->error, TL_E_NUMERIC,
                    "cycle %lld, %s: they overlap by %.3g m, more than the %.3g m up to which a "
                    "contact can tell how to part them: were they placed into each other, is a "

@@ -14,6 +14,8 @@
  * just born. */
 bool tl_overlap_is_deep(const tl_model *m, const tl_pair_view *view, const tl_region *region,
                         uint32_t a, uint32_t b, bool born);
+/* Whether one block lies wholly inside the other: no face of it is crossed, so nothing presses. */
+bool tl_overlap_is_whole(const tl_pair_view *view, const tl_region *region);
 /* Marks a contact whose blocks do, so that its faces are listed whenever it is looked at. */
 void tl_overlap_mark(tl_contacts *contacts, uint32_t contact, bool born);
 /* After a step's contacts have been settled: the sentence of the first that is marked, and of which a block can move. */

@@ -11,6 +11,7 @@
 #include "contact/estate.h"
 #include "contact/pair_view.h"
 #include "detect/grazing.h"
+#include "detect/overlap.h"
 #include "narrow/coarse_test.h"
 #include "narrow/manifold.h"
 #include "narrow/patch.h"
@@ -223,7 +224,7 @@ static void test_pair(tl_model *m, tl_pair *p, tl_narrow_scratch *scratch)
         scratch->failed = true; /* what was found is not all there is: test again */
         return;
     }
-    if (scratch->manifold.point_count > 0) {
+    if (scratch->manifold.point_count > 0 || tl_overlap_is_whole(&view, &region)) {
         p->wake = TL_PAIR_FOUND;
         return;
     }
