@@ -174,7 +174,7 @@ static bool is_near(const tl_model *m, uint32_t c, const tl_press_row *row,
                     const tl_pair_pose *place)
 {
     /* -INFINITY: its rules are others now */
-    return row->by_slope && m->config.reuse_geometry &&
+    return row->by_slope && row->press.volume == 0 && m->config.reuse_geometry &&
            m->detect->contacts.points_valid_to[c] != -INFINITY &&
            tl_press_moved(&row->there, &row->place, place) <= TL_PRESS_NEAR;
 }
@@ -191,6 +191,7 @@ static bool watch(const tl_model *m, const tl_press_query *query, const tl_press
         row->since = m->cycles;
     }
     if (!stays || m->cycles - row->since < TL_PRESS_SLOPE_COST || press->patch >= 1 ||
+        press->volume > 0 || /* slopes are of the energy only */
         !m->config.reuse_geometry)
         return true;
     tl_press_slope slope;

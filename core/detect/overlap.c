@@ -8,8 +8,8 @@
  * A contact that is born so deep comes of blocks that were placed into each other, or thrown into each other in one step:
  * nobody knows which way they came. One that was born at the surface and sinks in is followed on its way; soft contacts of
  * vertices and edges let stones sink in by a diameter. Only when the smaller block is gone inside the larger is it given
- * up, as is one that lies wholly inside another, for nothing presses it. A step that finds such an overlap fails before its forces are made. Two blocks that are both held may overlap as they
- * like: nothing comes of it.
+ * up, or one that is found wholly inside at the birth of their contact, for nothing presses it. A step that finds such an
+ * overlap fails before its forces are made. Two blocks that are both held may overlap as they like: nothing comes of it.
  *
  * The overlap is known wherever the faces of a pair are listed, which is after a motion of TL_LIST_MARGIN of the size at the
  * latest (update.c), so the look costs next to nothing. The faces of a contact that is marked are listed in every
@@ -96,9 +96,10 @@ bool tl_overlap_is_whole(const tl_pair_view *view, const tl_region *region)
 bool tl_overlap_is_deep(const tl_model *m, const tl_pair_view *view, const tl_region *region,
                         uint32_t a, uint32_t b, bool born)
 {
-    return region->gap_with_borders < -TL_SHALLOW * view->size &&
-           (-region->gap > deepest(m, view, region->n, a, b, born) ||
-            tl_overlap_is_whole(view, region));
+    if (!(region->gap_with_borders < -TL_SHALLOW * view->size))
+        return false;
+    return -region->gap > deepest(m, view, region->n, a, b, born) ||
+           (born && tl_overlap_is_whole(view, region));
 }
 
 void tl_overlap_mark(tl_contacts *contacts, uint32_t contact, bool born)
@@ -118,7 +119,8 @@ static tl_status report(tl_model *m, uint32_t contact)
         return tl_fail_memory(&m->error);
     char name[320];
     tl_contact_name(m, contact, name, sizeof name);
-    if (tl_overlap_is_whole(&view, &region))
+    bool born = c->deep[contact] == TL_DEEP_BORN;
+    if (born && tl_overlap_is_whole(&view, &region))
         return tl_fail(
             &m->error, TL_E_NUMERIC,
             "cycle %lld, %s: one lies wholly inside the other, so no contact can part "
@@ -130,7 +132,7 @@ static tl_status report(tl_model *m, uint32_t contact)
                    "contact can tell how to part them: were they placed into each other, is a "
                    "stiffness too low for what presses, or the time step too large?",
                    (long long)m->cycles + 1, name, -region.gap,
-                   deepest(m, &view, region.n, a, b, c->deep[contact] == TL_DEEP_BORN));
+                   deepest(m, &view, region.n, a, b, born));
 }
 
 tl_status tl_overlaps_check(tl_model *m)

@@ -184,9 +184,72 @@ static void report_odd(const span_job *job, const tl_simd_group *group, const gr
     tl_law_check_shear(job->m, job->phase->failure, job->law, group, t, lane);
 }
 
-static bool is_linear(const tl_law *law)
+/* What the normal springs of a field contact make: force on B and moment about A's centroid, in A's frame, the energy, and that of
+ * the law's springs, which counts for nothing. */
+typedef struct field_press {
+    tl_vec3 force, moment;
+    double energy, springs;
+} field_press;
+
+/* With an energy 2 kn G. What slip opens in this step, `lifted`, presses on as at the centre. */
+static field_press press_linearly(const tl_press *press, double kn, double area, double f_n,
+                                  double same)
 {
-    return ((const tl_law_ops *)law->kind->ops)->linear != 0;
+    double by = 2 * kn, size = tl_v3_norm(press->force), whole = by * size;
+    double lifted = (f_n - whole) + (same - whole), spring = kn * area;
+    tl_vec3 more = tl_v3_scale(lifted, press->normal);
+    return (field_press){.force = tl_v3_madd(more, by, press->force),
+                         .moment = tl_v3_madd(tl_v3_cross(press->point, more), by, press->moment),
+                         .energy = by * press->energy,
+                         .springs = spring > 0 ? whole * whole / spring : 0};
+}
+
+/* With an energy r Phi(s), r = (A_e^2 + A_m^2)^(1/2), s = 4 G / V, A_e = V^2 / (4 G), of which the law has told the force r Phi'(s)
+ * and the energy. `same` is the energy of the springs of torsion. */
+static field_press press_by_law(const tl_press *press, double area, double f_n, double energy,
+                                double same)
+{
+    double g = press->energy, v = press->volume, own = 0.25 * v * v / g, s = 4 * g / v;
+    double stretch = energy / (area * area) * own;
+    double by_g = f_n * 4 / v - stretch * own / g;
+    double by_v = stretch * 2 * own / v - f_n * s / v;
+    return (field_press){
+        .force = tl_v3_madd(tl_v3_scale(by_g, press->force), by_v, press->swept),
+        .moment = tl_v3_madd(tl_v3_scale(by_g, press->moment), by_v, press->swept_moment),
+        .energy = energy,
+        .springs = energy + same};
+}
+
+/* By the force that a law gives which does not tell of its energy. */
+static field_press press_by_force(const tl_press *press, double kn, double area, double f_n,
+                                  double same)
+{
+    double by = f_n / tl_v3_norm(press->force);
+    return (field_press){.force = tl_v3_scale(by, press->force),
+                         .moment = tl_v3_scale(by, press->moment),
+                         .energy = by * press->energy,
+                         .springs = (f_n * f_n + same * same) / (2 * kn * area)};
+}
+
+/* Energies of what presses, of a law that tells of them: of the points of a SIMD group of field contacts. */
+static void find_pressed(const span_job *job, const tl_simd_group *group, const tl_point_lanes *t,
+                         size_t lane, double energy[TL_FIELD_POINTS * TL_LANES])
+{
+    const tl_points_table *p = &job->m->detect->points;
+    const tl_law_ops *ops = job->law->kind->ops;
+    double *state[TL_STATE_COLUMNS];
+    for (uint32_t k = 0; k < TL_STATE_COLUMNS; k++)
+        state[k] = k < p->state_columns ? p->state[k] + group->start : t->zero;
+    const tl_law_batch batch = {.size = sizeof batch,
+                                .count = TL_FIELD_POINTS * TL_LANES,
+                                .area = p->area + group->start,
+                                .closure = t->closure + lane,
+                                .f_n0 = t->zero,
+                                .state = state,
+                                .flags = p->flags + group->start};
+    tl_enter(job->law->kind, "pressed");
+    ops->pressed(job->law->self, &batch, energy);
+    tl_leave();
 }
 
 /* Of the field contacts of a SIMD group. The first point carries the normal force, the point of torsion the same again. What the
@@ -197,38 +260,39 @@ static void sum_fields(const span_job *job, const tl_simd_group *group, const tl
     const tl_detect *d = job->m->detect;
     const tl_contacts *contacts = &d->contacts;
     const tl_points_table *p = &d->points;
+    const tl_law *law = job->law;
+    const size_t torsion = TL_FIELD_TORSION * TL_LANES;
+    const bool tells = tl_law_presses(law), linear = tl_law_is_linear(law);
+    double pressed[TL_FIELD_POINTS * TL_LANES];
     memset(out, 0, sizeof *out);
+    if (tells)
+        find_pressed(job, group, t, lane, pressed);
     for (size_t l = 0; l < TL_LANES; l++) {
         uint32_t c = group->contact[l];
-        size_t i = group->start + l, k = lane + l, torsion = TL_FIELD_TORSION * TL_LANES;
-        if (c == TL_NO_ROW || !(p->area[i] > 0))
+        size_t i = group->start + l, k = lane + l;
+        double area = p->area[i];
+        if (c == TL_NO_ROW || !(area > 0))
             continue;
         const tl_press_row *row = &d->press[contacts->press[c]];
         const tl_press *press = &row->press;
         const tl_mat3 *turn = &job->m->bodies.pose[job->m->blocks.body[contacts->a[c]]].r;
-        double f_n = p->f_n[i], same = p->f_n[i + torsion], kn = job->law->kn;
+        double f_n = p->f_n[i], same = p->f_n[i + torsion];
         tl_vec3 x = tl_columns_get(t->arm, k), n = tl_columns_get(t->normal, k);
         tl_vec3 shear = tl_columns_get(p->f_s, i);
         tl_vec3 twist = tl_columns_get(p->f_s, i + torsion);
-        double size = tl_v3_norm(press->force), lifted = 0;
-        double by = f_n / size, springs = (f_n * f_n + same * same) / (2 * kn * p->area[i]);
-        if (is_linear(job->law)) {
-            by = 2 * kn;
-            lifted = (f_n - by * size) + (same - by * size);
-            springs = by * size * by * size / (kn * p->area[i]);
-        }
-        tl_vec3 force = tl_v3_madd(shear, by * size + lifted, n);
-        tl_vec3 couple = tl_v3_sub(press->moment, tl_v3_cross(press->point, press->force));
-        tl_vec3 moment = tl_v3_madd(tl_v3_cross(x, force), by, tl_m3_mul(turn, couple));
+        const field_press by =
+            linear  ? press_linearly(press, law->kn, area, f_n, same)
+            : tells ? press_by_law(press, area, f_n, pressed[l], pressed[l + torsion])
+                    : press_by_force(press, law->kn, area, f_n, same);
+        tl_vec3 force = tl_v3_add(shear, tl_m3_mul(turn, by.force));
+        tl_vec3 moment = tl_v3_add(tl_v3_cross(x, shear), tl_m3_mul(turn, by.moment));
         moment = tl_v3_madd(moment, press->radius, twist);
-        double ks = job->law->ks;
-        double spare = ks > 0 ? 0.5 * (row->spare[0] + row->spare[1]) / ks : 0;
+        double spare = law->ks > 0 ? 0.5 * (row->spare[0] + row->spare[1]) / law->ks : 0;
         for (int axis = 0; axis < 3; axis++) {
             out->force[axis][l] = (&force.x)[axis];
             out->moment[axis][l] = (&moment.x)[axis];
         }
-        out->stored[l] =
-            t->stored[k] + t->stored[k + torsion] - springs + by * press->energy + spare;
+        out->stored[l] = t->stored[k] + t->stored[k + torsion] - by.springs + by.energy + spare;
         out->dissipated[l] = t->dissipated[k] + t->dissipated[k + torsion];
         out->odd[l] = 0 * (force.x + force.y + force.z + moment.x + moment.y + moment.z);
         if (fabs(tl_v3_dot(shear, n)) > TL_OUT_OF_PLANE * tl_v3_norm(force))

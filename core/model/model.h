@@ -121,6 +121,17 @@ typedef struct tl_law {
     uint32_t pulls;    /* TL_PULL_* */
 } tl_law;
 
+/* Whether what presses has the force kn A u, or else whether the law tells of the energy it has. */
+static inline bool tl_law_is_linear(const tl_law *law)
+{
+    return ((const tl_law_ops *)law->kind->ops)->linear != 0;
+}
+
+static inline bool tl_law_presses(const tl_law *law)
+{
+    return !tl_law_is_linear(law) && ((const tl_law_ops *)law->kind->ops)->pressed;
+}
+
 /* A prescribed motion, shared by the bodies of one call. */
 typedef struct tl_drive_record {
     tl_drive drive;

@@ -86,6 +86,7 @@ tl_press_query tl_manifold_query(const tl_pair_view *view, const tl_region *regi
                             .region = region,
                             .min_area = rule->min_area,
                             .corners = rule->corners,
+                            .volumes = rule->volumes,
                             .shift = before->shift,
                             .shifted = before->shifted};
 }

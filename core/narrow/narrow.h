@@ -9,14 +9,16 @@
 typedef struct tl_press {
     double energy;
     tl_vec3 force, moment;
-    double area;      /* on which it acts, m^2 */
-    double overlap;   /* 2 |force| / area, m: that of flush faces of that area */
-    double deepest;   /* largest overlap, m */
-    double radius;    /* of gyration of the area, m */
-    double stiffness; /* over kn, m^2 */
-    double patch;     /* share of the patch: 1 .. 0 */
-    tl_vec3 point;    /* centre of the pressure */
-    tl_vec3 normal;   /* force / |force| */
+    double volume;               /* of overlaps, m^3, where the query asks for it; */
+    tl_vec3 swept, swept_moment; /* minus its gradient as the force is that of the energy */
+    double area;                 /* on which it acts, m^2 */
+    double overlap;              /* 2 |force| / area, m: that of flush faces of that area */
+    double deepest;              /* largest overlap, m */
+    double radius;               /* of gyration of the area, m */
+    double stiffness;            /* over kn, m^2 */
+    double patch;                /* share of the patch: 1 .. 0 */
+    tl_vec3 point;               /* centre of the pressure */
+    tl_vec3 normal;              /* force / |force| */
 } tl_press;
 
 /* The contact points of one pair, as one geometric evaluation finds them. */
@@ -52,6 +54,7 @@ typedef struct tl_narrow_scratch {
 typedef struct tl_touch_rule {
     double min_area; /* of a field contact, m2 */
     bool corners;    /* points of patches at corners only */
+    bool volumes;    /* of field contacts: see tl_press_query */
     double reach;    /* patches with every gap beyond this are left out */
 } tl_touch_rule;
 

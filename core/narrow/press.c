@@ -15,7 +15,10 @@
  *
  *     G_m = s^2 / 4 (A_e^2 + A_m^2)^(1/2),
  *
- * which is G without A_m. */
+ * which is G without A_m.
+ *
+ * A law whose stress is not proportional to the overlap is given the area A_e, or (A_e^2 + A_m^2)^(1/2), and the overlap s, both
+ * functions of G and V: so G and V are blended apart, without A_m, and the force follows from the gradients of both. */
 #include "narrow/press.h"
 
 #include "base/columns.h"
@@ -204,11 +207,14 @@ static double step(double x, double low, double high, double *slope)
     return t * t * (3 - 2 * t);
 }
 
-/* Blends the field with the patch of the flush faces; the share of the patch. Both have the minimum area. */
-static double blend(const tl_press_query *of, const tl_field_sums *patch, double min_area,
-                    potential *field)
+/* The share of the patch of the flush faces, and minus the gradient of that of the field. */
+typedef struct patch_share {
+    double share;
+    tl_vec3 push, turn;
+} patch_share;
+
+static patch_share find_share(const tl_press_query *of, const tl_field_sums *patch)
 {
-    const potential flat = with_min_area(patch, min_area);
     tl_vec3 na = of->view->a->plane[of->region->flush_a].normal;
     tl_vec3 nb = of->view->normal_b[of->region->flush_b], hinge = tl_v3_cross(na, nb);
     double sine = tl_v3_norm(hinge), g = patch->energy, v = patch->volume, by_tilt, by_q;
@@ -216,24 +222,31 @@ static double blend(const tl_press_query *of, const tl_field_sums *patch, double
     const tl_flush_limits limits = tl_flush_limits_of(of->corners);
     double tilted = step(sine, limits.tilt, limits.field_tilt, &by_tilt);
     double deep = step(q, limits.depth, limits.field_depth, &by_q);
-    double share = (1 - tilted) * (1 - deep), w = 1 - share;
-    double more = field->energy - flat.energy;
-    if (!(share > 0))
-        return 0;
-    /* minus grad w, about the origin of the integrals */
+    patch_share out = {.share = (1 - tilted) * (1 - deep)};
     double scale = (1 - tilted) * by_q * q;
-    tl_vec3 push =
-        tl_v3_madd(tl_v3_scale(1.5 * scale / g, patch->force), -2 * scale / v, patch->swept);
-    tl_vec3 turn = tl_v3_madd(tl_v3_scale(1.5 * scale / g, patch->moment), -2 * scale / v,
-                              patch->swept_moment);
     double couple = sine > 0 ? -(1 - deep) * by_tilt * tl_v3_dot(na, nb) / sine : 0;
-    turn = tl_v3_madd(turn, couple, hinge);
-    field->force = tl_v3_madd(tl_v3_scale(w, field->force), share, flat.force);
-    field->moment = tl_v3_madd(tl_v3_scale(w, field->moment), share, flat.moment);
-    field->force = tl_v3_madd(field->force, more, push);
-    field->moment = tl_v3_madd(field->moment, more, turn);
-    field->energy = w * field->energy + share * flat.energy;
-    return share;
+    out.push = tl_v3_madd(tl_v3_scale(1.5 * scale / g, patch->force), -2 * scale / v, patch->swept);
+    out.turn = tl_v3_madd(tl_v3_scale(1.5 * scale / g, patch->moment), -2 * scale / v,
+                          patch->swept_moment);
+    out.turn = tl_v3_madd(out.turn, couple, hinge);
+    return out;
+}
+
+/* Blends a potential of the field with that of the patch. */
+static void blend(const patch_share *by, const potential *flat, potential *field)
+{
+    double share = by->share, w = 1 - share, more = field->energy - flat->energy;
+    field->force = tl_v3_madd(tl_v3_scale(w, field->force), share, flat->force);
+    field->moment = tl_v3_madd(tl_v3_scale(w, field->moment), share, flat->moment);
+    field->force = tl_v3_madd(field->force, more, by->push);
+    field->moment = tl_v3_madd(field->moment, more, by->turn);
+    field->energy = w * field->energy + share * flat->energy;
+}
+
+/* The volume of the overlaps, as a potential. */
+static potential volume_of(const tl_field_sums *f)
+{
+    return (potential){f->volume, f->swept, f->swept_moment};
 }
 
 /* The integrals over the patch of the flush faces. false: out of memory. */
@@ -346,16 +359,23 @@ static bool press_of(const tl_press_query *of, planes *p, tl_field_sums *sums, b
         !(sums->energy > 0) || is_noise(of, p, sums) ||
         !(same || in_both(of, tl_v3_add(p->origin, sums->deepest_at), sums->deepest)))
         return no_press(region);
-    potential field = with_min_area(sums, of->min_area);
+    const double min_area = of->volumes ? 0 : of->min_area;
+    potential field = with_min_area(sums, min_area), volume = volume_of(sums);
     if (region->flush && tl_region_tilt(view, region->flush_a, region->flush_b) <
                              tl_flush_limits_of(of->corners).field_tilt) {
         if (!(of->corners ? sum_corners(of, p->origin, scratch, &patch)
                           : sum_patch(of, p, scratch, &patch)))
             return false;
+        patch_share by = {.share = 0};
         if (patch.energy > 0 && has_square(patch.volume))
-            press->patch = blend(of, &patch, of->min_area, &field);
-        if (press->patch > 0)
-            mix_places(sums, &patch, press->patch);
+            by = find_share(of, &patch);
+        if (by.share > 0) {
+            const potential flat = with_min_area(&patch, min_area), swept = volume_of(&patch);
+            blend(&by, &flat, &field);
+            blend(&by, &swept, &volume);
+            mix_places(sums, &patch, by.share);
+        }
+        press->patch = by.share;
     }
     double force = tl_v3_norm(field.force), area = tl_v3_norm(sums->area);
     if (!has_square(force) || !has_square(area)) {
@@ -366,8 +386,14 @@ static bool press_of(const tl_press_query *of, planes *p, tl_field_sums *sums, b
     press->force = field.force;
     press->moment = tl_v3_add(field.moment, tl_v3_cross(p->origin, field.force));
     press->normal = tl_v3_scale(1 / force, field.force);
+    if (of->volumes) {
+        area = 0.25 * volume.energy * volume.energy / field.energy;
+        press->volume = volume.energy;
+        press->swept = volume.force;
+        press->swept_moment = tl_v3_add(volume.moment, tl_v3_cross(p->origin, volume.force));
+    }
     press->area = sqrt(area * area + of->min_area * of->min_area);
-    press->overlap = 2 * force / press->area;
+    press->overlap = of->volumes ? 4 * field.energy / volume.energy : 2 * force / press->area;
     press->deepest = 2 * sums->deepest;
     press->stiffness = fmax(sums->stiffness, press->area);
     tl_vec3 centre = tl_v3_scale(1 / sums->pressure, sums->pressed);
@@ -383,7 +409,7 @@ static void begin(const tl_press_query *of, tl_vec3 origin, planes *p)
 {
     p->origin = origin;
     list_field(p, of);
-    p->faces.energy_only = !(of->min_area > 0);
+    p->faces.energy_only = !(of->min_area > 0 || of->volumes);
     p->faces.mesh = has_shared_planes(of) ? NULL : of->region->mesh;
     p->faces.inner = NULL;
 }

@@ -42,6 +42,7 @@ typedef struct tl_press_query {
         shift; /* how far both faces `shifted` together are moved out by an initial stress and by slip, m */
     tl_face_pair shifted; /* each goes half of the way */
     bool corners;         /* the patch has points at its corners only */
+    bool volumes; /* for a law whose pressure is not proportional to the overlap: see press.c */
 } tl_press_query;
 
 /* The presses of some pairs, up to TL_FIELD_PAIRS: 0 where the blocks have nothing in common. false: out of memory. */

@@ -31,7 +31,7 @@ static tl_press press_of(scene *s)
     tl_press press;
     CHECK(tl_region_find(view, s->margin * view->size, &s->pair.scratch, &region));
     CHECK(tl_press_find(
-        &(tl_press_query){view, &region, s->least, s->shift, shifted_of(&region), false}, 1,
+        &(tl_press_query){view, &region, s->least, s->shift, shifted_of(&region), false, false}, 1,
         &s->pair.scratch, &press));
     return press;
 }
@@ -157,7 +157,7 @@ TEST(slopes_go_on_with_the_press)
         CHECK(tl_region_find(view, s.margin * view->size, &s.pair.scratch, &region));
         const tl_face_pair shifted = shifted_of(&region);
         if (at.area > 0) {
-            CHECK(tl_press_slope_find(&(tl_press_query){view, &region, s.least, s.shift, shifted, false},
+            CHECK(tl_press_slope_find(&(tl_press_query){view, &region, s.least, s.shift, shifted, false, false},
                                       &at, &s.pair.scratch, &slope));
             CHECK(slope.known);
             nudge(&s, &at, 0.5 * TL_PRESS_NEAR, &seed);

@@ -16,8 +16,7 @@
  *
  * Energy turned to heat: the work of slip, less what it stores in the normal spring by opening the joint.
  *
- * Limits: slip back opens the joint further, and wears it as slip forth does. The normal spring is not linear: the stored energy
- * of field contacts, which the host has from a linear pressure, is not its own there. */
+ * Limits: slip back opens the joint further, and wears it as slip forth does. */
 #include <talus/kit.h>
 #include <talus/version.h>
 
@@ -408,7 +407,21 @@ static void across_gap(const void *self, const tl_law_batch *batch, double *lift
     tl_law_hold_none(batch, hold);
 }
 
-static const tl_law_ops ops = TL_LAW_OPS(.pulls = tl_pulls_none, .across_gap = across_gap);
+/* Energy of the springs that press. */
+static void pressed(const void *self, const tl_law_batch *batch, double *energy)
+{
+    const rough law = *(const rough *)self;
+    const double *restrict opening = batch->state[1];
+#pragma omp simd
+    for (uint32_t i = 0; i < batch->count; i++) {
+        double area = batch->area[i], per = area > 0 ? 1 / area : 0;
+        double v = closure_of(&law, batch->f_n0[i] * per) + batch->closure[i] + opening[i];
+        energy[i] = v > 0 ? area * energy_at(&law, v) : 0;
+    }
+}
+
+static const tl_law_ops ops =
+    TL_LAW_OPS(.pulls = tl_pulls_none, .across_gap = across_gap, .pressed = pressed);
 
 static const tl_kind kind = TL_KIND(
     TL_KIND_LAW, ops, .name = "barton_bandis",

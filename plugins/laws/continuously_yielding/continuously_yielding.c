@@ -17,8 +17,7 @@
  * Source: Cundall and Hart, report to Itasca (1984), and Eng. Comput. 9 (1992) 101-113;
  * Cundall and Lemos, in Rockbursts and Seismicity in Mines (1990) 107-112.
  *
- * Limits: the normal spring is elastic. Trembling about a point counts as reversals. The stored energy of field contacts, which
- * the host has from a linear pressure, is not its own with en > 0. */
+ * Limits: the normal spring is elastic. Trembling about a point counts as reversals. */
 #include <talus/kit.h>
 #include <talus/version.h>
 
@@ -473,7 +472,21 @@ static void across_gap(const void *self, const tl_law_batch *batch, double *lift
     tl_law_hold_none(batch, hold);
 }
 
-static const tl_law_ops ops = TL_LAW_OPS(.pulls = tl_pulls_none, .across_gap = across_gap);
+/* Energy of the springs that press. */
+static void pressed(const void *self, const tl_law_batch *batch, double *energy)
+{
+    const yielding law = *(const yielding *)self;
+    const int curved = law.en > 0;
+    const double *restrict opening = batch->state[2];
+    for (uint32_t i = 0; i < batch->count; i++) {
+        double area = batch->area[i], per = area > 0 ? 1 / area : 0;
+        double v = closure_of(curved, &law, batch->f_n0[i] * per) + batch->closure[i] + opening[i];
+        energy[i] = v > 0 ? area * energy_at(&law, v, stress_at(curved, &law, v)) : 0;
+    }
+}
+
+static const tl_law_ops ops =
+    TL_LAW_OPS(.pulls = tl_pulls_none, .across_gap = across_gap, .pressed = pressed);
 
 static const tl_kind kind = TL_KIND(
     TL_KIND_LAW, ops, .name = "continuously_yielding",
