@@ -32,7 +32,6 @@ NUMBERS = [
     ("core/narrow/press_slope.h", "TL_PRESS_SLOPE_COST", 12, "within 5e-5 o for twelve steps"),
     ("core/narrow/frame2.h", "TL_STRAIGHT", 1e-4, "turns by less than 1e-4 rad"),
     ("core/narrow/frame2.h", "TL_CORNER", 2e-3, "Between 1e-4 and 2e-3 rad"),
-    ("core/force/partly_open.c", "MOST_CORNERS", 16, "patches of up to 16 corners"),
     ("core/model/bodies.c", "ROUND_COEFFICIENT", 0.4, "I = 0.4 m r̄²"),
     ("core/cycle/rates.c", "FLOOR", 0.15, "min(1, max(0.15, s)) ω²"),
     ("core/cycle/rates.c", "TWICE_AS_DEEP", 4, "k = 4 max(kn, ks) max("),

@@ -79,11 +79,11 @@ refused("es > 0 needs ks_max, the largest shear stiffness", {}, "ks_max")
 refused("en = 1 is outside [0, 1)", { en = 1 })
 refused("roughness = 0 m must be > 0", { roughness = 0 })
 
--- In a model: a block on a slope between the two angles holds, and slides once shaking has worn the joint.
+-- In a model: a slab, too flat to rock, on a slope between the two angles holds, and slides once shaking has worn the joint.
 local G, SLOPE = 10, math.rad(35)
 local model = talus.model { gravity = { G * math.sin(SLOPE), 0, -G * math.cos(SLOPE) } }
 model:generate("box", { min = { 0, 0, 0 }, max = { 20, 4, 1 }, density = 2500 })
-model:generate("box", { min = { 1, 1, 1 }, max = { 3, 3, 3 }, density = 2500 })
+model:generate("box", { min = { 1, 1, 1 }, max = { 3, 3, 1.5 }, density = 2500 })
 local base = model:blocks { below = { dip = 0, dip_direction = 0, origin = { 0, 0, 1 } } }
 base:fix()
 local block = model:blocks { fixed = false }
@@ -97,11 +97,11 @@ model:solve { ratio = 0, max_time = 1.5 }
 base:drive { velocity = { 0, 0, 0 } }
 model:solve { ratio = 0, max_time = 0.5 }
 check.holds(block[1].velocity[1] > 0.5, "it slides")
--- undamped, it rocks and hops: the friction is that of the forces
+-- undamped, it trembles: the friction is that of the forces
 local along, normal = 0, 0
 for _ = 1, 500 do
     model:cycle(1)
     along = along - model:contacts():sum "shear_force"[1]
     normal = normal + model:contacts():sum "normal_force"
 end
-check.near(along / normal, math.tan(math.rad(PHI)), 0.01)
+check.near(along / normal, math.tan(math.rad(PHI)), 1e-3)
