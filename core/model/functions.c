@@ -43,8 +43,9 @@ static const tl_param model_params[] = {
              .def = {1.0}),
     TL_PARAM(
         TL_PARAM_ENUM, tl_model_config, contact_points, "",
-        "where the points of a face-face contact lie: also inside, exact for linear gaps, or at "
-        "the corners only",
+        "where the points of a face-face contact lie: also inside, which integrates the pressure "
+        "of elastic faces exactly, or at the corners only, up to a tilt of 5 degrees: springs as "
+        "those of rigid statics, and of rigid blocks of 3DEC; docs/how_stiff.md compares both",
         .def = {TL_POINTS_CONSISTENT}, .choices = point_names),
 };
 
