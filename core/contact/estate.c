@@ -6,6 +6,7 @@
 #include "contact/estate.h"
 
 #include "base/columns.h"
+#include "contact/facing.h"
 #include "contact/places.h"
 #include "contact/points.h"
 #include "contact/presses.h"
@@ -81,9 +82,13 @@ void tl_estate_keep(tl_model *m, uint32_t c, const tl_testator *a, const tl_test
         estate->face[0] = tl_m3_mul(a->r, facet->na);
         estate->face[1] = tl_m3_mul(b->r, facet->nb);
     }
+    tl_facing_place to = {*a->r, {0, 0, 0}};
+    if (!estate->field)
+        to = tl_facing_ride(a->r, b->r, tl_v3_sub(b->place, a->place), &facet->laid.turn,
+                            facet->laid.shift, facet->ride);
     for (size_t k = 0; k < estate->count; k++) {
         tl_vec3 p = tl_columns_get(d->points.p, tl_point_row(&d->contacts, c, k));
-        tl_vec3 place = tl_v3_add(a->place, tl_m3_mul(a->r, p));
+        tl_vec3 place = tl_v3_add(tl_v3_add(a->place, to.at), tl_m3_mul(&to.to, p));
         d->left_points[d->left_count++] = tl_point_as_old(&d->points, &d->contacts, c, k, place);
     }
     if (estate->field)

@@ -22,12 +22,25 @@ static body_frames body_frames_of(const tl_model *m, uint32_t c)
                          .d = tl_body_apart(&m->bodies, a, b)};
 }
 
+/* Where points of A's frame are. */
+static tl_facing_place place_of(const tl_facet *f, const body_frames *frames)
+{
+    if (f->kind == TL_FACET_FIELD)
+        return (tl_facing_place){*frames->ra, {0, 0, 0}};
+    return tl_facing_ride(frames->ra, frames->rb, frames->d, &f->laid.turn, f->laid.shift, f->ride);
+}
+
+static tl_vec3 placed(const tl_facing_place *place, tl_vec3 p)
+{
+    return tl_v3_add(tl_m3_mul(&place->to, p), place->at);
+}
+
 static tl_facing facing_of(const tl_facet *f, const body_frames *frames)
 {
     if (f->kind == TL_FACET_FIELD)
         return tl_facing_field(tl_m3_mul(frames->ra, f->na), f->offset);
     return tl_facing_patch(tl_m3_mul(frames->ra, f->na), tl_m3_mul(frames->rb, f->nb), frames->d,
-                           f->offset);
+                           f->offset, f->ride);
 }
 
 void tl_contact_places(const tl_model *m, uint32_t contact, const tl_point_lanes *l)
@@ -36,9 +49,10 @@ void tl_contact_places(const tl_model *m, uint32_t contact, const tl_point_lanes
     const tl_points_table *p = &m->detect->points;
     body_frames frames = body_frames_of(m, contact);
     tl_facing to = facing_of(&contacts->facet[contact], &frames);
+    tl_facing_place place = place_of(&contacts->facet[contact], &frames);
     for (size_t k = 0; k < contacts->point_count[contact]; k++) {
         size_t row = tl_point_row(contacts, contact, k);
-        tl_vec3 x = tl_m3_mul(frames.ra, tl_columns_get(p->p, row));
+        tl_vec3 x = placed(&place, tl_columns_get(p->p, row));
         tl_columns_put(l->arm, k, x);
         tl_columns_put(l->normal, k, to.n);
         l->closure[k] = to.offset - tl_v3_dot(to.plane, x) - (p->reference ? p->reference[row] : 0);
@@ -50,10 +64,11 @@ void tl_contact_point_places(const tl_model *m, uint32_t contact, tl_vec3 *place
     const tl_contacts *contacts = &m->detect->contacts;
     body_frames frames = body_frames_of(m, contact);
     tl_facing to = facing_of(&contacts->facet[contact], &frames);
+    tl_facing_place at = place_of(&contacts->facet[contact], &frames);
     tl_vec3 from = tl_body_place(&m->bodies, m->blocks.body[contacts->a[contact]]);
     for (size_t k = 0; k < contacts->point_count[contact]; k++) {
         size_t row = tl_point_row(contacts, contact, k);
-        tl_vec3 x = tl_m3_mul(frames.ra, tl_columns_get(m->detect->points.p, row));
+        tl_vec3 x = placed(&at, tl_columns_get(m->detect->points.p, row));
         place[k] = tl_v3_add(from, x);
         gap[k] = tl_v3_dot(to.plane, x) - to.offset;
     }
@@ -70,7 +85,7 @@ void tl_contact_begin(tl_model *m, uint32_t contact, const tl_point_lanes *l)
 /* The smallest gap at a corner of a patch whose points are drawn in towards its centroid, the last of them; else that of its
  * points. */
 static double corner_gap(const tl_model *m, uint32_t contact, const tl_facing *to,
-                         const body_frames *frames, double gap)
+                         const tl_facing_place *place, double gap)
 {
     const tl_contacts *contacts = &m->detect->contacts;
     const tl_points_table *p = &m->detect->points;
@@ -79,10 +94,10 @@ static double corner_gap(const tl_model *m, uint32_t contact, const tl_facing *t
            last = tl_point_row(contacts, contact, count - 1);
     if (f->kind != TL_FACET_PATCH || count < 2 || p->key[last] != tl_centroid_key(f->ia, f->ib))
         return gap;
-    double centre = tl_v3_dot(to->plane, tl_m3_mul(frames->ra, tl_columns_get(p->p, last)));
+    double centre = tl_v3_dot(to->plane, placed(place, tl_columns_get(p->p, last)));
     for (size_t k = count / 2; k < count - 1; k++) {
         size_t i = tl_point_row(contacts, contact, k);
-        double at = tl_v3_dot(to->plane, tl_m3_mul(frames->ra, tl_columns_get(p->p, i)));
+        double at = tl_v3_dot(to->plane, placed(place, tl_columns_get(p->p, i)));
         gap = fmin(gap, centre + (at - centre) / tl_point_rule_of(false).reach - to->offset);
     }
     return gap;
@@ -97,18 +112,19 @@ void tl_contact_summary(const tl_model *m, uint32_t contact, tl_vec3 *normal, tl
     uint32_t body = m->blocks.body[contacts->a[contact]];
     body_frames frames = body_frames_of(m, contact);
     tl_facing to = facing_of(f, &frames);
+    tl_facing_place place = place_of(f, &frames);
     tl_vec3 x = {0, 0, 0};
     double area = 0;
     size_t count = contacts->point_count[contact];
     *gap = INFINITY;
     for (size_t k = 0; k < count; k++) {
         size_t i = tl_point_row(contacts, contact, k);
-        tl_vec3 at = tl_m3_mul(frames.ra, tl_columns_get(p->p, i));
+        tl_vec3 at = placed(&place, tl_columns_get(p->p, i));
         x = tl_v3_madd(x, p->area[i], at);
         area += p->area[i];
         *gap = fmin(*gap, tl_v3_dot(to.plane, at) - to.offset);
     }
-    *gap = corner_gap(m, contact, &to, &frames, *gap);
+    *gap = corner_gap(m, contact, &to, &place, *gap);
     if (f->kind == TL_FACET_FIELD && contacts->point_count[contact] > 0)
         *gap = -m->detect->press[contacts->press[contact]].press.deepest;
     *normal = f->last;

@@ -193,6 +193,8 @@ static bool facet_is_sound(const tl_model *m, const tl_detect *d, uint32_t row)
     bool field = f->kind == TL_FACET_FIELD;
     if (!field && f->kind != TL_FACET_PATCH)
         return false;
+    if (!(f->ride >= 0 && f->ride <= 1))
+        return false;
     if (c->point_count[row] == 0)
         return f->ia < TL_POLY_MAX_FACES && f->ib < TL_POLY_MAX_FACES;
     if (field)

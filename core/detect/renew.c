@@ -132,10 +132,14 @@ static tl_shear shear_in(const shear_lanes *s, const tl_patch_batch *batch, uint
 }
 
 /* What else a contact keeps of its patch. */
-static void note_patch(tl_model *m, uint32_t c, double area)
+static void note_patch(tl_model *m, uint32_t c, const tl_patch_batch *batch, uint32_t l,
+                       double area)
 {
     tl_contacts *contacts = &m->detect->contacts;
     contacts->area[c] = area;
+    contacts->facet[c].ride = batch->ride[l];
+    contacts->facet[c].laid.turn = tl_lanes9_get(&batch->turn, l);
+    contacts->facet[c].laid.shift = tl_lanes3_get(&batch->shift, l);
     contacts->new_points[c] = TL_POINTS_PLACED;
     tl_contact_allow_reuse(m, c);
 }
@@ -161,7 +165,7 @@ static void take_lanes(tl_model *m, const tl_simd_group *group, const tl_patch_b
             tl_shear_resized(m, c, &old, &fresh);
         }
         if (now >> l & 1)
-            note_patch(m, c, t->area[l]);
+            note_patch(m, c, batch, l, t->area[l]);
     }
 }
 

@@ -283,7 +283,7 @@ static bool is_valid(const tl_model *m, uint32_t c, double *valid_to, double way
 /* ---------------------------------------------------------------- patches ----------------- */
 
 /* Puts a patch in the place of the contact's, whose points are the same. */
-static void refit_patch(tl_model *m, uint32_t c, const tl_patch_points *g)
+static void refit_patch(tl_model *m, uint32_t c, const tl_patch_points *g, const tl_facet *laid)
 {
     tl_points_table *p = &m->detect->points;
     double area = 0, *whole = &m->detect->contacts.area[c];
@@ -297,6 +297,8 @@ static void refit_patch(tl_model *m, uint32_t c, const tl_patch_points *g)
         resize(p, i, g->area[k]);
     }
     *whole = area;
+    m->detect->contacts.facet[c].ride = laid->ride;
+    m->detect->contacts.facet[c].laid = laid->laid;
     if (same)
         return;
     tl_shear now = tl_shear_of(m, c);
@@ -338,7 +340,7 @@ static bool renew_patch(tl_model *m, uint32_t c, unsigned thread)
     const tl_patch_points *g = &scratch->patch;
     size_t begin = contacts->point_start[c];
     if (g->count == contacts->point_count[c] && same_keys(&m->detect->points, begin, g)) {
-        refit_patch(m, c, g);
+        refit_patch(m, c, g, &scratch->manifold.facet);
         contacts->new_points[c] = TL_POINTS_PLACED;
         return true;
     }

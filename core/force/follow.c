@@ -1,9 +1,14 @@
 /* follow.c - what a step does with every contact whose points stand: gaps, normals and relative motion of its points in the
  * present place.
  *
- * Shear forces are turned with the common plane, exactly from the old normal to the new and by the bodies' mean spin
- * about it; (5) of Hart, Cundall and Lemos (1988) is the first order of this. Two bodies that turn as one make no
- * slip, and their forces turn with them.
+ * Shear forces are turned with the common plane, exactly from the old normal to the new and by its spin about it; (5) of
+ * Hart, Cundall and Lemos (1988) is the first order of this. Two bodies that turn as one make no slip, and their forces turn
+ * with them.
+ *
+ * The points of a patch ride: they lie between where A and B have carried them since they were laid, nearer to B by the share
+ * s, `ride` of the facet. The common plane turns with A by s and with B by 1 - s. Then normal forces are the gradient of the energy
+ * of the points' overlaps, and the tangent stiffness is symmetric under any normal and shear force. Points that stayed in A's
+ * frame with forces along the bisector would give and take energy.
  *
  * Eight contacts are worked on side by side (tl_simd_group). What is the same for all points of a contact is brought into
  * matrices first, one in each lane (frames.c), so that what is left for a point are a few products, in loops over
@@ -158,7 +163,7 @@ static bool look_up(const tl_model *m, const tl_simd_group *group, tl_frame_rows
 }
 
 void tl_simd_group_follow(tl_model *m, const tl_simd_group *group, bool field,
-                          const tl_point_lanes *t, size_t lane, uint32_t tangents)
+                          const tl_point_lanes *t, size_t lane, uint32_t tangents, tl_arms *arms)
 {
     tl_contacts *contacts = &m->detect->contacts;
     columns c = columns_at(&m->detect->points, group->start, t, lane);
@@ -167,10 +172,11 @@ void tl_simd_group_follow(tl_model *m, const tl_simd_group *group, bool field,
     field_rows fields;
     torsions torsion;
     if (look_up(m, group, &rows, &fields)) {
-        tl_frames_put(&f, &rows, field);
+        tl_frames_put(&f, &rows, field, arms);
     } else { /* inert, but finite */
         memset(&f, 0, sizeof f);
         memset(&fields, 0, sizeof fields);
+        memset(arms, 0, sizeof *arms);
     }
     if (field)
         read_torsion(&c, &f, &torsion);

@@ -3,11 +3,13 @@
 #define TL_FORCE_FOLLOW_H
 
 #include "contact/layout.h"
+#include "force/frames.h"
 #include "model/model.h"
 
 /* Gaps, normals and relative motion of the contacts of a SIMD group of patches, or of field contacts, its first point's into lane
  * `lane`; turns shear forces with the common plane, and the states of which `tangents` has a bit. */
 void tl_simd_group_follow(tl_model *m, const tl_simd_group *group, bool field,
-                          const tl_point_lanes *lanes, size_t lane, uint32_t tangents);
+                          const tl_point_lanes *lanes, size_t lane, uint32_t tangents,
+                          tl_arms *arms);
 
 #endif

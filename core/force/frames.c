@@ -68,6 +68,9 @@ enum {
     NB = AT(tl_facet, nb),
     OFFSET = AT(tl_facet, offset),
     LAST = AT(tl_facet, last),
+    RIDE = AT(tl_facet, ride),
+    LAID_TURN = AT(tl_facet, laid.turn),
+    LAID_SHIFT = AT(tl_facet, laid.shift),
     X_REF = AT(tl_pose, x_ref),
     U = AT(tl_pose, u),
     V_MOVED = AT(tl_pose, v_moved),
@@ -165,6 +168,19 @@ TL_INLINE tl_mat3 row_mat3(double (*row)[TL_LANES], size_t l)
                       {row[6][l], row[7][l], row[8][l]}}};
 }
 
+/* Places of the points of the patch in lane l. Arms are then taken from `at`, which costs nothing at each point. */
+TL_INLINE void put_places(tl_frames *f, tl_arms *arms, size_t l, double (*facet)[TL_LANES],
+                          const tl_mat3 *ra, const tl_mat3 *rb, tl_vec3 d)
+{
+    tl_mat3 turn = row_mat3(&facet[LAID_TURN], l), moved = tl_lanes9_get(&f->m, l);
+    tl_facing_place place =
+        tl_facing_ride(ra, rb, d, &turn, row_vec3(facet, LAID_SHIFT, l), facet[RIDE][l]);
+    tl_lanes9_put(&f->to, l, &place.to);
+    tl_lanes3_put(&arms->at, l, place.at);
+    tl_lanes3_put(&f->way, l, tl_v3_add(tl_lanes3_get(&f->way, l), tl_m3_mul(&moved, place.at)));
+    f->offset[l] -= tl_v3_dot(tl_lanes3_get(&f->plane, l), place.at);
+}
+
 /* tan(a/2) / a of the turns of a body in each lane. */
 TL_INLINE void put_tangents(double *restrict tangent, double (*row)[TL_LANES], double dt)
 {
@@ -194,67 +210,76 @@ TL_INLINE tl_vec3 way_between(tl_vec3 v_a, tl_vec3 v_b, double dt)
 
 /* Motion of B against A in the last step, by half their turns; `d` is the way from A's centroid to B's. */
 TL_INLINE void put_motion(tl_frames *f, size_t l, tl_vec3 half_a, tl_vec3 half_b, tl_vec3 way,
-                          tl_vec3 d)
+                          tl_vec3 d, double ride)
 {
     tl_mat3 ma = turn_back(half_a), mb = turn_back(half_b);
     tl_lanes3_put(&f->way, l, tl_v3_sub(way, tl_m3_mul(&mb, d)));
-    tl_lanes3_put(&f->half, l, tl_v3_scale(0.5, tl_v3_add(half_a, half_b)));
+    tl_lanes3_put(&f->half, l, tl_v3_madd(tl_v3_scale(ride, half_a), 1 - ride, half_b));
     tl_mat3 moved = difference(&mb, &ma);
     tl_lanes9_put(&f->m, l, &moved);
 }
 
 /* The same of the bodies of lane l, whose turns have these tangents. */
 TL_INLINE void put_rows_motion(tl_frames *f, size_t l, double (*a)[TL_LANES], double (*b)[TL_LANES],
-                               double tangent_a, double tangent_b, double dt, tl_vec3 d)
+                               double tangent_a, double tangent_b, double dt, tl_vec3 d,
+                               double ride)
 {
     tl_vec3 half_a = half_turn(row_vec3(a, W_MOVED, l), tangent_a, dt);
     tl_vec3 half_b = half_turn(row_vec3(b, W_MOVED, l), tangent_b, dt);
     put_motion(f, l, half_a, half_b,
-               way_between(row_vec3(a, V_MOVED, l), row_vec3(b, V_MOVED, l), dt), d);
+               way_between(row_vec3(a, V_MOVED, l), row_vec3(b, V_MOVED, l), dt), d, ride);
 }
 
 /* `field` is a constant at each call. */
-TL_INLINE void put_all(tl_frames *restrict f, const tl_frame_rows *restrict rows, bool field)
+TL_INLINE void put_all(tl_frames *restrict f, const tl_frame_rows *restrict rows, bool field,
+                       tl_arms *restrict arms)
 {
     double tangent_a[TL_LANES], tangent_b[TL_LANES];
     contacts p;
     transpose_poses(p.a, rows->a);
     transpose_poses(p.b, rows->b);
-    transpose(p.facet, rows->facet, TL_FACET_ROW);
+    transpose(p.facet, rows->facet, field ? TL_FIELD_ROW : TL_FACET_ROW);
     put_tangents(tangent_a, p.a, rows->dt);
     put_tangents(tangent_b, p.b, rows->dt);
 #pragma omp simd
     for (size_t l = 0; l < TL_LANES; l++) {
         tl_vec3 d = rows_apart(p.a, p.b, l);
-        put_rows_motion(f, l, p.a, p.b, tangent_a[l], tangent_b[l], rows->dt, d);
+        double ride = field ? 0.5 : p.facet[RIDE][l];
+        put_rows_motion(f, l, p.a, p.b, tangent_a[l], tangent_b[l], rows->dt, d, ride);
         tl_mat3 ra = row_mat3(p.a, l), rb = row_mat3(p.b, l);
-        tl_lanes9_put(&f->to, l, &ra);
         tl_vec3 na = tl_m3_mul(&ra, row_vec3(p.facet, NA, l));
         tl_vec3 nb = tl_m3_mul(&rb, row_vec3(p.facet, NB, l));
         tl_facing to = field ? tl_facing_field(na, p.facet[OFFSET][l])
-                             : tl_facing_patch(na, nb, d, p.facet[OFFSET][l]);
+                             : tl_facing_patch(na, nb, d, p.facet[OFFSET][l], ride);
         tl_lanes3_put(&f->n, l, to.n);
+        tl_lanes3_put(&arms->push, l, to.push);
         tl_lanes3_put(&f->plane, l, to.plane);
         f->offset[l] = to.offset;
+        if (field)
+            tl_lanes9_put(&f->to, l, &ra);
+        else
+            put_places(f, arms, l, p.facet, &ra, &rb, d);
         tl_lanes3_put(&f->last, l, row_vec3(p.facet, LAST, l));
         put_turn(f, l, row_vec3(p.facet, LAST, l));
     }
 }
 
-TL_VECTORIZED static void put_patches(tl_frames *restrict f, const tl_frame_rows *restrict rows)
+TL_VECTORIZED static void put_patches(tl_frames *restrict f, const tl_frame_rows *restrict rows,
+                                      tl_arms *restrict arms)
 {
-    put_all(f, rows, false);
+    put_all(f, rows, false, arms);
 }
 
-TL_VECTORIZED static void put_fields(tl_frames *restrict f, const tl_frame_rows *restrict rows)
+TL_VECTORIZED static void put_fields(tl_frames *restrict f, const tl_frame_rows *restrict rows,
+                                     tl_arms *restrict arms)
 {
-    put_all(f, rows, true);
+    put_all(f, rows, true, arms);
 }
 
-void tl_frames_put(tl_frames *f, const tl_frame_rows *rows, bool field)
+void tl_frames_put(tl_frames *f, const tl_frame_rows *rows, bool field, tl_arms *arms)
 {
     if (field)
-        put_fields(f, rows);
+        put_fields(f, rows, arms);
     else
-        put_patches(f, rows);
+        put_patches(f, rows, arms);
 }

@@ -6,14 +6,20 @@
 #include "model/model.h"
 #include "narrow/facet.h"
 
+/* Of the contacts of a SIMD group: the force on B of a normal force of 1, and where the arms of the points of a patch begin, from
+ * A's centroid. Those of a field contact begin there. */
+typedef struct tl_arms {
+    tl_lanes3 push, at;
+} tl_arms;
+
 /* One contact in each lane, in its present place, and how its points move. */
 typedef struct tl_frames {
-    tl_lanes9 to; /* from A's frame to the model's axes */
+    tl_lanes9 to; /* of points to their arms */
     tl_lanes3 n, plane;
     double offset[TL_LANES]; /* tl_facing */
     tl_lanes3 last;          /* normal in the last step */
-    /* the motion of B against A in the last step at an arm from A's centroid: way + m arm; the mean spin of
-     * both, as axis times the tangent of half its angle */
+    /* the motion of B against A in the last step at an arm: way + m arm; the spin of the
+     * common plane, as axis times the tangent of half its angle: B's by the share by which points stay with A, A's by the rest */
     tl_lanes3 way, half;
     tl_lanes9 m;
     tl_lanes9 turn; /* how shear forces turn, from the last common plane into the present one */
@@ -27,6 +33,6 @@ typedef struct tl_frame_rows {
 } tl_frame_rows;
 
 /* Brings patches, or field contacts, into their present place. */
-void tl_frames_put(tl_frames *f, const tl_frame_rows *rows, bool field);
+void tl_frames_put(tl_frames *f, const tl_frame_rows *rows, bool field, tl_arms *arms);
 
 #endif

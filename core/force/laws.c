@@ -93,11 +93,11 @@ typedef struct group_sums {
 
 /* Point after point: the same order for every width of the processor's vectors. */
 TL_VECTORIZED static void sum_points(const tl_points_table *p, const tl_point_lanes *t, size_t row,
-                                     size_t lane, size_t slots, group_sums *restrict out)
+                                     size_t lane, size_t slots, const tl_arms *restrict arms,
+                                     group_sums *restrict out)
 {
     const double *f_n = p->f_n + row, *f_x = p->f_s[0] + row, *f_y = p->f_s[1] + row;
-    const double *f_z = p->f_s[2] + row, *n_x = t->normal[0] + lane, *n_y = t->normal[1] + lane;
-    const double *n_z = t->normal[2] + lane, *x = t->arm[0] + lane, *y = t->arm[1] + lane;
+    const double *f_z = p->f_s[2] + row, *x = t->arm[0] + lane, *y = t->arm[1] + lane;
     const double *z = t->arm[2] + lane, *stored = t->stored + lane, *heat = t->dissipated + lane;
     const double *closure = t->closure + lane;
     const double *reference = p->reference ? p->reference + row : t->zero + lane;
@@ -106,22 +106,27 @@ TL_VECTORIZED static void sum_points(const tl_points_table *p, const tl_point_la
 #pragma omp simd
         for (size_t l = 0; l < TL_LANES; l++) {
             size_t i = at + l;
-            double gx = f_x[i] + f_n[i] * n_x[i];
-            double gy = f_y[i] + f_n[i] * n_y[i];
-            double gz = f_z[i] + f_n[i] * n_z[i];
+            double gx = f_x[i] + f_n[i] * arms->push.x[l];
+            double gy = f_y[i] + f_n[i] * arms->push.y[l];
+            double gz = f_z[i] + f_n[i] * arms->push.z[l];
             s.force[0][l] += gx;
             s.force[1][l] += gy;
             s.force[2][l] += gz;
             s.moment[0][l] += y[i] * gz - z[i] * gy;
             s.moment[1][l] += z[i] * gx - x[i] * gz;
             s.moment[2][l] += x[i] * gy - y[i] * gx;
-            double push = closure[i] + reference[i] < 0 ? f_n[i] : 0;
-            s.holds_over_gap[l] += f_n[i] < 0 ? -f_n[i] : push;
+            double apart = closure[i] + reference[i] < 0 ? f_n[i] : 0;
+            s.holds_over_gap[l] += f_n[i] < 0 ? -f_n[i] : apart;
             s.stored[l] += stored[i];
             s.dissipated[l] += heat[i];
         }
 #pragma omp simd
     for (size_t l = 0; l < TL_LANES; l++) {
+        tl_vec3 f = {s.force[0][l], s.force[1][l], s.force[2][l]};
+        tl_vec3 more = tl_v3_cross(tl_lanes3_get(&arms->at, l), f);
+        s.moment[0][l] += more.x;
+        s.moment[1][l] += more.y;
+        s.moment[2][l] += more.z;
         double moment = s.moment[0][l] + s.moment[1][l] + s.moment[2][l];
         s.odd[l] = 0 * (s.force[0][l] + s.force[1][l] + s.force[2][l]) + 0 * moment;
     }
@@ -318,7 +323,7 @@ static void add_parts(const span_job *job, const tl_simd_group *group, const tl_
 
 /* Forces of the contacts of a SIMD group, whose first point is in lane `lane`. */
 static void sum_group(const span_job *job, const tl_simd_group *group, const tl_point_lanes *t,
-                      size_t lane, uint32_t parts)
+                      size_t lane, uint32_t parts, const tl_arms *arms)
 {
     tl_model *m = job->m;
     tl_contacts *contacts = &m->detect->contacts;
@@ -327,7 +332,7 @@ static void sum_group(const span_job *job, const tl_simd_group *group, const tl_
     if (job->span->field)
         sum_fields(job, group, t, lane, &sum);
     else
-        sum_points(&m->detect->points, t, group->start, lane, group->slots, &sum);
+        sum_points(&m->detect->points, t, group->start, lane, group->slots, arms, &sum);
     if (parts)
         add_parts(job, group, t, lane, parts, &sum);
     if (m->cycles % SHEAR_EVERY == 0 && !job->span->field)
@@ -404,6 +409,7 @@ static void force_tile(const span_job *job, const tl_simd_group *groups, size_t 
 {
     size_t first = groups->start, points = 0;
     uint32_t parts[GROUP_CHUNK], any = 0;
+    tl_arms arms[GROUP_CHUNK];
     bool cells = !job->span->field && tl_part_applies(job->m);
     job->phase->keep(job->m, groups, count);
     if (job->changed)
@@ -411,7 +417,8 @@ static void force_tile(const span_job *job, const tl_simd_group *groups, size_t 
     for (size_t r = 0; r < count; r++) {
         if (r < soon)
             tl_simd_group_prefetch(job->m, &groups[count + r]);
-        tl_simd_group_follow(job->m, &groups[r], job->span->field, t, points, job->law->tangents);
+        tl_simd_group_follow(job->m, &groups[r], job->span->field, t, points, job->law->tangents,
+                             &arms[r]);
         if (has_edges(job))
             tl_simd_group_edges(job->m, &groups[r], t, points);
         parts[r] = cells ? tl_simd_group_part(job->m, job->law, &groups[r], t, points) : 0;
@@ -427,7 +434,7 @@ static void force_tile(const span_job *job, const tl_simd_group *groups, size_t 
     if (odd_states(&job->m->detect->points, job->law->columns, first, points) != 0)
         tl_law_check_states(job->m, job->phase->failure, job->law, first, points);
     for (size_t r = 0; r < count; r++)
-        sum_group(job, &groups[r], t, groups[r].start - first, parts[r]);
+        sum_group(job, &groups[r], t, groups[r].start - first, parts[r], &arms[r]);
     if (job->changed && !as_noted(&job->m->detect->points, first, points, t))
         atomic_store_explicit(job->changed, true, memory_order_relaxed);
 }

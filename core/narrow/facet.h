@@ -3,6 +3,7 @@
 #define TL_NARROW_FACET_H
 
 #include "geometry/polyhedron.h"
+#include "narrow/view.h"
 
 #include <talus/vmath.h>
 
@@ -11,12 +12,16 @@ typedef enum tl_facet_kind {
     TL_FACET_FIELD  /* all else: the points are at the centre of the pressure */
 } tl_facet_kind;
 
-/* What the contact points of a contact have in common: their normal, and the way to compute their gaps. A step reads the
+/* What the contact points of a contact have in common: their normal, and the way to compute their gaps and places. A step reads the
  * doubles as one row. */
 typedef struct tl_facet {
     tl_vec3 na, nb; /* outward normals of the faces, own frames; of a field its normal in A's */
     double offset;  /* sum of those of both faces, own frames; of a field its overlap */
     tl_vec3 last;   /* normal when last followed, model's axes */
+    /* of a patch: the share of B's motion against A that its points go along with, 0 where its edges are A's, 1 where they are
+     * B's; and where B was in A's frame when its points were laid */
+    double ride;
+    tl_pair_pose laid;
     uint32_t kind;
     uint16_t ia, ib; /* faces */
 } tl_facet;
@@ -26,7 +31,9 @@ typedef struct tl_facet {
 enum { TL_FIELD_SHEAR, TL_FIELD_TORSION, TL_FIELD_POINTS };
 
 /* Doubles at the head of a facet that a step reads; even, for it reads them in pairs. */
-#define TL_FACET_ROW 10
+#define TL_FACET_ROW 24
+/* The same of a field contact. */
+#define TL_FIELD_ROW 10
 
 /* A contact point as the geometry gives it, in A's frame. */
 typedef struct tl_contact_point {
@@ -40,7 +47,8 @@ typedef struct tl_patch_points {
     double *p[3], *area;
     uint32_t *key;
     size_t count, capacity;
-    double gap; /* the smallest, at a corner */
+    double gap;  /* the smallest, at a corner */
+    double ride; /* see tl_facet */
 } tl_patch_points;
 
 #endif

@@ -33,7 +33,7 @@ static uint32_t next_of(uint32_t i, uint32_t count)
     return i + 1 == count ? 0 : i + 1;
 }
 
-static void add(walk *w, uint32_t key, tl_outline_corner corner)
+static void add(walk *w, uint32_t key, tl_outline_corner corner, uint32_t edge)
 {
     tl_outline *o = w->o;
     if (o->count == TL_OUTLINE_CORNERS) {
@@ -41,6 +41,7 @@ static void add(walk *w, uint32_t key, tl_outline_corner corner)
         return;
     }
     o->key[o->count] = key;
+    o->edge[o->count] = (uint8_t)edge;
     o->corner[o->count++] = corner;
 }
 
@@ -50,17 +51,20 @@ static void add_own(walk *w, uint32_t kind, uint32_t i)
     uint8_t at = (uint8_t)(kind == TL_POINT_A ? i : TL_OUTLINE_CORNERS + i);
     add(w, tl_corner_key(kind, i),
         (tl_outline_corner){
-            .from = at, .to = at, .over = TL_HEIGHT_OWN, .under = TL_HEIGHT_OWN + 1});
+            .from = at, .to = at, .over = TL_HEIGHT_OWN, .under = TL_HEIGHT_OWN + 1},
+        at);
 }
 
-static void add_crossing(walk *w, uint32_t i, uint32_t j)
+/* Adds the corner where edge i of A crosses line j of B, and polygon goes on along `edge`. */
+static void add_crossing(walk *w, uint32_t i, uint32_t j, uint32_t edge)
 {
     uint32_t end = next_of(i, w->na);
     add(w, tl_key_of(TL_POINT_CROSSING, i, TL_EDGE_B + j),
         (tl_outline_corner){.from = (uint8_t)i,
                             .to = (uint8_t)end,
                             .over = (uint8_t)(TL_OUTLINE_CORNERS * j + i),
-                            .under = (uint8_t)(TL_OUTLINE_CORNERS * j + end)});
+                            .under = (uint8_t)(TL_OUTLINE_CORNERS * j + end)},
+        edge);
 }
 
 /* Adds the corners of B from its line j to its line `to`, which must all lie inside A; returns their number. */
@@ -110,12 +114,12 @@ static void go_round(walk *w)
             else
                 first_in = in;
             left_over = none;
-            add_crossing(w, i, in);
+            add_crossing(w, i, in, i);
             on = true;
         }
         if (out != none) {
             w->lost |= !on;
-            add_crossing(w, i, out);
+            add_crossing(w, i, out, TL_OUTLINE_CORNERS + out);
             left_over = out;
             on = false;
         }
@@ -144,6 +148,29 @@ static void find(tl_outline *o, uint32_t na, uint32_t nb)
         o->corner[k] = o->corner[0];
     for (uint32_t k = 0; k < count; k++)
         o->middle_key[k] = tl_key_of(TL_POINT_MIDDLE, o->key[k], o->key[next_of(k, count)]);
+}
+
+/* Of corners on lines, byte i for corner i: the edges both of whose ends are on a line. */
+static uint64_t along(uint64_t on, uint32_t count)
+{
+    return on & (on >> 8 | (on & UINT64_C(0xff)) << 8 * (count - 1));
+}
+
+tl_outline_shared tl_outline_shared_of(uint32_t na, uint32_t nb, uint64_t on_a, uint64_t on_b)
+{
+    tl_outline_shared out = {0, 0};
+    uint64_t a = along(on_a, na), b = along(on_b, nb);
+    for (; a; a &= a - 1) {
+        uint32_t bit = (uint32_t)__builtin_ctzll(a);
+        out.a |= 1u << bit / 8;
+        out.b |= 1u << bit % 8;
+    }
+    for (; b; b &= b - 1) {
+        uint32_t bit = (uint32_t)__builtin_ctzll(b);
+        out.a |= 1u << bit % 8;
+        out.b |= 1u << bit / 8;
+    }
+    return out;
 }
 
 const tl_outline *tl_outline_of(tl_outline *cache, uint32_t na, uint32_t nb, uint64_t inside_a,

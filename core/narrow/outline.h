@@ -24,11 +24,21 @@ typedef struct tl_outline {
     uint32_t count;                               /* of corners; 0: features alone do not tell */
     tl_outline_corner corner[TL_OUTLINE_CORNERS]; /* beyond the last as the first */
     uint32_t key[TL_OUTLINE_CORNERS], middle_key[TL_OUTLINE_CORNERS];
+    /* the edge that leaves the corner: of A's face 0, 1, ..., of B's TL_OUTLINE_CORNERS, ... */
+    uint8_t edge[TL_OUTLINE_CORNERS];
 } tl_outline;
 
 /* Remembers what it finds in `cache`, a table of TL_OUTLINES. Byte i of `inside_a`: the lines of B, a bit
  * each, which corner i of A lies inside; the same with `inside_b`. */
 #define TL_OUTLINES 128
+
+/* Edges of two faces that lie along each other, a bit each. */
+typedef struct tl_outline_shared {
+    uint32_t a, b;
+} tl_outline_shared;
+
+/* By which corners lie on which lines, as with `inside_a` and `inside_b`. */
+tl_outline_shared tl_outline_shared_of(uint32_t na, uint32_t nb, uint64_t on_a, uint64_t on_b);
 const tl_outline *tl_outline_of(tl_outline *cache, uint32_t na, uint32_t nb, uint64_t inside_a,
                                 uint64_t inside_b);
 

@@ -192,6 +192,36 @@ static size_t clip_faces(const tl_pair_view *view, uint32_t fa, uint32_t fb, con
     return tl_polygon_clip(p, na, nb, one->near);
 }
 
+/* Whether the edge of the polygon that is edge `edge` of one face lies along an edge of the other. */
+static bool coincides(const struct tl_polygon *p, uint32_t na, uint32_t nb, uint32_t edge,
+                      double near)
+{
+    bool of_b = edge >= TL_EDGE_B;
+    uint32_t i = of_b ? edge - TL_EDGE_B : edge, own = of_b ? nb : na, others = of_b ? na : nb;
+    const tl_point2 *face = of_b ? p->clip : p->face, *other = of_b ? p->face : p->clip;
+    for (uint32_t j = 0; j < others; j++)
+        if (tl_edges_coincide(face[i], face[i + 1 == own ? 0 : i + 1], other[j],
+                              other[j + 1 == others ? 0 : j + 1], near))
+            return true;
+    return false;
+}
+
+/* The share by which the points of a polygon go along with B: that of the fan area over edges of B. When B moves against A by u
+ * in the plane, the centroid of the polygon moves by this times u, in the mean over the directions of u. */
+static double ride_of(const struct tl_polygon *p, size_t count, uint32_t na, uint32_t nb,
+                      tl_point2 centroid, double near)
+{
+    double whole = 0, of_b = 0;
+    for (size_t i = 0; i < count; i++) {
+        const tl_corner *here = &p->now[i], *after = &p->now[i + 1 == count ? 0 : i + 1];
+        double fan = 0.5 * tl_cross2(centroid, here->at, after->at);
+        fan = fan > 0 ? fan : 0;
+        whole += fan;
+        of_b += fan * tl_edge_ride(here->edge >= TL_EDGE_B, coincides(p, na, nb, here->edge, near));
+    }
+    return of_b / whole;
+}
+
 /* Makes room for `count` points. */
 static bool reserve(tl_patch_points *out, size_t count)
 {
@@ -264,6 +294,8 @@ double tl_patch_lay(const tl_pair_view *view, uint32_t fa, uint32_t fb, const tl
     double area = count >= 3 ? area_of(p->now, count, &one.centroid) : 0;
     if (!(area > one.least))
         return 0;
+    scratch->patch.ride = ride_of(p, count, tl_poly_face_size(a, fa), tl_poly_face_size(b, fb),
+                                  one.centroid, one.near);
     tl_frame2_move(&one.frame, one.a, one.b, one.centroid);
     scratch->patch.gap = least_gap(&one, p->now, count);
     if (scratch->patch.gap > one.reach)
@@ -290,7 +322,9 @@ double tl_patch_add(const tl_pair_view *view, uint32_t fa, uint32_t fb, const tl
                           .ib = (uint16_t)fb,
                           .na = view->a->plane[fa].normal,
                           .nb = plane.normal,
-                          .offset = view->a->plane[fa].offset + plane.offset};
+                          .offset = view->a->plane[fa].offset + plane.offset,
+                          .ride = from->ride,
+                          .laid = {view->turn, view->shift}};
     for (size_t i = 0; i < from->count; i++)
         m->points[m->point_count++] = (tl_contact_point){
             .p = tl_columns_get(from->p, i), .area = from->area[i], .key = from->key[i]};

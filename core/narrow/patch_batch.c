@@ -83,10 +83,11 @@ typedef struct work {
     _Alignas(64) frames frame;
     tl_batch1 x[2 * CORNERS], y[2 * CORNERS]; /* of the faces */
     tl_batch1 height[CORNERS * CORNERS + 2];
-    uint64_t inside_a[TL_LANES], inside_b[TL_LANES];
+    uint64_t inside_a[TL_LANES], inside_b[TL_LANES], on_a[TL_LANES], on_b[TL_LANES];
     /* of the polygon: corners, the first once more after the last; edges from corner k - 1 to k in row k */
     tl_batch1 count, px[CORNERS + 1], py[CORNERS + 1], fan[CORNERS + 1];
-    tl_batch1 cx, cy, area; /* centroid; area in the plane */
+    tl_batch1 cx, cy, area;  /* centroid; area in the plane */
+    tl_batch1 of_b[CORNERS]; /* share by which the edge that leaves corner k is B's */
     corner_source source[CORNERS];
     uint32_t na, nb, corners; /* most of any lane */
 } work;
@@ -185,12 +186,13 @@ TL_INLINE void project_b(tl_patch_batch *b, work *w, uint32_t j)
     }
 }
 
-/* Notes which corners of a face, from row `first` on, lie inside the line from row `from` to row `to`, in bit `bit` of
- * each corner's byte; those on the line do unless it is `strict`. */
+/* Notes which corners of a face, from row `first` on, lie inside the line from row `from` to row `to`, and which on it, in
+ * bit `bit` of each corner's byte; those on the line lie inside unless it is `strict`. */
 TL_INLINE void note_inside(const tl_patch_batch *b, work *w, uint32_t first, uint32_t count,
                            uint32_t from, uint32_t to, uint32_t bit, bool strict)
 {
     uint64_t *restrict inside = strict ? w->inside_b : w->inside_a;
+    uint64_t *restrict on_line = strict ? w->on_b : w->on_a;
     tl_batch1 on, dx, dy;
 #pragma omp simd
     EACH_LANE(l)
@@ -198,7 +200,6 @@ TL_INLINE void note_inside(const tl_patch_batch *b, work *w, uint32_t first, uin
         dx[l] = w->x[to][l] - w->x[from][l];
         dy[l] = w->y[to][l] - w->y[from][l];
         on[l] = b->near[l] * b->near[l] * (dx[l] * dx[l] + dy[l] * dy[l]);
-        on[l] = strict ? on[l] : -on[l];
     }
     for (uint32_t i = 0; i < count; i++) {
         const double *restrict x = w->x[first + i], *restrict y = w->y[first + i];
@@ -212,7 +213,8 @@ TL_INLINE void note_inside(const tl_patch_batch *b, work *w, uint32_t first, uin
             if (!strict)
                 height[l] = h;
             double square = h * fabs(h); /* roots cost more */
-            inside[l] |= one & -(uint64_t)(strict ? square > on[l] : square >= on[l]);
+            inside[l] |= one & -(uint64_t)(strict ? square > on[l] : square >= -on[l]);
+            on_line[l] |= one & -(uint64_t)(fabs(square) <= on[l]);
         }
     }
 }
@@ -228,7 +230,7 @@ TL_VECTORIZED static void find_inside(tl_patch_batch *b, work *w)
     {
         w->height[TL_HEIGHT_OWN][l] = 0;
         w->height[TL_HEIGHT_OWN + 1][l] = -1;
-        w->inside_a[l] = w->inside_b[l] = 0;
+        w->inside_a[l] = w->inside_b[l] = w->on_a[l] = w->on_b[l] = 0;
     }
     for (uint32_t i = 0; i < w->na; i++)
         project_a(b, w, i);
@@ -240,6 +242,16 @@ TL_VECTORIZED static void find_inside(tl_patch_batch *b, work *w)
         note_inside(b, w, CORNERS, w->nb, i, i + 1 < w->na ? i + 1 : 0, i, true);
 }
 
+/* Notes which edges of the outline of lane l are B's; edges beyond its last have no length. */
+static void note_edges(const tl_patch_batch *b, work *w, uint32_t l, uint64_t on_a, uint64_t on_b)
+{
+    const tl_outline *o = &b->outline[l];
+    tl_outline_shared shared = tl_outline_shared_of(b->na[l], b->nb[l], on_a, on_b);
+    uint32_t coincide = shared.a | shared.b << CORNERS;
+    for (uint32_t k = 0; k < o->count; k++)
+        w->of_b[k][l] = tl_edge_ride(o->edge[k] >= CORNERS, coincide >> o->edge[k] & 1);
+}
+
 /* The outlines; lanes without one are not laid. */
 static void find_outlines(tl_patch_batch *b, work *w)
 {
@@ -248,14 +260,18 @@ static void find_outlines(tl_patch_batch *b, work *w)
     const tl_outline *some = NULL;
     for (uint32_t l = 0; l < TL_LANES; l++) {
         w->count[l] = 0;
+        for (uint32_t k = 0; k < CORNERS; k++)
+            w->of_b[k][l] = 0;
         if (!(b->used >> l & 1))
             continue;
         uint32_t na = b->na[l], nb = b->nb[l];
         uint64_t lines_a = each * ((1u << na) - 1), lines_b = each * ((1u << nb) - 1);
-        uint64_t inside_a = w->inside_a[l] & lines_b & ~UINT64_C(0) >> (64 - 8 * na);
-        uint64_t inside_b = w->inside_b[l] & lines_a & ~UINT64_C(0) >> (64 - 8 * nb);
+        uint64_t of_a = lines_b & ~UINT64_C(0) >> (64 - 8 * na);
+        uint64_t of_b = lines_a & ~UINT64_C(0) >> (64 - 8 * nb);
+        uint64_t inside_a = w->inside_a[l] & of_a, inside_b = w->inside_b[l] & of_b;
         const tl_outline *o = tl_outline_of(b->found, na, nb, inside_a, inside_b);
         b->outline[l] = *o; /* another lane's may take its place */
+        note_edges(b, w, l, w->on_a[l] & of_a, w->on_b[l] & of_b);
         some = &b->outline[l];
         b->laid[l] &= o->count > 0;
         w->count[l] = o->count;
@@ -368,12 +384,13 @@ TL_INLINE void weigh(tl_patch_batch *b, work *w)
     }
 }
 
-/* Fan triangles about the centroids, which all must have an area. */
+/* Fan triangles about the centroids, which all must have an area, and the share of it over edges of B. */
 TL_INLINE void lay_fans(tl_patch_batch *b, work *w)
 {
+    tl_batch1 whole, of_b;
 #pragma omp simd
     EACH_LANE(l)
-    w->fan[0][l] = 0;
+    w->fan[0][l] = whole[l] = of_b[l] = 0;
     for (uint32_t k = 0; k < w->corners; k++) {
         double number = k;
 #pragma omp simd
@@ -383,10 +400,15 @@ TL_INLINE void lay_fans(tl_patch_batch *b, work *w)
             tl_point2 q = {w->px[k + 1][l], w->py[k + 1][l]};
             double fan = 0.5 * tl_cross2(o, p, q);
             w->fan[k + 1][l] = fan;
+            whole[l] += fan;
+            of_b[l] += fan * w->of_b[k][l];
             w->fan[0][l] = number + 1 == w->count[l] ? fan : w->fan[0][l];
             b->laid[l] &= (uint64_t)((fan > 0) | (number >= w->count[l]));
         }
     }
+#pragma omp simd
+    EACH_LANE(l)
+    b->ride[l] = of_b[l] / whole[l];
 }
 
 /* Moves the planes into the middle between the faces; patches with every gap beyond reach are not laid. */

@@ -32,6 +32,7 @@ typedef struct tl_patch_batch {
     tl_lanes9 turn; /* as in a tl_pair_view */
     tl_lanes3 shift;
     tl_batch1 area;          /* in all */
+    tl_batch1 ride;          /* tl_facet */
     tl_lanes3 placed_b;      /* B's normal, A's frame */
     tl_batch1 placed_offset; /* B's plane's */
     /* what is not in columns */

@@ -4,6 +4,7 @@
 
 #include "base/inline.h"
 
+#include <stdbool.h>
 #include <stdint.h>
 
 /* Corners nearer to each other than this times the size are one, corners nearer to a line that clips lie on it, and a
@@ -54,6 +55,27 @@ static inline double tl_distance2(tl_point2 a, tl_point2 b)
 static inline tl_point2 tl_from_to(tl_point2 a, tl_point2 b)
 {
     return (tl_point2){b.x - a.x, b.y - a.y};
+}
+
+/* Whether a point lies on the line from o to q, or within `near` of it. */
+TL_INLINE bool tl_on_line(tl_point2 o, tl_point2 q, tl_point2 at, double near)
+{
+    double height = tl_cross2(o, q, at);
+    return height * height <= near * near * tl_distance2(o, q);
+}
+
+/* Whether two edges lie along each other: both ends of one on the line of the other. */
+TL_INLINE bool tl_edges_coincide(tl_point2 from, tl_point2 to, tl_point2 o, tl_point2 q,
+                                 double near)
+{
+    return (tl_on_line(o, q, from, near) && tl_on_line(o, q, to, near)) ||
+           (tl_on_line(from, to, o, near) && tl_on_line(from, to, q, near));
+}
+
+/* Share of an edge of the common polygon by which it is B's: an edge of A that has one of B along it is half B's. */
+static inline double tl_edge_ride(bool of_b, bool coincides)
+{
+    return coincides ? 0.5 : of_b;
 }
 
 /* Where the line from p, at height h over another, to q, at height g, meets that. */

@@ -101,6 +101,16 @@ static void hash_press(tl_hash *hash, const tl_detect *d, uint32_t contact)
     tl_hash_word(hash, row->shift != 0 ? faces : 0);
 }
 
+/* How the points of a patch ride. */
+static void hash_laid(tl_hash *hash, const tl_facet *f)
+{
+    if (f->kind != TL_FACET_PATCH)
+        return;
+    hash_numbers(hash, &f->ride, 1);
+    hash_numbers(hash, &f->laid.turn.m[0][0], 9);
+    hash_numbers(hash, &f->laid.shift.x, 3);
+}
+
 /* In the order of their blocks: which row and lane a contact has depends on when it was made. */
 static void hash_contacts(tl_hash *hash, const tl_model *m)
 {
@@ -116,6 +126,7 @@ static void hash_contacts(tl_hash *hash, const tl_model *m)
                 columns = tl_kind_state_columns(m->joint_laws[law].kind);
             tl_hash_word(hash, (uint64_t)m->blocks.id[block] << 32 | m->blocks.id[c->b[contact]]);
             hash_row(hash, &c->table, contact);
+            hash_laid(hash, &c->facet[contact]);
             hash_press(hash, d, contact);
             for (uint32_t k = 0; k < c->point_count[contact]; k++)
                 hash_point(hash, &d->points, tl_point_row(c, contact, k), columns);

@@ -23,7 +23,7 @@ TEST(a_patch_has_the_bisector_for_its_normal)
     for (double tilt = 0; tilt < 175; tilt += 0.25) {
         double half = 0.5 * tilt * DEGREE;
         tl_vec3 na = {sin(half), 0, cos(half)}, nb = {sin(half), 0, -cos(half)};
-        tl_facing to = tl_facing_patch(na, nb, tl_v3(0, 0, 1), 0);
+        tl_facing to = tl_facing_patch(na, nb, tl_v3(0, 0, 1), 0, 0.5);
         CHECK_NEAR(tl_v3_norm(to.n), 1, ROUNDINGS);
         CHECK_NEAR(tl_v3_norm(tl_v3_sub(to.n, tl_v3(0, 0, 1))), 0, ROUNDINGS);
     }
@@ -38,7 +38,7 @@ TEST(the_overlap_of_a_point_is_what_it_lies_under_both_faces)
         tl_vec3 na = some_direction(&seed), aside = tl_v3_scale(0.05, some_direction(&seed));
         tl_vec3 nb = tl_v3_unit(tl_v3_sub(aside, na)), d = some_direction(&seed);
         double ca = check_random(&seed), cb = check_random(&seed); /* B's about its own centroid */
-        tl_facing to = tl_facing_patch(na, nb, d, ca + cb);
+        tl_facing to = tl_facing_patch(na, nb, d, ca + cb, 0.5);
         tl_vec3 x = some_direction(&seed);
         double under_a = ca - tl_v3_dot(na, x), under_b = cb - tl_v3_dot(nb, tl_v3_sub(x, d));
         CHECK_NEAR(to.offset - tl_v3_dot(to.plane, x), under_a + under_b, 4 * ROUNDINGS);
