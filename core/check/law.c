@@ -37,7 +37,8 @@ const tl_check_rule tl_check_law_rules[] = {
     [TL_LAW_CYCLE] = {"closed cycle", "a closed path of motion gives no energy"},
     [TL_LAW_STATES] = {"states",
                        "each declared state is written, and none while stateless() says so"},
-    [TL_LAW_PULLS] = {"pulls", "no normal force across a gap where pulls() and across_gap() say so"},
+    [TL_LAW_PULLS] = {"pulls",
+                      "no normal force across a gap where pulls() and across_gap() say so"},
     {NULL, NULL},
 };
 

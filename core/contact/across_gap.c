@@ -29,7 +29,8 @@ static void across_gap(const tl_law *law, const tl_law_batch *batch, double *res
     const double *restrict area = batch->area, *restrict f_n0 = batch->f_n0;
     const uint32_t *restrict flags = batch->flags;
     const double kn = law->kn;
-    const uint32_t lost = law->pulls == TL_PULL_ANY ? TL_POINT_APART : TL_POINT_APART | TL_POINT_FAILED;
+    const uint32_t lost =
+        law->pulls == TL_PULL_ANY ? TL_POINT_APART : TL_POINT_APART | TL_POINT_FAILED;
     for (uint32_t i = 0; i < batch->count; i++) {
         double spring = kn * area[i];
         lift[i] = f_n0[i] / (spring > 0 ? spring : 1);

@@ -13,10 +13,12 @@ void tl_points_across_gap(const tl_law *law, const tl_points_table *points, size
 
 /* The same of a contact. */
 typedef struct tl_contact_across {
-    double lift;    /* m, from where its faces lie on each other: mean over what presses, or over all where nothing does */
-    double opening; /* the part of it that is there without an initial force: what slip has opened */
-    double most;    /* the largest lift of a point */
-    bool bonded;    /* some point pulls */
+    double
+        lift; /* m, from where its faces lie on each other: mean over what presses, or over all where nothing does */
+    double
+        opening; /* the part of it that is there without an initial force: what slip has opened */
+    double most; /* the largest lift of a point */
+    bool bonded; /* some point pulls */
 } tl_contact_across;
 
 tl_contact_across tl_contact_across_gap(const tl_model *m, uint32_t contact);

@@ -9,10 +9,10 @@
 /* What is closed and what is apart of the cell of a point, over which the overlap is linear: force/partly_open.c. Beside the
  * means that the law gets are moments about the point and half second moments of u. */
 typedef struct tl_cell {
-    tl_vec3 pressed, apart;               /* m^4 */
-    double pressed_volume, apart_volume;  /* area times the means, m^3 */
-    double pressed_second, apart_second;  /* m^4 */
-    double hold;                          /* share of tension that was held before the law */
+    tl_vec3 pressed, apart;              /* m^4 */
+    double pressed_volume, apart_volume; /* area times the means, m^3 */
+    double pressed_second, apart_second; /* m^4 */
+    double hold;                         /* share of tension that was held before the law */
 } tl_cell;
 
 /* What is known of points only while a step works on them. */

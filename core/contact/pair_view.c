@@ -1,8 +1,6 @@
 /* pair_view.c - what the geometry of a pair gets of the model: where the two blocks are, and the rule of their joint. */
 #include "contact/pair_view.h"
 
-#include "contact/contacts.h"
-
 tl_pair_view tl_pair_view_of(const tl_model *m, uint32_t a, uint32_t b)
 {
     const tl_blocks *blocks = &m->blocks;
@@ -23,11 +21,11 @@ tl_pair_view tl_pair_view_of(const tl_model *m, uint32_t a, uint32_t b)
 tl_touch_rule tl_touch_rule_of(const tl_model *m, const tl_pair_view *view, tl_tag tag, double over)
 {
     tl_min_area_rule rule = tl_min_area_of(m, tag);
-    uint32_t law = tl_law_row(m, tag);
+    const tl_law *law = tl_law_of(m, tag);
     double tolerance = TL_CONTACT_TOLERANCE * TL_CONTACT_RELEASE * view->size;
     bool absolute = !isnan(rule.absolute);
     return (tl_touch_rule){.min_area = absolute ? rule.absolute : rule.fraction * view->mean_face,
                            .corners = m->config.contact_points == TL_POINTS_CORNERS,
-                           .volumes = law != TL_NO_ROW && tl_law_presses(&m->joint_laws[law]),
+                           .volumes = law && tl_law_presses(law),
                            .reach = over + tolerance};
 }

@@ -42,19 +42,16 @@ typedef struct tl_contacts {
 /* What a field contact keeps beside its points. Lengths and forces of the press in A's frame. */
 typedef struct tl_press_row {
     tl_press press;
-    double
-        shift; /* how far its faces `shifted` are moved out by an initial stress and by slip, m */
+    /* How far its faces `shifted` are moved out by an initial stress and by slip, m; what slip has opened of it, by its points. */
+    double shift, opening[TL_FIELD_POINTS];
     tl_face_pair shifted;
-    double opening
-        [TL_FIELD_POINTS]; /* of the points' law, m, as it is in the shift and in the overlap */
     uint32_t next_free;
     double spare
-        [2]; /* energy, times 2 ks, of shear and of torsion beyond that of uniform stress: handover.c */
+        [2]; /* energy of shear and torsion beyond that of uniform stress, times 2 ks: handover.c */
     /* the region: its faces, of the four kinds of tl_region */
-    uint16_t count[4], face[TL_PRESS_FACES];
+    uint16_t count[4], face[TL_PRESS_FACES], blunt_a, blunt_b;
     tl_pair_pose listed_at; /* where they were listed */
     double listed_shift;    /* and with which shift */
-    uint16_t blunt_a, blunt_b;
     bool flush, listed;
     /* It has stayed near a place since some step. When it has stayed for long, its press there has slopes, and it goes by
      * them; otherwise by the mesh of its field: detect/fields.c */

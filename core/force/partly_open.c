@@ -84,8 +84,8 @@ static bool has_all_points(const patch *of)
     bool all = true;
     for (size_t k = 0; k < of->corners && all; k++) {
         size_t one = of->corners + k, next = of->corners + (k + 1) % of->corners;
-        all = (key[k * TL_LANES] ^ faces) == tl_key_of(TL_POINT_MIDDLE, key[one * TL_LANES] ^ faces,
-                                                       key[next * TL_LANES] ^ faces);
+        all = (key[k * TL_LANES] ^ faces) ==
+              tl_key_of(TL_POINT_MIDDLE, key[one * TL_LANES] ^ faces, key[next * TL_LANES] ^ faces);
     }
     return all;
 }
@@ -429,8 +429,8 @@ void tl_simd_group_part_sum(const tl_model *m, const tl_law *law, const tl_simd_
                             const tl_point_lanes *t, size_t lane, uint32_t parts, tl_part_sums *out)
 {
     if (law->pulls != TL_PULL_NONE)
-        tl_points_across_gap(law, &m->detect->points, group->start,
-                             (size_t)group->slots * TL_LANES, t->lift + lane, t->hold + lane);
+        tl_points_across_gap(law, &m->detect->points, group->start, (size_t)group->slots * TL_LANES,
+                             t->lift + lane, t->hold + lane);
     for (uint32_t left = parts; left; left &= left - 1) {
         size_t l = (size_t)__builtin_ctz(left);
         const patch of = {.p = &m->detect->points,

@@ -157,8 +157,9 @@ TEST(slopes_go_on_with_the_press)
         CHECK(tl_region_find(view, s.margin * view->size, &s.pair.scratch, &region));
         const tl_face_pair shifted = shifted_of(&region);
         if (at.area > 0) {
-            CHECK(tl_press_slope_find(&(tl_press_query){view, &region, s.least, s.shift, shifted, false, false},
-                                      &at, &s.pair.scratch, &slope));
+            CHECK(tl_press_slope_find(
+                &(tl_press_query){view, &region, s.least, s.shift, shifted, false, false}, &at,
+                &s.pair.scratch, &slope));
             CHECK(slope.known);
             nudge(&s, &at, 0.5 * TL_PRESS_NEAR, &seed);
             tl_press found = press_of(&s);
