@@ -398,9 +398,11 @@ static void refit_springs(tl_model *m, uint32_t c, const tl_manifold *g)
     tl_vec3 twist = tl_v3_scale(r0, tl_columns_get(p->f_s, torsion));
     double f2 = tl_v3_norm2(force), t2 = tl_v3_norm2(twist);
     double lost = energy_of(f2, old) + energy_of(t2, polar) + row->spare[0] + row->spare[1];
-    for (size_t k = 0; k < TL_FIELD_POINTS; k++) /* what slips is at its limit everywhere */
-        if (p->flags[tl_point_row(contacts, c, k)] & TL_POINT_SLIPPING)
-            row->spare[k] = 0;
+    /* what slips is at its limit everywhere, under a pressure that is not uniform */
+    if (p->flags[first] & TL_POINT_SLIPPING)
+        row->spare[0] = fmin(row->spare[0], energy_of(f2, old));
+    if (p->flags[torsion] & TL_POINT_SLIPPING)
+        row->spare[1] = fmin(row->spare[1], energy_of(t2, polar));
     double stays = resized(f2, old, area, &row->spare[0]);
     double stays_turned = resized(t2, polar, now, &row->spare[1]);
     lost -= energy_of(stays * stays * f2, area) + energy_of(stays_turned * stays_turned * t2, now) +
