@@ -98,7 +98,7 @@ end
 
 -- 1. Convex bodies. Fields are the same to the last digits. Flush parts go over from patches to fields by the overlap over the
 -- size of their own areas, which makes a difference in a strip as wide as the overlap: kn overlap^2 per metre.
-local MOST = tonumber(arg and arg[1]) or 90
+local MOST = tonumber(arg and arg[1]) or 40
 local presses = 0
 for seed = 1, MOST do
     local random = shapes.random(seed)
