@@ -114,32 +114,25 @@ tl_contact_across tl_contact_across_gap(const tl_model *m, uint32_t c)
     const tl_detect *d = m->detect;
     const tl_law *law = law_of(m, c);
     tl_contact_across out = {.most = 0};
-    double pressed[3] = {0}, whole[3] = {0}; /* force or area, with it the lift, and the opening */
+    double pressed[2] = {0}, whole[2] = {0}; /* force or area, and with it the lift */
     if (!law || d->contacts.point_count[c] == 0 || is_plain(d, law))
         return out;
     for (size_t first = 0; first < d->contacts.point_count[c]; first += TL_LANES) {
         sample s;
-        double lift[TL_LANES];
         read_points(&d->points, &d->contacts, c, first, &s);
         ask(law, s.f_n0, &s);
-        memcpy(lift, s.lift, sizeof lift);
-        ask(law, zeros, &s);
         for (size_t l = 0; l < TL_LANES && s.area[l] > 0; l++) {
-            double force = fmax(0, s.f_n[l]), by = lift[l] - s.reference[l];
+            double force = fmax(0, s.f_n[l]), by = s.lift[l] - s.reference[l];
             pressed[0] += force;
             pressed[1] += force * by;
-            pressed[2] += force * s.lift[l];
             whole[0] += s.area[l];
             whole[1] += s.area[l] * by;
-            whole[2] += s.area[l] * s.lift[l];
             out.most = fmax(out.most, by);
             out.bonded = out.bonded || s.hold[l] > 0;
         }
     }
     const double *mean = pressed[0] > 0 ? pressed : whole;
-    double share = mean[0] > 0 ? 1 / mean[0] : 0;
-    out.lift = share * mean[1];
-    out.opening = share * mean[2];
+    out.lift = mean[0] > 0 ? mean[1] / mean[0] : 0;
     return out;
 }
 

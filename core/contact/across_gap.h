@@ -13,11 +13,8 @@ void tl_points_across_gap(const tl_law *law, const tl_points_table *points, size
 
 /* The same of a contact. */
 typedef struct tl_contact_across {
-    double
-        lift; /* m, from where its faces lie on each other: mean over what presses, or over all where nothing does */
-    double
-        opening; /* the part of it that is there without an initial force: what slip has opened */
-    double most; /* the largest lift of a point */
+    /* lifts from where its faces lie on each other, m: the mean over what presses, or over all where nothing does, and the largest */
+    double lift, most;
     bool bonded; /* some point pulls */
 } tl_contact_across;
 

@@ -51,7 +51,8 @@ static void keep_field(tl_model *m, uint32_t c, tl_estate *estate, tl_old_point 
         estate->energy += area > 0 ? tl_v3_norm2(tl_columns_get(p->f_s, i)) / area : 0;
     }
     point->n0 = 0;
-    point->reference = p->f_n0 ? -row->shift : 0;
+    point->reference =
+        p->f_n0 ? row->opening[TL_FIELD_SHEAR] - row->shift : 0; /* the law adds the opening */
 }
 
 void tl_estate_leave(tl_model *m, uint32_t c)

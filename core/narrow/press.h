@@ -45,10 +45,10 @@ typedef struct tl_press_query {
     const tl_pair_view *view;
     const tl_region *region;
     double min_area; /* m^2 */
-    double
-        shift; /* how far both faces `shifted` together are moved out by an initial stress and by slip, m */
-    tl_face_pair shifted; /* each goes half of the way */
-    bool corners;         /* the patch has points at its corners only */
+    /* how far both faces `shifted` together are moved out by an initial stress and by slip, m: each goes half of the way */
+    double shift;
+    tl_face_pair shifted;
+    bool corners; /* the patch has points at its corners only */
     bool volumes; /* for a law whose pressure is not proportional to the overlap: see press.c */
 } tl_press_query;
 
