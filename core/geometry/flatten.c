@@ -1,8 +1,8 @@
 /* flatten.c - facets that lie in one plane become one face.
  *
  * Meshes give a face as triangles, and with corners that miss its plane by the digits of a file or by the warp of a grid. Two
- * faces are one when all their corners miss a plane by less than half of TL_POLY_BENT times the size of both together, and
- * when what each has of area across that plane is less than TL_POLY_TILT of it all. So facets of equal areas may hardly tilt,
+ * faces are one when all their corners miss a plane by less than half of TL_POLY_BENT times the size of both together (twice the
+ * distance of the farthest corner from their mean), and when what each has of area across that plane is less than TL_POLY_TILT of it all. So facets of equal areas may hardly tilt,
  * and a round surface stays one; a sliver knows its normal badly, and may tilt as it likes. Corners that miss a plane by
  * less than TL_POLY_FLAT times the size of the block miss it by nothing. Only facets with one tag are joined.
  *
@@ -115,14 +115,17 @@ static bool order_edges(flattener *w, uint32_t *count)
     return true;
 }
 
-/* What corners span: along a direction, and their bounds. */
+/* What corners span along a direction, and how far the farthest is from a point, squared. */
 typedef struct span {
     double low, high;
-    tl_bounds bounds;
+    tl_vec3 from;
+    double far2;
 } span;
 
-static const span no_span = {
-    INFINITY, -INFINITY, {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}}};
+static span span_from(tl_vec3 from)
+{
+    return (span){INFINITY, -INFINITY, from, 0};
+}
 
 static void add_corners(const tl_poly *p, uint32_t facet, tl_vec3 along, span *s)
 {
@@ -131,8 +134,7 @@ static void add_corners(const tl_poly *p, uint32_t facet, tl_vec3 along, span *s
         double height = tl_v3_dot(along, x);
         s->low = fmin(s->low, height);
         s->high = fmax(s->high, height);
-        s->bounds.min = tl_v3_min(s->bounds.min, x);
-        s->bounds.max = tl_v3_max(s->bounds.max, x);
+        s->far2 = fmax(s->far2, tl_v3_norm2(tl_v3_sub(x, s->from)));
     }
 }
 
@@ -145,16 +147,31 @@ static void add_face(const flattener *w, uint32_t face, tl_vec3 along, span *s)
     } while (f != face);
 }
 
+/* Adds the corners of a face; returns their number. */
+static uint32_t sum_corners(const flattener *w, uint32_t face, tl_vec3 *sum)
+{
+    const tl_poly *p = w->from;
+    uint32_t f = face, count = 0;
+    do {
+        for (uint32_t i = p->start[f]; i < p->start[f + 1]; i++, count++)
+            *sum = tl_v3_add(*sum, p->vertex[p->loop[i]]);
+        f = w->next[f];
+    } while (f != face);
+    return count;
+}
+
 /* Whether two faces are one. */
 static bool are_one(const flattener *w, uint32_t a, uint32_t b)
 {
     tl_vec3 sum = tl_v3_add(w->area[a], w->area[b]), n = tl_v3_unit(sum);
     if (tl_v3_dot(w->area[a], w->area[b]) <= 0)
         return false;
-    span s = no_span;
+    tl_vec3 middle = {0, 0, 0};
+    uint32_t corners = sum_corners(w, a, &middle) + sum_corners(w, b, &middle);
+    span s = span_from(tl_v3_scale(1.0 / corners, middle));
     add_face(w, a, n, &s);
     add_face(w, b, n, &s);
-    double off = 0.5 * (s.high - s.low), size = tl_v3_norm(tl_v3_sub(s.bounds.max, s.bounds.min));
+    double off = 0.5 * (s.high - s.low), size = 2 * sqrt(s.far2);
     if (off <= w->near)
         return true;
     double tilted = tl_v3_norm2(tl_v3_cross(n, w->area[a])); /* that of b is as large */
@@ -335,7 +352,7 @@ static tl_plane plane_of(const flattener *w, uint32_t face)
     } while (f != face);
     bool none = tl_v3_norm2(sum) == 0;
     tl_plane plane = {.normal = tl_poly_normal(none ? w->area[face] : sum)};
-    span s = no_span;
+    span s = span_from(sum);
     do {
         if (none || goes_along(w, f, n))
             add_corners(w->from, f, plane.normal, &s);
