@@ -108,80 +108,6 @@ void tl_estates_sort(tl_detect *d)
         qsort(d->estates, d->estate_count, sizeof *d->estates, compare);
 }
 
-/* ---------------------------------------------------------------- stress in the whole ---- */
-
-/* Sum of x t over the contacts of a block, x from its body's centroid, t on it. */
-typedef struct root_sum {
-    tl_id root;
-    tl_sym3 sum;
-    tl_vec3 place;
-} root_sum;
-
-static int compare_root(const void *x, const void *y)
-{
-    return tl_pair_order(((const root_sum *)x)->root, 0, ((const root_sum *)y)->root, 0);
-}
-
-static void add_force(root_sum *roots, size_t count, tl_id id, tl_vec3 place, tl_vec3 force)
-{
-    root_sum wanted = {.root = id};
-    root_sum *at = bsearch(&wanted, roots, count, sizeof wanted, compare_root);
-    if (!at)
-        return;
-    tl_vec3 x = tl_v3_sub(place, at->place);
-    at->sum.xx += x.x * force.x;
-    at->sum.yy += x.y * force.y;
-    at->sum.zz += x.z * force.z;
-    at->sum.xy += 0.5 * (x.x * force.y + x.y * force.x);
-    at->sum.yz += 0.5 * (x.y * force.z + x.z * force.y);
-    at->sum.zx += 0.5 * (x.z * force.x + x.x * force.z);
-}
-
-bool tl_estates_find_stress(tl_model *m)
-{
-    const tl_detect *d = m->detect;
-    if (!d->points.initial || m->heir_count == 0)
-        return true;
-    root_sum *roots = malloc(m->heir_count * sizeof *roots);
-    if (!roots)
-        return false;
-    for (size_t i = 0; i < m->heir_count; i++)
-        roots[i] = (root_sum){.root = m->heirs[i].root, .place = m->heirs[i].place};
-    qsort(roots, m->heir_count, sizeof *roots, compare_root);
-    size_t count = 1;
-    for (size_t i = 1; i < m->heir_count; i++)
-        if (roots[i].root != roots[count - 1].root)
-            roots[count++] = roots[i];
-    for (size_t i = 0; i < d->estate_count; i++)
-        for (size_t k = 0; k < d->estates[i].count; k++) {
-            const tl_old_point *p = &d->left_points[d->estates[i].first + k];
-            tl_vec3 force =
-                tl_v3_scale(p->area, tl_v3_madd(p->shear, p->f_n, p->normal)); /* on B */
-            add_force(roots, count, d->estates[i].b, p->arm, force);
-            add_force(roots, count, d->estates[i].a, p->arm, tl_v3_neg(force));
-        }
-    for (size_t i = 0; i < m->heir_count; i++) {
-        tl_heir *heir = &m->heirs[i];
-        root_sum wanted = {.root = heir->root};
-        const root_sum *at = bsearch(&wanted, roots, count, sizeof wanted, compare_root);
-        double by = 1 / heir->volume;
-        heir->stress = (tl_sym3){by * at->sum.xx, by * at->sum.yy, by * at->sum.zz,
-                                 by * at->sum.xy, by * at->sum.yz, by * at->sum.zx};
-    }
-    free(roots);
-    return true;
-}
-
-const tl_sym3 *tl_estate_inner_stress(const tl_model *m, uint32_t c)
-{
-    const tl_detect *d = m->detect;
-    if (!d->points.initial || m->heir_count == 0)
-        return NULL;
-    const tl_heir *a = tl_heir_of(m, m->blocks.id[d->contacts.a[c]]);
-    const tl_heir *b = tl_heir_of(m, m->blocks.id[d->contacts.b[c]]);
-    return a && b && a->root == b->root ? &a->stress : NULL;
-}
-
 /* ---------------------------------------------------------------- taken over ------------- */
 
 static tl_id root_of(const tl_model *m, uint32_t row)
@@ -367,7 +293,7 @@ static void sum_forces(tl_model *m)
     const tl_points_table *p = &m->detect->points;
     const tl_point_lanes *lanes = &m->detect->lanes[0];
     for (uint32_t c = 0; c < contacts->table.rows; c++) {
-        if (!tl_estate_of(m, contacts->a[c], contacts->b[c]) && !tl_estate_inner_stress(m, c))
+        if (!tl_estate_of(m, contacts->a[c], contacts->b[c]))
             continue;
         tl_contact_places(m, c, lanes);
         tl_vec3 force = {0, 0, 0}, moment = {0, 0, 0};

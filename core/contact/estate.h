@@ -23,8 +23,6 @@ void tl_estate_keep(tl_model *m, uint32_t contact, const tl_testator *a, const t
 void tl_estate_leave(tl_model *m, uint32_t contact);
 /* Puts estates in the order in which they are looked up. */
 void tl_estates_sort(tl_detect *d);
-/* Finds the mean stress in the blocks that were cut, where there is an initial stress; false when out of memory (nothing changed). */
-bool tl_estates_find_stress(tl_model *m);
 /* What a new contact of two blocks takes over, of which one at least is a part of one that was cut; NULL: nothing. */
 const tl_estate *tl_estate_of(const tl_model *m, uint32_t block_a, uint32_t block_b);
 /* Whether blocks of two rows take over from a patch that held across a gap. */
@@ -35,14 +33,12 @@ bool tl_estate_faces(const tl_model *m, uint32_t block_a, uint32_t block_b, uint
 /* The same for a contact on these faces: not of a patch, if they are no parts of its faces. */
 const tl_estate *tl_estate_on(const tl_model *m, uint32_t block_a, uint32_t block_b,
                               const tl_facet *facet);
-/* The stress on which parts of one block press on each other, where there is an initial stress; or NULL. */
-const tl_sym3 *tl_estate_inner_stress(const tl_model *m, uint32_t contact);
 /* Point k of an estate as an old point of a contact. */
 tl_old_point tl_estate_point(const tl_model *m, const tl_estate *estate, uint32_t contact,
                              size_t k);
 /* Whether the contact's law is of the kind that has kept the states of the estate's points. */
 bool tl_estate_is_of_law(const tl_model *m, const tl_estate *estate, uint32_t contact);
-/* After all parts have taken over their shares and those of one block their stress: together they carry what the whole did, and no more energy. */
+/* After all parts have taken over their shares: together they carry what the whole did, and no more energy. */
 void tl_estates_balance(tl_model *m);
 /* All have been taken over. */
 void tl_estates_end(tl_detect *d);

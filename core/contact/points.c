@@ -146,7 +146,8 @@ bool tl_points_hold_initial(tl_points_table *p)
 {
     if (p->initial)
         return true;
-    const tl_column columns[] = {TL_COLUMN_NEW(p, reference, 0), TL_COLUMN_NEW(p, f_n0, 0)};
+    const tl_column columns[] = {TL_COLUMN_NEW(p, reference, TL_COLUMN_STEP),
+                                 TL_COLUMN_NEW(p, f_n0, TL_COLUMN_STEP)};
     p->initial = tl_table_widen(&p->table, columns, 2);
     return p->initial;
 }

@@ -418,14 +418,13 @@ static void release(tl_model *m, uint32_t c, const totals *before, const totals 
     tl_shear_release(m, c, &old, &fresh);
 }
 
-/* The points of a new contact. Parts of one block press on each other as the rock did that was whole. */
+/* The points of a new contact. */
 static bool begin_points(tl_model *m, uint32_t c, tl_narrow_scratch *scratch,
                          const tl_point_lanes *lanes)
 {
     tl_contacts *contacts = &m->detect->contacts;
     const tl_estate *estate =
         tl_estate_on(m, contacts->a[c], contacts->b[c], &scratch->manifold.facet);
-    const tl_sym3 *stress = tl_estate_inner_stress(m, c);
     if (estate && !reserve(scratch, estate->count))
         return false;
     contacts->facet[c] = scratch->manifold.facet;
@@ -440,11 +439,6 @@ static bool begin_points(tl_model *m, uint32_t c, tl_narrow_scratch *scratch,
     }
     const old_source from = {.count = 0};
     write_points(m, c, &scratch->manifold, &from, NULL, lanes);
-    for (size_t k = 0; k < contacts->point_count[c] && stress; k++)
-        tl_point_load(&m->detect->points, tl_point_row(contacts, c, k), stress,
-                      tl_columns_get(lanes->normal, k), lanes->closure[k]);
-    contacts->holds_over_gap[c] =
-        contacts->holds_over_gap[c] || stress; /* perhaps: the next step tells */
     return true;
 }
 

@@ -42,7 +42,7 @@ static tl_status prepare(tl_model *m, double *dt, bool *driven)
     if (status == TL_OK)
         status = tl_timestep_choose(m, dt);
     tl_phase_ends(m, TL_PHASE_TIMESTEP);
-    if (status == TL_OK && !tl_gather_prepare(m))
+    if (status == TL_OK && !(tl_gather_prepare(m) && tl_split_prepare(m)))
         status = tl_fail_memory(&m->error);
     if (status == TL_OK)
         status = tl_laws_prepare(m);
@@ -62,8 +62,10 @@ static tl_status apply_forces(tl_model *m, double dt)
     if (status == TL_OK) {
         tl_undo_keep_bodies(m);
         tl_gather(m);
+        status = tl_split_hold(m, dt);
         tl_phase_ends(m, TL_PHASE_GATHER);
-        status = tl_damping_apply(m, dt);
+        if (status == TL_OK)
+            status = tl_damping_apply(m, dt);
         if (status == TL_OK)
             status = tl_motion_check(m, dt);
         tl_phase_ends(m, TL_PHASE_DAMPING);
@@ -87,11 +89,13 @@ tl_status tl_step(tl_model *m)
         return status;
     }
     tl_held_followed(m);
+    tl_split_turn(m);
     tl_move(m, dt);
     tl_phase_ends(m, TL_PHASE_MOVE);
     tl_energy_close(m);
     tl_phase_ends(m, TL_PHASE_ENERGY);
     tl_undo_end(m);
+    tl_split_end(m);
     m->detect->stepped_contact = m->detect->next_contact;
     /* velocities are half a step behind the places, but not when all is held and still, as if the model had not begun */
     m->dt = tl_model_moves(m) ? dt : 0;

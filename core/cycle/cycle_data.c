@@ -15,6 +15,7 @@ static void cycle_destroy(struct tl_cycle *cycle)
     free(cycle->chunk_ledger);
     free(cycle->ledger);
     tl_undo_free(cycle->undo);
+    tl_split_free(cycle);
     free(cycle);
 }
 

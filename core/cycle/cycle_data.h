@@ -136,9 +136,11 @@ struct tl_cycle {
     double told_share;         /* of mass added, for the remark on it */
     bool adds;                 /* some body has been given inertia */
     struct tl_undo *undo;      /* undo.c */
-    bool long_step;            /* the given one is far above what is stable */
-    bool fast;                 /* a body came near the limit of motion in the last step: limits.c */
-    tl_failure failure;        /* of a parallel phase */
+    struct tl_split_work *split; /* of this step: split.c */
+    double split_stored;         /* energy that new faces have been given in this step, J */
+    bool long_step;              /* the given one is far above what is stable */
+    bool fast;          /* a body came near the limit of motion in the last step: limits.c */
+    tl_failure failure; /* of a parallel phase */
 };
 
 /* What partial mass scaling makes of a body's inertia: energies count it. */
@@ -231,6 +233,15 @@ void tl_undo_free(struct tl_undo *undo);
 bool tl_gather_prepare(tl_model *m);
 /* Each body gathers its contacts in fixed order, and its weight; sums for the convergence measures. */
 void tl_gather(tl_model *m);
+/* Parts of a body that cuts have split since the last step go on as the whole does: split.c. False: out of memory. */
+bool tl_split_prepare(tl_model *m);
+/* After the gather: gives the parts the forces that let them do so, and their new faces the tractions that bring these. */
+tl_status tl_split_hold(tl_model *m, double dt);
+/* Before the move: corrects the velocities of the parts for arms that turn. */
+void tl_split_turn(tl_model *m);
+/* The step is done. */
+void tl_split_end(tl_model *m);
+void tl_split_free(struct tl_cycle *c);
 /* Weight of a body under gravity of that size; a load weighs as much as its force. */
 static inline double tl_weight_of(const tl_bodies *b, uint32_t body, double gravity)
 {

@@ -194,6 +194,7 @@ static void sum_points(tl_model *m, struct tl_ledger *l)
     const tl_layout *layout = &m->detect->layout;
     l->friction += m->detect->parted;
     m->detect->parted = 0;
+    l->stored += m->cycle->split_stored;
     for (size_t k = 0; k < layout->span_count; k++) {
         const tl_span *span = &layout->spans[k];
         for (size_t r = span->group_begin; r < span->group_end && span->law != TL_NO_ROW; r++) {

@@ -126,7 +126,7 @@ static tl_testator testator_of(const tl_model *m, const rows_scratch *scratch, u
 static bool keep_estates(tl_model *m, const rows_scratch *scratch)
 {
     tl_detect *d = m->detect;
-    size_t estates = 0, points = 0, before = d->estate_count, points_before = d->left_count;
+    size_t estates = 0, points = 0;
     for (size_t i = 0; i < d->pair_count && m->heir_count; i++)
         if (leaves(d, scratch, &d->pairs[i])) {
             estates++;
@@ -142,11 +142,6 @@ static bool keep_estates(tl_model *m, const rows_scratch *scratch)
             continue;
         tl_testator one = testator_of(m, scratch, p->a), other = testator_of(m, scratch, p->b);
         tl_estate_keep(m, p->contact, &one, &other);
-    }
-    if (!tl_estates_find_stress(m)) {
-        d->estate_count = before;
-        d->left_count = points_before;
-        return false;
     }
     tl_estates_sort(d);
     for (size_t i = 0; i < d->pair_count; i++)

@@ -111,6 +111,7 @@ void tl_model_destroy(tl_model *m)
     free(m->histories);
     free(m->record.list);
     free(m->heirs);
+    free(m->splits);
     free(m->groups);
     free(m->joints);
     free(m->joint_laws);

@@ -181,6 +181,21 @@ const tl_heir *tl_heir_of(const tl_model *m, tl_id id)
                          : NULL;
 }
 
+static int compare_split(const void *x, const void *y)
+{
+    const tl_split *p = x, *q = y;
+    return (p->block > q->block) - (p->block < q->block);
+}
+
+tl_id tl_split_of(const tl_model *m, tl_id block)
+{
+    const tl_split wanted = {.block = block};
+    const tl_split *split =
+        m->split_count ? bsearch(&wanted, m->splits, m->split_count, sizeof wanted, compare_split)
+                       : NULL;
+    return split ? split->whole : TL_NO_ID;
+}
+
 uint32_t tl_block_row_quiet(const tl_model *m, tl_id id)
 {
     return id != TL_NO_ID && id < m->next_id ? m->row_of[id] : TL_NO_ROW;

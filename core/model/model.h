@@ -164,10 +164,13 @@ typedef struct tl_heir {
     tl_id id, root;
     tl_mat3 r;     /* rotation of the root's body, */
     tl_vec3 place; /* and its centroid, relative to the origin */
-    double volume; /* of the root, m3 */
-    tl_sym3
-        stress; /* mean stress in the root under what its contacts carry, where there is an initial stress, Pa */
 } tl_heir;
+
+/* A block of a body that cuts have split since the last step. Two blocks were in one body in the last step when they have the same
+ * `whole`, the id of that body. */
+typedef struct tl_split {
+    tl_id block, whole;
+} tl_split;
 
 /* Most refused cuts that are listed; more are only counted. */
 #define TL_REFUSED_LISTED 1000
@@ -223,6 +226,8 @@ struct tl_model {
     tl_cut_record record;
     tl_heir *heirs; /* by ascending id */
     size_t heir_count, heir_capacity;
+    tl_split *splits; /* by ascending id of the block */
+    size_t split_count, split_capacity;
     tl_extremes extremes;
 
     tl_law *joint_laws;
@@ -342,6 +347,8 @@ static inline void tl_block_changes(tl_model *m, uint32_t row)
 
 /* What a block was cut out of since contacts were brought up to date last, or NULL. */
 const tl_heir *tl_heir_of(const tl_model *m, tl_id id);
+/* The body that a block was in in the last step when cuts have split it since, or TL_NO_ID. */
+tl_id tl_split_of(const tl_model *m, tl_id block);
 
 /* Row of a block id, or TL_NO_ROW with a sentence in the model's error. */
 uint32_t tl_block_row(tl_model *m, tl_id id);

@@ -19,7 +19,6 @@ static void centre_shape(tl_poly *shape, tl_vec3 centroid)
 /* What the children of a block take over from it and from its body. */
 typedef struct source {
     tl_id id;
-    double volume;
     tl_pose pose;
     tl_vec3 base, v, w;
     tl_quat q;
@@ -32,7 +31,6 @@ static source source_of(const tl_model *m, uint32_t row)
     const tl_bodies *b = &m->bodies;
     uint32_t body = m->blocks.body[row];
     return (source){.id = m->blocks.id[row],
-                    .volume = m->blocks.volume[row],
                     .base = m->blocks.base ? m->blocks.base[row] : tl_v3(0, 0, 0),
                     .pose = b->pose[body],
                     .v = b->v[body],
@@ -124,7 +122,9 @@ typedef struct commit_scratch {
     uint32_t *slot;      /* [rows before] of blocks that were cut: place in sources */
     source *sources;     /* of the blocks that were cut */
     size_t source_count;
-    tl_id *ids;     /* [staged blocks] their ids in the model */
+    tl_id *ids;       /* [staged blocks] their ids in the model */
+    tl_split *splits; /* [staged blocks] that were there before */
+    size_t split_count;
     tl_poly **gone; /* [rows before] shapes that other shapes or blocks take the place of */
     size_t gone_count;
     tl_aside aside;  /* where there are bodies of several blocks */
@@ -149,7 +149,6 @@ static void keep_heirs(const tl_stage *stage, const commit_scratch *scratch)
         const source *from = &scratch->sources[scratch->slot[block->source]];
         const tl_heir *known = tl_heir_of(m, from->id);
         tl_heir heir = {.root = from->id,
-                        .volume = from->volume,
                         .r = from->pose.r,
                         .place = tl_v3_add(from->pose.x_ref, from->pose.u)};
         heir = known ? *known : heir;
@@ -158,8 +157,63 @@ static void keep_heirs(const tl_stage *stage, const commit_scratch *scratch)
     }
 }
 
+/* Lists the blocks that were there before, with the bodies they were in in the last step. */
+static void list_wholes(const tl_stage *stage, commit_scratch *scratch)
+{
+    const tl_model *m = stage->model;
+    for (size_t i = 0; i < stage->count && has_contacts(m); i++) {
+        uint32_t row = stage->blocks[i].source;
+        if (row == TL_NO_ROW)
+            continue;
+        tl_id whole = tl_split_of(m, m->blocks.id[row]);
+        whole = whole == TL_NO_ID ? m->bodies.id[m->blocks.body[row]] : whole;
+        scratch->splits[scratch->split_count++] = (tl_split){(tl_id)i, whole};
+    }
+}
+
+static int compare_whole(const void *x, const void *y)
+{
+    const tl_split *p = x, *q = y;
+    return p->whole != q->whole ? (p->whole > q->whole) - (p->whole < q->whole)
+                                : (p->block > q->block) - (p->block < q->block);
+}
+
+static int compare_split(const void *x, const void *y)
+{
+    const tl_split *p = x, *q = y;
+    return (p->block > q->block) - (p->block < q->block);
+}
+
+/* Keeps the blocks of the bodies that are several now. The list takes the place of the model's: it has the blocks of that, too. */
+static void keep_splits(tl_stage *stage, commit_scratch *scratch)
+{
+    tl_model *m = stage->model;
+    tl_split *all = scratch->splits;
+    size_t kept = 0;
+    for (size_t i = 0; i < scratch->split_count; i++)
+        all[i].block = scratch->ids[all[i].block];
+    qsort(all, scratch->split_count, sizeof *all, compare_whole);
+    for (size_t from = 0, to; from < scratch->split_count; from = to) {
+        bool several = false;
+        uint32_t body = m->blocks.body[m->row_of[all[from].block]];
+        for (to = from; to < scratch->split_count && all[to].whole == all[from].whole; to++)
+            several = several || m->blocks.body[m->row_of[all[to].block]] != body;
+        for (size_t i = from; several && i < to; i++)
+            all[kept++] = all[i];
+    }
+    if (kept == 0)
+        return;
+    qsort(all, kept, sizeof *all, compare_split);
+    free(m->splits);
+    m->splits = all;
+    m->split_count = kept;
+    m->split_capacity = stage->count + 1;
+    scratch->splits = NULL;
+}
+
 static void free_scratch(commit_scratch *scratch)
 {
+    free(scratch->splits);
     free(scratch->keep);
     free(scratch->slot);
     free(scratch->sources);
@@ -209,12 +263,13 @@ static bool reserve_scratch(tl_stage *stage, size_t old, size_t made, commit_scr
 {
     size_t rows = stage->model->blocks.table.rows + made;
     scratch->ids = malloc((stage->count + 1) * sizeof *scratch->ids);
+    scratch->splits = malloc((stage->count + 1) * sizeof *scratch->splits);
     scratch->gone = malloc((old + 1) * sizeof *scratch->gone);
     if (stage->regroups) {
         scratch->first = malloc((stage->next_body + (size_t)1) * sizeof *scratch->first);
         scratch->group = malloc((old + made + 1) * sizeof *scratch->group);
     }
-    return sort_rows(stage, old, scratch) && scratch->ids && scratch->gone &&
+    return sort_rows(stage, old, scratch) && scratch->ids && scratch->splits && scratch->gone &&
            (!stage->regroups || (scratch->first && scratch->group)) && rows < TL_NO_ROW &&
            reserve_record(stage) &&
            (!has_contacts(stage->model) ||
@@ -303,6 +358,7 @@ tl_status tl_stage_commit(tl_stage *stage)
         return status;
     }
     /* From here on nothing can fail but the grouping of blocks into bodies, for want of memory. */
+    list_wholes(stage, &scratch);
     drop_replaced(stage, old, &scratch);
     add_made(stage, made, &scratch);
     summarize(stage);
@@ -317,6 +373,7 @@ tl_status tl_stage_commit(tl_stage *stage)
     if (status == TL_OK) {
         keep_record(stage, scratch.ids);
         keep_heirs(stage, &scratch);
+        keep_splits(stage, &scratch);
         for (size_t i = 0; i < scratch.gone_count; i++)
             tl_poly_free(scratch.gone[i]);
         tl_stage_end(stage);

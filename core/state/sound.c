@@ -76,8 +76,13 @@ static bool edits_are_sound(const tl_model *m)
     for (size_t i = 0; i < m->heir_count; i++) {
         const tl_heir *h = &m->heirs[i];
         if (h->id >= m->next_id || h->root == TL_NO_ID || h->root >= h->id ||
-            (i && h->id <= h[-1].id) || !matrix_is_sound(&h->r) || !is_place(h->place) ||
-            !measure_is_sound(h->volume))
+            (i && h->id <= h[-1].id) || !matrix_is_sound(&h->r) || !is_place(h->place))
+            return false;
+    }
+    for (size_t i = 0; i < m->split_count; i++) {
+        const tl_split *s = &m->splits[i];
+        if (s->block == TL_NO_ID || s->block >= m->next_id || s->whole == TL_NO_ID ||
+            s->whole >= m->next_id || (i && s->block <= s[-1].block))
             return false;
     }
     if (m->next_contact > MOST_CONTACTS)

@@ -223,6 +223,8 @@ static void hash_blocks(tl_hash *hash, const tl_model *m)
         hash_text(hash, m->groups[m->blocks.group[row]]);
         hash_shape(hash, m->blocks.shape[row]);
     }
+    for (size_t i = 0; i < m->split_count; i++)
+        tl_hash_word(hash, (uint64_t)m->splits[i].block << 32 | m->splits[i].whole);
     hash_table(hash, &m->bodies.table);
     for (uint32_t body = 0; body < m->bodies.table.rows; body++) {
         tl_body_load load = tl_load_of(&m->bodies, body);

@@ -14,15 +14,17 @@ static void add_edits(tl_model *m)
 {
     tl_detect *d = m->detect;
     m->heirs = calloc(1, sizeof *m->heirs);
+    m->splits = calloc(1, sizeof *m->splits);
     m->asked_ids = calloc(1, sizeof *m->asked_ids);
     d->estates = calloc(1, sizeof *d->estates);
     d->left_points = calloc(1, sizeof *d->left_points);
-    if (!CHECK(m->heirs && m->asked_ids && d->estates && d->left_points))
+    if (!CHECK(m->heirs && m->splits && m->asked_ids && d->estates && d->left_points))
         exit(1);
-    m->heirs[0] = (tl_heir){.id = 2, .root = 1, .r = tl_m3_identity(), .volume = 1};
+    m->heirs[0] = (tl_heir){.id = 2, .root = 1, .r = tl_m3_identity()};
+    m->splits[0] = (tl_split){.block = 2, .whole = 1};
     m->asked_ids[0] = (tl_asked_id){1, 2, 1};
     d->estates[0] = (tl_estate){.a = 1, .b = 2, .law = TL_NO_ROW, .count = 1};
-    m->heir_count = m->heir_capacity = m->asked_count = 1;
+    m->heir_count = m->heir_capacity = m->split_count = m->split_capacity = m->asked_count = 1;
     d->estate_count = d->estate_capacity = d->left_count = d->left_capacity = 1;
     m->next_contact = d->next_contact;
 }
@@ -172,9 +174,10 @@ static const lie lies[] = {
     LIE("model.heirs", offsetof(tl_heir, r), huge),
     LIE("model.next_contact", 0, all_bits),
     LIE("model.heirs", offsetof(tl_heir, place), infinite),
+    LIE("model.splits", offsetof(tl_split, block), far_row),
+    LIE("model.splits", offsetof(tl_split, whole), far_row),
     LIE("detect.estates", offsetof(tl_estate, first), most),
     LIE("detect.next_contact", 0, far_row),
-    LIE("model.heirs", offsetof(tl_heir, volume), none),
     LIE("detect.estates", offsetof(tl_estate, count), far_row),
     LIE("model.asked_ids", offsetof(tl_asked_id, contact), far_row),
     LIE("detect.estates", offsetof(tl_estate, law), far_row),

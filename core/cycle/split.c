@@ -1,0 +1,562 @@
+/* split.c - the parts of a body that cuts have split go on as the whole did.
+ *
+ * In the step after a cut the forces on the faces that were there are known, at the present places; they are those on the whole. Newton
+ * and Euler give its acceleration a and angular acceleration, r from the whole's centroid:
+ *
+ *     a = F / M,    I alpha + w x I w = T
+ *
+ * and what each part p of it needs:
+ *
+ *     F_p = m_p [a + alpha x r_p + w x (w x r_p)],    T_p = I_p alpha + w x I_p w
+ *
+ * That is what acts on it in this step. So its parts go on as the whole over all of the kick, also over the half of the last step in which
+ * they were one. What the new faces press on each other with to bring that is found at the same time (split_solve.c): as far as the laws
+ * bear it, it is their force at the beginning, and from the next step on it is the laws' word what becomes of it. Only then may parts
+ * that no joint can hold begin to move on their own.
+ *
+ * Parts of a body some of whose motion is held get the tractions of its mean stress, where the model has an initial stress. */
+#include "cycle/split.h"
+
+#include "base/columns.h"
+#include "contact/detection.h"
+#include "contact/places.h"
+#include "contact/store.h"
+#include "cycle/cycle_data.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+struct tl_split_work {
+    tl_split_part *parts; /* whole by whole, by ascending body in each */
+    tl_split_contact *contacts;
+    tl_split_point *points;
+    tl_traction *tractions; /* four for each point */
+    size_t part_count, contact_count, point_count;
+};
+
+/* ---------------------------------------------------------------- what there is ---------- */
+
+/* The body that all blocks of a body were in, or TL_NO_ID. */
+static tl_id whole_of(const tl_model *m, uint32_t body)
+{
+    const uint32_t *rows = &m->members[m->bodies.member_start[body]];
+    tl_id whole = tl_split_of(m, m->blocks.id[rows[0]]);
+    for (uint32_t k = 1; k < m->bodies.member_count[body]; k++)
+        if (tl_split_of(m, m->blocks.id[rows[k]]) != whole)
+            return TL_NO_ID;
+    return whole;
+}
+
+/* The part that is a body; parts are in the order of bodies. */
+static uint32_t part_of(const struct tl_split_work *w, uint32_t body)
+{
+    size_t low = 0, high = w->part_count;
+    while (low + 1 < high) {
+        size_t middle = low + (high - low) / 2;
+        if (w->parts[middle].body <= body)
+            low = middle;
+        else
+            high = middle;
+    }
+    return (uint32_t)low;
+}
+
+static tl_mat3 inertia_of(const tl_model *m, uint32_t body)
+{
+    tl_mat3 r = tl_q_matrix(tl_q_mul(m->bodies.q[body], m->bodies.axes[body])), out;
+    double scale = tl_turn_scale(m->cycle, body), round = m->bodies.round[body];
+    tl_vec3 own = m->bodies.moments[body];
+    if (m->config.rotation == TL_ROTATION_PAPER)
+        own = tl_v3(round, round, round);
+    const double i[3] = {scale * own.x, scale * own.y, scale * own.z};
+    for (int j = 0; j < 3; j++)
+        for (int k = 0; k < 3; k++)
+            out.m[j][k] = r.m[j][0] * i[0] * r.m[k][0] + r.m[j][1] * i[1] * r.m[k][1] +
+                          r.m[j][2] * i[2] * r.m[k][2];
+    return out;
+}
+
+/* Lists the parts, by ascending body: blocks ascend with them. */
+static void list_parts(const tl_model *m, struct tl_split_work *w)
+{
+    const tl_bodies *b = &m->bodies;
+    for (size_t i = 0; i < m->split_count; i++) {
+        uint32_t row = tl_block_row_quiet(m, m->splits[i].block);
+        uint32_t body = row == TL_NO_ROW ? TL_NO_ROW : m->blocks.body[row];
+        if (row == TL_NO_ROW || m->members[b->member_start[body]] != row ||
+            whole_of(m, body) == TL_NO_ID)
+            continue;
+        w->parts[w->part_count] =
+            (tl_split_part){.body = body,
+                            .whole = (uint32_t)w->part_count,
+                            .listed = (uint32_t)w->part_count,
+                            .mass = b->mass[body] * tl_inertia_scale(m->cycle, body),
+                            .size = b->radius[body],
+                            .inertia = inertia_of(m, body),
+                            .place = tl_body_place(b, body)};
+        w->part_count++;
+    }
+}
+
+/* The first of the parts that hang together with one. */
+static uint32_t first_of(const struct tl_split_work *w, uint32_t part)
+{
+    while (w->parts[part].whole != part)
+        part = w->parts[part].whole;
+    return part;
+}
+
+/* Whether a contact is on new faces, between two parts of one whole. */
+static bool is_inner(const tl_model *m, uint32_t c)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    uint32_t a = m->blocks.body[contacts->a[c]], b = m->blocks.body[contacts->b[c]];
+    if (contacts->facet[c].kind == TL_FACET_FIELD || contacts->point_count[c] == 0 ||
+        contacts->law[c] == TL_NO_ROW)
+        return false;
+    tl_id whole = whole_of(m, a);
+    return whole != TL_NO_ID && whole == whole_of(m, b);
+}
+
+/* Lists the contacts on new faces, in the order of their blocks, and joins the parts that they hold together. */
+static bool list_contacts(const tl_model *m, struct tl_split_work *w)
+{
+    const tl_detect *d = m->detect;
+    size_t capacity = 0;
+    for (size_t i = 0; i < w->part_count; i++)
+        for (uint32_t k = 0; k < m->bodies.member_count[w->parts[i].body]; k++) {
+            uint32_t row = m->members[m->bodies.member_start[w->parts[i].body] + k];
+            for (uint32_t e = d->by_block_start[row]; e < d->by_block_start[row + 1]; e++) {
+                uint32_t c = d->by_block[e];
+                if (d->contacts.a[c] != row || !is_inner(m, c))
+                    continue;
+                tl_split_contact found = {.row = c,
+                                          .a = (uint32_t)i,
+                                          .b = part_of(w, m->blocks.body[d->contacts.b[c]]),
+                                          .first = w->contact_count};
+                if (!tl_grow(&w->contacts, &capacity, w->contact_count + 1, sizeof *w->contacts))
+                    return false;
+                w->contacts[w->contact_count++] = found;
+                w->point_count += d->contacts.point_count[c];
+                uint32_t a = first_of(w, found.a), b = first_of(w, found.b);
+                w->parts[a < b ? b : a].whole = a < b ? a : b;
+            }
+        }
+    for (uint32_t i = 0; i < w->part_count; i++)
+        w->parts[i].whole = first_of(w, i);
+    return true;
+}
+
+static int compare_part(const void *x, const void *y)
+{
+    const tl_split_part *p = x, *q = y;
+    return p->whole != q->whole ? (p->whole > q->whole) - (p->whole < q->whole)
+                                : (p->body > q->body) - (p->body < q->body);
+}
+
+static int compare_contact(const void *x, const void *y)
+{
+    const tl_split_contact *p = x, *q = y;
+    return p->a != q->a ? (p->a > q->a) - (p->a < q->a)
+                        : (p->first > q->first) - (p->first < q->first);
+}
+
+/* Puts parts and contacts in the order of the wholes. */
+static bool sort_wholes(struct tl_split_work *w)
+{
+    uint32_t *now = malloc((w->part_count + 1) * sizeof *now);
+    if (!now)
+        return false;
+    qsort(w->parts, w->part_count, sizeof *w->parts, compare_part);
+    for (size_t i = 0; i < w->part_count; i++)
+        now[w->parts[i].listed] = (uint32_t)i;
+    for (size_t i = 0; i < w->contact_count; i++) {
+        w->contacts[i].a = now[w->contacts[i].a];
+        w->contacts[i].b = now[w->contacts[i].b];
+    }
+    qsort(w->contacts, w->contact_count, sizeof *w->contacts, compare_contact);
+    free(now);
+    return true;
+}
+
+/* ---------------------------------------------------------------- motion of the whole ---- */
+
+/* What parts that hang together are as one body. */
+typedef struct whole {
+    double mass;
+    tl_vec3 centre, spin, spin_after; /* angular velocity now, and after this kick */
+    tl_vec3 force, acceleration, angular;
+    tl_mat3 inertia;
+} whole;
+
+static tl_vec3 column(const tl_mat3 *a, int k)
+{
+    return tl_v3(a->m[0][k], a->m[1][k], a->m[2][k]);
+}
+
+/* The solution x of a x = b, a symmetric. */
+static tl_vec3 solve3(const tl_mat3 *a, tl_vec3 b)
+{
+    tl_vec3 x = column(a, 0), y = column(a, 1), z = column(a, 2);
+    double det = tl_v3_dot(x, tl_v3_cross(y, z));
+    return tl_v3(tl_v3_dot(b, tl_v3_cross(y, z)) / det, tl_v3_dot(x, tl_v3_cross(b, z)) / det,
+                 tl_v3_dot(x, tl_v3_cross(y, b)) / det);
+}
+
+/* w x I w */
+static tl_vec3 gyration(const tl_mat3 *inertia, tl_vec3 w)
+{
+    return tl_v3_cross(w, tl_m3_mul(inertia, w));
+}
+
+static void add_inertia(tl_mat3 *to, const tl_split_part *p, tl_vec3 r)
+{
+    const double at[3] = {r.x, r.y, r.z}, r2 = tl_v3_norm2(r);
+    for (int j = 0; j < 3; j++)
+        for (int k = 0; k < 3; k++)
+            to->m[j][k] += p->inertia.m[j][k] + p->mass * ((j == k ? r2 : 0) - at[j] * at[k]);
+}
+
+/* The kick spans h, of which `until` lies before the present places. */
+static whole whole_of_parts(const tl_model *m, const tl_split_part *parts, size_t count, double h,
+                            double until)
+{
+    const tl_bodies *b = &m->bodies;
+    whole all = {.mass = 0};
+    tl_vec3 momentum = {0, 0, 0}, turning = {0, 0, 0}, torque = {0, 0, 0};
+    for (size_t i = 0; i < count; i++) {
+        const tl_split_part *p = &parts[i];
+        all.mass += p->mass;
+        all.centre = tl_v3_madd(all.centre, p->mass, tl_v3_sub(p->place, parts[0].place));
+        all.force = tl_v3_add(all.force, p->outer.force);
+        momentum = tl_v3_madd(momentum, p->mass, b->v[p->body]);
+    }
+    all.centre = tl_v3_madd(parts[0].place, 1 / all.mass, all.centre);
+    tl_vec3 v = tl_v3_scale(1 / all.mass, momentum);
+    for (size_t i = 0; i < count; i++) {
+        const tl_split_part *p = &parts[i];
+        tl_vec3 r = tl_v3_sub(p->place, all.centre);
+        add_inertia(&all.inertia, p, r);
+        tl_vec3 moves = tl_v3_scale(p->mass, tl_v3_sub(b->v[p->body], v));
+        turning = tl_v3_add(turning, tl_m3_mul(&p->inertia, b->w[p->body]));
+        turning = tl_v3_add(turning, tl_v3_cross(r, moves));
+        torque = tl_v3_add(torque, tl_v3_add(p->outer.moment, tl_v3_cross(r, p->outer.force)));
+    }
+    all.acceleration = tl_v3_scale(1 / all.mass, all.force);
+    all.spin = solve3(&all.inertia, tl_v3_madd(turning, until, torque));
+    all.spin_after = solve3(&all.inertia, tl_v3_madd(turning, h, torque));
+    all.angular = solve3(&all.inertia, tl_v3_sub(torque, gyration(&all.inertia, all.spin)));
+    return all;
+}
+
+/* alpha x r + w x (w x r) */
+static tl_vec3 turn_of(tl_vec3 angular, tl_vec3 spin, tl_vec3 r)
+{
+    return tl_v3_add(tl_v3_cross(angular, r), tl_v3_cross(spin, tl_v3_cross(spin, r)));
+}
+
+/* The forces of this step lie in the middle of the kick. Where they turn with the body that is wrong by what the turn in the two
+ * half steps does to velocities: those of the parts are cut with their arms at the present places, and are to be those of the middle of
+ * the next step, dt, in which the whole would turn freely. Finds what is to be added for that. */
+static void find_turn(const whole *all, tl_split_part *p, tl_vec3 spin_before, double h, double dt)
+{
+    tl_vec3 r = tl_v3_sub(p->place, all->centre), w = all->spin_after;
+    tl_vec3 free = tl_v3_neg(solve3(&all->inertia, gyration(&all->inertia, w)));
+    tl_vec3 gained = tl_v3_sub(w, spin_before);
+    tl_vec3 turned = tl_v3_madd(tl_v3_cross(gained, r), 0.5 * dt, turn_of(free, w, r));
+    p->turn_v = tl_v3_madd(turned, -h, turn_of(all->angular, all->spin, r));
+    tl_vec3 spun = tl_v3_add(tl_m3_mul(&p->inertia, free), gyration(&p->inertia, w));
+    spun = tl_v3_madd(tl_m3_mul(&p->inertia, gained), 0.5 * dt, spun);
+    p->turn_w = solve3(&p->inertia, tl_v3_madd(spun, -h, p->wanted.moment));
+}
+
+/* Finds what the parts need to go on as the whole in a kick that leads into a step of dt. */
+static void find_wanted(const tl_model *m, tl_split_part *parts, size_t count, double dt)
+{
+    double until = 0.5 * m->dt, h = until + 0.5 * dt;
+    whole all = whole_of_parts(m, parts, count, h, until);
+    whole before = whole_of_parts(m, parts, count, 0, 0);
+    for (size_t i = 0; i < count; i++) {
+        tl_split_part *p = &parts[i];
+        tl_vec3 r = tl_v3_sub(p->place, all.centre);
+        tl_vec3 goes = tl_v3_add(all.acceleration, turn_of(all.angular, all.spin, r));
+        p->wanted.force = tl_v3_scale(p->mass, goes);
+        p->wanted.moment =
+            tl_v3_add(tl_m3_mul(&p->inertia, all.angular), gyration(&p->inertia, all.spin));
+        if (m->config.rotation == TL_ROTATION_EXACT)
+            find_turn(&all, p, before.spin, h, dt);
+    }
+}
+
+/* ---------------------------------------------------------------- tractions -------------- */
+
+/* Adds x f of the contacts of a block, x from the whole's centroid, f on the block, but for those of new faces. */
+static void add_stress(const tl_model *m, uint32_t row, tl_vec3 centre, tl_sym3 *sum)
+{
+    const tl_detect *d = m->detect;
+    const tl_point_lanes *lanes = &d->lanes[0];
+    for (uint32_t e = d->by_block_start[row]; e < d->by_block_start[row + 1]; e++) {
+        uint32_t c = d->by_block[e];
+        if (is_inner(m, c))
+            continue;
+        tl_contact_places(m, c, lanes);
+        tl_vec3 from = tl_body_place(&m->bodies, m->blocks.body[d->contacts.a[c]]);
+        size_t count = d->contacts.facet[c].kind == TL_FACET_FIELD ? d->contacts.point_count[c] > 0
+                                                                   : d->contacts.point_count[c];
+        double sign = d->contacts.b[c] == row ? 1 : -1;
+        for (size_t k = 0; k < count; k++) {
+            size_t i = tl_point_row(&d->contacts, c, k);
+            tl_vec3 f = tl_v3_madd(tl_columns_get(d->points.f_s, i), d->points.f_n[i],
+                                   tl_columns_get(lanes->normal, k));
+            f = tl_v3_scale(sign, f);
+            tl_vec3 x = tl_v3_sub(tl_v3_add(from, tl_columns_get(lanes->arm, k)), centre);
+            sum->xx += x.x * f.x;
+            sum->yy += x.y * f.y;
+            sum->zz += x.z * f.z;
+            sum->xy += 0.5 * (x.x * f.y + x.y * f.x);
+            sum->yz += 0.5 * (x.y * f.z + x.z * f.y);
+            sum->zx += 0.5 * (x.z * f.x + x.x * f.z);
+        }
+    }
+}
+
+/* The mean stress in the whole under the contacts of its parts, tension positive: (1/V) sum x f. */
+static tl_sym3 mean_stress(const tl_model *m, const tl_split_part *parts, size_t count)
+{
+    tl_sym3 sum = {0, 0, 0, 0, 0, 0};
+    double volume = 0;
+    for (size_t i = 0; i < count; i++)
+        for (uint32_t k = 0; k < m->bodies.member_count[parts[i].body]; k++) {
+            uint32_t row = m->members[m->bodies.member_start[parts[i].body] + k];
+            add_stress(m, row, parts[0].place, &sum);
+            volume += m->blocks.volume[row];
+        }
+    double by = 1 / volume;
+    return (tl_sym3){by * sum.xx, by * sum.yy, by * sum.zz, by * sum.xy, by * sum.yz, by * sum.zx};
+}
+
+/* The points of the contacts of a system, with the tractions of a stress. */
+static void list_points(const tl_split_system *s, const tl_sym3 *stress)
+{
+    const tl_detect *d = s->m->detect;
+    const tl_point_lanes *lanes = &d->lanes[0];
+    for (size_t i = 0; i < s->contact_count; i++) {
+        const tl_split_contact *c = &s->contacts[i];
+        tl_contact_places(s->m, c->row, lanes);
+        for (size_t k = 0; k < d->contacts.point_count[c->row]; k++) {
+            tl_split_point *p = &s->points[c->first + k];
+            tl_split_part *a = &s->parts[c->a], *b = &s->parts[c->b];
+            tl_vec3 arm = tl_columns_get(lanes->arm, k), n = tl_columns_get(lanes->normal, k);
+            double area = d->points.area[tl_point_row(&d->contacts, c->row, k)];
+            *p = (tl_split_point){.a = c->a, .b = c->b, .area = area, .arm_a = arm, .n = n};
+            p->arm_b = tl_v3_sub(arm, tl_v3_sub(b->place, a->place));
+            a->area += area;
+            b->area += area;
+            tl_vec3 t = tl_v3_neg(tl_s3_mul(*stress, n));
+            tl_traction *start = &s->start[c->first + k];
+            start->normal = tl_v3_dot(t, n);
+            start->shear = tl_v3_madd(t, -start->normal, n);
+        }
+    }
+}
+
+/* Puts tractions on the points: their closure counts from the present place. */
+static void load_contacts(tl_model *m, const tl_split_system *s)
+{
+    tl_detect *d = m->detect;
+    tl_points_table *p = &d->points;
+    const tl_point_lanes *lanes = &d->lanes[0];
+    for (size_t i = 0; i < s->contact_count; i++) {
+        uint32_t c = s->contacts[i].row;
+        tl_vec3 force = {0, 0, 0}, moment = {0, 0, 0};
+        tl_contact_places(m, c, lanes);
+        for (size_t k = 0; k < d->contacts.point_count[c]; k++) {
+            size_t row = tl_point_row(&d->contacts, c, k);
+            const tl_traction *t = &s->borne[s->contacts[i].first + k];
+            double area = p->area[row];
+            p->reference[row] += lanes->closure[k];
+            p->f_n0[row] = p->f_n[row] = area * t->normal;
+            tl_vec3 shear = tl_v3_scale(area, t->shear);
+            tl_columns_put(p->f_s, row, shear);
+            tl_vec3 f = tl_v3_madd(shear, p->f_n[row], tl_columns_get(lanes->normal, k));
+            force = tl_v3_add(force, f);
+            moment = tl_v3_add(moment, tl_v3_cross(tl_columns_get(lanes->arm, k), f));
+        }
+        d->contacts.force[c] = force;
+        d->contacts.moment[c] = moment;
+        d->contacts.holds_over_gap[c] = true; /* perhaps: the next step tells */
+    }
+}
+
+/* ---------------------------------------------------------------- the step --------------- */
+
+/* Of a system whose parts cannot all move: the tractions of the mean stress, as far as the laws bear them. */
+static bool load_held(tl_split_system *s)
+{
+    memcpy(s->given, s->start, s->point_count * sizeof *s->given);
+    s->stored = 0;
+    for (size_t i = 0; i < s->contact_count; i++) {
+        const tl_split_contact *c = &s->contacts[i];
+        double stored;
+        if (!tl_contact_bear(s->m, c->row, &s->given[c->first], &s->borne[c->first], &stored))
+            return false;
+        s->stored += stored;
+    }
+    return true;
+}
+
+static bool some_held(const tl_model *m, const tl_split_part *parts, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        if (m->bodies.fixed[parts[i].body])
+            return true;
+    return false;
+}
+
+/* A whole whose contacts and points are those from the first given on; its counts are those of its parts and contacts. */
+static tl_split_system system_of(const tl_model *m, const struct tl_split_work *w, size_t part,
+                                 size_t contact, size_t point)
+{
+    tl_split_system s = {.m = m,
+                         .parts = w->parts + part,
+                         .contacts = w->contacts + contact,
+                         .points = w->points + point};
+    while (part + s.part_count < w->part_count && s.parts[s.part_count].whole == s.parts[0].whole)
+        s.part_count++;
+    while (contact + s.contact_count < w->contact_count &&
+           s.contacts[s.contact_count].a < part + s.part_count) {
+        tl_split_contact *c = &s.contacts[s.contact_count++];
+        c->a -= (uint32_t)part;
+        c->b -= (uint32_t)part;
+        c->first = s.point_count;
+        s.point_count += m->detect->contacts.point_count[c->row];
+    }
+    s.start = w->tractions + 4 * point;
+    s.given = s.start + s.point_count;
+    s.borne = s.given + s.point_count;
+    s.best = s.borne + s.point_count;
+    return s;
+}
+
+/* Lets the parts of a whole go on as it does; `stressed`: there is an initial stress. */
+static bool hold(tl_model *m, tl_split_system *s, bool stressed, double dt)
+{
+    bool held = some_held(m, s->parts, s->part_count);
+    if (s->contact_count == 0 || (held && !stressed))
+        return true;
+    const tl_sym3 stress = mean_stress(m, s->parts, s->part_count);
+    list_points(s, &stress);
+    if (!held)
+        find_wanted(m, s->parts, s->part_count, dt);
+    if (held ? !load_held(s) : !tl_split_solve(s))
+        return false;
+    load_contacts(m, s);
+    for (size_t i = 0; i < s->part_count; i++)
+        s->parts[i].goes = !held;
+    return true;
+}
+
+/* Whether some point has an initial force. */
+static bool is_stressed(const tl_detect *d)
+{
+    for (size_t i = 0; i < d->points.table.rows; i++)
+        if (d->points.f_n0[i] != 0)
+            return true;
+    return false;
+}
+
+static bool hold_all(tl_model *m, struct tl_split_work *w, double dt)
+{
+    bool stressed = is_stressed(m->detect);
+    for (size_t part = 0, contact = 0, point = 0; part < w->part_count;) {
+        tl_split_system s = system_of(m, w, part, contact, point);
+        if (!hold(m, &s, stressed, dt))
+            return false;
+        m->cycle->split_stored += s.stored;
+        part += s.part_count;
+        contact += s.contact_count;
+        point += s.point_count;
+    }
+    return true;
+}
+
+/* The parts and what is between them; false: out of memory. */
+static bool find_parts(const tl_model *m, struct tl_split_work *w)
+{
+    w->parts = malloc((m->split_count + 1) * sizeof *w->parts);
+    if (!w->parts)
+        return false;
+    list_parts(m, w);
+    if (!list_contacts(m, w) || !sort_wholes(w))
+        return false;
+    w->points = malloc((w->point_count + 1) * sizeof *w->points);
+    w->tractions = calloc(4 * w->point_count + 1, sizeof *w->tractions);
+    return w->points && w->tractions;
+}
+
+bool tl_split_prepare(tl_model *m)
+{
+    struct tl_cycle *c = m->cycle;
+    tl_split_free(c); /* of a step that failed */
+    if (m->split_count == 0)
+        return true;
+    c->split = calloc(1, sizeof *c->split);
+    return c->split && tl_detect_hold_initial(m->detect) && find_parts(m, c->split);
+}
+
+tl_status tl_split_hold(tl_model *m, double dt)
+{
+    struct tl_cycle *c = m->cycle;
+    c->split_stored = 0;
+    if (!c->split)
+        return TL_OK;
+    for (size_t i = 0; i < c->split->part_count; i++) {
+        tl_split_part *p = &c->split->parts[i];
+        p->outer = (tl_wrench){m->bodies.force[p->body], m->bodies.moment[p->body]};
+    }
+    if (!hold_all(m, c->split, dt))
+        return tl_fail(&m->error, TL_E_NUMERIC,
+                       "cycle %lld: the law of a new face failed when it was asked what the face "
+                       "bears of the forces in the block that was cut",
+                       (long long)m->cycles + 1);
+    tl_gather(m); /* with what the new faces carry */
+    for (size_t i = 0; i < c->split->part_count; i++) {
+        const tl_split_part *p = &c->split->parts[i];
+        if (!p->goes)
+            continue;
+        m->bodies.force[p->body] = p->wanted.force;
+        m->bodies.moment[p->body] = p->wanted.moment;
+    }
+    return TL_OK;
+}
+
+void tl_split_turn(tl_model *m)
+{
+    const struct tl_split_work *w = m->cycle->split;
+    for (size_t i = 0; w && i < w->part_count; i++) {
+        const tl_split_part *p = &w->parts[i];
+        if (!p->goes)
+            continue;
+        m->bodies.v[p->body] = tl_v3_add(m->bodies.v[p->body], p->turn_v);
+        m->bodies.w[p->body] = tl_v3_add(m->bodies.w[p->body], p->turn_w);
+    }
+}
+
+void tl_split_end(tl_model *m)
+{
+    tl_split_free(m->cycle);
+    m->split_count = 0;
+}
+
+void tl_split_free(struct tl_cycle *c)
+{
+    struct tl_split_work *w = c->split;
+    if (!w)
+        return;
+    free(w->parts);
+    free(w->contacts);
+    free(w->points);
+    free(w->tractions);
+    free(w);
+    c->split = NULL;
+}
