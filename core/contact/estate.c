@@ -191,6 +191,26 @@ bool tl_estate_is_of_law(const tl_model *m, const tl_estate *estate, uint32_t c)
     return kind_of(m, estate->law) == kind_of(m, m->detect->contacts.law[c]);
 }
 
+double tl_estate_kept(const tl_model *m, const tl_estate *estate, uint32_t c)
+{
+    const tl_detect *d = m->detect;
+    bool field = is_field(d, c);
+    uint32_t column = tl_estate_is_of_law(m, estate, c) && estate->law != TL_NO_ROW
+                          ? m->joint_laws[estate->law].energy
+                          : TL_NO_ROW;
+    double sum = 0, whole = 0, area = 0;
+    if (column >= d->points.state_columns)
+        return 0;
+    for (size_t k = 0; k < estate->count; k++) {
+        const tl_old_point *p = &d->left_points[estate->first + k];
+        sum += p->state[column];
+        whole += p->area;
+    }
+    for (size_t k = 0; k < (field ? 1 : d->contacts.point_count[c]); k++)
+        area += d->points.area[tl_point_row(&d->contacts, c, k)];
+    return whole > 0 ? sum * fmin(1, area / whole) : 0;
+}
+
 tl_old_point tl_estate_point(const tl_model *m, const tl_estate *estate, uint32_t c, size_t k)
 {
     const tl_detect *d = m->detect;

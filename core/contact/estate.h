@@ -38,6 +38,8 @@ tl_old_point tl_estate_point(const tl_model *m, const tl_estate *estate, uint32_
                              size_t k);
 /* Whether the contact's law is of the kind that has kept the states of the estate's points. */
 bool tl_estate_is_of_law(const tl_model *m, const tl_estate *estate, uint32_t contact);
+/* What a contact that has its points takes over of the estate's energy of shear beyond springs, J: by its share of the area. */
+double tl_estate_kept(const tl_model *m, const tl_estate *estate, uint32_t contact);
 /* After all parts have taken over their shares: together they carry what the whole did, and no more energy. */
 void tl_estates_balance(tl_model *m);
 /* All have been taken over. */

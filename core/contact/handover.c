@@ -306,6 +306,7 @@ static void take_share(tl_model *m, uint32_t c, const tl_manifold *g, const tl_e
     begin_field(m, c, g);
     tl_contact_begin(m, c, lanes);
     turn_states(m, c, &state);
+    tl_shear_keep(m, c, tl_estate_kept(m, estate, c));
     double area = g->points[0].area, share = whole.area > 0 ? fmin(1, area / whole.area) : 0;
     whole.force = tl_v3_scale(share, whole.force);
     whole.torsion *= share * share;
@@ -329,6 +330,7 @@ void tl_contact_hand_over(tl_model *m, uint32_t c, const tl_manifold *g, bool re
     tl_contact_places(m, c, lanes);
     shear old = shear_of(m, c, lanes);
     law_state state = state_of(m, c);
+    double kept = tl_shear_kept(m, c);
     bool held = contacts->point_count[c] > 0;
     bool field = g->facet.kind == TL_FACET_FIELD;
     if (row && was_patch && held) {
@@ -348,6 +350,7 @@ void tl_contact_hand_over(tl_model *m, uint32_t c, const tl_manifold *g, bool re
         begin_field(m, c, g);
     tl_contact_begin(m, c, lanes);
     turn_states(m, c, &state);
+    tl_shear_keep(m, c, kept);
     double ks = contacts->law[c] == TL_NO_ROW ? 0 : m->joint_laws[contacts->law[c]].ks;
     if (!held || g->point_count == 0) {
         contacts->released[c] += ks > 0 ? 0.5 * old.energy / ks : 0;
@@ -443,5 +446,5 @@ double tl_contact_sheared(const tl_model *m, uint32_t c)
     if (contacts->facet[c].kind != TL_FACET_FIELD || contacts->law[c] == TL_NO_ROW)
         return 0;
     double ks = m->joint_laws[contacts->law[c]].ks;
-    return ks > 0 ? 0.5 * shear_of(m, c, NULL).energy / ks : 0;
+    return tl_shear_kept(m, c) + (ks > 0 ? 0.5 * shear_of(m, c, NULL).energy / ks : 0);
 }

@@ -85,7 +85,7 @@ void tl_point_begin(tl_points_table *p, size_t i, const tl_kind *kind)
     tl_point_initial_state(p, i, kind);
 }
 
-/* Scales the split states to the new area; with `reset` false, states to be reset are kept. */
+/* Scales the split states to the new area; with `reset` false, states to be reset are kept. Energies go by their sum: tl_shear_keep. */
 static void take_state(tl_points_table *p, size_t i, const tl_kind *kind, const double *old,
                        double old_area, bool reset)
 {
@@ -96,7 +96,8 @@ static void take_state(tl_points_table *p, size_t i, const tl_kind *kind, const 
         double scale = 1;
         if (state->transfer == TL_TRANSFER_SPLIT)
             scale = old_area > 0 ? p->area[i] / old_area : 0;
-        if (state->transfer != TL_TRANSFER_RESET || !reset)
+        bool anew = state->transfer == TL_TRANSFER_RESET || state->transfer == TL_TRANSFER_ENERGY;
+        if (!anew || !reset)
             for (uint32_t w = 0; w < width; w++)
                 p->state[column + w][i] = scale * old[column + w];
         column += width;

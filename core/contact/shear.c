@@ -61,3 +61,38 @@ void tl_shear_resized(tl_model *m, uint32_t c, const tl_shear *before, const tl_
     now.moment = tl_v3_scale(keep, now.moment);
     tl_shear_release(m, c, before, &now);
 }
+
+static uint32_t energy_column(const tl_model *m, uint32_t c)
+{
+    uint32_t law = m->detect->contacts.law[c];
+    return law == TL_NO_ROW ? TL_NO_ROW : m->joint_laws[law].energy;
+}
+
+double tl_shear_kept(const tl_model *m, uint32_t c)
+{
+    const tl_points_table *p = &m->detect->points;
+    uint32_t column = energy_column(m, c);
+    double sum = 0;
+    for (size_t k = 0; column < p->state_columns && k < m->detect->contacts.point_count[c]; k++)
+        sum += p->state[column][tl_point_row(&m->detect->contacts, c, k)];
+    return sum;
+}
+
+void tl_shear_keep(tl_model *m, uint32_t c, double energy)
+{
+    tl_contacts *contacts = &m->detect->contacts;
+    tl_points_table *p = &m->detect->points;
+    uint32_t column = energy_column(m, c);
+    if (column >= p->state_columns)
+        return;
+    bool field = contacts->facet[c].kind == TL_FACET_FIELD;
+    size_t count = field && contacts->point_count[c] ? 1 : contacts->point_count[c];
+    double area = 0;
+    for (size_t k = 0; k < count; k++)
+        area += p->area[tl_point_row(contacts, c, k)];
+    for (size_t k = 0; k < count && area > 0; k++) {
+        size_t i = tl_point_row(contacts, c, k);
+        p->state[column][i] = energy * (p->area[i] / area);
+    }
+    contacts->released[c] += area > 0 ? 0 : energy;
+}

@@ -23,6 +23,12 @@ void tl_shear_resized(tl_model *m, uint32_t contact, const tl_shear *before, con
  * ledger has the mean of the forces at both ends of a step work, and those of its beginning were still whole. */
 void tl_shear_release(tl_model *m, uint32_t contact, const tl_shear *before, const tl_shear *now);
 
+/* What shear holds beyond its springs, J: the sum of such a state of the law over the points of a contact. */
+double tl_shear_kept(const tl_model *m, uint32_t contact);
+/* Gives new points, whose state is 0, that sum: those of a patch by their areas, in a field contact the point of shear. Without points it is
+ * heat. */
+void tl_shear_keep(tl_model *m, uint32_t contact, double energy);
+
 /* The motion of B against A in the last step: at an arm from A's centroid, `way` + `turn` x arm. */
 typedef struct tl_contact_motion {
     tl_vec3 way, turn;

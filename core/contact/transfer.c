@@ -361,6 +361,7 @@ static void take_share(tl_model *m, uint32_t c, const tl_estate *estate, const t
     if (before.area > 0 && !estate->reframed)
         fit = plane_of(s->old, estate->count, &before, place_of(m, c));
     write_points(m, c, &s->manifold, &from, &fit, lanes);
+    tl_shear_keep(m, c, tl_estate_kept(m, estate, c));
     limit_to_estate(m, c, &before);
 }
 
@@ -456,6 +457,7 @@ bool tl_contact_transfer(tl_model *m, uint32_t c, tl_narrow_scratch *scratch,
     read_old(m, c, scratch, lanes);
     const old_point *old = scratch->old;
     totals before = old_totals(old, old_count), now = {0};
+    double kept = tl_shear_kept(m, c);
 
     contacts->facet[c] = g->facet;
     contacts->point_count[c] = (uint16_t)g->point_count;
@@ -467,6 +469,7 @@ bool tl_contact_transfer(tl_model *m, uint32_t c, tl_narrow_scratch *scratch,
         fit = plane_of(old, old_count, &before, place);
     const old_source from = {.points = old, .count = old_count, .keys = true, .states = true};
     write_points(m, c, g, &from, &fit, lanes);
+    tl_shear_keep(m, c, kept);
     if (g->point_count == 0 || !(before.area > 0)) {
         release(m, c, &before, &now, scratch->reframed);
         return true;

@@ -49,10 +49,13 @@ static tl_status make(tl_law *out, const tl_args *args, bool keep, const char *c
         return TL_E_PLUGIN;
     }
     uint32_t column = 0;
+    out->energy = TL_NO_ROW;
     for (uint32_t k = 0; k < kind->state_count; k++) {
         bool tangent = tl_kind_state(kind, k)->kind == TL_STATE_TANGENT;
         out->tangents |= tangent ? 1u << column : 0;
         out->splits = out->splits || tl_kind_state(kind, k)->transfer == TL_TRANSFER_SPLIT;
+        if (tl_kind_state(kind, k)->transfer == TL_TRANSFER_ENERGY)
+            out->energy = column;
         column += tangent ? 3 : 1;
     }
     tl_enter(kind, "stateless");

@@ -118,6 +118,7 @@ typedef struct tl_law {
     uint32_t tangents; /* bit k: states k, k + 1, k + 2 are a vector in the common plane */
     uint32_t columns;  /* of states that are to be kept */
     bool splits;       /* some state goes with the area */
+    uint32_t energy;   /* column of what shear holds beyond its springs, or TL_NO_ROW */
     uint32_t pulls;    /* TL_PULL_* */
 } tl_law;
 

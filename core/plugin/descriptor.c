@@ -223,17 +223,24 @@ static tl_status check_state(const tl_kind *kind, uint32_t index, tl_error *erro
                        s->doc ? "unit" : "doc");
     if (any_unclean(s->unit, s->doc))
         return unclean(error, "state", s->name);
-    if (s->kind > TL_STATE_TANGENT || s->transfer > TL_TRANSFER_RESET)
+    if (s->kind > TL_STATE_TANGENT || s->transfer > TL_TRANSFER_ENERGY)
         return tl_fail(error, TL_E_PLUGIN, "state '%s' has the unknown %s %u", s->name,
                        s->kind > TL_STATE_TANGENT ? "kind" : "transfer",
                        s->kind > TL_STATE_TANGENT ? s->kind : s->transfer);
     if (kind->type == TL_KIND_DAMPING && s->kind != TL_STATE_SCALAR)
         return tl_fail(error, TL_E_PLUGIN, "state '%s' of a damping must be a scalar", s->name);
+    if (s->transfer == TL_TRANSFER_ENERGY && (s->kind != TL_STATE_SCALAR || s->initial != 0))
+        return tl_fail(error, TL_E_PLUGIN,
+                       "state '%s' is an energy: it must be a scalar that begins at 0", s->name);
     if (!isfinite(s->initial))
         return tl_fail(error, TL_E_PLUGIN, "state '%s': its initial value is not finite", s->name);
-    for (uint32_t i = 0; i < index; i++)
+    for (uint32_t i = 0; i < index; i++) {
         if (same(s->name, kind->states[i].name))
             return tl_fail(error, TL_E_PLUGIN, "two states have the name '%s'", s->name);
+        if (s->transfer == TL_TRANSFER_ENERGY && kind->states[i].transfer == TL_TRANSFER_ENERGY)
+            return tl_fail(error, TL_E_PLUGIN, "states '%s' and '%s' are both energies of shear",
+                           kind->states[i].name, s->name);
+    }
     return TL_OK;
 }
 

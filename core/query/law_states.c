@@ -165,7 +165,8 @@ void tl_law_state_of_contact(const tl_model *m, const tl_law_states *states, con
     const tl_points_table *p = &m->detect->points;
     uint32_t column = column_of(m, states, of, contact);
     size_t count = tl_point_count(m, contact);
-    bool adds = of->state->transfer == TL_TRANSFER_SPLIT;
+    bool adds =
+        of->state->transfer == TL_TRANSFER_SPLIT || of->state->transfer == TL_TRANSFER_ENERGY;
     double area = 0, sum[3] = {0, 0, 0};
     for (size_t k = 0; k < count && column != TL_NO_ROW; k++) {
         size_t row = tl_point_row(&m->detect->contacts, contact, k);

@@ -20,7 +20,7 @@ TL_API tl_status tl_blocks_values(tl_model *model, const tl_id *ids, size_t coun
                                   const char *field, double *out, size_t *width);
 
 /* The same of contacts. `name` is a field, or a state of a law (NaN where the contact's law has no such state): the mean of
- * the contact's points, weighted by their areas, or the sum of a state that goes with the area (TL_TRANSFER_SPLIT).
+ * the contact's points, weighted by their areas, or the sum of a state that goes with the area (TL_TRANSFER_SPLIT, TL_TRANSFER_ENERGY).
  * `state` is a number here: 0 elastic, 1 slipping, 2 open, 3 failed. */
 TL_API tl_status tl_contacts_values(tl_model *model, const tl_id *ids, size_t count,
                                     const char *name, double *out, size_t *width);

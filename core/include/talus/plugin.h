@@ -130,7 +130,8 @@ typedef enum tl_state_kind {
 typedef enum tl_state_transfer {
     TL_TRANSFER_COPY,  /* intensive: taken from the nearest old point */
     TL_TRANSFER_SPLIT, /* extensive: scaled with the area share */
-    TL_TRANSFER_RESET  /* back to the initial value */
+    TL_TRANSFER_RESET, /* back to the initial value */
+    TL_TRANSFER_ENERGY /* 1.8, a scalar, J: what shear holds beyond f^2 / (2 ks area); the host keeps its sum over the points */
 } tl_state_transfer;
 
 /* One state of a law (per contact point) or of a damping (per model). The host owns it. */

@@ -12,7 +12,8 @@
  * s tan(phi_i). Over a step the equation of t is solved exactly, at the mean of phi_m before and after.
  *
  * Energy. Unloading gives back more than t^2 / (2 ks), for it is softer than ks. What the walls have put in counts as stored up to a
- * bound on what unloading can give back, 3 (1 + x) t_m^2 / ks (x - log(1 + x)) with x = t / t_m; the rest is heat.
+ * bound on what unloading can give back, 3 (1 + x) t_m^2 / ks (x - log(1 + x)) with x = t / t_m; the rest is heat. The part
+ * beyond t^2 / (2 ks_max) is a state. Where it is used up, as where an initial stress is unloaded, t falls as such a spring's does.
  *
  * Source: Cundall and Hart, report to Itasca (1984), and Eng. Comput. 9 (1992) 101-113;
  * Cundall and Lemos, in Rockbursts and Seismicity in Mines (1990) 107-112.
@@ -72,8 +73,9 @@ static const tl_state state_table[] = {
     TL_STATE(TL_STATE_SCALAR, "wear", "deg", "how far the angle of friction has fallen from phi_i"),
     TL_STATE(TL_STATE_SCALAR, "reversal", "", "share of the strength at the last reversal, r"),
     TL_STATE(TL_STATE_SCALAR, "opening", "m", "how far slip has opened the joint"),
-    TL_STATE(TL_STATE_SCALAR, "shear_energy", "J/m2",
-             "what shear has put in and not turned to heat"),
+    TL_STATE(TL_STATE_SCALAR, "shear_energy", "J",
+             "what shear holds beyond a spring of stiffness ks_max",
+             .transfer = TL_TRANSFER_ENERGY),
     TL_STATE(TL_STATE_TANGENT, "way", "", "direction of the last motion"),
 };
 
@@ -189,7 +191,11 @@ static tl_status create(const void *given, void **self, tl_report *report)
 /* A point after a step, in stresses; x, y, z is the stress on B. */
 typedef struct trial {
     double walls[STRIDE], v[STRIDE], spring[STRIDE];
-    double x[STRIDE], y[STRIDE], z[STRIDE], size[STRIDE], work[STRIDE];
+    double x[STRIDE], y[STRIDE], z[STRIDE], size[STRIDE], before[STRIDE];
+    double begins[STRIDE],
+        ends[STRIDE]; /* work of half of the stress before the step, and after it */
+    /* beyond a spring of ks_max: before, after; in that spring; share of the stress that can be paid for */
+    double had[STRIDE], kept[STRIDE], elastic[STRIDE], share[STRIDE];
     double angle[STRIDE], ratio[STRIDE], wear[STRIDE], lift[STRIDE], slides[STRIDE];
     double moved[STRIDE]; /* 0: the force stays, to the bit */
     double pressed[STRIDE], held[STRIDE], bound[STRIDE];
@@ -310,9 +316,8 @@ TL_IN_LOOP double slide(const yielding *given, const tl_law_batch *batch, uint32
         double yields = slip > 0.5 * d ? 1 : 0, changes = up < 0 ? 1 : up;
         double over = size > bound * (1 + ROUNDING) ? 1 : 0;
         double scale = over > 0 ? bound / (over > 0 ? size : 1) : 1;
-        double dot = (c.f_x[i] * per + scale * x) * c.du_x[i] +
-                     (c.f_y[i] * per + scale * y) * c.du_y[i] +
-                     (c.f_z[i] * per + scale * z) * c.du_z[i];
+        double first = c.f_x[i] * c.du_x[i] + c.f_y[i] * c.du_y[i] + c.f_z[i] * c.du_z[i];
+        double second = x * c.du_x[i] + y * c.du_y[i] + z * c.du_z[i];
         t->walls[i] = walls;
         t->v[i] = v;
         t->spring[i] = ks;
@@ -322,7 +327,9 @@ TL_IN_LOOP double slide(const yielding *given, const tl_law_batch *batch, uint32
         t->z[i] = scale * z;
         t->size[i] = scale * size;
         t->moved[i] = over + changes == 0 ? 0 : 1; /* not-a-number has moved */
-        t->work[i] = -0.5 * dot;
+        t->before[i] = before;
+        t->begins[i] = -0.5 * first * per;
+        t->ends[i] = -0.5 * scale * second;
         t->angle[i] = after;
         t->ratio[i] = ratio;
         t->wear[i] = slip > 0 ? (law.initial - after) / TL_DEGREE : was;
@@ -344,42 +351,61 @@ TL_IN_LOOP double elastic(double x)
     return 3 * (1 + x) * (x < 1e-3 ? series : closed);
 }
 
+/* Share of a stress to which it falls when there is only so much energy: `paid` and the work `ends` of what stays of it, and its spring
+ * would hold `spring`. */
+TL_IN_LOOP double afforded(double spring, double paid, double ends)
+{
+    double square = ends * ends + 4 * spring * paid, some = spring > 0 ? spring : 1;
+    double share = (ends + sqrt(square > 0 ? square : 0)) / (2 * some);
+    share = share < 1 ? share : 1;
+    return share > 0 ? share : 0;
+}
+
 /* Dilation, and what it leaves of the energy that shear has put in; whether some of that might be more than unloading can give
  * back. `opens`, a constant: 0 if no lane is opened by slip. */
 TL_IN_LOOP double lift(const yielding *given, const tl_law_batch *batch, uint32_t begin,
                        uint32_t lanes, trial *restrict t, const int curved, const int opens)
 {
-    const double *restrict opening = batch->state[2] + begin, *restrict put_in =
-                                                                  batch->state[3] + begin;
+    const double *restrict area = batch->area + begin, *restrict opening = batch->state[2] + begin;
+    const double *restrict held = batch->state[3] + begin;
     const yielding law = *given;
     double near = 0;
 #pragma omp simd reduction(+ : near)
     for (uint32_t i = 0; i < lanes; i++) {
-        double size2 = t->size[i] * t->size[i], ks = t->spring[i];
+        double per = area[i] > 0 ? 1 / area[i] : 0, softness = 0.5 / law.ks_max;
+        double size2 = t->size[i] * t->size[i], ks = t->spring[i], had = held[i] * per;
         double opened = opening[i], v = t->v[i], pressed = t->pressed[i], lifted = 0;
-        double rest = energy_at(&law, v, pressed), paid = put_in[i] + t->work[i];
+        double rest = energy_at(&law, v, pressed), work = t->begins[i] + t->ends[i];
+        double before = softness * t->before[i] * t->before[i];
+        double spring = t->moved[i] > 0 ? softness * size2 : before;
         if (opens) {
             /* shear pays for it, or the walls do not part */
-            double spring = 0.5 * t->size[i] * t->size[i] / (ks > 0 ? ks : 1), up = t->lift[i];
+            double needs = 0.5 * size2 / (ks > 0 ? ks : 1), up = t->lift[i];
             double above = t->walls[i] + (opened + up);
             lifted = energy_at(&law, above, stress_at(curved, &law, above)) - rest;
-            up = paid - lifted >= spring ? up : 0;
+            up = had + before + work - lifted >= needs ? up : 0;
             lifted = up > 0 ? lifted : 0;
             opened = opened + up;
             v = t->walls[i] + opened;
             pressed = stress_at(curved, &law, v);
             ks = shear_stiffness(curved, &law, pressed);
         }
-        double sum = paid - lifted;
+        double sum = had + (before - spring) + work - lifted;
+        double share = afforded(spring, had + before - lifted + t->begins[i], t->ends[i]);
+        share = sum < 0 ? share : 1;
         t->v[i] = v;
         t->lift[i] = opened;
         t->pressed[i] = pressed;
         t->spring[i] = ks;
-        t->work[i] = sum;
+        t->had[i] = had;
+        t->kept[i] = sum;
+        t->share[i] = share;
+        t->size[i] = share * t->size[i];
+        t->elastic[i] = share * share * spring;
         t->held[i] = rest + lifted;
         t->bound[i] = INFINITY;
         double room = ks > 0 ? LEAST * size2 / (ks > 0 ? ks : 1) : 0;
-        near += sum <= room ? 0 : 1;
+        near += sum + spring <= room ? 0 : 1;
     }
     return near;
 }
@@ -402,27 +428,27 @@ TL_IN_LOOP void settle(const tl_law_batch *batch, uint32_t begin, uint32_t lanes
 {
     const tl_law_columns c = tl_law_columns_from(batch, begin);
     double *restrict wear = batch->state[0] + begin, *restrict reversal = batch->state[1] + begin;
-    double *restrict opening = batch->state[2] + begin, *restrict put_in = batch->state[3] + begin;
+    double *restrict opening = batch->state[2] + begin, *restrict held = batch->state[3] + begin;
     double *restrict way_x = batch->state[4] + begin, *restrict way_y = batch->state[5] + begin;
     double *restrict way_z = batch->state[6] + begin;
 #pragma omp simd
     for (uint32_t i = 0; i < lanes; i++) {
         double d = sqrt(c.du_x[i] * c.du_x[i] + c.du_y[i] * c.du_y[i] + c.du_z[i] * c.du_z[i]);
-        double per_way = d > 0 ? 1 / (d > 0 ? d : 1) : 0, sum = t->work[i], most = t->bound[i];
-        double kept = sum > 0 ? sum : 0;
-        kept = sum > most * (1 + SPARE) ? most : kept;
-        double heat = sum > kept ? sum - kept : 0;
+        double per_way = d > 0 ? 1 / (d > 0 ? d : 1) : 0, sum = t->kept[i];
+        double most = t->bound[i] - t->elastic[i], kept = sum > 0 ? sum : 0;
+        kept = sum > most + t->bound[i] * SPARE ? (most > 0 ? most : 0) : kept;
+        double heat = sum > kept ? sum - kept : 0, moved = t->share[i] < 1 ? 1 : t->moved[i];
         dissipated[i] = c.area[i] > 0 ? c.area[i] * heat : 0;
-        stored[i] = c.area[i] > 0 ? c.area[i] * (kept + t->held[i]) : 0;
+        stored[i] = c.area[i] > 0 ? c.area[i] * (kept + t->elastic[i] + t->held[i]) : 0;
         mark[i] = t->v[i] < 0 ? TL_POINT_OPEN : t->slides[i] * TL_POINT_SLIPPING;
         c.f_n[i] = c.area[i] * t->pressed[i];
-        c.f_x[i] = t->moved[i] > 0 ? c.area[i] * t->x[i] : c.f_x[i];
-        c.f_y[i] = t->moved[i] > 0 ? c.area[i] * t->y[i] : c.f_y[i];
-        c.f_z[i] = t->moved[i] > 0 ? c.area[i] * t->z[i] : c.f_z[i];
+        c.f_x[i] = moved > 0 ? c.area[i] * (t->share[i] * t->x[i]) : c.f_x[i];
+        c.f_y[i] = moved > 0 ? c.area[i] * (t->share[i] * t->y[i]) : c.f_y[i];
+        c.f_z[i] = moved > 0 ? c.area[i] * (t->share[i] * t->z[i]) : c.f_z[i];
         wear[i] = t->wear[i];
         reversal[i] = t->ratio[i];
         opening[i] = t->lift[i];
-        put_in[i] = kept;
+        held[i] = kept == t->had[i] ? held[i] : c.area[i] * kept;
         way_x[i] = d > 0 ? c.du_x[i] * per_way : way_x[i];
         way_y[i] = d > 0 ? c.du_y[i] * per_way : way_y[i];
         way_z[i] = d > 0 ? c.du_z[i] * per_way : way_z[i];
