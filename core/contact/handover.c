@@ -109,14 +109,20 @@ double tl_contact_lift_field(tl_model *m, uint32_t c)
     const tl_contacts *contacts = &m->detect->contacts;
     if (!row || contacts->facet[c].kind != TL_FACET_FIELD || contacts->point_count[c] == 0)
         return 0;
-    double by = 0;
+    if (row->lifted_at != m->cycles)
+        row->opened = row->paid = 0;
+    row->lifted_at = m->cycles;
     for (size_t k = 0; k < TL_FIELD_POINTS; k++) {
-        double opening = tl_contact_opening(m, c, k);
-        by += opening - row->opening[k];
+        double opening = tl_contact_opening(m, c, k), by = opening - row->opening[k];
+        double closure = row->press.overlap + by;
         row->opening[k] = opening;
+        row->opened += by;
+        row->paid += by != 0 && closure > 0 ? m->detect->points.f_n[tl_point_row(contacts, c, k)] *
+                                                  by * (1 - 0.5 * by / closure)
+                                            : 0;
+        row->shift += by;
     }
-    row->shift += by;
-    return by;
+    return row->opened;
 }
 
 /* The tension that bonds of a patch hold, J. */

@@ -13,7 +13,7 @@ void tl_contact_hand_over(tl_model *m, uint32_t contact, const tl_manifold *mani
                           const tl_point_lanes *lanes);
 /* Puts the manifold of a field contact in the place of what it was. */
 void tl_contact_refit_field(tl_model *m, uint32_t contact, const tl_manifold *manifold);
-/* Brings the shift of a field contact's face up to how far slip has opened its joint now. */
+/* Brings the shift of a field contact's faces up to how far slip has opened its joint now; returns by how much in the last step, m. */
 double tl_contact_lift_field(tl_model *m, uint32_t contact);
 /* What the shear springs of a field contact hold, J; 0 of a patch, whose open points hold none. */
 double tl_contact_sheared(const tl_model *m, uint32_t contact);

@@ -44,6 +44,9 @@ typedef struct tl_press_row {
     tl_press press;
     /* How far its faces `shifted` are moved out by an initial stress and by slip, m; what slip has opened of it, by its points. */
     double shift, opening[TL_FIELD_POINTS];
+    double opened,
+        paid; /* in the step before `lifted_at`: by slip, m, for which shear has given so much energy, J */
+    int64_t lifted_at;
     tl_face_pair shifted;
     uint32_t next_free;
     double spare

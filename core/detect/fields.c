@@ -57,6 +57,7 @@ tl_manifold_before tl_contact_before(const tl_model *m, uint32_t c, bool reframe
         out.calm = !reframed && is_calm(m, c, row);
         out.shift = row->shift;
         out.shifted = row->shifted;
+        out.opened = row->lifted_at == m->cycles ? row->opened : 0;
     }
     return out;
 }

@@ -194,6 +194,8 @@ static void report_odd(const span_job *job, const tl_simd_group *group, const gr
 typedef struct field_press {
     tl_vec3 force, moment;
     double energy, springs;
+    double whole;                /* the law's force but for what slip opens in this step */
+    double by_energy, by_volume; /* change of the energy with those of the press */
 } field_press;
 
 /* With an energy 2 kn G. What slip opens in this step, `lifted`, presses on as at the centre. */
@@ -206,13 +208,15 @@ static field_press press_linearly(const tl_press *press, double kn, double area,
     return (field_press){.force = tl_v3_madd(more, by, press->force),
                          .moment = tl_v3_madd(tl_v3_cross(press->point, more), by, press->moment),
                          .energy = by * press->energy,
-                         .springs = spring > 0 ? whole * whole / spring : 0};
+                         .springs = spring > 0 ? whole * whole / spring : 0,
+                         .whole = whole,
+                         .by_energy = by};
 }
 
 /* With an energy r Phi(s), r = (A_e^2 + A_m^2)^(1/2), s = 4 G / V, A_e = V^2 / (4 G), of which the law has told the force r Phi'(s)
  * and the energy. `same` is the energy of the springs of torsion. */
-static field_press press_by_law(const tl_press *press, double area, double f_n, double energy,
-                                double same)
+static field_press press_by_law(const tl_press *press, double area, double f_n, double whole,
+                                double energy, double same)
 {
     double g = press->energy, v = press->volume, own = 0.25 * v * v / g, s = 4 * g / v;
     double stretch = energy / (area * area) * own;
@@ -222,7 +226,10 @@ static field_press press_by_law(const tl_press *press, double area, double f_n, 
         .force = tl_v3_madd(tl_v3_scale(by_g, press->force), by_v, press->swept),
         .moment = tl_v3_madd(tl_v3_scale(by_g, press->moment), by_v, press->swept_moment),
         .energy = energy,
-        .springs = energy + same};
+        .springs = energy + same,
+        .whole = whole,
+        .by_energy = by_g,
+        .by_volume = by_v};
 }
 
 /* By the force that a law gives which does not tell of its energy. */
@@ -233,6 +240,8 @@ static field_press press_by_force(const tl_press *press, double kn, double area,
     return (field_press){.force = tl_v3_scale(by, press->force),
                          .moment = tl_v3_scale(by, press->moment),
                          .energy = by * press->energy,
+                         .whole = fmin(f_n, same),
+                         .by_energy = by,
                          .springs = (f_n * f_n + same * same) / (2 * kn * area)};
 }
 
@@ -255,6 +264,16 @@ static void find_pressed(const span_job *job, const tl_simd_group *group, const 
     tl_enter(job->law->kind, "pressed");
     ops->pressed(job->law->self, &batch, energy);
     tl_leave();
+}
+
+/* Of what slip has paid in the last step for moving two faces apart, the share that the field has got: less than 1 where other faces
+ * press, too. A law pays as if its force, `whole`, were all on these faces. */
+static double lifted_share(const tl_press_row *row, const field_press *by, double whole)
+{
+    const tl_press *press = &row->press;
+    double pays = whole * row->opened * (1 - 0.5 * row->opened / press->overlap);
+    double gets = by->by_energy * press->lifted + by->by_volume * press->lifted_volume;
+    return pays != 0 ? gets / pays : 1;
 }
 
 /* Of the field contacts of a SIMD group. The first point carries the normal force, the point of torsion the same again. What the
@@ -285,10 +304,10 @@ static void sum_fields(const span_job *job, const tl_simd_group *group, const tl
         tl_vec3 x = tl_columns_get(t->arm, k), n = tl_columns_get(t->normal, k);
         tl_vec3 shear = tl_columns_get(p->f_s, i);
         tl_vec3 twist = tl_columns_get(p->f_s, i + torsion);
-        const field_press by =
-            linear  ? press_linearly(press, law->kn, area, f_n, same)
-            : tells ? press_by_law(press, area, f_n, pressed[l], pressed[l + torsion])
-                    : press_by_force(press, law->kn, area, f_n, same);
+        const field_press by = linear  ? press_linearly(press, law->kn, area, f_n, same)
+                               : tells ? press_by_law(press, area, f_n, fmin(f_n, same), pressed[l],
+                                                      pressed[l + torsion])
+                                       : press_by_force(press, law->kn, area, f_n, same);
         tl_vec3 force = tl_v3_add(shear, tl_m3_mul(turn, by.force));
         tl_vec3 moment = tl_v3_add(tl_v3_cross(x, shear), tl_m3_mul(turn, by.moment));
         moment = tl_v3_madd(moment, press->radius, twist);
@@ -299,6 +318,8 @@ static void sum_fields(const span_job *job, const tl_simd_group *group, const tl
         }
         out->stored[l] = t->stored[k] + t->stored[k + torsion] - by.springs + by.energy + spare;
         out->dissipated[l] = t->dissipated[k] + t->dissipated[k + torsion];
+        if (press->lifted != 0)
+            out->dissipated[l] += row->paid * (1 - lifted_share(row, &by, by.whole));
         out->odd[l] = 0 * (force.x + force.y + force.z + moment.x + moment.y + moment.z);
         if (fabs(tl_v3_dot(shear, n)) > TL_OUT_OF_PLANE * tl_v3_norm(force))
             out->odd[l] += 1;

@@ -88,7 +88,8 @@ tl_press_query tl_manifold_query(const tl_pair_view *view, const tl_region *regi
                             .corners = rule->corners,
                             .volumes = rule->volumes,
                             .shift = before->shift,
-                            .shifted = before->shifted};
+                            .shifted = before->shifted,
+                            .opened = before->opened};
 }
 
 static bool find_field(const tl_pair_view *view, const tl_region *r, const tl_touch_rule *rule,

@@ -13,6 +13,7 @@ typedef struct tl_manifold_before {
     double over;      /* gap across which its faces press, m; INFINITY where they hold */
     double shift;     /* see tl_press_query */
     tl_face_pair shifted;
+    double opened;
 } tl_manifold_before;
 
 /* Way that a list of faces holds for, over the size. */

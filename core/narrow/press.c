@@ -456,8 +456,8 @@ static void begin_anew(const tl_press_query *of, planes *p, tl_mesh_inner *inner
     p->faces.inner = inner;
 }
 
-bool tl_press_find(const tl_press_query query[], uint32_t count, tl_narrow_scratch *scratch,
-                   tl_press press[])
+static bool find_all(const tl_press_query query[], uint32_t count, tl_narrow_scratch *scratch,
+                     tl_press press[])
 {
     planes p[TL_FIELD_PAIRS];
     uint64_t known[TL_FIELD_PAIRS];
@@ -488,4 +488,40 @@ bool tl_press_find(const tl_press_query query[], uint32_t count, tl_narrow_scrat
             return false;
     }
     return true;
+}
+
+/* What slip has added to energies and volumes in the last step: they are found again without. */
+static bool find_lifted(const tl_press_query query[], uint32_t count, tl_narrow_scratch *scratch,
+                        tl_press press[])
+{
+    tl_press_query before[TL_FIELD_PAIRS];
+    tl_region region[TL_FIELD_PAIRS];
+    tl_press without[TL_FIELD_PAIRS];
+    uint32_t opened[TL_FIELD_PAIRS], some = 0;
+    for (uint32_t k = 0; k < count; k++) {
+        if (query[k].opened == 0 || !(press[k].area > 0))
+            continue;
+        region[some] = *query[k].region;
+        region[some].mesh = NULL;
+        before[some] = query[k];
+        before[some].region = &region[some];
+        before[some].shift -= query[k].opened;
+        opened[some++] = k;
+    }
+    if (some == 0)
+        return true;
+    if (!find_all(before, some, scratch, without))
+        return false;
+    for (uint32_t i = 0; i < some; i++) {
+        tl_press *now = &press[opened[i]];
+        now->lifted = now->energy - without[i].energy;
+        now->lifted_volume = now->volume - without[i].volume;
+    }
+    return true;
+}
+
+bool tl_press_find(const tl_press_query query[], uint32_t count, tl_narrow_scratch *scratch,
+                   tl_press press[])
+{
+    return find_all(query, count, scratch, press) && find_lifted(query, count, scratch, press);
 }

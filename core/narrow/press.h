@@ -48,8 +48,9 @@ typedef struct tl_press_query {
     /* how far both faces `shifted` together are moved out by an initial stress and by slip, m: each goes half of the way */
     double shift;
     tl_face_pair shifted;
-    bool corners; /* the patch has points at its corners only */
-    bool volumes; /* for a law whose pressure is not proportional to the overlap: see press.c */
+    double opened; /* part of the shift that slip has opened in the last step, m */
+    bool corners;  /* the patch has points at its corners only */
+    bool volumes;  /* for a law whose pressure is not proportional to the overlap: see press.c */
 } tl_press_query;
 
 /* The presses of some pairs, up to TL_FIELD_PAIRS: 0 where the blocks have nothing in common. false: out of memory. */

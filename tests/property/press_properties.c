@@ -31,8 +31,8 @@ static tl_press press_of(scene *s)
     tl_press press;
     CHECK(tl_region_find(view, s->margin * view->size, &s->pair.scratch, &region));
     CHECK(tl_press_find(
-        &(tl_press_query){view, &region, s->least, s->shift, shifted_of(&region), false, false}, 1,
-        &s->pair.scratch, &press));
+        &(tl_press_query){view, &region, s->least, s->shift, shifted_of(&region), 0, false, false},
+        1, &s->pair.scratch, &press));
     return press;
 }
 
@@ -158,7 +158,7 @@ TEST(slopes_go_on_with_the_press)
         const tl_face_pair shifted = shifted_of(&region);
         if (at.area > 0) {
             CHECK(tl_press_slope_find(
-                &(tl_press_query){view, &region, s.least, s.shift, shifted, false, false}, &at,
+                &(tl_press_query){view, &region, s.least, s.shift, shifted, 0, false, false}, &at,
                 &s.pair.scratch, &slope));
             CHECK(slope.known);
             nudge(&s, &at, 0.5 * TL_PRESS_NEAR, &seed);
