@@ -19,8 +19,8 @@ typedef struct tl_contacts {
     uint32_t *press;         /* row of what a field contact keeps, or TL_NO_ROW */
     double *faces_valid_to;  /* sum of odometers up to which the choice of its faces holds */
     double *points_valid_to; /* sum of odometers up to which its points may be reused */
-    /* of patches: where their points were laid or, without reuse, their faces chosen */
-    tl_spot *spot;
+    tl_spot
+        *spot; /* of patches: where their points were laid or, without reuse, their faces chosen */
     uint32_t *point_start; /* row of the first point; the next are TL_LANES rows apart */
     uint16_t *point_count, *point_capacity;
     double *area;
@@ -44,17 +44,14 @@ typedef struct tl_press_row {
     tl_press press;
     /* How far its faces `shifted` are moved out by an initial stress and by slip, m; what slip has opened of it, by its points. */
     double shift, opening[TL_FIELD_POINTS];
-    double opened,
-        paid; /* in the step before `lifted_at`: by slip, m, for which shear has given so much energy, J */
+    double opened, paid; /* by slip in the step before `lifted_at`, m; with energy of shear, J */
     int64_t lifted_at;
     tl_face_pair shifted;
     uint32_t next_free;
-    double spare
-        [2]; /* energy of shear and torsion beyond that of uniform stress, times 2 ks: handover.c */
-    /* the region: its faces, of the four kinds of tl_region */
-    uint16_t count[4], face[TL_PRESS_FACES], blunt_a, blunt_b;
-    tl_pair_pose listed_at; /* where they were listed */
-    double listed_shift;    /* and with which shift */
+    double spare[2]; /* energy of shear and of torsion beyond uniform stress, times 2 ks */
+    uint16_t count[4], face[TL_PRESS_FACES], blunt_a, blunt_b; /* of its tl_region */
+    tl_pair_pose listed_at;                                    /* where they were listed */
+    double listed_shift;                                       /* and with which shift */
     bool flush, listed;
     /* It has stayed near a place since some step. When it has stayed for long, its press there has slopes, and it goes by
      * them; otherwise by the mesh of its field: detect/fields.c */

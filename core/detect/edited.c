@@ -165,7 +165,10 @@ static void end_contact(tl_model *m, const rows_scratch *scratch, uint32_t conta
  * a block of it changes it is found as if nobody had. */
 static bool is_fresh(const tl_detect *d, uint32_t contact)
 {
-    return d->contacts.id[contact] > d->stepped_contact && !d->points.initial;
+    bool stressed = false;
+    for (size_t k = 0; d->points.initial && k < d->contacts.point_count[contact]; k++)
+        stressed = stressed || d->points.f_n0[tl_point_row(&d->contacts, contact, k)] != 0;
+    return d->contacts.id[contact] > d->stepped_contact && !stressed;
 }
 
 /* Pairs, in their order, with their present rows: ids ascend with rows before and after. */

@@ -157,11 +157,17 @@ static void keep_heirs(const tl_stage *stage, const commit_scratch *scratch)
     }
 }
 
+/* Whether parts of a body have to go on as it does: it has been in a step, or something has been put on its contacts. */
+static bool goes_on(const tl_model *m)
+{
+    return m->cycles > 0 || has_contacts(m);
+}
+
 /* Lists the blocks that were there before, with the bodies they were in in the last step. */
 static void list_wholes(const tl_stage *stage, commit_scratch *scratch)
 {
     const tl_model *m = stage->model;
-    for (size_t i = 0; i < stage->count && has_contacts(m); i++) {
+    for (size_t i = 0; i < stage->count && goes_on(m); i++) {
         uint32_t row = stage->blocks[i].source;
         if (row == TL_NO_ROW)
             continue;
