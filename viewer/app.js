@@ -46,6 +46,7 @@ export class App {
         this.oblique = 30;
         this.home = { min: [-1, -1, -1], max: [1, 1, 1] };
         this.dirty = -1;
+        this.samples = SAMPLES;
         this.sample = 0;
         this.changed = 0;
         this.draftCost = this.fullCost = 0;
@@ -88,7 +89,7 @@ export class App {
     painted() { return new Promise((done) => { this.waiting.push(done); }); }
 
     /** Until the average is complete. */
-    async settled() { do await new Promise((done) => setTimeout(done, 20)); while (this.sample < SAMPLES || this.asked || this.reading); }
+    async settled() { do await new Promise((done) => setTimeout(done, 20)); while (this.sample < this.samples || this.asked || this.reading); }
 
     /** @param {number} index @param {boolean} [loud] */
     async goTo(index, loud = true) {
@@ -231,7 +232,7 @@ export class App {
         this.asked = false;
         if (this.dirty >= 0) this.refresh();
         const { canvas } = this, begun = performance.now(), full = this.number > 0 && (begun - this.changed > STILL || (this.fullCost > 0 && this.fullCost < 20));
-        if (this.sample < SAMPLES && this.frame) {
+        if (this.sample < this.samples && this.frame) {
             const half = !full && (this.number ? this.draftCost > SLOW : this.model.triangles > MANY) ? 2 : 1;
             if (full || this.sample === 0) this.drawOne(Math.ceil(canvas.width / half), Math.ceil(canvas.height / half), full ? this.sample : 0, full);
             this.gpu.wait();
@@ -241,11 +242,11 @@ export class App {
             this.number++;
         }
         for (const done of this.waiting.splice(0)) done();
-        if (this.sample < SAMPLES && this.frame && !this.asked) {
+        if (this.sample < this.samples && this.frame && !this.asked) {
             this.asked = true;
             setTimeout(() => requestAnimationFrame(() => this.tick()), full ? 0 : Math.max(0, STILL + 5 - (performance.now() - this.changed)));
         }
-        if (this.sample === SAMPLES) this.keepAddress();
+        if (this.sample === this.samples) this.keepAddress();
     }
 
     drawOverlay() {

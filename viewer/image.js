@@ -2,7 +2,6 @@
 // @ts-check
 import { drawAxes, drawLegends, inks, legendSize } from "./overlay.js";
 import { byId, element } from "./dom.js";
-import { SAMPLES } from "./gpu.js";
 
 /** @param {import("./page.js").Page} app @param {number} factor @returns {Promise<Blob>} */
 export async function makeImage(app, factor) {
@@ -12,7 +11,7 @@ export async function makeImage(app, factor) {
     const before = [canvas.width, canvas.height];
     canvas.width = w;
     canvas.height = h;
-    for (let i = 0; i < SAMPLES; i++) app.drawOne(w, h, i, true);
+    for (let i = 0; i < app.samples; i++) app.drawOne(w, h, i, true);
     const sky = pen.createLinearGradient(0, 0, 0, h);
     sky.addColorStop(0, c.top);
     sky.addColorStop(1, c.low);

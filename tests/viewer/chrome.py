@@ -69,10 +69,12 @@ class WebSocket:
 
 
 class Chrome:
-    """A browser with one page. `log` collects what the page reports: exceptions, refused resources, console messages."""
+    """A browser with one page. `log` collects what the page reports: exceptions, refused resources, console messages. The page averages
+    `samples` pictures when nothing changes, each drawn by the processor; 0: as many as it does for its users."""
 
     def __init__(self, width=1440, height=900, path=None, arguments=()):
         self.folder = tempfile.mkdtemp(prefix="talus_chrome_")
+        self.samples = 1
         self.errors = open(os.path.join(self.folder, "stderr"), "w+")
         self.process = subprocess.Popen(
             [path or program(), "--headless=new", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
@@ -144,6 +146,8 @@ class Chrome:
             if time.monotonic() > end:
                 raise RuntimeError("the page does not load")
             time.sleep(0.02)
+        if self.samples:
+            self.run(f"if (window.talus) talus.app.samples = {self.samples}")
 
     def run(self, expression):
         """Value of an expression in the page, a promise's when it is kept."""
@@ -180,28 +184,36 @@ def read_png(data):
             packed += body
         at += 12 + length
     raw, stride = zlib.decompress(packed), width * channels
-    before, rows = bytearray(stride), []
+    line, rows = bytearray(stride), []
     for y in range(height):
-        kind, line = raw[y * (stride + 1)], bytearray(raw[y * (stride + 1) + 1:(y + 1) * (stride + 1)])
-        for i in range(stride) if kind else ():
-            a = line[i - channels] if i >= channels else 0
-            b, c = before[i], before[i - channels] if i >= channels else 0
+        begin = y * (stride + 1) + 1
+        line = unfiltered(raw[begin - 1], bytearray(raw[begin:begin + stride]), line, channels)
+        colours = [line[k::channels] for k in range(3)]
+        if channels == 4:  # over white
+            alpha = line[3::4]
+            colours = [[255 + (v - 255) * a // 255 for v, a in zip(column, alpha)] for column in colours]
+        rows.append(list(zip(*colours)))
+    return rows
+
+
+def unfiltered(kind, line, above, channels):
+    """The bytes of a row, which a PNG gives by their differences from those to the left and in the row above."""
+    if kind == 2:
+        return bytearray([(v + b) & 255 for v, b in zip(line, above)])
+    for k in range(channels) if kind else ():
+        a = c = 0  # to the left, and above that
+        for i in range(k, len(line), channels):
+            b = above[i]
             if kind == 1:
                 add = a
-            elif kind == 2:
-                add = b
             elif kind == 3:
                 add = (a + b) >> 1
             else:
                 pa, pb, pc = abs(b - c), abs(a - c), abs(a + b - 2 * c)
                 add = a if pa <= pb and pa <= pc else b if pb <= pc else c
-            line[i] = (line[i] + add) & 255
-        before = line
-        if channels == 4:  # over white
-            rows.append([tuple(255 + (v - 255) * line[i + 3] // 255 for v in line[i:i + 3]) for i in range(0, stride, 4)])
-        else:
-            rows.append([tuple(line[i:i + 3]) for i in range(0, stride, 3)])
-    return rows
+            a, c = (line[i] + add) & 255, b
+            line[i] = a
+    return line
 
 
 def similarity(a, b):

@@ -27,7 +27,7 @@ def show(chrome, page, fragment=""):
     check(not chrome.log, f"{page.name} reports {chrome.log}")
 
 
-def run_tests(name, script, tests, size=(900, 700)):
+def run_tests(name, script, tests, size=(720, 400)):
     """Runs a Lua script that writes pages into a folder, and the tests (or those that are asked for) on it. Gives the status to exit with: without
     Chromium 77, and 1 where TALUS_BROWSER is "required"."""
     if not program():
