@@ -156,21 +156,29 @@ static uint64_t along(uint64_t on, uint32_t count)
     return on & (on >> 8 | (on & UINT64_C(0xff)) << 8 * (count - 1));
 }
 
+/* Bit i: byte i has a bit. */
+static uint32_t bytes_with_bits(uint64_t x)
+{
+    x |= x >> 4;
+    x |= x >> 2;
+    x |= x >> 1; /* bit 0 of a byte: any of its bits */
+    return (uint32_t)((x & UINT64_C(0x0101010101010101)) * UINT64_C(0x0102040810204080) >> 56);
+}
+
+/* Bit i: bit i of some byte. */
+static uint32_t bits_of_bytes(uint64_t x)
+{
+    x |= x >> 32;
+    x |= x >> 16;
+    x |= x >> 8;
+    return (uint32_t)(x & 0xff);
+}
+
 tl_outline_shared tl_outline_shared_of(uint32_t na, uint32_t nb, uint64_t on_a, uint64_t on_b)
 {
-    tl_outline_shared out = {0, 0};
     uint64_t a = along(on_a, na), b = along(on_b, nb);
-    for (; a; a &= a - 1) {
-        uint32_t bit = (uint32_t)__builtin_ctzll(a);
-        out.a |= 1u << bit / 8;
-        out.b |= 1u << bit % 8;
-    }
-    for (; b; b &= b - 1) {
-        uint32_t bit = (uint32_t)__builtin_ctzll(b);
-        out.a |= 1u << bit % 8;
-        out.b |= 1u << bit / 8;
-    }
-    return out;
+    return (tl_outline_shared){.a = bytes_with_bits(a) | bits_of_bytes(b),
+                               .b = bits_of_bytes(a) | bytes_with_bits(b)};
 }
 
 const tl_outline *tl_outline_of(tl_outline *cache, uint32_t na, uint32_t nb, uint64_t inside_a,
