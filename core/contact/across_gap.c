@@ -136,14 +136,17 @@ tl_contact_across tl_contact_across_gap(const tl_model *m, uint32_t c)
     return out;
 }
 
-double tl_contact_opening(const tl_model *m, uint32_t c, size_t k)
+void tl_contact_openings(const tl_model *m, uint32_t c, double opening[TL_FIELD_POINTS])
 {
     const tl_detect *d = m->detect;
     const tl_law *law = law_of(m, c);
+    for (size_t k = 0; k < TL_FIELD_POINTS; k++)
+        opening[k] = 0;
     if (!law || is_plain(d, law))
-        return 0;
+        return;
     sample s;
-    read_points(&d->points, &d->contacts, c, k, &s);
+    read_points(&d->points, &d->contacts, c, 0, &s);
     ask(law, zeros, &s);
-    return s.lift[0];
+    for (size_t k = 0; k < TL_FIELD_POINTS; k++)
+        opening[k] = s.lift[k];
 }

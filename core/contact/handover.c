@@ -112,10 +112,11 @@ double tl_contact_lift_field(tl_model *m, uint32_t c)
     if (row->lifted_at != m->cycles)
         row->opened = row->paid = 0;
     row->lifted_at = m->cycles;
+    double opening[TL_FIELD_POINTS];
+    tl_contact_openings(m, c, opening);
     for (size_t k = 0; k < TL_FIELD_POINTS; k++) {
-        double opening = tl_contact_opening(m, c, k), by = opening - row->opening[k];
-        double closure = row->press.overlap + by;
-        row->opening[k] = opening;
+        double by = opening[k] - row->opening[k], closure = row->press.overlap + by;
+        row->opening[k] = opening[k];
         row->opened += by;
         row->paid += by != 0 && closure > 0 ? m->detect->points.f_n[tl_point_row(contacts, c, k)] *
                                                   by * (1 - 0.5 * by / closure)
@@ -273,8 +274,10 @@ static void begin_field(tl_model *m, uint32_t c, const tl_manifold *g)
 {
     tl_press_row *row = tl_press_row_of(m, c);
     row->press = g->press;
-    for (size_t k = 0; k < TL_FIELD_POINTS; k++)
-        row->opening[k] = g->point_count ? tl_contact_opening(m, c, k) : 0;
+    if (g->point_count)
+        tl_contact_openings(m, c, row->opening);
+    else
+        memset(row->opening, 0, sizeof row->opening);
     m->detect->contacts.facet[c].offset -= row->opening[TL_FIELD_SHEAR];
 }
 
