@@ -97,4 +97,19 @@ static inline double check_random(uint64_t *state)
     return (double)((x * 2685821657736338717u) >> 11) * 0x1p-53;
 }
 
+/* Of a number of cases how many are tried: all, or one in TALUS_TEST_SHARE. With sanitizers "./bootstrap test" tries one in ten, and
+ * "./bootstrap soak" all. */
+static inline int check_cases(int count)
+{
+    const char *share = getenv("TALUS_TEST_SHARE");
+    int by = share ? atoi(share) : 1, some = by > 1 ? count / by : count;
+    return some > 0 ? some : 1;
+}
+
+/* Whether case i is one of them. */
+static inline int check_takes(size_t i)
+{
+    return i % (size_t)(1000 / check_cases(1000)) == 0;
+}
+
 #endif

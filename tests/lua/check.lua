@@ -2,6 +2,19 @@
 -- script ends with exit status 1 and says where.
 local check = {}
 
+-- With sanitizers "./bootstrap test" tries one case in ten, and "./bootstrap soak" all.
+local SHARE = tonumber(os.getenv "TALUS_TEST_SHARE" or 1)
+
+-- Of a number of cases how many are tried.
+function check.cases(count)
+    return math.max(1, count // SHARE)
+end
+
+-- Of a list of cases those that are tried.
+function check.some(list)
+    return table.move(list, 1, check.cases(#list), 1, {})
+end
+
 local function fail(format, ...)
     error(string.format(format, ...), 3)
 end

@@ -3,7 +3,7 @@
 local check = require "check"
 local talus = require "talus"
 
-local SEEDS, ACTS = 20, 25
+local SEEDS, ACTS = check.cases(20), 25
 local SIDE = 4 -- m
 local DENSITY, KN, G = 2000, 1e8, 10
 

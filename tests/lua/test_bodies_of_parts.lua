@@ -98,7 +98,7 @@ end
 
 -- 1. Convex bodies. Fields are the same to the last digits. Flush parts go over from patches to fields by the overlap over the
 -- size of their own areas, which makes a difference in a strip as wide as the overlap: kn overlap^2 per metre.
-local MOST = tonumber(arg and arg[1]) or 40
+local MOST = tonumber(arg and arg[1]) or check.cases(40)
 local presses = 0
 for seed = 1, MOST do
     local random = shapes.random(seed)
@@ -168,7 +168,7 @@ local function fallen(vertices, body_cuts, floor_cuts)
     return place, model:solve { ratio = 1e-5, max_cycles = 60000 }.reason, centre_of(body)
 end
 
-for seed = 1, MOST // 20 do
+for seed = 1, math.max(1, MOST // 20) do
     local random = shapes.random(2000 + seed)
     local floor = shapes.placed(shapes.box(4, 4, 1), NONE, { 0, 0, -0.5 })
     local vertices = seed % 2 == 0 and shapes.box(1, 0.7, 0.5) or shapes.hull(random, 9, 0.7)

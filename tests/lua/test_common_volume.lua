@@ -5,7 +5,7 @@ package.path = "tests/lua/?.lua;" .. package.path -- run in the source root
 local check = require "check"
 local common = require "common_volume"
 
-local MODELS = 100
+local MODELS = check.cases(100)
 local AT_REST = 1e-9 -- m/s
 
 local function no_false_contacts(model, seed, when)

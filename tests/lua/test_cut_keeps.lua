@@ -5,7 +5,7 @@ local shapes = require "shapes"
 local talus = require "talus"
 
 local G, DENSITY = 10, 2000
-local SEEDS = 12
+local SEEDS = check.cases(12)
 
 local function fastest(model)
     local most = 0

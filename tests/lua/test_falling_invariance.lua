@@ -5,7 +5,7 @@
 local check = require "check"
 local invariance = require "invariance"
 
-local SEEDS, TIME = 6, 0.3 -- s
+local SEEDS, TIME = check.cases(6), 0.3 -- s
 
 local failed = 0
 for seed = 1, SEEDS do

@@ -5,7 +5,7 @@
 local check = require "check"
 local impacts = require "impacts"
 
-local SEEDS = 4
+local SEEDS = check.cases(4)
 
 local failed = 0
 local function holds(condition, row, what)

@@ -57,7 +57,7 @@ local function small_among_large(seed, factor_of_safety)
     model:timestep { rule = "body", fraction = 0.5 }
     return model, model:blocks { group = "small" }[1]
 end
-for seed = 1, 10 do
+for seed = 1, check.cases(10) do
     local model, small = small_among_large(seed, 0.83)
     local result = model:solve { max_cycles = 1000 }
     check.equal(result.reason, "cycles")

@@ -6,13 +6,6 @@
 
 #include <string.h>
 
-/* How many random cases are made, of those that an optimised build makes. */
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define CASES(count) ((count) / 10)
-#else
-#define CASES(count) (count)
-#endif
-
 typedef struct scene {
     scene_pair pair;
     double least, margin, shift;
@@ -92,7 +85,7 @@ TEST(force_is_the_gradient_through_the_blend)
 {
     int cases = 0, blended = 0;
     double worst = 0;
-    for (uint64_t k = 1; k <= CASES(1500); k++) {
+    for (uint64_t k = 1; k <= (uint64_t)check_cases(1500); k++) {
         uint64_t seed = k;
         static scene s;
         double tilt = scene_between(&seed, 0, 0.2), depth = pow(10, scene_between(&seed, -4, -2));
@@ -115,8 +108,8 @@ TEST(force_is_the_gradient_through_the_blend)
         scene_pair_free(&s.pair);
     }
     printf("  %d cases, %d blended, off by %.1e at the most\n", cases, blended, worst);
-    CHECK(cases > CASES(900));
-    CHECK(blended > CASES(200));
+    CHECK(cases > check_cases(900));
+    CHECK(blended > check_cases(200));
 }
 
 static tl_pair_pose place_of(const scene *s)
@@ -141,7 +134,7 @@ TEST(slopes_go_on_with_the_press)
 {
     int cases = 0;
     double worst = 0;
-    for (uint64_t k = 1; k <= CASES(1000); k++) {
+    for (uint64_t k = 1; k <= (uint64_t)check_cases(1000); k++) {
         uint64_t seed = k + 70000;
         static scene s;
         make_flush(&s, k % 2 ? scene_between(&seed, 0, 0.3) : scene_between(&seed, 1, 50),
@@ -183,7 +176,7 @@ TEST(slopes_go_on_with_the_press)
         scene_pair_free(&s.pair);
     }
     printf("  %d cases, off by %.1e at the most\n", cases, worst);
-    CHECK(cases > CASES(500));
+    CHECK(cases > check_cases(500));
 }
 
 static tl_poly *shape_of(uint64_t *seed, int kind)
@@ -201,7 +194,7 @@ static tl_poly *shape_of(uint64_t *seed, int kind)
 TEST(faces_left_out_do_not_matter)
 {
     int cases = 0;
-    for (uint64_t k = 1; k <= CASES(3000); k++) {
+    for (uint64_t k = 1; k <= (uint64_t)check_cases(3000); k++) {
         uint64_t seed = k;
         static scene s;
         s = (scene){.pair = scene_pair_of(
@@ -228,7 +221,7 @@ TEST(faces_left_out_do_not_matter)
         CHECK_NEAR(some.energy, all.energy, 1e-9 * all.energy);
         scene_pair_free(&s.pair);
     }
-    CHECK(cases > CASES(1000));
+    CHECK(cases > check_cases(1000));
 }
 
 /* Moves a pair by less than `most`, turns about B's origin counted at its size. */
@@ -246,7 +239,7 @@ static double wander(scene *s, double most, uint64_t *seed)
 TEST(faces_that_bounded_before_change_nothing)
 {
     int cases = 0, changes = 0, forgotten = 0, stood = 0;
-    for (uint64_t k = 1; k <= CASES(1000); k++) {
+    for (uint64_t k = 1; k <= (uint64_t)check_cases(1000); k++) {
         uint64_t seed = k + 40000;
         tl_field_mesh mesh = {0};
         static scene s;
@@ -291,10 +284,10 @@ TEST(faces_that_bounded_before_change_nothing)
         }
         scene_pair_free(&s.pair);
     }
-    CHECK(cases > CASES(2500));
-    CHECK(changes > CASES(100));
-    CHECK(forgotten > CASES(40));
-    CHECK(stood > CASES(1500));
+    CHECK(cases > check_cases(2500));
+    CHECK(changes > check_cases(100));
+    CHECK(forgotten > check_cases(40));
+    CHECK(stood > check_cases(1500));
     printf("  %d places, other faces %d times, by a corner %d times, the same polygons %d times\n",
            cases, changes, forgotten, stood);
 }
@@ -316,7 +309,7 @@ static tl_poly *folded(double degrees)
 TEST(faces_that_become_flush_are_found_in_an_old_list)
 {
     int cases = 0, blended = 0;
-    for (uint64_t k = 1; k <= CASES(1000); k++) {
+    for (uint64_t k = 1; k <= (uint64_t)check_cases(1000); k++) {
         uint64_t seed = k;
         double angle = scene_between(&seed, 1, 12), tilt = scene_between(&seed, 0, 0.2);
         double depth = pow(10, scene_between(&seed, -5, -3));
@@ -349,8 +342,8 @@ TEST(faces_that_become_flush_are_found_in_an_old_list)
         CHECK_NEAR(some.energy, all.energy, 1e-9 * all.energy);
         scene_pair_free(&s.pair);
     }
-    CHECK(cases > CASES(900));
-    CHECK(blended > CASES(300));
+    CHECK(cases > check_cases(900));
+    CHECK(blended > check_cases(300));
 }
 
 TEST_MAIN(RUN(force_is_the_gradient_through_the_blend), RUN(slopes_go_on_with_the_press),

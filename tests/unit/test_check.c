@@ -88,6 +88,8 @@ TEST(each_check_finds_what_breaks_it)
         {"screen_fault", "behind", "writes; "},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        if (!check_takes(i))
+            continue;
         findings h = run_unfit(cases[i].param, cases[i].fault);
         if (!CHECK_TEXT(h.list, cases[i].found))
             printf("  %s = %s: %s\n", cases[i].param, cases[i].fault, h.fault);
@@ -104,6 +106,8 @@ TEST(others_are_found_among_the_rest)
         {"damping_fault", "finite", "finite; "},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        if (!check_takes(i))
+            continue;
         findings h = run_unfit(cases[i][0], cases[i][1]);
         CHECK_CONTAINS(h.list, cases[i][2]);
     }

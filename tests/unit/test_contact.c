@@ -249,7 +249,7 @@ TEST(same_bits_twice_and_on_two_threads)
     size_t contacts = 0;
     for (int i = 0; i < 3; i++) {
         tl_model *m = pile(i == 2 ? 2 : 1, 1);
-        run(m, 6000);
+        run(m, 2500);
         scene_ok(m, tl_state_hash(m, hash[i]));
         contacts = m->detect->contacts.table.rows;
         tl_model_destroy(m);

@@ -6,13 +6,6 @@
 
 #define KN 1e9
 
-/* How many random cases are made, of those that an optimised build makes. */
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define CASES(count) ((count) / 10)
-#else
-#define CASES(count) (count)
-#endif
-
 static const tl_quat none = {1, 0, 0, 0};
 static const double degree = TL_PI / 180;
 
@@ -184,7 +177,7 @@ TEST(edges_press_by_the_slope_of_what_they_store)
 {
     double worst = 0;
     int cases = 0;
-    for (uint64_t s = 1; s <= CASES(130); s++) {
+    for (uint64_t s = 1; s <= (uint64_t)check_cases(130); s++) {
         uint64_t seed = s;
         rig r = rig_of(scene_box_shape(1, 1, 1), roof(), s % 2, s % 3 ? 0 : 0.01);
         double x = 0.5 + scene_between(&seed, -0.35, 0.35), y = scene_between(&seed, -0.4, 0.4);
@@ -197,7 +190,7 @@ TEST(edges_press_by_the_slope_of_what_they_store)
         cases += off >= 0;
         tl_model_destroy(r.m);
     }
-    CHECK(cases > CASES(80));
+    CHECK(cases > check_cases(80));
     if (getenv("TALUS_TEST_VERBOSE"))
         printf("  edges: %d cases, off by %.2g\n", cases, worst);
 }
@@ -206,7 +199,7 @@ TEST(hulls_press_by_the_slope_of_what_they_store)
 {
     double worst = 0;
     int cases = 0;
-    for (uint64_t s = 1; s <= CASES(120); s++) {
+    for (uint64_t s = 1; s <= (uint64_t)check_cases(120); s++) {
         uint64_t seed = s;
         tl_poly *shape[2];
         for (int k = 0; k < 2; k++)
@@ -223,7 +216,7 @@ TEST(hulls_press_by_the_slope_of_what_they_store)
         cases += off >= 0;
         tl_model_destroy(r.m);
     }
-    CHECK(cases > CASES(110));
+    CHECK(cases > check_cases(110));
     if (getenv("TALUS_TEST_VERBOSE"))
         printf("  hulls: %d cases, off by %.2g\n", cases, worst);
 }
@@ -356,7 +349,7 @@ TEST(an_end_passes_over_a_border_without_a_jump)
 TEST(hulls_at_random_do_not_jump)
 {
     double worst = 0;
-    for (uint64_t s = 1; s <= CASES(150); s++) {
+    for (uint64_t s = 1; s <= (uint64_t)check_cases(150); s++) {
         uint64_t seed = s;
         tl_poly *shape[2];
         for (int k = 0; k < 2; k++)
