@@ -54,7 +54,15 @@ local function check(case, name, points)
         } }
 end
 
-for _, case in ipairs(reference) do
+-- "./bootstrap verify" asks for all slopes; else the one of the fewest columns is enough.
+local cases = reference
+if not os.getenv "TALUS_VERIFY_DIR" then
+    cases = { reference[1] }
+    for _, case in ipairs(reference) do
+        cases[1] = case.n < cases[1].n and case or cases[1]
+    end
+end
+for _, case in ipairs(cases) do
     check(case, case.name, "consistent")
     check(case, case.name .. ".corners", "corners")
 end
