@@ -31,6 +31,8 @@ local TITLES = {
     { "LAW.barton.peak", "law barton_bandis: peak shear strength" },
     { "LAW.barton.scale", "law barton_bandis: roughness and wall strength of longer joints" },
     { "LAW.barton.shear", "law barton_bandis: mobilised roughness and dilation" },
+    { "LAW.columns", "columns under loads beside their middle, on joints of every law" },
+    { "LAW.inclines", "slender blocks on inclines, on joints of every law" },
     { "LAW.cohesive.I", "law cohesive: opening" },
     { "LAW.cohesive.II", "law cohesive: shear" },
     { "LAW.cohesive.mixed", "law cohesive: opening and as much shear" },
