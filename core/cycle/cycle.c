@@ -19,7 +19,7 @@
  *
  * Everything computed in parallel is either a pure function of one contact or one body, or a sum made
  * in fixed chunks, so the bits do not depend on the number of threads. */
-#include "cycle/cycle_data.h"
+#include "cycle/travel.h"
 
 #include "contact/detection.h"
 #include "contact/held.h"
@@ -50,7 +50,7 @@ static tl_status prepare(tl_model *m, double *dt, bool *driven)
     *driven = status != TL_OK || tl_drives_evaluate(m, m->time + 0.5 * *dt);
     if (status == TL_OK)
         status = tl_motion_check_held(m, *dt);
-    return status == TL_OK ? tl_undo_reserve(m) : status;
+    return status == TL_OK ? tl_undo_reserve(m, tl_travel_may_matter(m, *dt)) : status;
 }
 
 /* Forces on the bodies: undone when a law or the damping fails, or a body would move too far. */

@@ -58,6 +58,11 @@ struct tl_added {
     uint32_t worst; /* row of the body that has it, or TL_NO_ROW */
 };
 
+/* Bounds on the speeds of the bodies after the last kick: (|v| + |w| r)^2 / 4, m2/s2, and |w|^2 / 2, 1/s2, at the most. */
+typedef struct tl_speed_bounds {
+    double speed2, turn2;
+} tl_speed_bounds;
+
 /* Bodies that can move, on their way through a step: the kick, which changes velocities, and the drift,
  * which changes places. The lanes beyond `count` are inert. Spins and angular momenta are in principal axes
  * at the forces' time, or where there is one moment of inertia in the model's: only their products count. */
@@ -139,6 +144,10 @@ struct tl_cycle {
     struct tl_split_work *split; /* of this step: split.c */
     double split_stored;         /* energy that new faces have been given in this step, J */
     bool long_step;              /* the given one is far above what is stable */
+    tl_speed_bounds speeds;      /* of all bodies in the last step: travel.c */
+    tl_speed_bounds given;       /* of those whose motion is given, in this one */
+    double thinnest;             /* least thickness that a block can have, m: travel.c */
+    uint64_t thinnest_version;   /* 1 + structure of the model then; 0: not known */
     bool fast;          /* a body came near the limit of motion in the last step: limits.c */
     tl_failure failure; /* of a parallel phase */
 };
@@ -215,14 +224,18 @@ tl_law_phase tl_law_phase_of(struct tl_cycle *c);
 
 /* What a step may have to undo: undo.c. It begins with each step, ... */
 tl_status tl_undo_begin(tl_model *m);
-/* ... gets room, before laws change anything, where something may fail, ... */
-tl_status tl_undo_reserve(tl_model *m);
+/* ... gets room, before laws change anything, where something may fail, as where a block may pass another, ... */
+tl_status tl_undo_reserve(tl_model *m, bool may_pass);
 /* ... keeps what laws and gather overwrite (of some SIMD groups, on any thread; of the bodies), ... */
 void tl_undo_keep_groups(tl_model *m, const tl_simd_group *groups, size_t count);
 void tl_undo_keep_bodies(tl_model *m);
 /* ... and puts it back after a failure, or ends with the step. What is not kept is lost: no step is made after that. */
 void tl_undo_step(tl_model *m);
 void tl_undo_end(tl_model *m);
+/* Whether this step is kept, so that it may be undone. */
+bool tl_undo_keeps(const tl_model *m);
+/* Whether something was set since the last step that was made, after which numbers may be any. */
+bool tl_set_by_hand(const tl_model *m);
 /* Forces were set by hand: they may be anything. */
 void tl_undo_by_hand(tl_model *m);
 /* Whether a step failed and could not be taken back. */

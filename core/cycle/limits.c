@@ -1,16 +1,16 @@
 /* limits.c - how far a body may move in one step: the last look before anything moves.
  *
  * A step that would take a body farther than TL_TRAVEL times its diameter, or nowhere that is a number, has no meaning:
- * the body would pass through others unseen, turn by several radians at a time, and lose the digits of its place. Such a
+ * the body would turn by several radians at a time, and lose the digits of its place. Such a
  * step fails before the move, so places and velocities of a model are finite numbers always. The bound is on
  * (|v| + |w| r) dt, v and w the velocities that the kick would give (motion.c), r the farthest vertex.
  *
- * All bodies are looked at in every step: a test without roots sorts out those that are far from the limit. */
+ * All bodies are looked at in every step: a test without roots sorts out those that are far from the limit. What it finds is
+ * kept as a bound on all speeds, which tells whether blocks may pass each other (travel.c). */
 #include "cycle/cycle_data.h"
 
-#include "base/columns.h"
 #include "contact/contacts.h"
-#include "cycle/kick.h"
+#include "cycle/travel.h"
 
 #include <stdatomic.h>
 #include <stdio.h>
@@ -23,47 +23,33 @@
  * time step is far above what is stable: then the step is kept, too. */
 #define TL_FAST 0.01
 
-/* What a step makes of a body's motion. */
-typedef struct kick {
-    double dt, span; /* of the drift and of the kick, s */
-} kick;
-
 typedef struct limit_job {
     tl_model *m;
-    kick kick;
+    tl_step_span span;
     bool held;        /* bodies whose motion is given, or those that forces move */
     atomic_bool fast; /* some body is */
+    tl_speed_bounds bounds[TL_MAX_THREADS]; /* of the bodies that a thread has looked at */
 } limit_job;
 
-/* Forces on a body with those of the damping, and the inertia they meet. */
-typedef struct push {
-    tl_vec3 force, moment;
-    double mass, alpha, scale, turn_scale;
-} push;
-
-static push push_of(const tl_model *m, uint32_t body)
+/* fmax, of which few compilers make one instruction. */
+static double larger(double a, double b)
 {
-    const struct tl_cycle *c = m->cycle;
-    const tl_bodies *b = &m->bodies;
-    push p = {b->force[body], b->moment[body], b->mass[body], 0, 1, 1};
-    if (tl_inertia_scaled(c)) {
-        p.scale = tl_inertia_scale(c, body);
-        p.turn_scale = tl_turn_scale(c, body);
-    }
-    if (m->damping) {
-        p.force = tl_v3_add(p.force, tl_columns_get(c->damping_force, body));
-        p.moment = tl_v3_add(p.moment, tl_columns_get(c->damping_moment, body));
-        p.alpha = c->alpha[body];
-    }
-    return p;
+    return a > b ? a : b;
+}
+
+static void widen(tl_speed_bounds *bounds, tl_speed_bounds by)
+{
+    bounds->speed2 = larger(bounds->speed2, by.speed2);
+    bounds->turn2 = larger(bounds->turn2, by.turn2);
 }
 
 /* Whether a body that can move is so far from the limit that a bound without roots tells: squares of sums are at most
- * twice the sums of squares. Where numbers leave their range it tells nothing. */
-static bool surely_slow(const tl_model *m, uint32_t body, const kick *k)
+ * twice the sums of squares. Where numbers leave their range it tells nothing. The bounds take these squares. */
+static bool surely_slow(const tl_model *m, uint32_t body, const tl_step_span *k,
+                        tl_speed_bounds *bounds)
 {
     const tl_bodies *b = &m->bodies;
-    push p = push_of(m, body);
+    tl_push p = tl_push_of(m, body);
     tl_vec3 i = b->moments[body];
     double least = i.x < i.y ? i.x : i.y, r = b->radius[body];
     least = i.z < least ? i.z : least;
@@ -71,40 +57,26 @@ static bool surely_slow(const tl_model *m, uint32_t body, const kick *k)
     double per_mass = k->span / (p.mass * p.scale), per_moment = k->span / (least * p.turn_scale);
     double v2 = tl_v3_norm2(b->v[body]) + per_mass * per_mass * tl_v3_norm2(p.force);
     double w2 = tl_v3_norm2(b->w[body]) + per_moment * per_moment * tl_v3_norm2(p.moment);
+    widen(bounds, (tl_speed_bounds){v2 + w2 * r * r, w2});
     double motion = k->dt, limit = TL_FAST * TL_TRAVEL * r; /* half of 2 r TL_TRAVEL */
     return (v2 + w2 * r * r) * (motion * motion) < limit * limit && p.alpha >= 0;
 }
 
-/* Velocities after the kick, as the move makes them. */
-static void kicked(const tl_model *m, uint32_t body, const kick *k, tl_vec3 *v, tl_vec3 *w)
+/* Takes up a body whose motion is given: whole speeds, so that the bounds hold with room to spare. */
+static void bound_given(const tl_model *m, uint32_t body, const tl_step_span *k,
+                        tl_speed_bounds *bounds)
 {
-    const tl_bodies *b = &m->bodies;
-    *v = b->v[body];
-    *w = b->w[body];
-    if (b->fixed[body] == TL_FIX_ALL) {
-        if (b->drive[body]) {
-            *v = m->drives[b->drive[body] - 1].velocity;
-            *w = m->drives[b->drive[body] - 1].angular_velocity;
-        }
-        return;
-    }
-    push p = push_of(m, body);
-    *v = tl_kick(*v, p.force, k->span / (p.mass * p.scale), p.alpha, k->span);
-    if (b->fixed[body] & TL_FIX_ROTATION)
-        return;
-    tl_quat axes = tl_q_mul(b->q[body], b->axes[body]);
-    tl_vec3 turn = tl_q_rotate(tl_q_conj(axes), p.moment), i = b->moments[body];
-    if (m->config.rotation == TL_ROTATION_PAPER)
-        i = tl_v3(b->round[body], b->round[body], b->round[body]);
-    turn = tl_q_rotate(axes, tl_v3(turn.x / i.x, turn.y / i.y, turn.z / i.z));
-    *w = tl_kick(*w, turn, k->span / p.turn_scale, p.alpha, k->span);
+    tl_vec3 v, w;
+    tl_kicked(m, body, k, &v, &w);
+    double v2 = tl_v3_norm2(v), w2 = tl_v3_norm2(w), r = m->bodies.radius[body];
+    widen(bounds, (tl_speed_bounds){v2 + w2 * r * r, w2});
 }
 
 /* How far the farthest vertex may move in the step: no number when it cannot be told. */
-static double travel_of(const tl_model *m, uint32_t body, const kick *k)
+static double travel_of(const tl_model *m, uint32_t body, const tl_step_span *k)
 {
     tl_vec3 v, w;
-    kicked(m, body, k, &v, &w);
+    tl_kicked(m, body, k, &v, &w);
     return (tl_v3_norm(v) + tl_v3_norm(w) * m->bodies.radius[body]) * k->dt;
 }
 
@@ -114,7 +86,7 @@ static bool too_far(const tl_model *m, uint32_t body, double travel)
 }
 
 /* How far a load alone may move the body in a step, whichever way it comes to point as the body turns. */
-static double load_travel(const tl_model *m, uint32_t body, const kick *k)
+static double load_travel(const tl_model *m, uint32_t body, const tl_step_span *k)
 {
     const tl_bodies *b = &m->bodies;
     const tl_body_load *load = &b->load[body];
@@ -131,25 +103,28 @@ static bool is_still(const tl_bodies *b, uint32_t body)
 
 static void check_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
 {
-    (void)thread;
     limit_job *job = user;
     tl_model *m = job->m;
+    tl_speed_bounds bounds = job->bounds[thread];
     for (uint32_t body = (uint32_t)begin; body < end; body++) {
         bool held = m->bodies.fixed[body] == TL_FIX_ALL;
         if (!held && !job->held && m->bodies.load &&
-            too_far(m, body, load_travel(m, body, &job->kick) / TL_FAST))
+            too_far(m, body, load_travel(m, body, &job->span) / TL_FAST))
             atomic_store(&job->fast, true);
         if (held != job->held ||
-            (held ? is_still(&m->bodies, body) : surely_slow(m, body, &job->kick)))
+            (held ? is_still(&m->bodies, body) : surely_slow(m, body, &job->span, &bounds)))
             continue;
-        double travel = travel_of(m, body, &job->kick);
+        if (held)
+            bound_given(m, body, &job->span, &bounds);
+        double travel = travel_of(m, body, &job->span);
         if (too_far(m, body, travel / TL_FAST))
             atomic_store(&job->fast, true);
         if (too_far(m, body, travel)) {
             tl_failure_note(&m->cycle->failure, chunk, TL_E_NUMERIC, body, "");
-            return;
+            break;
         }
     }
+    job->bounds[thread] = bounds;
 }
 
 /* The contact that presses on a body with the largest force, or TL_NO_ROW. One that is no number counts most. */
@@ -172,7 +147,7 @@ static uint32_t hardest_contact(const tl_model *m, uint32_t body, double *force)
 }
 
 /* The sentence of a body that would move too far. */
-static tl_status report(tl_model *m, uint32_t body, const kick *k)
+static tl_status report(tl_model *m, uint32_t body, const tl_step_span *k)
 {
     const tl_bodies *b = &m->bodies;
     char by[400], far[120];
@@ -196,18 +171,36 @@ static tl_status report(tl_model *m, uint32_t body, const kick *k)
                    (long long)m->cycles + 1, b->id[body], far, k->dt, by);
 }
 
+/* Bounds of the bodies whose motion is given count besides those of the last step, until all are known. */
+static void keep_bounds(struct tl_cycle *c, const limit_job *job, unsigned threads)
+{
+    tl_speed_bounds found = {0, 0};
+    for (unsigned i = 0; i < threads; i++)
+        widen(&found, job->bounds[i]);
+    if (job->held)
+        c->given = found;
+    else
+        c->speeds = found;
+    widen(&c->speeds, c->given);
+}
+
 static tl_status check(tl_model *m, double dt, bool held)
 {
     struct tl_cycle *c = m->cycle;
-    limit_job job = {.m = m, .kick = {dt, 0.5 * (m->dt + dt)}, .held = held};
+    unsigned threads = tl_pool_threads(m->pool);
+    limit_job job = {.m = m, .span = {dt, 0.5 * (m->dt + dt)}, .held = held};
     atomic_init(&job.fast, false);
     tl_parallel_for(m->pool, m->bodies.table.rows, TL_BODY_CHUNK, check_range, &job);
     if (!held)
         c->fast = atomic_load(&job.fast);
-    if (c->failure.error.status == TL_OK)
-        return TL_OK;
-    c->failure.error.status = TL_OK;
-    return report(m, (uint32_t)c->failure.point, &job.kick);
+    keep_bounds(c, &job, threads);
+    if (c->failure.error.status != TL_OK) {
+        c->failure.error.status = TL_OK;
+        return report(m, (uint32_t)c->failure.point, &job.span);
+    }
+    /* a step that is not kept is one in which nothing can have become fast at once */
+    return !held && tl_undo_keeps(m) && tl_travel_may_matter(m, dt) ? tl_travel_check(m, &job.span)
+                                                                    : TL_OK;
 }
 
 tl_status tl_motion_check_held(tl_model *m, double dt)

@@ -4,11 +4,13 @@
  * "body":  dt = FRAC 2 (1 / (2 rate))^1/2 with the highest rate of a body (rates.c): no motion of a body and its
  *          neighbours is faster, so FRAC 1 is stable.
  * By either rule no body's step is longer than its largest face allows, whatever areas its contacts have.
+ * A step that would carry or turn a block too far is made shorter (travel.c); the one in use stays, for when it has gone by.
  * Mass scaling gives every free body the bound of the one that has the most; with a step asked for it adds inertia to the
  * bodies that need it (added_mass.c), and that step is taken. */
 #include "cycle/added_mass.h"
 
 #include "cycle/rates.h"
+#include "cycle/travel.h"
 #include "model/options.h"
 
 #include "contact/detection.h"
@@ -236,7 +238,11 @@ static tl_status choose(tl_model *m, double *dt, bound *by)
     if (!(c->dt > 0) || fresh < c->dt || fresh > STEP_GROWTH * c->dt)
         c->dt = fresh;
     *dt = c->dt;
-    return TL_OK;
+    uint32_t body;
+    status = tl_travel_shorten(m, dt, &body);
+    if (by && body != TL_NO_ROW)
+        *by = (bound){0.25 * *dt * *dt, body, TL_NO_ROW, 0};
+    return status;
 }
 
 tl_status tl_timestep_choose(tl_model *m, double *dt)

@@ -134,14 +134,18 @@ static uint64_t version_of(const tl_model *m)
     return 1 + m->structure + m->constraints + m->laws;
 }
 
-/* Whether something was set since the last step that was made, after which numbers may be any. */
-static bool set_by_hand(const tl_model *m)
+bool tl_set_by_hand(const tl_model *m)
 {
     const struct tl_undo *u = m->cycle->undo;
     const tl_vec3 g = m->config.gravity;
-    return u->version != version_of(m) ||
+    return !u || u->version != version_of(m) ||
            !(u->dt == m->timestep.dt || (isnan(u->dt) && isnan(m->timestep.dt))) ||
            tl_v3_norm2(tl_v3_sub(u->gravity, g)) > 0;
+}
+
+bool tl_undo_keeps(const tl_model *m)
+{
+    return m->cycle->undo->keeps;
 }
 
 /* Whether laws or damping may fail in any step. */
@@ -184,11 +188,11 @@ tl_status tl_undo_begin(tl_model *m)
     return TL_OK;
 }
 
-tl_status tl_undo_reserve(tl_model *m)
+tl_status tl_undo_reserve(tl_model *m, bool may_pass)
 {
     struct tl_undo *u = m->cycle->undo;
     u->once = !may_fail(m);
-    if (u->once && !set_by_hand(m) && !m->cycle->fast && !m->cycle->long_step)
+    if (u->once && !m->cycle->fast && !m->cycle->long_step && !may_pass && !tl_set_by_hand(m))
         return TL_OK;
     const tl_detect *d = m->detect;
     u->keeps = shadow_reserve(&u->points, &d->points.table) &&

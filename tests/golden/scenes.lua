@@ -126,7 +126,7 @@ scene("spin", function(note)
         pebble(model, { 4 * i, 0, 0 }, 0.5, i)
     end
     for i, block in ipairs(model:blocks()) do
-        model:blocks { id = block.id }:set { angular_velocity = { 30 * i, -400, 7000 } }
+        model:blocks { id = block.id }:set { angular_velocity = { 10 * i, -40, 230 } }
     end
     model:joint("*", "elastic", { kn = 1e8, ks = 1e8 })
     model:timestep { dt = 1e-3 }

@@ -221,11 +221,15 @@ local function fastest(fraction)
     end
     check.holds(#free > 20, "blocks within")
     local most = 0
-    for _ = 1, 400 do
-        rock:cycle(1)
-        most = math.max(most, free:max "speed")
-    end
-    return most
+    local good, why = pcall(function()
+        for _ = 1, 400 do
+            rock:cycle(1)
+            most = math.max(most, free:max "speed")
+        end
+    end)
+    return most, good, why
 end
 check.holds(fastest(1) < 1e-4, "stable at the critical step")
-check.holds(fastest(1.5) > 1e-2, "not at half as much again")
+local most, good, why = fastest(1.5)
+check.holds(most > 1e-2, "not at half as much again")
+check.holds(good or why:find("fraction = 1.5 of timestep is not stable; give 1 or less", 1, true), why)

@@ -242,7 +242,7 @@ TEST(a_step_that_would_fling_a_block_is_undone)
         if (k == 0) {
             hash_of(m[k], after);
             CHECK_INT(status, TL_E_NUMERIC);
-            CHECK_CONTAINS(tl_model_error(m[k])->text, "times its diameter");
+            CHECK_CONTAINS(tl_model_error(m[k])->text, "block 7, at 212 rad/s, would turn by");
             CHECK_TEXT(after, before);
         }
         scene_ok(m[k], tl_model_timestep(m[k], &shorter));
@@ -259,13 +259,13 @@ TEST(nothing_goes_on_from_a_step_that_cannot_be_undone)
     run(m, STEPS);
     /* a stone is pressed down, and some steps later the law fails */
     const tl_id stone = 14;
-    const tl_drive down = {.size = sizeof(tl_drive), .velocity = {0, 0, -1}};
+    const tl_drive down = {.size = sizeof(tl_drive), .velocity = {0, 0, -0.2}};
     scene_ok(m, tl_blocks_drive(m, &stone, 1, &down));
-    scene_ok(m, set_law(m, NULL, truth("fails", 1), number("beyond", 0.2)));
+    scene_ok(m, set_law(m, NULL, truth("fails", 1), number("beyond", 0.02)));
     run(m, 2);
     CHECK_INT(tl_model_cycle(m, 1000, &result), TL_E_NUMERIC);
     CHECK(result.cycles > 0);
-    scene_ok(m, set_law(m, NULL, truth("fails", 0), number("beyond", 0.2)));
+    scene_ok(m, set_law(m, NULL, truth("fails", 0), number("beyond", 0.02)));
     CHECK_INT(tl_model_cycle(m, 1, &result), TL_E_STATE);
     CHECK_CONTAINS(tl_model_error(m)->text, "failed and could not be taken back");
     tl_model_destroy(m);

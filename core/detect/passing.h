@@ -1,0 +1,26 @@
+/* passing.h - whether a step would carry a block into another so far that nobody knows which way it came (passing.c). */
+#ifndef TL_DETECT_PASSING_H
+#define TL_DETECT_PASSING_H
+
+#include "model/model.h"
+
+/* What a step does to a body: displacement, m, and turn about the centroid, rad, in the model's axes. */
+typedef struct tl_step_motion {
+    tl_vec3 shift, turn;
+} tl_step_motion;
+
+/* The pair of blocks that a step carries into each other by most of what is allowed. */
+typedef struct tl_passing {
+    double
+        part; /* of the step, after which they overlap by as much as is allowed; INFINITY: none do */
+    uint32_t a, b;  /* rows of the blocks, a < b */
+    double deeper;  /* by how much they overlap more after the whole step, m */
+    double allowed; /* by how much they may, m */
+} tl_passing;
+
+/* Least thickness that a block can have, m, from its volume V and surface S: a convex body holds a ball of radius V / S. */
+double tl_least_thickness(const tl_model *m, uint32_t row);
+/* Finds the pair whose overlap would first grow by more than `share` of the thinner block's thickness. `motion`: of each body. */
+tl_status tl_passing_find(tl_model *m, const tl_step_motion *motion, double share, tl_passing *out);
+
+#endif
