@@ -285,8 +285,9 @@ tl_watch *tl_watch_begin(const tl_model *m);
 tl_id tl_watch_step(tl_watch *watch, const tl_model *m);
 void tl_watch_end(tl_watch *watch);
 /* Remarks on numbers that are legal and improbable: remarks.c. Looks at gravity, densities and stiffnesses when they
- * have changed; at the friction of a law that is set. */
+ * have changed; now and then at closures under load; at the friction of a law that is set. */
 void tl_remark_units(tl_model *m);
+void tl_remark_closure(tl_model *m);
 void tl_remark_friction(tl_model *m, const char *joint, const tl_law *law);
 /* The step to take, s; 0 when nothing moves and nothing says how long it may be. */
 tl_status tl_timestep_choose(tl_model *m, double *dt);

@@ -188,7 +188,13 @@ static tl_status check(tl_model *m, double dt, bool held)
 {
     struct tl_cycle *c = m->cycle;
     unsigned threads = tl_pool_threads(m->pool);
-    limit_job job = {.m = m, .span = {dt, 0.5 * (m->dt + dt)}, .held = held};
+    limit_job
+        job; /* of its bounds only those of the threads there are: the others are kilobytes of zeros */
+    job.m = m;
+    job.span = (tl_step_span){dt, 0.5 * (m->dt + dt)};
+    job.held = held;
+    for (unsigned i = 0; i < threads; i++)
+        job.bounds[i] = (tl_speed_bounds){0, 0};
     atomic_init(&job.fast, false);
     tl_parallel_for(m->pool, m->bodies.table.rows, TL_BODY_CHUNK, check_range, &job);
     if (!held)

@@ -6,6 +6,9 @@
 #include "cycle/cycle_data.h"
 
 #include "base/params.h"
+#include "contact/contacts.h"
+#include "detect/overlap.h"
+#include "detect/passing.h"
 
 #include <string.h>
 
@@ -23,6 +26,12 @@
 #define KILOGRAMS_MOST 20000.0
 /* kn / (rho g), 1/m, with densities in t/m3, above which kn is rather in Pa/m: 8e10 Pa/m for rock, a joint without a flaw. */
 #define RIGID 3e6
+
+/* Overlap under load over the thickness of the thinner block from which joints are too soft for what presses: a tenth of a layer
+ * has vanished in its joint. */
+#define CLOSED 0.1
+/* Steps after which contacts are looked at for that: loads do not last shorter. */
+#define CLOSED_EVERY 64
 
 /* The densities of the blocks that can move, and whose they are. */
 typedef struct densities {
@@ -135,5 +144,43 @@ void tl_remark_friction(tl_model *m, const char *joint, const tl_law *law)
                          "coefficient of %g is %.3g deg, and %g rad are %.3g deg",
                          joint, law->kind->name, value, value, tl_atan2(value, 1) * 180 / TL_PI,
                          value, value * 180 / TL_PI);
+    }
+}
+
+/* Whether a contact may have closed so far, from its force alone: cheap, and true of few. */
+static bool may_have_closed(const tl_model *m, uint32_t contact)
+{
+    const tl_contacts *c = &m->detect->contacts;
+    if (c->law[contact] == TL_NO_ROW)
+        return false;
+    const uint8_t *fixed = m->bodies.fixed;
+    uint32_t a = c->a[contact], b = c->b[contact];
+    double thickness = fmin(tl_least_thickness(m, a), tl_least_thickness(m, b));
+    double stiffness = m->joint_laws[c->law[contact]].kn * c->area[contact];
+    return tl_v3_norm(c->force[contact]) > CLOSED * thickness * stiffness &&
+           !(fixed[m->blocks.body[a]] == TL_FIX_ALL && fixed[m->blocks.body[b]] == TL_FIX_ALL);
+}
+
+void tl_remark_closure(tl_model *m)
+{
+    if (m->cycles % CLOSED_EVERY != 0 || m->said & 1u << TL_REMARK_CLOSURE)
+        return;
+    const tl_contacts *c = &m->detect->contacts;
+    for (uint32_t row = 0; row < c->table.rows; row++) {
+        tl_overlap_share closed;
+        if (!may_have_closed(m, row) || !tl_overlap_measure(m, row, &closed) ||
+            !(closed.overlap >= CLOSED * closed.thickness) || !tl_model_says(m, TL_REMARK_CLOSURE))
+            continue;
+        char name[320];
+        tl_contact_name(m, row, name, sizeof name);
+        const tl_law *law = &m->joint_laws[c->law[row]];
+        tl_model_say(m,
+                     "joint '%s': kn = %.3g is soft for what presses: the %s has closed by %.3g m, "
+                     "%.0f %% of the thickness of block %u, %.3g m; give a larger kn, or look at "
+                     "the units of kn (Pa/m), densities and loads",
+                     joint_name(m, law), law->kn, name, closed.overlap,
+                     100 * closed.overlap / closed.thickness, m->blocks.id[closed.thinner],
+                     closed.thickness);
+        return;
     }
 }

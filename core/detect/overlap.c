@@ -108,6 +108,21 @@ void tl_overlap_mark(tl_contacts *contacts, uint32_t contact, bool born)
     contacts->faces_valid_to[contact] = -INFINITY;
 }
 
+bool tl_overlap_measure(tl_model *m, uint32_t contact, tl_overlap_share *out)
+{
+    const tl_contacts *c = &m->detect->contacts;
+    uint32_t a = c->a[contact], b = c->b[contact];
+    tl_pair_view view = tl_pair_view_of(m, a, b);
+    tl_narrow_scratch *scratch = &m->detect->narrow[0];
+    tl_region region;
+    if (!tl_pair_place(&view, scratch) || !tl_region_find(&view, 0, scratch, &region))
+        return false;
+    double of_a = width_along(m, m->blocks.body[a], region.n);
+    double of_b = width_along(m, m->blocks.body[b], tl_m3_tmul(&view.turn, region.n));
+    *out = (tl_overlap_share){-region.gap, fmin(of_a, of_b), of_a < of_b ? a : b};
+    return true;
+}
+
 static tl_status report(tl_model *m, uint32_t contact)
 {
     const tl_contacts *c = &m->detect->contacts;

@@ -81,6 +81,22 @@ says([[local m = stack()
 m:generate("joint", { joint = "bed", dip = 0, dip_direction = 0, origin = { 0, 0, 0.5 } })
 m:joint("bed", "coulomb", { kn = 1e5, ks = 1e9, friction = 30 }) m:cycle(1)]], "joint 'bed': kn = 100000 is soft")
 
+-- Closure under load: a tenth of the thickness of the thinner block, along the contact, whichever block that is and whatever presses.
+local pressed = [[local m = talus.model { gravity = { 0, 0, 0 } }
+m:generate("box", { min = { 0, 0, -%s }, max = { 2, 2, 0 }, density = 2700, group = "slab" })
+m:generate("box", { min = { 0.5, 0.5, 0 }, max = { 1.5, 1.5, %s }, density = 2700, group = "cube" })
+m:blocks { group = "slab" }:fix()
+m:joint("*", "coulomb", { kn = 1e8, ks = 1e8, friction = 35 })
+m:damping("viscous", { alpha = 300 })
+m:blocks { group = "cube" }:load { force = { 0, 0, -%s } }
+m:cycle(640)]]
+says(pressed:format(1, 0.1, "1.1e6"), "joint '*': kn = 1e+08 is soft for what presses", "contact of blocks 1 and 2 (no joint) has closed by 0.01",
+    "of the thickness of block 2, 0.1 m", "give a larger kn")
+says(pressed:format(0.1, 1, "1.1e6"), "of the thickness of block 1, 0.1 m")
+is_silent(pressed:format(0.1, 1, "0.9e6"))
+is_silent(pressed:format(1, 0.1, "0.9e6"))
+is_silent(pressed:format(1, 1, "1.1e6")) -- a hundredth
+
 -- Density: a weight, or tonnes with a stiffness in pascals.
 says("stack { density = 26.5, kn = 1e6 }:cycle(1)", "density = 26.5 of block 2 is not that of a solid", "kg/m3", "t/m3")
 says("stack { density = 26500 }:cycle(1)", "density = 26500 of block 2")
