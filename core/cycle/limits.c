@@ -9,6 +9,7 @@
  * kept as a bound on all speeds, which tells whether blocks may pass each other (travel.c). */
 #include "cycle/cycle_data.h"
 
+#include "base/columns.h"
 #include "contact/contacts.h"
 #include "cycle/travel.h"
 
@@ -146,6 +147,51 @@ static uint32_t hardest_contact(const tl_model *m, uint32_t body, double *force)
     return found;
 }
 
+/* What a body moves by in a step, m: of its own velocity, or at the most by what kicks it. The largest names the cause. */
+typedef struct cause {
+    double travel;
+    char text[160];
+} cause;
+
+static void note_cause(cause *most, double travel, const char *what, double size, const char *unit)
+{
+    if (!(travel > most->travel) && !isnan(travel))
+        return;
+    most->travel = isnan(travel) ? INFINITY : travel;
+    snprintf(most->text, sizeof most->text, "%s %.3g %s", what, size, unit);
+}
+
+/* The length of a vector whose squares may leave the range of numbers. */
+static double length(tl_vec3 v)
+{
+    double most = fmax(fabs(v.x), fmax(fabs(v.y), fabs(v.z)));
+    return most > 0 && isfinite(most) ? most * tl_v3_norm(tl_v3_scale(1 / most, v)) : most;
+}
+
+/* Of velocity, gravity, load, contacts and damping. */
+static cause find_cause(const tl_model *m, uint32_t body, const tl_step_span *k, double contact)
+{
+    const tl_bodies *b = &m->bodies;
+    cause most = {-1, ""};
+    tl_vec3 v, w;
+    tl_kicked(m, body, &(tl_step_span){k->dt, 0}, &v, &w);
+    double r = b->radius[body], per_mass = k->span * k->dt / b->mass[body];
+    note_cause(&most, length(v) * k->dt, "its velocity is", length(v), "m/s");
+    note_cause(&most, length(w) * r * k->dt, "its angular velocity is", length(w), "rad/s");
+    if (b->fixed[body] == TL_FIX_ALL)
+        return most;
+    double gravity = length(m->config.gravity);
+    note_cause(&most, gravity * k->span * k->dt, "gravity is", gravity, "m/s2");
+    if (tl_body_loaded(b, body))
+        note_cause(&most, load_travel(m, body, k), "its load is", length(b->load[body].force), "N");
+    note_cause(&most, contact * per_mass, "a contact presses with", contact, "N");
+    if (m->damping) {
+        double drag = length(tl_columns_get(m->cycle->damping_force, body));
+        note_cause(&most, drag * per_mass, "the damping gives it", drag, "N");
+    }
+    return most;
+}
+
 /* The sentence of a body that would move too far. */
 static tl_status report(tl_model *m, uint32_t body, const tl_step_span *k)
 {
@@ -165,10 +211,13 @@ static tl_status report(tl_model *m, uint32_t body, const tl_step_span *k)
                  travel, TL_TRAVEL, diameter);
     else
         snprintf(far, sizeof far, "in this step by what is no finite number");
+    cause most = find_cause(m, body, k, force);
+    bool given = !isnan(m->timestep.dt) || tl_adds_mass(m);
     return tl_fail(&m->error, TL_E_NUMERIC,
-                   "cycle %lld: block %u would move %s (dt = %.3g s); %s: is the time step too "
-                   "large, or a velocity, force or property out of proportion?",
-                   (long long)m->cycles + 1, b->id[body], far, k->dt, by);
+                   "cycle %lld: block %u would move %s, for %s (dt = %.3g s%s); %s: is that out of "
+                   "proportion%s?",
+                   (long long)m->cycles + 1, b->id[body], far, most.text, k->dt,
+                   given ? ", as given" : "", by, given ? ", or the time step too large" : "");
 }
 
 /* Bounds of the bodies whose motion is given count besides those of the last step, until all are known. */

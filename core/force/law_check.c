@@ -151,8 +151,8 @@ static void compare(tl_failure *failure, const tl_law *law, const tl_simd_group 
         bool shear = found->shear[l] > found->normal[l];
         double stiffness = shear ? found->shear[l] : found->normal[l];
         char text[240];
-        if (!(stiffness > FAR_STIFFER * tl_law_stiffness(law)))
-            continue;
+        if (!(stiffness > FAR_STIFFER * tl_law_stiffness(law)) || isinf(stiffness))
+            continue; /* where a trial leaves the range of numbers it tells nothing */
         snprintf(text, sizeof text,
                  "its %s force rises by %.3g Pa/m here, and its stiffness() gives kn = %.3g and ks "
                  "= %.3g Pa/m, from "
@@ -244,6 +244,54 @@ void tl_law_check_shear(const tl_model *m, tl_failure *failure, const tl_law *la
                  tl_v3_norm(f), along, TL_OUT_OF_PLANE);
         tl_failure_note(failure, group->start, TL_E_PLUGIN, row, text);
     }
+}
+
+/* What the law was given for a point, and what it made of it. */
+typedef struct point_told {
+    double closure, motion, normal, shear;
+} point_told;
+
+static point_told told_of(const tl_points_table *p, const tl_point_lanes *lanes, size_t row,
+                          size_t lane)
+{
+    double slip = tl_v3_norm(tl_columns_get(lanes->du_s, lane));
+    return (point_told){lanes->closure[lane], fabs(lanes->du_n[lane]) + slip, p->f_n[row],
+                        tl_v3_norm(tl_columns_get(p->f_s, row))};
+}
+
+void tl_law_check_forces(const tl_model *m, tl_failure *failure, const tl_law *law,
+                         const tl_simd_group *group, const tl_point_lanes *lanes, size_t lane,
+                         size_t contact)
+{
+    const tl_points_table *p = &m->detect->points;
+    char text[300];
+    double largest = 0;
+    size_t row = group->start + contact;
+    snprintf(text, sizeof text, "the force is not a finite number: the areas of its points are 0");
+    for (size_t k = 0; k < group->slots; k++, row += TL_LANES) {
+        if (!(p->area[row] > 0))
+            continue;
+        point_told at = told_of(p, lanes, row, lane + row - group->start);
+        largest = fmax(largest, fmax(fabs(at.normal), at.shear));
+        bool sound = isfinite(at.closure) && isfinite(at.motion);
+        if (sound && isfinite(at.normal) && isfinite(at.shear)) {
+            snprintf(text, sizeof text,
+                     "the force is not a finite number: those of its points are, up to %.3g N, but "
+                     "not their sum or moment; with kn = %.3g and ks = %.3g Pa/m, is a property "
+                     "out of proportion?",
+                     largest, law->kn, law->ks);
+            continue;
+        }
+        snprintf(text, sizeof text,
+                 "the force is not a finite number: %s a normal force of %.3g N and a shear force "
+                 "of %.3g N for a closure of %.3g m, a motion of %.3g m in the last step and an "
+                 "area of %.3g m2: look at %s",
+                 sound ? "the law gives" : "it is", at.normal, at.shear, at.closure, at.motion,
+                 p->area[row], sound ? "its properties" : "places and velocities of the blocks");
+        break;
+    }
+    row = row < group->start + group->slots * TL_LANES ? row : group->start + contact;
+    tl_failure_note(failure, group->start, TL_E_NUMERIC, row, text);
 }
 
 /* Name of the state whose column it is. */

@@ -21,4 +21,10 @@ void tl_law_check_shear(const tl_model *m, tl_failure *failure, const tl_law *la
 void tl_law_check_states(const tl_model *m, tl_failure *failure, const tl_law *law, size_t first,
                          size_t count);
 
+/* Names what is no finite number in the force of the contact in a lane of the SIMD group: what the law was given, what it gave, or
+ * the sum. */
+void tl_law_check_forces(const tl_model *m, tl_failure *failure, const tl_law *law,
+                         const tl_simd_group *group, const tl_point_lanes *lanes, size_t lane,
+                         size_t contact);
+
 #endif

@@ -183,9 +183,7 @@ static void report_odd(const span_job *job, const tl_simd_group *group, const gr
 {
     for (size_t l = 0; l < TL_LANES; l++)
         if (isnan(sum->odd[l]) && group->contact[l] != TL_NO_ROW)
-            tl_failure_note(job->phase->failure, group->start, TL_E_NUMERIC, group->start + l,
-                            "the force is not a finite number: is the time step too large, or a "
-                            "property out of proportion?");
+            tl_law_check_forces(job->m, job->phase->failure, job->law, group, t, lane, l);
     tl_law_check_shear(job->m, job->phase->failure, job->law, group, t, lane);
 }
 

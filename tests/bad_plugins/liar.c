@@ -5,16 +5,29 @@
 #include <stdint.h>
 #include <string.h>
 
-enum { NONE, NEGATIVE, NOT_A_NUMBER, INFINITE, STATE, TILTED, ROUNDING, WEAK, WEAK_SHEAR, PLACE };
+enum {
+    NONE,
+    NEGATIVE,
+    NOT_A_NUMBER,
+    INFINITE,
+    STATE,
+    TILTED,
+    ROUNDING,
+    WEAK,
+    WEAK_SHEAR,
+    PLACE,
+    NORMAL,
+    SHEAR
+};
 
 typedef struct params {
     int32_t lie;
     double kn, factor;
 } params;
 
-static const char *const lies[] = {"none",   "negative", "not_a_number", "infinite",   "state",
-                                   "tilted", "rounding", "weak",         "weak_shear", "place",
-                                   NULL};
+static const char *const lies[] = {
+    "none", "negative",   "not_a_number", "infinite", "state", "tilted", "rounding",
+    "weak", "weak_shear", "place",        "normal",   "shear", NULL};
 
 static const tl_param param_table[] = {
     TL_PARAM(TL_PARAM_ENUM, params, lie, "", "what is wrong with the law", .choices = lies),
@@ -53,6 +66,10 @@ static tl_status update(const void *self, const tl_law_batch *batch, tl_report *
         batch->flags[i] = f_n > 0 ? 0 : TL_POINT_OPEN;
         batch->state[0][i] += 1;
         batch->state[1][i] += sqrt(du2);
+        if (p->lie == NORMAL && batch->state[0][i] >= 3 && batch->area[i] > 0)
+            batch->f_n[i] = NAN;
+        if (p->lie == SHEAR && batch->state[0][i] >= 3 && batch->area[i] > 0)
+            batch->f_s[1][i] = INFINITY;
         if (p->lie == STATE && batch->state[0][i] >= 3 && batch->area[i] > 0)
             batch->state[1][i] = NAN;
     }
