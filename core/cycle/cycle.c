@@ -61,6 +61,7 @@ static tl_status apply_forces(tl_model *m, double dt)
     tl_phase_ends(m, TL_PHASE_LAWS);
     if (status == TL_OK) {
         tl_undo_keep_bodies(m);
+        tl_loads_begin(m, dt);
         tl_gather(m);
         status = tl_split_hold(m, dt);
         tl_phase_ends(m, TL_PHASE_GATHER);
@@ -96,6 +97,7 @@ tl_status tl_step(tl_model *m)
     tl_phase_ends(m, TL_PHASE_ENERGY);
     tl_undo_end(m);
     tl_split_end(m);
+    tl_loads_stepped(m);
     m->detect->stepped_contact = m->detect->next_contact;
     /* velocities are half a step behind the places, but not when all is held and still, as if the model had not begun */
     m->dt = tl_model_moves(m) ? dt : 0;

@@ -8,6 +8,7 @@
 #include "base/lanes.h"
 #include "force/laws.h"
 #include "model/model.h"
+#include "model/wrench.h"
 
 /* Rows a worker takes at a time. Of bodies that are only read, and of contacts, there is little to do with each. */
 #define TL_BODY_CHUNK 32
@@ -126,9 +127,11 @@ struct tl_cycle {
     tl_sums sums;
     tl_group_energy *group_energy; /* of each SIMD group of contacts */
     size_t group_capacity;
-    struct tl_ledger *chunk_ledger, *ledger;   /* energy.c */
-    double kinetic_before;                     /* of the last step, for its rate */
-    double dt;                                 /* the step in use */
+    struct tl_ledger *chunk_ledger, *ledger; /* energy.c */
+    double kinetic_before;                   /* of the last step, for its rate */
+    double dt;                               /* the step in use */
+    double share_before; /* of the kick's span, in which gravity and loads of the last step act */
+    tl_vec3 gravity;     /* that acts in this step */
     struct tl_step_bounds step_bounds;         /* rates.c */
     bool all_held;                             /* no body can move */
     struct tl_stiffness_rates stiffness_rates; /* rates.c */
@@ -242,6 +245,37 @@ void tl_undo_by_hand(tl_model *m);
 bool tl_undo_lost(const struct tl_cycle *c);
 size_t tl_undo_bytes(const struct tl_cycle *c);
 void tl_undo_free(struct tl_undo *undo);
+/* What gravity and loads do in a step of dt. The kick spans half of the last step and half of this one. What has been set in between
+ * acts only in the latter, and what it was in the former, so their mean acts in the whole span. Forces that are told are those at the
+ * beginning of the step: kicks and energies take the mean. */
+void tl_loads_begin(tl_model *m, double dt);
+static inline tl_vec3 tl_acting_mean(const struct tl_cycle *c, tl_vec3 now, tl_vec3 before)
+{
+    return tl_v3_madd(tl_v3_scale(1 - c->share_before, now), c->share_before, before);
+}
+/* Of a body's load. */
+static inline tl_wrench tl_acting_load(const tl_model *m, uint32_t body)
+{
+    tl_wrench acts = tl_load_wrench(&m->bodies, body);
+    if (tl_load_changed(m, body)) {
+        tl_wrench before = m->bodies.load_before[body];
+        acts.force = tl_acting_mean(m->cycle, acts.force, before.force);
+        acts.moment = tl_acting_mean(m->cycle, acts.moment, before.moment);
+    }
+    return acts;
+}
+/* Whether the mean is not what they are now, and by how much of force and moment it is less on a body. */
+static inline bool tl_loads_lag(const tl_model *m)
+{
+    return m->gravity_changed || m->loads_changed;
+}
+static inline tl_wrench tl_load_lag(const tl_model *m, uint32_t body)
+{
+    tl_wrench now = tl_load_wrench(&m->bodies, body), acts = tl_acting_load(m, body);
+    tl_vec3 gravity = tl_v3_sub(m->config.gravity, m->cycle->gravity);
+    return (tl_wrench){tl_v3_madd(tl_v3_sub(now.force, acts.force), m->bodies.mass[body], gravity),
+                       tl_v3_sub(now.moment, acts.moment)};
+}
 /* Makes room for the reactions on bodies that are held; before the gather. false: out of memory. */
 bool tl_gather_prepare(tl_model *m);
 /* Each body gathers its contacts in fixed order, and its weight; sums for the convergence measures. */

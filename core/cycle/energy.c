@@ -109,26 +109,21 @@ TL_INLINE void book_damping(tl_work *work, size_t i, const tl_body_group *g)
         work->after * turning * tl_v3_dot(braked, tl_lanes3_get(&g->spin1, i));
 }
 
-static tl_vec3 load_moment(const tl_bodies *b, uint32_t body)
-{
-    tl_body_load load = tl_load_of(b, body);
-    return tl_v3_add(load.moment, tl_v3_cross(tl_m3_mul(&b->pose[body].r, load.arm), load.force));
-}
-
 /* The work of loads, and of what holds some components of a body's motion at a velocity. */
 static void book_load(tl_work *work, size_t i, const tl_body_group *g, const tl_model *m)
 {
     const tl_bodies *b = &m->bodies;
     uint32_t body = g->body[i];
     unsigned fixed = b->fixed[body];
-    if (fixed == 0 && !tl_body_loaded(b, body))
+    if (fixed == 0 && !m->loads_changed && !tl_body_loaded(b, body))
         return;
-    tl_vec3 force = tl_load_of(b, body).force, moment = load_moment(b, body);
+    tl_wrench load = tl_acting_load(m, body);
+    tl_vec3 force = load.force, moment = load.moment;
     book(work, i, TL_WORK_EXTERNAL, g, force, moment);
     if (fixed == 0)
         return;
     tl_reaction by = tl_reaction_on(m->cycle, body);
-    force = tl_v3_add(tl_v3_madd(by.force, b->mass[body], m->config.gravity), force);
+    force = tl_v3_add(tl_v3_madd(by.force, b->mass[body], m->cycle->gravity), force);
     moment = tl_v3_add(by.moment, moment);
     force = tl_v3(fixed & TL_FIX_X ? -force.x : 0, fixed & TL_FIX_Y ? -force.y : 0,
                   fixed & TL_FIX_Z ? -force.z : 0);
@@ -150,7 +145,7 @@ TL_VECTORIZED static void book_lanes(tl_work *restrict work, const tl_body_group
 
 void tl_energy_book(const tl_model *m, const tl_body_group *g, tl_work *work)
 {
-    book_lanes(work, g, m->config.gravity, m->damping != NULL);
+    book_lanes(work, g, m->cycle->gravity, m->damping != NULL);
     for (size_t i = 0; i < g->count; i++)
         book_load(work, i, g, m);
 }

@@ -39,10 +39,9 @@ static void gather_body(tl_model *m, uint32_t body)
     }
     force = tl_v3_madd(force, b->mass[body], m->config.gravity);
     if (tl_body_loaded(b, body)) {
-        const tl_body_load *load = &b->load[body];
-        tl_vec3 arm = tl_m3_mul(&b->pose[body].r, load->arm);
-        force = tl_v3_add(force, load->force);
-        moment = tl_v3_add(moment, tl_v3_add(load->moment, tl_v3_cross(arm, load->force)));
+        tl_wrench load = tl_load_wrench(b, body);
+        force = tl_v3_add(force, load.force);
+        moment = tl_v3_add(moment, load.moment);
     }
     b->force[body] = free_part(force, b->fixed[body]);
     b->moment[body] = b->fixed[body] & TL_FIX_ROTATION ? tl_v3(0, 0, 0) : moment;

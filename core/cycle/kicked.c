@@ -4,6 +4,15 @@
 #include "base/columns.h"
 #include "cycle/kick.h"
 
+void tl_loads_begin(tl_model *m, double dt)
+{
+    struct tl_cycle *c = m->cycle;
+    tl_vec3 now = m->config.gravity;
+    c->share_before = m->dt + dt > 0 ? m->dt / (m->dt + dt) : 0;
+    bool changed = m->gravity_changed && !tl_v3_is_zero(tl_v3_sub(now, m->gravity_before));
+    c->gravity = changed ? tl_acting_mean(c, now, m->gravity_before) : now;
+}
+
 tl_push tl_push_of(const tl_model *m, uint32_t body)
 {
     const struct tl_cycle *c = m->cycle;
@@ -12,6 +21,11 @@ tl_push tl_push_of(const tl_model *m, uint32_t body)
     if (tl_inertia_scaled(c)) {
         p.scale = tl_inertia_scale(c, body);
         p.turn_scale = tl_turn_scale(c, body);
+    }
+    if (tl_loads_lag(m)) {
+        tl_wrench lag = tl_load_lag(m, body);
+        p.force = tl_v3_sub(p.force, lag.force);
+        p.moment = tl_v3_sub(p.moment, lag.moment);
     }
     if (m->damping) {
         p.force = tl_v3_add(p.force, tl_columns_get(c->damping_force, body));
@@ -34,6 +48,8 @@ void tl_kicked(const tl_model *m, uint32_t body, const tl_step_span *k, tl_vec3 
         }
         return;
     }
+    if (!(k->span > 0))
+        return;
     tl_push p = tl_push_of(m, body);
     *v = tl_kick(*v, p.force, k->span / (p.mass * p.scale), p.alpha, k->span);
     if (b->fixed[body] & TL_FIX_ROTATION)

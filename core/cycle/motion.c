@@ -322,6 +322,16 @@ static void load_group(tl_body_group *g, const tl_model *m)
         rest_lane(g, i);
 }
 
+/* What has been set since the last step does not act in its half. */
+static void take_lag(tl_body_group *g, const tl_model *m)
+{
+    for (size_t i = 0; i < g->count; i++) {
+        tl_wrench lag = tl_load_lag(m, g->body[i]);
+        tl_lanes3_put(&g->force, i, tl_v3_sub(tl_lanes3_get(&g->force, i), lag.force));
+        tl_lanes3_put(&g->moment, i, tl_v3_sub(tl_lanes3_get(&g->moment, i), lag.moment));
+    }
+}
+
 static void store_group(const tl_body_group *g, const move_job *job)
 {
     if (side_by_side(g)) {
@@ -376,6 +386,8 @@ static void move_range(void *user, size_t begin, size_t end, size_t chunk, unsig
     size_t count = (free + TL_LANES - 1) / TL_LANES;
     for (size_t k = 0; k < count; k++)
         load_group(&groups[k], m);
+    for (size_t k = 0; k < count && tl_loads_lag(m); k++)
+        take_lag(&groups[k], m);
     advance_lanes(groups, count, job->kick, job->drift);
     for (size_t k = 0; k < count; k++) {
         mend_lanes(&groups[k], job);

@@ -1,6 +1,7 @@
 /* loads.c - what acts on bodies from outside: loads, and prescribed motion (drives). */
 #include "model/model.h"
 #include "model/options.h"
+#include "model/wrench.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -11,6 +12,24 @@ static tl_status check_blocks(tl_model *m, const tl_id *ids, size_t count)
         if (tl_block_row(m, ids[i]) == TL_NO_ROW)
             return m->error.status;
     return TL_OK;
+}
+
+/* Notes the loads of the last step, before the first of them is set anew. */
+static void note_loads(tl_model *m)
+{
+    if (!(m->dt > 0) || m->loads_changed)
+        return;
+    for (uint32_t body = 0; body < m->bodies.table.rows; body++)
+        m->bodies.load_before[body] = tl_load_wrench(&m->bodies, body);
+    m->loads_changed = true;
+}
+
+void tl_load_begins_anew(tl_model *m, uint32_t body)
+{
+    if (!m->bodies.load_before || !(m->dt > 0))
+        return;
+    note_loads(m);
+    m->bodies.load_before[body].force = tl_v3(NAN, NAN, NAN);
 }
 
 tl_status tl_blocks_load(tl_model *m, const tl_id *ids, size_t count, const tl_load *given)
@@ -30,17 +49,28 @@ tl_status tl_blocks_load(tl_model *m, const tl_id *ids, size_t count, const tl_l
     status = check_blocks(m, ids, count);
     if (status != TL_OK)
         return status;
-    if (count && !TL_COLUMN_NEED(&m->bodies.table, &m->bodies, load, 0))
+    if (count && (!TL_COLUMN_NEED(&m->bodies.table, &m->bodies, load_before, 0) ||
+                  !TL_COLUMN_NEED(&m->bodies.table, &m->bodies, load, 0)))
         return tl_fail_memory(&m->error);
+    if (count)
+        note_loads(m);
     for (size_t i = 0; i < count; i++) {
         uint32_t body = m->blocks.body[m->row_of[ids[i]]];
         tl_vec3 from = tl_v3_sub(tl_v3_sub(load->at, m->origin), tl_body_place(&m->bodies, body));
         m->bodies.load[body] =
             (tl_body_load){load->force, load->moment,
                            placed ? tl_m3_tmul(&m->bodies.pose[body].r, from) : tl_v3(0, 0, 0)};
+        if (m->bodies.fixed[body])
+            tl_load_begins_anew(m, body);
     }
     m->constraints++; /* not as it was in the last step */
     return TL_OK;
+}
+
+void tl_loads_stepped(tl_model *m)
+{
+    m->gravity_before = tl_v3(0, 0, 0);
+    m->gravity_changed = m->loads_changed = false;
 }
 
 /* ---------------------------------------------------------------- drives ----------------- */
@@ -59,6 +89,7 @@ void tl_drive_leave(tl_model *m, uint32_t body)
         return;
     m->bodies.drive[body] = 0;
     m->bodies.fixed[body] = 0;
+    tl_load_begins_anew(m, body);
     if (--m->drives[index - 1].bodies == 0 && !m->drives[index - 1].held)
         release(&m->drives[index - 1]);
 }

@@ -104,6 +104,10 @@ tl_status tl_model_set_gravity(tl_model *m, tl_vec3 gravity)
         return tl_fail(&m->error, TL_E_ARGUMENT,
                        "gravity = {%g, %g, %g} must be three finite numbers", gravity.x, gravity.y,
                        gravity.z);
+    if (m->dt > 0 && !m->gravity_changed) {
+        m->gravity_before = m->config.gravity;
+        m->gravity_changed = true;
+    }
     m->config.gravity = gravity;
     m->remarked = 0;
     if (gravity.z > sqrt(gravity.x * gravity.x + gravity.y * gravity.y) &&

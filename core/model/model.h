@@ -62,6 +62,11 @@ typedef struct tl_body_load {
     tl_vec3 arm;           /* where it acts, body's frame */
 } tl_body_load;
 
+/* A force, and a moment about the centroid, in axes of the model. */
+typedef struct tl_wrench {
+    tl_vec3 force, moment;
+} tl_wrench;
+
 /* Where a body is and how it came there in the last step: what contacts need of it. They come to bodies in no order
  * that memory knows, so all of it lies together, in three of the lines that memory hands over at a time, and not in
  * columns. A row of TL_POSE_ROW doubles. */
@@ -96,8 +101,10 @@ typedef struct tl_bodies {
     /* unbalanced, in the last damped step; NULL: no damping has asked for them */
     tl_vec3 *force_before, *moment_before;
     tl_body_load *load; /* of the user's; NULL: none has ever been set */
-    uint32_t *drive;    /* index into drives + 1, or 0 */
-    double *odometer;   /* sum of (|v| + |w| radius) dt: no vertex has moved farther */
+    tl_wrench *
+        load_before; /* what it was in the last step; NULL as it is, and good while loads_changed */
+    uint32_t *drive; /* index into drives + 1, or 0 */
+    double *odometer; /* sum of (|v| + |w| radius) dt: no vertex has moved farther */
     double *
         face_rate; /* what it asks of the time step on its largest face: cycle/rates.c. 0: not known */
     double *face_turn; /* its rotation's part of that */
@@ -252,7 +259,9 @@ struct tl_model {
     double *damping_state;
 
     double time;
-    double dt; /* of the last step; 0 before the first */
+    double dt;              /* of the last step; 0 before the first */
+    tl_vec3 gravity_before; /* gravity in the last step, where it has been set since; else zero */
+    bool gravity_changed, loads_changed; /* since the last step, while dt is not 0 */
     int64_t cycles;
     atomic_bool interrupted;
     bool (*interrupt_asked)(void);                                       /* or NULL */
@@ -576,6 +585,10 @@ tl_vec3 tl_block_velocity(const tl_model *m, uint32_t row);
 bool tl_drives_evaluate(tl_model *m, double t);
 /* Lets a body go from its drive. */
 void tl_drive_leave(tl_model *m, uint32_t body);
+/* The motion of a body begins anew, as it is set or was held: its load before does not count. */
+void tl_load_begins_anew(tl_model *m, uint32_t body);
+/* A step has been made: what gravity and loads are now is what they were in it. */
+void tl_loads_stepped(tl_model *m);
 void tl_drives_clear(tl_model *m);
 /* Counts the bodies of each drive again, after a driven body has fallen into several. */
 void tl_drives_recount(tl_model *m);

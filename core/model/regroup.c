@@ -257,6 +257,8 @@ static void write_body(tl_model *m, const parts *sum, uint32_t body)
                        sum->fixed & TL_FIX_Z ? 0 : v.z);
     if (b->force_before)
         b->force_before[body] = b->moment_before[body] = tl_v3(0, 0, 0);
+    if (b->load_before)
+        b->load_before[body] = (tl_wrench){{0, 0, 0}, {0, 0, 0}};
     if (b->load)
         b->load[body] = (tl_body_load){{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
 }

@@ -140,6 +140,8 @@ tl_status tl_blocks_free(tl_model *m, const tl_id *ids, size_t count)
         uint32_t body = m->blocks.body[m->row_of[ids[i]]];
         constraint before = constraint_of(m, body);
         tl_drive_leave(m, body);
+        if (m->bodies.fixed[body])
+            tl_load_begins_anew(m, body);
         m->bodies.fixed[body] = 0;
         changed = changed || !has_constraint(m, body, before);
     }
@@ -226,6 +228,8 @@ tl_status tl_blocks_set(tl_model *m, const tl_id *ids, size_t count, const tl_bl
             m->bodies.v[body] = set->velocity;
         if (given(set->angular_velocity))
             m->bodies.w[body] = set->angular_velocity;
+        if (given(set->velocity) || given(set->angular_velocity))
+            tl_load_begins_anew(m, body);
     }
     m->constraints++;
     if (!mends)

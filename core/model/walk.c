@@ -34,6 +34,9 @@ void tl_model_walk(tl_model *m, const tl_walk *walk)
     VALUE(STATE, next_id);
     VALUE(STATE, time);
     VALUE(STATE, dt);
+    VALUE(STATE, gravity_before);
+    FLAG(STATE, gravity_changed);
+    FLAG(STATE, loads_changed);
     VALUE(STATE, cycles);
     VALUE(CACHE, gone);
     VALUE(CACHE, structure);

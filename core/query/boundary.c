@@ -315,7 +315,8 @@ static tl_status carry_out(tl_model *m, const uint8_t *fix, const body_sum *sums
             continue;
         replaced += !add && tl_body_loaded(&m->bodies, body);
         tl_load load = load_of(m, body, &sums[body], add);
-        status = tl_blocks_load(m, &m->bodies.id[body], 1, &load);
+        const tl_id id = m->bodies.id[body]; /* the table may move */
+        status = tl_blocks_load(m, &id, 1, &load);
     }
     for (uint32_t row = 0; row < m->blocks.table.rows && status == TL_OK; row++)
         if (fix[row])

@@ -129,6 +129,8 @@ static bool hold_columns(tl_model *m, const tl_archive *a)
         held = held && TL_COLUMN_NEED(blocks, &m->blocks, local, 0);
     if (tl_archive_find(a, "blocks.base"))
         held = held && TL_COLUMN_NEED(blocks, &m->blocks, base, 0);
+    if (tl_archive_find(a, "bodies.load_before"))
+        held = held && TL_COLUMN_NEED(bodies, &m->bodies, load_before, 0);
     if (tl_archive_find(a, "bodies.load"))
         held = held && TL_COLUMN_NEED(bodies, &m->bodies, load, 0);
     if (tl_archive_find(a, "bodies.force_before"))

@@ -25,7 +25,8 @@ static bool settings_are_sound(const tl_model *m)
     bool steps = (isnan(t->fraction) || (t->fraction > 0 && t->fraction <= 1)) &&
                  (t->rule == TL_TIMESTEP_BODY || t->rule == TL_TIMESTEP_PAPER) &&
                  (isnan(t->dt) || (t->dt > 0 && isfinite(t->dt)));
-    return tl_v3_finite(c->gravity) && c->rotation >= TL_ROTATION_EXACT &&
+    return tl_v3_finite(c->gravity) && tl_v3_finite(m->gravity_before) &&
+           (!m->loads_changed || m->bodies.load_before) && c->rotation >= TL_ROTATION_EXACT &&
            c->rotation <= TL_ROTATION_PAPER && c->reuse_geometry >= 0 && c->reuse_geometry <= 1 &&
            c->contact_points >= 0 && c->contact_points <= TL_POINTS_CORNERS && steps &&
            tl_v3_finite(m->origin) && isfinite(m->time) && isfinite(m->dt) && m->dt >= 0 &&

@@ -11,8 +11,9 @@
 #include "contact/copy.h"
 #include "contact/points.h"
 #include "contact/store.h"
-#include "cycle/rates.h"
+#include "cycle//rates.h"
 #include "detect/detect.h"
+#include "model/wrench.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -229,6 +230,8 @@ static void hash_blocks(tl_hash *hash, const tl_model *m)
     for (uint32_t body = 0; body < m->bodies.table.rows; body++) {
         tl_body_load load = tl_load_of(&m->bodies, body);
         tl_hash_bytes(hash, &load, sizeof load);
+        if (tl_load_changed(m, body))
+            tl_hash_bytes(hash, &m->bodies.load_before[body], sizeof *m->bodies.load_before);
         if (m->bodies.drive[body])
             hash_drive(hash, &m->drives[m->bodies.drive[body] - 1].drive);
     }
@@ -304,6 +307,8 @@ static void hash_settings(tl_hash *hash, const tl_model *m)
                              m->origin_set};
     hash_numbers(hash, numbers, sizeof numbers / sizeof *numbers);
     tl_hash_bytes(hash, words, sizeof words);
+    if (m->gravity_changed && !tl_v3_is_zero(tl_v3_sub(config->gravity, m->gravity_before)))
+        hash_numbers(hash, &m->gravity_before.x, 3);
     if (tl_adds_mass(m))
         hash_numbers(hash, (const double[]){m->added_dt, m->added_most}, 2);
     for (size_t i = 0; i < m->joint_count; i++) {
