@@ -4,11 +4,7 @@
 
 #include "force/bear.h"
 #include "model/model.h"
-
-/* A force on a body, or its acceleration, with the moment about its centroid, or the angular acceleration. */
-typedef struct tl_wrench {
-    tl_vec3 force, moment;
-} tl_wrench;
+#include "model/wrench.h"
 
 /* A body that is a part of one that was split. */
 typedef struct tl_split_part {
