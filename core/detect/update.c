@@ -7,6 +7,7 @@
 
 #include "base/columns.h"
 #include "contact/contacts.h"
+#include "contact/facing.h"
 #include "contact/handover.h"
 #include "contact/pair_view.h"
 #include "contact/points.h"
@@ -27,6 +28,11 @@
 /* Motion within which a field contact is reused, over its overlap: its force is then wrong by no more than that. A contact
  * that rests moves by less. */
 #define REUSE_FIELD 1e-11
+
+/* Motion within which the points of a patch stand and ride, over its least closure o: an area of width b is then wrong by a share
+ * of o/(16 b), a quarter of what a patch neglects in any case, the load on its border (docs/theory.md). It is TL_STILL at least: a
+ * patch that opens has no closure where it opens. */
+#define STANDS (1.0 / 16)
 
 static bool same_topology(const tl_detect *d, uint32_t c, const tl_manifold *g)
 {
@@ -221,12 +227,22 @@ static bool take_manifold(tl_model *m, uint32_t c, tl_narrow_scratch *scratch,
     return true;
 }
 
-/* How far points of B, or of either block, have moved against the other since the contact's spot, at the most. */
+/* How far the points of a patch have been carried apart by their blocks since they were laid, the farthest of them. */
 static double points_moved(const tl_model *m, uint32_t c)
 {
     const tl_contacts *contacts = &m->detect->contacts;
-    uint32_t a = contacts->a[c], b = contacts->b[c];
-    return tl_spot_moved(m, &contacts->spot[c], a, b, m->bodies.radius[m->blocks.body[b]]);
+    const tl_facet *f = &contacts->facet[c];
+    uint32_t a = m->blocks.body[contacts->a[c]], b = m->blocks.body[contacts->b[c]];
+    const tl_mat3 *ra = &m->bodies.pose[a].r, *rb = &m->bodies.pose[b].r;
+    tl_facing_place by_b =
+        tl_facing_ride(ra, rb, tl_body_apart(&m->bodies, a, b), &f->laid.turn, f->laid.shift, 1);
+    double most = 0;
+    for (size_t k = 0; k < contacts->point_count[c]; k++) {
+        tl_vec3 p = tl_columns_get(m->detect->points.p, tl_point_row(contacts, c, k));
+        tl_vec3 there = tl_v3_add(tl_m3_mul(&by_b.to, p), by_b.at);
+        most = fmax(most, tl_v3_norm2(tl_v3_sub(there, tl_m3_mul(ra, p))));
+    }
+    return sqrt(most);
 }
 
 /* How far from the centroid of B's body the points of either block may lie. */
@@ -244,37 +260,78 @@ static double faces_moved(const tl_model *m, uint32_t c)
     return tl_spot_moved(m, &contacts->spot[c], contacts->a[c], contacts->b[c], reach_of(m, c));
 }
 
+static bool is_patch(const tl_contacts *contacts, uint32_t c)
+{
+    return contacts->facet[c].kind == TL_FACET_PATCH && contacts->point_count[c] > 0;
+}
+
+/* Size of the smaller block of a contact. */
+static double smaller_size(const tl_model *m, uint32_t c)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    return fmin(m->blocks.size[contacts->a[c]], m->blocks.size[contacts->b[c]]);
+}
+
 void tl_contact_allow_reuse(tl_model *m, uint32_t c)
 {
     tl_contacts *contacts = &m->detect->contacts;
-    double size_a = m->blocks.size[contacts->a[c]], size_b = m->blocks.size[contacts->b[c]];
-    double most = TL_STILL * fmin(size_a, size_b);
+    bool patch = is_patch(contacts, c);
+    double most = TL_STILL * smaller_size(m, c);
     if (contacts->facet[c].kind == TL_FACET_FIELD && contacts->point_count[c])
         most = REUSE_FIELD * tl_press_row_of(m, c)->press.overlap;
-    contacts->points_valid_to[c] = tl_pair_odometer(m, contacts->a[c], contacts->b[c]) + most;
-    if (contacts->facet[c].kind != TL_FACET_PATCH || contacts->point_count[c] == 0)
+    if (!patch || contacts->new_points[c] != TL_POINTS_STAY)
+        contacts->points_valid_to[c] = tl_pair_odometer(m, contacts->a[c], contacts->b[c]) + most;
+    if (!patch)
         return;
-    if (!m->config.reuse_geometry) { /* its spot is not where the points are laid now */
-        contacts->points_valid_to[c] = -INFINITY;
-        return;
-    }
     contacts->spot[c] =
         tl_spot_on(m, &contacts->spot[c], contacts->a[c], contacts->b[c], reach_of(m, c));
 }
 
-/* Whether the odometers have not run out, or the blocks have moved less than that against each other. -INFINITY: all is to be
- * looked at in any case. */
-static bool is_valid(const tl_model *m, uint32_t c, double *valid_to, double way,
-                     double moved(const tl_model *m, uint32_t c))
+/* Motion of next to nothing. */
+static double still_way(const tl_model *m, uint32_t c)
+{
+    return TL_STILL * smaller_size(m, c);
+}
+
+/* Way left to go before the faces of a patch are to be chosen anew. */
+static double way_of_faces(const tl_model *m, uint32_t c)
+{
+    return (double)m->detect->contacts.spot[c].remaining - faces_moved(m, c);
+}
+
+/* Closure of a patch, or stretch of its bond, where that is least: normal stress over kn, initial stress included. */
+static double least_closure(const tl_model *m, uint32_t c)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    const tl_points_table *p = &m->detect->points;
+    uint32_t law = contacts->law[c];
+    double stress = INFINITY, kn = law == TL_NO_ROW ? 0 : m->joint_laws[law].kn;
+    for (size_t k = 0; k < contacts->point_count[c]; k++) {
+        size_t i = tl_point_row(contacts, c, k);
+        stress = fmin(stress, fabs(p->f_n[i]) / p->area[i]);
+    }
+    return kn > 0 ? stress / kn : 0;
+}
+
+/* Way left to go before the points of a patch are to be laid anew. */
+static double way_of_points(const tl_model *m, uint32_t c)
+{
+    double stands = fmax(still_way(m, c), STANDS * least_closure(m, c));
+    return stands - points_moved(m, c);
+}
+
+/* Whether the odometers have not run out, or the blocks of a patch have some way left to go against each other. -INFINITY: all is to
+ * be looked at in any case. */
+static bool is_valid(const tl_model *m, uint32_t c, double *valid_to,
+                     double way_left(const tl_model *m, uint32_t c))
 {
     const tl_contacts *contacts = &m->detect->contacts;
     double odometer = tl_pair_odometer(m, contacts->a[c], contacts->b[c]);
     if (odometer <= *valid_to)
         return true;
-    if (*valid_to == -INFINITY || contacts->facet[c].kind != TL_FACET_PATCH ||
-        contacts->point_count[c] == 0)
+    if (*valid_to == -INFINITY || !is_patch(contacts, c))
         return false;
-    double left = way - moved(m, c);
+    double left = way_left(m, c);
     if (left > 0)
         *valid_to = odometer + left;
     return left > 0;
@@ -317,10 +374,8 @@ bool tl_contact_is_patch(tl_model *m, uint32_t c)
 {
     tl_contacts *contacts = &m->detect->contacts;
     uint32_t law = contacts->law[c];
-    return contacts->facet[c].kind == TL_FACET_PATCH && contacts->point_count[c] > 0 &&
-           law != TL_NO_ROW && !m->joint_laws[law].splits &&
-           is_valid(m, c, &contacts->faces_valid_to[c], (double)contacts->spot[c].remaining,
-                    faces_moved);
+    return is_patch(contacts, c) && law != TL_NO_ROW && !m->joint_laws[law].splits &&
+           is_valid(m, c, &contacts->faces_valid_to[c], way_of_faces);
 }
 
 /* The patch of a contact that is one and stays one, made anew; false when that is not all there is to it. */
@@ -374,14 +429,38 @@ static bool touches_still(tl_model *m, uint32_t c)
     return true;
 }
 
+/* Whether the faces of a patch need not be chosen anew while its points stand. */
+static bool faces_hold(tl_model *m, uint32_t c)
+{
+    tl_contacts *contacts = &m->detect->contacts;
+    return is_valid(m, c, &contacts->faces_valid_to[c], way_of_faces) ||
+           way_of_faces(m, c) > -still_way(m, c);
+}
+
 bool tl_contact_points_hold(tl_model *m, uint32_t c)
 {
     tl_contacts *contacts = &m->detect->contacts;
-    double way = TL_STILL * fmin(m->blocks.size[contacts->a[c]], m->blocks.size[contacts->b[c]]);
-    /* one that wants room is made when it has got it */
-    return contacts->pending[c] == TL_PENDING_DIE || tl_pending_waits(contacts->pending[c]) ||
-           (m->config.reuse_geometry &&
-            is_valid(m, c, &contacts->points_valid_to[c], way, points_moved));
+    /* the blocks of one that ends may be gone; one that wants room is made when it has got it */
+    if (contacts->pending[c] == TL_PENDING_DIE || tl_pending_waits(contacts->pending[c]))
+        return true;
+    double odometer = tl_pair_odometer(m, contacts->a[c], contacts->b[c]);
+    bool valid = odometer <= contacts->points_valid_to[c];
+    if (valid && m->config.reuse_geometry && odometer <= contacts->faces_valid_to[c])
+        return true; /* most do */
+    if (!is_patch(contacts, c))
+        return valid && m->config.reuse_geometry;
+    return is_valid(m, c, &contacts->points_valid_to[c], way_of_points) && faces_hold(m, c);
+}
+
+/* Whether the points of a patch stand although its faces have been chosen anew: they are the same. */
+static bool still_stands(const tl_model *m, uint32_t c, const tl_narrow_scratch *scratch)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    const tl_manifold *g = &scratch->manifold;
+    const tl_facet *f = &contacts->facet[c], *now = &g->facet;
+    return !scratch->reframed && is_patch(contacts, c) && g->point_count > 0 &&
+           now->kind == TL_FACET_PATCH && f->ia == now->ia && f->ib == now->ib &&
+           tl_pair_odometer(m, contacts->a[c], contacts->b[c]) <= contacts->points_valid_to[c];
 }
 
 /* Makes all that a contact is anew. Without the memory for it the contact is as it was, so that it can be tried again
@@ -394,8 +473,9 @@ static bool make_anew(tl_model *m, uint32_t c, unsigned thread)
     tl_spot spot = contacts->spot[c];
     tl_tag tag = contacts->tag[c];
     uint8_t field = contacts->field[c], pending = contacts->pending[c], deep = contacts->deep[c];
-    if (find(m, c, scratch) && (contacts->pending[c] == TL_PENDING_DIE ||
-                                take_manifold(m, c, scratch, &m->detect->lanes[thread])))
+    if (find(m, c, scratch) &&
+        (contacts->pending[c] == TL_PENDING_DIE || still_stands(m, c, scratch) ||
+         take_manifold(m, c, scratch, &m->detect->lanes[thread])))
         return true;
     contacts->faces_valid_to[c] = faces_valid_to;
     contacts->spot[c] = spot;

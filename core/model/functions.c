@@ -38,9 +38,7 @@ static const tl_param model_params[] = {
              "how blocks turn: Euler's equations, or the paper's single moment of inertia",
              .def = {TL_ROTATION_EXACT}, .choices = rotation_names),
     TL_PARAM(TL_PARAM_BOOL, tl_model_config, reuse_geometry, "",
-             "whether a contact that hardly moved keeps its contact polygon, or goes by slopes of "
-             "its force",
-             .def = {1.0}),
+             "whether a field contact that hardly moved goes by slopes of its force", .def = {1.0}),
     TL_PARAM(
         TL_PARAM_ENUM, tl_model_config, contact_points, "",
         "where the points of a face-face contact lie: also inside, which integrates the pressure "

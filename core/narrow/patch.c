@@ -11,7 +11,7 @@
  * its two fan triangles: resultants are right, turning is 3 times too stiff for a rectangle, 4 times for a
  * triangle.
  *
- * The bisector is the normal of all points. Areas are those on the faces, not in the bisecting plane, so that the
+ * All points have one normal (contact/facing.h). Areas are those on the faces, not in the bisecting plane, so that the
  * area of a face that lies wholly on another does not change as it tilts.
  *
  * With points at the corners only, those with a turning angle below TL_STRAIGHT are left out. Between TL_STRAIGHT and

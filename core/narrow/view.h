@@ -7,9 +7,8 @@
 
 #include "geometry/polyhedron.h"
 
-/* Lengths below it, relative to the smaller block's size, make no difference: a motion after which the points of a patch
- * are still good (areas are then wrong by a few 1e-6 at most; gaps are exact all the same), and a pair without points is not
- * looked at again; a motion in a step with which a contact is calm; a gap of walls that are together. Far above rounding of
+/* Lengths below it, relative to the smaller block's size, make no difference: a motion within which a pair without points is
+ * not looked at again; a motion in a step with which a contact is calm; a gap of walls that are together. Far above rounding of
  * places, far below the contact tolerance. */
 #define TL_STILL 1e-6
 

@@ -399,7 +399,7 @@ function Contacts:where(keep) end
 ---@field seed? integer >= 0, default 1: seed of every random draw: the same seed gives the same model
 ---@field threads? integer in [1, 256], default 1: number of threads; results do not depend on it
 ---@field rotation? "exact"|"paper" default "exact": how blocks turn: Euler's equations, or the paper's single moment of inertia
----@field reuse_geometry? boolean default true: whether a contact that hardly moved keeps its contact polygon, or goes by slopes of its force
+---@field reuse_geometry? boolean default true: whether a field contact that hardly moved goes by slopes of its force
 ---@field contact_points? "consistent"|"corners" default "consistent": where the points of a face-face contact lie: also inside, which integrates the pressure of elastic faces exactly, or at the corners only, up to a tilt of 5 degrees: springs as those of rigid statics, and of rigid blocks of 3DEC; docs/how_stiff.md compares both
 
 --- Makes an empty model.
