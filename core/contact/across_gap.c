@@ -1,7 +1,8 @@
 /* across_gap.c - what contact points carry where their walls are apart.
  *
  * A point presses at closures above -lift. What lifts it is an initial force, f_n0 / (kn A), and what slip has opened; a law
- * for which that is otherwise tells so itself. A bond holds a share of the tension beyond. */
+ * for which that is otherwise tells so itself. A bond holds a share of the tension beyond. A law that does not tell knows nothing of
+ * areas that are apart in part: it has bonds, but its force is that of the closed part alone. */
 #include "contact/across_gap.h"
 
 #include "base/inside.h"
@@ -41,6 +42,7 @@ static void across_gap(const tl_law *law, const tl_law_batch *batch, double *res
 void tl_points_across_gap(const tl_law *law, const tl_points_table *p, size_t first, size_t count,
                           double *lift, double *hold)
 {
+    const tl_law_ops *ops = law->kind->ops;
     double *state[TL_STATE_COLUMNS];
     for (size_t at = 0; at < count; at += SOME) {
         size_t some = count - at < SOME ? count - at : SOME, row = first + at;
@@ -53,6 +55,8 @@ void tl_points_across_gap(const tl_law *law, const tl_points_table *p, size_t fi
                                     .state = state,
                                     .flags = p->flags + row};
         across_gap(law, &batch, lift + at, hold + at);
+        for (size_t k = 0; k < some && !ops->across_gap; k++)
+            hold[at + k] = 0;
     }
 }
 

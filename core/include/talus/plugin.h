@@ -241,8 +241,8 @@ typedef struct tl_law_ops {
     /* [worker] since 1.8; may be NULL. What points carry where their walls are apart, from the batch's area, f_n0, state and
      * flags; its other columns are NULL. `lift`, m: a point carries no pressure at closures below -lift; NULL gives
      * f_n0 / (kn A), so a law whose slip opens the joint, or whose initial force does not belong to that closure, has to tell.
-     * `hold`, 0 to 1: the share of the tension in a part apart that the point carries; NULL gives 1 to those that may pull
-     * and have no TL_POINT_APART, else 0. Padding lanes get any number. */
+     * `hold`, 0 to 1: the share of the tension in a part apart that the point carries; NULL gives 0. Padding lanes get any
+     * number. */
     void (*across_gap)(const void *self, const tl_law_batch *batch, double *lift, double *hold);
     /* since 1.8; not 0: what presses has the normal force kn A u, with the kn of stiffness() and u the closure and lift */
     uint32_t linear;

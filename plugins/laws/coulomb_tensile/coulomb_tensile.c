@@ -122,11 +122,12 @@ TL_IN_LOOP void move(const bonded *law, const tl_law_batch *batch, uint32_t begi
     const double kn = law->kn, ks = law->ks;
     const double dilation = law->dilation, most_opening = law->most_opening;
     const strength peak = law->peak, residual = law->residual;
+    const double grips = peak.tension > 0 ? 1 : 0; /* a bond without tensile strength never pulls */
 #pragma omp simd
     for (uint32_t i = 0; i < lanes; i++) {
         double stiffness = ks * c.area[i], opened = opening[i], lift = 0;
         double pressed = kn * c.area[i] * (c.closure[i] + opened) + c.f_n0[i];
-        double pull = kn * c.area[i] * apart[i];
+        double pull = grips * kn * c.area[i] * apart[i];
         tl_vec3 f = TL_TRIAL_AT(c, i, stiffness);
         double trial = tl_v3_norm(f);
 
