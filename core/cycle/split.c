@@ -174,7 +174,8 @@ static bool sort_wholes(struct tl_split_work *w)
         w->contacts[i].a = now[w->contacts[i].a];
         w->contacts[i].b = now[w->contacts[i].b];
     }
-    qsort(w->contacts, w->contact_count, sizeof *w->contacts, compare_contact);
+    if (w->contact_count > 1)
+        qsort(w->contacts, w->contact_count, sizeof *w->contacts, compare_contact);
     free(now);
     return true;
 }
