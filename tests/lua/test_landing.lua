@@ -1,4 +1,4 @@
--- Nothing goes through anything: boxes tumble onto a floor on joints of laws without dilation. Without damping the energy stays; with it
+-- Nothing goes through anything: boxes tumble onto a floor on joints of every law. Without damping the energy stays; with it
 -- they come to rest on a face, pressed in by what their weight needs at that stiffness.
 -- program only: the models are the same ones with a stock Lua.
 local check = require "check"
@@ -23,6 +23,11 @@ local LAWS = {
     { "coulomb_tensile", springs { tension = 1e5, cohesion = 1e5 } },
     { "cohesive", springs { tension = 1e5, cohesion = 1e5, energy_tension = 10, energy_shear = 10 } },
     { "slip_weakening", springs { distance = 0.01 } },
+    { "coulomb", springs { dilation = 8 } },
+    { "coulomb_tensile", springs { tension = 1e5, cohesion = 1e5, dilation = 8 } },
+    { "barton_bandis", { kn = KN, ks = KN, jrc = 8, jcs = 1e7, phi_r = 30, vm = 2e-2 } },
+    { "barton_bandis", { kn = KN, ks = KN, jrc = 8, jcs = 1e7, phi_r = 30, vm = 2e-2, dilation = false } },
+    { "continuously_yielding", { an = KN, as = KN, phi_i = 50, phi = 30, roughness = 0.01, dilation = false } },
     { "rate_state", { kn = KN, ks = KN, a = 0.01, b = 0.015, distance = 1e-4, mu0 = 0.7 } },
 }
 
