@@ -395,15 +395,7 @@ static void load_contacts(tl_model *m, const tl_split_system *s)
 static bool load_held(tl_split_system *s)
 {
     memcpy(s->given, s->start, s->point_count * sizeof *s->given);
-    s->stored = 0;
-    for (size_t i = 0; i < s->contact_count; i++) {
-        const tl_split_contact *c = &s->contacts[i];
-        double stored;
-        if (!tl_contact_bear(s->m, c->row, &s->given[c->first], &s->borne[c->first], &stored))
-            return false;
-        s->stored += stored;
-    }
-    return true;
+    return tl_split_bear(s);
 }
 
 static bool some_held(const tl_model *m, const tl_split_part *parts, size_t count)

@@ -47,6 +47,8 @@ typedef struct tl_split_system {
     double stored; /* energy of the springs, J */
 } tl_split_system;
 
+/* Sets `borne` to what the laws bear of `given`, and what their springs hold; false: a law failed. */
+bool tl_split_bear(tl_split_system *s);
 /* Finds tractions that the laws bear and that bring what the parts lack, or come as near to it as they can; false: a law failed. */
 bool tl_split_solve(tl_split_system *s);
 

@@ -121,8 +121,7 @@ static void solve_linear(tl_split_system *s)
 
 /* ---------------------------------------------------------------- laws ------------------- */
 
-/* Asks the laws what they bear of `given`. */
-static bool bear(tl_split_system *s)
+bool tl_split_bear(tl_split_system *s)
 {
     s->stored = 0;
     for (size_t i = 0; i < s->contact_count; i++) {
@@ -196,7 +195,7 @@ static void stiffen(tl_split_system *s)
 static double try_step(tl_split_system *s, const tl_traction *from, double by)
 {
     give(s, from, by);
-    return bear(s) ? find_lacking(s) : NAN;
+    return tl_split_bear(s) ? find_lacking(s) : NAN;
 }
 
 /* Goes on from the tractions that were given by what brings what lacks. With `search` by less until less lacks, or by more as long as
@@ -252,5 +251,5 @@ bool tl_split_solve(tl_split_system *s)
             return false;
     }
     memcpy(s->given, s->best, s->point_count * sizeof *s->best);
-    return !isnan(lacking) && bear(s); /* once more, for the energy */
+    return !isnan(lacking) && tl_split_bear(s); /* once more, for the energy */
 }
