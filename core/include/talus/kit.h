@@ -105,11 +105,11 @@ TL_IN_LOOP void tl_law_hold_none(const tl_law_batch *batch, double *hold)
         hold[i] = 0;
 }
 
-/* Operations of a law that never fails and has made itself with tl_keep: `create`, `update`, `stiffness` and what is given. */
+/* Operations of a law that has made itself with tl_keep: `create`, `update`, `stiffness` and what is given. */
 #define TL_LAW_OPS(...)                                                                            \
     {                                                                                              \
         .size = sizeof(tl_law_ops), .create = create, .update = update, .stiffness = stiffness,    \
-        .destroy = free, .never_fails = 1, __VA_ARGS__                                             \
+        .destroy = free, __VA_ARGS__                                                               \
     }
 
 /* Columns of a batch from one point on. */

@@ -420,8 +420,8 @@ static void pressed(const void *self, const tl_law_batch *batch, double *energy)
     }
 }
 
-static const tl_law_ops ops =
-    TL_LAW_OPS(.pulls = tl_pulls_none, .across_gap = across_gap, .pressed = pressed);
+static const tl_law_ops ops = TL_LAW_OPS(.never_fails = 1, .pulls = tl_pulls_none,
+                                         .across_gap = across_gap, .pressed = pressed);
 
 static const tl_kind kind = TL_KIND(
     TL_KIND_LAW, ops, .name = "barton_bandis",

@@ -313,7 +313,7 @@ static void across_gap(const void *self, const tl_law_batch *batch, double *lift
 }
 
 static const tl_law_ops ops =
-    TL_LAW_OPS(.linear = 1, .pulls = tl_pulls_bonded, .across_gap = across_gap);
+    TL_LAW_OPS(.never_fails = 1, .linear = 1, .pulls = tl_pulls_bonded, .across_gap = across_gap);
 
 static const tl_kind kind = TL_KIND(
     TL_KIND_LAW, ops, .name = "cohesive",

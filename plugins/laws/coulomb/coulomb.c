@@ -226,7 +226,7 @@ static void across_gap(const void *self, const tl_law_batch *batch, double *lift
     tl_law_hold_none(batch, hold);
 }
 
-static const tl_law_ops ops = TL_LAW_OPS(.linear = 1, .pulls = tl_pulls_none,
+static const tl_law_ops ops = TL_LAW_OPS(.never_fails = 1, .linear = 1, .pulls = tl_pulls_none,
                                          .stateless = stateless, .across_gap = across_gap);
 
 static const tl_kind kind =

@@ -230,7 +230,8 @@ static void across_gap(const void *self, const tl_law_batch *batch, double *lift
         hold[i] = bond[i] > BOND_HOLDS && !(batch->flags[i] & TL_POINT_APART) ? strong : 0;
 }
 
-static const tl_law_ops ops = TL_LAW_OPS(.linear = 1, .pulls = pulls, .across_gap = across_gap);
+static const tl_law_ops ops =
+    TL_LAW_OPS(.never_fails = 1, .linear = 1, .pulls = pulls, .across_gap = across_gap);
 
 static const tl_kind kind = TL_KIND(
     TL_KIND_LAW, ops, .name = "coulomb_tensile",

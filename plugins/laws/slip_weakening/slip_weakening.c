@@ -344,7 +344,7 @@ TL_VECTORIZED static tl_status update(const void *self, const tl_law_batch *batc
 
 TL_LAW_STIFFNESS(weakening, kn, ks);
 
-static const tl_law_ops ops = TL_LAW_OPS(.linear = 1, .pulls = tl_pulls_none);
+static const tl_law_ops ops = TL_LAW_OPS(.never_fails = 1, .linear = 1, .pulls = tl_pulls_none);
 
 static const tl_kind kind =
     TL_KIND(TL_KIND_LAW, ops, .name = "slip_weakening",

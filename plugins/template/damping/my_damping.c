@@ -44,7 +44,7 @@ static tl_status update(const void *self, const tl_damping_batch *batch, tl_repo
 
 /* The stable time step becomes no shorter. */
 static const tl_damping_ops ops = {
-    .size = sizeof ops, .update = update, .step_factor = tl_step_factor_one, .never_fails = 1};
+    .size = sizeof ops, .update = update, .step_factor = tl_step_factor_one};
 
 static const tl_kind kind = TL_KIND(TL_KIND_DAMPING, ops, .name = "my_damping",
                                     .doc = "Drag that grows with the square of the velocity.",

@@ -94,7 +94,6 @@ static void stiffness(const void *self, double *kn, double *ks)
 static const tl_law_ops ops = {.size = sizeof ops,
                                .update = update,
                                .stiffness = stiffness,
-                               .never_fails = 1,
                                .linear = 1,
                                .pulls = tl_pulls_none};
 
