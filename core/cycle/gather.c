@@ -118,6 +118,15 @@ bool tl_gather_prepare(tl_model *m)
     return true;
 }
 
+void tl_loads_begin(tl_model *m, double dt)
+{
+    struct tl_cycle *c = m->cycle;
+    tl_vec3 now = m->config.gravity;
+    c->share_before = m->dt + dt > 0 ? m->dt / (m->dt + dt) : 0;
+    bool changed = m->gravity_changed && !tl_v3_is_zero(tl_v3_sub(now, m->gravity_before));
+    c->gravity = changed ? tl_acting_mean(c, now, m->gravity_before) : now;
+}
+
 void tl_gather(tl_model *m)
 {
     struct tl_cycle *c = m->cycle;

@@ -11,7 +11,7 @@
 #include "contact/copy.h"
 #include "contact/points.h"
 #include "contact/store.h"
-#include "cycle//rates.h"
+#include "cycle/rates.h"
 #include "detect/detect.h"
 #include "model/wrench.h"
 
