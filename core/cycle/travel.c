@@ -115,7 +115,7 @@ tl_status tl_travel_shorten(tl_model *m, double *dt, uint32_t *body)
         *body = turns;
     }
     tl_passing passing;
-    tl_status status = tl_passing_find(m, motion, CLOSING_AIM, &passing);
+    tl_status status = tl_passing_find(m, motion, CLOSING_AIM, thinnest_of(m), &passing);
     if (status == TL_OK && passing.part < 1) {
         *dt *= passing.part;
         *body = faster_of(m, motion, passing.a, passing.b);
@@ -173,8 +173,9 @@ tl_status tl_travel_check(tl_model *m, const tl_step_span *span)
     double turn;
     uint32_t turns = widest_turn(m, motion, &turn);
     tl_passing passing = {.part = INFINITY};
-    tl_status status = turn > TURN_MOST ? report_turn(m, turns, turn, span->dt)
-                                        : tl_passing_find(m, motion, CLOSING_MOST, &passing);
+    tl_status status = turn > TURN_MOST
+                           ? report_turn(m, turns, turn, span->dt)
+                           : tl_passing_find(m, motion, CLOSING_MOST, thinnest_of(m), &passing);
     if (status == TL_OK && passing.part < 1)
         status = report_passing(m, motion, &passing, span->dt);
     free(motion);

@@ -212,13 +212,11 @@ static void look_at(const sweep *s, uint32_t a, uint32_t b, tl_passing *out)
         *out = (tl_passing){part, a, b, deeper, s->share * thickness};
 }
 
-tl_status tl_passing_find(tl_model *m, const tl_step_motion *motion, double share, tl_passing *out)
+tl_status tl_passing_find(tl_model *m, const tl_step_motion *motion, double share, double thinnest,
+                          tl_passing *out)
 {
     sweep s = {.m = m, .motion = motion, .share = share};
-    double thinnest = INFINITY;
     *out = (tl_passing){INFINITY, TL_NO_ROW, TL_NO_ROW, 0, 0};
-    for (uint32_t row = 0; row < m->blocks.table.rows; row++)
-        thinnest = fmin(thinnest, tl_least_thickness(m, row));
     s.list = malloc((m->blocks.table.rows + 1) * sizeof *s.list);
     if (!s.list)
         return tl_fail_memory(&m->error);

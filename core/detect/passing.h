@@ -20,7 +20,9 @@ typedef struct tl_passing {
 
 /* Least thickness that a block can have, m, from its volume V and surface S: a convex body holds a ball of radius V / S. */
 double tl_least_thickness(const tl_model *m, uint32_t row);
-/* Finds the pair whose overlap would first grow by more than `share` of the thinner block's thickness. `motion`: of each body. */
-tl_status tl_passing_find(tl_model *m, const tl_step_motion *motion, double share, tl_passing *out);
+/* Finds the pair whose overlap would first grow by more than `share` of the thinner block's thickness. `motion`: of each
+ * body; `thinnest`: the least thickness of all blocks, m. TL_E_MEMORY. */
+tl_status tl_passing_find(tl_model *m, const tl_step_motion *motion, double share, double thinnest,
+                          tl_passing *out);
 
 #endif
