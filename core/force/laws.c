@@ -265,11 +265,11 @@ static void find_pressed(const span_job *job, const tl_simd_group *group, const 
 }
 
 /* Of what slip has paid in the last step for moving two faces apart, the share that the field has got: less than 1 where other faces
- * press, too. A law pays as if its force, `whole`, were all on these faces. */
-static double lifted_share(const tl_press_row *row, const field_press *by, double whole)
+ * press, too. A law pays as if all of its force were on these faces. */
+static double lifted_share(const tl_press_row *row, const field_press *by)
 {
     const tl_press *press = &row->press;
-    double pays = whole * row->opened * (1 - 0.5 * row->opened / press->overlap);
+    double pays = by->whole * row->opened * (1 - 0.5 * row->opened / press->overlap);
     double gets = by->by_energy * press->lifted + by->by_volume * press->lifted_volume;
     return pays != 0 ? gets / pays : 1;
 }
@@ -317,7 +317,7 @@ static void sum_fields(const span_job *job, const tl_simd_group *group, const tl
         out->stored[l] = t->stored[k] + t->stored[k + torsion] - by.springs + by.energy + spare;
         out->dissipated[l] = t->dissipated[k] + t->dissipated[k + torsion];
         if (press->lifted != 0)
-            out->dissipated[l] += row->paid * (1 - lifted_share(row, &by, by.whole));
+            out->dissipated[l] += row->paid * (1 - lifted_share(row, &by));
         out->odd[l] = 0 * (force.x + force.y + force.z + moment.x + moment.y + moment.z);
         if (fabs(tl_v3_dot(shear, n)) > TL_OUT_OF_PLANE * tl_v3_norm(force))
             out->odd[l] += 1;

@@ -88,13 +88,13 @@ static inline uint32_t tl_pulls_none(const void *self)
     return TL_PULL_NONE;
 }
 
-/* For `across_gap`: the lift of points with linear springs kn whose slip has opened the joint by `opening`, m. */
+/* For `across_gap`: the lift of points with linear springs kn whose slip has opened the joint by `opening`, m (NULL: it never does). */
 TL_IN_LOOP void tl_law_lift(const tl_law_batch *batch, double kn, const double *opening,
                             double *lift)
 {
     for (uint32_t i = 0; i < batch->count; i++) {
         double spring = kn * batch->area[i];
-        lift[i] = opening[i] + batch->f_n0[i] / (spring > 0 ? spring : 1);
+        lift[i] = (opening ? opening[i] : 0) + batch->f_n0[i] / (spring > 0 ? spring : 1);
     }
 }
 

@@ -305,11 +305,9 @@ TL_LAW_STIFFNESS(cohesive, kn, ks);
 static void across_gap(const void *self, const tl_law_batch *batch, double *lift, double *hold)
 {
     const cohesive *law = self;
-    for (uint32_t i = 0; i < batch->count; i++) {
-        double spring = law->kn * batch->area[i];
-        lift[i] = batch->f_n0[i] / (spring > 0 ? spring : 1);
+    tl_law_lift(batch, law->kn, NULL, lift);
+    for (uint32_t i = 0; i < batch->count; i++)
         hold[i] = batch->flags[i] & TL_POINT_APART ? 0 : 1 - batch->state[0][i];
-    }
 }
 
 static const tl_law_ops ops =
