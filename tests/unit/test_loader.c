@@ -127,6 +127,9 @@ TEST(broken_plugins_are_refused_with_the_reason)
     refused(bad_folder, "only_unknown",
             "it holds nothing of use: kind 1, 'only_unknown', is of the unknown type 23");
     refused(bad_folder, "deaf_screen", "screen 'deaf_screen': its operation 'take' is missing");
+    refused(bad_folder, "begun_energy",
+            "state 'some' is an energy: it must be a scalar that begins at 0");
+    refused(bad_folder, "two_energies", "states 'one' and 'two' are both energies of shear");
     refused(bad_folder, "screen_states", "a screen has no states, this one declares 1");
     refused(bad_folder, "snapped", "its descriptor has size 0: not a Talus plugin");
 }
