@@ -6,6 +6,13 @@
 
 #include <talus/types.h>
 
+/* What a stress that is no line in the closure changes in a cell: force/bent.c. */
+typedef struct tl_bent {
+    double closure; /* of the closure that the law gets, m */
+    double second;  /* of the half second moment, m^4 */
+    tl_vec3 moment; /* of the moment, m^4 */
+} tl_bent;
+
 /* What is closed and what is apart of the cell of a point, over which the overlap is linear: force/partly_open.c. Beside the
  * means that the law gets are moments about the point and half second moments of u. */
 typedef struct tl_cell {
@@ -13,6 +20,11 @@ typedef struct tl_cell {
     double pressed_volume, apart_volume; /* area times the means, m^3 */
     double pressed_second, apart_second; /* m^4 */
     double hold;                         /* share of tension that was held before the law */
+    /* of a law that is not linear: int u^3 dA, m^5, int u^4 dA, m^6, and int u^2 x dA, m^5, of what is closed, and what its stress
+     * changes */
+    double pressed_third, pressed_fourth;
+    tl_vec3 pressed_square;
+    tl_bent bent;
 } tl_cell;
 
 /* What is known of points only while a step works on them. */

@@ -13,6 +13,7 @@
 #include "force/follow.h"
 #include "force/law_check.h"
 #include "force/partly_open.h"
+#include "force/pressed.h"
 
 #include <stdatomic.h>
 #include <string.h>
@@ -243,27 +244,6 @@ static field_press press_by_force(const tl_press *press, double kn, double area,
                          .springs = (f_n * f_n + same * same) / (2 * kn * area)};
 }
 
-/* Energies of what presses, of a law that tells of them: of the points of a SIMD group of field contacts. */
-static void find_pressed(const span_job *job, const tl_simd_group *group, const tl_point_lanes *t,
-                         size_t lane, double energy[TL_FIELD_POINTS * TL_LANES])
-{
-    const tl_points_table *p = &job->m->detect->points;
-    const tl_law_ops *ops = job->law->kind->ops;
-    double *state[TL_STATE_COLUMNS];
-    for (uint32_t k = 0; k < TL_STATE_COLUMNS; k++)
-        state[k] = k < p->state_columns ? p->state[k] + group->start : t->zero;
-    const tl_law_batch batch = {.size = sizeof batch,
-                                .count = TL_FIELD_POINTS * TL_LANES,
-                                .area = p->area + group->start,
-                                .closure = t->closure + lane,
-                                .f_n0 = t->zero,
-                                .state = state,
-                                .flags = p->flags + group->start};
-    tl_enter(job->law->kind, "pressed");
-    ops->pressed(job->law->self, &batch, energy);
-    tl_leave();
-}
-
 /* Of what slip has paid in the last step for moving two faces apart, the share that the field has got: less than 1 where other faces
  * press, too. A law pays as if all of its force were on these faces. */
 static double lifted_share(const tl_press_row *row, const field_press *by)
@@ -288,7 +268,8 @@ static void sum_fields(const span_job *job, const tl_simd_group *group, const tl
     double pressed[TL_FIELD_POINTS * TL_LANES];
     memset(out, 0, sizeof *out);
     if (tells)
-        find_pressed(job, group, t, lane, pressed);
+        tl_law_energies(job->m, law, group->start, TL_FIELD_POINTS * TL_LANES, t, t->closure + lane,
+                        pressed);
     for (size_t l = 0; l < TL_LANES; l++) {
         uint32_t c = group->contact[l];
         size_t i = group->start + l, k = lane + l;

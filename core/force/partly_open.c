@@ -12,9 +12,10 @@
  *     M = k [int_{u>0} u (x - x_p) dA + hold int_{u<0} u (x - x_p) dA] cross n
  *     U = k/2 [int_{u>0} u^2 dA - A p^2 + hold (int_{u<0} u^2 dA - A q^2)]
  *
- * k is kn, or that of the force of the closed part over A p where a law is not linear. So force, moment and energy are the
- * exact integrals over the polygon, whatever part of it is closed. A tension that a bond loses takes its part of U with it:
- * that is heat.
+ * k is kn. So force, moment and energy are the exact integrals over the polygon, whatever part of it is closed. A tension that a
+ * bond loses takes its part of U with it: that is heat.
+ *
+ * What a stress that is no line in u changes of this is in bent.c.
  *
  * The cells. A patch of k corners has k points between corners, k at corners, and the centroid, all drawn in towards that
  * (patch.c); so its corners follow from its points. In the triangle of an edge and the centroid, the centroid's cell is the
@@ -29,6 +30,7 @@
 #include "base/columns.h"
 #include "contact/across_gap.h"
 #include "contact/detection.h"
+#include "force/bent.h"
 #include "narrow/frame2.h"
 
 #include <math.h>
@@ -36,6 +38,8 @@
 
 #define INNER 0.30550504633038933 /* sqrt(7 / 75) */
 #define SIDE (16.0 / 68)
+/* How much sooner t is 1 for a law that is not linear, whose points' own rule is not exact. */
+#define SOON 8
 
 /* A lane's patch: where its points are in the lanes and in the table. */
 typedef struct patch {
@@ -196,42 +200,85 @@ typedef struct node {
     double a, b;
 } node;
 
-/* Over a part of the triangle, times 1 over its area: integrals of u, of u times the place, and of u^2. */
+/* Over a part of the triangle, times 1 over its area: integrals of powers of u, and of them times the place. */
 typedef struct integrals {
     double u, ua, ub, uu;
+    double uua, uub, uuu, uuuu; /* for laws that are not linear; else 0 */
 } integrals;
 
+/* int u^2 x over a triangle of area 60, of values at its corners. */
+static inline double square_times(const double u[3], double x, double y, double z)
+{
+    double sum = u[0] + u[1] + u[2], squares = u[0] * u[0] + u[1] * u[1] + u[2] * u[2];
+    double mixed = u[0] * x + u[1] * y + u[2] * z;
+    double high = u[0] * u[0] * x + u[1] * u[1] * y + u[2] * u[2] * z;
+    return (sum * sum + squares) * (x + y + z) + 2 * (sum * mixed + high);
+}
+
+/* int u^n over a triangle is 2 / ((n + 1) (n + 2)) times the sum of all products of n of the values at its corners. */
+static inline void put_powers(const double u[3], double f, integrals *out)
+{
+    double x = u[0], y = u[1], z = u[2], xx = x * x;
+    double two = xx + y * (x + y), three = xx * x + y * two, four = xx * xx + y * three;
+    double all = three + z * (two + z * (x + y + z));
+    out->uuu = f / 10 * all;
+    out->uuuu = f / 15 * (four + z * all);
+}
+
 /* Of a triangle of the share f of the area. */
-static inline integrals whole_of(const node n[3], const double u[3], double f)
+static inline integrals whole_of(const node n[3], const double u[3], double f, bool curved)
 {
     double sum = u[0] + u[1] + u[2], by = f / 12;
     double a = n[0].a + n[1].a + n[2].a, b = n[0].b + n[1].b + n[2].b;
-    return (integrals){
+    integrals out = {
         .u = f / 3 * sum,
         .ua = by * (sum * a + u[0] * n[0].a + u[1] * n[1].a + u[2] * n[2].a),
         .ub = by * (sum * b + u[0] * n[0].b + u[1] * n[1].b + u[2] * n[2].b),
         .uu = f / 6 * (0.5 * (u[0] * u[0] + u[1] * u[1] + u[2] * u[2]) + 0.5 * sum * sum),
     };
+    if (curved) {
+        out.uua = f / 60 * square_times(u, n[0].a, n[1].a, n[2].a);
+        out.uub = f / 60 * square_times(u, n[0].b, n[1].b, n[2].b);
+        put_powers(u, f, &out);
+    }
+    return out;
 }
 
 /* Of the part of it at corner k where `sign` u > 0, when that is so at no other corner; u taken times the sign. */
 static inline integrals corner_of(const node n[3], const double u[3], double f, size_t k,
-                                  double sign)
+                                  double sign, bool curved)
 {
     size_t i = (k + 1) % 3, j = (k + 2) % 3;
     double top = sign * u[k], s = u[k] / (u[k] - u[i]), t = u[k] / (u[k] - u[j]);
-    double area = f * s * t, by = area * top / 12;
-    return (integrals){
-        .u = area * top / 3,
-        .ua = by * (4 * n[k].a + s * (n[i].a - n[k].a) + t * (n[j].a - n[k].a)),
-        .ub = by * (4 * n[k].b + s * (n[i].b - n[k].b) + t * (n[j].b - n[k].b)),
-        .uu = area * top * top / 6,
-    };
+    double area = f * s * t, by = area * top / 12, by_square = area * top * top / 30;
+    double a = 4 * n[k].a + s * (n[i].a - n[k].a) + t * (n[j].a - n[k].a);
+    double b = 4 * n[k].b + s * (n[i].b - n[k].b) + t * (n[j].b - n[k].b);
+    integrals out = {.u = area * top / 3, .ua = by * a, .ub = by * b, .uu = area * top * top / 6};
+    if (curved) {
+        out.uua = by_square * (n[k].a + a);
+        out.uub = by_square * (n[k].b + b);
+        out.uuu = 3 * by_square * top;
+        out.uuuu = 2 * by_square * top * top;
+    }
+    return out;
 }
 
 static inline integrals added(integrals x, integrals y)
 {
-    return (integrals){x.u + y.u, x.ua + y.ua, x.ub + y.ub, x.uu + y.uu};
+    return (integrals){x.u + y.u,     x.ua + y.ua,   x.ub + y.ub,   x.uu + y.uu,
+                       x.uua + y.uua, x.uub + y.uub, x.uuu + y.uuu, x.uuuu + y.uuuu};
+}
+
+/* Of -u. */
+static inline integrals negated(integrals x)
+{
+    return (integrals){-x.u, -x.ua, -x.ub, x.uu, x.uua, x.uub, -x.uuu, x.uuuu};
+}
+
+/* Less what -u has in a part of it. */
+static inline integrals without(integrals x, integrals y)
+{
+    return added(x, (integrals){y.u, y.ua, y.ub, -y.uu, -y.uua, -y.uub, y.uuu, -y.uuuu});
 }
 
 /* What presses of a triangle or cell, and what is apart, u there taken positive. */
@@ -239,24 +286,23 @@ typedef struct cell_parts {
     integrals pressed, apart;
 } cell_parts;
 
-static inline void add_triangle(const node n[3], const double u[3], double f, cell_parts *to)
+static inline void add_triangle(const node n[3], const double u[3], double f, bool curved,
+                                cell_parts *to)
 {
-    integrals all = whole_of(n, u, f), some;
+    integrals all = whole_of(n, u, f, curved), some;
     size_t above = (size_t)((u[0] > 0) + (u[1] > 0) + (u[2] > 0));
     if (above == 3) {
         to->pressed = added(to->pressed, all);
         return;
     }
-    const integrals minus = {-all.u, -all.ua, -all.ub, all.uu};
     if (above == 0) {
-        to->apart = added(to->apart, minus);
+        to->apart = added(to->apart, negated(all));
         return;
     }
     size_t k = above == 1 ? (u[0] > 0 ? 0 : u[1] > 0 ? 1 : 2) : (u[0] > 0 ? (u[1] > 0 ? 2 : 1) : 0);
-    some = corner_of(n, u, f, k, above == 1 ? 1 : -1);
-    const integrals less = {some.u, some.ua, some.ub, -some.uu};
-    to->pressed = added(to->pressed, above == 1 ? some : added(all, less));
-    to->apart = added(to->apart, above == 1 ? added(minus, less) : some);
+    some = corner_of(n, u, f, k, above == 1 ? 1 : -1, curved);
+    to->pressed = added(to->pressed, above == 1 ? some : without(all, some));
+    to->apart = added(to->apart, above == 1 ? without(negated(all), some) : some);
 }
 
 /* ---------------------------------------------------------------- cells ------------------ */
@@ -275,12 +321,16 @@ static void add_part(tl_cell *to, const cell_parts *part, double fan, tl_vec3 e,
     to->apart_second += fan * a->uu;
     to->pressed = tl_v3_madd(tl_v3_madd(to->pressed, fan * p->ua, e), fan * p->ub, f);
     to->apart = tl_v3_madd(tl_v3_madd(to->apart, fan * a->ua, e), fan * a->ub, f);
+    to->pressed_square =
+        tl_v3_madd(tl_v3_madd(to->pressed_square, fan * p->uua, e), fan * p->uub, f);
+    to->pressed_third += fan * p->uuu;
+    to->pressed_fourth += fan * p->uuuu;
 }
 
 /* The four cells of a triangle of the fan, of which `to` are the points: corner, edge, next corner, centroid. `o`: closures of
  * the centroid, of the corner and of the next. */
 static void add_triangle_cells(const patch *of, const size_t to[4], const double o[3], tl_vec3 e,
-                               tl_vec3 f)
+                               tl_vec3 f, bool curved)
 {
     tl_cell *cell = of->lanes->cell + of->lane;
     const double *lift = of->lanes->lift + of->lane;
@@ -300,20 +350,20 @@ static void add_triangle_cells(const patch *of, const size_t to[4], const double
         const double u[3] = {near[k] + up, far[k] + up, far[k + 1] + up};
         const double v[3] = {near[k] + up, far[k + 1] + up, near[k + 1] + up};
         cell_parts part = {0};
-        add_triangle(one, u, w * (1 - INNER), &part);
-        add_triangle(two, v, w * (INNER - inside), &part);
+        add_triangle(one, u, w * (1 - INNER), curved, &part);
+        add_triangle(two, v, w * (INNER - inside), curved, &part);
         add_part(&cell[to[k] * TL_LANES], &part, fan, e, f);
     }
     double up = lift[to[3] * TL_LANES];
     const node last[3] = {{0, 0}, in[0], in[3]};
     const double u[3] = {o[0] + up, near[0] + up, near[3] + up};
     cell_parts part = {0};
-    add_triangle(last, u, inside, &part);
+    add_triangle(last, u, inside, curved, &part);
     add_part(&cell[to[3] * TL_LANES], &part, fan, e, f);
 }
 
 /* Integrals of all cells; moments about the centroid. */
-static void integrate_cells(const patch *of)
+static void integrate_cells(const patch *of, bool curved)
 {
     const tl_point_rule rule = tl_point_rule_of(false);
     const double *closure = of->lanes->closure + of->lane, per = 1 / rule.reach;
@@ -330,7 +380,7 @@ static void integrate_cells(const patch *of)
         tl_vec3 f = tl_v3_scale(per, tl_v3_sub(arm_of(of, n + next), centre));
         double there = o + per * (closure[(n + next) * TL_LANES] - o);
         const double at[3] = {o, here, there};
-        add_triangle_cells(of, to, at, e, f);
+        add_triangle_cells(of, to, at, e, f, curved);
         e = f;
         here = there;
     }
@@ -349,8 +399,8 @@ static double share_of_cells(const patch *of)
     return share;
 }
 
-/* Gives a point the means of its cell, which keeps what it has beside them. */
-static void put_means(const patch *of, size_t k, double share)
+/* Gives a point the closure at which its whole cell would press as its closed part does. The cell keeps what it has beside that. */
+static void put_means(const patch *of, size_t k, double share, bool curved)
 {
     const tl_point_lanes *t = of->lanes;
     size_t i = of->lane + k * TL_LANES;
@@ -359,6 +409,12 @@ static void put_means(const patch *of, size_t k, double share)
     double area = area_of(of, k), u = t->closure[i] + t->lift[i];
     double more = (cell->pressed_volume - cell->apart_volume) / area - u;
     double p = cell->pressed_volume / area - (1 - share) * more, q = cell->apart_volume / area;
+    double second = 0;
+    if (curved) {
+        p += share * cell->bent.closure;
+        second = share * cell->bent.second;
+        cell->pressed = tl_v3_madd(cell->pressed, share, cell->bent.moment);
+    }
     if (!(cell->pressed_volume > 0) || (p < 0 && q > 0)) { /* apart as a whole */
         p -= q;
         q = 0;
@@ -371,8 +427,26 @@ static void put_means(const patch *of, size_t k, double share)
     cell->apart_volume = apart;
     cell->pressed = tl_v3_madd(cell->pressed, -pressed, arm);
     cell->apart = tl_v3_madd(cell->apart, -apart, arm);
-    cell->pressed_second = 0.5 * (cell->pressed_second - pressed * pressed / area);
+    cell->pressed_second = 0.5 * (cell->pressed_second - pressed * pressed / area) + second;
     cell->apart_second = 0.5 * (cell->apart_second - apart * apart / area);
+}
+
+/* The patches of a SIMD group that are partly open. Gives how many, and a bit for the lane of each. */
+static size_t find_parts(const tl_model *m, const tl_simd_group *group, const tl_point_lanes *t,
+                         size_t lane, const range *r, patch out[TL_LANES], uint32_t *lanes)
+{
+    size_t count = 0;
+    *lanes = 0;
+    for (uint32_t left = opening_lanes(r); left; left &= left - 1) {
+        size_t l = (size_t)__builtin_ctz(left);
+        patch *of = &out[count];
+        if (!(r->high[l] + r->beyond[l] > 0) || !find_patch(m, group, t, lane, l, of) ||
+            all_hold(of) || !has_all_points(of))
+            continue;
+        *lanes |= 1u << l;
+        count++;
+    }
+    return count;
 }
 
 uint32_t tl_simd_group_part(const tl_model *m, const tl_law *law, const tl_simd_group *group,
@@ -386,22 +460,23 @@ uint32_t tl_simd_group_part(const tl_model *m, const tl_law *law, const tl_simd_
         return 0;
     tl_points_across_gap(law, p, group->start, rows, t->lift + lane, t->hold + lane);
     find_range(p->area + group->start, t->closure + lane, t->lift + lane, group->slots, &r);
-    uint32_t out = 0;
-    for (uint32_t left = opening_lanes(&r); left; left &= left - 1) {
-        size_t l = (size_t)__builtin_ctz(left);
-        patch of;
-        if (!(r.high[l] + r.beyond[l] > 0) || !find_patch(m, group, t, lane, l, &of) ||
-            all_hold(&of) || !has_all_points(&of))
-            continue;
-        if (!out)
-            memset(t->apart + lane, 0, rows * sizeof *t->apart);
-        out |= 1u << l;
-        integrate_cells(&of);
-        double share = share_of_cells(&of);
-        for (size_t k = 0; k <= 2 * of.corners; k++)
-            put_means(&of, k, share);
+    patch of[TL_LANES];
+    uint32_t lanes;
+    size_t count = find_parts(m, group, t, lane, &r, of, &lanes);
+    if (count == 0)
+        return 0;
+    memset(t->apart + lane, 0, rows * sizeof *t->apart);
+    const bool curved = tl_law_presses(law);
+    for (size_t j = 0; j < count; j++)
+        integrate_cells(&of[j], curved);
+    if (curved)
+        tl_cells_bend(m, law, group, t, lane, lanes);
+    for (size_t j = 0; j < count; j++) {
+        double share = share_of_cells(&of[j]);
+        for (size_t k = 0; k <= 2 * of[j].corners; k++)
+            put_means(&of[j], k, curved ? fmin(1, SOON * share) : share, curved);
     }
-    return out;
+    return lanes;
 }
 
 /* ---------------------------------------------------------------- sums ------------------- */
