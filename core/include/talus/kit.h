@@ -157,6 +157,14 @@ TL_IN_LOOP double tl_law_slip_work(double along, double size, double limit, doub
     return mean * ((size - limit) / (spring > 0 ? spring : 1));
 }
 
+/* What slip pays, J, for opening a joint by `lift`, where that stores `rise`. The walls' motion of the step, which brings the normal
+ * force from `before` to `from`, is booked with the mean of the forces of its ends, lift and all: half of it is met by the joint as it
+ * was. For a linear spring this is the mean of the normal forces before the step and after it, times the lift. */
+TL_IN_LOOP double tl_law_lift_work(double rise, double before, double from, double lift)
+{
+    return rise + 0.5 * (before - from) * lift;
+}
+
 /* Puts flags that were noted as numbers into the batch: a loop over columns of two widths is not vectorised for every
  * machine. */
 TL_IN_LOOP void tl_law_put_flags(const tl_law_batch *batch, uint32_t begin, uint32_t lanes,

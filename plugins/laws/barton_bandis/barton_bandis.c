@@ -14,7 +14,7 @@
  * Source: Barton and Choubey, Rock Mech. 10 (1977) 1-54; Bandis, Lumsden and Barton, Int. J. Rock Mech. Min. Sci. 18 (1981) 1-21
  * and 20 (1983) 249-268; Barton, Bandis and Bakhtar, ibid. 22 (1985) 121-140.
  *
- * Energy turned to heat: the work of slip, less what it stores in the normal spring by opening the joint.
+ * Energy turned to heat: the work of slip, less what it pays for opening the joint, tl_law_lift_work.
  *
  * Limits: slip back opens the joint further, and wears it as slip forth does. */
 #include <talus/kit.h>
@@ -352,11 +352,16 @@ TL_IN_LOOP void settle(const rough *given, const tl_law_batch *batch, uint32_t b
         double scale = slips > 0 ? limit / (slips > 0 ? shear : 1) : 1, after = scale * shear;
         tl_vec3 f = {t->x[i], t->y[i], t->z[i]};
         if (energy) {
-            double held = energy_at(&law, v), before = slid ? energy_at(&law, t->v[i]) : held;
+            double held = energy_at(&law, v), paid = 0;
+            if (slid) {
+                double rise = held - energy_at(&law, t->v[i]), from = stress_at(&law, t->v[i]);
+                double per = c.area[i] > 0 ? 1 / c.area[i] : 0;
+                paid = c.area[i] * tl_law_lift_work(rise, c.f_n[i] * per, from, t->lift[i]);
+            }
             double along = tl_v3_dot(TL_SHEAR_AT(c, i), f);
             double mean = 0.5 * (along / (whole > 0 ? whole : 1) + limit * c.area[i]);
             double work = mean * (shear - limit) / law.ks;
-            double heat = slips > 0 ? work - (held - before) * c.area[i] : 0;
+            double heat = slips > 0 ? work - paid : 0;
             dissipated[i] = heat > 0 ? heat : 0;
             stored[i] = c.area[i] * (held + half_s * after * after);
         }

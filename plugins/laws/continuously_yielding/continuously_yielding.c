@@ -13,7 +13,7 @@
  *
  * Energy. Unloading gives back more than t^2 / (2 ks), for it is softer than ks. What the walls have put in counts as stored up to a
  * bound on what unloading can give back, 3 (1 + x) t_m^2 / ks (x - log(1 + x)) with x = t / t_m; the rest is heat. The part
- * beyond t^2 / (2 ks_max) is a state. Where it is used up, as where an initial stress is unloaded, t falls as such a spring's does.
+ * beyond t^2 / (2 ks_max) is a state. Opening the joint costs tl_law_lift_work. Where it is used up, as where an initial stress is unloaded, t falls as such a spring's does.
  *
  * Source: Cundall and Hart, report to Itasca (1984), and Eng. Comput. 9 (1992) 101-113;
  * Cundall and Lemos, in Rockbursts and Seismicity in Mines (1990) 107-112.
@@ -367,14 +367,14 @@ TL_IN_LOOP double lift(const yielding *given, const tl_law_batch *batch, uint32_
                        uint32_t lanes, trial *restrict t, const int curved, const int opens)
 {
     const double *restrict area = batch->area + begin, *restrict opening = batch->state[2] + begin;
-    const double *restrict held = batch->state[3] + begin;
+    const double *restrict held = batch->state[3] + begin, *restrict f_n = batch->f_n + begin;
     const yielding law = *given;
     double near = 0;
 #pragma omp simd reduction(+ : near)
     for (uint32_t i = 0; i < lanes; i++) {
         double per = area[i] > 0 ? 1 / area[i] : 0, softness = 0.5 / law.ks_max;
         double size2 = t->size[i] * t->size[i], ks = t->spring[i], had = held[i] * per;
-        double opened = opening[i], v = t->v[i], pressed = t->pressed[i], lifted = 0;
+        double opened = opening[i], v = t->v[i], pressed = t->pressed[i], lifted = 0, paid = 0;
         double rest = energy_at(&law, v, pressed), work = t->begins[i] + t->ends[i];
         double before = softness * t->before[i] * t->before[i];
         double spring = t->moved[i] > 0 ? softness * size2 : before;
@@ -383,15 +383,17 @@ TL_IN_LOOP double lift(const yielding *given, const tl_law_batch *batch, uint32_
             double needs = 0.5 * size2 / (ks > 0 ? ks : 1), up = t->lift[i];
             double above = t->walls[i] + (opened + up);
             lifted = energy_at(&law, above, stress_at(curved, &law, above)) - rest;
-            up = had + before + work - lifted >= needs ? up : 0;
+            paid = tl_law_lift_work(lifted, f_n[i] * per, pressed, up);
+            up = had + before + work - paid >= needs ? up : 0;
             lifted = up > 0 ? lifted : 0;
+            paid = up > 0 ? paid : 0;
             opened = opened + up;
             v = t->walls[i] + opened;
             pressed = stress_at(curved, &law, v);
             ks = shear_stiffness(curved, &law, pressed);
         }
-        double sum = had + (before - spring) + work - lifted;
-        double share = afforded(spring, had + before - lifted + t->begins[i], t->ends[i]);
+        double sum = had + (before - spring) + work - paid;
+        double share = afforded(spring, had + before - paid + t->begins[i], t->ends[i]);
         share = sum < 0 ? share : 1;
         t->v[i] = v;
         t->lift[i] = opened;
