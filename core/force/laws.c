@@ -10,10 +10,10 @@
 #include "contact/contacts.h"
 #include "contact/held.h"
 #include "contact/prefetch.h"
+#include "contact/presses.h"
 #include "force/follow.h"
 #include "force/law_check.h"
 #include "force/partly_open.h"
-#include "force/pressed.h"
 
 #include <stdatomic.h>
 #include <string.h>
@@ -193,7 +193,7 @@ static void report_odd(const span_job *job, const tl_simd_group *group, const gr
 typedef struct field_press {
     tl_vec3 force, moment;
     double energy, springs;
-    double whole;                /* the law's force but for what slip opens in this step */
+    double whole;                /* the force of which these are slopes */
     double by_energy, by_volume; /* change of the energy with those of the press */
 } field_press;
 
@@ -212,21 +212,31 @@ static field_press press_linearly(const tl_press *press, double kn, double area,
                          .by_energy = by};
 }
 
+/* What presses the two points of a field contact, as a law tells that is not linear: energies, that of torsion without what slip has
+ * opened of it in this step, and the closure of its walls. */
+typedef struct told {
+    double shear, torsion, unlifted, closure;
+} told;
+
 /* With an energy r Phi(s), r = (A_e^2 + A_m^2)^(1/2), s = 4 G / V, A_e = V^2 / (4 G), of which the law has told the force r Phi'(s)
- * and the energy. `same` is the energy of the springs of torsion. */
-static field_press press_by_law(const tl_press *press, double area, double f_n, double whole,
-                                double energy, double same)
+ * and the energy. Both points press with the same force but for what slip opens in this step. That of torsion, `more`, is added to
+ * that of shear. It follows from energies: for U ~ o^m of a closure o, m = F o / U and dF = (F - U / o) dU / U. */
+static field_press press_by_law(const tl_press *press, double area, double f_n, double same,
+                                const told *by)
 {
     double g = press->energy, v = press->volume, own = 0.25 * v * v / g, s = 4 * g / v;
+    double rise = by->torsion - by->unlifted;
+    double more = by->torsion > 0 ? (same - by->torsion / by->closure) * rise / by->torsion : 0;
+    double force = f_n + more, energy = by->shear + rise;
     double stretch = energy / (area * area) * own;
-    double by_g = f_n * 4 / v - stretch * own / g;
-    double by_v = stretch * 2 * own / v - f_n * s / v;
+    double by_g = force * 4 / v - stretch * own / g;
+    double by_v = stretch * 2 * own / v - force * s / v;
     return (field_press){
         .force = tl_v3_madd(tl_v3_scale(by_g, press->force), by_v, press->swept),
         .moment = tl_v3_madd(tl_v3_scale(by_g, press->moment), by_v, press->swept_moment),
         .energy = energy,
-        .springs = energy + same,
-        .whole = whole,
+        .springs = by->shear + by->torsion,
+        .whole = force,
         .by_energy = by_g,
         .by_volume = by_v};
 }
@@ -239,9 +249,49 @@ static field_press press_by_force(const tl_press *press, double kn, double area,
     return (field_press){.force = tl_v3_scale(by, press->force),
                          .moment = tl_v3_scale(by, press->moment),
                          .energy = by * press->energy,
-                         .whole = fmin(f_n, same),
+                         .whole = f_n,
                          .by_energy = by,
                          .springs = (f_n * f_n + same * same) / (2 * kn * area)};
+}
+
+/* Energies of what presses, of a law that tells of them: of the points of a SIMD group of field contacts. */
+static void find_pressed(const span_job *job, const tl_simd_group *group, const tl_point_lanes *t,
+                         size_t lane, told by[TL_LANES])
+{
+    enum { COUNT = TL_FIELD_POINTS * TL_LANES, TORSION = TL_FIELD_TORSION * TL_LANES };
+    const tl_points_table *p = &job->m->detect->points;
+    const tl_law_ops *ops = job->law->kind->ops;
+    double *state[TL_STATE_COLUMNS], closure[COUNT], lift[COUNT] = {0}, hold[COUNT];
+    double energy[COUNT], before[COUNT], closed[TL_LANES];
+    bool opens = false;
+    for (uint32_t k = 0; k < TL_STATE_COLUMNS; k++)
+        state[k] = k < p->state_columns ? p->state[k] + group->start : t->zero;
+    memcpy(closure, t->closure + lane, sizeof closure);
+    const tl_law_batch batch = {.size = sizeof batch,
+                                .count = COUNT,
+                                .area = p->area + group->start,
+                                .closure = closure,
+                                .f_n0 = t->zero,
+                                .state = state,
+                                .flags = p->flags + group->start};
+    tl_enter(job->law->kind, "pressed");
+    ops->pressed(job->law->self, &batch, energy);
+    if (ops->across_gap)
+        ops->across_gap(job->law->self, &batch, lift, hold);
+    for (size_t l = 0; l < TL_LANES; l++) {
+        const tl_press_row *row =
+            group->contact[l] == TL_NO_ROW ? NULL : tl_press_row_of(job->m, group->contact[l]);
+        double opened = row ? lift[TORSION + l] - row->opening[TL_FIELD_TORSION] : 0;
+        closed[l] = closure[TORSION + l] + lift[TORSION + l];
+        closure[TORSION + l] -= opened;
+        opens = opens || opened != 0;
+    }
+    memcpy(before, energy, sizeof before);
+    if (opens)
+        ops->pressed(job->law->self, &batch, before);
+    tl_leave();
+    for (size_t l = 0; l < TL_LANES; l++)
+        by[l] = (told){energy[l], energy[TORSION + l], before[TORSION + l], closed[l]};
 }
 
 /* Of what slip has paid in the last step for moving two faces apart, the share that the field has got: less than 1 where other faces
@@ -265,11 +315,10 @@ static void sum_fields(const span_job *job, const tl_simd_group *group, const tl
     const tl_law *law = job->law;
     const size_t torsion = TL_FIELD_TORSION * TL_LANES;
     const bool tells = tl_law_presses(law), linear = tl_law_is_linear(law);
-    double pressed[TL_FIELD_POINTS * TL_LANES];
+    told pressed[TL_LANES];
     memset(out, 0, sizeof *out);
     if (tells)
-        tl_law_energies(job->m, law, group->start, TL_FIELD_POINTS * TL_LANES, t, t->closure + lane,
-                        pressed);
+        find_pressed(job, group, t, lane, pressed);
     for (size_t l = 0; l < TL_LANES; l++) {
         uint32_t c = group->contact[l];
         size_t i = group->start + l, k = lane + l;
@@ -284,8 +333,7 @@ static void sum_fields(const span_job *job, const tl_simd_group *group, const tl
         tl_vec3 shear = tl_columns_get(p->f_s, i);
         tl_vec3 twist = tl_columns_get(p->f_s, i + torsion);
         const field_press by = linear  ? press_linearly(press, law->kn, area, f_n, same)
-                               : tells ? press_by_law(press, area, f_n, fmin(f_n, same), pressed[l],
-                                                      pressed[l + torsion])
+                               : tells ? press_by_law(press, area, f_n, same, &pressed[l])
                                        : press_by_force(press, law->kn, area, f_n, same);
         tl_vec3 force = tl_v3_add(shear, tl_m3_mul(turn, by.force));
         tl_vec3 moment = tl_v3_add(tl_v3_cross(x, shear), tl_m3_mul(turn, by.moment));

@@ -27,6 +27,7 @@ local LAWS = {
     { "coulomb_tensile", springs { tension = 1e5, cohesion = 1e5, dilation = 8 } },
     { "barton_bandis", { kn = KN, ks = KN, jrc = 8, jcs = 1e7, phi_r = 30, vm = 2e-2 } },
     { "barton_bandis", { kn = KN, ks = KN, jrc = 8, jcs = 1e7, phi_r = 30, vm = 2e-2, dilation = false } },
+    { "continuously_yielding", { an = KN, as = KN, phi_i = 50, phi = 30, roughness = 0.01 } },
     { "continuously_yielding", { an = KN, as = KN, phi_i = 50, phi = 30, roughness = 0.01, dilation = false } },
     { "rate_state", { kn = KN, ks = KN, a = 0.01, b = 0.015, distance = 1e-4, mu0 = 0.7 } },
 }

@@ -13,7 +13,8 @@
  *
  * Energy. Unloading gives back more than t^2 / (2 ks), for it is softer than ks. What the walls have put in counts as stored up to a
  * bound on what unloading can give back, 3 (1 + x) t_m^2 / ks (x - log(1 + x)) with x = t / t_m; the rest is heat. The part
- * beyond t^2 / (2 ks_max) is a state. Opening the joint costs tl_law_lift_work. Where it is used up, as where an initial stress is unloaded, t falls as such a spring's does.
+ * beyond t^2 / (2 ks_max) is a state. Where it is used up, as where an initial stress is unloaded, t falls as such a spring's does.
+ * Opening the joint costs tl_law_lift_work.
  *
  * Source: Cundall and Hart, report to Itasca (1984), and Eng. Comput. 9 (1992) 101-113;
  * Cundall and Lemos, in Rockbursts and Seismicity in Mines (1990) 107-112.
