@@ -11,6 +11,7 @@
 #include "contact/held.h"
 #include "contact/prefetch.h"
 #include "contact/presses.h"
+#include "force/field_press.h"
 #include "force/follow.h"
 #include "force/law_check.h"
 #include "force/partly_open.h"
@@ -188,75 +189,9 @@ static void report_odd(const span_job *job, const tl_simd_group *group, const gr
     tl_law_check_shear(job->m, job->phase->failure, job->law, group, t, lane);
 }
 
-/* What the normal springs of a field contact make: force on B and moment about A's centroid, in A's frame, the energy, and that of
- * the law's springs, which counts for nothing. */
-typedef struct field_press {
-    tl_vec3 force, moment;
-    double energy, springs;
-    double whole;                /* the force of which these are slopes */
-    double by_energy, by_volume; /* change of the energy with those of the press */
-} field_press;
-
-/* With an energy 2 kn G. What slip opens in this step, `lifted`, presses on as at the centre. */
-static field_press press_linearly(const tl_press *press, double kn, double area, double f_n,
-                                  double same)
-{
-    double by = 2 * kn, size = tl_v3_norm(press->force), whole = by * size;
-    double lifted = (f_n - whole) + (same - whole), spring = kn * area;
-    tl_vec3 more = tl_v3_scale(lifted, press->normal);
-    return (field_press){.force = tl_v3_madd(more, by, press->force),
-                         .moment = tl_v3_madd(tl_v3_cross(press->point, more), by, press->moment),
-                         .energy = by * press->energy,
-                         .springs = spring > 0 ? whole * whole / spring : 0,
-                         .whole = whole,
-                         .by_energy = by};
-}
-
-/* What presses the two points of a field contact, as a law tells that is not linear: energies, that of torsion without what slip has
- * opened of it in this step, and the closure of its walls. */
-typedef struct told {
-    double shear, torsion, unlifted, closure;
-} told;
-
-/* With an energy r Phi(s), r = (A_e^2 + A_m^2)^(1/2), s = 4 G / V, A_e = V^2 / (4 G), of which the law has told the force r Phi'(s)
- * and the energy. Both points press with the same force but for what slip opens in this step. That of torsion, `more`, is added to
- * that of shear. It follows from energies: for U ~ o^m of a closure o, m = F o / U and dF = (F - U / o) dU / U. */
-static field_press press_by_law(const tl_press *press, double area, double f_n, double same,
-                                const told *by)
-{
-    double g = press->energy, v = press->volume, own = 0.25 * v * v / g, s = 4 * g / v;
-    double rise = by->torsion - by->unlifted;
-    double more = by->torsion > 0 ? (same - by->torsion / by->closure) * rise / by->torsion : 0;
-    double force = f_n + more, energy = by->shear + rise;
-    double stretch = energy / (area * area) * own;
-    double by_g = force * 4 / v - stretch * own / g;
-    double by_v = stretch * 2 * own / v - force * s / v;
-    return (field_press){
-        .force = tl_v3_madd(tl_v3_scale(by_g, press->force), by_v, press->swept),
-        .moment = tl_v3_madd(tl_v3_scale(by_g, press->moment), by_v, press->swept_moment),
-        .energy = energy,
-        .springs = by->shear + by->torsion,
-        .whole = force,
-        .by_energy = by_g,
-        .by_volume = by_v};
-}
-
-/* By the force that a law gives which does not tell of its energy. */
-static field_press press_by_force(const tl_press *press, double kn, double area, double f_n,
-                                  double same)
-{
-    double by = f_n / tl_v3_norm(press->force);
-    return (field_press){.force = tl_v3_scale(by, press->force),
-                         .moment = tl_v3_scale(by, press->moment),
-                         .energy = by * press->energy,
-                         .whole = f_n,
-                         .by_energy = by,
-                         .springs = (f_n * f_n + same * same) / (2 * kn * area)};
-}
-
 /* Energies of what presses, of a law that tells of them: of the points of a SIMD group of field contacts. */
 static void find_pressed(const span_job *job, const tl_simd_group *group, const tl_point_lanes *t,
-                         size_t lane, told by[TL_LANES])
+                         size_t lane, tl_told_press by[TL_LANES])
 {
     enum { COUNT = TL_FIELD_POINTS * TL_LANES, TORSION = TL_FIELD_TORSION * TL_LANES };
     const tl_points_table *p = &job->m->detect->points;
@@ -291,17 +226,7 @@ static void find_pressed(const span_job *job, const tl_simd_group *group, const 
         ops->pressed(job->law->self, &batch, before);
     tl_leave();
     for (size_t l = 0; l < TL_LANES; l++)
-        by[l] = (told){energy[l], energy[TORSION + l], before[TORSION + l], closed[l]};
-}
-
-/* Of what slip has paid in the last step for moving two faces apart, the share that the field has got: less than 1 where other faces
- * press, too. A law pays as if all of its force were on these faces. */
-static double lifted_share(const tl_press_row *row, const field_press *by)
-{
-    const tl_press *press = &row->press;
-    double pays = by->whole * row->opened * (1 - 0.5 * row->opened / press->overlap);
-    double gets = by->by_energy * press->lifted + by->by_volume * press->lifted_volume;
-    return pays != 0 ? gets / pays : 1;
+        by[l] = (tl_told_press){energy[l], energy[TORSION + l], before[TORSION + l], closed[l]};
 }
 
 /* Of the field contacts of a SIMD group. The first point carries the normal force, the point of torsion the same again. What the
@@ -315,7 +240,7 @@ static void sum_fields(const span_job *job, const tl_simd_group *group, const tl
     const tl_law *law = job->law;
     const size_t torsion = TL_FIELD_TORSION * TL_LANES;
     const bool tells = tl_law_presses(law), linear = tl_law_is_linear(law);
-    told pressed[TL_LANES];
+    tl_told_press pressed[TL_LANES];
     memset(out, 0, sizeof *out);
     if (tells)
         find_pressed(job, group, t, lane, pressed);
@@ -332,9 +257,9 @@ static void sum_fields(const span_job *job, const tl_simd_group *group, const tl
         tl_vec3 x = tl_columns_get(t->arm, k), n = tl_columns_get(t->normal, k);
         tl_vec3 shear = tl_columns_get(p->f_s, i);
         tl_vec3 twist = tl_columns_get(p->f_s, i + torsion);
-        const field_press by = linear  ? press_linearly(press, law->kn, area, f_n, same)
-                               : tells ? press_by_law(press, area, f_n, same, &pressed[l])
-                                       : press_by_force(press, law->kn, area, f_n, same);
+        const tl_field_press by = linear  ? tl_press_linearly(row, law->kn, area, f_n, same)
+                                  : tells ? tl_press_by_law(press, area, f_n, same, &pressed[l])
+                                          : tl_press_by_force(press, law->kn, area, f_n, same);
         tl_vec3 force = tl_v3_add(shear, tl_m3_mul(turn, by.force));
         tl_vec3 moment = tl_v3_add(tl_v3_cross(x, shear), tl_m3_mul(turn, by.moment));
         moment = tl_v3_madd(moment, press->radius, twist);
@@ -346,7 +271,7 @@ static void sum_fields(const span_job *job, const tl_simd_group *group, const tl
         out->stored[l] = t->stored[k] + t->stored[k + torsion] - by.springs + by.energy + spare;
         out->dissipated[l] = t->dissipated[k] + t->dissipated[k + torsion];
         if (press->lifted != 0)
-            out->dissipated[l] += row->paid * (1 - lifted_share(row, &by));
+            out->dissipated[l] += tl_lost_lift(row, &by);
         out->odd[l] = 0 * (force.x + force.y + force.z + moment.x + moment.y + moment.z);
         if (fabs(tl_v3_dot(shear, n)) > TL_OUT_OF_PLANE * tl_v3_norm(force))
             out->odd[l] += 1;

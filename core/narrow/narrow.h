@@ -9,17 +9,19 @@
 typedef struct tl_press {
     double energy;
     tl_vec3 force, moment;
-    double volume;                /* of overlaps, m^3, where the query asks for it; */
-    tl_vec3 swept, swept_moment;  /* minus its gradient as the force is that of the energy */
-    double lifted, lifted_volume; /* of energy and volume, what `opened` of the query has added */
-    double area;                  /* on which it acts, m^2 */
-    double overlap;               /* 2 |force| / area, m: that of flush faces of that area */
-    double deepest;               /* largest overlap, m */
-    double radius;                /* of gyration of the area, m */
-    double stiffness;             /* over kn, m^2 */
-    double patch;                 /* share of the patch: 1 .. 0 */
-    tl_vec3 point;                /* centre of the pressure */
-    tl_vec3 normal;               /* force / |force| */
+    double volume;               /* of overlaps, m^3, where the query asks for it; */
+    tl_vec3 swept, swept_moment; /* minus its gradient as the force is that of the energy */
+    double lifted,
+        lifted_volume; /* of energy and volume, what `opened` of the query has added; of force and moment, as above: */
+    tl_vec3 lifted_force, lifted_moment;
+    double area;      /* on which it acts, m^2 */
+    double overlap;   /* 2 |force| / area, m: that of flush faces of that area */
+    double deepest;   /* largest overlap, m */
+    double radius;    /* of gyration of the area, m */
+    double stiffness; /* over kn, m^2 */
+    double patch;     /* share of the patch: 1 .. 0 */
+    tl_vec3 point;    /* centre of the pressure */
+    tl_vec3 normal;   /* force / |force| */
 } tl_press;
 
 /* The contact points of one pair, as one geometric evaluation finds them. */

@@ -516,6 +516,8 @@ static bool find_lifted(const tl_press_query query[], uint32_t count, tl_narrow_
         tl_press *now = &press[opened[i]];
         now->lifted = now->energy - without[i].energy;
         now->lifted_volume = now->volume - without[i].volume;
+        now->lifted_force = tl_v3_sub(now->force, without[i].force);
+        now->lifted_moment = tl_v3_sub(now->moment, without[i].moment);
     }
     return true;
 }
