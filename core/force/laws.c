@@ -7,6 +7,7 @@
 
 #include "base/columns.h"
 #include "base/inside.h"
+#include "contact/across_gap.h"
 #include "contact/contacts.h"
 #include "contact/held.h"
 #include "contact/prefetch.h"
@@ -15,6 +16,7 @@
 #include "force/follow.h"
 #include "force/law_check.h"
 #include "force/partly_open.h"
+#include "force/pressed.h"
 
 #include <stdatomic.h>
 #include <string.h>
@@ -189,33 +191,20 @@ static void report_odd(const span_job *job, const tl_simd_group *group, const gr
     tl_law_check_shear(job->m, job->phase->failure, job->law, group, t, lane);
 }
 
-/* Energies of what presses, of a law that tells of them: of the points of a SIMD group of field contacts. */
-static void find_pressed(const span_job *job, const tl_simd_group *group, const tl_point_lanes *t,
-                         size_t lane, tl_told_press by[TL_LANES])
+/* What a law tells that is not linear, of the points of a SIMD group of field contacts. */
+static void find_told(const span_job *job, const tl_simd_group *group, const tl_point_lanes *t,
+                      size_t lane, tl_told_press by[TL_LANES])
 {
     enum { COUNT = TL_FIELD_POINTS * TL_LANES, TORSION = TL_FIELD_TORSION * TL_LANES };
-    const tl_points_table *p = &job->m->detect->points;
-    const tl_law_ops *ops = job->law->kind->ops;
-    double *state[TL_STATE_COLUMNS], closure[COUNT], lift[COUNT] = {0}, hold[COUNT];
-    double energy[COUNT], before[COUNT], closed[TL_LANES];
+    const tl_model *m = job->m;
+    double closure[COUNT], lift[COUNT], hold[COUNT], energy[COUNT], before[COUNT], closed[TL_LANES];
     bool opens = false;
-    for (uint32_t k = 0; k < TL_STATE_COLUMNS; k++)
-        state[k] = k < p->state_columns ? p->state[k] + group->start : t->zero;
     memcpy(closure, t->closure + lane, sizeof closure);
-    const tl_law_batch batch = {.size = sizeof batch,
-                                .count = COUNT,
-                                .area = p->area + group->start,
-                                .closure = closure,
-                                .f_n0 = t->zero,
-                                .state = state,
-                                .flags = p->flags + group->start};
-    tl_enter(job->law->kind, "pressed");
-    ops->pressed(job->law->self, &batch, energy);
-    if (ops->across_gap)
-        ops->across_gap(job->law->self, &batch, lift, hold);
+    tl_law_energies(m, job->law, group->start, COUNT, t, closure, energy);
+    tl_points_across_gap(job->law, &m->detect->points, group->start, COUNT, lift, hold);
     for (size_t l = 0; l < TL_LANES; l++) {
         const tl_press_row *row =
-            group->contact[l] == TL_NO_ROW ? NULL : tl_press_row_of(job->m, group->contact[l]);
+            group->contact[l] == TL_NO_ROW ? NULL : tl_press_row_of(m, group->contact[l]);
         double opened = row ? lift[TORSION + l] - row->opening[TL_FIELD_TORSION] : 0;
         closed[l] = closure[TORSION + l] + lift[TORSION + l];
         closure[TORSION + l] -= opened;
@@ -223,8 +212,7 @@ static void find_pressed(const span_job *job, const tl_simd_group *group, const 
     }
     memcpy(before, energy, sizeof before);
     if (opens)
-        ops->pressed(job->law->self, &batch, before);
-    tl_leave();
+        tl_law_energies(m, job->law, group->start, COUNT, t, closure, before);
     for (size_t l = 0; l < TL_LANES; l++)
         by[l] = (tl_told_press){energy[l], energy[TORSION + l], before[TORSION + l], closed[l]};
 }
@@ -243,7 +231,7 @@ static void sum_fields(const span_job *job, const tl_simd_group *group, const tl
     tl_told_press pressed[TL_LANES];
     memset(out, 0, sizeof *out);
     if (tells)
-        find_pressed(job, group, t, lane, pressed);
+        find_told(job, group, t, lane, pressed);
     for (size_t l = 0; l < TL_LANES; l++) {
         uint32_t c = group->contact[l];
         size_t i = group->start + l, k = lane + l;
