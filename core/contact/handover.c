@@ -420,7 +420,8 @@ static void refit_springs(tl_model *m, uint32_t c, const tl_manifold *g)
     lost -= energy_of(stays * stays * f2, area) + energy_of(stays_turned * stays_turned * t2, now) +
             row->spare[0] + row->spare[1];
     tl_contact_motion by_step = tl_contact_moved(m, c);
-    tl_vec3 arm = tl_m3_mul(&m->bodies.pose[m->blocks.body[contacts->a[c]]].r, g->points[0].p);
+    tl_vec3 before = tl_v3_madd(g->points[0].p, -2, row->half); /* the old force acted there */
+    tl_vec3 arm = tl_m3_mul(&m->bodies.pose[m->blocks.body[contacts->a[c]]].r, before);
     tl_vec3 du = tl_v3_add(by_step.way, tl_v3_cross(by_step.turn, arm));
     double work =
         (1 - stays) * tl_v3_dot(force, du) + (1 - stays_turned) * tl_v3_dot(twist, by_step.turn);
@@ -431,6 +432,20 @@ static void refit_springs(tl_model *m, uint32_t c, const tl_manifold *g)
     p->area[first] = p->area[torsion] = area;
 }
 
+/* Notes half of the way of the centre of pressure in the last step; the old one has gone half with A and half with B. */
+static void note_way(tl_model *m, uint32_t c, tl_vec3 centre)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    tl_press_row *row = tl_press_row_of(m, c);
+    const tl_mat3 *turn = &m->bodies.pose[m->blocks.body[contacts->a[c]]].r;
+    tl_vec3 old = tl_columns_get(m->detect->points.p, tl_point_row(contacts, c, TL_FIELD_SHEAR));
+    tl_contact_motion by = tl_contact_moved(m, c);
+    tl_vec3 passed = tl_v3_add(by.way, tl_v3_cross(by.turn, tl_m3_mul(turn, old)));
+    old = tl_v3_madd(old, 0.5, tl_m3_tmul(turn, passed));
+    row->half = tl_v3_scale(0.5, tl_v3_sub(centre, old));
+    row->moved_at = m->cycles;
+}
+
 void tl_contact_refit_field(tl_model *m, uint32_t c, const tl_manifold *g)
 {
     tl_contacts *contacts = &m->detect->contacts;
@@ -438,6 +453,7 @@ void tl_contact_refit_field(tl_model *m, uint32_t c, const tl_manifold *g)
     tl_press_row *row = tl_press_row_of(m, c);
     tl_vec3 last = contacts->facet[c].last;
     double area = p->area[tl_point_row(contacts, c, TL_FIELD_TORSION)];
+    note_way(m, c, g->points[0].p);
     /* what is found again in the same place stays what it is, to the bit */
     if (g->points[0].area != area || g->press.radius != row->press.radius)
         refit_springs(m, c, g);

@@ -46,6 +46,9 @@ typedef struct tl_press_row {
     double shift, opening[TL_FIELD_POINTS];
     double opened, paid; /* by slip in the step before `lifted_at`, m; with energy of shear, J */
     int64_t lifted_at;
+    tl_vec3
+        half; /* of the way of the centre of pressure in the step before `moved_at`, in A's frame */
+    int64_t moved_at;
     tl_face_pair shifted;
     uint32_t next_free;
     double spare[2]; /* energy of shear and of torsion beyond uniform stress, times 2 ks */

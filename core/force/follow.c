@@ -10,6 +10,9 @@
  * of the points' overlaps, and the tangent stiffness is symmetric under any normal and shear force. Points that stayed in A's
  * frame with forces along the bisector would give and take energy.
  *
+ * The centre of pressure of a field contact moves. Its shear force before the step acted at the old centre, that after it acts at the
+ * new one. So the motion is taken half-way between: the work of the mean force is then right to the second order of the step.
+ *
  * Eight contacts are worked on side by side (tl_simd_group). What is the same for all points of a contact is brought into
  * matrices first, one in each lane (frames.c), so that what is left for a point are a few products, in loops over
  * columns without a branch. */
@@ -95,6 +98,7 @@ TL_VECTORIZED static void read_torsion(const columns *c, const tl_frames *restri
  * slip has opened the joint there. Both carry the same normal force. */
 typedef struct field_rows {
     double radius[TL_LANES], opened[TL_LANES];
+    tl_lanes3 half; /* half of the way of the centre in the step */
 } field_rows;
 
 /* The points of torsion of field contacts: what is a shear to the law is the turn about the normal, times the radius. The
@@ -106,9 +110,14 @@ TL_VECTORIZED static void follow_torsion(const columns *c, const tl_frames *rest
 {
 #pragma omp simd
     for (size_t l = 0; l < TL_LANES; l++) {
-        size_t i = TL_FIELD_TORSION * TL_LANES + l;
+        size_t i = TL_FIELD_TORSION * TL_LANES + l, shear = TL_FIELD_SHEAR * TL_LANES + l;
         tl_mat3 motion = tl_lanes9_get(&f->m, l);
         tl_vec3 n = tl_lanes3_get(&f->n, l);
+        tl_vec3 less = tl_m3_mul(&motion, tl_lanes3_get(&rows->half, l));
+        double less_n = tl_v3_dot(less, n);
+        c->du_n[shear] -= less_n;
+        put(c->du_s, shear,
+            tl_v3_sub(tl_columns_get(c->du_s, shear), tl_v3_madd(less, -less_n, n)));
         tl_vec3 turn =
             tl_v3(0.5 * (motion.m[2][1] - motion.m[1][2]), 0.5 * (motion.m[0][2] - motion.m[2][0]),
                   0.5 * (motion.m[1][0] - motion.m[0][1]));
@@ -157,6 +166,10 @@ static bool look_up(const tl_model *m, const tl_simd_group *group, tl_frame_rows
         uint32_t press = c->press[contact];
         const tl_press_row *row = press == TL_NO_ROW ? NULL : &m->detect->press[press];
         fields->radius[l] = row ? row->press.radius : 0;
+        tl_vec3 half = row && row->moved_at == m->cycles
+                           ? tl_m3_mul(&pose[m->blocks.body[c->a[contact]]].r, row->half)
+                           : tl_v3(0, 0, 0);
+        tl_lanes3_put(&fields->half, l, half);
         fields->opened[l] = row ? row->opening[TL_FIELD_TORSION] - row->opening[TL_FIELD_SHEAR] : 0;
     }
     return some < TL_LANES;
