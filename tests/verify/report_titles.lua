@@ -13,6 +13,7 @@ local TITLES = {
     { "D.impacts", "impacts without friction keep their energy" },
     { "D.incline", "cube on an incline that sticks or slides" },
     { "D.invariance", "falling blocks in other axes, units and places" },
+    { "D.landing", "boxes that land and tumble, on joints of every law" },
     { "D.meet%.([%d.]+)", "two free cubes that meet, one turned by %1 degrees" },
     { "D.newmark%.(%d)", "block that slips on a shaken base, case %1" },
     { "D.rocking%.(%d)", "block that rocks on its edges, case %1" },
