@@ -68,19 +68,20 @@ typedef struct sample {
     _Alignas(TL_ALIGN) uint32_t flags[TL_LANES];
 } sample;
 
+/* TL_LANES points from `first`; beyond the last they have no area. Of states only those that the law keeps are there. */
 static void read_points(const tl_points_table *p, const tl_contacts *contacts, uint32_t c,
-                        size_t first, sample *s)
+                        const tl_law *law, size_t first, sample *s)
 {
-    memset(s, 0, sizeof *s);
-    for (size_t l = 0; l < TL_LANES && first + l < contacts->point_count[c]; l++) {
-        size_t i = tl_point_row(contacts, c, first + l);
-        s->area[l] = p->area[i];
-        s->f_n[l] = p->f_n[i];
-        s->f_n0[l] = p->f_n0 ? p->f_n0[i] : 0;
-        s->reference[l] = p->reference ? p->reference[i] : 0;
-        s->flags[l] = p->flags[i];
-        for (uint32_t k = 0; k < p->state_columns; k++)
-            s->state[k][l] = p->state[k][i];
+    for (size_t l = 0; l < TL_LANES; l++) {
+        bool is = first + l < contacts->point_count[c];
+        size_t i = is ? tl_point_row(contacts, c, first + l) : 0;
+        s->area[l] = is ? p->area[i] : 0;
+        s->f_n[l] = is ? p->f_n[i] : 0;
+        s->f_n0[l] = is && p->f_n0 ? p->f_n0[i] : 0;
+        s->reference[l] = is && p->reference ? p->reference[i] : 0;
+        s->flags[l] = is ? p->flags[i] : 0;
+        for (uint32_t k = 0; k < law->columns; k++)
+            s->state[k][l] = is ? p->state[k][i] : 0;
     }
 }
 
@@ -89,7 +90,7 @@ static void ask(const tl_law *law, const double *f_n0, sample *s)
 {
     double *state[TL_STATE_COLUMNS];
     for (uint32_t k = 0; k < TL_STATE_COLUMNS; k++)
-        state[k] = s->state[k];
+        state[k] = k < law->columns ? s->state[k] : (double *)(uintptr_t)zeros;
     const tl_law_batch batch = {.size = sizeof batch,
                                 .count = TL_LANES,
                                 .area = s->area,
@@ -109,8 +110,7 @@ static const tl_law *law_of(const tl_model *m, uint32_t c)
 static bool is_plain(const tl_detect *d, const tl_law *law)
 {
     const tl_law_ops *ops = law->kind->ops;
-    return law->pulls == TL_PULL_NONE && !d->points.f_n0 &&
-           (!ops->across_gap || d->points.state_columns == 0);
+    return law->pulls == TL_PULL_NONE && !d->points.f_n0 && (!ops->across_gap || law->columns == 0);
 }
 
 tl_contact_across tl_contact_across_gap(const tl_model *m, uint32_t c)
@@ -123,7 +123,7 @@ tl_contact_across tl_contact_across_gap(const tl_model *m, uint32_t c)
         return out;
     for (size_t first = 0; first < d->contacts.point_count[c]; first += TL_LANES) {
         sample s;
-        read_points(&d->points, &d->contacts, c, first, &s);
+        read_points(&d->points, &d->contacts, c, law, first, &s);
         ask(law, s.f_n0, &s);
         for (size_t l = 0; l < TL_LANES && s.area[l] > 0; l++) {
             double force = fmax(0, s.f_n[l]), by = s.lift[l] - s.reference[l];
@@ -140,17 +140,18 @@ tl_contact_across tl_contact_across_gap(const tl_model *m, uint32_t c)
     return out;
 }
 
-void tl_contact_openings(const tl_model *m, uint32_t c, double opening[TL_FIELD_POINTS])
+bool tl_contact_openings(const tl_model *m, uint32_t c, double opening[TL_FIELD_POINTS])
 {
     const tl_detect *d = m->detect;
     const tl_law *law = law_of(m, c);
     for (size_t k = 0; k < TL_FIELD_POINTS; k++)
         opening[k] = 0;
     if (!law || is_plain(d, law))
-        return;
+        return false;
     sample s;
-    read_points(&d->points, &d->contacts, c, 0, &s);
+    read_points(&d->points, &d->contacts, c, law, 0, &s);
     ask(law, zeros, &s);
     for (size_t k = 0; k < TL_FIELD_POINTS; k++)
         opening[k] = s.lift[k];
+    return true;
 }

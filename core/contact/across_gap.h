@@ -19,7 +19,7 @@ typedef struct tl_contact_across {
 } tl_contact_across;
 
 tl_contact_across tl_contact_across_gap(const tl_model *m, uint32_t contact);
-/* The openings by slip of the points of a field contact, m. */
-void tl_contact_openings(const tl_model *m, uint32_t contact, double opening[TL_FIELD_POINTS]);
+/* The openings by slip of the points of a field contact, m. false: nothing ever opens them. */
+bool tl_contact_openings(const tl_model *m, uint32_t contact, double opening[TL_FIELD_POINTS]);
 
 #endif

@@ -109,11 +109,13 @@ double tl_contact_lift_field(tl_model *m, uint32_t c)
     const tl_contacts *contacts = &m->detect->contacts;
     if (!row || contacts->facet[c].kind != TL_FACET_FIELD || contacts->point_count[c] == 0)
         return 0;
+    double opening[TL_FIELD_POINTS];
+    bool opens = tl_contact_openings(m, c, opening);
+    if (!opens && row->opened == 0 && row->opening[0] == 0 && row->opening[1] == 0)
+        return 0;
     if (row->lifted_at != m->cycles)
         row->opened = row->paid = 0;
     row->lifted_at = m->cycles;
-    double opening[TL_FIELD_POINTS];
-    tl_contact_openings(m, c, opening);
     for (size_t k = 0; k < TL_FIELD_POINTS; k++) {
         double by = opening[k] - row->opening[k], closure = row->press.overlap + by;
         row->opening[k] = opening[k];

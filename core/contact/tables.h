@@ -45,10 +45,9 @@ typedef struct tl_press_row {
     /* How far its faces `shifted` are moved out by an initial stress and by slip, m; what slip has opened of it, by its points. */
     double shift, opening[TL_FIELD_POINTS];
     double opened, paid; /* by slip in the step before `lifted_at`, m; with energy of shear, J */
-    int64_t lifted_at;
+    int64_t lifted_at, moved_at;
     tl_vec3
         half; /* of the way of the centre of pressure in the step before `moved_at`, in A's frame */
-    int64_t moved_at;
     tl_face_pair shifted;
     uint32_t next_free;
     double spare[2]; /* energy of shear and of torsion beyond uniform stress, times 2 ks */
@@ -96,12 +95,10 @@ enum { TL_DEEP_NOT, TL_DEEP_BORN, TL_DEEP_SUNK };
 
 typedef struct tl_points_table {
     tl_table table;
-    double *p[3];
-    uint32_t *key;
-    double *area;
+    uint32_t *key, *flags;
+    double *p[3], *area;
     double *reference, *f_n0; /* overlap at closure 0, initial normal force; NULL: 0 everywhere */
     double *f_n, *f_s[3];
-    uint32_t *flags;
     double *state[TL_STATE_COLUMNS]; /* as many as the laws need; the others are NULL */
     uint32_t state_columns;
     bool initial; /* has the columns reference and f_n0 */

@@ -9,6 +9,7 @@
 #include "contact/estate.h"
 #include "contact/index.h"
 #include "contact/pair_view.h"
+#include "contact/presses.h"
 #include "detect/grazing.h"
 #include "detect/pairs.h"
 #include "detect/update.h"
@@ -240,13 +241,27 @@ tl_status tl_edited_rows(tl_model *m)
 
 /* ---------------------------------------------------------------- laws ------------------- */
 
+/* Whether a contact's press lacks the volumes that its law asks for now. */
+static bool lacks_volumes(const tl_model *m, uint32_t row, uint32_t law)
+{
+    const tl_press_row *press = tl_press_row_of(m, row);
+    return press && press->press.volume == 0 && law != TL_NO_ROW &&
+           tl_law_presses(&m->joint_laws[law]);
+}
+
 /* Contacts under another joint law belong in another span. */
 static void find_laws(tl_model *m)
 {
     tl_contacts *c = &m->detect->contacts;
-    for (uint32_t row = 0; row < c->table.rows; row++)
-        if (c->pending[row] == TL_PENDING_NONE && tl_law_row(m, c->tag[row]) != c->law[row])
+    for (uint32_t row = 0; row < c->table.rows; row++) {
+        if (c->pending[row] == TL_PENDING_DIE)
+            continue;
+        uint32_t law = tl_law_row(m, c->tag[row]);
+        if (c->pending[row] == TL_PENDING_NONE && law != c->law[row])
             c->pending[row] = TL_PENDING_MOVE;
+        if (lacks_volumes(m, row, law))
+            c->points_valid_to[row] = -INFINITY;
+    }
 }
 
 /* Whether a contact that is a patch remains one whatever the minimum area was before. */

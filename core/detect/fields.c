@@ -174,8 +174,11 @@ bool tl_field_goes_on(tl_model *m, uint32_t c)
 static bool is_near(const tl_model *m, uint32_t c, const tl_press_row *row,
                     const tl_pair_pose *place)
 {
+    uint32_t law = m->detect->contacts.law[c];
+    bool tells =
+        law != TL_NO_ROW && tl_law_presses(&m->joint_laws[law]); /* slopes are of the energy only */
     /* -INFINITY: its rules are others now */
-    return row->by_slope && row->press.volume == 0 && m->config.reuse_geometry &&
+    return row->by_slope && !tells && m->config.reuse_geometry &&
            m->detect->contacts.points_valid_to[c] != -INFINITY &&
            tl_press_moved(&row->there, &row->place, place) <= TL_PRESS_NEAR;
 }

@@ -144,43 +144,42 @@ void tl_simd_group_edges(const tl_model *m, const tl_simd_group *group, const tl
 
 /* ---------------------------------------------------------------- which ------------------ */
 
-/* The least and the largest u of the points of each lane, and how far corners may be beyond. */
+/* The least and the largest of closures of the points of each lane. */
 typedef struct range {
-    double low[TL_LANES], high[TL_LANES], beyond[TL_LANES];
+    double low[TL_LANES], high[TL_LANES];
 } range;
 
 TL_VECTORIZED static void find_range(const double *restrict area, const double *restrict closure,
                                      const double *restrict lift, size_t slots, range *restrict out)
 {
     range r;
-    double first[TL_LANES], last[TL_LANES];
     for (size_t l = 0; l < TL_LANES; l++) {
-        r.low[l] = first[l] = INFINITY;
-        r.high[l] = last[l] = -INFINITY;
+        r.low[l] = INFINITY;
+        r.high[l] = -INFINITY;
     }
     for (size_t at = 0; at < slots * TL_LANES; at += TL_LANES)
 #pragma omp simd
         for (size_t l = 0; l < TL_LANES; l++) {
-            double o = closure[at + l], u = o + lift[at + l], a = area[at + l];
-            double from = a > 0 ? o : INFINITY, to = a > 0 ? o : -INFINITY;
+            double u = closure[at + l] + lift[at + l], a = area[at + l];
             double under = a > 0 ? u : INFINITY, over = a > 0 ? u : -INFINITY;
-            first[l] = from < first[l] ? from : first[l];
-            last[l] = to > last[l] ? to : last[l];
             r.low[l] = under < r.low[l] ? under : r.low[l];
             r.high[l] = over > r.high[l] ? over : r.high[l];
         }
-    const double more = 1 / tl_point_rule_of(false).reach - 1;
-    for (size_t l = 0; l < TL_LANES; l++)
-        r.beyond[l] = (last[l] - first[l]) * more;
     *out = r;
 }
 
-/* Lanes where some part may be apart, a bit each. */
-static uint32_t opening_lanes(const range *r)
+/* How far corners may be beyond the points. */
+static double beyond(const range *closures, size_t l)
+{
+    return (closures->high[l] - closures->low[l]) * (1 / tl_point_rule_of(false).reach - 1);
+}
+
+/* Lanes where some part may be apart, a bit each: of a range of u, by that of closures. */
+static uint32_t opening_lanes(const range *u, const range *closures)
 {
     uint32_t out = 0;
     for (size_t l = 0; l < TL_LANES; l++)
-        out |= (uint32_t)(r->low[l] - r->beyond[l] < 0) << l;
+        out |= (uint32_t)(u->low[l] - beyond(closures, l) < 0) << l;
     return out;
 }
 
@@ -433,14 +432,15 @@ static void put_means(const patch *of, size_t k, double share, bool curved)
 
 /* The patches of a SIMD group that are partly open. Gives how many, and a bit for the lane of each. */
 static size_t find_parts(const tl_model *m, const tl_simd_group *group, const tl_point_lanes *t,
-                         size_t lane, const range *r, patch out[TL_LANES], uint32_t *lanes)
+                         size_t lane, const range *u, const range *closures, patch out[TL_LANES],
+                         uint32_t *lanes)
 {
     size_t count = 0;
     *lanes = 0;
-    for (uint32_t left = opening_lanes(r); left; left &= left - 1) {
+    for (uint32_t left = opening_lanes(u, closures); left; left &= left - 1) {
         size_t l = (size_t)__builtin_ctz(left);
         patch *of = &out[count];
-        if (!(r->high[l] + r->beyond[l] > 0) || !find_patch(m, group, t, lane, l, of) ||
+        if (!(u->high[l] + beyond(closures, l) > 0) || !find_patch(m, group, t, lane, l, of) ||
             all_hold(of) || !has_all_points(of))
             continue;
         *lanes |= 1u << l;
@@ -454,15 +454,15 @@ uint32_t tl_simd_group_part(const tl_model *m, const tl_law *law, const tl_simd_
 {
     const tl_points_table *p = &m->detect->points;
     size_t rows = (size_t)group->slots * TL_LANES;
-    range r;
-    find_range(p->area + group->start, t->closure + lane, t->zero + lane, group->slots, &r);
-    if (!p->f_n0 && !opening_lanes(&r))
+    range closures, u;
+    find_range(p->area + group->start, t->closure + lane, t->zero + lane, group->slots, &closures);
+    if (!p->f_n0 && !opening_lanes(&closures, &closures))
         return 0;
     tl_points_across_gap(law, p, group->start, rows, t->lift + lane, t->hold + lane);
-    find_range(p->area + group->start, t->closure + lane, t->lift + lane, group->slots, &r);
+    find_range(p->area + group->start, t->closure + lane, t->lift + lane, group->slots, &u);
     patch of[TL_LANES];
     uint32_t lanes;
-    size_t count = find_parts(m, group, t, lane, &r, of, &lanes);
+    size_t count = find_parts(m, group, t, lane, &u, &closures, of, &lanes);
     if (count == 0)
         return 0;
     memset(t->apart + lane, 0, rows * sizeof *t->apart);

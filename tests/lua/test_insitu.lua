@@ -101,3 +101,24 @@ do
     check.refused(m, function() m:insitu { gradient = { zy = 1, yz = 2 } } end, "insitu, gradient: ")
     check.refused(m, function() m:insitu { stress = { xw = 1 } } end, "unknown parameter 'xw'")
 end
+
+-- A law that tells its energy takes over a contact at an edge, of which the pressure was found without it.
+for law, params in pairs {
+    barton_bandis = { jrc = 6, jcs = 5e7, phi_r = 50, kni = 1e8, vm = 5e-2, ks = 1e7 },
+    continuously_yielding = { an = 1e8, as = 1e7, phi_i = 65, phi = 60, roughness = 1e-2 },
+} do
+    local model = talus.model { gravity = { 0, 0, 0 } }
+    model:generate("box", { min = { -1, -1, -1 }, max = { 0, 2, 2 }, density = 2500, group = "held" })
+    model:generate("box", { min = { 1, -1, -1 }, max = { 2, 2, 2 }, density = 2500, group = "held" })
+    model:generate("box", { min = { 0, 0, 0 }, max = { 1, 1, 1 }, density = 2500, group = "cube" })
+    model:blocks { group = "held" }:fix()
+    model:joint("*", "coulomb", { kn = 1e8, ks = 1e7, friction = 60 })
+    model:insitu { stress = { xx = -1e6 } }
+    model:blocks { group = "cube" }:load { moment = { 0, 60000, 0 } }
+    model:damping "local"
+    model:solve { ratio = 1e-7 }
+    local before = model:contacts():sum "normal_force"
+    model:joint("*", law, params)
+    model:cycle(1)
+    check.close(model:contacts():sum "normal_force" / before, 1, 0.02, law)
+end

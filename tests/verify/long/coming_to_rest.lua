@@ -17,12 +17,23 @@ local function run(name, model, steps)
 end
 
 figures.case("S.rest", "Piles, a stack, an arch, a beam on edges and cubes in a groove, under damping", "equilibrium")
+local names, sums = {}, {} -- of scenes that count together
 for _, scene in ipairs(resting.scenes) do
     for i, kn in ipairs { 1e9, 1e10 } do
         if scene.steps[i] ~= false then
-            run(string.format("%s, kn %.0e", scene.name, kn), scene.make(kn), scene.steps[i])
+            local among = scene.among and ("%s, kn %.0e"):format(scene.among, kn)
+            local result = run(string.format("%s, kn %.0e", scene.name, kn), scene.make(kn), not among and scene.steps[i] or nil)
+            if among then
+                sums[among] = sums[among] or { taken = 0, allowed = 0 }
+                sums[among].taken = sums[among].taken + (result.steps or resting.MOST)
+                sums[among].allowed = sums[among].allowed + SLOWER * scene.steps[i]
+                names[#names + 1] = sums[among].taken == result.steps and among or nil
+            end
         end
     end
+end
+for _, name in ipairs(names) do
+    figures.between(name .. ": steps of all to that ratio", sums[name].taken, 0, sums[name].allowed)
 end
 for seed = 4, 3 + SEEDS do
     for _, kn in ipairs { 1e9, 1e10 } do
