@@ -136,14 +136,15 @@ void tl_pair_wake(tl_detect *d, uint32_t i)
 }
 
 /* How far a pair may move that is apart by the gap of its region before it may become a contact; below 0: it may be one. Only
- * a patch is born across a gap, of faces that are parallel by then. */
-static double way_to_contact(const tl_pair_view *view, const tl_region *r)
+ * a patch is born across a gap, of faces within its limit of tilt by then: so its points know that they were apart. */
+static double way_to_contact(const tl_pair_view *view, const tl_region *r, bool corners)
 {
+    const double most_tilt = tl_flush_limits_of(corners).tilt;
     double tolerance = TL_CONTACT_TOLERANCE * view->size;
     if (r->gap > tolerance)
         return r->gap - tolerance;
     double tilt = r->flush ? tl_region_tilt(view, r->flush_a, r->flush_b) : INFINITY;
-    bool parallel = (tilt - TL_FLUSH_TILT) * view->size <= 2 * r->gap;
+    bool parallel = (tilt - most_tilt) * view->size <= 2 * r->gap;
     return r->gap > 0 && !parallel ? r->gap : -1;
 }
 
@@ -200,7 +201,8 @@ static void test_pair(tl_model *m, tl_pair *p, tl_narrow_scratch *scratch)
         return;
     }
     const tl_manifold_before before = tl_pair_before(m, p, &view, scratch);
-    double way = before.holds ? -1 : way_to_contact(&view, &region);
+    const bool corners = m->config.contact_points == TL_POINTS_CORNERS;
+    double way = before.holds ? -1 : way_to_contact(&view, &region, corners);
     if (way > 0) {
         tl_pair_sleep(d, p, way);
         return;
