@@ -268,15 +268,19 @@ static void sum_fields(const span_job *job, const tl_simd_group *group, const tl
 
 /* Adds what partly open patches have beside their points. */
 static void add_parts(const span_job *job, const tl_simd_group *group, const tl_point_lanes *t,
-                      size_t lane, uint32_t parts, group_sums *sum)
+                      size_t lane, uint32_t parts, const tl_arms *arms, group_sums *sum)
 {
     tl_part_sums more[TL_LANES];
     tl_simd_group_part_sum(job->m, job->law, group, t, lane, parts, more);
     for (uint32_t left = parts; left; left &= left - 1) {
         size_t l = (size_t)__builtin_ctz(left);
-        sum->moment[0][l] += more[l].moment.x;
-        sum->moment[1][l] += more[l].moment.y;
-        sum->moment[2][l] += more[l].moment.z;
+        tl_vec3 force = tl_v3_scale(more[l].force, tl_lanes3_get(&arms->push, l));
+        tl_vec3 arm = tl_v3_add(tl_lanes3_get(&arms->at, l), more[l].arm);
+        tl_vec3 moment = tl_v3_add(more[l].moment, tl_v3_cross(arm, force));
+        for (int axis = 0; axis < 3; axis++) {
+            sum->force[axis][l] += (&force.x)[axis];
+            sum->moment[axis][l] += (&moment.x)[axis];
+        }
         sum->stored[l] += more[l].stored;
         sum->dissipated[l] += more[l].dissipated;
     }
@@ -295,7 +299,7 @@ static void sum_group(const span_job *job, const tl_simd_group *group, const tl_
     else
         sum_points(&m->detect->points, t, group->start, lane, group->slots, arms, &sum);
     if (parts)
-        add_parts(job, group, t, lane, parts, &sum);
+        add_parts(job, group, t, lane, parts, arms, &sum);
     if (m->cycles % SHEAR_EVERY == 0 && !job->span->field)
         sum_tilts(&m->detect->points, t, group->start, lane, group->slots, &sum);
     tl_group_energy energy = {0, 0};
@@ -369,7 +373,8 @@ static void force_tile(const span_job *job, const tl_simd_group *groups, size_t 
                        const tl_point_lanes *t)
 {
     size_t first = groups->start, points = 0;
-    uint32_t parts[GROUP_CHUNK], any = 0;
+    tl_part_lanes part[GROUP_CHUNK];
+    uint32_t any = 0;
     tl_arms arms[GROUP_CHUNK];
     bool cells = !job->span->field && tl_part_applies(job->m);
     job->phase->keep(job->m, groups, count);
@@ -382,20 +387,25 @@ static void force_tile(const span_job *job, const tl_simd_group *groups, size_t 
                              &arms[r]);
         if (has_edges(job))
             tl_simd_group_edges(job->m, &groups[r], t, points);
-        parts[r] = cells ? tl_simd_group_part(job->m, job->law, &groups[r], t, points) : 0;
-        any |= parts[r];
+        part[r] = cells ? tl_simd_group_part(job->m, job->law, &groups[r], t, points)
+                        : (tl_part_lanes){0, 0};
+        any |= part[r].parts;
         points += (size_t)groups[r].slots * TL_LANES;
     }
     for (size_t r = 0; any && r < count; r++)
-        if (!parts[r])
+        if (!part[r].parts)
             memset(t->apart + (groups[r].start - first), 0,
                    (size_t)groups[r].slots * TL_LANES * sizeof *t->apart);
     if (!call_law(job, first, points, any != 0, t))
         return;
     if (odd_states(&job->m->detect->points, job->law->columns, first, points) != 0)
         tl_law_check_states(job->m, job->phase->failure, job->law, first, points);
-    for (size_t r = 0; r < count; r++)
-        sum_group(job, &groups[r], t, groups[r].start - first, parts[r], &arms[r]);
+    for (size_t r = 0; r < count; r++) {
+        size_t lane = groups[r].start - first;
+        if (part[r].held)
+            part[r].parts |= tl_simd_group_broken(job->m, &groups[r], t, lane, part[r].held);
+        sum_group(job, &groups[r], t, lane, part[r].parts, &arms[r]);
+    }
     if (job->changed && !as_noted(&job->m->detect->points, first, points, t))
         atomic_store_explicit(job->changed, true, memory_order_relaxed);
 }

@@ -12,8 +12,13 @@
  *     M = k [int_{u>0} u (x - x_p) dA + hold int_{u<0} u (x - x_p) dA] cross n
  *     U = k/2 [int_{u>0} u^2 dA - A p^2 + hold (int_{u<0} u^2 dA - A q^2)]
  *
- * k is kn. So force, moment and energy are the exact integrals over the polygon, whatever part of it is closed. A tension that a
- * bond loses takes its part of U with it: that is heat.
+ * k is kn. So force, moment and energy are the exact integrals over the polygon, whatever part of it is closed. Where a part of
+ * the points holds and another does not, that serves for patches that are wholly apart, too. Where all points hold, the points' own
+ * rule is exact, and there are no cells. In the step in which some of it breaks, the cells are found after the law: then a force,
+ * k (P - hold Q) less that of the point, comes to the moment and the energy.
+ *
+ * A tension that a bond loses takes its part of U with it, and the work of this step, by the mean of the forces of both ends. With u'
+ * before the step and u after it that is k/2 int_{u<0} u u' dA of the share lost: heat. The law has counted that of the means.
  *
  * What a stress that is no line in u changes of this is in bent.c.
  *
@@ -30,6 +35,7 @@
 #include "base/columns.h"
 #include "contact/across_gap.h"
 #include "contact/detection.h"
+#include "contact/shear.h"
 #include "force/bent.h"
 #include "narrow/frame2.h"
 
@@ -183,13 +189,21 @@ static uint32_t opening_lanes(const range *u, const range *closures)
     return out;
 }
 
-/* Whether every point of a patch holds what is apart: then the points' own rule is exact. */
-static bool all_hold(const patch *of)
+/* The least and the largest share of what is apart that the points of a patch hold. Where that is 1 throughout, the points' own
+ * rule is exact. */
+typedef struct holds {
+    double least, most;
+} holds;
+
+static holds holds_of(const patch *of)
 {
-    bool all = true;
-    for (size_t k = 0; k <= 2 * of->corners && all; k++)
-        all = of->lanes->hold[of->lane + k * TL_LANES] >= 1;
-    return all;
+    holds out = {1, 0};
+    for (size_t k = 0; k <= 2 * of->corners; k++) {
+        double hold = of->lanes->hold[of->lane + k * TL_LANES];
+        out.least = fmin(out.least, hold);
+        out.most = fmax(out.most, hold);
+    }
+    return out;
 }
 
 /* ---------------------------------------------------------------- integrals -------------- */
@@ -398,13 +412,32 @@ static double share_of_cells(const patch *of)
     return share;
 }
 
+/* Leaves in a cell what it has beside that which the law has been given of it: p and q, or only p < 0 of what is apart as a whole.
+ * `whole`: the volumes that the forces of the cell have. */
+static void leave_rest(const patch *of, size_t k, double p, double q, const double whole[2])
+{
+    const tl_point_lanes *t = of->lanes;
+    tl_cell *cell = &t->cell[of->lane + k * TL_LANES];
+    tl_vec3 arm = tl_v3_sub(arm_of(of, k), arm_of(of, 2 * of->corners));
+    double area = area_of(of, k);
+    double pressed = p > 0 ? area * p : 0, apart = p > 0 ? area * q : -area * p;
+    cell->hold = t->hold[of->lane + k * TL_LANES];
+    cell->pressed_volume = pressed;
+    cell->apart_volume = apart;
+    cell->pressed_more = whole[0] - pressed;
+    cell->apart_more = whole[1] - apart;
+    cell->pressed = tl_v3_madd(cell->pressed, -pressed, arm);
+    cell->apart = tl_v3_madd(cell->apart, -apart, arm);
+    cell->pressed_second = 0.5 * (cell->pressed_second - pressed * pressed / area);
+    cell->apart_second = 0.5 * (cell->apart_second - apart * apart / area);
+}
+
 /* Gives a point the closure at which its whole cell would press as its closed part does. The cell keeps what it has beside that. */
 static void put_means(const patch *of, size_t k, double share, bool curved)
 {
     const tl_point_lanes *t = of->lanes;
     size_t i = of->lane + k * TL_LANES;
     tl_cell *cell = &t->cell[i];
-    tl_vec3 arm = tl_v3_sub(arm_of(of, k), arm_of(of, 2 * of->corners));
     double area = area_of(of, k), u = t->closure[i] + t->lift[i];
     double more = (cell->pressed_volume - cell->apart_volume) / area - u;
     double p = cell->pressed_volume / area - (1 - share) * more, q = cell->apart_volume / area;
@@ -414,63 +447,73 @@ static void put_means(const patch *of, size_t k, double share, bool curved)
         second = share * cell->bent.second;
         cell->pressed = tl_v3_madd(cell->pressed, share, cell->bent.moment);
     }
+    const double whole[2] = {area * p, area * q};
     if (!(cell->pressed_volume > 0) || (p < 0 && q > 0)) { /* apart as a whole */
         p -= q;
         q = 0;
     }
-    double pressed = p > 0 ? area * p : 0, apart = p > 0 ? area * q : -area * p;
     t->closure[i] = p - t->lift[i];
     t->apart[i] = q;
-    cell->hold = t->hold[i];
-    cell->pressed_volume = pressed;
-    cell->apart_volume = apart;
-    cell->pressed = tl_v3_madd(cell->pressed, -pressed, arm);
-    cell->apart = tl_v3_madd(cell->apart, -apart, arm);
-    cell->pressed_second = 0.5 * (cell->pressed_second - pressed * pressed / area) + second;
-    cell->apart_second = 0.5 * (cell->apart_second - apart * apart / area);
+    leave_rest(of, k, p, q, whole);
+    cell->pressed_second += second;
 }
 
-/* The patches of a SIMD group that are partly open. Gives how many, and a bit for the lane of each. */
-static size_t find_parts(const tl_model *m, const tl_simd_group *group, const tl_point_lanes *t,
-                         size_t lane, const range *u, const range *closures, patch out[TL_LANES],
-                         uint32_t *lanes)
+/* What the cell of a point that has gone by its own closure has beside that. */
+static void leave_own(const patch *of, size_t k)
+{
+    const tl_point_lanes *t = of->lanes;
+    size_t i = of->lane + k * TL_LANES;
+    const double whole[2] = {t->cell[i].pressed_volume, t->cell[i].apart_volume};
+    leave_rest(of, k, t->closure[i] + t->lift[i], 0, whole);
+}
+
+/* The patches of a SIMD group whose points get means. Gives how many, and the lanes of these and of those that hold throughout. */
+static size_t find_parts(const tl_model *m, const tl_law *law, const tl_simd_group *group,
+                         const tl_point_lanes *t, size_t lane, const range *u,
+                         const range *closures, patch out[TL_LANES], tl_part_lanes *lanes)
 {
     size_t count = 0;
-    *lanes = 0;
     for (uint32_t left = opening_lanes(u, closures); left; left &= left - 1) {
         size_t l = (size_t)__builtin_ctz(left);
         patch *of = &out[count];
-        if (!(u->high[l] + beyond(closures, l) > 0) || !find_patch(m, group, t, lane, l, of) ||
-            all_hold(of) || !has_all_points(of))
+        bool partly = u->high[l] + beyond(closures, l) > 0;
+        if ((!partly && law->pulls == TL_PULL_NONE) || !find_patch(m, group, t, lane, l, of))
             continue;
-        *lanes |= 1u << l;
+        const holds hold = holds_of(of);
+        if ((!partly && !(hold.most > 0)) || !has_all_points(of))
+            continue;
+        if (hold.least >= 1) {
+            lanes->held |= 1u << l;
+            continue;
+        }
+        lanes->parts |= 1u << l;
         count++;
     }
     return count;
 }
 
-uint32_t tl_simd_group_part(const tl_model *m, const tl_law *law, const tl_simd_group *group,
-                            const tl_point_lanes *t, size_t lane)
+tl_part_lanes tl_simd_group_part(const tl_model *m, const tl_law *law, const tl_simd_group *group,
+                                 const tl_point_lanes *t, size_t lane)
 {
+    tl_part_lanes lanes = {0, 0};
     const tl_points_table *p = &m->detect->points;
     size_t rows = (size_t)group->slots * TL_LANES;
     range closures, u;
     find_range(p->area + group->start, t->closure + lane, t->zero + lane, group->slots, &closures);
     if (!p->f_n0 && !opening_lanes(&closures, &closures))
-        return 0;
+        return lanes;
     tl_points_across_gap(law, p, group->start, rows, t->lift + lane, t->hold + lane);
     find_range(p->area + group->start, t->closure + lane, t->lift + lane, group->slots, &u);
     patch of[TL_LANES];
-    uint32_t lanes;
-    size_t count = find_parts(m, group, t, lane, &u, &closures, of, &lanes);
+    size_t count = find_parts(m, law, group, t, lane, &u, &closures, of, &lanes);
     if (count == 0)
-        return 0;
+        return lanes;
     memset(t->apart + lane, 0, rows * sizeof *t->apart);
     const bool curved = tl_law_presses(law);
     for (size_t j = 0; j < count; j++)
         integrate_cells(&of[j], curved);
     if (curved)
-        tl_cells_bend(m, law, group, t, lane, lanes);
+        tl_cells_bend(m, law, group, t, lane, lanes.parts);
     for (size_t j = 0; j < count; j++) {
         double share = share_of_cells(&of[j]);
         for (size_t k = 0; k <= 2 * of[j].corners; k++)
@@ -481,9 +524,32 @@ uint32_t tl_simd_group_part(const tl_model *m, const tl_law *law, const tl_simd_
 
 /* ---------------------------------------------------------------- sums ------------------- */
 
-static tl_part_sums sum_cells(const patch *of, const tl_law *law)
+uint32_t tl_simd_group_broken(const tl_model *m, const tl_simd_group *group,
+                              const tl_point_lanes *t, size_t lane, uint32_t held)
+{
+    uint32_t out = 0;
+    for (uint32_t left = held; left; left &= left - 1) {
+        size_t l = (size_t)__builtin_ctz(left);
+        double heat = 0;
+        patch of;
+        for (size_t k = 0; k < group->slots; k++)
+            heat += t->dissipated[lane + l + k * TL_LANES];
+        if (!(heat > 0) || !find_patch(m, group, t, lane, l, &of))
+            continue;
+        out |= 1u << l;
+        integrate_cells(&of, false);
+        for (size_t k = 0; k <= 2 * of.corners; k++)
+            leave_own(&of, k);
+    }
+    return out;
+}
+
+/* Of a patch with its relative motion in the step: `turn`, rad, and along the normal at the centroid, m. */
+static tl_part_sums sum_cells(const patch *of, const tl_law *law, tl_vec3 turn)
 {
     const tl_point_lanes *t = of->lanes;
+    const tl_vec3 n = tl_columns_get(t->normal, of->lane);
+    const double du = t->du_n[of->lane + 2 * of->corners * TL_LANES];
     tl_part_sums out = {.stored = 0};
     tl_vec3 sum = {0, 0, 0};
     for (size_t k = 0; k <= 2 * of->corners; k++) {
@@ -491,12 +557,16 @@ static tl_part_sums sum_cells(const patch *of, const tl_law *law)
         const tl_cell *cell = &t->cell[i];
         double pulls = law->kn * t->hold[i], lost = law->kn * (cell->hold - t->hold[i]);
         double pressed = of->p->f_n[of->row + k * TL_LANES] + pulls * cell->apart_volume;
-        double spring = cell->pressed_volume > 0 ? pressed / cell->pressed_volume : 0;
+        double straight = tl_law_is_linear(law) ? law->kn : 0;
+        double spring = cell->pressed_volume > 0 ? pressed / cell->pressed_volume : straight;
+        double moved = du * cell->apart_more + tl_v3_dot(tl_v3_cross(turn, cell->apart), n);
         sum = tl_v3_madd(tl_v3_madd(sum, spring, cell->pressed), -pulls, cell->apart);
         out.stored += spring * cell->pressed_second + pulls * cell->apart_second;
-        out.dissipated += fmax(0, lost * cell->apart_second);
+        out.force += spring * cell->pressed_more - pulls * cell->apart_more;
+        out.dissipated += lost > 0 ? lost * (cell->apart_second - 0.5 * moved) : 0;
     }
-    out.moment = tl_v3_cross(sum, tl_columns_get(t->normal, of->lane));
+    out.moment = tl_v3_cross(sum, n);
+    out.arm = arm_of(of, 2 * of->corners);
     return out;
 }
 
@@ -513,6 +583,6 @@ void tl_simd_group_part_sum(const tl_model *m, const tl_law *law, const tl_simd_
                           .lane = lane + l,
                           .row = group->start + l,
                           .corners = m->detect->contacts.point_count[group->contact[l]] / 2u};
-        out[l] = sum_cells(&of, law);
+        out[l] = sum_cells(&of, law, tl_contact_moved(m, group->contact[l]).turn);
     }
 }

@@ -12,14 +12,26 @@ bool tl_part_applies(const tl_model *m);
 void tl_simd_group_edges(const tl_model *m, const tl_simd_group *group, const tl_point_lanes *lanes,
                          size_t lane);
 
-/* After a SIMD group of patches has been followed: gives the points of patches that are partly open the mean closures of their
- * cells. A bit for each lane of such a patch; `closure_apart` of the group's rows is valid when there is one. */
-uint32_t tl_simd_group_part(const tl_model *m, const tl_law *law, const tl_simd_group *group,
-                            const tl_point_lanes *lanes, size_t lane);
+/* Lanes of a SIMD group, a bit each, in which something is apart: of patches whose points stand for cells, and of those that hold
+ * all of it, whose points go by their own closures. */
+typedef struct tl_part_lanes {
+    uint32_t parts, held;
+} tl_part_lanes;
+
+/* After a SIMD group of patches has been followed: gives the points of patches that are partly open, or of which a part holds, the
+ * mean closures of their cells. `closure_apart` of the group's rows is valid when there is such a patch. */
+tl_part_lanes tl_simd_group_part(const tl_model *m, const tl_law *law, const tl_simd_group *group,
+                                 const tl_point_lanes *lanes, size_t lane);
+
+/* After the law: those of the lanes `held` where some of a bond may have broken in this step. Their cells are found now. */
+uint32_t tl_simd_group_broken(const tl_model *m, const tl_simd_group *group,
+                              const tl_point_lanes *lanes, size_t lane, uint32_t held);
 
 /* What the forces of cells have beside those of their points. */
 typedef struct tl_part_sums {
     tl_vec3 moment; /* on B, N m */
+    double force;   /* along the normal, N */
+    tl_vec3 arm;    /* where it acts, of the lanes */
     double stored, dissipated;
 } tl_part_sums;
 

@@ -68,9 +68,9 @@ static void move(const params *p, const tl_law_batch *batch, uint32_t i)
     double total = press - *glue * pull;
     heat -= 0.5 * (c.f_n[0] + total) * lift;
     const bool open = total < 0 && *glue <= 0;
-    if (had > *glue) { /* what pulled snaps */
+    if (had > *glue) { /* what pulled snaps, on the way from the stretch before */
         const double gone = pull - (open ? total : 0);
-        heat += 0.5 * over(gone * gone, spring);
+        heat += tl_law_snap_work(gone, spring, c.du_n[0]);
     }
     total = open ? 0 : total;
     batch->flags[i] = (*glue > 0 ? 0u : (uint32_t)TL_POINT_FAILED) |

@@ -165,6 +165,15 @@ TL_IN_LOOP double tl_law_lift_work(double rise, double before, double from, doub
     return rise + 0.5 * (before - from) * lift;
 }
 
+/* Heat, J, of a tensile spring that is let go in this step, where it would pull with the force `gone`: what it held before, and the
+ * work of half its force, for the walls' motion du_n of the step is booked with the mean of the forces of its ends. With stretches x0
+ * and x1 before and after, spring x0^2 / 2 + spring x0 (x1 - x0) / 2 = spring x0 x1 / 2. `spring`: kn A. */
+TL_IN_LOOP double tl_law_snap_work(double gone, double spring, double du_n)
+{
+    double held = gone - spring * du_n;
+    return 0.5 * gone * (held > 0 ? held : 0) / (spring > 0 ? spring : 1);
+}
+
 /* Puts flags that were noted as numbers into the batch: a loop over columns of two widths is not vectorised for every
  * machine. */
 TL_IN_LOOP void tl_law_put_flags(const tl_law_batch *batch, uint32_t begin, uint32_t lanes,

@@ -160,9 +160,8 @@ TL_IN_LOOP void move(const cohesive *given, const tl_law_batch *batch, uint32_t 
     for (uint32_t i = 0; i < lanes; i++) {
         double per = c.area[i] > 0 ? 1 / c.area[i] : 0;
         double total = kn * c.area[i] * c.closure[i] + c.f_n0[i], stress = total * per;
-        double before = stress + kn * c.du_n[i], beside = kn * apart[i];
-        double pull1 = (stress < 0 ? -stress : 0) + beside;
-        double pull0 = beside > 0 ? pull1 : before < 0 ? -before : 0;
+        double beside = kn * apart[i], pull1 = (stress < 0 ? -stress : 0) + beside;
+        double pull0 = pull1 > kn * c.du_n[i] ? pull1 - kn * c.du_n[i] : 0;
         double was = damage[i], left = 1 - was, has = left > 0 ? 1 : 0;
         double dx = c.du_x[i], dy = c.du_y[i], dz = c.du_z[i];
         /* a bond that is lost has all of its stress from friction, whatever the state says */

@@ -3,24 +3,24 @@
  *     f_n = kn A (closure + opening - apart) + f_n0 total, compression positive; after eq. (6)
  *     f_t = f_s - ks A du_s                         eq. (7), on block B
  *     fails when  f_e < -T A   or   |f_t| > max(0, c A + f_n tan(friction))       eq. (10)
- *     f_n < -T A:  f_n = 0, f_s = 0, open
+ *     f_n < 0 where no tension is held:  f_n = 0, f_s = 0, open
  *     |f_t| > limit:  f_s = f_t limit / |f_t|       eq. (12), slipping
  *     opening += tan(dilation) slip                 up to dilation_limit tan(dilation)
  *
  * Where a part of the area is closed and another apart, by `apart` in the mean, the bond pulls on the latter; without it
  * only the closed part carries. f_e is the normal force that the area A would have with the closure at its outermost fibre: a
- * bond in bending breaks where it is pulled most. T, c and the friction are those of the bond while it holds. At the first failure, in tension or
- * in shear, the bond is lost for good: T, c and the friction drop to their residual values within that
- * step (brittle), as 3DEC does. State `bond` is 1 while it holds, 0 when lost. Since the closure is a
- * total one, a point that has opened carries again only where its walls meet. Dilation and its state
- * `opening` are those of the law "coulomb"; under tension slip does not dilate.
+ * bond in bending breaks where it is pulled most. T, c and the friction are those of the bond while it holds. At the first
+ * failure, in tension or in shear, the bond is lost for good: T, c and the friction drop to their residual values within that
+ * step (brittle), as 3DEC does. State `bond` is 1 while it holds, 0 when lost. Since the closure is a total one, a point that has
+ * opened carries again only where its walls meet. A residual tensile strength holds while f_e >= -T A. Walls that have parted
+ * beyond it do not pull on their way back: it holds again once they have met over the whole area. Dilation and its state `opening`
+ * are those of the law "coulomb"; under tension slip does not dilate.
  *
  * Source: Hart, Cundall and Lemos, Int. J. Rock Mech. Min. Sci. 25 (1988) 117-125; the loss of the bond
  * after the manual of 3DEC. Walls that come near each other from afar have no bond.
  *
- * Energy turned to heat: as in the law "coulomb", and the energy of the tensile spring when a bond
- * breaks in tension. A tensile strength that is left after that neither takes nor makes energy over a
- * closed cycle of opening: it lets go and takes hold again at the same gap.
+ * Energy turned to heat: as in the law "coulomb", and what a tensile spring has got when it lets go, bond or residual. The walls
+ * work by the mean of the forces before and after a step: tl_law_snap_work.
  *
  * Limit: as for "coulomb", changes of kn and ks and insitu belong before slip has opened the joint. */
 #include <talus/kit.h>
@@ -107,9 +107,9 @@ static tl_status create(const void *given, void **self, tl_report *report)
 /* The law itself, for up to STRIDE lanes from `begin`. `heat` and `dilates` are constants at each call,
  * so that the loop exists once for each and none has a branch in it; without dilation the opening of
  * slip in the past still counts. A NaN goes through
- * all comparisons to the forces, where the host finds it. `mark` takes the flags as doubles: a loop
- * over lanes of two widths is not vectorised for every machine. `both` takes P Q / (kn A) of points of which a part presses
- * and another pulls. */
+ * all comparisons to the forces, where the host finds it. `mark` is given 1 of walls that were apart and have not met since, else 0,
+ * and takes the flags as doubles: a loop over lanes of two widths is not vectorised for every machine. `both` takes P Q / (kn A) of
+ * points of which a part presses and another pulls. */
 TL_IN_LOOP void move(const bonded *law, const tl_law_batch *batch, uint32_t begin, uint32_t lanes,
                      double *restrict mark, double *restrict both, const int heat,
                      const int dilates)
@@ -122,26 +122,29 @@ TL_IN_LOOP void move(const bonded *law, const tl_law_batch *batch, uint32_t begi
     const double kn = law->kn, ks = law->ks;
     const double dilation = law->dilation, most_opening = law->most_opening;
     const strength peak = law->peak, residual = law->residual;
-    const double grips = peak.tension > 0 ? 1 : 0; /* a bond without tensile strength never pulls */
+    /* without tensile strength nothing pulls */
+    const double grips = peak.tension > 0 ? 1 : 0, grips_on = residual.tension > 0 ? 1 : 0;
 #pragma omp simd
     for (uint32_t i = 0; i < lanes; i++) {
         double stiffness = ks * c.area[i], opened = opening[i], lift = 0;
         double pressed = kn * c.area[i] * (c.closure[i] + opened) + c.f_n0[i];
-        double pull = grips * kn * c.area[i] * apart[i];
+        double before = bond[i], near = 1 - mark[i];
+        double held = before > BOND_HOLDS ? grips : near * grips_on;
+        double pull = held * kn * c.area[i] * apart[i];
         tl_vec3 f = TL_TRIAL_AT(c, i, stiffness);
         double trial = tl_v3_norm(f);
 
         /* Does the bond hold this step? */
         double bound = peak.cohesion * c.area[i] + (pressed - pull) * peak.tangent;
-        double before = bond[i];
         double after = trial > (bound < 0 ? 0 : bound) ? 0 : before;
         double fibre = kn * c.area[i] * (edge[i] + opened) + c.f_n0[i];
         after = fibre < -peak.tension * c.area[i] ? 0 : after;
         /* The strength that is left. */
         double tangent = after > BOND_HOLDS ? peak.tangent : residual.tangent;
         double cohesion = after > BOND_HOLDS ? peak.cohesion : residual.cohesion;
-        double tension = after > BOND_HOLDS ? peak.tension : residual.tension;
-        double pulls = after > BOND_HOLDS ? pull : 0, total = pressed - pulls;
+        double left = fibre < -residual.tension * c.area[i] ? 0 : held * grips_on;
+        double holds = after > BOND_HOLDS ? held : left;
+        double pulls = holds > 0 ? pull : 0, total = pressed - pulls;
         if (dilates) {
             double strong = cohesion * c.area[i] + total * tangent;
             double yield = stiffness + kn * c.area[i] * dilation * tangent;
@@ -155,9 +158,9 @@ TL_IN_LOOP void move(const bonded *law, const tl_law_batch *batch, uint32_t begi
             pressed = kn * c.area[i] * (c.closure[i] + opened) + c.f_n0[i];
             total = pressed - pulls;
         }
-        double lowest = -tension * c.area[i];
+        double parted = pressed < 0 ? 1 - holds : 0;
         double limit = cohesion * c.area[i] + total * tangent;
-        limit = ((limit < 0) | (total < lowest)) ? 0 : limit;
+        limit = ((limit < 0) | (parted > 0)) ? 0 : limit;
         double most = limit * (1 + ROUNDING);
         double whole = trial > most ? trial : 1;
         double scale = trial > most ? limit / whole : 1;
@@ -168,15 +171,15 @@ TL_IN_LOOP void move(const bonded *law, const tl_law_batch *batch, uint32_t begi
             if (dilates)
                 work = work - 0.5 * (c.f_n[i] + total) * lift;
             work = work > 0 && stiffness > 0 ? work : 0;
-            /* A bond that snaps gives up its tensile spring. */
-            double gone = pull - pulls - (total < lowest ? total : 0);
-            double spring = 0.5 * gone * gone / (c.area[i] > 0 ? kn * c.area[i] : 1);
-            dissipated[i] = work + (before > BOND_HOLDS ? spring : 0);
+            /* What lets go gives up its tensile spring. */
+            double gone = pull - pulls - held * (parted > 0 ? pressed : 0);
+            dissipated[i] = work + tl_law_snap_work(gone, kn * c.area[i], c.du_n[i]);
         }
-        double flag = trial > most ? TL_POINT_SLIPPING : 0;
-        flag = total < lowest ? TL_POINT_OPEN : flag;
-        mark[i] = after > BOND_HOLDS ? flag : flag + TL_POINT_FAILED;
-        c.f_n[i] = total < lowest ? 0 : total;
+        double let_go = (pressed > 0) & !(apart[i] > 0) ? 0 : grips_on * (1 - holds);
+        double lost = TL_POINT_FAILED + let_go * TL_POINT_APART;
+        mark[i] = after > BOND_HOLDS ? 0 : lost;
+        mark[i] += parted > 0 ? TL_POINT_OPEN : trial > most ? TL_POINT_SLIPPING : 0;
+        c.f_n[i] = parted > 0 ? 0 : total;
         both[i] = pulls * (pressed / (c.area[i] > 0 ? kn * c.area[i] : 1));
         TL_PUT_SHEAR(c, i, scale, f);
         bond[i] = after;
@@ -192,8 +195,10 @@ TL_VECTORIZED static tl_status update(const void *self, const tl_law_batch *batc
     for (uint32_t begin = 0; begin < batch->count; begin += STRIDE) {
         uint32_t left = batch->count - begin, lanes = left < STRIDE ? left : STRIDE;
         /* walls that came near from afar were never bonded */
-        for (uint32_t i = begin; i < begin + lanes; i++)
-            batch->state[0][i] = batch->flags[i] & TL_POINT_APART ? 0 : batch->state[0][i];
+        for (uint32_t i = 0; i < lanes; i++) {
+            mark[i] = batch->flags[begin + i] & TL_POINT_APART ? 1 : 0;
+            batch->state[0][begin + i] = mark[i] > 0 ? 0 : batch->state[0][begin + i];
+        }
         if (law->dilation > 0 && batch->dissipated)
             move(law, batch, begin, lanes, mark, both, 1, 1);
         else if (law->dilation > 0)
@@ -220,14 +225,14 @@ static uint32_t pulls(const void *self)
     return law->peak.tension > 0 ? TL_PULL_BONDED : TL_PULL_NONE;
 }
 
-/* A residual strength is that of points that are apart as a whole. */
 static void across_gap(const void *self, const tl_law_batch *batch, double *lift, double *hold)
 {
     const bonded *law = self;
     const double *bond = batch->state[0], strong = law->peak.tension > 0 ? 1 : 0;
+    const double strong_on = law->residual.tension > 0 ? 1 : 0;
     tl_law_lift(batch, law->kn, batch->state[1], lift);
     for (uint32_t i = 0; i < batch->count; i++)
-        hold[i] = bond[i] > BOND_HOLDS && !(batch->flags[i] & TL_POINT_APART) ? strong : 0;
+        hold[i] = batch->flags[i] & TL_POINT_APART ? 0 : bond[i] > BOND_HOLDS ? strong : strong_on;
 }
 
 static const tl_law_ops ops =
