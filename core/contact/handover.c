@@ -434,11 +434,14 @@ static void refit_springs(tl_model *m, uint32_t c, const tl_manifold *g)
     p->area[first] = p->area[torsion] = area;
 }
 
-/* Notes half of the way of the centre of pressure in the last step; the old one has gone half with A and half with B. */
+/* Notes half of the way of the centre of pressure in the last step; the old one has gone half with A and half with B. A step that is
+ * made again finds the points where it left them, and keeps what it has noted. */
 static void note_way(tl_model *m, uint32_t c, tl_vec3 centre)
 {
     const tl_contacts *contacts = &m->detect->contacts;
     tl_press_row *row = tl_press_row_of(m, c);
+    if (row->moved_at == m->cycles)
+        return;
     const tl_mat3 *turn = &m->bodies.pose[m->blocks.body[contacts->a[c]]].r;
     tl_vec3 old = tl_columns_get(m->detect->points.p, tl_point_row(contacts, c, TL_FIELD_SHEAR));
     tl_contact_motion by = tl_contact_moved(m, c);

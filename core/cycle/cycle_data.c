@@ -10,6 +10,8 @@ static void cycle_destroy(struct tl_cycle *cycle)
     tl_failure_destroy(&cycle->failure);
     tl_table_free(&cycle->table);
     free(cycle->reaction);
+    free(cycle->motion);
+    free(cycle->swept);
     free(cycle->chunk_sums);
     free(cycle->group_energy);
     free(cycle->chunk_ledger);

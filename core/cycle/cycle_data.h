@@ -6,6 +6,7 @@
 #include "base/inline.h"
 #include "base/inside.h"
 #include "base/lanes.h"
+#include "detect/passing.h"
 #include "force/laws.h"
 #include "model/model.h"
 #include "model/wrench.h"
@@ -151,6 +152,10 @@ struct tl_cycle {
     tl_speed_bounds given;       /* of those whose motion is given, in this one */
     double thinnest;             /* least thickness that a block can have, m: travel.c */
     uint64_t thinnest_version;   /* 1 + structure of the model then; 0: not known */
+    tl_step_motion *motion;      /* of each body in a step of fast blocks: travel.c */
+    size_t motion_capacity;
+    tl_swept *swept; /* of each block, likewise */
+    size_t swept_capacity;
     bool fast;          /* a body came near the limit of motion in the last step: limits.c */
     tl_failure failure; /* of a parallel phase */
 };

@@ -12,10 +12,7 @@
  * was set by hand. Blocks at rest pay one comparison a step. */
 #include "cycle/travel.h"
 
-#include "detect/passing.h"
-
 #include <stdio.h>
-#include <stdlib.h>
 
 /* By how much the overlap of two blocks may grow in a step, over the thickness of the thinner one: aimed at, and at the most. A
  * contact that is born with half of the thickness still knows which way it came (TL_DEEPEST_BORN of overlap.c is 0.9). */
@@ -50,17 +47,21 @@ bool tl_travel_may_matter(const tl_model *m, double dt)
     return !slow || tl_set_by_hand(m);
 }
 
-/* What the step does to each body; NULL: out of memory. */
-static tl_step_motion *motions_of(const tl_model *m, const tl_step_span *span)
+/* What the step does to each body, with a place for the bounds of each block; NULL: out of memory. The memory is kept for the steps
+ * that follow: blocks that are fast in one step are so in the next. */
+static tl_step_motion *motions_of(tl_model *m, const tl_step_span *span)
 {
-    size_t bodies = m->bodies.table.rows;
-    tl_step_motion *motion = malloc((bodies + 1) * sizeof *motion);
-    for (uint32_t body = 0; motion && body < bodies; body++) {
+    struct tl_cycle *c = m->cycle;
+    size_t bodies = m->bodies.table.rows, blocks = m->blocks.table.rows;
+    if (!tl_fit(&c->motion, &c->motion_capacity, bodies + 1, sizeof *c->motion) ||
+        !tl_fit(&c->swept, &c->swept_capacity, blocks + 1, sizeof *c->swept))
+        return NULL;
+    for (uint32_t body = 0; body < bodies; body++) {
         tl_vec3 v, w;
         tl_kicked(m, body, span, &v, &w);
-        motion[body] = (tl_step_motion){tl_v3_scale(span->dt, v), tl_v3_scale(span->dt, w)};
+        c->motion[body] = (tl_step_motion){tl_v3_scale(span->dt, v), tl_v3_scale(span->dt, w)};
     }
-    return motion;
+    return c->motion;
 }
 
 /* What a part of the step does. */
@@ -114,15 +115,14 @@ tl_status tl_travel_shorten(tl_model *m, double *dt, uint32_t *body)
         *dt *= TURN_AIM / turn;
         *body = turns;
     }
-    tl_passing passing;
-    tl_status status = tl_passing_find(m, motion, CLOSING_AIM, thinnest_of(m), &passing);
-    if (status == TL_OK && passing.part < 1) {
+    const tl_passing passing =
+        tl_passing_find(m, motion, CLOSING_AIM, thinnest_of(m), m->cycle->swept);
+    if (passing.part < 1) {
         *dt *= passing.part;
         *body = faster_of(m, motion, passing.a, passing.b);
     }
     *dt = fmax(*dt, least);
-    free(motion);
-    return status;
+    return TL_OK;
 }
 
 /* What to do about a step that should be `longest` s at the most. */
@@ -172,12 +172,9 @@ tl_status tl_travel_check(tl_model *m, const tl_step_span *span)
         return tl_fail_memory(&m->error);
     double turn;
     uint32_t turns = widest_turn(m, motion, &turn);
-    tl_passing passing = {.part = INFINITY};
-    tl_status status = turn > TURN_MOST
-                           ? report_turn(m, turns, turn, span->dt)
-                           : tl_passing_find(m, motion, CLOSING_MOST, thinnest_of(m), &passing);
-    if (status == TL_OK && passing.part < 1)
-        status = report_passing(m, motion, &passing, span->dt);
-    free(motion);
-    return status;
+    if (turn > TURN_MOST)
+        return report_turn(m, turns, turn, span->dt);
+    const tl_passing passing =
+        tl_passing_find(m, motion, CLOSING_MOST, thinnest_of(m), m->cycle->swept);
+    return passing.part < 1 ? report_passing(m, motion, &passing, span->dt) : TL_OK;
 }

@@ -37,6 +37,8 @@ void tl_cycle_walk(struct tl_cycle *c, const tl_walk *walk)
     tl_walk_list(walk, TL_KEEP_STATE, "cycle.ledger", &c->ledger, tl_ledger_size(), &one, NULL,
                  offsetof(tl_memory, step));
     LIST(SCRATCH, chunk_sums, &c->chunk_capacity, &c->chunk_capacity, step);
+    LIST(SCRATCH, motion, &c->motion_capacity, &c->motion_capacity, step);
+    LIST(SCRATCH, swept, &c->swept_capacity, &c->swept_capacity, step);
     LIST(CACHE, group_energy, &c->group_capacity, &c->group_capacity, step);
     tl_walk_list(walk, TL_KEEP_SCRATCH, "cycle.chunk_ledger", &c->chunk_ledger, tl_ledger_size(),
                  &c->chunk_capacity, NULL, offsetof(tl_memory, step));

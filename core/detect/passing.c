@@ -18,18 +18,11 @@
 
 #include <stdlib.h>
 
-/* Bounds of a block over a step. */
-typedef struct swept {
-    tl_vec3 min, max;
-    uint32_t row;
-    bool moves; /* far enough to be one of a pair that passes */
-} swept;
-
 typedef struct sweep {
-    tl_model *m;
+    const tl_model *m;
     const tl_step_motion *motion;
     double share;
-    swept *list;
+    tl_swept *list;
     size_t count;
 } sweep;
 
@@ -48,26 +41,26 @@ static double travel_of(const sweep *s, uint32_t body)
 
 /* ---------------------------------------------------------------- swept bounds ----------- */
 
-static void include(swept *box, tl_vec3 x)
+static void include(tl_swept *box, tl_vec3 x)
 {
     box->min = tl_v3_min(box->min, x);
     box->max = tl_v3_max(box->max, x);
 }
 
-static bool meet(const swept *a, const swept *b)
+static bool meet(const tl_swept *a, const tl_swept *b)
 {
     return a->min.x <= b->max.x && b->min.x <= a->max.x && a->min.y <= b->max.y &&
            b->min.y <= a->max.y && a->min.z <= b->max.z && b->min.z <= a->max.z;
 }
 
-static swept sweep_block(const sweep *s, uint32_t row, bool moves)
+static tl_swept sweep_block(const sweep *s, uint32_t row, bool moves)
 {
     const tl_poly *shape = s->m->blocks.shape[row];
     uint32_t body = s->m->blocks.body[row];
     const tl_mat3 *r = &s->m->bodies.pose[body].r;
     const tl_step_motion *by = &s->motion[body];
     tl_vec3 place = tl_body_place(&s->m->bodies, body);
-    swept box = {place, place, row, moves};
+    tl_swept box = {place, place, row, moves};
     for (uint32_t i = 0; i < shape->vertex_count; i++) {
         tl_vec3 arm = tl_m3_mul(r, shape->vertex[i]), x = tl_v3_add(place, arm);
         if (i == 0)
@@ -80,7 +73,7 @@ static swept sweep_block(const sweep *s, uint32_t row, bool moves)
 
 static int compare_swept(const void *a, const void *b)
 {
-    const swept *x = a, *y = b;
+    const tl_swept *x = a, *y = b;
     int along = (x->min.x > y->min.x) - (x->min.x < y->min.x);
     return along ? along : (x->row > y->row) - (x->row < y->row);
 }
@@ -89,11 +82,11 @@ static int compare_swept(const void *a, const void *b)
 static void list_swept(sweep *s, double far)
 {
     const tl_model *m = s->m;
-    swept all = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}, 0, true};
+    tl_swept all = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}, 0, true};
     for (uint32_t row = 0; row < m->blocks.table.rows; row++) {
         if (!(travel_of(s, m->blocks.body[row]) > far))
             continue;
-        swept box = s->list[s->count++] = sweep_block(s, row, true);
+        tl_swept box = s->list[s->count++] = sweep_block(s, row, true);
         include(&all, box.min);
         include(&all, box.max);
     }
@@ -103,7 +96,7 @@ static void list_swept(sweep *s, double far)
             continue;
         double reach = m->bodies.radius[body] + far;
         tl_vec3 grow = {reach, reach, reach}, place = tl_body_place(&m->bodies, body);
-        swept ball = {tl_v3_sub(place, grow), tl_v3_add(place, grow), row, false};
+        tl_swept ball = {tl_v3_sub(place, grow), tl_v3_add(place, grow), row, false};
         if (meet(&ball, &all))
             s->list[s->count++] = sweep_block(s, row, false);
     }
@@ -187,7 +180,7 @@ static double part_of_step(const side *a, const side *b, double allowed, double 
     return part;
 }
 
-static bool may_pass(const sweep *s, const swept *a, const swept *b)
+static bool may_pass(const sweep *s, const tl_swept *a, const tl_swept *b)
 {
     const tl_model *m = s->m;
     uint32_t body_a = m->blocks.body[a->row], body_b = m->blocks.body[b->row];
@@ -212,21 +205,17 @@ static void look_at(const sweep *s, uint32_t a, uint32_t b, tl_passing *out)
         *out = (tl_passing){part, a, b, deeper, s->share * thickness};
 }
 
-tl_status tl_passing_find(tl_model *m, const tl_step_motion *motion, double share, double thinnest,
-                          tl_passing *out)
+tl_passing tl_passing_find(const tl_model *m, const tl_step_motion *motion, double share,
+                           double thinnest, tl_swept *list)
 {
-    sweep s = {.m = m, .motion = motion, .share = share};
-    *out = (tl_passing){INFINITY, TL_NO_ROW, TL_NO_ROW, 0, 0};
-    s.list = malloc((m->blocks.table.rows + 1) * sizeof *s.list);
-    if (!s.list)
-        return tl_fail_memory(&m->error);
+    sweep s = {.m = m, .motion = motion, .share = share, .list = list};
+    tl_passing out = {INFINITY, TL_NO_ROW, TL_NO_ROW, 0, 0};
     list_swept(&s, 0.5 * share * thinnest);
     for (size_t i = 0; i < s.count; i++)
         for (size_t j = i + 1; j < s.count && s.list[j].min.x <= s.list[i].max.x; j++)
             if (may_pass(&s, &s.list[i], &s.list[j])) {
                 uint32_t a = s.list[i].row, b = s.list[j].row;
-                look_at(&s, a < b ? a : b, a < b ? b : a, out);
+                look_at(&s, a < b ? a : b, a < b ? b : a, &out);
             }
-    free(s.list);
-    return TL_OK;
+    return out;
 }
