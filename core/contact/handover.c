@@ -103,6 +103,22 @@ static shear shear_of(const tl_model *m, uint32_t c, const tl_point_lanes *lanes
     return out;
 }
 
+/* Heat, J, of shear that has become another: what its springs have lost, less the work in this step of half of the force that is lost. */
+static double shear_lost(const tl_model *m, uint32_t c, const shear *old, const shear *now)
+{
+    double ks =
+        m->detect->contacts.law[c] == TL_NO_ROW ? 0 : m->joint_laws[m->detect->contacts.law[c]].ks;
+    const tl_contact_motion by = tl_contact_moved(m, c);
+    double work = 0;
+    for (int k = 0; k < 2; k++) {
+        const shear *s = k ? now : old;
+        tl_vec3 du = tl_v3_add(by.way, tl_v3_cross(by.turn, s->centre));
+        double part = tl_v3_dot(s->force, du) + s->torsion * tl_v3_dot(s->normal, by.turn);
+        work += k ? -part : part;
+    }
+    return ks > 0 ? 0.5 * ((old->energy - now->energy) / ks - work) : 0;
+}
+
 double tl_contact_lift_field(tl_model *m, uint32_t c)
 {
     tl_press_row *row = tl_press_row_of(m, c);
@@ -128,18 +144,34 @@ double tl_contact_lift_field(tl_model *m, uint32_t c)
     return row->opened;
 }
 
-/* The tension that bonds of a patch hold, J. */
-static double pulled_energy(const tl_model *m, uint32_t c)
+/* Heat, J, of a patch with bonds that ends: what its normal springs held before this step, and the work of the step by the mean of
+ * their forces and the new ones, beyond what the springs of the field `g` hold. Bonds keep a patch beyond the limits within which both
+ * are the same. Of a law that is not linear: the tension alone. */
+static double bonds_end(const tl_model *m, uint32_t c, const tl_manifold *g)
 {
     const tl_contacts *contacts = &m->detect->contacts;
     const tl_points_table *p = &m->detect->points;
-    double sum = 0, kn = contacts->law[c] == TL_NO_ROW ? 0 : m->joint_laws[contacts->law[c]].kn;
-    for (size_t k = 0; k < contacts->point_count[c] && kn > 0; k++) {
+    const tl_law *law = contacts->law[c] == TL_NO_ROW ? NULL : &m->joint_laws[contacts->law[c]];
+    if (!law || !(law->kn > 0))
+        return 0;
+    bool linear = tl_law_is_linear(law);
+    double energy = 0, by = g->point_count ? 2 * law->kn : 0;
+    const tl_mat3 *turn = &m->bodies.pose[m->blocks.body[contacts->a[c]]].r;
+    const tl_shear along = tl_shear_of(m, c);
+    tl_vec3 force = tl_v3_sub(contacts->force[c], along.force);
+    tl_vec3 moment = tl_v3_sub(contacts->moment[c], along.moment);
+    for (size_t k = 0; k < contacts->point_count[c]; k++) {
         size_t i = tl_point_row(contacts, c, k);
-        double pull = fmin(0, p->f_n[i]);
-        sum += p->area[i] > 0 ? 0.5 * pull * pull / (kn * p->area[i]) : 0;
+        double f = linear ? p->f_n[i] : fmin(0, p->f_n[i]);
+        energy += p->area[i] > 0 ? 0.5 * f * f / (law->kn * p->area[i]) : 0;
     }
-    return sum;
+    if (!linear)
+        return energy;
+    force = tl_v3_madd(force, by, tl_m3_mul(turn, g->press.force));
+    moment = tl_v3_madd(moment, by, tl_m3_mul(turn, g->press.moment));
+    tl_contact_motion moved = tl_contact_moved(m, c);
+    double work = 0.5 * (tl_v3_dot(force, moved.way) + tl_v3_dot(moment, moved.turn));
+    return energy - work - by * g->press.energy;
 }
 
 /* What the law keeps of a contact: means over what presses. */
@@ -344,12 +376,13 @@ void tl_contact_hand_over(tl_model *m, uint32_t c, const tl_manifold *g, bool re
     double kept = tl_shear_kept(m, c);
     bool held = contacts->point_count[c] > 0;
     bool field = g->facet.kind == TL_FACET_FIELD;
+    tl_contact_across across = tl_contact_across_gap(m, c);
     if (row && was_patch && held) {
-        row->shift = tl_contact_across_gap(m, c).lift;
+        row->shift = across.lift;
         row->shifted = (tl_face_pair){contacts->facet[c].ia, contacts->facet[c].ib};
     }
-    if (field && was_patch)
-        contacts->released[c] += pulled_energy(m, c);
+    if (field && was_patch && across.bonded)
+        contacts->released[c] += bonds_end(m, c, g);
     state.flags |=
         TL_POINT_APART; /* bonds end with their patch, and walls that meet at an edge have none */
     contacts->facet[c] = g->facet;
@@ -362,11 +395,11 @@ void tl_contact_hand_over(tl_model *m, uint32_t c, const tl_manifold *g, bool re
     tl_contact_begin(m, c, lanes);
     turn_states(m, c, &state);
     tl_shear_keep(m, c, kept);
-    double ks = contacts->law[c] == TL_NO_ROW ? 0 : m->joint_laws[contacts->law[c]].ks;
     if (!held || g->point_count == 0) {
-        contacts->released[c] += ks > 0 ? 0.5 * old.energy / ks : 0;
+        contacts->released[c] += shear_lost(m, c, &old, &(shear){.area = 0});
         return;
     }
+    const shear before = old;
     double area = 0;
     for (size_t k = 0; k < (field ? 1 : g->point_count); k++)
         area += g->points[k].area;
@@ -381,7 +414,8 @@ void tl_contact_hand_over(tl_model *m, uint32_t c, const tl_manifold *g, bool re
         put_on_field(m, c, &now, old.energy, row->press.radius);
     else
         spread_over_patch(m, c, &now, old.energy, lanes);
-    contacts->released[c] += ks > 0 ? 0.5 * (old.energy - shear_of(m, c, lanes).energy) / ks : 0;
+    now = shear_of(m, c, lanes);
+    contacts->released[c] += shear_lost(m, c, &before, &now);
 }
 
 /* Gives a shear spring of force f and area `old` another area. What comes carries nothing until it is sheared, so that the

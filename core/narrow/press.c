@@ -5,9 +5,10 @@
  * faces are borders, U_p = 2 kn G_p. Between
  * them one blend,
  *
- *     G = w G_f + (1 - w) G_p,    w = 1 - (1 - S(sin tilt)) (1 - S(q)),    q = (4 G_p)^(3/2) / V_p^2
+ *     G = w G_f + (1 - w) G_p,    w = 1 - (1 - S(sin tilt)) (1 - S(q)),    q = (4 G_p)^(3/2) / V_p^2 - shift (4 G_p)^(1/2) / V_p
  *
- * with the smoothstep S; q is the overlap of the patch over the root of its area. The force is the gradient of all of it,
+ * with the smoothstep S; q is the overlap of the patch as it is, without the shift of moved faces, over the root of its area. So a
+ * patch under an initial stress, or opened by slip, passes into its field without a jump. The force is the gradient of all of it,
  *
  *     F = w F_f + (1 - w) F_p - (G_f - G_p) grad w.
  *
@@ -218,16 +219,17 @@ static patch_share find_share(const tl_press_query *of, const tl_field_sums *pat
     tl_vec3 na = of->view->a->plane[of->region->flush_a].normal;
     tl_vec3 nb = of->view->normal_b[of->region->flush_b], hinge = tl_v3_cross(na, nb);
     double sine = tl_v3_norm(hinge), g = patch->energy, v = patch->volume, by_tilt, by_q;
-    double q = 8 * g * sqrt(g) / (v * v);
+    double shift = shift_of(of, 0, of->region->flush_a) + shift_of(of, 1, of->region->flush_b);
+    double whole = 8 * g * sqrt(g) / (v * v), moved = 2 * shift * sqrt(g) / v;
     const tl_flush_limits limits = tl_flush_limits_of(of->corners);
     double tilted = step(sine, limits.tilt, limits.field_tilt, &by_tilt);
-    double deep = step(q, limits.depth, limits.field_depth, &by_q);
+    double deep = step(whole - moved, limits.depth, limits.field_depth, &by_q);
     patch_share out = {.share = (1 - tilted) * (1 - deep)};
-    double scale = (1 - tilted) * by_q * q;
+    double scale = (1 - tilted) * by_q * whole, less = (1 - tilted) * by_q * moved;
+    double by_g = 1.5 * scale / g - 0.5 * less / g, by_v = 2 * scale / v - less / v;
     double couple = sine > 0 ? -(1 - deep) * by_tilt * tl_v3_dot(na, nb) / sine : 0;
-    out.push = tl_v3_madd(tl_v3_scale(1.5 * scale / g, patch->force), -2 * scale / v, patch->swept);
-    out.turn = tl_v3_madd(tl_v3_scale(1.5 * scale / g, patch->moment), -2 * scale / v,
-                          patch->swept_moment);
+    out.push = tl_v3_madd(tl_v3_scale(by_g, patch->force), -by_v, patch->swept);
+    out.turn = tl_v3_madd(tl_v3_scale(by_g, patch->moment), -by_v, patch->swept_moment);
     out.turn = tl_v3_madd(out.turn, couple, hinge);
     return out;
 }
