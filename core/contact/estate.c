@@ -92,8 +92,12 @@ void tl_estate_keep(tl_model *m, uint32_t c, const tl_testator *a, const tl_test
         tl_vec3 place = tl_v3_add(tl_v3_add(a->place, to.at), tl_m3_mul(&to.to, p));
         d->left_points[d->left_count++] = tl_point_as_old(&d->points, &d->contacts, c, k, place);
     }
+    tl_vec3 first = d->left_points[estate->first].arm;
     if (estate->field)
         keep_field(m, c, estate, &d->left_points[estate->first]);
+    else
+        estate->overlap = facet->offset - tl_v3_dot(estate->face[0], tl_v3_sub(first, a->place)) -
+                          tl_v3_dot(estate->face[1], tl_v3_sub(first, b->place));
 }
 
 static int compare(const void *x, const void *y)
@@ -143,6 +147,26 @@ static uint32_t face_of(const tl_model *m, uint32_t block, tl_vec3 normal)
     return TL_NO_ROW;
 }
 
+/* How far a face of a block lies beyond a place, along its normal. */
+static double beyond(const tl_model *m, uint32_t block, uint32_t face, tl_vec3 place)
+{
+    const tl_plane *plane = &m->blocks.shape[block]->plane[face];
+    uint32_t body = m->blocks.body[block];
+    tl_vec3 arm = tl_v3_sub(place, tl_body_place(&m->bodies, body));
+    return plane->offset - tl_v3_dot(plane->normal, tl_m3_tmul(&m->bodies.pose[body].r, arm));
+}
+
+/* Whether two faces that are parallel to those of an estate are parts of them. A face that a cut has made inside the whole lies behind
+ * the whole's face, so it overlaps the other block's by less. */
+static bool lie_in(const tl_model *m, const tl_estate *estate, uint32_t block_a, uint32_t face_a,
+                   uint32_t block_b, uint32_t face_b)
+{
+    tl_vec3 first = m->detect->left_points[estate->first].arm;
+    double overlap = beyond(m, block_a, face_a, first) + beyond(m, block_b, face_b, first);
+    double size = fmin(m->blocks.size[block_a], m->blocks.size[block_b]);
+    return fabs(overlap - estate->overlap) < TL_STILL * size;
+}
+
 bool tl_estate_faces(const tl_model *m, uint32_t block_a, uint32_t block_b, uint32_t *face_a,
                      uint32_t *face_b)
 {
@@ -152,7 +176,8 @@ bool tl_estate_faces(const tl_model *m, uint32_t block_a, uint32_t block_b, uint
     bool other_way = root_of(m, block_a) != estate->a;
     *face_a = face_of(m, block_a, estate->face[other_way]);
     *face_b = face_of(m, block_b, estate->face[!other_way]);
-    return *face_a != TL_NO_ROW && *face_b != TL_NO_ROW;
+    return *face_a != TL_NO_ROW && *face_b != TL_NO_ROW &&
+           lie_in(m, estate, block_a, *face_a, block_b, *face_b);
 }
 
 const tl_estate *tl_estate_on(const tl_model *m, uint32_t block_a, uint32_t block_b,
