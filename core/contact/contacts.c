@@ -8,6 +8,7 @@
 #include "contact/held.h"
 #include "contact/index.h"
 #include "contact/pair_view.h"
+#include "contact/places.h"
 #include "contact/points.h"
 #include "contact/presses.h"
 #include "contact/simd_groups.h"
@@ -328,6 +329,21 @@ static void clear_points(tl_detect *d, uint32_t contact)
     tl_simd_group_note(d, contact, TL_NO_ROW);
     for (size_t k = 0; k < d->contacts.point_capacity[contact]; k++)
         tl_point_clear(&d->points, tl_point_row(&d->contacts, contact, k));
+}
+
+void tl_contact_begin_law(tl_model *m, uint32_t contact, const tl_kind *kind)
+{
+    tl_detect *d = m->detect;
+    const tl_point_lanes *lanes = &d->lanes[0];
+    const tl_contacts *c = &d->contacts;
+    double size = fmin(m->blocks.size[c->a[contact]], m->blocks.size[c->b[contact]]);
+    tl_contact_places(m, contact, lanes);
+    for (size_t k = 0; k < c->point_count[contact]; k++) {
+        size_t i = tl_point_row(c, contact, k);
+        bool apart = lanes->closure[k] < -TL_STILL * size && !(d->points.f_n[i] < 0);
+        tl_point_begin(&d->points, i, kind);
+        d->points.flags[i] = apart ? TL_POINT_APART : 0;
+    }
 }
 
 bool tl_contact_place(tl_detect *d, uint32_t row)

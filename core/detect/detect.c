@@ -12,7 +12,6 @@
 #include "contact/held.h"
 #include "contact/index.h"
 #include "contact/pair_view.h"
-#include "contact/points.h"
 #include "contact/prefetch.h"
 #include "contact/store.h"
 #include "detect/asked.h"
@@ -187,8 +186,7 @@ static void change_law(tl_model *m, uint32_t c)
     const tl_kind *kind = law == TL_NO_ROW ? NULL : m->joint_laws[law].kind;
     if (old != TL_NO_ROW && m->joint_laws[old].kind == kind)
         return;
-    for (uint32_t k = 0; k < d->contacts.point_count[c]; k++)
-        tl_point_begin(&d->points, tl_point_row(&d->contacts, c, k), kind);
+    tl_contact_begin_law(m, c, kind);
 }
 
 /* Notes that the contacts of two bodies are no longer what they were. Of those that ended with their blocks it was noted when

@@ -6,6 +6,7 @@
 #include "force/joint_laws.h"
 
 #include "base/inside.h"
+#include "contact/contacts.h"
 #include "contact/places.h"
 #include "contact/points.h"
 #include "contact/store.h"
@@ -158,10 +159,7 @@ void tl_law_rebase(tl_model *m, const tl_law *law)
 void tl_law_reset(tl_model *m, uint32_t law, const tl_kind *kind)
 {
     tl_detect *d = m->detect;
-    for (uint32_t c = 0; d && c < d->contacts.table.rows; c++) {
-        if (d->contacts.law[c] != law)
-            continue;
-        for (uint32_t k = 0; k < d->contacts.point_count[c]; k++)
-            tl_point_begin(&d->points, tl_point_row(&d->contacts, c, k), kind);
-    }
+    for (uint32_t c = 0; d && c < d->contacts.table.rows; c++)
+        if (d->contacts.law[c] == law)
+            tl_contact_begin_law(m, c, kind);
 }

@@ -197,6 +197,30 @@ for seed = 1, 6 do
     check.near(model:energy().balance, 0, 1e-9)
 end
 
+-- A slice so thin is cut off the foot that the floor comes near the rest through it: the rest does not take the foot's bond over, and
+-- the law of the new joint makes none.
+local bonds = {
+    elastic = { kn = 1e9, ks = 1e9 },
+    coulomb_tensile = { kn = 1e9, ks = 1e9, friction = 30, cohesion = 1e8, tension = 1e8 },
+    cohesive = { kn = 1e9, ks = 1e9, friction = 30, cohesion = 1e8, tension = 1e8, gi = 1e9, gii = 1e9 },
+}
+for _, foot in ipairs { "coulomb", "elastic", "cohesive" } do
+    for law, values in pairs(bonds) do
+        local model = talus.model { gravity = { 0, 0, -G } }
+        model:generate("box", { min = { -2, -2, -1 }, max = { 3, 3, 0 }, density = DENSITY })
+        model:blocks():fix():hide()
+        model:generate("box", { min = { 0, 0, 0 }, max = { 1, 1, 1 }, density = DENSITY })
+        model:joint("*", foot, bonds[foot] or { kn = 1e9, ks = 1e9, friction = 30 })
+        model:damping("local")
+        model:solve { ratio = 1e-9 }
+        model:damping("none")
+        model:generate("joint", plane("thin", 0, 0, 0, 0, 2e-4))
+        model:joint("thin", law, values)
+        model:cycle(100)
+        check.near(fastest(model), 0, 1e-7)
+    end
+end
+
 -- ---------------------------------------------------------------- laws
 
 local function chance(seed)
