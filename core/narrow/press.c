@@ -261,24 +261,31 @@ static bool sum_patch(const tl_press_query *of, planes *p, tl_narrow_scratch *sc
     return tl_field_integrate(&p->faces, &scratch->field, out);
 }
 
-/* The same where all of it is at the corners: sums over them. The overlap of a corner, which goes half with A and half with B, acts
- * along the mean of both normals. */
+/* The same where all of it is at the corners: sums over them. As in a patch a corner goes with the share `ride` of B's motion against A;
+ * its overlap acts along the gradient of that. It acts where the corner is on the face that it goes with: beside the bisecting plane
+ * its lever would be another one by a share of the tilt. */
 static bool sum_corners(const tl_press_query *of, tl_vec3 origin, tl_narrow_scratch *scratch,
                         tl_field_sums *out)
 {
     const uint32_t fa = of->region->flush_a, fb = of->region->flush_b;
     const tl_touch_rule rule = {.corners = true, .reach = INFINITY};
     const tl_plane a = plane_of(of->view, 0, fa), b = plane_of(of->view, 1, fb);
-    const tl_vec3 n = tl_v3_scale(0.5, tl_v3_sub(a.normal, b.normal));
+    const tl_vec3 between = tl_v3_unit(tl_v3_sub(a.normal, b.normal));
+    const double slant = tl_v3_dot(a.normal, between); /* of both faces */
     const double offset = a.offset + b.offset + shift_of(of, 0, fa) + shift_of(of, 1, fb);
     *out = (tl_field_sums){0};
     scratch->manifold.failed = false;
     if (!(tl_patch_lay(of->view, fa, fb, &rule, scratch) > 0))
         return !scratch->manifold.failed;
     const tl_patch_points *corner = &scratch->patch;
+    const double ride = corner->ride;
+    const tl_vec3 n = tl_v3_sub(tl_v3_scale(ride, a.normal), tl_v3_scale(1 - ride, b.normal));
     for (size_t i = 0; i < corner->count; i++) {
-        tl_vec3 place = tl_columns_get(corner->p, i), x = tl_v3_sub(place, origin);
-        tl_vec3 arm = tl_v3_cross(x, n);
+        tl_vec3 place = tl_columns_get(corner->p, i);
+        double up = (a.offset - tl_v3_dot(a.normal, place)) / slant;
+        double down = (b.offset - tl_v3_dot(b.normal, place)) / slant;
+        tl_vec3 on_face = tl_v3_madd(place, (1 - ride) * up - ride * down, between);
+        tl_vec3 x = tl_v3_sub(on_face, origin), arm = tl_v3_cross(x, n);
         double overlap = offset - tl_v3_dot(tl_v3_add(a.normal, b.normal), place);
         double area = corner->area[i], half = 0.5 * area * overlap;
         if (!(overlap > 0))
