@@ -70,7 +70,9 @@ function inclines.try(case, joint)
         end
     end
     if joint.tension == 0 then
-        incline(case, model, inclines.BEYOND * case.limit)
+        -- A joint that stiffens lets its edge close less: it is between the one with straight springs and a rigid one.
+        local limit = joint.curved and case.width / case.height or case.limit
+        incline(case, model, inclines.BEYOND * limit)
         model:damping "none"
         local fallen = run() == "stop" or run() == "stop" or run() == "stop"
         if not fallen then
