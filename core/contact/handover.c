@@ -150,28 +150,31 @@ double tl_contact_lift_field(tl_model *m, uint32_t c)
 static double bonds_end(const tl_model *m, uint32_t c, const tl_manifold *g)
 {
     const tl_contacts *contacts = &m->detect->contacts;
-    const tl_points_table *p = &m->detect->points;
     const tl_law *law = contacts->law[c] == TL_NO_ROW ? NULL : &m->joint_laws[contacts->law[c]];
     if (!law || !(law->kn > 0))
         return 0;
-    bool linear = tl_law_is_linear(law);
-    double energy = 0, by = g->point_count ? 2 * law->kn : 0;
+    const tl_contact_across has = tl_contact_across_gap(m, c);
+    double by = g->point_count ? 2 * law->kn : 0;
     const tl_mat3 *turn = &m->bodies.pose[m->blocks.body[contacts->a[c]]].r;
     const tl_shear along = tl_shear_of(m, c);
     tl_vec3 force = tl_v3_sub(contacts->force[c], along.force);
     tl_vec3 moment = tl_v3_sub(contacts->moment[c], along.moment);
-    for (size_t k = 0; k < contacts->point_count[c]; k++) {
-        size_t i = tl_point_row(contacts, c, k);
-        double f = linear ? p->f_n[i] : fmin(0, p->f_n[i]);
-        energy += p->area[i] > 0 ? 0.5 * f * f / (law->kn * p->area[i]) : 0;
-    }
-    if (!linear)
-        return energy;
+    if (!tl_law_is_linear(law))
+        return has.pulled;
     force = tl_v3_madd(force, by, tl_m3_mul(turn, g->press.force));
     moment = tl_v3_madd(moment, by, tl_m3_mul(turn, g->press.moment));
     tl_contact_motion moved = tl_contact_moved(m, c);
     double work = 0.5 * (tl_v3_dot(force, moved.way) + tl_v3_dot(moment, moved.turn));
-    return energy - work - by * g->press.energy;
+    return has.pressed + has.pulled - work - by * g->press.energy;
+}
+
+void tl_contact_end_bonds(tl_model *m, uint32_t c)
+{
+    tl_contacts *contacts = &m->detect->contacts;
+    const tl_manifold none = {.point_count = 0};
+    if (contacts->facet[c].kind == TL_FACET_PATCH && contacts->point_count[c] > 0 &&
+        tl_contact_across_gap(m, c).bonded)
+        contacts->released[c] += bonds_end(m, c, &none);
 }
 
 /* What the law keeps of a contact: means over what presses. */

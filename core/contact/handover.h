@@ -11,6 +11,8 @@
  * `reframed`, in frames that are no more. The points fit into the contact's room. */
 void tl_contact_hand_over(tl_model *m, uint32_t contact, const tl_manifold *manifold, bool reframed,
                           const tl_point_lanes *lanes);
+/* Notes as heat what the normal springs of a patch with bonds hold that is left without points. */
+void tl_contact_end_bonds(tl_model *m, uint32_t contact);
 /* Puts the manifold of a field contact in the place of what it was. */
 void tl_contact_refit_field(tl_model *m, uint32_t contact, const tl_manifold *manifold);
 /* Brings the shift of a field contact's faces up to how far slip has opened its joint now; returns by how much in the last step, m. */

@@ -216,7 +216,7 @@ static bool settle_rows(tl_model *m)
                 c->pending[row])) /* others are noted when they have got their points */
             touch(m, row);
         if (c->pending[row] == TL_PENDING_DIE) {
-            d->parted += tl_contact_sheared(m, row);
+            d->parted += tl_contact_sheared(m, row) + c->released[row];
             tl_contact_remove(d, row);
             tl_pair_parted(d, pair);
             continue;
