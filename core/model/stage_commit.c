@@ -2,6 +2,7 @@
  * deleted go, and blocks that hang together become bodies. All memory is reserved before the model is
  * touched, but for that of the bodies of several blocks: where there are such, the rows as they were are set aside. */
 #include "model/model.h"
+#include "model/stage_loads.h"
 
 #include <stdlib.h>
 
@@ -125,7 +126,8 @@ typedef struct commit_scratch {
     tl_id *ids;       /* [staged blocks] their ids in the model */
     tl_split *splits; /* [staged blocks] that were there before */
     size_t split_count;
-    tl_poly **gone; /* [rows before] shapes that other shapes or blocks take the place of */
+    tl_cut_loads loads; /* of the bodies that were cut */
+    tl_poly **gone;     /* [rows before] shapes that other shapes or blocks take the place of */
     size_t gone_count;
     tl_aside aside;  /* where there are bodies of several blocks */
     uint32_t *first; /* [staged bodies] */
@@ -219,6 +221,7 @@ static void keep_splits(tl_stage *stage, commit_scratch *scratch)
 
 static void free_scratch(commit_scratch *scratch)
 {
+    tl_cut_loads_free(&scratch->loads);
     free(scratch->splits);
     free(scratch->keep);
     free(scratch->slot);
@@ -277,7 +280,7 @@ static bool reserve_scratch(tl_stage *stage, size_t old, size_t made, commit_scr
     }
     return sort_rows(stage, old, scratch) && scratch->ids && scratch->splits && scratch->gone &&
            (!stage->regroups || (scratch->first && scratch->group)) && rows < TL_NO_ROW &&
-           reserve_record(stage) &&
+           reserve_record(stage) && tl_cut_loads_take(stage, &scratch->loads) &&
            (!has_contacts(stage->model) ||
             tl_grow(&stage->model->heirs, &stage->model->heir_capacity,
                     stage->model->heir_count + made, sizeof *stage->model->heirs)) &&
@@ -377,6 +380,7 @@ tl_status tl_stage_commit(tl_stage *stage)
             tl_rows_take_back(m, &scratch.aside);
     }
     if (status == TL_OK) {
+        tl_cut_loads_give(stage, scratch.ids, &scratch.loads);
         keep_record(stage, scratch.ids);
         keep_heirs(stage, &scratch);
         keep_splits(stage, &scratch);

@@ -1,0 +1,21 @@
+/* stage_loads.h - loads of bodies that are cut go to their parts: stage_loads.c. */
+#ifndef TL_MODEL_STAGE_LOADS_H
+#define TL_MODEL_STAGE_LOADS_H
+
+#include "model/model.h"
+
+typedef struct tl_cut_load tl_cut_load;
+
+typedef struct tl_cut_loads {
+    tl_cut_load *list;
+    size_t count;
+    uint32_t *of; /* [staged blocks] the load of the body that it comes from, or TL_NO_ROW */
+} tl_cut_loads;
+
+/* Takes the loads of the bodies that a stage has cut; false when out of memory (they are to be freed all the same). */
+bool tl_cut_loads_take(const tl_stage *stage, tl_cut_loads *loads);
+/* Gives them to the parts, when these have their bodies. `ids` are those of the staged blocks. */
+void tl_cut_loads_give(const tl_stage *stage, const tl_id *ids, tl_cut_loads *loads);
+void tl_cut_loads_free(tl_cut_loads *loads);
+
+#endif
