@@ -175,7 +175,7 @@ TL_IN_LOOP void move(const bonded *law, const tl_law_batch *batch, uint32_t begi
             double gone = pull - pulls - held * (parted > 0 ? pressed : 0);
             dissipated[i] = work + tl_law_snap_work(gone, kn * c.area[i], c.du_n[i]);
         }
-        double let_go = (pressed > 0) & !(apart[i] > 0) ? 0 : grips_on * (1 - holds);
+        double let_go = ((pressed > 0) & !(apart[i] > 0)) ? 0 : grips_on * (1 - holds);
         double lost = TL_POINT_FAILED + let_go * TL_POINT_APART;
         mark[i] = after > BOND_HOLDS ? 0 : lost;
         mark[i] += parted > 0 ? TL_POINT_OPEN : trial > most ? TL_POINT_SLIPPING : 0;
