@@ -191,20 +191,22 @@ static double cosine(const planes *p, size_t i, const planes *q, size_t j)
     return p->x[i] * q->x[j] + p->y[i] * q->y[j] + p->z[i] * q->z[j];
 }
 
-/* The flush faces: of the two that overlap the least and those that meet them in blunt edges the most parallel. So the
- * choice changes where two tilts are the same. Planes of other parts count, but are not chosen. */
+/* The flush faces: of the two that overlap the least, the most parallel where several do, and those that meet them in blunt
+ * edges the most parallel. So the choice changes where two tilts are the same. Planes of other parts count, but are not chosen. */
 static void find_flush(const planes *a, const planes *b, tl_region *out)
 {
     const uint16_t *of_a = out->face, *of_b = out->face + out->a;
     uint16_t first_a = 0, first_b = 0;
-    double most = -1, gap = -INFINITY;
+    double most = -1, gap = -INFINITY, facing = -1;
     for (uint32_t k = 0; k < out->a; k++)
         for (uint32_t m = 0; m < out->b; m++) {
             double g = fmax(a->low[of_a[k]], b->low[of_b[m]]);
-            if (g <= gap || cosine(a, of_a[k], b, of_b[m]) > -FACING)
+            double c = -cosine(a, of_a[k], b, of_b[m]);
+            if (c < FACING || g < gap || (g == gap && c <= facing))
                 continue;
             out->flush = true;
             gap = g;
+            facing = c;
             first_a = of_a[k];
             first_b = of_b[m];
         }
