@@ -266,6 +266,56 @@ static tl_heritage left_by(const tl_detect *d, const tl_estate *estate)
     return sum;
 }
 
+static double area_left(const tl_detect *d, const tl_estate *estate)
+{
+    double area = 0;
+    for (size_t k = 0; k < estate->count; k++)
+        area += d->left_points[estate->first + k].area;
+    return area;
+}
+
+/* Area of the whole's contact that a contact of parts has taken over from. */
+static double area_taken(const tl_detect *d, const tl_estate *estate, uint32_t c)
+{
+    double area = 0;
+    for (size_t k = 0; k < (is_field(d, c) ? 1 : d->contacts.point_count[c]); k++)
+        area += d->points.area[tl_point_row(&d->contacts, c, k)];
+    return fmin(area, area_left(d, estate));
+}
+
+static void scale_forces(tl_detect *d, uint32_t c, double by)
+{
+    tl_points_table *p = &d->points;
+    for (size_t k = 0; k < d->contacts.point_count[c]; k++) {
+        size_t i = tl_point_row(&d->contacts, c, k);
+        p->f_n[i] *= by;
+        if (p->f_n0)
+            p->f_n0[i] *= by;
+        tl_columns_put(p->f_s, i, tl_v3_scale(by, tl_columns_get(p->f_s, i)));
+    }
+}
+
+/* Parts that touch on patches where the whole touched on a smaller area have each taken over what was on all of it. They share it. */
+static void share_out(tl_model *m)
+{
+    tl_detect *d = m->detect;
+    const tl_contacts *contacts = &d->contacts;
+    for (size_t i = 0; i < d->estate_count; i++)
+        d->estates[i].taken = (tl_heritage){.area = 0};
+    for (int pass = 0; pass < 2; pass++)
+        for (uint32_t c = 0; c < contacts->table.rows; c++) {
+            const tl_estate *on =
+                tl_estate_on(m, contacts->a[c], contacts->b[c], &contacts->facet[c]);
+            if (!on || !on->field)
+                continue;
+            tl_heritage *taken = &d->estates[on - d->estates].taken;
+            if (pass == 0)
+                taken->area += area_taken(d, on, c);
+            else if (taken->area > area_left(d, on))
+                scale_forces(d, c, area_left(d, on) / taken->area);
+        }
+}
+
 /* The estate that a patch has taken a share of, or NULL. */
 static tl_estate *taken_by(const tl_model *m, uint32_t c)
 {
@@ -360,6 +410,7 @@ void tl_estates_balance(tl_model *m)
     if (d->estate_count == 0)
         return;
     void (*const correct[])(tl_model *, uint32_t, const tl_estate *) = {add_lacking, limit_energy};
+    share_out(m);
     for (int step = 0; step < 2; step++) {
         sum_taken(m);
         for (uint32_t c = 0; c < d->contacts.table.rows; c++) {

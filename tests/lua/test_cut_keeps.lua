@@ -221,6 +221,32 @@ for _, foot in ipairs { "coulomb", "elastic", "cohesive" } do
     end
 end
 
+-- A tilted block touches on a part of its foot: the parts that touch on more of it share that out until the next step, and none has all of it.
+do
+    local model = talus.model { gravity = { 0, 0, -G } }
+    model:generate("box", { min = { -1, -1, -1 }, max = { 2, 2, 0 }, density = DENSITY })
+    model:blocks():fix():hide()
+    model:generate("box", { min = { 0, 0, 0 }, max = { 1, 1, 1 }, density = DENSITY })
+    model:joint("*", "coulomb", { kn = 1e8, ks = 1e8, friction = 30 })
+    model:damping("local")
+    for _, moment in ipairs { 7e3, 4.8e3 } do
+        model:blocks():load { moment = { 0, moment, 0 } }
+        model:solve { ratio = 1e-6, max_cycles = 20000 }
+    end
+    local whole = model:contacts()[1]
+    local force = whole.normal_force
+    check.equal(#whole.points, 1)
+    model:generate("joint", plane("new", 90, 90, 0.8, 0.5, 0.5))
+    local sum, points = 0, 0
+    for _, contact in ipairs(model:contacts()) do
+        if contact.joint == "" then
+            sum, points = sum + contact.normal_force, points + #contact.points
+        end
+    end
+    check.holds(points > 2, "the parts touch on patches")
+    check.near(sum, force, 1e-9 * force)
+end
+
 -- A load stays when its block is cut: one on the whole is spread as weight is and asks nothing of the joint, one at a point goes to the part
 -- that has the point. Their sums are the same, also in the half of the step in which the load was set.
 local function momentum(model)
