@@ -46,8 +46,7 @@ typedef struct tl_press_row {
     double shift, opening[TL_FIELD_POINTS];
     double opened, paid; /* by slip in the step before `lifted_at`, m; with energy of shear, J */
     int64_t lifted_at, moved_at;
-    tl_vec3
-        half; /* of the way of the centre of pressure in the step before `moved_at`, in A's frame */
+    tl_vec3 half; /* of the way of the centre of pressure before `moved_at`, in A's frame */
     tl_face_pair shifted;
     uint32_t next_free;
     double spare[2]; /* energy of shear and of torsion beyond uniform stress, times 2 ks */
