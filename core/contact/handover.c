@@ -434,9 +434,25 @@ static double resized(double f2, double old, double now, double *spare)
     return part;
 }
 
+/* Half of the way of the centre of pressure in the last step, in A's frame; 0 where none has been noted. */
+static tl_vec3 half_way(const tl_model *m, const tl_press_row *row)
+{
+    return row->moved_at == m->cycles ? row->half : tl_v3(0, 0, 0);
+}
+
+/* The work in the last step of a force and a moment that acted at the centre of pressure before it, J. */
+static double work_on(tl_model *m, uint32_t c, const tl_manifold *g, tl_vec3 force, tl_vec3 twist)
+{
+    const tl_press_row *row = tl_press_row_of(m, c);
+    const tl_contact_motion by = tl_contact_moved(m, c);
+    tl_vec3 before = tl_v3_madd(g->points[0].p, -2, half_way(m, row));
+    tl_vec3 arm = tl_m3_mul(&m->bodies.pose[m->blocks.body[m->detect->contacts.a[c]]].r, before);
+    tl_vec3 du = tl_v3_add(by.way, tl_v3_cross(by.turn, arm));
+    return tl_v3_dot(force, du) + tl_v3_dot(twist, by.turn);
+}
+
 /* Shear and torsion for a new area and radius. */
-static void refit_springs(tl_model *m, uint32_t c, const tl_manifold *g,
-                          const tl_contact_motion *by_step)
+static void refit_springs(tl_model *m, uint32_t c, const tl_manifold *g)
 {
     tl_contacts *contacts = &m->detect->contacts;
     tl_points_table *p = &m->detect->points;
@@ -459,11 +475,9 @@ static void refit_springs(tl_model *m, uint32_t c, const tl_manifold *g,
     double stays_turned = resized(t2, polar, now, &row->spare[1]);
     lost -= energy_of(stays * stays * f2, area) + energy_of(stays_turned * stays_turned * t2, now) +
             row->spare[0] + row->spare[1];
-    tl_vec3 before = tl_v3_madd(g->points[0].p, -2, row->half); /* the old force acted there */
-    tl_vec3 arm = tl_m3_mul(&m->bodies.pose[m->blocks.body[contacts->a[c]]].r, before);
-    tl_vec3 du = tl_v3_add(by_step->way, tl_v3_cross(by_step->turn, arm));
-    double work =
-        (1 - stays) * tl_v3_dot(force, du) + (1 - stays_turned) * tl_v3_dot(twist, by_step->turn);
+    double work = stays < 1 || stays_turned < 1 ? work_on(m, c, g, tl_v3_scale(1 - stays, force),
+                                                          tl_v3_scale(1 - stays_turned, twist))
+                                                : 0;
     double ks = contacts->law[c] == TL_NO_ROW ? 0 : m->joint_laws[contacts->law[c]].ks;
     contacts->released[c] += ks > 0 ? 0.5 * (lost / ks - work) : 0;
     tl_columns_put(p->f_s, first, tl_v3_scale(stays, force));
@@ -472,16 +486,17 @@ static void refit_springs(tl_model *m, uint32_t c, const tl_manifold *g,
 }
 
 /* Notes half of the way of the centre of pressure in the last step; the old one has gone half with A and half with B. A step that is
- * made again finds the points where it left them, and keeps what it has noted. */
-static void note_way(tl_model *m, uint32_t c, tl_vec3 centre, const tl_contact_motion *by)
+ * made again finds the points where it left them, and keeps what it has noted. A contact that goes by slopes has stayed where it is. */
+static void note_way(tl_model *m, uint32_t c, tl_vec3 centre)
 {
     const tl_contacts *contacts = &m->detect->contacts;
     tl_press_row *row = tl_press_row_of(m, c);
-    if (row->moved_at == m->cycles)
+    if (row->moved_at == m->cycles || row->by_slope)
         return;
+    const tl_contact_motion by = tl_contact_moved(m, c);
     const tl_mat3 *turn = &m->bodies.pose[m->blocks.body[contacts->a[c]]].r;
     tl_vec3 old = tl_columns_get(m->detect->points.p, tl_point_row(contacts, c, TL_FIELD_SHEAR));
-    tl_vec3 passed = tl_v3_add(by->way, tl_v3_cross(by->turn, tl_m3_mul(turn, old)));
+    tl_vec3 passed = tl_v3_add(by.way, tl_v3_cross(by.turn, tl_m3_mul(turn, old)));
     old = tl_v3_madd(old, 0.5, tl_m3_tmul(turn, passed));
     row->half = tl_v3_scale(0.5, tl_v3_sub(centre, old));
     row->moved_at = m->cycles;
@@ -494,11 +509,10 @@ void tl_contact_refit_field(tl_model *m, uint32_t c, const tl_manifold *g)
     tl_press_row *row = tl_press_row_of(m, c);
     tl_vec3 last = contacts->facet[c].last;
     double area = p->area[tl_point_row(contacts, c, TL_FIELD_TORSION)];
-    const tl_contact_motion by_step = tl_contact_moved(m, c);
-    note_way(m, c, g->points[0].p, &by_step);
+    note_way(m, c, g->points[0].p);
     /* what is found again in the same place stays what it is, to the bit */
     if (g->points[0].area != area || g->press.radius != row->press.radius)
-        refit_springs(m, c, g, &by_step);
+        refit_springs(m, c, g);
     for (size_t k = 0; k < TL_FIELD_POINTS; k++)
         tl_columns_put(p->p, tl_point_row(contacts, c, k), g->points[0].p);
     contacts->facet[c] = g->facet;
