@@ -149,7 +149,8 @@ bool tl_contact_openings(const tl_model *m, uint32_t c, double opening[TL_FIELD_
     const tl_law *law = law_of(m, c);
     for (size_t k = 0; k < TL_FIELD_POINTS; k++)
         opening[k] = 0;
-    if (!law || law->columns == 0) /* without an initial force only a state lifts */
+    /* without an initial force only a state lifts */
+    if (!law || law->columns == 0 || !((const tl_law_ops *)law->kind->ops)->across_gap)
         return false;
     sample s;
     read_points(&d->points, &d->contacts, c, law, 0, &s);

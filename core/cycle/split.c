@@ -22,6 +22,7 @@
 #include "contact/places.h"
 #include "contact/store.h"
 #include "cycle/cycle_data.h"
+#include "model/inertia.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -198,10 +199,7 @@ static tl_vec3 column(const tl_mat3 *a, int k)
 /* The solution x of a x = b, a symmetric. */
 static tl_vec3 solve3(const tl_mat3 *a, tl_vec3 b)
 {
-    tl_vec3 x = column(a, 0), y = column(a, 1), z = column(a, 2);
-    double det = tl_v3_dot(x, tl_v3_cross(y, z));
-    return tl_v3(tl_v3_dot(b, tl_v3_cross(y, z)) / det, tl_v3_dot(x, tl_v3_cross(b, z)) / det,
-                 tl_v3_dot(x, tl_v3_cross(y, b)) / det);
+    return tl_solve3(column(a, 0), column(a, 1), column(a, 2), b);
 }
 
 /* w x I w */

@@ -2,6 +2,7 @@
  *
  * The paper's one moment of inertia (20) is printed without its coefficient: 0.4 m r^2, that of a
  * ball, with r the mean distance from centroid to vertices, is Talus's reading. */
+#include "model/inertia.h"
 #include "model/model.h"
 
 #include <stdlib.h>
@@ -108,15 +109,6 @@ void tl_block_measure(tl_model *m, uint32_t row, double volume)
     b->mean_face[row] = area / shape->face_count;
 }
 
-/* inertia + mass (|d|^2 1 - d d) : the tensor about a point at distance d */
-static tl_sym3 about(tl_sym3 inertia, double mass, tl_vec3 d)
-{
-    double dd = tl_v3_norm2(d);
-    return (tl_sym3){inertia.xx + mass * (dd - d.x * d.x), inertia.yy + mass * (dd - d.y * d.y),
-                     inertia.zz + mass * (dd - d.z * d.z), inertia.xy - mass * d.x * d.y,
-                     inertia.yz - mass * d.y * d.z,        inertia.zx - mass * d.z * d.x};
-}
-
 static tl_sym3 sum_scaled(tl_sym3 a, double s, tl_sym3 b)
 {
     return (tl_sym3){a.xx + s * b.xx, a.yy + s * b.yy, a.zz + s * b.zz,
@@ -134,8 +126,8 @@ typedef struct body_sum {
 static void add_block(body_sum *sum, const tl_poly *shape, double density, const tl_mass *one)
 {
     sum->mass += density * one->volume;
-    sum->inertia =
-        sum_scaled(sum->inertia, density, about(one->inertia, one->volume, one->centroid));
+    sum->inertia = sum_scaled(sum->inertia, density,
+                              tl_inertia_about(one->inertia, one->volume, one->centroid));
     for (uint32_t v = 0; v < shape->vertex_count; v++) {
         double r = tl_v3_norm(shape->vertex[v]);
         sum->distance += r;

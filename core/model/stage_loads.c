@@ -8,6 +8,7 @@
  * so that the parts go on as the whole, and what their joint carries stays. Sums of force and moment are those of the whole. */
 #include "model/stage_loads.h"
 
+#include "model/inertia.h"
 #include "model/wrench.h"
 
 #include <stdlib.h>
@@ -16,7 +17,7 @@
 typedef struct mass_sum {
     double mass;
     tl_vec3 place; /* centroid, relative to the origin */
-    tl_mat3 inertia;
+    tl_sym3 inertia;
 } mass_sum;
 
 struct tl_cut_load {
@@ -130,36 +131,24 @@ static void begin(tl_model *m, uint32_t row, tl_cut_load *of)
 
 static void add_inertia(tl_model *m, uint32_t row, tl_cut_load *of)
 {
-    tl_sym3 own = tl_block_inertia(m, row);
     tl_vec3 d = tl_v3_sub(place_of(m, row), of->sum.place);
-    double mass = mass_of(m, row), dd = tl_v3_norm2(d);
-    const double add[3][3] = {
-        {own.xx + mass * (dd - d.x * d.x), own.xy - mass * d.x * d.y, own.zx - mass * d.z * d.x},
-        {own.xy - mass * d.x * d.y, own.yy + mass * (dd - d.y * d.y), own.yz - mass * d.y * d.z},
-        {own.zx - mass * d.z * d.x, own.yz - mass * d.y * d.z, own.zz + mass * (dd - d.z * d.z)}};
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++)
-            of->sum.inertia.m[i][j] += add[i][j];
+    tl_sym3 add = tl_inertia_about(tl_block_inertia(m, row), mass_of(m, row), d);
+    tl_sym3 *to = &of->sum.inertia;
+    *to = (tl_sym3){to->xx + add.xx, to->yy + add.yy, to->zz + add.zz,
+                    to->xy + add.xy, to->yz + add.yz, to->zx + add.zx};
 }
 
-/* The angular acceleration that a moment gives to a body without a spin: Cramer's rule. */
-static tl_vec3 turned_by(const tl_mat3 *inertia, tl_vec3 moment)
+/* The angular acceleration that a moment gives to a body without a spin. */
+static tl_vec3 turned_by(tl_sym3 a, tl_vec3 moment)
 {
-    tl_vec3 row[3];
-    for (int i = 0; i < 3; i++)
-        row[i] = tl_v3(inertia->m[i][0], inertia->m[i][1], inertia->m[i][2]);
-    double det = tl_v3_dot(row[0], tl_v3_cross(row[1], row[2]));
-    if (!(det > 0))
-        return tl_v3(0, 0, 0);
-    return tl_v3_scale(1 / det, tl_v3(tl_v3_dot(moment, tl_v3_cross(row[1], row[2])),
-                                      tl_v3_dot(moment, tl_v3_cross(row[2], row[0])),
-                                      tl_v3_dot(moment, tl_v3_cross(row[0], row[1]))));
+    return tl_solve3(tl_v3(a.xx, a.xy, a.zx), tl_v3(a.xy, a.yy, a.yz), tl_v3(a.zx, a.yz, a.zz),
+                     moment);
 }
 
 /* The share of a block in a wrench on the whole, about the centroid of the block's body. */
 static tl_wrench share_of(const tl_model *m, uint32_t row, const mass_sum *sum, tl_wrench whole)
 {
-    tl_vec3 turn = turned_by(&sum->inertia, whole.moment), place = place_of(m, row);
+    tl_vec3 turn = turned_by(sum->inertia, whole.moment), place = place_of(m, row);
     tl_vec3 arm = tl_v3_sub(place, tl_body_place(&m->bodies, m->blocks.body[row]));
     tl_vec3 a = tl_v3_scale(1 / sum->mass, whole.force);
     a = tl_v3_add(a, tl_v3_cross(turn, tl_v3_sub(place, sum->place)));
