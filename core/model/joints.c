@@ -203,6 +203,10 @@ tl_status tl_model_contact_area(tl_model *m, const tl_contact_area *given)
     if (!isnan(area->absolute) && !(area->absolute >= 0 && isfinite(area->absolute)))
         return tl_fail(&m->error, TL_E_ARGUMENT, "contact_area: absolute = %g must be >= 0",
                        area->absolute);
+    if (!isnan(area->absolute) && area->fraction != TL_AREA_FRACTION)
+        return tl_fail(&m->error, TL_E_ARGUMENT,
+                       "contact_area: fraction = %g and absolute = %g m2 are both given: give one",
+                       area->fraction, area->absolute);
     tl_joint_min_area entry = {.rule = {area->fraction, area->absolute}};
     status = tl_joint_parse(m, area->joint ? area->joint : "*", &entry.tag);
     if (status != TL_OK)

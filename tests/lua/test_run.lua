@@ -183,6 +183,7 @@ refused(function() model:timestep { fraction = 0 } end, "fraction = 0 is outside
 refused(function() model:timestep { rule = "bodies" } end, "unknown rule 'bodies'")
 refused(function() model:timestep { dt = -1 } end, "dt = -1 s is outside [1e-100, 1e+100]")
 refused(function() model:contact_area { fraction = -1 } end, "fraction = -1")
+refused(function() model:contact_area { fraction = 0.5, absolute = 0.1 } end, "fraction = 0.5 and absolute = 0.1 m2 are both given: give one")
 refused(function() model:contact_area { joint = "J9" } end, "J9")
 refused(function() model:insitu {} end, "give stress")
 refused(function() model:insitu { strss = {} } end, "did you mean 'stress'?")
