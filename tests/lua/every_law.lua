@@ -13,6 +13,7 @@
 --     tension_after   what is left of it once it is lost, or where walls come together from a gap, Pa
 --     opens           slip opens the joint
 --     curved          the stress is no line
+--     yields          shear yields from the first
 --     stiffest        bound of the stiffness, Pa/m
 local no_tension = require "no_tension"
 local talus = require "talus"
@@ -69,12 +70,12 @@ local function rough(add, kn, p)
     bandis("no dilation", 1e5 * p / kn, 30 * p, false)
     bandis("curved", 5 * p / kn, 5 * p, true)
     add("continuously_yielding", "continuously_yielding", { an = kn, as = kn, phi_i = 50, phi = FRICTION, roughness = 0.01 },
-        { opens = true })
+        { opens = true, yields = true })
     add("continuously_yielding, no dilation", "continuously_yielding", { an = kn, as = kn, phi_i = 50, phi = FRICTION,
-        roughness = 0.01, softening = false, dilation = false })
+        roughness = 0.01, softening = false, dilation = false }, { yields = true })
     local at_one = kn / math.sqrt(p)
     add("continuously_yielding, curved", "continuously_yielding", { an = at_one, en = 0.5, as = at_one, es = 0.5,
-        kn_max = 3 * kn, ks_max = 3 * kn, phi_i = 50, phi = FRICTION, roughness = 0.01 }, { opens = true, curved = true,
+        kn_max = 3 * kn, ks_max = 3 * kn, phi_i = 50, phi = FRICTION, roughness = 0.01 }, { opens = true, curved = true, yields = true,
         stress = no_tension.power(at_one, 0.5, 3 * kn), stiffest = 3 * kn })
 end
 

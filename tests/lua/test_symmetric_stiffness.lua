@@ -1,16 +1,14 @@
 -- Rock under stress has a potential: where nothing slips, opens or dilates the tangent stiffness matrix of all free bodies is
 -- symmetric, whatever stress acts, wherever the blocks have moved to, and whichever block was made first.
+-- tests/verify/long/stiffness.lua tries many more models, of every law.
 local check = require "check"
+local stiffness = require "stiffness"
 local talus = require "talus"
 
 local KN, KS = 1e8, 0.6e8 -- Pa/m
-local DENSITY, DT = 1e12, 1e-6 -- so heavy that forces move nothing in a step
+local DENSITY = stiffness.density(KN)
 local ASYMMETRY = 1e-8 -- over the largest entry
-local STEP = 1e-6      -- m, rad: motion for differences
 local ORDER = { "cubes", "inside", "across", "flush", "rock" }
--- Closure under stress, m, and motion of the blocks against each other. Where faces are tilted by t, forces are off by some
--- t o of second order, with o the closure over the size: that must be below ASYMMETRY.
-local STATES = { { closure = 1e-3, motion = 1e-6 }, { closure = 1e-3, motion = 5e-6 }, { closure = 0.1, motion = 5e-8 } }
 
 local function box(model, min, max, group)
     model:generate("box", { min = min, max = max, density = DENSITY, group = group or "free" })
@@ -57,121 +55,24 @@ local function build(scene, law, stress, reuse)
     end
     model:joint("*", law, law == "elastic" and { kn = KN, ks = KS }
         or { kn = KN, ks = KS, friction = 40, cohesion = 1e9 })
-    model:timestep { dt = DT }
     model:insitu { stress = { xx = -stress, yy = -0.8 * stress, zz = -1.2 * stress,
         xy = 0.1 * stress, yz = -0.05 * stress } }
-    model:cycle(1)
+    stiffness.settle(model)
     return model
 end
 
--- The free blocks one by one, and all of them.
-local function free_of(model)
-    local one, free = {}, model:blocks { fixed = false }
-    for i, block in ipairs(free) do
-        one[i] = model:blocks { id = block.id }
-    end
-    return one, free
-end
-
-local function rest(free)
-    free:set { velocity = { 0, 0, 0 }, angular_velocity = { 0, 0, 0 } }
-end
-
--- Forces and moments of the free blocks in their present places.
-local function forces(model, one, free)
-    rest(free)
-    model:cycle(1)
-    rest(free)
-    local out = {}
-    for _, block in ipairs(one) do
-        for _, v in ipairs { block[1].force, block[1].moment } do
-            for k = 1, 3 do
-                out[#out + 1] = v[k]
-            end
-        end
-    end
-    return out
-end
-
--- Moves block i by `way`, three components in m and three in rad.
-local function move(model, one, free, i, way)
-    rest(free)
-    one[i]:set { velocity = { way[1] / DT, way[2] / DT, way[3] / DT },
-        angular_velocity = { way[4] / DT, way[5] / DT, way[6] / DT } }
-    model:cycle(1)
-    rest(free)
-end
-
-local function along(k, way)
-    local out = { 0, 0, 0, 0, 0, 0 }
-    out[k] = way
-    return out
-end
-
--- Largest |K_ij - K_ji| over the largest |K_ij|. Turns do not commute, which alone makes the rows of a body's turns asymmetric
--- by the moment M on it: K - K^T = [M] there. That is taken out.
-local function asymmetry(model)
-    local one, free = free_of(model)
-    local at, k = forces(model, one, free), {}
-    for i = 1, #one do
-        for axis = 1, 6 do
-            local function forces_after(way)
-                move(model, one, free, i, along(axis, way))
-                local found = forces(model, one, free)
-                move(model, one, free, i, along(axis, -way))
-                forces(model, one, free)
-                return found
-            end
-            -- each step of a turn adds as much to the shear, of second order in STEP: the mean of `ahead` and `again` has it
-            -- as `behind` has
-            local ahead, behind, again = forces_after(STEP), forces_after(-STEP), forces_after(STEP)
-            local row = {}
-            for j = 1, #ahead do
-                row[j] = (behind[j] - 0.5 * (ahead[j] + again[j])) / (2 * STEP)
-            end
-            k[#k + 1] = row
-        end
-    end
-    for i = 0, #one - 1 do
-        local x, y, z = at[6 * i + 4], at[6 * i + 5], at[6 * i + 6]
-        local cross = { { 0, -z, y }, { z, 0, -x }, { -y, x, 0 } }
-        for a = 1, 3 do
-            for b = 1, 3 do -- k has a motion in each row: it is K^T
-                local row = k[6 * i + 3 + b]
-                row[6 * i + 3 + a] = row[6 * i + 3 + a] - 0.5 * cross[a][b]
-            end
-        end
-    end
-    local largest, odd = 0, 0
-    for i = 1, #k do
-        for j = 1, #k do
-            largest = math.max(largest, math.abs(k[i][j]))
-            odd = math.max(odd, math.abs(k[i][j] - k[j][i]))
-        end
-    end
-    return odd / largest
-end
-
 math.randomseed(7)
-local function random(most)
-    return most * (2 * math.random() - 1)
+local function random(low, high)
+    return low + (high - low) * math.random()
 end
 
 for _, scene in ipairs(ORDER) do
     for _, law in ipairs { "elastic", "coulomb" } do
-        for _, state in ipairs(STATES) do
+        for _, state in ipairs(stiffness.STATES) do
             for _, reuse in ipairs { true, false } do
                 local model = build(scene, law, KN * state.closure, reuse)
-                local one, free = free_of(model)
-                for i = 1, #one do
-                    local way = {}
-                    for axis = 1, 6 do
-                        way[axis] = random(state.motion)
-                    end
-                    move(model, one, free, i, way)
-                    forces(model, one, free)
-                end
-                local odd = asymmetry(model)
+                stiffness.disturb(model, state.motion, random)
+                local odd = stiffness.asymmetry(model)
                 check.holds(odd < ASYMMETRY, ("%s, %s, closure %g m, motion %g m, reuse %s: asymmetry %.2g"):format(
                     scene, law, state.closure, state.motion, tostring(reuse), odd))
                 check.equal(model:energy().friction, 0)
@@ -198,7 +99,7 @@ local function lattice(law, stress, kick, reuse)
     model:insitu { stress = { xx = -stress, yy = -stress, zz = -stress } }
     model:cycle(1)
     for _, block in ipairs(model:blocks { group = "free" }) do
-        model:blocks { id = block.id }:set { velocity = { random(kick), random(kick), random(kick) } }
+        model:blocks { id = block.id }:set { velocity = { random(-kick, kick), random(-kick, kick), random(-kick, kick) } }
     end
     return model
 end
