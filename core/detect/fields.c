@@ -195,7 +195,7 @@ static bool watch(const tl_model *m, const tl_press_query *query, const tl_press
         row->since = m->cycles;
     }
     if (!stays || m->cycles - row->since < TL_PRESS_SLOPE_COST || press->patch >= 1 ||
-        press->volume > 0 || /* slopes are of the energy only */
+        press->powers[TL_PRESS_VOLUME].whole > 0 || /* slopes are of the energy only */
         !m->config.reuse_geometry)
         return true;
     tl_press_slope slope;

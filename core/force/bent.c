@@ -1,12 +1,7 @@
 /* bent.c - cells of partly open patches under a stress that is no line in the closure.
  *
  * A law that is not linear tells the energy E(u) of what presses, A int s du; so its stress s follows from two energies. Over the
- * closed part of a cell two closures stand for all, those of Gauss for the weight u:
- *
- *     u_1, u_2 = m + d/2 (g -+ (g^2 + 4)^(1/2)),   I_n = int u^n dA
- *     m = I_2 / I_1,   d^2 = I_3 / I_1 - m^2,   g d^3 = I_4 / I_1 - 3 m I_3 / I_1 + 2 m^3
- *
- * Between and beyond them s / u and E / (A u^2) are lines in u, s / u = a + b u, E / (A u^2) = c + e u. So
+ * closed part of a cell two closures stand for all (closures.c), with its moments I_n = int u^n dA. Between and beyond them s / u and E / (A u^2) are lines in u, s / u = a + b u, E / (A u^2) = c + e u. So
  *
  *     force   int s dA      = a I_1 + b I_2
  *     moment  int s x dA    = a int u x dA + b int u^2 x dA
@@ -19,15 +14,11 @@
 
 #include "base/columns.h"
 #include "contact/detection.h"
+#include "force/closures.h"
 #include "force/pressed.h"
 
 #include <math.h>
 
-/* Of a closure: how far from it energies are taken for the stress. Both what a curve adds and what is lost in rounding are below
- * 1e-6 of the stress. */
-#define NEAR (1.0 / 1024)
-/* The least d of m: less, and the two closures could not be told apart. */
-#define LEAST_SPREAD 0.01
 #define STEPS 3
 /* The least power of the closure that a stress is taken to go with. */
 #define LEAST_POWER 0.5
@@ -58,14 +49,15 @@ static void ask(const cells *of, answer *at)
     const double *lift = of->t->lift + of->lane, *area = of->m->detect->points.area + of->row;
     double closure[ROWS], below[ROWS], above[ROWS];
     for (size_t i = 0; i < of->count; i++)
-        closure[i] = (1 - NEAR) * at->u[i] - lift[i];
+        closure[i] = (1 - TL_NEAR_CLOSURE) * at->u[i] - lift[i];
     tl_law_energies(of->m, of->law, of->row, of->count, of->t, closure, below);
     for (size_t i = 0; i < of->count; i++)
-        closure[i] = (1 + NEAR) * at->u[i] - lift[i];
+        closure[i] = (1 + TL_NEAR_CLOSURE) * at->u[i] - lift[i];
     tl_law_energies(of->m, of->law, of->row, of->count, of->t, closure, above);
     for (size_t i = 0; i < of->count; i++) {
         bool some = at->u[i] > 0;
-        at->stress[i] = some ? (above[i] - below[i]) / (2 * NEAR * at->u[i] * area[i]) : 0;
+        at->stress[i] =
+            some ? (above[i] - below[i]) / (2 * TL_NEAR_CLOSURE * at->u[i] * area[i]) : 0;
         at->energy[i] = some ? 0.5 * (above[i] + below[i]) / area[i] : 0;
     }
 }
@@ -73,13 +65,12 @@ static void ask(const cells *of, answer *at)
 /* The two closures that stand for all of a cell. */
 static void choose(const tl_cell *cell, double *one, double *two)
 {
-    double by = 1 / cell->pressed_volume, mean = by * cell->pressed_second;
-    double square = by * cell->pressed_third, cube = by * cell->pressed_fourth;
-    double d = fmax(sqrt(fmax(square - mean * mean, 0)), LEAST_SPREAD * mean);
-    double third = cube - mean * (3 * square - 2 * mean * mean), g = third / (d * d * d);
-    double side = sqrt(g * g + 4);
-    *one = mean + 0.5 * d * (g - side);
-    *two = mean + 0.5 * d * (g + side);
+    const double moment[] = {cell->pressed_volume, cell->pressed_second, cell->pressed_third,
+                             cell->pressed_fourth};
+    double closure[2];
+    tl_two_closures(moment, closure);
+    *one = closure[0];
+    *two = closure[1];
 }
 
 static void choose_all(const cells *of, answer *one, answer *two)

@@ -1,8 +1,24 @@
 /* field_press.c - normal force, moment and energy of a field contact.
  *
  * A law that is linear has the energy 2 kn G; another one tells its energy per area, or only its force. What slip opens in a step moves
- * the faces in the next one; until then it presses on beside the field. */
+ * the faces in the next one; until then it presses on beside the field.
+ *
+ * Between flush faces that overlap by u the integral of d^n over K is that of (u / 2)^(n + 1) 2 / (n + 1) over their area. So the integrals
+ * of d^0 .. d^3 are moments of an overlap,
+ *
+ *     I_1 = V,  I_2 = 4 G,  I_3 = 12 int d^2 dV,  I_4 = 32 int d^3 dV,    I_n = int u^n dA
+ *
+ * of any field. With the energy Phi per area that the law tells at the two closures of these (closures.c), and the stress Phi' there,
+ * Phi / u is a cubic p_0 + p_1 u + p_2 u^2 + p_3 u^3 that meets both. The energy is
+ *
+ *     U = sum p_k I_(k+1)
+ *
+ * which is exact for stresses up to u^3, as in the cells of a patch, and 2 kn G for a linear one. What the moments change of the
+ * closures changes nothing of U: that is what makes them those of Gauss. So U has the slopes p_k by I_(k+1). A minimum area A_m makes it
+ * larger by (1 + (A_m / A_e)^2)^(1/2), with A_e = V^2 / (4 G) as for a linear law. */
 #include "force/field_press.h"
+
+#include "force/closures.h"
 
 /* What slip pays for moving two faces apart by what it did in the last step, here: as if all of the law's force were on them. */
 static double pays_for_lift(const tl_press_row *row, double whole)
@@ -35,24 +51,82 @@ tl_field_press tl_press_linearly(const tl_press_row *row, double kn, double area
                             .by_energy = by};
 }
 
+/* A closure over the other one below which it is none: moments of next to nothing may be roundings. */
+#define LEAST_CLOSURE 1e-6
+
+void tl_press_closures(const tl_press *press, double closure[2])
+{
+    const double moment[] = {press->powers[TL_PRESS_VOLUME].whole, 4 * press->energy,
+                             12 * press->powers[TL_PRESS_SQUARE].whole,
+                             32 * press->powers[TL_PRESS_CUBE].whole};
+    tl_two_closures(moment, closure);
+    closure[0] = fmax(closure[0], LEAST_CLOSURE * closure[1]);
+}
+
+/* The cubic that meets the energy per closure, and its slope, at both closures. */
+static void find_cubic(const tl_told_press *by, double p[4])
+{
+    double a = by->at[0], b = by->at[1], per = 1 / (b - a);
+    double f = by->energy[0] / a, g = by->energy[1] / b, mean = (g - f) * per;
+    double c1 = (by->stress[0] - f) / a, c2 = (mean - c1) * per;
+    double c3 = (((by->stress[1] - g) / b - mean) * per - c2) * per;
+    p[0] = f - a * (c1 - a * (c2 - c3 * b));
+    p[1] = c1 - a * (2 * c2 - c3 * (a + 2 * b));
+    p[2] = c2 - c3 * (2 * a + b);
+    p[3] = c3;
+}
+
+/* The energy of the field, and its slopes by G and the powers. */
+static double find_slopes(const tl_press *press, double area, const tl_told_press *by,
+                          tl_field_press *out)
+{
+    const tl_field_power *powers = press->powers;
+    double g = press->energy, v = powers[TL_PRESS_VOLUME].whole, p[4];
+    find_cubic(by, p);
+    double own = 0.25 * v * v / g, more = area / own;
+    double all = p[0] * v + 4 * p[1] * g + 12 * p[2] * powers[TL_PRESS_SQUARE].whole +
+                 32 * p[3] * powers[TL_PRESS_CUBE].whole;
+    double stretch = all * (more - 1 / more);
+    out->by_energy = more * 4 * p[1] + stretch / g;
+    out->by_powers[TL_PRESS_VOLUME] = more * p[0] - 2 * stretch / v;
+    out->by_powers[TL_PRESS_SQUARE] = more * 12 * p[2];
+    out->by_powers[TL_PRESS_CUBE] = more * 32 * p[3];
+    return more * all;
+}
+
+/* Adds what slip opens in this step at the overlap 4 G / V of the area: it adds to the force by m = F o / U of an energy U ~ o^m of the
+ * closure o, dF = (F - U / o) dU / U. Gives that. */
+static double add_rise(const tl_press *press, double area, const double f_n[TL_FIELD_POINTS],
+                       const tl_told_press *by, tl_field_press *out)
+{
+    double g = press->energy, v = press->powers[TL_PRESS_VOLUME].whole, own = 0.25 * v * v / g;
+    double more[TL_FIELD_POINTS] = {0}, rise = 0;
+    for (int k = 0; k < TL_FIELD_POINTS; k++) {
+        double energy = by->springs[k];
+        rise += by->rise[k];
+        more[k] = energy > 0 ? (f_n[k] - energy / by->closure[k]) * by->rise[k] / energy : 0;
+    }
+    double all = more[0] + more[1], stretch = rise * (own / area) * (own / area);
+    out->by_energy += all * 4 / v - stretch / g;
+    out->by_powers[TL_PRESS_VOLUME] += 2 * stretch / v - all * 4 * g / (v * v);
+    out->energy += rise;
+    return more[TL_FIELD_TORSION];
+}
+
 tl_field_press tl_press_by_law(const tl_press *press, double area, double f_n, double same,
                                const tl_told_press *by)
 {
-    double g = press->energy, v = press->volume, own = 0.25 * v * v / g, s = 4 * g / v;
-    double rise = by->torsion - by->unlifted;
-    double more = by->torsion > 0 ? (same - by->torsion / by->closure) * rise / by->torsion : 0;
-    double force = f_n + more, energy = by->shear + rise;
-    double stretch = energy / (area * area) * own;
-    double by_g = force * 4 / v - stretch * own / g;
-    double by_v = stretch * 2 * own / v - force * s / v;
-    return (tl_field_press){
-        .force = tl_v3_madd(tl_v3_scale(by_g, press->force), by_v, press->swept),
-        .moment = tl_v3_madd(tl_v3_scale(by_g, press->moment), by_v, press->swept_moment),
-        .energy = energy,
-        .springs = by->shear + by->torsion,
-        .whole = force,
-        .by_energy = by_g,
-        .by_volume = by_v};
+    const double forces[TL_FIELD_POINTS] = {f_n, same};
+    tl_field_press out = {.springs = by->springs[0] + by->springs[1]};
+    out.energy = find_slopes(press, area, by, &out);
+    out.whole = f_n + add_rise(press, area, forces, by, &out);
+    out.force = tl_v3_scale(out.by_energy, press->force);
+    out.moment = tl_v3_scale(out.by_energy, press->moment);
+    for (int k = 0; k < TL_PRESS_POWERS; k++) {
+        out.force = tl_v3_madd(out.force, out.by_powers[k], press->powers[k].force);
+        out.moment = tl_v3_madd(out.moment, out.by_powers[k], press->powers[k].moment);
+    }
+    return out;
 }
 
 tl_field_press tl_press_by_force(const tl_press *press, double kn, double area, double f_n,
@@ -71,6 +145,8 @@ double tl_lost_lift(const tl_press_row *row, const tl_field_press *by)
 {
     const tl_press *press = &row->press;
     double pays = pays_for_lift(row, by->whole);
-    double gets = by->by_energy * press->lifted + by->by_volume * press->lifted_volume;
+    double gets = by->by_energy * press->lifted;
+    for (int k = 0; k < TL_PRESS_POWERS; k++)
+        gets += by->by_powers[k] * press->lifted_powers[k];
     return pays != 0 ? 0.5 * (row->paid + pays) * (1 - gets / pays) : 0;
 }

@@ -9,14 +9,18 @@
 typedef struct tl_field_press {
     tl_vec3 force, moment;
     double energy, springs;
-    double whole;                /* the force of which these are slopes */
-    double by_energy, by_volume; /* change of the energy with those of the press */
+    double whole;                                 /* the force of which these are slopes */
+    double by_energy, by_powers[TL_PRESS_POWERS]; /* change of the energy with those of the press */
 } tl_field_press;
 
-/* What presses the two points of a field contact, as a law tells that is not linear: energies, that of torsion without what slip has
- * opened of it in this step, and the closure of its walls. */
+/* Closures of a press at which a law is asked that is not linear. */
+void tl_press_closures(const tl_press *press, double closure[2]);
+
+/* What a law tells that is not linear: per area at the two closures of the press, stress and energy; of both points what presses them,
+ * J, what slip has opened of it in this step, and the closure of their walls. */
 typedef struct tl_told_press {
-    double shear, torsion, unlifted, closure;
+    double at[2], stress[2], energy[2];
+    double springs[TL_FIELD_POINTS], rise[TL_FIELD_POINTS], closure[TL_FIELD_POINTS];
 } tl_told_press;
 
 /* With an energy 2 kn G. What slip opens in this step, `lifted` in all, presses on as what it opened in the last step does now, or as at
@@ -24,9 +28,7 @@ typedef struct tl_told_press {
 tl_field_press tl_press_linearly(const tl_press_row *row, double kn, double area, double f_n,
                                  double same);
 
-/* With an energy r Phi(s), r = (A_e^2 + A_m^2)^(1/2), s = 4 G / V, A_e = V^2 / (4 G), of which the law has told the force r Phi'(s)
- * and the energy. Both points press with the same force but for what slip opens in this step. That of torsion, `more`, is added to
- * that of shear. It follows from energies: for U ~ o^m of a closure o, m = F o / U and dF = (F - U / o) dU / U. */
+/* By the energy that a law tells; f_n and `same` are its forces on the two points. */
 tl_field_press tl_press_by_law(const tl_press *press, double area, double f_n, double same,
                                const tl_told_press *by);
 

@@ -3,7 +3,7 @@
  * Mostly a corner, an edge or a face is pressed in, and all planes of a block that bound K meet in one point x_0, its apex.
  * There d is homogeneous about x_0 in the cells of this block: (x - x_0) d has the divergence 4 d, x - x_0 has 3, and on the
  * faces both are tangents. So S alone gives the block's share in G, int d (x - x_0) . n dS / 4, and the polygons between its
- * cells are not needed. A face q that passes by x_0 at the depth d_q adds d_q V_q / 4, with the volume V_q of its cell: for
+ * cells are not needed. The same holds of d^n, with n + 3 for 4. A face q that passes by x_0 at the depth d_q adds d_q V_q / 4, with the volume V_q of its cell: for
  * that the polygons between this cell and the others are needed. */
 #include "narrow/apex.h"
 
@@ -92,7 +92,8 @@ void tl_apex_add_side(tl_apex *p, const tl_field_faces *f, uint32_t face, tl_vec
 /* Of the points that an apex may be, that nearest the centre of pressure is taken: roundings of the force count by the way
  * from there. */
 void tl_apex_add_shares(const tl_apex apex[2], const tl_field_faces *f, double by_force,
-                        double by_swept, tl_field_sums *sums)
+                        double by_swept, const double by_power[TL_FIELD_POWERS],
+                        tl_field_sums *sums)
 {
     if (!(sums->pressure > 0))
         return;
@@ -105,6 +106,9 @@ void tl_apex_add_shares(const tl_apex apex[2], const tl_field_faces *f, double b
         tl_vec3 x = tl_v3_add(p->x, within(p, tl_v3_sub(centre, p->x)));
         sums->energy += 0.25 * side * (tl_v3_dot(x, sums->force) - by_force);
         sums->volume += (1.0 / 3) * side * (tl_v3_dot(x, sums->swept) - by_swept);
+        for (int k = 0; k < TL_FIELD_POWERS && f->powers; k++)
+            sums->powers[k].whole +=
+                side * (tl_v3_dot(x, sums->powers[k].force) - by_power[k]) / (5 + k);
         for (uint32_t k = 0; k < p->strays; k++) {
             uint32_t face = p->stray[k];
             sums->energy +=

@@ -24,8 +24,10 @@ tl_apex tl_apex_find(const tl_field_faces *f, const tl_apex_faces *by);
 bool tl_apex_needs(const tl_apex *p, uint32_t face, uint32_t other);
 /* Adds a side of the cell of a face that passes by: int d dS over it, and its normal into the cell. */
 void tl_apex_add_side(tl_apex *p, const tl_field_faces *f, uint32_t face, tl_vec3 n, double d);
-/* Adds what both blocks give by their apexes, of A and of B, to the energy and the volume. Of S: int d x . n dS, int x . n dS. */
+/* Adds what both blocks give by their apexes, of A and of B, to the energy and the volume, and to the powers of d where they are
+ * wanted. Of S: int d x . n dS, int x . n dS, int d^2 x . n dS, int d^3 x . n dS. */
 void tl_apex_add_shares(const tl_apex apex[2], const tl_field_faces *f, double by_force,
-                        double by_swept, tl_field_sums *sums);
+                        double by_swept, const double by_power[TL_FIELD_POWERS],
+                        tl_field_sums *sums);
 
 #endif

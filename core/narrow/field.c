@@ -20,7 +20,7 @@
 #include "base/inline.h"
 #include "narrow/apex.h"
 #include "narrow/field_lanes.h"
-#include "narrow/field_mesh.h"
+#include "narrow/mesh_draft.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -63,7 +63,8 @@ typedef struct pair {
     tl_mesh_draft *draft; /* its polygons are noted here; NULL: nowhere */
     tl_apex_faces by[2];  /* what holds the apexes of A and of B */
     tl_apex apex[2];
-    double by_force, by_swept; /* of S: int d x . n dS, int x . n dS */
+    double by_force, by_swept;        /* of S: int d x . n dS, int x . n dS */
+    double by_power[TL_FIELD_POWERS]; /* and int d^2 x . n dS, int d^3 x . n dS */
 } pair;
 
 /* Planes of the polygons in the lanes: the k-th of each is in row k. */
@@ -75,7 +76,8 @@ typedef struct rows {
 /* Polygons, eight at a time. */
 typedef struct work {
     tl_field_line *line;
-    bool flat; /* the polygons are K's own faces */
+    bool flat;   /* the polygons are K's own faces */
+    bool powers; /* some pair wants them */
     int filled;
     tl_field_lanes lanes;
     tl_field_parts parts;
@@ -135,9 +137,34 @@ static tl_vec3 plus(tl_vec3 sum, double sign, const double v[3][LANES], int l)
     return tl_v3_madd(sum, sign, lane_vector(v, l));
 }
 
+/* The same in the gradients of the powers of d. */
+static void add_power_gradients(const work *w, int l, double sign)
+{
+    const tl_field_parts *o = &w->parts;
+    const double over[] = {o->dd[l], o->cube[l]};
+    const tl_vec3 n = lane_vector(w->lanes.n, l);
+    for (int k = 0; k < TL_FIELD_POWERS; k++) {
+        tl_field_power *to = &w->of[l]->sums->powers[k];
+        to->force = tl_v3_madd(to->force, sign * over[k], n);
+        to->moment = plus(to->moment, sign, o->power_moment[k], l);
+    }
+}
+
+/* Adds the sides of cells to the integrals of the powers of d: -n d^3 / 3 and -n d^4 / 4 have the divergences d^2 and d^3. */
+static void add_power_sides(work *w, int l, double slope)
+{
+    tl_field_power *to = w->of[l]->sums->powers;
+    if (!w->of[l]->faces->powers)
+        return;
+    to[0].whole += (1.0 / 3) * slope * w->parts.cube[l];
+    to[1].whole += 0.25 * slope * w->parts.fourth[l];
+}
+
 /* Adds a polygon's part in the gradients of G and V. */
 static void add_gradient(work *w, int l, double sign)
 {
+    if (w->of[l]->faces->powers)
+        add_power_gradients(w, l, sign);
     const tl_field_parts *o = &w->parts;
     tl_field_sums *sums = w->of[l]->sums;
     sums->force = plus(sums->force, sign, o->force, l);
@@ -155,6 +182,10 @@ static void add_sides(work *w, int l)
     pair *of = w->of[l];
     of->by_force += p->h[l] * o->d[l];
     of->by_swept += p->h[l] * o->area[l];
+    if (of->faces->powers) {
+        of->by_power[0] += p->h[l] * o->dd[l];
+        of->by_power[1] += p->h[l] * o->cube[l];
+    }
     const uint32_t face[] = {w->face[l], w->with[l]};
     for (int of_b = 0; of_b < 2; of_b++) {
         double out = of_b ? -1 : 1; /* n points into the cell of A */
@@ -165,6 +196,7 @@ static void add_sides(work *w, int l)
         double slope = out * tl_v3_dot(n, tl_field_normal(of->faces, face[of_b]));
         of->sums->energy += 0.5 * slope * o->dd[l];
         of->sums->volume += slope * o->d[l];
+        add_power_sides(w, l, slope);
     }
 }
 
@@ -202,6 +234,8 @@ static void add_border(work *w, int l)
         add_gradient(w, l, out);
     if (w->with[l] + (border_of_b ? f->seam_b : f->seam_a) < end)
         return;
+    if (f->powers)
+        add_power_gradients(w, l, -out);
     sums->through = plus(sums->through, -out, o->force, l);
     sums->through_moment = plus(sums->through_moment, -out, o->moment, l);
 }
@@ -224,6 +258,7 @@ static void take(work *w, int l)
     }
     of->sums->volume += w->lanes.length[l] * w->parts.d[l];
     of->sums->energy += 0.5 * w->lanes.length[l] * w->parts.dd[l];
+    add_power_sides(w, l, w->lanes.length[l]);
     if (w->with[l] >= real_faces(f))
         add_border(w, l);
 }
@@ -333,6 +368,8 @@ static void integrate_batch(work *w)
     uint32_t beyond = tl_field_corners_beyond(p, w->others.row, w->others.most, w->line);
     tl_field_sum_lines(p, w->line, lines);
     tl_field_share(p, &w->parts);
+    if (w->powers)
+        tl_field_add_powers(p, w->line, lines, &w->parts);
     for (int lane = 0; lane < w->filled; lane++) {
         pair *of = w->of[lane];
         of->beyond = of->beyond || beyond >> lane & 1;
@@ -412,7 +449,7 @@ static void put_pair(work *w, pair *of, bool only_bounding)
         of->apex[0] = tl_apex_find(f, &of->by[0]);
         of->apex[1] = tl_apex_find(f, &of->by[1]);
     }
-    of->by_force = of->by_swept = 0;
+    of->by_force = of->by_swept = of->by_power[0] = of->by_power[1] = 0;
     for (uint32_t i = 0; i < real; i++)
         for (uint32_t j = i + 1; j < real; j++)
             if ((i < a) != (j < a) || tl_apex_needs(&of->apex[i >= a], number[i], number[j]))
@@ -426,7 +463,7 @@ static void put_pair(work *w, pair *of, bool only_bounding)
 
 static void end_pair(pair *of)
 {
-    tl_apex_add_shares(of->apex, of->faces, of->by_force, of->by_swept, of->sums);
+    tl_apex_add_shares(of->apex, of->faces, of->by_force, of->by_swept, of->by_power, of->sums);
 }
 
 static void integrate(work *w, pair *of, const uint64_t *mask)
@@ -499,8 +536,10 @@ static bool begin_work(work *w, const tl_field_faces *const faces[], uint32_t co
     w->filled = 0;
     w->laid = NULL;
     w->planes.most = w->others.most = 0;
+    w->powers = false;
     for (uint32_t k = 0; k < count; k++) {
         uint32_t planes = all_faces(faces[k]);
+        w->powers = w->powers || faces[k]->powers;
         most = planes > most ? planes : most;
         all += planes;
     }

@@ -67,6 +67,7 @@ typedef struct tl_field_faces {
     const tl_mesh_inner
         *inner;       /* corners of one block in the other, for a new mesh; NULL: make none */
     bool energy_only; /* the volume is not wanted, nor found where it costs more */
+    bool powers;      /* int d^2 dV and int d^3 dV are wanted, too */
 } tl_field_faces;
 
 static inline tl_vec3 tl_field_normal(const tl_field_faces *f, uint32_t face)

@@ -285,3 +285,72 @@ void tl_field_share(const tl_field_lanes *p, tl_field_parts *out)
 {
     share_out(p, out);
 }
+
+/* ---------------------------------------------------------------- powers ----------------- */
+
+/* Sums of products of n numbers are those of all ways to choose n with repetition, h_n. Over a triangle of area w with the depths
+ * a, b, c: int d^n dS = 2 w h_n(a, b, c) / ((n + 1) (n + 2)), and the integral of d^n x is the sum over its corners of
+ * 2 w x_a h_n(a, b, c, a) / ((n + 1) (n + 2) (n + 3)). */
+TL_VECTORIZED static void sum_powers(tl_field_lanes *restrict p, const tl_field_line *restrict line,
+                                     size_t count)
+{
+    for (const tl_field_line *restrict i = line; i < line + count; i++) {
+#pragma omp simd
+        for (unsigned l = 0; l < LANES; l++) {
+            bool bounds = (i->to[l] > i->from[l]) & (i->c[l] < FAR) & (p->share[l] > 0);
+            double along = i->gt[l] * p->origin_s[l] - i->gs[l] * p->origin_t[l];
+            double off = i->c[l] - (i->gt[l] * p->origin_t[l] + i->gs[l] * p->origin_s[l]);
+            double f = bounds ? i->from[l] - along : 0.0, e = bounds ? i->to[l] - along : 0.0;
+            double o = bounds ? off : 0.0, d = p->d0[l];
+            double pt = o * i->gt[l] - f * i->gs[l], ps = o * i->gs[l] + f * i->gt[l];
+            double qt = o * i->gt[l] - e * i->gs[l], qs = o * i->gs[l] + e * i->gt[l];
+            double dp = d + p->dt[l] * pt + p->ds[l] * ps, dq = d + p->dt[l] * qt + p->ds[l] * qs;
+            double p2 = dp * dp, p4 = p2 * p2, h1 = dp + dq, h2 = p2 + dq * h1;
+            double h3 = dp * p2 + dq * h2, h4 = p4 + dq * h3, h5 = dp * p4 + dq * h4;
+            double up = (i->gt[l] * p->dt[l] + i->gs[l] * p->ds[l]) * (e - f);
+            p->steep[0][l] += up * h4 * (1.0 / 20);
+            p->steep[1][l] += up * h5 * (1.0 / 30);
+            h1 += d;
+            h2 += d * h1;
+            h3 += d * h2;
+            h4 += d * h3;
+            double w = 0.5 * o * (e - f);
+            p->flat[0][l] += w * h3 * (1.0 / 10);
+            p->flat[1][l] += w * h4 * (1.0 / 15);
+            double by_p = h2 + dp * (h1 + dp), by_q = h2 + dq * (h1 + dq);
+            p->power_t[0][l] += w * (by_p * pt + by_q * qt) * (1.0 / 30);
+            p->power_s[0][l] += w * (by_p * ps + by_q * qs) * (1.0 / 30);
+            by_p = h3 + dp * by_p;
+            by_q = h3 + dq * by_q;
+            p->power_t[1][l] += w * (by_p * pt + by_q * qt) * (1.0 / 60);
+            p->power_s[1][l] += w * (by_p * ps + by_q * qs) * (1.0 / 60);
+        }
+    }
+}
+
+TL_VECTORIZED static void share_powers(const tl_field_lanes *restrict p,
+                                       tl_field_parts *restrict out)
+{
+#pragma omp simd
+    for (unsigned l = 0; l < LANES; l++) {
+        double part = p->share[l], slope2 = p->dt[l] * p->dt[l] + p->ds[l] * p->ds[l];
+        bool steep = slope2 > TL_FIELD_STEEP * TL_FIELD_STEEP;
+        double per = part / (steep ? slope2 : 1.0);
+        double cube = steep ? p->steep[0][l] * per : part * p->flat[0][l];
+        double ot = p->origin_t[l], os = p->origin_s[l], dd = out->dd[l];
+        out->cube[l] = cube;
+        out->fourth[l] = steep ? p->steep[1][l] * per : part * p->flat[1][l];
+        put_vector(p, out->power_moment[0], l, 0, part * p->power_s[0][l] + os * dd,
+                   -(part * p->power_t[0][l] + ot * dd));
+        put_vector(p, out->power_moment[1], l, 0, part * p->power_s[1][l] + os * cube,
+                   -(part * p->power_t[1][l] + ot * cube));
+    }
+}
+
+void tl_field_add_powers(tl_field_lanes *p, const tl_field_line *line, size_t count,
+                         tl_field_parts *out)
+{
+    memset(p->flat, 0, offsetof(tl_field_lanes, origin_t) - offsetof(tl_field_lanes, flat));
+    sum_powers(p, line, count);
+    share_powers(p, out);
+}

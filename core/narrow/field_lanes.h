@@ -24,7 +24,9 @@ typedef struct tl_field_lanes {
     double share[TL_LANES];                /* of the integrals: 1; 1/2 for a tie; 0 for none */
     double t[3][TL_LANES], s[3][TL_LANES]; /* axes in the plane */
     double d0[TL_LANES], dt[TL_LANES], ds[TL_LANES]; /* depth in the plane: d0 + dt x_t + ds x_s */
-    double origin_t[TL_LANES], origin_s[TL_LANES];   /* a corner; d0 and the rest are about it */
+    /* integrals of d^3 and d^4; |grad d|^2 times them by lines; of d^2 and d^3 times x_t and x_s */
+    double flat[2][TL_LANES], steep[2][TL_LANES], power_t[2][TL_LANES], power_s[2][TL_LANES];
+    double origin_t[TL_LANES], origin_s[TL_LANES];     /* a corner; d0 and the rest are about it */
     double area[TL_LANES], it[TL_LANES], is[TL_LANES]; /* integrals of 1, x_t, x_s, ... */
     double itt[TL_LANES], its[TL_LANES], iss[TL_LANES];
     double d1[TL_LANES], d2[TL_LANES]; /* |grad d|^2 times the integrals of d and d^2 */
@@ -40,6 +42,8 @@ typedef struct tl_field_parts {
     double pressed[3][TL_LANES], first[3][TL_LANES];      /* int d x dS, int x dS */
     double second[TL_LANES];                              /* int x . x dS */
     double deepest_at[3][TL_LANES];
+    double cube[TL_LANES], fourth[TL_LANES]; /* int d^3 dS, int d^4 dS */
+    double power_moment[2][3][TL_LANES];     /* int d^2 x cross n dS, int d^3 x cross n dS */
 } tl_field_parts;
 
 /* A plane n . x = c for each polygon. */
@@ -69,5 +73,8 @@ uint32_t tl_field_corners_beyond(const tl_field_lanes *p, const tl_field_plane *
 void tl_field_sum_lines(tl_field_lanes *p, const tl_field_line *line, size_t count);
 /* What the polygons give whose lines have been summed. */
 void tl_field_share(const tl_field_lanes *p, tl_field_parts *out);
+/* After both: the integrals of higher powers of d. */
+void tl_field_add_powers(tl_field_lanes *p, const tl_field_line *line, size_t count,
+                         tl_field_parts *out);
 
 #endif

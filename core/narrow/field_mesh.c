@@ -187,6 +187,60 @@ TL_INLINE void add_triangle(const polygons *p, const polygon_corner *u, const po
     }
 }
 
+/* Integrals over polygons: of d^2, d^3 and d^4, and of d^2 x and d^3 x. */
+typedef struct power_integrals {
+    double cube[LANES], fourth[LANES], x[TL_FIELD_POWERS][3][LANES];
+} power_integrals;
+
+/* Adds a triangle of each polygon: see sum_powers of field_lanes.c. */
+TL_INLINE void add_triangle_powers(const polygons *p, const polygon_corner *u,
+                                   const polygon_corner *v, const polygon_corner *w,
+                                   power_integrals *s)
+{
+    const polygon_corner *corner[] = {u, v, w};
+#pragma omp simd
+    for (uint32_t l = 0; l < LANES; l++) {
+        double ax = v->x[0][l] - u->x[0][l], bx = w->x[0][l] - u->x[0][l];
+        double ay = v->x[1][l] - u->x[1][l], by = w->x[1][l] - u->x[1][l];
+        double az = v->x[2][l] - u->x[2][l], bz = w->x[2][l] - u->x[2][l];
+        double twice = p->n[0][l] * (ay * bz - az * by) + p->n[1][l] * (az * bx - ax * bz) +
+                       p->n[2][l] * (ax * by - ay * bx);
+        double a = u->d[l], b = v->d[l], c = w->d[l], a2 = a * a;
+        double h1 = a + b, h2 = a2 + b * h1, h3 = a * a2 + b * h2, h4 = a2 * a2 + b * h3;
+        h1 += c;
+        h2 += c * h1;
+        h3 += c * h2;
+        h4 += c * h3;
+        s->cube[l] += twice * h3 * (1.0 / 20);
+        s->fourth[l] += twice * h4 * (1.0 / 30);
+        for (int k = 0; k < 3; k++) {
+            double d = corner[k]->d[l], square = h2 + d * (h1 + d);
+            double one = twice * square * (1.0 / 60), two = twice * (h3 + d * square) * (1.0 / 120);
+            for (int axis = 0; axis < 3; axis++) {
+                s->x[0][axis][l] += one * corner[k]->x[axis][l];
+                s->x[1][axis][l] += two * corner[k]->x[axis][l];
+            }
+        }
+    }
+}
+
+/* The same of higher powers of d, after that. */
+TL_VECTORIZED static void integrate_powers(const corners *restrict at, const polygons *restrict p,
+                                           power_integrals *restrict out)
+{
+    polygon_corner u, v, w;
+    power_integrals s;
+    memset(&s, 0, sizeof s);
+    take_corner(at, p, 0, &u);
+    take_corner(at, p, 1, &v);
+    for (uint32_t k = 2; k < p->most; k++) {
+        take_corner(at, p, k, &w);
+        add_triangle_powers(p, &u, &v, &w, &s);
+        v = w;
+    }
+    *out = s;
+}
+
 /* Integrates over eight polygons by triangles from their first corners. */
 TL_VECTORIZED static void integrate_polygons(const corners *restrict at, polygons *restrict p)
 {
@@ -273,10 +327,46 @@ TL_VECTORIZED static void add_given(const polygons *restrict p, double (*restric
     }
 }
 
-/* Sum of eight lanes. */
-TL_VECTORIZED static void sum_lanes(double (*restrict given)[LANES], double *restrict sum)
+/* The same of a power of d, in columns of lanes. */
+enum { POWER_FORCE = 0, POWER_MOMENT = 3, BY_POWER = 6, POWER, POWER_GIVEN };
+
+TL_VECTORIZED static void add_power(const polygons *restrict p, const double *restrict over,
+                                    const double *restrict next,
+                                    const double (*restrict moment)[LANES], double per,
+                                    double (*restrict out)[LANES])
 {
-    for (int k = 0; k < GIVEN; k++) {
+#pragma omp simd
+    for (uint32_t l = 0; l < LANES; l++) {
+        double nx = p->n[0][l], ny = p->n[1][l], nz = p->n[2][l];
+        bool any = p->of.area[l] > 0, on = any & (p->surface[l] > 0);
+        double d = on ? over[l] : 0.0, x = on ? moment[0][l] : 0.0, y = on ? moment[1][l] : 0.0;
+        double z = on ? moment[2][l] : 0.0;
+        out[POWER_FORCE][l] += d * nx;
+        out[POWER_FORCE + 1][l] += d * ny;
+        out[POWER_FORCE + 2][l] += d * nz;
+        out[POWER_MOMENT][l] += y * nz - z * ny;
+        out[POWER_MOMENT + 1][l] += z * nx - x * nz;
+        out[POWER_MOMENT + 2][l] += x * ny - y * nx;
+        out[BY_POWER][l] += x * nx + y * ny + z * nz;
+        out[POWER][l] += any ? per * p->cells[l] * p->length[l] * next[l] : 0.0;
+    }
+}
+
+static void add_powers(const corners *at, const polygons *p,
+                       double given[TL_FIELD_POWERS][POWER_GIVEN][LANES])
+{
+    power_integrals all;
+    const power_integrals *s = &all;
+    integrate_powers(at, p, &all);
+    add_power(p, p->of.dd, s->cube, s->x[0], 1.0 / 6, given[0]);
+    add_power(p, s->cube, s->fourth, s->x[1], 1.0 / 8, given[1]);
+}
+
+/* Sum of eight lanes. */
+TL_VECTORIZED static void sum_lanes(int count, double (*restrict given)[LANES],
+                                    double *restrict sum)
+{
+    for (int k = 0; k < count; k++) {
         const double *v = given[k];
         sum[k] = ((v[0] + v[4]) + (v[2] + v[6])) + ((v[1] + v[5]) + (v[3] + v[7]));
     }
@@ -342,7 +432,8 @@ bool tl_mesh_integrate(const tl_field_faces *f, tl_field_sums *sums)
     const tl_field_mesh *mesh = f->mesh;
     corners at;
     polygons p;
-    double given[GIVEN][LANES], sum[GIVEN];
+    double given[GIVEN][LANES], sum[GIVEN], by_power[TL_FIELD_POWERS];
+    double powers[TL_FIELD_POWERS][POWER_GIVEN][LANES];
     if (!mesh || mesh->polygons == 0)
         return false;
     bool strays = mesh->apex[0].strays || mesh->apex[1].strays;
@@ -351,14 +442,18 @@ bool tl_mesh_integrate(const tl_field_faces *f, tl_field_sums *sums)
     const uint8_t *loop = mesh->loop;
     tl_apex apex[] = {tl_apex_find(f, &mesh->apex[0]), tl_apex_find(f, &mesh->apex[1])};
     memset(given, 0, sizeof given);
+    if (f->powers)
+        memset(powers, 0, sizeof powers);
     for (uint32_t first = 0; first < mesh->polygons; first += LANES) {
         uint32_t count = begin_polygons(f, apex, first, &loop, &p);
         integrate_polygons(&at, &p);
         add_given(&p, given);
+        if (f->powers)
+            add_powers(&at, &p, powers);
         if (strays)
             add_strays(f, &p, first, count, apex);
     }
-    sum_lanes(given, sum);
+    sum_lanes(GIVEN, given, sum);
     *sums = (tl_field_sums){
         .energy = sum[ENERGY],
         .volume = sum[VOLUME],
@@ -374,142 +469,14 @@ bool tl_mesh_integrate(const tl_field_faces *f, tl_field_sums *sums)
         .stiffness = sum[STIFFNESS]};
     sums->area = sums->swept;
     find_deepest(f, &at, sums);
-    tl_apex_add_shares(apex, f, sum[BY_FORCE], sum[BY_SWEPT], sums);
+    for (int k = 0; k < TL_FIELD_POWERS && f->powers; k++) {
+        double all[POWER_GIVEN];
+        sum_lanes(POWER_GIVEN, powers[k], all);
+        sums->powers[k] = (tl_field_power){.whole = all[POWER],
+                                           .force = {all[0], all[1], all[2]},
+                                           .moment = {all[3], all[4], all[5]}};
+        by_power[k] = all[BY_POWER];
+    }
+    tl_apex_add_shares(apex, f, sum[BY_FORCE], sum[BY_SWEPT], by_power, sums);
     return true;
-}
-
-/* ---------------------------------------------------------------- a new mesh ------------- */
-
-/* Whether the normal of one line comes before that of another, counterclockwise. */
-static bool before(const tl_field_line *line, unsigned lane, size_t i, size_t j)
-{
-    double it = line[i].gt[lane], is = line[i].gs[lane];
-    double jt = line[j].gt[lane], js = line[j].gs[lane];
-    bool low_i = is < 0 || (is == 0 && it < 0), low_j = js < 0 || (js == 0 && jt < 0);
-    return low_i != low_j ? low_j : it * js - is * jt > 0;
-}
-
-void tl_mesh_draw(tl_mesh_draft *draft, const uint16_t own[2], const uint16_t *bound,
-                  const tl_field_line *line, size_t lines, unsigned lane)
-{
-    uint8_t side[TL_MESH_SIDES];
-    uint32_t sides = 0;
-    draft->full = draft->full || draft->polygons == TL_MESH_POLYGONS;
-    for (size_t k = 0; k < lines && !draft->full; k++) {
-        if (!(line[k].to[lane] > line[k].from[lane]) || line[k].c[lane] >= TL_FIELD_FAR)
-            continue;
-        draft->full = draft->labels + sides == TL_MESH_SIDES;
-        if (draft->full)
-            break;
-        uint32_t at = sides++;
-        for (; at > 0 && before(line, lane, k, side[at - 1]); at--)
-            side[at] = side[at - 1];
-        side[at] = (uint8_t)k;
-    }
-    if (draft->full)
-        return;
-    uint32_t polygon = draft->polygons++;
-    draft->own[polygon][0] = (uint8_t)own[0];
-    draft->own[polygon][1] = (uint8_t)own[1];
-    draft->sides[polygon] = (uint8_t)sides;
-    for (uint32_t k = 0; k < sides; k++)
-        draft->label[draft->labels++] = side[k] ? (uint8_t)bound[side[k] - 1] : TL_MESH_ZERO;
-}
-
-/* The number of a corner of four planes, which is added when there is none; TL_MESH_CORNERS: there is no room. */
-static uint32_t corner_of(tl_field_mesh *mesh, const uint8_t own[2], uint8_t one, uint8_t other)
-{
-    uint8_t plane[4] = {own[0], own[1], one, other};
-    for (int i = 1; i < 4; i++)
-        for (int k = i; k > 0 && plane[k] < plane[k - 1]; k--) {
-            uint8_t swap = plane[k];
-            plane[k] = plane[k - 1];
-            plane[k - 1] = swap;
-        }
-    for (uint32_t corner = 0; corner < mesh->corners; corner++) {
-        bool same = true;
-        for (int k = 0; k < 4; k++)
-            same = same && mesh->plane[k][corner] == plane[k];
-        if (same)
-            return corner;
-    }
-    if (mesh->corners == TL_MESH_CORNERS)
-        return TL_MESH_CORNERS;
-    for (int k = 0; k < 4; k++)
-        mesh->plane[k][mesh->corners] = plane[k];
-    return mesh->corners++;
-}
-
-/* Whether a polygon is part of S. */
-static bool on_surface(const tl_field_mesh *mesh, const tl_field_faces *f, uint32_t polygon)
-{
-    return mesh->own[polygon][0] < f->a && mesh->own[polygon][1] >= f->a &&
-           mesh->own[polygon][1] < f->a + f->b;
-}
-
-/* Whether another polygon of S has a side between two corners, the other way round. */
-static bool has_neighbour(const tl_field_mesh *mesh, const tl_field_faces *f, uint32_t polygon,
-                          uint8_t from, uint8_t to)
-{
-    const uint8_t *loop = mesh->loop;
-    for (uint32_t k = 0; k < mesh->polygons; loop += mesh->sides[k++])
-        for (uint32_t i = 0; i < mesh->sides[k] && k != polygon && on_surface(mesh, f, k); i++)
-            if (loop[i] == to && loop[i + 1 < mesh->sides[k] ? i + 1 : 0] == from)
-                return true;
-    return false;
-}
-
-/* Whether each side of S that is not on the surface of K, with d = 0, belongs to two polygons. The label of a side is that
- * between its corner and the one before. */
-static bool hangs_together(const tl_field_mesh *mesh, const tl_mesh_draft *draft,
-                           const tl_field_faces *f)
-{
-    const uint8_t *loop = mesh->loop, *label = draft->label;
-    for (uint32_t k = 0; k < mesh->polygons; k++) {
-        uint32_t sides = mesh->sides[k];
-        for (uint32_t i = 0; i < sides && on_surface(mesh, f, k); i++)
-            if (label[i] != TL_MESH_ZERO &&
-                !has_neighbour(mesh, f, k, loop[i ? i - 1 : sides - 1], loop[i]))
-                return false;
-        loop += sides;
-        label += sides;
-    }
-    return true;
-}
-
-void tl_mesh_make(const tl_mesh_draft *draft, const tl_field_faces *faces, tl_field_mesh *mesh)
-{
-    const uint8_t *label = draft->label;
-    uint8_t *loop = mesh->loop;
-    uint64_t bounding = mesh->bounding;
-    memset(mesh, 0, sizeof *mesh);
-    mesh->bounding = bounding;
-    if (draft->full || draft->polygons == 0 || !faces->inner || faces->inner->count > TL_MESH_INNER)
-        return;
-    bool fits = true;
-    for (uint32_t k = 0; k < draft->polygons && fits; k++) {
-        uint32_t sides = draft->sides[k];
-        memcpy(mesh->own[k], draft->own[k], sizeof mesh->own[k]);
-        mesh->sides[k] = (uint8_t)sides;
-        fits = sides > 2;
-        for (uint32_t i = 0; i < sides && fits; i++) {
-            uint32_t corner =
-                corner_of(mesh, draft->own[k], label[i], label[i + 1 < sides ? i + 1 : 0]);
-            fits = corner < TL_MESH_CORNERS;
-            *loop++ = (uint8_t)corner;
-        }
-        label += sides;
-    }
-    for (uint32_t k = 0; k < faces->inner->count && fits; k++) {
-        const uint8_t *face = faces->inner->face[k];
-        fits = corner_of(mesh, face, face[2], TL_MESH_ZERO) < TL_MESH_CORNERS;
-    }
-    for (uint32_t i = mesh->corners; i % LANES; i++) /* what is left of eight is the first again */
-        for (int k = 0; k < 4; k++)
-            mesh->plane[k][i] = mesh->plane[k][0];
-    mesh->polygons = draft->polygons;
-    if (!fits || !hangs_together(mesh, draft, faces)) {
-        memset(mesh, 0, sizeof *mesh);
-        mesh->bounding = bounding;
-    }
 }

@@ -4,6 +4,15 @@
 
 #include "narrow/field_faces.h"
 
+/* An integral over K, and minus its gradient, borders included. */
+typedef struct tl_field_power {
+    double whole;
+    tl_vec3 force, moment;
+} tl_field_power;
+
+/* Powers of d beyond those of the volume and of the energy: d^2 and d^3. */
+enum { TL_FIELD_POWERS = 2 };
+
 /* Integrals over S and K, moments about the origin. Those marked * include the borders. */
 typedef struct tl_field_sums {
     double energy, volume; /* of K: G and its volume (see energy_only); m^4, m^3 */
@@ -21,6 +30,8 @@ typedef struct tl_field_sums {
     double stiffness; /* int 2 / |n_a - n_b| dS: times kn that against motion along n; m^2 */
     double deepest;   /* largest d on S; m */
     tl_vec3 deepest_at;
+    tl_field_power powers
+        [TL_FIELD_POWERS]; /* int d^2 dV, m^5, int d^3 dV, m^6, if wanted; with what passes through seams */
 } tl_field_sums;
 
 /* Roundings of the largest offset within which two faces that look the same way are one plane. */

@@ -5,14 +5,17 @@
 #include "narrow/facet.h"
 #include "narrow/field.h"
 
+/* Integrals over the common volume for a law that is not linear: of 1, of d^2 and of d^3. That of d is the energy. */
+enum { TL_PRESS_VOLUME, TL_PRESS_SQUARE, TL_PRESS_CUBE, TL_PRESS_POWERS };
+
 /* In A's frame, for a stiffness 2 kn of 1: energy, m^4, and force on B, m^3, with its moment about the origin, m^4. */
 typedef struct tl_press {
     double energy;
     tl_vec3 force, moment;
-    double volume;               /* of overlaps, m^3, where the query asks for it; */
-    tl_vec3 swept, swept_moment; /* minus its gradient as the force is that of the energy */
-    double lifted,
-        lifted_volume; /* of energy and volume, what `opened` of the query has added; of force and moment, as above: */
+    /* where the query asks for them: integrals with minus their gradients, as the force is that of the energy */
+    tl_field_power powers[TL_PRESS_POWERS];
+    /* what `opened` of the query has added: to the energy and to those; to force and moment */
+    double lifted, lifted_powers[TL_PRESS_POWERS];
     tl_vec3 lifted_force, lifted_moment;
     double area;      /* on which it acts, m^2 */
     double overlap;   /* 2 |force| / area, m: that of flush faces of that area */

@@ -18,8 +18,9 @@
  *
  * which is G without A_m.
  *
- * A law whose stress is not proportional to the overlap is given the area A_e, or (A_e^2 + A_m^2)^(1/2), and the overlap s, both
- * functions of G and V: so G and V are blended apart, without A_m, and the force follows from the gradients of both. */
+ * A law whose stress is not proportional to the overlap is given the area A_e, or (A_e^2 + A_m^2)^(1/2), and the overlap s. Its
+ * energy follows from the integrals of d^0 .. d^3 over K (force/field_press.c): so these are blended apart, without A_m, and the force
+ * follows from the gradients of all. */
 #include "narrow/press.h"
 
 #include "base/columns.h"
@@ -179,25 +180,19 @@ static bool is_noise(const tl_press_query *of, const planes *p, const tl_field_s
 
 /* ---------------------------------------------------------------- energies --------------- */
 
-/* An energy, the force and moment of it: minus the gradient, and what passes through seams. */
-typedef struct potential {
-    double energy;
-    tl_vec3 force, moment;
-} potential;
-
 /* G_m of the minimum area. */
-static potential with_min_area(const tl_field_sums *f, double min_area)
+static tl_field_power with_min_area(const tl_field_sums *f, double min_area)
 {
     tl_vec3 force = tl_v3_add(f->force, f->through);
     tl_vec3 moment = tl_v3_add(f->moment, f->through_moment);
     if (!(min_area > 0))
-        return (potential){f->energy, force, moment};
+        return (tl_field_power){f->energy, force, moment};
     double g = f->energy, v = f->volume, s = 4 * g / v, area = 0.25 * v * v / g;
     double r = sqrt(area * area + min_area * min_area), ds = 0.5 * s * r,
            dr = 0.25 * s * s * area / r;
     double by_g = ds * 4 / v - dr * area / g, by_v = -ds * s / v + dr * 2 * area / v;
-    return (potential){0.25 * s * s * r, tl_v3_madd(tl_v3_scale(by_g, force), by_v, f->swept),
-                       tl_v3_madd(tl_v3_scale(by_g, moment), by_v, f->swept_moment)};
+    return (tl_field_power){0.25 * s * s * r, tl_v3_madd(tl_v3_scale(by_g, force), by_v, f->swept),
+                            tl_v3_madd(tl_v3_scale(by_g, moment), by_v, f->swept_moment)};
 }
 
 /* Smoothstep from 0 at `low` to 1 at `high`, and its slope. */
@@ -234,21 +229,32 @@ static patch_share find_share(const tl_press_query *of, const tl_field_sums *pat
     return out;
 }
 
-/* Blends a potential of the field with that of the patch. */
-static void blend(const patch_share *by, const potential *flat, potential *field)
+/* Blends an integral over the field with that over the patch. */
+static void blend(const patch_share *by, const tl_field_power *flat, tl_field_power *field)
 {
-    double share = by->share, w = 1 - share, more = field->energy - flat->energy;
+    double share = by->share, w = 1 - share, more = field->whole - flat->whole;
     field->force = tl_v3_madd(tl_v3_scale(w, field->force), share, flat->force);
     field->moment = tl_v3_madd(tl_v3_scale(w, field->moment), share, flat->moment);
     field->force = tl_v3_madd(field->force, more, by->push);
     field->moment = tl_v3_madd(field->moment, more, by->turn);
-    field->energy = w * field->energy + share * flat->energy;
+    field->whole = w * field->whole + share * flat->whole;
 }
 
-/* The volume of the overlaps, as a potential. */
-static potential volume_of(const tl_field_sums *f)
+/* What a law that is not linear needs beside the energy. */
+static void find_powers(const tl_field_sums *f, tl_field_power out[TL_PRESS_POWERS])
 {
-    return (potential){f->volume, f->swept, f->swept_moment};
+    out[TL_PRESS_VOLUME] = (tl_field_power){f->volume, f->swept, f->swept_moment};
+    out[TL_PRESS_SQUARE] = f->powers[0];
+    out[TL_PRESS_CUBE] = f->powers[1];
+}
+
+static void blend_powers(const patch_share *by, const tl_field_sums *patch,
+                         tl_field_power field[TL_PRESS_POWERS])
+{
+    tl_field_power flat[TL_PRESS_POWERS];
+    find_powers(patch, flat);
+    for (int k = 0; k < TL_PRESS_POWERS; k++)
+        blend(by, &flat[k], &field[k]);
 }
 
 /* The integrals over the patch of the flush faces. false: out of memory. */
@@ -258,6 +264,7 @@ static bool sum_patch(const tl_press_query *of, planes *p, tl_narrow_scratch *sc
     list_patch(p, of);
     p->faces.mesh = NULL;
     p->faces.energy_only = false;
+    p->faces.powers = of->volumes;
     return tl_field_integrate(&p->faces, &scratch->field, out);
 }
 
@@ -287,7 +294,9 @@ static bool sum_corners(const tl_press_query *of, tl_vec3 origin, tl_narrow_scra
         tl_vec3 on_face = tl_v3_madd(place, (1 - ride) * up - ride * down, between);
         tl_vec3 x = tl_v3_sub(on_face, origin), arm = tl_v3_cross(x, n);
         double overlap = offset - tl_v3_dot(tl_v3_add(a.normal, b.normal), place);
-        double area = corner->area[i], half = 0.5 * area * overlap;
+        double area = corner->area[i], half = 0.5 * area * overlap, square = half * overlap;
+        const double over[] = {square / 6, square * overlap / 16};
+        const double slope[] = {0.5 * square, square * overlap / 4};
         if (!(overlap > 0))
             continue;
         out->energy += 0.25 * area * overlap * overlap;
@@ -303,6 +312,12 @@ static bool sum_corners(const tl_press_query *of, tl_vec3 origin, tl_narrow_scra
         out->first = tl_v3_madd(out->first, area, x);
         out->second += area * tl_v3_norm2(x);
         out->stiffness += area;
+        for (int k = 0; k < TL_FIELD_POWERS; k++) {
+            tl_field_power *to = &out->powers[k];
+            to->whole += over[k] * overlap;
+            to->force = tl_v3_madd(to->force, slope[k], n);
+            to->moment = tl_v3_madd(to->moment, slope[k], arm);
+        }
     }
     return true;
 }
@@ -355,6 +370,20 @@ static void mix_places(tl_field_sums *field, const tl_field_sums *patch, double 
     field->stiffness = w * field->stiffness + share * patch->stiffness;
 }
 
+/* What a law that is not linear needs of a press, with the area of the field and its overlap. */
+static void put_powers(const tl_press_query *of, tl_vec3 origin,
+                       const tl_field_power powers[TL_PRESS_POWERS], tl_press *press)
+{
+    const double volume = powers[TL_PRESS_VOLUME].whole;
+    const double area = 0.25 * volume * volume / press->energy;
+    for (int k = 0; k < TL_PRESS_POWERS; k++) {
+        press->powers[k] = powers[k];
+        press->powers[k].moment = tl_v3_add(powers[k].moment, tl_v3_cross(origin, powers[k].force));
+    }
+    press->area = sqrt(area * area + of->min_area * of->min_area);
+    press->overlap = 4 * press->energy / volume;
+}
+
 /* The press of a pair from the integrals of its field. `same`: over faces that have enclosed the common volume before. Nothing
  * presses where a part only passes on through its seams what the next parts press with, to the last digit. */
 static bool press_of(const tl_press_query *of, planes *p, tl_field_sums *sums, bool same,
@@ -369,7 +398,8 @@ static bool press_of(const tl_press_query *of, planes *p, tl_field_sums *sums, b
         !(same || in_both(of, tl_v3_add(p->origin, sums->deepest_at), sums->deepest)))
         return no_press(region);
     const double min_area = of->volumes ? 0 : of->min_area;
-    potential field = with_min_area(sums, min_area), volume = volume_of(sums);
+    tl_field_power field = with_min_area(sums, min_area), powers[TL_PRESS_POWERS];
+    find_powers(sums, powers);
     if (region->flush && tl_region_tilt(view, region->flush_a, region->flush_b) <
                              tl_flush_limits_of(of->corners).field_tilt) {
         if (!(of->corners ? sum_corners(of, p->origin, scratch, &patch)
@@ -379,9 +409,10 @@ static bool press_of(const tl_press_query *of, planes *p, tl_field_sums *sums, b
         if (patch.energy > 0 && has_square(patch.volume))
             by = find_share(of, &patch);
         if (by.share > 0) {
-            const potential flat = with_min_area(&patch, min_area), swept = volume_of(&patch);
+            const tl_field_power flat = with_min_area(&patch, min_area);
             blend(&by, &flat, &field);
-            blend(&by, &swept, &volume);
+            if (of->volumes)
+                blend_powers(&by, &patch, powers);
             mix_places(sums, &patch, by.share);
         }
         press->patch = by.share;
@@ -391,18 +422,14 @@ static bool press_of(const tl_press_query *of, planes *p, tl_field_sums *sums, b
         *press = (tl_press){0};
         return no_press(region);
     }
-    press->energy = field.energy;
+    press->energy = field.whole;
     press->force = field.force;
     press->moment = tl_v3_add(field.moment, tl_v3_cross(p->origin, field.force));
     press->normal = tl_v3_scale(1 / force, field.force);
-    if (of->volumes) {
-        area = 0.25 * volume.energy * volume.energy / field.energy;
-        press->volume = volume.energy;
-        press->swept = volume.force;
-        press->swept_moment = tl_v3_add(volume.moment, tl_v3_cross(p->origin, volume.force));
-    }
     press->area = sqrt(area * area + of->min_area * of->min_area);
-    press->overlap = of->volumes ? 4 * field.energy / volume.energy : 2 * force / press->area;
+    press->overlap = 2 * force / press->area;
+    if (of->volumes)
+        put_powers(of, p->origin, powers, press);
     press->deepest = 2 * sums->deepest;
     press->stiffness = fmax(sums->stiffness, press->area);
     tl_vec3 centre = tl_v3_scale(1 / sums->pressure, sums->pressed);
@@ -419,6 +446,7 @@ static void begin(const tl_press_query *of, tl_vec3 origin, planes *p)
     p->origin = origin;
     list_field(p, of);
     p->faces.energy_only = !(of->min_area > 0 || of->volumes);
+    p->faces.powers = of->volumes;
     p->faces.mesh = has_shared_planes(of) ? NULL : of->region->mesh;
     p->faces.inner = NULL;
 }
@@ -524,7 +552,8 @@ static bool find_lifted(const tl_press_query query[], uint32_t count, tl_narrow_
     for (uint32_t i = 0; i < some; i++) {
         tl_press *now = &press[opened[i]];
         now->lifted = now->energy - without[i].energy;
-        now->lifted_volume = now->volume - without[i].volume;
+        for (int k = 0; k < TL_PRESS_POWERS; k++)
+            now->lifted_powers[k] = now->powers[k].whole - without[i].powers[k].whole;
         now->lifted_force = tl_v3_sub(now->force, without[i].force);
         now->lifted_moment = tl_v3_sub(now->moment, without[i].moment);
     }

@@ -75,6 +75,7 @@ typedef struct scene {
     bool borders, apart;
     tl_field_scratch scratch;
     tl_vec3 origin; /* near the common volume */
+    int power;      /* of d in the integral over K that is looked at: 2 or 3, else 1 */
 } scene;
 
 static void list_scene(scene *s)
@@ -84,14 +85,17 @@ static void list_scene(scene *s)
     s->planes.all = s->borders || s->apart || !tl_coarse_test(view, 0);
     list_planes(&s->planes, view, s->borders ? s->border_a : NULL, s->borders ? s->border_b : NULL,
                 s->origin);
+    s->planes.faces.powers = s->power > 1;
 }
 
-static double energy(scene *s)
+/* The integral over K that is looked at, and minus its gradient. */
+static tl_field_power integral_of(scene *s)
 {
     tl_field_sums sums;
     list_scene(s);
     CHECK(tl_field_integrate(&s->planes.faces, &s->scratch, &sums));
-    return sums.energy;
+    return s->power > 1 ? sums.powers[s->power - 2]
+                        : (tl_field_power){sums.energy, sums.force, sums.moment};
 }
 
 static tl_vec3 axis_of(int k)
@@ -99,7 +103,7 @@ static tl_vec3 axis_of(int k)
     return tl_v3(k == 0, k == 1, k == 2);
 }
 
-/* Energy after B has been moved along an axis, or turned about the origin, by some way. */
+/* The integral after B has been moved along an axis, or turned about the origin, by some way. */
 static double energy_after(void *user, int axis, double way, bool turned)
 {
     scene *s = user;
@@ -112,7 +116,7 @@ static double energy_after(void *user, int axis, double way, bool turned)
     } else {
         s->pair.shift = tl_v3_madd(shift, way, axis_of(axis));
     }
-    double out = energy(s);
+    double out = integral_of(s).whole;
     s->pair.turn = turn;
     s->pair.shift = shift;
     return out;
@@ -198,7 +202,7 @@ static const double steps[] = {1e-3, 2e-4, 4e-5, 1e-2};
 static double worst;
 
 /* How far force and moment are off the differences with a step, relative to the force. */
-static double off_by(scene *s, const tl_field_sums *sums, double h)
+static double off_by(scene *s, const tl_field_power *sums, double h)
 {
     double force = tl_v3_norm(sums->force), size = s->pair.view.size;
     tl_vec3 g = scene_minus_gradient(energy_after, s, h * size, false),
@@ -210,10 +214,9 @@ static double off_by(scene *s, const tl_field_sums *sums, double h)
 /* false: the blocks do not press on each other. */
 static bool check_gradient(scene *s, double depth, uint64_t seed)
 {
-    tl_field_sums sums;
-    list_scene(s);
-    CHECK(tl_field_integrate(&s->planes.faces, &s->scratch, &sums));
-    if (!(tl_v3_norm(sums.force) > LEAST * pow(depth * s->pair.view.size, 3)))
+    const tl_field_power sums = integral_of(s);
+    const int power = s->power > 1 ? s->power : 1;
+    if (!(tl_v3_norm(sums.force) > LEAST * pow(depth * s->pair.view.size, 2 + power)))
         return false;
     double off = INFINITY;
     for (size_t k = 0; k < sizeof steps / sizeof *steps; k++)
@@ -247,6 +250,27 @@ TEST(force_and_moment_are_the_gradient_of_the_energy)
         free_scene(&s);
     }
     CHECK(cases > CASES(900));
+    printf("  %d cases, off by %.1e at the most\n", cases, worst);
+}
+
+/* So are those of the integrals of d^2 and d^3, with borders and without. */
+TEST(powers_have_gradients)
+{
+    int cases = 0;
+    worst = 0;
+    for (uint64_t k = 1; k <= CASES(400); k++) {
+        uint64_t seed = k + 20000;
+        static scene s;
+        double depth = pow(10, scene_between(&seed, -2.5, log10(0.4)));
+        make_scene(&s, random_kind(&seed), random_kind(&seed), depth, k % 8 == 0, &seed);
+        s.power = 2 + (int)(k % 2);
+        s.borders = k % 3 == 0;
+        for (int i = 0; i < 256; i++)
+            s.border_a[i] = s.borders && check_random(&seed) < 0.3;
+        cases += check_gradient(&s, depth, k);
+        free_scene(&s);
+    }
+    CHECK(cases > CASES(300));
     printf("  %d cases, off by %.1e at the most\n", cases, worst);
 }
 
@@ -395,16 +419,22 @@ TEST(energy_is_that_of_a_sum)
         uint64_t seed = k + 9000;
         static scene s;
         make_scene(&s, random_kind(&seed) % 2, random_kind(&seed) % 2, 0.3, false, &seed);
+        s.power = 2;
         list_scene(&s);
         tl_field_sums found;
         CHECK(tl_field_integrate(&s.planes.faces, &s.scratch, &found));
-        double sum = 0;
+        double sum = 0, square = 0, cube = 0;
         for (int i = 0; i < CELLS * CELLS * CELLS; i++) {
             tl_vec3 at = tl_v3(i % CELLS + 0.5, i / CELLS % CELLS + 0.5, i / CELLS / CELLS + 0.5);
             tl_vec3 x = tl_v3_sub(tl_v3_scale(cell, at), tl_v3(half, half, half));
-            sum += depth_at(&s.planes.faces, x) * cell * cell * cell;
+            double d = depth_at(&s.planes.faces, x), part = d * cell * cell * cell;
+            sum += part;
+            square += d * part;
+            cube += d * d * part;
         }
         CHECK_REL(found.energy, sum, 0.04);
+        CHECK_REL(found.powers[0].whole, square, 0.04);
+        CHECK_REL(found.powers[1].whole, cube, 0.05);
         free_scene(&s);
     }
 }
@@ -420,17 +450,21 @@ TEST(energy_from_the_surface_is_that_from_all)
         static scene s;
         make_scene(&s, random_kind(&seed), random_kind(&seed),
                    pow(10, scene_between(&seed, -4, -0.5)), false, &seed);
+        s.power = 2;
         list_scene(&s);
         tl_field_sums all, few;
         tl_field_faces *f = &s.planes.faces;
         CHECK(tl_field_integrate(f, &s.scratch, &all));
         f->mesh = &mesh;
         f->energy_only = k % 2;
+        f->powers = !f->energy_only;
         CHECK(tl_field_integrate(f, &s.scratch, &few));
         if (all.deepest > 0 && mesh.bounding) {
             CHECK_REL(few.energy, all.energy, 1e-9);
             if (!f->energy_only)
                 CHECK_REL(few.volume, all.volume, 1e-9);
+            for (int i = 0; i < TL_FIELD_POWERS && f->powers; i++)
+                CHECK_REL(few.powers[i].whole, all.powers[i].whole, 1e-9);
             CHECK_NEAR(scene_apart(few.force, all.force), 0, 1e-9 * all.pressure);
             cases++;
         }
@@ -518,8 +552,8 @@ TEST(blocks_that_only_touch_have_no_force)
     }
 }
 
-TEST_MAIN(RUN(force_and_moment_are_the_gradient_of_the_energy), RUN(borders_do_work_as_well),
-          RUN(what_passes_through_a_seam_stays_in_the_body),
+TEST_MAIN(RUN(force_and_moment_are_the_gradient_of_the_energy), RUN(powers_have_gradients),
+          RUN(borders_do_work_as_well), RUN(what_passes_through_a_seam_stays_in_the_body),
           RUN(volume_is_that_of_what_is_left_by_cuts), RUN(energy_is_that_of_a_sum),
           RUN(energy_from_the_surface_is_that_from_all), RUN(flush_faces_have_the_force_of_springs),
           RUN(blocks_that_only_touch_have_no_force), RUN(a_far_origin_moves_nothing))

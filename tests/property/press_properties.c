@@ -241,6 +241,7 @@ TEST(faces_that_bounded_before_change_nothing)
     int cases = 0, changes = 0, forgotten = 0, stood = 0;
     for (uint64_t k = 1; k <= (uint64_t)check_cases(1000); k++) {
         uint64_t seed = k + 40000;
+        const bool powers = k % 3 == 0;
         tl_field_mesh mesh = {0};
         static scene s;
         s = (scene){.pair = scene_pair_of(
@@ -260,14 +261,16 @@ TEST(faces_that_bounded_before_change_nothing)
                 k % 4 == 0 && check_random(&seed) < 0.3 ? 0.01 * view->size * view->size : 0;
             view = scene_place(&s.pair);
             region.mesh = NULL;
-            CHECK(
-                tl_press_find(&(tl_press_query){.view = view, .region = &region, .min_area = least},
-                              1, &s.pair.scratch, &without));
+            CHECK(tl_press_find(
+                &(tl_press_query){
+                    .view = view, .region = &region, .min_area = least, .volumes = powers},
+                1, &s.pair.scratch, &without));
             region.mesh = &mesh;
             forgotten += before && !tl_region_corners_agree(view, &region);
-            CHECK(
-                tl_press_find(&(tl_press_query){.view = view, .region = &region, .min_area = least},
-                              1, &s.pair.scratch, &with));
+            CHECK(tl_press_find(
+                &(tl_press_query){
+                    .view = view, .region = &region, .min_area = least, .volumes = powers},
+                1, &s.pair.scratch, &with));
             /* a plate that sticks out on both sides as far is pressed by nothing, but for roundings */
             if (tl_v3_norm(without.force) < 1e-9 * without.energy / without.deepest)
                 continue;
@@ -281,6 +284,12 @@ TEST(faces_that_bounded_before_change_nothing)
             CHECK_NEAR(with.stiffness, without.stiffness, 1e-9 * without.stiffness);
             CHECK_NEAR(with.energy, without.energy, 1e-9 * without.energy);
             CHECK_NEAR(with.deepest, without.deepest, 1e-9 * without.deepest);
+            for (int i = 0; i < TL_PRESS_POWERS && powers && force > 0; i++) {
+                const tl_field_power *one = &with.powers[i], *two = &without.powers[i];
+                CHECK_NEAR(one->whole, two->whole, 1e-9 * two->whole);
+                CHECK_NEAR(scene_apart(one->force, two->force), 0,
+                           1e-9 * two->whole / without.deepest);
+            }
         }
         scene_pair_free(&s.pair);
     }
