@@ -133,9 +133,6 @@ tl_contact_across tl_contact_across_gap(const tl_model *m, uint32_t c)
             whole[1] += s.area[l] * by;
             out.most = fmax(out.most, by);
             out.bonded = out.bonded || s.hold[l] > 0;
-            double spring = 2 * law->kn * s.area[l], pull = fmin(0, s.f_n[l]);
-            out.pressed += force * force / spring;
-            out.pulled += pull * pull / (spring * (s.hold[l] > 0 ? s.hold[l] : 1));
         }
     }
     const double *mean = pressed[0] > 0 ? pressed : whole;

@@ -16,8 +16,6 @@ typedef struct tl_contact_across {
     /* lifts from where its faces lie on each other, m: the mean over what presses, or over all where nothing does, and the largest */
     double lift, most;
     bool bonded; /* some point pulls */
-    double pressed,
-        pulled; /* energies of linear springs kn with the forces there are, J; of those of a bond that holds */
 } tl_contact_across;
 
 tl_contact_across tl_contact_across_gap(const tl_model *m, uint32_t contact);

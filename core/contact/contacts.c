@@ -50,6 +50,8 @@ void tl_contacts_init(tl_contacts *c, tl_points_table *p)
     TL_COLUMN(t, c, point_capacity, 0);
     TL_COLUMN(t, c, area, 0);
     TL_COLUMN(t, c, released, TL_COLUMN_STEP);
+    TL_COLUMN(t, c, stored, TL_COLUMN_STEP);
+    TL_COLUMN(t, c, handed_over, TL_COLUMN_STEP);
     TL_COLUMN(t, c, force, TL_COLUMN_STEP);
     TL_COLUMN(t, c, moment, TL_COLUMN_STEP);
     TL_COLUMN(t, c, holds_over_gap, TL_COLUMN_STATE | TL_COLUMN_STEP);
@@ -197,6 +199,7 @@ static void leave_lane(tl_detect *d, tl_contacts *c, uint32_t row)
     c->point_capacity[row] = 0;
     c->force[row] = c->moment[row] = tl_v3(0, 0, 0);
     c->holds_over_gap[row] = false;
+    c->stored[row] = 0;
     d->parted += c->released[row];
     c->released[row] = 0;
 }

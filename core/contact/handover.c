@@ -103,22 +103,6 @@ static shear shear_of(const tl_model *m, uint32_t c, const tl_point_lanes *lanes
     return out;
 }
 
-/* Heat, J, of shear that has become another: what its springs have lost, less the work in this step of half of the force that is lost. */
-static double shear_lost(const tl_model *m, uint32_t c, const shear *old, const shear *now)
-{
-    double ks =
-        m->detect->contacts.law[c] == TL_NO_ROW ? 0 : m->joint_laws[m->detect->contacts.law[c]].ks;
-    const tl_contact_motion by = tl_contact_moved(m, c);
-    double work = 0;
-    for (int k = 0; k < 2; k++) {
-        const shear *s = k ? now : old;
-        tl_vec3 du = tl_v3_add(by.way, tl_v3_cross(by.turn, s->centre));
-        double part = tl_v3_dot(s->force, du) + s->torsion * tl_v3_dot(s->normal, by.turn);
-        work += k ? -part : part;
-    }
-    return ks > 0 ? 0.5 * ((old->energy - now->energy) / ks - work) : 0;
-}
-
 double tl_contact_lift_field(tl_model *m, uint32_t c)
 {
     tl_press_row *row = tl_press_row_of(m, c);
@@ -144,37 +128,18 @@ double tl_contact_lift_field(tl_model *m, uint32_t c)
     return row->opened;
 }
 
-/* Heat, J, of a patch with bonds that ends: what its normal springs held before this step, and the work of the step by the mean of
- * their forces and the new ones, beyond what the springs of the field `g` hold. Bonds keep a patch beyond the limits within which both
- * are the same. Of a law that is not linear: the tension alone. */
-static double bonds_end(const tl_model *m, uint32_t c, const tl_manifold *g)
+double tl_contact_lost(const tl_model *m, uint32_t c, tl_vec3 force, tl_vec3 moment, double stored)
 {
     const tl_contacts *contacts = &m->detect->contacts;
-    const tl_law *law = contacts->law[c] == TL_NO_ROW ? NULL : &m->joint_laws[contacts->law[c]];
-    if (!law || !(law->kn > 0))
-        return 0;
-    const tl_contact_across has = tl_contact_across_gap(m, c);
-    double by = g->point_count ? 2 * law->kn : 0;
-    const tl_mat3 *turn = &m->bodies.pose[m->blocks.body[contacts->a[c]]].r;
-    const tl_shear along = tl_shear_of(m, c);
-    tl_vec3 force = tl_v3_sub(contacts->force[c], along.force);
-    tl_vec3 moment = tl_v3_sub(contacts->moment[c], along.moment);
-    if (!tl_law_is_linear(law))
-        return has.pulled;
-    force = tl_v3_madd(force, by, tl_m3_mul(turn, g->press.force));
-    moment = tl_v3_madd(moment, by, tl_m3_mul(turn, g->press.moment));
-    tl_contact_motion moved = tl_contact_moved(m, c);
-    double work = 0.5 * (tl_v3_dot(force, moved.way) + tl_v3_dot(moment, moved.turn));
-    return has.pressed + has.pulled - work - by * g->press.energy;
+    const tl_contact_motion by = tl_contact_moved(m, c);
+    double work = 0.5 * (tl_v3_dot(tl_v3_add(contacts->force[c], force), by.way) +
+                         tl_v3_dot(tl_v3_add(contacts->moment[c], moment), by.turn));
+    return isnan(contacts->stored[c]) ? 0 : contacts->stored[c] - stored - work;
 }
 
-void tl_contact_end_bonds(tl_model *m, uint32_t c)
+double tl_contact_ends(const tl_model *m, uint32_t c)
 {
-    tl_contacts *contacts = &m->detect->contacts;
-    const tl_manifold none = {.point_count = 0};
-    if (contacts->facet[c].kind == TL_FACET_PATCH && contacts->point_count[c] > 0 &&
-        tl_contact_across_gap(m, c).bonded)
-        contacts->released[c] += bonds_end(m, c, &none);
+    return tl_contact_lost(m, c, tl_v3(0, 0, 0), tl_v3(0, 0, 0), 0);
 }
 
 /* What the law keeps of a contact: means over what presses. */
@@ -384,8 +349,6 @@ void tl_contact_hand_over(tl_model *m, uint32_t c, const tl_manifold *g, bool re
         row->shift = across.lift;
         row->shifted = (tl_face_pair){contacts->facet[c].ia, contacts->facet[c].ib};
     }
-    if (field && was_patch && across.bonded)
-        contacts->released[c] += bonds_end(m, c, g);
     state.flags |=
         TL_POINT_APART; /* bonds end with their patch, and walls that meet at an edge have none */
     contacts->facet[c] = g->facet;
@@ -398,11 +361,11 @@ void tl_contact_hand_over(tl_model *m, uint32_t c, const tl_manifold *g, bool re
     tl_contact_begin(m, c, lanes);
     turn_states(m, c, &state);
     tl_shear_keep(m, c, kept);
-    if (!held || g->point_count == 0) {
-        contacts->released[c] += shear_lost(m, c, &old, &(shear){.area = 0});
+    if (g->point_count == 0)
+        contacts->released[c] = tl_contact_ends(m, c);
+    contacts->handed_over[c] = held && g->point_count > 0;
+    if (!contacts->handed_over[c])
         return;
-    }
-    const shear before = old;
     double area = 0;
     for (size_t k = 0; k < (field ? 1 : g->point_count); k++)
         area += g->points[k].area;
@@ -417,8 +380,6 @@ void tl_contact_hand_over(tl_model *m, uint32_t c, const tl_manifold *g, bool re
         put_on_field(m, c, &now, old.energy, row->press.radius);
     else
         spread_over_patch(m, c, &now, old.energy, lanes);
-    now = shear_of(m, c, lanes);
-    contacts->released[c] += shear_lost(m, c, &before, &now);
 }
 
 /* Gives a shear spring of force f and area `old` another area. What comes carries nothing until it is sheared, so that the

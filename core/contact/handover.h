@@ -11,8 +11,11 @@
  * `reframed`, in frames that are no more. The points fit into the contact's room. */
 void tl_contact_hand_over(tl_model *m, uint32_t contact, const tl_manifold *manifold, bool reframed,
                           const tl_point_lanes *lanes);
-/* Notes as heat what the normal springs of a patch with bonds hold that is left without points. */
-void tl_contact_end_bonds(tl_model *m, uint32_t contact);
+/* Heat, J, of a contact that is another one after this step, with a force on B, a moment about A's centroid and an energy: what it has
+ * lost of its energy, less the work of the step by the mean of the forces before and after. Or of one that ends. */
+double tl_contact_lost(const tl_model *m, uint32_t contact, tl_vec3 force, tl_vec3 moment,
+                       double stored);
+double tl_contact_ends(const tl_model *m, uint32_t contact);
 /* Puts the manifold of a field contact in the place of what it was. */
 void tl_contact_refit_field(tl_model *m, uint32_t contact, const tl_manifold *manifold);
 /* Brings the shift of a field contact's faces up to how far slip has opened its joint now; returns by how much in the last step, m. */

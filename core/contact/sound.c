@@ -210,9 +210,10 @@ static bool contact_is_sound(const tl_model *m, const tl_detect *d, uint32_t row
            d->pairs[c->pair[row]].contact == row &&
            (c->law[row] < m->joint_law_count || c->law[row] == TL_NO_ROW) &&
            c->tag[row].joint <= m->joint_count && c->field[row] <= 1 && c->held[row] <= 1 &&
-           c->holds_over_gap[row] <= 1 && c->new_points[row] <= TL_POINTS_OTHERS &&
-           c->pending[row] <= TL_PENDING_GROW_PATCH && c->deep[row] <= TL_DEEP_SUNK &&
-           c->point_count[row] <= c->point_capacity[row] && facet_is_sound(m, d, row);
+           c->holds_over_gap[row] <= 1 && c->handed_over[row] <= 1 &&
+           c->new_points[row] <= TL_POINTS_OTHERS && c->pending[row] <= TL_PENDING_GROW_PATCH &&
+           c->deep[row] <= TL_DEEP_SUNK && c->point_count[row] <= c->point_capacity[row] &&
+           facet_is_sound(m, d, row);
 }
 
 /* What contacts of blocks that were cut have left. */

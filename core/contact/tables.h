@@ -19,21 +19,22 @@ typedef struct tl_contacts {
     uint32_t *press;         /* row of what a field contact keeps, or TL_NO_ROW */
     double *faces_valid_to;  /* sum of odometers up to which the choice of its faces holds */
     double *points_valid_to; /* sum of odometers up to which its points may be reused */
-    tl_spot
-        *spot; /* of patches: where their points were laid or, without reuse, their faces chosen */
-    uint32_t *point_start; /* row of the first point; the next are TL_LANES rows apart */
+    tl_spot *spot;           /* of patches: where their points were laid, or their faces chosen */
+    uint32_t *point_start;   /* row of the first point; the next are TL_LANES rows apart */
     uint16_t *point_count, *point_capacity;
     double *area;
     double *released; /* shear energy that went with area since the last step, J: heat */
+    double *stored;   /* energy after the last step, J; NaN: under another law or stress */
     tl_vec3 *force;   /* on B */
     tl_vec3 *moment;  /* of the forces on B, about A's body's centroid */
     /* some point carried a force across a gap in the last step: a bond in tension, or an initial stress not yet
      * relieved. Such a contact ends only with that force */
     uint8_t *holds_over_gap;
-    uint8_t *new_points; /* its points were placed in this step: TL_POINTS_* */
-    uint8_t *pending;    /* what the parallel phase leaves to the serial one: TL_PENDING_* */
-    uint8_t *held;       /* both its bodies are held still: held.c */
-    uint8_t *deep;       /* its blocks overlap too deeply: TL_DEEP_*, overlap.c */
+    uint8_t *handed_over; /* in this step, from patch to field or back */
+    uint8_t *new_points;  /* its points were placed in this step: TL_POINTS_* */
+    uint8_t *pending;     /* what the parallel phase leaves to the serial one: TL_PENDING_* */
+    uint8_t *held;        /* both its bodies are held still: held.c */
+    uint8_t *deep;        /* its blocks overlap too deeply: TL_DEEP_*, overlap.c */
 } tl_contacts;
 
 /* Faces that a field contact remembers; of one with more the faces are listed in every step. */

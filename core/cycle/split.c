@@ -383,6 +383,7 @@ static void load_contacts(tl_model *m, const tl_split_system *s)
         }
         d->contacts.force[c] = force;
         d->contacts.moment[c] = moment;
+        d->contacts.stored[c] = NAN;
         d->contacts.holds_over_gap[c] = true; /* perhaps: the next step tells */
     }
 }

@@ -99,11 +99,8 @@ static void part(tl_model *m, uint32_t c, double way)
 {
     tl_contacts *contacts = &m->detect->contacts;
     contacts->pending[c] = TL_PENDING_DIE;
-    if (contacts->facet[c].kind == TL_FACET_PATCH && contacts->point_count[c] > 0) {
-        const tl_shear held = tl_shear_of(m, c), none = {.area = 0};
-        tl_contact_end_bonds(m, c);
-        tl_shear_release(m, c, &held, &none);
-    }
+    if (contacts->facet[c].kind == TL_FACET_PATCH && contacts->point_count[c] > 0)
+        contacts->released[c] = tl_contact_ends(m, c);
     tl_pair_sleep(m->detect, &m->detect->pairs[contacts->pair[c]], way);
 }
 
@@ -220,10 +217,12 @@ static bool take_manifold(tl_model *m, uint32_t c, tl_narrow_scratch *scratch,
         d->contacts.new_points[c] = TL_POINTS_OTHERS;
         bool fields =
             g->facet.kind == TL_FACET_FIELD || d->contacts.facet[c].kind == TL_FACET_FIELD;
-        if (!fields && g->point_count == 0)
-            tl_contact_end_bonds(m, c);
-        if (!fields)
-            return tl_contact_transfer(m, c, scratch, lanes);
+        if (!fields) {
+            bool done = tl_contact_transfer(m, c, scratch, lanes);
+            if (g->point_count == 0)
+                d->contacts.released[c] = tl_contact_ends(m, c);
+            return done;
+        }
         tl_contact_hand_over(m, c, g, scratch->reframed, lanes);
     } else if (g->facet.kind == TL_FACET_FIELD) {
         if (g->point_count > 0)

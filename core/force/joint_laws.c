@@ -150,6 +150,7 @@ void tl_law_rebase(tl_model *m, const tl_law *law)
             continue;
         double old_kn = m->joint_laws[d->contacts.law[c]].kn;
         tl_contact_places(m, c, &d->lanes[0]);
+        d->contacts.stored[c] = NAN;
         for (uint32_t i = 0; i < d->contacts.point_count[c]; i++)
             rebase_point(&d->points, tl_point_row(&d->contacts, c, i), d->lanes[0].closure[i],
                          old_kn);

@@ -9,6 +9,7 @@
 #include "base/inside.h"
 #include "contact/across_gap.h"
 #include "contact/contacts.h"
+#include "contact/handover.h"
 #include "contact/held.h"
 #include "contact/prefetch.h"
 #include "contact/presses.h"
@@ -344,17 +345,23 @@ static void sum_group(const span_job *job, const tl_simd_group *group, const tl_
         uint32_t c = group->contact[l];
         if (c == TL_NO_ROW)
             continue; /* what its rows hold means nothing, after a step that failed not even a number */
-        energy.stored += sum.stored[l];
-        energy.dissipated += sum.dissipated[l] + contacts->released[c];
-        if (job->changed && contacts->released[c] != 0) /* heat of this step only */
+        tl_vec3 force = tl_v3(sum.force[0][l], sum.force[1][l], sum.force[2][l]);
+        tl_vec3 moment = tl_v3(sum.moment[0][l], sum.moment[1][l], sum.moment[2][l]);
+        double heat = sum.dissipated[l] + contacts->released[c];
+        if (contacts->handed_over[c])
+            heat = tl_contact_lost(m, c, force, moment, sum.stored[l]);
+        if (job->changed && heat != sum.dissipated[l]) /* heat of this step only */
             atomic_store_explicit(job->changed, true, memory_order_relaxed);
+        energy.stored += sum.stored[l];
+        energy.dissipated += heat;
+        contacts->stored[c] = sum.stored[l];
+        contacts->handed_over[c] = false;
         contacts->released[c] = 0;
         contacts->holds_over_gap[c] = sum.holds_over_gap[l] > 0;
-        tl_vec3 force = tl_v3(sum.force[0][l], sum.force[1][l], sum.force[2][l]);
         if (tl_v3_is_zero(contacts->force[c]) && !tl_v3_is_zero(force))
             begins |= 1u << l;
         contacts->force[c] = force;
-        contacts->moment[c] = tl_v3(sum.moment[0][l], sum.moment[1][l], sum.moment[2][l]);
+        contacts->moment[c] = moment;
     }
     if (sum_over_lanes(sum.odd) != 0)
         report_odd(job, group, &sum, t, lane);

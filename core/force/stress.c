@@ -46,6 +46,7 @@ void tl_insitu_load(tl_model *m, const tl_insitu *s, uint32_t c)
     m->detect->contacts.holds_over_gap[c] = true; /* perhaps: the next step tells */
     if (contacts->facet[c].kind != TL_FACET_PATCH || !faces_meet(m, c))
         return;
+    contacts->stored[c] = NAN;
     for (size_t i = 0; i < contacts->point_count[c]; i++) {
         tl_sym3 stress = tl_insitu_stress(s, centroid_z + lanes->arm[2][i]);
         tl_point_load(&m->detect->points, tl_point_row(contacts, c, i), &stress,
