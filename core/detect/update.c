@@ -13,6 +13,7 @@
 #include "contact/points.h"
 #include "contact/presses.h"
 #include "contact/shear.h"
+#include "contact/store.h"
 #include "contact/transfer.h"
 #include "detect/fields.h"
 #include "detect/grazing.h"
@@ -220,7 +221,7 @@ static bool take_manifold(tl_model *m, uint32_t c, tl_narrow_scratch *scratch,
         if (!fields) {
             bool done = tl_contact_transfer(m, c, scratch, lanes);
             if (g->point_count == 0)
-                d->contacts.released[c] = tl_contact_ends(m, c);
+                tl_contact_let_go(m, c);
             return done;
         }
         tl_contact_hand_over(m, c, g, scratch->reframed, lanes);
@@ -546,10 +547,22 @@ void tl_contact_reframe(tl_model *m, uint32_t c, unsigned thread)
     scratch->reframed = false;
 }
 
+/* Whether a field contact whose faces are moved apart, by more than what slip has opened of its point of shear, is to become a patch:
+ * its points need a reference then. */
+static bool lacks_reference(const tl_model *m, uint32_t c)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    const tl_press_row *row = tl_press_row_of(m, c);
+    return row && contacts->facet[c].kind == TL_FACET_FIELD && !contacts->field[c] &&
+           row->shift != row->opening[TL_FIELD_SHEAR] && !m->detect->points.initial;
+}
+
 bool tl_contact_fill(tl_model *m, uint32_t c)
 {
     tl_detect *d = m->detect;
     tl_contacts *contacts = &d->contacts;
+    if (lacks_reference(m, c) && !tl_detect_hold_initial(d))
+        return false;
     if (contacts->field[c] && contacts->press[c] == TL_NO_ROW &&
         (contacts->press[c] = tl_press_take(d)) == TL_NO_ROW)
         return false;
