@@ -170,17 +170,15 @@ bool tl_field_goes_on(tl_model *m, uint32_t c)
            contacts->point_count[c] > 0 && contacts->deep[c] == TL_DEEP_NOT && is_listed(m, c, row);
 }
 
-/* Whether a contact may go by the slopes of its press. */
-static bool is_near(const tl_model *m, uint32_t c, const tl_press_row *row,
-                    const tl_pair_pose *place)
+/* Whether a contact may go by the slopes of its press, if it is near. */
+static bool has_slopes(const tl_model *m, uint32_t c, const tl_press_row *row)
 {
     uint32_t law = m->detect->contacts.law[c];
     bool tells =
         law != TL_NO_ROW && tl_law_presses(&m->joint_laws[law]); /* slopes are of the energy only */
     /* -INFINITY: its rules are others now */
     return row->by_slope && !tells && m->config.reuse_geometry &&
-           m->detect->contacts.points_valid_to[c] != -INFINITY &&
-           tl_press_moved(&row->there, &row->place, place) <= TL_PRESS_NEAR;
+           m->detect->contacts.points_valid_to[c] != -INFINITY;
 }
 
 /* Finds the slopes of the press just found when the contact has stayed where it is for as many steps as that costs. They go
@@ -243,10 +241,9 @@ void tl_fields_follow(tl_model *m, tl_field_batch *b, tl_narrow_scratch *scratch
         const tl_press_row *row = tl_press_row_of(m, c);
         tl_pair_view view = tl_pair_view_of(m, contacts->a[c], contacts->b[c]);
         const tl_pair_pose place = {view.turn, view.shift};
-        b->near[k] = !lift(m, c) && is_near(m, c, row, &place);
-        if (b->near[k])
-            b->press[k] = tl_press_near(&row->there, &row->slope, &row->place, &place);
-        else
+        b->near[k] = !lift(m, c) && has_slopes(m, c, row) &&
+                     tl_press_near(&row->there, &row->slope, &row->place, &place, &b->press[k]);
+        if (!b->near[k])
             ask(m, b, c, &view);
     }
     b->failed = !tl_pairs_place(b->view, b->asked, scratch);

@@ -39,10 +39,16 @@ static double lever(const tl_press *at)
     return fmax(2 * at->radius, at->deepest);
 }
 
+/* The motion over the overlap of the press: along, and by turns at the rim of its area. */
+static double over_depth(const tl_press *at, const motion *by)
+{
+    return (tl_v3_norm(by->way) + lever(at) * tl_v3_norm(by->turn)) / at->deepest;
+}
+
 double tl_press_moved(const tl_press *at, const tl_pair_pose *from, const tl_pair_pose *to)
 {
-    motion by = motion_between(at->point, from, to);
-    return (tl_v3_norm(by.way) + lever(at) * tl_v3_norm(by.turn)) / at->deepest;
+    const motion by = motion_between(at->point, from, to);
+    return over_depth(at, &by);
 }
 
 /* The view after B has moved along an axis, or turned about it. */
@@ -105,27 +111,29 @@ bool tl_press_slope_find(const tl_press_query *query, const tl_press *at,
     return true;
 }
 
-tl_press tl_press_near(const tl_press *at, const tl_press_slope *slope, const tl_pair_pose *from,
-                       const tl_pair_pose *to)
+bool tl_press_near(const tl_press *at, const tl_press_slope *slope, const tl_pair_pose *from,
+                   const tl_pair_pose *to, tl_press *out)
 {
-    motion by = motion_between(at->point, from, to);
+    const motion by = motion_between(at->point, from, to);
     const double x[] = {by.way.x, by.way.y, by.way.z, by.turn.x, by.turn.y, by.turn.z};
-    tl_press out = *at;
+    if (!(over_depth(at, &by) <= TL_PRESS_NEAR))
+        return false;
+    *out = *at;
     for (int k = 0; k < 6; k++) {
-        out.force = tl_v3_madd(out.force, x[k], slope->force[k]);
-        out.moment = tl_v3_madd(out.moment, x[k], slope->moment[k]);
-        out.point = tl_v3_madd(out.point, x[k], slope->point[k]);
-        out.area += x[k] * slope->area[k];
-        out.radius += x[k] * slope->radius[k];
-        out.deepest += x[k] * slope->deepest[k];
+        out->force = tl_v3_madd(out->force, x[k], slope->force[k]);
+        out->moment = tl_v3_madd(out->moment, x[k], slope->moment[k]);
+        out->point = tl_v3_madd(out->point, x[k], slope->point[k]);
+        out->area += x[k] * slope->area[k];
+        out->radius += x[k] * slope->radius[k];
+        out->deepest += x[k] * slope->deepest[k];
     }
     /* minus the work of the mean force, and of its mean moment about the point */
-    tl_vec3 force = tl_v3_scale(0.5, tl_v3_add(at->force, out.force));
-    tl_vec3 moment = tl_v3_scale(0.5, tl_v3_add(at->moment, out.moment));
+    tl_vec3 force = tl_v3_scale(0.5, tl_v3_add(at->force, out->force));
+    tl_vec3 moment = tl_v3_scale(0.5, tl_v3_add(at->moment, out->moment));
     moment = tl_v3_sub(moment, tl_v3_cross(at->point, force));
-    out.energy -= tl_v3_dot(force, by.way) + tl_v3_dot(moment, by.turn);
-    double size = tl_v3_norm(out.force);
-    out.normal = tl_v3_scale(1 / size, out.force);
-    out.overlap = 2 * size / out.area;
-    return out;
+    out->energy -= tl_v3_dot(force, by.way) + tl_v3_dot(moment, by.turn);
+    double size = tl_v3_norm(out->force);
+    out->normal = tl_v3_scale(1 / size, out->force);
+    out->overlap = 2 * size / out->area;
+    return true;
 }
