@@ -140,19 +140,17 @@ tl_contact_across tl_contact_across_gap(const tl_model *m, uint32_t c)
     return out;
 }
 
-bool tl_contact_openings(const tl_model *m, uint32_t c, double opening[TL_FIELD_POINTS])
+void tl_contact_openings(const tl_model *m, uint32_t c, double opening[TL_FIELD_POINTS])
 {
     const tl_detect *d = m->detect;
     const tl_law *law = law_of(m, c);
     for (size_t k = 0; k < TL_FIELD_POINTS; k++)
         opening[k] = 0;
-    /* without an initial force only a state lifts */
-    if (!law || law->columns == 0 || !((const tl_law_ops *)law->kind->ops)->across_gap)
-        return false;
+    if (!tl_contact_opens(m, c))
+        return;
     sample s;
     read_points(&d->points, &d->contacts, c, law, 0, &s);
     ask(law, zeros, &s);
     for (size_t k = 0; k < TL_FIELD_POINTS; k++)
         opening[k] = s.lift[k];
-    return true;
 }

@@ -3,7 +3,7 @@
 #ifndef TL_CONTACT_ACROSS_GAP_H
 #define TL_CONTACT_ACROSS_GAP_H
 
-#include "contact/tables.h"
+#include "contact/detection.h"
 #include "model/model.h"
 
 /* The lift, m, and the share of tension that is held, 0 to 1, of `count` points from row `first`, a multiple of TL_LANES; see
@@ -19,7 +19,16 @@ typedef struct tl_contact_across {
 } tl_contact_across;
 
 tl_contact_across tl_contact_across_gap(const tl_model *m, uint32_t contact);
-/* The openings by slip of the points of a field contact, m. false: nothing ever opens them. */
-bool tl_contact_openings(const tl_model *m, uint32_t contact, double opening[TL_FIELD_POINTS]);
+
+/* Whether slip may open a contact: without an initial force only a state lifts. */
+static inline bool tl_contact_opens(const tl_model *m, uint32_t contact)
+{
+    uint32_t law = m->detect->contacts.law[contact];
+    return law != TL_NO_ROW && m->joint_laws[law].columns > 0 &&
+           ((const tl_law_ops *)m->joint_laws[law].kind->ops)->across_gap;
+}
+
+/* The openings by slip of the points of a field contact, m; 0 where nothing ever opens them. */
+void tl_contact_openings(const tl_model *m, uint32_t contact, double opening[TL_FIELD_POINTS]);
 
 #endif

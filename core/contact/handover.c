@@ -103,16 +103,12 @@ static shear shear_of(const tl_model *m, uint32_t c, const tl_point_lanes *lanes
     return out;
 }
 
-double tl_contact_lift_field(tl_model *m, uint32_t c)
+/* Brings the shift of a field up to how far slip has opened its joint; returns by how much in the last step. */
+static double lift_field(tl_model *m, uint32_t c, tl_press_row *row)
 {
-    tl_press_row *row = tl_press_row_of(m, c);
     const tl_contacts *contacts = &m->detect->contacts;
-    if (!row || contacts->facet[c].kind != TL_FACET_FIELD || contacts->point_count[c] == 0)
-        return 0;
     double opening[TL_FIELD_POINTS];
-    bool opens = tl_contact_openings(m, c, opening);
-    if (!opens && row->opened == 0 && row->opening[0] == 0 && row->opening[1] == 0)
-        return 0;
+    tl_contact_openings(m, c, opening);
     if (row->lifted_at != m->cycles)
         row->opened = row->paid = 0;
     row->lifted_at = m->cycles;
@@ -126,6 +122,16 @@ double tl_contact_lift_field(tl_model *m, uint32_t c)
         row->shift += by;
     }
     return row->opened;
+}
+
+double tl_contact_lift_field(tl_model *m, uint32_t c)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    tl_press_row *row = tl_press_row_of(m, c);
+    if (!row || contacts->facet[c].kind != TL_FACET_FIELD || contacts->point_count[c] == 0)
+        return 0;
+    bool is_flat = row->opened == 0 && row->opening[0] == 0 && row->opening[1] == 0;
+    return is_flat && !tl_contact_opens(m, c) ? 0 : lift_field(m, c, row);
 }
 
 double tl_contact_lost(const tl_model *m, uint32_t c, tl_vec3 force, tl_vec3 moment, double stored)
