@@ -2,15 +2,7 @@
  * next to be taken. */
 #include "contact/presses.h"
 
-#include "model/model.h"
-
 #include <string.h>
-
-tl_press_row *tl_press_row_of(const tl_model *m, uint32_t c)
-{
-    uint32_t row = m->detect->contacts.press[c];
-    return row == TL_NO_ROW ? NULL : &m->detect->press[row];
-}
 
 uint32_t tl_press_take(tl_detect *d)
 {

@@ -6,7 +6,11 @@
 #include "model/model.h"
 
 /* The row of a contact; NULL: it has none. */
-tl_press_row *tl_press_row_of(const tl_model *m, uint32_t contact);
+static inline tl_press_row *tl_press_row_of(const tl_model *m, uint32_t contact)
+{
+    uint32_t row = m->detect->contacts.press[contact];
+    return row == TL_NO_ROW ? NULL : &m->detect->press[row];
+}
 /* A free row for a field contact; TL_NO_ROW when out of memory. */
 uint32_t tl_press_take(tl_detect *d);
 /* Gives a row back; TL_NO_ROW is none. */

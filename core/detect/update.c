@@ -444,18 +444,12 @@ static bool faces_hold(tl_model *m, uint32_t c)
            way_of_faces(m, c) > -still_way(m, c);
 }
 
-bool tl_contact_points_hold(tl_model *m, uint32_t c)
+bool tl_contact_points_hold_yet(tl_model *m, uint32_t c)
 {
     tl_contacts *contacts = &m->detect->contacts;
-    /* the blocks of one that ends may be gone; one that wants room is made when it has got it */
-    if (contacts->pending[c] == TL_PENDING_DIE || tl_pending_waits(contacts->pending[c]))
-        return true;
-    double odometer = tl_pair_odometer(m, contacts->a[c], contacts->b[c]);
-    bool valid = odometer <= contacts->points_valid_to[c];
-    if (valid && m->config.reuse_geometry && odometer <= contacts->faces_valid_to[c])
-        return true; /* most do */
     if (!is_patch(contacts, c))
-        return valid && m->config.reuse_geometry;
+        return m->config.reuse_geometry &&
+               tl_pair_odometer(m, contacts->a[c], contacts->b[c]) <= contacts->points_valid_to[c];
     return is_valid(m, c, &contacts->points_valid_to[c], way_of_points) && faces_hold(m, c);
 }
 
