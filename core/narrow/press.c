@@ -98,7 +98,8 @@ static double shift_of(const tl_press_query *of, bool of_b, uint32_t face)
 static void add_face(planes *p, const tl_press_query *of, bool of_b, uint32_t face)
 {
     tl_plane plane = plane_of(of->view, of_b, face);
-    plane.offset += shift_of(of, of_b, face);
+    if (of->shift > 0) /* few are moved */
+        plane.offset += shift_of(of, of_b, face);
     add(p, plane);
 }
 
