@@ -6,6 +6,7 @@
 #include "contact/estate.h"
 
 #include "base/columns.h"
+#include "contact/across_gap.h"
 #include "contact/facing.h"
 #include "contact/places.h"
 #include "contact/points.h"
@@ -55,6 +56,28 @@ static void keep_field(tl_model *m, uint32_t c, tl_estate *estate, tl_old_point 
         p->f_n0 ? row->opening[TL_FIELD_SHEAR] - row->shift : 0; /* the law adds the opening */
 }
 
+/* The faces of a patch, or those of a field contact that are moved out, where they lie, and how far they are moved. */
+static void keep_faces(tl_model *m, uint32_t c, const tl_testator *a, const tl_testator *b,
+                       tl_estate *estate)
+{
+    const tl_facet *facet = &m->detect->contacts.facet[c];
+    tl_vec3 na = facet->na, nb = facet->nb, first = m->detect->left_points[estate->first].arm;
+    double offset = facet->offset;
+    if (estate->field) {
+        const tl_press_row *row = tl_press_row_of(m, c);
+        na = row->shifted_at[0].normal;
+        nb = row->shifted_at[1].normal;
+        offset = row->shifted_at[0].offset + row->shifted_at[1].offset;
+        estate->shift = row->shift;
+    } else {
+        estate->shift = tl_contact_across_gap(m, c).lift;
+    }
+    estate->face[0] = tl_m3_mul(a->r, na);
+    estate->face[1] = tl_m3_mul(b->r, nb);
+    estate->overlap = offset - tl_v3_dot(estate->face[0], tl_v3_sub(first, a->place)) -
+                      tl_v3_dot(estate->face[1], tl_v3_sub(first, b->place));
+}
+
 void tl_estate_leave(tl_model *m, uint32_t c)
 {
     tl_detect *d = m->detect;
@@ -79,10 +102,6 @@ void tl_estate_keep(tl_model *m, uint32_t c, const tl_testator *a, const tl_test
                           .field = is_field(d, c),
                           .holds_over_gap = d->contacts.holds_over_gap[c],
                           .reframed = a->reframed};
-    if (!estate->field) {
-        estate->face[0] = tl_m3_mul(a->r, facet->na);
-        estate->face[1] = tl_m3_mul(b->r, facet->nb);
-    }
     tl_facing_place to = {*a->r, {0, 0, 0}};
     if (!estate->field)
         to = tl_facing_ride(a->r, b->r, tl_v3_sub(b->place, a->place), &facet->laid.turn,
@@ -92,12 +111,9 @@ void tl_estate_keep(tl_model *m, uint32_t c, const tl_testator *a, const tl_test
         tl_vec3 place = tl_v3_add(tl_v3_add(a->place, to.at), tl_m3_mul(&to.to, p));
         d->left_points[d->left_count++] = tl_point_as_old(&d->points, &d->contacts, c, k, place);
     }
-    tl_vec3 first = d->left_points[estate->first].arm;
     if (estate->field)
         keep_field(m, c, estate, &d->left_points[estate->first]);
-    else
-        estate->overlap = facet->offset - tl_v3_dot(estate->face[0], tl_v3_sub(first, a->place)) -
-                          tl_v3_dot(estate->face[1], tl_v3_sub(first, b->place));
+    keep_faces(m, c, a, b, estate);
 }
 
 static int compare(const void *x, const void *y)
@@ -171,13 +187,24 @@ bool tl_estate_faces(const tl_model *m, uint32_t block_a, uint32_t block_b, uint
                      uint32_t *face_b)
 {
     const tl_estate *estate = tl_estate_of(m, block_a, block_b);
-    if (!estate || estate->field)
+    if (!estate)
         return false;
     bool other_way = root_of(m, block_a) != estate->a;
     *face_a = face_of(m, block_a, estate->face[other_way]);
     *face_b = face_of(m, block_b, estate->face[!other_way]);
     return *face_a != TL_NO_ROW && *face_b != TL_NO_ROW &&
            lie_in(m, estate, block_a, *face_a, block_b, *face_b);
+}
+
+double tl_estate_shift(const tl_model *m, uint32_t block_a, uint32_t block_b, tl_face_pair *faces)
+{
+    const tl_estate *estate = tl_estate_of(m, block_a, block_b);
+    uint32_t face_a, face_b;
+    *faces = (tl_face_pair){0, 0};
+    if (!estate || estate->shift == 0 || !tl_estate_faces(m, block_a, block_b, &face_a, &face_b))
+        return 0;
+    *faces = (tl_face_pair){(uint16_t)face_a, (uint16_t)face_b};
+    return estate->shift;
 }
 
 const tl_estate *tl_estate_on(const tl_model *m, uint32_t block_a, uint32_t block_b,
@@ -239,8 +266,14 @@ double tl_estate_kept(const tl_model *m, const tl_estate *estate, uint32_t c)
 tl_old_point tl_estate_point(const tl_model *m, const tl_estate *estate, uint32_t c, size_t k)
 {
     const tl_detect *d = m->detect;
+    const tl_facet *facet = &d->contacts.facet[c];
     uint32_t a = d->contacts.a[c];
+    tl_face_pair moved;
     tl_old_point out = d->left_points[estate->first + k];
+    if (estate->field && out.reference != 0 &&
+        (tl_estate_shift(m, a, d->contacts.b[c], &moved) == 0 || moved.a != facet->ia ||
+         moved.b != facet->ib))
+        out.reference = 0;
     out.arm = tl_v3_sub(out.arm, tl_body_place(&m->bodies, m->blocks.body[a]));
     if (root_of(m, a) != estate->a)
         turn_round(kind_of(m, estate->law), &out);

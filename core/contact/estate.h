@@ -27,9 +27,12 @@ void tl_estates_sort(tl_detect *d);
 const tl_estate *tl_estate_of(const tl_model *m, uint32_t block_a, uint32_t block_b);
 /* Whether blocks of two rows take over from a patch that held across a gap. */
 bool tl_estate_holds(const tl_model *m, uint32_t block_a, uint32_t block_b);
-/* The faces of two blocks that are parts of the faces of the patch that they take over from; false: they have none. */
+/* The faces of two blocks that are parts of the faces of the patch that they take over from, or of those that the field contact had
+ * moved out; false: they have none. */
 bool tl_estate_faces(const tl_model *m, uint32_t block_a, uint32_t block_b, uint32_t *face_a,
                      uint32_t *face_b);
+/* How far these are moved out, m; 0: there are none. */
+double tl_estate_shift(const tl_model *m, uint32_t block_a, uint32_t block_b, tl_face_pair *faces);
 /* The same for a contact on these faces: not of a patch, if they are no parts of its faces. */
 const tl_estate *tl_estate_on(const tl_model *m, uint32_t block_a, uint32_t block_b,
                               const tl_facet *facet);

@@ -361,7 +361,7 @@ void tl_contact_hand_over(tl_model *m, uint32_t c, const tl_manifold *g, bool re
     tl_contact_across across = tl_contact_across_gap(m, c);
     if (row && was_patch && held) {
         row->shift = across.lift;
-        row->shifted = (tl_face_pair){contacts->facet[c].ia, contacts->facet[c].ib};
+        tl_press_shift_faces(m, c, (tl_face_pair){contacts->facet[c].ia, contacts->facet[c].ib});
     }
     state.flags |=
         TL_POINT_APART; /* bonds end with their patch, and walls that meet at an edge have none */

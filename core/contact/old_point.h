@@ -36,8 +36,10 @@ typedef struct tl_estate {
     tl_id a, b; /* its blocks, a < b */
     uint32_t law, count;
     uint64_t first;
-    tl_vec3 face[2];        /* of a patch: outward normals of the faces of a and of b, */
-    double overlap;         /* and by how much these overlap at its first point, m */
+    /* Outward normals of the faces of a and of b, of a field contact of those that are moved out; by how much they overlap at its
+     * first point where they lie, and how far an initial stress and slip move them out, m. */
+    tl_vec3 face[2];
+    double overlap, shift;
     double torsion, energy; /* of a field contact: about its normal; of its springs, times 2 ks */
     tl_heritage taken;      /* by the patches of the parts */
     uint8_t field;

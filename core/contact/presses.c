@@ -27,3 +27,12 @@ void tl_press_give_back(tl_detect *d, uint32_t row)
     d->press[row].next_free = d->press_free;
     d->press_free = row;
 }
+
+void tl_press_shift_faces(tl_model *m, uint32_t c, tl_face_pair faces)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    tl_press_row *row = tl_press_row_of(m, c);
+    row->shifted = faces;
+    row->shifted_at[0] = m->blocks.shape[contacts->a[c]]->plane[faces.a];
+    row->shifted_at[1] = m->blocks.shape[contacts->b[c]]->plane[faces.b];
+}

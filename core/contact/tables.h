@@ -49,6 +49,7 @@ typedef struct tl_press_row {
     int64_t lifted_at, moved_at;
     tl_vec3 half; /* of the way of the centre of pressure before `moved_at`, in A's frame */
     tl_face_pair shifted;
+    tl_plane shifted_at[2]; /* they, of A and of B, in the frames of their bodies */
     uint32_t next_free;
     double spare[2]; /* energy of shear and of torsion beyond uniform stress, times 2 ks */
     uint16_t count[4], face[TL_PRESS_FACES], blunt_a, blunt_b; /* of its tl_region */

@@ -120,11 +120,11 @@ static tl_status give_birth(tl_model *m, uint32_t pair, overlaps *deep)
     tl_pair_view view = tl_pair_view_of(m, d->pairs[pair].a, d->pairs[pair].b);
     if (!tl_pair_place(&view, scratch))
         return tl_fail_memory(&m->error);
+    const tl_manifold_before before = tl_pair_before(m, &d->pairs[pair], &view, scratch);
     tl_region region;
-    if (!tl_region_find(&view, TL_LIST_MARGIN * view.size, scratch, &region))
+    if (!tl_region_find(&view, TL_LIST_MARGIN * view.size + before.shift, scratch, &region))
         return tl_fail_memory(&m->error);
     tl_tag tag = tl_touching_tag(&view, region.n);
-    const tl_manifold_before before = tl_pair_before(m, &d->pairs[pair], &view, scratch);
     tl_touch_rule rule = tl_touch_rule_of(m, &view, tag, before.over);
     const tl_manifold *g = &scratch->manifold;
     if (!tl_manifold_find(&view, &region, &rule, &before, scratch) ||

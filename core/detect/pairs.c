@@ -165,6 +165,7 @@ tl_manifold_before tl_pair_before(const tl_model *m, const tl_pair *p, const tl_
 {
     tl_manifold_before out = {.facet = {.kind = TL_FACET_PATCH}, .most_tilt = INFINITY};
     uint32_t face_a, face_b;
+    out.shift = fmax(0, tl_estate_shift(m, p->a, p->b, &out.shifted));
     if (!tl_estate_holds(m, p->a, p->b) || !tl_estate_faces(m, p->a, p->b, &face_a, &face_b))
         return out;
     tl_touch_rule rule = tl_touch_rule_of(m, view, view->a->tag[face_a], INFINITY);
@@ -179,7 +180,9 @@ static void test_pair(tl_model *m, tl_pair *p, tl_narrow_scratch *scratch)
 {
     tl_detect *d = m->detect;
     tl_pair_view view = tl_pair_view_of(m, p->a, p->b);
-    bool holds = tl_estate_holds(m, p->a, p->b);
+    tl_face_pair moved;
+    double shift = fmax(0, tl_estate_shift(m, p->a, p->b, &moved));
+    bool holds = tl_estate_holds(m, p->a, p->b) || shift > 0;
     double gap, margin = holds ? -1 : tl_grazing_margin(&view, p, &gap);
     if (margin >= 0) {
         tl_pair_sleep(d, p, margin);
@@ -196,19 +199,20 @@ static void test_pair(tl_model *m, tl_pair *p, tl_narrow_scratch *scratch)
         return;
     }
     tl_region region;
-    if (!tl_region_find(&view, TL_LIST_MARGIN * view.size, scratch, &region)) {
+    if (!tl_region_find(&view, TL_LIST_MARGIN * view.size + shift, scratch, &region)) {
         scratch->failed = true;
         return;
     }
     const tl_manifold_before before = tl_pair_before(m, p, &view, scratch);
     const bool corners = m->config.contact_points == TL_POINTS_CORNERS;
-    double way = before.holds ? -1 : way_to_contact(&view, &region, corners);
+    holds = before.holds || (shift > 0 && region.gap <= shift);
+    double way = holds ? -1 : way_to_contact(&view, &region, corners);
     if (way > 0) {
         tl_pair_sleep(d, p, way);
         return;
     }
     tl_touch_rule rule = tl_touch_rule_of(m, &view, tl_touching_tag(&view, region.n), before.over);
-    if (!before.holds && !(rule.min_area > 0)) {
+    if (!holds && !(rule.min_area > 0)) {
         tl_grazing_choose_faces(&view, p);
         margin = tl_grazing_margin(&view, p, &gap);
         if (margin >= 0) {
@@ -217,7 +221,7 @@ static void test_pair(tl_model *m, tl_pair *p, tl_narrow_scratch *scratch)
         }
         tl_pair_forget_faces(p);
     }
-    way = region.gap > 0 ? 0 : way_to_edges(&view, tolerance + d->reach);
+    way = holds || region.gap > 0 ? 0 : way_to_edges(&view, tolerance + d->reach);
     if (way > 0) {
         tl_pair_sleep(d, p, way);
         return;

@@ -7,6 +7,7 @@
 
 #include "base/columns.h"
 #include "contact/contacts.h"
+#include "contact/estate.h"
 #include "contact/facing.h"
 #include "contact/handover.h"
 #include "contact/pair_view.h"
@@ -170,8 +171,9 @@ static bool find(tl_model *m, uint32_t c, tl_narrow_scratch *scratch)
     note_tag(m, c, tag);
     if (tl_press_row_of(m, c))
         tl_field_keep(tl_press_row_of(m, c), &view, &region);
-    if (row && row->shift == 0 && g->point_count > 0 && g->facet.kind == TL_FACET_FIELD)
-        tl_press_row_of(m, c)->shifted = tl_touching_faces(&view, region.n);
+    if (row && g->point_count > 0 && g->facet.kind == TL_FACET_FIELD)
+        tl_press_shift_faces(m, c,
+                             row->shift == 0 ? tl_touching_faces(&view, region.n) : row->shifted);
     return true;
 }
 
@@ -551,14 +553,32 @@ static bool lacks_reference(const tl_model *m, uint32_t c)
            row->shift != row->opening[TL_FIELD_SHEAR] && !m->detect->points.initial;
 }
 
+/* Gives a field contact the row that it needs. The faces of one that takes over from another are moved out as those were. false: out of
+ * memory. */
+static bool take_press(tl_model *m, uint32_t c)
+{
+    tl_contacts *contacts = &m->detect->contacts;
+    if (!contacts->field[c] || contacts->press[c] != TL_NO_ROW)
+        return true;
+    contacts->press[c] = tl_press_take(m->detect);
+    if (contacts->press[c] == TL_NO_ROW)
+        return false;
+    tl_face_pair faces;
+    double shift = tl_estate_shift(m, contacts->a[c], contacts->b[c], &faces);
+    if (shift != 0) {
+        tl_press_shift_faces(m, c, faces);
+        tl_press_row_of(m, c)->shift = shift;
+    }
+    return true;
+}
+
 bool tl_contact_fill(tl_model *m, uint32_t c)
 {
     tl_detect *d = m->detect;
     tl_contacts *contacts = &d->contacts;
     if (lacks_reference(m, c) && !tl_detect_hold_initial(d))
         return false;
-    if (contacts->field[c] && contacts->press[c] == TL_NO_ROW &&
-        (contacts->press[c] = tl_press_take(d)) == TL_NO_ROW)
+    if (!take_press(m, c))
         return false;
     uint8_t pending = contacts->pending[c];
     contacts->pending[c] = TL_PENDING_NONE;
