@@ -140,17 +140,41 @@ tl_contact_across tl_contact_across_gap(const tl_model *m, uint32_t c)
     return out;
 }
 
-void tl_contact_openings(const tl_model *m, uint32_t c, double opening[TL_FIELD_POINTS])
+void tl_contact_point_openings(const tl_model *m, uint32_t c, size_t first,
+                               double opening[TL_LANES])
+{
+    const tl_detect *d = m->detect;
+    for (size_t l = 0; l < TL_LANES; l++)
+        opening[l] = 0;
+    if (!tl_contact_opens(m, c))
+        return;
+    const tl_law *law = law_of(m, c);
+    sample s;
+    read_points(&d->points, &d->contacts, c, law, first, &s);
+    ask(law, zeros, &s);
+    for (size_t l = 0; l < TL_LANES && s.area[l] > 0; l++)
+        opening[l] = s.lift[l];
+}
+
+void tl_contact_point_lifts(const tl_model *m, uint32_t c, size_t first, double lift[TL_LANES])
 {
     const tl_detect *d = m->detect;
     const tl_law *law = law_of(m, c);
-    for (size_t k = 0; k < TL_FIELD_POINTS; k++)
-        opening[k] = 0;
-    if (!tl_contact_opens(m, c))
+    for (size_t l = 0; l < TL_LANES; l++)
+        lift[l] = 0;
+    if (!law)
         return;
     sample s;
-    read_points(&d->points, &d->contacts, c, law, 0, &s);
-    ask(law, zeros, &s);
+    read_points(&d->points, &d->contacts, c, law, first, &s);
+    ask(law, s.f_n0, &s);
+    for (size_t l = 0; l < TL_LANES && s.area[l] > 0; l++)
+        lift[l] = s.lift[l];
+}
+
+void tl_contact_openings(const tl_model *m, uint32_t c, double opening[TL_FIELD_POINTS])
+{
+    double lanes[TL_LANES];
+    tl_contact_point_openings(m, c, 0, lanes);
     for (size_t k = 0; k < TL_FIELD_POINTS; k++)
-        opening[k] = s.lift[k];
+        opening[k] = lanes[k];
 }

@@ -28,6 +28,12 @@ static inline bool tl_contact_opens(const tl_model *m, uint32_t contact)
            ((const tl_law_ops *)m->joint_laws[law].kind->ops)->across_gap;
 }
 
+/* The openings by slip of TL_LANES points of a contact from its `first` one, m; 0 beyond the last, and where nothing ever opens them. */
+void tl_contact_point_openings(const tl_model *m, uint32_t contact, size_t first,
+                               double opening[TL_LANES]);
+/* The same of all that lifts them. */
+void tl_contact_point_lifts(const tl_model *m, uint32_t contact, size_t first,
+                            double lift[TL_LANES]);
 /* The openings by slip of the points of a field contact, m; 0 where nothing ever opens them. */
 void tl_contact_openings(const tl_model *m, uint32_t contact, double opening[TL_FIELD_POINTS]);
 

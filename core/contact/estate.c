@@ -52,8 +52,27 @@ static void keep_field(tl_model *m, uint32_t c, tl_estate *estate, tl_old_point 
         estate->energy += area > 0 ? tl_v3_norm2(tl_columns_get(p->f_s, i)) / area : 0;
     }
     point->n0 = 0;
-    point->reference =
-        p->f_n0 ? row->opening[TL_FIELD_SHEAR] - row->shift : 0; /* the law adds the opening */
+    point->reference = -row->shift;
+}
+
+/* Takes what slip has opened out of the references of a patch's points, and notes their closures. */
+static void keep_closures(tl_model *m, uint32_t c, const tl_testator *a, const tl_testator *b,
+                          tl_estate *estate)
+{
+    tl_old_point *points = &m->detect->left_points[estate->first];
+    double offset = m->detect->contacts.facet[c].offset, opening[TL_LANES], lift[TL_LANES];
+    for (size_t first = 0; first < estate->count; first += TL_LANES) {
+        tl_contact_point_openings(m, c, first, opening);
+        tl_contact_point_lifts(m, c, first, lift);
+        for (size_t l = 0; l < TL_LANES && first + l < estate->count; l++) {
+            tl_old_point *p = &points[first + l];
+            double overlap = offset - tl_v3_dot(estate->face[0], tl_v3_sub(p->arm, a->place)) -
+                             tl_v3_dot(estate->face[1], tl_v3_sub(p->arm, b->place));
+            p->closure = overlap + lift[l] - p->reference;
+            p->reference -= opening[l];
+            estate->opened = estate->opened || opening[l] != 0;
+        }
+    }
 }
 
 /* The faces of a patch, or those of a field contact that are moved out, where they lie, and how far they are moved. */
@@ -114,6 +133,16 @@ void tl_estate_keep(tl_model *m, uint32_t c, const tl_testator *a, const tl_test
     if (estate->field)
         keep_field(m, c, estate, &d->left_points[estate->first]);
     keep_faces(m, c, a, b, estate);
+    if (!estate->field)
+        keep_closures(m, c, a, b, estate);
+}
+
+bool tl_estates_need_references(const tl_detect *d)
+{
+    bool any = false;
+    for (size_t i = 0; i < d->left_count; i++)
+        any = any || d->left_points[i].reference != 0;
+    return any;
 }
 
 static int compare(const void *x, const void *y)
@@ -349,8 +378,7 @@ static void share_out(tl_model *m)
         }
 }
 
-/* The estate that a patch has taken a share of, or NULL. */
-static tl_estate *taken_by(const tl_model *m, uint32_t c)
+tl_estate *tl_estate_taken(const tl_model *m, uint32_t c)
 {
     tl_detect *d = m->detect;
     const tl_contacts *contacts = &d->contacts;
@@ -365,7 +393,7 @@ static void sum_taken(tl_model *m)
     for (size_t i = 0; i < d->estate_count; i++)
         d->estates[i].taken = (tl_heritage){.area = 0};
     for (uint32_t c = 0; c < d->contacts.table.rows; c++) {
-        tl_estate *estate = taken_by(m, c);
+        tl_estate *estate = tl_estate_taken(m, c);
         double sign = estate && root_of(m, d->contacts.a[c]) != estate->a ? -1 : 1;
         for (size_t k = 0; estate && k < d->contacts.point_count[c]; k++) {
             size_t i = tl_point_row(&d->contacts, c, k);
@@ -447,7 +475,7 @@ void tl_estates_balance(tl_model *m)
     for (int step = 0; step < 2; step++) {
         sum_taken(m);
         for (uint32_t c = 0; c < d->contacts.table.rows; c++) {
-            const tl_estate *estate = taken_by(m, c);
+            const tl_estate *estate = tl_estate_taken(m, c);
             if (estate)
                 correct[step](m, c, estate);
         }

@@ -21,6 +21,8 @@ uint32_t tl_estate_size(const tl_detect *d, uint32_t contact);
 void tl_estate_keep(tl_model *m, uint32_t contact, const tl_testator *a, const tl_testator *b);
 /* After it is kept: the contact that ends takes nothing of it along. */
 void tl_estate_leave(tl_model *m, uint32_t contact);
+/* Whether points that take over from them need references. */
+bool tl_estates_need_references(const tl_detect *d);
 /* Puts estates in the order in which they are looked up. */
 void tl_estates_sort(tl_detect *d);
 /* What a new contact of two blocks takes over, of which one at least is a part of one that was cut; NULL: nothing. */
@@ -43,6 +45,8 @@ tl_old_point tl_estate_point(const tl_model *m, const tl_estate *estate, uint32_
 bool tl_estate_is_of_law(const tl_model *m, const tl_estate *estate, uint32_t contact);
 /* What a contact that has its points takes over of the estate's energy of shear beyond springs, J: by its share of the area. */
 double tl_estate_kept(const tl_model *m, const tl_estate *estate, uint32_t contact);
+/* The estate that a patch has taken a share of, or NULL. */
+tl_estate *tl_estate_taken(const tl_model *m, uint32_t contact);
 /* After all parts have taken over their shares: together they carry what the whole did, and no more energy. */
 void tl_estates_balance(tl_model *m);
 /* All have been taken over. */

@@ -10,9 +10,11 @@
 typedef struct tl_old_point {
     tl_vec3 arm; /* from A's centroid; of one of an estate from the model's origin */
     tl_vec3 normal, shear;
-    double area, f_n;     /* f_n: normal stress */
-    double n0, reference; /* initial normal stress, and the overlap it belongs to */
+    double area, f_n; /* f_n: normal stress */
+    /* Initial normal stress, and the overlap that it belongs to; of one of an estate this less what slip has opened. */
+    double n0, reference;
     double state[TL_STATE_COLUMNS];
+    double closure; /* of one of an estate: with all that lifts it, m */
     uint32_t key, flags;
 } tl_old_point;
 
@@ -30,6 +32,20 @@ typedef struct tl_heritage {
     tl_vec3 force;
 } tl_heritage;
 
+/* How a patch that slip has opened presses, and its parts: closures of what is closed, summed over the area (x), and their moments along
+ * two directions over the root of the area (y, z), m3. */
+typedef struct tl_pressing {
+    tl_vec3 centre,
+        along
+            [2]; /* unit vectors over the root of the area, or 0 where some of the whole was apart */
+    double area, taken; /* of the whole, and of the parts, m2 */
+    tl_vec3 whole, parts;
+    tl_vec3 rise[3]; /* of `parts`, with `more` */
+    tl_vec3 more,
+        best; /* closure beyond what is between the points: at the centre, and along both; that of the least error */
+    double error; /* that one, m3 */
+} tl_pressing;
+
 /* What a contact of a block that was cut has left: its points from `first` on in a list of all such. Of a field contact there is
  * one, at the centre of its pressure. */
 typedef struct tl_estate {
@@ -42,7 +58,9 @@ typedef struct tl_estate {
     double overlap, shift;
     double torsion, energy; /* of a field contact: about its normal; of its springs, times 2 ks */
     tl_heritage taken;      /* by the patches of the parts */
+    tl_pressing pressing;   /* of a patch that slip has opened */
     uint8_t field;
+    uint8_t opened; /* by slip */
     uint8_t holds_over_gap;
     uint8_t reframed; /* places of its points are in frames that are no more */
 } tl_estate;

@@ -12,6 +12,7 @@
 #include "contact/transfer.h"
 
 #include "base/columns.h"
+#include "contact/across_gap.h"
 #include "contact/detection.h"
 #include "contact/estate.h"
 #include "contact/places.h"
@@ -349,6 +350,21 @@ static void limit_to_estate(tl_model *m, uint32_t c, const totals *before)
     }
 }
 
+/* What slip has opened at points of other places than the law's states are of is not what it has opened there: the references make up
+ * for it, so that what was between the points of the whole is between the walls. */
+static void refer_to_openings(tl_model *m, uint32_t c)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    tl_points_table *p = &m->detect->points;
+    double opening[TL_LANES];
+    for (size_t first = 0; p->reference && first < contacts->point_count[c]; first += TL_LANES) {
+        if (!tl_contact_point_openings(m, c, first, opening))
+            return;
+        for (size_t l = 0; l < TL_LANES && first + l < contacts->point_count[c]; l++)
+            p->reference[tl_point_row(contacts, c, first + l)] += opening[l];
+    }
+}
+
 /* A contact that was made for parts of a block takes its share over of what that of the whole carried: the stresses at its own
  * points. */
 static void take_share(tl_model *m, uint32_t c, const tl_estate *estate, const tl_narrow_scratch *s,
@@ -361,6 +377,7 @@ static void take_share(tl_model *m, uint32_t c, const tl_estate *estate, const t
     if (before.area > 0 && !estate->reframed)
         fit = plane_of(s->old, estate->count, &before, place_of(m, c));
     write_points(m, c, &s->manifold, &from, &fit, lanes);
+    refer_to_openings(m, c);
     tl_shear_keep(m, c, tl_estate_kept(m, estate, c));
     limit_to_estate(m, c, &before);
 }

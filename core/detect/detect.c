@@ -8,6 +8,7 @@
 
 #include "contact/contacts.h"
 #include "contact/estate.h"
+#include "contact/estate_press.h"
 #include "contact/handover.h"
 #include "contact/held.h"
 #include "contact/index.h"
@@ -298,6 +299,7 @@ static tl_status settle(tl_model *m)
     }
     if (status == TL_OK) {
         tl_estates_balance(m);
+        tl_estates_press(m);
         tl_estates_end(d);
     }
     return status;

@@ -10,6 +10,7 @@
 #include "contact/index.h"
 #include "contact/pair_view.h"
 #include "contact/presses.h"
+#include "contact/store.h"
 #include "detect/grazing.h"
 #include "detect/pairs.h"
 #include "detect/update.h"
@@ -143,6 +144,11 @@ static bool keep_estates(tl_model *m, const rows_scratch *scratch)
             continue;
         tl_testator one = testator_of(m, scratch, p->a), other = testator_of(m, scratch, p->b);
         tl_estate_keep(m, p->contact, &one, &other);
+    }
+    if (tl_estates_need_references(d) && !tl_detect_hold_initial(d)) {
+        d->estate_count -= estates;
+        d->left_count -= points;
+        return false;
     }
     tl_estates_sort(d);
     for (size_t i = 0; i < d->pair_count; i++)

@@ -57,3 +57,49 @@ for seed = 1, SEEDS do
     local overlap = STRESS / kn + tilt / 2
     check.near(pressed(model) / pressed(whole), 1, 2 * overlap + 1e-9)
 end
+
+-- ---------------------------------------------------------------- opened by slip
+
+-- A block slides, opens its joint by another way at each of its points, and comes to rest on all of it.
+local OPENING = {
+    { "coulomb", { friction = 30, dilation = 10 } },
+    { "coulomb", { friction = 30, dilation = 10, dilation_limit = 1e-3 } },
+    { "coulomb", { friction = 40, cohesion = 1e3, dilation = 5 } },
+}
+local all_closed = 0
+for seed = 1, SEEDS do
+    local random = shapes.random(100 + seed)
+    local function draw() return random(0, 1) end
+    local k = 10 ^ (8 + draw())
+    local law = OPENING[1 + math.floor(#OPENING * draw())]
+    local params = { kn = k, ks = k }
+    for name, value in pairs(law[2]) do
+        params[name] = value
+    end
+    local model = talus.model { contact_points = draw() < 0.5 and "corners" or "consistent" }
+    model:generate("box", { min = { -3, -3, -1 }, max = { 8, 4, 0 }, density = 2500, group = "floor" })
+    model:generate("box", { min = { 0, 0, 0 }, max = { 1, 1, 0.5 }, density = 2500, group = "block" })
+    model:blocks { group = "floor" }:fix()
+    model:blocks { group = "floor" }:hide()
+    model:joint("*", law[1], params)
+    model:damping "local"
+    model:solve { ratio = 1e-7, max_cycles = 20000 }
+    model:blocks { group = "block" }:set { velocity = { 0.2 * draw(), 0.2 * draw(), 0 } }
+    model:solve { ratio = 1e-7, max_cycles = 20000 }
+    local whole, closed = model:copy(), true
+    whole:cycle(1)
+    for _, point in ipairs(whole:contacts()[1].points) do
+        closed = closed and point.normal_force > 0
+    end
+    local at = model:blocks { group = "block" }[1].centroid
+    local thin = 10 ^ (-3 * draw())
+    local place = { at[1] + 0.5 - 0.5 * thin, at[2], at[3] }
+    model:generate("joint", plane(60 + 30 * draw(), 90, place))
+    model:joint("cut", "elastic", { kn = 100 * k, ks = 100 * k })
+    model:cycle(1)
+    if closed then
+        all_closed = all_closed + 1
+        check.near(pressed(model) / pressed(whole), 1, 1e-3)
+    end
+end
+check.holds(2 * all_closed > SEEDS, "blocks rest on all of their joints")
