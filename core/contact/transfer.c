@@ -357,9 +357,10 @@ static void refer_to_openings(tl_model *m, uint32_t c)
     const tl_contacts *contacts = &m->detect->contacts;
     tl_points_table *p = &m->detect->points;
     double opening[TL_LANES];
-    for (size_t first = 0; p->reference && first < contacts->point_count[c]; first += TL_LANES) {
-        if (!tl_contact_point_openings(m, c, first, opening))
-            return;
+    if (!p->reference || !tl_contact_opens(m, c))
+        return;
+    for (size_t first = 0; first < contacts->point_count[c]; first += TL_LANES) {
+        tl_contact_point_openings(m, c, first, opening);
         for (size_t l = 0; l < TL_LANES && first + l < contacts->point_count[c]; l++)
             p->reference[tl_point_row(contacts, c, first + l)] += opening[l];
     }
