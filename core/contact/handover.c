@@ -148,12 +148,12 @@ double tl_contact_ends(const tl_model *m, uint32_t c)
     return tl_contact_lost(m, c, tl_v3(0, 0, 0), tl_v3(0, 0, 0), 0);
 }
 
-void tl_contact_let_go(tl_model *m, uint32_t c)
+void tl_contact_let_go(tl_model *m, uint32_t c, double lift)
 {
     tl_press_row *row = tl_press_row_of(m, c);
     m->detect->contacts.released[c] = tl_contact_ends(m, c);
     if (row)
-        row->shift = 0;
+        row->shift = lift;
 }
 
 /* What the law keeps of a contact: means over what presses. */
@@ -376,7 +376,7 @@ void tl_contact_hand_over(tl_model *m, uint32_t c, const tl_manifold *g, bool re
     turn_states(m, c, &state);
     tl_shear_keep(m, c, kept);
     if (g->point_count == 0)
-        tl_contact_let_go(m, c);
+        tl_contact_let_go(m, c, lift);
     contacts->handed_over[c] = held && g->point_count > 0;
     if (!contacts->handed_over[c])
         return;

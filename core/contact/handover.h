@@ -16,8 +16,9 @@ void tl_contact_hand_over(tl_model *m, uint32_t contact, const tl_manifold *mani
 double tl_contact_lost(const tl_model *m, uint32_t contact, tl_vec3 force, tl_vec3 moment,
                        double stored);
 double tl_contact_ends(const tl_model *m, uint32_t contact);
-/* Notes that heat of a contact that is left without points: nothing is known of its walls any more, nor what has lifted them. */
-void tl_contact_let_go(tl_model *m, uint32_t contact);
+/* Notes that heat of a contact that is left without points. Its faces stay moved out by `lift`, m: what slip has opened is forgotten, and of
+ * a patch all. */
+void tl_contact_let_go(tl_model *m, uint32_t contact, double lift);
 /* Puts the manifold of a field contact in the place of what it was. */
 void tl_contact_refit_field(tl_model *m, uint32_t contact, const tl_manifold *manifold);
 /* Brings the shift of a field contact's faces up to how far slip has opened its joint now; returns by how much in the last step, m. */

@@ -223,7 +223,7 @@ static bool take_manifold(tl_model *m, uint32_t c, tl_narrow_scratch *scratch,
         if (!fields) {
             bool done = tl_contact_transfer(m, c, scratch, lanes);
             if (g->point_count == 0)
-                tl_contact_let_go(m, c);
+                tl_contact_let_go(m, c, 0);
             return done;
         }
         tl_contact_hand_over(m, c, g, scratch->reframed, lanes);

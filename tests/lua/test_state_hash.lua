@@ -40,7 +40,7 @@ local settings = {
     { "its most", function(m) m:mass_scaling { dt = 2e-3, most = 0.1 } end, function(m) m:mass_scaling { dt = 2e-3 } end },
     { "mass_scaling off", function(m) m:mass_scaling(false) end },
     { "contact_area", function(m) m:contact_area { fraction = 0.03 } end },
-    { "contact_area, absolute", function(m) m:contact_area { fraction = 0.03, absolute = 0.01 } end },
+    { "contact_area, absolute", function(m) m:contact_area { absolute = 0.01 } end },
     { "contact_area of a joint", function(m) m:contact_area { fraction = 0.03, joint = "J1" } end },
     { "contact_area of a plane", function(m) m:contact_area { fraction = 0.03, joint = "J1:1" } end },
     { "damping", function(m) m:damping("local", { alpha = 0.5 }) end },

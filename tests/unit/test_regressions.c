@@ -259,7 +259,7 @@ TEST(ties_do_not_trigger_the_full_search_every_step)
     scene_box(m, tl_v3(0, 0, 0), tl_v3(1, 1, 1));
     scene_box(m, tl_v3(1 - OVERLAP, 1 - OVERLAP, 0), tl_v3(2, 2, 1));
     scene_law(m, "elastic", KN, KN, -1);
-    tl_contact_area area = {.size = sizeof(tl_contact_area), .fraction = 0.01, .absolute = 0.01};
+    tl_contact_area area = {.size = sizeof(tl_contact_area), .absolute = 0.01};
     scene_ok(m, tl_model_contact_area(m, &area));
     scene_forces(m);
     CHECK_INT(m->detect->contacts.table.rows, 1);
