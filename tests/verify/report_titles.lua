@@ -34,6 +34,7 @@ local TITLES = {
     { "LAW.barton.scale", "law barton_bandis: roughness and wall strength of longer joints" },
     { "LAW.barton.shear", "law barton_bandis: mobilised roughness and dilation" },
     { "LAW.columns", "columns under loads beside their middle, on joints of every law" },
+    { "LAW.cuts", "cuts that change nothing, on joints of every law" },
     { "LAW.inclines", "slender blocks on inclines, on joints of every law" },
     { "LAW.cohesive.I", "law cohesive: opening" },
     { "LAW.cohesive.II", "law cohesive: shear" },
