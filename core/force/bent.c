@@ -1,7 +1,8 @@
 /* bent.c - cells of partly open patches under a stress that is no line in the closure.
  *
  * A law that is not linear tells the energy E(u) of what presses, A int s du; so its stress s follows from two energies. Over the
- * closed part of a cell two closures stand for all (closures.c), with its moments I_n = int u^n dA. Between and beyond them s / u and E / (A u^2) are lines in u, s / u = a + b u, E / (A u^2) = c + e u. So
+ * closed part of a cell two closures stand for all (closures.c), with its moments I_n = int u^n dA. Between and beyond them s / u and
+ * E / (A u^2) are lines in u, s / u = a + b u, E / (A u^2) = c + e u. So
  *
  *     force   int s dA      = a I_1 + b I_2
  *     moment  int s x dA    = a int u x dA + b int u^2 x dA
