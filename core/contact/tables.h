@@ -27,8 +27,7 @@ typedef struct tl_contacts {
     double *stored;   /* energy after the last step, J; NaN: under another law or stress */
     tl_vec3 *force;   /* on B */
     tl_vec3 *moment;  /* of the forces on B, about A's body's centroid */
-    /* some point carried a force across a gap in the last step: a bond in tension, or an initial stress not yet
-     * relieved. Such a contact ends only with that force */
+    /* a bond or an initial stress acted across a gap in the last step: it ends only with that force */
     uint8_t *holds_over_gap;
     uint8_t *handed_over; /* in this step, from patch to field or back */
     uint8_t *new_points;  /* its points were placed in this step: TL_POINTS_* */
