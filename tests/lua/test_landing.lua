@@ -1,4 +1,5 @@
--- Nothing goes through anything: boxes tumble onto a floor on joints of every law. Without damping the energy stays; with it
+-- Nothing goes through anything: boxes tumble onto a floor on joints of every law. Without damping the energy stays, and heat only
+-- grows: what is handed over from patches to fields is booked as heat, and must not hide energy that is made. With damping
 -- they come to rest on a face, pressed in by what their weight needs at that stiffness.
 -- program only: the models are the same ones with a stock Lua.
 local check = require "check"
@@ -8,6 +9,7 @@ local talus = require "talus"
 local KN, DENSITY, GRAVITY = 1e9, 2500, 10
 local FRACTION = 0.05 -- of the critical step: impacts are to be resolved
 local BALANCE = 1e-3  -- of the largest term of the energy
+local NO_HEAT = 1e-4  -- of what a box may fall through
 local SPRINGS = { kn = KN, ks = KN, friction = 35 }
 
 local function springs(more)
@@ -50,10 +52,13 @@ end
 for k, law in ipairs(LAWS) do
     local model, block = build(law, k)
     local what = ("%s, model %d: "):format(law[1], k)
+    local heat, all = 0, block.mass * GRAVITY * block.centroid[3]
     for _ = 1, 20 do
         model:solve { ratio = 0, max_time = 0.05 }
         local energy = model:energy()
         check.holds(math.abs(energy.balance) < BALANCE, ("%sbalance %.1e"):format(what, energy.balance))
+        check.holds(energy.friction >= heat - NO_HEAT * all, ("%sheat falls by %.1e J"):format(what, heat - energy.friction))
+        heat = energy.friction
     end
     model:damping "local"
     model:timestep { fraction = 0.5 }
