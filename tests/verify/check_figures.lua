@@ -65,10 +65,12 @@ function figures.relative(what, obtained, expected, tolerance)
             tolerance = tolerance })
 end
 
+-- low <= obtained <= high. Of what is to be small, and is 0 at the least, the upper bound is the tolerance.
 function figures.between(what, obtained, low, high)
     judge(low <= obtained and obtained <= high,
         string.format("%s: %.8g, between %g and %g", what, obtained, low, high),
-        { what = what, kind = "between", obtained = obtained, low = low, high = high })
+        { what = what, kind = "between", obtained = obtained, low = low, high = high,
+            error = low == 0 and obtained or nil, tolerance = low == 0 and high or nil })
 end
 
 function figures.equal(what, obtained, expected)
