@@ -35,15 +35,14 @@ typedef struct tl_heritage {
 /* How a patch that slip has opened presses, and its parts: closures of what is closed, summed over the area (x), and their moments along
  * two directions over the root of the area (y, z), m3. */
 typedef struct tl_pressing {
-    tl_vec3 centre,
-        along
-            [2]; /* unit vectors over the root of the area, or 0 where some of the whole was apart */
+    tl_vec3 centre;
+    tl_vec3 along[2];   /* unit vectors over the root of the area, or 0: some was apart */
     double area, taken; /* of the whole, and of the parts, m2 */
     tl_vec3 whole, parts;
     tl_vec3 rise[3]; /* of `parts`, with `more` */
-    tl_vec3 more,
-        best; /* closure beyond what is between the points: at the centre, and along both; that of the least error */
-    double error; /* that one, m3 */
+    /* Closure beyond what is between the points, at the centre and along both; that of the least error, and that error, m3. */
+    tl_vec3 more, best;
+    double error;
 } tl_pressing;
 
 /* What a contact of a block that was cut has left: its points from `first` on in a list of all such. Of a field contact there is

@@ -30,8 +30,8 @@ typedef struct tl_field_sums {
     double stiffness; /* int 2 / |n_a - n_b| dS: times kn that against motion along n; m^2 */
     double deepest;   /* largest d on S; m */
     tl_vec3 deepest_at;
-    tl_field_power powers
-        [TL_FIELD_POWERS]; /* int d^2 dV, m^5, int d^3 dV, m^6, if wanted; with what passes through seams */
+    /* int d^2 dV, m^5, and int d^3 dV, m^6, if wanted; with what passes through seams */
+    tl_field_power powers[TL_FIELD_POWERS];
 } tl_field_sums;
 
 /* Roundings of the largest offset within which two faces that look the same way are one plane. */

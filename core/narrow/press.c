@@ -400,7 +400,8 @@ static bool press_of(const tl_press_query *of, planes *p, tl_field_sums *sums, b
         return no_press(region);
     const double min_area = of->volumes ? 0 : of->min_area;
     tl_field_power field = with_min_area(sums, min_area), powers[TL_PRESS_POWERS];
-    find_powers(sums, powers);
+    if (of->volumes)
+        find_powers(sums, powers);
     if (region->flush && tl_region_tilt(view, region->flush_a, region->flush_b) <
                              tl_flush_limits_of(of->corners).field_tilt) {
         if (!(of->corners ? sum_corners(of, p->origin, scratch, &patch)

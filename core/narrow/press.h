@@ -50,8 +50,7 @@ typedef struct tl_press_query {
     tl_face_pair shifted;
     double opened; /* part of the shift that slip has opened in the last step, m */
     bool corners;  /* the patch has points at its corners only */
-    bool
-        volumes; /* the powers are wanted, for a law whose pressure is not proportional to the overlap: see press.c */
+    bool volumes;  /* the powers are wanted, for a law that is not linear: press.c */
 } tl_press_query;
 
 /* The presses of some pairs, up to TL_FIELD_PAIRS: 0 where the blocks have nothing in common. false: out of memory. */
