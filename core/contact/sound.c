@@ -155,7 +155,7 @@ static bool press_is_sound(const tl_model *m, const tl_detect *d, const tl_press
         return row->listed ? false : true;
     if (row->by_slope)
         return tl_is_flag(&row->slope.known);
-    return mesh_is_sound(&row->mesh, (uint32_t)row->count[0] + row->count[1]);
+    return mesh_is_sound(&row->mesh, sum);
 }
 
 /* The rows of presses: each is a contact's, or in the list of free ones. */

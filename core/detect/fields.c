@@ -78,26 +78,29 @@ static bool renumber(uint8_t *plane, uint32_t count, const uint8_t *now)
 
 tl_field_mesh tl_field_listed_anew(const tl_press_row *row, const tl_region *r)
 {
-    const uint32_t old_a = row->count[0], old = old_a + row->count[1];
+    const uint32_t count[] = {r->a, r->b, r->border_a, r->border_b};
     uint8_t now[TL_PRESS_FACES];
     tl_field_mesh mesh = {0};
     if (!row->listed || row->by_slope)
         return mesh;
     mesh = row->mesh;
     mesh.bounding = 0;
-    for (uint32_t k = 0; k < old; k++) {
-        uint32_t at = k < old_a ? 0 : r->a, end = k < old_a ? r->a : r->a + r->b;
-        while (at < end && r->face[at] != row->face[k])
-            at++;
-        bool there = at < end && at < TL_FIELD_KNOWN;
-        now[k] = there ? (uint8_t)at : TL_MESH_ZERO;
-        if (!(row->mesh.bounding >> k & 1))
-            continue;
-        if (!there)
-            return (tl_field_mesh){0};
-        mesh.bounding |= UINT64_C(1) << at;
+    uint32_t old = 0, begin = 0;
+    for (int kind = 0; kind < 4; begin += count[kind++]) {
+        for (uint32_t left = row->count[kind]; left > 0; left--, old++) {
+            uint32_t at = begin, end = begin + count[kind];
+            while (at < end && r->face[at] != row->face[old])
+                at++;
+            bool there = at < end && at < TL_FIELD_KNOWN;
+            now[old] = there ? (uint8_t)at : TL_MESH_ZERO;
+            if (!(row->mesh.bounding >> old & 1))
+                continue;
+            if (!there)
+                return (tl_field_mesh){0};
+            mesh.bounding |= UINT64_C(1) << at;
+        }
     }
-    if (!mesh.bounding)
+    if (!mesh.bounding && !mesh.polygons)
         return (tl_field_mesh){0};
     bool all = renumber(mesh.own[0], 2u * mesh.polygons, now);
     for (int k = 0; k < 4; k++)

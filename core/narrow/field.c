@@ -443,6 +443,7 @@ static void put_pair(work *w, pair *of, bool only_bounding)
         a += number[real++] < f->a;
     /* a face that bounds nothing of K may be far from it, and so would the apex be */
     of->apex[0] = of->apex[1] = (tl_apex){.known = false};
+    of->by[0] = of->by[1] = (tl_apex_faces){.known = false};
     if (only_bounding) {
         of->by[0] = tl_apex_choose(f, number, a, of->one_plane);
         of->by[1] = tl_apex_choose(f, number + a, real - a, of->one_plane);
@@ -493,7 +494,7 @@ static uint64_t find_bounding(work *w, pair *of)
 /* Whether somebody keeps what is known of a pair. */
 static bool is_kept(const tl_field_faces *f)
 {
-    return f->mesh && all_faces(f) == real_faces(f) && real_faces(f) <= TL_FIELD_KNOWN;
+    return f->mesh && !f->seamed && real_faces(f) <= TL_FIELD_KNOWN;
 }
 
 static bool is_known(const tl_field_faces *f)
@@ -524,6 +525,8 @@ static void integrate_anew(work *w, pair *of, tl_mesh_draft *draft)
         f->mesh->bounding = 0; /* K is so thin that a face was lost in roundings */
         of->draft = NULL;
     }
+    if (f->mesh && f->seamed && all_faces(f) <= TL_FIELD_KNOWN)
+        begin_draft(of, draft);
     integrate(w, of, NULL);
 }
 
@@ -579,7 +582,7 @@ bool tl_field_integrate_all(const tl_field_faces *const faces[], tl_field_sums *
             end_pair(&pairs[k]);
         if (!known || pairs[k].beyond)
             integrate_anew(&w, &pairs[k], &drafts[k]);
-        if (pairs[k].draft) {
+        if (pairs[k].draft && !pairs[k].beyond) {
             tl_mesh_make(pairs[k].draft, faces[k], faces[k]->mesh);
             faces[k]->mesh->apex[0] = pairs[k].by[0];
             faces[k]->mesh->apex[1] = pairs[k].by[1];

@@ -60,12 +60,13 @@ typedef struct tl_field_faces {
     uint32_t seam_a,
         seam_b;       /* so many borders, the last of A's and of B's, are seams to other parts */
     double *n[3], *c; /* [all of them]; with a mesh there is room for TL_FIELD_KNOWN + 1 */
-    /* What is known of another place; NULL: nobody keeps it. It is of use without borders and for up to TL_FIELD_KNOWN faces.
+    /* What is known of another place; NULL: nobody keeps it. It is of use for up to TL_FIELD_KNOWN planes.
      * The bits must be of all faces that bounded K, and must be forgotten when a corner of one block has come to lie in the other
      * and on or beyond a face that is not among them. The function leaves what it finds here. */
     tl_field_mesh *mesh;
     const tl_mesh_inner
-        *inner;       /* corners of one block in the other, for a new mesh; NULL: make none */
+        *inner;  /* corners of one block in the other, for a new mesh; NULL: make none */
+    bool seamed; /* the nearest face need not bound K: there are borders, or faces of other parts */
     bool energy_only; /* the volume is not wanted, nor found where it costs more */
     bool powers;      /* int d^2 dV and int d^3 dV are wanted, too */
 } tl_field_faces;

@@ -4,13 +4,18 @@
  * place changes. So the planes of all corners are kept, the mesh. At a new place every corner is found from its planes, three
  * equations, and the mesh stands if no plane is nearer to any corner than its own are, and none is passed:
  *
- *     c_h - n_h . x >= d    for all faces h.
+ *     c_h - n_h . x >= d    for all faces h,        c_k - n_k . x >= 0    for all borders k.
  *
- * There are no borders. Then it is all of the field. A polygon is convex, and its sides lie between corners that belong to it, so it is whole, and
+ * Then it is all of the field. A polygon is convex, and its sides lie between corners that belong to it, so it is whole, and
  * so is the part of S that it hangs together with. From a point where A is the nearer, the way out through its nearest face
  * stays where A is the nearer, for d_B grows no faster than d_A falls: so each part of S ends on the surface of K, where faces of
  * both blocks meet, and there all corners are known: K has no others than these and those of one block that lie in the
  * other, which are kept, too.
+ *
+ * With borders, or faces of other parts, the nearest face need not bound K, and the mesh is that of all cells: the polygons between
+ * any two of them, and those at borders. They are a subdivision of K, the upper side of the convex body 0 <= d <= c_h - n_h . x,
+ * 0 <= c_k - n_k . x in four dimensions. Each polygon beside a side is there (mesh_draft.c), so all sides that a corner has lead to
+ * corners that are known: the mesh is closed, and K hangs together.
  *
  * Polygons are summed by triangles from their first corner. */
 #include "narrow/field_mesh.h"
@@ -42,15 +47,15 @@ typedef struct corners {
     double x[3][TL_MESH_CORNERS], d[TL_MESH_CORNERS];
 } corners;
 
-/* Places and depths of eight corners, and how much larger roundings of offsets are there; NaN where planes hardly meet. */
-TL_VECTORIZED static void place_corners(const tl_field_faces *restrict f,
-                                        const uint8_t *restrict plane, double *restrict x,
-                                        double *restrict y, double *restrict z, double *restrict d,
-                                        double *restrict blur)
+/* Places and depths of eight corners, and how much larger roundings of offsets are there; NaN where planes hardly meet. The first
+ * plane of a corner is a face's. The others are as near, or are borders, numbers from `faces` on, and hold it. */
+TL_INLINE void place_corners(const tl_field_faces *restrict f, const uint8_t *restrict plane,
+                             uint32_t faces, bool seamed, double *restrict x, double *restrict y,
+                             double *restrict z, double *restrict d, double *restrict blur)
 {
     const double *restrict nx = f->n[0], *restrict ny = f->n[1], *restrict nz = f->n[2];
     const double *restrict c = f->c;
-    double n[4][3][LANES], o[4][LANES];
+    double n[4][3][LANES], o[4][LANES], near[4][LANES];
     for (uint32_t k = 0; k < 4; k++)
         for (uint32_t l = 0; l < LANES; l++) {
             uint32_t i = plane[k * TL_MESH_CORNERS + l];
@@ -58,15 +63,19 @@ TL_VECTORIZED static void place_corners(const tl_field_faces *restrict f,
             n[k][1][l] = ny[i];
             n[k][2][l] = nz[i];
             o[k][l] = c[i];
+            if (seamed)
+                near[k][l] = i < faces || i == TL_MESH_ZERO ? 1.0 : 0.0;
         }
 #pragma omp simd
     for (uint32_t l = 0; l < LANES; l++) {
-        double ax = n[1][0][l] - n[0][0][l], ay = n[1][1][l] - n[0][1][l];
-        double az = n[1][2][l] - n[0][2][l], ao = o[1][l] - o[0][l];
-        double bx = n[2][0][l] - n[0][0][l], by = n[2][1][l] - n[0][1][l];
-        double bz = n[2][2][l] - n[0][2][l], bo = o[2][l] - o[0][l];
-        double cx = n[3][0][l] - n[0][0][l], cy = n[3][1][l] - n[0][1][l];
-        double cz = n[3][2][l] - n[0][2][l], co = o[3][l] - o[0][l];
+        double a = seamed ? near[1][l] : 1.0, b = seamed ? near[2][l] : 1.0;
+        double e = seamed ? near[3][l] : 1.0;
+        double ax = n[1][0][l] - a * n[0][0][l], ay = n[1][1][l] - a * n[0][1][l];
+        double az = n[1][2][l] - a * n[0][2][l], ao = o[1][l] - a * o[0][l];
+        double bx = n[2][0][l] - b * n[0][0][l], by = n[2][1][l] - b * n[0][1][l];
+        double bz = n[2][2][l] - b * n[0][2][l], bo = o[2][l] - b * o[0][l];
+        double cx = n[3][0][l] - e * n[0][0][l], cy = n[3][1][l] - e * n[0][1][l];
+        double cz = n[3][2][l] - e * n[0][2][l], co = o[3][l] - e * o[0][l];
         double ux = by * cz - bz * cy, uy = bz * cx - bx * cz, uz = bx * cy - by * cx;
         double vx = cy * az - cz * ay, vy = cz * ax - cx * az, vz = cx * ay - cy * ax;
         double wx = ay * bz - az * by, wy = az * bx - ax * bz, wz = ax * by - ay * bx;
@@ -80,16 +89,34 @@ TL_VECTORIZED static void place_corners(const tl_field_faces *restrict f,
     }
 }
 
-/* Whether no plane is nearer to any of eight corners than its own, by more than a slack that grows with the roundings. */
-TL_VECTORIZED static bool corners_hold(const tl_field_faces *restrict f, uint32_t planes,
-                                       const double *restrict x, const double *restrict y,
-                                       const double *restrict z, const double *restrict d,
-                                       const double *restrict blur, double slack)
+TL_VECTORIZED static void place_corners_of_faces(const tl_field_faces *restrict f,
+                                                 const uint8_t *restrict plane, double *restrict x,
+                                                 double *restrict y, double *restrict z,
+                                                 double *restrict d, double *restrict blur)
+{
+    place_corners(f, plane, 0, false, x, y, z, d, blur);
+}
+
+TL_VECTORIZED static void place_seamed_corners(const tl_field_faces *restrict f,
+                                               const uint8_t *restrict plane, double *restrict x,
+                                               double *restrict y, double *restrict z,
+                                               double *restrict d, double *restrict blur)
+{
+    place_corners(f, plane, f->a + f->b, true, x, y, z, d, blur);
+}
+
+/* Whether no plane of some, from `first` to before `end`, is nearer to any of eight corners than d, by more than a slack that grows
+ * with the roundings. */
+TL_VECTORIZED static bool corners_hold(const tl_field_faces *restrict f, uint32_t first,
+                                       uint32_t end, const double *restrict x,
+                                       const double *restrict y, const double *restrict z,
+                                       const double *restrict d, const double *restrict blur,
+                                       double slack)
 {
     double least[LANES];
     for (uint32_t l = 0; l < LANES; l++)
         least[l] = INFINITY;
-    for (uint32_t k = 0; k < planes; k++) {
+    for (uint32_t k = first; k < end; k++) {
         const double nx = f->n[0][k], ny = f->n[1][k], nz = f->n[2][k], c = f->c[k];
 #pragma omp simd
         for (uint32_t l = 0; l < LANES; l++) {
@@ -106,18 +133,23 @@ TL_VECTORIZED static bool corners_hold(const tl_field_faces *restrict f, uint32_
 /* Whether the mesh stands; then its corners are in `at`. */
 static bool mesh_holds(const tl_field_faces *f, corners *at)
 {
+    const double none[LANES] = {0};
     const tl_field_mesh *mesh = f->mesh;
-    const uint32_t planes = f->a + f->b;
+    const uint32_t planes = f->a + f->b, all = planes + f->border_a + f->border_b;
     double blur[LANES], largest = 0;
     for (int axis = 0; axis < 3; axis++)
         f->n[axis][TL_MESH_ZERO] = 0;
     f->c[TL_MESH_ZERO] = 0;
-    for (uint32_t k = 0; k < planes; k++)
+    for (uint32_t k = 0; k < all; k++)
         largest = fmax(largest, fabs(f->c[k]));
     for (uint32_t i = 0; i < mesh->corners; i += LANES) {
         double *x = at->x[0] + i, *y = at->x[1] + i, *z = at->x[2] + i, *d = at->d + i;
-        place_corners(f, mesh->plane[0] + i, x, y, z, d, blur);
-        if (!corners_hold(f, planes, x, y, z, d, blur, SLACK * largest))
+        if (f->seamed)
+            place_seamed_corners(f, mesh->plane[0] + i, x, y, z, d, blur);
+        else
+            place_corners_of_faces(f, mesh->plane[0] + i, x, y, z, d, blur);
+        if (!corners_hold(f, 0, planes, x, y, z, d, blur, SLACK * largest) ||
+            (all > planes && !corners_hold(f, planes, all, x, y, z, none, blur, SLACK * largest)))
             return false;
     }
     return true;
@@ -140,7 +172,8 @@ typedef struct polygons {
     const uint8_t *loop[LANES];
     uint32_t sides[LANES], most;
     double n[3][LANES], length[LANES]; /* n_i - n_j, then divided by its length, and that */
-    double surface[LANES];             /* 1: of S, 0: between cells of one block */
+    double gradient
+        [LANES]; /* 1: of S, 0: between cells of one block; of a border the sign of its part in the gradient */
     double cells[LANES]; /* how many of the cells beside it have their energy from their sides */
     integrals of;
 } polygons;
@@ -292,11 +325,11 @@ TL_VECTORIZED static void add_given(const polygons *restrict p, double (*restric
 #pragma omp simd
     for (uint32_t l = 0; l < LANES; l++) {
         double nx = p->n[0][l], ny = p->n[1][l], nz = p->n[2][l], length = p->length[l];
-        bool any = s->area[l] > 0, on = any & (p->surface[l] > 0);
-        double area = on ? s->area[l] : 0.0, d = on ? s->d[l] : 0.0;
-        double x = on ? s->x[0][l] : 0.0, y = on ? s->x[1][l] : 0.0, z = on ? s->x[2][l] : 0.0;
-        double px = on ? s->dx[0][l] : 0.0, py = on ? s->dx[1][l] : 0.0;
-        double pz = on ? s->dx[2][l] : 0.0, half = any ? 0.5 * p->cells[l] * length : 0.0;
+        bool any = s->area[l] > 0;
+        double on = any ? p->gradient[l] : 0.0, area = on * s->area[l], d = on * s->d[l];
+        double x = on * s->x[0][l], y = on * s->x[1][l], z = on * s->x[2][l];
+        double px = on * s->dx[0][l], py = on * s->dx[1][l], pz = on * s->dx[2][l];
+        double half = any ? 0.5 * p->cells[l] * length : 0.0;
         out[FORCE][l] += d * nx;
         out[FORCE + 1][l] += d * ny;
         out[FORCE + 2][l] += d * nz;
@@ -317,7 +350,7 @@ TL_VECTORIZED static void add_given(const polygons *restrict p, double (*restric
         out[FIRST + 2][l] += z;
         out[PRESSURE][l] += d;
         out[EXTENT][l] += area;
-        out[SECOND][l] += on ? s->xx[l] : 0.0;
+        out[SECOND][l] += on * s->xx[l];
         double wide = length > TL_FIELD_SAME_WAY ? length : TL_FIELD_SAME_WAY;
         out[STIFFNESS][l] += 2 / wide * area;
         out[BY_FORCE][l] += px * nx + py * ny + pz * nz;
@@ -338,9 +371,9 @@ TL_VECTORIZED static void add_power(const polygons *restrict p, const double *re
 #pragma omp simd
     for (uint32_t l = 0; l < LANES; l++) {
         double nx = p->n[0][l], ny = p->n[1][l], nz = p->n[2][l];
-        bool any = p->of.area[l] > 0, on = any & (p->surface[l] > 0);
-        double d = on ? over[l] : 0.0, x = on ? moment[0][l] : 0.0, y = on ? moment[1][l] : 0.0;
-        double z = on ? moment[2][l] : 0.0;
+        bool any = p->of.area[l] > 0;
+        double on = any ? p->gradient[l] : 0.0, d = on * over[l];
+        double x = on * moment[0][l], y = on * moment[1][l], z = on * moment[2][l];
         out[POWER_FORCE][l] += d * nx;
         out[POWER_FORCE + 1][l] += d * ny;
         out[POWER_FORCE + 2][l] += d * nz;
@@ -372,31 +405,65 @@ TL_VECTORIZED static void sum_lanes(int count, double (*restrict given)[LANES],
     }
 }
 
-/* Loops, planes and sides of the polygons from number `first` on; how many they are. Those left over are the last again. */
-static uint32_t begin_polygons(const tl_field_faces *f, const tl_apex apex[2], uint32_t first,
-                               const uint8_t **loop, polygons *p)
+/* Loops and sides of the polygons from number `first` on, before `end`; how many they are. Those left over are the last again. */
+static uint32_t begin_loops(const tl_field_mesh *mesh, uint32_t first, uint32_t end,
+                            const uint8_t **loop, polygons *p)
 {
-    const tl_field_mesh *mesh = f->mesh;
-    uint32_t count = mesh->polygons - first;
-    count = count < LANES ? count : LANES;
+    const uint32_t count = end - first < LANES ? end - first : LANES;
     p->most = 0;
     for (uint32_t l = 0; l < LANES; l++) {
         uint32_t k = first + (l < count ? l : count - 1);
-        uint32_t i = mesh->own[k][0], j = mesh->own[k][1];
-        tl_vec3 w = tl_v3_sub(tl_field_normal(f, i), tl_field_normal(f, j));
         p->sides[l] = mesh->sides[k];
         p->most = p->sides[l] > p->most ? p->sides[l] : p->most;
         p->loop[l] = *loop;
         *loop += l + 1 < count || l + 1 == LANES ? p->sides[l] : 0;
+    }
+    return count;
+}
+
+/* The same with the planes of polygons between cells. */
+static uint32_t begin_polygons(const tl_field_faces *f, const tl_apex apex[2], uint32_t first,
+                               uint32_t end, const uint8_t **loop, polygons *p)
+{
+    const tl_field_mesh *mesh = f->mesh;
+    const uint32_t count = begin_loops(mesh, first, end, loop, p);
+    for (uint32_t l = 0; l < LANES; l++) {
+        uint32_t k = first + (l < count ? l : count - 1);
+        uint32_t i = mesh->own[k][0], j = mesh->own[k][1];
+        tl_vec3 w = tl_v3_sub(tl_field_normal(f, i), tl_field_normal(f, j));
         p->n[0][l] = w.x;
         p->n[1][l] = w.y;
         p->n[2][l] = w.z;
-        p->surface[l] = i < f->a && j >= f->a ? 1.0 : 0.0;
         double cells = (apex[i >= f->a].known ? 0 : 1) + (apex[j >= f->a].known ? 0 : 1);
         p->cells[l] = l < count ? cells : 0.0;
-        p->surface[l] *= l < count ? 1.0 : 0.0;
+        p->gradient[l] = i < f->a && j >= f->a && l < count ? 1.0 : 0.0;
     }
     return count;
+}
+
+/* The same of polygons at borders, and what they have instead of the length of n_i - n_j; with what sign they pass on through a seam
+ * what presses, if they do (add_border of field.c). */
+static void begin_borders(const tl_field_faces *f, uint32_t first, const uint8_t **loop,
+                          polygons *p, double slope[LANES], double through[LANES])
+{
+    const tl_field_mesh *mesh = f->mesh;
+    const uint32_t faces = f->a + f->b, of_b = faces + f->border_a;
+    const uint32_t count = begin_loops(mesh, first, mesh->polygons, loop, p);
+    for (uint32_t l = 0; l < LANES; l++) {
+        uint32_t k = first + (l < count ? l : count - 1);
+        uint32_t face = mesh->own[k][0], border = mesh->own[k][1];
+        bool last = border >= of_b, crosses = (face >= f->a) != last;
+        uint32_t end = last ? of_b + f->border_b : of_b, seams = last ? f->seam_b : f->seam_a;
+        double on = l < count ? 1.0 : 0.0, out = last ? -on : on;
+        tl_vec3 n = tl_field_normal(f, border);
+        p->n[0][l] = n.x;
+        p->n[1][l] = n.y;
+        p->n[2][l] = n.z;
+        p->cells[l] = 2 * on; /* all of the flux is of one cell */
+        p->gradient[l] = crosses ? out : 0.0;
+        slope[l] = -tl_v3_dot(n, tl_field_normal(f, face));
+        through[l] = border + seams >= end ? -out : 0.0;
+    }
 }
 
 /* Adds the sides of cells that pass by an apex. */
@@ -413,18 +480,66 @@ static void add_strays(const tl_field_faces *f, const polygons *p, uint32_t firs
     }
 }
 
-/* The deepest corner of S: faces of both blocks meet there. Of the four planes, in ascending order, d = 0 is the last. */
+/* The deepest corner of S: faces of both blocks meet there. The four planes are in ascending order. */
 static void find_deepest(const tl_field_faces *f, const corners *at, tl_field_sums *sums)
 {
     const tl_field_mesh *mesh = f->mesh;
     for (uint32_t k = 0; k < mesh->corners; k++) {
-        uint32_t first = mesh->plane[0][k], third = mesh->plane[2][k], last = mesh->plane[3][k];
-        bool both = first < f->a && (third >= f->a || (last >= f->a && last != TL_MESH_ZERO));
+        bool both = false;
+        for (int i = 1; i < 4; i++)
+            both = both || mesh->plane[i][k] - f->a < f->b; /* false where the number is less */
+        both = both && mesh->plane[0][k] < f->a;
         if (!both || !(at->d[k] > sums->deepest))
             continue;
         sums->deepest = at->d[k];
         sums->deepest_at = tl_v3(at->x[0][k], at->x[1][k], at->x[2][k]);
     }
+}
+
+static tl_vec3 vector_of(const double sum[GIVEN], int column)
+{
+    return (tl_vec3){sum[column], sum[column + 1], sum[column + 2]};
+}
+
+/* Adds the polygons at borders, from number `first` on. */
+static void add_borders(const tl_field_faces *f, const corners *at, uint32_t first,
+                        const uint8_t *loop, double powers[TL_FIELD_POWERS][POWER_GIVEN][LANES],
+                        tl_field_sums *sums)
+{
+    polygons p;
+    double slope[LANES], through[LANES], sum[GIVEN];
+    double given[GIVEN][LANES] = {{0}}, passed[GIVEN][LANES] = {{0}};
+    for (; first < f->mesh->polygons; first += LANES) {
+        begin_borders(f, first, &loop, &p, slope, through);
+        integrate_polygons(at, &p);
+        memcpy(p.length, slope, sizeof slope);
+        add_given(&p, given);
+        for (uint32_t l = 0; l < LANES; l++)
+            p.gradient[l] += through[l];
+        if (f->powers)
+            add_powers(at, &p, powers);
+        memcpy(p.gradient, through, sizeof through);
+        add_given(&p, passed);
+    }
+    sum_lanes(GIVEN, given, sum);
+    sums->energy += sum[ENERGY];
+    sums->volume += sum[VOLUME];
+    sums->force = tl_v3_add(sums->force, vector_of(sum, FORCE));
+    sums->moment = tl_v3_add(sums->moment, vector_of(sum, MOMENT));
+    sums->swept = tl_v3_add(sums->swept, vector_of(sum, SWEPT));
+    sums->swept_moment = tl_v3_add(sums->swept_moment, vector_of(sum, SWEPT_MOMENT));
+    sum_lanes(GIVEN, passed, sum);
+    sums->through = vector_of(sum, FORCE);
+    sums->through_moment = vector_of(sum, MOMENT);
+}
+
+/* How many polygons lie between cells; the others are at borders. */
+static uint32_t between_cells(const tl_field_faces *f)
+{
+    uint32_t count = f->mesh->polygons;
+    while (f->seamed && count > 0 && f->mesh->own[count - 1][1] >= f->a + f->b)
+        count--;
+    return count;
 }
 
 bool tl_mesh_integrate(const tl_field_faces *f, tl_field_sums *sums)
@@ -444,8 +559,9 @@ bool tl_mesh_integrate(const tl_field_faces *f, tl_field_sums *sums)
     memset(given, 0, sizeof given);
     if (f->powers)
         memset(powers, 0, sizeof powers);
-    for (uint32_t first = 0; first < mesh->polygons; first += LANES) {
-        uint32_t count = begin_polygons(f, apex, first, &loop, &p);
+    const uint32_t between = between_cells(f);
+    for (uint32_t first = 0; first < between; first += LANES) {
+        uint32_t count = begin_polygons(f, apex, first, between, &loop, &p);
         integrate_polygons(&at, &p);
         add_given(&p, given);
         if (f->powers)
@@ -454,21 +570,22 @@ bool tl_mesh_integrate(const tl_field_faces *f, tl_field_sums *sums)
             add_strays(f, &p, first, count, apex);
     }
     sum_lanes(GIVEN, given, sum);
-    *sums = (tl_field_sums){
-        .energy = sum[ENERGY],
-        .volume = sum[VOLUME],
-        .force = {sum[FORCE], sum[FORCE + 1], sum[FORCE + 2]},
-        .moment = {sum[MOMENT], sum[MOMENT + 1], sum[MOMENT + 2]},
-        .swept = {sum[SWEPT], sum[SWEPT + 1], sum[SWEPT + 2]},
-        .swept_moment = {sum[SWEPT_MOMENT], sum[SWEPT_MOMENT + 1], sum[SWEPT_MOMENT + 2]},
-        .pressure = sum[PRESSURE],
-        .pressed = {sum[PRESSED], sum[PRESSED + 1], sum[PRESSED + 2]},
-        .extent = sum[EXTENT],
-        .first = {sum[FIRST], sum[FIRST + 1], sum[FIRST + 2]},
-        .second = sum[SECOND],
-        .stiffness = sum[STIFFNESS]};
+    *sums = (tl_field_sums){.energy = sum[ENERGY],
+                            .volume = sum[VOLUME],
+                            .force = vector_of(sum, FORCE),
+                            .moment = vector_of(sum, MOMENT),
+                            .swept = vector_of(sum, SWEPT),
+                            .swept_moment = vector_of(sum, SWEPT_MOMENT),
+                            .pressure = sum[PRESSURE],
+                            .pressed = vector_of(sum, PRESSED),
+                            .extent = sum[EXTENT],
+                            .first = vector_of(sum, FIRST),
+                            .second = sum[SECOND],
+                            .stiffness = sum[STIFFNESS]};
     sums->area = sums->swept;
     find_deepest(f, &at, sums);
+    if (between < mesh->polygons)
+        add_borders(f, &at, between, loop, powers, sums);
     for (int k = 0; k < TL_FIELD_POWERS && f->powers; k++) {
         double all[POWER_GIVEN];
         sum_lanes(POWER_GIVEN, powers[k], all);

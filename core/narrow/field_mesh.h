@@ -5,8 +5,7 @@
 
 #include "narrow/field_sums.h"
 
-/* The integrals over the polygons of the mesh that is known of some faces; false: there is none, or they are others now. There
- * are no borders. The volume and its gradients are not found where only the energy is wanted. */
+/* The integrals over the polygons of the mesh that is known of some faces; false: there is none, or they are others now. The volume and its gradients are not found where only the energy is wanted. */
 bool tl_mesh_integrate(const tl_field_faces *faces, tl_field_sums *sums);
 
 #endif

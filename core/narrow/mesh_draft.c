@@ -102,6 +102,44 @@ static bool hangs_together(const tl_field_mesh *mesh, const tl_mesh_draft *draft
     return true;
 }
 
+/* Whether the polygon of two planes has a side between two corners. */
+static bool has_side(const tl_field_mesh *mesh, uint8_t one, uint8_t other, uint8_t from,
+                     uint8_t to)
+{
+    const uint8_t *loop = mesh->loop;
+    for (uint32_t k = 0; k < mesh->polygons; loop += mesh->sides[k++]) {
+        if (mesh->own[k][0] != (one < other ? one : other) ||
+            mesh->own[k][1] != (one < other ? other : one))
+            continue;
+        for (uint32_t i = 0; i < mesh->sides[k]; i++) {
+            uint8_t next = loop[i + 1 < mesh->sides[k] ? i + 1 : 0];
+            if ((loop[i] == from && next == to) || (loop[i] == to && next == from))
+                return true;
+        }
+    }
+    return false;
+}
+
+/* Whether all polygons are there that meet in a side: of three planes two by two, but for two borders. A side on the surface of
+ * K, with d = 0, has one. */
+static bool is_whole(const tl_field_mesh *mesh, const tl_mesh_draft *draft, const tl_field_faces *f)
+{
+    const uint8_t *loop = mesh->loop, *label = draft->label;
+    for (uint32_t k = 0; k < mesh->polygons; k++) {
+        uint32_t sides = mesh->sides[k];
+        for (uint32_t i = 0; i < sides; i++)
+            for (int own = 0; own < 2 && label[i] != TL_MESH_ZERO; own++) {
+                uint8_t by = mesh->own[k][own], from = loop[i ? i - 1 : sides - 1];
+                bool borders = by >= f->a + f->b && label[i] >= f->a + f->b;
+                if (!borders && !has_side(mesh, by, label[i], from, loop[i]))
+                    return false;
+            }
+        loop += sides;
+        label += sides;
+    }
+    return true;
+}
+
 void tl_mesh_make(const tl_mesh_draft *draft, const tl_field_faces *faces, tl_field_mesh *mesh)
 {
     const uint8_t *label = draft->label;
@@ -133,7 +171,7 @@ void tl_mesh_make(const tl_mesh_draft *draft, const tl_field_faces *faces, tl_fi
         for (int k = 0; k < 4; k++)
             mesh->plane[k][i] = mesh->plane[k][0];
     mesh->polygons = draft->polygons;
-    if (!fits || !hangs_together(mesh, draft, faces)) {
+    if (!fits || !(faces->seamed ? is_whole : hangs_together)(mesh, draft, faces)) {
         memset(mesh, 0, sizeof *mesh);
         mesh->bounding = bounding;
     }

@@ -111,19 +111,15 @@ static uint32_t add_faces(planes *p, const tl_press_query *of, bool of_b, uint32
     return count;
 }
 
-/* Adds faces on other parts, the seams behind the others; how many are seams, with it. */
+/* Adds faces on other parts; how many are seams, with it. */
 static uint32_t add_covered(planes *p, const tl_press_query *of, bool of_b, uint32_t begin,
                             uint32_t count, uint32_t *seams)
 {
     const tl_poly *poly = of_b ? of->view->b : of->view->a;
     *seams = 0;
-    for (int seam = 0; seam < 2; seam++)
-        for (uint32_t k = begin; k < begin + count; k++)
-            if ((poly->covered[of->region->face[k]] == TL_SEAM) == seam) {
-                add_face(p, of, of_b, of->region->face[k]);
-                *seams += (uint32_t)seam;
-            }
-    return count;
+    for (uint32_t k = begin; k < begin + count; k++)
+        *seams += poly->covered[of->region->face[k]] == TL_SEAM;
+    return add_faces(p, of, of_b, begin, count);
 }
 
 static void list_field(planes *p, const tl_press_query *of)
@@ -340,8 +336,7 @@ static bool has_shared_planes(const tl_press_query *of)
 static bool is_of_use(const tl_press_query *of)
 {
     const tl_region *r = of->region;
-    return r->mesh && !(of->shift > 0) && r->border_a + r->border_b == 0 &&
-           r->a + r->b <= TL_FIELD_KNOWN && !has_shared_planes(of);
+    return r->mesh && !(of->shift > 0) && r->a + r->b + r->border_a + r->border_b <= TL_FIELD_KNOWN;
 }
 
 /* Whether a number is so far above the smallest ones that its square is known to all digits. */
@@ -449,8 +444,9 @@ static void begin(const tl_press_query *of, tl_vec3 origin, planes *p)
     list_field(p, of);
     p->faces.energy_only = !(of->min_area > 0 || of->volumes);
     p->faces.powers = of->volumes;
-    p->faces.mesh = has_shared_planes(of) ? NULL : of->region->mesh;
+    p->faces.mesh = of->region->mesh;
     p->faces.inner = NULL;
+    p->faces.seamed = of->region->border_a + of->region->border_b > 0 || has_shared_planes(of);
 }
 
 /* The integrals by the mesh that is known; false: they are to be found. */
@@ -489,10 +485,13 @@ static void begin_anew(const tl_press_query *of, planes *p, tl_mesh_inner *inner
     begin(of, b_is_small ? view->vertex_b[0] : view->a->vertex[0], p);
     if (!mesh || !is_of_use(of))
         return;
+    p->faces.inner = inner;
+    inner->count = 0;
+    if (p->faces.seamed) /* its polygons have all corners */
+        return;
     if (mesh->bounding && !tl_region_corners_agree(of->view, of->region))
         mesh->bounding = 0;
     tl_region_inner_corners(of->view, of->region, inner);
-    p->faces.inner = inner;
 }
 
 static bool find_all(const tl_press_query query[], uint32_t count, tl_narrow_scratch *scratch,

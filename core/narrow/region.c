@@ -28,9 +28,10 @@ typedef struct planes {
         faces; /* the first planes are those of faces, the others of faces of other parts (seam_planes.c) */
 } planes;
 
-static bool is_covered(const planes *p, size_t f)
+/* 0, TL_COVERED or TL_SEAM. */
+static int covered(const planes *p, size_t f)
 {
-    return f < p->faces && p->poly->covered[f];
+    return f < p->faces ? p->poly->covered[f] : 0;
 }
 
 static size_t padded(size_t faces)
@@ -149,7 +150,7 @@ static double highest(const planes *p, bool borders, size_t *face)
 {
     double gap = -INFINITY;
     for (size_t f = 0; f < p->count; f++)
-        if (p->low[f] > gap && (borders || !is_covered(p, f))) {
+        if (p->low[f] > gap && (borders || !covered(p, f))) {
             gap = p->low[f];
             *face = f;
         }
@@ -171,19 +172,26 @@ static void find_gap(const planes *a, const planes *b, tl_region *out)
                             : tl_v3(-b->x[face_b], -b->y[face_b], -b->z[face_b]);
 }
 
-/* Adds the faces of a block that are borders, or that are none; returns how many. */
-static uint32_t list(const planes *p, bool borders, bool seams, double margin, double deepest,
+/* Adds the faces of a block that are covered so; returns how many. */
+static uint32_t list(const planes *p, int how, bool seams, double margin, double deepest,
                      uint16_t *face)
 {
     uint32_t count = 0;
     for (size_t f = 0; f < p->count; f++) {
-        if (is_covered(p, f) != borders)
+        if (covered(p, f) != how)
             continue;
-        bool away = seams && !borders ? -p->high[f] > deepest + 2 * margin : p->outside[f] > margin;
+        bool away = seams && !how ? -p->high[f] > deepest + 2 * margin : p->outside[f] > margin;
         if (!away)
             face[count++] = (uint16_t)f;
     }
     return count;
+}
+
+/* Adds the borders of a block, the seams behind the others. */
+static uint32_t list_borders(const planes *p, bool seams, double margin, uint16_t *face)
+{
+    uint32_t count = list(p, TL_COVERED, seams, margin, 0, face);
+    return count + list(p, TL_SEAM, seams, margin, 0, face + count);
 }
 
 static double cosine(const planes *p, size_t i, const planes *q, size_t j)
@@ -282,10 +290,10 @@ bool tl_region_find(const tl_pair_view *view, double margin, tl_narrow_scratch *
     bool seams = view->a->seams || view->b->seams;
     double deepest = fmax(-out->gap, 0);
     out->face = face;
-    out->a = list(&a, false, seams, margin, deepest, face);
-    out->b = list(&b, false, seams, margin, deepest, face += out->a);
-    out->border_a = list(&a, true, seams, margin, deepest, face += out->b);
-    out->border_b = list(&b, true, seams, margin, deepest, face += out->border_a);
+    out->a = list(&a, 0, seams, margin, deepest, face);
+    out->b = list(&b, 0, seams, margin, deepest, face += out->a);
+    out->border_a = list_borders(&a, seams, margin, face += out->b);
+    out->border_b = list_borders(&b, seams, margin, face += out->border_a);
     find_flush(&a, &b, out);
     if (out->flush)
         find_leads(&a, &b, out, scratch->face);

@@ -9,7 +9,7 @@
 /* Faces of two blocks near what they have in common. Among the listed faces of a part are planes of faces of other parts, whose
  * numbers begin with its face_count (seam_planes.c). */
 typedef struct tl_region {
-    /* the listed faces of A, of B, the borders of A and of B: faces on seams */
+    /* the listed faces of A, of B, the borders of A and of B: faces on other parts, the seams behind the others */
     uint32_t a, b, border_a, border_b;
     const uint16_t *face; /* their numbers, one after the other; in the thread's scratch */
     tl_field_mesh *mesh;  /* what is known of the field at another place; NULL: nobody keeps it */
