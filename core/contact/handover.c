@@ -285,11 +285,18 @@ static void put_on_field(tl_model *m, uint32_t c, const shear *s, double energy,
                    tl_v3_scale(radius > 0 ? torsion / radius : 0, s->normal));
 }
 
+static void keep_press(tl_press_row *row, const tl_manifold *g)
+{
+    row->press = *g->press;
+    if (tl_press_has_extra(g->press) && g->extra)
+        row->extra = *g->extra;
+}
+
 /* Notes the press of points that have been written. What slip has opened is in it, and the law adds it. */
 static void begin_field(tl_model *m, uint32_t c, const tl_manifold *g)
 {
     tl_press_row *row = tl_press_row_of(m, c);
-    row->press = g->press;
+    keep_press(row, g);
     if (g->point_count)
         tl_contact_openings(m, c, row->opening);
     else
@@ -337,7 +344,7 @@ static void take_share(tl_model *m, uint32_t c, const tl_manifold *g, const tl_e
     whole.torsion *= share * share;
     whole.energy *= share;
     shear now = carried(&whole, area, contacts->facet[c].last, tl_v3(0, 0, 0));
-    put_on_field(m, c, &now, whole.energy, g->press.radius);
+    put_on_field(m, c, &now, whole.energy, g->press->radius);
 }
 
 void tl_contact_hand_over(tl_model *m, uint32_t c, const tl_manifold *g, bool reframed,
@@ -435,7 +442,7 @@ static void refit_springs(tl_model *m, uint32_t c, const tl_manifold *g)
     size_t first = tl_point_row(contacts, c, TL_FIELD_SHEAR);
     size_t torsion = tl_point_row(contacts, c, TL_FIELD_TORSION);
     double old = p->area[torsion], area = g->points[0].area;
-    double r0 = row->press.radius, r1 = g->press.radius;
+    double r0 = row->press.radius, r1 = g->press->radius;
     double polar = old * r0 * r0, now = area * r1 * r1;
     tl_vec3 force = tl_columns_get(p->f_s, first);
     tl_vec3 twist = tl_v3_scale(r0, tl_columns_get(p->f_s, torsion));
@@ -486,14 +493,14 @@ void tl_contact_refit_field(tl_model *m, uint32_t c, const tl_manifold *g)
     double area = p->area[tl_point_row(contacts, c, TL_FIELD_TORSION)];
     note_way(m, c, g->points[0].p);
     /* what is found again in the same place stays what it is, to the bit */
-    if (g->points[0].area != area || g->press.radius != row->press.radius)
+    if (g->points[0].area != area || g->press->radius != row->press.radius)
         refit_springs(m, c, g);
     for (size_t k = 0; k < TL_FIELD_POINTS; k++)
         tl_columns_put(p->p, tl_point_row(contacts, c, k), g->points[0].p);
     contacts->facet[c] = g->facet;
     contacts->facet[c].last = last;
     contacts->facet[c].offset -= row->opening[TL_FIELD_SHEAR];
-    row->press = g->press;
+    keep_press(row, g);
 }
 
 double tl_contact_sheared(const tl_model *m, uint32_t c)

@@ -141,7 +141,8 @@ static bool mesh_is_sound(const tl_field_mesh *mesh, uint32_t faces)
 static bool press_is_sound(const tl_model *m, const tl_detect *d, const tl_press_row *row,
                            uint32_t a, uint32_t b)
 {
-    if (!tl_is_flag(&row->flush) || !tl_is_flag(&row->listed) || !tl_is_flag(&row->by_slope) ||
+    if (!tl_is_flag(&row->press.powers) || !tl_is_flag(&row->flush) || !tl_is_flag(&row->listed) ||
+        !tl_is_flag(&row->by_slope) ||
         !(row->shifted.a < faces_of(m, d, a) && row->shifted.b < faces_of(m, d, b)))
         return false;
     uint32_t sum = 0;
@@ -154,7 +155,7 @@ static bool press_is_sound(const tl_model *m, const tl_detect *d, const tl_press
     if (row->blunt_a > row->count[0] || row->blunt_b > row->count[1])
         return row->listed ? false : true;
     if (row->by_slope)
-        return tl_is_flag(&row->slope.known);
+        return tl_is_flag(&row->slope.known) && tl_is_flag(&row->there.powers);
     return mesh_is_sound(&row->mesh, sum);
 }
 

@@ -55,8 +55,7 @@ typedef struct tl_press_row {
     tl_pair_pose listed_at;                                    /* where they were listed */
     double listed_shift;                                       /* and with which shift */
     bool flush, listed;
-    /* It has stayed near a place since some step. When it has stayed for long, its press there has slopes, and it goes by
-     * them; otherwise by the mesh of its field: detect/fields.c */
+    /* It has stayed near a place since some step: for long, then it goes by slopes of its press there, else by its mesh (fields.c). */
     tl_pair_pose place;
     int64_t since;
     bool by_slope;
@@ -67,6 +66,7 @@ typedef struct tl_press_row {
             tl_press_slope slope;
         };
     };
+    tl_press_extra extra; /* of a press that has more */
 } tl_press_row;
 
 /* GROW: it waits for room for its points; GROW_PATCH: for those of the same two faces, so that it then comes out as it would have

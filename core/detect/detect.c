@@ -136,7 +136,7 @@ static tl_status give_birth(tl_model *m, uint32_t pair, overlaps *deep)
         d->contacts.facet[row] = g->facet;
         d->contacts.holds_over_gap[row] = true;
     }
-    double overlap = g->facet.kind == TL_FACET_FIELD ? g->press.deepest : -region.gap;
+    double overlap = g->facet.kind == TL_FACET_FIELD ? g->press->deepest : -region.gap;
     /* parts of blocks go on in the overlap of these */
     bool meet = !tl_estate_of(m, d->pairs[pair].a, d->pairs[pair].b);
     if (meet && overlap > TL_SHALLOW * view.size && deep->count++ == 0)

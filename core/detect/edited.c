@@ -251,8 +251,7 @@ tl_status tl_edited_rows(tl_model *m)
 static bool lacks_volumes(const tl_model *m, uint32_t row, uint32_t law)
 {
     const tl_press_row *press = tl_press_row_of(m, row);
-    return press && press->press.powers[TL_PRESS_VOLUME].whole == 0 && law != TL_NO_ROW &&
-           tl_law_presses(&m->joint_laws[law]);
+    return press && !press->press.powers && law != TL_NO_ROW && tl_law_presses(&m->joint_laws[law]);
 }
 
 /* Contacts under another joint law belong in another span. */

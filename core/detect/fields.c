@@ -196,7 +196,7 @@ static bool watch(const tl_model *m, const tl_press_query *query, const tl_press
         row->since = m->cycles;
     }
     if (!stays || m->cycles - row->since < TL_PRESS_SLOPE_COST || press->patch >= 1 ||
-        press->powers[TL_PRESS_VOLUME].whole > 0 || /* slopes are of the energy only */
+        press->powers || /* slopes are of the energy only */
         !m->config.reuse_geometry)
         return true;
     tl_press_slope slope;
@@ -237,7 +237,6 @@ static void ask(tl_model *m, tl_field_batch *b, uint32_t c, const tl_pair_view *
 void tl_fields_follow(tl_model *m, tl_field_batch *b, tl_narrow_scratch *scratch)
 {
     const tl_contacts *contacts = &m->detect->contacts;
-    tl_press found[TL_FIELD_PAIRS];
     b->asked = 0;
     for (uint32_t k = 0; k < b->count; k++) {
         uint32_t c = b->contact[k];
@@ -254,10 +253,7 @@ void tl_fields_follow(tl_model *m, tl_field_batch *b, tl_narrow_scratch *scratch
         return;
     for (uint32_t k = 0; k < b->asked; k++)
         tl_region_choose_flush(&b->view[k], &b->region[k]);
-    b->failed = !tl_press_find(b->query, b->asked, scratch, found);
-    for (uint32_t k = 0, i = 0; k < b->count; k++)
-        if (!b->near[k])
-            b->press[k] = found[i++];
+    b->failed = !tl_press_find(b->query, b->asked, scratch, b->found, b->extra);
     b->asked = 0;
 }
 
@@ -267,16 +263,19 @@ tl_field_result tl_field_take(tl_model *m, tl_field_batch *b, uint32_t k,
     uint32_t c = b->contact[k];
     tl_press_row *row = tl_press_row_of(m, c);
     const tl_press *press = &b->press[k];
+    const tl_press_extra *extra = NULL;
     tl_facet faces = m->detect->contacts.facet[c];
     if (b->failed)
         return TL_FIELD_FAILED;
     if (!b->near[k]) {
         uint32_t i = b->asked++;
+        press = &b->found[i];
+        extra = &b->extra[i];
         if (!(press->area > 0) || (press->patch >= 1 && b->before[i].calm))
             return TL_FIELD_LOST; /* it may be a patch or nothing now */
         if (!watch(m, &b->query[i], press, row, scratch))
             return TL_FIELD_FAILED;
         faces = (tl_facet){.ia = b->region[i].flush_a, .ib = b->region[i].flush_b};
     }
-    return tl_manifold_press(press, &faces, scratch) ? TL_FIELD_FOUND : TL_FIELD_FAILED;
+    return tl_manifold_press(press, extra, &faces, scratch) ? TL_FIELD_FOUND : TL_FIELD_FAILED;
 }

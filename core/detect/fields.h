@@ -28,8 +28,10 @@ typedef enum tl_field_result {
 typedef struct tl_field_batch {
     uint32_t contact[TL_FIELD_PAIRS], count;
     bool near[TL_FIELD_PAIRS], failed; /* goes by slopes; out of memory */
-    tl_press press[TL_FIELD_PAIRS];
-    /* of those that do not go by slopes, one after the other */
+    tl_press press[TL_FIELD_PAIRS];    /* of those that go by slopes */
+    /* of those that do not, one after the other */
+    tl_press found[TL_FIELD_PAIRS];
+    tl_press_extra extra[TL_FIELD_PAIRS];
     tl_pair_view view[TL_FIELD_PAIRS];
     tl_region region[TL_FIELD_PAIRS];
     tl_manifold_before before[TL_FIELD_PAIRS];

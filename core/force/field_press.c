@@ -40,8 +40,8 @@ tl_field_press tl_press_linearly(const tl_press_row *row, double kn, double area
     if (press->lifted != 0 && known) {
         double share = by * press->lifted / pays_for_lift(row, whole);
         double again = by * lifted / (spring * row->opened * share);
-        more = tl_v3_scale(again, press->lifted_force);
-        turn = tl_v3_scale(again, press->lifted_moment);
+        more = tl_v3_scale(again, row->extra.lifted_force);
+        turn = tl_v3_scale(again, row->extra.lifted_moment);
     }
     return (tl_field_press){.force = tl_v3_madd(more, by, press->force),
                             .moment = tl_v3_madd(turn, by, press->moment),
@@ -54,11 +54,11 @@ tl_field_press tl_press_linearly(const tl_press_row *row, double kn, double area
 /* A closure over the other one below which it is none: moments of next to nothing may be roundings. */
 #define LEAST_CLOSURE 1e-6
 
-void tl_press_closures(const tl_press *press, double closure[2])
+void tl_press_closures(const tl_press_row *row, double closure[2])
 {
-    const double moment[] = {press->powers[TL_PRESS_VOLUME].whole, 4 * press->energy,
-                             12 * press->powers[TL_PRESS_SQUARE].whole,
-                             32 * press->powers[TL_PRESS_CUBE].whole};
+    const tl_field_power *powers = row->extra.powers;
+    const double moment[] = {powers[TL_PRESS_VOLUME].whole, 4 * row->press.energy,
+                             12 * powers[TL_PRESS_SQUARE].whole, 32 * powers[TL_PRESS_CUBE].whole};
     tl_two_closures(moment, closure);
     closure[0] = fmax(closure[0], LEAST_CLOSURE * closure[1]);
 }
@@ -77,11 +77,11 @@ static void find_cubic(const tl_told_press *by, double p[4])
 }
 
 /* The energy of the field, and its slopes by G and the powers. */
-static double find_slopes(const tl_press *press, double area, const tl_told_press *by,
+static double find_slopes(const tl_press_row *row, double area, const tl_told_press *by,
                           tl_field_press *out)
 {
-    const tl_field_power *powers = press->powers;
-    double g = press->energy, v = powers[TL_PRESS_VOLUME].whole, p[4];
+    const tl_field_power *powers = row->extra.powers;
+    double g = row->press.energy, v = powers[TL_PRESS_VOLUME].whole, p[4];
     find_cubic(by, p);
     double own = 0.25 * v * v / g, more = area / own;
     double all = p[0] * v + 4 * p[1] * g + 12 * p[2] * powers[TL_PRESS_SQUARE].whole +
@@ -96,11 +96,11 @@ static double find_slopes(const tl_press *press, double area, const tl_told_pres
 
 /* Adds what slip opens in this step at the overlap 4 G / V of the area: it adds to the force by m = F o / U of an energy U ~ o^m of the
  * closure o, dF = (F - U / o) dU / U. Gives that. */
-static double add_rise(const tl_press *press, double area, const double f_n[TL_FIELD_POINTS],
+static double add_rise(const tl_press_row *row, double area, const double f_n[TL_FIELD_POINTS],
                        const tl_told_press *by, tl_field_press *out)
 {
-    double g = press->energy, v = press->powers[TL_PRESS_VOLUME].whole, own = 0.25 * v * v / g;
-    double more[TL_FIELD_POINTS] = {0}, rise = 0;
+    double g = row->press.energy, v = row->extra.powers[TL_PRESS_VOLUME].whole;
+    double own = 0.25 * v * v / g, more[TL_FIELD_POINTS] = {0}, rise = 0;
     for (int k = 0; k < TL_FIELD_POINTS; k++) {
         double energy = by->springs[k];
         rise += by->rise[k];
@@ -113,18 +113,20 @@ static double add_rise(const tl_press *press, double area, const double f_n[TL_F
     return more[TL_FIELD_TORSION];
 }
 
-tl_field_press tl_press_by_law(const tl_press *press, double area, double f_n, double same,
+tl_field_press tl_press_by_law(const tl_press_row *row, double area, double f_n, double same,
                                const tl_told_press *by)
 {
     const double forces[TL_FIELD_POINTS] = {f_n, same};
     tl_field_press out = {.springs = by->springs[0] + by->springs[1]};
-    out.energy = find_slopes(press, area, by, &out);
-    out.whole = f_n + add_rise(press, area, forces, by, &out);
+    const tl_press *press = &row->press;
+    const tl_field_power *powers = row->extra.powers;
+    out.energy = find_slopes(row, area, by, &out);
+    out.whole = f_n + add_rise(row, area, forces, by, &out);
     out.force = tl_v3_scale(out.by_energy, press->force);
     out.moment = tl_v3_scale(out.by_energy, press->moment);
     for (int k = 0; k < TL_PRESS_POWERS; k++) {
-        out.force = tl_v3_madd(out.force, out.by_powers[k], press->powers[k].force);
-        out.moment = tl_v3_madd(out.moment, out.by_powers[k], press->powers[k].moment);
+        out.force = tl_v3_madd(out.force, out.by_powers[k], powers[k].force);
+        out.moment = tl_v3_madd(out.moment, out.by_powers[k], powers[k].moment);
     }
     return out;
 }
@@ -143,10 +145,9 @@ tl_field_press tl_press_by_force(const tl_press *press, double kn, double area, 
 
 double tl_lost_lift(const tl_press_row *row, const tl_field_press *by)
 {
-    const tl_press *press = &row->press;
     double pays = pays_for_lift(row, by->whole);
-    double gets = by->by_energy * press->lifted;
+    double gets = by->by_energy * row->press.lifted;
     for (int k = 0; k < TL_PRESS_POWERS; k++)
-        gets += by->by_powers[k] * press->lifted_powers[k];
+        gets += by->by_powers[k] * row->extra.lifted_powers[k];
     return pays != 0 ? 0.5 * (row->paid + pays) * (1 - gets / pays) : 0;
 }

@@ -14,7 +14,7 @@ typedef struct tl_field_press {
 } tl_field_press;
 
 /* Closures of a press at which a law is asked that is not linear. */
-void tl_press_closures(const tl_press *press, double closure[2]);
+void tl_press_closures(const tl_press_row *row, double closure[2]);
 
 /* What a law tells that is not linear: per area at the two closures of the press, stress and energy; of both points what presses them,
  * J, what slip has opened of it in this step, and the closure of their walls. */
@@ -29,7 +29,7 @@ tl_field_press tl_press_linearly(const tl_press_row *row, double kn, double area
                                  double same);
 
 /* By the energy that a law tells; f_n and `same` are its forces on the two points. */
-tl_field_press tl_press_by_law(const tl_press *press, double area, double f_n, double same,
+tl_field_press tl_press_by_law(const tl_press_row *row, double area, double f_n, double same,
                                const tl_told_press *by);
 
 /* By the force that a law gives which does not tell of its energy. */

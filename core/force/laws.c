@@ -207,7 +207,7 @@ static void find_curves(const span_job *job, const tl_simd_group *group, const t
     for (size_t l = 0; l < TL_LANES; l++) {
         if (group->contact[l] == TL_NO_ROW || !(area[l] > 0))
             continue;
-        tl_press_closures(&tl_press_row_of(m, group->contact[l])->press, by[l].at);
+        tl_press_closures(tl_press_row_of(m, group->contact[l]), by[l].at);
         for (size_t k = 0; k < TL_FIELD_POINTS; k++) {
             size_t i = k * TL_LANES + l;
             closure[0][i] = (1 - TL_NEAR_CLOSURE) * by[l].at[k] - lift[i];
@@ -284,7 +284,7 @@ static void sum_fields(const span_job *job, const tl_simd_group *group, const tl
         tl_vec3 shear = tl_columns_get(p->f_s, i);
         tl_vec3 twist = tl_columns_get(p->f_s, i + torsion);
         const tl_field_press by = linear  ? tl_press_linearly(row, law->kn, area, f_n, same)
-                                  : tells ? tl_press_by_law(press, area, f_n, same, &pressed[l])
+                                  : tells ? tl_press_by_law(row, area, f_n, same, &pressed[l])
                                           : tl_press_by_force(press, law->kn, area, f_n, same);
         tl_vec3 force = tl_v3_add(shear, tl_m3_mul(turn, by.force));
         tl_vec3 moment = tl_v3_add(tl_v3_cross(x, shear), tl_m3_mul(turn, by.moment));

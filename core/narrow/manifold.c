@@ -16,6 +16,9 @@
 /* Minimum area over that of a patch up to which it makes no difference: by less than 2e-3 of the force. */
 #define MOST_MIN_AREA 0.05
 
+/* The press of what is no field contact. */
+static const tl_press none;
+
 /* ---------------------------------------------------------------- patches ---------------- */
 
 /* Whether the flush faces of the region are a patch and nothing else is there. */
@@ -61,11 +64,13 @@ static bool stays_patch(const tl_pair_view *view, const tl_touch_rule *rule,
 
 /* ---------------------------------------------------------------- fields ----------------- */
 
-bool tl_manifold_press(const tl_press *press, const tl_facet *faces, tl_narrow_scratch *scratch)
+bool tl_manifold_press(const tl_press *press, const tl_press_extra *extra, const tl_facet *faces,
+                       tl_narrow_scratch *scratch)
 {
     tl_manifold *m = &scratch->manifold;
     m->point_count = 0;
-    m->press = *press;
+    m->press = press;
+    m->extra = extra;
     if (!tl_manifold_reserve(m, TL_FIELD_POINTS))
         return false;
     m->facet = (tl_facet){.kind = TL_FACET_FIELD,
@@ -97,10 +102,12 @@ static bool find_field(const tl_pair_view *view, const tl_region *r, const tl_to
 {
     const tl_press_query query = tl_manifold_query(view, r, rule, before);
     const tl_facet faces = {.ia = r->flush_a, .ib = r->flush_b};
-    tl_press press;
+    tl_press *press = &scratch->found;
+    tl_press_extra *extra = &scratch->extra;
     scratch->manifold.point_count = 0;
     scratch->manifold.valid = TL_LIST_MARGIN * view->size;
-    return tl_press_find(&query, 1, scratch, &press) && tl_manifold_press(&press, &faces, scratch);
+    return tl_press_find(&query, 1, scratch, press, extra) &&
+           tl_manifold_press(press, extra, &faces, scratch);
 }
 
 /* ---------------------------------------------------------------- all of it -------------- */
@@ -112,7 +119,8 @@ bool tl_manifold_find(const tl_pair_view *view, const tl_region *r, const tl_tou
     bool was_field = before->facet.kind == TL_FACET_FIELD;
     m->failed = false;
     m->point_count = 0;
-    m->press = (tl_press){0};
+    m->press = &none;
+    m->extra = NULL;
     m->valid = TL_LIST_MARGIN * view->size;
     if (before->holds && stays_patch(view, rule, before, scratch))
         return true;

@@ -27,7 +27,8 @@ bool tl_manifold_find(const tl_pair_view *view, const tl_region *region, const t
 tl_press_query tl_manifold_query(const tl_pair_view *view, const tl_region *region,
                                  const tl_touch_rule *rule, const tl_manifold_before *before);
 /* A field contact of a press, and of the flush faces of a facet, into scratch->manifold. false: out of memory. */
-bool tl_manifold_press(const tl_press *press, const tl_facet *faces, tl_narrow_scratch *scratch);
+bool tl_manifold_press(const tl_press *press, const tl_press_extra *extra, const tl_facet *faces,
+                       tl_narrow_scratch *scratch);
 /* The faces that touch along a direction from A to B, and the joint of these. */
 tl_face_pair tl_touching_faces(const tl_pair_view *view, tl_vec3 n);
 tl_tag tl_touching_tag(const tl_pair_view *view, tl_vec3 n);

@@ -12,11 +12,7 @@ enum { TL_PRESS_VOLUME, TL_PRESS_SQUARE, TL_PRESS_CUBE, TL_PRESS_POWERS };
 typedef struct tl_press {
     double energy;
     tl_vec3 force, moment;
-    /* where the query asks for them: integrals with minus their gradients, as the force is that of the energy */
-    tl_field_power powers[TL_PRESS_POWERS];
-    /* what `opened` of the query has added: to the energy and to those; to force and moment */
-    double lifted, lifted_powers[TL_PRESS_POWERS];
-    tl_vec3 lifted_force, lifted_moment;
+    double lifted;    /* what `opened` of the query has added to the energy, m^4 */
     double area;      /* on which it acts, m^2 */
     double overlap;   /* 2 |force| / area, m: that of flush faces of that area */
     double deepest;   /* largest overlap, m */
@@ -25,16 +21,33 @@ typedef struct tl_press {
     double patch;     /* share of the patch: 1 .. 0 */
     tl_vec3 point;    /* centre of the pressure */
     tl_vec3 normal;   /* force / |force| */
+    bool powers;      /* the powers of its tl_press_extra are known */
 } tl_press;
+
+/* What few presses have besides; it is found and copied only with those that have it. */
+typedef struct tl_press_extra {
+    /* of a law that is not linear: integrals with minus their gradients, as the force is that of the energy */
+    tl_field_power powers[TL_PRESS_POWERS];
+    /* where `lifted` is not 0, what `opened` of the query has added: to those; to force and moment */
+    double lifted_powers[TL_PRESS_POWERS];
+    tl_vec3 lifted_force, lifted_moment;
+} tl_press_extra;
+
+/* Whether a press has something besides. */
+static inline bool tl_press_has_extra(const tl_press *press)
+{
+    return press->powers || press->lifted != 0;
+}
 
 /* The contact points of one pair, as one geometric evaluation finds them. */
 typedef struct tl_manifold {
     tl_facet facet;
     tl_contact_point *points;
     size_t point_count, point_capacity;
-    tl_press press; /* of a field */
-    double valid;   /* way that the pair may move before the kind and the faces are chosen anew */
-    bool failed;    /* out of memory */
+    const tl_press *press; /* of a field */
+    const tl_press_extra *extra;
+    double valid; /* way that the pair may move before the kind and the faces are chosen anew */
+    bool failed;  /* out of memory */
 } tl_manifold;
 
 /* Scratch memory of a thread for the narrow phase. */
@@ -44,6 +57,8 @@ typedef struct tl_narrow_scratch {
     struct tl_polygon *polygon; /* patch.c */
     tl_patch_points patch;
     tl_manifold manifold;
+    tl_press found; /* of a pair that is looked at alone */
+    tl_press_extra extra;
     bool failed;              /* out of memory, in a phase that cannot say so */
     bool reframed;            /* the places of old points are in frames that are no more */
     bool deep;                /* met a contact whose blocks overlap too deeply: overlap.c */

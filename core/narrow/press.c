@@ -368,14 +368,17 @@ static void mix_places(tl_field_sums *field, const tl_field_sums *patch, double 
 
 /* What a law that is not linear needs of a press, with the area of the field and its overlap. */
 static void put_powers(const tl_press_query *of, tl_vec3 origin,
-                       const tl_field_power powers[TL_PRESS_POWERS], tl_press *press)
+                       const tl_field_power powers[TL_PRESS_POWERS], tl_press *press,
+                       tl_press_extra *extra)
 {
     const double volume = powers[TL_PRESS_VOLUME].whole;
     const double area = 0.25 * volume * volume / press->energy;
+    *extra = (tl_press_extra){.lifted_powers = {0}};
     for (int k = 0; k < TL_PRESS_POWERS; k++) {
-        press->powers[k] = powers[k];
-        press->powers[k].moment = tl_v3_add(powers[k].moment, tl_v3_cross(origin, powers[k].force));
+        extra->powers[k] = powers[k];
+        extra->powers[k].moment = tl_v3_add(powers[k].moment, tl_v3_cross(origin, powers[k].force));
     }
+    press->powers = true;
     press->area = sqrt(area * area + of->min_area * of->min_area);
     press->overlap = 4 * press->energy / volume;
 }
@@ -383,7 +386,7 @@ static void put_powers(const tl_press_query *of, tl_vec3 origin,
 /* The press of a pair from the integrals of its field. `same`: over faces that have enclosed the common volume before. Nothing
  * presses where a part only passes on through its seams what the next parts press with, to the last digit. */
 static bool press_of(const tl_press_query *of, planes *p, tl_field_sums *sums, bool same,
-                     tl_narrow_scratch *scratch, tl_press *press)
+                     tl_narrow_scratch *scratch, tl_press *press, tl_press_extra *extra)
 {
     const tl_pair_view *view = of->view;
     const tl_region *region = of->region;
@@ -426,7 +429,7 @@ static bool press_of(const tl_press_query *of, planes *p, tl_field_sums *sums, b
     press->area = sqrt(area * area + of->min_area * of->min_area);
     press->overlap = 2 * force / press->area;
     if (of->volumes)
-        put_powers(of, p->origin, powers, press);
+        put_powers(of, p->origin, powers, press, extra);
     press->deepest = 2 * sums->deepest;
     press->stiffness = fmax(sums->stiffness, press->area);
     tl_vec3 centre = tl_v3_scale(1 / sums->pressure, sums->pressed);
@@ -495,7 +498,7 @@ static void begin_anew(const tl_press_query *of, planes *p, tl_mesh_inner *inner
 }
 
 static bool find_all(const tl_press_query query[], uint32_t count, tl_narrow_scratch *scratch,
-                     tl_press press[])
+                     tl_press press[], tl_press_extra extra[])
 {
     planes p[TL_FIELD_PAIRS];
     uint64_t known[TL_FIELD_PAIRS];
@@ -522,7 +525,8 @@ static bool find_all(const tl_press_query query[], uint32_t count, tl_narrow_scr
         begin_mesh(&query[anew[k]], &p[anew[k]], &sums[anew[k]]);
     for (uint32_t k = 0; k < count; k++) {
         bool same = known[k] && p[k].faces.mesh->bounding == known[k];
-        if (!press_of(&query[k], &p[k], &sums[k], same, scratch, &press[k]))
+        tl_press_extra *more = extra ? &extra[k] : NULL;
+        if (!press_of(&query[k], &p[k], &sums[k], same, scratch, &press[k], more))
             return false;
     }
     return true;
@@ -530,11 +534,12 @@ static bool find_all(const tl_press_query query[], uint32_t count, tl_narrow_scr
 
 /* What slip has added to energies and volumes in the last step: they are found again without. */
 static bool find_lifted(const tl_press_query query[], uint32_t count, tl_narrow_scratch *scratch,
-                        tl_press press[])
+                        tl_press press[], tl_press_extra extra[])
 {
     tl_press_query before[TL_FIELD_PAIRS];
     tl_region region[TL_FIELD_PAIRS];
     tl_press without[TL_FIELD_PAIRS];
+    tl_press_extra extra_without[TL_FIELD_PAIRS];
     uint32_t opened[TL_FIELD_PAIRS], some = 0;
     for (uint32_t k = 0; k < count; k++) {
         if (query[k].opened == 0 || !(press[k].area > 0))
@@ -548,21 +553,27 @@ static bool find_lifted(const tl_press_query query[], uint32_t count, tl_narrow_
     }
     if (some == 0)
         return true;
-    if (!find_all(before, some, scratch, without))
+    if (!find_all(before, some, scratch, without, extra_without))
         return false;
     for (uint32_t i = 0; i < some; i++) {
         tl_press *now = &press[opened[i]];
+        tl_press_extra *more = &extra[opened[i]];
         now->lifted = now->energy - without[i].energy;
-        for (int k = 0; k < TL_PRESS_POWERS; k++)
-            now->lifted_powers[k] = now->powers[k].whole - without[i].powers[k].whole;
-        now->lifted_force = tl_v3_sub(now->force, without[i].force);
-        now->lifted_moment = tl_v3_sub(now->moment, without[i].moment);
+        if (!now->powers)
+            *more = (tl_press_extra){.lifted_powers = {0}};
+        for (int k = 0; k < TL_PRESS_POWERS && now->powers; k++) {
+            double whole = without[i].powers ? extra_without[i].powers[k].whole : 0;
+            more->lifted_powers[k] = more->powers[k].whole - whole;
+        }
+        more->lifted_force = tl_v3_sub(now->force, without[i].force);
+        more->lifted_moment = tl_v3_sub(now->moment, without[i].moment);
     }
     return true;
 }
 
 bool tl_press_find(const tl_press_query query[], uint32_t count, tl_narrow_scratch *scratch,
-                   tl_press press[])
+                   tl_press press[], tl_press_extra extra[])
 {
-    return find_all(query, count, scratch, press) && find_lifted(query, count, scratch, press);
+    return find_all(query, count, scratch, press, extra) &&
+           (!extra || find_lifted(query, count, scratch, press, extra));
 }

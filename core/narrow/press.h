@@ -53,8 +53,9 @@ typedef struct tl_press_query {
     bool volumes;  /* the powers are wanted, for a law that is not linear: press.c */
 } tl_press_query;
 
-/* The presses of some pairs, up to TL_FIELD_PAIRS: 0 where the blocks have nothing in common. false: out of memory. */
+/* The presses of some pairs, up to TL_FIELD_PAIRS: 0 where the blocks have nothing in common; and what those that have more have
+ * besides. NULL: neither powers nor what slip has opened are wanted. false: out of memory. */
 bool tl_press_find(const tl_press_query query[], uint32_t count, tl_narrow_scratch *scratch,
-                   tl_press press[]);
+                   tl_press press[], tl_press_extra extra[]);
 
 #endif

@@ -98,7 +98,7 @@ bool tl_press_slope_find(const tl_press_query *query, const tl_press *at,
             there[k].region = &same[k];
             there[k].view = &view[k];
         }
-        if (!tl_pairs_place(view, 2, scratch) || !tl_press_find(there, 2, scratch, side))
+        if (!tl_pairs_place(view, 2, scratch) || !tl_press_find(there, 2, scratch, side, NULL))
             return false;
         slope->known = slope->known && side[0].area > 0 && side[1].area > 0;
         slope->force[axis] = difference(side[1].force, side[0].force, per);

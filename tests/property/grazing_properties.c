@@ -84,7 +84,7 @@ static double carried(scene_pair *p)
     for (size_t i = 0; i < m->point_count; i++)
         area += m->points[i].area;
     if (m->point_count && m->facet.kind == TL_FACET_FIELD)
-        return 2 * tl_v3_norm(m->press.force);
+        return 2 * tl_v3_norm(m->press->force);
     return fmax(0, -region.gap) * area;
 }
 

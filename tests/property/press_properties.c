@@ -25,7 +25,7 @@ static tl_press press_of(scene *s)
     CHECK(tl_region_find(view, s->margin * view->size, &s->pair.scratch, &region));
     CHECK(tl_press_find(
         &(tl_press_query){view, &region, s->least, s->shift, shifted_of(&region), 0, false, false},
-        1, &s->pair.scratch, &press));
+        1, &s->pair.scratch, &press, NULL));
     return press;
 }
 
@@ -209,7 +209,7 @@ TEST(faces_left_out_do_not_matter)
         s.pair.shift = tl_v3_madd(s.pair.shift, margin, scene_direction(&seed));
         view = scene_place(&s.pair);
         CHECK(tl_press_find(&(tl_press_query){.view = view, .region = &region}, 1, &s.pair.scratch,
-                            &some));
+                            &some, NULL));
         s.margin = 1e3;
         all = press_of(&s);
         double force = tl_v3_norm(all.force);
@@ -251,6 +251,7 @@ TEST(faces_that_bounded_before_change_nothing)
         const tl_pair_view *view = scene_place(&s.pair);
         tl_region region;
         tl_press with, without;
+        tl_press_extra extra_with, extra_without;
         double left = (k % 2 ? 0.02 : 0.3) * view->size;
         CHECK(tl_region_find(view, left, &s.pair.scratch, &region));
         for (double way = 0; left > 0; way = wander(&s, 0.2 * view->size, &seed), left -= way) {
@@ -264,13 +265,13 @@ TEST(faces_that_bounded_before_change_nothing)
             CHECK(tl_press_find(
                 &(tl_press_query){
                     .view = view, .region = &region, .min_area = least, .volumes = powers},
-                1, &s.pair.scratch, &without));
+                1, &s.pair.scratch, &without, &extra_without));
             region.mesh = &mesh;
             forgotten += before && !tl_region_corners_agree(view, &region);
             CHECK(tl_press_find(
                 &(tl_press_query){
                     .view = view, .region = &region, .min_area = least, .volumes = powers},
-                1, &s.pair.scratch, &with));
+                1, &s.pair.scratch, &with, &extra_with));
             /* a plate that sticks out on both sides as far is pressed by nothing, but for roundings */
             if (tl_v3_norm(without.force) < 1e-9 * without.energy / without.deepest)
                 continue;
@@ -285,7 +286,7 @@ TEST(faces_that_bounded_before_change_nothing)
             CHECK_NEAR(with.energy, without.energy, 1e-9 * without.energy);
             CHECK_NEAR(with.deepest, without.deepest, 1e-9 * without.deepest);
             for (int i = 0; i < TL_PRESS_POWERS && powers && force > 0; i++) {
-                const tl_field_power *one = &with.powers[i], *two = &without.powers[i];
+                const tl_field_power *one = &extra_with.powers[i], *two = &extra_without.powers[i];
                 CHECK_NEAR(one->whole, two->whole, 1e-9 * two->whole);
                 CHECK_NEAR(scene_apart(one->force, two->force), 0,
                            1e-9 * two->whole / without.deepest);
@@ -341,7 +342,7 @@ TEST(faces_that_become_flush_are_found_in_an_old_list)
         view = scene_place(&s.pair);
         tl_region_choose_flush(view, &region);
         CHECK(tl_press_find(&(tl_press_query){.view = view, .region = &region}, 1, &s.pair.scratch,
-                            &some));
+                            &some, NULL));
         all = press_of(&s);
         double force = tl_v3_norm(all.force);
         cases += force > 0;

@@ -159,7 +159,7 @@ static bool as_found(const tl_model *m, uint32_t c, const tl_manifold *found)
     if (contacts->facet[c].kind != TL_FACET_FIELD || found->facet.kind != TL_FACET_FIELD ||
         contacts->point_count[c] == 0 || found->point_count == 0)
         return contacts->point_count[c] > 0 || found->point_count == 0;
-    double want = 2 * STIFFNESS * tl_v3_norm(found->press.force);
+    double want = 2 * STIFFNESS * tl_v3_norm(found->press->force);
     return fabs(normal_force(m, c) - want) <= SAME_FORCE * want;
 }
 

@@ -431,12 +431,12 @@ TEST(what_presses_beyond_a_blunt_edge_counts)
                                      tl_q_identity(), tl_v3(0, 0, 1 - o));
         const tl_manifold *m = build_by(&p, &any_reach);
         bool patch = m->facet.kind == TL_FACET_PATCH;
-        double found = patch ? o * point_moments(m).area : 2 * tl_v3_norm(m->press.force);
+        double found = patch ? o * point_moments(m).area : 2 * tl_v3_norm(m->press->force);
         tl_region region;
         tl_press all;
         CHECK(tl_region_find(&p.view, TL_LIST_MARGIN * p.view.size, &p.scratch, &region));
         CHECK(tl_press_find(&(tl_press_query){.view = &p.view, .region = &region}, 1, &p.scratch,
-                            &all));
+                            &all, NULL));
         CHECK_REL(found, 2 * tl_v3_norm(all.force), 1e-3);
         patches += patch;
         scene_pair_free(&p);
