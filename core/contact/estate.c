@@ -487,6 +487,9 @@ void tl_estates_end(tl_detect *d)
 {
     free(d->estates);
     free(d->left_points);
+    free(d->pressings);
+    d->pressings = NULL;
+    d->pressing_capacity = 0;
     d->estates = NULL;
     d->left_points = NULL;
     d->estate_count = d->estate_capacity = d->left_count = d->left_capacity = 0;

@@ -36,9 +36,8 @@ static tl_vec3 basis(const tl_pressing *p, tl_vec3 place)
 }
 
 /* What the whole pressed with. */
-static void measure_whole(const tl_detect *d, tl_estate *estate)
+static void measure_whole(const tl_detect *d, const tl_estate *estate, tl_pressing *p)
 {
-    tl_pressing *p = &estate->pressing;
     const tl_old_point *points = &d->left_points[estate->first];
     *p = (tl_pressing){.error = INFINITY};
     for (size_t k = 0; k < estate->count; k++) {
@@ -76,7 +75,8 @@ static void for_points(tl_model *m,
         for (size_t k = 0; k < contacts->point_count[c]; k++) {
             if (k % TL_LANES == 0)
                 tl_contact_point_lifts(m, c, k, lift);
-            visit(m, &estate->pressing, tl_v3_add(from, tl_columns_get(lanes->arm, k)),
+            visit(m, &d->pressings[estate - d->estates],
+                  tl_v3_add(from, tl_columns_get(lanes->arm, k)),
                   lanes->closure[k] + lift[k % TL_LANES], tl_point_row(contacts, c, k));
         }
     }
@@ -119,26 +119,31 @@ static bool improve(tl_pressing *p)
     return error > EXACT * p->whole.x;
 }
 
+bool tl_estates_press_reserve(tl_detect *d)
+{
+    return tl_fit(&d->pressings, &d->pressing_capacity, d->estate_count, sizeof *d->pressings);
+}
+
 void tl_estates_press(tl_model *m)
 {
     tl_detect *d = m->detect;
     bool any = false;
     for (size_t i = 0; i < d->estate_count; i++) {
         any = any || d->estates[i].opened;
-        measure_whole(d, &d->estates[i]);
+        measure_whole(d, &d->estates[i], &d->pressings[i]);
     }
     if (!d->points.reference)
         return;
     for (int step = 0; any && step < STEPS; step++) {
         for (size_t i = 0; i < d->estate_count; i++) {
-            tl_pressing *p = &d->estates[i].pressing;
+            tl_pressing *p = &d->pressings[i];
             p->taken = 0;
             p->parts = p->rise[0] = p->rise[1] = p->rise[2] = tl_v3(0, 0, 0);
         }
         for_points(m, add_point);
         any = false;
         for (size_t i = 0; i < d->estate_count; i++)
-            any = (d->estates[i].opened && improve(&d->estates[i].pressing)) || any;
+            any = (d->estates[i].opened && improve(&d->pressings[i])) || any;
     }
     for_points(m, give_point);
 }

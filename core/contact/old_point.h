@@ -57,7 +57,6 @@ typedef struct tl_estate {
     double overlap, shift;
     double torsion, energy; /* of a field contact: about its normal; of its springs, times 2 ks */
     tl_heritage taken;      /* by the patches of the parts */
-    tl_pressing pressing;   /* of a patch that slip has opened */
     uint8_t field;
     uint8_t opened; /* by slip */
     uint8_t holds_over_gap;

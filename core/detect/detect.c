@@ -281,7 +281,8 @@ static tl_status settle(tl_model *m)
     tl_contacts *c = &d->contacts;
     size_t born = 0;
     tl_contacts_free_spare(d, m->cycles);
-    tl_status status = lacked_memory(d) ? tl_fail_memory(&m->error) : give_births(m, &born);
+    bool lacks = lacked_memory(d) || !tl_estates_press_reserve(d);
+    tl_status status = lacks ? tl_fail_memory(&m->error) : give_births(m, &born);
     if (status != TL_OK)
         return status;
     if (born == 0 && !d->rows_changed && !some_pending(c))

@@ -9,7 +9,7 @@
         'T', 'A', 'L', 'U', 'S', '\r', '\n', '\x1a'                                                \
     }
 /* Format of the file, and of what the chunks hold: another is refused. */
-#define TL_ARCHIVE_FORMAT 6
+#define TL_ARCHIVE_FORMAT 7
 /* Tells the order of bytes in numbers. */
 #define TL_ARCHIVE_ORDER 0x01020304u
 
