@@ -22,8 +22,9 @@
 
 /* Whether the blocks of a field contact hardly moved against each other in the last step: only then may it become a patch.
  * A patch spreads the shear anew: where faces only pass by each other that would turn some of it into heat. */
-static bool is_calm(const tl_model *m, uint32_t c, const tl_press_row *row)
+static bool is_calm(const tl_model *m, uint32_t c)
 {
+    const tl_press_row *row = tl_press_row_of(m, c);
     const tl_contacts *contacts = &m->detect->contacts;
     double size = fmin(m->blocks.size[contacts->a[c]], m->blocks.size[contacts->b[c]]);
     const tl_mat3 *turn = &m->bodies.pose[m->blocks.body[contacts->a[c]]].r;
@@ -38,13 +39,22 @@ static double bonded_tilt(const tl_model *m)
                 tl_flush_limits_of(m->config.contact_points == TL_POINTS_CORNERS).tilt);
 }
 
+/* Notes how far the faces of a field contact are moved out. */
+static void note_moved_faces(const tl_model *m, const tl_press_row *row, tl_manifold_before *to)
+{
+    to->shift = row->shift;
+    to->shifted = row->shifted;
+    to->opened = row->lifted_at == m->cycles ? row->opened : 0;
+}
+
 tl_manifold_before tl_contact_before(const tl_model *m, uint32_t c, bool reframed)
 {
     const tl_contacts *contacts = &m->detect->contacts;
+    const tl_facet *facet = &contacts->facet[c];
     const tl_press_row *row = tl_press_row_of(m, c);
-    tl_manifold_before out = {.facet = contacts->facet[c]};
-    bool patch = out.facet.kind == TL_FACET_PATCH &&
-                 (contacts->point_count[c] > 0 || contacts->holds_over_gap[c]);
+    tl_manifold_before out = {.kind = (tl_facet_kind)facet->kind, .faces = {facet->ia, facet->ib}};
+    bool patch =
+        out.kind == TL_FACET_PATCH && (contacts->point_count[c] > 0 || contacts->holds_over_gap[c]);
     if (patch) {
         tl_contact_across across = tl_contact_across_gap(m, c);
         bool unseen = contacts->point_count[c] == 0; /* of an estate, until it has got its room */
@@ -52,12 +62,10 @@ tl_manifold_before tl_contact_before(const tl_model *m, uint32_t c, bool reframe
         out.most_tilt = across.bonded && !reframed ? bonded_tilt(m) : INFINITY;
         out.over = out.holds ? INFINITY : across.most;
         out.shift = fmax(0, across.lift);
-        out.shifted = (tl_face_pair){out.facet.ia, out.facet.ib};
+        out.shifted = out.faces;
     } else if (row) {
-        out.calm = !reframed && is_calm(m, c, row);
-        out.shift = row->shift;
-        out.shifted = row->shifted;
-        out.opened = row->lifted_at == m->cycles ? row->opened : 0;
+        out.calm = !reframed && is_calm(m, c);
+        note_moved_faces(m, row, &out);
     }
     return out;
 }
@@ -219,19 +227,20 @@ static bool lift(tl_model *m, uint32_t c)
     return by != 0;
 }
 
-/* Adds a contact to those of which the presses are to be found. */
-static void ask(tl_model *m, tl_field_batch *b, uint32_t c, const tl_pair_view *view)
+/* Adds a contact, of which there is the view, to those of which the presses are to be found. */
+static void ask(tl_model *m, tl_field_batch *b, uint32_t c)
 {
     tl_press_row *row = tl_press_row_of(m, c);
     uint32_t k = b->asked++;
+    const tl_pair_view *view = &b->view[k];
     if (row->by_slope)
         row->mesh = (tl_field_mesh){0};
     row->by_slope = false;
     tl_touch_rule rule = tl_touch_rule_of(m, view, m->detect->contacts.tag[c], 0);
-    b->view[k] = *view;
     b->region[k] = kept_region(row);
-    b->before[k] = tl_contact_before(m, c, false);
-    b->query[k] = tl_manifold_query(&b->view[k], &b->region[k], &rule, &b->before[k]);
+    tl_manifold_before before = {.kind = TL_FACET_FIELD};
+    note_moved_faces(m, row, &before);
+    b->query[k] = tl_manifold_query(view, &b->region[k], &rule, &before);
 }
 
 void tl_fields_follow(tl_model *m, tl_field_batch *b, tl_narrow_scratch *scratch)
@@ -241,12 +250,13 @@ void tl_fields_follow(tl_model *m, tl_field_batch *b, tl_narrow_scratch *scratch
     for (uint32_t k = 0; k < b->count; k++) {
         uint32_t c = b->contact[k];
         const tl_press_row *row = tl_press_row_of(m, c);
-        tl_pair_view view = tl_pair_view_of(m, contacts->a[c], contacts->b[c]);
-        const tl_pair_pose place = {view.turn, view.shift};
+        tl_pair_view *view = &b->view[b->asked];
+        *view = tl_pair_view_of(m, contacts->a[c], contacts->b[c]);
+        const tl_pair_pose place = {view->turn, view->shift};
         b->near[k] = !lift(m, c) && has_slopes(m, c, row) &&
                      tl_press_near(&row->there, &row->slope, &row->place, &place, &b->press[k]);
         if (!b->near[k])
-            ask(m, b, c, &view);
+            ask(m, b, c);
     }
     b->failed = !tl_pairs_place(b->view, b->asked, scratch);
     if (b->failed)
@@ -264,18 +274,19 @@ tl_field_result tl_field_take(tl_model *m, tl_field_batch *b, uint32_t k,
     tl_press_row *row = tl_press_row_of(m, c);
     const tl_press *press = &b->press[k];
     const tl_press_extra *extra = NULL;
-    tl_facet faces = m->detect->contacts.facet[c];
+    const tl_facet *facet = &m->detect->contacts.facet[c];
+    tl_face_pair faces = {facet->ia, facet->ib};
     if (b->failed)
         return TL_FIELD_FAILED;
     if (!b->near[k]) {
         uint32_t i = b->asked++;
         press = &b->found[i];
         extra = &b->extra[i];
-        if (!(press->area > 0) || (press->patch >= 1 && b->before[i].calm))
+        if (!(press->area > 0) || (press->patch >= 1 && is_calm(m, c)))
             return TL_FIELD_LOST; /* it may be a patch or nothing now */
         if (!watch(m, &b->query[i], press, row, scratch))
             return TL_FIELD_FAILED;
-        faces = (tl_facet){.ia = b->region[i].flush_a, .ib = b->region[i].flush_b};
+        faces = (tl_face_pair){b->region[i].flush_a, b->region[i].flush_b};
     }
-    return tl_manifold_press(press, extra, &faces, scratch) ? TL_FIELD_FOUND : TL_FIELD_FAILED;
+    return tl_manifold_press(press, extra, faces, scratch) ? TL_FIELD_FOUND : TL_FIELD_FAILED;
 }

@@ -34,7 +34,6 @@ typedef struct tl_field_batch {
     tl_press_extra extra[TL_FIELD_PAIRS];
     tl_pair_view view[TL_FIELD_PAIRS];
     tl_region region[TL_FIELD_PAIRS];
-    tl_manifold_before before[TL_FIELD_PAIRS];
     tl_press_query query[TL_FIELD_PAIRS];
     uint32_t asked;
 } tl_field_batch;

@@ -163,7 +163,7 @@ static double way_to_edges(const tl_pair_view *view, double longest)
 tl_manifold_before tl_pair_before(const tl_model *m, const tl_pair *p, const tl_pair_view *view,
                                   tl_narrow_scratch *scratch)
 {
-    tl_manifold_before out = {.facet = {.kind = TL_FACET_PATCH}, .most_tilt = INFINITY};
+    tl_manifold_before out = {.kind = TL_FACET_PATCH, .most_tilt = INFINITY};
     uint32_t face_a, face_b;
     out.shift = fmax(0, tl_estate_shift(m, p->a, p->b, &out.shifted));
     if (!tl_estate_holds(m, p->a, p->b) || !tl_estate_faces(m, p->a, p->b, &face_a, &face_b))
@@ -171,8 +171,7 @@ tl_manifold_before tl_pair_before(const tl_model *m, const tl_pair *p, const tl_
     tl_touch_rule rule = tl_touch_rule_of(m, view, view->a->tag[face_a], INFINITY);
     out.over = INFINITY;
     out.holds = tl_patch_lay(view, face_a, face_b, &rule, scratch) > 0;
-    out.facet.ia = (uint16_t)face_a;
-    out.facet.ib = (uint16_t)face_b;
+    out.faces = (tl_face_pair){(uint16_t)face_a, (uint16_t)face_b};
     return out;
 }
 

@@ -51,11 +51,11 @@ static bool is_patch(const tl_pair_view *view, const tl_region *r, const tl_touc
 static bool stays_patch(const tl_pair_view *view, const tl_touch_rule *rule,
                         const tl_manifold_before *before, tl_narrow_scratch *scratch)
 {
-    const tl_facet *f = &before->facet;
+    const tl_face_pair f = before->faces;
     double left = INFINITY;
     if (before->most_tilt < INFINITY)
-        left = before->most_tilt - tl_region_tilt(view, f->ia, f->ib);
-    if (!(left > 0) || !(tl_patch_add(view, f->ia, f->ib, rule, scratch) > 0))
+        left = before->most_tilt - tl_region_tilt(view, f.a, f.b);
+    if (!(left > 0) || !(tl_patch_add(view, f.a, f.b, rule, scratch) > 0))
         return false;
     tl_manifold *m = &scratch->manifold;
     m->valid = fmin(m->valid, 0.5 * left * view->size);
@@ -64,7 +64,7 @@ static bool stays_patch(const tl_pair_view *view, const tl_touch_rule *rule,
 
 /* ---------------------------------------------------------------- fields ----------------- */
 
-bool tl_manifold_press(const tl_press *press, const tl_press_extra *extra, const tl_facet *faces,
+bool tl_manifold_press(const tl_press *press, const tl_press_extra *extra, tl_face_pair faces,
                        tl_narrow_scratch *scratch)
 {
     tl_manifold *m = &scratch->manifold;
@@ -74,8 +74,8 @@ bool tl_manifold_press(const tl_press *press, const tl_press_extra *extra, const
     if (!tl_manifold_reserve(m, TL_FIELD_POINTS))
         return false;
     m->facet = (tl_facet){.kind = TL_FACET_FIELD,
-                          .ia = faces->ia,
-                          .ib = faces->ib,
+                          .ia = faces.a,
+                          .ib = faces.b,
                           .na = press->normal,
                           .offset = press->overlap};
     for (uint32_t k = 0; k < TL_FIELD_POINTS && press->area > 0; k++)
@@ -101,13 +101,13 @@ static bool find_field(const tl_pair_view *view, const tl_region *r, const tl_to
                        const tl_manifold_before *before, tl_narrow_scratch *scratch)
 {
     const tl_press_query query = tl_manifold_query(view, r, rule, before);
-    const tl_facet faces = {.ia = r->flush_a, .ib = r->flush_b};
+    const tl_face_pair faces = {r->flush_a, r->flush_b};
     tl_press *press = &scratch->found;
     tl_press_extra *extra = &scratch->extra;
     scratch->manifold.point_count = 0;
     scratch->manifold.valid = TL_LIST_MARGIN * view->size;
     return tl_press_find(&query, 1, scratch, press, extra) &&
-           tl_manifold_press(press, extra, &faces, scratch);
+           tl_manifold_press(press, extra, faces, scratch);
 }
 
 /* ---------------------------------------------------------------- all of it -------------- */
@@ -116,7 +116,7 @@ bool tl_manifold_find(const tl_pair_view *view, const tl_region *r, const tl_tou
                       const tl_manifold_before *before, tl_narrow_scratch *scratch)
 {
     tl_manifold *m = &scratch->manifold;
-    bool was_field = before->facet.kind == TL_FACET_FIELD;
+    bool was_field = before->kind == TL_FACET_FIELD;
     m->failed = false;
     m->point_count = 0;
     m->press = &none;

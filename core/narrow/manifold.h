@@ -9,9 +9,10 @@ typedef struct tl_manifold_before {
     bool holds;       /* bonds hold its faces: they stay a patch, up to the tilt `most_tilt` */
     double most_tilt; /* as a sine */
     bool calm;        /* a field contact that hardly moves: only that becomes a patch */
-    tl_facet facet;   /* its faces; without points: none */
-    double over;      /* gap across which its faces press, m; INFINITY where they hold */
-    double shift;     /* see tl_press_query */
+    tl_facet_kind kind;
+    tl_face_pair faces; /* of a patch */
+    double over;        /* gap across which its faces press, m; INFINITY where they hold */
+    double shift;       /* see tl_press_query */
     tl_face_pair shifted;
     double opened;
 } tl_manifold_before;
@@ -26,8 +27,8 @@ bool tl_manifold_find(const tl_pair_view *view, const tl_region *region, const t
 /* What the press of a field contact is found for. */
 tl_press_query tl_manifold_query(const tl_pair_view *view, const tl_region *region,
                                  const tl_touch_rule *rule, const tl_manifold_before *before);
-/* A field contact of a press, and of the flush faces of a facet, into scratch->manifold. false: out of memory. */
-bool tl_manifold_press(const tl_press *press, const tl_press_extra *extra, const tl_facet *faces,
+/* A field contact of a press, and of two flush faces, into scratch->manifold. false: out of memory. */
+bool tl_manifold_press(const tl_press *press, const tl_press_extra *extra, tl_face_pair faces,
                        tl_narrow_scratch *scratch);
 /* The faces that touch along a direction from A to B, and the joint of these. */
 tl_face_pair tl_touching_faces(const tl_pair_view *view, tl_vec3 n);

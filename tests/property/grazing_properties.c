@@ -73,7 +73,7 @@ static void move(scene_pair *p, double way, uint64_t *seed)
 /* What the pair carries over its normal stiffness, at most. */
 static double carried(scene_pair *p)
 {
-    const tl_manifold_before none = {.facet = {.kind = TL_FACET_PATCH}};
+    const tl_manifold_before none = {.kind = TL_FACET_PATCH};
     const tl_pair_view *view = scene_place(p);
     tl_touch_rule rule = {.reach = TL_CONTACT_TOLERANCE * TL_CONTACT_RELEASE * view->size};
     tl_region region;

@@ -168,7 +168,7 @@ static bool as_found(const tl_model *m, uint32_t c, const tl_manifold *found)
 static void check_contacts(tl_model *m, tl_narrow_scratch *scratch, int *closed, int *lost,
                            int *stale)
 {
-    const tl_manifold_before none = {.facet = {.kind = TL_FACET_PATCH}};
+    const tl_manifold_before none = {.kind = TL_FACET_PATCH};
     for (uint32_t a = 0; a < MOVING; a++)
         for (uint32_t b = a + 1; b < MOVING; b++) {
             tl_pair_view view = tl_pair_view_of(m, a, b);

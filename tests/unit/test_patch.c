@@ -105,7 +105,7 @@ static const tl_touch_rule any_reach = {.reach = INFINITY};
 
 static tl_manifold *build_by(scene_pair *p, const tl_touch_rule *rule)
 {
-    const tl_manifold_before none = {.facet = {.kind = TL_FACET_PATCH}};
+    const tl_manifold_before none = {.kind = TL_FACET_PATCH};
     const tl_pair_view *view = scene_place(p);
     tl_region region;
     CHECK(tl_region_find(view, TL_LIST_MARGIN * view->size, &p->scratch, &region));
