@@ -24,7 +24,8 @@
 /* The columns of a table that a step overwrites (TL_COLUMN_STEP), one after the other, each of the table's capacity. */
 typedef struct shadow {
     char *memory;
-    size_t capacity; /* bytes */
+    size_t capacity;                                /* bytes */
+    uint8_t column_count, column[TL_TABLE_COLUMNS]; /* their numbers in the table */
 } shadow;
 
 struct tl_undo {
@@ -48,9 +49,12 @@ struct tl_undo {
 static bool shadow_reserve(shadow *s, const tl_table *table)
 {
     size_t row = 0;
+    s->column_count = 0;
     for (size_t i = 0; i < table->column_count; i++)
-        if (table->columns[i].flags & TL_COLUMN_STEP)
+        if (table->columns[i].flags & TL_COLUMN_STEP) {
+            s->column[s->column_count++] = (uint8_t)i;
             row += table->columns[i].size;
+        }
     return tl_fit(&s->memory, &s->capacity, row * table->capacity, 1);
 }
 
@@ -58,17 +62,14 @@ static bool shadow_reserve(shadow *s, const tl_table *table)
 static void shadow_copy(const shadow *s, const tl_table *table, size_t first, size_t count,
                         bool back)
 {
-    char *column = s->memory;
-    if (count == 0)
-        return;
-    for (size_t i = 0; i < table->column_count; i++) {
-        size_t size = table->columns[i].size;
-        if (!(table->columns[i].flags & TL_COLUMN_STEP))
-            continue;
-        char *kept = column + first * size;
-        char *here = (char *)tl_table_data(table, i) + first * size;
-        memcpy(back ? here : kept, back ? kept : here, count * size);
-        column += table->capacity * size;
+    char *kept = s->memory;
+    for (size_t i = 0; i < s->column_count && count > 0; i++) {
+        const tl_column *column = &table->columns[s->column[i]];
+        size_t begin = first * column->size, bytes = count * column->size;
+        char *here;
+        memcpy(&here, (const char *)table->owner + column->offset, sizeof here);
+        memcpy(back ? here + begin : kept + begin, back ? kept + begin : here + begin, bytes);
+        kept += table->capacity * column->size;
     }
 }
 
@@ -168,7 +169,7 @@ static void forget(struct tl_undo *u)
     shadow *all[] = {&u->points, &u->contacts, &u->bodies, &u->loads};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
         free(all[i]->memory);
-        *all[i] = (shadow){NULL, 0};
+        *all[i] = (shadow){.memory = NULL};
     }
     free(u->reaction);
     u->reaction = NULL;
