@@ -18,7 +18,12 @@
  * larger by (1 + (A_m / A_e)^2)^(1/2), with A_e = V^2 / (4 G) as for a linear law. */
 #include "force/field_press.h"
 
+#include "contact/across_gap.h"
+#include "contact/presses.h"
 #include "force/closures.h"
+#include "force/pressed.h"
+
+#include <string.h>
 
 /* What slip pays for moving two faces apart by what it did in the last step, here: as if all of the law's force were on them. */
 static double pays_for_lift(const tl_press_row *row, double whole)
@@ -54,13 +59,74 @@ tl_field_press tl_press_linearly(const tl_press_row *row, double kn, double area
 /* A closure over the other one below which it is none: moments of next to nothing may be roundings. */
 #define LEAST_CLOSURE 1e-6
 
-void tl_press_closures(const tl_press_row *row, double closure[2])
+/* Closures of a press at which a law is asked that is not linear. */
+static void find_closures(const tl_press_row *row, double closure[2])
 {
     const tl_field_power *powers = row->extra.powers;
     const double moment[] = {powers[TL_PRESS_VOLUME].whole, 4 * row->press.energy,
                              12 * powers[TL_PRESS_SQUARE].whole, 32 * powers[TL_PRESS_CUBE].whole};
     tl_two_closures(moment, closure);
     closure[0] = fmax(closure[0], LEAST_CLOSURE * closure[1]);
+}
+
+/* Rows of the points of a SIMD group of field contacts. */
+enum { FIELD_ROWS = TL_FIELD_POINTS * TL_LANES };
+
+/* Energies and stresses per area at the two closures of each press, without what slip has opened in this step: each is asked for
+ * at one of the two points. */
+static void find_curves(const tl_model *m, const tl_law *law, const tl_simd_group *group,
+                        const tl_point_lanes *t, const double lift[FIELD_ROWS],
+                        tl_told_press by[TL_LANES])
+{
+    const double *area = m->detect->points.area + group->start;
+    double closure[2][FIELD_ROWS] = {0}, energy[2][FIELD_ROWS];
+    for (size_t l = 0; l < TL_LANES; l++) {
+        if (group->contact[l] == TL_NO_ROW || !(area[l] > 0))
+            continue;
+        find_closures(tl_press_row_of(m, group->contact[l]), by[l].at);
+        for (size_t k = 0; k < TL_FIELD_POINTS; k++) {
+            size_t i = k * TL_LANES + l;
+            closure[0][i] = (1 - TL_NEAR_CLOSURE) * by[l].at[k] - lift[i];
+            closure[1][i] = (1 + TL_NEAR_CLOSURE) * by[l].at[k] - lift[i];
+        }
+    }
+    for (size_t side = 0; side < 2; side++)
+        tl_law_energies(m, law, group->start, FIELD_ROWS, t, closure[side], energy[side]);
+    for (size_t i = 0; i < FIELD_ROWS; i++) {
+        tl_told_press *to = &by[i % TL_LANES];
+        size_t k = i / TL_LANES;
+        double per = area[i] > 0 ? 0.5 / area[i] : 0;
+        to->energy[k] = per * (energy[1][i] + energy[0][i]);
+        to->stress[k] = per * (energy[1][i] - energy[0][i]) / (TL_NEAR_CLOSURE * to->at[k]);
+    }
+}
+
+void tl_press_ask(const tl_model *m, const tl_law *law, const tl_simd_group *group,
+                  const tl_point_lanes *t, size_t lane, tl_told_press by[TL_LANES])
+{
+    double closure[FIELD_ROWS], lift[FIELD_ROWS], hold[FIELD_ROWS];
+    double energy[FIELD_ROWS], before[FIELD_ROWS];
+    bool opens = false;
+    memset(by, 0, TL_LANES * sizeof *by);
+    memcpy(closure, t->closure + lane, sizeof closure);
+    tl_law_energies(m, law, group->start, FIELD_ROWS, t, closure, energy);
+    tl_points_across_gap(law, &m->detect->points, group->start, FIELD_ROWS, lift, hold);
+    find_curves(m, law, group, t, lift, by);
+    for (size_t i = 0; i < FIELD_ROWS; i++) {
+        uint32_t c = group->contact[i % TL_LANES];
+        const tl_press_row *row = c == TL_NO_ROW ? NULL : tl_press_row_of(m, c);
+        double opened = row ? lift[i] - row->opening[i / TL_LANES] : 0;
+        by[i % TL_LANES].closure[i / TL_LANES] = closure[i] + lift[i];
+        closure[i] -= opened;
+        opens = opens || opened != 0;
+    }
+    memcpy(before, energy, sizeof before);
+    if (opens)
+        tl_law_energies(m, law, group->start, FIELD_ROWS, t, closure, before);
+    for (size_t i = 0; i < FIELD_ROWS; i++) {
+        by[i % TL_LANES].springs[i / TL_LANES] = energy[i];
+        by[i % TL_LANES].rise[i / TL_LANES] = energy[i] - before[i];
+    }
 }
 
 /* The cubic that meets the energy per closure, and its slope, at both closures. */

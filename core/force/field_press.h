@@ -2,7 +2,9 @@
 #ifndef TL_FORCE_FIELD_PRESS_H
 #define TL_FORCE_FIELD_PRESS_H
 
+#include "contact/layout.h"
 #include "contact/tables.h"
+#include "model/model.h"
 
 /* What the normal springs of a field contact make: force on B and moment about A's centroid, in A's frame, the energy, and that of
  * the law's springs, which counts for nothing. */
@@ -13,15 +15,16 @@ typedef struct tl_field_press {
     double by_energy, by_powers[TL_PRESS_POWERS]; /* change of the energy with those of the press */
 } tl_field_press;
 
-/* Closures of a press at which a law is asked that is not linear. */
-void tl_press_closures(const tl_press_row *row, double closure[2]);
-
 /* What a law tells that is not linear: per area at the two closures of the press, stress and energy; of both points what presses them,
  * J, what slip has opened of it in this step, and the closure of their walls. */
 typedef struct tl_told_press {
     double at[2], stress[2], energy[2];
     double springs[TL_FIELD_POINTS], rise[TL_FIELD_POINTS], closure[TL_FIELD_POINTS];
 } tl_told_press;
+
+/* Asks a law of the field contacts of a SIMD group, whose first point is in lane `lane`. */
+void tl_press_ask(const tl_model *m, const tl_law *law, const tl_simd_group *group,
+                  const tl_point_lanes *t, size_t lane, tl_told_press by[TL_LANES]);
 
 /* With an energy 2 kn G. What slip opens in this step, `lifted` in all, presses on as what it opened in the last step does now, or as at
  * the centre. */

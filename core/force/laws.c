@@ -7,18 +7,14 @@
 
 #include "base/columns.h"
 #include "base/inside.h"
-#include "contact/across_gap.h"
 #include "contact/contacts.h"
 #include "contact/handover.h"
 #include "contact/held.h"
 #include "contact/prefetch.h"
-#include "contact/presses.h"
-#include "force/closures.h"
 #include "force/field_press.h"
 #include "force/follow.h"
 #include "force/law_check.h"
 #include "force/partly_open.h"
-#include "force/pressed.h"
 
 #include <stdatomic.h>
 #include <string.h>
@@ -193,68 +189,6 @@ static void report_odd(const span_job *job, const tl_simd_group *group, const gr
     tl_law_check_shear(job->m, job->phase->failure, job->law, group, t, lane);
 }
 
-/* Rows of the points of a SIMD group of field contacts. */
-enum { FIELD_ROWS = TL_FIELD_POINTS * TL_LANES };
-
-/* Energies and stresses per area at the two closures of each press, without what slip has opened in this step: each is asked for
- * at one of the two points. */
-static void find_curves(const span_job *job, const tl_simd_group *group, const tl_point_lanes *t,
-                        const double lift[FIELD_ROWS], tl_told_press by[TL_LANES])
-{
-    const tl_model *m = job->m;
-    const double *area = m->detect->points.area + group->start;
-    double closure[2][FIELD_ROWS] = {0}, energy[2][FIELD_ROWS];
-    for (size_t l = 0; l < TL_LANES; l++) {
-        if (group->contact[l] == TL_NO_ROW || !(area[l] > 0))
-            continue;
-        tl_press_closures(tl_press_row_of(m, group->contact[l]), by[l].at);
-        for (size_t k = 0; k < TL_FIELD_POINTS; k++) {
-            size_t i = k * TL_LANES + l;
-            closure[0][i] = (1 - TL_NEAR_CLOSURE) * by[l].at[k] - lift[i];
-            closure[1][i] = (1 + TL_NEAR_CLOSURE) * by[l].at[k] - lift[i];
-        }
-    }
-    for (size_t side = 0; side < 2; side++)
-        tl_law_energies(m, job->law, group->start, FIELD_ROWS, t, closure[side], energy[side]);
-    for (size_t i = 0; i < FIELD_ROWS; i++) {
-        tl_told_press *to = &by[i % TL_LANES];
-        size_t k = i / TL_LANES;
-        double per = area[i] > 0 ? 0.5 / area[i] : 0;
-        to->energy[k] = per * (energy[1][i] + energy[0][i]);
-        to->stress[k] = per * (energy[1][i] - energy[0][i]) / (TL_NEAR_CLOSURE * to->at[k]);
-    }
-}
-
-/* What a law tells that is not linear, of the points of a SIMD group of field contacts. */
-static void find_told(const span_job *job, const tl_simd_group *group, const tl_point_lanes *t,
-                      size_t lane, tl_told_press by[TL_LANES])
-{
-    const tl_model *m = job->m;
-    double closure[FIELD_ROWS], lift[FIELD_ROWS], hold[FIELD_ROWS];
-    double energy[FIELD_ROWS], before[FIELD_ROWS];
-    bool opens = false;
-    memset(by, 0, TL_LANES * sizeof *by);
-    memcpy(closure, t->closure + lane, sizeof closure);
-    tl_law_energies(m, job->law, group->start, FIELD_ROWS, t, closure, energy);
-    tl_points_across_gap(job->law, &m->detect->points, group->start, FIELD_ROWS, lift, hold);
-    find_curves(job, group, t, lift, by);
-    for (size_t i = 0; i < FIELD_ROWS; i++) {
-        uint32_t c = group->contact[i % TL_LANES];
-        const tl_press_row *row = c == TL_NO_ROW ? NULL : tl_press_row_of(m, c);
-        double opened = row ? lift[i] - row->opening[i / TL_LANES] : 0;
-        by[i % TL_LANES].closure[i / TL_LANES] = closure[i] + lift[i];
-        closure[i] -= opened;
-        opens = opens || opened != 0;
-    }
-    memcpy(before, energy, sizeof before);
-    if (opens)
-        tl_law_energies(m, job->law, group->start, FIELD_ROWS, t, closure, before);
-    for (size_t i = 0; i < FIELD_ROWS; i++) {
-        by[i % TL_LANES].springs[i / TL_LANES] = energy[i];
-        by[i % TL_LANES].rise[i / TL_LANES] = energy[i] - before[i];
-    }
-}
-
 /* Of the field contacts of a SIMD group. The first point carries the normal force, the point of torsion the same again. What the
  * springs of the law hold pressed is not what the field holds: see tl_press. */
 static void sum_fields(const span_job *job, const tl_simd_group *group, const tl_point_lanes *t,
@@ -269,7 +203,7 @@ static void sum_fields(const span_job *job, const tl_simd_group *group, const tl
     tl_told_press pressed[TL_LANES];
     memset(out, 0, sizeof *out);
     if (tells)
-        find_told(job, group, t, lane, pressed);
+        tl_press_ask(job->m, law, group, t, lane, pressed);
     for (size_t l = 0; l < TL_LANES; l++) {
         uint32_t c = group->contact[l];
         size_t i = group->start + l, k = lane + l;
