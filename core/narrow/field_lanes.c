@@ -199,6 +199,33 @@ TL_VECTORIZED static void place_origin(tl_field_lanes *restrict p,
         p->d0[l] += p->dt[l] * p->origin_t[l] + p->ds[l] * p->origin_s[l];
 }
 
+/* The triangle between the origin of a polygon and the part of a line that bounds it: corners p and q, with their depths, its area, and
+ * the slope of d across the line times the length of the part. Where the line bounds nothing, p and q are the origin. */
+typedef struct triangle {
+    double pt, ps, qt, qs, dp, dq, area, up;
+    bool bounds;
+} triangle;
+
+TL_INLINE triangle triangle_of(const tl_field_lanes *p, const tl_field_line *i, unsigned l)
+{
+    bool bounds = (i->to[l] > i->from[l]) & (i->c[l] < FAR) & (p->share[l] > 0);
+    double along = i->gt[l] * p->origin_s[l] - i->gs[l] * p->origin_t[l];
+    double off = i->c[l] - (i->gt[l] * p->origin_t[l] + i->gs[l] * p->origin_s[l]);
+    double f = bounds ? i->from[l] - along : 0.0, e = bounds ? i->to[l] - along : 0.0;
+    double o = bounds ? off : 0.0;
+    double pt = o * i->gt[l] - f * i->gs[l], ps = o * i->gs[l] + f * i->gt[l];
+    double qt = o * i->gt[l] - e * i->gs[l], qs = o * i->gs[l] + e * i->gt[l];
+    return (triangle){.pt = pt,
+                      .ps = ps,
+                      .qt = qt,
+                      .qs = qs,
+                      .dp = p->d0[l] + p->dt[l] * pt + p->ds[l] * ps,
+                      .dq = p->d0[l] + p->dt[l] * qt + p->ds[l] * qs,
+                      .area = 0.5 * o * (e - f),
+                      .up = (i->gt[l] * p->dt[l] + i->gs[l] * p->ds[l]) * (e - f),
+                      .bounds = bounds};
+}
+
 /* Sums the triangles between the origin and each line's part. */
 TL_VECTORIZED static void add_lines(tl_field_lanes *restrict p, const tl_field_line *restrict line,
                                     size_t count)
@@ -206,28 +233,20 @@ TL_VECTORIZED static void add_lines(tl_field_lanes *restrict p, const tl_field_l
     for (const tl_field_line *restrict i = line; i < line + count; i++) {
 #pragma omp simd
         for (unsigned l = 0; l < LANES; l++) {
-            bool bounds = (i->to[l] > i->from[l]) & (i->c[l] < FAR) & (p->share[l] > 0);
-            double along = i->gt[l] * p->origin_s[l] - i->gs[l] * p->origin_t[l];
-            double off = i->c[l] - (i->gt[l] * p->origin_t[l] + i->gs[l] * p->origin_s[l]);
-            double f = bounds ? i->from[l] - along : 0.0, e = bounds ? i->to[l] - along : 0.0;
-            double o = bounds ? off : 0.0;
-            double w = 0.5 * o * (e - f);
-            double pt = o * i->gt[l] - f * i->gs[l], ps = o * i->gs[l] + f * i->gt[l];
-            double qt = o * i->gt[l] - e * i->gs[l], qs = o * i->gs[l] + e * i->gt[l];
+            const triangle of = triangle_of(p, i, l);
+            double w = of.area, pt = of.pt, ps = of.ps, qt = of.qt, qs = of.qs;
+            double dp = of.dp, dq = of.dq, up = of.up;
             p->area[l] += w;
             p->it[l] += w * (pt + qt) * (1.0 / 3);
             p->is[l] += w * (ps + qs) * (1.0 / 3);
             p->itt[l] += w * (pt * pt + pt * qt + qt * qt) * (1.0 / 6);
             p->iss[l] += w * (ps * ps + ps * qs + qs * qs) * (1.0 / 6);
             p->its[l] += w * (2 * (pt * ps + qt * qs) + pt * qs + qt * ps) * (1.0 / 12);
-            double dp = p->d0[l] + p->dt[l] * pt + p->ds[l] * ps;
-            double dq = p->d0[l] + p->dt[l] * qt + p->ds[l] * qs;
             /* by the divergence of d^2 grad d / 2 and d^3 grad d / 3: nothing cancels in thin slivers far from the origin */
-            double up = (i->gt[l] * p->dt[l] + i->gs[l] * p->ds[l]) * (e - f);
             p->d1[l] += up * (dp * dp + dp * dq + dq * dq) * (1.0 / 6);
             p->d2[l] += up * (dp * dp + dq * dq) * (dp + dq) * (1.0 / 12);
             double d = dp > dq ? dp : dq, at_t = dp > dq ? pt : qt, at_s = dp > dq ? ps : qs;
-            bool more = bounds & (d > p->deepest[l]);
+            bool more = of.bounds & (d > p->deepest[l]);
             p->deepest[l] = more ? d : p->deepest[l];
             p->deepest_t[l] = more ? at_t : p->deepest_t[l];
             p->deepest_s[l] = more ? at_s : p->deepest_s[l];
@@ -297,24 +316,17 @@ TL_VECTORIZED static void sum_powers(tl_field_lanes *restrict p, const tl_field_
     for (const tl_field_line *restrict i = line; i < line + count; i++) {
 #pragma omp simd
         for (unsigned l = 0; l < LANES; l++) {
-            bool bounds = (i->to[l] > i->from[l]) & (i->c[l] < FAR) & (p->share[l] > 0);
-            double along = i->gt[l] * p->origin_s[l] - i->gs[l] * p->origin_t[l];
-            double off = i->c[l] - (i->gt[l] * p->origin_t[l] + i->gs[l] * p->origin_s[l]);
-            double f = bounds ? i->from[l] - along : 0.0, e = bounds ? i->to[l] - along : 0.0;
-            double o = bounds ? off : 0.0, d = p->d0[l];
-            double pt = o * i->gt[l] - f * i->gs[l], ps = o * i->gs[l] + f * i->gt[l];
-            double qt = o * i->gt[l] - e * i->gs[l], qs = o * i->gs[l] + e * i->gt[l];
-            double dp = d + p->dt[l] * pt + p->ds[l] * ps, dq = d + p->dt[l] * qt + p->ds[l] * qs;
+            const triangle of = triangle_of(p, i, l);
+            double w = of.area, pt = of.pt, ps = of.ps, qt = of.qt, qs = of.qs;
+            double d = p->d0[l], dp = of.dp, dq = of.dq, up = of.up;
             double p2 = dp * dp, p4 = p2 * p2, h1 = dp + dq, h2 = p2 + dq * h1;
             double h3 = dp * p2 + dq * h2, h4 = p4 + dq * h3, h5 = dp * p4 + dq * h4;
-            double up = (i->gt[l] * p->dt[l] + i->gs[l] * p->ds[l]) * (e - f);
             p->steep[0][l] += up * h4 * (1.0 / 20);
             p->steep[1][l] += up * h5 * (1.0 / 30);
             h1 += d;
             h2 += d * h1;
             h3 += d * h2;
             h4 += d * h3;
-            double w = 0.5 * o * (e - f);
             p->flat[0][l] += w * h3 * (1.0 / 10);
             p->flat[1][l] += w * h4 * (1.0 / 15);
             double by_p = h2 + dp * (h1 + dp), by_q = h2 + dq * (h1 + dq);
