@@ -489,7 +489,7 @@ void tl_contact_refit_field(tl_model *m, uint32_t c, const tl_manifold *g)
     tl_contacts *contacts = &m->detect->contacts;
     tl_points_table *p = &m->detect->points;
     tl_press_row *row = tl_press_row_of(m, c);
-    tl_vec3 last = contacts->facet[c].last;
+    tl_facet *facet = &contacts->facet[c];
     double area = p->area[tl_point_row(contacts, c, TL_FIELD_TORSION)];
     note_way(m, c, g->points[0].p);
     /* what is found again in the same place stays what it is, to the bit */
@@ -497,9 +497,10 @@ void tl_contact_refit_field(tl_model *m, uint32_t c, const tl_manifold *g)
         refit_springs(m, c, g);
     for (size_t k = 0; k < TL_FIELD_POINTS; k++)
         tl_columns_put(p->p, tl_point_row(contacts, c, k), g->points[0].p);
-    contacts->facet[c] = g->facet;
-    contacts->facet[c].last = last;
-    contacts->facet[c].offset -= row->opening[TL_FIELD_SHEAR];
+    facet->na = g->facet.na;
+    facet->offset = g->facet.offset - row->opening[TL_FIELD_SHEAR];
+    facet->ia = g->facet.ia;
+    facet->ib = g->facet.ib;
     keep_press(row, g);
 }
 

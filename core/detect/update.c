@@ -281,25 +281,24 @@ static double smaller_size(const tl_model *m, uint32_t c)
     return fmin(m->blocks.size[contacts->a[c]], m->blocks.size[contacts->b[c]]);
 }
 
+/* Motion of next to nothing. */
+static double still_way(const tl_model *m, uint32_t c)
+{
+    return TL_STILL * smaller_size(m, c);
+}
+
 void tl_contact_allow_reuse(tl_model *m, uint32_t c)
 {
     tl_contacts *contacts = &m->detect->contacts;
     bool patch = is_patch(contacts, c);
-    double most = TL_STILL * smaller_size(m, c);
-    if (contacts->facet[c].kind == TL_FACET_FIELD && contacts->point_count[c])
-        most = REUSE_FIELD * tl_press_row_of(m, c)->press.overlap;
+    bool field = contacts->facet[c].kind == TL_FACET_FIELD && contacts->point_count[c] > 0;
+    double most = field ? REUSE_FIELD * tl_press_row_of(m, c)->press.overlap : still_way(m, c);
     if (!patch || contacts->new_points[c] != TL_POINTS_STAY)
         contacts->points_valid_to[c] = tl_pair_odometer(m, contacts->a[c], contacts->b[c]) + most;
     if (!patch)
         return;
     contacts->spot[c] =
         tl_spot_on(m, &contacts->spot[c], contacts->a[c], contacts->b[c], reach_of(m, c));
-}
-
-/* Motion of next to nothing. */
-static double still_way(const tl_model *m, uint32_t c)
-{
-    return TL_STILL * smaller_size(m, c);
 }
 
 /* Way left to go before the faces of a patch are to be chosen anew. */

@@ -149,8 +149,7 @@ static void turn_states(tl_model *m, uint32_t contact, tl_vec3 before, tl_vec3 n
 }
 
 /* The bodies and facets of the contacts of a SIMD group; lanes without one do as another. false when there are none. */
-static bool look_up(const tl_model *m, const tl_simd_group *group, tl_frame_rows *rows,
-                    field_rows *fields)
+static bool look_up(const tl_model *m, const tl_simd_group *group, tl_frame_rows *rows)
 {
     const tl_contacts *c = &m->detect->contacts;
     const tl_pose *pose = m->bodies.pose;
@@ -163,16 +162,28 @@ static bool look_up(const tl_model *m, const tl_simd_group *group, tl_frame_rows
         rows->a[l] = &pose[m->blocks.body[c->a[contact]]].r.m[0][0];
         rows->b[l] = &pose[m->blocks.body[c->b[contact]]].r.m[0][0];
         rows->facet[l] = &c->facet[contact].na.x;
-        uint32_t press = c->press[contact];
-        const tl_press_row *row = press == TL_NO_ROW ? NULL : &m->detect->press[press];
-        fields->radius[l] = row ? row->press.radius : 0;
-        tl_vec3 half = row && row->moved_at == m->cycles
-                           ? tl_m3_mul(&pose[m->blocks.body[c->a[contact]]].r, row->half)
-                           : tl_v3(0, 0, 0);
-        tl_lanes3_put(&fields->half, l, half);
-        fields->opened[l] = row ? row->opening[TL_FIELD_TORSION] - row->opening[TL_FIELD_SHEAR] : 0;
     }
     return some < TL_LANES;
+}
+
+/* The same of what field contacts keep. */
+static void look_up_fields(const tl_model *m, const tl_simd_group *group, field_rows *fields)
+{
+    const tl_contacts *c = &m->detect->contacts;
+    memset(fields, 0, sizeof *fields);
+    for (size_t l = 0; l < TL_LANES; l++) {
+        uint32_t contact = group->contact[l];
+        uint32_t press = contact == TL_NO_ROW ? TL_NO_ROW : c->press[contact];
+        if (press == TL_NO_ROW)
+            continue;
+        const tl_press_row *row = &m->detect->press[press];
+        fields->radius[l] = row->press.radius;
+        fields->opened[l] = row->opening[TL_FIELD_TORSION] - row->opening[TL_FIELD_SHEAR];
+        if (row->moved_at == m->cycles) {
+            const tl_mat3 *turn = &m->bodies.pose[m->blocks.body[c->a[contact]]].r;
+            tl_lanes3_put(&fields->half, l, tl_m3_mul(turn, row->half));
+        }
+    }
 }
 
 void tl_simd_group_follow(tl_model *m, const tl_simd_group *group, bool field,
@@ -184,15 +195,16 @@ void tl_simd_group_follow(tl_model *m, const tl_simd_group *group, bool field,
     tl_frames f;
     field_rows fields;
     torsions torsion;
-    if (look_up(m, group, &rows, &fields)) {
+    if (look_up(m, group, &rows)) {
         tl_frames_put(&f, &rows, field, arms);
     } else { /* inert, but finite */
         memset(&f, 0, sizeof f);
-        memset(&fields, 0, sizeof fields);
         memset(arms, 0, sizeof *arms);
     }
-    if (field)
+    if (field) {
+        look_up_fields(m, group, &fields);
         read_torsion(&c, &f, &torsion);
+    }
     follow_points(&c, group->slots, &f);
     if (field)
         follow_torsion(&c, &f, &fields, &torsion);
