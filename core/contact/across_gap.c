@@ -140,20 +140,26 @@ tl_contact_across tl_contact_across_gap(const tl_model *m, uint32_t c)
     return out;
 }
 
-void tl_contact_point_openings(const tl_model *m, uint32_t c, size_t first,
-                               double opening[TL_LANES])
+void tl_law_point_openings(const tl_model *m, const tl_law *law, uint32_t c, size_t first,
+                           double opening[TL_LANES])
 {
     const tl_detect *d = m->detect;
+    sample s;
     for (size_t l = 0; l < TL_LANES; l++)
         opening[l] = 0;
-    if (!tl_contact_opens(m, c))
-        return;
-    const tl_law *law = law_of(m, c);
-    sample s;
     read_points(&d->points, &d->contacts, c, law, first, &s);
     ask(law, zeros, &s);
     for (size_t l = 0; l < TL_LANES && s.area[l] > 0; l++)
         opening[l] = s.lift[l];
+}
+
+void tl_contact_point_openings(const tl_model *m, uint32_t c, size_t first,
+                               double opening[TL_LANES])
+{
+    if (tl_contact_opens(m, c))
+        tl_law_point_openings(m, law_of(m, c), c, first, opening);
+    else
+        memset(opening, 0, TL_LANES * sizeof *opening);
 }
 
 void tl_contact_point_lifts(const tl_model *m, uint32_t c, size_t first, double lift[TL_LANES])

@@ -24,11 +24,13 @@ tl_contact_across tl_contact_across_gap(const tl_model *m, uint32_t contact);
 static inline bool tl_contact_opens(const tl_model *m, uint32_t contact)
 {
     uint32_t law = m->detect->contacts.law[contact];
-    return law != TL_NO_ROW && m->joint_laws[law].columns > 0 &&
-           ((const tl_law_ops *)m->joint_laws[law].kind->ops)->across_gap;
+    return law != TL_NO_ROW && tl_law_opens(&m->joint_laws[law]);
 }
 
-/* The openings by slip of TL_LANES points of a contact from its `first` one, m; 0 beyond the last, and where nothing ever opens them. */
+/* The openings by slip of TL_LANES points of a contact from its `first` one, as a law of its kind has them, m; 0 beyond the last. */
+void tl_law_point_openings(const tl_model *m, const tl_law *law, uint32_t contact, size_t first,
+                           double opening[TL_LANES]);
+/* The same as its own law has them; 0 where nothing ever opens them. */
 void tl_contact_point_openings(const tl_model *m, uint32_t contact, size_t first,
                                double opening[TL_LANES]);
 /* The same of all that lifts them. */

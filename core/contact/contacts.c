@@ -343,7 +343,9 @@ void tl_contact_begin_law(tl_model *m, uint32_t contact, const tl_kind *kind)
     tl_contact_places(m, contact, lanes);
     for (size_t k = 0; k < c->point_count[contact]; k++) {
         size_t i = tl_point_row(c, contact, k);
-        bool apart = lanes->closure[k] < -TL_STILL * size && !(d->points.f_n[i] < 0);
+        bool apart =
+            c->facet[contact].kind == TL_FACET_FIELD || /* edges and corners have no bonds */
+            (lanes->closure[k] < -TL_STILL * size && !(d->points.f_n[i] < 0));
         tl_point_begin(&d->points, i, kind);
         d->points.flags[i] = apart ? TL_POINT_APART : 0;
     }

@@ -27,5 +27,6 @@ tl_touch_rule tl_touch_rule_of(const tl_model *m, const tl_pair_view *view, tl_t
     return (tl_touch_rule){.min_area = absolute ? rule.absolute : rule.fraction * view->mean_face,
                            .corners = m->config.contact_points == TL_POINTS_CORNERS,
                            .volumes = law && tl_law_presses(law),
+                           .opens = law && tl_law_opens(law),
                            .reach = over + tolerance};
 }

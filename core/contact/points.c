@@ -55,12 +55,13 @@ tl_old_point tl_point_as_old(const tl_points_table *p, const tl_contacts *c, uin
     return out;
 }
 
-void tl_point_load(tl_points_table *p, size_t i, const tl_sym3 *stress, tl_vec3 n, double closure)
+void tl_point_load(tl_points_table *p, size_t i, const tl_sym3 *stress, tl_vec3 n, double closure,
+                   double opening)
 {
     tl_vec3 traction = tl_s3_mul(*stress, n);
     double normal = tl_v3_dot(n, traction);
     tl_vec3 shear = tl_v3_madd(traction, -normal, n);
-    p->reference[i] += closure;
+    p->reference[i] += closure + opening;
     p->f_n0[i] = p->f_n[i] = -normal * p->area[i];
     tl_columns_put(p->f_s, i, tl_v3_scale(-p->area[i], shear));
     p->flags[i] = 0;

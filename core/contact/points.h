@@ -10,9 +10,10 @@ void tl_point_clear(tl_points_table *p, size_t point);
 /* Point k of a contact, at an arm, as one that new points take over from. */
 tl_old_point tl_point_as_old(const tl_points_table *points, const tl_contacts *contacts,
                              uint32_t contact, size_t k, tl_vec3 arm);
-/* Gives a point the traction of a stress, tension positive, as its initial force: its closure counts from now. n from A to B. */
+/* Gives a point the traction of a stress, tension positive, as its initial force: its closure, and what slip has opened, count from
+ * now. n from A to B. */
 void tl_point_load(tl_points_table *points, size_t point, const tl_sym3 *stress, tl_vec3 n,
-                   double closure);
+                   double closure, double opening);
 /* The law's states of a point, at their initial values, or taken from an old point of some area. */
 void tl_point_initial_state(tl_points_table *p, size_t point, const tl_kind *kind);
 void tl_point_begin(tl_points_table *p, size_t point, const tl_kind *kind); /* and no flags */

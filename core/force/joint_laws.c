@@ -1,11 +1,12 @@
 /* joint_laws.c - a law and its properties, for a joint, and what becomes of the contacts that come under it.
  *
- * A new law, kn or ks leaves the forces of its contacts as they are: the present normal force becomes
- * the initial one at the present closure. A point that is open keeps the gap at which it closes. */
+ * A new law, kn, ks or curve leaves the forces of its contacts as they are: the present normal force becomes
+ * the initial one where the walls are now, with what slip has opened. A point that is open keeps the gap at which it closes. */
 
 #include "force/joint_laws.h"
 
 #include "base/inside.h"
+#include "contact/across_gap.h"
 #include "contact/contacts.h"
 #include "contact/places.h"
 #include "contact/points.h"
@@ -88,18 +89,30 @@ tl_status tl_law_make_for(tl_model *m, tl_tag tag, const char *joint, const tl_k
     return make(out, args, from != NULL, context, &m->error);
 }
 
-static void rebase_point(tl_points_table *p, size_t i, double closure, double old_kn)
+/* Rebases a point at a closure, which was lifted and which the new law has opened. */
+static void rebase_point(tl_points_table *p, size_t i, double closure, double lift, double opening)
 {
     if (p->area[i] <= 0)
         return;
-    if (p->flags[i] & TL_POINT_OPEN) {
-        if (p->f_n0[i] != 0)
-            p->reference[i] -= p->f_n0[i] / (old_kn * p->area[i]);
-        p->f_n0[i] = 0;
-        return;
+    bool open = p->flags[i] & TL_POINT_OPEN;
+    p->reference[i] += opening + (open ? -lift : closure);
+    p->f_n0[i] = open ? 0 : p->f_n[i];
+}
+
+static void rebase_patch(tl_model *m, uint32_t c, const tl_law *law)
+{
+    tl_detect *d = m->detect;
+    bool opened = m->joint_laws[d->contacts.law[c]].kind == law->kind && tl_law_opens(law);
+    double lift[TL_LANES], opening[TL_LANES] = {0};
+    tl_contact_places(m, c, &d->lanes[0]);
+    for (size_t first = 0; first < d->contacts.point_count[c]; first += TL_LANES) {
+        tl_contact_point_lifts(m, c, first, lift);
+        if (opened)
+            tl_law_point_openings(m, law, c, first, opening);
+        for (size_t l = 0; l < TL_LANES && first + l < d->contacts.point_count[c]; l++)
+            rebase_point(&d->points, tl_point_row(&d->contacts, c, first + l),
+                         d->lanes[0].closure[first + l], lift[l], opening[l]);
     }
-    p->reference[i] += closure;
-    p->f_n0[i] = p->f_n[i];
 }
 
 /* Whether there are forces to keep: a contact that no step has seen begins under the new law, and so does one that carries
@@ -129,7 +142,9 @@ static bool is_rebased(const tl_model *m, const tl_law *law, uint32_t c)
         return false;
     if (ruling->tag.plane > 0 && law->tag.plane == 0)
         return false;
-    bool same = before->kind == law->kind && before->kn == law->kn && before->ks == law->ks;
+    bool same =
+        before->kind == law->kind && before->kn == law->kn && before->ks == law->ks &&
+        ((const tl_law_ops *)law->kind->ops)->linear; /* else its curve may be another one */
     return !same && has_forces(d, c);
 }
 
@@ -148,12 +163,8 @@ void tl_law_rebase(tl_model *m, const tl_law *law)
     for (uint32_t c = 0; d && c < d->contacts.table.rows; c++) {
         if (!is_rebased(m, law, c))
             continue;
-        double old_kn = m->joint_laws[d->contacts.law[c]].kn;
-        tl_contact_places(m, c, &d->lanes[0]);
         d->contacts.stored[c] = NAN;
-        for (uint32_t i = 0; i < d->contacts.point_count[c]; i++)
-            rebase_point(&d->points, tl_point_row(&d->contacts, c, i), d->lanes[0].closure[i],
-                         old_kn);
+        rebase_patch(m, c, law);
     }
 }
 

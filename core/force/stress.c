@@ -7,6 +7,7 @@
 #include "force/stress.h"
 
 #include "base/columns.h"
+#include "contact/across_gap.h"
 #include "contact/detection.h"
 #include "contact/places.h"
 #include "contact/points.h"
@@ -47,9 +48,12 @@ void tl_insitu_load(tl_model *m, const tl_insitu *s, uint32_t c)
     if (contacts->facet[c].kind != TL_FACET_PATCH || !faces_meet(m, c))
         return;
     contacts->stored[c] = NAN;
+    double opening[TL_LANES];
     for (size_t i = 0; i < contacts->point_count[c]; i++) {
+        if (i % TL_LANES == 0)
+            tl_contact_point_openings(m, c, i, opening);
         tl_sym3 stress = tl_insitu_stress(s, centroid_z + lanes->arm[2][i]);
         tl_point_load(&m->detect->points, tl_point_row(contacts, c, i), &stress,
-                      tl_columns_get(lanes->normal, i), lanes->closure[i]);
+                      tl_columns_get(lanes->normal, i), lanes->closure[i], opening[i % TL_LANES]);
     }
 }

@@ -141,6 +141,12 @@ static inline bool tl_law_presses(const tl_law *law)
     return !tl_law_is_linear(law) && ((const tl_law_ops *)law->kind->ops)->pressed;
 }
 
+/* Whether slip may open a joint. */
+static inline bool tl_law_opens(const tl_law *law)
+{
+    return law->columns > 0 && ((const tl_law_ops *)law->kind->ops)->across_gap;
+}
+
 /* A prescribed motion, shared by the bodies of one call. */
 typedef struct tl_drive_record {
     tl_drive drive;

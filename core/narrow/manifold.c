@@ -92,6 +92,7 @@ tl_press_query tl_manifold_query(const tl_pair_view *view, const tl_region *regi
                             .min_area = rule->min_area,
                             .corners = rule->corners,
                             .volumes = rule->volumes,
+                            .opens = rule->opens,
                             .shift = before->shift,
                             .shifted = before->shifted,
                             .opened = before->opened};

@@ -73,10 +73,10 @@ typedef struct tl_narrow_scratch {
 
 /* How a pair is to touch. */
 typedef struct tl_touch_rule {
-    double min_area; /* of a field contact, m2 */
-    bool corners;    /* points of patches at corners only */
-    bool volumes;    /* of field contacts: see tl_press_query */
-    double reach;    /* patches with every gap beyond this are left out */
+    double min_area;     /* of a field contact, m2 */
+    bool corners;        /* points of patches at corners only */
+    bool volumes, opens; /* of field contacts: see tl_press_query */
+    double reach;        /* patches with every gap beyond this are left out */
 } tl_touch_rule;
 
 #endif

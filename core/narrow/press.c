@@ -111,13 +111,13 @@ static uint32_t add_faces(planes *p, const tl_press_query *of, bool of_b, uint32
     return count;
 }
 
-/* Adds faces on other parts; how many are seams, with it. */
+/* Adds faces on other parts; how many are seams through which something passes, with it. */
 static uint32_t add_covered(planes *p, const tl_press_query *of, bool of_b, uint32_t begin,
                             uint32_t count, uint32_t *seams)
 {
     const tl_poly *poly = of_b ? of->view->b : of->view->a;
     *seams = 0;
-    for (uint32_t k = begin; k < begin + count; k++)
+    for (uint32_t k = begin; k < begin + count && !of->opens; k++)
         *seams += poly->covered[of->region->face[k]] == TL_SEAM;
     return add_faces(p, of, of_b, begin, count);
 }

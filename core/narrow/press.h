@@ -51,6 +51,8 @@ typedef struct tl_press_query {
     double opened; /* part of the shift that slip has opened in the last step, m */
     bool corners;  /* the patch has points at its corners only */
     bool volumes;  /* the powers are wanted, for a law that is not linear: press.c */
+    /* Slip opens the joint. The next part of a body may be moved out otherwise, so nothing passes through a seam. */
+    bool opens;
 } tl_press_query;
 
 /* The presses of some pairs, up to TL_FIELD_PAIRS: 0 where the blocks have nothing in common; and what those that have more have
