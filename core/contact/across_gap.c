@@ -64,7 +64,7 @@ void tl_points_across_gap(const tl_law *law, const tl_points_table *p, size_t fi
 typedef struct sample {
     _Alignas(TL_ALIGN) double area[TL_LANES];
     double f_n0[TL_LANES], state[TL_STATE_COLUMNS][TL_LANES], lift[TL_LANES], hold[TL_LANES];
-    double f_n[TL_LANES], reference[TL_LANES];
+    double reference[TL_LANES];
     _Alignas(TL_ALIGN) uint32_t flags[TL_LANES];
 } sample;
 
@@ -76,7 +76,6 @@ static void read_points(const tl_points_table *p, const tl_contacts *contacts, u
         bool is = first + l < contacts->point_count[c];
         size_t i = is ? tl_point_row(contacts, c, first + l) : 0;
         s->area[l] = is ? p->area[i] : 0;
-        s->f_n[l] = is ? p->f_n[i] : 0;
         s->f_n0[l] = is && p->f_n0 ? p->f_n0[i] : 0;
         s->reference[l] = is && p->reference ? p->reference[i] : 0;
         s->flags[l] = is ? p->flags[i] : 0;
@@ -118,7 +117,6 @@ tl_contact_across tl_contact_across_gap(const tl_model *m, uint32_t c)
     const tl_detect *d = m->detect;
     const tl_law *law = law_of(m, c);
     tl_contact_across out = {.most = 0};
-    double pressed[2] = {0}, whole[2] = {0}; /* force or area, and with it the lift */
     if (!law || d->contacts.point_count[c] == 0 || is_plain(d, law))
         return out;
     for (size_t first = 0; first < d->contacts.point_count[c]; first += TL_LANES) {
@@ -126,18 +124,17 @@ tl_contact_across tl_contact_across_gap(const tl_model *m, uint32_t c)
         read_points(&d->points, &d->contacts, c, law, first, &s);
         ask(law, s.f_n0, &s);
         for (size_t l = 0; l < TL_LANES && s.area[l] > 0; l++) {
-            double force = fmax(0, s.f_n[l]), by = s.lift[l] - s.reference[l];
-            pressed[0] += force;
-            pressed[1] += force * by;
-            whole[0] += s.area[l];
-            whole[1] += s.area[l] * by;
-            out.most = fmax(out.most, by);
+            out.most = fmax(out.most, s.lift[l] - s.reference[l]);
             out.bonded = out.bonded || s.hold[l] > 0;
         }
     }
-    const double *mean = pressed[0] > 0 ? pressed : whole;
-    out.lift = mean[0] > 0 ? mean[1] / mean[0] : 0;
     return out;
+}
+
+bool tl_contact_is_lifted(const tl_model *m, uint32_t c)
+{
+    const tl_law *law = law_of(m, c);
+    return law && m->detect->contacts.point_count[c] > 0 && !is_plain(m->detect, law);
 }
 
 void tl_law_point_openings(const tl_model *m, const tl_law *law, uint32_t c, size_t first,

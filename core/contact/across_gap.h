@@ -13,12 +13,14 @@ void tl_points_across_gap(const tl_law *law, const tl_points_table *points, size
 
 /* The same of a contact. */
 typedef struct tl_contact_across {
-    /* lifts from where its faces lie on each other, m: the mean over what presses, or over all where nothing does, and the largest */
-    double lift, most;
+    double most; /* the largest lift from where its faces lie on each other, m; at least 0 */
     bool bonded; /* some point pulls */
 } tl_contact_across;
 
 tl_contact_across tl_contact_across_gap(const tl_model *m, uint32_t contact);
+
+/* Whether anything may have lifted the points of a contact. */
+bool tl_contact_is_lifted(const tl_model *m, uint32_t contact);
 
 /* Whether slip may open a contact: without an initial force only a state lifts. */
 static inline bool tl_contact_opens(const tl_model *m, uint32_t contact)

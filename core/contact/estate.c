@@ -4,6 +4,7 @@
  * it was cut leaves its points, and each contact between parts of the two blocks takes its share of them over when it is made,
  * in the same detection. What a part is of, its root, the model tells (tl_heir). */
 #include "contact/estate.h"
+#include "contact/lean.h"
 
 #include "base/columns.h"
 #include "contact/across_gap.h"
@@ -89,7 +90,7 @@ static void keep_faces(tl_model *m, uint32_t c, const tl_testator *a, const tl_t
         offset = row->shifted_at[0].offset + row->shifted_at[1].offset;
         estate->shift = row->shift;
     } else {
-        estate->shift = tl_contact_across_gap(m, c).lift;
+        estate->shift = tl_contact_lean(m, c).mean;
     }
     estate->face[0] = tl_m3_mul(a->r, na);
     estate->face[1] = tl_m3_mul(b->r, nb);

@@ -5,13 +5,15 @@
  * each point. Force and moment are carried over; the moment no further than the energy of the springs goes. Area that comes
  * brings no shear. Of the area that is there that goes first which carries the least (resized). Neither makes energy. An
  * initial stress of a patch, and slip that has opened its joint, move both faces outward, half each, by as much together as its
- * springs would be pressed where the faces just meet: by its lift less the overlap that belongs to that. There the faces stay. */
+ * springs would be pressed where the faces just meet: by the plane that fits its lifts less the overlaps that belong to them (lean.c).
+ * There the faces stay. */
 #include "contact/handover.h"
 
 #include "base/columns.h"
 #include "contact/across_gap.h"
 #include "contact/detection.h"
 #include "contact/estate.h"
+#include "contact/lean.h"
 #include "contact/places.h"
 #include "contact/points.h"
 #include "contact/presses.h"
@@ -188,8 +190,15 @@ static law_state state_of(const tl_model *m, uint32_t c)
     return out;
 }
 
+/* By how much more than its mean the lift of a field contact is at a point. */
+static double lean_at(const tl_model *m, uint32_t c, tl_vec3 p)
+{
+    const tl_press_row *row = tl_press_row_of(m, c);
+    return tl_lean_at(m, c, row->lean, row->shifted_at, p);
+}
+
 static void write_points(tl_model *m, uint32_t c, const tl_manifold *g, const law_state *old,
-                         double reference)
+                         double reference, bool lean)
 {
     tl_contacts *contacts = &m->detect->contacts;
     tl_points_table *p = &m->detect->points;
@@ -207,7 +216,7 @@ static void write_points(tl_model *m, uint32_t c, const tl_manifold *g, const la
         p->f_n[i] = 0;
         if (p->f_n0) {
             p->f_n0[i] = 0;
-            p->reference[i] = reference;
+            p->reference[i] = reference - (lean ? lean_at(m, c, g->points[k].p) : 0);
         }
         p->flags[i] = old->flags;
         tl_point_initial_state(p, i, kind);
@@ -334,7 +343,7 @@ static void take_share(tl_model *m, uint32_t c, const tl_manifold *g, const tl_e
     if (!state.known)
         state.flags = 0;
     contacts->facet[c] = g->facet;
-    write_points(m, c, g, &state, 0);
+    write_points(m, c, g, &state, 0, false);
     begin_field(m, c, g);
     tl_contact_begin(m, c, lanes);
     turn_states(m, c, &state);
@@ -365,16 +374,18 @@ void tl_contact_hand_over(tl_model *m, uint32_t c, const tl_manifold *g, bool re
     double kept = tl_shear_kept(m, c);
     bool held = contacts->point_count[c] > 0;
     bool field = g->facet.kind == TL_FACET_FIELD;
-    tl_contact_across across = tl_contact_across_gap(m, c);
     if (row && was_patch && held) {
-        row->shift = across.lift;
+        const tl_lean lean = tl_contact_lean(m, c);
+        row->shift = lean.mean;
+        row->leans = lean.leans;
+        memcpy(row->lean, lean.face, sizeof row->lean);
         tl_press_shift_faces(m, c, (tl_face_pair){contacts->facet[c].ia, contacts->facet[c].ib});
     }
     state.flags |=
         TL_POINT_APART; /* bonds end with their patch, and walls that meet at an edge have none */
     contacts->facet[c] = g->facet;
     double lift = row ? row->shift - row->opening[TL_FIELD_SHEAR] : 0;
-    write_points(m, c, g, &state, field ? 0 : -lift);
+    write_points(m, c, g, &state, field ? 0 : -lift, row && row->leans && !field);
     if (row)
         row->spare[0] = row->spare[1] = 0;
     if (field)

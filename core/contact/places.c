@@ -59,6 +59,14 @@ void tl_contact_places(const tl_model *m, uint32_t contact, const tl_point_lanes
     }
 }
 
+tl_vec3 tl_contact_point_arm(const tl_model *m, uint32_t contact, size_t k)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    body_frames frames = body_frames_of(m, contact);
+    tl_facing_place place = place_of(&contacts->facet[contact], &frames);
+    return placed(&place, tl_columns_get(m->detect->points.p, tl_point_row(contacts, contact, k)));
+}
+
 void tl_contact_point_places(const tl_model *m, uint32_t contact, tl_vec3 *place, double *gap)
 {
     const tl_contacts *contacts = &m->detect->contacts;

@@ -7,6 +7,8 @@
 
 /* Arms, normals and closures of a contact's points in the present place, from lane 0 on. */
 void tl_contact_places(const tl_model *m, uint32_t contact, const tl_point_lanes *lanes);
+/* Arm of one point, from A's body's centroid. */
+tl_vec3 tl_contact_point_arm(const tl_model *m, uint32_t contact, size_t k);
 /* Places of a contact's points, relative to the model's origin, and the gaps of the walls there: [point_count] each. */
 void tl_contact_point_places(const tl_model *m, uint32_t contact, tl_vec3 *place, double *gap);
 /* The same as tl_contact_places for a contact whose points are new: forces turn from here. */

@@ -142,7 +142,7 @@ static bool press_is_sound(const tl_model *m, const tl_detect *d, const tl_press
                            uint32_t a, uint32_t b)
 {
     if (!tl_is_flag(&row->press.powers) || !tl_is_flag(&row->flush) || !tl_is_flag(&row->listed) ||
-        !tl_is_flag(&row->by_slope) ||
+        !tl_is_flag(&row->by_slope) || !tl_is_flag(&row->leans) ||
         !(row->shifted.a < faces_of(m, d, a) && row->shifted.b < faces_of(m, d, b)))
         return false;
     uint32_t sum = 0;

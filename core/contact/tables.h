@@ -45,19 +45,19 @@ typedef struct tl_press_row {
     /* How far its faces `shifted` are moved out by an initial stress and by slip, m; what slip has opened of it, by its points. */
     double shift, opening[TL_FIELD_POINTS];
     double opened, paid; /* by slip in the step before `lifted_at`, m; with energy of shear, J */
-    int64_t lifted_at, moved_at;
+    int64_t lifted_at, moved_at, since;
     tl_vec3 half; /* of the way of the centre of pressure before `moved_at`, in A's frame */
     tl_face_pair shifted;
-    tl_plane shifted_at[2]; /* they, of A and of B, in the frames of their bodies */
+    /* they, of A and of B, in the frames of their bodies; and as they lean, before they are moved out, if they do */
+    tl_plane shifted_at[2], lean[2];
     uint32_t next_free;
     double spare[2]; /* energy of shear and of torsion beyond uniform stress, times 2 ks */
     uint16_t count[4], face[TL_PRESS_FACES], blunt_a, blunt_b; /* of its tl_region */
     tl_pair_pose listed_at;                                    /* where they were listed */
     double listed_shift;                                       /* and with which shift */
-    bool flush, listed;
+    bool flush, listed, leans;
     /* It has stayed near a place since some step: for long, then it goes by slopes of its press there, else by its mesh (fields.c). */
     tl_pair_pose place;
-    int64_t since;
     bool by_slope;
     union {
         tl_field_mesh mesh;

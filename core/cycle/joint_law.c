@@ -1,11 +1,19 @@
 /* joint_law.c - setting the law of a joint. */
 #include "cycle/cycle_data.h"
+#include "cycle/kept_force.h"
 
+#include "contact/presses.h"
 #include "detect/asked.h"
 #include "detect/detect.h"
 #include "force/joint_laws.h"
 
 #include <stdlib.h>
+
+static bool is_field(const tl_model *m, uint32_t c)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    return contacts->facet[c].kind == TL_FACET_FIELD && contacts->point_count[c] > 0;
+}
 
 /* Brings contacts up to the present places, where a step that failed has left them already, and makes room for what a
  * law needs of their points: all that can fail before it takes its place. */
@@ -17,7 +25,19 @@ static tl_status prepare_contacts(tl_model *m, const tl_law *law)
     tl_status status = tl_detect_update(m);
     if (status != TL_OK)
         return status;
-    return tl_law_reserve(m, law) ? TL_OK : tl_fail_memory(&m->error);
+    bool enough = tl_law_reserve(m, law);
+    for (uint32_t c = 0; c < m->detect->contacts.table.rows && enough; c++)
+        if (is_field(m, c) && tl_law_rebases(m, law, c))
+            enough = tl_may_keep_field_force(m, c);
+    return enough ? TL_OK : tl_fail_memory(&m->error);
+}
+
+/* After the law has taken its place. */
+static void keep_field_forces(tl_model *m)
+{
+    for (uint32_t c = 0; m->detect && c < m->detect->contacts.table.rows; c++)
+        if (is_field(m, c) && isnan(m->detect->contacts.stored[c]))
+            tl_keep_field_force(m, c);
 }
 
 static tl_law *exact_law(tl_model *m, tl_tag tag)
@@ -72,6 +92,7 @@ tl_status tl_joint_law(tl_model *m, const char *joint, const char *law, const tl
     } else {
         m->joint_laws[m->joint_law_count++] = fresh;
     }
+    keep_field_forces(m);
     m->laws++;
     if (m->cycle)
         m->cycle->dt = 0;

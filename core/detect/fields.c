@@ -7,6 +7,7 @@
 #include "contact/across_gap.h"
 #include "contact/contacts.h"
 #include "contact/handover.h"
+#include "contact/lean.h"
 #include "contact/pair_view.h"
 #include "contact/presses.h"
 #include "contact/shear.h"
@@ -44,7 +45,21 @@ static void note_moved_faces(const tl_model *m, const tl_press_row *row, tl_mani
 {
     to->shift = row->shift;
     to->shifted = row->shifted;
+    to->leans = row->leans;
+    memcpy(to->lean, row->lean, sizeof to->lean);
     to->opened = row->lifted_at == m->cycles ? row->opened : 0;
+}
+
+double tl_contact_reach(const tl_model *m, uint32_t c, const tl_manifold_before *before,
+                        double size)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    double reach = TL_LIST_MARGIN * size + fabs(before->shift);
+    if (before->leans) {
+        tl_vec3 n = m->blocks.shape[contacts->a[c]]->plane[before->shifted.a].normal;
+        reach += 4 * size * tl_v3_norm(tl_v3_sub(before->lean[0].normal, n));
+    }
+    return reach;
 }
 
 tl_manifold_before tl_contact_before(const tl_model *m, uint32_t c, bool reframed)
@@ -61,8 +76,11 @@ tl_manifold_before tl_contact_before(const tl_model *m, uint32_t c, bool reframe
         out.holds = reframed || unseen || across.bonded;
         out.most_tilt = across.bonded && !reframed ? bonded_tilt(m) : INFINITY;
         out.over = out.holds ? INFINITY : across.most;
-        out.shift = fmax(0, across.lift);
+        const tl_lean lean = tl_contact_lean(m, c);
+        out.shift = lean.mean;
         out.shifted = out.faces;
+        out.leans = lean.leans;
+        memcpy(out.lean, lean.face, sizeof out.lean);
     } else if (row) {
         out.calm = !reframed && is_calm(m, c);
         note_moved_faces(m, row, &out);
@@ -241,6 +259,28 @@ static void ask(tl_model *m, tl_field_batch *b, uint32_t c)
     tl_manifold_before before = {.kind = TL_FACET_FIELD};
     note_moved_faces(m, row, &before);
     b->query[k] = tl_manifold_query(view, &b->region[k], &rule, &before);
+    b->query[k].lean = row->leans ? row->lean : NULL; /* that lasts */
+}
+
+bool tl_field_press_anew(tl_model *m, uint32_t c, tl_narrow_scratch *scratch)
+{
+    tl_contacts *contacts = &m->detect->contacts;
+    tl_press_row *row = tl_press_row_of(m, c);
+    tl_pair_view view = tl_pair_view_of(m, contacts->a[c], contacts->b[c]);
+    tl_touch_rule rule = tl_touch_rule_of(m, &view, contacts->tag[c], 0);
+    tl_manifold_before before = {.kind = TL_FACET_FIELD};
+    tl_region region;
+    note_moved_faces(m, row, &before);
+    before.opened = 0;
+    if (!tl_pair_place(&view, scratch) ||
+        !tl_region_find(&view, tl_contact_reach(m, c, &before, view.size), scratch, &region))
+        return false;
+    region.mesh = NULL;
+    const tl_press_query query = tl_manifold_query(&view, &region, &rule, &before);
+    row->by_slope = false;
+    row->mesh = (tl_field_mesh){0};
+    contacts->faces_valid_to[c] = contacts->points_valid_to[c] = -INFINITY;
+    return tl_press_find(&query, 1, scratch, &row->press, &row->extra);
 }
 
 void tl_fields_follow(tl_model *m, tl_field_batch *b, tl_narrow_scratch *scratch)

@@ -9,11 +9,17 @@
 /* What is known of a contact before it is looked at. One whose bodies have got other frames stays what it is until its points
  * are in these. */
 tl_manifold_before tl_contact_before(const tl_model *m, uint32_t contact, bool reframed);
+/* The margin with which its faces are to be listed, m: they are moved, and lean. */
+double tl_contact_reach(const tl_model *m, uint32_t contact, const tl_manifold_before *before,
+                        double size);
 /* Keeps the region of a field contact. */
 void tl_field_keep(tl_press_row *row, const tl_pair_view *view, const tl_region *region);
 /* What is known of the field, with the numbers that its faces have in a list made anew; nothing where one is not in it. */
 tl_field_mesh tl_field_listed_anew(const tl_press_row *row, const tl_region *region);
 
+/* Finds the press of a field contact where its blocks are now, with its shift, and forgets what is known of others. false: out of
+ * memory. */
+bool tl_field_press_anew(tl_model *m, uint32_t contact, tl_narrow_scratch *scratch);
 /* Whether a contact was a field contact in the last step and still has its list of faces; how long it has is found anew when it
  * may have run out. */
 bool tl_field_goes_on(tl_model *m, uint32_t contact);

@@ -146,7 +146,7 @@ static bool find(tl_model *m, uint32_t c, tl_narrow_scratch *scratch)
     tl_manifold_before before = tl_contact_before(m, c, scratch->reframed);
     tl_region region;
     if (!tl_pair_place(&view, scratch) ||
-        !tl_region_find(&view, TL_LIST_MARGIN * view.size + before.shift, scratch, &region))
+        !tl_region_find(&view, tl_contact_reach(m, c, &before, view.size), scratch, &region))
         return false;
     const tl_press_row *row = tl_press_row_of(m, c);
     tl_field_mesh mesh;

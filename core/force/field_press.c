@@ -18,6 +18,7 @@
  * larger by (1 + (A_m / A_e)^2)^(1/2), with A_e = V^2 / (4 G) as for a linear law. */
 #include "force/field_press.h"
 
+#include "base/inside.h"
 #include "contact/across_gap.h"
 #include "contact/presses.h"
 #include "force/closures.h"
@@ -207,6 +208,61 @@ tl_field_press tl_press_by_force(const tl_press *press, double kn, double area, 
                             .whole = f_n,
                             .by_energy = by,
                             .springs = (f_n * f_n + same * same) / (2 * kn * area)};
+}
+
+/* What a law tells of points of one area and of the same states, at some closures. */
+static void tell(const tl_law *law, double area, const double state[TL_STATE_COLUMNS],
+                 const double closure[TL_LANES], double lift[TL_LANES], double energy[TL_LANES])
+{
+    const tl_law_ops *ops = law->kind->ops;
+    _Alignas(TL_ALIGN) double areas[TL_LANES], at[TL_LANES], zero[TL_LANES] = {0};
+    _Alignas(TL_ALIGN) double states[TL_STATE_COLUMNS][TL_LANES], hold[TL_LANES];
+    _Alignas(TL_ALIGN) uint32_t flags[TL_LANES];
+    double *state_at[TL_STATE_COLUMNS];
+    for (uint32_t l = 0; l < TL_LANES; l++) {
+        areas[l] = area;
+        flags[l] = TL_POINT_APART;
+        lift[l] = 0;
+        for (uint32_t k = 0; k < TL_STATE_COLUMNS; k++)
+            states[k][l] = state[k];
+    }
+    for (uint32_t k = 0; k < TL_STATE_COLUMNS; k++)
+        state_at[k] = states[k];
+    const tl_law_batch batch = {.size = sizeof batch,
+                                .count = TL_LANES,
+                                .area = areas,
+                                .closure = at,
+                                .f_n0 = zero,
+                                .state = state_at,
+                                .flags = flags};
+    tl_enter(law->kind, "pressed");
+    if (ops->across_gap)
+        ops->across_gap(law->self, &batch, lift, hold);
+    for (uint32_t l = 0; l < TL_LANES; l++)
+        at[l] = closure[l] - lift[l];
+    ops->pressed(law->self, &batch, energy);
+    tl_leave();
+}
+
+double tl_press_force(const tl_law *law, const tl_press_row *row,
+                      const double state[TL_STATE_COLUMNS])
+{
+    double closure[TL_LANES] = {0}, lift[TL_LANES], energy[TL_LANES];
+    tl_told_press by = {.at = {0}};
+    if (!(row->press.area > 0))
+        return 0;
+    if (!tl_law_presses(law))
+        return 2 * law->kn * tl_v3_norm(row->press.force);
+    find_closures(row, by.at);
+    for (size_t k = 0; k < 4; k++)
+        closure[k] = (k % 2 ? 1 + TL_NEAR_CLOSURE : 1 - TL_NEAR_CLOSURE) * by.at[k / 2];
+    tell(law, row->press.area, state, closure, lift, energy);
+    for (size_t k = 0; k < 2; k++) {
+        double low = energy[2 * k], high = energy[2 * k + 1], per = 0.5 / row->press.area;
+        by.energy[k] = per * (high + low);
+        by.stress[k] = per * (high - low) / (TL_NEAR_CLOSURE * by.at[k]);
+    }
+    return tl_v3_norm(tl_press_by_law(row, row->press.area, 0, 0, &by).force);
 }
 
 double tl_lost_lift(const tl_press_row *row, const tl_field_press *by)

@@ -39,6 +39,11 @@ tl_field_press tl_press_by_law(const tl_press_row *row, double area, double f_n,
 tl_field_press tl_press_by_force(const tl_press *press, double kn, double area, double f_n,
                                  double same);
 
+/* The normal force, N, with which a field presses under a law that its contact has not had yet; `state` is what the law keeps of its
+ * first point. Of a law that is not linear and does not tell its energy, as if it were linear. */
+double tl_press_force(const tl_law *law, const tl_press_row *row,
+                      const double state[TL_STATE_COLUMNS]);
+
 /* What the field has not got of what slip paid for moving two faces apart, where other faces press, too: heat, J. It is a share of the
  * mean of what slip paid in the step before and would pay here, for the lift has been pressed on from there. */
 double tl_lost_lift(const tl_press_row *row, const tl_field_press *by);

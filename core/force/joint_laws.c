@@ -128,8 +128,12 @@ static bool has_forces(const tl_detect *d, uint32_t c)
     return false;
 }
 
-/* Whether a contact comes under another stiffness or plugin by a joint law, and has forces that stay. */
-static bool is_rebased(const tl_model *m, const tl_law *law, uint32_t c)
+static bool is_patch(const tl_model *m, uint32_t c)
+{
+    return m->detect->contacts.facet[c].kind == TL_FACET_PATCH;
+}
+
+bool tl_law_rebases(const tl_model *m, const tl_law *law, uint32_t c)
 {
     const tl_detect *d = m->detect;
     uint32_t old = d->contacts.law[c];
@@ -152,7 +156,7 @@ bool tl_law_reserve(tl_model *m, const tl_law *law)
 {
     bool rebased = false;
     for (uint32_t c = 0; c < m->detect->contacts.table.rows && !rebased; c++)
-        rebased = is_rebased(m, law, c);
+        rebased = is_patch(m, c) && tl_law_rebases(m, law, c);
     return tl_detect_hold_states(m->detect, law->columns) &&
            (!rebased || tl_detect_hold_initial(m->detect));
 }
@@ -161,10 +165,11 @@ void tl_law_rebase(tl_model *m, const tl_law *law)
 {
     tl_detect *d = m->detect;
     for (uint32_t c = 0; d && c < d->contacts.table.rows; c++) {
-        if (!is_rebased(m, law, c))
+        if (!tl_law_rebases(m, law, c))
             continue;
         d->contacts.stored[c] = NAN;
-        rebase_patch(m, c, law);
+        if (is_patch(m, c))
+            rebase_patch(m, c, law);
     }
 }
 

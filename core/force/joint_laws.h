@@ -18,7 +18,9 @@ tl_status tl_law_make_for(tl_model *m, tl_tag tag, const char *joint, const tl_k
                           const tl_args *args, const tl_law *from, tl_law *out);
 /* Makes room for what a law needs of the points of contacts; false when out of memory. */
 bool tl_law_reserve(tl_model *m, const tl_law *law);
-/* Keeps the forces of the contacts that come under another stiffness or law by it. */
+/* Whether a contact comes under another stiffness, curve or plugin by a law, and has forces that are to stay. */
+bool tl_law_rebases(const tl_model *m, const tl_law *law, uint32_t contact);
+/* Keeps the forces of the patches among these. What all of them have stored is not known any more. */
 void tl_law_rebase(tl_model *m, const tl_law *law);
 /* Points whose joint law becomes one of another kind begin with the new kind's states. */
 void tl_law_reset(tl_model *m, uint32_t law, const tl_kind *kind);

@@ -95,6 +95,7 @@ tl_press_query tl_manifold_query(const tl_pair_view *view, const tl_region *regi
                             .opens = rule->opens,
                             .shift = before->shift,
                             .shifted = before->shifted,
+                            .lean = before->leans ? before->lean : NULL,
                             .opened = before->opened};
 }
 

@@ -14,6 +14,8 @@ typedef struct tl_manifold_before {
     double over;        /* gap across which its faces press, m; INFINITY where they hold */
     double shift;       /* see tl_press_query */
     tl_face_pair shifted;
+    bool leans; /* they do, so */
+    tl_plane lean[2];
     double opened;
 } tl_manifold_before;
 

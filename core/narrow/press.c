@@ -92,15 +92,35 @@ static void add(planes *p, tl_plane plane)
 
 static double shift_of(const tl_press_query *of, bool of_b, uint32_t face)
 {
-    return face == (of_b ? of->shifted.b : of->shifted.a) ? fmax(0, 0.5 * of->shift) : 0;
+    return face == (of_b ? of->shifted.b : of->shifted.a) ? 0.5 * of->shift : 0;
+}
+
+static bool is_moved(const tl_press_query *of, bool of_b, uint32_t face)
+{
+    return face == (of_b ? of->shifted.b : of->shifted.a) && (of->shift != 0 || of->lean);
+}
+
+/* Where a face of the two that are moved is. */
+static tl_plane moved_plane(const tl_press_query *of, bool of_b)
+{
+    tl_plane plane = plane_of(of->view, of_b, of_b ? of->shifted.b : of->shifted.a);
+    if (of->lean) {
+        plane = of->lean[of_b];
+        plane.normal = of_b ? tl_m3_mul(&of->view->turn, plane.normal) : plane.normal;
+        plane.offset += of_b ? tl_v3_dot(plane.normal, of->view->shift) : 0;
+    }
+    plane.offset += 0.5 * of->shift;
+    return plane;
+}
+
+static tl_plane pressing_plane(const tl_press_query *of, bool of_b, uint32_t face)
+{
+    return is_moved(of, of_b, face) ? moved_plane(of, of_b) : plane_of(of->view, of_b, face);
 }
 
 static void add_face(planes *p, const tl_press_query *of, bool of_b, uint32_t face)
 {
-    tl_plane plane = plane_of(of->view, of_b, face);
-    if (of->shift > 0) /* few are moved */
-        plane.offset += shift_of(of, of_b, face);
-    add(p, plane);
+    add(p, pressing_plane(of, of_b, face));
 }
 
 static uint32_t add_faces(planes *p, const tl_press_query *of, bool of_b, uint32_t begin,
@@ -155,8 +175,8 @@ static bool in_both(const tl_press_query *of, tl_vec3 x, double depth)
     for (int of_b = 0; of_b < 2; of_b++) {
         uint32_t count = (of_b ? of->view->b : of->view->a)->face_count;
         for (uint32_t f = 0; f < count; f++) {
-            tl_plane plane = plane_of(of->view, of_b, f);
-            if (tl_v3_dot(plane.normal, x) > plane.offset + shift_of(of, of_b, f) + INSIDE * depth)
+            tl_plane plane = pressing_plane(of, of_b, f);
+            if (tl_v3_dot(plane.normal, x) > plane.offset + INSIDE * depth)
                 return false;
         }
     }
@@ -273,10 +293,10 @@ static bool sum_corners(const tl_press_query *of, tl_vec3 origin, tl_narrow_scra
 {
     const uint32_t fa = of->region->flush_a, fb = of->region->flush_b;
     const tl_touch_rule rule = {.corners = true, .reach = INFINITY};
-    const tl_plane a = plane_of(of->view, 0, fa), b = plane_of(of->view, 1, fb);
+    const tl_plane a = pressing_plane(of, 0, fa), b = pressing_plane(of, 1, fb);
     const tl_vec3 between = tl_v3_unit(tl_v3_sub(a.normal, b.normal));
     const double slant = tl_v3_dot(a.normal, between); /* of both faces */
-    const double offset = a.offset + b.offset + shift_of(of, 0, fa) + shift_of(of, 1, fb);
+    const double offset = a.offset + b.offset;
     *out = (tl_field_sums){0};
     scratch->manifold.failed = false;
     if (!(tl_patch_lay(of->view, fa, fb, &rule, scratch) > 0))
@@ -336,7 +356,8 @@ static bool has_shared_planes(const tl_press_query *of)
 static bool is_of_use(const tl_press_query *of)
 {
     const tl_region *r = of->region;
-    return r->mesh && !(of->shift > 0) && r->a + r->b + r->border_a + r->border_b <= TL_FIELD_KNOWN;
+    return r->mesh && of->shift == 0 && !of->lean &&
+           r->a + r->b + r->border_a + r->border_b <= TL_FIELD_KNOWN;
 }
 
 /* Whether a number is so far above the smallest ones that its square is known to all digits. */

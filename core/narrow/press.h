@@ -48,6 +48,8 @@ typedef struct tl_press_query {
     /* how far both faces `shifted` together are moved out by an initial stress and by slip, m: each goes half of the way */
     double shift;
     tl_face_pair shifted;
+    const tl_plane *
+        lean; /* of A and of B: before they are moved out these faces lean so, in the own frames; NULL: not at all */
     double opened; /* part of the shift that slip has opened in the last step, m */
     bool corners;  /* the patch has points at its corners only */
     bool volumes;  /* the powers are wanted, for a law that is not linear: press.c */

@@ -79,6 +79,9 @@ static void forces(const tl_model *m, uint32_t c, double *normal, tl_vec3 *shear
         *normal += p->f_n[i];
         *shear = tl_v3_add(*shear, tl_v3(p->f_s[0][i], p->f_s[1][i], p->f_s[2][i]));
     }
+    /* what a field presses with is not the law's force at its mean overlap, where that is no line */
+    if (d->contacts.facet[c].kind == TL_FACET_FIELD && *normal > 0)
+        *normal = tl_v3_norm(tl_v3_sub(d->contacts.force[c], *shear));
 }
 
 /* Open when every point is, slipping when some point slips, failed when some bond is lost. */

@@ -98,6 +98,7 @@ static void hash_press(tl_hash *hash, const tl_detect *d, uint32_t contact)
     if (row->shift == 0 && row->spare[0] == 0 && row->spare[1] == 0)
         return;
     hash_numbers(hash, numbers, sizeof numbers / sizeof *numbers);
+    hash_numbers(hash, &row->lean[0].offset, row->leans ? 1 : 0);
     uint32_t faces = row->shifted.a | (uint32_t)row->shifted.b << 16;
     tl_hash_word(hash, row->shift != 0 ? faces : 0);
 }

@@ -1,0 +1,21 @@
+/* lean.h - how an initial stress and slip have moved the faces of a patch apart, by a plane (lean.c). */
+#ifndef TL_CONTACT_LEAN_H
+#define TL_CONTACT_LEAN_H
+
+#include "model/model.h"
+#include "narrow/press.h"
+
+/* What points of a patch are lifted by, as a plane: its mean over the area of those that press, or of all where none does, m; and where
+ * it is not the same everywhere both faces as they lean for it, each by half. */
+typedef struct tl_lean {
+    double mean;
+    bool leans;
+    tl_plane face[2]; /* of A and of B, in the frames of their bodies, before the mean moves them */
+} tl_lean;
+
+tl_lean tl_contact_lean(const tl_model *m, uint32_t contact);
+/* By how much leaning faces are farther out at a point of A's frame than those of the blocks, together, m. */
+double tl_lean_at(const tl_model *m, uint32_t contact, const tl_plane lean[2],
+                  const tl_plane faces[2], tl_vec3 p);
+
+#endif
