@@ -59,8 +59,6 @@ typedef struct tl_detect {
     tl_estate *estates;
     tl_old_point *left_points;
     size_t estate_count, estate_capacity, left_count, left_capacity;
-    tl_pressing *pressings; /* of each, while it is shared out: estate_press.c */
-    size_t pressing_capacity;
     tl_id next_contact, stepped_contact; /* the last that was born; when the last step was made */
     tl_narrow_scratch *narrow;           /* [threads] */
     tl_point_lanes *lanes;               /* [threads]: a tile, or the largest SIMD group */

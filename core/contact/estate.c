@@ -61,17 +61,15 @@ static void keep_closures(tl_model *m, uint32_t c, const tl_testator *a, const t
                           tl_estate *estate)
 {
     tl_old_point *points = &m->detect->left_points[estate->first];
-    double offset = m->detect->contacts.facet[c].offset, opening[TL_LANES], lift[TL_LANES];
+    double offset = m->detect->contacts.facet[c].offset, opening[TL_LANES];
     for (size_t first = 0; first < estate->count; first += TL_LANES) {
         tl_contact_point_openings(m, c, first, opening);
-        tl_contact_point_lifts(m, c, first, lift);
         for (size_t l = 0; l < TL_LANES && first + l < estate->count; l++) {
             tl_old_point *p = &points[first + l];
             double overlap = offset - tl_v3_dot(estate->face[0], tl_v3_sub(p->arm, a->place)) -
                              tl_v3_dot(estate->face[1], tl_v3_sub(p->arm, b->place));
-            p->closure = overlap + lift[l] - p->reference;
+            p->closure = overlap - p->reference;
             p->reference -= opening[l];
-            estate->opened = estate->opened || opening[l] != 0;
         }
     }
 }
@@ -138,14 +136,6 @@ void tl_estate_keep(tl_model *m, uint32_t c, const tl_testator *a, const tl_test
         keep_closures(m, c, a, b, estate);
 }
 
-bool tl_estates_need_references(const tl_detect *d)
-{
-    bool any = false;
-    for (size_t i = 0; i < d->left_count; i++)
-        any = any || d->left_points[i].reference != 0;
-    return any;
-}
-
 static int compare(const void *x, const void *y)
 {
     const tl_estate *p = x, *q = y;
@@ -156,6 +146,12 @@ void tl_estates_sort(tl_detect *d)
 {
     if (d->estate_count > 1)
         qsort(d->estates, d->estate_count, sizeof *d->estates, compare);
+}
+
+tl_estate *tl_estate_left(const tl_detect *d, tl_id a, tl_id b)
+{
+    tl_estate wanted = {.a = a, .b = b};
+    return bsearch(&wanted, d->estates, d->estate_count, sizeof wanted, compare);
 }
 
 /* ---------------------------------------------------------------- taken over ------------- */
@@ -172,8 +168,7 @@ const tl_estate *tl_estate_of(const tl_model *m, uint32_t block_a, uint32_t bloc
     if (d->estate_count == 0)
         return NULL;
     tl_id a = root_of(m, block_a), b = root_of(m, block_b);
-    tl_estate wanted = {.a = a < b ? a : b, .b = a < b ? b : a};
-    return bsearch(&wanted, d->estates, d->estate_count, sizeof wanted, compare);
+    return tl_estate_left(d, a < b ? a : b, a < b ? b : a);
 }
 
 bool tl_estate_holds(const tl_model *m, uint32_t block_a, uint32_t block_b)
@@ -271,6 +266,11 @@ static const tl_kind *kind_of(const tl_model *m, uint32_t law)
 bool tl_estate_is_of_law(const tl_model *m, const tl_estate *estate, uint32_t c)
 {
     return kind_of(m, estate->law) == kind_of(m, m->detect->contacts.law[c]);
+}
+
+bool tl_estate_same_way(const tl_model *m, const tl_estate *estate, uint32_t c)
+{
+    return root_of(m, m->detect->contacts.a[c]) == estate->a;
 }
 
 double tl_estate_kept(const tl_model *m, const tl_estate *estate, uint32_t c)
@@ -443,13 +443,12 @@ static void limit_energy(tl_model *m, uint32_t c, const tl_estate *estate)
     }
 }
 
-/* What new contacts carry from the beginning, until the laws say it. */
-static void sum_forces(tl_model *m)
+void tl_estates_sum(tl_model *m)
 {
     tl_contacts *contacts = &m->detect->contacts;
     const tl_points_table *p = &m->detect->points;
     const tl_point_lanes *lanes = &m->detect->lanes[0];
-    for (uint32_t c = 0; c < contacts->table.rows; c++) {
+    for (uint32_t c = 0; m->detect->estate_count > 0 && c < contacts->table.rows; c++) {
         if (!tl_estate_of(m, contacts->a[c], contacts->b[c]))
             continue;
         tl_contact_places(m, c, lanes);
@@ -481,16 +480,12 @@ void tl_estates_balance(tl_model *m)
                 correct[step](m, c, estate);
         }
     }
-    sum_forces(m);
 }
 
 void tl_estates_end(tl_detect *d)
 {
     free(d->estates);
     free(d->left_points);
-    free(d->pressings);
-    d->pressings = NULL;
-    d->pressing_capacity = 0;
     d->estates = NULL;
     d->left_points = NULL;
     d->estate_count = d->estate_capacity = d->left_count = d->left_capacity = 0;

@@ -14,7 +14,7 @@ typedef struct tl_old_point {
     /* Initial normal stress, and the overlap that it belongs to; of one of an estate this less what slip has opened. */
     double n0, reference;
     double state[TL_STATE_COLUMNS];
-    double closure; /* of one of an estate: with all that lifts it, m */
+    double closure; /* of one of an estate: overlap less reference, m */
     uint32_t key, flags;
 } tl_old_point;
 
@@ -32,18 +32,18 @@ typedef struct tl_heritage {
     tl_vec3 force;
 } tl_heritage;
 
-/* How a patch that slip has opened presses, and its parts: closures of what is closed, summed over the area (x), and their moments along
- * two directions over the root of the area (y, z), m3. */
-typedef struct tl_pressing {
+/* What a patch would have carried in the next step, in six numbers, N: what it would have pressed with, force along its normal and what tells of
+ * the moments along two directions; and its shear, forces along both and torsion. */
+enum { TL_CARRIED_PRESS = 3, TL_CARRIED = 6 };
+
+typedef struct tl_carried {
     tl_vec3 centre;
-    tl_vec3 along[2];   /* unit vectors over the root of the area, or 0: some was apart */
-    double area, taken; /* of the whole, and of the parts, m2 */
-    tl_vec3 whole, parts;
-    tl_vec3 rise[3]; /* of `parts`, with `more` */
-    /* Closure beyond what is between the points, at the centre and along both; that of the least error, and that error, m3. */
-    tl_vec3 more, best;
-    double error;
-} tl_pressing;
+    tl_vec3 normal, along[2]; /* unit vectors */
+    double area;              /* m2 */
+    double most,
+        energy; /* sum of the magnitudes of its points' forces, N, 0: not known; of its shear springs, times 2 ks */
+    double sum[TL_CARRIED];
+} tl_carried;
 
 /* What a contact of a block that was cut has left: its points from `first` on in a list of all such. Of a field contact there is
  * one, at the centre of its pressure. */
@@ -57,8 +57,8 @@ typedef struct tl_estate {
     double overlap, shift;
     double torsion, energy; /* of a field contact: about its normal; of its springs, times 2 ks */
     tl_heritage taken;      /* by the patches of the parts */
+    tl_carried carried;     /* by a patch */
     uint8_t field;
-    uint8_t opened; /* by slip */
     uint8_t holds_over_gap;
     uint8_t reframed; /* places of its points are in frames that are no more */
 } tl_estate;

@@ -43,7 +43,6 @@ static void walk_contacts(tl_detect *d, const tl_walk *walk)
     VALUE(CACHE, press_free);
     LIST(STATE, estates, estate_count, estate_capacity, other);
     LIST(STATE, left_points, left_count, left_capacity, other);
-    LIST(SCRATCH, pressings, pressing_capacity, pressing_capacity, other);
     VALUE(STATE, parted);
     VALUE(CACHE, laid_at);
     VALUE(CACHE, spare_share);

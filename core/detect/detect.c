@@ -8,7 +8,6 @@
 
 #include "contact/contacts.h"
 #include "contact/estate.h"
-#include "contact/estate_press.h"
 #include "contact/handover.h"
 #include "contact/held.h"
 #include "contact/index.h"
@@ -22,6 +21,7 @@
 #include "detect/pairs.h"
 #include "detect/renew.h"
 #include "detect/update.h"
+#include "force/heirs.h"
 #include "narrow/manifold.h"
 #include "narrow/place.h"
 
@@ -281,8 +281,7 @@ static tl_status settle(tl_model *m)
     tl_contacts *c = &d->contacts;
     size_t born = 0;
     tl_contacts_free_spare(d, m->cycles);
-    bool lacks = lacked_memory(d) || !tl_estates_press_reserve(d);
-    tl_status status = lacks ? tl_fail_memory(&m->error) : give_births(m, &born);
+    tl_status status = lacked_memory(d) ? tl_fail_memory(&m->error) : give_births(m, &born);
     if (status != TL_OK)
         return status;
     if (born == 0 && !d->rows_changed && !some_pending(c))
@@ -300,7 +299,10 @@ static tl_status settle(tl_model *m)
     }
     if (status == TL_OK) {
         tl_estates_balance(m);
-        tl_estates_press(m);
+        d->rows_changed = !tl_heirs_carry(m);
+        if (d->rows_changed)
+            return tl_fail_memory(&m->error);
+        tl_estates_sum(m);
         tl_estates_end(d);
     }
     return status;

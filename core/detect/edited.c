@@ -14,6 +14,7 @@
 #include "detect/grazing.h"
 #include "detect/pairs.h"
 #include "detect/update.h"
+#include "force/heirs.h"
 
 #include <stdlib.h>
 
@@ -115,12 +116,14 @@ static tl_testator testator_of(const tl_model *m, const rows_scratch *scratch, u
     uint32_t row = scratch->row[seen];
     if (row == TL_NO_ROW) {
         const tl_heir *heir = &m->heirs[scratch->heir[seen]];
-        return (tl_testator){.id = id, .r = &heir->r, .place = heir->place};
+        uint32_t part = m->blocks.body[tl_block_row_quiet(m, heir->id)];
+        return (tl_testator){.id = id, .r = &heir->r, .place = heir->place, .body = part};
     }
     uint32_t body = m->blocks.body[row];
     return (tl_testator){.id = id,
                          .r = &m->bodies.pose[body].r,
                          .place = tl_body_place(&m->bodies, body),
+                         .body = body,
                          .reframed = tl_block_is_new(m, row)};
 }
 
@@ -136,7 +139,8 @@ static bool keep_estates(tl_model *m, const rows_scratch *scratch)
         }
     if (estates == 0)
         return true;
-    if (!tl_estates_reserve(d, estates, points))
+    if (!tl_estates_reserve(d, estates, points) ||
+        !tl_detect_hold_initial(d)) /* for the references of what the parts press with */
         return false;
     for (size_t i = 0; i < d->pair_count; i++) {
         const tl_pair *p = &d->pairs[i];
@@ -145,15 +149,15 @@ static bool keep_estates(tl_model *m, const rows_scratch *scratch)
         tl_testator one = testator_of(m, scratch, p->a), other = testator_of(m, scratch, p->b);
         tl_estate_keep(m, p->contact, &one, &other);
     }
-    if (tl_estates_need_references(d) && !tl_detect_hold_initial(d)) {
-        d->estate_count -= estates;
-        d->left_count -= points;
-        return false;
-    }
     tl_estates_sort(d);
-    for (size_t i = 0; i < d->pair_count; i++)
-        if (leaves(d, scratch, &d->pairs[i]))
-            tl_estate_leave(m, d->pairs[i].contact);
+    for (size_t i = 0; i < d->pair_count; i++) {
+        const tl_pair *p = &d->pairs[i];
+        if (!leaves(d, scratch, p))
+            continue;
+        tl_testator one = testator_of(m, scratch, p->a), other = testator_of(m, scratch, p->b);
+        tl_estate_weigh(m, p->contact, tl_estate_left(d, one.id, other.id), &one, &other);
+        tl_estate_leave(m, p->contact);
+    }
     return true;
 }
 

@@ -11,6 +11,7 @@
 #include "contact/handover.h"
 #include "contact/held.h"
 #include "contact/prefetch.h"
+#include "contact/shear.h"
 #include "force/field_press.h"
 #include "force/follow.h"
 #include "force/law_check.h"
@@ -243,7 +244,12 @@ static void add_parts(const span_job *job, const tl_simd_group *group, const tl_
                       size_t lane, uint32_t parts, const tl_arms *arms, group_sums *sum)
 {
     tl_part_sums more[TL_LANES];
-    tl_simd_group_part_sum(job->m, job->law, group, t, lane, parts, more);
+    tl_vec3 turn[TL_LANES];
+    for (uint32_t left = parts; left; left &= left - 1) {
+        size_t l = (size_t)__builtin_ctz(left);
+        turn[l] = tl_contact_moved(job->m, group->contact[l]).turn;
+    }
+    tl_simd_group_part_sum(job->m, job->law, group, t, lane, parts, turn, more);
     for (uint32_t left = parts; left; left &= left - 1) {
         size_t l = (size_t)__builtin_ctz(left);
         tl_vec3 force = tl_v3_scale(more[l].force, tl_lanes3_get(&arms->push, l));

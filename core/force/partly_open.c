@@ -35,7 +35,6 @@
 #include "base/columns.h"
 #include "contact/across_gap.h"
 #include "contact/detection.h"
-#include "contact/shear.h"
 #include "force/bent.h"
 #include "narrow/frame2.h"
 
@@ -571,7 +570,8 @@ static tl_part_sums sum_cells(const patch *of, const tl_law *law, tl_vec3 turn)
 }
 
 void tl_simd_group_part_sum(const tl_model *m, const tl_law *law, const tl_simd_group *group,
-                            const tl_point_lanes *t, size_t lane, uint32_t parts, tl_part_sums *out)
+                            const tl_point_lanes *t, size_t lane, uint32_t parts,
+                            const tl_vec3 *turn, tl_part_sums *out)
 {
     if (law->pulls != TL_PULL_NONE)
         tl_points_across_gap(law, &m->detect->points, group->start, (size_t)group->slots * TL_LANES,
@@ -583,6 +583,6 @@ void tl_simd_group_part_sum(const tl_model *m, const tl_law *law, const tl_simd_
                           .lane = lane + l,
                           .row = group->start + l,
                           .corners = m->detect->contacts.point_count[group->contact[l]] / 2u};
-        out[l] = sum_cells(&of, law, tl_contact_moved(m, group->contact[l]).turn);
+        out[l] = sum_cells(&of, law, turn[l]);
     }
 }

@@ -35,9 +35,9 @@ typedef struct tl_part_sums {
     double stored, dissipated;
 } tl_part_sums;
 
-/* After the law: what the lanes `parts` have beside their points, into out[TL_LANES]. */
+/* After the law: what the lanes `parts` have beside their points, into out[TL_LANES]. turn[TL_LANES], rad: of B against A in the step. */
 void tl_simd_group_part_sum(const tl_model *m, const tl_law *law, const tl_simd_group *group,
                             const tl_point_lanes *lanes, size_t lane, uint32_t parts,
-                            tl_part_sums *out);
+                            const tl_vec3 *turn, tl_part_sums *out);
 
 #endif

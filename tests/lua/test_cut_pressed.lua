@@ -1,6 +1,8 @@
 -- A cut changes nothing that its joint can bear: parts press on the neighbours of the whole with the force that it pressed with, whether
 -- their faces lie flush or tilted.
 local check = require "check"
+local cuts = require "cuts"
+local every_law = require "every_law"
 local shapes = require "shapes"
 local talus = require "talus"
 
@@ -60,13 +62,12 @@ end
 
 -- ---------------------------------------------------------------- opened by slip
 
--- A block slides, opens its joint by another way at each of its points, and comes to rest on all of it.
+-- A block slides, opens its joint by another way at each of its points, and comes to rest.
 local OPENING = {
     { "coulomb", { friction = 30, dilation = 10 } },
     { "coulomb", { friction = 30, dilation = 10, dilation_limit = 1e-3 } },
     { "coulomb", { friction = 40, cohesion = 1e3, dilation = 5 } },
 }
-local all_closed = 0
 for seed = 1, SEEDS do
     local random = shapes.random(100 + seed)
     local function draw() return random(0, 1) end
@@ -86,20 +87,32 @@ for seed = 1, SEEDS do
     model:solve { ratio = 1e-7, max_cycles = 20000 }
     model:blocks { group = "block" }:set { velocity = { 0.2 * draw(), 0.2 * draw(), 0 } }
     model:solve { ratio = 1e-7, max_cycles = 20000 }
-    local whole, closed = model:copy(), true
+    local whole = model:copy()
     whole:cycle(1)
-    for _, point in ipairs(whole:contacts()[1].points) do
-        closed = closed and point.normal_force > 0
-    end
     local at = model:blocks { group = "block" }[1].centroid
     local thin = 10 ^ (-3 * draw())
     local place = { at[1] + 0.5 - 0.5 * thin, at[2], at[3] }
     model:generate("joint", plane(60 + 30 * draw(), 90, place))
     model:joint("cut", "elastic", { kn = 100 * k, ks = 100 * k })
     model:cycle(1)
-    if closed then
-        all_closed = all_closed + 1
-        check.near(pressed(model) / pressed(whole), 1, 1e-3)
+    check.near(pressed(model) / pressed(whole), 1, 1e-8)
+end
+
+-- Blocks that have slid on a tilted joint, which they may overhang, under a load off their middle: the joint may be open in part. Nothing
+-- starts to move.
+local open_in_part = 0
+for number = 4, 5 * SEEDS, 5 do
+    local case = cuts.draw(number)
+    for _, joint in ipairs(every_law(case.kn, case.pressure)) do
+        local force, off, open
+        if joint.opens and joint.tension == 0 then
+            force, off, open = cuts.try(case, joint)
+        end
+        if force then
+            check.near(force, 0, 1e-6)
+            check.near(off, 0, 1e-3)
+            open_in_part = open_in_part + (open and 1 or 0)
+        end
     end
 end
-check.holds(2 * all_closed > SEEDS, "blocks rest on all of their joints")
+check.holds(open_in_part > SEEDS, "joints are open in part")

@@ -1,0 +1,512 @@
+/* heirs.c - the parts of a patch carry what the whole carried.
+ *
+ * The parts' points lie elsewhere than those of the whole. What is between these nobody knows: how far slip has opened them, each by another
+ * way, what is left of a bond, which of them bear how much shear. So to the closures c and shear tractions t of all parts' points together,
+ * as they lie between the points of the whole, a closure and a traction are added,
+ *
+ *     c + q1 + q2 x + q3 y,    t + (w1 - w3 y, w2 + w3 x)
+ *
+ * with which they press as the whole would have pressed in the next step, with the same force and moments, and have its shear and
+ * torsion. What presses is the law's word (word.c), with the motion that it is going to be told of and the cells of patches that are
+ * partly open. A point keeps no more shear than it bears: what it loses, others get; and if it slipped it would open the joint.
+ *
+ * What is carried rises with these six numbers, so Newton's steps find them, with differences for slopes, each as far as the error falls.
+ * Springs are not to hold more energy than those of the whole: of one force and torsion a uniform traction with a twist has the least,
+ * so the parts then keep less of t. Where there are no such numbers, as where all slips, t stays what it is, and three are found. */
+#include "force/heirs.h"
+
+#include "base/columns.h"
+#include "contact/places.h"
+#include "contact/shear.h"
+#include "force/word.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* Steps that are made at the most, and halvings of each. */
+#define STEPS 30
+#define HALVINGS 12
+/* Over the forces: error that is none, error with which the numbers are found, and step of differences. */
+#define EXACT 1e-11
+#define FOUND 1e-8
+#define SMALL 1e-6
+/* What is added to the slopes: too few points may bear to tell all of them. */
+#define FAINT 1e-9
+/* Times that a law is asked at the most until no point has more shear than it bears; by which share it may have more. */
+#define PASSES 12
+#define TOO_MUCH 1e-9
+/* Slope of what a point bears over what it has, up to which it tells where both are the same. */
+#define STEEP 0.9
+/* Share of t by which parts keep less each time, and by which their springs may hold more energy. */
+#define LESS 0.25
+#define MORE_ENERGY 5e-4
+/* Areas that are the same, over each other: parts that lack some of the whole go by what is between its points alone. */
+#define SAME_AREA 1e-3
+
+/* The point of a part: its shear force and how much closure it gets, and the magnitudes of the shear that the law was asked with the time
+ * before and of what it answered; 0: none. */
+typedef struct given {
+    tl_vec3 shear;
+    double closure, asked, borne;
+} given;
+
+/* The patches that have taken over from one estate, and the points of all of them. */
+typedef struct heirs {
+    tl_model *m;
+    const tl_estate *estate;
+    const uint32_t *contact;
+    size_t count;
+    given *points;
+    double keep; /* share of their shear that they keep beside what they are given */
+    int sought; /* numbers that are looked for: TL_CARRIED, or those of closure, and they keep all shear, whether they bear it or not */
+} heirs;
+
+/* What is looked for, N, or what the parts lack, over the forces of the whole. */
+typedef struct six {
+    double v[TL_CARRIED];
+} six;
+
+/* The root of 12 over the area of a patch: of a square, x and y times that are 1 in the mean of their squares. */
+static double per_length(const tl_carried *p)
+{
+    return sqrt(12 / p->area);
+}
+
+/* 1, x, y of a place. */
+static tl_vec3 basis(const tl_carried *p, tl_vec3 place)
+{
+    tl_vec3 arm = tl_v3_scale(per_length(p), tl_v3_sub(place, p->centre));
+    return tl_v3(1, tl_v3_dot(arm, p->along[0]), tl_v3_dot(arm, p->along[1]));
+}
+
+/* Adds `sign` times a force with its moment about a place. */
+static void add_force(const tl_carried *p, tl_vec3 force, tl_vec3 moment, tl_vec3 place,
+                      double sign, double sum[])
+{
+    double over = sign * per_length(p);
+    moment = tl_v3_add(moment, tl_v3_cross(tl_v3_sub(place, p->centre), force));
+    sum[0] += sign * tl_v3_dot(force, p->normal);
+    sum[1] -= over * tl_v3_dot(moment, p->along[1]);
+    sum[2] += over * tl_v3_dot(moment, p->along[0]);
+    sum[3] += sign * tl_v3_dot(force, p->along[0]);
+    sum[4] += sign * tl_v3_dot(force, p->along[1]);
+    sum[5] += over * tl_v3_dot(moment, p->normal);
+}
+
+/* A point's motion in the last step as the law is told it, into lane k. */
+static void put_motion(const tl_point_lanes *lanes, size_t k, tl_vec3 du)
+{
+    tl_vec3 n = tl_columns_get(lanes->normal, k);
+    lanes->du_n[k] = tl_v3_dot(du, n);
+    tl_columns_put(lanes->du_s, k, tl_v3_madd(du, -lanes->du_n[k], n));
+}
+
+/* ---------------------------------------------------------------- the whole -------------- */
+
+/* Where a patch is. false: it carried nothing in the last step. */
+static bool find_measures(const tl_old_point *points, const tl_estate *estate, tl_carried *p)
+{
+    double carried = 0;
+    *p = (tl_carried){.normal = estate->face[0]};
+    for (size_t k = 0; k < estate->count; k++) {
+        p->area += points[k].area;
+        p->centre = tl_v3_madd(p->centre, points[k].area, points[k].arm);
+        carried += points[k].area * (fabs(points[k].f_n) + tl_v3_norm(points[k].shear));
+    }
+    p->centre = tl_v3_scale(p->area > 0 ? 1 / p->area : 0, p->centre);
+    p->along[0] = tl_v3_perpendicular(p->normal);
+    p->along[1] = tl_v3_cross(p->normal, p->along[0]);
+    return p->area > 0 && carried > 0;
+}
+
+/* How far a body has carried a place in the last step. */
+static tl_vec3 carried_by(const tl_model *m, uint32_t body, tl_vec3 place)
+{
+    const tl_pose *pose = &m->bodies.pose[body];
+    tl_vec3 arm = tl_v3_sub(place, tl_body_place(&m->bodies, body));
+    return tl_v3_scale(m->dt, tl_v3_add(pose->v_moved, tl_v3_cross(pose->w_moved, arm)));
+}
+
+void tl_estate_weigh(tl_model *m, uint32_t c, tl_estate *estate, const tl_testator *a,
+                     const tl_testator *b)
+{
+    const tl_old_point *points = &m->detect->left_points[estate->first];
+    const tl_point_lanes *lanes = &m->detect->lanes[0];
+    double ride = m->detect->contacts.facet[c].ride;
+    tl_vec3 n = tl_v3_unit(
+        tl_v3_sub(tl_v3_scale(ride, estate->face[0]), tl_v3_scale(1 - ride, estate->face[1])));
+    tl_carried *p = &estate->carried;
+    if (!find_measures(points, estate, p) || estate->field || estate->law == TL_NO_ROW)
+        return;
+    for (size_t k = 0; k < estate->count; k++) {
+        tl_vec3 place = points[k].arm;
+        tl_columns_put(lanes->arm, k, tl_v3_sub(place, a->place));
+        tl_columns_put(lanes->normal, k, n);
+        tl_columns_put(&lanes->before[1], k, tl_v3_scale(points[k].area, points[k].shear));
+        lanes->closure[k] = points[k].closure;
+        put_motion(lanes, k,
+                   tl_v3_sub(carried_by(m, b->body, place), carried_by(m, a->body, place)));
+    }
+    tl_word word;
+    if (!tl_patch_word(m, c, lanes, &word))
+        return;
+    add_force(p, word.force, word.moment, a->place, 1, p->sum);
+    for (size_t k = 0; k < estate->count; k++) {
+        tl_vec3 shear = tl_v3_scale(points[k].area, points[k].shear);
+        add_force(p, shear, tl_v3(0, 0, 0), points[k].arm, 1, p->sum);
+        p->most += tl_v3_norm(shear);
+        p->energy += points[k].area * tl_v3_norm2(points[k].shear);
+    }
+    p->most += word.most;
+}
+
+/* ---------------------------------------------------------------- the parts -------------- */
+
+/* Puts the places of a part's points into the first lanes; where their arms begin. */
+static tl_vec3 find_places(const tl_model *m, uint32_t c, const tl_point_lanes *lanes)
+{
+    tl_contact_places(m, c, lanes);
+    return tl_body_place(&m->bodies, m->blocks.body[m->detect->contacts.a[c]]);
+}
+
+static double sign_of(const heirs *of, uint32_t c)
+{
+    return tl_estate_same_way(of->m, of->estate, c) ? 1 : -1;
+}
+
+/* Gives the points of a part closure and shear beside what they have taken over. */
+static void begin_points(const heirs *of, const six *more, uint32_t c, given *points)
+{
+    const tl_detect *d = of->m->detect;
+    const tl_point_lanes *lanes = &d->lanes[0];
+    const tl_carried *p = &of->estate->carried;
+    const double *q = more->v, *w = more->v + TL_CARRIED_PRESS;
+    double kn = of->m->joint_laws[d->contacts.law[c]].kn;
+    tl_vec3 from = find_places(of->m, c, lanes);
+    for (size_t k = 0; k < d->contacts.point_count[c]; k++) {
+        size_t row = tl_point_row(&d->contacts, c, k);
+        tl_vec3 at = basis(p, tl_v3_add(from, tl_columns_get(lanes->arm, k)));
+        tl_vec3 n = tl_columns_get(lanes->normal, k);
+        tl_vec3 t = tl_v3_scale(w[0] - w[2] * at.z, p->along[0]);
+        t = tl_v3_madd(t, w[1] + w[2] * at.y, p->along[1]);
+        t = tl_v3_madd(t, -tl_v3_dot(t, n), n);
+        double share = sign_of(of, c) * d->points.area[row] / p->area;
+        points[k] = (given){
+            .shear =
+                tl_v3_madd(tl_v3_scale(of->keep, tl_columns_get(d->points.f_s, row)), share, t),
+            .closure = kn > 0 ? (q[0] + q[1] * at.y + q[2] * at.z) / (kn * p->area) : 0,
+        };
+    }
+}
+
+/* Asks the law of a part, with its motion, or as if it stood; false: it failed. */
+static bool ask(const heirs *of, uint32_t c, bool moves, const given *points, tl_word *word)
+{
+    const tl_point_lanes *lanes = &of->m->detect->lanes[0];
+    const tl_contact_motion moved = tl_contact_moved(of->m, c);
+    find_places(of->m, c, lanes);
+    for (size_t k = 0; k < of->m->detect->contacts.point_count[c]; k++) {
+        tl_vec3 arm = tl_columns_get(lanes->arm, k);
+        tl_vec3 du = tl_v3_add(moved.way, tl_v3_cross(moved.turn, arm));
+        lanes->closure[k] += points[k].closure;
+        tl_columns_put(&lanes->before[1], k, points[k].shear);
+        put_motion(lanes, k, moves ? du : tl_v3(0, 0, 0));
+    }
+    return tl_patch_word(of->m, c, lanes, word);
+}
+
+/* Gives a point only so much shear as it bears: where its answer, as a line in what it has, is just that. true: it had
+ * more. */
+static bool give_less(given *p, double borne)
+{
+    double asked = tl_v3_norm(p->shear), to = borne;
+    if (!(borne < (1 - TOO_MUCH) * asked))
+        return false;
+    if (p->asked > asked) {
+        double slope = (p->borne - borne) / (p->asked - asked);
+        double met = (borne - slope * asked) / (1 - slope);
+        to = slope >= 0 && slope < STEEP && met > 0 ? met : borne;
+    }
+    p->asked = asked;
+    p->borne = borne;
+    p->shear = tl_v3_scale(to / asked, p->shear);
+    return true;
+}
+
+/* Takes from the points of a part the shear that they do not bear where nothing moves. false: the law failed. */
+static bool give_borne(const heirs *of, uint32_t c, given *points)
+{
+    const tl_point_lanes *lanes = &of->m->detect->lanes[0];
+    bool again = true;
+    tl_word word;
+    for (int pass = 0; again && pass < PASSES; pass++) {
+        if (!ask(of, c, false, points, &word))
+            return false;
+        again = false;
+        for (size_t k = 0; k < of->m->detect->contacts.point_count[c]; k++)
+            again =
+                give_less(&points[k], tl_v3_norm(tl_columns_get(&lanes->before[1], k))) || again;
+    }
+    return true;
+}
+
+/* Adds what a part is going to press with, and its shear. false: the law failed. */
+static bool weigh_part(const heirs *of, const six *more, uint32_t c, given *points, double sum[])
+{
+    const tl_point_lanes *lanes = &of->m->detect->lanes[0];
+    const tl_carried *p = &of->estate->carried;
+    double sign = sign_of(of, c);
+    tl_word word;
+    begin_points(of, more, c, points);
+    if ((of->sought == TL_CARRIED && !give_borne(of, c, points)) ||
+        !ask(of, c, true, points, &word))
+        return false;
+    tl_vec3 from = find_places(of->m, c, lanes);
+    add_force(p, word.force, word.moment, from, sign, sum);
+    for (size_t k = 0; k < of->m->detect->contacts.point_count[c]; k++) {
+        tl_vec3 place = tl_v3_add(from, tl_columns_get(lanes->arm, k));
+        add_force(p, points[k].shear, tl_v3(0, 0, 0), place, sign, sum);
+    }
+    return true;
+}
+
+/* What the parts lack of what the whole carried. false: a law failed. */
+static bool weigh(const heirs *of, const six *more, six *lacks)
+{
+    const tl_carried *p = &of->estate->carried;
+    double sum[TL_CARRIED] = {0};
+    given *points = of->points;
+    for (size_t i = 0; i < of->count; i++) {
+        if (!weigh_part(of, more, of->contact[i], points, sum))
+            return false;
+        points += of->m->detect->contacts.point_count[of->contact[i]];
+    }
+    for (int k = 0; k < TL_CARRIED; k++)
+        lacks->v[k] = (p->sum[k] - sum[k]) / p->most;
+    return true;
+}
+
+/* ---------------------------------------------------------------- search ----------------- */
+
+static double size_of(const six *x, int count)
+{
+    double sum = 0;
+    for (int k = 0; k < count; k++)
+        sum += x->v[k] * x->v[k];
+    return sqrt(sum);
+}
+
+/* Solves `count` equations, whose right sides are the last column, by elimination, the largest of each column first. false: they cannot be
+ * solved. */
+static bool eliminate(double a[TL_CARRIED][TL_CARRIED + 1], int count, six *x)
+{
+    *x = (six){{0}};
+    for (int j = 0; j < count; j++) {
+        int best = j;
+        for (int i = j + 1; i < count; i++)
+            best = fabs(a[i][j]) > fabs(a[best][j]) ? i : best;
+        for (int k = j; k <= TL_CARRIED; k++) {
+            double was = a[j][k];
+            a[j][k] = a[best][k];
+            a[best][k] = was;
+        }
+        for (int i = j + 1; i < count; i++)
+            for (int k = TL_CARRIED; k >= j; k--)
+                a[i][k] -= a[i][j] / a[j][j] * a[j][k];
+    }
+    for (int j = count - 1; j >= 0; j--) {
+        double sum = a[j][TL_CARRIED];
+        for (int k = j + 1; k < count; k++)
+            sum -= a[j][k] * x->v[k];
+        x->v[j] = sum / a[j][j];
+    }
+    return isfinite(size_of(x, count));
+}
+
+/* Newton's step from `more`, where the parts lack `lacks`. */
+static bool find_step(const heirs *of, const six *more, const six *lacks, six *step)
+{
+    double most = of->estate->carried.most, by = SMALL * most;
+    double a[TL_CARRIED][TL_CARRIED + 1];
+    for (int j = 0; j < of->sought; j++) {
+        six there = *more, then;
+        there.v[j] += by;
+        if (!weigh(of, &there, &then))
+            return false;
+        for (int i = 0; i < of->sought; i++)
+            a[i][j] = (lacks->v[i] - then.v[i]) / by + (i == j ? FAINT / most : 0);
+        a[j][TL_CARRIED] = lacks->v[j];
+    }
+    return eliminate(a, of->sought, step);
+}
+
+/* Goes the step or a share of it, so that the parts lack less. false: they do not. */
+static bool go(const heirs *of, const six *step, six *more, six *lacks)
+{
+    double by = 1;
+    for (int n = 0; n < HALVINGS; n++, by *= 0.5) {
+        six there = *more, then;
+        for (int k = 0; k < of->sought; k++)
+            there.v[k] += by * step->v[k];
+        if (!weigh(of, &there, &then))
+            return false;
+        if (size_of(&then, of->sought) < size_of(lacks, of->sought)) {
+            *more = there;
+            *lacks = then;
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Looks for the numbers with which the parts lack the least, and gives the points what goes with them. *found: they lack nothing. false: a
+ * law failed. */
+static bool search(const heirs *of, bool *found)
+{
+    six more = {{0}}, lacks, step;
+    if (!weigh(of, &more, &lacks))
+        return false;
+    for (int k = 0; k < STEPS && size_of(&lacks, of->sought) > EXACT; k++)
+        if (!find_step(of, &more, &lacks, &step) || !go(of, &step, &more, &lacks))
+            break;
+    *found = size_of(&lacks, of->sought) <= FOUND;
+    return weigh(of, &more, &lacks);
+}
+
+/* ---------------------------------------------------------------- giving ----------------- */
+
+/* Puts what has been found into the points. */
+static void give(const heirs *of)
+{
+    const tl_detect *d = of->m->detect;
+    const given *point = of->points;
+    for (size_t i = 0; i < of->count; i++)
+        for (size_t k = 0; k < d->contacts.point_count[of->contact[i]]; k++, point++) {
+            size_t row = tl_point_row(&d->contacts, of->contact[i], k);
+            tl_columns_put(d->points.f_s, row, point->shear);
+            d->points.reference[row] -= point->closure;
+        }
+}
+
+/* The parts' area, and the energy of the shear that has been found, times 2 ks. */
+static double sum_area(const heirs *of, double *energy)
+{
+    const tl_detect *d = of->m->detect;
+    const given *point = of->points;
+    double sum = 0;
+    *energy = 0;
+    for (size_t i = 0; i < of->count; i++)
+        for (size_t k = 0; k < d->contacts.point_count[of->contact[i]]; k++, point++) {
+            double area = d->points.area[tl_point_row(&d->contacts, of->contact[i], k)];
+            sum += area;
+            *energy += area > 0 ? tl_v3_norm2(point->shear) / area : 0;
+        }
+    return sum;
+}
+
+static void carry(heirs *of)
+{
+    const tl_carried *whole = &of->estate->carried;
+    six none = {{0}}, lacks;
+    double energy;
+    if (!weigh(of, &none, &lacks) || !(size_of(&lacks, TL_CARRIED) > EXACT) ||
+        !(fabs(sum_area(of, &energy) - whole->area) < SAME_AREA * whole->area))
+        return;
+    bool found = true;
+    for (; found && of->keep >= 0; of->keep -= LESS) {
+        if (!search(of, &found))
+            return;
+        sum_area(of, &energy);
+        if (found && energy <= (1 + MORE_ENERGY) * whole->energy) {
+            give(of);
+            return;
+        }
+    }
+    of->keep = 1;
+    of->sought = TL_CARRIED_PRESS;
+    if (search(of, &found))
+        give(of);
+}
+
+/* ---------------------------------------------------------------- all -------------------- */
+
+/* A contact that has taken over from an estate. */
+typedef struct heir {
+    const tl_estate *estate;
+    uint32_t contact;
+} heir;
+
+/* By estate; contacts ascend in each. */
+static int compare(const void *x, const void *y)
+{
+    const heir *p = x, *q = y;
+    if (p->estate != q->estate)
+        return (p->estate > q->estate) - (p->estate < q->estate);
+    return (p->contact > q->contact) - (p->contact < q->contact);
+}
+
+/* Lists them, unless `out` is NULL; returns how many there are. *points: how many points they have. */
+static size_t list(const tl_model *m, heir *out, size_t *points)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    size_t count = 0;
+    *points = 0;
+    for (uint32_t c = 0; c < contacts->table.rows; c++) {
+        const tl_estate *estate = tl_estate_taken(m, c);
+        if (!estate || !(estate->carried.most > 0))
+            continue;
+        if (out)
+            out[count] = (heir){estate, c};
+        count++;
+        *points += contacts->point_count[c];
+    }
+    return count;
+}
+
+/* Forgets what patches carried whose parts are not all patches of its law: what they take over of it is not known yet. */
+static void forget_mixed(tl_model *m)
+{
+    tl_detect *d = m->detect;
+    for (uint32_t c = 0; c < d->contacts.table.rows; c++) {
+        const tl_estate *estate = tl_estate_of(m, d->contacts.a[c], d->contacts.b[c]);
+        bool field = d->contacts.facet[c].kind == TL_FACET_FIELD;
+        if (estate && d->contacts.point_count[c] > 0 &&
+            (field || !tl_estate_is_of_law(m, estate, c)))
+            d->estates[estate - d->estates].carried.most = 0;
+    }
+}
+
+/* Those of each estate, in their order. */
+static void carry_all(tl_model *m, const heir *all, size_t count, uint32_t *contact, given *points)
+{
+    for (size_t i = 0; i < count; i++)
+        contact[i] = all[i].contact;
+    for (size_t first = 0, end = 0; first < count; first = end) {
+        const tl_estate *estate = all[first].estate;
+        while (end < count && all[end].estate == estate)
+            end++;
+        carry(&(heirs){m, estate, contact + first, end - first, points, 1, TL_CARRIED});
+    }
+}
+
+bool tl_heirs_carry(tl_model *m)
+{
+    if (m->detect->estate_count == 0)
+        return true;
+    forget_mixed(m);
+    size_t most = 0, count = list(m, NULL, &most);
+    heir *all = malloc((count + 1) * sizeof *all);
+    uint32_t *contact = malloc((count + 1) * sizeof *contact);
+    given *points = malloc((most + 1) * sizeof *points);
+    bool there = all && contact && points;
+    if (there) {
+        list(m, all, &most);
+        if (count > 1)
+            qsort(all, count, sizeof *all, compare);
+        carry_all(m, all, count, contact, points);
+    }
+    free(all);
+    free(contact);
+    free(points);
+    return there;
+}
