@@ -151,6 +151,12 @@ tl_bounds tl_poly_bounds(const tl_poly *p)
     return bounds;
 }
 
+void tl_poly_find_size(tl_poly *p)
+{
+    tl_bounds bounds = tl_poly_bounds(p);
+    p->size = tl_v3_norm(tl_v3_sub(bounds.max, bounds.min));
+}
+
 /* Twice the area of the fan triangle i of a face, signed by the face's normal. */
 static double fan_area2(const tl_poly *p, uint32_t face, uint32_t i)
 {

@@ -210,8 +210,7 @@ tl_status tl_poly_link(tl_poly *p, tl_error *error)
     tl_status status = pair_half_edges(p, half, error);
     if (scratch != local)
         free(scratch);
-    tl_bounds bounds = tl_poly_bounds(p);
-    p->size = tl_v3_norm(tl_v3_sub(bounds.max, bounds.min));
+    tl_poly_find_size(p);
     return status;
 }
 
@@ -384,8 +383,7 @@ tl_status tl_poly_transformed(const tl_poly *poly, const tl_mat3 *rotation, tl_v
         p->plane[f].normal = rotation ? tl_m3_mul(rotation, n) : n;
         p->plane[f].offset = poly->plane[f].offset + tl_v3_dot(p->plane[f].normal, translation);
     }
-    tl_bounds bounds = tl_poly_bounds(p);
-    p->size = tl_v3_norm(tl_v3_sub(bounds.max, bounds.min));
+    tl_poly_find_size(p);
     *copy = p;
     return TL_OK;
 }

@@ -110,6 +110,8 @@ typedef struct tl_mass {
 tl_mass tl_poly_mass(const tl_poly *poly);
 
 tl_bounds tl_poly_bounds(const tl_poly *poly);
+/* Sets `size` by the vertices as they are. */
+void tl_poly_find_size(tl_poly *poly);
 double tl_poly_face_area(const tl_poly *poly, uint32_t face);
 tl_vec3 tl_poly_face_centroid(const tl_poly *poly, uint32_t face);
 /* Distance of a point from a face, measured in the face's plane; 0 for a point over the face. */

@@ -7,7 +7,8 @@
 #include <stdlib.h>
 
 /* Moves a shape so that its centroid is the zero of its frame. Offsets follow from a vertex of the
- * face, which keeps the digits of a shape far from zero. */
+ * face, which keeps the digits of a shape far from zero; its size is that of the vertices as they then are, which is found again of
+ * them when they have been saved. */
 static void centre_shape(tl_poly *shape, tl_vec3 centroid)
 {
     for (uint32_t i = 0; i < shape->vertex_count; i++)
@@ -15,6 +16,7 @@ static void centre_shape(tl_poly *shape, tl_vec3 centroid)
     for (uint32_t f = 0; f < shape->face_count; f++)
         shape->plane[f].offset =
             tl_v3_dot(shape->plane[f].normal, shape->vertex[shape->loop[shape->start[f]]]);
+    tl_poly_find_size(shape);
 }
 
 /* What the children of a block take over from it and from its body. */

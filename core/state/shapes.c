@@ -174,8 +174,7 @@ static tl_status restore_shape(tl_model *m, uint32_t row, const shape_counts *c,
     if (!loops_are_sound(p) || !numbers_are_sound(p, m->joint_count))
         return tl_archive_bad(archive, &m->error, "the shape of block %llu is none",
                               (unsigned long long)m->blocks.id[row]);
-    tl_bounds bounds = tl_poly_bounds(p);
-    p->size = tl_v3_norm(tl_v3_sub(bounds.max, bounds.min));
+    tl_poly_find_size(p);
     if (tl_poly_check(p, TL_POLY_BENT, &why) != TL_OK)
         return tl_archive_bad(archive, &m->error, "the shape of block %llu: %s",
                               (unsigned long long)m->blocks.id[row], why.text);
