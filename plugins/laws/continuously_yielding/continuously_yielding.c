@@ -7,9 +7,15 @@
  *     opening += max(0, tan(psi)) (1 - F) du          psi = atan(t / s) - phi, at the beginning of a step
  *
  * r is t / t_m, at most 0.75, where the motion was last reversed, and 0 at first. Without `softening` F is not negative, so that
- * t stays where the wear of t_m overtakes it. In the plane t is the component along du, a motion is reversed when it goes
- * against the last one, and the stress stays within the larger of t_m and of what it was; it never is more than
- * s tan(phi_i). Over a step the equation of t is solved exactly, at the mean of phi_m before and after.
+ * t stays where the wear of t_m overtakes it. In the plane t is the component along du, and the stress stays within the larger of
+ * t_m and of what it was; it never is more than s tan(phi_i). Over a step the equation of t is solved exactly, at the mean of
+ * phi_m before and after.
+ *
+ * Reversals. A joint has an r for each way it may move, e: r(e) = a + min(0, b.e), with the states a, `reversal`, and b, `way`.
+ * While it moves by du along e, r(e) stays, and r(-e), which a motion back begins with, comes to the present -t / t_m, at most 0.75:
+ *     dr(-e) = (-t / t_m - r(-e)) du / l,     l = 0.01 t_m / ks
+ * what b has across e fades as r(-e) does. So a motion back over l or more is a reversal; one that is next to nothing changes next to
+ * nothing, for no test tells which is which.
  *
  * Energy. Unloading gives back more than t^2 / (2 ks), for it is softer than ks. What the walls have put in counts as stored up to a
  * bound on what unloading can give back, 3 (1 + x) t_m^2 / ks (x - log(1 + x)) with x = t / t_m; the rest is heat. The part
@@ -19,7 +25,7 @@
  * Source: Cundall and Hart, report to Itasca (1984), and Eng. Comput. 9 (1992) 101-113;
  * Cundall and Lemos, in Rockbursts and Seismicity in Mines (1990) 107-112.
  *
- * Limits: the normal spring is elastic. Trembling about a point counts as reversals. */
+ * Limits: the normal spring is elastic. Trembling about a point counts as reversals once its ways add up to l. */
 #include <talus/kit.h>
 #include <talus/version.h>
 
@@ -29,6 +35,8 @@
 #define ROUNDING 1e-14
 /* The largest r at a reversal. */
 #define MOST_RATIO 0.75
+/* The way l in which r comes to that of a motion back, over t_m / ks. */
+#define MEMORY 0.01
 /* Normal stress and strength, Pa, that count as none. */
 #define FAINT 1e-200
 /* Share by which energy may be above its bound by rounding. */
@@ -72,12 +80,14 @@ static const tl_param param_table[] = {
 
 static const tl_state state_table[] = {
     TL_STATE(TL_STATE_SCALAR, "wear", "deg", "how far the angle of friction has fallen from phi_i"),
-    TL_STATE(TL_STATE_SCALAR, "reversal", "", "share of the strength at the last reversal, r"),
+    TL_STATE(TL_STATE_SCALAR, "reversal", "",
+             "share of the strength at the last reversal, r, of motions along and across `way`"),
     TL_STATE(TL_STATE_SCALAR, "opening", "m", "how far slip has opened the joint"),
     TL_STATE(TL_STATE_SCALAR, "shear_energy", "J",
              "what shear holds beyond a spring of stiffness ks_max",
              .transfer = TL_TRANSFER_ENERGY),
-    TL_STATE(TL_STATE_TANGENT, "way", "", "direction of the last motion"),
+    TL_STATE(TL_STATE_TANGENT, "way", "",
+             "in the direction of the last motion: by how much r is less against it"),
 };
 
 typedef struct yielding {
@@ -198,6 +208,7 @@ typedef struct trial {
     /* beyond a spring of ks_max: before, after; in that spring; share of the stress that can be paid for */
     double had[STRIDE], kept[STRIDE], elastic[STRIDE], share[STRIDE];
     double angle[STRIDE], ratio[STRIDE], wear[STRIDE], lift[STRIDE], slides[STRIDE];
+    double way_x[STRIDE], way_y[STRIDE], way_z[STRIDE];
     double moved[STRIDE]; /* 0: the force stays, to the bit */
     double pressed[STRIDE], held[STRIDE], bound[STRIDE];
 } trial;
@@ -294,11 +305,8 @@ TL_IN_LOOP double slide(const yielding *given, const tl_law_batch *batch, uint32
         double along = -(c.f_x[i] * ex + c.f_y[i] * ey + c.f_z[i] * ez) * per;
         double angle = law.initial - worn[i] * TL_DEGREE,
                most = moves ? stress * tl_lane_tan(angle) : 0;
-        double back = ex * way_x[i] + ey * way_y[i] + ez * way_z[i];
-        double share = along / (most > FAINT ? most : 1);
-        share = share < MOST_RATIO ? share : MOST_RATIO;
-        double was = worn[i], ratio = last[i], reversed = most > FAINT ? share : 0;
-        ratio = back < 0 ? reversed : ratio;
+        double toward = ex * way_x[i] + ey * way_y[i] + ez * way_z[i];
+        double was = worn[i], ratio = last[i] + (toward < 0 ? toward : 0);
         /* the angle of dilation is that of the stresses before; walls that meet now had none */
         double press = c.f_n[i] * per, held = press > 0 ? press : stress;
         double slope = before / (held > FAINT ? held : 1);
@@ -319,6 +327,14 @@ TL_IN_LOOP double slide(const yielding *given, const tl_law_batch *batch, uint32
         double scale = over > 0 ? bound / (over > 0 ? size : 1) : 1;
         double first = c.f_x[i] * c.du_x[i] + c.f_y[i] * c.du_y[i] + c.f_z[i] * c.du_z[i];
         double second = x * c.du_x[i] + y * c.du_y[i] + z * c.du_z[i];
+        double share = -scale * (x * ex + y * ey + z * ez) / (most > FAINT ? most : 1);
+        double back = last[i] - (toward > 0 ? toward : 0);
+        double opposite = most > FAINT ? -share : 0, room = ks * d + MEMORY * most;
+        double renewed = room > FAINT ? ks * d / (room > FAINT ? room : 1) : 1;
+        opposite = opposite < MOST_RATIO ? opposite : MOST_RATIO;
+        renewed = d > 0 ? renewed : 0;
+        back = back + renewed * (opposite - back);
+        double across = 1 - renewed, difference = ratio - back - across * toward;
         t->walls[i] = walls;
         t->v[i] = v;
         t->spring[i] = ks;
@@ -332,7 +348,10 @@ TL_IN_LOOP double slide(const yielding *given, const tl_law_batch *batch, uint32
         t->begins[i] = -0.5 * first * per;
         t->ends[i] = -0.5 * scale * second;
         t->angle[i] = after;
-        t->ratio[i] = ratio;
+        t->ratio[i] = ratio > back ? ratio : back;
+        t->way_x[i] = d > 0 ? across * way_x[i] + difference * ex : way_x[i];
+        t->way_y[i] = d > 0 ? across * way_y[i] + difference * ey : way_y[i];
+        t->way_z[i] = d > 0 ? across * way_z[i] + difference * ez : way_z[i];
         t->wear[i] = slip > 0 ? (law.initial - after) / TL_DEGREE : was;
         t->lift[i] = tangent * slip;
         opens += t->lift[i] == 0 ? 0 : 1;
@@ -436,8 +455,7 @@ TL_IN_LOOP void settle(const tl_law_batch *batch, uint32_t begin, uint32_t lanes
     double *restrict way_z = batch->state[6] + begin;
 #pragma omp simd
     for (uint32_t i = 0; i < lanes; i++) {
-        double d = sqrt(c.du_x[i] * c.du_x[i] + c.du_y[i] * c.du_y[i] + c.du_z[i] * c.du_z[i]);
-        double per_way = d > 0 ? 1 / (d > 0 ? d : 1) : 0, sum = t->kept[i];
+        double sum = t->kept[i];
         double most = t->bound[i] - t->elastic[i], kept = sum > 0 ? sum : 0;
         kept = sum > most + t->bound[i] * SPARE ? (most > 0 ? most : 0) : kept;
         double heat = sum > kept ? sum - kept : 0, moved = t->share[i] < 1 ? 1 : t->moved[i];
@@ -452,9 +470,9 @@ TL_IN_LOOP void settle(const tl_law_batch *batch, uint32_t begin, uint32_t lanes
         reversal[i] = t->ratio[i];
         opening[i] = t->lift[i];
         held[i] = kept == t->had[i] ? held[i] : c.area[i] * kept;
-        way_x[i] = d > 0 ? c.du_x[i] * per_way : way_x[i];
-        way_y[i] = d > 0 ? c.du_y[i] * per_way : way_y[i];
-        way_z[i] = d > 0 ? c.du_z[i] * per_way : way_z[i];
+        way_x[i] = t->way_x[i];
+        way_y[i] = t->way_y[i];
+        way_z[i] = t->way_z[i];
     }
 }
 
