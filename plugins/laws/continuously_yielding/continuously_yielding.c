@@ -279,6 +279,26 @@ TL_IN_LOOP wearing wear_off(const yielding *law, double along, double angle, dou
     return w;
 }
 
+/* What is remembered of the way that a point was moved: the ratio for the way it is moved now, the share of the old way that stays, and
+ * what this way adds along itself. */
+typedef struct turning {
+    double ratio, across, along;
+} turning;
+
+/* `most` is the strength, `rise` the stress of an elastic step of this length, `share` that of the strength that is used along it. */
+TL_IN_LOOP turning remember(double last, double toward, double share, double ratio, double rise,
+                            double most)
+{
+    double back = last - (toward > 0 ? toward : 0);
+    double opposite = most > FAINT ? -share : 0, room = rise + MEMORY * most;
+    double renewed = room > FAINT ? rise / (room > FAINT ? room : 1) : 1;
+    opposite = opposite < MOST_RATIO ? opposite : MOST_RATIO;
+    renewed = rise > 0 ? renewed : 0;
+    back = back + renewed * (opposite - back);
+    double across = 1 - renewed;
+    return (turning){ratio > back ? ratio : back, across, ratio - back - across * toward};
+}
+
 /* Closure, shear stress and wear. `moves`, a constant: 0 if no lane moves along the joint; then no angle is needed, and the
  * results are the same to the bit. How many lanes slip opens. */
 TL_IN_LOOP double slide(const yielding *given, const tl_law_batch *batch, uint32_t begin,
@@ -328,13 +348,8 @@ TL_IN_LOOP double slide(const yielding *given, const tl_law_batch *batch, uint32
         double first = c.f_x[i] * c.du_x[i] + c.f_y[i] * c.du_y[i] + c.f_z[i] * c.du_z[i];
         double second = x * c.du_x[i] + y * c.du_y[i] + z * c.du_z[i];
         double share = -scale * (x * ex + y * ey + z * ez) / (most > FAINT ? most : 1);
-        double back = last[i] - (toward > 0 ? toward : 0);
-        double opposite = most > FAINT ? -share : 0, room = ks * d + MEMORY * most;
-        double renewed = room > FAINT ? ks * d / (room > FAINT ? room : 1) : 1;
-        opposite = opposite < MOST_RATIO ? opposite : MOST_RATIO;
-        renewed = d > 0 ? renewed : 0;
-        back = back + renewed * (opposite - back);
-        double across = 1 - renewed, difference = ratio - back - across * toward;
+        turning turned = remember(last[i], toward, share, ratio, ks * d, most);
+        double across = turned.across, difference = turned.along;
         t->walls[i] = walls;
         t->v[i] = v;
         t->spring[i] = ks;
@@ -348,7 +363,7 @@ TL_IN_LOOP double slide(const yielding *given, const tl_law_batch *batch, uint32
         t->begins[i] = -0.5 * first * per;
         t->ends[i] = -0.5 * scale * second;
         t->angle[i] = after;
-        t->ratio[i] = ratio > back ? ratio : back;
+        t->ratio[i] = turned.ratio;
         t->way_x[i] = d > 0 ? across * way_x[i] + difference * ex : way_x[i];
         t->way_y[i] = d > 0 ? across * way_y[i] + difference * ey : way_y[i];
         t->way_z[i] = d > 0 ? across * way_z[i] + difference * ez : way_z[i];
