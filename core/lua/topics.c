@@ -267,7 +267,9 @@ const tl_lua_topic tl_lua_topics[] = {
          "Finds outer faces of the model: those, or parts of those, that lie on no other block. "
          "Holds their bodies, or puts a traction on them as a load: its force and moment about "
          "each body's centroid take the place of the load the body had, keep their direction and "
-         "go with the body. What one call puts on a body adds up.",
+         "go with the body. What one call puts on a body adds up. When a face is cut, each part of "
+         "it "
+         "gets its share.",
      .spec = &tl_lua_boundary_spec,
      .title = "Fields of the result",
      .verbs = tl_lua_boundary_results},

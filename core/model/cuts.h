@@ -26,6 +26,14 @@ typedef struct tl_split {
     tl_id block, whole;
 } tl_split;
 
+/* What a traction on a face of a block has put on its body: force, and moment about the centroid of the face, in axes of the model. It is
+ * part of the body's load. */
+typedef struct tl_face_load {
+    tl_id block;
+    uint32_t face;
+    tl_vec3 force, moment;
+} tl_face_load;
+
 /* Most refused cuts that are listed; more are only counted. */
 #define TL_REFUSED_LISTED 1000
 

@@ -112,6 +112,7 @@ void tl_model_destroy(tl_model *m)
     free(m->record.list);
     free(m->heirs);
     free(m->splits);
+    free(m->face_loads);
     free(m->groups);
     free(m->joints);
     free(m->joint_laws);

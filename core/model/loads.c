@@ -1,4 +1,5 @@
 /* loads.c - what acts on bodies from outside: loads, and prescribed motion (drives). */
+#include "model/face_loads.h"
 #include "model/model.h"
 #include "model/options.h"
 #include "model/wrench.h"
@@ -50,7 +51,8 @@ tl_status tl_blocks_load(tl_model *m, const tl_id *ids, size_t count, const tl_l
     if (status != TL_OK)
         return status;
     if (count && (!TL_COLUMN_NEED(&m->bodies.table, &m->bodies, load_before, 0) ||
-                  !TL_COLUMN_NEED(&m->bodies.table, &m->bodies, load, 0)))
+                  !TL_COLUMN_NEED(&m->bodies.table, &m->bodies, load, 0) ||
+                  !tl_face_loads_forget(m, ids, count)))
         return tl_fail_memory(&m->error);
     if (count)
         note_loads(m);

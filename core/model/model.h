@@ -220,6 +220,8 @@ struct tl_model {
     size_t heir_count, heir_capacity;
     tl_split *splits; /* by ascending id of the block */
     size_t split_count, split_capacity;
+    tl_face_load *face_loads; /* by ascending block and face; of blocks that there were */
+    size_t face_load_count, face_load_capacity;
     tl_extremes extremes;
 
     tl_law *joint_laws;

@@ -1,33 +1,47 @@
 /* stage_loads.c - loads of bodies that a staging set cuts go to their parts.
  *
- * A load with a point goes to the part that has the point. One without a point acts on the body as a whole, and its force F and moment M
- * are spread over the parts as weight is: with the mass m, the inertia I and the centroid r of the whole, each part p gets
+ * What tractions have put on a face goes to the parts of the face (face_loads.c). Of the rest, what has a point goes to the part that has
+ * the point. What has none acts on the body as a whole, and its force F and moment M are spread over the parts as weight is: with the
+ * mass m, the inertia I and the centroid r of the whole, each part p gets
  *
  *     F_p = m_p (F/m + alpha x (r_p - r)),    M_p = I_p alpha,    I alpha = M
  *
  * so that the parts go on as the whole, and what their joint carries stays. Sums of force and moment are those of the whole. */
 #include "model/stage_loads.h"
 
-#include "model/inertia.h"
+#include "model/face_loads.h"
 #include "model/wrench.h"
 
 #include <stdlib.h>
+#include <string.h>
 
-/* What the blocks of a cut body sum up to. */
-typedef struct mass_sum {
-    double mass;
-    tl_vec3 place; /* centroid, relative to the origin */
-    tl_sym3 inertia;
-} mass_sum;
+/* Normals of a face and of its parts are off each other by rounding; so are places, over the size. */
+#define SAME_FACE 1e-9
+#define SAME_PLACE 1e-6
+/* Share of what is on faces up to which what is left of a load is rounding. */
+#define NOTHING 1e-12
 
 struct tl_cut_load {
     tl_body_load load;
     tl_wrench before; /* of the last step, where loads have been set since */
+    bool changed;     /* that was another */
     tl_vec3 point;    /* where the load acts, relative to the origin */
     bool placed;      /* it has been given a point */
-    mass_sum sum;
+    tl_wrench
+        rest; /* of the load beside what is on faces, about that point; its force and moment otherwise */
+    double on_faces; /* sum of the lengths of the forces there */
+    tl_lump sum;
     uint32_t nearest; /* row of the block that has the point, or is nearest to it */
     double distance;
+};
+
+/* What is on a face of a block that may be cut. */
+struct tl_cut_face {
+    tl_face_load load;
+    uint32_t row; /* of the block before */
+    tl_cut_load *of;
+    tl_vec3 normal;
+    tl_lump plate, sum; /* of the face, and of its parts */
 };
 
 static bool is_cut(const tl_stage_block *block)
@@ -42,10 +56,70 @@ static tl_cut_load load_of(const tl_model *m, uint32_t body)
     tl_vec3 arm = tl_m3_mul(&b->pose[body].r, load.arm);
     return (tl_cut_load){.load = load,
                          .before = b->load_before[body],
+                         .changed = tl_load_changed(m, body),
+                         .rest = {load.force, load.moment},
                          .placed = !tl_v3_is_zero(load.arm),
                          .point = tl_v3_add(tl_body_place(b, body), arm),
                          .nearest = TL_NO_ROW,
                          .distance = INFINITY};
+}
+
+/* What is on the faces of a block before, by its row: the first and the next. Faces ascend with their rows. */
+static tl_cut_face *faces_of(const tl_cut_loads *loads, uint32_t row)
+{
+    size_t low = 0, high = loads->face_count;
+    while (low < high) {
+        size_t middle = low + (high - low) / 2;
+        if (loads->faces[middle].row < row)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < loads->face_count && loads->faces[low].row == row ? &loads->faces[low] : NULL;
+}
+
+static tl_cut_face *next_of(const tl_cut_loads *loads, tl_cut_face *face)
+{
+    tl_cut_face *next = face + 1;
+    return next < loads->faces + loads->face_count && next->row == face->row ? next : NULL;
+}
+
+/* Adds `sign` times what is on a face to the rest of the load. */
+static void add_to_rest(const tl_cut_face *face, double sign)
+{
+    tl_wrench *rest = &face->of->rest;
+    tl_vec3 arm = tl_v3_sub(face->plate.place, face->of->point);
+    rest->force = tl_v3_madd(rest->force, sign, face->load.force);
+    rest->moment = tl_v3_madd(rest->moment, sign, face->load.moment);
+    rest->moment = tl_v3_madd(rest->moment, sign, tl_v3_cross(arm, face->load.force));
+}
+
+/* Takes what is on faces of the bodies out of their loads; room for what their parts get of it. */
+static bool take_faces(const tl_stage *stage, const uint32_t *slot, tl_cut_loads *loads)
+{
+    tl_model *m = stage->model;
+    size_t most = 0;
+    loads->faces = malloc((m->face_load_count + 1) * sizeof *loads->faces);
+    for (size_t i = 0; loads->faces && i < m->face_load_count; i++) {
+        const tl_face_load *f = &m->face_loads[i];
+        uint32_t row = tl_block_row_quiet(m, f->block);
+        if (row == TL_NO_ROW || slot[m->blocks.body[row]] == TL_NO_ROW ||
+            f->face >= m->blocks.shape[row]->face_count)
+            continue;
+        tl_cut_load *of = &loads->list[slot[m->blocks.body[row]]];
+        tl_cut_face *face = &loads->faces[loads->face_count++];
+        const tl_mat3 *r = &m->bodies.pose[m->blocks.body[row]].r;
+        *face = (tl_cut_face){
+            .load = *f, .row = row, .of = of, .plate = tl_face_plate(m, row, f->face)};
+        face->normal = tl_m3_mul(r, m->blocks.shape[row]->plane[f->face].normal);
+        add_to_rest(face, -1);
+        of->on_faces += tl_v3_norm(f->force);
+    }
+    for (size_t i = 0; loads->faces && i < stage->count; i++)
+        for (tl_cut_face *f = faces_of(loads, stage->blocks[i].source); f; f = next_of(loads, f))
+            most++;
+    return loads->faces && tl_grow(&m->face_loads, &m->face_load_capacity,
+                                   m->face_load_count + most, sizeof *m->face_loads);
 }
 
 bool tl_cut_loads_take(const tl_stage *stage, tl_cut_loads *loads)
@@ -72,6 +146,7 @@ bool tl_cut_loads_take(const tl_stage *stage, tl_cut_loads *loads)
         uint32_t row = stage->blocks[i].source;
         loads->of[i] = row == TL_NO_ROW ? TL_NO_ROW : slot[m->blocks.body[row]];
     }
+    enough = enough && take_faces(stage, slot, loads);
     free(slot);
     return enough;
 }
@@ -96,9 +171,10 @@ static tl_vec3 place_of(const tl_model *m, uint32_t row)
                      tl_m3_mul(&m->bodies.pose[body].r, tl_block_local(m, row)));
 }
 
-static double mass_of(const tl_model *m, uint32_t row)
+static tl_lump lump_of(const tl_model *m, uint32_t row)
 {
-    return m->blocks.density[row] * m->blocks.volume[row];
+    return (tl_lump){m->blocks.density[row] * m->blocks.volume[row], place_of(m, row),
+                     tl_block_inertia(m, row)};
 }
 
 /* How far a place lies before the faces of a block; negative inside. */
@@ -118,11 +194,11 @@ static double distance_of(const tl_model *m, uint32_t row, tl_vec3 place)
 static void begin(tl_model *m, uint32_t row, tl_cut_load *of)
 {
     uint32_t body = m->blocks.body[row];
-    double mass = mass_of(m, row), distance = distance_of(m, row, of->point);
+    double distance = distance_of(m, row, of->point);
+    tl_lump lump = lump_of(m, row);
     m->bodies.load[body] = (tl_body_load){{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
     m->bodies.load_before[body] = (tl_wrench){{0, 0, 0}, {0, 0, 0}};
-    of->sum.mass += mass;
-    of->sum.place = tl_v3_madd(of->sum.place, mass, place_of(m, row));
+    tl_lump_add(&of->sum, &lump);
     if (distance < of->distance) {
         of->distance = distance;
         of->nearest = row;
@@ -131,64 +207,156 @@ static void begin(tl_model *m, uint32_t row, tl_cut_load *of)
 
 static void add_inertia(tl_model *m, uint32_t row, tl_cut_load *of)
 {
-    tl_vec3 d = tl_v3_sub(place_of(m, row), of->sum.place);
-    tl_sym3 add = tl_inertia_about(tl_block_inertia(m, row), mass_of(m, row), d);
-    tl_sym3 *to = &of->sum.inertia;
-    *to = (tl_sym3){to->xx + add.xx, to->yy + add.yy, to->zz + add.zz,
-                    to->xy + add.xy, to->yz + add.yz, to->zx + add.zx};
+    tl_lump lump = lump_of(m, row);
+    tl_lump_add_inertia(&of->sum, &lump);
 }
 
-/* The angular acceleration that a moment gives to a body without a spin. */
-static tl_vec3 turned_by(tl_sym3 a, tl_vec3 moment)
+/* Whether there is something of a load beside what is on faces. */
+static bool has_rest(const tl_cut_load *of)
 {
-    return tl_solve3(tl_v3(a.xx, a.xy, a.zx), tl_v3(a.xy, a.yy, a.yz), tl_v3(a.zx, a.yz, a.zz),
-                     moment);
+    const tl_sym3 *i = &of->sum.inertia;
+    double size = sqrt((i->xx + i->yy + i->zz) / of->sum.mass);
+    return of->on_faces == 0 || tl_v3_norm(of->rest.force) > NOTHING * of->on_faces ||
+           tl_v3_norm(of->rest.moment) > NOTHING * size * of->on_faces;
 }
 
-/* The share of a block in a wrench on the whole, about the centroid of the block's body. */
-static tl_wrench share_of(const tl_model *m, uint32_t row, const mass_sum *sum, tl_wrench whole)
+/* Adds to the load of a body what acts on all of it, without a point. */
+static void give_whole(tl_model *m, uint32_t body, tl_wrench part, tl_vec3 place)
 {
-    tl_vec3 turn = turned_by(sum->inertia, whole.moment), place = place_of(m, row);
-    tl_vec3 arm = tl_v3_sub(place, tl_body_place(&m->bodies, m->blocks.body[row]));
-    tl_vec3 a = tl_v3_scale(1 / sum->mass, whole.force);
-    a = tl_v3_add(a, tl_v3_cross(turn, tl_v3_sub(place, sum->place)));
-    tl_vec3 force = tl_v3_scale(mass_of(m, row), a);
-    tl_vec3 moment = tl_s3_mul(tl_block_inertia(m, row), turn);
-    return (tl_wrench){force, tl_v3_add(moment, tl_v3_cross(arm, force))};
+    tl_body_load *load = &m->bodies.load[body];
+    tl_vec3 arm = tl_v3_sub(place, tl_body_place(&m->bodies, body));
+    load->force = tl_v3_add(load->force, part.force);
+    load->moment = tl_v3_add(load->moment, part.moment);
+    load->moment = tl_v3_add(load->moment, tl_v3_cross(arm, part.force));
 }
 
-static tl_wrench added(tl_wrench a, tl_wrench b)
-{
-    return (tl_wrench){tl_v3_add(a.force, b.force), tl_v3_add(a.moment, b.moment)};
-}
-
-/* Gives a block's body the block's part of the load. */
+/* Gives a block's body the block's part of what is on no face. */
 static void give(tl_model *m, uint32_t row, tl_cut_load *of)
 {
     uint32_t body = m->blocks.body[row];
-    tl_body_load *load = &m->bodies.load[body];
-    if (m->loads_changed)
-        m->bodies.load_before[body] =
-            added(m->bodies.load_before[body], share_of(m, row, &of->sum, of->before));
-    if (!of->placed) {
-        tl_wrench part = share_of(m, row, &of->sum, (tl_wrench){of->load.force, of->load.moment});
-        load->force = tl_v3_add(load->force, part.force);
-        load->moment = tl_v3_add(load->moment, part.moment);
-    } else if (row == of->nearest) {
-        tl_vec3 arm = tl_v3_sub(of->point, tl_body_place(&m->bodies, body));
-        *load = (tl_body_load){of->load.force, of->load.moment,
-                               tl_m3_tmul(&m->bodies.pose[body].r, arm)};
+    tl_lump lump = lump_of(m, row);
+    if (!has_rest(of))
+        return;
+    if (!of->placed)
+        give_whole(m, body, tl_lump_share(&lump, &of->sum, of->rest), lump.place);
+    else if (row == of->nearest)
+        tl_load_add(m, body, of->rest, of->point);
+}
+
+/* What the block's body had of the load in the last step: as it has of it now, where that was the same. */
+static void give_before(tl_model *m, uint32_t row, tl_cut_load *of)
+{
+    uint32_t body = m->blocks.body[row];
+    tl_wrench *before = &m->bodies.load_before[body];
+    if (!m->loads_changed)
+        return;
+    if (!of->changed) {
+        *before = tl_load_wrench(&m->bodies, body);
+        return;
+    }
+    tl_lump lump = lump_of(m, row);
+    tl_wrench part = tl_lump_share(&lump, &of->sum, of->before);
+    tl_vec3 arm = tl_v3_sub(lump.place, tl_body_place(&m->bodies, body));
+    before->force = tl_v3_add(before->force, part.force);
+    before->moment = tl_v3_add(before->moment, part.moment);
+    before->moment = tl_v3_add(before->moment, tl_v3_cross(arm, part.force));
+}
+
+/* ---------------------------------------------------------------- faces ------------------ */
+
+/* The face of a block that is a part of one; TL_NO_ROW: it has none. */
+static uint32_t part_of(const tl_model *m, uint32_t row, const tl_cut_face *face)
+{
+    const tl_poly *shape = m->blocks.shape[row];
+    uint32_t body = m->blocks.body[row];
+    const tl_mat3 *r = &m->bodies.pose[body].r;
+    tl_vec3 n = tl_m3_tmul(r, face->normal);
+    tl_vec3 x = tl_m3_tmul(r, tl_v3_sub(face->plate.place, tl_body_place(&m->bodies, body)));
+    for (uint32_t f = 0; f < shape->face_count; f++)
+        if (tl_v3_norm2(tl_v3_sub(shape->plane[f].normal, n)) < SAME_FACE * SAME_FACE &&
+            fabs(tl_v3_dot(n, x) - shape->plane[f].offset) < SAME_PLACE * shape->size)
+            return f;
+    return TL_NO_ROW;
+}
+
+typedef void visit_part_fn(tl_model *m, uint32_t row, uint32_t part, tl_cut_face *face);
+
+/* Visits the parts of faces, in the order of their blocks. */
+static void visit_parts(const tl_stage *stage, const tl_id *ids, const tl_cut_loads *loads,
+                        visit_part_fn *each)
+{
+    tl_model *m = stage->model;
+    for (size_t i = 0; i < stage->count; i++) {
+        uint32_t row = loads->of[i] == TL_NO_ROW ? TL_NO_ROW : m->row_of[ids[i]];
+        tl_cut_face *f = row == TL_NO_ROW ? NULL : faces_of(loads, stage->blocks[i].source);
+        for (; f; f = next_of(loads, f)) {
+            uint32_t part = part_of(m, row, f);
+            if (part != TL_NO_ROW)
+                each(m, row, part, f);
+        }
     }
 }
 
-/* The mean place is the sum over the mass. */
-static void close_sums(tl_cut_loads *loads)
+static void begin_face(tl_model *m, uint32_t row, uint32_t part, tl_cut_face *face)
 {
-    for (size_t k = 0; k < loads->count; k++) {
-        mass_sum *sum = &loads->list[k].sum;
-        if (sum->mass > 0)
-            sum->place = tl_v3_scale(1 / sum->mass, sum->place);
+    tl_lump plate = tl_face_plate(m, row, part);
+    tl_lump_add(&face->sum, &plate);
+}
+
+static void add_face_inertia(tl_model *m, uint32_t row, uint32_t part, tl_cut_face *face)
+{
+    tl_lump plate = tl_face_plate(m, row, part);
+    tl_lump_add_inertia(&face->sum, &plate);
+}
+
+static void give_face(tl_model *m, uint32_t row, uint32_t part, tl_cut_face *face)
+{
+    tl_lump plate = tl_face_plate(m, row, part);
+    tl_wrench whole = {face->load.force, face->load.moment};
+    tl_vec3 arm = tl_v3_sub(face->plate.place, face->sum.place);
+    whole.moment = tl_v3_add(whole.moment, tl_v3_cross(arm, whole.force));
+    tl_wrench share = tl_lump_share(&plate, &face->sum, whole);
+    tl_load_add(m, m->blocks.body[row], share, plate.place);
+    m->face_loads[m->face_load_count++] =
+        (tl_face_load){m->blocks.id[row], part, share.force, share.moment};
+}
+
+/* Forgets what was on the faces of the bodies before: it has come off them. */
+static void drop_faces(tl_model *m, const tl_cut_loads *loads)
+{
+    size_t kept = 0, k = 0;
+    for (size_t i = 0; i < m->face_load_count; i++) {
+        const tl_face_load *f = &m->face_loads[i];
+        bool taken = k < loads->face_count && f->block == loads->faces[k].load.block &&
+                     f->face == loads->faces[k].load.face;
+        if (taken)
+            k++;
+        else
+            m->face_loads[kept++] = *f;
     }
+    m->face_load_count = kept;
+}
+
+/* Sums the parts of each face up. What is on one without parts goes as the rest does. */
+static void sum_faces(const tl_stage *stage, const tl_id *ids, const tl_cut_loads *loads)
+{
+    visit_parts(stage, ids, loads, begin_face);
+    for (size_t k = 0; k < loads->face_count; k++) {
+        tl_lump_close(&loads->faces[k].sum);
+        if (!(loads->faces[k].sum.mass > 0))
+            add_to_rest(&loads->faces[k], 1);
+    }
+    visit_parts(stage, ids, loads, add_face_inertia);
+}
+
+static void give_faces(const tl_stage *stage, const tl_id *ids, const tl_cut_loads *loads)
+{
+    tl_model *m = stage->model;
+    if (loads->face_count == 0)
+        return;
+    drop_faces(m, loads);
+    visit_parts(stage, ids, loads, give_face);
+    tl_face_loads_set(m, m->face_loads, m->face_load_count, m->face_load_capacity);
 }
 
 void tl_cut_loads_give(const tl_stage *stage, const tl_id *ids, tl_cut_loads *loads)
@@ -196,14 +364,19 @@ void tl_cut_loads_give(const tl_stage *stage, const tl_id *ids, tl_cut_loads *lo
     if (loads->count == 0)
         return;
     visit(stage, ids, loads, begin);
-    close_sums(loads);
+    for (size_t k = 0; k < loads->count; k++)
+        tl_lump_close(&loads->list[k].sum);
     visit(stage, ids, loads, add_inertia);
+    sum_faces(stage, ids, loads);
     visit(stage, ids, loads, give);
+    give_faces(stage, ids, loads);
+    visit(stage, ids, loads, give_before);
 }
 
 void tl_cut_loads_free(tl_cut_loads *loads)
 {
     free(loads->of);
     free(loads->list);
+    free(loads->faces);
     *loads = (tl_cut_loads){.count = 0};
 }

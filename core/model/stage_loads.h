@@ -5,10 +5,13 @@
 #include "model/model.h"
 
 typedef struct tl_cut_load tl_cut_load;
+typedef struct tl_cut_face tl_cut_face;
 
 typedef struct tl_cut_loads {
     tl_cut_load *list;
     size_t count;
+    tl_cut_face *faces; /* what is on faces of the bodies, by ascending row of their blocks */
+    size_t face_count;
     uint32_t *of; /* [staged blocks] the load of the body that it comes from, or TL_NO_ROW */
 } tl_cut_loads;
 

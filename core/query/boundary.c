@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "contact/detection.h"
 #include "detect/detect.h"
+#include "model/face_loads.h"
 #include "query/outer.h"
 
 #include <math.h>
@@ -36,6 +37,12 @@ typedef struct face_filter {
     tl_vec3 direction;   /* unit */
     double least_cosine; /* with it */
 } face_filter;
+
+/* What is put on faces. */
+typedef struct face_loads {
+    tl_face_load *at;
+    size_t count, capacity;
+} face_loads;
 
 /* What is put on a body: about its centroid. */
 typedef struct body_sum {
@@ -187,8 +194,8 @@ static void face_load(const tl_model *m, const tl_boundary_action *a, const tl_o
                         tl_v3_add(tl_v3_cross(f->t1, sum_u), tl_v3_cross(f->t2, sum_v)));
 }
 
-static void add_load(const tl_model *m, const tl_boundary_action *a, const tl_outer_face *f,
-                     body_sum *sums, tl_boundary_result *result)
+static tl_status add_load(tl_model *m, const tl_boundary_action *a, const tl_outer_face *f,
+                          body_sum *sums, face_loads *loads, tl_boundary_result *result)
 {
     uint32_t body = m->blocks.body[f->row];
     tl_vec3 force, moment, place = tl_body_place(&m->bodies, body);
@@ -202,6 +209,12 @@ static void add_load(const tl_model *m, const tl_boundary_action *a, const tl_ou
     result->force = tl_v3_add(result->force, force);
     tl_vec3 about = tl_v3_cross(tl_v3_add(m->origin, place), force);
     result->moment = tl_v3_add(result->moment, tl_v3_add(moment, about));
+    if (!tl_grow(&loads->at, &loads->capacity, loads->count + 1, sizeof *loads->at))
+        return tl_fail_memory(&m->error);
+    tl_vec3 arm = tl_v3_sub(tl_face_plate(m, f->row, f->face).place, place);
+    moment = tl_v3_sub(moment, tl_v3_cross(arm, force));
+    loads->at[loads->count++] = (tl_face_load){m->blocks.id[f->row], f->face, force, moment};
+    return TL_OK;
 }
 
 /* The components in which a roller at a face holds its body; 0 when it looks along no axis. */
@@ -253,14 +266,14 @@ static bool fill_result(const tl_model *m, const face_list *faces, tl_boundary_r
 
 /* Finds the faces of one action and notes what is to be done. */
 static tl_status plan(tl_model *m, const tl_boundary_action *a, uint8_t *fix, body_sum *sums,
-                      tl_boundary_result *result)
+                      face_loads *loads, tl_boundary_result *result)
 {
     face_list faces = {0};
     tl_status status = find_faces(m, &a->where, &faces);
     for (size_t i = 0; i < faces.count && status == TL_OK; i++) {
         status = add_fixing(m, a, &faces.at[i], fix);
-        if (a->loads)
-            add_load(m, a, &faces.at[i], sums, result);
+        if (a->loads && status == TL_OK)
+            status = add_load(m, a, &faces.at[i], sums, loads, result);
     }
     if (status == TL_OK && !fill_result(m, &faces, result))
         status = tl_fail_memory(&m->error);
@@ -306,10 +319,29 @@ static tl_status check_loads(tl_model *m, const body_sum *sums, bool add)
     return TL_OK;
 }
 
-static tl_status carry_out(tl_model *m, const uint8_t *fix, const body_sum *sums, bool add)
+/* Adds to what is put on faces what the model has of others, or of all with `add`. */
+static bool keep_others(const tl_model *m, const body_sum *sums, bool add, face_loads *loads)
+{
+    size_t most = loads->count + m->face_load_count;
+    if (!tl_grow(&loads->at, &loads->capacity, most, sizeof *loads->at))
+        return false;
+    for (size_t i = 0; i < m->face_load_count; i++) {
+        uint32_t row = tl_block_row_quiet(m, m->face_loads[i].block);
+        if (row != TL_NO_ROW && (add || !(sums[m->blocks.body[row]].weight > 0)))
+            loads->at[loads->count++] = m->face_loads[i];
+    }
+    return true;
+}
+
+static tl_status carry_out(tl_model *m, const uint8_t *fix, const body_sum *sums, bool add,
+                           face_loads *loads)
 {
     tl_status status = check_loads(m, sums, add);
     size_t replaced = 0;
+    if (status == TL_OK && loads->count && !keep_others(m, sums, add, loads))
+        status = tl_fail_memory(&m->error);
+    if (status == TL_OK && loads->count)
+        m->face_load_count = 0;
     for (uint32_t body = 0; body < m->bodies.table.rows && status == TL_OK; body++) {
         if (!(sums[body].weight > 0))
             continue;
@@ -317,6 +349,10 @@ static tl_status carry_out(tl_model *m, const uint8_t *fix, const body_sum *sums
         tl_load load = load_of(m, body, &sums[body], add);
         const tl_id id = m->bodies.id[body]; /* the table may move */
         status = tl_blocks_load(m, &id, 1, &load);
+    }
+    if (status == TL_OK && loads->count) {
+        tl_face_loads_set(m, loads->at, loads->count, loads->capacity);
+        loads->at = NULL;
     }
     for (uint32_t row = 0; row < m->blocks.table.rows && status == TL_OK; row++)
         if (fix[row])
@@ -343,16 +379,18 @@ tl_status tl_model_boundary(tl_model *m, const tl_boundary_action *actions, size
         status = tl_detect_refresh(m);
     if (status != TL_OK)
         return status;
+    face_loads put = {0};
     uint8_t *fix = calloc(m->blocks.table.rows + 1, sizeof *fix);
     body_sum *sums = calloc(m->bodies.table.rows + 1, sizeof *sums);
     if (!fix || !sums || (loads && !TL_COLUMN_NEED(&m->bodies.table, &m->bodies, load, 0)))
         status = tl_fail_memory(&m->error);
     for (size_t i = 0; i < count && status == TL_OK; i++)
-        status = plan(m, &actions[i], fix, sums, &results[i]);
+        status = plan(m, &actions[i], fix, sums, &put, &results[i]);
     if (status == TL_OK)
-        status = carry_out(m, fix, sums, add);
+        status = carry_out(m, fix, sums, add, &put);
     for (size_t i = 0; i < count && status != TL_OK; i++)
         tl_boundary_free(&results[i]);
+    free(put.at);
     free(fix);
     free(sums);
     return status;

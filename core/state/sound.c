@@ -71,7 +71,7 @@ static bool matrix_is_sound(const tl_mat3 *r)
     return sum < MOST_MATRIX;
 }
 
-/* What blocks that were cut have left, and the ids by which contacts were asked for. */
+/* What blocks that were cut have left, what parts of faces are to get, and the ids by which contacts were asked for. */
 static bool edits_are_sound(const tl_model *m)
 {
     for (size_t i = 0; i < m->heir_count; i++) {
@@ -84,6 +84,12 @@ static bool edits_are_sound(const tl_model *m)
         const tl_split *s = &m->splits[i];
         if (s->block == TL_NO_ID || s->block >= m->next_id || s->whole == TL_NO_ID ||
             s->whole >= m->next_id || (i && s->block <= s[-1].block))
+            return false;
+    }
+    for (size_t i = 0; i < m->face_load_count; i++) {
+        const tl_face_load *f = &m->face_loads[i];
+        if (f->block == TL_NO_ID || f->block >= m->next_id || !tl_v3_finite(f->force) ||
+            !tl_v3_finite(f->moment) || (i && f->block < f[-1].block))
             return false;
     }
     if (m->next_contact > MOST_CONTACTS)

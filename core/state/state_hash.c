@@ -227,6 +227,9 @@ static void hash_blocks(tl_hash *hash, const tl_model *m)
     }
     for (size_t i = 0; i < m->split_count; i++)
         tl_hash_word(hash, (uint64_t)m->splits[i].block << 32 | m->splits[i].whole);
+    for (size_t i = 0; i < m->face_load_count; i++)
+        if (tl_block_row_quiet(m, m->face_loads[i].block) != TL_NO_ROW)
+            tl_hash_bytes(hash, &m->face_loads[i], sizeof m->face_loads[i]);
     hash_table(hash, &m->bodies.table);
     for (uint32_t body = 0; body < m->bodies.table.rows; body++) {
         tl_body_load load = tl_load_of(&m->bodies, body);

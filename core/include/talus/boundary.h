@@ -68,7 +68,8 @@ typedef struct tl_boundary_result {
 
 /* Finds the faces of each action, TL_E_NOT_FOUND when there is none, and does what they say: all of them or none. What the
  * actions put on one body adds up; it takes the place of the load the body had or, with `add`, is added to that. As with
- * tl_blocks_load the force keeps its direction and its point goes with the body. Free the results with tl_boundary_free, one
+ * tl_blocks_load the force keeps its direction and its point goes with the body. Where a face is cut, its parts get their shares:
+ * for a traction that is uniform, or normal and linear, what it is on each. Free the results with tl_boundary_free, one
  * by one; a failed call leaves them empty. */
 TL_API tl_status tl_model_boundary(tl_model *model, const tl_boundary_action *actions, size_t count,
                                    bool add, tl_boundary_result *results);
