@@ -10,9 +10,9 @@
 #include <talus/vmath.h>
 
 /* Sets of parameters that a law or a damping is tried with: the given and default ones first, then drawn ones. */
-#define TL_CHECK_SETS 12
+#define TL_CHECK_SETS 20
 /* Checks of one type of kind, at most. */
-#define TL_CHECK_MOST 20
+#define TL_CHECK_MOST 32
 
 /* A check by its name, and what it asks. */
 typedef struct tl_check_rule {
@@ -42,6 +42,8 @@ static inline bool tl_check_failed(const tl_checker *c, int check)
 tl_status tl_check_values(tl_checker *c, int set, tl_value **values, size_t *count, void **held);
 /* The same, read into `params`, of the kind's params_size bytes; `*held` likewise. */
 tl_status tl_check_params(tl_checker *c, int set, void *params, void **held);
+/* The same with another value of one parameter. */
+tl_status tl_check_varied(tl_checker *c, int set, uint32_t param, void *params, void **held);
 
 /* A number in [low, high) of a key. */
 static inline double tl_check_between(uint64_t key, double low, double high)

@@ -2,8 +2,8 @@
  *
  * With each set of parameters 64 points of random areas and directions go through random motions: closing and opening,
  * shear that sticks and shear that slips. Every step is computed as a whole, in parts, point by point and turned in space;
- * from the place it leads to, the points are moved a little for the stiffness, and not at all. Closed cycles are in
- * law_cycle.c. Forces are compared relative to those that the point has, or had on average. */
+ * from the place it leads to, the points are moved a little for the stiffness, and not at all. The normal force is looked at in
+ * law_normal.c, work and energies on longer paths in law_energy.c. Forces are compared relative to those that the point has, or had on average. */
 #include "check/law.h"
 
 #include <math.h>
@@ -13,10 +13,13 @@
 
 /* Steps of the random motion. */
 #define STEPS 24
+/* Of these the first, in which no bond breaks and little slips. */
+#define GENTLE 4
 /* Share by which a stiffness may be exceeded: that of differences of forces, of which six digits are left. */
 #define SLACK 1e-6
-/* Relative error of forces that rounding explains: some thousand roundings. */
-#define ROUNDING 1e-11
+#define ROUNDING TL_CHECK_ROUNDING
+/* Steps without motion in which a point comes to rest, to the bit. */
+#define SETTLES 8
 /* Share of the motion by which points are moved for the stiffness. */
 #define SMALL (1. / 16)
 
@@ -28,30 +31,36 @@ const tl_check_rule tl_check_law_rules[] = {
     [TL_LAW_ENERGIES] = {"energies", "forces do not depend on whether energies are asked for"},
     [TL_LAW_WRITES] = {"writes",
                        "nothing is written but forces, flags, energies and declared states"},
+    [TL_LAW_READS] =
+        {"reads", "nothing depends on states that are not declared, nor on what is to be written"},
     [TL_LAW_PADDING] = {"padding", "lanes of no area carry nothing"},
     [TL_LAW_FINITE] = {"finite", "forces, states and energies are finite numbers"},
     [TL_LAW_PLANE] = {"plane", "the shear force lies in the common plane"},
     [TL_LAW_STILL] = {"no motion", "without motion and time the forces stay as they are"},
     [TL_LAW_TURNED] = {"turned", "a turned point gets the turned forces"},
+    [TL_LAW_AREA] = {"area", "twice the area carries twice the force and the energy"},
     [TL_LAW_STIFFNESS] = {"stiffness", "no point is stiffer than stiffness() says"},
     [TL_LAW_CYCLE] = {"closed cycle", "a closed path of motion gives no energy"},
-    [TL_LAW_STATES] = {"states",
-                       "each declared state is written, and none while stateless() says so"},
+    [TL_LAW_BALANCE] = {"balance", "the work on a path is stored or turned to heat"},
+    [TL_LAW_HEAT] = {"heat", "dissipated is not negative, and 0 without motion"},
+    [TL_LAW_STEPS] = {"steps", "shear in a few steps leads to the forces that it does in many"},
+    [TL_LAW_STATES] =
+        {"states",
+         "each declared state is written and read, and none written while stateless() says "
+         "so"},
+    [TL_LAW_PARAMETERS] = {"parameters", "each parameter has an effect"},
+    [TL_LAW_FLAGS] = {"flags",
+                      "points that are open carry nothing, those that have failed stay so"},
     [TL_LAW_PULLS] = {"pulls",
                       "no normal force across a gap where pulls() and across_gap() say so"},
+    [TL_LAW_PRESSES] =
+        {"presses", "the normal force and what it stores are those that linear or pressed() tells"},
     {NULL, NULL},
 };
 
 /* ---------------------------------------------------------------- a law to try ----------- */
 
-/* One set of parameters, and the points as they are. */
-typedef struct trial {
-    tl_checker *c;
-    tl_check_law law;
-    tl_check_points now, in, out;
-    double scale[TL_CHECK_POINTS]; /* N, of a point's forces */
-    uint32_t *written;             /* bit k: state column k has been written */
-} trial;
+typedef tl_law_trial trial;
 
 static uint64_t key_of(const trial *t, uint64_t step, uint64_t point)
 {
@@ -74,7 +83,7 @@ static void begin_points(trial *t)
         double area = tl_check_scale(tl_key(key, 1), -2, 1);
         p->c[TL_AT_AREA][i] = area;
         p->c[TL_AT_F_N0][i] =
-            i % 2 ? 0 : area * t->law.stress * tl_check_between(tl_key(key, 2), 0, 1);
+            i % 8 % 7 % 2 ? 0 : area * t->law.stress * tl_check_between(tl_key(key, 2), 0, 1);
         tl_check_put(p, TL_AT_NORMAL, i, tl_check_direction(tl_key(key, 3)));
         for (uint32_t k = 0; k < t->law.of.columns; k++)
             p->c[TL_AT_STATE + k][i] = t->law.of.initial[k];
@@ -82,27 +91,38 @@ static void begin_points(trial *t)
             p->flags[i] = TL_POINT_APART;
             p->c[TL_AT_CLOSURE][i] = -t->law.closure;
         }
+        t->unmet[i] = i % 4 == 3;
         t->scale[i] = area * t->law.stress;
     }
 }
 
-/* The next motion of all points, of which one in five rests. */
+/* The next motion of all points, of which one in five rests; of one in five that press a part is apart. */
 static void next_motion(trial *t, int step)
 {
     tl_check_points *in = &t->in;
+    tl_check_gaps gaps;
     *in = t->now;
     in->dt = step == 0 ? 0 : TL_CHECK_DT;
+    tl_law_gaps(&t->law, &t->now, &gaps);
     for (size_t i = 0; i < TL_CHECK_POINTS; i++) {
         uint64_t key = key_of(t, (uint64_t)step + 1, i);
         tl_vec3 normal = tl_check_vec(in, TL_AT_NORMAL, i);
         bool rests = step == 0 || tl_uniform(tl_key(key, 1)) < 0.2;
-        double size = tl_check_scale(tl_key(key, 2), -1, 1.5);
-        double to = t->law.closure * tl_check_between(tl_key(key, 3), -0.4, 1);
-        double before = in->c[TL_AT_CLOSURE][i], closure = rests ? before : to;
+        double soft = step < GENTLE ? 0.02 : 1;
+        double size = soft * tl_check_scale(tl_key(key, 2), -1, 1.5);
+        double to =
+            t->law.closure * soft * tl_check_between(tl_key(key, 3), step < GENTLE ? 0.1 : -0.4, 1);
+        double closure = rests ? in->c[TL_AT_CLOSURE][i] : to;
+        double before = in->c[TL_AT_CLOSURE][i] - in->c[TL_AT_APART][i];
+        bool partly = i % 5 == 2 && closure + gaps.lift[i] > 0.1 * t->law.closure;
+        double apart = partly ? 0.3 * t->law.closure * tl_uniform(tl_key(key, 6)) : 0;
+        apart = partly && rests ? in->c[TL_AT_APART][i] : apart;
         in->c[TL_AT_CLOSURE][i] = closure;
+        in->c[TL_AT_APART][i] = apart;
         in->c[TL_AT_EDGE][i] =
-            closure - (i % 3 ? 0.05 * t->law.closure * tl_uniform(tl_key(key, 5)) : 0);
-        in->c[TL_AT_DU_N][i] = before - closure;
+            tl_law_edge(closure, apart, gaps.lift[i],
+                        i % 3 ? 0.05 * t->law.closure * tl_uniform(tl_key(key, 5)) : 0);
+        in->c[TL_AT_DU_N][i] = before - (closure - apart);
         tl_vec3 slide = tangent(tl_key(key, 4), normal, rests ? 0 : size * t->law.slide);
         tl_check_put(in, TL_AT_DU_S, i, slide);
     }
@@ -110,20 +130,11 @@ static void next_motion(trial *t, int step)
 
 /* ---------------------------------------------------------------- what a call gave ------- */
 
-static bool same_bits(const tl_check_points *a, const tl_check_points *b, size_t i, bool energies)
-{
-    for (int k = TL_AT_F_N; k < TL_AT_COUNT; k++)
-        if ((energies || (k != TL_AT_STORED && k != TL_AT_DISSIPATED)) &&
-            memcmp(&a->c[k][i], &b->c[k][i], sizeof a->c[k][i]) != 0)
-            return false;
-    return a->flags[i] == b->flags[i];
-}
-
 static void compare_bits(trial *t, int check, const tl_check_points *other, bool energies,
                          const char *how)
 {
     for (size_t i = 0; i < TL_CHECK_POINTS; i++)
-        if (!same_bits(&t->out, other, i, energies)) {
+        if (!tl_law_same(&t->out, other, i, energies)) {
             tl_vec3 a = tl_check_vec(&t->out, TL_AT_F_S, i), b = tl_check_vec(other, TL_AT_F_S, i);
             tl_check_note(
                 t->c, check,
@@ -135,21 +146,11 @@ static void compare_bits(trial *t, int check, const tl_check_points *other, bool
         }
 }
 
-/* Calls the law and notes what every call must keep to; false when it failed. */
 static bool call_law(trial *t, const tl_check_points *in, tl_check_points *out, const size_t *order,
                      size_t begin, size_t count, bool energies)
 {
     tl_check_call call = {.no_energies = !energies};
-    tl_check_call_law(&t->law.of, in, out, order, begin, count, &call);
-    if (call.overwrote)
-        tl_check_note(t->c, TL_LAW_WRITES, "update() writes to %s", call.overwrote);
-    if (call.padding)
-        tl_check_note(t->c, TL_LAW_PADDING, "a lane of no area has a force or an energy");
-    if (call.status != TL_OK)
-        tl_check_note(t->c, TL_LAW_RUNS, "update() fails%s: %s",
-                      t->law.of.ops->never_fails ? ", though never_fails is set" : "",
-                      tl_report_text(&call.report, call.status));
-    return call.status == TL_OK;
+    return tl_law_call(t, in, out, order, begin, count, &call);
 }
 
 static bool call_in_parts(trial *t, tl_check_points *out, const size_t *order, const size_t *parts)
@@ -170,7 +171,9 @@ static bool compare_batches(trial *t, int step)
                                                  1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
     static const size_t parts[] = {8, 3, 40, 13};
     tl_check_points other = t->in;
-    size_t order[TL_CHECK_POINTS];
+    size_t order[TL_CHECK_POINTS], twice[TL_CHECK_LANES];
+    for (size_t i = 0; i < TL_CHECK_LANES; i++)
+        twice[i] = i % TL_CHECK_POINTS;
     for (size_t i = 0; i < TL_CHECK_POINTS; i++) /* a step that 64 has no factor of */
         order[i] = (i * 37 + (size_t)step) % TL_CHECK_POINTS;
     t->out = t->in;
@@ -181,6 +184,8 @@ static bool compare_batches(trial *t, int step)
     if (call_in_parts(t, &other, order, parts))
         compare_bits(t, TL_LAW_SPLIT, &other, true,
                      "in batches of 8, 3, 40 and 13 in another order");
+    if (call_law(t, &t->in, &other, twice, 0, TL_CHECK_LANES, true))
+        compare_bits(t, TL_LAW_SPLIT, &other, true, "in the second half of a batch of 136");
     if (call_law(t, &t->in, &other, NULL, 0, TL_CHECK_POINTS, false))
         compare_bits(t, TL_LAW_ENERGIES, &other, false, "without energies");
     if (call_law(t, &t->in, &other, NULL, 0, TL_CHECK_POINTS, true))
@@ -206,42 +211,6 @@ static void check_numbers(trial *t)
     }
 }
 
-/* The lift of the points as the step has left them. */
-static void find_lift(const trial *t, double lift[TL_CHECK_POINTS])
-{
-    tl_check_points p = t->out;
-    const tl_law_ops *ops = t->law.of.ops;
-    double hold[TL_CHECK_POINTS], *state[2 * TL_STATE_COLUMNS];
-    for (int k = 0; k < 2 * TL_STATE_COLUMNS; k++)
-        state[k] = p.c[k < TL_STATE_COLUMNS ? TL_AT_STATE + k : TL_AT_COUNT - 1];
-    for (size_t i = 0; i < TL_CHECK_POINTS; i++)
-        lift[i] = p.c[TL_AT_F_N0][i] / (t->law.kn * p.c[TL_AT_AREA][i]);
-    const tl_law_batch batch = {.size = sizeof batch,
-                                .count = TL_CHECK_POINTS,
-                                .area = p.c[TL_AT_AREA],
-                                .f_n0 = p.c[TL_AT_F_N0],
-                                .state = state,
-                                .flags = p.flags};
-    if (ops->across_gap)
-        ops->across_gap(t->law.of.self, &batch, lift, hold);
-}
-
-static void check_gaps(trial *t)
-{
-    const tl_law_ops *ops = t->law.of.ops;
-    uint32_t pulls = ops->pulls ? ops->pulls(t->law.of.self) : TL_PULL_ANY;
-    double lift[TL_CHECK_POINTS];
-    find_lift(t, lift);
-    for (size_t i = 0; i < TL_CHECK_POINTS && pulls != TL_PULL_ANY; i++) {
-        bool may = pulls == TL_PULL_BONDED && !(t->out.flags[i] & TL_POINT_FAILED);
-        double u = t->in.c[TL_AT_CLOSURE][i] + lift[i];
-        double rounding = 1e3 * ROUNDING * (fabs(lift[i]) + t->law.closure);
-        if (!may && u < -rounding && t->out.c[TL_AT_F_N][i] != 0)
-            tl_check_note(t->c, TL_LAW_PULLS, "f_n = %g N across a gap of %g m",
-                          t->out.c[TL_AT_F_N][i], -u);
-    }
-}
-
 static void check_states(trial *t)
 {
     const tl_law_ops *ops = t->law.of.ops;
@@ -250,7 +219,7 @@ static void check_states(trial *t)
         for (size_t i = 0; i < TL_CHECK_POINTS; i++) {
             if (t->out.c[TL_AT_STATE + k][i] == t->in.c[TL_AT_STATE + k][i])
                 continue;
-            *t->written |= 1u << k;
+            t->seen->written |= 1u << k;
             if (stateless)
                 tl_check_note(t->c, TL_LAW_STATES,
                               "state column %u is written, though stateless() is 1", k + 1);
@@ -305,6 +274,41 @@ static tl_check_points rest_of(const trial *t)
     return rest;
 }
 
+/* A point that rests comes to rest: the host does not ask for it again when nothing changes any more. */
+static void check_settled(trial *t, const tl_check_points *rested)
+{
+    tl_check_points rest = *rested, out;
+    bool settled[TL_CHECK_POINTS];
+    for (int k = 0; k < SETTLES; k++) {
+        bool all = true;
+        out = rest;
+        rest.dt = 0;
+        if (!call_law(t, &rest, &out, NULL, 0, TL_CHECK_POINTS, true))
+            return;
+        for (size_t i = 0; i < TL_CHECK_POINTS; i++)
+            all &= settled[i] = tl_law_same(&rest, &out, i, false);
+        if (all)
+            break;
+        rest = out;
+    }
+    for (size_t i = 0; i < TL_CHECK_POINTS; i++) {
+        double heat = out.c[TL_AT_DISSIPATED][i];
+        if (!settled[i])
+            tl_check_note(
+                t->c, TL_LAW_STILL,
+                "a point never comes to rest: its forces, states or flags change in each step "
+                "without motion and time, f_n from %.17g to %.17g N",
+                rest.c[TL_AT_F_N][i], out.c[TL_AT_F_N][i]);
+        if (heat != 0)
+            tl_check_note(t->c, TL_LAW_HEAT, "dissipated = %g J in a step without motion and time",
+                          heat);
+        if (out.flags[i] & TL_POINT_SLIPPING)
+            tl_check_note(t->c, TL_LAW_FLAGS,
+                          "a point is flagged as slipping in a step without motion "
+                          "and time");
+    }
+}
+
 static void check_still(trial *t)
 {
     tl_check_points rest = rest_of(t), out = rest;
@@ -320,6 +324,7 @@ static void check_still(trial *t)
                           "f_n goes from %g to %g N and f_s by %g N, without any motion", before,
                           after, tl_v3_norm(tl_v3_sub(a, b)));
     }
+    check_settled(t, &out);
 }
 
 /* Moves each point a little, across the joint or along it, and compares the rise of the force with the stiffness. What
@@ -351,8 +356,13 @@ static void check_stiffness(trial *t, int step, bool along)
         double rise = along ? -tl_v3_dot(change, slide) / (moved > 0 ? moved : 1)
                             : (out.c[TL_AT_F_N][i] - rest.c[TL_AT_F_N][i]) * (closing < 0 ? -1 : 1);
         double bound = along ? t->law.ks : t->law.kn;
-        /* a bond that breaks drops its force at once, and walls that meet are where the closure says */
-        if ((out.flags[i] ^ rest.flags[i]) & (TL_POINT_OPEN | TL_POINT_FAILED | TL_POINT_APART))
+        /* what falls: friction does at any rate, and a bond, which breaks or softens in the part that is apart; walls that
+         * meet are where the closure says */
+        bool falls = along ? tl_v3_norm(tl_check_vec(&out, TL_AT_F_S, i)) <
+                                 tl_v3_norm(tl_check_vec(&rest, TL_AT_F_S, i))
+                           : rest.c[TL_AT_APART][i] > 0;
+        uint32_t changed = out.flags[i] ^ rest.flags[i];
+        if (falls || changed & (TL_POINT_OPEN | TL_POINT_FAILED | TL_POINT_APART))
             continue;
         if (rise > bound * area * moved * (1 + SLACK) + ROUNDING * t->scale[i])
             tl_check_note(t->c, TL_LAW_STIFFNESS, "%s = %g Pa/m, but stiffness() says %g Pa/m",
@@ -362,7 +372,7 @@ static void check_stiffness(trial *t, int step, bool along)
 
 /* ---------------------------------------------------------------- all of it -------------- */
 
-static void run_trial(trial *t)
+static void run_trial(trial *t, tl_check_law varied[], const bool open[])
 {
     begin_points(t);
     for (int step = 0; step < STEPS; step++) {
@@ -372,29 +382,40 @@ static void run_trial(trial *t)
         check_numbers(t);
         if (tl_check_failed(t->c, TL_LAW_FINITE))
             return;
-        check_gaps(t);
+        tl_law_check_normal(t, step);
+        tl_law_check_flags(t);
         check_states(t);
+        tl_law_check_reads(t);
+        tl_law_check_area(t);
+        tl_law_see_states(t);
+        tl_law_see_params(t, varied, open);
         check_turned(t, step);
         check_still(t);
         check_stiffness(t, step, false);
         check_stiffness(t, step, true);
         t->now = t->out;
     }
-    tl_check_cycles(t->c, &t->law);
+    tl_law_check_energy(t);
+    tl_law_check_steps(t);
 }
 
 /* Columns of the declared states. */
 static void read_states(const tl_kind *kind, tl_check_law_of *of)
 {
     for (uint32_t i = 0; i < kind->state_count; i++) {
-        bool turns = kind->states[i].kind == TL_STATE_TANGENT;
+        const tl_state *state = &kind->states[i];
+        bool turns = state->kind == TL_STATE_TANGENT;
         of->tangent[of->columns] = turns;
-        for (int k = 0; k < (turns ? 3 : 1) && of->columns < TL_STATE_COLUMNS; k++)
-            of->initial[of->columns++] = kind->states[i].initial;
+        for (int k = 0; k < (turns ? 3 : 1) && of->columns < TL_STATE_COLUMNS; k++) {
+            of->extensive[of->columns] =
+                state->transfer == TL_TRANSFER_SPLIT || state->transfer == TL_TRANSFER_ENERGY;
+            of->resets[of->columns] = state->transfer == TL_TRANSFER_RESET;
+            of->initial[of->columns++] = state->initial;
+        }
     }
 }
 
-/* Makes the law with a set of parameters; not TL_OK when the law refuses them. */
+/* Makes the law with parameters of the kind's struct; not TL_OK when the law refuses them. */
 static tl_status open_law(tl_checker *c, void *params, tl_check_law *law)
 {
     const tl_law_ops *ops = c->kind->ops;
@@ -428,46 +449,65 @@ static void close_law(tl_check_law *law)
         law->of.ops->destroy((void *)(uintptr_t)law->of.self);
 }
 
-static void tell_unwritten(tl_checker *c, uint32_t written)
+/* Laws that each have one parameter changed, of those whose effect has not been seen; and a trial with them. */
+static tl_status try_set(trial *t, int set)
 {
-    uint32_t column = 0;
-    c->params_text[0] = '\0';
-    for (uint32_t i = 0; i < c->kind->state_count; i++) {
-        uint32_t width = c->kind->states[i].kind == TL_STATE_TANGENT ? 3 : 1;
-        if (!(written >> column & ((1u << width) - 1)))
-            tl_check_note(c, TL_LAW_STATES,
-                          "state '%s' is declared and was never written, with any of %d sets of "
-                          "parameters",
-                          c->kind->states[i].name, TL_CHECK_SETS);
-        column += width;
+    tl_checker *c = t->c;
+    const uint32_t count = c->kind->param_count;
+    tl_check_law varied[TL_CHECK_PARAMS];
+    void *params[TL_CHECK_PARAMS] = {NULL}, *held[TL_CHECK_PARAMS] = {NULL};
+    bool open[TL_CHECK_PARAMS] = {false};
+    char text[sizeof c->params_text];
+    memcpy(text, c->params_text, sizeof text);
+    tl_status status = TL_OK;
+    for (uint32_t k = 0; k < count && k < TL_CHECK_PARAMS && status == TL_OK; k++) {
+        if (t->seen->matters[k])
+            continue;
+        params[k] = malloc(c->kind->params_size + 1);
+        if (!params[k])
+            status = tl_fail_memory(c->error);
+        else if (tl_check_varied(c, set, k, params[k], &held[k]) == TL_OK)
+            open[k] = open_law(c, params[k], &varied[k]) == TL_OK;
+        if (open[k] && (varied[k].kn != t->law.kn || varied[k].ks != t->law.ks))
+            t->seen->matters[k] = true;
     }
+    memcpy(c->params_text, text, sizeof text);
+    if (status == TL_OK)
+        run_trial(t, varied, open);
+    for (uint32_t k = 0; k < TL_CHECK_PARAMS; k++) {
+        if (open[k])
+            close_law(&varied[k]);
+        free(params[k]);
+        free(held[k]);
+    }
+    return status;
 }
 
 tl_status tl_check_law_kind(tl_checker *c)
 {
     trial *t = malloc(sizeof *t);
     void *params = malloc(c->kind->params_size + 1), *held;
-    uint32_t written = 0;
-    int tried = 0, most = 8 * TL_CHECK_SETS; /* laws refuse some drawn sets */
+    tl_check_seen seen = {0};
+    int tried = 0, most = 20 * TL_CHECK_SETS; /* laws refuse some drawn sets */
     tl_status status = t && params ? TL_OK : tl_fail_memory(c->error);
     for (int set = 0; status == TL_OK && set < most && tried < TL_CHECK_SETS; set++) {
         tl_status read = tl_check_params(c, set, params, &held);
         if (read == TL_OK && (read = open_law(c, params, &t->law)) == TL_OK) {
             t->c = c;
-            t->written = &written;
+            t->seen = &seen;
             if (!tl_check_failed(c, TL_LAW_STIFFNESS) || isfinite(t->law.kn + t->law.ks))
-                run_trial(t);
+                status = try_set(t, set);
             close_law(&t->law);
             tried++;
         }
         free(held);
-        if (set == 0 && c->args && c->args->count > 0)
+        if (set == 0 && c->args && c->args->count > 0 && status == TL_OK)
             status = read; /* given by the user: what is wrong with them is to be told */
     }
     if (status == TL_OK && tried == 0)
         status = TL_E_ARGUMENT; /* with the sentence of the last attempt */
     else if (status == TL_OK && !tl_check_failed(c, TL_LAW_RUNS))
-        tell_unwritten(c, written);
+        tl_law_tell_unseen(c, &seen);
     free(t);
     free(params);
     return status;

@@ -23,10 +23,11 @@ static void scale_of(const char *unit, double *low, double *high)
     static const struct {
         const char *unit;
         double low, high;
-    } known[] = {{"Pa/m", 8, 10}, {"Pa", 4, 6.5}, {"m", -4, -1},   {"N/m", 8, 10},
-                 {"kg/m3", 3, 4}, {"1/s", -1, 1}, {"deg", 0, 1.6}, {"m/s", -3, 0}};
-    *low = -2;
-    *high = 0.5;
+    } known[] = {{"Pa/m", 8, 10}, {"Pa", 4, 6.5},  {"m", -4, -1},  {"N/m", 8, 10}, {"kg/m3", 3, 4},
+                 {"1/s", -1, 1},  {"deg", 0, 1.6}, {"m/s", -3, 0}, {"J/m2", 0, 4}, {"s", -4, 0}};
+    bool power = strncmp(unit, "Pa^", 3) == 0; /* stiffness at 1 Pa, to a power of the stress */
+    *low = power ? 6 : -2;
+    *high = power ? 10 : 0.5;
     for (size_t i = 0; i < sizeof known / sizeof *known; i++)
         if (strcmp(known[i].unit, unit) == 0) {
             *low = known[i].low;
@@ -106,7 +107,24 @@ static void add_text(tl_checker *c, const tl_value *v)
         snprintf(to, free_bytes, "%s%s = %s", comma, v->key, v->text);
 }
 
-tl_status tl_check_values(tl_checker *c, int set, tl_value **values, size_t *count, void **held)
+/* The other choice of one that has a few, or another value of the range. */
+static void make_other(const tl_param *p, uint64_t key, int *vectors, const tl_value *was,
+                       param_storage *d)
+{
+    make(p, tl_key(key, 3), true, vectors, d);
+    if (p->type == TL_PARAM_BOOL)
+        d->value = tl_arg_bool(p->name, was ? was->number == 0 : p->def[0] == 0);
+    for (int k = 0; p->type == TL_PARAM_ENUM && k < 20; k++) {
+        const char *had = was ? was->text : p->choices[(int)p->def[0]];
+        if (strcmp(d->value.text, had) != 0)
+            break;
+        make(p, tl_key(key, 4 + (uint64_t)k), true, vectors, d);
+    }
+}
+
+/* The values of a set, with the parameter `varied`, unless -1, of another value than in that set. */
+static tl_status values_of(tl_checker *c, int set, int varied, tl_value **values, size_t *count,
+                           void **held)
 {
     const tl_kind *kind = c->kind;
     param_storage *all = calloc(kind->param_count + 1, sizeof *all);
@@ -128,7 +146,11 @@ tl_status tl_check_values(tl_checker *c, int set, tl_value **values, size_t *cou
             all[i].value = *given;
         else if (required ? !(p->flags & TL_PARAM_FILE) : changed)
             make(p, tl_key(key, 2), draw, &vectors, &all[i]);
-        else
+        if ((int)i == varied) {
+            const tl_value was = all[i].value;
+            make_other(p, key, &vectors, was.key ? &was : NULL, &all[i]);
+        }
+        if (!all[i].value.key)
             continue;
         (*values)[(*count)++] = all[i].value;
         add_text(c, &all[i].value);
@@ -136,13 +158,18 @@ tl_status tl_check_values(tl_checker *c, int set, tl_value **values, size_t *cou
     return TL_OK;
 }
 
-tl_status tl_check_params(tl_checker *c, int set, void *params, void **held)
+tl_status tl_check_values(tl_checker *c, int set, tl_value **values, size_t *count, void **held)
+{
+    return values_of(c, set, -1, values, count, held);
+}
+
+static tl_status params_of(tl_checker *c, int set, int varied, void *params, void **held)
 {
     const tl_kind *kind = c->kind;
     char context[160];
     tl_value *values;
     size_t count;
-    tl_status status = tl_check_values(c, set, &values, &count, held);
+    tl_status status = values_of(c, set, varied, &values, &count, held);
     snprintf(context, sizeof context, "'%s' cannot be tried", kind->name);
     memset(params, 0, kind->params_size);
     const tl_args args = {values, count};
@@ -151,4 +178,14 @@ tl_status tl_check_params(tl_checker *c, int set, void *params, void **held)
                               params, context, c->error);
     free(values);
     return status;
+}
+
+tl_status tl_check_params(tl_checker *c, int set, void *params, void **held)
+{
+    return params_of(c, set, -1, params, held);
+}
+
+tl_status tl_check_varied(tl_checker *c, int set, uint32_t param, void *params, void **held)
+{
+    return params_of(c, set, (int)param, params, held);
 }

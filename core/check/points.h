@@ -6,6 +6,8 @@
 
 /* Points that a law is tried with at once. */
 #define TL_CHECK_POINTS 64
+/* Lanes of the longest batch, in which points are there more than once: no multiple of what a law may take at a time. */
+#define TL_CHECK_LANES (2 * TL_CHECK_POINTS + TL_LANES)
 
 /* Columns of a batch. */
 enum {
@@ -38,11 +40,17 @@ typedef struct tl_check_law_of {
     const void *self;
     uint32_t columns; /* of its states */
     double initial[TL_STATE_COLUMNS];
-    bool tangent[TL_STATE_COLUMNS]; /* the first column of a tangent */
+    bool tangent[TL_STATE_COLUMNS];   /* the first column of a tangent */
+    bool extensive[TL_STATE_COLUMNS]; /* goes with the area */
+    bool resets[TL_STATE_COLUMNS];    /* begins anew where the area changes */
 } tl_check_law_of;
+
+/* What is filled with other numbers than usually, for nothing may depend on it. */
+enum { TL_OTHER_STATES = 1, TL_OTHER_BEHIND = 2, TL_OTHER_ENERGIES = 4, TL_OTHER_ALL = 7 };
 
 /* What a call did besides its work. */
 typedef struct tl_check_call {
+    uint32_t other;        /* asked: TL_OTHER_* */
     bool no_energies;      /* asked: without the columns of energies */
     tl_status status;      /* of the law */
     const char *overwrote; /* what it must not write to, and has; NULL: nothing */
@@ -51,9 +59,13 @@ typedef struct tl_check_call {
 } tl_check_call;
 
 /* Calls the law on the points order[begin] .. order[begin + count - 1] (all in turn when `order` is NULL), in a batch of
- * their own that is padded, between guards, and writes what it gives to `out`. */
+ * their own that is padded, between guards, and writes what it gives to `out`; of a point that is there twice what the last gives.
+ * At most TL_CHECK_LANES. */
 void tl_check_call_law(const tl_check_law_of *law, const tl_check_points *in, tl_check_points *out,
                        const size_t *order, size_t begin, size_t count, tl_check_call *call);
+
+/* A number that fills what belongs to nobody, of a size that goes with the column; `other`: another one. */
+double tl_check_nobodys(int column, bool other);
 
 static inline tl_vec3 tl_check_vec(const tl_check_points *p, int column, size_t i)
 {

@@ -28,7 +28,15 @@ enum {
     CYCLE,
     STATES,
     STATELESS,
-    PULLS
+    PULLS,
+    ADDS_STATE,
+    READS,
+    STORED,
+    HEAT,
+    LOST,
+    UNWRITTEN,
+    AREA,
+    FLAGS
 };
 
 typedef struct law_params {
@@ -37,9 +45,11 @@ typedef struct law_params {
 } law_params;
 
 static const char *const law_faults[] = {
-    "none",          "runs",         "repeats", "alone",  "split",     "energies", "writes_input",
-    "writes_behind", "writes_state", "padding", "finite", "plane",     "still",    "turned",
-    "softer",        "shear_softer", "cycle",   "states", "stateless", "pulls",    NULL};
+    "none",         "runs",          "repeats",      "alone",        "split",  "energies",
+    "writes_input", "writes_behind", "writes_state", "padding",      "finite", "plane",
+    "still",        "turned",        "softer",       "shear_softer", "cycle",  "states",
+    "stateless",    "pulls",         "adds_state",   "reads",        "stored", "heat",
+    "lost",         "unwritten",     "area",         "flags",        NULL};
 
 static const tl_param law_table[] = {
     TL_PARAM(TL_PARAM_ENUM, law_params, law_fault, "", "what is wrong with the law",
@@ -49,7 +59,7 @@ static const tl_param law_table[] = {
 };
 
 static const tl_state law_state[] = {
-    {.size = sizeof(tl_state), .name = "path", .unit = "m", .doc = "length of shear so far"},
+    TL_STATE(TL_STATE_SCALAR, "path", "m", "length of shear so far", .transfer = TL_TRANSFER_RESET),
 };
 
 static int calls; /* which no plugin may count */
@@ -66,6 +76,10 @@ static void spoil(const law_params *p, const tl_law_batch *batch, uint32_t i)
     case WRITES_INPUT: ((double *)(uintptr_t)batch->du_n)[i] = 0; break;
     case WRITES_BEHIND: batch->f_n[batch->count] = 0; break;
     case WRITES_STATE: batch->state[1][i] = 1; break;
+    case ADDS_STATE: batch->state[1][i] += 1e-9; break;
+    case READS: batch->f_n[i] *= batch->state[1][i] > 0 ? 1 + 1e-15 : 1; break;
+    case AREA: batch->f_n[i] *= batch->area[i] > 0.5 ? 1 - 1e-5 : 1; break;
+    case FLAGS: batch->flags[i] = 0; break;
     case PADDING: batch->f_n[i] += p->kn * 1e-9; break;
     case FINITE: batch->f_n[i] += 0 * batch->du_n[i] / batch->dt; break;
     case PLANE:
@@ -80,6 +94,21 @@ static void spoil(const law_params *p, const tl_law_batch *batch, uint32_t i)
     }
 }
 
+/* What is wrong with the energies of a point. */
+static void spoil_energies(const law_params *p, const tl_law_batch *batch, uint32_t i,
+                           double before)
+{
+    if (!batch->stored)
+        return;
+    switch (p->law_fault) {
+    case STORED: batch->stored[i] *= -42; break;
+    case HEAT: batch->dissipated[i] = -batch->dissipated[i]; break;
+    case LOST: batch->dissipated[i] = 0; break;
+    case UNWRITTEN: batch->stored[i] = before; break;
+    default: break;
+    }
+}
+
 static tl_status law_update(const void *self, const tl_law_batch *batch, tl_report *report)
 {
     const law_params *p = self;
@@ -88,22 +117,30 @@ static tl_status law_update(const void *self, const tl_law_batch *batch, tl_repo
         return TL_E_NUMERIC;
     }
     for (uint32_t i = 0; i < batch->count; i++) {
-        double k = p->kn * batch->area[i], moved = 0,
-               total = k * batch->closure[i] + batch->f_n0[i];
+        double k = p->kn * batch->area[i], moved = 0, trial2 = 0, along = 0, shear2 = 0;
+        double total = k * batch->closure[i] + batch->f_n0[i];
         double f_n = total > 0 || p->law_fault == PULLS ? total : 0;
         /* a stiffness that grows with the pressure, in increments: sheared under load and back without, it gives energy */
         double shear = p->law_fault == CYCLE && k > 0 ? k * f_n / (f_n + 1e5 * batch->area[i]) : k;
         for (int j = 0; j < 3; j++) {
+            double before = batch->f_s[j][i], trial = before - shear * batch->du_s[j][i];
             moved += batch->du_s[j][i] * batch->du_s[j][i];
-            batch->f_s[j][i] = f_n > 0 ? batch->f_s[j][i] - shear * batch->du_s[j][i] : 0;
+            trial2 += trial * trial;
+            along += trial * before;
+            batch->f_s[j][i] = total > 0 ? trial : 0;
+            shear2 += batch->f_s[j][i] * batch->f_s[j][i];
         }
         batch->f_n[i] = f_n;
-        batch->flags[i] = f_n > 0 ? 0 : TL_POINT_OPEN;
+        batch->flags[i] = total > 0 || p->law_fault == PULLS ? 0 : TL_POINT_OPEN;
         if (p->law_fault != STATES)
             batch->state[0][i] += sqrt(moved);
         spoil(p, batch, i);
+        double per = k > 0 ? 0.5 / k : 0, was = batch->stored ? batch->stored[i] : 0;
         if (batch->stored)
-            batch->stored[i] = batch->dissipated[i] = 0;
+            batch->stored[i] = per * (f_n * f_n + shear2);
+        if (batch->dissipated)
+            batch->dissipated[i] = total > 0 || !(along > 0) ? 0 : per * along;
+        spoil_energies(p, batch, i, was);
     }
     return TL_OK;
 }
@@ -123,6 +160,17 @@ static int law_stateless(const void *self)
     return ((const law_params *)self)->law_fault == STATELESS;
 }
 
+/* Whatever stiffness() says. */
+static void law_across_gap(const void *self, const tl_law_batch *batch, double *lift, double *hold)
+{
+    const law_params *p = self;
+    for (uint32_t i = 0; i < batch->count; i++) {
+        double k = p->kn * batch->area[i];
+        lift[i] = batch->f_n0[i] / (k > 0 ? k : 1);
+        hold[i] = 0;
+    }
+}
+
 static uint32_t law_pulls(const void *self)
 {
     (void)self;
@@ -133,7 +181,8 @@ static const tl_law_ops law_ops = {.size = sizeof law_ops,
                                    .update = law_update,
                                    .stiffness = law_stiffness,
                                    .stateless = law_stateless,
-                                   .pulls = law_pulls};
+                                   .pulls = law_pulls,
+                                   .across_gap = law_across_gap};
 
 /* ---------------------------------------------------------------- damping ---------------- */
 

@@ -103,12 +103,19 @@ static void across_gap(const void *self, const tl_law_batch *batch, double *lift
 
 TL_LAW_STIFFNESS(params, stiff, soft);
 
-static const tl_law_ops ops = {.size = sizeof ops,
-                               .update = update,
-                               .stiffness = stiffness,
-                               .pulls = tl_pulls_bonded,
-                               .across_gap = across_gap,
-                               .linear = 1};
+static tl_status create(const void *given, void **self, tl_report *report)
+{
+    const params *p = given;
+    if (p->climb <= p->angle)
+        return tl_keep(p, sizeof *p, self, report);
+    snprintf(report->text, sizeof report->text,
+             "climb = %g deg must be <= angle = %g deg, or slip would make energy", p->climb,
+             p->angle);
+    return TL_E_ARGUMENT;
+}
+
+static const tl_law_ops ops =
+    TL_LAW_OPS(.pulls = tl_pulls_bonded, .across_gap = across_gap, .linear = 1);
 
 static const tl_kind kind =
     TL_KIND(TL_KIND_LAW, ops, .name = "glue", .doc = "Brittle glue on walls that ride up.",

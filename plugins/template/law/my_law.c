@@ -63,12 +63,12 @@ static tl_status update(const void *self, const tl_law_batch *batch, tl_report *
         /* a padding lane has area 0: it must neither divide by it nor slip; 1e-12 keeps rounding from counting as slip */
         if (trial > limit * (1 + 1e-12) && stiffness > 0) {
             double soft = left > 0 ? f_n * drop / p->distance : 0;
-            moved = f_n > 0 ? slip_of(trial, limit, f_n * low, stiffness, soft) : 0;
-            f_s = f_n > 0 ? trial - stiffness * moved : 0;
+            moved = f_n > 0 ? slip_of(trial, limit, f_n * low, stiffness, soft) : trial / stiffness;
+            f_s = f_n > 0 ? trial - stiffness * moved : 0; /* an open point lets go of all */
             for (int k = 0; k < 3; k++)
                 along += batch->f_s[k][i] * f[k] / trial; /* the force before, along the slip */
         }
-        slip[i] += moved;
+        slip[i] += f_n > 0 ? moved : 0;
         batch->flags[i] = normal < 0 ? TL_POINT_OPEN : moved > 0 ? TL_POINT_SLIPPING : 0;
         batch->f_n[i] = f_n;
         for (int k = 0; k < 3; k++)
