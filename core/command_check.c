@@ -106,7 +106,8 @@ int tl_command_check(int argc, char **argv)
         if (status == TL_OK)
             printf("%zu checks, %zu fault%s\n", list.checks, faults, faults == 1 ? "" : "s");
         else
-            fprintf(stderr, "talus: check: %s; values are given as NAME=VALUE\n", error.text);
+            fprintf(stderr, "talus: check: %s%s\n", error.text,
+                    status == TL_E_ARGUMENT ? "; values are given as NAME=VALUE" : "");
     }
     free(words);
     free(values);

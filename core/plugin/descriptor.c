@@ -429,7 +429,7 @@ static tl_status read_kinds(const version *v, tl_plugin *plugin, tl_kind *kinds)
     return TL_OK;
 }
 
-static tl_status check_version(const tl_plugin *given, tl_error *error)
+tl_status tl_descriptor_version(const tl_plugin *given, tl_error *error)
 {
     if (given->size < offsetof(tl_plugin, abi_minor) + sizeof given->abi_minor)
         return tl_fail(error, TL_E_PLUGIN, "its descriptor has size %u: not a Talus plugin",
@@ -447,7 +447,7 @@ tl_status tl_descriptor_read(const tl_plugin *given, tl_plugin **plugin, char no
 {
     *plugin = NULL;
     note[0] = '\0';
-    tl_status status = check_version(given, error);
+    tl_status status = tl_descriptor_version(given, error);
     if (status != TL_OK)
         return status;
     version v = {given->abi_minor, error};

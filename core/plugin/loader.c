@@ -39,6 +39,8 @@
 
 /* Folders searched at most: a TALUS_PLUGIN_PATH longer than this is a mistake. */
 #define MOST_FOLDERS 64
+/* Major versions that a plugin which refuses this one is asked about. */
+#define MOST_MAJORS 16
 
 /* Folders that were searched, by identity, so that two names of one folder count once. */
 typedef struct searched_folders {
@@ -56,6 +58,27 @@ static tl_plugin_entry_fn find_entry(void *handle)
     return entry;
 }
 
+/* Why a plugin gives no descriptor: by what it gives to hosts of other versions, the one it was built with. */
+static tl_status tell_refusal(tl_plugin_entry_fn entry, tl_error *error)
+{
+    for (uint32_t major = 1; major <= MOST_MAJORS; major++) {
+        tl_enter(NULL, ENTRY);
+        const tl_plugin *given = entry(major, UINT32_MAX);
+        tl_leave();
+        tl_status status = given ? tl_descriptor_version(given, error) : TL_OK;
+        if (status != TL_OK)
+            return status;
+        if (given)
+            return tl_fail(
+                error, TL_E_PLUGIN,
+                "it was built for plugin ABI %u.%u and cannot do without it, this Talus has "
+                "%u.%u",
+                given->abi_major, given->abi_minor, TL_ABI_MAJOR, TL_ABI_MINOR);
+    }
+    return tl_fail(error, TL_E_PLUGIN, "it refuses this Talus (plugin ABI %u.%u)", TL_ABI_MAJOR,
+                   TL_ABI_MINOR);
+}
+
 /* Asks an opened file for its descriptor and takes it into the registry. */
 static tl_status take_in(const char *path, void *handle, tl_error *error)
 {
@@ -67,8 +90,7 @@ static tl_status take_in(const char *path, void *handle, tl_error *error)
     const tl_plugin *given = entry(TL_ABI_MAJOR, TL_ABI_MINOR);
     tl_leave();
     if (!given)
-        return tl_fail(error, TL_E_PLUGIN, "it refuses this Talus (plugin ABI %u.%u)", TL_ABI_MAJOR,
-                       TL_ABI_MINOR);
+        return tell_refusal(entry, error);
     tl_plugin *plugin;
     char note[TL_NOTE_TEXT];
     tl_status status = tl_descriptor_read(given, &plugin, note, error);

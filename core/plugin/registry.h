@@ -21,6 +21,8 @@
  * left and the sentence says what is wrong. */
 tl_status tl_descriptor_read(const tl_plugin *given, tl_plugin **plugin, char note[TL_NOTE_TEXT],
                              tl_error *error);
+/* Fails, with both versions, where a descriptor is one of another major version, or none. */
+tl_status tl_descriptor_version(const tl_plugin *given, tl_error *error);
 void tl_descriptor_free(tl_plugin *plugin);
 
 /* "law", "damping", "generator" or "screen". */

@@ -83,6 +83,8 @@ def check_refusals(prefix, folder):
     for arguments, sentence in cases:
         done = run([program, *arguments], cwd=folder, check=False)
         expect(done.returncode == 1 and sentence in done.stderr, f"talus {' '.join(arguments)}: {done.stdout}{done.stderr}")
+    done = run([program, "check", "none.so"], cwd=folder, check=False)
+    expect("NAME=VALUE" not in done.stderr, f"a file that is not there is no matter of values: {done.stderr}")
     expect(not list((folder / "taken").iterdir()) and not (folder / "x").exists(), "something is left of what was refused")
 
     templates = prefix / "share/talus/templates/law"
