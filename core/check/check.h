@@ -44,6 +44,8 @@ tl_status tl_check_values(tl_checker *c, int set, tl_value **values, size_t *cou
 tl_status tl_check_params(tl_checker *c, int set, void *params, void **held);
 /* The same with another value of one parameter. */
 tl_status tl_check_varied(tl_checker *c, int set, uint32_t param, void *params, void **held);
+/* Whether an effect of that parameter is asked for: of those that are given, or of all when none is. */
+bool tl_check_asked(const tl_checker *c, uint32_t param);
 
 /* A number in [low, high) of a key. */
 static inline double tl_check_between(uint64_t key, double low, double high)

@@ -2,7 +2,7 @@
  *
  * With each set of parameters 64 bodies of random masses go through random motions under random forces; a few rest. Every
  * step is computed as a whole, in parts and body by body. */
-#include "check/check.h"
+#include "check/points.h"
 
 #include "base/inside.h"
 
@@ -11,16 +11,34 @@
 #include <string.h>
 
 #define BODIES 64
-/* Bodies behind the batch that nobody may write to, and the number there. */
+/* Bodies behind the batch that nobody may write to. */
 #define GUARD TL_LANES
 #define MOST (BODIES + TL_LANES + GUARD)
-#define UNTOUCHED (-7.25e77)
+/* States that a damping may look for: twice as many as there may be. */
+#define STATES_MOST (2 * TL_STATE_COLUMNS)
 #define STEPS 24
 #define DT 1e-4
 /* Power that may seem to be given, relative to |F||v|: rounding. */
 #define ROUNDING 1e-12
+/* Relative error of forces that turn with the bodies or grow with the masses. */
+#define SAME 1e-9
 
-enum { RUNS, REPEATS, ALONE, SPLIT, WRITES, FINITE, BRAKES, RESTS, FACTOR, STATES };
+enum {
+    RUNS,
+    REPEATS,
+    ALONE,
+    SPLIT,
+    WRITES,
+    READS,
+    FINITE,
+    BRAKES,
+    RESTS,
+    TURNED,
+    MASSES,
+    FACTOR,
+    STATES,
+    PARAMETERS
+};
 
 const tl_check_rule tl_check_damping_rules[] = {
     [RUNS] = {"runs", "begin() and update() return TL_OK, always when never_fails is set"},
@@ -29,11 +47,19 @@ const tl_check_rule tl_check_damping_rules[] = {
     [SPLIT] = {"split", "batches of other sizes and orders give the same bits"},
     [WRITES] = {"writes",
                 "nothing is written but damping forces, moments and alpha; states in begin()"},
+    [READS] = {"reads",
+               "nothing depends on states that are not declared or on what lies behind the "
+               "batch"},
     [FINITE] = {"finite", "forces, moments, alpha and states are finite numbers"},
     [BRAKES] = {"brakes", "alpha is not negative, and no body is given power"},
     [RESTS] = {"rests", "a body without velocity is given no force"},
-    [FACTOR] = {"step factor", "step_factor() is in (0, 1]"},
-    [STATES] = {"states", "each declared state is written"},
+    [TURNED] = {"turned", "bodies turned to other axes get the turned forces"},
+    [MASSES] = {"masses", "twice the masses and forces get twice the damping force"},
+    [FACTOR] = {"step factor",
+                "step_factor() is in (0, 1], and allows for damping forces that grow "
+                "with the unbalanced ones"},
+    [STATES] = {"states", "each declared state is written and read"},
+    [PARAMETERS] = {"parameters", "each parameter has an effect"},
     {NULL, NULL},
 };
 
@@ -62,15 +88,24 @@ typedef struct buffer {
     _Alignas(TL_ALIGN) double c[COLUMNS][MOST];
 } buffer;
 
+/* Parameters whose effect is looked for, at most. */
+#define PARAMS_MOST 64
+
 typedef struct trial {
     tl_checker *c;
     const tl_damping_ops *ops;
     const void *self;
     uint32_t columns;
-    double state[TL_STATE_COLUMNS + 1]; /* one more, which is not declared */
-    double *at[2 * TL_STATE_COLUMNS];
+    double state[STATES_MOST]; /* those behind the declared ones are nobody's */
+    double *at[STATES_MOST];
     bodies in, out;
-    uint32_t written;
+    double began[STATES_MOST]; /* states before begin() */
+    tl_damping_totals totals;  /* of the step */
+    double amplified; /* by how much the unbalanced forces grow by those of damping, at the most */
+    bool other;       /* what is nobody's holds other numbers than usually */
+    bool looks_back;  /* at the forces of the step before */
+    uint32_t written, read; /* bit k: state k has been */
+    bool matters[PARAMS_MOST];
 } trial;
 
 static tl_vec3 vec(const bodies *b, int column, size_t i)
@@ -147,16 +182,19 @@ static tl_status call(trial *t, buffer *b, size_t count)
 }
 
 /* Calls the damping on some bodies, as the host would: the batch is padded, with bodies that rest. */
-static bool run(trial *t, bodies *out, const size_t *order, size_t begin, size_t count)
+static bool run(trial *t, const bodies *in, bodies *out, const size_t *order, size_t begin,
+                size_t count)
 {
     buffer now, before;
-    double state[TL_STATE_COLUMNS + 1];
+    double state[STATES_MOST];
     size_t padded = (count + TL_LANES - 1) / TL_LANES * TL_LANES;
     for (size_t l = 0; l < MOST; l++)
         for (int k = 0; k < COLUMNS; k++) {
             size_t i = l < count ? (order ? order[begin + l] : begin + l) : 0;
             double rest = k == MASS || k == INERTIA ? 1 : 0;
-            now.c[k][l] = l < count ? t->in.c[k][i] : l < padded ? rest : UNTOUCHED;
+            now.c[k][l] = l < count    ? in->c[k][i]
+                          : l < padded ? rest
+                                       : tl_check_nobodys(k, t->other);
         }
     before = now;
     memcpy(state, t->state, sizeof state);
@@ -180,7 +218,7 @@ static bool run_parts(trial *t, bodies *out, const size_t *order, const size_t *
 {
     size_t begin = 0;
     for (size_t k = 0; begin < BODIES; begin += parts[k++ % most])
-        if (!run(t, out, order, begin, parts[k % most]))
+        if (!run(t, &t->in, out, order, begin, parts[k % most]))
             return false;
     return true;
 }
@@ -197,12 +235,22 @@ static void compare(trial *t, int check, const bodies *other, const char *how)
 
 /* ---------------------------------------------------------------- one step --------------- */
 
+static void call_begin(trial *t)
+{
+    tl_report report = {.size = sizeof report};
+    if (!t->ops->begin)
+        return;
+    tl_enter(t->c->kind, "begin");
+    note_failure(t, "begin", &report, t->ops->begin(t->self, &t->totals, t->at, &report));
+    tl_leave();
+}
+
 static void begin_step(trial *t, int step)
 {
     tl_damping_totals totals = {.size = sizeof totals, .dt = DT};
-    tl_report report = {.size = sizeof report};
-    double before[TL_STATE_COLUMNS + 1];
+    double before[STATES_MOST];
     memcpy(before, t->state, sizeof before);
+    memcpy(t->began, t->state, sizeof t->began);
     for (size_t i = 0; i < BODIES; i++) {
         tl_vec3 v = vec(&t->in, VELOCITY, i), w = vec(&t->in, SPIN, i);
         totals.power_unit +=
@@ -212,11 +260,8 @@ static void begin_step(trial *t, int step)
     totals.kinetic = 0.5 * totals.power_unit;
     totals.kinetic_rate =
         totals.kinetic / DT * tl_check_between(tl_key(7, (uint64_t)step), -0.01, 0.01);
-    if (t->ops->begin) {
-        tl_enter(t->c->kind, "begin");
-        note_failure(t, "begin", &report, t->ops->begin(t->self, &totals, t->at, &report));
-        tl_leave();
-    }
+    t->totals = totals;
+    call_begin(t);
     for (uint32_t k = 0; k < t->columns; k++) {
         t->written |= t->state[k] != before[k] ? 1u << k : 0u;
         if (!isfinite(t->state[k]))
@@ -224,7 +269,7 @@ static void begin_step(trial *t, int step)
                           t->state[k]);
     }
     if (memcmp(t->state + t->columns, before + t->columns,
-               (TL_STATE_COLUMNS + 1 - t->columns) * sizeof before[0]) != 0)
+               (STATES_MOST - t->columns) * sizeof before[0]) != 0)
         tl_check_note(t->c, WRITES, "begin() writes to a state that the damping does not declare");
 }
 
@@ -251,6 +296,183 @@ static void check_numbers(trial *t)
     }
 }
 
+/* ---------------------------------------------------------------- other steps ------------ */
+
+/* Another order of the axes for each body, two of them the other way round. */
+static void turn(bodies *b)
+{
+    static const int vectors[] = {VELOCITY,     SPIN,          FORCE,     MOMENT,
+                                  FORCE_BEFORE, MOMENT_BEFORE, OUT_FORCE, OUT_MOMENT};
+    static const double signs[4][3] = {{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}};
+    for (size_t v = 0; v < sizeof vectors / sizeof *vectors; v++)
+        for (size_t i = 0; i < BODIES; i++) {
+            double was[3];
+            for (int k = 0; k < 3; k++)
+                was[k] = b->c[vectors[v] + k][i];
+            for (size_t k = 0; k < 3; k++)
+                b->c[vectors[v] + (int)k][i] = signs[i / 3 % 4][k] * was[(k + i % 3) % 3];
+        }
+}
+
+/* Compares with what was expected, column by column. */
+static void expect(trial *t, int check, const bodies *expected, const bodies *is, const char *how)
+{
+    for (size_t i = 0; i < BODIES; i++)
+        for (int k = OUT; k < COLUMNS; k++) {
+            int first = k < OUT_ALPHA ? k - (k - OUT) % 3 : k;
+            double size = k < OUT_ALPHA ? tl_v3_norm(vec(expected, first, i)) : expected->c[k][i];
+            if (fabs(expected->c[k][i] - is->c[k][i]) > SAME * (fabs(size) + fabs(is->c[k][i])))
+                tl_check_note(t->c, check, "%s is %g, not %g, %s",
+                              k == OUT_ALPHA ? "alpha" : "a damping force", is->c[k][i],
+                              expected->c[k][i], how);
+        }
+}
+
+static void check_turned(trial *t)
+{
+    bodies in = t->in, out, expected = t->out;
+    turn(&in);
+    turn(&expected);
+    if (run(t, &in, &out, NULL, 0, BODIES))
+        expect(t, TURNED, &expected, &out, "for a body that is turned to other axes");
+}
+
+static void check_masses(trial *t)
+{
+    bodies in = t->in, out, expected = t->out;
+    for (int k = FORCE; k < OUT_ALPHA; k++)
+        for (size_t i = 0; i < BODIES; i++) {
+            in.c[k][i] *= 2;
+            expected.c[k][i] *= 2;
+        }
+    if (run(t, &in, &out, NULL, 0, BODIES))
+        expect(t, MASSES, &expected, &out, "with twice the mass, inertia, force and moment");
+}
+
+static double share_of(const trial *t, const bodies *in, const bodies *out, int given, int made,
+                       size_t i)
+{
+    tl_vec3 more = tl_v3_sub(vec(in, given, i), vec(&t->in, given, i));
+    tl_vec3 adds = tl_v3_sub(vec(out, made, i), vec(&t->out, made, i));
+    double size = tl_v3_norm(more);
+    return size > 0 ? tl_v3_norm(adds) / size : 0;
+}
+
+/* A damping force that grows with the unbalanced one makes the model stiffer. */
+static void check_factor(trial *t, double factor)
+{
+    bodies in = t->in, out;
+    for (int k = FORCE; k < MASS; k++)
+        for (size_t i = 0; i < BODIES; i++)
+            in.c[k][i] *= 2;
+    if (!run(t, &in, &out, NULL, 0, BODIES))
+        return;
+    for (size_t i = 0; i < BODIES; i++) {
+        t->amplified = fmax(t->amplified, share_of(t, &in, &out, FORCE, OUT_FORCE, i));
+        t->amplified = fmax(t->amplified, share_of(t, &in, &out, MOMENT, OUT_MOMENT, i));
+    }
+    double most = 1 / sqrt(1 + t->amplified);
+    if (factor > most * (1 + SAME))
+        tl_check_note(
+            t->c, FACTOR,
+            "step_factor() = %g, but damping forces grow by %g of the unbalanced ones, which "
+            "allows for 1 / sqrt(1 + %g) = %g",
+            factor, t->amplified, t->amplified, most);
+}
+
+/* Goes from states before begin() through the step once more; whether it gave something else. The states are then what they were
+ * after the step. */
+static bool gives_other(trial *t, const double began[STATES_MOST])
+{
+    double after[STATES_MOST];
+    bodies out;
+    memcpy(after, t->state, sizeof after);
+    memcpy(t->state, began, sizeof after);
+    call_begin(t);
+    bool other = memcmp(after, t->state, t->columns * sizeof after[0]) != 0;
+    other |= run(t, &t->in, &out, NULL, 0, BODIES) &&
+             memcmp(t->out.c[OUT], out.c[OUT], (COLUMNS - OUT) * sizeof out.c[0]) != 0;
+    memcpy(t->state, after, sizeof after);
+    return other;
+}
+
+/* With other numbers in what is nobody's. */
+static void check_reads(trial *t)
+{
+    double began[STATES_MOST];
+    memcpy(began, t->began, sizeof began);
+    for (uint32_t k = t->columns; k < STATES_MOST; k++)
+        began[k] = tl_check_nobodys((int)k, true);
+    t->other = true;
+    if (gives_other(t, began))
+        tl_check_note(
+            t->c, READS,
+            "what the damping gives depends on a state that it does not declare, or on what "
+            "lies behind the batch");
+    t->other = false;
+}
+
+/* States that something depends on: another state, the bodies or itself; from before begin() or after it. */
+static void see_states(trial *t)
+{
+    for (uint32_t k = 0; k < t->columns; k++) {
+        double began[STATES_MOST], is = t->state[k];
+        bodies out;
+        if (t->read >> k & 1)
+            continue;
+        memcpy(began, t->began, sizeof began);
+        began[k] = 1.5 * began[k] + 0.25;
+        bool other = gives_other(t, began);
+        t->state[k] = 1.5 * is + 0.25;
+        other |= run(t, &t->in, &out, NULL, 0, BODIES) &&
+                 memcmp(t->out.c[OUT], out.c[OUT], (COLUMNS - OUT) * sizeof out.c[0]) != 0;
+        t->state[k] = is;
+        t->read |= other ? 1u << k : 0;
+    }
+}
+
+/* The same step of a damping with another value of one parameter. */
+static void see_param(trial *t, uint32_t k, void *params)
+{
+    void *held = NULL, *self = params;
+    const void *own = t->self;
+    char text[sizeof t->c->params_text];
+    tl_report report = {.size = sizeof report};
+    memcpy(text, t->c->params_text, sizeof text);
+    if (tl_check_varied(t->c, t->c->set, k, params, &held) == TL_OK &&
+        (!t->ops->create || t->ops->create(params, &self, &report) == TL_OK)) {
+        t->self = self;
+        t->matters[k] = gives_other(t, t->began);
+        if (t->ops->destroy)
+            t->ops->destroy(self);
+    }
+    t->self = own;
+    memcpy(t->c->params_text, text, sizeof text);
+    free(held);
+}
+
+/* Force and moment of the step before, which are only there for those that ask. */
+static void see_before(trial *t)
+{
+    bodies in = t->in, out;
+    for (int k = FORCE_BEFORE; k < MASS; k++)
+        for (size_t i = 0; i < BODIES; i++)
+            in.c[k][i] = t->in.c[k][(i + 1) % BODIES];
+    t->looks_back |= run(t, &in, &out, NULL, 0, BODIES) &&
+                     memcmp(t->out.c[OUT], out.c[OUT], (COLUMNS - OUT) * sizeof out.c[0]) != 0;
+}
+
+static void see_params(trial *t)
+{
+    void *params = malloc(t->c->kind->params_size + 1);
+    for (uint32_t k = 0; params && k < t->c->kind->param_count && k < PARAMS_MOST; k++)
+        if (!t->matters[k])
+            see_param(t, k, params);
+    free(params);
+}
+
+/* ---------------------------------------------------------------- all of it -------------- */
+
 static void run_trial(trial *t)
 {
     static const size_t one[] = {1}, parts[] = {8, 3, 40, 13};
@@ -264,19 +486,24 @@ static void run_trial(trial *t)
         begin_step(t, step);
         for (size_t i = 0; i < BODIES; i++)
             order[i] = (i * 37 + (size_t)step) % BODIES;
-        if (!run(t, &t->out, NULL, 0, BODIES))
+        if (!run(t, &t->in, &t->out, NULL, 0, BODIES))
             return;
         if (run_parts(t, &other, NULL, one, 1))
             compare(t, ALONE, &other, "alone");
         if (run_parts(t, &other, order, parts, sizeof parts / sizeof *parts))
             compare(t, SPLIT, &other, "in batches of 8, 3, 40 and 13 in another order");
-        if (run(t, &other, NULL, 0, BODIES))
+        if (run(t, &t->in, &other, NULL, 0, BODIES))
             compare(t, REPEATS, &other, "when called again");
         check_numbers(t);
+        check_turned(t);
+        check_masses(t);
+        check_factor(t, factor);
+        check_reads(t);
+        see_states(t);
+        see_params(t);
+        see_before(t);
     }
 }
-
-/* ---------------------------------------------------------------- all of it -------------- */
 
 static tl_status open_damping(trial *t, tl_checker *c, void *params)
 {
@@ -285,10 +512,11 @@ static tl_status open_damping(trial *t, tl_checker *c, void *params)
     t->ops = c->kind->ops;
     t->self = params;
     t->columns = c->kind->state_count;
-    for (uint32_t k = 0; k < TL_STATE_COLUMNS + 1; k++)
-        t->state[k] = k < t->columns ? c->kind->states[k].initial : UNTOUCHED;
-    for (uint32_t k = 0; k < 2 * TL_STATE_COLUMNS; k++)
-        t->at[k] = &t->state[k < t->columns ? k : TL_STATE_COLUMNS];
+    t->amplified = 0;
+    for (uint32_t k = 0; k < STATES_MOST; k++) {
+        t->state[k] = k < t->columns ? c->kind->states[k].initial : tl_check_nobodys((int)k, false);
+        t->at[k] = &t->state[k];
+    }
     if (!t->ops->create)
         return TL_OK;
     void *self = NULL;
@@ -298,6 +526,29 @@ static tl_status open_damping(trial *t, tl_checker *c, void *params)
                        tl_report_text(&report, status));
     t->self = self;
     return TL_OK;
+}
+
+static void tell_unseen(const trial *t)
+{
+    tl_checker *c = t->c;
+    c->params_text[0] = '\0';
+    for (uint32_t k = 0; k < t->columns; k++)
+        if (!(t->written >> k & 1))
+            tl_check_note(c, STATES, "state '%s' is declared and was never written",
+                          c->kind->states[k].name);
+        else if (!(t->read >> k & 1))
+            tl_check_note(c, STATES, "state '%s' is written and never read: nothing depends on it",
+                          c->kind->states[k].name);
+    if (t->ops->before && !t->looks_back)
+        tl_check_note(c, READS,
+                      "before is set, but nothing depends on the forces of the step before");
+    for (uint32_t k = 0; k < c->kind->param_count && k < PARAMS_MOST; k++)
+        if (!t->matters[k] && tl_check_asked(c, k))
+            tl_check_note(c, PARAMETERS,
+                          "parameter '%s' has no effect: another value gives the same forces, "
+                          "alpha and states with all "
+                          "of %d sets of parameters",
+                          c->kind->params[k].name, TL_CHECK_SETS);
 }
 
 tl_status tl_check_damping_kind(tl_checker *c)
@@ -320,12 +571,8 @@ tl_status tl_check_damping_kind(tl_checker *c)
     }
     if (status == TL_OK && tried == 0)
         status = TL_E_ARGUMENT; /* with the sentence of the last attempt */
-    for (uint32_t k = 0; status == TL_OK && k < t->columns; k++) {
-        c->params_text[0] = '\0';
-        if (!(t->written >> k & 1) && !tl_check_failed(c, RUNS))
-            tl_check_note(c, STATES, "state '%s' is declared and was never written",
-                          c->kind->states[k].name);
-    }
+    else if (status == TL_OK && !tl_check_failed(c, RUNS))
+        tell_unseen(t);
     free(t);
     free(params);
     return status;

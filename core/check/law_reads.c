@@ -106,16 +106,6 @@ void tl_law_see_params(tl_law_trial *t, tl_check_law varied[], const bool open[]
     }
 }
 
-static bool is_given(const tl_checker *c, const tl_param *p)
-{
-    for (size_t i = 0; c->args && i < c->args->count; i++) {
-        const char *key = c->args->values[i].key;
-        if (strcmp(key, p->name) == 0 || (p->alias && strcmp(key, p->alias) == 0))
-            return true;
-    }
-    return false;
-}
-
 void tl_law_tell_unseen(tl_checker *c, const tl_check_seen *seen)
 {
     const tl_kind *kind = c->kind;
@@ -144,7 +134,7 @@ void tl_law_tell_unseen(tl_checker *c, const tl_check_seen *seen)
         column += width;
     }
     for (uint32_t k = 0; k < kind->param_count && k < TL_CHECK_PARAMS; k++)
-        if (!seen->matters[k] && (!c->args || c->args->count == 0 || is_given(c, &kind->params[k])))
+        if (!seen->matters[k] && tl_check_asked(c, k))
             tl_check_note(c, TL_LAW_PARAMETERS,
                           "parameter '%s' has no effect: another value gives the same forces, "
                           "energies, states and "

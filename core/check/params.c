@@ -94,6 +94,11 @@ static const tl_value *given_value(const tl_args *args, const tl_param *p)
     return NULL;
 }
 
+bool tl_check_asked(const tl_checker *c, uint32_t param)
+{
+    return !c->args || c->args->count == 0 || given_value(c->args, &c->kind->params[param]);
+}
+
 static void add_text(tl_checker *c, const tl_value *v)
 {
     size_t used = strlen(c->params_text), free_bytes = sizeof c->params_text - used;
