@@ -177,7 +177,8 @@ static void judge(tl_law_trial *t, const walk *w, const double stored[TL_CHECK_P
     for (size_t i = 0; i < TL_CHECK_POINTS; i++) {
         const sums *s = &w->of[i];
         bool closed = i % SORTS < PRESSED || i % SORTS == PARTLY;
-        double most = ERROR * (s->size + stored[i]);
+        double most = ERROR * (s->size + stored[i]),
+               left = s->work - s->heat - (s->stored - stored[i]);
         if (closed && s->work < -most)
             tl_check_note(
                 t->c, TL_LAW_CYCLE,
@@ -186,20 +187,18 @@ static void judge(tl_law_trial *t, const walk *w, const double stored[TL_CHECK_P
         if (s->least < -1e-9 * s->size)
             tl_check_note(t->c, TL_LAW_HEAT,
                           "dissipated = %.3g J in a step, which must not be negative", s->least);
-        if (fabs(s->without_heat) > most)
+        if (s->without_heat > most)
             tl_check_note(t->c, TL_LAW_BALANCE,
                           "%.3g J of the work are %s in steps without heat: stored does not change "
                           "by the work "
                           "of the forces (work %.3g J, stored %.3g J at the end)",
-                          fabs(s->without_heat), s->without_heat > 0 ? "lost" : "made", s->work,
-                          s->stored);
-        if (fabs(s->with_heat) > most)
+                          s->without_heat, left > 0 ? "lost" : "made", s->work, s->stored);
+        if (s->with_heat > most)
             tl_check_note(t->c, TL_LAW_BALANCE,
                           "%.3g J of the work are %s in steps with heat: dissipated is not the "
                           "work less what is "
                           "stored (work %.3g J, stored %.3g J at the end, heat %.3g J)",
-                          fabs(s->with_heat), s->with_heat > 0 ? "lost" : "made", s->work,
-                          s->stored, s->heat);
+                          s->with_heat, left > 0 ? "lost" : "made", s->work, s->stored, s->heat);
     }
 }
 

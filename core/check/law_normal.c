@@ -153,6 +153,18 @@ static void check_pressed(tl_law_trial *t, const point *p, const double energy[3
                       p->kept, energy[1]);
 }
 
+/* The initial force is that at closure 0. */
+static void check_initial(tl_law_trial *t, const point *p, size_t i)
+{
+    double f_n0 = t->in.c[TL_AT_F_N0][i];
+    bool there = p->fresh && t->in.c[TL_AT_CLOSURE][i] == 0 && p->apart == 0 && f_n0 > 0;
+    if (there && fabs(p->f_n - f_n0) > ERROR * (f_n0 + t->scale[i]))
+        tl_check_note(
+            t->c, TL_LAW_PRESSES,
+            "f_n = %g N of a new point at closure 0, where the initial force is f_n0 = %g N",
+            p->f_n, f_n0);
+}
+
 static void check_gap(tl_law_trial *t, const point *p, size_t i)
 {
     const tl_law_ops *ops = t->law.of.ops;
@@ -197,6 +209,7 @@ void tl_law_check_normal(tl_law_trial *t, int step)
     for (size_t i = 0; i < TL_CHECK_POINTS; i++) {
         point p = point_at(t, &gaps, i, step);
         check_gap(t, &p, i);
+        check_initial(t, &p, i);
         if (ops->linear)
             check_linear(t, &p);
         else if (ops->pressed)
