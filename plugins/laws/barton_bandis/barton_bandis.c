@@ -307,9 +307,12 @@ TL_IN_LOOP void rub(const rough *given, uint32_t lanes, trial *restrict t)
     double opens[STRIDE], slip[STRIDE], found[STRIDE];
 #pragma omp simd
     for (uint32_t i = 0; i < lanes; i++) {
-        /* walls that were pressed ride up from there, those that meet now from what presses them now */
-        double pressed = t->before[i] > 0 ? t->before[i] : t->stress[i];
-        opens[i] = law.dilation * tl_lane_tan(0.5 * t->m[i] * roughness(&law, pressed));
+        /* walls that were pressed ride up from there, those that meet now, or hardly met, from what presses them now */
+        double pressed = t->before[i] > t->stress[i] ? t->before[i] : t->stress[i];
+        /* those that part in this step ride up while they are pressed */
+        double before = closure_of(&law, t->before[i]), v = t->v[i], parts = before - v;
+        double share = v < 0 ? before / (parts > 0 ? parts : 1) : 1;
+        opens[i] = share * law.dilation * tl_lane_tan(0.5 * t->m[i] * roughness(&law, pressed));
         slip[i] = 0;
         found[i] = t->shear[i] > t->limit[i] * (1 + ROUNDING) ? 0 : 1;
     }

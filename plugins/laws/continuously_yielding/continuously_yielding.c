@@ -13,7 +13,7 @@
  *
  * Reversals. A joint has an r for each way it may move, e: r(e) = a + min(0, b.e), with the states a, `reversal`, and b, `way`.
  * While it moves by du along e, r(e) stays, and r(-e), which a motion back begins with, comes to the present -t / t_m, at most 0.75:
- *     dr(-e) = (-t / t_m - r(-e)) du / l,     l = 0.01 t_m / ks
+ *     dr(-e) = (-t / t_m - r(-e)) du / l,     l = 0.01 t_m / ks + 1e-6 R
  * what b has across e fades as r(-e) does. So a motion back over l or more is a reversal; one that is next to nothing changes next to
  * nothing, for no test tells which is which.
  *
@@ -35,8 +35,9 @@
 #define ROUNDING 1e-14
 /* The largest r at a reversal. */
 #define MOST_RATIO 0.75
-/* The way l in which r comes to that of a motion back, over t_m / ks. */
+/* The way l in which r comes to that of a motion back, over t_m / ks; and what it is at the least, over the roughness. */
 #define MEMORY 0.01
+#define LEAST_MEMORY 1e-6
 /* Normal stress and strength, Pa, that count as none. */
 #define FAINT 1e-200
 /* Share by which energy may be above its bound by rounding. */
@@ -96,7 +97,7 @@ typedef struct yielding {
     double stress_top;              /* s(closure_max), as it is computed */
     double initial, residual;       /* rad */
     double tangent_i, tangent;      /* of the two */
-    double per_roughness, dilation, softening;
+    double per_roughness, least_memory, dilation, softening;
 } yielding;
 
 /* `curved` is a constant at each call: whether stiffness depends on the stress, which takes logarithms and exponentials. */
@@ -188,6 +189,7 @@ static tl_status create(const void *given, void **self, tl_report *report)
                     .tangent_i = tl_tan(p->phi_i * TL_DEGREE),
                     .tangent = tl_tan(p->phi * TL_DEGREE),
                     .per_roughness = 1 / p->roughness,
+                    .least_memory = LEAST_MEMORY * p->roughness,
                     .dilation = p->dilation ? 1 : 0,
                     .softening = p->softening ? 1 : 0};
     double most = p->en > 0 ? tl_lane_exp(tl_lane_log(p->kn_max / p->an) / p->en) : 1e300;
@@ -263,8 +265,8 @@ typedef struct wearing {
 } wearing;
 
 /* Found twice: with the angle before, and with the mean of it and of what that comes to. */
-TL_IN_LOOP wearing wear_off(const yielding *law, double along, double angle, double stress,
-                            double most, double ratio, double ks, double d)
+TL_IN_LOOP wearing wear_off(const yielding *law, double along, double angle, double v,
+                            double stress, double most, double ratio, double ks, double d)
 {
     wearing w = {.up = rise(law, along, most, ratio, ks, d)};
     w.slip = d - w.up / (ks > 0 ? ks : 1);
@@ -274,7 +276,7 @@ TL_IN_LOOP wearing wear_off(const yielding *law, double along, double angle, dou
     w.up = rise(law, along, stress * tl_lane_tan(mean), ratio, ks, d);
     w.slip = d - w.up / (ks > 0 ? ks : 1);
     w.slip = w.slip > 0 ? w.slip : 0;
-    w.slip = stress > 0 ? w.slip : 0;
+    w.slip = v < 0 ? 0 : w.slip;
     w.left = tl_lane_exp(-w.slip * law->per_roughness);
     return w;
 }
@@ -285,15 +287,12 @@ typedef struct turning {
     double ratio, across, along;
 } turning;
 
-/* `most` is the strength, `rise` the stress of an elastic step of this length, `share` that of the strength that is used along it. */
-TL_IN_LOOP turning remember(double last, double toward, double share, double ratio, double rise,
-                            double most)
+/* Half of what was remembered is left after a way of the length `memory`; `share` is that of the strength which is used along this way. */
+TL_IN_LOOP turning remember(double last, double toward, double share, double ratio, double way,
+                            double memory)
 {
-    double back = last - (toward > 0 ? toward : 0);
-    double opposite = most > FAINT ? -share : 0, room = rise + MEMORY * most;
-    double renewed = room > FAINT ? rise / (room > FAINT ? room : 1) : 1;
-    opposite = opposite < MOST_RATIO ? opposite : MOST_RATIO;
-    renewed = rise > 0 ? renewed : 0;
+    double back = last - (toward > 0 ? toward : 0), renewed = way / (way + memory);
+    double opposite = -share < MOST_RATIO ? -share : MOST_RATIO;
     back = back + renewed * (opposite - back);
     double across = 1 - renewed;
     return (turning){ratio > back ? ratio : back, across, ratio - back - across * toward};
@@ -327,14 +326,15 @@ TL_IN_LOOP double slide(const yielding *given, const tl_law_batch *batch, uint32
                most = moves ? stress * tl_lane_tan(angle) : 0;
         double toward = ex * way_x[i] + ey * way_y[i] + ez * way_z[i];
         double was = worn[i], ratio = last[i] + (toward < 0 ? toward : 0);
-        /* the angle of dilation is that of the stresses before; walls that meet now had none */
-        double press = c.f_n[i] * per, held = press > 0 ? press : stress;
+        /* the angle of dilation is that of the stresses before; walls that meet now had none, and those that hardly met are like
+         * them */
+        double press = c.f_n[i] * per, held = press > stress ? press : stress;
         double slope = before / (held > FAINT ? held : 1);
         double tangent = (slope - law.tangent) / (1 + slope * law.tangent);
         tangent = tangent > 0 ? law.dilation * tangent : 0;
         wearing w = {.left = 1};
         if (moves)
-            w = wear_off(&law, along, angle, stress, most, ratio, ks, d);
+            w = wear_off(&law, along, angle, v, stress, most, ratio, ks, d);
         double up = w.up, slip = w.slip;
         double after = law.residual + (angle - law.residual) * w.left;
         double x = c.f_x[i] * per - up * ex, y = c.f_y[i] * per - up * ey,
@@ -348,7 +348,8 @@ TL_IN_LOOP double slide(const yielding *given, const tl_law_batch *batch, uint32
         double first = c.f_x[i] * c.du_x[i] + c.f_y[i] * c.du_y[i] + c.f_z[i] * c.du_z[i];
         double second = x * c.du_x[i] + y * c.du_y[i] + z * c.du_z[i];
         double share = -scale * (x * ex + y * ey + z * ez) / (most > FAINT ? most : 1);
-        turning turned = remember(last[i], toward, share, ratio, ks * d, most);
+        double memory = (ks > 0 ? MEMORY * most / (ks > 0 ? ks : 1) : 0) + law.least_memory;
+        turning turned = remember(last[i], toward, most > FAINT ? share : 0, ratio, d, memory);
         double across = turned.across, difference = turned.along;
         t->walls[i] = walls;
         t->v[i] = v;
