@@ -21,6 +21,8 @@ typedef struct tl_cell {
     double pressed_second, apart_second; /* m^4 */
     double pressed_more, apart_more; /* what the volumes are beyond those that the law got, m^3 */
     double hold;                     /* share of tension that was held before the law */
+    tl_vec3
+        centre; /* area times its centroid from that of the patch, m^3; found where lifts differ */
     /* of a law that is not linear: int u^3 dA, m^5, int u^4 dA, m^6, and int u^2 x dA, m^5, of what is closed, and what its stress
      * changes */
     double pressed_third, pressed_fourth;

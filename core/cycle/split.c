@@ -20,6 +20,7 @@
 #include "base/columns.h"
 #include "contact/detection.h"
 #include "contact/places.h"
+#include "contact/points.h"
 #include "contact/store.h"
 #include "cycle/cycle_data.h"
 #include "model/inertia.h"
@@ -334,10 +335,18 @@ static tl_sym3 mean_stress(const tl_model *m, const tl_split_part *parts, size_t
     return (tl_sym3){by * sum.xx, by * sum.yy, by * sum.zz, by * sum.xy, by * sum.yz, by * sum.zx};
 }
 
+/* Puts a point back to how it was made. In this step its law has been given roundings of closure and motion: what it has made of them,
+ * an opening or a bond that is lost, would be there by chance. */
+static void begin_point(tl_points_table *p, size_t row, const tl_law *law)
+{
+    p->flags[row] &= TL_POINT_APART;
+    tl_point_initial_state(p, row, law->kind);
+}
+
 /* The points of the contacts of a system, with the tractions of a stress. */
 static void list_points(const tl_split_system *s, const tl_sym3 *stress)
 {
-    const tl_detect *d = s->m->detect;
+    tl_detect *d = s->m->detect;
     const tl_point_lanes *lanes = &d->lanes[0];
     for (size_t i = 0; i < s->contact_count; i++) {
         const tl_split_contact *c = &s->contacts[i];
@@ -346,7 +355,9 @@ static void list_points(const tl_split_system *s, const tl_sym3 *stress)
             tl_split_point *p = &s->points[c->first + k];
             tl_split_part *a = &s->parts[c->a], *b = &s->parts[c->b];
             tl_vec3 arm = tl_columns_get(lanes->arm, k), n = tl_columns_get(lanes->normal, k);
-            double area = d->points.area[tl_point_row(&d->contacts, c->row, k)];
+            size_t row = tl_point_row(&d->contacts, c->row, k);
+            double area = d->points.area[row];
+            begin_point(&d->points, row, &s->m->joint_laws[d->contacts.law[c->row]]);
             *p = (tl_split_point){.a = c->a, .b = c->b, .area = area, .arm_a = arm, .n = n};
             p->arm_b = tl_v3_sub(arm, tl_v3_sub(b->place, a->place));
             a->area += area;

@@ -1,13 +1,34 @@
 /* bear.c - what a law bears at the points of a contact.
  *
  * The law is asked as in a step, with copies of the points: initial normal forces and shear forces are those that are given, the
- * closure counts from the present place and nothing moves. What it gives back is what it bears. */
+ * closure counts from the present place and nothing moves. What it gives back is what it bears.
+ *
+ * A law whose slip opens the joint answers to more shear than it bears by slipping, and so presses more than is given: as much more as was
+ * asked for too much. No wall has moved, so that is none of what it bears. Such points are asked again for a share of the shear, until
+ * they press as is given: the surplus goes with the share in a line for a law that is linear, and is squeezed in for others. */
 #include "force/bear.h"
 
 #include "base/columns.h"
 #include "base/inside.h"
 #include "contact/detection.h"
 #include "contact/places.h"
+
+/* Of a normal force, what a law may add to it by rounding. */
+#define SAME_FORCE 1e-12
+/* How often points are asked again, at the most, and a share of the shear that is found. */
+#define MOST_ASKED 12
+#define FOUND 1e-10
+
+/* Columns of lanes of points that are asked again: the share of the shear that is asked for, the largest that was borne, the least that
+ * was not, and by how much the law then pressed more. */
+typedef struct shares {
+    double *now, *borne, *beyond, *surplus;
+} shares;
+
+static shares shares_of(const tl_point_lanes *l)
+{
+    return (shares){l->lift, l->hold, l->apart, l->arm[1]};
+}
 
 /* The columns of lanes in which the copies are: those in which a law's forces are noted elsewhere, and the arms. */
 static void copy_points(const tl_model *m, uint32_t c, const tl_traction *given,
@@ -19,7 +40,8 @@ static void copy_points(const tl_model *m, uint32_t c, const tl_traction *given,
         bool there = k < d->contacts.point_count[c];
         size_t i = there ? tl_point_row(&d->contacts, c, k) : 0;
         double area = there ? p->area[i] : 0;
-        tl_vec3 shear = there ? tl_v3_scale(area, given[k].shear) : tl_v3(0, 0, 0);
+        double part = there ? area * shares_of(l).now[k] : 0;
+        tl_vec3 shear = there ? tl_v3_scale(part, given[k].shear) : tl_v3(0, 0, 0);
         l->arm[0][k] = area;
         l->edge[k] = there ? area * given[k].normal : 0;
         l->before[0][k] = l->edge[k];
@@ -34,14 +56,14 @@ static void copy_points(const tl_model *m, uint32_t c, const tl_traction *given,
     }
 }
 
-bool tl_contact_bear(const tl_model *m, uint32_t c, const tl_traction *given, tl_traction *borne,
-                     double *stored)
+/* Asks the law for the shares of the shear. */
+static bool ask(const tl_model *m, uint32_t c, const tl_traction *given, tl_traction *borne,
+                double *stored)
 {
     const tl_detect *d = m->detect;
     const tl_point_lanes *l = &d->lanes[0];
     const tl_law *law = &m->joint_laws[d->contacts.law[c]];
     size_t count = d->contacts.point_count[c], lanes = (count + TL_LANES - 1) / TL_LANES * TL_LANES;
-    tl_contact_places(m, c, l);
     copy_points(m, c, given, l, lanes);
     tl_law_batch batch = {.size = sizeof batch,
                           .count = (uint32_t)lanes,
@@ -75,4 +97,78 @@ bool tl_contact_bear(const tl_model *m, uint32_t c, const tl_traction *given, tl
             return false;
     }
     return status == TL_OK;
+}
+
+/* By how much a point presses more than is given. */
+static double surplus_of(const tl_traction *given, const tl_traction *borne)
+{
+    double press = fmax(given->normal, 0), more = borne->normal - press;
+    return more > SAME_FORCE * borne->normal ? more : 0;
+}
+
+/* The first shares to ask for again, from what the whole has come to; how many points press more than is given. A strength that goes with
+ * the pressure falls to that of the given one; any more that it has is found. */
+static size_t begin_shares(const tl_traction *given, const tl_traction *borne, size_t count,
+                           const shares *s)
+{
+    size_t left = 0;
+    for (size_t k = 0; k < count; k++) {
+        double surplus = surplus_of(&given[k], &borne[k]), size = tl_v3_norm(given[k].shear);
+        if (!(surplus > 0) || !(size > 0))
+            continue;
+        double falls = fmax(given[k].normal, 0) / borne[k].normal;
+        s->borne[k] = fmin(1, falls * tl_v3_norm(borne[k].shear) / size);
+        s->beyond[k] = 1;
+        s->surplus[k] = surplus;
+        s->now[k] = 0.5 * (s->borne[k] + 1);
+        left++;
+    }
+    return left;
+}
+
+/* The next shares, from what the last have come to; how many are not found. */
+static size_t next_shares(const tl_traction *given, const tl_traction *borne, size_t count,
+                          const shares *s)
+{
+    size_t left = 0;
+    for (size_t k = 0; k < count; k++) {
+        if (!(s->beyond[k] - s->borne[k] > FOUND))
+            continue;
+        double surplus = surplus_of(&given[k], &borne[k]), now = s->now[k], line = NAN;
+        if (surplus > 0) {
+            line = now - surplus * (s->beyond[k] - now) / (s->surplus[k] - surplus);
+            s->beyond[k] = now;
+            s->surplus[k] = surplus;
+        } else {
+            s->borne[k] = now;
+        }
+        double least = s->borne[k], most = s->beyond[k];
+        s->now[k] = line >= least && line < most ? line : 0.5 * (least + most);
+        left++;
+    }
+    return left;
+}
+
+bool tl_contact_bear(const tl_model *m, uint32_t c, const tl_traction *given, tl_traction *borne,
+                     double *stored)
+{
+    const tl_point_lanes *l = &m->detect->lanes[0];
+    size_t count = m->detect->contacts.point_count[c];
+    const shares s = shares_of(l);
+    tl_contact_places(m, c, l);
+    for (size_t k = 0; k < count; k++)
+        s.now[k] = s.borne[k] = s.beyond[k] = 1;
+    if (!ask(m, c, given, borne, stored))
+        return false;
+    size_t left = begin_shares(given, borne, count, &s);
+    if (left == 0)
+        return true;
+    for (int asked = 0; asked < MOST_ASKED && left > 0; asked++) {
+        if (!ask(m, c, given, borne, stored))
+            return false;
+        left = next_shares(given, borne, count, &s);
+    }
+    for (size_t k = 0; k < count; k++)
+        s.now[k] = s.borne[k];
+    return ask(m, c, given, borne, stored);
 }

@@ -43,6 +43,8 @@
 
 #define INNER 0.30550504633038933 /* sqrt(7 / 75) */
 #define SIDE (16.0 / 68)
+/* The largest stiffness of what presses, over that which the law says: what is more is rounding, or slip has opened it. */
+#define SAME_STIFFNESS (1 + 1e-12)
 /* How much sooner t is 1 for a law that is not linear, whose points' own rule is not exact. */
 #define SOON 8
 
@@ -398,6 +400,37 @@ static void integrate_cells(const patch *of, bool curved)
     }
 }
 
+/* The least lift of the points of a patch. Where others are more, the centres of all cells are found. In a triangle of the fan a cell is
+ * r ((1 - q) e + q f) with r and q between two bounds each, and its area that of the triangle times 2 r dr dq. */
+static double find_least_lift(const patch *of)
+{
+    const double *lift = of->lanes->lift + of->lane, cube = INNER * INNER * INNER;
+    const double per = 1 / tl_point_rule_of(false).reach, near = SIDE - 0.5 * SIDE * SIDE;
+    const double next = 0.5 * SIDE * SIDE;
+    tl_cell *cell = of->lanes->cell + of->lane;
+    size_t n = of->corners;
+    double least = lift[0], most = lift[0];
+    for (size_t k = 1; k <= 2 * n; k++) {
+        least = fmin(least, lift[k * TL_LANES]);
+        most = fmax(most, lift[k * TL_LANES]);
+    }
+    for (size_t k = 0; k <= 2 * n; k++)
+        cell[k * TL_LANES].centre = tl_v3(0, 0, 0);
+    for (size_t k = 0; k < n && most > least; k++) {
+        size_t one = n + k, other = n + (k + 1) % n;
+        tl_vec3 e = tl_v3_scale(per, tl_v3_sub(arm_of(of, one), arm_of(of, 2 * n)));
+        tl_vec3 f = tl_v3_scale(per, tl_v3_sub(arm_of(of, other), arm_of(of, 2 * n)));
+        double fan = area_of(of, k) / cell_share[1], by = fan * (1 - cube) * 2 / 3;
+        tl_vec3 *to[4] = {&cell[one * TL_LANES].centre, &cell[k * TL_LANES].centre,
+                          &cell[other * TL_LANES].centre, &cell[2 * n * TL_LANES].centre};
+        *to[0] = tl_v3_madd(tl_v3_madd(*to[0], by * near, e), by * next, f);
+        *to[1] = tl_v3_madd(*to[1], by * (0.5 - SIDE), tl_v3_add(e, f));
+        *to[2] = tl_v3_madd(tl_v3_madd(*to[2], by * next, e), by * near, f);
+        *to[3] = tl_v3_madd(*to[3], fan * cube / 3, tl_v3_add(e, f));
+    }
+    return least;
+}
+
 /* How far the means are those of the cells, and not of the points: t. */
 static double share_of_cells(const patch *of)
 {
@@ -431,8 +464,23 @@ static void leave_rest(const patch *of, size_t k, double p, double q, const doub
     cell->apart_second = 0.5 * (cell->apart_second - apart * apart / area);
 }
 
+/* What a lift is beyond the least of the patch presses at the point, as it does while all is closed, and not over the cell: else a
+ * patch would press elsewhere as soon as some of it is apart, by a rounding. `more`: mean of u over the cell less u at the point. */
+static void press_at_point(const patch *of, size_t k, double least, double more)
+{
+    size_t i = of->lane + k * TL_LANES;
+    tl_cell *cell = &of->lanes->cell[i];
+    double area = area_of(of, k), beyond_least = of->lanes->lift[i] - least;
+    if (!(beyond_least > 0) || !(cell->pressed_volume > 0))
+        return;
+    double closed = fmin(area * beyond_least, cell->pressed_volume) / area;
+    tl_vec3 arm = tl_v3_sub(arm_of(of, k), arm_of(of, 2 * of->corners));
+    cell->pressed = tl_v3_madd(cell->pressed, -closed, tl_v3_madd(cell->centre, -area, arm));
+    cell->pressed_second -= closed * area * more;
+}
+
 /* Gives a point the closure at which its whole cell would press as its closed part does. The cell keeps what it has beside that. */
-static void put_means(const patch *of, size_t k, double share, bool curved)
+static void put_means(const patch *of, size_t k, double share, bool curved, double least)
 {
     const tl_point_lanes *t = of->lanes;
     size_t i = of->lane + k * TL_LANES;
@@ -455,15 +503,19 @@ static void put_means(const patch *of, size_t k, double share, bool curved)
     t->apart[i] = q;
     leave_rest(of, k, p, q, whole);
     cell->pressed_second += second;
+    press_at_point(of, k, least, more);
 }
 
 /* What the cell of a point that has gone by its own closure has beside that. */
-static void leave_own(const patch *of, size_t k)
+static void leave_own(const patch *of, size_t k, double least)
 {
     const tl_point_lanes *t = of->lanes;
     size_t i = of->lane + k * TL_LANES;
     const double whole[2] = {t->cell[i].pressed_volume, t->cell[i].apart_volume};
-    leave_rest(of, k, t->closure[i] + t->lift[i], 0, whole);
+    double u = t->closure[i] + t->lift[i];
+    double more = (whole[0] - whole[1]) / area_of(of, k) - u;
+    leave_rest(of, k, u, 0, whole);
+    press_at_point(of, k, least, more);
 }
 
 /* The patches of a SIMD group whose points get means. Gives how many, and the lanes of these and of those that hold throughout. */
@@ -514,9 +566,9 @@ tl_part_lanes tl_simd_group_part(const tl_model *m, const tl_law *law, const tl_
     if (curved)
         tl_cells_bend(m, law, group, t, lane, lanes.parts);
     for (size_t j = 0; j < count; j++) {
-        double share = share_of_cells(&of[j]);
+        double share = share_of_cells(&of[j]), least = find_least_lift(&of[j]);
         for (size_t k = 0; k <= 2 * of[j].corners; k++)
-            put_means(&of[j], k, curved ? fmin(1, SOON * share) : share, curved);
+            put_means(&of[j], k, curved ? fmin(1, SOON * share) : share, curved, least);
     }
     return lanes;
 }
@@ -537,8 +589,9 @@ uint32_t tl_simd_group_broken(const tl_model *m, const tl_simd_group *group,
             continue;
         out |= 1u << l;
         integrate_cells(&of, false);
+        double least = find_least_lift(&of);
         for (size_t k = 0; k <= 2 * of.corners; k++)
-            leave_own(&of, k);
+            leave_own(&of, k, least);
     }
     return out;
 }
@@ -557,7 +610,9 @@ static tl_part_sums sum_cells(const patch *of, const tl_law *law, tl_vec3 turn)
         double pulls = law->kn * t->hold[i], lost = law->kn * (cell->hold - t->hold[i]);
         double pressed = of->p->f_n[of->row + k * TL_LANES] + pulls * cell->apart_volume;
         double straight = tl_law_is_linear(law) ? law->kn : 0;
+        /* what slip has opened in this step presses at the point: it is not in the volume, which may be next to nothing */
         double spring = cell->pressed_volume > 0 ? pressed / cell->pressed_volume : straight;
+        spring = fmin(spring, SAME_STIFFNESS * law->kn);
         double moved = du * cell->apart_more + tl_v3_dot(tl_v3_cross(turn, cell->apart), n);
         sum = tl_v3_madd(tl_v3_madd(sum, spring, cell->pressed), -pulls, cell->apart);
         out.stored += spring * cell->pressed_second + pulls * cell->apart_second;
