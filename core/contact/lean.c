@@ -9,7 +9,6 @@
 #include "contact/detection.h"
 #include "contact/pair_view.h"
 #include "contact/places.h"
-#include "contact/stress_plane.h"
 
 /* Difference of lifts, over the largest, below which they are the same. */
 #define SAME 1e-12
@@ -63,8 +62,8 @@ static bool find_slope(const sums *s, double slope[2])
     double x = s->wx / s->w, y = s->wy / s->w, l = s->wl / s->w;
     double i11 = s->wxx - s->w * x * x, i12 = s->wxy - s->w * x * y, i22 = s->wyy - s->w * y * y;
     double m1 = s->wxl - s->w * x * l, m2 = s->wyl - s->w * y * l;
-    double det = tl_points_span(i11, i12, i22, s->w, ON_A_LINE * sqrt(s->w));
-    if (!(det > 0) || !(s->high - s->low > SAME * fmax(fabs(s->low), fabs(s->high))))
+    double det = i11 * i22 - i12 * i12, line = ON_A_LINE * ON_A_LINE * s->w * s->w * (i11 + i22);
+    if (!(det > line) || !(s->high - s->low > SAME * fmax(fabs(s->low), fabs(s->high))))
         return false;
     slope[0] = (m1 * i22 - m2 * i12) / det;
     slope[1] = (m2 * i11 - m1 * i12) / det;

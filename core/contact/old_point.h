@@ -18,14 +18,6 @@ typedef struct tl_old_point {
     uint32_t key, flags;
 } tl_old_point;
 
-/* What is one number a point: initial normal stress, reference overlap. */
-enum { TL_SCALAR_N0, TL_SCALAR_REFERENCE, TL_SCALAR_COUNT };
-
-static inline double tl_old_scalar(const tl_old_point *old, int scalar)
-{
-    return scalar == TL_SCALAR_N0 ? old->n0 : old->reference;
-}
-
 /* Shear of points: on B. */
 typedef struct tl_heritage {
     double area, energy; /* of the springs, times 2 ks */

@@ -43,6 +43,23 @@ static tl_facing facing_of(const tl_facet *f, const body_frames *frames)
                            f->offset, f->ride);
 }
 
+tl_contact_run tl_contact_run_to(const tl_facet *laid, const tl_pair_pose *now)
+{
+    tl_mat3 own = tl_m3_identity();
+    return (tl_contact_run){.laid = laid,
+                            .by_b = tl_facing_ride(&own, &now->turn, now->shift, &laid->laid.turn,
+                                                   laid->laid.shift, 1)};
+}
+
+void tl_contact_run_add(tl_contact_run *run, tl_vec3 old, tl_vec3 now)
+{
+    tl_vec3 way = tl_v3_sub(placed(&run->by_b, old), old);
+    tl_vec3 rest = tl_v3_madd(tl_v3_sub(now, old), -run->laid->ride, way);
+    rest = tl_v3_madd(rest, -tl_v3_dot(rest, run->laid->na), run->laid->na);
+    run->way2 = fmax(run->way2, tl_v3_norm2(way));
+    run->run2 = fmax(run->run2, tl_v3_norm2(rest));
+}
+
 void tl_contact_places(const tl_model *m, uint32_t contact, const tl_point_lanes *l)
 {
     const tl_contacts *contacts = &m->detect->contacts;

@@ -1,14 +1,15 @@
-/* transfer.c - new contact points in the place of old ones, when the contact polygon has changed.
+/* transfer.c - new contact points in the place of old ones, where the contact polygon has changed or its points have run along it.
  *
- * Each new point takes over the stresses of the old point of the same key, or else those of the plane
- * fitted through the old points: the nearest one's would wear a stress that varies over the face down
- * while corners come and go. A law's states are those of the same key or the nearest.
- * Then the fields are corrected. Total initial normal force and both its moments follow the area. What comes into contact
- * brings no shear, and what goes takes its own with it: where the area shrinks total shear force follows it, where it grows
- * the force stays; so does the shear's moment about the normal, with the second moment of the area. Where the area
- * and its centroid stay the same, all are kept exactly, unless that took stresses beyond those there were. Moments are
- * taken about the centroids of the areas, so a uniform stress stays uniform when the area changes. The shear springs
- * never have more energy than before; what they have less is heat. */
+ * What points carry belongs to places of the faces: each new point's cell gets the mean of the old cells that it lies on, by their
+ * common areas (ring.c). So sums over the area stay, and nothing goes beyond what there was: a bond that is lost does not come back.
+ * Means wear down what varies over the face. So of stresses, and of states that are linear in the force, the plane fitted through the
+ * old points is taken out before and put back after, with the same sum and moments: a linear field stays what it is to rounding, and,
+ * since the points integrate squares of it exactly, so does its energy; that of what is off the plane can only become less.
+ * Sum and moments are taken about the centroids of the areas and follow the area, so a uniform stress stays uniform when the
+ * area changes. What comes into contact brings no shear, and what goes takes its own with it: where the area shrinks total shear
+ * force follows it, where it grows the force stays; so does the shear's moment about the normal, with the second moment of the area.
+ * The shear springs never have more energy than before; what they have less is heat.
+ * Points of a part of a block that was cut take the stresses and states at their places: of the nearest, by the plane. */
 #include "contact/transfer.h"
 
 #include "base/columns.h"
@@ -17,8 +18,8 @@
 #include "contact/estate.h"
 #include "contact/places.h"
 #include "contact/points.h"
+#include "contact/ring.h"
 #include "contact/shear.h"
-#include "contact/stress_plane.h"
 #include "narrow/point2.h"
 #include "narrow/view.h"
 
@@ -28,7 +29,7 @@
 
 typedef tl_old_point old_point;
 
-/* Makes room for `count` old points and as many values. */
+/* Makes room for so many points before and after, and what goes with each. */
 static bool reserve(tl_narrow_scratch *scratch, size_t count)
 {
     if (count <= scratch->old_capacity)
@@ -36,45 +37,78 @@ static bool reserve(tl_narrow_scratch *scratch, size_t count)
     old_point *old = realloc(scratch->old, 2 * count * sizeof *old);
     if (old)
         scratch->old = old;
-    double *value = realloc(scratch->value, 2 * count * sizeof *value);
+    double *value = realloc(scratch->value, 4 * count * sizeof *value);
     if (value)
         scratch->value = value;
-    if (!old || !value)
+    tl_ring_cell *cell = realloc(scratch->cell, 2 * count * sizeof *cell);
+    if (cell)
+        scratch->cell = cell;
+    if (!old || !value || !cell)
         return false;
     scratch->old_capacity = 2 * count;
     return true;
 }
 
-/* Old points have gone along with A, in whose frame they are. */
-static void read_old(const tl_model *m, uint32_t c, tl_narrow_scratch *scratch,
-                     const tl_point_lanes *lanes)
+static const tl_kind *kind_of(const tl_model *m, uint32_t c)
 {
-    const tl_contacts *contacts = &m->detect->contacts;
-    const tl_points_table *p = &m->detect->points;
-    tl_contact_places(m, c, lanes);
-    for (size_t k = 0; k < contacts->point_count[c]; k++)
-        scratch->old[k] = tl_point_as_old(p, contacts, c, k, tl_columns_get(lanes->arm, k));
+    uint32_t law = m->detect->contacts.law[c];
+    return law == TL_NO_ROW ? NULL : m->joint_laws[law].kind;
 }
 
-/* What new points take over from. */
-typedef struct old_source {
-    const old_point *points;
-    size_t count;
-    bool keys;   /* the same features have the same keys */
-    bool states; /* are of the contact's law */
-} old_source;
-
-/* The old point of the same key, or the nearest. */
-static const old_point *match(const old_source *from, uint32_t key, tl_vec3 arm)
+/* The points of a contact, in the places where `lanes` has them. */
+static void read_points(const tl_model *m, uint32_t c, const tl_point_lanes *lanes, old_point *out)
 {
-    const old_point *old = from->points, *best = &old[0];
-    for (size_t k = 0; k < from->count; k++) {
-        if (from->keys && old[k].key == key)
-            return &old[k];
-        if (tl_v3_norm2(tl_v3_sub(old[k].arm, arm)) < tl_v3_norm2(tl_v3_sub(best->arm, arm)))
-            best = &old[k];
+    const tl_contacts *contacts = &m->detect->contacts;
+    for (size_t k = 0; k < contacts->point_count[c]; k++)
+        out[k] = tl_point_as_old(&m->detect->points, contacts, c, k, tl_columns_get(lanes->arm, k));
+}
+
+/* Puts the points of the manifold in the place of a contact's, and reads them: without stress, their states at the beginning. */
+static void place_points(tl_model *m, uint32_t c, const tl_manifold *g, const tl_point_lanes *lanes,
+                         old_point *fresh)
+{
+    tl_contacts *contacts = &m->detect->contacts;
+    tl_points_table *p = &m->detect->points;
+    contacts->facet[c] = g->facet;
+    contacts->point_count[c] = (uint16_t)g->point_count;
+    for (size_t k = 0; k < contacts->point_capacity[c]; k++)
+        tl_point_clear(p, tl_point_row(contacts, c, k));
+    for (size_t k = 0; k < g->point_count; k++) {
+        size_t i = tl_point_row(contacts, c, k);
+        tl_columns_put(p->p, i, g->points[k].p);
+        p->area[i] = g->points[k].area;
+        p->key[i] = g->points[k].key;
+        tl_point_initial_state(p, i, kind_of(m, c));
     }
-    return best;
+    tl_contact_begin(m, c, lanes); /* positions and normals in the present place */
+    read_points(m, c, lanes, fresh);
+}
+
+/* Gives the points of a contact what they carry. */
+static void write_points(tl_model *m, uint32_t c, const old_point *fresh)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    tl_points_table *p = &m->detect->points;
+    for (size_t k = 0; k < contacts->point_count[c]; k++) {
+        size_t i = tl_point_row(contacts, c, k);
+        const old_point *now = &fresh[k];
+        tl_columns_put(p->f_s, i, tl_v3_scale(now->area, now->shear));
+        p->f_n[i] = now->area * now->f_n;
+        if (p->f_n0) {
+            p->f_n0[i] = now->area * now->n0;
+            p->reference[i] = now->reference;
+        }
+        p->flags[i] = now->flags;
+        for (uint32_t s = 0; s < p->state_columns; s++)
+            p->state[s][i] = now->state[s];
+    }
+}
+
+/* Turns a vector of an old plane into that of a new one. */
+static tl_vec3 into_plane(tl_vec3 v, tl_vec3 from, tl_vec3 to)
+{
+    v = tl_v3_turn(v, from, to);
+    return tl_v3_madd(v, -tl_v3_dot(v, to), to);
 }
 
 /* Totals of a set of points: area, its centroid, and of a field and of shear over it. */
@@ -102,221 +136,30 @@ static void close_area(totals *t)
     t->normal = tl_v3_unit(t->normal);
 }
 
-/* Adds what a point of known centre and normal adds besides. */
-static void add_shear(totals *t, double area, tl_vec3 arm, tl_vec3 f)
+/* Totals of points of this area. */
+static totals totals_of(const old_point *point, size_t count)
 {
-    tl_vec3 across = tl_v3_cross(t->normal, tl_v3_sub(arm, t->centre));
-    t->shear = tl_v3_add(t->shear, f);
-    t->torsion += tl_v3_dot(across, f);
-    t->polar += area * tl_v3_norm2(across);
-    t->energy += area > 0 ? tl_v3_norm2(f) / area : 0;
-    t->moment = tl_v3_add(t->moment, tl_v3_cross(arm, f));
+    totals t = {0};
+    for (size_t k = 0; k < count; k++)
+        add_area(&t, point[k].area, point[k].arm, point[k].normal);
+    close_area(&t);
+    return t;
 }
 
-/* The same of all points of a contact, anew. */
-static void sum_shear(const tl_points_table *p, const tl_point_lanes *lanes, size_t begin,
-                      size_t count, totals *t)
+/* Their shear, anew. */
+static void sum_shear(const old_point *point, size_t count, totals *t)
 {
     t->shear = t->moment = tl_v3(0, 0, 0);
     t->torsion = t->polar = t->energy = 0;
     for (size_t k = 0; k < count; k++) {
-        size_t i = begin + k * TL_LANES;
-        add_shear(t, p->area[i], tl_columns_get(lanes->arm, k), tl_columns_get(p->f_s, i));
+        tl_vec3 across = tl_v3_cross(t->normal, tl_v3_sub(point[k].arm, t->centre));
+        tl_vec3 f = tl_v3_scale(point[k].area, point[k].shear);
+        t->shear = tl_v3_add(t->shear, f);
+        t->torsion += tl_v3_dot(across, f);
+        t->polar += point[k].area * tl_v3_norm2(across);
+        t->energy += tl_v3_dot(f, point[k].shear);
+        t->moment = tl_v3_add(t->moment, tl_v3_cross(point[k].arm, f));
     }
-}
-
-/* `value`, but at most so large that times `reach` it makes `largest`. */
-static double bounded(double value, double reach, double largest)
-{
-    return fabs(value) * reach > largest ? copysign(largest / reach, value) : value;
-}
-
-/* How far points reach out from their centre. */
-static double reach_of(const tl_point_lanes *lanes, size_t count, const totals *now)
-{
-    double reach = 0;
-    for (size_t k = 0; k < count; k++) {
-        tl_vec3 arm = tl_v3_sub(tl_columns_get(lanes->arm, k), now->centre);
-        reach = fmax(reach, tl_v3_norm(tl_v3_cross(now->normal, arm)));
-    }
-    return reach;
-}
-
-/* A point's shear force becomes `keep` times what it is and a uniform traction and a twist: in its own plane, for
- * normals lean by a little. */
-static void add_traction(tl_points_table *p, const tl_point_lanes *lanes, size_t begin,
-                         size_t count, const totals *now, double keep, tl_vec3 traction,
-                         double twist)
-{
-    for (size_t k = 0; k < count; k++) {
-        size_t i = begin + k * TL_LANES;
-        tl_vec3 arm = tl_v3_sub(tl_columns_get(lanes->arm, k), now->centre);
-        tl_vec3 stress = tl_v3_madd(traction, twist, tl_v3_cross(now->normal, arm));
-        tl_vec3 f = tl_v3_scale(keep, tl_columns_get(p->f_s, i));
-        tl_vec3 own = tl_columns_get(lanes->normal, k);
-        f = tl_v3_madd(f, p->area[i], stress);
-        tl_columns_put(p->f_s, i, tl_v3_madd(f, -tl_v3_dot(f, own), own));
-    }
-}
-
-/* Brings the energy of the shear springs down to `most`. Of all stresses of the same force and torsion a uniform traction
- * with a twist has the least energy, and what else there is has an energy of its own: that is made less. */
-static void limit_energy(tl_points_table *p, const tl_point_lanes *lanes, size_t begin,
-                         size_t count, totals *now, double most, double reach, double place)
-{
-    sum_shear(p, lanes, begin, count, now);
-    if (!(now->energy > most))
-        return;
-    double twist = reach > place ? now->torsion / now->polar : 0;
-    double least = tl_v3_norm2(now->shear) / now->area + twist * twist * now->polar;
-    double rest = now->energy - least, keep = sqrt(fmax(0, most - least) / fmax(rest, DBL_MIN));
-    keep = fmin(keep, 1);
-    add_traction(p, lanes, begin, count, now, keep, tl_v3_scale((1 - keep) / now->area, now->shear),
-                 (1 - keep) * twist);
-    sum_shear(p, lanes, begin, count, now);
-    if (now->energy > most) { /* a torsion too large for it, which a bounded twist has left */
-        add_traction(p, lanes, begin, count, now, sqrt(most / now->energy), tl_v3(0, 0, 0), 0);
-        sum_shear(p, lanes, begin, count, now);
-    }
-}
-
-/* Adds a uniform traction and a twist so that shear force and torsion become `want`'s, and sees that there is no more
- * energy than there was. The twist adds no more than `largest`, a stress: points with hardly an area would need any
- * stress to make up for the torsion, and keep it when their areas grow. Points within `place` of their centre are in one
- * place, which no twist can turn: their arms are rounding. */
-static void correct_shear(tl_points_table *p, const tl_point_lanes *lanes, size_t begin,
-                          size_t count, totals *now, const totals *want, double largest,
-                          double place)
-{
-    sum_shear(p, lanes, begin, count, now);
-    tl_vec3 n = now->normal, force = tl_v3_sub(want->shear, now->shear);
-    double reach = reach_of(lanes, count, now);
-    force = tl_v3_madd(force, -tl_v3_dot(force, n), n);
-    double twist =
-        reach > place ? bounded((want->torsion - now->torsion) / now->polar, reach, largest) : 0;
-    add_traction(p, lanes, begin, count, now, 1, tl_v3_scale(1 / now->area, force), twist);
-    limit_energy(p, lanes, begin, count, now, want->energy, reach, place);
-}
-
-/* Integral of a field over the points' areas, and its moments along two directions. */
-typedef struct moments {
-    double sum, along1, along2;
-} moments;
-
-/* Adds a linear correction to a field (one value a point) so that its sum and moments become
- * `want`; its slopes add no more than `largest`, for the reason given at correct_shear. */
-static void correct_field(const tl_points_table *p, const tl_point_lanes *lanes, double *value,
-                          size_t begin, size_t count, const totals *now, moments want,
-                          double largest, double place)
-{
-    tl_vec3 t1 = tl_v3_perpendicular(now->normal), t2 = tl_v3_cross(now->normal, t1);
-    double i11 = 0, i12 = 0, i22 = 0, reach = 0;
-    for (size_t k = 0; k < count; k++) {
-        tl_vec3 arm = tl_v3_sub(tl_columns_get(lanes->arm, k), now->centre);
-        reach = fmax(reach, tl_v3_norm(arm));
-        double a = p->area[begin + k * TL_LANES], x = tl_v3_dot(arm, t1), y = tl_v3_dot(arm, t2);
-        want.sum -= a * value[k];
-        want.along1 -= a * value[k] * x;
-        want.along2 -= a * value[k] * y;
-        i11 += a * x * x;
-        i12 += a * x * y;
-        i22 += a * y * y;
-    }
-    double det = tl_points_span(i11, i12, i22, now->area, place), g1 = 0, g2 = 0;
-    if (det > 0) {
-        g1 = bounded((want.along1 * i22 - want.along2 * i12) / det, reach, largest);
-        g2 = bounded((want.along2 * i11 - want.along1 * i12) / det, reach, largest);
-    }
-    for (size_t k = 0; k < count; k++) {
-        tl_vec3 arm = tl_v3_sub(tl_columns_get(lanes->arm, k), now->centre);
-        value[k] += want.sum / now->area + g1 * tl_v3_dot(arm, t1) + g2 * tl_v3_dot(arm, t2);
-    }
-}
-
-static moments field_moments(const old_point *old, size_t count, int field, const totals *t,
-                             tl_vec3 normal)
-{
-    tl_vec3 t1 = tl_v3_perpendicular(normal), t2 = tl_v3_cross(normal, t1);
-    moments out = {0, 0, 0};
-    for (size_t k = 0; k < count; k++) {
-        tl_vec3 arm = tl_v3_sub(old[k].arm, t->centre);
-        double v = old[k].area * tl_old_scalar(&old[k], field);
-        out.sum += v;
-        out.along1 += v * tl_v3_dot(arm, t1);
-        out.along2 += v * tl_v3_dot(arm, t2);
-    }
-    return out;
-}
-
-/* Writes the points of the manifold, with what they take over from the old ones. */
-static void write_points(tl_model *m, uint32_t c, const tl_manifold *g, const old_source *from,
-                         const tl_stress_plane *fit, const tl_point_lanes *lanes)
-{
-    tl_contacts *contacts = &m->detect->contacts;
-    tl_points_table *p = &m->detect->points;
-    uint32_t law = contacts->law[c];
-    const tl_kind *kind = law == TL_NO_ROW ? NULL : m->joint_laws[law].kind;
-    for (size_t k = 0; k < g->point_count; k++) {
-        size_t i = tl_point_row(contacts, c, k);
-        const tl_contact_point *point = &g->points[k];
-        tl_columns_put(p->p, i, point->p);
-        p->area[i] = point->area;
-        p->key[i] = point->key;
-        p->f_n[i] = 0;
-        if (p->f_n0)
-            p->f_n0[i] = p->reference[i] = 0;
-        for (int s = 0; s < 3; s++)
-            p->f_s[s][i] = 0;
-        p->flags[i] = 0;
-        tl_point_initial_state(p, i, kind);
-    }
-    /* positions and normals in the present place */
-    tl_contact_begin(m, c, lanes);
-    double size = fmin(m->blocks.size[contacts->a[c]], m->blocks.size[contacts->b[c]]);
-    for (size_t k = 0; k < g->point_count && from->count == 0; k++) {
-        size_t i = tl_point_row(contacts, c, k);
-        p->flags[i] = lanes->closure[k] < -TL_STILL * size ? TL_POINT_APART : 0;
-    }
-    for (size_t k = 0; k < g->point_count && from->count; k++) {
-        size_t i = tl_point_row(contacts, c, k);
-        tl_vec3 arm = tl_columns_get(lanes->arm, k);
-        const old_point *o = match(from, p->key[i], arm);
-        double value[TL_STRESS_COUNT];
-        if (from->keys && o->key == p->key[i])
-            tl_stress_values(o, value);
-        else
-            tl_stress_at(fit, arm, o, !from->keys, value);
-        tl_vec3 n = tl_columns_get(lanes->normal, k);
-        tl_vec3 shear = {value[TL_STRESS_SHEAR], value[TL_STRESS_SHEAR + 1],
-                         value[TL_STRESS_SHEAR + 2]};
-        tl_vec3 f = tl_v3_scale(p->area[i], tl_v3_turn(shear, o->normal, n));
-        f = tl_v3_madd(f, -tl_v3_dot(f, n), n);
-        p->f_s[0][i] = f.x;
-        p->f_s[1][i] = f.y;
-        p->f_s[2][i] = f.z;
-        p->f_n[i] = value[TL_STRESS_NORMAL] * p->area[i];
-        if (p->f_n0) {
-            p->f_n0[i] = value[TL_STRESS_SCALARS + TL_SCALAR_N0] * p->area[i];
-            p->reference[i] = value[TL_STRESS_SCALARS + TL_SCALAR_REFERENCE];
-        }
-        p->flags[i] = from->states ? o->flags : 0;
-        if (from->states)
-            tl_point_take_state(p, i, kind, o->state, o->area);
-        if (from->states)
-            tl_point_turn_states(p, i, kind, o->normal, n);
-    }
-}
-
-/* Totals of the old points. */
-static totals old_totals(const old_point *old, size_t count)
-{
-    totals t = {0};
-    for (size_t k = 0; k < count; k++)
-        add_area(&t, old[k].area, old[k].arm, old[k].normal);
-    close_area(&t);
-    for (size_t k = 0; k < count; k++)
-        add_shear(&t, old[k].area, old[k].arm, tl_v3_scale(old[k].area, old[k].shear));
-    return t;
 }
 
 /* Distance within which points are one. */
@@ -326,29 +169,344 @@ static double place_of(const tl_model *m, uint32_t c)
     return TL_MERGE * fmin(m->blocks.size[contacts->a[c]], m->blocks.size[contacts->b[c]]);
 }
 
-static tl_stress_plane plane_of(const old_point *old, size_t count, const totals *t, double place)
+/* ---------------------------------------------------------------- fields ------------------ */
+
+/* What a point carries, as columns: shear stress, normal stress, initial normal stress, reference, states of the law. */
+enum { SHEAR, NORMAL = 3, INITIAL, REFERENCE, STATES, COLUMNS = STATES + TL_STATE_COLUMNS };
+
+/* How a column is taken over: not at all; as means; as means beside a plane, of any sign or not below 0. */
+typedef enum relay_rule { LEFT, MEAN, PLANE, PLANE_ABOVE } relay_rule;
+
+static double *column_of(old_point *point, int column)
 {
-    return tl_stress_plane_of(old, count, t->area, t->centre, t->normal, place);
+    double *const of[STATES] = {&point->shear.x, &point->shear.y, &point->shear.z,
+                                &point->f_n,     &point->n0,      &point->reference};
+    return column < STATES ? of[column] : &point->state[column - STATES];
 }
 
-/* Where the area has become more than that of an estate, of which nothing is known, it carries no more than there was. */
-static void limit_to_estate(tl_model *m, uint32_t c, const totals *before)
+/* Of which old points a new one takes the mean: those with which its cell has area in common; where places are not known, that of the same
+ * key; where the old patch is a whole of which this is a part, the nearest. */
+typedef enum relay_match { BY_AREA, BY_KEY, NEAREST } relay_match;
+
+/* Second moments of areas about their centroid: xx, xy, yy. */
+typedef struct spread {
+    double xx, xy, yy;
+} spread;
+
+/* Whether points span a plane; within about `place` of a line slopes would be quotients of rounding. */
+static bool spans(const spread *i, double area, double place)
 {
-    const tl_contacts *contacts = &m->detect->contacts;
-    tl_points_table *p = &m->detect->points;
-    double area = 0;
-    for (size_t k = 0; k < contacts->point_count[c]; k++)
-        area += p->area[tl_point_row(contacts, c, k)];
-    double keep = before->area < area ? before->area / area : 1;
-    for (size_t k = 0; keep < 1 && k < contacts->point_count[c]; k++) {
-        size_t i = tl_point_row(contacts, c, k);
-        p->f_n[i] *= keep;
-        if (p->f_n0)
-            p->f_n0[i] *= keep;
-        for (int s = 0; s < 3; s++)
-            p->f_s[s][i] *= keep;
+    return i->xx * i->yy - i->xy * i->xy > area * place * place * (i->xx + i->yy);
+}
+
+/* Old points and new ones of one patch, each with its cell: places are about the centroids. */
+typedef struct relay {
+    old_point *old, *now;
+    tl_ring before, after;
+    double *across; /* of each new point: the mean place of the old cells that it lies on */
+    double area[2];
+    spread spread[2]; /* of the areas before and after */
+    bool planes;      /* places tell how stresses vary */
+    bool states;      /* are of the law */
+    relay_match match;
+    relay_rule rule[COLUMNS];
+} relay;
+
+/* The cells of points about their centre, and the spread of their areas. */
+static tl_ring ring_of(const old_point *point, size_t count, tl_vec3 centre, const tl_vec3 axis[2],
+                       double place, tl_ring_cell *cell, spread *out)
+{
+    for (size_t k = 0; k < count; k++) {
+        tl_vec3 arm = tl_v3_sub(point[k].arm, centre);
+        double x = tl_v3_dot(arm, axis[0]), y = tl_v3_dot(arm, axis[1]), a = point[k].area;
+        cell[k] = (tl_ring_cell){.x = x, .y = y, .area = a, .point = (uint32_t)k};
+        out->xx += a * x * x;
+        out->xy += a * x * y;
+        out->yy += a * y * y;
+    }
+    return tl_ring_of(cell, count, place);
+}
+
+/* Gives the point of a new cell the means of old ones by their weights, to the bit where they are the same, and its flags: those of the
+ * heaviest. */
+static void take_means(const relay *r, const tl_ring_cell *cell, const double *weight)
+{
+    old_point *now = &r->now[cell->point];
+    double *across = &r->across[2 * cell->point], sum = 0, apart = 0;
+    size_t most = 0;
+    for (size_t j = 0; j < r->before.count; j++) {
+        sum += weight[j];
+        most = weight[j] > weight[most] ? j : most;
+    }
+    old_point *heaviest = &r->old[r->before.cell[most].point];
+    across[0] = across[1] = 0;
+    for (int column = 0; column < COLUMNS; column++)
+        if (r->rule[column] != LEFT)
+            *column_of(now, column) = *column_of(heaviest, column);
+    for (size_t j = 0; j < r->before.count; j++) {
+        const tl_ring_cell *from = &r->before.cell[j];
+        double by = weight[j] / sum;
+        for (int column = 0; column < COLUMNS && by > 0; column++)
+            if (r->rule[column] != LEFT)
+                *column_of(now, column) +=
+                    by * (*column_of(&r->old[from->point], column) - *column_of(heaviest, column));
+        across[0] += by * from->x;
+        across[1] += by * from->y;
+        apart += r->old[from->point].flags & TL_POINT_APART ? by : 0;
+    }
+    now->flags = heaviest->flags & ~(uint32_t)TL_POINT_APART;
+    now->flags |= apart > 0.5 ? TL_POINT_APART : 0;
+}
+
+/* Gives all new points such means. */
+static void relay_means(const relay *r, double *weight)
+{
+    for (size_t k = 0; k < r->after.count; k++) {
+        const tl_ring_cell *cell = &r->after.cell[k];
+        double sum = 0, least = INFINITY;
+        size_t nearest = 0;
+        for (size_t j = 0; j < r->before.count; j++) {
+            const tl_ring_cell *from = &r->before.cell[j];
+            const old_point *old = &r->old[from->point], *now = &r->now[cell->point];
+            double apart = tl_v3_norm2(tl_v3_sub(old->arm, now->arm));
+            nearest = apart < least ? j : nearest;
+            least = fmin(least, apart);
+            weight[j] = r->match == BY_AREA ? tl_ring_common(&r->after, cell, &r->before, from)
+                                            : r->match == BY_KEY && old->key == now->key;
+            sum += weight[j];
+        }
+        if (!(sum > 0))
+            weight[nearest] = 1;
+        take_means(r, cell, weight);
     }
 }
+
+/* Slopes of a plane. */
+typedef struct slopes {
+    double x, y;
+} slopes;
+
+static slopes slopes_of(const relay *r, int side, double x, double y)
+{
+    const spread *i = &r->spread[side];
+    double det = i->xx * i->yy - i->xy * i->xy;
+    return r->planes ? (slopes){(x * i->yy - y * i->xy) / det, (y * i->xx - x * i->xy) / det}
+                     : (slopes){0, 0};
+}
+
+/* What is added to the means of a column: the plane of the old points less its means, and what restores sum and moments. */
+typedef struct addition {
+    slopes old, now;
+    double level;
+} addition;
+
+static addition addition_of(const relay *r, int column)
+{
+    double sum = 0, x = 0, y = 0, follow = r->area[1] / r->area[0];
+    for (size_t j = 0; j < r->before.count; j++) {
+        const tl_ring_cell *from = &r->before.cell[j];
+        double u = from->area * *column_of(&r->old[from->point], column);
+        sum += u;
+        x += u * from->x;
+        y += u * from->y;
+    }
+    addition out = {.old = slopes_of(r, 0, x, y)};
+    out.now = out.old;
+    if (r->match == NEAREST)
+        return out;
+    double mean = sum / r->area[0], off = 0;
+    x *= follow;
+    y *= follow;
+    for (size_t k = 0; k < r->after.count; k++) {
+        const tl_ring_cell *cell = &r->after.cell[k];
+        const double *across = &r->across[2 * cell->point];
+        double rest = *column_of(&r->now[cell->point], column) - mean - out.old.x * across[0] -
+                      out.old.y * across[1];
+        off += cell->area * rest;
+        x -= cell->area * rest * cell->x;
+        y -= cell->area * rest * cell->y;
+    }
+    out.now = slopes_of(r, 1, x, y);
+    out.level = -off / r->area[1];
+    return out;
+}
+
+static double added(const relay *r, const addition *more, const tl_ring_cell *cell)
+{
+    const double *across = &r->across[2 * cell->point];
+    return more->level + more->now.x * cell->x + more->now.y * cell->y - more->old.x * across[0] -
+           more->old.y * across[1];
+}
+
+/* Adds to the means of `width` columns, those of a vector or one, the same part of its addition at all points, so that their sum stays:
+ * where points have hardly an area, planes through them would ask for any stress. */
+static void restore_planes(const relay *r, int column, int width)
+{
+    addition more[3];
+    double largest = 0, part = 1;
+    for (int w = 0; w < width; w++)
+        more[w] = addition_of(r, column + w);
+    for (size_t j = 0; j < r->before.count; j++) {
+        double size = 0;
+        for (int w = 0; w < width; w++)
+            size += *column_of(&r->old[j], column + w) * *column_of(&r->old[j], column + w);
+        largest = fmax(largest, sqrt(size));
+    }
+    for (size_t k = 0; k < r->after.count; k++) {
+        const tl_ring_cell *cell = &r->after.cell[k];
+        double size = 0, step = added(r, &more[0], cell);
+        double value = *column_of(&r->now[cell->point], column);
+        for (int w = 0; w < width; w++)
+            size += added(r, &more[w], cell) * added(r, &more[w], cell);
+        size = sqrt(size);
+        part = size > largest ? fmin(part, largest / size) : part;
+        if (r->rule[column] == PLANE_ABOVE && value + step < 0)
+            part = fmin(part, fmax(0, -value / step));
+    }
+    for (size_t k = 0; k < r->after.count; k++)
+        for (int w = 0; w < width; w++)
+            *column_of(&r->now[r->after.cell[k].point], column + w) +=
+                part * added(r, &more[w], &r->after.cell[k]);
+}
+
+/* Sets the rules of the states of a law, and makes those that go with the area stresses, or with `back` what they were. */
+static void rule_states(relay *r, const tl_kind *kind, uint32_t columns, bool back)
+{
+    static const relay_rule rules[] = {[TL_TRANSFER_COPY] = MEAN,
+                                       [TL_TRANSFER_SPLIT] = MEAN,
+                                       [TL_TRANSFER_RESET] = LEFT,
+                                       [TL_TRANSFER_ENERGY] = LEFT,
+                                       [TL_TRANSFER_LIFT] = PLANE_ABOVE};
+    uint32_t column = 0;
+    for (uint32_t k = 0; kind && k < kind->state_count && column < columns; k++) {
+        const tl_state *state = tl_kind_state(kind, k);
+        uint32_t end = column + (state->kind == TL_STATE_TANGENT ? 3 : 1);
+        for (; column < end; column++) {
+            r->rule[STATES + column] = rules[state->transfer];
+            bool splits = state->transfer == TL_TRANSFER_SPLIT;
+            for (size_t j = 0; j < r->before.count && splits && !back; j++)
+                r->old[j].state[column] /= r->old[j].area;
+            for (size_t j = 0; j < r->after.count && splits && back; j++)
+                r->now[j].state[column] *= r->now[j].area;
+        }
+    }
+}
+
+/* Turns shear stresses and vectors that a law keeps into the plane of the new points. */
+static void turn_into_plane(old_point *old, size_t count, const tl_kind *kind, uint32_t columns,
+                            tl_vec3 normal)
+{
+    for (size_t j = 0; j < count; j++) {
+        uint32_t column = 0;
+        old[j].shear = into_plane(old[j].shear, old[j].normal, normal);
+        for (uint32_t k = 0; kind && k < kind->state_count && column < columns; k++) {
+            double *v = &old[j].state[column];
+            bool vector = tl_kind_state(kind, k)->kind == TL_STATE_TANGENT;
+            column += vector ? 3 : 1;
+            if (!vector)
+                continue;
+            tl_vec3 turned = into_plane(tl_v3(v[0], v[1], v[2]), old[j].normal, normal);
+            v[0] = turned.x, v[1] = turned.y, v[2] = turned.z;
+        }
+    }
+}
+
+/* Gives new points what old ones of the same patch carried. */
+static void relay_fields(tl_model *m, uint32_t c, relay *r, const totals t[2],
+                         const tl_narrow_scratch *scratch)
+{
+    size_t old_count = r->before.count, count = r->after.count, first = 0;
+    tl_ring_cell *cell = scratch->cell;
+    const tl_kind *kind = r->states ? kind_of(m, c) : NULL;
+    uint32_t columns = m->detect->points.state_columns;
+    double place = place_of(m, c);
+    while (first + 1 < old_count && tl_v3_norm(tl_v3_sub(r->old[first].arm, t[0].centre)) <= place)
+        first++;
+    tl_vec3 n = t[1].normal, axis[2] = {tl_v3_sub(r->old[first].arm, t[0].centre)};
+    axis[0] = tl_v3_madd(axis[0], -tl_v3_dot(axis[0], n), n);
+    axis[0] = tl_v3_norm(axis[0]) > 0 ? tl_v3_unit(axis[0]) : tl_v3_perpendicular(n);
+    axis[1] = tl_v3_cross(n, axis[0]);
+    tl_vec3 centre = r->match == NEAREST ? t[0].centre : t[1].centre;
+    r->before = ring_of(r->old, old_count, t[0].centre, axis, place, cell, &r->spread[0]);
+    r->after = ring_of(r->now, count, centre, axis, place, cell + old_count, &r->spread[1]);
+    tl_ring_align(&r->before, &r->after);
+    r->area[0] = t[0].area;
+    r->area[1] = t[1].area;
+    r->planes = r->planes && spans(&r->spread[0], t[0].area, place) &&
+                (r->match == NEAREST || spans(&r->spread[1], t[1].area, place));
+    r->across = scratch->value + old_count;
+    for (int column = 0; column < STATES; column++)
+        r->rule[column] = PLANE;
+    turn_into_plane(r->old, old_count, kind, columns, n);
+    rule_states(r, kind, columns, false);
+    relay_means(r, scratch->value);
+    restore_planes(r, SHEAR, 3);
+    for (int column = NORMAL; column < COLUMNS; column++)
+        if (r->rule[column] >= PLANE)
+            restore_planes(r, column, 1);
+    rule_states(r, kind, columns, true);
+}
+
+/* ---------------------------------------------------------------- shear ------------------- */
+
+/* Points' shear stresses become `keep` times what they are and a uniform traction and a twist. */
+static void add_traction(old_point *point, size_t count, const totals *now, double keep,
+                         tl_vec3 traction, double twist)
+{
+    for (size_t k = 0; k < count; k++) {
+        tl_vec3 arm = tl_v3_sub(point[k].arm, now->centre);
+        tl_vec3 stress = tl_v3_madd(traction, twist, tl_v3_cross(now->normal, arm));
+        stress = tl_v3_madd(stress, keep, point[k].shear);
+        point[k].shear = tl_v3_madd(stress, -tl_v3_dot(stress, point[k].normal), point[k].normal);
+    }
+}
+
+/* Brings the energy of the shear springs down to `most`. Of all stresses of the same force and torsion a uniform traction
+ * with a twist has the least energy, and what else there is has an energy of its own: that is made less. */
+static void limit_energy(old_point *point, size_t count, totals *now, double most, bool turns)
+{
+    sum_shear(point, count, now);
+    if (!(now->energy > most))
+        return;
+    double twist = turns ? now->torsion / now->polar : 0;
+    double least = tl_v3_norm2(now->shear) / now->area + twist * twist * now->polar;
+    double rest = now->energy - least, keep = sqrt(fmax(0, most - least) / fmax(rest, DBL_MIN));
+    keep = fmin(keep, 1);
+    add_traction(point, count, now, keep, tl_v3_scale((1 - keep) / now->area, now->shear),
+                 (1 - keep) * twist);
+    sum_shear(point, count, now);
+    if (now->energy > most) { /* a torsion too large for it */
+        add_traction(point, count, now, sqrt(most / now->energy), tl_v3(0, 0, 0), 0);
+        sum_shear(point, count, now);
+    }
+}
+
+/* Brings shear force and torsion to what they are to be: what comes into contact brings none, what goes takes its own with it; a
+ * twist goes with the second moment of area as traction does with the area. The springs get no more energy than there was. */
+static void correct_shear(old_point *point, size_t count, totals *now, const totals *before,
+                          bool turns)
+{
+    sum_shear(point, count, now);
+    double area = fmin(1, now->area / before->area);
+    double polar = before->polar > 0 ? fmin(1, now->polar / before->polar) : 1;
+    tl_vec3 want = tl_v3_scale(area, tl_v3_turn(before->shear, before->normal, now->normal));
+    tl_vec3 force = tl_v3_sub(want, now->shear);
+    double twist = turns ? (polar * before->torsion - now->torsion) / now->polar : 0;
+    add_traction(point, count, now, 1, tl_v3_scale(1 / now->area, force), twist);
+    limit_energy(point, count, now, before->energy, turns);
+}
+
+/* Notes what has become of the shear. */
+static void release(tl_model *m, uint32_t c, const totals *before, const totals *now, bool reframed)
+{
+    tl_shear old = {.energy = before->energy, .force = before->shear, .moment = before->moment};
+    tl_shear fresh = {.energy = now->energy, .force = now->shear, .moment = now->moment};
+    if (reframed) /* the last step's motion was that of other bodies */
+        fresh.force = old.force, fresh.moment = old.moment;
+    tl_shear_release(m, c, &old, &fresh);
+}
+
+/* ---------------------------------------------------------------- new contacts ------------ */
 
 /* What slip has opened at points of other places than the law's states are of is not what it has opened there: the references make up
  * for it, so that what was between the points of the whole is between the walls. */
@@ -367,143 +525,86 @@ static void refer_to_openings(tl_model *m, uint32_t c)
 }
 
 /* A contact that was made for parts of a block takes its share over of what that of the whole carried: the stresses at its own
- * points. */
-static void take_share(tl_model *m, uint32_t c, const tl_estate *estate, const tl_narrow_scratch *s,
-                       const tl_point_lanes *lanes)
+ * points. Where the area has become more than that of the estate, of which nothing is known, it carries no more than there was. */
+static void take_share(tl_model *m, uint32_t c, const tl_estate *estate,
+                       const tl_narrow_scratch *scratch)
 {
-    const old_source from = {
-        .points = s->old, .count = estate->count, .states = tl_estate_is_of_law(m, estate, c)};
-    totals before = old_totals(s->old, estate->count);
-    tl_stress_plane fit = {.made = false};
-    if (before.area > 0 && !estate->reframed)
-        fit = plane_of(s->old, estate->count, &before, place_of(m, c));
-    write_points(m, c, &s->manifold, &from, &fit, lanes);
+    size_t old_count = estate->count, count = m->detect->contacts.point_count[c];
+    old_point *old = scratch->old, *fresh = old + old_count;
+    for (size_t k = 0; k < old_count; k++)
+        old[k] = tl_estate_point(m, estate, c, k);
+    const totals t[2] = {totals_of(old, old_count), totals_of(fresh, count)};
+    relay r = {.old = old,
+               .now = fresh,
+               .before.count = old_count,
+               .after.count = count,
+               .planes = !estate->reframed,
+               .states = tl_estate_is_of_law(m, estate, c),
+               .match = NEAREST};
+    relay_fields(m, c, &r, t, scratch);
+    double keep = t[0].area < t[1].area ? t[0].area / t[1].area : 1;
+    for (size_t k = 0; k < count; k++) {
+        fresh[k].shear = tl_v3_scale(keep, fresh[k].shear);
+        fresh[k].f_n *= keep;
+        fresh[k].n0 *= keep;
+        fresh[k].flags = r.states ? fresh[k].flags : 0;
+    }
+    write_points(m, c, fresh);
     refer_to_openings(m, c);
     tl_shear_keep(m, c, tl_estate_kept(m, estate, c));
-    limit_to_estate(m, c, &before);
-}
-
-/* What the shear of new points is to be: what comes into contact brings none, what goes takes its own with it; a
- * twist goes with the second moment of area as traction does with the area. */
-static totals shear_wanted(const totals *before, const totals *now)
-{
-    double area = fmin(1, now->area / before->area);
-    double polar = before->polar > 0 ? fmin(1, now->polar / before->polar) : 1;
-    return (totals){.shear =
-                        tl_v3_scale(area, tl_v3_turn(before->shear, before->normal, now->normal)),
-                    .torsion = polar * before->torsion,
-                    .energy = before->energy};
-}
-
-/* Corrects the scalar fields so that their integrals and moments follow the area. */
-static void correct_fields(tl_model *m, uint32_t c, size_t old_count, tl_narrow_scratch *scratch,
-                           const tl_point_lanes *lanes, const totals *before, const totals *now,
-                           double place)
-{
-    tl_points_table *p = &m->detect->points;
-    const tl_contacts *contacts = &m->detect->contacts;
-    size_t begin = contacts->point_start[c], count = contacts->point_count[c];
-    double *value = scratch->value, follow = now->area / before->area;
-    for (int field = 0; field < TL_SCALAR_COUNT && p->f_n0; field++) {
-        moments keep = field_moments(scratch->old, old_count, field, before, now->normal);
-        double largest = 0;
-        for (size_t k = 0; k < old_count && !scratch->reframed; k++)
-            largest = fmax(largest, fabs(tl_old_scalar(&scratch->old[k], field)));
-        keep.sum *= follow;
-        keep.along1 *= follow;
-        keep.along2 *= follow;
-        for (size_t k = 0; k < count; k++) {
-            size_t i = tl_point_row(contacts, c, k);
-            value[k] = field == TL_SCALAR_REFERENCE ? p->reference[i] : p->f_n0[i] / p->area[i];
-        }
-        correct_field(p, lanes, value, begin, count, now, keep, largest, place);
-        for (size_t k = 0; k < count; k++) {
-            size_t i = tl_point_row(contacts, c, k);
-            if (field == TL_SCALAR_REFERENCE)
-                p->reference[i] = value[k];
-            else
-                p->f_n0[i] = value[k] * p->area[i];
-        }
-    }
-}
-
-/* Notes what has become of the shear. */
-static void release(tl_model *m, uint32_t c, const totals *before, const totals *now, bool reframed)
-{
-    tl_shear old = {.energy = before->energy, .force = before->shear, .moment = before->moment};
-    tl_shear fresh = {.energy = now->energy, .force = now->shear, .moment = now->moment};
-    if (reframed) /* the last step's motion was that of other bodies */
-        fresh.force = old.force, fresh.moment = old.moment;
-    tl_shear_release(m, c, &old, &fresh);
 }
 
 /* The points of a new contact. */
 static bool begin_points(tl_model *m, uint32_t c, tl_narrow_scratch *scratch,
                          const tl_point_lanes *lanes)
 {
-    tl_contacts *contacts = &m->detect->contacts;
-    const tl_estate *estate =
-        tl_estate_on(m, contacts->a[c], contacts->b[c], &scratch->manifold.facet);
-    if (estate && !reserve(scratch, estate->count))
+    const tl_contacts *contacts = &m->detect->contacts;
+    const tl_manifold *g = &scratch->manifold;
+    const tl_estate *estate = tl_estate_on(m, contacts->a[c], contacts->b[c], &g->facet);
+    size_t old_count = estate ? estate->count : 0;
+    if (!reserve(scratch, old_count + g->point_count))
         return false;
-    contacts->facet[c] = scratch->manifold.facet;
-    contacts->point_count[c] = (uint16_t)scratch->manifold.point_count;
-    for (size_t k = contacts->point_count[c]; k < contacts->point_capacity[c]; k++)
-        tl_point_clear(&m->detect->points, tl_point_row(contacts, c, k));
-    if (estate) {
-        for (size_t k = 0; k < estate->count; k++)
-            scratch->old[k] = tl_estate_point(m, estate, c, k);
-        take_share(m, c, estate, scratch, lanes);
+    place_points(m, c, g, lanes, scratch->old + old_count);
+    if (estate && g->point_count > 0) {
+        take_share(m, c, estate, scratch);
         return true;
     }
-    const old_source from = {.count = 0};
-    write_points(m, c, &scratch->manifold, &from, NULL, lanes);
+    double size = fmin(m->blocks.size[contacts->a[c]], m->blocks.size[contacts->b[c]]);
+    for (size_t k = 0; k < g->point_count; k++)
+        m->detect->points.flags[tl_point_row(contacts, c, k)] =
+            lanes->closure[k] < -TL_STILL * size ? TL_POINT_APART : 0;
     return true;
 }
 
 bool tl_contact_transfer(tl_model *m, uint32_t c, tl_narrow_scratch *scratch,
                          const tl_point_lanes *lanes)
 {
-    tl_contacts *contacts = &m->detect->contacts;
-    tl_points_table *p = &m->detect->points;
     const tl_manifold *g = &scratch->manifold;
-    size_t begin = contacts->point_start[c], old_count = contacts->point_count[c];
+    size_t old_count = m->detect->contacts.point_count[c], count = g->point_count;
     if (old_count == 0)
         return begin_points(m, c, scratch, lanes);
-    if (!reserve(scratch, old_count > g->point_count ? old_count : g->point_count))
+    if (!reserve(scratch, old_count + count))
         return false;
-    read_old(m, c, scratch, lanes);
-    const old_point *old = scratch->old;
-    totals before = old_totals(old, old_count), now = {0};
+    old_point *old = scratch->old, *fresh = old + old_count;
+    tl_contact_places(m, c, lanes); /* old points have gone along with A, in whose frame they are */
+    read_points(m, c, lanes, old);
     double kept = tl_shear_kept(m, c);
-
-    contacts->facet[c] = g->facet;
-    contacts->point_count[c] = (uint16_t)g->point_count;
-    for (size_t k = g->point_count; k < contacts->point_capacity[c]; k++)
-        tl_point_clear(p, tl_point_row(contacts, c, k));
-    double place = place_of(m, c);
-    tl_stress_plane fit = {.made = false};
-    if (before.area > 0 && !scratch->reframed)
-        fit = plane_of(old, old_count, &before, place);
-    const old_source from = {.points = old, .count = old_count, .keys = true, .states = true};
-    write_points(m, c, g, &from, &fit, lanes);
-    tl_shear_keep(m, c, kept);
-    if (g->point_count == 0 || !(before.area > 0)) {
-        release(m, c, &before, &now, scratch->reframed);
-        return true;
+    place_points(m, c, g, lanes, fresh);
+    totals t[2] = {totals_of(old, old_count), totals_of(fresh, count)};
+    sum_shear(old, old_count, &t[0]);
+    if (count > 0 && t[0].area > 0) {
+        relay r = {.old = old,
+                   .now = fresh,
+                   .before.count = old_count,
+                   .after.count = count,
+                   .planes = !scratch->reframed,
+                   .states = true,
+                   .match = scratch->reframed ? BY_KEY : BY_AREA};
+        relay_fields(m, c, &r, t, scratch);
+        correct_shear(fresh, count, &t[1], &t[0], r.planes);
     }
-
-    for (size_t k = 0; k < g->point_count; k++)
-        add_area(&now, p->area[tl_point_row(contacts, c, k)], tl_columns_get(lanes->arm, k),
-                 tl_columns_get(lanes->normal, k));
-    close_area(&now);
-    sum_shear(p, lanes, begin, g->point_count, &now); /* for its second moment */
-    totals want = shear_wanted(&before, &now);
-    double largest = 0;
-    for (size_t k = 0; k < old_count && !scratch->reframed; k++)
-        largest = fmax(largest, tl_v3_norm(old[k].shear));
-    correct_shear(p, lanes, begin, g->point_count, &now, &want, largest, place);
-    release(m, c, &before, &now, scratch->reframed);
-    correct_fields(m, c, old_count, scratch, lanes, &before, &now, place);
+    write_points(m, c, fresh);
+    tl_shear_keep(m, c, kept);
+    release(m, c, &t[0], &t[1], scratch->reframed);
     return true;
 }

@@ -5,7 +5,9 @@
  * something else, are brought up to date one by one (update.c). */
 #include "detect/renew.h"
 
+#include "base/columns.h"
 #include "contact/detection.h"
+#include "contact/places.h"
 #include "contact/shear.h"
 #include "detect/fields.h"
 #include "detect/update.h"
@@ -169,6 +171,22 @@ static void take_lanes(tl_model *m, const tl_simd_group *group, const tl_patch_b
     }
 }
 
+static bool have_run(const tl_model *m, uint32_t c, const tl_patch_batch *batch, uint32_t l,
+                     tl_batch_counts n)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    const tl_pair_pose now = {tl_lanes9_get(&batch->turn, l), tl_lanes3_get(&batch->shift, l)};
+    tl_contact_run run = tl_contact_run_to(&contacts->facet[c], &now);
+    for (uint32_t k = 0; k < n.all; k++) {
+        const tl_batch_point *point = k < n.middles               ? &batch->middles[k]
+                                      : k < n.middles + n.corners ? &batch->corners[k - n.middles]
+                                                                  : &batch->centroid;
+        tl_contact_run_add(&run, tl_columns_get(m->detect->points.p, tl_point_row(contacts, c, k)),
+                           tl_lanes3_get(&point->p, l));
+    }
+    return tl_contact_has_run(&run, batch->near[l]);
+}
+
 /* Puts patches into the place of those of the SIMD group that have the same points, and takes their lanes out of `in`: lanes
  * of as many points together. */
 static void take_patches(tl_model *m, const tl_simd_group *group, const tl_patch_batch *batch,
@@ -183,7 +201,8 @@ static void take_patches(tl_model *m, const tl_simd_group *group, const tl_patch
             continue;
         n[l] = tl_batch_count(batch, l);
         if (n[l].all == contacts->point_count[group->contact[l]] &&
-            tl_batch_has_keys(batch, l, n[l], p->key + group->start + l, TL_LANES))
+            tl_batch_has_keys(batch, l, n[l], p->key + group->start + l, TL_LANES) &&
+            !have_run(m, group->contact[l], batch, l, n[l]))
             same |= 1u << l;
     }
     *in &= ~same;

@@ -11,6 +11,7 @@
 #include "contact/facing.h"
 #include "contact/handover.h"
 #include "contact/pair_view.h"
+#include "contact/places.h"
 #include "contact/points.h"
 #include "contact/presses.h"
 #include "contact/shear.h"
@@ -24,6 +25,7 @@
 #include "narrow/manifold.h"
 #include "narrow/patch.h"
 #include "narrow/place.h"
+#include "narrow/point2.h"
 
 #include <string.h>
 
@@ -35,6 +37,13 @@
  * of o/(16 b), a quarter of what a patch neglects in any case, the load on its border (docs/theory.md). It is TL_STILL at least: a
  * patch that opens has no closure where it opens. */
 #define STANDS (1.0 / 16)
+
+/* Size of the smaller block of a contact. */
+static double smaller_size(const tl_model *m, uint32_t c)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    return fmin(m->blocks.size[contacts->a[c]], m->blocks.size[contacts->b[c]]);
+}
 
 static bool same_topology(const tl_detect *d, uint32_t c, const tl_manifold *g)
 {
@@ -205,6 +214,16 @@ static bool wants_place(tl_detect *d, uint32_t c, const tl_manifold *g, bool ref
     return true;
 }
 
+static bool have_run(const tl_model *m, uint32_t c, const tl_manifold *g)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    tl_contact_run run = tl_contact_run_to(&contacts->facet[c], &g->facet.laid);
+    for (size_t k = 0; k < g->point_count; k++)
+        tl_contact_run_add(&run, tl_columns_get(m->detect->points.p, tl_point_row(contacts, c, k)),
+                           g->points[k].p);
+    return tl_contact_has_run(&run, TL_MERGE * smaller_size(m, c));
+}
+
 /* Puts the built manifold in the place of the contact's points, or asks for room. */
 static bool take_manifold(tl_model *m, uint32_t c, tl_narrow_scratch *scratch,
                           const tl_point_lanes *lanes)
@@ -216,24 +235,22 @@ static bool take_manifold(tl_model *m, uint32_t c, tl_narrow_scratch *scratch,
         return true;
     if (g->point_count == 0)
         g->facet = d->contacts.facet[c];
-    if (!same_topology(d, c, g)) {
+    bool field = g->facet.kind == TL_FACET_FIELD, same = same_topology(d, c, g), done = true;
+    if (!same)
         d->contacts.new_points[c] = TL_POINTS_OTHERS;
-        bool fields =
-            g->facet.kind == TL_FACET_FIELD || d->contacts.facet[c].kind == TL_FACET_FIELD;
-        if (!fields) {
-            bool done = tl_contact_transfer(m, c, scratch, lanes);
-            if (g->point_count == 0)
-                tl_contact_let_go(m, c, 0);
-            return done;
-        }
+    if (!same && (field || d->contacts.facet[c].kind == TL_FACET_FIELD)) {
         tl_contact_hand_over(m, c, g, scratch->reframed, lanes);
-    } else if (g->facet.kind == TL_FACET_FIELD) {
+    } else if (field) {
         if (g->point_count > 0)
             tl_contact_refit_field(m, c, g);
-    } else {
+    } else if (same && (scratch->reframed || !have_run(m, c, g))) {
         refit(m, c, g);
+    } else {
+        done = tl_contact_transfer(m, c, scratch, lanes);
+        if (g->point_count == 0)
+            tl_contact_let_go(m, c, 0);
     }
-    return true;
+    return done;
 }
 
 /* How far the points of a patch have been carried apart by their blocks since they were laid, the farthest of them. */
@@ -272,13 +289,6 @@ static double faces_moved(const tl_model *m, uint32_t c)
 static bool is_patch(const tl_contacts *contacts, uint32_t c)
 {
     return contacts->facet[c].kind == TL_FACET_PATCH && contacts->point_count[c] > 0;
-}
-
-/* Size of the smaller block of a contact. */
-static double smaller_size(const tl_model *m, uint32_t c)
-{
-    const tl_contacts *contacts = &m->detect->contacts;
-    return fmin(m->blocks.size[contacts->a[c]], m->blocks.size[contacts->b[c]]);
 }
 
 /* Motion of next to nothing. */
@@ -402,7 +412,8 @@ static bool renew_patch(tl_model *m, uint32_t c, unsigned thread)
         return false;
     const tl_patch_points *g = &scratch->patch;
     size_t begin = contacts->point_start[c];
-    if (g->count == contacts->point_count[c] && same_keys(&m->detect->points, begin, g)) {
+    if (g->count == contacts->point_count[c] && same_keys(&m->detect->points, begin, g) &&
+        !have_run(m, c, &scratch->manifold)) {
         refit_patch(m, c, g, &scratch->manifold.facet);
         contacts->new_points[c] = TL_POINTS_PLACED;
         return true;

@@ -63,6 +63,7 @@ typedef struct tl_narrow_scratch {
     bool reframed;            /* the places of old points are in frames that are no more */
     bool deep;                /* met a contact whose blocks overlap too deeply: overlap.c */
     struct tl_old_point *old; /* transfer.c */
+    struct tl_ring_cell *cell;
     double *value;
     size_t old_capacity;
     double *plane, *press; /* region.c, press.c */

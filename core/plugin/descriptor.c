@@ -223,7 +223,7 @@ static tl_status check_state(const tl_kind *kind, uint32_t index, tl_error *erro
                        s->doc ? "unit" : "doc");
     if (any_unclean(s->unit, s->doc))
         return unclean(error, "state", s->name);
-    if (s->kind > TL_STATE_TANGENT || s->transfer > TL_TRANSFER_ENERGY)
+    if (s->kind > TL_STATE_TANGENT || s->transfer > TL_TRANSFER_LIFT)
         return tl_fail(error, TL_E_PLUGIN, "state '%s' has the unknown %s %u", s->name,
                        s->kind > TL_STATE_TANGENT ? "kind" : "transfer",
                        s->kind > TL_STATE_TANGENT ? s->kind : s->transfer);

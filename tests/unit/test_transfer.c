@@ -88,6 +88,7 @@ static void transfer(tl_model *m, const tl_contact_point *points, size_t count)
     CHECK(tl_contact_transfer(m, 0, &scratch, &d->lanes[0]));
     free(scratch.manifold.points);
     free(scratch.old);
+    free(scratch.cell);
     free(scratch.value);
 }
 

@@ -128,10 +128,11 @@ typedef enum tl_state_kind {
 
 /* What becomes of a state when the contact polygon changes. */
 typedef enum tl_state_transfer {
-    TL_TRANSFER_COPY,  /* intensive: taken from the nearest old point */
-    TL_TRANSFER_SPLIT, /* extensive: scaled with the area share */
-    TL_TRANSFER_RESET, /* back to the initial value */
-    TL_TRANSFER_ENERGY /* 1.8, a scalar, J: what shear holds beyond f^2 / (2 ks area); the host keeps its sum over the points */
+    TL_TRANSFER_COPY, /* intensive: the mean over the area that the point gets, within what there was */
+    TL_TRANSFER_SPLIT,  /* extensive: the sum goes with the area */
+    TL_TRANSFER_RESET,  /* back to the initial value */
+    TL_TRANSFER_ENERGY, /* 1.8, a scalar, J: what shear holds beyond f^2 / (2 ks area); the host keeps its sum over the points */
+    TL_TRANSFER_LIFT /* 1.8, >= 0: what the normal force is linear in; its moments over the area stay, too */
 } tl_state_transfer;
 
 /* One state of a law (per contact point) or of a damping (per model). The host owns it. */
@@ -145,8 +146,8 @@ typedef struct tl_state {
     double initial;
 } tl_state;
 
-/* Declares one row of a state table: TL_STATE(TL_STATE_SCALAR, "slip", "m", "length of the slip so far"). It is copied from the
- * nearest old point and begins at 0, unless .transfer or .initial follow the sentence. */
+/* Declares one row of a state table: TL_STATE(TL_STATE_SCALAR, "slip", "m", "length of the slip so far"). It is copied from
+ * old points and begins at 0, unless .transfer or .initial follow the sentence. */
 #define TL_STATE(kind_, name_, unit_, ...)                                                         \
     {                                                                                              \
         .size = sizeof(tl_state), .kind = (kind_), .name = (name_), .unit = (unit_),               \

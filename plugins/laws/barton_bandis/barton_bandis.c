@@ -77,7 +77,8 @@ static const tl_param param_table[] = {
 
 static const tl_state state_table[] = {
     TL_STATE(TL_STATE_SCALAR, "slip", "m", "length of the slip so far"),
-    TL_STATE(TL_STATE_SCALAR, "opening", "m", "how far slip has opened the joint"),
+    TL_STATE(TL_STATE_SCALAR, "opening", "m", "how far slip has opened the joint",
+             .transfer = TL_TRANSFER_LIFT),
 };
 
 typedef struct rough {

@@ -58,7 +58,7 @@ static const tl_param param_table[] = {
 static const tl_state state_table[] = {
     TL_STATE(TL_STATE_SCALAR, "damage", "", "share of the bond that is broken: 0 whole, 1 lost"),
     TL_STATE(TL_STATE_TANGENT, "friction_stress", "Pa",
-             "shear stress on block B of the broken share"),
+             "shear stress on block B that the broken share carries, over the whole area"),
 };
 
 typedef struct cohesive {
@@ -120,6 +120,12 @@ TL_IN_LOOP double dot(double ax, double ay, double az, double bx, double by, dou
     return ax * bx + ay * by + az * bz;
 }
 
+/* What the broken share carries: what it did, if that is `then` as it is `now`. */
+TL_IN_LOOP double carried(double before, double then, double now)
+{
+    return now == then ? before : now;
+}
+
 /* Heat of the slip of a spring of unit stiffness that is brought down from a trial stress; `along`: its product with that before. */
 TL_IN_LOOP double slip_heat(double along, double trial, double limit)
 {
@@ -165,9 +171,10 @@ TL_IN_LOOP void move(const cohesive *given, const tl_law_batch *batch, uint32_t 
         double was = damage[i], left = 1 - was, has = left > 0 ? 1 : 0;
         double dx = c.du_x[i], dy = c.du_y[i], dz = c.du_z[i];
         /* a bond that is lost has all of its stress from friction, whatever the state says */
-        double qx = left > 0 ? rub_x[i] : c.f_x[i] * per;
-        double qy = left > 0 ? rub_y[i] : c.f_y[i] * per;
-        double qz = left > 0 ? rub_z[i] : c.f_z[i] * per;
+        double each = was > 0 ? 1 / (was > 0 ? was : 1) : 0;
+        double qx = left > 0 ? rub_x[i] * each : c.f_x[i] * per;
+        double qy = left > 0 ? rub_y[i] * each : c.f_y[i] * per;
+        double qz = left > 0 ? rub_z[i] * each : c.f_z[i] * per;
         /* shear of the bonded share, before and now */
         double inverse = has / (left > 0 ? left : 1), spring = has * ks;
         double ax = (c.f_x[i] * per - was * qx) * inverse, bx = ax - spring * dx;
@@ -213,9 +220,9 @@ TL_IN_LOOP void move(const cohesive *given, const tl_law_batch *batch, uint32_t 
         c.f_y[i] = cy;
         c.f_z[i] = cz;
         damage[i] = is;
-        rub_x[i] = right > 0 ? rx : cx * per;
-        rub_y[i] = right > 0 ? ry : cy * per;
-        rub_z[i] = right > 0 ? rz : cz * per;
+        rub_x[i] = right > 0 ? carried(rub_x[i], was * qx, is * rx) : cx * per;
+        rub_y[i] = right > 0 ? carried(rub_y[i], was * qy, is * ry) : cy * per;
+        rub_z[i] = right > 0 ? carried(rub_z[i], was * qz, is * rz) : cz * per;
     }
 }
 

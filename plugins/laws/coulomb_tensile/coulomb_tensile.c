@@ -11,8 +11,10 @@
  * only the closed part carries. f_e is the normal force that the area A would have with the closure at its outermost fibre: a
  * bond in bending breaks where it is pulled most. T, c and the friction are those of the bond while it holds. At the first
  * failure, in tension or in shear, the bond is lost for good: T, c and the friction drop to their residual values within that
- * step (brittle), as 3DEC does. State `bond` is 1 while it holds, 0 when lost. Since the closure is a total one, a point that has
- * opened carries again only where its walls meet. A residual tensile strength holds while f_e >= -T A. Walls that have parted
+ * step (brittle), as 3DEC does. State `bond` is 1 while it holds, 0 when lost; of a point that has been given area of both kinds it is
+ * the share that is bonded. Such a point has the mean strengths in shear, pulls with that share of its area, and fails where a whole one
+ * does; no residual tension holds on it. Since the closure is a total one, a point that has opened carries again only where its
+ * walls meet. A residual tensile strength holds while f_e >= -T A. Walls that have parted
  * beyond it do not pull on their way back: it holds again once they have met over the whole area. Dilation and its state `opening`
  * are those of the law "coulomb"; under tension slip does not dilate.
  *
@@ -31,8 +33,6 @@
 /* Scaling a force down to its limit leaves it within 2 roundings of it; without this margin a point at
  * rest would be scaled down by a rounding in every step. */
 #define ROUNDING 1e-15
-/* The bond is stored as 1 or 0; anything between is on neither side by rounding. */
-#define BOND_HOLDS 0.5
 
 typedef struct params {
     double kn, ks, friction, cohesion, tension;
@@ -66,7 +66,8 @@ static const tl_param param_table[] = {
 static const tl_state state_table[] = {
     TL_STATE(TL_STATE_SCALAR, "bond", "", "1 while the bond holds, 0 when it is lost",
              .initial = 1),
-    TL_STATE(TL_STATE_SCALAR, "opening", "m", "how far slip has opened the joint"),
+    TL_STATE(TL_STATE_SCALAR, "opening", "m", "how far slip has opened the joint",
+             .transfer = TL_TRANSFER_LIFT),
 };
 
 /* Strength of a joint: with the bond, or without. */
@@ -108,10 +109,10 @@ static tl_status create(const void *given, void **self, tl_report *report)
  * so that the loop exists once for each and none has a branch in it; without dilation the opening of
  * slip in the past still counts. A NaN goes through
  * all comparisons to the forces, where the host finds it. `mark` is given 1 of walls that were apart and have not met since, else 0,
- * and takes the flags as doubles: a loop over lanes of two widths is not vectorised for every machine. `both` takes P Q / (kn A) of
- * points of which a part presses and another pulls. */
+ * and takes the flags as doubles: a loop over lanes of two widths is not vectorised for every machine. `more` takes the energy beyond
+ * that of the sum f_n: P Q / (kn A) of points of which a part presses and another pulls, and that of a share that pulls alone. */
 TL_IN_LOOP void move(const bonded *law, const tl_law_batch *batch, uint32_t begin, uint32_t lanes,
-                     double *restrict mark, double *restrict both, const int heat,
+                     double *restrict mark, double *restrict more, const int heat,
                      const int dilates)
 {
     const tl_law_columns c = tl_law_columns_from(batch, begin);
@@ -129,22 +130,27 @@ TL_IN_LOOP void move(const bonded *law, const tl_law_batch *batch, uint32_t begi
         double stiffness = ks * c.area[i], opened = opening[i], lift = 0;
         double pressed = kn * c.area[i] * (c.closure[i] + opened) + c.f_n0[i];
         double before = bond[i], near = 1 - mark[i];
-        double held = before > BOND_HOLDS ? grips : near * grips_on;
-        double pull = held * kn * c.area[i] * apart[i];
+        double whole = before * (1 - before) > 0 ? 0 : grips_on; /* of a share nothing does */
+        double held = before > 0 ? before * grips : near * whole;
+        double grip = kn * c.area[i] * apart[i], pull = held * grip;
         tl_vec3 f = TL_TRIAL_AT(c, i, stiffness);
         double trial = tl_v3_norm(f);
 
         /* Does the bond hold this step? */
-        double bound = peak.cohesion * c.area[i] + (pressed - pull) * peak.tangent;
+        double rest = 1 - before;
+        double bound = (before * peak.cohesion + rest * residual.cohesion) * c.area[i] +
+                       ((pressed < 0 ? held * pressed : pressed) - pull) *
+                           (before * peak.tangent + rest * residual.tangent);
         double after = trial > (bound < 0 ? 0 : bound) ? 0 : before;
         double fibre = kn * c.area[i] * (edge[i] + opened) + c.f_n0[i];
         after = fibre < -peak.tension * c.area[i] ? 0 : after;
         /* The strength that is left. */
-        double tangent = after > BOND_HOLDS ? peak.tangent : residual.tangent;
-        double cohesion = after > BOND_HOLDS ? peak.cohesion : residual.cohesion;
-        double left = fibre < -residual.tension * c.area[i] ? 0 : held * grips_on;
-        double holds = after > BOND_HOLDS ? held : left;
-        double pulls = holds > 0 ? pull : 0, total = pressed - pulls;
+        rest = 1 - after;
+        double tangent = after * peak.tangent + rest * residual.tangent;
+        double cohesion = after * peak.cohesion + rest * residual.cohesion;
+        double left = fibre < -residual.tension * c.area[i] ? 0 : whole;
+        double holds = after * grips + (held - after * grips) * left;
+        double pulls = holds * grip, total = pressed - pulls;
         if (dilates) {
             double strong = cohesion * c.area[i] + total * tangent;
             double yield = stiffness + kn * c.area[i] * dilation * tangent;
@@ -158,29 +164,32 @@ TL_IN_LOOP void move(const bonded *law, const tl_law_batch *batch, uint32_t begi
             pressed = kn * c.area[i] * (c.closure[i] + opened) + c.f_n0[i];
             total = pressed - pulls;
         }
-        double parted = pressed < 0 ? 1 - holds : 0;
-        double limit = cohesion * c.area[i] + total * tangent;
-        limit = ((limit < 0) | (parted > 0)) ? 0 : limit;
+        double parted = pressed < 0 ? 1 - holds : 0, stretched = pressed < 0 ? -pressed : 0;
+        total = pressed < 0 ? -(holds * stretched) - pulls : total;
+        double limit = (cohesion - parted * residual.cohesion) * c.area[i] + total * tangent;
+        limit = ((limit < 0) | !(parted < 1)) ? 0 : limit;
         double most = limit * (1 + ROUNDING);
-        double whole = trial > most ? trial : 1;
-        double scale = trial > most ? limit / whole : 1;
+        double beyond = trial > most ? trial : 1;
+        double scale = trial > most ? limit / beyond : 1;
         if (heat) {
             double along = tl_v3_dot(TL_SHEAR_AT(c, i), f);
-            double work = tl_law_slip_work(along, whole, limit, stiffness);
+            double work = tl_law_slip_work(along, beyond, limit, stiffness);
             work = trial > most ? work : 0;
             if (dilates)
                 work = work - 0.5 * (c.f_n[i] + total) * lift;
             work = work > 0 && stiffness > 0 ? work : 0;
             /* What lets go gives up its tensile spring. */
-            double gone = pull - pulls - held * (parted > 0 ? pressed : 0);
-            dissipated[i] = work + tl_law_snap_work(gone, kn * c.area[i], c.du_n[i]);
+            dissipated[i] = work + (held - holds) * tl_law_snap_work(grip + stretched,
+                                                                     kn * c.area[i], c.du_n[i]);
         }
         double let_go = ((pressed > 0) & !(apart[i] > 0)) ? 0 : grips_on * (1 - holds);
         double lost = TL_POINT_FAILED + let_go * TL_POINT_APART;
-        mark[i] = after > BOND_HOLDS ? 0 : lost;
-        mark[i] += parted > 0 ? TL_POINT_OPEN : trial > most ? TL_POINT_SLIPPING : 0;
-        c.f_n[i] = parted > 0 ? 0 : total;
-        both[i] = pulls * (pressed / (c.area[i] > 0 ? kn * c.area[i] : 1));
+        mark[i] = after > 0 ? 0 : lost;
+        mark[i] += !(parted < 1) ? TL_POINT_OPEN : trial > most ? TL_POINT_SLIPPING : 0;
+        c.f_n[i] = !(parted < 1) ? 0 : total;
+        double alone = 0.5 * holds * (1 - holds) * (stretched * stretched + grip * grip);
+        more[i] = (pulls * (pressed < 0 ? -(holds * stretched) : pressed) + alone) /
+                  (c.area[i] > 0 ? kn * c.area[i] : 1);
         TL_PUT_SHEAR(c, i, scale, f);
         bond[i] = after;
     }
@@ -191,7 +200,7 @@ TL_VECTORIZED static tl_status update(const void *self, const tl_law_batch *batc
 {
     (void)report;
     const bonded *law = self;
-    double mark[STRIDE], both[STRIDE];
+    double mark[STRIDE], more[STRIDE];
     for (uint32_t begin = 0; begin < batch->count; begin += STRIDE) {
         uint32_t left = batch->count - begin, lanes = left < STRIDE ? left : STRIDE;
         /* walls that came near from afar were never bonded */
@@ -200,17 +209,17 @@ TL_VECTORIZED static tl_status update(const void *self, const tl_law_batch *batc
             batch->state[0][begin + i] = mark[i] > 0 ? 0 : batch->state[0][begin + i];
         }
         if (law->dilation > 0 && batch->dissipated)
-            move(law, batch, begin, lanes, mark, both, 1, 1);
+            move(law, batch, begin, lanes, mark, more, 1, 1);
         else if (law->dilation > 0)
-            move(law, batch, begin, lanes, mark, both, 0, 1);
+            move(law, batch, begin, lanes, mark, more, 0, 1);
         else if (batch->dissipated)
-            move(law, batch, begin, lanes, mark, both, 1, 0);
+            move(law, batch, begin, lanes, mark, more, 1, 0);
         else
-            move(law, batch, begin, lanes, mark, both, 0, 0);
+            move(law, batch, begin, lanes, mark, more, 0, 0);
         tl_law_put_flags(batch, begin, lanes, mark);
         tl_law_store_energy(batch, begin, lanes, law->kn, law->ks);
         for (uint32_t i = 0; i < lanes && batch->stored; i++)
-            batch->stored[begin + i] += both[i];
+            batch->stored[begin + i] += more[i];
     }
     return TL_OK;
 }
@@ -232,7 +241,7 @@ static void across_gap(const void *self, const tl_law_batch *batch, double *lift
     const double strong_on = law->residual.tension > 0 ? 1 : 0;
     tl_law_lift(batch, law->kn, batch->state[1], lift);
     for (uint32_t i = 0; i < batch->count; i++)
-        hold[i] = batch->flags[i] & TL_POINT_APART ? 0 : bond[i] > BOND_HOLDS ? strong : strong_on;
+        hold[i] = batch->flags[i] & TL_POINT_APART ? 0 : bond[i] > 0 ? bond[i] * strong : strong_on;
 }
 
 static const tl_law_ops ops =
