@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <talus/check.h>
+#include <talus/number.h>
 
 #define USAGE                                                                                      \
     "talus: usage: talus check FILE.so [NAME=VALUE...]\n"                                          \
@@ -26,8 +27,8 @@ static size_t read_numbers(const char *text, double *numbers)
 {
     size_t count = 0;
     while (count < MOST_NUMBERS) {
-        char *end;
-        numbers[count] = strtod(text, &end);
+        const char *end;
+        numbers[count] = tl_number_read(text, &end);
         count++;
         if (end == text || (*end && *end != ',' && *end != ';') || (*end == ';' && count % 3 != 0))
             return 0;

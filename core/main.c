@@ -10,6 +10,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <talus/number.h>
 #include <unistd.h>
 
 #ifndef TALUS_BUILD
@@ -62,8 +63,8 @@ static bool read_threads(const char *text, int64_t *threads)
 /* Minutes as seconds. */
 static bool read_minutes(const char *text, double *seconds)
 {
-    char *end;
-    double minutes = strtod(text, &end);
+    const char *end;
+    double minutes = tl_number_read(text, &end);
     if (end == text || *end || !(minutes > 0 && minutes <= 1e6)) {
         fail("--autosave: '%s' is not a number of minutes in (0, 1e6]", text);
         return false;

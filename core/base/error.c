@@ -3,12 +3,13 @@
 
 #include <stdio.h>
 #include <string.h>
+#include <talus/number.h>
 
 tl_status tl_vfail(tl_error *error, tl_status status, const char *format, va_list args)
 {
     if (error) {
         error->status = status;
-        vsnprintf(error->text, sizeof error->text, format, args);
+        tl_text_vprint(error->text, sizeof error->text, format, args);
     }
     return status;
 }
@@ -33,7 +34,7 @@ tl_status tl_error_prefix(tl_error *error, const char *format, ...)
     memcpy(sentence, error->text, sizeof sentence);
     va_list args;
     va_start(args, format);
-    int n = vsnprintf(error->text, sizeof error->text, format, args);
+    int n = tl_text_vprint(error->text, sizeof error->text, format, args);
     va_end(args);
     if (n >= 0 && (size_t)n < sizeof error->text)
         snprintf(error->text + n, sizeof error->text - (size_t)n, "%s", sentence);

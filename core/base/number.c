@@ -1,7 +1,7 @@
 /* number.c - the shortest text of a double, as "%.*g" writes it with the fewest digits, from six on, that read back as the
  * same double.
  *
- * Numbers between 1e-10 and 1e15, which are nearly all, go without snprintf and strtod, exactly, in integers of 128 bits: the
+ * Numbers between 1e-10 and 1e15, which are nearly all, go without the C library, exactly, in integers of 128 bits: the
  * double is m 2^e with m < 2^53, and k is chosen so that
  *
  *     value 10^k = m 5^k / 2^s,   s = -(e + k),
@@ -19,6 +19,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <talus/number.h>
 
 #define LEAST_DIGITS 6
 #define MOST_DIGITS 17
@@ -153,12 +154,12 @@ static char *put_decimal(char *to, decimal d)
 
 static bool reads_back(double value, int digits, char text[TL_NUMBER_TEXT])
 {
-    snprintf(text, TL_NUMBER_TEXT, "%.*g", digits, value);
-    double back = strtod(text, NULL);
+    tl_text_print(text, TL_NUMBER_TEXT, "%.*g", digits, value);
+    double back = tl_number_read(text, NULL);
     return !isfinite(value) || !(back < value || back > value);
 }
 
-/* The same by the C library. */
+/* The same with the digits of the C library. */
 static size_t by_library(double value, char text[TL_NUMBER_TEXT])
 {
     /* The sign of a NaN, which some systems print, says nothing to a user. */

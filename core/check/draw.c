@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 #include <talus/elementary.h>
+#include <talus/number.h>
 
 void tl_check_note(tl_checker *c, int check, const char *format, ...)
 {
@@ -15,7 +16,7 @@ void tl_check_note(tl_checker *c, int check, const char *format, ...)
         return;
     va_list list;
     va_start(list, format);
-    vsnprintf(text, size, format, list);
+    tl_text_vprint(text, size, format, list);
     va_end(list);
     size_t used = strlen(text);
     if (c->params_text[0])

@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <talus/number.h>
 
 /* Calls that are let fail, one in each run: the first ones, and then ever fewer. */
 #define FIRST_CALLS 40
@@ -127,7 +128,7 @@ static tl_status fail(const tl_host *h, tl_status status, const char *format, ..
     char text[TL_ERROR_TEXT];
     va_list list;
     va_start(list, format);
-    vsnprintf(text, sizeof text, format, list);
+    tl_text_vprint(text, sizeof text, format, list);
     va_end(list);
     return watch_of(h)->host->fail(watch_of(h)->host, status, "%s", text);
 }

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <talus/number.h>
 
 /* Share of the parameters with a default that a drawn set changes. */
 #define CHANGED 0.7
@@ -105,7 +106,7 @@ static void add_text(tl_checker *c, const tl_value *v)
     char *to = c->params_text + used;
     const char *comma = used ? ", " : "";
     if (v->type == TL_VALUE_NUMBER)
-        snprintf(to, free_bytes, "%s%s = %.6g", comma, v->key, v->number);
+        tl_text_print(to, free_bytes, "%s%s = %.6g", comma, v->key, v->number);
     else if (v->type == TL_VALUE_BOOL)
         snprintf(to, free_bytes, "%s%s = %s", comma, v->key, v->number != 0 ? "true" : "false");
     else if (v->type == TL_VALUE_STRING)

@@ -15,6 +15,7 @@
 
 #include <stdatomic.h>
 #include <stdio.h>
+#include <talus/number.h>
 
 /* Most motion in a step over the body's diameter, 2 r. Blocks in contact move by 1e-2 of it at the most where the step
  * is stable; ten leaves room for fragments in free fall with a long step. It is a turn of 20 radians. */
@@ -158,7 +159,7 @@ static void note_cause(cause *most, double travel, const char *what, double size
     if (!(travel > most->travel) && !isnan(travel))
         return;
     most->travel = isnan(travel) ? INFINITY : travel;
-    snprintf(most->text, sizeof most->text, "%s %.3g %s", what, size, unit);
+    tl_text_print(most->text, sizeof most->text, "%s %.3g %s", what, size, unit);
 }
 
 /* The length of a vector whose squares may leave the range of numbers. */
@@ -204,11 +205,12 @@ static tl_status report(tl_model *m, uint32_t body, const tl_step_span *k)
     } else {
         char name[320];
         tl_contact_name(m, contact, name, sizeof name);
-        snprintf(by, sizeof by, "most of all presses the %s, with %.3g N", name, force);
+        tl_text_print(by, sizeof by, "most of all presses the %s, with %.3g N", name, force);
     }
     if (isfinite(travel))
-        snprintf(far, sizeof far, "%.3g m in this step, more than %d times its diameter of %.3g m",
-                 travel, TL_TRAVEL, diameter);
+        tl_text_print(far, sizeof far,
+                      "%.3g m in this step, more than %d times its diameter of %.3g m", travel,
+                      TL_TRAVEL, diameter);
     else
         snprintf(far, sizeof far, "in this step by what is no finite number");
     cause most = find_cause(m, body, k, force);

@@ -13,6 +13,7 @@
 #include "cycle/travel.h"
 
 #include <stdio.h>
+#include <talus/number.h>
 
 /* By how much the overlap of two blocks may grow in a step, over the thickness of the thinner one: aimed at, and at the most. A
  * contact that is born with half of the thickness still knows which way it came (TL_DEEPEST_BORN of overlap.c is 0.9). */
@@ -129,10 +130,10 @@ tl_status tl_travel_shorten(tl_model *m, double *dt, uint32_t *body)
 static const char *way_out(const tl_model *m, double longest, char *text, size_t size)
 {
     if (!isnan(m->timestep.dt) || tl_adds_mass(m))
-        snprintf(text, size, "give a dt of %.2g s or less, or leave dt out", longest);
+        tl_text_print(text, size, "give a dt of %.2g s or less, or leave dt out", longest);
     else if (m->timestep.fraction > 1)
-        snprintf(text, size, "fraction = %g of timestep is not stable; give 1 or less",
-                 m->timestep.fraction);
+        tl_text_print(text, size, "fraction = %g of timestep is not stable; give 1 or less",
+                      m->timestep.fraction);
     else
         snprintf(text, size, "is a velocity, a load or gravity out of proportion?");
     return text;

@@ -19,6 +19,7 @@
 #include "force/joint_laws.h"
 
 #include <stdio.h>
+#include <talus/number.h>
 
 /* Component of a point's shear force along the normal, relative to the force of a spring pressed by the block's size: forces
  * below are rounding, of any direction. */
@@ -153,11 +154,12 @@ static void compare(tl_failure *failure, const tl_law *law, const tl_simd_group 
         char text[240];
         if (!(stiffness > FAR_STIFFER * tl_law_stiffness(law)) || isinf(stiffness))
             continue; /* where a trial leaves the range of numbers it tells nothing */
-        snprintf(text, sizeof text,
-                 "its %s force rises by %.3g Pa/m here, and its stiffness() gives kn = %.3g and ks "
-                 "= %.3g Pa/m, from "
-                 "which the time step follows: they must be upper bounds, or the step is unstable",
-                 shear ? "shear" : "normal", stiffness, law->kn, law->ks);
+        tl_text_print(
+            text, sizeof text,
+            "its %s force rises by %.3g Pa/m here, and its stiffness() gives kn = %.3g and ks "
+            "= %.3g Pa/m, from "
+            "which the time step follows: they must be upper bounds, or the step is unstable",
+            shear ? "shear" : "normal", stiffness, law->kn, law->ks);
         tl_failure_note(failure, group->start, TL_E_PLUGIN, row + l, text);
     }
 }
@@ -238,10 +240,11 @@ void tl_law_check_shear(const tl_model *m, tl_failure *failure, const tl_law *la
             !is_out_of_plane(m, law, c, row, own[l]))
             continue;
         char text[240];
-        snprintf(text, sizeof text,
-                 "its shear force of %.3g N has a component of %.3g N along the normal: it must "
-                 "lie in the common plane, to %g of the force",
-                 tl_v3_norm(f), along, TL_OUT_OF_PLANE);
+        tl_text_print(
+            text, sizeof text,
+            "its shear force of %.3g N has a component of %.3g N along the normal: it must "
+            "lie in the common plane, to %g of the force",
+            tl_v3_norm(f), along, TL_OUT_OF_PLANE);
         tl_failure_note(failure, group->start, TL_E_PLUGIN, row, text);
     }
 }
@@ -275,19 +278,21 @@ void tl_law_check_forces(const tl_model *m, tl_failure *failure, const tl_law *l
         largest = fmax(largest, fmax(fabs(at.normal), at.shear));
         bool sound = isfinite(at.closure) && isfinite(at.motion);
         if (sound && isfinite(at.normal) && isfinite(at.shear)) {
-            snprintf(text, sizeof text,
-                     "the force is not a finite number: those of its points are, up to %.3g N, but "
-                     "not their sum or moment; with kn = %.3g and ks = %.3g Pa/m, is a property "
-                     "out of proportion?",
-                     largest, law->kn, law->ks);
+            tl_text_print(
+                text, sizeof text,
+                "the force is not a finite number: those of its points are, up to %.3g N, but "
+                "not their sum or moment; with kn = %.3g and ks = %.3g Pa/m, is a property "
+                "out of proportion?",
+                largest, law->kn, law->ks);
             continue;
         }
-        snprintf(text, sizeof text,
-                 "the force is not a finite number: %s a normal force of %.3g N and a shear force "
-                 "of %.3g N for a closure of %.3g m, a motion of %.3g m in the last step and an "
-                 "area of %.3g m2: look at %s",
-                 sound ? "the law gives" : "it is", at.normal, at.shear, at.closure, at.motion,
-                 p->area[row], sound ? "its properties" : "places and velocities of the blocks");
+        tl_text_print(
+            text, sizeof text,
+            "the force is not a finite number: %s a normal force of %.3g N and a shear force "
+            "of %.3g N for a closure of %.3g m, a motion of %.3g m in the last step and an "
+            "area of %.3g m2: look at %s",
+            sound ? "the law gives" : "it is", at.normal, at.shear, at.closure, at.motion,
+            p->area[row], sound ? "its properties" : "places and velocities of the blocks");
         break;
     }
     row = row < group->start + group->slots * TL_LANES ? row : group->start + contact;
@@ -315,9 +320,9 @@ void tl_law_check_states(const tl_model *m, tl_failure *failure, const tl_law *l
             char text[200];
             if (isfinite(p->state[c][i]) || !(p->area[i] > 0))
                 continue;
-            snprintf(text, sizeof text,
-                     "it leaves %g in its state '%.40s', which must be a finite number",
-                     p->state[c][i], state_name(law->kind, c));
+            tl_text_print(text, sizeof text,
+                          "it leaves %g in its state '%.40s', which must be a finite number",
+                          p->state[c][i], state_name(law->kind, c));
             tl_failure_note(failure, first, TL_E_PLUGIN, i, text);
             return;
         }

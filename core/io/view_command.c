@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <talus/number.h>
 #include <talus/view.h>
 
 /* Steps that one command may ask for. */
@@ -74,7 +75,7 @@ __attribute__((format(printf, 2, 3))) static bool refuse(reader *r, const char *
 {
     va_list list;
     va_start(list, format);
-    vsnprintf(r->why, r->size, format, list);
+    tl_text_vprint(r->why, r->size, format, list);
     va_end(list);
     return false;
 }
@@ -202,7 +203,8 @@ static bool read_text(reader *r, const char *what, char *out, size_t room)
 
 static bool read_number(reader *r, const char *what, double *out)
 {
-    char text[NUMBER], *end = text;
+    char text[NUMBER];
+    const char *end;
     size_t length = 0;
     skip_spaces(r);
     while (r->at + length < r->end && length < NUMBER - 1 && r->at[length] &&
@@ -210,7 +212,7 @@ static bool read_number(reader *r, const char *what, double *out)
         length++;
     memcpy(text, r->at, length);
     text[length] = '\0';
-    *out = strtod(text, &end);
+    *out = tl_number_read(text, &end);
     if (length == 0 || *end)
         return refuse(r, "%s must be a number", what);
     r->at += length;

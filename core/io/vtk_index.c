@@ -18,6 +18,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <talus/number.h>
 #include <unistd.h>
 
 /* Bytes that the system writes as one, at multiples of that: no system has smaller pages. */
@@ -42,14 +43,11 @@ static void put_json_text(FILE *file, const char *text)
     fputc('"', file);
 }
 
-/* With all digits, and a decimal point whatever the locale of the process writes. */
+/* With all digits. */
 static void put_json_number(FILE *file, double value)
 {
     char text[32];
-    snprintf(text, sizeof text, "%.17g", value);
-    char *comma = strchr(text, ',');
-    if (comma)
-        *comma = '.';
+    tl_text_print(text, sizeof text, "%.17g", value);
     fputs(text, file);
 }
 

@@ -57,8 +57,10 @@ typedef struct call {
 /* Raises at the place where the function at index 2 is defined. */
 static int bad_velocity(lua_State *L, const call *c, const char *what)
 {
-    return tl_lua_fail_in(L, 2, "drive: %s(%f) must give three finite numbers, not %s",
-                          key_names[c->key], c->t, what);
+    lua_pushnumber(L, c->t);
+    tl_lua_push_number_text(L, -1);
+    return tl_lua_fail_in(L, 2, "drive: %s(%s) must give three finite numbers, not %s",
+                          key_names[c->key], lua_tostring(L, -1), what);
 }
 
 /* Three numbers from index `first` on. */

@@ -271,6 +271,18 @@ void tl_lua_arity(lua_State *L, int most, const char *function)
                     extra == 1 ? "" : "s", tl_lua_describe(L, most + 1));
 }
 
+void tl_lua_push_number_text(lua_State *L, int index)
+{
+    char text[40];
+    if (lua_isinteger(L, index)) {
+        lua_pushfstring(L, "%I", lua_tointeger(L, index));
+        return;
+    }
+    tl_text_print(text, sizeof text, "%.14g", lua_tonumber(L, index));
+    bool whole = text[strspn(text, "-0123456789")] == '\0';
+    lua_pushfstring(L, "%s%s", text, whole ? ".0" : "");
+}
+
 const char *tl_lua_describe(lua_State *L, int index)
 {
     const char *text;
@@ -282,7 +294,7 @@ const char *tl_lua_describe(lua_State *L, int index)
     case LUA_TNUMBER:
         if (isnan(lua_tonumber(L, index)))
             return "not a number (NaN)";
-        lua_pushvalue(L, index);
+        tl_lua_push_number_text(L, index);
         return lua_pushfstring(L, "the number %s", lua_tostring(L, -1));
     case LUA_TSTRING:
         text = lua_tolstring(L, index, &length);
@@ -308,8 +320,8 @@ void tl_lua_add_number(luaL_Buffer *to, double number, int digits)
 {
     char text[40];
     do
-        snprintf(text, sizeof text, "%.*g", digits, number);
-    while (strtod(text, NULL) != number && digits++ < DBL_DECIMAL_DIG);
+        tl_text_print(text, sizeof text, "%.*g", digits, number);
+    while (tl_number_read(text, NULL) != number && digits++ < DBL_DECIMAL_DIG);
     luaL_addstring(to, text);
 }
 

@@ -12,6 +12,7 @@
 
 #include <lauxlib.h>
 #include <lua.h>
+#include <talus/number.h>
 #include <talus/talus.h>
 
 /* A key of a table of arguments that a tl_param cannot express. */
@@ -103,6 +104,8 @@ void tl_lua_read_one(lua_State *L, int index, const tl_lua_spec *spec, const cha
 const char *tl_lua_text(lua_State *L, int index, const char *function, const char *what);
 /* Raises when more than `most` arguments were given (the object itself counted). */
 void tl_lua_arity(lua_State *L, int most, const char *function);
+/* Pushes the text of the number at `index`, as Lua writes it where there is a decimal point. */
+void tl_lua_push_number_text(lua_State *L, int index);
 /* "a number", "nil", "a selection of blocks": what the value at `index` is; may push a string. */
 const char *tl_lua_describe(lua_State *L, int index);
 

@@ -58,11 +58,11 @@ static void default_text(const tl_param *param, char *text, size_t size)
     else if (param->type == TL_PARAM_ENUM)
         snprintf(text, size, "default \"%s\"", param->choices[(int)d[0]]);
     else if (param->type == TL_PARAM_VEC3)
-        snprintf(text, size, "default {%g, %g, %g}", d[0], d[1], d[2]);
+        tl_text_print(text, size, "default {%g, %g, %g}", d[0], d[1], d[2]);
     else if (param->type == TL_PARAM_STRING)
         snprintf(text, size, "default \"%s\"", param->def_text ? param->def_text : "");
     else
-        snprintf(text, size, "default %.10g", d[0]);
+        tl_text_print(text, size, "default %.10g", d[0]);
 }
 
 /* "number, deg, in [0, 90), default 0", or the choices of an enum. */

@@ -74,9 +74,9 @@ static void push_value(lua_State *L, const tl_param *param, const void *params)
 /* Six digits where they tell the number, else as many as it takes. */
 static const char *number_text(double number, char text[32])
 {
-    snprintf(text, 32, "%.6g", number);
-    if (strtod(text, NULL) != number)
-        snprintf(text, 32, "%.15g", number);
+    tl_text_print(text, 32, "%.6g", number);
+    if (tl_number_read(text, NULL) != number)
+        tl_text_print(text, 32, "%.15g", number);
     return text;
 }
 
@@ -187,13 +187,13 @@ static void add_timestep(lua_State *L, tl_model *model, bool prints)
         return;
     char text[VALUE_TEXT];
     if (isnan(now.dt))
-        snprintf(text, sizeof text, "rule %s, fraction %.10g of the critical step", rule,
-                 now.fraction);
+        tl_text_print(text, sizeof text, "rule %s, fraction %.10g of the critical step", rule,
+                      now.fraction);
     else
-        snprintf(text, sizeof text, "given, %.10g s", now.dt);
+        tl_text_print(text, sizeof text, "given, %.10g s", now.dt);
     print_row("timestep", text);
     if (known) {
-        snprintf(text, sizeof text, "%.6g s", dt);
+        tl_text_print(text, sizeof text, "%.6g s", dt);
         print_row("  dt", text);
     } else {
         print_row("  dt", tl_model_error(model)->text);
@@ -212,8 +212,8 @@ static void add_mass_scaling(lua_State *L, const tl_model *model, bool prints)
     if (scaling.on && partial) {
         set_number(L, "dt", scaling.dt);
         set_number(L, "most", scaling.most);
-        snprintf(text, sizeof text, "for dt = %.10g s, adding at most %.10g of the mass",
-                 scaling.dt, scaling.most);
+        tl_text_print(text, sizeof text, "for dt = %.10g s, adding at most %.10g of the mass",
+                      scaling.dt, scaling.most);
     }
     lua_setfield(L, -2, "mass_scaling");
     if (prints)
@@ -294,10 +294,10 @@ static void add_areas(lua_State *L, tl_model *model, bool prints)
         set_number(L, absolute ? "absolute" : "fraction", absolute ? rule.absolute : rule.fraction);
         lua_setfield(L, -2, rule.joint ? rule.joint : "*");
         if (absolute)
-            snprintf(text, sizeof text, "%.10g m2", rule.absolute);
+            tl_text_print(text, sizeof text, "%.10g m2", rule.absolute);
         else if (rule.fraction > 0)
-            snprintf(text, sizeof text, "%.10g of the smaller block's mean face area",
-                     rule.fraction);
+            tl_text_print(text, sizeof text, "%.10g of the smaller block's mean face area",
+                          rule.fraction);
         else
             snprintf(text, sizeof text, "none%s", rule.joint ? "" : " (default)");
         snprintf(name, sizeof name, "  joint %s", rule.joint ? rule.joint : "");

@@ -10,6 +10,7 @@
 #include <string.h>
 #include <sys/ioctl.h>
 #include <talus/elementary.h>
+#include <talus/number.h>
 #include <unistd.h>
 
 /* Seconds between two lines on a terminal and in a log, unless TALUS_PROGRESS says. */
@@ -28,9 +29,9 @@ static double read_period(lua_State *L)
     const char *text = getenv("TALUS_PROGRESS");
     if (!text || !text[0])
         return NAN;
-    char *end;
-    double period = strtod(text, &end);
-    if (*end || !(period >= 0) || !isfinite(period))
+    const char *end;
+    double period = tl_number_read(text, &end);
+    if (end == text || *end || !(period >= 0) || !isfinite(period))
         tl_lua_fail(L, "the environment's TALUS_PROGRESS = '%s' is not a number of seconds >= 0",
                     text);
     return period;
@@ -71,7 +72,7 @@ static void add(line *l, int rank, const char *format, ...)
 {
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(l->part[l->count], PART_TEXT, format, arguments);
+    tl_text_vprint(l->part[l->count], PART_TEXT, format, arguments);
     va_end(arguments);
     l->rank[l->count++] = rank;
 }

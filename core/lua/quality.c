@@ -19,15 +19,20 @@ static int push_protected(lua_State *L, lua_CFunction push, void *data)
 void tl_lua_push_timestep(lua_State *L, const tl_timestep_report *r)
 {
     char numbers[120];
-    snprintf(numbers, sizeof numbers, "dt = %.4g s, mass %.4g kg, stiffness %.4g N/m", r->dt,
-             r->mass, r->stiffness);
-    if (r->block == TL_NO_ID)
-        lua_pushfstring(L, "no block controls the step: dt = %f s", r->dt);
-    else if (r->partner == TL_NO_ID)
+    tl_text_print(numbers, sizeof numbers, "dt = %.4g s, mass %.4g kg, stiffness %.4g N/m", r->dt,
+                  r->mass, r->stiffness);
+    if (r->block == TL_NO_ID) {
+        lua_pushnumber(L, r->dt);
+        tl_lua_push_number_text(L, -1);
+        lua_pushfstring(L, "no block controls the step: dt = %s s", lua_tostring(L, -1));
+        lua_insert(L, -3);
+        lua_pop(L, 2);
+    } else if (r->partner == TL_NO_ID) {
         lua_pushfstring(L, "block %I controls the step: %s", (lua_Integer)r->block, numbers);
-    else
+    } else {
         lua_pushfstring(L, "block %I controls the step, with the stiffest contact at block %I: %s",
                         (lua_Integer)r->block, (lua_Integer)r->partner, numbers);
+    }
 }
 
 /* ---------------------------------------------------------------- report ----------------- */
@@ -59,11 +64,12 @@ static void push_reason(lua_State *L, tl_model *model, const tl_refused_cut *cut
 {
     char text[240];
     const char *joint = tl_tag_name(model, cut->joint);
-    snprintf(text, sizeof text,
-             "%s%s%s does not cut block %u: a side would be %.3g m thick, less than the limit of "
-             "%.3g m",
-             *joint ? "joint '" : "a plane without joint", joint, *joint ? "'" : "", cut->block,
-             cut->thickness, cut->limit);
+    tl_text_print(
+        text, sizeof text,
+        "%s%s%s does not cut block %u: a side would be %.3g m thick, less than the limit of "
+        "%.3g m",
+        *joint ? "joint '" : "a plane without joint", joint, *joint ? "'" : "", cut->block,
+        cut->thickness, cut->limit);
     lua_pushstring(L, text);
 }
 
@@ -92,12 +98,15 @@ static void print_page(lua_State *L, tl_model *model, const tl_quality *q)
 {
     enum { SHOWN = 5 }; /* refused cuts of the page; the table has them all */
     printf("%-18s%zu in %zu bodies\n", "blocks", q->blocks, q->bodies);
-    printf("%-18s%.10g m3, kept to %.1e\n", "volume", q->volume, q->volume_error);
+    char numbers[80];
+    tl_text_print(numbers, sizeof numbers, "%.10g m3, kept to %.1e", q->volume, q->volume_error);
+    printf("%-18s%s\n", "volume", numbers);
     for (size_t i = 0; i < EXTREMES; i++) {
         tl_extreme e = extreme_of(q, &extremes[i]);
-        if (e.block != TL_NO_ID)
-            printf("%-18s%.4g%s, block %u\n", extremes[i].label, e.value, extremes[i].unit,
-                   e.block);
+        if (e.block == TL_NO_ID)
+            continue;
+        tl_text_print(numbers, sizeof numbers, "%.4g%s", e.value, extremes[i].unit);
+        printf("%-18s%s, block %u\n", extremes[i].label, numbers, e.block);
     }
     printf("%-18s%zu made, %zu refused, %zu on existing faces\n", "cuts", q->cuts, q->refused,
            q->coincident);

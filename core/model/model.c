@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <talus/number.h>
 
 void tl_damping_clear(tl_model *m)
 {
@@ -40,7 +41,7 @@ void tl_model_say(tl_model *m, const char *format, ...)
     char text[TL_ERROR_TEXT];
     va_list args;
     va_start(args, format);
-    vsnprintf(text, sizeof text, format, args);
+    tl_text_vprint(text, sizeof text, format, args);
     va_end(args);
     if (m->log)
         m->log(m->log_user, text);

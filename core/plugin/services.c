@@ -12,6 +12,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <talus/number.h>
 
 /* A cutting plane's normal may miss unit length by this: a few roundings of its components. */
 #define UNIT_TOLERANCE 1e-9
@@ -49,7 +50,7 @@ static void say(const tl_host *host, const char *format, ...)
     char text[512];
     va_list args;
     va_start(args, format);
-    vsnprintf(text, sizeof text, format, args);
+    tl_text_vprint(text, sizeof text, format, args);
     va_end(args);
     tl_text_clean(text);
     tl_model_say(service_of(host)->model, "generator '%s': %s", service_of(host)->generator, text);

@@ -18,6 +18,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <talus/number.h>
 #include <xxhash.h>
 #include <zstd.h>
 
@@ -105,7 +106,7 @@ tl_status tl_archive_bad(const tl_archive *a, tl_error *error, const char *forma
     char what[TL_ERROR_TEXT / 2];
     va_list args;
     va_start(args, format);
-    vsnprintf(what, sizeof what, format, args);
+    tl_text_vprint(what, sizeof what, format, args);
     va_end(args);
     return tl_fail(error, TL_E_ARGUMENT, "cannot restore '%.200s': the file is damaged: %s",
                    a->path, what);

@@ -36,7 +36,8 @@ PUBLIC = {
     "elementary.h": set(),
     "vmath.h": {"elementary.h", "types.h"},
     "plugin.h": {"types.h"},
-    "kit.h": {"elementary.h", "plugin.h", "vmath.h"},
+    "number.h": {"plugin.h"},
+    "kit.h": {"elementary.h", "number.h", "plugin.h", "vmath.h"},
     "plugins.h": {"types.h", "plugin.h"},
     "output.h": {"types.h", "plugin.h"},
     "state.h": {"types.h", "plugin.h"},
@@ -55,7 +56,7 @@ PUBLIC = {
     "boundary.h": {"talus.h"},
 }
 PLUGIN_HEADERS = {"talus/version.h", "talus/types.h", "talus/elementary.h", "talus/vmath.h", "talus/plugin.h",
-                  "talus/kit.h"}
+                  "talus/kit.h", "talus/number.h"}
 # What a plugin may include besides: the headers of standard C.
 STANDARD_HEADERS = {
     name + ".h"
@@ -92,6 +93,11 @@ MACHINE_PATH = re.compile(r"(?<![\w.*/:)\]}>?%-])/(?:" + MACHINE_FOLDERS + r")/[
 INEXACT = re.compile(
     r"(?<![\w.>])(?:sin|cos|tan|sincos|asin|acos|atan|atan2|sinh|cosh|tanh|asinh|acosh|atanh|exp|exp2|expm1|log|"
     r"log2|log10|log1p|pow|cbrt|hypot|erf|erfc|tgamma|lgamma)[fl]?\(")
+# Functions whose numbers have the decimal point of the process's locale. talus/number.h reads and writes numbers instead.
+LOCALE_ALWAYS = re.compile(r"(?<![\w.>])(?:strtod|strtof|strtold|atof|v[fs]?scanf|v(?:s|sn|f|as|d)?printf)\s*\(")
+LOCALE_FLOATING = re.compile(r"(?<![\w.>])(?:[fs]?scanf|(?:s|sn|f|as|d)?printf|lua_pushfstring|luaL_error)\s*\(")
+FLOATING = re.compile(r"%[-+ #0-9.*]*[lL]?[aAeEfFgG]")
+LETTER = re.compile(r"'(?:\\.|[^'\\])'")
 UNFINISHED = re.compile(r"\b(?:TO" + r"DO|FIX" + r"ME|XX" + r"X)\b")
 
 
@@ -106,6 +112,34 @@ def without_comments(text):
 
 def includes(text):
     return [(m.group(1) == '"', m.group(2)) for m in INCLUDE.finditer(text)]
+
+
+def call_at(text, begin):
+    """The arguments of a call, from behind its bracket on."""
+    depth, quoted, at = 1, False, begin
+    while depth and at < len(text):
+        letter = text[at]
+        if quoted:
+            at += letter == "\\"
+            quoted = letter != '"'
+        else:
+            quoted = letter == '"'
+            depth += (letter == "(") - (letter == ")")
+        at += 1
+    return text[begin:at - 1]
+
+
+def check_numbers_as_text(path, text):
+    """Numbers are read and written by talus/number.h alone."""
+    if path.parts[-2:] == ("talus", "number.h"):
+        return
+    plain = LETTER.sub("0", without_comments(text))
+    for match in LOCALE_ALWAYS.finditer(plain):
+        yield f"'{match.group(0)}' hangs on the locale: tl_number_read and tl_text_vprint do not"
+    for match in LOCALE_FLOATING.finditer(plain):
+        arguments = call_at(plain, match.end())
+        if FLOATING.search("".join(STRING.findall(arguments)).replace("%%", "")):
+            yield f"'{match.group(0)}{arguments[:40]}...' has numbers as the locale has them: tl_text_print has not"
 
 
 def check_core_includes(path, parts, text):
@@ -274,7 +308,7 @@ def check_tree(root):
             if parts[1] in MODULES and path.suffix == ".h":
                 found += check_module_header(path, text)
         if is_c and parts[0] in ("core", "plugins"):
-            found += check_functions(text)
+            found += [*check_functions(text), *check_numbers_as_text(path, text)]
         if is_c and parts[0] == "plugins" and len(parts) > 2 and parts[1] in KIND_FOLDERS:
             found += check_plugin_includes(path, parts, text)
         faults += [("/".join(parts), fault) for fault in found]
@@ -310,6 +344,13 @@ BAD = [
     ("core/cycle/f.c", "double x = sin(y);\n", "has other bits"),
     ("plugins/laws/springy/f.c", "double x = 1 + atan2(y, z);\n", "has other bits"),
     ("core/base/f.h", "float x = powf(y, z);\n", "has other bits"),
+    ("core/io/n.c", "double x = strtod(text, &end);\n", "hangs on the locale"),
+    ("core/n.c", 'int n = sscanf(text, "%lf", &x);\n', "as the locale has them"),
+    ("plugins/laws/springy/n.c", "x = atof (text);\n", "hangs on the locale"),
+    ("core/base/n.c", "vsnprintf(text, size, format, list);\n", "hangs on the locale"),
+    ("core/lua/n.c", 'lua_pushfstring(L, "dt = %f s", dt);\n', "as the locale has them"),
+    ("plugins/laws/springy/o.c", 'snprintf(text, size, "%s (%d) is "\n    "%.3g m", "a)", 5, x);\n', "as the locale has them"),
+    ("core/io/o.c", "fprintf(f, x == '\"' ? \"%d\" : \"%+9.4e\", y);\n", "as the locale has them"),
     ("scripts/a.lua", "-- TO" + "DO\n", "unfinished work"),
     ("docs/a.md", "see /home" + "/someone/notes.md\n", "path of some machine"),
 ]
@@ -337,6 +378,8 @@ GOOD = [
     ("plugins/generators/joint/joint.c", "#include <talus/plugin.h>\n"),
     ("plugins/screens/glass/glass.c", "#include <pthread.h>\n#include <talus/plugin.h>\n"),
     ("core/model/f.c", 'double x = tl_sin(y) + sqrt(y) + m->log(fma(y, y, y)); /* sin(y) */ char *s = "sin(y)";\n'),
+    ("core/model/n.c", 'snprintf(text, size, "100 %% of %s, %zu", "f", n); /* sscanf(a, "%g") */ tl_text_print(t, 9, "%g", x);\n'),
+    ("core/include/talus/number.h", '#include <talus/plugin.h>\ndouble x = strtod(text, NULL); /* vsnprintf( */\n'),
     ("docs/a.md", "kn in Pa/m, https://example.org/a/b, /usr/bin/python3, a/b/c\n"),
 ]
 

@@ -1,9 +1,12 @@
-/* test_number.c - the text of a number is that of the C library with the fewest digits that read back. */
+/* test_number.c - the text of a number is that of the C library with the fewest digits that read back. What reads and writes
+ * numbers (talus/number.h) does what the C library does where the decimal point is a point; tests/python/test_locale.py looks
+ * where it is none. */
 #include "base/number.h"
 #include "base/random.h"
 #include "check.h"
 
 #include <math.h>
+#include <talus/number.h>
 
 #define CASES 40000
 
@@ -84,4 +87,161 @@ TEST(texts_of_random_numbers)
     CHECK_INT(wrong, 0);
 }
 
-TEST_MAIN(RUN(texts_of_single_numbers), RUN(texts_of_random_numbers))
+/* ---------------------------------------------------------------- reading ---------------- */
+
+/* Whether the reader gives the C library's number, and ends where it does. */
+static int reads(const char *text)
+{
+    const char *end;
+    char *wanted_end;
+    double value = tl_number_read(text, &end), wanted = strtod(text, &wanted_end);
+    if (memcmp(&value, &wanted, sizeof value) == 0 && end == wanted_end)
+        return 1;
+    printf("  '%.60s': %a up to '%.20s' is not %a up to '%.20s'\n", text, value, end, wanted,
+           wanted_end);
+    return 0;
+}
+
+TEST(single_numbers_are_read)
+{
+    const char *const texts[] = {"0",
+                                 "-0",
+                                 "+0.0",
+                                 "000",
+                                 "1",
+                                 "-1.5",
+                                 "+.5",
+                                 "5.",
+                                 ".",
+                                 "",
+                                 "-",
+                                 "e5",
+                                 "1e",
+                                 "1e+",
+                                 "1e-x",
+                                 "1E5",
+                                 "1e5.5",
+                                 "1.2.3",
+                                 "1,5",
+                                 "12 13",
+                                 "1e400",
+                                 "-1e400",
+                                 "1e-400",
+                                 "0e999999999",
+                                 "nan",
+                                 "inf",
+                                 "-inf",
+                                 "INFINITY",
+                                 "north",
+                                 "infinite",
+                                 "0.1e1",
+                                 "1e0005",
+                                 "1e22",
+                                 "1e23",
+                                 "4.9e-324",
+                                 "2.4e-324",
+                                 "2.5e-324",
+                                 "1.7976931348623158e308",
+                                 "1.7976931348623159e308",
+                                 "9007199254740993",
+                                 "9007199254740992.9999",
+                                 "0.000001",
+                                 "1e99999999999999999999",
+                                 "1e-99999999999999999999",
+                                 "00012.500e-003xyz"};
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++)
+        CHECK(reads(texts[i]));
+    const char *end, *hexadecimal = "0x1p3";
+    CHECK_NEAR(tl_number_read(hexadecimal, &end), 0, 0);
+    CHECK(end == hexadecimal + 1);
+    CHECK_NEAR(tl_number_read(" 1", &end), 0, 0);
+    CHECK_NEAR(tl_number_read("2.5", NULL), 2.5, 0);
+}
+
+/* More digits than are looked at: half-way between two doubles, and a little more, far behind. */
+TEST(long_numbers_are_read)
+{
+    static char text[4000];
+    for (int tail = 700; tail < 1700; tail += 37) {
+        for (int last = 0; last < 2; last++) {
+            int n = snprintf(text, sizeof text,
+                             "1.00000000000000011102230246251565404236316680908203125");
+            memset(text + n, '0', (size_t)tail);
+            snprintf(text + n + tail, 40, "%de%d", last, tail % 5 - 2);
+            CHECK(reads(text));
+            text[1] = '0'; /* without a point */
+            CHECK(reads(text));
+        }
+    }
+    memset(text, '0', 3000);
+    text[1] = '.';
+    strcpy(text + 3000, "123e2999");
+    CHECK(reads(text));
+    memset(text, '7', 3000);
+    strcpy(text + 3000, "e-2990");
+    CHECK(reads(text));
+}
+
+TEST(random_numbers_are_read)
+{
+    int wrong = 0;
+    for (uint64_t i = 0; i < CASES && wrong < 10; i++) {
+        uint64_t bits = tl_key(8, i);
+        char text[1200];
+        snprintf(text, sizeof text, "%.*g", 1 + (int)(bits >> 8 & 31), from_bits(bits));
+        wrong += !reads(text);
+        snprintf(text, sizeof text, "%.*f", (int)(bits >> 8 & 63),
+                 ldexp(tl_uniform(bits), (int)(bits % 1100) - 100));
+        wrong += !reads(text);
+        snprintf(text, sizeof text, "%.800g", from_bits(tl_key(9, i)));
+        wrong += !reads(text);
+    }
+    CHECK_INT(wrong, 0);
+}
+
+/* ---------------------------------------------------------------- writing ---------------- */
+
+TL_PRINTF(3, 4)
+static int library_print(char *to, size_t size, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    int length = vsnprintf(to, size, format, arguments);
+    va_end(arguments);
+    return length;
+}
+
+/* Both writers, in a room of every size. */
+#define WRITES(...)                                                                                \
+    for (size_t size_ = 0; size_ < 60; size_++) {                                                  \
+        char wanted[400], got[400];                                                                \
+        memset(wanted, '#', sizeof wanted);                                                        \
+        memset(got, '#', sizeof got);                                                              \
+        int length = library_print(wanted, size_, __VA_ARGS__);                                    \
+        CHECK_INT(tl_text_print(got, size_, __VA_ARGS__), length);                                 \
+        CHECK(strcmp(got, wanted) == 0 || size_ == 0);                                             \
+        CHECK(memcmp(got + size_, wanted + size_, sizeof got - size_) == 0);                       \
+    }
+
+TEST(texts_are_written)
+{
+    WRITES("%s", "");
+    WRITES("nothing");
+    WRITES("100 %% of %s", "it");
+    WRITES("%d %u %x %X %o %c%c", -5, 7u, 255u, 255u, 8u, 'a', 'b');
+    WRITES("%ld %lu %lld %llu", -5l, 7ul, INT64_MIN + 0ll, UINT64_MAX + 0ull);
+    WRITES("%zu %zd %jd %td %hhu %hd", (size_t)-1, (size_t)5, (intmax_t)-9, (ptrdiff_t)-3,
+           (unsigned char)200, (short)-2);
+    WRITES("%04o|%-8s|%8s|%.2s|%-*s|%*d|%.*s|", 7u, "ab", "cd", "efgh", 6, "x", 5, 42, 3, "long");
+    WRITES("%.*s|%*d", -1, "whole", -5, 42);
+    WRITES("%g %e %f %a %G %E %A", 0.1, 1e300, 1e22, 0.1, 1e-9, -3.5, 1e-300);
+    WRITES("%.3g|%10.4f|%-10.1e|%+g|% g|%05.1f|%#g|%.0f", 1 / 3., 2.5, 1e-5, 1., 2., 3.5, 4., 0.5);
+    WRITES("%.*g %*.*f", 12, 1 / 3., 9, 2, 1 / 3.);
+    WRITES("{%g, %g, %g} m, block %u of '%s'", 1.5, -2.25, 1e9, 12u, "J1, J2");
+    char text[8];
+    snprintf(text, sizeof text, "%p", (void *)text);
+    WRITES("%p", (void *)text);
+}
+
+TEST_MAIN(RUN(texts_of_single_numbers), RUN(texts_of_random_numbers), RUN(single_numbers_are_read),
+          RUN(long_numbers_are_read), RUN(random_numbers_are_read), RUN(texts_are_written))

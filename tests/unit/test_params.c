@@ -4,6 +4,8 @@
 #include "base/params.h"
 #include "check.h"
 
+#include <talus/number.h>
+
 typedef struct sample_params {
     double friction, spacing, scale;
     double limit;
@@ -293,7 +295,7 @@ TEST(number_texts_read_back_the_same)
     for (int i = 0; i < 2000; i++) {
         double value = ldexp(check_random(&seed) - 0.5, (int)(200 * check_random(&seed)) - 100);
         tl_number_text(value, out);
-        CHECK(strtod(out, NULL) == value);
+        CHECK(tl_number_read(out, NULL) == value);
     }
     tl_number_text(0.1, out);
     CHECK_TEXT(out, "0.1");

@@ -3,6 +3,8 @@
  * from which no step follows; and what is said of slivers. */
 #include "../contact_scene.h"
 
+#include <talus/number.h>
+
 #define KN 1e8 /* Pa/m */
 #define ALIKE                                                                                      \
     1e-5 /* areas and arms are kept within 1e-6 of a block's size, and count twice or more */
@@ -254,9 +256,9 @@ static tl_filter named_filter(const char *text)
     const char *volume = strstr(text, "model:filter{ volume = "),
                *aspect = strstr(text, "model:filter{ aspect = ");
     if (volume)
-        filter.volume = atof(volume + 23);
+        filter.volume = tl_number_read(volume + 23, NULL);
     if (aspect)
-        filter.aspect = atof(aspect + 23);
+        filter.aspect = tl_number_read(aspect + 23, NULL);
     return filter;
 }
 

@@ -10,6 +10,7 @@
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
+#include <talus/number.h>
 #include <talus/talus.h>
 #include <unistd.h>
 
@@ -306,8 +307,8 @@ static char *index_of(const char *name, int frames)
     double time = 0;
     end += sprintf(end, "{\"file-series-version\":\"1.0\",\"files\":[");
     for (int i = 0; i < frames; i++, time += 1e-9)
-        end += sprintf(end, "%s{\"name\":\"%s_blocks_%06d.vtk\",\"time\":%.17g}", i ? "," : "",
-                       name, i, time);
+        end += tl_text_print(end, 100, "%s{\"name\":\"%s_blocks_%06d.vtk\",\"time\":%.17g}",
+                             i ? "," : "", name, i, time);
     sprintf(end, "]}");
     return text;
 }

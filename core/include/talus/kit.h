@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <talus/elementary.h>
+#include <talus/number.h>
 #include <talus/plugin.h>
 #include <talus/vmath.h>
 

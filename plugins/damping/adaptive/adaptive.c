@@ -47,8 +47,8 @@ static tl_status create(const void *given, void **self, tl_report *report)
 {
     const params *p = given;
     if (p->minimum > p->maximum) {
-        snprintf(report->text, sizeof report->text, "minimum = %g 1/s must be <= maximum = %g 1/s",
-                 p->minimum, p->maximum);
+        tl_text_print(report->text, sizeof report->text,
+                      "minimum = %g 1/s must be <= maximum = %g 1/s", p->minimum, p->maximum);
         return TL_E_ARGUMENT;
     }
     return tl_keep(p, sizeof *p, self, report);

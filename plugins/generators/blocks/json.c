@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <talus/number.h>
 
 /* Lists within lists: more is no block model, and would exhaust the stack. */
 #define MOST_DEPTH 16
@@ -106,13 +107,13 @@ static tl_status read_text(parser *p, const char **text)
 static tl_status read_number(parser *p, json *node)
 {
     size_t length = strspn(p->at, "+-.eE0123456789");
-    char *end = p->at;
+    const char *end = p->at;
     if ((*p->at == '-' || (*p->at >= '0' && *p->at <= '9')) && length > 0)
-        node->number = strtod(p->at, &end);
+        node->number = tl_number_read(p->at, &end);
     if (end == p->at || (size_t)(end - p->at) != length || !isfinite(node->number))
         return damaged(p, "a finite number or another value");
     node->type = JSON_NUMBER;
-    p->at = end;
+    p->at += length;
     return TL_OK;
 }
 

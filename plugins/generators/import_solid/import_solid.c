@@ -1,7 +1,7 @@
 /* import_solid.c - generator "import": a block of each closed convex solid in an STL or OBJ file. */
 #include "mesh.h"
+#include "text.h"
 
-#include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
 #include <talus/kit.h>
@@ -33,7 +33,7 @@ static bool ends_in(const char *file, const char *ending)
     if (length < tail)
         return false;
     for (size_t i = 0; i < tail; i++)
-        if (tolower((unsigned char)file[length - tail + i]) != ending[i])
+        if (text_small(file[length - tail + i]) != ending[i])
             return false;
     return true;
 }

@@ -7,7 +7,6 @@
 #include "mesh.h"
 #include "text.h"
 
-#include <ctype.h>
 #include <string.h>
 
 #define HEADER_BYTES 84
@@ -110,7 +109,7 @@ tl_status stl_read(mesh *m, const bytes *data)
     if (data->count >= HEADER_BYTES && data->count == whole)
         return read_binary(m, data, triangles);
     const char *begin = data->at;
-    while (isspace((unsigned char)*begin))
+    while (text_space(*begin))
         begin++;
     bool text = strncmp(begin, "solid", 5) == 0 && !memchr(data->at, '\0', data->count);
     if (text)

@@ -1,9 +1,18 @@
 /* text.c - takes a text file apart into lines, words and numbers. */
 #include "text.h"
 
-#include <ctype.h>
-#include <stdlib.h>
 #include <string.h>
+#include <talus/number.h>
+
+bool text_space(char letter)
+{
+    return letter == ' ' || (letter >= '\t' && letter <= '\r');
+}
+
+char text_small(char letter)
+{
+    return letter >= 'A' && letter <= 'Z' ? (char)(letter - 'A' + 'a') : letter;
+}
 
 tl_status text_check(const tl_host *host, const char *file, const bytes *data)
 {
@@ -31,19 +40,19 @@ bool line_next(line *l)
 bool line_is(const line *l, const char *word)
 {
     const char *at = l->word;
-    while (*at && tolower((unsigned char)*at) == *word)
+    while (*at && text_small(*at) == *word)
         at++, word++;
     return *at == *word;
 }
 
 char *line_take(line *l)
 {
-    while (isspace((unsigned char)*l->rest))
+    while (text_space(*l->rest))
         l->rest++;
     if (!*l->rest)
         return NULL;
     char *word = l->rest;
-    while (*l->rest && !isspace((unsigned char)*l->rest))
+    while (*l->rest && !text_space(*l->rest))
         l->rest++;
     if (*l->rest)
         *l->rest++ = '\0';
@@ -54,9 +63,10 @@ tl_status line_point(const tl_host *host, const char *file, line *l, tl_vec3 *po
 {
     double number[3];
     for (int i = 0; i < 3; i++) {
-        char *word = line_take(l), *end = word;
+        char *word = line_take(l);
+        const char *end = word;
         if (word)
-            number[i] = strtod(word, &end);
+            number[i] = tl_number_read(word, &end);
         if (end == word || *end)
             return host->fail(host, TL_E_GEOMETRY,
                               "file '%.200s', line %zu: three numbers are expected after '%.40s'%s"

@@ -12,6 +12,9 @@ typedef struct line {
     size_t number; /* from 1 */
 } line;
 
+/* Whether a letter is a space of ASCII; a capital letter of ASCII as a small one. */
+bool text_space(char letter);
+char text_small(char letter);
 /* Refuses what holds a zero byte. */
 tl_status text_check(const tl_host *host, const char *file, const bytes *data);
 /* Goes to the next line that is not empty; false at the end. */

@@ -106,7 +106,7 @@ static tl_status create(const void *given, void **self, tl_report *report)
     double k = p->kni * (1 + linear / unit) * (1 + linear / unit);
     double peak = length / 500 * power(jrc / length, 0.33);
     if (!isfinite(k)) {
-        snprintf(
+        tl_text_print(
             report->text, sizeof report->text,
             "linear_from = %g Pa is too much for kni vm = %g Pa: the stiffness there, kni (1 + "
             "linear_from / (kni vm))^2, is no number",

@@ -74,10 +74,11 @@ static bool snaps(const char *energy, double given, const char *strength, double
     double least = 0.5 * stress * stress / k;
     if (given > least)
         return false;
-    snprintf(report->text, sizeof report->text,
-             "%s = %g J/m2 must be > %s^2 / (2 k) = %g J/m2, what the spring holds when damage "
-             "begins",
-             energy, given, strength, least);
+    tl_text_print(
+        report->text, sizeof report->text,
+        "%s = %g J/m2 must be > %s^2 / (2 k) = %g J/m2, what the spring holds when damage "
+        "begins",
+        energy, given, strength, least);
     return true;
 }
 

@@ -165,8 +165,8 @@ static tl_status create(const void *given, void **self, tl_report *report)
 {
     const params *p = given;
     if (p->phi > p->phi_i) {
-        snprintf(report->text, sizeof report->text, "phi = %g deg must be <= phi_i = %g deg",
-                 p->phi, p->phi_i);
+        tl_text_print(report->text, sizeof report->text, "phi = %g deg must be <= phi_i = %g deg",
+                      p->phi, p->phi_i);
         return TL_E_ARGUMENT;
     }
     if (p->en > 0 && isnan(p->kn_max))

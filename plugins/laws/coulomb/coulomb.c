@@ -66,9 +66,9 @@ static tl_status create(const void *given, void **self, tl_report *report)
 {
     const params *p = given;
     if (p->dilation > p->friction) {
-        snprintf(report->text, sizeof report->text,
-                 "dilation = %g deg must be <= friction = %g deg, or slip would make energy",
-                 p->dilation, p->friction);
+        tl_text_print(report->text, sizeof report->text,
+                      "dilation = %g deg must be <= friction = %g deg, or slip would make energy",
+                      p->dilation, p->friction);
         return TL_E_ARGUMENT;
     }
     const coulomb law = {

@@ -87,9 +87,9 @@ static tl_status create(const void *given, void **self, tl_report *report)
     double residual = isnan(p->residual_friction) ? p->friction : p->residual_friction;
     double least = residual < p->friction ? residual : p->friction;
     if (p->dilation > least) {
-        snprintf(report->text, sizeof report->text,
-                 "dilation = %g deg must be <= %s = %g deg, or slip would make energy", p->dilation,
-                 least < p->friction ? "residual_friction" : "friction", least);
+        tl_text_print(report->text, sizeof report->text,
+                      "dilation = %g deg must be <= %s = %g deg, or slip would make energy",
+                      p->dilation, least < p->friction ? "residual_friction" : "friction", least);
         return TL_E_ARGUMENT;
     }
     const bonded law = {

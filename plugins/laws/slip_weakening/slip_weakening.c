@@ -88,10 +88,11 @@ static tl_status create(const void *given, void **self, tl_report *report)
     double residual = isnan(p->residual_friction) ? p->friction : p->residual_friction;
     if (residual > p->friction || p->residual_cohesion > p->cohesion) {
         int angle = residual > p->friction;
-        snprintf(report->text, sizeof report->text, "residual_%s = %g %s must be <= %s = %g %s",
-                 angle ? "friction" : "cohesion", angle ? residual : p->residual_cohesion,
-                 angle ? "deg" : "Pa", angle ? "friction" : "cohesion",
-                 angle ? p->friction : p->cohesion, angle ? "deg" : "Pa");
+        tl_text_print(report->text, sizeof report->text,
+                      "residual_%s = %g %s must be <= %s = %g %s", angle ? "friction" : "cohesion",
+                      angle ? residual : p->residual_cohesion, angle ? "deg" : "Pa",
+                      angle ? "friction" : "cohesion", angle ? p->friction : p->cohesion,
+                      angle ? "deg" : "Pa");
         return TL_E_ARGUMENT;
     }
     if ((p->healing == HEAL_TIME) == (isnan(p->healing_time) != 0)) {

@@ -31,16 +31,27 @@ local function nearest(word, known)
     return name
 end
 
--- Ends the call with a sentence; to be used under arguments.call.
+-- The text of a number, with a decimal point whatever the locale has.
+function arguments.decimal(format, value)
+    return (string.format(format, value):gsub("[^%w+-]+", "."))
+end
+
+-- Ends the call with a sentence, in which numbers are %s; to be used under arguments.call.
 function arguments.fail(format, ...)
-    error({ sentence = string.format(format, ...) }, 0)
+    local values = table.pack(...)
+    for i = 1, values.n do
+        if math.type(values[i]) == "float" then
+            values[i] = arguments.decimal("%s", values[i])
+        end
+    end
+    error({ sentence = string.format(format, table.unpack(values, 1, values.n)) }, 0)
 end
 local fail = arguments.fail
 
 -- What a value is, in a sentence.
 function arguments.describe(value)
     if type(value) == "number" then
-        return "the number " .. value
+        return "the number " .. arguments.decimal("%s", value)
     elseif type(value) == "string" then
         return "the string '" .. value:sub(1, 60):gsub("[%c\127]", "?") .. "'"
     elseif type(value) == "boolean" or value == nil then
@@ -121,7 +132,7 @@ end
 function arguments.number(where, given, key, default, low, high)
     local value = value_of(where, given, key, default, "number", "a number")
     if not (value >= low and value <= high) then
-        fail("%s: %s = %s is outside [%g, %g]", where, key, value, low, high)
+        fail("%s: %s = %s is outside [%s, %s]", where, key, value, low, high)
     end
     return value
 end

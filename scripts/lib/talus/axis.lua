@@ -152,7 +152,7 @@ function axis:mark_linear(count)
         local whole = i * figure -- in units of 10^n
         local value = n >= 0 and whole * ten(n) or whole / ten(-n)
         local k = n - self.power
-        local label = string.format("%." .. decimals .. "f", k >= 0 and whole * ten(k) or whole / ten(-k))
+        local label = arguments.decimal("%." .. decimals .. "f", k >= 0 and whole * ten(k) or whole / ten(-k))
         self.ticks[#self.ticks + 1] = { value = value, label = (label:gsub("^%-", "−")), width = utf8.len(label) }
     end
 end

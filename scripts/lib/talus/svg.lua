@@ -1,4 +1,6 @@
 -- svg.lua - pages of SVG. The same calls give the same bytes: coordinates have two decimals, nothing comes from a clock.
+local arguments = require "talus.arguments"
+
 local svg = {}
 
 -- Colours that people with any colour vision tell apart (Okabe and Ito), the darker ones first.
@@ -19,7 +21,7 @@ end
 
 -- A coordinate: two decimals at most, and no "-0".
 function svg.number(value)
-    local text = string.format("%.2f", value):gsub("%.?0+$", "")
+    local text = arguments.decimal("%.2f", value):gsub("%.?0+$", "")
     return text == "-0" and "0" or text
 end
 local number = svg.number
