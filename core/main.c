@@ -38,6 +38,24 @@ static int fail(const char *sentence, const char *what)
     return EXIT_FAILURE;
 }
 
+/* At the end of the program, however it comes: what was printed and cannot be written, to a full disk say, is an error. */
+static void close_output(void)
+{
+    bool lost = ferror(stdout) != 0;
+    errno = 0;
+    bool failed = fflush(stdout) != 0 || lost;
+    int code = errno;
+    if (fclose(stdout) != 0 && errno != EBADF) { /* EBADF: it was closed before the program began */
+        failed = true;
+        code = errno;
+    }
+    if (!failed)
+        return;
+    fprintf(stderr, "talus: not all that was printed could be written to the standard output%s%s\n",
+            code ? ": " : "", code ? strerror(code) : "");
+    _exit(EXIT_FAILURE);
+}
+
 static int print_version(void)
 {
     printf("Talus %s\nplugin interface %u.%u\n%s\ncompiler: %s\nbuild: %s\n", TALUS_VERSION,
@@ -265,6 +283,7 @@ int main(int argc, char **argv)
 {
     options o = {.next = 1};
     int status;
+    atexit(close_output);
     tl_plugin_name_crashes();
     signal(SIGXFSZ, SIG_IGN); /* a file beyond the limit is told like a full disk */
     if (!read_options(argc, argv, &o, &status))

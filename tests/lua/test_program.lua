@@ -151,3 +151,30 @@ status, output = run("plugins")
 check.equal(status, 0)
 contains(output, "law 'coulomb'")
 contains(output, "coulomb.so")
+
+-- What is printed to where there is no room for it.
+if io.open("/dev/full") then
+    local page = write("program_page.lua", [[
+local talus = require "talus"
+local model = talus.model {}
+model:generate("box", { min = { 0, 0, 0 }, max = { 1, 1, 1 }, density = 2000 })
+model:timestep { dt = 0.001 }
+if arg[1] == "report" then
+    talus.report(model)
+elseif arg[1] == "parameters" then
+    model:parameters()
+elseif arg[1] == "often" then
+    for i = 1, 20000 do io.write(i, "\n") end
+else
+    print "one line"
+end
+if arg[2] then os.exit(true, arg[2] == "close") end
+]])
+    for _, words in ipairs { "help", "help coulomb", "--help", "--version", "plugins", "-e 'print(1)'", "-e 'os.exit(0, print(1))'",
+        page, page .. " report", page .. " parameters", page .. " often", page .. " line exit", page .. " line close" } do
+        refused(words .. " >/dev/full", "not all that was printed could be written to the standard output")
+        check.equal(run(words .. " >/dev/null"), 0)
+    end
+    check.equal(run(page .. " report >&-"), 1)
+    check.equal(run("-e 'local nothing = 1' >&-"), 0)
+end
