@@ -43,7 +43,7 @@ static int read_word(const char *text, word *w, tl_value *value)
 {
     const char *equals = strchr(text, '=');
     if (!equals || equals == text || (size_t)(equals - text) >= sizeof w->key) {
-        fprintf(stderr, "talus: check: '%s' is not NAME=VALUE\n", text);
+        tl_command_fail("check: '%s' is not NAME=VALUE", text);
         return 0;
     }
     memcpy(w->key, text, (size_t)(equals - text));
@@ -107,8 +107,8 @@ int tl_command_check(int argc, char **argv)
         if (status == TL_OK)
             printf("%zu checks, %zu fault%s\n", list.checks, faults, faults == 1 ? "" : "s");
         else
-            fprintf(stderr, "talus: check: %s%s\n", error.text,
-                    status == TL_E_ARGUMENT ? "; values are given as NAME=VALUE" : "");
+            tl_command_fail("check: %s%s", error.text,
+                            status == TL_E_ARGUMENT ? "; values are given as NAME=VALUE" : "");
     }
     free(words);
     free(values);

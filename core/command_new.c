@@ -37,9 +37,9 @@ typedef struct project {
 
 static int fail(const char *format, const char *a, const char *b)
 {
-    fputs("talus: new: ", stderr);
-    fprintf(stderr, format, a, b); /* formats are of this file */
-    fputc('\n', stderr);
+    char text[2 * PATH_MAX];
+    snprintf(text, sizeof text, format, a, b); /* formats are of this file */
+    tl_command_fail("new: %s", text);
     return 0;
 }
 

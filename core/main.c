@@ -4,13 +4,16 @@
 #include "lua/repl.h"
 
 #include <errno.h>
+#include <limits.h>
 #include <lualib.h>
 #include <signal.h>
+#include <stdarg.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <talus/number.h>
+#include <talus/text.h>
 #include <unistd.h>
 
 #ifndef TALUS_BUILD
@@ -30,11 +33,15 @@ typedef struct options {
     int next;          /* first argument that is not an option */
 } options;
 
-static int fail(const char *sentence, const char *what)
+int tl_command_fail(const char *format, ...)
 {
-    fprintf(stderr, "talus: ");
-    fprintf(stderr, sentence, what);
-    fputc('\n', stderr);
+    char sentence[3 * PATH_MAX];
+    va_list arguments;
+    va_start(arguments, format);
+    tl_text_vprint(sentence, sizeof sentence, format, arguments);
+    va_end(arguments);
+    tl_text_clean(sentence, sizeof sentence);
+    fprintf(stderr, "talus: %s\n", sentence);
     return EXIT_FAILURE;
 }
 
@@ -51,8 +58,8 @@ static void close_output(void)
     }
     if (!failed)
         return;
-    fprintf(stderr, "talus: not all that was printed could be written to the standard output%s%s\n",
-            code ? ": " : "", code ? strerror(code) : "");
+    tl_command_fail("not all that was printed could be written to the standard output%s%s",
+                    code ? ": " : "", code ? strerror(code) : "");
     _exit(EXIT_FAILURE);
 }
 
@@ -71,7 +78,7 @@ static bool read_threads(const char *text, int64_t *threads)
     errno = 0;
     long number = strtol(text, &end, 10);
     if (errno || end == text || *end || number < 1 || number > 256) {
-        fail("--threads: '%s' is not a whole number in [1, 256]", text);
+        tl_command_fail("--threads: '%s' is not a whole number in [1, 256]", text);
         return false;
     }
     *threads = number;
@@ -84,7 +91,7 @@ static bool read_minutes(const char *text, double *seconds)
     const char *end;
     double minutes = tl_number_read(text, &end);
     if (end == text || *end || !(minutes > 0 && minutes <= 1e6)) {
-        fail("--autosave: '%s' is not a number of minutes in (0, 1e6]", text);
+        tl_command_fail("--autosave: '%s' is not a number of minutes in (0, 1e6]", text);
         return false;
     }
     *seconds = 60 * minutes;
@@ -97,7 +104,7 @@ static bool load_plugin(const char *path)
     tl_plugins_load_default();
     if (tl_plugin_load(path, &error) == TL_OK)
         return true;
-    fail("%s", error.text);
+    tl_command_fail("%s", error.text);
     return false;
 }
 
@@ -107,9 +114,9 @@ static bool unknown_option(const char *word)
                                         "-v",        "-e",      "--autosave", "--resume"};
     const char *nearest = tl_nearest_name(word, known, sizeof known / sizeof known[0]);
     if (nearest)
-        fprintf(stderr, "talus: unknown option '%s'; did you mean '%s'?\n", word, nearest);
+        tl_command_fail("unknown option '%s'; did you mean '%s'?", word, nearest);
     else
-        fail("unknown option '%s'; `talus help` lists them", word);
+        tl_command_fail("unknown option '%s'; `talus help` lists them", word);
     return false;
 }
 
@@ -128,7 +135,7 @@ static bool read_option(int argc, char **argv, options *o)
     else if (!takes_value)
         return unknown_option(word);
     else if (o->next == argc) {
-        fail("the option %s needs a value", word);
+        tl_command_fail("the option %s needs a value", word);
         return false;
     } else if (strcmp(word, "--threads") == 0)
         return read_threads(argv[o->next++], &o->lua.threads);
@@ -173,10 +180,8 @@ static int run_script(lua_State *L, int argc, char **argv, const options *o)
 {
     const char *script = argv[o->next];
     bool standard_input = strcmp(script, "-") == 0;
-    if (!standard_input && access(script, R_OK) != 0) {
-        fprintf(stderr, "talus: cannot read the script '%s': %s\n", script, strerror(errno));
-        return EXIT_FAILURE;
-    }
+    if (!standard_input && access(script, R_OK) != 0)
+        return tl_command_fail("cannot read the script '%s': %s", script, strerror(errno));
     int status = luaL_loadfile(L, standard_input ? NULL : script);
     return run_chunk(L, status, argc, argv, o->next + 1, o);
 }
@@ -240,7 +245,7 @@ static int help(const char *topic)
 {
     tl_error error;
     tl_plugins_load_default();
-    return tl_lua_help(topic, &error) ? EXIT_SUCCESS : fail("%s", error.text);
+    return tl_lua_help(topic, &error) ? EXIT_SUCCESS : tl_command_fail("%s", error.text);
 }
 
 /* Reads the options that come next. false: the program ends, with that status. */
@@ -265,15 +270,17 @@ static bool prepare_saves(int argc, char **argv, options *o, bool runs)
 {
     bool script = o->next < argc && !o->chunk && strcmp(argv[o->next], "-") != 0;
     if (runs && !script) {
-        fail("%s", "run: name the script: talus run [--autosave MINUTES] [--resume] SCRIPT.lua");
+        tl_command_fail(
+            "%s", "run: name the script: talus run [--autosave MINUTES] [--resume] SCRIPT.lua");
         return false;
     }
     if (!script && (o->lua.autosave > 0 || o->lua.resume)) {
-        fail("%s", "--autosave and --resume are for a script in a file, beside which it saves");
+        tl_command_fail(
+            "%s", "--autosave and --resume are for a script in a file, beside which it saves");
         return false;
     }
     if (script && !(o->lua.save_path = tl_lua_autosave_path(argv[o->next]))) {
-        fail("%s", "not enough memory");
+        tl_command_fail("%s", "not enough memory");
         return false;
     }
     return true;
@@ -308,7 +315,7 @@ int main(int argc, char **argv)
         return EXIT_FAILURE;
     lua_State *L = luaL_newstate();
     if (!L)
-        return fail("%s", "not enough memory to start Lua");
+        return tl_command_fail("%s", "not enough memory to start Lua");
     int exit_status = run(L, argc, argv, &o);
     lua_close(L);
     free((char *)(uintptr_t)o.lua.save_path);

@@ -4,12 +4,14 @@
 #include <stdio.h>
 #include <string.h>
 #include <talus/number.h>
+#include <talus/text.h>
 
 tl_status tl_vfail(tl_error *error, tl_status status, const char *format, va_list args)
 {
     if (error) {
         error->status = status;
         tl_text_vprint(error->text, sizeof error->text, format, args);
+        tl_text_clean(error->text, sizeof error->text);
     }
     return status;
 }
@@ -38,39 +40,14 @@ tl_status tl_error_prefix(tl_error *error, const char *format, ...)
     va_end(args);
     if (n >= 0 && (size_t)n < sizeof error->text)
         snprintf(error->text + n, sizeof error->text - (size_t)n, "%s", sentence);
+    tl_text_clean(error->text, sizeof error->text);
     return error->status;
-}
-
-/* Bytes at `c` that are a control character: 1 for those of ASCII, 2 for U+0080 to U+009F in UTF-8; else 0. */
-static size_t control_bytes(const unsigned char *c)
-{
-    if (c[0] < ' ' || c[0] == 0x7f)
-        return 1;
-    return c[0] == 0xc2 && c[1] >= 0x80 && c[1] < 0xa0 ? 2 : 0;
-}
-
-void tl_text_clean(char *text)
-{
-    for (unsigned char *c = (unsigned char *)text; *c;) {
-        size_t bytes = control_bytes(c);
-        bool space = *c == '\n' || *c == '\r' || *c == '\t';
-        memset(c, space ? ' ' : '?', bytes);
-        c += bytes ? bytes : 1;
-    }
-}
-
-bool tl_text_is_clean(const char *text)
-{
-    for (const unsigned char *c = (const unsigned char *)text; *c; c++)
-        if (control_bytes(c))
-            return false;
-    return true;
 }
 
 const char *tl_report_text(tl_report *report, tl_status status)
 {
     report->text[sizeof report->text - 1] = '\0';
-    tl_text_clean(report->text);
+    tl_text_clean(report->text, sizeof report->text);
     if (report->text[strspn(report->text, " ")] == '\0')
         snprintf(report->text, sizeof report->text, "no reason given (status %d: %s)", (int)status,
                  tl_status_text(status));

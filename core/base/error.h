@@ -4,20 +4,17 @@
 
 #include <stdarg.h>
 #include <talus/plugin.h>
+#include <talus/text.h>
 #include <talus/types.h>
 
-/* Puts a formatted sentence into `error` (which may be NULL) and returns `status`. */
+/* Puts a formatted sentence into `error` (which may be NULL) and returns `status`. Line ends in names, and the like, are
+ * shown escaped (talus/text.h): a sentence is one line. */
 tl_status tl_fail(tl_error *error, tl_status status, const char *format, ...) TL_PRINTF(3, 4);
 tl_status tl_vfail(tl_error *error, tl_status status, const char *format, va_list args);
 /* TL_E_MEMORY with its sentence. */
 tl_status tl_fail_memory(tl_error *error);
 /* Puts a formatted text in front of the sentence already there; returns its status. */
 tl_status tl_error_prefix(tl_error *error, const char *format, ...) TL_PRINTF(2, 3);
-/* Makes one line for people of what a plugin wrote: control characters, which may hold a terminal's codes, become '?', and
- * line ends and tabs become spaces. */
-void tl_text_clean(char *text);
-/* Whether tl_text_clean has nothing to do. */
-bool tl_text_is_clean(const char *text);
 /* The sentence in a report that came back with `status`, ended and cleaned; what is told where it is empty. */
 const char *tl_report_text(tl_report *report, tl_status status);
 /* The text of a status code. */

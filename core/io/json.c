@@ -2,10 +2,10 @@
 #include "io/json.h"
 
 #include "base/number.h"
-#include "io/utf8.h"
 
 #include <stdio.h>
 #include <string.h>
+#include <talus/text.h>
 
 void tl_json_bytes(tl_piece *to, const char *text, size_t length)
 {
@@ -50,14 +50,6 @@ static void put_letter(tl_piece *to, unsigned char letter)
 }
 
 void tl_json_text(tl_piece *to, const char *text)
-{
-    tl_json_put(to, "\"");
-    for (const unsigned char *c = (const unsigned char *)text; *c; c++)
-        put_letter(to, *c);
-    tl_json_put(to, "\"");
-}
-
-void tl_json_shown(tl_piece *to, const char *text)
 {
     tl_json_put(to, "\"");
     while (*text) {

@@ -10,9 +10,7 @@ void tl_json_put(tl_piece *to, const char *text);
 /* With the digits that give back the same double. */
 void tl_json_number(tl_piece *to, double value);
 void tl_json_whole(tl_piece *to, uint32_t value);
-/* In quotes, escaped as JSON wants it. */
+/* In quotes, escaped as JSON wants it; what is no UTF-8 becomes the replacement character. */
 void tl_json_text(tl_piece *to, const char *text);
-/* The same for those who want UTF-8: what is none of it becomes the replacement character. */
-void tl_json_shown(tl_piece *to, const char *text);
 
 #endif

@@ -22,6 +22,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <talus/text.h>
 #include <unistd.h>
 
 static const char opening[] = "<!--", closing[] = "-->\n", blank[] = "    ";
@@ -108,12 +109,14 @@ void tl_page_beginning(tl_piece *to, const char *title, bool live)
     for (size_t i = 0; tl_page_before[i]; i++)
         tl_json_put(to,
                     live && strcmp(tl_page_before[i], nowhere) == 0 ? at_home : tl_page_before[i]);
-    for (; *title; title++) {
-        const char letter[2] = {*title, '\0'};
-        tl_json_put(to, *title == '&'   ? "&amp;"
-                        : *title == '<' ? "&lt;"
-                        : *title == '>' ? "&gt;"
-                                        : letter);
+    for (size_t bytes; *title; title += bytes ? bytes : 1) {
+        bytes = tl_utf8_next(title);
+        if (*title == '&' || *title == '<' || *title == '>')
+            tl_json_put(to, *title == '&' ? "&amp;" : *title == '<' ? "&lt;" : "&gt;");
+        else if (bytes > 0)
+            tl_json_bytes(to, title, bytes);
+        else
+            tl_json_put(to, "\xef\xbf\xbd"); /* the replacement character */
     }
     for (size_t i = 0; tl_page_after[i]; i++)
         tl_json_put(to, tl_page_after[i]);

@@ -19,9 +19,9 @@ static void put_vector(tl_piece *to, tl_vec3 v)
 static void put_named(tl_piece *to, const char *name, const char *unit)
 {
     tl_json_put(to, "\"name\": ");
-    tl_json_shown(to, name);
+    tl_json_text(to, name);
     tl_json_put(to, ", \"unit\": ");
-    tl_json_shown(to, unit ? unit : "");
+    tl_json_text(to, unit ? unit : "");
 }
 
 static void put_fields(tl_piece *to, const tl_html *options)
@@ -99,7 +99,7 @@ void tl_scene_head(const tl_model *m, const tl_html *options, const tl_scene *sc
 {
     text->length = 0;
     tl_json_put(text, "{\"format\": 1, \"program\": \"Talus " TALUS_VERSION "\", \"title\": ");
-    tl_json_shown(text, options->title ? options->title : "");
+    tl_json_text(text, options->title ? options->title : "");
     tl_json_put(text, ", \"origin\": ");
     put_vector(text, m->origin);
     tl_json_put(text, ", \"gravity\": ");
@@ -109,12 +109,12 @@ void tl_scene_head(const tl_model *m, const tl_html *options, const tl_scene *sc
     tl_json_put(text, ", \"groups\": [");
     for (size_t i = 0; i < m->group_count; i++) {
         tl_json_put(text, i ? ", " : "");
-        tl_json_shown(text, m->groups[i]);
+        tl_json_text(text, m->groups[i]);
     }
     tl_json_put(text, "], \"joints\": [\"\"");
     for (size_t i = 0; i < m->joint_count; i++) {
         tl_json_put(text, ", ");
-        tl_json_shown(text, m->joints[i].name);
+        tl_json_text(text, m->joints[i].name);
     }
     tl_json_put(text, "]");
     put_friction(text, m);

@@ -273,7 +273,7 @@ static void put_member(tl_piece *to, const char *name, const char *text)
     tl_json_put(to, ", \"");
     tl_json_put(to, name);
     tl_json_put(to, "\": ");
-    tl_json_shown(to, text);
+    tl_json_text(to, text);
 }
 
 tl_status tl_view_tell(tl_view *v, tl_view_state state, const char *line, const char *refused)
@@ -282,7 +282,7 @@ tl_status tl_view_tell(tl_view *v, tl_view_state state, const char *line, const 
     tl_model *m = v->model;
     tl_piece text = {0};
     tl_json_put(&text, "{\"state\": ");
-    tl_json_shown(&text, states[state]);
+    tl_json_text(&text, states[state]);
     put_member(&text, "line", line);
     put_member(&text, "refused", refused);
     tl_json_put(&text, "}");

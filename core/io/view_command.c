@@ -2,14 +2,13 @@
  *
  * What comes from outside is never trusted: a command is one of a list, with numbers, ids and the name of a joint, and nothing
  * that is not asked for. Objects have no objects in them, so no reader for all of JSON is needed. */
-#include "io/utf8.h"
-
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <talus/number.h>
+#include <talus/text.h>
 #include <talus/view.h>
 
 /* Steps that one command may ask for. */
@@ -195,10 +194,7 @@ static bool read_text(reader *r, const char *what, char *out, size_t room)
     }
     r->at++;
     out[length] = '\0';
-    for (const char *at = out; *at; at += tl_utf8_next(at))
-        if (tl_utf8_next(at) == 0)
-            return refuse(r, "%s is no UTF-8", what);
-    return true;
+    return tl_text_is_utf8(out) || refuse(r, "%s is no UTF-8", what);
 }
 
 static bool read_number(reader *r, const char *what, double *out)

@@ -14,6 +14,7 @@
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
+#include <talus/text.h>
 
 typedef struct frame frame;
 
@@ -90,6 +91,12 @@ static tl_status check_prefix(const char *function, const char *prefix, tl_error
     if (length == 0 || prefix[length - 1] == '/')
         return tl_fail(error, TL_E_ARGUMENT,
                        "%s: prefix = '%s' must end in a name for the files, as in 'out/run'",
+                       function, prefix);
+    const char *slash = strrchr(prefix, '/');
+    if (!tl_text_is_utf8(slash ? slash + 1 : prefix))
+        return tl_fail(error, TL_E_ARGUMENT,
+                       "%s: prefix = '%s' must end in a name in UTF-8, as the list of the frames "
+                       "has it, which is JSON",
                        function, prefix);
     return TL_OK;
 }

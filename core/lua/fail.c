@@ -18,6 +18,23 @@ void tl_lua_push_where(lua_State *L)
     lua_pushliteral(L, "");
 }
 
+/* Raises "file:line: " and the sentence, the two texts on the top of the stack. Line ends in names are shown escaped. */
+static int raise_sentence(lua_State *L)
+{
+    const char *text = lua_tostring(L, -1);
+    if (!tl_text_is_clean(text)) {
+        luaL_Buffer buffer;
+        size_t size = 4 * strlen(text) + 1; /* most bytes of a byte that is escaped */
+        char *line = luaL_buffinitsize(L, &buffer, size);
+        strcpy(line, text);
+        tl_text_clean(line, size);
+        luaL_pushresultsize(&buffer, strlen(line));
+        lua_remove(L, -2); /* the text as it was */
+    }
+    lua_concat(L, 2);
+    return lua_error(L);
+}
+
 int tl_lua_fail(lua_State *L, const char *format, ...)
 {
     luaL_checkstack(L, 8, "too many values");
@@ -26,8 +43,7 @@ int tl_lua_fail(lua_State *L, const char *format, ...)
     va_start(arguments, format);
     lua_pushvfstring(L, format, arguments);
     va_end(arguments);
-    lua_concat(L, 2);
-    return lua_error(L);
+    return raise_sentence(L);
 }
 
 int tl_lua_fail_in(lua_State *L, int index, const char *format, ...)
@@ -44,8 +60,7 @@ int tl_lua_fail_in(lua_State *L, int index, const char *format, ...)
     va_start(arguments, format);
     lua_pushvfstring(L, format, arguments);
     va_end(arguments);
-    lua_concat(L, 2);
-    return lua_error(L);
+    return raise_sentence(L);
 }
 
 int tl_lua_raise(lua_State *L, const tl_error *error)

@@ -14,6 +14,7 @@
 #include <lua.h>
 #include <talus/number.h>
 #include <talus/talus.h>
+#include <talus/text.h>
 
 /* A key of a table of arguments that a tl_param cannot express. */
 typedef struct tl_lua_key {

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <talus/number.h>
+#include <talus/text.h>
 
 void tl_damping_clear(tl_model *m)
 {
@@ -43,6 +44,7 @@ void tl_model_say(tl_model *m, const char *format, ...)
     va_start(args, format);
     tl_text_vprint(text, sizeof text, format, args);
     va_end(args);
+    tl_text_clean(text, sizeof text);
     if (m->log)
         m->log(m->log_user, text);
     else

@@ -5,6 +5,7 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include <talus/text.h>
 
 static tl_status check_ids(tl_model *m, const tl_id *ids, size_t count)
 {
@@ -181,6 +182,9 @@ static tl_status check_set(tl_model *m, const tl_id *ids, size_t count, const tl
             return tl_error_prefix(&m->error, "set: density = %g kg/m3, block %u: ", set->density,
                                    ids[i]);
     }
+    if (set->group && !tl_text_is_utf8(set->group))
+        return tl_fail(&m->error, TL_E_ARGUMENT, "set: group = '%s' is not a text in UTF-8",
+                       set->group);
     const tl_vec3 none = {0, 0, 0};
     return tl_check_motion(&m->error, "set", given(set->velocity) ? set->velocity : none,
                            given(set->angular_velocity) ? set->angular_velocity : none);

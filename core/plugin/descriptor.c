@@ -477,7 +477,7 @@ tl_status tl_descriptor_read(const tl_plugin *given, tl_plugin **plugin, char no
     copy->kinds = kinds;
     copy->kind_stride = sizeof(tl_kind);
     drop_unknown(copy, kinds, note);
-    tl_text_clean(note);
+    tl_text_clean(note, TL_NOTE_TEXT);
     status = copy->kind_count > 0
                  ? read_kinds(&v, copy, kinds)
                  : tl_fail(error, TL_E_PLUGIN, "it holds nothing of use: %s", note);

@@ -138,7 +138,6 @@ tl_status tl_plugin_load(const char *path, tl_error *error)
     tl_error *record = error ? error : &own;
     tl_status status = open_and_take_in(path, record);
     if (status != TL_OK) {
-        tl_text_clean(record->text); /* it may repeat names of the plugin's */
         tl_registry_refused(path, record->text);
         tl_error_prefix(record, "plugin %s: ", path);
     }

@@ -13,6 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <talus/number.h>
+#include <talus/text.h>
 
 /* A cutting plane's normal may miss unit length by this: a few roundings of its components. */
 #define UNIT_TOLERANCE 1e-9
@@ -41,7 +42,6 @@ static tl_status fail(const tl_host *host, tl_status status, const char *format,
     va_start(args, format);
     tl_vfail(&service_of(host)->model->error, status, format, args);
     va_end(args);
-    tl_text_clean(service_of(host)->model->error.text);
     return status;
 }
 
@@ -52,7 +52,6 @@ static void say(const tl_host *host, const char *format, ...)
     va_start(args, format);
     tl_text_vprint(text, sizeof text, format, args);
     va_end(args);
-    tl_text_clean(text);
     tl_model_say(service_of(host)->model, "generator '%s': %s", service_of(host)->generator, text);
 }
 
@@ -94,6 +93,8 @@ static tl_status check_group(const tl_host *host, const char *group)
     if (group && strlen(group) > LONGEST_NAME)
         return fail(host, TL_E_ARGUMENT, "group '%.20s...' is longer than %d letters", group,
                     LONGEST_NAME);
+    if (group && !tl_text_is_utf8(group))
+        return fail(host, TL_E_ARGUMENT, "group '%s' is not a text in UTF-8", group);
     return TL_OK;
 }
 
@@ -370,14 +371,14 @@ static bool is_joint_name(const char *name)
     for (const char *c = name; *c; c++)
         if (*c == ':' || *c == '*' || (unsigned char)*c < ' ')
             return false;
-    return true;
+    return tl_text_is_utf8(name);
 }
 
 static tl_status joint(const tl_host *host, const char *name, uint32_t *number)
 {
     if (!is_joint_name(name))
         return fail(host, TL_E_ARGUMENT,
-                    "joint = '%.80s' is not a name: 1 to %d letters without ':' and '*'",
+                    "joint = '%.80s' is not a name: 1 to %d letters in UTF-8 without ':' and '*'",
                     name ? name : "", LONGEST_NAME);
     *number = tl_joint_intern(service_of(host)->model, name);
     return *number ? TL_OK : tl_fail_memory(&service_of(host)->model->error);

@@ -110,10 +110,7 @@ static const char *get_text(const tl_archive *a, const char *prefix, const char 
 {
     char full[TL_CHUNK_NAME];
     snprintf(full, sizeof full, "%.30s.%.64s", prefix, name);
-    if (!tl_archive_text(a, full, text, capacity))
-        return NULL;
-    tl_text_clean(text);
-    return text;
+    return tl_archive_text(a, full, text, capacity) ? text : NULL;
 }
 
 /* Finds the law or damping of a prefix among the plugins, and sees that it is the same one. */
@@ -140,8 +137,6 @@ static tl_status find_kind(tl_model *m, const tl_archive *a, const char *prefix,
             "loaded: load the plugin in the version that the file was saved with",
             a->path, what, name, plugin, now);
     state_names(*kind, states_now);
-    for (char *c = states_now; *c; c++)
-        *c = *c == '\n' ? ' ' : *c;
     if (!get_text(a, prefix, "states", states, sizeof states) || strcmp(states, states_now) != 0)
         return tl_archive_bad(a, &m->error, "%s '%s' has other states", what, name);
     return TL_OK;

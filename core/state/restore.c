@@ -21,6 +21,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <talus/text.h>
 
 /* Numbers of blocks that a model may have had: a file of some bytes shall not cost a machine its memory. */
 #define MOST_IDS (1u << 28)
@@ -172,6 +173,8 @@ static tl_status read_names(tl_model *m, const tl_archive *a, const char *chunk_
 static tl_status take_group(tl_model *m, const char *name)
 {
     size_t before = m->group_count;
+    if (!tl_text_is_utf8(name))
+        return TL_E_ARGUMENT;
     uint32_t group = tl_group_intern(m, name);
     return group == UINT32_MAX ? TL_E_MEMORY : group == before ? TL_OK : TL_E_ARGUMENT;
 }
@@ -179,6 +182,8 @@ static tl_status take_group(tl_model *m, const char *name)
 static tl_status take_joint(tl_model *m, const char *name)
 {
     size_t before = m->joint_count;
+    if (!tl_text_is_utf8(name))
+        return TL_E_ARGUMENT;
     uint32_t joint = tl_joint_intern(m, name);
     return joint == 0 ? TL_E_MEMORY : joint == before + 1 ? TL_OK : TL_E_ARGUMENT;
 }

@@ -30,7 +30,7 @@ if not arg[1] then
 
     -- Reports without an end, empty, or with codes of terminals become one line that names the plugin.
     local function mumble(law, damping, context)
-        local chunk = [[
+        local chunk = [==[
             local talus = require "talus"
             local model = talus.model { gravity = { 0, 0, -10 } }
             model:generate("box", { min = { 0, 0, 0 }, max = { 1, 1, 1 }, density = 2000 })
@@ -39,7 +39,7 @@ if not arg[1] then
             for what, part in pairs {
                 full = (": %s$"):format(("x"):rep(255)),
                 nothing = ": no reason given %(status 8: a value that must be finite is not%)$",
-                codes = ": one%?%[31m two \xc3\xbc%?%?three%?$" } do
+                codes = [=[: one\x1b%[31m\ntwo\t]=] .. "\xc3\xbc" .. [=[\xc2\x9bthree\x7f$]=] } do
                 local good, text = pcall(function()
                     model:joint("*", "mumbles", { where = LAW, what = what })
                     model:damping("mumbles", { where = DAMPING, what = what })
@@ -50,7 +50,7 @@ if not arg[1] then
                 end)
                 if what == "full" and CONTEXT:find "^generator" then part = "" end
                 assert(not good and text:find(CONTEXT .. " of plugin 'bad.mumbles'", 1, true) and text:find(part), text)
-            end]]
+            end]==]
         chunk = chunk:gsub("LAW", '"' .. law .. '"'):gsub("DAMPING", '"' .. damping .. '"')
         chunk = chunk:gsub("CONTEXT", '("' .. context .. '")')
         local path = os.getenv("TALUS_TEST_TMP") .. "/mumble.lua"

@@ -37,6 +37,7 @@ PUBLIC = {
     "vmath.h": {"elementary.h", "types.h"},
     "plugin.h": {"types.h"},
     "number.h": {"plugin.h"},
+    "text.h": set(),
     "kit.h": {"elementary.h", "number.h", "plugin.h", "vmath.h"},
     "plugins.h": {"types.h", "plugin.h"},
     "output.h": {"types.h", "plugin.h"},
@@ -56,7 +57,7 @@ PUBLIC = {
     "boundary.h": {"talus.h"},
 }
 PLUGIN_HEADERS = {"talus/version.h", "talus/types.h", "talus/elementary.h", "talus/vmath.h", "talus/plugin.h",
-                  "talus/kit.h", "talus/number.h"}
+                  "talus/kit.h", "talus/number.h", "talus/text.h"}
 # What a plugin may include besides: the headers of standard C.
 STANDARD_HEADERS = {
     name + ".h"

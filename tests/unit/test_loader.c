@@ -116,7 +116,7 @@ TEST(broken_plugins_are_refused_with_the_reason)
             "law 'bad_default': parameter 'value': its default 2 is outside its own range [0, 2)");
     refused(bad_folder, "missing_ops", "law 'missing_ops': its operation 'stiffness' is missing");
     refused(bad_folder, "bad_name", "kind 1 has the bad name 'Bad Name'");
-    refused(bad_folder, "bad_codes", "its id is 'bad.?[2J codes'");
+    refused(bad_folder, "bad_codes", "its id is 'bad.\\x1b[2J\\ncodes'");
     refused(bad_folder, "outside", "law 'outside': parameter 'value' lies at bytes 0 to 8");
     refused(bad_folder, "no_unit", "law 'no_unit': parameter 'value' has no unit");
     refused(bad_folder, "twice", "law 'twice': parameters 'value' and 'value' share a name");
