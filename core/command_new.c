@@ -69,7 +69,8 @@ static int check_name(tl_kind_type type, const char *name)
     for (size_t i = 0; i < sizeof taken / sizeof *taken; i++)
         if (strcmp(name, taken[i]) == 0)
             return fail("the name '%s' means something else to CMake or to the plugin%s", name, "");
-    tl_plugins_load_default();
+    if (tl_plugins_load_default() != TL_OK)
+        return fail("out of memory while the plugins are loaded%s%s", "", "");
     if (tl_plugin_find(type, name))
         return fail("a %s '%s' is there already; take another name", types[type], name);
     return 1;

@@ -98,10 +98,20 @@ static bool read_minutes(const char *text, double *seconds)
     return true;
 }
 
+/* All that are found; false after a message. */
+static bool load_plugins(void)
+{
+    if (tl_plugins_load_default() == TL_OK)
+        return true;
+    tl_command_fail("out of memory while the plugins are loaded");
+    return false;
+}
+
 static bool load_plugin(const char *path)
 {
     tl_error error;
-    tl_plugins_load_default();
+    if (!load_plugins())
+        return false;
     if (tl_plugin_load(path, &error) == TL_OK)
         return true;
     tl_command_fail("%s", error.text);
@@ -244,7 +254,8 @@ static int run(lua_State *L, int argc, char **argv, options *o)
 static int help(const char *topic)
 {
     tl_error error;
-    tl_plugins_load_default();
+    if (!load_plugins())
+        return EXIT_FAILURE;
     return tl_lua_help(topic, &error) ? EXIT_SUCCESS : tl_command_fail("%s", error.text);
 }
 
@@ -299,7 +310,8 @@ int main(int argc, char **argv)
     if (strcmp(command, "help") == 0)
         return help(o.next + 1 < argc ? argv[o.next + 1] : NULL);
     if (strcmp(command, "plugins") == 0) {
-        tl_plugins_load_default();
+        if (!load_plugins())
+            return EXIT_FAILURE;
         tl_lua_help_plugins();
         return EXIT_SUCCESS;
     }

@@ -14,7 +14,8 @@ static int module_help(lua_State *L)
 
 int luaopen_talus(lua_State *L)
 {
-    tl_plugins_load_default();
+    if (tl_plugins_load_default() != TL_OK)
+        return tl_lua_fail(L, "out of memory while the plugins are loaded");
     tl_lua_item_open(L, &tl_lua_block_kind);
     tl_lua_item_open(L, &tl_lua_contact_kind);
     tl_lua_selection_open(L, &tl_lua_block_kind);

@@ -23,6 +23,7 @@
 
 #include <dirent.h>
 #include <dlfcn.h>
+#include <errno.h>
 #include <limits.h>
 #include <pthread.h>
 #include <stdio.h>
@@ -42,12 +43,15 @@
 /* Major versions that a plugin which refuses this one is asked about. */
 #define MOST_MAJORS 16
 
-/* Folders that were searched, by identity, so that two names of one folder count once. */
-typedef struct searched_folders {
+/* A search: the folders so far, by identity, so that two names of one folder count once. */
+typedef struct search {
     dev_t device[MOST_FOLDERS];
     ino_t inode[MOST_FOLDERS];
     size_t count;
-} searched_folders;
+    bool
+        again; /* a search before this one ran out of memory: what it has recorded is not tried again */
+    bool short_of_memory; /* something was left out for want of it */
+} search;
 
 /* ISO C has no conversion from an object pointer to a function; POSIX promises this one works. */
 static tl_plugin_entry_fn find_entry(void *handle)
@@ -114,8 +118,12 @@ static tl_status open_and_take_in(const char *path, tl_error *error)
         return tl_fail(error, TL_E_PLUGIN, "it is %s: only regular files are loaded", other);
     tl_inside_plugin.path = path;
     tl_enter(NULL, "dlopen"); /* which runs the file's constructors */
+    errno = 0;
     void *handle = dlopen(local, RTLD_NOW | RTLD_LOCAL);
+    bool short_of_memory = errno == ENOMEM;
     tl_leave();
+    if (!handle && short_of_memory)
+        return tl_fail_memory(error);
     if (!handle) {
         const char *reason = dlerror();
         size_t length = strlen(local);
@@ -137,10 +145,11 @@ tl_status tl_plugin_load(const char *path, tl_error *error)
     tl_error own = {TL_OK, ""};
     tl_error *record = error ? error : &own;
     tl_status status = open_and_take_in(path, record);
-    if (status != TL_OK) {
-        tl_registry_refused(path, record->text);
+    /* A plugin for which there was no memory may be tried again: it is not refused. */
+    if (status != TL_OK && status != TL_E_MEMORY && !tl_registry_refused(path, record->text))
+        status = tl_fail_memory(record);
+    if (status != TL_OK)
         tl_error_prefix(record, "plugin %s: ", path);
-    }
     return status;
 }
 
@@ -159,36 +168,47 @@ static int by_name(const struct dirent **a, const struct dirent **b)
 }
 
 /* True the first time an existing folder is seen. */
-static bool is_new_folder(searched_folders *folders, const char *folder)
+static bool is_new_folder(search *s, const char *folder)
 {
     struct stat info;
-    if (stat(folder, &info) != 0 || !S_ISDIR(info.st_mode) || folders->count == MOST_FOLDERS)
+    if (stat(folder, &info) != 0 || !S_ISDIR(info.st_mode) || s->count == MOST_FOLDERS)
         return false;
-    for (size_t i = 0; i < folders->count; i++)
-        if (folders->device[i] == info.st_dev && folders->inode[i] == info.st_ino)
+    for (size_t i = 0; i < s->count; i++)
+        if (s->device[i] == info.st_dev && s->inode[i] == info.st_ino)
             return false;
-    folders->device[folders->count] = info.st_dev;
-    folders->inode[folders->count++] = info.st_ino;
+    s->device[s->count] = info.st_dev;
+    s->inode[s->count++] = info.st_ino;
     return true;
 }
 
+/* realpath; false when there is none. */
+static bool plain_path(search *s, const char *path, char plain[PATH_MAX])
+{
+    errno = 0;
+    bool there = realpath(path, plain) != NULL;
+    s->short_of_memory |= !there && errno == ENOMEM;
+    return there;
+}
+
 /* A file of a folder. A refusal is kept in the records; the search goes on. */
-static void load_found(const char *path, const char *program)
+static void load_found(search *s, const char *path, const char *program)
 {
     char why[PATH_MAX + 128], text[PATH_MAX + 256];
+    if (s->again && tl_registry_has(path))
+        return;
     if (!program || tl_path_is_trusted(path, program, why, sizeof why)) {
-        (void)tl_plugin_load(path, NULL);
+        s->short_of_memory |= tl_plugin_load(path, NULL) == TL_E_MEMORY;
         return;
     }
     snprintf(text, sizeof text, UNTRUSTED, why);
-    tl_registry_refused(path, text);
+    s->short_of_memory |= !tl_registry_refused(path, text);
 }
 
 /* `program`: the file whose owner is trusted, or NULL where the user has named the folder. */
-static void load_folder(searched_folders *folders, const char *folder, const char *program)
+static void load_folder(search *s, const char *folder, const char *program)
 {
     char why[PATH_MAX + 128], text[PATH_MAX + 256];
-    if (!is_new_folder(folders, folder))
+    if (!is_new_folder(s, folder))
         return;
     if (!tl_path_is_trusted(folder, program ? program : folder, why, sizeof why)) {
         snprintf(text, sizeof text,
@@ -196,24 +216,28 @@ static void load_folder(searched_folders *folders, const char *folder, const cha
                          : "%s: plugins are loaded from it because TALUS_PLUGIN_PATH "
                            "names it",
                  why);
-        (program ? tl_registry_refused : tl_registry_noted)(folder, text);
+        if (!s->again || !tl_registry_has(folder))
+            s->short_of_memory |=
+                !(program ? tl_registry_refused : tl_registry_noted)(folder, text);
         if (program)
             return;
     }
     struct dirent **entries;
+    errno = 0;
     int count = scandir(folder, &entries, is_plugin_file, by_name);
+    s->short_of_memory |= count < 0 && errno == ENOMEM;
     for (int i = 0; i < count; i++) {
         char path[PATH_MAX];
         int n = snprintf(path, sizeof path, "%s/%s", folder, entries[i]->d_name);
         if (n > 0 && (size_t)n < sizeof path)
-            load_found(path, program);
+            load_found(s, path, program);
         free(entries[i]);
     }
     if (count >= 0)
         free(entries);
 }
 
-static void load_path_list(searched_folders *folders, const char *list)
+static void load_path_list(search *s, const char *list)
 {
     while (list && *list) {
         size_t length = strcspn(list, ":");
@@ -221,7 +245,7 @@ static void load_path_list(searched_folders *folders, const char *list)
         if (length > 0 && length < sizeof folder) {
             memcpy(folder, list, length);
             folder[length] = '\0';
-            load_folder(folders, folder, NULL);
+            load_folder(s, folder, NULL);
         }
         list += length + (list[length] == ':');
     }
@@ -237,27 +261,39 @@ bool tl_own_file(char file[PATH_MAX])
     return named || realpath("/proc/self/exe", file);
 }
 
-static void load_everything(void)
+static void load_everything(search *s)
 {
     static const char *const installed[] = {"../lib/talus", "../../talus", "talus"};
-    searched_folders folders = {.count = 0};
     char own[PATH_MAX], here[PATH_MAX], folder[PATH_MAX + 64], plain[PATH_MAX];
-    load_path_list(&folders, getenv("TALUS_PLUGIN_PATH"));
-    if (!tl_own_file(own))
+    load_path_list(s, getenv("TALUS_PLUGIN_PATH"));
+    errno = 0;
+    if (!tl_own_file(own)) {
+        s->short_of_memory |= errno == ENOMEM;
         return;
+    }
     snprintf(here, sizeof here, "%.*s", (int)(strrchr(own, '/') - own), own);
     snprintf(folder, sizeof folder, "%s/plugins", here);
-    load_folder(&folders, folder, own);
+    load_folder(s, folder, own);
     for (size_t i = 0; i < sizeof installed / sizeof *installed; i++) {
         snprintf(folder, sizeof folder, "%s/%s/plugins-%u", here, installed[i], TL_ABI_MAJOR);
         /* Without the "..", as a user would write it. */
-        if (realpath(folder, plain))
-            load_folder(&folders, plain, own);
+        if (plain_path(s, folder, plain))
+            load_folder(s, plain, own);
     }
 }
 
-void tl_plugins_load_default(void)
+tl_status tl_plugins_load_default(void)
 {
-    static pthread_once_t once = PTHREAD_ONCE_INIT;
-    pthread_once(&once, load_everything);
+    static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
+    static bool begun, done;
+    pthread_mutex_lock(&lock);
+    if (!done) {
+        search s = {.again = begun};
+        begun = true;
+        load_everything(&s);
+        done = !s.short_of_memory;
+    }
+    tl_status status = done ? TL_OK : TL_E_MEMORY;
+    pthread_mutex_unlock(&lock);
+    return status;
 }

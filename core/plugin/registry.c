@@ -122,19 +122,30 @@ tl_status tl_registry_add(const char *path, tl_plugin *plugin, const char *note,
     return status;
 }
 
-void tl_registry_refused(const char *path, const char *reason)
+static bool append_locked(const char *path, const char *reason, const char *note)
 {
     pthread_mutex_lock(&registry.lock);
-    /* Out of memory the record is lost; the caller still has the sentence. */
-    (void)append(path, reason, NULL, NULL);
+    bool done = append(path, reason, note, NULL);
     pthread_mutex_unlock(&registry.lock);
+    return done;
 }
 
-void tl_registry_noted(const char *path, const char *note)
+bool tl_registry_refused(const char *path, const char *reason)
 {
-    pthread_mutex_lock(&registry.lock);
-    (void)append(path, NULL, note, NULL);
-    pthread_mutex_unlock(&registry.lock);
+    return append_locked(path, reason, NULL);
+}
+
+bool tl_registry_noted(const char *path, const char *note)
+{
+    return append_locked(path, NULL, note);
+}
+
+bool tl_registry_has(const char *path)
+{
+    for (const record *r = first_record(); r; r = next_record(r))
+        if (strcmp(r->path, path) == 0)
+            return true;
+    return false;
 }
 
 const tl_kind *tl_plugin_kind(tl_kind_type type, size_t index)

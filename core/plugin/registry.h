@@ -33,10 +33,12 @@ const char *tl_kind_type_name(uint32_t type);
 /* Takes in a plugin that was read from `path`. Refused when its id, or one of its kinds, is there
  * already; it then stays the caller's. */
 tl_status tl_registry_add(const char *path, tl_plugin *plugin, const char *note, tl_error *error);
-/* Keeps a failed attempt and its reason for the list of records. */
-void tl_registry_refused(const char *path, const char *reason);
-/* Keeps a remark on a folder. */
-void tl_registry_noted(const char *path, const char *note);
+/* Keeps a failed attempt and its reason for the list of records; false when out of memory. */
+bool tl_registry_refused(const char *path, const char *reason);
+/* Keeps a remark on a folder; false when out of memory. */
+bool tl_registry_noted(const char *path, const char *note);
+/* Whether there is a record of that file or folder. */
+bool tl_registry_has(const char *path);
 
 /* ---- loader.c ---- */
 

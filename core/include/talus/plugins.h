@@ -13,8 +13,9 @@ extern "C" {
 #endif
 
 /* Loads the plugins found in TALUS_PLUGIN_PATH, beside the library and in the installed place.
- * Done once a process; later calls do nothing. Refused files are kept with their reasons. */
-TL_API void tl_plugins_load_default(void);
+ * Done once a process; later calls do nothing. Refused files are kept with their reasons. TL_E_MEMORY: some could not be
+ * loaded for want of memory; the next call tries them again. */
+TL_API tl_status tl_plugins_load_default(void);
 /* Loads one shared object. */
 TL_API tl_status tl_plugin_load(const char *path, tl_error *error);
 /* From now on a crash inside a plugin names it on the standard error before the process ends by the same signal. For
