@@ -10,7 +10,8 @@
  * torsion. What presses is the law's word (word.c), with the motion that it is going to be told of and the cells of patches that are
  * partly open. A point keeps no more shear than it bears: what it loses, others get; and if it slipped it would open the joint.
  *
- * What is carried rises with these six numbers, so Newton's steps find them, with differences for slopes, each as far as the error falls.
+ * What is carried rises with these six numbers, so Newton's steps find them, with slopes that are mended by what steps bring, or found by differences, each as far as the
+ * error falls.
  * Springs are not to hold more energy than those of the whole: of one force and torsion a uniform traction with a twist has the least,
  * so the parts then keep less of t. Where there are no such numbers, as where all slips, t stays what it is, and three are found. */
 #include "force/heirs.h"
@@ -24,12 +25,16 @@
 #include <stdlib.h>
 
 /* Steps that are made at the most, and halvings of each. */
-#define STEPS 30
-#define HALVINGS 12
+#define STEPS 60
+#define HALVINGS 10
 /* Over the forces: error that is none, error with which the numbers are found, and step of differences. */
 #define EXACT 1e-11
 #define FOUND 1e-8
 #define SMALL 1e-6
+/* Share of the error that is left after a good step: after another slopes are found anew. That with which such a step leaves no
+ * hope. */
+#define GOOD 0.3
+#define HOPELESS 0.9
 /* What is added to the slopes: too few points may bear to tell all of them. */
 #define FAINT 1e-9
 /* Times that a law is asked at the most until no point has more shear than it bears; by which share it may have more. */
@@ -296,67 +301,98 @@ static double size_of(const six *x, int count)
     return sqrt(sum);
 }
 
-/* Solves `count` equations, whose right sides are the last column, by elimination, the largest of each column first. false: they cannot be
- * solved. */
-static bool eliminate(double a[TL_CARRIED][TL_CARRIED + 1], int count, six *x)
+/* How fast what is carried rises with each number: [of what][with which], 1/N. */
+typedef struct slopes {
+    double of[TL_CARRIED][TL_CARRIED];
+} slopes;
+
+/* Solves slopes x = right, `count` equations, by elimination, the largest of each column first. false: they cannot be solved. */
+static bool solve(slopes by, six right, int count, six *x)
 {
     *x = (six){{0}};
     for (int j = 0; j < count; j++) {
         int best = j;
         for (int i = j + 1; i < count; i++)
-            best = fabs(a[i][j]) > fabs(a[best][j]) ? i : best;
-        for (int k = j; k <= TL_CARRIED; k++) {
-            double was = a[j][k];
-            a[j][k] = a[best][k];
-            a[best][k] = was;
+            best = fabs(by.of[i][j]) > fabs(by.of[best][j]) ? i : best;
+        for (int k = j; k < count; k++) {
+            double was = by.of[j][k];
+            by.of[j][k] = by.of[best][k];
+            by.of[best][k] = was;
         }
-        for (int i = j + 1; i < count; i++)
-            for (int k = TL_CARRIED; k >= j; k--)
-                a[i][k] -= a[i][j] / a[j][j] * a[j][k];
+        double was = right.v[j];
+        right.v[j] = right.v[best];
+        right.v[best] = was;
+        for (int i = j + 1; i < count; i++) {
+            double share = by.of[i][j] / by.of[j][j];
+            for (int k = j; k < count; k++)
+                by.of[i][k] -= share * by.of[j][k];
+            right.v[i] -= share * right.v[j];
+        }
     }
     for (int j = count - 1; j >= 0; j--) {
-        double sum = a[j][TL_CARRIED];
+        double sum = right.v[j];
         for (int k = j + 1; k < count; k++)
-            sum -= a[j][k] * x->v[k];
-        x->v[j] = sum / a[j][j];
+            sum -= by.of[j][k] * x->v[k];
+        x->v[j] = sum / by.of[j][j];
     }
     return isfinite(size_of(x, count));
 }
 
-/* Newton's step from `more`, where the parts lack `lacks`. */
-static bool find_step(const heirs *of, const six *more, const six *lacks, six *step)
+/* Slopes where all bears. */
+static slopes plain_slopes(const heirs *of)
+{
+    slopes out = {{{0}}};
+    for (int k = 0; k < TL_CARRIED; k++)
+        out.of[k][k] = 1 / of->estate->carried.most;
+    return out;
+}
+
+/* Slopes at `more`, where the parts lack `lacks`, by differences. false: a law failed. */
+static bool find_slopes(const heirs *of, const six *more, const six *lacks, slopes *out)
 {
     double most = of->estate->carried.most, by = SMALL * most;
-    double a[TL_CARRIED][TL_CARRIED + 1];
     for (int j = 0; j < of->sought; j++) {
         six there = *more, then;
         there.v[j] += by;
         if (!weigh(of, &there, &then))
             return false;
         for (int i = 0; i < of->sought; i++)
-            a[i][j] = (lacks->v[i] - then.v[i]) / by + (i == j ? FAINT / most : 0);
-        a[j][TL_CARRIED] = lacks->v[j];
+            out->of[i][j] = (lacks->v[i] - then.v[i]) / by + (i == j ? FAINT / most : 0);
     }
-    return eliminate(a, of->sought, step);
+    return true;
 }
 
-/* Goes the step or a share of it, so that the parts lack less. false: they do not. */
-static bool go(const heirs *of, const six *step, six *more, six *lacks)
+/* Goes the step or a share of it, so that the parts lack less; halves it so often at the most. Returns the share, 0: none. */
+static double go(const heirs *of, const six *step, int halvings, six *more, six *lacks)
 {
     double by = 1;
-    for (int n = 0; n < HALVINGS; n++, by *= 0.5) {
+    for (int n = 0; n <= halvings; n++, by *= 0.5) {
         six there = *more, then;
         for (int k = 0; k < of->sought; k++)
             there.v[k] += by * step->v[k];
         if (!weigh(of, &there, &then))
-            return false;
+            return 0;
         if (size_of(&then, of->sought) < size_of(lacks, of->sought)) {
             *more = there;
             *lacks = then;
-            return true;
+            return by;
         }
     }
-    return false;
+    return 0;
+}
+
+/* Broyden's rule: brings slopes in line with what a share of their step has brought. */
+static void mend_slopes(slopes *by, int count, const six *step, double share, const six *before,
+                        const six *after)
+{
+    double square = 0;
+    for (int k = 0; k < count; k++)
+        square += step->v[k] * step->v[k];
+    for (int i = 0; i < count; i++)
+        for (int j = 0; j < count && square > 0; j++) {
+            double missed = (1 - share) * before->v[i] - after->v[i];
+            by->of[i][j] += missed / share * step->v[j] / square;
+        }
 }
 
 /* Looks for the numbers with which the parts lack the least, and gives the points what goes with them. *found: they lack nothing. false: a
@@ -364,11 +400,24 @@ static bool go(const heirs *of, const six *step, six *more, six *lacks)
 static bool search(const heirs *of, bool *found)
 {
     six more = {{0}}, lacks, step;
+    slopes by = plain_slopes(of);
+    const double hopeless = of->sought == TL_CARRIED ? HOPELESS : 1; /* then three are looked for */
+    bool fresh = false;
     if (!weigh(of, &more, &lacks))
         return false;
-    for (int k = 0; k < STEPS && size_of(&lacks, of->sought) > EXACT; k++)
-        if (!find_step(of, &more, &lacks, &step) || !go(of, &step, &more, &lacks))
+    for (int k = 0; k < STEPS && size_of(&lacks, of->sought) > EXACT; k++) {
+        six before = lacks;
+        double share = 0;
+        if (solve(by, lacks, of->sought, &step))
+            share = go(of, &step, fresh ? HALVINGS : 0, &more, &lacks);
+        if (share > 0)
+            mend_slopes(&by, of->sought, &step, share, &before, &lacks);
+        if (fresh && size_of(&lacks, of->sought) >= hopeless * size_of(&before, of->sought))
             break;
+        fresh = size_of(&lacks, of->sought) > GOOD * size_of(&before, of->sought);
+        if (fresh && !find_slopes(of, &more, &lacks, &by))
+            break;
+    }
     *found = size_of(&lacks, of->sought) <= FOUND;
     return weigh(of, &more, &lacks);
 }
