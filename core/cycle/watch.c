@@ -13,6 +13,7 @@
  * something bears them, and in longer legs: what is poured has not failed. */
 #include "cycle/cycle_data.h"
 
+#include "base/regular.h"
 #include "contact/detection.h"
 
 #include <stdatomic.h>
@@ -38,6 +39,7 @@
 
 /* A leg of a body, until now, and those behind it. */
 typedef struct leg {
+    double size;  /* of the body, m */
     tl_vec3 from; /* displacement where it began */
     double began; /* s */
     tl_vec3 way;  /* direction and speed of the leg before */
@@ -60,13 +62,13 @@ struct tl_watch {
     tl_id failing;
 };
 
-/* Of the largest of its parts, whichever comes first. */
+/* Cube root of the volume of a body, in how many parts ever. */
 static double size_of(const tl_model *m, uint32_t body)
 {
-    double most = 0;
+    double volume = 0;
     for (uint32_t k = 0; k < m->bodies.member_count[body]; k++)
-        most = fmax(most, m->blocks.size[m->members[m->bodies.member_start[body] + k]]);
-    return most;
+        volume += m->blocks.volume[m->members[m->bodies.member_start[body] + k]];
+    return tl_cbrt(volume);
 }
 
 /* Number of blocks of the mean size across the free bodies. */
@@ -114,8 +116,10 @@ tl_watch *tl_watch_begin(const tl_model *m)
         tl_watch_end(w);
         return NULL;
     }
-    for (uint32_t body = 0; body < w->bodies; body++)
+    for (uint32_t body = 0; body < w->bodies; body++) {
+        w->leg[body].size = size_of(m, body);
         begin_leg(&w->leg[body], m, body);
+    }
     return w;
 }
 
@@ -162,7 +166,7 @@ static void add_sample(leg *l, double least, const tl_model *m, uint32_t body)
         l->touched || (m->cycle->contact_force[body] > 0 && unbalanced < SUPPORTED * borne);
     tl_vec3 gone = tl_v3_sub(m->bodies.pose[body].u, l->from);
     double share = l->touched ? FAILED_SHARE : LANDED_SHARE;
-    double length = share / LEGS * size_of(m, body), time = m->time - l->began;
+    double length = share / LEGS * l->size, time = m->time - l->began;
     if (!judged) {
         forget_legs(l);
         begin_leg(l, m, body);

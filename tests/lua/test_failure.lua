@@ -17,6 +17,15 @@ local function slab(options)
         group = "slab" })
     model:blocks { group = "base" }:fix()
     local k = options.k or K
+    if options.parts then
+        model:blocks { group = "base" }:hide()
+        for i, share in ipairs(options.parts) do
+            model:generate("joint", { joint = "part" .. i, dip = 90 - 20 * i, dip_direction = 110 * i,
+                origin = { share * size, share * size, 0.5 * share * size } })
+        end
+        model:blocks { group = "slab" }:join()
+        model:blocks { hidden = "any" }:show()
+    end
     model:joint("*", "coulomb", { kn = k, ks = k,
         friction = math.deg(math.atan((options.fs or 0.83) * math.tan(DIP))) })
     model:damping(options.damping or "local", options.alpha and { alpha = options.alpha } or nil)
@@ -193,3 +202,31 @@ result = model:solve { stop_at_failure = true, max_cycles = 20000 }
 check.equal(result.reason, "failure")
 local size = result.failing.volume ^ (1 / 3)
 check.holds(result.failing.displacement[1] > size and result.failing.displacement[1] < 2 * size, "after a size")
+
+-- What a body is made of says nothing of how far it has gone: one with a chip at its corner, with two, in halves.
+for _, parts in ipairs { { 0.03 }, { 0.97, 0.03 }, { 0.5 }, { 0.5, 0.2, 0.8 } } do
+    local apart, slab_of_parts = slab { parts = parts }
+    local volume = 0.5
+    result = apart:solve { stop_at_failure = true, max_cycles = 300000 }
+    check.equal(result.reason, "failure")
+    check.equal(result.failing.group, "slab")
+    check.near(slab_of_parts.displacement[1] / volume ^ (1 / 3), gone, 0.03 * gone)
+end
+local function mast(first)
+    local standing = talus.model { gravity = { 0, 0, -9.81 } }
+    standing:generate("box", { min = { -5, -5, -1 }, max = { 5, 5, 0 }, density = 2400, group = "floor" })
+    local parts = { { min = { -0.1, -0.5, 0 }, max = { 0.1, 0.5, 6 } }, { min = { 0, -0.5, 6 }, max = { 0.2, 0.5, 6.5 } } }
+    table.insert(parts, first, { min = { -0.01, -0.52, 3 }, max = { 0.01, -0.5, 3.02 } })
+    for _, part in ipairs(parts) do
+        part.density, part.group = 2400, "mast"
+    end
+    standing:generate("box", parts)
+    standing:blocks { group = "mast" }:join()
+    standing:blocks { group = "floor" }:fix()
+    standing:joint("*", "coulomb", { kn = 3e8, ks = 3e8, friction = 35 })
+    standing:damping "local"
+    return standing:solve { ratio = 1e-5, stop_at_failure = true, max_cycles = 20000 }
+end
+for first = 1, 3 do
+    check.equal(mast(first).reason, mast(1).reason)
+end
