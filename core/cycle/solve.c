@@ -124,8 +124,9 @@ static void say_failure(tl_model *m, const tl_solve_result *r)
                  r->failing, speed, r->ratio_local, r->ratio);
 }
 
-static tl_status run(tl_model *m, const tl_solve *solve, tl_solve_result *result)
+static tl_status run(tl_model *m, const tl_solve *solve, tl_solve_result *wanted)
 {
+    tl_solve_result unread, *const result = wanted ? wanted : &unread;
     tl_rows_tidy(m);
     *result =
         (tl_solve_result){.reason = TL_SOLVE_CYCLES, .time = m->time, .measure = solve->measure};

@@ -222,18 +222,6 @@ static void read_box(lua_State *L, int index, tl_bounds *box)
         tl_lua_fail(L, "boundary, box: every component of min must be at most that of max");
 }
 
-static tl_boundary_action no_action(void)
-{
-    const tl_vec3 none = {NAN, NAN, NAN};
-    return (tl_boundary_action){.where = {.side = TL_SIDE_ANY,
-                                          .normal = none,
-                                          .at = none,
-                                          .box = {none, none},
-                                          .facing = none,
-                                          .within = NAN,
-                                          .tolerance = NAN}};
-}
-
 /* What is to be done, of the table at `index` and the parameters read of it. */
 static void read_deeds(lua_State *L, int index, const boundary_args *args, tl_boundary_action *a)
 {
@@ -260,7 +248,7 @@ static void read_deeds(lua_State *L, int index, const boundary_args *args, tl_bo
 /* Reads the table at `index`, which says where and what. */
 static void read_action(lua_State *L, int index, boundary_args *args, tl_boundary_action *a)
 {
-    *a = no_action();
+    *a = tl_boundary_action_default();
     tl_lua_spec spec = tl_lua_boundary_spec;
     spec.keys = table_keys;
     tl_lua_read(L, index, &spec, false, args);
@@ -286,7 +274,7 @@ static void read_side_value(lua_State *L, int32_t side, double tolerance, tl_bou
     const char *name = name_of(side);
     const char *word = lua_type(L, -1) == LUA_TSTRING ? lua_tostring(L, -1) : "";
     boundary_args args;
-    *a = no_action();
+    *a = tl_boundary_action_default();
     if (lua_istable(L, -1)) {
         read_action(L, lua_gettop(L), &args, a);
         if (!is_anywhere(&a->where))
@@ -333,7 +321,7 @@ static size_t read_call(lua_State *L, tl_boundary_action *actions, bool *add)
 {
     *add = false;
     if (lua_type(L, 2) == LUA_TSTRING) {
-        actions[0] = no_action();
+        actions[0] = tl_boundary_action_default();
         actions[0].where.side = tl_lua_side(L, "boundary", lua_tostring(L, 2));
         return 0;
     }

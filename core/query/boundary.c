@@ -365,12 +365,25 @@ static tl_status carry_out(tl_model *m, const uint8_t *fix, const body_sum *sums
     return status;
 }
 
+tl_boundary_action tl_boundary_action_default(void)
+{
+    const tl_vec3 none = {NAN, NAN, NAN};
+    return (tl_boundary_action){.where = {.side = TL_SIDE_ANY,
+                                          .normal = none,
+                                          .at = none,
+                                          .box = {none, none},
+                                          .facing = none,
+                                          .within = NAN,
+                                          .tolerance = NAN}};
+}
+
 tl_status tl_model_boundary(tl_model *m, const tl_boundary_action *actions, size_t count, bool add,
                             tl_boundary_result *results)
 {
     bool acts = false, loads = false;
     for (size_t i = 0; i < count; i++) {
-        results[i] = (tl_boundary_result){0};
+        if (results)
+            results[i] = (tl_boundary_result){0};
         loads = loads || actions[i].loads;
         acts = acts || loads || actions[i].fixed || actions[i].roller;
     }
@@ -384,11 +397,17 @@ tl_status tl_model_boundary(tl_model *m, const tl_boundary_action *actions, size
     body_sum *sums = calloc(m->bodies.table.rows + 1, sizeof *sums);
     if (!fix || !sums || (loads && !TL_COLUMN_NEED(&m->bodies.table, &m->bodies, load, 0)))
         status = tl_fail_memory(&m->error);
-    for (size_t i = 0; i < count && status == TL_OK; i++)
-        status = plan(m, &actions[i], fix, sums, &put, &results[i]);
+    for (size_t i = 0; i < count && status == TL_OK; i++) {
+        tl_boundary_result found = {0};
+        status = plan(m, &actions[i], fix, sums, &put, &found);
+        if (results)
+            results[i] = found;
+        else
+            tl_boundary_free(&found);
+    }
     if (status == TL_OK)
         status = carry_out(m, fix, sums, add, &put);
-    for (size_t i = 0; i < count && status != TL_OK; i++)
+    for (size_t i = 0; i < count && results && status != TL_OK; i++)
         tl_boundary_free(&results[i]);
     free(put.at);
     free(fix);

@@ -165,8 +165,9 @@ static tl_status delete (filter *f, tl_filter_result *result)
     return status;
 }
 
-tl_status tl_model_filter(tl_model *m, const tl_filter *given, tl_filter_result *result)
+tl_status tl_model_filter(tl_model *m, const tl_filter *given, tl_filter_result *wanted)
 {
+    tl_filter_result unread, *const result = wanted ? wanted : &unread;
     *result = (tl_filter_result){0};
     tl_filter read;
     const tl_filter *limits = &read;
@@ -199,7 +200,7 @@ tl_status tl_model_filter(tl_model *m, const tl_filter *given, tl_filter_result 
     free(f.bad);
     free(f.group);
     free(f.touches.at);
-    if (status != TL_OK) {
+    if (status != TL_OK || !wanted) {
         free(result->slivers);
         *result = (tl_filter_result){0};
     }

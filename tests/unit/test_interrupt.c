@@ -1,10 +1,11 @@
 /* test_interrupt.c - a request to stop at every moment at which the kernel asks: what is done whole or not at all leaves no trace,
- * a run ends with a whole step. */
+ * a run ends with a whole step. Nor need results be asked for. */
 #include "check.h"
 #include "model/model.h"
 
 #include <dirent.h>
 #include <sys/stat.h>
+#include <talus/boundary.h>
 
 static long asked, stop_at;
 
@@ -183,12 +184,31 @@ static void cancelled_files_do_not_appear(void)
     every_moment_of_writing(write_rock, TALUS_TEST_TMP "/interrupt_blocks", 1);
 }
 
+/* Who does not ask for a result need not give room for it. */
+TEST(no_result_is_wanted)
+{
+    tl_model *m = rock();
+    const tl_solve two = {.size = sizeof two, .max_cycles = 2, .velocity = NAN, .max_time = NAN};
+    tl_boundary_action side = tl_boundary_action_default();
+    side.where.side = TL_SIDE_XMIN;
+    side.fixed = true;
+    tl_filter slivers = tl_filter_default();
+    slivers.volume = 1e3;
+    CHECK_INT(tl_model_cycle(m, 1, NULL), TL_OK);
+    CHECK_INT(tl_model_solve(m, &two, NULL), TL_OK);
+    CHECK_INT(tl_model_cycles(m), 3);
+    CHECK_INT(tl_model_boundary(m, &side, 1, false, NULL), TL_OK);
+    CHECK_INT(tl_model_filter(m, &slivers, NULL), TL_OK);
+    tl_model_destroy(m);
+}
+
 int main(void)
 {
     tl_plugins_load_default();
     RUN(a_cancelled_generator_leaves_no_trace);
     RUN(a_run_ends_with_a_whole_step);
     RUN(cancelled_files_do_not_appear);
+    RUN(no_result_is_wanted);
     printf("%s: %d checks, %d failed\n", __FILE__, check_count, check_failed);
     return check_failed != 0;
 }

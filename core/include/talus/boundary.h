@@ -49,6 +49,9 @@ typedef struct tl_boundary_action {
     tl_vec3 at, traction;
 } tl_boundary_action;
 
+/* All outer faces, and nothing is done. */
+TL_API tl_boundary_action tl_boundary_action_default(void);
+
 typedef struct tl_boundary_face {
     tl_id block;
     uint32_t face; /* of tl_block_mesh */
@@ -70,7 +73,7 @@ typedef struct tl_boundary_result {
  * actions put on one body adds up; it takes the place of the load the body had or, with `add`, is added to that. As with
  * tl_blocks_load the force keeps its direction and its point goes with the body. Where a face is cut, its parts get their shares:
  * for a traction that is uniform, or normal and linear, what it is on each. Free the results with tl_boundary_free, one
- * by one; a failed call leaves them empty. */
+ * by one; a failed call leaves them empty. `results` may be NULL. */
 TL_API tl_status tl_model_boundary(tl_model *model, const tl_boundary_action *actions, size_t count,
                                    bool add, tl_boundary_result *results);
 TL_API void tl_boundary_free(tl_boundary_result *result);

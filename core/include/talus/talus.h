@@ -159,7 +159,7 @@ typedef struct tl_filter_result {
     double volume; /* of all slivers, m3 */
 } tl_filter_result;
 
-/* Finds the slivers and deletes them, or joins each to the block it shares the largest face with. */
+/* Finds the slivers and deletes them, or joins each to the block it shares the largest face with. `result` may be NULL. */
 TL_API tl_status tl_model_filter(tl_model *model, const tl_filter *filter,
                                  tl_filter_result *result);
 
@@ -289,7 +289,7 @@ typedef struct tl_solve_result {
 
 TL_API const char *tl_solve_reason_name(tl_solve_reason reason);
 TL_API const char *tl_ratio_measure_name(tl_ratio_measure measure);
-/* Runs exactly `cycles` steps (fewer only on an interrupt, an error or a callback's word). */
+/* Runs exactly `cycles` steps (fewer only on an interrupt, an error or a callback's word). `result` may be NULL, also below. */
 TL_API tl_status tl_model_cycle(tl_model *model, int64_t cycles, tl_solve_result *result);
 /* Runs until a limit is met. `*result` is up to date whenever a callback is called. */
 TL_API tl_status tl_model_solve(tl_model *model, const tl_solve *solve, tl_solve_result *result);
