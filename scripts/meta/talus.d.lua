@@ -685,7 +685,7 @@ function Blocks:load(options) end
 ---@field zmin talus.BoundaryResult? where sides are given: these fields of each, likewise
 ---@field zmax talus.BoundaryResult? where sides are given: these fields of each, likewise
 
---- Finds outer faces of the model: those, or parts of those, that lie on no other block. Holds their bodies, or puts a traction on them as a load: its force and moment about each body's centroid take the place of the load the body had, keep their direction and go with the body. What one call puts on a body adds up.
+--- Finds outer faces of the model: those, or parts of those, that lie on no other block. Holds their bodies, or puts a traction on them as a load: its force and moment about each body's centroid take the place of the load the body had, keep their direction and go with the body. What one call puts on a body adds up. When a face is cut, each part of it gets its share.
 ---
 ---     result = model:boundary{side = "xmax", stress = {xx = -1e6}}  or  model:boundary{xmin = "roller", zmin = "fixed", zmax = {pressure = 1e5}}
 ---@param options? talus.BoundaryOptions

@@ -23,9 +23,12 @@ static tl_press press_of(scene *s)
     tl_region region;
     tl_press press;
     CHECK(tl_region_find(view, s->margin * view->size, &s->pair.scratch, &region));
-    CHECK(tl_press_find(
-        &(tl_press_query){view, &region, s->least, s->shift, shifted_of(&region), 0, false, false},
-        1, &s->pair.scratch, &press, NULL));
+    CHECK(tl_press_find(&(tl_press_query){.view = view,
+                                          .region = &region,
+                                          .min_area = s->least,
+                                          .shift = s->shift,
+                                          .shifted = shifted_of(&region)},
+                        1, &s->pair.scratch, &press, NULL));
     return press;
 }
 
@@ -150,9 +153,12 @@ TEST(slopes_go_on_with_the_press)
         CHECK(tl_region_find(view, s.margin * view->size, &s.pair.scratch, &region));
         const tl_face_pair shifted = shifted_of(&region);
         if (at.area > 0) {
-            CHECK(tl_press_slope_find(
-                &(tl_press_query){view, &region, s.least, s.shift, shifted, 0, false, false}, &at,
-                &s.pair.scratch, &slope));
+            CHECK(tl_press_slope_find(&(tl_press_query){.view = view,
+                                                        .region = &region,
+                                                        .min_area = s.least,
+                                                        .shift = s.shift,
+                                                        .shifted = shifted},
+                                      &at, &s.pair.scratch, &slope));
             CHECK(slope.known);
             nudge(&s, &at, 0.5 * TL_PRESS_NEAR * (1 - 1e-5), &seed); /* short of it for rounding */
             tl_press found = press_of(&s);

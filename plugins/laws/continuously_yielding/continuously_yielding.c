@@ -336,8 +336,7 @@ TL_IN_LOOP double slide(const yielding *given, const tl_law_batch *batch, uint32
         wearing w = {.left = 1};
         if (moves)
             w = wear_off(&law, along, angle, v, stress, most, ratio, ks, d);
-        double up = w.up, slip = w.slip;
-        double after = law.residual + (angle - law.residual) * w.left;
+        double up = w.up, slip = w.slip, after = law.residual + (angle - law.residual) * w.left;
         double x = c.f_x[i] * per - up * ex, y = c.f_y[i] * per - up * ey,
                z = c.f_z[i] * per - up * ez;
         double size = sqrt(x * x + y * y + z * z), bound = before > most ? before : most;
@@ -351,7 +350,6 @@ TL_IN_LOOP double slide(const yielding *given, const tl_law_batch *batch, uint32
         double share = -scale * (x * ex + y * ey + z * ez) / (most > FAINT ? most : 1);
         double memory = (ks > 0 ? MEMORY * most / (ks > 0 ? ks : 1) : 0) + law.least_memory;
         turning turned = remember(last[i], toward, most > FAINT ? share : 0, ratio, d, memory);
-        double across = turned.across, difference = turned.along;
         t->walls[i] = walls;
         t->v[i] = v;
         t->spring[i] = ks;
@@ -366,9 +364,9 @@ TL_IN_LOOP double slide(const yielding *given, const tl_law_batch *batch, uint32
         t->ends[i] = -0.5 * scale * second;
         t->angle[i] = after;
         t->ratio[i] = turned.ratio;
-        t->way_x[i] = d > 0 ? across * way_x[i] + difference * ex : way_x[i];
-        t->way_y[i] = d > 0 ? across * way_y[i] + difference * ey : way_y[i];
-        t->way_z[i] = d > 0 ? across * way_z[i] + difference * ez : way_z[i];
+        t->way_x[i] = d > 0 ? turned.across * way_x[i] + turned.along * ex : way_x[i];
+        t->way_y[i] = d > 0 ? turned.across * way_y[i] + turned.along * ey : way_y[i];
+        t->way_z[i] = d > 0 ? turned.across * way_z[i] + turned.along * ez : way_z[i];
         t->wear[i] = slip > 0 ? (law.initial - after) / TL_DEGREE : was;
         t->lift[i] = tangent * slip;
         opens += t->lift[i] == 0 ? 0 : 1;
