@@ -74,6 +74,17 @@ static tl_vec3 tangent(uint64_t key, tl_vec3 normal, double size)
     return tl_v3_scale(size, tl_v3_sub(any, tl_v3_scale(tl_v3_dot(any, normal), normal)));
 }
 
+/* The axis that the normal of a point is, for a few: zeros in two components of it, and of its shear; -1 of the others. */
+static int axis_of(size_t i)
+{
+    return i % 16 == 6 ? (int)(i / 16 % 3) : -1;
+}
+
+static tl_vec3 unit(int axis)
+{
+    return tl_v3(axis % 3 == 0, axis % 3 == 1, axis % 3 == 2);
+}
+
 static void begin_points(trial *t)
 {
     tl_check_points *p = &t->now;
@@ -84,7 +95,9 @@ static void begin_points(trial *t)
         p->c[TL_AT_AREA][i] = area;
         p->c[TL_AT_F_N0][i] =
             i % 8 % 7 % 2 ? 0 : area * t->law.stress * tl_check_between(tl_key(key, 2), 0, 1);
-        tl_check_put(p, TL_AT_NORMAL, i, tl_check_direction(tl_key(key, 3)));
+        int axis = axis_of(i);
+        tl_check_put(p, TL_AT_NORMAL, i,
+                     axis < 0 ? tl_check_direction(tl_key(key, 3)) : unit(axis));
         for (uint32_t k = 0; k < t->law.of.columns; k++)
             p->c[TL_AT_STATE + k][i] = t->law.of.initial[k];
         if (i % 4 == 3) { /* made while the walls were apart */
@@ -123,7 +136,10 @@ static void next_motion(trial *t, int step)
             tl_law_edge(closure, apart, gaps.lift[i],
                         i % 3 ? 0.05 * t->law.closure * tl_uniform(tl_key(key, 5)) : 0);
         in->c[TL_AT_DU_N][i] = before - (closure - apart);
-        tl_vec3 slide = tangent(tl_key(key, 4), normal, rests ? 0 : size * t->law.slide);
+        double way = rests ? 0 : size * t->law.slide;
+        tl_vec3 slide = axis_of(i) < 0
+                            ? tangent(tl_key(key, 4), normal, way)
+                            : tl_v3_scale(tl_uniform(key) < 0.5 ? way : -way, unit(axis_of(i) + 1));
         tl_check_put(in, TL_AT_DU_S, i, slide);
     }
 }

@@ -153,9 +153,14 @@ static void check_pressed(tl_law_trial *t, const point *p, const double energy[3
                       p->kept, energy[1]);
 }
 
-/* The initial force is that at closure 0. */
+/* The initial force is that at closure 0, and a bond that is not pulled nor sheared holds. */
 static void check_initial(tl_law_trial *t, const point *p, size_t i)
 {
+    bool made_apart = (t->in.flags[i] & TL_POINT_APART) != 0;
+    double fibre = p->u - (t->in.c[TL_AT_CLOSURE][i] - t->in.c[TL_AT_EDGE][i]);
+    if (p->fresh && !made_apart && fibre >= 0 && t->out.flags[i] & TL_POINT_FAILED)
+        tl_check_note(t->c, TL_LAW_FLAGS,
+                      "a new point that is neither pulled nor sheared is flagged as failed");
     double f_n0 = t->in.c[TL_AT_F_N0][i];
     bool there = p->fresh && t->in.c[TL_AT_CLOSURE][i] == 0 && p->apart == 0 && f_n0 > 0;
     if (there && fabs(p->f_n - f_n0) > ERROR * (f_n0 + t->scale[i]))
