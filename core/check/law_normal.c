@@ -12,7 +12,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Share of the closures by which the slope of `pressed` is found, and its relative error. */
+/* Share of the closures by which the slope of `pressed` is found, and its relative error, and that of an initial force. */
 #define SMALL 1e-4
 #define SLOPE_ERROR 1e-3
 /* The same of forces and energies that are compared, which differ by roundings of closures. */
@@ -163,7 +163,7 @@ static void check_initial(tl_law_trial *t, const point *p, size_t i)
                       "a new point that is neither pulled nor sheared is flagged as failed");
     double f_n0 = t->in.c[TL_AT_F_N0][i];
     bool there = p->fresh && t->in.c[TL_AT_CLOSURE][i] == 0 && p->apart == 0 && f_n0 > 0;
-    if (there && fabs(p->f_n - f_n0) > ERROR * (f_n0 + t->scale[i]))
+    if (there && fabs(p->f_n - f_n0) > SLOPE_ERROR * f_n0)
         tl_check_note(
             t->c, TL_LAW_PRESSES,
             "f_n = %g N of a new point at closure 0, where the initial force is f_n0 = %g N",
