@@ -131,48 +131,6 @@ TL_VECTORIZED static void follow_torsion(const columns *c, const tl_frames *rest
     }
 }
 
-/* ---------------------------------------------------------------- walls that touch ------- */
-
-/* How far walls may be apart that touch, over the reach of a patch: roundings of places. */
-#define TOUCH 1e-10
-
-/* Whether some of the points are apart. */
-TL_VECTORIZED static bool some_apart(const double *restrict closure, size_t count)
-{
-    double apart[TL_LANES] = {0}, sum = 0;
-    for (size_t at = 0; at < count; at += TL_LANES)
-#pragma omp simd
-        for (size_t l = 0; l < TL_LANES; l++)
-            apart[l] += closure[at + l] < 0 ? 1 : 0;
-    for (size_t l = 0; l < TL_LANES; l++)
-        sum += apart[l];
-    return sum > 0;
-}
-
-void tl_simd_group_touch(const tl_model *m, const tl_law *law, const tl_simd_group *group,
-                         const tl_point_lanes *t, size_t lane)
-{
-    const tl_points_table *p = &m->detect->points;
-    double *closure = t->closure + lane, reach[TL_LANES] = {0};
-    size_t count = (size_t)group->slots * TL_LANES;
-    const uint32_t lost = TL_POINT_APART | TL_POINT_FAILED;
-    if (!some_apart(closure, count))
-        return;
-    for (size_t i = 0; i < count; i++) {
-        tl_vec3 x = tl_columns_get(t->arm, lane + i);
-        reach[i % TL_LANES] = fmax(reach[i % TL_LANES], fabs(x.x) + fabs(x.y) + fabs(x.z));
-    }
-    for (size_t i = 0; i < count; i++) {
-        size_t row = group->start + i;
-        double least = TOUCH * reach[i % TL_LANES];
-        bool pulls = law->pulls != TL_PULL_NONE && !(p->flags[row] & lost);
-        bool pressed =
-            (p->f_n0 && p->f_n0[row] != 0) || p->f_n[row] > least * law->kn * p->area[row];
-        if (closure[i] < 0 && closure[i] > -least && !pulls && !pressed)
-            closure[i] = 0;
-    }
-}
-
 /* ---------------------------------------------------------------- SIMD groups ------------ */
 
 /* Turns the tangent states of a contact's points. */

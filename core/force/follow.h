@@ -12,9 +12,4 @@ void tl_simd_group_follow(tl_model *m, const tl_simd_group *group, bool field,
                           const tl_point_lanes *lanes, size_t lane, uint32_t tangents,
                           tl_arms *arms);
 
-/* Points of patches whose walls are apart by roundings of their places, and do not press or pull, are given the closure 0: laws make
- * a difference between walls that touch and walls that are apart, as where slip opens a joint. */
-void tl_simd_group_touch(const tl_model *m, const tl_law *law, const tl_simd_group *group,
-                         const tl_point_lanes *lanes, size_t lane);
-
 #endif

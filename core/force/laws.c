@@ -361,8 +361,6 @@ static void force_tile(const span_job *job, const tl_simd_group *groups, size_t 
     uint32_t any = 0;
     tl_arms arms[GROUP_CHUNK];
     bool cells = !job->span->field && tl_part_applies(job->m);
-    /* a law without states keeps nothing of whether walls touch */
-    bool touches = !job->span->field && job->law->columns > 0 && job->law->pulls != TL_PULL_ANY;
     job->phase->keep(job->m, groups, count);
     if (job->changed)
         note_points(&job->m->detect->points, first, tile_points(groups, count), t);
@@ -371,8 +369,6 @@ static void force_tile(const span_job *job, const tl_simd_group *groups, size_t 
             tl_simd_group_prefetch(job->m, &groups[count + r]);
         tl_simd_group_follow(job->m, &groups[r], job->span->field, t, points, job->law->tangents,
                              &arms[r]);
-        if (touches)
-            tl_simd_group_touch(job->m, job->law, &groups[r], t, points);
         if (has_edges(job))
             tl_simd_group_edges(job->m, &groups[r], t, points);
         part[r] = cells ? tl_simd_group_part(job->m, job->law, &groups[r], t, points)
