@@ -1,0 +1,119 @@
+/* triangle_parts.h - integrals over the parts of a triangle where a linear overlap u is above 0 and below: what presses of a cell of a
+ * patch that is partly open, and what is apart (partly_open.c). The corner that u = 0 cuts off is a triangle again. */
+#ifndef TL_FORCE_TRIANGLE_PARTS_H
+#define TL_FORCE_TRIANGLE_PARTS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+/* A place in a triangle of the fan: shares of the two corners beside that of the centroid. */
+typedef struct node {
+    double a, b;
+} node;
+
+/* Over a part of the triangle, times 1 over its area: integrals of powers of u, and of them times the place. */
+typedef struct integrals {
+    double u, ua, ub, uu;
+    double uua, uub, uuu, uuuu; /* for laws that are not linear; else 0 */
+} integrals;
+
+/* int u^2 x over a triangle of area 60, of values at its corners. */
+static inline double square_times(const double u[3], double x, double y, double z)
+{
+    double sum = u[0] + u[1] + u[2], squares = u[0] * u[0] + u[1] * u[1] + u[2] * u[2];
+    double mixed = u[0] * x + u[1] * y + u[2] * z;
+    double high = u[0] * u[0] * x + u[1] * u[1] * y + u[2] * u[2] * z;
+    return (sum * sum + squares) * (x + y + z) + 2 * (sum * mixed + high);
+}
+
+/* int u^n over a triangle is 2 / ((n + 1) (n + 2)) times the sum of all products of n of the values at its corners. */
+static inline void put_powers(const double u[3], double f, integrals *out)
+{
+    double x = u[0], y = u[1], z = u[2], xx = x * x;
+    double two = xx + y * (x + y), three = xx * x + y * two, four = xx * xx + y * three;
+    double all = three + z * (two + z * (x + y + z));
+    out->uuu = f / 10 * all;
+    out->uuuu = f / 15 * (four + z * all);
+}
+
+/* Of a triangle of the share f of the area. */
+static inline integrals whole_of(const node n[3], const double u[3], double f, bool curved)
+{
+    double sum = u[0] + u[1] + u[2], by = f / 12;
+    double a = n[0].a + n[1].a + n[2].a, b = n[0].b + n[1].b + n[2].b;
+    integrals out = {
+        .u = f / 3 * sum,
+        .ua = by * (sum * a + u[0] * n[0].a + u[1] * n[1].a + u[2] * n[2].a),
+        .ub = by * (sum * b + u[0] * n[0].b + u[1] * n[1].b + u[2] * n[2].b),
+        .uu = f / 6 * (0.5 * (u[0] * u[0] + u[1] * u[1] + u[2] * u[2]) + 0.5 * sum * sum),
+    };
+    if (curved) {
+        out.uua = f / 60 * square_times(u, n[0].a, n[1].a, n[2].a);
+        out.uub = f / 60 * square_times(u, n[0].b, n[1].b, n[2].b);
+        put_powers(u, f, &out);
+    }
+    return out;
+}
+
+/* Of the part of it at corner k where `sign` u > 0, when that is so at no other corner; u taken times the sign. */
+static inline integrals corner_of(const node n[3], const double u[3], double f, size_t k,
+                                  double sign, bool curved)
+{
+    size_t i = (k + 1) % 3, j = (k + 2) % 3;
+    double top = sign * u[k], s = u[k] / (u[k] - u[i]), t = u[k] / (u[k] - u[j]);
+    double area = f * s * t, by = area * top / 12, by_square = area * top * top / 30;
+    double a = 4 * n[k].a + s * (n[i].a - n[k].a) + t * (n[j].a - n[k].a);
+    double b = 4 * n[k].b + s * (n[i].b - n[k].b) + t * (n[j].b - n[k].b);
+    integrals out = {.u = area * top / 3, .ua = by * a, .ub = by * b, .uu = area * top * top / 6};
+    if (curved) {
+        out.uua = by_square * (n[k].a + a);
+        out.uub = by_square * (n[k].b + b);
+        out.uuu = 3 * by_square * top;
+        out.uuuu = 2 * by_square * top * top;
+    }
+    return out;
+}
+
+static inline integrals added(integrals x, integrals y)
+{
+    return (integrals){x.u + y.u,     x.ua + y.ua,   x.ub + y.ub,   x.uu + y.uu,
+                       x.uua + y.uua, x.uub + y.uub, x.uuu + y.uuu, x.uuuu + y.uuuu};
+}
+
+/* Of -u. */
+static inline integrals negated(integrals x)
+{
+    return (integrals){-x.u, -x.ua, -x.ub, x.uu, x.uua, x.uub, -x.uuu, x.uuuu};
+}
+
+/* Less what -u has in a part of it. */
+static inline integrals without(integrals x, integrals y)
+{
+    return added(x, (integrals){y.u, y.ua, y.ub, -y.uu, -y.uua, -y.uub, y.uuu, -y.uuuu});
+}
+
+/* What presses of a triangle or cell, and what is apart, u there taken positive. */
+typedef struct cell_parts {
+    integrals pressed, apart;
+} cell_parts;
+
+static inline void add_triangle(const node n[3], const double u[3], double f, bool curved,
+                                cell_parts *to)
+{
+    integrals all = whole_of(n, u, f, curved), some;
+    size_t above = (size_t)((u[0] > 0) + (u[1] > 0) + (u[2] > 0));
+    if (above == 3) {
+        to->pressed = added(to->pressed, all);
+        return;
+    }
+    if (above == 0) {
+        to->apart = added(to->apart, negated(all));
+        return;
+    }
+    size_t k = above == 1 ? (u[0] > 0 ? 0 : u[1] > 0 ? 1 : 2) : (u[0] > 0 ? (u[1] > 0 ? 2 : 1) : 0);
+    some = corner_of(n, u, f, k, above == 1 ? 1 : -1, curved);
+    to->pressed = added(to->pressed, above == 1 ? some : without(all, some));
+    to->apart = added(to->apart, above == 1 ? without(negated(all), some) : some);
+}
+
+#endif
