@@ -233,12 +233,22 @@ tl_vec3 tl_block_centroid(const tl_model *m, uint32_t row)
     return tl_model_point(m, m->blocks.body[row], tl_block_local(m, row));
 }
 
+bool tl_blocks_hold_base(tl_model *m)
+{
+    tl_blocks *b = &m->blocks;
+    return TL_COLUMN_NEED(&b->table, b, base, 0) && TL_COLUMN_NEED(&b->table, b, base_turn, 0);
+}
+
 tl_vec3 tl_block_point_displacement(const tl_model *m, uint32_t row, tl_vec3 local)
 {
     uint32_t body = m->blocks.body[row];
     tl_vec3 turned = tl_v3_sub(tl_m3_mul(&m->bodies.pose[body].r, local), local);
     tl_vec3 moved = tl_v3_add(m->bodies.pose[body].u, turned);
-    return m->blocks.base ? tl_v3_sub(moved, m->blocks.base[row]) : moved;
+    if (!m->blocks.base)
+        return moved;
+    tl_mat3 turn = tl_q_matrix(m->blocks.base_turn[row]);
+    tl_vec3 before = tl_v3_sub(tl_m3_mul(&turn, local), local);
+    return tl_v3_sub(moved, tl_v3_add(m->blocks.base[row], before));
 }
 
 tl_vec3 tl_block_displacement(const tl_model *m, uint32_t row)

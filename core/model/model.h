@@ -47,8 +47,11 @@ typedef struct tl_blocks {
     double *density; /* kg/m3 */
     double *volume;  /* m3 */
     tl_vec3 *local;  /* centroid in the body's frame, zero for a body of one block; NULL: all are */
-    tl_vec3 *base;   /* subtracted from the displacement (reset_displacement); NULL: nothing is */
-    double *size;    /* cube root of the volume: the length tolerances refer to */
+    /* shift and turn of the body's frame from which displacements count (reset_displacement, joined bodies); NULL: none. A turn of
+     * zeros is none. */
+    tl_vec3 *base;
+    tl_quat *base_turn;
+    double *size;      /* cube root of the volume: the length tolerances refer to */
     double *mean_face; /* mean face area, m2 */
     uint64_t *lineage; /* key of the block's descent, for random draws */
     uint8_t *hidden;
@@ -332,6 +335,8 @@ static inline tl_vec3 tl_block_local(const tl_model *m, uint32_t row)
 /* Centroid and displacement of a block, in the user's coordinates. */
 tl_vec3 tl_block_centroid(const tl_model *m, uint32_t row);
 tl_vec3 tl_block_displacement(const tl_model *m, uint32_t row);
+/* Makes the columns of that from which displacements count; false: out of memory. */
+bool tl_blocks_hold_base(tl_model *m);
 /* Displacement of a point (in the body's frame) of a block since its creation or last reset. */
 tl_vec3 tl_block_point_displacement(const tl_model *m, uint32_t row, tl_vec3 local);
 

@@ -116,6 +116,7 @@ static tl_vec3 spin_velocity(const tl_bodies *b, uint32_t body, tl_vec3 spin)
 typedef struct member {
     uint32_t row;
     tl_vec3 displacement; /* before */
+    tl_quat base_turn;    /* from the frame of the new body */
 } member;
 
 /* A new body, of the members from `start` on. */
@@ -196,6 +197,17 @@ static bool sort_bodies(const tl_model *m, const uint32_t *group, regroup *r)
     return true;
 }
 
+/* The turn from which the displacement of a block counts, from the frame of another body. */
+static tl_quat base_turn_in(const tl_model *m, uint32_t row, uint32_t leader)
+{
+    const tl_quat none = tl_q_identity(), *q = m->bodies.q;
+    tl_quat turn = m->blocks.base_turn ? m->blocks.base_turn[row] : none;
+    if (turn.w == 0 && turn.x == 0 && turn.y == 0 && turn.z == 0)
+        turn = none;
+    uint32_t body = m->blocks.body[row];
+    return body == leader ? turn : tl_q_mul(turn, tl_q_mul(tl_q_conj(q[body]), q[leader]));
+}
+
 /* Lists the members of the new bodies, in the order of the lowest blocks, and gives all bodies their new rows. */
 static bool list_made(const tl_model *m, const uint32_t *group, regroup *r)
 {
@@ -220,7 +232,8 @@ static bool list_made(const tl_model *m, const uint32_t *group, regroup *r)
             r->of[row] = count++;
         }
         new_body *one = &r->new_bodies[r->of[group[row]]];
-        r->members[one->start + one->count++] = (member){row, tl_block_displacement(m, row)};
+        r->members[one->start + one->count++] = (member){
+            row, tl_block_displacement(m, row), base_turn_in(m, row, m->blocks.body[group[row]])};
     }
     memset(r->stays + m->bodies.table.rows, 1, count);
     return true;
@@ -268,8 +281,7 @@ static bool reserve_rows(tl_model *m, const regroup *r)
 {
     tl_blocks *blocks = &m->blocks;
     return tl_table_reserve(&m->bodies.table, m->bodies.table.rows + 2 * r->new_body_count) &&
-           TL_COLUMN_NEED(&blocks->table, blocks, local, 0) &&
-           TL_COLUMN_NEED(&blocks->table, blocks, base, 0);
+           TL_COLUMN_NEED(&blocks->table, blocks, local, 0) && tl_blocks_hold_base(m);
 }
 
 /* Rows of the new bodies, in between those that stay; the others go. */
@@ -326,6 +338,7 @@ static void finish_body(tl_model *m, const regroup *r, const new_body *one)
         if (one->count == 1)
             blocks->local[of->row] = tl_v3(0, 0, 0);
         blocks->base[of->row] = tl_v3(0, 0, 0);
+        blocks->base_turn[of->row] = of->base_turn;
         blocks->base[of->row] = tl_v3_sub(tl_block_displacement(m, of->row), of->displacement);
     }
 }

@@ -24,7 +24,7 @@ typedef struct source {
     tl_id id;
     tl_pose pose;
     tl_vec3 base, v, w;
-    tl_quat q;
+    tl_quat q, base_turn;
     uint32_t drive;
     uint8_t fixed;
 } source;
@@ -35,6 +35,7 @@ static source source_of(const tl_model *m, uint32_t row)
     uint32_t body = m->blocks.body[row];
     return (source){.id = m->blocks.id[row],
                     .base = m->blocks.base ? m->blocks.base[row] : tl_v3(0, 0, 0),
+                    .base_turn = m->blocks.base_turn ? m->blocks.base_turn[row] : tl_q_identity(),
                     .pose = b->pose[body],
                     .v = b->v[body],
                     .w = b->w[body],
@@ -72,8 +73,11 @@ static void put(tl_model *m, const tl_stage_block *block, const source *from, ui
         return;
     }
     tl_vec3 arm = tl_m3_mul(&from->pose.r, c);
-    if (blocks->base)
-        blocks->base[row] = from->base;
+    if (blocks->base) { /* that of the whole's frame, about this block's centroid */
+        tl_mat3 turn = tl_q_matrix(from->base_turn);
+        blocks->base[row] = tl_v3_add(from->base, tl_v3_sub(tl_m3_mul(&turn, c), c));
+        blocks->base_turn[row] = from->base_turn;
+    }
     *pose = from->pose;
     pose->x_ref = tl_v3_add(pose->x_ref, c);
     pose->u = tl_v3_add(pose->u, tl_v3_sub(arm, c));

@@ -155,12 +155,12 @@ tl_status tl_blocks_reset_displacement(tl_model *m, const tl_id *ids, size_t cou
     tl_status status = check_ids(m, ids, count);
     if (status != TL_OK)
         return status;
-    if (count && !TL_COLUMN_NEED(&m->blocks.table, &m->blocks, base, 0))
+    if (count && !tl_blocks_hold_base(m))
         return tl_fail_memory(&m->error);
     for (size_t i = 0; i < count; i++) {
-        uint32_t row = m->row_of[ids[i]];
-        m->blocks.base[row] = tl_v3(0, 0, 0);
-        m->blocks.base[row] = tl_block_displacement(m, row);
+        uint32_t row = m->row_of[ids[i]], body = m->blocks.body[row];
+        m->blocks.base[row] = m->bodies.pose[body].u;
+        m->blocks.base_turn[row] = m->bodies.q[body];
     }
     return TL_OK;
 }

@@ -112,7 +112,9 @@ static bool block_is_sound(const tl_model *m, uint32_t row, size_t groups)
            isfinite(b->density[row]) && measure_is_sound(b->volume[row]) &&
            b->size[row] == tl_cbrt(b->volume[row]) && b->mean_face[row] > 0 &&
            isfinite(b->mean_face[row]) && b->hidden[row] <= 1 && b->stays[row] == 1 &&
-           (!b->local || tl_v3_finite(b->local[row])) && (!b->base || tl_v3_finite(b->base[row]));
+           (!b->local || tl_v3_finite(b->local[row])) && (!b->base || tl_v3_finite(b->base[row])) &&
+           (!b->base_turn || isfinite(b->base_turn[row].w + b->base_turn[row].x +
+                                      b->base_turn[row].y + b->base_turn[row].z));
 }
 
 static bool is_turn(tl_quat q)

@@ -404,3 +404,32 @@ for seed = 1, SEEDS do
     check.holds(copy:state_hash() == parts:state_hash(), ("seed %d, copied"):format(seed))
 end
 check.holds(split > SEEDS, "contacts were split")
+
+-- Displacements count from their reset, of parts that are cut later, too, and of blocks that were turned before they were joined.
+do
+    local model = talus.model { gravity = { 0, 0, 0 } }
+    model:generate("box", { { min = { 0, 0, 0 }, max = { 4, 1, 1 }, density = DENSITY }, { min = { 5, 0, 0 }, max = { 6, 1, 1 }, density = DENSITY } })
+    model:joint("*", "coulomb", { kn = 1e8, ks = 1e8 })
+    model:timestep { dt = 1e-3 }
+    local turns = model:blocks { id = 1 }
+    turns:drive { angular_velocity = { 0, 0, 0.1 } }
+    model:cycle(1000)
+    turns:free()
+    turns:set { velocity = { 0, 0, 0 }, angular_velocity = { 0, 0, 0 } }
+    model:blocks():reset_displacement()
+    check.near(turns[1].displacement, { 0, 0, 0 }, 0)
+    local function cut(name, x)
+        model:generate("joint", plane(name, 90, 90, x, 0.5, 0.5))
+        for _, block in ipairs(model:blocks()) do
+            check.near(block.displacement, { 0, 0, 0 }, 1e-14)
+        end
+    end
+    cut("k", 1.8)
+    model:blocks():join()
+    cut("l", 3)
+    local path = os.getenv "TALUS_TEST_TMP" .. "/cut_displacement.talus"
+    model:save(path)
+    model = talus.restore(path)
+    cut("m", 1)
+    check.equal(#model:blocks() > 4, true)
+end
