@@ -278,7 +278,7 @@ const tl_lua_topic tl_lua_topics[] = {
      .doc =
          "Prescribes the motion of the blocks' bodies, in the place of any fixing, until "
          "selection:free(). A function is called in the middle of a step: it may read the model, "
-         "but not change it.",
+         "but not change it. A body that is driven to turn is not cut in two.",
      .keys = tl_lua_drive_keys},
     {.name = "timestep",
      .usage = "model:timestep{fraction = 0.3}  or  report = model:timestep()",

@@ -697,7 +697,7 @@ function Model:boundary(options) end
 ---@field velocity? talus.Vector|(fun(t: number): number|talus.Vector, number?, number?) velocity of the centroid, m/s; the function gives {x, y, z} or three numbers for a time t, s: the middle of each step. Zero when left out
 ---@field angular_velocity? talus.Vector|(fun(t: number): number|talus.Vector, number?, number?) angular velocity, rad/s, likewise
 
---- Prescribes the motion of the blocks' bodies, in the place of any fixing, until selection:free(). A function is called in the middle of a step: it may read the model, but not change it.
+--- Prescribes the motion of the blocks' bodies, in the place of any fixing, until selection:free(). A function is called in the middle of a step: it may read the model, but not change it. A body that is driven to turn is not cut in two.
 ---
 ---     selection:drive{velocity = function(t) return 0.1 * math.sin(t), 0, 0 end}
 ---@param options? talus.DriveOptions

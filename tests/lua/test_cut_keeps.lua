@@ -405,6 +405,24 @@ for seed = 1, SEEDS do
 end
 check.holds(split > SEEDS, "contacts were split")
 
+-- A body that is driven to turn is not cut in two: no drive says how its parts would go on. One that is driven along is.
+for _, motion in ipairs { { angular_velocity = { 0, 0, 1 } }, { velocity = { 1, 0, 0 }, angular_velocity = function() return { 0, 0, 1 } end } } do
+    local model = talus.model { gravity = { 0, 0, -10 } }
+    model:generate("box", { min = { 0, 0, 0 }, max = { 4, 1, 1 }, density = DENSITY })
+    model:joint("*", "coulomb", { kn = 1e8, ks = 1e8, friction = 30 })
+    model:blocks():drive(motion)
+    model:cycle(10)
+    local hash = model:state_hash()
+    check.raises(function() model:generate("joint", plane("k", 90, 90, 2, 0.5, 0.5)) end, "is driven with an angular velocity and cannot be cut in two")
+    check.equal(model:state_hash(), hash)
+    model:blocks():drive { velocity = { 1, 0, 0 } }
+    model:generate("joint", plane("k", 90, 90, 2, 0.5, 0.5))
+    model:cycle(50)
+    for _, block in ipairs(model:blocks()) do
+        check.near(block.velocity, { 1, 0, 0 }, 0)
+    end
+end
+
 -- Displacements count from their reset, of parts that are cut later, too, and of blocks that were turned before they were joined.
 do
     local model = talus.model { gravity = { 0, 0, 0 } }

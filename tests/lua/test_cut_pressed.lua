@@ -49,6 +49,7 @@ for seed = 1, SEEDS do
     cube:drive { velocity = { 0, 0, 0 }, angular_velocity = { 0, tilt / (steps * model.dt), 0 } }
     model:timestep { dt = model.dt }
     model:cycle(steps)
+    cube:drive { velocity = { 0, 0, 0 } } -- what is driven to turn is not cut
     local whole = model:copy()
     local thin = 10 ^ (-3 * draw())
     local dip = draw() < 0.5 and 90 * math.floor(2 * draw()) or 90 * draw()
