@@ -199,6 +199,41 @@ static bool some_joined(const tl_model *m, const tl_id *ids, size_t count)
     return false;
 }
 
+/* Blocks of one body that are given a velocity: their mass, and its first moment about the body's centroid. */
+typedef struct moved_parts {
+    double mass;
+    tl_vec3 moment;
+} moved_parts;
+
+/* Gives the bodies of the blocks their motion. What gets the velocity is the common centroid of those of its blocks that are listed: of
+ * one block its own. `moved`: [bodies], zeros, or NULL when all bodies are of one block. */
+static void set_motion(tl_model *m, const tl_id *ids, size_t count, const tl_block_set *set,
+                       moved_parts *moved)
+{
+    tl_bodies *b = &m->bodies;
+    for (size_t i = 0; i < count; i++) {
+        uint32_t row = m->row_of[ids[i]], body = m->blocks.body[row];
+        if (given(set->velocity) && moved) {
+            double mass = m->blocks.density[row] * m->blocks.volume[row];
+            tl_vec3 arm = tl_m3_mul(&b->pose[body].r, tl_block_local(m, row));
+            moved[body].mass += mass;
+            moved[body].moment = tl_v3_madd(moved[body].moment, mass, arm);
+        }
+        if (given(set->angular_velocity))
+            b->w[body] = set->angular_velocity;
+        if (given(set->velocity) || given(set->angular_velocity))
+            tl_load_begins_anew(m, body);
+    }
+    for (size_t i = 0; i < count && given(set->velocity); i++) {
+        uint32_t body = m->blocks.body[m->row_of[ids[i]]];
+        b->v[body] = set->velocity;
+        if (moved && b->member_count[body] > 1)
+            b->v[body] = tl_v3_sub(
+                set->velocity,
+                tl_v3_cross(b->w[body], tl_v3_scale(1 / moved[body].mass, moved[body].moment)));
+    }
+}
+
 tl_status tl_blocks_set(tl_model *m, const tl_id *ids, size_t count, const tl_block_set *values)
 {
     tl_block_set read;
@@ -216,9 +251,12 @@ tl_status tl_blocks_set(tl_model *m, const tl_id *ids, size_t count, const tl_bl
     if (set->group && (group = tl_group_intern(m, set->group)) == UINT32_MAX)
         return tl_fail_memory(&m->error);
     tl_aside aside;
-    bool mends = !isnan(set->density) && some_joined(m, ids, count);
-    if (mends && !tl_rows_set_aside(m, &aside))
+    bool joined = some_joined(m, ids, count), mends = !isnan(set->density) && joined;
+    moved_parts *moved = joined ? calloc(m->bodies.table.rows, sizeof *moved) : NULL;
+    if ((joined && !moved) || (mends && !tl_rows_set_aside(m, &aside))) {
+        free(moved);
         return tl_fail_memory(&m->error);
+    }
     for (size_t i = 0; i < count; i++) {
         uint32_t row = m->row_of[ids[i]], body = m->blocks.body[row];
         if (set->group)
@@ -228,13 +266,9 @@ tl_status tl_blocks_set(tl_model *m, const tl_id *ids, size_t count, const tl_bl
             if (m->bodies.member_count[body] == 1)
                 tl_body_measure(m, body);
         }
-        if (given(set->velocity))
-            m->bodies.v[body] = set->velocity;
-        if (given(set->angular_velocity))
-            m->bodies.w[body] = set->angular_velocity;
-        if (given(set->velocity) || given(set->angular_velocity))
-            tl_load_begins_anew(m, body);
     }
+    set_motion(m, ids, count, set, moved);
+    free(moved);
     m->constraints++;
     if (!mends)
         return TL_OK;

@@ -626,7 +626,7 @@ function Blocks:fix(options) end
 ---@class (exact) talus.SetOptions
 ---@field density? number kg/m3, > 0: density
 ---@field group? string name of the group
----@field velocity? talus.Vector m/s: velocity of the centroid
+---@field velocity? talus.Vector m/s: velocity of the centroid; of several blocks of a body, that of their common one
 ---@field angular_velocity? talus.Vector rad/s: angular velocity
 
 --- Changes properties of blocks; what is not named stays.

@@ -52,3 +52,23 @@ check.near(model:energy().balance, 0, 1e-3)
 block:free():set { velocity = { 0, 5, 0 } }
 model:cycle(100)
 check.near(model:energy().balance, 0, 1e-3)
+
+-- A velocity is that of the block's own centroid, as the field tells it, though its body turns about another; of several blocks of a
+-- body, that of their common centroid.
+do
+    local model = talus.model { gravity = { 0, 0, 0 } }
+    model:generate("box", { { min = { 0, 0, 0 }, max = { 1, 1, 1 }, density = 2500 }, { min = { 1, 0, 0 }, max = { 2, 1, 1 }, density = 5000 } })
+    model:joint("*", "coulomb", { kn = 1e8, ks = 1e8 })
+    model:blocks():join()
+    local one, other = model:blocks { id = 1 }, model:blocks { id = 2 }
+    one:set { velocity = { 1, 2, 3 }, angular_velocity = { 0, 0, 1 } }
+    check.near(one[1].velocity, { 1, 2, 3 }, 1e-14)
+    check.near(other[1].velocity, { 1, 3, 3 }, 1e-14)
+    other:set { velocity = { 0, 0, 0 } }
+    check.near(other[1].velocity, { 0, 0, 0 }, 1e-14)
+    check.near(one[1].velocity, { 0, -1, 0 }, 1e-14)
+    check.near(one[1].angular_velocity, { 0, 0, 1 }, 0)
+    model:blocks():set { velocity = { 0, 0, 0 } }
+    check.near(one[1].velocity, { 0, -2 / 3, 0 }, 1e-14)
+    check.near(other[1].velocity, { 0, 1 / 3, 0 }, 1e-14)
+end
