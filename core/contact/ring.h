@@ -23,6 +23,17 @@ typedef struct tl_ring {
     double inside;        /* their share of the patch */
 } tl_ring;
 
+/* Second moments of areas about their centroid: xx, xy, yy. */
+typedef struct tl_ring_spread {
+    double xx, xy, yy;
+} tl_ring_spread;
+
+/* Whether points span a plane; within about `place` of a line slopes would be quotients of rounding. */
+static inline bool tl_ring_spans(const tl_ring_spread *i, double area, double place)
+{
+    return i->xx * i->yy - i->xy * i->xy > area * place * place * (i->xx + i->yy);
+}
+
 /* Of cells with their points; those within `place` of the centroid are inside. */
 tl_ring tl_ring_of(tl_ring_cell *cell, size_t count, double place);
 /* Turns an old ring so that its shares count from where those of the new one do. */

@@ -188,33 +188,22 @@ static double *column_of(old_point *point, int column)
  * key; where the old patch is a whole of which this is a part, the nearest. */
 typedef enum relay_match { BY_AREA, BY_KEY, NEAREST } relay_match;
 
-/* Second moments of areas about their centroid: xx, xy, yy. */
-typedef struct spread {
-    double xx, xy, yy;
-} spread;
-
-/* Whether points span a plane; within about `place` of a line slopes would be quotients of rounding. */
-static bool spans(const spread *i, double area, double place)
-{
-    return i->xx * i->yy - i->xy * i->xy > area * place * place * (i->xx + i->yy);
-}
-
 /* Old points and new ones of one patch, each with its cell: places are about the centroids. */
 typedef struct relay {
     old_point *old, *now;
     tl_ring before, after;
     double *across; /* of each new point: the mean place of the old cells that it lies on */
     double area[2];
-    spread spread[2]; /* of the areas before and after */
-    bool planes;      /* places tell how stresses vary */
-    bool states;      /* are of the law */
+    tl_ring_spread spread[2]; /* of the areas before and after */
+    bool planes;              /* places tell how stresses vary */
+    bool states;              /* are of the law */
     relay_match match;
     relay_rule rule[COLUMNS];
 } relay;
 
 /* The cells of points about their centre, and the spread of their areas. */
 static tl_ring ring_of(const old_point *point, size_t count, tl_vec3 centre, const tl_vec3 axis[2],
-                       double place, tl_ring_cell *cell, spread *out)
+                       double place, tl_ring_cell *cell, tl_ring_spread *out)
 {
     for (size_t k = 0; k < count; k++) {
         tl_vec3 arm = tl_v3_sub(point[k].arm, centre);
@@ -288,7 +277,7 @@ typedef struct slopes {
 
 static slopes slopes_of(const relay *r, int side, double x, double y)
 {
-    const spread *i = &r->spread[side];
+    const tl_ring_spread *i = &r->spread[side];
     double det = i->xx * i->yy - i->xy * i->xy;
     return r->planes ? (slopes){(x * i->yy - y * i->xy) / det, (y * i->xx - x * i->xy) / det}
                      : (slopes){0, 0};
@@ -432,8 +421,8 @@ static void relay_fields(tl_model *m, uint32_t c, relay *r, const totals t[2],
     tl_ring_align(&r->before, &r->after);
     r->area[0] = t[0].area;
     r->area[1] = t[1].area;
-    r->planes = r->planes && spans(&r->spread[0], t[0].area, place) &&
-                (r->match == NEAREST || spans(&r->spread[1], t[1].area, place));
+    r->planes = r->planes && tl_ring_spans(&r->spread[0], t[0].area, place) &&
+                (r->match == NEAREST || tl_ring_spans(&r->spread[1], t[1].area, place));
     r->across = scratch->value + old_count;
     for (int column = 0; column < STATES; column++)
         r->rule[column] = PLANE;

@@ -6,6 +6,7 @@
 
 #include "contact/across_gap.h"
 #include "contact/contacts.h"
+#include "contact/estate.h"
 #include "contact/handover.h"
 #include "contact/lean.h"
 #include "contact/pair_view.h"
@@ -169,6 +170,31 @@ static tl_region kept_region(tl_press_row *row)
                        .flush = row->flush,
                        .blunt_a = row->blunt_a,
                        .blunt_b = row->blunt_b};
+}
+
+bool tl_field_lacks_reference(const tl_model *m, uint32_t c)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    const tl_press_row *row = tl_press_row_of(m, c);
+    return row && contacts->facet[c].kind == TL_FACET_FIELD && !contacts->field[c] &&
+           (row->leans || row->shift != row->opening[TL_FIELD_SHEAR]) && !m->detect->points.initial;
+}
+
+bool tl_field_take_row(tl_model *m, uint32_t c)
+{
+    tl_contacts *contacts = &m->detect->contacts;
+    if (!contacts->field[c] || contacts->press[c] != TL_NO_ROW)
+        return true;
+    contacts->press[c] = tl_press_take(m->detect);
+    if (contacts->press[c] == TL_NO_ROW)
+        return false;
+    tl_face_pair faces;
+    double shift = tl_estate_shift(m, contacts->a[c], contacts->b[c], &faces);
+    if (shift != 0) {
+        tl_press_shift_faces(m, c, faces);
+        tl_press_row_of(m, c)->shift = shift;
+    }
+    return true;
 }
 
 /* ---------------------------------------------------------------- places ----------------- */

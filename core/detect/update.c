@@ -553,42 +553,13 @@ void tl_contact_reframe(tl_model *m, uint32_t c, unsigned thread)
     scratch->reframed = false;
 }
 
-/* Whether a field contact whose faces are moved apart, by more than what slip has opened of its point of shear, is to become a patch:
- * its points need a reference then. */
-static bool lacks_reference(const tl_model *m, uint32_t c)
-{
-    const tl_contacts *contacts = &m->detect->contacts;
-    const tl_press_row *row = tl_press_row_of(m, c);
-    return row && contacts->facet[c].kind == TL_FACET_FIELD && !contacts->field[c] &&
-           row->shift != row->opening[TL_FIELD_SHEAR] && !m->detect->points.initial;
-}
-
-/* Gives a field contact the row that it needs. The faces of one that takes over from another are moved out as those were. false: out of
- * memory. */
-static bool take_press(tl_model *m, uint32_t c)
-{
-    tl_contacts *contacts = &m->detect->contacts;
-    if (!contacts->field[c] || contacts->press[c] != TL_NO_ROW)
-        return true;
-    contacts->press[c] = tl_press_take(m->detect);
-    if (contacts->press[c] == TL_NO_ROW)
-        return false;
-    tl_face_pair faces;
-    double shift = tl_estate_shift(m, contacts->a[c], contacts->b[c], &faces);
-    if (shift != 0) {
-        tl_press_shift_faces(m, c, faces);
-        tl_press_row_of(m, c)->shift = shift;
-    }
-    return true;
-}
-
 bool tl_contact_fill(tl_model *m, uint32_t c)
 {
     tl_detect *d = m->detect;
     tl_contacts *contacts = &d->contacts;
-    if (lacks_reference(m, c) && !tl_detect_hold_initial(d))
+    if (tl_field_lacks_reference(m, c) && !tl_detect_hold_initial(d))
         return false;
-    if (!take_press(m, c))
+    if (!tl_field_take_row(m, c))
         return false;
     uint8_t pending = contacts->pending[c];
     contacts->pending[c] = TL_PENDING_NONE;

@@ -105,6 +105,25 @@ static tl_status create(const void *given, void **self, tl_report *report)
     return tl_keep(&law, sizeof law, self, report);
 }
 
+/* A bond after a step, and the strength that is left with it. */
+typedef struct gripping {
+    double bond, tangent, cohesion;
+} gripping;
+
+/* Whether a bond holds a step: under a shear force on trial, what presses or pulls, and the force at the outermost fibre. */
+TL_IN_LOOP gripping hold_on(const strength *peak, const strength *residual, double before,
+                            double area, double trial, double total, double fibre)
+{
+    double rest = 1 - before;
+    double bound = (before * peak->cohesion + rest * residual->cohesion) * area +
+                   total * (before * peak->tangent + rest * residual->tangent);
+    double after = trial > (bound < 0 ? 0 : bound) ? 0 : before;
+    after = fibre < -peak->tension * area ? 0 : after;
+    rest = 1 - after;
+    return (gripping){after, after * peak->tangent + rest * residual->tangent,
+                      after * peak->cohesion + rest * residual->cohesion};
+}
+
 /* The law itself, for up to STRIDE lanes from `begin`. `heat` and `dilates` are constants at each call,
  * so that the loop exists once for each and none has a branch in it; without dilation the opening of
  * slip in the past still counts. A NaN goes through
@@ -136,18 +155,10 @@ TL_IN_LOOP void move(const bonded *law, const tl_law_batch *batch, uint32_t begi
         tl_vec3 f = TL_TRIAL_AT(c, i, stiffness);
         double trial = tl_v3_norm(f);
 
-        /* Does the bond hold this step? */
-        double rest = 1 - before;
-        double bound = (before * peak.cohesion + rest * residual.cohesion) * c.area[i] +
-                       ((pressed < 0 ? held * pressed : pressed) - pull) *
-                           (before * peak.tangent + rest * residual.tangent);
-        double after = trial > (bound < 0 ? 0 : bound) ? 0 : before;
         double fibre = kn * c.area[i] * (edge[i] + opened) + c.f_n0[i];
-        after = fibre < -peak.tension * c.area[i] ? 0 : after;
-        /* The strength that is left. */
-        rest = 1 - after;
-        double tangent = after * peak.tangent + rest * residual.tangent;
-        double cohesion = after * peak.cohesion + rest * residual.cohesion;
+        gripping g = hold_on(&peak, &residual, before, c.area[i], trial,
+                             (pressed < 0 ? held * pressed : pressed) - pull, fibre);
+        double after = g.bond, tangent = g.tangent, cohesion = g.cohesion;
         double left = fibre < -residual.tension * c.area[i] ? 0 : whole;
         double holds = after * grips + (held - after * grips) * left;
         double pulls = holds * grip, total = pressed - pulls;
