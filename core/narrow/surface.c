@@ -170,12 +170,22 @@ static bool begin(draft *p, const tl_pair_view *view, half_space equal)
     return true;
 }
 
-static bool cut_by_depths(draft *p, const tl_pair_view *view, bool of_b, const uint16_t *faces,
-                          uint32_t count, uint32_t nearest)
+/* Where a face of a field is. */
+static half_space pressing_face(const tl_pair_view *view, const tl_moved_faces *moved, bool of_b,
+                                uint32_t face)
 {
-    half_space near = face_of(view, of_b, nearest);
+    if (!moved || face != (of_b ? moved->faces.b : moved->faces.a))
+        return face_of(view, of_b, face);
+    return (half_space){moved->plane[of_b].normal, moved->plane[of_b].offset};
+}
+
+static bool cut_by_depths(draft *p, const tl_pair_view *view, const tl_moved_faces *moved,
+                          bool of_b, const uint16_t *faces, uint32_t count, uint32_t nearest)
+{
+    half_space near = pressing_face(view, moved, of_b, nearest);
     for (uint32_t k = 0; k < count && p->count; k++)
-        if (faces[k] != nearest && !cut(p, deeper(face_of(view, of_b, faces[k]), near)))
+        if (faces[k] != nearest &&
+            !cut(p, deeper(pressing_face(view, moved, of_b, faces[k]), near)))
             return false;
     return true;
 }
@@ -191,7 +201,7 @@ static bool cut_by_borders(draft *p, const tl_pair_view *view, bool of_b, const 
 
 /* Whether the polygon's middle lies in both blocks, but for rounding. It does unless the blocks are apart: then the listed faces
  * may still enclose something. */
-static bool is_inside(const draft *p, const tl_pair_view *view)
+static bool is_inside(const draft *p, const tl_pair_view *view, const tl_moved_faces *moved)
 {
     const tl_vec3 *x = p->surface->corner + p->surface->corners;
     tl_vec3 sum = {0, 0, 0};
@@ -202,31 +212,33 @@ static bool is_inside(const draft *p, const tl_pair_view *view)
     for (int side = 0; side < 2; side++) {
         const tl_poly *poly = side ? view->b : view->a;
         for (uint32_t f = 0; f < poly->face_count; f++) {
-            half_space h = face_of(view, side, f);
+            half_space h = pressing_face(view, moved, side, f);
             outside = fmax(outside, tl_v3_dot(h.normal, middle) - h.offset);
         }
     }
     return outside < TL_POLY_ON * view->size;
 }
 
-bool tl_surface_add_field(const tl_pair_view *view, const tl_region *region, tl_surface *surface)
+bool tl_surface_add_field(const tl_pair_view *view, const tl_region *region,
+                          const tl_moved_faces *moved, tl_surface *surface)
 {
     const uint16_t *in_a = region->face, *in_b = in_a + region->a;
     const uint16_t *border_a = in_b + region->b, *border_b = border_a + region->border_a;
     for (uint32_t i = 0; i < region->a; i++)
         for (uint32_t j = 0; j < region->b; j++) {
-            half_space a = face_of(view, false, in_a[i]), b = face_of(view, true, in_b[j]);
+            half_space a = pressing_face(view, moved, false, in_a[i]);
+            half_space b = pressing_face(view, moved, true, in_b[j]);
             half_space equal = deeper(a, b);
             draft p = {surface, 0};
             if (tl_v3_norm2(equal.normal) < ONE_DIRECTION)
                 continue;
             if (!begin(&p, view, equal) || !cut(&p, a) ||
-                !cut_by_depths(&p, view, false, in_a, region->a, in_a[i]) ||
-                !cut_by_depths(&p, view, true, in_b, region->b, in_b[j]) ||
+                !cut_by_depths(&p, view, moved, false, in_a, region->a, in_a[i]) ||
+                !cut_by_depths(&p, view, moved, true, in_b, region->b, in_b[j]) ||
                 !cut_by_borders(&p, view, false, border_a, region->border_a) ||
                 !cut_by_borders(&p, view, true, border_b, region->border_b))
                 return false;
-            if (has_area(&p, view->size) && is_inside(&p, view))
+            if (has_area(&p, view->size) && is_inside(&p, view, moved))
                 keep(&p);
         }
     return true;
