@@ -117,7 +117,7 @@ static tl_status law_update(const void *self, const tl_law_batch *batch, tl_repo
         return TL_E_NUMERIC;
     }
     for (uint32_t i = 0; i < batch->count; i++) {
-        double k = p->kn * batch->area[i], moved = 0, trial2 = 0, along = 0, shear2 = 0;
+        double k = p->kn * batch->area[i], moved = 0, along = 0, shear2 = 0;
         double total = k * batch->closure[i] + batch->f_n0[i];
         double f_n = total > 0 || p->law_fault == PULLS ? total : 0;
         /* a stiffness that grows with the pressure, in increments: sheared under load and back without, it gives energy */
@@ -125,7 +125,6 @@ static tl_status law_update(const void *self, const tl_law_batch *batch, tl_repo
         for (int j = 0; j < 3; j++) {
             double before = batch->f_s[j][i], trial = before - shear * batch->du_s[j][i];
             moved += batch->du_s[j][i] * batch->du_s[j][i];
-            trial2 += trial * trial;
             along += trial * before;
             batch->f_s[j][i] = total > 0 ? trial : 0;
             shear2 += batch->f_s[j][i] * batch->f_s[j][i];
