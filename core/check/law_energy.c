@@ -18,6 +18,8 @@
 #define STEPS 150
 /* Energy that may seem to be made or lost, relative to the work of all steps: the error of the sum. */
 #define ERROR 2e-3
+/* Heat of a step, of its work, below which it is rounding. */
+#define NO_HEAT 1e-9
 
 /* What a point of a path is. */
 enum { PRESSED = 4, PRESSED_SHUT, APART, PARTLY, SORTS };
@@ -132,7 +134,7 @@ static void add_up(walk *w, const tl_check_points *was, const tl_check_points *i
                size = fabs(across) + fabs(along);
         if ((apart0 > 0 || apart1 > 0) && before.lift[i] != after.lift[i])
             left = 0; /* how much of the area slip closes the law cannot know */
-        *(heat > 1e-9 * size ? &s->with_heat : &s->without_heat) += fabs(left);
+        *(heat > NO_HEAT * size ? &s->with_heat : &s->without_heat) += fabs(left);
         s->work += across + along;
         s->size += size;
         s->heat += heat;
@@ -184,7 +186,7 @@ static void judge(tl_law_trial *t, const walk *w, const double stored[TL_CHECK_P
                 t->c, TL_LAW_CYCLE,
                 "%.3g J come out of a closed path of motion on which %.3g J went in and out",
                 -s->work, s->size);
-        if (s->least < -1e-9 * s->size)
+        if (s->least < -NO_HEAT * s->size)
             tl_check_note(t->c, TL_LAW_HEAT,
                           "dissipated = %.3g J in a step, which must not be negative", s->least);
         if (s->without_heat > most)

@@ -12,7 +12,8 @@
 static bool is_field(const tl_model *m, uint32_t c)
 {
     const tl_contacts *contacts = &m->detect->contacts;
-    return contacts->facet[c].kind == TL_FACET_FIELD && contacts->point_count[c] > 0;
+    return contacts->facet[c].kind == TL_FACET_FIELD && contacts->point_count[c] > 0 &&
+           contacts->law[c] != TL_NO_ROW;
 }
 
 /* Brings contacts up to the present places, where a step that failed has left them already, and makes room for what a

@@ -13,7 +13,6 @@
  * something bears them, and in longer legs: what is poured has not failed. */
 #include "cycle/cycle_data.h"
 
-#include "base/regular.h"
 #include "contact/detection.h"
 
 #include <stdatomic.h>
