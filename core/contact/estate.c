@@ -88,7 +88,7 @@ static void keep_faces(tl_model *m, uint32_t c, const tl_testator *a, const tl_t
         offset = row->shifted_at[0].offset + row->shifted_at[1].offset;
         estate->shift = row->shift;
     } else {
-        estate->shift = tl_contact_lean(m, c).mean;
+        estate->shift = tl_contact_mean_lift(m, c);
     }
     estate->face[0] = tl_m3_mul(a->r, na);
     estate->face[1] = tl_m3_mul(b->r, nb);

@@ -35,25 +35,47 @@ static void add(sums *s, double w, double x, double y, double l)
     s->high = fmax(s->high, l);
 }
 
-/* Sums over the points that press, or over all, about the first, at an arm. */
-static sums sums_of(const tl_model *m, uint32_t c, bool pressing, tl_vec3 about, tl_vec3 t1,
-                    tl_vec3 t2)
+/* Where points lie in the plane: about a place, along two axes. */
+typedef struct axes {
+    tl_vec3 about, t1, t2;
+} axes;
+
+/* Sums over the points that press, or over all. Without axes none has a place. */
+static sums sums_of(const tl_model *m, uint32_t c, bool pressing, const axes *plane)
 {
     const tl_detect *d = m->detect;
     const tl_points_table *p = &d->points;
     sums s = {.low = INFINITY, .high = -INFINITY};
-    double lift[TL_LANES];
+    double lift[TL_LANES], x[2] = {0, 0};
     for (size_t k = 0; k < d->contacts.point_count[c]; k++) {
         size_t i = tl_point_row(&d->contacts, c, k);
         if (k % TL_LANES == 0)
             tl_contact_point_lifts(m, c, k, lift);
         if (pressing && !(p->f_n[i] > 0))
             continue;
-        tl_vec3 x = tl_v3_sub(tl_contact_point_arm(m, c, k), about);
-        add(&s, p->area[i], tl_v3_dot(x, t1), tl_v3_dot(x, t2),
-            lift[k % TL_LANES] - (p->reference ? p->reference[i] : 0));
+        if (plane) {
+            tl_vec3 arm = tl_v3_sub(tl_contact_point_arm(m, c, k), plane->about);
+            x[0] = tl_v3_dot(arm, plane->t1);
+            x[1] = tl_v3_dot(arm, plane->t2);
+        }
+        add(&s, p->area[i], x[0], x[1], lift[k % TL_LANES] - (p->reference ? p->reference[i] : 0));
     }
     return s;
+}
+
+/* The same over those that press, where any does. */
+static sums sums_where_it_presses(const tl_model *m, uint32_t c, const axes *plane)
+{
+    sums s = sums_of(m, c, true, plane);
+    return s.w > 0 ? s : sums_of(m, c, false, plane);
+}
+
+double tl_contact_mean_lift(const tl_model *m, uint32_t c)
+{
+    if (!tl_contact_is_lifted(m, c))
+        return 0;
+    sums s = sums_where_it_presses(m, c, NULL);
+    return s.w > 0 ? s.wl / s.w : 0;
 }
 
 /* The slope of the plane about the mean place of the points. false: it has none. */
@@ -94,11 +116,9 @@ tl_lean tl_contact_lean(const tl_model *m, uint32_t c)
     if (!tl_contact_is_lifted(m, c))
         return out;
     /* about the mean of both normals: the same whichever block is A */
-    tl_vec3 about = tl_contact_point_arm(m, c, 0);
-    tl_vec3 t1 = tl_v3_perpendicular(f->last), t2 = tl_v3_cross(f->last, t1);
-    sums s = sums_of(m, c, true, about, t1, t2);
-    if (!(s.w > 0))
-        s = sums_of(m, c, false, about, t1, t2);
+    axes plane = {.about = tl_contact_point_arm(m, c, 0), .t1 = tl_v3_perpendicular(f->last)};
+    plane.t2 = tl_v3_cross(f->last, plane.t1);
+    sums s = sums_where_it_presses(m, c, &plane);
     double slope[2];
     out.mean = s.w > 0 ? s.wl / s.w : 0;
     out.leans = s.w > 0 && find_slope(&s, slope);
@@ -106,8 +126,8 @@ tl_lean tl_contact_lean(const tl_model *m, uint32_t c)
         return out;
     const tl_mat3 *turn = &m->bodies.pose[m->blocks.body[contacts->a[c]]].r;
     tl_pair_pose b = pose_of(m, c);
-    tl_vec3 g = tl_v3_madd(tl_v3_scale(slope[0], t1), slope[1], t2);
-    tl_vec3 x = tl_v3_madd(tl_v3_madd(about, s.wx / s.w, t1), s.wy / s.w, t2);
+    tl_vec3 g = tl_v3_madd(tl_v3_scale(slope[0], plane.t1), slope[1], plane.t2);
+    tl_vec3 x = tl_v3_madd(tl_v3_madd(plane.about, s.wx / s.w, plane.t1), s.wy / s.w, plane.t2);
     g = tl_m3_tmul(turn, g);
     x = tl_m3_tmul(turn, x);
     out.face[0] = leaning(m->blocks.shape[contacts->a[c]]->plane[f->ia], g, x);

@@ -13,6 +13,8 @@ typedef struct tl_lean {
     tl_plane face[2]; /* of A and of B, in the frames of their bodies, before the mean moves them */
 } tl_lean;
 
+/* The mean alone, m. It reads no block: the rows of the contact may be those of a former state of the model. */
+double tl_contact_mean_lift(const tl_model *m, uint32_t contact);
 tl_lean tl_contact_lean(const tl_model *m, uint32_t contact);
 /* By how much leaning faces are farther out at a point of A's frame than those of the blocks, together, m. */
 double tl_lean_at(const tl_model *m, uint32_t contact, const tl_plane lean[2],
