@@ -16,9 +16,29 @@ static bool is_field(const tl_model *m, uint32_t c)
            contacts->law[c] != TL_NO_ROW;
 }
 
+/* Field contacts that get a law that presses otherwise. */
+typedef struct fields {
+    uint32_t *contact;
+    size_t count;
+} fields;
+
+/* false: out of memory. */
+static bool find_fields(tl_model *m, const tl_law *law, fields *out)
+{
+    const size_t rows = m->detect->contacts.table.rows;
+    bool enough = true;
+    out->contact = malloc((rows + 1) * sizeof *out->contact);
+    for (uint32_t c = 0; c < rows && out->contact && enough; c++)
+        if (is_field(m, c) && tl_law_rebases(m, law, c)) {
+            enough = tl_may_keep_field_force(m, c);
+            out->contact[out->count++] = c;
+        }
+    return out->contact && enough;
+}
+
 /* Brings contacts up to the present places, where a step that failed has left them already, and makes room for what a
  * law needs of their points: all that can fail before it takes its place. */
-static tl_status prepare_contacts(tl_model *m, const tl_law *law)
+static tl_status prepare_contacts(tl_model *m, const tl_law *law, fields *out)
 {
     tl_asked_end(m);
     if (!m->detect)
@@ -26,19 +46,14 @@ static tl_status prepare_contacts(tl_model *m, const tl_law *law)
     tl_status status = tl_detect_update(m);
     if (status != TL_OK)
         return status;
-    bool enough = tl_law_reserve(m, law);
-    for (uint32_t c = 0; c < m->detect->contacts.table.rows && enough; c++)
-        if (is_field(m, c) && tl_law_rebases(m, law, c))
-            enough = tl_may_keep_field_force(m, c);
-    return enough ? TL_OK : tl_fail_memory(&m->error);
+    return tl_law_reserve(m, law) && find_fields(m, law, out) ? TL_OK : tl_fail_memory(&m->error);
 }
 
 /* After the law has taken its place. */
-static void keep_field_forces(tl_model *m)
+static void keep_forces(tl_model *m, const fields *of)
 {
-    for (uint32_t c = 0; m->detect && c < m->detect->contacts.table.rows; c++)
-        if (is_field(m, c) && isnan(m->detect->contacts.stored[c]))
-            tl_keep_field_force(m, c);
+    for (size_t k = 0; k < of->count; k++)
+        tl_keep_field_force(m, of->contact[k]);
 }
 
 static tl_law *exact_law(tl_model *m, tl_tag tag)
@@ -78,8 +93,10 @@ tl_status tl_joint_law(tl_model *m, const char *joint, const char *law, const tl
         }
         m->joint_laws = joint_laws;
     }
-    status = prepare_contacts(m, &fresh);
+    fields kept = {NULL, 0};
+    status = prepare_contacts(m, &fresh, &kept);
     if (status != TL_OK) {
+        free(kept.contact);
         tl_law_clear(&fresh);
         return status;
     }
@@ -93,7 +110,8 @@ tl_status tl_joint_law(tl_model *m, const char *joint, const char *law, const tl
     } else {
         m->joint_laws[m->joint_law_count++] = fresh;
     }
-    keep_field_forces(m);
+    keep_forces(m, &kept);
+    free(kept.contact);
     m->laws++;
     if (m->cycle)
         m->cycle->dt = 0;

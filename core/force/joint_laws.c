@@ -1,7 +1,8 @@
 /* joint_laws.c - a law and its properties, for a joint, and what becomes of the contacts that come under it.
  *
  * A new law, kn, ks or curve leaves the forces of its contacts as they are: the present normal force becomes
- * the initial one where the walls are now, with what slip has opened. A point that is open keeps the gap at which it closes. */
+ * the initial one where the walls are now, with what slip has opened. A point that is open keeps the gap at which it closes. Other
+ * properties, as friction, leave the walls as they are, too. */
 
 #include "force/joint_laws.h"
 
@@ -11,6 +12,7 @@
 #include "contact/places.h"
 #include "contact/points.h"
 #include "contact/store.h"
+#include "force/pressed.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -133,23 +135,32 @@ static bool is_patch(const tl_model *m, uint32_t c)
     return m->detect->contacts.facet[c].kind == TL_FACET_PATCH;
 }
 
-bool tl_law_rebases(const tl_model *m, const tl_law *law, uint32_t c)
+/* Whether a contact that has forces gets this law in place of another. */
+static bool takes_over(const tl_model *m, const tl_law *law, uint32_t c)
 {
-    const tl_detect *d = m->detect;
-    uint32_t old = d->contacts.law[c];
-    if (old == TL_NO_ROW || !tl_tag_matches(law->tag, d->contacts.tag[c]))
+    const tl_contacts *contacts = &m->detect->contacts;
+    if (contacts->law[c] == TL_NO_ROW || !tl_tag_matches(law->tag, contacts->tag[c]))
         return false;
-    const tl_law *before = &m->joint_laws[old];
-    const tl_law *ruling = tl_law_of(m, d->contacts.tag[c]);
+    const tl_law *ruling = tl_law_of(m, contacts->tag[c]);
     /* a law set for a plane of the joint goes before one set for the whole */
     if (ruling->tag.joint > 0 && law->tag.joint == 0)
         return false;
     if (ruling->tag.plane > 0 && law->tag.plane == 0)
         return false;
-    bool same =
-        before->kind == law->kind && before->kn == law->kn && before->ks == law->ks &&
-        ((const tl_law_ops *)law->kind->ops)->linear; /* else its curve may be another one */
-    return !same && has_forces(d, c);
+    return has_forces(m->detect, c);
+}
+
+/* Whether a law presses as another one does, at any closure. */
+static bool presses_alike(const tl_law *a, const tl_law *b)
+{
+    if (a->kind != b->kind || a->kn != b->kn)
+        return false;
+    return tl_law_is_linear(a) || (tl_law_presses(a) && tl_law_same_curve(a, b));
+}
+
+bool tl_law_rebases(const tl_model *m, const tl_law *law, uint32_t c)
+{
+    return takes_over(m, law, c) && !presses_alike(&m->joint_laws[m->detect->contacts.law[c]], law);
 }
 
 bool tl_law_reserve(tl_model *m, const tl_law *law)
@@ -165,10 +176,13 @@ void tl_law_rebase(tl_model *m, const tl_law *law)
 {
     tl_detect *d = m->detect;
     for (uint32_t c = 0; d && c < d->contacts.table.rows; c++) {
-        if (!tl_law_rebases(m, law, c))
+        if (!takes_over(m, law, c))
             continue;
-        d->contacts.stored[c] = NAN;
-        if (is_patch(m, c))
+        const tl_law *before = &m->joint_laws[d->contacts.law[c]];
+        bool alike = presses_alike(before, law);
+        if (!alike || before->ks != law->ks || !tl_law_is_linear(law))
+            d->contacts.stored[c] = NAN; /* its springs store another energy */
+        if (!alike && is_patch(m, c))
             rebase_patch(m, c, law);
     }
 }

@@ -4,6 +4,9 @@
 #include "base/inside.h"
 #include "contact/detection.h"
 
+#include <math.h>
+#include <string.h>
+
 void tl_law_energies(const tl_model *m, const tl_law *law, size_t first, size_t count,
                      const tl_point_lanes *lanes, const double *closure, double *energy)
 {
@@ -22,4 +25,37 @@ void tl_law_energies(const tl_model *m, const tl_law *law, size_t first, size_t 
     tl_enter(law->kind, "pressed");
     ops->pressed(law->self, &batch, energy);
     tl_leave();
+}
+
+/* Energies of points of 1 m2 without history that are pressed in by 1 nm to 1 m. */
+static void find_curve(const tl_law *law, double energy[TL_LANES])
+{
+    static _Alignas(TL_ALIGN) const double zeros[TL_LANES];
+    static _Alignas(TL_ALIGN) const uint32_t none[TL_LANES];
+    _Alignas(TL_ALIGN) double area[TL_LANES], closure[TL_LANES];
+    double *state[TL_STATE_COLUMNS];
+    for (size_t k = 0; k < TL_STATE_COLUMNS; k++)
+        state[k] = (double *)(uintptr_t)zeros;
+    for (size_t k = 0; k < TL_LANES; k++) {
+        area[k] = 1;
+        closure[k] = pow(10, -9. * (double)k / (TL_LANES - 1));
+    }
+    const tl_law_batch batch = {.size = sizeof batch,
+                                .count = TL_LANES,
+                                .area = area,
+                                .closure = closure,
+                                .f_n0 = zeros,
+                                .state = state,
+                                .flags = none};
+    tl_enter(law->kind, "pressed");
+    ((const tl_law_ops *)law->kind->ops)->pressed(law->self, &batch, energy);
+    tl_leave();
+}
+
+bool tl_law_same_curve(const tl_law *one, const tl_law *other)
+{
+    _Alignas(TL_ALIGN) double a[TL_LANES], b[TL_LANES];
+    find_curve(one, a);
+    find_curve(other, b);
+    return memcmp(a, b, sizeof a) == 0;
 }
