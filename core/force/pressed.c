@@ -31,7 +31,7 @@ void tl_law_energies(const tl_model *m, const tl_law *law, size_t first, size_t 
 static void find_curve(const tl_law *law, double energy[TL_LANES])
 {
     static _Alignas(TL_ALIGN) const double zeros[TL_LANES];
-    static _Alignas(TL_ALIGN) const uint32_t none[TL_LANES];
+    _Alignas(TL_ALIGN) uint32_t none[TL_LANES] = {0};
     _Alignas(TL_ALIGN) double area[TL_LANES], closure[TL_LANES];
     double *state[TL_STATE_COLUMNS];
     for (size_t k = 0; k < TL_STATE_COLUMNS; k++)
