@@ -207,7 +207,8 @@ static void close_ledger(struct tl_ledger *total, const struct tl_ledger *now, b
     if (!total->started) {
         total->started = true;
         total->start_kinetic = now->kinetic - now->first;
-        total->start_stored = now->stored;
+        /* what a law lets go of an initial stress before anything has moved was stored, too */
+        total->start_stored = now->stored + now->friction;
     }
     double at[TL_WORK_COUNT];
     for (int w = 0; w < TL_WORK_COUNT; w++) {
