@@ -4,7 +4,6 @@
 #include "base/inside.h"
 #include "contact/detection.h"
 
-#include <math.h>
 #include <string.h>
 
 void tl_law_energies(const tl_model *m, const tl_law *law, size_t first, size_t count,
@@ -27,7 +26,7 @@ void tl_law_energies(const tl_model *m, const tl_law *law, size_t first, size_t 
     tl_leave();
 }
 
-/* Energies of points of 1 m2 without history that are pressed in by 1 nm to 1 m. */
+/* Energies of points of 1 m2 without history that are pressed in by up to 1 m. */
 static void find_curve(const tl_law *law, double energy[TL_LANES])
 {
     static _Alignas(TL_ALIGN) const double zeros[TL_LANES];
@@ -38,7 +37,7 @@ static void find_curve(const tl_law *law, double energy[TL_LANES])
         state[k] = (double *)(uintptr_t)zeros;
     for (size_t k = 0; k < TL_LANES; k++) {
         area[k] = 1;
-        closure[k] = pow(10, -9. * (double)k / (TL_LANES - 1));
+        closure[k] = k > 0 ? 0.05 * closure[k - 1] : 1;
     }
     const tl_law_batch batch = {.size = sizeof batch,
                                 .count = TL_LANES,
