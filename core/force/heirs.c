@@ -12,8 +12,9 @@
  *
  * What is carried rises with these six numbers, so Newton's steps find them, with slopes that are mended by what steps bring, or found by differences, each as far as the
  * error falls.
- * Springs are not to hold more energy than those of the whole: of one force and torsion a uniform traction with a twist has the least,
- * so the parts then keep less of t. Where there are no such numbers, as where all slips, t stays what it is, and three are found. */
+ * Springs are to hold no more energy than those of the whole: of one force and torsion a uniform traction with a twist has the least,
+ * so the parts then keep less of t. Where points between those of the whole bear so little that others have to hold more, the least there
+ * is serves: what stands goes on standing. Where there are no such numbers, as where all slips, t stays what it is, and three are found. */
 #include "force/heirs.h"
 
 #include "base/columns.h"
@@ -42,9 +43,11 @@
 #define TOO_MUCH 1e-9
 /* Slope of what a point bears over what it has, up to which it tells where both are the same. */
 #define STEEP 0.9
-/* Share of t by which parts keep less each time, and by which their springs may hold more energy. */
+/* Share of t by which parts keep less each time; by which their springs may hold more energy, and by which they may if there is no way
+ * with less. */
 #define LESS 0.25
 #define MORE_ENERGY 5e-4
+#define MOST_ENERGY 0.5
 /* Areas that are the same, over each other: parts that lack some of the whole go by what is between its points alone. */
 #define SAME_AREA 1e-3
 
@@ -461,6 +464,7 @@ static void carry(heirs *of)
     if (!weigh(of, &none, &lacks) || !(size_of(&lacks, TL_CARRIED) > EXACT) ||
         !(fabs(sum_area(of, &energy) - whole->area) < SAME_AREA * whole->area))
         return;
+    double least = (1 + MOST_ENERGY) * whole->energy, best = -1;
     bool found = true;
     for (; found && of->keep >= 0; of->keep -= LESS) {
         if (!search(of, &found))
@@ -470,6 +474,15 @@ static void carry(heirs *of)
             give(of);
             return;
         }
+        if (found && energy < least) {
+            least = energy;
+            best = of->keep;
+        }
+    }
+    of->keep = best;
+    if (best >= 0 && search(of, &found)) {
+        give(of);
+        return;
     }
     of->keep = 1;
     of->sought = TL_CARRIED_PRESS;

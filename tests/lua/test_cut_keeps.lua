@@ -371,7 +371,7 @@ local function quiet() end
 local function ask(model) return model:contacts():sum("area") end
 local function hash(model) return model:state_hash() end
 
-local split = 0
+local split, more = 0, 0
 for seed = 1, SEEDS do
     local whole, draw = build(seed)
     local parts = whole:copy()
@@ -382,8 +382,10 @@ for seed = 1, SEEDS do
         local now = after[pair]
         if now and now.parts > sum.parts and math.abs(now.area - sum.area) < 1e-3 * sum.area then
             split = split + 1
-            check.near(now.force, sum.force, 2e-3 * most)
-            check.holds(now.energy <= 1.001 * sum.energy + 1e-9, "energy of the parts' springs")
+            check.near(now.force, sum.force, 1e-4 * most)
+            -- points between those of the whole may bear less, so that others hold more
+            more = more + (now.energy > 1.001 * sum.energy and 1 or 0)
+            check.holds(now.energy <= 1.05 * sum.energy + 1e-9, "energy of the parts' springs")
         end
     end
     -- whatever is done between the cuts and the next step
@@ -403,7 +405,7 @@ for seed = 1, SEEDS do
     check.holds(restored:state_hash() == parts:state_hash(), ("seed %d, saved between the cuts and the next step"):format(seed))
     check.holds(copy:state_hash() == parts:state_hash(), ("seed %d, copied"):format(seed))
 end
-check.holds(split > SEEDS, "contacts were split")
+check.holds(split > SEEDS and more < 0.1 * split, ("%d contacts were split, %d with more energy"):format(split, more))
 
 -- A body that is driven to turn is not cut in two: no drive says how its parts would go on. One that is driven along is.
 for _, motion in ipairs { { angular_velocity = { 0, 0, 1 } }, { velocity = { 1, 0, 0 }, angular_velocity = function() return { 0, 0, 1 } end } } do
