@@ -180,6 +180,7 @@ tl_status tl_model_insitu(tl_model *m, const tl_insitu *given)
     const tl_contacts *c = &m->detect->contacts;
     for (uint32_t i = 0; i < c->table.rows; i++)
         tl_insitu_load(m, insitu, i);
+    m->laws++; /* contacts hold another energy */
     tl_undo_by_hand(m);
     tl_held_wake(m);
     say_outer(m, &outer);

@@ -183,8 +183,13 @@ static cause find_cause(const tl_model *m, uint32_t body, const tl_step_span *k,
         return most;
     double gravity = length(m->config.gravity);
     note_cause(&most, gravity * k->span * k->dt, "gravity is", gravity, "m/s2");
-    if (tl_body_loaded(b, body))
-        note_cause(&most, load_travel(m, body, k), "its load is", length(b->load[body].force), "N");
+    if (tl_body_loaded(b, body)) {
+        double force = length(b->load[body].force), moment = length(b->load[body].moment);
+        bool turns = moment > force * r;
+        note_cause(&most, load_travel(m, body, k),
+                   turns ? "the moment of its load is" : "its load is", turns ? moment : force,
+                   turns ? "N m" : "N");
+    }
     note_cause(&most, contact * per_mass, "a contact presses with", contact, "N");
     if (m->damping) {
         double drag = length(tl_columns_get(m->cycle->damping_force, body));

@@ -1,8 +1,9 @@
 /* joint_laws.c - a law and its properties, for a joint, and what becomes of the contacts that come under it.
  *
- * A new law, kn, ks or curve leaves the forces of its contacts as they are: the present normal force becomes
- * the initial one where the walls are now, with what slip has opened. A point that is open keeps the gap at which it closes. Other
- * properties, as friction, leave the walls as they are, too. */
+ * A new law, kn, ks or curve leaves the forces of its contacts as they are, with what slip has opened. Where one spring takes the place of
+ * another, walls are moved so that they are pressed in, or apart, as much less as it is stiffer: that keeps the pressure everywhere, in
+ * patches that are open in part, too. By a curve the present normal force of a point becomes the initial one where its walls are now,
+ * and a point that is open keeps the gap at which it closes. Other properties, as friction, leave the walls as they are. */
 
 #include "force/joint_laws.h"
 
@@ -17,6 +18,12 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* Forces over smaller ones would not be finite. */
+static bool is_stiffness(double k)
+{
+    return k == 0 || (k >= TL_LEAST_MEASURE && isfinite(k));
+}
 
 /* A law and its properties from what `out` has: those not given stay, with `keep`. */
 static tl_status make(tl_law *out, const tl_args *args, bool keep, const char *context,
@@ -44,11 +51,11 @@ static tl_status make(tl_law *out, const tl_args *args, bool keep, const char *c
     tl_enter(kind, "stiffness");
     ops->stiffness(out->self, &out->kn, &out->ks);
     tl_leave();
-    if (!(out->kn >= 0 && out->ks >= 0 && isfinite(out->kn) && isfinite(out->ks))) {
+    if (!is_stiffness(out->kn) || !is_stiffness(out->ks)) {
         tl_fail(error, TL_E_PLUGIN,
                 "%s of plugin '%s': its stiffness() gives kn = %g and ks = %g Pa/m; both must be "
-                "finite and >= 0",
-                context, tl_plugin_id(kind), out->kn, out->ks);
+                "finite and 0 or at least %g",
+                context, tl_plugin_id(kind), out->kn, out->ks, TL_LEAST_MEASURE);
         tl_law_clear(out);
         return TL_E_PLUGIN;
     }
@@ -91,29 +98,45 @@ tl_status tl_law_make_for(tl_model *m, tl_tag tag, const char *joint, const tl_k
     return make(out, args, from != NULL, context, &m->error);
 }
 
-/* Rebases a point at a closure, which was lifted and which the new law has opened. */
+/* Rebases a point that was lifted and which the new law has opened, by a curve: its force becomes the initial one. */
 static void rebase_point(tl_points_table *p, size_t i, double closure, double lift, double opening)
 {
-    if (p->area[i] <= 0)
-        return;
     bool open = p->flags[i] & TL_POINT_OPEN;
     p->reference[i] += opening + (open ? -lift : closure);
     p->f_n0[i] = open ? 0 : p->f_n[i];
 }
 
+/* From springs to springs: closure and lift, pressed or apart, take `ratio` of what they were. So they are 0 along the same line of a patch
+ * that is open in part, and pressures are the same everywhere. */
+static void rebase_spring(tl_points_table *p, size_t i, double closure, double lift, double opening,
+                          double ratio)
+{
+    p->reference[i] += closure + opening - ratio * (closure + lift);
+    p->f_n0[i] = 0;
+}
+
 static void rebase_patch(tl_model *m, uint32_t c, const tl_law *law)
 {
     tl_detect *d = m->detect;
-    bool opened = m->joint_laws[d->contacts.law[c]].kind == law->kind && tl_law_opens(law);
+    const tl_law *before = &m->joint_laws[d->contacts.law[c]];
+    const bool opened = before->kind == law->kind && tl_law_opens(law);
+    const bool springs = tl_law_is_linear(before) && tl_law_is_linear(law) && law->kn > 0;
     double lift[TL_LANES], opening[TL_LANES] = {0};
     tl_contact_places(m, c, &d->lanes[0]);
     for (size_t first = 0; first < d->contacts.point_count[c]; first += TL_LANES) {
         tl_contact_point_lifts(m, c, first, lift);
         if (opened)
             tl_law_point_openings(m, law, c, first, opening);
-        for (size_t l = 0; l < TL_LANES && first + l < d->contacts.point_count[c]; l++)
-            rebase_point(&d->points, tl_point_row(&d->contacts, c, first + l),
-                         d->lanes[0].closure[first + l], lift[l], opening[l]);
+        for (size_t l = 0; l < TL_LANES && first + l < d->contacts.point_count[c]; l++) {
+            size_t i = tl_point_row(&d->contacts, c, first + l);
+            double closure = d->lanes[0].closure[first + l];
+            if (d->points.area[i] <= 0)
+                continue;
+            if (springs)
+                rebase_spring(&d->points, i, closure, lift[l], opening[l], before->kn / law->kn);
+            else
+                rebase_point(&d->points, i, closure, lift[l], opening[l]);
+        }
     }
 }
 
@@ -150,10 +173,10 @@ static bool takes_over(const tl_model *m, const tl_law *law, uint32_t c)
     return has_forces(m->detect, c);
 }
 
-/* Whether a law presses as another one does, at any closure. */
+/* Whether a law presses as another one does, at any closure and opening. */
 static bool presses_alike(const tl_law *a, const tl_law *b)
 {
-    if (a->kind != b->kind || a->kn != b->kn)
+    if (a->kind != b->kind || a->kn != b->kn || tl_law_opens(a) != tl_law_opens(b))
         return false;
     return tl_law_is_linear(a) || (tl_law_presses(a) && tl_law_same_curve(a, b));
 }

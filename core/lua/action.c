@@ -59,7 +59,7 @@ static int bad_velocity(lua_State *L, const call *c, const char *what)
 {
     lua_pushnumber(L, c->t);
     tl_lua_push_number_text(L, -1);
-    return tl_lua_fail_in(L, 2, "drive: %s(%s) must give three finite numbers, not %s",
+    return tl_lua_fail_in(L, 2, "drive: %s(%s) must give three finite numbers: it gave %s",
                           key_names[c->key], lua_tostring(L, -1), what);
 }
 

@@ -71,7 +71,7 @@ if not arg[1] then
 
     -- What is static is refused where the joint gets the law.
     local stiffness = "joint 'J1', law 'liar' of plugin 'bad.liar': its stiffness() gives kn = "
-    refused("slide negative", stiffness .. "1e+08 and ks = -1e+08 Pa/m; both must be finite and >= 0")
+    refused("slide negative", stiffness .. "1e+08 and ks = -1e+08 Pa/m; both must be finite and 0 or at least 1e-250")
     refused("slide not_a_number", stiffness .. "nan and")
     refused("slide infinite", stiffness .. "inf and")
 

@@ -152,7 +152,7 @@ m = broken(function() error(thing) end)
 local _, raised = pcall(m.solve, m, { ratio = 0, max_cycles = 50 })
 check.equal(raised, thing)
 local bad = {
-    { function() end, "must give three finite numbers, not 0 values" },
+    { function() end, "must give three finite numbers: it gave 0 values" },
     { function() return 1 end, "not the number 1" },
     { function() return 1, 2 end, "not 2 values" },
     { function() return { 1, 2 } end, "not a list of 2" },
