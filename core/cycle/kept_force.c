@@ -5,6 +5,7 @@
  * the way, from nothing where the faces part. */
 #include "cycle/kept_force.h"
 
+#include "base/columns.h"
 #include "contact/across_gap.h"
 #include "contact/points.h"
 #include "contact/presses.h"
@@ -65,7 +66,7 @@ static void read_state(trial *t)
     const tl_contacts *contacts = &m->detect->contacts;
     const tl_points_table *p = &m->detect->points;
     const tl_kind *kind = t->law->kind;
-    bool kept = m->joint_laws[contacts->law[t->contact]].kind == kind;
+    bool kept = m->joint_laws[contacts->law[t->contact]].kind == kind && t->law->columns > 0;
     size_t i = tl_point_row(contacts, t->contact, TL_FIELD_SHEAR);
     uint32_t column = 0;
     for (uint32_t k = 0; k < p->state_columns && kept; k++)
@@ -104,11 +105,26 @@ bool tl_may_keep_field_force(tl_model *m, uint32_t c)
     return enough;
 }
 
+/* Shear and torsion stay what they are, on the area that presses now. */
+static void keep_shear(trial *t, double radius)
+{
+    const tl_contacts *contacts = &t->m->detect->contacts;
+    const tl_points_table *p = &t->m->detect->points;
+    const size_t torsion = tl_point_row(contacts, t->contact, TL_FIELD_TORSION);
+    const tl_press *press = &tl_press_row_of(t->m, t->contact)->press;
+    if (!(press->area > 0 && press->radius > 0))
+        return;
+    p->area[tl_point_row(contacts, t->contact, TL_FIELD_SHEAR)] = p->area[torsion] = press->area;
+    tl_columns_put(p->f_s, torsion,
+                   tl_v3_scale(radius / press->radius, tl_columns_get(p->f_s, torsion)));
+}
+
 bool tl_keep_field_force(tl_model *m, uint32_t c)
 {
     const tl_contacts *contacts = &m->detect->contacts;
     const size_t first = tl_point_row(contacts, c, TL_FIELD_SHEAR);
     const tl_points_table *p = &m->detect->points;
+    const double radius = tl_press_row_of(m, c)->press.radius;
     const tl_vec3 shear = {p->f_s[0][first], p->f_s[1][first], p->f_s[2][first]};
     trial t = {.m = m, .contact = c, .law = tl_law_of(m, contacts->tag[c])};
     t.wanted = tl_v3_norm(tl_v3_sub(contacts->force[c], shear));
@@ -116,5 +132,7 @@ bool tl_keep_field_force(tl_model *m, uint32_t c)
     note_openings(&t);
     if (t.wanted > 0 && tl_press_row_of(m, c)->press.overlap > 0)
         find_shift(&t);
+    if (!t.failed)
+        keep_shear(&t, radius);
     return !t.failed;
 }

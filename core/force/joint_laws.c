@@ -145,6 +145,8 @@ static void rebase_patch(tl_model *m, uint32_t c, const tl_law *law)
 static bool has_forces(const tl_detect *d, uint32_t c)
 {
     const tl_points_table *p = &d->points;
+    if (d->contacts.point_count[c] > 0 && !tl_v3_is_zero(d->contacts.force[c]))
+        return true; /* its points may have been laid since */
     for (uint32_t k = 0; k < d->contacts.point_count[c]; k++) {
         size_t i = tl_point_row(&d->contacts, c, k);
         if (p->f_n[i] != 0 || (p->initial && p->f_n0[i] != 0))
@@ -207,6 +209,8 @@ void tl_law_rebase(tl_model *m, const tl_law *law)
             d->contacts.stored[c] = NAN; /* its springs store another energy */
         if (!alike && is_patch(m, c))
             rebase_patch(m, c, law);
+        if (before->kind == law->kind && tl_law_opens(before) && !tl_law_opens(law))
+            tl_contact_begin_law(m, c, law->kind); /* how far it is open is in its walls now */
     }
 }
 
