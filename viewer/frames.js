@@ -5,11 +5,12 @@ import { norm, triple } from "./math.js";
 
 /** @typedef {import("./scene.js").FrameData} FrameData */
 /** @typedef {import("./scene.js").Refused} Refused */
+/** @typedef {import("./scene.js").Touches} Touches */
 /** @typedef {{largest: Record<string, number>, least: Record<string, number>, time: number, cycle: number, most: number, mover: number, slipping: number,
  *   contacts: number, line: import("./scene.js").Line | null, blocks: number}} Summary */
-/** @typedef {{packed: string | null, length: number, buffer: ArrayBuffer | null, used: number, head: import("./scene.js").Head, refused: Refused | null, since: number, summary: Summary, whole: boolean,
+/** @typedef {{packed: string | null, length: number, buffer: ArrayBuffer | null, used: number, head: import("./scene.js").Head, refused: Refused | null, touches: Touches | null, since: number, summary: Summary, whole: boolean,
  *   rows: Int32Array | null, data: FrameData | null}} Stored whole: the summary is of the frame itself; rows and data: of the blocks and the chunks, while they are known */
-/** @typedef {{index: number, since: number, data: FrameData, head: import("./scene.js").Head, poses: import("./scene.js").Poses, rows: Int32Array, at: Int32Array, summary: Summary, refused: Refused | null}} Frame */
+/** @typedef {{index: number, since: number, data: FrameData, head: import("./scene.js").Head, poses: import("./scene.js").Poses, rows: Int32Array, at: Int32Array, summary: Summary, refused: Refused | null, touches: Touches | null}} Frame */
 
 const UNPACKED = 256 * 1024 * 1024; // bytes of unpacked frames that are kept
 const FEW = 8;       // frames of a run that are kept whatever their size
@@ -110,6 +111,7 @@ export class Model {
         /** @type {Stored[]} */ this.frames = [];
         /** @type {import("./scene.js").Head | null} */ this.head = null;
         /** @type {Refused | null} */ this.refused = null; // cuts so far
+        /** @type {Touches | null} */ this.touches = null; // as they are now
         this.density = 0;     // of the first block, kg/m³
         this.keys = false;    // whether any frame has keyblocks
         this.rows = 0;
@@ -133,7 +135,7 @@ export class Model {
     /** A frame that sends no shapes: it is unpacked when it is looked at. @param {string} text @param {number} length @param {number} time @param {number} cycle @param {number} most largest displacement */
     addLater(text, length, time, cycle, most) {
         const head = /** @type {import("./scene.js").Head} */ (this.head);
-        this.frames.push({ packed: text, length, buffer: null, used: 0, head, refused: this.refused, since: this.serial++, whole: false, rows: null, data: null,
+        this.frames.push({ packed: text, length, buffer: null, used: 0, head, refused: this.refused, touches: this.touches, since: this.serial++, whole: false, rows: null, data: null,
             summary: { largest: { displacement: most }, least: { displacement: 0 }, time, cycle, most, mover: -1, slipping: 0, contacts: 0, line: null, blocks: 0 } });
     }
 
@@ -158,9 +160,10 @@ export class Model {
         const head = /** @type {import("./scene.js").Head} */ (this.head);
         for (const shapes of data.shapes) this.addShapes(shapes, serial);
         this.refused = data.refused ?? this.refused;
+        this.touches = data.touches ?? this.touches;
         this.density ||= data.shapes[0]?.density[0] ?? 0;
         this.keys ||= data.keys !== null;
-        /** @type {Stored} */ const stored = { packed, length: buffer.byteLength, buffer, used: ++this.clock, head, refused: this.refused, since: serial, summary: summarise(data, head), whole: true, rows: null, data: null };
+        /** @type {Stored} */ const stored = { packed, length: buffer.byteLength, buffer, used: ++this.clock, head, refused: this.refused, touches: this.touches, since: serial, summary: summarise(data, head), whole: true, rows: null, data: null };
         this.frames.push(stored);
         this.forget();
         return stored;
@@ -269,7 +272,7 @@ export class Model {
         const poses = /** @type {import("./scene.js").Poses} */ (data.poses);
         const rows = stored.rows ?? this.rowsOf(data, stored.since), at = new Int32Array(this.rows).fill(-1);
         for (let i = 0; i < poses.n; i++) at[rows[i]] = i;
-        return { index, since: stored.since, data, head: stored.head, poses, rows, at, summary: stored.summary, refused: stored.refused };
+        return { index, since: stored.since, data, head: stored.head, poses, rows, at, summary: stored.summary, refused: stored.refused, touches: stored.touches };
     }
 
     /** Largest value of a column over all frames. @param {string} name */

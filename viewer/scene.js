@@ -17,7 +17,8 @@
 /** @typedef {{numbers: number[], histories: Float64Array}} Line */
 /** @typedef {{n: number, id: Uint32Array, mode: Uint32Array, factor: Float32Array, direction: Float32Array}} Keys */
 /** @typedef {{total: number, joint: Uint32Array, plane: Uint32Array, block: Uint32Array, normal: Float32Array, point: Float32Array, thickness: Float32Array, limit: Float32Array}} Refused */
-/** @typedef {{head: Head | null, shapes: Shapes[], gone: Uint32Array[], refused: Refused | null, poses: Poses | null, contacts: Contacts | null, extras: Extra[],
+/** @typedef {{n: number, body: Uint32Array, normal: Float32Array}} Touches outward normals of the faces with which bodies lie on others, body by body */
+/** @typedef {{head: Head | null, shapes: Shapes[], gone: Uint32Array[], refused: Refused | null, touches: Touches | null, poses: Poses | null, contacts: Contacts | null, extras: Extra[],
  *   line: Line | null, keys: Keys | null, live: Live[], number: number}} FrameData */
 /** @typedef {{state: string, line: string, refused: string}} Live what a run does, and a line that was done or why it was not ("" where there is none) */
 
@@ -187,6 +188,12 @@ function readRefused(c, head) {
     return r;
 }
 
+/** @param {Columns} c @returns {Touches} */
+function readTouches(c) {
+    const n = c.u32(1, "count")[0];
+    return { n, body: c.u32(n, "body"), normal: c.f32(3 * n, "normal") };
+}
+
 /** @param {Columns} c @returns {Live} */
 function readLive(c) {
     const h = c.json(), text = (/** @type {any} */ v) => (typeof v === "string" ? v : "");
@@ -200,7 +207,7 @@ function readLive(c) {
  */
 export function readFrame(buffer, head, news) {
     /** @type {FrameData} */
-    const frame = { head: null, shapes: [], gone: [], refused: null, poses: null, contacts: null, extras: [], line: null, keys: null, live: [], number: -1 };
+    const frame = { head: null, shapes: [], gone: [], refused: null, touches: null, poses: null, contacts: null, extras: [], line: null, keys: null, live: [], number: -1 };
     if (news) readChunks(news, head, frame);
     readChunks(buffer, frame.head ?? head, frame);
     if (!frame.poses || frame.number < 0) throw new Error("A frame of the scene has no FRAM or no DONE.");
@@ -221,6 +228,7 @@ function readChunks(buffer, head, frame) {
         else if (name === "SHAP") frame.shapes.push(readShapes(c, head));
         else if (name === "GONE") frame.gone.push(c.u32(c.u32(1, "count")[0], "id"));
         else if (name === "REFU") frame.refused = readRefused(c, head);
+        else if (name === "TOUC") frame.touches = readTouches(c);
         else if (name === "FRAM") frame.poses = readPoses(c);
         else if (name === "CONT") frame.contacts = readContacts(c, head);
         else if (name === "FIEL") frame.extras.push(readExtra(c, frame, head));

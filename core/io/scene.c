@@ -101,6 +101,11 @@ tl_status tl_scene_bytes(tl_model *m, const char letters[5], const void *data, s
     return TL_OK;
 }
 
+static bool same_piece(const tl_piece *a, const tl_piece *b)
+{
+    return a->length == b->length && (a->length == 0 || memcmp(a->data, b->data, a->length) == 0);
+}
+
 /* HEAD where it is not the one that was sent. */
 static tl_status put_head(tl_scene *scene, tl_model *m, const tl_html *options, tl_piece *out)
 {
@@ -111,7 +116,7 @@ static tl_status put_head(tl_scene *scene, tl_model *m, const tl_html *options, 
         head->failed = false; /* another frame may have the memory */
         return tl_fail_memory(&m->error);
     }
-    if (sent->length == head->length && memcmp(sent->data, head->data, head->length) == 0)
+    if (same_piece(sent, head))
         return TL_OK;
     return tl_scene_bytes(m, "HEAD", head->data, head->length, out);
 }
@@ -128,6 +133,23 @@ static tl_status put_gone(tl_model *m, const news *found, tl_piece *out)
     return TL_OK;
 }
 
+/* TOUC where it is not the one that was sent. */
+static tl_status put_touches(tl_scene *scene, tl_model *m, tl_piece *out)
+{
+    tl_piece *next = &scene->next.touches;
+    next->length = 0;
+    next->failed = false; /* another frame may have the memory */
+    tl_status status = tl_scene_touches(m, next);
+    if (status != TL_OK || same_piece(next, &scene->sent.touches))
+        return status;
+    unsigned char *to = tl_piece_reserve(out, next->length);
+    if (!to)
+        return tl_fail_memory(&m->error);
+    memcpy(to, next->data, next->length);
+    out->length += next->length;
+    return TL_OK;
+}
+
 static tl_status put_news(tl_scene *scene, tl_model *m, const tl_html *options, tl_piece *out)
 {
     news found = {0};
@@ -141,6 +163,8 @@ static tl_status put_news(tl_scene *scene, tl_model *m, const tl_html *options, 
     if (status == TL_OK && scene->sent.refused != m->record.refused)
         status = tl_scene_refused(m, out);
     scene->next.refused = m->record.refused;
+    if (status == TL_OK)
+        status = put_touches(scene, m, out);
     free(found.rows);
     free(found.gone);
     return status;
@@ -197,7 +221,7 @@ void tl_scene_accept(tl_scene *scene)
 
 void tl_scene_forget(tl_scene *scene)
 {
-    scene->sent.count = scene->sent.head.length = 0;
+    scene->sent.count = scene->sent.head.length = scene->sent.touches.length = 0;
     scene->sent.frames = 0;
     scene->sent.refused = 0;
 }
@@ -206,6 +230,7 @@ static void free_known(tl_scene_known *known)
 {
     free(known->blocks);
     free(known->head.data);
+    free(known->touches.data);
 }
 
 void tl_scene_free(tl_scene *scene)

@@ -1,4 +1,4 @@
-/* scene_parts.h - the parts of a frame: scene_head.c, scene_blocks.c, scene_refused.c, scene_contacts.c,
+/* scene_parts.h - the parts of a frame: scene_head.c, scene_blocks.c, scene_refused.c, scene_touches.c, scene_contacts.c,
  * scene_numbers.c, scene_histories.c. */
 #ifndef TL_IO_SCENE_PARTS_H
 #define TL_IO_SCENE_PARTS_H
@@ -18,6 +18,8 @@ void tl_scene_histories(const tl_model *m, tl_scene_history_fn fn, void *user);
 tl_status tl_scene_shapes(tl_model *m, const uint32_t *rows, size_t count, tl_piece *out);
 /* REFU: the cuts that were refused. */
 tl_status tl_scene_refused(tl_model *m, tl_piece *out);
+/* TOUC: the faces with which bodies lie on others. */
+tl_status tl_scene_touches(tl_model *m, tl_piece *out);
 /* FRAM: all blocks. */
 tl_status tl_scene_blocks(tl_model *m, tl_piece *out, double *largest);
 /* CONT and the FIEL of contacts. */

@@ -9,7 +9,6 @@
  *
  * A block is a sliver only when every block of its body is one: what hangs on a sound block has been
  * dealt with. Hidden blocks are left alone. */
-#include "detect/detect.h"
 
 #include "model/options.h"
 #include "query/touching.h"
@@ -103,40 +102,36 @@ static bool may_join(const tl_bodies *b, uint32_t body, uint32_t other)
 
 /* The row of the block to join to, or TL_NO_ROW: the one with the largest shared face among sound
  * blocks, else among slivers; of equals the oldest. */
-static tl_status find_partner(filter *f, uint32_t row, uint32_t *partner)
+static uint32_t find_partner(const filter *f, uint32_t row)
 {
-    tl_model *m = f->model;
-    *partner = TL_NO_ROW;
-    f->touches.count = 0;
-    if (!tl_touches_add(m, row, &f->touches))
-        return tl_fail_memory(&m->error);
+    const tl_model *m = f->model;
+    uint32_t partner = TL_NO_ROW;
     double largest = 0;
     bool sound = false;
-    for (size_t i = 0; i < f->touches.count; i++) {
+    for (size_t i = f->touches.start[row]; i < f->touches.start[row + 1]; i++) {
         const tl_touch *t = &f->touches.at[i];
         bool is_sound = !f->bad[t->other];
         bool better = is_sound != sound ? is_sound : t->area > largest;
         if (!better || !may_join(&m->bodies, m->blocks.body[row], m->blocks.body[t->other]))
             continue;
-        *partner = t->other;
+        partner = t->other;
         largest = t->area;
         sound = is_sound;
     }
-    return TL_OK;
+    return partner;
 }
 
 static tl_status join(filter *f, tl_filter_result *result)
 {
     tl_model *m = f->model;
     size_t blocks = m->blocks.table.rows;
-    tl_status status = tl_detect_refresh(m);
+    tl_status status = tl_touches_find(m, &f->touches);
     if (status != TL_OK)
         return status;
     tl_bodies_groups(m, f->group);
-    for (size_t i = 0; i < result->count && status == TL_OK; i++) {
-        uint32_t row = m->row_of[result->slivers[i].block], partner;
-        status = find_partner(f, row, &partner);
-        if (status != TL_OK || partner == TL_NO_ROW)
+    for (size_t i = 0; i < result->count; i++) {
+        uint32_t row = m->row_of[result->slivers[i].block], partner = find_partner(f, row);
+        if (partner == TL_NO_ROW)
             continue;
         uint32_t a = root(f->group, row), b = root(f->group, partner);
         if (a < b)
@@ -148,7 +143,7 @@ static tl_status join(filter *f, tl_filter_result *result)
     }
     for (uint32_t row = 0; row < blocks; row++)
         f->group[row] = root(f->group, row);
-    return status == TL_OK && result->joined ? tl_bodies_regroup(m, f->group) : status;
+    return result->joined ? tl_bodies_regroup(m, f->group) : TL_OK;
 }
 
 static tl_status delete (filter *f, tl_filter_result *result)
@@ -199,7 +194,7 @@ tl_status tl_model_filter(tl_model *m, const tl_filter *given, tl_filter_result 
         status = join(&f, result);
     free(f.bad);
     free(f.group);
-    free(f.touches.at);
+    tl_touches_free(&f.touches);
     if (status != TL_OK || !wanted) {
         free(result->slivers);
         *result = (tl_filter_result){0};

@@ -18,23 +18,26 @@
  *
  *     sum (N_i tan(friction_i) + cohesion_i A_i) / |s|
  *
+ * A body on rollers moves in what is left of space, P: its cone lies in it, and r and the normals are projected on it. With n' = P n,
+ * N_i is then that over |n'_i|; rollers take the rest, without friction.
+ *
+ * The faces are those on which the body lay when displacements began to count, for settling tilts it and parts walls (touching.c); of
+ * a body that has moved by more than TL_TOUCH_KEPT of its size against what it touches, they are those on which it lies now.
+ *
  * Limits: translations only; each body alone, all others at rest; a body of several blocks is
  * judged by its contact faces alone, which is exact only when it is convex. */
 #include "base/error.h"
 
-#include "detect/detect.h"
 #include "model/options.h"
 #include "query/touching.h"
 
 #include <stdlib.h>
 
-/* Cosine within which a direction lies in a face, and within which two faces are parallel: far above
- * rounding, and above the turns of blocks that settle on their joints. */
-#define ALONG 1e-6
-
 /* The faces of a body in contact that have one normal. */
 typedef struct constraint {
     tl_vec3 normal;
+    tl_vec3 along; /* unit: the normal's part in which the body may move; zero where that is none */
+    double lean;   /* length of that part */
     double area;
     double friction; /* sum of area times tan(friction) */
     double cohesion; /* sum of area times cohesion, N */
@@ -49,6 +52,10 @@ typedef struct work {
     tl_touches touches;
     constraint *faces;
     size_t count, capacity;
+    tl_vec3 held[3]; /* directions in which the body is held, 0 to 2 of them */
+    size_t held_count;
+    size_t moved_count; /* bodies whose faces are those of now; the first */
+    tl_id moved_first;
     size_t block_capacity, edge_capacity;
     tl_keyblocks *result;
 } work;
@@ -112,19 +119,32 @@ static tl_status parse_strength(work *w)
 
 /* ---------------------------------------------------------------- faces ------------------ */
 
-static tl_status add_face(work *w, const tl_touch *touch)
+/* What is left of a vector in the directions in which the body may move. */
+static tl_vec3 part_along(const work *w, tl_vec3 v)
+{
+    for (size_t k = 0; k < w->held_count; k++)
+        v = tl_v3_madd(v, -tl_v3_dot(v, w->held[k]), w->held[k]);
+    return v;
+}
+
+static tl_status add_face(work *w, const tl_touch *touch, tl_vec3 normal)
 {
     double friction, cohesion;
     tl_status status = strength_of(w, touch->joint, &friction, &cohesion);
     if (status != TL_OK)
         return status;
     size_t i = 0;
-    while (i < w->count && !(tl_v3_norm(tl_v3_sub(w->faces[i].normal, touch->normal)) <= ALONG))
+    while (i < w->count && !(tl_v3_norm(tl_v3_sub(w->faces[i].normal, normal)) <= TL_TOUCH_ALONG))
         i++;
     if (i == w->count) {
         if (!tl_grow(&w->faces, &w->capacity, w->count + 1, sizeof *w->faces))
             return tl_fail_memory(&w->model->error);
-        w->faces[w->count++] = (constraint){.normal = touch->normal};
+        tl_vec3 along = part_along(w, normal);
+        double lean = tl_v3_norm(along);
+        w->faces[w->count++] = (constraint){
+            .normal = normal,
+            .along = lean > TL_TOUCH_ALONG ? tl_v3_scale(1 / lean, along) : tl_v3(0, 0, 0),
+            .lean = lean};
     }
     constraint *face = &w->faces[i];
     face->area += touch->area;
@@ -137,17 +157,34 @@ static tl_status add_face(work *w, const tl_touch *touch)
     return TL_OK;
 }
 
+static void find_held(work *w, uint32_t body)
+{
+    const tl_vec3 axis[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    static const uint8_t fix[] = {TL_FIX_X, TL_FIX_Y, TL_FIX_Z};
+    w->held_count = 0;
+    for (int k = 0; k < 3; k++)
+        if (w->model->bodies.fixed[body] & fix[k])
+            w->held[w->held_count++] = axis[k];
+}
+
 /* The faces of a body in contact, by normal. */
 static tl_status gather_faces(work *w, uint32_t body)
 {
     const tl_model *m = w->model;
-    w->touches.count = w->count = 0;
-    for (uint32_t k = 0; k < m->bodies.member_count[body]; k++)
-        if (!tl_touches_add(m, m->members[m->bodies.member_start[body] + k], &w->touches))
-            return tl_fail_memory(&w->model->error);
+    const uint32_t *member = m->members + m->bodies.member_start[body];
+    const size_t count = m->bodies.member_count[body];
+    const bool now = tl_touches_moved(m, &w->touches, body);
+    if (now && w->moved_count++ == 0)
+        w->moved_first = m->blocks.id[member[0]];
+    find_held(w, body);
+    w->count = 0;
     tl_status status = TL_OK;
-    for (size_t i = 0; i < w->touches.count && status == TL_OK; i++)
-        status = add_face(w, &w->touches.at[i]);
+    for (size_t k = 0; k < count && status == TL_OK; k++)
+        for (size_t i = w->touches.start[member[k]];
+             i < w->touches.start[member[k] + 1] && status == TL_OK; i++) {
+            const tl_touch *touch = &w->touches.at[i];
+            status = add_face(w, touch, tl_touch_normal(m, touch, now));
+        }
     return status;
 }
 
@@ -157,7 +194,7 @@ static tl_status gather_faces(work *w, uint32_t body)
 static bool is_free(const work *w, tl_vec3 d, size_t i, size_t j)
 {
     for (size_t k = 0; k < w->count; k++)
-        if (k != i && k != j && tl_v3_dot(d, w->faces[k].normal) > ALONG)
+        if (k != i && k != j && tl_v3_dot(d, w->faces[k].along) > TL_TOUCH_ALONG)
             return false;
     return true;
 }
@@ -166,7 +203,7 @@ static tl_status add_edge(work *w, size_t first, tl_vec3 d)
 {
     tl_keyblocks *r = w->result;
     for (size_t i = first; i < r->edge_count; i++)
-        if (tl_v3_norm(tl_v3_sub(r->edges[i], d)) <= ALONG)
+        if (tl_v3_norm(tl_v3_sub(r->edges[i], d)) <= TL_TOUCH_ALONG)
             return TL_OK;
     if (!tl_grow(&r->edges, &w->edge_capacity, r->edge_count + 1, sizeof *r->edges))
         return tl_fail_memory(&w->model->error);
@@ -174,28 +211,49 @@ static tl_status add_edge(work *w, size_t first, tl_vec3 d)
     return TL_OK;
 }
 
+/* Adds both directions of a line, where they are free. */
+static tl_status add_line(work *w, size_t first, tl_vec3 line, size_t i, size_t j)
+{
+    if (tl_v3_norm(line) <= TL_TOUCH_ALONG)
+        return TL_OK;
+    tl_vec3 d = tl_v3_unit(line);
+    tl_status status = TL_OK;
+    for (int side = 0; side < 2 && status == TL_OK; side++, d = tl_v3_neg(d))
+        if (is_free(w, d, i, j))
+            status = add_edge(w, first, d);
+    return status;
+}
+
+/* Whether the normals leave a line, or in space a plane, that all of them are across. */
+static bool leaves_room(const work *w)
+{
+    const constraint *one = NULL;
+    bool parallel = true;
+    for (size_t i = 0; i < w->count; i++) {
+        if (tl_v3_is_zero(w->faces[i].along))
+            continue;
+        one = one ? one : &w->faces[i];
+        parallel =
+            parallel && tl_v3_norm(tl_v3_cross(one->along, w->faces[i].along)) <= TL_TOUCH_ALONG;
+    }
+    return !one || (parallel && w->held_count < 2);
+}
+
 /* Lists the edges of the joint pyramid from `first` on; *empty tells that it holds only zero. */
 static tl_status find_pyramid(work *w, size_t first, bool *empty)
 {
-    for (size_t i = 0; i < w->count; i++)
-        for (size_t j = i + 1; j < w->count; j++) {
-            tl_vec3 line = tl_v3_cross(w->faces[i].normal, w->faces[j].normal);
-            if (tl_v3_norm(line) <= ALONG)
-                continue;
-            tl_vec3 d = tl_v3_unit(line);
-            for (int side = 0; side < 2; side++, d = tl_v3_neg(d)) {
-                tl_status status = is_free(w, d, i, j) ? add_edge(w, first, d) : TL_OK;
-                if (status != TL_OK)
-                    return status;
-            }
-        }
+    tl_status status = TL_OK;
+    for (size_t i = 0; i < w->count && status == TL_OK; i++) {
+        if (w->held_count == 1)
+            status = add_line(w, first, tl_v3_cross(w->faces[i].along, w->held[0]), i, i);
+        for (size_t j = i + 1; j < w->count && w->held_count == 0 && status == TL_OK; j++)
+            status = add_line(w, first, tl_v3_cross(w->faces[i].along, w->faces[j].along), i, j);
+    }
+    if (w->held_count == 2 && status == TL_OK)
+        status = add_line(w, first, tl_v3_cross(w->held[0], w->held[1]), SIZE_MAX, SIZE_MAX);
     /* without edges: no face, one face, or faces that are all parallel */
-    bool parallel = true;
-    for (size_t i = 1; i < w->count; i++)
-        parallel =
-            parallel && tl_v3_norm(tl_v3_cross(w->faces[0].normal, w->faces[i].normal)) <= ALONG;
-    *empty = w->result->edge_count == first && !parallel;
-    return TL_OK;
+    *empty = w->result->edge_count == first && !leaves_room(w);
+    return status;
 }
 
 /* ---------------------------------------------------------------- mode ------------------- */
@@ -204,7 +262,7 @@ static void put_face(const work *w, tl_keyblock *block, size_t face, double norm
 {
     const constraint *c = &w->faces[face];
     block->faces[block->face_count++] =
-        (tl_keyblock_face){c->joint, c->normal, c->area, normal_force};
+        (tl_keyblock_face){c->joint, c->normal, c->area, normal_force / c->lean};
 }
 
 /* Sets direction and factor of safety from the sliding force s and the faces put. */
@@ -225,9 +283,9 @@ static bool slides_on_one(const work *w, tl_vec3 r, tl_keyblock *block)
 {
     double size = tl_v3_norm(r);
     for (size_t i = 0; i < w->count; i++) {
-        double normal_force = tl_v3_dot(r, w->faces[i].normal);
-        tl_vec3 s = tl_v3_madd(r, -normal_force, w->faces[i].normal);
-        if (!(normal_force > 0) || tl_v3_norm(s) <= ALONG * size ||
+        double normal_force = tl_v3_dot(r, w->faces[i].along);
+        tl_vec3 s = tl_v3_madd(r, -normal_force, w->faces[i].along);
+        if (!(normal_force > 0) || tl_v3_norm(s) <= TL_TOUCH_ALONG * size ||
             !is_free(w, tl_v3_unit(s), i, i))
             continue;
         block->mode = TL_KEYBLOCK_SLIDING;
@@ -243,15 +301,15 @@ static bool slides_on_two(const work *w, tl_vec3 r, tl_keyblock *block)
     double size = tl_v3_norm(r);
     for (size_t i = 0; i < w->count; i++)
         for (size_t j = i + 1; j < w->count; j++) {
-            tl_vec3 ni = w->faces[i].normal, nj = w->faces[j].normal;
+            tl_vec3 ni = w->faces[i].along, nj = w->faces[j].along;
             tl_vec3 line = tl_v3_cross(ni, nj);
             double sine2 = tl_v3_norm2(line), cosine = tl_v3_dot(ni, nj);
-            if (sine2 <= ALONG * ALONG)
+            if (sine2 <= TL_TOUCH_ALONG * TL_TOUCH_ALONG)
                 continue;
             tl_vec3 s = tl_v3_scale(tl_v3_dot(r, line) / sine2, line);
             double ri = tl_v3_dot(r, ni), rj = tl_v3_dot(r, nj);
             double force_i = (ri - cosine * rj) / sine2, force_j = (rj - cosine * ri) / sine2;
-            if (!(force_i > 0 && force_j > 0) || tl_v3_norm(s) <= ALONG * size ||
+            if (!(force_i > 0 && force_j > 0) || tl_v3_norm(s) <= TL_TOUCH_ALONG * size ||
                 !is_free(w, tl_v3_unit(s), i, j))
                 continue;
             block->mode = TL_KEYBLOCK_SLIDING_ON_TWO;
@@ -304,9 +362,15 @@ static tl_status test_body(work *w, uint32_t body)
     if (isnan(gravity.x))
         gravity = m->config.gravity;
     block.force = tl_v3_madd(tl_load_of(&m->bodies, body).force, block.mass, gravity);
-    find_mode(w, block.force, &block);
+    find_mode(w, part_along(w, block.force), &block);
     result->blocks[result->count++] = block;
     return TL_OK;
+}
+
+static bool holds_throughout(const tl_model *m, uint32_t body)
+{
+    const uint8_t all = TL_FIX_X | TL_FIX_Y | TL_FIX_Z;
+    return (m->bodies.fixed[body] & all) == all;
 }
 
 void tl_keyblocks_free(tl_keyblocks *keyblocks)
@@ -316,21 +380,44 @@ void tl_keyblocks_free(tl_keyblocks *keyblocks)
     *keyblocks = (tl_keyblocks){0};
 }
 
+/* Says what was left out, and whose faces are those of now. */
+static void say(const work *w, size_t driven, tl_id first_driven)
+{
+    if (driven)
+        tl_model_say(w->model, "keyblocks: %zu driven %s (first: block %u) %s left out", driven,
+                     driven == 1 ? "body" : "bodies", first_driven, driven == 1 ? "is" : "are");
+    bool one = w->moved_count == 1;
+    if (w->moved_count)
+        tl_model_say(w->model,
+                     "keyblocks: %zu %s (first: block %u) %s moved against what %s by more than "
+                     "%g %% of %s size: the faces are those that lie on each other now",
+                     w->moved_count, one ? "body" : "bodies", w->moved_first, one ? "has" : "have",
+                     one ? "it touches" : "they touch", 100 * TL_TOUCH_KEPT, one ? "its" : "their");
+}
+
 tl_status tl_model_keyblocks(tl_model *m, const tl_keyblock_query *given, tl_keyblocks *result)
 {
     *result = (tl_keyblocks){0};
     tl_keyblock_query query;
     work w = {.model = m, .query = &query, .result = result};
+    size_t driven = 0;
+    tl_id first_driven = TL_NO_ID;
     tl_status status = TL_OPTIONS_READ(tl_keyblock_query, given, &query, &m->error);
-    if (status == TL_OK)
-        status = tl_detect_refresh(m);
+    tl_rows_tidy(m);
     if (status == TL_OK)
         status = parse_strength(&w);
-    for (uint32_t body = 0; body < m->bodies.table.rows && status == TL_OK; body++)
-        if (!m->bodies.fixed[body] && !m->bodies.drive[body])
+    if (status == TL_OK)
+        status = tl_touches_find(m, &w.touches);
+    for (uint32_t body = 0; body < m->bodies.table.rows && status == TL_OK; body++) {
+        if (m->bodies.drive[body] && driven++ == 0)
+            first_driven = m->bodies.id[body];
+        if (!m->bodies.drive[body] && !holds_throughout(m, body))
             status = test_body(&w, body);
+    }
+    if (status == TL_OK)
+        say(&w, driven, first_driven);
     free(w.strength);
-    free(w.touches.at);
+    tl_touches_free(&w.touches);
     free(w.faces);
     if (status != TL_OK)
         tl_keyblocks_free(result);

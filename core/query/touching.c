@@ -1,37 +1,356 @@
-/* touching.c - the faces of blocks that lie on faces of others, as the contacts have found them: only
- * patches count, for a corner or an edge on a face bounds no half-space of motion that its
- * neighbours do not. */
+/* touching.c - the faces of blocks that lie on faces of others.
+ *
+ * Joints are planes; blocks that settle on them sink in and turn a little, so that an edge bears and faces part. What bounds their
+ * motion is the joint all the same. So a block touches another where a face lies on a face as they lay when displacements began to
+ * count, for a block that has moved against the other by less than
+ * TL_TOUCH_KEPT of its size; or as they lie now. A corner or an edge on a face
+ * bounds no half-space of motion that its neighbours do not.
+ *
+ * Candidates are pairs whose bounds overlap: those of both places, sorted along the model's longest side. */
 #include "query/touching.h"
 
-#include "contact/detection.h"
+#include "base/error.h"
+#include "narrow/manifold.h"
+#include "narrow/narrow.h"
+#include "narrow/patch.h"
+#include "narrow/place.h"
+#include "narrow/press.h"
+#include "narrow/region.h"
+#include "narrow/scratch.h"
 
-static bool add(tl_touches *touches, const tl_touch *touch)
+#include <stdlib.h>
+#include <string.h>
+
+/* Gap up to which blocks touch and overlap up to which they still do, over the smaller one's size; angle between faces that lie on each
+ * other, as a sine. */
+#define GAP (TL_CONTACT_TOLERANCE * TL_CONTACT_RELEASE)
+#define OVERLAP 0.1
+#define TILT 0.03
+/* Blocks a thread takes at a time. */
+#define CHUNK 64
+
+/* Where a block lies: its body's frame. */
+typedef struct place {
+    tl_mat3 r;
+    tl_vec3 x;
+} place;
+
+/* What a thread works in, and the touches that it finds. */
+typedef struct worker {
+    tl_narrow_scratch scratch;
+    tl_touches found;
+    bool failed; /* out of memory */
+} worker;
+
+typedef struct search {
+    const tl_model *m;
+    tl_bounds *bounds; /* by row */
+    uint32_t *order;   /* rows, by the lower ends of their bounds along `axis` */
+    size_t count;
+    int axis;
+    worker *workers;
+} search;
+
+static place place_of(const tl_model *m, uint32_t row, bool now)
 {
-    if (!tl_grow(&touches->at, &touches->capacity, touches->count + 1, sizeof *touches->at))
+    const tl_pose *pose = &m->bodies.pose[m->blocks.body[row]];
+    if (now)
+        return (place){pose->r, tl_v3_add(pose->x_ref, pose->u)};
+    if (!m->blocks.base)
+        return (place){tl_m3_identity(), pose->x_ref};
+    return (place){tl_q_matrix(m->blocks.base_turn[row]),
+                   tl_v3_add(pose->x_ref, m->blocks.base[row])};
+}
+
+static tl_vec3 point_at(const place *p, tl_vec3 local)
+{
+    return tl_v3_add(p->x, tl_m3_mul(&p->r, local));
+}
+
+/* The same in another block's frame. */
+static tl_vec3 point_in(const place *frame, const place *p, tl_vec3 local)
+{
+    tl_vec3 apart = tl_v3_sub(p->x, frame->x);
+    return tl_m3_tmul(&frame->r, tl_v3_add(apart, tl_m3_mul(&p->r, local)));
+}
+
+tl_vec3 tl_touch_normal(const tl_model *m, const tl_touch *touch, bool now)
+{
+    place at = place_of(m, touch->row, now);
+    return tl_m3_mul(&at.r, m->blocks.shape[touch->row]->plane[touch->face].normal);
+}
+
+bool tl_touches_moved(const tl_model *m, const tl_touches *touches, uint32_t body)
+{
+    double most = 0;
+    for (uint32_t k = 0; k < m->bodies.member_count[body]; k++) {
+        uint32_t row = m->members[m->bodies.member_start[body] + k];
+        for (size_t i = touches->start[row]; i < touches->start[row + 1]; i++)
+            most = fmax(most, touches->at[i].moved);
+    }
+    return !(most < TL_TOUCH_KEPT);
+}
+
+/* ---------------------------------------------------------------- pairs ------------------ */
+
+/* By how much a pair has moved against each other, m: the farthest corner of the smaller one. */
+static double moved_of(const tl_model *m, uint32_t a, uint32_t b)
+{
+    bool first = m->blocks.size[a] <= m->blocks.size[b];
+    uint32_t small = first ? a : b, large = first ? b : a;
+    const place its[] = {place_of(m, small, false), place_of(m, small, true)};
+    const place frame[] = {place_of(m, large, false), place_of(m, large, true)};
+    const tl_poly *shape = m->blocks.shape[small];
+    double most = 0;
+    for (uint32_t i = 0; i < shape->vertex_count; i++) {
+        tl_vec3 before = point_in(&frame[0], &its[0], shape->vertex[i]);
+        tl_vec3 after = point_in(&frame[1], &its[1], shape->vertex[i]);
+        most = fmax(most, tl_v3_norm(tl_v3_sub(after, before)));
+    }
+    return most;
+}
+
+static tl_pair_view view_of(const tl_model *m, uint32_t a, uint32_t b, bool now)
+{
+    const place at = place_of(m, a, now), other = place_of(m, b, now);
+    tl_pair_view view = {.a = m->blocks.shape[a],
+                         .b = m->blocks.shape[b],
+                         .shift = tl_m3_tmul(&at.r, tl_v3_sub(other.x, at.x)),
+                         .size = fmin(m->blocks.size[a], m->blocks.size[b]),
+                         .mean_face = fmin(m->blocks.mean_face[a], m->blocks.mean_face[b])};
+    for (int j = 0; j < 3; j++) {
+        tl_vec3 column = {other.r.m[0][j], other.r.m[1][j], other.r.m[2][j]};
+        column = tl_m3_tmul(&at.r, column);
+        view.turn.m[0][j] = column.x;
+        view.turn.m[1][j] = column.y;
+        view.turn.m[2][j] = column.z;
+    }
+    return view;
+}
+
+static tl_tag common_tag(tl_tag a, tl_tag b)
+{
+    if (a.joint == 0 || b.joint == 0)
+        return a.joint == 0 ? b : a;
+    return a.joint < b.joint || (a.joint == b.joint && a.plane <= b.plane) ? a : b;
+}
+
+static bool add(tl_touches *out, tl_touch touch)
+{
+    if (!tl_grow(&out->at, &out->capacity, out->count + 1, sizeof *out->at))
         return false;
-    touches->at[touches->count++] = *touch;
+    out->at[out->count++] = touch;
     return true;
 }
 
-bool tl_touches_add(const tl_model *m, uint32_t row, tl_touches *touches)
+/* Two faces, of A and of B, on each other. */
+typedef struct common {
+    bool looked;
+    uint32_t face[2];
+    double area; /* 0: there are none */
+    tl_tag joint;
+} common;
+
+/* Looks at a pair as it lies, or lay, unless that has been done. false: out of memory. */
+static bool look(const tl_model *m, tl_narrow_scratch *scratch, uint32_t a, uint32_t b, bool now,
+                 common *out)
 {
-    const tl_detect *d = m->detect;
-    const tl_contacts *c = &d->contacts;
-    const tl_poly *shape = m->blocks.shape[row];
-    const tl_mat3 *turn = &m->bodies.pose[m->blocks.body[row]].r;
-    for (uint32_t e = d->by_block_start[row]; e < d->by_block_start[row + 1]; e++) {
-        uint32_t contact = d->by_block[e];
-        bool first = c->a[contact] == row;
-        const tl_facet *facet = &c->facet[contact];
-        if (facet->kind != TL_FACET_PATCH || c->point_count[contact] == 0)
-            continue;
-        uint32_t face = first ? facet->ia : facet->ib;
-        tl_touch touch = {.other = tl_contact_partner(c, contact, row),
-                          .normal = tl_m3_mul(turn, shape->plane[face].normal),
-                          .area = c->area[contact],
-                          .joint = c->tag[contact]};
-        if (touch.area > 0 && !add(touches, &touch))
+    if (out->looked)
+        return true;
+    out->looked = true;
+    const tl_touch_rule rule = {.reach = INFINITY};
+    tl_pair_view view = view_of(m, a, b, now);
+    tl_region region;
+    if (!tl_pair_place(&view, scratch) ||
+        !tl_region_find(&view, TL_LIST_MARGIN * view.size, scratch, &region))
+        return false;
+    uint32_t fa = region.flush_a, fb = region.flush_b;
+    if (!region.flush || region.gap > GAP * view.size || region.flush_gap < -OVERLAP * view.size ||
+        tl_region_tilt(&view, fa, fb) > TILT)
+        return true;
+    out->face[0] = fa;
+    out->face[1] = fb;
+    out->area = tl_patch_lay(&view, fa, fb, &rule, scratch);
+    out->joint = common_tag(view.a->tag[fa], view.b->tag[fb]);
+    return !scratch->failed;
+}
+
+/* Least area of faces that lie on each other now only, of a block that has hardly moved: a strip of another block's face, on which it has
+ * moved sideways, is none of its joints. */
+static double least_area(const tl_model *m, uint32_t row, uint32_t face)
+{
+    return 2 * TL_TOUCH_KEPT * tl_poly_face_area(m->blocks.shape[row], face);
+}
+
+static bool test_pair(const search *s, worker *w, uint32_t a, uint32_t b)
+{
+    const tl_bounds *p = &s->bounds[a], *q = &s->bounds[b];
+    bool apart = p->min.x > q->max.x || q->min.x > p->max.x || p->min.y > q->max.y ||
+                 q->min.y > p->max.y || p->min.z > q->max.z || q->min.z > p->max.z;
+    if (apart || s->m->blocks.body[a] == s->m->blocks.body[b])
+        return true;
+    const uint32_t row[] = {a, b};
+    const double moved = moved_of(s->m, a, b);
+    common before = {.looked = false}, now = {.looked = false};
+    for (int side = 0; side < 2; side++) {
+        const double share = moved / s->m->blocks.size[row[side]];
+        const bool kept = share < TL_TOUCH_KEPT;
+        if (kept && !look(s->m, &w->scratch, a, b, false, &before))
+            return false;
+        if (!(kept && before.area > 0) && !look(s->m, &w->scratch, a, b, true, &now))
+            return false;
+        const common *it = kept && before.area > 0 ? &before : &now;
+        double least = kept && it == &now ? least_area(s->m, row[side], it->face[side]) : 0;
+        const tl_touch touch = {row[side], it->face[side], row[1 - side],
+                                it->area,  it->joint,      share};
+        if (it->area > least && !add(&w->found, touch))
             return false;
     }
     return true;
+}
+
+/* ---------------------------------------------------------------- search ----------------- */
+
+static double along(tl_vec3 v, int axis)
+{
+    return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
+}
+
+/* Bounds of a block at both places, grown by half of the gap. */
+static tl_bounds bounds_of(const tl_model *m, uint32_t row)
+{
+    const tl_poly *shape = m->blocks.shape[row];
+    const place at[] = {place_of(m, row, false), place_of(m, row, true)};
+    tl_bounds b = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+    for (uint32_t i = 0; i < 2 * shape->vertex_count; i++) {
+        tl_vec3 x = point_at(&at[i % 2], shape->vertex[i / 2]);
+        b.min = tl_v3_min(b.min, x);
+        b.max = tl_v3_max(b.max, x);
+    }
+    double growth = GAP * m->blocks.size[row];
+    tl_vec3 skin = {growth, growth, growth};
+    return (tl_bounds){tl_v3_sub(b.min, skin), tl_v3_add(b.max, skin)};
+}
+
+/* A row and where its bounds begin, for qsort. */
+typedef struct begin {
+    double at;
+    uint32_t row;
+} begin;
+
+static int compare_begin(const void *x, const void *y)
+{
+    const begin *a = x, *b = y;
+    return a->at != b->at ? (a->at > b->at) - (a->at < b->at)
+                          : (a->row > b->row) - (a->row < b->row);
+}
+
+static bool prepare(search *s)
+{
+    const tl_model *m = s->m;
+    size_t rows = m->blocks.table.rows;
+    begin *begins = malloc((rows + 1) * sizeof *begins);
+    s->bounds = malloc((rows + 1) * sizeof *s->bounds);
+    s->order = malloc((rows + 1) * sizeof *s->order);
+    bool enough = begins && s->bounds && s->order;
+    tl_vec3 low = {INFINITY, INFINITY, INFINITY}, high = {-INFINITY, -INFINITY, -INFINITY};
+    for (uint32_t row = 0; row < rows && enough; row++) {
+        if (!m->blocks.stays[row])
+            continue;
+        s->bounds[row] = bounds_of(m, row);
+        low = tl_v3_min(low, s->bounds[row].min);
+        high = tl_v3_max(high, s->bounds[row].max);
+        begins[s->count++].row = row;
+    }
+    for (int axis = 1; axis < 3; axis++)
+        if (along(high, axis) - along(low, axis) > along(high, s->axis) - along(low, s->axis))
+            s->axis = axis;
+    for (size_t i = 0; i < s->count && enough; i++)
+        begins[i].at = along(s->bounds[begins[i].row].min, s->axis);
+    if (enough)
+        qsort(begins, s->count, sizeof *begins, compare_begin);
+    for (size_t i = 0; i < s->count && enough; i++)
+        s->order[i] = begins[i].row;
+    free(begins);
+    return enough;
+}
+
+/* Places of the order, and the pairs of each with those that begin after it and before it ends. */
+static void test_pairs(void *user, size_t first, size_t end, size_t chunk, unsigned thread)
+{
+    const search *s = user;
+    worker *w = &s->workers[thread];
+    (void)chunk;
+    for (size_t i = first; i < end && !w->failed; i++) {
+        uint32_t row = s->order[i];
+        double reach = along(s->bounds[row].max, s->axis);
+        for (size_t j = i + 1; j < s->count && !w->failed; j++) {
+            uint32_t other = s->order[j];
+            if (along(s->bounds[other].min, s->axis) > reach)
+                break;
+            w->failed = !test_pair(s, w, row < other ? row : other, row < other ? other : row);
+        }
+    }
+}
+
+static int compare_touch(const void *x, const void *y)
+{
+    const tl_touch *a = x, *b = y;
+    return a->row != b->row ? (a->row > b->row) - (a->row < b->row)
+                            : (a->other > b->other) - (a->other < b->other);
+}
+
+/* Takes what all threads have found together, in order. */
+static bool collect(const search *s, unsigned threads, tl_touches *out)
+{
+    const size_t rows = s->m->blocks.table.rows;
+    bool enough = true;
+    size_t count = 0;
+    for (unsigned k = 0; k < threads; k++) {
+        enough = enough && !s->workers[k].failed;
+        count += s->workers[k].found.count;
+    }
+    out->start = calloc(rows + 2, sizeof *out->start);
+    out->at = malloc((count + 1) * sizeof *out->at);
+    if (!enough || !out->start || !out->at)
+        return false;
+    for (unsigned k = 0; k < threads; k++) {
+        const tl_touches *found = &s->workers[k].found;
+        if (found->count)
+            memcpy(out->at + out->count, found->at, found->count * sizeof *out->at);
+        out->count += found->count;
+    }
+    qsort(out->at, out->count, sizeof *out->at, compare_touch);
+    for (size_t i = 0; i < out->count; i++)
+        out->start[out->at[i].row + 1]++;
+    for (size_t row = 0; row < rows; row++)
+        out->start[row + 1] += out->start[row];
+    return true;
+}
+
+tl_status tl_touches_find(tl_model *m, tl_touches *out)
+{
+    const unsigned threads = tl_pool_threads(m->pool);
+    search s = {.m = m, .workers = calloc(threads, sizeof *s.workers)};
+    *out = (tl_touches){0};
+    bool enough = s.workers && prepare(&s);
+    if (enough) {
+        tl_parallel_for(m->pool, s.count, CHUNK, test_pairs, &s);
+        enough = collect(&s, threads, out);
+    }
+    free(s.bounds);
+    free(s.order);
+    for (unsigned k = 0; k < threads && s.workers; k++) {
+        tl_narrow_scratch_free(&s.workers[k].scratch);
+        free(s.workers[k].found.at);
+    }
+    free(s.workers);
+    return enough ? TL_OK : tl_fail_memory(&m->error);
+}
+
+void tl_touches_free(tl_touches *touches)
+{
+    free(touches->at);
+    free(touches->start);
+    *touches = (tl_touches){0};
 }

@@ -1,4 +1,4 @@
-/* touching.h - the faces of blocks that lie on faces of others. */
+/* touching.h - the faces of blocks that lie on faces of others (touching.c). */
 #ifndef TL_QUERY_TOUCHING_H
 #define TL_QUERY_TOUCHING_H
 
@@ -6,19 +6,34 @@
 
 /* A face of a block, as far as it lies on a face of a block of another body. */
 typedef struct tl_touch {
-    uint32_t other; /* row of the other block */
-    tl_vec3 normal; /* outward unit normal of the block's own face, axes of the model */
-    double area;    /* that they share, m2 */
-    tl_tag joint;   /* of the contact */
+    uint32_t row, face; /* the block and its face */
+    uint32_t other;     /* row of the other block */
+    double area;        /* that they share, m2 */
+    tl_tag joint;
+    double
+        moved; /* by how much the two have moved against each other since displacements count, over the smaller one's size */
 } tl_touch;
 
+/* Of all blocks, in the order of their ids and of the others'. Those of a row: at[start[row]] .. at[start[row + 1]]. */
 typedef struct tl_touches {
     tl_touch *at;
+    size_t *start;
     size_t count, capacity;
 } tl_touches;
 
-/* Adds what the block in `row` touches, in the order of the other blocks' ids, after a
- * tl_detect_refresh. False when out of memory. `at` is freed with free(). */
-bool tl_touches_add(const tl_model *m, uint32_t row, tl_touches *touches);
+/* Motion up to which blocks touch as they did when displacements began to count, over its size. */
+#define TL_TOUCH_KEPT 0.01
+
+/* Free the result with tl_touches_free, also after an error. */
+tl_status tl_touches_find(tl_model *m, tl_touches *out);
+void tl_touches_free(tl_touches *touches);
+
+/* Whether a body has moved by more against what it touches: its faces are those of now. */
+bool tl_touches_moved(const tl_model *m, const tl_touches *touches, uint32_t body);
+/* Outward unit normal of a touch, axes of the model: as the block lay when displacements began to count, or as it lies now. */
+tl_vec3 tl_touch_normal(const tl_model *m, const tl_touch *touch, bool now);
+
+/* Cosine within which a direction lies in a face, sine within which two faces are parallel: far above rounding of what was cut. */
+#define TL_TOUCH_ALONG 1e-6
 
 #endif

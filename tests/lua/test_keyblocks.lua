@@ -117,6 +117,46 @@ list = model:keyblocks { friction = 0 }
 check.equal(#list, 1)
 check.equal(list[1].mode, "falling")
 
+-- A block on an incline that slides, between rollers. What holds it across changes nothing, one along it holds it, and one that bears it has
+-- no friction; holding the rotation does not matter, and what is driven is left out.
+do
+    local DIP = math.rad(35)
+    local incline = talus.model { gravity = { 10 * math.sin(DIP), 0, -10 * math.cos(DIP) } }
+    incline:generate("box", { min = { -4, -4, -1 }, max = { 4, 4, 0 }, density = 2500, group = "floor" })
+    incline:generate("box", { min = { -0.5, -0.5, 0 }, max = { 0.5, 0.5, 1 }, density = 2500, group = "block" })
+    incline:blocks { group = "floor" }:fix()
+    local block = incline:blocks { group = "block" }
+    local function held(axes)
+        block:free()
+        if next(axes) then
+            block:fix(axes)
+        end
+        return incline:keyblocks { friction = 30 }[1]
+    end
+    local safety = math.tan(math.rad(30)) / math.tan(DIP)
+    for _, case in ipairs { { {}, "sliding", safety, 0 }, { { y = true }, "sliding", safety, 2 },
+        { { rotation = true }, "sliding", safety, 0 }, { { x = true }, "stable", math.huge, 2 },
+        { { x = true, y = true }, "stable", math.huge, 1 }, { { y = true, z = true }, "falling", 0, 2 } } do
+        local key = held(case[1])
+        check.equal(key.mode, case[2])
+        check.holds(key.safety == case[3] or math.abs(key.safety / case[3] - 1) < 1e-12, "the factor is " .. key.safety)
+        check.equal(#key.pyramid, case[4])
+    end
+    check.equal(held { x = true, y = true, z = true }, nil)
+    block:free()
+    block:drive { velocity = { 1, 0, 0 } }
+    check.equal(#incline:keyblocks { friction = 30 }, 0)
+    -- the floor rises across the roller's axis: N cos(lean) bears the weight, and the roller the rest
+    local LEAN = math.rad(25)
+    local rock = talus.model { gravity = { 4, 0, -10 } }
+    rock:generate("box", { min = { -1, -1, -1 }, max = { 1, 1, 1 }, density = 2500 })
+    rock:generate("joint", { joint = "floor", dip = math.deg(LEAN), dip_direction = 0, origin = { 0, 0, 0 } })
+    local middle = { dip = 0, dip_direction = 0, origin = { 0, 0, 0 } }
+    rock:blocks { above = middle }:fix { y = true }
+    rock:blocks { below = middle }:fix()
+    check.near(rock:keyblocks { friction = 30 }[1].safety, math.tan(math.rad(30)) * 10 / math.cos(LEAN) / 4, 1e-12)
+end
+
 -- Asking changes nothing.
 check.refused(model, function() model:keyblocks {} end, "no friction is given for the faces")
 check.refused(model, function() model:keyblocks() end, "keyblocks: give the parameters in a table")

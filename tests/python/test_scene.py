@@ -243,7 +243,7 @@ class Reader:
     """What a reader knows after some frames."""
 
     def __init__(self):
-        self.head, self.shapes, self.frames, self.refused = None, {}, 0, []
+        self.head, self.shapes, self.frames, self.refused, self.touches = None, {}, 0, [], []
 
     def read(self, data):
         frame = {"fields": [], "contacts": None, "keys": None, "news": []}
@@ -264,6 +264,13 @@ class Reader:
                 c.end("REFU")
                 self.refused = [{of: column[i] for of, column in columns.items()} for i in range(n)]
                 expect(total >= n, f"REFU: {total} cuts, {n} of them told")
+            elif name == "TOUC":
+                c = Columns(payload)
+                n, = c.take("I", 1)
+                self.touches = list(zip(c.take("I", n), c.vectors(n)))
+                c.end("TOUC")
+                expect(all(body in self.shapes and abs(dot(normal, normal) - 1) < 1e-6 for body, normal in self.touches), "TOUC: unit normals of bodies that are there")
+                expect([body for body, _normal in self.touches] == sorted(body for body, _normal in self.touches), "TOUC: the bodies do not ascend")
             elif name == "FRAM":
                 frame["time"], frame["cycle"], frame["blocks"] = read_blocks(payload)
             elif name == "CONT":
@@ -283,7 +290,7 @@ class Reader:
                 c.end("KEYS")
             elif expect(name == "DONE", f"a chunk {name}"):
                 expect(struct.unpack("<I", payload)[0] == self.frames, "DONE: another number")
-            if name in ("HEAD", "SHAP", "GONE", "REFU"):
+            if name in ("HEAD", "SHAP", "GONE", "REFU", "TOUC"):
                 frame["news"].append(name)
         self.frames += 1
         expect([b["id"] for b in frame["blocks"]] == sorted(self.shapes), "the blocks of FRAM are not those of SHAP")
@@ -487,7 +494,7 @@ def main():
             expect(names == [("largest", ""), ("pair 1", ""), ("pair 2", ""), ("energy", "J"), ("way 1", "m"), ("way 2", "m"), ("way 3", "m")],
                    f"names of histories: {names}")
             expect(frame["histories"][1:3] == (1.5, 2.5), "values of histories")
-    expect(news[:3] == [["HEAD", "SHAP"], [], []], f"what is new in the first frames: {news}")
+    expect(news[:3] == [["HEAD", "SHAP", "TOUC"], ["TOUC"], ["TOUC"]], f"what is new in the first frames: {news}")
     expect("SHAP" in news[3] and "GONE" in news[3] and "GONE" in news[4], f"what is new after cuts: {news}")
     expect(JOINT in reader.head["joints"] and HOSTILE in reader.head["groups"], "names in HEAD")
     check_page(page, text)

@@ -135,9 +135,11 @@ TEST(what_is_sent_once)
     cut(m, "east", 1);
     set_law(m);
     CHECK_INT(write_frame(&f, &scene, m, NULL), TL_OK);
-    CHECK_TEXT(names_of(&f), "HEAD SHAP FRAM CONT LINE DONE");
+    CHECK_TEXT(names_of(&f), "HEAD SHAP TOUC FRAM CONT LINE DONE");
     CHECK(f.facts.news > 0);
     CHECK_INT(first_of(&f, "SHAP"), 2);
+    CHECK_INT(first_of(&f, "TOUC"), 2);
+    CHECK_INT(length_of(&f, "TOUC"), 4 + 2 * 16);
     CHECK_INT(first_of(&f, "FRAM"), 2);
     CHECK_INT(first_of(&f, "CONT"), 1);
     CHECK_INT(first_of(&f, "DONE"), 0);
@@ -148,7 +150,7 @@ TEST(what_is_sent_once)
     CHECK_INT(length_of(&f, "LINE"), 64 + 4);
 
     CHECK_INT(write_frame(&f, &scene, m, NULL), TL_OK); /* the one before was not sent */
-    CHECK_TEXT(names_of(&f), "HEAD SHAP FRAM CONT LINE DONE");
+    CHECK_TEXT(names_of(&f), "HEAD SHAP TOUC FRAM CONT LINE DONE");
     tl_scene_accept(&scene);
     const tl_html without = {.size = sizeof without, .contacts = TL_HTML_CONTACTS_NONE};
     CHECK_INT(write_frame(&f, &scene, m, &without), TL_OK);
@@ -181,7 +183,7 @@ TEST(what_has_changed_is_sent_again)
     frame f = {.count = 0};
     add_box(m, 0, 4);
     add_box(m, 6, 1);
-    CHECK_TEXT(next_frame(&f, &scene, m), "HEAD SHAP FRAM LINE DONE");
+    CHECK_TEXT(next_frame(&f, &scene, m), "HEAD SHAP TOUC FRAM LINE DONE");
     CHECK_TEXT(next_frame(&f, &scene, m), "FRAM LINE DONE");
 
     cut(m, "east", 2); /* two blocks in the place of the first */
@@ -192,7 +194,7 @@ TEST(what_has_changed_is_sent_again)
 
     const tl_id parts[] = {3, 4};
     CHECK_INT(tl_blocks_join(m, parts, 2), TL_OK);
-    CHECK_TEXT(next_frame(&f, &scene, m), "SHAP FRAM LINE DONE");
+    CHECK_TEXT(next_frame(&f, &scene, m), "SHAP TOUC FRAM LINE DONE");
     CHECK_INT(first_of(&f, "SHAP"), 2);
 
     const tl_id small = 2;
@@ -231,10 +233,10 @@ TEST(refused_cuts_are_told_when_there_are_more)
     tl_scene scene = {0};
     frame f = {.count = 0};
     add_box(m, 0, 4);
-    CHECK_TEXT(next_frame(&f, &scene, m), "HEAD SHAP FRAM LINE DONE");
+    CHECK_TEXT(next_frame(&f, &scene, m), "HEAD SHAP TOUC FRAM LINE DONE");
     cut(m, "east", 2);
     cut(m, "thin", 2 + 1e-5); /* a sliver of the eastern half */
-    CHECK_TEXT(next_frame(&f, &scene, m), "HEAD SHAP GONE REFU FRAM LINE DONE");
+    CHECK_TEXT(next_frame(&f, &scene, m), "HEAD SHAP GONE REFU TOUC FRAM LINE DONE");
     CHECK_INT(first_of(&f, "REFU"), 1);
     CHECK_INT(length_of(&f, "REFU"), 8 + 44);
     tl_quality q;
@@ -258,7 +260,7 @@ TEST(refused_cuts_are_told_when_there_are_more)
                "SHAP REFU FRAM LINE DONE"); /* its face takes the joint */
     CHECK_INT(first_of(&f, "REFU"), 2);
     tl_scene_forget(&scene);
-    CHECK_TEXT(next_frame(&f, &scene, m), "HEAD SHAP REFU FRAM LINE DONE");
+    CHECK_TEXT(next_frame(&f, &scene, m), "HEAD SHAP REFU TOUC FRAM LINE DONE");
     free_frame(&f);
     tl_scene_free(&scene);
     tl_model_destroy(m);
@@ -269,7 +271,7 @@ TEST(an_empty_model_is_a_frame)
     tl_model *m = empty_model(1);
     tl_scene scene = {0};
     frame f = {.count = 0};
-    CHECK_TEXT(next_frame(&f, &scene, m), "HEAD FRAM LINE DONE");
+    CHECK_TEXT(next_frame(&f, &scene, m), "HEAD TOUC FRAM LINE DONE");
     CHECK_INT(first_of(&f, "FRAM"), 0);
     CHECK(f.facts.largest == 0);
     CHECK_INT(write_frame(&f, &scene, m, NULL), TL_OK);
@@ -290,7 +292,7 @@ TEST(fields_have_a_value_for_each)
     tl_extra_field field = {.name = "safety", .unit = "m", .values = values, .count = 2};
     tl_html html = {.size = sizeof html, .block_fields = &field, .block_field_count = 1};
     CHECK_INT(write_frame(&f, &scene, m, &html), TL_OK);
-    CHECK_TEXT(names_of(&f), "HEAD SHAP FRAM FIEL CONT LINE DONE");
+    CHECK_TEXT(names_of(&f), "HEAD SHAP TOUC FRAM FIEL CONT LINE DONE");
     CHECK_INT(length_of(&f, "FIEL"), 12 + 8);
     field.count = 3;
     CHECK_INT(write_frame(&f, &scene, m, &html), TL_E_ARGUMENT);

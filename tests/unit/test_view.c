@@ -138,7 +138,7 @@ static void end(tl_model *m, tl_view *view)
     tl_model_destroy(m);
 }
 
-/* "HEAD SHAP LIVE" of chunks one after the other. */
+/* "HEAD SHAP TOUC LIVE" of chunks one after the other. */
 static const char *names_of(const unsigned char *data, size_t length)
 {
     static char names[256];
@@ -166,17 +166,17 @@ TEST(news_adds_up_to_all_there_is_to_know)
     CHECK_INT(screen.check, 0);
     CHECK_INT(tl_view_tell(view, TL_VIEW_WAITING, NULL, NULL), TL_OK);
     CHECK_INT(tl_view_show(view, &html), TL_OK);
-    CHECK_TEXT(names_of(screen.news, screen.news_length), "HEAD SHAP LIVE");
+    CHECK_TEXT(names_of(screen.news, screen.news_length), "HEAD SHAP TOUC LIVE");
     CHECK_TEXT(names_of(screen.now, screen.now_length), "FRAM LINE DONE");
     CHECK_CONTAINS((const char *)screen.news + 8, "\"live\": true, \"commands\": true");
     CHECK_INT(tl_view_show(view, &html), TL_OK);
-    CHECK_TEXT(names_of(screen.news, screen.news_length), "HEAD SHAP LIVE");
+    CHECK_TEXT(names_of(screen.news, screen.news_length), "HEAD SHAP TOUC LIVE");
     cut(m, 1);
     CHECK_INT(tl_view_tell(view, TL_VIEW_RUNNING, "a \"line\"", NULL), TL_OK);
     CHECK_INT(tl_view_tell(view, TL_VIEW_RUNNING, NULL, "why"), TL_OK);
     CHECK_INT(tl_view_show(view, &html), TL_OK);
     CHECK_TEXT(names_of(screen.news, screen.news_length),
-               "HEAD SHAP LIVE HEAD SHAP GONE LIVE LIVE");
+               "HEAD SHAP TOUC LIVE HEAD SHAP GONE TOUC LIVE LIVE");
     CHECK_INT(screen.begun, 1);
     end(m, view);
 }
@@ -211,13 +211,13 @@ TEST(a_frame_that_is_not_taken_is_shown_again)
     CHECK_TEXT(tl_model_error(m)->text, "view, screen 'memory': no room");
     screen.fails = 0;
     CHECK_INT(tl_view_show(view, &html), TL_OK);
-    CHECK_TEXT(names_of(screen.news, screen.news_length), "HEAD SHAP LIVE");
+    CHECK_TEXT(names_of(screen.news, screen.news_length), "HEAD SHAP TOUC LIVE");
     cut(m, 1);
     screen.fails = 1;
     CHECK_INT(tl_view_show(view, &html), TL_E_MEMORY);
     screen.fails = 0;
     CHECK_INT(tl_view_show(view, &html), TL_OK);
-    CHECK_TEXT(names_of(screen.news, screen.news_length), "HEAD SHAP LIVE HEAD SHAP GONE");
+    CHECK_TEXT(names_of(screen.news, screen.news_length), "HEAD SHAP TOUC LIVE HEAD SHAP GONE TOUC");
     end(m, view);
 }
 

@@ -146,23 +146,6 @@ def test_settled(chrome, folder):
         check(len(faces(chrome, block)) == count and "lies on no other" not in words, f"block {block} lies on {len(faces(chrome, block))} faces instead of {count}: {words}")
 
 
-def test_apart(chrome, folder):
-    """A block that has slid lies on its plane as long as they share an area, and no more when it is 1/10,000 of its size away; a turned one has turned normals."""
-    show(chrome, folder / "plane.html")
-    block = upper(chrome)
-    up, down = normal_of(30, 90), [math.cos(math.radians(30)), 0, -math.sin(math.radians(30))]
-    size = chrome.run("talus.app.frame.head.size")
-    for name, by, wanted in (("where it was", [0, 0, 0], 1), ("half-way down", [2.2 * x for x in down], 1), ("beyond the end", [5 * x for x in down], 0),
-                             ("near it", [0.5e-4 * size * x for x in up], 1), ("pressed in", [-5e-3 * size * x for x in up], 1), ("away", [3e-4 * size * x for x in up], 0)):
-        found = chrome.run(f"""(f => {{ const place = f.poses.place.slice(), i = f.poses.id.indexOf({block}); {json.dumps(by)}.forEach((x, c) => {{ place[3 * i + c] += x; }});
-            return talus.touchedFaces(talus.app.model, {{ ...f, poses: {{ ...f.poses, place }} }}, {block}); }})(talus.app.frame)""")
-        check(len(found) == wanted, f"a block {name} has {len(found)} faces on others")
-    # the whole turned by 90 degrees about the vertical
-    found = chrome.run(f"""(f => {{ const place = f.poses.place.map((_x, i, all) => (i % 3 === 0 ? -all[i + 1] : i % 3 === 1 ? all[i - 1] : all[i])), turn = f.poses.turn.map((_x, i) => [0, 0, Math.SQRT1_2, Math.SQRT1_2][i % 4]);
-        return talus.touchedFaces(talus.app.model, {{ ...f, poses: {{ ...f.poses, place, turn }} }}, {block}); }})(talus.app.frame)""")
-    check(len(found) == 1 and math.dist(found[0], [up[1], -up[0], -up[2]]) < 1e-6, f"the turned block lies on {found}")
-
-
 # What the net shows at places: how far its pixels about them differ from those without a picked block.
 PIXELS = """(async (places) => {
     const c = document.querySelector('#net canvas'), pen = c.getContext('2d'), take = () => pen.getImageData(0, 0, c.width, c.height), now = take();

@@ -567,7 +567,8 @@ typedef struct tl_keyblocks {
     size_t edge_count;
 } tl_keyblocks;
 
-/* Finds the removable ones of the bodies that are neither held nor driven (Shi's theorem). */
+/* Finds the removable ones of the bodies that can move and are not driven (Shi's theorem), as they lay when displacements began to
+ * count, or as they lie now where they have moved by more than 1 % of their size. */
 TL_API tl_status tl_model_keyblocks(tl_model *model, const tl_keyblock_query *query,
                                     tl_keyblocks *keyblocks);
 TL_API void tl_keyblocks_free(tl_keyblocks *keyblocks);
