@@ -118,8 +118,8 @@ void tl_estate_keep(tl_model *m, uint32_t c, const tl_testator *a, const tl_test
                           .count = tl_estate_size(d, c),
                           .first = d->left_count,
                           .field = is_field(d, c),
-                          .holds_over_gap =
-                              d->contacts.holds_over_gap[c] || tl_contact_across_gap(m, c).bonded,
+                          .holds_over_gap = d->contacts.holds_over_gap[c],
+                          .pressed = !tl_v3_is_zero(d->contacts.force[c]),
                           .reframed = a->reframed};
     tl_facing_place to = {*a->r, {0, 0, 0}};
     if (!estate->field)
@@ -175,7 +175,14 @@ const tl_estate *tl_estate_of(const tl_model *m, uint32_t block_a, uint32_t bloc
 bool tl_estate_holds(const tl_model *m, uint32_t block_a, uint32_t block_b)
 {
     const tl_estate *estate = tl_estate_of(m, block_a, block_b);
-    return estate && !estate->field;
+    return estate && estate->holds_over_gap && !estate->field;
+}
+
+double tl_estate_tilt(const tl_model *m, uint32_t block_a, uint32_t block_b)
+{
+    const tl_estate *estate = tl_estate_of(m, block_a, block_b);
+    bool corners = m->config.contact_points == TL_POINTS_CORNERS;
+    return estate && estate->pressed && !estate->field ? tl_flush_limits_of(corners).field_tilt : 0;
 }
 
 /* The face of a block with an outward normal; TL_NO_ROW: it has none. A convex block has one at the most. */

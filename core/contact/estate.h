@@ -30,6 +30,8 @@ tl_estate *tl_estate_left(const tl_detect *d, tl_id a, tl_id b);
 const tl_estate *tl_estate_of(const tl_model *m, uint32_t block_a, uint32_t block_b);
 /* Whether blocks of two rows take over from a patch that held across a gap. */
 bool tl_estate_holds(const tl_model *m, uint32_t block_a, uint32_t block_b);
+/* Tilt, as a sine, up to which they take over as a patch from one that bore a force; 0: there is none. */
+double tl_estate_tilt(const tl_model *m, uint32_t block_a, uint32_t block_b);
 /* The faces of two blocks that are parts of the faces of the patch that they take over from, or of those that the field contact had
  * moved out; false: they have none. */
 bool tl_estate_faces(const tl_model *m, uint32_t block_a, uint32_t block_b, uint32_t *face_a,

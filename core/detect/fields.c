@@ -68,7 +68,9 @@ tl_manifold_before tl_contact_before(const tl_model *m, uint32_t c, bool reframe
     const tl_contacts *contacts = &m->detect->contacts;
     const tl_facet *facet = &contacts->facet[c];
     const tl_press_row *row = tl_press_row_of(m, c);
-    tl_manifold_before out = {.kind = (tl_facet_kind)facet->kind, .faces = {facet->ia, facet->ib}};
+    tl_manifold_before out = {.kind = (tl_facet_kind)facet->kind,
+                              .faces = {facet->ia, facet->ib},
+                              .born_tilt = tl_estate_tilt(m, contacts->a[c], contacts->b[c])};
     bool patch =
         out.kind == TL_FACET_PATCH && (contacts->point_count[c] > 0 || contacts->holds_over_gap[c]);
     if (patch) {

@@ -164,10 +164,8 @@ tl_manifold_before tl_pair_before(const tl_model *m, const tl_pair *p, const tl_
                                   tl_narrow_scratch *scratch)
 {
     tl_manifold_before out = {.kind = TL_FACET_PATCH, .most_tilt = INFINITY};
-    const tl_estate *estate = tl_estate_of(m, p->a, p->b);
     uint32_t face_a, face_b;
-    if (estate && estate->field) /* its parts are no patches either, until they lie flush */
-        out.kind = TL_FACET_FIELD;
+    out.born_tilt = tl_estate_tilt(m, p->a, p->b);
     out.shift = tl_estate_shift(m, p->a, p->b, &out.shifted);
     if (!tl_estate_holds(m, p->a, p->b) || !tl_estate_faces(m, p->a, p->b, &face_a, &face_b))
         return out;

@@ -17,8 +17,8 @@ typedef struct tl_scene_known {
     tl_scene_block *blocks; /* in ascending order of id */
     size_t count, capacity;
     tl_piece head, touches; /* HEAD's text; the chunk TOUC */
-    uint64_t structure; /* of the model, when `median` was found */
-    double median;      /* size of the blocks, m */
+    uint64_t structure;     /* of the model, when `median` was found */
+    double median;          /* size of the blocks, m */
     uint32_t frames;
     size_t refused; /* cuts, of all that were refused since the model was made */
 } tl_scene_known;
@@ -37,7 +37,8 @@ typedef struct tl_scene {
 typedef struct tl_scene_facts {
     double time, largest; /* s; largest displacement of a block, m */
     int64_t cycle;
-    size_t news; /* bytes at its beginning of HEAD, SHAP, GONE, REFU and TOUC; 0: it has none of them */
+    size_t
+        news; /* bytes at its beginning of HEAD, SHAP, GONE, REFU and TOUC; 0: it has none of them */
 } tl_scene_facts;
 
 /* Adds the next frame to `out`. The scene goes on with it only after tl_scene_accept. */

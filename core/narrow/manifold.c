@@ -23,16 +23,17 @@ static const tl_press none;
 
 /* Whether the flush faces of the region are a patch and nothing else is there. */
 static bool is_patch(const tl_pair_view *view, const tl_region *r, const tl_touch_rule *rule,
-                     bool was_field, tl_narrow_scratch *scratch)
+                     const tl_manifold_before *before, tl_narrow_scratch *scratch)
 {
     tl_manifold *m = &scratch->manifold;
-    double size = view->size, part = was_field ? BACK : 1;
+    double size = view->size, part = before->kind == TL_FACET_FIELD ? BACK : 1;
     if (!r->flush || r->gap > rule->reach)
         return false;
     double overlap = fmax(0, -r->flush_gap), away = TL_CONTACT_TOLERANCE * size;
     double behind = fmin(r->flush_lead - away, (r->blunt_lead - BLUNT * overlap - away) / BLUNT);
     const tl_flush_limits limits = tl_flush_limits_of(rule->corners);
-    double tilt_margin = part * limits.tilt - tl_region_tilt(view, r->flush_a, r->flush_b);
+    double most_tilt = fmax(part * limits.tilt, before->born_tilt);
+    double tilt_margin = most_tilt - tl_region_tilt(view, r->flush_a, r->flush_b);
     if (!(behind > 0 && tilt_margin > 0))
         return false;
     double area = tl_patch_add(view, r->flush_a, r->flush_b, rule, scratch);
@@ -126,7 +127,7 @@ bool tl_manifold_find(const tl_pair_view *view, const tl_region *r, const tl_tou
     m->valid = TL_LIST_MARGIN * view->size;
     if (before->holds && stays_patch(view, rule, before, scratch))
         return true;
-    if (m->failed || ((before->calm || !was_field) && is_patch(view, r, rule, was_field, scratch)))
+    if (m->failed || ((before->calm || !was_field) && is_patch(view, r, rule, before, scratch)))
         return !m->failed;
     m->point_count = 0;
     if (m->failed || r->gap > fmax(0, before->shift))

@@ -453,3 +453,27 @@ do
     cut("m", 1)
     check.equal(#model:blocks() > 4, true)
 end
+
+-- Blocks that stand near toppling, on a face of which a part is open, go on standing when they are cut by a joint that bears everything.
+for _, case in ipairs {
+    { "consistent", "coulomb_tensile", { 0.708, 0.486, 0.509 }, { 1.379, -6.306, -7.638 }, 4485, 5735 },
+    { "corners", "coulomb_tensile", { 0.643, 0.868, 0.745 }, { -6.313, -0.718, -7.722 }, 7160, 6596 },
+    { "consistent", "coulomb", { 0.959, 0.897, 1.205 }, { 3.88, 1.367, -9.114 } },
+} do
+    local points, law, size, gravity, tension, cohesion = table.unpack(case, 1, 6)
+    local model = talus.model { gravity = gravity, contact_points = points }
+    model:generate("box", { min = { -4, -4, -1 }, max = { 4, 4, 0 }, density = DENSITY, group = "floor" })
+    model:generate("box", { min = { -size[1] / 2, -size[2] / 2, 0 }, max = { size[1] / 2, size[2] / 2, size[3] }, density = DENSITY, group = "block" })
+    model:blocks { group = "floor" }:fix()
+    model:joint("*", law, { kn = 1e9, ks = 1e9, friction = 45, tension = tension, cohesion = cohesion })
+    model:damping("local")
+    model:solve { ratio = 1e-9, max_cycles = 100000 }
+    model:damping("none")
+    model:timestep { dt = model.dt / 3 }
+    model:cycle(1)
+    model:blocks { group = "floor" }:hide()
+    model:generate("joint", plane("across", 50, 200, 0, 0, 0.4 * size[3]))
+    model:joint("across", "elastic", { kn = 1e9, ks = 1e9 })
+    model:cycle(200)
+    check.near(fastest(model), 0, 1e-8)
+end

@@ -217,7 +217,8 @@ TEST(a_frame_that_is_not_taken_is_shown_again)
     CHECK_INT(tl_view_show(view, &html), TL_E_MEMORY);
     screen.fails = 0;
     CHECK_INT(tl_view_show(view, &html), TL_OK);
-    CHECK_TEXT(names_of(screen.news, screen.news_length), "HEAD SHAP TOUC LIVE HEAD SHAP GONE TOUC");
+    CHECK_TEXT(names_of(screen.news, screen.news_length),
+               "HEAD SHAP TOUC LIVE HEAD SHAP GONE TOUC");
     end(m, view);
 }
 
