@@ -52,7 +52,7 @@ typedef struct tl_estate {
     tl_carried carried;     /* by a patch */
     uint8_t field;
     uint8_t holds_over_gap;
-    uint8_t pressed; /* a force acted in the last step */
+    uint8_t pressed;  /* a force acted in the last step */
     uint8_t reframed; /* places of its points are in frames that are no more */
 } tl_estate;
 

@@ -223,8 +223,9 @@ static bool estates_are_sound(const tl_model *m, const tl_detect *d)
     for (size_t i = 0; i < d->estate_count; i++) {
         const tl_estate *e = &d->estates[i];
         if (e->first > d->left_count || e->count > d->left_count - e->first || e->field > 1 ||
-            e->holds_over_gap > 1 || e->pressed > 1 || e->reframed > 1 || (e->field && e->count != 1) ||
-            e->count > UINT16_MAX || (e->law != TL_NO_ROW && e->law >= m->joint_law_count))
+            e->holds_over_gap > 1 || e->pressed > 1 || e->reframed > 1 ||
+            (e->field && e->count != 1) || e->count > UINT16_MAX ||
+            (e->law != TL_NO_ROW && e->law >= m->joint_law_count))
             return false;
     }
     return true;
