@@ -23,6 +23,8 @@ typedef struct tl_cell {
     double hold;                     /* share of tension that was held before the law */
     tl_vec3
         centre; /* area times its centroid from that of the patch, m^3; found where lifts differ */
+    double pressed_area; /* m^2, and the same of it */
+    tl_vec3 pressed_centre;
     /* of a law that is not linear: int u^3 dA, m^5, int u^4 dA, m^6, and int u^2 x dA, m^5, of what is closed, and what its stress
      * changes */
     double pressed_third, pressed_fourth;

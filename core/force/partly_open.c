@@ -20,7 +20,7 @@
  * A tension that a bond loses takes its part of U with it, and the work of this step, by the mean of the forces of both ends. With u'
  * before the step and u after it that is k/2 int_{u<0} u u' dA of the share lost: heat. The law has counted that of the means.
  *
- * What a stress that is no line in u changes of this is in bent.c.
+ * What lifts that differ from point to point change of this is at press_at_point, and what a stress that is no line in u does in bent.c.
  *
  * The cells. A patch of k corners has k points between corners, k at corners, and the centroid, all drawn in towards that
  * (patch.c); so its corners follow from its points. In the triangle of an edge and the centroid, the centroid's cell is the
@@ -218,6 +218,8 @@ static const double outer_side[4] = {0, SIDE, 1 - SIDE, 1};
 static void add_part(tl_cell *to, const cell_parts *part, double fan, tl_vec3 e, tl_vec3 f)
 {
     const integrals *p = &part->pressed, *a = &part->apart;
+    to->pressed_area += fan * p->one;
+    to->pressed_centre = tl_v3_madd(tl_v3_madd(to->pressed_centre, fan * p->a, e), fan * p->b, f);
     to->pressed_volume += fan * p->u;
     to->apart_volume += fan * a->u;
     to->pressed_second += fan * p->uu;
@@ -354,18 +356,28 @@ static void leave_rest(const patch *of, size_t k, double p, double q, const doub
 }
 
 /* What a lift is beyond the least of the patch presses at the point, as it does while all is closed, and not over the cell: else a
- * patch would press elsewhere as soon as some of it is apart, by a rounding. `more`: mean of u over the cell less u at the point. */
-static void press_at_point(const patch *of, size_t k, double least, double more)
+ * patch would press elsewhere as soon as some of it is apart, by a rounding. As the cell opens, from P = A p and Q = A q, that is less, by
+ *
+ *     w = P / (P + Q),    U changes by -k w (lift - least) A (mean of u - u at the point),
+ *
+ * and force and moment by its gradient. `more`: mean of u over the cell less u at the point; `whole`: P and Q. */
+static void press_at_point(const patch *of, size_t k, double least, double more,
+                           const double whole[2])
 {
     size_t i = of->lane + k * TL_LANES;
     tl_cell *cell = &of->lanes->cell[i];
-    double area = area_of(of, k), beyond_least = of->lanes->lift[i] - least;
-    if (!(beyond_least > 0) || !(cell->pressed_volume > 0))
+    double area = area_of(of, k), lift = of->lanes->lift[i] - least, sum = whole[0] + whole[1];
+    if (!(lift > 0) || !(whole[0] > 0))
         return;
-    double closed = fmin(area * beyond_least, cell->pressed_volume) / area;
+    double w = whole[0] / sum, by = lift * more * area / (sum * sum);
+    double apart_area = area - cell->pressed_area;
     tl_vec3 arm = tl_v3_sub(arm_of(of, k), arm_of(of, 2 * of->corners));
-    cell->pressed = tl_v3_madd(cell->pressed, -closed, tl_v3_madd(cell->centre, -area, arm));
-    cell->pressed_second -= closed * area * more;
+    tl_vec3 apart_centre = tl_v3_sub(cell->centre, cell->pressed_centre);
+    cell->pressed_more -= by * (whole[1] * cell->pressed_area + whole[0] * apart_area);
+    cell->pressed = tl_v3_madd(cell->pressed, -lift * w, tl_v3_madd(cell->centre, -area, arm));
+    cell->pressed = tl_v3_madd(cell->pressed, -by * whole[1], cell->pressed_centre);
+    cell->pressed = tl_v3_madd(cell->pressed, -by * whole[0], apart_centre);
+    cell->pressed_second -= lift * w * area * more;
 }
 
 /* Gives a point the closure at which its whole cell would press as its closed part does. The cell keeps what it has beside that. */
@@ -375,7 +387,8 @@ static void put_means(const patch *of, size_t k, double share, bool curved, doub
     size_t i = of->lane + k * TL_LANES;
     tl_cell *cell = &t->cell[i];
     double area = area_of(of, k), u = t->closure[i] + t->lift[i];
-    double more = (cell->pressed_volume - cell->apart_volume) / area - u;
+    const double given[2] = {cell->pressed_volume, cell->apart_volume};
+    double more = (given[0] - given[1]) / area - u;
     double p = cell->pressed_volume / area - (1 - share) * more, q = cell->apart_volume / area;
     double second = 0;
     if (curved) {
@@ -392,7 +405,7 @@ static void put_means(const patch *of, size_t k, double share, bool curved, doub
     t->apart[i] = q;
     leave_rest(of, k, p, q, whole);
     cell->pressed_second += second;
-    press_at_point(of, k, least, more);
+    press_at_point(of, k, least, more, given);
 }
 
 /* What the cell of a point that has gone by its own closure has beside that. */
@@ -404,7 +417,7 @@ static void leave_own(const patch *of, size_t k, double least)
     double u = t->closure[i] + t->lift[i];
     double more = (whole[0] - whole[1]) / area_of(of, k) - u;
     leave_rest(of, k, u, 0, whole);
-    press_at_point(of, k, least, more);
+    press_at_point(of, k, least, more, whole);
 }
 
 /* The patches of a SIMD group whose points get means. Gives how many, and the lanes of these and of those that hold throughout. */

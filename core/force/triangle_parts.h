@@ -11,8 +11,9 @@ typedef struct node {
     double a, b;
 } node;
 
-/* Over a part of the triangle, times 1 over its area: integrals of powers of u, and of them times the place. */
+/* Over a part of the triangle, times 1 over its area: integrals of 1 and of powers of u, and of them times the place. */
 typedef struct integrals {
+    double one, a, b;
     double u, ua, ub, uu;
     double uua, uub, uuu, uuuu; /* for laws that are not linear; else 0 */
 } integrals;
@@ -42,6 +43,9 @@ static inline integrals whole_of(const node n[3], const double u[3], double f, b
     double sum = u[0] + u[1] + u[2], by = f / 12;
     double a = n[0].a + n[1].a + n[2].a, b = n[0].b + n[1].b + n[2].b;
     integrals out = {
+        .one = f,
+        .a = f / 3 * a,
+        .b = f / 3 * b,
         .u = f / 3 * sum,
         .ua = by * (sum * a + u[0] * n[0].a + u[1] * n[1].a + u[2] * n[2].a),
         .ub = by * (sum * b + u[0] * n[0].b + u[1] * n[1].b + u[2] * n[2].b),
@@ -64,7 +68,13 @@ static inline integrals corner_of(const node n[3], const double u[3], double f, 
     double area = f * s * t, by = area * top / 12, by_square = area * top * top / 30;
     double a = 4 * n[k].a + s * (n[i].a - n[k].a) + t * (n[j].a - n[k].a);
     double b = 4 * n[k].b + s * (n[i].b - n[k].b) + t * (n[j].b - n[k].b);
-    integrals out = {.u = area * top / 3, .ua = by * a, .ub = by * b, .uu = area * top * top / 6};
+    integrals out = {.one = area,
+                     .a = area / 3 * (a - n[k].a),
+                     .b = area / 3 * (b - n[k].b),
+                     .u = area * top / 3,
+                     .ua = by * a,
+                     .ub = by * b,
+                     .uu = area * top * top / 6};
     if (curved) {
         out.uua = by_square * (n[k].a + a);
         out.uub = by_square * (n[k].b + b);
@@ -74,22 +84,13 @@ static inline integrals corner_of(const node n[3], const double u[3], double f, 
     return out;
 }
 
-static inline integrals added(integrals x, integrals y)
+/* The sum of both, the second with a sign of the odd powers of u and one of the even ones. */
+static inline integrals added(integrals x, integrals y, double odd, double even)
 {
-    return (integrals){x.u + y.u,     x.ua + y.ua,   x.ub + y.ub,   x.uu + y.uu,
-                       x.uua + y.uua, x.uub + y.uub, x.uuu + y.uuu, x.uuuu + y.uuuu};
-}
-
-/* Of -u. */
-static inline integrals negated(integrals x)
-{
-    return (integrals){-x.u, -x.ua, -x.ub, x.uu, x.uua, x.uub, -x.uuu, x.uuuu};
-}
-
-/* Less what -u has in a part of it. */
-static inline integrals without(integrals x, integrals y)
-{
-    return added(x, (integrals){y.u, y.ua, y.ub, -y.uu, -y.uua, -y.uub, y.uuu, -y.uuuu});
+    return (integrals){x.one + even * y.one, x.a + even * y.a,      x.b + even * y.b,
+                       x.u + odd * y.u,      x.ua + odd * y.ua,     x.ub + odd * y.ub,
+                       x.uu + even * y.uu,   x.uua + even * y.uua,  x.uub + even * y.uub,
+                       x.uuu + odd * y.uuu,  x.uuuu + even * y.uuuu};
 }
 
 /* What presses of a triangle or cell, and what is apart, u there taken positive. */
@@ -102,18 +103,17 @@ static inline void add_triangle(const node n[3], const double u[3], double f, bo
 {
     integrals all = whole_of(n, u, f, curved), some;
     size_t above = (size_t)((u[0] > 0) + (u[1] > 0) + (u[2] > 0));
-    if (above == 3) {
-        to->pressed = added(to->pressed, all);
+    integrals none = {0}, under = added(none, all, -1, 1); /* of -u */
+    if (above == 3)
+        to->pressed = added(to->pressed, all, 1, 1);
+    if (above == 0)
+        to->apart = added(to->apart, under, 1, 1);
+    if (above % 3 == 0)
         return;
-    }
-    if (above == 0) {
-        to->apart = added(to->apart, negated(all));
-        return;
-    }
     size_t k = above == 1 ? (u[0] > 0 ? 0 : u[1] > 0 ? 1 : 2) : (u[0] > 0 ? (u[1] > 0 ? 2 : 1) : 0);
     some = corner_of(n, u, f, k, above == 1 ? 1 : -1, curved);
-    to->pressed = added(to->pressed, above == 1 ? some : without(all, some));
-    to->apart = added(to->apart, above == 1 ? without(negated(all), some) : some);
+    to->pressed = added(to->pressed, above == 1 ? some : added(all, some, 1, -1), 1, 1);
+    to->apart = added(to->apart, above == 1 ? added(under, some, 1, -1) : some, 1, 1);
 }
 
 #endif
