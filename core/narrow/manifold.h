@@ -8,9 +8,8 @@
 typedef struct tl_manifold_before {
     bool holds;       /* bonds hold its faces: they stay a patch, up to the tilt `most_tilt` */
     double most_tilt; /* as a sine */
-    double
-        born_tilt; /* up to which faces are a patch, beyond the usual one, since they are parts of one; 0 */
-    bool calm; /* a field contact that hardly moves: only that becomes a patch */
+    double born_tilt; /* the same of a part of a patch that bore a force; 0: it is none */
+    bool calm;        /* a field contact that hardly moves: only that becomes a patch */
     tl_facet_kind kind;
     tl_face_pair faces; /* of a patch */
     double over;        /* gap across which its faces press, m; INFINITY where they hold */
