@@ -175,12 +175,14 @@ static bool takes_over(const tl_model *m, const tl_law *law, uint32_t c)
     return has_forces(m->detect, c);
 }
 
-/* Whether a law presses as another one does, at any closure and opening. */
-static bool presses_alike(const tl_law *a, const tl_law *b)
+/* Whether a law presses as the one before it does, at any closure and opening. */
+static bool presses_alike(const tl_law *before, const tl_law *law)
 {
-    if (a->kind != b->kind || a->kn != b->kn || tl_law_opens(a) != tl_law_opens(b))
+    if (before->kind != law->kind || before->kn != law->kn)
         return false;
-    return tl_law_is_linear(a) || (tl_law_presses(a) && tl_law_same_curve(a, b));
+    if (tl_law_opens(before) && !tl_law_opens(law))
+        return false;
+    return tl_law_is_linear(law) || (tl_law_presses(law) && tl_law_same_curve(before, law));
 }
 
 bool tl_law_rebases(const tl_model *m, const tl_law *law, uint32_t c)

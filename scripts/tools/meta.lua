@@ -385,6 +385,25 @@ local function put_plugin_overloads(class, call, result)
     end
 end
 
+-- Of a list or a table by name the one of which the most is known.
+local function fullest(list)
+    local names, best, most = {}, nil, nil
+    for name in pairs(list) do
+        names[#names + 1] = name
+    end
+    table.sort(names)
+    for _, name in ipairs(names) do
+        local one, count = list[name], 0
+        for _, field in pairs(type(one) == "table" and one or {}) do
+            count = count + ((type(field) ~= "table" or next(field) ~= nil) and 1 or 0)
+        end
+        if not most or count > most then
+            best, most = one, count
+        end
+    end
+    return best
+end
+
 -- The class of what a function gives, and the type of what it gives: one, a list or a table by name of them.
 local function put_result_of(name, fields, value, known)
     local each = fields.title:match("^Fields of each ([%a ]+)$")
@@ -392,7 +411,7 @@ local function put_result_of(name, fields, value, known)
     if not known[class] then
         local one = value
         if each then
-            one = assert(value[1] or value[next(value)], "the small model has no " .. each)
+            one = assert(fullest(value), "the small model has no " .. each)
         end
         put_result(class, fields.rows, one)
         known[class] = true

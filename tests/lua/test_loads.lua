@@ -153,12 +153,12 @@ local _, raised = pcall(m.solve, m, { ratio = 0, max_cycles = 50 })
 check.equal(raised, thing)
 local bad = {
     { function() end, "must give three finite numbers: it gave 0 values" },
-    { function() return 1 end, "not the number 1" },
-    { function() return 1, 2 end, "not 2 values" },
-    { function() return { 1, 2 } end, "not a list of 2" },
-    { function() return { 1, 2, "x" } end, "not the string 'x'" },
-    { function() return 1, 0 / 0, 2 end, "not not a number (NaN)" },
-    { function() return 1, 2, 1 / 0 end, "not the number inf" },
+    { function() return 1 end, "it gave the number 1" },
+    { function() return 1, 2 end, "it gave 2 values" },
+    { function() return { 1, 2 } end, "it gave a list of 2" },
+    { function() return { 1, 2, "x" } end, "it gave the string 'x'" },
+    { function() return 1, 0 / 0, 2 end, "it gave not a number (NaN)" },
+    { function() return 1, 2, 1 / 0 end, "it gave the number inf" },
 }
 for _, case in ipairs(bad) do
     m = broken(case[1])

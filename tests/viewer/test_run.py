@@ -150,7 +150,7 @@ def test_viewers(chrome):
         stopped = socket.create_connection(("127.0.0.1", run.port))
         stopped.sendall(f"GET /scene HTTP/1.1\r\nHost: 127.0.0.1:{run.port}\r\nX-Talus-Token: {run.token}\r\n\r\n".encode())
         connection, answer = run.viewer()
-        first = answer.read(100000)
+        first = answer.read(300000)
         check(first[:4] == b"HEAD" and first.count(b"DONE") > 1, "another one who looks does not get frames")
         connection.sock and connection.sock.close()
         answer.close()
