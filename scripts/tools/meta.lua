@@ -385,23 +385,23 @@ local function put_plugin_overloads(class, call, result)
     end
 end
 
--- Of a list or a table by name the one of which the most is known.
-local function fullest(list)
-    local names, best, most = {}, nil, nil
+-- What is known of those of a list or a table by name: of tables each field of the first that has something there.
+local function known_of(list)
+    local names, all = {}, {}
     for name in pairs(list) do
         names[#names + 1] = name
     end
     table.sort(names)
     for _, name in ipairs(names) do
-        local one, count = list[name], 0
-        for _, field in pairs(type(one) == "table" and one or {}) do
-            count = count + ((type(field) ~= "table" or next(field) ~= nil) and 1 or 0)
+        if type(list[name]) ~= "table" then
+            return list[name]
         end
-        if not most or count > most then
-            best, most = one, count
+        for field, value in pairs(list[name]) do
+            local empty = type(value) == "table" and next(value) == nil
+            all[field] = all[field] == nil and not empty and value or all[field]
         end
     end
-    return best
+    return names[1] and all
 end
 
 -- The class of what a function gives, and the type of what it gives: one, a list or a table by name of them.
@@ -411,7 +411,7 @@ local function put_result_of(name, fields, value, known)
     if not known[class] then
         local one = value
         if each then
-            one = assert(fullest(value), "the small model has no " .. each)
+            one = assert(known_of(value), "the small model has no " .. each)
         end
         put_result(class, fields.rows, one)
         known[class] = true
