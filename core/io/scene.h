@@ -37,8 +37,7 @@ typedef struct tl_scene {
 typedef struct tl_scene_facts {
     double time, largest; /* s; largest displacement of a block, m */
     int64_t cycle;
-    size_t
-        news; /* bytes at its beginning of HEAD, SHAP, GONE, REFU and TOUC; 0: it has none of them */
+    size_t news; /* bytes at its beginning, from HEAD to TOUC; 0: it has none of them */
 } tl_scene_facts;
 
 /* Adds the next frame to `out`. The scene goes on with it only after tl_scene_accept. */

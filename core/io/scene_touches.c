@@ -28,17 +28,16 @@ static bool add(bounds *list, size_t first, tl_id body, tl_vec3 normal)
     return true;
 }
 
-/* Rollers bound a body on both sides; one that is held throughout is taken as free: what would it do? */
-static bool add_rollers(bounds *list, size_t first, tl_id body, uint8_t fixed)
+/* Rollers bound a body on both sides; of one that is held throughout its faces alone are told. */
+static bool add_rollers(const tl_model *m, uint32_t body, bounds *list, size_t first)
 {
-    static const uint8_t fix[] = {TL_FIX_X, TL_FIX_Y, TL_FIX_Z};
-    const tl_vec3 axis[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    const uint8_t all = TL_FIX_X | TL_FIX_Y | TL_FIX_Z;
+    tl_vec3 held[3];
+    const size_t count = tl_held_axes(m, body, held);
+    const tl_id id = m->bodies.id[body];
     bool enough = true;
-    for (int k = 0; k < 3 && (fixed & all) != all; k++)
-        if (fixed & fix[k])
-            enough = enough && add(list, first, body, axis[k]) &&
-                     add(list, first, body, tl_v3_neg(axis[k]));
+    for (size_t k = 0; k < count && count < 3; k++)
+        enough =
+            enough && add(list, first, id, held[k]) && add(list, first, id, tl_v3_neg(held[k]));
     return enough;
 }
 
@@ -52,7 +51,7 @@ static bool add_body(const tl_model *m, const tl_touches *touches, uint32_t body
         for (size_t i = touches->start[row]; i < touches->start[row + 1] && enough; i++)
             enough = add(list, first, m->bodies.id[body], tl_touch_normal(m, &touches->at[i], now));
     }
-    return enough && add_rollers(list, first, m->bodies.id[body], m->bodies.fixed[body]);
+    return enough && add_rollers(m, body, list, first);
 }
 
 static tl_status put(tl_model *m, const bounds *list, tl_piece *out)

@@ -189,6 +189,13 @@ tl_face_pair tl_touching_faces(const tl_pair_view *view, tl_vec3 n)
     return touching_faces(view, n, &ca, &cb);
 }
 
+tl_tag tl_flush_tag(tl_tag a, tl_tag b)
+{
+    if (a.joint == 0 || b.joint == 0)
+        return a.joint == 0 ? b : a;
+    return a.joint < b.joint || (a.joint == b.joint && a.plane <= b.plane) ? a : b;
+}
+
 tl_tag tl_touching_tag(const tl_pair_view *view, tl_vec3 n)
 {
     if (!has_joint(view->a) && !has_joint(view->b))
@@ -197,12 +204,12 @@ tl_tag tl_touching_tag(const tl_pair_view *view, tl_vec3 n)
     const tl_face_pair f = touching_faces(view, n, &ca, &cb);
     tl_tag a = view->a->tag[f.a], b = view->b->tag[f.b];
     if (a.joint == 0 || b.joint == 0)
-        return a.joint == 0 ? b : a;
+        return tl_flush_tag(a, b);
     /* of flush faces both are equally near */
     double same = 0.5 * TL_FLUSH_TILT * TL_FLUSH_TILT;
     if (ca > cb + same)
         return a;
     if (cb > ca + same)
         return b;
-    return a.joint < b.joint || (a.joint == b.joint && a.plane <= b.plane) ? a : b;
+    return tl_flush_tag(a, b);
 }

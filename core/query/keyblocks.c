@@ -157,16 +157,6 @@ static tl_status add_face(work *w, const tl_touch *touch, tl_vec3 normal)
     return TL_OK;
 }
 
-static void find_held(work *w, uint32_t body)
-{
-    const tl_vec3 axis[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    static const uint8_t fix[] = {TL_FIX_X, TL_FIX_Y, TL_FIX_Z};
-    w->held_count = 0;
-    for (int k = 0; k < 3; k++)
-        if (w->model->bodies.fixed[body] & fix[k])
-            w->held[w->held_count++] = axis[k];
-}
-
 /* The faces of a body in contact, by normal. */
 static tl_status gather_faces(work *w, uint32_t body)
 {
@@ -176,7 +166,7 @@ static tl_status gather_faces(work *w, uint32_t body)
     const bool now = tl_touches_moved(m, &w->touches, body);
     if (now && w->moved_count++ == 0)
         w->moved_first = m->blocks.id[member[0]];
-    find_held(w, body);
+    w->held_count = tl_held_axes(m, body, w->held);
     w->count = 0;
     tl_status status = TL_OK;
     for (size_t k = 0; k < count && status == TL_OK; k++)
@@ -367,12 +357,6 @@ static tl_status test_body(work *w, uint32_t body)
     return TL_OK;
 }
 
-static bool holds_throughout(const tl_model *m, uint32_t body)
-{
-    const uint8_t all = TL_FIX_X | TL_FIX_Y | TL_FIX_Z;
-    return (m->bodies.fixed[body] & all) == all;
-}
-
 void tl_keyblocks_free(tl_keyblocks *keyblocks)
 {
     free(keyblocks->blocks);
@@ -411,7 +395,7 @@ tl_status tl_model_keyblocks(tl_model *m, const tl_keyblock_query *given, tl_key
     for (uint32_t body = 0; body < m->bodies.table.rows && status == TL_OK; body++) {
         if (m->bodies.drive[body] && driven++ == 0)
             first_driven = m->bodies.id[body];
-        if (!m->bodies.drive[body] && !holds_throughout(m, body))
+        if (!m->bodies.drive[body] && tl_held_axes(m, body, w.held) < 3)
             status = test_body(&w, body);
     }
     if (status == TL_OK)

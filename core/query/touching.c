@@ -1,10 +1,9 @@
 /* touching.c - the faces of blocks that lie on faces of others.
  *
  * Joints are planes; blocks that settle on them sink in and turn a little, so that an edge bears and faces part. What bounds their
- * motion is the joint all the same. So a block touches another where a face lies on a face as they lay when displacements began to
- * count, for a block that has moved against the other by less than
- * TL_TOUCH_KEPT of its size; or as they lie now. A corner or an edge on a face
- * bounds no half-space of motion that its neighbours do not.
+ * motion is the joint all the same. So a block that has moved against another by less than TL_TOUCH_KEPT of its size touches it where
+ * a face lay on a face when displacements began to count; else, and where none did, where faces lie on each other now. A corner or an
+ * edge on a face bounds no half-space of motion that its neighbours do not.
  *
  * Candidates are pairs whose bounds overlap: those of both places, sorted along the model's longest side. */
 #include "query/touching.h"
@@ -80,6 +79,17 @@ tl_vec3 tl_touch_normal(const tl_model *m, const tl_touch *touch, bool now)
     return tl_m3_mul(&at.r, m->blocks.shape[touch->row]->plane[touch->face].normal);
 }
 
+size_t tl_held_axes(const tl_model *m, uint32_t body, tl_vec3 held[3])
+{
+    static const uint8_t fix[] = {TL_FIX_X, TL_FIX_Y, TL_FIX_Z};
+    const tl_vec3 axis[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    size_t count = 0;
+    for (int k = 0; k < 3; k++)
+        if (m->bodies.fixed[body] & fix[k])
+            held[count++] = axis[k];
+    return count;
+}
+
 bool tl_touches_moved(const tl_model *m, const tl_touches *touches, uint32_t body)
 {
     double most = 0;
@@ -128,13 +138,6 @@ static tl_pair_view view_of(const tl_model *m, uint32_t a, uint32_t b, bool now)
     return view;
 }
 
-static tl_tag common_tag(tl_tag a, tl_tag b)
-{
-    if (a.joint == 0 || b.joint == 0)
-        return a.joint == 0 ? b : a;
-    return a.joint < b.joint || (a.joint == b.joint && a.plane <= b.plane) ? a : b;
-}
-
 static bool add(tl_touches *out, tl_touch touch)
 {
     if (!tl_grow(&out->at, &out->capacity, out->count + 1, sizeof *out->at))
@@ -171,7 +174,7 @@ static bool look(const tl_model *m, tl_narrow_scratch *scratch, uint32_t a, uint
     out->face[0] = fa;
     out->face[1] = fb;
     out->area = tl_patch_lay(&view, fa, fb, &rule, scratch);
-    out->joint = common_tag(view.a->tag[fa], view.b->tag[fb]);
+    out->joint = tl_flush_tag(view.a->tag[fa], view.b->tag[fb]);
     return !scratch->failed;
 }
 
@@ -216,7 +219,7 @@ static double along(tl_vec3 v, int axis)
     return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
 }
 
-/* Bounds of a block at both places, grown by half of the gap. */
+/* Bounds of a block at both places, grown by the gap. */
 static tl_bounds bounds_of(const tl_model *m, uint32_t row)
 {
     const tl_poly *shape = m->blocks.shape[row];

@@ -28,6 +28,8 @@ typedef struct tl_touches {
 tl_status tl_touches_find(tl_model *m, tl_touches *out);
 void tl_touches_free(tl_touches *touches);
 
+/* The axes along which a body is held, on rollers or, all three, throughout; how many they are. */
+size_t tl_held_axes(const tl_model *m, uint32_t body, tl_vec3 held[3]);
 /* Whether a body has moved by more against what it touches: its faces are those of now. */
 bool tl_touches_moved(const tl_model *m, const tl_touches *touches, uint32_t body);
 /* Outward unit normal of a touch, axes of the model: as the block lay when displacements began to count, or as it lies now. */

@@ -157,6 +157,31 @@ do
     check.near(rock:keyblocks { friction = 30 }[1].safety, math.tan(math.rad(30)) * 10 / math.cos(LEAN) / 4, 1e-12)
 end
 
+-- A block on a floor that is carried away from it: it lies on it as long as it has gone by less than 1 % of its size, and beyond that as long
+-- as they touch and share some area.
+do
+    local function carried(way, turn)
+        local model = talus.model { gravity = { 0, 0, -10 } }
+        model:generate("box", { min = { -2, -2, -1 }, max = { 2, 2, 0 }, density = 2500, group = "floor" })
+        model:generate("box", { min = { -0.5, -0.5, 0 }, max = { 0.5, 0.5, 1 }, density = 2500, group = "block" })
+        model:blocks { group = "floor" }:fix()
+        model:joint("*", "coulomb", { kn = 1e8, ks = 1e8, friction = 30 })
+        model:timestep { dt = 1e-4 }
+        local block = model:blocks { group = "block" }
+        block:drive { velocity = { 10 * way[1], 10 * way[2], 10 * way[3] }, angular_velocity = { 0, 10 * (turn or 0), 0 } } -- for 0.1 s
+        model:cycle(1000)
+        block:free()
+        return model:keyblocks { friction = 30 }[1].mode
+    end
+    for _, case in ipairs { { { 0, 0, 0 }, "stable" }, { { 1.5, 0, 0 }, "stable" }, { { 3, 0, 0 }, "falling" }, { { 0, 0, 0.005 }, "stable" },
+        { { 0, 0, 0.03 }, "falling" }, { { 0, 0, -0.005 }, "stable" }, { { 0, 0, -0.03 }, "stable" } } do
+        check.equal(carried(case[1]), case[2])
+    end
+    -- turned by some per cent it slides on the face that has turned with it; farther it lies on none
+    check.equal(carried({ 0, 0, 0 }, 0.02), "sliding")
+    check.equal(carried({ 0, 0, 0 }, 0.05), "falling")
+end
+
 -- Asking changes nothing.
 check.refused(model, function() model:keyblocks {} end, "no friction is given for the faces")
 check.refused(model, function() model:keyblocks() end, "keyblocks: give the parameters in a table")
