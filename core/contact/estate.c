@@ -12,6 +12,7 @@
 #include "contact/places.h"
 #include "contact/points.h"
 #include "contact/presses.h"
+#include "narrow/flush.h"
 
 #include <float.h>
 #include <stdlib.h>
@@ -181,8 +182,14 @@ bool tl_estate_holds(const tl_model *m, uint32_t block_a, uint32_t block_b)
 double tl_estate_tilt(const tl_model *m, uint32_t block_a, uint32_t block_b)
 {
     const tl_estate *estate = tl_estate_of(m, block_a, block_b);
-    bool corners = m->config.contact_points == TL_POINTS_CORNERS;
-    return estate && estate->pressed && !estate->field ? tl_flush_limits_of(corners).field_tilt : 0;
+    if (!estate || !estate->pressed || estate->field)
+        return 0;
+    uint32_t face_a, face_b;
+    bool corners =
+        m->config.contact_points == TL_POINTS_CORNERS &&
+        tl_estate_faces(m, block_a, block_b, &face_a, &face_b) &&
+        tl_at_corners(m->blocks.shape[block_a], face_a, m->blocks.shape[block_b], face_b);
+    return tl_flush_limits_of(corners).field_tilt;
 }
 
 /* The face of a block with an outward normal; TL_NO_ROW: it has none. A convex block has one at the most. */

@@ -12,6 +12,7 @@
 #include "contact/pair_view.h"
 #include "contact/presses.h"
 #include "contact/shear.h"
+#include "narrow/flush.h"
 #include "narrow/place.h"
 
 #include <math.h>
@@ -35,10 +36,14 @@ static bool is_calm(const tl_model *m, uint32_t c)
     return tl_v3_norm(tl_v3_add(by.way, there)) + size * tl_v3_norm(by.turn) < TL_STILL * size;
 }
 
-static double bonded_tilt(const tl_model *m)
+static double bonded_tilt(const tl_model *m, uint32_t c)
 {
-    return fmax(BONDED_TILT,
-                tl_flush_limits_of(m->config.contact_points == TL_POINTS_CORNERS).tilt);
+    const tl_contacts *contacts = &m->detect->contacts;
+    const tl_facet *f = &contacts->facet[c];
+    const bool corners = m->config.contact_points == TL_POINTS_CORNERS &&
+                         tl_at_corners(m->blocks.shape[contacts->a[c]], f->ia,
+                                       m->blocks.shape[contacts->b[c]], f->ib);
+    return fmax(BONDED_TILT, tl_flush_limits_of(corners).tilt);
 }
 
 /* Notes how far the faces of a field contact are moved out. */
@@ -77,7 +82,7 @@ tl_manifold_before tl_contact_before(const tl_model *m, uint32_t c, bool reframe
         tl_contact_across across = tl_contact_across_gap(m, c);
         bool unseen = contacts->point_count[c] == 0; /* of an estate, until it has got its room */
         out.holds = reframed || unseen || across.bonded;
-        out.most_tilt = across.bonded && !reframed ? bonded_tilt(m) : INFINITY;
+        out.most_tilt = across.bonded && !reframed ? bonded_tilt(m, c) : INFINITY;
         out.over = out.holds ? INFINITY : across.most;
         const tl_lean lean = tl_contact_lean(m, c);
         out.shift = lean.mean;

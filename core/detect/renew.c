@@ -11,18 +11,21 @@
 #include "contact/shear.h"
 #include "detect/fields.h"
 #include "detect/update.h"
+#include "narrow/flush.h"
 #include "narrow/patch_batch.h"
 #include "narrow/press.h"
 
 #include <string.h>
 
-/* Adds a contact's pair of faces to a batch; false when they are none for it. */
-static bool add_to_batch(tl_model *m, uint32_t c, uint32_t lane, tl_patch_batch *batch)
+/* Adds a contact's pair of faces to a batch; false when they are none for it. `corners`: the batch has points at corners only. */
+static bool add_to_batch(tl_model *m, uint32_t c, uint32_t lane, bool corners,
+                         tl_patch_batch *batch)
 {
     const tl_contacts *contacts = &m->detect->contacts;
     const tl_facet *f = &contacts->facet[c];
     uint32_t a = contacts->a[c], b = contacts->b[c];
     if (!tl_contact_is_patch(m, c) ||
+        (corners && !tl_at_corners(m->blocks.shape[a], f->ia, m->blocks.shape[b], f->ib)) ||
         !tl_batch_takes(m->blocks.shape[a], f->ia, m->blocks.shape[b], f->ib))
         return false;
     double size = m->blocks.size[a] < m->blocks.size[b] ? m->blocks.size[a] : m->blocks.size[b];
@@ -242,7 +245,7 @@ bool tl_simd_group_update(tl_model *m, const tl_simd_group *group, unsigned thre
             m->detect->narrow[thread].failed = true;
             return true;
         }
-        if (add_to_batch(m, c, l, batch))
+        if (add_to_batch(m, c, l, corners, batch))
             in |= 1u << l;
         else
             others |= 1u << l;

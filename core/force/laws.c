@@ -360,7 +360,7 @@ static void force_tile(const span_job *job, const tl_simd_group *groups, size_t 
     tl_part_lanes part[GROUP_CHUNK];
     uint32_t any = 0;
     tl_arms arms[GROUP_CHUNK];
-    bool cells = !job->span->field && tl_part_applies(job->m);
+    bool cells = !job->span->field;
     job->phase->keep(job->m, groups, count);
     if (job->changed)
         note_points(&job->m->detect->points, first, tile_points(groups, count), t);

@@ -102,11 +102,6 @@ static bool has_all_points(const patch *of)
     return all;
 }
 
-bool tl_part_applies(const tl_model *m)
-{
-    return m->config.contact_points != TL_POINTS_CORNERS;
-}
-
 /* ---------------------------------------------------------------- edges ------------------ */
 
 /* The least of a linear closure over a cell whose outer side begins at the values given: it is there, or on its inner side. */
@@ -143,7 +138,7 @@ void tl_simd_group_edges(const tl_model *m, const tl_simd_group *group, const tl
                          size_t lane)
 {
     memcpy(t->edge + lane, t->closure + lane, (size_t)group->slots * TL_LANES * sizeof *t->edge);
-    for (size_t l = 0; l < TL_LANES && tl_part_applies(m); l++) {
+    for (size_t l = 0; l < TL_LANES; l++) {
         patch of;
         if (find_patch(m, group, t, lane, l, &of))
             put_edges(&of);

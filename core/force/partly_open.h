@@ -5,9 +5,6 @@
 #include "contact/layout.h"
 #include "model/model.h"
 
-/* Whether the points of a law's patches stand for cells: not for those at corners. */
-bool tl_part_applies(const tl_model *m);
-
 /* The closures at the outermost fibres of the points of a SIMD group. */
 void tl_simd_group_edges(const tl_model *m, const tl_simd_group *group, const tl_point_lanes *lanes,
                          size_t lane);

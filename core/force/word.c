@@ -111,13 +111,11 @@ bool tl_patch_word(tl_model *m, uint32_t c, const tl_point_lanes *t, tl_word *ou
     const tl_law *law = &m->joint_laws[d->contacts.law[c]];
     size_t count = d->contacts.point_count[c], l = d->contacts.point_start[c] % TL_LANES;
     const tl_simd_group group = alone(&d->contacts, c, l);
-    bool partly = false;
     *out = (tl_word){.most = 0};
     spread(t, count, l);
     if (law->pulls != TL_PULL_NONE)
         tl_simd_group_edges(m, &group, t, 0);
-    if (tl_part_applies(m))
-        partly = tl_simd_group_part(m, law, &group, t, 0).parts != 0;
+    const bool partly = tl_simd_group_part(m, law, &group, t, 0).parts != 0;
     copy_points(&d->points, group.start, count * TL_LANES, t);
     if (!ask(m, law, group.start, count * TL_LANES, partly, t))
         return false;

@@ -75,7 +75,9 @@ static const tl_lua_key run_results[] = {
 static const tl_lua_key model_members[] = {
     {"model.gravity", "", "acceleration of gravity {x, y, z}, m/s2; may be assigned"},
     {"model.rotation", "", "\"exact\" or \"paper\"; may be assigned"},
-    {"model.contact_points", "", "\"consistent\" or \"corners\"; may be assigned"},
+    {"model.contact_points", "",
+     "\"consistent\" or \"corners\" (not of faces that meet another at less than 20 degrees); may "
+     "be assigned"},
     {"model.reuse_geometry", "", "true or false; may be assigned"},
     {"model.time, model.cycles", "", "simulated time, s, and steps so far"},
     {"model.mass_scaled", "", "whether mass scaling is on"},

@@ -5,6 +5,7 @@
  * tilt. A field contact has two points at the centre of its pressure (facet.h). */
 #include "narrow/manifold.h"
 
+#include "narrow/flush.h"
 #include "narrow/patch.h"
 #include "narrow/scratch.h"
 
@@ -31,7 +32,8 @@ static bool is_patch(const tl_pair_view *view, const tl_region *r, const tl_touc
         return false;
     double overlap = fmax(0, -r->flush_gap), away = TL_CONTACT_TOLERANCE * size;
     double behind = fmin(r->flush_lead - away, (r->blunt_lead - BLUNT * overlap - away) / BLUNT);
-    const tl_flush_limits limits = tl_flush_limits_of(rule->corners);
+    const bool corners = rule->corners && tl_at_corners(view->a, r->flush_a, view->b, r->flush_b);
+    const tl_flush_limits limits = tl_flush_limits_of(corners);
     double most_tilt = fmax(part * limits.tilt, before->born_tilt);
     double tilt_margin = most_tilt - tl_region_tilt(view, r->flush_a, r->flush_b);
     if (!(behind > 0 && tilt_margin > 0))

@@ -20,6 +20,7 @@
 #include "narrow/patch.h"
 
 #include "base/columns.h"
+#include "narrow/flush.h"
 #include "narrow/frame2.h"
 #include "narrow/polygon.h"
 #include "narrow/scratch.h"
@@ -273,7 +274,7 @@ double tl_patch_lay(const tl_pair_view *view, uint32_t fa, uint32_t fb, const tl
                     tl_narrow_scratch *scratch)
 {
     const tl_poly *a = view->a, *b = view->b;
-    patch one = {.rule = tl_point_rule_of(rule->corners),
+    patch one = {.rule = tl_point_rule_of(rule->corners && tl_at_corners(a, fa, b, fb)),
                  .near = TL_MERGE * view->size,
                  .least = TL_MERGE * fmax(a->size, b->size) * view->size,
                  .reach = rule->reach,

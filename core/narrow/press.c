@@ -226,14 +226,14 @@ typedef struct patch_share {
     tl_vec3 push, turn;
 } patch_share;
 
-static patch_share find_share(const tl_press_query *of, const tl_field_sums *patch)
+static patch_share find_share(const tl_press_query *of, bool corners, const tl_field_sums *patch)
 {
     tl_vec3 na = of->view->a->plane[of->region->flush_a].normal;
     tl_vec3 nb = of->view->normal_b[of->region->flush_b], hinge = tl_v3_cross(na, nb);
     double sine = tl_v3_norm(hinge), g = patch->energy, v = patch->volume, by_tilt, by_q;
     double shift = shift_of(of, 0, of->region->flush_a) + shift_of(of, 1, of->region->flush_b);
     double whole = 8 * g * sqrt(g) / (v * v), moved = 2 * shift * sqrt(g) / v;
-    const tl_flush_limits limits = tl_flush_limits_of(of->corners);
+    const tl_flush_limits limits = tl_flush_limits_of(corners);
     double tilted = step(sine, limits.tilt, limits.field_tilt, &by_tilt);
     double deep = step(whole - moved, limits.depth, limits.field_depth, &by_q);
     patch_share out = {.share = (1 - tilted) * (1 - deep)};
@@ -285,9 +285,8 @@ static bool sum_patch(const tl_press_query *of, planes *p, tl_narrow_scratch *sc
     return tl_field_integrate(&p->faces, &scratch->field, out);
 }
 
-/* The same where all of it is at the corners: sums over them. As in a patch a corner goes with the share `ride` of B's motion against A;
- * its overlap acts along the gradient of that. It acts where the corner is on the face that it goes with: beside the bisecting plane
- * its lever would be another one by a share of the tilt. */
+/* The same where all of it is at the corners: sums over them. A corner goes with the share `ride` of B's motion against A, as in a patch;
+ * its overlap acts along the gradient of that, where it is on its face: in the bisecting plane its lever would be off by a share of the tilt. */
 static bool sum_corners(const tl_press_query *of, tl_vec3 origin, tl_narrow_scratch *scratch,
                         tl_field_sums *out)
 {
@@ -411,7 +410,6 @@ static bool press_of(const tl_press_query *of, planes *p, tl_field_sums *sums, b
 {
     const tl_pair_view *view = of->view;
     const tl_region *region = of->region;
-    tl_field_sums patch;
     *press = (tl_press){0};
     if (!(sums->deepest > TL_TOUCHING * view->size) || !(tl_v3_norm(sums->force) > 0) ||
         !(sums->energy > 0) || is_noise(of, p, sums) ||
@@ -421,14 +419,16 @@ static bool press_of(const tl_press_query *of, planes *p, tl_field_sums *sums, b
     tl_field_power field = with_min_area(sums, min_area), powers[TL_PRESS_POWERS];
     if (of->volumes)
         find_powers(sums, powers);
-    if (region->flush && tl_region_tilt(view, region->flush_a, region->flush_b) <
-                             tl_flush_limits_of(of->corners).field_tilt) {
-        if (!(of->corners ? sum_corners(of, p->origin, scratch, &patch)
-                          : sum_patch(of, p, scratch, &patch)))
+    const uint32_t fa = region->flush_a, fb = region->flush_b;
+    tl_field_sums patch;
+    const bool corners = of->corners && tl_at_corners(view->a, fa, view->b, fb);
+    if (region->flush && tl_region_tilt(view, fa, fb) < tl_flush_limits_of(corners).field_tilt) {
+        if (!(corners ? sum_corners(of, p->origin, scratch, &patch)
+                      : sum_patch(of, p, scratch, &patch)))
             return false;
         patch_share by = {.share = 0};
         if (patch.energy > 0 && has_square(patch.volume))
-            by = find_share(of, &patch);
+            by = find_share(of, corners, &patch);
         if (by.share > 0) {
             const tl_field_power flat = with_min_area(&patch, min_area);
             blend(&by, &flat, &field);

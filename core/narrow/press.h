@@ -3,34 +3,8 @@
 #ifndef TL_NARROW_PRESS_H
 #define TL_NARROW_PRESS_H
 
-#include "base/inline.h"
+#include "narrow/flush.h"
 #include "narrow/region.h"
-
-/* Tilt of two faces, as a sine, up to which their patch is all there is, and from which the field is: 0.05 and 0.15
- * degrees. Joints of a rock mass under load stay below, at some 1e-5. */
-#define TL_FLUSH_TILT 8.7266e-4
-#define TL_FIELD_TILT 2.6180e-3
-/* The same of the overlap of the patch over the root of its area. */
-#define TL_FLUSH_DEPTH 4e-3
-#define TL_FIELD_DEPTH 1e-2
-/* The same of patches with points at their corners only, which are to be springs there: 5 and 10 degrees. */
-#define TL_CORNERS_TILT 0.0872
-#define TL_CORNERS_FIELD_TILT 0.1736
-#define TL_CORNERS_DEPTH 0.1
-#define TL_CORNERS_FIELD_DEPTH 0.2
-
-/* Limits of a patch, and from where on there is nothing of it: of the tilt, and of the overlap over the root of the area. */
-typedef struct tl_flush_limits {
-    double tilt, field_tilt, depth, field_depth;
-} tl_flush_limits;
-
-TL_INLINE tl_flush_limits tl_flush_limits_of(bool corners)
-{
-    return corners
-               ? (tl_flush_limits){TL_CORNERS_TILT, TL_CORNERS_FIELD_TILT, TL_CORNERS_DEPTH,
-                                   TL_CORNERS_FIELD_DEPTH}
-               : (tl_flush_limits){TL_FLUSH_TILT, TL_FIELD_TILT, TL_FLUSH_DEPTH, TL_FIELD_DEPTH};
-}
 
 /* Depth over the size of the smaller block up to which blocks only touch: roundings of places. */
 #define TL_TOUCHING 1e-12

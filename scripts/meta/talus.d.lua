@@ -243,7 +243,7 @@ function talus.help(topic) end
 ---@class (exact) talus.Model
 ---@field gravity talus.Vector acceleration of gravity {x, y, z}, m/s2; may be assigned
 ---@field rotation string "exact" or "paper"; may be assigned
----@field contact_points string "consistent" or "corners"; may be assigned
+---@field contact_points string "consistent" or "corners" (not of faces that meet another at less than 20 degrees); may be assigned
 ---@field reuse_geometry boolean true or false; may be assigned
 ---@field time number simulated time, s, and steps so far
 ---@field cycles integer simulated time, s, and steps so far

@@ -222,3 +222,37 @@ for _, degrees in ipairs { 1, 3, 5, 7, 13, 15, 17, 19 } do
         check.holds(worst < 1e-3, ("%d degrees, side %d: energy changes by %g"):format(degrees, side, worst))
     end
 end
+
+-- A keel, two faces that meet more bluntly than 20 degrees, has the default points: the same motion bit for bit, and so no jump where
+-- one face takes over from the other.
+local function rocked(points, degrees, kn, lean)
+    local up, vertices, low = 0.5 * math.tan(math.rad(degrees / 2)), {}, nil
+    for _, y in ipairs { -0.4, 0.4 } do
+        for _, at in ipairs { { -0.5, up }, { 0, 0 }, { 0.5, up }, { 0.5, 0.6 }, { -0.5, 0.6 } } do
+            vertices[#vertices + 1] = { at[1], y, at[2] }
+        end
+    end
+    vertices, low = turned(vertices, "y", math.rad(lean))
+    for _, v in ipairs(vertices) do
+        v[3] = v[3] - low + 1e-4
+    end
+    local m = talus.model { gravity = { 0, 0, -GRAVITY }, contact_points = points }
+    m:generate("box", { min = { -9, -9, -1 }, max = { 9, 9, 0 }, density = DENSITY, group = "floor" })
+    m:generate("polyhedron", { vertices = vertices, density = DENSITY, group = "block" })
+    m:blocks { group = "floor" }:fix()
+    m:joint("*", "coulomb", { kn = kn, ks = kn, friction = 40 })
+    m:timestep { fraction = 0.2 }
+    local worst = 0
+    for _ = 1, 50 do
+        m:solve { max_time = 0.02, ratio = 1e-14 }
+        worst = math.max(worst, math.abs(m:energy().balance))
+    end
+    return worst, m:blocks({ group = "block" })[1].centroid
+end
+
+for _, case in ipairs { { 18, 1e7, 10 }, { 18, 1e9, 17 }, { 6, 1e8, 4 }, { 3, 1e8, 9 }, { 12, 1e9, 7 } } do
+    local worst, place = rocked("corners", table.unpack(case))
+    local _, same = rocked("consistent", table.unpack(case))
+    check.holds(worst < 2e-3, ("keel of %g degrees: balance %g"):format(case[1], worst))
+    check.holds(place[1] == same[1] and place[2] == same[2] and place[3] == same[3], "with the default points")
+end

@@ -1,0 +1,39 @@
+/* flush.h - how far two faces on each other press as one patch, and where the points of that are (flush.c). */
+#ifndef TL_NARROW_FLUSH_H
+#define TL_NARROW_FLUSH_H
+
+#include "base/inline.h"
+#include "geometry/polyhedron.h"
+
+/* Tilt of two faces, as a sine, up to which their patch is all there is, and from which the field is: 0.05 and 0.15
+ * degrees. Joints of a rock mass under load stay below, at some 1e-5. */
+#define TL_FLUSH_TILT 8.7266e-4
+#define TL_FIELD_TILT 2.6180e-3
+/* The same of the overlap of the patch over the root of its area. */
+#define TL_FLUSH_DEPTH 4e-3
+#define TL_FIELD_DEPTH 1e-2
+/* The same of patches with points at their corners only, which are to be springs there: 5 and 10 degrees. */
+#define TL_CORNERS_TILT 0.0872
+#define TL_CORNERS_FIELD_TILT 0.1736
+#define TL_CORNERS_DEPTH 0.1
+#define TL_CORNERS_FIELD_DEPTH 0.2
+
+/* Limits of a patch, and from where on there is nothing of it: of the tilt, and of the overlap over the root of the area. */
+typedef struct tl_flush_limits {
+    double tilt, field_tilt, depth, field_depth;
+} tl_flush_limits;
+
+TL_INLINE tl_flush_limits tl_flush_limits_of(bool corners)
+{
+    return corners
+               ? (tl_flush_limits){TL_CORNERS_TILT, TL_CORNERS_FIELD_TILT, TL_CORNERS_DEPTH,
+                                   TL_CORNERS_FIELD_DEPTH}
+               : (tl_flush_limits){TL_FLUSH_TILT, TL_FIELD_TILT, TL_FLUSH_DEPTH, TL_FIELD_DEPTH};
+}
+
+/* Whether the points of a patch of two faces are to lie at its corners, where the model has them so: no other face meets either of
+ * them so flat that it would be the next to touch within the tilt up to which springs at corners press. On a blunt edge, or a
+ * round outline, the corners of one face would give way to those of the next at once. */
+bool tl_at_corners(const tl_poly *a, uint32_t fa, const tl_poly *b, uint32_t fb);
+
+#endif
