@@ -10,8 +10,7 @@
  * torsion. What presses is the law's word (word.c), with the motion that it is going to be told of and the cells of patches that are
  * partly open. A point keeps no more shear than it bears: what it loses, others get; and if it slipped it would open the joint.
  *
- * What is carried rises with these six numbers, so Newton's steps find them, with slopes that are mended by what steps bring, or found by differences, each as far as the
- * error falls.
+ * What is carried rises with these six numbers, so Newton's steps find them (roots.c).
  * Springs are to hold no more energy than those of the whole: of one force and torsion a uniform traction with a twist has the least,
  * so the parts then keep less of t. Where points between those of the whole bear so little that others have to hold more, the least there
  * is serves: what stands goes on standing. Where there are no such numbers, as where all slips, t stays what it is, and three are found. */
@@ -20,24 +19,16 @@
 #include "base/columns.h"
 #include "contact/places.h"
 #include "contact/shear.h"
+#include "force/roots.h"
 #include "force/word.h"
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
-/* Steps that are made at the most, and halvings of each. */
-#define STEPS 60
-#define HALVINGS 10
-/* Over the forces: error that is none, error with which the numbers are found, and step of differences. */
-#define EXACT 1e-11
+/* Over the forces: error with which the numbers are found. That which a good step leaves no hope with. */
 #define FOUND 1e-8
-#define SMALL 1e-6
-/* Share of the error that is left after a good step: after another slopes are found anew. That with which such a step leaves no
- * hope. */
-#define GOOD 0.3
 #define HOPELESS 0.9
-/* What is added to the slopes: too few points may bear to tell all of them. */
-#define FAINT 1e-9
 /* Times that a law is asked at the most until no point has more shear than it bears; by which share it may have more. */
 #define PASSES 12
 #define TOO_MUCH 1e-9
@@ -58,6 +49,11 @@ typedef struct given {
     double closure, asked, borne;
 } given;
 
+/* What is looked for, N, or what the parts lack, over the forces of the whole. */
+typedef struct six {
+    double v[TL_CARRIED];
+} six;
+
 /* The patches that have taken over from one estate, and the points of all of them. */
 typedef struct heirs {
     tl_model *m;
@@ -67,12 +63,8 @@ typedef struct heirs {
     given *points;
     double keep; /* share of their shear that they keep beside what they are given */
     int sought; /* numbers that are looked for: TL_CARRIED, or those of closure, and they keep all shear, whether they bear it or not */
+    six from;   /* where a search begins, and, after it, where it has come to */
 } heirs;
-
-/* What is looked for, N, or what the parts lack, over the forces of the whole. */
-typedef struct six {
-    double v[TL_CARRIED];
-} six;
 
 /* The root of 12 over the area of a patch: of a square, x and y times that are 1 in the mean of their squares. */
 static double per_length(const tl_carried *p)
@@ -183,12 +175,12 @@ static double sign_of(const heirs *of, uint32_t c)
 }
 
 /* Gives the points of a part closure and shear beside what they have taken over. */
-static void begin_points(const heirs *of, const six *more, uint32_t c, given *points)
+static void begin_points(const heirs *of, const double more[], uint32_t c, given *points)
 {
     const tl_detect *d = of->m->detect;
     const tl_point_lanes *lanes = &d->lanes[0];
     const tl_carried *p = &of->estate->carried;
-    const double *q = more->v, *w = more->v + TL_CARRIED_PRESS;
+    const double *q = more, *w = more + TL_CARRIED_PRESS;
     double kn = of->m->joint_laws[d->contacts.law[c]].kn;
     tl_vec3 from = find_places(of->m, c, lanes);
     for (size_t k = 0; k < d->contacts.point_count[c]; k++) {
@@ -259,7 +251,8 @@ static bool give_borne(const heirs *of, uint32_t c, given *points)
 }
 
 /* Adds what a part is going to press with, and its shear. false: the law failed. */
-static bool weigh_part(const heirs *of, const six *more, uint32_t c, given *points, double sum[])
+static bool weigh_part(const heirs *of, const double more[], uint32_t c, given *points,
+                       double sum[])
 {
     const tl_point_lanes *lanes = &of->m->detect->lanes[0];
     const tl_carried *p = &of->estate->carried;
@@ -279,7 +272,7 @@ static bool weigh_part(const heirs *of, const six *more, uint32_t c, given *poin
 }
 
 /* What the parts lack of what the whole carried. false: a law failed. */
-static bool weigh(const heirs *of, const six *more, six *lacks)
+static bool weigh(const heirs *of, const double more[], six *lacks)
 {
     const tl_carried *p = &of->estate->carried;
     double sum[TL_CARRIED] = {0};
@@ -296,133 +289,31 @@ static bool weigh(const heirs *of, const six *more, six *lacks)
 
 /* ---------------------------------------------------------------- search ----------------- */
 
-static double size_of(const six *x, int count)
+static bool miss(const void *user, const double more[], double missed[])
 {
-    double sum = 0;
-    for (int k = 0; k < count; k++)
-        sum += x->v[k] * x->v[k];
-    return sqrt(sum);
-}
-
-/* How fast what is carried rises with each number: [of what][with which], 1/N. */
-typedef struct slopes {
-    double of[TL_CARRIED][TL_CARRIED];
-} slopes;
-
-/* Solves slopes x = right, `count` equations, by elimination, the largest of each column first. false: they cannot be solved. */
-static bool solve(slopes by, six right, int count, six *x)
-{
-    *x = (six){{0}};
-    for (int j = 0; j < count; j++) {
-        int best = j;
-        for (int i = j + 1; i < count; i++)
-            best = fabs(by.of[i][j]) > fabs(by.of[best][j]) ? i : best;
-        for (int k = j; k < count; k++) {
-            double was = by.of[j][k];
-            by.of[j][k] = by.of[best][k];
-            by.of[best][k] = was;
-        }
-        double was = right.v[j];
-        right.v[j] = right.v[best];
-        right.v[best] = was;
-        for (int i = j + 1; i < count; i++) {
-            double share = by.of[i][j] / by.of[j][j];
-            for (int k = j; k < count; k++)
-                by.of[i][k] -= share * by.of[j][k];
-            right.v[i] -= share * right.v[j];
-        }
-    }
-    for (int j = count - 1; j >= 0; j--) {
-        double sum = right.v[j];
-        for (int k = j + 1; k < count; k++)
-            sum -= by.of[j][k] * x->v[k];
-        x->v[j] = sum / by.of[j][j];
-    }
-    return isfinite(size_of(x, count));
-}
-
-/* Slopes where all bears. */
-static slopes plain_slopes(const heirs *of)
-{
-    slopes out = {{{0}}};
-    for (int k = 0; k < TL_CARRIED; k++)
-        out.of[k][k] = 1 / of->estate->carried.most;
-    return out;
-}
-
-/* Slopes at `more`, where the parts lack `lacks`, by differences. false: a law failed. */
-static bool find_slopes(const heirs *of, const six *more, const six *lacks, slopes *out)
-{
-    double most = of->estate->carried.most, by = SMALL * most;
-    for (int j = 0; j < of->sought; j++) {
-        six there = *more, then;
-        there.v[j] += by;
-        if (!weigh(of, &there, &then))
-            return false;
-        for (int i = 0; i < of->sought; i++)
-            out->of[i][j] = (lacks->v[i] - then.v[i]) / by + (i == j ? FAINT / most : 0);
-    }
-    return true;
-}
-
-/* Goes the step or a share of it, so that the parts lack less; halves it so often at the most. Returns the share, 0: none. */
-static double go(const heirs *of, const six *step, int halvings, six *more, six *lacks)
-{
-    double by = 1;
-    for (int n = 0; n <= halvings; n++, by *= 0.5) {
-        six there = *more, then;
-        for (int k = 0; k < of->sought; k++)
-            there.v[k] += by * step->v[k];
-        if (!weigh(of, &there, &then))
-            return 0;
-        if (size_of(&then, of->sought) < size_of(lacks, of->sought)) {
-            *more = there;
-            *lacks = then;
-            return by;
-        }
-    }
-    return 0;
-}
-
-/* Broyden's rule: brings slopes in line with what a share of their step has brought. */
-static void mend_slopes(slopes *by, int count, const six *step, double share, const six *before,
-                        const six *after)
-{
-    double square = 0;
-    for (int k = 0; k < count; k++)
-        square += step->v[k] * step->v[k];
-    for (int i = 0; i < count; i++)
-        for (int j = 0; j < count && square > 0; j++) {
-            double missed = (1 - share) * before->v[i] - after->v[i];
-            by->of[i][j] += missed / share * step->v[j] / square;
-        }
+    const heirs *of = user;
+    six lacks;
+    bool known = weigh(of, more, &lacks);
+    memcpy(missed, lacks.v, sizeof lacks.v);
+    return known;
 }
 
 /* Looks for the numbers with which the parts lack the least, and gives the points what goes with them. *found: they lack nothing. false: a
  * law failed. */
-static bool search(const heirs *of, bool *found)
+static bool search(heirs *of, bool *found)
 {
-    six more = {{0}}, lacks, step;
-    slopes by = plain_slopes(of);
-    const double hopeless = of->sought == TL_CARRIED ? HOPELESS : 1; /* then three are looked for */
-    bool fresh = false;
-    if (!weigh(of, &more, &lacks))
+    const tl_roots roots = {
+        .count = of->sought,
+        .unit = of->estate->carried.most,
+        .hopeless = of->sought == TL_CARRIED ? HOPELESS : 1, /* then three are looked for */
+        .miss = miss,
+        .user = of};
+    double left;
+    if (!tl_roots_find(&roots, of->from.v, &left))
         return false;
-    for (int k = 0; k < STEPS && size_of(&lacks, of->sought) > EXACT; k++) {
-        six before = lacks;
-        double share = 0;
-        if (solve(by, lacks, of->sought, &step))
-            share = go(of, &step, fresh ? HALVINGS : 0, &more, &lacks);
-        if (share > 0)
-            mend_slopes(&by, of->sought, &step, share, &before, &lacks);
-        if (fresh && size_of(&lacks, of->sought) >= hopeless * size_of(&before, of->sought))
-            break;
-        fresh = size_of(&lacks, of->sought) > GOOD * size_of(&before, of->sought);
-        if (fresh && !find_slopes(of, &more, &lacks, &by))
-            break;
-    }
-    *found = size_of(&lacks, of->sought) <= FOUND;
-    return weigh(of, &more, &lacks);
+    six lacks;
+    *found = left <= FOUND;
+    return weigh(of, of->from.v, &lacks);
 }
 
 /* ---------------------------------------------------------------- giving ----------------- */
@@ -456,37 +347,65 @@ static double sum_area(const heirs *of, double *energy)
     return sum;
 }
 
-static void carry(heirs *of)
+/* Looks for all six numbers, from some, with ever less of t, and gives the points what goes with them, which may have so much more
+ * energy. *done: it has. false: a law failed. */
+static bool carry_six(heirs *of, six from, double more, bool *done)
 {
     const tl_carried *whole = &of->estate->carried;
-    six none = {{0}}, lacks;
-    double energy;
-    if (!weigh(of, &none, &lacks) || !(size_of(&lacks, TL_CARRIED) > EXACT) ||
-        !(fabs(sum_area(of, &energy) - whole->area) < SAME_AREA * whole->area))
-        return;
-    double least = (1 + MOST_ENERGY) * whole->energy, best = -1;
+    double least = (1 + more) * whole->energy, best = -1, energy;
     bool found = true;
-    for (; found && of->keep >= 0; of->keep -= LESS) {
+    *done = false;
+    of->sought = TL_CARRIED;
+    for (of->keep = 1; found && of->keep >= 0; of->keep -= LESS) {
+        of->from = from;
         if (!search(of, &found))
-            return;
+            return false;
         sum_area(of, &energy);
-        if (found && energy <= (1 + MORE_ENERGY) * whole->energy) {
-            give(of);
-            return;
-        }
+        *done = found && energy <= (1 + MORE_ENERGY) * whole->energy;
+        if (*done)
+            break;
         if (found && energy < least) {
             least = energy;
             best = of->keep;
         }
     }
-    of->keep = best;
-    if (best >= 0 && search(of, &found)) {
-        give(of);
-        return;
+    if (!*done && best >= 0) {
+        of->keep = best;
+        of->from = from;
+        *done = search(of, &found);
     }
+    if (*done)
+        give(of);
+    return true;
+}
+
+/* The three of closure alone, with all of t. false: a law failed. */
+static bool carry_press(heirs *of, six from)
+{
+    bool found;
     of->keep = 1;
     of->sought = TL_CARRIED_PRESS;
-    if (search(of, &found))
+    of->from = from;
+    return search(of, &found);
+}
+
+/* From none, or from what presses as the whole: a way to all six may lead over that. */
+static void carry(heirs *of)
+{
+    const tl_carried *whole = &of->estate->carried;
+    const six none = {{0}};
+    six lacks;
+    double energy;
+    bool done;
+    if (!weigh(of, none.v, &lacks) || !(tl_roots_size(lacks.v, TL_CARRIED) > TL_ROOTS_EXACT) ||
+        !(fabs(sum_area(of, &energy) - whole->area) < SAME_AREA * whole->area))
+        return;
+    if (!carry_six(of, none, MOST_ENERGY, &done) || done || !carry_press(of, none))
+        return;
+    const six press = of->from;
+    if (!carry_six(of, press, MORE_ENERGY, &done) || done)
+        return;
+    if (carry_press(of, press))
         give(of);
 }
 
@@ -547,7 +466,13 @@ static void carry_all(tl_model *m, const heir *all, size_t count, uint32_t *cont
         const tl_estate *estate = all[first].estate;
         while (end < count && all[end].estate == estate)
             end++;
-        carry(&(heirs){m, estate, contact + first, end - first, points, 1, TL_CARRIED});
+        carry(&(heirs){.m = m,
+                       .estate = estate,
+                       .contact = contact + first,
+                       .count = end - first,
+                       .points = points,
+                       .keep = 1,
+                       .sought = TL_CARRIED});
     }
 }
 

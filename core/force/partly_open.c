@@ -20,7 +20,7 @@
  * A tension that a bond loses takes its part of U with it, and the work of this step, by the mean of the forces of both ends. With u'
  * before the step and u after it that is k/2 int_{u<0} u u' dA of the share lost: heat. The law has counted that of the means.
  *
- * What lifts that differ from point to point change of this is at press_at_point, and what a stress that is no line in u does in bent.c.
+ * What lifts that differ from point to point change of this is at find_uneven, and what a stress that is no line in u does in bent.c.
  *
  * The cells. A patch of k corners has k points between corners, k at corners, and the centroid, all drawn in towards that
  * (patch.c); so its corners follow from its points. In the triangle of an edge and the centroid, the centroid's cell is the
@@ -286,23 +286,17 @@ static void integrate_cells(const patch *of, bool curved)
     }
 }
 
-/* The least lift of the points of a patch. Where others are more, the centres of all cells are found. In a triangle of the fan a cell is
- * r ((1 - q) e + q f) with r and q between two bounds each, and its area that of the triangle times 2 r dr dq. */
-static double find_least_lift(const patch *of)
+/* Finds the centres of all cells. In a triangle of the fan a cell is r ((1 - q) e + q f) with r and q between two bounds each, and its
+ * area that of the triangle times 2 r dr dq. */
+static void find_centres(const patch *of)
 {
-    const double *lift = of->lanes->lift + of->lane, cube = INNER * INNER * INNER;
     const double per = 1 / tl_point_rule_of(false).reach, near = SIDE - 0.5 * SIDE * SIDE;
-    const double next = 0.5 * SIDE * SIDE;
+    const double next = 0.5 * SIDE * SIDE, cube = INNER * INNER * INNER;
     tl_cell *cell = of->lanes->cell + of->lane;
     size_t n = of->corners;
-    double least = lift[0], most = lift[0];
-    for (size_t k = 1; k <= 2 * n; k++) {
-        least = fmin(least, lift[k * TL_LANES]);
-        most = fmax(most, lift[k * TL_LANES]);
-    }
     for (size_t k = 0; k <= 2 * n; k++)
         cell[k * TL_LANES].centre = tl_v3(0, 0, 0);
-    for (size_t k = 0; k < n && most > least; k++) {
+    for (size_t k = 0; k < n; k++) {
         size_t one = n + k, other = n + (k + 1) % n;
         tl_vec3 e = tl_v3_scale(per, tl_v3_sub(arm_of(of, one), arm_of(of, 2 * n)));
         tl_vec3 f = tl_v3_scale(per, tl_v3_sub(arm_of(of, other), arm_of(of, 2 * n)));
@@ -314,7 +308,76 @@ static double find_least_lift(const patch *of)
         *to[2] = tl_v3_madd(tl_v3_madd(*to[2], by * next, e), by * near, f);
         *to[3] = tl_v3_madd(*to[3], fan * cube / 3, tl_v3_add(e, f));
     }
-    return least;
+}
+
+/* What a change of w takes off where lifts differ over a patch, over k: of the force and of the moment. */
+typedef struct uneven {
+    double force;
+    tl_vec3 moment;
+} uneven;
+
+/* Mean of u over a cell less u at its point, times the area. */
+static double beside_point(const patch *of, size_t k)
+{
+    const tl_point_lanes *t = of->lanes;
+    size_t i = of->lane + k * TL_LANES;
+    double at_point = area_of(of, k) * (t->closure[i] + t->lift[i]);
+    return t->cell[i].pressed_volume - t->cell[i].apart_volume - at_point;
+}
+
+/* Takes from each cell what it does not press with over its area, but at its point: w (lift - least). */
+static void press_at_points(const patch *of, double least, double w)
+{
+    for (size_t k = 0; k <= 2 * of->corners; k++) {
+        size_t i = of->lane + k * TL_LANES;
+        tl_cell *cell = &of->lanes->cell[i];
+        tl_vec3 arm = tl_v3_sub(arm_of(of, k), arm_of(of, 2 * of->corners));
+        double lift = w * (of->lanes->lift[i] - least);
+        tl_vec3 beside = tl_v3_madd(cell->centre, -area_of(of, k), arm);
+        cell->pressed = tl_v3_madd(cell->pressed, -lift, beside);
+        cell->pressed_second -= 2 * lift * beside_point(of, k);
+    }
+}
+
+/* What a lift is beyond the least of the patch presses at the point, as it does while all is closed, and not over the cell: else a
+ * patch would press elsewhere as soon as some of it is apart, by a rounding. As the patch opens, from P = int u over what presses and
+ * Q = int -u over what is apart, that is less, by
+ *
+ *     w = P / (P + Q),    U changes by -k w sum lift A (mean of u over the cell - u at the point),
+ *
+ * and force and moment by its gradient. P + Q is at least about A times the differences of the lifts, so what is added to the force
+ * stays small beside them. */
+static uneven find_uneven(const patch *of)
+{
+    const tl_point_lanes *t = of->lanes;
+    double least = INFINITY, most = -INFINITY, pressed = 0, apart = 0, pressed_area = 0, area = 0;
+    tl_vec3 pressed_centre = {0, 0, 0}, centre = {0, 0, 0};
+    double pays = 0;
+    for (size_t k = 0; k <= 2 * of->corners; k++) {
+        least = fmin(least, t->lift[of->lane + k * TL_LANES]);
+        most = fmax(most, t->lift[of->lane + k * TL_LANES]);
+    }
+    if (!(most > least))
+        return (uneven){.force = 0};
+    find_centres(of);
+    for (size_t k = 0; k <= 2 * of->corners; k++) {
+        size_t i = of->lane + k * TL_LANES;
+        const tl_cell *cell = &t->cell[i];
+        pays += (t->lift[i] - least) * beside_point(of, k);
+        pressed += cell->pressed_volume;
+        apart += cell->apart_volume;
+        area += area_of(of, k);
+        pressed_area += cell->pressed_area;
+        centre = tl_v3_add(centre, cell->centre);
+        pressed_centre = tl_v3_add(pressed_centre, cell->pressed_centre);
+    }
+    double w = pressed / (pressed + apart), by = pays / (pressed + apart);
+    if (!(pressed > 0) || !isfinite(by))
+        return (uneven){.force = 0};
+    press_at_points(of, least, w);
+    tl_vec3 moment = tl_v3_scale(by * (1 - w), pressed_centre);
+    return (uneven){by * ((1 - w) * pressed_area + w * (area - pressed_area)),
+                    tl_v3_madd(moment, by * w, tl_v3_sub(centre, pressed_centre))};
 }
 
 /* How far the means are those of the cells, and not of the points: t. */
@@ -350,40 +413,29 @@ static void leave_rest(const patch *of, size_t k, double p, double q, const doub
     cell->apart_second = 0.5 * (cell->apart_second - apart * apart / area);
 }
 
-/* What a lift is beyond the least of the patch presses at the point, as it does while all is closed, and not over the cell: else a
- * patch would press elsewhere as soon as some of it is apart, by a rounding. As the cell opens, from P = A p and Q = A q, that is less, by
- *
- *     w = P / (P + Q),    U changes by -k w (lift - least) A (mean of u - u at the point),
- *
- * and force and moment by its gradient. `more`: mean of u over the cell less u at the point; `whole`: P and Q. */
-static void press_at_point(const patch *of, size_t k, double least, double more,
-                           const double whole[2])
+/* Takes off from the cells, which have their means: from each its share of what presses. */
+static void take_off(const patch *of, const uneven *by)
 {
-    size_t i = of->lane + k * TL_LANES;
-    tl_cell *cell = &of->lanes->cell[i];
-    double area = area_of(of, k), lift = of->lanes->lift[i] - least, sum = whole[0] + whole[1];
-    if (!(lift > 0) || !(whole[0] > 0))
-        return;
-    double w = whole[0] / sum, by = lift * more * area / (sum * sum);
-    double apart_area = area - cell->pressed_area;
-    tl_vec3 arm = tl_v3_sub(arm_of(of, k), arm_of(of, 2 * of->corners));
-    tl_vec3 apart_centre = tl_v3_sub(cell->centre, cell->pressed_centre);
-    cell->pressed_more -= by * (whole[1] * cell->pressed_area + whole[0] * apart_area);
-    cell->pressed = tl_v3_madd(cell->pressed, -lift * w, tl_v3_madd(cell->centre, -area, arm));
-    cell->pressed = tl_v3_madd(cell->pressed, -by * whole[1], cell->pressed_centre);
-    cell->pressed = tl_v3_madd(cell->pressed, -by * whole[0], apart_centre);
-    cell->pressed_second -= lift * w * area * more;
+    tl_cell *cell = of->lanes->cell + of->lane;
+    double pressed = 0;
+    for (size_t k = 0; k <= 2 * of->corners; k++)
+        pressed += cell[k * TL_LANES].pressed_volume;
+    for (size_t k = 0; k <= 2 * of->corners && pressed > 0; k++) {
+        tl_cell *to = &cell[k * TL_LANES];
+        double share = to->pressed_volume / pressed;
+        to->pressed_more -= share * by->force;
+        to->pressed = tl_v3_madd(to->pressed, -share, by->moment);
+    }
 }
 
 /* Gives a point the closure at which its whole cell would press as its closed part does. The cell keeps what it has beside that. */
-static void put_means(const patch *of, size_t k, double share, bool curved, double least)
+static void put_means(const patch *of, size_t k, double share, bool curved)
 {
     const tl_point_lanes *t = of->lanes;
     size_t i = of->lane + k * TL_LANES;
     tl_cell *cell = &t->cell[i];
     double area = area_of(of, k), u = t->closure[i] + t->lift[i];
-    const double given[2] = {cell->pressed_volume, cell->apart_volume};
-    double more = (given[0] - given[1]) / area - u;
+    double more = (cell->pressed_volume - cell->apart_volume) / area - u;
     double p = cell->pressed_volume / area - (1 - share) * more, q = cell->apart_volume / area;
     double second = 0;
     if (curved) {
@@ -400,19 +452,15 @@ static void put_means(const patch *of, size_t k, double share, bool curved, doub
     t->apart[i] = q;
     leave_rest(of, k, p, q, whole);
     cell->pressed_second += second;
-    press_at_point(of, k, least, more, given);
 }
 
 /* What the cell of a point that has gone by its own closure has beside that. */
-static void leave_own(const patch *of, size_t k, double least)
+static void leave_own(const patch *of, size_t k)
 {
     const tl_point_lanes *t = of->lanes;
     size_t i = of->lane + k * TL_LANES;
     const double whole[2] = {t->cell[i].pressed_volume, t->cell[i].apart_volume};
-    double u = t->closure[i] + t->lift[i];
-    double more = (whole[0] - whole[1]) / area_of(of, k) - u;
-    leave_rest(of, k, u, 0, whole);
-    press_at_point(of, k, least, more, whole);
+    leave_rest(of, k, t->closure[i] + t->lift[i], 0, whole);
 }
 
 /* The patches of a SIMD group whose points get means. Gives how many, and the lanes of these and of those that hold throughout. */
@@ -463,9 +511,11 @@ tl_part_lanes tl_simd_group_part(const tl_model *m, const tl_law *law, const tl_
     if (curved)
         tl_cells_bend(m, law, group, t, lane, lanes.parts);
     for (size_t j = 0; j < count; j++) {
-        double share = share_of_cells(&of[j]), least = find_least_lift(&of[j]);
+        const double share = share_of_cells(&of[j]);
+        const uneven by = find_uneven(&of[j]);
         for (size_t k = 0; k <= 2 * of[j].corners; k++)
-            put_means(&of[j], k, curved ? fmin(1, SOON * share) : share, curved, least);
+            put_means(&of[j], k, curved ? fmin(1, SOON * share) : share, curved);
+        take_off(&of[j], &by);
     }
     return lanes;
 }
@@ -486,9 +536,10 @@ uint32_t tl_simd_group_broken(const tl_model *m, const tl_simd_group *group,
             continue;
         out |= 1u << l;
         integrate_cells(&of, false);
-        double least = find_least_lift(&of);
+        const uneven by = find_uneven(&of);
         for (size_t k = 0; k <= 2 * of.corners; k++)
-            leave_own(&of, k, least);
+            leave_own(&of, k);
+        take_off(&of, &by);
     }
     return out;
 }
@@ -506,10 +557,9 @@ static tl_part_sums sum_cells(const patch *of, const tl_law *law, tl_vec3 turn)
         const tl_cell *cell = &t->cell[i];
         double pulls = law->kn * t->hold[i], lost = law->kn * (cell->hold - t->hold[i]);
         double pressed = of->p->f_n[of->row + k * TL_LANES] + pulls * cell->apart_volume;
-        double straight = tl_law_is_linear(law) ? law->kn : 0;
         /* what slip has opened in this step presses at the point: it is not in the volume, which may be next to nothing */
-        double spring = cell->pressed_volume > 0 ? pressed / cell->pressed_volume : straight;
-        spring = fmin(spring, SAME_STIFFNESS * law->kn);
+        double spring = cell->pressed_volume > 0 ? pressed / cell->pressed_volume : law->kn;
+        spring = fmax(0, fmin(spring, SAME_STIFFNESS * law->kn));
         double moved = du * cell->apart_more + tl_v3_dot(tl_v3_cross(turn, cell->apart), n);
         sum = tl_v3_madd(tl_v3_madd(sum, spring, cell->pressed), -pulls, cell->apart);
         out.stored += spring * cell->pressed_second + pulls * cell->apart_second;

@@ -105,6 +105,12 @@ TL_IN_LOOP double down_to(double size, double limit)
     return beyond > 0 ? limit / (beyond > 0 ? size : 1) : 1;
 }
 
+/* Damage as it is: where points have been put together, what is left may be a rounding. */
+TL_IN_LOOP double told(double damage)
+{
+    return damage < 1 - NOISE ? damage : 1;
+}
+
 /* Damage that belongs to elastic stresses of the bond, squared: see the head of the file. */
 TL_IN_LOOP double damage_of(const cohesive *law, double tension2, double shear2)
 {
@@ -169,7 +175,7 @@ TL_IN_LOOP void move(const cohesive *given, const tl_law_batch *batch, uint32_t 
         double total = kn * c.area[i] * c.closure[i] + c.f_n0[i], stress = total * per;
         double beside = kn * apart[i], pull1 = (stress < 0 ? -stress : 0) + beside;
         double pull0 = pull1 > kn * c.du_n[i] ? pull1 - kn * c.du_n[i] : 0;
-        double was = damage[i], left = 1 - was, has = left > 0 ? 1 : 0;
+        double was = told(damage[i]), left = 1 - was, has = left > 0 ? 1 : 0;
         double dx = c.du_x[i], dy = c.du_y[i], dz = c.du_z[i];
         /* a bond that is lost has all of its stress from friction, whatever the state says */
         double each = was > 0 ? 1 / (was > 0 ? was : 1) : 0;
@@ -314,7 +320,7 @@ static void across_gap(const void *self, const tl_law_batch *batch, double *lift
     const cohesive *law = self;
     tl_law_lift(batch, law->kn, NULL, lift);
     for (uint32_t i = 0; i < batch->count; i++)
-        hold[i] = batch->flags[i] & TL_POINT_APART ? 0 : 1 - batch->state[0][i];
+        hold[i] = batch->flags[i] & TL_POINT_APART ? 0 : 1 - told(batch->state[0][i]);
 }
 
 static const tl_law_ops ops =
