@@ -302,7 +302,8 @@ void tl_contact_allow_reuse(tl_model *m, uint32_t c)
     tl_contacts *contacts = &m->detect->contacts;
     bool patch = is_patch(contacts, c);
     bool field = contacts->facet[c].kind == TL_FACET_FIELD && contacts->point_count[c] > 0;
-    double most = field ? REUSE_FIELD * tl_press_row_of(m, c)->press.overlap : still_way(m, c);
+    const tl_press *press = field ? &tl_press_row_of(m, c)->press : NULL;
+    double most = field ? REUSE_FIELD * fmin(press->overlap, press->deepest) : still_way(m, c);
     if (!patch || contacts->new_points[c] != TL_POINTS_STAY)
         contacts->points_valid_to[c] = tl_pair_odometer(m, contacts->a[c], contacts->b[c]) + most;
     if (!patch)

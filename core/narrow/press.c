@@ -5,10 +5,10 @@
  * faces are borders, U_p = 2 kn G_p. Between
  * them one blend,
  *
- *     G = w G_f + (1 - w) G_p,    w = 1 - (1 - S(sin tilt)) (1 - S(q)),    q = (4 G_p)^(3/2) / V_p^2 - shift (4 G_p)^(1/2) / V_p
+ *     G = w G_f + (1 - w) G_p
  *
- * with the smoothstep S; q is the overlap of the patch as it is, without the shift of moved faces, over the root of its area. So a
- * patch under an initial stress, or opened by slip, passes into its field without a jump. The force is the gradient of all of it,
+ * (share.c). So a patch under an initial stress, or opened by slip, passes into its field without a jump. The force is the gradient of
+ * all of it,
  *
  *     F = w F_f + (1 - w) F_p - (G_f - G_p) grad w.
  *
@@ -27,6 +27,7 @@
 #include "narrow/field_mesh.h"
 #include "narrow/patch.h"
 #include "narrow/scratch.h"
+#include "narrow/share.h"
 
 #include <stdlib.h>
 #include <talus/vmath.h>
@@ -212,42 +213,8 @@ static tl_field_power with_min_area(const tl_field_sums *f, double min_area)
                             tl_v3_madd(tl_v3_scale(by_g, moment), by_v, f->swept_moment)};
 }
 
-/* Smoothstep from 0 at `low` to 1 at `high`, and its slope. */
-static double step(double x, double low, double high, double *slope)
-{
-    double t = fmin(1, fmax(0, (x - low) / (high - low)));
-    *slope = 6 * t * (1 - t) / (high - low);
-    return t * t * (3 - 2 * t);
-}
-
-/* The share of the patch of the flush faces, and minus the gradient of that of the field. */
-typedef struct patch_share {
-    double share;
-    tl_vec3 push, turn;
-} patch_share;
-
-static patch_share find_share(const tl_press_query *of, bool corners, const tl_field_sums *patch)
-{
-    tl_vec3 na = of->view->a->plane[of->region->flush_a].normal;
-    tl_vec3 nb = of->view->normal_b[of->region->flush_b], hinge = tl_v3_cross(na, nb);
-    double sine = tl_v3_norm(hinge), g = patch->energy, v = patch->volume, by_tilt, by_q;
-    double shift = shift_of(of, 0, of->region->flush_a) + shift_of(of, 1, of->region->flush_b);
-    double whole = 8 * g * sqrt(g) / (v * v), moved = 2 * shift * sqrt(g) / v;
-    const tl_flush_limits limits = tl_flush_limits_of(corners);
-    double tilted = step(sine, limits.tilt, limits.field_tilt, &by_tilt);
-    double deep = step(whole - moved, limits.depth, limits.field_depth, &by_q);
-    patch_share out = {.share = (1 - tilted) * (1 - deep)};
-    double scale = (1 - tilted) * by_q * whole, less = (1 - tilted) * by_q * moved;
-    double by_g = 1.5 * scale / g - 0.5 * less / g, by_v = 2 * scale / v - less / v;
-    double couple = sine > 0 ? -(1 - deep) * by_tilt * tl_v3_dot(na, nb) / sine : 0;
-    out.push = tl_v3_madd(tl_v3_scale(by_g, patch->force), -by_v, patch->swept);
-    out.turn = tl_v3_madd(tl_v3_scale(by_g, patch->moment), -by_v, patch->swept_moment);
-    out.turn = tl_v3_madd(out.turn, couple, hinge);
-    return out;
-}
-
 /* Blends an integral over the field with that over the patch. */
-static void blend(const patch_share *by, const tl_field_power *flat, tl_field_power *field)
+static void blend(const tl_patch_share *by, const tl_field_power *flat, tl_field_power *field)
 {
     double share = by->share, w = 1 - share, more = field->whole - flat->whole;
     field->force = tl_v3_madd(tl_v3_scale(w, field->force), share, flat->force);
@@ -265,7 +232,7 @@ static void find_powers(const tl_field_sums *f, tl_field_power out[TL_PRESS_POWE
     out[TL_PRESS_CUBE] = f->powers[1];
 }
 
-static void blend_powers(const patch_share *by, const tl_field_sums *patch,
+static void blend_powers(const tl_patch_share *by, const tl_field_sums *patch,
                          tl_field_power field[TL_PRESS_POWERS])
 {
     tl_field_power flat[TL_PRESS_POWERS];
@@ -426,9 +393,11 @@ static bool press_of(const tl_press_query *of, planes *p, tl_field_sums *sums, b
         if (!(corners ? sum_corners(of, p->origin, scratch, &patch)
                       : sum_patch(of, p, scratch, &patch)))
             return false;
-        patch_share by = {.share = 0};
+        const double shift = shift_of(of, false, fa) + shift_of(of, true, fb);
+        tl_patch_share by = {.share = 0};
         if (patch.energy > 0 && has_square(patch.volume))
-            by = find_share(of, corners, &patch);
+            by = tl_patch_share_of(&view->a->plane[fa].normal, &view->normal_b[fb], corners, shift,
+                                   &patch, sums);
         if (by.share > 0) {
             const tl_field_power flat = with_min_area(&patch, min_area);
             blend(&by, &flat, &field);

@@ -32,6 +32,8 @@ NUMBERS = [
     ("core/narrow/press_slope.h", "TL_PRESS_SLOPE_COST", 12, "within 5e-5 o for twelve steps"),
     ("core/narrow/frame2.h", "TL_STRAIGHT", 1e-4, "turns by less than 1e-4 rad"),
     ("core/narrow/frame2.h", "TL_CORNER", 2e-3, "Between 1e-4 and 2e-3 rad"),
+    ("core/narrow/share.c", "SLIVER", 0.1, "S(G_p/G_f; 0.1, 0.5)"),
+    ("core/narrow/share.c", "WHOLE", 0.5, "S(G_p/G_f; 0.1, 0.5)"),
     ("core/narrow/flush.h", "TL_CORNERS_TILT", 0.0872, "up to a tilt of 5°"),
     ("core/narrow/flush.h", "TL_CORNERS_FIELD_TILT", 0.1736, "S(sin tilt; 5°, 10°)"),
     ("core/narrow/flush.h", "TL_CORNERS_DEPTH", 0.1, "S(q; 0.1, 0.2)"),
