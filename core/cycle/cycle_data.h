@@ -323,6 +323,9 @@ tl_watch *tl_watch_begin(const tl_model *m);
 /* After each step; gives the id of the block that fails steadily, or 0. */
 tl_id tl_watch_step(tl_watch *watch, const tl_model *m);
 void tl_watch_end(tl_watch *watch);
+/* The body that has gone the farthest since the watch began, over its size, of those that touched something then and have gone
+ * farther than they settle: the lowest id of its blocks, and its way, m, and size, m. TL_NO_ID: none has. */
+tl_id tl_watch_gone(const tl_watch *watch, const tl_model *m, double *way, double *size);
 /* Remarks on numbers that are legal and improbable: remarks.c. Looks at gravity, densities and stiffnesses when they
  * have changed; now and then at closures under load; at the friction of a law that is set. */
 void tl_remark_units(tl_model *m);

@@ -124,6 +124,45 @@ static void say_failure(tl_model *m, const tl_solve_result *r)
                  r->failing, speed, r->ratio_local, r->ratio);
 }
 
+/* At rest, but not where the run began: what slid until it met something may be no equilibrium of what was asked for. */
+static void say_gone(tl_model *m, const tl_watch *watch)
+{
+    double way = 0, size = 0;
+    tl_id gone = tl_watch_gone(watch, m, &way, &size);
+    if (gone != TL_NO_ID)
+        tl_model_say(m,
+                     "solve: at rest, but not where it began: block %u has moved by %.3g m in this "
+                     "run, %.2g times its size",
+                     gone, way, way / size);
+}
+
+/* Neither at rest nor failing: of a run that was to find out which. */
+static void say_undecided(tl_model *m, const tl_solve *solve, const tl_solve_result *r)
+{
+    bool cycles = r->reason == TL_SOLVE_CYCLES;
+    double ratio = tl_unbalanced_ratio(m, (tl_ratio_measure)solve->measure);
+    if (tl_model_says(m, TL_REMARK_UNDECIDED))
+        tl_model_say(m,
+                     "solve: ended by %s = %.9g, neither at rest (ratio %.3g, asked for %.3g) nor "
+                     "failing: that is no word on whether it stands",
+                     cycles ? "max_cycles" : "max_time",
+                     cycles ? (double)solve->max_cycles : solve->max_time, ratio, solve->ratio);
+}
+
+/* What the end of a run means for whether the model stands. A stop function has its own reason. */
+static void say_end(tl_model *m, const tl_solve *solve, const tl_watch *watch,
+                    const tl_solve_result *r)
+{
+    bool rests = r->reason == TL_SOLVE_RATIO || r->reason == TL_SOLVE_VELOCITY;
+    bool limit = r->reason == TL_SOLVE_CYCLES || r->reason == TL_SOLVE_TIME;
+    if (r->failing && r->reason != TL_SOLVE_STOP)
+        say_failure(m, r);
+    else if (rests && watch)
+        say_gone(m, watch);
+    else if (limit && solve->ratio > 0 && m->damping)
+        say_undecided(m, solve, r);
+}
+
 static tl_status run(tl_model *m, const tl_solve *solve, tl_solve_result *wanted)
 {
     tl_solve_result unread, *const result = wanted ? wanted : &unread;
@@ -151,10 +190,9 @@ static tl_status run(tl_model *m, const tl_solve *solve, tl_solve_result *wanted
         if (ended(m, &p, &status))
             break;
     }
+    if (status == TL_OK)
+        say_end(m, solve, watch, result);
     tl_watch_end(watch);
-    /* a stop function has its own reason */
-    if (status == TL_OK && result->failing && result->reason != TL_SOLVE_STOP)
-        say_failure(m, result);
     return status;
 }
 

@@ -38,10 +38,11 @@
 
 /* A leg of a body, until now, and those behind it. */
 typedef struct leg {
-    double size;  /* of the body, m */
-    tl_vec3 from; /* displacement where it began */
-    double began; /* s */
-    tl_vec3 way;  /* direction and speed of the leg before */
+    double size;   /* of the body, m */
+    tl_vec3 start; /* displacement when the run began */
+    tl_vec3 from;  /* displacement where it began */
+    double began;  /* s */
+    tl_vec3 way;   /* direction and speed of the leg before */
     double speed;
     uint8_t legs; /* gone, one no slower than the other */
     tl_vec3
@@ -117,6 +118,7 @@ tl_watch *tl_watch_begin(const tl_model *m)
     }
     for (uint32_t body = 0; body < w->bodies; body++) {
         w->leg[body].size = size_of(m, body);
+        w->leg[body].start = m->bodies.pose[body].u;
         begin_leg(&w->leg[body], m, body);
     }
     return w;
@@ -269,4 +271,22 @@ tl_id tl_watch_step(tl_watch *w, const tl_model *m)
             end_leg(&w->leg[body], m, body);
     w->failing = find_failing(w, m);
     return w->failing;
+}
+
+tl_id tl_watch_gone(const tl_watch *w, const tl_model *m, double *way, double *size)
+{
+    double most = FAILED_SHARE, least = SETTLED_SHARE * settlement(w, m);
+    tl_id gone = TL_NO_ID;
+    for (uint32_t body = 0; body < w->bodies && w->structure == m->structure; body++) {
+        const leg *l = &w->leg[body];
+        double far = tl_v3_norm(tl_v3_sub(m->bodies.pose[body].u, l->start));
+        if (!l->touched || m->bodies.fixed[body] == TL_FIX_ALL || far < least ||
+            !(far > most * l->size))
+            continue;
+        most = far / l->size;
+        *way = far;
+        *size = l->size;
+        gone = m->bodies.id[body];
+    }
+    return gone;
 }

@@ -276,3 +276,13 @@ void tl_output_drop(tl_output *output)
     free(output->path);
     *output = (tl_output){.path = NULL};
 }
+
+char *tl_output_prefix(const char *given, const char *ending)
+{
+    char *prefix = strdup(given);
+    size_t length = strlen(given), more = strlen(ending);
+    bool named = length > more && given[length - more - 1] != '/';
+    if (prefix && named && strcmp(given + length - more, ending) == 0)
+        prefix[length - more] = '\0';
+    return prefix;
+}

@@ -37,6 +37,8 @@ tl_status tl_output_finish(tl_output *output, tl_error *error);
 tl_status tl_output_commit(tl_output *output, tl_error *error);
 /* Removes what is not committed and frees; does nothing to a zeroed or dropped output. */
 void tl_output_drop(tl_output *output);
+/* What the user gave before the ending that the files get in any case, in memory of its own; NULL when there is none left. */
+char *tl_output_prefix(const char *given, const char *ending);
 /* TL_E_IO: "cannot write 'path': " and the text of an errno. */
 tl_status tl_output_fail(tl_error *error, const char *path, int code);
 

@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/signals.h"
 #include "io/json.h"
+#include "io/output_file.h"
 #include "io/pack.h"
 #include "io/page_file.h"
 #include "model/options.h"
@@ -186,25 +187,24 @@ tl_status tl_page_write(tl_model *m, const char *prefix, const tl_html *given, u
         status = check(prefix, &options, &m->error);
     if (status != TL_OK)
         return status;
-    if (!options.title)
-        options.title = name_of(prefix);
-    tl_page *page = page_of(m, prefix);
-    char *path = malloc(strlen(prefix) + sizeof ".html");
-    if (!page || !path) {
-        free(path);
-        return tl_fail_memory(&m->error);
+    char *own = tl_output_prefix(prefix, ".html"), *path = NULL;
+    tl_page *page = own ? page_of(m, own) : NULL;
+    if (page && (path = malloc(strlen(own) + sizeof ".html"))) {
+        strcpy(path, own);
+        strcat(path, ".html");
+        options.title = options.title ? options.title : name_of(own);
+        sigset_t before;
+        tl_signals_hold(&before, false);
+        atomic_store(&m->interrupted, false);
+        status = add_frame(m, page, path, &options, most);
+        tl_signals_release(&before);
+    } else {
+        status = tl_fail_memory(&m->error);
     }
-    strcpy(path, prefix);
-    strcat(path, ".html");
-
-    sigset_t before;
-    tl_signals_hold(&before, false);
-    atomic_store(&m->interrupted, false);
-    status = add_frame(m, page, path, &options, most);
-    tl_signals_release(&before);
     if (status == TL_E_IO)
         tl_error_prefix(&m->error, "write_html: ");
     free(path);
+    free(own);
     return status;
 }
 

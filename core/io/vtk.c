@@ -137,7 +137,9 @@ static tl_status write_frame(tl_model *m, const char *prefix, const frame *f)
     tl_status status = check_prefix(f->function, prefix, &m->error);
     if (status != TL_OK)
         return status;
-    tl_vtk_series *series = tl_vtk_series_of(m, prefix, f->parts[0].content);
+    char *own = tl_output_prefix(prefix, ".vtk");
+    tl_vtk_series *series = own ? tl_vtk_series_of(m, own, f->parts[0].content) : NULL;
+    free(own);
     if (!series)
         return tl_fail_memory(&m->error);
 

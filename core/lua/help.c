@@ -1,6 +1,8 @@
 /* help.c - `talus help` and `talus plugins`: printed from the tables that check what a script gives,
  * so that the help cannot say otherwise than the check. */
-#include "front.h"
+#include "help_search.h"
+
+#include "base/names.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -241,21 +243,55 @@ static void print_overview(void)
 
 /* ---------------------------------------------------------------- entry ------------------ */
 
+/* Names of pages, one after the other. */
+typedef struct page_list {
+    char text[160];
+    size_t count;
+} page_list;
+
+/* Adds a page, while there is room for it and three dots. */
+static void list_page(page_list *pages, const char *name)
+{
+    size_t length = strlen(pages->text), room = sizeof pages->text - length;
+    bool fits = strlen(name) + sizeof ", ..." < room;
+    if (strcmp(pages->text + (length < 3 ? 0 : length - 3), "...") == 0)
+        return;
+    snprintf(pages->text + length, room, "%s%s", length ? ", " : "", fits ? name : "...");
+    pages->count++;
+}
+
+/* Tells of a word that is the name of no page: the nearest name, or the pages that speak of it. */
 static bool unknown_topic(const char *word, tl_error *error)
 {
     tl_lua_names names = {0};
-    for (const tl_lua_topic *topic = tl_lua_topics; topic->name; topic++)
+    page_list pages = {0};
+    for (const tl_lua_topic *topic = tl_lua_topics; topic->name; topic++) {
         tl_lua_names_add(&names, topic->name);
+        if (tl_lua_topic_says(topic, word))
+            list_page(&pages, topic->name);
+    }
     for (int type = TL_KIND_LAW; type <= TL_KIND_SCREEN; type++) {
         const tl_kind *kind;
-        for (size_t i = 0; (kind = tl_plugin_kind((tl_kind_type)type, i)) != NULL; i++)
+        for (size_t i = 0; (kind = tl_plugin_kind((tl_kind_type)type, i)) != NULL; i++) {
             tl_lua_names_add(&names, kind->name);
+            if (tl_lua_kind_says(kind, word))
+                list_page(&pages, kind->name);
+        }
     }
     const char *nearest = tl_nearest_name(word, names.at, names.count);
+    bool misspelt = nearest && tl_edit_distance(word, nearest) <= 1;
     error->status = TL_E_NOT_FOUND;
-    snprintf(error->text, sizeof error->text, "there is no help on '%s'; %s%s%s", word,
-             nearest ? "did you mean '" : "`talus help` lists all topics", nearest ? nearest : "",
-             nearest ? "'?" : "");
+    if (misspelt || (nearest && pages.count == 0))
+        snprintf(error->text, sizeof error->text, "there is no help on '%s'; did you mean '%s'?",
+                 word, nearest);
+    else if (pages.count > 0)
+        snprintf(error->text, sizeof error->text,
+                 "there is no page '%s'; these speak of it (talus help NAME): %s", word,
+                 pages.text);
+    else
+        snprintf(error->text, sizeof error->text,
+                 "there is no help on '%s', and no page speaks of it; `talus help` lists all",
+                 word);
     return false;
 }
 

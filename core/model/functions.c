@@ -312,7 +312,7 @@ static const tl_function functions[] = {
      PARAMS(write_section_params)},
     {"write_html",
      "Adds a frame to a page for a browser: one file that shows the blocks, in every frame so far. "
-     "The folder and the name without .html are given first.",
+     "The folder and the name are given first, with or without .html.",
      PARAMS(write_html_params)},
     {"view",
      "Shows the model in a browser while it runs, and takes commands from there. Gives the address "

@@ -186,7 +186,8 @@ typedef enum tl_remark {
     TL_REMARK_DENSITY,  /* is not that of a solid, or does not go with the stiffness */
     TL_REMARK_TENSION,  /* initial stress pulls */
     TL_REMARK_OVERLAP,  /* blocks overlap when they come into contact */
-    TL_REMARK_CLOSURE   /* a contact closes by much of a block's thickness */
+    TL_REMARK_CLOSURE,  /* a contact closes by much of a block's thickness */
+    TL_REMARK_UNDECIDED /* a run for equilibrium has ended before it, without failure */
 } tl_remark;
 
 /* A contact that somebody has asked for, by the ids of its blocks. */

@@ -1059,7 +1059,7 @@ function Model:write_section(path, options) end
 ---@field contact_fields? string[]|table<string, string|fun(contact: talus.Contact): number?> numbers of each contact, likewise: fields of contacts, states of their laws, functions
 ---@field keyblocks? talus.KeyblocksOptions parameters of model:keyblocks, whose modes and factors of safety are shown as well
 
---- Adds a frame to a page for a browser: one file that shows the blocks, in every frame so far. The folder and the name without .html are given first.
+--- Adds a frame to a page for a browser: one file that shows the blocks, in every frame so far. The folder and the name are given first, with or without .html.
 ---
 ---     model:write_html("out/run", {title = "Slope", block_fields = {"kinetic_energy"}})
 ---@param path string

@@ -161,6 +161,16 @@ os.remove(stem .. "_title.html")
 model:write_html(stem .. "_title", { title = "a < b & c > d </title><script>" })
 check.holds(content_of(stem .. "_title.html"):find("<title>a &lt; b &amp; c &gt; d &lt;/title&gt;&lt;script&gt;</title>", 1, true), "a title")
 
+-- The ending may be given: it is the same page. A file whose whole name it would be keeps it.
+model:write_html(stem .. "_ending.html")
+model:write_html(stem .. "_ending")
+check.equal(select(2, cycles_of(stem .. "_ending"):gsub("%d+", "")), 2)
+check.holds(not io.open(stem .. "_ending.html.html"), "no second ending")
+check.holds(content_of(stem .. "_ending.html"):find("_ending</title>", 1, true), "the title has no ending")
+os.remove(stem .. "_ending.html")
+model:write_vtk(stem .. "_ending.vtk", { contacts = false, joints = false })
+check.holds(os.remove(stem .. "_ending_blocks_000000.vtk") and os.remove(stem .. "_ending_blocks.vtk.series"), "as without it")
+
 for _, name in ipairs { "_t2.html", "_t3.html", ".talus", "_run.html", "_title.html" } do
     os.remove(stem .. name)
 end

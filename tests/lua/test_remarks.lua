@@ -132,3 +132,17 @@ local pipe = io.popen(string.format("'%s' --quiet -e '%s' 2>&1", program,
     "talus.model { gravity = { 0, 0, 10 } }:blocks():fix()"))
 check.equal(pipe:read("a"), "")
 pipe:close()
+
+-- What the end of a run says of whether the model stands: by its limits nothing, and what has slid until it met something is not where
+-- it was. A run that is not for equilibrium says nothing.
+says("local m = stack() m:solve { max_cycles = 5 } m:solve { max_time = 1e-3 }", "solve: ended by max_cycles = 5, neither at rest (ratio ",
+    "asked for 1e-05) nor failing")
+says("stack():solve { max_time = 1e-3 }", "solve: ended by max_time = 0.001, neither at rest")
+is_silent "stack():solve { ratio = 0, max_cycles = 5 }"
+is_silent "stack():solve { max_cycles = 5, stop = function() return true end, every = 1 }"
+is_silent "stack():solve {}"
+says([[local m = stack { friction = 20 }
+    m:generate("box", { min = { 1.6, 0, 0 }, max = { 1.8, 2, 1 }, density = 2700, group = "stop" })
+    m:blocks { group = "stop" }:fix()
+    m.gravity = { 9.81 * math.sin(0.6), 0, -9.81 * math.cos(0.6) }
+    m:solve {}]], "solve: at rest, but not where it began: block 2 has moved by 0.6", "times its size")
