@@ -68,7 +68,7 @@ const char *tl_nearest_name(const char *word, const char *const *names, size_t c
 {
     size_t length = strlen(word);
     /* A third of the letters may be wrong, but not the only one. */
-    size_t best = length < 2 ? 1 : (length + 1) / 3 + 1;
+    size_t best = length < 2 ? 1 : (length + 2) / 3 + 1;
     const char *nearest = NULL;
     for (size_t i = 0; i < count; i++) {
         size_t distance = tl_edit_distance(word, names[i]);

@@ -2,14 +2,14 @@
  * so that the help cannot say otherwise than the check. */
 #include "help_search.h"
 
-#include "base/names.h"
-
 #include <stdio.h>
 #include <string.h>
 #include <talus/fields.h>
 
 #define WIDTH 88
 #define NAME_COLUMNS 18
+/* A word of so many letters with another first one is not a misspelt name. */
+#define SHORT 4
 
 /* Prints a text from column `indent` on, broken at spaces; the cursor is at column `at`. */
 static void print_wrapped(const char *text, int indent, int at)
@@ -279,9 +279,10 @@ static bool unknown_topic(const char *word, tl_error *error)
         }
     }
     const char *nearest = tl_nearest_name(word, names.at, names.count);
-    bool misspelt = nearest && tl_edit_distance(word, nearest) <= 1;
+    size_t length = strlen(word), other = nearest ? strlen(nearest) : 0;
+    bool misspelt = nearest && strncmp(word, nearest, length < other ? length : other) == 0;
     error->status = TL_E_NOT_FOUND;
-    if (misspelt || (nearest && pages.count == 0))
+    if (misspelt || (nearest && pages.count == 0 && (length > SHORT || word[0] == nearest[0])))
         snprintf(error->text, sizeof error->text, "there is no help on '%s'; did you mean '%s'?",
                  word, nearest);
     else if (pages.count > 0)

@@ -16,7 +16,7 @@
 #define MOST_CONTACTS (UINT32_MAX / 2)
 
 /* Bits of `said`: one for each remark. */
-#define ALL_REMARKS ((2u << TL_REMARK_CLOSURE) - 1)
+#define ALL_REMARKS ((2u << TL_REMARK_UNDECIDED) - 1)
 
 static bool settings_are_sound(const tl_model *m)
 {
