@@ -1,6 +1,6 @@
-/* my_generator.c - generator "my_generator": a wall of bricks in running bond.
+/* my_generator.c - generator "my_generator": a wall of bricks in quarter bond.
  *
- *     course k begins at origin + (k odd ? half a brick : 0, 0, k height)
+ *     course k begins at origin + (k odd ? a quarter of a brick : 0, 0, k height)
  *
  * Bricks lie along x. All blocks are made in a staging set that becomes the model when the function returns TL_OK. */
 #include <talus/plugin.h>
@@ -34,7 +34,7 @@ static tl_status generate(const tl_host *host, const void *given)
 {
     const params *p = given;
     for (int64_t k = 0; k < p->courses; k++) {
-        double shift = k % 2 ? p->brick.x / 2 : 0;
+        double shift = k % 2 ? p->brick.x / 4 : 0;
         for (int64_t i = 0; i < p->number; i++) {
             tl_vec3 min = {p->origin.x + shift + (double)i * p->brick.x, p->origin.y,
                            p->origin.z + (double)k * p->brick.z};
