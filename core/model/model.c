@@ -1,5 +1,6 @@
 /* model.c - settings of a model, and the way from ids to rows. */
 #include "model/model.h"
+#include "model/options.h"
 
 #include "base/inside.h"
 
@@ -126,6 +127,8 @@ tl_status tl_model_set_gravity(tl_model *m, tl_vec3 gravity)
 tl_status tl_model_set_rotation(tl_model *m, tl_rotation_rule rule)
 {
     tl_status status = tl_model_may_set(m, "set rotation");
+    if (status == TL_OK)
+        status = tl_check_choice(&m->error, "rotation", (int)rule, TL_ROTATION_PAPER);
     if (status != TL_OK)
         return status;
     m->config.rotation = (int32_t)rule;
@@ -145,6 +148,8 @@ tl_status tl_model_set_reuse_geometry(tl_model *m, bool reuse)
 tl_status tl_model_set_contact_points(tl_model *m, tl_contact_points where)
 {
     tl_status status = tl_model_may_set(m, "set contact_points");
+    if (status == TL_OK)
+        status = tl_check_choice(&m->error, "contact_points", (int)where, TL_POINTS_CORNERS);
     if (status != TL_OK)
         return status;
     m->config.contact_points = (int32_t)where;

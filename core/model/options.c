@@ -108,3 +108,10 @@ const char *tl_version(void)
 {
     return TALUS_VERSION;
 }
+
+tl_status tl_check_choice(tl_error *error, const char *name, int value, int most)
+{
+    if (value >= 0 && value <= most)
+        return TL_OK;
+    return tl_fail(error, TL_E_ARGUMENT, "%s = %d must be one of 0 to %d", name, value, most);
+}

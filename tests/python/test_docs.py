@@ -38,7 +38,7 @@ PROGRAM = pathlib.Path(os.environ.get("TALUS_PROGRAM", ROOT / "build/release/tal
 STOCK_LUA = os.environ.get("TALUS_STOCK_LUA", "")
 MARK = "<!-- Below this line: written by scripts/tools/reference.lua. -->"
 MOST_NOT_RUN = 5
-LANGUAGES = {"lua", "sh", "console", "c", "json", "text"}
+LANGUAGES = {"C", "lua", "sh", "console", "c", "json", "text"}
 BETWEEN = "----8<---- end of a block"
 COMMAND = re.compile(r"\s+(?:\$ |\./bootstrap |(?:[A-Z_]+=\S* )*(?:build/release/)?(?:talus|lua5\.4|cmake|gcc|xvfb-run) )")
 
@@ -189,13 +189,16 @@ class Page:
             if self.expect_status(block, done, f"`{command}` ", may_fail=part is parts[-1]):
                 compare(block.place, expected, done.stdout)
 
+    def run_C(self, _):
+        """A declaration of a public header, as scripts/tools/c_api.lua gives it."""
+
     def run_c(self, block):
         source = self.folder / (block.file or f"line_{block.line}.c")
         source.parent.mkdir(parents=True, exist_ok=True)
         source.write_text(block.text, encoding="utf-8")
         compiler = os.environ.get("CC", "cc")
         done = self.run([compiler, "-std=c17", "-Wall", "-Wextra", "-Wpedantic", "-Wshadow", "-Wconversion", "-Werror", "-fPIC",
-                         "-O1", "-ffp-contract=off", "-Icore/include", "-c", source, "-o", source.stem + ".o"])
+                         "-O1", "-ffp-contract=off", "-Icore/include", "-Ibuild/release/generated", "-c", source, "-o", source.stem + ".o"])
         if self.expect_status(block, done, "the compiler ") and block.plugin:
             (self.folder / block.plugin).parent.mkdir(parents=True, exist_ok=True)
             done = self.run([compiler, "-shared", source.stem + ".o", "-o", block.plugin, "-lm"])

@@ -13,7 +13,7 @@ import xml.etree.ElementTree
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PROGRAM = pathlib.Path(os.environ.get("TALUS_PROGRAM", ROOT / "build/release/talus")).resolve()
 META = "scripts/meta/talus.d.lua"
-WRITTEN = {"scripts/tools/reference.lua": "docs/lua.md", "scripts/tools/meta.lua": META}
+WRITTEN = {"scripts/tools/reference.lua": "docs/lua.md", "scripts/tools/meta.lua": META, "scripts/tools/c_api.lua": "docs/c_api.md"}
 
 # Every name that the program knows, as its own errors list them.
 NAMES = """

@@ -133,6 +133,19 @@ def check_headers(prefix, folder):
                 run([*compiler, "-Wall", "-Wextra", "-Werror", "-fsyntax-only", "-I", prefix / "include", source])
 
 
+def check_page(prefix, folder):
+    """The program of docs/c_api.md, in C and in C++."""
+    page = (ROOT / "docs/c_api.md").read_text(encoding="utf-8")
+    code = re.search(r"```c\n(.*?)```", page, re.S)[1]
+    for language, compiler in (("c", ["cc", "-std=c17"]), ("cc", ["c++", "-std=c++17"])):
+        if shutil.which(compiler[0]):
+            source, program = folder / f"page.{language}", folder / f"page_{language}"
+            source.write_text(code, encoding="utf-8")
+            run([*compiler, "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-I", prefix / "include", source, "-o", program,
+                 f"-L{prefix}/lib", "-ltalus", f"-Wl,-rpath,{prefix}/lib"])
+            expect(run([program]).stdout == "after 0.100 s\n", f"the program of c_api.md in {language}")
+
+
 def check_text(prefix):
     """Nothing installed names the place it was built or first installed in."""
     for path in [*prefix.rglob("*.cmake"), *prefix.rglob("*.pc")]:
@@ -152,6 +165,7 @@ def main():
         check_symbols(prefix, version)
         check_text(prefix)
         check_headers(prefix, folder)
+        check_page(prefix, folder)
         check_versions(prefix, folder, version)
         check_plugin(prefix, folder)
         check_embedding(prefix, folder, plugins)

@@ -127,6 +127,27 @@ TEST(a_wrong_size_is_refused)
     tl_model_destroy(m);
 }
 
+/* A number that is none of an enumeration's, as a C program may give, changes nothing. */
+TEST(a_choice_that_there_is_not_is_refused)
+{
+    tl_model *m;
+    tl_error error;
+    tl_model_config config = tl_model_config_default();
+    config.contact_points = TL_POINTS_CORNERS + 1;
+    CHECK_INT(tl_model_create(&config, &m, &error), TL_E_ARGUMENT);
+    CHECK_CONTAINS(error.text, "model: contact_points = 2 must be one of 0 to 1");
+    config.contact_points = TL_POINTS_CORNERS;
+    config.rotation = -1;
+    CHECK_INT(tl_model_create(&config, &m, NULL), TL_E_ARGUMENT);
+    CHECK_INT(tl_model_create(NULL, &m, &error), TL_OK);
+    CHECK_INT(tl_model_set_contact_points(m, (tl_contact_points)7), TL_E_ARGUMENT);
+    CHECK_CONTAINS(tl_model_error(m)->text, "contact_points = 7 must be one of 0 to 1");
+    CHECK_INT(tl_model_set_rotation(m, (tl_rotation_rule)-3), TL_E_ARGUMENT);
+    CHECK_INT(tl_model_settings(m).contact_points, TL_POINTS_CONSISTENT);
+    CHECK_INT(tl_model_settings(m).rotation, TL_ROTATION_EXACT);
+    tl_model_destroy(m);
+}
+
 TEST_MAIN(RUN(defaults_are_those_of_the_tables), RUN(defaults_without_a_table),
           RUN(an_older_struct_is_filled_up), RUN(nothing_means_the_defaults),
-          RUN(a_wrong_size_is_refused))
+          RUN(a_wrong_size_is_refused), RUN(a_choice_that_there_is_not_is_refused))

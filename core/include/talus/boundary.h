@@ -76,6 +76,7 @@ typedef struct tl_boundary_result {
  * by one; a failed call leaves them empty. `results` may be NULL. */
 TL_API tl_status tl_model_boundary(tl_model *model, const tl_boundary_action *actions, size_t count,
                                    bool add, tl_boundary_result *results);
+/* Frees the lists of a result and empties it. NULL and an empty one are left alone. */
 TL_API void tl_boundary_free(tl_boundary_result *result);
 
 /* Sum of the forces with which the bodies of blocks are held, in their held components, N: what contacts, in the last step,

@@ -66,6 +66,7 @@ typedef struct tl_joint_info {
     const tl_kind *law; /* that of the set as a whole, or NULL while it has none */
 } tl_joint_info;
 
+/* The number of joint sets. */
 TL_API size_t tl_joint_count(const tl_model *model);
 /* Of joint set `index`, in the order they were made. */
 TL_API tl_joint_info tl_joint_at(const tl_model *model, size_t index);
@@ -77,11 +78,14 @@ typedef struct tl_law_info {
     const void *params; /* its parameters now, at the offsets of law->params */
 } tl_law_info;
 
+/* The number of laws that were set. */
 TL_API size_t tl_law_count(const tl_model *model);
+/* Law `index`, in the order in which joints were given one: below tl_law_count. */
 TL_API tl_law_info tl_law_at(const tl_model *model, size_t index);
 
 /* Names of groups, also of those that no block has any more. */
 TL_API size_t tl_group_count(const tl_model *model);
+/* The name of group `index`, in the order in which they came, below tl_group_count; valid as long as the model. */
 TL_API const char *tl_group_name(const tl_model *model, size_t index);
 /* Counts the blocks, also hidden ones, of each group and adds up their volumes, m3: [tl_group_count] each. */
 TL_API void tl_groups_tally(tl_model *model, size_t *blocks, double *volumes);

@@ -37,6 +37,7 @@ typedef struct tl_plugin_record {
 
 /* What was loaded and what was refused, in the order tried; with neither plugin nor reason, a note on a folder. */
 TL_API size_t tl_plugin_record_count(void);
+/* Record `index`, below tl_plugin_record_count; its texts last as long as the process. */
 TL_API tl_plugin_record tl_plugin_record_at(size_t index);
 
 /* Finds a file of Talus's own library of scripts ("talus/plot.lua"): beside a build, or in share/lua/5.4 of an installed

@@ -30,6 +30,7 @@ TL_API bool tl_model_law_at(struct tl_model *model, size_t i, const char **joint
  * have a law of their own. false past the last one. */
 TL_API bool tl_model_joint_at(struct tl_model *model, size_t i, const char **name,
                               const char **ruled_by);
+/* The damping in use; with kind NULL there is none. */
 TL_API tl_plugin_setting tl_model_damping_now(const struct tl_model *model);
 /* With the fraction that is in use. */
 TL_API struct tl_timestep tl_model_timestep_now(const struct tl_model *model);

@@ -17,6 +17,7 @@
 
 #include <stdbool.h>
 #include <talus/history.h>
+#include <talus/keyblocks.h>
 #include <talus/law_test.h>
 #include <talus/output.h>
 #include <talus/plugin.h>
@@ -69,9 +70,15 @@ typedef struct tl_model_config {
 /* Remarks and warnings go to this function; NULL restores the default (standard error). */
 typedef void (*tl_log_fn)(void *user, const char *text);
 
+/* Makes an empty model in *model, by *config (NULL: the defaults). TL_E_ARGUMENT with a sentence for a value out of its range, TL_E_MEMORY;
+ * then *model is NULL. `error` may be NULL. */
 TL_API tl_status tl_model_create(const tl_model_config *config, tl_model **model, tl_error *error);
+/* Frees a model and all that belongs to it; NULL is left alone. */
 TL_API void tl_model_destroy(tl_model *model);
+/* Status and sentence of the last call on this model that failed; valid until the next call that fails. Every function that gives a
+ * tl_status leaves one. */
 TL_API const tl_error *tl_model_error(const tl_model *model);
+/* Sends the model's remarks to a function, with `user`. */
 TL_API void tl_model_log(tl_model *model, tl_log_fn log, void *user);
 
 /* Writes the settings, the first `size` bytes of them, and that size. */
@@ -82,11 +89,17 @@ static inline tl_model_config tl_model_settings(const tl_model *model)
     tl_model_settings_get(model, &config, sizeof config);
     return config;
 }
+/* Acceleration of gravity, m/s2, finite (else TL_E_ARGUMENT). */
 TL_API tl_status tl_model_set_gravity(tl_model *model, tl_vec3 gravity);
+/* How rotations are integrated, one of tl_rotation_rule (else TL_E_ARGUMENT). */
 TL_API tl_status tl_model_set_rotation(tl_model *model, tl_rotation_rule rule);
+/* Whether contacts that rest are used again as they are: faster, the same within 1e-11 of their overlap. */
 TL_API tl_status tl_model_set_reuse_geometry(tl_model *model, bool reuse);
+/* Where patches have their points, one of tl_contact_points (else TL_E_ARGUMENT); contacts are laid anew before the next step. */
 TL_API tl_status tl_model_set_contact_points(tl_model *model, tl_contact_points where);
+/* Simulated time, s. */
 TL_API double tl_model_time(const tl_model *model);
+/* Steps made so far. */
 TL_API int64_t tl_model_cycles(const tl_model *model);
 
 typedef struct tl_generate_summary {
@@ -131,6 +144,7 @@ typedef struct tl_quality {
     size_t refused_listed;
 } tl_quality;
 
+/* Measures the blocks: volumes, m3, edges, m, faces, m2, and what cuts have done. TL_E_MEMORY. */
 TL_API tl_status tl_model_quality(tl_model *model, tl_quality *quality);
 
 typedef enum tl_filter_action {
@@ -194,6 +208,8 @@ typedef struct tl_timestep {
     int32_t rule;    /* tl_timestep_rule */
     double dt;       /* fixed step, s; NaN: by the rule */
 } tl_timestep;
+/* Sets how the time step is chosen; NULL: by the defaults. TL_E_ARGUMENT with a sentence for a fraction or a step out of the ranges above; then
+ * nothing changes. */
 TL_API tl_status tl_model_timestep(tl_model *model, const tl_timestep *timestep);
 /* The step the next cycle will use, s; 0 where nothing can move and no law is set. */
 TL_API tl_status tl_model_dt(tl_model *model, double *dt);
@@ -207,6 +223,7 @@ typedef struct tl_timestep_report {
      * as it is when they are pressed in twice as deep */
     double stiffness;
 } tl_timestep_report;
+/* What limits the step that the next cycle will use. Detects contacts when the model has changed. */
 TL_API tl_status tl_model_timestep_report(tl_model *model, tl_timestep_report *report);
 
 /* Scales the inertia (not the weight) of free bodies for a longer step. Without `dt` of all, up to that of the one with the
@@ -218,6 +235,7 @@ typedef struct tl_mass_scaling {
     double dt;   /* s, or NaN */
     double most; /* of the mass of the bodies that can move, or NaN: 0.05 */
 } tl_mass_scaling;
+/* Sets mass scaling; NULL: by the defaults, on. TL_E_ARGUMENT for a step or a share out of its range, or without each other. */
 TL_API tl_status tl_model_mass_scaling(tl_model *model, const tl_mass_scaling *scaling);
 
 /* What the last step has added, with `dt`. */
@@ -229,6 +247,7 @@ typedef struct tl_mass_added {
     tl_id worst;     /* a block of the one that has the highest factor, or TL_NO_ID */
     double factor;   /* its inertia over its own */
 } tl_mass_added;
+/* See tl_mass_added; zeros while mass scaling is off or before the first step. */
 TL_API tl_mass_added tl_model_mass_added(const tl_model *model);
 
 typedef struct tl_contact_area {
@@ -237,6 +256,8 @@ typedef struct tl_contact_area {
     double absolute;   /* m2; NaN: by the fraction */
     const char *joint; /* NULL: every joint */
 } tl_contact_area;
+/* Sets the minimum area of contacts of one joint or of all. TL_E_ARGUMENT for one below 0, TL_E_NOT_FOUND for a joint that the model does not
+ * have. */
 TL_API tl_status tl_model_contact_area(tl_model *model, const tl_contact_area *rule);
 
 /* Called between steps, on the caller's thread; not TL_OK ends the run after the step. */
@@ -287,7 +308,9 @@ typedef struct tl_solve_result {
     tl_id worst;   /* block farthest from rest by the local measure; 0: no force on any */
 } tl_solve_result;
 
+/* "ratio", "cycles" ...: the word for a reason. */
 TL_API const char *tl_solve_reason_name(tl_solve_reason reason);
+/* "average", "maximum" or "local": the word for a measure. */
 TL_API const char *tl_ratio_measure_name(tl_ratio_measure measure);
 /* Runs exactly `cycles` steps (fewer only on an interrupt, an error or a callback's word). `result` may be NULL, also below. */
 TL_API tl_status tl_model_cycle(tl_model *model, int64_t cycles, tl_solve_result *result);
@@ -329,6 +352,7 @@ typedef struct tl_profile {
 
 /* Begins or ends timing the phases; beginning sets all to zero. Results do not depend on it. */
 TL_API void tl_model_profiling(tl_model *model, bool on);
+/* What the steps since profiling began have cost; zeros where it has not. */
 TL_API tl_profile tl_model_profile(const tl_model *model);
 
 /* What a model holds, in bytes, room for growth included. */
@@ -353,6 +377,7 @@ typedef struct tl_memory {
     size_t total;
 } tl_memory;
 
+/* Counts the bytes that the model holds now. */
 TL_API tl_memory tl_model_memory(const tl_model *model);
 
 /* ---------------------------------------------------------------- blocks ----------------- */
@@ -378,6 +403,7 @@ typedef struct tl_block_filter {
 /* Ids of the blocks that pass, ascending. The list is the caller's, to be freed with free(). */
 TL_API tl_status tl_blocks_select(tl_model *model, const tl_block_filter *filter, tl_id **ids,
                                   size_t *count);
+/* The number of blocks, hidden ones too. */
 TL_API size_t tl_block_count(const tl_model *model);
 /* TL_OK when the block exists, else TL_E_STALE with a sentence. */
 TL_API tl_status tl_block_check(tl_model *model, tl_id block);
@@ -420,7 +446,9 @@ typedef struct tl_block_mesh {
     tl_vec3 *normals;
 } tl_block_mesh;
 
+/* Fills *mesh with the shape of a block, in its present place, m. TL_E_STALE for a block that is no more, TL_E_MEMORY. */
 TL_API tl_status tl_block_mesh_get(tl_model *model, tl_id block, tl_block_mesh *mesh);
+/* Frees the arrays of a mesh and empties it. */
 TL_API void tl_block_mesh_free(tl_block_mesh *mesh);
 /* Ids of the blocks it is in contact with, ascending; freed with free(). */
 TL_API tl_status tl_block_neighbours(tl_model *model, tl_id block, tl_id **ids, size_t *count);
@@ -429,13 +457,16 @@ TL_API const char *tl_tag_name(tl_model *model, tl_tag tag);
 
 /* Verbs on sets of blocks (ids need not be ordered; a stale id fails the whole call). */
 TL_API tl_status tl_blocks_hide(tl_model *model, const tl_id *ids, size_t count, bool hidden);
+/* Removes blocks, with their contacts and loads. */
 TL_API tl_status tl_blocks_delete(tl_model *model, const tl_id *ids, size_t count);
 
 enum { TL_FIX_X = 1, TL_FIX_Y = 2, TL_FIX_Z = 4, TL_FIX_ROTATION = 8, TL_FIX_ALL = 15 };
 
 /* Holds components of the motion of the blocks' bodies: their velocity becomes 0 and stays. */
 TL_API tl_status tl_blocks_fix(tl_model *model, const tl_id *ids, size_t count, unsigned what);
+/* Lets the bodies of blocks go, fixed or driven: they begin with the velocity that they have. */
 TL_API tl_status tl_blocks_free(tl_model *model, const tl_id *ids, size_t count);
+/* Displacements of blocks, and rotations, count from now. */
 TL_API tl_status tl_blocks_reset_displacement(tl_model *model, const tl_id *ids, size_t count);
 
 typedef struct tl_block_set {
@@ -445,6 +476,8 @@ typedef struct tl_block_set {
     tl_vec3 velocity, angular_velocity; /* NaN: unchanged */
 } tl_block_set;
 
+/* Changes properties of blocks. A velocity is that of the centroid; of parts of one body that of the centroid of those that are listed.
+ * TL_E_ARGUMENT for a density that is not > 0, a group that is no UTF-8, or a motion that is not finite; then no block is changed. */
 TL_API tl_status tl_blocks_set(tl_model *model, const tl_id *ids, size_t count,
                                const tl_block_set *set);
 
@@ -512,66 +545,11 @@ typedef struct tl_contact_filter {
  * changed since the last step. */
 TL_API tl_status tl_contacts_select(tl_model *model, const tl_contact_filter *filter, tl_id **ids,
                                     size_t *count);
+/* The fields a contact has, in the order of the reference; `*count` of them. */
 TL_API const tl_field *tl_contact_fields(size_t *count);
+/* The value of field `index` (of tl_contact_fields) of a contact, as of the last step. TL_E_STALE for a contact that is no more. */
 TL_API tl_status tl_contact_field(tl_model *model, tl_id contact, size_t index,
                                   tl_field_value *value);
-
-/* ---------------------------------------------------------------- keyblocks -------------- */
-
-/* Strength of a joint in the limit equilibrium of keyblocks. */
-typedef struct tl_joint_strength {
-    const char *joint; /* "J1:3", "J1" or "*": of several the closest counts */
-    double friction;   /* degrees, [0, 90); NaN: not given here */
-    double cohesion;   /* Pa, >= 0; NaN: not given here. 0 where nothing is given */
-} tl_joint_strength;
-
-typedef struct tl_keyblock_query {
-    uint32_t size;   /* sizeof(tl_keyblock_query) */
-    tl_vec3 gravity; /* NaN: the model's */
-    const tl_joint_strength *strength;
-    size_t count;
-} tl_keyblock_query;
-
-typedef enum tl_keyblock_mode {
-    TL_KEYBLOCK_FALLING,        /* away from all its joints */
-    TL_KEYBLOCK_SLIDING,        /* on one face */
-    TL_KEYBLOCK_SLIDING_ON_TWO, /* along the line of two faces */
-    TL_KEYBLOCK_STABLE          /* removable, but pressed in by its weight */
-} tl_keyblock_mode;
-
-/* A face that a keyblock slides on. */
-typedef struct tl_keyblock_face {
-    tl_tag joint;
-    tl_vec3 normal;            /* outward */
-    double area, normal_force; /* m2; N, compression positive */
-} tl_keyblock_face;
-
-/* A body that can be moved out by a translation. */
-typedef struct tl_keyblock {
-    tl_id block; /* the oldest block of the body */
-    int32_t mode;
-    double volume, mass; /* of the body */
-    tl_vec3 force;       /* weight and load, N */
-    tl_vec3 direction;   /* of the motion, unit; zero when stable */
-    double driving;      /* force along it, N */
-    double safety;       /* factor of safety: 0 falling, infinite stable */
-    tl_keyblock_face faces[2];
-    size_t face_count;
-    size_t edge_start, edge_count; /* edges of its joint pyramid in tl_keyblocks.edges */
-} tl_keyblock;
-
-typedef struct tl_keyblocks {
-    tl_keyblock *blocks; /* in the order of their ids */
-    size_t count;
-    tl_vec3 *edges; /* unit vectors */
-    size_t edge_count;
-} tl_keyblocks;
-
-/* Finds the removable ones of the bodies that can move and are not driven (Shi's theorem), as they lay when displacements began to
- * count, or as they lie now where they have moved by more than 1 % of their size. */
-TL_API tl_status tl_model_keyblocks(tl_model *model, const tl_keyblock_query *query,
-                                    tl_keyblocks *keyblocks);
-TL_API void tl_keyblocks_free(tl_keyblocks *keyblocks);
 
 /* ---------------------------------------------------------------- state ------------------ */
 

@@ -70,11 +70,34 @@ static inline tl_value tl_arg_numbers(const char *key, const double *data, size_
     return value;
 }
 
-/* C only: a vector, and a list of values, that last to the end of the block they are in. */
+/* A vector, and a list of values for a call: TL_ARGS(tl_arg_number("kn", 1e9), tl_arg_text("group", "rock")). In C they last to the end of
+ * the block that they are in, in C++ to the end of the call. */
+#ifdef __cplusplus
+} /* extern "C" */
+#include <initializer_list>
+struct tl_numbers3 {
+    double at[3];
+};
+struct tl_args_list : tl_args {
+    tl_args_list(std::initializer_list<tl_value> list)
+    {
+        values = list.begin();
+        count = list.size();
+    }
+    const tl_args *get() const
+    {
+        return this;
+    }
+};
+#define TL_ARG_VECTOR(key, x, y, z) tl_arg_numbers((key), tl_numbers3{{(x), (y), (z)}}.at, 3)
+#define TL_ARGS(...) (tl_args_list{__VA_ARGS__}.get())
+extern "C" {
+#else
 #define TL_ARG_VECTOR(key, x, y, z) tl_arg_numbers((key), (const double[]){(x), (y), (z)}, 3)
 #define TL_ARGS(...)                                                                               \
     (&(const tl_args){(const tl_value[]){__VA_ARGS__},                                             \
                       sizeof((const tl_value[]){__VA_ARGS__}) / sizeof(tl_value)})
+#endif
 
 /* Checks `args` against a table of parameters and fills the struct `out`: unknown keys (with the nearest known name),
  * wrong types, values out of range, NaN and infinity, and missing required parameters are refused with a sentence that

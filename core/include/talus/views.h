@@ -35,6 +35,7 @@ typedef struct tl_block_views {
     tl_view density;    /* kg/m3 */
 } tl_block_views;
 
+/* The blocks' columns as they stand: valid until tl_structure changes or the model is stepped. */
 TL_API tl_block_views tl_view_blocks(tl_model *model);
 
 /* A point p of the body's frame is at origin + reference + displacement + R(rotation) p. The three parts of the place are
@@ -51,6 +52,7 @@ typedef struct tl_body_views {
     tl_view mass;             /* kg */
 } tl_body_views;
 
+/* The bodies' columns as they stand; likewise. */
 TL_API tl_body_views tl_view_bodies(tl_model *model);
 
 /* Place of the centroid of a body, m. */

@@ -32,6 +32,7 @@ TL_API tl_status tl_model_cycle_calling(struct tl_model *model, int64_t cycles,
 typedef struct tl_balance {
     double ratio, ratio_maximum, ratio_local, max_velocity;
 } tl_balance;
+/* See tl_balance. Computes nothing that a step has not. */
 TL_API tl_balance tl_model_balance(const struct tl_model *model);
 
 /* How many contacts there are, and how many of them slip (some point is at its shear limit) or are open (no point carries
@@ -39,6 +40,7 @@ TL_API tl_balance tl_model_balance(const struct tl_model *model);
 typedef struct tl_contact_counts {
     size_t contacts, slipping, open;
 } tl_contact_counts;
+/* See tl_contact_counts. */
 TL_API tl_contact_counts tl_model_contact_counts(const struct tl_model *model);
 
 /* How far a generator has come. */
