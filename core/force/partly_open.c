@@ -29,7 +29,8 @@
  *
  * The mean of u over a cell is not u at its point: they differ by r, and sum A r = 0 over the patch. While all is closed the
  * points' own u serve, as exactly. The means take (1 - t) r less, where t grows from 0 to 1 while the first cell opens. So no
- * point's closure jumps, and the sums are the same for any t. */
+ * point's closure jumps, and the sums are the same for any t. Under a curved law they are not: there t is 1 and all patches have cells,
+ * also those that are closed. */
 #include "force/partly_open.h"
 
 #include "base/columns.h"
@@ -46,8 +47,6 @@
 #define SIDE (16.0 / 68)
 /* The largest stiffness of what presses, over that which the law says: what is more is rounding, or slip has opened it. */
 #define SAME_STIFFNESS (1 + 1e-12)
-/* How much sooner t is 1 for a law that is not linear, whose points' own rule is not exact. */
-#define SOON 8
 
 /* A lane's patch: where its points are in the lanes and in the table. */
 typedef struct patch {
@@ -325,14 +324,17 @@ static double beside_point(const patch *of, size_t k)
     return t->cell[i].pressed_volume - t->cell[i].apart_volume - at_point;
 }
 
-/* Takes from each cell what it does not press with over its area, but at its point: w (lift - least). */
-static void press_at_points(const patch *of, double least, double w)
+/* Takes from each cell what it does not press with over its area, but at its point: w (lift - least). Under a curved law each cell has a
+ * stiffness of its own, which ends with what presses: so it has its own w. */
+static void press_at_points(const patch *of, double least, double w, bool curved)
 {
     for (size_t k = 0; k <= 2 * of->corners; k++) {
         size_t i = of->lane + k * TL_LANES;
         tl_cell *cell = &of->lanes->cell[i];
         tl_vec3 arm = tl_v3_sub(arm_of(of, k), arm_of(of, 2 * of->corners));
-        double lift = w * (of->lanes->lift[i] - least);
+        double sum = cell->pressed_volume + cell->apart_volume;
+        double own = curved && sum > 0 ? cell->pressed_volume / sum : w;
+        double lift = own * (of->lanes->lift[i] - least);
         tl_vec3 beside = tl_v3_madd(cell->centre, -area_of(of, k), arm);
         cell->pressed = tl_v3_madd(cell->pressed, -lift, beside);
         cell->pressed_second -= 2 * lift * beside_point(of, k);
@@ -347,7 +349,7 @@ static void press_at_points(const patch *of, double least, double w)
  *
  * and force and moment by its gradient. P + Q is at least about A times the differences of the lifts, so what is added to the force
  * stays small beside them. */
-static uneven find_uneven(const patch *of)
+static uneven find_uneven(const patch *of, bool curved)
 {
     const tl_point_lanes *t = of->lanes;
     double least = INFINITY, most = -INFINITY, pressed = 0, apart = 0, pressed_area = 0, area = 0;
@@ -374,7 +376,9 @@ static uneven find_uneven(const patch *of)
     double w = pressed / (pressed + apart), by = pays / (pressed + apart);
     if (!(pressed > 0) || !isfinite(by))
         return (uneven){.force = 0};
-    press_at_points(of, least, w);
+    press_at_points(of, least, w, curved);
+    if (curved)
+        return (uneven){.force = 0};
     tl_vec3 moment = tl_v3_scale(by * (1 - w), pressed_centre);
     return (uneven){by * ((1 - w) * pressed_area + w * (area - pressed_area)),
                     tl_v3_madd(moment, by * w, tl_v3_sub(centre, pressed_centre))};
@@ -439,9 +443,9 @@ static void put_means(const patch *of, size_t k, double share, bool curved)
     double p = cell->pressed_volume / area - (1 - share) * more, q = cell->apart_volume / area;
     double second = 0;
     if (curved) {
-        p += share * cell->bent.closure;
-        second = share * cell->bent.second;
-        cell->pressed = tl_v3_madd(cell->pressed, share, cell->bent.moment);
+        p += cell->bent.closure;
+        second = cell->bent.second;
+        cell->pressed = tl_v3_add(cell->pressed, cell->bent.moment);
     }
     const double whole[2] = {area * p, area * q};
     if (!(cell->pressed_volume > 0) || (p < 0 && q > 0)) { /* apart as a whole */
@@ -463,13 +467,16 @@ static void leave_own(const patch *of, size_t k)
     leave_rest(of, k, t->closure[i] + t->lift[i], 0, whole);
 }
 
-/* The patches of a SIMD group whose points get means. Gives how many, and the lanes of these and of those that hold throughout. */
+/* The patches of a SIMD group whose points get means: those of which a part may be apart, and under a curved law all. Gives how many, and
+ * the lanes of these and of those that hold throughout. */
 static size_t find_parts(const tl_model *m, const tl_law *law, const tl_simd_group *group,
                          const tl_point_lanes *t, size_t lane, const range *u,
                          const range *closures, patch out[TL_LANES], tl_part_lanes *lanes)
 {
+    const uint32_t all = (1u << TL_LANES) - 1;
     size_t count = 0;
-    for (uint32_t left = opening_lanes(u, closures); left; left &= left - 1) {
+    for (uint32_t left = tl_law_presses(law) ? all : opening_lanes(u, closures); left;
+         left &= left - 1) {
         size_t l = (size_t)__builtin_ctz(left);
         patch *of = &out[count];
         bool partly = u->high[l] + beyond(closures, l) > 0;
@@ -494,9 +501,10 @@ tl_part_lanes tl_simd_group_part(const tl_model *m, const tl_law *law, const tl_
     tl_part_lanes lanes = {0, 0};
     const tl_points_table *p = &m->detect->points;
     size_t rows = (size_t)group->slots * TL_LANES;
+    const bool curved = tl_law_presses(law);
     range closures, u;
     find_range(p->area + group->start, t->closure + lane, t->zero + lane, group->slots, &closures);
-    if (!p->f_n0 && !opening_lanes(&closures, &closures))
+    if (!curved && !p->f_n0 && !opening_lanes(&closures, &closures))
         return lanes;
     tl_points_across_gap(law, p, group->start, rows, t->lift + lane, t->hold + lane);
     find_range(p->area + group->start, t->closure + lane, t->lift + lane, group->slots, &u);
@@ -505,16 +513,15 @@ tl_part_lanes tl_simd_group_part(const tl_model *m, const tl_law *law, const tl_
     if (count == 0)
         return lanes;
     memset(t->apart + lane, 0, rows * sizeof *t->apart);
-    const bool curved = tl_law_presses(law);
     for (size_t j = 0; j < count; j++)
         integrate_cells(&of[j], curved);
     if (curved)
         tl_cells_bend(m, law, group, t, lane, lanes.parts);
     for (size_t j = 0; j < count; j++) {
-        const double share = share_of_cells(&of[j]);
-        const uneven by = find_uneven(&of[j]);
+        const double share = curved ? 1 : share_of_cells(&of[j]);
+        const uneven by = find_uneven(&of[j], curved);
         for (size_t k = 0; k <= 2 * of[j].corners; k++)
-            put_means(&of[j], k, curved ? fmin(1, SOON * share) : share, curved);
+            put_means(&of[j], k, share, curved);
         take_off(&of[j], &by);
     }
     return lanes;
@@ -536,7 +543,7 @@ uint32_t tl_simd_group_broken(const tl_model *m, const tl_simd_group *group,
             continue;
         out |= 1u << l;
         integrate_cells(&of, false);
-        const uneven by = find_uneven(&of);
+        const uneven by = find_uneven(&of, false);
         for (size_t k = 0; k <= 2 * of.corners; k++)
             leave_own(&of, k);
         take_off(&of, &by);
@@ -556,9 +563,10 @@ static tl_part_sums sum_cells(const patch *of, const tl_law *law, tl_vec3 turn)
         size_t i = of->lane + k * TL_LANES;
         const tl_cell *cell = &t->cell[i];
         double pulls = law->kn * t->hold[i], lost = law->kn * (cell->hold - t->hold[i]);
+        double straight = tl_law_is_linear(law) ? law->kn : 0;
         double pressed = of->p->f_n[of->row + k * TL_LANES] + pulls * cell->apart_volume;
         /* what slip has opened in this step presses at the point: it is not in the volume, which may be next to nothing */
-        double spring = cell->pressed_volume > 0 ? pressed / cell->pressed_volume : law->kn;
+        double spring = cell->pressed_volume > 0 ? pressed / cell->pressed_volume : straight;
         spring = fmax(0, fmin(spring, SAME_STIFFNESS * law->kn));
         double moved = du * cell->apart_more + tl_v3_dot(tl_v3_cross(turn, cell->apart), n);
         sum = tl_v3_madd(tl_v3_madd(sum, spring, cell->pressed), -pulls, cell->apart);
