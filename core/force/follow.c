@@ -24,7 +24,12 @@
 #include "force/frames.h"
 #include "force/turning.h"
 
+#include <math.h>
 #include <string.h>
+
+/* Closure, over the distance of the point from the body's centroid, up to which walls just touch: roundings of that distance and of the plane's.
+ * Else they would decide whether a joint that bears nothing yet is closed, and what slip opens of it. */
+#define TOUCHING 1e-14
 
 /* ---------------------------------------------------------------- points ----------------- */
 
@@ -69,8 +74,12 @@ TL_VECTORIZED static void follow_points(const columns *c, size_t slots, const tl
             double du_n = tl_v3_dot(du, n);
             put(c->arm, i, x);
             put(c->normal, i, n);
+            double offset = f->offset[l];
+            double closure = offset - tl_v3_dot(tl_lanes3_get(&f->plane, l), x) - c->reference[i];
             c->closure[i] =
-                f->offset[l] - tl_v3_dot(tl_lanes3_get(&f->plane, l), x) - c->reference[i];
+                fabs(closure) > TOUCHING * (fabs(offset) + fabs(x.x) + fabs(x.y) + fabs(x.z))
+                    ? closure
+                    : 0;
             c->du_n[i] = du_n;
             put(c->du_s, i, tl_v3_madd(du, -du_n, n));
             put(c->f_s, i, tl_m3_mul(&turn, tl_columns_get(c->f_s, i)));

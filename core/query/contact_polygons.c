@@ -45,6 +45,14 @@ static bool find_moved(const tl_model *m, uint32_t c, const tl_pair_view *view, 
     return true;
 }
 
+/* How far apart the blocks of a contact with moved faces may be. */
+static double reach_of(const tl_press_row *row, const tl_pair_view *view)
+{
+    tl_vec3 n = view->a->plane[row->shifted.a].normal;
+    double lean = row->leans ? tl_v3_norm(tl_v3_sub(row->lean[0].normal, n)) : 0;
+    return fabs(row->shift) + 4 * view->size * lean;
+}
+
 /* Adds a contact's polygons in the frame of its first block's body. */
 static bool add_polygons(tl_model *m, uint32_t c, tl_narrow_scratch *scratch, tl_surface *surface)
 {
@@ -58,7 +66,7 @@ static bool add_polygons(tl_model *m, uint32_t c, tl_narrow_scratch *scratch, tl
     tl_region region;
     tl_moved_faces moved;
     bool are_moved = find_moved(m, c, &view, &moved);
-    double margin = are_moved ? fabs(tl_press_row_of(m, c)->shift) : 0;
+    double margin = are_moved ? reach_of(tl_press_row_of(m, c), &view) : 0;
     return tl_region_find(&view, margin, scratch, &region) &&
            tl_surface_add_field(&view, &region, are_moved ? &moved : NULL, surface);
 }
