@@ -87,18 +87,15 @@ local function write_header(out, header, undocumented)
     end
 end
 
-local path, option = ...
-if not path or (option and option ~= "--check") then
-    error("usage: talus scripts/tools/c_api.lua FILE.md [--check]", 0)
+local function all()
+    local out, undocumented = {}, {}
+    for _, header in ipairs(HEADERS) do
+        write_header(out, header, undocumented)
+    end
+    if #undocumented > 0 then
+        error("functions without a comment: " .. table.concat(undocumented, ", "), 0)
+    end
+    return table.concat(out, "\n") .. "\n"
 end
-local old = pages.read_file(path)
-local from, to = old:find(MARK, 1, true)
-assert(from, path .. " has no line " .. MARK)
-local out, undocumented = {}, {}
-for _, header in ipairs(HEADERS) do
-    write_header(out, header, undocumented)
-end
-if #undocumented > 0 then
-    error("functions without a comment: " .. table.concat(undocumented, ", "), 0)
-end
-pages.renew(path, old:sub(1, to) .. "\n" .. table.concat(out, "\n") .. "\n", option, "scripts/tools/c_api.lua")
+
+pages.renew_below(MARK, all, "scripts/tools/c_api.lua", ...)

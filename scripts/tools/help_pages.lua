@@ -144,4 +144,15 @@ function pages.renew(path, new, option, tool)
     end
 end
 
+-- The same of the part of a page below the line `mark`, which make() gives; what stands above is kept.
+function pages.renew_below(mark, make, tool, path, option)
+    if not path or (option and option ~= "--check") then
+        error("usage: talus " .. tool .. " FILE.md [--check]", 0)
+    end
+    local old = pages.read_file(path)
+    local _, to = old:find(mark, 1, true)
+    assert(to, path .. " has no line " .. mark)
+    pages.renew(path, old:sub(1, to) .. "\n" .. make(), option, tool)
+end
+
 return pages

@@ -65,11 +65,4 @@ local function reference()
     return table.concat(out, "\n") .. "\n"
 end
 
-local path, option = ...
-if not path or (option and option ~= "--check") then
-    error("usage: talus scripts/tools/reference.lua FILE.md [--check]", 0)
-end
-local old = pages.read_file(path)
-local from, to = old:find(MARK, 1, true)
-assert(from, path .. " has no line " .. MARK)
-pages.renew(path, old:sub(1, to) .. "\n" .. reference(), option, "scripts/tools/reference.lua")
+pages.renew_below(MARK, reference, "scripts/tools/reference.lua", ...)
