@@ -9,6 +9,7 @@
 #include "base/columns.h"
 #include "contact/across_gap.h"
 #include "contact/facing.h"
+#include "contact/pair_view.h"
 #include "contact/places.h"
 #include "contact/points.h"
 #include "contact/presses.h"
@@ -185,10 +186,8 @@ double tl_estate_tilt(const tl_model *m, uint32_t block_a, uint32_t block_b)
     if (!estate || !estate->pressed || estate->field)
         return 0;
     uint32_t face_a, face_b;
-    bool corners =
-        m->config.contact_points == TL_POINTS_CORNERS &&
-        tl_estate_faces(m, block_a, block_b, &face_a, &face_b) &&
-        tl_at_corners(m->blocks.shape[block_a], face_a, m->blocks.shape[block_b], face_b);
+    bool corners = tl_estate_faces(m, block_a, block_b, &face_a, &face_b) &&
+                   tl_pair_at_corners(m, block_a, face_a, block_b, face_b);
     return tl_flush_limits_of(corners).field_tilt;
 }
 

@@ -14,6 +14,9 @@
 #define SAME 1e-12
 /* Distance from a line within which points are on it, over the root of their area. */
 #define ON_A_LINE 1e-6
+/* Size of the smaller block, times this, within which a face that leans may be farther out, per unit of its lean: both lean, about places
+ * up to a size away. */
+#define LEVER 4
 
 /* Weighted sums of the lifts l over points at x, y in the plane. */
 typedef struct sums {
@@ -146,4 +149,10 @@ double tl_lean_at(const tl_model *m, uint32_t c, const tl_plane lean[2], const t
         out += lean[k].offset - faces[k].offset -
                tl_v3_dot(tl_v3_sub(lean[k].normal, faces[k].normal), at[k]);
     return out;
+}
+
+double tl_lean_reach(double shift, const tl_plane *face, tl_vec3 n, double size)
+{
+    double lean = face ? tl_v3_norm(tl_v3_sub(face[0].normal, n)) : 0;
+    return fabs(shift) + LEVER * size * lean;
 }

@@ -16,6 +16,9 @@ typedef struct tl_lean {
 /* The mean alone, m. It reads no block: the rows of the contact may be those of a former state of the model. */
 double tl_contact_mean_lift(const tl_model *m, uint32_t contact);
 tl_lean tl_contact_lean(const tl_model *m, uint32_t contact);
+/* How far apart blocks may be whose faces press, m: moved out by `shift` together and, with `face` not NULL, leaning so from the normal n of
+ * A's face. `size`: of the smaller block. */
+double tl_lean_reach(double shift, const tl_plane *face, tl_vec3 n, double size);
 /* By how much leaning faces are farther out at a point of A's frame than those of the blocks, together, m. */
 double tl_lean_at(const tl_model *m, uint32_t contact, const tl_plane lean[2],
                   const tl_plane faces[2], tl_vec3 p);

@@ -1,6 +1,8 @@
 /* pair_view.c - what the geometry of a pair gets of the model: where the two blocks are, and the rule of their joint. */
 #include "contact/pair_view.h"
 
+#include "narrow/flush.h"
+
 tl_pair_view tl_pair_view_of(const tl_model *m, uint32_t a, uint32_t b)
 {
     const tl_blocks *blocks = &m->blocks;
@@ -29,4 +31,10 @@ tl_touch_rule tl_touch_rule_of(const tl_model *m, const tl_pair_view *view, tl_t
                            .volumes = law && tl_law_presses(law),
                            .opens = law && tl_law_opens(law),
                            .reach = over + tolerance};
+}
+
+bool tl_pair_at_corners(const tl_model *m, uint32_t a, uint32_t face_a, uint32_t b, uint32_t face_b)
+{
+    return m->config.contact_points == TL_POINTS_CORNERS &&
+           tl_at_corners(m->blocks.shape[a], face_a, m->blocks.shape[b], face_b);
 }

@@ -40,9 +40,7 @@ static double bonded_tilt(const tl_model *m, uint32_t c)
 {
     const tl_contacts *contacts = &m->detect->contacts;
     const tl_facet *f = &contacts->facet[c];
-    const bool corners = m->config.contact_points == TL_POINTS_CORNERS &&
-                         tl_at_corners(m->blocks.shape[contacts->a[c]], f->ia,
-                                       m->blocks.shape[contacts->b[c]], f->ib);
+    const bool corners = tl_pair_at_corners(m, contacts->a[c], f->ia, contacts->b[c], f->ib);
     return fmax(BONDED_TILT, tl_flush_limits_of(corners).tilt);
 }
 
@@ -60,12 +58,11 @@ double tl_contact_reach(const tl_model *m, uint32_t c, const tl_manifold_before 
                         double size)
 {
     const tl_contacts *contacts = &m->detect->contacts;
-    double reach = TL_LIST_MARGIN * size + fabs(before->shift);
-    if (before->leans) {
-        tl_vec3 n = m->blocks.shape[contacts->a[c]]->plane[before->shifted.a].normal;
-        reach += 4 * size * tl_v3_norm(tl_v3_sub(before->lean[0].normal, n));
-    }
-    return reach;
+    const tl_plane *face = before->leans ? before->lean : NULL;
+    tl_vec3 n = {0, 0, 0};
+    if (face)
+        n = m->blocks.shape[contacts->a[c]]->plane[before->shifted.a].normal;
+    return TL_LIST_MARGIN * size + tl_lean_reach(before->shift, face, n, size);
 }
 
 tl_manifold_before tl_contact_before(const tl_model *m, uint32_t c, bool reframed)

@@ -27,8 +27,8 @@
 #include <math.h>
 #include <string.h>
 
-/* Closure, over the distance of the point from the body's centroid, up to which walls just touch: roundings of that distance and of the plane's.
- * Else they would decide whether a joint that bears nothing yet is closed, and what slip opens of it. */
+/* Closure, over the distance of the point from the body's centroid, up to which walls just touch: roundings of that distance and of the
+ * plane's. Else they would decide whether a joint that bears nothing yet is closed, and what slip opens of it. */
 #define TOUCHING 1e-14
 
 /* ---------------------------------------------------------------- points ----------------- */

@@ -2,6 +2,7 @@
 #include "query/contact_polygons.h"
 
 #include "contact/detection.h"
+#include "contact/lean.h"
 #include "contact/pair_view.h"
 #include "contact/presses.h"
 #include "narrow/place.h"
@@ -48,9 +49,8 @@ static bool find_moved(const tl_model *m, uint32_t c, const tl_pair_view *view, 
 /* How far apart the blocks of a contact with moved faces may be. */
 static double reach_of(const tl_press_row *row, const tl_pair_view *view)
 {
-    tl_vec3 n = view->a->plane[row->shifted.a].normal;
-    double lean = row->leans ? tl_v3_norm(tl_v3_sub(row->lean[0].normal, n)) : 0;
-    return fabs(row->shift) + 4 * view->size * lean;
+    return tl_lean_reach(row->shift, row->leans ? row->lean : NULL,
+                         view->a->plane[row->shifted.a].normal, view->size);
 }
 
 /* Adds a contact's polygons in the frame of its first block's body. */
