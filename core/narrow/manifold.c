@@ -41,7 +41,7 @@ static bool is_patch(const tl_pair_view *view, const tl_region *r, const tl_touc
     double area = tl_patch_add(view, r->flush_a, r->flush_b, rule, scratch);
     if (!(area > 0) || rule->min_area > MOST_MIN_AREA * area)
         return false;
-    double shallow = part * limits.depth * sqrt(area) + scratch->patch.gap;
+    double shallow = part * limits.points_depth * sqrt(area) + scratch->patch.gap;
     if (!(shallow > 0))
         return false;
     /* when the pair moves, none of these changes by more than twice the way */

@@ -54,6 +54,8 @@ typedef struct tl_manifold {
 typedef struct tl_narrow_scratch {
     tl_vec3 *vertex_b, *normal_b;
     size_t vertex_capacity, normal_capacity;
+    double *corner; /* corner_sums.c */
+    size_t corner_capacity;
     struct tl_polygon *polygon; /* patch.c */
     tl_patch_points patch;
     tl_manifold manifold;

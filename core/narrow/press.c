@@ -24,151 +24,22 @@
 #include "narrow/press.h"
 
 #include "base/columns.h"
+#include "narrow/corner_sums.h"
 #include "narrow/field_mesh.h"
-#include "narrow/patch.h"
+#include "narrow/press_faces.h"
 #include "narrow/scratch.h"
 #include "narrow/share.h"
 
-#include <stdlib.h>
 #include <talus/vmath.h>
 
 /* Depth over the size of the smaller block up to which the integrals are looked at for being nothing but roundings. */
 #define FAINT 1e-7
 /* Depth, over the deepest point's, by which that point may lie outside a block for rounding. */
 #define INSIDE 1e-6
+/* Sum over those of its parts that may be nothing but their roundings. */
+#define ROUNDED 1e-14
 
-/* ---------------------------------------------------------------- faces ------------------ */
-
-/* Where the planes of a region are put together. */
-typedef struct planes {
-    tl_field_faces faces;
-    tl_vec3 origin;
-    uint32_t count;
-} planes;
-
-/* Room for planes of so many pairs, each of which has no more than its region. */
-static bool reserve(tl_narrow_scratch *scratch, const tl_press_query query[], uint32_t count,
-                    planes p[])
-{
-    size_t all = 0;
-    uint32_t faces[TL_FIELD_PAIRS];
-    for (uint32_t k = 0; k < count; k++) {
-        const tl_region *r = query[k].region;
-        faces[k] = r->a + r->b + r->border_a + r->border_b;
-        faces[k] = faces[k] > TL_FIELD_KNOWN ? faces[k] : TL_FIELD_KNOWN + 1; /* field_mesh.c */
-        all += faces[k];
-    }
-    if (4 * all > scratch->press_capacity) {
-        double *press = realloc(scratch->press, 8 * all * sizeof *press);
-        if (!press)
-            return false;
-        scratch->press = press;
-        scratch->press_capacity = 8 * all;
-    }
-    double *at = scratch->press;
-    for (uint32_t k = 0; k < count; k++) {
-        for (uint32_t axis = 0; axis < 3; axis++, at += faces[k])
-            p[k].faces.n[axis] = at;
-        p[k].faces.c = at;
-        at += faces[k];
-    }
-    return true;
-}
-
-static tl_plane plane_of(const tl_pair_view *view, bool of_b, uint32_t face)
-{
-    if (!of_b)
-        return view->a->plane[face];
-    return (tl_plane){view->normal_b[face],
-                      view->b->plane[face].offset + tl_v3_dot(view->normal_b[face], view->shift)};
-}
-
-static void add(planes *p, tl_plane plane)
-{
-    p->faces.n[0][p->count] = plane.normal.x;
-    p->faces.n[1][p->count] = plane.normal.y;
-    p->faces.n[2][p->count] = plane.normal.z;
-    p->faces.c[p->count++] = plane.offset - tl_v3_dot(plane.normal, p->origin);
-}
-
-static double shift_of(const tl_press_query *of, bool of_b, uint32_t face)
-{
-    return face == (of_b ? of->shifted.b : of->shifted.a) ? 0.5 * of->shift : 0;
-}
-
-static bool is_moved(const tl_press_query *of, bool of_b, uint32_t face)
-{
-    return face == (of_b ? of->shifted.b : of->shifted.a) && (of->shift != 0 || of->lean);
-}
-
-/* Where a face of the two that are moved is. */
-static tl_plane moved_plane(const tl_press_query *of, bool of_b)
-{
-    tl_plane plane = plane_of(of->view, of_b, of_b ? of->shifted.b : of->shifted.a);
-    if (of->lean) {
-        plane = of->lean[of_b];
-        plane.normal = of_b ? tl_m3_mul(&of->view->turn, plane.normal) : plane.normal;
-        plane.offset += of_b ? tl_v3_dot(plane.normal, of->view->shift) : 0;
-    }
-    plane.offset += 0.5 * of->shift;
-    return plane;
-}
-
-static tl_plane pressing_plane(const tl_press_query *of, bool of_b, uint32_t face)
-{
-    return is_moved(of, of_b, face) ? moved_plane(of, of_b) : plane_of(of->view, of_b, face);
-}
-
-static void add_face(planes *p, const tl_press_query *of, bool of_b, uint32_t face)
-{
-    add(p, pressing_plane(of, of_b, face));
-}
-
-static uint32_t add_faces(planes *p, const tl_press_query *of, bool of_b, uint32_t begin,
-                          uint32_t count)
-{
-    for (uint32_t k = begin; k < begin + count; k++)
-        add_face(p, of, of_b, of->region->face[k]);
-    return count;
-}
-
-/* Adds faces on other parts; how many are seams through which something passes, with it. */
-static uint32_t add_covered(planes *p, const tl_press_query *of, bool of_b, uint32_t begin,
-                            uint32_t count, uint32_t *seams)
-{
-    const tl_poly *poly = of_b ? of->view->b : of->view->a;
-    *seams = 0;
-    for (uint32_t k = begin; k < begin + count && !of->opens; k++)
-        *seams += poly->covered[of->region->face[k]] == TL_SEAM;
-    return add_faces(p, of, of_b, begin, count);
-}
-
-static void list_field(planes *p, const tl_press_query *of)
-{
-    const tl_region *r = of->region;
-    p->count = 0;
-    p->faces.a = add_faces(p, of, false, 0, r->a);
-    p->faces.b = add_faces(p, of, true, r->a, r->b);
-    uint32_t covered = r->a + r->b;
-    p->faces.border_a = add_covered(p, of, false, covered, r->border_a, &p->faces.seam_a);
-    p->faces.border_b =
-        add_covered(p, of, true, covered + r->border_a, r->border_b, &p->faces.seam_b);
-}
-
-static void list_patch(planes *p, const tl_press_query *of)
-{
-    const tl_region *r = of->region;
-    uint32_t more_a = r->a - r->blunt_a, more_b = r->b - r->blunt_b;
-    p->count = 0;
-    p->faces.a = add_faces(p, of, false, 0, r->blunt_a);
-    p->faces.b = add_faces(p, of, true, r->a, r->blunt_b);
-    uint32_t covered = r->a + r->b;
-    p->faces.border_a = add_faces(p, of, false, r->blunt_a, more_a);
-    p->faces.border_a += add_covered(p, of, false, covered, r->border_a, &p->faces.seam_a);
-    p->faces.border_b = add_faces(p, of, true, r->a + r->blunt_b, more_b);
-    p->faces.border_b +=
-        add_covered(p, of, true, covered + r->border_a, r->border_b, &p->faces.seam_b);
-}
+/* ---------------------------------------------------------------- noise ------------------ */
 
 /* Whether the deepest point lies in both blocks, as it does if they have anything in common. */
 static bool in_both(const tl_press_query *of, tl_vec3 x, double depth)
@@ -176,7 +47,7 @@ static bool in_both(const tl_press_query *of, tl_vec3 x, double depth)
     for (int of_b = 0; of_b < 2; of_b++) {
         uint32_t count = (of_b ? of->view->b : of->view->a)->face_count;
         for (uint32_t f = 0; f < count; f++) {
-            tl_plane plane = pressing_plane(of, of_b, f);
+            tl_plane plane = tl_pressing_plane(of, of_b, f);
             if (tl_v3_dot(plane.normal, x) > plane.offset + INSIDE * depth)
                 return false;
         }
@@ -186,7 +57,7 @@ static bool in_both(const tl_press_query *of, tl_vec3 x, double depth)
 
 /* Whether the integrals of blocks that hardly overlap are no more than roundings: the centre of pressure lies in both blocks, and
  * with a minimum area their mean depth is no larger than the largest. */
-static bool is_noise(const tl_press_query *of, const planes *p, const tl_field_sums *sums)
+static bool is_noise(const tl_press_query *of, const tl_press_planes *p, const tl_field_sums *sums)
 {
     double size = of->view->size;
     if (sums->deepest > FAINT * size)
@@ -213,15 +84,37 @@ static tl_field_power with_min_area(const tl_field_sums *f, double min_area)
                             tl_v3_madd(tl_v3_scale(by_g, moment), by_v, f->swept_moment)};
 }
 
-/* Blends an integral over the field with that over the patch. */
-static void blend(const tl_patch_share *by, const tl_field_power *flat, tl_field_power *field)
+/* Two flush faces, the integrals over their patch, and its share. */
+typedef struct flush_patch {
+    tl_field_sums sums;
+    tl_patch_share by;
+} flush_patch;
+
+/* Of two blocks so many pairs of faces may press as patches at once, where an edge is pressed into one. */
+enum { MOST_PATCHES = 3 };
+
+typedef struct patches {
+    flush_patch of[MOST_PATCHES];
+    uint32_t count;
+} patches;
+
+/* Blends an integral over the field with those over the patches. */
+static void blend(const patches *p, const tl_field_power flat[], tl_field_power *field)
 {
-    double share = by->share, w = 1 - share, more = field->whole - flat->whole;
-    field->force = tl_v3_madd(tl_v3_scale(w, field->force), share, flat->force);
-    field->moment = tl_v3_madd(tl_v3_scale(w, field->moment), share, flat->moment);
-    field->force = tl_v3_madd(field->force, more, by->push);
-    field->moment = tl_v3_madd(field->moment, more, by->turn);
-    field->whole = w * field->whole + share * flat->whole;
+    const tl_field_power all = *field;
+    double w = 1;
+    for (uint32_t k = 0; k < p->count; k++)
+        w -= p->of[k].by.share;
+    *field = (tl_field_power){w * all.whole, tl_v3_scale(w, all.force), tl_v3_scale(w, all.moment)};
+    for (uint32_t k = 0; k < p->count; k++) {
+        const tl_patch_share *by = &p->of[k].by;
+        double more = all.whole - flat[k].whole;
+        field->whole += by->share * flat[k].whole;
+        field->force = tl_v3_madd(field->force, by->share, flat[k].force);
+        field->moment = tl_v3_madd(field->moment, by->share, flat[k].moment);
+        field->force = tl_v3_madd(field->force, more, by->push);
+        field->moment = tl_v3_madd(field->moment, more, by->turn);
+    }
 }
 
 /* What a law that is not linear needs beside the energy. */
@@ -232,77 +125,27 @@ static void find_powers(const tl_field_sums *f, tl_field_power out[TL_PRESS_POWE
     out[TL_PRESS_CUBE] = f->powers[1];
 }
 
-static void blend_powers(const tl_patch_share *by, const tl_field_sums *patch,
-                         tl_field_power field[TL_PRESS_POWERS])
+static void blend_powers(const patches *p, tl_field_power field[TL_PRESS_POWERS])
 {
-    tl_field_power flat[TL_PRESS_POWERS];
-    find_powers(patch, flat);
-    for (int k = 0; k < TL_PRESS_POWERS; k++)
-        blend(by, &flat[k], &field[k]);
+    tl_field_power flat[MOST_PATCHES][TL_PRESS_POWERS], of[MOST_PATCHES];
+    for (uint32_t i = 0; i < p->count; i++)
+        find_powers(&p->of[i].sums, flat[i]);
+    for (int k = 0; k < TL_PRESS_POWERS; k++) {
+        for (uint32_t i = 0; i < p->count; i++)
+            of[i] = flat[i][k];
+        blend(p, of, &field[k]);
+    }
 }
 
 /* The integrals over the patch of the flush faces. false: out of memory. */
-static bool sum_patch(const tl_press_query *of, planes *p, tl_narrow_scratch *scratch,
+static bool sum_patch(const tl_press_query *of, tl_press_planes *p, tl_narrow_scratch *scratch,
                       tl_field_sums *out)
 {
-    list_patch(p, of);
+    tl_press_list_patch(p, of);
     p->faces.mesh = NULL;
     p->faces.energy_only = false;
     p->faces.powers = of->volumes;
     return tl_field_integrate(&p->faces, &scratch->field, out);
-}
-
-/* The same where all of it is at the corners: sums over them. A corner goes with the share `ride` of B's motion against A, as in a patch;
- * its overlap acts along the gradient of that, where it is on its face: in the bisecting plane its lever would be off by a share of the tilt. */
-static bool sum_corners(const tl_press_query *of, tl_vec3 origin, tl_narrow_scratch *scratch,
-                        tl_field_sums *out)
-{
-    const uint32_t fa = of->region->flush_a, fb = of->region->flush_b;
-    const tl_touch_rule rule = {.corners = true, .reach = INFINITY};
-    const tl_plane a = pressing_plane(of, 0, fa), b = pressing_plane(of, 1, fb);
-    const tl_vec3 between = tl_v3_unit(tl_v3_sub(a.normal, b.normal));
-    const double slant = tl_v3_dot(a.normal, between); /* of both faces */
-    const double offset = a.offset + b.offset;
-    *out = (tl_field_sums){0};
-    scratch->manifold.failed = false;
-    if (!(tl_patch_lay(of->view, fa, fb, &rule, scratch) > 0))
-        return !scratch->manifold.failed;
-    const tl_patch_points *corner = &scratch->patch;
-    const double ride = corner->ride;
-    const tl_vec3 n = tl_v3_sub(tl_v3_scale(ride, a.normal), tl_v3_scale(1 - ride, b.normal));
-    for (size_t i = 0; i < corner->count; i++) {
-        tl_vec3 place = tl_columns_get(corner->p, i);
-        double up = (a.offset - tl_v3_dot(a.normal, place)) / slant;
-        double down = (b.offset - tl_v3_dot(b.normal, place)) / slant;
-        tl_vec3 on_face = tl_v3_madd(place, (1 - ride) * up - ride * down, between);
-        tl_vec3 x = tl_v3_sub(on_face, origin), arm = tl_v3_cross(x, n);
-        double overlap = offset - tl_v3_dot(tl_v3_add(a.normal, b.normal), place);
-        double area = corner->area[i], half = 0.5 * area * overlap, square = half * overlap;
-        const double over[] = {square / 6, square * overlap / 16};
-        const double slope[] = {0.5 * square, square * overlap / 4};
-        if (!(overlap > 0))
-            continue;
-        out->energy += 0.25 * area * overlap * overlap;
-        out->volume += area * overlap;
-        out->force = tl_v3_madd(out->force, half, n);
-        out->moment = tl_v3_madd(out->moment, half, arm);
-        out->swept = tl_v3_madd(out->swept, area, n);
-        out->swept_moment = tl_v3_madd(out->swept_moment, area, arm);
-        out->area = tl_v3_madd(out->area, area, n);
-        out->pressure += half;
-        out->pressed = tl_v3_madd(out->pressed, half, x);
-        out->extent += area;
-        out->first = tl_v3_madd(out->first, area, x);
-        out->second += area * tl_v3_norm2(x);
-        out->stiffness += area;
-        for (int k = 0; k < TL_FIELD_POWERS; k++) {
-            tl_field_power *to = &out->powers[k];
-            to->whole += over[k] * overlap;
-            to->force = tl_v3_madd(to->force, slope[k], n);
-            to->moment = tl_v3_madd(to->moment, slope[k], arm);
-        }
-    }
-    return true;
 }
 
 /* Whether planes of other parts are listed: they may be the nearest to some point and bound nothing. */
@@ -340,17 +183,113 @@ static bool no_press(const tl_region *region)
     return true;
 }
 
-/* The integrals that tell where and on what area something presses, of a field of which a share is that of a patch. */
-static void mix_places(tl_field_sums *field, const tl_field_sums *patch, double share)
+/* The integrals that tell where and on what area something presses, of a field of which shares are those of patches. */
+static void mix_places(tl_field_sums *field, const patches *p)
 {
-    double w = 1 - share;
-    field->area = tl_v3_madd(tl_v3_scale(w, field->area), share, patch->area);
-    field->pressure = w * field->pressure + share * patch->pressure;
-    field->pressed = tl_v3_madd(tl_v3_scale(w, field->pressed), share, patch->pressed);
-    field->extent = w * field->extent + share * patch->extent;
-    field->first = tl_v3_madd(tl_v3_scale(w, field->first), share, patch->first);
-    field->second = w * field->second + share * patch->second;
-    field->stiffness = w * field->stiffness + share * patch->stiffness;
+    double w = 1;
+    for (uint32_t k = 0; k < p->count; k++)
+        w -= p->of[k].by.share;
+    field->area = tl_v3_scale(w, field->area);
+    field->pressure *= w;
+    field->pressed = tl_v3_scale(w, field->pressed);
+    field->extent *= w;
+    field->first = tl_v3_scale(w, field->first);
+    field->second *= w;
+    field->stiffness *= w;
+    for (uint32_t k = 0; k < p->count; k++) {
+        const tl_field_sums *patch = &p->of[k].sums;
+        double share = p->of[k].by.share;
+        field->area = tl_v3_madd(field->area, share, patch->area);
+        field->pressure += share * patch->pressure;
+        field->pressed = tl_v3_madd(field->pressed, share, patch->pressed);
+        field->extent += share * patch->extent;
+        field->first = tl_v3_madd(field->first, share, patch->first);
+        field->second += share * patch->second;
+        field->stiffness += share * patch->stiffness;
+    }
+}
+
+/* Adds the patch of two faces, if it has a share. false: out of memory. */
+static bool add_patch(const tl_press_query *of, tl_press_planes *p, tl_face_pair faces,
+                      bool corners, const tl_field_sums *field, tl_narrow_scratch *scratch,
+                      patches *to)
+{
+    const tl_pair_view *view = of->view;
+    const uint32_t fa = faces.a, fb = faces.b;
+    const tl_vec3 *na = &view->a->plane[fa].normal, *nb = &view->normal_b[fb];
+    const tl_corner_faces at = {
+        .fa = fa, .fb = fb, .a = tl_pressing_plane(of, 0, fa), .b = tl_pressing_plane(of, 1, fb)};
+    const double shift = tl_press_shift_of(of, false, fa) + tl_press_shift_of(of, true, fb);
+    flush_patch *patch = &to->of[to->count];
+    if (to->count == MOST_PATCHES)
+        return true;
+    if (!(corners ? tl_corner_sums_find(view, &at, p->origin, scratch, &patch->sums)
+                  : sum_patch(of, p, scratch, &patch->sums)))
+        return false;
+    if (!(patch->sums.energy > 0) || !has_square(patch->sums.volume))
+        return true;
+    patch->by = tl_patch_share_of(na, nb, corners, shift, &patch->sums, field);
+    if (!(patch->by.share > 0))
+        return true;
+    if (corners) {
+        if (!tl_corner_sums_slopes(view, &at, p->origin, scratch, &patch->sums))
+            return false;
+        patch->by = tl_patch_share_of(na, nb, corners, shift, &patch->sums, field);
+    }
+    to->count++;
+    return true;
+}
+
+/* What is left of the shares s_k of patches where several have one: s_k times all other 1 - s_j. So it makes no difference which of them is
+ * taken to be the flush one. */
+static void part(patches *p)
+{
+    tl_patch_share whole[MOST_PATCHES];
+    for (uint32_t k = 0; k < p->count; k++)
+        whole[k] = p->of[k].by;
+    for (uint32_t k = 0; k < p->count; k++)
+        for (uint32_t j = 0; j < p->count; j++) {
+            tl_patch_share *by = &p->of[k].by;
+            if (j == k)
+                continue;
+            by->push =
+                tl_v3_madd(tl_v3_scale(1 - whole[j].share, by->push), -by->share, whole[j].push);
+            by->turn =
+                tl_v3_madd(tl_v3_scale(1 - whole[j].share, by->turn), -by->share, whole[j].turn);
+            by->share *= 1 - whole[j].share;
+        }
+}
+
+/* The patches that have a share: that of the flush faces, and, at corners, those of others that face each other, for springs there press up to
+ * tilts at which an edge may lie in both. false: out of memory. */
+static bool find_patches(const tl_press_query *of, tl_press_planes *p, const tl_field_sums *field,
+                         tl_narrow_scratch *scratch, patches *out)
+{
+    const tl_pair_view *view = of->view;
+    const tl_region *r = of->region;
+    const tl_poly *a = view->a, *b = view->b;
+    const uint32_t fa = r->flush_a, fb = r->flush_b;
+    out->count = 0;
+    if (!r->flush)
+        return true;
+    const bool corners = of->corners && tl_at_corners(a, fa, b, fb);
+    const double steep = tl_flush_limits_of(corners).field_tilt;
+    const bool flush = tl_region_tilt(view, fa, fb) < steep;
+    if (flush &&
+        !add_patch(of, p, (tl_face_pair){r->flush_a, r->flush_b}, corners, field, scratch, out))
+        return false;
+    for (uint32_t k = 0; k < r->a && of->corners; k++)
+        for (uint32_t m = r->a; m < r->a + r->b; m++) {
+            const tl_face_pair f = {r->face[k], r->face[m]};
+            if ((f.a == fa && f.b == fb) || f.a >= a->face_count || f.b >= b->face_count ||
+                tl_v3_dot(a->plane[f.a].normal, view->normal_b[f.b]) > 0 ||
+                !(tl_region_tilt(view, f.a, f.b) < steep) || !tl_at_corners(a, f.a, b, f.b))
+                continue;
+            if (!add_patch(of, p, f, true, field, scratch, out))
+                return false;
+        }
+    part(out);
+    return true;
 }
 
 /* What a law that is not linear needs of a press, with the area of the field and its overlap. */
@@ -370,9 +309,17 @@ static void put_powers(const tl_press_query *of, tl_vec3 origin,
     press->overlap = 4 * press->energy / volume;
 }
 
+/* Radius of gyration of the area about a place: none where it is a rounding of what is subtracted, as at a single corner. */
+static double radius_of(const tl_field_sums *sums, tl_vec3 about)
+{
+    double moved = tl_v3_norm2(about) * sums->extent, whole = sums->second + moved;
+    double second = sums->second - 2 * tl_v3_dot(about, sums->first) + moved;
+    return second > ROUNDED * whole ? sqrt(second / sums->extent) : 0;
+}
+
 /* The press of a pair from the integrals of its field. `same`: over faces that have enclosed the common volume before. Nothing
  * presses where a part only passes on through its seams what the next parts press with, to the last digit. */
-static bool press_of(const tl_press_query *of, planes *p, tl_field_sums *sums, bool same,
+static bool press_of(const tl_press_query *of, tl_press_planes *p, tl_field_sums *sums, bool same,
                      tl_narrow_scratch *scratch, tl_press *press, tl_press_extra *extra)
 {
     const tl_pair_view *view = of->view;
@@ -386,26 +333,19 @@ static bool press_of(const tl_press_query *of, planes *p, tl_field_sums *sums, b
     tl_field_power field = with_min_area(sums, min_area), powers[TL_PRESS_POWERS];
     if (of->volumes)
         find_powers(sums, powers);
-    const uint32_t fa = region->flush_a, fb = region->flush_b;
-    tl_field_sums patch;
-    const bool corners = of->corners && tl_at_corners(view->a, fa, view->b, fb);
-    if (region->flush && tl_region_tilt(view, fa, fb) < tl_flush_limits_of(corners).field_tilt) {
-        if (!(corners ? sum_corners(of, p->origin, scratch, &patch)
-                      : sum_patch(of, p, scratch, &patch)))
-            return false;
-        const double shift = shift_of(of, false, fa) + shift_of(of, true, fb);
-        tl_patch_share by = {.share = 0};
-        if (patch.energy > 0 && has_square(patch.volume))
-            by = tl_patch_share_of(&view->a->plane[fa].normal, &view->normal_b[fb], corners, shift,
-                                   &patch, sums);
-        if (by.share > 0) {
-            const tl_field_power flat = with_min_area(&patch, min_area);
-            blend(&by, &flat, &field);
-            if (of->volumes)
-                blend_powers(&by, &patch, powers);
-            mix_places(sums, &patch, by.share);
+    patches flush;
+    if (!find_patches(of, p, sums, scratch, &flush))
+        return false;
+    if (flush.count) {
+        tl_field_power flat[MOST_PATCHES];
+        for (uint32_t k = 0; k < flush.count; k++) {
+            flat[k] = with_min_area(&flush.of[k].sums, min_area);
+            press->patch += flush.of[k].by.share;
         }
-        press->patch = by.share;
+        blend(&flush, flat, &field);
+        if (of->volumes)
+            blend_powers(&flush, powers);
+        mix_places(sums, &flush);
     }
     double force = tl_v3_norm(field.force), area = tl_v3_norm(sums->area);
     if (!has_square(force) || !has_square(area)) {
@@ -424,17 +364,15 @@ static bool press_of(const tl_press_query *of, planes *p, tl_field_sums *sums, b
     press->stiffness = fmax(sums->stiffness, press->area);
     tl_vec3 centre = tl_v3_scale(1 / sums->pressure, sums->pressed);
     press->point = tl_v3_add(p->origin, centre);
-    double second =
-        sums->second - 2 * tl_v3_dot(centre, sums->first) + tl_v3_norm2(centre) * sums->extent;
-    press->radius = sqrt(fmax(0, second / sums->extent));
+    press->radius = radius_of(sums, centre);
     return true;
 }
 
 /* The planes of a pair's field about a point. */
-static void begin(const tl_press_query *of, tl_vec3 origin, planes *p)
+static void begin(const tl_press_query *of, tl_vec3 origin, tl_press_planes *p)
 {
     p->origin = origin;
-    list_field(p, of);
+    tl_press_list_field(p, of);
     p->faces.energy_only = !(of->min_area > 0 || of->volumes);
     p->faces.powers = of->volumes;
     p->faces.mesh = of->region->mesh;
@@ -443,7 +381,7 @@ static void begin(const tl_press_query *of, tl_vec3 origin, planes *p)
 }
 
 /* The integrals by the mesh that is known; false: they are to be found. */
-static bool follow(const tl_press_query *of, planes *p, tl_field_sums *sums)
+static bool follow(const tl_press_query *of, tl_press_planes *p, tl_field_sums *sums)
 {
     tl_field_mesh *mesh = of->region->mesh;
     if (mesh && !is_of_use(of))
@@ -455,7 +393,7 @@ static bool follow(const tl_press_query *of, planes *p, tl_field_sums *sums)
 }
 
 /* Goes by a mesh that has just been made at once: so the same is found when all is done again. */
-static void begin_mesh(const tl_press_query *of, planes *p, tl_field_sums *sums)
+static void begin_mesh(const tl_press_query *of, tl_press_planes *p, tl_field_sums *sums)
 {
     tl_field_mesh *mesh = of->region->mesh;
     if (!mesh || mesh->polygons == 0 || !(sums->pressure > 0))
@@ -470,7 +408,7 @@ static void begin_mesh(const tl_press_query *of, planes *p, tl_field_sums *sums)
 }
 
 /* Forgets what is no longer known, and finds what a new mesh needs. */
-static void begin_anew(const tl_press_query *of, planes *p, tl_mesh_inner *inner)
+static void begin_anew(const tl_press_query *of, tl_press_planes *p, tl_mesh_inner *inner)
 {
     const tl_pair_view *view = of->view;
     bool b_is_small = view->b->size < view->a->size;
@@ -490,13 +428,13 @@ static void begin_anew(const tl_press_query *of, planes *p, tl_mesh_inner *inner
 static bool find_all(const tl_press_query query[], uint32_t count, tl_narrow_scratch *scratch,
                      tl_press press[], tl_press_extra extra[])
 {
-    planes p[TL_FIELD_PAIRS];
+    tl_press_planes p[TL_FIELD_PAIRS];
     uint64_t known[TL_FIELD_PAIRS];
     tl_mesh_inner inner[TL_FIELD_PAIRS];
     tl_field_sums sums[TL_FIELD_PAIRS], *to[TL_FIELD_PAIRS] = {NULL};
     const tl_field_faces *faces[TL_FIELD_PAIRS] = {NULL};
     uint32_t left = 0, anew[TL_FIELD_PAIRS];
-    if (!reserve(scratch, query, count, p))
+    if (!tl_press_reserve(scratch, query, count, p))
         return false;
     for (uint32_t k = 0; k < count; k++) {
         bool found = follow(&query[k], &p[k], &sums[k]);

@@ -9,6 +9,7 @@ void tl_narrow_scratch_free(tl_narrow_scratch *n)
 {
     free(n->vertex_b);
     free(n->normal_b);
+    free(n->corner);
     free(n->manifold.points);
     free(n->old);
     free(n->cell);
