@@ -5,7 +5,7 @@
 --
 -- Feet are regular and irregular polygons of 3 to 100 corners, on a floor or on another column, in any attitude. Histories
 -- before the load goes to its place: `flush`, as made; `gap`, dropped from 1e-3 m; `insitu`, made under a stress that is then
--- gone; `slid` by 1e-3 m; `farther`, loaded farther out before. There is no weight, and the load acts at the height of the foot,
+-- gone; `slid` by up to 1e-3 m; `farther`, loaded farther out before. There is no weight, and the load acts at the height of the foot,
 -- so that a tilt does not move it. Each model is drawn from its number and is the same for all laws.
 local no_tension = require "no_tension"
 local shapes = require "shapes"
@@ -29,7 +29,9 @@ local TOPPLED = 0.03 -- rad, or four times what is expected
 columns.HISTORIES = { "flush", "gap", "insitu", "slid", "farther" }
 columns.SHARES = { 0.5, 0.7, 0.85, 0.93, 0.97, 1.03 } -- of the way from the middle of the foot to its border
 local AT_REST, MOST_CYCLES = 1e-6, 40000
-local GAP, SLID, SPEED = 1e-3, 1e-3, 0.05 -- m, m, m/s
+local GAP, SLID = 1e-3, 1e-3 -- m
+-- A column slides by so many of its closures, by a part of one in each step: thrown up by its ride, it would come down unevenly.
+local CLOSURES, PART = 1000, 0.5
 local HIGH, DENSITY = 0.1, 2500
 local NONE = { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } }
 
@@ -165,8 +167,10 @@ local function load(case, model, block, force, at, most)
     end }.reason
 end
 
--- Slips by SLID and lets the shear go, while the column is kept from turning: all points slip alike.
-local function slide(model, block)
+-- Slips and lets the shear go, while the column is kept from turning: all points slip alike.
+local function slide(case, model, block)
+    local closure = case.pressure / case.kn
+    local far, speed = math.min(SLID, CLOSURES * closure), PART * closure / model.dt
     local below = model:blocks { id = 1 }
     local function shear()
         return model:contacts():sum "shear_force"[1]
@@ -176,9 +180,12 @@ local function slide(model, block)
         model:solve { ratio = 0, max_cycles = MOST_CYCLES, every = 1, stop = done }
     end
     block:fix { x = true, y = true, rotation = true }
-    move(SPEED, function() return math.abs(below[1].displacement[1]) > SLID end)
-    local sign = shear() > 0
-    move(-SPEED / 50, function() return (shear() > 0) ~= sign end)
+    local most = 0 -- the shear of the slide
+    move(speed, function()
+        most = math.abs(shear()) > math.abs(most) and shear() or most
+        return math.abs(below[1].displacement[1]) > far
+    end)
+    move(-speed / 50, function() return shear() * most <= 0 end)
     below:free():fix()
     block:free()
 end
@@ -193,7 +200,7 @@ local function prepare(case, model, block, force)
     local polygon = contact_polygon(case, model, block)
     local reason = load(case, model, block, force, place(polygon, 0, 0), TOPPLED)
     if case.history == "slid" then
-        slide(model, block)
+        slide(case, model, block)
         reason = load(case, model, block, force, place(contact_polygon(case, model, block), 0, 0), TOPPLED)
     elseif case.history == "farther" then
         local share = math.min(0.93, 0.5 + case.share / 2)

@@ -14,7 +14,7 @@ local tests = {
         params = { kn = 4e10, ks = 1.6e10, tension = .25e6, cohesion = .35e6, gi = 18, gii = 125, friction = 35 } },
     { bits = "3f588c02db1d7f45", law = "barton_bandis", normal_stress = 1e6, stiffness = 1e9, path = { 1e-2, -1e-2 },
         params = { jrc = 8, jcs = 5e7, phi_r = 28, kni = 2e9, vm = 5e-4, ks = 2e10, length = 1 } },
-    { bits = "94f6da3e7ab7e0dd", law = "continuously_yielding", normal_stress = 2e5, steps = 4000, path = { 2e-3, -2e-3, 1e-3 },
+    { bits = "514fdfe1421f6aff", law = "continuously_yielding", normal_stress = 2e5, steps = 4000, path = { 2e-3, -2e-3, 1e-3 },
         params = { an = 2e7, en = .5, as = 1e6, es = .5, kn_max = 2e10, ks_max = 1e9, phi_i = 50, phi = 30, roughness = 2e-3 } },
     { bits = "ad374086cd614f1f", law = "rate_state", normal_stress = 1e7,
         path = { { shear = 2.4e-3, time = 1 }, { shear = 3e-3, steps = 6000, speed = 1e-6 } },

@@ -4,7 +4,7 @@
  *     dt/du = F ks,  ks = as s^es, at most ks_max     t: shear stress against the motion du
  *     F = (1 - t / t_m) / (1 - r),  at most 1         t_m = s tan(phi_m)
  *     d phi_m = -(phi_m - phi) (1 - F) du / R         not where F > 1
- *     opening += max(0, tan(psi)) (1 - F) du          psi = atan(t / s) - phi, at the beginning of a step
+ *     opening += max(0, tan(psi)) (1 - F) du          psi = atan(t / s) - phi, at the end of a step
  *
  * r is t / t_m, at most 0.75, where the motion was last reversed, and 0 at first. Without `softening` F is not negative, so that
  * t stays where the wear of t_m overtakes it. In the plane t is the component along du, and the stress stays within the larger of
@@ -327,12 +327,6 @@ TL_IN_LOOP double slide(const yielding *given, const tl_law_batch *batch, uint32
                most = moves ? stress * tl_lane_tan(angle) : 0;
         double toward = ex * way_x[i] + ey * way_y[i] + ez * way_z[i];
         double was = worn[i], ratio = last[i] + (toward < 0 ? toward : 0);
-        /* the angle of dilation is that of the stresses before; walls that meet now had none, and those that hardly met are like
-         * them */
-        double press = c.f_n[i] * per, held = press > stress ? press : stress;
-        double slope = before / (held > FAINT ? held : 1);
-        double tangent = (slope - law.tangent) / (1 + slope * law.tangent);
-        tangent = tangent > 0 ? law.dilation * tangent : 0;
         wearing w = {.left = 1};
         if (moves)
             w = wear_off(&law, along, angle, v, stress, most, ratio, ks, d);
@@ -345,6 +339,11 @@ TL_IN_LOOP double slide(const yielding *given, const tl_law_batch *batch, uint32
         double yields = slip > 0.5 * d ? 1 : 0, changes = up < 0 ? 1 : up;
         double over = size > bound * (1 + ROUNDING) ? 1 : 0;
         double scale = over > 0 ? bound / (over > 0 ? size : 1) : 1;
+        /* Of the stresses before, a point that presses less than others and is pressed more in this step would open by less than they:
+         * it would stay behind them, and part. */
+        double slope = stress > FAINT ? scale * size / (stress > FAINT ? stress : 1) : 0;
+        double tangent = (slope - law.tangent) / (1 + slope * law.tangent);
+        tangent = tangent > 0 ? law.dilation * tangent : 0;
         double first = c.f_x[i] * c.du_x[i] + c.f_y[i] * c.du_y[i] + c.f_z[i] * c.du_z[i];
         double second = x * c.du_x[i] + y * c.du_y[i] + z * c.du_z[i];
         double share = -scale * (x * ex + y * ey + z * ez) / (most > FAINT ? most : 1);

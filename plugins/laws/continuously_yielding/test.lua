@@ -35,15 +35,18 @@ n = #sheared.time
 check.near(sheared.shear_stress[n], SN * math.tan(math.rad(PHI)), 1e-3 * SN)
 check.near(sheared.states.wear[n], PHI_I - PHI, 0.01)
 
--- Slip opens the joint by the angle of the stress less the worn friction; with dilation = false it does not.
 check.holds(sheared.dilation[n] > 0.1 * R, "it opens")
-for i = first + 2, n, 100 do
-    local opened = sheared.states.opening[i] - sheared.states.opening[i - 1]
-    local angle = math.deg(math.atan(sheared.shear_stress[i - 1] / SN)) - PHI
+
+-- Slip opens the joint by the angle of the stress less the worn friction; with dilation = false it does not. (In a step the joint opens
+-- after the shear is found, so the stress that held it is that of the walls before: steps are to be small beside the closure.)
+local slow = talus.law_test { law = "continuously_yielding", params = params(), normal_stress = SN, steps = 40000, path = { 1e-7, R } }
+for i = slow.ends[1] + 2, #slow.time, 400 do
+    local opened = slow.states.opening[i] - slow.states.opening[i - 1]
+    local angle = math.deg(math.atan(slow.shear_stress[i] / SN)) - PHI
     if angle > 0.5 then
-        local d = sheared.shear[i] - sheared.shear[i - 1]
-        local slip = d - (sheared.shear_stress[i] - sheared.shear_stress[i - 1]) / (AS * SN ^ ES)
-        check.near(opened, math.tan(math.rad(angle)) * slip, 0.01 * opened) -- the stress falls a little while it opens
+        local d = slow.shear[i] - slow.shear[i - 1]
+        local slip = d - (slow.shear_stress[i] - slow.shear_stress[i - 1]) / (AS * SN ^ ES)
+        check.near(opened, math.tan(math.rad(angle)) * slip, 2e-3 * opened)
     end
 end
 local flat = talus.law_test { law = "continuously_yielding", params = params { dilation = false }, normal_stress = SN,
