@@ -64,17 +64,20 @@ double tl_law_edge(double closure, double apart, double lift, double below)
     return apart > 0 ? -lift - 2 * (apart + sqrt(u * apart)) : closure - below;
 }
 
-/* What `pressed` tells at the points' closures moved by `by` times `size`. */
+/* What `pressed` tells at the points' closures moved by `move`: energies, and forces or not-a-number. */
 static void energies_at(const tl_check_law *law, const tl_check_points *given, double move,
-                        double energy[TL_CHECK_POINTS])
+                        double energy[TL_CHECK_POINTS], double force[TL_CHECK_POINTS])
 {
     _Alignas(TL_ALIGN) double nobodys[TL_CHECK_POINTS];
     double *state[2 * TL_STATE_COLUMNS];
     tl_check_points p = *given;
-    for (size_t i = 0; i < TL_CHECK_POINTS; i++)
+    for (size_t i = 0; i < TL_CHECK_POINTS; i++) {
         p.c[TL_AT_CLOSURE][i] += move;
+        force[i] = NAN;
+    }
     tl_law_batch batch = batch_of(&p, state, nobodys);
     batch.closure = p.c[TL_AT_CLOSURE];
+    batch.f_n = force;
     tl_enter(law->of.kind, "pressed");
     law->of.ops->pressed(law->of.self, &batch, energy);
     tl_leave();
@@ -134,7 +137,8 @@ static void check_linear(tl_law_trial *t, const point *p)
 }
 
 /* What presses by its energy; `energy` at the closure, and a little less and more. */
-static void check_pressed(tl_law_trial *t, const point *p, const double energy[3])
+/* `told`: the force that pressed() tells, or not-a-number. */
+static void check_pressed(tl_law_trial *t, const point *p, const double energy[3], double told)
 {
     double slope = (energy[2] - energy[0]) / (2 * SMALL * t->law.closure);
     double expected = p->f_n < 0 ? 0 : p->f_n + p->spring * p->hold * p->apart;
@@ -143,6 +147,12 @@ static void check_pressed(tl_law_trial *t, const point *p, const double energy[3
         tl_check_note(t->c, TL_LAW_PRESSES,
                       "f_n = %g N at a closure with lift of %g m, where pressed() rises by %g N",
                       p->f_n, p->u, slope);
+    if (!(isnan(told) || fabs(slope - told) <= error))
+        tl_check_note(
+            t->c, TL_LAW_PRESSES,
+            "pressed() tells the force %g N at a closure with lift of %g m, where its energy "
+            "rises by %g N",
+            told, p->u, slope);
     if (p->kept < energy[1] - holds)
         tl_check_note(t->c, TL_LAW_PRESSES,
                       "stored = %g J is less than what presses holds by pressed(), %g J", p->kept,
@@ -206,11 +216,11 @@ void tl_law_check_normal(tl_law_trial *t, int step)
     const tl_law_ops *ops = t->law.of.ops;
     tl_check_gaps gaps;
     tl_check_points at = t->out;
-    double energy[3][TL_CHECK_POINTS];
+    double energy[3][TL_CHECK_POINTS], force[3][TL_CHECK_POINTS];
     tl_law_gaps(&t->law, &t->out, &gaps);
     memcpy(at.c[TL_AT_CLOSURE], t->in.c[TL_AT_CLOSURE], sizeof at.c[TL_AT_CLOSURE]);
     for (int k = 0; k < 3 && !ops->linear && ops->pressed; k++)
-        energies_at(&t->law, &at, (k - 1) * SMALL * t->law.closure, energy[k]);
+        energies_at(&t->law, &at, (k - 1) * SMALL * t->law.closure, energy[k], force[k]);
     for (size_t i = 0; i < TL_CHECK_POINTS; i++) {
         point p = point_at(t, &gaps, i, step);
         check_gap(t, &p, i);
@@ -218,7 +228,11 @@ void tl_law_check_normal(tl_law_trial *t, int step)
         if (ops->linear)
             check_linear(t, &p);
         else if (ops->pressed)
-            check_pressed(t, &p, (double[3]){energy[0][i], energy[1][i], energy[2][i]});
+            check_pressed(t, &p, (double[3]){energy[0][i], energy[1][i], energy[2][i]},
+                          force[1][i]);
+        if (!ops->linear && ops->pressed && isnan(force[1][i]) != isnan(force[1][0]))
+            tl_check_note(t->c, TL_LAW_PRESSES,
+                          "pressed() tells the forces of some points and not of others");
     }
 }
 

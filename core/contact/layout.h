@@ -9,6 +9,7 @@
 /* What a stress that is no line in the closure changes in a cell: force/bent.c. */
 typedef struct tl_bent {
     double closure; /* of the closure that the law gets, m */
+    double more;    /* and of the volume that it does not get, m^3 */
     double second;  /* of the half second moment, m^4 */
     tl_vec3 moment; /* of the moment, m^4 */
 } tl_bent;
@@ -25,10 +26,10 @@ typedef struct tl_cell {
         centre; /* area times its centroid from that of the patch, m^3; found where lifts differ */
     double pressed_area; /* m^2, and the same of it */
     tl_vec3 pressed_centre;
-    /* of a law that is not linear: int u^3 dA, m^5, int u^4 dA, m^6, and int u^2 x dA, m^5, of what is closed, and what its stress
-     * changes */
+    /* of a law that is not linear: int u^3 dA, m^5, int u^4 dA, m^6, int u^2 x dA, m^5, and int u^3 x dA, m^6, of what is closed, and
+     * what its stress changes */
     double pressed_third, pressed_fourth;
-    tl_vec3 pressed_square;
+    tl_vec3 pressed_square, pressed_cube;
     tl_bent bent;
 } tl_cell;
 

@@ -1,16 +1,16 @@
-/* bent.c - cells of partly open patches under a stress that is no line in the closure.
+/* bent.c - cells of patches under a stress that is no line in the closure.
  *
  * A law that is not linear tells the energy E(u) of what presses, A int s du; so its stress s follows from two energies. Over the
- * closed part of a cell two closures stand for all (closures.c), with its moments I_n = int u^n dA. Between and beyond them s / u and
- * E / (A u^2) are lines in u, s / u = a + b u, E / (A u^2) = c + e u. So
+ * closed part of a cell two closures stand for all (closures.c), with its moments I_n = int u^n dA. With the cubic of E / (A u) that
+ * meets energies and stresses at both, p_0 + p_1 u + p_2 u^2 + p_3 u^3, the cell has
  *
- *     force   int s dA      = a I_1 + b I_2
- *     moment  int s x dA    = a int u x dA + b int u^2 x dA
- *     energy  int E / A dA  = c I_2 + e I_3
+ *     energy  U = sum p_n I_(n+1)
+ *     force   int s dA   = sum (n + 1) p_n I_n              I_0 = int dA
+ *     moment  int s x dA = sum (n + 1) p_n int u^n x dA
  *
- * which is exact for any stress up to u^2. The law gets the closure p at which its whole cell presses with that force,
- * A s(p) = int s dA, found from that of a p + b p^2 in steps. The cell keeps what the moment and the energy are beside those of
- * its point. */
+ * which is exact for any stress up to u^3. The force is the gradient of the energy, for what the moments change of the two closures changes
+ * nothing of U: those of Gauss are so. The law gets a closure p at which its whole cell presses with nearly that force, A s(p) = int s dA,
+ * found in steps. The cell keeps what force, moment and energy are beside those of its point. */
 #include "force/bent.h"
 
 #include "base/columns.h"
@@ -20,11 +20,12 @@
 
 #include <math.h>
 
-#define STEPS 3
+/* Closures that are tried for that of the law. */
+#define STEPS 2
 /* The least power of the closure that a stress is taken to go with. */
 #define LEAST_POWER 0.5
 
-#define ROWS (8 * TL_LANES)
+#define ROWS TL_PRESSED_ROWS
 
 /* Cells at work: those of some rows of a SIMD group. */
 typedef struct cells {
@@ -40,26 +41,20 @@ typedef struct answer {
     double u[ROWS], stress[ROWS], energy[ROWS];
 } answer;
 
-/* A stress a u + b u^2 with an energy per area c u^2 + e u^3. */
-typedef struct curve {
-    double a, b, c, e;
-} curve;
+/* Of a cell: the energy and the force of what presses; its moment; and a stress a u + b u^2 through those at the two closures. */
+typedef struct whole {
+    double energy, force, a, b;
+    tl_vec3 moment;
+} whole;
 
 static void ask(const cells *of, answer *at)
 {
     const double *lift = of->t->lift + of->lane, *area = of->m->detect->points.area + of->row;
-    double closure[ROWS], below[ROWS], above[ROWS];
-    for (size_t i = 0; i < of->count; i++)
-        closure[i] = (1 - TL_NEAR_CLOSURE) * at->u[i] - lift[i];
-    tl_law_energies(of->m, of->law, of->row, of->count, of->t, closure, below);
-    for (size_t i = 0; i < of->count; i++)
-        closure[i] = (1 + TL_NEAR_CLOSURE) * at->u[i] - lift[i];
-    tl_law_energies(of->m, of->law, of->row, of->count, of->t, closure, above);
+    tl_law_press(of->m, of->law, of->row, of->count, of->t, at->u, lift, at->energy, at->stress);
     for (size_t i = 0; i < of->count; i++) {
-        bool some = at->u[i] > 0;
-        at->stress[i] =
-            some ? (above[i] - below[i]) / (2 * TL_NEAR_CLOSURE * at->u[i] * area[i]) : 0;
-        at->energy[i] = some ? 0.5 * (above[i] + below[i]) / area[i] : 0;
+        double per = at->u[i] > 0 ? 1 / area[i] : 0;
+        at->stress[i] *= per;
+        at->energy[i] *= per;
     }
 }
 
@@ -84,80 +79,92 @@ static void choose_all(const cells *of, answer *one, answer *two)
     }
 }
 
-static curve curve_through(const answer *one, const answer *two, size_t i)
+static whole whole_of(const tl_cell *cell, const double at[2], const double energy[2],
+                      const double stress[2])
 {
-    double u = one->u[i], v = two->u[i], per = 1 / (v - u);
-    double s = one->stress[i] / u, t = two->stress[i] / v;
-    double f = one->energy[i] / (u * u), g = two->energy[i] / (v * v);
-    return (curve){(s * v - t * u) * per, (t - s) * per, (f * v - g * u) * per, (g - f) * per};
+    double p[4], per = 1 / (at[1] - at[0]), s = stress[0] / at[0], t = stress[1] / at[1];
+    whole out = {.a = (s * at[1] - t * at[0]) * per, .b = (t - s) * per};
+    tl_energy_cubic(at, energy, stress, p);
+    out.energy = p[0] * cell->pressed_volume + p[1] * cell->pressed_second +
+                 p[2] * cell->pressed_third + p[3] * cell->pressed_fourth;
+    out.force = p[0] * cell->pressed_area + 2 * p[1] * cell->pressed_volume +
+                3 * p[2] * cell->pressed_second + 4 * p[3] * cell->pressed_third;
+    out.moment = tl_v3_madd(tl_v3_scale(p[0], cell->pressed_centre), 2 * p[1], cell->pressed);
+    out.moment = tl_v3_madd(out.moment, 3 * p[2], cell->pressed_square);
+    out.moment = tl_v3_madd(out.moment, 4 * p[3], cell->pressed_cube);
+    return out;
 }
 
-/* Begins with the closure at which the curve has the mean stress of the cell. */
-static double begin(const curve *by, double mean)
+/* Begins with the closure at which a u + b u^2 is the mean stress of the cell. */
+static double begin(const whole *by, double mean)
 {
     return 2 * mean / (by->a + sqrt(fmax(by->a * by->a + 4 * by->b * mean, 0)));
 }
 
 /* A step from the closure u to that of a mean stress, as if the stress went as u^n there: n + 1 = s u / E. What is to be raised to
- * 1/n is taken as (1 + x) / (1 - x). The energy goes with it. */
-static double next(double mean, double u, double stress, double *energy)
+ * 1/n is taken as (1 + x) / (1 - x). */
+static double next(double mean, double u, double stress, double energy)
 {
-    double n = fmax(stress * u / *energy - 1, LEAST_POWER);
+    double n = fmax(stress * u / energy - 1, LEAST_POWER);
     double x = (mean - stress) / (mean + stress) / n;
-    double to = u * (1 + x) / (1 - x), step = to - u;
-    *energy += step * (stress + 0.5 * n * stress / u * step);
-    return to;
+    return u * (1 + x) / (1 - x);
 }
 
-/* The curve of each cell, its mean stress, and the closure to begin with. */
-static void find_curves(const cells *of, curve by[ROWS], double mean[ROWS], answer *even)
+static double area_of(const cells *of, size_t i)
+{
+    return of->m->detect->points.area[of->row + i];
+}
+
+/* What each cell presses with, and the closure to begin with. */
+static void find_wholes(const cells *of, whole by[ROWS], answer *even)
 {
     answer one, two;
     choose_all(of, &one, &two);
     ask(of, &one);
     ask(of, &two);
     for (size_t i = 0; i < of->count; i++) {
-        const tl_cell *cell = &of->t->cell[of->lane + i];
-        bool some = one.stress[i] > 0 && two.stress[i] > 0;
-        by[i] = some ? curve_through(&one, &two, i) : (curve){0};
-        mean[i] = (by[i].a * cell->pressed_volume + by[i].b * cell->pressed_second) /
-                  of->m->detect->points.area[of->row + i];
-        even->u[i] = some ? begin(&by[i], mean[i]) : 0;
+        even->u[i] = 0;
+        if (!(one.stress[i] > 0 && two.stress[i] > 0))
+            continue;
+        const double at[] = {one.u[i], two.u[i]}, energy[] = {one.energy[i], two.energy[i]};
+        const double stress[] = {one.stress[i], two.stress[i]};
+        by[i] = whole_of(&of->t->cell[of->lane + i], at, energy, stress);
+        even->u[i] = by[i].force > 0 ? begin(&by[i], by[i].force / area_of(of, i)) : 0;
     }
 }
 
-/* What a cell has where its whole area presses with the mean stress at the closure u, with the energy per area given. */
-static tl_bent bent_of(const tl_cell *cell, const curve *by, double area, double mean, double u,
+/* What a cell has where its point presses at the closure u with the stress and energy per area given. */
+static tl_bent bent_of(const tl_cell *cell, const whole *by, double area, double u, double stress,
                        double energy)
 {
-    double scale = u / mean, second = cell->pressed_second;
-    double whole = by->c * second + by->e * cell->pressed_third;
-    tl_vec3 moment = tl_v3_scale(scale * by->a - 1, cell->pressed);
+    double scale = u / stress;
+    double second = cell->pressed_second - area * u * u;
     return (tl_bent){
         .closure = u - cell->pressed_volume / area,
-        .second = scale * (whole - area * energy) - 0.5 * (second - area * u * u),
-        .moment = tl_v3_madd(moment, scale * by->b, cell->pressed_square),
+        .more = scale * by->force - area * u,
+        .second = scale * (by->energy - area * energy) - 0.5 * second,
+        .moment = tl_v3_madd(tl_v3_neg(cell->pressed), scale, by->moment),
     };
 }
 
 static void bend(const cells *of)
 {
     answer even;
-    curve by[ROWS];
-    double mean[ROWS];
-    find_curves(of, by, mean, &even);
-    for (int k = 0; k < STEPS; k++) {
-        ask(of, &even);
+    whole by[ROWS];
+    find_wholes(of, by, &even);
+    ask(of, &even);
+    for (int k = 1; k < STEPS; k++) {
         for (size_t i = 0; i < of->count; i++)
             if (even.stress[i] > 0)
-                even.u[i] = next(mean[i], even.u[i], even.stress[i], &even.energy[i]);
+                even.u[i] =
+                    next(by[i].force / area_of(of, i), even.u[i], even.stress[i], even.energy[i]);
+        ask(of, &even);
     }
     for (size_t i = 0; i < of->count; i++) {
         tl_cell *cell = &of->t->cell[of->lane + i];
-        double area = of->m->detect->points.area[of->row + i];
-        cell->bent = even.stress[i] > 0
-                         ? bent_of(cell, &by[i], area, mean[i], even.u[i], even.energy[i])
-                         : (tl_bent){0};
+        cell->bent = even.stress[i] > 0 ? bent_of(cell, &by[i], area_of(of, i), even.u[i],
+                                                  even.stress[i], even.energy[i])
+                                        : (tl_bent){0};
     }
 }
 

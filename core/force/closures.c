@@ -23,3 +23,16 @@ void tl_two_closures(const double moment[4], double closure[2])
     closure[0] = mean + 0.5 * d * (g - side);
     closure[1] = mean + 0.5 * d * (g + side);
 }
+
+void tl_energy_cubic(const double at[2], const double energy[2], const double stress[2],
+                     double p[4])
+{
+    double a = at[0], b = at[1], per = 1 / (b - a);
+    double f = energy[0] / a, g = energy[1] / b, mean = (g - f) * per;
+    double c1 = (stress[0] - f) / a, c2 = (mean - c1) * per;
+    double c3 = (((stress[1] - g) / b - mean) * per - c2) * per;
+    p[0] = f - a * (c1 - a * (c2 - c3 * b));
+    p[1] = c1 - a * (2 * c2 - c3 * (a + 2 * b));
+    p[2] = c2 - c3 * (2 * a + b);
+    p[3] = c3;
+}

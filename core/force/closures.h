@@ -2,11 +2,10 @@
 #ifndef TL_FORCE_CLOSURES_H
 #define TL_FORCE_CLOSURES_H
 
-/* Of a closure: how far from it energies are taken for the stress. Both what a curve adds and what is lost in rounding are below
- * 1e-6 of the stress. */
-#define TL_NEAR_CLOSURE (1.0 / 1024)
-
 /* The closures of Gauss for the weight u, the less first, of the moments int u^n dA, n = 1 .. 4. */
 void tl_two_closures(const double moment[4], double closure[2]);
+/* The cubic p_0 + p_1 u + p_2 u^2 + p_3 u^3 of the energy per closure that meets energies and stresses at both. */
+void tl_energy_cubic(const double at[2], const double energy[2], const double stress[2],
+                     double p[4]);
 
 #endif

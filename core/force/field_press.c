@@ -80,25 +80,19 @@ static void find_curves(const tl_model *m, const tl_law *law, const tl_simd_grou
                         tl_told_press by[TL_LANES])
 {
     const double *area = m->detect->points.area + group->start;
-    double closure[2][FIELD_ROWS] = {0}, energy[2][FIELD_ROWS];
+    double u[FIELD_ROWS] = {0}, energy[FIELD_ROWS], force[FIELD_ROWS];
     for (size_t l = 0; l < TL_LANES; l++) {
         if (group->contact[l] == TL_NO_ROW || !(area[l] > 0))
             continue;
         find_closures(tl_press_row_of(m, group->contact[l]), by[l].at);
-        for (size_t k = 0; k < TL_FIELD_POINTS; k++) {
-            size_t i = k * TL_LANES + l;
-            closure[0][i] = (1 - TL_NEAR_CLOSURE) * by[l].at[k] - lift[i];
-            closure[1][i] = (1 + TL_NEAR_CLOSURE) * by[l].at[k] - lift[i];
-        }
+        for (size_t k = 0; k < TL_FIELD_POINTS; k++)
+            u[k * TL_LANES + l] = by[l].at[k];
     }
-    for (size_t side = 0; side < 2; side++)
-        tl_law_energies(m, law, group->start, FIELD_ROWS, t, closure[side], energy[side]);
+    tl_law_press(m, law, group->start, FIELD_ROWS, t, u, lift, energy, force);
     for (size_t i = 0; i < FIELD_ROWS; i++) {
-        tl_told_press *to = &by[i % TL_LANES];
-        size_t k = i / TL_LANES;
-        double per = area[i] > 0 ? 0.5 / area[i] : 0;
-        to->energy[k] = per * (energy[1][i] + energy[0][i]);
-        to->stress[k] = per * (energy[1][i] - energy[0][i]) / (TL_NEAR_CLOSURE * to->at[k]);
+        double per = area[i] > 0 ? 1 / area[i] : 0;
+        by[i % TL_LANES].energy[i / TL_LANES] = per * energy[i];
+        by[i % TL_LANES].stress[i / TL_LANES] = per * force[i];
     }
 }
 
@@ -130,26 +124,13 @@ void tl_press_ask(const tl_model *m, const tl_law *law, const tl_simd_group *gro
     }
 }
 
-/* The cubic that meets the energy per closure, and its slope, at both closures. */
-static void find_cubic(const tl_told_press *by, double p[4])
-{
-    double a = by->at[0], b = by->at[1], per = 1 / (b - a);
-    double f = by->energy[0] / a, g = by->energy[1] / b, mean = (g - f) * per;
-    double c1 = (by->stress[0] - f) / a, c2 = (mean - c1) * per;
-    double c3 = (((by->stress[1] - g) / b - mean) * per - c2) * per;
-    p[0] = f - a * (c1 - a * (c2 - c3 * b));
-    p[1] = c1 - a * (2 * c2 - c3 * (a + 2 * b));
-    p[2] = c2 - c3 * (2 * a + b);
-    p[3] = c3;
-}
-
 /* The energy of the field, and its slopes by G and the powers. */
 static double find_slopes(const tl_press_row *row, double area, const tl_told_press *by,
                           tl_field_press *out)
 {
     const tl_field_power *powers = row->extra.powers;
     double g = row->press.energy, v = powers[TL_PRESS_VOLUME].whole, p[4];
-    find_cubic(by, p);
+    tl_energy_cubic(by->at, by->energy, by->stress, p);
     double own = 0.25 * v * v / g, more = area / own;
     double all = p[0] * v + 4 * p[1] * g + 12 * p[2] * powers[TL_PRESS_SQUARE].whole +
                  32 * p[3] * powers[TL_PRESS_CUBE].whole;
@@ -210,58 +191,16 @@ tl_field_press tl_press_by_force(const tl_press *press, double kn, double area, 
                             .springs = (f_n * f_n + same * same) / (2 * kn * area)};
 }
 
-/* What a law tells of points of one area and of the same states, at some closures. */
-static void tell(const tl_law *law, double area, const double state[TL_STATE_COLUMNS],
-                 const double closure[TL_LANES], double lift[TL_LANES], double energy[TL_LANES])
-{
-    const tl_law_ops *ops = law->kind->ops;
-    _Alignas(TL_ALIGN) double areas[TL_LANES], at[TL_LANES], zero[TL_LANES] = {0};
-    _Alignas(TL_ALIGN) double states[TL_STATE_COLUMNS][TL_LANES], hold[TL_LANES];
-    _Alignas(TL_ALIGN) uint32_t flags[TL_LANES];
-    double *state_at[TL_STATE_COLUMNS];
-    for (uint32_t l = 0; l < TL_LANES; l++) {
-        areas[l] = area;
-        flags[l] = TL_POINT_APART;
-        lift[l] = 0;
-        for (uint32_t k = 0; k < TL_STATE_COLUMNS; k++)
-            states[k][l] = state[k];
-    }
-    for (uint32_t k = 0; k < TL_STATE_COLUMNS; k++)
-        state_at[k] = states[k];
-    const tl_law_batch batch = {.size = sizeof batch,
-                                .count = TL_LANES,
-                                .area = areas,
-                                .closure = at,
-                                .f_n0 = zero,
-                                .state = state_at,
-                                .flags = flags};
-    tl_enter(law->kind, "pressed");
-    if (ops->across_gap)
-        ops->across_gap(law->self, &batch, lift, hold);
-    for (uint32_t l = 0; l < TL_LANES; l++)
-        at[l] = closure[l] - lift[l];
-    ops->pressed(law->self, &batch, energy);
-    tl_leave();
-}
-
 double tl_press_force(const tl_law *law, const tl_press_row *row,
                       const double state[TL_STATE_COLUMNS])
 {
-    double closure[TL_LANES] = {0}, lift[TL_LANES], energy[TL_LANES];
     tl_told_press by = {.at = {0}};
     if (!(row->press.area > 0))
         return 0;
     if (!tl_law_presses(law))
         return 2 * law->kn * tl_v3_norm(row->press.force);
     find_closures(row, by.at);
-    for (size_t k = 0; k < 4; k++)
-        closure[k] = (k % 2 ? 1 + TL_NEAR_CLOSURE : 1 - TL_NEAR_CLOSURE) * by.at[k / 2];
-    tell(law, row->press.area, state, closure, lift, energy);
-    for (size_t k = 0; k < 2; k++) {
-        double low = energy[2 * k], high = energy[2 * k + 1], per = 0.5 / row->press.area;
-        by.energy[k] = per * (high + low);
-        by.stress[k] = per * (high - low) / (TL_NEAR_CLOSURE * by.at[k]);
-    }
+    tl_law_press_alone(law, row->press.area, state, by.at, 2, by.energy, by.stress);
     return tl_v3_norm(tl_press_by_law(row, row->press.area, 0, 0, &by).force);
 }
 

@@ -222,6 +222,7 @@ static void add_part(tl_cell *to, const cell_parts *part, double fan, tl_vec3 e,
     to->apart = tl_v3_madd(tl_v3_madd(to->apart, fan * a->ua, e), fan * a->ub, f);
     to->pressed_square =
         tl_v3_madd(tl_v3_madd(to->pressed_square, fan * p->uua, e), fan * p->uub, f);
+    to->pressed_cube = tl_v3_madd(tl_v3_madd(to->pressed_cube, fan * p->uuua, e), fan * p->uuub, f);
     to->pressed_third += fan * p->uuu;
     to->pressed_fourth += fan * p->uuuu;
 }
@@ -441,13 +442,14 @@ static void put_means(const patch *of, size_t k, double share, bool curved)
     double area = area_of(of, k), u = t->closure[i] + t->lift[i];
     double more = (cell->pressed_volume - cell->apart_volume) / area - u;
     double p = cell->pressed_volume / area - (1 - share) * more, q = cell->apart_volume / area;
-    double second = 0;
+    double second = 0, rest = 0;
     if (curved) {
         p += cell->bent.closure;
+        rest = cell->bent.more;
         second = cell->bent.second;
         cell->pressed = tl_v3_add(cell->pressed, cell->bent.moment);
     }
-    const double whole[2] = {area * p, area * q};
+    const double whole[2] = {area * p + rest, area * q};
     if (!(cell->pressed_volume > 0) || (p < 0 && q > 0)) { /* apart as a whole */
         p -= q;
         q = 0;

@@ -15,7 +15,7 @@ typedef struct node {
 typedef struct integrals {
     double one, a, b;
     double u, ua, ub, uu;
-    double uua, uub, uuu, uuuu; /* for laws that are not linear; else 0 */
+    double uua, uub, uuu, uuuu, uuua, uuub; /* for laws that are not linear; else 0 */
 } integrals;
 
 /* int u^2 x over a triangle of area 60, of values at its corners. */
@@ -28,13 +28,18 @@ static inline double square_times(const double u[3], double x, double y, double 
 }
 
 /* int u^n over a triangle is 2 / ((n + 1) (n + 2)) times the sum of all products of n of the values at its corners. */
-static inline void put_powers(const double u[3], double f, integrals *out)
+static inline void put_powers(const node n[3], const double u[3], double f, integrals *out)
 {
     double x = u[0], y = u[1], z = u[2], xx = x * x;
     double two = xx + y * (x + y), three = xx * x + y * two, four = xx * xx + y * three;
-    double all = three + z * (two + z * (x + y + z));
+    double sum = x + y + z, pairs = two + z * sum, all = three + z * pairs;
     out->uuu = f / 10 * all;
     out->uuuu = f / 15 * (four + z * all);
+    for (int k = 0; k < 3; k++) { /* int u^3 x is a quarter of how that changes as u goes by x */
+        double by = f / 60 * (all + u[k] * (pairs + u[k] * (sum + u[k])));
+        out->uuua += by * n[k].a;
+        out->uuub += by * n[k].b;
+    }
 }
 
 /* Of a triangle of the share f of the area. */
@@ -54,7 +59,7 @@ static inline integrals whole_of(const node n[3], const double u[3], double f, b
     if (curved) {
         out.uua = f / 60 * square_times(u, n[0].a, n[1].a, n[2].a);
         out.uub = f / 60 * square_times(u, n[0].b, n[1].b, n[2].b);
-        put_powers(u, f, &out);
+        put_powers(n, u, f, &out);
     }
     return out;
 }
@@ -80,6 +85,8 @@ static inline integrals corner_of(const node n[3], const double u[3], double f, 
         out.uub = by_square * (n[k].b + b);
         out.uuu = 3 * by_square * top;
         out.uuuu = 2 * by_square * top * top;
+        out.uuua = 0.5 * by_square * top * (2 * n[k].a + a);
+        out.uuub = 0.5 * by_square * top * (2 * n[k].b + b);
     }
     return out;
 }
@@ -87,10 +94,11 @@ static inline integrals corner_of(const node n[3], const double u[3], double f, 
 /* The sum of both, the second with a sign of the odd powers of u and one of the even ones. */
 static inline integrals added(integrals x, integrals y, double odd, double even)
 {
-    return (integrals){x.one + even * y.one, x.a + even * y.a,      x.b + even * y.b,
-                       x.u + odd * y.u,      x.ua + odd * y.ua,     x.ub + odd * y.ub,
-                       x.uu + even * y.uu,   x.uua + even * y.uua,  x.uub + even * y.uub,
-                       x.uuu + odd * y.uuu,  x.uuuu + even * y.uuuu};
+    return (integrals){x.one + even * y.one, x.a + even * y.a,       x.b + even * y.b,
+                       x.u + odd * y.u,      x.ua + odd * y.ua,      x.ub + odd * y.ub,
+                       x.uu + even * y.uu,   x.uua + even * y.uua,   x.uub + even * y.uub,
+                       x.uuu + odd * y.uuu,  x.uuuu + even * y.uuuu, x.uuua + odd * y.uuua,
+                       x.uuub + odd * y.uuub};
 }
 
 /* What presses of a triangle or cell, and what is apart, u there taken positive. */

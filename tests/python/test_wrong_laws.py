@@ -92,6 +92,10 @@ WRONG = [
      "(law->s_linear + law->k_linear * beyond)", "presses", "pressed"),
     ("pressed is not what the force is the slope of", ROUGH, "energy[i] = v > 0 ? area * energy_at(&law, v) : 0;",
      "energy[i] = v > 0 ? 2 * area * energy_at(&law, v) : 0;", "presses", "pressed"),
+    ("pressed tells another force", ROUGH, "batch->f_n[i] = v > 0 ? area * stress_at(&law, v) : 0;",
+     "batch->f_n[i] = v > 0 ? 1.1 * area * stress_at(&law, v) : 0;", "presses", "tells the force"),
+    ("pressed tells some forces", ROUGH, "batch->f_n[i] = v > 0 ? area * stress_at(&law, v) : 0;",
+     "if (i % 2) batch->f_n[i] = v > 0 ? area * stress_at(&law, v) : 0;", "presses", "of some points"),
     ("pressed of another exponent", YIELDING, "double work = from * below * rest / (1 + rest);",
      "double work = from * below * rest / 2;", "presses", "pressed|stored"),
     # shear force

@@ -248,8 +248,9 @@ typedef struct tl_law_ops {
     /* since 1.8; not 0: what presses has the normal force kn A u, with the kn of stiffness() and u the closure and lift */
     uint32_t linear;
     /* since 1.8, for a law that is not linear; may be NULL: energy, J, of what presses at the closure, as it is part of `stored`.
-     * The batch has the columns area, closure, f_n0, state and flags. Where edges and corners press, the host needs it to make the
-     * force the gradient of an energy; without it some energy is lost or made there. */
+     * The batch has the columns area, closure, f_n0, state and flags, and f_n, into which the normal force that belongs to the energy
+     * may be written, for all points or for none; without it the host asks at two closures more for their difference. Where edges and
+     * corners press, the host needs this to make the force the gradient of an energy; else some energy is lost or made there. */
     void (*pressed)(const void *self, const tl_law_batch *batch, double *energy);
 } tl_law_ops;
 

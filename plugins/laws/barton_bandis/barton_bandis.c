@@ -416,7 +416,7 @@ static void across_gap(const void *self, const tl_law_batch *batch, double *lift
     tl_law_hold_none(batch, hold);
 }
 
-/* Energy of the springs that press. */
+/* Energy and force of the springs that press. */
 static void pressed(const void *self, const tl_law_batch *batch, double *energy)
 {
     const rough law = *(const rough *)self;
@@ -426,6 +426,7 @@ static void pressed(const void *self, const tl_law_batch *batch, double *energy)
         double area = batch->area[i], per = area > 0 ? 1 / area : 0;
         double v = closure_of(&law, batch->f_n0[i] * per) + batch->closure[i] + opening[i];
         energy[i] = v > 0 ? area * energy_at(&law, v) : 0;
+        batch->f_n[i] = v > 0 ? area * stress_at(&law, v) : 0;
     }
 }
 

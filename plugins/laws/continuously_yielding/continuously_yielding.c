@@ -542,7 +542,9 @@ static void pressed(const void *self, const tl_law_batch *batch, double *energy)
     for (uint32_t i = 0; i < batch->count; i++) {
         double area = batch->area[i], per = area > 0 ? 1 / area : 0;
         double v = closure_of(curved, &law, batch->f_n0[i] * per) + batch->closure[i] + opening[i];
-        energy[i] = v > 0 ? area * energy_at(&law, v, stress_at(curved, &law, v)) : 0;
+        double stress = stress_at(curved, &law, v);
+        energy[i] = v > 0 ? area * energy_at(&law, v, stress) : 0;
+        batch->f_n[i] = v > 0 ? area * stress : 0;
     }
 }
 
