@@ -9,8 +9,9 @@
  *     moment  int s x dA = sum (n + 1) p_n int u^n x dA
  *
  * which is exact for any stress up to u^3. The force is the gradient of the energy, for what the moments change of the two closures changes
- * nothing of U: those of Gauss are so. The law gets a closure p at which its whole cell presses with nearly that force, A s(p) = int s dA,
- * found in steps. The cell keeps what force, moment and energy are beside those of its point. */
+ * nothing of U: those of Gauss are so. The law gets a closure p at which its whole cell presses with nearly that force, A s(p) = int s dA:
+ * 1/s is taken to be linear in 1/u between two closures, as it is of lines and hyperbolas. The cell keeps what force, moment and
+ * energy are beside those of its point. */
 #include "force/bent.h"
 
 #include "base/columns.h"
@@ -20,10 +21,9 @@
 
 #include <math.h>
 
-/* Closures that are tried for that of the law. */
-#define STEPS 2
-/* The least power of the closure that a stress is taken to go with. */
-#define LEAST_POWER 0.5
+/* Closures that are tried for that of the law, and how near its stress is to be to the mean one, relative. */
+#define STEPS 12
+#define NEAR_ENOUGH 1e-3
 
 #define ROWS TL_PRESSED_ROWS
 
@@ -41,9 +41,9 @@ typedef struct answer {
     double u[ROWS], stress[ROWS], energy[ROWS];
 } answer;
 
-/* Of a cell: the energy and the force of what presses; its moment; and a stress a u + b u^2 through those at the two closures. */
+/* Of a cell: the energy, force and moment of what presses. */
 typedef struct whole {
-    double energy, force, a, b;
+    double energy, force;
     tl_vec3 moment;
 } whole;
 
@@ -82,8 +82,8 @@ static void choose_all(const cells *of, answer *one, answer *two)
 static whole whole_of(const tl_cell *cell, const double at[2], const double energy[2],
                       const double stress[2])
 {
-    double p[4], per = 1 / (at[1] - at[0]), s = stress[0] / at[0], t = stress[1] / at[1];
-    whole out = {.a = (s * at[1] - t * at[0]) * per, .b = (t - s) * per};
+    double p[4];
+    whole out;
     tl_energy_cubic(at, energy, stress, p);
     out.energy = p[0] * cell->pressed_volume + p[1] * cell->pressed_second +
                  p[2] * cell->pressed_third + p[3] * cell->pressed_fourth;
@@ -95,19 +95,18 @@ static whole whole_of(const tl_cell *cell, const double at[2], const double ener
     return out;
 }
 
-/* Begins with the closure at which a u + b u^2 is the mean stress of the cell. */
-static double begin(const whole *by, double mean)
+/* A closure at which the stress may be the mean one, between two of which the stresses are known; below both, by the power n of the closure with
+ * which the stress goes, n + 1 = s u / E, at least a line. */
+static double closure_at(double mean, const answer *one, const answer *two, size_t i)
 {
-    return 2 * mean / (by->a + sqrt(fmax(by->a * by->a + 4 * by->b * mean, 0)));
-}
-
-/* A step from the closure u to that of a mean stress, as if the stress went as u^n there: n + 1 = s u / E. What is to be raised to
- * 1/n is taken as (1 + x) / (1 - x). */
-static double next(double mean, double u, double stress, double energy)
-{
-    double n = fmax(stress * u / energy - 1, LEAST_POWER);
-    double x = (mean - stress) / (mean + stress) / n;
-    return u * (1 + x) / (1 - x);
+    double u = one->u[i], s = one->stress[i], v = two->u[i], t = two->stress[i];
+    if (mean < s) {
+        double n = fmax(s * u / one->energy[i] - 1, 1), x = (mean - s) / (mean + s) / n;
+        return u * (1 + x) / (1 - x);
+    }
+    double rise = 1 / s - 1 / t;
+    double at = 1 / v + (1 / mean - 1 / t) * (1 / u - 1 / v) / rise;
+    return rise > 0 && at > 1 / v ? 1 / at : v;
 }
 
 static double area_of(const cells *of, size_t i)
@@ -115,21 +114,15 @@ static double area_of(const cells *of, size_t i)
     return of->m->detect->points.area[of->row + i];
 }
 
-/* What each cell presses with, and the closure to begin with. */
-static void find_wholes(const cells *of, whole by[ROWS], answer *even)
+/* What each cell presses with, by two closures. */
+static void find_wholes(const cells *of, const answer *one, const answer *two, whole by[ROWS])
 {
-    answer one, two;
-    choose_all(of, &one, &two);
-    ask(of, &one);
-    ask(of, &two);
     for (size_t i = 0; i < of->count; i++) {
-        even->u[i] = 0;
-        if (!(one.stress[i] > 0 && two.stress[i] > 0))
-            continue;
-        const double at[] = {one.u[i], two.u[i]}, energy[] = {one.energy[i], two.energy[i]};
-        const double stress[] = {one.stress[i], two.stress[i]};
-        by[i] = whole_of(&of->t->cell[of->lane + i], at, energy, stress);
-        even->u[i] = by[i].force > 0 ? begin(&by[i], by[i].force / area_of(of, i)) : 0;
+        const double at[] = {one->u[i], two->u[i]}, energy[] = {one->energy[i], two->energy[i]};
+        const double stress[] = {one->stress[i], two->stress[i]};
+        by[i].force = 0;
+        if (one->stress[i] > 0 && two->stress[i] > 0)
+            by[i] = whole_of(&of->t->cell[of->lane + i], at, energy, stress);
     }
 }
 
@@ -147,19 +140,52 @@ static tl_bent bent_of(const tl_cell *cell, const whole *by, double area, double
     };
 }
 
+/* The one that was tried takes the place of that on its side of the mean. The same side twice is a curve with a knee: the next one is in the
+ * middle. */
+static double next(double mean, answer *one, answer *two, const answer *even, size_t i, int *side)
+{
+    const bool above = even->stress[i] >= mean;
+    answer *to = above ? two : one;
+    to->u[i] = even->u[i];
+    to->stress[i] = even->stress[i];
+    to->energy[i] = even->energy[i];
+    const bool again = *side == (above ? 1 : -1);
+    *side = above ? 1 : -1;
+    double at = closure_at(mean, one, two, i);
+    return again && at >= one->u[i] ? 0.5 * (one->u[i] + two->u[i]) : at;
+}
+
+/* Finds closures of the means, by those at which the curve is known. */
+static void find_even(const cells *of, const whole by[ROWS], answer *one, answer *two, answer *even)
+{
+    int side[ROWS] = {0};
+    bool found = false;
+    for (size_t i = 0; i < of->count; i++)
+        even->u[i] = by[i].force > 0 ? closure_at(by[i].force / area_of(of, i), one, two, i) : 0;
+    ask(of, even);
+    for (int k = 1; k < STEPS && !found; k++) {
+        found = true;
+        for (size_t i = 0; i < of->count; i++) {
+            const double mean = by[i].force / area_of(of, i);
+            if (!(even->u[i] > 0) || fabs(even->stress[i] - mean) <= NEAR_ENOUGH * mean)
+                continue;
+            even->u[i] = next(mean, one, two, even, i, &side[i]);
+            found = false;
+        }
+        if (!found)
+            ask(of, even);
+    }
+}
+
 static void bend(const cells *of)
 {
-    answer even;
+    answer one, two, even;
     whole by[ROWS];
-    find_wholes(of, by, &even);
-    ask(of, &even);
-    for (int k = 1; k < STEPS; k++) {
-        for (size_t i = 0; i < of->count; i++)
-            if (even.stress[i] > 0)
-                even.u[i] =
-                    next(by[i].force / area_of(of, i), even.u[i], even.stress[i], even.energy[i]);
-        ask(of, &even);
-    }
+    choose_all(of, &one, &two);
+    ask(of, &one);
+    ask(of, &two);
+    find_wholes(of, &one, &two, by);
+    find_even(of, by, &one, &two, &even);
     for (size_t i = 0; i < of->count; i++) {
         tl_cell *cell = &of->t->cell[of->lane + i];
         cell->bent = even.stress[i] > 0 ? bent_of(cell, &by[i], area_of(of, i), even.u[i],

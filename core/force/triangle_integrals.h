@@ -1,0 +1,104 @@
+/* triangle_integrals.h - integrals over a triangle, or a corner of it, of powers of an overlap u that is linear there, and of them times
+ * the place. */
+#ifndef TL_FORCE_TRIANGLE_INTEGRALS_H
+#define TL_FORCE_TRIANGLE_INTEGRALS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+/* A place in a triangle of the fan: shares of the two corners beside that of the centroid. */
+typedef struct node {
+    double a, b;
+} node;
+
+/* Over a part of the triangle, times 1 over its area: integrals of 1 and of powers of u, and of them times the place. */
+typedef struct integrals {
+    double one, a, b;
+    double u, ua, ub, uu;
+    double uua, uub, uuu, uuuu, uuua, uuub; /* for laws that are not linear; else 0 */
+} integrals;
+
+/* int u^2 x over a triangle of area 60, of values at its corners. */
+static inline double square_times(const double u[3], double x, double y, double z)
+{
+    double sum = u[0] + u[1] + u[2], squares = u[0] * u[0] + u[1] * u[1] + u[2] * u[2];
+    double mixed = u[0] * x + u[1] * y + u[2] * z;
+    double high = u[0] * u[0] * x + u[1] * u[1] * y + u[2] * u[2] * z;
+    return (sum * sum + squares) * (x + y + z) + 2 * (sum * mixed + high);
+}
+
+/* int u^n over a triangle is 2 / ((n + 1) (n + 2)) times the sum of all products of n of the values at its corners. */
+static inline void put_powers(const node n[3], const double u[3], double f, integrals *out)
+{
+    double x = u[0], y = u[1], z = u[2], xx = x * x;
+    double two = xx + y * (x + y), three = xx * x + y * two, four = xx * xx + y * three;
+    double sum = x + y + z, pairs = two + z * sum, all = three + z * pairs;
+    out->uuu = f / 10 * all;
+    out->uuuu = f / 15 * (four + z * all);
+    for (int k = 0; k < 3; k++) { /* int u^3 x is a quarter of how that changes as u goes by x */
+        double by = f / 60 * (all + u[k] * (pairs + u[k] * (sum + u[k])));
+        out->uuua += by * n[k].a;
+        out->uuub += by * n[k].b;
+    }
+}
+
+/* Of a triangle of the share f of the area. */
+static inline integrals whole_of(const node n[3], const double u[3], double f, bool curved)
+{
+    double sum = u[0] + u[1] + u[2], by = f / 12;
+    double a = n[0].a + n[1].a + n[2].a, b = n[0].b + n[1].b + n[2].b;
+    integrals out = {
+        .one = f,
+        .a = f / 3 * a,
+        .b = f / 3 * b,
+        .u = f / 3 * sum,
+        .ua = by * (sum * a + u[0] * n[0].a + u[1] * n[1].a + u[2] * n[2].a),
+        .ub = by * (sum * b + u[0] * n[0].b + u[1] * n[1].b + u[2] * n[2].b),
+        .uu = f / 6 * (0.5 * (u[0] * u[0] + u[1] * u[1] + u[2] * u[2]) + 0.5 * sum * sum),
+    };
+    if (curved) {
+        out.uua = f / 60 * square_times(u, n[0].a, n[1].a, n[2].a);
+        out.uub = f / 60 * square_times(u, n[0].b, n[1].b, n[2].b);
+        put_powers(n, u, f, &out);
+    }
+    return out;
+}
+
+/* Of the part of it at corner k where `sign` u > 0, when that is so at no other corner; u taken times the sign. */
+static inline integrals corner_of(const node n[3], const double u[3], double f, size_t k,
+                                  double sign, bool curved)
+{
+    size_t i = (k + 1) % 3, j = (k + 2) % 3;
+    double top = sign * u[k], s = u[k] / (u[k] - u[i]), t = u[k] / (u[k] - u[j]);
+    double area = f * s * t, by = area * top / 12, by_square = area * top * top / 30;
+    double a = 4 * n[k].a + s * (n[i].a - n[k].a) + t * (n[j].a - n[k].a);
+    double b = 4 * n[k].b + s * (n[i].b - n[k].b) + t * (n[j].b - n[k].b);
+    integrals out = {.one = area,
+                     .a = area / 3 * (a - n[k].a),
+                     .b = area / 3 * (b - n[k].b),
+                     .u = area * top / 3,
+                     .ua = by * a,
+                     .ub = by * b,
+                     .uu = area * top * top / 6};
+    if (curved) {
+        out.uua = by_square * (n[k].a + a);
+        out.uub = by_square * (n[k].b + b);
+        out.uuu = 3 * by_square * top;
+        out.uuuu = 2 * by_square * top * top;
+        out.uuua = 0.5 * by_square * top * (2 * n[k].a + a);
+        out.uuub = 0.5 * by_square * top * (2 * n[k].b + b);
+    }
+    return out;
+}
+
+/* The sum of both, the second with a sign of the odd powers of u and one of the even ones. */
+static inline integrals added(integrals x, integrals y, double odd, double even)
+{
+    return (integrals){x.one + even * y.one, x.a + even * y.a,       x.b + even * y.b,
+                       x.u + odd * y.u,      x.ua + odd * y.ua,      x.ub + odd * y.ub,
+                       x.uu + even * y.uu,   x.uua + even * y.uua,   x.uub + even * y.uub,
+                       x.uuu + odd * y.uuu,  x.uuuu + even * y.uuuu, x.uuua + odd * y.uuua,
+                       x.uuub + odd * y.uuub};
+}
+
+#endif
