@@ -23,6 +23,7 @@
 
 #include "contact/detection.h"
 #include "contact/held.h"
+#include "detect/asked.h"
 #include "detect/detect.h"
 #include "detect/overlap.h"
 
@@ -87,6 +88,7 @@ tl_status tl_step(tl_model *m)
     if (status != TL_OK) {
         if (m->cycle)
             m->cycle->dt = in_use;
+        tl_asked_step_failed(m);
         return status;
     }
     tl_held_followed(m);

@@ -71,7 +71,7 @@ static void drop_other_rules(tl_model *m)
 
 tl_status tl_asked_begin(tl_model *m)
 {
-    if (!m->detect || !has_begun(m)) {
+    if (!tl_detect_lasting(m) || !has_begun(m)) {
         if (!tl_asked_note(m))
             return tl_fail_memory(&m->error);
         drop_other_rules(m);
@@ -92,6 +92,11 @@ tl_status tl_asked_begin(tl_model *m)
     m->detect = copy;
     go_on_counting(m);
     return TL_OK;
+}
+
+void tl_asked_step_failed(tl_model *m)
+{
+    m->only_asked = m->only_asked || (m->detect && !has_begun(m));
 }
 
 void tl_asked_end(tl_model *m)
