@@ -253,8 +253,7 @@ static size_t larger(size_t a, size_t b)
     return a > b ? a : b;
 }
 
-/* Lanes for a tile, or the largest SIMD group, for every thread. */
-static bool make_lanes(tl_detect *d, const tl_layout *layout)
+bool tl_detect_make_lanes(tl_detect *d, const tl_layout *layout)
 {
     size_t capacity = LEAST_LANES;
     for (size_t r = 0; r < layout->span_count; r++)
@@ -309,7 +308,7 @@ tl_status tl_contacts_repack(tl_model *m)
         copy_contact(d, list[i].row, i);
     tl_layout layout = {0};
     there = there && tl_layout_make(&layout, fresh, d->spare_share, &points) &&
-            make_lanes(d, &layout) && tl_table_resize(&d->spare_points.table, points);
+            tl_detect_make_lanes(d, &layout) && tl_table_resize(&d->spare_points.table, points);
     if (there)
         move_points(d, list);
     free(list);

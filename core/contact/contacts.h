@@ -9,6 +9,8 @@ void tl_contacts_init(tl_contacts *contacts, tl_points_table *points);
 void tl_point_lanes_init(tl_point_lanes *lanes);
 /* Gives the threads' lanes room for `capacity` points; false when out of memory. */
 bool tl_detect_hold_lanes(tl_detect *d, size_t capacity);
+/* The same for a tile, or the largest SIMD group of a layout, for every thread. */
+bool tl_detect_make_lanes(tl_detect *d, const tl_layout *layout);
 /* Adds a patch or a field contact of a pair, without points, wanting room for some, whose faces hold for a path length of `valid`;
  * false when out of memory. */
 bool tl_contact_append(tl_model *m, uint32_t pair, bool field, double valid, tl_tag tag,

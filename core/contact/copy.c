@@ -18,6 +18,7 @@ tl_detect *tl_detect_copy(const tl_detect *from)
     tl_detect_walk(d, &(tl_walk){tl_entries_take, &copy});
     d->spare_points.state_columns = d->points.state_columns; /* it has the same columns */
     d->spare_points.initial = d->points.initial;
+    d->lane_capacity = from->lane_capacity;
     if (!copy.failed && tl_detect_hold_lanes(d, d->lane_capacity))
         return d;
     tl_detect_destroy(d);

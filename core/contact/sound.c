@@ -268,8 +268,8 @@ static bool span_is_sound(const tl_model *m, const tl_detect *d, const tl_span *
     for (size_t r = span->group_begin; r < span->group_end; r++) {
         const tl_simd_group *group = &d->layout.groups[r];
         size_t rows = (size_t)group->slots * TL_LANES;
-        if (group->start != at || group->slots == 0 || rows > d->lane_capacity ||
-            rows > span->end - at || !group_is_sound(d, span, group, taken))
+        if (group->start != at || group->slots == 0 || rows > span->end - at ||
+            !group_is_sound(d, span, group, taken))
             return false;
         at += rows;
     }

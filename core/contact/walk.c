@@ -48,7 +48,6 @@ static void walk_contacts(tl_detect *d, const tl_walk *walk)
     VALUE(CACHE, spare_share);
     LIST(CACHE, layout.spans, layout.span_count, layout.span_capacity, other);
     LIST(CACHE, layout.groups, layout.group_capacity, layout.group_capacity, index);
-    VALUE(CACHE, lane_capacity);
     TABLE(SCRATCH, spare, spare);
     TABLE(SCRATCH, spare_points, spare);
     LIST(DERIVED, by_block, by_block_capacity, by_block_capacity, index);

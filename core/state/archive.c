@@ -19,6 +19,8 @@
 #include <stdlib.h>
 #include <string.h>
 #include <talus/number.h>
+#include <talus/text.h>
+#include <talus/version.h>
 #include <xxhash.h>
 #include <zstd.h>
 
@@ -29,6 +31,11 @@ static const char magic[8] = TL_ARCHIVE_MAGIC;
 #define LEVEL 1
 /* Data of fewer bytes is stored as it is. */
 #define SHORT_DATA 128
+/* Bytes of a file by which it is told what it is; room for a version. */
+#define FIRST_BYTES 256
+#define WRITER 32
+/* Bytes of a frame that is skipped beside what is in it; it holds less than 4 GiB, so data has less than 128 GiB. */
+#define SKIPPED 8
 
 /* ---------------------------------------------------------------- writing ---------------- */
 
@@ -45,10 +52,23 @@ tl_status tl_archive_begin(tl_archive_writer *w, const char *path, tl_error *err
     return TL_OK;
 }
 
+/* Makes packed data long enough for what it stands for, by a frame that zstd skips; its length then. */
+static size_t pad(unsigned char *packed, size_t length, size_t bytes)
+{
+    const size_t least = bytes / TL_ARCHIVE_DENSEST + 1;
+    if (length >= least)
+        return length;
+    const size_t rest = least > length + SKIPPED ? least - length - SKIPPED : 0;
+    const uint32_t head[2] = {ZSTD_MAGIC_SKIPPABLE_START, (uint32_t)rest};
+    memcpy(packed + length, head, sizeof head);
+    memset(packed + length + SKIPPED, 0, rest);
+    return length + SKIPPED + rest;
+}
+
 /* Compresses into the writer's buffer; 0: not shorter. */
 static size_t pack(tl_archive_writer *w, const void *data, size_t bytes)
 {
-    size_t bound = ZSTD_compressBound(bytes);
+    size_t bound = ZSTD_compressBound(bytes) + bytes / TL_ARCHIVE_DENSEST + SKIPPED + 1;
     if (bound > w->buffer_bytes) {
         free(w->buffer);
         w->buffer = malloc(bound);
@@ -58,7 +78,8 @@ static size_t pack(tl_archive_writer *w, const void *data, size_t bytes)
     if (!w->buffer)
         return 0;
     size_t packed = ZSTD_compress(w->buffer, bound, data, bytes, LEVEL);
-    return ZSTD_isError(packed) || packed >= bytes ? 0 : packed;
+    packed = ZSTD_isError(packed) ? bytes : pad(w->buffer, packed, bytes);
+    return packed >= bytes ? 0 : packed;
 }
 
 static uint64_t sum_of(const char *name, size_t name_bytes, const void *data, size_t bytes)
@@ -112,24 +133,63 @@ tl_status tl_archive_bad(const tl_archive *a, tl_error *error, const char *forma
                    a->path, what);
 }
 
-static tl_status check_file_head(const tl_archive *a, tl_error *error)
+/* The version of the program that has written a file, by its first bytes: its first chunk in all formats since 7. Empty: unknown. */
+static void find_writer(const unsigned char *bytes, size_t length, char version[WRITER])
+{
+    static const char name[] = "program";
+    const size_t at = sizeof(tl_archive_head), text = at + sizeof(tl_chunk_head) + strlen(name);
+    tl_chunk_head head;
+    *version = '\0';
+    if (length < text)
+        return;
+    memcpy(&head, bytes + at, sizeof head);
+    if (head.name_bytes != strlen(name) || head.packed || head.stored >= WRITER ||
+        head.stored > length - text || memcmp(bytes + text - strlen(name), name, strlen(name)) != 0)
+        return;
+    memcpy(version, bytes + text, head.stored);
+    version[head.stored] = '\0';
+    if (!tl_text_is_utf8(version) || strpbrk(version, "\r\n\t"))
+        *version = '\0';
+}
+
+static tl_status refuse_format(const char *path, const unsigned char *bytes, size_t length,
+                               uint32_t format, tl_error *error)
+{
+    char writer[WRITER];
+    find_writer(bytes, length, writer);
+    const char *by = *writer ? ", written by Talus " : "";
+    return tl_fail(
+        error, TL_E_ARGUMENT,
+        "cannot restore '%.200s': it has format %u%s%s, and this version of Talus, " TALUS_VERSION
+        ", reads format %d: use the version that has written it",
+        path, format, by, writer, TL_ARCHIVE_FORMAT);
+}
+
+/* By the first bytes of a file, as many as there are. */
+static tl_status check_file_head(const char *path, const unsigned char *bytes, size_t length,
+                                 tl_error *error)
 {
     tl_archive_head head;
-    if (a->length < sizeof head || memcmp(a->bytes, magic, sizeof magic) != 0)
+    if (length < sizeof head || memcmp(bytes, magic, sizeof magic) != 0)
         return tl_fail(error, TL_E_ARGUMENT,
-                       "cannot restore '%.200s': it is no file that model:save has written",
-                       a->path);
-    memcpy(&head, a->bytes, sizeof head);
+                       "cannot restore '%.200s': it is no file that model:save has written", path);
+    memcpy(&head, bytes, sizeof head);
     if (head.order != TL_ARCHIVE_ORDER)
         return tl_fail(error, TL_E_ARGUMENT,
                        "cannot restore '%.200s': it was written by a machine of another byte order",
-                       a->path);
-    if (head.format != TL_ARCHIVE_FORMAT)
-        return tl_fail(error, TL_E_ARGUMENT,
-                       "cannot restore '%.200s': it has format %u, and this version of Talus reads "
-                       "format %d: use the version that has written it",
-                       a->path, head.format, TL_ARCHIVE_FORMAT);
-    return TL_OK;
+                       path);
+    return head.format == TL_ARCHIVE_FORMAT
+               ? TL_OK
+               : refuse_format(path, bytes, length, head.format, error);
+}
+
+/* Whether stored data may stand for so many items. */
+static bool is_dense(const tl_chunk_head *head)
+{
+    uint64_t most = head->stored > UINT64_MAX / TL_ARCHIVE_DENSEST
+                        ? UINT64_MAX
+                        : head->stored * (head->packed ? TL_ARCHIVE_DENSEST : 1);
+    return head->size == 0 || head->items <= most / head->size;
 }
 
 /* Reads the chunk at `*at`, and moves that on; false: there is no whole one. */
@@ -143,7 +203,7 @@ static bool read_chunk(const tl_archive *a, size_t *at, tl_chunk *chunk, uint64_
     left -= sizeof head;
     if (XXH64(&head, TL_CHUNK_HEAD_SUMMED, 0) != head.head_sum || head.packed > 1 ||
         head.name_bytes > TL_CHUNK_NAME || head.name_bytes > left ||
-        head.stored > left - head.name_bytes)
+        head.stored > left - head.name_bytes || !is_dense(&head))
         return false;
     const unsigned char *name = a->bytes + *at + sizeof head;
     *chunk = (tl_chunk){.name = (const char *)name,
@@ -195,7 +255,8 @@ tl_status tl_archive_of_bytes(tl_archive *a, const char *path, unsigned char *by
 {
     *a = (tl_archive){.path = strdup(path), .bytes = bytes, .length = length};
     a->unpacker = ZSTD_createDCtx(); /* unpacking then needs no memory of its own */
-    tl_status status = a->path && a->unpacker ? check_file_head(a, error) : tl_fail_memory(error);
+    tl_status status = a->path && a->unpacker ? check_file_head(path, bytes, length, error)
+                                              : tl_fail_memory(error);
     if (status == TL_OK)
         status = list_chunks(a, error);
     if (status != TL_OK)
@@ -208,20 +269,21 @@ static tl_status cannot_read(tl_error *error, const char *path, const char *why)
     return tl_fail(error, TL_E_IO, "cannot restore '%.200s': %s", path, why);
 }
 
-/* The bytes of a file; NULL with an errno. */
-static unsigned char *read_all(FILE *file, size_t *length)
+/* The bytes of a file behind its head; NULL with an errno. */
+static unsigned char *read_all(FILE *file, const unsigned char *head, size_t *length)
 {
     unsigned char *bytes = NULL;
     size_t capacity = 0;
-    *length = 0;
     do {
-        if (*length == capacity) {
+        if (*length >= capacity) {
             capacity = capacity ? 2 * capacity : 1 << 20;
             unsigned char *more = realloc(bytes, capacity);
             if (!more) {
                 free(bytes);
                 return NULL;
             }
+            if (!bytes)
+                memcpy(more, head, *length);
             bytes = more;
         }
         *length += fread(bytes + *length, 1, capacity - *length, file);
@@ -241,11 +303,15 @@ tl_status tl_archive_open(tl_archive *a, const char *path, tl_error *error)
     FILE *file = fopen(path, "rb");
     if (!file)
         return cannot_read(error, path, strerror(errno));
-    size_t length;
+    unsigned char head[FIRST_BYTES];
     errno = 0;
-    unsigned char *bytes = read_all(file, &length);
+    size_t length = fread(head, 1, sizeof head, file);
+    tl_status status = ferror(file) ? TL_OK : check_file_head(path, head, length, error);
+    unsigned char *bytes = status == TL_OK ? read_all(file, head, &length) : NULL;
     int code = errno;
     fclose(file);
+    if (status != TL_OK)
+        return status;
     if (!bytes)
         return code == ENOMEM ? tl_fail_memory(error) : cannot_read(error, path, strerror(code));
     return tl_archive_of_bytes(a, path, bytes, length, error);

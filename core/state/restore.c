@@ -23,11 +23,6 @@
 #include <string.h>
 #include <talus/text.h>
 
-/* Numbers of blocks that a model may have had: a file of some bytes shall not cost a machine its memory. */
-#define MOST_IDS (1u << 28)
-/* Points that a SIMD group may have room for, of contacts of 65535 points. */
-#define MOST_LANES (1u << 19)
-
 /* Entries on their way from an archive. */
 typedef struct reader {
     const tl_archive *archive;
@@ -222,17 +217,26 @@ static tl_status share_planes(tl_model *m)
     return status;
 }
 
-/* The lists that follow from the rows. */
+/* The lists that follow from the rows. The row of each number that a block has ever had is in the file, so that there is no more memory for
+ * them than a file of its size may ask for. */
 static tl_status derive_rows(tl_model *m, const tl_archive *a)
 {
-    uint64_t structure = m->structure;
-    if (m->next_id > MOST_IDS || !tl_rows_reserve(m, m->blocks.table.rows, m->next_id))
-        return m->next_id > MOST_IDS
-                   ? tl_archive_bad(a, &m->error, "a block has an impossible number")
-                   : tl_fail_memory(&m->error);
+    const uint64_t structure = m->structure;
+    const tl_chunk *chunk = tl_archive_find(a, "blocks.row_of");
+    if (!chunk || chunk->items != m->next_id || chunk->size != sizeof *m->row_of)
+        return tl_archive_bad(a, &m->error, "'blocks.row_of' is missing or does not fit");
+    uint32_t *rows = malloc(((size_t)m->next_id + 1) * sizeof *rows);
+    if (!rows || !tl_rows_reserve(m, m->blocks.table.rows, m->next_id)) {
+        free(rows);
+        return tl_fail_memory(&m->error);
+    }
     tl_rows_refresh(m);
     m->structure = structure;
-    return share_planes(m);
+    bool fits = tl_archive_get(a, "blocks.row_of", rows, sizeof *rows, m->next_id) &&
+                memcmp(rows, m->row_of, m->next_id * sizeof *rows) == 0;
+    free(rows);
+    return fits ? share_planes(m)
+                : tl_archive_bad(a, &m->error, "'blocks.row_of' is missing or does not fit");
 }
 
 static tl_status read_rows(tl_model *m, const tl_archive *a)
@@ -322,15 +326,14 @@ static tl_status read_detection(tl_model *m, const tl_archive *a)
     unsigned char *used = calloc(d->press_count + 1, 1);
     if (!used)
         return tl_fail_memory(&m->error);
-    const char *bad = columns < states_needed(m)      ? "states of the laws are missing"
-                      : d->lane_capacity > MOST_LANES ? "a contact has too many points"
-                                                      : tl_detect_unsound(m, d, used);
+    const char *bad = columns < states_needed(m) ? "states of the laws are missing"
+                                                 : tl_detect_unsound(m, d, used);
     free(used);
     if (bad)
         return unsound(a, m, bad);
     tl_contacts_unlist(d);
     bool edited = d->structure != m->structure; /* all is listed anew before it is next used */
-    return tl_detect_hold_lanes(d, d->lane_capacity) && (edited || tl_contacts_index(m))
+    return tl_detect_make_lanes(d, &d->layout) && (edited || tl_contacts_index(m))
                ? TL_OK
                : tl_fail_memory(&m->error);
 }

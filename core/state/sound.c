@@ -12,6 +12,9 @@
 /* Changes that a model may have counted; no run comes near, and sums of such numbers do not overflow. */
 #define MOST_CHANGES (UINT64_MAX / 8)
 
+/* Cycles that a model may have run; further ones do not overflow. */
+#define MOST_CYCLES (INT64_MAX / 8)
+
 /* Contacts that a model may have had. */
 #define MOST_CONTACTS (UINT32_MAX / 2)
 
@@ -30,8 +33,9 @@ static bool settings_are_sound(const tl_model *m)
            c->rotation <= TL_ROTATION_PAPER && c->reuse_geometry >= 0 && c->reuse_geometry <= 1 &&
            c->contact_points >= 0 && c->contact_points <= TL_POINTS_CORNERS && steps &&
            tl_v3_finite(m->origin) && isfinite(m->time) && isfinite(m->dt) && m->dt >= 0 &&
-           m->cycles >= 0 && m->gone == 0 && (m->said & ~ALL_REMARKS) == 0 && !(m->added_dt <= 0) &&
-           !(m->added_most < 0) && m->structure <= MOST_CHANGES && m->constraints <= MOST_CHANGES &&
+           m->cycles >= 0 && m->cycles <= MOST_CYCLES && m->gone == 0 &&
+           (m->said & ~ALL_REMARKS) == 0 && !(m->added_dt <= 0) && !(m->added_most < 0) &&
+           m->structure <= MOST_CHANGES && m->constraints <= MOST_CHANGES &&
            m->laws <= MOST_CHANGES;
 }
 
