@@ -1,18 +1,27 @@
-/* sliver.c - a remark on blocks so small or thin that they alone make the time step short.
+/* sliver.c - a remark on blocks so small or thin that they make the time step short, with a filter that suffices.
  *
- * The step goes with 1 / sqrt(rate) of the body that controls it. Where all but a few bodies allow one that is several
- * times longer, and the shape of the body is the reason, not a stiff law or a light rock, the user is told of the block
- * and of the filter that finds it. */
+ * The step goes with 1 / sqrt(rate) of the body that controls it. The bodies are sorted by how small and how thin they are, into cells between
+ * limits of volume and aspect. A filter takes those beyond its limits, and the highest rate of those that it leaves tells by how much longer
+ * the step would be. Of the filters that take little of the rock, the one is told that takes least and gains nearly the most. Where no shape
+ * is the reason, but a stiff law or a light rock, no filter gains anything, and nothing is said. */
 #include "cycle/rates.h"
 
 #include <stdio.h>
+#include <string.h>
+#include <talus/number.h>
+#include <talus/text.h>
 
 /* How many times longer a step the rest must allow. */
 #define SHORTENS 3.0
-/* How many times as small or as thin as the rest a sliver is. */
-#define SLIMMER 2.0
-/* Share of the bodies that are not the rest; one at least. */
-#define FEW 0.01
+/* The largest share of the rock, by volume, that may be called slivers. */
+#define LITTLE 0.05
+/* Share of the largest gain that suffices. */
+#define ENOUGH 0.5
+
+/* Limits, the widest first: shares of the mean volume of a body, and aspects. */
+static const double part[] = {0.01, 3e-3, 1e-3, 1e-4, 1e-5};
+static const double thinness[] = {10, 20, 30, 50, 100};
+enum { PARTS = sizeof part / sizeof *part, ASPECTS = sizeof thinness / sizeof *thinness };
 
 /* What the rule takes of a body, as a rate: the step goes with 1 / sqrt of it. 0: the body does not count. */
 static double rule_rate(const tl_model *m, uint32_t body)
@@ -22,27 +31,13 @@ static double rule_rate(const tl_model *m, uint32_t body)
     return tl_rates_points(m) ? m->cycle->rate[body] : 1 / m->bodies.mass[body];
 }
 
-/* The body of the highest rate, that of the highest one SHORTENS^2 times below it or lower, and how many are between. */
-typedef struct ranking {
-    tl_row_value first, rest;
-    size_t few, all;
-} ranking;
-
-static ranking rank_bodies(const tl_model *m)
+static tl_row_value fastest(const tl_model *m)
 {
-    ranking out = {.first = {0, TL_NO_ROW}, .rest = {0, TL_NO_ROW}};
+    tl_row_value out = {0, TL_NO_ROW};
     for (uint32_t body = 0; body < m->bodies.table.rows; body++) {
         double rate = rule_rate(m, body);
-        if (rate > out.first.value)
-            out.first = (tl_row_value){rate, body};
-    }
-    for (uint32_t body = 0; body < m->bodies.table.rows; body++) {
-        double rate = rule_rate(m, body);
-        out.all += rate > 0;
-        if (rate * (SHORTENS * SHORTENS) > out.first.value)
-            out.few++;
-        else if (rate > out.rest.value)
-            out.rest = (tl_row_value){rate, body};
+        if (rate > out.value)
+            out = (tl_row_value){rate, body};
     }
     return out;
 }
@@ -67,40 +62,117 @@ static body_shape shape_of(const tl_model *m, uint32_t body)
     return out;
 }
 
-/* The part of a rate that is the shape's: without law and density. */
-static double shape_rate(const tl_model *m, tl_row_value of, const body_shape *shape)
+/* Some bodies: their highest rate, volume and number. */
+typedef struct heap {
+    double rate, volume;
+    size_t count;
+} heap;
+
+/* Bodies by how many limits of volume, and of aspect, they are beyond. */
+typedef struct sorting {
+    double volume[PARTS]; /* the limits, m3 */
+    heap cell[PARTS + 1][ASPECTS + 1];
+    heap all;
+} sorting;
+
+static void add(heap *to, const heap *more)
 {
-    double law = tl_rates_points(m) ? tl_rate_law(m, of.row) : 1;
-    return of.value / law * (m->bodies.mass[of.row] / shape->all_volume);
+    to->rate = fmax(to->rate, more->rate);
+    to->volume += more->volume;
+    to->count += more->count;
 }
 
-/* How many times as small, by the cube root of the volume, and as thin a sliver is as the rest. */
-typedef struct slimness {
-    double small, thin;
-} slimness;
-
-static slimness compare(const body_shape *sliver, const body_shape *rest)
+/* A number of one digit. */
+static double rounded(double x)
 {
-    return (slimness){tl_cbrt(rest->volume / sliver->volume), sliver->aspect / rest->aspect};
+    char text[32];
+    tl_text_print(text, sizeof text, "%.0e", x);
+    return tl_number_read(text, NULL);
 }
 
-static void say(tl_model *m, const ranking *r, const body_shape *sliver, const body_shape *rest)
+static void sort_bodies(const tl_model *m, sorting *s)
 {
-    /* the filter that tells the two apart best, with a limit half-way between them */
-    slimness slim = compare(sliver, rest);
-    bool by_volume = slim.small > slim.thin;
-    double limit =
-        by_volume ? sqrt(sliver->volume) * sqrt(rest->volume) : sqrt(sliver->aspect * rest->aspect);
-    char others[40] = "";
-    if (r->few > 1)
-        snprintf(others, sizeof others, " and %zu more", r->few - 1);
-    tl_model_say(m,
-                 "time step: block %u%s (volume %.3g m3, aspect %.3g) make%s it %.3g times smaller "
-                 "than the rest of the blocks allow; model:filter{ %s = %.4g, action = \"join\" } "
-                 "joins such slivers to their neighbours",
-                 m->bodies.id[r->first.row], others, sliver->volume, sliver->aspect,
-                 r->few > 1 ? "" : "s", sqrt(r->first.value / r->rest.value),
-                 by_volume ? "volume" : "aspect", limit);
+    double whole = 0;
+    size_t bodies = 0;
+    memset(s, 0, sizeof *s);
+    for (uint32_t row = 0; row < m->blocks.table.rows; row++)
+        if (tl_body_counts(m, m->blocks.body[row]))
+            whole += m->blocks.volume[row];
+    for (uint32_t body = 0; body < m->bodies.table.rows; body++)
+        bodies += tl_body_counts(m, body);
+    for (int k = 0; k < PARTS; k++)
+        s->volume[k] = rounded(part[k] * whole / (double)bodies);
+    for (uint32_t body = 0; body < m->bodies.table.rows; body++) {
+        const double rate = rule_rate(m, body);
+        int small = 0, thin = 0;
+        if (!(rate > 0))
+            continue;
+        const body_shape shape = shape_of(m, body);
+        while (small < PARTS && shape.volume < s->volume[small])
+            small++;
+        while (thin < ASPECTS && shape.aspect > thinness[thin])
+            thin++;
+        const heap one = {rate, shape.all_volume, 1};
+        add(&s->cell[small][thin], &one);
+        add(&s->all, &one);
+    }
+}
+
+/* Limits by their numbers, 0: none; and what a filter of them leaves. */
+typedef struct choice {
+    int small, thin;
+    heap left;
+} choice;
+
+static heap left_by(const sorting *s, int small, int thin)
+{
+    heap left = {0, 0, 0};
+    for (int i = 0; i < (small ? small : PARTS + 1); i++)
+        for (int k = 0; k < (thin ? thin : ASPECTS + 1); k++)
+            add(&left, &s->cell[i][k]);
+    return left;
+}
+
+/* The filter that takes least and gains enough of what one that takes little can; without limits when none does. */
+static choice choose(const sorting *s)
+{
+    choice best = {0, 0, s->all};
+    double least = s->all.rate;
+    for (int pass = 0; pass < 2; pass++)
+        for (int small = 0; small <= PARTS; small++)
+            for (int thin = 0; thin <= ASPECTS; thin++) {
+                const heap left = left_by(s, small, thin);
+                if (left.count == 0 || left.volume < (1 - LITTLE) * s->all.volume)
+                    continue;
+                if (pass == 0)
+                    least = fmin(least, left.rate);
+                else if (left.rate * (ENOUGH * ENOUGH) <= least &&
+                         (best.left.rate * (ENOUGH * ENOUGH) > least ||
+                          left.volume > best.left.volume))
+                    best = (choice){small, thin, left};
+            }
+    return best;
+}
+
+static void say(tl_model *m, uint32_t body, const sorting *s, const choice *by)
+{
+    const body_shape shape = shape_of(m, body);
+    const size_t taken = s->all.count - by->left.count;
+    char others[40] = "", volume[60] = "", aspect[60] = "";
+    if (taken > 1)
+        snprintf(others, sizeof others, " and %zu more", taken - 1);
+    if (by->small)
+        tl_text_print(volume, sizeof volume, "volume = %.4g, ", s->volume[by->small - 1]);
+    if (by->thin)
+        tl_text_print(aspect, sizeof aspect, "aspect = %.4g, ", thinness[by->thin - 1]);
+    tl_model_say(
+        m,
+        "time step: block %u%s (volume %.3g m3, aspect %.3g) make%s it %.3g times smaller "
+        "than the rest of the blocks allow; model:filter{ %s%saction = \"join\" } joins such "
+        "slivers, %.2g %% of the rock, to their neighbours",
+        m->bodies.id[body], others, shape.volume, shape.aspect, taken > 1 ? "" : "s",
+        sqrt(s->all.rate / by->left.rate), volume, aspect,
+        100 * (1 - by->left.volume / s->all.volume));
 }
 
 void tl_sliver_remark(tl_model *m)
@@ -109,16 +181,14 @@ void tl_sliver_remark(tl_model *m)
     if (c->sliver_structure == 1 + m->structure || c->all_held)
         return;
     c->sliver_structure = 1 + m->structure;
-    ranking r = rank_bodies(m);
-    if (r.rest.row == TL_NO_ROW || (double)r.few > fmax(1, FEW * (double)r.all))
+    const tl_row_value first = fastest(m);
+    if (first.row == TL_NO_ROW || m->bodies.id[first.row] == c->sliver)
         return;
-    body_shape sliver = shape_of(m, r.first.row), rest = shape_of(m, r.rest.row);
-    slimness slim = compare(&sliver, &rest);
-    if (shape_rate(m, r.first, &sliver) < SHORTENS * SHORTENS * shape_rate(m, r.rest, &rest) ||
-        fmax(slim.small, slim.thin) < SLIMMER)
+    sorting s;
+    sort_bodies(m, &s);
+    const choice by = choose(&s);
+    if (s.all.rate < SHORTENS * SHORTENS * by.left.rate)
         return;
-    tl_id block = m->bodies.id[r.first.row];
-    if (block != c->sliver)
-        say(m, &r, &sliver, &rest);
-    c->sliver = block;
+    say(m, first.row, &s, &by);
+    c->sliver = m->bodies.id[first.row];
 }

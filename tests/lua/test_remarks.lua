@@ -146,3 +146,25 @@ says([[local m = stack { friction = 20 }
     m:blocks { group = "stop" }:fix()
     m.gravity = { 9.81 * math.sin(0.6), 0, -9.81 * math.cos(0.6) }
     m:solve {}]], "solve: at rest, but not where it began: block 2 has moved by 0.6", "times its size")
+
+-- Rock of three dispersed sets is full of slivers: the remark names a filter that makes the step a hundred times longer.
+local rock = [[
+local rock = talus.model { seed = 7 }
+rock:generate("box", { min = { 0, 0, 0 }, max = { 40, 40, 40 }, density = 2650 })
+for _, set in ipairs { { "J1", 55, 60 }, { "J2", 60, 150 }, { "J3", 20, 270 } } do
+    rock:generate("jointset", { joint = set[1], dip = set[2], dip_direction = set[3], dip_dev = 5, dip_direction_dev = 5,
+        distribution = "normal", spacing = 4, number = 30, origin = { 20, 20, 20 } })
+end
+rock:joint("*", "coulomb", { kn = 1e9, ks = 1e9, friction = 40 })
+rock:boundary { xmin = "roller", xmax = "roller", ymin = "roller", ymax = "roller", zmin = "fixed" }
+rock:damping "local"
+]]
+local said = remarks(rock .. "rock:cycle(1)")
+local filter = said:match "model:filter(%b{})"
+check.holds(filter and said:find("and %d%d+ more"), "it names many slivers: " .. said)
+local make = assert(load("local talus = ...; " .. rock .. " return rock"))
+local model = make(require "talus")
+local before, whole = model:timestep().dt, 40 ^ 3
+local found = model:filter(load("return " .. filter)())
+check.holds(found.joined > 10 and found.volume < 0.05 * whole, "it joins slivers")
+check.holds(model:timestep().dt > 50 * before, ("the step is %g times longer"):format(model:timestep().dt / before))

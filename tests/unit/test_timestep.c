@@ -253,12 +253,13 @@ static tl_model *eight_cubes(double size, double share, remark_log *h)
 static tl_filter named_filter(const char *text)
 {
     tl_filter filter = {sizeof(tl_filter), NAN, NAN, NAN, TL_FILTER_JOIN};
-    const char *volume = strstr(text, "model:filter{ volume = "),
-               *aspect = strstr(text, "model:filter{ aspect = ");
+    const char *named = strstr(text, "model:filter{ ");
+    const char *volume = named ? strstr(named, "volume = ") : NULL;
+    const char *aspect = named ? strstr(named, "aspect = ") : NULL;
     if (volume)
-        filter.volume = tl_number_read(volume + 23, NULL);
+        filter.volume = tl_number_read(volume + 9, NULL);
     if (aspect)
-        filter.aspect = tl_number_read(aspect + 23, NULL);
+        filter.aspect = tl_number_read(aspect + 9, NULL);
     return filter;
 }
 
