@@ -354,6 +354,13 @@ void tl_move(tl_model *m, double dt);
 /* Bytes of the ledger, and whether one that was read from a file is none of impossible bits. */
 size_t tl_ledger_size(void);
 bool tl_ledger_is_sound(const struct tl_ledger *ledger);
+/* What blocks that were made overlapping have pushed with: those that did the most, the energy that is no longer stored, and what gravity and all
+ * else have done, J. Whether the first is more. */
+typedef struct tl_overlap_push {
+    tl_id a, b;
+    double gave, others;
+} tl_overlap_push;
+bool tl_energy_pushed(const tl_model *m, tl_overlap_push *by);
 /* The energy ledger: the move books what its bodies have and what is done to them, chunk by chunk, ... */
 tl_status tl_energy_prepare(tl_model *m, size_t chunks);
 void tl_energy_book(const tl_model *m, const tl_body_group *g, tl_work *work);

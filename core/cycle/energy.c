@@ -29,10 +29,12 @@ struct tl_ledger {
     /* running sums, in the model's own ledger */
     double sum[TL_WORK_COUNT];
     double start_kinetic, start_stored;
-    double largest;           /* change of a term so far */
-    double by_hand;           /* energy given between steps */
-    double error;             /* of the sum, at the last step */
-    uint64_t structure, laws; /* of the model, at the last step */
+    double largest;             /* change of a term so far */
+    double by_hand;             /* energy given between steps */
+    double error;               /* of the sum, at the last step */
+    uint64_t structure, laws;   /* of the model, at the last step */
+    double overlaps;            /* stored in the first step by blocks that were made overlapping */
+    tl_id overlap_a, overlap_b; /* those that stored the most */
     double first; /* kinetic energy by which the scheme's sum is less in the first step */
     bool started;
     tl_energy energy;
@@ -242,6 +244,31 @@ static void close_ledger(struct tl_ledger *total, const struct tl_ledger *now, b
     e->balance = total->largest > 0 ? sum / total->largest : 0;
 }
 
+/* What contacts store before anything has moved, but under an initial stress: their blocks were made so. */
+static void note_overlaps(const tl_model *m, struct tl_ledger *total)
+{
+    const tl_contacts *c = &m->detect->contacts;
+    double most = 0;
+    for (uint32_t row = 0; row < c->table.rows && !m->detect->points.initial; row++) {
+        const double stored = c->stored[row] > 0 ? c->stored[row] : 0;
+        total->overlaps += stored;
+        if (stored <= most)
+            continue;
+        most = stored;
+        total->overlap_a = m->blocks.id[c->a[row]];
+        total->overlap_b = m->blocks.id[c->b[row]];
+    }
+}
+
+bool tl_energy_pushed(const tl_model *m, tl_overlap_push *by)
+{
+    const struct tl_ledger *l = m->cycle->ledger;
+    const tl_energy *e = &l->energy;
+    *by = (tl_overlap_push){l->overlap_a, l->overlap_b, l->overlaps - e->stored,
+                            fmax(0, e->external - e->potential)};
+    return by->gave > by->others;
+}
+
 void tl_energy_close(tl_model *m)
 {
     struct tl_cycle *c = m->cycle;
@@ -260,6 +287,8 @@ void tl_energy_close(tl_model *m)
     /* the same sum as after the last step, so 0 when nobody touched it */
     if (total->started)
         total->by_hand += now.motion0 - total->motion;
+    else
+        note_overlaps(m, total);
     total->motion = now.motion;
     c->kinetic_before = now.motion0;
     sum_points(m, &now);

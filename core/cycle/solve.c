@@ -9,7 +9,7 @@ static const char *const reason_names[] = {
     [TL_SOLVE_RATIO] = "ratio",         [TL_SOLVE_CYCLES] = "cycles",
     [TL_SOLVE_TIME] = "time",           [TL_SOLVE_STOP] = "stop",
     [TL_SOLVE_INTERRUPT] = "interrupt", [TL_SOLVE_VELOCITY] = "velocity",
-    [TL_SOLVE_FAILURE] = "failure"};
+    [TL_SOLVE_FAILURE] = "failure",     [TL_SOLVE_OVERLAP] = "overlap"};
 
 const char *tl_solve_reason_name(tl_solve_reason reason)
 {
@@ -88,7 +88,7 @@ static bool ended(tl_model *m, const progress *p, tl_status *status)
     else if (done > 1 && p->result->max_velocity < s->velocity) /* from rest the first is zero */
         *reason = TL_SOLVE_VELOCITY;
     else if (s->stop_at_failure && p->result->failing)
-        *reason = TL_SOLVE_FAILURE;
+        *reason = tl_energy_pushed(m, &(tl_overlap_push){0}) ? TL_SOLVE_OVERLAP : TL_SOLVE_FAILURE;
     else if (done >= s->max_cycles)
         *reason = TL_SOLVE_CYCLES;
     else if (m->time - p->time_0 >= s->max_time)
@@ -118,6 +118,18 @@ static void say_failure(tl_model *m, const tl_solve_result *r)
 {
     uint32_t row = tl_block_row_quiet(m, r->failing);
     double speed = row == TL_NO_ROW ? 0 : tl_v3_norm(tl_block_velocity(m, row));
+    tl_overlap_push push;
+    if (tl_energy_pushed(m, &push)) {
+        tl_model_say(
+            m,
+            "solve: an overlap pushes the model apart: blocks that were made overlapping have "
+            "given off %.3g J, "
+            "most of it blocks %u and %u, and gravity and loads %.3g J; block %u moves on at %.3g "
+            "m/s; "
+            "that is no word on whether it stands: make them apart, or with smaller overlaps",
+            push.gave, push.a, push.b, push.others, r->failing, speed);
+        return;
+    }
     tl_model_say(m,
                  "solve: the model fails: block %u moves on at %.3g m/s without slowing down "
                  "(unbalanced force ratio: local %.3g, average %.3g)",

@@ -97,7 +97,7 @@ static void push_empty_answer(lua_State *L, int32_t measure)
 {
     lua_settop(L, AT_ERROR);
     lua_newtable(L);
-    for (int reason = 0; reason <= TL_SOLVE_FAILURE; reason++) {
+    for (int reason = 0; reason <= TL_SOLVE_OVERLAP; reason++) {
         lua_pushstring(L, tl_solve_reason_name((tl_solve_reason)reason));
         lua_rawseti(L, AT_REASONS, reason + 1);
     }

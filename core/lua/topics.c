@@ -48,7 +48,8 @@ static const tl_lua_key contact_verbs[] = {
 
 static const tl_lua_key run_results[] = {
     {"reason", "",
-     "why it ended: \"ratio\", \"velocity\", \"failure\", \"cycles\", \"time\", \"stop\" or "
+     "why it ended: \"ratio\", \"velocity\", \"failure\", \"overlap\" (blocks that were made "
+     "overlapping push it apart), \"cycles\", \"time\", \"stop\" or "
      "\"interrupt\" (Ctrl-C at the prompt; in a script it raises an error)"},
     {"ratio", "", "mean unbalanced force over mean contact force"},
     {"ratio_maximum", "", "largest unbalanced force over mean contact force"},

@@ -780,7 +780,7 @@ function Model:parameters() end
 ---@field on_progress? fun(model: talus.Model, result: talus.SolveResult) called every `every` steps
 
 ---@class (exact) talus.CycleResult
----@field reason string why it ended: "ratio", "velocity", "failure", "cycles", "time", "stop" or "interrupt" (Ctrl-C at the prompt; in a script it raises an error)
+---@field reason string why it ended: "ratio", "velocity", "failure", "overlap" (blocks that were made overlapping push it apart), "cycles", "time", "stop" or "interrupt" (Ctrl-C at the prompt; in a script it raises an error)
 ---@field ratio number mean unbalanced force over mean contact force
 ---@field ratio_maximum number largest unbalanced force over mean contact force
 ---@field ratio_local number largest unbalanced force of a block over its own contact forces, or its weight and load where these are more
@@ -812,7 +812,7 @@ function Model:cycle(cycles) end
 ---@field on_progress? fun(model: talus.Model, result: talus.SolveResult) called every `every` steps
 
 ---@class (exact) talus.SolveResult
----@field reason string why it ended: "ratio", "velocity", "failure", "cycles", "time", "stop" or "interrupt" (Ctrl-C at the prompt; in a script it raises an error)
+---@field reason string why it ended: "ratio", "velocity", "failure", "overlap" (blocks that were made overlapping push it apart), "cycles", "time", "stop" or "interrupt" (Ctrl-C at the prompt; in a script it raises an error)
 ---@field ratio number mean unbalanced force over mean contact force
 ---@field ratio_maximum number largest unbalanced force over mean contact force
 ---@field ratio_local number largest unbalanced force of a block over its own contact forces, or its weight and load where these are more

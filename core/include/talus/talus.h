@@ -270,7 +270,8 @@ typedef enum tl_solve_reason {
     TL_SOLVE_STOP,
     TL_SOLVE_INTERRUPT,
     TL_SOLVE_VELOCITY,
-    TL_SOLVE_FAILURE
+    TL_SOLVE_FAILURE,
+    TL_SOLVE_OVERLAP
 } tl_solve_reason;
 
 /* Which unbalanced force ratio ends a solve. */
