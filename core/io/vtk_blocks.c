@@ -4,8 +4,9 @@
  * their indices, counter-clockwise from outside. Vertices are not shared between blocks, so that
  * blocks can be moved apart.
  *
- * Cell data   block_id  id of the block
+ * Cell data   displacement_size  of its centroid since creation or the last reset, m: what ParaView colours by first
  *             velocity  of the block's centroid, m/s
+ *             block_id  id of the block
  *             group     index into the field group_names
  *             body      id of its body
  *             volume    m3          density   kg/m3       mass      kg
@@ -218,14 +219,25 @@ static tl_vec3 unbalanced_of(const tl_model *m, uint32_t row)
     return m->bodies.force[m->blocks.body[row]];
 }
 
-static const cell_array types = {.whole = cell_type}, ids = {.whole = id_of},
+static double displacement_size(const tl_model *m, uint32_t row)
+{
+    return tl_v3_norm(tl_block_displacement(m, row));
+}
+
+static const cell_array types = {.whole = cell_type}, sizes = {.real = displacement_size},
                         velocities = {.vector = tl_block_velocity};
 static const cell_array fields[] = {
-    {"group", .whole = group_of},        {"body", .whole = body_of},
-    {"volume", .real = volume_of},       {"density", .real = density_of},
-    {"mass", .real = mass_of},           {"displacement", .vector = tl_block_displacement},
-    {"rotation", .vector = rotation_of}, {"unbalanced_force", .vector = unbalanced_of},
-    {"fixed", .whole = is_fixed},        {"hidden", .whole = is_hidden},
+    {"block_id", .whole = id_of},
+    {"group", .whole = group_of},
+    {"body", .whole = body_of},
+    {"volume", .real = volume_of},
+    {"density", .real = density_of},
+    {"mass", .real = mass_of},
+    {"displacement", .vector = tl_block_displacement},
+    {"rotation", .vector = rotation_of},
+    {"unbalanced_force", .vector = unbalanced_of},
+    {"fixed", .whole = is_fixed},
+    {"hidden", .whole = is_hidden},
 };
 
 enum { FIELDS = sizeof fields / sizeof *fields };
@@ -262,8 +274,9 @@ static tl_status put_cell_data(tl_model *m, const tl_vtk_parts *parts, tl_pieces
 {
     FILE *file = out->output->file;
     size_t rows = m->blocks.table.rows;
-    fprintf(file, "CELL_DATA %zu\nSCALARS block_id int 1\nLOOKUP_TABLE default\n", rows);
-    tl_status status = put_array(m, out, &ids);
+    fprintf(file, "CELL_DATA %zu\nSCALARS displacement_size double 1\nLOOKUP_TABLE default\n",
+            rows);
+    tl_status status = put_array(m, out, &sizes);
     fprintf(file, "VECTORS velocity double\n");
     if (status == TL_OK)
         status = put_array(m, out, &velocities);

@@ -90,7 +90,7 @@ lets it move straight only; here it also turns a little as it settles, which cos
 ]], failure, CLOSED_FORM, 100 * (failure / CLOSED_FORM - 1)))
 
 -- 5. The slide itself, at three quarters of that friction and without damping: a picture every 0.05
--- s.
+-- s, as files for ParaView and as frames of a page for a browser.
 model:damping "none"
 wedge:set { velocity = { 0, 0, 0 }, angular_velocity = { 0, 0, 0 } }
 wedge:reset_displacement()
@@ -99,13 +99,18 @@ for _, joint in ipairs { "A", "B" } do
 end
 local PICTURES, INTERVAL = 20, 0.05
 local begin = model.time
-model:write_vtk(folder .. "/wedge")
-for picture = 1, PICTURES do
-    model:solve { ratio = 0, max_time = begin + picture * INTERVAL - model.time }
+local function picture()
     model:write_vtk(folder .. "/wedge")
+    model:write_html(folder .. "/wedge", { title = "A wedge on two joints" })
+end
+picture()
+for number = 1, PICTURES do
+    model:solve { ratio = 0, max_time = begin + number * INTERVAL - model.time }
+    picture()
 end
 print(string.format("Let go at a friction of %.3f, it slides %.2f m in %.1f s: %d pictures in %s.",
     0.75 * failure, slip(), model.time - begin, PICTURES + 1, folder))
 print(string.format([[
-To see it: paraview %s/wedge_blocks.vtk.series   (then press Apply and Play;
-colour by "group" or "velocity"; the _contacts and _joints series open the same way)]], folder))
+To see it: open %s/wedge.html in a browser, or
+paraview %s/wedge_blocks.vtk.series   (then press Apply and Play; the _contacts and
+_joints series open the same way)]], folder, folder))

@@ -99,7 +99,8 @@ class Copy:
     """The sources once more, with a build of their own."""
 
     def __init__(self, build):
-        self.source, self.build = build / "source", build / "build"
+        self.source = build / "source"
+        self.build = self.source / "build/release"  # where tests look for it
         self.source.mkdir(parents=True, exist_ok=True)
         files = subprocess.run(["git", "ls-files"], cwd=ROOT, capture_output=True, text=True, check=True).stdout
         for name in files.splitlines():

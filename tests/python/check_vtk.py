@@ -13,7 +13,7 @@ VOLUME_TOLERANCE = 1e-6  # relative; the writer loses no digits, the sum here lo
 UNIT_TOLERANCE = 1e-12   # of unit vectors
 SINGLE = 2.0 ** -23      # relative; arrays in single precision
 
-BLOCK_ARRAYS = {"block_id": 1, "group": 1, "body": 1, "volume": 1, "velocity": 3, "fixed": 1,
+BLOCK_ARRAYS = {"displacement_size": 1, "block_id": 1, "group": 1, "body": 1, "volume": 1, "velocity": 3, "fixed": 1,
                 "hidden": 1, "density": 1, "mass": 1, "displacement": 3, "rotation": 3,
                 "unbalanced_force": 3}
 BLOCK_POINT_ARRAYS = {"displacement": 3, "explode": 3}
