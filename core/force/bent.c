@@ -23,7 +23,7 @@
 
 /* Closures that are tried for that of the law, and how near its stress is to be to the mean one, relative. */
 #define STEPS 12
-#define NEAR_ENOUGH 1e-3
+#define NEAR_ENOUGH 1e-9
 
 #define ROWS TL_PRESSED_ROWS
 
