@@ -24,7 +24,7 @@ static size_t narrow_bytes(const tl_narrow_scratch *n)
 {
     return sizeof *n + n->vertex_capacity * sizeof *n->vertex_b +
            n->normal_capacity * sizeof *n->normal_b +
-           (n->plane_capacity + n->press_capacity) * sizeof(double) +
+           (n->plane_capacity + n->press_capacity + n->corner_capacity) * sizeof(double) +
            n->field.lines * (sizeof(tl_field_line) + 2 * sizeof(tl_field_plane)) +
            n->field.numbers * sizeof *n->field.number + n->face_capacity * sizeof *n->face +
            n->manifold.point_capacity * sizeof *n->manifold.points +
