@@ -29,6 +29,9 @@
 /* Steps after which a given step is compared with the stable one again. */
 #define COMPARE_EVERY 64
 
+/* Rate over that of a push from which on turning is what makes a body fast: of a cube on a face it is some 2.5. */
+#define MOSTLY 4.0
+
 /* M or I over 2 K of the body, or of the smallest mass and the stiffest contact, that controls the step. */
 typedef struct bound {
     double least;
@@ -293,6 +296,10 @@ tl_status tl_model_timestep_report(tl_model *m, tl_timestep_report *report)
     report->block = m->bodies.id[by.body];
     report->mass = m->bodies.mass[by.body];
     report->stiffness = by.stiffness;
+    report->by = !(by.stiffness > 0) ? TL_STEP_BY_SPEED
+                 : by.contact == TL_NO_ROW && 0.5 / by.least > MOSTLY * by.stiffness / report->mass
+                     ? TL_STEP_BY_TURN
+                     : TL_STEP_BY_PUSH;
     if (by.contact != TL_NO_ROW) {
         /* the paper's rule joins the smallest mass and the stiffest contact, wherever they are */
         const tl_contacts *contacts = &m->detect->contacts;

@@ -21,6 +21,8 @@ void tl_lua_push_timestep(lua_State *L, const tl_timestep_report *r)
     char numbers[120];
     tl_text_print(numbers, sizeof numbers, "dt = %.4g s, mass %.4g kg, stiffness %.4g N/m", r->dt,
                   r->mass, r->stiffness);
+    if (r->by == TL_STEP_BY_SPEED)
+        tl_text_print(numbers, sizeof numbers, "dt = %.4g s", r->dt);
     if (r->block == TL_NO_ID) {
         lua_pushnumber(L, r->dt);
         tl_lua_push_number_text(L, -1);
@@ -28,7 +30,9 @@ void tl_lua_push_timestep(lua_State *L, const tl_timestep_report *r)
         lua_insert(L, -3);
         lua_pop(L, 2);
     } else if (r->partner == TL_NO_ID) {
-        lua_pushfstring(L, "block %I controls the step: %s", (lua_Integer)r->block, numbers);
+        static const char *const how[] = {"", " by turning", " by the speed at which it moves"};
+        lua_pushfstring(L, "block %I controls the step%s: %s", (lua_Integer)r->block, how[r->by],
+                        numbers);
     } else {
         lua_pushfstring(L, "block %I controls the step, with the stiffest contact at block %I: %s",
                         (lua_Integer)r->block, (lua_Integer)r->partner, numbers);

@@ -233,3 +233,19 @@ check.holds(fastest(1) < 1e-4, "stable at the critical step")
 local most, good, why = fastest(1.5)
 check.holds(most > 1e-2, "not at half as much again")
 check.holds(good or why:find("fraction = 1.5 of timestep is not stable; give 1 or less", 1, true), why)
+
+-- The sentence says what makes the block so fast: its mass on its springs, its turn on them, or its own speed.
+local function sentence(size, velocity)
+    local m = talus.model { gravity = { 0, 0, -10 } }
+    m:generate("box", { min = { -9, -9, -1 }, max = { 9, 9, 0 }, density = 2500, group = "floor" })
+    m:generate("box", { min = { 0, 0, velocity and 1 or 0 }, max = { size[1], size[2], size[3] + (velocity and 1 or 0) }, density = 2500, group = "box" })
+    m:blocks { group = "floor" }:fix()
+    m:joint("*", "coulomb", { kn = 1e9, ks = 1e9, friction = 30 })
+    if velocity then
+        m:blocks({ group = "box" }):set { velocity = velocity }
+    end
+    return m:timestep().message
+end
+check.holds(sentence({ 1, 1, 1 }):find "^block %d+ controls the step: ", "a cube by its mass")
+check.holds(sentence({ 0.1, 0.1, 5 }):find "^block %d+ controls the step by turning: ", "a slender one by its turn")
+check.holds(sentence({ 1, 1, 1 }, { 0, 0, -10000 }):find "^block %d+ controls the step by the speed at which it moves: ", "a fast one by its speed")
