@@ -231,7 +231,7 @@ bool tl_simd_group_update(tl_model *m, const tl_simd_group *group, unsigned thre
     bool any = false;
     uint32_t in = 0, others = 0, fields[TL_LANES], field_count = 0;
     bool corners = m->config.contact_points == TL_POINTS_CORNERS;
-    double tilt = tl_flush_limits_of(corners).tilt, steep = tilt * tilt;
+    double tilt = tl_flush_limits_of(corners).points_tilt, steep = tilt * tilt;
     for (uint32_t l = 0; l < TL_LANES; l++) {
         uint32_t c = group->contact[l];
         if (c == TL_NO_ROW || tl_contact_points_hold(m, c))

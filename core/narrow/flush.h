@@ -17,22 +17,24 @@
 #define TL_CORNERS_FIELD_TILT 0.1736
 #define TL_CORNERS_DEPTH 0.1
 #define TL_CORNERS_FIELD_DEPTH 0.2
-/* Overlap over the root of the area up to which a patch has points. Beyond, at the corners, it counts how their areas change in a tilt or
- * over an edge, and all is done by the press (corner_sums.c). */
+/* Of these, the tilt and the overlap up to which such a patch has points. Beyond, it counts how the corners and their areas go in a tilt and over an
+ * edge, and all is done by the press (corner_sums.c): the points' forces are off by about the tilt, and by the overlap. */
+#define TL_CORNERS_POINTS_TILT 2e-4
 #define TL_CORNERS_POINTS_DEPTH 1e-3
 
-/* Limits of a patch, and from where on there is nothing of it: of the tilt, and of the overlap over the root of the area; and of
- * the overlap up to which it has points. */
+/* Limits of a patch, and from where on there is nothing of it: of the tilt, and of the overlap over the root of the area; and of both up to
+ * which it has points. */
 typedef struct tl_flush_limits {
-    double tilt, field_tilt, depth, field_depth, points_depth;
+    double tilt, field_tilt, depth, field_depth, points_tilt, points_depth;
 } tl_flush_limits;
 
 TL_INLINE tl_flush_limits tl_flush_limits_of(bool corners)
 {
-    return corners ? (tl_flush_limits){TL_CORNERS_TILT, TL_CORNERS_FIELD_TILT, TL_CORNERS_DEPTH,
-                                       TL_CORNERS_FIELD_DEPTH, TL_CORNERS_POINTS_DEPTH}
-                   : (tl_flush_limits){TL_FLUSH_TILT, TL_FIELD_TILT, TL_FLUSH_DEPTH, TL_FIELD_DEPTH,
-                                       TL_FLUSH_DEPTH};
+    return corners ? (tl_flush_limits){TL_CORNERS_TILT,        TL_CORNERS_FIELD_TILT,
+                                       TL_CORNERS_DEPTH,       TL_CORNERS_FIELD_DEPTH,
+                                       TL_CORNERS_POINTS_TILT, TL_CORNERS_POINTS_DEPTH}
+                   : (tl_flush_limits){TL_FLUSH_TILT,  TL_FIELD_TILT, TL_FLUSH_DEPTH,
+                                       TL_FIELD_DEPTH, TL_FLUSH_TILT, TL_FLUSH_DEPTH};
 }
 
 /* Whether the points of a patch of two faces are to lie at its corners, where the model has them so: no other face meets either of

@@ -17,10 +17,19 @@
 /* Minimum area over that of a patch up to which it makes no difference: by less than 2e-3 of the force. */
 #define MOST_MIN_AREA 0.05
 
+/* Share of a face's area on another, from which on it lies on it wholly. */
+#define WHOLLY 0.99
+
 /* The press of what is no field contact. */
 static const tl_press none;
 
 /* ---------------------------------------------------------------- patches ---------------- */
+
+/* Whether one of two faces lies wholly on the other. Else the corners of their patch do not all go with one of them. */
+static bool lies_on(const tl_pair_view *view, uint32_t fa, uint32_t fb, double area)
+{
+    return area >= WHOLLY * fmin(tl_poly_face_area(view->a, fa), tl_poly_face_area(view->b, fb));
+}
 
 /* Whether the flush faces of the region are a patch and nothing else is there. */
 static bool is_patch(const tl_pair_view *view, const tl_region *r, const tl_touch_rule *rule,
@@ -35,11 +44,16 @@ static bool is_patch(const tl_pair_view *view, const tl_region *r, const tl_touc
     const bool corners = rule->corners && tl_at_corners(view->a, r->flush_a, view->b, r->flush_b);
     const tl_flush_limits limits = tl_flush_limits_of(corners);
     double most_tilt = fmax(part * limits.tilt, before->born_tilt);
-    double tilt_margin = most_tilt - tl_region_tilt(view, r->flush_a, r->flush_b);
-    if (!(behind > 0 && tilt_margin > 0))
+    const double tilt = tl_region_tilt(view, r->flush_a, r->flush_b);
+    if (!(behind > 0 && most_tilt - tilt > 0))
         return false;
     double area = tl_patch_add(view, r->flush_a, r->flush_b, rule, scratch);
     if (!(area > 0) || rule->min_area > MOST_MIN_AREA * area)
+        return false;
+    if (!lies_on(view, r->flush_a, r->flush_b, area))
+        most_tilt = fmax(fmin(most_tilt, part * limits.points_tilt), before->born_tilt);
+    const double tilt_margin = most_tilt - tilt;
+    if (!(tilt_margin > 0))
         return false;
     double shallow = part * limits.points_depth * sqrt(area) + scratch->patch.gap;
     if (!(shallow > 0))
