@@ -118,7 +118,8 @@ static void save_all(tl_archive_writer *w, tl_model *m)
     const tl_walk walk = {save_entry, w};
     tl_archive_put(w, "program", TALUS_VERSION, 1, strlen(TALUS_VERSION));
     tl_model_walk(m, &walk);
-    bool saved = save_rows_of_ids(w, m) && tl_shapes_save(m, w) && save_names(w, "groups", m->group_count, group_name, m) &&
+    bool saved = save_rows_of_ids(w, m) && tl_shapes_save(m, w) &&
+                 save_names(w, "groups", m->group_count, group_name, m) &&
                  save_names(w, "joints.names", m->joint_count, joint_name, m) &&
                  save_planes(w, m) && save_drives(w, m);
     w->lost = w->lost || !saved;
