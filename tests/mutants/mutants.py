@@ -120,10 +120,11 @@ class Copy:
             return False
 
     def make(self, *targets):
-        return self.run("cmake", "--build", str(self.build), *[a for t in targets for a in ("--target", t)])
+        return self.run("cmake", "--build", str(self.build), "-j", str(os.cpu_count() or 1), *[a for t in targets for a in ("--target", t)])
 
     def test(self, *choice):
-        return self.run("ctest", "--test-dir", str(self.build), "--stop-on-failure", "--timeout", "120", "-LE", "long|full", *choice)
+        return self.run("ctest", "--test-dir", str(self.build), "--stop-on-failure", "--timeout", "120",
+                        "-j", str(os.cpu_count() or 1), "-LE", "long|full", *choice)
 
     def finds(self):
         """The tests that find what has been built; None: none does."""
