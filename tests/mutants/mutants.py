@@ -5,22 +5,26 @@
 
 A place is a sign, a bound, a factor, a term or a status that is looked at, in core/force, contact, cycle, state or query; which ones are
 changed follows from the seed. Each mutant is built in a copy of the sources. The tests that `./bootstrap test` runs are run until one
-fails, those that need only the program first. A mutant that none finds is printed, unless equivalent.txt argues that it changes
-nothing. The exit status is 1 when more than a tenth of the others are not found.
+fails: those that need only the program first, and of these what has found most mutants, then what is short. A mutant that none finds
+is printed, unless equivalent.txt argues that it changes nothing. The exit status is 1 when more than a tenth of the others are not
+found.
 """
 
 import argparse
+import json
 import os
 import pathlib
 import random
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import time
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 MODULES = ("force", "contact", "cycle", "state", "query")
+WORKERS = os.cpu_count() or 1
 SHARE = 0.9  # of the mutants that are not equivalent
 
 NAME = r"[A-Za-z_][\w.\[\]]*(?:->[\w.\[\]]+)*"
@@ -108,35 +112,95 @@ class Copy:
             if not to.exists() or to.read_bytes() != (ROOT / name).read_bytes():
                 to.parent.mkdir(parents=True, exist_ok=True)
                 shutil.copy2(ROOT / name, to)
+        self.environment = {k: v for k, v in os.environ.items() if k not in ("LUA_PATH", "TALUS_PLUGIN_PATH")}
+        self.environment["TALUS_TEST_SHARE"] = "10"
         self.run("cmake", "-S", str(self.source), "-B", str(self.build), "-DCMAKE_BUILD_TYPE=Release")
 
-    def run(self, *command, seconds=3600):
-        environment = {k: v for k, v in os.environ.items() if k not in ("LUA_PATH", "TALUS_PLUGIN_PATH")}
-        environment["TALUS_TEST_SHARE"] = "10"
-        try:
-            return subprocess.run(command, cwd=self.source, env=environment, timeout=seconds,
-                                  stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL).returncode == 0
-        except subprocess.TimeoutExpired:
-            return False
+    def run(self, *command):
+        return subprocess.run(command, cwd=self.source, env=self.environment,
+                              stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL).returncode == 0
 
     def make(self, *targets):
-        return self.run("cmake", "--build", str(self.build), "-j", str(os.cpu_count() or 1), *[a for t in targets for a in ("--target", t)])
+        return self.run("cmake", "--build", str(self.build), "-j", str(WORKERS), *[a for t in targets for a in ("--target", t)])
 
-    def test(self, *choice):
-        return self.run("ctest", "--test-dir", str(self.build), "--stop-on-failure", "--timeout", "120",
-                        "-j", str(os.cpu_count() or 1), "-LE", "long|full", *choice)
+
+class Test:
+    """One test of ctest's list, with what it took when nothing was changed, s, and how many mutants it has found."""
+
+    def __init__(self, listed, copy):
+        properties = {p["name"]: p["value"] for p in listed["properties"]}
+        self.name, self.command = listed["name"], listed["command"]
+        self.folder = properties["WORKING_DIRECTORY"]
+        self.environment = copy.environment | dict(e.split("=", 1) for e in properties.get("ENVIRONMENT", []))
+        self.passing = (0, properties.get("SKIP_RETURN_CODE", 0))
+        self.needs_all = properties["LABELS"][0] in ("unit", "property", "python") or self.name.startswith("memory/")
+        self.reads_others = "FIXTURES_REQUIRED" in properties
+        self.seconds, self.found = None, 0
+
+    def start(self):
+        self.began = time.time()
+        self.process = subprocess.Popen(self.command, cwd=self.folder, env=self.environment, stdin=subprocess.DEVNULL,
+                                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
+
+    def end(self):
+        """Whether the test passed; None while it runs. One that takes far longer than it did has failed."""
+        took = time.time() - self.began
+        status = self.process.poll()
+        if status is None and took < (600 if self.seconds is None else 30 + 10 * self.seconds):
+            return None
+        self.stop()
+        self.seconds = self.seconds or took
+        return status in self.passing
+
+    def stop(self):
+        try:
+            os.killpg(self.process.pid, signal.SIGKILL)
+        except ProcessLookupError:
+            pass
+        self.process.wait()
+
+
+class Suite:
+    """The tests of `./bootstrap test`, but for what a stock interpreter runs once more."""
+
+    def __init__(self, copy):
+        self.copy = copy
+        text = subprocess.run(["ctest", "--show-only=json-v1", "-LE", "long|full"], cwd=copy.build, capture_output=True, check=True).stdout
+        tests = [Test(listed, copy) for listed in json.loads(text)["tests"] if not listed["name"].endswith("@stock")]
+        self.tests = [t for t in tests if not t.reads_others]
+
+    def first_failing(self, tests):
+        """Those first that found most mutants, then the short ones."""
+        queue = sorted(tests, key=lambda t: (-t.found, t.seconds or 0))
+        running, failed = [], None
+        while (queue or running) and not failed:
+            while queue and len(running) < WORKERS:
+                running.append(queue.pop(0))
+                running[-1].start()
+            time.sleep(0.01)
+            for test in list(running):
+                passed = test.end()
+                if passed is None:
+                    continue
+                running.remove(test)
+                failed = failed or (None if passed else test)
+        for test in running:
+            test.stop()
+        return failed
 
     def finds(self):
-        """The tests that find what has been built; None: none does."""
-        for name, choice in (("golden", ("-L", "golden")), ("lua", ("-L", "lua|verify"))):
-            if not self.test(*choice):
-                return name
-        if not self.make("all"):
-            return "build"
-        return None if self.test("-L", "unit|property|python|memory") else "unit"
+        """The name of a test that finds what has been built; None: none does."""
+        failed = self.first_failing([t for t in self.tests if not t.needs_all])
+        if not failed:
+            if not self.copy.make("all"):
+                return "build"
+            failed = self.first_failing([t for t in self.tests if t.needs_all])
+        if failed:
+            failed.found += 1
+        return failed.name if failed else None
 
 
-def try_one(copy, place):
+def try_one(copy, suite, place):
     """What finds a mutant; "none" when it does not compile, None when nothing finds it."""
     path, number, _, line, changed = place
     file = copy.source / path
@@ -145,7 +209,7 @@ def try_one(copy, place):
     lines[number] = lines[number].replace(line, changed)
     file.write_text("".join(lines))
     try:
-        return copy.finds() if copy.make("talus") else "none"
+        return suite.finds() if copy.make("talus") else "none"
     finally:
         file.write_text(text)
 
@@ -159,8 +223,12 @@ def main():
     options = parser.parse_args()
     chosen, known = choose(options.count, options.seed), equivalents()
     copy = Copy(options.build.resolve())
-    if not copy.make("all") or copy.finds():
-        sys.exit("mutants: the sources as they are do not build, or a test fails")
+    if not copy.make("all"):
+        sys.exit("mutants: the sources as they are do not build")
+    suite = Suite(copy)
+    failed = suite.finds()
+    if failed:
+        sys.exit(f"mutants: {failed} fails on the sources as they are")
     only = {int(n) for n in options.only.split(",")} if options.only else range(len(chosen))
     tried = found = 0
     for k, place in enumerate(chosen):
@@ -168,7 +236,7 @@ def main():
         if k not in only or (str(path), line.strip(), changed.strip()) in known:
             continue
         began = time.time()
-        by = try_one(copy, place)
+        by = try_one(copy, suite, place)
         if by == "none":
             continue
         tried += 1
