@@ -4,13 +4,12 @@ import { Camera } from "./camera.js";
 import { category, colourBlocks, colourContacts, legendText } from "./colours.js";
 import { byId, say } from "./dom.js";
 import { Model } from "./frames.js";
-import { arrowsFor, contactSheets, meanMotion } from "./glyphs.js";
-import { SAMPLES, makeGpu } from "./gpu.js";
+import { arrowsFor, contactSheets } from "./glyphs.js";
+import { SAMPLES, makeGpu, noGpu } from "./gpu.js";
 import { add, figure, multiply, scale } from "./math.js";
 import { drawAxes, drawLegends, legendSize, penOf } from "./overlay.js";
 import { fillTable, showFrame, tightBox } from "./poses.js";
 import { capSheets, cutBlocks, sectionPlane } from "./section.js";
-import { directionText } from "./table.js";
 import { makeView, readView, viewText } from "./view.js";
 
 const STILL = 160;     // ms without a change after which pictures are averaged
@@ -26,7 +25,8 @@ export class App {
         this.view = makeView();
         this.camera = new Camera();
         this.canvas = /** @type {HTMLCanvasElement} */ (byId("picture"));
-        this.gpu = makeGpu(this.canvas);
+        this.blind = ""; // why nothing is drawn; finding, chart and net are there all the same
+        this.gpu = this.seeing();
         this.width = this.height = 1;
         /** @type {import("./frames.js").Frame | null} */ this.frame = null;
         /** @type {import("./poses.js").Shown | null} */ this.shown = null;
@@ -58,6 +58,17 @@ export class App {
         /** @type {(() => void)[]} */ this.waiting = [];
         /** @type {{update: () => void}[]} */ this.parts = []; // of the window around the picture
         this.address = "";
+    }
+
+    /** What draws, or where the browser cannot, what does nothing. */
+    seeing() {
+        try {
+            return makeGpu(this.canvas);
+        } catch (error) {
+            this.blind = String(/** @type {Error} */ (error).message);
+            this.view.net = true;
+            return noGpu();
+        }
     }
 
     resize() {
@@ -104,8 +115,8 @@ export class App {
         }
     }
 
-    /** Displacement from which a block counts as moving: a twentieth of the largest, and no elastic closure. */
-    threshold() { return Math.max(0.05 * this.mostMoved(), (this.model.head?.size ?? 1) / 1000); }
+    /** Displacement from which a block counts as moving: a twentieth of the largest, and no closing of joints. */
+    threshold() { return Math.max(0.05 * this.mostMoved(), this.frame?.data.finding?.closed ?? (this.model.head?.size ?? 1) / 1000); }
     mostMoved() { return Math.max(this.model.largest("displacement"), 1e-12); }
     reach() { return boxReach(this.home); }
     bounds() { return this.shown?.bounds ?? this.home; }
@@ -163,6 +174,8 @@ export class App {
         byId("title").textContent = this.model.head?.title ?? "";
         byId("counts").textContent = this.counts();
         this.tellFindings();
+        const head = byId("head");
+        byId("picked").style.top = `${head.offsetTop + head.offsetHeight + 6}px`;
         this.told = performance.now();
     }
 
@@ -199,15 +212,15 @@ export class App {
     }
 
     counts() {
-        const s = this.frame?.summary;
-        return !s ? "" : `${s.blocks} blocks${s.contacts ? ` · ${s.contacts} contacts, ${s.slipping} slipping` : ""}`;
+        const s = this.frame?.summary, f = this.frame?.data.finding, told = f ?? s;
+        return !s ? "" : `${s.blocks} blocks${told?.contacts ? ` · ${told.contacts} contacts, ${told.slipping} slipping` : ""}${f?.stage ? ` · stage “${f.stage}”` : ""}`;
     }
 
     tellFindings() {
         if (!this.frame) return;
-        const s = this.frame.summary, motion = meanMotion(this.model, this.frame, this.threshold()), line = byId("findings");
-        line.classList.toggle("bad", motion.count > 0);
-        line.textContent = motion.count === 0 ? "No block has moved by more than elastic closure." : `${motion.count} ${motion.count === 1 ? "block has" : "blocks have"} moved over ${figure(this.threshold())} m (${figure(motion.volume)} m³, towards ${directionText(motion.direction)}); most: block ${s.mover}, ${figure(s.most)} m`;
+        const finding = this.frame.data.finding, line = byId("findings");
+        line.classList.toggle("bad", finding?.standing === "failed" || finding?.standing === "accelerating");
+        line.textContent = finding?.text.replaceAll(" m3)", " m³)") ?? "";
     }
 
     /** @param {number} w @param {number} h @param {number} number @param {boolean} full */
@@ -262,7 +275,7 @@ export class App {
     }
 
     async fromAddress() {
-        Object.assign(this.view, makeView(), { dark: this.view.dark });
+        Object.assign(this.view, makeView(), { dark: this.view.dark, net: this.blind !== "" });
         const camera = readView(this.view, location.hash), found = this.camera.read(camera);
         this.address = location.hash;
         await this.goTo(this.view.frame < 0 ? this.model.frames.length - 1 : this.view.frame);

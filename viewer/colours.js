@@ -6,13 +6,17 @@ import { slimness } from "./slimness.js";
 
 /** @typedef {import("./frames.js").Frame} Frame */
 /** @typedef {import("./frames.js").Model} Model */
-/** @typedef {{title: string, kind: "scale", low: number, high: number, log: boolean, ramp: number[][], none: boolean} |
+/** @typedef {{title: string, kind: "scale", low: number, high: number, log: boolean, ramp: number[][], none: boolean, grey?: number} |
  *   {title: string, kind: "list", items: {name: string, colour: number[]}[]} | {title: string, kind: "text", text: string}} Legend */
 /** @typedef {{colours: Uint8Array, palette: number[][], faces: boolean, legend: Legend}} Colouring */
 
 const WARM = [[214, 217, 221], [240, 207, 144], [238, 154, 77], [206, 78, 46], [134, 19, 39]];
 const COOL = [[240, 244, 247], [185, 211, 232], [106, 165, 207], [45, 106, 168], [12, 47, 102]];
 export const NONE = [190, 194, 199];
+export const QUIET = WARM[0]; // what has but closed its joints
+/* Factors of safety: below 1, then up to the limit that is asked for, then beyond it. */
+const UNSAFE = [134, 19, 39], SCARCE = [[222, 92, 48], [238, 154, 77], [240, 207, 144]], SAFE = [[160, 200, 226], [92, 150, 198], [36, 92, 150]];
+const FACTORS = [1, 1.2, 1.5, 2];
 const OKABE = [[86, 180, 233], [230, 159, 0], [0, 158, 115], [204, 121, 167], [240, 228, 66], [0, 114, 178], [213, 94, 0], [150, 150, 150]];
 const MODES = [["stable", [150, 180, 205]], ["falls", [134, 19, 39]], ["slides on one face", [230, 110, 40]], ["slides on two faces", [240, 200, 70]]];
 export const STATES = [{ name: "elastic", colour: [150, 170, 190] }, { name: "slipping", colour: [213, 94, 0] }, { name: "open", colour: [86, 180, 233] },
@@ -81,7 +85,22 @@ export function scaleOf(model, name) {
 export function scaled(scale, value) {
     if (!Number.isFinite(value)) return NONE;
     const { low, high } = scale;
+    if (value <= (scale.grey ?? -Infinity)) return QUIET;
     return ramp(scale.ramp, scale.log ? Math.log(value / low) / Math.log(high / low) : (value - low) / (high - low));
+}
+
+/** Classes of factors of safety, ascending: 1 and the limit that is asked for are between two of them. @param {number} limit NaN: none */
+export function safetyClasses(limit) {
+    const ends = [...new Set([...FACTORS, ...(limit > 1 ? [limit] : [])])].sort((a, b) => a - b), safe = limit > 1 ? limit : 1.5;
+    const name = (/** @type {number} */ x) => (x === limit ? `${figure(x)} (limit)` : x === 1 ? "1.0" : figure(x));
+    const scarce = ends.filter((e) => e < safe).length, shade = (/** @type {number[][]} */ of, /** @type {number} */ i, /** @type {number} */ n) => of[Math.round(i * (of.length - 1) / Math.max(1, n - 1))];
+    return [{ name: `below ${name(1)}`, colour: UNSAFE, from: -Infinity }, ...ends.map((from, i) => ({ from, name: i + 1 < ends.length ? `${name(from)} to ${name(ends[i + 1])}` : `above ${name(from)}`,
+        colour: from < safe ? shade(SCARCE, i, scarce) : shade(SAFE, i - scarce, ends.length - scarce) }))];
+}
+
+/** The class of a factor; one that is not finite is that of a stable block. @param {ReturnType<typeof safetyClasses>} classes @param {number} factor */
+export function classOf(classes, factor) {
+    return Number.isFinite(factor) ? classes.filter((c) => c.from <= factor).pop() ?? classes[0] : classes[classes.length - 1];
 }
 
 /** Colours of the blocks of a frame, by row. @param {Model} model @param {Frame} frame @param {string} by @returns {Colouring} */
@@ -114,12 +133,12 @@ export function colourBlocks(model, frame, by) {
         const modes = new Map(), factors = new Map(), items = MODES.map(([name, colour]) => ({ name: String(name), colour: /** @type {number[]} */ (colour) }));
         const keys = frame.data.keys;
         for (let i = 0; keys && i < keys.n; i++) { modes.set(keys.id[i], keys.mode[i]); factors.set(keys.id[i], keys.mode[i] === 1 ? 0 : keys.factor[i]); }
-        /** @type {Extract<Legend, {kind: "scale"}>} */ const scale = { title: "Factor of safety", kind: "scale", low: 0, high: 2, log: false, ramp: [...WARM].reverse(), none: true };
+        const classes = safetyClasses(head.limit);
         paint((_i, row) => {
             const id = of(row, "body");
-            return !modes.has(id) ? NONE : by === "keys" ? items[modes.get(id)].colour : scaled(scale, factors.get(id));
+            return !modes.has(id) ? NONE : by === "keys" ? items[modes.get(id)].colour : classOf(classes, factors.get(id)).colour;
         });
-        return done(by === "safety" ? scale : { title: "Keyblocks", kind: "list", items: [...items, { name: "no keyblock", colour: NONE }] });
+        return done({ title: by === "safety" ? "Factor of safety" : "Keyblocks", kind: "list", items: [...(by === "safety" ? classes : items), { name: "no keyblock", colour: NONE }] });
     }
     if (by === "volume" || by === "bulk" || by === "aspect") { // slivers are dark in the last two
         const slim = by === "volume" ? null : slimness(model)[by], value = (/** @type {number} */ row) => (slim ? slim[row] : of(row, "volume"));
@@ -131,6 +150,7 @@ export function colourBlocks(model, frame, by) {
         return done(scale);
     }
     const values = column(frame.data, head, by), scale = scaleOf(model, by);
+    if (by === "displacement" && frame.data.finding) scale.grey = frame.data.finding.closed;
     paint((i) => (values ? scaled(scale, values[i]) : NONE));
     return done(scale);
 }
@@ -152,6 +172,6 @@ export function colourContacts(model, frame, by) {
 
 /** Words of a legend, for those who do not see it. @param {Legend} legend */
 export function legendText(legend) {
-    if (legend.kind === "scale") return `${legend.title}: from ${figure(legend.low)} to ${figure(legend.high)}`;
+    if (legend.kind === "scale") return `${legend.title}: from ${figure(legend.low)} to ${figure(legend.high)}${legend.grey ? `, grey up to ${figure(legend.grey)}: what only closed` : ""}`;
     return `${legend.title}: ${legend.kind === "list" ? legend.items.map((i) => i.name).join(", ") : legend.text}`;
 }

@@ -264,3 +264,11 @@ export function makeGpu(canvas) {
         wait() { gl.bindFramebuffer(gl.FRAMEBUFFER, null); gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4)); },
     };
 }
+
+/** What stands in where a browser cannot draw. @returns {ReturnType<typeof makeGpu>} */
+export function noGpu() {
+    const nothing = () => {}, sheets = { set: nothing, count: 0 };
+    /** @type {any} */ const gpu = { gl: null, caps: sheets, sheets, arrows: sheets, sums: false, table: nothing, setBlocks: nothing, drawShadow: nothing, draw: nothing, wait: nothing,
+        names: (/** @type {any} */ _sight, /** @type {any} */ _look, /** @type {number} */ _w, /** @type {number} */ _h, /** @type {number[]} */ box) => new Uint32Array(box[2] * box[3]).fill(NOTHING) };
+    return gpu;
+}

@@ -11,7 +11,7 @@ const KEPT = 400;     // frames of a run
 const ASLEEP = 1000;  // ms between two frames while nobody sees the page
 const LONGEST = 511;  // bytes of a command
 const BUSY = 503, AGAIN = 200, PATIENCE = 50; // status of a full queue, ms until a further part of a command is tried again, and how often
-const WORDS = /** @type {Record<string, string>} */ ({ running: "Running", paused: "Paused", waiting: "Waiting for Go", ended: "Ended" });
+const WORDS = /** @type {Record<string, string>} */ ({ running: "Running", paused: "Paused", waiting: "Waiting for Go", ended: "Ended", lost: "Broken off" });
 
 /** Commands for blocks, each of at most 511 bytes; where blocks are joined, each begins with the last of the one before. @param {string} op @param {number[]} ids @returns {string[]} */
 export function blockCommands(op, ids) {
@@ -33,7 +33,7 @@ export function makeRun(app) {
     const spoken = element("p", { className: "unseen", role: "status", ariaLive: "polite" });
     let state = "running", said = "";
 
-    const takes = () => state !== "ended" && app.model.head?.commands === true;
+    const takes = () => state !== "ended" && state !== "lost" && app.model.head?.commands === true;
 
     /** Sends commands one after the other, until one is refused. @param {string[]} bodies */
     async function send(bodies) {
@@ -180,10 +180,12 @@ export function makeRun(app) {
             const painted = following && !document.hidden ? [app.painted()] : [];
             await Promise.race([...painted, new Promise((done) => setTimeout(done, painted.length || document.hidden ? ASLEEP : AGAIN))]);
         }
-        state = "ended";
+        const closed = state === "ended";
+        state = closed ? "ended" : "lost";
         app.tell();
         if (feed.fault) throw new Error(feed.fault);
-        say("The run has ended.");
+        if (closed) say("The run has ended.");
+        else say(`The run has broken off: the program is gone. What is seen is its state at cycle ${app.model.frames[app.model.frames.length - 1]?.summary.cycle ?? 0}.`, true);
     }
 
     const node = element("section", { ariaLabel: "Run" }, element("h2", {}, "Run"), heading, facts, spoken, tools, log.node);

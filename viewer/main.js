@@ -49,10 +49,10 @@ async function begin(app) {
     app.reading = packed.length > 0;
     app.live = packed.length === 0 && location.protocol.startsWith("http");
     listenAll(app);
+    if (app.blind) say(`${app.blind} The model is not drawn; finding, chart and stereonet are.`, true);
     if (app.run) {
         app.token = takeToken();
-        await app.run.follow(async () => { app.refresh(); opened(); firstView(app); app.change("pose"); });
-        return say("The run has ended.");
+        return app.run.follow(async () => { app.refresh(); opened(); firstView(app); app.change("pose"); });
     }
     if (!packed.length) throw new Error("This page holds no frames.");
     for (const [i, script] of packed.entries()) {

@@ -2,7 +2,8 @@
 // as fast as they may; who looks takes what has come, which is all that is new and what is so now: nothing piles up.
 // @ts-check
 
-const MOST = 1 << 30; // bytes of a frame
+const MOST_BYTES = 1 << 30; // of a frame
+const KEPT_TOKEN = "talus token";
 
 /** The end of the first frame in the bytes, or -1 while it is not whole: chunks up to DONE; in `now` where those of the moment begin, with FRAM.
  * @param {Uint8Array} bytes @param {number} length @param {{begin: number, at: number, now: number}} state */
@@ -10,7 +11,7 @@ function frameEnd(bytes, length, state) {
     const view = new DataView(bytes.buffer, bytes.byteOffset, length);
     while (state.at + 8 <= length) {
         const size = view.getUint32(state.at + 4, true), next = state.at + 8 + size + (4 - size % 4) % 4;
-        if (next - state.begin > MOST) throw new Error("A frame of the run is longer than 1 GB.");
+        if (next - state.begin > MOST_BYTES) throw new Error("A frame of the run is longer than 1 GB.");
         if (next > length) return -1;
         const name = String.fromCharCode(...bytes.subarray(state.at, state.at + 4));
         if (name === "FRAM" && state.now < 0) state.now = state.at;
@@ -22,9 +23,14 @@ function frameEnd(bytes, length, state) {
 
 /** Takes the token out of the address, where others could read it. */
 export function takeToken() {
-    const query = new URLSearchParams(location.search), token = query.get("token") ?? "";
-    if (token) history.replaceState(null, "", location.pathname + location.hash);
-    return token;
+    const given = new URLSearchParams(location.search).get("token") ?? "";
+    try { // kept for this tab, so that the page can be loaded again
+        if (given) sessionStorage.setItem(KEPT_TOKEN, given);
+        if (given) history.replaceState(null, "", location.pathname + location.hash);
+        return given || sessionStorage.getItem(KEPT_TOKEN) || "";
+    } catch {
+        return given;
+    }
 }
 
 /** Chunks one after the other. @param {Uint8Array[]} parts */

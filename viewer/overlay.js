@@ -1,12 +1,13 @@
 // What is drawn flat over the picture: legends, scale bar, axes; the same in the window and in an exported image.
 // @ts-check
 import { figure } from "./math.js";
-import { ramp } from "./colours.js";
+import { ramp, QUIET } from "./colours.js";
 
 /** @typedef {CanvasRenderingContext2D} Pen */
 /** @typedef {import("./colours.js").Legend} Legend */
 
-const FONT = "system-ui, 'DejaVu Sans', sans-serif", LIST = 14; // entries of a legend
+export const FONT = "system-ui, 'DejaVu Sans', sans-serif";
+const LIST = 14; // entries of a legend
 
 /** The colours of the page, by the names they have in its style. @returns {Record<string, string>} */
 export function inks() {
@@ -36,7 +37,7 @@ export function drawLegends(pen, legends, note, x, y) {
         pen.font = `11px ${FONT}`;
         if (l.kind === "scale") {
             for (let i = 0; i < 180; i++) {
-                pen.fillStyle = css(ramp(l.ramp, i / 179));
+                pen.fillStyle = css(l.low + i / 179 * (l.high - l.low) <= (l.grey ?? -Infinity) ? QUIET : ramp(l.ramp, i / 179));
                 pen.fillRect(x + i, y + 22, 1.5, 11);
             }
             pen.fillStyle = ink;

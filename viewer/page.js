@@ -4,7 +4,7 @@ import { App } from "./app.js";
 import { say } from "./dom.js";
 import { named } from "./glyphs.js";
 import { saveImage } from "./image.js";
-import { add, figure, planeNormal, scale, trendPlunge } from "./math.js";
+import { add, planeNormal, scale, trendPlunge } from "./math.js";
 import { tightBox } from "./poses.js";
 
 /** The page's state with what can be done to it. */
@@ -21,15 +21,21 @@ export class Page extends App {
     /** @param {number} x @param {number} y @param {boolean} more picks the block as well, or lets go of it */
     pickAt(x, y, more) {
         const what = this.at(x, y), i = what.kind === "block" && this.frame ? this.frame.at[what.index] : -1, k = this.frame?.data.contacts;
-        if (more) { if (i >= 0 && this.frame) this.pickMore(this.frame.poses.id[i]); } else if (what.kind === "contact" && k) {
-            const n = what.index, a = k.area[n];
-            say(`Contact ${k.id[n]} of blocks ${k.a[n]} and ${k.b[n]}: ${["elastic", "slipping", "open", "failed"][k.state[n]]}, area ${figure(a)} m², gap ${figure(k.gap[n])} m, slip ${figure(k.slip[n])} m`);
-        } else this.pick(i >= 0 && this.frame ? this.frame.poses.id[i] : -1);
+        if (more) { if (i >= 0 && this.frame) this.pickMore(this.frame.poses.id[i]); } else if (what.kind === "contact" && k) this.pickContact(k.id[what.index]);
+        else this.pick(i >= 0 && this.frame ? this.frame.poses.id[i] : -1);
+    }
+
+    /** @param {number} id */
+    pickContact(id) {
+        this.pick(-1);
+        this.view.contact = id;
+        say(`Contact ${id}`);
     }
 
     /** @param {number} id */
     pick(id) {
         this.view.picked = id;
+        this.view.contact = -1;
         this.view.also.clear();
         this.view.joint = "";
         this.chart = id >= 0 ? "picked" : "largest";

@@ -19,7 +19,8 @@
 /** @typedef {{total: number, joint: Uint32Array, plane: Uint32Array, block: Uint32Array, normal: Float32Array, point: Float32Array, thickness: Float32Array, limit: Float32Array}} Refused */
 /** @typedef {{n: number, body: Uint32Array, normal: Float32Array}} Touches outward normals of the faces with which bodies lie on others, body by body */
 /** @typedef {{head: Head | null, shapes: Shapes[], gone: Uint32Array[], refused: Refused | null, touches: Touches | null, poses: Poses | null, contacts: Contacts | null, extras: Extra[],
- *   line: Line | null, keys: Keys | null, live: Live[], number: number}} FrameData */
+ *   line: Line | null, keys: Keys | null, finding: Finding | null, live: Live[], number: number}} FrameData */
+/** @typedef {{standing: string, text: string, stage: string, closed: number, contacts: number, slipping: number, hash: string}} Finding how the model stands */
 /** @typedef {{state: string, line: string, refused: string}} Live what a run does, and a line that was done or why it was not ("" where there is none) */
 
 /** Takes columns one after the other from a payload. */
@@ -116,7 +117,7 @@ function readHead(c) {
     return { format: 1, program: String(h.program), title: String(h.title ?? ""), origin: h.origin, gravity: h.gravity, size: h.size,
         groups: names(h.groups, "groups"), joints: names(h.joints, "joints"), histories: names(h.histories?.map?.((/** @type {any} */ x) => x.name + (x.unit && ", " + x.unit)) ?? [], "histories"),
         fields: fields.map((/** @type {any} */ f) => ({ name: String(f?.name), unit: String(f?.unit ?? ""), of: String(f?.of) })),
-        friction: Array.isArray(h.friction) ? h.friction.map((/** @type {any} */ x) => (Number.isFinite(x) ? x : NaN)) : [], live: h.live === true, commands: h.commands === true };
+        friction: Array.isArray(h.friction) ? h.friction.map((/** @type {any} */ x) => (Number.isFinite(x) ? x : NaN)) : [], limit: Number.isFinite(h.safety_limit) && h.safety_limit > 0 ? h.safety_limit : NaN, live: h.live === true, commands: h.commands === true };
 }
 
 /** @param {Columns} c @param {Head} head @returns {Shapes} */
@@ -153,7 +154,7 @@ function readContacts(c, head) {
     const [n, P, C] = c.u32(3, "counts");
     const k = { n, id: c.u32(n, "id"), a: c.u32(n, "a"), b: c.u32(n, "b"), joint: c.u32(n, "joint"), plane: c.u32(n, "plane"),
         point: c.f32(3 * n, "point"), normal: c.f32(3 * n, "normal"), force: c.f32(3 * n, "force"), area: c.f32(n, "area"),
-        gap: c.f32(n, "gap"), slip: c.f32(n, "slip", true), state: c.u8(n, "state"), contact: c.u32(P, "contact"),
+        gap: c.f32(n, "gap"), slip: c.f32(n, "slip", true), used: c.f32(n, "used", true), state: c.u8(n, "state"), contact: c.u32(P, "contact"),
         corners: c.u32(P, "corners"), corner: c.f32(3 * C, "corner") };
     c.sum(k.corners, C, "corners");
     c.below(k.contact, n, "contact");
@@ -194,10 +195,17 @@ function readTouches(c) {
     return { n, body: c.u32(n, "body"), normal: c.f32(3 * n, "normal") };
 }
 
+/** @param {Columns} c @returns {Finding} */
+function readFinding(c) {
+    const f = c.json(), text = (/** @type {any} */ v) => (typeof v === "string" ? v : "");
+    for (const name of ["closed", "contacts", "slipping"]) if (!(Number.isFinite(f[name]) && f[name] >= 0)) throw c.bad(`${name} must be a number that is not negative`);
+    return { standing: text(f.standing), text: text(f.text), stage: text(f.stage), closed: f.closed, contacts: f.contacts, slipping: f.slipping, hash: text(f.hash) };
+}
+
 /** @param {Columns} c @returns {Live} */
 function readLive(c) {
     const h = c.json(), text = (/** @type {any} */ v) => (typeof v === "string" ? v : "");
-    if (!["running", "paused", "waiting"].includes(h.state)) throw c.bad("the state must be running, paused or waiting");
+    if (!["running", "paused", "waiting", "ended"].includes(h.state)) throw c.bad("the state must be running, paused, waiting or ended");
     return { state: h.state, line: text(h.line), refused: text(h.refused) };
 }
 
@@ -207,7 +215,7 @@ function readLive(c) {
  */
 export function readFrame(buffer, head, news) {
     /** @type {FrameData} */
-    const frame = { head: null, shapes: [], gone: [], refused: null, touches: null, poses: null, contacts: null, extras: [], line: null, keys: null, live: [], number: -1 };
+    const frame = { head: null, shapes: [], gone: [], refused: null, touches: null, poses: null, contacts: null, extras: [], line: null, keys: null, finding: null, live: [], number: -1 };
     if (news) readChunks(news, head, frame);
     readChunks(buffer, frame.head ?? head, frame);
     if (!frame.poses || frame.number < 0) throw new Error("A frame of the scene has no FRAM or no DONE.");
@@ -234,6 +242,7 @@ function readChunks(buffer, head, frame) {
         else if (name === "FIEL") frame.extras.push(readExtra(c, frame, head));
         else if (name === "LINE") frame.line = { numbers: Array.from(c.f64(8, "numbers", true)), histories: c.f64(c.u32(1, "count")[0], "histories", true) };
         else if (name === "KEYS") frame.keys = readKeys(c);
+        else if (name === "FIND") frame.finding = readFinding(c);
         else if (name === "LIVE") frame.live.push(readLive(c));
         else if (name === "DONE") frame.number = c.u32(1, "number")[0];
     }

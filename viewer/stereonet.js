@@ -9,6 +9,7 @@ import { pyramid, touchedFaces } from "./pyramid.js";
 
 /** @typedef {{joint: number, plane: number, pole: number[], area: number}} JointPlane */
 
+const SETS = 12; // names of sets that are written
 const CIRCLES = 24, CONTOURS = 50; // great circles up to so many planes, contours of density from so many on
 
 /** Mean poles of the joints' planes, as their faces lie in a frame: of each joint and plane the sum of areas times normals.
@@ -92,6 +93,31 @@ function drawPyramid(pen, cone, normals, ox, oy, R) {
         pen.beginPath();
         pen.arc(ox + R * p[0], oy + R * p[1], 2.5, 0, 7);
         d[2] > 0 ? pen.stroke() : pen.fill();
+    }
+}
+
+/** Writes the names of the joint sets at the poles of their planes' means, of at most SETS of them, the largest first; none over another.
+ * @param {CanvasRenderingContext2D} pen @param {JointPlane[]} planes @param {string[]} names @param {(v: number[]) => number[]} place @param {number} side */
+function nameSets(pen, planes, names, place, side) {
+    /** @type {Map<number, {sum: number[], area: number}>} */ const sets = new Map();
+    for (const p of planes) {
+        const set = sets.get(p.joint) ?? { sum: [0, 0, 0], area: 0 };
+        set.sum = add(set.sum, scale(p.pole, dot(set.sum, p.pole) < 0 ? -p.area : p.area));
+        set.area += p.area;
+        sets.set(p.joint, set);
+    }
+    /** @type {number[][]} */ const taken = [];
+    pen.font = "600 10px system-ui, sans-serif";
+    pen.textBaseline = "middle";
+    for (const [joint, set] of [...sets].sort((a, b) => b[1].area - a[1].area).slice(0, SETS)) {
+        const at = place(unit(set.sum[2] < 0 ? scale(set.sum, -1) : set.sum)), text = names[joint].length > 12 ? `${names[joint].slice(0, 11)}…` : names[joint], wide = pen.measureText(text).width;
+        const x = at[0] + 7 + wide < side ? at[0] + 6 : at[0] - 6 - wide, free = (/** @type {number} */ y) => !taken.some((t) => Math.abs(t[1] - y) < 11 && x < t[2] && t[0] < x + wide);
+        const y = [0, -11, 11].map((by) => at[1] + by).find(free);
+        if (y === undefined) continue;
+        taken.push([x, y, x + wide]);
+        pen.textAlign = "left";
+        pen.fillStyle = css(category(joint - 1));
+        pen.fillText(text, x, y);
     }
 }
 
@@ -193,6 +219,7 @@ export function makeStereonet(app) {
             marks.push({ x: at[0], y: at[1], joint: p.joint, words: `${name}${(one.get(p.joint) ?? 0) > 1 ? ` ${p.plane}` : ""}: dip ${Math.round(dip)}°, dip direction ${String(Math.round(direction) % 360).padStart(3, "0")}°` });
         }
         pen.globalAlpha = 1;
+        nameSets(pen, planes, frame.head.joints, (v) => place(v), side);
         let moving = 0;
         const least = app.threshold(), d = frame.poses.displacement;
         pen.lineWidth = 1.4;

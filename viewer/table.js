@@ -1,11 +1,12 @@
 // The picked block in figures, and what can be done with it.
 // @ts-check
-import { plain } from "./colours.js";
+import { STATES, plain } from "./colours.js";
 import { button, byId, element } from "./dom.js";
-import { figure, norm, trendPlunge, triple } from "./math.js";
+import { dot, figure, norm, scale, sub, trendPlunge, triple } from "./math.js";
 import { slimness } from "./slimness.js";
 
 const LISTED = 12; // ids of several blocks that are listed
+const MOST = 60;   // contacts of a block that are listed
 const KEYS = ["stable", "falls", "slides on one face", "slides on two faces"];
 
 /** Trend and plunge as 270/33. @param {number[]} v */
@@ -47,6 +48,30 @@ export function blockRows(model, frame, id) {
     return rows;
 }
 
+/** Names and values of what is known of a contact. @param {import("./frames.js").Frame} frame @param {number} id @returns {[string, string][] | null} */
+export function contactRows(frame, id) {
+    const k = frame.data.contacts, c = k ? k.id.indexOf(id) : -1;
+    if (!k || c < 0) return null;
+    const n = triple(k.normal, c), force = triple(k.force, c), press = dot(force, n), shear = norm(sub(force, scale(n, press))), area = k.area[c];
+    const out = (/** @type {number} */ v, /** @type {string} */ unit) => (Number.isFinite(v) ? `${figure(v)} ${unit}` : "–");
+    /** @type {[string, string][]} */ const rows = [["blocks", `${k.a[c]} and ${k.b[c]}`], ["joint", frame.head.joints[k.joint[c]] || "none"], ["state", STATES[k.state[c]].name], ["area", out(area, "m²")], ["gap", out(k.gap[c], "m")],
+        ["slip", out(k.slip[c], "m")], ["normal force", out(press, "N")], ["shear force", out(shear, "N")], ["normal stress", out(press / area, "Pa")], ["shear stress", out(shear / area, "Pa")],
+        ["strength used", Number.isFinite(k.used[c]) ? `${figure(100 * k.used[c])} %` : "–"]];
+    for (const e of frame.data.extras) if (e.of === 1) rows.push([plain(frame.head.fields[e.field].name), out(e.value[c], frame.head.fields[e.field].unit)]);
+    return rows;
+}
+
+/** The contacts of a block: id, and what is known in a line. @param {import("./frames.js").Frame} frame @param {number} id @returns {{id: number, text: string}[]} */
+export function contactsOf(frame, id) {
+    const k = frame.data.contacts, out = [];
+    for (let c = 0; k && c < k.n; c++) {
+        if (k.a[c] !== id && k.b[c] !== id) continue;
+        const used = Number.isFinite(k.used[c]) ? `, ${figure(100 * k.used[c])} %` : "";
+        out.push({ id: k.id[c], text: `${k.a[c] === id ? k.b[c] : k.a[c]}: ${STATES[k.state[c]].name}${used}` });
+    }
+    return out;
+}
+
 /** Names and values of what is known of several blocks together. @param {import("./frames.js").Model} model @param {import("./frames.js").Frame} frame @param {number[]} ids @returns {[string, string][]} */
 export function togetherRows(model, frame, ids) {
     let volume = 0, mass = 0, held = 0, most = 0, known = 0;
@@ -72,16 +97,28 @@ export function makeTable(app) {
         for (const id of ids) all ? s.delete(id) : s.add(id);
         app.change("pose");
     };
-    const commands = element("div", { className: "buttons" });
-    box.replaceChildren(title, element("table", {}, body), none, element("div", { className: "buttons" }, button("Hide", () => app.hidePicked(), "Hide in the picture"), button("Only", () => set(app.view.only)),
-        button("Ghost", () => set(app.view.ghosts)), button("Zoom", () => app.zoomPicked()), button("Close", () => app.pick(-1))), commands);
+    const commands = element("div", { className: "buttons" }), list = element("div", { className: "buttons" });
+    const touching = element("details", {}, element("summary"), list), views = element("div", { className: "buttons" }, button("Hide", () => app.hidePicked(), "Hide in the picture"), button("Only", () => set(app.view.only)),
+        button("Ghost", () => set(app.view.ghosts)), button("Zoom", () => app.zoomPicked()));
+    box.replaceChildren(title, element("table", {}, body), none, views, touching, commands, element("div", { className: "buttons" }, button("Close", () => app.pick(-1))));
     return { update() {
-        const ids = app.picks(), { frame } = app;
-        box.hidden = ids.length === 0;
+        const ids = app.picks(), { frame } = app, contact = ids.length === 0 ? app.view.contact : -1;
+        box.hidden = ids.length === 0 && contact < 0;
         if (!frame || box.hidden) return;
-        const rows = ids.length > 1 ? togetherRows(app.model, frame, ids) : blockRows(app.model, frame, ids[0]), known = rows ?? [];
-        title.textContent = ids.length > 1 ? `${ids.length} blocks` : `Block ${ids[0]}`;
+        const rows = contact >= 0 ? contactRows(frame, contact) : ids.length > 1 ? togetherRows(app.model, frame, ids) : blockRows(app.model, frame, ids[0]), known = rows ?? [];
+        title.textContent = contact >= 0 ? `Contact ${contact}` : ids.length > 1 ? `${ids.length} blocks` : `Block ${ids[0]}`;
+        none.textContent = `There is no such ${contact >= 0 ? "contact" : "block"} in this frame.`;
         none.hidden = rows !== null;
+        const near = ids.length === 1 ? contactsOf(frame, ids[0]) : [];
+        views.hidden = contact >= 0;
+        touching.hidden = near.length === 0;
+        touching.firstChild.textContent = `${near.length} contacts: with block, state, strength used`;
+        while (list.childElementCount > near.length) list.lastChild.remove();
+        near.slice(0, MOST).forEach((c, i) => {
+            const b = list.children[i] ?? list.appendChild(button("", () => app.pickContact(Number(b.value))));
+            b.value = c.id;
+            if (b.textContent !== c.text) b.textContent = c.text;
+        });
         // buttons stay, and cells as far as they can: they are used while frames of a run come
         while (body.rows.length > known.length) body.lastChild.remove();
         known.forEach((row, i) => row.forEach((text, k) => {
@@ -89,6 +126,6 @@ export function makeTable(app) {
             if (cell.textContent !== text) cell.textContent = text;
         }));
         if (app.run && !commands.firstChild && app.run.takes()) commands.append(...app.run.blockButtons());
-        commands.hidden = !app.run?.takes();
+        commands.hidden = contact >= 0 || !app.run?.takes();
     } };
 }

@@ -3,12 +3,12 @@
 
 /** @typedef {{frame: number, colour: string, edges: boolean, contacts: string, arrows: string, solid: string, opacity: number, moved: number, explode: number, motion: number,
  *   cut: boolean, other: boolean, dip: number, direction: number, position: number, parallel: boolean, net: boolean, dark: boolean, shadows: boolean,
- *   picked: number, also: Set<number>, joint: string, hidden: Set<number>, ghosts: Set<number>, only: Set<number>}} View also: all picked blocks, where there are several */
+ *   picked: number, contact: number, also: Set<number>, joint: string, hidden: Set<number>, ghosts: Set<number>, only: Set<number>}} View also: all picked blocks, where there are several */
 
 /** @returns {View} */
 export function makeView() {
     return { frame: -1, colour: "displacement", edges: true, contacts: "", arrows: "", solid: "", opacity: 0.12, moved: 0, explode: 0, motion: 1, cut: false, other: false, dip: 90,
-        direction: 90, position: 0, parallel: false, net: false, dark: false, shadows: true, picked: -1, also: new Set(), joint: "", hidden: new Set(), ghosts: new Set(), only: new Set() };
+        direction: 90, position: 0, parallel: false, net: false, dark: false, shadows: true, picked: -1, contact: -1, also: new Set(), joint: "", hidden: new Set(), ghosts: new Set(), only: new Set() };
 }
 
 /** The whole view as text, without what is as at the beginning. @param {View} view @param {string} camera */
@@ -29,7 +29,7 @@ export function viewText(view, camera) {
 export function readView(view, text) {
     let camera = "";
     /** @type {Record<string, any>} */ const out = view;
-    const limits = /** @type {Record<string, [number, number]>} */ ({ opacity: [0, 1], dip: [0, 90], direction: [0, 360], explode: [0, 3], motion: [0, 10000], moved: [0, Infinity], picked: [-1, 4294967295], frame: [-1, Infinity] });
+    const limits = /** @type {Record<string, [number, number]>} */ ({ opacity: [0, 1], dip: [0, 90], direction: [0, 360], explode: [0, 3], motion: [0, 10000], moved: [0, Infinity], picked: [-1, 4294967295], contact: [-1, 4294967295], frame: [-1, Infinity] });
     for (const part of text.replace(/^#/, "").split("&")) {
         const at = part.indexOf("="), name = part.slice(0, at);
         let value;

@@ -13,6 +13,8 @@
 #include <talus/plugin.h>
 
 #define TL_TABLE_COLUMNS 64
+/* A row that there is not. */
+#define TL_NO_ROW UINT32_MAX
 
 enum {
     TL_COLUMN_STATE = 1, /* part of the mechanical state: hashed and saved */

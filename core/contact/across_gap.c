@@ -119,6 +119,7 @@ tl_contact_across tl_contact_across_gap(const tl_model *m, uint32_t c)
     tl_contact_across out = {.most = 0};
     if (!law || d->contacts.point_count[c] == 0 || is_plain(d, law))
         return out;
+    out.whole = true;
     for (size_t first = 0; first < d->contacts.point_count[c]; first += TL_LANES) {
         sample s;
         read_points(&d->points, &d->contacts, c, law, first, &s);
@@ -126,9 +127,16 @@ tl_contact_across tl_contact_across_gap(const tl_model *m, uint32_t c)
         for (size_t l = 0; l < TL_LANES && s.area[l] > 0; l++) {
             out.most = fmax(out.most, s.lift[l] - s.reference[l]);
             out.bonded = out.bonded || s.hold[l] > 0;
+            out.whole = out.whole && s.hold[l] >= 1;
         }
     }
     return out;
+}
+
+bool tl_contact_bonded_whole(const tl_model *m, uint32_t c)
+{
+    const tl_law *law = law_of(m, c);
+    return law && law->pulls != TL_PULL_NONE && tl_contact_across_gap(m, c).whole;
 }
 
 bool tl_contact_is_lifted(const tl_model *m, uint32_t c)

@@ -15,9 +15,13 @@ void tl_points_across_gap(const tl_law *law, const tl_points_table *points, size
 typedef struct tl_contact_across {
     double most; /* the largest lift from where its faces lie on each other, m; at least 0 */
     bool bonded; /* some point pulls */
+    bool whole;  /* every point holds all of its tension */
 } tl_contact_across;
 
 tl_contact_across tl_contact_across_gap(const tl_model *m, uint32_t contact);
+
+/* Whether every point holds all of its tension. */
+bool tl_contact_bonded_whole(const tl_model *m, uint32_t contact);
 
 /* Whether anything may have lifted the points of a contact. */
 bool tl_contact_is_lifted(const tl_model *m, uint32_t contact);

@@ -375,7 +375,7 @@ void tl_contact_hand_over(tl_model *m, uint32_t c, const tl_manifold *g, bool re
     bool held = contacts->point_count[c] > 0;
     bool field = g->facet.kind == TL_FACET_FIELD;
     if (row && was_patch && held) {
-        const tl_lean lean = tl_contact_lean(m, c);
+        const tl_lean lean = tl_contact_lean(m, c, lanes);
         row->shift = lean.mean;
         row->leans = lean.leans;
         memcpy(row->lean, lean.face, sizeof row->lean);

@@ -21,7 +21,10 @@ typedef struct tl_cell {
     double pressed_volume, apart_volume; /* area times the means, m^3 */
     double pressed_second, apart_second; /* m^4 */
     double pressed_more, apart_more; /* what the volumes are beyond those that the law got, m^3 */
-    double hold;                     /* share of tension that was held before the law */
+    /* of the point as the law found it: overlap of the faces, m, its lift from there, less its reference, m, and the share of tension that was
+     * held */
+    double closure, lift, hold;
+    double level; /* at which its lift lies over the cell, beside the slope of the patch, m */
     tl_vec3
         centre; /* area times its centroid from that of the patch, m^3; found where lifts differ */
     double pressed_area; /* m^2, and the same of it */

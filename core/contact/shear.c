@@ -39,6 +39,10 @@ void tl_shear_release(tl_model *m, uint32_t c, const tl_shear *before, const tl_
     double ks = law == TL_NO_ROW ? 0 : m->joint_laws[law].ks;
     if (!(ks > 0))
         return;
+    if (tl_law_has_own_shear(&m->joint_laws[law])) {
+        contacts->handed_over[c] = true;
+        return;
+    }
     tl_contact_motion moved = tl_contact_moved(m, c);
     double work = tl_v3_dot(tl_v3_sub(before->force, now->force), moved.way) +
                   tl_v3_dot(tl_v3_sub(before->moment, now->moment), moved.turn);

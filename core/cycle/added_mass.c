@@ -84,9 +84,10 @@ static tl_status refuse(tl_model *m, const struct tl_added *need, double limit)
         &m->error, TL_E_STATE,
         "mass_scaling: dt = %g s would add %.3g of the mass of the bodies that can move, "
         "more than most = %g; block %u would get %.3g times its inertia; give dt = %.3g "
-        "or less, a larger most, or join slivers with model:filter",
+        "or less, a larger most, or join slivers with %s",
         m->added_dt, need->share, m->added_most, m->bodies.id[need->worst], need->factor,
-        ROUNDED_DOWN * longest(m, limit, m->added_dt));
+        ROUNDED_DOWN * longest(m, limit, m->added_dt),
+        tl_words(m, "model:filter", "tl_model_filter()"));
 }
 
 static void tell(tl_model *m, const struct tl_added *need)

@@ -156,6 +156,8 @@ struct tl_cycle {
     size_t motion_capacity;
     tl_swept *swept; /* of each block, likewise */
     size_t swept_capacity;
+    tl_id failing;      /* in the last run that was watched: watch.c; or TL_NO_ID */
+    double rest_ratio;  /* that the last solve asked for; 0: none has */
     bool fast;          /* a body came near the limit of motion in the last step: limits.c */
     tl_failure failure; /* of a parallel phase */
 };

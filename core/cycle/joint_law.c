@@ -77,9 +77,12 @@ tl_status tl_joint_law(tl_model *m, const char *joint, const char *law, const tl
     if (law && !kind)
         return tl_unknown_kind(m, TL_KIND_LAW, law);
     if (!kind)
-        return tl_fail(&m->error, TL_E_STATE,
-                       "joint '%s' has no law yet: name one, as in model:joint(\"%s\", LAW, {...})",
-                       joint, joint);
+        return tl_fail(
+            &m->error, TL_E_STATE,
+            m->speaks_lua
+                ? "joint '%s' has no law yet: name one, as in model:joint(\"%s\", LAW, {...})"
+                : "joint '%s' has no law yet: give tl_joint_law() one for \"%s\"",
+            joint, joint);
     tl_law fresh;
     status = tl_law_make_for(m, tag, joint, kind, args, law ? NULL : ruling, &fresh);
     if (status != TL_OK)

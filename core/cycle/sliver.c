@@ -3,11 +3,16 @@
  * The step goes with 1 / sqrt(rate) of the body that controls it. The bodies are sorted by how small and how thin they are, into cells between
  * limits of volume and aspect. A filter takes those beyond its limits, and the highest rate of those that it leaves tells by how much longer
  * the step would be. Of the filters that take little of the rock, the one is told that takes least and gains nearly the most. Where no shape
- * is the reason, but a stiff law or a light rock, no filter gains anything, and nothing is said. */
+ * is the reason, but a stiff law or a light rock, no filter gains anything, and nothing is said. Of bodies that could all be joined the largest
+ * stays: so does one that has nothing beside it but what is held. */
+#include "contact/detection.h"
 #include "cycle/rates.h"
 
+#include "base/groups.h"
+#include "model/body_shape.h"
+
 #include <stdio.h>
-#include <string.h>
+#include <stdlib.h>
 #include <talus/number.h>
 #include <talus/text.h>
 
@@ -42,26 +47,6 @@ static tl_row_value fastest(const tl_model *m)
     return out;
 }
 
-/* What a filter looks at: a body is taken when all its blocks are beyond a limit. */
-typedef struct body_shape {
-    double volume;     /* of the largest block, m3 */
-    double aspect;     /* of the stoutest */
-    double all_volume; /* of all blocks */
-} body_shape;
-
-static body_shape shape_of(const tl_model *m, uint32_t body)
-{
-    body_shape out = {0, INFINITY, 0};
-    for (uint32_t k = 0; k < m->bodies.member_count[body]; k++) {
-        uint32_t row = m->members[m->bodies.member_start[body] + k];
-        const tl_poly *shape = m->blocks.shape[row];
-        out.volume = fmax(out.volume, m->blocks.volume[row]);
-        out.aspect = fmin(out.aspect, tl_poly_diameter(shape) / tl_poly_thickness(shape));
-        out.all_volume += m->blocks.volume[row];
-    }
-    return out;
-}
-
 /* Some bodies: their highest rate, volume and number. */
 typedef struct heap {
     double rate, volume;
@@ -90,32 +75,69 @@ static double rounded(double x)
     return tl_number_read(text, NULL);
 }
 
-static void sort_bodies(const tl_model *m, sorting *s)
+/* Of the bodies that could be joined to each other over their faces the largest: largest[tl_first_of(of, body)]. */
+static void find_largest(const tl_model *m, const double *volume, uint32_t *of, uint32_t *largest)
 {
-    double whole = 0;
-    size_t bodies = 0;
-    memset(s, 0, sizeof *s);
-    for (uint32_t row = 0; row < m->blocks.table.rows; row++)
-        if (tl_body_counts(m, m->blocks.body[row]))
-            whole += m->blocks.volume[row];
-    for (uint32_t body = 0; body < m->bodies.table.rows; body++)
-        bodies += tl_body_counts(m, body);
-    for (int k = 0; k < PARTS; k++)
-        s->volume[k] = rounded(part[k] * whole / (double)bodies);
-    for (uint32_t body = 0; body < m->bodies.table.rows; body++) {
-        const double rate = rule_rate(m, body);
-        int small = 0, thin = 0;
-        if (!(rate > 0))
-            continue;
-        const body_shape shape = shape_of(m, body);
-        while (small < PARTS && shape.volume < s->volume[small])
-            small++;
-        while (thin < ASPECTS && shape.aspect > thinness[thin])
-            thin++;
-        const heap one = {rate, shape.all_volume, 1};
-        add(&s->cell[small][thin], &one);
-        add(&s->all, &one);
+    const tl_contacts *c = &m->detect->contacts;
+    const uint32_t bodies = (uint32_t)m->bodies.table.rows;
+    for (uint32_t body = 0; body < bodies; body++)
+        of[body] = largest[body] = body;
+    for (uint32_t i = 0; i < c->table.rows; i++) {
+        const uint32_t a = m->blocks.body[c->a[i]], b = m->blocks.body[c->b[i]];
+        if (c->point_count[i] && !c->field[i] && tl_bodies_may_join(&m->bodies, a, b))
+            tl_put_together(of, a, b);
     }
+    for (uint32_t body = 0; body < bodies; body++) {
+        uint32_t *best = &largest[tl_first_of(of, body)];
+        if (volume[body] > volume[*best])
+            *best = body;
+    }
+}
+
+/* A body of a volume, m3; one that stays is beyond no limit. false when out of memory. */
+static bool sort_body(const tl_model *m, sorting *s, uint32_t body, double volume, bool stays)
+{
+    const double rate = rule_rate(m, body);
+    int small = 0, thin = 0;
+    tl_body_shape shape;
+    if (!(rate > 0))
+        return true;
+    if (!tl_body_shape_of(m, body, &shape))
+        return false;
+    while (!stays && small < PARTS && volume < s->volume[small])
+        small++;
+    while (!stays && thin < ASPECTS && shape.aspect > thinness[thin])
+        thin++;
+    const heap one = {rate, volume, 1};
+    add(&s->cell[small][thin], &one);
+    add(&s->all, &one);
+    return true;
+}
+
+/* false when out of memory. */
+static bool sort_bodies(const tl_model *m, sorting *s)
+{
+    const uint32_t bodies = (uint32_t)m->bodies.table.rows;
+    double whole = 0, count = 0, *volume = malloc((bodies + 1) * sizeof *volume);
+    uint32_t *of = malloc((bodies + 1) * sizeof *of);
+    uint32_t *largest = malloc((bodies + 1) * sizeof *largest);
+    bool enough = volume && of && largest;
+    *s = (sorting){.all = {0}};
+    for (uint32_t body = 0; body < bodies && enough; body++) {
+        volume[body] = tl_body_volume(m, body);
+        whole += tl_body_counts(m, body) ? volume[body] : 0;
+        count += tl_body_counts(m, body);
+    }
+    for (int k = 0; k < PARTS; k++)
+        s->volume[k] = rounded(part[k] * whole / count);
+    if (enough)
+        find_largest(m, volume, of, largest);
+    for (uint32_t body = 0; body < bodies && enough; body++)
+        enough = sort_body(m, s, body, volume[body], largest[tl_first_of(of, body)] == body);
+    free(volume);
+    free(of);
+    free(largest);
+    return enough;
 }
 
 /* Limits by their numbers, 0: none; and what a filter of them leaves. */
@@ -156,7 +178,7 @@ static choice choose(const sorting *s)
 
 static void say(tl_model *m, uint32_t body, const sorting *s, const choice *by)
 {
-    const body_shape shape = shape_of(m, body);
+    tl_body_shape shape;
     const size_t taken = s->all.count - by->left.count;
     char others[40] = "", volume[60] = "", aspect[60] = "";
     if (taken > 1)
@@ -165,14 +187,17 @@ static void say(tl_model *m, uint32_t body, const sorting *s, const choice *by)
         tl_text_print(volume, sizeof volume, "volume = %.4g, ", s->volume[by->small - 1]);
     if (by->thin)
         tl_text_print(aspect, sizeof aspect, "aspect = %.4g, ", thinness[by->thin - 1]);
-    tl_model_say(
-        m,
-        "time step: block %u%s (volume %.3g m3, aspect %.3g) make%s it %.3g times smaller "
-        "than the rest of the blocks allow; model:filter{ %s%saction = \"join\" } joins such "
-        "slivers, %.2g %% of the rock, to their neighbours",
-        m->bodies.id[body], others, shape.volume, shape.aspect, taken > 1 ? "" : "s",
-        sqrt(s->all.rate / by->left.rate), volume, aspect,
-        100 * (1 - by->left.volume / s->all.volume));
+    if (!tl_body_shape_of(m, body, &shape))
+        return;
+    tl_model_say(m,
+                 "time step: block %u%s (volume %.3g m3, aspect %.3g) make%s it %.3g times smaller "
+                 "than the rest of the blocks allow; %s%s%s%s joins such "
+                 "slivers, %.2g %% of the rock, to their neighbours",
+                 m->bodies.id[body], others, tl_body_volume(m, body), shape.aspect,
+                 taken > 1 ? "" : "s", sqrt(s->all.rate / by->left.rate),
+                 tl_words(m, "model:filter{ ", "tl_model_filter() with "), volume, aspect,
+                 tl_words(m, "action = \"join\" }", "action = TL_FILTER_JOIN"),
+                 100 * (1 - by->left.volume / s->all.volume));
 }
 
 void tl_sliver_remark(tl_model *m)
@@ -185,7 +210,8 @@ void tl_sliver_remark(tl_model *m)
     if (first.row == TL_NO_ROW || m->bodies.id[first.row] == c->sliver)
         return;
     sorting s;
-    sort_bodies(m, &s);
+    if (!sort_bodies(m, &s))
+        return;
     const choice by = choose(&s);
     if (s.all.rate < SHORTENS * SHORTENS * by.left.rate)
         return;

@@ -175,6 +175,14 @@ static void say_end(tl_model *m, const tl_solve *solve, const tl_watch *watch,
         say_undecided(m, solve, r);
 }
 
+/* For who asks how the model stands. */
+static void note_run(tl_model *m, const tl_solve *solve, const tl_solve_result *r)
+{
+    m->cycle->failing = r->failing;
+    if (solve->ratio > 0)
+        m->cycle->rest_ratio = solve->ratio;
+}
+
 static tl_status run(tl_model *m, const tl_solve *solve, tl_solve_result *wanted)
 {
     tl_solve_result unread, *const result = wanted ? wanted : &unread;
@@ -199,6 +207,8 @@ static tl_status run(tl_model *m, const tl_solve *solve, tl_solve_result *wanted
             break;
         measure(m, &p);
         result->failing = watch ? tl_watch_step(watch, m) : TL_NO_ID;
+        if (watch)
+            note_run(m, solve, result);
         if (ended(m, &p, &status))
             break;
     }
@@ -215,8 +225,10 @@ tl_status tl_model_solve(tl_model *m, const tl_solve *given, tl_solve_result *re
     if (status != TL_OK)
         return status;
     if (!m->damping && tl_model_says(m, TL_REMARK_UNDAMPED))
-        tl_model_say(m, "solve: the model has no damping and may never come to rest; "
-                        "model:damping(\"local\") or another one helps");
+        tl_model_say(m,
+                     "solve: the model has no damping and may never come to rest; %s or another "
+                     "one helps",
+                     tl_words(m, "model:damping(\"local\")", "tl_model_damping() with \"local\""));
     return run(m, &solve, result);
 }
 
@@ -225,6 +237,8 @@ tl_status tl_model_cycle_calling(tl_model *m, int64_t cycles, const tl_solve *ca
 {
     if (cycles < 0)
         return tl_fail(&m->error, TL_E_ARGUMENT, "cycle: %lld must be >= 0", (long long)cycles);
+    const tl_solve silent = tl_solve_default();
+    calls = calls ? calls : &silent;
     const tl_solve plain = {.max_cycles = cycles,
                             .max_time = NAN,
                             .velocity = NAN,

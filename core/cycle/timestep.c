@@ -127,18 +127,20 @@ static tl_status check_factor(tl_model *m)
 /* Why no step follows from the model. */
 static tl_status no_step(tl_model *m, double dt)
 {
-    const char *way_out = "a step with model:timestep{ dt = ... }";
+    const char *way_out = tl_words(m, "a step with model:timestep{ dt = ... }",
+                                   "a step with dt of tl_model_timestep()");
+    const char *joint = tl_words(m, "model:joint(\"*\", ...)", "tl_joint_law()");
     if (m->joint_law_count == 0)
         return tl_fail(
             &m->error, TL_E_STATE,
             "no time step follows from the model: no law says how stiff a contact is; set "
-            "a law with model:joint(\"*\", ...) or %s",
-            way_out);
+            "a law with %s or %s",
+            joint, way_out);
     if (!(tl_stiffest_law(m) > 0))
         return tl_fail(&m->error, TL_E_STATE,
                        "no time step follows from the model: kn and ks of all laws are 0; set a "
-                       "stiffness with model:joint(\"*\", ...) or %s",
-                       way_out);
+                       "stiffness with %s or %s",
+                       joint, way_out);
     return tl_fail(
         &m->error, TL_E_STATE,
         "no time step follows from the model: by its masses and stiffnesses it would be %g "

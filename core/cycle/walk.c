@@ -33,6 +33,8 @@ void tl_cycle_walk(struct tl_cycle *c, const tl_walk *walk)
     FLAG(STATE, adds);
     FLAG(CACHE, long_step);
     FLAG(CACHE, fast);
+    VALUE(CACHE, failing);
+    VALUE(CACHE, rest_ratio);
     size_t one = c->ledger ? 1 : 0;
     tl_walk_list(walk, TL_KEEP_STATE, "cycle.ledger", &c->ledger, tl_ledger_size(), &one, NULL,
                  offsetof(tl_memory, step));

@@ -44,28 +44,32 @@ static double bonded_tilt(const tl_model *m, uint32_t c)
     return fmax(BONDED_TILT, tl_flush_limits_of(corners).tilt);
 }
 
+/* How far apart the blocks may be while faces press that are moved so. */
+static double reach_of(const tl_model *m, uint32_t c, const tl_manifold_before *before)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    double size = fmin(m->blocks.size[contacts->a[c]], m->blocks.size[contacts->b[c]]);
+    const tl_plane *face = before->leans ? before->lean : NULL;
+    tl_vec3 n = {0, 0, 0};
+    if (face)
+        n = m->blocks.shape[contacts->a[c]]->plane[before->shifted.a].normal;
+    return tl_lean_reach(before->shift, face, n, size);
+}
+
 /* Notes how far the faces of a field contact are moved out. */
-static void note_moved_faces(const tl_model *m, const tl_press_row *row, tl_manifold_before *to)
+static void note_moved_faces(const tl_model *m, uint32_t c, const tl_press_row *row,
+                             tl_manifold_before *to)
 {
     to->shift = row->shift;
     to->shifted = row->shifted;
     to->leans = row->leans;
     memcpy(to->lean, row->lean, sizeof to->lean);
+    to->reach = reach_of(m, c, to);
     to->opened = row->lifted_at == m->cycles ? row->opened : 0;
 }
 
-double tl_contact_reach(const tl_model *m, uint32_t c, const tl_manifold_before *before,
-                        double size)
-{
-    const tl_contacts *contacts = &m->detect->contacts;
-    const tl_plane *face = before->leans ? before->lean : NULL;
-    tl_vec3 n = {0, 0, 0};
-    if (face)
-        n = m->blocks.shape[contacts->a[c]]->plane[before->shifted.a].normal;
-    return TL_LIST_MARGIN * size + tl_lean_reach(before->shift, face, n, size);
-}
-
-tl_manifold_before tl_contact_before(const tl_model *m, uint32_t c, bool reframed)
+tl_manifold_before tl_contact_before(const tl_model *m, uint32_t c, bool reframed,
+                                     const tl_point_lanes *lanes)
 {
     const tl_contacts *contacts = &m->detect->contacts;
     const tl_facet *facet = &contacts->facet[c];
@@ -80,15 +84,16 @@ tl_manifold_before tl_contact_before(const tl_model *m, uint32_t c, bool reframe
         bool unseen = contacts->point_count[c] == 0; /* of an estate, until it has got its room */
         out.holds = reframed || unseen || across.bonded;
         out.most_tilt = across.bonded && !reframed ? bonded_tilt(m, c) : INFINITY;
-        out.over = out.holds ? INFINITY : across.most;
-        const tl_lean lean = tl_contact_lean(m, c);
+        out.over = out.holds ? INFINITY : TL_PARTED * across.most;
+        const tl_lean lean = tl_contact_lean(m, c, lanes);
         out.shift = lean.mean;
         out.shifted = out.faces;
         out.leans = lean.leans;
         memcpy(out.lean, lean.face, sizeof out.lean);
+        out.reach = reach_of(m, c, &out);
     } else if (row) {
         out.calm = !reframed && is_calm(m, c);
-        note_moved_faces(m, row, &out);
+        note_moved_faces(m, c, row, &out);
     }
     return out;
 }
@@ -287,7 +292,7 @@ static void ask(tl_model *m, tl_field_batch *b, uint32_t c)
     tl_touch_rule rule = tl_touch_rule_of(m, view, m->detect->contacts.tag[c], 0);
     b->region[k] = kept_region(row);
     tl_manifold_before before = {.kind = TL_FACET_FIELD};
-    note_moved_faces(m, row, &before);
+    note_moved_faces(m, c, row, &before);
     b->query[k] = tl_manifold_query(view, &b->region[k], &rule, &before);
     b->query[k].lean = row->leans ? row->lean : NULL; /* that lasts */
 }
@@ -300,10 +305,10 @@ bool tl_field_press_anew(tl_model *m, uint32_t c, tl_narrow_scratch *scratch)
     tl_touch_rule rule = tl_touch_rule_of(m, &view, contacts->tag[c], 0);
     tl_manifold_before before = {.kind = TL_FACET_FIELD};
     tl_region region;
-    note_moved_faces(m, row, &before);
+    note_moved_faces(m, c, row, &before);
     before.opened = 0;
     if (!tl_pair_place(&view, scratch) ||
-        !tl_region_find(&view, tl_contact_reach(m, c, &before, view.size), scratch, &region))
+        !tl_region_find(&view, TL_LIST_MARGIN * view.size + before.reach, scratch, &region))
         return false;
     region.mesh = NULL;
     const tl_press_query query = tl_manifold_query(&view, &region, &rule, &before);

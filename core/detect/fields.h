@@ -2,16 +2,17 @@
 #ifndef TL_DETECT_FIELDS_H
 #define TL_DETECT_FIELDS_H
 
+#include "contact/layout.h"
 #include "contact/tables.h"
 #include "model/model.h"
 #include "narrow/manifold.h"
 
 /* What is known of a contact before it is looked at. One whose bodies have got other frames stays what it is until its points
  * are in these. */
-tl_manifold_before tl_contact_before(const tl_model *m, uint32_t contact, bool reframed);
-/* The margin with which its faces are to be listed, m: they are moved, and lean. */
-double tl_contact_reach(const tl_model *m, uint32_t contact, const tl_manifold_before *before,
-                        double size);
+tl_manifold_before tl_contact_before(const tl_model *m, uint32_t contact, bool reframed,
+                                     const tl_point_lanes *lanes);
+/* How far walls may part, over how far they are lifted: as far again they ride on what has opened them, and then they begin anew. */
+#define TL_PARTED 2
 /* Keeps the region of a field contact. */
 void tl_field_keep(tl_press_row *row, const tl_pair_view *view, const tl_region *region);
 /* What is known of the field, with the numbers that its faces have in a list made anew; nothing where one is not in it. */

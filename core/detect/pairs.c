@@ -167,6 +167,7 @@ tl_manifold_before tl_pair_before(const tl_model *m, const tl_pair *p, const tl_
     uint32_t face_a, face_b;
     out.born_tilt = tl_estate_tilt(m, p->a, p->b);
     out.shift = tl_estate_shift(m, p->a, p->b, &out.shifted);
+    out.reach = fmax(0, out.shift);
     if (!tl_estate_holds(m, p->a, p->b) || !tl_estate_faces(m, p->a, p->b, &face_a, &face_b))
         return out;
     tl_touch_rule rule = tl_touch_rule_of(m, view, view->a->tag[face_a], INFINITY);

@@ -6,10 +6,12 @@
 #include "detect/update.h"
 
 #include "base/columns.h"
+#include "contact/across_gap.h"
 #include "contact/contacts.h"
 #include "contact/estate.h"
 #include "contact/facing.h"
 #include "contact/handover.h"
+#include "contact/lean.h"
 #include "contact/pair_view.h"
 #include "contact/places.h"
 #include "contact/points.h"
@@ -37,6 +39,9 @@
  * of o/(16 b), a quarter of what a patch neglects in any case, the load on its border (docs/theory.md). It is TL_STILL at least: a
  * patch that opens has no closure where it opens. */
 #define STANDS (1.0 / 16)
+
+/* The same of a patch that is bonded whole, over the smaller block's size: a bond that swings to tension passes through no closure. */
+#define BOND_STANDS 5e-4
 
 /* Size of the smaller block of a contact. */
 static double smaller_size(const tl_model *m, uint32_t c)
@@ -146,16 +151,16 @@ static void check_depth(tl_model *m, uint32_t c, const tl_pair_view *view, const
 }
 
 /* All that the contact is in the present place, into the thread's manifold. false: out of memory. */
-static bool find(tl_model *m, uint32_t c, tl_narrow_scratch *scratch)
+static bool find(tl_model *m, uint32_t c, tl_narrow_scratch *scratch, const tl_point_lanes *lanes)
 {
     tl_contacts *contacts = &m->detect->contacts;
     double odometer = tl_pair_odometer(m, contacts->a[c], contacts->b[c]), way;
     tl_contact_lift_field(m, c);
     tl_pair_view view = tl_pair_view_of(m, contacts->a[c], contacts->b[c]);
-    tl_manifold_before before = tl_contact_before(m, c, scratch->reframed);
+    tl_manifold_before before = tl_contact_before(m, c, scratch->reframed, lanes);
     tl_region region;
     if (!tl_pair_place(&view, scratch) ||
-        !tl_region_find(&view, tl_contact_reach(m, c, &before, view.size), scratch, &region))
+        !tl_region_find(&view, TL_LIST_MARGIN * view.size + before.reach, scratch, &region))
         return false;
     const tl_press_row *row = tl_press_row_of(m, c);
     tl_field_mesh mesh;
@@ -172,7 +177,8 @@ static bool find(tl_model *m, uint32_t c, tl_narrow_scratch *scratch)
         return false;
     contacts->faces_valid_to[c] = scratch->reframed ? -INFINITY : odometer + g->valid;
     contacts->spot[c] = tl_spot_of(m, contacts->a[c], contacts->b[c], g->valid);
-    if (g->point_count == 0 && !is_near(&view, region.gap, before.holds ? 0 : before.over, &way)) {
+    const double over = row ? TL_PARTED * before.reach : before.holds ? 0 : before.over;
+    if (g->point_count == 0 && !is_near(&view, region.gap, over, &way)) {
         part(m, c, way);
         return true;
     }
@@ -205,7 +211,7 @@ static bool wants_place(tl_detect *d, uint32_t c, const tl_manifold *g, bool ref
     bool field = g->facet.kind == TL_FACET_FIELD;
     bool lacks_press =
         field && contacts->press[c] == TL_NO_ROW; /* it has not got the room for its press yet */
-    bool moves = g->point_count > 0 && (contacts->field[c] != field || lacks_press);
+    bool moves = (g->point_count > 0 || field) && (contacts->field[c] != field || lacks_press);
     if (!moves && g->point_count <= contacts->point_capacity[c])
         return false;
     contacts->field[c] = field;
@@ -224,6 +230,20 @@ static bool have_run(const tl_model *m, uint32_t c, const tl_manifold *g)
     return tl_contact_has_run(&run, TL_MERGE * smaller_size(m, c));
 }
 
+static bool is_patch(const tl_contacts *contacts, uint32_t c)
+{
+    return contacts->facet[c].kind == TL_FACET_PATCH && contacts->point_count[c] > 0;
+}
+
+/* What a contact without points stays. A patch that is lifted becomes a field whose faces are moved so: they press again there. */
+static tl_facet parted_facet(const tl_model *m, uint32_t c)
+{
+    tl_facet facet = m->detect->contacts.facet[c];
+    if (is_patch(&m->detect->contacts, c) && tl_contact_mean_lift(m, c) != 0)
+        facet.kind = TL_FACET_FIELD;
+    return facet;
+}
+
 /* Puts the built manifold in the place of the contact's points, or asks for room. */
 static bool take_manifold(tl_model *m, uint32_t c, tl_narrow_scratch *scratch,
                           const tl_point_lanes *lanes)
@@ -231,10 +251,10 @@ static bool take_manifold(tl_model *m, uint32_t c, tl_narrow_scratch *scratch,
     tl_detect *d = m->detect;
     tl_manifold *g = &scratch->manifold;
     note_manifold(&d->contacts, c, g);
+    if (g->point_count == 0)
+        g->facet = parted_facet(m, c);
     if (wants_place(d, c, g, scratch->reframed))
         return true;
-    if (g->point_count == 0)
-        g->facet = d->contacts.facet[c];
     bool field = g->facet.kind == TL_FACET_FIELD, same = same_topology(d, c, g), done = true;
     if (!same)
         d->contacts.new_points[c] = TL_POINTS_OTHERS;
@@ -286,11 +306,6 @@ static double faces_moved(const tl_model *m, uint32_t c)
     return tl_spot_moved(m, &contacts->spot[c], contacts->a[c], contacts->b[c], reach_of(m, c));
 }
 
-static bool is_patch(const tl_contacts *contacts, uint32_t c)
-{
-    return contacts->facet[c].kind == TL_FACET_PATCH && contacts->point_count[c] > 0;
-}
-
 /* Motion of next to nothing. */
 static double still_way(const tl_model *m, uint32_t c)
 {
@@ -335,7 +350,9 @@ static double least_closure(const tl_model *m, uint32_t c)
 /* Way left to go before the points of a patch are to be laid anew. */
 static double way_of_points(const tl_model *m, uint32_t c)
 {
-    double stands = fmax(still_way(m, c), STANDS * least_closure(m, c));
+    double stands = tl_contact_bonded_whole(m, c)
+                        ? BOND_STANDS * smaller_size(m, c)
+                        : fmax(still_way(m, c), STANDS * least_closure(m, c));
     return stands - points_moved(m, c);
 }
 
@@ -487,7 +504,7 @@ static bool make_anew(tl_model *m, uint32_t c, unsigned thread)
     tl_spot spot = contacts->spot[c];
     tl_tag tag = contacts->tag[c];
     uint8_t field = contacts->field[c], pending = contacts->pending[c], deep = contacts->deep[c];
-    if (find(m, c, scratch) &&
+    if (find(m, c, scratch, &m->detect->lanes[thread]) &&
         (contacts->pending[c] == TL_PENDING_DIE || still_stands(m, c, scratch) ||
          take_manifold(m, c, scratch, &m->detect->lanes[thread])))
         return true;

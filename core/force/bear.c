@@ -172,3 +172,36 @@ bool tl_contact_bear(const tl_model *m, uint32_t c, const tl_traction *given, tl
         s.now[k] = s.borne[k];
     return ask(m, c, given, borne, stored);
 }
+
+/* Times that a law is asked for the shear that there is: more than any law bears that has a limit. */
+#define BEYOND 1e6
+/* Points taken at a time: those of most contacts. */
+enum { MOST_TOLD = 64 };
+
+double tl_contact_shear_used(const tl_model *m, uint32_t c)
+{
+    const tl_detect *d = m->detect;
+    const size_t all = d->contacts.point_count[c];
+    const bool field = d->contacts.facet[c].kind == TL_FACET_FIELD;
+    tl_traction given[MOST_TOLD], borne[MOST_TOLD];
+    double carried = 0, most = 0, stored;
+    if (all == 0 || all > MOST_TOLD || d->contacts.law[c] == TL_NO_ROW)
+        return NAN;
+    for (size_t k = 0; k < all; k++) {
+        const size_t i = tl_point_row(&d->contacts, c, k);
+        const double per = d->points.area[i] > 0 ? 1 / d->points.area[i] : 0;
+        const double times =
+            field && k != TL_FIELD_SHEAR ? 0 : BEYOND * per; /* torsion is no shear */
+        given[k] = (tl_traction){d->points.f_n[i] * per,
+                                 tl_v3_scale(times, tl_columns_get(d->points.f_s, i))};
+    }
+    if (!tl_contact_bear(m, c, given, borne, &stored))
+        return NAN;
+    for (size_t k = 0; k < all; k++) {
+        const double area = d->points.area[tl_point_row(&d->contacts, c, k)];
+        carried += area * tl_v3_norm(given[k].shear) / BEYOND;
+        most += area * tl_v3_norm(borne[k].shear);
+    }
+    /* a law that weakens may bear less than it has just carried */
+    return carried > 0 && most < 0.5 * BEYOND * carried ? fmin(1, carried / most) : NAN;
+}

@@ -15,5 +15,8 @@ typedef struct tl_traction {
  * the springs then, J. [point_count] each. The contact is left as it is. false: the law failed. */
 bool tl_contact_bear(const tl_model *m, uint32_t contact, const tl_traction *given,
                      tl_traction *borne, double *stored);
+/* Which share of the shear that its law bears at the present normal stresses a contact carries, at the points where it carries some; NaN
+ * where it carries none or the law has no limit. The contact is left as it is. */
+double tl_contact_shear_used(const tl_model *m, uint32_t contact);
 
 #endif

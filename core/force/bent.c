@@ -34,6 +34,7 @@ typedef struct cells {
     const tl_point_lanes *t;
     size_t row, lane, count; /* at most ROWS */
     uint32_t parts;
+    bool found; /* their points have their closures */
 } cells;
 
 /* What a law answers at closures u of cells, 0 where there is none: stress and energy per area. */
@@ -177,6 +178,16 @@ static void find_even(const cells *of, const whole by[ROWS], answer *one, answer
     }
 }
 
+/* Stays at the closures of the points. */
+static void stay(const cells *of, const whole by[ROWS], answer *even)
+{
+    for (size_t i = 0; i < of->count; i++) {
+        double closure = of->t->closure[of->lane + i] + of->t->lift[of->lane + i];
+        even->u[i] = by[i].force > 0 ? fmax(closure, 0) : 0;
+    }
+    ask(of, even);
+}
+
 static void bend(const cells *of)
 {
     answer one, two, even;
@@ -185,7 +196,10 @@ static void bend(const cells *of)
     ask(of, &one);
     ask(of, &two);
     find_wholes(of, &one, &two, by);
-    find_even(of, by, &one, &two, &even);
+    if (of->found)
+        stay(of, by, &even);
+    else
+        find_even(of, by, &one, &two, &even);
     for (size_t i = 0; i < of->count; i++) {
         tl_cell *cell = &of->t->cell[of->lane + i];
         cell->bent = even.stress[i] > 0 ? bent_of(cell, &by[i], area_of(of, i), even.u[i],
@@ -195,7 +209,7 @@ static void bend(const cells *of)
 }
 
 void tl_cells_bend(const tl_model *m, const tl_law *law, const tl_simd_group *group,
-                   const tl_point_lanes *lanes, size_t lane, uint32_t parts)
+                   const tl_point_lanes *lanes, size_t lane, uint32_t parts, bool found)
 {
     size_t rows = (size_t)group->slots * TL_LANES;
     for (size_t at = 0; at < rows; at += ROWS) {
@@ -205,7 +219,8 @@ void tl_cells_bend(const tl_model *m, const tl_law *law, const tl_simd_group *gr
                           .row = group->start + at,
                           .lane = lane + at,
                           .count = rows - at < ROWS ? rows - at : ROWS,
-                          .parts = parts};
+                          .parts = parts,
+                          .found = found};
         bend(&of);
     }
 }

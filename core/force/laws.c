@@ -239,18 +239,19 @@ static void sum_fields(const span_job *job, const tl_simd_group *group, const tl
     }
 }
 
-/* Adds what partly open patches have beside their points. */
-static void add_parts(const span_job *job, const tl_simd_group *group, const tl_point_lanes *t,
-                      size_t lane, uint32_t parts, const tl_arms *arms, group_sums *sum)
+/* Adds what partly open patches have beside their points. Gives the lanes that slip has opened. */
+static uint32_t add_parts(const span_job *job, const tl_simd_group *group, const tl_point_lanes *t,
+                          size_t lane, tl_part_lanes parts, const tl_arms *arms, group_sums *sum)
 {
     tl_part_sums more[TL_LANES];
     tl_vec3 turn[TL_LANES];
-    for (uint32_t left = parts; left; left &= left - 1) {
+    for (uint32_t left = parts.parts | parts.held; left; left &= left - 1) {
         size_t l = (size_t)__builtin_ctz(left);
         turn[l] = tl_contact_moved(job->m, group->contact[l]).turn;
     }
-    tl_simd_group_part_sum(job->m, job->law, group, t, lane, parts, turn, more);
-    for (uint32_t left = parts; left; left &= left - 1) {
+    const tl_found_lanes found =
+        tl_simd_group_part_sum(job->m, job->law, group, t, lane, parts, turn, more);
+    for (uint32_t left = found.parts; left; left &= left - 1) {
         size_t l = (size_t)__builtin_ctz(left);
         tl_vec3 force = tl_v3_scale(more[l].force, tl_lanes3_get(&arms->push, l));
         tl_vec3 arm = tl_v3_add(tl_lanes3_get(&arms->at, l), more[l].arm);
@@ -262,22 +263,24 @@ static void add_parts(const span_job *job, const tl_simd_group *group, const tl_
         sum->stored[l] += more[l].stored;
         sum->dissipated[l] += more[l].dissipated;
     }
+    return found.opened;
 }
 
 /* Forces of the contacts of a SIMD group, whose first point is in lane `lane`. */
 static void sum_group(const span_job *job, const tl_simd_group *group, const tl_point_lanes *t,
-                      size_t lane, uint32_t parts, const tl_arms *arms)
+                      size_t lane, tl_part_lanes parts, const tl_arms *arms)
 {
     tl_model *m = job->m;
     tl_contacts *contacts = &m->detect->contacts;
     unsigned begins = 0; /* lanes of contacts that carried nothing in the step before */
+    uint32_t opened = 0;
     group_sums sum;
     if (job->span->field)
         sum_fields(job, group, t, lane, &sum);
     else
         sum_points(&m->detect->points, t, group->start, lane, group->slots, arms, &sum);
-    if (parts)
-        add_parts(job, group, t, lane, parts, arms, &sum);
+    if (parts.parts | parts.held)
+        opened = add_parts(job, group, t, lane, parts, arms, &sum);
     if (m->cycles % SHEAR_EVERY == 0 && !job->span->field)
         sum_tilts(&m->detect->points, t, group->start, lane, group->slots, &sum);
     tl_group_energy energy = {0, 0};
@@ -288,7 +291,7 @@ static void sum_group(const span_job *job, const tl_simd_group *group, const tl_
         tl_vec3 force = tl_v3(sum.force[0][l], sum.force[1][l], sum.force[2][l]);
         tl_vec3 moment = tl_v3(sum.moment[0][l], sum.moment[1][l], sum.moment[2][l]);
         double heat = sum.dissipated[l] + contacts->released[c];
-        if (contacts->handed_over[c])
+        if (contacts->handed_over[c] || (opened >> l & 1))
             heat = tl_contact_lost(m, c, force, moment, sum.stored[l]);
         if (job->changed && heat != sum.dissipated[l]) /* heat of this step only */
             atomic_store_explicit(job->changed, true, memory_order_relaxed);
@@ -386,9 +389,7 @@ static void force_tile(const span_job *job, const tl_simd_group *groups, size_t 
         tl_law_check_states(job->m, job->phase->failure, job->law, first, points);
     for (size_t r = 0; r < count; r++) {
         size_t lane = groups[r].start - first;
-        if (part[r].held)
-            part[r].parts |= tl_simd_group_broken(job->m, &groups[r], t, lane, part[r].held);
-        sum_group(job, &groups[r], t, lane, part[r].parts, &arms[r]);
+        sum_group(job, &groups[r], t, lane, part[r], &arms[r]);
     }
     if (job->changed && !as_noted(&job->m->detect->points, first, points, t))
         atomic_store_explicit(job->changed, true, memory_order_relaxed);
@@ -489,9 +490,8 @@ tl_status tl_laws_check(tl_model *m)
             continue;
         char name[320];
         tl_contact_name(m, i, name, sizeof name);
-        return tl_fail(&m->error, TL_E_STATE,
-                       "%s has no law: set one with model:joint(\"*\", ...) or for that joint",
-                       name);
+        return tl_fail(&m->error, TL_E_STATE, "%s has no law: set one with %s or for that joint",
+                       name, tl_words(m, "model:joint(\"*\", ...)", "tl_joint_law() for \"*\""));
     }
     return TL_OK;
 }

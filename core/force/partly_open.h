@@ -20,10 +20,6 @@ typedef struct tl_part_lanes {
 tl_part_lanes tl_simd_group_part(const tl_model *m, const tl_law *law, const tl_simd_group *group,
                                  const tl_point_lanes *lanes, size_t lane);
 
-/* After the law: those of the lanes `held` where some of a bond may have broken in this step. Their cells are found now. */
-uint32_t tl_simd_group_broken(const tl_model *m, const tl_simd_group *group,
-                              const tl_point_lanes *lanes, size_t lane, uint32_t held);
-
 /* What the forces of cells have beside those of their points. */
 typedef struct tl_part_sums {
     tl_vec3 moment; /* on B, N m */
@@ -32,9 +28,16 @@ typedef struct tl_part_sums {
     double stored, dissipated;
 } tl_part_sums;
 
-/* After the law: what the lanes `parts` have beside their points, into out[TL_LANES]. turn[TL_LANES], rad: of B against A in the step. */
-void tl_simd_group_part_sum(const tl_model *m, const tl_law *law, const tl_simd_group *group,
-                            const tl_point_lanes *lanes, size_t lane, uint32_t parts,
-                            const tl_vec3 *turn, tl_part_sums *out);
+/* Lanes in which patches have something beside their points after the law, and of these those that slip has opened in this step. */
+typedef struct tl_found_lanes {
+    uint32_t parts, opened;
+} tl_found_lanes;
+
+/* After the law: what patches have beside their points, into out[TL_LANES]. turn[TL_LANES], rad: of B against A in the step, in the lanes
+ * given. */
+tl_found_lanes tl_simd_group_part_sum(const tl_model *m, const tl_law *law,
+                                      const tl_simd_group *group, const tl_point_lanes *lanes,
+                                      size_t lane, tl_part_lanes given, const tl_vec3 *turn,
+                                      tl_part_sums *out);
 
 #endif

@@ -97,7 +97,7 @@ static void add_cells(tl_model *m, const tl_simd_group *group, size_t l, const t
     const tl_law *law = &m->joint_laws[m->detect->contacts.law[group->contact[l]]];
     tl_part_sums all[TL_LANES], *more = &all[l];
     exchange(m->detect, group->contact[l], l, t);
-    tl_simd_group_part_sum(m, law, group, t, 0, 1u << l, turn, all);
+    tl_simd_group_part_sum(m, law, group, t, 0, (tl_part_lanes){1u << l, 0}, turn, all);
     exchange(m->detect, group->contact[l], l, t);
     tl_vec3 force = tl_v3_scale(more->force, tl_columns_get(t->normal, l));
     to->force = tl_v3_add(to->force, force);

@@ -30,6 +30,7 @@ typedef struct builder {
     double extent;    /* diagonal of the bounds */
     double tolerance; /* lengths that do not count */
     double unit;      /* grid units per length */
+    bool any;         /* points inside are left out, not refused */
     tl_hull hull;
     uint32_t face_count;
     uint32_t *sectors; /* [count] faces that meet in a point */
@@ -463,7 +464,7 @@ static tl_status check_hull(const builder *b, const tl_poly *p, tl_error *error)
         if (depth < TL_POLY_THIN * b->extent)
             return flat(b, depth, error);
     }
-    for (uint32_t i = 0; i < b->hull.count; i++) {
+    for (uint32_t i = 0; i < b->hull.count && !b->any; i++) {
         if (b->sectors[i] >= 3 || b->hull.duplicate[i])
             continue;
         double depth = INFINITY;
@@ -538,16 +539,27 @@ static tl_status build(builder *b, tl_poly **poly, tl_error *error)
     return status;
 }
 
-tl_status tl_poly_hull(const tl_vec3 *points, size_t count, tl_poly **poly, tl_error *error)
+static tl_status hull_of(const tl_vec3 *points, size_t count, bool any, tl_poly **poly,
+                         tl_error *error)
 {
     *poly = NULL;
     tl_status status = check_points(points, count, error);
     if (status)
         return status;
-    builder b = {.face_count = 0};
+    builder b = {.any = any};
     if (!allocate(&b, points, count))
         return tl_fail_memory(error);
     status = build(&b, poly, error);
     free(b.memory);
     return status;
+}
+
+tl_status tl_poly_hull(const tl_vec3 *points, size_t count, tl_poly **poly, tl_error *error)
+{
+    return hull_of(points, count, false, poly, error);
+}
+
+tl_status tl_poly_hull_around(const tl_vec3 *points, size_t count, tl_poly **poly, tl_error *error)
+{
+    return hull_of(points, count, true, poly, error);
 }

@@ -78,6 +78,8 @@ tl_status tl_poly_box(tl_vec3 min, tl_vec3 max, tl_poly **poly, tl_error *error)
  * flat or thinner than TL_POLY_THIN set, and for a point inside the hull of the others by more than
  * TL_POLY_BENT: the sentence names the point, counted from 1. */
 tl_status tl_poly_hull(const tl_vec3 *points, size_t count, tl_poly **poly, tl_error *error);
+/* The same of any points: those inside are left out. */
+tl_status tl_poly_hull_around(const tl_vec3 *points, size_t count, tl_poly **poly, tl_error *error);
 
 /* Makes one face of facets with one tag that lie in one plane as far as TL_POLY_BENT and TL_POLY_TILT tell, and fits the
  * planes of faces whose corners miss them by more than TL_POLY_FLAT. What comes out keeps tl_poly_check within TL_POLY_BENT.

@@ -7,6 +7,7 @@
 #include "io/extra_fields.h"
 #include "io/scene_parts.h"
 #include "io/scene_put.h"
+#include "io/verdict.h"
 
 #include <stdlib.h>
 
@@ -63,27 +64,6 @@ static bool compare(tl_scene *scene, const tl_model *m, news *found)
     while (k < sent->count)
         found->gone[found->gone_count++] = sent->blocks[k++].id;
     next->count = rows;
-    return true;
-}
-
-static int compare_sizes(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-/* The median of the blocks' sizes, m; 0 of none. False when out of memory. */
-static bool find_median(const tl_model *m, double *median)
-{
-    size_t n = m->blocks.table.rows;
-    double *sizes = malloc((n + 1) * sizeof *sizes);
-    if (!sizes)
-        return false;
-    if (n)
-        memcpy(sizes, m->blocks.size, n * sizeof *sizes);
-    qsort(sizes, n, sizeof *sizes, compare_sizes);
-    *median = n ? sizes[n / 2] : 0;
-    free(sizes);
     return true;
 }
 
@@ -180,6 +160,22 @@ static tl_status put_block_fields(tl_model *m, const tl_html *options, tl_piece 
     return status;
 }
 
+/* A page is kept: it tells which model it is of. */
+static tl_status put_finding(const tl_scene *scene, tl_model *m, const tl_verdict *verdict,
+                             tl_piece *out)
+{
+    char hash[33];
+    tl_piece text = {0};
+    tl_status status = scene->live ? TL_OK : tl_state_hash(m, hash);
+    if (status != TL_OK)
+        return status;
+    tl_scene_finding(verdict, scene->live ? NULL : hash, &text);
+    status = text.failed ? tl_fail_memory(&m->error)
+                         : tl_scene_bytes(m, "FIND", text.data, text.length, out);
+    free(text.data);
+    return status;
+}
+
 /* ---------------------------------------------------------------- the frame -------------- */
 
 tl_status tl_scene_write(tl_scene *scene, tl_model *m, const tl_html *options, tl_piece *out,
@@ -191,7 +187,7 @@ tl_status tl_scene_write(tl_scene *scene, tl_model *m, const tl_html *options, t
     next->frames = scene->sent.frames + 1;
     next->median = scene->sent.median;
     if ((scene->sent.frames == 0 || scene->sent.structure != m->structure) &&
-        !find_median(m, &next->median))
+        !tl_median_size(m, &next->median))
         return tl_fail_memory(&m->error);
     next->structure = m->structure;
     *facts = (tl_scene_facts){.time = m->time, .cycle = m->cycles};
@@ -201,10 +197,13 @@ tl_status tl_scene_write(tl_scene *scene, tl_model *m, const tl_html *options, t
         status = tl_scene_blocks(m, out, &facts->largest);
     if (status == TL_OK)
         status = put_block_fields(m, options, out);
-    if (status == TL_OK && options->contacts != TL_HTML_CONTACTS_NONE)
-        status = tl_scene_contacts(m, options, out);
+    tl_verdict verdict;
+    if (status == TL_OK)
+        status = tl_scene_contacts(m, options, next->median, out, &verdict);
     if (status == TL_OK)
         status = tl_scene_run(m, options, out);
+    if (status == TL_OK)
+        status = put_finding(scene, m, &verdict, out);
     unsigned char *to = status == TL_OK ? tl_scene_chunk(out, "DONE", 4, &m->error) : NULL;
     if (!to)
         return m->error.status;

@@ -2,8 +2,10 @@
 #include "io/extra_fields.h"
 #include "io/scene_parts.h"
 #include "io/scene_put.h"
+#include "io/verdict.h"
 
 #include "contact/detection.h"
+#include "force/bear.h"
 #include "query/contact_fields.h"
 #include "query/contact_polygons.h"
 #include "query/law_states.h"
@@ -23,7 +25,8 @@ typedef struct contacts {
     uint32_t *picked; /* of these, the contacts of the frame */
     size_t count;
     tl_law_states states;
-    unsigned char *id, *a, *b, *joint, *plane, *point, *normal, *force, *area, *gap, *slip, *state;
+    unsigned char *id, *a, *b, *joint, *plane, *point, *normal, *force, *area, *gap, *slip, *used,
+        *state;
 } contacts;
 
 /* ---------------------------------------------------------------- which ------------------ */
@@ -86,7 +89,7 @@ static void put_polygons(const tl_contact_polygons *p, unsigned char *to)
 static tl_status put_columns(contacts *c, const tl_contact_polygons *p, tl_piece *out)
 {
     size_t n = c->count;
-    size_t bytes = 12 + 68 * n + tl_scene_column_bytes(n, 1) + 8 * p->polygons + 12 * p->corners;
+    size_t bytes = 12 + 72 * n + tl_scene_column_bytes(n, 1) + 8 * p->polygons + 12 * p->corners;
     unsigned char *to = tl_scene_chunk(out, "CONT", bytes, &c->model->error);
     if (!to)
         return c->model->error.status;
@@ -104,8 +107,11 @@ static tl_status put_columns(contacts *c, const tl_contact_polygons *p, tl_piece
     c->area = tl_scene_column(&to, n, 4);
     c->gap = tl_scene_column(&to, n, 4);
     c->slip = tl_scene_column(&to, n, 4);
+    c->used = tl_scene_column(&to, n, 4);
     c->state = tl_scene_column(&to, n, 1);
     tl_parallel_for(c->model->pool, n, CHUNK, put_range, c);
+    for (size_t i = 0; i < n; i++) /* the law is asked, on one thread */
+        tl_put_f32(c->used + 4 * i, tl_contact_shear_used(c->model, c->rows[c->picked[i]]));
     put_polygons(p, to);
     return TL_OK;
 }
@@ -137,8 +143,21 @@ static tl_status put_fields(const contacts *c, const tl_html *options, tl_piece 
     return status;
 }
 
-tl_status tl_scene_contacts(tl_model *m, const tl_html *options, tl_piece *out)
+/* The verdict without contacts that nobody asks for: what the last step has of them. */
+static tl_status find_verdict_alone(tl_model *m, double median, tl_verdict *verdict)
 {
+    tl_status status = tl_verdict_of(m, median, NULL, NULL, 0, verdict);
+    const tl_contact_counts counts = tl_model_contact_counts(m);
+    verdict->contacts = counts.contacts;
+    verdict->slipping = counts.slipping;
+    return status;
+}
+
+tl_status tl_scene_contacts(tl_model *m, const tl_html *options, double median, tl_piece *out,
+                            tl_verdict *verdict)
+{
+    if (options->contacts == TL_HTML_CONTACTS_NONE)
+        return find_verdict_alone(m, median, verdict);
     contacts c = {.model = m};
     tl_status status = tl_contacts_listed(m, &c.rows, &c.listed);
     if (status == TL_OK)
@@ -151,6 +170,9 @@ tl_status tl_scene_contacts(tl_model *m, const tl_html *options, tl_piece *out)
     }
     if (status == TL_OK) {
         tl_parallel_for(m->pool, c.listed, CHUNK, find_range, &c);
+        status = tl_verdict_of(m, median, c.rows, c.facts, c.listed, verdict);
+    }
+    if (status == TL_OK) {
         pick(&c, options->contacts);
         status = put_contacts(&c, out);
     }

@@ -106,6 +106,10 @@ void tl_scene_head(const tl_model *m, const tl_html *options, const tl_scene *sc
     put_vector(text, m->config.gravity);
     tl_json_put(text, ", \"size\": ");
     tl_json_number(text, scene->next.median);
+    if (options->safety_limit > 0) {
+        tl_json_put(text, ", \"safety_limit\": ");
+        tl_json_number(text, options->safety_limit);
+    }
     tl_json_put(text, ", \"groups\": [");
     for (size_t i = 0; i < m->group_count; i++) {
         tl_json_put(text, i ? ", " : "");

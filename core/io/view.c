@@ -278,7 +278,7 @@ static void put_member(tl_piece *to, const char *name, const char *text)
 
 tl_status tl_view_tell(tl_view *v, tl_view_state state, const char *line, const char *refused)
 {
-    static const char *const states[] = {"running", "paused", "waiting"};
+    static const char *const states[] = {"running", "paused", "waiting", "ended"};
     tl_model *m = v->model;
     tl_piece text = {0};
     tl_json_put(&text, "{\"state\": ");
@@ -299,6 +299,10 @@ void tl_view_close(tl_view *v)
 {
     if (!v)
         return;
+    /* the last state: fields of the caller's may be gone */
+    const tl_html html = tl_html_default();
+    if (tl_view_tell(v, TL_VIEW_ENDED, NULL, NULL) == TL_OK && count_watchers(v) > 0)
+        (void)tl_view_show(v, &html);
     tl_enter(v->kind, "close");
     v->ops->close(v->self);
     tl_leave();

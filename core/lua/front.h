@@ -258,6 +258,12 @@ extern const tl_lua_key tl_lua_profile_fields[], tl_lua_memory_fields[];
 int tl_lua_profile(lua_State *L);
 int tl_lua_memory(lua_State *L);
 
+/* ---- how a model stands: verdict.c ---- */
+
+extern const tl_lua_key tl_lua_verdict_fields[];
+int tl_lua_stage(lua_State *L);
+int tl_lua_verdict(lua_State *L);
+
 /* ---- a joint law alone: law_test.c ---- */
 
 extern const tl_lua_key tl_lua_law_test_keys[], tl_lua_law_test_results[];
@@ -401,9 +407,10 @@ void tl_lua_autosave(tl_lua_options *options, tl_model *model);
      "which contacts the frame has; when left out all, where there are 20000 at the most, and "    \
      "else those that slip"},                                                                      \
         TL_LUA_FIELD_KEYS,                                                                         \
+        {"keyblocks", "{friction =, cohesion =, gravity =}",                                       \
+         "parameters of model:keyblocks, whose modes and factors of safety are shown as well"},    \
     {                                                                                              \
-        "keyblocks", "{friction =, cohesion =, gravity =}",                                        \
-            "parameters of model:keyblocks, whose modes and factors of safety are shown as well"   \
+        "safety_limit", "number", "factor of safety that is asked for: the legend marks it"        \
     }
 
 extern const tl_lua_key tl_lua_page_keys[];

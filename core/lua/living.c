@@ -70,6 +70,7 @@ tl_lua_model *tl_lua_model_push(lua_State *L)
 void tl_lua_model_begin(lua_State *L, const tl_lua_model *object)
 {
     tl_model_log(object->model, tl_lua_log, tl_lua_options_of(L));
+    tl_model_speak_lua(object->model, true);
     tl_model_interrupt_if(object->model, tl_lua_interrupt_asked);
 }
 

@@ -412,6 +412,8 @@ static const luaL_Reg model_methods[] = {
     {"histories", tl_lua_histories},
     {"write_histories", tl_lua_write_histories},
     {"energy", model_energy},
+    {"stage", tl_lua_stage},
+    {"verdict", tl_lua_verdict},
     {"profile", tl_lua_profile},
     {"memory", tl_lua_memory},
     {"write_vtk", model_write_vtk},

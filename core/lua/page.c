@@ -1,6 +1,7 @@
 /* page.c - model:write_html(prefix, {...}): a frame of a page for a browser. */
 #include "front.h"
 
+#include <math.h>
 #include <string.h>
 
 const tl_lua_key tl_lua_page_keys[] = {
@@ -41,12 +42,27 @@ static const tl_keyblocks *push_keyblocks(lua_State *L, int table)
     return lua_touserdata(L, -1);
 }
 
+/* The factor of safety that is asked for; 0: none. */
+static double read_limit(lua_State *L, int table, const char *context)
+{
+    double limit = 0;
+    if (lua_istable(L, table) && lua_getfield(L, table, "safety_limit") != LUA_TNIL) {
+        limit = lua_type(L, -1) == LUA_TNUMBER ? lua_tonumber(L, -1) : NAN;
+        if (!(limit > 0) || !isfinite(limit))
+            tl_lua_fail(L, "%s: safety_limit must be a number above 0, not %s", context,
+                        tl_lua_describe(L, -1));
+    }
+    lua_settop(L, table);
+    return limit;
+}
+
 void tl_lua_page_read(lua_State *L, int given, const char *context, tl_html *html)
 {
     luaL_checkstack(L, 32, "too many values");
     html->contacts = read_contacts(L, given, context);
     lua_pushvalue(L, given); /* what is pushed from here on stays */
     int table = lua_gettop(L);
+    html->safety_limit = read_limit(L, table, context);
     html->keyblocks = push_keyblocks(L, table);
     html->block_fields = tl_lua_extra_fields(L, table, "block_fields", context, &tl_lua_block_kind,
                                              &html->block_field_count);

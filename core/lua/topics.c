@@ -352,6 +352,18 @@ const tl_lua_topic tl_lua_topics[] = {
             "from the first step.",
      .title = "Fields of the energy",
      .verbs = energy_terms},
+    {.name = "stage",
+     .usage = "model:stage(\"excavated\")",
+     .doc =
+         "Begins a stage: displacements of all blocks count from now, as after "
+         "reset_displacement, and so does what model:verdict and pages tell of slip and opening. "
+         "What laws keep stays. The name is at most 63 bytes; copies and files have it."},
+    {.name = "verdict",
+     .usage = "verdict = model:verdict()",
+     .doc = "Tells how the model stands as of its last step: at rest, moving, accelerating or "
+            "failed, and what has moved since the stage began. Nothing changes by it.",
+     .title = "Fields of the verdict",
+     .verbs = tl_lua_verdict_fields},
     {.name = "report",
      .usage = "table = talus.report(model)",
      .doc = "Tells how good the blocks are that cutting made, and prints it on a page (not with "

@@ -273,12 +273,6 @@ void tl_lua_view_end(lua_State *L, tl_lua_model *owner)
         return;
     if (v->view && v->commanded)
         log_steps(L, v);
-    if (v->view &&
-        tl_view_due(v->view,
-                    INFINITY)) { /* the last state; fields need functions that may be gone */
-        tl_html html = tl_html_default();
-        (void)tl_view_show(v->view, &html);
-    }
     owner->view = NULL;
     tl_view_close(v->view);
     if (v->log)

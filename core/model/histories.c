@@ -78,8 +78,9 @@ tl_history *tl_history_hold(tl_model *m, const tl_history *what, size_t samples)
     return h;
 }
 
-tl_status tl_history_add(tl_model *m, const tl_history *what, tl_history **made)
+tl_status tl_history_add(tl_model *m, const tl_history *what, tl_history **wanted)
 {
+    tl_history *unread, **const made = wanted ? wanted : &unread;
     *made = NULL;
     const char *bad = tl_history_unsound(m, what);
     if (bad)

@@ -32,6 +32,11 @@ const tl_error *tl_model_error(const tl_model *m)
     return &m->error;
 }
 
+void tl_model_speak_lua(tl_model *m, int lua)
+{
+    m->speaks_lua = lua != 0;
+}
+
 void tl_model_log(tl_model *m, tl_log_fn log, void *user)
 {
     m->log = log;

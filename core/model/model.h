@@ -21,12 +21,11 @@
 #include "base/table.h"
 #include "geometry/polyhedron.h"
 #include "model/cuts.h"
+#include "model/law.h"
 
 #include <stdatomic.h>
 #include <talus/talus.h>
 #include <talus/vmath.h>
-
-#define TL_NO_ROW UINT32_MAX
 
 /* Default minimum area of field contacts, as a share of the smaller block's mean face area: none. Hart, Cundall and Lemos
  * (1988) have 1 % of a face. */
@@ -119,37 +118,6 @@ typedef struct tl_joint_set {
     uint32_t planes; /* number of planes so far */
 } tl_joint_set;
 
-/* A law with its properties, for a joint: for "*" (joint 0), for a set (plane 0) or for one plane. */
-typedef struct tl_law {
-    tl_tag tag;
-    const tl_kind *kind;
-    void *params; /* the plugin's params struct */
-    void *self;   /* what its create made, or params */
-    double kn, ks;
-    uint32_t tangents; /* bit k: states k, k + 1, k + 2 are a vector in the common plane */
-    uint32_t columns;  /* of states that are to be kept */
-    bool splits;       /* some state goes with the area */
-    uint32_t energy;   /* column of what shear holds beyond its springs, or TL_NO_ROW */
-    uint32_t pulls;    /* TL_PULL_* */
-} tl_law;
-
-/* Whether what presses has the force kn A u, or else whether the law tells of the energy it has. */
-static inline bool tl_law_is_linear(const tl_law *law)
-{
-    return ((const tl_law_ops *)law->kind->ops)->linear != 0;
-}
-
-static inline bool tl_law_presses(const tl_law *law)
-{
-    return !tl_law_is_linear(law) && ((const tl_law_ops *)law->kind->ops)->pressed;
-}
-
-/* Whether slip may open a joint. */
-static inline bool tl_law_opens(const tl_law *law)
-{
-    return law->columns > 0 && ((const tl_law_ops *)law->kind->ops)->across_gap;
-}
-
 /* A prescribed motion, shared by the bodies of one call. */
 typedef struct tl_drive_record {
     tl_drive drive;
@@ -200,6 +168,7 @@ struct tl_model {
     tl_error error;
     tl_log_fn log;
     void *log_user;
+    bool speaks_lua;
     tl_pool *pool;
 
     tl_vec3 origin;
@@ -256,12 +225,13 @@ struct tl_model {
     bool (*interrupt_asked)(void);                                       /* or NULL */
     void (*show_generate)(void *user, const tl_generate_progress *done); /* or NULL */
     void *show_generate_user;
-    bool running;      /* inside a callback: no blocks may be made or deleted */
-    bool driving;      /* inside a drive's function: nothing that a step depends on may be set */
-    bool reading;      /* the same, and no run may begin: tl_model_only_read */
-    uint32_t said;     /* bit r: remark r has been made */
-    uint64_t remarked; /* changes of blocks and laws at the last look at their numbers */
-    bool mass_scaling; /* of all free bodies */
+    bool running;  /* inside a callback: no blocks may be made or deleted */
+    bool driving;  /* inside a drive's function: nothing that a step depends on may be set */
+    bool reading;  /* the same, and no run may begin: tl_model_only_read */
+    uint32_t said; /* bit r: remark r has been made */
+    char stage[TL_STAGE_NAME + 1]; /* from which displacements count; "": none has been named */
+    uint64_t remarked;           /* changes of blocks and laws at the last look at their numbers */
+    bool mass_scaling;           /* of all free bodies */
     double added_dt, added_most; /* of the bodies that need it: tl_mass_scaling; NaN: off */
 
     bool profiling;
@@ -325,6 +295,19 @@ static inline tl_body_load tl_load_of(const tl_bodies *b, uint32_t body)
 static inline bool tl_body_loaded(const tl_bodies *b, uint32_t body)
 {
     return b->load && tl_v3_norm2(b->load[body].force) + tl_v3_norm2(b->load[body].moment) > 0;
+}
+
+/* A remedy as those who called would write it. */
+static inline const char *tl_words(const tl_model *m, const char *lua, const char *c)
+{
+    return m->speaks_lua ? lua : c;
+}
+
+/* Whether two bodies may become one unasked: nothing but their own weight and contacts tells them apart. */
+static inline bool tl_bodies_may_join(const tl_bodies *b, uint32_t one, uint32_t other)
+{
+    return one != other && b->fixed[one] == b->fixed[other] && !b->drive[one] && !b->drive[other] &&
+           !tl_body_loaded(b, one) && !tl_body_loaded(b, other);
 }
 
 /* A block's centroid in its body's frame. */

@@ -5,6 +5,7 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include <talus/number.h>
 #include <talus/text.h>
 
 static tl_status check_ids(tl_model *m, const tl_id *ids, size_t count)
@@ -150,6 +151,13 @@ tl_status tl_blocks_free(tl_model *m, const tl_id *ids, size_t count)
     return TL_OK;
 }
 
+static void displacement_from_now(tl_model *m, uint32_t row)
+{
+    uint32_t body = m->blocks.body[row];
+    m->blocks.base[row] = m->bodies.pose[body].u;
+    m->blocks.base_turn[row] = m->bodies.q[body];
+}
+
 tl_status tl_blocks_reset_displacement(tl_model *m, const tl_id *ids, size_t count)
 {
     tl_status status = check_ids(m, ids, count);
@@ -157,11 +165,24 @@ tl_status tl_blocks_reset_displacement(tl_model *m, const tl_id *ids, size_t cou
         return status;
     if (count && !tl_blocks_hold_base(m))
         return tl_fail_memory(&m->error);
-    for (size_t i = 0; i < count; i++) {
-        uint32_t row = m->row_of[ids[i]], body = m->blocks.body[row];
-        m->blocks.base[row] = m->bodies.pose[body].u;
-        m->blocks.base_turn[row] = m->bodies.q[body];
-    }
+    for (size_t i = 0; i < count; i++)
+        displacement_from_now(m, m->row_of[ids[i]]);
+    return TL_OK;
+}
+
+tl_status tl_model_stage(tl_model *m, const char *name)
+{
+    tl_rows_tidy(m);
+    if (strlen(name) > TL_STAGE_NAME || !tl_text_is_clean(name))
+        return tl_fail(&m->error, TL_E_ARGUMENT,
+                       "stage: the name '%s' must be one line of UTF-8 of at most %d bytes",
+                       tl_text_is_utf8(name) ? name : "...", TL_STAGE_NAME);
+    const size_t rows = m->blocks.table.rows;
+    if (rows && !tl_blocks_hold_base(m))
+        return tl_fail_memory(&m->error);
+    for (uint32_t row = 0; row < rows; row++)
+        displacement_from_now(m, row);
+    tl_text_print(m->stage, sizeof m->stage, "%s", name);
     return TL_OK;
 }
 

@@ -24,6 +24,7 @@ static void walk_settings(tl_model *m, const tl_walk *walk)
     VALUE(STATE, added_most);
     VALUE(STATE, said);
     VALUE(CACHE, remarked);
+    VALUE(CACHE, stage);
 }
 
 void tl_model_walk(tl_model *m, const tl_walk *walk)

@@ -32,6 +32,19 @@ static double smooth(double x)
     return x <= 0 ? 0 : x >= 1 ? 1 : x * x * (3 - 2 * x);
 }
 
+static double turn_over(double turn)
+{
+    return (turn - TL_STRAIGHT) / (TL_CORNER - TL_STRAIGHT);
+}
+
+double tl_corner_share_slope(tl_point2 before, tl_point2 here, tl_point2 after)
+{
+    tl_point2 u = tl_from_to(before, here), v = tl_from_to(here, after);
+    double uv = (u.x * u.x + u.y * u.y) * (v.x * v.x + v.y * v.y);
+    double x = turn_over(tl_asin(fmin(1, fmax(-1, (u.x * v.y - u.y * v.x) / sqrt(uv)))));
+    return x <= 0 || x >= 1 ? 0 : 6 * x * (1 - x) / (TL_CORNER - TL_STRAIGHT);
+}
+
 /* Share of a corner by its turning angle. */
 static double corner_share(tl_point2 before, tl_point2 here, tl_point2 after)
 {
@@ -43,7 +56,7 @@ static double corner_share(tl_point2 before, tl_point2 here, tl_point2 after)
         return 1;
     double turn = tl_asin(fmin(1, fmax(-1, s / sqrt(uv))));
     turn = ahead < 0 ? TL_PI - turn : turn;
-    return smooth((turn - TL_STRAIGHT) / (TL_CORNER - TL_STRAIGHT));
+    return smooth(turn_over(turn));
 }
 
 size_t tl_corners_weigh(tl_common_polygon *p, bool blend)
@@ -95,6 +108,25 @@ void tl_corner_areas(const tl_corner *c, const double *fan, size_t count, double
             double half = 0.5 * chance * share * between;
             area[i] += half;
             area[j] += half;
+            chance *= 1 - share;
+        }
+    }
+}
+
+void tl_corner_areas_add(const tl_corner *c, const double *fan, const double *share_rate,
+                         size_t count, double *rate)
+{
+    for (size_t i = 0; i < count; i++) {
+        double chance = c[i].share, more = share_rate[i], between = 0;
+        for (size_t step = 1; step <= count && chance > 0; step++) {
+            size_t j = (i + step) % count;
+            bool last = step > BLEND_RUN;
+            double share = last ? 1 : c[j].share, grows = last ? 0 : share_rate[j];
+            between += fan[(i + step - 1) % count];
+            double half = 0.5 * between * (more * share + chance * grows);
+            rate[i] += half;
+            rate[j] += half;
+            more = more * (1 - share) - chance * grows;
             chance *= 1 - share;
         }
     }

@@ -32,5 +32,10 @@ size_t tl_corners_weigh(tl_common_polygon *p, bool blend);
 /* Areas of corners, half of the fans beside them: for every two corners that may follow each other in the mixture, the rule of their edge
  * times the chance that they do. */
 void tl_corner_areas(const tl_corner *c, const double *fan, size_t count, double *area);
+/* Adds to the rates of the areas what the rates of the shares make of them. */
+void tl_corner_areas_add(const tl_corner *c, const double *fan, const double *share_rate,
+                         size_t count, double *rate);
+/* How the share of a corner goes with its turning angle, 1/rad. */
+double tl_corner_share_slope(tl_point2 before, tl_point2 here, tl_point2 after);
 
 #endif

@@ -9,8 +9,8 @@
  *
  * In the plane of the patch a point of A, at the height h_A over it, goes by v_A = -h_A dm as B moves, for the plane turns with half of B,
  * whose normal changes by dm; one of B goes by v_B, of its own motion less h_B dm. The edges of the polygon are lines of A, of B, or half of
- * each, which go so, and its corners are where they meet. That gives the rates of the corners, of the fan triangles about the centroid, and
- * of the A_k; those of the shares of corners that are almost straight are left out. */
+ * each, which go so, and its corners are where they meet. That gives the rates of the corners, of the fan triangles about the centroid, of
+ * the shares of corners that are almost straight, which go with their turning angles, and of the A_k. */
 #include "narrow/corner_sums.h"
 
 #include "base/table.h"
@@ -18,8 +18,8 @@
 
 #include <talus/vmath.h>
 
-/* Sine of the angle between two edges below which they meet nowhere. */
-#define ALONG 1e-9
+/* Sine of the angle between two edges below which where they meet is no corner: it runs along them as they wobble. */
+#define ALONG TL_STRAIGHT
 
 /* Of these sums the gradients are wanted. */
 enum { ENERGY, VOLUME, POWERS, WHOLES = POWERS + TL_FIELD_POWERS };
@@ -38,9 +38,12 @@ typedef struct plane_rate {
 /* What is known of the corners. Those that are almost straight are dropped: those that stay are the first ones of the polygon's. */
 typedef struct corners {
     tl_common_polygon polygon;
-    size_t count;     /* before any was dropped */
-    tl_point2 *at;    /* of each of these */
-    tl_point2 *rate;  /* and how it goes */
+    size_t count;    /* before any was dropped */
+    tl_point2 *at;   /* of each of these */
+    tl_point2 *rate; /* and how it goes */
+    tl_point2 *of_a; /* how a line of A goes there */
+    tl_point2 *more; /* and how much faster one of B */
+    double *share_rate;
     uint32_t *edge;   /* that leaves it */
     double *ride;     /* of that: tl_common_edge_ride */
     double *fan_rate; /* of that */
@@ -57,7 +60,7 @@ static double overlap_at(const tl_corner_faces *f, tl_vec3 x)
 
 static bool reserve(tl_narrow_scratch *scratch, corners *c)
 {
-    const size_t n = c->polygon.count, doubles = 10 * n;
+    const size_t n = c->polygon.count, doubles = 15 * n;
     if (!tl_grow(&scratch->corner, &scratch->corner_capacity, doubles + 1, sizeof(double)))
         return false;
     double *at = scratch->corner;
@@ -68,6 +71,9 @@ static bool reserve(tl_narrow_scratch *scratch, corners *c)
     c->fan = at + 6 * n;
     c->area = at + 7 * n;
     c->area_rate = at + 8 * n;
+    c->of_a = (tl_point2 *)(void *)(at + 10 * n);
+    c->more = (tl_point2 *)(void *)(at + 12 * n);
+    c->share_rate = at + 14 * n;
     c->edge = (uint32_t *)(void *)(at + 9 * n);
     c->from = c->edge + n;
     return true;
@@ -164,21 +170,57 @@ static tl_point2 rate_of_meeting(tl_point2 u, tl_point2 v, double before, double
                        of_a.y + share * more.y + along * u.y};
 }
 
+static size_t after(const corners *c, size_t i)
+{
+    return i + 1 == c->count ? 0 : i + 1;
+}
+
+static size_t before(const corners *c, size_t i)
+{
+    return i ? i - 1 : c->count - 1;
+}
+
 static void find_corner_rates(const corners *c, const motion *by, const plane_rate *plane)
 {
     for (size_t i = 0; i < c->count; i++) {
-        const size_t last = i ? i - 1 : c->count - 1, next = i + 1 == c->count ? 0 : i + 1;
+        const size_t last = before(c, i), next = after(c, i);
         const tl_point2 here = c->at[i];
-        tl_point2 of_a, more;
-        find_rates(&c->polygon, by, plane, here, &of_a, &more);
+        find_rates(&c->polygon, by, plane, here, &c->of_a[i], &c->more[i]);
         c->rate[i] = rate_of_meeting(tl_from_to(c->at[last], here), tl_from_to(here, c->at[next]),
-                                     c->ride[last], c->ride[i], of_a, more);
+                                     c->ride[last], c->ride[i], c->of_a[i], c->more[i]);
     }
 }
 
 static double cross(tl_point2 a, tl_point2 b)
 {
     return a.x * b.y - a.y * b.x;
+}
+
+/* How fast the line of an edge turns. */
+static double turn_of(const corners *c, size_t i)
+{
+    const size_t next = after(c, i);
+    const double ride = c->ride[i];
+    const tl_point2 u = tl_from_to(c->at[i], c->at[next]);
+    const tl_point2 a = tl_from_to(c->of_a[i], c->of_a[next]);
+    const tl_point2 b = tl_from_to(c->more[i], c->more[next]);
+    const tl_point2 way = {a.x + ride * b.x, a.y + ride * b.y};
+    return cross(u, way) / (u.x * u.x + u.y * u.y);
+}
+
+/* The rates of the shares of those that stay, by what their edges turn. */
+static void find_share_rates(const corners *c)
+{
+    const tl_corner *corner = c->polygon.corner;
+    for (size_t i = 0; i < c->count; i++) {
+        const size_t k = c->from[i], last = before(c, i);
+        if (c->edge[i] != corner[k].edge)
+            continue;
+        c->share_rate[k] = 0;
+        if (corner[k].share < 1)
+            c->share_rate[k] = (turn_of(c, i) - turn_of(c, last)) *
+                               tl_corner_share_slope(c->at[last], c->at[i], c->at[after(c, i)]);
+    }
 }
 
 /* The rate of the centroid: of the mean of the triangles at the first corner. */
@@ -217,6 +259,8 @@ static void find_area_rates(const corners *c)
         c->fan_rate[c->from[i]] += 0.5 * (cross(du, v) + cross(u, dv));
     }
     tl_corner_areas(p->corner, c->fan_rate, p->count, c->area_rate);
+    find_share_rates(c);
+    tl_corner_areas_add(p->corner, c->fan, c->share_rate, p->count, c->area_rate);
 }
 
 /* The rate of the overlap at a place of the plane that moves. */

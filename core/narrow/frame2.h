@@ -10,8 +10,8 @@
 #include <talus/vmath.h>
 
 /* Turning angles, rad, below which a corner is none, and from which it is a full one. */
-#define TL_STRAIGHT 1e-4
-#define TL_CORNER 2e-3
+#define TL_STRAIGHT 0.02
+#define TL_CORNER 0.2
 
 /* The plane of the patch: origin, two directions in it, its normal (A to B). */
 typedef struct tl_frame2 {

@@ -146,7 +146,7 @@ bool tl_manifold_find(const tl_pair_view *view, const tl_region *r, const tl_tou
     if (m->failed || ((before->calm || !was_field) && is_patch(view, r, rule, before, scratch)))
         return !m->failed;
     m->point_count = 0;
-    if (m->failed || r->gap > fmax(0, before->shift))
+    if (m->failed || r->gap > before->reach)
         return !m->failed;
     return find_field(view, r, rule, before, scratch);
 }

@@ -13,6 +13,7 @@ typedef struct tl_manifold_before {
     tl_facet_kind kind;
     tl_face_pair faces; /* of a patch */
     double over;        /* gap across which its faces press, m; INFINITY where they hold */
+    double reach;       /* gap of the blocks across which faces that are moved may press, m */
     double shift;       /* see tl_press_query */
     tl_face_pair shifted;
     bool leans; /* they do, so */

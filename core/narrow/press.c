@@ -38,6 +38,8 @@
 #define INSIDE 1e-6
 /* Sum over those of its parts that may be nothing but their roundings. */
 #define ROUNDED 1e-14
+/* Volume between two faces, over what the blocks have in common, beyond which they are no patch: of an edge that is pressed into both it is 1. */
+#define FAR_APART 30
 
 /* ---------------------------------------------------------------- noise ------------------ */
 
@@ -209,7 +211,8 @@ static void mix_places(tl_field_sums *field, const patches *p)
     }
 }
 
-/* Adds the patch of two faces, if it has a share. false: out of memory. */
+/* Adds the patch of two faces, if it has a share. Faces that are not the flush ones may face each other far apart, with all of the blocks between
+ * them. false: out of memory. */
 static bool add_patch(const tl_press_query *of, tl_press_planes *p, tl_face_pair faces,
                       bool corners, const tl_field_sums *field, tl_narrow_scratch *scratch,
                       patches *to)
@@ -227,6 +230,9 @@ static bool add_patch(const tl_press_query *of, tl_press_planes *p, tl_face_pair
                   : sum_patch(of, p, scratch, &patch->sums)))
         return false;
     if (!(patch->sums.energy > 0) || !has_square(patch->sums.volume))
+        return true;
+    const bool flush = fa == of->region->flush_a && fb == of->region->flush_b;
+    if (!flush && patch->sums.volume > FAR_APART * 2 * field->deepest * tl_v3_norm(field->area))
         return true;
     patch->by = tl_patch_share_of(na, nb, corners, shift, &patch->sums, field);
     if (!(patch->by.share > 0))

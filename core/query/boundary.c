@@ -165,11 +165,11 @@ static tl_status find_faces(tl_model *m, const tl_boundary_where *where, face_li
             faces->count += status == TL_OK && faces->at[faces->count].sums.a > 0;
         }
     if (status == TL_OK && faces->count == 0)
-        return tl_fail(
-            &m->error, TL_E_NOT_FOUND,
-            "boundary: no outer face is there%s; model:blocks():bounds() tells where the "
-            "model ends, tolerance (m) how far off a face may be",
-            m->blocks.table.rows ? "" : ", for the model has no blocks");
+        return tl_fail(&m->error, TL_E_NOT_FOUND,
+                       "boundary: no outer face is there%s; %s tells where the "
+                       "model ends, tolerance (m) how far off a face may be",
+                       m->blocks.table.rows ? "" : ", for the model has no blocks",
+                       tl_words(m, "model:blocks():bounds()", "tl_block_mesh_get()"));
     return status;
 }
 

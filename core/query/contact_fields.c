@@ -152,7 +152,8 @@ tl_contact_facts tl_contact_facts_of(const tl_model *m, uint32_t contact)
     out.point = tl_v3_add(m->origin, point);
     tl_vec3 passed = tl_v3_sub(displacement_at(m, c->b[contact], point),
                                displacement_at(m, c->a[contact], point));
-    out.shear_displacement = tl_v3_madd(passed, -tl_v3_dot(passed, out.normal), out.normal);
+    out.opening = tl_v3_dot(passed, out.normal);
+    out.shear_displacement = tl_v3_madd(passed, -out.opening, out.normal);
     out.normal_stress = out.area > 0 ? out.normal_force / out.area : 0;
     out.shear_stress = out.area > 0 ? tl_v3_norm(out.shear_force) / out.area : 0;
     return out;

@@ -22,6 +22,7 @@ typedef struct tl_contact_facts {
     tl_vec3 normal, point;              /* from a to b; m, in the user's coordinates */
     tl_vec3 shear_force;                /* N, on b */
     tl_vec3 shear_displacement;         /* of b against a, across the normal, m */
+    double opening;                     /* of b away from a, along the normal, m */
 } tl_contact_facts;
 
 /* Points of a contact that are told of: all of a patch, and of a field contact the one at the centre of its pressure. The

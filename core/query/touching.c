@@ -9,6 +9,7 @@
 #include "query/touching.h"
 
 #include "base/error.h"
+#include "model/body_shape.h"
 #include "narrow/manifold.h"
 #include "narrow/narrow.h"
 #include "narrow/patch.h"
@@ -43,6 +44,7 @@ typedef struct worker {
 
 typedef struct search {
     const tl_model *m;
+    double *size;      /* of each body, m */
     tl_bounds *bounds; /* by row */
     uint32_t *order;   /* rows, by the lower ends of their bounds along `axis` */
     size_t count;
@@ -196,7 +198,7 @@ static bool test_pair(const search *s, worker *w, uint32_t a, uint32_t b)
     const double moved = moved_of(s->m, a, b);
     common before = {.looked = false}, now = {.looked = false};
     for (int side = 0; side < 2; side++) {
-        const double share = moved / s->m->blocks.size[row[side]];
+        const double share = moved / s->size[s->m->blocks.body[row[side]]];
         const bool kept = share < TL_TOUCH_KEPT;
         if (kept && !look(s->m, &w->scratch, a, b, false, &before))
             return false;
@@ -255,7 +257,10 @@ static bool prepare(search *s)
     begin *begins = malloc((rows + 1) * sizeof *begins);
     s->bounds = malloc((rows + 1) * sizeof *s->bounds);
     s->order = malloc((rows + 1) * sizeof *s->order);
-    bool enough = begins && s->bounds && s->order;
+    s->size = malloc((m->bodies.table.rows + 1) * sizeof *s->size);
+    bool enough = begins && s->bounds && s->order && s->size;
+    for (uint32_t body = 0; body < m->bodies.table.rows && enough; body++)
+        s->size[body] = tl_body_size(m, body);
     tl_vec3 low = {INFINITY, INFINITY, INFINITY}, high = {-INFINITY, -INFINITY, -INFINITY};
     for (uint32_t row = 0; row < rows && enough; row++) {
         if (!m->blocks.stays[row])
@@ -341,6 +346,7 @@ tl_status tl_touches_find(tl_model *m, tl_touches *out)
         tl_parallel_for(m->pool, s.count, CHUNK, test_pairs, &s);
         enough = collect(&s, threads, out);
     }
+    free(s.size);
     free(s.bounds);
     free(s.order);
     for (unsigned k = 0; k < threads && s.workers; k++) {

@@ -11,7 +11,7 @@ typedef struct tl_touch {
     double area;        /* that they share, m2 */
     tl_tag joint;
     double
-        moved; /* by how much the two have moved against each other since displacements count, over the smaller one's size */
+        moved; /* by how much the two have moved against each other since displacements count, over the size of the block's body */
 } tl_touch;
 
 /* Of all blocks, in the order of their ids and of the others'. Those of a row: at[start[row]] .. at[start[row + 1]]. */

@@ -171,8 +171,7 @@ static tl_status check_file_head(const char *path, const unsigned char *bytes, s
 {
     tl_archive_head head;
     if (length < sizeof head || memcmp(bytes, magic, sizeof magic) != 0)
-        return tl_fail(error, TL_E_ARGUMENT,
-                       "cannot restore '%.200s': it is no file that model:save has written", path);
+        return tl_fail(error, TL_E_ARGUMENT, "cannot restore '%.200s': it is no saved model", path);
     memcpy(&head, bytes, sizeof head);
     if (head.order != TL_ARCHIVE_ORDER)
         return tl_fail(error, TL_E_ARGUMENT,

@@ -137,6 +137,7 @@ tl_status tl_model_copy(tl_model *m, tl_drive_again_fn again, void *user, tl_mod
     if (status != TL_OK)
         return status;
     tl_model_log(to, m->log, m->log_user);
+    tl_model_speak_lua(to, m->speaks_lua);
     to->interrupt_asked = m->interrupt_asked;
     status = fill(to, m, again, user);
     if (status != TL_OK) {

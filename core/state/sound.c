@@ -33,10 +33,10 @@ static bool settings_are_sound(const tl_model *m)
            c->rotation <= TL_ROTATION_PAPER && c->reuse_geometry >= 0 && c->reuse_geometry <= 1 &&
            c->contact_points >= 0 && c->contact_points <= TL_POINTS_CORNERS && steps &&
            tl_v3_finite(m->origin) && isfinite(m->time) && isfinite(m->dt) && m->dt >= 0 &&
-           m->cycles >= 0 && m->cycles <= MOST_CYCLES && m->gone == 0 &&
-           (m->said & ~ALL_REMARKS) == 0 && !(m->added_dt <= 0) && !(m->added_most < 0) &&
-           m->structure <= MOST_CHANGES && m->constraints <= MOST_CHANGES &&
-           m->laws <= MOST_CHANGES;
+           memchr(m->stage, 0, sizeof m->stage) && tl_text_is_clean(m->stage) && m->cycles >= 0 &&
+           m->cycles <= MOST_CYCLES && m->gone == 0 && (m->said & ~ALL_REMARKS) == 0 &&
+           !(m->added_dt <= 0) && !(m->added_most < 0) && m->structure <= MOST_CHANGES &&
+           m->constraints <= MOST_CHANGES && m->laws <= MOST_CHANGES;
 }
 
 static bool rule_is_sound(const tl_min_area_rule *rule)

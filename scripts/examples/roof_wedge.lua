@@ -133,21 +133,35 @@ function roof.run(case, options)
     return result
 end
 
-function roof.main()
+-- How it goes on from there, as a page for a browser.
+function roof.film(result, name)
+    local model = result.model
+    model:stage "the friction at which it drops"
+    for _ = 1, 10 do
+        model:cycle(100)
+        model:write_html(name, { title = "A wedge in a roof" })
+    end
+end
+
+function roof.main(folder)
     print("Roof wedge: friction coefficient at which it drops, and its settlement before\n")
     print("    kn      ks   sigma  dip  height    mu expected  obtained    error   settlement: "
         .. "expected, obtained")
-    for _, case in ipairs(roof.cases) do
+    for k, case in ipairs(roof.cases) do
         local r = roof.run(case)
+        if k == 1 then
+            roof.film(r, folder .. "/roof_wedge")
+        end
         print(string.format("%6.0e  %6.0e  %6.0e  %3d  %4.1f m       %8.5f  %8.5f  %+5.2f %%"
             .. "     %10.4e  %10.4e m",
             case.kn, case.ks, case.sigma, case.dip, case.height, r.expected.mu, r.mu, 100 * r.error,
             r.expected.settlement, r.settlement))
     end
+    print(string.format("\n%s/roof_wedge.html shows the first of them in a browser", folder))
 end
 
 -- A test that says require "examples.roof_wedge" wants the functions only.
 if ... ~= "examples.roof_wedge" then
-    roof.main()
+    roof.main(arg and arg[1] or "out/roof_wedge")
 end
 return roof

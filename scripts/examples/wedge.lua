@@ -210,12 +210,25 @@ function wedge.quantity(case, scale)
     return "mu", scale
 end
 
-function wedge.main()
+-- How it goes on from there, as a page for a browser.
+function wedge.film(result, name)
+    local model = result.model
+    model:stage "the friction at which it slides"
+    for _ = 1, 10 do
+        model:cycle(400)
+        model:write_html(name, { title = "A wedge on two planes, " .. result.name })
+    end
+end
+
+function wedge.main(folder)
     print("Wedges on two planes: friction (mu) or factor of safety (FS) at which they slide\n")
     print("case         plane A   plane B         expected  obtained   error   slides on"
         .. "          off line")
-    for _, case in ipairs(wedge.cases) do
+    for k, case in ipairs(wedge.cases) do
         local r = wedge.run(case)
+        if k == 1 then
+            wedge.film(r, folder .. "/wedge")
+        end
         local name, obtained = wedge.quantity(case, r.obtained)
         local _, expected = wedge.quantity(case, r.expected.scale)
         print(string.format("%-11s  %d/%03d    %d/%03d     %-4s %8.4f  %8.4f  %+5.2f %%"
@@ -224,10 +237,11 @@ function wedge.main()
             100 * (obtained / expected - 1), r.mode,
             r.mode == r.expected.mode and "right" or "WRONG", r.off_direction))
     end
+    print(string.format("\n%s/wedge.html shows the first of them in a browser", folder))
 end
 
 -- A test that says require "examples.wedge" wants the functions only.
 if ... ~= "examples.wedge" then
-    wedge.main()
+    wedge.main(arg and arg[1] or "out/wedge")
 end
 return wedge

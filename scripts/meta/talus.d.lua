@@ -920,6 +920,36 @@ function talus.stereonet(options) end
 ---@return talus.EnergyResult
 function Model:energy() end
 
+--- Begins a stage: displacements of all blocks count from now, as after reset_displacement, and so does what model:verdict and pages tell of slip and opening. What laws keep stays. The name is at most 63 bytes; copies and files have it.
+---
+---     model:stage("excavated")
+---@param name string
+function Model:stage(name) end
+
+---@class (exact) talus.VerdictResult
+---@field standing string "at rest" below the local ratio of the last solve, else below 1e-5; "failed" by the criterion of stop_at_failure in the last solve; "accelerating" where unbalanced forces push on; else "moving". "unknown" before the first step
+---@field text string all of this as one line
+---@field stage string name given to model:stage, or ""
+---@field ratio number the local unbalanced force ratio
+---@field closed number displacement up to which blocks have but closed their joints by their weight, m
+---@field moved integer blocks that have moved by more than that, and by more than a twentieth of the largest displacement, a body of several parts as one; their volume, m3
+---@field volume number blocks that have moved by more than that, and by more than a twentieth of the largest displacement, a body of several parts as one; their volume, m3
+---@field direction talus.Vector of their mean motion, a unit vector
+---@field farthest integer id of the block that has moved the most, and how far, m
+---@field displacement number id of the block that has moved the most, and how far, m
+---@field slip number how far blocks that touch have moved along their contact since the stage began, the largest, m; id of that contact
+---@field slipped integer how far blocks that touch have moved along their contact since the stage began, the largest, m; id of that contact
+---@field opening number the same apart, m; id of that contact, 0: none
+---@field opened integer the same apart, m; id of that contact, 0: none
+---@field contacts integer contacts there are, and those that slip
+---@field slipping integer contacts there are, and those that slip
+
+--- Tells how the model stands as of its last step: at rest, moving, accelerating or failed, and what has moved since the stage began. Nothing changes by it.
+---
+---     verdict = model:verdict()
+---@return talus.VerdictResult
+function Model:verdict() end
+
 ---@class (exact) talus.ReportResult
 ---@field blocks integer number of blocks, and of bodies they make
 ---@field bodies integer number of blocks, and of bodies they make
@@ -1058,6 +1088,7 @@ function Model:write_section(path, options) end
 ---@field block_fields? string[]|table<string, string|fun(block: talus.Block): number?> numbers of each block to colour by: fields of blocks, and functions that give a number, or nil for none
 ---@field contact_fields? string[]|table<string, string|fun(contact: talus.Contact): number?> numbers of each contact, likewise: fields of contacts, states of their laws, functions
 ---@field keyblocks? talus.KeyblocksOptions parameters of model:keyblocks, whose modes and factors of safety are shown as well
+---@field safety_limit? number factor of safety that is asked for: the legend marks it
 
 --- Adds a frame to a page for a browser: one file that shows the blocks, in every frame so far. The folder and the name are given first, with or without .html.
 ---
@@ -1074,6 +1105,7 @@ function Model:write_html(path, options) end
 ---@field block_fields? string[]|table<string, string|fun(block: talus.Block): number?> numbers of each block to colour by: fields of blocks, and functions that give a number, or nil for none
 ---@field contact_fields? string[]|table<string, string|fun(contact: talus.Contact): number?> numbers of each contact, likewise: fields of contacts, states of their laws, functions
 ---@field keyblocks? talus.KeyblocksOptions parameters of model:keyblocks, whose modes and factors of safety are shown as well
+---@field safety_limit? number factor of safety that is asked for: the legend marks it
 ---@field wait? boolean whether view waits, and does what is asked for on the page, until "go" is pressed there
 ---@field prefix? string folder and name with which files begin that are written from the page; view when left out
 ---@field log? string a file for the lines that repeat the work on the page

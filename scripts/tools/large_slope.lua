@@ -1,11 +1,12 @@
 -- large_slope.lua - the slope of the picture on the first page: some ten thousand blocks, and a wedge that comes out of them.
 --
 --     build/release/talus scripts/tools/large_slope.lua [folder]
---     /usr/bin/python3 scripts/tools/large_picture.py [folder]
+--     tests/viewer/pictures.py large_slope       the picture, of the page that it writes
 --
 -- Two benches of rock, 100 x 80 m and 50 m high, are cut by bedding (18/120) and two sets of joints. Two faults dip towards
 -- each other and meet in a line that plunges some 40 degrees out of the slope: the rock between them slides, for the faults have little
--- friction, and comes apart along the joints. All other rock is held. Writes the blocks as they are after SECONDS into folder/large_slope (out when left out).
+-- friction, and comes apart along the joints. All other rock is held. Writes a page of them as they are after SECONDS: large_slope.html in the folder
+-- (out when left out).
 local talus = require "talus"
 
 local BOX = { min = { 0, 0, 0 }, max = { 100, 80, 50 } } -- m
@@ -66,5 +67,5 @@ print(#wedge .. " of them free")
 model:damping("local", { alpha = 0.1 })
 model:mass_scaling { dt = STEP, most = 0.2 }
 model:cycle(math.floor(SECONDS / STEP))
-model:write_vtk(folder .. "/large_slope")
+model:write_html(folder .. "/large_slope.html", { title = "A wedge between two faults" })
 print(string.format("%.2f s, %d steps", model.time, model.cycles))

@@ -4,6 +4,7 @@
 -- tests/verify/long/parts.lua tries many more.
 local talus = require "talus"
 local check = require "check"
+local orders = require "orders"
 local parts = require "parts"
 local shapes = require "shapes"
 
@@ -125,3 +126,11 @@ local function mast(chip_at)
     return model:solve { ratio = 1e-5, stop_at_failure = true, max_cycles = 6000 }.reason
 end
 check.equal(mast(1), mast(3))
+
+-- Nor does their number: filters and verdicts are of the body. tests/verify/long/orders.lua tries many more.
+for seed = 1, MOST do
+    check.near(orders.shapes(seed), 0, 1e-9)
+    local said, topples, differs = orders.verdicts(seed)
+    check.equal(differs, nil)
+    check.equal(said:find("^failure") ~= nil, topples)
+end

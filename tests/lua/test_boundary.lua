@@ -143,11 +143,24 @@ do
     check.near(model:boundary { side = "xmin", stress = { xx = -3e3 } }.force, { 12e3, 0, 0 }, 1e-9)
     check.near(model:boundary { side = "xmin", traction = { 1, 2, 3 } }.force, { 4, 8, 12 }, 1e-12)
     check.near(model:boundary { side = "xmin", stress = { xz = 5 } }.force, { 0, 0, -20 }, 1e-12)
+    -- what is no number leaves the load that there is
+    check.refused(model, function() model:boundary { side = "xmin", traction = { 0, 0, 1e308 } } end,
+        "boundary: the load is not finite")
     -- all sides of a body: no force in all
     check.near(model:boundary { facing = { 1, 0, 0 }, within = 180, pressure = 1e5 }.force, { 0, 0, 0 }, 1e-9)
     check.near(block.force, { 12e3, 0, 0 }, 1e-9) -- of the last step
     model:cycle(1)
     check.near(block.force, { 0, 0, 0 }, 1e-9)
+end
+
+-- Loads that are no number only together, in force or in moment: nothing is put on.
+for _, had in ipairs { { force = { 0, 1e308, 0 } }, { moment = { 0, 0, -1.2e308 } } } do
+    local model = empty { 0, 0, 0 }
+    model:generate("box", { min = { -1, -1, -1 }, max = { 1, 1, 1 }, density = 1000 })
+    model:boundary { side = "xmax", traction = { 0, 1, 0 } }
+    model:blocks():load(had)
+    check.refused(model, function() model:boundary { side = "xmin", traction = { 0, 2.4e307, 0 }, add = true } end,
+        "the load on block 1 is not finite: give smaller numbers")
 end
 
 -- A stress that grows with depth, on a tetrahedron and all around it: buoyancy, gamma V upward through the centroid.

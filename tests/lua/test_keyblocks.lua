@@ -61,6 +61,11 @@ for _, key in ipairs(model:keyblocks { friction = 30, gravity = { -5, 0, -10 } }
         check.near(key.safety, math.tan(math.rad(30)) * 2, 1e-12)
     end
 end
+-- Without any force nothing falls.
+for _, key in ipairs(model:keyblocks { friction = 30, gravity = { 0, 0, 0 } }) do
+    check.equal(key.mode, "stable")
+    check.equal(key.safety, math.huge)
+end
 -- A load does the same; cohesion on the floor joint alone, its plane before its set.
 model:blocks { containing = { 0.5, 2.5, 1.5 } }:load { force = { -10000, 0, 0 } }
 local function safety(parameters)

@@ -137,7 +137,7 @@ end
 function scenes.slide()
     local model = model_of { 0, 0, -10 }
     model:generate("box", { min = scaled(5, 1, 0), max = scaled(6, 2, 2), density = 2500, group = "rock" })
-    model:generate("joint", { joint = "J1", dip = 20, dip_direction = 90, origin = scaled(5.5, 1.5, 1) })
+    model:generate("joint", { joint = "J1", dip = 20, dip_direction = 60, origin = scaled(5.5, 1.5, 1) })
     for i = 0, 2 do
         model:generate("box", { min = scaled(4 * i, 0, -1), max = scaled(4 * i + 4, 4, 0), density = 2500, group = "floor" })
     end

@@ -16,7 +16,7 @@ local pieces = model:blocks { group = "pile" }
 local result = model:solve { ratio = 1e-6, max_cycles = CYCLES }
 check.equal(result.reason, "ratio")
 check.holds(pieces:max "speed" < SLOW, "that blocks hardly move at a small ratio")
-model:solve { ratio = 0, max_cycles = 4000 }
+model:solve { ratio = 0, max_cycles = 6000 }
 check.holds(pieces:max "speed" < REST, "that the pile rests")
 check.holds(math.abs(model:energy().balance) < BALANCE, "the energy ledger")
 

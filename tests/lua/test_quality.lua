@@ -184,3 +184,11 @@ check.refused(model, function() model:filter { volume = -1 } end, "volume")
 check.refused(model, function() model:filter { volume = 1, action = "merge" } end, "action")
 check.refused(model, function() model:filter { aspect = 0.5 } end, "aspect")
 check.refused(model, function() model:filter { volum = 1 } end, "volume")
+
+-- Hidden blocks are left alone: a sliver is not joined to one.
+local thin = talus.model()
+thin:generate("box", { { min = { 0, 0, 0 }, max = { 1, 1, 1 }, density = 2500 }, { min = { 0, 0, 1 }, max = { 1, 1, 1.01 }, density = 2500 } })
+thin:blocks { id = 1 }:hide()
+check.equal(thin:filter { aspect = 20, action = "join" }.joined, 0)
+thin:blocks { hidden = true }:show()
+check.equal(thin:filter { aspect = 20, action = "join" }.joined, 1)

@@ -67,6 +67,9 @@ says([[local m = stack() m:blocks { group = "slab" }:delete()
 m:generate("box", { min = { 0, 0, -2 }, max = { 1, 1, -1.2 }, density = 2700 })
 m:blocks { below = { dip = 0, dip_direction = 0, origin = { 0, 0, -1 } } }:fix()
 m:joint("*", { kn = 1e11, ks = 1e11 }) m:timestep { dt = 0.005 } pcall(m.cycle, m, 600)]], "dt = 0.005 s")
+-- Far too long is twice the longest.
+is_silent("local m = stack() m:timestep { dt = 2.46e-3 } m:cycle(1)")
+says("local m = stack() m:timestep { dt = 2.5e-3 } m:cycle(1)", "dt = 0.0025 s is 2.01 times the longest stable step, 0.00124 s")
 is_silent("local m = stack() m:timestep { dt = 1.5 * m.dt } m:cycle(200)")
 is_silent("local m = stack() m:blocks():fix() m:timestep { dt = 1 } m:cycle(2)")
 

@@ -260,8 +260,8 @@ do
         check.equal(good, false)
         check.holds(message:find(part, 1, true) and not message:find("\n", 1, true), message .. ": '" .. part .. "'")
     end
-    refused("", "no file that model:save has written")
-    refused("{}", "no file that model:save has written")
+    refused("", "it is no saved model")
+    refused("{}", "it is no saved model")
     refused(whole:sub(1, -2), "damaged")
     refused(whole .. "x", "its end does not fit")
     refused(whole:sub(1, 8) .. string.pack("<I4", 999) .. whole:sub(13), "has format 999")

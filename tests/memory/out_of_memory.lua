@@ -97,6 +97,8 @@ local calls = {
         assert(#blocks == 1)
         blocks:drive { velocity = function(t) return -t, 0, 0 end }
     end },
+    { "history", function(m) m.model:history { name = "cap", of = m.model:blocks { group = "stone" }, field = "displacement" } end },
+    { "history of the model", function(m) m.model:history { name = "kinetic", every = 2, value = "kinetic" } end },
     { "solve", function(m) return m.model:solve { ratio = 1e-9, max_cycles = 30 }.ratio end, run = true, driven = true },
     { "free", function(m) m.model:blocks { inside = { min = { 6, -1, -1 }, max = { 9, 3, 2 } } }:free() end },
     { "join", function(m)
@@ -113,6 +115,10 @@ local calls = {
         local stone = m.model:blocks { group = "stone", fixed = false }
         stone:where(function(block) return block.id == stone[1].id end):delete()
     end },
+    { "stage", function(m) m.model:stage "cut" end },
+    { "verdict", function(m) return m.model:verdict().text end },
+    { "slivers", function(m) return #m.model:filter { volume = 0.05 } end },
+    { "histories", function(m) return #m.model:histories().kinetic end },
     { "reset", function(m) m.model:blocks():reset_displacement() end },
     { "jointset later", function(m)
         return m.model:generate("jointset", { joint = "J3", dip = 80, dip_direction = 200, spacing = 3, origin = { 1, 1, 1 } }).after
@@ -126,6 +132,7 @@ local calls = {
         local sum = 0
         for _, name in ipairs { "mass", "volume" } do sum = sum + m.model:blocks():sum(name) end
         local block = m.model:blocks()[1]
+        for _, one in ipairs(m.model:blocks()) do sum = sum + #one.neighbours end
         return sum + #block.vertices + #block.faces + #block.neighbours
     end },
     { "points", function(m)

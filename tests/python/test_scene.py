@@ -75,7 +75,8 @@ local function frame(m, options)
     end
     local energy = m:energy()
     told:write(text_of { time = m.time, cycle = m.cycles, blocks = blocks, contacts = contacts, kinetic = energy.kinetic,
-        damping = energy.damping, friction = energy.friction, refused = talus.report(m).refused_cuts }, "\n")
+        damping = energy.damping, friction = energy.friction, refused = talus.report(m).refused_cuts,
+        verdict = m:verdict(), hash = m:state_hash() }, "\n")
 end
 
 -- a slope of blocks far from zero, on a plane that is too steep for its friction
@@ -226,7 +227,7 @@ def read_contacts(payload):
     n, polygons, corners = c.take("I", 3)
     columns = {name: c.take("I", n) for name in ("id", "a", "b", "joint", "plane")}
     columns.update({name: c.vectors(n) for name in ("point", "normal", "force")})
-    columns.update({name: c.take("f", n) for name in ("area", "gap", "slip")})
+    columns.update({name: c.take("f", n) for name in ("area", "gap", "slip", "used")})
     columns["state"] = c.take("B", n)
     owner, sizes, corner = c.take("I", polygons), c.take("I", polygons), c.vectors(corners)
     c.end("CONT")
@@ -288,6 +289,8 @@ class Reader:
                 n, = c.take("I", 1)
                 frame["keys"] = list(zip(c.take("I", n), c.take("I", n), c.take("f", n), c.vectors(n)))
                 c.end("KEYS")
+            elif name == "FIND":
+                frame["finding"] = json.loads(payload.rstrip(b"\0"))
             elif expect(name == "DONE", f"a chunk {name}"):
                 expect(struct.unpack("<I", payload)[0] == self.frames, "DONE: another number")
             if name in ("HEAD", "SHAP", "GONE", "REFU", "TOUC"):
@@ -377,6 +380,11 @@ def check_contact(head, c, told, size):
     expect(near(c["gap"], told["gap"], EXACT * abs(told["gap"])), f"{name}: gap")
     expect(near(c["slip"], told["slip"], EXACT * abs(told["slip"])), f"{name}: slip {c['slip']}, not {told['slip']}")
     expect(STATES[c["state"]] == told["state"], f"{name}: state")
+    # of the shear at the points, which is no less than their sum; all of what a Coulomb joint bears slips
+    least = math.hypot(*told["shear_force"]) / max(told["normal_force"] * math.tan(math.radians(25)), 1e-9)
+    expect(math.isnan(c["used"]) or -1e-6 < c["used"] < 1 + 1e-5, f"{name}: {c['used']} of the strength is used")
+    if told["joint"] == "" and told["normal_force"] > 0 and least > 0:
+        expect(c["used"] > least * (1 - 1e-5), f"{name}: {c['used']} of the strength is used, at least {least}")
     check_polygons(name, c, told, size)
 
 
@@ -486,6 +494,11 @@ def main():
         expect(near(float(given["data-largest"]), largest, 1e-9 * largest), f"frame {number}: largest displacement")
         expect(given["data-model"] == str(int(bool(frame["news"]))), f"frame {number}: whether it has news of the model")
         check_frame(number, reader, frame, told[number])
+        verdict, finding = told[number]["verdict"], frame["finding"]
+        for name in ("standing", "text", "stage", "moved", "contacts", "slipping"):
+            expect(finding[name] == verdict[name] or number == 3, f"frame {number}: {name} of the finding is {finding[name]}, not {verdict[name]}")
+        expect(near(finding["closed"], verdict["closed"], 1e-9 * verdict["closed"]) or number == 3, f"frame {number}: closed {finding['closed']}")
+        expect(finding["hash"] == told[number]["hash"], f"frame {number}: state hash")
         frictions = [None, 25, 25] + ([None, 30] if number > 2 else [25])  # of L, one plane has another one
         expect(reader.head["friction"] == frictions, f"frame {number}: frictions {reader.head['friction']}")
         check_refused(number, reader, told[number]["refused"])

@@ -184,6 +184,9 @@ def check_requests(run):
     for path, method in (("/", "GET"), ("/scene", "GET"), ("/command", "POST"), ("/nothing", "GET")):
         for what, how, sentence in refused:
             status, headers, body = run.request(method, path, body=b"{}" if method == "POST" else None, **how)
+            if path == "/" and sentence and "token" in sentence:  # it holds nothing of the run
+                expect(status == 200 and body == PAGE, f"{what}: {status} of the page")
+                continue
             if sentence is None:  # the library's own answer
                 expect(status == 400, f"{what} at {path}: {status}")
                 continue

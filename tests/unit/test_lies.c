@@ -9,6 +9,25 @@
 
 static const char truth[] = TALUS_TEST_TMP "/truth.talus", lie_path[] = TALUS_TEST_TMP "/lie.talus";
 
+/* What a model may be set to, so that nothing is at its default. */
+static void add_settings(tl_model *m)
+{
+    m->min_area = (tl_min_area_rule){1e-4, 1e-6};
+    m->timestep.fraction = 0.5;
+    m->timestep.dt = 1e-4;
+    const tl_load load = {.size = sizeof load, .force = {0, 0, -10}};
+    scene_ok(m, tl_blocks_load(m, &m->blocks.id[1], 1, &load));
+    const tl_history what = {
+        .name = "kinetic", .asked = "kinetic", .source = TL_FROM_MODEL, .every = 1};
+    tl_history *history;
+    const double values[2] = {1, 2};
+    scene_ok(m, tl_history_add(m, &what, &history));
+    for (int k = 0; k < 2; k++) {
+        scene_ok(m, tl_history_sample(m, history, &values[k], 1));
+        scene_ok(m, tl_model_cycle(m, 10, NULL));
+    }
+}
+
 /* As if block 2 had been cut out of block 1, and their contact had been asked for. */
 static void add_edits(tl_model *m)
 {
@@ -18,27 +37,32 @@ static void add_edits(tl_model *m)
     m->asked_ids = calloc(1, sizeof *m->asked_ids);
     d->estates = calloc(1, sizeof *d->estates);
     d->left_points = calloc(1, sizeof *d->left_points);
-    if (!CHECK(m->heirs && m->splits && m->asked_ids && d->estates && d->left_points))
+    m->face_loads = calloc(1, sizeof *m->face_loads);
+    if (!CHECK(m->heirs && m->splits && m->asked_ids && d->estates && d->left_points &&
+               m->face_loads))
         exit(1);
     m->heirs[0] = (tl_heir){.id = 2, .root = 1, .r = tl_m3_identity()};
     m->splits[0] = (tl_split){.block = 2, .whole = 1};
     m->asked_ids[0] = (tl_asked_id){1, 2, 1};
     d->estates[0] = (tl_estate){.a = 1, .b = 2, .law = TL_NO_ROW, .count = 1};
+    m->face_loads[0] = (tl_face_load){.block = 2};
+    m->face_load_count = m->face_load_capacity = 1;
     m->heir_count = m->heir_capacity = m->split_count = m->split_capacity = m->asked_count = 1;
     d->estate_count = d->estate_capacity = d->left_count = d->left_capacity = 1;
     m->next_contact = d->next_contact;
 }
 
-/* Two boxes on each other, the lower one held, after some steps. */
+/* Two boxes on each other, the lower one held, and one that stands on its edge, after some steps. */
 static void save_truth(void)
 {
     tl_model *m = scene_model(1);
     scene_box(m, tl_v3(0, 0, 0), tl_v3(2, 2, 1));
     scene_box(m, tl_v3(0, 0, 1), tl_v3(1, 1, 2));
+    scene_block(m, scene_box_shape(0.5, 0.5, 0.5), scene_turn(tl_v3(1, 0, 0), TL_PI / 4),
+                tl_v3(1.5, 1.5, 1 + 0.999 * sqrt(0.125)));
     scene_law(m, "coulomb", 1e8, 1e8, 30);
     scene_ok(m, tl_blocks_fix(m, &m->blocks.id[0], 1, TL_FIX_ALL));
-    tl_solve_result result;
-    scene_ok(m, tl_model_cycle(m, 10, &result));
+    add_settings(m);
     add_edits(m);
     scene_ok(m, tl_model_save(m, truth));
     tl_model_destroy(m);
@@ -100,14 +124,24 @@ static tl_status restored(tl_error *error)
 }
 
 static const uint64_t most = UINT64_MAX;
-static const int64_t long_ago = INT64_MIN;
+static const int64_t long_ago = INT64_MIN, long_hence = INT64_MAX / 4;
 static const uint32_t far_row = 1000000, all_bits = UINT32_MAX;
-static const uint16_t far_vertex = 60000;
-static const uint8_t two = 2, many = 255;
+static const uint16_t far_vertex = 60000, no_vertex = 0;
+static const uint64_t odd = 1;
+static const uint8_t zero = 0, one = 1, two = 2, four = 4, many = 255, most_planes = 250;
+static const uint32_t row_0 = 0, row_1 = 1, two_row = 2;
+static const char no_end[64] = {"a name of sixty-four characters, none of which is the end of one"};
+static_assert(sizeof no_end == TL_STAGE_NAME + 1 && sizeof no_end == TL_HISTORY_NAME + 1,
+              "a name that is too long fills the field");
+static const char two_lines[] = "one\nother";
 static const double none = 0, below = -1, next_to_nothing = 1e-30, infinite = INFINITY;
+static const double all_of_it = 1, unknown = NAN, more_than_all = 1.5, farther = 10 * TL_FARTHEST;
 static const double huge[3] = {1e300, 0, 0};
 static const double no_turn[4] = {0, 0, 0, 0};
 
+/* Of the field contact, and of the first span. */
+#define PRESS(member, instead) LIE("detect.press", offsetof(tl_press_row, member), instead)
+#define SPAN(member, instead) LIE("detect.layout.spans", offsetof(tl_span, member), instead)
 #define LIE(chunk, at, instead)                                                                    \
     {                                                                                              \
         chunk, at, sizeof(instead), &(instead)                                                     \
@@ -126,7 +160,39 @@ static const lie lies[] = {
     LIE("model.min_area", 0, below),
     LIE("model.said", 0, all_bits),
     LIE("model.dt", 0, below),
+    LIE("model.config.gravity", 16, infinite),
+    LIE("model.config.rotation", 0, all_bits),
+    LIE("model.config.reuse_geometry", 0, far_row),
+    LIE("model.config.reuse_geometry", 0, all_bits),
+    LIE("model.config.contact_points", 0, far_row),
+    LIE("model.config.contact_points", 0, all_bits),
+    LIE("model.gravity_before", 8, infinite),
+    LIE("model.loads_changed", 0, two),
+    LIE("model.timestep.rule", 0, all_bits),
+    LIE("model.timestep.fraction", 0, none),
+    LIE("model.timestep.fraction", 0, more_than_all),
+    LIE("model.timestep.dt", 0, none),
+    LIE("model.timestep.dt", 0, infinite),
+    LIE("model.min_area", 0, infinite),
+    LIE("model.min_area", 8, below),
+    LIE("model.min_area", 8, infinite),
+    LIE("model.origin", 0, infinite),
+    LIE("model.time", 0, infinite),
+    LIE("model.dt", 0, infinite),
+    LIE("model.cycles", 0, long_ago),
+    LIE("model.cycles", 0, long_hence),
+    LIE("model.gone", 0, far_row),
+    LIE("model.added_dt", 0, none),
+    LIE("model.added_most", 0, below),
+    LIE("model.stage", 0, no_end),
+    LIE("model.stage", 0, two_lines),
     /* blocks */
+    LIE("blocks.id", 0, row_0),
+    LIE("blocks.id", 4, row_1),
+    LIE("blocks.density", 8, none),
+    LIE("blocks.mean_face", 8, infinite),
+    LIE("blocks.body", 8, row_1),
+    LIE("blocks.body", 4, row_0),
     LIE("blocks.changed", 8, most),
     LIE("blocks.size", 0, next_to_nothing),
     LIE("blocks.volume", 8, none),
@@ -144,7 +210,19 @@ static const lie lies[] = {
     LIE("bodies.radius", 0, none),
     LIE("bodies.q", 0, no_turn),
     LIE("bodies.axes", 32, no_turn),
+    LIE("bodies.id", 4, row_1),
+    LIE("bodies.mass", 0, infinite),
+    LIE("bodies.moments", 8, none),
+    LIE("bodies.moments", 16, infinite),
+    LIE("bodies.round", 0, none),
+    LIE("bodies.radius", 8, infinite),
+    LIE("bodies.drive", 0, far_row),
+    LIE("bodies.load", offsetof(tl_body_load, force), infinite),
+    LIE("bodies.load", offsetof(tl_body_load, moment), infinite),
+    LIE("bodies.load", offsetof(tl_body_load, arm), infinite),
     LIE("bodies.pose", 0, huge),
+    LIE("bodies.pose", offsetof(tl_pose, x_ref), huge),
+    LIE("bodies.pose", offsetof(tl_pose, u), infinite),
     LIE("bodies.odometer", 0, below),
     LIE("bodies.fixed", 0, many),
     /* shapes */
@@ -152,7 +230,88 @@ static const lie lies[] = {
     LIE("shapes.loops", 0, far_vertex),
     LIE("shapes.counts", 0, far_row),
     LIE("shapes.tags", 0, far_row),
+    LIE("shapes.vertices", 8, farther),
+    LIE("shapes.planes", 0, infinite),
+    LIE("shapes.planes", 24, infinite),
+    LIE("shapes.starts", 0, far_vertex),
+    LIE("shapes.starts", 2, no_vertex),
+    LIE("shapes.edges", offsetof(tl_edge, a), far_vertex),
+    LIE("shapes.edges", offsetof(tl_edge, b), far_vertex),
+    LIE("shapes.edges", offsetof(tl_edge, left), far_vertex),
+    LIE("shapes.edges", offsetof(tl_edge, right), far_vertex),
+    LIE("shapes.counts", 4, far_row),
+    LIE("shapes.counts", 8, far_row),
+    LIE("shapes.counts", 12, far_row),
+    /* pairs and what was seen of blocks */
+    LIE("detect.known_blocks", sizeof(tl_known_block), row_1),
+    LIE("detect.known_blocks", sizeof(tl_known_block), far_row),
+    LIE("detect.pairs", offsetof(tl_pair, b), row_0),
+    LIE("detect.pairs", offsetof(tl_pair, b), far_row),
+    LIE("detect.pairs", offsetof(tl_pair, contact), row_1),
+    LIE("detect.pairs", offsetof(tl_pair, contact), far_row),
+    LIE("detect.pairs", offsetof(tl_pair, b), two_row),
+    LIE("detect.chunks", offsetof(tl_pair_chunk, found), two),
+    /* field contacts */
+    LIE("detect.contacts.press", 4, far_row),
+    LIE("detect.contacts.press", 4, all_bits),
+    LIE("detect.contacts.point_count", 2, one),
+    LIE("detect.press_free", 0, row_0),
+    PRESS(press.powers, two),
+    PRESS(flush, two),
+    PRESS(listed, two),
+    PRESS(leans, two),
+    PRESS(by_slope, two),
+    PRESS(shifted.a, far_row),
+    PRESS(shifted.b, far_row),
+    PRESS(count[0], far_vertex),
+    PRESS(count[3], far_vertex),
+    PRESS(face[0], far_vertex),
+    PRESS(face[1], far_vertex),
+    PRESS(mesh.corners, many),
+    PRESS(mesh.polygons, many),
+    PRESS(mesh.bounding, most),
+    PRESS(mesh.apex[0].known, two),
+    PRESS(mesh.apex[1].holds, four),
+    PRESS(mesh.apex[0].strays, many),
+    PRESS(mesh.plane[0][0], most_planes),
+    PRESS(mesh.plane[3][0], most_planes),
+    PRESS(mesh.own[0][1], most_planes),
+    PRESS(mesh.sides[0], two),
+    PRESS(mesh.sides[0], many),
+    PRESS(mesh.loop[0], many),
     /* contacts */
+    LIE("detect.contacts.id", 0, row_0),
+    LIE("detect.contacts.id", 0, far_row),
+    LIE("detect.contacts.held", 0, two),
+    LIE("detect.contacts.handed_over", 0, two),
+    LIE("detect.contacts.holds_over_gap", 0, two),
+    LIE("detect.contacts.new_points", 0, many),
+    LIE("detect.contacts.deep", 0, many),
+    LIE("detect.contacts.point_capacity", 0, zero),
+    LIE("detect.contacts.tag", 0, far_row),
+    LIE("detect.contacts.facet", offsetof(tl_facet, kind), far_row),
+    LIE("detect.contacts.facet", offsetof(tl_facet, ride), below),
+    LIE("detect.contacts.facet", offsetof(tl_facet, ride), more_than_all),
+    LIE("detect.contacts.facet", offsetof(tl_facet, ia), far_vertex),
+    LIE("detect.contacts.facet", offsetof(tl_facet, ib), far_vertex),
+    LIE("detect.contacts.field", 1, zero),
+    SPAN(law, far_row),
+    SPAN(held, two),
+    SPAN(field, two),
+    SPAN(rest, many),
+    SPAN(changed, two),
+    SPAN(begin, odd),
+    SPAN(end, most),
+    SPAN(limit, most),
+    SPAN(limit, odd),
+    SPAN(group_begin, most),
+    SPAN(group_end, most),
+    SPAN(group_limit, most),
+    LIE("detect.layout.groups", offsetof(tl_simd_group, start), row_1),
+    LIE("detect.layout.groups", offsetof(tl_simd_group, slots), row_0),
+    LIE("detect.layout.groups", offsetof(tl_simd_group, slots), far_row),
+    LIE("detect.layout.groups", offsetof(tl_simd_group, contact), all_bits),
+    LIE("detect.laid_at", 0, long_hence),
     LIE("detect.structure", 0, most),
     LIE("detect.known_blocks", 4, far_row),
     LIE("detect.pairs", 0, far_row),
@@ -184,7 +343,26 @@ static const lie lies[] = {
     LIE("detect.estates", offsetof(tl_estate, field), two),
     LIE("detect.estates", offsetof(tl_estate, holds_over_gap), two),
     LIE("detect.estates", offsetof(tl_estate, reframed), two),
+    LIE("model.heirs", offsetof(tl_heir, root), two_row),
+    LIE("model.splits", offsetof(tl_split, block), row_0),
+    LIE("model.splits", offsetof(tl_split, whole), row_0),
+    LIE("model.face_loads", offsetof(tl_face_load, block), row_0),
+    LIE("model.face_loads", offsetof(tl_face_load, block), far_row),
+    LIE("model.face_loads", offsetof(tl_face_load, force), infinite),
+    LIE("model.face_loads", offsetof(tl_face_load, moment), infinite),
+    LIE("model.asked_ids", offsetof(tl_asked_id, contact), row_0),
+    LIE("model.asked_ids", offsetof(tl_asked_id, b), row_1),
+    LIE("detect.estates", offsetof(tl_estate, count), two_row),
+    LIE("detect.estates", offsetof(tl_estate, pressed), two),
+    /* histories */
+    LIE("histories", 0, no_end),
+    LIE("histories.0.cycles", 0, long_ago),
+    LIE("histories.0.cycles", 0, long_hence),
+    LIE("histories.0.cycles", 8, none),
+    LIE("histories.0.times", 0, infinite),
     /* the step */
+    LIE("cycle.dt", 0, below),
+    LIE("cycle.dt", 0, infinite),
     LIE("cycle.all_held", 0, two),
 };
 
@@ -193,6 +371,13 @@ static const lie harmless[] = {
     LIE("detect.spare_share", 0, most),
     LIE("cycle.reaction_of", 0, far_row),
     LIE("cycle.sums", 0, infinite),
+    /* at the bounds */
+    LIE("model.min_area", 0, none),
+    LIE("model.min_area", 8, none),
+    LIE("model.min_area", 8, unknown),
+    LIE("model.timestep.fraction", 0, all_of_it),
+    LIE("model.timestep.fraction", 0, unknown),
+    LIE("model.dt", 0, none),
 };
 
 TEST(what_is_true_is_restored)
@@ -226,5 +411,19 @@ TEST(what_does_not_matter_is_restored)
     }
 }
 
+/* A file whose bytes the system does not give. */
+TEST(what_cannot_be_read_is_refused)
+{
+    tl_error error = {0};
+    tl_model *m = NULL;
+    FILE *file = fopen("/proc/self/mem", "rb"); /* of Linux */
+    if (!file)
+        return;
+    fclose(file);
+    CHECK_INT(tl_model_restore("/proc/self/mem", 1, NULL, NULL, &m, &error), TL_E_IO);
+    CHECK_CONTAINS(error.text, "cannot restore '/proc/self/mem': ");
+    CHECK(m == NULL);
+}
+
 TEST_MAIN(RUN(what_is_true_is_restored), RUN(a_lie_is_refused),
-          RUN(what_does_not_matter_is_restored))
+          RUN(what_does_not_matter_is_restored), RUN(what_cannot_be_read_is_refused))

@@ -81,8 +81,23 @@ TEST(nothing_means_the_defaults)
     CHECK_INT(tl_blocks_select(m, NULL, &ids, &count), TL_OK);
     CHECK_INT(count, 0);
     free(ids);
+    tl_solve_result result;
+    const tl_history clock = {
+        .name = "clock", .asked = "kinetic", .source = TL_FROM_MODEL, .every = 1};
+    CHECK_INT(tl_model_cycle_calling(m, 2, NULL, &result), TL_OK);
+    CHECK_INT(result.cycles, 2);
+    CHECK_INT(tl_model_cycle_calling(m, 2, NULL, NULL), TL_OK);
+    CHECK_INT(tl_history_add(m, &clock, NULL), TL_OK);
+    CHECK(tl_history_at(m, 0) != NULL);
     tl_model_destroy(m);
 }
+
+/* The call is refused for the size of its options, which it names first. */
+#define REFUSES(call, options)                                                                     \
+    do {                                                                                           \
+        CHECK_INT(call, TL_E_ARGUMENT);                                                            \
+        CHECK_CONTAINS(tl_model_error(m)->text, options ": size = 0");                             \
+    } while (0)
 
 TEST(a_wrong_size_is_refused)
 {
@@ -105,25 +120,20 @@ TEST(a_wrong_size_is_refused)
     tl_filter_result filtered;
     tl_keyblocks keyblocks;
     tl_solve_result solved;
-    const tl_status refused[] = {
-        tl_blocks_select(m, (const void *)zeros, &ids, &count),
-        tl_contacts_select(m, (const void *)zeros, &ids, &count),
-        tl_blocks_set(m, NULL, 0, (const void *)zeros),
-        tl_blocks_load(m, NULL, 0, (const void *)zeros),
-        tl_blocks_drive(m, NULL, 0, (const void *)zeros),
-        tl_model_filter(m, (const void *)zeros, &filtered),
-        tl_model_keyblocks(m, (const void *)zeros, &keyblocks),
-        tl_model_insitu(m, (const void *)zeros),
-        tl_model_timestep(m, (const void *)zeros),
-        tl_model_mass_scaling(m, (const void *)zeros),
-        tl_model_contact_area(m, (const void *)zeros),
-        tl_model_solve(m, (const void *)zeros, &solved),
-        tl_write_vtk(m, TALUS_TEST_TMP "/options", (const void *)zeros),
-    };
-    for (size_t i = 0; i < sizeof refused / sizeof *refused; i++)
-        if (!CHECK_INT(refused[i], TL_E_ARGUMENT))
-            printf("  function %zu\n", i);
-    CHECK_CONTAINS(tl_model_error(m)->text, "tl_vtk_parts: size = 0");
+    const void *const bad = zeros;
+    REFUSES(tl_blocks_select(m, bad, &ids, &count), "tl_block_filter");
+    REFUSES(tl_contacts_select(m, bad, &ids, &count), "tl_contact_filter");
+    REFUSES(tl_blocks_set(m, NULL, 0, bad), "tl_block_set");
+    REFUSES(tl_blocks_load(m, NULL, 0, bad), "tl_load");
+    REFUSES(tl_blocks_drive(m, NULL, 0, bad), "tl_drive");
+    REFUSES(tl_model_filter(m, bad, &filtered), "tl_filter");
+    REFUSES(tl_model_keyblocks(m, bad, &keyblocks), "tl_keyblock_query");
+    REFUSES(tl_model_insitu(m, bad), "tl_insitu");
+    REFUSES(tl_model_timestep(m, bad), "tl_timestep");
+    REFUSES(tl_model_mass_scaling(m, bad), "tl_mass_scaling");
+    REFUSES(tl_model_contact_area(m, bad), "tl_contact_area");
+    REFUSES(tl_model_solve(m, bad, &solved), "tl_solve");
+    REFUSES(tl_write_vtk(m, TALUS_TEST_TMP "/options", bad), "tl_vtk_parts");
     tl_model_destroy(m);
 }
 
@@ -148,6 +158,37 @@ TEST(a_choice_that_there_is_not_is_refused)
     tl_model_destroy(m);
 }
 
+static void keep_remark(void *user, const char *text)
+{
+    snprintf(user, 512, "%s", text);
+}
+
+/* Remedies are functions of C in a program of C, and verbs of Lua where Lua has said so. */
+TEST(remedies_are_in_the_words_of_who_called)
+{
+    for (int lua = 0; lua < 2; lua++) {
+        char remark[512] = "";
+        tl_model *m;
+        CHECK_INT(tl_model_create(NULL, &m, NULL), TL_OK);
+        tl_model_log(m, keep_remark, remark);
+        if (lua)
+            tl_model_speak_lua(m, 1);
+        CHECK_INT(tl_model_solve(m, NULL, NULL), TL_OK);
+        CHECK_CONTAINS(remark,
+                       lua ? "model:damping(\"local\")" : "tl_model_damping() with \"local\"");
+        CHECK_INT(tl_joint_law(m, "*", NULL, NULL), TL_E_STATE);
+        CHECK_CONTAINS(tl_model_error(m)->text,
+                       lua ? "model:joint(\"*\", LAW" : "give tl_joint_law() one");
+        tl_model *twin;
+        CHECK_INT(tl_model_copy(m, NULL, NULL, &twin), TL_OK);
+        CHECK_INT(tl_joint_law(twin, "*", NULL, NULL), TL_E_STATE);
+        CHECK_TEXT(tl_model_error(twin)->text, tl_model_error(m)->text);
+        tl_model_destroy(twin);
+        tl_model_destroy(m);
+    }
+}
+
 TEST_MAIN(RUN(defaults_are_those_of_the_tables), RUN(defaults_without_a_table),
           RUN(an_older_struct_is_filled_up), RUN(nothing_means_the_defaults),
-          RUN(a_wrong_size_is_refused), RUN(a_choice_that_there_is_not_is_refused))
+          RUN(a_wrong_size_is_refused), RUN(a_choice_that_there_is_not_is_refused),
+          RUN(remedies_are_in_the_words_of_who_called))

@@ -227,7 +227,7 @@ TEST(a_long_file_that_is_none_is_refused_at_once)
     limit_memory(had ? had + MOST_BYTES : 0);
     CHECK(tl_model_restore(lie_path, 1, NULL, NULL, &m, &error) == TL_E_ARGUMENT);
     limit_memory(0);
-    CHECK_CONTAINS(error.text, "is no file that model:save has written");
+    CHECK_CONTAINS(error.text, "it is no saved model");
     remove(lie_path);
 }
 

@@ -167,7 +167,7 @@ TEST(news_adds_up_to_all_there_is_to_know)
     CHECK_INT(tl_view_tell(view, TL_VIEW_WAITING, NULL, NULL), TL_OK);
     CHECK_INT(tl_view_show(view, &html), TL_OK);
     CHECK_TEXT(names_of(screen.news, screen.news_length), "HEAD SHAP TOUC LIVE");
-    CHECK_TEXT(names_of(screen.now, screen.now_length), "FRAM LINE DONE");
+    CHECK_TEXT(names_of(screen.now, screen.now_length), "FRAM LINE FIND DONE");
     CHECK_CONTAINS((const char *)screen.news + 8, "\"live\": true, \"commands\": true");
     CHECK_INT(tl_view_show(view, &html), TL_OK);
     CHECK_TEXT(names_of(screen.news, screen.news_length), "HEAD SHAP TOUC LIVE");

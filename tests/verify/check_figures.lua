@@ -10,6 +10,8 @@
 -- What is checked and plotted belongs to the case() before it; without one, to a case named after
 -- the file. Where the environment names a folder in TALUS_VERIFY_DIR, finish() leaves the results
 -- there for report.lua: NAME.lua, and the figures as CASE_1.svg, CASE_2.svg, ...
+local title_of = require "report_titles"
+
 local figures = { failed = 0, checked = 0 }
 
 local cases = {}
@@ -18,7 +20,11 @@ local function file_name()
     return (arg and arg[0] or "verify"):match("([^/]+)%.lua$") or "verify"
 end
 
+-- The page heads a case by its title: a case without one ends the test before it runs.
 function figures.case(id, sentence, source)
+    if not title_of(id) then
+        error("the case " .. id .. " has no title in tests/verify/report_titles.lua", 2)
+    end
     cases[#cases + 1] = { id = id, sentence = sentence or "", source = source or "", checks = {},
         plots = {} }
 end

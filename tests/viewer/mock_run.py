@@ -69,7 +69,7 @@ class Handler(http.server.BaseHTTPRequestHandler):
 
     def do_GET(self):
         run = self.server.run
-        if self.path.startswith("/?token="):
+        if self.path == "/" or self.path.startswith("/?token="):
             return self.answer(200, run.page, "text/html; charset=utf-8")
         if self.path != "/scene" or self.headers["X-Talus-Token"] != TOKEN:
             return self.answer(403)

@@ -40,6 +40,35 @@ local file = assert(io.open(folder .. "/slope.json", "w"))
 file:write("[", table.concat(out, ",\n"), "]\n")
 file:close()
 
+-- A column that has but closed its joints, and a block that stood until its joint was made weaker: with the verdicts of the program.
+local function told(name, one, options)
+    one:write_html(folder .. "/" .. name, options)
+    local to = assert(io.open(folder .. "/" .. name .. ".txt", "w"))
+    to:write(one:verdict().text)
+    to:close()
+end
+local column = talus.model {}
+for i = 0, 9 do
+    column:generate("box", { min = { 0, 0, i }, max = { 1, 1, i + 1 }, density = 2500 })
+end
+column:blocks { id = 1 }:fix()
+column:joint("*", "coulomb", { kn = 1e8, ks = 1e8, friction = 40 })
+column:damping "local"
+column:solve { ratio = 1e-5 }
+told("column", column)
+local slide = talus.model { gravity = { 5, 0, -8 } }
+slide:generate("box", { min = { -5, -5, -1 }, max = { 5, 5, 0 }, density = 2500 })
+slide:generate("box", { min = { -1, -1, 0 }, max = { 1, 1, 1 }, density = 2500 })
+slide:blocks { id = 1 }:fix()
+slide:joint("*", "coulomb", { kn = 1e9, ks = 1e9, friction = 40 })
+slide:damping "local"
+slide:solve { ratio = 1e-5 }
+told("stands", slide)
+slide:stage "weaker"
+slide:joint("*", { friction = 25 })
+slide:solve { ratio = 1e-5, stop_at_failure = true }
+told("slide", slide, { keyblocks = { friction = 25 }, safety_limit = 1.3 })
+
 local HOSTILE = "</script><img src=x onerror=alert(1)>"
 local names = talus.model { gravity = { 0, 0, -10 } }
 names:generate("box", { min = { 0, 0, 0 }, max = { 2, 2, 2 }, density = 2000, group = HOSTILE })

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""The pictures of docs/examples.md, of the pages that the examples write.
+"""The pictures of docs/examples.md and of README.md, of the pages that the examples and scripts/tools/large_slope.lua write.
 
-    pictures.py [NAME...]            writes them anew, all or those named (fig2, tunnel, tunnel_section, slope, slope_section)
+    pictures.py [NAME...]            writes them anew, all or those named (fig2, tunnel, tunnel_section, slope, slope_section, large_slope)
     pictures.py --check [NAME...]    compares them with those that are there; 1 and their names where they differ
 
-Runs the examples in a folder of its own, opens each page in Chromium and saves its image (talus.makeImage). Pictures are drawn by SwiftShader,
+The large slope, which takes a minute, is made and compared when it is named. Runs the examples in a folder of its own, opens each page in Chromium and saves its image (talus.makeImage). Pictures are drawn by SwiftShader,
 in software, and text in DejaVu Sans, which comes with Debian's Chromium: the same on all machines that have it.
 Without Chromium one sentence, and status 77 (status 1 where TALUS_BROWSER is "required").
 """
@@ -34,13 +34,15 @@ PICTURES = {
     "tunnel": ("tunnel", "#cut=1&dip=90&direction=180&position=2.5&camera=3,-13,14,-6,0.3,1.9"),
     "tunnel_section": ("tunnel", "#cut=1&dip=90&direction=180&position=-0.14&parallel=1&arrows=displacement&camera=0,0,11.5,-5.7,0,1.9"),
     "slope": ("slope", "#camera=56,30,44,18.9,32.5,13"),
+    "large_slope": ("large_slope", "#camera=60,18,78,40,35,27"),
     "slope_section": ("slope", "#cut=1&dip=90&direction=180&position=-3&parallel=1&arrows=displacement&camera=0,0,36.7,14.1,20,16.3"),
 }
+SLOW = {"large_slope": "scripts/tools/large_slope.lua"}
 
 
 def run_examples(names, folder):
     """Runs the examples beside each other."""
-    runs = {name: subprocess.Popen([PROGRAM, "--quiet", f"scripts/examples/{name}.lua", str(folder)], cwd=ROOT, stdout=subprocess.DEVNULL) for name in names}
+    runs = {name: subprocess.Popen([PROGRAM, "--quiet", SLOW.get(name, f"scripts/examples/{name}.lua"), str(folder)], cwd=ROOT, stdout=subprocess.DEVNULL) for name in names}
     failed = [name for name, run in runs.items() if run.wait() != 0]
     if failed:
         sys.exit(f"pictures.py: these examples have failed: {', '.join(failed)}")
@@ -84,7 +86,7 @@ def main():
     unknown = [name for name in given.names if name not in PICTURES]
     if unknown:
         parser.error(f"there is no picture {', '.join(unknown)}; there are {', '.join(PICTURES)}")
-    names = given.names or list(PICTURES)
+    names = given.names or [name for name in PICTURES if name not in SLOW]
     if not program():
         required = os.environ.get("TALUS_BROWSER") == "required"
         print("pictures.py: no Chromium, so no pictures were made" + (", which is required here" if required else ": skipped"))

@@ -95,6 +95,8 @@ def test_follow(chrome, page):
         chrome.run("(e => { e.value = e.max; e.dispatchEvent(new Event('input')); })(document.querySelector('#time input'))")
         run.put(frames[3])
         check(until(chrome, "talus.app.view.frame === 6"), "the page does not follow the run again")
+        run.put(frames[3], live("ended"))
+        until(chrome, "talus.app.model.frames.length === 8")
         run.end()
         check(until(chrome, "document.getElementById('status').textContent === 'The run has ended.'"), f"after the end the page says: {words(chrome)}")
         check(chrome.run("document.querySelector('.state').textContent") == "Ended", "the state is not ended")
@@ -109,7 +111,7 @@ def test_follow(chrome, page):
 
 
 def test_broken(chrome, page):
-    """A run that ends within a frame is an end; a frame that is damaged ends in a sentence."""
+    """A run that ends within a frame has broken off; a frame that is damaged ends in a sentence."""
     frames = list(frames_of(page))
     with MockRun(page) as run:
         run.put(frames[0])
@@ -122,7 +124,19 @@ def test_broken(chrome, page):
         watch(chrome, run)
         run.put(frames[1][:-200])
         run.end()
-        check(until(chrome, "document.getElementById('status').textContent === 'The run has ended.'"), f"a run that ends within a frame says: {words(chrome)}")
+        check(until(chrome, "document.getElementById('status').textContent.startsWith('The run has broken off: the program is gone.')"), f"a run that breaks off within a frame says: {words(chrome)}")
+        check(chrome.run("document.querySelector('.state').textContent") == "Broken off", "the state is not broken off")
+
+
+def test_again(chrome, page):
+    """A page that is loaded again goes on with the run."""
+    frames = list(frames_of(page))
+    with MockRun(page) as run:
+        run.put(frames[0], live("running"))
+        watch(chrome, run)
+        chrome.call("Page.reload")
+        run.put(frames[0], live("running"))
+        check(until(chrome, "talus.app.model.frames.length && !document.getElementById('status').classList.contains('bad')"), f"loaded again the page says: {words(chrome)}")
 
 
 def test_log(chrome, page):

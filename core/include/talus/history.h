@@ -55,7 +55,7 @@ typedef struct tl_history {
 
 /* Makes a history without samples at the end of the model's list: `what` gives its name, asked, every, source, take, selection
  * and ids, which are copied; the first sample is that of the present cycle. TL_E_ARGUMENT: a name that is empty, not of one
- * line, or that of another history; every < 1; no ids. */
+ * line, or that of another history; every < 1; no ids. `made` may be NULL. */
 TL_API tl_status tl_history_add(struct tl_model *model, const tl_history *what, tl_history **made);
 /* Ends history i, with its samples. */
 TL_API void tl_history_end(struct tl_model *model, size_t i);

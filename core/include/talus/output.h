@@ -52,6 +52,7 @@ typedef struct tl_html {
     const tl_extra_field *block_fields, *contact_fields;
     size_t block_field_count, contact_field_count;
     const struct tl_keyblocks *keyblocks; /* NULL: none */
+    double safety_limit; /* factor of safety that is asked for, marked in the legend; 0: none */
 } tl_html;
 /* Adds a frame to the page PREFIX.html, for a browser (docs/screen.md). The first frame of a model replaces what is there.
  * Later ones go on with the page where it is as the model left it, else they begin it anew. A page of more than 200 MB is

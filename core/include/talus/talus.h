@@ -26,6 +26,7 @@
 #include <talus/state.h>
 #include <talus/types.h>
 #include <talus/values.h>
+#include <talus/verdict.h>
 #include <talus/version.h>
 #include <talus/view.h>
 #include <talus/watch.h>
@@ -80,6 +81,8 @@ TL_API void tl_model_destroy(tl_model *model);
 TL_API const tl_error *tl_model_error(const tl_model *model);
 /* Sends the model's remarks to a function, with `user`. */
 TL_API void tl_model_log(tl_model *model, tl_log_fn log, void *user);
+/* Whether remarks and errors name the verbs of Lua as a remedy, or functions of C (the default). */
+TL_API void tl_model_speak_lua(tl_model *model, int lua);
 
 /* Writes the settings, the first `size` bytes of them, and that size. */
 TL_API void tl_model_settings_get(const tl_model *model, tl_model_config *config, size_t size);
@@ -159,21 +162,22 @@ typedef struct tl_filter {
     int32_t action;              /* tl_filter_action */
 } tl_filter;
 
-/* A visible block beyond one of the limits. */
+/* A visible body beyond one of the limits. One of several parts is measured as a whole: its volume is that of all parts, edge and aspect are
+ * those of their convex hull. */
 typedef struct tl_sliver {
-    tl_id block;
+    tl_id block; /* the body's first block */
     double volume, edge, aspect;
     bool small, short_edge, thin; /* which limits */
     tl_id joined_to;              /* 0: not joined */
 } tl_sliver;
 
 typedef struct tl_filter_result {
-    tl_sliver *slivers; /* in the order of their ids; freed with free() */
-    size_t count, deleted, joined;
-    double volume; /* of all slivers, m3 */
+    tl_sliver *slivers;            /* in the order of their ids; freed with free() */
+    size_t count, deleted, joined; /* bodies */
+    double volume;                 /* of all slivers, m3 */
 } tl_filter_result;
 
-/* Finds the slivers and deletes them, or joins each to the block it shares the largest face with. `result` may be NULL. */
+/* Finds the slivers and deletes them, or joins each to the body with which it shares the largest area. `result` may be NULL. */
 TL_API tl_status tl_model_filter(tl_model *model, const tl_filter *filter,
                                  tl_filter_result *result);
 

@@ -79,8 +79,9 @@ typedef struct tl_view_options {
 /* What the model does, as it is told to those who look. */
 typedef enum tl_view_state {
     TL_VIEW_RUNNING,
-    TL_VIEW_PAUSED, /* in a run */
-    TL_VIEW_WAITING /* before the script goes on */
+    TL_VIEW_PAUSED,  /* in a run */
+    TL_VIEW_WAITING, /* before the script goes on */
+    TL_VIEW_ENDED    /* told by tl_view_close: a run that ends without it has broken off */
 } tl_view_state;
 
 /* Begins to show a model. `screen`: a kind of the type TL_KIND_SCREEN; NULL: the first there is. `params`: its parameters by name;

@@ -23,7 +23,8 @@ TL_API void tl_model_only_read(struct tl_model *model, bool on);
 typedef struct tl_cycle_args {
     int64_t cycles, every;
 } tl_cycle_args;
-/* tl_model_cycle with the functions of `calls`: each, progress, stop, with every and user. The rest of it is not read. `result` may be NULL. */
+/* tl_model_cycle with the functions of `calls`: each, progress, stop, with every and user. The rest of it is not read. `calls` and `result` may
+ * be NULL. */
 TL_API tl_status tl_model_cycle_calling(struct tl_model *model, int64_t cycles,
                                         const struct tl_solve *calls,
                                         struct tl_solve_result *result);

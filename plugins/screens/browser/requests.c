@@ -4,7 +4,8 @@
  *     GET /scene      frames without an end, as docs/scene_format.md tells
  *     POST /command   a command for the model, one JSON object
  *
- * A request shows the token, in the header X-Talus-Token or in the address, or gets 403, whatever it asks for. Its body is
+ * A request shows the token, in the header X-Talus-Token or in the address, or gets 403, whatever it asks for but the page, which holds nothing
+ * of the run. Its body is
  * read to the end before the answer, where that is not long, since a connection that is closed before is reset, and the answer
  * lost. Every answer but the frames closes its connection, so that none is kept for nothing. A request that is no HTTP
  * gets the library's own answer, which holds nothing. */
@@ -245,7 +246,8 @@ static void judge(const server *s, struct MHD_Connection *connection, const char
     else if (strcmp(path, "/favicon.ico") ==
              0) /* which browsers ask for by themselves, without the token */
         refuse(r, MHD_HTTP_NOT_FOUND, "There is no such page.");
-    else if (!shows_token(s, connection))
+    /* the page holds nothing of the run: loaded again it has the token still, and its address has not */
+    else if (strcmp(path, "/") != 0 && !shows_token(s, connection))
         refuse(r, MHD_HTTP_FORBIDDEN,
                "The token is missing or wrong; open the address that the run has printed.");
     else if (!known)

@@ -19,7 +19,6 @@ local v, t = block.velocity[1], model.time
 model:cycle(5000)
 local acceleration = (block.velocity[1] - v) / (model.time - t)
 local expected = g * (math.sin(slope) - math.cos(slope) * math.tan(math.rad(residual)))
-print("acceleration", acceleration)
-print("expected", expected)
+print(("acceleration %.6g, expected %.6g m/s2"):format(acceleration, expected))
 assert(math.abs(acceleration - expected) < 0.01 * expected, "the block does not slide as it should")
 assert(math.abs(model:energy().balance) < 1e-3, "the energies do not balance")

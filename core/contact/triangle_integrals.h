@@ -1,7 +1,9 @@
 /* triangle_integrals.h - integrals over a triangle, or a corner of it, of powers of an overlap u that is linear there, and of them times
  * the place. */
-#ifndef TL_FORCE_TRIANGLE_INTEGRALS_H
-#define TL_FORCE_TRIANGLE_INTEGRALS_H
+#ifndef TL_CONTACT_TRIANGLE_INTEGRALS_H
+#define TL_CONTACT_TRIANGLE_INTEGRALS_H
+
+#include "base/inline.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -19,7 +21,7 @@ typedef struct integrals {
 } integrals;
 
 /* int u^2 x over a triangle of area 60, of values at its corners. */
-static inline double square_times(const double u[3], double x, double y, double z)
+TL_INLINE double square_times(const double u[3], double x, double y, double z)
 {
     double sum = u[0] + u[1] + u[2], squares = u[0] * u[0] + u[1] * u[1] + u[2] * u[2];
     double mixed = u[0] * x + u[1] * y + u[2] * z;
@@ -28,7 +30,7 @@ static inline double square_times(const double u[3], double x, double y, double 
 }
 
 /* int u^n over a triangle is 2 / ((n + 1) (n + 2)) times the sum of all products of n of the values at its corners. */
-static inline void put_powers(const node n[3], const double u[3], double f, integrals *out)
+TL_INLINE void put_powers(const node n[3], const double u[3], double f, integrals *out)
 {
     double x = u[0], y = u[1], z = u[2], xx = x * x;
     double two = xx + y * (x + y), three = xx * x + y * two, four = xx * xx + y * three;
@@ -43,7 +45,7 @@ static inline void put_powers(const node n[3], const double u[3], double f, inte
 }
 
 /* Of a triangle of the share f of the area. */
-static inline integrals whole_of(const node n[3], const double u[3], double f, bool curved)
+TL_INLINE integrals whole_of(const node n[3], const double u[3], double f, bool curved)
 {
     double sum = u[0] + u[1] + u[2], by = f / 12;
     double a = n[0].a + n[1].a + n[2].a, b = n[0].b + n[1].b + n[2].b;
@@ -65,8 +67,8 @@ static inline integrals whole_of(const node n[3], const double u[3], double f, b
 }
 
 /* Of the part of it at corner k where `sign` u > 0, when that is so at no other corner; u taken times the sign. */
-static inline integrals corner_of(const node n[3], const double u[3], double f, size_t k,
-                                  double sign, bool curved)
+TL_INLINE integrals corner_of(const node n[3], const double u[3], double f, size_t k, double sign,
+                              bool curved)
 {
     size_t i = (k + 1) % 3, j = (k + 2) % 3;
     double top = sign * u[k], s = u[k] / (u[k] - u[i]), t = u[k] / (u[k] - u[j]);
@@ -91,14 +93,25 @@ static inline integrals corner_of(const node n[3], const double u[3], double f, 
     return out;
 }
 
-/* The sum of both, the second with a sign of the odd powers of u and one of the even ones. */
-static inline integrals added(integrals x, integrals y, double odd, double even)
+/* Adds x with a sign for the odd powers of u and one for the even ones. */
+TL_INLINE void add_integrals(integrals *to, const integrals *x, double odd, double even,
+                             bool curved)
 {
-    return (integrals){x.one + even * y.one, x.a + even * y.a,       x.b + even * y.b,
-                       x.u + odd * y.u,      x.ua + odd * y.ua,      x.ub + odd * y.ub,
-                       x.uu + even * y.uu,   x.uua + even * y.uua,   x.uub + even * y.uub,
-                       x.uuu + odd * y.uuu,  x.uuuu + even * y.uuuu, x.uuua + odd * y.uuua,
-                       x.uuub + odd * y.uuub};
+    to->one += even * x->one;
+    to->a += even * x->a;
+    to->b += even * x->b;
+    to->u += odd * x->u;
+    to->ua += odd * x->ua;
+    to->ub += odd * x->ub;
+    to->uu += even * x->uu;
+    if (!curved)
+        return;
+    to->uua += even * x->uua;
+    to->uub += even * x->uub;
+    to->uuu += odd * x->uuu;
+    to->uuuu += even * x->uuuu;
+    to->uuua += odd * x->uuua;
+    to->uuub += odd * x->uuub;
 }
 
 #endif

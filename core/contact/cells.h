@@ -1,0 +1,59 @@
+/* cells.h - the parts of a patch that its points stand for, and what of each presses (cells.c). */
+#ifndef TL_CONTACT_CELLS_H
+#define TL_CONTACT_CELLS_H
+
+#include "base/columns.h"
+#include "contact/detection.h"
+#include "model/model.h"
+
+/* Of the drawn-in triangle of the centroid over that of an edge, and where on the edge a corner's cell ends: cells.c. */
+#define TL_CELL_INNER 0.30550504633038933 /* sqrt(7 / 75) */
+#define TL_CELL_SIDE (16.0 / 68)
+
+/* A patch whose points are drawn in towards its centroid, the last of them: n between corners, n at corners, and that. */
+typedef struct tl_cell_patch {
+    const tl_points_table *p;
+    const tl_point_lanes *lanes; /* arms, normals, lifts and cells */
+    size_t lane, stride;         /* of the first point, and from each to the next */
+    size_t row, corners;         /* in the table; n */
+    uint32_t faces;              /* their key, which is in all of its points' */
+} tl_cell_patch;
+
+static inline size_t tl_cell_lane(const tl_cell_patch *of, size_t k)
+{
+    return of->lane + k * of->stride;
+}
+
+static inline tl_vec3 tl_cell_arm(const tl_cell_patch *of, size_t k)
+{
+    return tl_columns_get(of->lanes->arm, tl_cell_lane(of, k));
+}
+
+static inline double tl_cell_area(const tl_cell_patch *of, size_t k)
+{
+    return of->p->area[of->row + k * TL_LANES];
+}
+
+/* The patch of a contact whose points are in the lanes given. false: it is none. */
+bool tl_cell_patch_of(const tl_model *m, uint32_t contact, const tl_point_lanes *lanes, size_t lane,
+                      size_t stride, tl_cell_patch *out);
+/* Whether its points are those of all corners and of every two neighbours: where faces hardly overlap some may have had no area. */
+bool tl_cell_patch_is_whole(const tl_cell_patch *of);
+
+/* Where its corner k lies, from the centroid. */
+tl_vec3 tl_cell_corner(const tl_cell_patch *of, size_t k);
+/* Integrals of all cells, of which the overlaps of the faces and the lifts from these are known. Moments are about the centroid. `curved`: of
+ * higher powers, too. */
+void tl_cells_find(const tl_cell_patch *of, bool curved);
+
+/* Second moments of the area about the centroid, along two axes of the plane. */
+typedef struct tl_cell_inertia {
+    tl_vec3 axis[2];
+    double xx, xy, yy;
+} tl_cell_inertia;
+
+tl_cell_inertia tl_cell_inertia_of(const tl_cell_patch *of);
+/* The slope g of a plane whose first moment int (g x) x dA is given; of points on a line none. */
+tl_vec3 tl_cell_slope(const tl_cell_inertia *by, tl_vec3 moment);
+
+#endif

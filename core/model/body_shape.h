@@ -1,0 +1,21 @@
+/* body_shape.h - how small and how thin a body is (body_shape.c). */
+#ifndef TL_MODEL_BODY_SHAPE_H
+#define TL_MODEL_BODY_SHAPE_H
+
+#include "model/model.h"
+
+/* Of all parts of a body, m3; and the cube root of it, m. */
+double tl_body_volume(const tl_model *m, uint32_t body);
+double tl_body_size(const tl_model *m, uint32_t body);
+
+/* Of a body of several parts: of their convex hull. One of thousands of corners counts as round, without edges. */
+typedef struct tl_body_shape {
+    double edge; /* the shortest, m */
+    double
+        aspect; /* diameter over thickness: the largest distance of corners over the least extent along the normal of a face */
+} tl_body_shape;
+
+/* Of a body whose rows are tidy. false: out of memory. */
+bool tl_body_shape_of(const tl_model *m, uint32_t body, tl_body_shape *out);
+
+#endif

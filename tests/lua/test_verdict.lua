@@ -1,0 +1,133 @@
+-- The verdict: what has but closed its joints is at rest and has not moved, at any stiffness; what slides on has failed, and moves on; a stage
+-- begins to count anew. To ask changes nothing, and copies and files give the same.
+local check = require "check"
+local talus = require "talus"
+local verdicts = require "verdicts"
+
+local folder = assert(os.getenv "TALUS_TEST_TMP")
+
+-- tests/verify/long/verdicts.lua tries many more.
+for seed = 1, 24 do
+    check.equal(verdicts.stands(seed), nil)
+    check.equal(verdicts.slides(seed), nil)
+end
+
+local function joint(model, kn, friction)
+    model:joint("*", "coulomb", { kn = kn, ks = kn, friction = friction })
+end
+
+-- A block on a slope of 30 degrees: it stands, then its joint is made weaker.
+local function slope(friction)
+    local model = talus.model { gravity = { 5, 0, -8.66 } }
+    model:generate("box", { min = { -9, -9, -1 }, max = { 9, 9, 0 }, density = 2500 })
+    model:generate("box", { min = { -1, -1, 0 }, max = { 1, 1, 1 }, density = 2500 })
+    model:blocks { id = 1 }:fix()
+    joint(model, 1e9, friction)
+    model:damping "local"
+    return model
+end
+
+local model = slope(40)
+model:cycle(3)
+check.equal(model:verdict().standing, "accelerating")
+model:solve { ratio = 1e-5 }
+check.equal(model:verdict().standing, "at rest")
+model:stage "weaker"
+joint(model, 1e9, 20)
+check.equal(model:solve { ratio = 1e-5, stop_at_failure = true }.reason, "failure")
+local failed = model:verdict()
+check.equal(failed.standing, "failed")
+check.equal(failed.moved, 1)
+check.equal(failed.farthest, 2)
+check.near(failed.volume, 4, 1e-12)
+check.holds(failed.direction[1] > 0.999, "the direction is downhill")
+check.near(failed.slip, failed.displacement, 1e-4 * failed.slip)
+check.equal(failed.slipping, 1)
+check.holds(failed.text:find('failed: 1 block (4 m3) has moved since stage "weaker", towards 090/00, block 2 the farthest', 1, true), failed.text)
+
+-- The same of a copy and from a file; to ask changes nothing.
+local twin = model:copy()
+model:save(folder .. "/verdict.talus")
+local restored = talus.restore(folder .. "/verdict.talus")
+check.equal(twin:verdict().text, failed.text)
+check.equal(restored:verdict().text, failed.text)
+model:cycle(20)
+model:verdict()
+model:cycle(20)
+twin:cycle(40)
+check.equal(model:state_hash(), twin:state_hash())
+
+-- A stage begins to count anew; laws keep what they have.
+local hash = model:state_hash()
+model:stage ""
+check.equal(model:verdict().stage, "")
+check.equal(model:verdict().moved, 0)
+check.equal(model:verdict().slip, 0)
+check.equal(model:verdict().standing, "failed")
+model:cycle(500)
+check.equal(model:verdict().moved, 1)
+
+-- Names that are none change nothing.
+for _, name in ipairs { ("x"):rep(64), "two\nlines", "\xff" } do
+    local before = model:verdict().displacement
+    check.raises(function() model:stage(name) end, "must be one line of UTF-8 of at most 63 bytes")
+    check.equal(model:verdict().displacement, before)
+end
+check.raises(function() model:stage() end, "stage")
+check.holds(hash ~= nil, "a model has a hash")
+
+-- What opens is told as opening: two blocks drawn apart.
+local apart = talus.model { gravity = { 0, 0, 0 } }
+apart:generate("box", { { min = { 0, 0, 0 }, max = { 1, 1, 1 }, density = 2500 }, { min = { 0, 0, 1 }, max = { 1, 1, 2 }, density = 2500 } })
+apart:blocks { id = 1 }:fix()
+apart:joint("*", "elastic", { kn = 1e7, ks = 1e7 })
+apart:damping "local"
+apart:blocks { id = 2 }:load { force = { 0, 0, 1e5 } }
+apart:solve { ratio = 1e-6 }
+check.near(apart:verdict().opening, 0.01, 1e-6)
+
+-- What turns about its edge has moved, at rest or failed, however far the edge sinks in; so has a small block on a large one that is held, and one
+-- that has been joined to a fresh one.
+local function on_base(gravity, wide, deep)
+    local leaning = talus.model { gravity = gravity }
+    leaning:generate("box", { min = { -wide, -wide, -deep }, max = { wide, wide, 0 }, density = 2500 })
+    leaning:blocks():fix()
+    leaning:damping "local"
+    return leaning
+end
+local leaning = on_base({ 2.84, 0, -9 }, 3, 1)
+leaning:generate("box", { min = { 0, 0, 0 }, max = { 0.93, 1, 4.47 }, density = 2500 })
+joint(leaning, 5e7, 45)
+check.equal(leaning:solve { stop_at_failure = true }.reason, "failure")
+check.equal(leaning:verdict().moved, 1)
+leaning = on_base({ 4, 0, -9 }, 4, 1)
+leaning:generate("box", { { min = { 0, 0, 0 }, max = { 1, 1, 4 }, density = 2500 }, { min = { 1.1, 0, 0 }, max = { 2.1, 1, 4 }, density = 2500 } })
+leaning:blocks { id = 3 }:fix()
+joint(leaning, 1e8, 50)
+leaning:solve {}
+check.equal(leaning:verdict().standing, "at rest")
+check.equal(leaning:verdict().moved, 1)
+local small = on_base({ 6, 0, -8 }, 100, 200)
+small:generate("box", { min = { 0, 0, 0 }, max = { 0.2, 0.2, 0.2 }, density = 2500 })
+joint(small, 1e9, 20)
+small:cycle(400)
+check.equal(small:verdict().moved, 1)
+small:generate("box", { min = { 0, 0.5, 0 }, max = { 0.2, 0.7, 0.2 }, density = 2500 })
+small:blocks { where = function(b) return not b.fixed end }:join()
+check.equal(small:verdict().moved, 1)
+
+-- Many blocks on end, each on a soft joint, have slid, and not settled, from a hundredth of their size on; a corner that sinks in as it turns over is
+-- no joint that closes.
+local row = on_base({ 6, 0, -8 }, 60, 2)
+for i = 0, 29 do
+    row:generate("box", { min = { i, 0, 0 }, max = { i + 1, 1, 1 }, density = 2500 })
+end
+joint(row, 1e7, 30)
+row:damping("local", { alpha = 0.1 })
+row:cycle(80)
+check.equal(row:verdict().moved, 30)
+local soft = on_base({ 4, 0, -9 }, 4, 1)
+soft:generate("box", { min = { 0, 0, 0 }, max = { 1, 1, 4 }, density = 2500 })
+joint(soft, 1e6, 60)
+soft:cycle(200)
+check.equal(soft:verdict().moved, 1)
