@@ -117,7 +117,7 @@ static bool call_between(tl_model *m, const progress *p, tl_watch **watch, tl_st
 static void say_failure(tl_model *m, const tl_solve_result *r)
 {
     uint32_t row = tl_block_row_quiet(m, r->failing);
-    double speed = row == TL_NO_ROW ? 0 : tl_v3_norm(tl_block_velocity(m, row));
+    double speed = row == TL_NO_ROW ? 0 : tl_v3_norm(m->bodies.v[m->blocks.body[row]]);
     tl_overlap_push push;
     if (tl_energy_pushed(m, &push)) {
         tl_model_say(

@@ -208,8 +208,10 @@ static void find_slip(const tl_contact_facts *facts, size_t count, tl_verdict *o
 {
     out->contacts = count;
     for (size_t i = 0; i < count; i++) {
-        const double slip = tl_v3_norm(facts[i].shear_displacement);
         out->slipping += facts[i].state == TL_CONTACT_SLIPPING;
+        if (!(facts[i].area > 0))
+            continue; /* edges that touch: parts of a body meet its neighbours with them, too */
+        const double slip = tl_v3_norm(facts[i].shear_displacement);
         if (slip > out->slip) {
             out->slip = slip;
             out->slipped = facts[i].id;
@@ -271,7 +273,8 @@ static void put_direction(tl_vec3 way, char *text, size_t size)
 {
     double trend = tl_atan2(way.x, way.y) / TL_DEGREE;
     double plunge = tl_atan2(-way.z, sqrt(way.x * way.x + way.y * way.y)) / TL_DEGREE;
-    int whole = (int)floor(trend + 0.5), down = (int)floor(plunge + 0.5);
+    int down = (int)floor(plunge + 0.5);
+    int whole = abs(down) == 90 ? 0 : (int)floor(trend + 0.5); /* straight down has no trend */
     tl_text_print(text, size, "%03d/%s%02d", (whole + 360) % 360, down < 0 ? "-" : "", abs(down));
 }
 

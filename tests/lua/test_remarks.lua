@@ -171,3 +171,22 @@ local before, whole = model:timestep().dt, 40 ^ 3
 local found = model:filter(load("return " .. filter)())
 check.holds(found.joined > 10 and found.volume < 0.05 * whole, "it joins slivers")
 check.holds(model:timestep().dt > 50 * before, ("the step is %g times longer"):format(model:timestep().dt / before))
+
+-- The speed at which a body of parts fails is that of the body, whichever part was made first.
+local function failing(first, second)
+    local text = remarks(([[
+local model = talus.model { gravity = { 0, 0, -9.81 } }
+local mast = { { min = { 0, 0, 0 }, max = { 1, 1, 2 }, density = 2500, group = "mast" },
+    { min = { 0, 0, 2 }, max = { 3, 1, 3 }, density = 2500, group = "mast" } }
+model:generate("box", { mast[%d], mast[%d] })
+model:blocks():join()
+model:generate("box", { min = { -9, -9, -1 }, max = { 9, 9, 0 }, density = 2500, group = "floor" })
+model:blocks { group = "floor" }:fix()
+model:joint("*", "coulomb", { kn = 1e9, ks = 1e9, friction = 40 })
+model:damping "local"
+model:solve { stop_at_failure = true }
+]]):format(first, second))
+    return text:match "the model fails: block 1 moves on at (%S+) m/s"
+end
+check.holds(failing(1, 2), "the mast topples")
+check.equal(failing(2, 1), failing(1, 2))
