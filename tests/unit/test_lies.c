@@ -2,6 +2,7 @@
  * sentence that names the file, or what is wrong in it is found anew. */
 #include "contact_scene.h"
 #include "state/archive.h"
+#include "state/drives.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -52,7 +53,7 @@ static void add_edits(tl_model *m)
     m->next_contact = d->next_contact;
 }
 
-/* Two boxes on each other, the lower one held, and one that stands on its edge, after some steps. */
+/* Two boxes on each other, the lower one held, one that stands on its edge, and one that is driven, after some steps. */
 static void save_truth(void)
 {
     tl_model *m = scene_model(1);
@@ -60,8 +61,11 @@ static void save_truth(void)
     scene_box(m, tl_v3(0, 0, 1), tl_v3(1, 1, 2));
     scene_block(m, scene_box_shape(0.5, 0.5, 0.5), scene_turn(tl_v3(1, 0, 0), TL_PI / 4),
                 tl_v3(1.5, 1.5, 1 + 0.999 * sqrt(0.125)));
+    scene_box(m, tl_v3(9, 9, 9), tl_v3(10, 10, 10));
     scene_law(m, "coulomb", 1e8, 1e8, 30);
     scene_ok(m, tl_blocks_fix(m, &m->blocks.id[0], 1, TL_FIX_ALL));
+    const tl_drive drive = {.size = sizeof drive, .velocity = {0, 0, 1}};
+    scene_ok(m, tl_blocks_drive(m, &m->blocks.id[3], 1, &drive));
     add_settings(m);
     add_edits(m);
     scene_ok(m, tl_model_save(m, truth));
@@ -360,6 +364,11 @@ static const lie lies[] = {
     LIE("histories.0.cycles", 0, long_hence),
     LIE("histories.0.cycles", 8, none),
     LIE("histories.0.times", 0, infinite),
+    /* drives */
+    LIE("drives", offsetof(tl_drive_kept, velocity), infinite),
+    LIE("drives", offsetof(tl_drive_kept, angular_velocity), infinite),
+    LIE("drives", offsetof(tl_drive_kept, velocity_now), infinite),
+    LIE("drives", offsetof(tl_drive_kept, angular_velocity_now), infinite),
     /* the step */
     LIE("cycle.dt", 0, below),
     LIE("cycle.dt", 0, infinite),
