@@ -1,6 +1,7 @@
 /* Saved models that lie: one number of one chunk of a file is another one, and all checksums are right. Each is refused with one
  * sentence that names the file, or what is wrong in it is found anew. */
 #include "contact_scene.h"
+#include "cycle/cycle_data.h"
 #include "state/archive.h"
 #include "state/drives.h"
 
@@ -379,6 +380,10 @@ static const lie lies[] = {
 static const lie harmless[] = {
     LIE("detect.spare_share", 0, most),
     LIE("cycle.reaction_of", 0, far_row),
+    LIE("cycle.stiffness_rates", offsetof(struct tl_stiffness_rates, body), far_row),
+    LIE("cycle.step_bounds.lightest", 0, far_row),
+    LIE("cycle.added", offsetof(struct tl_added, worst), far_row),
+    LIE("cycle.sums", offsetof(tl_sums, worst), far_row),
     LIE("cycle.sums", 0, infinite),
     /* at the bounds */
     LIE("model.min_area", 0, none),

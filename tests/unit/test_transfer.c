@@ -366,6 +366,9 @@ TEST(states_are_copied_split_or_reset)
     tl_point_keep_state(&p, 1, &kind, old, 2);
     for (int k = 0; k < 6; k++)
         CHECK_NEAR(p.state[k][1], kept[k], 1e-14);
+    tl_point_clear_vectors(&p, 1, &kind);
+    for (int k = 0; k < 6; k++)
+        CHECK_NEAR(p.state[k][1], k >= 2 && k < 5 ? 0 : kept[k], 1e-14);
     tl_table_free(&p.table);
     tl_table_free(&contacts.table);
 }
