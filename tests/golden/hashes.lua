@@ -1,5 +1,5 @@
--- hashes.lua - the state hashes of the scenes of scenes.lua, compared with the committed ones: the same bits from
--- every compiler, processor, vector width and number of threads.
+-- hashes.lua - the state hashes of the scenes of scenes.lua and joints.lua, and hashes of the texts of answers.lua, compared with the
+-- committed ones: the same bits from every compiler, processor, vector width and number of threads.
 --
 --     build/release/talus tests/golden/hashes.lua            compare with tests/golden/hashes.txt
 --     build/release/talus tests/golden/hashes.lua --renew    write tests/golden/hashes.txt
@@ -8,7 +8,6 @@
 -- fused product or a sum in another order. A difference on every build is a change of results: renew the table in
 -- the commit that brings it about, and say in its message why. Scenes whose first stage differs differ in geometry.
 package.path = "tests/golden/?.lua;" .. package.path -- run in the source root
-local scenes = require "scenes"
 
 local TABLE = "tests/golden/hashes.txt"
 local folder = os.getenv("TALUS_TEST_TMP") or os.tmpname():match("^(.*)/")
@@ -24,17 +23,28 @@ local function read()
     return hashes
 end
 
+-- FNV-1a of a text, 64 bits.
+local function hash_of(text)
+    local hash = 0xcbf29ce484222325
+    for i = 1, #text do
+        hash = (hash ~ text:byte(i)) * 0x100000001b3
+    end
+    return ("%016x"):format(hash)
+end
+
 local found = {} -- {name, hash}, in the order of the scenes
-for _, scene in ipairs(scenes) do
-    scene.run(function(model, stage)
-        found[#found + 1] = { scene.name .. ": " .. stage, model:state_hash() }
-    end, folder)
+for _, file in ipairs { "scenes", "joints", "answers" } do
+    for _, scene in ipairs(require(file)) do
+        scene.run(function(model, stage, text)
+            found[#found + 1] = { scene.name .. ": " .. stage, text and hash_of(text) or model:state_hash() }
+        end, folder)
+    end
 end
 
 if arg[1] == "--renew" then
     local file <close> = assert(io.open(TABLE, "w"))
     for _, row in ipairs(found) do
-        file:write(string.format("%-32s %s\n", row[1], row[2]))
+        file:write(string.format("%-44s %s\n", row[1], row[2]))
     end
     print(string.format("%s: %d hashes written", TABLE, #found))
     return
