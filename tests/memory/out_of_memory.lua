@@ -174,6 +174,8 @@ local calls = {
     { "copy", function(m) return m.model:copy():state_hash() end },
     { "save", function(m) m.model:save(TMP .. "/run.talus") end },
     { "restore", function() return talus.restore(TMP .. "/run.talus", { threads = THREADS }):state_hash() end },
+    { "throw", function(m) m.model:blocks { group = "cap", hidden = "any" }:set { velocity = { 0, 0, 300 } } end },
+    { "fast cycle", function(m) return m.model:cycle(2).ratio end, run = true },
     { "state_hash", function(m) return m.model:state_hash() end },
     { "profile", function(m) return m.model:memory().blocks end },
 }

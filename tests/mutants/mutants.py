@@ -111,7 +111,7 @@ class Copy:
             to = self.source / name
             if not to.exists() or to.read_bytes() != (ROOT / name).read_bytes():
                 to.parent.mkdir(parents=True, exist_ok=True)
-                shutil.copy2(ROOT / name, to)
+                shutil.copy(ROOT / name, to)
         self.environment = {k: v for k, v in os.environ.items() if k not in ("LUA_PATH", "TALUS_PLUGIN_PATH")}
         self.environment["TALUS_TEST_SHARE"] = "10"
         self.run("cmake", "-S", str(self.source), "-B", str(self.build), "-DCMAKE_BUILD_TYPE=Release")

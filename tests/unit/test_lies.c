@@ -17,6 +17,7 @@ static void add_settings(tl_model *m)
     m->min_area = (tl_min_area_rule){1e-4, 1e-6};
     m->timestep.fraction = 0.5;
     m->timestep.dt = 1e-4;
+    scene_ok(m, tl_model_damping(m, "local", NULL));
     const tl_load load = {.size = sizeof load, .force = {0, 0, -10}};
     scene_ok(m, tl_blocks_load(m, &m->blocks.id[1], 1, &load));
     const tl_history what = {
@@ -416,6 +417,20 @@ TEST(a_lie_is_refused)
     }
 }
 
+/* A law or a damping of which nothing is known here. */
+TEST(what_is_not_loaded_is_named)
+{
+    static const char other = 'x';
+    static const lie unknowns[] = {LIE("law.0.kind", 0, other), LIE("damping.kind", 0, other)};
+    for (size_t i = 0; i < sizeof unknowns / sizeof *unknowns; i++) {
+        tl_error error = {0};
+        write_lie(&unknowns[i]);
+        CHECK_INT(restored(&error), TL_E_NOT_FOUND);
+        CHECK_CONTAINS(error.text, i == 0 ? "its law 'xoulomb'" : "its damping 'x");
+        CHECK_CONTAINS(error.text, "which is not loaded: load it with --plugin");
+    }
+}
+
 TEST(what_does_not_matter_is_restored)
 {
     for (size_t i = 0; i < sizeof harmless / sizeof *harmless; i++) {
@@ -439,5 +454,5 @@ TEST(what_cannot_be_read_is_refused)
     CHECK(m == NULL);
 }
 
-TEST_MAIN(RUN(what_is_true_is_restored), RUN(a_lie_is_refused),
+TEST_MAIN(RUN(what_is_true_is_restored), RUN(a_lie_is_refused), RUN(what_is_not_loaded_is_named),
           RUN(what_does_not_matter_is_restored), RUN(what_cannot_be_read_is_refused))
