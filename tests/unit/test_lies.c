@@ -17,7 +17,9 @@ static void add_settings(tl_model *m)
     m->min_area = (tl_min_area_rule){1e-4, 1e-6};
     m->timestep.fraction = 0.5;
     m->timestep.dt = 1e-4;
-    scene_ok(m, tl_model_damping(m, "local", NULL));
+    tl_value alpha = {.key = "alpha", .type = TL_VALUE_NUMBER, .number = 0};
+    const tl_args without = {&alpha, 1};
+    scene_ok(m, tl_model_damping(m, "local", &without));
     const tl_load load = {.size = sizeof load, .force = {0, 0, -10}};
     scene_ok(m, tl_blocks_load(m, &m->blocks.id[1], 1, &load));
     const tl_history what = {
