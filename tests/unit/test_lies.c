@@ -16,7 +16,6 @@ static void add_settings(tl_model *m)
 {
     m->min_area = (tl_min_area_rule){1e-4, 1e-6};
     m->timestep.fraction = 0.5;
-    m->timestep.dt = 1e-4;
     tl_value alpha = {.key = "alpha", .type = TL_VALUE_NUMBER, .number = 0};
     const tl_args without = {&alpha, 1};
     scene_ok(m, tl_model_damping(m, "local", &without));
