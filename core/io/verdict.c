@@ -35,15 +35,29 @@ typedef struct body_facts {
     bool still; /* of the first of a group: it has but closed its joints */
 } body_facts;
 
-/* Contacts with points, their facts, what is seen, and all bodies with the groups that hang together. */
-typedef struct contact_list {
-    const uint32_t *rows;
-    const tl_contact_facts *facts;
+/* Where two bodies meet with faces that look the same way: one contact, or one for each part of a face. Means by area. */
+typedef struct meeting {
+    uint32_t a, b;  /* bodies, a < b */
+    tl_vec3 normal; /* from a to b */
+    double area;    /* m2 */
+    tl_vec3 point;  /* m, in the user's coordinates */
+    tl_vec3 slip;   /* of b against a, across the normal, m */
+    double opening; /* m */
+    double sprung;  /* how far the springs have let them move, m */
+    tl_id contact;  /* the first */
+} meeting;
+
+/* Faces of a meeting look the same way up to this sine. */
+#define SAME_WAY 0.02
+
+/* All meetings, what is seen, and all bodies with the groups that hang together. */
+typedef struct motion_list {
+    meeting *meetings;
     size_t count;
     double seen;
     body_facts *body;
     uint32_t *of; /* groups.h */
-} contact_list;
+} motion_list;
 
 static int compare(const void *a, const void *b)
 {
@@ -78,7 +92,7 @@ static tl_vec3 way_of(const tl_model *m, uint32_t body, double volume)
     return tl_v3_scale(1 / volume, sum);
 }
 
-static void find_bodies(const tl_model *m, const contact_list *list, tl_verdict *out)
+static void find_bodies(const tl_model *m, const motion_list *list, tl_verdict *out)
 {
     for (uint32_t body = 0; body < m->bodies.table.rows; body++) {
         const double volume = tl_body_volume(m, body);
@@ -96,75 +110,69 @@ static void find_bodies(const tl_model *m, const contact_list *list, tl_verdict 
 
 /* ---------------------------------------------------------------- what has but closed ---- */
 
-/* How far the springs of a contact may have let its blocks move against each other, m: the most that a point is pressed or pulled in, and
- * what is sheared. */
+/* How far the springs of a contact have let its blocks move against each other, m, times its area: pressed or pulled in, and sheared. */
 static double sprung(const tl_model *m, uint32_t contact, const tl_contact_facts *facts)
 {
     const tl_detect *d = m->detect;
     const uint32_t law = d->contacts.law[contact];
     const double kn = law == TL_NO_ROW ? 0 : m->joint_laws[law].kn;
     const double ks = law == TL_NO_ROW ? 0 : m->joint_laws[law].ks;
-    double most = 0;
-    for (size_t k = 0; k < d->contacts.point_count[contact] && kn > 0; k++) {
+    double pressed = 0;
+    for (size_t k = 0; k < tl_point_count(m, contact) && kn > 0; k++) {
         const size_t i = tl_point_row(&d->contacts, contact, k);
-        const double area = d->points.area[i], initial = d->points.f_n0 ? d->points.f_n0[i] : 0;
-        most = fmax(most, area > 0 ? fabs(d->points.f_n[i] - initial) / (kn * area) : 0);
+        pressed += fabs(d->points.f_n[i] - (d->points.f_n0 ? d->points.f_n0[i] : 0)) / kn;
     }
-    return most +
-           (ks > 0 && facts->area > 0 ? tl_v3_norm(facts->shear_force) / (ks * facts->area) : 0);
+    return pressed + (ks > 0 ? tl_v3_norm(facts->shear_force) / ks : 0);
 }
 
-/* Rotation of a block since displacements began to count. */
-static tl_quat turn_of(const tl_model *m, uint32_t row)
+/* Rotation of a body since displacements of its first block began to count. */
+static tl_quat turn_of(const tl_model *m, uint32_t body)
 {
-    const tl_quat q = m->bodies.q[m->blocks.body[row]];
+    const uint32_t row = m->members[m->bodies.member_start[body]];
+    const tl_quat q = m->bodies.q[body];
     return m->blocks.base_turn ? tl_q_mul(q, tl_q_conj(m->blocks.base_turn[row])) : q;
 }
 
-/* Where a point of a block's body was then, which has come by `way`. */
-static tl_vec3 came_from(const tl_model *m, uint32_t row, tl_vec3 way, tl_vec3 x)
+/* Where a point of a body was then, which has come by `way`. */
+static tl_vec3 came_from(const tl_model *m, uint32_t body, tl_vec3 way, tl_vec3 x)
 {
-    const tl_vec3 c = tl_v3_add(m->origin, tl_body_place(&m->bodies, m->blocks.body[row]));
-    const tl_vec3 arm = tl_q_rotate(tl_q_conj(turn_of(m, row)), tl_v3_sub(x, c));
+    const tl_vec3 c = tl_v3_add(m->origin, tl_body_place(&m->bodies, body));
+    const tl_vec3 arm = tl_q_rotate(tl_q_conj(turn_of(m, body)), tl_v3_sub(x, c));
     return tl_v3_add(tl_v3_sub(c, way), arm);
 }
 
-/* Whether the bodies of contact i have moved against each other, since the stage began, by no more than its springs. */
-static bool has_but_closed(const tl_model *m, const contact_list *list, size_t i)
+/* Whether the bodies of a meeting have moved against each other, since the stage began, by no more than its springs. */
+static bool has_but_closed(const tl_model *m, const motion_list *list, const meeting *of)
 {
-    const uint32_t c = list->rows[i];
-    const uint32_t a = m->detect->contacts.a[c], b = m->detect->contacts.b[c];
-    const body_facts *of_a = &list->body[m->blocks.body[a]], *of_b = &list->body[m->blocks.body[b]];
-    const tl_contact_facts *facts = &list->facts[i];
+    const body_facts *of_a = &list->body[of->a], *of_b = &list->body[of->b];
     const double size = fmin(of_a->size, of_b->size);
-    /* the contact may be younger than the stage, and its blocks may have gone to and fro */
-    const double parted = tl_v3_norm(tl_v3_sub(came_from(m, b, of_b->way, facts->point),
-                                               came_from(m, a, of_a->way, facts->point)));
-    const double slid =
-        sqrt(tl_v3_norm2(facts->shear_displacement) + facts->opening * facts->opening);
+    /* the contacts may be younger than the stage, and their blocks may have gone to and fro */
+    const double parted = tl_v3_norm(tl_v3_sub(came_from(m, of->b, of_b->way, of->point),
+                                               came_from(m, of->a, of_a->way, of->point)));
+    const double slid = sqrt(tl_v3_norm2(of->slip) + of->opening * of->opening);
     const double turned =
-        tl_v3_norm(tl_v3_sub(tl_q_vector(turn_of(m, b)), tl_q_vector(turn_of(m, a))));
-    const double most = fmin(SPRINGS * sprung(m, c, facts), MOST_SPRUNG * size) + list->seen;
+        tl_v3_norm(tl_v3_sub(tl_q_vector(turn_of(m, of->b)), tl_q_vector(turn_of(m, of->a))));
+    const double most = fmin(SPRINGS * of->sprung, MOST_SPRUNG * size) + list->seen;
     return fmax(parted, slid) <= most && turned * size <= most;
 }
 
 /* Finds which bodies have but closed their joints: those that hang together, by contacts that have, with one that is held or has moved by less
  * than `closed`. */
-static void find_still(const tl_model *m, const contact_list *list, const tl_verdict *v)
+static void find_still(const tl_model *m, const motion_list *list, const tl_verdict *v)
 {
     for (size_t i = 0; i < list->count; i++) {
-        const uint32_t a = m->blocks.body[m->detect->contacts.a[list->rows[i]]];
-        const uint32_t b = m->blocks.body[m->detect->contacts.b[list->rows[i]]];
-        if (!list->body[a].failed && !list->body[b].failed &&
-            tl_first_of(list->of, a) != tl_first_of(list->of, b) && has_but_closed(m, list, i))
-            tl_put_together(list->of, a, b);
+        const meeting *of = &list->meetings[i];
+        if (!list->body[of->a].failed && !list->body[of->b].failed &&
+            tl_first_of(list->of, of->a) != tl_first_of(list->of, of->b) &&
+            has_but_closed(m, list, of))
+            tl_put_together(list->of, of->a, of->b);
     }
     for (uint32_t body = 0; body < m->bodies.table.rows; body++)
         if (tl_v3_norm(list->body[body].way) <= v->closed && !list->body[body].failed)
             list->body[tl_first_of(list->of, body)].still = true;
 }
 
-static void find_moved(const tl_model *m, const contact_list *list, tl_verdict *out)
+static void find_moved(const tl_model *m, const motion_list *list, tl_verdict *out)
 {
     const double least = fmax(out->closed, LEAST_SHARE * out->displacement);
     double closed = out->closed;
@@ -188,7 +196,7 @@ static void find_moved(const tl_model *m, const contact_list *list, tl_verdict *
 }
 
 /* All that needs memory for each body. */
-static bool find_motion(const tl_model *m, contact_list *list, tl_verdict *out)
+static bool find_motion(const tl_model *m, motion_list *list, tl_verdict *out)
 {
     const size_t bodies = m->bodies.table.rows;
     list->body = malloc((bodies + 1) * sizeof *list->body);
@@ -204,21 +212,96 @@ static bool find_motion(const tl_model *m, contact_list *list, tl_verdict *out)
     return done;
 }
 
-static void find_slip(const tl_contact_facts *facts, size_t count, tl_verdict *out)
+/* ---------------------------------------------------------------- meetings --------------- */
+
+/* A contact with its bodies, the lower one first. */
+typedef struct touch {
+    uint32_t a, b;
+    size_t contact;
+    bool turned; /* its own first block is of b */
+} touch;
+
+static int compare_touches(const void *x, const void *y)
 {
-    out->contacts = count;
+    const touch *p = x, *q = y;
+    if (p->a != q->a)
+        return (p->a > q->a) - (p->a < q->a);
+    if (p->b != q->b)
+        return (p->b > q->b) - (p->b < q->b);
+    return (p->contact > q->contact) - (p->contact < q->contact);
+}
+
+/* Adds a contact to what two bodies have met by so far, from `first` on; sums, which are divided by the area at the end. */
+static void add_touch(motion_list *list, size_t first, const touch *by,
+                      const tl_contact_facts *facts, double sprung)
+{
+    const double sign = by->turned ? -1 : 1;
+    const tl_vec3 normal = tl_v3_scale(sign, facts->normal);
+    size_t i = first;
+    while (i < list->count &&
+           !(tl_v3_dot(normal, list->meetings[i].normal) > 0 &&
+             tl_v3_norm(tl_v3_cross(normal, list->meetings[i].normal)) < SAME_WAY))
+        i++;
+    meeting *to = &list->meetings[i];
+    if (i == list->count) {
+        *to = (meeting){.a = by->a, .b = by->b, .normal = normal, .contact = facts->id};
+        list->count++;
+    }
+    to->area += facts->area;
+    to->point = tl_v3_madd(to->point, facts->area, facts->point);
+    to->slip = tl_v3_madd(to->slip, sign * facts->area, facts->shear_displacement);
+    to->opening += facts->area * facts->opening;
+    to->sprung += sprung;
+}
+
+/* Finds the meetings; edges that only touch are none. false: out of memory. */
+static bool find_meetings(const tl_model *m, const uint32_t *rows, const tl_contact_facts *facts,
+                          size_t count, motion_list *list)
+{
+    size_t touches = 0, first = 0;
+    touch *touch_of = malloc((count + 1) * sizeof *touch_of);
+    list->meetings = malloc((count + 1) * sizeof *list->meetings);
+    if (!touch_of || !list->meetings) {
+        free(touch_of);
+        return false;
+    }
     for (size_t i = 0; i < count; i++) {
-        out->slipping += facts[i].state == TL_CONTACT_SLIPPING;
-        if (!(facts[i].area > 0))
-            continue; /* edges that touch: parts of a body meet its neighbours with them, too */
-        const double slip = tl_v3_norm(facts[i].shear_displacement);
+        const uint32_t a = m->blocks.body[m->detect->contacts.a[rows[i]]];
+        const uint32_t b = m->blocks.body[m->detect->contacts.b[rows[i]]];
+        if (facts[i].area > 0)
+            touch_of[touches++] = a < b ? (touch){a, b, i, false} : (touch){b, a, i, true};
+    }
+    qsort(touch_of, touches, sizeof *touch_of, compare_touches);
+    for (size_t i = 0; i < touches; i++) {
+        const touch *by = &touch_of[i];
+        if (i > 0 && (by->a != by[-1].a || by->b != by[-1].b))
+            first = list->count;
+        add_touch(list, first, by, &facts[by->contact],
+                  sprung(m, rows[by->contact], &facts[by->contact]));
+    }
+    free(touch_of);
+    for (size_t i = 0; i < list->count; i++) {
+        meeting *of = &list->meetings[i];
+        of->point = tl_v3_scale(1 / of->area, of->point);
+        of->slip = tl_v3_scale(1 / of->area, of->slip);
+        of->opening /= of->area;
+        of->sprung /= of->area;
+    }
+    return true;
+}
+
+static void find_slip(const motion_list *list, tl_verdict *out)
+{
+    for (size_t i = 0; i < list->count; i++) {
+        const meeting *of = &list->meetings[i];
+        const double slip = tl_v3_norm(of->slip);
         if (slip > out->slip) {
             out->slip = slip;
-            out->slipped = facts[i].id;
+            out->slipped = of->contact;
         }
-        if (facts[i].opening > out->opening) {
-            out->opening = facts[i].opening;
-            out->opened = facts[i].id;
+        if (of->opening > out->opening) {
+            out->opening = of->opening;
+            out->opened = of->contact;
         }
     }
 }
@@ -226,7 +309,7 @@ static void find_slip(const tl_contact_facts *facts, size_t count, tl_verdict *o
 tl_status tl_verdict_of(tl_model *m, double median, const uint32_t *rows,
                         const tl_contact_facts *facts, size_t count, tl_verdict *out)
 {
-    contact_list list = {rows, facts, count, LEAST_SEEN * median, NULL, NULL};
+    motion_list list = {.seen = LEAST_SEEN * median};
     *out = (tl_verdict){.farthest = TL_NO_ID, .slipped = TL_NO_ID, .opened = TL_NO_ID};
     out->standing = tl_model_stands(m);
     out->ratio = tl_model_balance(m).ratio_local;
@@ -234,8 +317,14 @@ tl_status tl_verdict_of(tl_model *m, double median, const uint32_t *rows,
     if (out->standing != TL_STANDING_UNKNOWN)
         out->closed = fmax(list.seen, fmin(tl_closed_by_weight(m), MOST_SETTLED * median));
     memcpy(out->stage, m->stage, sizeof out->stage);
-    find_slip(facts, count, out);
-    return find_motion(m, &list, out) ? TL_OK : tl_fail_memory(&m->error);
+    out->contacts = count;
+    for (size_t i = 0; i < count; i++)
+        out->slipping += facts[i].state == TL_CONTACT_SLIPPING;
+    const bool done = find_meetings(m, rows, facts, count, &list) && find_motion(m, &list, out);
+    if (done)
+        find_slip(&list, out);
+    free(list.meetings);
+    return done ? TL_OK : tl_fail_memory(&m->error);
 }
 
 tl_status tl_model_verdict(tl_model *m, tl_verdict *out)

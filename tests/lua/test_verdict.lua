@@ -131,3 +131,29 @@ soft:generate("box", { min = { 0, 0, 0 }, max = { 1, 1, 4 }, density = 2500 })
 joint(soft, 1e6, 60)
 soft:cycle(200)
 check.equal(soft:verdict().moved, 1)
+
+-- Of a body that slides and leans the same is said, however many parts it has.
+local function divided(cuts)
+    local body = talus.model { gravity = { 4.5, 0, -10 } }
+    body:generate("box", { min = { -5, -5, -1 }, max = { 9, 9, 0 }, density = 2600 })
+    body:blocks():fix()
+    for i = 1, #cuts - 1 do
+        body:generate("box", { min = { cuts[i], 0, 0 }, max = { cuts[i + 1], 3, 2.9 }, density = 2600, group = "body" })
+    end
+    body:blocks { group = "body" }:join()
+    body:joint("*", "coulomb", { kn = 1.3e8, ks = 1e8, friction = 16 })
+    body:damping "local"
+    local said = {}
+    for stage = 1, 6 do
+        body:cycle(50)
+        said[stage] = body:verdict()
+    end
+    return said
+end
+local whole = divided { 0, 1.6 }
+for _, cuts in ipairs { { 0, 0.8, 1.6 }, { 0, 0.2, 1.5, 1.6 }, { 0, 0.4, 0.8, 1.2, 1.6 } } do
+    for stage, said in ipairs(divided(cuts)) do
+        check.equal(said.moved, whole[stage].moved)
+        check.near(said.slip, whole[stage].slip, 0.06 * whole[stage].slip + 1e-5) -- each part presses as itself
+    end
+end

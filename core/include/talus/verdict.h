@@ -41,7 +41,7 @@ typedef struct tl_verdict {
     tl_id farthest; /* first block of the body that has moved the most; TL_NO_ID: there is none */
     double displacement; /* of that, m */
     double slip,
-        opening; /* the largest since the stage began, m: how far blocks that touch have moved along their contact, and apart */
+        opening; /* the largest since the stage began, m: how far two bodies have moved along and apart where they meet with faces that look the same way, the mean of their contacts by area */
     tl_id slipped, opened; /* contacts of these; TL_NO_ID: none */
     size_t contacts, slipping;
     char stage[TL_STAGE_NAME + 1]; /* "": none */
