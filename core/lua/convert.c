@@ -174,6 +174,9 @@ void tl_lua_args(lua_State *L, int index, const char *context, const tl_lua_key 
         if (lua_type(L, -2) != LUA_TSTRING)
             tl_lua_fail(L, "%s: parameters are given by name (name = value); %s has none", context,
                         tl_lua_describe(L, -1));
+        if (strlen(lua_tostring(L, -2)) != lua_rawlen(L, -2))
+            tl_lua_fail(L, "%s: the name of a parameter has a zero byte, after '%s'", context,
+                        lua_tostring(L, -2));
         pairs++;
     }
     tl_value *values = lua_newuserdatauv(L, pairs * sizeof *values, 0);

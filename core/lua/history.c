@@ -123,6 +123,8 @@ static void read_value(lua_State *L, tl_history *h)
             h->name, tl_lua_describe(L, -1));
     h->source = TL_FROM_MODEL;
     const char *name = lua_tostring(L, -1);
+    if (strlen(name) != lua_rawlen(L, -1))
+        tl_lua_fail(L, "history '%s': value has a zero byte, after '%s'", h->name, name);
     tl_lua_names names = {0};
     const char *known;
     for (size_t i = 0; (known = tl_history_quantity(i)) != NULL; i++) {

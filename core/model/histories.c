@@ -9,19 +9,15 @@
 
 static bool is_text(const char *text, size_t room)
 {
-    const char *end = memchr(text, '\0', room);
-    for (const char *c = text; end && c < end; c++)
-        if ((unsigned char)*c < ' ' || *c == 127)
-            return false;
-    return end != NULL;
+    return memchr(text, '\0', room) && tl_text_is_clean(text);
 }
 
 const char *tl_history_unsound(const tl_model *m, const tl_history *h)
 {
     if (!is_text(h->name, sizeof h->name) || h->name[0] == '\0')
-        return "a history has no name of one line";
+        return "a history has no name of one line of UTF-8";
     if (!is_text(h->asked, sizeof h->asked))
-        return "a history asks for what has no name of one line";
+        return "a history asks for what has no name of one line of UTF-8";
     if (h->source > TL_FROM_CONTACTS || h->take > TL_TAKE_MAX || h->every < 1)
         return "a history has an impossible setting";
     if ((h->id_count > 0) != (h->source >= TL_FROM_BLOCKS) || (!h->selection && h->id_count > 1))

@@ -57,10 +57,14 @@ typedef struct work {
     size_t moved_count; /* bodies whose faces are those of now; the first */
     tl_id moved_first;
     size_t block_capacity, edge_capacity;
+    tl_vec3 gravity; /* m/s2 */
     tl_keyblocks *result;
 } work;
 
 /* ---------------------------------------------------------------- strength --------------- */
+
+/* Gravity and cohesion beyond which products with masses and areas leave the range of numbers. */
+#define LARGEST 1e100
 
 /* How closely a joint of the query names a tag: 3 the plane, 2 the set, 1 every joint, 0 not. */
 static int closeness(tl_tag pattern, tl_tag tag)
@@ -109,12 +113,25 @@ static tl_status parse_strength(work *w)
             status = tl_fail(&w->model->error, TL_E_ARGUMENT,
                              "keyblocks: joint '%s': friction = %g deg is outside [0, 90)",
                              s->joint, s->friction);
-        if (status == TL_OK && !isnan(s->cohesion) && !(s->cohesion >= 0 && isfinite(s->cohesion)))
+        if (status == TL_OK && !isnan(s->cohesion) && !(s->cohesion >= 0 && s->cohesion <= LARGEST))
             status = tl_fail(&w->model->error, TL_E_ARGUMENT,
-                             "keyblocks: joint '%s': cohesion = %g Pa must be >= 0", s->joint,
-                             s->cohesion);
+                             "keyblocks: joint '%s': cohesion = %g Pa is outside [0, %g]", s->joint,
+                             s->cohesion, LARGEST);
     }
     return status;
+}
+
+/* The acceleration that is asked for, or that of the model. */
+static tl_status find_gravity(work *w)
+{
+    w->gravity = isnan(w->query->gravity.x) ? w->model->config.gravity : w->query->gravity;
+    const tl_vec3 g = w->gravity;
+    const double most = fmax(fmax(fabs(g.x), fabs(g.y)), fabs(g.z));
+    if (most == 0 || (most >= 1 / LARGEST && most <= LARGEST))
+        return TL_OK;
+    return tl_fail(&w->model->error, TL_E_ARGUMENT,
+                   "keyblocks: gravity of %g m/s2 must be 0 or within [%g, %g]", most, 1 / LARGEST,
+                   LARGEST);
 }
 
 /* ---------------------------------------------------------------- faces ------------------ */
@@ -348,10 +365,7 @@ static tl_status test_body(work *w, uint32_t body)
                          .edge_count = result->edge_count - first};
     for (uint32_t k = 0; k < m->bodies.member_count[body]; k++)
         block.volume += m->blocks.volume[m->members[m->bodies.member_start[body] + k]];
-    tl_vec3 gravity = w->query->gravity;
-    if (isnan(gravity.x))
-        gravity = m->config.gravity;
-    block.force = tl_v3_madd(tl_load_of(&m->bodies, body).force, block.mass, gravity);
+    block.force = tl_v3_madd(tl_load_of(&m->bodies, body).force, block.mass, w->gravity);
     find_mode(w, part_along(w, block.force), &block);
     result->blocks[result->count++] = block;
     return TL_OK;
@@ -388,6 +402,8 @@ tl_status tl_model_keyblocks(tl_model *m, const tl_keyblock_query *given, tl_key
     tl_id first_driven = TL_NO_ID;
     tl_status status = TL_OPTIONS_READ(tl_keyblock_query, given, &query, &m->error);
     tl_rows_tidy(m);
+    if (status == TL_OK)
+        status = find_gravity(&w);
     if (status == TL_OK)
         status = parse_strength(&w);
     if (status == TL_OK)

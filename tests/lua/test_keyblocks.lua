@@ -198,3 +198,22 @@ check.refused(model, function() model:keyblocks { friction = { 30 } } end, "name
 check.refused(model, function() model:keyblocks { friction = 30, cohesion = -1 } end,
     "cohesion = -1")
 check.refused(model, function() model:keyblocks { frction = 30 } end, "friction")
+
+-- Accelerations and strengths beyond the range of numbers, and names that are cut.
+do
+    local model = talus.model {}
+    model:generate("box", { min = { 0, 0, 0 }, max = { 2, 2, 2 }, density = 2000 })
+    model:generate("joint", { joint = "J1", dip = 30, dip_direction = 90, origin = { 1, 1, 1 } })
+    model:blocks { boundary = "zmin" }:fix()
+    for _, g in ipairs { 1e-90, 1, 1e90 } do
+        check.near(model:keyblocks { friction = 35, gravity = { 0, 0, -g } }[1].safety, math.tan(math.rad(35)) / math.tan(math.rad(30)), 1e-12)
+    end
+    for _, g in ipairs { 1e-170, 1e160 } do
+        check.refused(model, function() model:keyblocks { friction = 35, gravity = { 0, 0, -g } } end, "must be 0 or within [1e-100, 1e+100]")
+    end
+    check.refused(model, function() model:keyblocks { friction = 35, cohesion = 1e308 } end, "cohesion = 1e+308 Pa is outside [0, 1e+100]")
+    check.refused(model, function() model:keyblocks { friction = { ["*"] = 30, ["J1\0x"] = 5 } } end, "has a zero byte, after 'J1'")
+    check.refused(model, function() model:timestep { ["dt\0x"] = 1 } end, "timestep: the name of a parameter has a zero byte, after 'dt'")
+    check.refused(model, function() model:history { name = "h", value = "kinetic\0junk" } end, "value has a zero byte, after 'kinetic'")
+    check.refused(model, function() model:history { name = "\xff", value = "kinetic" } end, "UTF-8")
+end
