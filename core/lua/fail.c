@@ -18,9 +18,21 @@ void tl_lua_push_where(lua_State *L)
     lua_pushliteral(L, "");
 }
 
-/* Raises "file:line: " and the sentence, the two texts on the top of the stack. Line ends in names are shown escaped. */
+/* Longest sentence, in bytes, and what is kept of its beginning and end: of a name of 100 kB not all is said again. */
+#define LONGEST 2000
+#define KEPT 900
+
+/* Raises "file:line: " and the sentence, the two texts on the top of the stack. Line ends in names are shown escaped, long ones cut. */
 static int raise_sentence(lua_State *L)
 {
+    const size_t length = lua_rawlen(L, -1);
+    if (length > LONGEST) {
+        lua_pushlstring(L, lua_tostring(L, -1), KEPT);
+        lua_pushliteral(L, " ... ");
+        lua_pushstring(L, lua_tostring(L, -3) + length - KEPT);
+        lua_concat(L, 3);
+        lua_remove(L, -2);
+    }
     const char *text = lua_tostring(L, -1);
     if (!tl_text_is_clean(text)) {
         luaL_Buffer buffer;

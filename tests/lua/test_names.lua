@@ -104,3 +104,9 @@ refused(function() lines:cycle(LINES) end)
 refused(function() talus.law_test { law = LINES, path = { 1 } } end)
 
 os.execute(string.format("rm -r '%s'", folder))
+
+-- Of a name without end the sentence says the beginning and the end.
+do
+    local good, said = pcall(function() model:blocks { boundary = ("x"):rep(100000) } end)
+    check.holds(not good and #said < 3000 and said:find("xxx ... xxx", 1, true), said:sub(1, 300))
+end
