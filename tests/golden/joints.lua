@@ -13,6 +13,10 @@ local LAWS = {
     { "held over a gap", "coulomb_tensile", { kn = 1e8, ks = 1e8, friction = 35, cohesion = 3e3, tension = 2e3, residual_tension = 1.5e3 } },
     { "cohesive", "cohesive", { kn = 1e8, ks = 1e8, tension = 3e4, cohesion = 5e4, energy_tension = 30, energy_shear = 60, friction = 30 } },
     { "barton_bandis", "barton_bandis", { jrc = 9, jcs = 5e7, phi_r = 28, length = 0.5, kni = 4e8, vm = 4e-4, ks = 2e8 } },
+    { "barton_bandis with a knee", "barton_bandis", { jrc = 6, jcs = 3e7, phi_r = 25, length = 1, kni = 2e8, vm = 5e-4, ks = 1e8, linear_from = 2.5e4,
+        reduction = 1.2 } },
+    { "yielding with a knee", "continuously_yielding", { an = 4e5, en = 0.5, as = 3e5, es = 0.5, kn_max = 4e7, ks_max = 3e7, phi_i = 40, phi = 25,
+        roughness = 5e-3, softening = false } },
     { "yielding", "continuously_yielding", { an = 4e5, en = 0.5, as = 3e5, es = 0.5, kn_max = 2e9, ks_max = 2e9, phi_i = 45, phi = 30,
         roughness = 2e-3 } },
     { "rate_state", "rate_state", { kn = 2e8, ks = 1e8, a = 0.02, b = 0.03, distance = 1e-4, damping = 1e4 } },
@@ -20,6 +24,16 @@ local LAWS = {
         form = "exponential", healing = "time", healing_time = 0.02 } },
     { "elastic", "elastic", { kn = 1e8, ks = 4e7 } },
 }
+
+-- Notes the state and what the ledger of energy says of it.
+local function both(note)
+    return function(model, stage)
+        local energy = model:energy()
+        note(model, stage)
+        note(model, stage .. ", J", ("%a %a %a %a %a %a"):format(energy.kinetic, energy.potential, energy.stored, energy.friction, energy.damping,
+            energy.external))
+    end
+end
 
 local function box(model, min, max, group)
     model:generate("box", { min = min, max = max, density = 2500, group = group })
@@ -72,7 +86,7 @@ local function run(law, parameters, note)
 end
 
 for _, row in ipairs(LAWS) do
-    joints[#joints + 1] = { name = row[1], run = function(note) run(row[2], row[3], note) end }
+    joints[#joints + 1] = { name = row[1], run = function(note) run(row[2], row[3], both(note)) end }
 end
 
 -- The same stones, pressed by an initial stress, cut through and let go.
@@ -96,13 +110,14 @@ local function stressed(law, parameters, note)
 end
 
 for _, row in ipairs(LAWS) do
-    joints[#joints + 1] = { name = row[1] .. ", stressed", run = function(note) stressed(row[2], row[3], note) end }
+    joints[#joints + 1] = { name = row[1] .. ", stressed", run = function(note) stressed(row[2], row[3], both(note)) end }
 end
 
 -- ---------------------------------------------------------------- steps
 
 local function scaled(name, rotation, set)
-    joints[#joints + 1] = { name = name, run = function(note)
+    joints[#joints + 1] = { name = name, run = function(plain)
+        local note = both(plain)
         local model = talus.model { gravity = { 0.5, 1, -9 }, rotation = rotation, seed = 6 }
         box(model, { 0, 0, 0 }, { 2, 2, 1.5 }, "rock")
         model:generate("jointset", { joint = "J1", dip = 70, dip_direction = 300, spacing = 0.4, spacing_dev = 0.2, number = 4, origin = { 1, 1, 0.7 } })
