@@ -58,6 +58,7 @@ local function build(law, parameters, gravity)
     model:generate("polyhedron", { vertices = { { 3, 3, 0 }, { 4, 3.2, 0.001 }, { 3.8, 4, 0 }, { 3, 3.9, 0.02 }, { 3.1, 3.1, 1.2 }, { 3.6, 3.4, 1.1 } },
         density = 2500, group = "leaning" })
     box(model, { 4, 2.8, 0 }, { 5, 4.5, 2 }, "wall")
+    box(model, { -2.5, -2, 2e-6 }, { -2.3, -1.8, 0.2 }, "near") -- a gap that counts for it and not for the floor
     model:blocks { group = "wall" }:fix { x = true }
     model:joint("*", law, parameters)
     return model
