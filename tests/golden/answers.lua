@@ -76,6 +76,7 @@ answer("slope", function(note, folder)
     note(model, "slivers", told(model:filter { volume = 0.6, aspect = 5, edge = 0.5 }))
     note(model, "step", told { model:timestep().dt, model:timestep().message })
     model:cycle(250)
+    note(model, "facts", facts(model))
     note(model, "keyblocks", told(model:keyblocks { friction = { ["*"] = 30, D2 = 25 }, cohesion = { ["*"] = 0, D1 = 2e3 } }))
     note(model, "pushed keyblocks", told(model:keyblocks { friction = 30, gravity = { -4, 1, -9 } }))
     note(model, "energy", told(model:energy()))
@@ -89,11 +90,12 @@ answer("slope", function(note, folder)
     model:history { name = "kinetic", value = "kinetic", every = 7 }
     model:solve { ratio = 1e-4, max_cycles = 600, stop_at_failure = true }
     note(model, "verdict of failure", told(model:verdict()))
+    note(model, "facts of failure", facts(model))
     note(model, "histories", told(model:histories()))
     note(model, "keyblocks of failure", told(model:keyblocks { friction = 30 }))
     model:write_section(folder .. "/golden_cut", { dip = 90, dip_direction = 0, origin = { 5, 3, 3 } })
     model:write_vtk(folder .. "/golden", { contacts = true })
-    for _, name in ipairs { "cut_section", "blocks", "joints" } do
+    for _, name in ipairs { "cut_section", "blocks", "contacts", "joints" } do
         note(model, name .. " for ParaView", text_of(folder .. "/golden_" .. name .. "_000000.vtk"))
     end
 end)
