@@ -3,6 +3,7 @@
 #include "contact/places.h"
 
 #include "base/columns.h"
+#include "base/extremes.h"
 #include "contact/detection.h"
 #include "contact/facing.h"
 #include "narrow/frame2.h"
@@ -107,12 +108,6 @@ void tl_contact_begin(tl_model *m, uint32_t contact, const tl_point_lanes *l)
     f->last = facing_of(f, &frames).n;
 }
 
-/* The smaller number, and of zeros the first: fmin gives the sign of one or the other as the compiler likes. */
-static double smaller(double a, double b)
-{
-    return b < a ? b : a;
-}
-
 /* The smallest gap at a corner of a patch whose points are drawn in towards its centroid, the last of them; else that of its
  * points. */
 static double corner_gap(const tl_model *m, uint32_t contact, const tl_facing *to,
@@ -129,7 +124,7 @@ static double corner_gap(const tl_model *m, uint32_t contact, const tl_facing *t
     for (size_t k = count / 2; k < count - 1; k++) {
         size_t i = tl_point_row(contacts, contact, k);
         double at = tl_v3_dot(to->plane, placed(place, tl_columns_get(p->p, i)));
-        gap = smaller(gap, centre + (at - centre) / tl_point_rule_of(false).reach - to->offset);
+        gap = tl_smaller(centre + (at - centre) / tl_point_rule_of(false).reach - to->offset, gap);
     }
     return gap;
 }
@@ -153,7 +148,7 @@ void tl_contact_summary(const tl_model *m, uint32_t contact, tl_vec3 *normal, tl
         tl_vec3 at = placed(&place, tl_columns_get(p->p, i));
         x = tl_v3_madd(x, p->area[i], at);
         area += p->area[i];
-        *gap = smaller(*gap, tl_v3_dot(to.plane, at) - to.offset);
+        *gap = tl_smaller(tl_v3_dot(to.plane, at) - to.offset, *gap);
     }
     *gap = corner_gap(m, contact, &to, &place, *gap);
     if (f->kind == TL_FACET_FIELD && contacts->point_count[contact] > 0)

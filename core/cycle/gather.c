@@ -3,18 +3,13 @@
  * What the measures of convergence ask (rest.c) is summed on the way. */
 #include "cycle/cycle_data.h"
 
+#include "base/extremes.h"
 #include "contact/contacts.h"
 
 static tl_vec3 free_part(tl_vec3 v, unsigned fixed)
 {
     return tl_v3(fixed & TL_FIX_X ? 0 : v.x, fixed & TL_FIX_Y ? 0 : v.y,
                  fixed & TL_FIX_Z ? 0 : v.z);
-}
-
-/* fmax, of which few compilers make one instruction. */
-static double larger(double a, double b)
-{
-    return a > b ? a : b;
 }
 
 static void gather_body(tl_model *m, uint32_t body)
@@ -56,16 +51,16 @@ static void sum_ratios(const tl_model *m, uint32_t body, double weight, tl_sums 
     double unbalanced = tl_v3_norm(b->force[body]);
     double turning = tl_v3_norm(b->moment[body]) / b->radius[body];
     double contact = m->cycle->contact_force[body];
-    double bears = tl_borne(m, body, weight), worse = larger(unbalanced, turning);
+    double bears = tl_borne(m, body, weight), worse = tl_larger(unbalanced, turning);
     sums->unbalanced += unbalanced;
     sums->turning += turning;
     sums->contact_force += contact;
-    sums->largest = larger(sums->largest, unbalanced);
+    sums->largest = tl_larger(sums->largest, unbalanced);
     if (!(worse > sums->local * bears))
         return;
-    bears = larger(bears, tl_least_borne(m, body));
+    bears = tl_larger(bears, tl_least_borne(m, body));
     double ratio = bears > 0 ? worse / bears : 1; /* nothing holds what turns it */
-    sums->local = larger(sums->local, bears > 0 ? unbalanced / bears : 0);
+    sums->local = tl_larger(sums->local, bears > 0 ? unbalanced / bears : 0);
     if (ratio > sums->worst_ratio) {
         sums->worst_ratio = ratio;
         sums->worst = body;
@@ -98,7 +93,7 @@ static void gather_range(void *user, size_t begin, size_t end, size_t chunk, uns
             sums.power +=
                 tl_v3_dot(b->force[body], b->v[body]) + tl_v3_dot(b->moment[body], b->w[body]);
         }
-        sums.max_speed2 = larger(sums.max_speed2, v2);
+        sums.max_speed2 = tl_larger(sums.max_speed2, v2);
     }
     m->cycle->chunk_sums[chunk] = sums;
 }
@@ -139,8 +134,8 @@ void tl_gather(tl_model *m)
         c->sums.turning += s->turning;
         c->sums.contact_force += s->contact_force;
         c->sums.weight += s->weight;
-        c->sums.largest = larger(c->sums.largest, s->largest);
-        c->sums.local = larger(c->sums.local, s->local);
+        c->sums.largest = tl_larger(c->sums.largest, s->largest);
+        c->sums.local = tl_larger(c->sums.local, s->local);
         if (s->worst_ratio > c->sums.worst_ratio) {
             c->sums.worst_ratio = s->worst_ratio;
             c->sums.worst = s->worst;
@@ -148,6 +143,6 @@ void tl_gather(tl_model *m)
         c->sums.bodies += s->bodies;
         c->sums.kinetic += s->kinetic;
         c->sums.power += s->power;
-        c->sums.max_speed2 = larger(c->sums.max_speed2, s->max_speed2);
+        c->sums.max_speed2 = tl_larger(c->sums.max_speed2, s->max_speed2);
     }
 }

@@ -10,6 +10,7 @@
 #include "cycle/cycle_data.h"
 
 #include "base/columns.h"
+#include "base/extremes.h"
 #include "contact/contacts.h"
 #include "cycle/travel.h"
 
@@ -33,16 +34,10 @@ typedef struct limit_job {
     tl_speed_bounds bounds[TL_MAX_THREADS]; /* of the bodies that a thread has looked at */
 } limit_job;
 
-/* fmax, of which few compilers make one instruction. */
-static double larger(double a, double b)
-{
-    return a > b ? a : b;
-}
-
 static void widen(tl_speed_bounds *bounds, tl_speed_bounds by)
 {
-    bounds->speed2 = larger(bounds->speed2, by.speed2);
-    bounds->turn2 = larger(bounds->turn2, by.turn2);
+    bounds->speed2 = tl_larger(bounds->speed2, by.speed2);
+    bounds->turn2 = tl_larger(bounds->turn2, by.turn2);
 }
 
 /* Whether a body that can move is so far from the limit that a bound without roots tells: squares of sums are at most

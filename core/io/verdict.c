@@ -214,16 +214,16 @@ static bool find_motion(const tl_model *m, motion_list *list, tl_verdict *out)
 
 /* ---------------------------------------------------------------- meetings --------------- */
 
-/* A contact with its bodies, the lower one first. */
-typedef struct touch {
+/* A contact by its bodies, the lower one first. */
+typedef struct between {
     uint32_t a, b;
     size_t contact;
     bool turned; /* its own first block is of b */
-} touch;
+} between;
 
-static int compare_touches(const void *x, const void *y)
+static int compare_between(const void *x, const void *y)
 {
-    const touch *p = x, *q = y;
+    const between *p = x, *q = y;
     if (p->a != q->a)
         return (p->a > q->a) - (p->a < q->a);
     if (p->b != q->b)
@@ -232,8 +232,8 @@ static int compare_touches(const void *x, const void *y)
 }
 
 /* Adds a contact to what two bodies have met by so far, from `first` on; sums, which are divided by the area at the end. */
-static void add_touch(motion_list *list, size_t first, const touch *by,
-                      const tl_contact_facts *facts, double sprung)
+static void add_contact(motion_list *list, size_t first, const between *by,
+                        const tl_contact_facts *facts, double sprung)
 {
     const double sign = by->turned ? -1 : 1;
     const tl_vec3 normal = tl_v3_scale(sign, facts->normal);
@@ -258,28 +258,28 @@ static void add_touch(motion_list *list, size_t first, const touch *by,
 static bool find_meetings(const tl_model *m, const uint32_t *rows, const tl_contact_facts *facts,
                           size_t count, motion_list *list)
 {
-    size_t touches = 0, first = 0;
-    touch *touch_of = malloc((count + 1) * sizeof *touch_of);
+    size_t many = 0, first = 0;
+    between *list_of = malloc((count + 1) * sizeof *list_of);
     list->meetings = malloc((count + 1) * sizeof *list->meetings);
-    if (!touch_of || !list->meetings) {
-        free(touch_of);
+    if (!list_of || !list->meetings) {
+        free(list_of);
         return false;
     }
     for (size_t i = 0; i < count; i++) {
         const uint32_t a = m->blocks.body[m->detect->contacts.a[rows[i]]];
         const uint32_t b = m->blocks.body[m->detect->contacts.b[rows[i]]];
         if (facts[i].area > 0)
-            touch_of[touches++] = a < b ? (touch){a, b, i, false} : (touch){b, a, i, true};
+            list_of[many++] = a < b ? (between){a, b, i, false} : (between){b, a, i, true};
     }
-    qsort(touch_of, touches, sizeof *touch_of, compare_touches);
-    for (size_t i = 0; i < touches; i++) {
-        const touch *by = &touch_of[i];
+    qsort(list_of, many, sizeof *list_of, compare_between);
+    for (size_t i = 0; i < many; i++) {
+        const between *by = &list_of[i];
         if (i > 0 && (by->a != by[-1].a || by->b != by[-1].b))
             first = list->count;
-        add_touch(list, first, by, &facts[by->contact],
-                  sprung(m, rows[by->contact], &facts[by->contact]));
+        add_contact(list, first, by, &facts[by->contact],
+                    sprung(m, rows[by->contact], &facts[by->contact]));
     }
-    free(touch_of);
+    free(list_of);
     for (size_t i = 0; i < list->count; i++) {
         meeting *of = &list->meetings[i];
         of->point = tl_v3_scale(1 / of->area, of->point);

@@ -174,9 +174,7 @@ void tl_lua_args(lua_State *L, int index, const char *context, const tl_lua_key 
         if (lua_type(L, -2) != LUA_TSTRING)
             tl_lua_fail(L, "%s: parameters are given by name (name = value); %s has none", context,
                         tl_lua_describe(L, -1));
-        if (strlen(lua_tostring(L, -2)) != lua_rawlen(L, -2))
-            tl_lua_fail(L, "%s: the name of a parameter has a zero byte, after '%s'", context,
-                        lua_tostring(L, -2));
+        tl_lua_text(L, -2, context, "the name of a parameter");
         pairs++;
     }
     tl_value *values = lua_newuserdatauv(L, pairs * sizeof *values, 0);
@@ -262,7 +260,8 @@ const char *tl_lua_text(lua_State *L, int index, const char *function, const cha
     const char *text = lua_type(L, index) == LUA_TSTRING ? lua_tolstring(L, index, &length) : NULL;
     if (!text || strlen(text) != length)
         tl_lua_fail(L, "%s: %s must be a string, not %s", function, what,
-                    text ? "a string with a zero byte" : tl_lua_describe(L, index));
+                    text ? lua_pushfstring(L, "one with a zero byte after '%s'", text)
+                         : tl_lua_describe(L, index));
     return text;
 }
 

@@ -122,9 +122,7 @@ static void read_value(lua_State *L, tl_history *h)
             L, "history '%s': value must be a function(model) or the name of a quantity, not %s",
             h->name, tl_lua_describe(L, -1));
     h->source = TL_FROM_MODEL;
-    const char *name = lua_tostring(L, -1);
-    if (strlen(name) != lua_rawlen(L, -1))
-        tl_lua_fail(L, "history '%s': value has a zero byte, after '%s'", h->name, name);
+    const char *name = tl_lua_text(L, -1, "history", "value");
     tl_lua_names names = {0};
     const char *known;
     for (size_t i = 0; (known = tl_history_quantity(i)) != NULL; i++) {

@@ -294,10 +294,8 @@ static size_t fill_strength(lua_State *L, const char *key, tl_joint_strength *li
             if (lua_type(L, -2) != LUA_TSTRING)
                 tl_lua_fail(L, "keyblocks: %s: the joints are named by text, not by %s", key,
                             tl_lua_describe(L, -2));
-            if (strlen(lua_tostring(L, -2)) != lua_rawlen(L, -2))
-                tl_lua_fail(L, "keyblocks: %s: the name of a joint has a zero byte, after '%s'",
-                            key, lua_tostring(L, -2));
-            list[count] = read_strength(L, key, lua_tostring(L, -2));
+            list[count] =
+                read_strength(L, key, tl_lua_text(L, -2, "keyblocks", "the name of a joint"));
             count++;
         }
     lua_pop(L, 1);

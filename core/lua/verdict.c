@@ -73,9 +73,10 @@ const tl_lua_key tl_lua_verdict_fields[] = {
     {"direction", "", "of their mean motion, a unit vector"},
     {"farthest, displacement", "", "id of the block that has moved the most, and how far, m"},
     {"slip, slipped", "",
-     "how far blocks that touch have moved along their contact since the stage began, the largest, "
-     "m; id of that contact"},
-    {"opening, opened", "", "the same apart, m; id of that contact, 0: none"},
+     "how far two bodies have moved along each other since the stage began, the largest, m: the "
+     "mean, by area, of their "
+     "contacts on faces that look the same way; id of the first of these"},
+    {"opening, opened", "", "the same apart, m; id of such a contact, 0: none"},
     {"contacts, slipping", "", "contacts there are, and those that slip"},
     {NULL, NULL, NULL},
 };

@@ -937,10 +937,10 @@ function Model:stage(name) end
 ---@field direction talus.Vector of their mean motion, a unit vector
 ---@field farthest integer id of the block that has moved the most, and how far, m
 ---@field displacement number id of the block that has moved the most, and how far, m
----@field slip number how far blocks that touch have moved along their contact since the stage began, the largest, m; id of that contact
----@field slipped integer how far blocks that touch have moved along their contact since the stage began, the largest, m; id of that contact
----@field opening number the same apart, m; id of that contact, 0: none
----@field opened integer the same apart, m; id of that contact, 0: none
+---@field slip number how far two bodies have moved along each other since the stage began, the largest, m: the mean, by area, of their contacts on faces that look the same way; id of the first of these
+---@field slipped integer how far two bodies have moved along each other since the stage began, the largest, m: the mean, by area, of their contacts on faces that look the same way; id of the first of these
+---@field opening number the same apart, m; id of such a contact, 0: none
+---@field opened integer the same apart, m; id of such a contact, 0: none
 ---@field contacts integer contacts there are, and those that slip
 ---@field slipping integer contacts there are, and those that slip
 

@@ -212,8 +212,8 @@ do
         check.refused(model, function() model:keyblocks { friction = 35, gravity = { 0, 0, -g } } end, "must be 0 or within [1e-100, 1e+100]")
     end
     check.refused(model, function() model:keyblocks { friction = 35, cohesion = 1e308 } end, "cohesion = 1e+308 Pa is outside [0, 1e+100]")
-    check.refused(model, function() model:keyblocks { friction = { ["*"] = 30, ["J1\0x"] = 5 } } end, "has a zero byte, after 'J1'")
-    check.refused(model, function() model:timestep { ["dt\0x"] = 1 } end, "timestep: the name of a parameter has a zero byte, after 'dt'")
-    check.refused(model, function() model:history { name = "h", value = "kinetic\0junk" } end, "value has a zero byte, after 'kinetic'")
+    check.refused(model, function() model:keyblocks { friction = { ["*"] = 30, ["J1\0x"] = 5 } } end, "keyblocks: the name of a joint must be a string, not one with a zero byte after 'J1'")
+    check.refused(model, function() model:timestep { ["dt\0x"] = 1 } end, "timestep: the name of a parameter must be a string, not one with a zero byte after 'dt'")
+    check.refused(model, function() model:history { name = "h", value = "kinetic\0junk" } end, "history: value must be a string, not one with a zero byte after 'kinetic'")
     check.refused(model, function() model:history { name = "\xff", value = "kinetic" } end, "UTF-8")
 end
