@@ -143,21 +143,10 @@ static tl_status put_fields(const contacts *c, const tl_html *options, tl_piece 
     return status;
 }
 
-/* The verdict without contacts that nobody asks for: what the last step has of them. */
-static tl_status find_verdict_alone(tl_model *m, double median, tl_verdict *verdict)
-{
-    tl_status status = tl_verdict_of(m, median, NULL, NULL, 0, verdict);
-    const tl_contact_counts counts = tl_model_contact_counts(m);
-    verdict->contacts = counts.contacts;
-    verdict->slipping = counts.slipping;
-    return status;
-}
-
 tl_status tl_scene_contacts(tl_model *m, const tl_html *options, double median, tl_piece *out,
                             tl_verdict *verdict)
 {
-    if (options->contacts == TL_HTML_CONTACTS_NONE)
-        return find_verdict_alone(m, median, verdict);
+    const bool wanted = options->contacts != TL_HTML_CONTACTS_NONE;
     contacts c = {.model = m};
     tl_status status = tl_contacts_listed(m, &c.rows, &c.listed);
     if (status == TL_OK)
@@ -172,11 +161,11 @@ tl_status tl_scene_contacts(tl_model *m, const tl_html *options, double median, 
         tl_parallel_for(m->pool, c.listed, CHUNK, find_range, &c);
         status = tl_verdict_of(m, median, c.rows, c.facts, c.listed, verdict);
     }
-    if (status == TL_OK) {
+    if (status == TL_OK && wanted) {
         pick(&c, options->contacts);
         status = put_contacts(&c, out);
     }
-    if (status == TL_OK)
+    if (status == TL_OK && wanted)
         status = put_fields(&c, options, out);
     tl_law_states_free(&c.states);
     free(c.picked);
