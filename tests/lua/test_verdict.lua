@@ -157,3 +157,56 @@ for _, cuts in ipairs { { 0, 0.8, 1.6 }, { 0, 0.2, 1.5, 1.6 }, { 0, 0.4, 0.8, 1.
         check.near(said.slip, whole[stage].slip, 0.06 * whole[stage].slip + 1e-5) -- each part presses as itself
     end
 end
+
+-- What has moved by less than a twentieth of the farthest is not told with it, and next to nothing is none.
+local function flying(speeds)
+    local free = talus.model { gravity = { 0, 0, 0 } }
+    for i = 1, #speeds do
+        free:generate("box", { min = { 3 * i, 0, 0 }, max = { 3 * i + 1, 1, 1 }, density = 2500 })
+        free:blocks { id = i }:set { velocity = { 0, speeds[i], 0 } }
+    end
+    joint(free, 1e8, 30)
+    free:timestep { dt = 1e-3 }
+    free:cycle(100)
+    return free:verdict().moved
+end
+check.equal(flying { 1, 0.3, 0.06, 0.04 }, 3)
+check.equal(flying { 0.02 }, 1)
+check.equal(flying { 0.005 }, 0)
+
+-- A column on soft joints sinks by more than a hundredth of its blocks: each joint has but closed.
+local column = on_base({ 0, 0, -10 }, 3, 1)
+for k = 0, 9 do
+    column:generate("box", { min = { 0, 0, k }, max = { 2, 2, k + 1 }, density = 2500 })
+end
+joint(column, 2.5e7, 30) -- 2.5e5 Pa press the lowest by 10 mm
+column:solve { ratio = 1e-5 }
+check.near(column:verdict().displacement, 0.055, 1e-3)
+check.equal(column:verdict().moved, 0)
+
+-- Without a solve a model is at rest below a ratio of 1e-5; what friction slows down moves, and does not accelerate.
+column = on_base({ 0, 0, -10 }, 3, 1)
+column:generate("box", { min = { 0, 0, 0 }, max = { 1, 1, 1 }, density = 2500 })
+joint(column, 1e8, 30)
+repeat column:cycle(1) until column:verdict().ratio < 1e-2
+check.holds(column:verdict().standing ~= "at rest", "it still settles")
+repeat column:cycle(1) until column:verdict().ratio < 1e-6
+check.equal(column:verdict().standing, "at rest")
+column:blocks { id = 2 }:set { velocity = { 1, 0, 0 } }
+column:damping "none"
+column:cycle(50)
+check.equal(column:verdict().standing, "moving")
+
+-- Two bodies that meet on two faces: what opens on one is told, though as much closes on the other.
+local groove = talus.model { gravity = { 0, 0, 0 } }
+groove:generate("box", { min = { -2, 0, 0 }, max = { 2, 1, 2 }, density = 2500 })
+for _, way in ipairs { 90, 270 } do
+    groove:generate("joint", { joint = "V", dip = 30, dip_direction = way, origin = { 0, 0.5, 0.5 } })
+end
+local wedge = groove:blocks { containing = { 0, 0.5, 1.9 } }
+groove:blocks { where = function(b) return b.id ~= wedge[1].id end }:join():fix()
+groove:joint("*", "elastic", { kn = 1e8, ks = 1e8 })
+groove:damping "local"
+wedge:load { force = { 1e5, 0, 0 } }
+groove:solve { ratio = 1e-6 }
+check.holds(groove:verdict().opening > 0.3 * groove:verdict().displacement, "one side opens")
