@@ -12,7 +12,6 @@
  * Bodies that touched nothing when the run began fall until they land, and tumble on. They are followed only while
  * something bears them, and in longer legs: what is poured has not failed. */
 #include "cycle/cycle_data.h"
-#include "cycle/standing.h"
 
 #include "contact/detection.h"
 #include "model/body_shape.h"
@@ -64,6 +63,23 @@ struct tl_watch {
     tl_id failing;
 };
 
+/* Number of blocks of the mean size across the free bodies. */
+static double blocks_on_end(const tl_model *m)
+{
+    tl_vec3 low = {INFINITY, INFINITY, INFINITY}, high = tl_v3_neg(low);
+    double sizes = 0, count = 0;
+    for (uint32_t body = 0; body < m->bodies.table.rows; body++) {
+        if (m->bodies.fixed[body] == TL_FIX_ALL)
+            continue;
+        tl_vec3 x = tl_body_place(&m->bodies, body);
+        low = tl_v3(fmin(low.x, x.x), fmin(low.y, x.y), fmin(low.z, x.z));
+        high = tl_v3(fmax(high.x, x.x), fmax(high.y, x.y), fmax(high.z, x.z));
+        sizes += tl_body_size(m, body);
+        count++;
+    }
+    return count > 0 ? 1 + tl_v3_norm(tl_v3_sub(high, low)) * count / sizes : 1;
+}
+
 static void begin_leg(leg *l, const tl_model *m, uint32_t body)
 {
     l->from = m->bodies.pose[body].u;
@@ -86,7 +102,7 @@ tl_watch *tl_watch_begin(const tl_model *m)
         return NULL;
     w->bodies = m->bodies.table.rows;
     w->structure = m->structure;
-    w->on_end = tl_blocks_on_end(m);
+    w->on_end = blocks_on_end(m);
     w->leg = calloc(w->bodies + 1, sizeof *w->leg);
     if (!w->leg) {
         tl_watch_end(w);
@@ -174,6 +190,23 @@ static void sample_range(void *user, size_t begin, size_t end, size_t chunk, uns
         atomic_store_explicit(&job->reached, true, memory_order_relaxed);
 }
 
+/* How far the model may settle, m: see the head of the file. */
+static double settlement(const tl_watch *w, const tl_model *m)
+{
+    const tl_contacts *c = &m->detect->contacts;
+    double force = 0, force_closure = 0;
+    for (uint32_t i = 0; i < c->table.rows; i++) {
+        double f = tl_v3_norm(c->force[i]);
+        if (!(f > 0) || c->held[i])
+            continue;
+        const tl_law *law = &m->joint_laws[c->law[i]];
+        double k = law->ks > 0 && law->ks < law->kn ? law->ks : law->kn;
+        force += f;
+        force_closure += k > 0 && c->area[i] > 0 ? f * f / (k * c->area[i]) : 0;
+    }
+    return force > 0 ? w->on_end * force_closure / force : 0;
+}
+
 /* Ends the leg of a body, and begins the next. */
 static void end_leg(leg *l, const tl_model *m, uint32_t body)
 {
@@ -223,7 +256,7 @@ tl_id tl_watch_step(tl_watch *w, const tl_model *m)
     sample_job job = {.w = w, .m = m};
     tl_parallel_for(m->pool, w->bodies, TL_READ_CHUNK, sample_range, &job);
     if (job.reached)
-        w->least = SETTLED_SHARE / LEGS * tl_settlement(m, w->on_end);
+        w->least = SETTLED_SHARE / LEGS * settlement(w, m);
     for (uint32_t body = 0; body < w->bodies && job.reached; body++)
         if (w->leg[body].reached && m->bodies.fixed[body] != TL_FIX_ALL &&
             tl_v3_norm(tl_v3_sub(m->bodies.pose[body].u, w->leg[body].from)) >= w->least)
@@ -234,7 +267,7 @@ tl_id tl_watch_step(tl_watch *w, const tl_model *m)
 
 tl_id tl_watch_gone(const tl_watch *w, const tl_model *m, double *way, double *size)
 {
-    double most = FAILED_SHARE, least = SETTLED_SHARE * tl_settlement(m, w->on_end);
+    double most = FAILED_SHARE, least = SETTLED_SHARE * settlement(w, m);
     tl_id gone = TL_NO_ID;
     for (uint32_t body = 0; body < w->bodies && w->structure == m->structure; body++) {
         const leg *l = &w->leg[body];

@@ -17,8 +17,6 @@
  * nothing is seen. */
 #define LEAST_SHARE 0.05
 #define LEAST_SEEN 1e-3
-/* Displacement over the median size that is more than settling, but where a block goes with those on which it lies. */
-#define MOST_SETTLED 0.01
 /* Pages keep displacements in single precision: what is told to have closed is more than that rounds. */
 #define ABOVE (1 + 1e-6)
 /* What sudden loads make of what springs bear, and more than that: a load near the edge of a face turns a block by more than its springs show. */
@@ -314,8 +312,6 @@ tl_status tl_verdict_of(tl_model *m, double median, const uint32_t *rows,
     out->standing = tl_model_stands(m);
     out->ratio = tl_model_balance(m).ratio_local;
     out->closed = list.seen;
-    if (out->standing != TL_STANDING_UNKNOWN)
-        out->closed = fmax(list.seen, fmin(tl_closed_by_weight(m), MOST_SETTLED * median));
     memcpy(out->stage, m->stage, sizeof out->stage);
     out->contacts = count;
     for (size_t i = 0; i < count; i++)

@@ -66,7 +66,7 @@ const tl_lua_key tl_lua_verdict_fields[] = {
     {"stage", "", "name given to model:stage, or \"\""},
     {"ratio", "", "the local unbalanced force ratio"},
     {"closed", "",
-     "displacement up to which blocks have but closed their joints by their weight, m"},
+     "blocks that have not moved, but closed their joints, have displacements up to this, m"},
     {"moved, volume", "",
      "blocks that have moved by more than that, and by more than a twentieth of the largest "
      "displacement, a body of several parts as one; their volume, m3"},

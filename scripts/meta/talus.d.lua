@@ -931,7 +931,7 @@ function Model:stage(name) end
 ---@field text string all of this as one line
 ---@field stage string name given to model:stage, or ""
 ---@field ratio number the local unbalanced force ratio
----@field closed number displacement up to which blocks have but closed their joints by their weight, m
+---@field closed number blocks that have not moved, but closed their joints, have displacements up to this, m
 ---@field moved integer blocks that have moved by more than that, and by more than a twentieth of the largest displacement, a body of several parts as one; their volume, m3
 ---@field volume number blocks that have moved by more than that, and by more than a twentieth of the largest displacement, a body of several parts as one; their volume, m3
 ---@field direction talus.Vector of their mean motion, a unit vector

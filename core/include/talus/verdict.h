@@ -34,7 +34,7 @@ typedef struct tl_verdict {
     tl_standing standing;
     double ratio; /* the local unbalanced force ratio; NaN: no step has been made */
     double
-        closed; /* m, displacement up to which blocks have no more than closed their joints by their weight */
+        closed; /* m: blocks that have not moved, but closed their joints, have displacements up to this */
     size_t moved;      /* bodies */
     double volume;     /* of these, m3 */
     tl_vec3 direction; /* of their mean motion by volume, a unit vector; 0: none has moved */
