@@ -6,6 +6,7 @@
 #include "contact/store.h"
 #include "contact/transfer.h"
 #include "contact_scene.h"
+#include "force/bear.h"
 
 #define KN 1e9
 #define OVERLAP 1e-4
@@ -373,6 +374,29 @@ TEST(states_are_copied_split_or_reset)
     tl_table_free(&contacts.table);
 }
 
+/* A contact uses the share of its shear strength that its force is of it; with next to no shear none. */
+TEST(used_strength_is_the_share_of_what_the_law_bears)
+{
+    tl_model *m = cube_on_plate("coulomb", 0);
+    const tl_timestep step = {.size = sizeof step, .fraction = NAN, .dt = 1e-3};
+    const tl_drive drive = {.size = sizeof drive, .velocity = {1e-2, 0, 0}};
+    scene_ok(m, tl_model_timestep(m, &step));
+    scene_ok(m, tl_blocks_fix(m, &m->blocks.id[0], 1, TL_FIX_ALL));
+    CHECK(isnan(tl_contact_shear_used(m, 0)));
+    scene_ok(m, tl_blocks_drive(m, &m->blocks.id[1], 1, &drive));
+    double last = 0;
+    for (int k = 0; k < 10; k++) {
+        scene_ok(m, tl_model_cycle(m, 1, NULL));
+        const tl_vec3 force = scene_force(m, 0, 1);
+        const double share = fabs(force.x) / (force.z * tan(TL_PI / 6));
+        CHECK_NEAR(share > 0 ? tl_contact_shear_used(m, 0) : 0, share, 1e-9);
+        CHECK(share >= last - 1e-9 && share < 1 + 1e-9);
+        last = share;
+    }
+    CHECK_NEAR(last, 1, 1e-9);
+    tl_model_destroy(m);
+}
+
 /* A bond that has failed stays failed when the polygon changes. */
 TEST(failed_bonds_stay_failed)
 {
@@ -453,4 +477,5 @@ TEST_MAIN(RUN(totals_stay_at_unchanged_area), RUN(totals_stay_with_fewer_points)
           RUN(points_of_hardly_any_area_get_no_more_stress_than_there_was),
           RUN(wobbling_takes_shear_by_area), RUN(uniform_stress_stays_uniform),
           RUN(states_are_copied_split_or_reset), RUN(failed_bonds_stay_failed),
+          RUN(used_strength_is_the_share_of_what_the_law_bears),
           RUN(shear_forces_stay_in_the_plane_of_their_point))
