@@ -117,14 +117,14 @@ local calls = {
     end },
     { "stage", function(m) m.model:stage "cut" end },
     { "verdict", function(m) return m.model:verdict().text end },
-    { "slivers", function(m) return #m.model:filter { volume = 0.05 } end },
+    { "slivers", function(m) return m.model:filter { volume = 0.05 }.found end },
     { "histories", function(m) return #m.model:histories().kinetic end },
     { "reset", function(m) m.model:blocks():reset_displacement() end },
     { "jointset later", function(m)
         return m.model:generate("jointset", { joint = "J3", dip = 80, dip_direction = 200, spacing = 3, origin = { 1, 1, 1 } }).after
     end },
     { "cycle cut", function(m) return m.model:cycle(5).ratio end, run = true },
-    { "filter", function(m) return #m.model:filter { volume = 0.05, action = "join" } end },
+    { "filter", function(m) return m.model:filter { volume = 0.05, action = "join" }.joined end },
     { "energy", function(m) return m.model:energy().kinetic end },
     { "report", function(m) return talus.report and m.model.dt end },
     { "keyblocks", function(m) return #m.model:keyblocks { friction = 35 } end },
@@ -176,6 +176,11 @@ local calls = {
     { "restore", function() return talus.restore(TMP .. "/run.talus", { threads = THREADS }):state_hash() end },
     { "throw", function(m) m.model:blocks { group = "cap", hidden = "any" }:set { velocity = { 0, 0, 300 } } end },
     { "fast cycle", function(m) return m.model:cycle(2).ratio end, run = true },
+    { "filter away", function(m)
+        local filtered = m.model:filter { volume = 1, action = "delete" }
+        assert(filtered.found > 0)
+        return filtered.found
+    end },
     { "state_hash", function(m) return m.model:state_hash() end },
     { "profile", function(m) return m.model:memory().blocks end },
 }
