@@ -290,3 +290,24 @@ local function row(order)
 end
 check.near(row { 0, 1, 2 }, row { 1, 0, 2 }, 1e-9 * row { 0, 1, 2 })
 check.near(row { 0, 1, 2 }, row { 2, 0, 1 }, 1e-9 * row { 0, 1, 2 })
+
+-- Of many bodies the one that needs the shortest step decides, wherever it is in the list; of equal ones the first.
+local function cubes(sizes, threads)
+    local model = talus.model { threads = threads }
+    for i, size in ipairs(sizes) do
+        model:generate("box", { min = { 3 * i, 0, 0 }, max = { 3 * i + size, size, size }, density = 2500 })
+    end
+    model:joint("*", "coulomb", { kn = 1e8, ks = 1e8, friction = 30 })
+    return model
+end
+local alone = cubes({ 0.5 }, 1).dt
+for _, small in ipairs { { 1 }, { 50 }, { 100 }, { 20, 70 } } do
+    local sizes = {}
+    for i = 1, 100 do sizes[i] = 1 end
+    for _, i in ipairs(small) do sizes[i] = 0.5 end
+    for threads = 1, 2 do
+        local many = cubes(sizes, threads)
+        check.near(many.dt, alone, 1e-12 * alone)
+        check.equal(many:timestep().block.id, small[1])
+    end
+end
