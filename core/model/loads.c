@@ -15,6 +15,11 @@ static tl_status check_blocks(tl_model *m, const tl_id *ids, size_t count)
     return TL_OK;
 }
 
+bool tl_bodies_hold_loads(tl_bodies *b)
+{
+    return TL_COLUMN_NEED(&b->table, b, load_before, 0) && TL_COLUMN_NEED(&b->table, b, load, 0);
+}
+
 /* Notes the loads of the last step, before the first of them is set anew. */
 static void note_loads(tl_model *m)
 {
@@ -50,9 +55,7 @@ tl_status tl_blocks_load(tl_model *m, const tl_id *ids, size_t count, const tl_l
     status = check_blocks(m, ids, count);
     if (status != TL_OK)
         return status;
-    if (count && (!TL_COLUMN_NEED(&m->bodies.table, &m->bodies, load_before, 0) ||
-                  !TL_COLUMN_NEED(&m->bodies.table, &m->bodies, load, 0) ||
-                  !tl_face_loads_forget(m, ids, count)))
+    if (count && (!tl_bodies_hold_loads(&m->bodies) || !tl_face_loads_forget(m, ids, count)))
         return tl_fail_memory(&m->error);
     if (count)
         note_loads(m);

@@ -561,6 +561,8 @@ bool tl_drives_evaluate(tl_model *m, double t);
 void tl_drive_leave(tl_model *m, uint32_t body);
 /* The motion of a body begins anew, as it is set or was held: its load before does not count. */
 void tl_load_begins_anew(tl_model *m, uint32_t body);
+/* Holds the columns of loads. A model that has loads has what they were before, too. false: out of memory. */
+bool tl_bodies_hold_loads(tl_bodies *b);
 /* A step has been made: what gravity and loads are now is what they were in it. */
 void tl_loads_stepped(tl_model *m);
 void tl_drives_clear(tl_model *m);

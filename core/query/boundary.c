@@ -395,7 +395,7 @@ tl_status tl_model_boundary(tl_model *m, const tl_boundary_action *actions, size
     face_loads put = {0};
     uint8_t *fix = calloc(m->blocks.table.rows + 1, sizeof *fix);
     body_sum *sums = calloc(m->bodies.table.rows + 1, sizeof *sums);
-    if (!fix || !sums || (loads && !TL_COLUMN_NEED(&m->bodies.table, &m->bodies, load, 0)))
+    if (!fix || !sums || (loads && !tl_bodies_hold_loads(&m->bodies)))
         status = tl_fail_memory(&m->error);
     for (size_t i = 0; i < count && status == TL_OK; i++) {
         tl_boundary_result found = {0};
