@@ -3,6 +3,7 @@
 
 #include "base/groups.h"
 #include "contact/detection.h"
+#include "contact/places.h"
 #include "cycle/standing.h"
 #include "force/joint_laws.h"
 #include "model/body_shape.h"
@@ -33,20 +34,27 @@ typedef struct body_facts {
     bool still; /* of the first of a group: it has but closed its joints */
 } body_facts;
 
-/* Where two bodies meet with faces that look the same way: one contact, or one for each part of a face. Means by area. */
+/* Sums over contacts, and what they come to: the mean point, m, relative to the model's origin, and how far b has gone from a there, m. */
+typedef struct means {
+    double weight;
+    tl_vec3 point, passed;
+} means;
+
+/* Where two bodies meet with faces that look the same way: one contact, or one for each part of a face. */
 typedef struct meeting {
     uint32_t a, b;  /* bodies, a < b */
     tl_vec3 normal; /* from a to b */
     double area;    /* m2 */
-    tl_vec3 point;  /* m, in the user's coordinates */
-    tl_vec3 slip;   /* of b against a, across the normal, m */
+    means by_force,
+        mean;     /* where normal forces act; by area, and in the end by force where there is one */
+    tl_vec3 slip; /* of b against a, across the normal, m */
     double opening; /* m */
     double sprung;  /* how far the springs have let them move, m */
     tl_id contact;  /* the first */
 } meeting;
 
-/* Faces of a meeting look the same way up to this sine. */
-#define SAME_WAY 0.02
+/* Faces of a meeting look the same way up to this sine: more than those of a face that rocks and has but closed. */
+#define SAME_WAY 0.05
 
 /* All meetings, what is seen, and all bodies with the groups that hang together. */
 typedef struct motion_list {
@@ -145,8 +153,9 @@ static bool has_but_closed(const tl_model *m, const motion_list *list, const mee
     const body_facts *of_a = &list->body[of->a], *of_b = &list->body[of->b];
     const double size = fmin(of_a->size, of_b->size);
     /* the contacts may be younger than the stage, and their blocks may have gone to and fro */
-    const double parted = tl_v3_norm(tl_v3_sub(came_from(m, of->b, of_b->way, of->point),
-                                               came_from(m, of->a, of_a->way, of->point)));
+    const tl_vec3 point = tl_v3_add(m->origin, of->mean.point);
+    const double parted = tl_v3_norm(
+        tl_v3_sub(came_from(m, of->b, of_b->way, point), came_from(m, of->a, of_a->way, point)));
     const double slid = sqrt(tl_v3_norm2(of->slip) + of->opening * of->opening);
     const double turned =
         tl_v3_norm(tl_v3_sub(tl_q_vector(turn_of(m, of->b)), tl_q_vector(turn_of(m, of->a))));
@@ -229,9 +238,33 @@ static int compare_between(const void *x, const void *y)
     return (p->contact > q->contact) - (p->contact < q->contact);
 }
 
-/* Adds a contact to what two bodies have met by so far, from `first` on; sums, which are divided by the area at the end. */
-static void add_contact(motion_list *list, size_t first, const between *by,
-                        const tl_contact_facts *facts, double sprung)
+static void add_point(means *to, double weight, tl_vec3 point, tl_vec3 passed)
+{
+    to->weight += weight;
+    to->point = tl_v3_madd(to->point, weight, point);
+    to->passed = tl_v3_madd(to->passed, weight, passed);
+}
+
+/* Adds what a contact's points carry, and where. */
+static void add_forces(const tl_model *m, uint32_t contact, double sign, means *to)
+{
+    const tl_detect *d = m->detect;
+    const tl_vec3 from = tl_body_place(&m->bodies, m->blocks.body[d->contacts.a[contact]]);
+    means own = {0};
+    for (size_t k = 0; k < tl_point_count(m, contact); k++) {
+        const double force = fabs(d->points.f_n[tl_point_row(&d->contacts, contact, k)]);
+        if (force > 0)
+            add_point(&own, force, tl_contact_point_arm(m, contact, k), tl_v3(0, 0, 0));
+    }
+    if (!(own.weight > 0))
+        return;
+    const tl_vec3 point = tl_v3_madd(from, 1 / own.weight, own.point);
+    add_point(to, own.weight, point, tl_v3_scale(sign, tl_contact_passed(m, contact, point)));
+}
+
+/* Adds a contact to what two bodies have met by so far, from `first` on; sums, which are divided at the end. */
+static void add_contact(const tl_model *m, motion_list *list, size_t first, const between *by,
+                        uint32_t row, const tl_contact_facts *facts)
 {
     const double sign = by->turned ? -1 : 1;
     const tl_vec3 normal = tl_v3_scale(sign, facts->normal);
@@ -246,10 +279,23 @@ static void add_contact(motion_list *list, size_t first, const between *by,
         list->count++;
     }
     to->area += facts->area;
-    to->point = tl_v3_madd(to->point, facts->area, facts->point);
-    to->slip = tl_v3_madd(to->slip, sign * facts->area, facts->shear_displacement);
-    to->opening += facts->area * facts->opening;
-    to->sprung += sprung;
+    to->sprung += sprung(m, row, facts);
+    add_point(
+        &to->mean, facts->area, tl_v3_sub(facts->point, m->origin),
+        tl_v3_scale(sign, tl_v3_madd(facts->shear_displacement, facts->opening, facts->normal)));
+    add_forces(m, row, sign, &to->by_force);
+}
+
+/* Makes means of the sums of a meeting. */
+static void end_meeting(meeting *of)
+{
+    if (of->by_force.weight > 0)
+        of->mean = of->by_force;
+    of->mean.point = tl_v3_scale(1 / of->mean.weight, of->mean.point);
+    of->mean.passed = tl_v3_scale(1 / of->mean.weight, of->mean.passed);
+    of->opening = tl_v3_dot(of->mean.passed, of->normal);
+    of->slip = tl_v3_madd(of->mean.passed, -of->opening, of->normal);
+    of->sprung /= of->area;
 }
 
 /* Finds the meetings; edges that only touch are none. false: out of memory. */
@@ -274,17 +320,11 @@ static bool find_meetings(const tl_model *m, const uint32_t *rows, const tl_cont
         const between *by = &list_of[i];
         if (i > 0 && (by->a != by[-1].a || by->b != by[-1].b))
             first = list->count;
-        add_contact(list, first, by, &facts[by->contact],
-                    sprung(m, rows[by->contact], &facts[by->contact]));
+        add_contact(m, list, first, by, rows[by->contact], &facts[by->contact]);
     }
     free(list_of);
-    for (size_t i = 0; i < list->count; i++) {
-        meeting *of = &list->meetings[i];
-        of->point = tl_v3_scale(1 / of->area, of->point);
-        of->slip = tl_v3_scale(1 / of->area, of->slip);
-        of->opening /= of->area;
-        of->sprung /= of->area;
-    }
+    for (size_t i = 0; i < list->count; i++)
+        end_meeting(&list->meetings[i]);
     return true;
 }
 
@@ -363,6 +403,19 @@ static void put_direction(tl_vec3 way, char *text, size_t size)
     tl_text_print(text, size, "%03d/%s%02d", (whole + 360) % 360, down < 0 ? "-" : "", abs(down));
 }
 
+/* How little everything has moved: not at all, by less than is seen, or by what its joints close. */
+static void put_still(const tl_verdict *v, const char *since, char *text, size_t size)
+{
+    if (v->displacement == 0)
+        tl_text_print(text, size, "no block has moved%s", since);
+    else if (ABOVE * v->displacement < v->closed)
+        tl_text_print(text, size, "no block has moved%s by more than %.2g m", since,
+                      v->displacement);
+    else
+        tl_text_print(text, size, "no block has moved%s by more than its joints close (%.2g m)",
+                      since, v->displacement);
+}
+
 /* What has moved, and where to. */
 static void put_moved(const tl_verdict *v, char *text, size_t size)
 {
@@ -370,8 +423,7 @@ static void put_moved(const tl_verdict *v, char *text, size_t size)
     if (v->stage[0])
         tl_text_print(since, sizeof since, " since stage \"%s\"", v->stage);
     if (v->moved == 0) {
-        tl_text_print(text, size, "no block has moved by more than its joints close%s (%.2g m)",
-                      since, v->closed);
+        put_still(v, since, text, size);
         return;
     }
     const bool one = v->moved == 1;

@@ -246,7 +246,12 @@ tl_vec3 tl_block_centroid(const tl_model *m, uint32_t row)
 bool tl_blocks_hold_base(tl_model *m)
 {
     tl_blocks *b = &m->blocks;
-    return TL_COLUMN_NEED(&b->table, b, base, 0) && TL_COLUMN_NEED(&b->table, b, base_turn, 0);
+    const bool there = b->base_turn;
+    if (!TL_COLUMN_NEED(&b->table, b, base, 0) || !TL_COLUMN_NEED(&b->table, b, base_turn, 0))
+        return false;
+    for (size_t row = 0; row < b->table.rows && !there; row++)
+        b->base_turn[row] = tl_q_identity();
+    return true;
 }
 
 tl_vec3 tl_block_point_displacement(const tl_model *m, uint32_t row, tl_vec3 local)

@@ -46,8 +46,7 @@ typedef struct tl_blocks {
     double *density; /* kg/m3 */
     double *volume;  /* m3 */
     tl_vec3 *local;  /* centroid in the body's frame, zero for a body of one block; NULL: all are */
-    /* shift and turn of the body's frame from which displacements count (reset_displacement, joined bodies); NULL: none. A turn of
-     * zeros is none. */
+    /* shift and turn of the body's frame from which displacements count (reset_displacement, joined bodies); NULL: none */
     tl_vec3 *base;
     tl_quat *base_turn;
     double *size;      /* cube root of the volume: the length tolerances refer to */

@@ -200,10 +200,8 @@ static bool sort_bodies(const tl_model *m, const uint32_t *group, regroup *r)
 /* The turn from which the displacement of a block counts, from the frame of another body. */
 static tl_quat base_turn_in(const tl_model *m, uint32_t row, uint32_t leader)
 {
-    const tl_quat none = tl_q_identity(), *q = m->bodies.q;
-    tl_quat turn = m->blocks.base_turn ? m->blocks.base_turn[row] : none;
-    if (turn.w == 0 && turn.x == 0 && turn.y == 0 && turn.z == 0)
-        turn = none;
+    const tl_quat *q = m->bodies.q;
+    tl_quat turn = m->blocks.base_turn ? m->blocks.base_turn[row] : tl_q_identity();
     uint32_t body = m->blocks.body[row];
     return body == leader ? turn : tl_q_mul(turn, tl_q_mul(tl_q_conj(q[body]), q[leader]));
 }

@@ -70,6 +70,8 @@ static void put(tl_model *m, const tl_stage_block *block, const source *from, ui
         pose->r = tl_m3_identity();
         bodies->q[body] = tl_q_identity();
         bodies->fixed[body] = block->fixed;
+        if (blocks->base_turn)
+            blocks->base_turn[row] = tl_q_identity();
         return;
     }
     tl_vec3 arm = tl_m3_mul(&from->pose.r, c);

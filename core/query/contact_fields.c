@@ -137,6 +137,12 @@ static tl_vec3 displacement_at(const tl_model *m, uint32_t block, tl_vec3 x)
     return tl_block_point_displacement(m, block, tl_m3_tmul(&m->bodies.pose[body].r, arm));
 }
 
+tl_vec3 tl_contact_passed(const tl_model *m, uint32_t contact, tl_vec3 x)
+{
+    const tl_contacts *c = &m->detect->contacts;
+    return tl_v3_sub(displacement_at(m, c->b[contact], x), displacement_at(m, c->a[contact], x));
+}
+
 tl_contact_facts tl_contact_facts_of(const tl_model *m, uint32_t contact)
 {
     const tl_contacts *c = &m->detect->contacts;
@@ -150,8 +156,7 @@ tl_contact_facts tl_contact_facts_of(const tl_model *m, uint32_t contact)
     forces(m, contact, &out.normal_force, &out.shear_force);
     tl_contact_summary(m, contact, &out.normal, &point, &out.gap);
     out.point = tl_v3_add(m->origin, point);
-    tl_vec3 passed = tl_v3_sub(displacement_at(m, c->b[contact], point),
-                               displacement_at(m, c->a[contact], point));
+    tl_vec3 passed = tl_contact_passed(m, contact, point);
     out.opening = tl_v3_dot(passed, out.normal);
     out.shear_displacement = tl_v3_madd(passed, -out.opening, out.normal);
     out.normal_stress = out.area > 0 ? out.normal_force / out.area : 0;

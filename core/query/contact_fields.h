@@ -32,6 +32,9 @@ size_t tl_point_count(const tl_model *m, uint32_t contact);
 tl_contact_state tl_contact_state_of_flags(uint32_t any, uint32_t all);
 /* Of a row of contacts that are up to date: tl_contacts_listed. Changes nothing, so several threads may ask. */
 tl_contact_facts tl_contact_facts_of(const tl_model *m, uint32_t contact);
+/* How far a contact's second block has gone from the first since displacements began to count, m, at a point of both that is now at x,
+ * relative to the model's origin. */
+tl_vec3 tl_contact_passed(const tl_model *m, uint32_t contact, tl_vec3 x);
 /* Brings the contacts up to date and gives the rows of those with points, in order of id; the caller frees the list. */
 tl_status tl_contacts_listed(tl_model *m, uint32_t **rows, size_t *count);
 

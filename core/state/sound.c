@@ -107,6 +107,12 @@ static bool edits_are_sound(const tl_model *m)
     return true;
 }
 
+static bool is_turn(tl_quat q)
+{
+    double norm2 = q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z;
+    return fabs(norm2 - 1) < TURN_SLACK;
+}
+
 static bool block_is_sound(const tl_model *m, uint32_t row, size_t groups)
 {
     const tl_blocks *b = &m->blocks;
@@ -117,14 +123,7 @@ static bool block_is_sound(const tl_model *m, uint32_t row, size_t groups)
            b->size[row] == tl_cbrt(b->volume[row]) && b->mean_face[row] > 0 &&
            isfinite(b->mean_face[row]) && b->hidden[row] <= 1 && b->stays[row] == 1 &&
            (!b->local || tl_v3_finite(b->local[row])) && (!b->base || tl_v3_finite(b->base[row])) &&
-           (!b->base_turn || isfinite(b->base_turn[row].w + b->base_turn[row].x +
-                                      b->base_turn[row].y + b->base_turn[row].z));
-}
-
-static bool is_turn(tl_quat q)
-{
-    double norm2 = q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z;
-    return fabs(norm2 - 1) < TURN_SLACK;
+           (!b->base_turn || is_turn(b->base_turn[row]));
 }
 
 /* Velocities and forces are any numbers: those of a model that overflows are saved as well, and the next step tells it. */

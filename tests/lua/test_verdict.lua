@@ -10,6 +10,7 @@ local folder = assert(os.getenv "TALUS_TEST_TMP")
 for seed = 1, 24 do
     check.equal(verdicts.stands(seed), nil)
     check.equal(verdicts.slides(seed), nil)
+    check.equal(verdicts.cuts(seed), nil)
 end
 
 local function joint(model, kn, friction)

@@ -2,6 +2,7 @@
 --
 --     verdicts.stands(seed)   what is wrong with the verdict on a column or wall that only closes its joints, or nil
 --     verdicts.slides(seed)   the same of a block on a plane that is steeper or less steep than its friction; and whether it slides
+--     verdicts.cuts(seed)     what differs when a box of a leaning column is cut into parts and joined again, or nil
 local shapes = require "shapes"
 local talus = require "talus"
 
@@ -82,6 +83,53 @@ function verdicts.slides(seed)
         return "direction: " .. verdict.text, slides
     end
     return nil, slides
+end
+
+-- A column of boxes on a plane that is not steep, on joints of any stiffness; one of the boxes is cut by so many planes and joined again.
+local function column(seed, planes)
+    local random = shapes.random(seed)
+    local tilt, boxes, z = math.rad(random(0, 15)), 2 + seed % 3, 0
+    local model = talus.model { gravity = { G * math.sin(tilt), 0, -G * math.cos(tilt) } }
+    local cut, middle = 1 + seed % boxes, nil
+    for i = 1, boxes do
+        local x, y, high = random(0, 0.2), random(0, 0.2), random(0.2, 0.6)
+        model:generate("box", { min = { x, y, z }, max = { x + 1, y + 1, z + high }, density = 2600 })
+        middle = i == cut and { x + 0.5, y + 0.5, z + 0.5 * high } or middle
+        z = z + high
+    end
+    local way = random(0, 360)
+    model:blocks():hide()
+    model:blocks { id = cut, hidden = true }:show()
+    for k = 1, planes do
+        model:generate("joint", { joint = "cut", dip = 100 - 10 * k, dip_direction = (way + 100 * k) % 360, origin = middle })
+    end
+    model:blocks():join()
+    model:blocks { hidden = true }:show()
+    model:generate("box", { min = { -9, -9, -1 }, max = { 9, 9, 0 }, density = 2600, group = "floor" })
+    model:blocks { group = "floor" }:fix()
+    joint(model, 10 ^ random(6.5, 9), 45)
+    model:damping "local"
+    return model
+end
+
+function verdicts.cuts(seed)
+    local whole
+    for planes = 0, 2 do
+        local model = column(seed, planes)
+        if model:solve { ratio = RATIO, max_cycles = CYCLES }.reason ~= "ratio" then
+            return "not at rest"
+        end
+        local verdict = model:verdict()
+        whole = whole or verdict
+        if verdict.moved ~= whole.moved or verdict.standing ~= whole.standing then
+            return ("%s and, in parts, %s"):format(whole.text, verdict.text)
+        end
+        for _, name in ipairs { "displacement", "closed", "slip", "opening" } do
+            if math.abs(verdict[name] - whole[name]) > 0.01 * whole.displacement then
+                return ("%s: %g and, in parts, %g"):format(name, whole[name], verdict[name])
+            end
+        end
+    end
 end
 
 return verdicts

@@ -21,6 +21,7 @@ static void add_settings(tl_model *m)
     scene_ok(m, tl_model_damping(m, "local", &without));
     const tl_load load = {.size = sizeof load, .force = {0, 0, -10}};
     scene_ok(m, tl_blocks_load(m, &m->blocks.id[1], 1, &load));
+    scene_ok(m, tl_blocks_reset_displacement(m, &m->blocks.id[1], 1));
     const tl_history what = {
         .name = "kinetic", .asked = "kinetic", .source = TL_FROM_MODEL, .every = 1};
     tl_history *history;
@@ -227,6 +228,8 @@ static const lie lies[] = {
     LIE("bodies.moments", 0, none),
     LIE("bodies.radius", 0, none),
     LIE("bodies.q", 0, no_turn),
+    LIE("blocks.base_turn", 0, no_turn),
+    LIE("blocks.base", 0, infinite),
     LIE("bodies.axes", 32, no_turn),
     LIE("bodies.id", 4, row_1),
     LIE("bodies.mass", 0, infinite),
