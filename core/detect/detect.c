@@ -22,6 +22,7 @@
 #include "detect/renew.h"
 #include "detect/update.h"
 #include "force/heirs.h"
+#include "model/body_shape.h"
 #include "narrow/manifold.h"
 #include "narrow/place.h"
 
@@ -113,6 +114,12 @@ typedef struct overlaps {
     uint32_t pair; /* the first */
 } overlaps;
 
+/* Size of the smaller one of a pair's bodies, m. */
+static double size_of_bodies(const tl_model *m, const tl_pair *pair)
+{
+    return fmin(tl_body_size(m, m->blocks.body[pair->a]), tl_body_size(m, m->blocks.body[pair->b]));
+}
+
 /* Makes the contact of a pair that has come near; its overlap is noted when it is deep. */
 static tl_status give_birth(tl_model *m, uint32_t pair, overlaps *deep)
 {
@@ -139,7 +146,8 @@ static tl_status give_birth(tl_model *m, uint32_t pair, overlaps *deep)
     double overlap = g->facet.kind == TL_FACET_FIELD ? g->press->deepest : -region.gap;
     /* parts of blocks go on in the overlap of these */
     bool meet = !tl_estate_of(m, d->pairs[pair].a, d->pairs[pair].b);
-    if (meet && overlap > TL_SHALLOW * view.size && deep->count++ == 0)
+    if (meet && overlap > TL_SHALLOW * view.size &&
+        overlap > TL_SHALLOW * size_of_bodies(m, &d->pairs[pair]) && deep->count++ == 0)
         deep->pair = pair;
     if (tl_overlap_is_deep(m, &view, &region, d->pairs[pair].a, d->pairs[pair].b, meet)) {
         tl_overlap_mark(&d->contacts, row, meet);

@@ -192,3 +192,24 @@ model:solve { stop_at_failure = true }
 end
 check.holds(failing(1, 2), "the mast topples")
 check.equal(failing(2, 1), failing(1, 2))
+
+-- An overlap is as deep for a body of parts as for a block: a hundredth of the body's size counts.
+local function sunk(depth, in_parts)
+    return ([[
+        local model = talus.model { gravity = { 0, 0, -9.81 } }
+        model:generate("box", { min = { 0, 0, 0 }, max = { 2, 2, 2 }, density = 2700, group = "cube" })
+        if %s then
+            model:generate("joint", { joint = "cut", dip = 0, dip_direction = 0, origin = { 0, 0, 0.2 } })
+            model:blocks():join()
+        end
+        model:generate("box", { min = { -1, -1, -1 }, max = { 3, 3, %g }, density = 2700, group = "floor" })
+        model:blocks { group = "floor" }:fix()
+        model:joint("*", "coulomb", { kn = 1e9, ks = 1e9, friction = 35 })
+        model:damping "local"
+        model:cycle(1)
+    ]]):format(in_parts, depth)
+end
+for _, in_parts in ipairs { false, true } do
+    is_silent(sunk(0.018, in_parts))
+    says(sunk(0.022, in_parts), "1 pair of blocks", "overlaps by more than 0.01 of their size")
+end

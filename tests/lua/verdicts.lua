@@ -121,6 +121,9 @@ function verdicts.cuts(seed)
         end
         local verdict = model:verdict()
         whole = whole or verdict
+        if whole.displacement > 0.1 then -- it has toppled or slid
+            return nil
+        end
         if verdict.moved ~= whole.moved or verdict.standing ~= whole.standing then
             return ("%s and, in parts, %s"):format(whole.text, verdict.text)
         end
