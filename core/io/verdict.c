@@ -135,8 +135,7 @@ static double sprung(const tl_model *m, uint32_t contact, const tl_contact_facts
 static tl_quat turn_of(const tl_model *m, uint32_t body)
 {
     const uint32_t row = m->members[m->bodies.member_start[body]];
-    const tl_quat q = m->bodies.q[body];
-    return m->blocks.base_turn ? tl_q_mul(q, tl_q_conj(m->blocks.base_turn[row])) : q;
+    return tl_q_mul(m->bodies.q[body], tl_q_conj(tl_block_base(m, row).turn));
 }
 
 /* Where a point of a body was then, which has come by `way`. */

@@ -243,27 +243,54 @@ tl_vec3 tl_block_centroid(const tl_model *m, uint32_t row)
     return tl_model_point(m, m->blocks.body[row], tl_block_local(m, row));
 }
 
+static const tl_base no_base = {{0, 0, 0}, {1, 0, 0, 0}};
+
 bool tl_blocks_hold_base(tl_model *m)
 {
     tl_blocks *b = &m->blocks;
-    const bool there = b->base_turn;
-    if (!TL_COLUMN_NEED(&b->table, b, base, 0) || !TL_COLUMN_NEED(&b->table, b, base_turn, 0))
+    const bool there = b->base;
+    if (!TL_COLUMN_NEED(&b->table, b, base, 0))
         return false;
     for (size_t row = 0; row < b->table.rows && !there; row++)
-        b->base_turn[row] = tl_q_identity();
+        b->base[row] = no_base;
     return true;
+}
+
+bool tl_blocks_hold_made(tl_model *m)
+{
+    tl_blocks *b = &m->blocks;
+    const bool there = b->made;
+    if (!TL_COLUMN_NEED(&b->table, b, made, 0))
+        return false;
+    for (size_t row = 0; row < b->table.rows && !there; row++)
+        b->made[row] = no_base;
+    return true;
+}
+
+tl_base tl_block_base(const tl_model *m, uint32_t row)
+{
+    return m->blocks.base ? m->blocks.base[row] : no_base;
+}
+
+tl_base tl_block_made(const tl_model *m, uint32_t row)
+{
+    return m->blocks.made ? m->blocks.made[row] : no_base;
+}
+
+tl_vec3 tl_block_point_moved(const tl_model *m, uint32_t row, const tl_base *from, tl_vec3 local)
+{
+    const uint32_t body = m->blocks.body[row];
+    const tl_vec3 turned = tl_v3_sub(tl_m3_mul(&m->bodies.pose[body].r, local), local);
+    const tl_vec3 moved = tl_v3_add(m->bodies.pose[body].u, turned);
+    const tl_mat3 turn = tl_q_matrix(from->turn);
+    const tl_vec3 before = tl_v3_sub(tl_m3_mul(&turn, local), local);
+    return tl_v3_sub(moved, tl_v3_add(from->shift, before));
 }
 
 tl_vec3 tl_block_point_displacement(const tl_model *m, uint32_t row, tl_vec3 local)
 {
-    uint32_t body = m->blocks.body[row];
-    tl_vec3 turned = tl_v3_sub(tl_m3_mul(&m->bodies.pose[body].r, local), local);
-    tl_vec3 moved = tl_v3_add(m->bodies.pose[body].u, turned);
-    if (!m->blocks.base)
-        return moved;
-    tl_mat3 turn = tl_q_matrix(m->blocks.base_turn[row]);
-    tl_vec3 before = tl_v3_sub(tl_m3_mul(&turn, local), local);
-    return tl_v3_sub(moved, tl_v3_add(m->blocks.base[row], before));
+    const tl_base from = tl_block_base(m, row);
+    return tl_block_point_moved(m, row, &from, local);
 }
 
 tl_vec3 tl_block_displacement(const tl_model *m, uint32_t row)

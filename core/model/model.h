@@ -37,6 +37,12 @@
 /* Default share of the mass that may be added for a longer step: what slides or falls is then as much slower at the most. */
 #define TL_MOST_ADDED 0.05
 
+/* A place of a block by the frame of its body: shift, m, and turn. */
+typedef struct tl_base {
+    tl_vec3 shift;
+    tl_quat turn;
+} tl_base;
+
 typedef struct tl_blocks {
     tl_table table;
     tl_id *id;
@@ -46,9 +52,10 @@ typedef struct tl_blocks {
     double *density; /* kg/m3 */
     double *volume;  /* m3 */
     tl_vec3 *local;  /* centroid in the body's frame, zero for a body of one block; NULL: all are */
-    /* shift and turn of the body's frame from which displacements count (reset_displacement, joined bodies); NULL: none */
-    tl_vec3 *base;
-    tl_quat *base_turn;
+    tl_base *
+        base; /* from where displacements count, after reset_displacement or when bodies were joined; NULL: from where it was made */
+    tl_base *
+        made; /* where it was made, once bodies were joined; NULL: where the frame of its body was without shift and turn */
     double *size;      /* cube root of the volume: the length tolerances refer to */
     double *mean_face; /* mean face area, m2 */
     uint64_t *lineage; /* key of the block's descent, for random draws */
@@ -320,6 +327,13 @@ tl_vec3 tl_block_centroid(const tl_model *m, uint32_t row);
 tl_vec3 tl_block_displacement(const tl_model *m, uint32_t row);
 /* Makes the columns of that from which displacements count; false: out of memory. */
 bool tl_blocks_hold_base(tl_model *m);
+/* The same for where blocks were made. */
+bool tl_blocks_hold_made(tl_model *m);
+/* From where displacements of a block count, and where it was made. */
+tl_base tl_block_base(const tl_model *m, uint32_t row);
+tl_base tl_block_made(const tl_model *m, uint32_t row);
+/* How far a point of a block, in its body's frame, has gone since the frame was at `from`, m. */
+tl_vec3 tl_block_point_moved(const tl_model *m, uint32_t row, const tl_base *from, tl_vec3 local);
 /* Displacement of a point (in the body's frame) of a block since its creation or last reset. */
 tl_vec3 tl_block_point_displacement(const tl_model *m, uint32_t row, tl_vec3 local);
 

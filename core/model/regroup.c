@@ -112,11 +112,16 @@ static tl_vec3 spin_velocity(const tl_bodies *b, uint32_t body, tl_vec3 spin)
     return tl_q_rotate(attitude, tl_v3(l.x / i.x, l.y / i.y, l.z / i.z));
 }
 
-/* A block of a body that is made anew. */
+/* How far a block has gone from a place, m, and the turn there, of the frame of its new body. */
+typedef struct gone {
+    tl_vec3 moved;
+    tl_quat turn;
+} gone;
+
+/* A block of a body that is made anew: from where its displacements count, and from where it was made. */
 typedef struct member {
     uint32_t row;
-    tl_vec3 displacement; /* before */
-    tl_quat base_turn;    /* from the frame of the new body */
+    gone base, made;
 } member;
 
 /* A new body, of the members from `start` on. */
@@ -197,13 +202,21 @@ static bool sort_bodies(const tl_model *m, const uint32_t *group, regroup *r)
     return true;
 }
 
-/* The turn from which the displacement of a block counts, from the frame of another body. */
-static tl_quat base_turn_in(const tl_model *m, uint32_t row, uint32_t leader)
+static gone gone_from(const tl_model *m, uint32_t row, tl_base from, uint32_t leader)
 {
     const tl_quat *q = m->bodies.q;
-    tl_quat turn = m->blocks.base_turn ? m->blocks.base_turn[row] : tl_q_identity();
-    uint32_t body = m->blocks.body[row];
-    return body == leader ? turn : tl_q_mul(turn, tl_q_mul(tl_q_conj(q[body]), q[leader]));
+    const uint32_t body = m->blocks.body[row];
+    const tl_quat turn =
+        body == leader ? from.turn : tl_q_mul(from.turn, tl_q_mul(tl_q_conj(q[body]), q[leader]));
+    return (gone){tl_block_point_moved(m, row, &from, tl_block_local(m, row)), turn};
+}
+
+/* The place from which a block, in its new body, has gone as far as it had in the old one. */
+static tl_base place_before(const tl_model *m, uint32_t row, const gone *by)
+{
+    tl_base from = {{0, 0, 0}, by->turn};
+    from.shift = tl_v3_sub(tl_block_point_moved(m, row, &from, tl_block_local(m, row)), by->moved);
+    return from;
 }
 
 /* Lists the members of the new bodies, in the order of the lowest blocks, and gives all bodies their new rows. */
@@ -230,8 +243,10 @@ static bool list_made(const tl_model *m, const uint32_t *group, regroup *r)
             r->of[row] = count++;
         }
         new_body *one = &r->new_bodies[r->of[group[row]]];
-        r->members[one->start + one->count++] = (member){
-            row, tl_block_displacement(m, row), base_turn_in(m, row, m->blocks.body[group[row]])};
+        const uint32_t leader = m->blocks.body[group[row]];
+        r->members[one->start + one->count++] =
+            (member){row, gone_from(m, row, tl_block_base(m, row), leader),
+                     gone_from(m, row, tl_block_made(m, row), leader)};
     }
     memset(r->stays + m->bodies.table.rows, 1, count);
     return true;
@@ -279,7 +294,8 @@ static bool reserve_rows(tl_model *m, const regroup *r)
 {
     tl_blocks *blocks = &m->blocks;
     return tl_table_reserve(&m->bodies.table, m->bodies.table.rows + 2 * r->new_body_count) &&
-           TL_COLUMN_NEED(&blocks->table, blocks, local, 0) && tl_blocks_hold_base(m);
+           TL_COLUMN_NEED(&blocks->table, blocks, local, 0) && tl_blocks_hold_base(m) &&
+           tl_blocks_hold_made(m);
 }
 
 /* Rows of the new bodies, in between those that stay; the others go. */
@@ -335,9 +351,8 @@ static void finish_body(tl_model *m, const regroup *r, const new_body *one)
         const member *of = &r->members[one->start + k];
         if (one->count == 1)
             blocks->local[of->row] = tl_v3(0, 0, 0);
-        blocks->base[of->row] = tl_v3(0, 0, 0);
-        blocks->base_turn[of->row] = of->base_turn;
-        blocks->base[of->row] = tl_v3_sub(tl_block_displacement(m, of->row), of->displacement);
+        blocks->base[of->row] = place_before(m, of->row, &of->base);
+        blocks->made[of->row] = place_before(m, of->row, &of->made);
     }
 }
 

@@ -23,8 +23,9 @@ static void centre_shape(tl_poly *shape, tl_vec3 centroid)
 typedef struct source {
     tl_id id;
     tl_pose pose;
-    tl_vec3 base, v, w;
-    tl_quat q, base_turn;
+    tl_base base, made;
+    tl_vec3 v, w;
+    tl_quat q;
     uint32_t drive;
     uint8_t fixed;
 } source;
@@ -34,14 +35,24 @@ static source source_of(const tl_model *m, uint32_t row)
     const tl_bodies *b = &m->bodies;
     uint32_t body = m->blocks.body[row];
     return (source){.id = m->blocks.id[row],
-                    .base = m->blocks.base ? m->blocks.base[row] : tl_v3(0, 0, 0),
-                    .base_turn = m->blocks.base_turn ? m->blocks.base_turn[row] : tl_q_identity(),
+                    .base = tl_block_base(m, row),
+                    .made = tl_block_made(m, row),
                     .pose = b->pose[body],
                     .v = b->v[body],
                     .w = b->w[body],
                     .q = b->q[body],
                     .drive = b->drive[body],
                     .fixed = b->fixed[body]};
+}
+
+/* Where a block was, as far as the model has such a column: where its source was, about its own centroid `c`; NULL: here. */
+static void put_base(tl_base *column, uint32_t row, const tl_base *from, tl_vec3 c)
+{
+    if (!column)
+        return;
+    column[row] = from ? *from : (tl_base){{0, 0, 0}, tl_q_identity()};
+    const tl_mat3 turn = tl_q_matrix(column[row].turn);
+    column[row].shift = tl_v3_add(column[row].shift, tl_v3_sub(tl_m3_mul(&turn, c), c));
 }
 
 /* Fills the rows of a new block and of its body. A child moves on as its part of the source did. */
@@ -70,16 +81,13 @@ static void put(tl_model *m, const tl_stage_block *block, const source *from, ui
         pose->r = tl_m3_identity();
         bodies->q[body] = tl_q_identity();
         bodies->fixed[body] = block->fixed;
-        if (blocks->base_turn)
-            blocks->base_turn[row] = tl_q_identity();
+        put_base(blocks->base, row, NULL, c);
+        put_base(blocks->made, row, NULL, c);
         return;
     }
     tl_vec3 arm = tl_m3_mul(&from->pose.r, c);
-    if (blocks->base) { /* that of the whole's frame, about this block's centroid */
-        tl_mat3 turn = tl_q_matrix(from->base_turn);
-        blocks->base[row] = tl_v3_add(from->base, tl_v3_sub(tl_m3_mul(&turn, c), c));
-        blocks->base_turn[row] = from->base_turn;
-    }
+    put_base(blocks->base, row, &from->base, c);
+    put_base(blocks->made, row, &from->made, c);
     *pose = from->pose;
     pose->x_ref = tl_v3_add(pose->x_ref, c);
     pose->u = tl_v3_add(pose->u, tl_v3_sub(arm, c));

@@ -154,8 +154,7 @@ tl_status tl_blocks_free(tl_model *m, const tl_id *ids, size_t count)
 static void displacement_from_now(tl_model *m, uint32_t row)
 {
     uint32_t body = m->blocks.body[row];
-    m->blocks.base[row] = m->bodies.pose[body].u;
-    m->blocks.base_turn[row] = m->bodies.q[body];
+    m->blocks.base[row] = (tl_base){m->bodies.pose[body].u, m->bodies.q[body]};
 }
 
 tl_status tl_blocks_reset_displacement(tl_model *m, const tl_id *ids, size_t count)

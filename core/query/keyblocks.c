@@ -21,7 +21,7 @@
  * A body on rollers moves in what is left of space, P: its cone lies in it, and r and the normals are projected on it. With n' = P n,
  * N_i is then that over |n'_i|; rollers take the rest, without friction.
  *
- * The faces are those on which the body lay when displacements began to count, for settling tilts it and parts walls (touching.c); of
+ * The faces are those on which the body lay when it was made, for settling tilts it and parts walls (touching.c); of
  * a body that has moved by more than TL_TOUCH_KEPT of its size against what it touches, they are those on which it lies now.
  *
  * Limits: translations only; each body alone, all others at rest; a body of several blocks is

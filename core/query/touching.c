@@ -2,7 +2,7 @@
  *
  * Joints are planes; blocks that settle on them sink in and turn a little, so that an edge bears and faces part. What bounds their
  * motion is the joint all the same. So a block that has moved against another by less than TL_TOUCH_KEPT of its size touches it where
- * a face lay on a face when displacements began to count; else, and where none did, where faces lie on each other now. A corner or an
+ * a face lay on a face when it was made; else, and where none did, where faces lie on each other now. A corner or an
  * edge on a face bounds no half-space of motion that its neighbours do not.
  *
  * Candidates are pairs whose bounds overlap: those of both places, sorted along the model's longest side. */
@@ -57,10 +57,8 @@ static place place_of(const tl_model *m, uint32_t row, bool now)
     const tl_pose *pose = &m->bodies.pose[m->blocks.body[row]];
     if (now)
         return (place){pose->r, tl_v3_add(pose->x_ref, pose->u)};
-    if (!m->blocks.base)
-        return (place){tl_m3_identity(), pose->x_ref};
-    return (place){tl_q_matrix(m->blocks.base_turn[row]),
-                   tl_v3_add(pose->x_ref, m->blocks.base[row])};
+    const tl_base made = tl_block_made(m, row);
+    return (place){tl_q_matrix(made.turn), tl_v3_add(pose->x_ref, made.shift)};
 }
 
 static tl_vec3 point_at(const place *p, tl_vec3 local)

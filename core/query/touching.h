@@ -11,7 +11,7 @@ typedef struct tl_touch {
     double area;        /* that they share, m2 */
     tl_tag joint;
     double
-        moved; /* by how much the two have moved against each other since displacements count, over the size of the block's body */
+        moved; /* by how much the two have moved against each other since they were made, over the size of the block's body */
 } tl_touch;
 
 /* Of all blocks, in the order of their ids and of the others'. Those of a row: at[start[row]] .. at[start[row + 1]]. */
@@ -21,7 +21,7 @@ typedef struct tl_touches {
     size_t count, capacity;
 } tl_touches;
 
-/* Motion up to which blocks touch as they did when displacements began to count, over its size. */
+/* Motion up to which blocks touch as they did when they were made, over its size. */
 #define TL_TOUCH_KEPT 0.01
 
 /* Free the result with tl_touches_free, also after an error. */
@@ -32,7 +32,7 @@ void tl_touches_free(tl_touches *touches);
 size_t tl_held_axes(const tl_model *m, uint32_t body, tl_vec3 held[3]);
 /* Whether a body has moved by more against what it touches: its faces are those of now. */
 bool tl_touches_moved(const tl_model *m, const tl_touches *touches, uint32_t body);
-/* Outward unit normal of a touch, axes of the model: as the block lay when displacements began to count, or as it lies now. */
+/* Outward unit normal of a touch, axes of the model: as the block lay when it was made, or as it lies now. */
 tl_vec3 tl_touch_normal(const tl_model *m, const tl_touch *touch, bool now);
 
 /* Cosine within which a direction lies in a face, sine within which two faces are parallel: far above rounding of what was cut. */

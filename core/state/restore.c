@@ -125,6 +125,8 @@ static bool hold_columns(tl_model *m, const tl_archive *a)
         held = held && TL_COLUMN_NEED(blocks, &m->blocks, local, 0);
     if (tl_archive_find(a, "blocks.base"))
         held = held && tl_blocks_hold_base(m);
+    if (tl_archive_find(a, "blocks.made"))
+        held = held && tl_blocks_hold_made(m);
     if (tl_archive_find(a, "bodies.load_before"))
         held = held && TL_COLUMN_NEED(bodies, &m->bodies, load_before, 0);
     if (tl_archive_find(a, "bodies.load"))

@@ -113,6 +113,11 @@ static bool is_turn(tl_quat q)
     return fabs(norm2 - 1) < TURN_SLACK;
 }
 
+static bool base_is_sound(tl_base base)
+{
+    return tl_v3_finite(base.shift) && is_turn(base.turn);
+}
+
 static bool block_is_sound(const tl_model *m, uint32_t row, size_t groups)
 {
     const tl_blocks *b = &m->blocks;
@@ -122,8 +127,8 @@ static bool block_is_sound(const tl_model *m, uint32_t row, size_t groups)
            isfinite(b->density[row]) && measure_is_sound(b->volume[row]) &&
            b->size[row] == tl_cbrt(b->volume[row]) && b->mean_face[row] > 0 &&
            isfinite(b->mean_face[row]) && b->hidden[row] <= 1 && b->stays[row] == 1 &&
-           (!b->local || tl_v3_finite(b->local[row])) && (!b->base || tl_v3_finite(b->base[row])) &&
-           (!b->base_turn || is_turn(b->base_turn[row]));
+           (!b->local || tl_v3_finite(b->local[row])) && base_is_sound(tl_block_base(m, row)) &&
+           base_is_sound(tl_block_made(m, row));
 }
 
 /* Velocities and forces are any numbers: those of a model that overflows are saved as well, and the next step tells it. */

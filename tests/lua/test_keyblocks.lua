@@ -217,3 +217,33 @@ do
     check.refused(model, function() model:history { name = "h", value = "kinetic\0junk" } end, "history: value must be a string, not one with a zero byte after 'kinetic'")
     check.refused(model, function() model:history { name = "\xff", value = "kinetic" } end, "UTF-8")
 end
+
+-- Where displacements count from is nothing to keyblocks: blocks touch as they did when they were made.
+do
+    local lean = math.rad(35)
+    local slope = talus.model { gravity = { 10 * math.sin(lean), 0, -10 * math.cos(lean) } }
+    slope:generate("box", { min = { -9, -9, -1 }, max = { 9, 9, 0 }, density = 2500, group = "slope" })
+    slope:generate("box", { min = { 0, 0, 0 }, max = { 2, 2, 1.5 }, density = 2500, group = "block" })
+    slope:generate("joint", { joint = "cut", dip = 90, dip_direction = 90, origin = { 1, 0, 0 } })
+    slope:blocks { group = "block" }:join()
+    slope:blocks { group = "slope" }:fix()
+    slope:joint("*", "coulomb", { kn = 1e7, ks = 1e7, friction = 60 })
+    slope:damping "local"
+    local factor = math.tan(math.rad(30)) / math.tan(lean)
+    local function holds(what) check.near(slope:keyblocks { friction = 30 }[1].safety, factor, 1e-9, what) end
+    holds "made"
+    slope:solve {}
+    holds "settled"
+    slope:stage "settled"
+    holds "a new stage"
+    slope:cycle(50)
+    slope:blocks { group = "block" }:unjoin()
+    slope:blocks { group = "block" }:join()
+    holds "joined anew"
+    local path = os.getenv "TALUS_TEST_TMP" .. "/slope.talus"
+    slope:save(path)
+    slope = talus.restore(path)
+    holds "restored"
+    slope = slope:copy()
+    holds "copied"
+end
