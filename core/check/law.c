@@ -37,7 +37,8 @@ const tl_check_rule tl_check_law_rules[] = {
     [TL_LAW_FINITE] = {"finite", "forces, states and energies are finite numbers"},
     [TL_LAW_PLANE] = {"plane", "the shear force lies in the common plane"},
     [TL_LAW_STILL] = {"no motion", "without motion and time the forces stay as they are"},
-    [TL_LAW_TURNED] = {"turned", "a turned point gets the turned forces"},
+    [TL_LAW_TURNED] = {"turned",
+                       "a turned point gets the turned forces, the same energies and states"},
     [TL_LAW_AREA] = {"area", "twice the area carries twice the force and the energy"},
     [TL_LAW_STIFFNESS] = {"stiffness", "no point is stiffer than stiffness() says"},
     [TL_LAW_CYCLE] = {"closed cycle", "a closed path of motion gives no energy"},
@@ -258,6 +259,39 @@ static void turn_points(const trial *t, tl_mat3 r, tl_check_points *p)
     }
 }
 
+/* What a column is: an energy, or the name of its state. */
+static const char *column_name(const tl_kind *kind, uint32_t column)
+{
+    if (column < TL_AT_STATE)
+        return column == TL_AT_STORED ? "stored" : "dissipated";
+    uint32_t first = TL_AT_STATE, i = 0;
+    while (first + (kind->states[i].kind == TL_STATE_TANGENT ? 3 : 1) <= column)
+        first += kind->states[i++].kind == TL_STATE_TANGENT ? 3 : 1;
+    return kind->states[i].name;
+}
+
+/* Energies and states of turned points: those of tangents are turned as well. */
+static void check_turned_columns(trial *t, const tl_check_points *out,
+                                 const tl_check_points *expected)
+{
+    for (uint32_t k = TL_AT_STORED; k < TL_AT_STATE + t->law.of.columns; k++) {
+        const bool vector = k >= TL_AT_STATE && t->law.of.tangent[k - TL_AT_STATE];
+        const uint32_t last = k + (vector ? 2 : 0);
+        double most = 0, error = 0;
+        for (uint32_t j = k; j <= last; j++)
+            for (size_t i = 0; i < TL_CHECK_POINTS; i++) {
+                most = fmax(most, fabs(expected->c[j][i]));
+                error = fmax(error, fabs(out->c[j][i] - expected->c[j][i]));
+            }
+        /* an opening may be what rounding of the slide leaves */
+        if (error > 1e3 * ROUNDING * most && error > ROUNDING * t->law.slide)
+            tl_check_note(t->c, TL_LAW_TURNED, "%s '%s' of a turned point differs by %g of %g",
+                          k < TL_AT_STATE ? "the energy" : "the state",
+                          column_name(t->law.of.kind, k), error, most);
+        k = last;
+    }
+}
+
 static void check_turned(trial *t, int step)
 {
     tl_vec3 axis = tl_check_direction(key_of(t, (uint64_t)step, 77));
@@ -277,6 +311,7 @@ static void check_turned(trial *t, int step)
                           "the forces of a turned point differ by %g N of %g N", error,
                           t->scale[i] + tl_v3_norm(b));
     }
+    check_turned_columns(t, &out, &expected);
 }
 
 /* The points as the step has left them, at rest. */

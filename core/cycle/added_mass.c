@@ -15,6 +15,8 @@
 
 #include "contact/detection.h"
 
+#include <float.h>
+
 /* Halvings in the search for the longest step that would do. */
 #define HALVINGS 40
 /* What is told of it, with three digits, is no longer. */
@@ -67,7 +69,10 @@ static struct tl_added needed(const tl_model *m, double limit)
 /* The longest step for which no more than the most is needed. */
 static double longest(const tl_model *m, double limit, double dt)
 {
-    double low = 0, high = 1; /* of dt */
+    double high = 1; /* of dt, which may be too long by many powers of ten */
+    while (high > DBL_MIN && needed(m, limit / (high * high / 256)).share > m->added_most)
+        high /= 16;
+    double low = high / 16;
     for (int i = 0; i < HALVINGS; i++) {
         double part = 0.5 * (low + high);
         if (needed(m, limit / (part * part)).share > m->added_most)

@@ -179,7 +179,8 @@ static cause find_cause(const tl_model *m, uint32_t body, const tl_step_span *k,
     double gravity = length(m->config.gravity);
     note_cause(&most, gravity * k->span * k->dt, "gravity is", gravity, "m/s2");
     if (tl_body_loaded(b, body)) {
-        double force = length(b->load[body].force), moment = length(b->load[body].moment);
+        const tl_wrench load = tl_load_wrench(b, body);
+        double force = length(load.force), moment = length(load.moment);
         bool turns = moment > force * r;
         note_cause(&most, load_travel(m, body, k),
                    turns ? "the moment of its load is" : "its load is", turns ? moment : force,

@@ -333,6 +333,28 @@ m:cycle(50)
 for _, part in ipairs { ".json", "_blocks.vtk.series", "_contacts.vtk.series", "_joints.vtk.series", "_section.vtk.series" } do
     os.remove(stem .. part)
 end
+-- Of the contacts of a body that would move too far the one that presses most is named, in any order of blocks; of its load what counts.
+for _, order in ipairs { { 1, 2, 3 }, { 3, 1, 2 }, { 2, 3, 1 } } do
+    local model = talus.model { gravity = { 0, 0, -9.81 } }
+    local parts = { { "floor", -1, 0 }, { "middle", 0, 1 }, { "top", 1, 1.5 } }
+    for _, i in ipairs(order) do
+        model:generate("box", { min = { 0, 0, parts[i][2] }, max = { 1, 1, parts[i][3] }, density = 2500, group = parts[i][1] })
+    end
+    model:blocks { group = "floor" }:fix()
+    model:joint("*", "coulomb", { kn = 1e8, ks = 1e8, friction = 30 })
+    model:damping "local"
+    model:solve {}
+    local function id(group) return model:blocks { group = group }[1].id end
+    local middle = model:blocks { group = "middle" }
+    middle:set { velocity = { 1e9, 0, 0 } }
+    local low, high = math.min(id "floor", id "middle"), math.max(id "floor", id "middle")
+    check.refused(model, function() model:cycle(1) end,
+        ("most of all presses the contact of blocks %d and %d (no joint), with 3.68e+04 N"):format(low, high))
+    middle:set { velocity = { 0, 0, 0 } }
+    middle:load { force = { 1, 0, 0 }, at = { 0, 1e300, 0 } }
+    check.refused(model, function() model:cycle(1) end, "the moment of its load is 1e+300 N m")
+end
+
 for frame = 0, 1 do
     for _, part in ipairs { "blocks", "contacts", "joints", "section" } do
         os.remove(string.format("%s_%s_%06d.vtk", stem, part, frame))

@@ -112,6 +112,8 @@ check.refused(model, function()
     error(message, 2)
 end, "more than most = 0.05; block " .. sliver.id .. " would get 400 times")
 local longest = tonumber(message:match "give dt = (%S+) or less")
+model:mass_scaling { dt = 2 ^ 63 } -- by many powers of ten too long: the same is told
+check.refused(model, function() model:cycle(1) end, message:match "give dt = %S+ or less")
 check.holds(longest > wanted and longest < 20 * own, "a step that would do")
 model:mass_scaling { dt = longest * 0.999 }
 model:cycle(1)

@@ -62,8 +62,8 @@ typedef struct tl_keyblocks {
     size_t edge_count;
 } tl_keyblocks;
 
-/* Finds the removable ones of the bodies that can move and are not driven (Shi's theorem), as they lay when displacements began to
- * count, or as they lie now where they have moved by more than 1 % of their size. */
+/* Finds the removable ones of the bodies that can move and are not driven (Shi's theorem), as they lay when they were
+ * made, or as they lie now where they have moved by more than 1 % of their size. */
 TL_API tl_status tl_model_keyblocks(struct tl_model *model, const tl_keyblock_query *query,
                                     tl_keyblocks *keyblocks);
 /* Frees the lists of a result and empties it. */
