@@ -45,9 +45,9 @@ typedef struct meeting {
     uint32_t a, b;  /* bodies, a < b */
     tl_vec3 normal; /* from a to b */
     double area;    /* m2 */
-    means by_force,
-        mean;     /* where normal forces act; by area, and in the end by force where there is one */
-    tl_vec3 slip; /* of b against a, across the normal, m */
+    means by_force; /* where normal forces act */
+    means mean;     /* by area, and in the end by force where there is one */
+    tl_vec3 slip;   /* of b against a, across the normal, m */
     double opening; /* m */
     double sprung;  /* how far the springs have let them move, m */
     tl_id contact;  /* the first */

@@ -52,10 +52,10 @@ typedef struct tl_blocks {
     double *density; /* kg/m3 */
     double *volume;  /* m3 */
     tl_vec3 *local;  /* centroid in the body's frame, zero for a body of one block; NULL: all are */
-    tl_base *
-        base; /* from where displacements count, after reset_displacement or when bodies were joined; NULL: from where it was made */
-    tl_base *
-        made; /* where it was made, once bodies were joined; NULL: where the frame of its body was without shift and turn */
+    /* From where displacements count, after reset_displacement or when bodies were joined; NULL: from where it was made. */
+    tl_base *base;
+    /* Where it was made, once bodies were joined; NULL: where the frame of its body has neither shift nor turn. */
+    tl_base *made;
     double *size;      /* cube root of the volume: the length tolerances refer to */
     double *mean_face; /* mean face area, m2 */
     uint64_t *lineage; /* key of the block's descent, for random draws */
