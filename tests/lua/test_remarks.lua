@@ -167,6 +167,7 @@ rock:damping "local"
 local said = remarks(rock .. "rock:cycle(1)")
 local filter = said:match "model:filter(%b{})"
 check.holds(filter and said:find("and %d%d+ more"), "it names many slivers: " .. said)
+check.holds(not remarks(rock .. "rock:mass_scaling(true) rock:cycle(1)"):find("sliver"), "slivers do not limit the step of scaled masses")
 local make = assert(load("local talus = ...; " .. rock .. " return rock"))
 local model = make(require "talus")
 local before, whole = model:timestep().dt, 40 ^ 3

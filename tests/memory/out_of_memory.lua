@@ -176,6 +176,17 @@ local calls = {
     { "restore", function() return talus.restore(TMP .. "/run.talus", { threads = THREADS }):state_hash() end },
     { "throw", function(m) m.model:blocks { group = "cap", hidden = "any" }:set { velocity = { 0, 0, 300 } } end },
     { "fast cycle", function(m) return m.model:cycle(2).ratio end, run = true },
+    -- the first step there is, without question before it; and a step that is given, in which a block flies far
+    { "another model", function()
+        local other = talus.model { gravity = { 0, 0, -10 }, threads = THREADS }
+        other:generate("box", { min = { 0, 0, 0 }, max = { 1, 1, 1 }, density = 2000 })
+        other:generate("box", { min = { 0, 0, 50 }, max = { 1, 1, 51 }, density = 2000 })
+        other:joint("*", "coulomb", COULOMB)
+        other:timestep { dt = 1e-4 }
+        other:blocks { id = 2 }:set { velocity = { 0, 0, 5000 } }
+        other:cycle(2)
+        return other:state_hash()
+    end },
     { "filter away", function(m)
         local filtered = m.model:filter { volume = 1, action = "delete" }
         assert(filtered.found > 0)
