@@ -187,6 +187,29 @@ local calls = {
         other:cycle(2)
         return other:state_hash()
     end },
+    -- a law that comes while blocks are coming near; and a block that is cut under load
+    { "law on the way", function()
+        local other = talus.model { gravity = { 0, 0, -10 }, threads = THREADS }
+        other:generate("box", { min = { 0, 0, 0 }, max = { 1, 1, 1 }, density = 2000 })
+        other:generate("box", { min = { 0, 0, 1.205 }, max = { 1, 1, 2 }, density = 2000 })
+        other:joint("*", "coulomb", COULOMB)
+        other:timestep { dt = 1e-4 }
+        other:blocks { id = 2 }:set { velocity = { 0, 0, -1000 } }
+        other:cycle(2)
+        other:joint("*", "coulomb_tensile", { kn = 1e8, ks = 1e8, friction = 30, cohesion = 1e5 })
+        return other:state_hash()
+    end },
+    { "cut under load", function()
+        local other = talus.model { gravity = { 0, 0, -10 }, threads = THREADS }
+        other:generate("box", { min = { 0, 0, 0 }, max = { 1, 1, 1 }, density = 2000 })
+        other:generate("box", { min = { 0, 0, 1 }, max = { 1, 1, 2 }, density = 2000 })
+        other:blocks { id = 1 }:fix()
+        other:joint("*", "coulomb", COULOMB)
+        other:cycle(20)
+        other:generate("joint", { joint = "late", dip = 50, dip_direction = 20, origin = { 0.5, 0.5, 1.5 } })
+        other:cycle(1)
+        return other:state_hash()
+    end },
     { "filter away", function(m)
         local filtered = m.model:filter { volume = 1, action = "delete" }
         assert(filtered.found > 0)

@@ -220,6 +220,7 @@ static const lie lies[] = {
     LIE("blocks.group", 0, far_row),
     LIE("blocks.body", 4, far_row),
     LIE("blocks.id", 4, far_row),
+    LIE("blocks.id", 12, far_row), /* of the last */
     LIE("blocks.hidden", 1, two),
     LIE("blocks.stays", 0, two),
     /* bodies */
