@@ -317,3 +317,17 @@ for _, small in ipairs { { 1 }, { 50 }, { 100 }, { 20, 70 } } do
         check.equal(many:timestep().block.id, small[1])
     end
 end
+
+-- Of two that need the same the first is named, whichever thread has found it.
+do
+    local sizes = {}
+    for i = 1, 1000 do sizes[i] = 1 end
+    local many = cubes(sizes, 2)
+    for k = 1, 100 do
+        local pair = { 1 + 13 * k % 500, 501 + 29 * k % 500 }
+        local light = many:blocks { where = function(block) return block.id == pair[1] or block.id == pair[2] end }
+        light:set { density = 1000 }
+        check.equal(many:timestep().block.id, pair[1])
+        light:set { density = 2500 }
+    end
+end

@@ -190,13 +190,16 @@ local calls = {
     -- a law that comes while blocks are coming near; and a block that is cut under load
     { "law on the way", function()
         local other = talus.model { gravity = { 0, 0, -10 }, threads = THREADS }
-        other:generate("box", { min = { 0, 0, 0 }, max = { 1, 1, 1 }, density = 2000 })
+        other:generate("box", { min = { 0, 0, 0 }, max = { 3, 1, 1 }, density = 2000 })
         other:generate("box", { min = { 0, 0, 1.205 }, max = { 1, 1, 2 }, density = 2000 })
+        other:generate("box", { min = { 2, 0, 1 }, max = { 3, 1, 2 }, density = 2000 })
+        other:blocks { id = 1 }:fix()
         other:joint("*", "coulomb", COULOMB)
         other:timestep { dt = 1e-4 }
         other:blocks { id = 2 }:set { velocity = { 0, 0, -1000 } }
+        other:blocks { id = 3 }:set { velocity = { 0, 0, -1 } }
         other:cycle(2)
-        other:joint("*", "coulomb_tensile", { kn = 1e8, ks = 1e8, friction = 30, cohesion = 1e5 })
+        other:joint("*", "coulomb_tensile", { kn = 3e8, ks = 1e8, friction = 30, cohesion = 1e5 })
         return other:state_hash()
     end },
     { "cut under load", function()
