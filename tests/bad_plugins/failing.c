@@ -1,5 +1,6 @@
 /* failing.c - a law and a damping that fail when they are told to, in the midst of what they overwrite; and a law that says
  * it never fails. */
+#include <math.h>
 #include <stdio.h>
 #include <talus/plugin.h>
 
@@ -63,13 +64,15 @@ static const tl_law_ops liar_ops = {
 /* ---------------------------------------------------------------- damping ---------------- */
 
 typedef struct damping_params {
-    double factor;
+    double factor, step;
     int32_t fails;
 } damping_params;
 
 static const tl_param damping_table[] = {
     TL_PARAM(TL_PARAM_REAL, damping_params, factor, "", "share of the force of the step before",
              .def = {0.1}, .min = 0, .max = 1),
+    TL_PARAM(TL_PARAM_REAL, damping_params, step, "", "factor of the time step, of any size",
+             .def = {1.0}, .min = -INFINITY, .max = INFINITY),
     TL_PARAM(TL_PARAM_BOOL, damping_params, fails, "", "whether it fails", .def = {0.0}),
 };
 
@@ -101,8 +104,7 @@ static tl_status update_damping(const void *self, const tl_damping_batch *b, tl_
 
 static double step_factor(const void *self)
 {
-    (void)self;
-    return 1;
+    return ((const damping_params *)self)->step;
 }
 
 static const tl_damping_ops damping_ops = {.size = sizeof damping_ops,

@@ -151,10 +151,10 @@ for _, motion in ipairs { { velocity = { 0.05, 0.02, -0.1 } }, { angular_velocit
     stopped:joint("*", "coulomb", { kn = 1e8, ks = 1e8, friction = 30 })
     stopped:damping "kinetic"
     stopped:blocks { group = "cube" }:set(motion)
-    local whole = stopped.dt
-    for k = 1, 200 do
+    local whole = stopped.dt / 4
+    for k = 1, 400 do
         stopped:timestep { dt = whole * (k % 2 == 0 and 1 or 0.3) }
         stopped:cycle(1)
     end
-    check.near(stopped:energy().balance, 0, 0.01)
+    check.near(stopped:energy().balance, 0, 0.005)
 end

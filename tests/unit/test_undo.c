@@ -167,6 +167,29 @@ TEST(a_step_that_the_damping_fails_is_undone)
     }
 }
 
+/* A damping may make the step shorter, and not longer, or none. */
+TEST(a_factor_of_the_step_that_cannot_be_is_refused)
+{
+    const double wrong[] = {1.001, 0, -1, NAN, INFINITY};
+    tl_model *m = scene(1, 3, "coulomb", "failing_damping");
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        const tl_value step = number("step", wrong[i]);
+        if (tl_model_damping(m, "failing_damping", &(tl_args){&step, 1}) != TL_OK)
+            continue; /* no number at all */
+        CHECK_INT(tl_model_cycle(m, 1, NULL), TL_E_PLUGIN);
+        CHECK_CONTAINS(tl_model_error(m)->text, "damping 'failing_damping' gives the step factor ");
+        CHECK_CONTAINS(tl_model_error(m)->text, "which is outside (0, 1]");
+    }
+    const tl_value one = number("step", 1), half = number("step", 0.5);
+    scene_ok(m, tl_model_damping(m, "failing_damping", &(tl_args){&one, 1}));
+    run(m, 1);
+    double whole = m->dt;
+    scene_ok(m, tl_model_damping(m, "failing_damping", &(tl_args){&half, 1}));
+    run(m, 1);
+    CHECK_NEAR(m->dt, 0.5 * whole, 0.01 * whole);
+    tl_model_destroy(m);
+}
+
 /* After a cut new faces are loaded in the step: those of a step that fails are as they were. */
 TEST(a_step_after_a_cut_is_undone)
 {
@@ -288,7 +311,7 @@ TEST(laws_that_never_fail_need_no_memory_for_it)
 }
 
 TEST_MAIN(RUN(a_step_that_a_law_fails_is_undone), RUN(a_step_that_the_damping_fails_is_undone),
-          RUN(a_step_after_a_cut_is_undone), RUN(a_force_beyond_all_numbers_is_undone),
-          RUN(a_step_that_would_fling_a_block_is_undone),
+          RUN(a_factor_of_the_step_that_cannot_be_is_refused), RUN(a_step_after_a_cut_is_undone),
+          RUN(a_force_beyond_all_numbers_is_undone), RUN(a_step_that_would_fling_a_block_is_undone),
           RUN(nothing_goes_on_from_a_step_that_cannot_be_undone),
           RUN(laws_that_never_fail_need_no_memory_for_it))
