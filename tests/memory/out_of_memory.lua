@@ -138,13 +138,17 @@ local calls = {
     { "points", function(m)
         local contact, sum = m.model:contacts {}[1], 0
         for _, point in ipairs(contact.points) do sum = sum + point.area end
-        return sum + #contact.states
+        for name, value in pairs(m.model:contacts { joint = "J1" }[1].states) do sum = sum + #name + value end
+        return sum
     end },
     { "values", function(m) return #m.model:blocks():values("velocity") + #m.model:contacts():values("opening", "flat") end },
     { "lists", function(m) return #m.model:joints() + #m.model:laws() + #m.model:groups() + #talus.laws() end },
     { "outer faces", function(m) return m.model:boundary { facing = { 0, 0, 1 } }.area end },
     { "boundary", function(m)
         return m.model:boundary { facing = { 0, 0, 1 }, within = 60, pressure = 1e3, fixed = true }.force[3]
+    end },
+    { "boundary beside it", function(m)
+        return m.model:boundary { facing = { 1, 0, 0 }, within = 30, pressure = 2e3, add = true }.force[1]
     end },
     { "cycle with boundary", function(m) return m.model:cycle(2).ratio end, run = true },
     { "write_vtk", function(m)
