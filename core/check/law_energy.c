@@ -181,7 +181,7 @@ static void judge(tl_law_trial *t, const walk *w, const double stored[TL_CHECK_P
     for (size_t i = 0; i < TL_CHECK_POINTS; i++) {
         const sums *s = &w->of[i];
         bool closed = i % SORTS < PRESSED || i % SORTS == PARTLY;
-        double most = ERROR * (s->size + stored[i]),
+        double all = s->size + stored[i], most = ERROR * all,
                left = s->work - s->heat - (s->stored - stored[i]);
         if (closed && s->work < -most)
             tl_check_note(
@@ -197,7 +197,7 @@ static void judge(tl_law_trial *t, const walk *w, const double stored[TL_CHECK_P
                           "by the work "
                           "of the forces (work %.3g J, stored %.3g J at the end)",
                           s->without_heat, left > 0 ? "lost" : "made", s->work, s->stored);
-        if (s->with_heat > HEAT_ERROR / ERROR * most)
+        if (s->with_heat > HEAT_ERROR * all)
             tl_check_note(t->c, TL_LAW_BALANCE,
                           "%.3g J of the work are %s in steps with heat: dissipated is not the "
                           "work less what is "

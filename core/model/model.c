@@ -245,14 +245,20 @@ tl_vec3 tl_block_centroid(const tl_model *m, uint32_t row)
 
 static const tl_base no_base = {{0, 0, 0}, {1, 0, 0, 0}};
 
+/* A column that is there now: where it was not, nothing has shift or turn. */
+static void begin_base(tl_base *column, bool there, size_t rows)
+{
+    for (size_t row = 0; row < rows && !there; row++)
+        column[row] = no_base;
+}
+
 bool tl_blocks_hold_base(tl_model *m)
 {
     tl_blocks *b = &m->blocks;
     const bool there = b->base;
     if (!TL_COLUMN_NEED(&b->table, b, base, 0))
         return false;
-    for (size_t row = 0; row < b->table.rows && !there; row++)
-        b->base[row] = no_base;
+    begin_base(b->base, there, b->table.rows);
     return true;
 }
 
@@ -262,8 +268,7 @@ bool tl_blocks_hold_made(tl_model *m)
     const bool there = b->made;
     if (!TL_COLUMN_NEED(&b->table, b, made, 0))
         return false;
-    for (size_t row = 0; row < b->table.rows && !there; row++)
-        b->made[row] = no_base;
+    begin_base(b->made, there, b->table.rows);
     return true;
 }
 

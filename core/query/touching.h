@@ -10,8 +10,8 @@ typedef struct tl_touch {
     uint32_t other;     /* row of the other block */
     double area;        /* that they share, m2 */
     tl_tag joint;
-    double
-        moved; /* by how much the two have moved against each other since they were made, over the size of the block's body */
+    /* By how much the two have moved against each other since they were made, over the size of the block's body. */
+    double moved;
 } tl_touch;
 
 /* Of all blocks, in the order of their ids and of the others'. Those of a row: at[start[row]] .. at[start[row + 1]]. */

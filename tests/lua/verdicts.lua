@@ -2,7 +2,8 @@
 --
 --     verdicts.stands(seed)   what is wrong with the verdict on a column or wall that only closes its joints, or nil
 --     verdicts.slides(seed)   the same of a block on a plane that is steeper or less steep than its friction; and whether it slides
---     verdicts.cuts(seed)     what differs when a box of a leaning column is cut into parts and joined again, or nil
+--     verdicts.cuts(seed)     what differs when a box of a leaning column is cut into parts and joined again, or nil; and whether it stands, so
+--                             that it is compared
 local shapes = require "shapes"
 local talus = require "talus"
 
@@ -122,17 +123,18 @@ function verdicts.cuts(seed)
         local verdict = model:verdict()
         whole = whole or verdict
         if whole.displacement > 0.1 then -- it has toppled or slid
-            return nil
+            return nil, false
         end
         if verdict.moved ~= whole.moved or verdict.standing ~= whole.standing then
             return ("%s and, in parts, %s"):format(whole.text, verdict.text)
         end
         for _, name in ipairs { "displacement", "closed", "slip", "opening" } do
             if math.abs(verdict[name] - whole[name]) > 0.01 * whole.displacement then
-                return ("%s: %g and, in parts, %g"):format(name, whole[name], verdict[name])
+                return ("%s: %g and, in parts, %g"):format(name, whole[name], verdict[name]), true
             end
         end
     end
+    return nil, true
 end
 
 return verdicts
