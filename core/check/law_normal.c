@@ -51,6 +51,8 @@ void tl_law_gaps(const tl_check_law *law, const tl_check_points *given, tl_check
     }
     if (!ops->across_gap)
         return;
+    for (size_t i = 0; i < TL_CHECK_POINTS; i++) /* the law is to write all of them */
+        gaps->lift[i] = gaps->hold[i] = NAN;
     tl_enter(law->of.kind, "across_gap");
     ops->across_gap(law->of.self, &batch, gaps->lift, gaps->hold);
     tl_leave();
@@ -85,8 +87,9 @@ static void energies_at(const tl_check_law *law, const tl_check_points *given, d
 
 /* A point and what is known of it. */
 typedef struct point {
-    double u, apart, hold, spring, f_n, kept; /* m, m, share, N/m, N; kept: what is stored, J */
-    double error, rounding;                   /* N, m */
+    double lift, u, apart, hold, spring, f_n,
+        kept;               /* m, m, m, share, N/m, N; kept: what is stored, J */
+    double error, rounding; /* N, m */
     bool fresh, no_shear;
 } point;
 
@@ -96,7 +99,8 @@ static point point_at(const tl_law_trial *t, const tl_check_gaps *gaps, size_t i
     double lift = gaps->lift[i], u = t->in.c[TL_AT_CLOSURE][i] + lift;
     double size = fabs(lift) + fabs(t->in.c[TL_AT_CLOSURE][i]) + t->law.closure;
     tl_vec3 shear = tl_check_vec(&t->out, TL_AT_F_S, i);
-    return (point){.u = u,
+    return (point){.lift = lift,
+                   .u = u,
                    .apart = t->in.c[TL_AT_APART][i],
                    .hold = u < 0 ? gaps->bond[i] : gaps->hold[i],
                    .spring = spring,
@@ -196,6 +200,9 @@ static void check_gap(tl_law_trial *t, const point *p, size_t i)
             t->c, TL_LAW_PULLS,
             "f_n = %g N across a gap of %g m between walls that were apart and have not met",
             p->f_n, -p->u);
+    if (!isfinite(p->lift))
+        tl_check_note(t->c, TL_LAW_PULLS,
+                      "across_gap() leaves lift unwritten, or gives one that is not finite");
     if (!(p->hold >= 0 && p->hold <= 1))
         tl_check_note(t->c, TL_LAW_PULLS, "across_gap() gives hold = %g, which must be in [0, 1]",
                       p->hold);

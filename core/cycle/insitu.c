@@ -16,6 +16,8 @@
 /* A face is an outer face when more than this share of it, and of the mean face of its block, lies neither on another body nor
  * on its own: less carries no force to speak of. */
 #define BARE 0.01
+/* Largest component of a stress, Pa, and of its gradient, Pa/m, that is taken: forces and their energies stay finite. */
+#define MOST_STRESS 1e50
 
 /* Says so when the stress pulls at faces: most likely its sign is that of compression. */
 static void say_tension(tl_model *m, const tl_insitu *s)
@@ -149,10 +151,10 @@ static void say_outer(tl_model *m, const outer_blocks *found)
             found->count == 1 ? "has" : "have");
 }
 
-static bool finite_tensor(tl_sym3 t)
+static bool is_bearable(tl_sym3 t)
 {
-    return isfinite(t.xx) && isfinite(t.yy) && isfinite(t.zz) && isfinite(t.xy) && isfinite(t.yz) &&
-           isfinite(t.zx);
+    return fabs(t.xx) <= MOST_STRESS && fabs(t.yy) <= MOST_STRESS && fabs(t.zz) <= MOST_STRESS &&
+           fabs(t.xy) <= MOST_STRESS && fabs(t.yz) <= MOST_STRESS && fabs(t.zx) <= MOST_STRESS;
 }
 
 tl_status tl_model_insitu(tl_model *m, const tl_insitu *given)
@@ -164,10 +166,11 @@ tl_status tl_model_insitu(tl_model *m, const tl_insitu *given)
         status = tl_model_may_set(m, "put stress on contacts");
     if (status != TL_OK)
         return status;
-    if (!finite_tensor(insitu->stress) || !finite_tensor(insitu->gradient) ||
-        !tl_v3_finite(insitu->at))
+    if (!is_bearable(insitu->stress) || !is_bearable(insitu->gradient) || !tl_v3_finite(insitu->at))
         return tl_fail(&m->error, TL_E_ARGUMENT,
-                       "insitu: stress, gradient and at must be finite numbers");
+                       "insitu: stress, Pa, gradient, Pa/m, and at must be finite numbers, the "
+                       "first two of at most %g",
+                       MOST_STRESS);
     /* in the present places, where a step that failed has left the contacts already */
     status = tl_detect_update(m);
     outer_blocks outer;

@@ -147,7 +147,8 @@ tl_status tl_poly_share_planes(tl_poly *const *parts, size_t count, tl_error *er
 /* Whether faces of this tag keep parts apart that share them. */
 typedef bool (*tl_sever_fn)(const void *user, tl_tag tag);
 
-/* Which of the parts hang together over faces they share: label[i] is the lowest index of its group.
+/* Which of the parts of a body hang together over faces that lie on each other, as closely as blocks do that have settled before they
+ * were joined: label[i] is the lowest index of its group.
  * Faces that `severs` (NULL: none does) do not count. */
 tl_status tl_poly_connected(tl_poly *const *parts, size_t count, tl_sever_fn severs,
                             const void *user, uint32_t *label, tl_error *error);

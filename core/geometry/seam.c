@@ -17,6 +17,11 @@
 /* Parts fit when planes and corners agree within this times their size: joined blocks were cut by one
  * plane, or were placed in contact by coordinates of six digits. */
 #define FIT 1e-6
+/* What parts of one body may have between them and hang together, over the smaller one's size: a gap, an overlap, and the sine of the
+ * angle between their faces. They may have been joined after they had settled on each other. */
+#define JOINED_GAP 1e-3
+#define JOINED_OVERLAP 1e-2
+#define JOINED_TILT 1e-2
 /* Share of a face's area that may stay uncovered. */
 #define UNCOVERED 1e-5
 
@@ -97,11 +102,9 @@ static bool face_each_other(const tl_poly *a, uint32_t fa, const tl_poly *b, uin
            fabs(p.offset + q.offset) < FIT * size;
 }
 
-bool tl_poly_shared_area(const tl_poly *a, uint32_t fa, const tl_poly *b, uint32_t fb, double *area)
+/* Area common to two faces that face each other, in the plane of the first; false when out of memory. */
+static bool face_area(const tl_poly *a, uint32_t fa, const tl_poly *b, uint32_t fb, double *area)
 {
-    *area = 0;
-    if (!face_each_other(a, fa, b, fb))
-        return true;
     size_t corners = tl_poly_face_size(a, fa) + tl_poly_face_size(b, fb);
     flat *scratch = malloc(4 * corners * sizeof *scratch);
     if (!scratch)
@@ -109,6 +112,12 @@ bool tl_poly_shared_area(const tl_poly *a, uint32_t fa, const tl_poly *b, uint32
     *area = common_area(a, fa, b, fb, scratch);
     free(scratch);
     return true;
+}
+
+bool tl_poly_shared_area(const tl_poly *a, uint32_t fa, const tl_poly *b, uint32_t fb, double *area)
+{
+    *area = 0;
+    return !face_each_other(a, fa, b, fb) || face_area(a, fa, b, fb, area);
 }
 
 typedef struct part {
@@ -122,9 +131,9 @@ typedef struct part {
     const void *user;
 } part;
 
-static bool apart(const part *a, const part *b)
+static bool apart(const part *a, const part *b, double fit)
 {
-    double slack = FIT * fmax(a->poly->size, b->poly->size);
+    double slack = fit * fmax(a->poly->size, b->poly->size);
     return a->bounds.min.x > b->bounds.max.x + slack || b->bounds.min.x > a->bounds.max.x + slack ||
            a->bounds.min.y > b->bounds.max.y + slack || b->bounds.min.y > a->bounds.max.y + slack ||
            a->bounds.min.z > b->bounds.max.z + slack || b->bounds.min.z > a->bounds.max.z + slack;
@@ -152,7 +161,7 @@ static bool is_severed(const part *p, uint32_t face)
     return p->severs && p->severs(p->user, p->poly->tag[face]);
 }
 
-/* Adds up what the parts cover of each other, and groups those that share an area. */
+/* Adds up what the parts cover of each other. */
 static bool cover(part *a, part *b)
 {
     for (uint32_t i = 0; i < a->poly->face_count; i++)
@@ -162,8 +171,37 @@ static bool cover(part *a, part *b)
                 return false;
             a->open[i] -= area;
             b->open[j] -= area;
-            if (area > UNCOVERED * tl_poly_face_area(a->poly, i) && !is_severed(a, i) &&
-                !is_severed(b, j))
+        }
+    return true;
+}
+
+/* Whether face f of a and face g of b face each other closely enough to hold parts of one body together. */
+static bool may_hold(const tl_poly *a, uint32_t f, const tl_poly *b, uint32_t g)
+{
+    tl_plane p = a->plane[f];
+    double size = fmin(a->size, b->size), low = INFINITY, high = -INFINITY;
+    if (tl_v3_norm(tl_v3_add(p.normal, b->plane[g].normal)) > JOINED_TILT)
+        return false;
+    for (uint32_t h = b->start[g]; h < b->start[g + 1]; h++) {
+        double height = tl_v3_dot(p.normal, b->vertex[b->loop[h]]) - p.offset;
+        low = fmin(low, height);
+        high = fmax(high, height);
+    }
+    return low <= JOINED_GAP * size && high >= -JOINED_OVERLAP * size;
+}
+
+/* Groups parts that lie on each other with an area, however they had settled when they were joined. */
+static bool hold(part *a, part *b)
+{
+    for (uint32_t i = 0; i < a->poly->face_count; i++)
+        for (uint32_t j = 0; j < b->poly->face_count && root(a) != root(b); j++) {
+            double area, least = UNCOVERED *
+                                 fmin(tl_poly_face_area(a->poly, i), tl_poly_face_area(b->poly, j));
+            if (is_severed(a, i) || is_severed(b, j) || !may_hold(a->poly, i, b->poly, j))
+                continue;
+            if (!face_area(a->poly, i, b->poly, j, &area))
+                return false;
+            if (area > least)
                 unite(a, b);
         }
     return true;
@@ -178,15 +216,15 @@ static int compare_part(const void *x, const void *y)
     return (p->index > q->index) - (p->index < q->index); /* the same order from every qsort */
 }
 
-/* Calls `visit` for every two parts whose bounds meet; parts are sorted by their low x. */
-static bool each_pair(part *parts, size_t count, bool (*visit)(part *, part *))
+/* Calls `visit` for every two parts whose bounds, grown by `fit` times the size, meet; parts are sorted by their low x. */
+static bool each_pair(part *parts, size_t count, double fit, bool (*visit)(part *, part *))
 {
     for (size_t i = 0; i < count; i++)
         for (size_t j = i + 1; j < count; j++) {
-            double slack = FIT * fmax(parts[i].poly->size, parts[j].poly->size);
+            double slack = fit * fmax(parts[i].poly->size, parts[j].poly->size);
             if (parts[j].bounds.min.x > parts[i].bounds.max.x + slack)
                 break;
-            if (!apart(&parts[i], &parts[j]) && !visit(&parts[i], &parts[j]))
+            if (!apart(&parts[i], &parts[j], fit) && !visit(&parts[i], &parts[j]))
                 return false;
         }
     return true;
@@ -318,12 +356,12 @@ tl_status tl_poly_mark_seams(tl_poly *const *parts, size_t count, tl_error *erro
     if (count < 2)
         return TL_OK;
     part *list = list_parts(parts, count);
-    bool done = list && each_pair(list, count, cover);
+    bool done = list && each_pair(list, count, FIT, cover);
     for (size_t i = 0; done && i < count; i++)
         done = mark(&list[i]);
-    done = done && each_pair(list, count, match);
+    done = done && each_pair(list, count, FIT, match);
     if (done)
-        each_pair(list, count, show);
+        each_pair(list, count, FIT, show);
     free(list);
     return done ? TL_OK : tl_fail_memory(error);
 }
@@ -336,7 +374,7 @@ tl_status tl_poly_connected(tl_poly *const *parts, size_t count, tl_sever_fn sev
         list[i].severs = severs;
         list[i].user = user;
     }
-    if (count && (!list || !each_pair(list, count, cover))) {
+    if (count && (!list || !each_pair(list, count, JOINED_OVERLAP, hold))) {
         free(list);
         return tl_fail_memory(error);
     }

@@ -265,8 +265,10 @@ static bool unknown_topic(const char *word, tl_error *error)
 {
     tl_lua_names names = {0};
     page_list pages = {0};
+    bool is_verb = false;
     for (const tl_lua_topic *topic = tl_lua_topics; topic->name; topic++) {
         tl_lua_names_add(&names, topic->name);
+        is_verb = is_verb || tl_lua_topic_names(topic, word);
         if (tl_lua_topic_says(topic, word))
             list_page(&pages, topic->name);
     }
@@ -280,7 +282,8 @@ static bool unknown_topic(const char *word, tl_error *error)
     }
     const char *nearest = tl_nearest_name(word, names.at, names.count);
     size_t length = strlen(word), other = nearest ? strlen(nearest) : 0;
-    bool misspelt = nearest && strncmp(word, nearest, length < other ? length : other) == 0;
+    bool misspelt =
+        nearest && !is_verb && strncmp(word, nearest, length < other ? length : other) == 0;
     error->status = TL_E_NOT_FOUND;
     if (misspelt || (nearest && pages.count == 0 && (length > SHORT || word[0] == nearest[0])))
         snprintf(error->text, sizeof error->text, "there is no help on '%s'; did you mean '%s'?",

@@ -63,6 +63,17 @@ bool tl_lua_topic_says(const tl_lua_topic *topic, const char *word)
             (fields_say(topic->kind->fields, word) || keys_say(topic->kind->extra_keys, word)));
 }
 
+bool tl_lua_topic_names(const tl_lua_topic *topic, const char *word)
+{
+    const size_t length = strlen(word);
+    for (const tl_lua_key *key = topic->verbs; key && key->name; key++)
+        for (const char *at = strchr(key->name, ':'); at; at = strchr(at + 1, ':'))
+            if (strncmp(at + 1, word, length) == 0 &&
+                (at[1 + length] == '(' || at[1 + length] == '{'))
+                return true;
+    return false;
+}
+
 bool tl_lua_kind_says(const tl_kind *kind, const char *word)
 {
     bool any = says(kind->doc, word) ||

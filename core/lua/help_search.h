@@ -5,6 +5,8 @@
 #include "front.h"
 
 bool tl_lua_topic_says(const tl_lua_topic *topic, const char *word);
+/* Whether the word is a verb of what the page is of. */
+bool tl_lua_topic_names(const tl_lua_topic *topic, const char *word);
 bool tl_lua_kind_says(const tl_kind *kind, const char *word);
 
 #endif

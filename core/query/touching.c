@@ -39,6 +39,8 @@ typedef struct place {
 typedef struct worker {
     tl_narrow_scratch scratch;
     tl_touches found;
+    uint32_t *left; /* rows of blocks that touched another when they were made, and no longer do */
+    size_t left_count, left_capacity;
     bool failed; /* out of memory */
 } worker;
 
@@ -97,6 +99,8 @@ bool tl_touches_moved(const tl_model *m, const tl_touches *touches, uint32_t bod
         uint32_t row = m->members[m->bodies.member_start[body] + k];
         for (size_t i = touches->start[row]; i < touches->start[row + 1]; i++)
             most = fmax(most, touches->at[i].moved);
+        if (touches->left[row])
+            return true;
     }
     return !(most < TL_TOUCH_KEPT);
 }
@@ -185,6 +189,20 @@ static double least_area(const tl_model *m, uint32_t row, uint32_t face)
     return 2 * TL_TOUCH_KEPT * tl_poly_face_area(m->blocks.shape[row], face);
 }
 
+/* Notes that the block in `row`, of a pair that does not touch now, has left what it lay on, if it did. */
+static bool note_left(const search *s, worker *w, uint32_t row, common *before,
+                      const uint32_t pair[2])
+{
+    if (!look(s->m, &w->scratch, pair[0], pair[1], false, before))
+        return false;
+    if (!(before->area > 0))
+        return true;
+    if (!tl_grow(&w->left, &w->left_capacity, w->left_count + 1, sizeof *w->left))
+        return false;
+    w->left[w->left_count++] = row;
+    return true;
+}
+
 static bool test_pair(const search *s, worker *w, uint32_t a, uint32_t b)
 {
     const tl_bounds *p = &s->bounds[a], *q = &s->bounds[b];
@@ -207,6 +225,8 @@ static bool test_pair(const search *s, worker *w, uint32_t a, uint32_t b)
         const tl_touch touch = {row[side], it->face[side], row[1 - side],
                                 it->area,  it->joint,      share};
         if (it->area > least && !add(&w->found, touch))
+            return false;
+        if (!kept && !(now.area > 0) && !note_left(s, w, row[side], &before, row))
             return false;
     }
     return true;
@@ -318,13 +338,16 @@ static bool collect(const search *s, unsigned threads, tl_touches *out)
     }
     out->start = calloc(rows + 2, sizeof *out->start);
     out->at = malloc((count + 1) * sizeof *out->at);
-    if (!enough || !out->start || !out->at)
+    out->left = calloc(rows + 1, sizeof *out->left);
+    if (!enough || !out->start || !out->at || !out->left)
         return false;
     for (unsigned k = 0; k < threads; k++) {
         const tl_touches *found = &s->workers[k].found;
         if (found->count)
             memcpy(out->at + out->count, found->at, found->count * sizeof *out->at);
         out->count += found->count;
+        for (size_t i = 0; i < s->workers[k].left_count; i++)
+            out->left[s->workers[k].left[i]] = 1;
     }
     qsort(out->at, out->count, sizeof *out->at, compare_touch);
     for (size_t i = 0; i < out->count; i++)
@@ -350,6 +373,7 @@ tl_status tl_touches_find(tl_model *m, tl_touches *out)
     for (unsigned k = 0; k < threads && s.workers; k++) {
         tl_narrow_scratch_free(&s.workers[k].scratch);
         free(s.workers[k].found.at);
+        free(s.workers[k].left);
     }
     free(s.workers);
     return enough ? TL_OK : tl_fail_memory(&m->error);
@@ -359,5 +383,6 @@ void tl_touches_free(tl_touches *touches)
 {
     free(touches->at);
     free(touches->start);
+    free(touches->left);
     *touches = (tl_touches){0};
 }

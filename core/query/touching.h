@@ -19,6 +19,8 @@ typedef struct tl_touches {
     tl_touch *at;
     size_t *start;
     size_t count, capacity;
+    uint8_t *
+        left; /* [rows] 1: the block touched another when it was made, has moved against it by more, and no longer does */
 } tl_touches;
 
 /* Motion up to which blocks touch as they did when they were made, over its size. */
@@ -30,7 +32,7 @@ void tl_touches_free(tl_touches *touches);
 
 /* The axes along which a body is held, on rollers or, all three, throughout; how many they are. */
 size_t tl_held_axes(const tl_model *m, uint32_t body, tl_vec3 held[3]);
-/* Whether a body has moved by more against what it touches: its faces are those of now. */
+/* Whether a body has moved by more against what it touches, or touched when it was made: its faces are those of now. */
 bool tl_touches_moved(const tl_model *m, const tl_touches *touches, uint32_t body);
 /* Outward unit normal of a touch, axes of the model: as the block lay when it was made, or as it lies now. */
 tl_vec3 tl_touch_normal(const tl_model *m, const tl_touch *touch, bool now);

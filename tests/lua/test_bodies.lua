@@ -159,3 +159,59 @@ check.raises(function()
         model:blocks { group = "body" }:join()
     end }
 end, "cannot join blocks while the model is running")
+
+-- What was joined after it had settled stays one body when it is cut, as what was joined before: closures are no gaps.
+local function two_on_each_other(kn, settled, size)
+    local tower = talus.model { gravity = { 0, 0, -10 } }
+    local function box(low, high, group)
+        tower:generate("box", { min = { 0, 0, low * size }, max = { 4 * size, 4 * size, high * size }, density = 2500,
+            group = group })
+    end
+    box(-1, 0, "base")
+    box(0, 2, "tower")
+    box(2, 4, "tower")
+    tower:joint("*", "coulomb", { kn = kn, ks = kn, friction = 30 })
+    tower:blocks { group = "base" }:fix()
+    tower:damping "local"
+    if settled then
+        tower:solve {}
+    end
+    tower:blocks { group = "tower" }:join()
+    tower:blocks { group = "base" }:hide()
+    return tower
+end
+local function bodies_of(of)
+    local seen, count = {}, 0
+    for _, block in ipairs(of:blocks()) do
+        count = count + (seen[block.body] and 0 or 1)
+        seen[block.body] = true
+    end
+    return count
+end
+for _, kn in ipairs { 5e6, 1e7, 1e9, 1e10, 1e12 } do
+    for _, settled in ipairs { false, true } do
+        local function fresh()
+            return two_on_each_other(kn, settled, 1)
+        end
+        local cut = fresh()
+        cut:generate("joint", { joint = "K", dip = 90, dip_direction = 90, origin = { 1, 2, 2 } })
+        check.equal(#cut:blocks(), 4)
+        check.equal(bodies_of(cut), 2)
+        cut = fresh()
+        cut:generate("joint", { joint = "K", dip = 90, dip_direction = 90, origin = { 2, 2, 3 }, radius = 0.5 })
+        check.equal(bodies_of(cut), 1)
+        cut = fresh()
+        local function portal(x)
+            return { { x, 1.5, 1.5 }, { x, 2.5, 1.5 }, { x, 2.5, 2.5 }, { x, 1.5, 2.5 } }
+        end
+        cut:generate("tunnel", { face1 = portal(-1), face2 = portal(5) })
+        check.equal(bodies_of(cut), 1)
+        -- A slab of 1 % of the size that is sawn out parts what it lay between.
+        cut = fresh()
+        for k, z in ipairs { 0.99, 1.01 } do
+            cut:generate("joint", { joint = "saw" .. k, dip = 0, dip_direction = 0, origin = { 2, 2, z } })
+        end
+        cut:blocks { where = function(block) return block.volume < 1 end }:delete()
+        check.equal(bodies_of(cut), 2)
+    end
+end

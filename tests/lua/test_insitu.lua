@@ -102,6 +102,9 @@ do
         "xz and zx are the same parameter: give one of them")
     check.refused(m, function() m:insitu { gradient = { zy = 1, yz = 2 } } end, "insitu, gradient: ")
     check.refused(m, function() m:insitu { stress = { xw = 1 } } end, "unknown parameter 'xw'")
+    for _, huge in ipairs { 1e308, math.huge, 0 / 0 } do
+        check.refused(m, function() m:insitu { stress = { xx = huge, zz = -1 } } end, "insitu")
+    end
 end
 
 -- A law that tells its energy takes over a contact at an edge, of which the pressure was found without it.

@@ -214,3 +214,35 @@ for _, in_parts in ipairs { false, true } do
     is_silent(sunk(0.018, in_parts))
     says(sunk(0.022, in_parts), "1 pair of blocks", "overlaps by more than 0.01 of their size")
 end
+
+-- keyblocks tells of a block that has moved against what it lay on, and of one whose wall has gone off while it stayed.
+local function trench(mover, way)
+    return ([[
+        local trench = talus.model { gravity = { 0, 3, -10 } }
+        local function box(group, min, max)
+            trench:generate("box", { min = min, max = max, density = 2500, group = group })
+        end
+        box("base", { 0, 0, -1 }, { 1, 1, 0 })
+        box("wall", { 0, 1, 0 }, { 1, 10, 9 })
+        box("block", { 0, 0, 0 }, { 1, 1, 1 })
+        trench:joint("*", "coulomb", { kn = 1e9, ks = 1e9, friction = 30 })
+        trench:blocks():fix()
+        local block = trench:blocks { group = "block" }
+        block:free()
+        assert(trench:keyblocks { friction = 30 }[1].mode == "stable")
+        block:fix()
+        local moved = trench:blocks { group = "%s" }
+        moved:free()
+        moved:drive { velocity = { 0, %g, 0 } }
+        trench:timestep { dt = 1e-3 }
+        trench:cycle(1000)
+        moved:free()
+        trench:blocks { group = "wall" }:fix()
+        block:free()
+        assert(trench:keyblocks { friction = 30 }[1].mode == "%s")
+    ]]):format(mover, way, math.abs(way) > 0.01 and "sliding" or "stable")
+end
+for mover, sign in pairs { wall = 1, block = -1 } do
+    is_silent(trench(mover, 0.005 * sign))
+    says(trench(mover, 0.02 * sign), "keyblocks: 1 body (first: block 3) has moved against what it touches or touched by more than 1 %")
+end

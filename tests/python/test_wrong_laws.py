@@ -78,6 +78,8 @@ WRONG = [
     ("the area is left out of a spring", TEMPLATE, "double normal = p->kn * area * batch->closure[i]",
      "double normal = p->kn * batch->closure[i]", "area", "twice the area"),
     ("it pulls", TEMPLATE, "double f_n = fmax(0, normal)", "double f_n = normal", "pulls", "across a gap|pulls"),
+    ("lift is not written", COHESIVE, "    tl_law_lift(batch, law->kn, NULL, lift);\n", "", "pulls", "leaves lift unwritten"),
+    ("hold is not written", COULOMB, "tl_law_hold_none(batch, hold);", ";", "pulls", "hold = (nan|-nan)"),
     ("it does not press", TEMPLATE, "double f_n = fmax(0, normal)", "double f_n = fmin(0, normal)", "pulls", "press"),
     ("twice the stiffness is told of a linear law", TEMPLATE, "*kn = p->kn;", "*kn = 2 * p->kn;", "presses",
      "kn of stiffness|stored"),

@@ -36,6 +36,26 @@ function arguments.decimal(format, value)
     return (string.format(format, value):gsub("[^%w+-]+", "."))
 end
 
+-- Longest sentence, in bytes, and what is kept of its beginning and end.
+local LONGEST, KEPT = 2000, 900
+
+-- A sentence in one line of UTF-8: of a text of 100 kB that somebody gave not all is said again.
+local function one_line(sentence)
+    if #sentence > LONGEST then
+        sentence = sentence:sub(1, KEPT) .. " ... " .. sentence:sub(-KEPT)
+    end
+    local function escaped(byte)
+        return ("\\x%02x"):format(byte:byte())
+    end
+    sentence = sentence:gsub("[%c\127]", escaped)
+    local good, at = utf8.len(sentence)
+    while not good do
+        sentence = sentence:sub(1, at - 1) .. escaped(sentence:sub(at, at)) .. sentence:sub(at + 1)
+        good, at = utf8.len(sentence, at)
+    end
+    return sentence
+end
+
 -- Ends the call with a sentence, in which numbers are %s; to be used under arguments.call.
 function arguments.fail(format, ...)
     local values = table.pack(...)
@@ -44,7 +64,7 @@ function arguments.fail(format, ...)
             values[i] = arguments.decimal("%s", values[i])
         end
     end
-    error({ sentence = string.format(format, table.unpack(values, 1, values.n)) }, 0)
+    error({ sentence = one_line(string.format(format, table.unpack(values, 1, values.n))) }, 0)
 end
 local fail = arguments.fail
 
