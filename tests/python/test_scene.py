@@ -390,6 +390,8 @@ def check_contact(head, c, told, size):
 
 def check_polygons(name, c, told, size):
     """A patch is one polygon of the contact's area, square to its normal; a field contact has those of its surface."""
+    if not c["polygons"] and told["area"] < 1e-6 * size * size:
+        return  # what touched that little when the forces were found may have parted in the step
     expect(c["polygons"], f"{name}: no polygon")
     whole = (0.0, 0.0, 0.0)
     for polygon in c["polygons"]:

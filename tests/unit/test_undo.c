@@ -226,14 +226,16 @@ TEST(a_force_beyond_all_numbers_is_undone)
         for (int k = 0; k < 2; k++) {
             m[k] = scene(2, 5, laws[law], NULL);
             run(m[k], STEPS);
-            const double all = -1.7e308;
-            const tl_insitu wild = {.size = sizeof(tl_insitu),
-                                    .stress = {all, all, all, all, all, all}};
             const tl_insitu tame = {.size = sizeof(tl_insitu),
                                     .stress = {.xx = -1e3, .yy = -1e3, .zz = -1e3}};
-            scene_ok(m[k], tl_model_insitu(m[k], &wild));
+            scene_ok(m[k], tl_model_insitu(m[k], &tame));
+            for (size_t i = 0; i < m[k]->detect->points.table.rows; i++)
+                m[k]->detect->points.f_n0[i] = 1.7e308;
+            tl_undo_by_hand(m[k]);
             if (k == 0)
                 fail(m[k], "the force is not a finite number");
+            for (size_t i = 0; i < m[k]->detect->points.table.rows; i++)
+                m[k]->detect->points.f_n0[i] = 0;
             scene_ok(m[k], tl_model_insitu(m[k], &tame));
             run(m[k], AFTER);
         }
