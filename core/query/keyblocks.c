@@ -390,7 +390,8 @@ static void say(const work *w, size_t driven, tl_id first_driven)
                      "keyblocks: %zu %s (first: block %u) %s moved against what %s by more than "
                      "%g %% of %s size: the faces are those that lie on each other now",
                      w->moved_count, one ? "body" : "bodies", w->moved_first, one ? "has" : "have",
-                     one ? "it touches or touched" : "they touch or touched", 100 * TL_TOUCH_KEPT, one ? "its" : "their");
+                     one ? "it touches or touched" : "they touch or touched", 100 * TL_TOUCH_KEPT,
+                     one ? "its" : "their");
 }
 
 tl_status tl_model_keyblocks(tl_model *m, const tl_keyblock_query *given, tl_keyblocks *result)
