@@ -67,12 +67,13 @@ local function build(list, order, cuts)
     return model
 end
 
--- What is said, without the numbers of blocks.
+-- What is said, without the numbers of blocks; and how far the model has moved, m, when it came to rest.
 local function said(model)
     local result = model:solve { ratio = 1e-3, stop_at_failure = true, max_cycles = 200000 }
     local verdict, found = model:verdict(), model:filter { volume = 0.1, edge = 0.05, aspect = 8 }
+    local text = verdict.text:match("^[^,(]*"):gsub("more than %S+ m", "more than so many m")
     return ("%s; %s; moved %d, %.6g m3; %d slivers, %.6g m3; %s"):format(result.reason, verdict.standing, verdict.moved, verdict.volume, found.found,
-        found.volume, verdict.text:match "^[^,(]*")
+        found.volume, text), result.reason == "ratio" and verdict.displacement or nil
 end
 
 function orders.verdicts(seed)
@@ -83,11 +84,15 @@ function orders.verdicts(seed)
         order[i] = i
         table.insert(other, 1 + math.floor(random(0, #other + 0.999)), i)
     end
-    local first = said(build(list, order, {}))
     local cuts = parts.random_cuts(random, { list[1][1], list[1][2], list[3][1], list[3][2] }, 1 + seed % 4)
-    local second, third = said(build(list, other, {})), said(build(list, other, cuts))
-    local differs = first ~= second and second or first ~= third and third or nil
-    return first, topples, differs
+    local first, moved = said(build(list, order, {}))
+    local differs, off = nil, 0
+    for _, model in ipairs { build(list, other, {}), build(list, other, cuts) } do
+        local told, way = said(model)
+        differs = differs or told ~= first and told or nil
+        off = math.max(off, moved and way and math.abs(way / moved - 1) or 0)
+    end
+    return first, topples, differs, off
 end
 
 return orders
