@@ -2,7 +2,7 @@
 --
 --     orders.shapes(seed)     how far volume, shortest edge and aspect of a body in parts are from those of the whole, relative
 --     orders.verdicts(seed)   what is said of a mast that stands or topples, and whether it topples; and what differs when its parts come in
---                             another order, or in more pieces; or nil
+--                             another order, or in more pieces, or nil; and by how much, relative, it then has moved another way
 local parts = require "parts"
 local shapes = require "shapes"
 local talus = require "talus"
