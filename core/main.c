@@ -1,7 +1,11 @@
 /* main.c - the program `talus`: options, sub-commands, and a Lua state to run scripts in. */
 #include "commands.h"
 #include "lua/front.h"
+#include "lua/help.h"
+#include "lua/library.h"
+#include "lua/living.h"
 #include "lua/repl.h"
+#include "lua/state.h"
 
 #include <errno.h>
 #include <limits.h>
@@ -32,18 +36,6 @@ typedef struct options {
     const char *chunk; /* of -e */
     int next;          /* first argument that is not an option */
 } options;
-
-int tl_command_fail(const char *format, ...)
-{
-    char sentence[3 * PATH_MAX];
-    va_list arguments;
-    va_start(arguments, format);
-    tl_text_vprint(sentence, sizeof sentence, format, arguments);
-    va_end(arguments);
-    tl_text_clean(sentence, sizeof sentence);
-    fprintf(stderr, "talus: %s\n", sentence);
-    return EXIT_FAILURE;
-}
 
 /* At the end of the program, however it comes: what was printed and cannot be written, to a full disk say, is an error. */
 static void close_output(void)

@@ -1,4 +1,4 @@
-/* entries.h - all entries of one owner copied to another (entries.c). */
+/* entries.h - all entries of one owner copied to another. */
 #ifndef TL_BASE_ENTRIES_H
 #define TL_BASE_ENTRIES_H
 

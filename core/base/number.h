@@ -1,4 +1,4 @@
-/* number.h - numbers as text that gives back the same number (number.c). */
+/* number.h - numbers as text that gives back the same number. */
 #ifndef TL_BASE_NUMBER_H
 #define TL_BASE_NUMBER_H
 

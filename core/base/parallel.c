@@ -12,6 +12,7 @@
 #define _XOPEN_SOURCE 700 /* sigaltstack */
 #include "base/parallel.h"
 
+#include "base/error.h"
 #include "base/inside.h"
 #include "base/signals.h"
 
@@ -259,4 +260,29 @@ void tl_parallel_for(tl_pool *pool, size_t count, size_t chunk, tl_range_fn fn, 
     wake_sleepers(pool);
     if (!do_chunks(pool, 0))
         await_chunks(pool);
+}
+
+/* ---------------------------------------------------------------- failures that count -----
+ *
+ * Of several failures in a parallel phase, the one of the lowest chunk counts, whichever thread meets it. */
+
+void tl_failure_init(tl_failure *f)
+{
+    pthread_mutex_init(&f->lock, NULL);
+}
+
+void tl_failure_destroy(tl_failure *f)
+{
+    pthread_mutex_destroy(&f->lock);
+}
+
+void tl_failure_note(tl_failure *f, size_t chunk, tl_status status, size_t point, const char *text)
+{
+    pthread_mutex_lock(&f->lock);
+    if (f->error.status == TL_OK || chunk < f->chunk) {
+        f->chunk = chunk;
+        f->point = point;
+        tl_fail(&f->error, status, "%s", text);
+    }
+    pthread_mutex_unlock(&f->lock);
 }

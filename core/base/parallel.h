@@ -6,7 +6,9 @@
 #ifndef TL_BASE_PARALLEL_H
 #define TL_BASE_PARALLEL_H
 
+#include <pthread.h>
 #include <stddef.h>
+#include <talus/plugin.h>
 
 #define TL_MAX_THREADS 256
 
@@ -21,5 +23,18 @@ void tl_pool_destroy(tl_pool *pool);
 unsigned tl_pool_threads(const tl_pool *pool);
 /* Calls `fn` for every chunk of [0, count) and returns when all are done. */
 void tl_parallel_for(tl_pool *pool, size_t count, size_t chunk, tl_range_fn fn, void *user);
+
+/* The first failure of a parallel phase, by chunk, and the point or row it came from. */
+typedef struct tl_failure {
+    pthread_mutex_t lock;
+    tl_error error;
+    size_t chunk, point;
+} tl_failure;
+
+void tl_failure_init(tl_failure *failure);
+void tl_failure_destroy(tl_failure *failure);
+/* Notes a failure, on any thread; that of the lowest chunk counts. */
+void tl_failure_note(tl_failure *failure, size_t chunk, tl_status status, size_t point,
+                     const char *text);
 
 #endif

@@ -1,5 +1,9 @@
 /* check.c - the conformance check of a plugin's file: each of its kinds, each check of its type. */
-#include "check/check.h"
+#include "check/checker.h"
+#include "check/damping.h"
+#include "check/generator.h"
+#include "check/law.h"
+#include "check/screen.h"
 
 #include <stdlib.h>
 #include <string.h>

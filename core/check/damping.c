@@ -2,9 +2,12 @@
  *
  * With each set of parameters 64 bodies of random masses go through random motions under random forces; a few rest. Every
  * step is computed as a whole, in parts and body by body. */
-#include "check/points.h"
+#include "check/damping.h"
 
 #include "base/inside.h"
+#include "check/checker.h"
+#include "check/params.h"
+#include "check/points.h"
 
 #include <math.h>
 #include <stdlib.h>

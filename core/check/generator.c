@@ -2,7 +2,10 @@
  *
  * A generator is run on a cube of 10 m, or in an empty model where it does not work on that. It runs with the host's services
  * and watched ones alike: each call goes through a function here, which counts it and can let it fail. */
-#include "check/check.h"
+#include "check/generator.h"
+
+#include "check/checker.h"
+#include "check/params.h"
 
 #include <math.h>
 #include <stdarg.h>

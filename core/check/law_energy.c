@@ -8,7 +8,13 @@
  * out of the plane of those before as well. Of eight points one is pressed by an initial force, one is made while its walls are
  * apart, and of one a part is apart, which does work of its own. The work is a sum of means, so where a force bends it is wrong by
  * its change within a small step; the bound allows for that. */
-#include "check/law.h"
+#include "check/law_energy.h"
+
+#include "check/checker.h"
+#include "check/law_normal.h"
+#include "check/law_trial.h"
+#include "check/params.h"
+#include "check/points.h"
 
 #include <math.h>
 #include <string.h>

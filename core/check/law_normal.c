@@ -5,9 +5,12 @@
  *     linear:      f_n = kn A (u - hold apart)        where u > 0, and 0 or kn A hold u where it is not
  *     pressed:     f_n = d pressed / d closure
  *     stored >= what the normal force holds, and at the beginning no more than that. */
-#include "check/law.h"
+#include "check/law_normal.h"
 
 #include "base/inside.h"
+#include "check/law_trial.h"
+#include "check/params.h"
+#include "check/points.h"
 
 #include <math.h>
 #include <string.h>

@@ -2,7 +2,13 @@
  *
  * A state is given another value, that of another point, and a parameter another one of its range; with some set of parameters,
  * at some point of some step, the result must be another one to the bit. */
-#include "check/law.h"
+#include "check/law_reads.h"
+
+#include "check/checker.h"
+#include "check/law_normal.h"
+#include "check/law_trial.h"
+#include "check/params.h"
+#include "check/points.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,6 +1,11 @@
 /* law_steps.c - shear of one direction, at a constant closure, leads to the same force whether it is made in a few steps or in
  * many. A law that forgets a state between the steps, or finds the wrong slip of a step, does not keep to this. */
-#include "check/law.h"
+#include "check/law_steps.h"
+
+#include "check/checker.h"
+#include "check/law_trial.h"
+#include "check/params.h"
+#include "check/points.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,10 +1,14 @@
 /* params.c - the parameters a kind is tried with: given, default, plausible by their units, or drawn within their ranges. */
-#include "check/check.h"
+#include "check/params.h"
+
+#include "check/checker.h"
 
 #include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <talus/elementary.h>
 #include <talus/number.h>
 
 /* Share of the parameters with a default that a drawn set changes. */
@@ -194,4 +198,37 @@ tl_status tl_check_params(tl_checker *c, int set, void *params, void **held)
 tl_status tl_check_varied(tl_checker *c, int set, uint32_t param, void *params, void **held)
 {
     return params_of(c, set, (int)param, params, held);
+}
+
+/* ---------------------------------------------------------------- draws -------------------
+ *
+ * Faults found, and random numbers for what kinds are tried with. */
+
+void tl_check_note(tl_checker *c, int check, const char *format, ...)
+{
+    char *text = c->fault[check];
+    size_t size = sizeof c->fault[check];
+    if (tl_check_failed(c, check))
+        return;
+    va_list list;
+    va_start(list, format);
+    tl_text_vprint(text, size, format, list);
+    va_end(list);
+    size_t used = strlen(text);
+    if (c->params_text[0])
+        snprintf(text + used, size - used, " (with %s)", c->params_text);
+}
+
+double tl_check_scale(uint64_t key, double low, double high)
+{
+    double power = tl_check_between(key, low, high) * 3.32192809488736235, whole = floor(power);
+    return ldexp(1 + (power - whole), (int)whole); /* 2^power, within 9 % */
+}
+
+tl_vec3 tl_check_direction(uint64_t key)
+{
+    double z = tl_check_between(tl_key(key, 1), -1, 1);
+    double turn = tl_check_between(tl_key(key, 2), 0, 6.28318530717958648);
+    double across = sqrt(fmax(0, 1 - z * z));
+    return tl_v3(across * tl_cos(turn), across * tl_sin(turn), z);
 }

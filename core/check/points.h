@@ -2,7 +2,7 @@
 #ifndef TL_CHECK_POINTS_H
 #define TL_CHECK_POINTS_H
 
-#include "check/check.h"
+#include "check/checker.h"
 
 /* Points that a law is tried with at once. */
 #define TL_CHECK_POINTS 64

@@ -2,10 +2,12 @@
  *
  * A screen is opened twice in a row with the given and default parameters, told of frames that nobody sees, asked for
  * commands that nobody gives, and closed. What reaches those who look only a test that looks can tell. */
-#include "check/check.h"
+#include "check/screen.h"
 
 #include "base/clock.h"
 #include "base/inside.h"
+#include "check/checker.h"
+#include "check/params.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,5 +1,4 @@
-/* across_gap.h - what contact points carry where their walls are apart: what slip and initial forces have lifted, and bonds
- * (across_gap.c). */
+/* across_gap.h - what contact points carry where their walls are apart: what slip and initial forces have lifted, and bonds. */
 #ifndef TL_CONTACT_ACROSS_GAP_H
 #define TL_CONTACT_ACROSS_GAP_H
 

@@ -1,4 +1,4 @@
-/* cells.h - the parts of a patch that its points stand for, and what of each presses (cells.c). */
+/* cells.h - the parts of a patch that its points stand for, and what of each presses. */
 #ifndef TL_CONTACT_CELLS_H
 #define TL_CONTACT_CELLS_H
 
@@ -6,7 +6,7 @@
 #include "contact/detection.h"
 #include "model/model.h"
 
-/* Of the drawn-in triangle of the centroid over that of an edge, and where on the edge a corner's cell ends: cells.c. */
+/* Of the drawn-in triangle of the centroid over that of an edge, and where on the edge a corner's cell ends. */
 #define TL_CELL_INNER 0.30550504633038933 /* sqrt(7 / 75) */
 #define TL_CELL_SIDE (16.0 / 68)
 

@@ -1,8 +1,11 @@
-/* contacts.h - the tables of contacts and contact points, and how they are laid out (contacts.c). */
+/* contacts.h - the tables of contacts and contact points, and how they are laid out. */
 #ifndef TL_CONTACT_CONTACTS_H
 #define TL_CONTACT_CONTACTS_H
 
 #include "contact/detection.h"
+#include "contact/layout.h"
+#include "contact/old_point.h"
+#include "contact/tables.h"
 #include "model/model.h"
 
 void tl_contacts_init(tl_contacts *contacts, tl_points_table *points);
@@ -40,6 +43,68 @@ static inline tl_vec3 tl_contact_moment(const tl_model *m, uint32_t contact, boo
     tl_vec3 apart =
         tl_body_apart(&m->bodies, m->blocks.body[c->a[contact]], m->blocks.body[c->b[contact]]);
     return tl_v3_sub(c->moment[contact], tl_v3_cross(apart, c->force[contact]));
+}
+
+/* `need` and one in `share` more, or `least` more. */
+static inline size_t tl_with_spare(size_t need, size_t share, size_t least)
+{
+    size_t more = need / share;
+    return need + (more > least ? more : least);
+}
+
+/* Gives contacts that are sorted by spans their lanes in an empty layout: sets the start and room of each by the
+ * room it wants, with one in `share` to spare; *points is the number of rows. false when out of memory. */
+bool tl_layout_make(tl_layout *layout, tl_contacts *contacts, size_t share, size_t *points);
+void tl_layout_free(tl_layout *layout);
+/* A free lane of a contact's span with room for so many points, taken for it; NULL when there is none. */
+tl_simd_group *tl_simd_group_take(tl_detect *d, uint32_t points, uint32_t contact, uint32_t *lane);
+/* Notes that a contact's lane belongs to that row, or to none. */
+void tl_simd_group_note(tl_detect *d, uint32_t contact, uint32_t row);
+
+/* A point without force, area or place: an inert lane. */
+void tl_point_clear(tl_points_table *p, size_t point);
+/* Point k of a contact, at an arm, as one that new points take over from. */
+tl_old_point tl_point_as_old(const tl_points_table *points, const tl_contacts *contacts,
+                             uint32_t contact, size_t k, tl_vec3 arm);
+/* Gives a point the traction of a stress, tension positive, as its initial force: its closure, and what slip has opened, count from
+ * now. n from A to B. */
+void tl_point_load(tl_points_table *points, size_t point, const tl_sym3 *stress, tl_vec3 n,
+                   double closure, double opening);
+/* The law's states of a point, at their initial values, or taken from an old point of some area. */
+void tl_point_initial_state(tl_points_table *p, size_t point, const tl_kind *kind);
+void tl_point_begin(tl_points_table *p, size_t point, const tl_kind *kind); /* and no flags */
+void tl_point_take_state(tl_points_table *p, size_t point, const tl_kind *kind, const double *old,
+                         double old_area);
+/* The same for a point that keeps its place: what is reset on a change of polygon stays. */
+void tl_point_keep_state(tl_points_table *p, size_t point, const tl_kind *kind, const double *old,
+                         double old_area);
+/* Sets the vectors among a point's states to 0. */
+void tl_point_clear_vectors(tl_points_table *points, size_t point, const tl_kind *kind);
+/* Turns the vectors among a point's states with its normal, from the old one into the plane of the new. */
+void tl_point_turn_states(tl_points_table *points, size_t point, const tl_kind *kind, tl_vec3 from,
+                          tl_vec3 to);
+/* Columns of the states of a kind of law. */
+uint32_t tl_kind_state_columns(const tl_kind *kind);
+/* Makes sure that one table of points has that many state columns; false when out of memory (nothing changed). Both
+ * tables need the same: tl_detect_hold_states. */
+bool tl_points_hold_states(tl_points_table *points, uint32_t columns);
+/* The same for initial forces and the overlaps they belong to. */
+bool tl_points_hold_initial(tl_points_table *points);
+/* State descriptor k of a kind. */
+const tl_state *tl_kind_state(const tl_kind *kind, uint32_t k);
+
+/* Whether the bodies of two blocks are held still. */
+bool tl_blocks_held_still(const tl_model *m, uint32_t a, uint32_t b);
+/* Notes which contacts are between bodies that are held still, and wakes their spans. */
+void tl_held_sort(tl_model *m);
+/* All such contacts are followed again, until they are found to rest. */
+void tl_held_wake(tl_model *m);
+/* After a step whose laws have not failed: which spans rest from now on. */
+void tl_held_followed(tl_model *m);
+/* Whether a span is passed over. */
+static inline bool tl_span_rests(const tl_model *m, const tl_span *span)
+{
+    return span->rest == TL_SPAN_RESTS && m->config.reuse_geometry;
 }
 
 #endif

@@ -6,6 +6,7 @@
 #include "contact/old_point.h"
 #include "contact/pair.h"
 #include "contact/tables.h"
+#include "model/model.h"
 
 /* A block that detection knows, and the row of its body. */
 typedef struct tl_known_block {
@@ -65,5 +66,11 @@ typedef struct tl_detect {
     size_t lane_capacity;
     unsigned threads;
 } tl_detect;
+
+/* Whether a block has come or changed since the detection looked. */
+static inline bool tl_block_is_new(const tl_model *m, uint32_t row)
+{
+    return m->blocks.changed[row] > m->detect->structure;
+}
 
 #endif

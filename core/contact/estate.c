@@ -4,14 +4,14 @@
  * it was cut leaves its points, and each contact between parts of the two blocks takes its share of them over when it is made,
  * in the same detection. What a part is of, its root, the model tells (tl_heir). */
 #include "contact/estate.h"
-#include "contact/lean.h"
 
 #include "base/columns.h"
 #include "contact/across_gap.h"
+#include "contact/contacts.h"
 #include "contact/facing.h"
+#include "contact/lean.h"
 #include "contact/pair_view.h"
 #include "contact/places.h"
-#include "contact/points.h"
 #include "contact/presses.h"
 #include "narrow/flush.h"
 

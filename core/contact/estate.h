@@ -1,4 +1,4 @@
-/* estate.h - what a contact leaves to those of its blocks' parts when a block of it is cut (estate.c). */
+/* estate.h - what a contact leaves to those of its blocks' parts when a block of it is cut. */
 #ifndef TL_CONTACT_ESTATE_H
 #define TL_CONTACT_ESTATE_H
 

@@ -11,13 +11,13 @@
 
 #include "base/columns.h"
 #include "contact/across_gap.h"
+#include "contact/contacts.h"
 #include "contact/detection.h"
 #include "contact/estate.h"
 #include "contact/lean.h"
 #include "contact/places.h"
-#include "contact/points.h"
 #include "contact/presses.h"
-#include "contact/shear.h"
+#include "contact/transfer.h"
 
 #include <string.h>
 

@@ -1,4 +1,4 @@
-/* handover.h - a contact that was a patch becomes a field contact, or the other way round (handover.c). */
+/* handover.h - a contact that was a patch becomes a field contact, or the other way round. */
 #ifndef TL_CONTACT_HANDOVER_H
 #define TL_CONTACT_HANDOVER_H
 

@@ -1,4 +1,4 @@
-/* index.h - the contacts of a block, and the contact of an id (index.c). */
+/* index.h - the contacts of a block, and the contact of an id. */
 #ifndef TL_CONTACT_INDEX_H
 #define TL_CONTACT_INDEX_H
 

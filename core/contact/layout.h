@@ -6,7 +6,7 @@
 
 #include <talus/types.h>
 
-/* What a stress that is no line in the closure changes in a cell: force/bent.c. */
+/* What a stress that is no line in the closure changes in a cell: force/partly_open.c. */
 typedef struct tl_bent {
     double closure; /* of the closure that the law gets, m */
     double more;    /* and of the volume that it does not get, m^3 */
@@ -67,7 +67,7 @@ typedef struct tl_simd_group {
  * groups as have room for so many points, or one group. */
 #define TL_TILE 144
 
-/* Whether the contacts of a span are passed over: held.c. */
+/* Whether the contacts of a span are passed over: contacts.c. */
 enum { TL_SPAN_WOKEN, TL_SPAN_FOLLOWED, TL_SPAN_RESTS };
 
 /* A span: the SIMD groups of one joint law, one after the other in the list of SIMD groups, and their points, in rows from `begin`,

@@ -11,7 +11,7 @@
 #include "contact/detection.h"
 #include "contact/pair_view.h"
 #include "contact/places.h"
-#include "narrow/point2.h"
+#include "narrow/corner.h"
 
 /* Difference of lifts, over the largest, below which they are the same. */
 #define SAME 1e-12

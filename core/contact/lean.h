@@ -1,4 +1,4 @@
-/* lean.h - how an initial stress and slip have moved the faces of a patch apart, by a plane (lean.c). */
+/* lean.h - how an initial stress and slip have moved the faces of a patch apart, by a plane. */
 #ifndef TL_CONTACT_LEAN_H
 #define TL_CONTACT_LEAN_H
 

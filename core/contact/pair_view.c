@@ -1,6 +1,7 @@
 /* pair_view.c - what the geometry of a pair gets of the model: where the two blocks are, and the rule of their joint. */
 #include "contact/pair_view.h"
 
+#include "model/joints.h"
 #include "narrow/flush.h"
 
 tl_pair_view tl_pair_view_of(const tl_model *m, uint32_t a, uint32_t b)

@@ -1,4 +1,4 @@
-/* pair_view.h - the view of two blocks of a model (pair_view.c). */
+/* pair_view.h - the view of two blocks of a model. */
 #ifndef TL_CONTACT_PAIR_VIEW_H
 #define TL_CONTACT_PAIR_VIEW_H
 

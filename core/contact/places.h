@@ -1,4 +1,4 @@
-/* places.h - contacts one by one: where their facets and points are (places.c). */
+/* places.h - contacts one by one: where their facets and points are. */
 #ifndef TL_CONTACT_PLACES_H
 #define TL_CONTACT_PLACES_H
 

@@ -1,4 +1,4 @@
-/* prefetch.h - prefetches what SIMD groups will need (prefetch.c). */
+/* prefetch.h - prefetches what SIMD groups will need. */
 #ifndef TL_CONTACT_PREFETCH_H
 #define TL_CONTACT_PREFETCH_H
 

@@ -1,4 +1,4 @@
-/* presses.h - what field contacts keep beside their points (presses.c). */
+/* presses.h - what field contacts keep beside their points. */
 #ifndef TL_CONTACT_PRESSES_H
 #define TL_CONTACT_PRESSES_H
 

@@ -1,4 +1,4 @@
-/* sound.h - whether a detection that was read from a file fits together (sound.c). */
+/* sound.h - whether a detection that was read from a file fits together. */
 #ifndef TL_CONTACT_SOUND_H
 #define TL_CONTACT_SOUND_H
 

@@ -1,4 +1,4 @@
-/* spot.h - where the blocks of a pair were against each other (spot.c). */
+/* spot.h - where the blocks of a pair were against each other. */
 #ifndef TL_CONTACT_SPOT_H
 #define TL_CONTACT_SPOT_H
 

@@ -1,11 +1,11 @@
 /* store.c - the detection as a whole: let go of, and given the columns that laws and initial forces need. */
 #include "contact/store.h"
 
+#include "base/entries.h"
 #include "contact/contacts.h"
 #include "contact/estate.h"
 #include "contact/index.h"
-#include "contact/points.h"
-#include "contact/simd_groups.h"
+#include "contact/walk.h"
 #include "narrow/scratch.h"
 
 #include <stdlib.h>
@@ -75,4 +75,27 @@ bool tl_detect_hold_states(tl_detect *d, uint32_t columns)
         return false;
     tl_table_free(&d->spare_points.table);
     return tl_points_hold_states(&d->spare_points, columns);
+}
+
+/* ---------------------------------------------------------------- copies ------------------
+ *
+ * A second detection in the same state as the first. Its own lists are made with the room that is in use only, and grow
+ * when they have to. */
+
+tl_detect *tl_detect_copy(const tl_detect *from)
+{
+    tl_detect *d = tl_detect_make(from->threads);
+    if (!d)
+        return NULL;
+    tl_entries entries = {.count = 0};
+    tl_detect_walk((tl_detect *)(uintptr_t)from, &(tl_walk){tl_entries_note, &entries});
+    tl_entries_copy copy = {.from = &entries};
+    tl_detect_walk(d, &(tl_walk){tl_entries_take, &copy});
+    d->spare_points.state_columns = d->points.state_columns; /* it has the same columns */
+    d->spare_points.initial = d->points.initial;
+    d->lane_capacity = from->lane_capacity;
+    if (!copy.failed && tl_detect_hold_lanes(d, d->lane_capacity))
+        return d;
+    tl_detect_destroy(d);
+    return NULL;
 }

@@ -1,8 +1,9 @@
-/* store.h - what belongs to the detection as a whole (store.c). */
+/* store.h - what belongs to the detection as a whole. */
 #ifndef TL_CONTACT_STORE_H
 #define TL_CONTACT_STORE_H
 
 #include "contact/detection.h"
+#include "model/model.h"
 
 /* A detection without pairs and contacts, for so many threads; NULL when out of memory. */
 tl_detect *tl_detect_make(unsigned threads);
@@ -11,5 +12,14 @@ void tl_detect_destroy(tl_detect *d);
  * out of memory (nothing changed). */
 bool tl_detect_hold_initial(tl_detect *d);
 bool tl_detect_hold_states(tl_detect *d, uint32_t columns);
+
+/* What the next step goes on from, or NULL where that finds all anew: what was found for somebody who asked is no part of it. */
+static inline tl_detect *tl_detect_lasting(const tl_model *m)
+{
+    return m->only_asked ? NULL : m->stepped ? m->stepped : m->detect;
+}
+
+/* NULL when out of memory. */
+tl_detect *tl_detect_copy(const tl_detect *from);
 
 #endif

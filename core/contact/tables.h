@@ -32,7 +32,7 @@ typedef struct tl_contacts {
     uint8_t *handed_over; /* in this step, and its heat is what it has lost */
     uint8_t *new_points;  /* its points were placed in this step: TL_POINTS_* */
     uint8_t *pending;     /* what the parallel phase leaves to the serial one: TL_PENDING_* */
-    uint8_t *held;        /* both its bodies are held still: held.c */
+    uint8_t *held;        /* both its bodies are held still: contacts.c */
     uint8_t *deep;        /* its blocks overlap too deeply: TL_DEEP_*, overlap.c */
 } tl_contacts;
 

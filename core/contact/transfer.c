@@ -1,7 +1,7 @@
 /* transfer.c - new contact points in the place of old ones, where the contact polygon has changed or its points have run along it.
  *
  * What points carry belongs to places of the faces: each new point's cell gets the mean of the old cells that it lies on, by their
- * common areas (ring.c). So sums over the area stay, and nothing goes beyond what there was: a bond that is lost does not come back.
+ * common areas. So sums over the area stay, and nothing goes beyond what there was: a bond that is lost does not come back.
  * Means wear down what varies over the face. So of stresses, and of states that are linear in the force, the plane fitted through the
  * old points is taken out before and put back after, with the same sum and moments: a linear field stays what it is to rounding, and,
  * since the points integrate squares of it exactly, so does its energy; that of what is off the plane can only become less.
@@ -14,16 +14,15 @@
 
 #include "base/columns.h"
 #include "contact/across_gap.h"
+#include "contact/contacts.h"
 #include "contact/detection.h"
 #include "contact/estate.h"
 #include "contact/places.h"
-#include "contact/points.h"
-#include "contact/ring.h"
-#include "contact/shear.h"
-#include "narrow/point2.h"
+#include "narrow/corner.h"
 #include "narrow/view.h"
 
 #include <float.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -169,6 +168,127 @@ static double place_of(const tl_model *m, uint32_t c)
     return TL_MERGE * fmin(m->blocks.size[contacts->a[c]], m->blocks.size[contacts->b[c]]);
 }
 
+/* ---------------------------------------------------------------- rings of cells ----------
+ *
+ * Where the cells of contact points lie in their patch.
+ *
+ * The patch is the star of the triangles between its centroid and its edges. A point at the centroid has a share of each of them
+ * inside; of what lies around it each other point has the part between two rays from the centroid, its cell. The rule of the points
+ * (narrow/patch.c) gives cells of edges that lie evenly about their points; by how much those of corners do not adds up to 0 over the
+ * patch. The share of the patch that a ray sweeps from one point to the next is that of the triangle between them, for
+ * points of corners and of edges are drawn in by the same factors all around. So places and areas of the points alone tell where
+ * their cells are. */
+
+/* Parts of a patch below this share of it are rounding of the places of points. */
+#define SLIVER 1e-11
+
+/* A direction, growing with its angle from 0 to 4. */
+static double turn_of(double x, double y)
+{
+    double sum = fabs(x) + fabs(y), part = sum > 0 ? y / sum : 0;
+    return x < 0 ? 2 - part : y < 0 ? 4 + part : part;
+}
+
+static double cross(const tl_ring_cell *a, const tl_ring_cell *b)
+{
+    return a->x * b->y - a->y * b->x;
+}
+
+/* Puts cells in their order: by direction, those inside last. */
+static void sort(tl_ring_cell *cell, size_t count)
+{
+    for (size_t i = 1; i < count; i++) {
+        tl_ring_cell moved = cell[i];
+        size_t at = i;
+        for (; at > 0 && cell[at - 1].turn > moved.turn; at--)
+            cell[at] = cell[at - 1];
+        cell[at] = moved;
+    }
+}
+
+static tl_ring tl_ring_of(tl_ring_cell *cell, size_t count, double place)
+{
+    tl_ring out = {.cell = cell, .count = count};
+    double area[2] = {0};
+    for (size_t i = 0; i < count; i++) {
+        cell[i].inside = cell[i].x * cell[i].x + cell[i].y * cell[i].y <= place * place;
+        cell[i].turn = cell[i].inside ? 8 : turn_of(cell[i].x, cell[i].y);
+        area[cell[i].inside] += cell[i].area;
+        out.around += !cell[i].inside;
+    }
+    sort(cell, count);
+    out.inside = area[1] / (area[0] + area[1]);
+    double swept = 0, begun = 0, off = 0;
+    for (size_t i = 0; i < count; i++) {
+        bool inside = cell[i].inside;
+        cell[i].share = cell[i].area / (inside ? area[0] + area[1] : area[0]);
+        cell[i].swept = swept;
+        if (!inside)
+            swept += fmax(0, cross(&cell[i], &cell[i + 1 < out.around ? i + 1 : 0]));
+    }
+    for (size_t i = 0; i < out.around; i++) {
+        cell[i].swept /= swept > 0 ? swept : 1;
+        cell[i].from = begun;
+        begun += cell[i].share;
+        off += cell[i].swept - 0.5 * (cell[i].from + begun);
+    }
+    for (size_t i = 0; i < out.around; i++) {
+        cell[i].from += off / (double)out.around;
+        cell[i].to = cell[i].from + cell[i].share;
+    }
+    return out;
+}
+
+/* What a ray in the direction of a cell's point has swept of a ring, from its first point on. */
+static double swept_by(const tl_ring *ring, const tl_ring_cell *ray)
+{
+    size_t next = 0;
+    while (next < ring->around && ring->cell[next].turn <= ray->turn)
+        next++;
+    const tl_ring_cell *before = &ring->cell[(next ? next : ring->around) - 1];
+    const tl_ring_cell *after = &ring->cell[next < ring->around ? next : 0];
+    double from = before->swept - (next ? 0 : 1), to = after->swept + (next < ring->around ? 0 : 1);
+    double a = fmax(0, cross(before, ray)), b = fmax(0, cross(ray, after));
+    return a + b > 0 ? from + a / (a + b) * (to - from) : from;
+}
+
+/* Turns an old ring so that its shares count from where those of the new one do. */
+static void ring_align(tl_ring *old, const tl_ring *now)
+{
+    double by = 0;
+    for (size_t i = 0; i < old->around && now->around; i++)
+        by += swept_by(now, &old->cell[i]) - old->cell[i].swept;
+    for (size_t i = 0; i < old->around; i++) {
+        old->cell[i].from += by / (double)old->around;
+        old->cell[i].to += by / (double)old->around;
+    }
+}
+
+/* The overlap of two parts of a ring. */
+static double overlap(const tl_ring_cell *a, const tl_ring_cell *b)
+{
+    double sum = 0, way = ceil(a->from - b->to);
+    for (int k = 0; k < 2; k++, way++) {
+        double common = fmin(a->to, b->to + way) - fmax(a->from, b->from + way);
+        sum += common > SLIVER ? common : 0;
+    }
+    return sum;
+}
+
+/* The share of the patch that is common to a new cell and an old one. */
+static double ring_common(const tl_ring *now, const tl_ring_cell *a, const tl_ring *old,
+                          const tl_ring_cell *b)
+{
+    double both = fmin(now->inside, old->inside);
+    if (a->inside && b->inside)
+        return both * (a->share / now->inside) * (b->share / old->inside);
+    if (a->inside)
+        return (now->inside - both) * (a->share / now->inside) * b->share;
+    if (b->inside)
+        return (old->inside - both) * (b->share / old->inside) * a->share;
+    return (1 - fmax(now->inside, old->inside)) * overlap(a, b);
+}
+
 /* ---------------------------------------------------------------- fields ------------------ */
 
 /* What a point carries, as columns: shear stress, normal stress, initial normal stress, reference, states of the law. */
@@ -260,7 +380,7 @@ static void relay_means(const relay *r, double *weight)
             double apart = tl_v3_norm2(tl_v3_sub(old->arm, now->arm));
             nearest = apart < least ? j : nearest;
             least = fmin(least, apart);
-            weight[j] = r->match == BY_AREA ? tl_ring_common(&r->after, cell, &r->before, from)
+            weight[j] = r->match == BY_AREA ? ring_common(&r->after, cell, &r->before, from)
                                             : r->match == BY_KEY && old->key == now->key;
             sum += weight[j];
         }
@@ -418,7 +538,7 @@ static void relay_fields(tl_model *m, uint32_t c, relay *r, const totals t[2],
     tl_vec3 centre = r->match == NEAREST ? t[0].centre : t[1].centre;
     r->before = ring_of(r->old, old_count, t[0].centre, axis, place, cell, &r->spread[0]);
     r->after = ring_of(r->now, count, centre, axis, place, cell + old_count, &r->spread[1]);
-    tl_ring_align(&r->before, &r->after);
+    ring_align(&r->before, &r->after);
     r->area[0] = t[0].area;
     r->area[1] = t[1].area;
     r->planes = r->planes && tl_ring_spans(&r->spread[0], t[0].area, place) &&
@@ -434,6 +554,109 @@ static void relay_fields(tl_model *m, uint32_t c, relay *r, const totals t[2],
         if (r->rule[column] >= PLANE)
             restore_planes(r, column, 1);
     rule_states(r, kind, columns, true);
+}
+
+/* ---------------------------------------------------------------- shear carried over ------
+ *
+ * The shear of a contact, and what becomes of it when its area changes. */
+
+tl_contact_motion tl_contact_moved(const tl_model *m, uint32_t c)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    uint32_t body_a = m->blocks.body[contacts->a[c]], body_b = m->blocks.body[contacts->b[c]];
+    const tl_pose *a = &m->bodies.pose[body_a], *b = &m->bodies.pose[body_b];
+    tl_vec3 apart = tl_body_apart(&m->bodies, body_a, body_b);
+    tl_vec3 way = tl_v3_sub(tl_v3_sub(b->v_moved, tl_v3_cross(b->w_moved, apart)), a->v_moved);
+    return (tl_contact_motion){tl_v3_scale(m->dt, way),
+                               tl_v3_scale(m->dt, tl_v3_sub(b->w_moved, a->w_moved))};
+}
+
+tl_shear tl_shear_of(const tl_model *m, uint32_t c)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    const tl_points_table *p = &m->detect->points;
+    const tl_mat3 *turn = &m->bodies.pose[m->blocks.body[contacts->a[c]]].r;
+    tl_shear sum = {0};
+    for (size_t k = 0; k < contacts->point_count[c]; k++) {
+        size_t i = tl_point_row(contacts, c, k);
+        tl_vec3 force = tl_columns_get(p->f_s, i), arm = tl_m3_mul(turn, tl_columns_get(p->p, i));
+        sum.area += p->area[i];
+        sum.energy += p->area[i] > 0 ? tl_v3_norm2(force) / p->area[i] : 0;
+        sum.force = tl_v3_add(sum.force, force);
+        sum.moment = tl_v3_add(sum.moment, tl_v3_cross(arm, force));
+    }
+    return sum;
+}
+
+/* Notes as heat what the springs have lost, and half of the work in the last step's motion of the forces that are less: the
+ * ledger has the mean of the forces at both ends of a step work, and those of its beginning were still whole. */
+static void shear_release(tl_model *m, uint32_t c, const tl_shear *before, const tl_shear *now)
+{
+    tl_contacts *contacts = &m->detect->contacts;
+    uint32_t law = contacts->law[c];
+    double ks = law == TL_NO_ROW ? 0 : m->joint_laws[law].ks;
+    if (!(ks > 0))
+        return;
+    if (tl_law_has_own_shear(&m->joint_laws[law])) {
+        contacts->handed_over[c] = true;
+        return;
+    }
+    tl_contact_motion moved = tl_contact_moved(m, c);
+    double work = tl_v3_dot(tl_v3_sub(before->force, now->force), moved.way) +
+                  tl_v3_dot(tl_v3_sub(before->moment, now->moment), moved.turn);
+    contacts->released[c] += 0.5 * ((before->energy - now->energy) / ks - work);
+}
+
+void tl_shear_resized(tl_model *m, uint32_t c, const tl_shear *before, const tl_shear *resized)
+{
+    tl_points_table *p = &m->detect->points;
+    tl_shear now = *resized;
+    double keep = now.area > before->area ? before->area / now.area : 1;
+    if (keep * keep * now.energy > before->energy)
+        keep = sqrt(before->energy / now.energy);
+    for (size_t k = 0; keep < 1 && k < m->detect->contacts.point_count[c]; k++) {
+        size_t i = tl_point_row(&m->detect->contacts, c, k);
+        tl_columns_put(p->f_s, i, tl_v3_scale(keep, tl_columns_get(p->f_s, i)));
+    }
+    now.energy *= keep * keep;
+    now.force = tl_v3_scale(keep, now.force);
+    now.moment = tl_v3_scale(keep, now.moment);
+    shear_release(m, c, before, &now);
+}
+
+static uint32_t energy_column(const tl_model *m, uint32_t c)
+{
+    uint32_t law = m->detect->contacts.law[c];
+    return law == TL_NO_ROW ? TL_NO_ROW : m->joint_laws[law].energy;
+}
+
+double tl_shear_kept(const tl_model *m, uint32_t c)
+{
+    const tl_points_table *p = &m->detect->points;
+    uint32_t column = energy_column(m, c);
+    double sum = 0;
+    for (size_t k = 0; column < p->state_columns && k < m->detect->contacts.point_count[c]; k++)
+        sum += p->state[column][tl_point_row(&m->detect->contacts, c, k)];
+    return sum;
+}
+
+void tl_shear_keep(tl_model *m, uint32_t c, double energy)
+{
+    tl_contacts *contacts = &m->detect->contacts;
+    tl_points_table *p = &m->detect->points;
+    uint32_t column = energy_column(m, c);
+    if (column >= p->state_columns)
+        return;
+    bool field = contacts->facet[c].kind == TL_FACET_FIELD;
+    size_t count = field && contacts->point_count[c] ? 1 : contacts->point_count[c];
+    double area = 0;
+    for (size_t k = 0; k < count; k++)
+        area += p->area[tl_point_row(contacts, c, k)];
+    for (size_t k = 0; k < count && area > 0; k++) {
+        size_t i = tl_point_row(contacts, c, k);
+        p->state[column][i] = energy * (p->area[i] / area);
+    }
+    contacts->released[c] += area > 0 ? 0 : energy;
 }
 
 /* ---------------------------------------------------------------- shear ------------------- */
@@ -492,7 +715,7 @@ static void release(tl_model *m, uint32_t c, const totals *before, const totals 
     tl_shear fresh = {.energy = now->energy, .force = now->shear, .moment = now->moment};
     if (reframed) /* the last step's motion was that of other bodies */
         fresh.force = old.force, fresh.moment = old.moment;
-    tl_shear_release(m, c, &old, &fresh);
+    shear_release(m, c, &old, &fresh);
 }
 
 /* ---------------------------------------------------------------- new contacts ------------ */

@@ -1,4 +1,4 @@
-/* walk.h - the entries of a detection (walk.c), and whether they fit together (sound.c). */
+/* walk.h - the entries of a detection, and whether they fit together (sound.c). */
 #ifndef TL_CONTACT_WALK_H
 #define TL_CONTACT_WALK_H
 

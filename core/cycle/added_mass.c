@@ -1,6 +1,6 @@
 /* added_mass.c - partial mass scaling: inertia added to the bodies that would make the step short.
  *
- * A step dt is stable for a body, with the fraction f of the critical step that is asked for, when its rate (rates.c) is no
+ * A step dt is stable for a body, with the fraction f of the critical step that is asked for, when its rate (timestep.c) is no
  * higher than 2 f^2 / dt^2. A body in contact whose rate is higher gets mass and moments of inertia multiplied by the same
  * factor, rate over limit: its rate, a sum over 1/M and 1/I, is then the limit. Its weight, and all that laws and loads do to
  * it, stay those of its own mass. A body without contact points has no stiffness and gets none: it falls as it would.
@@ -11,9 +11,9 @@
  * work (energy.c), as when velocities are set. */
 #include "cycle/added_mass.h"
 
-#include "model/options.h"
-
 #include "contact/detection.h"
+#include "cycle/cycle_data.h"
+#include "model/options.h"
 
 #include <float.h>
 

@@ -1,4 +1,4 @@
-/* added_mass.h - inertia added for a longer step: added_mass.c. */
+/* added_mass.h - inertia added for a longer step. */
 #ifndef TL_CYCLE_ADDED_MASS_H
 #define TL_CYCLE_ADDED_MASS_H
 

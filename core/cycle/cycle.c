@@ -19,13 +19,26 @@
  *
  * Everything computed in parallel is either a pure function of one contact or one body, or a sum made
  * in fixed chunks, so the bits do not depend on the number of threads. */
-#include "cycle/travel.h"
+#include "cycle/cycle.h"
 
+#include "contact/contacts.h"
 #include "contact/detection.h"
-#include "contact/held.h"
+#include "cycle/damping.h"
+#include "cycle/energy.h"
+#include "cycle/gather.h"
+#include "cycle/limits.h"
+#include "cycle/motion.h"
+#include "cycle/prepare.h"
+#include "cycle/profile.h"
+#include "cycle/remarks.h"
+#include "cycle/split.h"
+#include "cycle/timestep.h"
+#include "cycle/undo.h"
 #include "detect/asked.h"
 #include "detect/detect.h"
 #include "detect/overlap.h"
+#include "force/laws.h"
+#include "model/loads.h"
 
 /* The step to take, before anything is changed by it. */
 static tl_status prepare(tl_model *m, double *dt, bool *driven)

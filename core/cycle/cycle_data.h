@@ -2,14 +2,14 @@
 #ifndef TL_CYCLE_CYCLE_DATA_H
 #define TL_CYCLE_CYCLE_DATA_H
 
-#include "base/failure.h"
 #include "base/inline.h"
 #include "base/inside.h"
 #include "base/lanes.h"
+#include "base/parallel.h"
 #include "detect/passing.h"
 #include "force/laws.h"
+#include "model/loads.h"
 #include "model/model.h"
-#include "model/wrench.h"
 
 /* Rows a worker takes at a time. Of bodies that are only read, and of contacts, there is little to do with each. */
 #define TL_BODY_CHUNK 32
@@ -113,7 +113,7 @@ struct tl_cycle {
     tl_table table;
     /* per body */
     double *contact_force; /* sum of |contact forces| */
-    double *rate;          /* what it asks of the time step, 1/s2 (rates.c); 0: it is held */
+    double *rate;          /* what it asks of the time step, 1/s2 (timestep.c); 0: it is held */
     double *
         turn_rate; /* with mass scaling what its rotation asks, and `rate` what its translation does */
     double *inertia;                                      /* over its own, where `adds` */
@@ -133,9 +133,9 @@ struct tl_cycle {
     double dt;                               /* the step in use */
     double share_before; /* of the kick's span, in which gravity and loads of the last step act */
     tl_vec3 gravity;     /* that acts in this step */
-    struct tl_step_bounds step_bounds;         /* rates.c */
+    struct tl_step_bounds step_bounds;         /* timestep.c */
     bool all_held;                             /* no body can move */
-    struct tl_stiffness_rates stiffness_rates; /* rates.c */
+    struct tl_stiffness_rates stiffness_rates; /* timestep.c */
     uint64_t sliver_structure; /* 1 + that of the model when slivers were looked for: sliver.c */
     tl_id sliver;              /* the one that was told of last */
     size_t contacts;           /* the most there have been, for the remark on the step */
@@ -148,15 +148,15 @@ struct tl_cycle {
     struct tl_split_work *split; /* of this step: split.c */
     double split_stored;         /* energy that new faces have been given in this step, J */
     bool long_step;              /* the given one is far above what is stable */
-    tl_speed_bounds speeds;      /* of all bodies in the last step: travel.c */
+    tl_speed_bounds speeds;      /* of all bodies in the last step: limits.c */
     tl_speed_bounds given;       /* of those whose motion is given, in this one */
-    double thinnest;             /* least thickness that a block can have, m: travel.c */
+    double thinnest;             /* least thickness that a block can have, m: limits.c */
     uint64_t thinnest_version;   /* 1 + structure of the model then; 0: not known */
-    tl_step_motion *motion;      /* of each body in a step of fast blocks: travel.c */
+    tl_step_motion *motion;      /* of each body in a step of fast blocks: limits.c */
     size_t motion_capacity;
     tl_swept *swept; /* of each block, likewise */
     size_t swept_capacity;
-    tl_id failing;      /* in the last run that was watched: watch.c; or TL_NO_ID */
+    tl_id failing;      /* in the last run that was watched: solve.c; or TL_NO_ID */
     double rest_ratio;  /* that the last solve asked for; 0: none has */
     bool fast;          /* a body came near the limit of motion in the last step: limits.c */
     tl_failure failure; /* of a parallel phase */
@@ -194,6 +194,12 @@ static inline bool tl_mass_scaled(const tl_model *m)
     return m->mass_scaling || tl_adds_mass(m);
 }
 
+/* Whether rates count contact points, or only faces. */
+static inline bool tl_rates_points(const tl_model *m)
+{
+    return tl_mass_scaled(m) || m->timestep.rule == TL_TIMESTEP_BODY;
+}
+
 /* ... and of its moments of inertia, which it does not make less. */
 static inline double tl_turn_scale(const struct tl_cycle *c, uint32_t body)
 {
@@ -208,54 +214,9 @@ static inline tl_reaction tl_reaction_on(const struct tl_cycle *c, uint32_t body
     return c->reaction[c->reaction_of[body]];
 }
 
-/* One step of the model; a failure leaves the model as it was. */
-tl_status tl_step(tl_model *m);
-
-/* Times a phase that ends now and began when the one before ended, or with the step: profile.c. */
-void tl_profile_step(tl_model *m);
-void tl_profile_phase(tl_model *m, tl_phase phase);
-static inline void tl_step_begins(tl_model *m)
-{
-    if (m->profiling)
-        tl_profile_step(m);
-}
-static inline void tl_phase_ends(tl_model *m, tl_phase phase)
-{
-    if (m->profiling)
-        tl_profile_phase(m, phase);
-}
-
-/* Makes room for the model's bodies. */
-tl_status tl_cycle_prepare(tl_model *m);
-/* Makes room for the energies of the contacts. */
-tl_status tl_laws_prepare(tl_model *m);
-/* What the laws give this step, and what is kept before they overwrite it. */
-tl_law_phase tl_law_phase_of(struct tl_cycle *c);
-
-/* What a step may have to undo: undo.c. It begins with each step, ... */
-tl_status tl_undo_begin(tl_model *m);
-/* ... gets room, before laws change anything, where something may fail, as where a block may pass another, ... */
-tl_status tl_undo_reserve(tl_model *m, bool may_pass);
-/* ... keeps what laws and gather overwrite (of some SIMD groups, on any thread; of the bodies), ... */
-void tl_undo_keep_groups(tl_model *m, const tl_simd_group *groups, size_t count);
-void tl_undo_keep_bodies(tl_model *m);
-/* ... and puts it back after a failure, or ends with the step. What is not kept is lost: no step is made after that. */
-void tl_undo_step(tl_model *m);
-void tl_undo_end(tl_model *m);
-/* Whether this step is kept, so that it may be undone. */
-bool tl_undo_keeps(const tl_model *m);
-/* Whether something was set since the last step that was made, after which numbers may be any. */
-bool tl_set_by_hand(const tl_model *m);
-/* Forces were set by hand: they may be anything. */
-void tl_undo_by_hand(tl_model *m);
-/* Whether a step failed and could not be taken back. */
-bool tl_undo_lost(const struct tl_cycle *c);
-size_t tl_undo_bytes(const struct tl_cycle *c);
-void tl_undo_free(struct tl_undo *undo);
-/* What gravity and loads do in a step of dt. The kick spans half of the last step and half of this one. What has been set in between
+/* What gravity and loads do in a step. The kick spans half of the last step and half of this one. What has been set in between
  * acts only in the latter, and what it was in the former, so their mean acts in the whole span. Forces that are told are those at the
  * beginning of the step: kicks and energies take the mean. */
-void tl_loads_begin(tl_model *m, double dt);
 static inline tl_vec3 tl_acting_mean(const struct tl_cycle *c, tl_vec3 now, tl_vec3 before)
 {
     return tl_v3_madd(tl_v3_scale(1 - c->share_before, now), c->share_before, before);
@@ -283,19 +244,6 @@ static inline tl_wrench tl_load_lag(const tl_model *m, uint32_t body)
     return (tl_wrench){tl_v3_madd(tl_v3_sub(now.force, acts.force), m->bodies.mass[body], gravity),
                        tl_v3_sub(now.moment, acts.moment)};
 }
-/* Makes room for the reactions on bodies that are held; before the gather. false: out of memory. */
-bool tl_gather_prepare(tl_model *m);
-/* Each body gathers its contacts in fixed order, and its weight; sums for the convergence measures. */
-void tl_gather(tl_model *m);
-/* Parts of a body that cuts have split since the last step go on as the whole does: split.c. False: out of memory. */
-bool tl_split_prepare(tl_model *m);
-/* After the gather: gives the parts the forces that let them do so, and their new faces the tractions that bring these. */
-tl_status tl_split_hold(tl_model *m, double dt);
-/* Before the move: corrects the velocities of the parts for arms that turn. */
-void tl_split_turn(tl_model *m);
-/* The step is done. */
-void tl_split_end(tl_model *m);
-void tl_split_free(struct tl_cycle *c);
 /* Weight of a body under gravity of that size; a load weighs as much as its force. */
 static inline double tl_weight_of(const tl_bodies *b, uint32_t body, double gravity)
 {
@@ -307,69 +255,17 @@ static inline double tl_borne(const tl_model *m, uint32_t body, double weight)
     double contact = m->cycle->contact_force[body];
     return contact > weight ? contact : weight;
 }
-/* Twice the rotational energy of a body. */
-double tl_spin_energy2(const tl_model *m, uint32_t body);
 
-/* An unbalanced force ratio of the last gather: rest.c. */
-double tl_unbalanced_ratio(const tl_model *m, tl_ratio_measure measure);
-/* Whether the model is at rest by a measure, to within a ratio. */
-bool tl_at_rest(tl_model *m, tl_ratio_measure measure, double ratio);
-/* Id of the body that is farthest from equilibrium by the local measure, or TL_NO_ID. */
-tl_id tl_worst_body(const tl_model *m);
-/* Force that a body bears at the least: what its contacts carry at an overlap that is rounding. */
-double tl_least_borne(const tl_model *m, uint32_t body);
+/* A row of contacts or bodies and what was looked for in it; TL_NO_ROW: there is none. */
+typedef struct tl_row_value {
+    double value;
+    uint32_t row;
+} tl_row_value;
 
-/* Watches for steady failure: watch.c. */
-typedef struct tl_watch tl_watch;
-tl_watch *tl_watch_begin(const tl_model *m);
-/* After each step; gives the id of the block that fails steadily, or 0. */
-tl_id tl_watch_step(tl_watch *watch, const tl_model *m);
-void tl_watch_end(tl_watch *watch);
-/* The body that has gone the farthest since the watch began, over its size, of those that touched something then and have gone
- * farther than they settle: the lowest id of its blocks, and its way, m, and size, m. TL_NO_ID: none has. */
-tl_id tl_watch_gone(const tl_watch *watch, const tl_model *m, double *way, double *size);
-/* Remarks on numbers that are legal and improbable: remarks.c. Looks at gravity, densities and stiffnesses when they
- * have changed; now and then at closures under load; at the friction of a law that is set. */
-void tl_remark_units(tl_model *m);
-void tl_remark_closure(tl_model *m);
-void tl_remark_friction(tl_model *m, const char *joint, const tl_law *law);
-/* The step to take, s; 0 when nothing moves and nothing says how long it may be. */
-tl_status tl_timestep_choose(tl_model *m, double *dt);
-/* FRAC of (27): the user's, or that of the rule. */
-double tl_timestep_fraction(const tl_model *m);
-/* The highest rate that is stable at the step for which inertia is added, 1/s2; 0 where none is. */
-double tl_timestep_rate_limit(const tl_model *m);
-/* Says once of a model's blocks that one of them makes the step short: sliver.c. */
-void tl_sliver_remark(tl_model *m);
-/* Whether a body can move, or is held but moves. */
-bool tl_model_moves(const tl_model *m);
-/* Puts a damping in the place of the model's, with its states as they begin; with `from`, params of the same kind, what is
- * not given is taken from it. */
-tl_status tl_damping_make(tl_model *m, const tl_kind *kind, const tl_args *args, const void *from);
-tl_status tl_damping_apply(tl_model *m, double dt);
-/* Every body would move by a finite number that is not out of all proportion, or a sentence that names one that would
- * not: bodies whose motion is given, after the drives have been evaluated, and those that forces move. */
-tl_status tl_motion_check_held(tl_model *m, double dt);
-tl_status tl_motion_check(tl_model *m, double dt);
-/* Velocities, places and rotations one step on. */
-void tl_move(tl_model *m, double dt);
-/* Bytes of the ledger, and whether one that was read from a file is none of impossible bits. */
-size_t tl_ledger_size(void);
-bool tl_ledger_is_sound(const struct tl_ledger *ledger);
-/* What blocks that were made overlapping have pushed with: those that did the most, the energy that is no longer stored, and what gravity and all
- * else have done, J. Whether the first is more. */
-typedef struct tl_overlap_push {
-    tl_id a, b;
-    double gave, others;
-} tl_overlap_push;
-bool tl_energy_pushed(const tl_model *m, tl_overlap_push *by);
-/* The energy ledger: the move books what its bodies have and what is done to them, chunk by chunk, ... */
-tl_status tl_energy_prepare(tl_model *m, size_t chunks);
-void tl_energy_book(const tl_model *m, const tl_body_group *g, tl_work *work);
-void tl_energy_book_held(const tl_model *m, uint32_t body, tl_vec3 moved, tl_vec3 turned,
-                         tl_work *work);
-void tl_energy_chunk(tl_model *m, size_t chunk, const tl_work *work);
-/* ... and the step closes it. */
-void tl_energy_close(tl_model *m);
+/* Whether a body counts for the rules: one that can move or, where none can, any. */
+static inline bool tl_body_counts(const tl_model *m, uint32_t body)
+{
+    return m->cycle->all_held || m->bodies.fixed[body] != TL_FIX_ALL;
+}
 
 #endif

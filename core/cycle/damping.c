@@ -3,9 +3,13 @@
  * The plugin's states are numbers of the model, kept here and given to it, as are, where it asks for them, the forces
  * of the step before, which a change of damping begins with those of the last step; the kinetic energy and its
  * rate are sums made by gather.c. */
-#include "cycle/cycle_data.h"
+#include "cycle/damping.h"
 
-#include "contact/points.h"
+#include "base/parallel.h"
+#include "contact/contacts.h"
+#include "cycle/cycle_data.h"
+#include "cycle/undo.h"
+#include "plugin/loader.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -73,7 +77,7 @@ tl_status tl_model_damping(tl_model *m, const char *damping, const tl_args *args
         return status;
     const tl_kind *kind = tl_plugin_find(TL_KIND_DAMPING, damping);
     if (!kind)
-        return tl_unknown_kind(m, TL_KIND_DAMPING, damping);
+        return tl_kind_unknown(&m->error, TL_KIND_DAMPING, damping);
     const tl_damping_ops *ops = kind->ops;
     status = tl_damping_make(m, kind, args, NULL);
     if (status != TL_OK)

@@ -13,10 +13,11 @@
  * that step lacks.
  *
  * The move books its bodies group by group (motion.c), while all that is needed is at hand. */
-#include "cycle/cycle_data.h"
+#include "cycle/energy.h"
 
 #include "base/walk.h"
 #include "contact/detection.h"
+#include "cycle/cycle_data.h"
 
 #include <stdlib.h>
 

@@ -1,10 +1,15 @@
 /* gather.c - forces on bodies: each adds its blocks' contacts in order of the partner's id (13-17 of
  * Hart, Cundall and Lemos 1988), its weight and its load. Components that are held carry no unbalanced force.
  * What the measures of convergence ask (rest.c) is summed on the way. */
-#include "cycle/cycle_data.h"
+#include "cycle/gather.h"
 
 #include "base/extremes.h"
+#include "base/parallel.h"
 #include "contact/contacts.h"
+#include "cycle/cycle_data.h"
+#include "cycle/energy.h"
+#include "cycle/rest.h"
+#include "model/loads.h"
 
 static tl_vec3 free_part(tl_vec3 v, unsigned fixed)
 {

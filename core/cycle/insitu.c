@@ -1,12 +1,13 @@
 /* insitu.c - initial stress put on the contacts of a model (stress.c), and what is improbable about it. */
-#include "cycle/cycle_data.h"
-
-#include "model/options.h"
-
-#include "contact/held.h"
+#include "contact/contacts.h"
 #include "contact/store.h"
+#include "cycle/cycle_data.h"
+#include "cycle/undo.h"
 #include "detect/detect.h"
 #include "force/stress.h"
+#include "geometry/measure.h"
+#include "geometry/seam.h"
+#include "model/options.h"
 
 /* A traction below this share of the largest stress given is none. */
 #define NO_TRACTION 1e-9

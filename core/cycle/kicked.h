@@ -1,4 +1,4 @@
-/* kicked.h - the velocities that a step gives a body, before anything moves (kicked.c). */
+/* kicked.h - the velocities that a step gives a body, before anything moves. */
 #ifndef TL_CYCLE_KICKED_H
 #define TL_CYCLE_KICKED_H
 

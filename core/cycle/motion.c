@@ -16,9 +16,12 @@
  * turn all of them, stage by stage; the energy ledger books what happened, and the lanes are copied back. Bodies held in
  * some components, and all with the paper's rotation, get their rotation one by one; those held in every component are
  * in no group and cost nothing as long as they stand. */
-#include "cycle/cycle_data.h"
+#include "cycle/motion.h"
 
 #include "base/columns.h"
+#include "base/parallel.h"
+#include "cycle/cycle_data.h"
+#include "cycle/energy.h"
 #include "cycle/kick.h"
 #include "cycle/turn.h"
 

@@ -1,9 +1,10 @@
 /* profile.c - what a step costs: the time of its phases, by the wall clock, while the user wants to know;
  * and how much a step works on. Nothing that is computed depends on it. */
-#include "cycle/cycle_data.h"
+#include "cycle/profile.h"
 
 #include "base/clock.h"
 #include "contact/detection.h"
+#include "cycle/cycle_data.h"
 
 #include <string.h>
 

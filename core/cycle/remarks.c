@@ -3,10 +3,11 @@
  * Units are any consistent set, so only ratios tell. Under its own weight a block of density rho and size L closes a face
  * contact by about rho g L / kn: rho g / kn of its size, whatever the units. Gravity near 10 tells metres and seconds; then
  * densities have a unit of mass, t or kg, that goes with kN or N. */
-#include "cycle/cycle_data.h"
+#include "cycle/remarks.h"
 
 #include "base/params.h"
 #include "contact/contacts.h"
+#include "cycle/cycle_data.h"
 #include "detect/overlap.h"
 #include "detect/passing.h"
 

@@ -12,9 +12,11 @@
  * and so would one that flies or slides on without a force. A body that swings on a spring of stiffness K with the force
  * ratio B has ratio^2 U; the whole may swing more softly than its contacts by S (SOFTER). A body without contacts has its share, by mass, of the energy
  * stored in all contacts for U. */
-#include "cycle/cycle_data.h"
+#include "cycle/rest.h"
 
 #include "contact/detection.h"
+#include "cycle/cycle_data.h"
+#include "cycle/energy.h"
 #include "force/joint_laws.h"
 
 #include <stdatomic.h>

@@ -1,5 +1,7 @@
 /* settings.c - tells the parameters that a model has now. */
 #include "cycle/cycle_data.h"
+#include "cycle/timestep.h"
+#include "model/joints.h"
 
 #include <stdio.h>
 #include <string.h>

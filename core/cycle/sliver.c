@@ -5,10 +5,11 @@
  * the step would be. Of the filters that take little of the rock, the one is told that takes least and gains nearly the most. Where no shape
  * is the reason, but a stiff law or a light rock, no filter gains anything, and nothing is said. Of bodies that could all be joined the largest
  * stays: so does one that has nothing beside it but what is held. */
-#include "contact/detection.h"
-#include "cycle/rates.h"
+#include "cycle/sliver.h"
 
 #include "base/groups.h"
+#include "contact/detection.h"
+#include "cycle/cycle_data.h"
 #include "model/body_shape.h"
 
 #include <stdio.h>

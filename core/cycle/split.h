@@ -1,10 +1,21 @@
-/* split.h - bodies that cuts have split: what their parts are, and what these press on each other with (split.c, split_solve.c). */
+/* split.h - parts of a body that cuts have split since the last step go on as the whole does. */
 #ifndef TL_CYCLE_SPLIT_H
 #define TL_CYCLE_SPLIT_H
 
+#include "cycle/cycle_data.h"
 #include "force/bear.h"
+#include "model/loads.h"
 #include "model/model.h"
-#include "model/wrench.h"
+
+/* Before the gather; false: out of memory. */
+bool tl_split_prepare(tl_model *m);
+/* After the gather: gives the parts the forces that let them do so, and their new faces the tractions that bring these. */
+tl_status tl_split_hold(tl_model *m, double dt);
+/* Before the move: corrects the velocities of the parts for arms that turn. */
+void tl_split_turn(tl_model *m);
+/* The step is done. */
+void tl_split_end(tl_model *m);
+void tl_split_free(struct tl_cycle *c);
 
 /* A body that is a part of one that was split. */
 typedef struct tl_split_part {
@@ -48,8 +59,6 @@ typedef struct tl_split_system {
 } tl_split_system;
 
 /* Sets `borne` to what the laws bear of `given`, and what their springs hold; false: a law failed. */
-bool tl_split_bear(tl_split_system *s);
 /* Finds tractions that the laws bear and that bring what the parts lack, or come as near to it as they can; false: a law failed. */
-bool tl_split_solve(tl_split_system *s);
 
 #endif

@@ -2,6 +2,7 @@
 #include "cycle/standing.h"
 
 #include "cycle/cycle_data.h"
+#include "cycle/rest.h"
 
 /* The local ratio below which a model is at rest that has not been asked to come to one. */
 #define REST_RATIO 1e-5

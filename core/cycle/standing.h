@@ -1,4 +1,4 @@
-/* standing.h - how the model stands (standing.c). */
+/* standing.h - how the model stands. */
 #ifndef TL_CYCLE_STANDING_H
 #define TL_CYCLE_STANDING_H
 

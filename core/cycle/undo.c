@@ -6,10 +6,11 @@
  * so large that a force may not be finite, something that was set by hand since the last step, a body that came near
  * the limit of motion, or a given time step that is not stable. A step of the laws and dampings that come with the program costs nothing more. Detection and the
  * choice of the step need no undoing, for made again in the same places they change nothing; the move cannot fail. */
-#include "cycle/cycle_data.h"
+#include "cycle/undo.h"
 
+#include "contact/contacts.h"
 #include "contact/detection.h"
-#include "contact/held.h"
+#include "cycle/cycle_data.h"
 
 #include <stdlib.h>
 #include <string.h>

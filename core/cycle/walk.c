@@ -1,6 +1,9 @@
 /* walk.c - the entries of what the phases of a step keep. What a step may have to undo is no entry: no call ends in between. */
 #include "cycle/walk.h"
 
+#include "cycle/cycle_data.h"
+#include "cycle/energy.h"
+
 #define VALUE(keep, member) TL_WALK_VALUE(walk, TL_KEEP_##keep, "cycle.", c, member)
 #define FLAG(keep, member) TL_WALK_FLAG(walk, TL_KEEP_##keep, "cycle.", c, member)
 #define LIST(keep, member, count, capacity, bytes)                                                 \

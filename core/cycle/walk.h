@@ -1,4 +1,4 @@
-/* walk.h - the entries of what the phases of a step keep (walk.c). */
+/* walk.h - the entries of what the phases of a step keep. */
 #ifndef TL_CYCLE_WALK_H
 #define TL_CYCLE_WALK_H
 

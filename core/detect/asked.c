@@ -7,7 +7,6 @@
  * theirs, in what is copied and saved, too; contacts that nobody has asked for count on from these, in the order of their births. */
 #include "detect/asked.h"
 
-#include "contact/copy.h"
 #include "contact/store.h"
 
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-/* asked.h - contacts found for somebody who asks (asked.c). */
+/* asked.h - contacts found for somebody who asks. */
 #ifndef TL_DETECT_ASKED_H
 #define TL_DETECT_ASKED_H
 

@@ -10,7 +10,6 @@
  * After edits only the blocks that have come or changed are entered, and the others looked up among them. */
 #include "detect/broad.h"
 
-#include "detect/edited.h"
 #include "detect/pairs.h"
 
 #include <stdlib.h>

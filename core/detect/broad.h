@@ -1,4 +1,4 @@
-/* broad.h - pairs of blocks whose inflated bounds overlap (broad.c). */
+/* broad.h - pairs of blocks whose inflated bounds overlap. */
 #ifndef TL_DETECT_BROAD_H
 #define TL_DETECT_BROAD_H
 

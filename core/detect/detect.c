@@ -1,28 +1,30 @@
 /* detect.c - the order of contact detection.
  *
- * Phases: after edits rows are found again by id, and what was known of blocks that have changed is dropped (edited.c); the
+ * Phases: after edits rows are found again by id, and what was known of blocks that have changed is dropped; the
  * broad phase lists the neighbours of these, and is made anew when something may have left its skin; pairs without a contact are looked at when they may have come near; contacts are
  * followed, or made anew when they moved more than a margin; births, deaths and growth are then settled
  * serially in the order of pairs. How far anything can have moved is told by the bodies' odometers. */
 #include "detect/detect.h"
 
+#include "base/parallel.h"
 #include "contact/contacts.h"
 #include "contact/estate.h"
 #include "contact/handover.h"
-#include "contact/held.h"
 #include "contact/index.h"
 #include "contact/pair_view.h"
 #include "contact/prefetch.h"
+#include "contact/presses.h"
 #include "contact/store.h"
 #include "detect/asked.h"
 #include "detect/broad.h"
-#include "detect/edited.h"
+#include "detect/grazing.h"
 #include "detect/overlap.h"
 #include "detect/pairs.h"
-#include "detect/renew.h"
 #include "detect/update.h"
 #include "force/heirs.h"
 #include "model/body_shape.h"
+#include "model/joints.h"
+#include "model/rows.h"
 #include "narrow/manifold.h"
 #include "narrow/place.h"
 
@@ -56,6 +58,354 @@ static tl_status ensure(tl_model *m)
     m->detect = d;
     m->detect_destroy = tl_detect_destroy;
     return TL_OK;
+}
+
+/* ---------------------------------------------------------------- after edits -------------
+ *
+ * What edits of the model leave of pairs and contacts.
+ *
+ * A block bears the count of structure with which it came, or got another shape, frame or tags. What is newer than the
+ * count that detection has seen is treated as if it were new; all else that is known of pairs and contacts stays. What contacts of
+ * blocks that were cut carry is left to those of their parts (contact/estate.c). */
+
+/* Minimum area over that of a patch from which the patch may be none: below MOST_MIN_AREA of narrow/manifold.c. */
+#define SURE_MIN_AREA 0.01
+
+/* ---------------------------------------------------------------- rows ------------------- */
+
+/* What is made before anything is changed. */
+typedef struct rows_scratch {
+    uint32_t *row;      /* [blocks seen] the present row, or TL_NO_ROW */
+    uint32_t *heir;     /* [blocks seen] of one that was cut: one of its parts, or TL_NO_ROW */
+    double *odometer_0; /* [bodies] */
+    uint8_t *touched;   /* [bodies] */
+    tl_known_block *known_blocks; /* [blocks] */
+} rows_scratch;
+
+static bool reserve_scratch(const tl_model *m, rows_scratch *scratch)
+{
+    tl_detect *d = m->detect;
+    size_t blocks = m->blocks.table.rows, bodies = m->bodies.table.rows;
+    *scratch = (rows_scratch){.row = malloc((d->known_block_count + 1) * sizeof *scratch->row),
+                              .heir = malloc((d->known_block_count + 1) * sizeof *scratch->heir),
+                              .odometer_0 = malloc((bodies + 1) * sizeof *scratch->odometer_0),
+                              .touched = malloc(bodies + 1),
+                              .known_blocks = malloc((blocks + 1) * sizeof *scratch->known_blocks)};
+    if (scratch->row && scratch->heir && scratch->odometer_0 && scratch->touched &&
+        scratch->known_blocks && tl_fit(&d->idle, &d->idle_capacity, bodies + 1, sizeof *d->idle) &&
+        tl_fit(&d->path, &d->path_capacity, blocks + 1, sizeof *d->path))
+        return true;
+    return false;
+}
+
+static void free_scratch(rows_scratch *scratch)
+{
+    free(scratch->row);
+    free(scratch->heir);
+    free(scratch->odometer_0);
+    free(scratch->touched);
+    free(scratch->known_blocks);
+}
+
+/* Runs of bodies that have come or changed begin here, and their contacts are not what they were; others keep both. */
+static void keep_bodies(tl_model *m, const rows_scratch *scratch)
+{
+    const tl_detect *d = m->detect;
+    for (size_t body = 0; body < m->bodies.table.rows; body++) {
+        scratch->odometer_0[body] = m->bodies.odometer[body];
+        scratch->touched[body] = true;
+    }
+    for (size_t old = 0; old < d->known_block_count; old++) {
+        uint32_t row = scratch->row[old], before = d->known_blocks[old].body;
+        if (row == TL_NO_ROW || tl_block_is_new(m, row))
+            continue;
+        scratch->odometer_0[m->blocks.body[row]] = d->odometer_0[before];
+        scratch->touched[m->blocks.body[row]] = d->touched[before];
+    }
+}
+
+static int compare_known(const void *x, const void *y)
+{
+    const tl_known_block *p = x, *q = y;
+    return (p->id > q->id) - (p->id < q->id);
+}
+
+/* Finds a part of each block that was cut. */
+static void find_heirs(const tl_model *m, const rows_scratch *scratch)
+{
+    const tl_detect *d = m->detect;
+    for (size_t old = 0; old < d->known_block_count; old++)
+        scratch->heir[old] = TL_NO_ROW;
+    for (size_t i = 0; i < m->heir_count && d->known_block_count; i++) {
+        tl_known_block root = {.id = m->heirs[i].root};
+        if (tl_block_row_quiet(m, m->heirs[i].id) == TL_NO_ROW)
+            continue;
+        const tl_known_block *known =
+            bsearch(&root, d->known_blocks, d->known_block_count, sizeof root, compare_known);
+        if (known)
+            scratch->heir[known - d->known_blocks] = (uint32_t)i;
+    }
+}
+
+/* Whether the contact of a pair, with the rows that detection has seen, ends because a block of it was cut. */
+static bool leaves(const tl_detect *d, const rows_scratch *scratch, const tl_pair *p)
+{
+    bool a_ends = scratch->row[p->a] == TL_NO_ROW, b_ends = scratch->row[p->b] == TL_NO_ROW;
+    return (a_ends || b_ends) && !tl_pair_is_apart(p) &&
+           (!a_ends || scratch->heir[p->a] != TL_NO_ROW) &&
+           (!b_ends || scratch->heir[p->b] != TL_NO_ROW) &&
+           d->contacts.pending[p->contact] != TL_PENDING_DIE &&
+           d->contacts.point_count[p->contact] > 0;
+}
+
+static tl_testator testator_of(const tl_model *m, const rows_scratch *scratch, uint32_t seen)
+{
+    tl_id id = m->detect->known_blocks[seen].id;
+    uint32_t row = scratch->row[seen];
+    if (row == TL_NO_ROW) {
+        const tl_heir *heir = &m->heirs[scratch->heir[seen]];
+        uint32_t part = m->blocks.body[tl_block_row_quiet(m, heir->id)];
+        return (tl_testator){.id = id, .r = &heir->r, .place = heir->place, .body = part};
+    }
+    uint32_t body = m->blocks.body[row];
+    return (tl_testator){.id = id,
+                         .r = &m->bodies.pose[body].r,
+                         .place = tl_body_place(&m->bodies, body),
+                         .body = body,
+                         .reframed = tl_block_is_new(m, row)};
+}
+
+/* Keeps what contacts of blocks that were cut leave; false when out of memory (nothing changed). */
+static bool keep_estates(tl_model *m, const rows_scratch *scratch)
+{
+    tl_detect *d = m->detect;
+    size_t estates = 0, points = 0;
+    for (size_t i = 0; i < d->pair_count && m->heir_count; i++)
+        if (leaves(d, scratch, &d->pairs[i])) {
+            estates++;
+            points += tl_estate_size(d, d->pairs[i].contact);
+        }
+    if (estates == 0)
+        return true;
+    if (!tl_estates_reserve(d, estates, points) ||
+        !tl_detect_hold_initial(d)) /* for the references of what the parts press with */
+        return false;
+    for (size_t i = 0; i < d->pair_count; i++) {
+        const tl_pair *p = &d->pairs[i];
+        if (!leaves(d, scratch, p))
+            continue;
+        tl_testator one = testator_of(m, scratch, p->a), other = testator_of(m, scratch, p->b);
+        tl_estate_keep(m, p->contact, &one, &other);
+    }
+    tl_estates_sort(d);
+    for (size_t i = 0; i < d->pair_count; i++) {
+        const tl_pair *p = &d->pairs[i];
+        if (!leaves(d, scratch, p))
+            continue;
+        tl_testator one = testator_of(m, scratch, p->a), other = testator_of(m, scratch, p->b);
+        tl_estate_weigh(m, p->contact, tl_estate_left(d, one.id, other.id), &one, &other);
+        tl_estate_leave(m, p->contact);
+    }
+    return true;
+}
+
+/* Ends a contact: a block of it has gone, or both have become one body. */
+static void end_contact(tl_model *m, const rows_scratch *scratch, uint32_t contact, uint32_t a,
+                        uint32_t b)
+{
+    m->detect->contacts.pending[contact] = TL_PENDING_DIE;
+    if (a != TL_NO_ROW)
+        scratch->touched[m->blocks.body[a]] = true;
+    if (b != TL_NO_ROW)
+        scratch->touched[m->blocks.body[b]] = true;
+}
+
+/* Whether a contact is no more than an answer to somebody who has asked: it has been in no step, and bears no initial stress. Where
+ * a block of it changes it is found as if nobody had. */
+static bool is_fresh(const tl_detect *d, uint32_t contact)
+{
+    bool stressed = false;
+    for (size_t k = 0; d->points.initial && k < d->contacts.point_count[contact]; k++)
+        stressed = stressed || d->points.f_n0[tl_point_row(&d->contacts, contact, k)] != 0;
+    return d->contacts.id[contact] > d->stepped_contact && !stressed;
+}
+
+/* Pairs, in their order, with their present rows: ids ascend with rows before and after. */
+static void keep_pairs(tl_model *m, const rows_scratch *scratch)
+{
+    tl_detect *d = m->detect;
+    tl_contacts *c = &d->contacts;
+    size_t kept = 0;
+    for (size_t i = 0; i < d->pair_count; i++) {
+        tl_pair p = d->pairs[i];
+        uint32_t a = scratch->row[p.a], b = scratch->row[p.b];
+        bool parted = a == TL_NO_ROW || b == TL_NO_ROW || m->blocks.body[a] == m->blocks.body[b];
+        bool changed = !parted && (tl_block_is_new(m, a) || tl_block_is_new(m, b));
+        if (tl_pair_is_apart(&p)) {
+            if (parted || changed)
+                continue; /* the broad phase lists it anew */
+        } else if (parted || (changed && is_fresh(d, p.contact))) {
+            end_contact(m, scratch, p.contact, a, b);
+            continue;
+        } else {
+            c->a[p.contact] = a;
+            c->b[p.contact] = b;
+            c->pair[p.contact] = (uint32_t)kept;
+            if (c->pending[p.contact] == TL_PENDING_DIE)
+                end_contact(m, scratch, p.contact, a, b);
+        }
+        p.a = a;
+        p.b = b;
+        d->pairs[kept++] = p;
+    }
+    d->pair_count = kept;
+    for (size_t chunk = 0; chunk * TL_PAIR_CHUNK < kept; chunk++)
+        d->chunks[chunk] = (tl_pair_chunk){.wake = -INFINITY};
+}
+
+/* Finds the blocks of pairs and contacts again after rows have changed, and drops what was known of those that have come, gone
+ * or changed: their pairs without a contact, and contacts of which a block has gone. TL_E_MEMORY: nothing has changed. */
+static tl_status edited_rows(tl_model *m)
+{
+    tl_detect *d = m->detect;
+    size_t blocks = m->blocks.table.rows, bodies = m->bodies.table.rows;
+    rows_scratch scratch;
+    bool there = reserve_scratch(m, &scratch);
+    for (size_t old = 0; there && old < d->known_block_count; old++)
+        scratch.row[old] = tl_block_row_quiet(m, d->known_blocks[old].id);
+    if (there)
+        find_heirs(m, &scratch);
+    if (!there || !keep_estates(m, &scratch)) {
+        free_scratch(&scratch);
+        return tl_fail_memory(&m->error);
+    }
+    keep_bodies(m, &scratch);
+    keep_pairs(m, &scratch);
+    for (size_t row = 0; row < blocks; row++)
+        scratch.known_blocks[row] = (tl_known_block){m->blocks.id[row], m->blocks.body[row]};
+    free(scratch.row);
+    free(scratch.heir);
+    free(d->odometer_0);
+    free(d->touched);
+    free(d->known_blocks);
+    d->odometer_0 = scratch.odometer_0;
+    d->touched = scratch.touched;
+    d->known_blocks = scratch.known_blocks;
+    d->odometer_capacity = d->touched_capacity = bodies + 1;
+    d->known_block_capacity = blocks + 1;
+    d->known_block_count = blocks;
+    d->any_touched = true;
+    tl_contacts_unlist(d);
+    return TL_OK;
+}
+
+/* ---------------------------------------------------------------- laws ------------------- */
+
+/* Whether a contact's press lacks the volumes that its law asks for now. */
+static bool lacks_volumes(const tl_model *m, uint32_t row, uint32_t law)
+{
+    const tl_press_row *press = tl_press_row_of(m, row);
+    return press && !press->press.powers && law != TL_NO_ROW && tl_law_presses(&m->joint_laws[law]);
+}
+
+/* Contacts under another joint law belong in another span. */
+static void find_laws(tl_model *m)
+{
+    tl_contacts *c = &m->detect->contacts;
+    for (uint32_t row = 0; row < c->table.rows; row++) {
+        if (c->pending[row] == TL_PENDING_DIE)
+            continue;
+        uint32_t law = tl_law_row(m, c->tag[row]);
+        if (c->pending[row] == TL_PENDING_NONE && law != c->law[row])
+            c->pending[row] = TL_PENDING_MOVE;
+        if (lacks_volumes(m, row, law))
+            c->points_valid_to[row] = -INFINITY;
+    }
+}
+
+/* Whether a contact that is a patch remains one whatever the minimum area was before. */
+static bool stays_patch(const tl_model *m, uint32_t row)
+{
+    const tl_contacts *c = &m->detect->contacts;
+    if (c->point_count[row] == 0 || c->facet[row].kind == TL_FACET_FIELD)
+        return false;
+    tl_min_area_rule rule = tl_min_area_of(m, c->tag[row]);
+    double mean = fmin(m->blocks.mean_face[c->a[row]], m->blocks.mean_face[c->b[row]]);
+    double min_area = isnan(rule.absolute) ? rule.fraction * mean : rule.absolute;
+    return min_area <= SURE_MIN_AREA * c->area[row];
+}
+
+/* Pairs that touch without area are tested again, but for those that have nothing in common. */
+static void wake_pairs(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
+{
+    (void)thread;
+    tl_model *m = user;
+    tl_detect *d = m->detect;
+    for (uint32_t i = (uint32_t)begin; i < end; i++) {
+        tl_pair *p = &d->pairs[i];
+        tl_pair_faces faces = tl_pair_faces_of(p);
+        if (!tl_pair_is_apart(p) || faces.one == faces.other) {
+            tl_pair_wake(d, i);
+            continue;
+        }
+        tl_pair_view view = tl_pair_view_of(m, p->a, p->b);
+        if (!tl_grazing_only_touches(&view, p)) {
+            tl_pair_wake(d, i);
+            continue;
+        }
+        tl_pair_forget_faces(p);
+        tl_pair_sleep(d, p, TL_STILL * view.size);
+        if (p->wake < d->chunks[chunk].wake)
+            d->chunks[chunk].wake = p->wake;
+    }
+}
+
+/* Under another minimum area contacts that are no patches, or too small ones, are made anew, and pairs that only touched are
+ * looked at again; under another rule for the points of patches, all are made anew. */
+static void find_rules(tl_model *m)
+{
+    tl_detect *d = m->detect;
+    tl_contacts *c = &d->contacts;
+    bool all = d->contact_points != m->config.contact_points;
+    tl_parallel_for(m->pool, d->pair_count, TL_PAIR_CHUNK, wake_pairs, m);
+    for (uint32_t row = 0; row < c->table.rows; row++) {
+        if (c->pending[row] == TL_PENDING_DIE)
+            continue;
+        bool patch = stays_patch(m, row);
+        if (all || !patch)
+            c->points_valid_to[row] = -INFINITY;
+        if (!patch && c->facet[row].kind == TL_FACET_PATCH)
+            c->faces_valid_to[row] = -INFINITY;
+    }
+}
+
+/* Marks the contacts that come under another joint law, and those whose facets follow other rules than they did. */
+static void edited_laws(tl_model *m)
+{
+    tl_detect *d = m->detect;
+    if (d->rules != m->rules) /* before contacts note the room they want in the place of faces */
+        find_rules(m);
+    if (d->laws != m->laws)
+        find_laws(m);
+}
+
+/* ---------------------------------------------------------------- frames ----------------- */
+
+static void reframe_range(void *user, size_t begin, size_t end, size_t chunk, unsigned thread)
+{
+    (void)chunk;
+    tl_model *m = user;
+    const tl_contacts *c = &m->detect->contacts;
+    for (uint32_t row = (uint32_t)begin; row < end; row++)
+        if (c->pending[row] != TL_PENDING_DIE &&
+            (tl_block_is_new(m, c->a[row]) || tl_block_is_new(m, c->b[row])))
+            tl_contact_reframe(m, row, thread);
+}
+
+/* Makes anew what contacts keep in the frames of bodies that have changed, before anything is computed from it. */
+static void edited_frames(tl_model *m)
+{
+    tl_parallel_for(m->pool, m->detect->contacts.table.rows, CONTACT_CHUNK, reframe_range, m);
 }
 
 /* ---------------------------------------------------------------- phases ----------------- */
@@ -333,14 +683,14 @@ static tl_status find_contacts(tl_model *m)
     bool rows = d->structure != m->structure || !d->listed;
     if (rows) {
         d->rows_changed = true;
-        status = tl_edited_rows(m);
+        status = edited_rows(m);
         if (status != TL_OK)
             return status;
     }
     tl_pairs_measure_paths(m);
-    tl_edited_laws(m);
+    edited_laws(m);
     if (rows)
-        tl_edited_frames(m);
+        edited_frames(m);
     if (rows && lacked_memory(d))
         return tl_fail_memory(&m->error);
     if (rows || d->laws != m->laws || d->constraints != m->constraints)

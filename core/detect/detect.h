@@ -7,6 +7,7 @@
 #ifndef TL_DETECT_DETECT_H
 #define TL_DETECT_DETECT_H
 
+#include "contact/detection.h"
 #include "model/model.h"
 
 /* Brings pairs, contacts and gaps up to the present places of the bodies: the first half of a step. */

@@ -11,9 +11,10 @@
 #include "contact/lean.h"
 #include "contact/pair_view.h"
 #include "contact/presses.h"
-#include "contact/shear.h"
+#include "contact/transfer.h"
 #include "narrow/flush.h"
 #include "narrow/place.h"
+#include "narrow/press.h"
 
 #include <math.h>
 #include <string.h>

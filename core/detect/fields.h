@@ -1,10 +1,11 @@
-/* fields.h - field contacts from step to step (fields.c). */
+/* fields.h - field contacts from step to step. */
 #ifndef TL_DETECT_FIELDS_H
 #define TL_DETECT_FIELDS_H
 
 #include "contact/layout.h"
 #include "contact/tables.h"
 #include "model/model.h"
+#include "narrow/field.h"
 #include "narrow/manifold.h"
 
 /* What is known of a contact before it is looked at. One whose bodies have got other frames stays what it is until its points

@@ -1,4 +1,4 @@
-/* grazing.h - grazing pairs, which touch without area (grazing.c). */
+/* grazing.h - grazing pairs, which touch without area. */
 #ifndef TL_DETECT_GRAZING_H
 #define TL_DETECT_GRAZING_H
 

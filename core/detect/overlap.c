@@ -31,7 +31,7 @@
  * come to 1.06. */
 #define TL_DEEPEST 1.25
 
-/* Whether no force can move either block. More than tl_blocks_held_still (held.h): bodies that a drive carries along, or
+/* Whether no force can move either block. More than tl_blocks_held_still (contacts.h): bodies that a drive carries along, or
  * that still have a velocity, do not feel what their overlap would do. */
 static bool both_held(const tl_model *m, uint32_t a, uint32_t b)
 {

@@ -1,4 +1,4 @@
-/* overlap.h - blocks that overlap so deeply that no contact can tell how to part them (overlap.c). */
+/* overlap.h - blocks that overlap so deeply that no contact can tell how to part them. */
 #ifndef TL_DETECT_OVERLAP_H
 #define TL_DETECT_OVERLAP_H
 

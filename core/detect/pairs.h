@@ -1,4 +1,4 @@
-/* pairs.h - pairs without a contact (pairs.c). */
+/* pairs.h - pairs without a contact. */
 #ifndef TL_DETECT_PAIRS_H
 #define TL_DETECT_PAIRS_H
 

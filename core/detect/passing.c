@@ -15,6 +15,7 @@
 #include "detect/passing.h"
 
 #include "contact/pair_view.h"
+#include "geometry/measure.h"
 
 #include <stdlib.h>
 

@@ -1,4 +1,4 @@
-/* passing.h - whether a step would carry a block into another so far that nobody knows which way it came (passing.c). */
+/* passing.h - whether a step would carry a block into another so far that nobody knows which way it came. */
 #ifndef TL_DETECT_PASSING_H
 #define TL_DETECT_PASSING_H
 

@@ -1,14 +1,14 @@
-/* update.h - one contact brought up to the present place of its blocks (update.c). */
+/* update.h - one contact brought up to the present place of its blocks. */
 #ifndef TL_DETECT_UPDATE_H
 #define TL_DETECT_UPDATE_H
 
 #include "contact/detection.h"
+#include "contact/layout.h"
 #include "contact/pair_view.h"
 #include "model/model.h"
 
-/* Whether a contact's points are still good although its odometers have run out. */
+/* Whether they are although it has moved. */
 bool tl_contact_points_hold_yet(tl_model *m, uint32_t contact);
-
 /* Whether a contact's points are still good. */
 static inline bool tl_contact_points_hold(tl_model *m, uint32_t contact)
 {
@@ -20,18 +20,16 @@ static inline bool tl_contact_points_hold(tl_model *m, uint32_t contact)
     bool valid = odometer <= c->points_valid_to[contact] && odometer <= c->faces_valid_to[contact];
     return (valid && m->config.reuse_geometry) || tl_contact_points_hold_yet(m, contact);
 }
-/* Whether a contact is a patch and stays one. */
-bool tl_contact_is_patch(tl_model *m, uint32_t contact);
-/* Lets a contact whose points have just been made move a little before they are made anew. */
-void tl_contact_allow_reuse(tl_model *m, uint32_t contact);
 /* Brings a contact up to the present place; `pending` tells what is left to do. */
 void tl_contact_update(tl_model *m, uint32_t contact, unsigned thread);
-/* The same for some field contacts that go on, up to TL_FIELD_PAIRS. */
-void tl_contacts_follow(tl_model *m, const uint32_t contact[], uint32_t count, unsigned thread);
 /* The same for a contact of bodies that have other frames than when its points were made. */
 void tl_contact_reframe(tl_model *m, uint32_t contact, unsigned thread);
 /* Lays the points of a contact that has just been given its room, unless it wants more: then it is still to grow;
  * false when out of memory. */
 bool tl_contact_fill(tl_model *m, uint32_t contact);
+
+/* Brings the facets of the contacts of a SIMD group up to the present place, if they are stale; `pending` tells what is left
+ * to do. false when none was. */
+bool tl_simd_group_update(tl_model *m, const tl_simd_group *group, unsigned thread);
 
 #endif

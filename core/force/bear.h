@@ -1,4 +1,4 @@
-/* bear.h - what a law bears at the points of a contact (bear.c). */
+/* bear.h - what a law bears at the points of a contact. */
 #ifndef TL_FORCE_BEAR_H
 #define TL_FORCE_BEAR_H
 

@@ -1,4 +1,4 @@
-/* closures.h - two closures that stand for all of what presses (closures.c). */
+/* closures.h - two closures that stand for all of what presses. */
 #ifndef TL_FORCE_CLOSURES_H
 #define TL_FORCE_CLOSURES_H
 

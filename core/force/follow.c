@@ -14,18 +14,323 @@
  * new one. So the motion is taken half-way between: the work of the mean force is then right to the second order of the step.
  *
  * Eight contacts are worked on side by side (tl_simd_group). What is the same for all points of a contact is brought into
- * matrices first, one in each lane (frames.c), so that what is left for a point are a few products, in loops over
+ * matrices first, one in each lane, so that what is left for a point are a few products, in loops over
  * columns without a branch. */
 #include "force/follow.h"
 
 #include "base/columns.h"
+#include "base/series.h"
 #include "contact/detection.h"
 #include "contact/facing.h"
-#include "force/frames.h"
 #include "force/turning.h"
 
+#include <assert.h>
 #include <math.h>
+#include <stddef.h>
 #include <string.h>
+
+/* ---------------------------------------------------------------- frames ------------------
+ *
+ * How bodies moved in the last step, and facets in the lanes of a SIMD group.
+ *
+ * What eight contacts need is scattered over their bodies and facets: it is read as rows and transposed, and then
+ * worked out for all of them at once. */
+
+/* One contact in each lane, in its present place, and how its points move. */
+typedef struct tl_frames {
+    tl_lanes9 to; /* of points to their arms */
+    tl_lanes3 n, plane;
+    double offset[TL_LANES]; /* tl_facing */
+    tl_lanes3 last;          /* normal in the last step */
+    /* the motion of B against A in the last step at an arm: way + m arm; the spin of the
+     * common plane, as axis times the tangent of half its angle: B's by the share by which points stay with A, A's by the rest */
+    tl_lanes3 way, half;
+    tl_lanes9 m;
+    tl_lanes9 turn; /* how shear forces turn, from the last common plane into the present one */
+} tl_frames;
+
+/* The bodies of a contact and its facet for each lane. */
+typedef struct tl_frame_rows {
+    const double *a[TL_LANES], *b[TL_LANES]; /* tl_pose */
+    const double *facet[TL_LANES];           /* tl_facet */
+    double dt;                               /* of the last step */
+} tl_frame_rows;
+
+/* ---------------------------------------------------------------- bodies ----------------- */
+
+/* The square of an angle by which a body turned is small enough for the series. */
+TL_INLINE bool is_small(double a2)
+{
+    return a2 < 4 * TL_SERIES_HALF_ANGLE * TL_SERIES_HALF_ANGLE;
+}
+
+/* tan(a/2) / a by its series, from the square of a. */
+TL_INLINE double tangent_series(double a2)
+{
+    return 0.5 + a2 * (1. / 24 + a2 * (1. / 240 + a2 * (17. / 40320 + a2 * 31. / 725760)));
+}
+
+static double tangent_of(double a2)
+{
+    return is_small(a2) ? tangent_series(a2) : tl_tan(0.5 * sqrt(a2)) / sqrt(a2);
+}
+
+/* Square of the angle by which a body turned in a step. */
+TL_INLINE double angle2(tl_vec3 w, double dt)
+{
+    return tl_v3_norm2(tl_v3_scale(dt, w));
+}
+
+/* Its axis times the tangent of half of it. */
+TL_INLINE tl_vec3 half_turn(tl_vec3 w, double tangent, double dt)
+{
+    return tl_v3_scale(tangent, tl_v3_scale(dt, w));
+}
+
+/* What a point has moved beside the centroid, as it acts on its arm from there now: 2 / (1 + h^2) ([h] - [h]^2), where h is
+ * axis times the tangent of half the angle of the turn. Exact, so a rolling contact and one that is turned as a
+ * whole gather no slip. */
+TL_INLINE tl_mat3 turn_back(tl_vec3 h)
+{
+    tl_vec3 s = tl_v3_scale(2 / (1 + tl_v3_norm2(h)), h);
+    return (tl_mat3){{{s.y * h.y + s.z * h.z, -s.x * h.y - s.z, -s.x * h.z + s.y},
+                      {-s.y * h.x + s.z, s.z * h.z + s.x * h.x, -s.y * h.z - s.x},
+                      {-s.z * h.x - s.y, -s.z * h.y + s.x, s.x * h.x + s.y * h.y}}};
+}
+
+/* ---------------------------------------------------------------- lanes ------------------ */
+
+/* What is known of a contact and its bodies, a lane each, before the lanes work out together what follows from it. */
+typedef struct eight {
+    double a[TL_POSE_ROW][TL_LANES], b[TL_POSE_ROW][TL_LANES]; /* tl_pose */
+    double facet[TL_FACET_ROW][TL_LANES];                      /* tl_facet */
+} eight;
+
+/* Where the members of a facet and of a pose are in their rows. */
+#define AT(type, member) (offsetof(type, member) / sizeof(double))
+enum {
+    NA = AT(tl_facet, na),
+    NB = AT(tl_facet, nb),
+    OFFSET = AT(tl_facet, offset),
+    LAST = AT(tl_facet, last),
+    RIDE = AT(tl_facet, ride),
+    LAID_TURN = AT(tl_facet, laid.turn),
+    LAID_SHIFT = AT(tl_facet, laid.shift),
+    X_REF = AT(tl_pose, x_ref),
+    U = AT(tl_pose, u),
+    V_MOVED = AT(tl_pose, v_moved),
+    W_MOVED = AT(tl_pose, w_moved),
+    POSE_END = AT(tl_pose, unused)
+};
+static_assert(sizeof(tl_facet) >= TL_FACET_ROW * sizeof(double), "a facet is shorter than its row");
+static_assert(sizeof(tl_pose) == TL_POSE_ROW * sizeof(double), "a pose is not its row");
+static_assert(sizeof(tl_pose) % TL_ALIGN == 0, "poses do not begin where lines of memory do");
+static_assert(AT(tl_pose, r) == 0, "a pose does not begin with its matrix");
+
+typedef double pair __attribute__((vector_size(16)));
+typedef double quad __attribute__((vector_size(32)));
+typedef double octet __attribute__((vector_size(64)));
+
+/* Two doubles of each of two rows. */
+TL_INLINE void of_rows(quad *out, const double *low, const double *high)
+{
+    pair a, b;
+    memcpy(&a, low, sizeof a);
+    memcpy(&b, high, sizeof b);
+    *out = __builtin_shufflevector(a, b, 0, 1, 2, 3);
+}
+
+TL_INLINE void put_octet(double *to, const quad *low, const quad *high)
+{
+    octet all = __builtin_shufflevector(*low, *high, 0, 1, 2, 3, 4, 5, 6, 7);
+    memcpy(to, &all, sizeof all);
+}
+
+/* Turns `count` doubles, an even number, of a row for each lane into a row of lanes for each double. What is loaded
+ * as one vector is stored as one: a load cannot wait for two stores. */
+TL_INLINE void transpose(double (*restrict to)[TL_LANES], const double *const *row, size_t count)
+{
+#pragma GCC unroll 1
+    for (size_t k = 0; k < count; k += 2) {
+        quad even, odd, low[2], high[2];
+        of_rows(&even, row[0] + k, row[2] + k);
+        of_rows(&odd, row[1] + k, row[3] + k);
+        low[0] = __builtin_shufflevector(even, odd, 0, 4, 2, 6);
+        low[1] = __builtin_shufflevector(even, odd, 1, 5, 3, 7);
+        of_rows(&even, row[4] + k, row[6] + k);
+        of_rows(&odd, row[5] + k, row[7] + k);
+        high[0] = __builtin_shufflevector(even, odd, 0, 4, 2, 6);
+        high[1] = __builtin_shufflevector(even, odd, 1, 5, 3, 7);
+        put_octet(to[k], &low[0], &high[0]);
+        put_octet(to[k + 1], &low[1], &high[1]);
+    }
+}
+
+/* The poses of a body in each lane. */
+TL_INLINE void transpose_poses(double (*restrict to)[TL_LANES], const double *const *row)
+{
+    transpose(to, row, (POSE_END + 1) / 2 * 2);
+}
+
+TL_INLINE tl_mat3 difference(const tl_mat3 *a, const tl_mat3 *b)
+{
+    return (tl_mat3){{{a->m[0][0] - b->m[0][0], a->m[0][1] - b->m[0][1], a->m[0][2] - b->m[0][2]},
+                      {a->m[1][0] - b->m[1][0], a->m[1][1] - b->m[1][1], a->m[1][2] - b->m[1][2]},
+                      {a->m[2][0] - b->m[2][0], a->m[2][1] - b->m[2][1], a->m[2][2] - b->m[2][2]}}};
+}
+
+/* How shear forces turn: from the normal `from` of the last step to n, then by twice the angle of tangent w about that.
+ * With h = from x n + w (from + n) that is 1 + p [h] + p q [h]^2, p = 1 / (1 + w^2), q = 1 / (1 + from . n). What has not
+ * turned stays as it is, to the bit. */
+TL_INLINE void put_turn(tl_frames *f, size_t l, tl_vec3 from)
+{
+    tl_vec3 n = tl_lanes3_get(&f->n, l);
+    double w = tl_v3_dot(tl_lanes3_get(&f->half, l), n), c = 1 + tl_v3_dot(from, n);
+    tl_vec3 h = tl_v3_madd(tl_v3_cross(from, n), w, tl_v3_add(from, n));
+    tl_vec3 s = tl_v3_scale(1 / (1 + w * w), h), g = tl_v3_scale(1 / (c > 0 ? c : 1), h);
+    tl_mat3 turn = {{{1 - (s.y * g.y + s.z * g.z), s.x * g.y - s.z, s.x * g.z + s.y},
+                     {s.y * g.x + s.z, 1 - (s.z * g.z + s.x * g.x), s.y * g.z - s.x},
+                     {s.z * g.x - s.y, s.z * g.y + s.x, 1 - (s.x * g.x + s.y * g.y)}}};
+    /* out of it what is along `from`: rounding would lead out of the plane in the course of many steps */
+    tl_vec3 out = tl_v3_scale(tl_v3_norm2(h) > 0 ? 1 : 0, n);
+    tl_mat3 along = {{{out.x * from.x, out.x * from.y, out.x * from.z},
+                      {out.y * from.x, out.y * from.y, out.y * from.z},
+                      {out.z * from.x, out.z * from.y, out.z * from.z}}};
+    turn = difference(&turn, &along);
+    tl_lanes9_put(&f->turn, l, &turn);
+}
+
+/* Element k and the two behind it as a vector of lane l. */
+TL_INLINE tl_vec3 row_vec3(double (*row)[TL_LANES], size_t k, size_t l)
+{
+    return tl_v3(row[k][l], row[k + 1][l], row[k + 2][l]);
+}
+
+TL_INLINE tl_mat3 row_mat3(double (*row)[TL_LANES], size_t l)
+{
+    return (tl_mat3){{{row[0][l], row[1][l], row[2][l]},
+                      {row[3][l], row[4][l], row[5][l]},
+                      {row[6][l], row[7][l], row[8][l]}}};
+}
+
+/* Places of the points of the patch in lane l. Arms are then taken from `at`, which costs nothing at each point. */
+TL_INLINE void put_places(tl_frames *f, tl_arms *arms, size_t l, double (*facet)[TL_LANES],
+                          const tl_mat3 *ra, const tl_mat3 *rb, tl_vec3 d)
+{
+    tl_mat3 turn = row_mat3(&facet[LAID_TURN], l), moved = tl_lanes9_get(&f->m, l);
+    tl_facing_place place =
+        tl_facing_ride(ra, rb, d, &turn, row_vec3(facet, LAID_SHIFT, l), facet[RIDE][l]);
+    tl_lanes9_put(&f->to, l, &place.to);
+    tl_lanes3_put(&arms->at, l, place.at);
+    tl_lanes3_put(&f->way, l, tl_v3_add(tl_lanes3_get(&f->way, l), tl_m3_mul(&moved, place.at)));
+    f->offset[l] -= tl_v3_dot(tl_lanes3_get(&f->plane, l), place.at);
+}
+
+/* tan(a/2) / a of the turns of a body in each lane. */
+TL_INLINE void put_tangents(double *restrict tangent, double (*row)[TL_LANES], double dt)
+{
+    double wide = 0;
+#pragma omp simd reduction(+ : wide)
+    for (size_t l = 0; l < TL_LANES; l++) {
+        double a2 = angle2(row_vec3(row, W_MOVED, l), dt);
+        tangent[l] = tangent_series(a2);
+        wide += is_small(a2) ? 0 : 1;
+    }
+    for (size_t l = 0; wide > 0 && l < TL_LANES; l++)
+        tangent[l] = tangent_of(angle2(row_vec3(row, W_MOVED, l), dt));
+}
+
+/* From A's body to B's in lane l. */
+TL_INLINE tl_vec3 rows_apart(double (*a)[TL_LANES], double (*b)[TL_LANES], size_t l)
+{
+    return tl_apart(row_vec3(a, X_REF, l), row_vec3(a, U, l), row_vec3(b, X_REF, l),
+                    row_vec3(b, U, l));
+}
+
+/* The way of B against A in the last step, at their centroids. */
+TL_INLINE tl_vec3 way_between(tl_vec3 v_a, tl_vec3 v_b, double dt)
+{
+    return tl_v3_scale(dt, tl_v3_sub(v_b, v_a));
+}
+
+/* Motion of B against A in the last step, by half their turns; `d` is the way from A's centroid to B's. */
+TL_INLINE void put_motion(tl_frames *f, size_t l, tl_vec3 half_a, tl_vec3 half_b, tl_vec3 way,
+                          tl_vec3 d, double ride)
+{
+    tl_mat3 ma = turn_back(half_a), mb = turn_back(half_b);
+    tl_lanes3_put(&f->way, l, tl_v3_sub(way, tl_m3_mul(&mb, d)));
+    tl_lanes3_put(&f->half, l, tl_v3_madd(tl_v3_scale(ride, half_a), 1 - ride, half_b));
+    tl_mat3 moved = difference(&mb, &ma);
+    tl_lanes9_put(&f->m, l, &moved);
+}
+
+/* The same of the bodies of lane l, whose turns have these tangents. */
+TL_INLINE void put_rows_motion(tl_frames *f, size_t l, double (*a)[TL_LANES], double (*b)[TL_LANES],
+                               double tangent_a, double tangent_b, double dt, tl_vec3 d,
+                               double ride)
+{
+    tl_vec3 half_a = half_turn(row_vec3(a, W_MOVED, l), tangent_a, dt);
+    tl_vec3 half_b = half_turn(row_vec3(b, W_MOVED, l), tangent_b, dt);
+    put_motion(f, l, half_a, half_b,
+               way_between(row_vec3(a, V_MOVED, l), row_vec3(b, V_MOVED, l), dt), d, ride);
+}
+
+/* `field` is a constant at each call. */
+TL_INLINE void put_all(tl_frames *restrict f, const tl_frame_rows *restrict rows, bool field,
+                       tl_arms *restrict arms)
+{
+    double tangent_a[TL_LANES], tangent_b[TL_LANES];
+    eight p;
+    transpose_poses(p.a, rows->a);
+    transpose_poses(p.b, rows->b);
+    transpose(p.facet, rows->facet, field ? TL_FIELD_ROW : TL_FACET_ROW);
+    put_tangents(tangent_a, p.a, rows->dt);
+    put_tangents(tangent_b, p.b, rows->dt);
+#pragma omp simd
+    for (size_t l = 0; l < TL_LANES; l++) {
+        tl_vec3 d = rows_apart(p.a, p.b, l);
+        double ride = field ? 0.5 : p.facet[RIDE][l];
+        put_rows_motion(f, l, p.a, p.b, tangent_a[l], tangent_b[l], rows->dt, d, ride);
+        tl_mat3 ra = row_mat3(p.a, l), rb = row_mat3(p.b, l);
+        tl_vec3 na = tl_m3_mul(&ra, row_vec3(p.facet, NA, l));
+        tl_vec3 nb = tl_m3_mul(&rb, row_vec3(p.facet, NB, l));
+        tl_facing to = field ? tl_facing_field(na, p.facet[OFFSET][l])
+                             : tl_facing_patch(na, nb, d, p.facet[OFFSET][l], ride);
+        tl_lanes3_put(&f->n, l, to.n);
+        tl_lanes3_put(&arms->push, l, to.push);
+        tl_lanes3_put(&f->plane, l, to.plane);
+        f->offset[l] = to.offset;
+        if (field)
+            tl_lanes9_put(&f->to, l, &ra);
+        else
+            put_places(f, arms, l, p.facet, &ra, &rb, d);
+        tl_lanes3_put(&f->last, l, row_vec3(p.facet, LAST, l));
+        put_turn(f, l, row_vec3(p.facet, LAST, l));
+    }
+}
+
+TL_VECTORIZED static void put_patches(tl_frames *restrict f, const tl_frame_rows *restrict rows,
+                                      tl_arms *restrict arms)
+{
+    put_all(f, rows, false, arms);
+}
+
+TL_VECTORIZED static void put_fields(tl_frames *restrict f, const tl_frame_rows *restrict rows,
+                                     tl_arms *restrict arms)
+{
+    put_all(f, rows, true, arms);
+}
+
+/* Brings patches, or field contacts, into their present place. */
+static void frames_put(tl_frames *f, const tl_frame_rows *rows, bool field, tl_arms *arms)
+{
+    if (field)
+        put_fields(f, rows, arms);
+    else
+        put_patches(f, rows, arms);
+}
+
+/* ---------------------------------------------------------------- the points of contacts --- */
 
 /* Closure, over the distance of the point from the body's centroid, up to which walls just touch: roundings of that distance and of the
  * plane's. Else they would decide whether a joint that bears nothing yet is closed, and what slip opens of it. */
@@ -205,7 +510,7 @@ void tl_simd_group_follow(tl_model *m, const tl_simd_group *group, bool field,
     field_rows fields;
     torsions torsion;
     if (look_up(m, group, &rows)) {
-        tl_frames_put(&f, &rows, field, arms);
+        frames_put(&f, &rows, field, arms);
     } else { /* inert, but finite */
         memset(&f, 0, sizeof f);
         memset(arms, 0, sizeof *arms);

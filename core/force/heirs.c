@@ -7,24 +7,315 @@
  *     c + q1 + q2 x + q3 y,    t + (w1 - w3 y, w2 + w3 x)
  *
  * with which they press as the whole would have pressed in the next step, with the same force and moments, and have its shear and
- * torsion. What presses is the law's word (word.c), with the motion that it is going to be told of and the cells of patches that are
+ * torsion. What presses is the law's word, with the motion that it is going to be told of and the cells of patches that are
  * partly open. A point keeps no more shear than it bears: what it loses, others get; and if it slipped it would open the joint.
  *
- * What is carried rises with these six numbers, so Newton's steps find them (roots.c).
+ * What is carried rises with these six numbers, so Newton's steps find them.
  * Springs are to hold no more energy than those of the whole: of one force and torsion a uniform traction with a twist has the least,
  * so the parts then keep less of t. Where points between those of the whole bear so little that others have to hold more, the least there
  * is serves: what stands goes on standing. Where there are no such numbers, as where all slips, t stays what it is, and three are found. */
 #include "force/heirs.h"
 
 #include "base/columns.h"
+#include "base/inside.h"
+#include "contact/detection.h"
 #include "contact/places.h"
-#include "contact/shear.h"
-#include "force/roots.h"
-#include "force/word.h"
+#include "contact/transfer.h"
+#include "force/partly_open.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* ---------------------------------------------------------------- what a law says next ----
+ *
+ * What the law of a patch says that it carries in the step to come.
+ *
+ * It is asked as in the step, its cells found where some of the patch is apart, but with copies of the points: what it changes is
+ * forgotten. Bonds that break in the step break at their points only. */
+
+/* The contact alone in its place of its SIMD group. */
+static tl_simd_group alone(const tl_contacts *contacts, uint32_t c, size_t l)
+{
+    tl_simd_group group = {.start = contacts->point_start[c] - (uint32_t)l,
+                           .slots = contacts->point_count[c]};
+    for (size_t k = 0; k < TL_LANES; k++)
+        group.contact[k] = k == l ? c : TL_NO_ROW;
+    return group;
+}
+
+/* Takes points from the first lanes to those of their place in a SIMD group; what is beside them carries nothing. */
+static void spread(const tl_point_lanes *t, size_t count, size_t l)
+{
+    double *const column[] = {t->normal[0], t->normal[1], t->normal[2], t->closure,  t->arm[0],
+                              t->arm[1],    t->arm[2],    t->du_n,      t->du_s[0],  t->du_s[1],
+                              t->du_s[2],   t->before[1], t->before[2], t->before[3]};
+    for (size_t j = 0; j < sizeof column / sizeof *column; j++)
+        for (size_t k = count; k-- > 0;) { /* none goes to a lane before its own */
+            double value = column[j][k];
+            for (size_t i = 0; i < TL_LANES; i++)
+                column[j][k * TL_LANES + i] = j < 3 || i == l ? value : 0;
+        }
+}
+
+/* Copies of what the law would change. */
+static void copy_points(const tl_points_table *p, size_t first, size_t rows,
+                        const tl_point_lanes *t)
+{
+    memset(t->stored, 0, rows * sizeof *t->stored);
+    memset(t->dissipated, 0, rows * sizeof *t->dissipated);
+    memcpy(t->before[0], p->f_n + first, rows * sizeof *t->before[0]);
+    for (uint32_t s = 0; s < TL_STATE_COLUMNS; s++)
+        if (s < p->state_columns)
+            memcpy(t->before[4 + s], p->state[s] + first, rows * sizeof *t->before[4 + s]);
+        else
+            memset(t->before[4 + s], 0, rows * sizeof *t->before[4 + s]);
+    memcpy(t->flags_before, p->flags + first, rows * sizeof *t->flags_before);
+}
+
+static bool ask_word(const tl_model *m, const tl_law *law, size_t first, size_t rows, bool partly,
+                     const tl_point_lanes *t)
+{
+    const tl_points_table *p = &m->detect->points;
+    tl_law_batch batch = {.size = sizeof batch,
+                          .count = (uint32_t)rows,
+                          .dt = m->dt,
+                          .area = p->area + first,
+                          .closure = t->closure,
+                          .f_n0 = p->f_n0 ? p->f_n0 + first : t->zero,
+                          .normal = {t->normal[0], t->normal[1], t->normal[2]},
+                          .du_n = t->du_n,
+                          .du_s = {t->du_s[0], t->du_s[1], t->du_s[2]},
+                          .f_n = t->before[0],
+                          .f_s = {t->before[1], t->before[2], t->before[3]},
+                          .state = &t->before[4],
+                          .flags = t->flags_before,
+                          .stored = t->stored,
+                          .dissipated = t->dissipated,
+                          .closure_edge = law->pulls != TL_PULL_NONE ? t->edge : t->closure,
+                          .closure_apart = partly ? t->apart : t->zero};
+    tl_report report = {.size = sizeof report};
+    const tl_law_ops *ops = law->kind->ops;
+    tl_enter(law->kind, "update");
+    tl_status status = ops->update(law->self, &batch, &report);
+    tl_leave();
+    return status == TL_OK;
+}
+
+/* Exchanges the normal forces of the points for those in the lanes. */
+static void exchange(tl_detect *d, uint32_t c, size_t l, const tl_point_lanes *t)
+{
+    for (size_t k = 0; k < d->contacts.point_count[c]; k++) {
+        double *of = &d->points.f_n[tl_point_row(&d->contacts, c, k)], was = *of;
+        *of = t->before[0][k * TL_LANES + l];
+        t->before[0][k * TL_LANES + l] = was;
+    }
+}
+
+/* Adds what cells have beside their points, by whose forces they go. */
+static void add_cells(tl_model *m, const tl_simd_group *group, size_t l, const tl_point_lanes *t,
+                      tl_word *to)
+{
+    const tl_vec3 turn[TL_LANES] = {{0, 0, 0}}; /* that is for heat alone */
+    const tl_law *law = &m->joint_laws[m->detect->contacts.law[group->contact[l]]];
+    tl_part_sums all[TL_LANES], *more = &all[l];
+    exchange(m->detect, group->contact[l], l, t);
+    tl_simd_group_part_sum(m, law, group, t, 0, (tl_part_lanes){1u << l, 0}, turn, all);
+    exchange(m->detect, group->contact[l], l, t);
+    tl_vec3 force = tl_v3_scale(more->force, tl_columns_get(t->normal, l));
+    to->force = tl_v3_add(to->force, force);
+    to->moment = tl_v3_add(to->moment, more->moment);
+    to->moment = tl_v3_add(to->moment, tl_v3_cross(more->arm, force));
+}
+
+static bool patch_word(tl_model *m, uint32_t c, const tl_point_lanes *t, tl_word *out)
+{
+    const tl_detect *d = m->detect;
+    const tl_law *law = &m->joint_laws[d->contacts.law[c]];
+    size_t count = d->contacts.point_count[c], l = d->contacts.point_start[c] % TL_LANES;
+    const tl_simd_group group = alone(&d->contacts, c, l);
+    *out = (tl_word){.most = 0};
+    spread(t, count, l);
+    if (law->pulls != TL_PULL_NONE)
+        tl_simd_group_edges(m, &group, t, 0);
+    const bool partly = tl_simd_group_part(m, law, &group, t, 0).parts != 0;
+    copy_points(&d->points, group.start, count * TL_LANES, t);
+    if (!ask_word(m, law, group.start, count * TL_LANES, partly, t))
+        return false;
+    for (size_t k = 0; k < count; k++) {
+        size_t i = k * TL_LANES + l;
+        double normal = t->before[0][i];
+        tl_vec3 force = tl_v3_scale(normal, tl_columns_get(t->normal, i));
+        out->force = tl_v3_add(out->force, force);
+        out->moment = tl_v3_add(out->moment, tl_v3_cross(tl_columns_get(t->arm, i), force));
+        out->most += fabs(normal);
+    }
+    if (partly)
+        add_cells(m, &group, l, t, out);
+    for (size_t k = 0; k < count; k++)
+        tl_columns_put(&t->before[1], k, tl_columns_get(&t->before[1], k * TL_LANES + l));
+    return isfinite(out->most) && tl_v3_finite(out->force) && tl_v3_finite(out->moment);
+}
+
+/* ---------------------------------------------------------------- roots -------------------
+ *
+ * Numbers at which nothing is missing.
+ *
+ * Newton's steps, with slopes that are mended by what steps bring (Broyden 1965), or found by differences where that is little. Each step is
+ * halved until less is missed. */
+
+/* Steps that are made at the most, and halvings of each. */
+#define STEPS 60
+#define HALVINGS 10
+/* Step of differences, over the unit. */
+#define SMALL 1e-6
+/* Share of what is missed that is left after a good step: after another slopes are found anew. */
+#define GOOD 0.3
+/* What is added to the slopes: the numbers may not tell all. */
+#define FAINT 1e-9
+
+typedef struct numbers {
+    double v[TL_ROOTS];
+} numbers;
+
+/* How fast what is missed falls with each number: [of what][with which]. */
+typedef struct slopes {
+    double of[TL_ROOTS][TL_ROOTS];
+} slopes;
+
+/* The root of the sum of squares. */
+static double roots_size(const double x[], int count)
+{
+    double sum = 0;
+    for (int k = 0; k < count; k++)
+        sum += x[k] * x[k];
+    return sqrt(sum);
+}
+
+static double size_of(const numbers *x, int count)
+{
+    return roots_size(x->v, count);
+}
+
+/* Solves slopes x = right, `count` equations, by elimination, the largest of each column first. false: they cannot be solved. */
+static bool solve(slopes by, numbers right, int count, numbers *x)
+{
+    *x = (numbers){{0}};
+    for (int j = 0; j < count; j++) {
+        int best = j;
+        for (int i = j + 1; i < count; i++)
+            best = fabs(by.of[i][j]) > fabs(by.of[best][j]) ? i : best;
+        for (int k = j; k < count; k++) {
+            double was = by.of[j][k];
+            by.of[j][k] = by.of[best][k];
+            by.of[best][k] = was;
+        }
+        double was = right.v[j];
+        right.v[j] = right.v[best];
+        right.v[best] = was;
+        for (int i = j + 1; i < count; i++) {
+            double share = by.of[i][j] / by.of[j][j];
+            for (int k = j; k < count; k++)
+                by.of[i][k] -= share * by.of[j][k];
+            right.v[i] -= share * right.v[j];
+        }
+    }
+    for (int j = count - 1; j >= 0; j--) {
+        double sum = right.v[j];
+        for (int k = j + 1; k < count; k++)
+            sum -= by.of[j][k] * x->v[k];
+        x->v[j] = sum / by.of[j][j];
+    }
+    return isfinite(size_of(x, count));
+}
+
+static slopes plain_slopes(const tl_roots *of)
+{
+    slopes out = {{{0}}};
+    for (int k = 0; k < TL_ROOTS; k++)
+        out.of[k][k] = 1 / of->unit;
+    return out;
+}
+
+/* Slopes at x, where `missed` is, by differences. false: it is not known. */
+static bool find_slopes(const tl_roots *of, const numbers *x, const numbers *missed, slopes *out)
+{
+    double by = SMALL * of->unit;
+    for (int j = 0; j < of->count; j++) {
+        numbers there = *x, then;
+        there.v[j] += by;
+        if (!of->miss(of->user, there.v, then.v))
+            return false;
+        for (int i = 0; i < of->count; i++)
+            out->of[i][j] = (missed->v[i] - then.v[i]) / by + (i == j ? FAINT / of->unit : 0);
+    }
+    return true;
+}
+
+/* Goes the step or a share of it, so that less is missed; halves it so often at the most. Returns the share, 0: none. */
+static double go(const tl_roots *of, const numbers *step, int halvings, numbers *x, numbers *missed)
+{
+    double by = 1;
+    for (int n = 0; n <= halvings; n++, by *= 0.5) {
+        numbers there = *x, then;
+        for (int k = 0; k < of->count; k++)
+            there.v[k] += by * step->v[k];
+        if (!of->miss(of->user, there.v, then.v))
+            return 0;
+        if (size_of(&then, of->count) < size_of(missed, of->count)) {
+            *x = there;
+            *missed = then;
+            return by;
+        }
+    }
+    return 0;
+}
+
+/* Broyden's rule: brings slopes in line with what a share of their step has brought. */
+static void mend_slopes(slopes *by, int count, const numbers *step, double share,
+                        const numbers *before, const numbers *after)
+{
+    double square = 0;
+    for (int k = 0; k < count; k++)
+        square += step->v[k] * step->v[k];
+    for (int i = 0; i < count; i++)
+        for (int j = 0; j < count && square > 0; j++) {
+            double off = (1 - share) * before->v[i] - after->v[i];
+            by->of[i][j] += off / share * step->v[j] / square;
+        }
+}
+
+/* Goes from x to where the least is missed that is found, and tells how much that is. false: it is not known somewhere. */
+static bool roots_find(const tl_roots *of, double x[TL_ROOTS], double *left)
+{
+    const int count = of->count;
+    numbers here, missed, step;
+    slopes by = plain_slopes(of);
+    bool fresh = false;
+    for (int k = 0; k < TL_ROOTS; k++)
+        here.v[k] = x[k];
+    if (!of->miss(of->user, here.v, missed.v))
+        return false;
+    for (int k = 0; k < STEPS && size_of(&missed, count) > TL_ROOTS_EXACT; k++) {
+        numbers before = missed;
+        double share = 0;
+        if (solve(by, missed, count, &step))
+            share = go(of, &step, fresh ? HALVINGS : 0, &here, &missed);
+        if (share > 0)
+            mend_slopes(&by, count, &step, share, &before, &missed);
+        if (fresh && size_of(&missed, count) >= of->hopeless * size_of(&before, count))
+            break;
+        fresh = size_of(&missed, count) > GOOD * size_of(&before, count);
+        if (fresh && !find_slopes(of, &here, &missed, &by))
+            break;
+    }
+    for (int k = 0; k < TL_ROOTS; k++)
+        x[k] = here.v[k];
+    *left = size_of(&missed, count);
+    return true;
+}
+
+/* ---------------------------------------------------------------- parts ------------------- */
 
 /* Over the forces: error with which the numbers are found. That which a good step leaves no hope with. */
 #define FOUND 1e-8
@@ -148,7 +439,7 @@ void tl_estate_weigh(tl_model *m, uint32_t c, tl_estate *estate, const tl_testat
                    tl_v3_sub(carried_by(m, b->body, place), carried_by(m, a->body, place)));
     }
     tl_word word;
-    if (!tl_patch_word(m, c, lanes, &word))
+    if (!patch_word(m, c, lanes, &word))
         return;
     add_force(p, word.force, word.moment, a->place, 1, p->sum);
     for (size_t k = 0; k < estate->count; k++) {
@@ -212,7 +503,7 @@ static bool ask(const heirs *of, uint32_t c, bool moves, const given *points, tl
         tl_columns_put(&lanes->before[1], k, points[k].shear);
         put_motion(lanes, k, moves ? du : tl_v3(0, 0, 0));
     }
-    return tl_patch_word(of->m, c, lanes, word);
+    return patch_word(of->m, c, lanes, word);
 }
 
 /* Gives a point only so much shear as it bears: where its answer, as a line in what it has, is just that. true: it had
@@ -309,7 +600,7 @@ static bool search(heirs *of, bool *found)
         .miss = miss,
         .user = of};
     double left;
-    if (!tl_roots_find(&roots, of->from.v, &left))
+    if (!roots_find(&roots, of->from.v, &left))
         return false;
     six lacks;
     *found = left <= FOUND;
@@ -397,7 +688,7 @@ static void carry(heirs *of)
     six lacks;
     double energy;
     bool done;
-    if (!weigh(of, none.v, &lacks) || !(tl_roots_size(lacks.v, TL_CARRIED) > TL_ROOTS_EXACT) ||
+    if (!weigh(of, none.v, &lacks) || !(roots_size(lacks.v, TL_CARRIED) > TL_ROOTS_EXACT) ||
         !(fabs(sum_area(of, &energy) - whole->area) < SAME_AREA * whole->area))
         return;
     if (!carry_six(of, none, MOST_ENERGY, &done) || done || !carry_press(of, none))

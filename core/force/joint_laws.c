@@ -11,9 +11,10 @@
 #include "contact/across_gap.h"
 #include "contact/contacts.h"
 #include "contact/places.h"
-#include "contact/points.h"
 #include "contact/store.h"
-#include "force/pressed.h"
+#include "force/field_press.h"
+#include "model/joints.h"
+#include "plugin/loader.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-/* joint_laws.h - a law and its properties, for a joint (joint_laws.c). */
+/* joint_laws.h - a law and its properties, for a joint. */
 #ifndef TL_FORCE_JOINT_LAWS_H
 #define TL_FORCE_JOINT_LAWS_H
 

@@ -6,16 +6,16 @@
  *     f_n(c) = s + K (c_start - c)
  *
  * by secants in a bracket, on copies of forces and states. The normal force must not fall while the walls close. Work is summed by the trapezoidal rule. */
-#include <talus/law_test.h>
-
-#include "contact/points.h"
-#include "force/joint_laws.h"
-#include "model/model.h"
-
 #include "base/inside.h"
+#include "contact/contacts.h"
+#include "force/joint_laws.h"
+#include "model/joints.h"
+#include "model/model.h"
+#include "plugin/loader.h"
 
 #include <math.h>
 #include <stdio.h>
+#include <talus/law_test.h>
 
 /* The first point of a batch of padding. */
 typedef struct sample {

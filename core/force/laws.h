@@ -1,8 +1,8 @@
-/* laws.h - contact forces: the laws of the contacts of a model, and the sum per contact (laws.c). */
+/* laws.h - contact forces: the laws of the contacts of a model, and the sum per contact. */
 #ifndef TL_FORCE_LAWS_H
 #define TL_FORCE_LAWS_H
 
-#include "base/failure.h"
+#include "base/parallel.h"
 #include "contact/layout.h"
 #include "model/model.h"
 
@@ -23,5 +23,9 @@ typedef struct tl_law_phase {
 tl_status tl_laws_apply(tl_model *m, const tl_law_phase *phase);
 /* Every contact has a law, or a sentence that names one that has not. */
 tl_status tl_laws_check(tl_model *m);
+
+/* Component of a shear force along the normal, relative to the whole force of the point, and of all points of a contact
+ * before they are looked at one by one. The host's own reaches 4e-7 where normals change from point to point. */
+#define TL_OUT_OF_PLANE 1e-4
 
 #endif

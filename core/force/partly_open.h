@@ -1,4 +1,4 @@
-/* partly_open.h - patches of which a part is closed and a part apart: their pressure integrated exactly (partly_open.c). */
+/* partly_open.h - patches of which a part is closed and a part apart: their pressure integrated exactly. */
 #ifndef TL_FORCE_PARTLY_OPEN_H
 #define TL_FORCE_PARTLY_OPEN_H
 

@@ -8,9 +8,9 @@
 
 #include "base/columns.h"
 #include "contact/across_gap.h"
+#include "contact/contacts.h"
 #include "contact/detection.h"
 #include "contact/places.h"
-#include "contact/points.h"
 
 #include <math.h>
 

@@ -1,4 +1,4 @@
-/* stress.h - initial stress: tractions on the face patches that exist now (stress.c). */
+/* stress.h - initial stress: tractions on the face patches that exist now. */
 #ifndef TL_FORCE_STRESS_H
 #define TL_FORCE_STRESS_H
 

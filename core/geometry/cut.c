@@ -9,7 +9,10 @@
  *
  * A new vertex is computed from its edge's end points in lexicographic order, so blocks on either
  * side of a face, which list the edge in opposite directions, get the same bits. */
-#include "geometry/assemble.h"
+
+#include "geometry/cut.h"
+
+#include "geometry/make.h"
 
 #include <stdlib.h>
 #include <string.h>

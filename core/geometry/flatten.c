@@ -9,7 +9,11 @@
  * Faces grow over the edges that turn least, so neither the order of facets nor place and attitude of a block decide. Corners
  * are not moved: blocks that share corners still do, and lie flush, for a face gets the plane fitted to its corners. A
  * vertex left with two faces is dropped. */
-#include "geometry/assemble.h"
+
+#include "geometry/flatten.h"
+
+#include "geometry/make.h"
+#include "geometry/measure.h"
 
 #include <stdlib.h>
 #include <string.h>

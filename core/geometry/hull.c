@@ -10,7 +10,11 @@
  * with a wider tolerance up to TL_POLY_THIN. Faces that miss a plane by more, but are one to tl_poly_flatten, it
  * joins. Every loop starts at its lowest vertex and the faces are in the order of their loops, so that the result
  * depends on the points alone. */
-#include "geometry/assemble.h"
+#include "geometry/hull.h"
+
+#include "geometry/flatten.h"
+#include "geometry/make.h"
+#include "geometry/measure.h"
 #include "geometry/triangulate.h"
 
 #include <stdlib.h>

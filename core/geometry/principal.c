@@ -3,6 +3,8 @@
  *
  * Off-diagonal terms at the level of rounding are zero, so that the axes of a cube stay its own and
  * a diagonal tensor is only put in order: its moments are then the very numbers given. */
+#include "geometry/principal.h"
+
 #include "geometry/polyhedron.h"
 
 #include <float.h>

@@ -5,11 +5,15 @@
  * An edge of a covered face is hidden unless the surface turns outward there, from the edge's other face
  * to a face of another part. Covered faces and hidden edges are no directions in which the body could
  * part from another: a block that slides over a seam must not feel it. */
-#include "geometry/polyhedron.h"
+#include "geometry/seam.h"
 
 #include "base/error.h"
-#include "geometry/assemble.h"
+#include "geometry/make.h"
+#include "geometry/measure.h"
+#include "geometry/point2.h"
+#include "geometry/polyhedron.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <talus/vmath.h>
@@ -25,72 +29,39 @@
 /* Share of a face's area that may stay uncovered. */
 #define UNCOVERED 1e-5
 
-typedef struct flat {
-    double x, y;
-} flat;
-
 typedef struct frame {
     tl_vec3 o, t1, t2;
 } frame;
 
-static flat flatten(const frame *f, tl_vec3 x)
+static tl_point2 flatten(const frame *f, tl_vec3 x)
 {
     tl_vec3 d = tl_v3_sub(x, f->o);
-    return (flat){tl_v3_dot(d, f->t1), tl_v3_dot(d, f->t2)};
+    return (tl_point2){tl_v3_dot(d, f->t1), tl_v3_dot(d, f->t2)};
 }
 
-static double turn(flat o, flat a, flat b)
-{
-    return (a.x - o.x) * (b.y - o.y) - (a.y - o.y) * (b.x - o.x);
-}
-
-/* Keeps what lies left of the line from o to q; returns the number of corners. */
-static size_t keep_left(const flat *in, size_t count, flat o, flat q, flat *out)
-{
-    size_t kept = 0;
-    for (size_t i = 0; i < count; i++) {
-        flat here = in[i], after = in[(i + 1) % count];
-        double h = turn(o, q, here), a = turn(o, q, after);
-        if (h >= 0)
-            out[kept++] = here;
-        if ((h > 0 && a < 0) || (h < 0 && a > 0)) {
-            double t = h / (h - a);
-            out[kept++] = (flat){here.x + t * (after.x - here.x), here.y + t * (after.y - here.y)};
-        }
-    }
-    return kept;
-}
-
-static double flat_area(const flat *c, size_t count)
+static double flat_area(const tl_point2 *c, size_t count)
 {
     double area = 0;
     for (size_t i = 1; i + 1 < count; i++)
-        area += 0.5 * turn(c[0], c[i], c[i + 1]);
+        area += 0.5 * tl_cross2(c[0], c[i], c[i + 1]);
     return area;
 }
 
-/* Area common to face fa of a and face fb of b, which face each other in one plane. `scratch` holds twice
+/* Area common to face fa of a and face fb of b, which face each other in one plane. `scratch` holds three times
  * as many corners as both faces have. */
 static double common_area(const tl_poly *a, uint32_t fa, const tl_poly *b, uint32_t fb,
-                          flat *scratch)
+                          tl_point2 *scratch)
 {
     uint32_t na = tl_poly_face_size(a, fa), nb = tl_poly_face_size(b, fb);
     tl_vec3 n = a->plane[fa].normal;
     frame f = {.o = a->vertex[a->loop[a->start[fa]]], .t1 = tl_v3_perpendicular(n)};
     f.t2 = tl_v3_cross(n, f.t1);
-    flat *now = scratch, *next = scratch + na + nb;
-    size_t count = na;
+    tl_point2 *now = scratch, *next = scratch + na + nb, *by = next + na + nb;
     for (uint32_t i = 0; i < na; i++)
         now[i] = flatten(&f, a->vertex[a->loop[a->start[fa] + i]]);
-    for (uint32_t i = 0; i < nb && count; i++) {
-        /* b's loop runs the other way round as seen from a */
-        flat o = flatten(&f, b->vertex[b->loop[b->start[fb] + (i + 1) % nb]]);
-        flat q = flatten(&f, b->vertex[b->loop[b->start[fb] + i]]);
-        count = keep_left(now, count, o, q, next);
-        flat *swap = now;
-        now = next;
-        next = swap;
-    }
+    for (uint32_t i = 0; i < nb; i++)
+        by[i] = flatten(&f, b->vertex[b->loop[b->start[fb] + i]]);
+    size_t count = tl_polygon_common(&now, &next, na, by, nb);
     return flat_area(now, count);
 }
 
@@ -106,7 +77,7 @@ static bool face_each_other(const tl_poly *a, uint32_t fa, const tl_poly *b, uin
 static bool face_area(const tl_poly *a, uint32_t fa, const tl_poly *b, uint32_t fb, double *area)
 {
     size_t corners = tl_poly_face_size(a, fa) + tl_poly_face_size(b, fb);
-    flat *scratch = malloc(4 * corners * sizeof *scratch);
+    tl_point2 *scratch = malloc(3 * corners * sizeof *scratch);
     if (!scratch)
         return false;
     *area = common_area(a, fa, b, fb, scratch);
@@ -382,4 +353,130 @@ tl_status tl_poly_connected(tl_poly *const *parts, size_t count, tl_sever_fn sev
         label[list[i].index] = root(&list[i])->index;
     free(list);
     return TL_OK;
+}
+
+/* ---------------------------------------------------------------- planes of other parts ---
+ *
+ * Planes of a body's surface that count for a part though they belong to faces of other parts.
+ *
+ * The depth of a point in a body is its distance from the body's surface. The nearest outer face may belong to another part than
+ * the point does: where a seam meets an edge of the body, or where it runs close below a face. So a part is given the planes of
+ * the other parts' outer faces behind which it lies as a whole. They bound nothing of it. A convex body lies behind all planes
+ * of its outer faces, so the depth in its parts is that in the body, however it is cut.
+ *
+ * Left out is a plane from which every corner of the part is at least as far as from one other: depths are linear, so no point
+ * of the part is nearer to it. */
+
+/* Planes, of outer faces or of those that count for a part. */
+typedef struct planes {
+    tl_plane *plane;
+    size_t count, capacity;
+} planes;
+
+static double depth(tl_plane plane, tl_vec3 x)
+{
+    return plane.offset - tl_v3_dot(plane.normal, x);
+}
+
+/* Depth of the vertex that lies the least deep. */
+static double least_depth(const tl_poly *p, tl_plane plane)
+{
+    double least = INFINITY;
+    for (uint32_t v = 0; v < p->vertex_count; v++)
+        least = fmin(least, depth(plane, p->vertex[v]));
+    return least;
+}
+
+/* Whether no vertex of a part is nearer to plane f than to plane g. */
+static bool is_farther(const tl_poly *p, tl_plane f, tl_plane g)
+{
+    double slack = FIT * p->size;
+    for (uint32_t v = 0; v < p->vertex_count; v++)
+        if (depth(f, p->vertex[v]) < depth(g, p->vertex[v]) - slack)
+            return false;
+    return true;
+}
+
+/* Whether a plane is the nearest of all to some point of a part, as far as single ones tell. */
+static bool counts_for(const tl_poly *p, tl_plane plane, const planes *others)
+{
+    for (uint32_t f = 0; f < p->face_count; f++)
+        if (!p->covered[f] && is_farther(p, plane, p->plane[f]))
+            return false;
+    for (size_t k = 0; k < others->count; k++)
+        if (is_farther(p, plane, others->plane[k]))
+            return false;
+    return true;
+}
+
+static bool append(planes *c, tl_plane plane)
+{
+    if (c->count == c->capacity) {
+        size_t capacity = 2 * c->capacity + 8;
+        tl_plane *all = realloc(c->plane, capacity * sizeof *all);
+        if (!all)
+            return false;
+        c->plane = all;
+        c->capacity = capacity;
+    }
+    c->plane[c->count++] = plane;
+    return true;
+}
+
+/* Adds what counts for a part of the planes of a body's outer faces. false: out of memory. */
+static bool choose_for(const tl_poly *p, const planes *outer, planes *chosen)
+{
+    chosen->count = 0;
+    for (size_t k = 0; k < outer->count; k++) {
+        tl_plane plane = outer->plane[k];
+        if (depth(plane, p->vertex[0]) < -FIT * p->size)
+            continue; /* most cut a part of a large body, or pass it by */
+        double least = least_depth(p, plane);
+        if (least < -FIT * p->size || !counts_for(p, plane, chosen))
+            continue;
+        plane.offset -= fmin(least, 0); /* it cuts nothing off */
+        if (!append(chosen, plane))
+            return false;
+    }
+    return true;
+}
+
+/* Leaves out the planes that a later one has made idle. */
+static void tidy(const tl_poly *p, planes *c)
+{
+    size_t kept = 0;
+    for (size_t k = 0; k < c->count; k++) {
+        bool idle = false;
+        for (size_t m = k + 1; m < c->count && !idle; m++)
+            idle = is_farther(p, c->plane[k], c->plane[m]);
+        if (!idle)
+            c->plane[kept++] = c->plane[k];
+    }
+    c->count = kept;
+}
+
+static bool gather_outer(tl_poly *const *parts, size_t count, planes *outer)
+{
+    for (size_t k = 0; k < count; k++)
+        for (uint32_t f = 0; f < parts[k]->face_count; f++)
+            if (!parts[k]->covered[f] && !append(outer, parts[k]->plane[f]))
+                return false;
+    return true;
+}
+
+/* A part's own planes are no farther than they are themselves, so they are not chosen. */
+tl_status tl_poly_share_planes(tl_poly *const *parts, size_t count, tl_error *error)
+{
+    planes outer = {0}, chosen = {0};
+    bool done = count < 2 || gather_outer(parts, count, &outer);
+    for (size_t i = 0; i < count && done; i++) {
+        done = choose_for(parts[i], &outer, &chosen);
+        tidy(parts[i], &chosen);
+        size_t most = TL_POLY_MAX_FACES - parts[i]->face_count; /* numbers of planes have 16 bits */
+        done = done && tl_poly_add_planes(parts[i], chosen.plane,
+                                          (uint32_t)(chosen.count < most ? chosen.count : most));
+    }
+    free(outer.plane);
+    free(chosen.plane);
+    return done ? TL_OK : tl_fail_memory(error);
 }

@@ -1,7 +1,10 @@
 /* block_model.c - writes the blocks of a model into a JSON file; docs/block_model.md describes it. Numbers
  * are written with the digits that give back the same double. */
+#include "base/output_file.h"
 #include "base/signals.h"
 #include "io/json.h"
+#include "io/pieces.h"
+#include "model/rows.h"
 
 #include <string.h>
 

@@ -1,4 +1,4 @@
-/* extra_fields.h - whether numbers that a program adds to a file fit the model (extra_fields.c). */
+/* extra_fields.h - whether numbers that a program adds to a file fit the model. */
 #ifndef TL_IO_EXTRA_FIELDS_H
 #define TL_IO_EXTRA_FIELDS_H
 

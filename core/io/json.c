@@ -2,6 +2,7 @@
 #include "io/json.h"
 
 #include "base/number.h"
+#include "io/pieces.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -1,38 +1,29 @@
-/* page.h - the pages that a model has written (page.c). */
+/* page.h - the pages that a model has written. */
 #ifndef TL_IO_PAGE_H
 #define TL_IO_PAGE_H
 
-#include "io/scene.h"
-
-#include "base/hash.h"
+#include "io/pieces.h"
+#include "model/model.h"
+#include "state/outputs.h"
 
 /* Longest page, bytes: what a browser opens without trouble. */
 #define TL_PAGE_MOST 200000000
 
-/* Most bytes at the end of a page that are compared. */
-#define TL_PAGE_CHECKED 4096
-
-/* How a page was left: it goes on only where it still is so. */
-typedef struct tl_page_end {
-    uint64_t frames;
-    uint64_t at;      /* bytes in front of what ends the file */
-    uint64_t checked; /* so many of these, the last ones, ... */
-    tl_hash digest;   /* ... have this digest */
-} tl_page_end;
-
-/* A model keeps a list of these. */
-typedef struct tl_page {
-    struct tl_page *next;
-    char *prefix;
-    tl_page_end end;
-    bool restored; /* by tl_page_restore, and no frame has been added since */
-    tl_scene scene;
-} tl_page;
-
 /* As tl_write_html, for a longest page of `most` bytes. */
 tl_status tl_page_write(tl_model *m, const char *prefix, const tl_html *options, uint64_t most);
-/* Adds to a model a page that its file was left with; what comes next goes on with it, from there on. False when out of
- * memory. */
-bool tl_page_restore(tl_model *m, const char *prefix, tl_page_end end);
+
+/* What stands of a page when a frame is to be added. */
+typedef enum tl_page_stand {
+    TL_PAGE_GONE,   /* the file is not the one that was left */
+    TL_PAGE_WHOLE,  /* it is as it was left */
+    TL_PAGE_LONGER, /* it is, but more has been added since */
+} tl_page_stand;
+
+/* Adds a frame, in place where the page stands whole; where it is longer, to a copy of what was left. */
+/* The beginning of a page, up to its first frame. `live`: of one that a running program serves, which it may ask. */
+void tl_page_beginning(tl_piece *to, const char *title, bool live);
+
+/* Adds the text of `bytes` bytes to `out`; it does not depend on the number of threads. */
+tl_status tl_pack(tl_model *m, const unsigned char *data, size_t bytes, tl_piece *out);
 
 #endif

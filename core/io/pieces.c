@@ -5,6 +5,8 @@
 #include "io/pieces.h"
 
 #include "base/error.h"
+#include "base/output_file.h"
+#include "base/parallel.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -78,7 +80,7 @@ tl_status tl_pieces_write(tl_pieces *pieces, size_t rows, size_t bytes, tl_piece
         tl_piece *filled = b.empty;
         b.empty = b.full;
         b.full = filled;
-        if (tl_output_go_on(pieces->model) != TL_OK)
+        if (tl_model_go_on(pieces->model) != TL_OK)
             return TL_E_CANCELLED;
     }
     if (failed)

@@ -4,7 +4,8 @@
 #ifndef TL_IO_PIECES_H
 #define TL_IO_PIECES_H
 
-#include "io/output_file.h"
+#include "base/output_file.h"
+#include "model/model.h"
 
 /* Pieces that are prepared while as many are written. */
 #define TL_PIECES 8

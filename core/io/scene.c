@@ -4,12 +4,21 @@
  * and gone. */
 #include "io/scene.h"
 
+#include "base/params.h"
 #include "io/extra_fields.h"
-#include "io/scene_parts.h"
+#include "io/json.h"
+#include "io/pieces.h"
+#include "io/scene_blocks.h"
+#include "io/scene_contacts.h"
+#include "io/scene_numbers.h"
 #include "io/scene_put.h"
 #include "io/verdict.h"
+#include "model/joints.h"
+#include "model/rows.h"
+#include "query/touching.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 /* ---------------------------------------------------------------- what is new ------------ */
 
@@ -67,6 +76,290 @@ static bool compare(tl_scene *scene, const tl_model *m, news *found)
     return true;
 }
 
+/* ---------------------------------------------------------------- HEAD --------------------
+ *
+ * HEAD: what does not change with the blocks, as JSON. */
+
+static void put_vector(tl_piece *to, tl_vec3 v)
+{
+    const double numbers[3] = {v.x, v.y, v.z};
+    for (int i = 0; i < 3; i++) {
+        tl_json_put(to, i ? ", " : "[");
+        tl_json_number(to, numbers[i]);
+    }
+    tl_json_put(to, "]");
+}
+
+/* "name": NAME, "unit": UNIT */
+static void put_named(tl_piece *to, const char *name, const char *unit)
+{
+    tl_json_put(to, "\"name\": ");
+    tl_json_text(to, name);
+    tl_json_put(to, ", \"unit\": ");
+    tl_json_text(to, unit ? unit : "");
+}
+
+static void put_fields(tl_piece *to, const tl_html *options)
+{
+    size_t blocks = options->block_field_count, count = blocks + options->contact_field_count;
+    tl_json_put(to, ", \"fields\": [");
+    for (size_t i = 0; i < count; i++) {
+        const tl_extra_field *field =
+            i < blocks ? &options->block_fields[i] : &options->contact_fields[i - blocks];
+        tl_json_put(to, i ? ", {" : "{");
+        put_named(to, field->name, field->unit);
+        tl_json_put(to, i < blocks ? ", \"of\": \"blocks\"}" : ", \"of\": \"contacts\"}");
+    }
+    tl_json_put(to, "]");
+}
+
+/* A list that is begun, of named things with units. */
+typedef struct named_list {
+    tl_piece *to;
+    bool begun;
+} named_list;
+
+static void put_history(void *user, const char *name, const char *unit, double value)
+{
+    (void)value;
+    named_list *l = user;
+    tl_json_put(l->to, l->begun ? ", {" : "{");
+    put_named(l->to, name, unit);
+    tl_json_put(l->to, "}");
+    l->begun = true;
+}
+
+/* The friction angle of a law, degrees; NaN where it has none. */
+static double friction_of(const tl_law *law)
+{
+    for (uint32_t i = 0; law && i < law->kind->param_count; i++) {
+        tl_param p = tl_param_row(law->kind->params, i, law->kind->param_stride);
+        double value;
+        if (p.type != TL_PARAM_REAL || strcmp(p.name, "friction") != 0 ||
+            strcmp(p.unit, "deg") != 0)
+            continue;
+        memcpy(&value, (const char *)law->params + p.offset, sizeof value);
+        return value;
+    }
+    return NAN;
+}
+
+/* That of all planes of a joint; NaN where they differ. */
+static double friction_of_joint(const tl_model *m, uint32_t joint)
+{
+    double friction = friction_of(tl_law_of(m, (tl_tag){joint, 0}));
+    for (size_t i = 0; i < m->joint_law_count; i++) {
+        const tl_law *law = &m->joint_laws[i];
+        if (law->tag.joint == joint && law->tag.plane != 0 && !(friction_of(law) == friction))
+            return NAN;
+    }
+    return friction;
+}
+
+static void put_friction(tl_piece *to, const tl_model *m)
+{
+    tl_json_put(to, ", \"friction\": [null");
+    for (size_t i = 0; i < m->joint_count; i++) {
+        double friction = friction_of_joint(m, (uint32_t)i + 1);
+        tl_json_put(to, ", ");
+        if (isfinite(friction))
+            tl_json_number(to, friction);
+        else
+            tl_json_put(to, "null");
+    }
+    tl_json_put(to, "]");
+}
+
+/* The JSON of the head of the scene's next frame, into `text`. */
+static void scene_head(const tl_model *m, const tl_html *options, const tl_scene *scene,
+                       tl_piece *text)
+{
+    text->length = 0;
+    tl_json_put(text, "{\"format\": 1, \"program\": \"Talus " TALUS_VERSION "\", \"title\": ");
+    tl_json_text(text, options->title ? options->title : "");
+    tl_json_put(text, ", \"origin\": ");
+    put_vector(text, m->origin);
+    tl_json_put(text, ", \"gravity\": ");
+    put_vector(text, m->config.gravity);
+    tl_json_put(text, ", \"size\": ");
+    tl_json_number(text, scene->next.median);
+    if (options->safety_limit > 0) {
+        tl_json_put(text, ", \"safety_limit\": ");
+        tl_json_number(text, options->safety_limit);
+    }
+    tl_json_put(text, ", \"groups\": [");
+    for (size_t i = 0; i < m->group_count; i++) {
+        tl_json_put(text, i ? ", " : "");
+        tl_json_text(text, m->groups[i]);
+    }
+    tl_json_put(text, "], \"joints\": [\"\"");
+    for (size_t i = 0; i < m->joint_count; i++) {
+        tl_json_put(text, ", ");
+        tl_json_text(text, m->joints[i].name);
+    }
+    tl_json_put(text, "]");
+    put_friction(text, m);
+    put_fields(text, options);
+    tl_json_put(text, ", \"histories\": [");
+    tl_scene_histories(m, put_history, &(named_list){text, false});
+    tl_json_put(text, "]");
+    if (scene->live)
+        tl_json_put(text, ", \"live\": true");
+    if (scene->live == TL_SCENE_COMMANDS)
+        tl_json_put(text, ", \"commands\": true");
+    tl_json_put(text, "}");
+}
+
+/* ---------------------------------------------------------------- FIND --------------------
+ *
+ * FIND: how the model stands, as JSON. */
+
+static void put_number(tl_piece *to, const char *name, double value)
+{
+    tl_json_put(to, ", \"");
+    tl_json_put(to, name);
+    tl_json_put(to, "\": ");
+    tl_json_number(to, value);
+}
+
+/* The JSON of FIND, the verdict, with the state hash unless that is NULL, into `text`. */
+static void scene_finding(const tl_verdict *v, const char *hash, tl_piece *text)
+{
+    char sentence[512];
+    tl_verdict_text(v, sentence, sizeof sentence);
+    tl_json_put(text, "{\"standing\": ");
+    tl_json_text(text, tl_standing_name(v->standing));
+    tl_json_put(text, ", \"text\": ");
+    tl_json_text(text, sentence);
+    tl_json_put(text, ", \"stage\": ");
+    tl_json_text(text, v->stage);
+    put_number(text, "closed", v->closed);
+    put_number(text, "moved", (double)v->moved);
+    put_number(text, "contacts", (double)v->contacts);
+    put_number(text, "slipping", (double)v->slipping);
+    if (hash) {
+        tl_json_put(text, ", \"hash\": ");
+        tl_json_text(text, hash);
+    }
+    tl_json_put(text, "}");
+}
+
+/* ---------------------------------------------------------------- REFU --------------------
+ *
+ * REFU: the cuts that were refused so far, those that the model's record lists. */
+
+/* Bytes of one: joint, plane, block, normal, point, thickness, limit. */
+#define BYTES 44
+
+/* REFU: the cuts that were refused. */
+static tl_status scene_refused(tl_model *m, tl_piece *out)
+{
+    const tl_cut_record *record = &m->record;
+    size_t n = record->listed;
+    unsigned char *to = tl_scene_chunk(out, "REFU", 8 + n * BYTES, &m->error);
+    if (!to)
+        return m->error.status;
+    to = tl_put_u32(to, (uint32_t)(record->refused < UINT32_MAX ? record->refused : UINT32_MAX));
+    to = tl_put_u32(to, (uint32_t)n);
+    for (size_t i = 0; i < n; i++)
+        to = tl_put_u32(to, record->list[i].joint.joint);
+    for (size_t i = 0; i < n; i++)
+        to = tl_put_u32(to, record->list[i].joint.plane);
+    for (size_t i = 0; i < n; i++)
+        to = tl_put_u32(to, record->list[i].block);
+    for (size_t i = 0; i < n; i++)
+        to = tl_put_vec3(to, record->list[i].normal);
+    for (size_t i = 0; i < n; i++)
+        to = tl_put_vec3(to, tl_v3_sub(record->list[i].point, m->origin));
+    for (size_t i = 0; i < n; i++)
+        to = tl_put_f32(to, record->list[i].thickness);
+    for (size_t i = 0; i < n; i++)
+        to = tl_put_f32(to, record->list[i].limit);
+    return TL_OK;
+}
+
+/* ---------------------------------------------------------------- TOUC --------------------
+ *
+ * TOUC: the faces with which bodies lie on others. */
+
+/* A body and a direction in which it cannot move: an outward normal. */
+typedef struct bound {
+    tl_id body;
+    tl_vec3 normal;
+} bound;
+
+typedef struct bounds {
+    bound *at;
+    size_t count, capacity;
+} bounds;
+
+/* Adds a normal that the body, whose first is at `first`, does not have. false: out of memory. */
+static bool add(bounds *list, size_t first, tl_id body, tl_vec3 normal)
+{
+    for (size_t i = first; i < list->count; i++)
+        if (tl_v3_norm(tl_v3_sub(list->at[i].normal, normal)) <= TL_TOUCH_ALONG)
+            return true;
+    if (!tl_grow(&list->at, &list->capacity, list->count + 1, sizeof *list->at))
+        return false;
+    list->at[list->count++] = (bound){body, normal};
+    return true;
+}
+
+/* Rollers bound a body on both sides; of one that is held throughout its faces alone are told. */
+static bool add_rollers(const tl_model *m, uint32_t body, bounds *list, size_t first)
+{
+    tl_vec3 held[3];
+    const size_t count = tl_held_axes(m, body, held);
+    const tl_id id = m->bodies.id[body];
+    bool enough = true;
+    for (size_t k = 0; k < count && count < 3; k++)
+        enough =
+            enough && add(list, first, id, held[k]) && add(list, first, id, tl_v3_neg(held[k]));
+    return enough;
+}
+
+static bool add_body(const tl_model *m, const tl_touches *touches, uint32_t body, bounds *list)
+{
+    const bool now = tl_touches_moved(m, touches, body);
+    const size_t first = list->count;
+    bool enough = true;
+    for (uint32_t k = 0; k < m->bodies.member_count[body]; k++) {
+        uint32_t row = m->members[m->bodies.member_start[body] + k];
+        for (size_t i = touches->start[row]; i < touches->start[row + 1] && enough; i++)
+            enough = add(list, first, m->bodies.id[body], tl_touch_normal(m, &touches->at[i], now));
+    }
+    return enough && add_rollers(m, body, list, first);
+}
+
+static tl_status put(tl_model *m, const bounds *list, tl_piece *out)
+{
+    unsigned char *to = tl_scene_chunk(out, "TOUC", 4 + 16 * list->count, &m->error);
+    if (!to)
+        return m->error.status;
+    to = tl_put_u32(to, (uint32_t)list->count);
+    for (size_t i = 0; i < list->count; i++)
+        to = tl_put_u32(to, list->at[i].body);
+    for (size_t i = 0; i < list->count; i++)
+        to = tl_put_vec3(to, list->at[i].normal);
+    return TL_OK;
+}
+
+/* TOUC: the faces with which bodies lie on others. */
+static tl_status scene_touches(tl_model *m, tl_piece *out)
+{
+    tl_touches touches;
+    bounds list = {0};
+    tl_status status = tl_touches_find(m, &touches);
+    for (uint32_t body = 0; body < m->bodies.table.rows && status == TL_OK; body++)
+        if (!add_body(m, &touches, body, &list))
+            status = tl_fail_memory(&m->error);
+    if (status == TL_OK)
+        status = put(m, &list, out);
+    tl_touches_free(&touches);
+    free(list.at);
+    return status;
+}
+
 /* ---------------------------------------------------------------- chunks ----------------- */
 
 tl_status tl_scene_bytes(tl_model *m, const char letters[5], const void *data, size_t bytes,
@@ -91,7 +384,7 @@ static tl_status put_head(tl_scene *scene, tl_model *m, const tl_html *options, 
 {
     const tl_piece *sent = &scene->sent.head;
     tl_piece *head = &scene->next.head;
-    tl_scene_head(m, options, scene, head);
+    scene_head(m, options, scene, head);
     if (head->failed) {
         head->failed = false; /* another frame may have the memory */
         return tl_fail_memory(&m->error);
@@ -119,7 +412,7 @@ static tl_status put_touches(tl_scene *scene, tl_model *m, tl_piece *out)
     tl_piece *next = &scene->next.touches;
     next->length = 0;
     next->failed = false; /* another frame may have the memory */
-    tl_status status = tl_scene_touches(m, next);
+    tl_status status = scene_touches(m, next);
     if (status != TL_OK || same_piece(next, &scene->sent.touches))
         return status;
     unsigned char *to = tl_piece_reserve(out, next->length);
@@ -141,7 +434,7 @@ static tl_status put_news(tl_scene *scene, tl_model *m, const tl_html *options, 
     if (status == TL_OK && found.gone_count)
         status = put_gone(m, &found, out);
     if (status == TL_OK && scene->sent.refused != m->record.refused)
-        status = tl_scene_refused(m, out);
+        status = scene_refused(m, out);
     scene->next.refused = m->record.refused;
     if (status == TL_OK)
         status = put_touches(scene, m, out);
@@ -169,7 +462,7 @@ static tl_status put_finding(const tl_scene *scene, tl_model *m, const tl_verdic
     tl_status status = scene->live ? TL_OK : tl_state_hash(m, hash);
     if (status != TL_OK)
         return status;
-    tl_scene_finding(verdict, scene->live ? NULL : hash, &text);
+    scene_finding(verdict, scene->live ? NULL : hash, &text);
     status = text.failed ? tl_fail_memory(&m->error)
                          : tl_scene_bytes(m, "FIND", text.data, text.length, out);
     free(text.data);

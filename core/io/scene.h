@@ -3,6 +3,7 @@
 #define TL_IO_SCENE_H
 
 #include "io/pieces.h"
+#include "model/model.h"
 
 /* What was sent of a block: it is sent again when this has changed. */
 typedef struct tl_scene_block {

@@ -2,8 +2,12 @@
  *
  * A block's frame is that of its body, moved to the block's own centroid, so the quaternion of its body turns it, and rows
  * need nothing of an earlier frame. */
-#include "io/scene_parts.h"
+#include "io/scene_blocks.h"
+
+#include "base/parallel.h"
+#include "io/pieces.h"
 #include "io/scene_put.h"
+#include "model/regroup.h"
 
 #include <stdlib.h>
 #include <talus/vmath.h>

@@ -1,14 +1,17 @@
 /* scene_contacts.c - CONT and the extra fields of contacts. */
-#include "io/extra_fields.h"
-#include "io/scene_parts.h"
-#include "io/scene_put.h"
-#include "io/verdict.h"
+#include "io/scene_contacts.h"
 
+#include "base/parallel.h"
 #include "contact/detection.h"
 #include "force/bear.h"
+#include "io/extra_fields.h"
+#include "io/pieces.h"
+#include "io/scene_numbers.h"
+#include "io/scene_put.h"
+#include "io/verdict.h"
 #include "query/contact_fields.h"
 #include "query/contact_polygons.h"
-#include "query/law_states.h"
+#include "query/point_fields.h"
 
 #include <stdlib.h>
 

@@ -1,6 +1,12 @@
 /* scene_numbers.c - FIEL, LINE and KEYS: extra fields, the numbers of the run, keyblocks. */
-#include "io/scene_parts.h"
+#include "io/scene_numbers.h"
+
+#include "io/pieces.h"
 #include "io/scene_put.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <talus/history.h>
 
 tl_status tl_scene_field(tl_error *error, uint32_t of, size_t number, const double *values,
                          const uint32_t *picked, size_t count, tl_piece *out)
@@ -70,4 +76,44 @@ tl_status tl_scene_run(tl_model *m, const tl_html *options, tl_piece *out)
     to = tl_put_u32(to, (uint32_t)k);
     tl_scene_histories(m, put_history, &to);
     return options->keyblocks ? put_keyblocks(m, options->keyblocks, out) : TL_OK;
+}
+
+/* ---------------------------------------------------------------- numbers of histories ----
+ *
+ * The last samples of the histories of a model. */
+
+/* Units of what a model is asked for by name; the rest has none. */
+static const struct {
+    const char *name, *unit;
+} quantities[] = {
+    {"kinetic", "J"}, {"potential", "J"}, {"stored", "J"},         {"friction", "J"},
+    {"damping", "J"}, {"external", "J"},  {"max_velocity", "m/s"},
+};
+
+static const char *unit_of(const tl_history *h)
+{
+    size_t count = 0;
+    const tl_field *fields = h->source == TL_FROM_BLOCKS     ? tl_block_fields(&count)
+                             : h->source == TL_FROM_CONTACTS ? tl_contact_fields(&count)
+                                                             : NULL;
+    for (size_t i = 0; i < count; i++)
+        if (strcmp(fields[i].name, h->asked) == 0)
+            return fields[i].unit;
+    for (size_t i = 0; h->source == TL_FROM_MODEL && i < sizeof quantities / sizeof *quantities;
+         i++)
+        if (strcmp(quantities[i].name, h->asked) == 0)
+            return quantities[i].unit;
+    return "";
+}
+
+void tl_scene_histories(const tl_model *m, tl_scene_history_fn fn, void *user)
+{
+    const tl_history *h;
+    for (size_t i = 0; (h = tl_history_at(m, i)) != NULL; i++)
+        for (size_t k = 0; k < h->width; k++) {
+            char name[TL_HISTORY_NAME + 16];
+            snprintf(name, sizeof name, h->width > 1 ? "%s %zu" : "%s", h->name, k + 1);
+            fn(user, name, unit_of(h),
+               h->count ? h->values[(h->count - 1) * h->width + k] : (double)NAN);
+        }
 }

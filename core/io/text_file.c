@@ -1,6 +1,8 @@
 /* text_file.c - a file whose bytes are all there already. */
+#include "base/output_file.h"
 #include "base/signals.h"
-#include "io/output_file.h"
+
+#include <talus/output.h>
 
 static tl_status write_output(const char *path, const void *data, size_t length, tl_error *error)
 {

@@ -1,4 +1,4 @@
-/* verdict.h - how a model stands, by facts of its contacts that are known already (verdict.c). */
+/* verdict.h - how a model stands, by facts of its contacts that are known already. */
 #ifndef TL_IO_VERDICT_H
 #define TL_IO_VERDICT_H
 

@@ -19,10 +19,13 @@
  *                           Vector with it moves the blocks apart
  *
  * The model's centre is the mean of the blocks' centroids weighted by volume. */
+#include "io/vtk_blocks.h"
+
 #include "base/error.h"
 #include "io/extra_fields.h"
-#include "io/vtk_data.h"
+#include "io/pieces.h"
 #include "io/vtk_file.h"
+#include "model/regroup.h"
 
 #include <stdlib.h>
 

@@ -2,8 +2,11 @@
 #include "io/vtk_columns.h"
 
 #include "base/error.h"
+#include "base/output_file.h"
 #include "base/pages.h"
 #include "io/extra_fields.h"
+#include "io/vtk_file.h"
+#include "query/point_fields.h"
 
 #include <math.h>
 #include <stdlib.h>

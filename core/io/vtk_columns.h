@@ -1,10 +1,10 @@
-/* vtk_columns.h - arrays of a file that are filled row by row, by several threads, and written one after the other
- * (vtk_columns.c). */
+/* vtk_columns.h - arrays of a file that are filled row by row, by several threads, and written one after the other. */
 #ifndef TL_IO_VTK_COLUMNS_H
 #define TL_IO_VTK_COLUMNS_H
 
+#include "base/output_file.h"
 #include "io/vtk_file.h"
-#include "query/law_states.h"
+#include "query/point_fields.h"
 
 /* An array: its name, or NULL where the file gives it none, its type in the file, and the numbers of a row. */
 typedef struct tl_vtk_column {

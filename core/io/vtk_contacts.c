@@ -12,10 +12,15 @@
  *             sum of a state that goes with the area; NaN where the contact's law has no such state
  *
  * All of a contact is asked for once and kept in the form of the file, array by array. */
+#include "io/vtk_contacts.h"
+
 #include "base/error.h"
+#include "base/output_file.h"
+#include "base/parallel.h"
 #include "io/extra_fields.h"
+#include "io/pieces.h"
 #include "io/vtk_columns.h"
-#include "io/vtk_data.h"
+#include "io/vtk_file.h"
 #include "query/contact_fields.h"
 
 #include <stdlib.h>

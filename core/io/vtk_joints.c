@@ -16,13 +16,19 @@
  * Point data displacement  m, that of block_id, as in the file of the blocks
  *
  * Without contact, stresses, forces and slip are 0. */
+#include "io/vtk_joints.h"
+
 #include "base/error.h"
+#include "base/parallel.h"
 #include "contact/detection.h"
+#include "geometry/measure.h"
 #include "io/extra_fields.h"
+#include "io/pieces.h"
 #include "io/vtk_columns.h"
-#include "io/vtk_data.h"
+#include "io/vtk_file.h"
 #include "query/contact_fields.h"
 #include "query/contact_polygons.h"
+#include "query/point_fields.h"
 
 #include <stdlib.h>
 

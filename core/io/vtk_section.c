@@ -10,8 +10,10 @@
  *
  * A vertex on the plane counts as above it, so a face that lies in the plane is shown once: of the
  * block below. Points closer than TL_POLY_ON times the block's size are one. */
+#include "io/vtk_section.h"
+
 #include "base/error.h"
-#include "io/vtk_data.h"
+#include "io/pieces.h"
 #include "io/vtk_file.h"
 
 #include <stdlib.h>

@@ -7,7 +7,13 @@
  *
  * The functions are called in a step, on the thread and in the frame of the run: in protected calls,
  * whose error ends the run and is then raised as it was. */
-#include "front.h"
+#include "lua/action.h"
+
+#include "lua/convert.h"
+#include "lua/fail.h"
+#include "lua/front.h"
+#include "lua/living.h"
+#include "lua/selection.h"
 
 #include <math.h>
 #include <talus/boundary.h>
@@ -227,3 +233,17 @@ int tl_lua_blocks_reaction(lua_State *L)
 {
     return tl_lua_push_reaction(L, tl_lua_blocks_self(L, 1, "reaction"));
 }
+
+const tl_lua_topic tl_lua_action_topics[] = {
+    {.name = "load",
+     .usage = "selection:load{force = {0, 0, -1e3}, at = {x, y, z}}",
+     .function = "load"},
+    {.name = "drive",
+     .usage = "selection:drive{velocity = function(t) return 0.1 * math.sin(t), 0, 0 end}",
+     .doc =
+         "Prescribes the motion of the blocks' bodies, in the place of any fixing, until "
+         "selection:free(). A function is called in the middle of a step: it may read the model, "
+         "but not change it. A body that is driven to turn is not cut in two.",
+     .keys = tl_lua_drive_keys},
+    {.name = NULL},
+};

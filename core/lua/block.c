@@ -1,6 +1,14 @@
 /* block.c - what selections of blocks and blocks can do beyond what contacts can: filters, verbs,
  * shape and neighbours. */
-#include "front.h"
+#include "lua/block.h"
+
+#include "lua/action.h"
+#include "lua/convert.h"
+#include "lua/fail.h"
+#include "lua/front.h"
+#include "lua/item.h"
+#include "lua/living.h"
+#include "lua/selection.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -132,7 +140,7 @@ static const tl_lua_key block_keys[] = {
 
 #define COUNT(table) (sizeof(table) / sizeof(table)[0])
 
-const tl_lua_spec tl_lua_blocks_spec = {"blocks", block_params, COUNT(block_params), block_keys};
+static const tl_lua_spec blocks_spec = {"blocks", block_params, COUNT(block_params), block_keys};
 
 static const tl_param box_params[] = {
     TL_PARAM(TL_PARAM_VEC3, tl_bounds, min, "m", "lowest corner", .flags = TL_PARAM_REQUIRED),
@@ -255,7 +263,7 @@ static int read_hidden(lua_State *L)
 static void read_filter(lua_State *L, block_args *args, block_nested *nested,
                         tl_block_filter *filter)
 {
-    tl_lua_read(L, 2, &tl_lua_blocks_spec, true, args);
+    tl_lua_read(L, 2, &blocks_spec, true, args);
     *filter = tl_block_filter_default();
     filter->group = args->group;
     filter->joint = args->joint;
@@ -299,7 +307,7 @@ static tl_status keep_on_side(tl_model *model, tl_lua_selection *found, int32_t 
     return TL_OK;
 }
 
-int tl_lua_blocks(lua_State *L)
+static int model_blocks(lua_State *L)
 {
     tl_model *model = tl_lua_model_of(L, "blocks");
     tl_lua_arity(L, 2, "blocks");
@@ -395,13 +403,13 @@ static const tl_param fix_params[] = {
     TL_PARAM(TL_PARAM_BOOL, fix_args, rotation, "", "hold the rotation", .def = {0.0}),
 };
 
-const tl_lua_spec tl_lua_fix_spec = {"fix", fix_params, COUNT(fix_params), NULL};
+static const tl_lua_spec fix_spec = {"fix", fix_params, COUNT(fix_params), NULL};
 
 static int blocks_fix(lua_State *L)
 {
     tl_lua_selection *b = tl_lua_blocks_self(L, 2, "fix");
     fix_args args;
-    tl_lua_read(L, 2, &tl_lua_fix_spec, false, &args);
+    tl_lua_read(L, 2, &fix_spec, false, &args);
     unsigned what = (args.x ? TL_FIX_X : 0u) | (args.y ? TL_FIX_Y : 0u) | (args.z ? TL_FIX_Z : 0u) |
                     (args.rotation ? TL_FIX_ROTATION : 0u);
     lua_pushnil(L);
@@ -425,13 +433,13 @@ static const tl_param set_params[] = {
              .flags = TL_PARAM_OPTIONAL),
 };
 
-const tl_lua_spec tl_lua_set_spec = {"set", set_params, COUNT(set_params), NULL};
+static const tl_lua_spec set_spec = {"set", set_params, COUNT(set_params), NULL};
 
 static int blocks_set(lua_State *L)
 {
     tl_lua_selection *b = tl_lua_blocks_self(L, 2, "set");
     tl_block_set set = tl_block_set_default();
-    tl_lua_read(L, 2, &tl_lua_set_spec, false, &set);
+    tl_lua_read(L, 2, &set_spec, false, &set);
     if (isnan(set.density) && !set.group && isnan(set.velocity.x) && isnan(set.angular_velocity.x))
         return tl_lua_fail(L, "set: give density, group, velocity or angular_velocity");
     return tl_lua_blocks_acted(L, b, "set", "changed",
@@ -500,4 +508,53 @@ const tl_lua_kind tl_lua_block_kind = {
     .extra = block_extra,
     .extra_keys = block_extra_keys,
     .verbs = block_verbs,
+};
+
+static const tl_lua_key block_methods[] = {
+    {"#sel, sel[i], ipairs(sel)", "", "number of blocks, the i-th one, all in order of id"},
+    {"sel:sum(field)", "", "sum of a field of numbers; of a vector field a vector"},
+    {"sel:max(field), sel:min(field)", "", "largest and smallest value of a field of numbers"},
+    {"sel:values(field)", "",
+     "list of the field's values, in the order of the selection: much faster than one by one. A "
+     "vector is {x, y, z}; with \"flat\" after the field {x, y, z, x, y, z, ...}"},
+    {"sel:bounds()", "", "{min = {x, y, z}, max = {x, y, z}} over all vertices"},
+    {"sel:where(function(block) ... end)", "", "those for which the function answers true"},
+    {"sel:hide(), sel:show()", "", "hidden blocks are not cut and not selected unless asked for"},
+    {"sel:delete()", "", "removes the blocks"},
+    {"sel:join(), sel:unjoin()", "",
+     "makes one rigid body of the blocks and of what they were joined to; makes each a body of its "
+     "own. Momentum and angular momentum are kept"},
+    {"sel:load{...}", "", "a force and a moment: talus help load"},
+    {"sel:drive{...}", "", "a prescribed motion, until sel:free(): talus help drive"},
+    {"sel:fix{x =, y =, z =, rotation =}", "",
+     "holds components of the motion; all of it when nothing is named: talus help fix"},
+    {"sel:free()", "", "lets fixed and driven blocks go"},
+    {"sel:reaction()", "",
+     "sum of the forces that hold their bodies, N: {x, y, z}, of held components only"},
+    {"sel:reset_displacement()", "", "displacements count from now"},
+    {"sel:set{density =, group =, velocity =, angular_velocity =}", "",
+     "changes properties: talus help set"},
+    {NULL, NULL, NULL},
+};
+
+const tl_lua_topic tl_lua_block_topics[] = {
+    {.name = "blocks",
+     .usage = "selection = model:blocks{...}",
+     .doc = "Selects blocks, visible ones unless asked otherwise; all conditions must hold.",
+     .spec = &blocks_spec,
+     .kind = &tl_lua_block_kind,
+     .title = "Methods of the selection",
+     .verbs = block_methods,
+     .of = TL_LUA_OF_MODEL,
+     .call = model_blocks},
+    {.name = "fix",
+     .usage = "selection:fix{x = true, rotation = true}  or  selection:fix()",
+     .doc = "Holds components of the motion of the blocks' bodies, besides what is held already; "
+            "all of it when nothing is named.",
+     .spec = &fix_spec},
+    {.name = "set",
+     .usage = "selection:set{group = \"wedge\", velocity = {0, 0, -1}}",
+     .doc = "Changes properties of blocks; what is not named stays.",
+     .spec = &set_spec},
+    {.name = NULL},
 };

@@ -1,5 +1,14 @@
 /* boundary.c - model:boundary{...}: outer faces of the model, selected, held or loaded. */
-#include "front.h"
+#include "lua/boundary.h"
+
+#include "lua/action.h"
+#include "lua/block.h"
+#include "lua/convert.h"
+#include "lua/fail.h"
+#include "lua/front.h"
+#include "lua/item.h"
+#include "lua/living.h"
+#include "lua/selection.h"
 
 #include <math.h>
 #include <string.h>
@@ -73,10 +82,10 @@ static const tl_lua_key table_keys[] = {
     {"zmin", "", ""},  {"zmax", "", ""}, {NULL, NULL, NULL},
 };
 
-const tl_lua_spec tl_lua_boundary_spec = {"boundary", boundary_params, COUNT(boundary_params),
+static const tl_lua_spec boundary_spec = {"boundary", boundary_params, COUNT(boundary_params),
                                           boundary_keys};
 
-const tl_lua_key tl_lua_boundary_results[] = {
+static const tl_lua_key boundary_results[] = {
     {"area", "", "of the outer faces, or their outer parts, m2; without any the call is refused"},
     {"blocks", "", "a selection of their blocks, hidden ones, too"},
     {"faces", "",
@@ -249,7 +258,7 @@ static void read_deeds(lua_State *L, int index, const boundary_args *args, tl_bo
 static void read_action(lua_State *L, int index, boundary_args *args, tl_boundary_action *a)
 {
     *a = tl_boundary_action_default();
-    tl_lua_spec spec = tl_lua_boundary_spec;
+    tl_lua_spec spec = boundary_spec;
     spec.keys = table_keys;
     tl_lua_read(L, index, &spec, false, args);
     if (args->side)
@@ -372,7 +381,7 @@ static void act(lua_State *L, tl_model *model, const tl_boundary_action *actions
     }
 }
 
-int tl_lua_boundary(lua_State *L)
+static int model_boundary(lua_State *L)
 {
     tl_model *model = tl_lua_model_of(L, "boundary");
     tl_lua_arity(L, 2, "boundary");
@@ -402,3 +411,22 @@ int tl_lua_boundary(lua_State *L)
         act(L, model, actions, sides, add, done);
     return 1;
 }
+
+const tl_lua_topic tl_lua_boundary_topics[] = {
+    {.name = "boundary",
+     .usage = "result = model:boundary{side = \"xmax\", stress = {xx = -1e6}}  or  "
+              "model:boundary{xmin = \"roller\", zmin = \"fixed\", zmax = {pressure = 1e5}}",
+     .doc =
+         "Finds outer faces of the model: those, or parts of those, that lie on no other block. "
+         "Holds their bodies, or puts a traction on them as a load: its force and moment about "
+         "each body's centroid take the place of the load the body had, keep their direction and "
+         "go with the body. What one call puts on a body adds up. When a face is cut, each part of "
+         "it "
+         "gets its share.",
+     .spec = &boundary_spec,
+     .title = "Fields of the result",
+     .verbs = boundary_results,
+     .of = TL_LUA_OF_MODEL,
+     .call = model_boundary},
+    {.name = NULL},
+};

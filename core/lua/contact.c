@@ -1,8 +1,165 @@
 /* contact.c - selections of contacts and what a contact has beyond the kernel's fields. */
-#include "front.h"
+#include "lua/contact.h"
 
+#include "lua/convert.h"
+#include "lua/fail.h"
+#include "lua/front.h"
+#include "lua/item.h"
+#include "lua/living.h"
+#include "lua/selection.h"
+
+#include <stdlib.h>
 #include <string.h>
 #include <talus/fields.h>
+
+/* ---------------------------------------------------------------- points and states -------
+ *
+ * Contact.points and contact.states: the points of a contact and the states of its law, as tables.
+ *
+ * They are copies of what is when they are asked for: points come and go with the polygon, so there is nothing that a
+ * handle could stand for. Reading a name that is not there raises, as it does of a contact. */
+
+#define HOLDER_TYPE "talus.holder"
+
+/* ---------------------------------------------------------------- tables of names -------- */
+
+static int compare_names(const void *a, const void *b)
+{
+    return strcmp(*(const char *const *)a, *(const char *const *)b);
+}
+
+/* A name that the table at index 1 does not have. Upvalue 1 is how the sentence begins. */
+static int record_index(lua_State *L)
+{
+    const char *what = lua_tostring(L, lua_upvalueindex(1));
+    if (lua_type(L, 2) != LUA_TSTRING)
+        return tl_lua_fail(L, "%s %s", what, tl_lua_describe(L, 2));
+    tl_lua_names names = {0};
+    for (lua_pushnil(L); lua_next(L, 1); lua_pop(L, 1))
+        if (lua_type(L, -2) == LUA_TSTRING)
+            tl_lua_names_add(&names, lua_tostring(L, -2));
+    qsort(names.at, names.count, sizeof names.at[0], compare_names);
+    if (names.count == 0)
+        return tl_lua_fail(L, "%s '%s': it has none", what, lua_tostring(L, 2));
+    return tl_lua_unknown(L, what, lua_tostring(L, 2), &names);
+}
+
+static int record_assign(lua_State *L)
+{
+    return tl_lua_fail(L, "the values of a contact can only be read");
+}
+
+/* Gives the table at the top of the stack the metatable `type`, whose sentences begin with `what`. */
+static void set_record(lua_State *L, const char *type, const char *what)
+{
+    if (luaL_newmetatable(L, type)) {
+        lua_pushstring(L, what);
+        lua_pushcclosure(L, record_index, 1);
+        lua_setfield(L, -2, "__index");
+        lua_pushcfunction(L, record_assign);
+        lua_setfield(L, -2, "__newindex");
+    }
+    lua_setmetatable(L, -2);
+}
+
+/* ---------------------------------------------------------------- states of a contact ---- */
+
+/* A list from malloc that is freed with the Lua object it belongs to. */
+typedef struct holder {
+    tl_law_state *list;
+    size_t count;
+} holder;
+
+static int holder_collect(lua_State *L)
+{
+    holder *h = luaL_checkudata(L, 1, HOLDER_TYPE);
+    free(h->list);
+    h->list = NULL;
+    return 0;
+}
+
+/* Pushes the list of the states of a contact's law. */
+static const holder *push_states(lua_State *L, tl_model *model, tl_id contact)
+{
+    holder *h = lua_newuserdatauv(L, sizeof *h, 0);
+    *h = (holder){0};
+    if (luaL_newmetatable(L, HOLDER_TYPE)) {
+        lua_pushcfunction(L, holder_collect);
+        lua_setfield(L, -2, "__gc");
+    }
+    lua_setmetatable(L, -2);
+    tl_lua_ok(L, model, tl_states_list(model, contact, &h->list, &h->count));
+    return h;
+}
+
+/* Pushes a number, or a vector as a list. */
+static void push_value(lua_State *L, const double *value, size_t width)
+{
+    if (width == 1)
+        lua_pushnumber(L, value[0]);
+    else
+        tl_lua_push_numbers(L, value, width);
+}
+
+static void push_contact_states(lua_State *L, tl_model *model, tl_id contact)
+{
+    const holder *states = push_states(L, model, contact);
+    lua_createtable(L, 0, (int)states->count);
+    for (size_t i = 0; i < states->count; i++) {
+        double value[3];
+        size_t width;
+        tl_lua_ok(L, model,
+                  tl_contacts_values(model, &contact, 1, states->list[i].name, value, &width));
+        push_value(L, value, width);
+        lua_setfield(L, -2, states->list[i].name);
+    }
+    set_record(L, "talus.contact_states", "the law of this contact has no state");
+}
+
+/* ---------------------------------------------------------------- points ----------------- */
+
+/* Sets one value in each of the `count` tables of the list at the top of the stack. */
+static void set_value(lua_State *L, tl_model *model, tl_id contact, size_t count, const char *name,
+                      double *values)
+{
+    size_t width;
+    tl_lua_ok(L, model, tl_points_values(model, &contact, 1, name, values, &width));
+    for (size_t k = 0; k < count; k++) {
+        lua_rawgeti(L, -1, (lua_Integer)k + 1);
+        if (strcmp(name, "state") == 0)
+            lua_pushstring(L, tl_state_name((size_t)values[k]));
+        else
+            push_value(L, values + k * width, width);
+        lua_setfield(L, -2, name);
+        lua_pop(L, 1);
+    }
+}
+
+/* Push the points of a contact, a list of tables, and the states of its law, a table. */
+static void push_contact_points(lua_State *L, tl_model *model, tl_id contact)
+{
+    const holder *states = push_states(L, model, contact);
+    size_t start[2], fields;
+    const tl_field *field = tl_point_fields(&fields);
+    tl_lua_ok(L, model, tl_points_start(model, &contact, 1, start));
+    double *values = lua_newuserdatauv(L, 3 * (start[1] + 1) * sizeof *values, 0);
+    lua_createtable(L, (int)start[1], 0);
+    for (size_t k = 0; k < start[1]; k++) {
+        lua_createtable(L, 0, (int)(fields + states->count));
+        lua_rawseti(L, -2, (lua_Integer)k + 1);
+    }
+    for (size_t i = 0; i < fields; i++)
+        set_value(L, model, contact, start[1], field[i].name, values);
+    for (size_t i = 0; i < states->count; i++)
+        set_value(L, model, contact, start[1], states->list[i].name, values);
+    for (size_t k = 0; k < start[1]; k++) {
+        lua_rawgeti(L, -1, (lua_Integer)k + 1);
+        set_record(L, "talus.contact_point", "a contact point has no field");
+        lua_pop(L, 1);
+    }
+}
+
+/* ---------------------------------------------------------------- contacts ---------------- */
 
 typedef struct contact_args {
     const char *joint;
@@ -20,7 +177,7 @@ static const tl_lua_key contact_keys[] = {
     {NULL, NULL, NULL},
 };
 
-const tl_lua_spec tl_lua_contacts_spec = {
+static const tl_lua_spec contacts_spec = {
     "contacts", contact_params, sizeof contact_params / sizeof contact_params[0], contact_keys};
 
 /* The ids meant by the selection of blocks or the block at the top of the stack. */
@@ -59,14 +216,14 @@ static void read_between(lua_State *L, tl_contact_filter *filter)
     filter->between_b = read_side(L, owner, 2, &filter->count_b);
 }
 
-int tl_lua_contacts(lua_State *L)
+static int model_contacts(lua_State *L)
 {
     tl_model *model = tl_lua_model_of(L, "contacts");
     tl_lua_arity(L, 2, "contacts");
     lua_settop(L, 2);
     luaL_checkstack(L, 32, "too many values");
     contact_args args;
-    tl_lua_read(L, 2, &tl_lua_contacts_spec, false, &args);
+    tl_lua_read(L, 2, &contacts_spec, false, &args);
     tl_contact_filter filter = tl_contact_filter_default();
     filter.joint = args.joint;
     int where = 0;
@@ -89,11 +246,11 @@ int tl_lua_contacts(lua_State *L)
 static bool contact_extra(lua_State *L, tl_model *model, tl_id id, const char *name)
 {
     if (strcmp(name, "points") == 0) {
-        tl_lua_push_contact_points(L, model, id);
+        push_contact_points(L, model, id);
         return true;
     }
     if (strcmp(name, "states") == 0) {
-        tl_lua_push_contact_states(L, model, id);
+        push_contact_states(L, model, id);
         return true;
     }
     if (strcmp(name, "blocks") != 0)
@@ -138,4 +295,31 @@ const tl_lua_kind tl_lua_contact_kind = {
     .extra = contact_extra,
     .extra_keys = contact_extra_keys,
     .verbs = contact_verbs,
+};
+
+static const tl_lua_key contact_methods[] = {
+    {"#sel, sel[i], ipairs(sel)", "", "number of contacts, the i-th one, all in order of id"},
+    {"sel:sum(field)", "",
+     "sum of a field of numbers, or of a state of a law by its name; of a vector a vector"},
+    {"sel:max(field), sel:min(field)", "",
+     "largest and smallest value of a field of numbers, or of a state, where the law has it"},
+    {"sel:values(field)", "",
+     "list of the field's values, in the order of the selection; likewise a state of a law, by its "
+     "name, NaN where the contact's law has no such state. With \"flat\" after it vectors are not "
+     "lists of their own"},
+    {"sel:where(function(contact) ... end)", "", "those for which the function answers true"},
+    {NULL, NULL, NULL},
+};
+
+const tl_lua_topic tl_lua_contact_topics[] = {
+    {.name = "contacts",
+     .usage = "selection = model:contacts{...}",
+     .doc = "Selects contacts; all conditions must hold.",
+     .spec = &contacts_spec,
+     .kind = &tl_lua_contact_kind,
+     .title = "Methods of the selection",
+     .verbs = contact_methods,
+     .of = TL_LUA_OF_MODEL,
+     .call = model_contacts},
+    {.name = NULL},
 };

@@ -3,7 +3,10 @@
  * The checks proper (names, types, ranges) are the kernel's tl_args_read, from one table per
  * function or plugin; here values only get the form it reads. Every buffer is a Lua userdata that
  * hangs on one anchor table, so an error raised on the way leaks nothing. */
-#include "front.h"
+#include "lua/convert.h"
+
+#include "lua/fail.h"
+#include "lua/front.h"
 
 #include <float.h>
 #include <math.h>

@@ -1,5 +1,7 @@
 /* fail.c - how the front end raises errors: "file:line: " of the script, then one sentence. */
-#include "front.h"
+#include "lua/fail.h"
+
+#include "lua/front.h"
 
 #include <string.h>
 

@@ -1,7 +1,13 @@
 /* help.c - `talus help` and `talus plugins`: printed from the tables that check what a script gives,
  * so that the help cannot say otherwise than the check. */
-#include "help_search.h"
+#include "lua/help.h"
 
+#include "lua/contact.h"
+#include "lua/fail.h"
+#include "lua/front.h"
+#include "lua/topics.h"
+
+#include <ctype.h>
 #include <stdio.h>
 #include <string.h>
 #include <talus/fields.h>
@@ -186,10 +192,10 @@ static void print_topic(const tl_lua_topic *topic)
         printf("\n%s:\n", topic->title);
         print_keys(topic->verbs);
     }
-    if (topic->type) {
+    if (topic->has_type) {
         printf("\nThe %ss loaded (talus help NAME tells their parameters):\n",
-               plugin_word(*topic->type));
-        print_kinds(*topic->type);
+               plugin_word(topic->type));
+        print_kinds(topic->type);
     }
 }
 
@@ -232,13 +238,100 @@ static void print_overview(void)
          "  --plugin PATH    load one more plugin\n"
          "  -v               show the calls that led to an error\n"
          "\nFunctions:");
-    for (const tl_lua_topic *topic = tl_lua_topics; topic->name; topic++)
+    const tl_lua_topic *topic;
+    for (size_t k = 0; (topic = tl_lua_topic_at(k)) != NULL; k++)
         print_row(topic->name, topic_doc(topic));
     for (int type = TL_KIND_LAW; type <= TL_KIND_SCREEN; type++) {
         static const char *const titles[] = {"Laws", "Dampings", "Generators", "Screens"};
         printf("\n%s:\n", titles[type]);
         print_kinds((tl_kind_type)type);
     }
+}
+
+/* ---------------------------------------------------------------- the nearest page --------
+ *
+ * Which pages of the help speak of a word that is the name of none. */
+
+/* Whether a text has the word, in any letters. */
+static bool says(const char *text, const char *word)
+{
+    size_t length = strlen(word);
+    for (; text && *text; text++) {
+        size_t same = 0;
+        while (same < length &&
+               tolower((unsigned char)text[same]) == tolower((unsigned char)word[same]))
+            same++;
+        if (same == length)
+            return true;
+    }
+    return false;
+}
+
+static bool params_say(const tl_param *params, size_t count, size_t stride, const char *word)
+{
+    bool any = false;
+    for (size_t i = 0; i < count && !any; i++) {
+        const tl_param *param = (const tl_param *)(const void *)((const char *)params + i * stride);
+        any = says(param->name, word) || says(param->doc, word);
+    }
+    return any;
+}
+
+static bool keys_say(const tl_lua_key *keys, const char *word)
+{
+    bool any = false;
+    for (; keys && keys->name && !any; keys++)
+        any = says(keys->name, word) || says(keys->doc, word);
+    return any;
+}
+
+static bool fields_say(const tl_field *(*list)(size_t *count), const char *word)
+{
+    size_t count;
+    const tl_field *fields = list(&count);
+    bool any = false;
+    for (size_t i = 0; i < count && !any; i++)
+        any = says(fields[i].name, word) || says(fields[i].doc, word);
+    return any;
+}
+
+static bool topic_says(const tl_lua_topic *topic, const char *word)
+{
+    size_t count = topic->spec ? topic->spec->count : 0;
+    const tl_param *params = topic->spec ? topic->spec->params : NULL;
+    const char *doc = topic->doc;
+    if (topic->function)
+        params = tl_function_params(topic->function, &count, &doc);
+    const tl_lua_key *keys = topic->spec ? topic->spec->keys : topic->keys;
+    return says(topic->usage, word) || says(doc, word) ||
+           params_say(params, count, sizeof(tl_param), word) || keys_say(keys, word) ||
+           keys_say(topic->verbs, word) ||
+           (topic->kind &&
+            (fields_say(topic->kind->fields, word) || keys_say(topic->kind->extra_keys, word)));
+}
+
+/* Whether the word is a verb of what the page is of. */
+static bool names_verb(const tl_lua_topic *topic, const char *word)
+{
+    const size_t length = strlen(word);
+    for (const tl_lua_key *key = topic->verbs; key && key->name; key++)
+        for (const char *at = strchr(key->name, ':'); at; at = strchr(at + 1, ':'))
+            if (strncmp(at + 1, word, length) == 0 &&
+                (at[1 + length] == '(' || at[1 + length] == '{'))
+                return true;
+    return false;
+}
+
+static bool kind_says(const tl_kind *kind, const char *word)
+{
+    bool any = says(kind->doc, word) ||
+               params_say(kind->params, kind->param_count, kind->param_stride, word);
+    for (uint32_t i = 0; i < kind->state_count && !any; i++) {
+        const char *at = (const char *)kind->states + i * (size_t)kind->state_stride;
+        const tl_state *state = (const tl_state *)(const void *)at;
+        any = says(state->name, word) || says(state->doc, word);
+    }
+    return any;
 }
 
 /* ---------------------------------------------------------------- entry ------------------ */
@@ -264,26 +357,29 @@ static void list_page(page_list *pages, const char *name)
 static bool unknown_topic(const char *word, tl_error *error)
 {
     tl_lua_names names = {0};
-    page_list pages = {0};
-    bool is_verb = false;
-    for (const tl_lua_topic *topic = tl_lua_topics; topic->name; topic++) {
+    page_list pages = {0}, verbs = {0}; /* that speak of it; whose verb it is */
+    const tl_lua_topic *topic;
+    for (size_t k = 0; (topic = tl_lua_topic_at(k)) != NULL; k++) {
         tl_lua_names_add(&names, topic->name);
-        is_verb = is_verb || tl_lua_topic_names(topic, word);
-        if (tl_lua_topic_says(topic, word))
+        if (names_verb(topic, word))
+            list_page(&verbs, topic->name);
+        if (topic_says(topic, word))
             list_page(&pages, topic->name);
     }
     for (int type = TL_KIND_LAW; type <= TL_KIND_SCREEN; type++) {
         const tl_kind *kind;
         for (size_t i = 0; (kind = tl_plugin_kind((tl_kind_type)type, i)) != NULL; i++) {
             tl_lua_names_add(&names, kind->name);
-            if (tl_lua_kind_says(kind, word))
+            if (kind_says(kind, word))
                 list_page(&pages, kind->name);
         }
     }
+    if (verbs.count > 0)
+        pages = verbs;
     const char *nearest = tl_nearest_name(word, names.at, names.count);
     size_t length = strlen(word), other = nearest ? strlen(nearest) : 0;
     bool misspelt =
-        nearest && !is_verb && strncmp(word, nearest, length < other ? length : other) == 0;
+        nearest && !verbs.count && strncmp(word, nearest, length < other ? length : other) == 0;
     error->status = TL_E_NOT_FOUND;
     if (misspelt || (nearest && pages.count == 0 && (length > SHORT || word[0] == nearest[0])))
         snprintf(error->text, sizeof error->text, "there is no help on '%s'; did you mean '%s'?",
@@ -306,7 +402,8 @@ bool tl_lua_help(const char *word, tl_error *error)
         print_overview();
         return true;
     }
-    for (const tl_lua_topic *topic = tl_lua_topics; topic->name; topic++)
+    const tl_lua_topic *topic;
+    for (size_t k = 0; (topic = tl_lua_topic_at(k)) != NULL; k++)
         if (strcmp(topic->name, word) == 0 && ++found)
             print_topic(topic);
     for (int type = TL_KIND_LAW; type <= TL_KIND_SCREEN; type++) {

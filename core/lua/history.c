@@ -2,9 +2,18 @@
  *
  * run.c asks after every step whether a sample is due, and takes it in a protected call. While a history's function runs
  * the kernel refuses whatever would change the model, so a run gives the same bits with histories and without. */
-#include "history.h"
+#include "lua/history.h"
 
+#include "lua/convert.h"
+#include "lua/fail.h"
+#include "lua/front.h"
+#include "lua/item.h"
+#include "lua/living.h"
+
+#include <float.h>
 #include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* ---------------------------------------------------------------- what is asked ---------- */
@@ -53,12 +62,12 @@ static const tl_lua_key history_keys[] = {
     {NULL, NULL, NULL},
 };
 
-const tl_lua_spec tl_lua_history_spec = {
+static const tl_lua_spec history_spec = {
     "history", history_params, sizeof history_params / sizeof *history_params, history_keys};
 
 /* ---------------------------------------------------------------- the list --------------- */
 
-size_t tl_history_find(const tl_model *model, const char *name)
+static size_t history_find(const tl_model *model, const char *name)
 {
     size_t i = 0;
     const tl_history *h;
@@ -67,12 +76,251 @@ size_t tl_history_find(const tl_model *model, const char *name)
     return i;
 }
 
-void tl_history_set_function(lua_State *L, int model_index, const char *name)
+/* Sets the function of a history of the model at `model_index` to the value at the top of the stack, which it pops. */
+static void history_set_function(lua_State *L, int model_index, const char *name)
 {
     lua_getiuservalue(L, model_index, TL_LUA_HISTORIES);
     lua_rotate(L, -2, 1);
     lua_setfield(L, -2, name);
     lua_pop(L, 1);
+}
+
+/* ---------------------------------------------------------------- samples -----------------
+ *
+ * Takes the samples of histories: of functions, of the model, of fields of blocks and contacts. */
+
+/* What a model can be asked for by name. */
+typedef enum origin { OF_ENERGY, OF_BALANCE, OF_CONTACTS } origin;
+
+static const struct {
+    const char *name;
+    origin origin;
+    size_t offset;
+} quantities[] = {
+    {"kinetic", OF_ENERGY, offsetof(tl_energy, kinetic)},
+    {"potential", OF_ENERGY, offsetof(tl_energy, potential)},
+    {"stored", OF_ENERGY, offsetof(tl_energy, stored)},
+    {"friction", OF_ENERGY, offsetof(tl_energy, friction)},
+    {"damping", OF_ENERGY, offsetof(tl_energy, damping)},
+    {"external", OF_ENERGY, offsetof(tl_energy, external)},
+    {"balance", OF_ENERGY, offsetof(tl_energy, balance)},
+    {"ratio", OF_BALANCE, offsetof(tl_balance, ratio)},
+    {"ratio_maximum", OF_BALANCE, offsetof(tl_balance, ratio_maximum)},
+    {"ratio_local", OF_BALANCE, offsetof(tl_balance, ratio_local)},
+    {"max_velocity", OF_BALANCE, offsetof(tl_balance, max_velocity)},
+    {"contacts", OF_CONTACTS, offsetof(tl_contact_counts, contacts)},
+    {"slipping", OF_CONTACTS, offsetof(tl_contact_counts, slipping)},
+    {"open", OF_CONTACTS, offsetof(tl_contact_counts, open)},
+};
+
+enum { QUANTITIES = sizeof quantities / sizeof *quantities };
+
+static const char *history_quantity(size_t i)
+{
+    return i < QUANTITIES ? quantities[i].name : NULL;
+}
+
+/* ---------------------------------------------------------------- one sample ------------- */
+
+static const tl_lua_kind *history_kind(lua_State *L, const tl_history *h)
+{
+    return tl_lua_item_kind(L, h->source == TL_FROM_BLOCKS ? TL_LUA_BLOCK : TL_LUA_CONTACT);
+}
+
+static const tl_field *history_field(lua_State *L, const tl_history *h, size_t *index)
+{
+    size_t count;
+    const tl_field *fields = history_kind(L, h)->fields(&count);
+    for (size_t i = 0; i < count; i++)
+        if (fields[i].kind <= TL_FIELD_VEC3 && strcmp(fields[i].name, h->asked) == 0) {
+            *index = i;
+            return &fields[i];
+        }
+    return NULL;
+}
+
+/* ---------------------------------------------------------------- one sample ------------- */
+
+/* Places on the stack while the function of a history is called. */
+enum { AT_MODEL = 1, AT_HISTORY, AT_FUNCTION, AT_VALUES };
+
+/* What is being sampled. */
+typedef struct latest {
+    double number[TL_HISTORY_WIDEST];
+    size_t width;
+    bool list;
+} latest;
+
+static double read_number(lua_State *L, const tl_history *h, int index)
+{
+    if (lua_type(L, index) != LUA_TNUMBER)
+        tl_lua_fail_in(L, AT_FUNCTION,
+                       "history '%s': the function must give a number or a list of numbers, not %s",
+                       h->name, tl_lua_describe(L, index));
+    return lua_tonumber(L, index);
+}
+
+/* Calls the function with the model and reads what it gives. */
+static void ask_function(lua_State *L, const tl_history *h, latest *now)
+{
+    lua_getiuservalue(L, AT_MODEL, TL_LUA_HISTORIES);
+    lua_getfield(L, -1, h->name);
+    lua_replace(L, AT_FUNCTION);
+    lua_settop(L, AT_FUNCTION);
+    lua_pushvalue(L, AT_FUNCTION);
+    lua_pushvalue(L, AT_MODEL);
+    lua_call(L, 1, LUA_MULTRET);
+    int given = lua_gettop(L) - AT_FUNCTION;
+    luaL_checkstack(L, 16, "too many values");
+    bool list = given == 1 && lua_istable(L, AT_VALUES);
+    size_t count = list ? (size_t)lua_rawlen(L, AT_VALUES) : (size_t)given;
+    if (count == 0 || count > TL_HISTORY_WIDEST)
+        tl_lua_fail_in(
+            L, AT_FUNCTION,
+            "history '%s': the function must give a number or a list of 1 to %d numbers, "
+            "not %s",
+            h->name, TL_HISTORY_WIDEST,
+            count  ? lua_pushfstring(L, "%d of them", (int)count)
+            : list ? "an empty list"
+                   : "nothing");
+    for (size_t i = 0; i < count; i++) {
+        int index = AT_VALUES + (int)i;
+        if (list) {
+            lua_rawgeti(L, AT_VALUES, (lua_Integer)i + 1);
+            index = lua_gettop(L);
+        }
+        now->number[i] = read_number(L, h, index);
+        if (list)
+            lua_pop(L, 1);
+    }
+    now->width = count;
+    now->list = list || given > 1;
+    if (h->count && (count != h->width || now->list != h->list))
+        tl_lua_fail_in(
+            L, AT_FUNCTION,
+            "history '%s': the function gives %d numbers, before it gave %d: it must give "
+            "as many each time",
+            h->name, (int)count, (int)h->width);
+}
+
+static void ask_model(lua_State *L, tl_model *model, const tl_history *h, latest *now)
+{
+    size_t index = 0;
+    while (strcmp(quantities[index].name, h->asked) != 0)
+        index++;
+    size_t offset = quantities[index].offset;
+    now->width = 1;
+    if (quantities[index].origin == OF_CONTACTS) {
+        tl_contact_counts counts = tl_model_contact_counts(model);
+        size_t count;
+        memcpy(&count, (const char *)&counts + offset, sizeof count);
+        now->number[0] = (double)count;
+        return;
+    }
+    tl_energy energy;
+    tl_balance balance = tl_model_balance(model);
+    const void *from = &balance;
+    if (quantities[index].origin == OF_ENERGY) {
+        tl_lua_ok(L, model, tl_model_energy(model, &energy));
+        from = &energy;
+    }
+    memcpy(now->number, (const char *)from + offset, sizeof *now->number);
+}
+
+/* Tells once that blocks of a history are no longer there: `gone` of `count`, the last of them `id`. */
+static void tell_lost(lua_State *L, tl_model *model, tl_history *h, tl_id id, size_t gone)
+{
+    const tl_lua_kind *kind = history_kind(L, h);
+    if (h->lost || h->source != TL_FROM_BLOCKS) /* contacts come and go */
+        return;
+    h->lost = true;
+    char text[300];
+    long long cycle = tl_model_cycles(model);
+    if (gone < h->id_count)
+        snprintf(text, sizeof text,
+                 "history '%s': %s %u no longer exists; from cycle %lld on its values are of the "
+                 "%s that are left",
+                 h->name, kind->item, id, cycle, kind->items);
+    else
+        snprintf(text, sizeof text,
+                 "history '%s': %s %u no longer exists; from cycle %lld on its values are nan",
+                 h->name, kind->item, id, cycle);
+    tl_lua_log(tl_lua_options_of(L), text);
+}
+
+static void take_in(tl_history_take take, latest *now, const double *number, bool begins)
+{
+    for (size_t k = 0; k < now->width; k++) {
+        double *to = &now->number[k];
+        if (begins || (take == TL_TAKE_MIN && number[k] < *to) ||
+            (take == TL_TAKE_MAX && number[k] > *to))
+            *to = number[k];
+        else if (take == TL_TAKE_MEAN || take == TL_TAKE_SUM)
+            *to += number[k];
+    }
+}
+
+/* The field of the blocks or contacts. */
+static void ask_items(lua_State *L, tl_model *model, tl_history *h, latest *now)
+{
+    size_t index, gone = 0;
+    const tl_lua_kind *kind = history_kind(L, h);
+    bool vector = history_field(L, h, &index)->kind == TL_FIELD_VEC3;
+    tl_id lost = TL_NO_ID;
+    now->width = vector ? 3 : 1;
+    now->list = vector;
+    for (size_t i = 0; i < h->id_count; i++) {
+        tl_field_value value;
+        tl_status status = kind->field(model, h->ids[i], index, &value);
+        if (status == TL_E_STALE && h->count) { /* not at the first sample */
+            gone++;
+            lost = h->ids[i];
+            continue;
+        }
+        tl_lua_ok(L, model, status);
+        take_in(h->take, now, value.number, i == gone);
+    }
+    if (gone)
+        tell_lost(L, model, h, lost, gone);
+    for (size_t k = 0; k < now->width; k++)
+        if (gone == h->id_count)
+            now->number[k] = NAN;
+        else if (h->take == TL_TAKE_MEAN)
+            now->number[k] /= (double)(h->id_count - gone);
+}
+
+/* Runs protected. Arguments: the model, the history, a place for its function. */
+static int sample(lua_State *L)
+{
+    tl_history *h = lua_touserdata(L, AT_HISTORY);
+    tl_model *model = ((tl_lua_model *)lua_touserdata(L, AT_MODEL))->model;
+    latest now = {.width = 0};
+    if (h->source == TL_FROM_FUNCTION)
+        ask_function(L, h, &now);
+    else if (h->source == TL_FROM_MODEL)
+        ask_model(L, model, h, &now);
+    else
+        ask_items(L, model, h, &now);
+    tl_lua_ok(L, model, tl_history_sample(model, h, now.number, now.width));
+    h->list = now.list;
+    return 0;
+}
+
+/* Takes a sample, while the model may only be read: as lua_pcall. */
+static int history_take(lua_State *L, int model_index, tl_history *h)
+{
+    tl_lua_model *owner = lua_touserdata(L, model_index);
+    model_index = lua_absindex(L, model_index);
+    lua_pushcfunction(L, sample);
+    lua_pushvalue(L, model_index);
+    lua_pushlightuserdata(L, h);
+    lua_pushnil(L);
+    owner->sampling = true;
+    tl_model_only_read(owner->model, true);
+    int status = lua_pcall(L, 3, 0, 0);
+    tl_model_only_read(owner->model, false);
+    owner->sampling = false;
+    return status;
 }
 
 /* ---------------------------------------------------------------- model:history ---------- */
@@ -92,7 +340,7 @@ static void check_name(lua_State *L, const char *name)
 
 static int remove_history(lua_State *L, tl_model *model, const char *name)
 {
-    size_t at = tl_history_find(model, name);
+    size_t at = history_find(model, name);
     if (!tl_history_at(model, at)) {
         tl_lua_names names = {0};
         const tl_history *h;
@@ -104,7 +352,7 @@ static int remove_history(lua_State *L, tl_model *model, const char *name)
         return tl_lua_unknown(L, "history: there is none of the name", name, &names);
     }
     lua_pushnil(L);
-    tl_history_set_function(L, 1, name);
+    history_set_function(L, 1, name);
     tl_history_end(model, at);
     tl_lua_histories_due(L, 1);
     return 0;
@@ -125,7 +373,7 @@ static void read_value(lua_State *L, tl_history *h)
     const char *name = tl_lua_text(L, -1, "history", "value");
     tl_lua_names names = {0};
     const char *known;
-    for (size_t i = 0; (known = tl_history_quantity(i)) != NULL; i++) {
+    for (size_t i = 0; (known = history_quantity(i)) != NULL; i++) {
         if (strcmp(known, name) == 0) {
             strcpy(h->asked, name);
             return;
@@ -138,9 +386,9 @@ static void read_value(lua_State *L, tl_history *h)
 /* Raises unless the field that is asked for is one of numbers, and what is made of several can be made of it. */
 static void check_field(lua_State *L, const tl_history *h, const char *name)
 {
-    const tl_lua_kind *kind = tl_history_kind(L, h);
+    const tl_lua_kind *kind = history_kind(L, h);
     size_t count, index;
-    const tl_field *fields = kind->fields(&count), *field = tl_history_field(L, h, &index);
+    const tl_field *fields = kind->fields(&count), *field = history_field(L, h, &index);
     tl_lua_names names = {0};
     for (size_t i = 0; i < count; i++)
         if (fields[i].kind <= TL_FIELD_VEC3)
@@ -213,21 +461,21 @@ static void read_source(lua_State *L, tl_history *h, const history_args *args)
     }
 }
 
-int tl_lua_history(lua_State *L)
+static int model_history(lua_State *L)
 {
     tl_model *model = tl_lua_model_of(L, "history");
     const tl_lua_model *owner = lua_touserdata(L, 1);
     tl_lua_arity(L, 2, "history");
     lua_settop(L, 2);
     history_args args = {0};
-    tl_lua_read(L, 2, &tl_lua_history_spec, false, &args);
+    tl_lua_read(L, 2, &history_spec, false, &args);
     check_name(L, args.name);
     if (owner->sampling)
         return tl_lua_fail(L, "history '%s': a history's function may only read the model",
                            args.name);
     if (args.remove)
         return remove_history(L, model, args.name);
-    size_t at = tl_history_find(model, args.name);
+    size_t at = history_find(model, args.name);
     if (tl_history_at(model, at))
         return tl_lua_fail(L,
                            "history '%s': there is one of that name; model:history{name = '%s', "
@@ -237,14 +485,359 @@ int tl_lua_history(lua_State *L)
     strcpy(what.name, args.name);
     read_source(L, &what, &args);
     if (what.source == TL_FROM_FUNCTION)
-        tl_history_set_function(L, 1, what.name);
+        history_set_function(L, 1, what.name);
     tl_lua_ok(L, model, tl_history_add(model, &what, &h));
-    if (tl_lua_history_take(L, 1, h) != LUA_OK) {
+    if (history_take(L, 1, h) != LUA_OK) {
         tl_history_end(model, at);
         lua_pushnil(L);
-        tl_history_set_function(L, 1, what.name);
+        history_set_function(L, 1, what.name);
         return lua_error(L);
     }
     tl_lua_histories_due(L, 1);
     return 0;
 }
+
+/* ---------------------------------------------------------------- when ------------------- */
+
+/* The next cycle after that one at which a sample is due. */
+static int64_t next_sample(const tl_history *h, int64_t cycle)
+{
+    int64_t since = cycle - h->first;
+    if (since < 0)
+        return h->first;
+    int64_t wait = h->every - since % h->every;
+    return wait <= INT64_MAX - cycle ? cycle + wait : INT64_MAX;
+}
+
+void tl_lua_histories_due(lua_State *L, int model_index)
+{
+    tl_lua_model *owner = lua_touserdata(L, model_index);
+    int64_t cycle = tl_model_cycles(owner->model);
+    const tl_history *h;
+    owner->next_sample = INT64_MAX;
+    for (size_t i = 0; (h = tl_history_at(owner->model, i)) != NULL; i++) {
+        int64_t next = next_sample(h, cycle);
+        owner->next_sample = next < owner->next_sample ? next : owner->next_sample;
+    }
+}
+
+bool tl_lua_histories_sample(lua_State *L, int model_index)
+{
+    const tl_lua_model *owner = lua_touserdata(L, model_index);
+    int64_t cycle = tl_model_cycles(owner->model);
+    tl_history *h;
+    for (size_t i = 0; (h = tl_history_at(owner->model, i)) != NULL; i++)
+        if (cycle >= h->first && (cycle - h->first) % h->every == 0 &&
+            history_take(L, model_index, h) != LUA_OK)
+            return false;
+    tl_lua_histories_due(L, model_index);
+    return true;
+}
+
+/* ---------------------------------------------------------------- histories of copies and files ---
+ *
+ * Histories of a copied or restored model: their functions, and whether a file asks for what there is. */
+
+void tl_lua_histories_share(lua_State *L, int from, int to)
+{
+    lua_getiuservalue(L, from, TL_LUA_HISTORIES);
+    int functions = lua_gettop(L);
+    lua_getiuservalue(L, to, TL_LUA_HISTORIES);
+    for (lua_pushnil(L); lua_next(L, functions);) {
+        lua_pushvalue(L, -2);
+        lua_rotate(L, -2, 1);
+        lua_rawset(L, functions + 1);
+    }
+    lua_settop(L, functions - 1);
+}
+
+void tl_lua_histories_given(lua_State *L)
+{
+    int top = lua_gettop(L);
+    if (!lua_istable(L, 2) || lua_getfield(L, 2, "histories") == LUA_TNIL) {
+        lua_settop(L, top);
+        return;
+    }
+    if (!lua_istable(L, -1))
+        tl_lua_fail(L, "talus.restore: histories must be a table of functions by name, not %s",
+                    tl_lua_describe(L, -1));
+    for (lua_pushnil(L); lua_next(L, top + 1); lua_pop(L, 1)) {
+        if (lua_type(L, -2) != LUA_TSTRING)
+            tl_lua_fail(L,
+                        "talus.restore: histories has the key %s, which is the name of no history",
+                        tl_lua_describe(L, -2));
+        if (!lua_isfunction(L, -1) && !(lua_isboolean(L, -1) && !lua_toboolean(L, -1)))
+            tl_lua_fail(L, "talus.restore: history '%s' needs a function(model), or false, not %s",
+                        lua_tostring(L, -2), tl_lua_describe(L, -1));
+    }
+    lua_settop(L, top);
+}
+
+/* Whether there is what a history of the model, blocks or contacts asks for, of as many numbers as its samples have. */
+static bool is_there(lua_State *L, const tl_history *h)
+{
+    size_t index = 0, width = 1;
+    if (h->source == TL_FROM_MODEL) {
+        const char *known;
+        while ((known = history_quantity(index)) != NULL && strcmp(known, h->asked) != 0)
+            index++;
+        return known && !h->list && h->count && h->width == width;
+    }
+    const tl_field *field = history_field(L, h, &index);
+    bool vector = field && field->kind == TL_FIELD_VEC3;
+    width = vector ? 3 : 1;
+    return field && !(vector && h->take >= TL_TAKE_MIN) && h->list == vector && h->count &&
+           h->width == width;
+}
+
+/* Looks for what is given for a history, in the table at `given` or nil, and leaves it on the stack: a function, or false. */
+static bool find_given(lua_State *L, int given, const char *name)
+{
+    if (lua_istable(L, given))
+        lua_getfield(L, given, name);
+    else
+        lua_pushnil(L);
+    return !lua_isnil(L, -1);
+}
+
+/* Takes up history `i`, or ends it; true: it is still there. */
+static bool take_up(lua_State *L, const char *path, int model_index, int given, size_t i)
+{
+    tl_model *model = ((tl_lua_model *)lua_touserdata(L, model_index))->model;
+    const tl_history *h = tl_history_at(model, i);
+    bool found = find_given(L, given, h->name);
+    if (found && !lua_toboolean(L, -1)) {
+        tl_history_end(model, i);
+        lua_pop(L, 1);
+        return false;
+    }
+    if (found && h->source != TL_FROM_FUNCTION)
+        tl_lua_fail(L, "talus.restore: history '%s' sampled no function when the model was saved",
+                    h->name);
+    if (!found && h->source == TL_FROM_FUNCTION)
+        tl_lua_fail(L,
+                    "cannot restore '%s': history '%s' samples a function, which has to be given "
+                    "again: histories = {[\"%s\"] = function(model) ... end}, or false to end it",
+                    path, h->name, h->name);
+    if (h->source == TL_FROM_FUNCTION)
+        history_set_function(L, model_index, h->name);
+    else if (!is_there(L, h))
+        tl_lua_fail(L, "cannot restore '%s': history '%s' asks for '%s', which cannot be sampled",
+                    path, h->name, h->asked);
+    else
+        lua_pop(L, 1);
+    return true;
+}
+
+void tl_lua_histories_again(lua_State *L, const char *path, int model_index)
+{
+    tl_model *model = ((tl_lua_model *)lua_touserdata(L, model_index))->model;
+    int top = lua_gettop(L), given = top + 1;
+    if (lua_istable(L, 2))
+        lua_getfield(L, 2, "histories");
+    else
+        lua_pushnil(L);
+    if (lua_istable(L, given))
+        for (lua_pushnil(L); lua_next(L, given); lua_pop(L, 1))
+            if (!tl_history_at(model, history_find(model, lua_tostring(L, -2))))
+                tl_lua_fail(L, "talus.restore: there was no history '%s' when the model was saved",
+                            lua_tostring(L, -2));
+    for (size_t i = 0; tl_history_at(model, i);)
+        i += take_up(L, path, model_index, given, i);
+    lua_settop(L, top);
+}
+
+/* ---------------------------------------------------------------- what was sampled --------
+ *
+ * What histories have sampled: model:histories(), model:write_histories(path). */
+
+/* ---------------------------------------------------------------- model:histories -------- */
+
+static const char *const axes[] = {"x", "y", "z"};
+
+/* Pushes the list of values of a history: of numbers, or of lists. */
+static void push_values(lua_State *L, const tl_history *h)
+{
+    lua_createtable(L, (int)h->count, 0);
+    for (size_t i = 0; i < h->count; i++) {
+        if (h->list)
+            tl_lua_push_numbers(L, h->values + i * h->width, h->width);
+        else
+            lua_pushnumber(L, h->values[i]);
+        lua_rawseti(L, -2, (lua_Integer)i + 1);
+    }
+}
+
+static void push_samples(lua_State *L, const tl_history *h)
+{
+    lua_createtable(L, 0, 6);
+    lua_createtable(L, (int)h->count, 0);
+    for (size_t i = 0; i < h->count; i++) {
+        lua_pushinteger(L, (lua_Integer)h->cycles[i]);
+        lua_rawseti(L, -2, (lua_Integer)i + 1);
+    }
+    lua_setfield(L, -2, "cycle");
+    tl_lua_push_numbers(L, h->times, h->count);
+    lua_setfield(L, -2, "time");
+    push_values(L, h);
+    lua_setfield(L, -2, "value");
+    for (size_t k = 0; h->list && h->width == 3 && k < 3; k++) {
+        lua_createtable(L, (int)h->count, 0);
+        for (size_t i = 0; i < h->count; i++) {
+            lua_pushnumber(L, h->values[3 * i + k]);
+            lua_rawseti(L, -2, (lua_Integer)i + 1);
+        }
+        lua_setfield(L, -2, axes[k]);
+    }
+}
+
+static int model_histories(lua_State *L)
+{
+    const tl_model *model = tl_lua_model_of(L, "histories");
+    tl_lua_arity(L, 1, "histories");
+    const tl_history *h;
+    lua_newtable(L);
+    for (size_t i = 0; (h = tl_history_at(model, i)) != NULL; i++) {
+        push_samples(L, h);
+        lua_setfield(L, 2, h->name);
+    }
+    return 1;
+}
+
+static const tl_lua_key histories_fields[] = {
+    {"cycle", "", "list of the steps at which it was sampled"},
+    {"time", "", "list of the times, s"},
+    {"value", "", "list of the values, each a number or a list of numbers"},
+    {"x, y, z", "", "lists of the components, where each value is a list of three"},
+    {NULL, NULL, NULL},
+};
+
+/* ---------------------------------------------------------------- the file --------------- */
+
+/* Numbers, nan and inf as programs read them. */
+static void add_number(luaL_Buffer *b, double value)
+{
+    if (isnan(value))
+        luaL_addstring(b, "nan");
+    else
+        tl_lua_add_number(b, value, DBL_DIG);
+}
+
+/* Names with a comma or a quotation mark are quoted. */
+static void add_name(luaL_Buffer *b, const char *name, const char *component)
+{
+    bool quoted = strpbrk(name, ",\"") != NULL;
+    luaL_addstring(b, quoted ? ",\"" : ",");
+    for (const char *c = name; *c; c++) {
+        if (*c == '"')
+            luaL_addchar(b, '"');
+        luaL_addchar(b, *c);
+    }
+    luaL_addstring(b, component);
+    if (quoted)
+        luaL_addchar(b, '"');
+}
+
+static void add_head(luaL_Buffer *b, const tl_history *h)
+{
+    char component[16] = "";
+    for (size_t k = 0; k < h->width; k++) {
+        if (h->list && h->width == 3)
+            snprintf(component, sizeof component, ".%s", axes[k]);
+        else if (h->list)
+            snprintf(component, sizeof component, ".%d", (int)k + 1);
+        add_name(b, h->name, component);
+    }
+}
+
+/* One line: every history that has a sample of the lowest cycle that is left. false when none is left. */
+static bool add_line(luaL_Buffer *b, const tl_history *const *all, size_t *at, size_t count)
+{
+    int64_t cycle = INT64_MAX;
+    double time = 0;
+    for (size_t i = 0; i < count; i++)
+        if (at[i] < all[i]->count && all[i]->cycles[at[i]] < cycle) {
+            cycle = all[i]->cycles[at[i]];
+            time = all[i]->times[at[i]];
+        }
+    if (cycle == INT64_MAX)
+        return false;
+    char text[40];
+    snprintf(text, sizeof text, "%lld,", (long long)cycle);
+    luaL_addstring(b, text);
+    add_number(b, time);
+    for (size_t i = 0; i < count; i++) {
+        bool here = at[i] < all[i]->count && all[i]->cycles[at[i]] == cycle;
+        for (size_t k = 0; k < all[i]->width; k++) {
+            luaL_addchar(b, ',');
+            if (here)
+                add_number(b, all[i]->values[at[i] * all[i]->width + k]);
+        }
+        at[i] += here;
+    }
+    luaL_addchar(b, '\n');
+    return true;
+}
+
+static int model_write_histories(lua_State *L)
+{
+    const tl_model *model = tl_lua_model_of(L, "write_histories");
+    tl_lua_arity(L, 2, "write_histories");
+    const char *path = tl_lua_text(L, 2, "write_histories", "the file's name");
+    lua_settop(L, 2);
+    size_t count = 0;
+    while (tl_history_at(model, count))
+        count++;
+    if (count == 0)
+        return tl_lua_fail(
+            L, "write_histories: the model has no history; make one with model:history{...}");
+    const tl_history **all = lua_newuserdatauv(L, count * sizeof *all, 0);
+    size_t *at = lua_newuserdatauv(L, count * sizeof *at, 0);
+    luaL_Buffer b;
+    luaL_buffinit(L, &b);
+    luaL_addstring(&b, "cycle,time");
+    for (size_t i = 0; i < count; i++) {
+        all[i] = tl_history_at(model, i);
+        at[i] = 0;
+        add_head(&b, all[i]);
+    }
+    luaL_addchar(&b, '\n');
+    while (add_line(&b, all, at, count)) {
+    }
+    luaL_pushresult(&b);
+    size_t length;
+    const char *text = lua_tolstring(L, -1, &length);
+    tl_error error;
+    if (tl_write_file(path, text, length, &error) != TL_OK)
+        return tl_lua_fail(L, "write_histories: %s", error.text);
+    return 0;
+}
+
+const tl_lua_topic tl_lua_history_topics[] = {
+    {.name = "history",
+     .usage = "model:history{name = \"gap\", every = 10, value = function(m) return "
+              "m:contacts():max(\"gap\") end}  or  model:history{name = \"wedge\", of = selection, "
+              "field = \"displacement\"}",
+     .doc =
+         "Samples a value at once and then every so many steps of all runs, until it is removed.",
+     .spec = &history_spec,
+     .of = TL_LUA_OF_MODEL,
+     .call = model_history},
+    {.name = "histories",
+     .usage = "histories = model:histories()",
+     .doc = "Gives a table with the samples of each history, by name: copies of them.",
+     .title = "Fields of each history",
+     .verbs = histories_fields,
+     .of = TL_LUA_OF_MODEL,
+     .call = model_histories},
+    {.name = "write_histories",
+     .usage = "model:write_histories(\"out/run.csv\")",
+     .doc = "Writes the samples of all histories into a CSV file: the columns cycle, time and one "
+            "for each history, in "
+            "the order in which they were made, or name.x, name.y and name.z. A cell is empty "
+            "where a history has no "
+            "sample of that cycle. Folders are made; the file is written whole or not at all.",
+     .of = TL_LUA_OF_MODEL,
+     .call = model_write_histories},
+    {.name = NULL},
+};

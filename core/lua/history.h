@@ -1,23 +1,27 @@
-/* history.h - what the parts of histories share: history.c makes them, history_sample.c samples, history_file.c tells.
+/* history.h - what the parts of histories share: history.c makes them, history.c samples, history.c tells.
  *
  * The kernel keeps histories (talus/history.h); the functions of those that sample one are in a table by name, a user value of
  * the model's userdata. */
 #ifndef TL_LUA_HISTORY_H
 #define TL_LUA_HISTORY_H
 
-#include "front.h"
+#include "lua/front.h"
 
-/* The place of the history of that name, or the number of histories. */
-size_t tl_history_find(const tl_model *model, const char *name);
-/* Sets the function of a history of the model at `model_index` to the value at the top of the stack, which it pops. */
-void tl_history_set_function(lua_State *L, int model_index, const char *name);
+/* Finds when the next sample of the model at `model_index` is due. */
+void tl_lua_histories_due(lua_State *L, int model_index);
+/* Takes the samples that are due; false, with the error on the top of the stack, when one fails. */
+bool tl_lua_histories_sample(lua_State *L, int model_index);
 /* Names a quantity that a model can be asked for, from 0; NULL past the last one. */
-const char *tl_history_quantity(size_t i);
-/* What blocks or contacts are, of a history of them. */
-const tl_lua_kind *tl_history_kind(lua_State *L, const tl_history *h);
 /* Finds the field that a history of blocks or contacts asks for; NULL: they have none of numbers of that name. */
-const tl_field *tl_history_field(lua_State *L, const tl_history *h, size_t *index);
-/* Takes a sample, while the model may only be read: as lua_pcall. */
-int tl_lua_history_take(lua_State *L, int model_index, tl_history *h);
+
+/* The functions that histories of the model at `from` sample are those of its copy at `to` as well. */
+void tl_lua_histories_share(lua_State *L, int from, int to);
+/* Checks the option `histories` of the table at index 2, if there is one: functions by name. */
+void tl_lua_histories_given(lua_State *L);
+/* Gives the histories of the restored model at `model_index` their functions, of that option, or raises: what a history asks
+ * for is not there. */
+void tl_lua_histories_again(lua_State *L, const char *path, int model_index);
+
+extern const tl_lua_topic tl_lua_history_topics[];
 
 #endif

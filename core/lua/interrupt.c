@@ -9,7 +9,10 @@
  *
  * Limit: Lua has no way to find the coroutine that runs. One that neither yields nor uses a model is ended by the second
  * Ctrl-C only. */
-#include "front.h"
+#include "lua/interrupt.h"
+
+#include "lua/fail.h"
+#include "lua/front.h"
 
 #include <signal.h>
 #include <stdatomic.h>

@@ -2,7 +2,12 @@
  *
  * An item is no pointer into the kernel but a number that is looked up at every access, so one that
  * was deleted raises and never crashes. */
-#include "front.h"
+#include "lua/item.h"
+
+#include "lua/convert.h"
+#include "lua/fail.h"
+#include "lua/front.h"
+#include "lua/living.h"
 
 /* Its address is where the metatable of items has their kind. */
 static const char kind_key;

@@ -1,5 +1,9 @@
 /* law_test.c - talus.law_test: a joint law on one contact point, and its curve as lists. */
-#include "front.h"
+#include "lua/law_test.h"
+
+#include "lua/convert.h"
+#include "lua/fail.h"
+#include "lua/front.h"
 
 #include <math.h>
 #include <string.h>
@@ -7,7 +11,7 @@
 /* Where the function keeps its argument on the Lua stack. */
 #define AT_TABLE 1
 
-const tl_lua_key tl_lua_law_test_keys[] = {
+static const tl_lua_key law_test_keys[] = {
     {"params", "{NAME = value}", "parameters of the law, as for model:joint"},
     {"path", "list of numbers or legs",
      "shear displacements, m, one after the other from 0; or legs, tables {shear = m, closure = "
@@ -16,7 +20,7 @@ const tl_lua_key tl_lua_law_test_keys[] = {
     {NULL, NULL, NULL},
 };
 
-const tl_lua_key tl_lua_law_test_results[] = {
+static const tl_lua_key law_test_results[] = {
     {"time, shear", "", "lists: seconds, and shear displacement, m; the first point is the start"},
     {"shear_stress, normal_stress", "", "lists, Pa, compression positive"},
     {"closure, dilation", "",
@@ -166,13 +170,13 @@ static void push_curve(lua_State *L, const tl_kind *law, const curve *c, const s
     lua_setfield(L, -2, "ends");
 }
 
-int tl_lua_law_test(lua_State *L)
+static int module_law_test(lua_State *L)
 {
     tl_lua_arity(L, 1, "law_test");
     lua_settop(L, 1);
     tl_law_test test;
     tl_error error;
-    tl_lua_spec spec = tl_lua_spec_of("law_test", tl_lua_law_test_keys);
+    tl_lua_spec spec = tl_lua_spec_of("law_test", law_test_keys);
     tl_lua_read(L, AT_TABLE, &spec, false, &test);
     read_path(L, &test);
     lua_getfield(L, AT_TABLE, "params");
@@ -192,3 +196,16 @@ int tl_lua_law_test(lua_State *L)
     push_curve(L, law, &c, ends, test.count);
     return 1;
 }
+
+const tl_lua_topic tl_lua_law_test_topics[] = {
+    {.name = "law_test",
+     .usage = "curve = talus.law_test{law = \"coulomb\", params = {kn = 1e10, ks = 1e9, friction = "
+              "30}, normal_stress = 1e6, path = {0.005, -0.005}}",
+     .function = "law_test",
+     .keys = law_test_keys,
+     .title = "Fields of the curve",
+     .verbs = law_test_results,
+     .of = TL_LUA_OF_MODULE,
+     .call = module_law_test},
+    {.name = NULL},
+};

@@ -3,7 +3,11 @@
  * `require "talus.plot"` finds them beside the program or the library talus.so, wherever these lie: by a searcher of its
  * own, which comes before the search path of scripts, so that the modules are of the same Talus. Where talus.so has not
  * been loaded yet, Lua's search for C modules loads it for its function luaopen_talus_NAME. */
-#include "front.h"
+#include "lua/library.h"
+
+#include "lua/convert.h"
+#include "lua/fail.h"
+#include "lua/front.h"
 
 #include <limits.h>
 #include <string.h>
@@ -119,7 +123,7 @@ void tl_lua_library_attach(lua_State *L)
     lua_setmetatable(L, -2);
 }
 
-int tl_lua_write_file(lua_State *L)
+static int module_write_file(lua_State *L)
 {
     tl_lua_arity(L, 2, "talus.write_file");
     const char *path = tl_lua_text(L, 1, "talus.write_file", "the file's name");
@@ -136,7 +140,7 @@ int tl_lua_write_file(lua_State *L)
 
 /* ---------------------------------------------------------------- help ------------------- */
 
-const tl_lua_key tl_lua_plot_keys[] = {
+static const tl_lua_key plot_keys[] = {
     {"file", "text in quotes, required", "name of the SVG file; folders are made"},
     {"series", "list of {x =, y =, name =, style =, colour =}",
      "lines: lists of numbers x (1, 2, 3, ... when left out) and y; style is \"line\", \"points\" "
@@ -159,7 +163,7 @@ const tl_lua_key tl_lua_plot_keys[] = {
     {NULL, NULL, NULL},
 };
 
-const tl_lua_key tl_lua_stereonet_keys[] = {
+static const tl_lua_key stereonet_keys[] = {
     {"file", "text in quotes, required", "name of the SVG file; folders are made"},
     {"model", "model",
      "draws the joint sets of this model, from the faces of its blocks as they lie now"},
@@ -180,4 +184,93 @@ const tl_lua_key tl_lua_stereonet_keys[] = {
      "whether plunges of 30 and 60 degrees and every 30 degrees of trend are drawn"},
     {"size", "number, default 480", "of the square picture without the legend, pixels"},
     {NULL, NULL, NULL},
+};
+
+/* ---------------------------------------------------------------- misspelt globals --------
+ *
+ * Reading a global variable that was never assigned raises, with the nearest known name:
+ * a typing error would otherwise be a silent nil. Assigning declares, even nil. */
+
+/* Names a typing error may have meant: the caller's local variables, then the globals. */
+static void known_names(lua_State *L, tl_lua_names *names)
+{
+    lua_Debug caller;
+    if (lua_getstack(L, 1, &caller)) {
+        const char *name;
+        for (int i = 1; (name = lua_getlocal(L, &caller, i)) != NULL; i++) {
+            if (name[0] != '(')
+                tl_lua_names_add(names, name);
+            lua_pop(L, 1);
+        }
+    }
+    lua_pushglobaltable(L);
+    for (lua_pushnil(L); lua_next(L, -2); lua_pop(L, 1))
+        if (lua_type(L, -2) == LUA_TSTRING)
+            tl_lua_names_add(names, lua_tostring(L, -2));
+    lua_pop(L, 1);
+}
+
+/* Upvalue 1 is the set of names that were assigned. */
+static int global_read(lua_State *L)
+{
+    lua_settop(L, 2);
+    if (lua_type(L, 2) != LUA_TSTRING)
+        return 0;
+    lua_pushvalue(L, 2);
+    if (lua_rawget(L, lua_upvalueindex(1)) != LUA_TNIL)
+        return 0;
+    const char *word = lua_tostring(L, 2);
+    tl_lua_names names = {0};
+    known_names(L, &names);
+    const char *nearest = tl_nearest_name(word, names.at, names.count);
+    if (nearest)
+        return tl_lua_fail(L, "the variable '%s' is not declared; did you mean '%s'?", word,
+                           nearest);
+    return tl_lua_fail(L, "the variable '%s' is not declared", word);
+}
+
+static int global_write(lua_State *L)
+{
+    lua_settop(L, 3);
+    lua_pushvalue(L, 2);
+    lua_pushboolean(L, 1);
+    lua_rawset(L, lua_upvalueindex(1));
+    lua_rawset(L, 1);
+    return 0;
+}
+
+void tl_lua_strict(lua_State *L)
+{
+    lua_pushglobaltable(L);
+    lua_createtable(L, 0, 2);
+    lua_newtable(L);
+    lua_pushvalue(L, -1);
+    lua_pushcclosure(L, global_read, 1);
+    lua_setfield(L, -3, "__index");
+    lua_pushcclosure(L, global_write, 1);
+    lua_setfield(L, -2, "__newindex");
+    lua_setmetatable(L, -2);
+    lua_pop(L, 1);
+}
+
+const tl_lua_topic tl_lua_library_topics[] = {
+    {.name = "plot",
+     .usage = "talus.plot{file = \"out/run.svg\", model = model, histories = {\"roof\"}, y_axis = "
+              "{name = \"subsidence\", unit = "
+              "\"m\"}}",
+     .doc = "Draws lists and histories as lines, with axes, ticks and a legend, into an SVG file.",
+     .keys = plot_keys},
+    {.name = "stereonet",
+     .usage = "talus.stereonet{file = \"out/joints.svg\", model = model, keyblocks = "
+              "model:keyblocks{friction = 30}}",
+     .doc =
+         "Draws joint sets by poles and great circles on the lower hemisphere, into an SVG file.",
+     .keys = stereonet_keys},
+    {.name = "write_file",
+     .usage = "talus.write_file(\"out/table.csv\", text)",
+     .doc = "Writes a text into a file, whole or not at all. Folders are made; only a regular file "
+            "is replaced.",
+     .of = TL_LUA_OF_MODULE,
+     .call = module_write_file},
+    {.name = NULL},
 };

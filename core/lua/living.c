@@ -1,5 +1,10 @@
 /* living.c - what all of the front end asks of a Lua state: its options, the model behind an object, its errors and remarks, the clock. */
-#include "front.h"
+#include "lua/living.h"
+
+#include "lua/convert.h"
+#include "lua/fail.h"
+#include "lua/front.h"
+#include "lua/interrupt.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -95,4 +100,32 @@ void tl_lua_ok(lua_State *L, tl_model *model, tl_status status)
 {
     if (status != TL_OK)
         tl_lua_raise(L, tl_model_error(model));
+}
+
+/* ---------------------------------------------------------------- runs --------------------
+ *
+ * The run whose step is being made, for functions of the script that are called in it (run.c, action.c). */
+
+static tl_lua_running *current;
+
+void tl_lua_running_begin(tl_lua_running *run, lua_State *L)
+{
+    *run = (tl_lua_running){.L = L, .outer = current};
+    current = run;
+}
+
+void tl_lua_running_end(const tl_lua_running *run)
+{
+    current = run->outer;
+}
+
+lua_State *tl_lua_run_state(void)
+{
+    return current->L;
+}
+
+void tl_lua_run_keep_error(void)
+{
+    lua_replace(current->L, TL_LUA_AT_ERROR);
+    current->failed = true;
 }

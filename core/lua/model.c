@@ -1,6 +1,22 @@
 /* model.c - the model as a Lua object: talus.model, its fields and its short methods. */
-#include "front.h"
-#include "progress.h"
+#include "lua/model.h"
+
+#include "lua/block.h"
+#include "lua/boundary.h"
+#include "lua/contact.h"
+#include "lua/convert.h"
+#include "lua/fail.h"
+#include "lua/front.h"
+#include "lua/history.h"
+#include "lua/interrupt.h"
+#include "lua/item.h"
+#include "lua/lists.h"
+#include "lua/living.h"
+#include "lua/page.h"
+#include "lua/quality.h"
+#include "lua/run.h"
+#include "lua/state.h"
+#include "lua/view.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -186,7 +202,7 @@ static int model_damping(lua_State *L)
     return 0;
 }
 
-const tl_lua_key tl_lua_insitu_keys[] = {
+static const tl_lua_key insitu_keys[] = {
     {"stress", "{xx =, yy =, zz =, xy =, yz =, zx =}",
      "stress at the height of `at`, Pa, tension positive; components left out are 0. yx, zy and xz "
      "are the same as xy, yz and zx"},
@@ -201,7 +217,7 @@ static int model_insitu(lua_State *L)
     tl_lua_arity(L, 2, "insitu");
     lua_settop(L, 2);
     tl_insitu insitu = tl_insitu_default();
-    tl_lua_spec spec = tl_lua_spec_of("insitu", tl_lua_insitu_keys);
+    tl_lua_spec spec = tl_lua_spec_of("insitu", insitu_keys);
     tl_lua_read(L, 2, &spec, false, &insitu);
     if (!lua_istable(L, 2))
         return tl_lua_fail(L, "insitu: give the parameters in a table");
@@ -391,56 +407,19 @@ static int model_state_hash(lua_State *L)
     return 1;
 }
 
-static const luaL_Reg model_methods[] = {
-    {"generate", model_generate},
-    {"blocks", tl_lua_blocks},
-    {"contacts", tl_lua_contacts},
-    {"boundary", tl_lua_boundary},
-    {"joint", model_joint},
-    {"joints", tl_lua_joints},
-    {"laws", tl_lua_laws},
-    {"groups", tl_lua_groups},
-    {"insitu", model_insitu},
-    {"damping", model_damping},
-    {"timestep", model_timestep},
-    {"mass_scaling", model_mass_scaling},
-    {"contact_area", model_contact_area},
-    {"cycle", tl_lua_cycle},
-    {"solve", tl_lua_solve},
-    {"parameters", tl_lua_parameters},
-    {"history", tl_lua_history},
-    {"histories", tl_lua_histories},
-    {"write_histories", tl_lua_write_histories},
-    {"energy", model_energy},
-    {"stage", tl_lua_stage},
-    {"verdict", tl_lua_verdict},
-    {"profile", tl_lua_profile},
-    {"memory", tl_lua_memory},
-    {"write_vtk", model_write_vtk},
-    {"write_html", tl_lua_write_html},
-    {"view", tl_lua_view},
-    {"write_blocks", model_write_blocks},
-    {"write_section", model_write_section},
-    {"filter", tl_lua_filter},
-    {"keyblocks", tl_lua_keyblocks},
-    {"state_hash", model_state_hash},
-    {"copy", tl_lua_copy},
-    {"save", tl_lua_save},
-    {NULL, NULL},
-};
-
 /* ---------------------------------------------------------------- fields ----------------- */
 
 static const char *const model_fields[] = {
     "gravity", "rotation", "reuse_geometry", "contact_points", "mass_scaled", "time",
     "cycles",  "dt",       "threads",        "seed",           NULL};
 
+/* Upvalue 1 is the table of methods. */
 static int unknown_field(lua_State *L, const char *what, const char *name)
 {
     tl_lua_names names = {0};
     tl_lua_names_list(&names, model_fields);
-    for (const luaL_Reg *method = model_methods; method->name; method++)
-        tl_lua_names_add(&names, method->name);
+    for (lua_pushnil(L); lua_next(L, lua_upvalueindex(1)); lua_pop(L, 1))
+        tl_lua_names_add(&names, lua_tostring(L, -2));
     return tl_lua_unknown(L, what, name, &names);
 }
 
@@ -540,11 +519,13 @@ static int model_assign(lua_State *L)
 void tl_lua_model_open(lua_State *L)
 {
     if (luaL_newmetatable(L, TL_LUA_MODEL_TYPE)) {
-        luaL_newlib(L, model_methods);
+        lua_pushvalue(L, -2);
         lua_pushcclosure(L, model_index, 1);
         lua_setfield(L, -2, "__index");
-        const luaL_Reg meta[] = {{"__newindex", model_assign},
-                                 {"__gc", model_collect},
+        lua_pushvalue(L, -2);
+        lua_pushcclosure(L, model_assign, 1);
+        lua_setfield(L, -2, "__newindex");
+        const luaL_Reg meta[] = {{"__gc", model_collect},
                                  {"__close", model_collect},
                                  {"__tostring", model_text},
                                  {NULL, NULL}};
@@ -552,6 +533,161 @@ void tl_lua_model_open(lua_State *L)
         lua_pushliteral(L, "a model");
         lua_setfield(L, -2, "__metatable");
     }
-    lua_pop(L, 1);
+    lua_pop(L, 2);
     lua_pushcfunction(L, model_create);
 }
+
+static const tl_lua_key model_members[] = {
+    {"model.gravity", "", "acceleration of gravity {x, y, z}, m/s2; may be assigned"},
+    {"model.rotation", "", "\"exact\" or \"paper\"; may be assigned"},
+    {"model.contact_points", "",
+     "\"consistent\" or \"corners\" (not of faces that meet another at less than 20 degrees); may "
+     "be assigned"},
+    {"model.reuse_geometry", "", "true or false; may be assigned"},
+    {"model.time, model.cycles", "", "simulated time, s, and steps so far"},
+    {"model.mass_scaled", "", "whether mass scaling is on"},
+    {"model.dt", "", "the step the next cycle will use, s"},
+    {"model.threads, model.seed", "", "as given when it was made"},
+    {NULL, NULL, NULL},
+};
+
+static const tl_lua_key generate_results[] = {
+    {"before, after", "", "number of blocks before and after"},
+    {"cuts, refused, coincident", "",
+     "cuts made, refused because a side would be too thin, and fallen on an existing face"},
+    {"smallest_volume, smallest_edge, smallest_face", "", "of the model after, m3, m and m2"},
+    {"volume_error", "", "relative change of the volume that is not accounted for"},
+    {NULL, NULL, NULL},
+};
+
+static const tl_lua_key timestep_results[] = {
+    {"dt", "", "the step the next cycle will use, s; 0 where nothing can move and no law is set"},
+    {"block", "", "the block that controls it, or nil"},
+    {"partner", "", "the block at the stiffest contact, or nil"},
+    {"mass, stiffness", "",
+     "of the block's body, kg; of the contact, of all its contacts or of the part of its largest "
+     "face that counts, N/m"},
+    {"message", "", "the same in a sentence"},
+    {NULL, NULL, NULL},
+};
+
+static const tl_lua_key mass_scaling_results[] = {
+    {"on", "",
+     "whether inertia is scaled; the other fields are there after mass_scaling{dt =} only"},
+    {"dt, most", "", "the step, s, and the largest share, as given"},
+    {"added", "",
+     "mass that the last step has added, as a share of that of the bodies that can move"},
+    {"bodies", "", "how many have got some"},
+    {"worst", "",
+     "{block =, factor =}: the number of the block with the highest factor, and its inertia over "
+     "its "
+     "own; nil when none has got any"},
+    {NULL, NULL, NULL},
+};
+
+static const tl_lua_key energy_terms[] = {
+    {"kinetic", "", "of motion, J"},
+    {"potential", "", "minus the work of gravity, J"},
+    {"stored", "", "elastic, in all contacts, those of held blocks, too, J"},
+    {"friction", "", "turned to heat by slip, J"},
+    {"damping", "", "taken out by the damping, J"},
+    {"external", "",
+     "work of loads and driven bodies, and given by setting velocities and by edits of blocks and "
+     "laws, J"},
+    {"balance", "", "error of the sum over the largest change of a term so far"},
+    {NULL, NULL, NULL},
+};
+
+const tl_lua_topic tl_lua_model_topics[] = {
+    {.name = "model",
+     .usage = "model = talus.model{gravity = {0, 0, -9.81}, ...}",
+     .function = "model",
+     .title = "Fields of the model",
+     .verbs = model_members},
+    {.name = "generate",
+     .usage = "summary = model:generate(\"GENERATOR\", {...})",
+     .doc = "Creates or cuts blocks; acts on visible blocks only, wholly or not at all. A list of "
+            "tables, {{...}, {...}}, in the place of one: once for each, in their order and in one "
+            "go.",
+     .has_type = true,
+     .type = TL_KIND_GENERATOR,
+     .title = "Fields of the summary",
+     .verbs = generate_results,
+     .of = TL_LUA_OF_MODEL,
+     .call = model_generate},
+    {.name = "joint",
+     .usage = "model:joint(\"J1\", \"LAW\", {...})  or  model:joint(\"J1\", {friction = 30})",
+     .doc =
+         "Sets the law of a joint set (\"J1\"), of one of its planes (\"J1:3\") or of every joint "
+         "not named otherwise (\"*\"); without a law's name it changes properties.",
+     .has_type = true,
+     .type = TL_KIND_LAW,
+     .of = TL_LUA_OF_MODEL,
+     .call = model_joint},
+    {.name = "insitu",
+     .usage = "model:insitu{stress = {zz = -1e6}, gradient = {zz = 2e4}, at = {0, 0, 0}}",
+     .function = "insitu",
+     .keys = insitu_keys,
+     .of = TL_LUA_OF_MODEL,
+     .call = model_insitu},
+    {.name = "damping",
+     .usage = "model:damping(\"DAMPING\", {...})",
+     .doc = "Chooses how motion is damped; \"none\" is no damping, and the default.",
+     .has_type = true,
+     .type = TL_KIND_DAMPING,
+     .of = TL_LUA_OF_MODEL,
+     .call = model_damping},
+    {.name = "timestep",
+     .usage = "model:timestep{fraction = 0.3}  or  report = model:timestep()",
+     .function = "timestep",
+     .title = "Fields of the report",
+     .verbs = timestep_results,
+     .of = TL_LUA_OF_MODEL,
+     .call = model_timestep},
+    {.name = "mass_scaling",
+     .usage = "model:mass_scaling(true)  or  model:mass_scaling{dt = 1e-4}  or  "
+              "added = model:mass_scaling()",
+     .function = "mass_scaling",
+     .title = "Fields of what it tells",
+     .verbs = mass_scaling_results,
+     .of = TL_LUA_OF_MODEL,
+     .call = model_mass_scaling},
+    {.name = "contact_area",
+     .usage = "model:contact_area{fraction = 0.01}",
+     .function = "contact_area",
+     .of = TL_LUA_OF_MODEL,
+     .call = model_contact_area},
+    {.name = "energy",
+     .usage = "energy = model:energy()",
+     .doc = "The energy of the bodies that are free to move, at the last force evaluation, counted "
+            "from the first step.",
+     .title = "Fields of the energy",
+     .verbs = energy_terms,
+     .of = TL_LUA_OF_MODEL,
+     .call = model_energy},
+    {.name = "write_vtk",
+     .usage = "model:write_vtk(\"out/run\", {contacts = false, block_fields = {height = "
+              "function(b) return b.centroid[3] end}})",
+     .function = "write_vtk",
+     .keys = tl_lua_field_keys,
+     .of = TL_LUA_OF_MODEL,
+     .call = model_write_vtk},
+    {.name = "write_section",
+     .usage =
+         "model:write_section(\"out/cut\", {dip = 90, dip_direction = 90, origin = {0, 0, 0}})",
+     .function = "write_section",
+     .of = TL_LUA_OF_MODEL,
+     .call = model_write_section},
+    {.name = "write_blocks",
+     .usage = "model:write_blocks(\"out/blocks.json\")",
+     .function = "write_blocks",
+     .of = TL_LUA_OF_MODEL,
+     .call = model_write_blocks},
+    {.name = "state_hash",
+     .usage = "text = model:state_hash()",
+     .doc = "A digest of all that what comes next depends on, settings too: models with the same "
+            "text go on alike, to the last bit. Takes about as long as a step.",
+     .of = TL_LUA_OF_MODEL,
+     .call = model_state_hash},
+    {.name = NULL},
+};

@@ -1,5 +1,16 @@
 /* module.c - the module `talus`: what require "talus" gives, in the program and in a stock Lua. */
-#include "front.h"
+#include "lua/block.h"
+#include "lua/contact.h"
+#include "lua/convert.h"
+#include "lua/fail.h"
+#include "lua/front.h"
+#include "lua/help.h"
+#include "lua/item.h"
+#include "lua/library.h"
+#include "lua/lists.h"
+#include "lua/model.h"
+#include "lua/selection.h"
+#include "lua/topics.h"
 
 /* talus.help(topic): prints what `talus help TOPIC` prints. */
 static int module_help(lua_State *L)
@@ -12,6 +23,18 @@ static int module_help(lua_State *L)
     return 0;
 }
 
+/* Puts the functions of a kind into the table at the top of the stack. */
+static void put_functions(lua_State *L, tl_lua_of of)
+{
+    const tl_lua_topic *topic;
+    for (size_t i = 0; (topic = tl_lua_topic_at(i)) != NULL; i++) {
+        if (topic->of != of)
+            continue;
+        lua_pushcfunction(L, topic->call);
+        lua_setfield(L, -2, topic->name);
+    }
+}
+
 int luaopen_talus(lua_State *L)
 {
     if (tl_plugins_load_default() != TL_OK)
@@ -20,20 +43,13 @@ int luaopen_talus(lua_State *L)
     tl_lua_item_open(L, &tl_lua_contact_kind);
     tl_lua_selection_open(L, &tl_lua_block_kind);
     tl_lua_selection_open(L, &tl_lua_contact_kind);
-    lua_createtable(L, 0, 5);
+    lua_createtable(L, 0, 16);
+    lua_newtable(L);
+    put_functions(L, TL_LUA_OF_MODEL);
     tl_lua_model_open(L);
     lua_setfield(L, -2, "model");
-    lua_pushcfunction(L, tl_lua_report);
-    lua_setfield(L, -2, "report");
-    lua_pushcfunction(L, tl_lua_resumed);
-    lua_setfield(L, -2, "resumed");
-    lua_pushcfunction(L, tl_lua_restore);
-    lua_setfield(L, -2, "restore");
+    put_functions(L, TL_LUA_OF_MODULE);
     tl_lua_lists_open(L);
-    lua_pushcfunction(L, tl_lua_write_file);
-    lua_setfield(L, -2, "write_file");
-    lua_pushcfunction(L, tl_lua_law_test);
-    lua_setfield(L, -2, "law_test");
     lua_pushcfunction(L, module_help);
     lua_setfield(L, -2, "help");
     lua_pushliteral(L, TALUS_VERSION);

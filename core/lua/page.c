@@ -1,10 +1,22 @@
 /* page.c - model:write_html(prefix, {...}): a frame of a page for a browser. */
-#include "front.h"
+#include "lua/page.h"
+
+#include "lua/block.h"
+#include "lua/contact.h"
+#include "lua/convert.h"
+#include "lua/fail.h"
+#include "lua/front.h"
+#include "lua/interrupt.h"
+#include "lua/item.h"
+#include "lua/living.h"
+#include "lua/quality.h"
+#include "lua/selection.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
-const tl_lua_key tl_lua_page_keys[] = {
+static const tl_lua_key page_keys[] = {
     TL_LUA_PAGE_KEYS,
     {NULL, NULL, NULL},
 };
@@ -70,14 +82,14 @@ void tl_lua_page_read(lua_State *L, int given, const char *context, tl_html *htm
                                                &tl_lua_contact_kind, &html->contact_field_count);
 }
 
-int tl_lua_write_html(lua_State *L)
+static int model_write_html(lua_State *L)
 {
     tl_model *model = tl_lua_model_of(L, "write_html");
     tl_lua_arity(L, 3, "write_html");
     lua_settop(L, 3);
     const char *prefix = tl_lua_text(L, 2, "write_html", "the prefix");
     tl_html html = tl_html_default();
-    tl_lua_spec spec = tl_lua_spec_of("write_html", tl_lua_page_keys);
+    tl_lua_spec spec = tl_lua_spec_of("write_html", page_keys);
     tl_lua_read(L, 3, &spec, false, &html);
     tl_lua_page_read(L, 3, "write_html", &html);
     tl_lua_watch watch = tl_lua_watch_begin(L);
@@ -88,3 +100,239 @@ int tl_lua_write_html(lua_State *L)
     tl_lua_ok(L, model, status);
     return 0;
 }
+
+/* ---------------------------------------------------------------- extra fields ------------
+ *
+ * Numbers that a script adds to the blocks or contacts of a file or page: fields by name, and functions.
+ *
+ *     block_fields = {"kinetic_energy", safety = function(block) return factor[block.id] end}
+ *
+ * All are found before anything is written, in an order that does not depend on the table's: those of the list, then those
+ * with a name, by their names. While a function runs the model may only be read. */
+
+const tl_lua_key tl_lua_field_keys[] = {
+    TL_LUA_FIELD_KEYS,
+    {NULL, NULL, NULL},
+};
+
+/* Longest name of a field. */
+#define LONGEST 63
+
+/* What is asked for, while it is read. */
+typedef struct request {
+    const char *key, *context;
+    const tl_lua_kind *kind;
+    const tl_lua_selection *items; /* all of them */
+    tl_extra_field *fields;
+    size_t count;
+    int given, anchor,
+        items_at; /* stack indices: of the table, of what keeps texts and values, of the selection */
+} request;
+
+/* Letters, digits and underscores, beginning with a letter: names of arrays in files. */
+static bool is_name(const char *name)
+{
+    size_t length = strspn(name, "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_");
+    return length > 0 && length <= LONGEST && name[length] == '\0' &&
+           !strchr("0123456789_", name[0]);
+}
+
+static int compare(const void *a, const void *b)
+{
+    return strcmp(((const tl_extra_field *)a)->name, ((const tl_extra_field *)b)->name);
+}
+
+/* The name at the top of the stack, which it pops and keeps; it is not one of those before. */
+static void take_name(lua_State *L, request *r)
+{
+    const char *name = lua_tostring(L, -1);
+    if (lua_rawlen(L, -1) != strlen(name) || !is_name(name))
+        tl_lua_fail(L,
+                    "%s: %s: '%s' is no name for a field: it may have up to %d letters, digits and "
+                    "underscores, and begins with a letter",
+                    r->context, r->key, name, LONGEST);
+    for (size_t i = 0; i < r->count; i++)
+        if (strcmp(r->fields[i].name, name) == 0)
+            tl_lua_fail(L, "%s: %s: '%s' is there twice", r->context, r->key, name);
+    r->fields[r->count++] = (tl_extra_field){.name = name};
+    lua_rawseti(L, r->anchor, (lua_Integer)r->count);
+}
+
+/* Reads the names: of the list, then the others in their order. */
+static void take_names(lua_State *L, request *r)
+{
+    lua_Integer listed = (lua_Integer)lua_rawlen(L, r->given);
+    for (lua_Integer i = 1; i <= listed; i++) {
+        if (lua_rawgeti(L, r->given, i) != LUA_TSTRING)
+            tl_lua_fail(L, "%s: %s: item %d must be the name of a field, not %s", r->context,
+                        r->key, (int)i, tl_lua_describe(L, -1));
+        take_name(L, r);
+    }
+    for (lua_pushnil(L); lua_next(L, r->given); lua_pop(L, 1)) {
+        if (lua_isinteger(L, -2) && lua_tointeger(L, -2) >= 1 && lua_tointeger(L, -2) <= listed)
+            continue;
+        if (lua_type(L, -2) != LUA_TSTRING)
+            tl_lua_fail(L, "%s: %s: a field is named by a text, not by %s", r->context, r->key,
+                        tl_lua_describe(L, -2));
+        lua_pushvalue(L, -2);
+        take_name(L, r);
+    }
+    qsort(r->fields + listed, r->count - (size_t)listed, sizeof *r->fields, compare);
+}
+
+/* ---------------------------------------------------------------- values ----------------- */
+
+/* Names the unit of a field of numbers, if it is one. */
+static const char *unit_of(const tl_lua_kind *kind, const char *name)
+{
+    size_t count;
+    const tl_field *fields = kind->fields(&count);
+    for (size_t i = 0; i < count; i++)
+        if (strcmp(fields[i].name, name) == 0)
+            return fields[i].unit;
+    return "";
+}
+
+/* The values of the field of the model that has the name `source`. */
+static void ask_field(lua_State *L, const request *r, tl_extra_field *field, const char *source,
+                      double *values)
+{
+    tl_model *model = tl_lua_living(L, r->items->owner);
+    size_t width;
+    tl_lua_ok(L, model, r->kind->values(model, NULL, 0, source, NULL, &width));
+    if (width != 1)
+        tl_lua_fail(L,
+                    "%s: %s: the field '%s' of a %s has %d numbers; give a function(%s) that "
+                    "returns one",
+                    r->context, r->key, source, r->kind->item, (int)width, r->kind->item);
+    tl_lua_ok(L, model,
+              r->kind->values(model, r->items->ids, r->items->count, source, values, &width));
+    field->unit = unit_of(r->kind, source);
+}
+
+/* Places on the stack of `ask`. */
+enum { AT_FUNCTION = 1, AT_REQUEST, AT_FIELD, AT_OWNER, AT_ITEM };
+
+/* Runs protected: calls the function for every item. */
+static int ask(lua_State *L)
+{
+    const request *r = lua_touserdata(L, AT_REQUEST);
+    tl_extra_field *field = lua_touserdata(L, AT_FIELD);
+    double *values = (double *)(uintptr_t)field->values;
+    for (size_t i = 0; i < r->items->count; i++) {
+        tl_lua_item_push(L, r->kind->item_type, AT_OWNER, r->items->ids[i]);
+        lua_pushvalue(L, AT_FUNCTION);
+        lua_pushvalue(L, AT_ITEM);
+        lua_call(L, 1, 1);
+        if (lua_type(L, -1) != LUA_TNUMBER && !lua_isnil(L, -1))
+            return luaL_error(L, "it must give a number or nil, not %s for %s %d",
+                              tl_lua_describe(L, -1), r->kind->item, (int)r->items->ids[i]);
+        values[i] = lua_isnil(L, -1) ? NAN : lua_tonumber(L, -1);
+        lua_settop(L, AT_OWNER);
+    }
+    return 0;
+}
+
+/* The values that the function at the top of the stack gives, which it pops. */
+static void ask_function(lua_State *L, request *r, tl_extra_field *field)
+{
+    tl_lua_model *owner = r->items->owner;
+    bool outer = owner->sampling;
+    lua_pushcfunction(L, ask);
+    lua_insert(L, -2);
+    lua_pushlightuserdata(L, r);
+    lua_pushlightuserdata(L, field);
+    lua_pushvalue(L, 1);
+    owner->sampling = true;
+    tl_model_only_read(owner->model, true);
+    int status = lua_pcall(L, 4, 0, 0);
+    tl_model_only_read(owner->model, outer);
+    owner->sampling = outer;
+    if (status != LUA_OK)
+        tl_lua_fail(L, "%s: %s: '%s': %s", r->context, r->key, field->name,
+                    luaL_tolstring(L, -1, NULL));
+}
+
+/* Finds the values of field `i`. */
+static void take_values(lua_State *L, request *r, size_t i, size_t listed)
+{
+    tl_extra_field *field = &r->fields[i];
+    field->count = r->items->count;
+    field->unit = "";
+    double *values = lua_newuserdatauv(L, (field->count + 1) * sizeof *values, 0);
+    field->values = values;
+    lua_rawseti(L, r->anchor, (lua_Integer)(r->count + i) + 1);
+    if (i < listed) {
+        ask_field(L, r, field, field->name, values);
+        return;
+    }
+    int type = lua_getfield(L, r->given, field->name);
+    if (type == LUA_TFUNCTION) {
+        ask_function(L, r, field);
+        return;
+    }
+    if (type != LUA_TSTRING)
+        tl_lua_fail(L, "%s: %s: '%s' must be the name of a field or a function(%s), not %s",
+                    r->context, r->key, field->name, r->kind->item, tl_lua_describe(L, -1));
+    ask_field(L, r, field, lua_tostring(L, -1), values);
+    lua_pop(L, 1);
+}
+
+/* Pushes the selection of all blocks or contacts. */
+static const tl_lua_selection *push_all(lua_State *L, const tl_lua_kind *kind)
+{
+    tl_model *model = ((const tl_lua_model *)lua_touserdata(L, 1))->model;
+    tl_lua_selection *all = tl_lua_selection_push(L, kind, 1);
+    if (kind == &tl_lua_contact_kind) {
+        tl_lua_ok(L, model, tl_contacts_select(model, NULL, &all->ids, &all->count));
+        return all;
+    }
+    tl_block_filter any = tl_block_filter_default();
+    any.hidden = -1;
+    tl_lua_ok(L, model, tl_blocks_select(model, &any, &all->ids, &all->count));
+    return all;
+}
+
+const tl_extra_field *tl_lua_extra_fields(lua_State *L, int table, const char *key,
+                                          const char *context, const tl_lua_kind *kind,
+                                          size_t *count)
+{
+    table = lua_absindex(L, table);
+    *count = 0;
+    lua_newtable(L);
+    request r = {.key = key, .context = context, .kind = kind, .anchor = lua_gettop(L)};
+    if (!lua_istable(L, table) || lua_getfield(L, table, key) == LUA_TNIL) {
+        lua_settop(L, r.anchor);
+        return NULL;
+    }
+    if (!lua_istable(L, -1))
+        tl_lua_fail(
+            L, "%s: %s must be a table, as in {\"%s\", name = function(%s) ... end}, not %s",
+            context, key, kind->fields(&r.count)[0].name, kind->item, tl_lua_describe(L, -1));
+    luaL_checkstack(L, 16, "too many values");
+    r.given = lua_gettop(L);
+    size_t entries = 0, listed = lua_rawlen(L, r.given);
+    for (lua_pushnil(L); lua_next(L, r.given); lua_pop(L, 1))
+        entries++;
+    r.fields = lua_newuserdatauv(L, (entries + 1) * sizeof *r.fields, 0);
+    lua_rawseti(L, r.anchor, 0);
+    r.count = 0;
+    take_names(L, &r);
+    r.items = push_all(L, kind);
+    for (size_t i = 0; i < r.count; i++)
+        take_values(L, &r, i, listed);
+    lua_settop(L, r.anchor);
+    *count = r.count;
+    return r.fields;
+}
+
+const tl_lua_topic tl_lua_page_topics[] = {
+    {.name = "write_html",
+     .usage = "model:write_html(\"out/run\", {title = \"Slope\", block_fields = "
+              "{\"kinetic_energy\"}})",
+     .function = "write_html",
+     .keys = page_keys,
+     .of = TL_LUA_OF_MODEL,
+     .call = model_write_html},
+    {.name = NULL},
+};

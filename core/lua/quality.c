@@ -1,6 +1,12 @@
 /* quality.c - what cutting made and what may fall: talus.report(model), model:filter{...} and
  * model:keyblocks{...}. */
-#include "front.h"
+#include "lua/quality.h"
+
+#include "lua/convert.h"
+#include "lua/fail.h"
+#include "lua/front.h"
+#include "lua/item.h"
+#include "lua/living.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -140,7 +146,7 @@ static void set_timestep(lua_State *L, tl_model *model)
     lua_setfield(L, -2, "timestep_message");
 }
 
-int tl_lua_report(lua_State *L)
+static int module_report(lua_State *L)
 {
     tl_lua_arity(L, 1, "talus.report");
     if (!luaL_testudata(L, 1, TL_LUA_MODEL_TYPE))
@@ -218,7 +224,7 @@ static void set_filtered(lua_State *L, const tl_filter_result *r)
 }
 
 /* First a report, for which there must be memory, and then the action: a call that fails changes nothing. */
-int tl_lua_filter(lua_State *L)
+static int model_filter(lua_State *L)
 {
     tl_model *model = tl_lua_model_of(L, "filter");
     tl_lua_arity(L, 2, "filter");
@@ -244,7 +250,7 @@ int tl_lua_filter(lua_State *L)
 
 #define KEYBLOCKS_TYPE "talus.keyblocks"
 
-const tl_lua_key tl_lua_keyblocks_keys[] = {
+static const tl_lua_key keyblocks_keys[] = {
     {"friction", "number or {JOINT = number}",
      "friction angle of the joints, degrees, in [0, 90): one for all, or by joint: "
      "{[\"*\"] = 35, J1 = 30, [\"J1:3\"] = 25}; the closest name counts"},
@@ -360,7 +366,7 @@ int tl_lua_keyblocks_find(lua_State *L)
     tl_lua_arity(L, 2, "keyblocks");
     lua_settop(L, 2);
     tl_keyblock_query query = tl_keyblock_query_default();
-    tl_lua_spec spec = tl_lua_spec_of("keyblocks", tl_lua_keyblocks_keys);
+    tl_lua_spec spec = tl_lua_spec_of("keyblocks", keyblocks_keys);
     tl_lua_read(L, 2, &spec, false, &query);
     if (!lua_istable(L, 2))
         return tl_lua_fail(L, "keyblocks: give the parameters in a table: {friction = 35}");
@@ -381,9 +387,250 @@ int tl_lua_keyblocks_find(lua_State *L)
     return 1;
 }
 
-int tl_lua_keyblocks(lua_State *L)
+static int model_keyblocks(lua_State *L)
 {
     tl_lua_keyblocks_find(L);
     push_keyblocks(L, tl_lua_model_of(L, "keyblocks"), lua_touserdata(L, -1));
     return 1;
 }
+
+/* ---------------------------------------------------------------- how a model stands ------
+ *
+ * How a model stands: model:stage and model:verdict. */
+
+static int model_stage(lua_State *L)
+{
+    tl_model *model = tl_lua_model_of(L, "stage");
+    tl_lua_arity(L, 2, "stage");
+    tl_lua_ok(L, model, tl_model_stage(model, tl_lua_text(L, 2, "stage", "the name")));
+    return 0;
+}
+
+static void set_id(lua_State *L, const char *name, tl_id id)
+{
+    lua_pushinteger(L, (lua_Integer)id);
+    lua_setfield(L, -2, name);
+}
+
+static int model_verdict(lua_State *L)
+{
+    tl_model *model = tl_lua_model_of(L, "verdict");
+    tl_lua_arity(L, 1, "verdict");
+    tl_verdict v;
+    char text[512];
+    tl_lua_ok(L, model, tl_model_verdict(model, &v));
+    tl_verdict_text(&v, text, sizeof text);
+    lua_createtable(L, 0, 16);
+    tl_lua_set_text(L, "standing", tl_standing_name(v.standing));
+    tl_lua_set_text(L, "text", text);
+    tl_lua_set_text(L, "stage", v.stage);
+    tl_lua_set_number(L, "ratio", v.ratio);
+    tl_lua_set_number(L, "closed", v.closed);
+    tl_lua_set_count(L, "moved", v.moved);
+    tl_lua_set_number(L, "volume", v.volume);
+    tl_lua_push_vec3(L, v.direction);
+    lua_setfield(L, -2, "direction");
+    set_id(L, "farthest", v.farthest);
+    tl_lua_set_number(L, "displacement", v.displacement);
+    tl_lua_set_number(L, "slip", v.slip);
+    set_id(L, "slipped", v.slipped);
+    tl_lua_set_number(L, "opening", v.opening);
+    set_id(L, "opened", v.opened);
+    tl_lua_set_count(L, "contacts", v.contacts);
+    tl_lua_set_count(L, "slipping", v.slipping);
+    return 1;
+}
+
+static const tl_lua_key verdict_fields[] = {
+    {"standing", "",
+     "\"at rest\" below the local ratio of the last solve, else below 1e-5; \"failed\" by the "
+     "criterion of stop_at_failure in the last solve; \"accelerating\" where unbalanced forces "
+     "push "
+     "on; else \"moving\". \"unknown\" before the first step"},
+    {"text", "", "all of this as one line"},
+    {"stage", "", "name given to model:stage, or \"\""},
+    {"ratio", "", "the local unbalanced force ratio"},
+    {"closed", "",
+     "blocks that have not moved, but closed their joints, have displacements up to this, m"},
+    {"moved, volume", "",
+     "blocks that have moved by more than that, and by more than a twentieth of the largest "
+     "displacement, a body of several parts as one; their volume, m3"},
+    {"direction", "", "of their mean motion, a unit vector"},
+    {"farthest, displacement", "", "id of the block that has moved the most, and how far, m"},
+    {"slip, slipped", "",
+     "how far two bodies have moved along each other since the stage began, the largest, m: the "
+     "mean, by area, of their "
+     "contacts on faces that look the same way; id of the first of these"},
+    {"opening, opened", "", "the same apart, m; id of such a contact, 0: none"},
+    {"contacts, slipping", "", "contacts there are, and those that slip"},
+    {NULL, NULL, NULL},
+};
+
+/* ---------------------------------------------------------------- what a model costs ------
+ *
+ * What a model costs: model:profile() in time, model:memory() in bytes. */
+
+/* profile(true) begins, profile(false) ends, profile() gives the result so far. */
+static int model_profile(lua_State *L)
+{
+    tl_model *model = tl_lua_model_of(L, "profile");
+    tl_lua_arity(L, 2, "profile");
+    lua_settop(L, 2);
+    if (!lua_isnil(L, 2)) {
+        int32_t on;
+        tl_lua_spec spec = tl_lua_spec_of("profile", NULL);
+        tl_lua_read_one(L, 2, &spec, "on", &on);
+        tl_model_profiling(model, on != 0);
+        return 0;
+    }
+    tl_profile profile = tl_model_profile(model);
+    lua_createtable(L, 0, 6);
+    lua_createtable(L, 0, TL_PHASE_COUNT);
+#define SET(item, name, doc)                                                                       \
+    lua_pushnumber(L, profile.seconds[TL_PHASE_##item]);                                           \
+    lua_setfield(L, -2, #name);
+    TL_PHASES(SET)
+#undef SET
+    lua_setfield(L, -2, "seconds");
+    tl_lua_set_count(L, "steps", (size_t)profile.steps);
+    tl_lua_set_count(L, "pairs", profile.pairs);
+    tl_lua_set_count(L, "contacts", profile.contacts);
+    tl_lua_set_count(L, "loaded", profile.loaded);
+    tl_lua_set_count(L, "points", profile.points);
+    return 1;
+}
+
+static int model_memory(lua_State *L)
+{
+    tl_model *model = tl_lua_model_of(L, "memory");
+    tl_lua_arity(L, 1, "memory");
+    tl_memory memory = tl_model_memory(model);
+    lua_createtable(L, 0, 13);
+#define SET(name, doc) tl_lua_set_count(L, #name, memory.name);
+    TL_MEMORY(SET)
+#undef SET
+    tl_lua_set_count(L, "total", memory.total);
+    return 1;
+}
+
+static const tl_lua_key profile_fields[] = {
+#define KEY(item, name, doc) {"seconds." #name, "", doc},
+    TL_PHASES(KEY)
+#undef KEY
+        {"steps", "", "steps since profiling began"},
+    {"pairs", "", "candidate pairs of the broad phase, now"},
+    {"contacts, loaded", "", "contacts there are, and those that carry a force"},
+    {"points", "", "contact points"},
+    {NULL, NULL, NULL},
+};
+
+static const tl_lua_key memory_fields[] = {
+#define KEY(name, doc) {#name, "", doc},
+    TL_MEMORY(KEY)
+#undef KEY
+        {"total", "", "all of them"},
+    {NULL, NULL, NULL},
+};
+
+static const tl_lua_key report_results[] = {
+    {"blocks, bodies", "", "number of blocks, and of bodies they make"},
+    {"volume, volume_error", "",
+     "of all blocks, m3; and its relative difference from what was created less what was deleted"},
+    {"smallest_volume, smallest_edge, smallest_face", "",
+     "m3, m and m2; smallest_volume_block and so on are the blocks that have them"},
+    {"worst_aspect, worst_aspect_block", "",
+     "largest aspect of a block: its diameter (largest distance between two vertices) over its "
+     "thickness (smallest extent along the normal of a face); 1.73 for a cube"},
+    {"cuts, refused, coincident", "",
+     "cuts made, refused because a side would be too thin, and fallen on existing faces, since the "
+     "model was made"},
+    {"refused_cuts", "",
+     "the first 1000 refused cuts, each a table: joint, normal and point of the plane, block (its "
+     "number), thickness and limit of the thinner side, and the reason as a sentence"},
+    {"dt, timestep_block, timestep_message", "",
+     "the time step, s, the block that controls it, and the same in a sentence; when some contact "
+     "has no law yet, there is only the sentence"},
+    {NULL, NULL, NULL},
+};
+
+static const tl_lua_key filter_results[] = {
+    {"found, deleted, joined", "", "number of slivers, and what was done with them"},
+    {"volume", "", "of all slivers, m3"},
+    {"slivers", "",
+     "each a table: block (its number), volume, edge, aspect, beyond (which limits: \"volume\", "
+     "\"edge\", \"aspect\") and joined_to (a block, or nil)"},
+    {NULL, NULL, NULL},
+};
+
+static const tl_lua_key keyblock_results[] = {
+    {"block", "", "the block, the oldest one of a body of several"},
+    {"mode", "",
+     "\"falling\", \"sliding\" (on one face), \"sliding on two\", or \"stable\": removable, but "
+     "pressed in by its weight"},
+    {"safety", "", "factor of safety: 0 falling, math.huge stable"},
+    {"faces", "",
+     "the faces it slides on, none to two: {joint =, normal = (outward), area =, normal_force =}"},
+    {"direction, driving_force", "",
+     "of the motion, and the force along it, N; a stable one has no direction"},
+    {"force, mass, volume", "", "weight and load, N; of the body, kg and m3"},
+    {"pyramid", "",
+     "edges of the joint pyramid, unit vectors: it can move in all directions between them"},
+    {NULL, NULL, NULL},
+};
+
+const tl_lua_topic tl_lua_quality_topics[] = {
+    {.name = "report",
+     .usage = "table = talus.report(model)",
+     .doc = "Tells how good the blocks are that cutting made, and prints it on a page (not with "
+            "--quiet).",
+     .title = "Fields of the report",
+     .verbs = report_results,
+     .of = TL_LUA_OF_MODULE,
+     .call = module_report},
+    {.name = "filter",
+     .usage = "result = model:filter{volume = 1e-6, aspect = 100, action = \"join\"}",
+     .function = "filter",
+     .title = "Fields of the result",
+     .verbs = filter_results,
+     .of = TL_LUA_OF_MODEL,
+     .call = model_filter},
+    {.name = "keyblocks",
+     .usage = "list = model:keyblocks{friction = 35}",
+     .function = "keyblocks",
+     .keys = keyblocks_keys,
+     .title = "Fields of each keyblock",
+     .verbs = keyblock_results,
+     .of = TL_LUA_OF_MODEL,
+     .call = model_keyblocks},
+    {.name = "stage",
+     .usage = "model:stage(\"excavated\")",
+     .doc =
+         "Begins a stage: displacements of all blocks count from now, as after "
+         "reset_displacement, and so does what model:verdict and pages tell of slip and opening. "
+         "What laws keep stays. The name is at most 63 bytes; copies and files have it.",
+     .of = TL_LUA_OF_MODEL,
+     .call = model_stage},
+    {.name = "verdict",
+     .usage = "verdict = model:verdict()",
+     .doc = "Tells how the model stands as of its last step: at rest, moving, accelerating or "
+            "failed, and what has moved since the stage began. Nothing changes by it.",
+     .title = "Fields of the verdict",
+     .verbs = verdict_fields,
+     .of = TL_LUA_OF_MODEL,
+     .call = model_verdict},
+    {.name = "profile",
+     .usage = "model:profile(true); model:cycle(100); result = model:profile()",
+     .function = "profile",
+     .title = "Fields of the result",
+     .verbs = profile_fields,
+     .of = TL_LUA_OF_MODEL,
+     .call = model_profile},
+    {.name = "memory",
+     .usage = "bytes = model:memory()",
+     .doc = "Bytes the model holds, by what they are for, room for growth included.",
+     .title = "Fields of the result",
+     .verbs = memory_fields,
+     .of = TL_LUA_OF_MODEL,
+     .call = model_memory},
+    {.name = NULL},
+};

@@ -1,15 +1,18 @@
 /* repl.c - the read-eval-print loop, on libedit's line editing. Besides Lua it knows the words help, help TOPIC, exit and
  * quit, as long as no global variable has that name. */
-#include "repl.h"
+#include "lua/repl.h"
 
-#include "front.h"
-#include "repl_complete.h"
-#include "repl_history.h"
-#include "repl_scan.h"
+#include "lua/front.h"
+#include "lua/help.h"
+#include "lua/interrupt.h"
+#include "lua/living.h"
+#include "lua/repl_complete.h"
 
 #include <editline/readline.h>
 #include <errno.h>
+#include <fcntl.h>
 #include <lauxlib.h>
+#include <limits.h>
 #include <locale.h>
 #include <signal.h>
 #include <stdio.h>
@@ -17,6 +20,7 @@
 #include <string.h>
 #include <sys/ioctl.h>
 #include <sys/select.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 /* ---------------------------------------------------------------- calls ------------------ */
@@ -63,6 +67,183 @@ static int call(lua_State *L, int arguments, int results, bool verbose, bool at_
 int tl_repl_call(lua_State *L, int arguments, int results, bool verbose)
 {
     return call(L, arguments, results, verbose, false);
+}
+
+/* ---------------------------------------------------------------- words ------------------ */
+
+typedef enum word_kind { WORD_NONE, WORD_DONE, WORD_END } word_kind;
+
+static bool is_global(lua_State *L, const char *name)
+{
+    lua_pushglobaltable(L);
+    lua_pushstring(L, name);
+    bool found = lua_rawget(L, -2) != LUA_TNIL;
+    lua_pop(L, 2);
+    return found;
+}
+
+/* Does what the words of the loop say, when the line is made of them. */
+static word_kind obey_word(lua_State *L, const char *text)
+{
+    char word[16] = "", topic[64] = "", more[2] = "";
+    int count = sscanf(text, " %15s %63s %1s", word, topic, more);
+    const char *at = topic;
+    while (tl_scan_is_name(*at))
+        at++;
+    bool ends = count == 1 && (strcmp(word, "exit") == 0 || strcmp(word, "quit") == 0);
+    bool helps = strcmp(word, "help") == 0 && (count == 1 || (count == 2 && !*at));
+    if ((!ends && !helps) || is_global(L, word))
+        return WORD_NONE;
+    tl_error error;
+    if (helps && !tl_lua_help(count == 2 ? topic : NULL, &error))
+        fprintf(stderr, "talus: %s\n", error.text);
+    fflush(stdout);
+    return ends ? WORD_END : WORD_DONE;
+}
+
+/* ---------------------------------------------------------------- lines of before ---------
+ *
+ * The lines typed at the prompt: $XDG_STATE_HOME/talus/history, or ~/.local/state/talus/history, a text of
+ * a line each.
+ *
+ * A line is appended when it is typed, so that sessions side by side lose nothing of each other. A file with more than
+ * twice MOST lines is cut to the last MOST when a session begins. Only the user can read it. Whatever fails, the prompt goes
+ * on without the file. */
+
+#define MOST 1000 /* lines that are kept */
+
+static struct {
+    char path[PATH_MAX];
+    char *last; /* line, from malloc */
+    bool quiet, open;
+} history;
+
+static void give_up(const char *why)
+{
+    history.open = false;
+    if (!history.quiet)
+        fprintf(stderr, "talus: what is typed is not kept: %s: %s\n", history.path, why);
+}
+
+/* Makes the folders of the path; those that are there stay as they are. */
+static bool make_folders(void)
+{
+    for (char *slash = strchr(history.path + 1, '/'); slash; slash = strchr(slash + 1, '/')) {
+        *slash = 0;
+        int failed = mkdir(history.path, 0700) != 0 && errno != EEXIST ? errno : 0;
+        *slash = '/';
+        if (failed) {
+            give_up(strerror(failed));
+            return false;
+        }
+    }
+    return true;
+}
+
+/* A descriptor of the file, or -1 after a remark. A pipe in its place must not let the program wait. */
+static int open_file(int flags)
+{
+    struct stat about;
+    int file = open(history.path, flags | O_NONBLOCK | O_CLOEXEC, 0600);
+    if (file < 0) {
+        give_up(strerror(errno));
+        return -1;
+    }
+    if (fstat(file, &about) != 0 || !S_ISREG(about.st_mode)) {
+        give_up("it is not a regular file");
+        close(file);
+        return -1;
+    }
+    return file;
+}
+
+/* Writes the last MOST lines into a file beside it, which then takes its place. */
+static void cut_file(FILE *stream, size_t lines)
+{
+    char beside[PATH_MAX + 8];
+    snprintf(beside, sizeof beside, "%s.tmp", history.path);
+    int file = open(beside, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+    if (file < 0)
+        return; /* another session cuts it */
+    FILE *out = fdopen(file, "w");
+    if (!out) {
+        close(file);
+        unlink(beside);
+        return;
+    }
+    rewind(stream);
+    for (int c; lines > MOST && (c = getc(stream)) != EOF;)
+        lines -= c == '\n';
+    for (int c; (c = getc(stream)) != EOF;)
+        putc(c, out);
+    bool good = !ferror(stream) && !ferror(out);
+    good = fclose(out) == 0 && good;
+    if (!good || rename(beside, history.path) != 0)
+        unlink(beside);
+}
+
+static void read_file(void)
+{
+    int file = open_file(O_RDWR | O_CREAT);
+    FILE *stream = file < 0 ? NULL : fdopen(file, "r");
+    if (!stream) {
+        if (file >= 0)
+            close(file);
+        return;
+    }
+    char *text = NULL;
+    size_t size = 0, lines = 0;
+    ssize_t length;
+    while ((length = getline(&text, &size, stream)) > 0) {
+        text[strcspn(text, "\n")] = 0;
+        if (text[0])
+            add_history(text);
+        lines++;
+    }
+    free(text);
+    if (lines > 2 * (size_t)MOST)
+        cut_file(stream, lines);
+    fclose(stream);
+}
+
+/* Reads what was typed before. When the file cannot be used, a remark says why, unless `quiet`, and nothing is kept. */
+static void repl_history_open(bool quiet)
+{
+    const char *state = getenv("XDG_STATE_HOME"), *home = getenv("HOME");
+    history.quiet = quiet;
+    using_history();
+    stifle_history(MOST);
+    int length = 0;
+    if (state && state[0] == '/') /* a relative one is to be ignored */
+        length = snprintf(history.path, sizeof history.path, "%s/talus/history", state);
+    else if (home && home[0] == '/')
+        length = snprintf(history.path, sizeof history.path, "%s/.local/state/talus/history", home);
+    history.open = length > 0 && (size_t)length < sizeof history.path;
+    if (history.open && make_folders())
+        read_file();
+}
+
+/* Adds a line, to the file as well. */
+static void repl_history_add(const char *text)
+{
+    size_t length = strlen(text);
+    if (length == 0 || (history.last && strcmp(history.last, text) == 0))
+        return;
+    add_history(text);
+    char *copy = malloc(length + 2);
+    if (!copy)
+        return;
+    memcpy(copy, text, length + 1);
+    free(history.last);
+    history.last = copy;
+    int file = history.open ? open_file(O_WRONLY | O_APPEND | O_CREAT) : -1;
+    if (file < 0)
+        return;
+    copy[length] = '\n'; /* in one call, so that lines of two sessions do not mix */
+    if (write(file, copy, length + 1) != (ssize_t)length + 1)
+        give_up("it cannot be written");
+    copy[length] = 0;
+    close(file);
 }
 
 /* ---------------------------------------------------------------- the loop --------------- */
@@ -129,7 +310,7 @@ static line_end read_line(lua_State *L, const char *prompt)
         putchar('\n');
     if (!line.text)
         return line.done ? LINE_END_OF_INPUT : LINE_STOPPED;
-    tl_repl_history_add(line.text);
+    repl_history_add(line.text);
     lua_pushstring(L, line.text);
     free(line.text);
     return LINE_READ;
@@ -161,38 +342,6 @@ static int load_chunk(lua_State *L, int text, bool *more)
     status = luaL_loadbuffer(L, chunk, length, "=stdin");
     *more = status == LUA_ERRSYNTAX && (*more || is_incomplete(L));
     return status;
-}
-
-/* ---------------------------------------------------------------- words ------------------ */
-
-typedef enum word_kind { WORD_NONE, WORD_DONE, WORD_END } word_kind;
-
-static bool is_global(lua_State *L, const char *name)
-{
-    lua_pushglobaltable(L);
-    lua_pushstring(L, name);
-    bool found = lua_rawget(L, -2) != LUA_TNIL;
-    lua_pop(L, 2);
-    return found;
-}
-
-/* Does what the words of the loop say, when the line is made of them. */
-static word_kind obey_word(lua_State *L, const char *text)
-{
-    char word[16] = "", topic[64] = "", more[2] = "";
-    int count = sscanf(text, " %15s %63s %1s", word, topic, more);
-    const char *at = topic;
-    while (tl_scan_is_name(*at))
-        at++;
-    bool ends = count == 1 && (strcmp(word, "exit") == 0 || strcmp(word, "quit") == 0);
-    bool helps = strcmp(word, "help") == 0 && (count == 1 || (count == 2 && !*at));
-    if ((!ends && !helps) || is_global(L, word))
-        return WORD_NONE;
-    tl_error error;
-    if (helps && !tl_lua_help(count == 2 ? topic : NULL, &error))
-        fprintf(stderr, "talus: %s\n", error.text);
-    fflush(stdout);
-    return ends ? WORD_END : WORD_DONE;
 }
 
 /* ---------------------------------------------------------------- chunks ----------------- */
@@ -282,7 +431,7 @@ void tl_repl_run(lua_State *L, bool verbose)
     line_end end;
     setlocale(LC_CTYPE,
               ""); /* so that letters beyond ASCII can be typed; numbers stay as they are */
-    tl_repl_history_open(tl_lua_options_of(L)->quiet);
+    repl_history_open(tl_lua_options_of(L)->quiet);
     tl_repl_complete_with(L);
     while ((end = read_chunk(L, &status)) != LINE_END_OF_INPUT) {
         if (end == LINE_STOPPED)

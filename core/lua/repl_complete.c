@@ -1,16 +1,18 @@
 /* repl_complete.c - completion of names at the prompt.
  *
- * What may stand at the cursor follows from what stands before it (repl_scan.c):
+ * What may stand at the cursor follows from what stands before it:
  *   after `x.` or `x:`     fields and methods of what x is
  *   in `f{`, `f("..", {`   keys of the table of options of f, or parameters of the plugin that is named
  *   in quotes              plugins of generate, joint and damping, choices of an option, fields for sum and the like
  *   else                   globals and Lua's words
  * Names come from the tables that check a script. Nothing of the script is run for it: x is found by looking up names
  * without metamethods, and what a call gives by the name of its function. */
-#include "repl_complete.h"
+#include "lua/repl_complete.h"
 
-#include "front.h"
-#include "repl_scan.h"
+#include "lua/block.h"
+#include "lua/contact.h"
+#include "lua/front.h"
+#include "lua/topics.h"
 
 #include <editline/readline.h>
 #include <stdlib.h>
@@ -67,7 +69,8 @@ static char *next_match(const char *word, int state)
 
 static const tl_lua_topic *find_topic(const char *name)
 {
-    for (const tl_lua_topic *topic = tl_lua_topics; topic->name; topic++)
+    const tl_lua_topic *topic;
+    for (size_t k = 0; (topic = tl_lua_topic_at(k)) != NULL; k++)
         if (strcmp(topic->name, name) == 0)
             return topic;
     return NULL;
@@ -182,6 +185,115 @@ static void add_model_fields(const char *word)
         }
 }
 
+/* ---------------------------------------------------------------- the line before the cursor ---
+ *
+ * Reads an unfinished piece of Lua up to the cursor: which brackets are open, who is called with them, and
+ * whether the cursor is in quotes. It need not judge what it reads; text in long brackets is taken for code. */
+
+bool tl_scan_is_name(char c)
+{
+    return c == '_' || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+}
+
+static void copy(char *name, const char *from, size_t length)
+{
+    length = length < TL_SCAN_NAME ? length : TL_SCAN_NAME - 1;
+    memcpy(name, from, length);
+    name[length] = 0;
+}
+
+static void open_bracket(tl_scan *scan, char bracket)
+{
+    if (scan->depth + 1 == TL_SCAN_LEVELS)
+        return;
+    tl_scan_level *outer = &scan->levels[scan->depth], *inner = outer + 1;
+    *inner = (tl_scan_level){.bracket = bracket};
+    if (scan->before == 'a')
+        copy(inner->callee, scan->name, strlen(scan->name));
+    else if (scan->before == '=')
+        copy(inner->of, outer->key, strlen(outer->key));
+    scan->depth++;
+}
+
+/* A character that is no part of a name, of quotes or of a comment. */
+static void read_sign(tl_scan *scan, char c)
+{
+    tl_scan_level *level = &scan->levels[scan->depth];
+    if (c == '(' || c == '{' || c == '[')
+        open_bracket(scan, c);
+    else if ((c == ')' || c == '}' || c == ']') && scan->depth > 0)
+        scan->depth--;
+    else if (c == '=')
+        copy(level->key, scan->name, scan->before == 'a' ? strlen(scan->name) : 0);
+    else if (c == ',' || c == ';')
+        level->key[0] = 0;
+    scan->before = c;
+}
+
+/* Where the quotes that begin at `at` end, or `length` when the cursor is in them. */
+static size_t end_of_quotes(const char *text, size_t at, size_t length)
+{
+    size_t i = at + 1;
+    while (i < length && text[i] != text[at] && text[i] != '\n')
+        i += text[i] == '\\' ? 2 : 1;
+    return i < length ? i : length;
+}
+
+/* Reads the first `length` characters of the text. */
+static void scan_text(const char *text, size_t length, tl_scan *scan)
+{
+    *scan = (tl_scan){0};
+    for (size_t i = 0; i < length;) {
+        char c = text[i];
+        size_t end = i + 1;
+        if (c == '-' && end < length && text[end] == '-') {
+            const char *line = memchr(text + i, '\n', length - i);
+            scan->in_comment = !line;
+            end = line ? (size_t)(line - text) : length;
+        } else if (c == '"' || c == '\'') {
+            end = end_of_quotes(text, i, length);
+            scan->in_quotes = end == length;
+            if (scan->in_quotes) {
+                if (scan->before != 'a')
+                    scan->name[0] = 0;
+                return;
+            }
+            copy(scan->levels[scan->depth].quoted, text + i + 1, end - i - 1);
+            scan->before = '"';
+            end++;
+        } else if (tl_scan_is_name(c)) {
+            while (end < length && tl_scan_is_name(text[end]))
+                end++;
+            copy(scan->name, text + i, end - i);
+            scan->before = 'a';
+        } else if (c != ' ' && c != '\t' && c != '\n')
+            read_sign(scan, c);
+        i = end;
+    }
+}
+
+static size_t scan_back(const char *text, size_t end)
+{
+    int open = 0;
+    for (size_t i = end; i-- > 0;) {
+        char c = text[i];
+        if (c == '"' || c == '\'') {
+            size_t begin = i;
+            while (begin > 0 && text[begin - 1] != c)
+                begin--;
+            if (begin == 0)
+                return end;
+            i = begin - 1;
+        } else if (c == ')' || c == '}' || c == ']')
+            open++;
+        else if (c == '(' || c == '{' || c == '[')
+            open--;
+        if (open <= 0)
+            return open == 0 && i + 1 < end ? i : end;
+    }
+    return end;
+}
+
 /* ---------------------------------------------------------------- what an expression is -- */
 
 /* What stands before a point or colon; VALUE is on the top of the stack, and only then is anything. */
@@ -292,7 +404,7 @@ static object_type resolve(lua_State *L, const char *text, size_t end)
     size_t begin = name_begin(text, end);
     if (begin < end)
         return resolve_name(L, text, begin, end);
-    begin = tl_scan_back(text, end);
+    begin = scan_back(text, end);
     if (begin == end)
         return UNKNOWN;
     return text[end - 1] == ']' ? resolve_index(L, text, begin, end) : resolve_call(L, text, begin);
@@ -362,8 +474,8 @@ static const tl_lua_topic *options_of(const tl_scan *scan, const tl_kind **kind)
     while (level->bracket == '{' && !level->callee[0] && !level->of[0])
         level = &scan->levels[--depth];
     const tl_lua_topic *topic = level->callee[0] ? find_topic(level->callee) : NULL;
-    if (topic && topic->type)
-        *kind = tl_plugin_find(*topic->type, level->quoted);
+    if (topic && topic->has_type)
+        *kind = tl_plugin_find(topic->type, level->quoted);
     return topic;
 }
 
@@ -379,8 +491,8 @@ static bool complete_key(const char *word, const tl_scan *scan)
     if (kind)
         add_params(word, params_of_kind(kind));
     const tl_kind *any;
-    bool all = topic->type && !kind && *topic->type == TL_KIND_LAW; /* joint("J1", {...}) */
-    for (size_t i = 0; all && (any = tl_plugin_kind(*topic->type, i)) != NULL; i++)
+    bool all = topic->has_type && !kind && topic->type == TL_KIND_LAW; /* joint("J1", {...}) */
+    for (size_t i = 0; all && (any = tl_plugin_kind(topic->type, i)) != NULL; i++)
         add_params(word, params_of_kind(any));
     return true;
 }
@@ -408,8 +520,8 @@ static void complete_quotes(const char *word, const tl_scan *scan)
     static const char *const of_fields[] = {"sum", "max", "min", "values"};
     const char *callee = scan->name[0] ? scan->name : level->bracket == '(' ? level->callee : "";
     topic = find_topic(callee);
-    if (topic && topic->type)
-        add_plugins(word, *topic->type);
+    if (topic && topic->has_type)
+        add_plugins(word, topic->type);
     for (size_t i = 0; i < sizeof of_fields / sizeof *of_fields; i++)
         if (strcmp(callee, of_fields[i]) == 0)
             add_all_fields(word);
@@ -418,7 +530,8 @@ static void complete_quotes(const char *word, const tl_scan *scan)
 /* The word after `help`. */
 static void complete_topic(const char *word)
 {
-    for (const tl_lua_topic *topic = tl_lua_topics; topic->name; topic++)
+    const tl_lua_topic *topic;
+    for (size_t k = 0; (topic = tl_lua_topic_at(k)) != NULL; k++)
         add(word, topic->name);
     for (int type = TL_KIND_LAW; type <= TL_KIND_SCREEN; type++)
         add_plugins(word, (tl_kind_type)type);
@@ -442,7 +555,7 @@ static int complete(lua_State *L)
     tl_scan scan;
     if (length > LONGEST)
         return 0;
-    tl_scan_text(text, length, &scan);
+    scan_text(text, length, &scan);
     if (asks_help(text, &scan))
         complete_topic(word);
     else if (scan.in_quotes)

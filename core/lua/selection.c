@@ -2,11 +2,18 @@
  *
  * A selection is a snapshot: ids in ascending order, taken when it was made. Sums run in that order,
  * so they are the same bits every time. */
-#include "front.h"
+#include "lua/selection.h"
+
+#include "lua/convert.h"
+#include "lua/fail.h"
+#include "lua/front.h"
+#include "lua/item.h"
+#include "lua/living.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <talus/fields.h>
 
 tl_lua_selection *tl_lua_selection_push(lua_State *L, const tl_lua_kind *kind, int model_index)
 {
@@ -19,7 +26,8 @@ tl_lua_selection *tl_lua_selection_push(lua_State *L, const tl_lua_kind *kind, i
     return selection;
 }
 
-tl_lua_selection *tl_lua_selection_of(lua_State *L, const char *type, const char *items,
+/* The selection of a type at index 1, raising when it is something else. */
+static tl_lua_selection *selection_of(lua_State *L, const char *type, const char *items,
                                       const char *method)
 {
     tl_lua_selection *selection = luaL_testudata(L, 1, type);
@@ -33,7 +41,7 @@ tl_lua_selection *tl_lua_selection_of(lua_State *L, const char *type, const char
 static tl_lua_selection *self(lua_State *L, const char *method)
 {
     const tl_lua_kind *kind = lua_touserdata(L, lua_upvalueindex(1));
-    return tl_lua_selection_of(L, kind->selection_type, kind->items, method);
+    return selection_of(L, kind->selection_type, kind->items, method);
 }
 
 static int selection_collect(lua_State *L)
@@ -56,6 +64,99 @@ static int selection_text(lua_State *L)
     tl_lua_selection *selection = self(L, "tostring");
     lua_pushfstring(L, "selection of %I %s", (lua_Integer)selection->count,
                     selection->count == 1 ? selection->kind->item : selection->kind->items);
+    return 1;
+}
+
+/* ---------------------------------------------------------------- one field of all --------
+ *
+ * Selection:values(field): one field of all blocks or contacts of a selection, as a list. */
+
+/* Whether the second argument of `values` asks for a flat list. */
+static bool wants_flat(lua_State *L)
+{
+    if (lua_isnoneornil(L, 3))
+        return false;
+    if (lua_isboolean(L, 3))
+        return lua_toboolean(L, 3);
+    const char *how = lua_type(L, 3) == LUA_TSTRING ? lua_tostring(L, 3) : "";
+    if (strcmp(how, "flat") != 0 && strcmp(how, "nested") != 0)
+        tl_lua_fail(L, "values: how to list must be \"flat\" or \"nested\", not %s",
+                    tl_lua_describe(L, 3));
+    return strcmp(how, "flat") == 0;
+}
+
+/* The field of a name, or NULL. */
+static const tl_field *field_named(const tl_lua_kind *kind, const char *name, size_t *index)
+{
+    size_t count;
+    const tl_field *fields = kind->fields(&count);
+    for (*index = 0; *index < count; (*index)++)
+        if (strcmp(fields[*index].name, name) == 0)
+            return &fields[*index];
+    return NULL;
+}
+
+/* Texts, truths, tensors and ids: as single items give them. */
+static void push_items(lua_State *L, const tl_lua_selection *selection, const tl_field *field,
+                       size_t index)
+{
+    lua_createtable(L, (int)selection->count, 0);
+    for (size_t i = 0; i < selection->count; i++) {
+        tl_model *model = tl_lua_living(L, selection->owner);
+        tl_field_value value;
+        tl_lua_ok(L, model, selection->kind->field(model, selection->ids[i], index, &value));
+        tl_lua_push_field(L, field->kind, &value);
+        lua_rawseti(L, -2, (lua_Integer)i + 1);
+    }
+}
+
+/* Numbers, one by one. */
+static void push_flat(lua_State *L, const double *values, size_t count, bool whole)
+{
+    lua_createtable(L, (int)count, 0);
+    for (size_t i = 0; i < count; i++) {
+        if (whole)
+            lua_pushinteger(L, (lua_Integer)values[i]);
+        else
+            lua_pushnumber(L, values[i]);
+        lua_rawseti(L, -2, (lua_Integer)i + 1);
+    }
+}
+
+static void push_nested(lua_State *L, const double *values, size_t count, size_t width)
+{
+    lua_createtable(L, (int)count, 0);
+    for (size_t i = 0; i < count; i++) {
+        tl_lua_push_numbers(L, values + i * width, width);
+        lua_rawseti(L, -2, (lua_Integer)i + 1);
+    }
+}
+
+/* selection:values(field) */
+static int tl_lua_selection_values(lua_State *L, const tl_lua_selection *selection)
+{
+    tl_lua_arity(L, 3, "values");
+    const char *name = tl_lua_text(L, 2, "values", "the field's name");
+    bool flat = wants_flat(L);
+    size_t index;
+    const tl_field *field = field_named(selection->kind, name, &index);
+    tl_field_kind kind = field ? field->kind : TL_FIELD_SCALAR;
+    if (kind == TL_FIELD_TEXT || kind == TL_FIELD_BOOL || (kind == TL_FIELD_SYM3 && !flat)) {
+        push_items(L, selection, field, index);
+        return 1;
+    }
+    tl_model *model = tl_lua_living(L, selection->owner);
+    size_t width, count = selection->count;
+    tl_lua_ok(L, model, selection->kind->values(model, NULL, 0, name, NULL, &width));
+    double *values = lua_newuserdatauv(L, (count * width + 1) * sizeof *values, 0);
+    tl_lua_ok(L, model,
+              selection->kind->values(model, selection->ids, count, name, values, &width));
+    if (flat || width == 1)
+        push_flat(L, values, count * width, kind == TL_FIELD_COUNT || kind == TL_FIELD_IDS);
+    else if (kind == TL_FIELD_IDS)
+        push_items(L, selection, field, index);
+    else
+        push_nested(L, values, count, width);
     return 1;
 }
 
@@ -201,6 +302,70 @@ static int selection_min(lua_State *L)
 static int selection_values(lua_State *L)
 {
     return tl_lua_selection_values(L, self(L, "values"));
+}
+
+/* ---------------------------------------------------------------- verbs of blocks -------------------
+ *
+ * What all verbs of selections of blocks share: whom they act on, and how they end. */
+
+/* Lets go of the functions of drives that have ended. */
+static void sweep_drives(lua_State *L, int model_index)
+{
+    lua_getiuservalue(L, model_index, 1);
+    for (lua_pushnil(L); lua_next(L, -2);) {
+        const tl_lua_anchor *a = lua_touserdata(L, -1);
+        lua_pop(L, 1);
+        if (a->ended) {
+            lua_pushnil(L);
+            lua_rawsetp(L, -3, a);
+        }
+    }
+    lua_pop(L, 1);
+}
+
+tl_lua_selection *tl_lua_blocks_self(lua_State *L, int most, const char *method)
+{
+    tl_lua_selection *blocks = selection_of(L, TL_LUA_BLOCKS, "blocks", method);
+    tl_lua_living(L, blocks->owner);
+    tl_lua_arity(L, most, method);
+    lua_settop(L, most);
+    return blocks;
+}
+
+/* Says once for each place in a script that a verb had nothing to act on. */
+static void remark_empty(lua_State *L, const char *verb, const char *done)
+{
+    luaL_getsubtable(L, LUA_REGISTRYINDEX, "talus.remarks");
+    tl_lua_push_where(L);
+    lua_pushfstring(L,
+                    "%s: the selection is empty: no block was %s; see what model:blocks{...} finds",
+                    verb, done);
+    lua_concat(L, 2);
+    lua_pushvalue(L, -1);
+    if (lua_rawget(L, -3) == LUA_TNIL) {
+        tl_lua_log(tl_lua_options_of(L), lua_tostring(L, -2));
+        lua_pushvalue(L, -2);
+        lua_pushboolean(L, true);
+        lua_rawset(L, -5);
+    }
+    lua_pop(L, 3);
+}
+
+int tl_lua_blocks_acted(lua_State *L, const tl_lua_selection *blocks, const char *verb,
+                        const char *done, tl_status status)
+{
+    if (blocks->count == 0 && status == TL_OK)
+        remark_empty(L, verb, done);
+    return tl_lua_blocks_done(L, blocks, status);
+}
+
+int tl_lua_blocks_done(lua_State *L, const tl_lua_selection *blocks, tl_status status)
+{
+    tl_lua_ok(L, blocks->owner->model, status);
+    lua_getiuservalue(L, 1, 1);
+    sweep_drives(L, lua_gettop(L)); /* the verb may have ended a drive */
+    lua_settop(L, 1);
+    return 1;
 }
 
 /* ---------------------------------------------------------------- filter ----------------- */

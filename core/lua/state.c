@@ -1,14 +1,23 @@
 /* state.c - a model once more: model:copy(), model:save(path), talus.restore(path).
  *
  * The functions of drives and histories belong to the script. A copy shares them; no file keeps them, so they are given again to
- * restore (those of histories: history_again.c). Either way the anchors they hang on (action.c) are made before the kernel asks for them, for it must not be left by a Lua error. */
-#include "front.h"
+ * restore (those of histories: history.c). Either way the anchors they hang on (action.c) are made before the kernel asks for them, for it must not be left by a Lua error. */
+#include "lua/state.h"
+
+#include "lua/action.h"
+#include "lua/convert.h"
+#include "lua/fail.h"
+#include "lua/front.h"
+#include "lua/history.h"
+#include "lua/living.h"
 
 #include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-const tl_lua_key tl_lua_restore_keys[] = {
+static const tl_lua_key restore_keys[] = {
     {"threads", "whole number",
      "threads, in [1, 256]; default: as of talus.model. Results are the same bits for any number"},
     {"drives", "{BLOCK = function(t)}",
@@ -90,7 +99,7 @@ static void tell_weight(lua_State *L, const tl_model *model)
     lua_gc(L, LUA_GCSTEP, kilobytes < INT_MAX / 2 ? (int)kilobytes : INT_MAX / 2);
 }
 
-int tl_lua_copy(lua_State *L)
+static int model_copy(lua_State *L)
 {
     tl_model *model = tl_lua_model_of(L, "copy");
     tl_lua_arity(L, 1, "copy");
@@ -107,7 +116,7 @@ int tl_lua_copy(lua_State *L)
 
 /* ---------------------------------------------------------------- files ------------------ */
 
-int tl_lua_save(lua_State *L)
+static int model_save(lua_State *L)
 {
     tl_model *model = tl_lua_model_of(L, "save");
     tl_lua_arity(L, 2, "save");
@@ -184,7 +193,7 @@ static void read_threads(lua_State *L, int64_t *threads)
 /* Checks the options at index 2, and pushes an object without a model, and what they give for its drives. */
 static drive_bindings *read_options(lua_State *L, int64_t *threads, tl_lua_model **object)
 {
-    const tl_lua_spec spec = {"talus.restore", NULL, 0, tl_lua_restore_keys};
+    const tl_lua_spec spec = {"talus.restore", NULL, 0, restore_keys};
     tl_lua_read(L, 2, &spec, false, NULL);
     lua_settop(L, 2);
     read_threads(L, threads);
@@ -194,7 +203,7 @@ static drive_bindings *read_options(lua_State *L, int64_t *threads, tl_lua_model
     return push_block_bindings(L, 3);
 }
 
-int tl_lua_restore(lua_State *L)
+static int module_restore(lua_State *L)
 {
     tl_lua_arity(L, 2, "talus.restore");
     lua_settop(L, 2);
@@ -217,7 +226,7 @@ int tl_lua_restore(lua_State *L)
 }
 
 /* talus.resumed(options): as talus.restore of the script's last save; nil without --resume, or when nothing was saved. */
-int tl_lua_resumed(lua_State *L)
+static int module_resumed(lua_State *L)
 {
     tl_lua_arity(L, 1, "talus.resumed");
     lua_settop(L, 1);
@@ -232,9 +241,83 @@ int tl_lua_resumed(lua_State *L)
         lua_pushnil(L);
         return 1;
     }
-    lua_pushcfunction(L, tl_lua_restore);
+    lua_pushcfunction(L, module_restore);
     lua_pushstring(L, options->save_path);
     lua_pushvalue(L, 2);
     lua_call(L, 2, 1);
     return 1;
 }
+
+/* ---------------------------------------------------------------- runs that are saved as they go ---
+ *
+ * Runs that are saved as they go: `talus run --autosave MINUTES SCRIPT` saves the model that runs, from time to time, in a
+ * file beside the script, and after `talus run --resume SCRIPT` talus.resumed() gives it back. When a save happens goes by the
+ * clock, which is no harm: saving does not change a run. */
+
+#define ENDING ".autosave.talus"
+
+char *tl_lua_autosave_path(const char *script)
+{
+    size_t room = strlen(script) + sizeof ENDING;
+    char *path = malloc(room);
+    if (path)
+        snprintf(path, room, "%s%s", script, ENDING);
+    return path;
+}
+
+void tl_lua_autosave(tl_lua_options *options, tl_model *model)
+{
+    if (!(options->autosave > 0) || !options->save_path)
+        return;
+    double now = tl_lua_clock();
+    if (options->save_due == 0) /* the first step of all */
+        options->save_due = now + options->autosave;
+    if (now < options->save_due)
+        return;
+    options->save_due = now + options->autosave;
+    if (tl_model_save(model, options->save_path) !=
+        TL_OK) { /* the run is worth more than its save */
+        char text[TL_ERROR_TEXT + 32];
+        snprintf(text, sizeof text, "autosave: %s", tl_model_error(model)->text);
+        tl_lua_log(options, text);
+    }
+}
+
+const tl_lua_topic tl_lua_state_topics[] = {
+    {.name = "copy",
+     .usage = "twin = model:copy()",
+     .doc =
+         "The same model once more in memory: equal state, and equal bits after equal calls from "
+         "then on. The functions of drives are shared; frames of the copy begin with 0.",
+     .of = TL_LUA_OF_MODEL,
+     .call = model_copy},
+    {.name = "save",
+     .usage = "model:save(\"out/run.talus\")",
+     .doc =
+         "Saves all that the next steps depend on, to the bit, compressed and with checksums. The "
+         "file appears whole or not at all, in the place of an older one, and outlives a crash "
+         "of the machine; folders are made. The model goes on as if it had not been saved. "
+         "Histories are saved with all their samples; functions of drives and histories are not. "
+         "Frames of files go on with the next number.",
+     .of = TL_LUA_OF_MODEL,
+     .call = model_save},
+    {.name = "restore",
+     .usage = "model = talus.restore(\"out/run.talus\", {threads = 2})",
+     .doc =
+         "The model that a file holds: it goes on as the saved one does, to the bit, on any number "
+         "of threads. Laws and damping must be loaded in the version that it was saved with. A "
+         "damaged file, and one of another format, is refused.",
+     .keys = restore_keys,
+     .of = TL_LUA_OF_MODULE,
+     .call = module_restore},
+    {.name = "resumed",
+     .usage = "model = talus.resumed()",
+     .doc =
+         "The model that `talus run --autosave MINUTES SCRIPT` saved last, after `talus run "
+         "--resume "
+         "SCRIPT`; nil when the script is not resumed, or nothing was saved. Takes the options of "
+         "talus.restore. The file lies beside the script: SCRIPT.autosave.talus.",
+     .of = TL_LUA_OF_MODULE,
+     .call = module_resumed},
+    {.name = NULL},
+};

@@ -1,11 +1,18 @@
 /* view.c - model:view{...}: a model that is seen, and worked on, while it runs.
  *
  * Frames are shown after steps, commands are done between two steps, and a run that is paused waits there. What is done is a line
- * of Lua (view_line.c), which is logged: on standard error, on the page and, with `log`, in a file. In front of each line stand the
+ * of Lua, which is logged: on standard error, on the page and, with `log`, in a file. In front of each line stand the
  * steps made since the line before, so the lines one after the other repeat the work.
  *
  * What goes wrong in a command is told to those who look, and ends nothing. */
-#include "view.h"
+#include "lua/view.h"
+
+#include "lua/convert.h"
+#include "lua/fail.h"
+#include "lua/front.h"
+#include "lua/interrupt.h"
+#include "lua/living.h"
+#include "lua/page.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -17,7 +24,7 @@
 /* Chunk name of commands, which is in front of their errors. */
 #define CHUNK "view"
 
-const tl_lua_key tl_lua_view_keys[] = {
+static const tl_lua_key view_keys[] = {
     TL_LUA_PAGE_KEYS,
     {"wait", "true or false",
      "whether view waits, and does what is asked for on the page, until \"go\" is pressed there"},
@@ -34,7 +41,7 @@ static const tl_lua_key again_keys[] = {
     {NULL, NULL, NULL},
 };
 
-typedef struct tl_lua_view {
+typedef struct tl_lua_viewing {
     tl_view *view;
     char *prefix;
     FILE *log;
@@ -146,6 +153,153 @@ bool tl_lua_view_step(lua_State *L, double worth)
     return true;
 }
 
+/* ---------------------------------------------------------------- commands as lines of Lua ---
+ *
+ * Commands of those who look at a model, as lines of Lua: what is done is what is logged, so a log repeats it.
+ *
+ * Numbers have the digits that give back the same double. */
+
+/* Digits of a number at least. */
+#define DIGITS 6
+
+/* A text in quotes, with what could end it or its line as numbers. */
+static void add_text(luaL_Buffer *line, const char *text)
+{
+    luaL_addchar(line, '"');
+    for (; *text; text++) {
+        char number[8];
+        unsigned char letter = (unsigned char)*text;
+        if (letter == '"' || letter == '\\') {
+            luaL_addchar(line, '\\');
+            luaL_addchar(line, *text);
+        } else if (letter < ' ' || letter == 127) {
+            snprintf(number, sizeof number, "\\%03u", letter);
+            luaL_addstring(line, number);
+        } else {
+            luaL_addchar(line, *text);
+        }
+    }
+    luaL_addchar(line, '"');
+}
+
+static void add_numbers(luaL_Buffer *line, const double *values, size_t count)
+{
+    luaL_addstring(line, "{ ");
+    for (size_t i = 0; i < count; i++) {
+        luaL_addstring(line, i ? ", " : "");
+        tl_lua_add_number(line, values[i], DIGITS);
+    }
+    luaL_addstring(line, " }");
+}
+
+/* model:blocks { id = { 3, 5 } } */
+static void add_blocks(luaL_Buffer *line, const tl_view_command *command, bool hidden)
+{
+    double ids[TL_VIEW_BLOCKS];
+    for (size_t i = 0; i < command->block_count; i++)
+        ids[i] = command->blocks[i];
+    luaL_addstring(line, "model:blocks { id = ");
+    if (command->block_count == 1)
+        tl_lua_add_number(line, ids[0], DIGITS);
+    else
+        add_numbers(line, ids, command->block_count);
+    luaL_addstring(line, hidden ? ", hidden = \"any\" }" : " }");
+}
+
+static void add_cut(luaL_Buffer *line, const tl_view_command *command)
+{
+    const double origin[] = {command->origin.x, command->origin.y, command->origin.z};
+    luaL_addstring(line, "model:generate(\"joint\", { joint = ");
+    add_text(line, command->joint);
+    luaL_addstring(line, ", dip = ");
+    tl_lua_add_number(line, command->dip, DIGITS);
+    luaL_addstring(line, ", dip_direction = ");
+    tl_lua_add_number(line, command->dip_direction, DIGITS);
+    luaL_addstring(line, ", origin = ");
+    add_numbers(line, origin, 3);
+    luaL_addstring(line, " })");
+}
+
+static void add_friction(luaL_Buffer *line, const tl_view_command *command)
+{
+    luaL_addstring(line, "model:joint(");
+    add_text(line, command->joint);
+    luaL_addstring(line, ", { friction = ");
+    tl_lua_add_number(line, command->value, DIGITS);
+    luaL_addstring(line, " })");
+}
+
+/* model:METHOD("PREFIX" and the rest of the name) */
+static void add_file(luaL_Buffer *line, const char *method, const char *name)
+{
+    luaL_addstring(line, "model:");
+    luaL_addstring(line, method);
+    luaL_addchar(line, '(');
+    add_text(line, name);
+    luaL_addchar(line, ')');
+}
+
+/* Whether a block of the command is hidden: a selection then has to ask for it. */
+static bool any_hidden(tl_model *model, const tl_view_command *command)
+{
+    bool hidden = false;
+    for (size_t i = 0; i < command->block_count && !hidden; i++) {
+        tl_block_filter filter = tl_block_filter_default();
+        tl_id *found;
+        size_t count;
+        filter.id = command->blocks[i];
+        filter.hidden = 1;
+        if (tl_blocks_select(model, &filter, &found, &count) != TL_OK)
+            break;
+        hidden = count > 0;
+        free(found);
+    }
+    return hidden;
+}
+
+/* Pushes the line that does the command to `model`, or nil for one that only concerns the run (pause, go, step). False, with a
+ * sentence on the top of the stack in its place, when a block is not there. */
+static bool view_line(lua_State *L, tl_model *model, const tl_view_command *command,
+                      const char *prefix)
+{
+    luaL_Buffer line;
+    for (size_t i = 0; i < command->block_count; i++) {
+        if (tl_block_check(model, command->blocks[i]) != TL_OK) {
+            lua_pushfstring(L, "%s: %s", tl_view_op_name(command->op), tl_model_error(model)->text);
+            return false;
+        }
+    }
+    bool hidden = any_hidden(model, command);
+    char cycle[32];
+    snprintf(cycle, sizeof cycle, "_%09lld.talus", (long long)tl_model_cycles(model));
+    const char *name = lua_pushfstring(L, "%s%s", prefix, command->op == TL_VIEW_VTK ? "" : cycle);
+    luaL_buffinit(L, &line);
+    switch (command->op) {
+    case TL_VIEW_PAUSE:
+    case TL_VIEW_GO:
+    case TL_VIEW_STEP: break;
+    case TL_VIEW_CUT: add_cut(&line, command); break;
+    case TL_VIEW_FRICTION: add_friction(&line, command); break;
+    case TL_VIEW_VTK: add_file(&line, "write_vtk", name); break;
+    case TL_VIEW_SNAPSHOT: add_file(&line, "save", name); break;
+    default:
+        if (command->block_count > 0)
+            add_blocks(&line, command, hidden);
+        else
+            luaL_addstring(&line, "model:blocks { hidden = true }");
+        luaL_addchar(&line, ':');
+        luaL_addstring(&line, tl_view_op_name(command->op));
+        luaL_addstring(&line, "()");
+    }
+    luaL_pushresult(&line);
+    lua_remove(L, -2);
+    if (lua_rawlen(L, -1) == 0) {
+        lua_pop(L, 1);
+        lua_pushnil(L);
+    }
+    return true;
+}
+
 /* ---------------------------------------------------------------- commands --------------- */
 
 /* Runs protected: finds the line of a command and does it. Arguments: the model, the command. Gives the line, nil when there is
@@ -153,7 +307,7 @@ bool tl_lua_view_step(lua_State *L, double worth)
 static int do_line(lua_State *L)
 {
     const tl_view_command *command = lua_touserdata(L, 2);
-    if (!tl_lua_view_line(L, model_of(L), command, view_of(L)->prefix))
+    if (!view_line(L, model_of(L), command, view_of(L)->prefix))
         return lua_error(L);
     if (lua_isnil(L, -1))
         return 1;
@@ -337,10 +491,10 @@ static void refuse_again(lua_State *L, const viewing *v)
 /* Pushes the keys that a call may have: those of view, and the parameters of the screen. */
 static const tl_lua_key *push_keys(lua_State *L, const tl_kind *screen)
 {
-    size_t own = sizeof tl_lua_view_keys / sizeof tl_lua_view_keys[0] - 1,
+    size_t own = sizeof view_keys / sizeof view_keys[0] - 1,
            more = screen ? screen->param_count : 0;
     tl_lua_key *keys = lua_newuserdatauv(L, (own + more + 1) * sizeof *keys, 0);
-    memcpy(keys, tl_lua_view_keys, own * sizeof *keys);
+    memcpy(keys, view_keys, own * sizeof *keys);
     for (size_t i = 0; i < more; i++)
         keys[own + i] = (tl_lua_key){screen->params[i].name, "", ""};
     keys[own + more] = (tl_lua_key){NULL, NULL, NULL};
@@ -400,7 +554,7 @@ static void wait_for_go(lua_State *L, viewing *v)
         lua_error(L);
 }
 
-int tl_lua_view(lua_State *L)
+static int model_view(lua_State *L)
 {
     tl_lua_model *owner = lua_touserdata(L, TL_LUA_AT_MODEL);
     tl_lua_model_of(L, "view");
@@ -438,3 +592,15 @@ int tl_lua_view(lua_State *L)
         wait_for_go(L, owner->view);
     return 1;
 }
+
+const tl_lua_topic tl_lua_view_topics[] = {
+    {.name = "view",
+     .usage = "address = model:view{title = \"Slope\"}",
+     .function = "view",
+     .keys = view_keys,
+     .has_type = true,
+     .type = TL_KIND_SCREEN,
+     .of = TL_LUA_OF_MODEL,
+     .call = model_view},
+    {.name = NULL},
+};

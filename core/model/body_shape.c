@@ -1,6 +1,10 @@
 /* body_shape.c - how large, how small and how thin a body is, however many parts it has. */
 #include "model/body_shape.h"
 
+#include "geometry/hull.h"
+#include "geometry/make.h"
+#include "geometry/measure.h"
+
 #include <stdlib.h>
 #include <string.h>
 #include <talus/elementary.h>

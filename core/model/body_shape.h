@@ -1,4 +1,4 @@
-/* body_shape.h - how small and how thin a body is (body_shape.c). */
+/* body_shape.h - how small and how thin a body is. */
 #ifndef TL_MODEL_BODY_SHAPE_H
 #define TL_MODEL_BODY_SHAPE_H
 

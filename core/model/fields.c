@@ -1,5 +1,6 @@
 /* fields.c - what can be asked of a block: its named fields and its shape in place. */
 #include "model/model.h"
+#include "model/regroup.h"
 
 #include <assert.h>
 #include <stdlib.h>

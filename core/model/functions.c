@@ -5,6 +5,7 @@
  * were named. What a table of parameters cannot express (functions, nested tables, lists of
  * blocks) belongs to the front end, which adds it to the help. */
 #include "model/model.h"
+#include "model/options.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,4 +1,9 @@
 /* life.c - a model is made and destroyed. */
+#include "base/parallel.h"
+#include "geometry/make.h"
+#include "model/histories.h"
+#include "model/joints.h"
+#include "model/loads.h"
 #include "model/model.h"
 #include "model/options.h"
 
@@ -96,10 +101,8 @@ void tl_model_destroy(tl_model *m)
         m->detect_destroy(m->stepped);
     if (m->cycle)
         m->cycle_destroy(m->cycle);
-    if (m->vtk)
-        m->vtk_destroy(m->vtk);
-    if (m->pages)
-        m->pages_destroy(m->pages);
+    if (m->outputs)
+        m->outputs_destroy(m->outputs);
     for (size_t i = 0; i < m->blocks.table.rows; i++)
         tl_poly_free(m->blocks.shape[i]);
     tl_table_free(&m->blocks.table);

@@ -1,8 +1,8 @@
 /* model.c - settings of a model, and the way from ids to rows. */
 #include "model/model.h"
-#include "model/options.h"
 
 #include "base/inside.h"
+#include "model/options.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -301,4 +301,11 @@ tl_vec3 tl_block_point_displacement(const tl_model *m, uint32_t row, tl_vec3 loc
 tl_vec3 tl_block_displacement(const tl_model *m, uint32_t row)
 {
     return tl_block_point_displacement(m, row, tl_block_local(m, row));
+}
+
+tl_status tl_model_go_on(tl_model *m)
+{
+    if (tl_model_interrupted(m))
+        return tl_fail(&m->error, TL_E_CANCELLED, "%s", tl_status_text(TL_E_CANCELLED));
+    return TL_OK;
 }

@@ -6,7 +6,6 @@
 #include "model/options.h"
 
 #include "base/error.h"
-#include "model/model.h"
 
 #include <math.h>
 #include <string.h>

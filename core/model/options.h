@@ -4,6 +4,16 @@
 
 #include <talus/talus.h>
 
+/* Default minimum area of field contacts, as a share of the smaller block's mean face area: none. Hart, Cundall and Lemos
+ * (1988) have 1 % of a face. */
+#define TL_AREA_FRACTION 0.0
+/* Default FRAC of (27), by the rule: one contact counts (Hart, Cundall and Lemos 1988), or all of a body. */
+#define TL_PAPER_FRACTION 0.1
+#define TL_BODY_FRACTION 0.5
+
+/* Default share of the mass that may be added for a longer step: what slides or falls is then as much slower at the most. */
+#define TL_MOST_ADDED 0.05
+
 /* Copies a caller's struct of options into the library's own, `own`: what the caller's headers did not know yet has its
  * default, and so has everything when `given` is NULL. Refuses a struct without size, or of headers newer than this
  * library. */

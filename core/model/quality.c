@@ -3,7 +3,9 @@
  *
  * Volumes are summed with the rounding carried along (Neumaier), so that what shows as an error of a
  * million blocks is the cuts' and not the sum's. */
+#include "geometry/measure.h"
 #include "model/model.h"
+#include "model/rows.h"
 
 /* A sum and what its rounding lost. */
 typedef struct careful_sum {

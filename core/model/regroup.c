@@ -3,7 +3,14 @@
  * A new body has the mass, momentum and angular momentum of its parts; relative motion of the parts is
  * lost, as in a perfectly plastic meeting. Its frame has the attitude of its lowest block's old body, so
  * parting and joining without motion changes nothing but the last digits. */
+#include "model/regroup.h"
+
+#include "geometry/make.h"
+#include "geometry/measure.h"
+#include "geometry/seam.h"
+#include "model/loads.h"
 #include "model/model.h"
+#include "model/rows.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -534,4 +541,51 @@ tl_status tl_blocks_unjoin(tl_model *m, const tl_id *ids, size_t count)
     if (status == TL_OK)
         status = check_spin(m, ids, count);
     return status == TL_OK && count > 0 ? regroup_by(m, ids, count, part_groups) : status;
+}
+
+/* ---------------------------------------------------------------- rows set aside ----------
+ *
+ * What a change of many rows needs so that it can be taken back: copies of the rows as they were. The model must look
+ * as if nothing had been tried, to the counts of changes, by which caches tell that they are out of date. */
+
+bool tl_rows_set_aside(tl_model *m, tl_aside *aside)
+{
+    tl_rows_tidy(m);
+    aside->blocks = m->blocks;
+    aside->bodies = m->bodies;
+    bool blocks = tl_table_copy(&aside->blocks.table, &aside->blocks, &m->blocks.table);
+    bool bodies = tl_table_copy(&aside->bodies.table, &aside->bodies, &m->bodies.table);
+    if (!blocks || !bodies) {
+        tl_table_free(&aside->blocks.table);
+        tl_table_free(&aside->bodies.table);
+        return false;
+    }
+    aside->next_id = m->next_id;
+    aside->structure = m->structure;
+    aside->constraints = m->constraints;
+    tl_drives_hold(m);
+    return true;
+}
+
+void tl_rows_take_back(tl_model *m, tl_aside *aside)
+{
+    tl_table_free(&m->blocks.table);
+    tl_table_free(&m->bodies.table);
+    m->blocks = aside->blocks;
+    m->bodies = aside->bodies;
+    m->blocks.table.owner = &m->blocks;
+    m->bodies.table.owner = &m->bodies;
+    m->next_id = aside->next_id;
+    m->extremes.known = false;
+    tl_rows_refresh(m);
+    tl_drives_settle(m);
+    m->structure = aside->structure;
+    m->constraints = aside->constraints;
+}
+
+void tl_rows_settle(tl_model *m, tl_aside *aside)
+{
+    tl_table_free(&aside->blocks.table);
+    tl_table_free(&aside->bodies.table);
+    tl_drives_settle(m);
 }

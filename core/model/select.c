@@ -1,7 +1,10 @@
 /* select.c - which blocks: the filters of a selection. Positions are the present ones and boundaries
  * are included. */
+#include "geometry/measure.h"
+#include "model/joints.h"
 #include "model/model.h"
 #include "model/options.h"
+#include "model/rows.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,7 +1,12 @@
 /* verbs.c - what can be done to a set of blocks. A stale id or a bad value fails the whole call before
  * anything is changed. */
+#include "geometry/make.h"
+#include "model/joints.h"
+#include "model/loads.h"
 #include "model/model.h"
 #include "model/options.h"
+#include "model/regroup.h"
+#include "model/rows.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,4 +1,4 @@
-/* walk.h - the entries of a model (walk.c). */
+/* walk.h - the entries of a model. */
 #ifndef TL_MODEL_WALK_H
 #define TL_MODEL_WALK_H
 

@@ -1,4 +1,4 @@
-/* coarse_test.h - the coarse test of a pair, by libccd (coarse_test.c). */
+/* coarse_test.h - the coarse test of a pair, by libccd. */
 #ifndef TL_NARROW_COARSE_TEST_H
 #define TL_NARROW_COARSE_TEST_H
 

@@ -5,6 +5,7 @@
  * without the corner, so that a corner that comes or goes while blocks wobble does not change the force. */
 #include "narrow/common_polygon.h"
 
+#include "narrow/polygon.h"
 #include "narrow/scratch.h"
 
 #include <string.h>

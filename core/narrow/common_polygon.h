@@ -1,4 +1,4 @@
-/* common_polygon.h - the common polygon of two faces on each other (common_polygon.c). */
+/* common_polygon.h - the common polygon of two faces on each other. */
 #ifndef TL_NARROW_COMMON_POLYGON_H
 #define TL_NARROW_COMMON_POLYGON_H
 

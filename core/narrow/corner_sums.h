@@ -1,10 +1,9 @@
-/* corner_sums.h - the patch of two flush faces with springs at its corners, in the press of a pair (corner_sums.c). */
+/* corner_sums.h - the patch of two flush faces with springs at its corners, in the press of a pair. */
 #ifndef TL_NARROW_CORNER_SUMS_H
 #define TL_NARROW_CORNER_SUMS_H
 
-#include "narrow/view.h"
-
 #include "narrow/narrow.h"
+#include "narrow/view.h"
 
 /* Two flush faces, and the planes where they press, in A's frame: moved out, and leaning. */
 typedef struct tl_corner_faces {

@@ -8,7 +8,7 @@
  * between two cells, G = sum |n_i - n_j| / 2 int d^2 dS and V = sum |n_i - n_j| int d dS, and over the borders. No term
  * between cells is negative.
  *
- * Of a block whose faces that bound K meet in a point S alone tells the share in G (apex.c).
+ * Of a block whose faces that bound K meet in a point S alone tells the share in G.
  *
  * Without borders a face has a cell only if it bounds K: from any point of its cell the way along its normal stays in K to the
  * face. So the faces that bounded K at another time are enough for all polygons, while they still enclose K and nothing else:
@@ -18,7 +18,6 @@
 #include "narrow/field.h"
 
 #include "base/inline.h"
-#include "narrow/apex.h"
 #include "narrow/field_lanes.h"
 #include "narrow/mesh_draft.h"
 
@@ -263,6 +262,124 @@ static void take(work *w, int l)
         add_border(w, l);
 }
 
+/* ---------------------------------------------------------------- apexes ------------------
+ *
+ * The energy of a block's cells from the surface S alone.
+ *
+ * Mostly a corner, an edge or a face is pressed in, and all planes of a block that bound K meet in one point x_0, its apex.
+ * There d is homogeneous about x_0 in the cells of this block: (x - x_0) d has the divergence 4 d, x - x_0 has 3, and on the
+ * faces both are tangents. So S alone gives the block's share in G, int d (x - x_0) . n dS / 4, and the polygons between its
+ * cells are not needed. The same holds of d^n, with n + 3 for 4. A face q that passes by x_0 at the depth d_q adds d_q V_q / 4, with the volume V_q of its cell: for
+ * that the polygons between this cell and the others are needed. */
+
+/* What of a direction does not leave the planes that hold an apex. */
+static tl_vec3 within(const tl_apex *p, tl_vec3 way)
+{
+    for (int i = 0; i < p->count; i++)
+        way = tl_v3_madd(way, -p->per[i] * tl_v3_dot(p->held[i], way), p->held[i]);
+    return way;
+}
+
+/* Whether an apex lies in a plane, and all points that it may be do. */
+static bool holds(const tl_apex *p, const tl_field_faces *f, uint32_t face, double one_plane)
+{
+    tl_vec3 n = tl_field_normal(f, face);
+    return fabs(f->c[face] - tl_v3_dot(n, p->x)) <= one_plane &&
+           (p->count == 3 || tl_v3_norm2(within(p, n)) < TL_FIELD_ALIKE * TL_FIELD_ALIKE);
+}
+
+/* From where it is, the point goes on to one plane more, along those before; false: the plane has nearly their directions. */
+static bool hold(tl_apex *p, const tl_field_faces *f, uint32_t face, double least2)
+{
+    tl_vec3 n = tl_field_normal(f, face), way = within(p, n);
+    double sine2 = tl_v3_norm2(way);
+    if (!(sine2 > least2))
+        return false;
+    p->held[p->count] = way;
+    p->per[p->count] = 1 / sine2;
+    p->x = tl_v3_madd(p->x, (f->c[face] - tl_v3_dot(n, p->x)) * p->per[p->count], way);
+    p->count++;
+    return true;
+}
+
+/* Which of some faces of a block, all of which bound K, hold an apex. Planes are one within the offset `one_plane`. Faces that
+ * pass by are allowed where the volume is not wanted. */
+static tl_apex_faces apex_choose(const tl_field_faces *f, const uint16_t *face, uint32_t count,
+                                 double one_plane)
+{
+    tl_apex p = {.count = 0};
+    tl_apex_faces out = {.known = true};
+    uint32_t left[TL_FIELD_KNOWN], more = 0;
+    for (uint32_t k = 0; k < count; k++) {
+        if (p.count < 3 && hold(&p, f, face[k], TL_FIELD_STEEP * TL_FIELD_STEEP))
+            out.held[out.holds++] = (uint8_t)face[k];
+        else
+            left[more++] = face[k];
+    }
+    for (uint32_t k = 0; k < more && out.known; k++)
+        if (!holds(&p, f, left[k], one_plane)) {
+            out.known = f->energy_only && out.strays < TL_APEX_STRAYS;
+            if (out.known)
+                out.stray[out.strays++] = (uint8_t)left[k];
+        }
+    return out;
+}
+
+tl_apex tl_apex_find(const tl_field_faces *f, const tl_apex_faces *by)
+{
+    tl_apex p = {.known = by->known, .strays = by->strays};
+    for (uint32_t k = 0; k < by->holds && by->known; k++)
+        hold(&p, f, by->held[k], 0);
+    for (uint32_t k = 0; k < by->strays; k++)
+        p.stray[k] = by->stray[k];
+    return p;
+}
+
+/* Whether the polygon between the cells of two faces of the block is needed. */
+static bool apex_needs(const tl_apex *p, uint32_t face, uint32_t other)
+{
+    bool needed = !p->known;
+    for (uint32_t k = 0; k < p->strays; k++)
+        needed = needed || p->stray[k] == face || p->stray[k] == other;
+    return needed;
+}
+
+/* The flux of -n_face d, whose divergence is 1 in the cell, and which vanishes on the face. */
+void tl_apex_add_side(tl_apex *p, const tl_field_faces *f, uint32_t face, tl_vec3 n, double d)
+{
+    for (uint32_t k = 0; k < p->strays; k++)
+        if (p->stray[k] == face)
+            p->volume[k] += tl_v3_dot(n, tl_field_normal(f, face)) * d;
+}
+
+/* Of the points that an apex may be, that nearest the centre of pressure is taken: roundings of the force count by the way
+ * from there. */
+void tl_apex_add_shares(const tl_apex apex[2], const tl_field_faces *f, double by_force,
+                        double by_swept, const double by_power[TL_FIELD_POWERS],
+                        tl_field_sums *sums)
+{
+    if (!(sums->pressure > 0))
+        return;
+    tl_vec3 centre = tl_v3_scale(1 / sums->pressure, sums->pressed);
+    for (int of_b = 0; of_b < 2; of_b++) {
+        const tl_apex *p = &apex[of_b];
+        if (!p->known)
+            continue;
+        double side = of_b ? -1 : 1; /* n points into the cells of A */
+        tl_vec3 x = tl_v3_add(p->x, within(p, tl_v3_sub(centre, p->x)));
+        sums->energy += 0.25 * side * (tl_v3_dot(x, sums->force) - by_force);
+        sums->volume += (1.0 / 3) * side * (tl_v3_dot(x, sums->swept) - by_swept);
+        for (int k = 0; k < TL_FIELD_POWERS && f->powers; k++)
+            sums->powers[k].whole +=
+                side * (tl_v3_dot(x, sums->powers[k].force) - by_power[k]) / (5 + k);
+        for (uint32_t k = 0; k < p->strays; k++) {
+            uint32_t face = p->stray[k];
+            sums->energy +=
+                0.25 * (f->c[face] - tl_v3_dot(tl_field_normal(f, face), x)) * p->volume[k];
+        }
+    }
+}
+
 /* ---------------------------------------------------------------- polygons --------------- */
 
 /* Puts a plane into a row, in the lanes from `lane` on. */
@@ -445,15 +562,15 @@ static void put_pair(work *w, pair *of, bool only_bounding)
     of->apex[0] = of->apex[1] = (tl_apex){.known = false};
     of->by[0] = of->by[1] = (tl_apex_faces){.known = false};
     if (only_bounding) {
-        of->by[0] = tl_apex_choose(f, number, a, of->one_plane);
-        of->by[1] = tl_apex_choose(f, number + a, real - a, of->one_plane);
+        of->by[0] = apex_choose(f, number, a, of->one_plane);
+        of->by[1] = apex_choose(f, number + a, real - a, of->one_plane);
         of->apex[0] = tl_apex_find(f, &of->by[0]);
         of->apex[1] = tl_apex_find(f, &of->by[1]);
     }
     of->by_force = of->by_swept = of->by_power[0] = of->by_power[1] = 0;
     for (uint32_t i = 0; i < real; i++)
         for (uint32_t j = i + 1; j < real; j++)
-            if ((i < a) != (j < a) || tl_apex_needs(&of->apex[i >= a], number[i], number[j]))
+            if ((i < a) != (j < a) || apex_needs(&of->apex[i >= a], number[i], number[j]))
                 put_between(w, of, i, j);
     for (uint32_t k = real_faces(f); k < all_faces(f); k++)
         for (uint32_t face = 0; face < real_faces(f); face++) {

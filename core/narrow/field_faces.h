@@ -23,7 +23,7 @@ typedef struct tl_mesh_inner {
     uint8_t face[TL_MESH_INNER][3];
 } tl_mesh_inner;
 
-/* Faces that may pass by the point in which the others of a block meet: apex.h. */
+/* Faces that may pass by the point in which the others of a block meet: field.h. */
 #define TL_APEX_STRAYS 2
 
 /* The apex of some faces of a block: up to three of them hold it, and some pass by. */

@@ -1,4 +1,4 @@
-/* field_lanes.h - eight polygons of a pressure field side by side: their lines, and the integrals over them (field_lanes.c). */
+/* field_lanes.h - eight polygons of a pressure field side by side: their lines, and the integrals over them. */
 #ifndef TL_NARROW_FIELD_LANES_H
 #define TL_NARROW_FIELD_LANES_H
 

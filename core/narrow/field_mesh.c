@@ -21,7 +21,7 @@
 #include "narrow/field_mesh.h"
 
 #include "base/inline.h"
-#include "narrow/apex.h"
+#include "narrow/field.h"
 #include "narrow/field_lanes.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
 /* field_mesh.h - the polygons of a pressure field at one place, by the planes that make their corners, and what they are at
- * another (field_mesh.c). */
+ * another. */
 #ifndef TL_NARROW_FIELD_MESH_H
 #define TL_NARROW_FIELD_MESH_H
 

@@ -1,4 +1,4 @@
-/* flush.h - how far two faces on each other press as one patch, and where the points of that are (flush.c). */
+/* flush.h - how far two faces on each other press as one patch, and where the points of that are. */
 #ifndef TL_NARROW_FLUSH_H
 #define TL_NARROW_FLUSH_H
 

@@ -5,7 +5,7 @@
 
 #include "base/inline.h"
 #include "geometry/polyhedron.h"
-#include "narrow/point2.h"
+#include "narrow/corner.h"
 
 #include <talus/vmath.h>
 

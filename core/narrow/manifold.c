@@ -5,8 +5,10 @@
  * tilt. A field contact has two points at the centre of its pressure (facet.h). */
 #include "narrow/manifold.h"
 
+#include "geometry/measure.h"
 #include "narrow/flush.h"
 #include "narrow/patch.h"
+#include "narrow/press.h"
 #include "narrow/scratch.h"
 
 /* Part of the limits of a patch within which a field contact becomes one: so none changes to and fro. */

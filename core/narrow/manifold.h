@@ -1,4 +1,4 @@
-/* manifold.h - what touches: a patch of two flush faces, a field contact, or nothing (manifold.c). */
+/* manifold.h - what touches: a patch of two flush faces, a field contact, or nothing. */
 #ifndef TL_NARROW_MANIFOLD_H
 #define TL_NARROW_MANIFOLD_H
 

@@ -1,4 +1,4 @@
-/* mesh_draft.h - a new mesh of the polygons of a pressure field (mesh_draft.c). */
+/* mesh_draft.h - a new mesh of the polygons of a pressure field. */
 #ifndef TL_NARROW_MESH_DRAFT_H
 #define TL_NARROW_MESH_DRAFT_H
 

@@ -17,6 +17,7 @@
 #include "base/columns.h"
 #include "narrow/common_polygon.h"
 #include "narrow/flush.h"
+#include "narrow/polygon.h"
 #include "narrow/scratch.h"
 
 #include <stdlib.h>

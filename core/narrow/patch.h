@@ -1,4 +1,4 @@
-/* patch.h - the contact points of two faces on each other (patch.c). */
+/* patch.h - the contact points of two faces on each other. */
 #ifndef TL_NARROW_PATCH_H
 #define TL_NARROW_PATCH_H
 

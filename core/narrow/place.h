@@ -1,4 +1,4 @@
-/* place.h - block B of a pair brought into A's frame (place.c). */
+/* place.h - block B of a pair brought into A's frame. */
 #ifndef TL_NARROW_PLACE_H
 #define TL_NARROW_PLACE_H
 

@@ -1,9 +1,9 @@
-/* polygon.h - the common polygon of two faces in the plane of their patch (polygon.c). */
+/* polygon.h - the common polygon of two faces in the plane of their patch. */
 #ifndef TL_NARROW_POLYGON_H
 #define TL_NARROW_POLYGON_H
 
+#include "narrow/corner.h"
 #include "narrow/narrow.h"
-#include "narrow/point2.h"
 
 struct tl_patch_batch;
 

@@ -7,7 +7,7 @@
  *
  *     G = w G_f + (1 - w) G_p
  *
- * (share.c). So a patch under an initial stress, or opened by slip, passes into its field without a jump. The force is the gradient of
+ *. So a patch under an initial stress, or opened by slip, passes into its field without a jump. The force is the gradient of
  * all of it,
  *
  *     F = w F_f + (1 - w) F_p - (G_f - G_p) grad w.
@@ -25,12 +25,203 @@
 
 #include "base/columns.h"
 #include "narrow/corner_sums.h"
+#include "narrow/field.h"
 #include "narrow/field_mesh.h"
-#include "narrow/press_faces.h"
+#include "narrow/flush.h"
 #include "narrow/scratch.h"
-#include "narrow/share.h"
 
+#include <math.h>
+#include <stdlib.h>
 #include <talus/vmath.h>
+
+/* ---------------------------------------------------------------- faces that press --------
+ *
+ * The planes of the faces that press, where they are moved out and lean. */
+
+static bool press_reserve(tl_narrow_scratch *scratch, const tl_press_query query[], uint32_t count,
+                          tl_press_planes p[])
+{
+    size_t all = 0;
+    uint32_t faces[TL_FIELD_PAIRS];
+    for (uint32_t k = 0; k < count; k++) {
+        const tl_region *r = query[k].region;
+        faces[k] = r->a + r->b + r->border_a + r->border_b;
+        faces[k] = faces[k] > TL_FIELD_KNOWN ? faces[k] : TL_FIELD_KNOWN + 1; /* field_mesh.c */
+        all += faces[k];
+    }
+    if (4 * all > scratch->press_capacity) {
+        double *press = realloc(scratch->press, 8 * all * sizeof *press);
+        if (!press)
+            return false;
+        scratch->press = press;
+        scratch->press_capacity = 8 * all;
+    }
+    double *at = scratch->press;
+    for (uint32_t k = 0; k < count; k++) {
+        for (uint32_t axis = 0; axis < 3; axis++, at += faces[k])
+            p[k].faces.n[axis] = at;
+        p[k].faces.c = at;
+        at += faces[k];
+    }
+    return true;
+}
+
+static tl_plane plane_of(const tl_pair_view *view, bool of_b, uint32_t face)
+{
+    if (!of_b)
+        return view->a->plane[face];
+    return (tl_plane){view->normal_b[face],
+                      view->b->plane[face].offset + tl_v3_dot(view->normal_b[face], view->shift)};
+}
+
+static void add(tl_press_planes *p, tl_plane plane)
+{
+    p->faces.n[0][p->count] = plane.normal.x;
+    p->faces.n[1][p->count] = plane.normal.y;
+    p->faces.n[2][p->count] = plane.normal.z;
+    p->faces.c[p->count++] = plane.offset - tl_v3_dot(plane.normal, p->origin);
+}
+
+/* How far a face is moved out. */
+static double press_shift_of(const tl_press_query *of, bool of_b, uint32_t face)
+{
+    return face == (of_b ? of->shifted.b : of->shifted.a) ? 0.5 * of->shift : 0;
+}
+
+static bool is_moved(const tl_press_query *of, bool of_b, uint32_t face)
+{
+    return face == (of_b ? of->shifted.b : of->shifted.a) && (of->shift != 0 || of->lean);
+}
+
+/* Where a face of the two that are moved is. */
+static tl_plane moved_plane(const tl_press_query *of, bool of_b)
+{
+    tl_plane plane = plane_of(of->view, of_b, of_b ? of->shifted.b : of->shifted.a);
+    if (of->lean) {
+        plane = of->lean[of_b];
+        plane.normal = of_b ? tl_m3_mul(&of->view->turn, plane.normal) : plane.normal;
+        plane.offset += of_b ? tl_v3_dot(plane.normal, of->view->shift) : 0;
+    }
+    plane.offset += 0.5 * of->shift;
+    return plane;
+}
+
+/* Where a face presses, in A's frame. */
+static tl_plane pressing_plane(const tl_press_query *of, bool of_b, uint32_t face)
+{
+    return is_moved(of, of_b, face) ? moved_plane(of, of_b) : plane_of(of->view, of_b, face);
+}
+
+static void add_face(tl_press_planes *p, const tl_press_query *of, bool of_b, uint32_t face)
+{
+    add(p, pressing_plane(of, of_b, face));
+}
+
+static uint32_t add_faces(tl_press_planes *p, const tl_press_query *of, bool of_b, uint32_t begin,
+                          uint32_t count)
+{
+    for (uint32_t k = begin; k < begin + count; k++)
+        add_face(p, of, of_b, of->region->face[k]);
+    return count;
+}
+
+/* Adds faces on other parts; how many are seams through which something passes, with it. */
+static uint32_t add_covered(tl_press_planes *p, const tl_press_query *of, bool of_b, uint32_t begin,
+                            uint32_t count, uint32_t *seams)
+{
+    const tl_poly *poly = of_b ? of->view->b : of->view->a;
+    *seams = 0;
+    for (uint32_t k = begin; k < begin + count && !of->opens; k++)
+        *seams += poly->covered[of->region->face[k]] == TL_SEAM;
+    return add_faces(p, of, of_b, begin, count);
+}
+
+/* The faces that count for the field, or for the patch of the flush ones, with their borders. */
+static void press_list_field(tl_press_planes *p, const tl_press_query *of)
+{
+    const tl_region *r = of->region;
+    p->count = 0;
+    p->faces.a = add_faces(p, of, false, 0, r->a);
+    p->faces.b = add_faces(p, of, true, r->a, r->b);
+    uint32_t covered = r->a + r->b;
+    p->faces.border_a = add_covered(p, of, false, covered, r->border_a, &p->faces.seam_a);
+    p->faces.border_b =
+        add_covered(p, of, true, covered + r->border_a, r->border_b, &p->faces.seam_b);
+}
+
+static void press_list_patch(tl_press_planes *p, const tl_press_query *of)
+{
+    const tl_region *r = of->region;
+    uint32_t more_a = r->a - r->blunt_a, more_b = r->b - r->blunt_b;
+    p->count = 0;
+    p->faces.a = add_faces(p, of, false, 0, r->blunt_a);
+    p->faces.b = add_faces(p, of, true, r->a, r->blunt_b);
+    uint32_t covered = r->a + r->b;
+    p->faces.border_a = add_faces(p, of, false, r->blunt_a, more_a);
+    p->faces.border_a += add_covered(p, of, false, covered, r->border_a, &p->faces.seam_a);
+    p->faces.border_b = add_faces(p, of, true, r->a + r->blunt_b, more_b);
+    p->faces.border_b +=
+        add_covered(p, of, true, covered + r->border_a, r->border_b, &p->faces.seam_b);
+}
+
+/* ---------------------------------------------------------------- shares of corners -------
+ *
+ * From the patch of two flush faces to the field of the blocks:
+ *
+ *     w = 1 - (1 - S(sin tilt)) (1 - S(q)) S(G_p / G_f),    q = (4 G_p)^(3/2) / V_p^2 - shift (4 G_p)^(1/2) / V_p
+ *
+ * with the smoothstep S. q is the overlap of the patch as it is, without the shift of moved faces, over the root of its area. Where the
+ * patch has not nearly the energy of the field, other faces press: beside a seam it may be a sliver of next to nothing. */
+
+/* Energy of the patch over that of the field up to which there is no patch, and from which on there is all of it. Patches have nearly
+ * that of their field, or more where springs are at corners. */
+#define SLIVER 0.1
+#define WHOLE 0.5
+
+/* Smoothstep from 0 at `low` to 1 at `high`, and its slope. */
+static double step(double x, double low, double high, double *slope)
+{
+    double t = fmin(1, fmax(0, (x - low) / (high - low)));
+    *slope = 6 * t * (1 - t) / (high - low);
+    return t * t * (3 - 2 * t);
+}
+
+/* Less where the patch is a sliver. */
+static void take_slivers(const tl_field_sums *patch, const tl_field_sums *field, tl_patch_share *to)
+{
+    double ratio = patch->energy / field->energy, slope, share = to->share;
+    double part = step(ratio, SLIVER, WHOLE, &slope);
+    if (ratio >= WHOLE)
+        return;
+    double by = share * slope / field->energy;
+    tl_vec3 push = tl_v3_sub(tl_v3_scale(ratio, field->force), patch->force);
+    tl_vec3 turn = tl_v3_sub(tl_v3_scale(ratio, field->moment), patch->moment);
+    to->share *= part;
+    to->push = tl_v3_madd(tl_v3_scale(part, to->push), by, push);
+    to->turn = tl_v3_madd(tl_v3_scale(part, to->turn), by, turn);
+}
+
+tl_patch_share tl_patch_share_of(const tl_vec3 *na, const tl_vec3 *nb, bool corners, double shift,
+                                 const tl_field_sums *patch, const tl_field_sums *field)
+{
+    const tl_flush_limits limits = tl_flush_limits_of(corners);
+    tl_vec3 hinge = tl_v3_cross(*na, *nb);
+    double sine = tl_v3_norm(hinge), g = patch->energy, v = patch->volume, by_tilt, by_q;
+    double whole = 8 * g * sqrt(g) / (v * v), moved = 2 * shift * sqrt(g) / v;
+    double tilted = step(sine, limits.tilt, limits.field_tilt, &by_tilt);
+    double deep = step(whole - moved, limits.depth, limits.field_depth, &by_q);
+    tl_patch_share out = {.share = (1 - tilted) * (1 - deep)};
+    double scale = (1 - tilted) * by_q * whole, less = (1 - tilted) * by_q * moved;
+    double by_g = 1.5 * scale / g - 0.5 * less / g, by_v = 2 * scale / v - less / v;
+    double couple = sine > 0 ? -(1 - deep) * by_tilt * tl_v3_dot(*na, *nb) / sine : 0;
+    out.push = tl_v3_madd(tl_v3_scale(by_g, patch->force), -by_v, patch->swept);
+    out.turn = tl_v3_madd(tl_v3_scale(by_g, patch->moment), -by_v, patch->swept_moment);
+    out.turn = tl_v3_madd(out.turn, couple, hinge);
+    take_slivers(patch, field, &out);
+    return out;
+}
+
+/* ---------------------------------------------------------------- presses ----------------- */
 
 /* Depth over the size of the smaller block up to which the integrals are looked at for being nothing but roundings. */
 #define FAINT 1e-7
@@ -49,7 +240,7 @@ static bool in_both(const tl_press_query *of, tl_vec3 x, double depth)
     for (int of_b = 0; of_b < 2; of_b++) {
         uint32_t count = (of_b ? of->view->b : of->view->a)->face_count;
         for (uint32_t f = 0; f < count; f++) {
-            tl_plane plane = tl_pressing_plane(of, of_b, f);
+            tl_plane plane = pressing_plane(of, of_b, f);
             if (tl_v3_dot(plane.normal, x) > plane.offset + INSIDE * depth)
                 return false;
         }
@@ -143,7 +334,7 @@ static void blend_powers(const patches *p, tl_field_power field[TL_PRESS_POWERS]
 static bool sum_patch(const tl_press_query *of, tl_press_planes *p, tl_narrow_scratch *scratch,
                       tl_field_sums *out)
 {
-    tl_press_list_patch(p, of);
+    press_list_patch(p, of);
     p->faces.mesh = NULL;
     p->faces.energy_only = false;
     p->faces.powers = of->volumes;
@@ -221,8 +412,8 @@ static bool add_patch(const tl_press_query *of, tl_press_planes *p, tl_face_pair
     const uint32_t fa = faces.a, fb = faces.b;
     const tl_vec3 *na = &view->a->plane[fa].normal, *nb = &view->normal_b[fb];
     const tl_corner_faces at = {
-        .fa = fa, .fb = fb, .a = tl_pressing_plane(of, 0, fa), .b = tl_pressing_plane(of, 1, fb)};
-    const double shift = tl_press_shift_of(of, false, fa) + tl_press_shift_of(of, true, fb);
+        .fa = fa, .fb = fb, .a = pressing_plane(of, 0, fa), .b = pressing_plane(of, 1, fb)};
+    const double shift = press_shift_of(of, false, fa) + press_shift_of(of, true, fb);
     flush_patch *patch = &to->of[to->count];
     if (to->count == MOST_PATCHES)
         return true;
@@ -378,7 +569,7 @@ static bool press_of(const tl_press_query *of, tl_press_planes *p, tl_field_sums
 static void begin(const tl_press_query *of, tl_vec3 origin, tl_press_planes *p)
 {
     p->origin = origin;
-    tl_press_list_field(p, of);
+    press_list_field(p, of);
     p->faces.energy_only = !(of->min_area > 0 || of->volumes);
     p->faces.powers = of->volumes;
     p->faces.mesh = of->region->mesh;
@@ -440,7 +631,7 @@ static bool find_all(const tl_press_query query[], uint32_t count, tl_narrow_scr
     tl_field_sums sums[TL_FIELD_PAIRS], *to[TL_FIELD_PAIRS] = {NULL};
     const tl_field_faces *faces[TL_FIELD_PAIRS] = {NULL};
     uint32_t left = 0, anew[TL_FIELD_PAIRS];
-    if (!tl_press_reserve(scratch, query, count, p))
+    if (!press_reserve(scratch, query, count, p))
         return false;
     for (uint32_t k = 0; k < count; k++) {
         bool found = follow(&query[k], &p[k], &sums[k]);

@@ -1,8 +1,9 @@
 /* press.h - what two blocks press on each other with: the pressure field and, where two faces lie flush, their patch, in
- * one energy (press.c). */
+ * one energy. */
 #ifndef TL_NARROW_PRESS_H
 #define TL_NARROW_PRESS_H
 
+#include "narrow/field_sums.h"
 #include "narrow/flush.h"
 #include "narrow/press_query.h"
 
@@ -13,5 +14,23 @@
  * besides. NULL: neither powers nor what slip has opened are wanted. false: out of memory. */
 bool tl_press_find(const tl_press_query query[], uint32_t count, tl_narrow_scratch *scratch,
                    tl_press press[], tl_press_extra extra[]);
+
+/* Where the planes of a region are put together. */
+typedef struct tl_press_planes {
+    tl_field_faces faces;
+    tl_vec3 origin;
+    uint32_t count;
+} tl_press_planes;
+
+/* The share of the patch, 1 - w, and its gradient: by a way of B, and by a turn about the origin of the sums. */
+typedef struct tl_patch_share {
+    double share;
+    tl_vec3 push, turn;
+} tl_patch_share;
+
+/* By the outward normals of both faces, their shift, and the sums of the patch, whose energy and volume are above 0, and of the
+ * field. */
+tl_patch_share tl_patch_share_of(const tl_vec3 *na, const tl_vec3 *nb, bool corners, double shift,
+                                 const tl_field_sums *patch, const tl_field_sums *field);
 
 #endif

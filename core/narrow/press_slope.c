@@ -6,6 +6,7 @@
 #include "narrow/press_slope.h"
 
 #include "narrow/place.h"
+#include "narrow/press.h"
 
 #include <talus/vmath.h>
 

@@ -1,4 +1,4 @@
-/* press_slope.h - how a press changes with the place of B (press_slope.c). */
+/* press_slope.h - how a press changes with the place of B. */
 #ifndef TL_NARROW_PRESS_SLOPE_H
 #define TL_NARROW_PRESS_SLOPE_H
 

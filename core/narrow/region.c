@@ -25,7 +25,7 @@ typedef struct planes {
     double *low, *high; /* of the other block's vertices, over the plane */
     double *outside;    /* of each face: how far it lies outside one face of the other block */
     size_t
-        faces; /* the first planes are those of faces, the others of faces of other parts (seam_planes.c) */
+        faces; /* the first planes are those of faces, the others of faces of other parts (seam.c) */
 } planes;
 
 /* 0, TL_COVERED or TL_SEAM. */

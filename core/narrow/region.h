@@ -1,5 +1,4 @@
-/* region.h - which faces of two blocks bound what they have in common, and along which face they overlap the least
- * (region.c). */
+/* region.h - which faces of two blocks bound what they have in common, and along which face they overlap the least. */
 #ifndef TL_NARROW_REGION_H
 #define TL_NARROW_REGION_H
 
@@ -7,7 +6,7 @@
 #include "narrow/view.h"
 
 /* Faces of two blocks near what they have in common. Among the listed faces of a part are planes of faces of other parts, whose
- * numbers begin with its face_count (seam_planes.c). */
+ * numbers begin with its face_count (seam.c). */
 typedef struct tl_region {
     /* the listed faces of A, of B, the borders of A and of B: faces on other parts, the seams behind the others */
     uint32_t a, b, border_a, border_b;

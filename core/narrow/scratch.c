@@ -1,6 +1,7 @@
 /* scratch.c - the memory that the geometry of a pair works in. */
 #include "narrow/scratch.h"
 
+#include "narrow/field.h"
 #include "narrow/polygon.h"
 
 #include <stdlib.h>

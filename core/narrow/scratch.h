@@ -1,4 +1,4 @@
-/* scratch.h - the memory that the geometry of a pair works in (scratch.c). */
+/* scratch.h - the memory that the geometry of a pair works in. */
 #ifndef TL_NARROW_SCRATCH_H
 #define TL_NARROW_SCRATCH_H
 

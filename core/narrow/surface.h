@@ -1,4 +1,4 @@
-/* surface.h - the surface on which two blocks press each other, as convex polygons (surface.c): for pictures and files. */
+/* surface.h - the surface on which two blocks press each other, as convex polygons: for pictures and files. */
 #ifndef TL_NARROW_SURFACE_H
 #define TL_NARROW_SURFACE_H
 

@@ -4,9 +4,9 @@
  * takes a lock or memory. It runs on a stack of its own, since a plugin may have used up the thread's. Signals
  * outside plugins go on as if it were not there. */
 #define _XOPEN_SOURCE 700 /* sigaltstack */
-#include "plugin/registry.h"
-
 #include "base/inside.h"
+#include "plugin/descriptor.h"
+#include "plugin/loader.h"
 
 #include <errno.h>
 #include <limits.h>

@@ -3,8 +3,9 @@
  * The copy is what makes growth harmless: the rest of the kernel indexes dense arrays of today's
  * structs, whatever version of the headers the plugin was built with. A size that cannot belong to the
  * version a plugin claims is refused, since everything behind it would be misread. */
-#include "plugin/registry.h"
+#include "plugin/descriptor.h"
 
+#include "base/error.h"
 #include "base/names.h"
 #include "base/params.h"
 

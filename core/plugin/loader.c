@@ -1,4 +1,4 @@
-/* loader.c - finds plugins on disk and opens them.
+/* loader.c - finds plugins and modules on disk, and opens plugins.
  *
  * Searched in this order, each folder once, the *.so files of a folder in the order of their names:
  *
@@ -14,23 +14,278 @@
  * A plugin of an id that is loaded already is refused, so the first found wins.
  *
  * A folder or file that others may write is refused (trust.c), but where the user has named it: with --plugin, or in
- * TALUS_PLUGIN_PATH, when a note says so. */
+ * TALUS_PLUGIN_PATH, when a note says so.
+ *
+ * The modules of Talus that are written in Lua are files of
+ *
+ *     HERE/lib                            a build
+ *     HERE/../share/lua/5.4               installed bin/talus
+ *     HERE/../../../share/lua/5.4         installed lib/lua/5.4/talus.so
+ *     HERE/../../../../share/lua/5.4      the same in lib/MACHINE/lua/5.4 */
 #define _GNU_SOURCE /* dladdr */
-#include "plugin/registry.h"
+#include "plugin/loader.h"
 
 #include "base/inside.h"
+#include "base/names.h"
 #include "base/regular.h"
+#include "plugin/descriptor.h"
+#include "plugin/trust.h"
 
 #include <dirent.h>
 #include <dlfcn.h>
 #include <errno.h>
 #include <limits.h>
 #include <pthread.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
+/* ---------------------------------------------------------------- modules written in Lua --- */
+
+tl_status tl_library_find(const char *file, char *path, size_t size, tl_error *error)
+{
+    static const char *const folders[] = {"lib", "../share/lua/5.4", "../../../share/lua/5.4",
+                                          "../../../../share/lua/5.4"};
+    char own[PATH_MAX], place[2 * PATH_MAX], plain[PATH_MAX], why[PATH_MAX + 128];
+    if (!tl_own_file(own))
+        return tl_fail(error, TL_E_NOT_FOUND, "the system does not tell where Talus lies");
+    int here = (int)(strrchr(own, '/') - own);
+    for (size_t i = 0; i < sizeof folders / sizeof *folders; i++) {
+        struct stat info;
+        int n = snprintf(place, sizeof place, "%.*s/%s/%s", here, own, folders[i], file);
+        if (n < 0 || (size_t)n >= sizeof place || !realpath(place, plain) ||
+            stat(plain, &info) != 0 || !S_ISREG(info.st_mode) || strlen(plain) >= size)
+            continue;
+        if (!tl_path_is_trusted(plain, own, why, sizeof why))
+            return tl_fail(error, TL_E_PLUGIN, "%s: Talus runs nothing from there", why);
+        strcpy(path, plain);
+        return TL_OK;
+    }
+    return tl_fail(error, TL_E_NOT_FOUND, "no file '%s' of Talus beside '%s' or in share/lua/5.4",
+                   file, own);
+}
+
+/* ---------------------------------------------------------------- what is loaded ----------
+ *
+ * The loaded plugins, their kinds by name, and the record of every attempt to load one. */
+
+typedef struct record record;
+struct record {
+    char *path;
+    char *reason;      /* why it was refused, or NULL */
+    char *note;        /* what else there is to say, or NULL */
+    tl_plugin *plugin; /* NULL when refused */
+    _Atomic(record *) next;
+};
+
+/* Append only; guarded by the lock, since models may live on several threads. Records never move, so a handler of
+ * signals may follow the list without the lock. */
+static struct {
+    pthread_mutex_t lock;
+    _Atomic(record *) first;
+    record *last;
+    size_t count;
+} registry = {.lock = PTHREAD_MUTEX_INITIALIZER};
+
+static char *copy_of(const char *text)
+{
+    return text && *text ? strdup(text) : NULL;
+}
+
+/* Appends copies of the texts; the lock is held. */
+static bool append(const char *path, const char *reason, const char *note, tl_plugin *plugin)
+{
+    record *r = calloc(1, sizeof *r);
+    if (!r)
+        return false;
+    r->path = strdup(path);
+    r->reason = copy_of(reason);
+    r->note = copy_of(note);
+    r->plugin = plugin;
+    if (!r->path || (reason && *reason && !r->reason) || (note && *note && !r->note)) {
+        free(r->path);
+        free(r->reason);
+        free(r->note);
+        free(r);
+        return false;
+    }
+    if (registry.last)
+        atomic_store(&registry.last->next, r);
+    else
+        atomic_store(&registry.first, r);
+    registry.last = r;
+    registry.count++;
+    return true;
+}
+
+static const record *first_record(void)
+{
+    return atomic_load(&registry.first);
+}
+
+static const record *next_record(const record *r)
+{
+    return atomic_load(&((record *)(uintptr_t)r)->next);
+}
+
+/* The record whose plugin offers this kind, or NULL; the lock is held. */
+static const record *provider(uint32_t type, const char *name, const tl_kind **kind)
+{
+    for (const record *r = first_record(); r; r = next_record(r)) {
+        const tl_plugin *plugin = r->plugin;
+        for (uint32_t k = 0; plugin && k < plugin->kind_count; k++) {
+            if (plugin->kinds[k].type == type && strcmp(plugin->kinds[k].name, name) == 0) {
+                *kind = &plugin->kinds[k];
+                return r;
+            }
+        }
+    }
+    return NULL;
+}
+
+const tl_plugin *tl_plugin_of(const tl_kind *kind, const char **path)
+{
+    for (const record *r = first_record(); r; r = next_record(r)) {
+        const tl_plugin *plugin = r->plugin;
+        for (uint32_t k = 0; plugin && k < plugin->kind_count; k++) {
+            if (&plugin->kinds[k] == kind) {
+                if (path)
+                    *path = r->path;
+                return plugin;
+            }
+        }
+    }
+    return NULL;
+}
+
+static tl_status check_new(const tl_plugin *plugin, tl_error *error)
+{
+    for (const record *r = first_record(); r; r = next_record(r))
+        if (r->plugin && strcmp(r->plugin->id, plugin->id) == 0)
+            return tl_fail(error, TL_E_PLUGIN, "plugin '%s' is already loaded from %s", plugin->id,
+                           r->path);
+    for (uint32_t k = 0; k < plugin->kind_count; k++) {
+        const tl_kind *mine = &plugin->kinds[k], *theirs;
+        const record *other = provider(mine->type, mine->name, &theirs);
+        if (other)
+            return tl_fail(error, TL_E_PLUGIN, "%s '%s' is already provided by plugin '%s' from %s",
+                           tl_kind_type_name(mine->type), mine->name, other->plugin->id,
+                           other->path);
+    }
+    return TL_OK;
+}
+
+tl_status tl_registry_add(const char *path, tl_plugin *plugin, const char *note, tl_error *error)
+{
+    pthread_mutex_lock(&registry.lock);
+    tl_status status = check_new(plugin, error);
+    if (status == TL_OK && !append(path, NULL, note, plugin))
+        status = tl_fail_memory(error);
+    pthread_mutex_unlock(&registry.lock);
+    return status;
+}
+
+static bool append_locked(const char *path, const char *reason, const char *note)
+{
+    pthread_mutex_lock(&registry.lock);
+    bool done = append(path, reason, note, NULL);
+    pthread_mutex_unlock(&registry.lock);
+    return done;
+}
+
+static bool registry_refused(const char *path, const char *reason)
+{
+    return append_locked(path, reason, NULL);
+}
+
+static bool registry_noted(const char *path, const char *note)
+{
+    return append_locked(path, NULL, note);
+}
+
+/* Whether there is a record of that file or folder. */
+static bool registry_has(const char *path)
+{
+    for (const record *r = first_record(); r; r = next_record(r))
+        if (strcmp(r->path, path) == 0)
+            return true;
+    return false;
+}
+
+const tl_kind *tl_plugin_kind(tl_kind_type type, size_t index)
+{
+    const tl_kind *found = NULL;
+    pthread_mutex_lock(&registry.lock);
+    for (const record *r = first_record(); r && !found; r = next_record(r))
+        for (uint32_t k = 0; r->plugin && k < r->plugin->kind_count && !found; k++)
+            if (r->plugin->kinds[k].type == (uint32_t)type && index-- == 0)
+                found = &r->plugin->kinds[k];
+    pthread_mutex_unlock(&registry.lock);
+    return found;
+}
+
+const tl_kind *tl_plugin_find(tl_kind_type type, const char *name)
+{
+    const tl_kind *kind = NULL;
+    pthread_mutex_lock(&registry.lock);
+    (void)provider((uint32_t)type, name, &kind);
+    pthread_mutex_unlock(&registry.lock);
+    return kind;
+}
+
+size_t tl_plugin_record_count(void)
+{
+    pthread_mutex_lock(&registry.lock);
+    size_t count = registry.count;
+    pthread_mutex_unlock(&registry.lock);
+    return count;
+}
+
+tl_plugin_record tl_plugin_record_at(size_t index)
+{
+    tl_plugin_record found = {NULL, NULL, NULL, NULL};
+    pthread_mutex_lock(&registry.lock);
+    const record *r = first_record();
+    while (r && index-- > 0)
+        r = next_record(r);
+    if (r)
+        found = (tl_plugin_record){r->path, r->plugin, r->reason, r->note};
+    pthread_mutex_unlock(&registry.lock);
+    return found;
+}
+
+const char *tl_plugin_id(const tl_kind *kind)
+{
+    const tl_plugin *plugin = tl_plugin_of(kind, NULL);
+    return plugin ? plugin->id : "?";
+}
+
+tl_status tl_kind_unknown(tl_error *error, tl_kind_type type, const char *name)
+{
+    const char *what = tl_kind_type_name(type);
+    size_t count = 0;
+    while (tl_plugin_kind(type, count))
+        count++;
+    if (count == 0)
+        return tl_fail(
+            error, TL_E_NOT_FOUND,
+            "unknown %s '%.80s': no %s is loaded; TALUS_PLUGIN_PATH may name the folder of "
+            "the plugins",
+            what, name, what);
+    const char **names = malloc(count * sizeof *names);
+    if (!names)
+        return tl_fail_memory(error);
+    for (size_t i = 0; i < count; i++)
+        names[i] = tl_plugin_kind(type, i)->name;
+    tl_status status = tl_fail_unknown(error, TL_E_NOT_FOUND, "", what, name, names, count);
+    free(names);
+    return status;
+}
+
+/* ---------------------------------------------------------------- loader ------------------ */
 
 #define ENTRY "tl_plugin_entry"
 /* Why a folder or file that nobody has named is left alone; what is wrong comes first. */
@@ -143,13 +398,13 @@ static tl_status open_and_take_in(const char *path, tl_error *error)
 tl_status tl_plugin_load(const char *path, tl_error *error)
 {
     tl_error own = {TL_OK, ""};
-    tl_error *record = error ? error : &own;
-    tl_status status = open_and_take_in(path, record);
+    tl_error *told = error ? error : &own;
+    tl_status status = open_and_take_in(path, told);
     /* A plugin for which there was no memory may be tried again: it is not refused. */
-    if (status != TL_OK && status != TL_E_MEMORY && !tl_registry_refused(path, record->text))
-        status = tl_fail_memory(record);
+    if (status != TL_OK && status != TL_E_MEMORY && !registry_refused(path, told->text))
+        status = tl_fail_memory(told);
     if (status != TL_OK)
-        tl_error_prefix(record, "plugin %s: ", path);
+        tl_error_prefix(told, "plugin %s: ", path);
     return status;
 }
 
@@ -194,14 +449,14 @@ static bool plain_path(search *s, const char *path, char plain[PATH_MAX])
 static void load_found(search *s, const char *path, const char *program)
 {
     char why[PATH_MAX + 128], text[PATH_MAX + 256];
-    if (s->again && tl_registry_has(path))
+    if (s->again && registry_has(path))
         return;
     if (!program || tl_path_is_trusted(path, program, why, sizeof why)) {
         s->short_of_memory |= tl_plugin_load(path, NULL) == TL_E_MEMORY;
         return;
     }
     snprintf(text, sizeof text, UNTRUSTED, why);
-    s->short_of_memory |= !tl_registry_refused(path, text);
+    s->short_of_memory |= !registry_refused(path, text);
 }
 
 /* `program`: the file whose owner is trusted, or NULL where the user has named the folder. */
@@ -216,9 +471,8 @@ static void load_folder(search *s, const char *folder, const char *program)
                          : "%s: plugins are loaded from it because TALUS_PLUGIN_PATH "
                            "names it",
                  why);
-        if (!s->again || !tl_registry_has(folder))
-            s->short_of_memory |=
-                !(program ? tl_registry_refused : tl_registry_noted)(folder, text);
+        if (!s->again || !registry_has(folder))
+            s->short_of_memory |= !(program ? registry_refused : registry_noted)(folder, text);
         if (program)
             return;
     }
@@ -249,16 +503,6 @@ static void load_path_list(search *s, const char *list)
         }
         list += length + (list[length] == ':');
     }
-}
-
-/* The file of the program or library this function is in. The name of the main program may be a bare
- * word found through PATH; then the system knows where it is. */
-bool tl_own_file(char file[PATH_MAX])
-{
-    Dl_info info;
-    bool named = dladdr((void *)(uintptr_t)&tl_own_file, &info) != 0 && info.dli_fname &&
-                 strchr(info.dli_fname, '/') && realpath(info.dli_fname, file);
-    return named || realpath("/proc/self/exe", file);
 }
 
 static void load_everything(search *s)

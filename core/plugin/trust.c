@@ -1,4 +1,4 @@
-/* trust.c - whether a folder or file that the user has not named is a place to load code from.
+/* trust.c - where the program lies, and whether a folder or file that the user has not named is a place to load code from.
  *
  * It is when nobody can have put anything there but root, the user who runs Talus and the owner of the program, who
  * could have put it into the program. So for the folder and the file: they belong to one of these, and others may
@@ -7,12 +7,14 @@
  * lets write is root's choice.
  *
  * Limit: lists of access rights (ACL) are looked at only as far as the mode tells of them. */
-#define _GNU_SOURCE /* realpath with stat of POSIX, getgrgid_r */
-#include "plugin/registry.h"
+#define _GNU_SOURCE /* dladdr; realpath with stat of POSIX, getgrgid_r */
+#include "plugin/trust.h"
 
+#include <dlfcn.h>
 #include <grp.h>
 #include <limits.h>
 #include <pwd.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,6 +23,16 @@
 
 /* Bytes for an entry of the lists of users and groups; a group with more members is nobody's own. */
 #define ENTRY_BYTES 8192
+
+/* The file of the program or library that this function is in. The name of the main program may be a bare
+ * word found through PATH; then the system knows where it is. */
+bool tl_own_file(char file[PATH_MAX])
+{
+    Dl_info info;
+    bool named = dladdr((void *)(uintptr_t)&tl_own_file, &info) != 0 && info.dli_fname &&
+                 strchr(info.dli_fname, '/') && realpath(info.dli_fname, file);
+    return named || realpath("/proc/self/exe", file);
+}
 
 static bool is_trusted(uid_t owner, uid_t program)
 {

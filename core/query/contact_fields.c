@@ -2,12 +2,13 @@
  * neighbours. Values are those of the last step's forces. */
 #include "query/contact_fields.h"
 
-#include "model/options.h"
-
-#include "contact/copy.h"
 #include "contact/index.h"
 #include "contact/places.h"
+#include "contact/store.h"
 #include "detect/detect.h"
+#include "model/joints.h"
+#include "model/options.h"
+#include "model/rows.h"
 
 #include <assert.h>
 #include <stdlib.h>

@@ -1,6 +1,7 @@
 /* contact_polygons.c - the polygons on which contacts act, found anew from where the blocks are. */
 #include "query/contact_polygons.h"
 
+#include "base/parallel.h"
 #include "contact/detection.h"
 #include "contact/lean.h"
 #include "contact/pair_view.h"

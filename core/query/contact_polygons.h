@@ -1,4 +1,4 @@
-/* contact_polygons.h - the polygons on which contacts act, of many contacts at once (contact_polygons.c). */
+/* contact_polygons.h - the polygons on which contacts act, of many contacts at once. */
 #ifndef TL_QUERY_CONTACT_POLYGONS_H
 #define TL_QUERY_CONTACT_POLYGONS_H
 

@@ -27,8 +27,9 @@
  * Limits: translations only; each body alone, all others at rest; a body of several blocks is
  * judged by its contact faces alone, which is exact only when it is convex. */
 #include "base/error.h"
-
+#include "model/joints.h"
 #include "model/options.h"
+#include "model/rows.h"
 #include "query/touching.h"
 
 #include <stdlib.h>

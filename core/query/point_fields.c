@@ -1,13 +1,369 @@
 /* point_fields.c - what can be asked of contact points: their fields, by name, and the states of their law. */
+#include "query/point_fields.h"
+
+#include "contact/detection.h"
 #include "contact/index.h"
 #include "contact/places.h"
 #include "detect/detect.h"
 #include "query/contact_fields.h"
-#include "query/law_states.h"
-#include "query/values.h"
 
+#include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <talus/fields.h>
+
+/* ---------------------------------------------------------------- states of laws ----------
+ *
+ * The states of the laws in use, by name, and their values at contacts and points.
+ *
+ * A state has the name that its law declares. Where a field of contacts or points, or an array of the contacts' files, has
+ * that name, it is read as law_NAME. Two laws may declare the same name, once a number and once a vector: the later one is
+ * then read as LAW_NAME, with the name of the law. */
+
+/* Names that are taken besides the fields of contacts: fields of points, and arrays of the contacts' files. */
+static const char *const more_names[] = {"position", "closure",    "points",  "states",
+                                         "plane",    "contact_id", "block_a", "block_b"};
+
+static bool is_taken(const char *name)
+{
+    size_t count;
+    const tl_field *fields = tl_contact_fields(&count);
+    for (size_t i = 0; i < count; i++)
+        if (strcmp(fields[i].name, name) == 0)
+            return true;
+    for (size_t i = 0; i < sizeof more_names / sizeof more_names[0]; i++)
+        if (strcmp(more_names[i], name) == 0)
+            return true;
+    return false;
+}
+
+static uint32_t width_of(const tl_state *state)
+{
+    return state->kind == TL_STATE_TANGENT ? 3 : 1;
+}
+
+static const tl_state *state_at(const tl_kind *kind, uint32_t k)
+{
+    return (const tl_state *)(const void *)((const char *)kind->states +
+                                            (size_t)k * kind->state_stride);
+}
+
+/* First column of the state of a law that an entry stands for, or TL_NO_ROW. */
+static uint32_t column_in(const tl_kind *kind, const tl_law_state *of)
+{
+    uint32_t column = 0;
+    for (uint32_t k = 0; k < kind->state_count; k++) {
+        const tl_state *state = state_at(kind, k);
+        if (strcmp(state->name, of->state->name) == 0 && width_of(state) == of->width)
+            return column;
+        column += width_of(state);
+    }
+    return TL_NO_ROW;
+}
+
+/* Whether an earlier joint law is of this kind. */
+static bool seen_before(const tl_model *m, size_t law)
+{
+    for (size_t i = 0; i < law; i++)
+        if (m->joint_laws[i].kind == m->joint_laws[law].kind)
+            return true;
+    return false;
+}
+
+/* Adds a state of a law unless an entry stands for it. There is room. */
+static void add(tl_law_states *states, const tl_kind *kind, const tl_state *state)
+{
+    bool shared = false; /* its name is that of another entry */
+    for (size_t i = 0; i < states->count; i++) {
+        if (strcmp(states->at[i].state->name, state->name) != 0)
+            continue;
+        if (states->at[i].width == width_of(state))
+            return;
+        shared = true;
+    }
+    tl_law_state *entry = &states->at[states->count++];
+    *entry = (tl_law_state){.state = state, .width = width_of(state)};
+    snprintf(entry->name, sizeof entry->name, "%.60s%s%.60s",
+             shared                  ? kind->name
+             : is_taken(state->name) ? "law"
+                                     : "",
+             shared || is_taken(state->name) ? "_" : "", state->name);
+}
+
+tl_status tl_law_states_list(tl_model *m, tl_law_states *states)
+{
+    *states = (tl_law_states){0};
+    size_t most = 0;
+    for (size_t i = 0; i < m->joint_law_count; i++)
+        if (!seen_before(m, i))
+            most += m->joint_laws[i].kind->state_count;
+    if (most == 0)
+        return TL_OK;
+    states->at = malloc(most * sizeof *states->at);
+    if (!states->at)
+        return tl_fail_memory(&m->error);
+    for (size_t i = 0; i < m->joint_law_count; i++)
+        for (uint32_t k = 0; k < m->joint_laws[i].kind->state_count && !seen_before(m, i); k++)
+            add(states, m->joint_laws[i].kind, state_at(m->joint_laws[i].kind, k));
+    states->column = malloc(m->joint_law_count * states->count * sizeof *states->column);
+    if (!states->column) {
+        tl_law_states_free(states);
+        return tl_fail_memory(&m->error);
+    }
+    for (size_t i = 0; i < m->joint_law_count; i++)
+        for (size_t s = 0; s < states->count; s++)
+            states->column[i * states->count + s] =
+                column_in(m->joint_laws[i].kind, &states->at[s]);
+    return TL_OK;
+}
+
+void tl_law_states_free(tl_law_states *states)
+{
+    free(states->at);
+    free(states->column);
+    *states = (tl_law_states){0};
+}
+
+/* The entry of a name, or NULL. */
+static const tl_law_state *law_states_find(const tl_law_states *states, const char *name)
+{
+    for (size_t i = 0; i < states->count; i++)
+        if (strcmp(states->at[i].name, name) == 0)
+            return &states->at[i];
+    return NULL;
+}
+
+/* ---------------------------------------------------------------- values ----------------- */
+
+/* First column of an entry in the law of a contact, or TL_NO_ROW. */
+static uint32_t column_of(const tl_model *m, const tl_law_states *states, const tl_law_state *of,
+                          uint32_t contact)
+{
+    uint32_t law = m->detect->contacts.law[contact];
+    if (law == TL_NO_ROW)
+        return TL_NO_ROW;
+    return states->column[law * states->count + (size_t)(of - states->at)];
+}
+
+/* Whether the law of a contact has the state. */
+static bool law_states_has(const tl_model *m, const tl_law_states *states, const tl_law_state *of,
+                           uint32_t contact)
+{
+    return column_of(m, states, of, contact) != TL_NO_ROW;
+}
+
+/* A column that no law needs is not kept: all of it is 0. */
+static double number_at(const tl_points_table *p, uint32_t column, size_t row)
+{
+    return column < p->state_columns ? p->state[column][row] : 0;
+}
+
+static void law_state_at_point(const tl_model *m, const tl_law_states *states,
+                               const tl_law_state *of, uint32_t contact, size_t k, double value[3])
+{
+    uint32_t column = column_of(m, states, of, contact);
+    size_t row = tl_point_row(&m->detect->contacts, contact, k);
+    for (size_t w = 0; w < of->width; w++)
+        value[w] =
+            column == TL_NO_ROW ? NAN : number_at(&m->detect->points, column + (uint32_t)w, row);
+}
+
+void tl_law_state_of_contact(const tl_model *m, const tl_law_states *states, const tl_law_state *of,
+                             uint32_t contact, double value[3])
+{
+    const tl_points_table *p = &m->detect->points;
+    uint32_t column = column_of(m, states, of, contact);
+    size_t count = tl_point_count(m, contact);
+    bool adds =
+        of->state->transfer == TL_TRANSFER_SPLIT || of->state->transfer == TL_TRANSFER_ENERGY;
+    double area = 0, sum[3] = {0, 0, 0};
+    for (size_t k = 0; k < count && column != TL_NO_ROW; k++) {
+        size_t row = tl_point_row(&m->detect->contacts, contact, k);
+        double weight = adds ? 1 : p->area[row];
+        area += weight;
+        for (size_t w = 0; w < of->width; w++)
+            sum[w] += weight * number_at(p, column + (uint32_t)w, row);
+    }
+    for (size_t w = 0; w < of->width; w++)
+        value[w] = column == TL_NO_ROW ? NAN : adds ? sum[w] : area > 0 ? sum[w] / area : 0;
+}
+
+double tl_law_states_slip(const tl_model *m, const tl_law_states *states, uint32_t contact,
+                          tl_vec3 shear_displacement)
+{
+    for (size_t i = 0; i < states->count; i++) {
+        const tl_law_state *state = &states->at[i];
+        double value[3];
+        if (state->width != 1 || strcmp(state->state->name, "slip") != 0 ||
+            !law_states_has(m, states, state, contact))
+            continue;
+        tl_law_state_of_contact(m, states, state, contact, value);
+        return value[0];
+    }
+    return tl_v3_norm(shear_displacement);
+}
+
+/* ---------------------------------------------------------------- one field of all --------
+ *
+ * Fields and states of many blocks or contacts, by name, as one list of numbers. */
+
+size_t tl_field_width(tl_field_kind kind)
+{
+    switch (kind) {
+    case TL_FIELD_VEC3: return 3;
+    case TL_FIELD_QUAT: return 4;
+    case TL_FIELD_SYM3: return 6;
+    case TL_FIELD_IDS: return 2;
+    case TL_FIELD_TEXT: return 0;
+    default: return 1;
+    }
+}
+
+/* "a block has no field 'velocty'; did you mean 'velocity'?" */
+static tl_status unknown_name(tl_model *m, const char *item, const tl_field *fields, size_t count,
+                              const tl_law_states *states, const char *name)
+{
+    size_t more = states ? states->count : 0;
+    const char **names = malloc((count + more + 1) * sizeof *names);
+    if (!names)
+        return tl_fail_memory(&m->error);
+    for (size_t i = 0; i < count; i++)
+        names[i] = fields[i].name;
+    for (size_t i = 0; i < more; i++)
+        names[count + i] = states->at[i].name;
+    const char *nearest = tl_nearest_name(name, names, count + more);
+    free(names);
+    return tl_fail(&m->error, TL_E_NOT_FOUND, "a %s has no field%s '%.80s'%s%s%s", item,
+                   states ? " or state" : "", name, nearest ? "; did you mean '" : "",
+                   nearest ? nearest : "", nearest ? "'?" : "");
+}
+
+static tl_status value_find(tl_model *m, const char *item, const tl_field *fields, size_t count,
+                            const tl_law_states *states, const char *name, tl_value_of *of)
+{
+    *of = (tl_value_of){.field = count};
+    for (size_t i = 0; i < count; i++) {
+        if (strcmp(fields[i].name, name) != 0)
+            continue;
+        of->field = i;
+        of->width = strcmp(name, "state") == 0 ? 1 : tl_field_width(fields[i].kind);
+        if (of->width == 0)
+            return tl_fail(&m->error, TL_E_ARGUMENT, "the field '%s' of a %s is a text, no number",
+                           name, item);
+        return TL_OK;
+    }
+    of->state = states ? law_states_find(states, name) : NULL;
+    if (!of->state)
+        return unknown_name(m, item, fields, count, states, name);
+    of->width = of->state->width;
+    return TL_OK;
+}
+
+/* The same of contacts or their points, which it brings up to date: lists the states of their laws, to be freed in any case. */
+static tl_status contact_value_find(tl_model *m, const char *item, const tl_field *fields,
+                                    size_t count, tl_law_states *states, const char *name,
+                                    tl_value_of *of)
+{
+    *states = (tl_law_states){0};
+    tl_status status = tl_detect_refresh(m);
+    if (status == TL_OK)
+        status = tl_law_states_list(m, states);
+    return status == TL_OK ? value_find(m, item, fields, count, states, name, of) : status;
+}
+
+static tl_status contact_find(tl_model *m, tl_id contact, uint32_t *row)
+{
+    *row = tl_contact_row(m->detect, contact);
+    if (*row == TL_NO_ROW)
+        return tl_fail(&m->error, TL_E_STALE, "contact %u no longer exists: its blocks have parted",
+                       contact);
+    return TL_OK;
+}
+
+tl_status tl_blocks_values(tl_model *m, const tl_id *ids, size_t count, const char *field,
+                           double *out, size_t *width)
+{
+    size_t all;
+    const tl_field *fields = tl_block_fields(&all);
+    tl_value_of of;
+    tl_status status = value_find(m, "block", fields, all, NULL, field, &of);
+    if (status != TL_OK)
+        return status;
+    *width = of.width;
+    for (size_t i = 0; i < count && out; i++) {
+        tl_field_value value;
+        status = tl_block_field(m, ids[i], of.field, &value);
+        if (status != TL_OK)
+            return status;
+        memcpy(out + i * of.width, value.number, of.width * sizeof *out);
+    }
+    return TL_OK;
+}
+
+/* One value of a contact. */
+static tl_status contact_value(tl_model *m, const tl_law_states *states, const tl_value_of *of,
+                               bool is_state, tl_id contact, double *out)
+{
+    uint32_t row;
+    tl_status status = contact_find(m, contact, &row);
+    if (status != TL_OK)
+        return status;
+    if (of->state) {
+        tl_law_state_of_contact(m, states, of->state, row, out);
+        return TL_OK;
+    }
+    if (is_state) {
+        *out = tl_contact_facts_of(m, row).state;
+        return TL_OK;
+    }
+    tl_field_value value;
+    status = tl_contact_field(m, contact, of->field, &value);
+    if (status == TL_OK)
+        memcpy(out, value.number, of->width * sizeof *out);
+    return status;
+}
+
+tl_status tl_contacts_values(tl_model *m, const tl_id *ids, size_t count, const char *name,
+                             double *out, size_t *width)
+{
+    size_t all;
+    const tl_field *fields = tl_contact_fields(&all);
+    tl_law_states states;
+    tl_value_of of;
+    tl_status status = contact_value_find(m, "contact", fields, all, &states, name, &of);
+    if (status == TL_OK) {
+        *width = of.width;
+        bool is_state = strcmp(name, "state") == 0;
+        for (size_t i = 0; i < count && out && status == TL_OK; i++)
+            status = contact_value(m, &states, &of, is_state, ids[i], out + i * of.width);
+    }
+    tl_law_states_free(&states);
+    return status;
+}
+
+tl_status tl_states_list(tl_model *m, tl_id contact, tl_law_state **list, size_t *count)
+{
+    *list = NULL;
+    *count = 0;
+    tl_law_states states = {0};
+    uint32_t row = TL_NO_ROW;
+    tl_status status = contact == TL_NO_ID ? TL_OK : tl_detect_refresh(m);
+    if (status == TL_OK && contact != TL_NO_ID)
+        status = contact_find(m, contact, &row);
+    if (status == TL_OK)
+        status = tl_law_states_list(m, &states);
+    if (status != TL_OK)
+        return status;
+    *list = malloc((states.count + 1) * sizeof **list);
+    for (size_t i = 0; i < states.count && *list; i++)
+        if (contact == TL_NO_ID || law_states_has(m, &states, &states.at[i], row))
+            (*list)[(*count)++] = states.at[i];
+    tl_law_states_free(&states);
+    return *list ? TL_OK : tl_fail_memory(&m->error);
+}
+
+/* ---------------------------------------------------------------- points ------------------ */
 
 enum { F_POSITION, F_AREA, F_NORMAL_FORCE, F_SHEAR_FORCE, F_GAP, F_CLOSURE, F_STATE, F_COUNT };
 
@@ -36,7 +392,7 @@ tl_status tl_points_start(tl_model *m, const tl_id *contacts, size_t count, size
     start[0] = 0;
     for (size_t i = 0; i < count && status == TL_OK; i++) {
         uint32_t row;
-        status = tl_contact_find(m, contacts[i], &row);
+        status = contact_find(m, contacts[i], &row);
         if (status == TL_OK)
             start[i + 1] = start[i] + tl_point_count(m, row);
     }
@@ -93,7 +449,7 @@ static void write_point(writer *w, uint32_t contact, size_t k)
     case F_CLOSURE: *w->out++ = -w->gap[k] - (p->reference ? p->reference[row] : 0); break;
     case F_STATE: *w->out++ = tl_contact_state_of_flags(p->flags[row], p->flags[row]); break;
     default:
-        tl_law_state_at_point(w->model, w->states, w->state, contact, k, w->out);
+        law_state_at_point(w->model, w->states, w->state, contact, k, w->out);
         w->out += w->state->width;
     }
 }
@@ -101,7 +457,7 @@ static void write_point(writer *w, uint32_t contact, size_t k)
 static tl_status write_contact(tl_model *m, writer *w, tl_id id)
 {
     uint32_t row;
-    tl_status status = tl_contact_find(m, id, &row);
+    tl_status status = contact_find(m, id, &row);
     if (status != TL_OK)
         return status;
     if (w->field == F_POSITION || w->field == F_GAP || w->field == F_CLOSURE) {
@@ -119,8 +475,7 @@ tl_status tl_points_values(tl_model *m, const tl_id *contacts, size_t count, con
 {
     tl_law_states states;
     tl_value_of of;
-    tl_status status =
-        tl_contact_value_find(m, "contact point", fields, F_COUNT, &states, name, &of);
+    tl_status status = contact_value_find(m, "contact point", fields, F_COUNT, &states, name, &of);
     if (status == TL_OK) {
         writer w = {
             .model = m, .field = of.field, .states = &states, .state = of.state, .out = out};

@@ -9,6 +9,8 @@
 #include "query/touching.h"
 
 #include "base/error.h"
+#include "base/parallel.h"
+#include "geometry/measure.h"
 #include "model/body_shape.h"
 #include "narrow/manifold.h"
 #include "narrow/narrow.h"

@@ -1,4 +1,4 @@
-/* touching.h - the faces of blocks that lie on faces of others (touching.c). */
+/* touching.h - the faces of blocks that lie on faces of others. */
 #ifndef TL_QUERY_TOUCHING_H
 #define TL_QUERY_TOUCHING_H
 

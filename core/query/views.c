@@ -1,9 +1,9 @@
 /* views.c - the columns of a model as they are kept: views without a copy, and when rows have changed. */
-#include <talus/views.h>
-
-#include "detect/detect.h"
-
 #include "contact/detection.h"
+#include "detect/detect.h"
+#include "model/rows.h"
+
+#include <talus/views.h>
 
 /* A column whose rows lie `bytes` apart. */
 static tl_view view(const void *data, size_t bytes, size_t count, size_t width)

@@ -9,6 +9,7 @@
  * it shorter. A file that was cut off lacks its end. */
 #include "state/archive.h"
 
+#include "base/output_file.h"
 #include "base/regular.h"
 #include "state/archive_format.h"
 

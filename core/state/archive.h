@@ -1,9 +1,9 @@
-/* archive.h - a file of named chunks, each compressed and with a checksum (archive.c). */
+/* archive.h - a file of named chunks, each compressed and with a checksum. */
 #ifndef TL_STATE_ARCHIVE_H
 #define TL_STATE_ARCHIVE_H
 
 #include "base/error.h"
-#include "io/output_file.h"
+#include "base/output_file.h"
 
 #include <stdbool.h>
 #include <stddef.h>

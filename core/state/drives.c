@@ -1,6 +1,8 @@
 /* drives.c - drives of a copied or restored model. What a function of a script does is the script's: it is asked for again. */
 #include "state/drives.h"
 
+#include "model/loads.h"
+
 #include <stdlib.h>
 
 void tl_drive_keep(const tl_drive_record *record, tl_drive_kept *kept)

@@ -1,4 +1,4 @@
-/* drives.h - drives of a copied or restored model (drives.c). */
+/* drives.h - drives of a copied or restored model. */
 #ifndef TL_STATE_DRIVES_H
 #define TL_STATE_DRIVES_H
 

@@ -9,6 +9,8 @@
  * Whether there is a value or field of the name that is asked for is looked at by who samples. */
 #include "state/histories.h"
 
+#include "model/histories.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

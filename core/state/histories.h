@@ -1,4 +1,4 @@
-/* histories.h - histories of a copied or restored model (histories.c). */
+/* histories.h - histories of a copied or restored model. */
 #ifndef TL_STATE_HISTORIES_H
 #define TL_STATE_HISTORIES_H
 

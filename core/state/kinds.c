@@ -10,8 +10,9 @@
 #include "state/kinds.h"
 
 #include "base/params.h"
-#include "contact/points.h"
+#include "contact/contacts.h"
 #include "cycle/cycle_data.h"
+#include "cycle/damping.h"
 #include "force/joint_laws.h"
 
 #include <stdio.h>

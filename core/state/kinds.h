@@ -1,4 +1,4 @@
-/* kinds.h - laws and damping in an archive: of which plugin, with which parameters and states, by their names (kinds.c). */
+/* kinds.h - laws and damping in an archive: of which plugin, with which parameters and states, by their names. */
 #ifndef TL_STATE_KINDS_H
 #define TL_STATE_KINDS_H
 

@@ -2,7 +2,10 @@
  * tables that contacts are laid out in from time to time. The allocator's own bytes (some 16 an allocation, of which a block
  * has one) are not counted. */
 #include "contact/walk.h"
+#include "cycle/undo.h"
 #include "cycle/walk.h"
+#include "geometry/make.h"
+#include "model/histories.h"
 #include "model/walk.h"
 #include "narrow/field_lanes.h"
 

@@ -2,16 +2,18 @@
  * changes by it, so that it makes no difference to a run when it is saved. */
 #include "base/entries.h"
 #include "base/signals.h"
-#include "contact/copy.h"
+#include "contact/store.h"
 #include "contact/walk.h"
+#include "cycle/prepare.h"
+#include "cycle/undo.h"
 #include "cycle/walk.h"
 #include "detect/asked.h"
+#include "model/rows.h"
 #include "model/walk.h"
 #include "state/drives.h"
-#include "state/frames.h"
 #include "state/histories.h"
 #include "state/kinds.h"
-#include "state/pages.h"
+#include "state/outputs.h"
 #include "state/shapes.h"
 
 #include <stdio.h>
@@ -123,9 +125,8 @@ static void save_all(tl_archive_writer *w, tl_model *m)
                  save_names(w, "joints.names", m->joint_count, joint_name, m) &&
                  save_planes(w, m) && save_drives(w, m);
     w->lost = w->lost || !saved;
-    w->lost = !tl_frames_save(m, w) || w->lost;
+    w->lost = !tl_outputs_save(m, w) || w->lost;
     w->lost = !tl_histories_save(m, w) || w->lost;
-    tl_pages_save(m, w);
     tl_laws_save(m, w);
     tl_damping_save(m, w);
     if (tl_detect_lasting(m))

@@ -1,7 +1,8 @@
 /* shapes.c - the polyhedra of the blocks in an archive: what they have of each thing, one block after the other. */
 #include "state/shapes.h"
 
-#include "geometry/assemble.h"
+#include "geometry/make.h"
+#include "geometry/measure.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,4 +1,4 @@
-/* shapes.h - the polyhedra of the blocks in an archive (shapes.c). */
+/* shapes.h - the polyhedra of the blocks in an archive. */
 #ifndef TL_STATE_SHAPES_H
 #define TL_STATE_SHAPES_H
 

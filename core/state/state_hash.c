@@ -8,12 +8,13 @@
  * phase), for the results do not depend on it beyond the caches' margins. A column that few models need counts as zeros
  * where there is none. What follows from the rest and lies in a row with it (a pose's matrix) does no harm. */
 #include "base/hash.h"
-#include "contact/copy.h"
-#include "contact/points.h"
+#include "contact/contacts.h"
 #include "contact/store.h"
-#include "cycle/rates.h"
+#include "cycle/cycle_data.h"
+#include "cycle/prepare.h"
+#include "cycle/timestep.h"
 #include "detect/detect.h"
-#include "model/wrench.h"
+#include "model/loads.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -439,6 +439,154 @@ function talus.model(options) end
 ---@overload fun(self: talus.Model, generator: "tunnel", options: talus.generator.Tunnel|talus.generator.Tunnel[]): talus.GenerateResult
 function Model:generate(generator, options) end
 
+--- Sets the law of a joint set ("J1"), of one of its planes ("J1:3") or of every joint not named otherwise ("*"); without a law's name it changes properties.
+---
+---     model:joint("J1", "LAW", {...})  or  model:joint("J1", {friction = 30})
+---@param joint string
+---@param law string
+---@param options? table
+---@overload fun(self: talus.Model, joint: string, law: "barton_bandis", options: talus.law.BartonBandis)
+---@overload fun(self: talus.Model, joint: string, law: "cohesive", options: talus.law.Cohesive)
+---@overload fun(self: talus.Model, joint: string, law: "continuously_yielding", options: talus.law.ContinuouslyYielding)
+---@overload fun(self: talus.Model, joint: string, law: "coulomb", options: talus.law.Coulomb)
+---@overload fun(self: talus.Model, joint: string, law: "coulomb_tensile", options: talus.law.CoulombTensile)
+---@overload fun(self: talus.Model, joint: string, law: "elastic", options: talus.law.Elastic)
+---@overload fun(self: talus.Model, joint: string, law: "rate_state", options: talus.law.RateState)
+---@overload fun(self: talus.Model, joint: string, law: "slip_weakening", options: talus.law.SlipWeakening)
+---@overload fun(self: talus.Model, joint: string, options?: table)
+function Model:joint(joint, law, options) end
+
+---@class (exact) talus.InsituOptions
+---@field at? talus.Vector m, default {0, 0, 0}: point at whose height the stress holds; the gradient counts from there
+---@field stress? talus.Tensor stress at the height of `at`, Pa, tension positive; components left out are 0. yx, zy and xz are the same as xy, yz and zx
+---@field gradient? talus.Tensor change of the stress with height z, Pa/m; components left out are 0
+
+--- Puts an initial stress on the face contacts that exist now, once.
+---
+---     model:insitu{stress = {zz = -1e6}, gradient = {zz = 2e4}, at = {0, 0, 0}}
+---@param options? talus.InsituOptions
+function Model:insitu(options) end
+
+--- Chooses how motion is damped; "none" is no damping, and the default.
+---
+---     model:damping("DAMPING", {...})
+---@param damping string
+---@param options? table
+---@overload fun(self: talus.Model, damping: "adaptive", options?: talus.damping.Adaptive)
+---@overload fun(self: talus.Model, damping: "combined", options?: talus.damping.Combined)
+---@overload fun(self: talus.Model, damping: "kinetic", options?: talus.damping.Kinetic)
+---@overload fun(self: talus.Model, damping: "local", options?: talus.damping.Local)
+---@overload fun(self: talus.Model, damping: "none", options?: talus.damping.None)
+---@overload fun(self: talus.Model, damping: "viscous", options: talus.damping.Viscous)
+function Model:damping(damping, options) end
+
+---@class (exact) talus.TimestepOptions
+---@field fraction? number in [1e-09, 2]: share of the critical step that is used, FRAC of (27); when left out 0.5, by the rule paper 0.1
+---@field rule? "paper"|"body" default "body": critical step from the lightest block and the stiffest contact (paper), or from each body's own mass and stiffness (body)
+---@field dt? number s, in [1e-100, 1e+100]: a fixed time step instead of the rule
+
+---@class (exact) talus.TimestepResult
+---@field dt number the step the next cycle will use, s; 0 where nothing can move and no law is set
+---@field block talus.Block? the block that controls it, or nil
+---@field partner talus.Block? the block at the stiffest contact, or nil
+---@field mass number of the block's body, kg; of the contact, of all its contacts or of the part of its largest face that counts, N/m
+---@field stiffness number of the block's body, kg; of the contact, of all its contacts or of the part of its largest face that counts, N/m
+---@field message string the same in a sentence
+
+--- Chooses how the time step is found.
+---
+---     model:timestep{fraction = 0.3}  or  report = model:timestep()
+---@param options? talus.TimestepOptions
+---@return talus.TimestepResult
+---@overload fun(self: talus.Model): talus.TimestepResult
+function Model:timestep(options) end
+
+---@class (exact) talus.MassScalingOptions
+---@field on? boolean default true: whether the inertia is scaled
+---@field dt? number s, in [1e-100, 1e+100]: for motion that is to be right: the step. Only bodies in contact whose own stable step is shorter get inertia, as much as they need for it
+---@field most? number >= 0: with dt: mass that may be added, as a share of the mass of all bodies that can move; a step that would need more fails. Left out, 0.05
+
+---@class (exact) talus.MassScalingResult
+---@field on boolean whether inertia is scaled; the other fields are there after mass_scaling{dt =} only
+---@field dt number the step, s, and the largest share, as given
+---@field most number the step, s, and the largest share, as given
+---@field added number mass that the last step has added, as a share of that of the bodies that can move
+---@field bodies integer how many have got some
+---@field worst { block: integer, factor: number }? {block =, factor =}: the number of the block with the highest factor, and its inertia over its own; nil when none has got any
+
+--- Scales the inertia, not the weight, of free bodies up to that of the one with the longest stable step, for finding equilibria: times and velocities then mean nothing. With dt it is for dynamics: inertia is added to the few bodies that need it. Without arguments it tells what the last step has added.
+---
+---     model:mass_scaling(true)  or  model:mass_scaling{dt = 1e-4}  or  added = model:mass_scaling()
+---@param on? boolean whether the inertia is scaled
+---@return talus.MassScalingResult
+---@overload fun(self: talus.Model, options?: talus.MassScalingOptions): talus.MassScalingResult
+---@overload fun(self: talus.Model): talus.MassScalingResult
+function Model:mass_scaling(on) end
+
+---@class (exact) talus.ContactAreaOptions
+---@field fraction? number in [0, 1], default 0: minimum area of field contacts, as a share of the smaller block's mean face area; with 0 they have no more than their own
+---@field absolute? number m2, >= 0: minimum area in square metres instead of the share
+---@field joint? string the joint ("J1") or plane ("J1:3") it applies to; every joint when left out
+
+--- Sets the minimum area of field contacts: those of edges, vertices and tilted faces. None by default.
+---
+---     model:contact_area{fraction = 0.01}
+---@param options? talus.ContactAreaOptions
+function Model:contact_area(options) end
+
+---@class (exact) talus.EnergyResult
+---@field kinetic number of motion, J
+---@field potential number minus the work of gravity, J
+---@field stored number elastic, in all contacts, those of held blocks, too, J
+---@field friction number turned to heat by slip, J
+---@field damping number taken out by the damping, J
+---@field external number work of loads and driven bodies, and given by setting velocities and by edits of blocks and laws, J
+---@field balance number error of the sum over the largest change of a term so far
+
+--- The energy of the bodies that are free to move, at the last force evaluation, counted from the first step.
+---
+---     energy = model:energy()
+---@return talus.EnergyResult
+function Model:energy() end
+
+---@class (exact) talus.WriteVtkOptions
+---@field blocks? boolean default true: whether the frame has a file of the blocks
+---@field contacts? boolean default true: whether the frame has a file of the contacts
+---@field joints? boolean default true: whether the frame has a file of the faces that joints made
+---@field block_fields? string[]|table<string, string|fun(block: talus.Block): number?> numbers of each block to colour by: fields of blocks, and functions that give a number, or nil for none
+---@field contact_fields? string[]|table<string, string|fun(contact: talus.Contact): number?> numbers of each contact, likewise: fields of contacts, states of their laws, functions
+
+--- Writes the next frame of a series of VTK files for ParaView, all of it or some of its files. Their names begin with the folder and the name given first.
+---
+---     model:write_vtk("out/run", {contacts = false, block_fields = {height = function(b) return b.centroid[3] end}})
+---@param path string
+---@param options? talus.WriteVtkOptions
+function Model:write_vtk(path, options) end
+
+---@class (exact) talus.WriteSectionOptions
+---@field dip number deg, in [0, 90]: dip of the plane below horizontal
+---@field dip_direction? number deg, in [0, 360], default 0: its dip direction, clockwise from north (+y)
+---@field origin? talus.Vector m, default {0, 0, 0}: a point on the plane
+
+--- Writes the next frame of a section: the polygons in which a plane cuts the blocks, with their displacements.
+---
+---     model:write_section("out/cut", {dip = 90, dip_direction = 90, origin = {0, 0, 0}})
+---@param path string
+---@param options talus.WriteSectionOptions
+function Model:write_section(path, options) end
+
+--- Writes all blocks as they stand into a JSON file.
+---
+---     model:write_blocks("out/blocks.json")
+---@param path string name of the file
+function Model:write_blocks(path) end
+
+--- A digest of all that what comes next depends on, settings too: models with the same text go on alike, to the last bit. Takes about as long as a step.
+---
+---     text = model:state_hash()
+---@return string
+function Model:state_hash() end
+
 ---@class (exact) talus.BlocksOptions
 ---@field group? string blocks of this group
 ---@field containing? talus.Vector m: blocks that contain this point
@@ -459,6 +607,33 @@ function Model:generate(generator, options) end
 ---@return talus.Blocks
 function Model:blocks(options) end
 
+---@class (exact) talus.FixOptions
+---@field x? boolean default false: hold the motion along x
+---@field y? boolean default false: hold the motion along y
+---@field z? boolean default false: hold the motion along z
+---@field rotation? boolean default false: hold the rotation
+
+--- Holds components of the motion of the blocks' bodies, besides what is held already; all of it when nothing is named.
+---
+---     selection:fix{x = true, rotation = true}  or  selection:fix()
+---@param options? talus.FixOptions
+---@return talus.Blocks
+---@overload fun(self: talus.Blocks): talus.Blocks
+function Blocks:fix(options) end
+
+---@class (exact) talus.SetOptions
+---@field density? number kg/m3, > 0: density
+---@field group? string name of the group
+---@field velocity? talus.Vector m/s: velocity of the centroid; of several blocks of a body, that of their common one
+---@field angular_velocity? talus.Vector rad/s: angular velocity
+
+--- Changes properties of blocks; what is not named stays.
+---
+---     selection:set{group = "wedge", velocity = {0, 0, -1}}
+---@param options? talus.SetOptions
+---@return talus.Blocks
+function Blocks:set(options) end
+
 ---@class (exact) talus.ContactsOptions
 ---@field joint? string contacts on this joint or plane
 ---@field between? (talus.Blocks|talus.Block)[] contacts of a block of the first with one of the second; a single block serves too
@@ -470,23 +645,6 @@ function Model:blocks(options) end
 ---@param options? talus.ContactsOptions
 ---@return talus.Contacts
 function Model:contacts(options) end
-
---- Sets the law of a joint set ("J1"), of one of its planes ("J1:3") or of every joint not named otherwise ("*"); without a law's name it changes properties.
----
----     model:joint("J1", "LAW", {...})  or  model:joint("J1", {friction = 30})
----@param joint string
----@param law string
----@param options? table
----@overload fun(self: talus.Model, joint: string, law: "barton_bandis", options: talus.law.BartonBandis)
----@overload fun(self: talus.Model, joint: string, law: "cohesive", options: talus.law.Cohesive)
----@overload fun(self: talus.Model, joint: string, law: "continuously_yielding", options: talus.law.ContinuouslyYielding)
----@overload fun(self: talus.Model, joint: string, law: "coulomb", options: talus.law.Coulomb)
----@overload fun(self: talus.Model, joint: string, law: "coulomb_tensile", options: talus.law.CoulombTensile)
----@overload fun(self: talus.Model, joint: string, law: "elastic", options: talus.law.Elastic)
----@overload fun(self: talus.Model, joint: string, law: "rate_state", options: talus.law.RateState)
----@overload fun(self: talus.Model, joint: string, law: "slip_weakening", options: talus.law.SlipWeakening)
----@overload fun(self: talus.Model, joint: string, options?: table)
-function Model:joint(joint, law, options) end
 
 ---@class (exact) talus.JointSet
 ---@field name string of the joint set; number of its planes so far
@@ -552,6 +710,22 @@ function talus.generators() end
 ---@return talus.Kind[]
 function talus.screens() end
 
+---@class (exact) talus.ParametersResult
+---@field gravity talus.Vector and all others that talus.model{...} takes
+---@field seed integer and all others that talus.model{...} takes
+---@field timestep { dt: number, fraction: number, rule: string }? rule and fraction; given: the step that was given, s, or nil; dt: the step the next cycle will use, s, or message: why it is not known
+---@field mass_scaling { on: boolean } on; dt and most, where they were given
+---@field damping { name: string, parameters: { alpha: number } }? name, nil where none was chosen; parameters: a table of them by name
+---@field laws { *: { law: string, parameters: { cohesion: number, dilation: number, friction: number, kn: number, ks: number } }, J1: { law: string, parameters: { cohesion: number, dilation: number, friction: number, kn: number, ks: number } } } by joint ("*", "J1", "J1:3"): law, its name; parameters: a table of them by name
+---@field joints { J1: string } by joint set: the joint whose law it has, "" for none
+---@field contact_area { *: { fraction: number } } by joint, "*" for all others: fraction, or absolute, m2
+
+--- Tells all parameters the model has now, with defaults and units, as a table, and prints them (not with --quiet).
+---
+---     table = model:parameters()
+---@return talus.ParametersResult
+function Model:parameters() end
+
 ---@class (exact) talus.LawTestOptions
 ---@field law string name of the law
 ---@field normal_stress? number Pa: normal stress, compression positive, which is held by closing and opening; when left out the closure is given, and begins at 0
@@ -585,57 +759,6 @@ function talus.screens() end
 ---@return talus.LawTestResult
 function talus.law_test(options) end
 
----@class (exact) talus.InsituOptions
----@field at? talus.Vector m, default {0, 0, 0}: point at whose height the stress holds; the gradient counts from there
----@field stress? talus.Tensor stress at the height of `at`, Pa, tension positive; components left out are 0. yx, zy and xz are the same as xy, yz and zx
----@field gradient? talus.Tensor change of the stress with height z, Pa/m; components left out are 0
-
---- Puts an initial stress on the face contacts that exist now, once.
----
----     model:insitu{stress = {zz = -1e6}, gradient = {zz = 2e4}, at = {0, 0, 0}}
----@param options? talus.InsituOptions
-function Model:insitu(options) end
-
---- Chooses how motion is damped; "none" is no damping, and the default.
----
----     model:damping("DAMPING", {...})
----@param damping string
----@param options? table
----@overload fun(self: talus.Model, damping: "adaptive", options?: talus.damping.Adaptive)
----@overload fun(self: talus.Model, damping: "combined", options?: talus.damping.Combined)
----@overload fun(self: talus.Model, damping: "kinetic", options?: talus.damping.Kinetic)
----@overload fun(self: talus.Model, damping: "local", options?: talus.damping.Local)
----@overload fun(self: talus.Model, damping: "none", options?: talus.damping.None)
----@overload fun(self: talus.Model, damping: "viscous", options: talus.damping.Viscous)
-function Model:damping(damping, options) end
-
----@class (exact) talus.FixOptions
----@field x? boolean default false: hold the motion along x
----@field y? boolean default false: hold the motion along y
----@field z? boolean default false: hold the motion along z
----@field rotation? boolean default false: hold the rotation
-
---- Holds components of the motion of the blocks' bodies, besides what is held already; all of it when nothing is named.
----
----     selection:fix{x = true, rotation = true}  or  selection:fix()
----@param options? talus.FixOptions
----@return talus.Blocks
----@overload fun(self: talus.Blocks): talus.Blocks
-function Blocks:fix(options) end
-
----@class (exact) talus.SetOptions
----@field density? number kg/m3, > 0: density
----@field group? string name of the group
----@field velocity? talus.Vector m/s: velocity of the centroid; of several blocks of a body, that of their common one
----@field angular_velocity? talus.Vector rad/s: angular velocity
-
---- Changes properties of blocks; what is not named stays.
----
----     selection:set{group = "wedge", velocity = {0, 0, -1}}
----@param options? talus.SetOptions
----@return talus.Blocks
-function Blocks:set(options) end
-
 ---@class (exact) talus.LoadOptions
 ---@field force? talus.Vector N, default {0, 0, 0}: force on the body of each block
 ---@field moment? talus.Vector N m, default {0, 0, 0}: moment on the body of each block
@@ -647,6 +770,17 @@ function Blocks:set(options) end
 ---@param options? talus.LoadOptions
 ---@return talus.Blocks
 function Blocks:load(options) end
+
+---@class (exact) talus.DriveOptions
+---@field velocity? talus.Vector|(fun(t: number): number|talus.Vector, number?, number?) velocity of the centroid, m/s; the function gives {x, y, z} or three numbers for a time t, s: the middle of each step. Zero when left out
+---@field angular_velocity? talus.Vector|(fun(t: number): number|talus.Vector, number?, number?) angular velocity, rad/s, likewise
+
+--- Prescribes the motion of the blocks' bodies, in the place of any fixing, until selection:free(). A function is called in the middle of a step: it may read the model, but not change it. A body that is driven to turn is not cut in two.
+---
+---     selection:drive{velocity = function(t) return 0.1 * math.sin(t), 0, 0 end}
+---@param options? talus.DriveOptions
+---@return talus.Blocks
+function Blocks:drive(options) end
 
 ---@class (exact) talus.BoundaryOptions
 ---@field side? string faces in this plane of the box about all blocks: "xmin", "xmax", "ymin", "ymax", "zmin" or "zmax"
@@ -692,87 +826,6 @@ function Blocks:load(options) end
 ---@return talus.BoundaryResult
 ---@overload fun(self: talus.Model, options?: talus.BoundaryOptions): talus.BoundaryResult
 function Model:boundary(options) end
-
----@class (exact) talus.DriveOptions
----@field velocity? talus.Vector|(fun(t: number): number|talus.Vector, number?, number?) velocity of the centroid, m/s; the function gives {x, y, z} or three numbers for a time t, s: the middle of each step. Zero when left out
----@field angular_velocity? talus.Vector|(fun(t: number): number|talus.Vector, number?, number?) angular velocity, rad/s, likewise
-
---- Prescribes the motion of the blocks' bodies, in the place of any fixing, until selection:free(). A function is called in the middle of a step: it may read the model, but not change it. A body that is driven to turn is not cut in two.
----
----     selection:drive{velocity = function(t) return 0.1 * math.sin(t), 0, 0 end}
----@param options? talus.DriveOptions
----@return talus.Blocks
-function Blocks:drive(options) end
-
----@class (exact) talus.TimestepOptions
----@field fraction? number in [1e-09, 2]: share of the critical step that is used, FRAC of (27); when left out 0.5, by the rule paper 0.1
----@field rule? "paper"|"body" default "body": critical step from the lightest block and the stiffest contact (paper), or from each body's own mass and stiffness (body)
----@field dt? number s, in [1e-100, 1e+100]: a fixed time step instead of the rule
-
----@class (exact) talus.TimestepResult
----@field dt number the step the next cycle will use, s; 0 where nothing can move and no law is set
----@field block talus.Block? the block that controls it, or nil
----@field partner talus.Block? the block at the stiffest contact, or nil
----@field mass number of the block's body, kg; of the contact, of all its contacts or of the part of its largest face that counts, N/m
----@field stiffness number of the block's body, kg; of the contact, of all its contacts or of the part of its largest face that counts, N/m
----@field message string the same in a sentence
-
---- Chooses how the time step is found.
----
----     model:timestep{fraction = 0.3}  or  report = model:timestep()
----@param options? talus.TimestepOptions
----@return talus.TimestepResult
----@overload fun(self: talus.Model): talus.TimestepResult
-function Model:timestep(options) end
-
----@class (exact) talus.MassScalingOptions
----@field on? boolean default true: whether the inertia is scaled
----@field dt? number s, in [1e-100, 1e+100]: for motion that is to be right: the step. Only bodies in contact whose own stable step is shorter get inertia, as much as they need for it
----@field most? number >= 0: with dt: mass that may be added, as a share of the mass of all bodies that can move; a step that would need more fails. Left out, 0.05
-
----@class (exact) talus.MassScalingResult
----@field on boolean whether inertia is scaled; the other fields are there after mass_scaling{dt =} only
----@field dt number the step, s, and the largest share, as given
----@field most number the step, s, and the largest share, as given
----@field added number mass that the last step has added, as a share of that of the bodies that can move
----@field bodies integer how many have got some
----@field worst { block: integer, factor: number }? {block =, factor =}: the number of the block with the highest factor, and its inertia over its own; nil when none has got any
-
---- Scales the inertia, not the weight, of free bodies up to that of the one with the longest stable step, for finding equilibria: times and velocities then mean nothing. With dt it is for dynamics: inertia is added to the few bodies that need it. Without arguments it tells what the last step has added.
----
----     model:mass_scaling(true)  or  model:mass_scaling{dt = 1e-4}  or  added = model:mass_scaling()
----@param on? boolean whether the inertia is scaled
----@return talus.MassScalingResult
----@overload fun(self: talus.Model, options?: talus.MassScalingOptions): talus.MassScalingResult
----@overload fun(self: talus.Model): talus.MassScalingResult
-function Model:mass_scaling(on) end
-
----@class (exact) talus.ContactAreaOptions
----@field fraction? number in [0, 1], default 0: minimum area of field contacts, as a share of the smaller block's mean face area; with 0 they have no more than their own
----@field absolute? number m2, >= 0: minimum area in square metres instead of the share
----@field joint? string the joint ("J1") or plane ("J1:3") it applies to; every joint when left out
-
---- Sets the minimum area of field contacts: those of edges, vertices and tilted faces. None by default.
----
----     model:contact_area{fraction = 0.01}
----@param options? talus.ContactAreaOptions
-function Model:contact_area(options) end
-
----@class (exact) talus.ParametersResult
----@field gravity talus.Vector and all others that talus.model{...} takes
----@field seed integer and all others that talus.model{...} takes
----@field timestep { dt: number, fraction: number, rule: string }? rule and fraction; given: the step that was given, s, or nil; dt: the step the next cycle will use, s, or message: why it is not known
----@field mass_scaling { on: boolean } on; dt and most, where they were given
----@field damping { name: string, parameters: { alpha: number } }? name, nil where none was chosen; parameters: a table of them by name
----@field laws { *: { law: string, parameters: { cohesion: number, dilation: number, friction: number, kn: number, ks: number } }, J1: { law: string, parameters: { cohesion: number, dilation: number, friction: number, kn: number, ks: number } } } by joint ("*", "J1", "J1:3"): law, its name; parameters: a table of them by name
----@field joints { J1: string } by joint set: the joint whose law it has, "" for none
----@field contact_area { *: { fraction: number } } by joint, "*" for all others: fraction, or absolute, m2
-
---- Tells all parameters the model has now, with defaults and units, as a table, and prints them (not with --quiet).
----
----     table = model:parameters()
----@return talus.ParametersResult
-function Model:parameters() end
 
 ---@class (exact) talus.CycleOptions
 ---@field cycles integer >= 0: number of steps to run
@@ -905,50 +958,12 @@ function talus.plot(options) end
 ---@param options talus.StereonetOptions
 function talus.stereonet(options) end
 
----@class (exact) talus.EnergyResult
----@field kinetic number of motion, J
----@field potential number minus the work of gravity, J
----@field stored number elastic, in all contacts, those of held blocks, too, J
----@field friction number turned to heat by slip, J
----@field damping number taken out by the damping, J
----@field external number work of loads and driven bodies, and given by setting velocities and by edits of blocks and laws, J
----@field balance number error of the sum over the largest change of a term so far
-
---- The energy of the bodies that are free to move, at the last force evaluation, counted from the first step.
+--- Writes a text into a file, whole or not at all. Folders are made; only a regular file is replaced.
 ---
----     energy = model:energy()
----@return talus.EnergyResult
-function Model:energy() end
-
---- Begins a stage: displacements of all blocks count from now, as after reset_displacement, and so does what model:verdict and pages tell of slip and opening. What laws keep stays. The name is at most 63 bytes; copies and files have it.
----
----     model:stage("excavated")
----@param name string
-function Model:stage(name) end
-
----@class (exact) talus.VerdictResult
----@field standing string "at rest" below the local ratio of the last solve, else below 1e-5; "failed" by the criterion of stop_at_failure in the last solve; "accelerating" where unbalanced forces push on; else "moving". "unknown" before the first step
----@field text string all of this as one line
----@field stage string name given to model:stage, or ""
----@field ratio number the local unbalanced force ratio
----@field closed number blocks that have not moved, but closed their joints, have displacements up to this, m
----@field moved integer blocks that have moved by more than that, and by more than a twentieth of the largest displacement, a body of several parts as one; their volume, m3
----@field volume number blocks that have moved by more than that, and by more than a twentieth of the largest displacement, a body of several parts as one; their volume, m3
----@field direction talus.Vector of their mean motion, a unit vector
----@field farthest integer id of the block that has moved the most, and how far, m
----@field displacement number id of the block that has moved the most, and how far, m
----@field slip number how far two bodies have moved along each other since the stage began, the largest, m: the mean, by area, of their contacts on faces that look the same way; id of the first of these
----@field slipped integer how far two bodies have moved along each other since the stage began, the largest, m: the mean, by area, of their contacts on faces that look the same way; id of the first of these
----@field opening number the same apart, m; id of such a contact, 0: none
----@field opened integer the same apart, m; id of such a contact, 0: none
----@field contacts integer contacts there are, and those that slip
----@field slipping integer contacts there are, and those that slip
-
---- Tells how the model stands as of its last step: at rest, moving, accelerating or failed, and what has moved since the stage began. Nothing changes by it.
----
----     verdict = model:verdict()
----@return talus.VerdictResult
-function Model:verdict() end
+---     talus.write_file("out/table.csv", text)
+---@param path string
+---@param text any
+function talus.write_file(path, text) end
 
 ---@class (exact) talus.ReportResult
 ---@field blocks integer number of blocks, and of bodies they make
@@ -1019,6 +1034,36 @@ function Model:filter(options) end
 ---@return talus.Keyblock[]
 function Model:keyblocks(options) end
 
+--- Begins a stage: displacements of all blocks count from now, as after reset_displacement, and so does what model:verdict and pages tell of slip and opening. What laws keep stays. The name is at most 63 bytes; copies and files have it.
+---
+---     model:stage("excavated")
+---@param name string
+function Model:stage(name) end
+
+---@class (exact) talus.VerdictResult
+---@field standing string "at rest" below the local ratio of the last solve, else below 1e-5; "failed" by the criterion of stop_at_failure in the last solve; "accelerating" where unbalanced forces push on; else "moving". "unknown" before the first step
+---@field text string all of this as one line
+---@field stage string name given to model:stage, or ""
+---@field ratio number the local unbalanced force ratio
+---@field closed number blocks that have not moved, but closed their joints, have displacements up to this, m
+---@field moved integer blocks that have moved by more than that, and by more than a twentieth of the largest displacement, a body of several parts as one; their volume, m3
+---@field volume number blocks that have moved by more than that, and by more than a twentieth of the largest displacement, a body of several parts as one; their volume, m3
+---@field direction talus.Vector of their mean motion, a unit vector
+---@field farthest integer id of the block that has moved the most, and how far, m
+---@field displacement number id of the block that has moved the most, and how far, m
+---@field slip number how far two bodies have moved along each other since the stage began, the largest, m: the mean, by area, of their contacts on faces that look the same way; id of the first of these
+---@field slipped integer how far two bodies have moved along each other since the stage began, the largest, m: the mean, by area, of their contacts on faces that look the same way; id of the first of these
+---@field opening number the same apart, m; id of such a contact, 0: none
+---@field opened integer the same apart, m; id of such a contact, 0: none
+---@field contacts integer contacts there are, and those that slip
+---@field slipping integer contacts there are, and those that slip
+
+--- Tells how the model stands as of its last step: at rest, moving, accelerating or failed, and what has moved since the stage began. Nothing changes by it.
+---
+---     verdict = model:verdict()
+---@return talus.VerdictResult
+function Model:verdict() end
+
 ---@class (exact) talus.ProfileResult
 ---@field seconds { damping: number, detect: number, energy: number, gather: number, laws: number, move: number, timestep: number }
 ---@field steps integer steps since profiling began
@@ -1056,32 +1101,6 @@ function Model:profile(on) end
 ---@return talus.MemoryResult
 function Model:memory() end
 
----@class (exact) talus.WriteVtkOptions
----@field blocks? boolean default true: whether the frame has a file of the blocks
----@field contacts? boolean default true: whether the frame has a file of the contacts
----@field joints? boolean default true: whether the frame has a file of the faces that joints made
----@field block_fields? string[]|table<string, string|fun(block: talus.Block): number?> numbers of each block to colour by: fields of blocks, and functions that give a number, or nil for none
----@field contact_fields? string[]|table<string, string|fun(contact: talus.Contact): number?> numbers of each contact, likewise: fields of contacts, states of their laws, functions
-
---- Writes the next frame of a series of VTK files for ParaView, all of it or some of its files. Their names begin with the folder and the name given first.
----
----     model:write_vtk("out/run", {contacts = false, block_fields = {height = function(b) return b.centroid[3] end}})
----@param path string
----@param options? talus.WriteVtkOptions
-function Model:write_vtk(path, options) end
-
----@class (exact) talus.WriteSectionOptions
----@field dip number deg, in [0, 90]: dip of the plane below horizontal
----@field dip_direction? number deg, in [0, 360], default 0: its dip direction, clockwise from north (+y)
----@field origin? talus.Vector m, default {0, 0, 0}: a point on the plane
-
---- Writes the next frame of a section: the polygons in which a plane cuts the blocks, with their displacements.
----
----     model:write_section("out/cut", {dip = 90, dip_direction = 90, origin = {0, 0, 0}})
----@param path string
----@param options talus.WriteSectionOptions
-function Model:write_section(path, options) end
-
 ---@class (exact) talus.WriteHtmlOptions
 ---@field title? string title of the page; the name at the end of its path when left out
 ---@field contacts? boolean|"slipping" which contacts the frame has; when left out all, where there are 20000 at the most, and else those that slip
@@ -1116,25 +1135,6 @@ function Model:write_html(path, options) end
 ---@param options? talus.ViewOptions
 ---@return string
 function Model:view(options) end
-
---- Writes all blocks as they stand into a JSON file.
----
----     model:write_blocks("out/blocks.json")
----@param path string name of the file
-function Model:write_blocks(path) end
-
---- Writes a text into a file, whole or not at all. Folders are made; only a regular file is replaced.
----
----     talus.write_file("out/table.csv", text)
----@param path string
----@param text any
-function talus.write_file(path, text) end
-
---- A digest of all that what comes next depends on, settings too: models with the same text go on alike, to the last bit. Takes about as long as a step.
----
----     text = model:state_hash()
----@return string
-function Model:state_hash() end
 
 --- The same model once more in memory: equal state, and equal bits after equal calls from then on. The functions of drives are shared; frames of the copy begin with 0.
 ---

@@ -6,6 +6,8 @@
  * cut makes both children, and they are freed. Planes that miss or fall on a face are cheaper: the share
  * of cuts that were made is told. Processor time, so other work on the machine counts little. */
 #include "cut_planes.h"
+#include "geometry/cut.h"
+#include "geometry/make.h"
 
 #include <time.h>
 

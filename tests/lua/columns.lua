@@ -16,7 +16,7 @@ local columns = {}
 -- How far tilt and closure may be off, relative: of any law, and of one that slip opens. Points next to the open part press so
 -- little that they slip while the column comes to rest, and ride up. Where a column fell, or stood on its edge before, its walls
 -- have ridden up unevenly, by what is not known from outside: of such laws tilts are not compared then.
--- Where the stress is no line, its slope changes up to ninefold at a knee, which may lie inside a cell of a contact (bent.c).
+-- Where the stress is no line, its slope changes up to ninefold at a knee, which may lie inside a cell of a contact (partly_open.c).
 local WITHIN, WITHIN_OPENED, WITHIN_KNEE = 0.01, 0.03, 0.055
 
 function columns.within(joint)

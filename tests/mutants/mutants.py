@@ -3,7 +3,7 @@
 
     mutants.py [--count 300] [--seed 1] [--build build/mutants] [--only N,N...]
 
-A place is a sign, a bound, a factor, a term or a status that is looked at, in core/force, contact, cycle, state or query; which ones are
+A place is a sign, a bound, a factor, a term or a status that is looked at, in core/force, contact, cycle, state, query or edit; which ones are
 changed follows from the seed. Each mutant is built in a copy of the sources. The tests that `./bootstrap test` runs are run until one
 fails: those that need only the program first, and of these what has found most mutants, then what is short. A mutant that none finds
 is printed, unless equivalent.txt argues that it changes nothing. The exit status is 1 when more than a tenth of the others are not
@@ -23,7 +23,7 @@ import sys
 import time
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-MODULES = ("force", "contact", "cycle", "state", "query")
+MODULES = ("force", "contact", "cycle", "state", "query", "edit")
 WORKERS = os.cpu_count() or 1
 SHARE = 0.9  # of the mutants that are not equivalent
 

@@ -8,6 +8,7 @@
  * state has the name of one of a law that comes with the program, so no test of all laws can know it by a name. Compression is
  * positive. The slip is that at whose end spring and strength agree, as the slip itself presses the walls:
  * slip = (|f_t| - limit) / (soft A + stiff A tan climb tan angle). */
+
 #include <talus/kit.h>
 
 typedef struct params {

@@ -3,6 +3,7 @@
 #include "check.h"
 
 #include "contact/cells.h"
+#include "contact/lean.h"
 #include "narrow/frame2.h"
 
 #include <math.h>

@@ -7,7 +7,14 @@
  * ten digits: there the topology alone is tested. */
 #include "check.h"
 #include "cut_planes.h"
+#include "generate/stage.h"
+#include "generate/stage_commit.h"
+#include "generate/staging.h"
+#include "geometry/cut.h"
+#include "geometry/make.h"
+#include "geometry/measure.h"
 #include "geometry/polyhedron.h"
+#include "model/joints.h"
 #include "model/model.h"
 
 #include <float.h>

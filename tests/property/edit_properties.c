@@ -3,10 +3,15 @@
  * anew: what presses where, and by how much. */
 #include "contact_scene.h"
 
-#include "contact/copy.h"
 #include "contact/places.h"
 #include "contact/presses.h"
 #include "contact/store.h"
+#include "detect/detect.h"
+#include "generate/stage.h"
+#include "generate/stage_commit.h"
+#include "generate/staging.h"
+#include "model/joints.h"
+#include "model/rows.h"
 
 #define MODELS 240
 #define EDITS 14

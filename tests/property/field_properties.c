@@ -1,6 +1,10 @@
 /* field_properties.c - the pressure field of random pairs of shapes: force and moment are the gradient of the energy,
  * and the energy is that of a brute-force sum. Overlaps go from touching to 0.4 of the size; faces may be borders. */
 #include "field_scene.h"
+#include "geometry/cut.h"
+#include "geometry/make.h"
+#include "geometry/measure.h"
+#include "narrow/field.h"
 
 /* Force over the cube of the overlap, a length, below which a pair hardly touches: needles that cross by a corner. */
 #define LEAST 1e-3

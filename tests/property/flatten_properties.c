@@ -1,6 +1,11 @@
 /* flatten_properties.c - faces of seeded blocks, cut into triangles at random, their corners moved off the planes by as much
  * as a mesh misses them: the block has the faces that it had before. */
 #include "check.h"
+#include "geometry/cut.h"
+#include "geometry/flatten.h"
+#include "geometry/hull.h"
+#include "geometry/make.h"
+#include "geometry/measure.h"
 #include "geometry/polyhedron.h"
 
 #include <talus/vmath.h>

@@ -4,6 +4,7 @@
  * Boxes, some of them sheared, meet in an edge or a corner, or nearly; then B moves as far as it may, in any way. */
 #include "contact_scene.h"
 #include "detect/grazing.h"
+#include "geometry/make.h"
 #include "narrow/manifold.h"
 
 /* Overlap along both of two directions that may go unseen, over the size, as in grazing.c. */

@@ -1,6 +1,9 @@
 /* hull_properties.c - hulls of seeded random points against volumes found in other ways, and the
  * properties every hull has. */
 #include "check.h"
+#include "geometry/hull.h"
+#include "geometry/make.h"
+#include "geometry/measure.h"
 #include "geometry/polyhedron.h"
 
 #include <talus/vmath.h>

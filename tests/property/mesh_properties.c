@@ -1,5 +1,6 @@
 /* mesh_properties.c - the mesh of a pressure field with borders: made at one place, it tells the integrals at others. */
 #include "field_scene.h"
+#include "narrow/field.h"
 #include "narrow/field_mesh.h"
 
 /* Whether two vectors are the same within a length. */

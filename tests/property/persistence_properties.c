@@ -5,6 +5,8 @@
  * becomes of A must not change with what else is in the model, with what happens to it later, or with the
  * order in which A and B are cut; sets that cut every block divide A alike in any order. */
 #include "check.h"
+#include "geometry/measure.h"
+#include "model/joints.h"
 #include "model/model.h"
 
 #include <talus/vmath.h>

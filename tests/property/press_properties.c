@@ -2,6 +2,7 @@
  * are the gradient of the energy, and faces that were left out change nothing. */
 #include "contact_scene.h"
 
+#include "narrow/press.h"
 #include "narrow/press_slope.h"
 
 #include <string.h>

@@ -5,7 +5,15 @@
  * allow by (27); the step follows units, density and stiffness as it must. Who asks for rates above some limit only gets the same
  * highest one, and of no body less than it asks for. */
 #include "contact_scene.h"
-#include "cycle/rates.h"
+#include "cycle/prepare.h"
+#include "cycle/timestep.h"
+#include "detect/detect.h"
+#include "generate/stage.h"
+#include "generate/stage_commit.h"
+#include "generate/staging.h"
+#include "geometry/make.h"
+#include "geometry/measure.h"
+#include "model/joints.h"
 
 #define MODELS 300
 #define FLOOR 0.15

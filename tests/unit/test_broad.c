@@ -2,6 +2,10 @@
  * search of all pairs: the odometers must never let one slip by. */
 #include "contact/pair_view.h"
 #include "contact_scene.h"
+#include "detect/detect.h"
+#include "generate/stage.h"
+#include "generate/stage_commit.h"
+#include "generate/staging.h"
 #include "narrow/manifold.h"
 #include "property/exact_axis.h"
 

@@ -4,6 +4,7 @@
 #include "contact/contacts.h"
 #include "contact/pair_view.h"
 #include "contact_scene.h"
+#include "model/rows.h"
 
 #define KN 1e9
 #define PILE_KN 3e8

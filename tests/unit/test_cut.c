@@ -1,5 +1,9 @@
 /* test_cut.c - cutting: known cuts of boxes, every result, and blocks that share a face. */
 #include "check.h"
+#include "geometry/cut.h"
+#include "geometry/hull.h"
+#include "geometry/make.h"
+#include "geometry/measure.h"
 #include "geometry/polyhedron.h"
 
 #include <talus/vmath.h>

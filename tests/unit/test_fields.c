@@ -2,7 +2,7 @@
 #include "check.h"
 #include "values.h"
 
-#include "plugin/registry.h"
+#include "plugin/loader.h"
 
 #include <math.h>
 #include <stdlib.h>

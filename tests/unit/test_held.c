@@ -1,7 +1,9 @@
 /* test_held.c - contacts between bodies that are held still: passed over once they rest, as if they had been followed. */
-#include "contact/held.h"
-#include "contact/points.h"
+#include "contact/contacts.h"
 #include "contact_scene.h"
+#include "cycle/cycle.h"
+#include "cycle/cycle_data.h"
+#include "detect/detect.h"
 
 #include <stdatomic.h>
 #include <string.h>

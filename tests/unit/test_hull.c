@@ -1,5 +1,8 @@
 /* test_hull.c - hulls of points: merged faces, exact planes, what is refused and in which words. */
 #include "check.h"
+#include "geometry/hull.h"
+#include "geometry/make.h"
+#include "geometry/measure.h"
 #include "geometry/polyhedron.h"
 
 #include <talus/vmath.h>

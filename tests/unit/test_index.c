@@ -2,6 +2,7 @@
  * nothing. */
 #include "contact/index.h"
 #include "contact_scene.h"
+#include "detect/detect.h"
 
 #define BLOCKS 60
 #define STEPS 400

@@ -3,6 +3,10 @@
  * edges, corners of eight blocks, torsion. */
 #include "contact/contacts.h"
 #include "contact_scene.h"
+#include "generate/stage.h"
+#include "generate/stage_commit.h"
+#include "generate/staging.h"
+#include "model/joints.h"
 #include "property/exact_axis.h"
 
 #define KN 1e9

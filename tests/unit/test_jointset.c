@@ -2,6 +2,7 @@
  * and "jointset" say about joints that meet nothing. */
 #include "base/random.h"
 #include "check.h"
+#include "model/joints.h"
 #include "model/model.h"
 #include "values.h"
 

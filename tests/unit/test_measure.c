@@ -2,7 +2,11 @@
  * measures against what can be seen by eye. */
 #include "check.h"
 #include "data/mass_cases.h"
+#include "geometry/hull.h"
+#include "geometry/make.h"
+#include "geometry/measure.h"
 #include "geometry/polyhedron.h"
+#include "geometry/principal.h"
 
 #include <talus/vmath.h>
 

@@ -1,6 +1,6 @@
 /* test_outline.c - the corners of the common polygon of two faces, by which corners lie inside which lines. */
 #include "check.h"
-#include "narrow/outline.h"
+#include "narrow/patch_batch.h"
 
 static tl_outline table[TL_OUTLINES];
 

@@ -1,9 +1,9 @@
 /* test_output_file.c - what may be replaced by a file and what not, and what is left of files when the program is ended
  * while it writes them. */
 #define _GNU_SOURCE /* types of files, usleep */
+#include "base/output_file.h"
 #include "base/signals.h"
 #include "check.h"
-#include "io/output_file.h"
 
 #include <dirent.h>
 #include <signal.h>

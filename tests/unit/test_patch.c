@@ -1,9 +1,9 @@
 /* test_patch.c - face on face: areas and moments of the contact points against an independent clipping,
  * stiffness against turning, and that a wobble of the blocks does not make the force jump. */
 #include "contact/contacts.h"
-#include "contact/points.h"
 #include "contact_scene.h"
 #include "narrow/manifold.h"
+#include "narrow/press.h"
 
 /* ---------------------------------------------------------------- reference -------------- */
 

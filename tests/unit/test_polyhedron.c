@@ -1,5 +1,6 @@
 /* test_polyhedron.c - making polyhedra from faces, boxes, copies, and the check itself. */
 #include "check.h"
+#include "geometry/make.h"
 #include "geometry/polyhedron.h"
 
 #include <talus/vmath.h>

@@ -1,7 +1,7 @@
 /* test_pressed.c - energies and forces of what presses, as a law tells them: the forces, too, or only the energies. */
 #include "check.h"
 
-#include "force/pressed.h"
+#include "force/field_press.h"
 
 #include <math.h>
 

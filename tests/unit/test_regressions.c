@@ -3,6 +3,8 @@
  * faces, faces half a degree apart, ties, tiny steps in large coordinates. */
 #include "contact/contacts.h"
 #include "contact_scene.h"
+#include "model/joints.h"
+#include "model/rows.h"
 #include "narrow/manifold.h"
 
 #define KN 1e9

@@ -3,7 +3,8 @@
  * tests/python/test_scene.py reads what is in them, with a reader of its own. */
 #include "check.h"
 
-#include "io/pack.h"
+#include "io/page.h"
+#include "io/pieces.h"
 #include "io/scene.h"
 
 #include <talus/talus.h>

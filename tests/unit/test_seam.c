@@ -1,7 +1,11 @@
 /* test_seam.c - seams inside bodies of several blocks: which faces and edges are marked, and that a block
  * slides over a seam as over one piece. */
 #include "check.h"
+#include "geometry/hull.h"
+#include "geometry/make.h"
+#include "geometry/measure.h"
 #include "geometry/polyhedron.h"
+#include "geometry/seam.h"
 
 #include <talus/talus.h>
 #include <talus/vmath.h>

@@ -1,6 +1,8 @@
 /* test_services.c - generators through tl_generate: what they make, how they fail, and that a failure
  * leaves no trace. */
 #include "check.h"
+#include "geometry/measure.h"
+#include "model/joints.h"
 #include "model/model.h"
 #include "values.h"
 

@@ -2,7 +2,7 @@
  * sliver of next to nothing, and between them with its gradient. */
 #include "check.h"
 
-#include "narrow/share.h"
+#include "narrow/press.h"
 
 #include <talus/vmath.h>
 

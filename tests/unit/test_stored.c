@@ -2,6 +2,8 @@
  * corners, deep in and hardly, with a minimum area and without, seen through a model. */
 #include "contact/contacts.h"
 #include "contact_scene.h"
+#include "geometry/make.h"
+#include "geometry/measure.h"
 #include "property/exact_axis.h"
 
 #define KN 1e9

@@ -2,6 +2,15 @@
  * of blocks that fall on each other, so that contacts come, go and change all the time; bodies without contacts; models
  * from which no step follows; and what is said of slivers. */
 #include "../contact_scene.h"
+#include "cycle/cycle.h"
+#include "cycle/cycle_data.h"
+#include "cycle/prepare.h"
+#include "cycle/timestep.h"
+#include "detect/detect.h"
+#include "generate/stage.h"
+#include "generate/stage_commit.h"
+#include "generate/staging.h"
+#include "model/joints.h"
 
 #include <talus/number.h>
 

@@ -2,10 +2,10 @@
  * stay uniform when the area changes, and a law's states are copied, split or reset as it declares. */
 #include "base/columns.h"
 #include "contact/contacts.h"
-#include "contact/points.h"
 #include "contact/store.h"
 #include "contact/transfer.h"
 #include "contact_scene.h"
+#include "detect/detect.h"
 #include "force/bear.h"
 
 #define KN 1e9

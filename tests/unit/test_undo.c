@@ -1,6 +1,7 @@
 /* test_undo.c - a step that a law or the damping fails has changed nothing: the state is as before, as often as it is tried, and
  * what follows the cure is what follows in a model in which nothing ever failed. */
 #include "contact_scene.h"
+#include "cycle/undo.h"
 
 enum { MOST_ARGS = 4, STEPS = 40, AFTER = 20 };
 

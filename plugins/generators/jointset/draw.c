@@ -1,4 +1,4 @@
-/* draw.c - random deviations of the planes of a joint set, each a pure function of model seed, set,
+/* params.c - random deviations of the planes of a joint set, each a pure function of model seed, set,
  * plane and quantity.
  *
  * Normal: Box and Muller's transform of two uniform numbers, drawn again while it falls beyond the limit

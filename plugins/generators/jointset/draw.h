@@ -1,4 +1,4 @@
-/* draw.h - random deviations of the planes of a joint set. */
+/* params.h - random deviations of the planes of a joint set. */
 #ifndef JOINTSET_DRAW_H
 #define JOINTSET_DRAW_H
 

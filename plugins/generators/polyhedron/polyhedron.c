@@ -1,4 +1,4 @@
-/* polyhedron.c - generator "polyhedron": one block, the convex hull of its vertices. The host refuses
+/* make.c - generator "polyhedron": one block, the convex hull of its vertices. The host refuses
  * vertices that span no volume, and a vertex that is no corner of the hull because it lies inside. */
 #include <talus/kit.h>
 #include <talus/version.h>

@@ -1,0 +1,19 @@
+/* limits.h - how far a body may move in one step. */
+#ifndef TL_CYCLE_LIMITS_H
+#define TL_CYCLE_LIMITS_H
+
+#include "cycle/cycle_data.h"
+#include "cycle/kicked.h"
+
+/* Every body would move by a finite number that is not out of all proportion, or a sentence that names one that would
+ * not: bodies whose motion is given, after the drives have been evaluated, and those that forces move. */
+tl_status tl_motion_check_held(tl_model *m, double dt);
+tl_status tl_motion_check(tl_model *m, double dt);
+
+/* Whether a step so long may carry some body too far: false is sure. Takes a constant time but after an edit. */
+bool tl_travel_may_matter(const tl_model *m, double dt);
+/* The longest step up to `dt` that carries and turns blocks as little as a step that the program chooses should, s, and the row
+ * of a body that sets it, or TL_NO_ROW. */
+tl_status tl_travel_shorten(tl_model *m, double *dt, uint32_t *body);
+
+#endif

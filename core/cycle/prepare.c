@@ -1,0 +1,97 @@
+/* prepare.c - what the phases of a step keep between them: made, given room for the bodies, and let go of. */
+#include "cycle/prepare.h"
+
+#include "base/parallel.h"
+#include "contact/detection.h"
+#include "cycle/cycle_data.h"
+#include "cycle/energy.h"
+#include "cycle/split.h"
+#include "cycle/undo.h"
+#include "force/laws.h"
+#include "model/rows.h"
+
+#include <stdlib.h>
+
+static void cycle_destroy(struct tl_cycle *cycle)
+{
+    tl_failure_destroy(&cycle->failure);
+    tl_table_free(&cycle->table);
+    free(cycle->reaction);
+    free(cycle->motion);
+    free(cycle->swept);
+    free(cycle->chunk_sums);
+    free(cycle->group_energy);
+    free(cycle->chunk_ledger);
+    free(cycle->ledger);
+    tl_undo_free(cycle->undo);
+    tl_split_free(cycle);
+    free(cycle);
+}
+
+static void add_columns(struct tl_cycle *c)
+{
+    tl_table *t = &c->table;
+    tl_table_init(t, c);
+    TL_COLUMN(t, c, contact_force, TL_COLUMN_STEP);
+    for (int k = 0; k < 3; k++) {
+        TL_COLUMN(t, c, damping_force[k], 0);
+        TL_COLUMN(t, c, damping_moment[k], 0);
+    }
+    TL_COLUMN(t, c, reaction_of, 0);
+    TL_COLUMN(t, c, alpha, 0);
+    TL_COLUMN(t, c, rate, 0);
+    TL_COLUMN(t, c, turn_rate, 0);
+    TL_COLUMN(t, c, inertia, 0);
+}
+
+tl_status tl_cycle_prepare(tl_model *m)
+{
+    tl_rows_tidy(m);
+    if (!m->cycle) {
+        if (!(m->cycle = calloc(1, sizeof *m->cycle)))
+            return tl_fail_memory(&m->error);
+        m->cycle_destroy = cycle_destroy;
+        tl_failure_init(&m->cycle->failure);
+        add_columns(m->cycle);
+    }
+    struct tl_cycle *c = m->cycle;
+    size_t bodies = m->bodies.table.rows, chunks = bodies / TL_BODY_CHUNK + 1;
+    if (chunks > c->chunk_capacity) {
+        tl_sums *sums = realloc(c->chunk_sums, chunks * sizeof *sums);
+        if (!sums)
+            return tl_fail_memory(&m->error);
+        c->chunk_sums = sums;
+        tl_status status = tl_energy_prepare(m, chunks);
+        if (status != TL_OK)
+            return status;
+        c->chunk_capacity = chunks;
+    }
+    /* whole lanes: the damping plugins' loops run to a multiple of TL_LANES */
+    return tl_table_resize(&c->table, (bodies + TL_LANES - 1) / TL_LANES * TL_LANES)
+               ? TL_OK
+               : tl_fail_memory(&m->error);
+}
+
+bool tl_model_moves(const tl_model *m)
+{
+    if (!m->cycle->all_held)
+        return true;
+    for (size_t i = 0; i < m->bodies.table.rows; i++)
+        if (m->bodies.drive[i] || tl_v3_norm2(m->bodies.v[i]) > 0 ||
+            tl_v3_norm2(m->bodies.w[i]) > 0)
+            return true;
+    return false;
+}
+
+tl_status tl_laws_prepare(tl_model *m)
+{
+    struct tl_cycle *c = m->cycle;
+    bool enough = tl_grow(&c->group_energy, &c->group_capacity, m->detect->layout.group_capacity,
+                          sizeof *c->group_energy);
+    return enough ? TL_OK : tl_fail_memory(&m->error);
+}
+
+tl_law_phase tl_law_phase_of(struct tl_cycle *c)
+{
+    return (tl_law_phase){&c->failure, c->group_energy, tl_undo_keep_groups};
+}

@@ -1,0 +1,610 @@
+/* boundary.c - the outer faces of a model by side, plane, box or direction; holding their blocks and loading them.
+ *
+ * A traction t = t_o + b z that is linear in the height z gives the body of a face, with r from the body's centroid,
+ *
+ *     F = int t dS,    M = int r x t dS
+ *
+ * both exact. What all faces put on a body becomes one load: the force F acts at the mean place of the faces,
+ * weighted by the lengths of their forces, and goes with the body; what is left of M is a constant moment. */
+#include "edit/boundary.h"
+
+#include "base/error.h"
+#include "contact/detection.h"
+#include "detect/detect.h"
+#include "geometry/point2.h"
+#include "model/loads.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <talus/boundary.h>
+#include <talus/elementary.h>
+
+/* Off the plane, or out of the box, by less than this times the block's size a corner is in it: what contacts take for
+ * touching (TL_CONTACT_TOLERANCE). */
+#define TOLERANCE 1e-3
+/* Largest component across an axis of the normal of a face whose roller is held along that axis. */
+#define ALONG 1e-2
+/* By this a cosine may be smaller than that of the angle given: at 45 degrees from {1, 0, 1} lies {1, 0, 0}. */
+#define ROUNDED 1e-12
+#define DEGREE (3.14159265358979323846 / 180)
+
+/* Which faces are meant, once the model's bounds are known. */
+typedef struct face_filter {
+    const tl_boundary_where *where;
+    bool plane, box, facing;
+    tl_vec3 normal, at;  /* of the plane, relative to the origin */
+    tl_bounds bounds;    /* of the box, likewise */
+    tl_vec3 direction;   /* unit */
+    double least_cosine; /* with it */
+} face_filter;
+
+/* What is put on faces. */
+typedef struct face_loads {
+    tl_face_load *at;
+    size_t count, capacity;
+} face_loads;
+
+/* What is put on a body: about its centroid. */
+typedef struct body_sum {
+    tl_vec3 force, moment;
+    tl_vec3 arm; /* weighted by the length of the forces */
+    double weight;
+} body_sum;
+
+/* ---------------------------------------------------------------- outer parts of faces ----
+ *
+ * The parts of faces that lie on no other block, and integrals over them.
+ *
+ * From a face's polygon the common parts with the faces that lie on it are taken away: those of contact patches, and those
+ * of other blocks of the body in the same plane. Blocks do not overlap, so neither do these parts. Each is a convex polygon,
+ * over which polynomials of the second degree are integrated exactly: by triangles, at the middles of their edges. */
+
+/* Share of a face that may be left bare for roundings, and tolerance of blocks of a body that fit: those of seams. */
+#define UNCOVERED 1e-5
+#define FIT 1e-6
+
+static tl_point2 flatten(const tl_outer_face *f, tl_vec3 x)
+{
+    tl_vec3 d = tl_v3_sub(x, f->o);
+    return (tl_point2){tl_v3_dot(d, f->t1), tl_v3_dot(d, f->t2)};
+}
+
+/* Place of corner i of a face, relative to the model's origin. */
+static tl_vec3 corner_at(const tl_model *m, uint32_t row, uint32_t face, uint32_t i)
+{
+    const tl_poly *p = m->blocks.shape[row];
+    uint32_t body = m->blocks.body[row];
+    tl_vec3 local = p->vertex[p->loop[p->start[face] + i]];
+    return tl_v3_add(tl_body_place(&m->bodies, body), tl_m3_mul(&m->bodies.pose[body].r, local));
+}
+
+/* Adds `sign` times the integrals over a polygon. */
+static void add_polygon(tl_area_sums *s, const tl_point2 *c, size_t count, double sign)
+{
+    for (size_t i = 1; i + 1 < count; i++) {
+        double third = sign * tl_cross2(c[0], c[i], c[i + 1]) / 6;
+        const tl_point2 corner[3] = {c[0], c[i], c[i + 1]};
+        for (int k = 0; k < 3; k++) {
+            double u = 0.5 * (corner[k].x + corner[(k + 1) % 3].x);
+            double v = 0.5 * (corner[k].y + corner[(k + 1) % 3].y);
+            s->a += third;
+            s->u += third * u;
+            s->v += third * v;
+            s->uu += third * u * u;
+            s->uv += third * u * v;
+            s->vv += third * v * v;
+        }
+    }
+}
+
+/* Takes away what a face has in common with one that looks at it, as seen along its normal. */
+static tl_status take_away(tl_model *m, tl_outer_face *f, uint32_t row, uint32_t face)
+{
+    uint32_t mine = tl_poly_face_size(m->blocks.shape[f->row], f->face);
+    uint32_t its = tl_poly_face_size(m->blocks.shape[row], face);
+    size_t capacity = mine + its;
+    tl_point2 *memory = malloc(3 * capacity * sizeof *memory);
+    if (!memory)
+        return tl_fail_memory(&m->error);
+    tl_point2 *now = memory, *next = now + capacity, *by = next + capacity;
+    for (uint32_t i = 0; i < mine; i++)
+        now[i] = flatten(f, corner_at(m, f->row, f->face, i));
+    for (uint32_t i = 0; i < its; i++) /* clockwise, as seen from here */
+        by[i] = flatten(f, corner_at(m, row, face, i));
+    size_t count = tl_polygon_common(&now, &next, mine, by, its);
+    add_polygon(&f->sums, now, count, -1);
+    free(memory);
+    return TL_OK;
+}
+
+/* Takes away the patches of contacts. */
+static tl_status take_contacts(tl_model *m, tl_outer_face *f)
+{
+    const tl_detect *d = m->detect;
+    const tl_contacts *c = &d->contacts;
+    tl_status status = TL_OK;
+    for (uint32_t e = d->by_block_start[f->row]; e < d->by_block_start[f->row + 1]; e++) {
+        uint32_t i = d->by_block[e];
+        const tl_facet *facet = &c->facet[i];
+        bool first = c->a[i] == f->row;
+        if (status == TL_OK && facet->kind == TL_FACET_PATCH && c->point_count[i] &&
+            (first ? facet->ia : facet->ib) == f->face)
+            status =
+                take_away(m, f, tl_contact_partner(c, i, f->row), first ? facet->ib : facet->ia);
+    }
+    return status;
+}
+
+/* Whether two faces of a body's blocks, in the body's frame, lie in one plane and face each other. */
+static bool face_each_other(const tl_poly *a, uint32_t fa, const tl_poly *b, uint32_t fb)
+{
+    tl_plane p = a->plane[fa], q = b->plane[fb];
+    return tl_v3_norm(tl_v3_add(p.normal, q.normal)) < FIT &&
+           fabs(p.offset + q.offset) < FIT * fmin(a->size, b->size);
+}
+
+/* Takes away what lies on other blocks of the body. */
+static tl_status take_members(tl_model *m, tl_outer_face *f)
+{
+    const tl_poly *shape = m->blocks.shape[f->row];
+    uint32_t body = m->blocks.body[f->row];
+    const uint32_t *member = m->members + m->bodies.member_start[body];
+    for (uint32_t i = 0; i < m->bodies.member_count[body]; i++) {
+        const tl_poly *other = m->blocks.shape[member[i]];
+        for (uint32_t g = 0; g < other->face_count && member[i] != f->row; g++) {
+            tl_status status = TL_OK;
+            if (face_each_other(shape, f->face, other, g))
+                status = take_away(m, f, member[i], g);
+            if (status != TL_OK)
+                return status;
+        }
+    }
+    return TL_OK;
+}
+
+/* Measures the outer part of a face of the block in a row, after a tl_detect_refresh. Its area is 0 where all of the face
+ * but for roundings lies on others. */
+static tl_status outer_measure(tl_model *m, uint32_t row, uint32_t face, tl_outer_face *out)
+{
+    const tl_poly *shape = m->blocks.shape[row];
+    *out = (tl_outer_face){.row = row, .face = face};
+    out->normal = tl_m3_mul(&m->bodies.pose[m->blocks.body[row]].r, shape->plane[face].normal);
+    out->t1 = tl_v3_perpendicular(out->normal);
+    out->t2 = tl_v3_cross(out->normal, out->t1);
+    out->o = corner_at(m, row, face, 0);
+    uint32_t count = tl_poly_face_size(shape, face);
+    tl_point2 *corners = malloc(count * sizeof *corners);
+    if (!corners)
+        return tl_fail_memory(&m->error);
+    for (uint32_t i = 0; i < count; i++)
+        corners[i] = flatten(out, corner_at(m, row, face, i));
+    add_polygon(&out->sums, corners, count, 1);
+    free(corners);
+    double whole = out->sums.a;
+    tl_status status = take_contacts(m, out);
+    if (status == TL_OK)
+        status = take_members(m, out);
+    if (out->sums.a <= UNCOVERED * whole)
+        out->sums = (tl_area_sums){0};
+    return status;
+}
+
+/* Centroid of it, relative to the origin. */
+static tl_vec3 outer_centroid(const tl_outer_face *f)
+{
+    double u = f->sums.u / f->sums.a, v = f->sums.v / f->sums.a;
+    return tl_v3_madd(tl_v3_madd(f->o, u, f->t1), v, f->t2);
+}
+
+/* ---------------------------------------------------------------- which faces ------------ */
+
+const char *const *tl_side_names(void)
+{
+    static const char *const names[] = {"xmin", "xmax", "ymin", "ymax", "zmin", "zmax", NULL};
+    return names;
+}
+
+tl_side tl_side_named(const char *name)
+{
+    const char *const *names = tl_side_names();
+    for (int i = 0; names[i]; i++)
+        if (strcmp(names[i], name) == 0)
+            return (tl_side)(TL_SIDE_XMIN + i);
+    return TL_SIDE_ANY;
+}
+
+static tl_vec3 side_normal(int32_t side)
+{
+    static const tl_vec3 normals[] = {
+        [TL_SIDE_XMIN] = {-1, 0, 0}, [TL_SIDE_XMAX] = {1, 0, 0},  [TL_SIDE_YMIN] = {0, -1, 0},
+        [TL_SIDE_YMAX] = {0, 1, 0},  [TL_SIDE_ZMIN] = {0, 0, -1}, [TL_SIDE_ZMAX] = {0, 0, 1}};
+    return normals[side];
+}
+
+static tl_vec3 vertex_at(const tl_model *m, uint32_t row, uint32_t vertex)
+{
+    uint32_t body = m->blocks.body[row];
+    return tl_v3_add(tl_body_place(&m->bodies, body),
+                     tl_m3_mul(&m->bodies.pose[body].r, m->blocks.shape[row]->vertex[vertex]));
+}
+
+/* The farthest place of a vertex along a direction, relative to the origin. */
+static double farthest(const tl_model *m, tl_vec3 direction)
+{
+    double most = -INFINITY;
+    for (uint32_t row = 0; row < m->blocks.table.rows; row++)
+        for (uint32_t i = 0; i < m->blocks.shape[row]->vertex_count; i++)
+            most = fmax(most, tl_v3_dot(direction, vertex_at(m, row, i)));
+    return most;
+}
+
+static tl_status begin_filter(tl_model *m, const tl_boundary_where *where, face_filter *s)
+{
+    *s = (face_filter){.where = where};
+    s->box = !isnan(where->box.min.x);
+    s->facing = !isnan(where->facing.x);
+    s->plane = where->side != TL_SIDE_ANY || !isnan(where->normal.x);
+    if (where->side != TL_SIDE_ANY) {
+        s->normal = side_normal(where->side);
+        s->at = tl_v3_scale(farthest(m, s->normal), s->normal);
+    } else if (s->plane) {
+        if (!(tl_v3_norm(where->normal) > 0))
+            return tl_fail(&m->error, TL_E_ARGUMENT,
+                           "boundary: the normal of the plane must not be zero");
+        s->normal = tl_v3_unit(where->normal);
+        s->at = tl_v3_sub(where->at, m->origin);
+    }
+    if (s->facing && !(tl_v3_norm(where->facing) > 0))
+        return tl_fail(&m->error, TL_E_ARGUMENT, "boundary: facing must not be zero");
+    if (s->facing) {
+        s->direction = tl_v3_unit(where->facing);
+        s->least_cosine = tl_cos(where->within * DEGREE) - ROUNDED;
+    }
+    if (s->box)
+        s->bounds =
+            (tl_bounds){tl_v3_sub(where->box.min, m->origin), tl_v3_sub(where->box.max, m->origin)};
+    return TL_OK;
+}
+
+static bool in_box(const tl_bounds *box, tl_vec3 p, double slack)
+{
+    return p.x >= box->min.x - slack && p.x <= box->max.x + slack && p.y >= box->min.y - slack &&
+           p.y <= box->max.y + slack && p.z >= box->min.z - slack && p.z <= box->max.z + slack;
+}
+
+/* Whether a face is where it is looked for; it may be no outer one. */
+static bool is_there(const tl_model *m, const face_filter *s, uint32_t row, uint32_t face)
+{
+    const tl_poly *shape = m->blocks.shape[row];
+    tl_vec3 n = tl_m3_mul(&m->bodies.pose[m->blocks.body[row]].r, shape->plane[face].normal);
+    double slack =
+        isnan(s->where->tolerance) ? TOLERANCE * m->blocks.size[row] : s->where->tolerance;
+    if ((s->plane && tl_v3_dot(n, s->normal) <= 0) ||
+        (s->facing && tl_v3_dot(n, s->direction) < s->least_cosine))
+        return false;
+    for (uint32_t i = shape->start[face]; i < shape->start[face + 1]; i++) {
+        tl_vec3 p = vertex_at(m, row, shape->loop[i]);
+        if ((s->plane && fabs(tl_v3_dot(s->normal, tl_v3_sub(p, s->at))) > slack) ||
+            (s->box && !in_box(&s->bounds, p, slack)))
+            return false;
+    }
+    return true;
+}
+
+typedef struct face_list {
+    tl_outer_face *at;
+    size_t count, capacity;
+} face_list;
+
+static tl_status find_faces(tl_model *m, const tl_boundary_where *where, face_list *faces)
+{
+    face_filter s;
+    tl_status status = begin_filter(m, where, &s);
+    for (uint32_t row = 0; row < m->blocks.table.rows; row++)
+        for (uint32_t f = 0; f < m->blocks.shape[row]->face_count && status == TL_OK; f++) {
+            if (!is_there(m, &s, row, f))
+                continue;
+            if (!tl_grow(&faces->at, &faces->capacity, faces->count + 1, sizeof *faces->at))
+                return tl_fail_memory(&m->error);
+            status = outer_measure(m, row, f, &faces->at[faces->count]);
+            faces->count += status == TL_OK && faces->at[faces->count].sums.a > 0;
+        }
+    if (status == TL_OK && faces->count == 0)
+        return tl_fail(&m->error, TL_E_NOT_FOUND,
+                       "boundary: no outer face is there%s; %s tells where the "
+                       "model ends, tolerance (m) how far off a face may be",
+                       m->blocks.table.rows ? "" : ", for the model has no blocks",
+                       tl_words(m, "model:blocks():bounds()", "tl_block_mesh_get()"));
+    return status;
+}
+
+/* ---------------------------------------------------------------- what is done ----------- */
+
+/* Force and moment, about the body's centroid, of the traction on a face. */
+static void face_load(const tl_model *m, const tl_boundary_action *a, const tl_outer_face *f,
+                      tl_vec3 *force, tl_vec3 *moment)
+{
+    const tl_area_sums *s = &f->sums;
+    double height = f->o.z + m->origin.z - a->at.z;
+    tl_vec3 b = tl_s3_mul(a->gradient, f->normal);
+    tl_vec3 t = tl_v3_madd(tl_v3_add(tl_s3_mul(a->stress, f->normal), a->traction), height, b);
+    tl_vec3 tu = tl_v3_scale(f->t1.z, b), tv = tl_v3_scale(f->t2.z, b);
+    /* int t dS, int u t dS, int v t dS */
+    tl_vec3 sum = tl_v3_madd(tl_v3_madd(tl_v3_scale(s->a, t), s->u, tu), s->v, tv);
+    tl_vec3 sum_u = tl_v3_madd(tl_v3_madd(tl_v3_scale(s->u, t), s->uu, tu), s->uv, tv);
+    tl_vec3 sum_v = tl_v3_madd(tl_v3_madd(tl_v3_scale(s->v, t), s->uv, tu), s->vv, tv);
+    tl_vec3 arm = tl_v3_sub(f->o, tl_body_place(&m->bodies, m->blocks.body[f->row]));
+    *force = sum;
+    *moment = tl_v3_add(tl_v3_cross(arm, sum),
+                        tl_v3_add(tl_v3_cross(f->t1, sum_u), tl_v3_cross(f->t2, sum_v)));
+}
+
+static tl_status add_load(tl_model *m, const tl_boundary_action *a, const tl_outer_face *f,
+                          body_sum *sums, face_loads *loads, tl_boundary_result *result)
+{
+    uint32_t body = m->blocks.body[f->row];
+    tl_vec3 force, moment, place = tl_body_place(&m->bodies, body);
+    face_load(m, a, f, &force, &moment);
+    body_sum *sum = &sums[body];
+    double weight = tl_v3_norm(force);
+    sum->force = tl_v3_add(sum->force, force);
+    sum->moment = tl_v3_add(sum->moment, moment);
+    sum->arm = tl_v3_madd(sum->arm, weight, tl_v3_sub(outer_centroid(f), place));
+    sum->weight += weight;
+    result->force = tl_v3_add(result->force, force);
+    tl_vec3 about = tl_v3_cross(tl_v3_add(m->origin, place), force);
+    result->moment = tl_v3_add(result->moment, tl_v3_add(moment, about));
+    if (!tl_grow(&loads->at, &loads->capacity, loads->count + 1, sizeof *loads->at))
+        return tl_fail_memory(&m->error);
+    tl_vec3 arm = tl_v3_sub(tl_face_plate(m, f->row, f->face).place, place);
+    moment = tl_v3_sub(moment, tl_v3_cross(arm, force));
+    loads->at[loads->count++] = (tl_face_load){m->blocks.id[f->row], f->face, force, moment};
+    return TL_OK;
+}
+
+/* The components in which a roller at a face holds its body; 0 when it looks along no axis. */
+static unsigned roller_of(tl_vec3 n)
+{
+    double x = fabs(n.x), y = fabs(n.y), z = fabs(n.z);
+    if (fmax(y, z) < ALONG)
+        return TL_FIX_X;
+    if (fmax(x, z) < ALONG)
+        return TL_FIX_Y;
+    return fmax(x, y) < ALONG ? TL_FIX_Z : 0;
+}
+
+static tl_status add_fixing(tl_model *m, const tl_boundary_action *a, const tl_outer_face *f,
+                            uint8_t *fix)
+{
+    unsigned what = a->fixed ? TL_FIX_ALL : 0;
+    if (a->roller && !a->fixed) {
+        what = roller_of(f->normal);
+        if (!what)
+            return tl_fail(
+                &m->error, TL_E_ARGUMENT,
+                "boundary: a roller is held along x, y or z, but face %u of block %u "
+                "looks along {%.3g, %.3g, %.3g}; use fixed, or a box or side whose faces "
+                "look along an axis",
+                f->face + 1, m->blocks.id[f->row], f->normal.x, f->normal.y, f->normal.z);
+        what |= a->rotation ? TL_FIX_ROTATION : 0;
+    }
+    fix[f->row] |= (uint8_t)what;
+    return TL_OK;
+}
+
+/* Writes what was found; false when out of memory. Faces are in order of rows, and so of ids. */
+static bool fill_result(const tl_model *m, const face_list *faces, tl_boundary_result *r)
+{
+    r->faces = malloc((faces->count + 1) * sizeof *r->faces);
+    r->blocks = malloc((faces->count + 1) * sizeof *r->blocks);
+    for (size_t i = 0; i < faces->count && r->faces && r->blocks; i++) {
+        const tl_outer_face *f = &faces->at[i];
+        tl_id id = m->blocks.id[f->row];
+        r->faces[r->face_count++] = (tl_boundary_face){id, f->face, f->sums.a, f->normal,
+                                                       tl_v3_add(m->origin, outer_centroid(f))};
+        if (r->block_count == 0 || r->blocks[r->block_count - 1] != id)
+            r->blocks[r->block_count++] = id;
+        r->area += f->sums.a;
+    }
+    return r->faces && r->blocks;
+}
+
+/* Finds the faces of one action and notes what is to be done. */
+static tl_status plan(tl_model *m, const tl_boundary_action *a, uint8_t *fix, body_sum *sums,
+                      face_loads *loads, tl_boundary_result *result)
+{
+    face_list faces = {0};
+    tl_status status = find_faces(m, &a->where, &faces);
+    for (size_t i = 0; i < faces.count && status == TL_OK; i++) {
+        status = add_fixing(m, a, &faces.at[i], fix);
+        if (a->loads && status == TL_OK)
+            status = add_load(m, a, &faces.at[i], sums, loads, result);
+    }
+    if (status == TL_OK && !fill_result(m, &faces, result))
+        status = tl_fail_memory(&m->error);
+    if (status == TL_OK && (!tl_v3_finite(result->force) || !tl_v3_finite(result->moment)))
+        status = tl_fail(&m->error, TL_E_NUMERIC, "boundary: the load is not finite");
+    free(faces.at);
+    return status;
+}
+
+/* What was summed, as a load of a body: the force at the mean place of the faces, and the moment that is left. */
+static tl_load load_of(const tl_model *m, uint32_t body, const body_sum *sum, bool add)
+{
+    tl_vec3 arm = sum->weight > 0 ? tl_v3_scale(1 / sum->weight, sum->arm) : tl_v3(0, 0, 0);
+    tl_load load = tl_load_default();
+    load.force = sum->force;
+    load.moment = sum->moment;
+    if (add) {
+        tl_body_load had = tl_load_of(&m->bodies, body);
+        tl_vec3 at = tl_m3_mul(&m->bodies.pose[body].r, had.arm);
+        load.force = tl_v3_add(load.force, had.force);
+        load.moment = tl_v3_add(load.moment, tl_v3_add(had.moment, tl_v3_cross(at, had.force)));
+        double before = tl_v3_norm(had.force), all = sum->weight + before;
+        if (all > 0)
+            arm = tl_v3_scale(1 / all, tl_v3_madd(sum->arm, before, at));
+    }
+    load.moment = tl_v3_sub(load.moment, tl_v3_cross(arm, load.force));
+    load.at = tl_v3_add(m->origin, tl_v3_add(tl_body_place(&m->bodies, body), arm));
+    return load;
+}
+
+/* Before any of them is put on: none may be refused half-way. */
+static tl_status check_loads(tl_model *m, const body_sum *sums, bool add)
+{
+    for (uint32_t body = 0; body < m->bodies.table.rows; body++) {
+        if (!(sums[body].weight > 0))
+            continue;
+        tl_load load = load_of(m, body, &sums[body], add);
+        if (!tl_v3_finite(load.force) || !tl_v3_finite(load.moment) || !tl_v3_finite(load.at))
+            return tl_fail(&m->error, TL_E_NUMERIC,
+                           "boundary: the load on block %u is not finite: give smaller numbers",
+                           m->bodies.id[body]);
+    }
+    return TL_OK;
+}
+
+/* Adds to what is put on faces what the model has of others, or of all with `add`. */
+static bool keep_others(const tl_model *m, const body_sum *sums, bool add, face_loads *loads)
+{
+    size_t most = loads->count + m->face_load_count;
+    if (!tl_grow(&loads->at, &loads->capacity, most, sizeof *loads->at))
+        return false;
+    for (size_t i = 0; i < m->face_load_count; i++) {
+        uint32_t row = tl_block_row_quiet(m, m->face_loads[i].block);
+        if (row != TL_NO_ROW && (add || !(sums[m->blocks.body[row]].weight > 0)))
+            loads->at[loads->count++] = m->face_loads[i];
+    }
+    return true;
+}
+
+static tl_status carry_out(tl_model *m, const uint8_t *fix, const body_sum *sums, bool add,
+                           face_loads *loads)
+{
+    tl_status status = check_loads(m, sums, add);
+    size_t replaced = 0;
+    if (status == TL_OK && loads->count && !keep_others(m, sums, add, loads))
+        status = tl_fail_memory(&m->error);
+    if (status == TL_OK && loads->count)
+        m->face_load_count = 0;
+    for (uint32_t body = 0; body < m->bodies.table.rows && status == TL_OK; body++) {
+        if (!(sums[body].weight > 0))
+            continue;
+        replaced += !add && tl_body_loaded(&m->bodies, body);
+        tl_load load = load_of(m, body, &sums[body], add);
+        const tl_id id = m->bodies.id[body]; /* the table may move */
+        status = tl_blocks_load(m, &id, 1, &load);
+    }
+    if (status == TL_OK && loads->count) {
+        tl_face_loads_set(m, loads->at, loads->count, loads->capacity);
+        loads->at = NULL;
+    }
+    for (uint32_t row = 0; row < m->blocks.table.rows && status == TL_OK; row++)
+        if (fix[row])
+            status = tl_blocks_fix(m, &m->blocks.id[row], 1, fix[row]);
+    if (replaced)
+        tl_model_say(m,
+                     "boundary: %zu bod%s had a load, which this one takes the place of; give all "
+                     "sides in one call, or add = true",
+                     replaced, replaced == 1 ? "y" : "ies");
+    return status;
+}
+
+tl_boundary_action tl_boundary_action_default(void)
+{
+    const tl_vec3 none = {NAN, NAN, NAN};
+    return (tl_boundary_action){.where = {.side = TL_SIDE_ANY,
+                                          .normal = none,
+                                          .at = none,
+                                          .box = {none, none},
+                                          .facing = none,
+                                          .within = NAN,
+                                          .tolerance = NAN}};
+}
+
+tl_status tl_model_boundary(tl_model *m, const tl_boundary_action *actions, size_t count, bool add,
+                            tl_boundary_result *results)
+{
+    bool acts = false, loads = false;
+    for (size_t i = 0; i < count; i++) {
+        if (results)
+            results[i] = (tl_boundary_result){0};
+        loads = loads || actions[i].loads;
+        acts = acts || loads || actions[i].fixed || actions[i].roller;
+    }
+    tl_status status = acts ? tl_model_may_set(m, "hold or load a boundary") : TL_OK;
+    if (status == TL_OK)
+        status = tl_detect_refresh(m);
+    if (status != TL_OK)
+        return status;
+    face_loads put = {0};
+    uint8_t *fix = calloc(m->blocks.table.rows + 1, sizeof *fix);
+    body_sum *sums = calloc(m->bodies.table.rows + 1, sizeof *sums);
+    if (!fix || !sums || (loads && !tl_bodies_hold_loads(&m->bodies)))
+        status = tl_fail_memory(&m->error);
+    for (size_t i = 0; i < count && status == TL_OK; i++) {
+        tl_boundary_result found = {0};
+        status = plan(m, &actions[i], fix, sums, &put, &found);
+        if (results)
+            results[i] = found;
+        else
+            tl_boundary_free(&found);
+    }
+    if (status == TL_OK)
+        status = carry_out(m, fix, sums, add, &put);
+    for (size_t i = 0; i < count && results && status != TL_OK; i++)
+        tl_boundary_free(&results[i]);
+    free(put.at);
+    free(fix);
+    free(sums);
+    return status;
+}
+
+void tl_boundary_free(tl_boundary_result *r)
+{
+    free(r->faces);
+    free(r->blocks);
+    *r = (tl_boundary_result){0};
+}
+
+/* What contacts, weight and load put on a body, as of the last step. */
+static tl_vec3 acting_on(const tl_model *m, uint32_t body)
+{
+    const tl_detect *d = m->detect;
+    tl_body_load load = tl_load_of(&m->bodies, body);
+    tl_vec3 force = tl_v3_madd(load.force, m->bodies.mass[body], m->config.gravity);
+    for (uint32_t k = 0; k < m->bodies.member_count[body]; k++) {
+        uint32_t row = m->members[m->bodies.member_start[body] + k];
+        for (uint32_t e = d->by_block_start[row]; e < d->by_block_start[row + 1]; e++) {
+            uint32_t i = d->by_block[e];
+            force = tl_v3_madd(force, d->contacts.b[i] == row ? 1 : -1, d->contacts.force[i]);
+        }
+    }
+    return force;
+}
+
+tl_status tl_blocks_reaction(tl_model *m, const tl_id *ids, size_t count, tl_vec3 *force)
+{
+    *force = tl_v3(0, 0, 0);
+    tl_status status = tl_detect_refresh(m);
+    unsigned char *seen = calloc(m->bodies.table.rows + 1, 1);
+    if (status == TL_OK && !seen)
+        status = tl_fail_memory(&m->error);
+    for (size_t i = 0; i < count && status == TL_OK; i++) {
+        uint32_t row = tl_block_row(m, ids[i]);
+        if (row == TL_NO_ROW) {
+            status = m->error.status;
+            continue;
+        }
+        uint32_t body = m->blocks.body[row];
+        unsigned fixed = m->bodies.fixed[body];
+        tl_vec3 f = fixed && !seen[body] ? acting_on(m, body) : tl_v3(0, 0, 0);
+        seen[body] = 1;
+        force->x -= fixed & TL_FIX_X ? f.x : 0;
+        force->y -= fixed & TL_FIX_Y ? f.y : 0;
+        force->z -= fixed & TL_FIX_Z ? f.z : 0;
+    }
+    free(seen);
+    return status;
+}

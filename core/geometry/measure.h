@@ -1,0 +1,35 @@
+/* measure.h - what a polyhedron measures. */
+#ifndef TL_GEOMETRY_MEASURE_H
+#define TL_GEOMETRY_MEASURE_H
+
+#include "geometry/polyhedron.h"
+
+/* Volume, centroid and inertia at density 1 about the centroid, exact up to rounding (sums over
+ * tetrahedra, taken about a vertex so that an offset costs no digits). */
+typedef struct tl_mass {
+    double volume;
+    tl_vec3 centroid;
+    tl_sym3 inertia;
+} tl_mass;
+
+tl_mass tl_poly_mass(const tl_poly *poly);
+
+tl_bounds tl_poly_bounds(const tl_poly *poly);
+/* Sets `size` by the vertices as they are. */
+void tl_poly_find_size(tl_poly *poly);
+double tl_poly_face_area(const tl_poly *poly, uint32_t face);
+tl_vec3 tl_poly_face_centroid(const tl_poly *poly, uint32_t face);
+/* Distance of a point from a face, measured in the face's plane; 0 for a point over the face. */
+double tl_poly_face_distance(const tl_poly *poly, uint32_t face, tl_vec3 point);
+double tl_poly_shortest_edge(const tl_poly *poly);
+/* Largest distance between two vertices. */
+double tl_poly_diameter(const tl_poly *poly);
+/* Smallest extent along the normal of a face. (Between two crossing edges it may be less, 0.87 of this
+ * in a regular tetrahedron; but what is thin is thin along a face.) */
+double tl_poly_thickness(const tl_poly *poly);
+/* Vertex farthest in a direction (the lowest index among equals). */
+uint32_t tl_poly_support(const tl_poly *poly, tl_vec3 direction);
+/* Within `tolerance` (a length) of the inside. */
+bool tl_poly_contains(const tl_poly *poly, tl_vec3 point, double tolerance);
+
+#endif

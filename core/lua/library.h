@@ -1,0 +1,18 @@
+/* library.h - the modules of Talus that are written in Lua (scripts/lib/talus), and files for them. */
+#ifndef TL_LUA_LIBRARY_H
+#define TL_LUA_LIBRARY_H
+
+#include "lua/front.h"
+
+/* Lets `require` find them; once a state. */
+void tl_lua_library_open(lua_State *L);
+/* Has the table at the top of the stack, the module `talus`, load them when they are first used. */
+void tl_lua_library_attach(lua_State *L);
+/* talus.write_file(path, text) */
+
+/* From now on reading a global that was never assigned raises. */
+void tl_lua_strict(lua_State *L);
+
+extern const tl_lua_topic tl_lua_library_topics[];
+
+#endif

@@ -1,0 +1,306 @@
+/* outputs.c - the files that a model has written so far, and these in an archive: a resumed run goes on with the next frame, the
+ * frames of before stay in the index, and a page goes on after the frames that it had when the model was saved. The frames of a page are in
+ * its file only, so what is saved is how the file ended.
+ *
+ *     frames             number of series; of each, from the last that was begun:
+ *     frames.K.prefix    as it was given to write_vtk or write_section
+ *     frames.K.kind      what its first file holds
+ *     frames.K.times     of its frames, s
+ *     frames.K.parts     a bit for each file of a frame
+ *     pages              number of pages
+ *     pages.K.prefix     as it was given to write_html
+ *     pages.K.end        frames, length, bytes compared and their digest: tl_page_end */
+#include "state/outputs.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Longest prefix, kind and page, bytes, in a file. */
+#define LONGEST_PREFIX 4096
+#define LONGEST_KIND 64
+#define LONGEST_PAGE ((uint64_t)1 << 40)
+
+enum { FRAMES, AT, CHECKED, DIGEST_A, DIGEST_B, NUMBERS };
+
+/* What a model keeps of the files it has written. */
+typedef struct tl_outputs {
+    tl_vtk_series *series;
+    tl_page *pages;
+} tl_outputs;
+
+static void series_destroy(tl_vtk_series *series)
+{
+    while (series) {
+        tl_vtk_series *next = series->next;
+        free(series->prefix);
+        free(series->kind);
+        free(series->frames);
+        free(series);
+        series = next;
+    }
+}
+
+static void pages_destroy(tl_page *page)
+{
+    while (page) {
+        tl_page *next = page->next;
+        if (page->scene)
+            page->scene_destroy(page->scene);
+        free(page->prefix);
+        free(page);
+        page = next;
+    }
+}
+
+static void outputs_destroy(tl_outputs *o)
+{
+    series_destroy(o->series);
+    pages_destroy(o->pages);
+    free(o);
+}
+
+/* Finds or makes what is kept; NULL when out of memory. */
+static tl_outputs *outputs_of(tl_model *m)
+{
+    if (!m->outputs && (m->outputs = calloc(1, sizeof *m->outputs)) != NULL)
+        m->outputs_destroy = outputs_destroy;
+    return m->outputs;
+}
+
+static bool reserve_frame(tl_vtk_series *series)
+{
+    if (series->count < series->capacity)
+        return true;
+    size_t capacity = series->capacity ? 2 * series->capacity : 16;
+    tl_vtk_frame *frames = realloc(series->frames, capacity * sizeof *frames);
+    if (!frames)
+        return false;
+    series->frames = frames;
+    series->capacity = capacity;
+    return true;
+}
+
+tl_vtk_series *tl_vtk_series_of(tl_model *m, const char *prefix, const char *kind)
+{
+    tl_outputs *o = outputs_of(m);
+    if (!o)
+        return NULL;
+    tl_vtk_series *series = o->series;
+    while (series && (strcmp(series->prefix, prefix) != 0 || strcmp(series->kind, kind) != 0))
+        series = series->next;
+    if (!series) {
+        series = calloc(1, sizeof *series);
+        if (!series)
+            return NULL;
+        series->prefix = strdup(prefix);
+        series->kind = strdup(kind);
+        if (!series->prefix || !series->kind) {
+            series_destroy(series);
+            return NULL;
+        }
+        series->next = o->series;
+        o->series = series;
+    }
+    return reserve_frame(series) ? series : NULL;
+}
+
+void tl_vtk_series_add(tl_vtk_series *series, tl_vtk_frame frame)
+{
+    series->frames[series->count++] = frame;
+    for (unsigned k = 0; k < TL_VTK_PARTS; k++)
+        series->written[k] += frame.parts >> k & 1;
+}
+
+tl_page *tl_page_of(tl_model *m, const char *prefix)
+{
+    tl_outputs *o = outputs_of(m);
+    if (!o)
+        return NULL;
+    tl_page *page = o->pages;
+    while (page && strcmp(page->prefix, prefix) != 0)
+        page = page->next;
+    if (page)
+        return page;
+    page = calloc(1, sizeof *page);
+    char *copy = page ? strdup(prefix) : NULL;
+    if (!copy) {
+        free(page);
+        return NULL;
+    }
+    page->prefix = copy;
+    page->next = o->pages;
+    o->pages = page;
+    return page;
+}
+
+/* ---------------------------------------------------------------- frames in an archive --- */
+
+/* The name of an entry of number `k` of a list. */
+static const char *entry(char name[TL_CHUNK_NAME], const char *list, size_t k, const char *what)
+{
+    snprintf(name, TL_CHUNK_NAME, "%s.%zu.%.16s", list, k, what);
+    return name;
+}
+
+static bool save_series(const tl_vtk_series *series, size_t k, tl_archive_writer *w)
+{
+    char name[TL_CHUNK_NAME];
+    double *times = malloc((series->count + 1) * sizeof *times);
+    uint32_t *parts = malloc((series->count + 1) * sizeof *parts);
+    bool enough = times && parts;
+    for (size_t i = 0; enough && i < series->count; i++) {
+        times[i] = series->frames[i].time;
+        parts[i] = series->frames[i].parts;
+    }
+    if (enough) {
+        tl_archive_put(w, entry(name, "frames", k, "prefix"), series->prefix, 1,
+                       strlen(series->prefix));
+        tl_archive_put(w, entry(name, "frames", k, "kind"), series->kind, 1, strlen(series->kind));
+        tl_archive_put(w, entry(name, "frames", k, "times"), times, sizeof *times, series->count);
+        tl_archive_put(w, entry(name, "frames", k, "parts"), parts, sizeof *parts, series->count);
+    }
+    free(times);
+    free(parts);
+    return enough;
+}
+
+static bool save_frames(const tl_model *m, tl_archive_writer *w)
+{
+    uint64_t count = 0;
+    for (const tl_vtk_series *series = m->outputs ? m->outputs->series : NULL; series;
+         series = series->next)
+        if (!save_series(series, count++, w))
+            return false;
+    tl_archive_put(w, "frames", &count, sizeof count, 1);
+    return true;
+}
+
+static tl_status add_frames(tl_model *m, const char *prefix, const char *kind, const double *times,
+                            const uint32_t *parts, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        tl_vtk_series *series = tl_vtk_series_of(m, prefix, kind);
+        if (!series)
+            return tl_fail_memory(&m->error);
+        tl_vtk_series_add(series, (tl_vtk_frame){times[i], parts[i]});
+    }
+    return TL_OK;
+}
+
+static bool frames_are_sound(const double *times, const uint32_t *parts, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        if (!isfinite(times[i]) || parts[i] >> TL_VTK_PARTS != 0)
+            return false;
+    return true;
+}
+
+static tl_status restore_series(tl_model *m, size_t k, const tl_archive *a)
+{
+    char prefix[LONGEST_PREFIX], kind[LONGEST_KIND], name[TL_CHUNK_NAME];
+    const tl_chunk *chunk = tl_archive_find(a, entry(name, "frames", k, "times"));
+    size_t count = chunk && chunk->items < UINT32_MAX ? (size_t)chunk->items : 0;
+    double *times = malloc((count + 1) * sizeof *times);
+    uint32_t *parts = malloc((count + 1) * sizeof *parts);
+    tl_status status = times && parts ? TL_OK : tl_fail_memory(&m->error);
+    if (status == TL_OK &&
+        !(tl_archive_text(a, entry(name, "frames", k, "prefix"), prefix, sizeof prefix) &&
+          tl_archive_text(a, entry(name, "frames", k, "kind"), kind, sizeof kind) &&
+          tl_archive_get(a, entry(name, "frames", k, "times"), times, sizeof *times, count) &&
+          tl_archive_get(a, entry(name, "frames", k, "parts"), parts, sizeof *parts, count) &&
+          frames_are_sound(times, parts, count)))
+        status = tl_archive_bad(a, &m->error, "a series of frames is missing or does not fit");
+    if (status == TL_OK)
+        status = add_frames(m, prefix, kind, times, parts, count);
+    free(times);
+    free(parts);
+    return status;
+}
+
+static tl_status restore_frames(tl_model *m, const tl_archive *a)
+{
+    uint64_t count;
+    if (!tl_archive_get(a, "frames", &count, sizeof count, 1) || count > a->chunk_count)
+        return tl_archive_bad(a, &m->error, "'frames' is missing or does not fit");
+    for (size_t k = (size_t)count; k-- > 0;) { /* the last is found first */
+        tl_status status = restore_series(m, k, a);
+        if (status != TL_OK)
+            return status;
+    }
+    return TL_OK;
+}
+
+/* ---------------------------------------------------------------- pages in an archive ---- */
+
+static void save_pages(const tl_model *m, tl_archive_writer *w)
+{
+    char name[TL_CHUNK_NAME];
+    uint64_t count = 0;
+    for (const tl_page *page = m->outputs ? m->outputs->pages : NULL; page; page = page->next) {
+        const tl_page_end *end = &page->end;
+        const uint64_t numbers[NUMBERS] = {end->frames, end->at, end->checked, end->digest.a,
+                                           end->digest.b};
+        if (end->frames == 0)
+            continue;
+        tl_archive_put(w, entry(name, "pages", count, "prefix"), page->prefix, 1,
+                       strlen(page->prefix));
+        tl_archive_put(w, entry(name, "pages", count, "end"), numbers, sizeof *numbers, NUMBERS);
+        count++;
+    }
+    tl_archive_put(w, "pages", &count, sizeof count, 1);
+}
+
+static bool end_is_sound(const tl_page_end *end)
+{
+    return end->frames > 0 && end->frames <= UINT32_MAX && end->at <= LONGEST_PAGE &&
+           end->checked <= TL_PAGE_CHECKED && end->checked <= end->at;
+}
+
+static tl_status restore_page(tl_model *m, size_t k, const tl_archive *a)
+{
+    char prefix[LONGEST_PREFIX], name[TL_CHUNK_NAME];
+    uint64_t numbers[NUMBERS];
+    bool read =
+        tl_archive_text(a, entry(name, "pages", k, "prefix"), prefix, sizeof prefix) &&
+        tl_archive_get(a, entry(name, "pages", k, "end"), numbers, sizeof *numbers, NUMBERS);
+    tl_page_end end = {0};
+    if (read)
+        end = (tl_page_end){
+            numbers[FRAMES], numbers[AT], numbers[CHECKED], {numbers[DIGEST_A], numbers[DIGEST_B]}};
+    if (!read || !end_is_sound(&end))
+        return tl_archive_bad(a, &m->error, "a page is missing or does not fit");
+    tl_page *page = tl_page_of(m, prefix);
+    if (!page)
+        return tl_fail_memory(&m->error);
+    page->end = end;
+    page->restored = true;
+    return TL_OK;
+}
+
+static tl_status restore_pages(tl_model *m, const tl_archive *a)
+{
+    uint64_t count;
+    if (!tl_archive_find(a, "pages")) /* saved by a program that wrote none */
+        return TL_OK;
+    if (!tl_archive_get(a, "pages", &count, sizeof count, 1) || count > a->chunk_count)
+        return tl_archive_bad(a, &m->error, "'pages' does not fit");
+    tl_status status = TL_OK;
+    for (size_t k = 0; status == TL_OK && k < count; k++)
+        status = restore_page(m, k, a);
+    return status;
+}
+
+/* ---------------------------------------------------------------- both ------------------- */
+
+bool tl_outputs_save(const tl_model *m, tl_archive_writer *w)
+{
+    save_pages(m, w);
+    return save_frames(m, w);
+}
+
+tl_status tl_outputs_restore(tl_model *m, const tl_archive *a)
+{
+    tl_status status = restore_frames(m, a);
+    return status == TL_OK ? restore_pages(m, a) : status;
+}
