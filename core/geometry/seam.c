@@ -166,13 +166,13 @@ static bool hold(part *a, part *b)
 {
     for (uint32_t i = 0; i < a->poly->face_count; i++)
         for (uint32_t j = 0; j < b->poly->face_count && root(a) != root(b); j++) {
-            double area, least = UNCOVERED *
-                                 fmin(tl_poly_face_area(a->poly, i), tl_poly_face_area(b->poly, j));
+            double area;
             if (is_severed(a, i) || is_severed(b, j) || !may_hold(a->poly, i, b->poly, j))
                 continue;
             if (!face_area(a->poly, i, b->poly, j, &area))
                 return false;
-            if (area > least)
+            if (area >
+                UNCOVERED * fmin(tl_poly_face_area(a->poly, i), tl_poly_face_area(b->poly, j)))
                 unite(a, b);
         }
     return true;

@@ -232,6 +232,48 @@ static void check_slide(double kn, double change)
     CHECK_NEAR(two, one, 2 * change);
 }
 
+/* Whether a box and one on it hang together, `gap` apart and leaning by `lean` about y, of sizes of `unit`, in either order. */
+static bool hang_together(double gap, double lean, double unit)
+{
+    uint32_t label[2][2];
+    tl_poly *low = box(0, 1, -1, 0), *on = box(0.25, 0.75, gap, gap + 1), *part[2];
+    const tl_mat3 turn = {{{unit * cos(lean), 0, unit * sin(lean)},
+                           {0, unit, 0},
+                           {unit * -sin(lean), 0, unit * cos(lean)}}};
+    const tl_mat3 scale = {{{unit, 0, 0}, {0, unit, 0}, {0, 0, unit}}};
+    tl_vec3 corner[2][8];
+    for (int i = 0; i < 8; i++) {
+        corner[0][i] = tl_m3_mul(&scale, low->vertex[i]);
+        corner[1][i] = tl_m3_mul(&turn, on->vertex[i]);
+    }
+    for (int k = 0; k < 2; k++)
+        CHECK_INT(tl_poly_hull(corner[k], 8, &part[k], &error), TL_OK);
+    tl_poly *const other[2] = {part[1], part[0]};
+    CHECK_INT(tl_poly_connected(part, 2, NULL, NULL, label[0], &error), TL_OK);
+    CHECK_INT(tl_poly_connected(other, 2, NULL, NULL, label[1], &error), TL_OK);
+    CHECK_INT(label[0][0] == label[0][1], label[1][0] == label[1][1]);
+    bool together = label[0][0] == label[0][1];
+    tl_poly *const all[4] = {low, on, part[0], part[1]};
+    for (int k = 0; k < 4; k++)
+        tl_poly_free(all[k]);
+    return together;
+}
+
+/* Blocks that had settled on each other before they were joined overlap, lean and part a little: their body stays one. */
+TEST(parts_hang_together_however_they_had_settled)
+{
+    for (double unit = 1e-3; unit < 1e4; unit *= 1e3) {
+        CHECK(hang_together(0, 0, unit));
+        CHECK(hang_together(-8e-3, 0, unit));
+        CHECK(!hang_together(-5e-2, 0, unit));
+        CHECK(hang_together(8e-4, 0, unit));
+        CHECK(!hang_together(5e-3, 0, unit));
+        CHECK(hang_together(-1e-3, 8e-3, unit));
+        CHECK(hang_together(1e-3, 8e-3, unit)); /* by the edge that is down */
+        CHECK(!hang_together(-1e-3, 2e-2, unit));
+    }
+}
+
 TEST(a_block_slides_over_a_seam_as_over_one_piece)
 {
     check_slide(1e8, 1e-9);
@@ -256,6 +298,7 @@ int main(void)
     RUN(a_ridge_stays_an_edge);
     RUN(the_depth_in_the_parts_of_a_box_is_that_in_the_box);
     RUN(a_part_gets_no_plane_that_cuts_it_nor_one_that_is_never_near);
+    RUN(parts_hang_together_however_they_had_settled);
     RUN(a_block_slides_over_a_seam_as_over_one_piece);
     RUN(a_block_slides_over_a_seam_on_a_soft_joint);
     printf("%s: %d checks, %d failed\n", __FILE__, check_count, check_failed);
