@@ -136,6 +136,7 @@ static void place_of(const char *folder, const char *pattern, const char *name,
              at ? at + 2 : "");
 }
 
+/* talus.write_file(path, text) */
 static int write_file(const project *p, const char *pattern)
 {
     char from[PATH_MAX + 128], to[PATH_MAX + 128];

@@ -26,6 +26,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+typedef struct tl_ring {
+    tl_ring_cell *cell;   /* by their directions */
+    size_t count, around; /* the last ones are inside */
+    double inside;        /* their share of the patch */
+} tl_ring;
+
 typedef tl_old_point old_point;
 
 /* Makes room for so many points before and after, and what goes with each. */
@@ -206,6 +212,7 @@ static void sort(tl_ring_cell *cell, size_t count)
     }
 }
 
+/* Of cells with their points; those within `place` of the centroid are inside. */
 static tl_ring tl_ring_of(tl_ring_cell *cell, size_t count, double place)
 {
     tl_ring out = {.cell = cell, .count = count};

@@ -26,12 +26,6 @@ typedef struct tl_ring_cell {
     double from, to; /* where the cell begins and ends, as `swept` */
 } tl_ring_cell;
 
-typedef struct tl_ring {
-    tl_ring_cell *cell;   /* by their directions */
-    size_t count, around; /* the last ones are inside */
-    double inside;        /* their share of the patch */
-} tl_ring;
-
 /* Second moments of areas about their centroid: xx, xy, yy. */
 typedef struct tl_ring_spread {
     double xx, xy, yy;
@@ -42,8 +36,6 @@ static inline bool tl_ring_spans(const tl_ring_spread *i, double area, double pl
 {
     return i->xx * i->yy - i->xy * i->xy > area * place * place * (i->xx + i->yy);
 }
-
-/* Of cells with their points; those within `place` of the centroid are inside. */
 
 /* Changes of a contact's area up to this part of it are rounding. */
 #define TL_SAME_AREA 1e-12

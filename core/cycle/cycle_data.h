@@ -194,12 +194,6 @@ static inline bool tl_mass_scaled(const tl_model *m)
     return m->mass_scaling || tl_adds_mass(m);
 }
 
-/* Whether rates count contact points, or only faces. */
-static inline bool tl_rates_points(const tl_model *m)
-{
-    return tl_mass_scaled(m) || m->timestep.rule == TL_TIMESTEP_BODY;
-}
-
 /* ... and of its moments of inertia, which it does not make less. */
 static inline double tl_turn_scale(const struct tl_cycle *c, uint32_t body)
 {
@@ -207,6 +201,12 @@ static inline double tl_turn_scale(const struct tl_cycle *c, uint32_t body)
         return tl_energy_scale(c, body);
     double scale = c->rate[body] > 0 ? 2 * c->mass_scale * c->turn_rate[body] : 1;
     return scale > 1 ? scale : 1;
+}
+
+/* Whether rates count contact points, or only faces. */
+static inline bool tl_rates_points(const tl_model *m)
+{
+    return tl_mass_scaled(m) || m->timestep.rule == TL_TIMESTEP_BODY;
 }
 
 static inline tl_reaction tl_reaction_on(const struct tl_cycle *c, uint32_t body)

@@ -1,5 +1,4 @@
 /* solve.c - many steps: until a limit is met, the user interrupts, or a callback says so. */
-#include "cycle/solve.h"
 #include "base/clock.h"
 #include "contact/detection.h"
 #include "cycle/cycle.h"
@@ -13,6 +12,9 @@
 
 #include <stdatomic.h>
 #include <stdlib.h>
+
+/* Watches for steady failure. */
+typedef struct tl_watch tl_watch;
 
 /* ---------------------------------------------------------------- steady failure ----------
  *
@@ -255,6 +257,7 @@ static tl_id find_failing(const tl_watch *w, const tl_model *m)
     return failing;
 }
 
+/* After each step; gives the id of the block that fails steadily, or 0. */
 static tl_id watch_step(tl_watch *w, const tl_model *m)
 {
     if (w->structure != m->structure)

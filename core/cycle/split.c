@@ -30,6 +30,47 @@
 #include <stdlib.h>
 #include <string.h>
 
+typedef struct tl_split_contact {
+    uint32_t row, a, b; /* row of the contact; parts */
+    size_t first;       /* of its points */
+} tl_split_contact;
+
+/* A contact point between two parts: the motion of A against B makes a traction on B. */
+typedef struct tl_split_point {
+    uint32_t a, b; /* parts */
+    double area;
+    tl_vec3 arm_a, arm_b, n; /* from the parts' centroids; A to B */
+    double normal, shear;    /* stiffness now, 0 or 1: of tractions that the law bears */
+} tl_split_point;
+
+/* A body that is a part of one that was split. */
+typedef struct tl_split_part {
+    uint32_t body;
+    uint32_t listed;   /* place before parts were put in the order of wholes */
+    bool goes;         /* it goes on as the whole does */
+    uint32_t whole;    /* first part of those that new contacts hold together */
+    double mass, area; /* as forces meet it; of its new faces */
+    double size;       /* radius */
+    tl_mat3 inertia;   /* axes of the model */
+    tl_vec3 place;
+    tl_wrench outer;            /* forces that act on it but for those of the new faces */
+    tl_wrench wanted;           /* what lets it go on as the whole */
+    tl_vec3 turn_v, turn_w;     /* what is to be added to its velocities: see find_turn */
+    tl_wrench way, step, image; /* of the solver: small motions, and their forces */
+    tl_wrench lacks, preconditioned;
+} tl_split_part;
+
+/* Parts that new contacts hold together. start: tractions before; given: those asked for; borne: what the laws make of them. */
+typedef struct tl_split_system {
+    const tl_model *m;
+    tl_split_part *parts;
+    tl_split_contact *contacts;
+    tl_split_point *points; /* `a` and `b` count from the system's first part */
+    tl_traction *start, *given, *borne, *best;
+    size_t part_count, contact_count, point_count;
+    double stored; /* energy of the springs, J */
+} tl_split_system;
+
 /* ---------------------------------------------------------------- tractions between parts ---
  *
  * The tractions on the new faces of a body that was split.
@@ -151,6 +192,7 @@ static void solve_linear(tl_split_system *s)
 
 /* ---------------------------------------------------------------- laws ------------------- */
 
+/* Sets `borne` to what the laws bear of `given`, and what their springs hold; false: a law failed. */
 static bool split_bear(tl_split_system *s)
 {
     s->stored = 0;
@@ -252,6 +294,7 @@ static double go_on(tl_split_system *s, bool search, double lacking, tl_traction
     return now < lacking || isnan(now) ? now : try_step(s, from, 0);
 }
 
+/* Finds tractions that the laws bear and that bring what the parts lack, or come as near to it as they can; false: a law failed. */
 static bool split_solve(tl_split_system *s)
 {
     double wanted = 0, least = INFINITY, lacking;

@@ -6,7 +6,7 @@
  *
  * both exact. What all faces put on a body becomes one load: the force F acts at the mean place of the faces,
  * weighted by the lengths of their forces, and goes with the body; what is left of M is a constant moment. */
-#include "edit/boundary.h"
+#include "model/model.h"
 
 #include "base/error.h"
 #include "contact/detection.h"
@@ -19,6 +19,18 @@
 #include <string.h>
 #include <talus/boundary.h>
 #include <talus/elementary.h>
+
+/* Integrals over a plane area in its own coordinates u, v. */
+typedef struct tl_area_sums {
+    double a, u, v, uu, uv, vv; /* of 1, u, v, u u, u v, v v */
+} tl_area_sums;
+
+/* The outer part of a face. A point of its plane is at o + u t1 + v t2. */
+typedef struct tl_outer_face {
+    uint32_t row, face;
+    tl_vec3 normal, o, t1, t2; /* axes of the model; o relative to its origin */
+    tl_area_sums sums;
+} tl_outer_face;
 
 /* Off the plane, or out of the box, by less than this times the block's size a corner is in it: what contacts take for
  * touching (TL_CONTACT_TOLERANCE). */

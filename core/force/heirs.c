@@ -27,6 +27,23 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* What presses on B, and its moment about A's centroid. */
+typedef struct tl_word {
+    tl_vec3 force, moment;
+    double most; /* sum of the magnitudes of the points' normal forces, N */
+} tl_word;
+
+/* What is missed falls with each number as fast as by 1 / unit, about, where all is plain. */
+typedef struct tl_roots {
+    int count;
+    double unit;
+    double
+        hopeless; /* share of what is missed that is left after a step by fresh slopes, from which the search ends */
+    /* What is missed with such numbers, up to TL_ROOTS of both; false: it is not known. */
+    bool (*miss)(const void *user, const double x[], double missed[]);
+    const void *user;
+} tl_roots;
+
 /* ---------------------------------------------------------------- what a law says next ----
  *
  * What the law of a patch says that it carries in the step to come.
@@ -128,6 +145,8 @@ static void add_cells(tl_model *m, const tl_simd_group *group, size_t l, const t
     to->moment = tl_v3_add(to->moment, tl_v3_cross(more->arm, force));
 }
 
+/* Asks the law of a patch. In the first lanes are arms, normals, closures and motions of the points, and in `before` from 1 on their shear
+ * forces; there those after are given. false: the law failed, or what it says is no number. */
 static bool patch_word(tl_model *m, uint32_t c, const tl_point_lanes *t, tl_word *out)
 {
     const tl_detect *d = m->detect;

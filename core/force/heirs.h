@@ -19,24 +19,4 @@ bool tl_heirs_carry(tl_model *m);
 /* What is missing by this is not missing. */
 #define TL_ROOTS_EXACT 1e-11
 
-/* What is missed falls with each number as fast as by 1 / unit, about, where all is plain. */
-typedef struct tl_roots {
-    int count;
-    double unit;
-    double
-        hopeless; /* share of what is missed that is left after a step by fresh slopes, from which the search ends */
-    /* What is missed with such numbers, up to TL_ROOTS of both; false: it is not known. */
-    bool (*miss)(const void *user, const double x[], double missed[]);
-    const void *user;
-} tl_roots;
-
-/* What presses on B, and its moment about A's centroid. */
-typedef struct tl_word {
-    tl_vec3 force, moment;
-    double most; /* sum of the magnitudes of the points' normal forces, N */
-} tl_word;
-
-/* Asks the law of a patch. In the first lanes are arms, normals, closures and motions of the points, and in `before` from 1 on their shear
- * forces; there those after are given. false: the law failed, or what it says is no number. */
-
 #endif

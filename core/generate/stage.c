@@ -51,6 +51,7 @@ static tl_stage_ball ball_of(const tl_model *m, const tl_stage_block *block)
     return ball;
 }
 
+/* Adds a block, of which it then owns what the block does; false when out of memory. */
 static bool stage_push(tl_stage *stage, const tl_stage_block *block)
 {
     if (stage->count == stage->capacity) {

@@ -10,7 +10,6 @@ tl_status tl_stage_begin_empty(tl_model *m, tl_stage *stage);
 tl_status tl_stage_open(tl_stage *stage);
 /* Begins a staging set with the model's blocks in it. */
 tl_status tl_stage_begin(tl_model *m, tl_stage *stage);
-/* Adds a block, of which it then owns what the block does; false when out of memory. */
 /* Adds the convex hull of vertices, or a box, given in user coordinates. */
 tl_status tl_stage_add_hull(tl_stage *stage, const tl_vec3 *vertices, size_t count, double density,
                             const char *group);

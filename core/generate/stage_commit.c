@@ -16,6 +16,18 @@
 #include <stdlib.h>
 #include <string.h>
 
+typedef struct tl_cut_face tl_cut_face;
+
+typedef struct tl_cut_load tl_cut_load;
+
+typedef struct tl_cut_loads {
+    tl_cut_load *list;
+    size_t count;
+    tl_cut_face *faces; /* what is on faces of the bodies, by ascending row of their blocks */
+    size_t face_count;
+    uint32_t *of; /* [staged blocks] the load of the body that it comes from, or TL_NO_ROW */
+} tl_cut_loads;
+
 /* ---------------------------------------------------------------- loads of bodies that are cut ---
  *
  * Loads of bodies that a staging set cuts go to their parts.
@@ -135,6 +147,7 @@ static bool take_faces(const tl_stage *stage, const uint32_t *slot, tl_cut_loads
                                    m->face_load_count + most, sizeof *m->face_loads);
 }
 
+/* Takes the loads of the bodies that a stage has cut; false when out of memory (they are to be freed all the same). */
 static bool cut_loads_take(const tl_stage *stage, tl_cut_loads *loads)
 {
     const tl_model *m = stage->model;

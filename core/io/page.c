@@ -27,6 +27,13 @@
 #include <unistd.h>
 #include <zlib.h>
 
+/* What stands of a page when a frame is to be added. */
+typedef enum tl_page_stand {
+    TL_PAGE_GONE,   /* the file is not the one that was left */
+    TL_PAGE_WHOLE,  /* it is as it was left */
+    TL_PAGE_LONGER, /* it is, but more has been added since */
+} tl_page_stand;
+
 /* ---------------------------------------------------------------- pages of a model ------- */
 
 static void scene_destroy(tl_scene *scene)
@@ -334,6 +341,7 @@ static tl_status add_in_place(tl_model *m, const char *path, const tl_piece *ele
     return TL_OK;
 }
 
+/* Adds a frame, in place where the page stands whole; where it is longer, to a copy of what was left. */
 static tl_status page_add(tl_model *m, const char *path, tl_page_stand stand,
                           const tl_piece *element, tl_page_end *end)
 {

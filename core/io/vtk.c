@@ -3,7 +3,6 @@
  *
  * The files of a frame are all written under temporary names before the first is renamed, so
  * that a full disk or a folder without permission leaves the series as it was. */
-#include "io/vtk.h"
 
 #include "base/error.h"
 #include "base/output_file.h"
@@ -28,6 +27,17 @@
 #include <talus/number.h>
 #include <talus/text.h>
 #include <unistd.h>
+
+/* A change of an index on its way: an entry that goes into the room it has, or the whole of it anew. */
+typedef struct tl_vtk_index_change {
+    tl_output whole;
+    tl_vtk_index *index; /* as it is */
+    tl_vtk_index next;   /* as it will be */
+    char *path, *entry;
+    size_t length; /* of the entry */
+    off_t at;      /* where it goes */
+    int file;      /* descriptor to write it to; 0: the whole is written anew */
+} tl_vtk_index_change;
 
 /* ---------------------------------------------------------------- series ------------------
  *
@@ -54,6 +64,7 @@ static const char tail[] = "\n  ]\n}\n";
 /* Frames of one time are listed this far apart, s, or this part of the time: too little to see, enough to tell them apart. */
 #define STAGE 1e-9
 
+/* Name of a file of the series: PREFIX_CONTENT_NNNNNN.vtk. The text is the caller's; NULL when out of memory. */
 static char *vtk_frame_name(const tl_vtk_series *series, const char *content, size_t frame)
 {
     size_t capacity = strlen(series->prefix) + strlen(content) + 32;
@@ -239,6 +250,7 @@ static tl_status vtk_index_commit(tl_vtk_index_change *change, tl_error *error)
     return status;
 }
 
+/* Frees; what is not committed is dropped. Does nothing to a zeroed or dropped change. */
 static void vtk_index_drop(tl_vtk_index_change *change)
 {
     if (change->file)

@@ -1,4 +1,4 @@
-/* vtk_section.h - a section. */
+/* vtk_section.h - the polygons in which a plane cuts the blocks. */
 #ifndef TL_IO_VTK_SECTION_H
 #define TL_IO_VTK_SECTION_H
 

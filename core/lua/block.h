@@ -7,7 +7,6 @@
 /* The tl_side of a name; raises, beginning with `context`, when there is none. In block.c. */
 int32_t tl_lua_side(lua_State *L, const char *context, const char *name);
 extern const tl_lua_kind tl_lua_block_kind;
-/* Methods of the model. */
 
 extern const tl_lua_topic tl_lua_block_topics[];
 

@@ -26,7 +26,7 @@ typedef struct tl_lua_key {
 typedef struct tl_lua_options {
     int64_t threads; /* default of talus.model; 0: not set */
     bool quiet;      /* no progress line, no remarks */
-    /* state.c */
+    /* of runs that are saved as they go */
     double autosave;       /* s between two saves of a run's model; 0: none */
     double save_due;       /* s, of the clock */
     const char *save_path; /* the file of the script's saves; NULL: it has none */

@@ -115,6 +115,7 @@ static const struct {
 
 enum { QUANTITIES = sizeof quantities / sizeof *quantities };
 
+/* Names a quantity that a model can be asked for, from 0; NULL past the last one. */
 static const char *history_quantity(size_t i)
 {
     return i < QUANTITIES ? quantities[i].name : NULL;
@@ -127,6 +128,7 @@ static const tl_lua_kind *history_kind(lua_State *L, const tl_history *h)
     return tl_lua_item_kind(L, h->source == TL_FROM_BLOCKS ? TL_LUA_BLOCK : TL_LUA_CONTACT);
 }
 
+/* Finds the field that a history of blocks or contacts asks for; NULL: they have none of numbers of that name. */
 static const tl_field *history_field(lua_State *L, const tl_history *h, size_t *index)
 {
     size_t count;

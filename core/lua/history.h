@@ -1,4 +1,4 @@
-/* history.h - what the parts of histories share: history.c makes them, history.c samples, history.c tells.
+/* history.h - histories: samples of a model as it runs.
  *
  * The kernel keeps histories (talus/history.h); the functions of those that sample one are in a table by name, a user value of
  * the model's userdata. */
@@ -11,8 +11,6 @@
 void tl_lua_histories_due(lua_State *L, int model_index);
 /* Takes the samples that are due; false, with the error on the top of the stack, when one fails. */
 bool tl_lua_histories_sample(lua_State *L, int model_index);
-/* Names a quantity that a model can be asked for, from 0; NULL past the last one. */
-/* Finds the field that a history of blocks or contacts asks for; NULL: they have none of numbers of that name. */
 
 /* The functions that histories of the model at `from` sample are those of its copy at `to` as well. */
 void tl_lua_histories_share(lua_State *L, int from, int to);

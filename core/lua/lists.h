@@ -1,4 +1,4 @@
-/* lists.h - what there is. */
+/* lists.h - joints, laws, groups and kinds that there are, and the parameters in force. */
 #ifndef TL_LUA_LISTS_H
 #define TL_LUA_LISTS_H
 

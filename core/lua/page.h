@@ -1,4 +1,4 @@
-/* page.h - model:write_html(prefix, {...}). */
+/* page.h - model:write_html, and fields that a script adds to files and pages. */
 #ifndef TL_LUA_PAGE_H
 #define TL_LUA_PAGE_H
 

@@ -1,4 +1,4 @@
-/* quality.h - what cutting made and what may fall. */
+/* quality.h - what a model is asked as a whole: its blocks, keyblocks, verdict, and what it costs. */
 #ifndef TL_LUA_QUALITY_H
 #define TL_LUA_QUALITY_H
 

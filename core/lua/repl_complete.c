@@ -18,6 +18,24 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* One open bracket. */
+typedef struct tl_scan_level {
+    char bracket;              /* ( { or [ */
+    char callee[TL_SCAN_NAME]; /* the name right before it: of the function that is called; or "" */
+    char quoted[TL_SCAN_NAME]; /* the last text in quotes inside it, of this level; or "" */
+    char of[TL_SCAN_NAME];     /* the key whose value it is: `of = {`; or "" */
+    char key[TL_SCAN_NAME];    /* the key inside it whose value is due: `key = CURSOR`; or "" */
+} tl_scan_level;
+
+typedef struct tl_scan {
+    tl_scan_level levels[TL_SCAN_LEVELS]; /* levels[0] is no bracket but the whole chunk */
+    int depth;                            /* levels[depth] is the innermost */
+    char before; /* last character that counts: of a name 'a', of a text in quotes '"'; 0: none */
+    /* the last name, when `before` is 'a'; in quotes: the name right before the quotes, or "" */
+    char name[TL_SCAN_NAME];
+    bool in_quotes, in_comment;
+} tl_scan;
+
 #define LONGEST 16384 /* characters of a chunk, for `resolve` calls itself for each `.` of it */
 
 static struct {

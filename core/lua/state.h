@@ -1,4 +1,4 @@
-/* state.h - a model once more. */
+/* state.h - copies of a model, its files, and runs that are saved as they go. */
 #ifndef TL_LUA_STATE_H
 #define TL_LUA_STATE_H
 

@@ -1,4 +1,4 @@
-/* view.h - commands of those who look at a model, as lines of Lua. */
+/* view.h - model:view: a model that is seen while it runs, and takes commands. */
 #ifndef TL_LUA_VIEW_H
 #define TL_LUA_VIEW_H
 

@@ -122,6 +122,7 @@ void tl_face_loads_set(tl_model *m, tl_face_load *list, size_t count, size_t cap
     m->face_load_capacity = capacity;
 }
 
+/* Forgets those of the bodies of blocks; false when out of memory (nothing changed). */
 static bool face_loads_forget(tl_model *m, const tl_id *ids, size_t count)
 {
     size_t kept = 0;

@@ -64,7 +64,6 @@ tl_lump tl_face_plate(const tl_model *m, uint32_t row, uint32_t face);
 
 /* Puts a list, which is the model's from now on, in the place of its own: sorted by block and face, those of one face added up. */
 void tl_face_loads_set(tl_model *m, tl_face_load *list, size_t count, size_t capacity);
-/* Forgets those of the bodies of blocks; false when out of memory (nothing changed). */
 /* Adds a force and a moment about a place, relative to the origin, to the load of a body. The load acts at the mean of the places, weighted
  * by the lengths of their forces. */
 void tl_load_add(tl_model *m, uint32_t body, tl_wrench more, tl_vec3 place);

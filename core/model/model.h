@@ -1,4 +1,4 @@
-/* model.h - what a model is made of, for the rooms to the right of it (contact, force, cycle, io ...).
+/* model.h - what a model is made of, for the modules above it (contact, force, cycle, io ...).
  *
  * Blocks are shapes; bodies move. A body is one block or several joined ones. All kinematics lives in
  * the bodies' columns: a block's shape is kept in its body's frame, whose origin is the body's

@@ -17,6 +17,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Edges of two faces that lie along each other, a bit each. */
+typedef struct tl_outline_shared {
+    uint32_t a, b;
+} tl_outline_shared;
+
 /* ---------------------------------------------------------------- outlines ----------------
  *
  * The corners of the common polygon of two convex faces, by which corners lie inside which lines.

@@ -37,11 +37,6 @@ typedef struct tl_outline {
  * each, which corner i of A lies inside; the same with `inside_b`. */
 #define TL_OUTLINES 128
 
-/* Edges of two faces that lie along each other, a bit each. */
-typedef struct tl_outline_shared {
-    uint32_t a, b;
-} tl_outline_shared;
-
 const tl_outline *tl_outline_of(tl_outline *cache, uint32_t na, uint32_t nb, uint64_t inside_a,
                                 uint64_t inside_b);
 

@@ -34,6 +34,13 @@
 #include <stdlib.h>
 #include <talus/vmath.h>
 
+/* Where the planes of a region are put together. */
+typedef struct tl_press_planes {
+    tl_field_faces faces;
+    tl_vec3 origin;
+    uint32_t count;
+} tl_press_planes;
+
 /* ---------------------------------------------------------------- faces that press --------
  *
  * The planes of the faces that press, where they are moved out and lean. */

@@ -15,13 +15,6 @@
 bool tl_press_find(const tl_press_query query[], uint32_t count, tl_narrow_scratch *scratch,
                    tl_press press[], tl_press_extra extra[]);
 
-/* Where the planes of a region are put together. */
-typedef struct tl_press_planes {
-    tl_field_faces faces;
-    tl_vec3 origin;
-    uint32_t count;
-} tl_press_planes;
-
 /* The share of the patch, 1 - w, and its gradient: by a way of B, and by a turn about the origin of the sums. */
 typedef struct tl_patch_share {
     double share;

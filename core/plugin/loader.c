@@ -196,11 +196,13 @@ static bool append_locked(const char *path, const char *reason, const char *note
     return done;
 }
 
+/* Keeps a failed attempt and its reason for the list of records; false when out of memory. */
 static bool registry_refused(const char *path, const char *reason)
 {
     return append_locked(path, reason, NULL);
 }
 
+/* Keeps a remark on a folder; false when out of memory. */
 static bool registry_noted(const char *path, const char *note)
 {
     return append_locked(path, NULL, note);

@@ -1,4 +1,4 @@
-/* loader.h - finds plugins and modules on disk, and opens plugins. */
+/* loader.h - the plugins of this process: found, opened, kept. */
 #ifndef TL_PLUGIN_LOADER_H
 #define TL_PLUGIN_LOADER_H
 
@@ -9,8 +9,6 @@
 /* Takes in a plugin that was read from `path`. Refused when its id, or one of its kinds, is there
  * already; it then stays the caller's. */
 tl_status tl_registry_add(const char *path, tl_plugin *plugin, const char *note, tl_error *error);
-/* Keeps a failed attempt and its reason for the list of records; false when out of memory. */
-/* Keeps a remark on a folder; false when out of memory. */
 
 /* TL_E_NOT_FOUND: "unknown law 'coulom'; did you mean ...". */
 tl_status tl_kind_unknown(tl_error *error, tl_kind_type type, const char *name);

@@ -13,6 +13,12 @@
 #include <string.h>
 #include <talus/fields.h>
 
+typedef struct tl_value_of {
+    size_t field;              /* index; the number of fields for a state */
+    const tl_law_state *state; /* or NULL */
+    size_t width;              /* numbers a value has */
+} tl_value_of;
+
 /* ---------------------------------------------------------------- states of laws ----------
  *
  * The states of the laws in use, by name, and their values at contacts and points.
@@ -159,6 +165,7 @@ static double number_at(const tl_points_table *p, uint32_t column, size_t row)
     return column < p->state_columns ? p->state[column][row] : 0;
 }
 
+/* Value of an entry at point k of a contact; NaN where the contact's law has no such state. Changes nothing. */
 static void law_state_at_point(const tl_model *m, const tl_law_states *states,
                                const tl_law_state *of, uint32_t contact, size_t k, double value[3])
 {
@@ -239,6 +246,8 @@ static tl_status unknown_name(tl_model *m, const char *item, const tl_field *fie
                    nearest ? nearest : "", nearest ? "'?" : "");
 }
 
+/* Looks a name up among fields and, unless NULL, states. `item` is "block". The text `state` is taken for a number; other
+ * texts are refused. */
 static tl_status value_find(tl_model *m, const char *item, const tl_field *fields, size_t count,
                             const tl_law_states *states, const char *name, tl_value_of *of)
 {
@@ -272,6 +281,7 @@ static tl_status contact_value_find(tl_model *m, const char *item, const tl_fiel
     return status == TL_OK ? value_find(m, item, fields, count, states, name, of) : status;
 }
 
+/* Row of the contact of an id, or TL_E_STALE with a sentence; contacts are up to date. */
 static tl_status contact_find(tl_model *m, tl_id contact, uint32_t *row)
 {
     *row = tl_contact_row(m->detect, contact);

@@ -6,16 +6,6 @@
 
 #include <talus/fields.h>
 
-typedef struct tl_value_of {
-    size_t field;              /* index; the number of fields for a state */
-    const tl_law_state *state; /* or NULL */
-    size_t width;              /* numbers a value has */
-} tl_value_of;
-
-/* Looks a name up among fields and, unless NULL, states. `item` is "block". The text `state` is taken for a number; other
- * texts are refused. */
-/* Row of the contact of an id, or TL_E_STALE with a sentence; contacts are up to date. */
-
 typedef struct tl_law_states {
     tl_law_state *at;
     size_t count;
@@ -28,7 +18,6 @@ typedef struct tl_law_states {
 tl_status tl_law_states_list(tl_model *m, tl_law_states *states);
 void tl_law_states_free(tl_law_states *states);
 
-/* Value of an entry at point k of a contact; NaN where the contact's law has no such state. Changes nothing. */
 /* The same of the whole contact: the mean of its points, weighted by their areas, or the sum where a state goes with the
  * area. */
 void tl_law_state_of_contact(const tl_model *m, const tl_law_states *states, const tl_law_state *of,

@@ -284,6 +284,7 @@ static bool members_are_sound(const tl_model *m)
     return next == m->bodies.table.rows;
 }
 
+/* What is wrong with settings, blocks and bodies, before there are polyhedra; NULL: nothing. */
 static const char *rows_unsound(const tl_model *m, size_t groups, size_t drives)
 {
     if (m->blocks.table.rows >= TL_NO_ROW || m->bodies.table.rows > m->blocks.table.rows)
@@ -478,6 +479,7 @@ static void forget_stale(const tl_model *m, struct tl_cycle *c)
     }
 }
 
+/* The same of what the phases of a step keep; what is known there of rows that have gone is forgotten. */
 static const char *cycle_unsound(const tl_model *m, struct tl_cycle *c)
 {
     forget_stale(m, c);

@@ -10,7 +10,4 @@ tl_status tl_model_restore_archive(const tl_archive *archive, int64_t threads,
                                    tl_drive_again_fn again, void *user, tl_model **model,
                                    tl_error *error);
 
-/* What is wrong with settings, blocks and bodies, before there are polyhedra; NULL: nothing. */
-/* The same of what the phases of a step keep; what is known there of rows that have gone is forgotten. */
-
 #endif
