@@ -1,21 +1,21 @@
 // The state of the page: what is changed decides what is made anew; the rest of the time pictures are averaged.
 // @ts-check
-import { Camera } from "./camera.js";
-import { category, colourBlocks, colourContacts, legendText } from "./colours.js";
-import { byId, say } from "./dom.js";
-import { Model } from "./frames.js";
-import { arrowsFor, contactSheets } from "./glyphs.js";
-import { SAMPLES, makeGpu, noGpu } from "./gpu.js";
-import { add, figure, multiply, scale } from "./math.js";
-import { drawAxes, drawLegends, legendSize, penOf } from "./overlay.js";
-import { fillTable, showFrame, tightBox } from "./poses.js";
-import { capSheets, cutBlocks, sectionPlane } from "./section.js";
-import { makeView, readView, viewText } from "./view.js";
+import {Camera} from "./camera.js";
+import {category, colourBlocks, colourContacts, legendText} from "./colours.js";
+import {byId, say} from "./dom.js";
+import {Model} from "./frames.js";
+import {arrowsFor, contactSheets} from "./glyphs.js";
+import {SAMPLES, makeGpu, noGpu} from "./gpu.js";
+import {add, figure, multiply, scale} from "./math.js";
+import {drawAxes, drawLegends, legendSize, penOf} from "./overlay.js";
+import {fillTable, showFrame, tightBox} from "./poses.js";
+import {capSheets, cutBlocks, sectionPlane} from "./section.js";
+import {makeView, readView, viewText} from "./view.js";
 
-const STILL = 160;     // ms without a change after which pictures are averaged
-const SLOW = 80;       // ms of a draft from which it is drawn at half the resolution
-const MANY = 200000;   // triangles from which the first draft is drawn at half the resolution
-const TELLING = 200;   // ms between two states of the panels while frames of a run follow each other
+const STILL = 160;             // ms without a change after which pictures are averaged
+const SLOW = 80;               // ms of a draft from which it is drawn at half the resolution
+const MANY = 200000;           // triangles from which the first draft is drawn at half the resolution
+const TELLING = 200;           // ms between two states of the panels while frames of a run follow each other
 const PICKED = [10, 102, 242]; // colour of the picked blocks, where there are several
 const ORDER = ["camera", "look", "colour", "cut", "pose", "frame"]; // each makes anew what those before it do
 
@@ -44,7 +44,7 @@ export class App {
         this.chart = "largest";
         this.speed = 1;
         this.oblique = 30;
-        this.home = { min: [-1, -1, -1], max: [1, 1, 1] };
+        this.home = {min: [-1, -1, -1], max: [1, 1, 1]};
         this.dirty = -1;
         this.samples = SAMPLES;
         this.sample = 0;
@@ -80,7 +80,7 @@ export class App {
         if (this.canvas.width !== w) this.canvas.width = w;
         if (this.canvas.height !== h) this.canvas.height = h;
         const wide = this.width > 700;
-        this.camera.margins = { left: wide ? 220 : 0, right: wide ? 262 : 0, top: 84, bottom: 104 };
+        this.camera.margins = {left: wide ? 220 : 0, right: wide ? 262 : 0, top: 84, bottom: 104};
         this.change("camera");
     }
 
@@ -90,17 +90,32 @@ export class App {
         this.dirty = Math.max(this.dirty, ORDER.indexOf(what));
         this.sample = 0;
         this.changed = performance.now();
-        if (!this.asked) { this.asked = true; requestAnimationFrame(() => this.tick()); }
+        if (!this.asked) {
+            this.asked = true;
+            requestAnimationFrame(() => this.tick());
+        }
     }
 
     /** Until the next picture is there. @returns {Promise<void>} */
-    drawn() { return new Promise((done) => { this.waiting.push(done); this.change("camera"); }); }
+    drawn() {
+        return new Promise((done) => {
+            this.waiting.push(done);
+            this.change("camera");
+        });
+    }
 
     /** Until the next picture that is asked for is there. @returns {Promise<void>} */
-    painted() { return new Promise((done) => { this.waiting.push(done); }); }
+    painted() {
+        return new Promise((done) => {
+            this.waiting.push(done);
+        });
+    }
 
     /** Until the average is complete. */
-    async settled() { do await new Promise((done) => setTimeout(done, 20)); while (this.sample < this.samples || this.asked || this.reading); }
+    async settled() {
+        do await new Promise((done) => setTimeout(done, 20));
+        while (this.sample < this.samples || this.asked || this.reading);
+    }
 
     /** @param {number} index @param {boolean} [loud] */
     async goTo(index, loud = true) {
@@ -109,14 +124,20 @@ export class App {
         this.following = at === last;
         try {
             const frame = await this.model.frame(at);
-            if (this.view.frame === at) { this.frame = frame; this.change("frame", loud); }
+            if (this.view.frame === at) {
+                this.frame = frame;
+                this.change("frame", loud);
+            }
         } catch (error) {
             say(String(/** @type {Error} */ (error).message), true);
         }
     }
 
     /** Displacement from which a block counts as moving: a twentieth of the largest, and no closing of joints. */
-    threshold() { return Math.max(0.05 * this.mostMoved(), this.frame?.data.finding?.closed ?? (this.model.head?.size ?? 1) / 1000); }
+    threshold() {
+        return Math.max(
+            0.05 * this.mostMoved(), this.frame?.data.finding?.closed ?? (this.model.head?.size ?? 1) / 1000);
+    }
     mostMoved() { return Math.max(this.model.largest("displacement"), 1e-12); }
     reach() { return boxReach(this.home); }
     bounds() { return this.shown?.bounds ?? this.home; }
@@ -124,7 +145,12 @@ export class App {
     /** @param {number} width @param {number} height */
     sight(width, height) {
         const m = this.camera.margins, k = height / this.height;
-        this.camera.margins = { left: m.left * width / this.width, right: m.right * width / this.width, top: m.top * k, bottom: m.bottom * k };
+        this.camera.margins = {
+            left: m.left * width / this.width,
+            right: m.right * width / this.width,
+            top: m.top * k,
+            bottom: m.bottom * k
+        };
         const s = this.camera.sight(width, height, this.bounds());
         this.camera.margins = m;
         return s;
@@ -132,23 +158,46 @@ export class App {
 
     /** @returns {import("./gpu.js").Look} */
     lookNow() {
-        const v = this.view, at = v.picked >= 0 && this.frame ? this.model.rowOf(v.picked, this.frame.since) : -1, n = this.plane?.normal ?? [0, 0, 1];
-        return { ghosts: this.shown?.ghosts ?? false, ghost: v.opacity, cut: this.plane !== null, plane: [...n, this.plane?.position ?? 0], edges: v.edges ? 1 : 0, picked: at,
-            radius: (this.model.head?.size ?? 1) * 0.6, dark: v.dark, faces: v.colour === "joint" || v.joint !== "", light: this.light, shadows: v.shadows ? 0.75 : 0, reach: boxReach(this.bounds()) };
+        const v = this.view;
+        const at = v.picked >= 0 && this.frame ? this.model.rowOf(v.picked, this.frame.since) : -1;
+        const n = this.plane?.normal ?? [0, 0, 1];
+        return {
+            ghosts: this.shown?.ghosts ?? false,
+            ghost: v.opacity,
+            cut: this.plane !== null,
+            plane: [...n, this.plane?.position ?? 0],
+            edges: v.edges ? 1 : 0,
+            picked: at,
+            radius: (this.model.head?.size ?? 1) * 0.6,
+            dark: v.dark,
+            faces: v.colour === "joint" || v.joint !== "",
+            light: this.light,
+            shadows: v.shadows ? 0.75 : 0,
+            reach: boxReach(this.bounds())
+        };
     }
 
     refresh() {
-        const { model, view, gpu } = this, frame = this.frame, level = this.shapes === model.version ? this.dirty : ORDER.length;
+        const {model, view, gpu} = this;
+        const frame = this.frame;
+        const level = this.shapes === model.version ? this.dirty : ORDER.length;
         this.dirty = -1;
         document.documentElement.classList.toggle("dark", view.dark);
         if (!frame) return;
-        if (this.shapes !== model.version) { gpu.setBlocks(model); this.shapes = model.version; }
+        if (this.shapes !== model.version) {
+            gpu.setBlocks(model);
+            this.shapes = model.version;
+        }
         if (level >= 4 || !this.shown) this.shown = showFrame(model, frame, view);
         const shown = this.shown;
         if (level >= 3) {
-            const side = view.other ? -1 : 1, whole = sectionPlane(view.dip, view.direction, view.position, scale(add(this.home.min, this.home.max), 0.5));
-            this.plane = view.cut ? { normal: scale(whole.normal, side), position: whole.position * side } : null;
-            this.cuts = this.plane ? cutBlocks(model, shown.place, shown.turn, shown.kind.map((k) => (k === 1 ? 1 : 0)), this.plane) : [];
+            const side = view.other ? -1 : 1;
+            const whole =
+                sectionPlane(view.dip, view.direction, view.position, scale(add(this.home.min, this.home.max), 0.5));
+            this.plane = view.cut ? {normal: scale(whole.normal, side), position: whole.position * side} : null;
+            this.cuts = this.plane
+                ? cutBlocks(model, shown.place, shown.turn, shown.kind.map((k) => (k === 1 ? 1 : 0)), this.plane)
+                : [];
             fillTable(model, shown, this.plane);
             gpu.table("pose", shown.table);
         }
@@ -181,15 +230,20 @@ export class App {
 
     /** @param {import("./frames.js").Frame} frame @param {import("./poses.js").Shown} shown */
     recolour(frame, shown) {
-        const { model, view, gpu } = this, c = colourBlocks(model, frame, view.colour);
+        const {model, view, gpu} = this, c = colourBlocks(model, frame, view.colour);
         if (view.joint !== "") {
             const rest = [214, 217, 221], at = frame.head.joints.indexOf(view.joint);
             c.palette = frame.head.joints.map((_name, i) => (i === at ? category(i - 1) : rest));
-            c.legend = { title: "Joint", kind: "list", items: [{ name: view.joint, colour: c.palette[at] ?? rest }, { name: "other faces", colour: rest }] };
+            c.legend = {
+                title: "Joint",
+                kind: "list",
+                items: [{name: view.joint, colour: c.palette[at] ?? rest}, {name: "other faces", colour: rest}]
+            };
         }
         for (const id of view.also) {
             const row = model.rowOf(id, frame.since);
-            if (row >= 0 && view.picked >= 0) c.colours.set([...PICKED.map((p, i) => 0.7 * p + 0.3 * c.colours[4 * row + i]), 255], 4 * row);
+            if (row >= 0 && view.picked >= 0)
+                c.colours.set([...PICKED.map((p, i) => 0.7 * p + 0.3 * c.colours[4 * row + i]), 255], 4 * row);
         }
         gpu.table("colour", c.colours);
         gpu.table("palette", new Uint8Array(c.palette.flatMap((p) => [...p, 255])), c.palette.length);
@@ -199,11 +253,18 @@ export class App {
         const contacts = view.contacts === "" ? null : colourContacts(model, frame, view.contacts);
         gpu.sheets.set(contacts ? contactSheets(model, frame, shown, contacts.colour, this.plane, view.joint) : []);
         if (contacts) this.legends.push(contacts.legend);
-        const arrows = view.arrows === "" ? null : arrowsFor(model, frame, shown, view.arrows, view.motion, this.plane, this.cuts, view.dark);
+        const arrows = view.arrows === ""
+            ? null
+            : arrowsFor(model, frame, shown, view.arrows, view.motion, this.plane, this.cuts, view.dark);
         gpu.arrows.set(arrows?.arrows ?? []);
-        if (arrows) this.note = arrows.arrows.length ? `longest arrow: ${figure(arrows.most)} ${view.arrows === "force" ? "N" : view.arrows === "velocity" ? "m/s" : "m"}` : "no arrows";
+        if (arrows) {
+            const unit = view.arrows === "force" ? "N" : view.arrows === "velocity" ? "m/s" : "m";
+            this.note = arrows.arrows.length ? `longest arrow: ${figure(arrows.most)} ${unit}` : "no arrows";
+        }
         if (view.motion !== 1) this.note += `${this.note && ", "}motion × ${view.motion}`;
-        const [w, h] = legendSize(this.legends, this.note), box = byId("legend"), canvas = /** @type {HTMLCanvasElement} */ (box.querySelector("canvas"));
+        const [w, h] = legendSize(this.legends, this.note);
+        const box = byId("legend");
+        const canvas = /** @type {HTMLCanvasElement} */ (box.querySelector("canvas"));
         canvas.style.width = `${w}px`;
         canvas.style.height = `${h}px`;
         drawLegends(penOf(canvas, w, h), this.legends, this.note, 0, 0);
@@ -213,7 +274,9 @@ export class App {
 
     counts() {
         const s = this.frame?.summary, f = this.frame?.data.finding, told = f ?? s;
-        return !s ? "" : `${s.blocks} blocks${told?.contacts ? ` · ${told.contacts} contacts, ${told.slipping} slipping` : ""}${f?.stage ? ` · stage “${f.stage}”` : ""}`;
+        if (!s) return "";
+        const contacts = told?.contacts ? ` · ${told.contacts} contacts, ${told.slipping} slipping` : "";
+        return `${s.blocks} blocks${contacts}${f?.stage ? ` · stage “${f.stage}”` : ""}`;
     }
 
     tellFindings() {
@@ -244,20 +307,29 @@ export class App {
     tick() {
         this.asked = false;
         if (this.dirty >= 0) this.refresh();
-        const { canvas } = this, begun = performance.now(), full = this.number > 0 && (begun - this.changed > STILL || (this.fullCost > 0 && this.fullCost < 20));
+        const {canvas} = this;
+        const begun = performance.now();
+        const full = this.number > 0 && (begun - this.changed > STILL || (this.fullCost > 0 && this.fullCost < 20));
         if (this.sample < this.samples && this.frame) {
             const half = !full && (this.number ? this.draftCost > SLOW : this.model.triangles > MANY) ? 2 : 1;
-            if (full || this.sample === 0) this.drawOne(Math.ceil(canvas.width / half), Math.ceil(canvas.height / half), full ? this.sample : 0, full);
+            if (full || this.sample === 0)
+                this.drawOne(
+                    Math.ceil(canvas.width / half), Math.ceil(canvas.height / half), full ? this.sample : 0, full);
             this.gpu.wait();
             const cost = performance.now() - begun;
-            if (full) { if (this.sample > 0) this.fullCost = cost; this.sample++; } else if (this.number > 1) this.draftCost = half * half * cost * (half > 1 ? 0.8 : 1);
+            if (full) {
+                if (this.sample > 0) this.fullCost = cost;
+                this.sample++;
+            } else if (this.number > 1) this.draftCost = half * half * cost * (half > 1 ? 0.8 : 1);
             if (this.sample <= 1) this.drawOverlay();
             this.number++;
         }
         for (const done of this.waiting.splice(0)) done();
         if (this.sample < this.samples && this.frame && !this.asked) {
             this.asked = true;
-            setTimeout(() => requestAnimationFrame(() => this.tick()), full ? 0 : Math.max(0, STILL + 5 - (performance.now() - this.changed)));
+            setTimeout(
+                () => requestAnimationFrame(() => this.tick()),
+                full ? 0 : Math.max(0, STILL + 5 - (performance.now() - this.changed)));
         }
         if (this.sample === this.samples) this.keepAddress();
     }
@@ -271,11 +343,14 @@ export class App {
         const text = viewText(this.view, this.camera.text());
         if (text === this.address) return;
         this.address = text;
-        try { history.replaceState(null, "", text); } catch { /* a browser that does not let files change their address */ }
+        try {
+            history.replaceState(null, "", text);
+        } catch { /* a browser that does not let files change their address */
+        }
     }
 
     async fromAddress() {
-        Object.assign(this.view, makeView(), { dark: this.view.dark, net: this.blind !== "" });
+        Object.assign(this.view, makeView(), {dark: this.view.dark, net: this.blind !== ""});
         const camera = readView(this.view, location.hash), found = this.camera.read(camera);
         this.address = location.hash;
         await this.goTo(this.view.frame < 0 ? this.model.frames.length - 1 : this.view.frame);

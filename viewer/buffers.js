@@ -2,22 +2,32 @@
 // @ts-check
 
 /** @typedef {import("./frames.js").Model} Model */
-/** @typedef {{place: number[], normal: number[], colour: number[], flat: boolean, name: number}} Sheet corners x y z of a convex polygon */
+/**
+ * @typedef {{place: number[], normal: number[], colour: number[], flat: boolean, name: number}} Sheet corners x y z of
+ *   a convex polygon
+ */
 /** @typedef {{tail: number[], way: number[], width: number, colour: number[], name: number}} Arrow */
 
 const BLOCK_BYTES = 28, SHEET_BYTES = 36;
 
-/** All blocks' faces as triangles. The last corner of a triangle tells its normal and name, so faces share vertices: each has one of its own, and the rest of
- * its corners are those of other faces. @param {WebGL2RenderingContext} gl @param {Model} model */
+/**
+ * All blocks' faces as triangles. The last corner of a triangle tells its normal and name, so faces share
+ * vertices: each has one of its own, and the rest of its corners are those of other faces.
+ * @param {WebGL2RenderingContext} gl
+ * @param {Model} model
+ */
 export function blockBuffer(gl, model) {
     let most = 0;
-    for (const { shapes, block } of model.shape) most += shapes.vertices[block] + shapes.faces[block];
-    const data = new ArrayBuffer(most * BLOCK_BYTES), f32 = new Float32Array(data), i16 = new Int16Array(data), u32 = new Uint32Array(data);
+    for (const {shapes, block} of model.shape) most += shapes.vertices[block] + shapes.faces[block];
+    const data = new ArrayBuffer(most * BLOCK_BYTES), f32 = new Float32Array(data);
+    const i16 = new Int16Array(data), u32 = new Uint32Array(data);
     const index = new Uint32Array(3 * model.triangles), taken = new Uint32Array(65536);
     let end = 0, k = 0;
     // no lists and no functions in here: it is done for millions of corners while nothing is to be seen
     for (let row = 0; row < model.rows; row++) {
-        const s = model.shape[row], { vertex, loop, corners, joint } = s.shapes, base = end, faces = s.shapes.faces[s.block];
+        const s = model.shape[row];
+        const {vertex, loop, corners, joint} = s.shapes;
+        const base = end, faces = s.shapes.faces[s.block];
         for (let a = 3 * s.vertex; end < base + s.shapes.vertices[s.block]; end++, a += 3) {
             f32[7 * end] = vertex[a];
             f32[7 * end + 1] = vertex[a + 1];
@@ -40,7 +50,8 @@ export function blockBuffer(gl, model) {
             const o = 7 * v, ox = f32[o], oy = f32[o + 1], oz = f32[o + 2];
             let nx = 0, ny = 0, nz = 0, ax = 0, ay = 0, az = 0, before = 0;
             for (let i = 1; i < count; i++) {
-                const next = base + loop[corner + (own + i) % count], b = 7 * next, bx = f32[b] - ox, by = f32[b + 1] - oy, bz = f32[b + 2] - oz;
+                const next = base + loop[corner + (own + i) % count];
+                const b = 7 * next, bx = f32[b] - ox, by = f32[b + 1] - oy, bz = f32[b + 2] - oz;
                 if (i > 1) {
                     nx += ay * bz - az * by;
                     ny += az * bx - ax * bz;
@@ -74,13 +85,24 @@ export function blockBuffer(gl, model) {
     attribute(gl, 1, 3, gl.SHORT, BLOCK_BYTES, 12);
     attribute(gl, 2, 2, gl.UNSIGNED_INT, BLOCK_BYTES, 20);
     gl.bindVertexArray(null);
-    return { array, buffer, elements, count: k };
+    return {array, buffer, elements, count: k};
 }
 
-/** Name of a face in the picture's names: 24 bits of row, 7 of face (modulo 126; 126 is a section polygon). @param {number} row @param {number} face */
+/**
+ * Name of a face in the picture's names: 24 bits of row, 7 of face (modulo 126; 126 is a section polygon).
+ * @param {number} row
+ * @param {number} face
+ */
 export function faceName(row, face) { return row + face * 0x1000000; }
 
-/** @param {WebGL2RenderingContext} gl @param {number} at @param {number} size @param {number} type @param {number} stride @param {number} offset */
+/**
+ * @param {WebGL2RenderingContext} gl
+ * @param {number} at
+ * @param {number} size
+ * @param {number} type
+ * @param {number} stride
+ * @param {number} offset
+ */
 function attribute(gl, at, size, type, stride, offset) {
     gl.enableVertexAttribArray(at);
     if (type === gl.UNSIGNED_INT) gl.vertexAttribIPointer(at, size, type, stride, offset);
@@ -97,24 +119,34 @@ export function sheetBuffer(gl) {
     attribute(gl, 2, 4, gl.UNSIGNED_BYTE, SHEET_BYTES, 24);
     attribute(gl, 3, 1, gl.UNSIGNED_INT, SHEET_BYTES, 28);
     gl.bindVertexArray(null);
-    return { array, count: 0, set(/** @type {Sheet[]} */ sheets) {
-        let n = 0;
-        for (const s of sheets) n += Math.max(0, s.place.length / 3 - 2) * 3;
-        const data = new ArrayBuffer(n * SHEET_BYTES), f32 = new Float32Array(data), u8 = new Uint8Array(data), u32 = new Uint32Array(data);
-        let v = 0;
-        for (const s of sheets) {
-            for (let i = 1; i + 1 < s.place.length / 3; i++) {
-                for (const c of [0, i, i + 1]) {
-                    f32.set([s.place[3 * c], s.place[3 * c + 1], s.place[3 * c + 2], s.normal[0], s.normal[1], s.normal[2]], 9 * v);
-                    u8.set([s.colour[0], s.colour[1], s.colour[2], s.flat ? 0 : 255], SHEET_BYTES * v + 24);
-                    u32[9 * v++ + 7] = s.name;
+    return {
+        array,
+        count: 0,
+        set(/** @type {Sheet[]} */ sheets) {
+            let n = 0;
+            for (const s of sheets) n += Math.max(0, s.place.length / 3 - 2) * 3;
+            const data = new ArrayBuffer(n * SHEET_BYTES), f32 = new Float32Array(data);
+            const u8 = new Uint8Array(data), u32 = new Uint32Array(data);
+            let v = 0;
+            for (const s of sheets) {
+                for (let i = 1; i + 1 < s.place.length / 3; i++) {
+                    for (const c of [0, i, i + 1]) {
+                        f32.set(
+                            [
+                                s.place[3 * c], s.place[3 * c + 1], s.place[3 * c + 2], s.normal[0], s.normal[1],
+                                s.normal[2]
+                            ],
+                            9 * v);
+                        u8.set([s.colour[0], s.colour[1], s.colour[2], s.flat ? 0 : 255], SHEET_BYTES * v + 24);
+                        u32[9 * v++ + 7] = s.name;
+                    }
                 }
             }
+            this.count = n;
+            gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
+            gl.bufferData(gl.ARRAY_BUFFER, data, gl.DYNAMIC_DRAW);
         }
-        this.count = n;
-        gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
-        gl.bufferData(gl.ARRAY_BUFFER, data, gl.DYNAMIC_DRAW);
-    } };
+    };
 }
 
 /** Arrows: one mesh, drawn once for each. @param {WebGL2RenderingContext} gl */
@@ -129,8 +161,12 @@ export function arrowBuffer(gl) {
                 const a = 2 * Math.PI * k / sides;
                 mesh.push(Math.cos(a), Math.sin(a), rings[ring][0], rings[ring][1]);
             };
-            corner(r, i); corner(r, i + 1); corner(r + 1, i + 1);
-            corner(r, i); corner(r + 1, i + 1); corner(r + 1, i);
+            corner(r, i);
+            corner(r, i + 1);
+            corner(r + 1, i + 1);
+            corner(r, i);
+            corner(r + 1, i + 1);
+            corner(r + 1, i);
         }
     }
     const array = gl.createVertexArray(), fixed = gl.createBuffer(), buffer = gl.createBuffer();
@@ -145,15 +181,21 @@ export function arrowBuffer(gl) {
     attribute(gl, 4, 1, gl.UNSIGNED_INT, 36, 32);
     for (let i = 1; i < 5; i++) gl.vertexAttribDivisor(i, 1);
     gl.bindVertexArray(null);
-    return { array, corners: mesh.length / 4, count: 0, set(/** @type {Arrow[]} */ arrows) {
-        const data = new ArrayBuffer(36 * arrows.length), f32 = new Float32Array(data), u8 = new Uint8Array(data), u32 = new Uint32Array(data);
-        arrows.forEach((a, i) => {
-            f32.set([...a.tail, ...a.way, a.width], 9 * i);
-            u8.set([...a.colour, 255], 36 * i + 28);
-            u32[9 * i + 8] = a.name;
-        });
-        this.count = arrows.length;
-        gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
-        gl.bufferData(gl.ARRAY_BUFFER, data, gl.DYNAMIC_DRAW);
-    } };
+    return {
+        array,
+        corners: mesh.length / 4,
+        count: 0,
+        set(/** @type {Arrow[]} */ arrows) {
+            const data = new ArrayBuffer(36 * arrows.length), f32 = new Float32Array(data);
+            const u8 = new Uint8Array(data), u32 = new Uint32Array(data);
+            arrows.forEach((a, i) => {
+                f32.set([...a.tail, ...a.way, a.width], 9 * i);
+                u8.set([...a.colour, 255], 36 * i + 28);
+                u32[9 * i + 8] = a.name;
+            });
+            this.count = arrows.length;
+            gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
+            gl.bufferData(gl.ARRAY_BUFFER, data, gl.DYNAMIC_DRAW);
+        }
+    };
 }

@@ -1,34 +1,59 @@
-// The picture by WebGL2: what is seen goes into textures of colour, normal, name and depth; from these come light and edges. While
-// nothing changes, pictures with sub-pixel offsets are averaged; while something moves, one draft without shadow and occlusion.
+// The picture by WebGL2: what is seen goes into textures of colour, normal, name and depth; from these come light and
+// edges. While nothing changes, pictures with sub-pixel offsets are averaged; while something moves, one draft without
+// shadow and occlusion.
 // @ts-check
-import { arrowBuffer, blockBuffer, sheetBuffer } from "./buffers.js";
-import { ARROW_VERTEX, DEPTH_FRAGMENT, SHEET_VERTEX, SHOW_FRAGMENT, WHOLE_VERTEX, blockFragment, blockVertex, lightFragment, sheetFragment } from "./shaders.js";
+import {arrowBuffer, blockBuffer, sheetBuffer} from "./buffers.js";
+import {
+    ARROW_VERTEX,
+    DEPTH_FRAGMENT,
+    SHEET_VERTEX,
+    SHOW_FRAGMENT,
+    WHOLE_VERTEX,
+    blockFragment,
+    blockVertex,
+    lightFragment,
+    sheetFragment
+} from "./shaders.js";
 
-/** @typedef {{matrix: Float32Array, back: Float32Array, towards: number[], sun: number[], up: number[], pixels: number}} Sight */
-/** @typedef {{ghosts: boolean, ghost: number, cut: boolean, plane: number[], edges: number, picked: number, radius: number, dark: boolean,
- *   faces: boolean, light: Float32Array, shadows: number, reach: number}} Look reach: half the size of what the shadow covers, m */
+/**
+ * @typedef {{matrix: Float32Array, back: Float32Array, towards: number[], sun: number[], up: number[], pixels: number}}
+ *   Sight
+ */
+/**
+ * @typedef {{ghosts: boolean, ghost: number, cut: boolean, plane: number[], edges: number, picked: number,
+ *   radius: number, dark: boolean, faces: boolean, light: Float32Array, shadows: number, reach: number}} Look
+ *   reach: half the size of what the shadow covers, m
+ */
 
 export const SAMPLES = 16; // pictures that are averaged
 const SHADOW = 1536, WIDE = 2048, NOTHING = 0xffffffff;
 
-/** A program with the places of its uniforms. @param {WebGL2RenderingContext} gl @param {string} vertex @param {string} fragment */
+/**
+ * A program with the places of its uniforms.
+ * @param {WebGL2RenderingContext} gl
+ * @param {string} vertex
+ * @param {string} fragment
+ */
 function makeProgram(gl, vertex, fragment) {
     const program = /** @type {WebGLProgram} */ (gl.createProgram());
-    for (const [type, text] of /** @type {[number, string][]} */ ([[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]])) {
+    for (const [type, text] of /** @type {[number, string][]} */ (
+             [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]])) {
         const shader = /** @type {WebGLShader} */ (gl.createShader(type));
         gl.shaderSource(shader, text);
         gl.compileShader(shader);
         gl.attachShader(program, shader);
-        if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS)) throw new Error(`The graphics driver refuses a program: ${gl.getShaderInfoLog(shader)}`);
+        if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS))
+            throw new Error(`The graphics driver refuses a program: ${gl.getShaderInfoLog(shader)}`);
     }
     gl.linkProgram(program);
-    if (!gl.getProgramParameter(program, gl.LINK_STATUS)) throw new Error(`The graphics driver refuses a program: ${gl.getProgramInfoLog(program)}`);
+    if (!gl.getProgramParameter(program, gl.LINK_STATUS))
+        throw new Error(`The graphics driver refuses a program: ${gl.getProgramInfoLog(program)}`);
     /** @type {Record<string, WebGLUniformLocation | null>} */ const at = {};
     for (let i = gl.getProgramParameter(program, gl.ACTIVE_UNIFORMS) - 1; i >= 0; i--) {
         const name = /** @type {WebGLActiveInfo} */ (gl.getActiveUniform(program, i)).name;
         at[name] = gl.getUniformLocation(program, name);
     }
-    return { program, at };
+    return {program, at};
 }
 
 /** @param {WebGL2RenderingContext} gl @param {number} format @param {number} width @param {number} height */
@@ -36,7 +61,8 @@ function makeTexture(gl, format, width, height) {
     const texture = gl.createTexture();
     gl.bindTexture(gl.TEXTURE_2D, texture);
     gl.texStorage2D(gl.TEXTURE_2D, 1, format, width, height);
-    for (const name of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.texParameteri(gl.TEXTURE_2D, name, gl.NEAREST);
+    for (const name of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER])
+        gl.texParameteri(gl.TEXTURE_2D, name, gl.NEAREST);
     for (const name of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T]) gl.texParameteri(gl.TEXTURE_2D, name, gl.CLAMP_TO_EDGE);
     return texture;
 }
@@ -51,17 +77,35 @@ function makeTarget(gl, colours, depth) {
     return frame;
 }
 
-/** The textures of one size of picture. @param {WebGL2RenderingContext} gl @param {number} width @param {number} height @param {boolean} sums */
+/**
+ * The textures of one size of picture.
+ * @param {WebGL2RenderingContext} gl
+ * @param {number} width
+ * @param {number} height
+ * @param {boolean} sums
+ */
 function makeStage(gl, width, height, sums) {
     const layer = () => {
         const colour = makeTexture(gl, gl.RGBA8, width, height), normal = makeTexture(gl, gl.RGBA8, width, height);
-        const name = makeTexture(gl, gl.R32UI, width, height), depth = makeTexture(gl, gl.DEPTH_COMPONENT24, width, height);
-        return { colour, normal, name, depth, target: makeTarget(gl, [colour, normal, name], depth) };
+        const name = makeTexture(gl, gl.R32UI, width, height);
+        const depth = makeTexture(gl, gl.DEPTH_COMPONENT24, width, height);
+        return {colour, normal, name, depth, target: makeTarget(gl, [colour, normal, name], depth)};
     };
-    const solid = layer(), sample = makeTexture(gl, gl.RGBA8, width, height), sum = sums ? makeTexture(gl, gl.RGBA16F, width, height) : null;
+    const solid = layer();
+    const sample = makeTexture(gl, gl.RGBA8, width, height);
+    const sum = sums ? makeTexture(gl, gl.RGBA16F, width, height) : null;
     /** @type {ReturnType<typeof layer> | null} */ let ghost = null;
-    const stage = { width, height, solid, sample, sum, sampleTarget: makeTarget(gl, [sample], null), sumTarget: sum ? makeTarget(gl, [sum], null) : null,
-        count: 0, ghost() { return ghost ??= layer(); }, free() {
+    const stage = {
+        width,
+        height,
+        solid,
+        sample,
+        sum,
+        sampleTarget: makeTarget(gl, [sample], null),
+        sumTarget: sum ? makeTarget(gl, [sum], null) : null,
+        count: 0,
+        ghost() { return ghost ??= layer(); },
+        free() {
             for (const l of ghost ? [solid, ghost] : [solid]) {
                 for (const t of [l.colour, l.normal, l.name, l.depth]) gl.deleteTexture(t);
                 gl.deleteFramebuffer(l.target);
@@ -70,25 +114,40 @@ function makeStage(gl, width, height, sums) {
             gl.deleteTexture(sum);
             gl.deleteFramebuffer(stage.sampleTarget);
             gl.deleteFramebuffer(stage.sumTarget);
-        } };
+        }
+    };
     return stage;
 }
 
 /** @param {HTMLCanvasElement} canvas */
 function openGl(canvas) {
-    const gl = canvas.getContext("webgl2", { antialias: false, alpha: true, preserveDrawingBuffer: true, powerPreference: "high-performance" });
-    if (!gl) throw new Error("This browser offers no WebGL 2, which the picture needs: switch on graphics acceleration, or use a current Firefox, Chrome or Safari.");
+    const gl = canvas.getContext(
+        "webgl2", {antialias: false, alpha: true, preserveDrawingBuffer: true, powerPreference: "high-performance"});
+    if (!gl)
+        throw new Error(
+            "This browser offers no WebGL 2, which the picture needs: switch on graphics acceleration, " +
+            "or use a current Firefox, Chrome or Safari.");
     return gl;
 }
 
 /** Everything that draws. @param {HTMLCanvasElement} canvas */
 export function makeGpu(canvas) {
     const gl = openGl(canvas);
-    const sums = gl.getExtension("EXT_color_buffer_float") !== null || gl.getExtension("EXT_color_buffer_half_float") !== null;
+    const sums =
+        gl.getExtension("EXT_color_buffer_float") !== null || gl.getExtension("EXT_color_buffer_half_float") !== null;
     // programs are made when they are first needed: most of them not for the first picture
-    const texts = { block: [blockVertex(""), blockFragment("")], cut: [blockVertex(""), blockFragment("#define CUT\n")], depth: [blockVertex("#define DEPTH\n"), DEPTH_FRAGMENT],
-        sheet: [SHEET_VERTEX, sheetFragment("flat")], arrow: [ARROW_VERTEX, sheetFragment("")], show: [WHOLE_VERTEX, SHOW_FRAGMENT], draft: [WHOLE_VERTEX, lightFragment("")],
-        full: [WHOLE_VERTEX, lightFragment("#define FULL\n")], draftGhost: [WHOLE_VERTEX, lightFragment("#define GHOST\n")], fullGhost: [WHOLE_VERTEX, lightFragment("#define GHOST\n#define FULL\n")] };
+    const texts = {
+        block: [blockVertex(""), blockFragment("")],
+        cut: [blockVertex(""), blockFragment("#define CUT\n")],
+        depth: [blockVertex("#define DEPTH\n"), DEPTH_FRAGMENT],
+        sheet: [SHEET_VERTEX, sheetFragment("flat")],
+        arrow: [ARROW_VERTEX, sheetFragment("")],
+        show: [WHOLE_VERTEX, SHOW_FRAGMENT],
+        draft: [WHOLE_VERTEX, lightFragment("")],
+        full: [WHOLE_VERTEX, lightFragment("#define FULL\n")],
+        draftGhost: [WHOLE_VERTEX, lightFragment("#define GHOST\n")],
+        fullGhost: [WHOLE_VERTEX, lightFragment("#define GHOST\n#define FULL\n")]
+    };
     /** @type {Partial<Record<keyof typeof texts, ReturnType<typeof makeProgram>>>} */ const programs = {};
     const caps = sheetBuffer(gl), sheets = sheetBuffer(gl), arrows = arrowBuffer(gl), empty = gl.createVertexArray();
     const shadow = makeTexture(gl, gl.DEPTH_COMPONENT24, SHADOW, SHADOW), shadowTarget = makeTarget(gl, [], shadow);
@@ -99,17 +158,23 @@ export function makeGpu(canvas) {
     /** @type {Record<string, {texture: WebGLTexture | null, height: number}>} */ const tables = {};
     /** @type {Map<number, ReturnType<typeof makeStage>>} */ const stages = new Map();
 
-    /** Numbers by block, 2048 texels a row. @param {string} name @param {Float32Array | Uint8Array} data @param {number} [wide] */
+    /**
+     * Numbers by block, 2048 texels a row.
+     * @param {string} name
+     * @param {Float32Array | Uint8Array} data
+     * @param {number} [wide]
+     */
     function table(name, data, wide = WIDE) {
         const floats = data instanceof Float32Array, height = Math.max(1, Math.ceil(data.length / 4 / wide));
         if (tables[name]?.height !== height || name === "palette") {
             gl.deleteTexture(tables[name]?.texture ?? null);
-            tables[name] = { texture: makeTexture(gl, floats ? gl.RGBA32F : gl.RGBA8, wide, height), height };
+            tables[name] = {texture: makeTexture(gl, floats ? gl.RGBA32F : gl.RGBA8, wide, height), height};
         }
         gl.bindTexture(gl.TEXTURE_2D, tables[name].texture);
         const whole = Math.floor(data.length / 4 / wide), rest = data.length / 4 - whole * wide;
         const type = floats ? gl.FLOAT : gl.UNSIGNED_BYTE;
-        if (whole) gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, wide, whole, gl.RGBA, type, data.subarray(0, whole * wide * 4));
+        if (whole)
+            gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, wide, whole, gl.RGBA, type, data.subarray(0, whole * wide * 4));
         if (rest) gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, whole, rest, 1, gl.RGBA, type, data.subarray(whole * wide * 4));
     }
 
@@ -126,10 +191,18 @@ export function makeGpu(canvas) {
         return p.at;
     }
 
-    /** @param {keyof typeof texts} kind @param {Float32Array} matrix @param {number} pixels @param {Look} look @param {number} group */
+    /**
+     * @param {keyof typeof texts} kind
+     * @param {Float32Array} matrix
+     * @param {number} pixels
+     * @param {Look} look
+     * @param {number} group
+     */
     function drawBlocks(kind, matrix, pixels, look, group) {
         if (!blocks || !tables.pose) return;
-        const at = use(kind, [["u_pose", tables.pose.texture], ["u_colour", tables.colour.texture], ["u_palette", tables.palette.texture]]);
+        const at = use(kind, [
+            ["u_pose", tables.pose.texture], ["u_colour", tables.colour.texture], ["u_palette", tables.palette.texture]
+        ]);
         gl.uniformMatrix4fv(at.u_matrix, false, matrix);
         gl.uniform1f(at.u_class, group);
         if (at.u_pixels) gl.uniform1f(at.u_pixels, pixels);
@@ -148,7 +221,13 @@ export function makeGpu(canvas) {
         gl.uniform3fv(at.u_towards, sight.towards);
     }
 
-    /** @param {ReturnType<typeof makeStage>} stage @param {Sight} sight @param {Float32Array} matrix @param {Look} look @param {boolean} ghosts */
+    /**
+     * @param {ReturnType<typeof makeStage>} stage
+     * @param {Sight} sight
+     * @param {Float32Array} matrix
+     * @param {Look} look
+     * @param {boolean} ghosts
+     */
     function drawLayer(stage, sight, matrix, look, ghosts) {
         const layer = ghosts ? stage.ghost() : stage.solid;
         gl.bindFramebuffer(gl.FRAMEBUFFER, layer.target);
@@ -173,16 +252,44 @@ export function makeGpu(canvas) {
         gl.drawArraysInstanced(gl.TRIANGLES, 0, arrows.corners, arrows.count);
     }
 
-    /** @param {ReturnType<typeof makeStage>} stage @param {Sight} sight @param {Float32Array} matrix @param {Look} look @param {boolean} ghosts @param {boolean} full @param {number} random */
+    /**
+     * @param {ReturnType<typeof makeStage>} stage
+     * @param {Sight} sight
+     * @param {Float32Array} matrix
+     * @param {Look} look
+     * @param {boolean} ghosts
+     * @param {boolean} full
+     * @param {number} random
+     */
     function lightLayer(stage, sight, matrix, look, ghosts, full, random) {
         const layer = ghosts ? stage.ghost() : stage.solid;
-        const at = use(full ? (ghosts ? "fullGhost" : "full") : ghosts ? "draftGhost" : "draft", [["u_colours", layer.colour], ["u_normals", layer.normal],
-            ["u_names", layer.name], ["u_depth", layer.depth], ["u_before", stage.solid.depth], ["u_shadow", shadow]]);
+        const at =
+            use(full         ? (ghosts ? "fullGhost" : "full")
+                    : ghosts ? "draftGhost"
+                             : "draft",
+                [
+                    ["u_colours", layer.colour], ["u_normals", layer.normal], ["u_names", layer.name],
+                    ["u_depth", layer.depth], ["u_before", stage.solid.depth], ["u_shadow", shadow]
+                ]);
         gl.uniformMatrix4fv(at.u_back, false, sight.back);
         gl.uniformMatrix4fv(at.u_forth, false, matrix);
         gl.uniformMatrix4fv(at.u_light, false, look.light);
-        for (const [name, v] of Object.entries({ u_sun: sight.sun, u_up: sight.up, u_ink: look.dark ? [0.03, 0.04, 0.05] : [0.1, 0.12, 0.15], u_mark: look.dark ? [0.42, 0.7, 1] : [0.04, 0.4, 0.95] })) gl.uniform3fv(at[name], v);
-        for (const [name, v] of Object.entries({ u_layer: ghosts ? look.ghost : 1, u_radius: look.radius, u_random: random, u_line: look.edges, u_shadows: look.shadows, u_texel: look.reach * 2 / SHADOW })) gl.uniform1f(at[name], v);
+        for (const [name, v] of Object.entries({
+                 u_sun: sight.sun,
+                 u_up: sight.up,
+                 u_ink: look.dark ? [0.03, 0.04, 0.05] : [0.1, 0.12, 0.15],
+                 u_mark: look.dark ? [0.42, 0.7, 1] : [0.04, 0.4, 0.95]
+             }))
+            gl.uniform3fv(at[name], v);
+        for (const [name, v] of Object.entries({
+                 u_layer: ghosts ? look.ghost : 1,
+                 u_radius: look.radius,
+                 u_random: random,
+                 u_line: look.edges,
+                 u_shadows: look.shadows,
+                 u_texel: look.reach * 2 / SHADOW
+             }))
+            gl.uniform1f(at[name], v);
         gl.uniform1ui(at.u_picked, look.picked >= 0 ? look.picked : NOTHING);
         gl.bindFramebuffer(gl.FRAMEBUFFER, stage.sampleTarget);
         gl.disable(gl.DEPTH_TEST);
@@ -210,17 +317,30 @@ export function makeGpu(canvas) {
         const key = width * 65536 + height;
         let stage = stages.get(key);
         if (!stage) {
-            for (const [k, s] of stages) if (stages.size > 2) { s.free(); stages.delete(k); }
+            for (const [k, s] of stages)
+                if (stages.size > 2) {
+                    s.free();
+                    stages.delete(k);
+                }
             stages.set(key, stage = makeStage(gl, width, height, floats && sums));
         }
         return stage;
     }
 
     return {
-        gl, caps, sheets, arrows, table, sums,
+        gl,
+        caps,
+        sheets,
+        arrows,
+        table,
+        sums,
         /** @param {import("./frames.js").Model} model */
         setBlocks(model) {
-            if (blocks) { gl.deleteBuffer(blocks.buffer); gl.deleteBuffer(blocks.elements); gl.deleteVertexArray(blocks.array); }
+            if (blocks) {
+                gl.deleteBuffer(blocks.buffer);
+                gl.deleteBuffer(blocks.elements);
+                gl.deleteVertexArray(blocks.array);
+            }
             blocks = blockBuffer(gl, model);
         },
         /** The shadow as it falls now. @param {Look} look */
@@ -231,7 +351,16 @@ export function makeGpu(canvas) {
             gl.clearBufferfv(gl.DEPTH, 0, [1]);
             drawBlocks("depth", look.light, 0, look, 1);
         },
-        /** One picture; number 0 begins a new average. @param {Sight} sight @param {Float32Array} matrix @param {Look} look @param {number} width @param {number} height @param {number} number @param {boolean} full */
+        /**
+         * One picture; number 0 begins a new average.
+         * @param {Sight} sight
+         * @param {Float32Array} matrix
+         * @param {Look} look
+         * @param {number} width
+         * @param {number} height
+         * @param {number} number
+         * @param {boolean} full
+         */
         draw(sight, matrix, look, width, height, number, full) {
             const stage = stageOf(width, height, true), ghosts = look.ghosts && look.ghost > 0;
             drawLayer(stage, sight, matrix, look, false);
@@ -252,7 +381,15 @@ export function makeGpu(canvas) {
             gl.bindFramebuffer(gl.FRAMEBUFFER, null);
             show(picture, share, canvas.width, canvas.height);
         },
-        /** Names of what a small picture shows, from below to above. @param {Sight} sight @param {Look} look @param {number} width @param {number} height @param {number[]} box x, y, width, height @param {boolean} [ghosts] */
+        /**
+         * Names of what a small picture shows, from below to above.
+         * @param {Sight} sight
+         * @param {Look} look
+         * @param {number} width
+         * @param {number} height
+         * @param {number[]} box x, y, width, height
+         * @param {boolean} [ghosts]
+         */
         names(sight, look, width, height, box, ghosts = false) {
             const stage = stageOf(width, height, true), out = new Uint32Array(4 * box[2] * box[3]);
             drawLayer(stage, sight, sight.matrix, look, ghosts);
@@ -261,14 +398,30 @@ export function makeGpu(canvas) {
             return out.filter((_v, i) => i % 4 === 0);
         },
         /** Waits until the picture is made: for measuring. */
-        wait() { gl.bindFramebuffer(gl.FRAMEBUFFER, null); gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4)); },
+        wait() {
+            gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+            gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
+        },
     };
 }
 
 /** What stands in where a browser cannot draw. @returns {ReturnType<typeof makeGpu>} */
 export function noGpu() {
-    const nothing = () => {}, sheets = { set: nothing, count: 0 };
-    /** @type {any} */ const gpu = { gl: null, caps: sheets, sheets, arrows: sheets, sums: false, table: nothing, setBlocks: nothing, drawShadow: nothing, draw: nothing, wait: nothing,
-        names: (/** @type {any} */ _sight, /** @type {any} */ _look, /** @type {number} */ _w, /** @type {number} */ _h, /** @type {number[]} */ box) => new Uint32Array(box[2] * box[3]).fill(NOTHING) };
+    const nothing = () => {}, sheets = {set: nothing, count: 0};
+    /** @type {any} */ const gpu = {
+        gl: null,
+        caps: sheets,
+        sheets,
+        arrows: sheets,
+        sums: false,
+        table: nothing,
+        setBlocks: nothing,
+        drawShadow: nothing,
+        draw: nothing,
+        wait: nothing,
+        names:
+            (/** @type {any} */ _sight, /** @type {any} */ _look, /** @type {number} */ _w, /** @type {number} */ _h,
+             /** @type {number[]} */ box) => new Uint32Array(box[2] * box[3]).fill(NOTHING)
+    };
     return gpu;
 }

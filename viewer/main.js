@@ -1,20 +1,20 @@
 // Starts the page: reads its frames, or those of a running program, and shows the first picture.
 // @ts-check
-import { toPixel } from "./camera.js";
-import { makeControls } from "./controls.js";
-import { byId, say } from "./dom.js";
-import { firstView } from "./first.js";
-import { makeHistory } from "./history.js";
-import { makeImage } from "./image.js";
-import { listen } from "./input.js";
-import { makeRun } from "./live.js";
-import { takeToken } from "./net.js";
-import { Page } from "./page.js";
-import { showFrame, tightBox } from "./poses.js";
-import { pyramid, touchedFaces } from "./pyramid.js";
-import { CAP_FACE } from "./section.js";
-import { makeStereonet } from "./stereonet.js";
-import { makeTable } from "./table.js";
+import {toPixel} from "./camera.js";
+import {makeControls} from "./controls.js";
+import {byId, say} from "./dom.js";
+import {firstView} from "./first.js";
+import {makeHistory} from "./history.js";
+import {makeImage} from "./image.js";
+import {listen} from "./input.js";
+import {makeRun} from "./live.js";
+import {takeToken} from "./net.js";
+import {Page} from "./page.js";
+import {showFrame, tightBox} from "./poses.js";
+import {pyramid, touchedFaces} from "./pyramid.js";
+import {CAP_FACE} from "./section.js";
+import {makeStereonet} from "./stereonet.js";
+import {makeTable} from "./table.js";
 
 /** @param {Page} app */
 function listenAll(app) {
@@ -23,8 +23,13 @@ function listenAll(app) {
     app.parts = [makeTable(app), history, makeStereonet(app), makeControls(app), ...(app.run ? [app.run] : [])];
     listen(app, history);
     new ResizeObserver(() => app.resize()).observe(app.canvas);
-    app.canvas.addEventListener("webglcontextlost", (e) => { e.preventDefault(); say("The graphics driver has let go of the picture: load the page again.", true); });
-    window.addEventListener("hashchange", () => { if (location.hash !== app.address) app.fromAddress(); });
+    app.canvas.addEventListener("webglcontextlost", (e) => {
+        e.preventDefault();
+        say("The graphics driver has let go of the picture: load the page again.", true);
+    });
+    window.addEventListener("hashchange", () => {
+        if (location.hash !== app.address) app.fromAddress();
+    });
     const more = byId("more");
     more.onclick = () => more.setAttribute("aria-expanded", String(byId("controls").classList.toggle("open")));
     app.resize();
@@ -44,7 +49,9 @@ async function readRest(app) {
 /** @param {Page} app */
 async function begin(app) {
     const packed = /** @type {HTMLElement[]} */ ([...document.querySelectorAll('script[type="text/talus"]')]);
-    const opened = () => { app.home = (app.shown && tightBox(app.model, app.shown, () => true)) ?? app.home; };
+    const opened = () => {
+        app.home = (app.shown && tightBox(app.model, app.shown, () => true)) ?? app.home;
+    };
     app.view.dark = matchMedia("(prefers-color-scheme: dark)").matches;
     app.reading = packed.length > 0;
     app.live = packed.length === 0 && location.protocol.startsWith("http");
@@ -52,12 +59,19 @@ async function begin(app) {
     if (app.blind) say(`${app.blind} The model is not drawn; finding, chart and stereonet are.`, true);
     if (app.run) {
         app.token = takeToken();
-        return app.run.follow(async () => { app.refresh(); opened(); firstView(app); app.change("pose"); });
+        return app.run.follow(async () => {
+            app.refresh();
+            opened();
+            firstView(app);
+            app.change("pose");
+        });
     }
     if (!packed.length) throw new Error("This page holds no frames.");
     for (const [i, script] of packed.entries()) {
-        const text = script.textContent ?? "", d = script.dataset, numbers = [d.bytes, d.time, d.cycle, d.largest].map(Number);
-        if (d.model === "0" && i > 0 && i < packed.length - 1 && numbers.every(Number.isFinite)) app.model.addLater(text, numbers[0], numbers[1], numbers[2], numbers[3]);
+        const text = script.textContent ?? "", d = script.dataset;
+        const numbers = [d.bytes, d.time, d.cycle, d.largest].map(Number);
+        if (d.model === "0" && i > 0 && i < packed.length - 1 && numbers.every(Number.isFinite))
+            app.model.addLater(text, numbers[0], numbers[1], numbers[2], numbers[3]);
         else await app.model.addPacked(text, numbers[0]);
     }
     await app.goTo(0);
@@ -65,8 +79,13 @@ async function begin(app) {
     opened();
     const given = location.hash.length > 1, found = await app.fromAddress();
     app.refresh();
-    if (!found) { firstView(app, given); app.change("pose"); }
-    readRest(app).catch((error) => say(error.message, true)).finally(() => { app.reading = false; });
+    if (!found) {
+        firstView(app, given);
+        app.change("pose");
+    }
+    readRest(app).catch((error) => say(error.message, true)).finally(() => {
+        app.reading = false;
+    });
 }
 
 document.addEventListener("DOMContentLoaded", async () => {
@@ -74,7 +93,15 @@ document.addEventListener("DOMContentLoaded", async () => {
     try {
         const app = new Page();
         // For scripts and tests: talus.app is the state, talus.ready is kept when the first picture can be drawn.
-        page.talus = { app, toPixel, makeImage: (/** @type {number} */ f) => makeImage(app, f), CAP_FACE, pyramid, touchedFaces, ready: begin(app) };
+        page.talus = {
+            app,
+            toPixel,
+            makeImage: (/** @type {number} */ f) => makeImage(app, f),
+            CAP_FACE,
+            pyramid,
+            touchedFaces,
+            ready: begin(app)
+        };
         await page.talus.ready;
     } catch (error) {
         say(String(/** @type {Error} */ (error).message), true);

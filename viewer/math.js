@@ -35,17 +35,26 @@ export function unit(a) {
 /** Area times normal of a polygon, counter-clockwise seen against the normal. @param {number[][]} points */
 export function areaOf(points) {
     let n = [0, 0, 0];
-    for (let i = 2; i < points.length; i++) n = add(n, scale(cross(sub(points[i - 1], points[0]), sub(points[i], points[0])), 0.5));
+    for (let i = 2; i < points.length; i++)
+        n = add(n, scale(cross(sub(points[i - 1], points[0]), sub(points[i], points[0])), 0.5));
     return n;
 }
 
 /** Unit quaternions multiplied: turn by b, then by a. @param {Vec} a @param {Vec} b @returns {number[]} */
 export function turnAfter(a, b) {
-    return [a[3] * b[0] + a[0] * b[3] + a[1] * b[2] - a[2] * b[1], a[3] * b[1] - a[0] * b[2] + a[1] * b[3] + a[2] * b[0],
-        a[3] * b[2] + a[0] * b[1] - a[1] * b[0] + a[2] * b[3], a[3] * b[3] - a[0] * b[0] - a[1] * b[1] - a[2] * b[2]];
+    return [
+        a[3] * b[0] + a[0] * b[3] + a[1] * b[2] - a[2] * b[1], a[3] * b[1] - a[0] * b[2] + a[1] * b[3] + a[2] * b[0],
+        a[3] * b[2] + a[0] * b[1] - a[1] * b[0] + a[2] * b[3], a[3] * b[3] - a[0] * b[0] - a[1] * b[1] - a[2] * b[2]
+    ];
 }
 
-/** The vector v turned by the quaternion at q[at]. @param {Vec} q @param {number} at @param {Vec} v @returns {number[]} */
+/**
+ * The vector v turned by the quaternion at q[at].
+ * @param {Vec} q
+ * @param {number} at
+ * @param {Vec} v
+ * @returns {number[]}
+ */
 export function turned(q, at, v) {
     const x = q[at], y = q[at + 1], z = q[at + 2], w = q[at + 3];
     const tx = 2 * (y * v[2] - z * v[1]), ty = 2 * (z * v[0] - x * v[2]), tz = 2 * (x * v[1] - y * v[0]);
@@ -57,7 +66,8 @@ export function multiply(a, b) {
     const out = new Float32Array(16);
     for (let c = 0; c < 4; c++) {
         for (let r = 0; r < 4; r++) {
-            out[4 * c + r] = a[r] * b[4 * c] + a[4 + r] * b[4 * c + 1] + a[8 + r] * b[4 * c + 2] + a[12 + r] * b[4 * c + 3];
+            out[4 * c + r] =
+                a[r] * b[4 * c] + a[4 + r] * b[4 * c + 1] + a[8 + r] * b[4 * c + 2] + a[12 + r] * b[4 * c + 3];
         }
     }
     return out;
@@ -86,7 +96,11 @@ export function project(m, p) {
     return [0, 1, 2].map((r) => (m[r] * p[0] + m[4 + r] * p[1] + m[8 + r] * p[2] + m[12 + r]) / w);
 }
 
-/** Unit vector of a trend and plunge in degrees, x = east, y = north, z = up. @param {number} trend @param {number} plunge */
+/**
+ * Unit vector of a trend and plunge in degrees, x = east, y = north, z = up.
+ * @param {number} trend
+ * @param {number} plunge
+ */
 export function lineation(trend, plunge) {
     const t = trend * Math.PI / 180, p = plunge * Math.PI / 180;
     return [Math.cos(p) * Math.sin(t), Math.cos(p) * Math.cos(t), -Math.sin(p)];
@@ -102,7 +116,7 @@ export function planeNormal(dip, direction) {
 export function trendPlunge(v) {
     const u = unit(v);
     const trend = (Math.atan2(u[0], u[1]) * 180 / Math.PI + 360) % 360;
-    return { trend, plunge: Math.asin(Math.max(-1, Math.min(1, -u[2]))) * 180 / Math.PI };
+    return {trend, plunge: Math.asin(Math.max(-1, Math.min(1, -u[2]))) * 180 / Math.PI};
 }
 
 /** With a capital. @param {string} words */
@@ -113,6 +127,7 @@ export function figure(x) {
     if (!Number.isFinite(x)) return "–";
     if (x === 0) return "0";
     const size = Math.abs(x);
-    if (size >= 1e6 || size < 1e-3) return x.toExponential(2).replace("e+", "e").replace(/\.?0+e/, "e").replace("-", "−").replace("e-", "e−");
+    if (size >= 1e6 || size < 1e-3)
+        return x.toExponential(2).replace("e+", "e").replace(/\.?0+e/, "e").replace("-", "−").replace("e-", "e−");
     return String(Number(x.toPrecision(size >= 100 ? 4 : 3))).replace("-", "−");
 }

@@ -1,13 +1,23 @@
-// Where the blocks of a frame are shown, and how: motion enlarged, model exploded, blocks hidden or as ghosts, cut by the section.
+// Where the blocks of a frame are shown, and how: motion enlarged, model exploded, blocks hidden or as ghosts, cut by
+// the section.
 // @ts-check
-import { add, dot, norm, scale, sub, triple, turnAfter } from "./math.js";
+import {add, dot, norm, scale, sub, triple, turnAfter} from "./math.js";
 
 /** @typedef {import("./frames.js").Model} Model */
 /** @typedef {import("./frames.js").Frame} Frame */
-/** @typedef {{place: Float32Array, turn: Float32Array, kind: Uint8Array, table: Float32Array, ghosts: boolean, bounds: import("./camera.js").Bounds, middle: number[]}} Shown
- *   by row; kind: 0 not there, 1 solid, 2 ghost; the table goes to the picture */
+/**
+ * @typedef {{place: Float32Array, turn: Float32Array, kind: Uint8Array, table: Float32Array, ghosts: boolean,
+ *   bounds: import("./camera.js").Bounds, middle: number[]}} Shown by row; kind: 0 not there, 1 solid, 2 ghost; the
+ *   table goes to the picture
+ */
 
-/** A turn with the block's rotation since the start enlarged. @param {Float32Array} turn @param {Float32Array} rotation vector @param {number} i @param {number} factor */
+/**
+ * A turn with the block's rotation since the start enlarged.
+ * @param {Float32Array} turn
+ * @param {Float32Array} rotation vector
+ * @param {number} i
+ * @param {number} factor
+ */
 function enlarged(turn, rotation, i, factor) {
     const q = [turn[4 * i], turn[4 * i + 1], turn[4 * i + 2], turn[4 * i + 3]], r = triple(rotation, i);
     const angle = norm(r), half = angle * (factor - 1) / 2;
@@ -17,8 +27,9 @@ function enlarged(turn, rotation, i, factor) {
 
 /** @param {Model} model @param {Frame} frame @param {import("./view.js").View} view @returns {Shown} */
 export function showFrame(model, frame, view) {
-    const place = new Float32Array(3 * model.rows), turn = new Float32Array(4 * model.rows), kind = new Uint8Array(model.rows), table = new Float32Array(8 * model.rows);
-    const p = frame.poses, box = { min: [Infinity, Infinity, Infinity], max: [-Infinity, -Infinity, -Infinity] };
+    const place = new Float32Array(3 * model.rows), turn = new Float32Array(4 * model.rows);
+    const kind = new Uint8Array(model.rows), table = new Float32Array(8 * model.rows);
+    const p = frame.poses, box = {min: [Infinity, Infinity, Infinity], max: [-Infinity, -Infinity, -Infinity]};
     const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
     for (let i = 0; i < 3 * p.n; i++) {
         low[i % 3] = Math.min(low[i % 3], p.place[i]);
@@ -31,12 +42,14 @@ export function showFrame(model, frame, view) {
     for (let i = 0; i < p.n; i++) {
         const row = frame.rows[i], id = p.id[i], k = 3 * i;
         const d = Math.hypot(p.displacement[k], p.displacement[k + 1], p.displacement[k + 2]);
-        const still = (threshold > 0 && d < threshold) || clear || view.ghosts.has(id) || (view.only.size > 0 && !view.only.has(id));
+        const still = (threshold > 0 && d < threshold) || clear || view.ghosts.has(id) ||
+            (view.only.size > 0 && !view.only.has(id));
         const hidden = view.hidden.has(id) || (p.flags[i] & 2) > 0 || (still && view.opacity === 0);
         kind[row] = hidden ? 0 : still ? 2 : 1;
         ghosts ||= kind[row] === 2;
         for (let c = 0; c < 3; c++) {
-            place[3 * row + c] = p.place[k + c] + (view.motion - 1) * p.displacement[k + c] + view.explode * (p.place[k + c] - middle[c]);
+            place[3 * row + c] = p.place[k + c] + (view.motion - 1) * p.displacement[k + c] +
+                view.explode * (p.place[k + c] - middle[c]);
             const radius = model.shape[row].radius;
             if (kind[row] === 0) continue;
             box.min[c] = Math.min(box.min[c], place[3 * row + c] - radius);
@@ -45,16 +58,24 @@ export function showFrame(model, frame, view) {
         const q = enlarged(p.turn, p.rotation, i, view.motion), length = Math.hypot(...q) || 1;
         for (let c = 0; c < 4; c++) turn[4 * row + c] = q[c] / length;
     }
-    if (!(box.max[0] >= box.min[0])) { box.min = [-1, -1, -1]; box.max = [1, 1, 1]; }
-    const shown = { place, turn, kind, table, ghosts, bounds: box, middle };
+    if (!(box.max[0] >= box.min[0])) {
+        box.min = [-1, -1, -1];
+        box.max = [1, 1, 1];
+    }
+    const shown = {place, turn, kind, table, ghosts, bounds: box, middle};
     fillTable(model, shown, null);
     return shown;
 }
 
-/** The numbers that the picture reads; with a plane, blocks on its upper side are left out and those it goes through are cut.
- * @param {Model} model @param {Shown} shown @param {import("./section.js").Plane | null} plane side that is kept: normal · p < position */
+/**
+ * The numbers that the picture reads; with a plane, blocks on its upper side are left out and those it goes through are
+ * cut.
+ * @param {Model} model
+ * @param {Shown} shown
+ * @param {import("./section.js").Plane | null} plane side that is kept: normal · p < position
+ */
 export function fillTable(model, shown, plane) {
-    const { place, turn, kind, table } = shown;
+    const {place, turn, kind, table} = shown;
     for (let row = 0; row < model.rows; row++) {
         const radius = model.shape[row].radius, sign = turn[4 * row + 3] < 0 ? -1 : 1;
         let group = kind[row];
@@ -62,11 +83,22 @@ export function fillTable(model, shown, plane) {
             const away = dot(plane.normal, triple(place, row)) - plane.position;
             group = away > radius ? 0 : away > -radius ? group + 4 : group;
         }
-        table.set([place[3 * row], place[3 * row + 1], place[3 * row + 2], group, sign * turn[4 * row], sign * turn[4 * row + 1], sign * turn[4 * row + 2], radius], 8 * row);
+        table.set(
+            [
+                place[3 * row], place[3 * row + 1], place[3 * row + 2], group, sign * turn[4 * row],
+                sign * turn[4 * row + 1], sign * turn[4 * row + 2], radius
+            ],
+            8 * row);
     }
 }
 
-/** The box about the vertices of blocks as they are shown. @param {Model} model @param {Shown} shown @param {(row: number) => boolean} wanted @returns {import("./camera.js").Bounds | null} */
+/**
+ * The box about the vertices of blocks as they are shown.
+ * @param {Model} model
+ * @param {Shown} shown
+ * @param {(row: number) => boolean} wanted
+ * @returns {import("./camera.js").Bounds | null}
+ */
 export function tightBox(model, shown, wanted) {
     const min = [Infinity, Infinity, Infinity], max = [-Infinity, -Infinity, -Infinity];
     for (let row = 0; row < model.rows; row++) {
@@ -84,7 +116,7 @@ export function tightBox(model, shown, wanted) {
             }
         }
     }
-    return max[0] >= min[0] ? { min, max } : null;
+    return max[0] >= min[0] ? {min, max} : null;
 }
 
 /** How far a block is shown from where it is. @param {Frame} frame @param {Shown} shown @param {number} row */

@@ -1,27 +1,53 @@
-// Reads the scene stream (docs/scene_format.md). It knows nothing of pictures. Every count is compared with the length of its
-// chunk before anything is taken; what is wrong ends in a sentence (an Error), never in a crash.
+// Reads the scene stream (docs/scene_format.md). It knows nothing of pictures. Every count is compared with the length
+// of its chunk before anything is taken; what is wrong ends in a sentence (an Error), never in a crash.
 // @ts-check
 
 /** @typedef {{name: string, unit: string, of: string}} Field */
-/** @typedef {{format: number, program: string, title: string, origin: number[], gravity: number[], size: number, groups: string[],
- *   joints: string[], friction: number[], fields: Field[], histories: string[], live: boolean, commands: boolean}} Head */
-/** @typedef {{n: number, id: Uint32Array, body: Uint32Array, group: Uint32Array, vertices: Uint32Array, faces: Uint32Array,
- *   volume: Float32Array, density: Float32Array, centroid: Float32Array, vertex: Float32Array, joint: Uint32Array, plane: Uint32Array,
- *   corners: Uint16Array, loop: Uint16Array}} Shapes */
-/** @typedef {{n: number, time: number, cycle: number, id: Uint32Array, place: Float32Array, turn: Float32Array, velocity: Float32Array,
- *   displacement: Float32Array, rotation: Float32Array, spin: Float32Array, unbalanced: Float32Array, flags: Uint8Array}} Poses */
-/** @typedef {{n: number, id: Uint32Array, a: Uint32Array, b: Uint32Array, joint: Uint32Array, plane: Uint32Array, point: Float32Array,
- *   normal: Float32Array, force: Float32Array, area: Float32Array, gap: Float32Array, slip: Float32Array, state: Uint8Array,
- *   contact: Uint32Array, corners: Uint32Array, corner: Float32Array}} Contacts */
+/**
+ * @typedef {{format: number, program: string, title: string, origin: number[], gravity: number[], size: number,
+ *   groups: string[], joints: string[], friction: number[], limit: number, fields: Field[], histories: string[], live:
+ * boolean, commands: boolean}} Head
+ */
+/**
+ * @typedef {{n: number, id: Uint32Array, body: Uint32Array, group: Uint32Array, vertices: Uint32Array,
+ *   faces: Uint32Array, volume: Float32Array, density: Float32Array, centroid: Float32Array, vertex: Float32Array,
+ *   joint: Uint32Array, plane: Uint32Array, corners: Uint16Array, loop: Uint16Array}} Shapes
+ */
+/**
+ * @typedef {{n: number, time: number, cycle: number, id: Uint32Array, place: Float32Array, turn: Float32Array,
+ *   velocity: Float32Array, displacement: Float32Array, rotation: Float32Array, spin: Float32Array,
+ *   unbalanced: Float32Array, flags: Uint8Array}} Poses
+ */
+/**
+ * @typedef {{n: number, id: Uint32Array, a: Uint32Array, b: Uint32Array, joint: Uint32Array, plane: Uint32Array,
+ *   point: Float32Array, normal: Float32Array, force: Float32Array, area: Float32Array, gap: Float32Array,
+ *   slip: Float32Array, used: Float32Array, state: Uint8Array, contact: Uint32Array, corners: Uint32Array, corner:
+ * Float32Array}} Contacts
+ */
 /** @typedef {{of: number, field: number, value: Float32Array}} Extra */
 /** @typedef {{numbers: number[], histories: Float64Array}} Line */
 /** @typedef {{n: number, id: Uint32Array, mode: Uint32Array, factor: Float32Array, direction: Float32Array}} Keys */
-/** @typedef {{total: number, joint: Uint32Array, plane: Uint32Array, block: Uint32Array, normal: Float32Array, point: Float32Array, thickness: Float32Array, limit: Float32Array}} Refused */
-/** @typedef {{n: number, body: Uint32Array, normal: Float32Array}} Touches outward normals of the faces with which bodies lie on others, body by body */
-/** @typedef {{head: Head | null, shapes: Shapes[], gone: Uint32Array[], refused: Refused | null, touches: Touches | null, poses: Poses | null, contacts: Contacts | null, extras: Extra[],
- *   line: Line | null, keys: Keys | null, finding: Finding | null, live: Live[], number: number}} FrameData */
-/** @typedef {{standing: string, text: string, stage: string, closed: number, contacts: number, slipping: number, hash: string}} Finding how the model stands */
-/** @typedef {{state: string, line: string, refused: string}} Live what a run does, and a line that was done or why it was not ("" where there is none) */
+/**
+ * @typedef {{total: number, joint: Uint32Array, plane: Uint32Array, block: Uint32Array, normal: Float32Array,
+ *   point: Float32Array, thickness: Float32Array, limit: Float32Array}} Refused
+ */
+/**
+ * @typedef {{n: number, body: Uint32Array, normal: Float32Array}} Touches outward normals of the faces with which
+ *   bodies lie on others, body by body
+ */
+/**
+ * @typedef {{head: Head | null, shapes: Shapes[], gone: Uint32Array[], refused: Refused | null, touches: Touches |
+ *   null, poses: Poses | null, contacts: Contacts | null, extras: Extra[], line: Line | null, keys: Keys | null,
+ *   finding: Finding | null, live: Live[], number: number}} FrameData
+ */
+/**
+ * @typedef {{standing: string, text: string, stage: string, closed: number, contacts: number, slipping: number,
+ *   hash: string}} Finding how the model stands
+ */
+/**
+ * @typedef {{state: string, line: string, refused: string}} Live what a run does, and a line that was done or why it
+ *   was not ("" where there is none)
+ */
 
 /** Takes columns one after the other from a payload. */
 class Columns {
@@ -54,11 +80,17 @@ class Columns {
     /** @param {number} count @param {string} what */
     u8(count, what) { return new Uint8Array(this.buffer, this.take(count, 1, what), count); }
 
-    /** Finite numbers; with `none` also NaN, for "there is none". @param {number} count @param {string} what @param {boolean} [none] */
+    /**
+     * Finite numbers; with `none` also NaN, for "there is none".
+     * @param {number} count
+     * @param {string} what
+     * @param {boolean} [none]
+     */
     f32(count, what, none) {
         const out = new Float32Array(this.buffer, this.take(count, 4, what), count);
         for (let i = 0; i < count; i++) {
-            if (!Number.isFinite(out[i]) && !(none && Number.isNaN(out[i]))) throw this.bad(`value ${i} of ${what} is not a number`);
+            if (!Number.isFinite(out[i]) && !(none && Number.isNaN(out[i])))
+                throw this.bad(`value ${i} of ${what} is not a number`);
         }
         return out;
     }
@@ -68,7 +100,8 @@ class Columns {
         const view = new DataView(this.buffer, this.take(count, 8, what), count * 8), out = new Float64Array(count);
         for (let i = 0; i < count; i++) {
             out[i] = view.getFloat64(8 * i, true);
-            if (!Number.isFinite(out[i]) && !(none && Number.isNaN(out[i]))) throw this.bad(`value ${i} of ${what} is not a number`);
+            if (!Number.isFinite(out[i]) && !(none && Number.isNaN(out[i])))
+                throw this.bad(`value ${i} of ${what} is not a number`);
         }
         return out;
     }
@@ -77,7 +110,9 @@ class Columns {
     json() {
         let h;
         try {
-            h = JSON.parse(new TextDecoder("utf-8", { fatal: true }).decode(new Uint8Array(this.buffer, this.at, this.end - this.at)));
+            h = JSON.parse(new TextDecoder("utf-8", {
+                               fatal: true
+                           }).decode(new Uint8Array(this.buffer, this.at, this.end - this.at)));
         } catch {
             throw this.bad("its text is no JSON");
         }
@@ -102,7 +137,8 @@ class Columns {
 
 /** @param {any} value @param {string} name @returns {string[]} */
 function names(value, name) {
-    if (!Array.isArray(value) || !value.every((v) => typeof v === "string")) throw new Error(`The chunk HEAD of the scene is damaged: ${name} is no list of texts.`);
+    if (!Array.isArray(value) || !value.every((v) => typeof v === "string"))
+        throw new Error(`The chunk HEAD of the scene is damaged: ${name} is no list of texts.`);
     return value;
 }
 
@@ -114,18 +150,47 @@ function readHead(c) {
     if (!triple(h.origin) || !triple(h.gravity)) throw c.bad("origin and gravity must be lists of three numbers");
     if (!(Number.isFinite(h.size) && h.size > 0)) throw c.bad("the size must be a positive number");
     const fields = Array.isArray(h.fields) ? h.fields : [];
-    return { format: 1, program: String(h.program), title: String(h.title ?? ""), origin: h.origin, gravity: h.gravity, size: h.size,
-        groups: names(h.groups, "groups"), joints: names(h.joints, "joints"), histories: names(h.histories?.map?.((/** @type {any} */ x) => x.name + (x.unit && ", " + x.unit)) ?? [], "histories"),
-        fields: fields.map((/** @type {any} */ f) => ({ name: String(f?.name), unit: String(f?.unit ?? ""), of: String(f?.of) })),
-        friction: Array.isArray(h.friction) ? h.friction.map((/** @type {any} */ x) => (Number.isFinite(x) ? x : NaN)) : [], limit: Number.isFinite(h.safety_limit) && h.safety_limit > 0 ? h.safety_limit : NaN, live: h.live === true, commands: h.commands === true };
+    const friction =
+        (Array.isArray(h.friction) ? h.friction : []).map((/** @type {any} */ x) => (Number.isFinite(x) ? x : NaN));
+    return {
+        format: 1,
+        program: String(h.program),
+        title: String(h.title ?? ""),
+        origin: h.origin,
+        gravity: h.gravity,
+        size: h.size,
+        groups: names(h.groups, "groups"),
+        joints: names(h.joints, "joints"),
+        histories:
+            names(h.histories?.map?.((/** @type {any} */ x) => x.name + (x.unit && ", " + x.unit)) ?? [], "histories"),
+        fields: fields.map(
+            (/** @type {any} */ f) => ({name: String(f?.name), unit: String(f?.unit ?? ""), of: String(f?.of)})),
+        friction,
+        limit: Number.isFinite(h.safety_limit) && h.safety_limit > 0 ? h.safety_limit : NaN,
+        live: h.live === true,
+        commands: h.commands === true
+    };
 }
 
 /** @param {Columns} c @param {Head} head @returns {Shapes} */
 function readShapes(c, head) {
     const [n, V, F, L] = c.u32(4, "counts");
-    const s = { n, id: c.u32(n, "id"), body: c.u32(n, "body"), group: c.u32(n, "group"), vertices: c.u32(n, "vertices"), faces: c.u32(n, "faces"),
-        volume: c.f32(n, "volume"), density: c.f32(n, "density"), centroid: c.f32(3 * n, "centroid"), vertex: c.f32(3 * V, "vertex"),
-        joint: c.u32(F, "joint"), plane: c.u32(F, "plane"), corners: c.u16(F, "corners"), loop: c.u16(L, "loop") };
+    const s = {
+        n,
+        id: c.u32(n, "id"),
+        body: c.u32(n, "body"),
+        group: c.u32(n, "group"),
+        vertices: c.u32(n, "vertices"),
+        faces: c.u32(n, "faces"),
+        volume: c.f32(n, "volume"),
+        density: c.f32(n, "density"),
+        centroid: c.f32(3 * n, "centroid"),
+        vertex: c.f32(3 * V, "vertex"),
+        joint: c.u32(F, "joint"),
+        plane: c.u32(F, "plane"),
+        corners: c.u16(F, "corners"),
+        loop: c.u16(L, "loop")
+    };
     c.sum(s.vertices, V, "vertices");
     c.sum(s.faces, F, "faces");
     c.sum(s.corners, L, "corners");
@@ -134,7 +199,9 @@ function readShapes(c, head) {
     for (let block = 0, face = 0, corner = 0; block < n; block++) {
         for (const last = face + s.faces[block]; face < last; face++) {
             for (const end = corner + s.corners[face]; corner < end; corner++) {
-                if (s.loop[corner] >= s.vertices[block]) throw c.bad(`a face of block ${s.id[block]} names vertex ${s.loop[corner]} of ${s.vertices[block]}`);
+                if (s.loop[corner] >= s.vertices[block])
+                    throw c.bad(
+                        `a face of block ${s.id[block]} names vertex ${s.loop[corner]} of ${s.vertices[block]}`);
             }
         }
     }
@@ -144,18 +211,44 @@ function readShapes(c, head) {
 /** @param {Columns} c @returns {Poses} */
 function readPoses(c) {
     const [time, cycle] = c.f64(2, "time and cycle"), n = c.u32(1, "count")[0];
-    return { n, time, cycle, id: c.u32(n, "id"), place: c.f32(3 * n, "place"), turn: c.f32(4 * n, "turn"), velocity: c.f32(3 * n, "velocity"),
-        displacement: c.f32(3 * n, "displacement"), rotation: c.f32(3 * n, "rotation"), spin: c.f32(3 * n, "spin"),
-        unbalanced: c.f32(n, "unbalanced"), flags: c.u8(n, "flags") };
+    return {
+        n,
+        time,
+        cycle,
+        id: c.u32(n, "id"),
+        place: c.f32(3 * n, "place"),
+        turn: c.f32(4 * n, "turn"),
+        velocity: c.f32(3 * n, "velocity"),
+        displacement: c.f32(3 * n, "displacement"),
+        rotation: c.f32(3 * n, "rotation"),
+        spin: c.f32(3 * n, "spin"),
+        unbalanced: c.f32(n, "unbalanced"),
+        flags: c.u8(n, "flags")
+    };
 }
 
 /** @param {Columns} c @param {Head} head @returns {Contacts} */
 function readContacts(c, head) {
     const [n, P, C] = c.u32(3, "counts");
-    const k = { n, id: c.u32(n, "id"), a: c.u32(n, "a"), b: c.u32(n, "b"), joint: c.u32(n, "joint"), plane: c.u32(n, "plane"),
-        point: c.f32(3 * n, "point"), normal: c.f32(3 * n, "normal"), force: c.f32(3 * n, "force"), area: c.f32(n, "area"),
-        gap: c.f32(n, "gap"), slip: c.f32(n, "slip", true), used: c.f32(n, "used", true), state: c.u8(n, "state"), contact: c.u32(P, "contact"),
-        corners: c.u32(P, "corners"), corner: c.f32(3 * C, "corner") };
+    const k = {
+        n,
+        id: c.u32(n, "id"),
+        a: c.u32(n, "a"),
+        b: c.u32(n, "b"),
+        joint: c.u32(n, "joint"),
+        plane: c.u32(n, "plane"),
+        point: c.f32(3 * n, "point"),
+        normal: c.f32(3 * n, "normal"),
+        force: c.f32(3 * n, "force"),
+        area: c.f32(n, "area"),
+        gap: c.f32(n, "gap"),
+        slip: c.f32(n, "slip", true),
+        used: c.f32(n, "used", true),
+        state: c.u8(n, "state"),
+        contact: c.u32(P, "contact"),
+        corners: c.u32(P, "corners"),
+        corner: c.f32(3 * C, "corner")
+    };
     c.sum(k.corners, C, "corners");
     c.below(k.contact, n, "contact");
     c.below(k.joint, Math.max(1, head.joints.length), "joint");
@@ -169,13 +262,19 @@ function readExtra(c, frame, head) {
     const rows = of === 0 ? frame.poses?.n : of === 1 ? frame.contacts?.n : undefined;
     if (rows !== n) throw c.bad(`it has ${n} values for ${rows ?? "no"} rows`);
     if (field >= head.fields.length) throw c.bad(`field ${field} has no name`);
-    return { of, field, value: c.f32(n, "value", true) };
+    return {of, field, value: c.f32(n, "value", true)};
 }
 
 /** @param {Columns} c @returns {Keys} */
 function readKeys(c) {
     const n = c.u32(1, "count")[0];
-    const k = { n, id: c.u32(n, "id"), mode: c.u32(n, "mode"), factor: c.f32(n, "factor", true), direction: c.f32(3 * n, "direction") };
+    const k = {
+        n,
+        id: c.u32(n, "id"),
+        mode: c.u32(n, "mode"),
+        factor: c.f32(n, "factor", true),
+        direction: c.f32(3 * n, "direction")
+    };
     c.below(k.mode, 4, "mode");
     return k;
 }
@@ -183,8 +282,16 @@ function readKeys(c) {
 /** @param {Columns} c @param {Head} head @returns {Refused} */
 function readRefused(c, head) {
     const [total, n] = c.u32(2, "counts");
-    const r = { total, joint: c.u32(n, "joint"), plane: c.u32(n, "plane"), block: c.u32(n, "block"), normal: c.f32(3 * n, "normal"), point: c.f32(3 * n, "point"),
-        thickness: c.f32(n, "thickness"), limit: c.f32(n, "limit") };
+    const r = {
+        total,
+        joint: c.u32(n, "joint"),
+        plane: c.u32(n, "plane"),
+        block: c.u32(n, "block"),
+        normal: c.f32(3 * n, "normal"),
+        point: c.f32(3 * n, "point"),
+        thickness: c.f32(n, "thickness"),
+        limit: c.f32(n, "limit")
+    };
     c.below(r.joint, Math.max(1, head.joints.length), "joint");
     return r;
 }
@@ -192,30 +299,58 @@ function readRefused(c, head) {
 /** @param {Columns} c @returns {Touches} */
 function readTouches(c) {
     const n = c.u32(1, "count")[0];
-    return { n, body: c.u32(n, "body"), normal: c.f32(3 * n, "normal") };
+    return {n, body: c.u32(n, "body"), normal: c.f32(3 * n, "normal")};
 }
 
 /** @param {Columns} c @returns {Finding} */
 function readFinding(c) {
     const f = c.json(), text = (/** @type {any} */ v) => (typeof v === "string" ? v : "");
-    for (const name of ["closed", "contacts", "slipping"]) if (!(Number.isFinite(f[name]) && f[name] >= 0)) throw c.bad(`${name} must be a number that is not negative`);
-    return { standing: text(f.standing), text: text(f.text), stage: text(f.stage), closed: f.closed, contacts: f.contacts, slipping: f.slipping, hash: text(f.hash) };
+    for (const name of ["closed", "contacts", "slipping"])
+        if (!(Number.isFinite(f[name]) && f[name] >= 0)) throw c.bad(`${name} must be a number that is not negative`);
+    return {
+        standing: text(f.standing),
+        text: text(f.text),
+        stage: text(f.stage),
+        closed: f.closed,
+        contacts: f.contacts,
+        slipping: f.slipping,
+        hash: text(f.hash)
+    };
 }
 
 /** @param {Columns} c @returns {Live} */
 function readLive(c) {
     const h = c.json(), text = (/** @type {any} */ v) => (typeof v === "string" ? v : "");
-    if (!["running", "paused", "waiting", "ended"].includes(h.state)) throw c.bad("the state must be running, paused, waiting or ended");
-    return { state: h.state, line: text(h.line), refused: text(h.refused) };
+    if (!["running", "paused", "waiting", "ended"].includes(h.state))
+        throw c.bad("the state must be running, paused, waiting or ended");
+    return {state: h.state, line: text(h.line), refused: text(h.refused)};
 }
 
 /**
- * Reads the chunks of one frame. `head` is the last one read before; of a run, `news` has the chunks that are in front of the others.
- * @param {ArrayBuffer} buffer @param {Head | null} head @param {ArrayBuffer} [news] @returns {FrameData}
+ * Reads the chunks of one frame. `head` is the last one read before; of a run, `news` has the chunks that are in front
+ * of the others.
+ * @param {ArrayBuffer} buffer
+ * @param {Head | null} head
+ * @param {ArrayBuffer} [news]
+ * @returns {FrameData}
  */
 export function readFrame(buffer, head, news) {
     /** @type {FrameData} */
-    const frame = { head: null, shapes: [], gone: [], refused: null, touches: null, poses: null, contacts: null, extras: [], line: null, keys: null, finding: null, live: [], number: -1 };
+    const frame = {
+        head: null,
+        shapes: [],
+        gone: [],
+        refused: null,
+        touches: null,
+        poses: null,
+        contacts: null,
+        extras: [],
+        line: null,
+        keys: null,
+        finding: null,
+        live: [],
+        number: -1
+    };
     if (news) readChunks(news, head, frame);
     readChunks(buffer, frame.head ?? head, frame);
     if (!frame.poses || frame.number < 0) throw new Error("A frame of the scene has no FRAM or no DONE.");
@@ -227,7 +362,8 @@ function readChunks(buffer, head, frame) {
     const view = new DataView(buffer);
     for (let at = 0; at < buffer.byteLength;) {
         if (at + 8 > buffer.byteLength) throw new Error("The scene ends within the head of a chunk.");
-        const name = String.fromCharCode(...new Uint8Array(buffer, at, 4)).replace(/[^A-Za-z0-9 ]/g, "?"), bytes = view.getUint32(at + 4, true);
+        const name = String.fromCharCode(...new Uint8Array(buffer, at, 4)).replace(/[^A-Za-z0-9 ]/g, "?");
+        const bytes = view.getUint32(at + 4, true);
         if (bytes > buffer.byteLength - at - 8) throw new Error(`The scene ends within the chunk ${name}.`);
         const c = new Columns(name, buffer, at + 8, bytes);
         at += 8 + ((bytes + 3) & ~3);
@@ -240,7 +376,11 @@ function readChunks(buffer, head, frame) {
         else if (name === "FRAM") frame.poses = readPoses(c);
         else if (name === "CONT") frame.contacts = readContacts(c, head);
         else if (name === "FIEL") frame.extras.push(readExtra(c, frame, head));
-        else if (name === "LINE") frame.line = { numbers: Array.from(c.f64(8, "numbers", true)), histories: c.f64(c.u32(1, "count")[0], "histories", true) };
+        else if (name === "LINE")
+            frame.line = {
+                numbers: Array.from(c.f64(8, "numbers", true)),
+                histories: c.f64(c.u32(1, "count")[0], "histories", true)
+            };
         else if (name === "KEYS") frame.keys = readKeys(c);
         else if (name === "FIND") frame.finding = readFinding(c);
         else if (name === "LIVE") frame.live.push(readLive(c));

@@ -1,5 +1,5 @@
-// The programs of the picture. A first pass writes colour, normal and name (block and face) of what is seen; a second makes light,
-// shadow, occlusion and edges from them.
+// The programs of the picture. A first pass writes colour, normal and name (block and face) of what is seen; a second
+// makes light, shadow, occlusion and edges from them.
 // @ts-check
 
 const HEAD = `#version 300 es
@@ -10,8 +10,8 @@ precision highp usampler2D;
 precision highp sampler2DShadow;
 `;
 
-// Poses are two texels a block: place and class; quaternion without w (which is not negative) and radius. Classes: 0 not there,
-// 1 solid, 2 ghost; 4 more where the section cuts the block.
+// Poses are two texels a block: place and class; quaternion without w (which is not negative) and radius. Classes: 0
+// not there, 1 solid, 2 ghost; 4 more where the section cuts the block.
 const POSE = `
 uniform highp sampler2D u_pose;
 uniform sampler2D u_colour;
@@ -46,7 +46,8 @@ void main() {
 #ifndef DEPTH
     v_normal = turn(q, a_normal);
     v_colour = texelFetch(u_colour, at(row, u_colour), 0); // w: its own colour, whatever its faces have
-    if (u_faces && v_colour.w < 0.5) v_colour = texelFetch(u_palette, ivec2(int(a_name.y) % textureSize(u_palette, 0).x, 0), 0);
+    if (u_faces && v_colour.w < 0.5) 
+        v_colour = texelFetch(u_palette, ivec2(int(a_name.y) % textureSize(u_palette, 0).x, 0), 0);
     v_colour.w = clamp(second.w * u_pixels / gl_Position.w / 9.0, 0.0, 1.0);
     v_name = a_name.x;
 #endif
@@ -82,7 +83,8 @@ in vec3 v_world;
 uniform vec4 u_plane;
 void main() { if (v_cut > 0.0 && dot(u_plane.xyz, v_world) > u_plane.w) discard; }`;
 
-// Section polygons and contact polygons: places in the model. Sections are not lit, so that their colours match the legend.
+// Section polygons and contact polygons: places in the model. Sections are not lit, so that their colours match the
+// legend.
 export const SHEET_VERTEX = HEAD + `
 layout(location = 0) in vec3 a_place;
 layout(location = 1) in vec3 a_normal;
@@ -113,7 +115,8 @@ out vec4 v_normal;
 flat out uint v_name;
 void main() {
     float l = max(length(a_way.xyz), 1e-20), head = min(a_way.w * 4.5, l);
-    vec3 z = a_way.xyz / l, x = normalize(abs(z.z) < 0.9 ? cross(z, vec3(0, 0, 1)) : cross(z, vec3(1, 0, 0))), y = cross(z, x);
+    vec3 z = a_way.xyz / l;
+    vec3 x = normalize(abs(z.z) < 0.9 ? cross(z, vec3(0, 0, 1)) : cross(z, vec3(1, 0, 0))), y = cross(z, x);
     vec3 out_ = x * a_mesh.x + y * a_mesh.y;
     float along = a_mesh.w < 0.0 ? l + (a_mesh.w + 1.0) * head - head + 0.0 : a_mesh.w * (l - head);
     gl_Position = u_matrix * vec4(a_tail + z * along + out_ * a_mesh.z * a_way.w, 1.0);
@@ -159,7 +162,9 @@ uniform uint u_picked;
 out vec4 o;
 const uint NONE = 0xffffffffu;
 // Different in neighbouring pixels, and even over the pictures that are averaged.
-float noise(vec2 p, float step) { return fract(52.9829189 * fract(dot(p, vec2(0.06711056, 0.00583715))) + u_random * step); }
+float noise(vec2 p, float step) {
+    return fract(52.9829189 * fract(dot(p, vec2(0.06711056, 0.00583715))) + u_random * step);
+}
 vec3 world(vec2 uv, float depth) { vec4 p = u_back * vec4(vec3(uv, depth) * 2.0 - 1.0, 1.0); return p.xyz / p.w; }
 uint whole(uint name) { return (name & 0x80000000u) != 0u ? name : name & 0xffffffu; }
 void main() {
@@ -185,14 +190,17 @@ void main() {
             float a0 = 6.2832 * noise(gl_FragCoord.xy, 0.618034), r0 = sqrt(noise(gl_FragCoord.yx + 17.0, 0.7548777));
             s.xyz = s.xyz * 0.5 + 0.5;
             if (u_shadows > 0.0 && s.x > 0.0 && s.y > 0.0 && s.x < 1.0 && s.y < 1.0) {
-                sun *= mix(1.0, texture(u_shadow, vec3(s.xy + 0.0025 * r0 * vec2(cos(a0), sin(a0)), s.z - 0.0015)), u_shadows);
+                vec2 aside = 0.0025 * r0 * vec2(cos(a0), sin(a0));
+                sun *= mix(1.0, texture(u_shadow, vec3(s.xy + aside, s.z - 0.0015)), u_shadows);
             }
             vec3 t = normalize(abs(n.z) < 0.9 ? cross(n, vec3(0, 0, 1)) : cross(n, vec3(1, 0, 0))), b = cross(n, t);
             float shut = 0.0;
             for (int i = 0; i < 6; i++) {
-                float f = (float(i) + noise(gl_FragCoord.xy, 0.7548777)) / 6.0, a = 6.2832 * (noise(gl_FragCoord.yx + 31.0, 0.5698403) + float(i) * 0.618034);
+                float f = (float(i) + noise(gl_FragCoord.xy, 0.7548777)) / 6.0;
+                float a = 6.2832 * (noise(gl_FragCoord.yx + 31.0, 0.5698403) + float(i) * 0.618034);
                 float h = sqrt(1.0 - f);
-                vec3 q = here + (t * cos(a) * sqrt(f) + b * sin(a) * sqrt(f) + n * h) * u_radius * (0.15 + 0.85 * fract(noise(gl_FragCoord.xy + 53.0, 0.8191725) + float(i) * 0.381966));
+                float share = 0.15 + 0.85 * fract(noise(gl_FragCoord.xy + 53.0, 0.8191725) + float(i) * 0.381966);
+                vec3 q = here + (t * cos(a) * sqrt(f) + b * sin(a) * sqrt(f) + n * h) * u_radius * share;
                 vec4 c = u_forth * vec4(q, 1.0);
                 vec3 d = c.xyz / c.w * 0.5 + 0.5;
                 if (d.x <= 0.0 || d.y <= 0.0 || d.x >= 1.0 || d.y >= 1.0) continue;
@@ -212,7 +220,8 @@ void main() {
     bool mark = false;
     int w = int(max(1.0, u_line));
     for (int i = 1; i <= w; i++) {
-        uint x = texelFetch(u_names, min(p + ivec2(i, 0), end), 0).r, y = texelFetch(u_names, min(p + ivec2(0, i), end), 0).r;
+        uint x = texelFetch(u_names, min(p + ivec2(i, 0), end), 0).r;
+        uint y = texelFetch(u_names, min(p + ivec2(0, i), end), 0).r;
         if (x != name || y != name) {
             bool block = whole(x) != whole(name) || whole(y) != whole(name) || x == NONE || y == NONE || name == NONE;
             line = max(line, block ? 0.85 : 0.5);
@@ -226,7 +235,8 @@ void main() {
         bool inside = name != NONE && whole(name) == u_picked;
         for (int i = 0; i < 12; i++) {
             float a = float(i) * 0.5236;
-            uint k = texelFetch(u_names, clamp(p + ivec2(round(2.5 * max(1.0, u_line) * vec2(cos(a), sin(a)))), ivec2(0), end), 0).r;
+            ivec2 beside = p + ivec2(round(2.5 * max(1.0, u_line) * vec2(cos(a), sin(a))));
+            uint k = texelFetch(u_names, clamp(beside, ivec2(0), end), 0).r;
             if ((k != NONE && whole(k) == u_picked) != inside) mark = true;
         }
         if (mark) colour = vec4(u_mark, 1.0);
