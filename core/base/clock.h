@@ -4,6 +4,7 @@
 
 #include <time.h>
 
+/* Constant: s. */
 #define TL_NANOSECOND 1e-9
 
 /* Seconds since some moment in the past; it never goes back. Needs _POSIX_C_SOURCE. */

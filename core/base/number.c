@@ -23,7 +23,7 @@
 
 #define LEAST_DIGITS 6
 #define MOST_DIGITS 17
-/* Between these the digits are found in integers. */
+/* Cost only: between these the digits are found in integers. */
 #define LEAST 1e-10
 #define MOST 1e15
 

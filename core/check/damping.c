@@ -20,10 +20,11 @@
 /* States that a damping may look for: twice as many as there may be. */
 #define STATES_MOST (2 * TL_STATE_COLUMNS)
 #define STEPS 24
+/* Constant: s, of a step. */
 #define DT 1e-4
-/* Power that may seem to be given, relative to |F||v|: rounding. */
+/* Tolerance: power that may seem to be given, relative to |F||v|: rounding. */
 #define ROUNDING 1e-12
-/* Relative error of forces that turn with the bodies or grow with the masses. */
+/* Tolerance: relative error of forces that turn with the bodies or grow with the masses. Test: unit/test_check. */
 #define SAME 1e-9
 
 enum {

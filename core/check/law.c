@@ -24,12 +24,14 @@
 #define STEPS 24
 /* Of these the first, in which no bond breaks and little slips. */
 #define GENTLE 4
-/* Share by which a stiffness may be exceeded: that of differences of forces, of which six digits are left. */
+/* Tolerance: share by which a stiffness may be exceeded: that of differences of forces, of which six digits are
+ * left. */
 #define SLACK 1e-6
+
 #define ROUNDING TL_CHECK_ROUNDING
 /* Steps without motion in which a point comes to rest, to the bit. */
 #define SETTLES 8
-/* Share of the motion by which points are moved for the stiffness. */
+/* Tolerance: share of the motion by which points are moved for the stiffness. */
 #define SMALL (1. / 16)
 
 const tl_check_rule tl_check_law_rules[] = {
@@ -434,7 +436,7 @@ static void check_stiffness(trial *t, int step, bool along)
  *
  * A point of twice the area, with the same stresses, carries twice the force and twice the energy. */
 
-/* Relative error that rounding may come to. */
+/* Tolerance: relative error that rounding may come to. Test: unit/test_check. */
 #define ERROR 1e-8
 
 /* How a column goes with the area. */

@@ -22,11 +22,13 @@
 /* Corners of a path, and steps from one to the next. */
 #define CORNERS 7
 #define STEPS 150
-/* Energy that may seem to be made or lost, relative to the work of all steps: the error of the sum, where forces bend, and of steps with
- * heat, in which forces bend less. A heat by the force at the end of a step errs by more. */
+/* Tolerance: energy that may seem to be made or lost, relative to the work of all steps. The first is the error of the
+ * sum, where forces bend. The second is that of steps with heat, in which forces bend less. Laws of Talus err by up to
+ * 1e-3 and 5e-5, those with linear springs by 3e-5. A heat by the force at the end of a step errs by more. Test:
+ * unit/test_check, python/test_wrong_laws. */
 #define ERROR 2e-3
 #define HEAT_ERROR 2e-4
-/* Heat of a step, of its work, below which it is rounding. */
+/* Tolerance: heat of a step, of its work, below which it is rounding. */
 #define NO_HEAT 1e-9
 
 /* What a point of a path is. */

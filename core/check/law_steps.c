@@ -14,11 +14,11 @@
 #define COARSE 12
 #define FINE 96
 #define TIME (FINE * TL_CHECK_DT)
-/* Share of the force by which the two may differ, for the path in few steps is not exact. Where a joint jumps they differ by more,
- * so that most points that slip must, and some number of them. */
+/* Tolerance: share of the force by which the two may differ, for the path in few steps is not exact. Where a joint
+ * jumps they differ by more, so that most points that slip must, and some number of them. Test: unit/test_check. */
 #define ERROR 0.1
 #define SOME 12
-/* Share of the stress that the path leads to below which a stress is none. */
+/* Tolerance: share of the stress that the path leads to below which a stress is none. Test: unit/test_check. */
 #define FAINT 1e-3
 
 static void begin(const tl_law_trial *t, tl_check_points *p, tl_vec3 slide[TL_CHECK_POINTS])

@@ -31,9 +31,9 @@ enum {
     TL_LAW_PRESSES
 };
 
-/* S, of a step. */
+/* Constant: s, of a step. */
 #define TL_CHECK_DT 1e-4
-/* Relative error of forces that rounding explains: some thousand roundings. */
+/* Tolerance: relative error of forces that rounding explains: some thousand roundings. Test: unit/test_check. */
 #define TL_CHECK_ROUNDING 1e-11
 /* Parameters of a law whose effect is looked for, at most. */
 #define TL_CHECK_PARAMS 64

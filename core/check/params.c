@@ -11,9 +11,9 @@
 #include <talus/elementary.h>
 #include <talus/number.h>
 
-/* Share of the parameters with a default that a drawn set changes. */
+/* Constant: share of the parameters with a default that a drawn set changes. */
 #define CHANGED 0.7
-/* Bounds beyond which a range counts as open. */
+/* Tolerance: bounds beyond which a range counts as open. */
 #define OPEN 1e12
 
 /* Where the values of a set are, as long as its parameters are used. */

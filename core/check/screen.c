@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* s that `take` is let wait. It may wait longer on a busy machine. */
+/* Constant: s that `take` is let wait. It may wait longer on a busy machine. */
 #define WAIT 0.05
 /* Bytes of what it must not write to, behind the room for a command. */
 #define GUARD 64

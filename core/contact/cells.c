@@ -21,7 +21,8 @@
 
 #include <math.h>
 
-/* Of the second moments of an area along two axes: their product over the square of their sum, for points on a line. */
+/* Tolerance: of the second moments of an area along two axes: their product over the square of their sum, for points
+ * on a line. */
 #define ON_A_LINE 1e-12
 
 /* Shares of the area of a triangle of the fan in its cells: a corner's, the edge's, the centroid's. */

@@ -6,7 +6,8 @@
 #include "contact/detection.h"
 #include "model/model.h"
 
-/* Of the drawn-in triangle of the centroid over that of an edge, and where on the edge a corner's cell ends. */
+/* Constant: of the drawn-in triangle of the centroid over that of an edge, and where on the edge a corner's cell
+ * ends. */
 #define TL_CELL_INNER 0.30550504633038933 /* sqrt(7 / 75) */
 #define TL_CELL_SIDE (16.0 / 68)
 

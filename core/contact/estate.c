@@ -18,7 +18,7 @@
 #include <float.h>
 #include <stdlib.h>
 
-/* Normals of a part's face and of the whole's are off each other by rounding. */
+/* Tolerance: normals of a part's face and of the whole's are off each other by rounding. */
 #define SAME_FACE 1e-9
 
 bool tl_estates_reserve(tl_detect *d, size_t estates, size_t points)

@@ -13,11 +13,12 @@
 #include "contact/places.h"
 #include "narrow/corner.h"
 
-/* Difference of lifts, over the largest, below which they are the same. */
+/* Tolerance: difference of lifts, over the largest, below which they are the same. Test: lua/test_moved_faces. */
 #define SAME 1e-12
-/* Distance from a line within which points are on it, over the root of their area. */
+/* Tolerance: distance from a line within which points are on it, over the root of their area. Test:
+ * lua/test_moved_faces. */
 #define ON_A_LINE 1e-6
-/* Planes tried for what bears, and the change over the size at which one is found. */
+/* Tolerance: planes tried for what bears, and the change over the size at which one is found. */
 #define MOST_TRIED 60
 #define FOUND 1e-12
 /* Size of the smaller block, times this, within which a face that leans may be farther out, per unit of its lean: both lean, about places

@@ -7,7 +7,7 @@
 #include <float.h>
 #include <talus/vmath.h>
 
-/* Half the spacing of the floats at 1: no number is rounded by a larger share. */
+/* Tolerance: half the spacing of the floats at 1: no number is rounded by a larger share. */
 #define ROUNDED (FLT_EPSILON / 2)
 
 typedef struct tl_relative {

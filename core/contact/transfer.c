@@ -185,7 +185,7 @@ static double place_of(const tl_model *m, uint32_t c)
  * points of corners and of edges are drawn in by the same factors all around. So places and areas of the points alone tell where
  * their cells are. */
 
-/* Parts of a patch below this share of it are rounding of the places of points. */
+/* Tolerance: parts of a patch below this share of it are rounding of the places of points. */
 #define SLIVER 1e-11
 
 /* A direction, growing with its angle from 0 to 4. */

@@ -37,7 +37,7 @@ static inline bool tl_ring_spans(const tl_ring_spread *i, double area, double pl
     return i->xx * i->yy - i->xy * i->xy > area * place * place * (i->xx + i->yy);
 }
 
-/* Changes of a contact's area up to this part of it are rounding. */
+/* Tolerance: changes of a contact's area up to this part of it are rounding. */
 #define TL_SAME_AREA 1e-12
 
 /* The shear of all points of a contact. */

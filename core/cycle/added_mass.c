@@ -17,11 +17,11 @@
 
 #include <float.h>
 
-/* Halvings in the search for the longest step that would do. */
+/* Tolerance: halvings in the search for the longest step that the mass allows. */
 #define HALVINGS 40
-/* What is told of it, with three digits, is no longer. */
+/* Tolerance: share of the step that is told, with three digits, so that what is told is no longer than it. */
 #define ROUNDED_DOWN 0.995
-/* A share that is this many times what was told of is told of again. */
+/* Tolerance: share of added mass over the one told of from which it is told of again. */
 #define TELL_AGAIN 2
 
 /* Whether a body has contact points: something that a longer step would make unstable. */

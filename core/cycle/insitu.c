@@ -9,15 +9,16 @@
 #include "geometry/seam.h"
 #include "model/options.h"
 
-/* A traction below this share of the largest stress given is none. */
+/* Tolerance: a traction below this share of the largest stress given is none. */
 #define NO_TRACTION 1e-9
-/* A mean tension on a contact below this share of the largest stress on any is none: at a free surface the stress of a gradient
- * passes through 0. */
+/* Tolerance: a mean tension on a contact below this share of the largest stress on any is none. At a free surface the
+ * stress of a gradient passes through 0. */
 #define PULL 0.01
-/* A face is an outer face when more than this share of it, and of the mean face of its block, lies neither on another body nor
- * on its own: less carries no force to speak of. */
+/* Tolerance: an outer face has more than this share of it, and of the mean face of its block, on no body, its own
+ * included. Less carries no force to speak of. */
 #define BARE 0.01
-/* Largest component of a stress, Pa, and of its gradient, Pa/m, that is taken: forces and their energies stay finite. */
+/* Limit: largest component of a stress, Pa, and of its gradient, Pa/m, that is taken: forces and their energies stay
+ * finite. Test: lua/test_insitu. */
 #define MOST_STRESS 1e50
 
 /* Says so when the stress pulls at faces: most likely its sign is that of compression. */

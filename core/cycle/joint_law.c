@@ -25,7 +25,8 @@
  * (detect/fields.c). So they are moved, outward or inward, until the new law gives the force of the last step. The force grows with
  * the way, from nothing where the faces part. */
 
-/* Force that is missed, of the force. */
+/* Tolerance: force that is missed, of the force, and how often the faces are moved at the most. Test:
+ * lua/test_moved_faces. */
 #define CLOSE 1e-13
 #define MOST_TRIES 100
 

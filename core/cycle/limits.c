@@ -37,15 +37,17 @@
  * The bodies are gone through only when the fastest of them may be too fast for the thinnest block of the model, or after something
  * was set by hand. Blocks at rest pay one comparison a step. */
 
-/* By how much the overlap of two blocks may grow in a step, over the thickness of the thinner one: aimed at, and at the most. A
- * contact that is born with half of the thickness still knows which way it came (TL_DEEPEST_BORN of overlap.c is 0.9). */
+/* Limit: by how much the overlap of two blocks may grow in a step, over the thickness of the thinner one. The first is
+ * aimed at, the second is the most. A contact that is born with half of the thickness still knows which way it came
+ * (TL_DEEPEST_BORN of overlap.c is 0.9). Test: lua/test_travel. */
 #define CLOSING_AIM 0.25
 #define CLOSING_MOST 0.5
-/* Turn of a body in a step, rad: t^2 / 6 is 0.2 % of 0.1 and 1 % of 0.25. Passing is looked for with turns taken as small. */
+/* Limit: turn of a body in a step, rad: aimed at, and the most. t^2 / 6 is 0.2 % of 0.1 and 1 % of 0.25. Passing is
+ * looked for with turns taken as small. */
 #define TURN_AIM 0.1
 #define TURN_MOST 0.25
-/* Least step that is chosen, over the stable one. A model that needs a shorter one moves out of all proportion, and would hardly
- * get on. */
+/* Limit: least step that is chosen, over the stable one. A model that needs a shorter one moves out of all proportion,
+ * and would hardly get on. */
 #define SHORTEST 1e-3
 
 /* Least thickness that a block of the model can have; found anew after an edit. */
@@ -205,12 +207,12 @@ static tl_status travel_check(tl_model *m, const tl_step_span *span)
 
 /* ---------------------------------------------------------------- motion ------------------ */
 
-/* Most motion in a step over the body's diameter, 2 r. Blocks in contact move by 1e-2 of it at the most where the step
- * is stable; ten leaves room for fragments in free fall with a long step. It is a turn of 20 radians. */
+/* Limit: most motion in a step over the body's diameter, 2 r. Blocks in contact move by 1e-2 of it at the most where
+ * the step is stable. Ten leaves fragments in free fall a long step. It is a turn of 20 radians. */
 #define TL_TRAVEL 10
-/* Share of that from which a body is fast: a step that follows is kept, for it may have to be undone. Blocks in contact
- * come nowhere near it, and none gets from there to the limit in one step unless something is set by hand or the given
- * time step is far above what is stable: then the step is kept, too. */
+/* Cost only: share of that from which a body is fast: a step that follows is kept, for it may have to be undone.
+ * Blocks in contact come nowhere near it. None gets from there to the limit in one step unless something is set by
+ * hand or the given step is far too long. Then the step is kept, too. */
 #define TL_FAST 0.01
 
 typedef struct limit_job {

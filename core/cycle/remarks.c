@@ -13,25 +13,29 @@
 
 #include <string.h>
 
-/* A contact that closes by more than this share of a block's size under its weight: faces pass through each other's corners. */
+/* Tolerance: closure under its own weight over a block's size beyond which a remark doubts kn: faces pass through each
+ * other's corners. */
 #define SOFT 0.01
-/* One that closes by less: the closure is lost in the rounding of places, some 1e-13 of a size, and steps are needlessly short. */
+/* Tolerance: closure over a block's size below which a remark doubts kn. It is lost in the rounding of places, some
+ * 1e-13 of a size, and steps are needlessly short. */
 #define STIFF 1e-10
-/* Gravity between these is the Earth's in m/s2. */
+/* Tolerance: gravity between these is the Earth's in m/s2. */
 #define EARTH_LEAST 9.0
 #define EARTH_MOST 11.0
-/* Densities of solids in t/m3, from pumice to dense ore; and in kg/m3, to the densest metals. Weights lie between and above. */
+/* Tolerance: densities of solids in t/m3, from pumice to dense ore; and in kg/m3, to the densest metals. Weights lie
+ * between and above. */
 #define TONNES_LEAST 0.5
 #define TONNES_MOST 10.0
 #define KILOGRAMS_LEAST 100.0
 #define KILOGRAMS_MOST 20000.0
-/* kn / (rho g), 1/m, with densities in t/m3, above which kn is rather in Pa/m: 8e10 Pa/m for rock, a joint without a flaw. */
+/* Tolerance: kn / (rho g), 1/m, with densities in t/m3, above which kn is rather in Pa/m: 8e10 Pa/m for rock, a joint
+ * without a flaw. */
 #define RIGID 3e6
 
-/* Overlap under load over the thickness of the thinner block from which joints are too soft for what presses: a tenth of a layer
- * has vanished in its joint. */
+/* Tolerance: overlap under load over the thickness of the thinner block from which joints are too soft for what
+ * presses. A tenth of a layer has vanished in its joint. Test: lua/test_remarks. */
 #define CLOSED 0.1
-/* Steps after which contacts are looked at for that: loads do not last shorter. */
+/* Cost only: steps after which contacts are looked at for that: loads do not last shorter. */
 #define CLOSED_EVERY 64
 
 /* The densities of the blocks that can move, and whose they are. */

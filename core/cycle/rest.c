@@ -21,12 +21,12 @@
 
 #include <stdatomic.h>
 
-/* Overlap, relative to the body's radius, of which contacts cannot tell a ratio of 1e-5: places and so overlaps are
- * rounded at some 1e-16 of it. */
+/* Tolerance: overlap, relative to the body's radius, of which contacts cannot tell a ratio of 1e-5. Places and so
+ * overlaps are rounded at some 1e-16 of the radius. */
 #define ROUNDED_OVERLAP 1e-10
 
-/* How much softer than the contacts of one body the whole may swing, as a column of 30 blocks does: so much more energy
- * goes with the same force. */
+/* Tolerance: how much softer than the contacts of one body the whole may swing, as a column of 30 blocks does. So much
+ * more energy goes with the same force. Test: lua/test_rest. */
 #define SOFTER 1e3
 
 /* Sum of k A over the contacts of a body. */

@@ -17,11 +17,11 @@
 #include <talus/number.h>
 #include <talus/text.h>
 
-/* How many times longer a step the rest must allow. */
+/* Tolerance: how many times longer a step the rest must allow. */
 #define SHORTENS 3.0
-/* The largest share of the rock, by volume, that may be called slivers. */
+/* Tolerance: the largest share of the rock, by volume, that may be called slivers. */
 #define LITTLE 0.05
-/* Share of the largest gain that suffices. */
+/* Tolerance: share of the largest gain that suffices. */
 #define ENOUGH 0.5
 
 /* Limits, the widest first: shares of the mean volume of a body, and aspects. */

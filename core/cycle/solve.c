@@ -32,22 +32,24 @@ typedef struct tl_watch tl_watch;
  * Bodies that touched nothing when the run began fall until they land, and tumble on. They are followed only while
  * something bears them, and in longer legs: what is poured has not failed. */
 
-/* Steps between two samples of the bodies: few of them make a leg of a body that moves. */
+/* Tolerance: steps between two samples of the bodies: few of them make a leg of a body that moves. */
 #define SAMPLE_STEPS 5
-/* Legs in a row, and how long they are together, relative to the size of the body. */
+/* Tolerance: legs in a row, and how long they are together, relative to the size of the body. */
 #define LEGS 5
 #define FAILED_SHARE 0.05
-/* The same for a body that has landed. */
+/* Tolerance: the same for a body that has landed. */
 #define LANDED_SHARE 1.0
-/* The same relative to how far the model may settle: a column under sudden weight settles by about 1.5 of it. */
+/* Tolerance: the same relative to how far the model may settle: a column under sudden weight settles by about 1.5 of
+ * it. */
 #define SETTLED_SHARE 3.0
-/* A leg counts as no slower than the one before from this share of its speed on. */
+/* Tolerance: a leg counts as no slower than the one before from this share of its speed on. */
 #define NO_SLOWER 0.95
-/* cos of the largest change of direction between legs. */
+/* Tolerance: cos of the largest change of direction between legs. */
 #define ONE_WAY 0.7
-/* Unbalanced force over what a body bears, below which such a body lies on something or slides on it. */
+/* Tolerance: unbalanced force over what a body bears, below which such a body lies on something or slides on it. */
 #define SUPPORTED 0.5
-/* Unbalanced force over what a body bears from which it is pushed on: above what is left where a body is carried along. */
+/* Tolerance: unbalanced force over what a body bears from which it is pushed on: above what is left where a body is
+ * carried along. */
 #define LEAST_PUSH 1e-4
 
 /* A leg of a body, until now, and those behind it. */

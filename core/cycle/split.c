@@ -89,19 +89,20 @@ typedef struct tl_split_system {
  * method with a line search. It ends when nothing lacks. Where no tractions do that the best is kept that was met: it leaves the
  * least acceleration of the parts, in the mean of m a^2. */
 
-/* Stiffness of springs that hold each part, over that of its faces: motions that no face resists stay bounded. What lacks is wrong by that
- * share at the most. */
+/* Tolerance: stiffness of springs that hold each part, over that of its faces: motions that no face resists stay
+ * bounded. What lacks is wrong by that share at the most. Test: lua/test_cut_keeps. */
 #define HOLD 1e-9
-/* What lacks, of what was wanted, that is rounding. */
+/* Tolerance: share of what was wanted whose lack is rounding. */
 #define NOTHING 1e-11
-/* Of a traction, what a law may change of it for rounding. */
+/* Tolerance: share of a traction that a law may change of it for rounding. */
 #define SAME_TRACTION 1e-10
-/* Rounds of Newton's method, and halvings of its step. It ends, too, when in so many rounds not LESS of what lacks is left. */
+/* Tolerance: rounds of Newton's method, and halvings of its step. It ends, too, when so many rounds leave more than
+ * the last share of what lacks. Test: lua/test_cut_keeps. */
 #define MOST_ROUNDS 60
 #define MOST_HALVINGS 6
 #define MOST_IDLE 6
 #define LESS 0.98
-/* Rounding of conjugate gradients. */
+/* Tolerance: rounding of conjugate gradients. Test: lua/test_cut_keeps. */
 #define SOLVED 1e-13
 /* Conjugate gradients take as many steps as there are unknowns, six a part, but for rounding. */
 #define CG_STEPS(parts) (60 + 12 * (parts))

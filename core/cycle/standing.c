@@ -4,11 +4,12 @@
 #include "cycle/cycle_data.h"
 #include "cycle/rest.h"
 
-/* The local ratio below which a model is at rest that has not been asked to come to one. */
+/* Tolerance: the local ratio below which a model is at rest that has not been asked to come to one. */
 #define REST_RATIO 1e-5
-/* Share of sum |F| |v| that the power of the unbalanced forces is where they push bodies on. */
+/* Tolerance: share of sum |F| |v| that the power of the unbalanced forces is where they push bodies on. */
 #define PUSHES 0.5
-/* Unbalanced forces over what bodies bear below which nothing accelerates that could be told from settling. */
+/* Tolerance: unbalanced forces over what bodies bear below which nothing accelerates that could be told from
+ * settling. */
 #define LEAST_UNBALANCED 1e-3
 
 /* Whether the unbalanced forces push bodies on, the way they go. */

@@ -54,12 +54,13 @@ typedef struct row_search {
  * were when the body was rated, not as they are:
  * where the step follows from them they are part of the model's state. */
 
-/* Part of its largest face that a body stands on at least, if it rests on corners and edges: */
+/* Tolerance: part of its largest face that a body stands on at least, if it rests on corners and edges. A longer step
+ * would shrink while it lands. */
 #define FLOOR 0.15
-/* Stiffness of a corner that is pressed in twice as deep, over what it is. */
+/* Tolerance: stiffness of a corner that is pressed in twice as deep, over what it is. */
 #define TWICE_AS_DEEP 4
-/* Steps after which mass scaling rates all bodies again, even when no contact has come or gone: areas may have
- * grown. */
+/* Tolerance: steps after which mass scaling rates all bodies again, even when no contact has come or gone: areas may
+ * have grown. */
 #define RECHECK_STEPS 64
 
 /* The stiffness of the stiffest law, Pa/m. */
@@ -145,7 +146,8 @@ static area_sums face_of(const tl_poly *shape, uint32_t face)
     return out;
 }
 
-/* Area over the largest one by which another face is less than that: above roundings of a turned shape. */
+/* Tolerance: area over the largest one by which another face is less than that: above roundings of a turned shape.
+ * Test: lua/test_timestep. */
 #define AS_LARGE 1e-6
 
 /* The largest face of a body that does not lie on another of its blocks; of several the arms of the farthest. */
@@ -309,7 +311,8 @@ static step_rates body_rate(const tl_model *m, uint32_t body, double stiffest)
     return (step_rates){2 * fmax(pushed, part * (face - turn)), 2 * fmax(turned, part * turn)};
 }
 
-/* A contact presses no farther away than the farthest corner of the body, over the radius of that: overlaps come on top. */
+/* Tolerance: a contact presses no farther away than the farthest corner of the body, over the radius of that: overlaps
+ * come on top. */
 #define BEYOND 1.05
 
 /* What a body's rate is no higher than, from the areas of its contacts alone. */
@@ -525,17 +528,19 @@ tl_row_value tl_rates_anew(tl_model *m, double known)
 
 /* ---------------------------------------------------------------- steps ------------------- */
 
-/* The step in use is kept while the rule gives one between it and this many times it: a step that
- * changes all the time would cost accuracy. */
+/* Tolerance: the step in use is kept while the rule gives one between it and this many times it. A step that changes
+ * all the time would cost accuracy. */
 #define STEP_GROWTH 1.1
 
-/* A given step is far too long from this many times the stable one on, which is safe by up to the square root of 2. */
+/* Limit: a given step is far too long from this many times the stable one on. The stable one is safe by up to the
+ * square root of 2. */
 #define TOO_LONG 2
 
-/* Steps after which a given step is compared with the stable one again. */
+/* Cost only: steps after which a given step is compared with the stable one again. */
 #define COMPARE_EVERY 64
 
-/* Rate over that of a push from which on turning is what makes a body fast: of a cube on a face it is some 2.5. */
+/* Tolerance: rate over that of a push from which on turning is what makes a body fast. Of a cube on a face it is some
+ * 2.5. */
 #define MOSTLY 4.0
 
 /* M or I over 2 K of the body, or of the smallest mass and the stiffest contact, that controls the step. */

@@ -15,11 +15,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Stiffnesses, forces, gravity and squares of speeds below this make finite forces, in any units: products of five of
- * them are still doubles. */
+/* Tolerance: stiffnesses, forces, gravity and squares of speeds below this make finite forces, in any units: products
+ * of five of them are still doubles. */
 #define TAME 1e60
-/* Steps after which the memory of a step that was kept once is given back: an edit is often followed by others, and new memory
- * costs more than the copies. */
+/* Cost only: steps after which the memory of a step that was kept once is given back. An edit is often followed by
+ * others, and new memory costs more than the copies. */
 #define FORGET_AFTER 64
 
 /* The columns of a table that a step overwrites (TL_COLUMN_STEP), one after the other, each of the table's capacity. */

@@ -15,8 +15,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define SKIN_EXTENTS 0.1 /* skin over the median extent */
-/* Roundings of a body's radius, and of places: far above them. */
+/* Cost only: skin over the median extent: the motion that the list of pairs is good for. */
+#define SKIN_EXTENTS 0.1
+/* Cost only: margin of the ball about a body, far above roundings of its radius and of places. */
 #define BALL_MARGIN 1e-9
 
 /* What a list of pairs is made with: nothing of it is kept. */

@@ -68,7 +68,8 @@ static tl_status ensure(tl_model *m)
  * count that detection has seen is treated as if it were new; all else that is known of pairs and contacts stays. What contacts of
  * blocks that were cut carry is left to those of their parts (contact/estate.c). */
 
-/* Minimum area over that of a patch from which the patch may be none: below MOST_MIN_AREA of narrow/manifold.c. */
+/* Tolerance: minimum area over that of a patch from which the patch may be none: below MOST_MIN_AREA of
+ * narrow/manifold.c. */
 #define SURE_MIN_AREA 0.01
 
 /* ---------------------------------------------------------------- rows ------------------- */

@@ -21,7 +21,8 @@
 
 /* ---------------------------------------------------------------- before ----------------- */
 
-/* Tilt, as a sine, beyond which bonds of two faces end: 3 degrees. The overlap of a patch is that along one normal. */
+/* Tolerance: tilt, as a sine, beyond which bonds of two faces end: 3 degrees. The overlap of a patch is that along one
+ * normal. */
 #define BONDED_TILT 0.05
 
 /* Whether the blocks of a field contact hardly moved against each other in the last step: only then may it become a patch.

@@ -12,7 +12,8 @@
  * are in these. */
 tl_manifold_before tl_contact_before(const tl_model *m, uint32_t contact, bool reframed,
                                      const tl_point_lanes *lanes);
-/* How far walls may part, over how far they are lifted: as far again they ride on what has opened them, and then they begin anew. */
+/* Tolerance: how far walls may part, over how far they are lifted, before the lift is forgotten. As far again they
+ * ride on what has opened them. Test: lua/test_insitu. */
 #define TL_PARTED 2
 /* Keeps the region of a field contact. */
 void tl_field_keep(tl_press_row *row, const tl_pair_view *view, const tl_region *region);

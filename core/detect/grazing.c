@@ -12,11 +12,12 @@
 
 #include <talus/vmath.h>
 
-/* Overlap along both of two directions that may go unseen, relative to the size. The energy of it, kn u^3 a metre, is a
- * millionth of what a face stores that overlaps by as much as 1e-3. */
+/* Tolerance: overlap along both of two directions that may go unseen, relative to the size. The energy of it, kn u^3 a
+ * metre, is a millionth of what a face stores that overlaps by as much as 1e-3. Test: property/grazing_properties. */
 #define UNSEEN 2e-4
 
-/* Product of the blocks' numbers of faces up to which they may be of a lattice: others hardly ever have flush faces. */
+/* Cost only: product of the blocks' numbers of faces up to which they may be of a lattice: others hardly ever have
+ * flush faces. Test: property/grazing_properties, lua/test_common_volume. */
 #define FEW 400
 
 /* Whether two faces face each other with a tilt at which they may still be a patch's. */

@@ -24,11 +24,11 @@
 
 #include <stdio.h>
 
-/* Deepest overlap of a contact at its birth, over the shorter of the two lengths: beyond it rounding and the shapes decide
- * which way out is the shorter one. */
+/* Limit: deepest overlap of a contact at its birth, over the shorter of the two lengths. Beyond it rounding and the
+ * shapes decide which way out is the shorter one. Test: lua/test_limits. */
 #define TL_DEEPEST_BORN 0.9
-/* Deepest overlap of any contact over the diameter of the smaller block. Stones that fall on soft edge contacts (kn 1e7)
- * come to 1.06. */
+/* Limit: deepest overlap of any contact over the diameter of the smaller block. Stones that fall on soft edge contacts
+ * (kn 1e7) come to 1.06. Test: lua/test_limits. */
 #define TL_DEEPEST 1.25
 
 /* Whether no force can move either block. More than tl_blocks_held_still (contacts.h): bodies that a drive carries along, or

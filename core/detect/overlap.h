@@ -6,8 +6,9 @@
 #include "model/model.h"
 #include "narrow/region.h"
 
-/* Overlap over the smaller block's size up to which nothing is measured, as for most contacts; that of a new one is told the
- * user beyond it: blocks that were placed into each other, or that a step has thrown into each other. */
+/* Tolerance: overlap over the smaller block's size up to which nothing is measured, as for most contacts. The user is
+ * told of a new contact beyond it: blocks that were placed into each other, or that a step has thrown into each other.
+ * Test: lua/test_limits. */
 #define TL_SHALLOW 0.01
 
 /* Whether two blocks overlap so deeply that their contact cannot tell how to part them; less is enough for one that is

@@ -20,7 +20,7 @@
 #include <string.h>
 #include <talus/plugin.h>
 
-/* Below any path length: the pair is tested in the next step. */
+/* Constant: below any path length. The pair is tested in the next step. */
 #define AWAKE (-1.f)
 /* Blocks a worker takes at a time: there is little to do with each. */
 #define BLOCK_CHUNK 4096

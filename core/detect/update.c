@@ -33,16 +33,18 @@
 
 #include <string.h>
 
-/* Motion within which a field contact is reused, over its overlap: its force is then wrong by no more than that. A contact
- * that rests moves by less. */
+/* Tolerance: motion within which a field contact is reused, over its overlap: its force is then wrong by no more than
+ * that. A contact that rests moves by less. */
 #define REUSE_FIELD 1e-11
 
-/* Motion within which the points of a patch stand and ride, over its least closure o: an area of width b is then wrong by a share
- * of o/(16 b), a quarter of what a patch neglects in any case, the load on its border (docs/theory.md). It is TL_STILL at least: a
- * patch that opens has no closure where it opens. */
+/* Tolerance: motion within which the points of a patch stand and ride, over its least closure o. An area of width b is
+ * then wrong by a share of o/(16 b). That is a quarter of the load on its border, which a patch neglects in any case
+ * (docs/theory.md). It is TL_STILL at least: a patch that opens has no closure where it opens. Test:
+ * lua/test_symmetric_stiffness. */
 #define STANDS (1.0 / 16)
 
-/* The same of a patch that is bonded whole, over the smaller block's size: a bond that swings to tension passes through no closure. */
+/* Tolerance: the same of a patch that is bonded whole, over the smaller block's size: a bond that swings to tension
+ * passes through no closure. Test: lua/test_landing, lua/test_new_points. */
 #define BOND_STANDS 5e-4
 
 /* Size of the smaller block of a contact. */

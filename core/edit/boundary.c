@@ -32,13 +32,15 @@ typedef struct tl_outer_face {
     tl_area_sums sums;
 } tl_outer_face;
 
-/* Off the plane, or out of the box, by less than this times the block's size a corner is in it: what contacts take for
- * touching (TL_CONTACT_TOLERANCE). */
+/* Tolerance: a corner is in a plane or box when it is off it by less than this times the block's size. Contacts take
+ * that for touching (TL_CONTACT_TOLERANCE). */
 #define TOLERANCE 1e-3
-/* Largest component across an axis of the normal of a face whose roller is held along that axis. */
+/* Tolerance: largest component across an axis of the normal of a face whose roller is held along that axis. */
 #define ALONG 1e-2
-/* By this a cosine may be smaller than that of the angle given: at 45 degrees from {1, 0, 1} lies {1, 0, 0}. */
+/* Tolerance: by this a cosine may be smaller than that of the angle given: at 45 degrees from {1, 0, 1} lies {1, 0,
+ * 0}. Test: lua/test_boundary. */
 #define ROUNDED 1e-12
+
 #define DEGREE (3.14159265358979323846 / 180)
 
 /* Which faces are meant, once the model's bounds are known. */
@@ -72,7 +74,8 @@ typedef struct body_sum {
  * of other blocks of the body in the same plane. Blocks do not overlap, so neither do these parts. Each is a convex polygon,
  * over which polynomials of the second degree are integrated exactly: by triangles, at the middles of their edges. */
 
-/* Share of a face that may be left bare for roundings, and tolerance of blocks of a body that fit: those of seams. */
+/* Tolerance: share of a face that may be left bare for roundings, and tolerance of blocks of a body that fit: those of
+ * seams. */
 #define UNCOVERED 1e-5
 #define FIT 1e-6
 

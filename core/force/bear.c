@@ -13,9 +13,9 @@
 #include "contact/detection.h"
 #include "contact/places.h"
 
-/* Of a normal force, what a law may add to it by rounding. */
+/* Tolerance: share of a normal force that a law may add to it by rounding. */
 #define SAME_FORCE 1e-12
-/* How often points are asked again, at the most, and a share of the shear that is found. */
+/* Tolerance: how often points are asked again, at the most, and a share of the shear that is found. */
 #define MOST_ASKED 12
 #define FOUND 1e-10
 
@@ -173,7 +173,7 @@ bool tl_contact_bear(const tl_model *m, uint32_t c, const tl_traction *given, tl
     return ask(m, c, given, borne, stored);
 }
 
-/* Times that a law is asked for the shear that there is: more than any law bears that has a limit. */
+/* Tolerance: times that a law is asked for the shear that there is: more than any law bears that has a limit. */
 #define BEYOND 1e6
 /* Points taken at a time: those of most contacts. */
 enum { MOST_TOLD = 64 };

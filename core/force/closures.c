@@ -10,7 +10,7 @@
 
 #include <math.h>
 
-/* The least d of m: less, and the two closures could not be told apart. */
+/* Tolerance: the least d of m: less, and the two closures could not be told apart. */
 #define LEAST_SPREAD 0.01
 
 void tl_two_closures(const double moment[4], double closure[2])

@@ -31,7 +31,7 @@
  *
  * The energy of what presses, as a law tells it. */
 
-/* Of a closure: how far from it energies are taken for a force that is not told. */
+/* Tolerance: share of a closure: how far from it energies are taken for a force that is not told. */
 #define NEAR (1.0 / 1024)
 
 /* Asks for energies; the law may tell forces, too. Without that the first stays what it was. */
@@ -178,7 +178,8 @@ static double pays_for_lift(const tl_press_row *row, double whole)
     return whole * row->opened * (1 - 0.5 * row->opened / row->press.overlap);
 }
 
-/* Lift of the last step over the overlap from which the differences of forces that it has made are known better than 1e-7. */
+/* Tolerance: lift of the last step over the overlap from which the differences of forces that it has made are known
+ * better than 1e-7. */
 #define LIFT_KNOWN 1e-8
 
 tl_field_press tl_press_linearly(const tl_press_row *row, double kn, double area, double f_n,
@@ -203,7 +204,7 @@ tl_field_press tl_press_linearly(const tl_press_row *row, double kn, double area
                             .by_energy = by};
 }
 
-/* A closure over the other one below which it is none: moments of next to nothing may be roundings. */
+/* Tolerance: a closure over the other one below which it is none: moments of next to nothing may be roundings. */
 #define LEAST_CLOSURE 1e-6
 
 /* Closures of a press at which a law is asked that is not linear. */

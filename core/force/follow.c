@@ -332,8 +332,9 @@ static void frames_put(tl_frames *f, const tl_frame_rows *rows, bool field, tl_a
 
 /* ---------------------------------------------------------------- the points of contacts --- */
 
-/* Closure, over the distance of the point from the body's centroid, up to which walls just touch: roundings of that distance and of the
- * plane's. Else they would decide whether a joint that bears nothing yet is closed, and what slip opens of it. */
+/* Tolerance: closure, over the distance of the point from the body's centroid, up to which walls just touch: roundings
+ * of that distance and of the plane's. Else they would decide whether a joint that bears nothing yet is closed, and
+ * what slip opens of it. Test: lua/test_touching_walls. */
 #define TOUCHING 1e-14
 
 /* ---------------------------------------------------------------- points ----------------- */

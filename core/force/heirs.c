@@ -183,14 +183,14 @@ static bool patch_word(tl_model *m, uint32_t c, const tl_point_lanes *t, tl_word
  * Newton's steps, with slopes that are mended by what steps bring (Broyden 1965), or found by differences where that is little. Each step is
  * halved until less is missed. */
 
-/* Steps that are made at the most, and halvings of each. */
+/* Tolerance: steps that are made at the most, and halvings of each. */
 #define STEPS 60
 #define HALVINGS 10
-/* Step of differences, over the unit. */
+/* Tolerance: step of differences, over the unit. */
 #define SMALL 1e-6
-/* Share of what is missed that is left after a good step: after another slopes are found anew. */
+/* Tolerance: share of what is missed that is left after a good step. After another slopes are found anew. */
 #define GOOD 0.3
-/* What is added to the slopes: the numbers may not tell all. */
+/* Tolerance: what is added to the slopes: the numbers may not tell all. */
 #define FAINT 1e-9
 
 typedef struct numbers {
@@ -336,20 +336,23 @@ static bool roots_find(const tl_roots *of, double x[TL_ROOTS], double *left)
 
 /* ---------------------------------------------------------------- parts ------------------- */
 
-/* Over the forces: error with which the numbers are found. That which a good step leaves no hope with. */
+/* Tolerance: error over the forces with which the numbers are found, and that which a good step leaves no hope
+ * with. */
 #define FOUND 1e-8
 #define HOPELESS 0.9
-/* Times that a law is asked at the most until no point has more shear than it bears; by which share it may have more. */
+/* Tolerance: passes in which a law is asked until no point has more shear than it bears, and the share by which one
+ * may have more. */
 #define PASSES 12
 #define TOO_MUCH 1e-9
-/* Slope of what a point bears over what it has, up to which it tells where both are the same. */
+/* Tolerance: slope of what a point bears over what it has, up to which it tells where both are the same. */
 #define STEEP 0.9
-/* Share of t by which parts keep less each time; by which their springs may hold more energy, and by which they may if there is no way
- * with less. */
+/* Tolerance: share of t by which parts keep less each time. Their springs may hold more energy by the second share,
+ * and by the third if there is no way with less. Test: lua/test_cut_keeps. */
 #define LESS 0.25
 #define MORE_ENERGY 5e-4
 #define MOST_ENERGY 0.5
-/* Areas that are the same, over each other: parts that lack some of the whole go by what is between its points alone. */
+/* Tolerance: areas that are the same, over each other: parts that lack some of the whole go by what is between its
+ * points alone. */
 #define SAME_AREA 1e-3
 
 /* The point of a part: its shear force and how much closure it gets, and the magnitudes of the shear that the law was asked with the time

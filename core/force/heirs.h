@@ -16,7 +16,7 @@ bool tl_heirs_carry(tl_model *m);
 
 /* Most numbers that are looked for. */
 #define TL_ROOTS 6
-/* What is missing by this is not missing. */
+/* Tolerance: error over the forces that is none. */
 #define TL_ROOTS_EXACT 1e-11
 
 #endif

@@ -68,14 +68,15 @@ static bool as_noted(const tl_points_table *p, size_t first, size_t count, const
  * States are looked at in every step and shear forces in every eighth, by sums over points; what these find
  * is looked at here, point by point. */
 
-/* Component of a point's shear force along the normal, relative to the force of a spring pressed by the block's size: forces
- * below are rounding, of any direction. */
+/* Tolerance: component of a point's shear force along the normal, relative to the force of a spring pressed by the
+ * block's size. Forces below are rounding, of any direction. Test: lua/test_law_check. */
 #define ROUNDING_FORCE 1e-12
 
-/* How many times stiffer than its word a law may be. Up to this a step that is unstable is the fraction's fault, not
- * the law's, and a law that gives a mean for a bound passes. */
+/* Limit: how many times stiffer than its word a law may be. Up to this a step that is unstable is the fraction's
+ * fault, not the law's, and a law that gives a mean for a bound passes. Test: lua/test_law_check. */
 #define FAR_STIFFER 10
-/* Motion of the trial, of the closure and last motion of the point: small against what the force came about by. */
+/* Tolerance: motion of the trial, of the closure and last motion of the point: small against what the force came about
+ * by. */
 #define TRIAL (1. / 16)
 
 /* Copies of what a law gets and gives, of the points of a SIMD group side by side. */
@@ -382,8 +383,8 @@ static void law_check_states(const tl_model *m, tl_failure *failure, const tl_la
 
 /* ---------------------------------------------------------------- laws -------------------- */
 
-/* Steps after which shear forces are looked at again for components along the normals: a law that has them has them all
- * the time, and every step would cost 3 % of its instructions. */
+/* Cost only: steps after which shear forces are looked at again for components along the normals. A law that has them
+ * has them all the time, and every step would cost 3 % of its instructions. */
 #define SHEAR_EVERY 8
 
 /* SIMD groups a worker takes at a time. */

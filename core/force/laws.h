@@ -24,8 +24,9 @@ tl_status tl_laws_apply(tl_model *m, const tl_law_phase *phase);
 /* Every contact has a law, or a sentence that names one that has not. */
 tl_status tl_laws_check(tl_model *m);
 
-/* Component of a shear force along the normal, relative to the whole force of the point, and of all points of a contact
- * before they are looked at one by one. The host's own reaches 4e-7 where normals change from point to point. */
+/* Limit: component of a shear force along the normal, relative to the whole force of the point. It holds for all
+ * points of a contact together before they are looked at one by one. The host's own reaches 4e-7 where normals change
+ * from point to point. Test: lua/test_law_check. */
 #define TL_OUT_OF_PLANE 1e-4
 
 #endif

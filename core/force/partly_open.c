@@ -42,9 +42,11 @@
 #include <math.h>
 #include <string.h>
 
-/* How far the lifts of a patch may be beyond those of its points at a corner, over the largest difference of these: their plane is fitted to all. */
+/* Tolerance: how far the lifts of a patch may be beyond those of its points at a corner, over the largest difference
+ * of these. Their plane is fitted to all. Test: lua/test_cut_rounding. */
 #define UNEVEN 1.5
-/* The largest stiffness of what presses, over that which the law says: what is more is rounding, or slip has opened it. */
+/* Tolerance: the largest stiffness of what presses, over that which the law says: what is more is rounding, or slip
+ * has opened it. */
 #define SAME_STIFFNESS (1 + 1e-12)
 
 /* ---------------------------------------------------------------- stresses that are no line ---
@@ -64,7 +66,8 @@
  * 1/s is taken to be linear in 1/u between two closures, as it is of lines and hyperbolas. The cell keeps what force, moment and
  * energy are beside those of its point. */
 
-/* Closures that are tried for that of the law, and how near its stress is to be to the mean one, relative. */
+/* Tolerance: closures that are tried for that of the law, and how near its stress is to be to the mean one, relative.
+ * Test: lua/test_curved_slides. */
 #define STEPS 12
 #define NEAR_ENOUGH 1e-9
 

@@ -21,7 +21,7 @@
 #include <talus/number.h>
 #include <talus/text.h>
 
-/* A cutting plane's normal may miss unit length by this: a few roundings of its components. */
+/* Tolerance: a cutting plane's normal may miss unit length by this: a few roundings of its components. */
 #define UNIT_TOLERANCE 1e-9
 /* Longest name of a joint set or a group: it goes into messages and files. */
 #define LONGEST_NAME 63

@@ -22,8 +22,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A cut takes vertices this near, relative to the size, for being on its plane (TL_POLY_ON); and centres
- * of balls are known to some roundings of the coordinates. */
+/* Tolerance: share of the size, and roundings of the coordinates, by which the ball about a block is too large. A cut
+ * takes vertices within TL_POLY_ON for being on its plane, and centres of balls are rounded. */
 #define BALL_MARGIN (2 * TL_POLY_ON)
 #define BALL_ROUNDINGS (32 * DBL_EPSILON)
 
@@ -458,8 +458,8 @@ tl_status tl_stage_meets(tl_stage *stage, size_t index, const tl_half_space *spa
 
 /* ---------------------------------------------------------------- new blocks -------------- */
 
-/* The origin is rounded to a power of two of at least this many sizes of the first block, so models
- * near zero keep the origin zero, and subtracting it from coordinates is exact. */
+/* Tolerance: the origin is rounded to a power of two of at least this many sizes of the first block. So models near
+ * zero keep the origin zero, and subtracting it from coordinates is exact. */
 #define ORIGIN_SIZES 8.0
 
 /* Fixes the model's origin from the extent of the first block made. */

@@ -40,10 +40,10 @@ typedef struct tl_cut_loads {
  *
  * so that the parts go on as the whole, and what their joint carries stays. Sums of force and moment are those of the whole. */
 
-/* Normals of a face and of its parts are off each other by rounding; so are places, over the size. */
+/* Tolerance: normals of a face and of its parts are off each other by rounding; so are places, over the size. */
 #define SAME_FACE 1e-9
 #define SAME_PLACE 1e-6
-/* Share of what is on faces up to which what is left of a load is rounding. */
+/* Tolerance: share of what is on faces up to which what is left of a load is rounding. */
 #define NOTHING 1e-12
 
 struct tl_cut_load {

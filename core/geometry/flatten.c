@@ -19,7 +19,8 @@
 #include <string.h>
 #include <talus/vmath.h>
 
-/* A face turns clockwise at a corner by less than this times the square of the size: what rounding of six digits leaves. */
+/* Tolerance: a face turns clockwise at a corner by less than this times the square of the size: what rounding of six
+ * digits leaves. */
 #define CLOCKWISE (4 * TL_POLY_FLAT)
 
 typedef struct flattener {

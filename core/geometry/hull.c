@@ -23,10 +23,10 @@
 
 #define NO_FACE UINT32_MAX
 
-/* Faces fitted to vertices within the tolerance leave others this many tolerances off at most. */
+/* Tolerance: faces fitted to vertices within the tolerance leave others this many tolerances off at most. */
 #define SOUND 4
-/* When noise about as large as the tolerance makes the border of two nearly coplanar faces zigzag,
- * so that they are no convex polygons, a tolerance this much wider takes it in. */
+/* Tolerance: a tolerance this much wider is given to a hull whose noise is about as large as the tolerance. Such noise
+ * makes the border of two nearly coplanar faces zigzag, so that they are no convex polygons. */
 #define WIDER 8
 
 typedef struct builder {

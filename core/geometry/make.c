@@ -16,7 +16,7 @@
  * jointed rock have 12 to 60. */
 #define LOCAL_HALF_EDGES 172
 
-/* Deviation from length 1 that still counts as a unit normal: 1e6 roundings, without effect. */
+/* Tolerance: deviation from length 1 that still counts as a unit normal: 1e6 roundings, without effect. */
 #define UNIT_TOLERANCE 1e-10
 
 static size_t allocation(size_t v, size_t f, size_t e)

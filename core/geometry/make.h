@@ -10,12 +10,12 @@
 /* Euler's formula bounds the edges of a polyhedron within the limits on vertices and faces. */
 #define TL_POLY_MAX_EDGES (TL_POLY_MAX_VERTICES + TL_POLY_MAX_FACES - 2)
 
-/* Distances are known to a few roundings of the coordinates: for a small block far from zero that,
- * and not TL_POLY_ON times its size, is the least distance that means anything. */
+/* Tolerance: least distance that means anything, over the coordinates. It replaces TL_POLY_ON times the size for a
+ * small block far from zero. */
 #define TL_POLY_ROUNDINGS (16 * DBL_EPSILON)
 
-/* Depths below this times the thickness of a block change nothing of it: faces may be bent, and points be left out inside, by
- * no more. */
+/* Tolerance: depth over the thickness of a block up to which nothing of it is changed. Faces may be bent, and points
+ * be left out inside, by no more. */
 #define TL_POLY_SHALLOW 1e-2
 
 /* One allocation with the counts set and its arrays laid out but empty; NULL without memory. */

@@ -48,8 +48,8 @@ static void add_tetrahedron(moments *m, tl_vec3 a, tl_vec3 b, tl_vec3 c)
 
 /* ---- the volume of flat and long blocks ---- */
 
-/* Blocks of less than this times the cube of their size (a cube has 0.19): their volume is what is
- * left of tetrahedra a thousand times and more as large, and those are summed with twice the digits. */
+/* Tolerance: volume over the cube of the size (a cube has 0.19) below which a volume is summed with twice the digits.
+ * It is what is left of tetrahedra a thousand times and more as large. */
 #define SLENDER 1e-3
 
 /* A sum with what rounding has left out of it so far. */

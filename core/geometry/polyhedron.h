@@ -11,17 +11,19 @@
 #include <stdbool.h>
 #include <talus/types.h>
 
-/* A face whose vertices are all closer to a plane than this times the size lies on it. A block small
- * in its model knows planes to fewer digits than its own vertices: this leaves it six orders. */
+/* Tolerance: a face whose vertices are all closer to a plane than this times the size lies on it. A block small in its
+ * model knows planes to fewer digits than its own vertices: this leaves it six orders. */
 #define TL_POLY_ON 1e-9
-/* Faces of points given by coordinates of six digits, for a block of about one: a face bent by less is one face. */
+/* Tolerance: a face bent by less than this times the size is one face: points are given by coordinates of six
+ * digits. */
 #define TL_POLY_FLAT 1e-6
-/* The corners of a face miss its plane by less than this times its size: as far as meshes give faces off their planes. */
+/* Tolerance: the corners of a face miss its plane by less than this times its size: as far as meshes give faces off
+ * their planes. */
 #define TL_POLY_BENT 2e-4
-/* Sine of 0.025 degrees, half of what flush faces may tilt. A facet of a face may tilt its plane by less, so that two blocks
- * lie flush on each other by such faces. */
+/* Tolerance: sine of 0.025 degrees, half of what flush faces may tilt. A facet of a face may tilt its plane by less,
+ * so that two blocks lie flush on each other by such faces. */
 #define TL_POLY_TILT 4.3633e-4
-/* A cut that would leave a side thinner than this times the size is refused. */
+/* Limit: a cut that would leave a side thinner than this times the size is refused. */
 #define TL_POLY_THIN 1e-5
 /* Most vertices and most faces of one polyhedron. */
 #define TL_POLY_MAX_VERTICES 4096

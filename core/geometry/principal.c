@@ -10,8 +10,8 @@
 #include <float.h>
 #include <talus/vmath.h>
 
-/* An off-diagonal term below this times the geometric mean of its two diagonal terms is rounding:
- * leaving it changes either moment by a few roundings of that moment. */
+/* Tolerance: an off-diagonal term below this times the geometric mean of its two diagonal terms is rounding. Leaving
+ * it changes either moment by a few roundings of that moment. */
 #define OFF_DIAGONAL (8 * DBL_EPSILON)
 /* Convergence is quadratic: four sweeps do for any 3 x 3 matrix, the rest is a guard. */
 #define MAX_SWEEPS 32

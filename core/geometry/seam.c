@@ -18,15 +18,16 @@
 #include <string.h>
 #include <talus/vmath.h>
 
-/* Parts fit when planes and corners agree within this times their size: joined blocks were cut by one
+/* Tolerance: parts fit when planes and corners agree within this times their size. Joined blocks were cut by one
  * plane, or were placed in contact by coordinates of six digits. */
 #define FIT 1e-6
-/* What parts of one body may have between them and hang together, over the smaller one's size: a gap, an overlap, and the sine of the
- * angle between their faces. They may have been joined after they had settled on each other. */
+/* Tolerance: parts of one body hang together up to this gap, this overlap and this sine of the angle between their
+ * faces. Lengths are relative to the smaller part's size. They may have been joined after they had settled on each
+ * other. Test: unit/test_seam, lua/test_bodies. */
 #define JOINED_GAP 1e-3
 #define JOINED_OVERLAP 1e-2
 #define JOINED_TILT 1e-2
-/* Share of a face's area that may stay uncovered. */
+/* Tolerance: share of a face's area that may stay uncovered. */
 #define UNCOVERED 1e-5
 
 typedef struct frame {

@@ -15,8 +15,8 @@
 
 __extension__ typedef __int128 wide_int;
 
-/* A double product of two cross product components and a difference is off by a few roundings of
- * the sum of magnitudes; beyond this bound its sign is right. */
+/* Tolerance: error over the sum of magnitudes of a double product of two cross product components and a difference.
+ * Beyond this bound its sign is right, and integers are not needed. */
 #define SIGN_BOUND (8 * DBL_EPSILON)
 
 static wide_int wide(int64_t a)

@@ -5,7 +5,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Grid coordinates lie in [0, 2^TL_HULL_BITS]. */
+/* Tolerance: grid coordinates lie in [0, 2^TL_HULL_BITS]. The grid is finer than TL_POLY_ON and coarser than rounding,
+ * and hulls are exact on it. */
 #define TL_HULL_BITS 40
 
 typedef struct tl_hull_triangle {

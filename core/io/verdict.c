@@ -14,15 +14,16 @@
 #include <talus/kit.h>
 #include <talus/vmath.h>
 
-/* Share of the largest displacement below which a block goes with those that move, and displacement over the median size of blocks below which
- * nothing is seen. */
+/* Tolerance: share of the largest displacement below which a block goes with those that move. The second is the
+ * displacement over the median size of blocks below which nothing is seen. */
 #define LEAST_SHARE 0.05
 #define LEAST_SEEN 1e-3
-/* Pages keep displacements in single precision: what is told to have closed is more than that rounds. */
+/* Tolerance: pages keep displacements in single precision: what is told to have closed is more than that rounds. */
 #define ABOVE (1 + 1e-6)
-/* What sudden loads make of what springs bear, and more than that: a load near the edge of a face turns a block by more than its springs show. */
+/* Tolerance: motion, over what springs bear, that sudden loads and closing of joints explain. A load near the edge of
+ * a face turns a block by more than its springs show. */
 #define SPRINGS 3
-/* What a joint may close, over the smaller block's size: more is a corner that has sunk in. */
+/* Tolerance: what a joint may close, over the smaller block's size: more is a corner that has sunk in. */
 #define MOST_SPRUNG 0.03
 
 /* Of a body: its volume, m3, and size, m; how far it has moved since displacements began to count, m; and whether it has failed, which is to have
@@ -53,7 +54,8 @@ typedef struct meeting {
     tl_id contact;  /* the first */
 } meeting;
 
-/* Faces of a meeting look the same way up to this sine: more than those of a face that rocks and has but closed. */
+/* Tolerance: faces of a meeting look the same way up to this sine: more than those of a face that rocks and has but
+ * closed. */
 #define SAME_WAY 0.05
 
 /* All meetings, what is seen, and all bodies with the groups that hang together. */

@@ -19,7 +19,7 @@
 #include <talus/plugins.h>
 #include <talus/view.h>
 
-/* Frames a second at most. */
+/* Constant: frames a second at most. */
 #define RATE 25.0
 /* News begins anew when what has come since its beginning is longer than that by so many bytes: below, all of it again is no
  * saving. */

@@ -11,7 +11,7 @@
 #include <talus/text.h>
 #include <talus/view.h>
 
-/* Steps that one command may ask for. */
+/* Limit: steps that one command may ask for. */
 #define MOST_STEPS 1000000000.0
 /* Bytes of a key. */
 #define KEY 16

@@ -11,7 +11,8 @@
 #include <time.h>
 #include <unistd.h>
 
-#define NANOSECOND 1e-9 /* s */
+/* Constant: s. */
+#define NANOSECOND 1e-9
 
 tl_lua_options *tl_lua_options_of(lua_State *L)
 {

@@ -30,14 +30,14 @@
  * It goes to standard error, and asks nothing that could make the kernel compute: a run gives the same bits with it and
  * without. So dt is the mean step since the last line. Limit: the time that is left is guessed from the trend so far. */
 
-/* Seconds between two lines on a terminal and in a log, unless TALUS_PROGRESS says. */
+/* Constant: seconds between two lines on a terminal and in a log, unless TALUS_PROGRESS says. */
 #define TERMINAL_PERIOD 0.1
 #define LOG_PERIOD 5.0
-/* Counting contacts takes at most this share of the time. */
+/* Constant: counting contacts takes at most this share of the time. */
 #define COUNTING 0.02
 /* Widest line of a log. */
 #define LOG_COLUMNS 160
-/* A trend of the logarithm of the ratio that is less than this in the time looked at is none. */
+/* Tolerance: a trend of the logarithm of the ratio that is less than this in the time looked at is none. */
 #define TREND 0.1
 
 /* The period that the environment asks for, s, or NaN. */

@@ -19,7 +19,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* How long the program waits for a command before it looks whether somebody has pressed Ctrl-C, s. */
+/* Constant: how long the program waits for a command before it looks whether somebody has pressed Ctrl-C, s. */
 #define PATIENCE 0.2
 /* Chunk name of commands, which is in front of their errors. */
 #define CHUNK "view"

@@ -34,7 +34,7 @@ typedef struct tl_face_load {
     tl_vec3 force, moment;
 } tl_face_load;
 
-/* Most refused cuts that are listed; more are only counted. */
+/* Limit: most refused cuts that are listed; more are only counted. */
 #define TL_REFUSED_LISTED 1000
 
 #endif

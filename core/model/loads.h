@@ -39,8 +39,8 @@ void tl_drives_recount(tl_model *m);
 void tl_drives_hold(tl_model *m);
 void tl_drives_settle(tl_model *m);
 
-/* Faster motion, m/s or rad/s, is not set, driven or parted: momentum and angular momentum stay finite, and no step is so short that
- * a model could run with it. */
+/* Limit: faster motion, m/s or rad/s, is not set, driven or parted. Momentum and angular momentum stay finite, and no
+ * step is so short that a model could run with it. */
 #define TL_FASTEST 1e50
 /* TL_E_ARGUMENT with a sentence, after the name of a verb, unless both are finite and no component is above that. */
 tl_status tl_check_motion(tl_error *error, const char *verb, tl_vec3 velocity,

@@ -341,11 +341,11 @@ uint32_t tl_block_row(tl_model *m, tl_id id);
 /* Row of an id known to live, or TL_NO_ROW. */
 uint32_t tl_block_row_quiet(const tl_model *m, tl_id id);
 
-/* Points farther from zero than this, m, are refused: the fifth power of a length, which inertia needs, must be finite
- * with room for densities and sums over bodies. */
+/* Limit: points farther from zero than this, m, are refused. The fifth power of a length, which inertia needs, must be
+ * finite, and so must densities times it and sums over bodies. */
 #define TL_FARTHEST 1e50
-/* Volume, mass and inertia, in SI units, are computed with between the one and the other: products with what else a step
- * has, and sums over bodies, stay finite, and so do their reciprocals. */
+/* Limit: volume, mass and inertia, in SI units, lie between the one and the other. Products with what else a step has,
+ * sums over bodies and reciprocals stay finite. */
 #define TL_LEAST_MEASURE 1e-250
 #define TL_MOST_MEASURE 1e250
 /* Takes the damping off. */

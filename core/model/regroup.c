@@ -15,7 +15,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Relative difference of mass from which a body has lost a block: far above rounding, far below any block
+/* Tolerance: relative difference of mass from which a body has lost a block: far above rounding, far below any block
  * that tolerances let exist. */
 #define WHOLE 1e-12
 

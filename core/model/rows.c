@@ -13,6 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Constant: inertia (20) of the paper over m r^2, that of a ball. The paper does not print it. */
 #define ROUND_COEFFICIENT 0.4
 
 bool tl_rows_reserve(tl_model *m, size_t count, tl_id next_id)
@@ -199,7 +200,7 @@ void tl_body_measure_single(tl_model *m, uint32_t body, uint32_t row, tl_mass ma
  * The volume of all blocks, and the smallest volume, edge and face, kept while blocks come and go: a report on each
  * of many edits must not look at all blocks. They are found anew when a block goes that may have been the smallest. */
 
-/* A block this near to the smallest may be it: above the rounding of shapes that are turned. */
+/* Tolerance: a block this near to the smallest may be it: above the rounding of shapes that are turned. */
 #define AS_SMALL (1 + 1e-9)
 
 typedef struct measures {

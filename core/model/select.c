@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A point this near a boundary, relative to the block's size, counts as on it: the rounding of a few
+/* Tolerance: a point this near a boundary, relative to the block's size, counts as on it. It is the rounding of a few
  * operations on coordinates of the model. */
 #define BOUNDARY 1e-9
 

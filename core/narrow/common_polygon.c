@@ -10,7 +10,7 @@
 
 #include <string.h>
 
-/* Longest run of blended corners that is mixed; longer runs belong to round outlines. */
+/* Tolerance: longest run of blended corners that is mixed; longer runs belong to round outlines. */
 #define BLEND_RUN 3
 
 /* Area and area centroid, taken about a corner. */

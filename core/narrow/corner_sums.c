@@ -18,7 +18,8 @@
 
 #include <talus/vmath.h>
 
-/* Sine of the angle between two edges below which where they meet is no corner: it runs along them as they wobble. */
+/* Tolerance: sine of the angle between two edges below which where they meet is no corner: it runs along them as they
+ * wobble. */
 #define ALONG TL_STRAIGHT
 
 /* Of these sums the gradients are wanted. */

@@ -16,14 +16,16 @@
 
 #define LANES TL_LANES
 
-/* Sine of the angle between two lines below which they do not cross: the error of a crossing's place, a rounding over
- * the sine, then becomes as large as what the wrong one of two such lines encloses. */
+/* Tolerance: sine of the angle between two lines below which they do not cross. The error of a crossing's place, a
+ * rounding over the sine, is then as large as what the wrong one of two such lines encloses. Test:
+ * property/field_properties, property/press_properties. */
 #define PARALLEL 1e-8
-/* Length of a face's normal, within the polygon's plane, below which the face is parallel to the plane. */
+/* Tolerance: length of a face's normal, within the polygon's plane, below which the face is parallel to the plane.
+ * Test: property/field_properties, property/press_properties. */
 #define PARALLEL_FACE 1e-9
 /* Place beyond the end of any line. */
 #define FAR TL_FIELD_FAR
-/* Length of a line that has no end: where it is crossed at all, by parallel lines far away. */
+/* Tolerance: length, m, of a line that has no end: where it is crossed at all, by parallel lines far away. */
 #define ENDLESS 1e145
 
 /* ---------------------------------------------------------------- lines ------------------ */

@@ -52,13 +52,14 @@ typedef struct tl_field_plane {
     double face[TL_LANES]; /* 1: a face, 0: a border */
 } tl_field_plane;
 
-/* Length of n_a - n_b below which two directions are the same: such faces have no surface between them. */
+/* Tolerance: length of n_a - n_b below which two directions are the same: such faces have no surface between them. */
 #define TL_FIELD_ALIKE 1e-7
 
-/* Slope of d within a polygon's plane from which integrals of d are taken by its gradient: nothing cancels in thin slivers. */
+/* Tolerance: slope of d within a polygon's plane from which integrals of d are taken by its gradient: nothing cancels
+ * in thin slivers. */
 #define TL_FIELD_STEEP 0.1
 
-/* Offset of a plane that is none: it lies behind everything. */
+/* Constant: offset of a plane that is none: it lies behind everything. */
 #define TL_FIELD_FAR 1e290
 
 /* Draws the lines of some planes, the first of `line`, and finds between which places they bound the polygons; how many lines

@@ -30,14 +30,15 @@
 
 #define LANES TL_LANES
 
-/* Determinant of a corner's three equations, with normals of length 1 and their differences, below which its place is lost in
- * roundings. */
+/* Cost only: determinant of a corner's three equations, with normals of length 1 and their differences, below which no
+ * mesh stands. The corner's place would be lost in roundings, so all polygons are looked for. */
 #define SHARP 1e-5
 
-/* Roundings of the largest offset by which a corner may seem to lie outside. */
+/* Tolerance: roundings of the largest offset by which a corner may seem to lie outside. */
 #define SLACK (4 * TL_FIELD_ONE_PLANE)
 
-/* Most by which that grows where planes meet at small angles: corners of one block need it, where more than three do. */
+/* Tolerance: most by which that grows where planes meet at small angles: corners of one block need it, where more than
+ * three do. */
 #define MOST_BLURRED 1e3
 
 /* ---------------------------------------------------------------- corners ---------------- */

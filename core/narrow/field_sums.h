@@ -34,10 +34,10 @@ typedef struct tl_field_sums {
     tl_field_power powers[TL_FIELD_POWERS];
 } tl_field_sums;
 
-/* Roundings of the largest offset within which two faces that look the same way are one plane. */
+/* Tolerance: roundings of the largest offset within which two faces that look the same way are one plane. */
 #define TL_FIELD_ONE_PLANE (16 * 2.220446049250313e-16)
-/* Length of n_a - n_b below which two faces look so much the same way that what is between them bears nothing: it counts no
- * more in the stiffness. */
+/* Tolerance: length of n_a - n_b below which what is between two faces counts no more in the stiffness. They look so
+ * much the same way that it bears nothing. */
 #define TL_FIELD_SAME_WAY 0.5
 
 #endif

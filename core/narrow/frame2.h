@@ -9,7 +9,8 @@
 
 #include <talus/vmath.h>
 
-/* Turning angles, rad, below which a corner is none, and from which it is a full one. */
+/* Tolerance: turning angles, rad, below which a corner is none, and from which it is a full one. Test:
+ * lua/test_cut_corners. */
 #define TL_STRAIGHT 0.02
 #define TL_CORNER 0.2
 

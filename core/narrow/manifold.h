@@ -21,7 +21,7 @@ typedef struct tl_manifold_before {
     double opened;
 } tl_manifold_before;
 
-/* Way that a list of faces holds for, over the size. */
+/* Cost only: way that a list of faces holds for, over the size. */
 #define TL_LIST_MARGIN 0.01
 
 /* Facet and points of a pair that has been placed, into scratch->manifold. The region was found with a margin of

@@ -180,8 +180,9 @@ static void press_list_patch(tl_press_planes *p, const tl_press_query *of)
  * with the smoothstep S. q is the overlap of the patch as it is, without the shift of moved faces, over the root of its area. Where the
  * patch has not nearly the energy of the field, other faces press: beside a seam it may be a sliver of next to nothing. */
 
-/* Energy of the patch over that of the field up to which there is no patch, and from which on there is all of it. Patches have nearly
- * that of their field, or more where springs are at corners. */
+/* Tolerance: energy of the patch over that of the field up to which there is no patch, and from which on there is all
+ * of it. Patches have nearly that of their field, or more where springs are at corners. Test: unit/test_share,
+ * verify/long/common_volume. */
 #define SLIVER 0.1
 #define WHOLE 0.5
 
@@ -230,13 +231,17 @@ tl_patch_share tl_patch_share_of(const tl_vec3 *na, const tl_vec3 *nb, bool corn
 
 /* ---------------------------------------------------------------- presses ----------------- */
 
-/* Depth over the size of the smaller block up to which the integrals are looked at for being nothing but roundings. */
+/* Tolerance: depth over the size of the smaller block up to which the integrals are looked at for being nothing but
+ * roundings. Test: lua/test_faint. */
 #define FAINT 1e-7
-/* Depth, over the deepest point's, by which that point may lie outside a block for rounding. */
+/* Tolerance: depth, over the deepest point's, by which that point may lie outside a block for rounding. Test:
+ * property/press_properties. */
 #define INSIDE 1e-6
-/* Sum over those of its parts that may be nothing but their roundings. */
+/* Tolerance: sum over those of its parts that may be nothing but their roundings. A single corner has no radius, and
+ * the root of a rounding would be 1e-8 m. Test: lua/test_law_rounding. */
 #define ROUNDED 1e-14
-/* Volume between two faces, over what the blocks have in common, beyond which they are no patch: of an edge that is pressed into both it is 1. */
+/* Tolerance: volume between two faces, over what the blocks have in common, beyond which they are no patch. Of an edge
+ * that is pressed into both it is 1. Test: lua/test_cut_corners. */
 #define FAR_APART 30
 
 /* ---------------------------------------------------------------- noise ------------------ */

@@ -7,7 +7,7 @@
 #include "narrow/flush.h"
 #include "narrow/press_query.h"
 
-/* Depth over the size of the smaller block up to which blocks only touch: roundings of places. */
+/* Tolerance: depth over the size of the smaller block up to which blocks only touch: roundings of places. */
 #define TL_TOUCHING 1e-12
 
 /* The presses of some pairs, up to TL_FIELD_PAIRS: 0 where the blocks have nothing in common; and what those that have more have

@@ -23,7 +23,8 @@ bool tl_press_slope_find(const tl_press_query *query, const tl_press *at,
 bool tl_press_near(const tl_press *at, const tl_press_slope *slope, const tl_pair_pose *from,
                    const tl_pair_pose *to, tl_press *out);
 
-/* Motion, over the overlap, up to which slopes are used. The force is wrong by its square, then. */
+/* Tolerance: motion, over the overlap, up to which slopes are used. The force is wrong by its square, then. Test:
+ * property/press_properties. */
 #define TL_PRESS_NEAR 1e-4
 
 #endif

@@ -13,7 +13,8 @@
 #include <string.h>
 #include <talus/plugin.h>
 
-/* Cosine of the angle, 15 degrees, within which two faces face each other. Two of one block meet in a blunt edge. */
+/* Tolerance: cosine of the angle, 15 degrees, within which two faces face each other. Two of one block meet in a blunt
+ * edge. */
 #define FACING 0.96592582628906831
 
 /* The planes of a block in A's frame, as columns, and where the other block lies along each of them. */

@@ -10,9 +10,10 @@
 #include <talus/plugin.h>
 #include <talus/vmath.h>
 
-/* Area, over the square of the smaller block's size, of a polygon that is left out. */
+/* Tolerance: area, over the square of the smaller block's size, of a polygon that is left out. */
 #define NO_AREA 1e-12
-/* Squared length of the difference of two unit normals below which their depths are equal nowhere or everywhere. */
+/* Tolerance: squared length of the difference of two unit normals below which their depths are equal nowhere or
+ * everywhere. */
 #define ONE_DIRECTION 1e-12
 
 /* The points x with n . x <= c. */

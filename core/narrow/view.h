@@ -7,12 +7,14 @@
 
 #include "geometry/polyhedron.h"
 
-/* Lengths below it, relative to the smaller block's size, make no difference: a motion within which a pair without points is
- * not looked at again; a motion in a step with which a contact is calm; a gap of walls that are together. Far above rounding of
- * places, far below the contact tolerance. */
+/* Tolerance: lengths below it, relative to the smaller block's size, make no difference. A pair without points
+ * that has moved by less is not looked at again. A contact that moves by less in a step is calm, and walls with a
+ * smaller gap are together. It is far above rounding of places and far below the contact tolerance. Test:
+ * unit/test_contact. */
 #define TL_STILL 1e-6
 
-/* When a pair becomes a contact, and when a contact ends, relative to the smaller block's size. */
+/* Tolerance: gap at which two flush faces become a contact, relative to the smaller block's size. A contact ends at
+ * the second times this gap, so none flickers. Test: unit/test_contact. */
 #define TL_CONTACT_TOLERANCE 1e-3
 #define TL_CONTACT_RELEASE 1.5
 

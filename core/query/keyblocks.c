@@ -64,7 +64,7 @@ typedef struct work {
 
 /* ---------------------------------------------------------------- strength --------------- */
 
-/* Gravity and cohesion beyond which products with masses and areas leave the range of numbers. */
+/* Limit: gravity and cohesion beyond which products with masses and areas leave the range of numbers. */
 #define LARGEST 1e100
 
 /* How closely a joint of the query names a tag: 3 the plane, 2 the set, 1 every joint, 0 not. */

@@ -23,7 +23,8 @@ typedef struct tl_touches {
         left; /* [rows] 1: the block touched another when it was made, has moved against it by more, and no longer does */
 } tl_touches;
 
-/* Motion up to which blocks touch as they did when they were made, over its size. */
+/* Tolerance: motion up to which blocks touch as they did when they were made, over its size. Test: lua/test_keyblocks,
+ * verify/settled_keyblocks. */
 #define TL_TOUCH_KEPT 0.01
 
 /* Free the result with tl_touches_free, also after an error. */
@@ -37,7 +38,8 @@ bool tl_touches_moved(const tl_model *m, const tl_touches *touches, uint32_t bod
 /* Outward unit normal of a touch, axes of the model: as the block lay when it was made, or as it lies now. */
 tl_vec3 tl_touch_normal(const tl_model *m, const tl_touch *touch, bool now);
 
-/* Cosine within which a direction lies in a face, sine within which two faces are parallel: far above rounding of what was cut. */
+/* Tolerance: cosine within which a direction lies in a face, sine within which two faces are parallel: far above
+ * rounding of what was cut. */
 #define TL_TOUCH_ALONG 1e-6
 
 #endif

@@ -125,8 +125,8 @@ static tl_status unsound(const tl_archive *a, tl_model *m, const char *what)
  * Whether the rows of a model that were read from a file fit together: numbers of rows are those of rows that are
  * there, choices are choices, bools are bools, and places are places. */
 
-/* The square of a quaternion's length, and the sum of the sizes of a rotation's nine numbers (at most 3 sqrt 3), may be off by so
- * much: a rotation that the program has made is off by its roundings, some 1e-15. */
+/* Tolerance: error of the square of a quaternion's length, and of the sum of the sizes of a rotation's nine numbers.
+ * That sum is at most 3 sqrt 3. A rotation that the program has made is off by its roundings, some 1e-15. */
 #define TURN_SLACK 0.01
 #define MOST_MATRIX (5.2 + TURN_SLACK)
 

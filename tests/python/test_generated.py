@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """What tools write is up to date and whole: from the help the reference in docs/lua.md, scripts/meta/talus.d.lua and
-.luarc.json, which leads an editor to it; from the tutorial its pictures."""
+.luarc.json, which leads an editor to it; from the tutorial its pictures; from comments docs/c_api.md and docs/tolerances.md."""
 import json
 import os
 import pathlib
@@ -13,7 +13,22 @@ import xml.etree.ElementTree
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PROGRAM = pathlib.Path(os.environ.get("TALUS_PROGRAM", ROOT / "build/release/talus")).resolve()
 META = "scripts/meta/talus.d.lua"
-WRITTEN = {"scripts/tools/reference.lua": "docs/lua.md", "scripts/tools/meta.lua": META, "scripts/tools/c_api.lua": "docs/c_api.md"}
+WRITTEN = {"scripts/tools/reference.lua": "docs/lua.md", "scripts/tools/meta.lua": META, "scripts/tools/c_api.lua": "docs/c_api.md",
+           "scripts/tools/tolerances.lua": "docs/tolerances.md"}
+
+# Constants that say what they are for or need not, and others that fail.
+TOLD = """/* Tolerance: a | b, relative to the size. Test: unit/test_hull,
+ * python/test_generated. */
+#define NEAR 1e-9 /* m */
+#define FAR (8 * DBL_EPSILON)
+
+#define PI 3.14159265358979323846
+#define ROWS 64
+/* Constant: seconds. */
+#define PERIOD 0.1
+"""
+UNTOLD = ("#define NEAR 1e-9\n", "#define NEAR (1. / 3)\n", "/* A comment. */\n#define NEAR (4 * FLT_EPSILON)\n",
+          "/* Tolerance: a. */\n\n#define NEAR 0.5\n", "/* Tolerance: a. Test: unit/test_none. */\n#define NEAR 1\n")
 
 # Every name that the program knows, as its own errors list them.
 NAMES = """
@@ -62,6 +77,23 @@ def check_fresh(folder):
             faults.append(f"{tool} --check does not see that a file is out of date")
         if run(tool, str(stale)).returncode != 0 or stale.read_text(encoding="utf-8") != text:
             faults.append(f"{tool} does not renew a file that is out of date")
+
+
+def check_tolerances(folder):
+    """A constant without a word on what it is for is an error, and so is a test that there is not."""
+    tool, page, source = str(ROOT / "scripts/tools/tolerances.lua"), folder / "page.md", folder / "core/base/a.c"
+    source.parent.mkdir(parents=True)
+    (folder / "tests").symlink_to(ROOT / "tests")
+    page.write_text("<!-- Below this line: written by scripts/tools/tolerances.lua. -->\n", encoding="utf-8")
+    source.write_text(TOLD, encoding="utf-8")
+    done = run(tool, str(page), folder=folder)
+    row = "| `NEAR`, `FAR` | 1e-9, 8 \\* DBL_EPSILON | a.c | tolerance | a \\| b, relative to the size. | unit/test_hull, python/test_generated |"
+    if row not in page.read_text(encoding="utf-8") or "PERIOD" in page.read_text(encoding="utf-8"):
+        faults.append(f"tolerances.lua writes {page.read_text(encoding='utf-8')}{done.stderr}")
+    for text in UNTOLD:
+        source.write_text(text, encoding="utf-8")
+        if run(tool, str(page), folder=folder).returncode == 0:
+            faults.append(f"tolerances.lua takes {text}")
 
 
 def check_whole():
@@ -114,6 +146,7 @@ def main():
         else:
             print("skipped: the reference tells of the screen 'browser', which was not built")
         check_pictures(pathlib.Path(folder))
+        check_tolerances(pathlib.Path(folder))
     check_whole()
     check_settings()
     for text in faults:

@@ -200,9 +200,10 @@ TL_API tl_status tl_model_damping(tl_model *model, const char *damping, const tl
 
 typedef enum tl_timestep_rule { TL_TIMESTEP_PAPER, TL_TIMESTEP_BODY } tl_timestep_rule;
 
-/* Largest FRAC: twice what two free blocks bear; more is a slip of the pen. */
+/* Limit: largest FRAC: twice what two free blocks bear; more is a slip of the pen. */
 #define TL_FRACTION_MOST 2.0
-/* Least fraction, and least given step, s: below, steps and their squares leave the range of numbers. */
+/* Limit: least fraction, and least given step, s: below, steps and their squares leave the range of numbers. Test:
+ * lua/test_limits. */
 #define TL_FRACTION_LEAST 1e-9
 #define TL_STEP_LEAST 1e-100
 
