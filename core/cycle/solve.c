@@ -34,7 +34,8 @@ typedef struct tl_watch tl_watch;
 
 /* Tolerance: steps between two samples of the bodies: few of them make a leg of a body that moves. */
 #define SAMPLE_STEPS 5
-/* Tolerance: legs in a row, and how long they are together, relative to the size of the body. */
+/* Tolerance: legs in a row, and how long they are together, relative to the size of the body. Stable blocks slip by
+ * less as weight comes on. */
 #define LEGS 5
 #define FAILED_SHARE 0.05
 /* Tolerance: the same for a body that has landed. */

@@ -22,7 +22,7 @@
 /* ---------------------------------------------------------------- before ----------------- */
 
 /* Tolerance: tilt, as a sine, beyond which bonds of two faces end: 3 degrees. The overlap of a patch is that along one
- * normal. */
+ * normal, whose cosine is wrong by 1e-3 there. */
 #define BONDED_TILT 0.05
 
 /* Whether the blocks of a field contact hardly moved against each other in the last step: only then may it become a patch.

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Runs every code block of README.md, docs/*.md and the other pages beside README.md and compares what it prints with the page; follows the pages' links.
+"""Runs every code block of README.md, docs/*.md and the other pages beside README.md and compares what it prints with the page; follows the pages' links,
+and looks for the files and functions that docs/architecture.md names.
 
 A block is fenced and says its language. Each page has a scratch folder of its own, in which all its blocks run:
 
@@ -317,6 +318,8 @@ def check_links(pages):
             if not re.search(rf"^{word}\)", (ROOT / "bootstrap").read_text(encoding="utf-8"), flags=re.M):
                 fault(name, f"./bootstrap has no word '{word}'")
     check_names(texts)
+    if check_places("docs/architecture.md", texts["docs/architecture.md"]) < 40:
+        fault("docs/architecture.md", "hardly says where anything is")
     readme = texts["README.md"]
     for name in pages:
         if name != "README.md" and f"({name})" not in readme:
@@ -346,6 +349,31 @@ def check_names(texts):
                     fault(page, f"`{code}`: {of} has no '{name}'")
 
 
+def check_places(page, text):
+    """The files and functions that a page names exist, and where it says `FILE`: `NAME`, or beside each other in a drawing, that file has it."""
+    sources = {path.relative_to(ROOT).as_posix(): path for top in ("core", "plugins", "scripts", "tests", "viewer", "cmake") for path in (ROOT / top).rglob("*.*")
+               if path.suffix in (".c", ".h", ".lua", ".py", ".js", ".cmake")}
+    texts = {name: path.read_text(encoding="utf-8") for name, path in sources.items() if name.startswith("core/")}
+    words = set(re.findall(r"\btl_\w+", "".join(texts.values())))
+
+    def found(name):
+        return next((full for full in (name, "core/" + name, "core/include/" + name, "tests/" + name) if full in sources), None)
+
+    for name in sorted(set(re.findall(r"(?<![\w/.*])(?:[a-z_]+/)*[a-z_0-9]+\.(?:c|h|lua|py|js|cmake)\b", text))):
+        if name in ("lua.h", "microhttpd.h") or found(name):
+            continue
+        if "/" in name or not any(full.endswith("/" + name) for full in sources):
+            fault(page, f"there is no file {name}")
+    for name in sorted(set(re.findall(r"\btl_\w+", text)) - words):
+        fault(page, f"there is no {name}")
+    places = [(file, name) for file, names in re.findall(r"`([\w/]+\.[ch])`: ((?:`\w+`(?:, )?)+)", text) for name in re.findall(r"\w+", names)]
+    places += [(file, name) for name, file in re.findall(r"^ {4,}(\w+) {2,}([a-z]+/\w+\.[ch])\b", text, flags=re.M)]
+    for file, name in places:
+        if found(file) and not re.search(rf"\b{name}\b", texts.get(found(file), "")):
+            fault(page, f"{file} has no {name}")
+    return len(places)
+
+
 def check_itself(folder):
     """A checker that sees no mistake sees none in the docs either."""
     sample = ('```lua\nx = 1\n```\n\n<!-- continues -->\n```lua\nprint(x)\n```\n```text\n2\n```\n\n```sh\nfalse\n```\n\n'
@@ -360,9 +388,11 @@ def check_itself(folder):
     page.blocks = [block for block in read_blocks("sample", sample) if block.language in LANGUAGES]
     page.run_blocks()
     check_names({"sample": "`model:solv{...}`, `model:solve`, `block.masses`"})
+    check_places("sample", "`cycle/rest.c`: `tl_at_rest`, `tl_at_work`; `cycle/none.c`, none.h\n\n    tl_step   cycle/rest.c   a drawing\n")
     here, faults[:] = faults[len(before):], before
     for what in ("sample:32: a command", "language 'perl'", "sample:6: the page gives\n2", "sample:13: ended", "sample:17: the comp",
-                 "no JSON", "model has no 'solv'", "block has no 'masses'", "the page gives\ntwo", "ended with status 1"):
+                 "no JSON", "model has no 'solv'", "block has no 'masses'", "the page gives\ntwo", "ended with status 1",
+                 "no file cycle/none.c", "no file none.h", "no tl_at_work", "rest.c has no tl_at_work", "rest.c has no tl_step"):
         if not any(what in text for text in here):
             fault("test_docs", f"'{what}' was not found in the bad sample: {here}")
     if not pattern_of("a ... c\n...\nz\n").fullmatch("a b c\n1\n2\nz\n") or pattern_of("a\n").fullmatch("ab\n"):
