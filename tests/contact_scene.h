@@ -7,6 +7,7 @@
 #include "check.h"
 #include "contact/detection.h"
 #include "contact/places.h"
+#include "cycle/contributors.h"
 #include "cycle/cycle_data.h"
 #include "cycle/gather.h"
 #include "cycle/prepare.h"
@@ -265,11 +266,9 @@ SCENE_UNUSED static void scene_forces(tl_model *m)
     if (status == TL_OK)
         status = tl_laws_check(m);
     if (status == TL_OK)
-        status = tl_laws_prepare(m);
-    if (status == TL_OK) {
-        const tl_law_phase phase = tl_law_phase_of(m->cycle);
-        status = tl_laws_apply(m, &phase);
-    }
+        status = tl_contributors_prepare(m);
+    if (status == TL_OK)
+        status = tl_contributors_apply(m);
     if (scene_ok(m, status) && CHECK(tl_gather_prepare(m)))
         tl_gather(m);
 }

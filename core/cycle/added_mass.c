@@ -11,7 +11,7 @@
  * work (energy.c), as when velocities are set. */
 #include "cycle/added_mass.h"
 
-#include "contact/detection.h"
+#include "cycle/contributors.h"
 #include "cycle/cycle_data.h"
 #include "model/options.h"
 
@@ -24,23 +24,12 @@
 /* Tolerance: share of added mass over the one told of from which it is told of again. */
 #define TELL_AGAIN 2
 
-/* Whether a body has contact points: something that a longer step would make unstable. */
-static bool is_still(const tl_model *m, uint32_t body)
-{
-    const tl_detect *d = m->detect;
-    for (uint32_t k = 0; k < m->bodies.member_count[body]; k++) {
-        uint32_t row = m->members[m->bodies.member_start[body] + k];
-        for (uint32_t e = d->by_block_start[row]; e < d->by_block_start[row + 1]; e++)
-            if (d->contacts.point_count[d->by_block[e]] > 0)
-                return true;
-    }
-    return false;
-}
-
 static double factor_of(const tl_model *m, uint32_t body, double limit)
 {
     double rate = m->cycle->rate[body];
-    bool more = rate > limit && m->bodies.fixed[body] != TL_FIX_ALL && is_still(m, body);
+    /* something must hold it that a longer step would make unstable */
+    bool more =
+        rate > limit && m->bodies.fixed[body] != TL_FIX_ALL && tl_body_stiffness(m, body) > 0;
     return more ? rate / limit : 1;
 }
 

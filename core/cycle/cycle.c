@@ -23,6 +23,7 @@
 
 #include "contact/contacts.h"
 #include "contact/detection.h"
+#include "cycle/contributors.h"
 #include "cycle/damping.h"
 #include "cycle/energy.h"
 #include "cycle/gather.h"
@@ -59,7 +60,7 @@ static tl_status prepare(tl_model *m, double *dt, bool *driven)
     if (status == TL_OK && !(tl_gather_prepare(m) && tl_split_prepare(m)))
         status = tl_fail_memory(&m->error);
     if (status == TL_OK)
-        status = tl_laws_prepare(m);
+        status = tl_contributors_prepare(m);
     /* false when a user's function ends the run: bodies then go on as they were driven before */
     *driven = status != TL_OK || tl_drives_evaluate(m, m->time + 0.5 * *dt);
     if (status == TL_OK)
@@ -70,8 +71,7 @@ static tl_status prepare(tl_model *m, double *dt, bool *driven)
 /* Forces on the bodies: undone when a law or the damping fails, or a body would move too far. */
 static tl_status apply_forces(tl_model *m, double dt)
 {
-    const tl_law_phase phase = tl_law_phase_of(m->cycle);
-    tl_status status = tl_laws_apply(m, &phase);
+    tl_status status = tl_contributors_apply(m);
     tl_phase_ends(m, TL_PHASE_LAWS);
     if (status == TL_OK) {
         tl_undo_keep_bodies(m);

@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 #include "detect/passing.h"
 #include "force/laws.h"
+#include "model/contributor.h"
 #include "model/loads.h"
 #include "model/model.h"
 
@@ -111,6 +112,7 @@ typedef struct tl_reaction {
 
 struct tl_cycle {
     tl_table table;
+    const tl_contributor *contributor[TL_MOST_CONTRIBUTORS + 1]; /* NULL ends them */
     /* per body */
     double *contact_force; /* sum of |contact forces| */
     double *rate;          /* what it asks of the time step, 1/s2 (timestep.c); 0: it is held */

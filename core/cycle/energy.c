@@ -17,6 +17,7 @@
 
 #include "base/walk.h"
 #include "contact/detection.h"
+#include "cycle/contributors.h"
 #include "cycle/cycle_data.h"
 
 #include <stdlib.h>
@@ -208,22 +209,6 @@ void tl_energy_chunk(tl_model *m, size_t chunk, const tl_work *work)
     }
 }
 
-/* Elastic energy and slip of the contact points, in the order of their SIMD groups. */
-static void sum_points(tl_model *m, struct tl_ledger *l)
-{
-    const tl_layout *layout = &m->detect->layout;
-    l->friction += m->detect->parted;
-    m->detect->parted = 0;
-    l->stored += m->cycle->split_stored;
-    for (size_t k = 0; k < layout->span_count; k++) {
-        const tl_span *span = &layout->spans[k];
-        for (size_t r = span->group_begin; r < span->group_end && span->law != TL_NO_ROW; r++) {
-            l->stored += m->cycle->group_energy[r].stored;
-            l->friction += m->cycle->group_energy[r].dissipated;
-        }
-    }
-}
-
 /* The ledger at the forces' time, and its balance. */
 static void close_ledger(struct tl_ledger *total, const struct tl_ledger *now, bool changed)
 {
@@ -314,7 +299,9 @@ void tl_energy_close(tl_model *m)
         note_overlaps(m, total);
     total->motion = now.motion;
     c->kinetic_before = now.motion0;
-    sum_points(m, &now);
+    tl_energies own = tl_contributors_energies(m);
+    now.stored = own.stored;
+    now.friction = own.heat;
     bool changed = total->structure != m->structure || total->laws != m->laws;
     total->structure = m->structure;
     total->laws = m->laws;

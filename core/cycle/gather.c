@@ -1,11 +1,12 @@
-/* gather.c - forces on bodies: each adds its blocks' contacts in order of the partner's id (13-17 of
- * Hart, Cundall and Lemos 1988), its weight and its load. Components that are held carry no unbalanced force.
+/* gather.c - forces on bodies: each adds what its contributors do (13-17 of Hart, Cundall and Lemos 1988),
+ * its weight and its load. Components that are held carry no unbalanced force.
  * What the measures of convergence ask (rest.c) is summed on the way. */
 #include "cycle/gather.h"
 
 #include "base/extremes.h"
 #include "base/parallel.h"
-#include "contact/contacts.h"
+#include "contact/detection.h"
+#include "cycle/contributors.h"
 #include "cycle/cycle_data.h"
 #include "cycle/energy.h"
 #include "cycle/rest.h"
@@ -17,23 +18,11 @@ static tl_vec3 free_part(tl_vec3 v, unsigned fixed)
                  fixed & TL_FIX_Z ? 0 : v.z);
 }
 
-static void gather_body(tl_model *m, uint32_t body)
+/* Adds to what acts on a body its weight and load. */
+static void gather_body(tl_model *m, uint32_t body, const tl_acting *on)
 {
-    const tl_detect *d = m->detect;
-    const tl_contacts *c = &d->contacts;
     tl_bodies *b = &m->bodies;
-    tl_vec3 force = {0, 0, 0}, moment = {0, 0, 0};
-    double contact_force = 0;
-    for (uint32_t k = 0; k < b->member_count[body]; k++) {
-        uint32_t row = m->members[b->member_start[body] + k];
-        for (uint32_t e = d->by_block_start[row]; e < d->by_block_start[row + 1]; e++) {
-            uint32_t i = d->by_block[e];
-            bool is_b = c->b[i] == row;
-            force = tl_v3_madd(force, is_b ? 1 : -1, c->force[i]);
-            moment = tl_v3_add(moment, tl_contact_moment(m, i, is_b));
-            contact_force += tl_v3_norm(c->force[i]);
-        }
-    }
+    tl_vec3 force = on->force, moment = on->moment;
     if (b->fixed[body]) {
         m->cycle->reaction[m->cycle->reaction_of[body]] = (tl_reaction){force, moment};
     }
@@ -45,7 +34,7 @@ static void gather_body(tl_model *m, uint32_t body)
     }
     b->force[body] = free_part(force, b->fixed[body]);
     b->moment[body] = b->fixed[body] & TL_FIX_ROTATION ? tl_v3(0, 0, 0) : moment;
-    m->cycle->contact_force[body] = contact_force;
+    m->cycle->contact_force[body] = on->magnitude;
 }
 
 /* Unbalanced force and moment of a body, by themselves and over what it bears. What that is at the least is asked only
@@ -80,11 +69,13 @@ static void gather_range(void *user, size_t begin, size_t end, size_t chunk, uns
     bool totals = m->damping && ((const tl_damping_ops *)m->damping->ops)->begin;
     double gravity = tl_v3_norm(m->config.gravity);
     tl_sums sums = {.worst = TL_NO_ROW};
+    tl_acting on[TL_BODY_CHUNK];
     const uint8_t *idle = m->detect->any_idle ? m->detect->idle : NULL;
+    tl_contributors_gather(m, (uint32_t)begin, (uint32_t)end, on);
     for (uint32_t body = (uint32_t)begin; body < end; body++) {
         if (idle && idle[body])
             continue;
-        gather_body(m, body);
+        gather_body(m, body, &on[body - begin]);
         if (b->fixed[body] == TL_FIX_ALL)
             continue;
         double v2 = tl_v3_norm2(b->v[body]);

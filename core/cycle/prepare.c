@@ -2,12 +2,11 @@
 #include "cycle/prepare.h"
 
 #include "base/parallel.h"
-#include "contact/detection.h"
+#include "cycle/contributors.h"
 #include "cycle/cycle_data.h"
 #include "cycle/energy.h"
 #include "cycle/split.h"
 #include "cycle/undo.h"
-#include "force/laws.h"
 #include "model/rows.h"
 
 #include <stdlib.h>
@@ -53,6 +52,7 @@ tl_status tl_cycle_prepare(tl_model *m)
         m->cycle_destroy = cycle_destroy;
         tl_failure_init(&m->cycle->failure);
         add_columns(m->cycle);
+        tl_contributors_begin(m->cycle);
     }
     struct tl_cycle *c = m->cycle;
     size_t bodies = m->bodies.table.rows, chunks = bodies / TL_BODY_CHUNK + 1;
@@ -81,17 +81,4 @@ bool tl_model_moves(const tl_model *m)
             tl_v3_norm2(m->bodies.w[i]) > 0)
             return true;
     return false;
-}
-
-tl_status tl_laws_prepare(tl_model *m)
-{
-    struct tl_cycle *c = m->cycle;
-    bool enough = tl_grow(&c->group_energy, &c->group_capacity, m->detect->layout.group_capacity,
-                          sizeof *c->group_energy);
-    return enough ? TL_OK : tl_fail_memory(&m->error);
-}
-
-tl_law_phase tl_law_phase_of(struct tl_cycle *c)
-{
-    return (tl_law_phase){&c->failure, c->group_energy, tl_undo_keep_groups};
 }

@@ -14,10 +14,9 @@
  * stored in all contacts for U. */
 #include "cycle/rest.h"
 
-#include "contact/detection.h"
+#include "cycle/contributors.h"
 #include "cycle/cycle_data.h"
 #include "cycle/energy.h"
-#include "force/joint_laws.h"
 
 #include <stdatomic.h>
 
@@ -29,27 +28,9 @@
  * more energy goes with the same force. Test: lua/test_rest. */
 #define SOFTER 1e3
 
-/* Sum of k A over the contacts of a body. */
-static double stiffness_of(const tl_model *m, uint32_t body)
-{
-    const tl_detect *d = m->detect;
-    const tl_contacts *c = &d->contacts;
-    double sum = 0;
-    for (uint32_t j = 0; j < m->bodies.member_count[body]; j++) {
-        uint32_t row = m->members[m->bodies.member_start[body] + j];
-        for (uint32_t e = d->by_block_start[row]; e < d->by_block_start[row + 1]; e++) {
-            uint32_t i = d->by_block[e];
-            if (c->law[i] == TL_NO_ROW || c->point_count[i] == 0)
-                continue;
-            sum += tl_law_stiffness(&m->joint_laws[c->law[i]]) * c->area[i];
-        }
-    }
-    return sum;
-}
-
 double tl_least_borne(const tl_model *m, uint32_t body)
 {
-    return ROUNDED_OVERLAP * m->bodies.radius[body] * stiffness_of(m, body);
+    return ROUNDED_OVERLAP * m->bodies.radius[body] * tl_body_stiffness(m, body);
 }
 
 double tl_unbalanced_ratio(const tl_model *m, tl_ratio_measure measure)
@@ -95,7 +76,7 @@ static bool moves(const rest_job *job, uint32_t body)
     double kinetic = kinetic_energy(m, body);
     if (kinetic == 0)
         return false;
-    double stiffness = stiffness_of(m, body);
+    double stiffness = tl_body_stiffness(m, body);
     double bears = tl_borne(m, body, tl_weight_of(b, body, job->gravity));
     bears = fmax(bears, ROUNDED_OVERLAP * b->radius[body] * stiffness);
     double stored = stiffness > 0 ? 0.5 * bears * bears / stiffness : b->mass[body] * job->stored;

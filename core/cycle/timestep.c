@@ -13,6 +13,7 @@
 #include "base/parallel.h"
 #include "contact/detection.h"
 #include "cycle/added_mass.h"
+#include "cycle/contributors.h"
 #include "cycle/cycle_data.h"
 #include "cycle/limits.h"
 #include "cycle/prepare.h"
@@ -57,8 +58,6 @@ typedef struct row_search {
 /* Tolerance: part of its largest face that a body stands on at least, if it rests on corners and edges. A longer step
  * would shrink while it lands. */
 #define FLOOR 0.15
-/* Tolerance: stiffness of a corner that is pressed in twice as deep, over what it is. */
-#define TWICE_AS_DEEP 4
 /* Tolerance: steps after which mass scaling rates all bodies again, even when no contact has come or gone: areas may
  * have grown. */
 #define RECHECK_STEPS 64
@@ -100,11 +99,6 @@ static tl_row_value row_search_run(row_search *s, size_t rows, size_t chunk, tl_
 
 /* ---------------------------------------------------------------- areas ------------------ */
 
-/* An area, and its second moment about a body's centroid. */
-typedef struct area_sums {
-    double area, area_r2;
-} area_sums;
-
 /* 1 over mass and smallest moment of inertia; 0 for a rotation that is held. */
 typedef struct inverse_inertia {
     double mass, moment;
@@ -119,29 +113,29 @@ static inverse_inertia inverse_of(const tl_model *m, uint32_t body)
     return (inverse_inertia){1 / b->mass[body], b->fixed[body] & TL_FIX_ROTATION ? 0 : 1 / least};
 }
 
-static double rate_of(area_sums on, inverse_inertia per)
+static double rate_of(tl_spread on, inverse_inertia per)
 {
-    return on.area * per.mass + on.area_r2 * per.moment;
+    return on.sum * per.mass + on.r2 * per.moment;
 }
 
 /* A triangle, about the zero of its frame. */
-static area_sums triangle(tl_vec3 a, tl_vec3 b, tl_vec3 c)
+static tl_spread triangle(tl_vec3 a, tl_vec3 b, tl_vec3 c)
 {
     double area = 0.5 * tl_v3_norm(tl_v3_cross(tl_v3_sub(b, a), tl_v3_sub(c, a)));
     double squares = tl_v3_norm2(a) + tl_v3_norm2(b) + tl_v3_norm2(c) +
                      tl_v3_norm2(tl_v3_add(a, tl_v3_add(b, c)));
-    return (area_sums){area, area * squares / 12};
+    return (tl_spread){area, area * squares / 12};
 }
 
-static area_sums face_of(const tl_poly *shape, uint32_t face)
+static tl_spread face_of(const tl_poly *shape, uint32_t face)
 {
     const uint16_t *loop = shape->loop + shape->start[face];
-    area_sums out = {0, 0};
+    tl_spread out = {0, 0};
     for (uint32_t i = 2; i < tl_poly_face_size(shape, face); i++) {
-        area_sums next =
+        tl_spread next =
             triangle(shape->vertex[loop[0]], shape->vertex[loop[i - 1]], shape->vertex[loop[i]]);
-        out.area += next.area;
-        out.area_r2 += next.area_r2;
+        out.sum += next.sum;
+        out.r2 += next.r2;
     }
     return out;
 }
@@ -151,142 +145,33 @@ static area_sums face_of(const tl_poly *shape, uint32_t face)
 #define AS_LARGE 1e-6
 
 /* The largest face of a body that does not lie on another of its blocks; of several the arms of the farthest. */
-static area_sums largest_face(const tl_model *m, uint32_t body)
+static tl_spread largest_face(const tl_model *m, uint32_t body)
 {
-    area_sums largest = {0, 0};
+    tl_spread largest = {0, 0};
     for (uint32_t k = 0; k < m->bodies.member_count[body]; k++) {
         const tl_poly *shape = m->blocks.shape[m->members[m->bodies.member_start[body] + k]];
         for (uint32_t f = 0; f < shape->face_count; f++) {
-            area_sums face = shape->covered[f] ? (area_sums){0, 0} : face_of(shape, f);
-            if (face.area > (1 + AS_LARGE) * largest.area)
+            tl_spread face = shape->covered[f] ? (tl_spread){0, 0} : face_of(shape, f);
+            if (face.sum > (1 + AS_LARGE) * largest.sum)
                 largest = face;
-            else if (face.area > (1 - AS_LARGE) * largest.area)
-                largest.area_r2 = fmax(largest.area_r2, face.area_r2);
+            else if (face.sum > (1 - AS_LARGE) * largest.sum)
+                largest.r2 = fmax(largest.r2, face.r2);
         }
     }
     return largest;
 }
 
-/* The points of a contact about the centroid of B's or of A's body. */
-static area_sums points_of(const tl_model *m, uint32_t c, bool of_b)
-{
-    const tl_contacts *contacts = &m->detect->contacts;
-    const tl_points_table *p = &m->detect->points;
-    uint32_t a = m->blocks.body[contacts->a[c]], b = m->blocks.body[contacts->b[c]];
-    tl_vec3 centre = {0, 0, 0};
-    if (of_b)
-        centre = tl_m3_tmul(&m->bodies.pose[a].r, tl_body_apart(&m->bodies, a, b));
-    area_sums out = {0, 0};
-    if (contacts->facet[c].kind == TL_FACET_FIELD) {
-        const tl_press *press = &m->detect->press[contacts->press[c]].press;
-        double r2 = tl_v3_norm2(tl_v3_sub(press->point, centre)) + press->radius * press->radius;
-        double stiffness = TWICE_AS_DEEP * press->stiffness;
-        return (area_sums){stiffness, stiffness * r2};
-    }
-    for (uint32_t k = 0; k < contacts->point_count[c]; k++) {
-        size_t i = tl_point_row(contacts, c, k);
-        out.area += p->area[i];
-        out.area_r2 += p->area[i] * tl_v3_norm2(tl_v3_sub(tl_columns_get(p->p, i), centre));
-    }
-    return out;
-}
-
 /* ---------------------------------------------------------------- one body --------------- */
 
-/* Stiffness of a body's contact points and its second moment, and the stiffest of their laws; 0 without contacts. */
-typedef struct contact_sums {
-    area_sums stiffness;
-    double law;
-    bool has_points; /* some have points */
-} contact_sums;
-
-/* Where a contact presses in A's frame, and its overlap there. A patch, whose area counts before it touches, has besides its
- * overlap the gap at which it is born: with that, blocks that come faster may press on by other faces. */
-static double overlap_of(const tl_model *m, uint32_t c, double law, tl_vec3 *at)
-{
-    const tl_contacts *contacts = &m->detect->contacts;
-    const tl_points_table *p = &m->detect->points;
-    if (contacts->facet[c].kind == TL_FACET_FIELD) {
-        const tl_press *press = &m->detect->press[contacts->press[c]].press;
-        *at = press->point;
-        return press->overlap;
-    }
-    uint32_t count = contacts->point_count[c];
-    *at = tl_v3(0, 0, 0);
-    for (uint32_t k = 0; k < count; k++)
-        *at = tl_v3_madd(*at, 1.0 / count, tl_columns_get(p->p, tl_point_row(contacts, c, k)));
-    double size = fmin(m->blocks.size[contacts->a[c]], m->blocks.size[contacts->b[c]]);
-    return tl_v3_norm(contacts->force[c]) / (law * contacts->area[c]) + TL_CONTACT_TOLERANCE * size;
-}
-
-/* Speed at which the blocks of a contact come together there, over their overlap. */
-static double approach_of(const tl_model *m, uint32_t c, double law)
-{
-    const tl_contacts *contacts = &m->detect->contacts;
-    const tl_bodies *bodies = &m->bodies;
-    uint32_t a = m->blocks.body[contacts->a[c]], b = m->blocks.body[contacts->b[c]];
-    tl_vec3 point;
-    double overlap = overlap_of(m, c, law, &point);
-    tl_vec3 arm = tl_m3_mul(&bodies->pose[a].r, point);
-    tl_vec3 arm_b = tl_v3_sub(arm, tl_body_apart(bodies, a, b));
-    tl_vec3 v_a = tl_v3_add(bodies->v[a], tl_v3_cross(bodies->w[a], arm));
-    tl_vec3 v_b = tl_v3_add(bodies->v[b], tl_v3_cross(bodies->w[b], arm_b));
-    double closing = tl_v3_dot(tl_v3_sub(v_a, v_b), contacts->facet[c].last);
-    return overlap > 0 ? fabs(closing) / overlap : INFINITY;
-}
-
-/* Contacts without area have a law, too. `points`: their stiffness is asked for as well. */
-static contact_sums add_contacts(const tl_model *m, uint32_t body, bool points)
-{
-    const tl_detect *d = m->detect;
-    const tl_contacts *c = &d->contacts;
-    contact_sums out = {{0, 0}, 0, false};
-    for (uint32_t j = 0; j < m->bodies.member_count[body]; j++) {
-        uint32_t row = m->members[m->bodies.member_start[body] + j];
-        for (uint32_t e = d->by_block_start[row]; e < d->by_block_start[row + 1]; e++) {
-            uint32_t i = d->by_block[e];
-            if (c->law[i] == TL_NO_ROW)
-                continue;
-            double law = tl_law_stiffness(&m->joint_laws[c->law[i]]);
-            out.law = fmax(out.law, law);
-            if (points && c->point_count[i] > 0) {
-                area_sums next = points_of(m, i, c->b[i] == row);
-                out.has_points = true;
-                out.stiffness.area += law * next.area;
-                out.stiffness.area_r2 += law * next.area_r2;
-            }
-        }
-    }
-    return out;
-}
-
-static double law_on_face(contact_sums of, double stiffest)
+static double law_on_face(tl_holding of, double stiffest)
 {
     return of.law > 0 ? of.law : stiffest;
 }
 
-/* Highest speed at which a contact of a body goes on, over its overlap, 1/s. */
-static double highest_approach(const tl_model *m, uint32_t body)
-{
-    const tl_detect *d = m->detect;
-    const tl_contacts *c = &d->contacts;
-    double out = 0;
-    for (uint32_t j = 0; j < m->bodies.member_count[body]; j++) {
-        uint32_t row = m->members[m->bodies.member_start[body] + j];
-        for (uint32_t e = d->by_block_start[row]; e < d->by_block_start[row + 1]; e++) {
-            uint32_t i = d->by_block[e];
-            if (c->law[i] == TL_NO_ROW || c->point_count[i] == 0)
-                continue;
-            out = fmax(out, approach_of(m, i, tl_law_stiffness(&m->joint_laws[c->law[i]])));
-        }
-    }
-    return out;
-}
-
 /* The part of its largest face on which a body stands at least, for the rate on all of it. */
-static double least_part(const tl_model *m, uint32_t body, const contact_sums *of, double face)
+static double least_part(const tl_model *m, uint32_t body, const tl_holding *of, double face)
 {
-    double more = of->has_points ? highest_approach(m, body) / sqrt(face) : 1;
+    double more = of->presses ? tl_body_approach(m, body) / sqrt(face) : 1;
     return fmin(fmax(more, FLOOR), 1);
 }
 
@@ -297,12 +182,12 @@ typedef struct step_rates {
 
 static step_rates body_rate(const tl_model *m, uint32_t body, double stiffest)
 {
-    contact_sums of = add_contacts(m, body, tl_rates_points(m));
+    tl_holding of = tl_body_held(m, body, tl_rates_points(m));
     inverse_inertia per = inverse_of(m, body);
     double law = law_on_face(of, stiffest), face = law * m->bodies.face_rate[body];
     double turn = law * m->bodies.face_turn[body],
            part = 0; /* where the contacts ask for more anyway */
-    double pushed = of.stiffness.area * per.mass, turned = of.stiffness.area_r2 * per.moment;
+    double pushed = of.stiffness.sum * per.mass, turned = of.stiffness.r2 * per.moment;
     bool more = m->mass_scaling ? pushed < face - turn || turned < turn : pushed + turned < face;
     if (more)
         part = least_part(m, body, &of, face);
@@ -311,45 +196,23 @@ static step_rates body_rate(const tl_model *m, uint32_t body, double stiffest)
     return (step_rates){2 * fmax(pushed, part * (face - turn)), 2 * fmax(turned, part * turn)};
 }
 
-/* Tolerance: a contact presses no farther away than the farthest corner of the body, over the radius of that: overlaps
- * come on top. */
-#define BEYOND 1.05
-
-/* What a body's rate is no higher than, from the areas of its contacts alone. */
+/* What a body's rate is no higher than, from what is known of its contacts at once. */
 static double most_rate(const tl_model *m, uint32_t body, double stiffest)
 {
-    const tl_detect *d = m->detect;
-    const tl_contacts *c = &d->contacts;
-    area_sums stiffness = {0, 0};
-    double law = 0, radius = BEYOND * m->bodies.radius[body];
-    for (uint32_t j = 0; j < m->bodies.member_count[body]; j++) {
-        uint32_t row = m->members[m->bodies.member_start[body] + j];
-        for (uint32_t e = d->by_block_start[row]; e < d->by_block_start[row + 1]; e++) {
-            uint32_t i = d->by_block[e];
-            if (c->law[i] == TL_NO_ROW)
-                continue;
-            area_sums on = {c->area[i], c->area[i] * radius * radius};
-            if (c->facet[i].kind == TL_FACET_FIELD) /* what is known of it at once is closer */
-                on = points_of(m, i, c->b[i] == row);
-            double k = tl_law_stiffness(&m->joint_laws[c->law[i]]);
-            law = fmax(law, k);
-            stiffness.area += k * on.area;
-            stiffness.area_r2 += k * on.area_r2;
-        }
-    }
-    double on_face = (law > 0 ? law : stiffest) * m->bodies.face_rate[body];
-    return fmax(rate_of(stiffness, inverse_of(m, body)), on_face);
+    tl_holding most = tl_body_held_most(m, body);
+    double on_face = law_on_face(most, stiffest) * m->bodies.face_rate[body];
+    return fmax(rate_of(most.stiffness, inverse_of(m, body)), on_face);
 }
 
 /* The stiffness that a body's rate comes from, N/m: of its contacts, or of the part of its largest face that counts. */
 static double rate_stiffness(const tl_model *m, uint32_t body)
 {
-    contact_sums of = add_contacts(m, body, tl_rates_points(m));
+    tl_holding of = tl_body_held(m, body, tl_rates_points(m));
     double law = law_on_face(of, stiffest_law(m)), face = law * m->bodies.face_rate[body];
     double part = least_part(m, body, &of, face);
     if (rate_of(of.stiffness, inverse_of(m, body)) < part * face)
-        return part * law * largest_face(m, body).area;
-    return of.stiffness.area;
+        return part * law * largest_face(m, body).sum;
+    return of.stiffness.sum;
 }
 
 /* ---------------------------------------------------------------- all bodies ------------- */
@@ -358,10 +221,10 @@ static double rate_stiffness(const tl_model *m, uint32_t body)
  * paper's rule, turning does not either. */
 static step_rates rate_on_face(const tl_model *m, uint32_t body)
 {
-    area_sums face = largest_face(m, body);
+    tl_spread face = largest_face(m, body);
     inverse_inertia per = inverse_of(m, body);
-    return (step_rates){tl_rates_points(m) ? rate_of(face, per) : face.area * per.mass,
-                        face.area_r2 * per.moment};
+    return (step_rates){tl_rates_points(m) ? rate_of(face, per) : face.sum * per.mass,
+                        face.r2 * per.moment};
 }
 
 /* Of the bodies of which it is not known: those that have come or changed. */

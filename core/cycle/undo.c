@@ -8,16 +8,11 @@
  * choice of the step need no undoing, for made again in the same places they change nothing; the move cannot fail. */
 #include "cycle/undo.h"
 
-#include "contact/contacts.h"
-#include "contact/detection.h"
 #include "cycle/cycle_data.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-/* Tolerance: stiffnesses, forces, gravity and squares of speeds below this make finite forces, in any units: products
- * of five of them are still doubles. */
-#define TAME 1e60
 /* Cost only: steps after which the memory of a step that was kept once is given back. An edit is often followed by
  * others, and new memory costs more than the copies. */
 #define FORGET_AFTER 64
@@ -25,8 +20,7 @@
 /* The columns of a table that a step overwrites (TL_COLUMN_STEP), one after the other, each of the table's capacity. */
 typedef struct shadow {
     char *memory;
-    size_t capacity;                                /* bytes */
-    uint8_t column_count, column[TL_TABLE_COLUMNS]; /* their numbers in the table */
+    size_t capacity; /* bytes */
 } shadow;
 
 struct tl_undo {
@@ -38,7 +32,10 @@ struct tl_undo {
     int64_t kept_at;  /* steps made when a step was kept last */
     double dt;        /* that the user had fixed then; NAN: none */
     tl_vec3 gravity;  /* then */
-    shadow points, contacts, bodies, loads;
+    shadow bodies, loads;
+    tl_table
+        *table[TL_MOST_CONTRIBUTORS * TL_CONTRIBUTOR_TABLES]; /* of contributors, in their order */
+    shadow contributor[TL_MOST_CONTRIBUTORS * TL_CONTRIBUTOR_TABLES];
     tl_reaction *reaction;
     size_t reaction_capacity;
     tl_sums sums;
@@ -50,13 +47,15 @@ struct tl_undo {
 static bool shadow_reserve(shadow *s, const tl_table *table)
 {
     size_t row = 0;
-    s->column_count = 0;
     for (size_t i = 0; i < table->column_count; i++)
-        if (table->columns[i].flags & TL_COLUMN_STEP) {
-            s->column[s->column_count++] = (uint8_t)i;
-            row += table->columns[i].size;
-        }
+        row += table->columns[i].flags & TL_COLUMN_STEP ? table->columns[i].size : 0;
     return tl_fit(&s->memory, &s->capacity, row * table->capacity, 1);
+}
+
+static void shadow_free(shadow *s)
+{
+    free(s->memory);
+    *s = (shadow){.memory = NULL};
 }
 
 /* Copies rows of the table to its shadow, or back. */
@@ -64,8 +63,10 @@ static void shadow_copy(const shadow *s, const tl_table *table, size_t first, si
                         bool back)
 {
     char *kept = s->memory;
-    for (size_t i = 0; i < s->column_count && count > 0; i++) {
-        const tl_column *column = &table->columns[s->column[i]];
+    for (size_t i = 0; i < table->column_count && count > 0; i++) {
+        const tl_column *column = &table->columns[i];
+        if (!(column->flags & TL_COLUMN_STEP))
+            continue;
         size_t begin = first * column->size, bytes = count * column->size;
         char *here;
         memcpy(&here, (const char *)table->owner + column->offset, sizeof here);
@@ -76,30 +77,48 @@ static void shadow_copy(const shadow *s, const tl_table *table, size_t first, si
 
 /* ---------------------------------------------------------------- what is kept ----------- */
 
-/* Of the points of some SIMD groups that follow each other, and of their contacts. */
-static void copy_groups(tl_model *m, const tl_simd_group *groups, size_t count, bool back)
+/* The shadow of a contributor's table. */
+static shadow *shadow_of(struct tl_undo *u, const tl_table *table)
 {
-    struct tl_undo *u = m->cycle->undo;
-    tl_detect *d = m->detect;
-    const tl_contacts *c = &d->contacts;
-    size_t points = 0;
-    for (size_t r = 0; r < count; r++) {
-        points += (size_t)groups[r].slots * TL_LANES;
-        for (size_t l = 0; l < TL_LANES; l++) {
-            uint32_t contact = groups[r].contact[l];
-            if (contact == TL_NO_ROW)
-                continue;
-            shadow_copy(&u->contacts, &c->table, contact, 1, back);
-        }
-    }
-    if (count > 0)
-        shadow_copy(&u->points, &d->points.table, groups->start, points, back);
+    size_t k = 0;
+    while (u->table[k] != table)
+        k++;
+    return &u->contributor[k];
 }
 
-void tl_undo_keep_groups(tl_model *m, const tl_simd_group *groups, size_t count)
+void tl_undo_rows(tl_model *m, const tl_table *table, size_t first, size_t count, bool back)
 {
-    if (m->cycle->undo->keeps)
-        copy_groups(m, groups, count, false);
+    shadow_copy(shadow_of(m->cycle->undo, table), table, first, count, back);
+}
+
+/* Of the tables of those who do not keep rows of them themselves, or back of all. */
+static void copy_contributors(tl_model *m, bool back)
+{
+    for (const tl_contributor *const *with = m->cycle->contributor; *with; with++) {
+        tl_table *table[TL_CONTRIBUTOR_TABLES];
+        size_t count = (*with)->tables ? (*with)->tables(m, table) : 0;
+        if (!(*with)->put_back)
+            for (size_t k = 0; k < count; k++)
+                tl_undo_rows(m, table[k], 0, table[k]->rows, back);
+        else if (back)
+            (*with)->put_back(m);
+    }
+}
+
+/* Makes room for their shadows. false: out of memory. */
+static bool reserve_contributors(tl_model *m)
+{
+    struct tl_undo *u = m->cycle->undo;
+    size_t all = 0;
+    bool enough = true;
+    for (const tl_contributor *const *with = m->cycle->contributor; *with; with++) {
+        tl_table **table = &u->table[all];
+        size_t count = (*with)->tables ? (*with)->tables(m, table) : 0;
+        for (size_t k = 0; k < count; k++)
+            enough = enough && shadow_reserve(&u->contributor[all + k], table[k]);
+        all += count;
+    }
+    return enough;
 }
 
 /* Of the bodies, and of the sums over them. */
@@ -150,28 +169,31 @@ bool tl_undo_keeps(const tl_model *m)
     return m->cycle->undo->keeps;
 }
 
+static bool contributors_may_fail(const tl_model *m)
+{
+    bool may = false;
+    for (const tl_contributor *const *with = m->cycle->contributor; *with; with++)
+        may = may || ((*with)->may_fail && (*with)->may_fail(m));
+    return may;
+}
+
 /* Whether laws or damping may fail in any step. */
 static bool may_fail(const tl_model *m)
 {
     const tl_sums *last = &m->cycle->sums;
-    bool tame = last->contact_force < TAME && last->max_speed2 < TAME &&
-                tl_v3_norm2(m->config.gravity) < TAME;
+    bool tame = last->contact_force < TL_UNDO_TAME && last->max_speed2 < TL_UNDO_TAME &&
+                tl_v3_norm2(m->config.gravity) < TL_UNDO_TAME;
     bool sure = !m->damping || ((const tl_damping_ops *)m->damping->ops)->never_fails;
-    for (size_t i = 0; i < m->joint_law_count; i++) {
-        tame = tame && m->joint_laws[i].kn < TAME && m->joint_laws[i].ks < TAME;
-        sure = sure && ((const tl_law_ops *)m->joint_laws[i].kind->ops)->never_fails;
-    }
-    return !tame || !sure;
+    return !tame || !sure || contributors_may_fail(m);
 }
 
 /* Gives back the memory in which steps are kept. */
 static void forget(struct tl_undo *u)
 {
-    shadow *all[] = {&u->points, &u->contacts, &u->bodies, &u->loads};
-    for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
-        free(all[i]->memory);
-        *all[i] = (shadow){.memory = NULL};
-    }
+    shadow_free(&u->bodies);
+    shadow_free(&u->loads);
+    for (size_t i = 0; i < TL_MOST_CONTRIBUTORS * TL_CONTRIBUTOR_TABLES; i++)
+        shadow_free(&u->contributor[i]);
     free(u->reaction);
     u->reaction = NULL;
     u->reaction_capacity = 0;
@@ -198,31 +220,24 @@ tl_status tl_undo_reserve(tl_model *m, bool may_pass)
     u->once = !may_fail(m);
     if (u->once && !m->cycle->fast && !m->cycle->long_step && !may_pass && !tl_set_by_hand(m))
         return TL_OK;
-    const tl_detect *d = m->detect;
-    u->keeps = shadow_reserve(&u->points, &d->points.table) &&
-               shadow_reserve(&u->contacts, &d->contacts.table) &&
-               shadow_reserve(&u->bodies, &m->bodies.table) &&
+    u->keeps = reserve_contributors(m) && shadow_reserve(&u->bodies, &m->bodies.table) &&
                shadow_reserve(&u->loads, &m->cycle->table) &&
                tl_fit(&u->reaction, &u->reaction_capacity, m->cycle->reaction_capacity,
                       sizeof *u->reaction);
-    return u->keeps ? TL_OK : tl_fail_memory(&m->error);
+    if (!u->keeps)
+        return tl_fail_memory(&m->error);
+    copy_contributors(m, false);
+    return TL_OK;
 }
 
 void tl_undo_step(tl_model *m)
 {
     struct tl_undo *u = m->cycle->undo;
-    const tl_layout *layout = &m->detect->layout;
     if (!u->keeps) {
         u->lost = true;
         return;
     }
-    for (size_t r = 0; r < layout->span_count; r++) {
-        const tl_span *span = &layout->spans[r];
-        if (span->law == TL_NO_ROW || tl_span_rests(m, span))
-            continue; /* the laws have passed it over */
-        for (size_t k = span->group_begin; k < span->group_end; k++)
-            copy_groups(m, &layout->groups[k], 1, true);
-    }
+    copy_contributors(m, true);
     if (u->gathered)
         copy_bodies(m, true);
 }
@@ -255,8 +270,11 @@ size_t tl_undo_bytes(const struct tl_cycle *c)
     const struct tl_undo *u = c->undo;
     if (!u)
         return 0;
-    return sizeof *u + u->points.capacity + u->contacts.capacity + u->bodies.capacity +
-           u->loads.capacity + u->reaction_capacity * sizeof *u->reaction;
+    size_t bytes = sizeof *u + u->bodies.capacity + u->loads.capacity +
+                   u->reaction_capacity * sizeof *u->reaction;
+    for (size_t i = 0; i < TL_MOST_CONTRIBUTORS * TL_CONTRIBUTOR_TABLES; i++)
+        bytes += u->contributor[i].capacity;
+    return bytes;
 }
 
 void tl_undo_free(struct tl_undo *u)

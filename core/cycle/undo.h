@@ -4,12 +4,17 @@
 
 #include "cycle/cycle_data.h"
 
+/* Tolerance: stiffnesses, forces, gravity and squares of speeds below this make finite forces, in any units: products
+ * of five of them are still doubles. */
+#define TL_UNDO_TAME 1e60
+
 /* What a step may have to undo. It begins with each step, ... */
 tl_status tl_undo_begin(tl_model *m);
 /* ... gets room, before laws change anything, where something may fail, as where a block may pass another, ... */
 tl_status tl_undo_reserve(tl_model *m, bool may_pass);
-/* ... keeps what laws and gather overwrite (of some SIMD groups, on any thread; of the bodies), ... */
-void tl_undo_keep_groups(tl_model *m, const tl_simd_group *groups, size_t count);
+/* ... keeps what contributors and gather overwrite (rows of a contributor's table, on any thread, or with `back` back; the
+ * bodies), ... */
+void tl_undo_rows(tl_model *m, const tl_table *table, size_t first, size_t count, bool back);
 void tl_undo_keep_bodies(tl_model *m);
 /* ... and puts it back after a failure, or ends with the step. What is not kept is lost: no step is made after that. */
 void tl_undo_step(tl_model *m);

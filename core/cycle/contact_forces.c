@@ -1,0 +1,290 @@
+/* contact_forces.c - contacts act on bodies by the laws of their joints: the first contributor of a step. */
+#include "cycle/contact_forces.h"
+
+#include "base/columns.h"
+#include "contact/contacts.h"
+#include "contact/detection.h"
+#include "cycle/cycle_data.h"
+#include "cycle/undo.h"
+#include "force/joint_laws.h"
+#include "force/laws.h"
+
+/* Tolerance: stiffness of a corner that is pressed in twice as deep, over what it is. */
+#define TWICE_AS_DEEP 4
+
+/* ---------------------------------------------------------------- forces ----------------- */
+
+static tl_status prepare(tl_model *m)
+{
+    struct tl_cycle *c = m->cycle;
+    bool enough = tl_grow(&c->group_energy, &c->group_capacity, m->detect->layout.group_capacity,
+                          sizeof *c->group_energy);
+    return enough ? TL_OK : tl_fail_memory(&m->error);
+}
+
+/* Of the points of some SIMD groups that follow each other, and of their contacts: what a failure puts back. */
+static void copy_groups(tl_model *m, const tl_simd_group *groups, size_t count, bool back)
+{
+    const tl_detect *d = m->detect;
+    size_t points = 0;
+    for (size_t r = 0; r < count; r++) {
+        points += (size_t)groups[r].slots * TL_LANES;
+        for (size_t l = 0; l < TL_LANES; l++)
+            if (groups[r].contact[l] != TL_NO_ROW)
+                tl_undo_rows(m, &d->contacts.table, groups[r].contact[l], 1, back);
+    }
+    if (count > 0)
+        tl_undo_rows(m, &d->points.table, groups->start, points, back);
+}
+
+static void keep_groups(tl_model *m, const tl_simd_group *groups, size_t count)
+{
+    if (tl_undo_keeps(m))
+        copy_groups(m, groups, count, false);
+}
+
+/* The laws have passed over spans that rest. */
+static void put_back(tl_model *m)
+{
+    const tl_layout *layout = &m->detect->layout;
+    for (size_t r = 0; r < layout->span_count; r++) {
+        const tl_span *span = &layout->spans[r];
+        bool applied = span->law != TL_NO_ROW && !tl_span_rests(m, span);
+        for (size_t k = span->group_begin; applied && k < span->group_end; k++)
+            copy_groups(m, &layout->groups[k], 1, true);
+    }
+}
+
+static size_t tables(tl_model *m, tl_table *table[TL_CONTRIBUTOR_TABLES])
+{
+    table[0] = &m->detect->points.table;
+    table[1] = &m->detect->contacts.table;
+    return 2;
+}
+
+static bool may_fail(const tl_model *m)
+{
+    bool sure = true;
+    for (size_t i = 0; i < m->joint_law_count; i++) {
+        const tl_law *law = &m->joint_laws[i];
+        sure = sure && ((const tl_law_ops *)law->kind->ops)->never_fails &&
+               law->kn < TL_UNDO_TAME && law->ks < TL_UNDO_TAME;
+    }
+    return !sure;
+}
+
+static tl_status apply(tl_model *m)
+{
+    const tl_law_phase phase = {&m->cycle->failure, m->cycle->group_energy, keep_groups};
+    return tl_laws_apply(m, &phase);
+}
+
+/* In order of the partner's id. */
+static tl_acting acting_on(const tl_model *m, uint32_t body)
+{
+    const tl_detect *d = m->detect;
+    const tl_contacts *c = &d->contacts;
+    tl_acting sum = {.magnitude = 0};
+    for (uint32_t k = 0; k < m->bodies.member_count[body]; k++) {
+        uint32_t row = m->members[m->bodies.member_start[body] + k];
+        for (uint32_t e = d->by_block_start[row]; e < d->by_block_start[row + 1]; e++) {
+            uint32_t i = d->by_block[e];
+            bool is_b = c->b[i] == row;
+            sum.force = tl_v3_madd(sum.force, is_b ? 1 : -1, c->force[i]);
+            sum.moment = tl_v3_add(sum.moment, tl_contact_moment(m, i, is_b));
+            sum.magnitude += tl_v3_norm(c->force[i]);
+        }
+    }
+    return sum;
+}
+
+/* What acts on idle bodies stands as it is. */
+static void gather(const tl_model *m, uint32_t begin, uint32_t end, tl_acting *on)
+{
+    const uint8_t *idle = m->detect->any_idle ? m->detect->idle : NULL;
+    for (uint32_t body = begin; body < end; body++) {
+        if (idle && idle[body])
+            continue;
+        tl_acting own = acting_on(m, body);
+        tl_acting *to = &on[body - begin];
+        to->force = tl_v3_add(to->force, own.force);
+        to->moment = tl_v3_add(to->moment, own.moment);
+        to->magnitude += own.magnitude;
+    }
+}
+
+/* Elastic energy and slip, in the order of the SIMD groups. */
+static tl_energies energies(tl_model *m)
+{
+    const tl_layout *layout = &m->detect->layout;
+    tl_energies sum = {m->cycle->split_stored, m->detect->parted};
+    m->detect->parted = 0;
+    for (size_t k = 0; k < layout->span_count; k++) {
+        const tl_span *span = &layout->spans[k];
+        for (size_t r = span->group_begin; r < span->group_end && span->law != TL_NO_ROW; r++) {
+            sum.stored += m->cycle->group_energy[r].stored;
+            sum.heat += m->cycle->group_energy[r].dissipated;
+        }
+    }
+    return sum;
+}
+
+/* ---------------------------------------------------------------- stiffness -------------- */
+
+/* Sum of k A over the contacts of a body. */
+static double stiffness(const tl_model *m, uint32_t body)
+{
+    const tl_detect *d = m->detect;
+    const tl_contacts *c = &d->contacts;
+    double sum = 0;
+    for (uint32_t j = 0; j < m->bodies.member_count[body]; j++) {
+        uint32_t row = m->members[m->bodies.member_start[body] + j];
+        for (uint32_t e = d->by_block_start[row]; e < d->by_block_start[row + 1]; e++) {
+            uint32_t i = d->by_block[e];
+            if (c->law[i] == TL_NO_ROW || c->point_count[i] == 0)
+                continue;
+            sum += tl_law_stiffness(&m->joint_laws[c->law[i]]) * c->area[i];
+        }
+    }
+    return sum;
+}
+
+/* The points of a contact about the centroid of B's or of A's body. */
+static tl_spread points_of(const tl_model *m, uint32_t c, bool of_b)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    const tl_points_table *p = &m->detect->points;
+    uint32_t a = m->blocks.body[contacts->a[c]], b = m->blocks.body[contacts->b[c]];
+    tl_vec3 centre = {0, 0, 0};
+    if (of_b)
+        centre = tl_m3_tmul(&m->bodies.pose[a].r, tl_body_apart(&m->bodies, a, b));
+    tl_spread out = {0, 0};
+    if (contacts->facet[c].kind == TL_FACET_FIELD) {
+        const tl_press *press = &m->detect->press[contacts->press[c]].press;
+        double r2 = tl_v3_norm2(tl_v3_sub(press->point, centre)) + press->radius * press->radius;
+        double stiffness = TWICE_AS_DEEP * press->stiffness;
+        return (tl_spread){stiffness, stiffness * r2};
+    }
+    for (uint32_t k = 0; k < contacts->point_count[c]; k++) {
+        size_t i = tl_point_row(contacts, c, k);
+        out.sum += p->area[i];
+        out.r2 += p->area[i] * tl_v3_norm2(tl_v3_sub(tl_columns_get(p->p, i), centre));
+    }
+    return out;
+}
+
+/* Contacts without area have a law, too. */
+static void hold(const tl_model *m, uint32_t body, bool points, tl_holding *sum)
+{
+    const tl_detect *d = m->detect;
+    const tl_contacts *c = &d->contacts;
+    for (uint32_t j = 0; j < m->bodies.member_count[body]; j++) {
+        uint32_t row = m->members[m->bodies.member_start[body] + j];
+        for (uint32_t e = d->by_block_start[row]; e < d->by_block_start[row + 1]; e++) {
+            uint32_t i = d->by_block[e];
+            if (c->law[i] == TL_NO_ROW)
+                continue;
+            double law = tl_law_stiffness(&m->joint_laws[c->law[i]]);
+            sum->law = fmax(sum->law, law);
+            if (points && c->point_count[i] > 0) {
+                tl_spread next = points_of(m, i, c->b[i] == row);
+                sum->presses = true;
+                sum->stiffness.sum += law * next.sum;
+                sum->stiffness.r2 += law * next.r2;
+            }
+        }
+    }
+}
+
+/* Tolerance: a contact presses no farther away than the farthest corner of the body, over the radius of that: overlaps
+ * come on top. */
+#define BEYOND 1.05
+
+/* From the areas of contacts alone. Of a field contact its press is known at once, and closer. */
+static void hold_most(const tl_model *m, uint32_t body, tl_holding *sum)
+{
+    const tl_detect *d = m->detect;
+    const tl_contacts *c = &d->contacts;
+    double radius = BEYOND * m->bodies.radius[body];
+    for (uint32_t j = 0; j < m->bodies.member_count[body]; j++) {
+        uint32_t row = m->members[m->bodies.member_start[body] + j];
+        for (uint32_t e = d->by_block_start[row]; e < d->by_block_start[row + 1]; e++) {
+            uint32_t i = d->by_block[e];
+            if (c->law[i] == TL_NO_ROW)
+                continue;
+            tl_spread on = {c->area[i], c->area[i] * radius * radius};
+            if (c->facet[i].kind == TL_FACET_FIELD)
+                on = points_of(m, i, c->b[i] == row);
+            double k = tl_law_stiffness(&m->joint_laws[c->law[i]]);
+            sum->law = fmax(sum->law, k);
+            sum->stiffness.sum += k * on.sum;
+            sum->stiffness.r2 += k * on.r2;
+        }
+    }
+}
+
+/* Where a contact presses in A's frame, and its overlap there. A patch, whose area counts before it touches, has besides its
+ * overlap the gap at which it is born: with that, blocks that come faster may press on by other faces. */
+static double overlap_of(const tl_model *m, uint32_t c, double law, tl_vec3 *at)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    const tl_points_table *p = &m->detect->points;
+    if (contacts->facet[c].kind == TL_FACET_FIELD) {
+        const tl_press *press = &m->detect->press[contacts->press[c]].press;
+        *at = press->point;
+        return press->overlap;
+    }
+    uint32_t count = contacts->point_count[c];
+    *at = tl_v3(0, 0, 0);
+    for (uint32_t k = 0; k < count; k++)
+        *at = tl_v3_madd(*at, 1.0 / count, tl_columns_get(p->p, tl_point_row(contacts, c, k)));
+    double size = fmin(m->blocks.size[contacts->a[c]], m->blocks.size[contacts->b[c]]);
+    return tl_v3_norm(contacts->force[c]) / (law * contacts->area[c]) + TL_CONTACT_TOLERANCE * size;
+}
+
+/* Speed at which the blocks of a contact come together there, over their overlap. */
+static double approach_of(const tl_model *m, uint32_t c, double law)
+{
+    const tl_contacts *contacts = &m->detect->contacts;
+    const tl_bodies *bodies = &m->bodies;
+    uint32_t a = m->blocks.body[contacts->a[c]], b = m->blocks.body[contacts->b[c]];
+    tl_vec3 point;
+    double overlap = overlap_of(m, c, law, &point);
+    tl_vec3 arm = tl_m3_mul(&bodies->pose[a].r, point);
+    tl_vec3 arm_b = tl_v3_sub(arm, tl_body_apart(bodies, a, b));
+    tl_vec3 v_a = tl_v3_add(bodies->v[a], tl_v3_cross(bodies->w[a], arm));
+    tl_vec3 v_b = tl_v3_add(bodies->v[b], tl_v3_cross(bodies->w[b], arm_b));
+    double closing = tl_v3_dot(tl_v3_sub(v_a, v_b), contacts->facet[c].last);
+    return overlap > 0 ? fabs(closing) / overlap : INFINITY;
+}
+
+/* Highest speed at which a contact of a body goes on, over its overlap, 1/s. */
+static double approach(const tl_model *m, uint32_t body)
+{
+    const tl_detect *d = m->detect;
+    const tl_contacts *c = &d->contacts;
+    double out = 0;
+    for (uint32_t j = 0; j < m->bodies.member_count[body]; j++) {
+        uint32_t row = m->members[m->bodies.member_start[body] + j];
+        for (uint32_t e = d->by_block_start[row]; e < d->by_block_start[row + 1]; e++) {
+            uint32_t i = d->by_block[e];
+            if (c->law[i] == TL_NO_ROW || c->point_count[i] == 0)
+                continue;
+            out = fmax(out, approach_of(m, i, tl_law_stiffness(&m->joint_laws[c->law[i]])));
+        }
+    }
+    return out;
+}
+
+const tl_contributor tl_contacts_act = {.name = "contacts",
+                                        .prepare = prepare,
+                                        .apply = apply,
+                                        .gather = gather,
+                                        .stiffness = stiffness,
+                                        .hold = hold,
+                                        .hold_most = hold_most,
+                                        .approach = approach,
+                                        .energies = energies,
+                                        .tables = tables,
+                                        .put_back = put_back,
+                                        .may_fail = may_fail};
